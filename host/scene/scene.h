@@ -1,0 +1,140 @@
+// A scene as plain data, in SI units, exactly as the JSON file says it. No geometry is loaded here.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pliant {
+
+using Vec3d = std::array<double, 3>;
+
+/// A set of nodes chosen by rest position [m], or by index.
+struct Selection {
+  enum class Kind { all, box, sphere, plane, nodes };
+  Kind kind = Kind::all;
+  Vec3d a{};                     ///< box: lower corner; sphere: centre; plane: point
+  Vec3d b{};                     ///< box: upper corner; plane: normal (nodes with (X - a).b >= 0 are chosen)
+  double radius = 0;             ///< sphere [m]
+  std::vector<std::int64_t> nodes;  ///< nodes: indices into the body's nodes
+  std::string pointer;           ///< JSON pointer, for messages ("/bodies/0/fixed/1")
+  /// True if a node with this rest position and body-local index belongs to the set.
+  [[nodiscard]] bool contains(const Vec3d& x, std::int64_t index) const;
+};
+
+enum class Law { neo_hookean, saint_venant_kirchhoff, isochoric_neo_hookean };
+enum class ElementKind { tet4, tet4anp, hex8, hex8full };
+
+/// Names as they stand in a scene file ("neo-hookean", "hex8", ...).
+const char* to_string(Law law);
+const char* to_string(ElementKind element);
+
+/// Isotropic hyperelastic material. `lambda` is the first Lame constant; the isochoric law uses `kappa` instead.
+struct Material {
+  Law law = Law::neo_hookean;
+  double mu = 0;       ///< shear modulus [Pa]
+  double lambda = 0;   ///< first Lame constant [Pa]
+  double kappa = 0;    ///< bulk modulus [Pa]: lambda + 2 mu / 3
+  double density = 1000;  ///< [kg/m^3]
+  double damping = 0;  ///< mass-proportional damping rate c [1/s]: M u'' + c M u' = R - F
+  double hourglass = 1;  ///< factor on the hourglass stiffness of hex8 (1: exact bending of a bar at nu = 0)
+  [[nodiscard]] double young() const;    ///< [Pa]
+  [[nodiscard]] double poisson() const;  ///< dimensionless
+};
+
+/// A part of a body with another material (a stiff inclusion). Later entries win where they overlap.
+struct Inclusion {
+  Selection where;  ///< applied to element centroids
+  Material material;
+};
+
+/// Time course of a load or prescribed motion: a factor over time.
+struct Curve {
+  enum class Kind { constant, ramp, smooth, table };
+  Kind kind = Kind::constant;  ///< constant: 1 from the start
+  double start = 0;            ///< [s]
+  double duration = 0;         ///< [s]; ramp: linear 0 to 1; smooth: 10 s^3 - 15 s^4 + 6 s^5
+  std::vector<std::array<double, 2>> table;  ///< (time [s], factor), times ascending, linear in between, held outside
+  [[nodiscard]] double value(double time) const;
+};
+
+struct Fixed {
+  Selection where;
+  std::array<bool, 3> axes{true, true, true};
+};
+
+struct Prescribed {
+  Selection where;
+  std::array<std::optional<double>, 3> displacement;  ///< [m]; an absent component (null in JSON) stays free
+  Curve curve;
+};
+
+/// A force shared equally by the chosen nodes.
+struct Force {
+  Selection where;
+  Vec3d total{};  ///< [N]
+  Curve curve;
+};
+
+/// Follower pressure on the chosen part of the surface: acts along the inward normal of the deformed surface.
+struct Pressure {
+  Selection where;  ///< applied to surface triangle centroids
+  double pressure = 0;  ///< [Pa]
+  Curve curve;
+};
+
+struct LatticeSpec {
+  double spacing = 0;      ///< edge of a cell [m]; 0 if `nodes` is given
+  std::int64_t nodes = 0;  ///< wanted number of nodes; 0 if `spacing` is given
+};
+
+struct Body {
+  std::string name;
+  std::filesystem::path surface;  ///< triangle mesh to be filled with a lattice; empty if `mesh` is given
+  std::filesystem::path mesh;     ///< tetrahedral (or hexahedral) volume mesh; empty if `surface` is given
+  double scale = 1;               ///< applied to the file's coordinates first
+  Vec3d translate{};              ///< [m], after scaling
+  LatticeSpec lattice;            ///< used with `surface`
+  ElementKind element = ElementKind::hex8;
+  Material material;
+  std::vector<Inclusion> inclusions;
+  std::vector<Fixed> fixed;
+  std::vector<Prescribed> prescribed;
+  std::vector<Force> forces;
+  std::vector<Pressure> pressures;
+  Vec3d velocity{};         ///< initial velocity [m/s]
+  Vec3d angular_velocity{}; ///< initial angular velocity about the centre of mass [rad/s]
+  std::string pointer;      ///< JSON pointer ("/bodies/0")
+};
+
+/// Dynamic relaxation: adaptive damping towards static equilibrium.
+struct Relaxation {
+  bool enabled = false;
+  double tolerance = 1e-4;       ///< stop at |R - F| <= tolerance * |largest of R, F|
+  std::int64_t max_steps = 100000;
+};
+
+enum class Integrator { increment, textbook };
+
+struct Scene {
+  std::string name;                 ///< file stem, or what the caller set
+  std::filesystem::path file;       ///< empty if built in code
+  Vec3d gravity{0, 0, 0};           ///< [m/s^2]
+  double dt = 0;                    ///< [s]; 0 means automatic
+  double safety = 0.9;              ///< share of the stable step that an automatic step takes
+  double duration = 1;              ///< [s] simulated by `run` when neither --steps nor --seconds is given
+  Integrator integrator = Integrator::increment;
+  Relaxation relaxation;
+  std::vector<Body> bodies;
+};
+
+/// Read and validate a scene file. Throws Error with the file, the JSON pointer, the value and what is allowed.
+/// Relative mesh paths become relative to the scene file. Meshes themselves are not opened.
+Scene load_scene(const std::filesystem::path& file);
+/// The same from text; `file` is used in messages and to resolve relative paths.
+Scene parse_scene(const std::string& text, const std::filesystem::path& file);
+
+}  // namespace pliant

@@ -1,0 +1,25 @@
+// Constants shared by OpenCL C and C++. The only file that both sides read.
+#ifndef PLIANT_LAYOUT_H
+#define PLIANT_LAYOUT_H
+
+// Element data comes in tiles of 16 elements. A tile holds its planes one after the other, 16 numbers each:
+// plane p of element e stands at (e / TILE) * PLANES * TILE + p * TILE + e % TILE.
+#define PLIANT_TILE 16
+
+// A brick is 16 x 4 x 4 nodes of a lattice (x fastest) and the cells whose low corner they are.
+#define PLIANT_BRICK_X 16
+#define PLIANT_BRICK_Y 4
+#define PLIANT_BRICK_Z 4
+#define PLIANT_BRICK_NODES 256
+
+// Planes per tile.
+#define PLIANT_TET_DATA_PLANES 10   // dN1..dN3 / dX (9) [1/m], volume [m^3]
+#define PLIANT_TET_FORCE_PLANES 12  // 4 corners x 3 components [N]
+#define PLIANT_HEX_FORCE_PLANES 24  // 8 corners x 3 components [N]
+
+// Material laws (the define LAW of a kernel).
+#define PLIANT_LAW_NEO_HOOKEAN 0
+#define PLIANT_LAW_SAINT_VENANT_KIRCHHOFF 1
+#define PLIANT_LAW_ISOCHORIC_NEO_HOOKEAN 2
+
+#endif
