@@ -19,9 +19,10 @@ struct Selection {
   Vec3d a{};                     ///< box: lower corner; sphere: centre; plane: point
   Vec3d b{};                     ///< box: upper corner; plane: normal (nodes with (X - a).b >= 0 are chosen)
   double radius = 0;             ///< sphere [m]
-  std::vector<std::int64_t> nodes;  ///< nodes: indices into the body's nodes
+  std::vector<std::int64_t> nodes;  ///< nodes: indices into the body's nodes, ascending (the loader sorts them)
   std::string pointer;           ///< JSON pointer, for messages ("/bodies/0/fixed/1")
-  /// True if a node with this rest position and body-local index belongs to the set.
+  /// True if a node with this rest position [m] and body-local index belongs to the set. Bounds are inclusive, with a slack
+  /// of 1e-9 of the selection's largest coordinate or radius.
   [[nodiscard]] bool contains(const Vec3d& x, std::int64_t index) const;
 };
 
@@ -136,5 +137,7 @@ struct Scene {
 Scene load_scene(const std::filesystem::path& file);
 /// The same from text; `file` is used in messages and to resolve relative paths.
 Scene parse_scene(const std::string& text, const std::filesystem::path& file);
+/// The text of a scene file: parse_scene(scene_to_json(s), s.file) gives the same scene, moduli to the last bit.
+std::string scene_to_json(const Scene& scene);
 
 }  // namespace pliant

@@ -1,0 +1,158 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scene/json_text.h"
+#include "scene/parts.h"
+
+namespace pliant {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string read_name(const Reader& body, std::size_t index) {
+  if (!body.has("name")) return fmt::format("body{}", index);
+  const Reader field = body.at("name");
+  const char* const expected = "a name of 1 to 100 characters without slashes or control characters";
+  const std::string name = field.text(expected);
+  // Output files and messages are named after bodies.
+  const bool fits = name.size() <= 100 && name != "." && name != ".." && std::none_of(name.begin(), name.end(), [](char c) {
+                      const auto code = static_cast<unsigned char>(c);
+                      return code < 32 || code == 127 || c == '/' || c == '\\';
+                    });
+  if (!fits) field.fail(expected);
+  return name;
+}
+
+fs::path read_path(const Reader& field, const fs::path& folder) {
+  const fs::path path = field.text("the path of a mesh file");
+  return path.is_absolute() ? path : folder / path;
+}
+
+void read_geometry(const Reader& body, const fs::path& folder, Body& b) {
+  const bool surface = body.has("surface");
+  const bool mesh = body.has("mesh");
+  if (surface == mesh) {
+    body.fail(surface ? "both \"surface\" and \"mesh\"" : "neither \"surface\" nor \"mesh\"",
+              "exactly one: a surface (to be filled with a lattice) or a volume mesh");
+  }
+  if (surface) b.surface = read_path(body.at("surface"), folder);
+  if (mesh) b.mesh = read_path(body.at("mesh"), folder);
+  if (body.has("scale")) b.scale = body.at("scale").positive();
+  if (body.has("translate")) b.translate = body.at("translate").vec3();
+
+  if (mesh) {
+    if (body.has("lattice")) body.at("lattice").fail("no lattice beside a volume mesh (which has elements of its own)");
+    return;
+  }
+  const Reader lattice = body.at("lattice", "a lattice to fill the surface, such as {\"spacing\": 0.01}");
+  lattice.expect_object("lattice");
+  if (lattice.has("spacing") == lattice.has("nodes")) {
+    lattice.fail(lattice.has("nodes") ? "both \"spacing\" and \"nodes\"" : "neither \"spacing\" nor \"nodes\"",
+                 "exactly one of them");
+  }
+  if (lattice.has("spacing")) b.lattice.spacing = lattice.at("spacing").positive();
+  if (lattice.has("nodes")) b.lattice.nodes = lattice.at("nodes").integer(8, 1'000'000'000);
+}
+
+void read_element(const Reader& body, Body& b) {
+  // A volume mesh is of tetrahedra more often than not; one of hexahedra has to say so.
+  b.element = b.mesh.empty() ? ElementKind::hex8 : ElementKind::tet4;
+  if (body.has("element")) b.element = body.at("element").word(element_words());
+}
+
+/// The averaged nodal pressure replaces the volumetric part of the stress, so that part must depend on J alone.
+void check_pressure_law(const Reader& material, const Body& b, const Material& m) {
+  if (b.element != ElementKind::tet4anp || m.law != Law::saint_venant_kirchhoff) return;
+  material.fail(
+      "the law saint-venant-kirchhoff with the element tet4anp",
+      "neo-hookean or isochoric-neo-hookean: the averaged nodal pressure needs a law whose volumetric part depends on J alone");
+}
+
+void read_model(const Reader& body) {
+  if (!body.has("model")) return;
+  const Reader model = body.at("model");
+  if (!model.json().is_object()) model.fail("an object such as {\"type\": \"tled\"}");
+  const Reader type = model.at("type", "a model type: tled");
+  if (type.json() == "flsm" || type.json() == "hybrid") type.fail("tled: this model type is not available yet");
+  if (type.json() != "tled") type.fail_word({"tled"});
+  model.expect_object("model");
+}
+
+template <class Entry, class Read>
+void read_entries(const Reader& body, const char* key, const char* kind, std::vector<Entry>& list, Read read) {
+  if (!body.has(key)) return;
+  for (const Reader& entry : body.at(key).items("a list of objects")) {
+    entry.expect_object(kind);
+    list.push_back(read(entry));
+  }
+}
+
+Fixed read_fixed(const Reader& entry) {
+  Fixed fixed{read_selection(entry, NodeLists::allowed)};
+  if (!entry.has("axes")) return fixed;
+  const Reader field = entry.at("axes");
+  const char* const expected = "one to three different letters of xyz, such as \"xz\"";
+  fixed.axes = {false, false, false};
+  for (const char c : field.text(expected)) {
+    if (c < 'x' || c > 'z' || fixed.axes[c - 'x']) field.fail(expected);
+    fixed.axes[c - 'x'] = true;
+  }
+  return fixed;
+}
+
+Prescribed read_prescribed(const Reader& entry) {
+  Prescribed prescribed{read_selection(entry, NodeLists::allowed), {}, read_curve(entry)};
+  const char* const expected = "three numbers [x, y, z], null for a component that stays free";
+  const Reader field = entry.at("displacement", expected);
+  const std::vector<Reader> parts = field.items(expected);
+  if (parts.size() != 3) field.fail(expected);
+  for (int c = 0; c < 3; ++c) {
+    if (!parts[c].json().is_null()) prescribed.displacement[c] = parts[c].number("a number or null");
+  }
+  const auto& d = prescribed.displacement;
+  if (!d[0] && !d[1] && !d[2]) field.fail("at least one component that is not null");
+  return prescribed;
+}
+
+Force read_force(const Reader& entry) {
+  return {read_selection(entry, NodeLists::allowed), entry.at("force", "the total force [x, y, z] in newton").vec3(),
+          read_curve(entry)};
+}
+
+Pressure read_pressure(const Reader& entry) {
+  return {read_selection(entry, NodeLists::refused), entry.at("pressure", "the pressure in pascal").number(),
+          read_curve(entry)};
+}
+
+}  // namespace
+
+Body read_body(const Reader& body, const fs::path& folder, std::size_t index) {
+  body.expect_object("body");
+  Body b;
+  b.pointer = body.pointer();
+  b.name = read_name(body, index);
+  read_geometry(body, folder, b);
+  read_element(body, b);
+  read_model(body);
+
+  const Reader material = body.at("material", "a material such as {\"young\": 3000, \"poisson\": 0.45, \"density\": 1060}");
+  b.material = read_material(material);
+  check_pressure_law(material, b, b.material);
+  read_entries(body, "inclusions", "inclusion", b.inclusions, [&b](const Reader& entry) {
+    const Reader other = entry.at("material", "the material of the inclusion");
+    Inclusion inclusion{read_selection(entry, NodeLists::refused), read_material(other)};
+    check_pressure_law(other, b, inclusion.material);
+    return inclusion;
+  });
+  read_entries(body, "fixed", "fixed", b.fixed, read_fixed);
+  read_entries(body, "prescribed", "prescribed", b.prescribed, read_prescribed);
+  read_entries(body, "forces", "force", b.forces, read_force);
+  read_entries(body, "pressures", "pressure", b.pressures, read_pressure);
+  if (body.has("velocity")) b.velocity = body.at("velocity").vec3();
+  if (body.has("angular_velocity")) b.angular_velocity = body.at("angular_velocity").vec3();
+  return b;
+}
+
+}  // namespace pliant

@@ -1,0 +1,127 @@
+#include "scene/keys.h"
+
+#include <algorithm>
+#include <cctype>
+#include <numeric>
+
+namespace pliant {
+
+namespace {
+
+using List = std::vector<std::string>;
+
+List operator+(List a, const List& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+template <class Enum>
+List words_only(const Words<Enum>& words) {
+  List list;
+  for (const auto& [word, value] : words) list.push_back(word);
+  return list;
+}
+
+std::map<std::string, List> make_keys() {
+  const List points{"box", "sphere", "plane", "all"};
+  const List selection = points + List{"nodes"};
+  const List curve{"curve", "start", "duration", "table"};
+  return {
+      {"scene", {"format", "name", "gravity", "dt", "safety", "duration", "integrator", "relaxation", "bodies"}},
+      {"body",
+       {"name", "surface", "mesh", "scale", "translate", "lattice", "element", "material", "model", "inclusions", "fixed",
+        "prescribed", "forces", "pressures", "velocity", "angular_velocity"}},
+      {"lattice", {"spacing", "nodes"}},
+      {"material", {"law", "young", "poisson", "lambda", "mu", "kappa", "density", "damping", "hourglass"}},
+      {"model", {"type"}},
+      {"relaxation", {"tolerance", "max_steps"}},
+      {"inclusion", points + List{"material"}},
+      {"fixed", selection + List{"axes"}},
+      {"prescribed", selection + List{"displacement"} + curve},
+      {"force", selection + List{"force"} + curve},
+      {"pressure", points + List{"pressure"} + curve},
+  };
+}
+
+/// Levenshtein distance, case-insensitive; keys are short, so the quadratic table does not matter.
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t change = diagonal + (lower(a[i - 1]) == lower(b[j - 1]) ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, change});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+const std::map<std::string, List>& scene_keys() {
+  static const std::map<std::string, List> keys = make_keys();
+  return keys;
+}
+
+const std::map<std::string, List>& scene_words() {
+  static const std::map<std::string, List> words{{"law", words_only(law_words())},
+                                                 {"element", words_only(element_words())},
+                                                 {"curve", words_only(curve_words())},
+                                                 {"integrator", words_only(integrator_words())}};
+  return words;
+}
+
+const Words<Law>& law_words() {
+  static const Words<Law> words{{"neo-hookean", Law::neo_hookean},
+                                {"saint-venant-kirchhoff", Law::saint_venant_kirchhoff},
+                                {"isochoric-neo-hookean", Law::isochoric_neo_hookean}};
+  return words;
+}
+
+const Words<ElementKind>& element_words() {
+  static const Words<ElementKind> words{{"tet4", ElementKind::tet4},
+                                        {"tet4anp", ElementKind::tet4anp},
+                                        {"hex8", ElementKind::hex8},
+                                        {"hex8full", ElementKind::hex8full}};
+  return words;
+}
+
+const Words<Curve::Kind>& curve_words() {
+  static const Words<Curve::Kind> words{{"constant", Curve::Kind::constant},
+                                        {"ramp", Curve::Kind::ramp},
+                                        {"smooth", Curve::Kind::smooth},
+                                        {"table", Curve::Kind::table}};
+  return words;
+}
+
+const Words<Integrator>& integrator_words() {
+  static const Words<Integrator> words{{"increment", Integrator::increment}, {"textbook", Integrator::textbook}};
+  return words;
+}
+
+std::string nearest(const std::string& text, const List& words) {
+  if (text.size() > 64) return "";
+  std::string best;
+  std::size_t least = 0;
+  for (const std::string& word : words) {
+    const std::size_t distance = edit_distance(text, word);
+    if (2 * distance > std::max(text.size(), word.size())) continue;
+    if (best.empty() || distance < least) {
+      best = word;
+      least = distance;
+    }
+  }
+  return best;
+}
+
+std::string listed(const List& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+}  // namespace pliant

@@ -1,0 +1,44 @@
+// Which keys each object of a scene file may have, and which words stand for an enumerator. The loader, its messages,
+// the writer and the check of scenes/schema.json all read these tables.
+#pragma once
+#include <array>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace pliant {
+
+/// The allowed keys by kind of object: "scene" (the file itself), "body", "lattice", "material", "model", "relaxation",
+/// "inclusion", "fixed", "prescribed", "force", "pressure". The same words name the definitions in scenes/schema.json.
+const std::map<std::string, std::vector<std::string>>& scene_keys();
+
+/// The allowed words by kind: "law", "element", "curve", "integrator".
+const std::map<std::string, std::vector<std::string>>& scene_words();
+
+template <class Enum>
+using Words = std::vector<std::pair<std::string, Enum>>;
+
+const Words<Law>& law_words();
+const Words<ElementKind>& element_words();
+const Words<Curve::Kind>& curve_words();
+const Words<Integrator>& integrator_words();
+
+/// The word of an enumerator.
+template <class Enum>
+const std::string& word_of(const Words<Enum>& words, Enum value) {
+  for (const auto& [word, enumerator] : words) {
+    if (enumerator == value) return word;
+  }
+  return words.front().first;
+}
+
+/// The word nearest to `text` by edit distance, or "" when none is near enough to be a likely slip.
+std::string nearest(const std::string& text, const std::vector<std::string>& words);
+
+/// "a, b, c"
+std::string listed(const std::vector<std::string>& words);
+
+}  // namespace pliant

@@ -1,0 +1,107 @@
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <map>
+
+#include "pliant/error.h"
+#include "scene/json_text.h"
+#include "scene/parts.h"
+
+namespace pliant {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string read_file(const fs::path& file) {
+  const std::string name = file.string();
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) throw Error(fmt::format("{}: no such file, expected a scene file", name));
+  if (fs::is_directory(file, ignored)) throw Error(fmt::format("{}: got a folder, expected a scene file", name));
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  std::string text(max_scene_bytes + 1, '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (stream.bad() || (stream.gcount() == 0 && !stream.eof())) {
+    throw Error(fmt::format("{}: cannot be read ({}), expected a scene file", name, std::strerror(errno)));
+  }
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  return text;
+}
+
+void read_format(const Reader& top) {
+  const Reader format = top.at("format", "\"format\": \"pliant-scene/1\"");
+  if (format.json() != "pliant-scene/1") format.fail("\"pliant-scene/1\"");
+}
+
+void read_dt(const Reader& top, Scene& scene) {
+  if (!top.has("dt")) return;
+  const Reader dt = top.at("dt");
+  if (dt.json() == "auto") return;
+  const char* const expected = "\"auto\" or a time step > 0 in seconds";
+  scene.dt = dt.number(expected);
+  if (!(scene.dt >= 1e-30)) dt.fail(expected);
+}
+
+void read_relaxation(const Reader& top, Relaxation& relaxation) {
+  if (!top.has("relaxation")) return;
+  const Reader field = top.at("relaxation");
+  if (field.json().is_boolean()) {
+    relaxation.enabled = field.boolean();
+    return;
+  }
+  if (!field.json().is_object()) field.fail("true, false or an object with the keys tolerance, max_steps");
+  field.expect_object("relaxation");
+  relaxation.enabled = true;
+  if (field.has("tolerance")) {
+    const Reader tolerance = field.at("tolerance");
+    relaxation.tolerance = tolerance.positive();
+    if (!(relaxation.tolerance < 1)) tolerance.fail("a number with 0 < tolerance < 1");
+  }
+  if (field.has("max_steps")) relaxation.max_steps = field.at("max_steps").integer(1, 1'000'000'000'000);
+}
+
+void read_bodies(const Reader& top, const fs::path& folder, Scene& scene) {
+  const char* const expected = "a list of at least one body";
+  std::map<std::string, std::string> names;
+  for (const Reader& body : top.at("bodies", expected).items(expected, 1)) {
+    scene.bodies.push_back(read_body(body, folder, scene.bodies.size()));
+    const Body& b = scene.bodies.back();
+    const auto [first, inserted] = names.emplace(b.name, b.pointer);
+    if (!inserted) {
+      body.fail(fmt::format("the name \"{}\", which {} has already", b.name, first->second), "a different name for every body");
+    }
+  }
+}
+
+}  // namespace
+
+Scene parse_scene(const std::string& text, const fs::path& file) {
+  const std::string shown = file.empty() ? "scene" : file.string();
+  const nlohmann::json document = parse_json(text, shown);
+  const Reader top(document, shown, "");
+  top.expect_object("scene");
+  read_format(top);
+
+  Scene scene;
+  scene.file = file;
+  scene.name = top.has("name") ? top.at("name").text("a text that is not empty") : file.stem().string();
+  if (top.has("gravity")) scene.gravity = top.at("gravity").vec3();
+  read_dt(top, scene);
+  if (top.has("safety")) {
+    const Reader safety = top.at("safety");
+    scene.safety = safety.positive();
+    if (!(scene.safety <= 1)) safety.fail("a number with 0 < safety <= 1");
+  }
+  if (top.has("duration")) scene.duration = top.at("duration").positive();
+  if (top.has("integrator")) scene.integrator = top.at("integrator").word(integrator_words());
+  read_relaxation(top, scene.relaxation);
+  read_bodies(top, file.parent_path(), scene);
+  return scene;
+}
+
+Scene load_scene(const fs::path& file) { return parse_scene(read_file(file), file); }
+
+}  // namespace pliant

@@ -1,0 +1,19 @@
+// The parts of a scene file below the top level. Internal to the scene room.
+#pragma once
+#include <filesystem>
+
+#include "scene/reader.h"
+
+namespace pliant {
+
+/// Whether a selection may list nodes: loads and boundary conditions act on nodes, inclusions on element centroids and
+/// pressures on triangle centroids, which have no node index.
+enum class NodeLists { allowed, refused };
+
+Selection read_selection(const Reader& entry, NodeLists lists);
+Curve read_curve(const Reader& entry);
+Material read_material(const Reader& material);
+/// `folder` is what relative mesh paths are relative to; `index` numbers a body without a name.
+Body read_body(const Reader& body, const std::filesystem::path& folder, std::size_t index);
+
+}  // namespace pliant

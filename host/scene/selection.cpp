@@ -1,0 +1,132 @@
+// Where and when: selections and curves.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scene/parts.h"
+
+namespace pliant {
+
+namespace {
+
+constexpr std::int64_t largest_index = 2147483647;  // node indices are int32 on the device
+
+Selection read_box(const Reader& box) {
+  const char* const expected = "two corners [[x, y, z], [x, y, z]], lower first";
+  const std::vector<Reader> corners = box.items(expected);
+  if (corners.size() != 2) box.fail(expected);
+  Selection s;
+  s.kind = Selection::Kind::box;
+  s.a = corners[0].vec3();
+  s.b = corners[1].vec3();
+  for (int c = 0; c < 3; ++c) {
+    if (s.a[c] > s.b[c]) {
+      box.fail(fmt::format("{} from {} to {}", "xyz"[c], s.a[c], s.b[c]),
+               "the lower corner first: no component above that of the second");
+    }
+  }
+  return s;
+}
+
+Selection read_sphere(const Reader& sphere) {
+  const char* const expected = "a centre and a radius [[x, y, z], r]";
+  const std::vector<Reader> parts = sphere.items(expected);
+  if (parts.size() != 2) sphere.fail(expected);
+  Selection s;
+  s.kind = Selection::Kind::sphere;
+  s.a = parts[0].vec3();
+  s.radius = parts[1].positive();
+  return s;
+}
+
+Selection read_plane(const Reader& plane) {
+  const char* const expected = "a point and a normal [[x, y, z], [x, y, z]]";
+  const std::vector<Reader> parts = plane.items(expected);
+  if (parts.size() != 2) plane.fail(expected);
+  Selection s;
+  s.kind = Selection::Kind::plane;
+  s.a = parts[0].vec3();
+  s.b = parts[1].vec3();
+  const double largest = std::max({s.b[0], s.b[1], s.b[2], -s.b[0], -s.b[1], -s.b[2]});
+  if (!(largest >= 1e-30)) parts[1].fail("a normal that is not zero");
+  return s;
+}
+
+Selection read_nodes(const Reader& nodes) {
+  Selection s;
+  s.kind = Selection::Kind::nodes;
+  for (const Reader& index : nodes.items("a list of at least one node index", 1))
+    s.nodes.push_back(index.integer(0, largest_index));
+  std::sort(s.nodes.begin(), s.nodes.end());
+  const auto twice = std::adjacent_find(s.nodes.begin(), s.nodes.end());
+  if (twice != s.nodes.end()) nodes.fail(fmt::format("node {} twice", *twice), "every index at most once");
+  return s;
+}
+
+void read_times(const Reader& entry, Curve& curve) {
+  if (entry.has("start")) curve.start = entry.at("start").number();
+  const bool timed = curve.kind == Curve::Kind::ramp || curve.kind == Curve::Kind::smooth;
+  if (timed) {
+    curve.duration = entry.at("duration", "the duration of the curve in seconds").positive();
+  } else if (entry.has("duration")) {
+    entry.at("duration").fail("no duration beside a constant curve (set \"curve\" to ramp or smooth)");
+  }
+}
+
+void read_table(const Reader& entry, Curve& curve) {
+  for (const char* key : {"start", "duration"}) {
+    if (entry.has(key)) entry.at(key).fail(fmt::format("no {} beside a table (the table has its own times)", key));
+  }
+  const char* const row_expected = "a row [time, factor]";
+  for (const Reader& row : entry.at("table", "the rows of the table curve").items("a list of rows [time, factor]", 1)) {
+    const std::vector<Reader> parts = row.items(row_expected);
+    if (parts.size() != 2) row.fail(row_expected);
+    const double time = parts[0].number();
+    if (!curve.table.empty() && !(time > curve.table.back()[0])) {
+      parts[0].fail(fmt::format("a time after the previous row's {}", curve.table.back()[0]));
+    }
+    curve.table.push_back({time, parts[1].number()});
+  }
+}
+
+}  // namespace
+
+Selection read_selection(const Reader& entry, NodeLists lists) {
+  const bool with_nodes = lists == NodeLists::allowed;
+  const std::string expected = std::string("exactly one of box, sphere, plane, ") + (with_nodes ? "nodes, all" : "all");
+  std::vector<std::string> given;
+  for (const char* key : {"box", "sphere", "plane", "nodes", "all"}) {
+    if (entry.has(key)) given.emplace_back(key);
+  }
+  if (given.size() != 1) entry.fail(given.empty() ? "no selection" : listed(given), expected);
+
+  const std::string& key = given.front();
+  const Reader value = entry.at(key);
+  Selection s;
+  if (key == "box") s = read_box(value);
+  if (key == "sphere") s = read_sphere(value);
+  if (key == "plane") s = read_plane(value);
+  if (key == "nodes") s = read_nodes(value);
+  if (key == "all" && !value.boolean()) value.fail("true (or another selection)");
+  s.pointer = entry.pointer();
+  return s;
+}
+
+Curve read_curve(const Reader& entry) {
+  Curve curve;
+  if (entry.has("curve")) {
+    const Reader word = entry.at("curve");
+    curve.kind = word.word(curve_words());
+    if (entry.has("table") && curve.kind != Curve::Kind::table) word.fail("table, because the entry has a \"table\"");
+  } else if (entry.has("table")) {
+    curve.kind = Curve::Kind::table;
+  }
+  if (curve.kind == Curve::Kind::table) {
+    read_table(entry, curve);
+  } else {
+    read_times(entry, curve);
+  }
+  return curve;
+}
+
+}  // namespace pliant

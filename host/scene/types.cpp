@@ -1,0 +1,71 @@
+// The small functions of the scene types.
+#include <algorithm>
+#include <cmath>
+
+#include "scene/keys.h"
+#include "scene/scene.h"
+
+namespace pliant {
+
+const char* to_string(Law law) { return word_of(law_words(), law).c_str(); }
+const char* to_string(ElementKind element) { return word_of(element_words(), element).c_str(); }
+
+double Material::young() const { return 9 * kappa * mu / (3 * kappa + mu); }
+double Material::poisson() const { return (3 * kappa - 2 * mu) / (2 * (3 * kappa + mu)); }
+
+namespace {
+
+double largest_of(const Vec3d& v) { return std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])}); }
+
+double length_of(double x, double y, double z) { return std::sqrt(x * x + y * y + z * z); }
+
+}  // namespace
+
+// Nodes of a lattice or a mesh rarely lie on a face to the last bit, so every bound is widened by 1e-9 of the
+// selection's own size and distance from the origin.
+bool Selection::contains(const Vec3d& x, std::int64_t index) const {
+  constexpr double relative = 1e-9;
+  switch (kind) {
+    case Kind::all:
+      return true;
+    case Kind::box: {
+      const double slack = relative * std::max(largest_of(a), largest_of(b));
+      for (int c = 0; c < 3; ++c) {
+        if (!(x[c] >= a[c] - slack && x[c] <= b[c] + slack)) return false;
+      }
+      return true;
+    }
+    case Kind::sphere: {
+      const double slack = relative * std::max(radius, largest_of(a));
+      return length_of(x[0] - a[0], x[1] - a[1], x[2] - a[2]) <= radius + slack;
+    }
+    case Kind::plane: {
+      const double slack = relative * std::max(largest_of(a), largest_of(x));
+      const double distance = (x[0] - a[0]) * b[0] + (x[1] - a[1]) * b[1] + (x[2] - a[2]) * b[2];
+      return distance >= -slack * length_of(b[0], b[1], b[2]);
+    }
+    case Kind::nodes:
+      return std::binary_search(nodes.begin(), nodes.end(), index);
+  }
+  return false;
+}
+
+double Curve::value(double time) const {
+  if (kind == Kind::constant) return time >= start ? 1 : 0;
+  if (kind == Kind::table) {
+    if (table.empty()) return 1;
+    const auto after = std::upper_bound(table.begin(), table.end(), time,
+                                        [](double t, const std::array<double, 2>& row) { return t < row[0]; });
+    if (after == table.begin()) return table.front()[1];
+    if (after == table.end()) return table.back()[1];
+    const std::array<double, 2>& left = *(after - 1);
+    const std::array<double, 2>& right = *after;
+    return left[1] + (right[1] - left[1]) * ((time - left[0]) / (right[0] - left[0]));
+  }
+  if (!(time > start)) return 0;
+  if (time >= start + duration) return 1;
+  const double s = (time - start) / duration;
+  return kind == Kind::ramp ? s : s * s * s * (10 + s * (6 * s - 15));
+}
+
+}  // namespace pliant

@@ -1,0 +1,137 @@
+// A scene back into its file format.
+#include <nlohmann/json.hpp>
+
+#include "scene/keys.h"
+#include "scene/scene.h"
+
+namespace pliant {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+Json selection_json(const Selection& s) {
+  switch (s.kind) {
+    case Selection::Kind::all:
+      return {{"all", true}};
+    case Selection::Kind::box:
+      return {{"box", Json::array({s.a, s.b})}};
+    case Selection::Kind::sphere:
+      return {{"sphere", Json::array({s.a, s.radius})}};
+    case Selection::Kind::plane:
+      return {{"plane", Json::array({s.a, s.b})}};
+    case Selection::Kind::nodes:
+      return {{"nodes", s.nodes}};
+  }
+  return Json::object();
+}
+
+void add_curve(Json& entry, const Curve& curve) {
+  entry["curve"] = word_of(curve_words(), curve.kind);
+  if (curve.kind == Curve::Kind::table) {
+    entry["table"] = curve.table;
+    return;
+  }
+  entry["start"] = curve.start;
+  if (curve.kind != Curve::Kind::constant) entry["duration"] = curve.duration;
+}
+
+Json material_json(const Material& m) {
+  Json material{{"law", to_string(m.law)}, {"mu", m.mu}};
+  // The pair from which the loader computes the same three moduli to the last bit.
+  if (m.lambda + 2 * m.mu / 3 == m.kappa) {
+    material["lambda"] = m.lambda;
+  } else {
+    material["kappa"] = m.kappa;
+  }
+  material["density"] = m.density;
+  material["damping"] = m.damping;
+  material["hourglass"] = m.hourglass;
+  return material;
+}
+
+std::string path_json(const fs::path& path, const fs::path& scene_file) {
+  const fs::path folder = scene_file.parent_path();
+  if (path.is_absolute() || folder.empty()) return path.string();
+  const fs::path relative = path.lexically_relative(folder);
+  return relative.empty() ? fs::absolute(path).string() : relative.string();
+}
+
+void add_conditions(Json& body, const Body& b) {
+  for (const Inclusion& inclusion : b.inclusions) {
+    Json entry = selection_json(inclusion.where);
+    entry["material"] = material_json(inclusion.material);
+    body["inclusions"].push_back(entry);
+  }
+  for (const Fixed& fixed : b.fixed) {
+    Json entry = selection_json(fixed.where);
+    std::string axes;
+    for (int c = 0; c < 3; ++c) {
+      if (fixed.axes[c]) axes += "xyz"[c];
+    }
+    entry["axes"] = axes;
+    body["fixed"].push_back(entry);
+  }
+  for (const Prescribed& prescribed : b.prescribed) {
+    Json entry = selection_json(prescribed.where);
+    for (const std::optional<double>& d : prescribed.displacement)
+      entry["displacement"].push_back(d ? Json(*d) : Json(nullptr));
+    add_curve(entry, prescribed.curve);
+    body["prescribed"].push_back(entry);
+  }
+  for (const Force& force : b.forces) {
+    Json entry = selection_json(force.where);
+    entry["force"] = force.total;
+    add_curve(entry, force.curve);
+    body["forces"].push_back(entry);
+  }
+  for (const Pressure& pressure : b.pressures) {
+    Json entry = selection_json(pressure.where);
+    entry["pressure"] = pressure.pressure;
+    add_curve(entry, pressure.curve);
+    body["pressures"].push_back(entry);
+  }
+}
+
+Json body_json(const Body& b, const fs::path& scene_file) {
+  Json body{{"name", b.name}};
+  if (b.mesh.empty()) {
+    body["surface"] = path_json(b.surface, scene_file);
+  } else {
+    body["mesh"] = path_json(b.mesh, scene_file);
+  }
+  body["scale"] = b.scale;
+  body["translate"] = b.translate;
+  if (b.mesh.empty()) {
+    body["lattice"] = b.lattice.nodes > 0 ? Json{{"nodes", b.lattice.nodes}} : Json{{"spacing", b.lattice.spacing}};
+  }
+  body["element"] = to_string(b.element);
+  body["material"] = material_json(b.material);
+  add_conditions(body, b);
+  body["velocity"] = b.velocity;
+  body["angular_velocity"] = b.angular_velocity;
+  return body;
+}
+
+}  // namespace
+
+std::string scene_to_json(const Scene& scene) {
+  Json top{{"format", "pliant-scene/1"}};
+  if (!scene.name.empty()) top["name"] = scene.name;
+  top["gravity"] = scene.gravity;
+  top["dt"] = scene.dt > 0 ? Json(scene.dt) : Json("auto");
+  top["safety"] = scene.safety;
+  top["duration"] = scene.duration;
+  top["integrator"] = word_of(integrator_words(), scene.integrator);
+  if (scene.relaxation.enabled) {
+    top["relaxation"] = {{"tolerance", scene.relaxation.tolerance}, {"max_steps", scene.relaxation.max_steps}};
+  } else {
+    top["relaxation"] = false;
+  }
+  top["bodies"] = Json::array();
+  for (const Body& b : scene.bodies) top["bodies"].push_back(body_json(b, scene.file));
+  return top.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace pliant
