@@ -1,0 +1,190 @@
+// Triangle surfaces through assimp. What assimp hands over is checked here: it may throw, and it passes garbage numbers on.
+#include <fmt/format.h>
+
+#include <assimp/Importer.hpp>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <system_error>
+#include <unordered_map>
+
+#include "model/mesh.h"
+#include "model/orient.h"
+#include "model/vec.h"
+#include "pliant/error.h"
+
+namespace pliant {
+namespace {
+
+// A triangle whose height is below this share of its longest edge has no direction worth keeping.
+constexpr double kFlat = 1e-10;
+
+[[noreturn]] void fail(const std::filesystem::path& file, const std::string& what) {
+  throw Error(fmt::format("surface mesh '{}': {}", file.string(), what));
+}
+
+void check_file(const std::filesystem::path& file) {
+  std::error_code code;
+  const auto status = std::filesystem::status(file, code);
+  if (!std::filesystem::exists(status)) fail(file, "no such file");
+  if (std::filesystem::is_directory(status)) fail(file, "is a folder; a mesh file (OBJ, STL, PLY, 3DS, glTF) is needed");
+  std::ifstream in(file, std::ios::binary);
+  if (!in) fail(file, "cannot be opened for reading");
+  if (in.peek() == std::ifstream::traits_type::eof()) fail(file, "is empty");
+}
+
+// assimp hands over OBJ vertices in the order of the faces; the file's own numbering is what its author knows.
+void check_obj_numbers(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::string line, word;
+  for (std::int64_t number = 1, vertex = 0; std::getline(in, line); ++number) {
+    if (line.size() < 2 || line[0] != 'v' || (line[1] != ' ' && line[1] != '\t')) continue;
+    std::istringstream words(line.substr(2));
+    for (int axis = 0; axis < 3; ++axis) {
+      word.clear();
+      words >> word;
+      char* end = nullptr;
+      const double value = std::strtod(word.c_str(), &end);
+      if (word.empty() || *end != '\0' || !std::isfinite(value)) {
+        fail(file, fmt::format("vertex {} (line {}): {} is '{}'; a finite number is needed", vertex, number, "xyz"[axis], word));
+      }
+    }
+    ++vertex;
+  }
+}
+
+using Matrix = std::array<double, 12>;  // rows of the affine part
+
+Matrix multiply(const Matrix& a, const aiMatrix4x4& b) {
+  Matrix out{};
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 4; ++c) {
+      for (int k = 0; k < 3; ++k) out[4 * r + c] += a[4 * r + k] * static_cast<double>(b[k][c]);
+    }
+    out[4 * r + 3] += a[4 * r + 3];
+  }
+  return out;
+}
+
+struct Welder {
+  struct Hash {
+    std::size_t operator()(const Vec3d& p) const {
+      std::size_t h = 0;
+      for (const double x : p) h = (h ^ std::hash<double>{}(x)) * 0x9E3779B97F4A7C15ULL;
+      return h;
+    }
+  };
+  TriangleMesh mesh;
+  std::unordered_map<Vec3d, std::int32_t, Hash> ids;
+  std::int64_t degenerate = 0;
+
+  std::int32_t vertex(const Vec3d& p) {
+    const auto [at, added] = ids.try_emplace(p, static_cast<std::int32_t>(mesh.vertices.size()));
+    if (added) mesh.vertices.push_back(p);
+    return at->second;
+  }
+  void triangle(const std::array<Vec3d, 3>& p) {
+    const Vec3d a = vec::sub(p[1], p[0]), b = vec::sub(p[2], p[0]), c = vec::sub(p[2], p[1]);
+    const double longest2 = std::max({vec::dot(a, a), vec::dot(b, b), vec::dot(c, c)});
+    if (!(vec::norm(vec::cross(a, b)) > kFlat * longest2)) {
+      ++degenerate;
+      return;
+    }
+    mesh.triangles.push_back({vertex(p[0]), vertex(p[1]), vertex(p[2])});
+  }
+};
+
+struct Reader {
+  const std::filesystem::path& file;
+  double scale;
+  Vec3d translate;
+  const aiScene* scene;
+  Welder welder;
+  std::int64_t vertices = 0;  // read so far, for messages
+
+  Vec3d place(const Matrix& m, const aiVector3D& v, std::int64_t index) const {
+    const Vec3d local{static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+    Vec3d out{};
+    for (int r = 0; r < 3; ++r) {
+      out[r] = scale * (m[4 * r] * local[0] + m[4 * r + 1] * local[1] + m[4 * r + 2] * local[2] + m[4 * r + 3]) + translate[r];
+      out[r] += 0.0;  // -0 becomes 0, so that both weld
+    }
+    if (!vec::finite(out)) {
+      fail(file, fmt::format("vertex {} is ({}, {}, {}); finite coordinates are needed", index, local[0], local[1], local[2]));
+    }
+    return out;
+  }
+
+  void mesh(const Matrix& m, const aiMesh& part) {
+    std::vector<Vec3d> points;
+    points.reserve(part.mNumVertices);
+    for (unsigned v = 0; v < part.mNumVertices; ++v) points.push_back(place(m, part.mVertices[v], vertices + v));
+    vertices += part.mNumVertices;
+    for (unsigned f = 0; f < part.mNumFaces; ++f) {
+      const aiFace& face = part.mFaces[f];
+      if (face.mNumIndices != 3) continue;  // points and lines
+      std::array<Vec3d, 3> corners;
+      for (int c = 0; c < 3; ++c) {
+        if (face.mIndices[c] >= part.mNumVertices) {
+          fail(file, fmt::format("triangle {} names vertex {}, but there are {}", f, face.mIndices[c], part.mNumVertices));
+        }
+        corners[c] = points[face.mIndices[c]];
+      }
+      welder.triangle(corners);
+    }
+  }
+
+  void node(const Matrix& parent, const aiNode& n) {
+    const Matrix m = multiply(parent, n.mTransformation);
+    for (unsigned i = 0; i < n.mNumMeshes; ++i) mesh(m, *scene->mMeshes[n.mMeshes[i]]);
+    for (unsigned i = 0; i < n.mNumChildren; ++i) node(m, *n.mChildren[i]);
+  }
+};
+
+std::string lower_extension(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+}  // namespace
+
+TriangleMesh read_surface(const std::filesystem::path& file, double scale, const Vec3d& translate) {
+  check_file(file);
+  if (!std::isfinite(scale) || scale == 0) fail(file, fmt::format("scale is {}; a finite number other than 0 is needed", scale));
+  if (lower_extension(file) == ".obj") check_obj_numbers(file);
+  Assimp::Importer importer;
+  const aiScene* scene = nullptr;
+  try {
+    scene = importer.ReadFile(file.string(), aiProcess_Triangulate);
+  } catch (const std::exception& e) {
+    fail(file, fmt::format("cannot be read: {}", e.what()));
+  }
+  if (scene == nullptr) fail(file, fmt::format("cannot be read: {}", importer.GetErrorString()));
+  if (scene->mRootNode == nullptr || scene->mNumMeshes == 0) fail(file, "holds no mesh");
+  Reader reader{file, scale, translate, scene, {}};
+  reader.node({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, *scene->mRootNode);
+  TriangleMesh& mesh = reader.welder.mesh;
+  if (mesh.triangles.empty()) {
+    if (reader.welder.degenerate == 0) fail(file, fmt::format("holds {} vertices but no triangle", reader.vertices));
+    fail(file, fmt::format("all {} triangles have zero area", reader.welder.degenerate));
+  }
+  orient_outward(mesh);
+  return std::move(mesh);
+}
+
+double signed_volume(const TriangleMesh& mesh) {
+  if (mesh.vertices.empty()) return 0;
+  const Vec3d& origin = mesh.vertices[0];  // close to the surface: keeps the sum free of cancellation far from (0, 0, 0)
+  double sum = 0;
+  for (const auto& t : mesh.triangles) {
+    const Vec3d a = vec::sub(mesh.vertices[t[0]], origin), b = vec::sub(mesh.vertices[t[1]], origin);
+    sum += vec::dot(a, vec::cross(b, vec::sub(mesh.vertices[t[2]], origin)));
+  }
+  return sum / 6;
+}
+
+}  // namespace pliant
