@@ -1,0 +1,193 @@
+#include "io/checkpoint.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cstring>
+#include <fstream>
+#include <string_view>
+
+#include "io/atomic_file.h"
+#include "pliant/error.h"
+#include "state/hash.h"
+
+// Layout: "PLIANTCK", u32 version, u32 zero, u64 length of the whole file, then u64 scene hash, string name, string real type,
+// i64 step, f64 time, f64 dt, u64 groups {string, u64 n, n f64}, u64 buffers {string, u64 n, n bytes}, u64 hash of all before.
+// A string is a u64 length and its bytes.
+namespace pliant {
+namespace {
+
+constexpr std::string_view kMagic = "PLIANTCK";
+constexpr std::uint32_t kVersion = 1;
+constexpr std::size_t kHead = 24;
+constexpr std::size_t kTail = 8;
+
+void put(std::string& out, std::uint64_t value, int bytes = 8) {
+  for (int i = 0; i < bytes; ++i) out.push_back(static_cast<char>(value >> (8 * i) & 0xff));
+}
+
+void put(std::string& out, std::string_view text) {
+  put(out, static_cast<std::uint64_t>(text.size()));
+  out += text;
+}
+
+void put_real(std::string& out, double value) { put(out, std::bit_cast<std::uint64_t>(value)); }
+
+std::uint64_t get(std::string_view data, std::size_t at, int bytes = 8) {
+  std::uint64_t value = 0;
+  for (int i = 0; i < bytes; ++i)
+    value |= std::uint64_t{static_cast<unsigned char>(data[at + static_cast<std::size_t>(i)])} << (8 * i);
+  return value;
+}
+
+class Reader {
+ public:
+  Reader(const std::filesystem::path& file, std::string_view data) : file_(file), data_(data) {}
+
+  std::uint64_t number(const char* what) {
+    need(8, what);
+    const std::uint64_t value = get(data_, at_);
+    at_ += 8;
+    return value;
+  }
+  double real(const char* what) { return std::bit_cast<double>(number(what)); }
+  /// A number of items that need at least `size` bytes each.
+  std::size_t count(std::size_t size, const char* what) {
+    const std::uint64_t n = number(what);
+    if (n > (data_.size() - at_) / size) {
+      throw Error(fmt::format("'{}' is damaged: {} {} at byte {}, but only {} bytes follow", file_.string(), n, what, at_ - 8,
+                              data_.size() - at_));
+    }
+    return static_cast<std::size_t>(n);
+  }
+  std::string_view bytes(const char* what) {
+    const std::size_t n = count(1, what);
+    at_ += n;
+    return data_.substr(at_ - n, n);
+  }
+  void end() const {
+    if (at_ != data_.size())
+      throw Error(fmt::format("'{}' is damaged: {} unexpected bytes at its end", file_.string(), data_.size() - at_));
+  }
+
+ private:
+  void need(std::size_t n, const char* what) const {
+    if (data_.size() - at_ < n)
+      throw Error(fmt::format("'{}' is damaged: no room for {} at byte {}", file_.string(), what, at_));
+  }
+  const std::filesystem::path& file_;
+  std::string_view data_;
+  std::size_t at_ = kHead;
+};
+
+std::string load(const std::filesystem::path& file) {
+  std::error_code code;
+  if (!std::filesystem::is_regular_file(file, code))
+    throw Error(fmt::format("cannot read checkpoint '{}': no such file", file.string()));
+  const std::uintmax_t size = std::filesystem::file_size(file, code);
+  std::ifstream in(file, std::ios::binary);
+  if (code || !in) throw Error(fmt::format("cannot read checkpoint '{}': it cannot be opened", file.string()));
+  std::string data(static_cast<std::size_t>(size), '\0');
+  in.read(data.data(), static_cast<std::streamsize>(data.size()));
+  if (static_cast<std::uintmax_t>(in.gcount()) != size) {
+    throw Error(fmt::format("cannot read checkpoint '{}': {} of {} bytes could be read", file.string(), in.gcount(), size));
+  }
+  return data;
+}
+
+/// Magic, version, length and hash; afterwards the content is what was written.
+void check_frame(const std::filesystem::path& file, std::string_view data) {
+  if (data.substr(0, kMagic.size()) != kMagic.substr(0, data.size()) || data.empty()) {
+    throw Error(fmt::format("'{}' is not a Pliant checkpoint", file.string()));
+  }
+  if (data.size() < kHead + kTail) {
+    throw Error(
+        fmt::format("'{}' is truncated: expected at least {} bytes, found {}", file.string(), kHead + kTail, data.size()));
+  }
+  const auto version = static_cast<std::uint32_t>(get(data, 8, 4));
+  if (version != kVersion) {
+    throw Error(
+        fmt::format("'{}' is a checkpoint of version {}; this program reads version {}", file.string(), version, kVersion));
+  }
+  const std::uint64_t length = get(data, 16);
+  if (length > data.size()) {
+    throw Error(fmt::format("'{}' is truncated: expected {} bytes, found {}", file.string(), length, data.size()));
+  }
+  if (length < data.size()) {
+    throw Error(fmt::format("'{}' is damaged: expected {} bytes, found {}", file.string(), length, data.size()));
+  }
+  const std::uint64_t stored = get(data, data.size() - kTail);
+  const std::uint64_t actual = hash_bytes(data.data(), data.size() - kTail);
+  if (stored != actual) {
+    throw Error(fmt::format("'{}' is damaged: its content has hash {}, stored is {}", file.string(), hash_text(actual),
+                            hash_text(stored)));
+  }
+}
+
+}  // namespace
+
+void write_checkpoint(const std::filesystem::path& file, const Checkpoint& c) {
+  if (c.real_type != "float" && c.real_type != "double") {
+    throw Error(ErrorCode::internal,
+                fmt::format("checkpoint '{}': real type '{}' is neither float nor double", file.string(), c.real_type));
+  }
+  std::string out(kMagic);
+  put(out, kVersion, 4);
+  put(out, 0, 4);
+  put(out, 0);
+  put(out, c.scene_hash);
+  put(out, c.scene_name);
+  put(out, c.real_type);
+  put(out, static_cast<std::uint64_t>(c.step));
+  put_real(out, c.time);
+  put_real(out, c.dt);
+  put(out, static_cast<std::uint64_t>(c.host_state.size()));
+  for (const auto& [name, values] : c.host_state) {
+    put(out, name);
+    put(out, static_cast<std::uint64_t>(values.size()));
+    for (const double v : values) put_real(out, v);
+  }
+  put(out, static_cast<std::uint64_t>(c.buffers.size()));
+  for (const NamedBytes& b : c.buffers) {
+    put(out, b.name);
+    put(out, std::string_view(reinterpret_cast<const char*>(b.bytes.data()), b.bytes.size()));
+  }
+  std::string length;
+  put(length, static_cast<std::uint64_t>(out.size() + kTail));
+  out.replace(16, 8, length);
+  put(out, hash_bytes(out));
+  write_file(file, out);
+}
+
+Checkpoint read_checkpoint(const std::filesystem::path& file) {
+  const std::string data = load(file);
+  check_frame(file, data);
+  Reader in(file, std::string_view(data).substr(0, data.size() - kTail));
+  Checkpoint c;
+  c.scene_hash = in.number("the scene hash");
+  c.scene_name = in.bytes("bytes of scene name");
+  c.real_type = in.bytes("bytes of real type");
+  if (c.real_type != "float" && c.real_type != "double") {
+    throw Error(fmt::format("'{}' is damaged: real type '{}' is neither float nor double", file.string(), c.real_type));
+  }
+  c.step = static_cast<std::int64_t>(in.number("the step"));
+  c.time = in.real("the time");
+  c.dt = in.real("the time step");
+  for (std::size_t groups = in.count(16, "groups of host state"); groups > 0; --groups) {
+    std::string name(in.bytes("bytes of a group's name"));
+    std::vector<double> values(in.count(8, "values of host state"));
+    for (double& v : values) v = in.real("a value of host state");
+    c.host_state.emplace(std::move(name), std::move(values));
+  }
+  for (std::size_t buffers = in.count(16, "buffers"); buffers > 0; --buffers) {
+    NamedBytes b;
+    b.name = in.bytes("bytes of a buffer's name");
+    const std::string_view bytes = in.bytes("bytes of a buffer");
+    b.bytes.assign(bytes.begin(), bytes.end());
+    c.buffers.push_back(std::move(b));
+  }
+  in.end();
+  return c;
+}
+
+}  // namespace pliant
