@@ -1,0 +1,36 @@
+// Arithmetic that gives the same bits everywhere: no contraction, one documented order, lanes as a macro.
+//
+// A kernel is written once over `real` and `integer`. LANES is 1 on a GPU (one element or node per work-item) and 16 on a CPU
+// (explicit vectors); it cannot change a result. Every product that feeds a sum is an explicit fma.
+#pragma OPENCL FP_CONTRACT OFF
+#include "layout.h"
+
+#if LANES == 16
+typedef float16 real;
+typedef int16 integer;
+#define LOAD(p, i) vload16(0, (p) + (i))
+#define STORE(v, p, i) vstore16(v, 0, (p) + (i))
+#define ANY(c) any(c)
+#else
+typedef float real;
+typedef int integer;
+#define LOAD(p, i) ((p)[i])
+#define STORE(v, p, i) ((p)[i] = (v))
+#define ANY(c) (c)
+#endif
+
+// First element (or node) of this work-item, and where it stands in plane 0 of a tiled array.
+#define FIRST_INDEX ((int)get_global_id(0) * LANES)
+#define TILE_BASE(e, planes) (((e) / PLIANT_TILE) * ((planes)*PLIANT_TILE) + (e) % PLIANT_TILE)
+
+// Mark the elements whose J is not a positive, finite number, with the step of their first fault (counted from 1).
+#if LANES == 16
+#define MARK_FAULT(bad, step, fault, i)                        \
+  if (ANY(bad)) {                                              \
+    const integer seen = LOAD(fault, i);                       \
+    STORE((bad) && (seen == 0) ? (integer)((step) + 1) : seen, fault, i); \
+  }
+#else
+#define MARK_FAULT(bad, step, fault, i) \
+  if ((bad) && (fault)[i] == 0) (fault)[i] = (step) + 1;
+#endif

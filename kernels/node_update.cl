@@ -1,0 +1,25 @@
+// Sum the corner forces at each node and advance it by central differences in increment form (the source's equation 14):
+//   w <- a w + b (R - F) / m + b g,  u <- u + w,  a = (1 - k) / (1 + k),  b = h^2 / (1 + k),  k = c h / 2.
+// node_u: [nodes] (u [m], 1/m [1/kg]); node_w: [nodes] (increment [m], damping rate c [1/s]).
+// gather_offset: [tiles + 1] rows; gather_index: [rows][16] positions in corner_force, ascending per node, padded with the position
+// of a -0 (adding -0 changes nothing). step_params: h [s], g [m/s^2] (3), further damping rate [1/s].
+// FORCE_ONLY: write R - F to node_force (without gravity) and leave the node where it is. HAS_LOAD: R from node_load.
+// TEXTBOOK: node_w holds u_(n-1), and u_(n+1) = b/m (R - F) + b g + 2/(1 + k) u_n - a u_(n-1) as the source writes it.
+#include "arith.cl"
+#include "texels.cl"
+#include "integrate.cl"
+
+__kernel void node_update(__global float* node_u, __global float* node_w, __global const int* gather_offset,
+                          __global const int* gather_index, __global const float* corner_force, __global const float* node_load,
+                          __global float* node_force, __global const float* step_params, int node_base) {
+  const int i = FIRST_INDEX, lane = i % PLIANT_TILE;
+  const int first = gather_offset[i / PLIANT_TILE], last = gather_offset[i / PLIANT_TILE + 1];
+  real fx = -0.0f, fy = -0.0f, fz = -0.0f;
+  for (int k = first; k < last; ++k) {
+    __global const int* index = gather_index + k * PLIANT_TILE + lane;
+    fx += gather(corner_force, index);
+    fy += gather(corner_force + PLIANT_TILE, index);
+    fz += gather(corner_force + 2 * PLIANT_TILE, index);
+  }
+  integrate(fx, fy, fz, node_u, node_w, node_load, node_force, step_params, node_base + i);
+}

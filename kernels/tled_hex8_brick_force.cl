@@ -1,0 +1,167 @@
+// Forces of the hex8 cells of a lattice, a brick of 16 x 4 x 4 cells at a time (element as in tled_hex8_force, but for a cube).
+//
+// For a cube of edge d the mean gradients and the hourglass vectors are the seven non-constant rows of an 8 x 8 Hadamard matrix, so a
+// butterfly replaces both products. With s_x, s_y, s_z = +-1 at the corners: m_x = sum_a s_x u_a, m_xy = sum_a s_x s_y u_a, ...;
+// H = [m_x m_y m_z] / (4 d); q_x = fill d^3 / (4 d) P e_x, q_xy = fill k m_xy, ...; f_a = s_x q_x + ... + s_x s_y s_z q_xyz.
+//
+// Order of the sums, part of the Model: along x first (sum and difference of a row and its right neighbour), then y, then z; back
+// in the transposed order, for each node plane the cells below before the cells above, for each row the lower y before the higher;
+// last, a node takes what the cell at its own x gives before what the cell to its left gives.
+//
+// brick_neighbor: [bricks][16]. brick_fill: [bricks][256], 0 where there is no cell. brick_force: [bricks][1280] (layout.h) [N].
+// gradient: 1 / (4 d) [1/m]; volume: d^3 / (4 d) [m^2]; stiffness: k [N/m]. fault: per cell slot from fault_base on.
+#include "arith.cl"
+#include "texels.cl"
+#include "law.cl"
+
+#if LANES == 16
+#define LOCAL_PARAM
+#define LOCAL_ARG
+#define FROM_RIGHT(v, last) (float16)((v).s12345678, (v).s9abc, (v).sde, (v).sf, last)
+#define FROM_LEFT(v) (float16)(-0.0f, (v).s01234567, (v).s89ab, (v).scd, (v).se)
+#define PUT_LAST(v, p, i) ((p)[i] = (v).sf)
+#else
+// One row of sixteen work-items takes a brick and passes neighbours through local memory.
+inline float from_right(float v, float last, __local float* shared, int lane) {
+  barrier(CLK_LOCAL_MEM_FENCE);
+  shared[lane] = v;
+  if (lane == 15) shared[16] = last;
+  barrier(CLK_LOCAL_MEM_FENCE);
+  return shared[lane + 1];
+}
+inline float from_left(float v, __local float* shared, int lane) {
+  barrier(CLK_LOCAL_MEM_FENCE);
+  shared[lane + 1] = v;
+  if (lane == 0) shared[0] = -0.0f;
+  barrier(CLK_LOCAL_MEM_FENCE);
+  return shared[lane];
+}
+#define FROM_RIGHT(v, last) from_right(v, last, shared, lane)
+#define FROM_LEFT(v) from_left(v, shared, lane)
+#define PUT_LAST(v, p, i) \
+  if (lane == 15) (p)[i] = (v)
+#define LOCAL_PARAM , __local float* shared
+#define LOCAL_ARG , shared
+#endif
+
+typedef struct {
+  real x, y, z;
+} vec3;
+inline vec3 add(vec3 a, vec3 b) {
+  const vec3 r = {a.x + b.x, a.y + b.y, a.z + b.z};
+  return r;
+}
+inline vec3 sub(vec3 a, vec3 b) {
+  const vec3 r = {a.x - b.x, a.y - b.y, a.z - b.z};
+  return r;
+}
+inline vec3 times(real s, vec3 a) {
+  const vec3 r = {s * a.x, s * a.y, s * a.z};
+  return r;
+}
+// A face of a cell normal to z after the butterflies along x and y: sums, differences along x, along y, along both.
+typedef struct {
+  vec3 ss, ds, sd, dd;
+} face;
+
+// Back along y and x for one plane of nodes, and out.
+inline void write_plane(const face* forces, __global float* out, int plane, int lane LOCAL_PARAM) {
+  for (int y = 0; y < 5; ++y) {
+    vec3 s, d;
+    if (y > 0) {
+      s = add(forces[y - 1].ss, forces[y - 1].sd);
+      d = add(forces[y - 1].ds, forces[y - 1].dd);
+      if (y < 4) {
+        s = add(s, sub(forces[y].ss, forces[y].sd));
+        d = add(d, sub(forces[y].ds, forces[y].dd));
+      }
+    } else {
+      s = sub(forces[0].ss, forces[0].sd);
+      d = sub(forces[0].ds, forces[0].dd);
+    }
+    const vec3 lo = sub(s, d), hi = add(s, d);
+    const int row = plane * 5 + y;
+    STORE(lo.x + FROM_LEFT(hi.x), out, (3 * row) * 16 + lane);
+    STORE(lo.y + FROM_LEFT(hi.y), out, (3 * row + 1) * 16 + lane);
+    STORE(lo.z + FROM_LEFT(hi.z), out, (3 * row + 2) * 16 + lane);
+    __global float* last = out + PLIANT_BRICK_FORCE_X16 + 3 * row;
+    PUT_LAST(hi.x, last, 0);
+    PUT_LAST(hi.y, last, 1);
+    PUT_LAST(hi.z, last, 2);
+  }
+}
+
+__kernel void tled_hex8_brick_force(__global const float* node_u, __global const int* brick_neighbor, __global const float* brick_fill,
+                                    __global float* brick_force, __global int* fault, float p0, float p1, float gradient,
+                                    float volume, float stiffness, int first_brick, int fault_base, int step) {
+#if LANES == 16
+  const int brick = first_brick + (int)get_global_id(0), lane = 0;
+#else
+  const int brick = first_brick + (int)get_group_id(0), lane = (int)get_local_id(0);
+  __local float shared[17];
+#endif
+  __global const int* neighbor = brick_neighbor + brick * PLIANT_BRICK_NEIGHBORS;
+  __global float* out = brick_force + brick * PLIANT_BRICK_FORCE;
+  const vec3 zero = {0.0f, 0.0f, 0.0f};
+  face below[4], pending[4];  // displacement butterflies of the plane below; forces of the cells below on the present plane
+  for (int z = 0; z < 5; ++z) {
+    face above[4];
+    vec3 sum, difference;
+    for (int y = 0; y < 5; ++y) {
+      const int mask = (y == 4 ? 2 : 0) + (z == 4 ? 4 : 0);
+      const int row = ((z & 3) * 4 + (y & 3)) * 16;
+      const texels t = texels_load(node_u, neighbor[mask] * PLIANT_BRICK_NODES + row + lane);
+      const float4 right = vload4(neighbor[mask + 1] * PLIANT_BRICK_NODES + row, node_u);
+      const vec3 lo = {texels_x(t), texels_y(t), texels_z(t)};
+      const vec3 hi = {FROM_RIGHT(lo.x, right.x), FROM_RIGHT(lo.y, right.y), FROM_RIGHT(lo.z, right.z)};
+      const vec3 s = add(lo, hi), d = sub(hi, lo);
+      if (y > 0) {
+        above[y - 1].ss = add(sum, s);
+        above[y - 1].ds = add(difference, d);
+        above[y - 1].sd = sub(s, sum);
+        above[y - 1].dd = sub(d, difference);
+      }
+      sum = s;
+      difference = d;
+    }
+    face forces[4];  // on the plane z - 1: from the cells below it, then from the cells above it
+    for (int y = 0; y < 4; ++y) {
+      if (z > 0) {
+        const int cell = ((z - 1) * 4 + y) * 16 + lane;
+        const real fill = LOAD(brick_fill, brick * PLIANT_BRICK_NODES + cell);
+        const integer full = fill > 0.0f;
+        const vec3 mx = add(below[y].ds, above[y].ds), my = add(below[y].sd, above[y].sd), mxy = add(below[y].dd, above[y].dd);
+        const vec3 mz = sub(above[y].ss, below[y].ss), mxz = sub(above[y].ds, below[y].ds);
+        const vec3 myz = sub(above[y].sd, below[y].sd), mxyz = sub(above[y].dd, below[y].dd);
+        const real zero_h = 0.0f;
+        mat3 h;
+        h.m00 = full ? gradient * mx.x : zero_h;
+        h.m10 = full ? gradient * mx.y : zero_h;
+        h.m20 = full ? gradient * mx.z : zero_h;
+        h.m01 = full ? gradient * my.x : zero_h;
+        h.m11 = full ? gradient * my.y : zero_h;
+        h.m21 = full ? gradient * my.z : zero_h;
+        h.m02 = full ? gradient * mz.x : zero_h;
+        h.m12 = full ? gradient * mz.y : zero_h;
+        h.m22 = full ? gradient * mz.z : zero_h;
+        const deformation d = deformation_of(h);
+        const integer bad = is_faulty(d);
+        MARK_FAULT(bad, step, fault, fault_base + brick * PLIANT_BRICK_NODES + cell)
+        const mat3 p = law_stress(d, fill * volume, p0, p1, p1 * d.j);
+        const real k = fill * stiffness;
+        const vec3 qx = {p.m00, p.m10, p.m20}, qy = {p.m01, p.m11, p.m21}, qz = {p.m02, p.m12, p.m22};
+        const vec3 qxy = times(k, mxy), qxz = times(k, mxz), qyz = times(k, myz), qxyz = times(k, mxyz);
+        const face upper = {qz, add(qx, qxz), add(qy, qyz), add(qxy, qxyz)};
+        const face lower = {sub(zero, qz), sub(qx, qxz), sub(qy, qyz), sub(qxy, qxyz)};
+        forces[y].ss = z > 1 ? add(pending[y].ss, lower.ss) : lower.ss;
+        forces[y].ds = z > 1 ? add(pending[y].ds, lower.ds) : lower.ds;
+        forces[y].sd = z > 1 ? add(pending[y].sd, lower.sd) : lower.sd;
+        forces[y].dd = z > 1 ? add(pending[y].dd, lower.dd) : lower.dd;
+        pending[y] = upper;
+      }
+      below[y] = above[y];
+    }
+    if (z > 0) write_plane(forces, out, z - 1, lane LOCAL_ARG);
+  }
+  write_plane(pending, out, 4, lane LOCAL_ARG);
+}

@@ -1,0 +1,80 @@
+// Corner forces of 8-node hexahedra with one point and total Lagrangian hourglass control (Flanagan and Belytschko 1981; Joldes,
+// Wittek and Miller 2008): f_a = fill (V P b_a + k sum_m gamma_ma q_m) with q_m = sum_a gamma_ma u_a.
+// hex_nodes: [tiles][8][16]. hex_data, one record of 58 numbers: mean gradients b_a [8][3] [1/m], gamma [4 modes][8 corners] [1],
+// V [m^3], hourglass stiffness k [N/m]. UNIFORM: one record for all elements, else [tiles][58][16].
+// hex_fill: fill fraction per element (0 for padding). corner_force: [tiles][8 corners][3][16] from corner_base on [N].
+#include "arith.cl"
+#include "texels.cl"
+#include "law.cl"
+#if UNIFORM
+#define DATA(k) hex_data[k]
+#define RECORD_TYPE float
+#else
+#define DATA(k) LOAD(data, (k)*PLIANT_TILE)
+#define RECORD_TYPE real
+#endif
+
+__kernel void tled_hex8_force(__global const float* node_u, __global const int* hex_nodes, __global const float* hex_data,
+                              __global const float* hex_fill, __global float* corner_force, __global int* fault, float p0, float p1,
+                              int corner_base, int fault_base, int step) {
+  const int e = FIRST_INDEX;
+  __global const int* nodes = hex_nodes + TILE_BASE(e, 8);
+#if !UNIFORM
+  __global const float* data = hex_data + TILE_BASE(e, PLIANT_HEX_DATA_PLANES);
+#endif
+  real x[8], y[8], z[8];
+  for (int a = 0; a < 8; ++a) {
+    const texels u = texels_gather(node_u, nodes + a * PLIANT_TILE);
+    x[a] = texels_x(u);
+    y[a] = texels_y(u);
+    z[a] = texels_z(u);
+  }
+  mat3 h = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
+  for (int a = 0; a < 8; ++a) {
+    const RECORD_TYPE bx = DATA(3 * a), by = DATA(3 * a + 1), bz = DATA(3 * a + 2);
+    h.m00 = fma(x[a], bx, h.m00);
+    h.m01 = fma(x[a], by, h.m01);
+    h.m02 = fma(x[a], bz, h.m02);
+    h.m10 = fma(y[a], bx, h.m10);
+    h.m11 = fma(y[a], by, h.m11);
+    h.m12 = fma(y[a], bz, h.m12);
+    h.m20 = fma(z[a], bx, h.m20);
+    h.m21 = fma(z[a], by, h.m21);
+    h.m22 = fma(z[a], bz, h.m22);
+  }
+  const deformation d = deformation_of(h);
+  const real fill = LOAD(hex_fill, e);
+  const integer bad = (fill > 0.0f) && is_faulty(d);
+  MARK_FAULT(bad, step, fault, fault_base + e)
+  const mat3 p = law_stress(d, fill * DATA(56), p0, p1, p1 * d.j);
+  const real k = fill * DATA(57);
+  real qx[4], qy[4], qz[4];
+  for (int m = 0; m < 4; ++m) {
+    qx[m] = qy[m] = qz[m] = 0.0f;
+    for (int a = 0; a < 8; ++a) {
+      const RECORD_TYPE gamma = DATA(24 + 8 * m + a);
+      qx[m] = fma(gamma, x[a], qx[m]);
+      qy[m] = fma(gamma, y[a], qy[m]);
+      qz[m] = fma(gamma, z[a], qz[m]);
+    }
+    qx[m] = k * qx[m];
+    qy[m] = k * qy[m];
+    qz[m] = k * qz[m];
+  }
+  __global float* out = corner_force + corner_base + TILE_BASE(e, PLIANT_HEX_FORCE_PLANES);
+  for (int a = 0; a < 8; ++a) {
+    const RECORD_TYPE bx = DATA(3 * a), by = DATA(3 * a + 1), bz = DATA(3 * a + 2);
+    real fx = fma(p.m02, bz, fma(p.m01, by, p.m00 * bx));
+    real fy = fma(p.m12, bz, fma(p.m11, by, p.m10 * bx));
+    real fz = fma(p.m22, bz, fma(p.m21, by, p.m20 * bx));
+    for (int m = 0; m < 4; ++m) {
+      const RECORD_TYPE gamma = DATA(24 + 8 * m + a);
+      fx = fma(gamma, qx[m], fx);
+      fy = fma(gamma, qy[m], fy);
+      fz = fma(gamma, qz[m], fz);
+    }
+    STORE(fx, out, (3 * a) * PLIANT_TILE);
+    STORE(fy, out, (3 * a + 1) * PLIANT_TILE);
+    STORE(fz, out, (3 * a + 2) * PLIANT_TILE);
+  }
+}
