@@ -1,0 +1,249 @@
+// Every mistake gets one message that names the file, the place, the value and what is allowed.
+#include "pliant/error.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "scene/keys.h"
+#include "scene/scene.h"
+
+namespace pliant {
+namespace {
+
+using Json = nlohmann::json;
+
+const char* const good = R"({"format": "pliant-scene/1", "bodies": [
+  {"name": "a", "surface": "a.obj", "lattice": {"spacing": 0.1}, "material": {"young": 3000, "poisson": 0.45},
+   "inclusions": [{"all": true, "material": {"young": 3000, "poisson": 0.45}}],
+   "fixed": [{"all": true}],
+   "prescribed": [{"all": true, "displacement": [0, 0, 0], "curve": "smooth", "duration": 1}],
+   "forces": [{"all": true, "force": [0, 0, 0]}],
+   "pressures": [{"all": true, "pressure": 1}]}]})";
+
+/// The message for a scene text, or "" if it loads.
+std::string message(const std::string& text) {
+  try {
+    parse_scene(text, "dir/s.json");
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::bad_input);
+    return error.what();
+  }
+  return "";
+}
+
+/// The message after one member of the good scene is replaced; "" as value removes it.
+std::string patched(const std::string& pointer, const std::string& value) {
+  Json scene = Json::parse(good);
+  const Json::json_pointer place(pointer);
+  if (value.empty()) {
+    scene.at(place.parent_pointer()).erase(place.back());
+  } else {
+    scene[place] = Json::parse(value);
+  }
+  return message(scene.dump());
+}
+
+struct Case {
+  const char* pointer;
+  const char* value;
+  const char* expected;  ///< the whole message after "dir/s.json: ", or its beginning
+};
+
+class Mistake : public testing::TestWithParam<Case> {};
+
+TEST_P(Mistake, IsNamed) {
+  const Case& c = GetParam();
+  const std::string text = patched(c.pointer, c.value);
+  EXPECT_EQ(text.substr(0, 12 + std::string(c.expected).size()), std::string("dir/s.json: ") + c.expected) << text;
+}
+
+const std::vector<Case> values{
+    {"/format", "\"pliant-scene/2\"", "/format: got \"pliant-scene/2\", expected \"pliant-scene/1\""},
+    {"/format", "", "top level: got no \"format\", expected"},
+    {"/bodies", "", "top level: got no \"bodies\", expected a list of at least one body"},
+    {"/bodies", "[]", "/bodies: got [], expected a list of at least one body"},
+    {"/bodies/0", "3", "/bodies/0: got 3, expected an object with the keys name, surface"},
+    {"/gravity", "[0, 1]", "/gravity: got [0,1], expected three numbers"},
+    {"/gravity", "[0, 1, \"2\"]", "/gravity/2: got \"2\", expected a number"},
+    {"/dt", "0", "/dt: got 0, expected \"auto\" or a time step > 0"},
+    {"/dt", "-1e-3", "/dt: got -0.001, expected \"auto\" or a time step > 0"},
+    {"/dt", "\"fast\"", "/dt: got \"fast\", expected \"auto\" or a time step > 0"},
+    {"/safety", "1.01", "/safety: got 1.01, expected a number with 0 < safety <= 1"},
+    {"/safety", "0", "/safety: got 0, expected a number > 0"},
+    {"/duration", "0", "/duration: got 0, expected a number > 0"},
+    {"/name", "\"\"", "/name: got \"\", expected"},
+    {"/integrator", "\"verlet\"", "/integrator: got \"verlet\", expected one of increment, textbook"},
+    {"/relaxation", "1", "/relaxation: got 1, expected true, false or an object"},
+    {"/relaxation", "{\"tolerance\": 1}", "/relaxation/tolerance: got 1, expected a number with 0 < tolerance < 1"},
+    {"/relaxation", "{\"max_steps\": 0.5}", "/relaxation/max_steps: got 0.5, expected a whole number from 1"},
+    {"/bodies/0/name", "\"a/b\"", "/bodies/0/name: got \"a/b\", expected a name of 1 to 100"},
+    {"/bodies/0/name", "7", "/bodies/0/name: got 7, expected a name"},
+    {"/bodies/0/surface", "", "/bodies/0: got neither \"surface\" nor \"mesh\", expected exactly one"},
+    {"/bodies/0/mesh", "\"a.msh\"", "/bodies/0: got both \"surface\" and \"mesh\", expected exactly one"},
+    {"/bodies/0/surface", "\"\"", "/bodies/0/surface: got \"\", expected the path of a mesh file"},
+    {"/bodies/0/scale", "0", "/bodies/0/scale: got 0, expected a number > 0"},
+    {"/bodies/0/scale", "-2", "/bodies/0/scale: got -2, expected a number > 0"},
+    {"/bodies/0/scale", "1e-40", "/bodies/0/scale: got 1e-40, expected a number of at least 1e-30"},
+    {"/bodies/0/scale", "1e40", "/bodies/0/scale: got 1e+40, expected a number > 0 of magnitude at most 1e30"},
+    {"/bodies/0/lattice", "", "/bodies/0: got no \"lattice\", expected a lattice to fill the surface"},
+    {"/bodies/0/lattice", "{}", "/bodies/0/lattice: got neither \"spacing\" nor \"nodes\", expected exactly one"},
+    {"/bodies/0/lattice/nodes", "9", "/bodies/0/lattice: got both \"spacing\" and \"nodes\", expected exactly one"},
+    {"/bodies/0/lattice/spacing", "-0.1", "/bodies/0/lattice/spacing: got -0.1, expected a number > 0"},
+    {"/bodies/0/lattice", "{\"nodes\": 7}", "/bodies/0/lattice/nodes: got 7, expected a whole number from 8"},
+    {"/bodies/0/lattice", "{\"nodes\": 1e20}", "/bodies/0/lattice/nodes: got 1e+20, expected a whole number from 8"},
+    {"/bodies/0/element", "\"hex9\"",
+     "/bodies/0/element: got \"hex9\", expected one of tet4, tet4anp, hex8, hex8full (did you mean \"hex8\"?)"},
+    {"/bodies/0/element", "8", "/bodies/0/element: got 8, expected one of tet4"},
+    {"/bodies/0/model", "{\"type\": \"hybrid\"}",
+     "/bodies/0/model/type: got \"hybrid\", expected tled: this model type is not available yet"},
+    {"/bodies/0/model", "{\"type\": \"tlde\"}",
+     "/bodies/0/model/type: got \"tlde\", expected one of tled (did you mean \"tled\"?)"},
+    {"/bodies/0/model", "{}", "/bodies/0/model: got no \"type\", expected"},
+    {"/bodies/0/velocity", "null", "/bodies/0/velocity: got null, expected three numbers"},
+};
+
+const std::vector<Case> materials{
+    {"/bodies/0/material", "", "/bodies/0: got no \"material\", expected a material"},
+    {"/bodies/0/material", "{}",
+     "/bodies/0/material: got no elastic constants, expected exactly one of the pairs young + poisson"},
+    {"/bodies/0/material/poisson", "",
+     "/bodies/0/material: got the elastic constants young, expected exactly one of the pairs"},
+    {"/bodies/0/material/mu", "1", "/bodies/0/material: got the elastic constants young, poisson, mu, expected exactly one"},
+    {"/bodies/0/material/law", "\"neohookean\"",
+     "/bodies/0/material/law: got \"neohookean\", expected one of neo-hookean, saint-venant-kirchhoff, isochoric-neo-hookean "
+     "(did you mean \"neo-hookean\"?)"},
+    {"/bodies/0/material/young", "0", "/bodies/0/material/young: got 0, expected a number > 0"},
+    {"/bodies/0/material/young", "\"3 kPa\"", "/bodies/0/material/young: got \"3 kPa\", expected a number > 0"},
+    {"/bodies/0/material/poisson", "0.5", "/bodies/0/material/poisson: got 0.5, expected a number with -1 < poisson < 0.5"},
+    {"/bodies/0/material/poisson", "-1", "/bodies/0/material/poisson: got -1, expected a number with -1 < poisson < 0.5"},
+    {"/bodies/0/material", "{\"mu\": 3, \"lambda\": -2}",
+     "/bodies/0/material/lambda: got -2, expected a number > -2 mu / 3 = -2"},
+    {"/bodies/0/material", "{\"mu\": 3, \"kappa\": 0}", "/bodies/0/material/kappa: got 0, expected a number > 0"},
+    {"/bodies/0/material", "{\"young\": 1e30, \"poisson\": 0.49999999}", "/bodies/0/material: got mu = "},
+    {"/bodies/0/material/density", "0", "/bodies/0/material/density: got 0, expected a number > 0"},
+    {"/bodies/0/material/density", "-1000", "/bodies/0/material/density: got -1000, expected a number > 0"},
+    {"/bodies/0/material/damping", "-1", "/bodies/0/material/damping: got -1, expected a number >= 0"},
+    {"/bodies/0/material/hourglass", "-1", "/bodies/0/material/hourglass: got -1, expected a number >= 0"},
+    {"/bodies/0/inclusions/0/material/young", "-1", "/bodies/0/inclusions/0/material/young: got -1, expected a number > 0"},
+};
+
+const std::vector<Case> entries{
+    {"/bodies/0/fixed", "{}", "/bodies/0/fixed: got {}, expected a list of objects"},
+    {"/bodies/0/fixed/0", "{}", "/bodies/0/fixed/0: got no selection, expected exactly one of box, sphere, plane, nodes, all"},
+    {"/bodies/0/fixed/0/nodes", "[1]", "/bodies/0/fixed/0: got nodes, all, expected exactly one of box"},
+    {"/bodies/0/fixed/0/all", "false", "/bodies/0/fixed/0/all: got false, expected true"},
+    {"/bodies/0/fixed/0/axes", "\"xw\"", "/bodies/0/fixed/0/axes: got \"xw\", expected one to three different letters"},
+    {"/bodies/0/fixed/0/axes", "\"xx\"", "/bodies/0/fixed/0/axes: got \"xx\", expected one to three different letters"},
+    {"/bodies/0/fixed/0/axes", "\"\"", "/bodies/0/fixed/0/axes: got \"\", expected one to three different letters"},
+    {"/bodies/0/fixed/0", "{\"box\": [[0, 0, 0]]}", "/bodies/0/fixed/0/box: got [[0,0,0]], expected two corners"},
+    {"/bodies/0/fixed/0", "{\"box\": [[0, 2, 0], [1, 1, 1]]}",
+     "/bodies/0/fixed/0/box: got y from 2 to 1, expected the lower corner"},
+    {"/bodies/0/fixed/0", "{\"sphere\": [[0, 0, 0], 0]}", "/bodies/0/fixed/0/sphere/1: got 0, expected a number > 0"},
+    {"/bodies/0/fixed/0", "{\"plane\": [[0, 0, 0], [0, 0, 0]]}",
+     "/bodies/0/fixed/0/plane/1: got [0,0,0], expected a normal that is not zero"},
+    {"/bodies/0/fixed/0", "{\"nodes\": []}", "/bodies/0/fixed/0/nodes: got [], expected a list of at least one node index"},
+    {"/bodies/0/fixed/0", "{\"nodes\": [-1]}", "/bodies/0/fixed/0/nodes/0: got -1, expected a whole number from 0"},
+    {"/bodies/0/fixed/0", "{\"nodes\": [3, 1, 3]}",
+     "/bodies/0/fixed/0/nodes: got node 3 twice, expected every index at most once"},
+    {"/bodies/0/inclusions/0/nodes", "[1]", "/bodies/0/inclusions/0: got the unknown key \"nodes\", expected one of box"},
+    {"/bodies/0/inclusions/0/material", "", "/bodies/0/inclusions/0: got no \"material\", expected"},
+    {"/bodies/0/prescribed/0/displacement", "", "/bodies/0/prescribed/0: got no \"displacement\", expected"},
+    {"/bodies/0/prescribed/0/displacement", "[null, null, null]",
+     "/bodies/0/prescribed/0/displacement: got [null,null,null], expected at least one component"},
+    {"/bodies/0/prescribed/0/displacement", "[0, true, 0]",
+     "/bodies/0/prescribed/0/displacement/1: got true, expected a number or null"},
+    {"/bodies/0/prescribed/0/duration", "", "/bodies/0/prescribed/0: got no \"duration\", expected the duration of the curve"},
+    {"/bodies/0/prescribed/0/duration", "0", "/bodies/0/prescribed/0/duration: got 0, expected a number > 0"},
+    {"/bodies/0/prescribed/0/table", "[[0, 0]]", "/bodies/0/prescribed/0/curve: got \"smooth\", expected table"},
+    {"/bodies/0/prescribed/0/curve", "\"smoth\"",
+     "/bodies/0/prescribed/0/curve: got \"smoth\", expected one of constant, ramp, smooth, table (did you mean \"smooth\"?)"},
+    {"/bodies/0/forces/0/force", "5", "/bodies/0/forces/0/force: got 5, expected three numbers"},
+    {"/bodies/0/forces/0/duration", "5", "/bodies/0/forces/0/duration: got 5, expected no duration beside a constant curve"},
+    {"/bodies/0/forces/0/curve", "\"table\"", "/bodies/0/forces/0: got no \"table\", expected"},
+    {"/bodies/0/forces/0/table", "[[0, 0], [1, 1], [1, 2]]",
+     "/bodies/0/forces/0/table/2/0: got 1, expected a time after the previous row's 1"},
+    {"/bodies/0/forces/0/table", "[]", "/bodies/0/forces/0/table: got [], expected a list of rows"},
+    {"/bodies/0/pressures/0/pressure", "\"high\"", "/bodies/0/pressures/0/pressure: got \"high\", expected a number"},
+};
+
+INSTANTIATE_TEST_SUITE_P(Values, Mistake, testing::ValuesIn(values));
+INSTANTIATE_TEST_SUITE_P(Materials, Mistake, testing::ValuesIn(materials));
+INSTANTIATE_TEST_SUITE_P(Entries, Mistake, testing::ValuesIn(entries));
+
+TEST(Mistakes, TheUnpatchedSceneLoads) { EXPECT_EQ(message(good), ""); }
+
+TEST(Mistakes, UnknownKeysSuggestTheNearest) {
+  EXPECT_NE(patched("/bodies/0/materail", "1").find("/bodies/0: got the unknown key \"materail\", expected one of"),
+            std::string::npos);
+  EXPECT_NE(patched("/bodies/0/materail", "1").find("(did you mean \"material\"?)"), std::string::npos);
+  EXPECT_NE(patched("/Gravity", "1").find("(did you mean \"gravity\"?)"), std::string::npos);
+  EXPECT_NE(patched("/bodies/0/material/desnity", "1").find("(did you mean \"density\"?)"), std::string::npos);
+  EXPECT_EQ(patched("/colour", "1").find("did you mean"), std::string::npos);
+  EXPECT_EQ(nearest("xyzzy", {"name", "mesh"}), "");
+}
+
+TEST(Mistakes, AveragedPressureNeedsAVolumetricLaw) {
+  Json scene = Json::parse(good);
+  scene["bodies"][0]["element"] = "tet4anp";
+  EXPECT_EQ(message(scene.dump()), "");
+  scene["bodies"][0]["inclusions"][0]["material"]["law"] = "saint-venant-kirchhoff";
+  EXPECT_NE(message(scene.dump())
+                .find("/bodies/0/inclusions/0/material: got the law saint-venant-kirchhoff with the element tet4anp, "
+                      "expected neo-hookean or isochoric-neo-hookean: the averaged nodal pressure needs a law whose "
+                      "volumetric part depends on J alone"),
+            std::string::npos);
+  scene["bodies"][0]["element"] = "tet4";
+  EXPECT_EQ(message(scene.dump()), "");
+}
+
+TEST(Mistakes, ALatticeBesideAMesh) {
+  Json scene = Json::parse(good);
+  scene["bodies"][0].erase("surface");
+  scene["bodies"][0]["mesh"] = "a.msh";
+  EXPECT_NE(message(scene.dump()).find("/bodies/0/lattice: got an object with 1 key, expected no lattice beside a volume mesh"),
+            std::string::npos);
+}
+
+TEST(Mistakes, TwoBodiesOfOneName) {
+  Json scene = Json::parse(good);
+  scene["bodies"].push_back(scene["bodies"][0]);
+  EXPECT_EQ(message(scene.dump()),
+            "dir/s.json: /bodies/1: got the name \"a\", which /bodies/0 has already, expected a different name for every body");
+}
+
+TEST(Mistakes, SyntaxErrorsHaveLineAndColumn) {
+  EXPECT_EQ(message("{\n  \"format\": nul\n}").substr(0, 45), "dir/s.json: line 2, column 16: not valid JSON");
+  EXPECT_EQ(message("{\"a\" 1}").substr(0, 44), "dir/s.json: line 1, column 6: not valid JSON");
+  EXPECT_NE(message("").find("line 1, column 1: not valid JSON"), std::string::npos);
+  EXPECT_NE(message("{} x").find("not valid JSON"), std::string::npos);
+  EXPECT_NE(message("{\"a\": NaN}").find("not valid JSON"), std::string::npos);
+  EXPECT_NE(message(std::string("{}\0{}", 5)).find("NUL byte at offset 2"), std::string::npos);
+}
+
+TEST(Mistakes, NumbersBeyondDouble) {
+  EXPECT_EQ(message("{\n\"dt\": 1e999}"),
+            "dir/s.json: line 2, column 11: got '1e999', expected a number that a double can hold");
+  EXPECT_NE(message("{\"dt\": -1e999}").find("got '-1e999'"), std::string::npos);
+}
+
+TEST(Mistakes, DuplicateKeys) {
+  EXPECT_EQ(message(R"({"bodies": [{"name": "a"}, {"x": {"mu": 1, "mu": 2}}]})"),
+            "dir/s.json: /bodies/1/x/mu: got the key a second time, expected every key at most once");
+}
+
+TEST(Mistakes, DepthAndSizeAreLimited) {
+  const std::string deep = message(std::string(100000, '['));
+  EXPECT_NE(deep.find("nested deeper than 64"), std::string::npos) << deep;
+  EXPECT_LT(deep.size(), 300U);
+  EXPECT_NE(message(std::string((16 << 20) + 1, ' ')).find("more than 16 MiB"), std::string::npos);
+}
+
+TEST(Mistakes, MessagesStayShort) {
+  EXPECT_LT(patched("/dt", "\"" + std::string(5000, '1') + "\"").size(), 300U);
+  EXPECT_LT(patched("/" + std::string(5000, 'k'), "1").size(), 400U);
+  EXPECT_LT(message("{\"" + std::string(5000, 'k') + "\": x}").size(), 400U);
+}
+
+}  // namespace
+}  // namespace pliant
