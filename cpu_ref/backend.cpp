@@ -1,0 +1,336 @@
+#include "backend.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <fstream>
+#include <new>
+#include <type_traits>
+
+#include "pliant/error.h"
+#include "registry.h"
+#include "solver/float_environment.h"
+#include "solver/pass_table.h"
+#include "solver/probe.h"
+#include "thread_pool.h"
+
+namespace pliant {
+namespace {
+
+using ref::ArgValue;
+using ref::ParameterKind;
+using ref::Range;
+using Clock = std::chrono::steady_clock;
+
+std::string processor_name() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    const std::size_t colon = line.find(": ");
+    if (line.rfind("model name", 0) == 0 && colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return "processor";
+}
+
+std::uint64_t physical_memory() {
+  return static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
+}
+
+void require_fma() {
+#if defined(__x86_64__)
+  if (!__builtin_cpu_supports("fma") || !__builtin_cpu_supports("avx2")) {
+    throw Error(fmt::format(
+        "the processor ({}) has no hardware fma (FMA3 and AVX2), which the CPU reference needs: use an OpenCL device instead",
+        processor_name()));
+  }
+#endif
+}
+
+template <class Scalar>
+class RefBackend final : public Backend {
+ public:
+  explicit RefBackend(const RefOptions& options)
+      : registry_(options.registry != nullptr ? *options.registry : ref::registry()), pool_(options.threads) {
+    constexpr bool is_float = std::is_same_v<Scalar, float>;
+    info_.name = is_float ? "cpu" : "cpu:double";
+    info_.device = processor_name();
+    info_.kind = "reference";
+    info_.platform = "Pliant";
+    info_.version = is_float ? "C++ twins, float" : "C++ twins, double";
+    info_.memory_bytes = options.memory_bytes != 0 ? options.memory_bytes : physical_memory();
+    info_.max_buffer_bytes = info_.memory_bytes;
+    info_.compute_units = pool_.threads();
+    if (!is_float) info_.tolerance_reason = "double precision is the rounding-error oracle";
+  }
+
+  [[nodiscard]] const BackendInfo& info() const override { return info_; }
+  void set_probe_result(const std::string& difference) {
+    info_.bit_exact = difference.empty();
+    info_.tolerance_reason = difference;
+  }
+
+  void load(const Program& program) override {
+    check_memory(program.buffers, sizeof(Scalar), info_.max_buffer_bytes, info_.memory_bytes, info_.name);
+    const DefaultFloatEnvironment environment;
+    passes_.clear();
+    table_ = &program.buffers;
+    try {
+      storage_.clear();
+      storage_.resize(program.buffers.size());
+      for (std::size_t i = 0; i < storage_.size(); ++i) fill(program.buffers[i], storage_[i]);
+    } catch (const std::bad_alloc&) {
+      throw Error(fmt::format("out of memory while the scene's {} buffers were allocated", storage_.size()));
+    }
+    passes_.load(program, [this](const Pass& pass) { return prepare(pass); });
+  }
+
+  void run(const std::vector<Pass>& passes, std::int32_t first, std::int32_t count) override {
+    list_.clear();
+    for (const Pass& pass : passes) list_.push_back(&prepared(pass));
+    run_list(first, count);
+  }
+  void run(const Pass& pass, std::int32_t step_in_batch) override {
+    list_ = {&prepared(pass)};
+    run_list(step_in_batch, 1);
+  }
+  void finish() override {}
+
+  void copy(BufferId from, BufferId to) override {
+    const Storage& source = storage(from);
+    Storage& target = storage(to);
+    if (source.reals.size() != target.reals.size() || source.ints.size() != target.ints.size()) {
+      throw Error(ErrorCode::internal, fmt::format("copy: \"{}\" and \"{}\" differ in size", row(from).name, row(to).name));
+    }
+    std::copy(source.reals.begin(), source.reals.end(), target.reals.begin());
+    std::copy(source.ints.begin(), source.ints.end(), target.ints.begin());
+  }
+
+  std::vector<double> read_reals(BufferId id) override {
+    const Storage& s = storage(id, false);
+    return {s.reals.begin(), s.reals.begin() + static_cast<std::ptrdiff_t>(row(id).values())};
+  }
+  std::vector<std::int32_t> read_ints(BufferId id) override {
+    const Storage& s = storage(id, true);
+    return {s.ints.begin(), s.ints.begin() + static_cast<std::ptrdiff_t>(row(id).values())};
+  }
+  void write_reals(BufferId id, const std::vector<double>& values) override {
+    Storage& s = storage(id, false);
+    check_size(id, values.size());
+    const DefaultFloatEnvironment environment;
+    std::transform(values.begin(), values.end(), s.reals.begin(), [](double v) { return static_cast<Scalar>(v); });
+  }
+  void write_ints(BufferId id, const std::vector<std::int32_t>& values) override {
+    Storage& s = storage(id, true);
+    check_size(id, values.size());
+    std::copy(values.begin(), values.end(), s.ints.begin());
+  }
+  std::vector<std::uint8_t> read_bytes(BufferId id) override {
+    const Storage& s = storage(id);
+    const bool ints = row(id).is_int();
+    std::vector<std::uint8_t> bytes(row(id).values() * (ints ? sizeof(std::int32_t) : sizeof(Scalar)));
+    if (!bytes.empty())
+      std::memcpy(bytes.data(), ints ? static_cast<const void*>(s.ints.data()) : s.reals.data(), bytes.size());
+    return bytes;
+  }
+
+  void profile(bool on) override { profiling_ = on; }
+  std::vector<PassTime> take_profile() override {
+    std::vector<PassTime> times;
+    passes_.for_each([&](const Pass& pass, Prepared& p) {
+      if (p.launches > 0) times.push_back({pass.kernel, pass.label, p.seconds, p.launches});
+      p.seconds = 0;
+      p.launches = 0;
+    });
+    return times;
+  }
+
+ private:
+  struct Storage {
+    std::vector<Scalar> reals;  // one of the two; never empty, so that a pointer into it is valid
+    std::vector<std::int32_t> ints;
+  };
+  struct Prepared {
+    std::function<void(Range, const ArgValue<Scalar>*)> call;
+    std::vector<ArgValue<Scalar>> args;
+    std::vector<std::size_t> step_args;
+    Shape shape = Shape::lanes;
+    std::int64_t count = 0;
+    double seconds = 0;
+    std::int64_t launches = 0;
+
+    /// Each thread has its own copy of the arguments only where they change from step to step.
+    void execute(Range range, std::int32_t step) const {
+      if (range.begin == range.end) return;
+      if (step_args.empty()) {
+        call(range, args.data());
+        return;
+      }
+      std::vector<ArgValue<Scalar>> own = args;
+      for (const std::size_t i : step_args) own[i].integer = step;
+      call(range, own.data());
+    }
+  };
+
+  /// A few indices, or bricks, are not worth a second thread.
+  static bool splits(const Prepared& p) { return p.count >= (p.shape == Shape::bricks ? 4 : 1024); }
+
+  /// The share of one thread: contiguous, and for `lanes` made of whole sixteens.
+  static Range share(const Prepared& p, int thread, int threads) {
+    const std::int64_t unit = p.shape == Shape::lanes ? 16 : 1;
+    const std::int64_t units = p.count / unit;
+    return {units * thread / threads * unit, units * (thread + 1) / threads * unit};
+  }
+
+  static void fill(const Buffer& buffer, Storage& s) {
+    const std::size_t size = std::max<std::size_t>(buffer.values(), 1);
+    const std::size_t given = buffer.is_int() ? buffer.ints.size() : buffer.reals.size();
+    if (given > buffer.values()) {
+      throw Error(ErrorCode::internal,
+                  fmt::format("buffer \"{}\" has {} initial values for {}", buffer.name, given, buffer.values()));
+    }
+    if (buffer.is_int()) {
+      s.ints.assign(size, 0);
+      std::copy(buffer.ints.begin(), buffer.ints.end(), s.ints.begin());
+    } else {
+      s.reals.assign(size, Scalar(0));
+      std::transform(buffer.reals.begin(), buffer.reals.end(), s.reals.begin(),
+                     [](double v) { return static_cast<Scalar>(v); });
+    }
+  }
+
+  Prepared prepare(const Pass& pass) {
+    check_pass(pass, *table_);
+    const ref::Twin twin = registry_.find(pass.kernel, pass.defines);
+    const ref::TwinFunction<Scalar>* function = nullptr;
+    if constexpr (std::is_same_v<Scalar, float>) {
+      function = &twin.of_float;
+    } else {
+      function = &twin.of_double;
+    }
+    const auto fail = [&](const std::string& what) {
+      throw Error(ErrorCode::internal, fmt::format("pass \"{}\", twin of kernel \"{}\": {}", pass.label, pass.kernel, what));
+    };
+    if (pass.args.size() != function->parameters.size()) {
+      fail(fmt::format("{} arguments for {} parameters", pass.args.size(), function->parameters.size()));
+    }
+    Prepared p{function->call, std::vector<ArgValue<Scalar>>(pass.args.size()), {}, pass.shape, pass.count};
+    static constexpr const char* kind_names[] = {"a buffer of reals", "a buffer of integers", "a real", "an integer"};
+    for (std::size_t i = 0; i < pass.args.size(); ++i) {
+      ParameterKind kind = ParameterKind::integer;
+      if (pass.args[i].index() == 0) {
+        Storage& s = storage(std::get<0>(pass.args[i]));
+        kind = s.ints.empty() ? ParameterKind::reals : ParameterKind::ints;
+        p.args[i].reals = s.reals.data();
+        p.args[i].ints = s.ints.data();
+      } else if (pass.args[i].index() == 1) {
+        kind = ParameterKind::real;
+        p.args[i].real = static_cast<Scalar>(std::get<1>(pass.args[i]));
+      } else if (pass.args[i].index() == 2) {
+        p.args[i].integer = std::get<2>(pass.args[i]);
+      } else {
+        p.step_args.push_back(i);
+      }
+      const ParameterKind wanted = function->parameters[i];
+      if (kind != wanted) {
+        fail(fmt::format("argument {} is {}, the parameter is {}", i, kind_names[static_cast<int>(kind)],
+                         kind_names[static_cast<int>(wanted)]));
+      }
+    }
+    return p;
+  }
+
+  Prepared& prepared(const Pass& pass) {
+    return passes_.get(pass, [this](const Pass& p) { return prepare(p); });
+  }
+
+  void run_list(std::int32_t first, std::int32_t count) {
+    const bool parallel = std::any_of(list_.begin(), list_.end(), [](const Prepared* p) { return splits(*p); });
+    if (profiling_) {
+      run_profiled(first, count);
+    } else if (parallel && pool_.threads() > 1) {
+      pool_.run([&](int thread) { run_share(thread, first, count); });
+    } else {
+      const DefaultFloatEnvironment environment;
+      for (std::int32_t step = first; step < first + count; ++step) {
+        for (const Prepared* p : list_) p->execute({0, p->count}, step);
+      }
+    }
+  }
+
+  /// One thread's part of a batch. The threads meet between two passes unless both run on the caller alone.
+  void run_share(int thread, std::int32_t first, std::int32_t count) {
+    const int threads = pool_.threads();
+    bool spread = false;  // whether other threads may still be at work on the previous pass
+    for (std::int32_t step = first; step < first + count; ++step) {
+      for (const Prepared* p : list_) {
+        const bool split = splits(*p);
+        if (split || spread) pool_.barrier().arrive_and_wait();
+        spread = split;
+        if (split) {
+          p->execute(share(*p, thread, threads), step);
+        } else if (thread == 0) {
+          p->execute({0, p->count}, step);
+        }
+      }
+    }
+  }
+
+  void run_profiled(std::int32_t first, std::int32_t count) {
+    pool_.run([&](int thread) {
+      for (std::int32_t step = first; step < first + count; ++step) {
+        for (Prepared* p : list_) {
+          const auto start = Clock::now();
+          const bool split = splits(*p);
+          if (split || thread == 0) p->execute(split ? share(*p, thread, pool_.threads()) : Range{0, p->count}, step);
+          pool_.barrier().arrive_and_wait();
+          if (thread != 0) continue;
+          p->seconds += std::chrono::duration<double>(Clock::now() - start).count();
+          ++p->launches;
+        }
+      }
+    });
+  }
+
+  const Buffer& row(BufferId id) const { return (*table_)[static_cast<std::size_t>(id)]; }
+  Storage& storage(BufferId id) {
+    if (id < 0 || static_cast<std::size_t>(id) >= storage_.size()) {
+      throw Error(ErrorCode::internal, fmt::format("there is no buffer {}: the program has {}", id, storage_.size()));
+    }
+    return storage_[static_cast<std::size_t>(id)];
+  }
+  Storage& storage(BufferId id, bool ints) {
+    Storage& s = storage(id);
+    if (row(id).is_int() != ints) {
+      throw Error(ErrorCode::internal, fmt::format("buffer \"{}\" holds {}", row(id).name, ints ? "reals" : "integers"));
+    }
+    return s;
+  }
+  void check_size(BufferId id, std::size_t size) const {
+    if (size == row(id).values()) return;
+    throw Error(ErrorCode::internal,
+                fmt::format("buffer \"{}\" holds {} values, received {}", row(id).name, row(id).values(), size));
+  }
+
+  BackendInfo info_;
+  const ref::Registry& registry_;
+  ref::ThreadPool pool_;
+  const std::vector<Buffer>* table_ = nullptr;
+  std::vector<Storage> storage_;
+  PassTable<Prepared> passes_;
+  std::vector<Prepared*> list_;
+  bool profiling_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Backend> make_ref_backend(const RefOptions& options) {
+  require_fma();
+  if (options.double_precision) return std::make_unique<RefBackend<double>>(options);
+  auto backend = std::make_unique<RefBackend<float>>(options);
+  if (options.probe) backend->set_probe_result(run_probe(*backend));
+  return backend;
+}
+
+}  // namespace pliant

@@ -1,0 +1,69 @@
+#include "registry.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "pliant/error.h"
+#include "solver/pass_table.h"
+
+// One row per kernel: each cpu_ref/<stem>.cpp ends with `void register_<stem>(Registry&)`, which names its instantiations.
+#define PLIANT_TWINS(ROW) ROW(probe)
+
+namespace pliant::ref {
+
+#define PLIANT_DECLARE(stem) void register_##stem(Registry&);
+PLIANT_TWINS(PLIANT_DECLARE)
+#undef PLIANT_DECLARE
+
+const Registry& registry() {
+  static const Registry all = [] {
+    Registry r;
+#define PLIANT_REGISTER(stem) register_##stem(r);
+    PLIANT_TWINS(PLIANT_REGISTER)
+#undef PLIANT_REGISTER
+    return r;
+  }();
+  return all;
+}
+
+Twin Registry::find(const std::string& stem, const Defines& defines) const {
+  const auto found = factories_.find(stem);
+  if (found == factories_.end()) {
+    throw Error(ErrorCode::internal,
+                fmt::format("kernel \"{}\" has no twin in cpu_ref; there are: {}", stem, fmt::join(stems(), ", ")));
+  }
+  return found->second(defines);
+}
+
+std::vector<std::string> Registry::stems() const {
+  std::vector<std::string> result;
+  for (const auto& [stem, factory] : factories_) result.push_back(stem);
+  return result;
+}
+
+void Registry::require_names(const std::string& stem, const Defines& defines, const std::vector<std::string>& names) {
+  for (const auto& [name, value] : defines) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) {
+      throw Error(ErrorCode::internal,
+                  fmt::format("the twin of kernel \"{}\" knows no define {} (received {}); it knows: {}", stem, name,
+                              defines_text(defines), names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
+    }
+  }
+}
+
+int Registry::require_value(const std::string& stem, const Defines& defines, const char* name, int count) {
+  const auto found = std::find_if(defines.begin(), defines.end(), [&](const auto& d) { return d.first == name; });
+  if (found == defines.end()) {
+    throw Error(ErrorCode::internal,
+                fmt::format("the twin of kernel \"{}\" needs the define {}, received: {}", stem, name, defines_text(defines)));
+  }
+  if (found->second < 0 || found->second >= count) {
+    throw Error(ErrorCode::internal, fmt::format("the twin of kernel \"{}\" has no {}={}; allowed are 0 to {}", stem, name,
+                                                 found->second, count - 1));
+  }
+  return found->second;
+}
+
+}  // namespace pliant::ref

@@ -1,0 +1,23 @@
+// The arithmetic of the contract whatever the embedding program has set.
+#pragma once
+#include <cfenv>
+
+namespace pliant {
+
+/// Round to nearest, denormals kept, no traps, for as long as it lives. A program linked with -ffast-math, for example, starts
+/// with denormals flushed to zero, and its threads inherit that.
+class DefaultFloatEnvironment {
+ public:
+  DefaultFloatEnvironment() {
+    std::fegetenv(&saved_);
+    std::fesetenv(FE_DFL_ENV);
+  }
+  ~DefaultFloatEnvironment() { std::fesetenv(&saved_); }
+  DefaultFloatEnvironment(const DefaultFloatEnvironment&) = delete;
+  DefaultFloatEnvironment& operator=(const DefaultFloatEnvironment&) = delete;
+
+ private:
+  std::fenv_t saved_{};
+};
+
+}  // namespace pliant
