@@ -6,3 +6,8 @@ if(PLIANT_SANITIZE)
   target_compile_options(pliant_flags INTERFACE -fsanitize=${PLIANT_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(pliant_flags INTERFACE -fsanitize=${PLIANT_SANITIZE})
 endif()
+if(PLIANT_FUZZ)
+  # Coverage for libFuzzer; the address sanitizer also supplies the hooks to executables that are no fuzzers.
+  target_compile_options(pliant_flags INTERFACE -fsanitize=fuzzer-no-link,address,undefined -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(pliant_flags INTERFACE -fsanitize=address,undefined)
+endif()
