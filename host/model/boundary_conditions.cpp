@@ -1,0 +1,117 @@
+#include "model/boundary_conditions.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+
+#include "pliant/error.h"
+
+namespace pliant {
+namespace {
+
+std::string extent_of(const ModelBody& body) {
+  Vec3d lower = body.rest.at(0), upper = lower;
+  for (const Vec3d& x : body.rest) {
+    for (int c = 0; c < 3; ++c) {
+      lower[c] = std::min(lower[c], x[c]);
+      upper[c] = std::max(upper[c], x[c]);
+    }
+  }
+  return fmt::format("body '{}' has {} nodes between [{:.4g}] and [{:.4g}] m", body.name, body.rest.size(), fmt::join(lower, ", "),
+                     fmt::join(upper, ", "));
+}
+
+std::vector<std::int32_t> select_nodes(const Selection& where, const ModelBody& body) {
+  if (where.kind == Selection::Kind::nodes) {
+    for (const std::int64_t n : where.nodes) {
+      if (n < 0 || n >= static_cast<std::int64_t>(body.rest.size())) {
+        throw Error(fmt::format("{}: node {} does not exist; {}", where.pointer, n, extent_of(body)));
+      }
+    }
+  }
+  std::vector<std::int32_t> chosen;
+  for (std::size_t n = 0; n < body.rest.size(); ++n) {
+    if (where.contains(body.rest[n], static_cast<std::int64_t>(n))) chosen.push_back(static_cast<std::int32_t>(n));
+  }
+  if (chosen.empty()) throw Error(fmt::format("{}: no node in this set; {}", where.pointer, extent_of(body)));
+  return chosen;
+}
+
+std::int32_t add_curve(Model& model, const Curve& curve) {
+  if (curve.kind == Curve::Kind::constant && curve.start <= 0) return 0;
+  model.curves.push_back(curve);
+  return static_cast<std::int32_t>(model.curves.size()) - 1;
+}
+
+void set_component(Constraint& c, int axis, double target, std::int32_t curve) {
+  c.axes |= 1 << axis;
+  c.target[axis] = target;
+  c.curve[axis] = curve;
+}
+
+void constrain(const Body& body, const ModelBody& placed, Model& model, std::map<std::int32_t, Constraint>& all) {
+  for (const Fixed& fixed : body.fixed) {
+    for (const std::int32_t n : select_nodes(fixed.where, placed)) {
+      Constraint& c = all[placed.slot[n]];
+      for (int axis = 0; axis < 3; ++axis) {
+        if (fixed.axes[axis]) set_component(c, axis, 0, 0);
+      }
+    }
+  }
+  for (const Prescribed& prescribed : body.prescribed) {
+    const std::int32_t curve = add_curve(model, prescribed.curve);
+    for (const std::int32_t n : select_nodes(prescribed.where, placed)) {
+      Constraint& c = all[placed.slot[n]];
+      for (int axis = 0; axis < 3; ++axis) {
+        if (prescribed.displacement[axis]) set_component(c, axis, *prescribed.displacement[axis], curve);
+      }
+    }
+  }
+}
+
+void load(const Body& body, const ModelBody& placed, Model& model) {
+  for (const Force& force : body.forces) {
+    const std::int32_t curve = add_curve(model, force.curve);
+    const auto nodes = select_nodes(force.where, placed);
+    const double share = 1.0 / static_cast<double>(nodes.size());
+    for (const std::int32_t n : nodes) {
+      model.forces.push_back({placed.slot[n], {force.total[0] * share, force.total[1] * share, force.total[2] * share}, curve});
+    }
+  }
+  for (const Pressure& pressure : body.pressures) {
+    const std::int32_t curve = add_curve(model, pressure.curve);
+    bool any = false;
+    for (std::int32_t t = placed.first_triangle; t < placed.first_triangle + placed.triangles; ++t) {
+      Vec3d centre{};
+      for (const std::int32_t v : model.surface.triangles[t]) {
+        for (int c = 0; c < 3; ++c) centre[c] += model.surface.rest[v][c] / 3;
+      }
+      if (!pressure.where.contains(centre, t - placed.first_triangle)) continue;
+      model.pressures.push_back({t, pressure.pressure, curve});
+      any = true;
+    }
+    if (!any) throw Error(fmt::format("{}: no surface triangle has its centre in this set; {}", pressure.where.pointer, extent_of(placed)));
+  }
+}
+
+}  // namespace
+
+void add_boundary_conditions(const Scene& scene, Model& model) {
+  model.curves.assign(1, Curve{});  // curve 0: constant 1
+  std::map<std::int32_t, Constraint> constraints;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    constrain(scene.bodies[b], model.bodies[b], model, constraints);
+    load(scene.bodies[b], model.bodies[b], model);
+  }
+  for (auto& [slot, c] : constraints) {
+    c.slot = slot;
+    model.constraints.push_back(c);
+  }
+  std::stable_sort(model.forces.begin(), model.forces.end(), [](const NodeForce& a, const NodeForce& b) { return a.slot < b.slot; });
+  std::stable_sort(model.pressures.begin(), model.pressures.end(),
+                   [](const TrianglePressure& a, const TrianglePressure& b) { return a.triangle < b.triangle; });
+}
+
+}  // namespace pliant

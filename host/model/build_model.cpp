@@ -1,0 +1,329 @@
+// Scene -> Model: cut every body into elements, number the nodes, lump the masses, and resolve the boundary conditions.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "layout.h"
+#include "model/boundary_conditions.h"
+#include "model/bricks.h"
+#include "model/model.h"
+#include "model/solid.h"
+#include "pliant/error.h"
+
+namespace pliant {
+namespace {
+
+Vec3d centroid(const Solid& solid, const std::int32_t* corners, int count) {
+  Vec3d sum{};
+  for (int a = 0; a < count; ++a) {
+    for (int c = 0; c < 3; ++c) sum[c] += solid.nodes[corners[a]][c] / count;
+  }
+  return sum;
+}
+
+/// Index of the material of each element: 0 for the body's own, i + 1 for inclusion i; the last match wins.
+std::vector<int> materials_of(const Body& body, const Solid& solid) {
+  const bool tets = !solid.tets.empty();
+  const std::size_t count = tets ? solid.tets.size() : solid.hexes.size();
+  std::vector<int> material(count, 0);
+  std::vector<char> hit(body.inclusions.size(), false);
+  for (std::size_t e = 0; e < count && !body.inclusions.empty(); ++e) {
+    const Vec3d x = tets ? centroid(solid, solid.tets[e].data(), 4) : centroid(solid, solid.hexes[e].data(), 8);
+    for (std::size_t i = 0; i < body.inclusions.size(); ++i) {
+      if (body.inclusions[i].where.contains(x, static_cast<std::int64_t>(e))) {
+        material[e] = static_cast<int>(i) + 1;
+        hit[i] = true;
+      }
+    }
+  }
+  for (std::size_t i = 0; i < hit.size(); ++i) {
+    if (!hit[i]) throw Error(fmt::format("{}: no element has its centre in this inclusion", body.inclusions[i].where.pointer));
+  }
+  return material;
+}
+
+const Material& material_of(const Body& body, int index) { return index == 0 ? body.material : body.inclusions[index - 1].material; }
+
+/// Everything about one body that is known before its list nodes have slots.
+struct Draft {
+  Solid solid;
+  std::vector<int> material;
+  std::vector<char> in_brick;
+  std::vector<std::int32_t> slot;
+};
+
+void note_bound(Model& model, double frequency, const std::string& element) {
+  const double bound = 2 / frequency;
+  if (model.element_bound == 0 || bound < model.element_bound) {
+    model.element_bound = bound;
+    model.bound_element = element;
+  }
+}
+
+/// Slots for the nodes outside the bricks: along a Morton curve over all bodies, and inside windows of 256 nodes by the number of
+/// elements they touch, so that the rows of a tile's gather list are nearly full.
+void number_list_nodes(std::vector<Draft>& drafts, Model& model) {
+  struct Ref {
+    std::int32_t body, node;
+  };
+  std::vector<Ref> refs;
+  std::vector<Vec3d> points;
+  std::vector<std::vector<std::int32_t>> valence;
+  for (std::size_t b = 0; b < drafts.size(); ++b) {
+    Draft& draft = drafts[b];
+    valence.emplace_back(draft.solid.nodes.size(), 0);
+    for (const auto& tet : draft.solid.tets) {
+      for (const std::int32_t n : tet) ++valence[b][n];
+    }
+    for (const auto& hex : draft.solid.hexes) {
+      for (const std::int32_t n : hex) ++valence[b][n];
+    }
+    for (std::size_t n = 0; n < draft.solid.nodes.size(); ++n) {
+      if (draft.slot[n] >= 0) continue;
+      refs.push_back({static_cast<std::int32_t>(b), static_cast<std::int32_t>(n)});
+      points.push_back(draft.solid.nodes[n]);
+    }
+  }
+  std::vector<std::int32_t> order = morton_order(points);
+  constexpr std::size_t kWindow = 256;
+  for (std::size_t begin = 0; begin < order.size(); begin += kWindow) {
+    const auto first = order.begin() + static_cast<std::ptrdiff_t>(begin);
+    const auto last = order.begin() + static_cast<std::ptrdiff_t>(std::min(begin + kWindow, order.size()));
+    std::stable_sort(first, last, [&](std::int32_t a, std::int32_t b) {
+      return valence[refs[a].body][refs[a].node] > valence[refs[b].body][refs[b].node];
+    });
+  }
+  model.list_base = model.bricks > 0 ? (model.bricks + 1) * PLIANT_BRICK_NODES : 0;
+  std::int32_t slot = model.list_base;
+  for (const std::int32_t i : order) drafts[refs[i].body].slot[refs[i].node] = slot++;
+  model.slots = (slot + PLIANT_TILE - 1) / PLIANT_TILE * PLIANT_TILE;
+}
+
+void add_tets(const Body& body, std::int32_t b, const Draft& draft, Model& model) {
+  std::vector<std::int32_t> order(draft.solid.tets.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::vector<std::array<std::int32_t, 4>> slots;
+  std::vector<std::int32_t> lowest;
+  for (const auto& tet : draft.solid.tets) {
+    slots.push_back({draft.slot[tet[0]], draft.slot[tet[1]], draft.slot[tet[2]], draft.slot[tet[3]]});
+    lowest.push_back(*std::min_element(slots.back().begin(), slots.back().end()));
+  }
+  std::stable_sort(order.begin(), order.end(), [&](std::int32_t i, std::int32_t j) { return lowest[i] < lowest[j]; });
+  for (std::size_t m = 0; m <= body.inclusions.size(); ++m) {
+    TetBatch batch;
+    batch.material = material_of(body, static_cast<int>(m));
+    batch.body = b;
+    batch.averaged = body.element == ElementKind::tet4anp;
+    for (const std::int32_t e : order) {
+      if (draft.material[e] != static_cast<int>(m)) continue;
+      std::array<Vec3d, 4> x;
+      for (int a = 0; a < 4; ++a) x[a] = draft.solid.nodes[draft.solid.tets[e][a]];
+      const TetGeometry geometry = tet_geometry(x);
+      batch.nodes.push_back(slots[e]);
+      batch.gradients.push_back(geometry.gradients);
+      batch.volume.push_back(geometry.volume * draft.solid.fill[e]);
+      batch.id.push_back(e);
+      for (const std::int32_t n : slots[e]) model.mass[n] += batch.material.density * batch.volume.back() / 4;
+      note_bound(model, tet_frequency(geometry, batch.material), fmt::format("{}: tetrahedron {}", body.name, e));
+    }
+    if (!batch.nodes.empty()) model.tets.push_back(std::move(batch));
+  }
+}
+
+std::vector<double> hex_record(const HexBatch& batch, const std::array<Vec3d, 8>& x, const std::string& what) {
+  return batch.full ? hex8full_record(x, what) : hex8_record(x, batch.material, what);
+}
+
+double hex_frequency(const HexBatch& batch, const std::vector<double>& record) {
+  return batch.full ? hex8full_frequency(record, batch.material) : hex8_frequency(record, batch.material);
+}
+
+double hex_volume(const HexBatch& batch, const std::vector<double>& record) {
+  if (!batch.full) return record[56];
+  double volume = 0;
+  for (int p = 0; p < 8; ++p) volume += record[25 * p + 24];
+  return volume;
+}
+
+void add_hexes(const Body& body, std::int32_t b, const Draft& draft, Model& model) {
+  const Solid& solid = draft.solid;
+  for (std::size_t m = 0; m <= body.inclusions.size(); ++m) {
+    HexBatch batch;
+    batch.material = material_of(body, static_cast<int>(m));
+    batch.body = b;
+    batch.full = body.element == ElementKind::hex8full;
+    batch.uniform = solid.spacing > 0;
+    const auto describe = [&](std::size_t e) { return fmt::format("{}: hexahedron {}", body.name, e); };
+    // A lattice's record is that of an exact cube, whatever the rounding of its corners.
+    const double d = solid.spacing;
+    if (batch.uniform) {
+      std::array<Vec3d, 8> cube;
+      for (int a = 0; a < 8; ++a) cube[a] = {d * (a & 1), d * (a >> 1 & 1), d * (a >> 2 & 1)};
+      batch.records.push_back(hex_record(batch, cube, fmt::format("{}: lattice cell", body.name)));
+      note_bound(model, hex_frequency(batch, batch.records[0]), fmt::format("{}: every lattice cell", body.name));
+    }
+    for (std::size_t e = 0; e < solid.hexes.size(); ++e) {
+      if (draft.material[e] != static_cast<int>(m)) continue;
+      std::array<std::int32_t, 8> slots{};
+      std::array<Vec3d, 8> x;
+      for (int a = 0; a < 8; ++a) {
+        slots[a] = draft.slot[solid.hexes[e][a]];
+        x[a] = solid.nodes[solid.hexes[e][a]];
+      }
+      double volume = d * d * d;
+      if (!batch.uniform) {
+        batch.records.push_back(hex_record(batch, x, describe(e)));
+        volume = hex_volume(batch, batch.records.back());
+        note_bound(model, hex_frequency(batch, batch.records.back()), describe(e));
+      }
+      for (const std::int32_t n : slots) model.mass[n] += batch.material.density * volume * solid.fill[e] / 8;
+      if (draft.in_brick[e]) continue;
+      batch.nodes.push_back(slots);
+      batch.fill.push_back(solid.fill[e]);
+      batch.id.push_back(static_cast<std::int64_t>(e));
+    }
+    if (!batch.nodes.empty()) model.hexes.push_back(std::move(batch));
+  }
+}
+
+void add_surface(const Draft& draft, std::int32_t b, Model& model) {
+  const Solid& solid = draft.solid;
+  ModelSurface& surface = model.surface;
+  ModelBody& body = model.bodies[b];
+  body.first_vertex = static_cast<std::int32_t>(surface.rest.size());
+  body.vertices = static_cast<std::int32_t>(solid.surface.size());
+  body.first_triangle = static_cast<std::int32_t>(surface.triangles.size());
+  body.triangles = static_cast<std::int32_t>(solid.triangles.size());
+  for (std::size_t v = 0; v < solid.surface.size(); ++v) {
+    std::array<std::int32_t, 8> slots{};
+    for (int a = 0; a < 8; ++a) slots[a] = draft.slot[solid.surface_nodes[v][a]];
+    surface.rest.push_back(solid.surface[v]);
+    surface.nodes.push_back(slots);
+    surface.weights.push_back(solid.surface_weights[v]);
+  }
+  for (const auto& t : solid.triangles) {
+    surface.triangles.push_back({t[0] + body.first_vertex, t[1] + body.first_vertex, t[2] + body.first_vertex});
+    surface.triangle_body.push_back(b);
+  }
+}
+
+void fill_body(const Body& body, Draft& draft, ModelBody& out) {
+  out.name = body.name;
+  out.element = body.element;
+  out.slot = draft.slot;
+  out.rest = draft.solid.nodes;
+  out.tets = draft.solid.tets;
+  for (const auto& hex : draft.solid.hexes) {
+    std::array<std::int32_t, 8> corners{};
+    for (int a = 0; a < 8; ++a) corners[a] = hex[kVtkFromBits[a]];
+    out.hexes.push_back(corners);
+  }
+  out.spacing = draft.solid.spacing;
+  out.surface_volume = draft.solid.surface_volume;
+}
+
+/// Rigid initial motion: velocity plus angular velocity about the centre of mass.
+void set_velocity(const Body& body, const ModelBody& placed, Model& model) {
+  Vec3d centre{};
+  double mass = 0;
+  for (const std::int32_t s : placed.slot) {
+    mass += model.mass[s];
+    for (int c = 0; c < 3; ++c) centre[c] += model.mass[s] * model.rest[s][c];
+  }
+  for (double& c : centre) c /= mass;
+  const Vec3d& w = body.angular_velocity;
+  for (const std::int32_t s : placed.slot) {
+    const Vec3d r{model.rest[s][0] - centre[0], model.rest[s][1] - centre[1], model.rest[s][2] - centre[2]};
+    model.velocity[s] = {body.velocity[0] + w[1] * r[2] - w[2] * r[1], body.velocity[1] + w[2] * r[0] - w[0] * r[2],
+                         body.velocity[2] + w[0] * r[1] - w[1] * r[0]};
+  }
+}
+
+void add_totals(const Body& body, const Draft& draft, ModelBody& out) {
+  const Solid& solid = draft.solid;
+  for (std::size_t e = 0; e < draft.material.size(); ++e) {
+    double volume = solid.spacing * solid.spacing * solid.spacing;
+    if (!solid.tets.empty()) {
+      std::array<Vec3d, 4> x;
+      for (int a = 0; a < 4; ++a) x[a] = solid.nodes[solid.tets[e][a]];
+      volume = tet_geometry(x).volume;
+    } else if (solid.spacing == 0) {
+      std::array<Vec3d, 8> x;
+      for (int a = 0; a < 8; ++a) x[a] = solid.nodes[solid.hexes[e][a]];
+      const auto record = hex8full_record(x, body.name);
+      volume = 0;
+      for (int p = 0; p < 8; ++p) volume += record[25 * p + 24];
+    }
+    out.volume += volume * solid.fill[e];
+    out.mass += material_of(body, draft.material[e]).density * volume * solid.fill[e];
+  }
+}
+
+void place_bodies(const Scene& scene, std::vector<Draft>& drafts, Model& model) {
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const Body& body = scene.bodies[b];
+    Draft draft;
+    draft.solid = make_solid(body);
+    draft.material = materials_of(body, draft.solid);
+    draft.in_brick.assign(draft.material.size(), false);
+    draft.slot.assign(draft.solid.nodes.size(), -1);
+    if (!draft.solid.cells.empty() && body.element == ElementKind::hex8) {
+      for (std::size_t e = 0; e < draft.in_brick.size(); ++e) draft.in_brick[e] = draft.material[e] == 0;
+      const std::int32_t first = model.bricks;
+      draft.slot = place_in_bricks(draft.solid, static_cast<std::int32_t>(b), draft.in_brick, model);
+      model.brick_batches.push_back(
+          {body.material, static_cast<std::int32_t>(b), draft.solid.spacing, first, model.bricks - first});
+    }
+    drafts.push_back(std::move(draft));
+  }
+  close_bricks(model);
+  number_list_nodes(drafts, model);
+}
+
+}  // namespace
+
+std::int64_t Model::nodes() const {
+  std::int64_t n = 0;
+  for (const ModelBody& b : bodies) n += static_cast<std::int64_t>(b.slot.size());
+  return n;
+}
+
+std::int64_t Model::elements() const {
+  std::int64_t n = 0;
+  for (const ModelBody& b : bodies) n += b.elements();
+  return n;
+}
+
+Model build_model(const Scene& scene) {
+  Model model;
+  std::vector<Draft> drafts;
+  place_bodies(scene, drafts, model);
+  model.rest.resize(model.slots);
+  model.mass.resize(model.slots);
+  model.damping.resize(model.slots);
+  model.velocity.resize(model.slots);
+  model.bodies.resize(scene.bodies.size());
+  for (std::size_t i = 0; i < drafts.size(); ++i) {
+    const auto b = static_cast<std::int32_t>(i);
+    const Body& body = scene.bodies[i];
+    Draft& draft = drafts[i];
+    fill_body(body, draft, model.bodies[i]);
+    for (std::size_t n = 0; n < draft.slot.size(); ++n) {
+      model.rest[draft.slot[n]] = draft.solid.nodes[n];
+      model.damping[draft.slot[n]] = body.material.damping;
+    }
+    if (!draft.solid.tets.empty()) {
+      add_tets(body, b, draft, model);
+    } else {
+      add_hexes(body, b, draft, model);
+    }
+    add_surface(draft, b, model);
+    add_totals(body, draft, model.bodies[i]);
+    set_velocity(body, model.bodies[i], model);
+  }
+  add_boundary_conditions(scene, model);
+  return model;
+}
+
+}  // namespace pliant

@@ -1,0 +1,136 @@
+#include "model/solid.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "model/model.h"
+#include "pliant/error.h"
+
+namespace pliant {
+namespace {
+
+bool takes_tets(ElementKind kind) { return kind == ElementKind::tet4 || kind == ElementKind::tet4anp; }
+
+/// Kuhn's subdivision of a cell into six tetrahedra along the diagonal from corner 0 to corner 7: the same in every cell, so that
+/// faces match.
+constexpr std::array<std::array<int, 4>, 6> kKuhn{{{0, 1, 3, 7}, {0, 5, 1, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 6, 4, 7}}};
+
+void from_lattice(const Body& body, Solid& solid) {
+  const TriangleMesh mesh = read_surface(body.surface, body.scale, body.translate);
+  Lattice lattice = build_lattice(mesh, body.lattice);
+  solid.spacing = lattice.spacing;
+  solid.surface_volume = signed_volume(mesh);
+  solid.surface = mesh.vertices;
+  solid.triangles = mesh.triangles;
+  for (const LatticeNode& n : lattice.nodes) solid.nodes.push_back(lattice.position(n));
+  for (const Embedding& at : lattice.embedding) {
+    const Cell& cell = lattice.cells[at.cell];
+    std::array<double, 8> weights{};
+    for (int a = 0; a < 8; ++a) {
+      weights[a] = ((a & 1) ? at.local[0] : 1 - at.local[0]) * ((a & 2) ? at.local[1] : 1 - at.local[1]) *
+                   ((a & 4) ? at.local[2] : 1 - at.local[2]);
+    }
+    solid.surface_nodes.push_back(cell.nodes);
+    solid.surface_weights.push_back(weights);
+  }
+  solid.lattice_nodes = std::move(lattice.nodes);
+  if (takes_tets(body.element)) {
+    for (const Cell& cell : lattice.cells) {
+      for (const auto& tet : kKuhn) {
+        solid.tets.push_back({cell.nodes[tet[0]], cell.nodes[tet[1]], cell.nodes[tet[2]], cell.nodes[tet[3]]});
+        solid.fill.push_back(cell.fill);
+      }
+    }
+    return;
+  }
+  for (const Cell& cell : lattice.cells) {
+    solid.hexes.push_back(cell.nodes);
+    solid.fill.push_back(cell.fill);
+  }
+  solid.cells = std::move(lattice.cells);
+}
+
+void from_mesh(const Body& body, Solid& solid) {
+  const VolumeMesh mesh = read_volume(body.mesh, body.scale, body.translate);
+  const bool tets = takes_tets(body.element);
+  if (tets ? mesh.tets.empty() : mesh.hexes.empty()) {
+    throw Error(fmt::format("{}: element {} needs {} and the file has only {}; use {}", body.mesh.string(), to_string(body.element),
+                            tets ? "tetrahedra" : "hexahedra", tets ? "hexahedra" : "tetrahedra",
+                            tets ? "hex8 or hex8full" : "tet4 or tet4anp"));
+  }
+  if (!mesh.tets.empty() && !mesh.hexes.empty()) {
+    throw Error(fmt::format("{}: the file mixes {} tetrahedra and {} hexahedra; a body takes one kind", body.mesh.string(),
+                            mesh.tets.size(), mesh.hexes.size()));
+  }
+  solid.nodes = mesh.vertices;
+  solid.tets = mesh.tets;
+  for (const auto& hex : mesh.hexes) {
+    std::array<std::int32_t, 8> corners{};
+    for (int a = 0; a < 8; ++a) corners[a] = hex[kVtkFromBits[a]];
+    solid.hexes.push_back(corners);
+  }
+  solid.fill.assign(solid.tets.size() + solid.hexes.size(), 1.0);
+  // The surface: boundary triangles over the nodes they use.
+  solid.triangles = boundary_triangles(mesh);
+  std::vector<std::int32_t> vertex(mesh.vertices.size(), -1);
+  for (auto& triangle : solid.triangles) {
+    for (std::int32_t& v : triangle) {
+      if (vertex[v] < 0) {
+        vertex[v] = static_cast<std::int32_t>(solid.surface.size());
+        solid.surface.push_back(mesh.vertices[v]);
+        solid.surface_nodes.push_back({v, v, v, v, v, v, v, v});
+        solid.surface_weights.push_back({1, 0, 0, 0, 0, 0, 0, 0});
+      }
+      v = vertex[v];
+    }
+  }
+  solid.surface_volume = signed_volume({solid.surface, solid.triangles});
+}
+
+/// Spread the lower 21 bits of v to every third bit.
+std::uint64_t spread(std::uint64_t v) {
+  v &= 0x1fffff;
+  v = (v | v << 32) & 0x1f00000000ffffULL;
+  v = (v | v << 16) & 0x1f0000ff0000ffULL;
+  v = (v | v << 8) & 0x100f00f00f00f00fULL;
+  v = (v | v << 4) & 0x10c30c30c30c30c3ULL;
+  return (v | v << 2) & 0x1249249249249249ULL;
+}
+
+}  // namespace
+
+Solid make_solid(const Body& body) {
+  Solid solid;
+  if (body.mesh.empty()) {
+    from_lattice(body, solid);
+  } else {
+    from_mesh(body, solid);
+  }
+  return solid;
+}
+
+std::vector<std::int32_t> morton_order(const std::vector<Vec3d>& points) {
+  std::vector<std::int32_t> order(points.size());
+  std::iota(order.begin(), order.end(), 0);
+  if (points.empty()) return order;
+  Vec3d lower = points[0], upper = points[0];
+  for (const Vec3d& p : points) {
+    for (int c = 0; c < 3; ++c) {
+      lower[c] = std::min(lower[c], p[c]);
+      upper[c] = std::max(upper[c], p[c]);
+    }
+  }
+  const double extent = std::max({upper[0] - lower[0], upper[1] - lower[1], upper[2] - lower[2], 1e-300});
+  std::vector<std::uint64_t> key(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      key[i] |= spread(static_cast<std::uint64_t>((points[i][c] - lower[c]) / extent * 2097151.0)) << c;
+    }
+  }
+  std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) { return key[a] < key[b]; });
+  return order;
+}
+
+}  // namespace pliant

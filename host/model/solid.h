@@ -1,0 +1,35 @@
+// One body cut into elements, before it gets its place among the slots of the Model.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "model/lattice.h"
+#include "model/mesh.h"
+
+namespace pliant {
+
+struct Solid {
+  std::vector<Vec3d> nodes;                        ///< rest positions [m]
+  std::vector<std::array<std::int32_t, 4>> tets;   ///< positive volume
+  std::vector<std::array<std::int32_t, 8>> hexes;  ///< corners in bit order (x, y, z)
+  std::vector<double> fill;                        ///< per element
+  std::vector<LatticeNode> lattice_nodes;          ///< one per node if the body is a lattice, else empty
+  std::vector<Cell> cells;                         ///< one per hexahedron if the body is a lattice of hexahedra, else empty
+  double spacing = 0;                              ///< [m]
+  std::vector<Vec3d> surface;                      ///< vertices [m]
+  std::vector<std::array<std::int32_t, 3>> triangles;
+  std::vector<std::array<std::int32_t, 8>> surface_nodes;
+  std::vector<std::array<double, 8>> surface_weights;
+  double surface_volume = 0;  ///< [m^3]
+};
+
+/// Load the body's mesh and fill it.
+Solid make_solid(const Body& body);
+
+/// VTK's corner order of a hexahedron from bit order, and back: the same permutation both ways.
+inline constexpr std::array<int, 8> kVtkFromBits{0, 1, 3, 2, 4, 5, 7, 6};
+
+/// An order of points along a Morton curve through their bounding box.
+std::vector<std::int32_t> morton_order(const std::vector<Vec3d>& points);
+
+}  // namespace pliant
