@@ -43,11 +43,7 @@ void read_encoding(const pugi::xml_node& root, VtuEncoding& e, const Cursor& at)
   const std::string order = root.attribute("byte_order").value();
   e.swap = (order == "BigEndian") != (std::endian::native == std::endian::big);
   e.wide = std::string(root.attribute("header_type").value()) == "UInt64";
-  const std::string compressor = root.attribute("compressor").value();
-  if (!compressor.empty() && compressor != "vtkZLibDataCompressor") {
-    at.fail(fmt::format("compressor '{}' cannot be read; allowed are none and vtkZLibDataCompressor", compressor));
-  }
-  e.compressed = !compressor.empty();
+  e.compressor = root.attribute("compressor").value();
 }
 
 VtuArrayText array_text(const pugi::xml_node& node) {

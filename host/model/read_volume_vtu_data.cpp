@@ -129,7 +129,10 @@ std::string binary_bytes(const VtuArrayText& array, const VtuEncoding& e, const 
       at.fail(fmt::format("offset {} lies outside the {} appended bytes", array.offset, e.appended.size()));
     source = e.appended.substr(static_cast<std::size_t>(array.offset));
   }
-  if (e.compressed) return inflate(source, raw, e, at);
+  if (!e.compressor.empty() && e.compressor != "vtkZLibDataCompressor") {
+    at.fail(fmt::format("compressor '{}' cannot be read; allowed are none and vtkZLibDataCompressor", e.compressor));
+  }
+  if (!e.compressor.empty()) return inflate(source, raw, e, at);
   const std::size_t width = e.wide ? 8 : 4;
   const std::uint64_t size = word(first_bytes(source, raw, width, at), 0, e);
   if (size > source.size()) at.fail(fmt::format("{} bytes are announced, at most {} are there", size, source.size()));

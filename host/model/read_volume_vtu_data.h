@@ -11,9 +11,9 @@ namespace pliant::volume_file {
 
 /// What the VTKFile element says about all arrays, and where the appended data are.
 struct VtuEncoding {
-  bool swap = false;        ///< byte order differs from the machine's
-  bool wide = false;        ///< 64-bit block headers
-  bool compressed = false;  ///< zlib
+  bool swap = false;       ///< byte order differs from the machine's
+  bool wide = false;       ///< 64-bit block headers
+  std::string compressor;  ///< empty, or VTK's class name; text arrays ignore it
   bool appended_raw = true;
   std::string_view appended;  ///< behind the underscore
 };
