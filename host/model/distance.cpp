@@ -114,6 +114,12 @@ SurfaceDistance::SurfaceDistance(TriangleMesh mesh, DistanceEngine engine)
   if (engine == DistanceEngine::embree && !has_embree()) {
     throw Error("closest points by Embree were asked for, but this build has no Embree; use the automatic engine");
   }
+  if (!orientation_.closed()) {
+    TriangleMesh edges;
+    edges.vertices = mesh_.vertices;
+    for (const auto& [a, b] : orientation_.rim) edges.triangles.push_back({a, b, b});
+    rim_ = std::make_unique<TriangleTree>(edges);
+  }
   if (engine != DistanceEngine::own && has_embree()) embree_ = std::make_unique<Embree>(mesh_, tree_.bounds());
 }
 

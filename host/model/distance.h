@@ -28,6 +28,8 @@ class SurfaceDistance {
   [[nodiscard]] double winding(const Vec3d& p) const { return tree_.winding(p); }
   /// |winding| > 0.5: holes are closed by the half-level surface of the winding number, overlaps count as inside.
   [[nodiscard]] bool inside(const Vec3d& p) const { return std::abs(winding(p)) > 0.5; }
+  /// Distance to the nearest rim edge [m]; infinite if the surface is closed.
+  [[nodiscard]] double rim_distance(const Vec3d& p) const { return rim_ ? rim_->closest(p).distance : HUGE_VAL; }
   /// [m], negative inside.
   [[nodiscard]] double signed_distance(const Vec3d& p) const { return inside(p) ? -closest(p).distance : closest(p).distance; }
 
@@ -40,6 +42,7 @@ class SurfaceDistance {
   OrientationReport orientation_;  // before mesh_, whose initialiser fills it
   TriangleMesh mesh_;
   TriangleTree tree_;
+  std::unique_ptr<TriangleTree> rim_;  // rim edges as triangles without area
   std::unique_ptr<Embree> embree_;
 };
 

@@ -57,8 +57,8 @@ struct Link {
   bool opposite = false;  // the two triangles run the shared edge in the same direction: one must be flipped
 };
 
-// Neighbours over edges that exactly two triangles share. Sets report.closed.
-std::vector<std::array<Link, 3>> neighbours(const TriangleMesh& mesh, OrientationReport& report) {
+// Neighbours over edges that exactly two triangles share.
+std::vector<std::array<Link, 3>> neighbours(const TriangleMesh& mesh) {
   const std::vector<HalfEdge> edges = sorted_edges(mesh);
   std::vector<std::array<Link, 3>> links(mesh.triangles.size());
   std::vector<int> used(mesh.triangles.size(), 0);
@@ -69,8 +69,6 @@ std::vector<std::array<Link, 3>> neighbours(const TriangleMesh& mesh, Orientatio
       const HalfEdge &x = edges[i], &y = edges[i + 1];
       links[x.triangle][used[x.triangle]++] = {y.triangle, x.forward == y.forward};
       links[y.triangle][used[y.triangle]++] = {x.triangle, x.forward == y.forward};
-    } else {
-      report.closed = false;
     }
     i = end;
   }
@@ -86,7 +84,7 @@ void flip(TriangleMesh& mesh, std::int32_t t) { std::swap(mesh.triangles[t][1], 
 
 // Wind each shell consistently with its first triangle.
 std::vector<Shell> flood(TriangleMesh& mesh, OrientationReport& report, std::vector<char>& flipped) {
-  const auto links = neighbours(mesh, report);
+  const auto links = neighbours(mesh);
   report.shell.assign(mesh.triangles.size(), -1);
   std::vector<Shell> shells;
   std::vector<std::int32_t> queue;
@@ -113,6 +111,21 @@ std::vector<Shell> flood(TriangleMesh& mesh, OrientationReport& report, std::vec
   }
   report.shells = static_cast<std::int32_t>(shells.size());
   return shells;
+}
+
+std::vector<std::array<std::int32_t, 2>> rim_of(const TriangleMesh& mesh) {
+  const std::vector<HalfEdge> edges = sorted_edges(mesh);
+  std::vector<std::array<std::int32_t, 2>> rim;
+  for (std::size_t i = 0; i < edges.size();) {
+    std::size_t end = i;
+    int balance = 0;
+    for (; end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high; ++end) {
+      balance += edges[end].forward ? 1 : -1;
+    }
+    if (balance != 0) rim.push_back({edges[i].low, edges[i].high});
+    i = end;
+  }
+  return rim;
 }
 
 void measure(const TriangleMesh& mesh, Shell& shell) {
@@ -174,6 +187,7 @@ OrientationReport orient_outward(TriangleMesh& mesh) {
       flipped[t] = static_cast<char>(flipped[t] == 0);
     }
   }
+  report.rim = rim_of(mesh);
   report.flipped = std::count(flipped.begin(), flipped.end(), 1);
   return report;
 }

@@ -1,5 +1,6 @@
 // Consistent, outward winding for surfaces whose files do not guarantee it.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -12,7 +13,10 @@ struct OrientationReport {
   std::vector<std::int32_t> shell;  ///< per triangle: the connected component it belongs to
   std::int32_t shells = 0;          ///< components connected over edges that exactly two triangles share
   std::int64_t flipped = 0;         ///< triangles whose winding was reversed
-  bool closed = true;               ///< every edge is shared by exactly two triangles
+  /// Edges that its triangles, as wound now, do not run equally often both ways: the rims of holes, and the seams of one-sided
+  /// surfaces. Away from them winding numbers jump by whole numbers across the surface and vary smoothly elsewhere.
+  std::vector<std::array<std::int32_t, 2>> rim;
+  [[nodiscard]] bool closed() const { return rim.empty(); }
 };
 
 /// Wind all triangles of a shell (a component connected over edges that exactly two triangles share) the same way, by flooding over
