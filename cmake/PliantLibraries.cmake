@@ -40,6 +40,7 @@ target_link_libraries(pliant_io PRIVATE pugixml::pugixml)
 
 # The twins: their own flags, so that nothing a consumer sets can change a bit.
 pliant_room(pliant_ref cpu_ref pliant_solver Threads::Threads)
+target_include_directories(pliant_ref PUBLIC ${CMAKE_SOURCE_DIR})  # "cpu_ref/backend.h"
 separate_arguments(twin_flags UNIX_COMMAND "${PLIANT_TWIN_FLAGS}")
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   target_compile_options(pliant_ref PRIVATE -mfma -mavx2)

@@ -1,0 +1,132 @@
+#include "backends/backends.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <exception>
+
+#include "cpu_ref/backend.h"
+#include "pliant/error.h"
+#ifdef PLIANT_HAVE_OPENCL
+#include "opencl/opencl_backend.h"
+#endif
+
+namespace pliant {
+namespace {
+
+#ifdef PLIANT_HAVE_OPENCL
+std::vector<BackendInfo> opencl_devices(bool probe) { return list_opencl_devices(probe); }
+std::unique_ptr<Backend> open_opencl(int index) { return make_opencl_backend(index); }
+constexpr const char* no_opencl = "there is no OpenCL device";
+#else
+std::vector<BackendInfo> opencl_devices(bool) { return {}; }
+std::unique_ptr<Backend> open_opencl(int index) {
+  throw Error(fmt::format(
+      "opencl:{} is not available: this build of Pliant has no OpenCL. Install the headers and the loader (Debian: apt install "
+      "opencl-headers opencl-clhpp-headers ocl-icd-opencl-dev) and configure again, or use the backend \"cpu\"",
+      index));
+}
+constexpr const char* no_opencl = "this build has no OpenCL";
+#endif
+
+std::unique_ptr<Backend> open_cpu(bool double_precision) {
+  RefOptions options;
+  options.double_precision = double_precision;
+  return make_ref_backend(options);
+}
+
+/// The N of "opencl:N"; throws Error if it is not a number.
+int opencl_index(const std::string& spec) {
+  if (spec == "opencl") return 0;
+  int index = -1;
+  const char* first = spec.data() + std::string("opencl:").size();
+  const char* last = spec.data() + spec.size();
+  const auto [end, error] = std::from_chars(first, last, index);
+  if (error != std::errc{} || end != last || index < 0) {
+    throw Error(fmt::format("backend \"{}\": N of opencl:N must be a number, 0 for the first device", spec));
+  }
+  return index;
+}
+
+struct Candidate {
+  std::unique_ptr<Backend> backend;
+  std::string skipped;  ///< why others were passed over
+};
+
+/// The first bit-exact device among those with (or without) this kind.
+Candidate first_bit_exact(const std::vector<BackendInfo>& devices, const std::string& kind, bool wanted) {
+  Candidate candidate;
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    if ((devices[i].kind == kind) != wanted) continue;
+    std::string reason;
+    try {
+      candidate.backend = open_opencl(static_cast<int>(i));
+      if (candidate.backend->info().bit_exact) return candidate;
+      reason = "not bit-exact: " + candidate.backend->info().tolerance_reason;
+    } catch (const std::exception& error) {
+      reason = error.what();
+    }
+    candidate.backend.reset();
+    candidate.skipped += fmt::format("; {} ({}) passed over: {}", devices[i].name, devices[i].device, reason);
+  }
+  return candidate;
+}
+
+std::unique_ptr<Backend> open_auto(std::string& why) {
+  const std::vector<BackendInfo> devices = opencl_devices(false);
+  Candidate gpu = first_bit_exact(devices, "gpu", true);
+  if (gpu.backend != nullptr) {
+    why = fmt::format("{} ({}): a bit-exact GPU{}", gpu.backend->info().name, gpu.backend->info().device, gpu.skipped);
+    return std::move(gpu.backend);
+  }
+  Candidate other = first_bit_exact(devices, "gpu", false);
+  const std::string skipped = gpu.skipped + other.skipped;
+  if (other.backend != nullptr) {
+    why = fmt::format("{} ({}): bit-exact, and there is no bit-exact GPU{}", other.backend->info().name,
+                      other.backend->info().device, skipped);
+    return std::move(other.backend);
+  }
+  auto cpu = open_cpu(false);
+  why =
+      fmt::format("cpu ({}): {}{}", cpu->info().device, devices.empty() ? no_opencl : "no OpenCL device is bit-exact", skipped);
+  return cpu;
+}
+
+}  // namespace
+
+std::vector<BackendInfo> list_backends() {
+  std::vector<BackendInfo> result;
+  for (const bool double_precision : {false, true}) {
+    try {
+      result.push_back(open_cpu(double_precision)->info());
+    } catch (const std::exception& error) {
+      BackendInfo info;
+      info.name = double_precision ? "cpu:double" : "cpu";
+      info.kind = "reference";
+      info.tolerance_reason = error.what();
+      result.push_back(info);
+    }
+  }
+  const std::vector<BackendInfo> devices = opencl_devices(true);
+  result.insert(result.end(), devices.begin(), devices.end());
+  return result;
+}
+
+std::unique_ptr<Backend> open_backend(const std::string& spec, std::string* why) {
+  std::string reason;
+  std::unique_ptr<Backend> backend;
+  if (spec == "auto") {
+    backend = open_auto(reason);
+  } else if (spec == "cpu" || spec == "cpu:double") {
+    backend = open_cpu(spec == "cpu:double");
+  } else if (spec == "opencl" || spec.rfind("opencl:", 0) == 0) {
+    backend = open_opencl(opencl_index(spec));
+  } else {
+    throw Error(fmt::format("unknown backend \"{}\"; allowed are auto, cpu, cpu:double, opencl and opencl:N", spec));
+  }
+  if (spec != "auto") reason = fmt::format("{} ({}): asked for", backend->info().name, backend->info().device);
+  if (why != nullptr) *why = reason;
+  return backend;
+}
+
+}  // namespace pliant

@@ -1,0 +1,63 @@
+#include "opencl/devices.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace pliant::opencl {
+namespace {
+
+/// Drivers pad their texts with blanks and a terminating zero.
+std::string tidy(std::string text) {
+  text.resize(std::strlen(text.c_str()));
+  const std::size_t first = text.find_first_not_of(' ');
+  if (first == std::string::npos) return {};
+  return text.substr(first, text.find_last_not_of(' ') - first + 1);
+}
+
+}  // namespace
+
+std::vector<cl::Device> all_devices() {
+  std::vector<cl::Device> devices;
+  std::vector<cl::Platform> platforms;
+  try {
+    cl::Platform::get(&platforms);
+  } catch (const cl::Error&) {  // the loader has no platform
+    return devices;
+  }
+  for (const cl::Platform& platform : platforms) {
+    try {
+      std::vector<cl::Device> own;
+      platform.getDevices(CL_DEVICE_TYPE_ALL, &own);
+      devices.insert(devices.end(), own.begin(), own.end());
+    } catch (const cl::Error&) {  // this platform has no device
+    }
+  }
+  return devices;
+}
+
+BackendInfo describe_device(const cl::Device& device, int index) {
+  BackendInfo info;
+  info.name = "opencl:" + std::to_string(index);
+  info.device = tidy(device.getInfo<CL_DEVICE_NAME>());
+  const cl_device_type type = device.getInfo<CL_DEVICE_TYPE>();
+  info.kind = (type & CL_DEVICE_TYPE_GPU) != 0 ? "gpu" : (type & CL_DEVICE_TYPE_CPU) != 0 ? "cpu" : "accelerator";
+  info.platform = tidy(cl::Platform(device.getInfo<CL_DEVICE_PLATFORM>()).getInfo<CL_PLATFORM_NAME>());
+  info.version = tidy(device.getInfo<CL_DEVICE_VERSION>());
+  info.driver = tidy(device.getInfo<CL_DRIVER_VERSION>());
+  info.memory_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
+  info.max_buffer_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
+  info.compute_units = static_cast<int>(device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>());
+  info.lanes = info.kind == "cpu" ? 16 : 1;
+  return info;
+}
+
+std::string build_options(const cl::Device& device) {
+  std::string options = "-cl-std=CL1.2";
+  // Without the capability the option is an error; the probe then finds out what divide and sqrt really give.
+  if ((device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>() & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0) {
+    options += " -cl-fp32-correctly-rounded-divide-sqrt";
+  }
+  return options;
+}
+
+}  // namespace pliant::opencl

@@ -1,0 +1,338 @@
+#include "opencl/opencl_backend.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+
+#include "opencl/devices.h"
+#include "opencl/kernel_cache.h"
+#include "opencl/kernel_text.h"
+#include "opencl/launch.h"
+#include "opencl/opencl.h"
+#include "solver/float_environment.h"
+#include "solver/pass_table.h"
+#include "solver/probe.h"
+
+namespace pliant {
+namespace {
+
+using opencl::guarded;
+
+opencl::Files all_files(const OpenclOptions& options) {
+  opencl::Files files = options.extra_kernels;
+  files.insert(kernel_files().begin(), kernel_files().end());
+  return files;
+}
+
+class OpenclBackend final : public Backend {
+ public:
+  OpenclBackend(const cl::Device& device, BackendInfo info, const OpenclOptions& options)
+      : info_(std::move(info)),
+        where_(fmt::format("{} ({})", info_.name, info_.device)),
+        device_(device),
+        context_(device),
+        queue_(context_, device, cl_command_queue_properties{0}),
+        kernels_(context_, device, all_files(options), where_),
+        local_size_(options.local_size) {
+    if (options.lanes != 0) info_.lanes = options.lanes;
+    if (options.memory_bytes != 0) info_.memory_bytes = options.memory_bytes;
+    if (options.max_buffer_bytes != 0) info_.max_buffer_bytes = options.max_buffer_bytes;
+    if (info_.lanes != 1 && info_.lanes != 16) throw Error(fmt::format("lanes is {}; allowed are 1 and 16", info_.lanes));
+  }
+
+  [[nodiscard]] const BackendInfo& info() const override { return info_; }
+  void set_probe_result(bool bit_exact, const std::string& reason) {
+    info_.bit_exact = bit_exact;
+    info_.tolerance_reason = reason;
+  }
+
+  void load(const Program& program) override {
+    check_memory(program.buffers, sizeof(float), info_.max_buffer_bytes, info_.memory_bytes, where_);
+    finish();
+    events_.clear();
+    passes_.clear();
+    memory_.clear();
+    table_ = &program.buffers;
+    const DefaultFloatEnvironment environment;
+    for (const Buffer& buffer : program.buffers) {
+      guarded(ErrorCode::bad_input, fmt::format("buffer \"{}\" {} on {}", buffer.name, buffer.shape, where_),
+              [&] { memory_.push_back(upload(buffer)); });
+    }
+    passes_.load(program, [this](const Pass& pass) { return prepare(pass); });
+    finish();
+  }
+
+  void run(const std::vector<Pass>& passes, std::int32_t first, std::int32_t count) override {
+    list_.clear();
+    for (const Pass& pass : passes) list_.push_back(&prepared(pass));
+    for (std::int32_t step = first; step < first + count; ++step) {
+      for (Prepared* p : list_) enqueue(*p, step);
+    }
+    flush();
+  }
+  void run(const Pass& pass, std::int32_t step_in_batch) override {
+    enqueue(prepared(pass), step_in_batch);
+    flush();
+  }
+  void finish() override {
+    guarded(ErrorCode::internal, where_, [&] { queue_.finish(); });
+  }
+
+  void copy(BufferId from, BufferId to) override {
+    const std::size_t bytes = row(from).values() * 4;
+    if (row(from).is_int() != row(to).is_int() || bytes != row(to).values() * 4) {
+      throw Error(ErrorCode::internal, fmt::format("copy: \"{}\" and \"{}\" differ in size", row(from).name, row(to).name));
+    }
+    if (bytes == 0 || from == to) return;
+    guarded(ErrorCode::internal, where_, [&] { queue_.enqueueCopyBuffer(memory(from), memory(to), 0, 0, bytes); });
+  }
+
+  std::vector<double> read_reals(BufferId id) override {
+    require_type(id, false);
+    const auto values = read<float>(id);
+    return {values.begin(), values.end()};
+  }
+  std::vector<std::int32_t> read_ints(BufferId id) override {
+    require_type(id, true);
+    return read<std::int32_t>(id);
+  }
+  std::vector<std::uint8_t> read_bytes(BufferId id) override { return read<std::uint8_t>(id); }
+  void write_reals(BufferId id, const std::vector<double>& values) override {
+    require_type(id, false);
+    const DefaultFloatEnvironment environment;
+    write(id, rounded(values), values.size());
+  }
+  void write_ints(BufferId id, const std::vector<std::int32_t>& values) override {
+    require_type(id, true);
+    write(id, values, values.size());
+  }
+
+  void profile(bool on) override {
+    finish();
+    collect_events();
+    if (on == profiling_) return;
+    profiling_ = on;
+    guarded(ErrorCode::internal, where_, [&] {
+      queue_ = cl::CommandQueue(context_, device_, on ? cl_command_queue_properties{CL_QUEUE_PROFILING_ENABLE} : 0);
+    });
+  }
+  std::vector<PassTime> take_profile() override {
+    finish();
+    collect_events();
+    std::vector<PassTime> times;
+    passes_.for_each([&](const Pass& pass, Prepared& p) {
+      if (p.launches > 0) times.push_back({pass.kernel, pass.label, p.seconds, p.launches});
+      p.seconds = 0;
+      p.launches = 0;
+    });
+    return times;
+  }
+
+ private:
+  struct Prepared {
+    cl::Kernel kernel;
+    std::vector<cl_uint> step_args;
+    std::vector<opencl::Launch> launches_of_one_run;
+    std::string where;
+    double seconds = 0;
+    std::int64_t launches = 0;
+  };
+  struct Timed {
+    Prepared* pass;
+    cl::Event event;
+  };
+
+  static std::vector<float> rounded(const std::vector<double>& values) {
+    std::vector<float> result(values.size());
+    std::transform(values.begin(), values.end(), result.begin(), [](double v) { return static_cast<float>(v); });
+    return result;
+  }
+
+  cl::Buffer upload(const Buffer& buffer) {
+    const std::size_t given = buffer.is_int() ? buffer.ints.size() : buffer.reals.size();
+    if (given > buffer.values()) {
+      throw Error(ErrorCode::internal,
+                  fmt::format("buffer \"{}\" has {} initial values for {}", buffer.name, given, buffer.values()));
+    }
+    const std::size_t bytes = 4 * std::max<std::size_t>(buffer.values(), 1);
+    cl::Buffer memory(context_, CL_MEM_READ_WRITE, bytes);
+    if (given < buffer.values() || buffer.values() == 0) queue_.enqueueFillBuffer(memory, cl_uint{0}, 0, bytes);
+    if (given == 0) return memory;
+    if (buffer.is_int()) {
+      queue_.enqueueWriteBuffer(memory, CL_TRUE, 0, 4 * given, buffer.ints.data());
+    } else {
+      queue_.enqueueWriteBuffer(memory, CL_TRUE, 0, 4 * given, rounded(buffer.reals).data());
+    }
+    return memory;
+  }
+
+  Prepared prepare(const Pass& pass) {
+    check_pass(pass, *table_);
+    const int lanes = pass.shape == Shape::items ? 1 : info_.lanes;
+    Prepared p;
+    p.where = fmt::format("pass \"{}\" (kernel {}{}{}) on {}", pass.label, pass.kernel, pass.defines.empty() ? "" : ", ",
+                          defines_text(pass.defines), where_);
+    p.kernel = kernels_.make(pass.kernel, pass.defines, lanes);
+    guarded(ErrorCode::internal, p.where, [&] {
+      const auto parameters = p.kernel.getInfo<CL_KERNEL_NUM_ARGS>();
+      if (pass.args.size() != parameters) {
+        throw Error(ErrorCode::internal,
+                    fmt::format("{} arguments for {} parameters: {}", pass.args.size(), parameters, p.where));
+      }
+      for (cl_uint i = 0; i < parameters; ++i) {
+        const Arg& arg = pass.args[i];
+        if (arg.index() == 0) {
+          p.kernel.setArg(i, memory(std::get<0>(arg)));
+        } else if (arg.index() == 1) {
+          p.kernel.setArg(i, static_cast<cl_float>(std::get<1>(arg)));
+        } else if (arg.index() == 2) {
+          p.kernel.setArg(i, cl_int{std::get<2>(arg)});
+        } else {
+          p.step_args.push_back(i);
+        }
+      }
+      const std::size_t largest = p.kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device_);
+      p.launches_of_one_run = opencl::plan_launches(pass, {info_.lanes, local_size_, largest, info_.kind == "cpu"});
+    });
+    return p;
+  }
+
+  Prepared& prepared(const Pass& pass) {
+    return passes_.get(pass, [this](const Pass& p) { return prepare(p); });
+  }
+
+  void enqueue(Prepared& p, cl_int step) {
+    guarded(ErrorCode::internal, p.where, [&] {
+      for (const cl_uint i : p.step_args) p.kernel.setArg(i, step);
+      for (const opencl::Launch& launch : p.launches_of_one_run) {
+        cl::Event* event = nullptr;
+        if (profiling_) {
+          events_.push_back({&p, {}});
+          event = &events_.back().event;
+        }
+        queue_.enqueueNDRangeKernel(p.kernel, launch.offset_range(), cl::NDRange(launch.global), launch.local_range(), nullptr,
+                                    event);
+      }
+    });
+    if (profiling_) {
+      ++p.launches;
+      if (events_.size() >= 4096) {
+        finish();
+        collect_events();
+      }
+    }
+  }
+
+  void flush() {
+    guarded(ErrorCode::internal, where_, [&] { queue_.flush(); });
+  }
+
+  /// Sums the times of finished events.
+  void collect_events() {
+    guarded(ErrorCode::internal, where_, [&] {
+      for (const Timed& timed : events_) {
+        const auto start = timed.event.getProfilingInfo<CL_PROFILING_COMMAND_START>();
+        const auto end = timed.event.getProfilingInfo<CL_PROFILING_COMMAND_END>();
+        timed.pass->seconds += 1e-9 * static_cast<double>(end - start);
+      }
+    });
+    events_.clear();
+  }
+
+  template <class T>
+  std::vector<T> read(BufferId id) {
+    std::vector<T> values(row(id).values() * 4 / sizeof(T));
+    if (values.empty()) return values;
+    guarded(ErrorCode::internal, where_,
+            [&] { queue_.enqueueReadBuffer(memory(id), CL_TRUE, 0, values.size() * sizeof(T), values.data()); });
+    return values;
+  }
+  template <class T>
+  void write(BufferId id, const std::vector<T>& values, std::size_t size) {
+    if (size != row(id).values()) {
+      throw Error(ErrorCode::internal,
+                  fmt::format("buffer \"{}\" holds {} values, received {}", row(id).name, row(id).values(), size));
+    }
+    if (values.empty()) return;
+    guarded(ErrorCode::internal, where_,
+            [&] { queue_.enqueueWriteBuffer(memory(id), CL_TRUE, 0, values.size() * sizeof(T), values.data()); });
+  }
+
+  const Buffer& row(BufferId id) const {
+    if (id < 0 || static_cast<std::size_t>(id) >= memory_.size()) {
+      throw Error(ErrorCode::internal, fmt::format("there is no buffer {}: the program has {}", id, memory_.size()));
+    }
+    return (*table_)[static_cast<std::size_t>(id)];
+  }
+  cl::Buffer& memory(BufferId id) { return memory_[static_cast<std::size_t>(id)]; }
+  void require_type(BufferId id, bool ints) const {
+    if (row(id).is_int() == ints) return;
+    throw Error(ErrorCode::internal, fmt::format("buffer \"{}\" holds {}", row(id).name, ints ? "reals" : "integers"));
+  }
+
+  BackendInfo info_;
+  const std::string where_;
+  cl::Device device_;
+  cl::Context context_;
+  cl::CommandQueue queue_;
+  opencl::KernelCache kernels_;
+  const int local_size_;
+  const std::vector<Buffer>* table_ = nullptr;
+  std::vector<cl::Buffer> memory_;
+  PassTable<Prepared> passes_;
+  std::vector<Prepared*> list_;
+  std::vector<Timed> events_;
+  bool profiling_ = false;
+};
+
+std::unique_ptr<Backend> open(const cl::Device& device, int index, const OpenclOptions& options) {
+  const std::string where = fmt::format("opening opencl:{}", index);
+  auto backend = guarded(ErrorCode::bad_input, where, [&] {
+    return std::make_unique<OpenclBackend>(device, opencl::describe_device(device, index), options);
+  });
+  if (options.probe) {
+    const std::string difference = run_probe(*backend);
+    backend->set_probe_result(difference.empty(), difference);
+  } else {
+    backend->set_probe_result(false, "not probed");
+  }
+  return backend;
+}
+
+}  // namespace
+
+std::vector<BackendInfo> list_opencl_devices(bool probe) {
+  std::vector<BackendInfo> result;
+  int index = 0;
+  for (const cl::Device& device : opencl::all_devices()) {
+    BackendInfo info;
+    info.name = fmt::format("opencl:{}", index);
+    try {
+      info = opencl::describe_device(device, index);
+      info.tolerance_reason = "not probed";
+      if (probe) info = open(device, index, {})->info();
+    } catch (const std::exception& error) {
+      info.tolerance_reason = error.what();
+    }
+    result.push_back(info);
+    ++index;
+  }
+  return result;
+}
+
+std::unique_ptr<Backend> make_opencl_backend(int index, const OpenclOptions& options) {
+  const std::vector<cl::Device> devices = opencl::all_devices();
+  if (devices.empty()) {
+    throw Error(
+        "there is no OpenCL device: the OpenCL loader found no platform, or no platform has a device. Install a driver, for "
+        "example "
+        "PoCL for the processor (Debian: apt install pocl-opencl-icd), or use the backend \"cpu\"");
+  }
+  if (index < 0 || static_cast<std::size_t>(index) >= devices.size()) {
+    throw Error(fmt::format("there is no OpenCL device {}: allowed are opencl:0 to opencl:{}", index, devices.size() - 1));
+  }
+  return open(devices[static_cast<std::size_t>(index)], index, options);
+}
+
+}  // namespace pliant
