@@ -9,7 +9,23 @@
 #include "solver/pass_table.h"
 
 // One row per kernel: each cpu_ref/<stem>.cpp ends with `void register_<stem>(Registry&)`, which names its instantiations.
-#define PLIANT_TWINS(ROW) ROW(probe)
+// clang-format off
+#define PLIANT_TWINS(ROW) \
+  ROW(probe) \
+  ROW(tled_tet4_force) \
+  ROW(tled_tet4_dilation) \
+  ROW(anp_node_pressure) \
+  ROW(tled_hex8_force) \
+  ROW(tled_hex8full_force) \
+  ROW(tled_hex8_brick_force) \
+  ROW(node_update) \
+  ROW(brick_update) \
+  ROW(node_prescribe) \
+  ROW(node_load) \
+  ROW(surface_position) \
+  ROW(pressure_force) \
+  ROW(fault_reduce)
+// clang-format on
 
 namespace pliant::ref {
 

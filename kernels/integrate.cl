@@ -14,9 +14,10 @@ inline void integrate(real fx, real fy, real fz, __global float* node_u, __globa
   const float h = step_params[0];
   const texels u = texels_load(node_u, i), w = texels_load(node_w, i);
   const real inverse_mass = texels_w(u), damping = texels_w(w);
-  const real k = (0.5f * h) * (damping + step_params[4]);
-  const real inverse = 1.0f / (1.0f + k);
-  const real a = (1.0f - k) * inverse, b = (h * h) * inverse;
+  const float half_h = 0.5f * h;
+  const real rate = damping + step_params[4];
+  const real inverse = 1.0f / fma(half_h, rate, 1.0f);
+  const real a = fma(-half_h, rate, 1.0f) * inverse, b = (h * h) * inverse;
   const real bm = b * inverse_mass;
   const real free = inverse_mass > 0.0f ? b : (real)(0.0f);  // slots without a node stay where they are
   const real gx = fma(bm, rx, free * step_params[1]), gy = fma(bm, ry, free * step_params[2]), gz = fma(bm, rz, free * step_params[3]);

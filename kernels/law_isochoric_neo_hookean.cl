@@ -20,10 +20,11 @@ inline mat3 law_stress(deformation d, real scale, float p0, float p1, real press
   const real hh = fma(h.m22, h.m22, fma(h.m21, h.m21, fma(h.m20, h.m20, fma(h.m12, h.m12, fma(h.m11, h.m11, fma(h.m10, h.m10,
                   fma(h.m02, h.m02, fma(h.m01, h.m01, h.m00 * h.m00))))))));
   const real third = 1.0f / (3.0f * jacobian);
-  const real one_minus_s = (fma(3.0f, d.q, d.t) - hh) * third;
-  const real s = 1.0f - one_minus_s;
+  const real excess = fma(3.0f, d.q, d.t) - hh;  // 3 J (1 - s)
+  const real one_minus_s = excess * third;
+  const real s = fma(-excess, third, 1.0f);
   const real m = scale * (p0 * (root * root));
   const real p = scale * pressure;
-  const real ms = m * s;
-  return combine(d, fma(p, d.t, fma(m, fma(-s, d.t, one_minus_s), p)), m, ms - p, p - ms);
+  const real difference = fma(m, s, -p);
+  return combine(d, fma(p, d.t, fma(m, fma(-s, d.t, one_minus_s), p)), m, difference, -difference);
 }

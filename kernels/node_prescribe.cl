@@ -13,13 +13,12 @@ __kernel void node_prescribe(__global float* node_u, __global float* node_w, __g
     if (axes & (1 << c)) {
       const float target = prescribed_target[4 * i + c];
       const int curve = prescribed_curve[3 * i + c];
-      const float before = target * curve_value[step * curves + curve];
-      const float after = target * curve_value[(step + 1) * curves + curve];
-      node_u[node + c] = after;
+      const float now = curve_value[step * curves + curve], next = curve_value[(step + 1) * curves + curve];
+      node_u[node + c] = target * next;
 #if TEXTBOOK
-      node_w[node + c] = before;
+      node_w[node + c] = target * now;
 #else
-      node_w[node + c] = after - before;
+      node_w[node + c] = target * (next - now);
 #endif
     }
   }

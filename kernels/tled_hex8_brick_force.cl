@@ -59,6 +59,10 @@ inline vec3 times(real s, vec3 a) {
   const vec3 r = {s * a.x, s * a.y, s * a.z};
   return r;
 }
+inline vec3 times_add(real s, vec3 a, vec3 b) {
+  const vec3 r = {fma(s, a.x, b.x), fma(s, a.y, b.y), fma(s, a.z, b.z)};
+  return r;
+}
 // A face of a cell normal to z after the butterflies along x and y: sums, differences along x, along y, along both.
 typedef struct {
   vec3 ss, ds, sd, dd;
@@ -133,26 +137,26 @@ __kernel void tled_hex8_brick_force(__global const float* node_u, __global const
         const vec3 mx = add(below[y].ds, above[y].ds), my = add(below[y].sd, above[y].sd), mxy = add(below[y].dd, above[y].dd);
         const vec3 mz = sub(above[y].ss, below[y].ss), mxz = sub(above[y].ds, below[y].ds);
         const vec3 myz = sub(above[y].sd, below[y].sd), mxyz = sub(above[y].dd, below[y].dd);
-        const real zero_h = 0.0f;
+        const real zero_h = 0.0f;  // in an fma: a bare product would be free to contract into the sums that follow
         mat3 h;
-        h.m00 = full ? gradient * mx.x : zero_h;
-        h.m10 = full ? gradient * mx.y : zero_h;
-        h.m20 = full ? gradient * mx.z : zero_h;
-        h.m01 = full ? gradient * my.x : zero_h;
-        h.m11 = full ? gradient * my.y : zero_h;
-        h.m21 = full ? gradient * my.z : zero_h;
-        h.m02 = full ? gradient * mz.x : zero_h;
-        h.m12 = full ? gradient * mz.y : zero_h;
-        h.m22 = full ? gradient * mz.z : zero_h;
+        h.m00 = full ? fma(gradient, mx.x, zero_h) : zero_h;
+        h.m10 = full ? fma(gradient, mx.y, zero_h) : zero_h;
+        h.m20 = full ? fma(gradient, mx.z, zero_h) : zero_h;
+        h.m01 = full ? fma(gradient, my.x, zero_h) : zero_h;
+        h.m11 = full ? fma(gradient, my.y, zero_h) : zero_h;
+        h.m21 = full ? fma(gradient, my.z, zero_h) : zero_h;
+        h.m02 = full ? fma(gradient, mz.x, zero_h) : zero_h;
+        h.m12 = full ? fma(gradient, mz.y, zero_h) : zero_h;
+        h.m22 = full ? fma(gradient, mz.z, zero_h) : zero_h;
         const deformation d = deformation_of(h);
         const integer bad = is_faulty(d);
         MARK_FAULT(bad, step, fault, fault_base + brick * PLIANT_BRICK_NODES + cell)
         const mat3 p = law_stress(d, fill * volume, p0, p1, p1 * d.j);
         const real k = fill * stiffness;
         const vec3 qx = {p.m00, p.m10, p.m20}, qy = {p.m01, p.m11, p.m21}, qz = {p.m02, p.m12, p.m22};
-        const vec3 qxy = times(k, mxy), qxz = times(k, mxz), qyz = times(k, myz), qxyz = times(k, mxyz);
-        const face upper = {qz, add(qx, qxz), add(qy, qyz), add(qxy, qxyz)};
-        const face lower = {sub(zero, qz), sub(qx, qxz), sub(qy, qyz), sub(qxy, qxyz)};
+        const vec3 qxy = times(k, mxy);
+        const face upper = {qz, times_add(k, mxz, qx), times_add(k, myz, qy), times_add(k, mxyz, qxy)};
+        const face lower = {sub(zero, qz), times_add(-k, mxz, qx), times_add(-k, myz, qy), times_add(-k, mxyz, qxy)};
         forces[y].ss = z > 1 ? add(pending[y].ss, lower.ss) : lower.ss;
         forces[y].ds = z > 1 ? add(pending[y].ds, lower.ds) : lower.ds;
         forces[y].sd = z > 1 ? add(pending[y].sd, lower.sd) : lower.sd;

@@ -1,0 +1,16 @@
+// S = mu (I - C^-1) + lambda J (J - 1) C^-1, hence P = mu/J (J F - cof F) + lambda (J - 1) cof F.
+#pragma once
+#include "deformation.h"
+
+namespace pliant::ref {
+
+template <class Scalar>
+inline Mat3<Scalar> neo_hookean_stress(const Deformation<Scalar>& d, Scalar scale, Scalar p0, Scalar pressure) {
+  const Scalar ratio = p0 / (Scalar(1) + d.j);
+  const Scalar s = scale * ratio;
+  const Scalar p = scale * pressure;
+  const Scalar difference = std::fma(scale, ratio, -p);
+  return combine(d, std::fma(p, d.t, std::fma(s, d.q, p)), std::fma(s, d.j, s), difference, -difference);
+}
+
+}  // namespace pliant::ref

@@ -1,0 +1,19 @@
+// Where the twins find a number in a tiled array (kernels/layout.h), and how they mark a fault.
+#pragma once
+#include <cstdint>
+
+#include "layout.h"
+
+namespace pliant::ref {
+
+/// Where element e stands in plane 0 of an array of `planes` planes.
+constexpr std::int64_t tile_base(std::int64_t e, std::int64_t planes) {
+  return e / PLIANT_TILE * planes * PLIANT_TILE + e % PLIANT_TILE;
+}
+
+/// Keep the step of the first fault only, counted from 1.
+inline void mark_fault(bool bad, std::int32_t step, std::int32_t& fault) {
+  if (bad && fault == 0) fault = step + 1;
+}
+
+}  // namespace pliant::ref

@@ -1,0 +1,42 @@
+// Twin of kernels/tled_hex8full_force.cl.
+#include "hex8.h"
+#include "law.h"
+#include "registry.h"
+
+namespace pliant::ref {
+
+template <class Scalar, int Law, bool Uniform>
+void tled_hex8full_force(Range range, const Scalar* node_u, const std::int32_t* hex_nodes, const Scalar* hex_data,
+                         const Scalar* hex_fill, Scalar* corner_force, std::int32_t* fault, Scalar p0, Scalar p1,
+                         std::int32_t corner_base, std::int32_t fault_base, std::int32_t step) {
+  for (std::int64_t e = range.begin; e < range.end; ++e) {
+    const HexRecord<Scalar, Uniform> data(hex_data, e, PLIANT_HEXFULL_DATA_PLANES);
+    const Corners<Scalar> u = hex8_displacements(e, node_u, hex_nodes);
+    const Scalar fill = hex_fill[e];
+    Corners<Scalar> f{};
+    bool bad = false;
+    for (std::int64_t point = 0; point < 8; ++point) {
+      const std::int64_t gradients = 25 * point, weight = gradients + 24;
+      const Deformation<Scalar> d = deformation_of(hex8_gradient(u, data, gradients));
+      bad = bad || (fill > Scalar(0) && is_faulty(d));
+      const Mat3<Scalar> p = law_stress<Law>(d, fill * data[weight], p0, p1, p1 * d.j);
+      for (std::size_t a = 0; a < 8; ++a) {
+        const auto b = gradients + 3 * static_cast<std::int64_t>(a);
+        const Scalar bx = data[b], by = data[b + 1], bz = data[b + 2];
+        f.x[a] = std::fma(p.m02, bz, std::fma(p.m01, by, std::fma(p.m00, bx, f.x[a])));
+        f.y[a] = std::fma(p.m12, bz, std::fma(p.m11, by, std::fma(p.m10, bx, f.y[a])));
+        f.z[a] = std::fma(p.m22, bz, std::fma(p.m21, by, std::fma(p.m20, bx, f.z[a])));
+      }
+    }
+    mark_fault(bad, step, fault[fault_base + e]);
+    hex8_store(f, e, corner_force + corner_base);
+  }
+}
+
+void register_tled_hex8full_force(Registry& registry) {
+  registry.add_specialised<law_count, 2>("tled_hex8full_force", {"LAW", "UNIFORM"}, [](auto scalar, auto law, auto uniform) {
+    return tled_hex8full_force<decltype(scalar), law(), uniform() != 0>;
+  });
+}
+
+}  // namespace pliant::ref
