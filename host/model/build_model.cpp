@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "layout.h"
@@ -53,7 +54,9 @@ struct Draft {
   std::vector<std::int32_t> slot;
 };
 
-void note_bound(Model& model, double frequency, const std::string& element) {
+void note_bound(Model& model, double frequency, double volume, const std::string& element) {
+  const double edge = std::cbrt(volume);
+  if (model.shortest == 0 || edge < model.shortest) model.shortest = edge;
   const double bound = 2 / frequency;
   if (model.element_bound == 0 || bound < model.element_bound) {
     model.element_bound = bound;
@@ -125,7 +128,7 @@ void add_tets(const Body& body, std::int32_t b, const Draft& draft, Model& model
       batch.volume.push_back(geometry.volume * draft.solid.fill[e]);
       batch.id.push_back(e);
       for (const std::int32_t n : slots[e]) model.mass[n] += batch.material.density * batch.volume.back() / 4;
-      note_bound(model, tet_frequency(geometry, batch.material), fmt::format("{}: tetrahedron {}", body.name, e));
+      note_bound(model, tet_frequency(geometry, batch.material), geometry.volume, fmt::format("{}: tetrahedron {}", body.name, e));
     }
     if (!batch.nodes.empty()) model.tets.push_back(std::move(batch));
   }
@@ -161,7 +164,7 @@ void add_hexes(const Body& body, std::int32_t b, const Draft& draft, Model& mode
       std::array<Vec3d, 8> cube;
       for (int a = 0; a < 8; ++a) cube[a] = {d * (a & 1), d * (a >> 1 & 1), d * (a >> 2 & 1)};
       batch.records.push_back(hex_record(batch, cube, fmt::format("{}: lattice cell", body.name)));
-      note_bound(model, hex_frequency(batch, batch.records[0]), fmt::format("{}: every lattice cell", body.name));
+      note_bound(model, hex_frequency(batch, batch.records[0]), d * d * d, fmt::format("{}: every lattice cell", body.name));
     }
     for (std::size_t e = 0; e < solid.hexes.size(); ++e) {
       if (draft.material[e] != static_cast<int>(m)) continue;
@@ -175,7 +178,7 @@ void add_hexes(const Body& body, std::int32_t b, const Draft& draft, Model& mode
       if (!batch.uniform) {
         batch.records.push_back(hex_record(batch, x, describe(e)));
         volume = hex_volume(batch, batch.records.back());
-        note_bound(model, hex_frequency(batch, batch.records.back()), describe(e));
+        note_bound(model, hex_frequency(batch, batch.records.back()), volume, describe(e));
       }
       for (const std::int32_t n : slots) model.mass[n] += batch.material.density * volume * solid.fill[e] / 8;
       if (draft.in_brick[e]) continue;

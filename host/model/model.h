@@ -112,6 +112,7 @@ struct Model {
   std::vector<TrianglePressure> pressures;        ///< ascending triangles
   double element_bound = 0;                       ///< 2 / max element frequency [s], safe for small strain
   std::string bound_element;                      ///< the element that gives it
+  double shortest = 0;                            ///< cube root of the smallest element's volume [m]
   [[nodiscard]] std::int64_t nodes() const;       ///< real nodes
   [[nodiscard]] std::int64_t elements() const;
 };

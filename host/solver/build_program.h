@@ -1,0 +1,23 @@
+// Model -> Program: lay the data out in texel buffers and list the passes of a step.
+#pragma once
+#include "model/model.h"
+#include "solver/program.h"
+
+namespace pliant {
+
+struct ProgramOptions {
+  Integrator integrator = Integrator::increment;
+  std::int32_t batch_steps = 64;  ///< steps that one batch may hold: rows of curve_value
+};
+
+/// Build the buffer table and the Schedule of a model. Only what the model needs is in it.
+Program build_program(const Model& model, const ProgramOptions& options = {});
+
+/// Which element a position in the `fault` buffer means.
+struct FaultPlace {
+  std::int32_t body = -1;
+  std::int64_t element = -1;  ///< number in its body
+};
+FaultPlace find_fault(const Model& model, std::int32_t fault_index);
+
+}  // namespace pliant

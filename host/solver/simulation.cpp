@@ -1,0 +1,256 @@
+#include "solver/simulation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pliant/error.h"
+#include "state/hash.h"
+
+namespace pliant {
+namespace {
+
+/// An automatic step is looked at again after this many steps (DESIGN section 4.2).
+constexpr std::int64_t kAdaptEvery = 512;
+constexpr std::int64_t kRelaxEvery = 32;
+
+}  // namespace
+
+std::string Divergence::message() const {
+  return fmt::format(
+      "the simulation diverged in step {} (t = {:.6g} s): element {} of body '{}' is inverted or not finite; dt = {:.6g} s, stable step "
+      "{:.6g} s ({:.3g} times); the state of step {} was kept",
+      step, time, element, body, dt, stable_dt, stable_dt > 0 ? dt / stable_dt : 0.0, last_good_step);
+}
+
+Simulation::Simulation(Scene scene, std::unique_ptr<Backend> backend, const SimulationOptions& options)
+    : scene_(std::move(scene)), model_(std::make_shared<const Model>(build_model(scene_))), backend_(std::move(backend)) {
+  start(options);
+}
+
+Simulation::Simulation(Scene scene, std::shared_ptr<const Model> model, std::unique_ptr<Backend> backend, const SimulationOptions& options)
+    : scene_(std::move(scene)), model_(std::move(model)), backend_(std::move(backend)) {
+  start(options);
+}
+
+void Simulation::start(const SimulationOptions& options) {
+  batch_steps_ = options.batch_steps;
+  program_ = build_program(*model_, {scene_.integrator, batch_steps_});
+  backend_->load(program_);
+  u_ = program_.find("node_u");
+  w_ = program_.find("node_w");
+  last_u_ = program_.find("last_u");
+  last_w_ = program_.find("last_w");
+  force_ = program_.find("node_force");
+  free_.assign(3 * static_cast<std::size_t>(model_->slots), false);
+  for (std::size_t s = 0; s < model_->mass.size(); ++s) {
+    for (std::size_t c = 0; c < 3; ++c) free_[3 * s + c] = model_->mass[s] > 0;
+  }
+  for (const Constraint& constraint : model_->constraints) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (constraint.axes & (1 << c)) free_[3 * static_cast<std::size_t>(constraint.slot) + c] = false;
+    }
+  }
+  for (const Curve& curve : model_->curves) {
+    double end = curve.start + curve.duration;
+    if (!curve.table.empty()) end = std::max(end, curve.table.back()[0]);
+    curves_end_ = std::max(curves_end_, end);
+  }
+  const double wanted = options.dt > 0 ? options.dt : scene_.dt;
+  if (wanted <= 0 || options.stable_step) estimate_stable_dt();
+  state_.dt = wanted > 0 ? wanted : scene_.safety * state_.stable_dt;
+  if (!(state_.dt > 0) || !std::isfinite(state_.dt)) {
+    throw Error(fmt::format("no stable step could be found (estimate {} s): nothing in the scene can move freely", state_.stable_dt));
+  }
+  first_dt_ = state_.dt;
+  set_initial_increment();
+}
+
+/// w_0 = h v_0 - h^2/2 a_0, so that the first step is that of a parabola through the initial position and velocity.
+void Simulation::set_initial_increment() {
+  const double h = state_.dt;
+  const std::vector<double> force = forces_now();
+  std::vector<double> w(4 * static_cast<std::size_t>(model_->slots));
+  const double sign = scene_.integrator == Integrator::textbook ? -1 : 1;  // the textbook form keeps u_(-1) instead
+  for (std::size_t s = 0; s < model_->mass.size(); ++s) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (!free_[3 * s + c]) continue;
+      const double a = force[4 * s + c] / model_->mass[s] + scene_.gravity[c] - model_->damping[s] * model_->velocity[s][c];
+      w[4 * s + c] = sign * (h * model_->velocity[s][c] - 0.5 * h * h * a);
+    }
+    w[4 * s + 3] = model_->damping[s];
+  }
+  backend_->write_reals(w_, w);
+}
+
+void Simulation::upload_params() {
+  const Vec3d& g = scene_.gravity;
+  backend_->write_reals(program_.find("step_params"), {state_.dt, g[0], g[1], g[2], state_.damping, 0, 0, 0});
+}
+
+void Simulation::upload_curves(std::int32_t steps) {
+  std::vector<double> values;
+  const std::size_t rows = static_cast<std::size_t>(batch_steps_) + 1;
+  values.reserve(rows * model_->curves.size());
+  for (std::size_t row = 0; row < rows; ++row) {
+    const double t = time_at(state_.step + std::min<std::int64_t>(static_cast<std::int64_t>(row), steps));
+    for (const Curve& curve : model_->curves) values.push_back(curve.value(t));
+  }
+  backend_->write_reals(program_.find("curve_value"), values);
+}
+
+std::vector<double> Simulation::forces_now() {
+  upload_params();
+  upload_curves(0);
+  backend_->run(program_.force, 0, 1);
+  return backend_->read_reals(force_);
+}
+
+std::int32_t Simulation::next_batch(std::int64_t wanted) const {
+  // Batches end at fixed step numbers, so that a resumed run looks and adapts exactly where an uninterrupted one does.
+  std::int64_t n = batch_steps_ - state_.step % batch_steps_;
+  if (scene_.relaxation.enabled) n = std::min(n, kRelaxEvery - state_.step % kRelaxEvery);
+  n = std::min(n, kAdaptEvery - state_.step % kAdaptEvery);
+  return static_cast<std::int32_t>(std::min(n, wanted));
+}
+
+void Simulation::begin_batch(std::int32_t steps) {
+  if (scene_.dt <= 0 && state_.step > 0 && state_.step % kAdaptEvery == 0) adapt_dt();
+  upload_params();
+  upload_curves(steps);
+  backend_->copy(u_, last_u_);
+  backend_->copy(w_, last_w_);
+}
+
+void Simulation::end_batch(std::int32_t steps) {
+  const std::int64_t start = state_.step;
+  state_.step += steps;
+  look_for_fault(start);
+  if (!divergence_ && scene_.relaxation.enabled && state_.step % kRelaxEvery == 0) relax();
+}
+
+std::int64_t Simulation::advance(std::int64_t steps) {
+  const std::int64_t first = state_.step;
+  while (state_.step - first < steps && !divergence_ && !equilibrium_) {
+    const std::int32_t n = next_batch(steps - (state_.step - first));
+    begin_batch(n);
+    backend_->run(program_.step, 0, n);
+    end_batch(n);
+  }
+  return state_.step - first;
+}
+
+void Simulation::look_for_fault(std::int64_t batch_start) {
+  backend_->run(program_.status, 0, 1);
+  const std::vector<std::int32_t> summary = backend_->read_ints(program_.find("fault_summary"));
+  std::int32_t step = 0, place = 0;
+  for (std::size_t i = 0; i < summary.size(); i += 2) {
+    if (summary[i] == 0) continue;
+    if (step == 0 || summary[i] < step || (summary[i] == step && summary[i + 1] < place)) {
+      step = summary[i];
+      place = summary[i + 1];
+    }
+  }
+  if (step == 0) return;
+  const FaultPlace found = find_fault(*model_, place);
+  Divergence d;
+  d.step = batch_start + step;
+  d.time = time_at(d.step - 1);
+  d.body = found.body >= 0 ? model_->bodies[static_cast<std::size_t>(found.body)].name : "?";
+  d.element = found.element;
+  d.dt = state_.dt;
+  d.stable_dt = state_.stable_dt;
+  d.last_good_step = batch_start;
+  backend_->copy(last_u_, u_);
+  backend_->copy(last_w_, w_);
+  backend_->finish();
+  state_.step = batch_start;
+  divergence_ = d;
+}
+
+void Simulation::change_dt(double dt) {
+  const double ratio = dt / state_.dt;
+  if (scene_.integrator == Integrator::textbook) return;  // its previous position belongs to the old step
+  std::vector<double> w = backend_->read_reals(w_);
+  for (std::size_t i = 0; i < w.size(); ++i) {
+    if (i % 4 != 3) w[i] *= ratio;
+  }
+  backend_->write_reals(w_, w);
+  state_.origin_time = time_at(state_.step);
+  state_.origin_step = state_.step;
+  state_.dt = dt;
+}
+
+/// Follow the stable step of the deformed body down at once, and up again to the first step once it has recovered by a tenth.
+void Simulation::adapt_dt() {
+  const double allowed = std::min(first_dt_, scene_.safety * estimate_stable_dt(8));
+  if (allowed < state_.dt || allowed > 1.1 * state_.dt || (allowed == first_dt_ && state_.dt < first_dt_)) change_dt(allowed);
+}
+
+std::vector<Vec3d> Simulation::pick(const std::vector<double>& texels, std::size_t body, double factor) const {
+  std::vector<Vec3d> out;
+  out.reserve(model_->bodies.at(body).slot.size());
+  for (const std::int32_t s : model_->bodies[body].slot) {
+    const double* t = &texels[4 * static_cast<std::size_t>(s)];
+    out.push_back({factor * t[0], factor * t[1], factor * t[2]});
+  }
+  return out;
+}
+
+std::vector<Vec3d> Simulation::displacements(std::size_t body) const { return pick(backend_->read_reals(u_), body, 1); }
+
+std::vector<Vec3d> Simulation::velocities(std::size_t body) const {
+  if (scene_.integrator == Integrator::increment) return pick(backend_->read_reals(w_), body, 1 / state_.dt);
+  std::vector<double> u = backend_->read_reals(u_);
+  const std::vector<double> before = backend_->read_reals(w_);
+  for (std::size_t i = 0; i < u.size(); ++i) u[i] -= before[i];
+  return pick(u, body, 1 / state_.dt);
+}
+
+std::vector<Vec3d> Simulation::residual_forces(std::size_t body) { return pick(forces_now(), body, 1); }
+
+std::vector<Vec3d> Simulation::surface_positions() {
+  if (program_.surface.empty()) return {};
+  backend_->run(program_.surface, 0, 1);
+  const std::vector<double> x = backend_->read_reals(program_.find("surface_x"));
+  std::vector<Vec3d> out(model_->surface.rest.size());
+  for (std::size_t v = 0; v < out.size(); ++v) out[v] = {x[4 * v], x[4 * v + 1], x[4 * v + 2]};
+  return out;
+}
+
+std::uint64_t Simulation::hash() const {
+  std::uint64_t h = 0;
+  for (const BufferId id : {u_, w_}) {
+    const auto bytes = backend_->read_bytes(id);
+    h = hash_bytes(bytes.data(), bytes.size(), h);
+  }
+  return h;
+}
+
+std::uint64_t Simulation::model_hash() const {
+  std::uint64_t h = 0;
+  const auto add = [&](const void* data, std::size_t bytes) { h = hash_bytes(data, bytes, h); };
+  for (const Buffer& b : program_.buffers) {
+    if (b.role != BufferRole::constant && b.name != "node_u" && b.name != "node_w") continue;
+    add(b.name.data(), b.name.size());
+    add(b.reals.data(), b.reals.size() * sizeof(double));
+    add(b.ints.data(), b.ints.size() * sizeof(std::int32_t));
+  }
+  for (const Pass& p : program_.step) {
+    add(p.kernel.data(), p.kernel.size());
+    for (const Arg& a : p.args) {
+      if (const double* real = std::get_if<1>(&a)) add(real, sizeof *real);
+    }
+  }
+  for (const Curve& c : model_->curves) {
+    const double numbers[3]{static_cast<double>(c.kind), c.start, c.duration};
+    add(numbers, sizeof numbers);
+    add(c.table.data(), c.table.size() * sizeof c.table[0]);
+  }
+  const double settings[5]{scene_.gravity[0], scene_.gravity[1], scene_.gravity[2], scene_.dt, scene_.safety};
+  add(settings, sizeof settings);
+  return h;
+}
+
+}  // namespace pliant

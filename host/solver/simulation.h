@@ -1,0 +1,123 @@
+// A scene on a backend: advance it, look at it, save and restore it.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/model.h"
+#include "solver/backend.h"
+#include "solver/build_program.h"
+#include "solver/program.h"
+
+namespace pliant {
+
+/// The first element whose J stopped being a positive, finite number.
+struct Divergence {
+  std::int64_t step = 0;  ///< the step in which it was seen
+  double time = 0;        ///< [s]
+  std::string body;
+  std::int64_t element = -1;  ///< number in its body
+  double dt = 0, stable_dt = 0;  ///< [s]
+  std::int64_t last_good_step = 0;  ///< the state that the simulation now holds
+  [[nodiscard]] std::string message() const;
+};
+
+/// What a run needs beside its buffers to go on with the same bits.
+struct SimulationState {
+  std::int64_t step = 0, origin_step = 0;
+  double origin_time = 0, dt = 0, stable_dt = 0, damping = 0;
+  std::map<std::string, std::vector<double>> vectors;  ///< power iteration, relaxation
+};
+
+struct SimulationOptions {
+  double dt = 0;                   ///< [s]; 0: what the scene says
+  std::int32_t batch_steps = 64;   ///< steps between two looks at the fault flag
+  bool stable_step = true;         ///< estimate it at the start (needed when the step is automatic)
+};
+
+class Simulation {
+ public:
+  /// Builds the model, loads the backend and sets the initial state. Throws Error.
+  Simulation(Scene scene, std::unique_ptr<Backend> backend, const SimulationOptions& options = {});
+  /// The same for a model built already (several backends can share one).
+  Simulation(Scene scene, std::shared_ptr<const Model> model, std::unique_ptr<Backend> backend, const SimulationOptions& options = {});
+
+  /// Advance by at most `steps`; stops early when diverged or, with dynamic relaxation, at equilibrium. Returns the steps done.
+  std::int64_t advance(std::int64_t steps);
+
+  /// One batch in parts, for lockstep: how many steps the next batch may hold, what comes before it and what comes after it.
+  [[nodiscard]] std::int32_t next_batch(std::int64_t wanted) const;
+  void begin_batch(std::int32_t steps);
+  void end_batch(std::int32_t steps);
+
+  [[nodiscard]] const std::optional<Divergence>& divergence() const { return divergence_; }
+  [[nodiscard]] bool at_equilibrium() const { return equilibrium_; }
+  /// |R - F| over the largest of external and reaction force, at the last look of dynamic relaxation.
+  [[nodiscard]] double residual() const { return residual_; }
+
+  [[nodiscard]] std::int64_t step() const { return state_.step; }
+  [[nodiscard]] double time() const { return time_at(state_.step); }
+  [[nodiscard]] double dt() const { return state_.dt; }
+  /// 2 / omega_max of the present configuration by power iteration, as of the last estimate [s]; 0 if none was made.
+  [[nodiscard]] double stable_dt() const { return state_.stable_dt; }
+  /// Run the power iteration now.
+  double estimate_stable_dt(int iterations = 60);
+
+  /// Displacements of a body's nodes in the order of its mesh or lattice [m].
+  [[nodiscard]] std::vector<Vec3d> displacements(std::size_t body) const;
+  /// Backward-difference velocities (u_n - u_(n-1)) / h [m/s].
+  [[nodiscard]] std::vector<Vec3d> velocities(std::size_t body) const;
+  /// R - F of the present configuration, without gravity [N]; at fixed nodes minus the reaction.
+  [[nodiscard]] std::vector<Vec3d> residual_forces(std::size_t body);
+  /// Vertices of the embedded surface of all bodies [m].
+  [[nodiscard]] std::vector<Vec3d> surface_positions();
+
+  /// Hash over the state buffers.
+  [[nodiscard]] std::uint64_t hash() const;
+  /// Hash over the model as the backend sees it and the scene's solver settings: a checkpoint belongs to one of these.
+  [[nodiscard]] std::uint64_t model_hash() const;
+
+  [[nodiscard]] const SimulationState& state() const { return state_; }
+  void restore(const SimulationState& state) { state_ = state; }
+
+  [[nodiscard]] const Scene& scene() const { return scene_; }
+  [[nodiscard]] const Model& model() const { return *model_; }
+  [[nodiscard]] std::shared_ptr<const Model> shared_model() const { return model_; }
+  [[nodiscard]] const Program& program() const { return program_; }
+  [[nodiscard]] Backend& backend() const { return *backend_; }
+
+ private:
+  void start(const SimulationOptions& options);
+  void set_initial_increment();
+  void upload_params();
+  void upload_curves(std::int32_t steps);
+  void change_dt(double dt);
+  void adapt_dt();
+  void relax();
+  [[nodiscard]] double time_at(std::int64_t step) const {
+    return state_.origin_time + static_cast<double>(step - state_.origin_step) * state_.dt;
+  }
+  [[nodiscard]] std::vector<double> forces_now();
+  void look_for_fault(std::int64_t batch_start);
+  [[nodiscard]] std::vector<Vec3d> pick(const std::vector<double>& texels, std::size_t body, double factor) const;
+
+  Scene scene_;
+  std::shared_ptr<const Model> model_;
+  Program program_;
+  std::unique_ptr<Backend> backend_;
+  SimulationState state_;
+  std::int32_t batch_steps_ = 64;
+  BufferId u_ = -1, w_ = -1, last_u_ = -1, last_w_ = -1, force_ = -1;
+  std::vector<char> free_;  ///< [slots][3] component moves freely
+  double first_dt_ = 0;
+  double curves_end_ = 0;
+  std::optional<Divergence> divergence_;
+  bool equilibrium_ = false;
+  double residual_ = 0;
+};
+
+}  // namespace pliant
