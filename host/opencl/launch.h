@@ -11,9 +11,9 @@ namespace pliant::opencl {
 /// One enqueue.
 struct Launch {
   std::size_t offset = 0, global = 0;
-  std::size_t local = 0;  ///< 0: the driver's choice
+  std::size_t local = 1;
   [[nodiscard]] cl::NDRange offset_range() const { return offset == 0 ? cl::NullRange : cl::NDRange(offset); }
-  [[nodiscard]] cl::NDRange local_range() const { return local == 0 ? cl::NullRange : cl::NDRange(local); }
+  [[nodiscard]] cl::NDRange local_range() const { return cl::NDRange(local); }
 };
 
 struct LaunchRules {
@@ -23,7 +23,8 @@ struct LaunchRules {
   bool cpu = false;
 };
 
-/// The enqueues of one run of `pass`; none if its count is zero.
+/// The enqueues of one run of `pass`; none if its count is zero. A `lanes` or `items` pass may be cut in two (the second with a
+/// global offset), so such kernels ask for get_global_id and for nothing else; `bricks` passes with one lane have groups of 16.
 std::vector<Launch> plan_launches(const Pass& pass, const LaunchRules& rules);
 
 }  // namespace pliant::opencl
