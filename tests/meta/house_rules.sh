@@ -1,0 +1,106 @@
+#!/usr/bin/env bash
+# The rules of the house that a compiler does not check. Usage: house_rules.sh SOURCE_FOLDER; prints what breaks a rule, one line
+# each, and fails if there is any. The rules are stated in ARCHITECTURE.md and docs/determinism.md.
+set -uo pipefail
+cd "$1" || exit 2
+broken=0
+report() {
+  printf '%s\n' "$*"
+  broken=$((broken + 1))
+}
+
+# --- sizes -------------------------------------------------------------------------------------------------------------------
+# Exceptions: file, its own limit, why. One that is no longer needed is itself reported, so that the list only shrinks.
+declare -A exception=()
+while read -r file limit _; do
+  [[ -z $file || $file == \#* ]] || exception[$file]=$limit
+done <tests/meta/size_exceptions.txt
+
+check_size() {  # LIMIT FILE...
+  local limit=$1 file lines
+  shift
+  for file in "$@"; do
+    [ -f "$file" ] || continue
+    lines=$(wc -l <"$file")
+    if [[ -n ${exception[$file]:-} ]]; then
+      [ "$lines" -gt "$limit" ] || report "$file: $lines lines need no exception any more (limit $limit): tests/meta/size_exceptions.txt"
+      [ "$lines" -le "${exception[$file]}" ] || report "$file: $lines lines, its exception allows ${exception[$file]}"
+    elif [ "$lines" -gt "$limit" ]; then
+      report "$file: $lines lines, allowed are $limit: split it by topic"
+    fi
+  done
+}
+shopt -s globstar nullglob
+check_size 150 kernels/*.cl kernels/*.h
+check_size 400 host/**/*.cpp cpu_ref/*.cpp tests/**/*.cpp bench/**/*.cpp scenes/**/*.cpp examples/**/*.cpp
+check_size 200 include/**/*.h host/**/*.h cpu_ref/*.h
+for file in "${!exception[@]}"; do
+  [ -f "$file" ] || report "$file: is gone; remove its exception from tests/meta/size_exceptions.txt"
+done
+
+# --- who includes whom ---------------------------------------------------------------------------------------------------------
+# includes FILE: what it includes, with its brackets or quotes.
+includes() { sed -nE 's/^[[:space:]]*#[[:space:]]*include[[:space:]]*([<"][^>"]+[>"]).*/\1/p' "$1"; }
+
+# allow WHY PATTERN FILE...: every include of these files matches the extended regular expression.
+allow() {
+  local why=$1 pattern=$2 file name
+  shift 2
+  for file in "$@"; do
+    while read -r name; do
+      [[ $name =~ $pattern ]] || report "$file includes $name: $why"
+    done < <(includes "$file")
+  done
+}
+# forbid WHY PATTERN FILE...
+forbid() {
+  local why=$1 pattern=$2 file name
+  shift 2
+  for file in "$@"; do
+    while read -r name; do
+      [[ ! $name =~ $pattern ]] || report "$file includes $name: $why"
+    done < <(includes "$file")
+  done
+}
+cl='^[<"]CL/|opencl\.hpp|cl\.h[>"]$'
+allow 'kernels include kernels and layout.h only' '^"([a-z0-9_]+\.cl|layout\.h)"$' kernels/*.cl kernels/*.h
+allow 'the public API uses the standard library only' '^(<[a-z_0-9]+>|"pliant/[a-z_/]+\.h")$' include/**/*.h
+core=()
+for file in host/**/*.h host/**/*.cpp; do
+  [[ $file == host/opencl/* ]] || core+=("$file")
+done
+forbid 'only host/opencl includes OpenCL headers' "$cl" "${core[@]}" cpu_ref/*.h cpu_ref/*.cpp
+forbid 'the twins are independent of the OpenCL backend and of the kernels' '"(host/)?opencl/|\.cl[>"]$' cpu_ref/*.h cpu_ref/*.cpp
+forbid 'no Eigen in the twins' '[<"]Eigen/' cpu_ref/*.h cpu_ref/*.cpp
+forbid 'a .cl file is text, not a header' '\.cl[>"]$' host/**/*.h host/**/*.cpp include/**/*.h
+# Rooms, from the inside out: each knows those before it.
+allow_room() {  # ROOM INNER_ROOMS
+  allow "host/$1 knows only: $2" "^<|^\"(pliant/|layout\.h|($2)/)" host/"$1"/*.h host/"$1"/*.cpp
+}
+allow_room state 'state'
+allow_room scene 'scene|state'
+allow_room model 'model|scene|state'
+allow_room solver 'solver|model|scene|state'
+allow_room io 'io|solver|model|scene|state'
+allow_room opencl 'opencl|solver|model|scene|state'
+allow_room backends 'backends|opencl|cpu_ref|solver|model|scene|state'
+forbid 'the command asks host/backends for a backend' '"(host/)?opencl/' host/cli/*.h host/cli/*.cpp
+
+# --- kernels and twins -----------------------------------------------------------------------------------------------------------
+for file in kernels/*.cl; do
+  stem=$(basename "$file" .cl)
+  # Comments may name what the code must not use.
+  code=$(sed -E 's,//.*,,' "$file")
+  forbidden=$(grep -noE '\b(mad|dot|cross|length|normalize|distance|mix|min|max|fmin|fmax|clamp|rsqrt|native_[a-z0-9]+|half_[a-z0-9]+|sin|cos|tan|exp|log|pow|cbrt)[[:space:]]*\(' <<<"$code")
+  [ -z "$forbidden" ] || report "$file: forbidden on values (docs/determinism.md): $(tr '\n' ' ' <<<"$forbidden")"
+  grep -q '__kernel' <<<"$code" || continue
+  first=$(includes "$file" | head -n 1)
+  [ "$first" = '"arith.cl"' ] || report "$file: must include arith.cl first, which turns contraction off (first is ${first:-nothing})"
+  grep -qE "__kernel[[:space:]]+.*\b$stem\b" <<<"$code" || report "$file: holds no kernel of its own name"
+  [ -f "cpu_ref/$stem.cpp" ] || report "$file: no twin cpu_ref/$stem.cpp"
+  grep -qE "ROW\($stem\)" cpu_ref/registry.cpp || report "$file: no row in cpu_ref/registry.cpp"
+  grep -qsE "\b$stem\b" tests/kernels/*_test.cpp || report "$file: named by no test in tests/kernels"
+done
+grep -q '#pragma OPENCL FP_CONTRACT OFF' kernels/arith.cl || report 'kernels/arith.cl: must turn contraction off'
+
+[ "$broken" = 0 ] || { printf '%d rule(s) broken\n' "$broken"; exit 1; }
