@@ -40,6 +40,7 @@ std::string bytes_of(const std::filesystem::path& file) {
 }
 
 std::filesystem::path store(const TempFolder& folder, const std::string& bytes) {
+  std::filesystem::remove(folder.path() / "c");  // some file systems wait for the disk when a file is emptied and written again
   std::ofstream(folder.path() / "c", std::ios::binary) << bytes;
   return folder.path() / "c";
 }

@@ -384,6 +384,7 @@ class TempFolder {
   TempFolder& operator=(const TempFolder&) = delete;
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   [[nodiscard]] std::filesystem::path write(const std::string& name, const std::string& content) const {
+    std::filesystem::remove(path_ / name);  // some file systems wait for the disk when a file is emptied and written again
     std::ofstream(path_ / name, std::ios::binary) << content;
     return path_ / name;
   }
