@@ -21,7 +21,7 @@ constexpr std::int64_t kSmall = 20'000;
 Lattice fill(const SurfaceDistance& surface, double spacing, std::int64_t max_cells, bool embed) {
   const Grid grid(surface.tree().bounds(), spacing);
   Parts parts(surface, grid, max_cells);
-  Contacts contacts(parts);
+  Contacts contacts(parts, surface, grid);
   const std::vector<char> drop = contacts.mend();
   if (std::find(drop.begin(), drop.end(), 1) != drop.end()) {
     parts.remove(drop);

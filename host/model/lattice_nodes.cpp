@@ -33,6 +33,55 @@ bool Contacts::touch(std::int32_t a, std::int32_t b, int axis) const {
   return !ties_.empty() && std::binary_search(ties_.begin(), ties_.end(), std::pair{a, b});
 }
 
+// Are a and b, which share a face across `axis`, connected through the two cells on the other side of one edge of that face (the
+// edge towards `side` along `across`), and does that edge run through material?
+bool Contacts::around_edge(std::int32_t a, std::int32_t b, int axis, int across, int side) const {
+  Index below_a = parts_.list[a].index, below_b = parts_.list[b].index;
+  below_a[across] += side;
+  below_b[across] += side;
+  const auto meet = [&](std::int32_t x, std::int32_t y) { return side < 0 ? touch(y, x, across) : touch(x, y, across); };
+  const auto [first_c, last_c] = parts_.of(below_a);
+  const auto [first_d, last_d] = parts_.of(below_b);
+  bool connected = false;
+  for (std::int32_t c = first_c; c < last_c && !connected; ++c) {
+    if (!meet(a, c)) continue;
+    for (std::int32_t d = first_d; d < last_d && !connected; ++d) connected = touch(c, d, axis) && meet(b, d);
+  }
+  if (!connected) return false;
+  const int along = 3 - axis - across;
+  Vec3d p{};
+  for (int n = 0; n < 3; ++n) p[n] = grid_.origin[n] + grid_.spacing * parts_.list[a].index[n];
+  p[axis] += grid_.spacing;
+  p[across] += side > 0 ? grid_.spacing : 0;
+  for (int s = 0; s < 4; ++s) {
+    Vec3d q = p;
+    q[along] += grid_.spacing * (s + 0.5) / 4;
+    if (surface_.inside(q)) return true;
+  }
+  return false;
+}
+
+void Contacts::bridge() {
+  ties_.clear();
+  std::vector<std::pair<std::int32_t, std::int32_t>> found;
+  for (std::int32_t a = 0; a < static_cast<std::int32_t>(parts_.list.size()); ++a) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (parts_.list[a].mask == kAllSamples && parts_.list[a].open[2 * axis + 1] == 0xFFFF) continue;  // touches what is there
+      const auto [first, last] = parts_.of(up(parts_.list[a].index, axis));
+      for (std::int32_t b = first; b < last; ++b) {
+        if (touch(a, b, axis)) continue;
+        const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+        if (around_edge(a, b, axis, u, -1) || around_edge(a, b, axis, u, 1) || around_edge(a, b, axis, v, -1) ||
+            around_edge(a, b, axis, v, 1)) {
+          found.emplace_back(a, b);
+        }
+      }
+    }
+  }
+  ties_ = std::move(found);
+  std::sort(ties_.begin(), ties_.end());
+}
+
 std::vector<std::int32_t> Contacts::fragments() const {
   const auto count = static_cast<std::int32_t>(parts_.list.size());
   DisjointSets sets(parts_.list.size());
@@ -50,6 +99,7 @@ std::vector<std::int32_t> Contacts::fragments() const {
 }
 
 std::vector<char> Contacts::mend() {
+  bridge();
   const std::vector<std::int32_t> root = fragments();
   std::vector<std::int32_t> cells(root.size(), 0);
   for (const std::int32_t r : root) ++cells[r];
@@ -94,8 +144,8 @@ std::vector<char> Contacts::mend() {
     if (tied[fragment] == 0 && cells[fragment] <= kSmall) near.emplace_back(a, b);
   }
   for (const auto& [a, b] : near) tied[root[a]] = tied[root[b]] = 1;
-  std::sort(near.begin(), near.end());
-  ties_ = near;
+  ties_.insert(ties_.end(), near.begin(), near.end());
+  std::sort(ties_.begin(), ties_.end());
   for (std::size_t p = 0; p < root.size(); ++p) {
     drop[p] = static_cast<char>(loose[root[p]] != 0 && tied[root[p]] == 0 && cells[root[p]] <= kSmall);
   }
