@@ -1,0 +1,100 @@
+// Random launches of the element kernels.
+#pragma once
+#include "layout.h"
+#include "random_data.h"
+
+namespace pliant::kernel_test {
+
+/// Rest edge [m] of the elements that the random data imitate.
+constexpr double edge = 0.01;
+
+struct ElementSizes {
+  std::size_t elements, nodes;
+};
+inline constexpr ElementSizes element_sizes[] = {{16, 16}, {48, 80}, {2064, 528}};
+
+/// How random data of a class look around an element of `corners` corners: node texels, and a fault table with a base.
+inline Reals displacements(Random& random, std::size_t nodes, Data data) {
+  return random.reals(4 * nodes, data, data == Data::large ? 0.6 * edge : edge);
+}
+
+inline KernelCase tet4_force_case(int law, int averaged, ElementSizes size, Data data, std::uint32_t seed) {
+  Random random(seed);
+  const Data constants = data_for_constants(data);
+  KernelCase test("tled_tet4_force", {{"LAW", law}, {"AVERAGED", averaged}}, Shape::lanes, size.elements);
+  test.reals("node_u", displacements(random, size.nodes, data))
+      .ints("tet_nodes", random.ints(4 * size.elements, 0, static_cast<int>(size.nodes) - 1))
+      .reals("tet_data", random.reals(PLIANT_TET_DATA_PLANES * size.elements, constants, 1 / edge))
+      .reals("anp_pressure", random.reals(size.nodes, data, 5000))
+      .reals("corner_force", random.reals(32 + PLIANT_TET_FORCE_PLANES * size.elements, Data::large, 1))
+      .ints("fault", random.faults(size.elements + 16))
+      .real(1000)
+      .real(50000)
+      .integer(32)
+      .integer(16)
+      .step();
+  return test;
+}
+
+inline KernelCase tet4_dilation_case(ElementSizes size, Data data, std::uint32_t seed) {
+  Random random(seed);
+  KernelCase test("tled_tet4_dilation", {}, Shape::lanes, size.elements);
+  test.reals("node_u", displacements(random, size.nodes, data))
+      .ints("tet_nodes", random.ints(4 * size.elements, 0, static_cast<int>(size.nodes) - 1))
+      .reals("tet_data", random.reals(PLIANT_TET_DATA_PLANES * size.elements, data_for_constants(data), 1 / edge))
+      .reals("anp_dilation", random.reals(size.elements, Data::large, 1));
+  return test;
+}
+
+/// `planes`: PLIANT_HEX_DATA_PLANES or PLIANT_HEXFULL_DATA_PLANES.
+inline KernelCase hex8_case(const std::string& stem, std::size_t planes, int law, int uniform, ElementSizes size, Data data,
+                            std::uint32_t seed) {
+  Random random(seed);
+  KernelCase test(stem, {{"LAW", law}, {"UNIFORM", uniform}}, Shape::lanes, size.elements);
+  Reals fill = random.positive(size.elements, 0.01, 1);
+  for (double& f : fill) f = random.chance(0.1) ? 0 : f;
+  if (data == Data::bits) fill = random.reals(size.elements, data, 1);
+  test.reals("node_u", displacements(random, size.nodes, data))
+      .ints("hex_nodes", random.ints(8 * size.elements, 0, static_cast<int>(size.nodes) - 1))
+      .reals("hex_data", random.reals(planes * (uniform != 0 ? 1 : size.elements), data_for_constants(data), 0.5 / edge))
+      .reals("hex_fill", std::move(fill))
+      .reals("corner_force", random.reals(32 + PLIANT_HEX_FORCE_PLANES * size.elements, Data::large, 1))
+      .ints("fault", random.faults(size.elements + 16))
+      .real(1000)
+      .real(50000)
+      .integer(32)
+      .integer(16)
+      .step();
+  return test;
+}
+
+/// Brick 0 is empty, first_brick is 1; neighbours at random.
+inline KernelCase brick_force_case(int law, std::size_t bricks, Data data, std::uint32_t seed) {
+  Random random(seed);
+  const std::size_t all = bricks + 1, nodes = all * PLIANT_BRICK_NODES;
+  Reals u = displacements(random, nodes, data);
+  std::fill_n(u.begin(), 4 * PLIANT_BRICK_NODES, 0.0);
+  Reals fill = random.positive(nodes, 0.01, 1);
+  for (double& f : fill) f = random.chance(0.2) ? 0 : f;
+  if (data == Data::bits) fill = random.reals(nodes, data, 1);
+  Ints neighbor = random.ints(all * PLIANT_BRICK_NEIGHBORS, 0, static_cast<int>(bricks));
+  for (std::size_t b = 0; b < all; ++b)
+    neighbor[b * PLIANT_BRICK_NEIGHBORS] = neighbor[b * PLIANT_BRICK_NEIGHBORS + 8] = static_cast<int>(b);
+  KernelCase test("tled_hex8_brick_force", {{"LAW", law}}, Shape::bricks, bricks);
+  test.reals("node_u", std::move(u))
+      .ints("brick_neighbor", std::move(neighbor))
+      .reals("brick_fill", std::move(fill))
+      .reals("brick_force", random.reals(all * PLIANT_BRICK_FORCE, Data::zeros, 1))
+      .ints("fault", random.faults(nodes + 32))
+      .real(1000)
+      .real(50000)
+      .real(1 / (4 * edge))
+      .real(edge * edge / 4)
+      .real(12)
+      .integer(1)
+      .integer(32)
+      .step();
+  return test;
+}
+
+}  // namespace pliant::kernel_test

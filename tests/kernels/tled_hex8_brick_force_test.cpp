@@ -1,0 +1,157 @@
+// tled_hex8_brick_force: kernel and twin give the same bits; in double it gives the forces of tled_hex8_force on the same
+// cells.
+#include "element_case.h"
+#include "update_case.h"
+
+namespace pliant::kernel_test {
+namespace {
+
+class TledHex8BrickForce : public TwinTest {};
+
+TEST_F(TledHex8BrickForce, TwinGivesTheSameBits) {
+  std::uint32_t seed = 500;
+  for (int law = 0; law < 3; ++law) {
+    for (const std::size_t bricks : {1U, 9U}) {
+      for (const Data data : all_data) expect_same_bits(brick_force_case(law, bricks, data, seed++), name_of(data));
+    }
+  }
+}
+
+/// A grid of 2 x 2 x 2 bricks; brick 0 is the empty one.
+struct Grid {
+  static constexpr int bricks = 2, nx = 2 * PLIANT_BRICK_X, ny = 2 * PLIANT_BRICK_Y, nz = 2 * PLIANT_BRICK_Z;
+  static constexpr std::size_t slots = 9 * PLIANT_BRICK_NODES;
+  static int brick(int x, int y, int z) {
+    const bool inside = x >= 0 && y >= 0 && z >= 0 && x < bricks && y < bricks && z < bricks;
+    return inside ? 1 + x + bricks * (y + bricks * z) : 0;
+  }
+  /// Where node (or cell) (x, y, z) stands.
+  static std::int32_t slot(int x, int y, int z) {
+    return brick(x / 16, y / 4, z / 4) * PLIANT_BRICK_NODES + (z % 4 * 4 + y % 4) * 16 + x % 16;
+  }
+  static Ints neighbors() {
+    Ints result(9 * PLIANT_BRICK_NEIGHBORS, 0);
+    for (int b = 1; b < 9; ++b) {
+      const int x = (b - 1) % 2, y = (b - 1) / 2 % 2, z = (b - 1) / 4;
+      for (int mask = 0; mask < 8; ++mask) {
+        const int dx = mask & 1, dy = mask >> 1 & 1, dz = mask >> 2 & 1;
+        result[static_cast<std::size_t>(b * 16 + mask)] = brick(x + dx, y + dy, z + dz);
+        result[static_cast<std::size_t>(b * 16 + 8 + mask)] = brick(x - dx, y - dy, z - dz);
+      }
+    }
+    return result;
+  }
+};
+
+struct Cells {
+  Reals u = Reals(4 * Grid::slots, 0.0), fill = Reals(Grid::slots, 0.0);
+};
+
+/// Three of four cells hold material; the last layers have no cell, for their upper nodes lie outside.
+Cells random_cells(std::uint32_t seed) {
+  Random random(seed);
+  Cells cells;
+  for (int z = 0; z < Grid::nz; ++z) {
+    for (int y = 0; y < Grid::ny; ++y) {
+      for (int x = 0; x < Grid::nx; ++x) {
+        const auto slot = static_cast<std::size_t>(Grid::slot(x, y, z));
+        for (std::size_t c = 0; c < 3; ++c) cells.u[4 * slot + c] = random.uniform(-0.1, 0.1) * edge;
+        const bool cell = x + 1 < Grid::nx && y + 1 < Grid::ny && z + 1 < Grid::nz && random.chance(0.75);
+        if (cell) cells.fill[slot] = random.uniform(0.1, 1);
+      }
+    }
+  }
+  return cells;
+}
+
+constexpr double mu = 1052, kappa = 52249, stiffness = 12;
+
+/// Nodal forces through the brick kernel and brick_update.
+Reals brick_forces(const Cells& cells, int law) {
+  KernelCase force("tled_hex8_brick_force", {{"LAW", law}}, Shape::bricks, 8);
+  force.exact("node_u", cells.u).ints("brick_neighbor", Grid::neighbors()).exact("brick_fill", cells.fill);
+  force.exact("brick_force", Reals(9 * PLIANT_BRICK_FORCE)).ints("fault", Ints(Grid::slots)).exact(mu).exact(kappa);
+  force.exact(1 / (4 * edge)).exact(edge * edge / 4).exact(stiffness).integer(1).integer(0).step();
+  KernelCase update("brick_update", update_defines(0, 1, 0), Shape::lanes, Grid::slots);
+  update.exact("node_u", cells.u).exact("node_w", Reals(4 * Grid::slots)).ints("brick_neighbor", Grid::neighbors());
+  update.exact("brick_force", run_in_double(force, "brick_force")).exact("node_load", Reals(4));
+  update.exact("node_force", Reals(4 * Grid::slots)).exact("step_params", step_parameters());
+  return run_in_double(update, "node_force");
+}
+
+/// The same through tled_hex8_force and a plain loop over corners.
+Reals element_forces(const Cells& cells, int law) {
+  Reals record;
+  const auto sign = [](int a, int axes) {
+    double s = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      if ((axes >> axis & 1) != 0) s *= (a >> axis & 1) != 0 ? 1 : -1;
+    }
+    return s;
+  };
+  for (int a = 0; a < 8; ++a) {
+    for (const int axis : {1, 2, 4}) record.push_back(sign(a, axis) / (4 * edge));
+  }
+  for (const int axes : {3, 5, 6, 7}) {
+    for (int a = 0; a < 8; ++a) record.push_back(sign(a, axes));
+  }
+  record.insert(record.end(), {edge * edge * edge, stiffness});
+
+  std::vector<std::array<std::int32_t, 8>> corners;
+  Reals fill;
+  for (int z = 0; z + 1 < Grid::nz; ++z) {
+    for (int y = 0; y + 1 < Grid::ny; ++y) {
+      for (int x = 0; x + 1 < Grid::nx; ++x) {
+        const double f = cells.fill[static_cast<std::size_t>(Grid::slot(x, y, z))];
+        if (f <= 0) continue;
+        fill.push_back(f);
+        corners.emplace_back();
+        for (int a = 0; a < 8; ++a) {
+          corners.back()[static_cast<std::size_t>(a)] = Grid::slot(x + (a & 1), y + (a >> 1 & 1), z + (a >> 2 & 1));
+        }
+      }
+    }
+  }
+  while (fill.size() % 16 != 0) {
+    fill.push_back(0);
+    corners.push_back({});
+  }
+  Ints nodes(8 * fill.size());
+  const auto place = [](std::size_t e, std::size_t planes, std::size_t plane) {
+    return (e / 16 * planes + plane) * 16 + e % 16;
+  };
+  for (std::size_t e = 0; e < fill.size(); ++e) {
+    for (std::size_t a = 0; a < 8; ++a) nodes[place(e, 8, a)] = corners[e][a];
+  }
+  KernelCase force("tled_hex8_force", {{"LAW", law}, {"UNIFORM", 1}}, Shape::lanes, fill.size());
+  force.exact("node_u", cells.u).ints("hex_nodes", nodes).exact("hex_data", record).exact("hex_fill", fill);
+  force.exact("corner_force", Reals(24 * fill.size())).ints("fault", Ints(fill.size())).exact(mu).exact(kappa);
+  force.integer(0).integer(0).step();
+  const Reals corner_force = run_in_double(force, "corner_force");
+  Reals result(4 * Grid::slots, 0.0);
+  for (std::size_t e = 0; e < fill.size(); ++e) {
+    for (std::size_t a = 0; a < 8; ++a) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        result[4 * static_cast<std::size_t>(corners[e][a]) + c] -= corner_force[place(e, 24, 3 * a + c)];
+      }
+    }
+  }
+  return result;
+}
+
+TEST(TledHex8BrickForceOracle, GivesTheForcesOfTheHexahedronKernel) {
+  const Cells cells = random_cells(11);
+  for (int law = 0; law < 3; ++law) {
+    const Reals bricks = brick_forces(cells, law), elements = element_forces(cells, law);
+    double scale = 0, difference = 0;
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+      scale = std::max(scale, std::fabs(elements[i]));
+      difference = std::max(difference, std::fabs(bricks[i] - elements[i]));
+    }
+    ASSERT_GT(scale, 0);
+    EXPECT_LE(difference, 1e-12 * scale) << "law " << law;
+  }
+}
+
+}  // namespace
+}  // namespace pliant::kernel_test

@@ -1,0 +1,30 @@
+// tled_hex8_force: kernel and twin give the same bits; the double twin gives what continuum mechanics says.
+#include "hex8_oracle.h"
+
+namespace pliant::kernel_test {
+namespace {
+
+class TledHex8Force : public TwinTest {};
+
+TEST_F(TledHex8Force, TwinGivesTheSameBits) {
+  std::uint32_t seed = 300;
+  for (int law = 0; law < 3; ++law) {
+    for (int uniform = 0; uniform < 2; ++uniform) {
+      for (const ElementSizes size : element_sizes) {
+        for (const Data data : all_data) {
+          expect_same_bits(hex8_case("tled_hex8_force", PLIANT_HEX_DATA_PLANES, law, uniform, size, data, seed++),
+                           name_of(data));
+        }
+      }
+    }
+  }
+}
+
+TEST(TledHex8ForceOracle, IsTheForceOfTheTextbookStressAndTheDerivativeOfTheEnergy) {
+  expect_textbook_and_energy("tled_hex8_force", one_point_hexahedra(0.1, 8));
+}
+
+TEST(TledHex8ForceOracle, OneRecordServesAllElements) { expect_uniform_record("tled_hex8_force", one_point_hexahedra(0.1, 9)); }
+
+}  // namespace
+}  // namespace pliant::kernel_test
