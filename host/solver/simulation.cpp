@@ -142,6 +142,8 @@ std::int64_t Simulation::advance(std::int64_t steps) {
 }
 
 void Simulation::look_for_fault(std::int64_t batch_start) {
+  // The steps looked at the states they started from; the last state is looked at here, before it can pass for a good one.
+  backend_->run(program_.force, static_cast<std::int32_t>(state_.step - batch_start), 1);
   backend_->run(program_.status, 0, 1);
   const std::vector<std::int32_t> summary = backend_->read_ints(program_.find("fault_summary"));
   std::int32_t step = 0, place = 0;
@@ -239,6 +241,10 @@ std::uint64_t Simulation::model_hash() const {
   }
   for (const Pass& p : program_.step) {
     add(p.kernel.data(), p.kernel.size());
+    for (const auto& [name, value] : p.defines) {
+      add(name.data(), name.size());
+      add(&value, sizeof value);
+    }
     for (const Arg& a : p.args) {
       if (const double* real = std::get_if<1>(&a)) add(real, sizeof *real);
     }
@@ -248,7 +254,8 @@ std::uint64_t Simulation::model_hash() const {
     add(numbers, sizeof numbers);
     add(c.table.data(), c.table.size() * sizeof c.table[0]);
   }
-  const double settings[5]{scene_.gravity[0], scene_.gravity[1], scene_.gravity[2], scene_.dt, scene_.safety};
+  const double relaxed = scene_.relaxation.enabled ? 1 : 0;
+  const double settings[6]{scene_.gravity[0], scene_.gravity[1], scene_.gravity[2], scene_.dt, scene_.safety, relaxed};
   add(settings, sizeof settings);
   return h;
 }

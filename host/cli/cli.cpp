@@ -1,0 +1,94 @@
+#include "cli/cli.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+
+#include "io/atomic_file.h"
+#include "pliant/error.h"
+
+namespace pliant::cli {
+namespace {
+
+volatile std::sig_atomic_t interrupt_flag = 0;
+
+void on_interrupt(int) {
+  interrupt_flag = 1;
+  std::signal(SIGINT, SIG_DFL);
+}
+
+}  // namespace
+
+void Common::add_to(CLI::App& app) {
+  app.add_option("--json", json, "Write the result as one JSON object to this file, or to standard output with -")
+      ->type_name("FILE|-");
+  app.add_flag("--quiet", quiet, "Print nothing but errors and what was asked for");
+}
+
+void Common::check() const {
+  if (!json.empty() && json != "-") check_writable(json);
+}
+
+void Common::print(const std::string& text) const {
+  if (!quiet) fmt::print(json == "-" ? stderr : stdout, "{}\n", text);
+}
+
+void Common::note(const std::string& text) const {
+  if (!quiet) fmt::print(stderr, "pliant: {}\n", text);
+}
+
+void Common::write(const nlohmann::ordered_json& object) const {
+  if (json.empty()) return;
+  // Names of files may hold any bytes; JSON may not.
+  const std::string text = object.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  if (json == "-") {
+    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
+      throw Error("standard output: the JSON could not be written");
+    }
+  } else {
+    write_file(json, text);
+  }
+}
+
+void check_writable(const std::filesystem::path& file) {
+  std::error_code ignored;
+  const auto status = std::filesystem::status(file, ignored);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) && !std::filesystem::is_directory(status))
+    return;
+  const AtomicFile probe(file);
+}
+
+std::string scene_stem(const std::filesystem::path& scene) {
+  const std::string stem = scene.stem().string();
+  return stem.empty() ? "scene" : stem;
+}
+
+Progress::Progress(bool wanted) : on_(wanted && ::isatty(STDERR_FILENO) == 1) {}
+
+void Progress::show(std::int64_t done, std::int64_t total, const std::string& text) {
+  if (!on_) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (drawn_ && now - last_ < std::chrono::milliseconds(100)) return;
+  last_ = now;
+  drawn_ = true;
+  constexpr int kWidth = 30;
+  const double share = total > 0 ? std::clamp(static_cast<double>(done) / static_cast<double>(total), 0.0, 1.0) : 0;
+  const int filled = static_cast<int>(share * kWidth);
+  fmt::print(stderr, "\r[{}{}] {:3.0f} %  step {} of {}  {}\033[K", std::string(static_cast<std::size_t>(filled), '#'),
+             std::string(static_cast<std::size_t>(kWidth - filled), '.'), 100 * share, done, total, text);
+  std::fflush(stderr);
+}
+
+void Progress::clear() {
+  if (!drawn_) return;
+  std::fputs("\r\033[K", stderr);
+  std::fflush(stderr);
+  drawn_ = false;
+}
+
+void watch_interrupt() { std::signal(SIGINT, on_interrupt); }
+bool interrupted() { return interrupt_flag != 0; }
+
+}  // namespace pliant::cli

@@ -1,0 +1,73 @@
+// What the commands share: registration, --json and --quiet, progress, interruption.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace pliant::cli {
+
+/// Adds a command's options (or subcommands of its own) to `app` and returns what runs it; the result is the exit code.
+using Setup = std::function<int()> (*)(CLI::App& app);
+
+/// A row of the table in main.cpp. A new command is one file, one declaration here and one row there.
+struct Command {
+  const char* name;
+  const char* about;
+  Setup setup;
+};
+
+std::function<int()> setup_devices(CLI::App& app);
+std::function<int()> setup_info(CLI::App& app);
+std::function<int()> setup_run(CLI::App& app);
+std::function<int()> setup_compare(CLI::App& app);
+
+inline constexpr int kInterrupted = 130;  ///< exit code after SIGINT, as shells expect
+
+/// The options of every command.
+struct Common {
+  std::string json;  ///< file, "-" for standard output, or empty
+  bool quiet = false;
+
+  void add_to(CLI::App& app);
+  /// Refuses a JSON file that cannot be written, before the work.
+  void check() const;
+  /// Text for people: standard output, or standard error where that carries JSON; nowhere with --quiet.
+  void print(const std::string& text) const;
+  /// Remarks that are no result: standard error, nowhere with --quiet.
+  void note(const std::string& text) const;
+  /// One object, to where --json says; nothing without it.
+  void write(const nlohmann::ordered_json& object) const;
+};
+
+/// Throws Error if `file` could not be written now. Leaves nothing behind.
+void check_writable(const std::filesystem::path& file);
+
+/// The scene's file without folder and extension: the stem of everything a run writes.
+std::string scene_stem(const std::filesystem::path& scene);
+
+/// One line on standard error that is drawn again and again; only on a terminal.
+class Progress {
+ public:
+  explicit Progress(bool wanted);
+  ~Progress() { clear(); }
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  void show(std::int64_t done, std::int64_t total, const std::string& text = "");
+  void clear();
+
+ private:
+  bool on_ = false;
+  bool drawn_ = false;
+  std::chrono::steady_clock::time_point last_{};
+};
+
+/// From here on SIGINT only sets a flag; a second one ends the process at once.
+void watch_interrupt();
+bool interrupted();
+
+}  // namespace pliant::cli

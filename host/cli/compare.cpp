@@ -1,0 +1,123 @@
+// pliant compare: two backends in lockstep.
+#include "solver/compare.h"
+
+#include <fmt/format.h>
+
+#include "backends/backends.h"
+#include "cli/cli.h"
+#include "pliant/error.h"
+
+namespace pliant::cli {
+namespace {
+
+struct Options {
+  Common common;
+  std::string scene;
+  std::vector<std::string> backends;
+  std::int64_t steps = 100;
+  std::string every = "pass";
+};
+
+using Json = nlohmann::ordered_json;
+
+Json to_json(const std::optional<FirstDifference>& d) {
+  if (!d) return nullptr;
+  return {{"step", d->step},           {"pass", d->pass},          {"kernel", d->kernel},   {"label", d->label},
+          {"buffer", d->buffer},       {"index", d->index},        {"value_a", d->value_a}, {"value_b", d->value_b},
+          {"decimal_a", d->decimal_a}, {"decimal_b", d->decimal_b}};
+}
+
+Json to_json(const BackendInfo& info) {
+  return {
+      {"name", info.name}, {"device", info.device}, {"bit_exact", info.bit_exact}, {"tolerance_reason", info.tolerance_reason}};
+}
+
+void check(const Options& options) {
+  options.common.check();
+  if (options.steps < 0) throw Error(fmt::format("--steps is {}; expected 0 or more", options.steps));
+  if (options.every != "pass" && options.every != "step") {
+    throw Error(fmt::format("--every is \"{}\"; allowed are pass, step", options.every));
+  }
+  if (!options.backends.empty() && options.backends.size() != 2) {
+    throw Error(fmt::format("--backends names {} backends; expected two, for example opencl:0,cpu", options.backends.size()));
+  }
+}
+
+std::unique_ptr<Backend> open(const Options& options, std::size_t which) {
+  if (!options.backends.empty()) return open_backend(options.backends[which]);
+  if (which == 1) return open_backend("cpu");
+  try {
+    return open_backend("opencl:0");
+  } catch (const Error& error) {
+    throw Error(
+        fmt::format("compare takes the first OpenCL device and cpu unless --backends A,B names others: {}", error.what()));
+  }
+}
+
+void report(const Options& options, const ComparisonResult& result, const BackendInfo& a, const BackendInfo& b) {
+  const Common& common = options.common;
+  for (const BackendInfo* info : {&a, &b}) {
+    if (info->bit_exact) continue;
+    common.note(fmt::format("{} is in tolerance mode, it need not give the same bits: {}", info->name, info->tolerance_reason));
+  }
+  common.print(fmt::format("{}: {} ({}) against {} ({})", scene_stem(options.scene), a.name, a.device, b.name, b.device));
+  common.print(fmt::format("{} steps of {} passes, {} buffers after every {}, {} values compared", result.steps, result.passes,
+                           result.buffers, options.every, result.values_compared));
+  common.print(result.identical ? "identical: every bit" : "different: " + result.first_difference->message());
+  if (result.at_equilibrium) common.print("both reached equilibrium");
+}
+
+int compare_command(const Options& options) {
+  check(options);
+  const Scene scene = load_scene(options.scene);
+  auto backend_a = open(options, 0), backend_b = open(options, 1);
+  const auto model = std::make_shared<const Model>(build_model(scene));
+  Simulation a(scene, model, std::move(backend_a));
+  SimulationOptions same_step;
+  same_step.dt = a.dt();
+  Simulation b(scene, model, std::move(backend_b), same_step);
+
+  watch_interrupt();
+  Progress progress(!options.common.quiet);
+  CompareOptions compare_options;
+  compare_options.steps = options.steps;
+  compare_options.every_pass = options.every == "pass";
+  compare_options.progress = [&](std::int64_t done) {
+    progress.show(done, options.steps);
+    return !interrupted();
+  };
+  const ComparisonResult result = compare(a, b, compare_options);
+  progress.clear();
+
+  report(options, result, a.backend().info(), b.backend().info());
+  options.common.write({{"scene", scene_stem(options.scene)},
+                        {"backends", {to_json(a.backend().info()), to_json(b.backend().info())}},
+                        {"identical", result.identical},
+                        {"steps", result.steps},
+                        {"passes", result.passes},
+                        {"buffers", result.buffers},
+                        {"values_compared", result.values_compared},
+                        {"first_difference", to_json(result.first_difference)},
+                        {"diverged", result.diverged.has_value()}});
+  if (!result.identical) return static_cast<int>(ErrorCode::difference);
+  if (result.diverged) throw Error(ErrorCode::diverged, fmt::format("both backends alike: {}", result.diverged->message()));
+  return result.stopped ? kInterrupted : 0;
+}
+
+}  // namespace
+
+std::function<int()> setup_compare(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  app.add_option("scene", options->scene, "Scene file")->required();
+  app.add_option("--steps", options->steps, "Steps to compare")->capture_default_str();
+  app.add_option("--backends", options->backends, "Two backends; default: the first OpenCL device and cpu")
+      ->delimiter(',')
+      ->type_name("A,B");
+  app.add_option("--every", options->every, "Compare after every pass, or only after every step")
+      ->type_name("pass|step")
+      ->capture_default_str();
+  options->common.add_to(app);
+  return [options] { return compare_command(*options); };
+}
+
+}  // namespace pliant::cli

@@ -1,0 +1,144 @@
+#include "cli/frames.h"
+
+#include <fmt/format.h>
+
+#include "cli/cli.h"
+#include "io/obj.h"
+#include "layout.h"
+#include "pliant/error.h"
+
+namespace pliant::cli {
+namespace {
+
+void append(std::vector<float>& values, const Vec3d& v) {
+  for (const double c : v) values.push_back(static_cast<float>(c));
+}
+
+/// Fill fraction of every element, body by body.
+std::vector<std::vector<float>> fills(const Model& model) {
+  std::vector<std::vector<float>> fill;
+  for (const ModelBody& b : model.bodies) fill.emplace_back(static_cast<std::size_t>(b.elements()), 1.0F);
+  const auto set = [&](std::int32_t body, std::int64_t element, double value) {
+    fill[static_cast<std::size_t>(body)][static_cast<std::size_t>(element)] = static_cast<float>(value);
+  };
+  for (std::size_t i = 0; i < model.brick_cell.size(); ++i) {
+    if (model.brick_cell[i] >= 0) set(model.brick_body[i / PLIANT_BRICK_NODES], model.brick_cell[i], model.brick_fill[i]);
+  }
+  for (const HexBatch& batch : model.hexes) {
+    for (std::size_t e = 0; e < batch.id.size(); ++e) set(batch.body, batch.id[e], batch.fill[e]);
+  }
+  for (const TetBatch& batch : model.tets) {
+    const ModelBody& body = model.bodies[static_cast<std::size_t>(batch.body)];
+    for (std::size_t e = 0; e < batch.id.size(); ++e) {
+      std::array<Vec3d, 4> x;
+      for (std::size_t a = 0; a < 4; ++a)
+        x[a] = body.rest[static_cast<std::size_t>(body.tets[static_cast<std::size_t>(batch.id[e])][a])];
+      set(batch.body, batch.id[e], batch.volume[e] / tet_geometry(x).volume);
+    }
+  }
+  return fill;
+}
+
+}  // namespace
+
+std::set<std::string> parse_formats(const std::vector<std::string>& formats) {
+  std::set<std::string> chosen;
+  for (const std::string& format : formats) {
+    if (format == "png" || format == "gltf") {
+      throw Error(fmt::format("--format: {} is not available yet; allowed are vtu, obj", format));
+    }
+    if (format != "vtu" && format != "obj") throw Error(fmt::format("--format: got \"{}\"; allowed are vtu, obj", format));
+    chosen.insert(format);
+  }
+  return chosen;
+}
+
+VtuMesh volume_frame(const Simulation& simulation) {
+  const Model& model = simulation.model();
+  VtuMesh mesh;
+  VtuArray displacement{"displacement", 3, {}}, velocity{"velocity", 3, {}};
+  std::vector<float> tet_body, tet_fill, hex_body, hex_fill;
+  const auto fill = fills(model);
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const ModelBody& body = model.bodies[b];
+    const auto first = static_cast<std::int32_t>(mesh.points.size());
+    const auto u = simulation.displacements(b), v = simulation.velocities(b);
+    for (std::size_t n = 0; n < body.rest.size(); ++n) {
+      const Vec3d& x = body.rest[n];
+      mesh.points.push_back({x[0] + u[n][0], x[1] + u[n][1], x[2] + u[n][2]});
+      append(displacement.values, u[n]);
+      append(velocity.values, v[n]);
+    }
+    for (auto tet : body.tets) {
+      for (auto& n : tet) n += first;
+      mesh.tets.push_back(tet);
+      tet_body.push_back(static_cast<float>(b));
+    }
+    for (auto hex : body.hexes) {
+      for (auto& n : hex) n += first;
+      mesh.hexes.push_back(hex);
+      hex_body.push_back(static_cast<float>(b));
+    }
+    auto& of_kind = body.tets.empty() ? hex_fill : tet_fill;  // a body has elements of one kind
+    of_kind.insert(of_kind.end(), fill[b].begin(), fill[b].end());
+  }
+  tet_body.insert(tet_body.end(), hex_body.begin(), hex_body.end());
+  tet_fill.insert(tet_fill.end(), hex_fill.begin(), hex_fill.end());
+  mesh.point_arrays = {std::move(displacement), std::move(velocity)};
+  mesh.cell_arrays = {{"body", 1, std::move(tet_body)}, {"fill", 1, std::move(tet_fill)}};
+  return mesh;
+}
+
+VtuMesh surface_frame(Simulation& simulation) {
+  const ModelSurface& surface = simulation.model().surface;
+  VtuMesh mesh;
+  mesh.points = simulation.surface_positions();
+  mesh.triangles = surface.triangles;
+  VtuArray displacement{"displacement", 3, {}}, body{"body", 1, {}};
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    const Vec3d &x = mesh.points[v], &rest = surface.rest[v];
+    append(displacement.values, {x[0] - rest[0], x[1] - rest[1], x[2] - rest[2]});
+  }
+  for (const std::int32_t b : surface.triangle_body) body.values.push_back(static_cast<float>(b));
+  mesh.point_arrays = {std::move(displacement)};
+  mesh.cell_arrays = {std::move(body)};
+  return mesh;
+}
+
+FrameWriter::FrameWriter(std::filesystem::path folder, std::string stem, std::set<std::string> formats)
+    : folder_(std::move(folder)),
+      stem_(std::move(stem)),
+      formats_(std::move(formats)),
+      volume_(folder_ / (stem_ + ".pvd")),
+      surface_(folder_ / (stem_ + "_surface.pvd")) {
+  std::error_code code;
+  std::filesystem::create_directories(folder_, code);
+  if (code) throw Error(fmt::format("--out: the folder {} cannot be made: {}", folder_.string(), code.message()));
+  if (!std::filesystem::is_directory(folder_))
+    throw Error(fmt::format("--out: {} is a file, expected a folder", folder_.string()));
+  check_writable(folder_ / (stem_ + ".pvd"));
+}
+
+void FrameWriter::write(Simulation& simulation) {
+  if (last_step_ == simulation.step()) return;
+  last_step_ = simulation.step();
+  const std::string number = fmt::format("_{:08}", simulation.step());
+  const bool has_surface = !simulation.model().surface.triangles.empty();
+  const VtuMesh surface = has_surface ? surface_frame(simulation) : VtuMesh{};
+  if (formats_.count("vtu") != 0) {
+    const auto file = folder_ / (stem_ + number + ".vtu");
+    write_vtu(file, volume_frame(simulation));
+    volume_.append(simulation.time(), file);
+    if (has_surface) {
+      const auto surface_file = folder_ / (stem_ + "_surface" + number + ".vtu");
+      write_vtu(surface_file, surface);
+      surface_.append(simulation.time(), surface_file);
+    }
+  }
+  if (formats_.count("obj") != 0 && has_surface) {
+    write_obj(folder_ / (stem_ + "_surface" + number + ".obj"), {surface.points, surface.triangles});
+  }
+  ++frames_;
+}
+
+}  // namespace pliant::cli

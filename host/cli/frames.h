@@ -1,0 +1,44 @@
+// The files of a run: one frame after another, and the series that ParaView opens.
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "io/vtu.h"
+#include "solver/simulation.h"
+
+namespace pliant::cli {
+
+/// "vtu,obj" split at commas and checked. Throws Error that lists the formats there are.
+std::set<std::string> parse_formats(const std::vector<std::string>& formats);
+
+/// All bodies as volume elements in their present shape: displacement [m], velocity [m/s] at the points, body and fill at the
+/// cells.
+VtuMesh volume_frame(const Simulation& simulation);
+
+/// The embedded surface in its present shape: displacement [m] at the points, body at the cells.
+VtuMesh surface_frame(Simulation& simulation);
+
+class FrameWriter {
+ public:
+  /// Makes the folder where it is missing and tries it. Throws Error when nothing can be written there.
+  FrameWriter(std::filesystem::path folder, std::string stem, std::set<std::string> formats);
+
+  /// Write the present state. Files carry the number of the step: bunny_00000100.vtu, bunny_surface_00000100.vtu and .obj,
+  /// listed in bunny.pvd and bunny_surface.pvd.
+  void write(Simulation& simulation);
+  [[nodiscard]] std::size_t frames() const { return frames_; }
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+
+ private:
+  std::filesystem::path folder_;
+  std::string stem_;
+  std::set<std::string> formats_;
+  PvdSeries volume_, surface_;
+  std::optional<std::int64_t> last_step_;
+  std::size_t frames_ = 0;
+};
+
+}  // namespace pliant::cli

@@ -1,0 +1,206 @@
+// pliant info: what a scene holds and costs. Runs nothing but the power iteration, on the cpu backend.
+#include <fmt/format.h>
+
+#include "backends/backends.h"
+#include "cli/cli.h"
+#include "pliant/error.h"
+#include "solver/pass_table.h"
+#include "solver/simulation.h"
+
+namespace pliant::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  Common common;
+  std::string scene;
+  bool buffers = false;
+};
+
+const char* to_string(BufferType type) {
+  switch (type) {
+    case BufferType::real:
+      return "real";
+    case BufferType::real4:
+      return "real4";
+    case BufferType::int32:
+      return "int32";
+  }
+  return "?";
+}
+
+constexpr BufferRole kRoles[]{BufferRole::constant, BufferRole::state, BufferRole::scratch, BufferRole::control};
+
+const char* to_string(BufferRole role) {
+  switch (role) {
+    case BufferRole::constant:
+      return "constant";
+    case BufferRole::state:
+      return "state";
+    case BufferRole::scratch:
+      return "scratch";
+    case BufferRole::control:
+      return "control";
+  }
+  return "?";
+}
+
+std::uint64_t bytes_of(const Buffer& buffer) { return 4 * static_cast<std::uint64_t>(buffer.values()); }
+
+double per(std::uint64_t bytes, std::int64_t count) {
+  return count > 0 ? static_cast<double>(bytes) / static_cast<double>(count) : 0;
+}
+
+class Info {
+ public:
+  Info(const Options& options, const Scene& scene, const Model& model) : options_(options), scene_(scene), model_(model) {}
+
+  void print_all(const Program& program, double power_dt, const std::string& no_power) {
+    json_ = {{"scene", scene_stem(options_.scene)},
+             {"title", scene_.name},
+             {"nodes", model_.nodes()},
+             {"elements", model_.elements()}};
+    line(fmt::format("{}: {}", scene_stem(options_.scene), scene_.name));
+    line(fmt::format("nodes {}, elements {}, slots {}", model_.nodes(), model_.elements(), model_.slots));
+    bodies();
+    stable_step(power_dt, no_power);
+    memory(program);
+    passes(program);
+    if (options_.buffers) buffers(program);
+    options_.common.write(json_);
+  }
+
+ private:
+  void line(const std::string& text) const { options_.common.print(text); }
+
+  void bodies() {
+    double mass = 0;
+    for (const ModelBody& b : model_.bodies) {
+      mass += b.mass;
+      json_["bodies"].push_back({{"name", b.name},
+                                 {"element", pliant::to_string(b.element)},
+                                 {"nodes", b.slot.size()},
+                                 {"elements", b.elements()},
+                                 {"spacing", b.spacing},
+                                 {"mass", b.mass},
+                                 {"volume", b.volume},
+                                 {"surface_volume", b.surface_volume},
+                                 {"surface_vertices", b.vertices},
+                                 {"surface_triangles", b.triangles}});
+      line(fmt::format("body {}: {} nodes, {} {} elements{}, {} surface triangles", b.name, b.slot.size(), b.elements(),
+                       pliant::to_string(b.element), b.spacing > 0 ? fmt::format(" on a lattice of {:.5g} m", b.spacing) : "",
+                       b.triangles));
+      const double excess = b.surface_volume > 0 ? 100 * (b.volume / b.surface_volume - 1) : 0;
+      line(fmt::format("  mass {:.6g} kg, volume {:.6g} m^3, inside its surface {:.6g} m^3 ({:+.2f} %)", b.mass, b.volume,
+                       b.surface_volume, excess));
+    }
+    json_["mass"] = mass;
+  }
+
+  void stable_step(double power_dt, const std::string& no_power) {
+    const double step = scene_.dt > 0 ? scene_.dt : scene_.safety * power_dt;
+    json_["stable_step"] = {{"element_bound", model_.element_bound},
+                            {"bound_element", model_.bound_element},
+                            {"power_iteration", power_dt > 0 ? Json(power_dt) : Json(nullptr)},
+                            {"dt", step > 0 ? Json(step) : Json(nullptr)},
+                            {"automatic", scene_.dt <= 0}};
+    line(fmt::format("stable step: element bound {:.6g} s ({})", model_.element_bound, model_.bound_element));
+    line(power_dt > 0
+             ? fmt::format("  power iteration {:.6g} s, {:.3g} times the bound", power_dt, power_dt / model_.element_bound)
+             : "  power iteration: " + no_power);
+    if (step > 0) {
+      line(scene_.dt > 0 ? fmt::format("  the scene's step {:.6g} s", step)
+                         : fmt::format("  the scene's step is automatic: {:.3g} of it, {:.6g} s", scene_.safety, step));
+    }
+  }
+
+  void memory(const Program& program) {
+    std::uint64_t total = 0;
+    for (const Buffer& b : program.buffers) total += bytes_of(b);
+    const auto row = [&](std::uint64_t bytes) {
+      return Json{{"bytes", bytes},
+                  {"bytes_per_node", per(bytes, model_.nodes())},
+                  {"bytes_per_element", per(bytes, model_.elements())}};
+    };
+    json_["memory"]["total"] = row(total);
+    line(fmt::format("memory {}: {:.1f} bytes per node, {:.1f} per element", bytes_text(total), per(total, model_.nodes()),
+                     per(total, model_.elements())));
+    for (const BufferRole role : kRoles) {
+      std::uint64_t bytes = 0;
+      for (const Buffer& b : program.buffers) bytes += b.role == role ? bytes_of(b) : 0;
+      json_["memory"][to_string(role)] = row(bytes);
+      line(fmt::format("  {:<9}{:>12} bytes, {:.1f} per node, {:.1f} per element", to_string(role), bytes,
+                       per(bytes, model_.nodes()), per(bytes, model_.elements())));
+    }
+  }
+
+  void passes(const Program& program) {
+    line("passes of a step:");
+    int number = 0;
+    for (const Pass& p : program.step) {
+      Json defines = Json::object();
+      for (const auto& [name, value] : p.defines) defines[name] = value;
+      json_["passes"].push_back({{"kernel", p.kernel},
+                                 {"label", p.label},
+                                 {"defines", defines},
+                                 {"count", p.count},
+                                 {"elements", p.elements},
+                                 {"bytes_per_element", p.bytes_per_element},
+                                 {"flops_per_element", p.flops_per_element}});
+      line(fmt::format("  {}  {:<22} {:<36} count {:<9} {}", number++, p.kernel, p.label, p.count, defines_text(p.defines)));
+    }
+  }
+
+  void buffers(const Program& program) {
+    line(fmt::format("{:<22} {:<6} {:<9} {:>12} {:<24} {:<16} {}", "buffer", "type", "role", "bytes", "shape", "unit",
+                     "producer"));
+    for (const Buffer& b : program.buffers) {
+      json_["buffers"].push_back({{"name", b.name},
+                                  {"type", to_string(b.type)},
+                                  {"role", to_string(b.role)},
+                                  {"count", b.count},
+                                  {"shape", b.shape},
+                                  {"unit", b.unit},
+                                  {"producer", b.producer},
+                                  {"bytes", bytes_of(b)}});
+      line(fmt::format("{:<22} {:<6} {:<9} {:>12} {:<24} {:<16} {}", b.name, to_string(b.type), to_string(b.role), bytes_of(b),
+                       b.shape, b.unit, b.producer));
+    }
+  }
+
+  const Options& options_;
+  const Scene& scene_;
+  const Model& model_;
+  Json json_;
+};
+
+int info(const Options& options) {
+  options.common.check();
+  const Scene scene = load_scene(options.scene);
+  const auto model = std::make_shared<const Model>(build_model(scene));
+  double power_dt = 0;
+  std::string no_power;
+  try {
+    const Simulation simulation(scene, model, open_backend("cpu"));
+    power_dt = simulation.stable_dt();
+    if (!(power_dt > 0)) no_power = "nothing moves freely";
+  } catch (const Error& error) {  // a scene too large for this machine may still be asked about
+    no_power = error.what();
+  }
+  Info(options, scene, *model)
+      .print_all(build_program(*model, {scene.integrator, SimulationOptions{}.batch_steps}), power_dt, no_power);
+  return 0;
+}
+
+}  // namespace
+
+std::function<int()> setup_info(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  app.add_option("scene", options->scene, "Scene file")->required();
+  app.add_flag("--buffers", options->buffers, "List every buffer: name, type, role, bytes, shape, unit, producer");
+  options->common.add_to(app);
+  return [options] { return info(*options); };
+}
+
+}  // namespace pliant::cli

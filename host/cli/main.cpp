@@ -1,0 +1,96 @@
+// The pliant command: one row per command, and the one place where errors become exit codes.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <csignal>
+#include <exception>
+#include <new>
+
+#include "cli/cli.h"
+#include "pliant/error.h"
+#include "scene/keys.h"
+
+namespace {
+
+using pliant::Error;
+using pliant::ErrorCode;
+
+constexpr pliant::cli::Command kCommands[] = {
+    {"devices", "List the backends of this machine and whether each gives the same bits", pliant::cli::setup_devices},
+    {"info", "What a scene holds: elements, mass, stable step, memory, passes", pliant::cli::setup_info},
+    {"run", "Simulate a scene and write what comes out", pliant::cli::setup_run},
+    {"compare", "Run a scene on two backends in lockstep and find the first bit that differs", pliant::cli::setup_compare},
+};
+
+std::string did_you_mean(const std::string& text, const std::vector<std::string>& words) {
+  const std::string near = pliant::nearest(text, words);
+  return near.empty() ? "" : fmt::format("; did you mean {}?", near);
+}
+
+/// A first word that is no command gets an answer of its own.
+void check_command(int argc, char** argv) {
+  std::vector<std::string> names;
+  for (const auto& command : kCommands) names.emplace_back(command.name);
+  if (argc < 2) throw Error(fmt::format("no command given; allowed are {} (pliant --help says more)", pliant::listed(names)));
+  const std::string word = argv[1];
+  if (word.rfind('-', 0) == 0 || std::find(names.begin(), names.end(), word) != names.end()) return;
+  throw Error(fmt::format("unknown command \"{}\"; allowed are {}{}", word, pliant::listed(names), did_you_mean(word, names)));
+}
+
+/// CLI11's own words, and the option that was probably meant.
+std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
+  std::string message = error.what();
+  message.erase(std::remove(message.begin(), message.end(), '\n'), message.end());
+  const auto chosen = app.get_subcommands();
+  const CLI::App& used = chosen.empty() ? app : *chosen.front();
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
+    std::vector<std::string> known;
+    for (const auto* option : used.get_options()) known.push_back(option->get_name());
+    const auto extras = app.remaining(true);
+    if (!extras.empty()) message += did_you_mean(extras.front(), known);
+  }
+  return fmt::format("{} (pliant {}--help lists the options)", message, chosen.empty() ? "" : used.get_name() + " ");
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{"Pliant: soft-tissue deformation on OpenCL and on a bit-exact CPU reference"};
+  app.name("pliant");
+  app.set_version_flag("--version", "pliant " PLIANT_VERSION);
+  app.require_subcommand(1);
+  std::function<int()> chosen;
+  for (const auto& command : kCommands) {
+    CLI::App* sub = app.add_subcommand(command.name, command.about);
+    auto action = command.setup(*sub);
+    sub->final_callback([&chosen, action] { chosen = action; });
+  }
+  try {
+    check_command(argc, argv);
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    throw Error(usage_message(app, error));
+  }
+  return chosen();
+}
+
+int fail(int code, const std::string& message) {
+  fmt::print(stderr, "pliant: {}\n", message);
+  return code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit then fails a write, which names the file
+  try {
+    const int code = run(argc, argv);
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) return fail(2, "standard output could not be written");
+    return code;
+  } catch (const Error& error) {
+    return fail(static_cast<int>(error.code()), error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(2, "out of memory: the scene needs more than this machine has (pliant info SCENE lists what it needs)");
+  } catch (const std::exception& error) {
+    return fail(1, fmt::format("a defect of Pliant itself: {}", error.what()));
+  }
+}
