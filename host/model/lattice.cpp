@@ -36,8 +36,8 @@ Lattice fill(const SurfaceDistance& surface, double spacing, std::int64_t max_ce
   return lattice;
 }
 
-// Finds the spacing whose lattice has `wanted` nodes. The number of nodes falls with the spacing, but in jumps that are not quite
-// monotone (the grid moves against the surface), so a bracketing search is followed by a scan of its neighbourhood.
+// Finds the spacing whose lattice has `wanted` nodes. The number of nodes falls with the spacing, but in jumps that are not
+// quite monotone (the grid moves against the surface), so a bracketing search is followed by a scan of its neighbourhood.
 class SpacingSearch {
  public:
   SpacingSearch(const SurfaceDistance& surface, std::int64_t wanted, std::int64_t max_cells)

@@ -39,9 +39,7 @@ std::uint64_t flood(std::uint64_t seed, std::uint64_t within, const std::array<s
 
 }  // namespace
 
-double CellSampler::winding(const Vec3d& local) const {
-  return surface_.winding(vec::add(lower_, vec::mul(local, spacing_)));
-}
+double CellSampler::winding(const Vec3d& local) const { return surface_.winding(vec::add(lower_, vec::mul(local, spacing_))); }
 
 void CellSampler::sample(const std::array<std::int32_t, 3>& index, std::vector<CellPart>& parts) {
   for (int a = 0; a < 3; ++a) lower_[a] = origin_[a] + spacing_ * index[a];
@@ -77,8 +75,8 @@ void CellSampler::sample(const std::array<std::int32_t, 3>& index, std::vector<C
   collect(index, parts);
 }
 
-// Meet the triangle with the 48 lines. The edge tests are inclusive with a margin: a crossing found twice does no harm, one that
-// is missed would let the inside leak out.
+// Meet the triangle with the 48 lines. The edge tests are inclusive with a margin: a crossing found twice does no harm, one
+// that is missed would let the inside leak out.
 void CellSampler::cross(std::int32_t triangle) {
   const TriangleMesh& mesh = surface_.mesh();
   std::array<Vec3d, 3> p;
@@ -171,8 +169,8 @@ void CellSampler::classify() {
   }
 }
 
-// Intervals between crossings `first` .. `last` (in walking order, `step` = +1 or -1) from sample `from` to position `end`, which is
-// sample `to` or, if to < 0, a face of the cell. Adds inside lengths; returns true if no void lies on the way.
+// Intervals between crossings `first` .. `last` (in walking order, `step` = +1 or -1) from sample `from` to position `end`,
+// which is sample `to` or, if to < 0, a face of the cell. Adds inside lengths; returns true if no void lies on the way.
 bool CellSampler::segment(int axis, int line, int first, int last, int step, double end, int from, int to) {
   const auto& crossings = lines_[axis][line];
   Vec3d point = sample_point(from);
@@ -279,8 +277,9 @@ void CellSampler::collect(const std::array<std::int32_t, 3>& index, std::vector<
     add_part(index, mask, thin, axis, parts);
   }
   if (parts.size() == begin) return;
-  std::max_element(parts.begin() + begin, parts.end(), [](const CellPart& x, const CellPart& y) { return x.fill < y.fill; })->fill +=
-      stray;
+  std::max_element(parts.begin() + begin, parts.end(), [](const CellPart& x, const CellPart& y) {
+    return x.fill < y.fill;
+  })->fill += stray;
   parts.erase(std::remove_if(parts.begin() + begin, parts.end(), [](const CellPart& p) { return !(p.fill >= kFillFloor); }),
               parts.end());
   for (auto p = parts.begin() + begin; p != parts.end(); ++p) p->fill = std::min(p->fill, 1.0);

@@ -20,8 +20,8 @@ struct CellPart {
   std::array<std::int32_t, 3> index{};
   std::int32_t shell = -1;  ///< a shell of the surface that bounds it inside this cell; -1 if none does
   std::uint64_t mask = 0;   ///< its samples
-  /// Per face (2 axis + (1 on the upper side)): the samples of the outer layer from which material reaches the face, bit u + 4 v
-  /// with u the lower of the two other axes.
+  /// Per face (2 axis + (1 on the upper side)): the samples of the outer layer from which material reaches the face, bit u + 4
+  /// v with u the lower of the two other axes.
   std::array<std::uint16_t, 6> open{};
   bool thin = false;  ///< thinner than the samples are apart: found by its lines only, `mask` holds the nearest samples
   double fill = 1;
@@ -36,8 +36,10 @@ struct CellPart {
 inline Vec3d sample_point(int bit) { return {((bit & 3) + 0.5) / 4, (((bit >> 2) & 3) + 0.5) / 4, ((bit >> 4) + 0.5) / 4}; }
 
 /// Finds the parts of a cell. Two neighbouring samples belong to the same part if no void lies between them, so that even a gap
-/// far thinner than a cell separates. Fill is the mean inside length of the 16 lines along the axis that crosses the surface most
-/// often: exact for faces along the axes, second order in a quarter of the spacing for smooth ones.
+/// far thinner than a cell separates. Sheets of material thinner than the samples are apart are found by the lines; below about
+/// an eighth of the spacing an oblique sheet may lose its connection from cell to cell. Fill is the mean inside length of the
+/// 16 lines along the axis that crosses the surface most often: exact for faces along the axes, second order in a quarter of
+/// the spacing for smooth ones.
 class CellSampler {
  public:
   CellSampler(const SurfaceDistance& surface, const Vec3d& origin, double spacing)
@@ -48,9 +50,9 @@ class CellSampler {
 
  private:
   struct Crossing {
-    double at;           // along the line, in units of the spacing
-    int jump;            // of the winding number in the direction of the axis
-    int merged;          // crossings at the same place (an edge of two triangles)
+    double at;   // along the line, in units of the spacing
+    int jump;    // of the winding number in the direction of the axis
+    int merged;  // crossings at the same place (an edge of two triangles)
     std::int32_t shell;
   };
 
@@ -61,7 +63,8 @@ class CellSampler {
   void walk(int axis, int line);
   bool segment(int axis, int line, int first, int last, int step, double end, int from, int to);
   void collect(const std::array<std::int32_t, 3>& index, std::vector<CellPart>& parts);
-  void add_part(const std::array<std::int32_t, 3>& index, std::uint64_t mask, bool thin, int axis, std::vector<CellPart>& parts);
+  void add_part(const std::array<std::int32_t, 3>& index, std::uint64_t mask, bool thin, int axis,
+                std::vector<CellPart>& parts);
   [[nodiscard]] double winding(const Vec3d& local) const;
 
   const SurfaceDistance& surface_;

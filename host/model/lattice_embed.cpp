@@ -23,7 +23,8 @@ struct Candidate {
 
 class Embedder {
  public:
-  Embedder(const SurfaceDistance& surface, const Grid& grid, const Parts& parts) : surface_(surface), grid_(grid), parts_(parts) {
+  Embedder(const SurfaceDistance& surface, const Grid& grid, const Parts& parts)
+      : surface_(surface), grid_(grid), parts_(parts) {
     inward_.resize(surface.mesh().vertices.size());
     const auto& v = surface.mesh().vertices;
     for (const auto& t : surface.mesh().triangles) {

@@ -30,11 +30,15 @@ bool Contacts::touch(std::int32_t a, std::int32_t b, int axis) const {
   const std::uint16_t from = x.open[2 * axis + 1], to = y.open[2 * axis];
   if ((from & to) != 0) return true;
   if ((x.thin || y.thin) && (dilate(from) & to) != 0) return true;
-  return !ties_.empty() && std::binary_search(ties_.begin(), ties_.end(), std::pair{a, b});
+  return tied(a, b);
 }
 
-// Are a and b, which share a face across `axis`, connected through the two cells on the other side of one edge of that face (the
-// edge towards `side` along `across`), and does that edge run through material?
+bool Contacts::tied(std::int32_t a, std::int32_t b) const {
+  return !ties_.empty() && std::binary_search(ties_.begin(), ties_.end(), std::pair{std::min(a, b), std::max(a, b)});
+}
+
+// Are a and b, which share a face across `axis`, connected through the two cells on the other side of one edge of that face
+// (the edge towards `side` along `across`), and does that edge run through material?
 bool Contacts::around_edge(std::int32_t a, std::int32_t b, int axis, int across, int side) const {
   Index below_a = parts_.list[a].index, below_b = parts_.list[b].index;
   below_a[across] += side;
@@ -98,12 +102,31 @@ std::vector<std::int32_t> Contacts::fragments() const {
   return root;
 }
 
+// A sheet thinner than the samples may pass from a cell to its diagonal neighbour without leaving a trace in the two cells
+// between them: such parts share the two nodes of their common edge.
+void Contacts::hinge(const std::vector<std::int32_t>& root, const std::vector<char>& loose,
+                     std::vector<std::pair<std::int32_t, std::int32_t>>& ties) const {
+  for (std::int32_t a = 0; a < static_cast<std::int32_t>(root.size()); ++a) {
+    if (loose[root[a]] == 0 || parts_.list[a].shell < 0) continue;
+    for (int edge = 0; edge < 12; ++edge) {
+      Index cell = parts_.list[a].index;
+      cell[(edge + 1) % 3] += (edge / 3) % 2 == 0 ? -1 : 1;
+      cell[(edge + 2) % 3] += edge / 6 == 0 ? -1 : 1;
+      const auto [first, last] = parts_.of(cell);
+      for (std::int32_t b = first; b < last; ++b) {
+        if (root[a] != root[b] && parts_.list[b].shell == parts_.list[a].shell)
+          ties.emplace_back(std::min(a, b), std::max(a, b));
+      }
+    }
+  }
+}
+
 std::vector<char> Contacts::mend() {
   bridge();
   const std::vector<std::int32_t> root = fragments();
   std::vector<std::int32_t> cells(root.size(), 0);
   for (const std::int32_t r : root) ++cells[r];
-  std::map<std::int32_t, std::int32_t> bulk;                           // shell -> its largest fragment
+  std::map<std::int32_t, std::int32_t> bulk;                  // shell -> its largest fragment
   std::vector<std::pair<std::int32_t, std::int32_t>> bounds;  // (fragment, shell)
   for (std::size_t p = 0; p < root.size(); ++p) {
     const std::int32_t shell = parts_.list[p].shell;
@@ -143,6 +166,7 @@ std::vector<char> Contacts::mend() {
     const std::int32_t fragment = loose[root[a]] != 0 ? root[a] : root[b];
     if (tied[fragment] == 0 && cells[fragment] <= kSmall) near.emplace_back(a, b);
   }
+  hinge(root, loose, near);
   for (const auto& [a, b] : near) tied[root[a]] = tied[root[b]] = 1;
   ties_.insert(ties_.end(), near.begin(), near.end());
   std::sort(ties_.begin(), ties_.end());
@@ -179,7 +203,11 @@ void number_nodes(const Parts& parts, const Contacts& contacts, Lattice& lattice
           for (std::size_t y = x + 1; y < around.size(); ++y) {
             const int difference = around[x].cell ^ around[y].cell;
             const int axis = difference == 1 ? 0 : difference == 2 ? 1 : difference == 4 ? 2 : -1;
-            if (axis < 0 || around[x].group == around[y].group || !contacts.touch(around[x].part, around[y].part, axis)) continue;
+            if (around[x].group == around[y].group) continue;
+            if (axis >= 0 ? !contacts.touch(around[x].part, around[y].part, axis)
+                          : difference == 7 || !contacts.tied(around[x].part, around[y].part)) {
+              continue;
+            }
             const int keep = std::min(around[x].group, around[y].group), lose = std::max(around[x].group, around[y].group);
             for (Around& other : around) other.group = other.group == lose ? keep : other.group;
           }

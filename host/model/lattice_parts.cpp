@@ -31,8 +31,8 @@ struct BlockFiller {
       return;
     }
     const double half = 0.5 * edge * grid.spacing, reach = std::sqrt(3.0) * half * (1 + 1e-9);
-    const Vec3d centre = vec::add(vec::add(grid.origin, vec::mul({1.0 * low[0], 1.0 * low[1], 1.0 * low[2]}, grid.spacing)),
-                                  {half, half, half});
+    const Vec3d centre =
+        vec::add(vec::add(grid.origin, vec::mul({1.0 * low[0], 1.0 * low[1], 1.0 * low[2]}, grid.spacing)), {half, half, half});
     // Near and inside a hole the side changes without a surface: skip only where the winding number is settled.
     if (surface.closest(centre).distance > reach) {
       const double w = std::abs(surface.winding(centre));
@@ -41,7 +41,7 @@ struct BlockFiller {
         return;
       }
     }
-  const int e = edge / 2;
+    const int e = edge / 2;
     for (int c = 0; c < 8; ++c) fill({low[0] + e * (c & 1), low[1] + e * ((c >> 1) & 1), low[2] + e * (c >> 2)}, e);
   }
 
@@ -87,7 +87,7 @@ void keep_touched(const SurfaceDistance& surface, const Grid& grid, std::vector<
 Grid::Grid(const vec::Box& box, double edge) : spacing(edge) {
   for (int a = 0; a < 3; ++a) {
     const double extent = box.upper[a] - box.lower[a];
-    const double count = std::max(1.0, std::ceil(extent / edge - 1e-6));
+    const double count = std::max(1.0, std::ceil(extent / edge * (1 - 1e-6)));
     if (count > 1e6) {
       throw Error(fmt::format("lattice spacing {} m would need {:.3g} cells along {}; at most 1000000 are allowed", edge, count,
                               "xyz"[a]));
@@ -116,8 +116,8 @@ Parts::Parts(const SurfaceDistance& surface, const Grid& grid, std::int64_t max_
   const double d = grid.spacing;
   const double needed = std::max(1.0, std::abs(signed_volume(surface.mesh())) / (d * d * d) + 0.75 * area / (d * d));
   const auto too_many = [&](double cells, const char* about) {
-    return Error(fmt::format("lattice spacing {} m needs {}{:.0f} cells; at most {} are allowed (choose a larger spacing)", d, about,
-                             cells, max_cells));
+    return Error(fmt::format("lattice spacing {} m needs {}{:.0f} cells; at most {} are allowed (choose a larger spacing)", d,
+                             about, cells, max_cells));
   };
   if (needed > 1.5 * static_cast<double>(max_cells) || count > 100'000'000) throw too_many(needed, "about ");
   std::vector<std::vector<CellPart>> filled(static_cast<std::size_t>(count));
@@ -125,9 +125,10 @@ Parts::Parts(const SurfaceDistance& surface, const Grid& grid, std::int64_t max_
   parallel_for(count, [&](std::int64_t b) {
     if (total > 2 * max_cells + 1000) return;  // hopeless: do not fill the memory first
     BlockFiller filler(surface, grid);
-    filler.fill({static_cast<std::int32_t>(b % blocks_[0] * kBlock), static_cast<std::int32_t>(b / blocks_[0] % blocks_[1] * kBlock),
-                 static_cast<std::int32_t>(b / (blocks_[0] * blocks_[1]) * kBlock)},
-                kBlock);
+    filler.fill(
+        {static_cast<std::int32_t>(b % blocks_[0] * kBlock), static_cast<std::int32_t>(b / blocks_[0] % blocks_[1] * kBlock),
+         static_cast<std::int32_t>(b / (blocks_[0] * blocks_[1]) * kBlock)},
+        kBlock);
     std::stable_sort(filler.parts.begin(), filler.parts.end(), before);
     total += static_cast<std::int64_t>(filler.parts.size());
     filled[b] = std::move(filler.parts);

@@ -46,9 +46,12 @@ class Parts {
 /// Face contacts between parts of neighbouring cells: material that reaches the same spot of the shared face from both sides.
 class Contacts {
  public:
-  Contacts(const Parts& parts, const SurfaceDistance& surface, const Grid& grid) : parts_(parts), surface_(surface), grid_(grid) {}
+  Contacts(const Parts& parts, const SurfaceDistance& surface, const Grid& grid)
+      : parts_(parts), surface_(surface), grid_(grid) {}
   /// `a` and `b` are parts of cells that share a face; b's is the upper one along `axis`.
   [[nodiscard]] bool touch(std::int32_t a, std::int32_t b, int axis) const;
+  /// Were they joined by mend()? Ties across an edge join parts of cells that share no face.
+  [[nodiscard]] bool tied(std::int32_t a, std::int32_t b) const;
   /// Join what sampling tore apart. Slivers that meet below the lowest sample of their common face are tied if they are
   /// connected around an edge of that face and the edge runs through material. Small fragments of a shell whose bulk lies
   /// elsewhere are tied to a face neighbour of the same shell; those that have none are marked in the result for removal.
@@ -56,6 +59,8 @@ class Contacts {
 
  private:
   void bridge();
+  void hinge(const std::vector<std::int32_t>& root, const std::vector<char>& loose,
+             std::vector<std::pair<std::int32_t, std::int32_t>>& ties) const;
   [[nodiscard]] bool around_edge(std::int32_t a, std::int32_t b, int axis, int across, int side) const;
   [[nodiscard]] std::vector<std::int32_t> fragments() const;
   const Parts& parts_;

@@ -77,7 +77,9 @@ std::vector<std::array<Link, 3>> neighbours(const TriangleMesh& mesh) {
 
 double area_of(const TriangleMesh& mesh, std::int32_t t) {
   const auto& v = mesh.triangles[t];
-  return vec::norm(vec::cross(vec::sub(mesh.vertices[v[1]], mesh.vertices[v[0]]), vec::sub(mesh.vertices[v[2]], mesh.vertices[v[0]]))) / 2;
+  return vec::norm(vec::cross(vec::sub(mesh.vertices[v[1]], mesh.vertices[v[0]]),
+                              vec::sub(mesh.vertices[v[2]], mesh.vertices[v[0]]))) /
+         2;
 }
 
 void flip(TriangleMesh& mesh, std::int32_t t) { std::swap(mesh.triangles[t][1], mesh.triangles[t][2]); }

@@ -19,11 +19,11 @@ struct OrientationReport {
   [[nodiscard]] bool closed() const { return rim.empty(); }
 };
 
-/// Wind all triangles of a shell (a component connected over edges that exactly two triangles share) the same way, by flooding over
-/// those edges; then turn each shell outward, by the sign of its volume about its own area centroid (open shells are treated as
-/// nearly closed). One exception: a shell that lies inside another one and was, by a clear majority of its area, wound opposite
-/// to it is a cavity and stays inward. The result does not depend on how many triangles were flipped at random before,
-/// as long as that majority survives.
+/// Wind all triangles of a shell (a component connected over edges that exactly two triangles share) the same way, by flooding
+/// over those edges; then turn each shell outward, by the sign of its volume about its own area centroid (open shells are
+/// treated as nearly closed). One exception: a shell that lies inside another one and was, by a clear majority of its area,
+/// wound opposite to it is a cavity and stays inward. The result does not depend on how many triangles were flipped at random
+/// before, as long as that majority survives.
 OrientationReport orient_outward(TriangleMesh& mesh);
 
 }  // namespace pliant

@@ -1,9 +1,9 @@
 // Triangle surfaces through assimp. What assimp hands over is checked here: it may throw, and it passes garbage numbers on.
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
 #include <fmt/format.h>
 
 #include <assimp/Importer.hpp>
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -49,7 +49,8 @@ void check_obj_numbers(const std::filesystem::path& file) {
       char* end = nullptr;
       const double value = std::strtod(word.c_str(), &end);
       if (word.empty() || *end != '\0' || !std::isfinite(value)) {
-        fail(file, fmt::format("vertex {} (line {}): {} is '{}'; a finite number is needed", vertex, number, "xyz"[axis], word));
+        fail(file,
+             fmt::format("vertex {} (line {}): {} is '{}'; a finite number is needed", vertex, number, "xyz"[axis], word));
       }
     }
     ++vertex;
@@ -154,7 +155,8 @@ std::string lower_extension(const std::filesystem::path& file) {
 
 TriangleMesh read_surface(const std::filesystem::path& file, double scale, const Vec3d& translate) {
   check_file(file);
-  if (!std::isfinite(scale) || scale == 0) fail(file, fmt::format("scale is {}; a finite number other than 0 is needed", scale));
+  if (!std::isfinite(scale) || scale == 0)
+    fail(file, fmt::format("scale is {}; a finite number other than 0 is needed", scale));
   if (lower_extension(file) == ".obj") check_obj_numbers(file);
   Assimp::Importer importer;
   const aiScene* scene = nullptr;

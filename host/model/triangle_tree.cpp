@@ -18,7 +18,8 @@ using vec::sub;
 
 constexpr int kLeaf = 4;
 constexpr int kDepth = 128;  // the tree is balanced by count, so its depth stays below 2 log2(triangles)
-// Clusters farther than this many radii are expanded. 2.3 keeps the error of the second-order expansion near 1e-3.
+// Clusters farther than this many radii are expanded. 2.3 keeps the error of the two-term expansion near 1e-3
+// on fine meshes and below 2e-2 on coarse ones; a side needs 0.5.
 constexpr double kReach = 2.3;
 
 // Solid angle of a triangle seen from the origin: tan(omega / 2) = a . (b x c) / (abc + (a.b) c + (b.c) a + (c.a) b).

@@ -12,7 +12,8 @@ int main(int argc, char** argv) {
   try {
     for (const std::string& name : pliant::shape_names()) {
       const pliant::TriangleMesh mesh = pliant::make_shape(name);
-      pliant::write_obj_text(mesh, name + ", metres, y up; written by generate_meshes", std::string(argv[1]) + "/" + name + ".obj");
+      pliant::write_obj_text(mesh, name + ", metres, y up; written by generate_meshes",
+                             std::string(argv[1]) + "/" + name + ".obj");
       std::printf("%s: %zu vertices, %zu triangles, %.6g m^3\n", name.c_str(), mesh.vertices.size(), mesh.triangles.size(),
                   pliant::signed_volume(mesh));
     }
