@@ -8,18 +8,15 @@ namespace {
 /// What to aim for. Measured on PoCL 3.1, two threads: a launch costs 1.3 us, a work-group 3.5 ns, and a local size left to the
 /// driver up to 12 us, for PoCL searches a divisor at each launch; each new local size of a kernel costs a compilation.
 /// Explicit lanes gain nothing from large groups and small ones balance better; scalar kernels are vectorised across the group.
-/// The figures for GPUs are not measured: whole warps, and few enough groups per multiprocessor to keep it full.
+/// The figures for GPUs are not measured: whole warps, and enough of them per group to keep a multiprocessor full.
 struct Aim {
   std::size_t local;        ///< preferred work-group size, a power of two
-  std::size_t least_local;  ///< the smallest that is as good
-  std::size_t many_groups;  ///< more groups than this below least_local cost more than a second launch
+  std::size_t most_groups;  ///< more groups of a smaller size cost more than a second launch
 };
 
 Aim aim_for(const Pass& pass, const LaunchRules& rules) {
-  Aim aim =
-      rules.cpu ? (pass.shape == Shape::lanes && rules.lanes == 16 ? Aim{16, 4, 400} : Aim{64, 16, 400}) : Aim{128, 64, 2048};
+  Aim aim = !rules.cpu ? Aim{128, 2048} : pass.shape == Shape::lanes && rules.lanes == 16 ? Aim{16, 400} : Aim{64, 400};
   while (aim.local > rules.largest) aim.local /= 2;
-  aim.least_local = std::min(aim.least_local, aim.local);
   return aim;
 }
 
@@ -36,7 +33,7 @@ std::vector<Launch> plan_launches(const Pass& pass, const LaunchRules& rules) {
   const Aim aim = aim_for(pass, rules);
   std::size_t local = aim.local;
   while (global % local != 0) local /= 2;
-  if (local >= aim.least_local || global / local <= aim.many_groups) return {{0, global, local}};
+  if (local == aim.local || global / local <= aim.most_groups) return {{0, global, local}};
   const std::size_t rest = global % aim.local;
   return {{0, global - rest, aim.local}, {global - rest, rest, rules.cpu ? 1 : rest}};
 }

@@ -22,7 +22,7 @@ namespace pliant {
 namespace {
 
 // y = scale * x + y + step + bias + weight, by lanes.
-constexpr const char* toy_axpy_text = R"(#include "arith.cl"
+[[maybe_unused]] constexpr const char* toy_axpy_text = R"(#include "arith.cl"
 __kernel void toy_axpy(__global const float* x, float scale, int bias, __global float* y, int step, __global const int* weight) {
   const int i = FIRST_INDEX;
 #if LANES == 16
@@ -43,7 +43,7 @@ void toy_axpy(ref::Range range, const Scalar* x, Scalar scale, std::int32_t bias
 }
 
 // One item: y[list[i]] = -x[list[i]].
-constexpr const char* toy_list_text = R"(#include "arith.cl"
+[[maybe_unused]] constexpr const char* toy_list_text = R"(#include "arith.cl"
 __kernel void toy_list(__global const float* x, __global const int* list, __global float* y) {
   const int n = list[get_global_id(0)];
   y[n] = -x[n];
@@ -55,7 +55,7 @@ void toy_list(ref::Range range, const Scalar* x, const std::int32_t* list, Scala
 }
 
 // A brick is 16 values; each becomes its own square plus the brick's number.
-constexpr const char* toy_brick_text = R"(#include "arith.cl"
+[[maybe_unused]] constexpr const char* toy_brick_text = R"(#include "arith.cl"
 __kernel void toy_brick(__global const float* x, __global float* y) {
 #if LANES == 16
   const int brick = get_global_id(0), i = 16 * brick;
