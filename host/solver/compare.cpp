@@ -35,7 +35,7 @@ class Lockstep {
   ComparisonResult run() {
     const Place start{a_.step(), -1, "host", "initial state"};
     if (!look(start, true) || !same_host(start)) return finish();
-    std::int64_t done = 0;
+    std::int64_t& done = result_.steps;
     while (done < options_.steps && !a_.divergence() && !a_.at_equilibrium()) {
       const std::int32_t n = a_.next_batch(options_.steps - done);
       if (!batch(n)) break;
@@ -166,7 +166,6 @@ class Lockstep {
   }
 
   ComparisonResult finish() {
-    result_.steps = a_.step() - first_step_;
     result_.diverged = a_.divergence();
     result_.at_equilibrium = a_.at_equilibrium();
     return std::move(result_);
@@ -175,7 +174,6 @@ class Lockstep {
   Simulation& a_;
   Simulation& b_;
   const CompareOptions& options_;
-  const std::int64_t first_step_ = a_.step();
   ComparisonResult result_;
 };
 

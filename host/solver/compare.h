@@ -31,9 +31,9 @@ struct FirstDifference {
 
 struct ComparisonResult {
   bool identical = true;
-  std::int64_t steps = 0;            ///< done by both
-  std::int32_t passes = 0;           ///< of one step
-  std::int32_t buffers = 0;          ///< compared after every pass; constant ones are compared once, before the first
+  std::int64_t steps = 0;    ///< of the batches that both ran; after a divergence the simulations stand at its last good step
+  std::int32_t passes = 0;   ///< of one step
+  std::int32_t buffers = 0;  ///< compared after every pass; constant ones are compared once, before the first
   std::int64_t values_compared = 0;  ///< numbers, over all looks
   std::optional<FirstDifference> first_difference;
   std::optional<Divergence> diverged;  ///< both, at the same element of the same step

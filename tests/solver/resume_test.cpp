@@ -1,0 +1,134 @@
+// A resumed run gives the bits of an uninterrupted one, and a checkpoint resumes only what it was taken from.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "io/save.h"
+#include "io/temp_folder.h"
+#include "pliant/error.h"
+#include "solver/scenes.h"
+
+namespace pliant {
+namespace {
+
+using testing::pressed_cube;
+
+class Resume : public ::testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override {
+    if (std::string(GetParam()) == "opencl:0" && !testing::has_opencl()) GTEST_SKIP() << "there is no OpenCL device";
+  }
+  Simulation make(const Scene& scene) { return {scene, open_backend(GetParam())}; }
+
+  /// Run `first` steps, save, load into a new simulation, run `second` steps; compare with all of them in one go.
+  void expect_same_bits(const Scene& scene, std::int64_t first, std::int64_t second) {
+    Simulation whole = make(scene);
+    ASSERT_EQ(whole.advance(first + second), first + second);
+    const auto file = folder_.path() / "state.pckpt";
+    {
+      Simulation part = make(scene);
+      ASSERT_EQ(part.advance(first), first);
+      write_checkpoint(file, take_checkpoint(part));
+    }
+    Simulation resumed = make(scene);
+    restore_checkpoint(resumed, read_checkpoint(file), file);
+    EXPECT_EQ(resumed.step(), first);
+    ASSERT_EQ(resumed.advance(second), second);
+    EXPECT_EQ(resumed.hash(), whole.hash());
+    EXPECT_EQ(resumed.step(), whole.step());
+    EXPECT_EQ(resumed.time(), whole.time());
+    EXPECT_EQ(resumed.dt(), whole.dt());
+    EXPECT_EQ(resumed.stable_dt(), whole.stable_dt());
+    EXPECT_EQ(resumed.state().damping, whole.state().damping);
+    EXPECT_EQ(resumed.state().vectors, whole.state().vectors);
+    EXPECT_EQ(resumed.residual(), whole.residual());
+  }
+
+  testing::TempFolder folder_;
+};
+
+TEST_P(Resume, FixedStep) { expect_same_bits(pressed_cube(0.01, R"("dt": 0.002,)"), 37, 63); }
+
+TEST_P(Resume, Relaxation) {
+  expect_same_bits(pressed_cube(0.01, R"("relaxation": {"tolerance": 1e-6, "max_steps": 1000},)"), 37, 63);
+}
+
+TEST_P(Resume, AutomaticStepAcrossItsRenewal) {
+  const Scene scene = pressed_cube(0.04);
+  Simulation probe = make(scene);
+  const double first = probe.dt();
+  probe.advance(520);
+  ASSERT_LT(probe.dt(), first) << "the scene must be pressed far enough for the step to change at step 512";
+  for (const std::int64_t at : {500, 512, 513}) expect_same_bits(scene, at, 520 - at);
+}
+
+TEST_P(Resume, Textbook) { expect_same_bits(pressed_cube(0.01, R"("integrator": "textbook", "dt": 0.002,)"), 64, 36); }
+
+std::string label(const ::testing::TestParamInfo<const char*>& backend) {
+  const std::string name = backend.param;
+  return name == "cpu" ? "cpu" : name == "cpu:double" ? "cpu_double" : "opencl";
+}
+INSTANTIATE_TEST_SUITE_P(On, Resume, ::testing::Values("cpu", "cpu:double", "opencl:0"), label);
+
+std::string refusal(Simulation& simulation, const Checkpoint& checkpoint) {
+  const std::uint64_t before = simulation.hash();
+  std::string message;
+  try {
+    restore_checkpoint(simulation, checkpoint, "state.pckpt");
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::bad_input);
+    message = error.what();
+  }
+  EXPECT_EQ(simulation.hash(), before) << "a refused checkpoint must change nothing";
+  return message;
+}
+
+TEST(ResumeRefuses, WhatItDoesNotBelongTo) {
+  const Scene scene = pressed_cube(0.01, R"("dt": 0.002,)");
+  Simulation source(scene, open_backend("cpu"));
+  source.advance(10);
+  const Checkpoint checkpoint = take_checkpoint(source);
+
+  const Scene others[]{pressed_cube(0.01, R"("dt": 0.001,)"),
+                       pressed_cube(0.02, R"("dt": 0.002,)"),
+                       pressed_cube(0.01, R"("dt": 0.002,)", 4000),
+                       pressed_cube(0.01, R"("dt": 0.002,)", 3000, "saint-venant-kirchhoff"),
+                       pressed_cube(0.01, R"("dt": 0.002, "integrator": "textbook",)"),
+                       pressed_cube(0.01, R"("dt": 0.002, "relaxation": {},)")};
+  for (const Scene& other : others) {
+    Simulation simulation(other, open_backend("cpu"));
+    EXPECT_NE(refusal(simulation, checkpoint).find("state.pckpt: a checkpoint of \"pressed_cube\""), std::string::npos);
+  }
+  Simulation oracle(scene, open_backend("cpu:double"));
+  EXPECT_NE(refusal(oracle, checkpoint).find("in float"), std::string::npos);
+
+  Simulation same(scene, open_backend("cpu"));
+  Checkpoint damaged = checkpoint;
+  damaged.buffers[0].bytes.pop_back();
+  EXPECT_NE(refusal(same, damaged).find("node_u"), std::string::npos);
+  damaged = checkpoint;
+  damaged.host_state.clear();
+  EXPECT_NE(refusal(same, damaged).find("clock"), std::string::npos);
+  restore_checkpoint(same, checkpoint, "state.pckpt");
+  EXPECT_EQ(same.hash(), source.hash());
+}
+
+TEST(ResumeRefuses, NothingAfterADivergenceButTheLastGoodState) {
+  Scene scene = pressed_cube(0.01);
+  Simulation stable(scene, open_backend("cpu"));
+  scene.dt = 3 * stable.stable_dt();
+  Simulation unstable(scene, open_backend("cpu"));
+  unstable.advance(5000);
+  ASSERT_TRUE(unstable.divergence().has_value());
+  EXPECT_EQ(unstable.step(), unstable.divergence()->last_good_step);
+  // The state kept must itself pass: its elements are whole, so one more step starts from finite numbers.
+  for (const Vec3d& u : unstable.displacements(0)) {
+    for (const double c : u) EXPECT_TRUE(std::isfinite(c));
+  }
+  Simulation again(scene, open_backend("cpu"));
+  restore_checkpoint(again, take_checkpoint(unstable), "state.pckpt");
+  EXPECT_EQ(again.hash(), unstable.hash());
+}
+
+}  // namespace
+}  // namespace pliant
