@@ -50,8 +50,6 @@ TEST_P(Conservation, FreeSpinningBody) {
     // About the centre of mass, from the angular momentum about the origin.
     const auto spin = [](const Momenta& m) { return Vector3d(eigen(m.angular) - eigen(m.centre).cross(eigen(m.linear))); };
     check(name + " angular momentum", (spin(after) - spin(before)).norm() / spin(before).norm(), bound(2e-4, 1e-11));
-    const double seconds = scene.dt * (static_cast<double>(sim->step()) - 1);
-    (void)seconds;
     check(name + " largest change of energy in 4000 steps", drift, 0.02);
     check(name + " mean change of energy in the last quarter", late, 0.01);
   }
@@ -220,17 +218,18 @@ TEST_P(Conservation, TotalOfLoads) {
     force.total = {1, -2, 3};
     body.forces = {force};
     check(name + " total of a force on a face", (loads_at(body) - Vector3d(1, -2, 3)).norm() / std::sqrt(14.0), bound(1e-5, 1e-12));
+    const double read = is_lattice(cut) ? 1e-7 : 1e-12;  // surface files are read in float
     body = plain_body;
     Pressure pressure;
     pressure.pressure = 500;
     body.pressures = {pressure};
-    check(name + " closed surface: no resultant / p A", loads_at(body).norm() / (500 * 0.01), bound(1e-5, 1e-12));
+    check(name + " closed surface: no resultant / p A", loads_at(body).norm() / (500 * 0.01), bound(1e-5, read));
     pressure.where = face(0, 0.15);
     body.pressures = {pressure};
     // Nanson: the deformed face's area vector is cof F n A, and pressure pushes inwards.
     const Matrix3d f = Matrix3d::Identity() + h;
     const Vector3d exact = -500 * 0.01 * f.determinant() * f.inverse().transpose() * Vector3d(1, 0, 0);
-    check(name + " follower pressure on a deformed face", (loads_at(body) - exact).norm() / exact.norm(), bound(1e-5, 1e-12));
+    check(name + " follower pressure on a deformed face", (loads_at(body) - exact).norm() / exact.norm(), bound(1e-5, read));
   }
 }
 
@@ -253,6 +252,7 @@ TEST_P(Conservation, PressurePullsABlock) {
     body.pressures = {pressure};
     Scene scene;
     scene.bodies = {body};
+    scene.safety = 0.5;
     scene.relaxation.enabled = true;
     scene.relaxation.tolerance = bound(1e-5, 1e-9);
     auto sim = simulate(scene, GetParam());

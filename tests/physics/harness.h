@@ -188,14 +188,22 @@ inline std::filesystem::path save(const VolumeMesh& mesh) {
   return file;
 }
 
-inline TriangleMesh box_surface(const Vec3d& lower, const Vec3d& upper) {
-  TriangleMesh mesh;
-  for (int a = 0; a < 8; ++a) {
-    mesh.vertices.push_back({(a & 1) ? upper[0] : lower[0], (a & 2) ? upper[1] : lower[1], (a & 4) ? upper[2] : lower[2]});
+/// The surface of the regular box, two triangles per cell face.
+inline TriangleMesh box_surface(const Box& box) {
+  const VolumeMesh mesh = make_mesh({box.cells, box.edge, 0, 1}, false);
+  TriangleMesh surface;
+  std::vector<std::int32_t> vertex(mesh.vertices.size(), -1);
+  for (auto t : boundary_triangles(mesh)) {
+    for (std::int32_t& v : t) {
+      if (vertex[v] < 0) {
+        vertex[v] = static_cast<std::int32_t>(surface.vertices.size());
+        surface.vertices.push_back(mesh.vertices[v]);
+      }
+      v = vertex[v];
+    }
+    surface.triangles.push_back(t);
   }
-  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  return mesh;
+  return surface;
 }
 
 inline std::filesystem::path save(const TriangleMesh& mesh) {
@@ -226,7 +234,7 @@ inline Body box_body(const Box& box, Cut cut, const Material& m) {
   body.element = kind_of(cut);
   body.material = m;
   if (is_lattice(cut)) {
-    body.surface = save(box_surface({0, 0, 0}, box.size()));
+    body.surface = save(box_surface(box));
     body.lattice.spacing = box.edge;
   } else {
     body.mesh = save(make_mesh(box, is_tet(cut)));

@@ -17,6 +17,7 @@ TEST_P(Patch, InnerNodesFollowAffineBoundary) {
       const Material m = material_young(law, 3000, 0.45);
       Body body = box_body(box, cut, m);
       Scene scene;
+      scene.safety = 0.5;
       scene.relaxation.enabled = true;
       scene.relaxation.tolerance = bound(3e-6, 1e-10);
       scene.bodies = {body};

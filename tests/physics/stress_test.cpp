@@ -10,6 +10,7 @@ Box block() { return {{2, 2, 2}, 0.5, 0.15, 7}; }
 Scene quasi_static(const Body& body, double tolerance) {
   Scene scene;
   scene.bodies = {body};
+  scene.safety = 0.4;  // the block stiffens while it is pulled
   scene.relaxation.enabled = true;
   scene.relaxation.tolerance = tolerance;
   return scene;
@@ -50,7 +51,7 @@ class Stress : public OnBackend {
  protected:
   void compare(Law law, double mu, double kappa, int pulled, double stretch, double exact) {
     const Material m = material(law, mu, kappa);
-    check_relative("closed form against the published figure", closed_form(m, stretch, pulled), exact, 1e-6);
+    check_relative("closed form against the published figure", closed_form(m, stretch, pulled), exact, 2e-6);
     for (const Cut cut : all_cuts()) {
       const double p = stress_at_rest(GetParam(), cut, m, stretch, pulled, bound(1e-5, 1e-8));
       check_relative(std::string(name_of(cut)) + " stretch " + std::to_string(stretch), p, closed_form(m, stretch, pulled),
