@@ -6,11 +6,12 @@
 namespace pliant::ref {
 
 template <class Scalar, UpdateKind Kind>
-void brick_update(Range range, Scalar* node_u, Scalar* node_w, const std::int32_t* brick_neighbor, const Scalar* brick_force,
-                  const Scalar* node_load, Scalar* node_force, const Scalar* step_params) {
+void brick_update(Range range, Scalar* node_u, Scalar* node_w, const std::int32_t* brick_neighbor, const std::int32_t* brick_rows,
+                  const Scalar* brick_force, const Scalar* node_load, Scalar* node_force, const Scalar* step_params) {
   const StepParameters<Scalar> parameters(step_params);
   for (std::int64_t i = range.begin; i < range.end; ++i) {
     const std::int64_t x = i % 16, y = i / 16 % 4, z = i / 64 % 4;
+    if ((brick_rows[2 * (i / PLIANT_BRICK_NODES) + 1] >> (4 * z + y) & 1) == 0) continue;
     const std::int32_t* lower = brick_neighbor + i / PLIANT_BRICK_NODES * PLIANT_BRICK_NEIGHBORS + 8;
     Scalar f[3] = {Scalar(-0.0), Scalar(-0.0), Scalar(-0.0)};
     // The bricks at 0, -x, -y, -xy, -z, -xz, -yz, -xyz, where this node lies on what they share. A brick's own nodes end at

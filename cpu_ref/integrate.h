@@ -15,12 +15,11 @@ struct UpdateKind {
 /// What all nodes of a pass share.
 template <class Scalar>
 struct StepParameters {
-  Scalar half_h, hh, gravity[3], damping;
+  Scalar half_hh, gravity[3], still;
   explicit StepParameters(const Scalar* step_params)
-      : half_h(Scalar(0.5) * step_params[0]),
-        hh(step_params[0] * step_params[0]),
+      : half_hh((Scalar(0.5) * step_params[0]) * step_params[0]),
         gravity{step_params[1], step_params[2], step_params[3]},
-        damping(step_params[4]) {}
+        still(step_params[4]) {}
 };
 
 /// Advance node i under the summed element force f.
@@ -34,22 +33,19 @@ inline void integrate(const Scalar (&f)[3], Scalar* node_u, Scalar* node_w, cons
   } else {
     Scalar* u = node_u + 4 * i;
     Scalar* w = node_w + 4 * i;
-    const Scalar inverse_mass = u[3];
-    const Scalar rate = w[3] + step.damping;
-    const Scalar inverse = Scalar(1) / std::fma(step.half_h, rate, Scalar(1));
-    const Scalar a = std::fma(-step.half_h, rate, Scalar(1)) * inverse;
-    const Scalar b = step.hh * inverse;
+    const Scalar inverse_mass = u[3], a = w[3];
+    const Scalar b = std::fma(step.half_hh, a, step.half_hh);
     const Scalar bm = b * inverse_mass;
     const Scalar free = inverse_mass > Scalar(0) ? b : Scalar(0);  // slots without a node stay where they are
-    const Scalar two = Scalar(2) * inverse;
     for (int c = 0; c < 3; ++c) {
       const Scalar push = std::fma(bm, residual(c), free * step.gravity[c]);
       if constexpr (Kind.textbook) {
-        const Scalar next = std::fma(-a, w[c], std::fma(two, u[c], push));
+        const Scalar next = std::fma(-a, w[c], std::fma(Scalar(1) + a, u[c], push));
         w[c] = u[c];
         u[c] = next;
       } else {
-        w[c] = std::fma(a, w[c], push);
+        const Scalar next = std::fma(a, w[c], push);
+        w[c] = std::fabs(next) < step.still ? Scalar(0) : next;
         u[c] = u[c] + w[c];
       }
     }

@@ -24,7 +24,9 @@
   ROW(node_load) \
   ROW(surface_position) \
   ROW(pressure_force) \
-  ROW(fault_reduce)
+  ROW(fault_reduce) \
+  ROW(limit_triad) \
+  ROW(limit_fma)
 // clang-format on
 
 namespace pliant::ref {

@@ -6,10 +6,11 @@
 #include "integrate.cl"
 
 __kernel void brick_update(__global float* node_u, __global float* node_w, __global const int* brick_neighbor,
-                           __global const float* brick_force, __global const float* node_load, __global float* node_force,
+                           __global const int* brick_rows, __global const float* brick_force, __global const float* node_load, __global float* node_force,
                            __global const float* step_params) {
   const int i = FIRST_INDEX;
   const int brick = i / PLIANT_BRICK_NODES, x = i % 16, y = i / 16 % 4, z = i / 64 % 4;
+  if (!(brick_rows[2 * brick + 1] >> (4 * z + y) & 1)) return;
   __global const int* neighbor = brick_neighbor + brick * PLIANT_BRICK_NEIGHBORS + 8;
   real fx = -0.0f, fy = -0.0f, fz = -0.0f;
   for (int side = 0; side < 8; side += 2) {  // own, -y, -z, -yz; each with its -x neighbour

@@ -13,7 +13,7 @@ typedef struct {
   real j;   // J - 1
 } deformation;
 
-inline mat3 cofactor(mat3 h) {
+static inline mat3 cofactor(mat3 h) {
   mat3 c;
   c.m00 = fma(h.m11, h.m22, -(h.m12 * h.m21));
   c.m01 = fma(h.m12, h.m20, -(h.m10 * h.m22));
@@ -27,7 +27,7 @@ inline mat3 cofactor(mat3 h) {
   return c;
 }
 
-inline deformation deformation_of(mat3 h) {
+static inline deformation deformation_of(mat3 h) {
   deformation d;
   d.h = h;
   d.c = cofactor(h);
@@ -39,13 +39,13 @@ inline deformation deformation_of(mat3 h) {
 }
 
 // True where J is not a positive, finite number: inverted, collapsed or blown up.
-inline integer is_faulty(deformation d) {
+static inline integer is_faulty(deformation d) {
   const real jacobian = 1.0f + d.j;
   return !(jacobian > 0.0f) || !(jacobian < INFINITY);
 }
 
 // a I + b H + c H^T + e C
-inline mat3 combine(deformation d, real a, real b, real c, real e) {
+static inline mat3 combine(deformation d, real a, real b, real c, real e) {
   mat3 p;
   p.m00 = fma(e, d.c.m00, fma(c, d.h.m00, fma(b, d.h.m00, a)));
   p.m01 = fma(e, d.c.m01, fma(c, d.h.m10, b * d.h.m01));

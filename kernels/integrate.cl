@@ -1,37 +1,69 @@
-// The last lines of every update kernel: external loads and central differences, see node_update.cl.
-inline void integrate(real fx, real fy, real fz, __global float* node_u, __global float* node_w, __global const float* node_load,
-                      __global float* node_force, __global const float* step_params, int i) {
-#if HAS_LOAD
-  const texels load = texels_load(node_load, i);
-  const real rx = texels_x(load) - fx, ry = texels_y(load) - fy, rz = texels_z(load) - fz;
+// The last lines of every update kernel: external loads and central differences, see node_update.cl. They work on texels as they lie in
+// memory, four at a time (a quad), so that nothing is unpacked but the forces.
+#if LANES == 16
+typedef float16 quad;
+#define QUAD_W(q) (float16)((q).s3333, (q).s7777, (q).sbbbb, (q).sffff)
+// xyz of the first, w of the second.
+#define QUAD_XYZW(q, r) (float16)((q).s012, (r).s3, (q).s456, (r).s7, (q).s89a, (r).sb, (q).scde, (r).sf)
 #else
-  const real rx = -fx, ry = -fy, rz = -fz;
+typedef float4 quad;
+#define QUAD_W(q) (q).wwww
+#define QUAD_XYZW(q, r) (float4)((q).xyz, (r).w)
+#endif
+
+// f: summed element forces (w is not used); i: first texel of the quad.
+static inline void integrate_quad(quad f, __global float* node_u, __global float* node_w, __global const float* node_load,
+                           __global float* node_force, __global const float* step_params, int i) {
+#if LANES == 16
+#define LOAD_QUAD(p) vload16(0, (p) + 4 * i)
+#define STORE_QUAD(q, p) vstore16(q, 0, (p) + 4 * i)
+  const quad gravity = (quad)((float4)(step_params[1], step_params[2], step_params[3], 0.0f),
+                              (float4)(step_params[1], step_params[2], step_params[3], 0.0f),
+                              (float4)(step_params[1], step_params[2], step_params[3], 0.0f),
+                              (float4)(step_params[1], step_params[2], step_params[3], 0.0f));
+#else
+#define LOAD_QUAD(p) vload4(i, p)
+#define STORE_QUAD(q, p) vstore4(q, i, p)
+  const quad gravity = (quad)(step_params[1], step_params[2], step_params[3], 0.0f);
+#endif
+  const quad zero = 0.0f;
+#if HAS_LOAD
+  const quad r = LOAD_QUAD(node_load) - f;
+#else
+  const quad r = -f;
 #endif
 #if FORCE_ONLY
-  const real none = 0.0f;
-  texels_store(rx, ry, rz, none, node_force, i);
+  STORE_QUAD(QUAD_XYZW(r, zero), node_force);
 #else
-  const float h = step_params[0];
-  const texels u = texels_load(node_u, i), w = texels_load(node_w, i);
-  const real inverse_mass = texels_w(u), damping = texels_w(w);
-  const float half_h = 0.5f * h;
-  const real rate = damping + step_params[4];
-  const real inverse = 1.0f / fma(half_h, rate, 1.0f);
-  const real a = fma(-half_h, rate, 1.0f) * inverse, b = (h * h) * inverse;
-  const real bm = b * inverse_mass;
-  const real free = inverse_mass > 0.0f ? b : (real)(0.0f);  // slots without a node stay where they are
-  const real gx = fma(bm, rx, free * step_params[1]), gy = fma(bm, ry, free * step_params[2]), gz = fma(bm, rz, free * step_params[3]);
+  const quad u = LOAD_QUAD(node_u), w = LOAD_QUAD(node_w);
+  const quad inverse_mass = QUAD_W(u), a = QUAD_W(w);
+  const quad half_hh = (0.5f * step_params[0]) * step_params[0];
+  const quad b = fma(half_hh, a, half_hh);
+  const quad free = inverse_mass > 0.0f ? b : zero;  // slots without a node stay where they are
+  const quad push = fma(b * inverse_mass, r, free * gravity);
 #if TEXTBOOK
-  const real two = 2.0f * inverse;
-  const real ux = fma(-a, texels_x(w), fma(two, texels_x(u), gx));
-  const real uy = fma(-a, texels_y(w), fma(two, texels_y(u), gy));
-  const real uz = fma(-a, texels_z(w), fma(two, texels_z(u), gz));
-  texels_store(texels_x(u), texels_y(u), texels_z(u), damping, node_w, i);
-  texels_store(ux, uy, uz, inverse_mass, node_u, i);
+  const quad next = fma(-a, w, fma(1.0f + a, u, push));
+  STORE_QUAD(QUAD_XYZW(u, w), node_w);
+  STORE_QUAD(QUAD_XYZW(next, u), node_u);
 #else
-  const real wx = fma(a, texels_x(w), gx), wy = fma(a, texels_y(w), gy), wz = fma(a, texels_z(w), gz);
-  texels_store(texels_x(u) + wx, texels_y(u) + wy, texels_z(u) + wz, inverse_mass, node_u, i);
-  texels_store(wx, wy, wz, damping, node_w, i);
+  const quad full = fma(a, w, push);
+  const quad next = fabs(full) < step_params[4] ? zero : full;
+  STORE_QUAD(QUAD_XYZW(next, w), node_w);
+  STORE_QUAD(QUAD_XYZW(u + next, u), node_u);
 #endif
+#endif
+}
+
+static inline void integrate(real fx, real fy, real fz, __global float* node_u, __global float* node_w, __global const float* node_load,
+                      __global float* node_force, __global const float* step_params, int i) {
+#if LANES == 16
+#define FORCE_TEXEL(n) fx.s##n, fy.s##n, fz.s##n, 0.0f
+#define FORCE_QUAD(n0, n1, n2, n3) (quad)(FORCE_TEXEL(n0), FORCE_TEXEL(n1), FORCE_TEXEL(n2), FORCE_TEXEL(n3))
+  integrate_quad(FORCE_QUAD(0, 1, 2, 3), node_u, node_w, node_load, node_force, step_params, i);
+  integrate_quad(FORCE_QUAD(4, 5, 6, 7), node_u, node_w, node_load, node_force, step_params, i + 4);
+  integrate_quad(FORCE_QUAD(8, 9, a, b), node_u, node_w, node_load, node_force, step_params, i + 8);
+  integrate_quad(FORCE_QUAD(c, d, e, f), node_u, node_w, node_load, node_force, step_params, i + 12);
+#else
+  integrate_quad((quad)(fx, fy, fz, 0.0f), node_u, node_w, node_load, node_force, step_params, i);
 #endif
 }

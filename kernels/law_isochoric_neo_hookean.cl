@@ -3,7 +3,7 @@
 // With hh = |H|^2: I1 = 3 + 2 t + hh and 1 - s = (t + 3 q - hh) / (3 J), free of cancellation at small strain.
 
 // x^(-1/3) for x > 0: first guess from the exponent bits, then four Newton steps y <- y (4 - x y^3) / 3.
-inline real inverse_cube_root(real x) {
+static inline real inverse_cube_root(real x) {
 #if LANES == 16
   real y = as_float16((integer)(0x54A2FA8C) - as_int16(x) / 3);
 #else
@@ -13,7 +13,7 @@ inline real inverse_cube_root(real x) {
   return y;
 }
 
-inline mat3 law_stress(deformation d, real scale, float p0, float p1, real pressure) {
+static inline mat3 law_stress(deformation d, real scale, float p0, float p1, real pressure) {
   const mat3 h = d.h;
   const real jacobian = 1.0f + d.j;
   const real root = inverse_cube_root(jacobian);

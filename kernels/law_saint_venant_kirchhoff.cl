@@ -1,5 +1,5 @@
 // S = lambda tr(E) I + 2 mu E with the Green-Lagrange strain E = (H + H^T + H^T H) / 2;   P = S + H S;   p0 = mu, p1 = lambda.
-inline mat3 law_stress(deformation d, real scale, float p0, float p1, real pressure) {
+static inline mat3 law_stress(deformation d, real scale, float p0, float p1, real pressure) {
   const mat3 h = d.h;
   const real e00 = fma(0.5f, fma(h.m20, h.m20, fma(h.m10, h.m10, h.m00 * h.m00)), h.m00);
   const real e11 = fma(0.5f, fma(h.m21, h.m21, fma(h.m11, h.m11, h.m01 * h.m01)), h.m11);

@@ -18,6 +18,7 @@
 #define PLIANT_BRICK_FORCE_X16 1200
 // brick_neighbor: 8 bricks at (+x, +y, +z) by bit mask (0 is the brick itself), then 8 at (-x, -y, -z); absent: the empty brick.
 #define PLIANT_BRICK_NEIGHBORS 16
+// brick_rows: per brick the rows (bit 4 z + y) that hold a cell, and the rows that hold a node; the others are left out.
 
 // Planes per tile.
 #define PLIANT_TET_DATA_PLANES 10   // dN1..dN3 / dX (9) [1/m], volume [m^3]

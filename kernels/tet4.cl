@@ -6,7 +6,7 @@ typedef struct {
 } tet4;
 
 // `nodes` and `data` point to this work-item's lanes of tet_nodes ([4][16] per tile) and tet_data ([10][16] per tile).
-inline tet4 tet4_load(__global const float* node_u, __global const int* nodes, __global const float* data) {
+static inline tet4 tet4_load(__global const float* node_u, __global const int* nodes, __global const float* data) {
   const texels u0 = texels_gather(node_u, nodes), u1 = texels_gather(node_u, nodes + PLIANT_TILE);
   const texels u2 = texels_gather(node_u, nodes + 2 * PLIANT_TILE), u3 = texels_gather(node_u, nodes + 3 * PLIANT_TILE);
   const real x0 = texels_x(u0), y0 = texels_y(u0), z0 = texels_z(u0);

@@ -9,20 +9,20 @@ typedef struct {
 #define UNPACK_HI(a, b) (float8)((a).s2, (b).s2, (a).s3, (b).s3, (a).s6, (b).s6, (a).s7, (b).s7)
 #define PAIRS_LO(a, b) (float8)((a).s01, (b).s01, (a).s45, (b).s45)
 #define PAIRS_HI(a, b) (float8)((a).s23, (b).s23, (a).s67, (b).s67)
-inline float16 texels_x(texels t) {
+static inline float16 texels_x(texels t) {
   return (float16)(PAIRS_LO(UNPACK_LO(t.a, t.b), UNPACK_LO(t.c, t.d)), PAIRS_LO(UNPACK_LO(t.e, t.f), UNPACK_LO(t.g, t.h)));
 }
-inline float16 texels_y(texels t) {
+static inline float16 texels_y(texels t) {
   return (float16)(PAIRS_HI(UNPACK_LO(t.a, t.b), UNPACK_LO(t.c, t.d)), PAIRS_HI(UNPACK_LO(t.e, t.f), UNPACK_LO(t.g, t.h)));
 }
-inline float16 texels_z(texels t) {
+static inline float16 texels_z(texels t) {
   return (float16)(PAIRS_LO(UNPACK_HI(t.a, t.b), UNPACK_HI(t.c, t.d)), PAIRS_LO(UNPACK_HI(t.e, t.f), UNPACK_HI(t.g, t.h)));
 }
-inline float16 texels_w(texels t) {
+static inline float16 texels_w(texels t) {
   return (float16)(PAIRS_HI(UNPACK_HI(t.a, t.b), UNPACK_HI(t.c, t.d)), PAIRS_HI(UNPACK_HI(t.e, t.f), UNPACK_HI(t.g, t.h)));
 }
 // `k` points to sixteen texel indices.
-inline texels texels_gather(__global const float* p, __global const int* k) {
+static inline texels texels_gather(__global const float* p, __global const int* k) {
   texels t;
   t.a = (float8)(vload4(k[0], p), vload4(k[4], p));
   t.b = (float8)(vload4(k[1], p), vload4(k[5], p));
@@ -34,7 +34,7 @@ inline texels texels_gather(__global const float* p, __global const int* k) {
   t.h = (float8)(vload4(k[11], p), vload4(k[15], p));
   return t;
 }
-inline texels texels_load(__global const float* p, int i) {
+static inline texels texels_load(__global const float* p, int i) {
   texels t;
   t.a = (float8)(vload4(i, p), vload4(i + 4, p));
   t.b = (float8)(vload4(i + 1, p), vload4(i + 5, p));
@@ -46,7 +46,7 @@ inline texels texels_load(__global const float* p, int i) {
   t.h = (float8)(vload4(i + 11, p), vload4(i + 15, p));
   return t;
 }
-inline void texels_store_half(float8 x, float8 y, float8 z, float8 w, __global float* p) {
+static inline void texels_store_half(float8 x, float8 y, float8 z, float8 w, __global float* p) {
   const float8 xy0 = UNPACK_LO(x, y), xy1 = UNPACK_HI(x, y), zw0 = UNPACK_LO(z, w), zw1 = UNPACK_HI(z, w);
   const float8 a = PAIRS_LO(xy0, zw0), b = PAIRS_HI(xy0, zw0), c = PAIRS_LO(xy1, zw1), d = PAIRS_HI(xy1, zw1);
   vstore8((float8)(a.lo, b.lo), 0, p);
@@ -54,11 +54,11 @@ inline void texels_store_half(float8 x, float8 y, float8 z, float8 w, __global f
   vstore8((float8)(a.hi, b.hi), 2, p);
   vstore8((float8)(c.hi, d.hi), 3, p);
 }
-inline void texels_store(float16 x, float16 y, float16 z, float16 w, __global float* p, int i) {
+static inline void texels_store(float16 x, float16 y, float16 z, float16 w, __global float* p, int i) {
   texels_store_half(x.lo, y.lo, z.lo, w.lo, p + 4 * i);
   texels_store_half(x.hi, y.hi, z.hi, w.hi, p + 4 * i + 32);
 }
-inline float16 gather(__global const float* p, __global const int* k) {
+static inline float16 gather(__global const float* p, __global const int* k) {
   return (float16)(p[k[0]], p[k[1]], p[k[2]], p[k[3]], p[k[4]], p[k[5]], p[k[6]], p[k[7]], p[k[8]], p[k[9]], p[k[10]], p[k[11]],
                    p[k[12]], p[k[13]], p[k[14]], p[k[15]]);
 }

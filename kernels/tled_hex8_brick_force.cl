@@ -8,7 +8,7 @@
 // in the transposed order, for each node plane the cells below before the cells above, for each row the lower y before the higher;
 // last, a node takes what the cell at its own x gives before what the cell to its left gives.
 //
-// brick_neighbor: [bricks][16]. brick_fill: [bricks][256], 0 where there is no cell. brick_force: [bricks][1280] (layout.h) [N].
+// brick_neighbor: [bricks][16]. brick_rows: [bricks][2], layout.h. brick_fill: [bricks][256], 0 where there is no cell. brick_force: [bricks][1280] (layout.h) [N].
 // gradient: 1 / (4 d) [1/m]; volume: d^3 / (4 d) [m^2]; stiffness: k [N/m]. fault: per cell slot from fault_base on.
 #include "arith.cl"
 #include "texels.cl"
@@ -22,14 +22,14 @@
 #define PUT_LAST(v, p, i) ((p)[i] = (v).sf)
 #else
 // One row of sixteen work-items takes a brick and passes neighbours through local memory.
-inline float from_right(float v, float last, __local float* shared, int lane) {
+static inline float from_right(float v, float last, __local float* shared, int lane) {
   barrier(CLK_LOCAL_MEM_FENCE);
   shared[lane] = v;
   if (lane == 15) shared[16] = last;
   barrier(CLK_LOCAL_MEM_FENCE);
   return shared[lane + 1];
 }
-inline float from_left(float v, __local float* shared, int lane) {
+static inline float from_left(float v, __local float* shared, int lane) {
   barrier(CLK_LOCAL_MEM_FENCE);
   shared[lane + 1] = v;
   if (lane == 0) shared[0] = -0.0f;
@@ -47,19 +47,19 @@ inline float from_left(float v, __local float* shared, int lane) {
 typedef struct {
   real x, y, z;
 } vec3;
-inline vec3 add(vec3 a, vec3 b) {
+static inline vec3 add(vec3 a, vec3 b) {
   const vec3 r = {a.x + b.x, a.y + b.y, a.z + b.z};
   return r;
 }
-inline vec3 sub(vec3 a, vec3 b) {
+static inline vec3 sub(vec3 a, vec3 b) {
   const vec3 r = {a.x - b.x, a.y - b.y, a.z - b.z};
   return r;
 }
-inline vec3 times(real s, vec3 a) {
+static inline vec3 times(real s, vec3 a) {
   const vec3 r = {s * a.x, s * a.y, s * a.z};
   return r;
 }
-inline vec3 times_add(real s, vec3 a, vec3 b) {
+static inline vec3 times_add(real s, vec3 a, vec3 b) {
   const vec3 r = {fma(s, a.x, b.x), fma(s, a.y, b.y), fma(s, a.z, b.z)};
   return r;
 }
@@ -69,7 +69,7 @@ typedef struct {
 } face;
 
 // Back along y and x for one plane of nodes, and out.
-inline void write_plane(const face* forces, __global float* out, int plane, int lane LOCAL_PARAM) {
+static inline void write_plane(const face* forces, __global float* out, int plane, int lane LOCAL_PARAM) {
   for (int y = 0; y < 5; ++y) {
     vec3 s, d;
     if (y > 0) {
@@ -95,7 +95,7 @@ inline void write_plane(const face* forces, __global float* out, int plane, int 
   }
 }
 
-__kernel void tled_hex8_brick_force(__global const float* node_u, __global const int* brick_neighbor, __global const float* brick_fill,
+__kernel void tled_hex8_brick_force(__global const float* node_u, __global const int* brick_neighbor, __global const int* brick_rows, __global const float* brick_fill,
                                     __global float* brick_force, __global int* fault, float p0, float p1, float gradient,
                                     float volume, float stiffness, int first_brick, int fault_base, int step) {
 #if LANES == 16
@@ -107,6 +107,8 @@ __kernel void tled_hex8_brick_force(__global const float* node_u, __global const
   __global const int* neighbor = brick_neighbor + brick * PLIANT_BRICK_NEIGHBORS;
   __global float* out = brick_force + brick * PLIANT_BRICK_FORCE;
   const vec3 zero = {0.0f, 0.0f, 0.0f};
+  const face no_force = {zero, zero, zero, zero};
+  const int rows = brick_rows[2 * brick];
   face below[4], pending[4];  // displacement butterflies of the plane below; forces of the cells below on the present plane
   for (int z = 0; z < 5; ++z) {
     face above[4];
@@ -131,32 +133,29 @@ __kernel void tled_hex8_brick_force(__global const float* node_u, __global const
     face forces[4];  // on the plane z - 1: from the cells below it, then from the cells above it
     for (int y = 0; y < 4; ++y) {
       if (z > 0) {
-        const int cell = ((z - 1) * 4 + y) * 16 + lane;
-        const real fill = LOAD(brick_fill, brick * PLIANT_BRICK_NODES + cell);
-        const integer full = fill > 0.0f;
-        const vec3 mx = add(below[y].ds, above[y].ds), my = add(below[y].sd, above[y].sd), mxy = add(below[y].dd, above[y].dd);
-        const vec3 mz = sub(above[y].ss, below[y].ss), mxz = sub(above[y].ds, below[y].ds);
-        const vec3 myz = sub(above[y].sd, below[y].sd), mxyz = sub(above[y].dd, below[y].dd);
-        const real zero_h = 0.0f;  // in an fma: a bare product would be free to contract into the sums that follow
-        mat3 h;
-        h.m00 = full ? fma(gradient, mx.x, zero_h) : zero_h;
-        h.m10 = full ? fma(gradient, mx.y, zero_h) : zero_h;
-        h.m20 = full ? fma(gradient, mx.z, zero_h) : zero_h;
-        h.m01 = full ? fma(gradient, my.x, zero_h) : zero_h;
-        h.m11 = full ? fma(gradient, my.y, zero_h) : zero_h;
-        h.m21 = full ? fma(gradient, my.z, zero_h) : zero_h;
-        h.m02 = full ? fma(gradient, mz.x, zero_h) : zero_h;
-        h.m12 = full ? fma(gradient, mz.y, zero_h) : zero_h;
-        h.m22 = full ? fma(gradient, mz.z, zero_h) : zero_h;
-        const deformation d = deformation_of(h);
-        const integer bad = is_faulty(d);
-        MARK_FAULT(bad, step, fault, fault_base + brick * PLIANT_BRICK_NODES + cell)
-        const mat3 p = law_stress(d, fill * volume, p0, p1, p1 * d.j);
-        const real k = fill * stiffness;
-        const vec3 qx = {p.m00, p.m10, p.m20}, qy = {p.m01, p.m11, p.m21}, qz = {p.m02, p.m12, p.m22};
-        const vec3 qxy = times(k, mxy);
-        const face upper = {qz, times_add(k, mxz, qx), times_add(k, myz, qy), times_add(k, mxyz, qxy)};
-        const face lower = {sub(zero, qz), times_add(-k, mxz, qx), times_add(-k, myz, qy), times_add(-k, mxyz, qxy)};
+        face upper = no_force, lower = no_force;
+        if (rows >> ((z - 1) * 4 + y) & 1) {
+          const int cell = ((z - 1) * 4 + y) * 16 + lane;
+          const real fill = LOAD(brick_fill, brick * PLIANT_BRICK_NODES + cell);
+          const integer full = fill > 0.0f;
+          const vec3 mx = add(below[y].ds, above[y].ds), my = add(below[y].sd, above[y].sd), mxy = add(below[y].dd, above[y].dd);
+          const vec3 mz = sub(above[y].ss, below[y].ss), mxz = sub(above[y].ds, below[y].ds);
+          const vec3 myz = sub(above[y].sd, below[y].sd), mxyz = sub(above[y].dd, below[y].dd);
+          const real none = 0.0f;
+          // In an fma: a bare product would be free to contract into the sums that follow.
+          const real g = full ? (real)(gradient) : none;
+          const mat3 h = {fma(g, mx.x, none), fma(g, my.x, none), fma(g, mz.x, none), fma(g, mx.y, none), fma(g, my.y, none),
+                          fma(g, mz.y, none), fma(g, mx.z, none), fma(g, my.z, none), fma(g, mz.z, none)};
+          const deformation d = deformation_of(h);
+          const integer bad = full && is_faulty(d);
+          MARK_FAULT(bad, step, fault, fault_base + brick * PLIANT_BRICK_NODES + cell)
+          const mat3 p = law_stress(d, fill * volume, p0, p1, p1 * d.j);
+          const real k = fill * stiffness;
+          const vec3 qx = {p.m00, p.m10, p.m20}, qy = {p.m01, p.m11, p.m21}, qz = {p.m02, p.m12, p.m22};
+          const vec3 qxy = times(k, mxy);
+          upper = (face){qz, times_add(k, mxz, qx), times_add(k, myz, qy), times_add(k, mxyz, qxy)};
+          lower = (face){sub(zero, qz), times_add(-k, mxz, qx), times_add(-k, myz, qy), times_add(-k, mxyz, qxy)};
+        }
         forces[y].ss = z > 1 ? add(pending[y].ss, lower.ss) : lower.ss;
         forces[y].ds = z > 1 ? add(pending[y].ds, lower.ds) : lower.ds;
         forces[y].sd = z > 1 ? add(pending[y].sd, lower.sd) : lower.sd;

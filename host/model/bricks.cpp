@@ -18,6 +18,11 @@ std::int32_t place_of(const Index3& node) {
   return node[0] % kSize[0] + kSize[0] * (node[1] % kSize[1] + kSize[1] * (node[2] % kSize[2]));
 }
 
+/// Note that the row of `slot` holds a cell (kind 0) or a node (kind 1).
+void mark_row(std::int32_t slot, int kind, Model& model) {
+  model.brick_rows[2 * (slot / PLIANT_BRICK_NODES) + kind] |= 1 << slot % PLIANT_BRICK_NODES / PLIANT_BRICK_X;
+}
+
 }  // namespace
 
 std::vector<std::int32_t> place_in_bricks(const Solid& solid, std::int32_t body, std::vector<char>& in_brick, Model& model) {
@@ -33,6 +38,7 @@ std::vector<std::int32_t> place_in_bricks(const Solid& solid, std::int32_t body,
   model.brick_fill.resize(std::size_t{PLIANT_BRICK_NODES} * next, 0.0);
   model.brick_cell.resize(std::size_t{PLIANT_BRICK_NODES} * next, -1);
   model.brick_body.resize(next, body);
+  model.brick_rows.resize(std::size_t{2} * next, 0);
   for (const auto& [place, number] : bricks) {
     for (int side = 0; side < 16; ++side) {
       const int step = side < 8 ? 1 : -1;
@@ -43,7 +49,9 @@ std::vector<std::int32_t> place_in_bricks(const Solid& solid, std::int32_t body,
   std::vector<std::int32_t> slot(solid.nodes.size(), -1);
   for (std::size_t n = 0; n < solid.nodes.size(); ++n) {
     const LatticeNode& node = solid.lattice_nodes[n];
-    if (node.copy == 0) slot[n] = bricks.at(brick_of(node.index)) * PLIANT_BRICK_NODES + place_of(node.index);
+    if (node.copy != 0) continue;
+    slot[n] = bricks.at(brick_of(node.index)) * PLIANT_BRICK_NODES + place_of(node.index);
+    mark_row(slot[n], 1, model);
   }
   for (std::size_t c = 0; c < solid.cells.size(); ++c) {
     const Cell& cell = solid.cells[c];
@@ -54,6 +62,7 @@ std::vector<std::int32_t> place_in_bricks(const Solid& solid, std::int32_t body,
       continue;
     }
     model.brick_fill[place] = cell.fill;
+    mark_row(place, 0, model);
     model.brick_cell[place] = static_cast<std::int64_t>(c);
   }
   return slot;
@@ -66,6 +75,7 @@ void close_bricks(Model& model) {
   }
   model.brick_neighbor.resize(std::size_t{PLIANT_BRICK_NEIGHBORS} * (model.bricks + 1), model.bricks);
   model.brick_fill.resize(std::size_t{PLIANT_BRICK_NODES} * (model.bricks + 1), 0.0);
+  model.brick_rows.resize(std::size_t{2} * (model.bricks + 1), 0);
 }
 
 }  // namespace pliant

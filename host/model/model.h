@@ -93,6 +93,7 @@ struct Model {
   std::vector<ModelBody> bodies;
   std::int32_t bricks = 0;                        ///< without the empty one; 0 if there is none at all
   std::vector<std::int32_t> brick_neighbor;       ///< [bricks + 1][16]
+  std::vector<std::int32_t> brick_rows;           ///< [bricks + 1][2] rows with a cell, rows with a node (layout.h)
   std::vector<double> brick_fill;                 ///< [bricks + 1][256]
   std::vector<std::int64_t> brick_cell;           ///< [bricks][256] number of the cell in its body, -1: none
   std::vector<std::int32_t> brick_body;           ///< [bricks]

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <numeric>
 
 #include "model/model.h"
 #include "pliant/error.h"
@@ -89,16 +87,6 @@ void from_mesh(const Body& body, Solid& solid) {
   solid.surface_volume = signed_volume({solid.surface, solid.triangles});
 }
 
-/// Spread the lower 21 bits of v to every third bit.
-std::uint64_t spread(std::uint64_t v) {
-  v &= 0x1fffff;
-  v = (v | v << 32) & 0x1f00000000ffffULL;
-  v = (v | v << 16) & 0x1f0000ff0000ffULL;
-  v = (v | v << 8) & 0x100f00f00f00f00fULL;
-  v = (v | v << 4) & 0x10c30c30c30c30c3ULL;
-  return (v | v << 2) & 0x1249249249249249ULL;
-}
-
 }  // namespace
 
 Solid make_solid(const Body& body) {
@@ -109,28 +97,6 @@ Solid make_solid(const Body& body) {
     from_mesh(body, solid);
   }
   return solid;
-}
-
-std::vector<std::int32_t> morton_order(const std::vector<Vec3d>& points) {
-  std::vector<std::int32_t> order(points.size());
-  std::iota(order.begin(), order.end(), 0);
-  if (points.empty()) return order;
-  Vec3d lower = points[0], upper = points[0];
-  for (const Vec3d& p : points) {
-    for (int c = 0; c < 3; ++c) {
-      lower[c] = std::min(lower[c], p[c]);
-      upper[c] = std::max(upper[c], p[c]);
-    }
-  }
-  const double extent = std::max({upper[0] - lower[0], upper[1] - lower[1], upper[2] - lower[2], 1e-300});
-  std::vector<std::uint64_t> key(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    for (int c = 0; c < 3; ++c) {
-      key[i] |= spread(static_cast<std::uint64_t>((points[i][c] - lower[c]) / extent * 2097151.0)) << c;
-    }
-  }
-  std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) { return key[a] < key[b]; });
-  return order;
 }
 
 }  // namespace pliant

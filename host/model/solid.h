@@ -29,7 +29,7 @@ Solid make_solid(const Body& body);
 /// VTK's corner order of a hexahedron from bit order, and back: the same permutation both ways.
 inline constexpr std::array<int, 8> kVtkFromBits{0, 1, 3, 2, 4, 5, 7, 6};
 
-/// An order of points along a Morton curve through their bounding box.
-std::vector<std::int32_t> morton_order(const std::vector<Vec3d>& points);
+/// All nodes in Cuthill-McKee order: breadth first over the elements from a node at the far end of each connected part.
+std::vector<std::int32_t> sweep_order(const Solid& solid);
 
 }  // namespace pliant

@@ -84,11 +84,11 @@ class Builder {
     std::vector<double> u(4 * slots), w(4 * slots);
     for (std::size_t s = 0; s < slots; ++s) {
       u[4 * s + 3] = model_.mass[s] > 0 ? 1 / model_.mass[s] : 0;
-      w[4 * s + 3] = model_.damping[s];
+      w[4 * s + 3] = 1;  // the decay per step: the host writes it once the step is known
     }
     node_u_ = add(make_reals("node_u", BufferType::real4, slots, BufferRole::state, "[slots]", "m, m, m, 1/kg",
                              "node_update, brick_update, node_prescribe", std::move(u)));
-    node_w_ = add(make_reals("node_w", BufferType::real4, slots, BufferRole::state, "[slots]", "m, m, m, 1/s",
+    node_w_ = add(make_reals("node_w", BufferType::real4, slots, BufferRole::state, "[slots]", "m, m, m, 1",
                              "node_update, brick_update, node_prescribe", std::move(w)));
     node_force_ = add(make_reals("node_force", BufferType::real4, slots, BufferRole::scratch, "[slots]", "N",
                                  "node_update, brick_update (FORCE_ONLY)"));
@@ -102,10 +102,10 @@ class Builder {
     }
     // The last good state, taken at the start of every batch.
     add(make_reals("last_u", BufferType::real4, slots, BufferRole::scratch, "[slots]", "m, m, m, 1/kg", "host"));
-    add(make_reals("last_w", BufferType::real4, slots, BufferRole::scratch, "[slots]", "m, m, m, 1/s", "host"));
+    add(make_reals("last_w", BufferType::real4, slots, BufferRole::scratch, "[slots]", "m, m, m, 1", "host"));
     fault_ = add(make_ints("fault", BufferRole::scratch, "[elements]", {}, std::max(layout_.faults, 1), "element kernels"));
     summary_ = add(make_ints("fault_summary", BufferRole::scratch, "[256][2]", {}, 512, "fault_reduce"));
-    params_ = add(make_reals("step_params", BufferType::real, 8, BufferRole::control, "[8]", "s, m/s^2 (3), 1/s", "host"));
+    params_ = add(make_reals("step_params", BufferType::real, 8, BufferRole::control, "[8]", "s, m/s^2 (3), m", "host"));
     curves_ = add(make_reals("curve_value", BufferType::real, (static_cast<std::size_t>(options_.batch_steps) + 1) * model_.curves.size(),
                              BufferRole::control, "[steps + 1][curves]", "1", "host"));
   }
@@ -198,6 +198,7 @@ class Builder {
     if (brick_neighbor_ < 0) {
       const auto bricks = static_cast<std::size_t>(model_.bricks) + 1;
       brick_neighbor_ = add(make_ints("brick_neighbor", BufferRole::constant, "[bricks + 1][16]", model_.brick_neighbor));
+      brick_rows_ = add(make_ints("brick_rows", BufferRole::constant, "[bricks + 1][2]", model_.brick_rows));
       brick_fill_ = add(make_reals("brick_fill", BufferType::real, model_.brick_fill.size(), BufferRole::constant, "[bricks + 1][256]", "1",
                                    "model", model_.brick_fill));
       brick_force_ = add(make_reals("brick_force", BufferType::real, bricks * PLIANT_BRICK_FORCE, BufferRole::scratch, "[bricks + 1][1280]",
@@ -209,7 +210,7 @@ class Builder {
     const double slots_per_cell = cells == 0 ? 0 : double(b.count) * PLIANT_BRICK_NODES / double(cells);
     program_.step.push_back({"tled_hex8_brick_force",
                              {{"LAW", law_index(b.material.law)}},
-                             {buffer_arg(node_u_), buffer_arg(brick_neighbor_), buffer_arg(brick_fill_), buffer_arg(brick_force_),
+                             {buffer_arg(node_u_), buffer_arg(brick_neighbor_), buffer_arg(brick_rows_), buffer_arg(brick_fill_), buffer_arg(brick_force_),
                               buffer_arg(fault_), real_arg(b.material.mu), real_arg(second_parameter(b.material)), real_arg(1 / (4 * d)),
                               real_arg(d * d / 4), real_arg(hourglass_stiffness(b.material, d * d * d)), int_arg(b.first), int_arg(0),
                               step_arg()},
@@ -421,7 +422,7 @@ class Builder {
       for (const int force_only : {0, 1}) {
         Pass pass{"brick_update",
                   defines(force_only),
-                  {buffer_arg(node_u_), buffer_arg(node_w_), buffer_arg(brick_neighbor_), buffer_arg(brick_force_), buffer_arg(node_load_),
+                  {buffer_arg(node_u_), buffer_arg(node_w_), buffer_arg(brick_neighbor_), buffer_arg(brick_rows_), buffer_arg(brick_force_), buffer_arg(node_load_),
                    buffer_arg(node_force_), buffer_arg(params_)},
                   Shape::lanes,
                   count,
@@ -480,7 +481,12 @@ class Builder {
       curve.insert(curve.end(), c.curve.begin(), c.curve.end());
       target.insert(target.end(), {c.target[0], c.target[1], c.target[2], 0.0});
     }
-    const std::size_t count = node.size();
+    // Whole work-groups: what fills them up holds no component.
+    const std::size_t real_count = node.size(), count = (node.size() + 63) / 64 * 64;
+    node.resize(count, node.back());
+    axes.resize(count, 0);
+    curve.resize(3 * count, 0);
+    target.resize(4 * count, 0.0);
     const auto node_id = add(make_ints("prescribed_node", BufferRole::constant, "[prescribed]", std::move(node)));
     const auto axes_id = add(make_ints("prescribed_axes", BufferRole::constant, "[prescribed]", std::move(axes)));
     const auto curve_id = add(make_ints("prescribed_curve", BufferRole::constant, "[prescribed][3]", std::move(curve)));
@@ -493,7 +499,7 @@ class Builder {
                              Shape::items,
                              static_cast<std::int64_t>(count),
                              "prescribed nodes",
-                             static_cast<std::int64_t>(count),
+                             static_cast<std::int64_t>(real_count),
                              60,
                              9});
   }
@@ -503,7 +509,7 @@ class Builder {
   ProgramLayout layout_;
   Program program_;
   BufferId node_u_ = -1, node_w_ = -1, node_force_ = -1, node_load_ = -1, corner_ = -1, fault_ = -1, summary_ = -1, params_ = -1,
-           curves_ = -1, surface_x_ = -1, pressure_ = -1, brick_neighbor_ = -1, brick_fill_ = -1, brick_force_ = -1;
+           curves_ = -1, surface_x_ = -1, pressure_ = -1, brick_neighbor_ = -1, brick_rows_ = -1, brick_fill_ = -1, brick_force_ = -1;
 };
 
 }  // namespace

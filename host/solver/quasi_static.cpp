@@ -95,6 +95,7 @@ void Simulation::relax() {
   if (stiffness > 0 && inertia > 0) {
     const double material = *std::max_element(model_->damping.begin(), model_->damping.end());
     state_.damping = std::max(0.0, 2 * std::sqrt(stiffness / inertia) - material);
+    upload_decay();
   }
   const double scale = std::sqrt(std::max(external, reaction));
   residual_ = scale > 0 ? std::sqrt(residual) / scale : (residual > 0 ? 1 : 0);

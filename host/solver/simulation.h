@@ -94,6 +94,8 @@ class Simulation {
   void start(const SimulationOptions& options);
   void set_initial_increment();
   void upload_params();
+  void upload_decay();
+  [[nodiscard]] double decay(std::size_t slot) const;
   void upload_curves(std::int32_t steps);
   void change_dt(double dt);
   void adapt_dt();
@@ -114,6 +116,7 @@ class Simulation {
   BufferId u_ = -1, w_ = -1, last_u_ = -1, last_w_ = -1, force_ = -1;
   std::vector<char> free_;  ///< [slots][3] component moves freely
   double first_dt_ = 0;
+  double still_ = 0;  ///< increments below this are none [m]
   double curves_end_ = 0;
   std::optional<Divergence> divergence_;
   bool equilibrium_ = false;

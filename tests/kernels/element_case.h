@@ -83,6 +83,7 @@ inline KernelCase brick_force_case(int law, std::size_t bricks, Data data, std::
   KernelCase test("tled_hex8_brick_force", {{"LAW", law}}, Shape::bricks, bricks);
   test.reals("node_u", std::move(u))
       .ints("brick_neighbor", std::move(neighbor))
+      .ints("brick_rows", random.ints(2 * all, 0, 0xFFFF))
       .reals("brick_fill", std::move(fill))
       .reals("brick_force", random.reals(all * PLIANT_BRICK_FORCE, Data::zeros, 1))
       .ints("fault", random.faults(nodes + 32))

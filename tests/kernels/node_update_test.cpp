@@ -18,9 +18,9 @@ TEST_F(NodeUpdate, TwinGivesTheSameBits) {
 
 /// Increment and textbook form agree in exact arithmetic, and with the formula of central differences.
 TEST(NodeUpdateOracle, IsCentralDifferencesWithDamping) {
-  const double h = 1e-3, mass = 0.02, damping = 5, further = 3, load = 0.7, force = 0.25, gravity = -9.81;
+  const double h = 1e-3, mass = 0.02, c = 8, load = 0.7, force = 0.25, gravity = -9.81;
   const double u = 0.01, before = 0.008;
-  const double c = damping + further;
+  const double k = c * h / 2, decay = (1 - k) / (1 + k);
   // m (u+ - 2 u + u-) / h^2 + m c (u+ - u-) / (2 h) = R - F + m g
   const double expected =
       ((load - force) / mass + gravity + (2 * u - before) / (h * h) + c * before / (2 * h)) / (1 / (h * h) + c / (2 * h));
@@ -29,7 +29,7 @@ TEST(NodeUpdateOracle, IsCentralDifferencesWithDamping) {
     node_u[1] = u;
     node_u[3] = 1 / mass;
     node_w[1] = textbook != 0 ? before : u - before;
-    node_w[3] = damping;
+    node_w[3] = decay;
     node_load[1] = load;
     corner_force[16 + 5] = force;
     Ints index(16, 0);
@@ -37,13 +37,32 @@ TEST(NodeUpdateOracle, IsCentralDifferencesWithDamping) {
     KernelCase test("node_update", update_defines(1, 0, textbook), Shape::lanes, 16);
     test.exact("node_u", node_u).exact("node_w", node_w).ints("gather_offset", {0, 1}).ints("gather_index", index);
     test.exact("corner_force", corner_force).exact("node_load", node_load).exact("node_force", Reals(64));
-    test.exact("step_params", {h, 0, gravity, 0, further, 0, 0, 0}).integer(0);
+    test.exact("step_params", {h, 0, gravity, 0, 0, 0, 0, 0}).integer(0);
     const Reals after = run_in_double(test, "node_u"), w = run_in_double(test, "node_w");
     EXPECT_NEAR(after[1], expected, 1e-14 * std::fabs(expected));
     EXPECT_NEAR(w[1], textbook != 0 ? u : expected - u, 1e-15);
     EXPECT_EQ(after[3], 1 / mass);
     for (std::size_t i = 4; i < 64; ++i) EXPECT_EQ(after[i], 0) << "a slot without a node moved: " << i;
   }
+}
+
+/// An increment below the floor is none, one above it stays as it is.
+TEST(NodeUpdateOracle, DropsIncrementsBelowTheFloor) {
+  Reals node_u(64, 0.0), node_w(64, 0.0);
+  for (const std::size_t i : {0U, 1U}) {
+    node_u[4 * i + 3] = 1;
+    node_w[4 * i] = i == 0 ? 0.9e-9 : -1.1e-9;
+    node_w[4 * i + 3] = 1;
+  }
+  KernelCase test("node_update", update_defines(0, 0, 0), Shape::lanes, 16);
+  test.exact("node_u", node_u).exact("node_w", node_w).ints("gather_offset", {0, 0}).ints("gather_index", Ints(16, 0));
+  test.exact("corner_force", Reals(48, -0.0)).exact("node_load", Reals(64)).exact("node_force", Reals(64));
+  test.exact("step_params", {1e-3, 0, 0, 0, 1e-9, 0, 0, 0}).integer(0);
+  const Reals u = run_in_double(test, "node_u"), w = run_in_double(test, "node_w");
+  EXPECT_EQ(w[0], 0);
+  EXPECT_EQ(u[0], 0);
+  EXPECT_EQ(w[4], -1.1e-9);
+  EXPECT_EQ(u[4], -1.1e-9);
 }
 
 }  // namespace

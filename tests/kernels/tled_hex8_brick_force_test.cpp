@@ -69,13 +69,14 @@ constexpr double mu = 1052, kappa = 52249, stiffness = 12;
 /// Nodal forces through the brick kernel and brick_update.
 Reals brick_forces(const Cells& cells, int law) {
   KernelCase force("tled_hex8_brick_force", {{"LAW", law}}, Shape::bricks, 8);
-  force.exact("node_u", cells.u).ints("brick_neighbor", Grid::neighbors()).exact("brick_fill", cells.fill);
+  force.exact("node_u", cells.u).ints("brick_neighbor", Grid::neighbors()).ints("brick_rows", Ints(18, 0xFFFF)).exact("brick_fill", cells.fill);
   force.exact("brick_force", Reals(9 * PLIANT_BRICK_FORCE)).ints("fault", Ints(Grid::slots)).exact(mu).exact(kappa);
   force.exact(1 / (4 * edge)).exact(edge * edge / 4).exact(stiffness).integer(1).integer(0).step();
   KernelCase update("brick_update", update_defines(0, 1, 0), Shape::lanes, Grid::slots);
   update.exact("node_u", cells.u).exact("node_w", Reals(4 * Grid::slots)).ints("brick_neighbor", Grid::neighbors());
+  update.ints("brick_rows", Ints(18, 0xFFFF));
   update.exact("brick_force", run_in_double(force, "brick_force")).exact("node_load", Reals(4));
-  update.exact("node_force", Reals(4 * Grid::slots)).exact("step_params", step_parameters());
+  update.exact("node_force", Reals(4 * Grid::slots)).exact("step_params", step_parameters(0));
   return run_in_double(update, "node_force");
 }
 

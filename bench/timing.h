@@ -1,0 +1,19 @@
+// Timing as DESIGN section 7 asks for it: the median of several batches after warm-up.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "solver/backend.h"
+
+namespace pliant::bench {
+
+struct Timing {
+  double median = 0;  ///< [s] per run of the list of passes
+  double spread = 0;  ///< (third quartile - first quartile) / median
+  int batches = 0;
+};
+
+/// Run `passes` in batches of about `batch_seconds` until there are `batches` of them, after one batch of warm-up.
+Timing time_passes(Backend& backend, const std::vector<Pass>& passes, int batches = 9, double batch_seconds = 0.02);
+
+}  // namespace pliant::bench
