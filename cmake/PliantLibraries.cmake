@@ -65,11 +65,14 @@ if(OpenCL_FOUND)
   target_compile_definitions(pliant_backends PUBLIC PLIANT_HAVE_OPENCL)
 endif()
 
+pliant_room(pliant_bench bench pliant_io pliant_backends)
+target_include_directories(pliant_bench PUBLIC ${CMAKE_SOURCE_DIR})  # "bench/kernels.h"
+
 find_package(CLI11 REQUIRED)
 file(GLOB cli_sources CONFIGURE_DEPENDS host/cli/*.cpp)
 if(cli_sources)
   add_executable(pliant_cli ${cli_sources})
   set_target_properties(pliant_cli PROPERTIES OUTPUT_NAME pliant)
-  target_link_libraries(pliant_cli PRIVATE pliant_io pliant_backends CLI11::CLI11)
+  target_link_libraries(pliant_cli PRIVATE pliant_bench CLI11::CLI11)
   target_compile_definitions(pliant_cli PRIVATE PLIANT_VERSION="${PROJECT_VERSION}")
 endif()

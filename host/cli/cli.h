@@ -25,6 +25,7 @@ std::function<int()> setup_devices(CLI::App& app);
 std::function<int()> setup_info(CLI::App& app);
 std::function<int()> setup_run(CLI::App& app);
 std::function<int()> setup_compare(CLI::App& app);
+std::function<int()> setup_bench(CLI::App& app);
 
 inline constexpr int kInterrupted = 130;  ///< exit code after SIGINT, as shells expect
 
@@ -46,6 +47,9 @@ struct Common {
 
 /// Throws Error if `file` could not be written now. Leaves nothing behind.
 void check_writable(const std::filesystem::path& file);
+
+/// Throws Error unless `steps` is 0 to 10^15; `option` is for the message.
+void check_steps(const char* option, std::int64_t steps);
 
 /// The scene's file without folder and extension: the stem of everything a run writes.
 std::string scene_stem(const std::filesystem::path& scene);

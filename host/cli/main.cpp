@@ -20,6 +20,7 @@ constexpr pliant::cli::Command kCommands[] = {
     {"info", "What a scene holds: elements, mass, stable step, memory, passes", pliant::cli::setup_info},
     {"run", "Simulate a scene and write what comes out", pliant::cli::setup_run},
     {"compare", "Run a scene on two backends in lockstep and find the first bit that differs", pliant::cli::setup_compare},
+    {"bench", "Measure the engine itself: pliant bench kernels", pliant::cli::setup_bench},
 };
 
 std::string did_you_mean(const std::string& text, const std::vector<std::string>& words) {
@@ -27,28 +28,34 @@ std::string did_you_mean(const std::string& text, const std::vector<std::string>
   return near.empty() ? "" : fmt::format("; did you mean {}?", near);
 }
 
-/// A first word that is no command gets an answer of its own.
-void check_command(int argc, char** argv) {
+/// A first word that is neither command nor option gets an answer of its own.
+void check_first_word(int argc, char** argv) {
   std::vector<std::string> names;
   for (const auto& command : kCommands) names.emplace_back(command.name);
   if (argc < 2) throw Error(fmt::format("no command given; allowed are {} (pliant --help says more)", pliant::listed(names)));
   const std::string word = argv[1];
-  if (word.rfind('-', 0) == 0 || std::find(names.begin(), names.end(), word) != names.end()) return;
-  throw Error(fmt::format("unknown command \"{}\"; allowed are {}{}", word, pliant::listed(names), did_you_mean(word, names)));
+  const std::vector<std::string> options{"--help", "-h", "--version"};
+  const bool is_option = word.rfind('-', 0) == 0;
+  const auto& allowed = is_option ? options : names;
+  if (std::find(allowed.begin(), allowed.end(), word) != allowed.end()) return;
+  throw Error(fmt::format("unknown {} \"{}\"; allowed here are {}{}", is_option ? "option" : "command", word,
+                          pliant::listed(allowed), did_you_mean(word, allowed)));
 }
 
-/// CLI11's own words, and the option that was probably meant.
+/// What was not understood, and the option that was probably meant.
 std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
-  std::string message = error.what();
-  message.erase(std::remove(message.begin(), message.end(), '\n'), message.end());
   const auto chosen = app.get_subcommands();
   const CLI::App& used = chosen.empty() ? app : *chosen.front();
-  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
+  std::string message = error.what();
+  const auto extras = app.remaining(true);
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !extras.empty()) {
+    const auto option = std::find_if(extras.begin(), extras.end(), [](const auto& word) { return word.rfind('-', 0) == 0; });
     std::vector<std::string> known;
-    for (const auto* option : used.get_options()) known.push_back(option->get_name());
-    const auto extras = app.remaining(true);
-    if (!extras.empty()) message += did_you_mean(extras.front(), known);
+    for (const auto* candidate : used.get_options()) known.push_back(candidate->get_name());
+    message = option == extras.end() ? fmt::format("unexpected argument \"{}\"", extras.back())
+                                     : fmt::format("unknown option \"{}\"{}", *option, did_you_mean(*option, known));
   }
+  std::replace(message.begin(), message.end(), '\n', ' ');
   return fmt::format("{} (pliant {}--help lists the options)", message, chosen.empty() ? "" : used.get_name() + " ");
 }
 
@@ -64,7 +71,7 @@ int run(int argc, char** argv) {
     sub->final_callback([&chosen, action] { chosen = action; });
   }
   try {
-    check_command(argc, argv);
+    check_first_word(argc, argv);
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version

@@ -87,7 +87,7 @@ void CellSampler::cross(std::int32_t triangle) {
   }
   const double slack = 1e-13 * size * size;
   for (int axis = 0; axis < 3; ++axis) {
-    const auto [b, c] = kOthers[axis];
+    const int b = kOthers[axis][0], c = kOthers[axis][1];
     const auto edge = [&](const Vec3d& u, const Vec3d& v, double y, double z) {
       return (v[b] - u[b]) * (z - u[c]) - (v[c] - u[c]) * (y - u[b]);
     };
