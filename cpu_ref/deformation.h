@@ -31,17 +31,26 @@ inline Scalar dot3(Scalar a, Scalar x, Scalar b, Scalar y, Scalar c, Scalar z) {
   return std::fma(c, z, std::fma(b, y, a * x));
 }
 
+/// s + a x + b y + c z, the products added from left to right.
 template <class Scalar>
-inline Mat3<Scalar> cofactor(const Mat3<Scalar>& h) {
+inline Scalar add_dot3(Scalar s, Scalar a, Scalar x, Scalar b, Scalar y, Scalar c, Scalar z) {
+  return std::fma(c, z, std::fma(b, y, std::fma(a, x, s)));
+}
+
+template <class Scalar>
+[[gnu::always_inline]] inline Mat3<Scalar> cofactor(const Mat3<Scalar>& h) {
   return {minor2(h.m11, h.m22, h.m12, h.m21), minor2(h.m12, h.m20, h.m10, h.m22), minor2(h.m10, h.m21, h.m11, h.m20),
           minor2(h.m02, h.m21, h.m01, h.m22), minor2(h.m00, h.m22, h.m02, h.m20), minor2(h.m01, h.m20, h.m00, h.m21),
           minor2(h.m01, h.m12, h.m02, h.m11), minor2(h.m02, h.m10, h.m00, h.m12), minor2(h.m00, h.m11, h.m01, h.m10)};
 }
 
 template <class Scalar>
-inline Deformation<Scalar> deformation_of(const Mat3<Scalar>& h) {
+[[gnu::always_inline]] inline Deformation<Scalar> deformation_of(const Mat3<Scalar>& h) {
   Deformation<Scalar> d;
-  d.h = h;
+  // One by one: gcc keeps a copied structure in memory, and then the loop around it does not become vector instructions.
+  d.h.m00 = h.m00, d.h.m01 = h.m01, d.h.m02 = h.m02;
+  d.h.m10 = h.m10, d.h.m11 = h.m11, d.h.m12 = h.m12;
+  d.h.m20 = h.m20, d.h.m21 = h.m21, d.h.m22 = h.m22;
   d.c = cofactor(h);
   d.t = (h.m00 + h.m11) + h.m22;
   const Scalar det = dot3(h.m00, d.c.m00, h.m01, d.c.m01, h.m02, d.c.m02);
@@ -59,7 +68,7 @@ inline bool is_faulty(const Deformation<Scalar>& d) {
 
 /// a I + b H + c H^T + e C
 template <class Scalar>
-inline Mat3<Scalar> combine(const Deformation<Scalar>& d, Scalar a, Scalar b, Scalar c, Scalar e) {
+[[gnu::always_inline]] inline Mat3<Scalar> combine(const Deformation<Scalar>& d, Scalar a, Scalar b, Scalar c, Scalar e) {
   const Mat3<Scalar>&h = d.h, &k = d.c;
   const auto diagonal = [&](Scalar hii, Scalar cii) { return std::fma(e, cii, std::fma(c, hii, std::fma(b, hii, a))); };
   const auto other = [&](Scalar hij, Scalar hji, Scalar cij) { return std::fma(e, cij, std::fma(c, hji, b * hij)); };

@@ -24,12 +24,13 @@ inline Scalar inverse_cube_root(Scalar x) {
 }
 
 template <class Scalar>
-inline Mat3<Scalar> isochoric_neo_hookean_stress(const Deformation<Scalar>& d, Scalar scale, Scalar p0, Scalar pressure) {
+[[gnu::always_inline]] inline Mat3<Scalar> isochoric_neo_hookean_stress(const Deformation<Scalar>& d, Scalar scale, Scalar p0,
+                                                                        Scalar pressure) {
   const Mat3<Scalar>& h = d.h;
   const Scalar jacobian = Scalar(1) + d.j;
   const Scalar root = inverse_cube_root(jacobian);
-  Scalar hh = h.m00 * h.m00;  // |H|^2, row by row
-  for (const Scalar v : {h.m01, h.m02, h.m10, h.m11, h.m12, h.m20, h.m21, h.m22}) hh = std::fma(v, v, hh);
+  const Scalar hh = add_dot3(add_dot3(dot3(h.m00, h.m00, h.m01, h.m01, h.m02, h.m02), h.m10, h.m10, h.m11, h.m11, h.m12, h.m12),
+                             h.m20, h.m20, h.m21, h.m21, h.m22, h.m22);  // |H|^2
   const Scalar third = Scalar(1) / (Scalar(3) * jacobian);
   const Scalar excess = std::fma(Scalar(3), d.q, d.t) - hh;  // 3 J (1 - s)
   const Scalar one_minus_s = excess * third;

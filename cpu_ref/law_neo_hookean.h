@@ -5,7 +5,8 @@
 namespace pliant::ref {
 
 template <class Scalar>
-inline Mat3<Scalar> neo_hookean_stress(const Deformation<Scalar>& d, Scalar scale, Scalar p0, Scalar pressure) {
+[[gnu::always_inline]] inline Mat3<Scalar> neo_hookean_stress(const Deformation<Scalar>& d, Scalar scale, Scalar p0,
+                                                              Scalar pressure) {
   const Scalar ratio = p0 / (Scalar(1) + d.j);
   const Scalar s = scale * ratio;
   const Scalar p = scale * pressure;

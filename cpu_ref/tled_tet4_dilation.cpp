@@ -7,9 +7,15 @@ namespace pliant::ref {
 template <class Scalar>
 void tled_tet4_dilation(Range range, const Scalar* node_u, const std::int32_t* tet_nodes, const Scalar* tet_data,
                         Scalar* anp_dilation) {
-  for (std::int64_t e = range.begin; e < range.end; ++e) {
-    const Tet4<Scalar> t = tet4_load(e, node_u, tet_nodes, tet_data);
-    anp_dilation[e] = t.volume * deformation_of(t.h).j;
+  for (std::int64_t tile = range.begin; tile < range.end; tile += PLIANT_TILE) {
+    Tet4Corners<Scalar> u;
+    tet4_gather(node_u, tet_nodes + 4 * tile, u);
+    Scalar dilation[PLIANT_TILE];
+    for (int e = 0; e < PLIANT_TILE; ++e) {
+      const Tet4<Scalar> t = tet4_load(u, tet_data + PLIANT_TET_DATA_PLANES * tile, e);
+      dilation[e] = t.volume * deformation_of(t.h).j;
+    }
+    for (int e = 0; e < PLIANT_TILE; ++e) anp_dilation[tile + e] = dilation[e];
   }
 }
 
