@@ -22,9 +22,12 @@ Vec3d array_of(const Vector3d& a) { return {a[0], a[1], a[2]}; }
 double density_without_volume(const Matrix3d& f, const Material& m) {
   const double first = f.squaredNorm(), jacobian = f.determinant();
   switch (m.law) {
-    case Law::neo_hookean: return m.mu / 2 * (first - 3) - m.mu * std::log(jacobian);
-    case Law::isochoric_neo_hookean: return m.mu / 2 * (std::pow(jacobian, -2.0 / 3) * first - 3);
-    case Law::saint_venant_kirchhoff: break;
+    case Law::neo_hookean:
+      return m.mu / 2 * (first - 3) - m.mu * std::log(jacobian);
+    case Law::isochoric_neo_hookean:
+      return m.mu / 2 * (std::pow(jacobian, -2.0 / 3) * first - 3);
+    case Law::saint_venant_kirchhoff:
+      break;
   }
   const Matrix3d e = 0.5 * (f.transpose() * f - Matrix3d::Identity());
   return m.lambda / 2 * e.trace() * e.trace() + m.mu * e.squaredNorm();
@@ -32,9 +35,12 @@ double density_without_volume(const Matrix3d& f, const Material& m) {
 
 double volume_modulus(const Material& m) {
   switch (m.law) {
-    case Law::neo_hookean: return m.lambda;
-    case Law::isochoric_neo_hookean: return m.kappa;
-    case Law::saint_venant_kirchhoff: break;
+    case Law::neo_hookean:
+      return m.lambda;
+    case Law::isochoric_neo_hookean:
+      return m.kappa;
+    case Law::saint_venant_kirchhoff:
+      break;
   }
   return 0;
 }
@@ -78,7 +84,8 @@ class Sum {
     for (std::size_t e = 0; e < batch.nodes.size(); ++e) {
       const std::vector<double>& record = batch.uniform ? batch.records[0] : batch.records[e];
       if (batch.full) {
-        for (int g = 0; g < 8; ++g) point(batch.nodes[e], record.data() + 25 * g, batch.fill[e] * record[25 * g + 24], batch.material);
+        for (int g = 0; g < 8; ++g)
+          point(batch.nodes[e], record.data() + 25 * g, batch.fill[e] * record[25 * g + 24], batch.material);
       } else {
         one_point(batch.nodes[e], record, batch.fill[e], batch.material);
       }
@@ -90,7 +97,8 @@ class Sum {
     std::array<Vec3d, 8> cube;
     for (int a = 0; a < 8; ++a) cube[a] = {d * (a & 1), d * (a >> 1 & 1), d * (a >> 2 & 1)};
     const std::vector<double> record = hex8_record(cube, batch.material, "lattice cell");
-    for (std::int32_t slot = batch.first * PLIANT_BRICK_NODES; slot < (batch.first + batch.count) * PLIANT_BRICK_NODES; ++slot) {
+    for (std::int32_t slot = batch.first * PLIANT_BRICK_NODES; slot < (batch.first + batch.count) * PLIANT_BRICK_NODES;
+         ++slot) {
       if (model_.brick_fill[slot] > 0) one_point(cell_corners(slot), record, model_.brick_fill[slot], batch.material);
     }
   }
@@ -125,7 +133,8 @@ class Sum {
     out.strain += weight * density(f, material);
   }
 
-  void one_point(const std::array<std::int32_t, 8>& nodes, const std::vector<double>& record, double fill, const Material& material) {
+  void one_point(const std::array<std::int32_t, 8>& nodes, const std::vector<double>& record, double fill,
+                 const Material& material) {
     point(nodes, record.data(), fill * record[56], material);
     const Eigen::Map<const Eigen::Matrix<double, 4, 8, Eigen::RowMajor>> gamma(record.data() + 24);
     out.hourglass += fill * record[57] / 2 * (gamma * gather(nodes).transpose()).squaredNorm();

@@ -1,4 +1,5 @@
-// Energies and momenta of a state, in double and from the Model alone: nothing here shares code with the kernels or their twins.
+// Energies and momenta of a state, in double and from the Model alone: nothing here shares code with the kernels or their
+// twins.
 #pragma once
 #include <vector>
 
@@ -20,8 +21,8 @@ struct DeadLoads {
   double time = 0;
 };
 
-/// u, v: displacement [m] and velocity [m/s] by slot, [Model::slots]. An element with J <= 0 gives NaN or infinity where its law
-/// has no energy there. Densities per rest volume, with I1 = |F|^2 and J = det F (Bonet and Wood 2008):
+/// u, v: displacement [m] and velocity [m/s] by slot, [Model::slots]. An element with J <= 0 gives NaN or infinity where its
+/// law has no energy there. Densities per rest volume, with I1 = |F|^2 and J = det F (Bonet and Wood 2008):
 ///   neo-Hookean            mu/2 (I1 - 3) - mu ln J + lambda/2 (J - 1)^2
 ///   Saint-Venant-Kirchhoff lambda/2 (tr E)^2 + mu E:E,  E = (F^T F - I)/2
 ///   isochoric neo-Hookean  mu/2 (J^-2/3 I1 - 3) + kappa/2 (J - 1)^2
@@ -29,13 +30,14 @@ struct DeadLoads {
 Energies energies(const Model& model, const std::vector<Vec3d>& u, const std::vector<Vec3d>& v, const DeadLoads& loads = {});
 
 struct Momenta {
-  double mass = 0;   ///< [kg]
-  Vec3d centre{};    ///< centre of mass [m]
-  Vec3d linear{};    ///< [kg m/s]
-  Vec3d angular{};   ///< about the origin [kg m^2/s]
+  double mass = 0;  ///< [kg]
+  Vec3d centre{};   ///< centre of mass [m]
+  Vec3d linear{};   ///< [kg m/s]
+  Vec3d angular{};  ///< about the origin [kg m^2/s]
 };
 
-/// With the backward differences v = (u_n - u_(n-1)) / h central differences keep both momenta of a free body to rounding error.
+/// With the backward differences v = (u_n - u_(n-1)) / h central differences keep both momenta of a free body to rounding
+/// error.
 Momenta momenta(const Model& model, const std::vector<Vec3d>& u, const std::vector<Vec3d>& v);
 
 /// Values by slot from values by body and node (Simulation::displacements, velocities); 0 where there is no node.

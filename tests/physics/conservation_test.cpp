@@ -46,12 +46,13 @@ TEST_P(Conservation, FreeSpinningBody) {
     const Momenta after = momenta_of(*sim);
     const std::string name = name_of(cut);
     // Linear momentum: float rounds every increment, a random walk over 4000 steps.
-    check(name + " linear momentum", (eigen(after.linear) - eigen(before.linear)).norm() / eigen(before.linear).norm(), bound(2e-5, 1e-12));
+    check(name + " linear momentum", (eigen(after.linear) - eigen(before.linear)).norm() / eigen(before.linear).norm(),
+          bound(5e-6, 1e-13));
     // About the centre of mass, from the angular momentum about the origin.
     const auto spin = [](const Momenta& m) { return Vector3d(eigen(m.angular) - eigen(m.centre).cross(eigen(m.linear))); };
-    check(name + " angular momentum", (spin(after) - spin(before)).norm() / spin(before).norm(), bound(2e-4, 1e-11));
-    check(name + " largest change of energy in 4000 steps", drift, 0.02);
-    check(name + " mean change of energy in the last quarter", late, 0.01);
+    check(name + " angular momentum", (spin(after) - spin(before)).norm() / spin(before).norm(), bound(2e-5, 1e-13));
+    check(name + " largest change of energy in 4000 steps", drift, 2e-5);
+    check(name + " mean change of energy in the last quarter", late, 2e-5);
   }
 }
 
@@ -79,9 +80,9 @@ TEST_P(Conservation, EnergyOfAVibratingBody) {
       (i < 50 ? early : late) += e.total() / 50;
     }
     const std::string name = name_of(cut);
-    check(name + " swing of the total over the kinetic energy", (high - low) / largest_kinetic, 0.02);
-    check(name + " drift between the halves of 4000 steps", (late - early) / largest_kinetic, 0.002);
-    check(name + " total against its start, zero", late / largest_kinetic, 0.02);
+    check(name + " swing of the total over the kinetic energy", (high - low) / largest_kinetic, 2e-5);
+    check(name + " drift between the halves of 4000 steps", (late - early) / largest_kinetic, bound(1e-5, 1e-6));
+    check(name + " total against its start, zero", late / largest_kinetic, 2e-5);
   }
 }
 
@@ -96,7 +97,8 @@ TEST_P(Conservation, FreeFall) {
     sim->advance(2048);
     double error = 0;
     for (const Vec3d& u : sim->displacements(0)) error = std::max(error, (eigen(u) - 0.5 * eigen(scene.gravity)).norm());
-    check(std::string(name_of(cut)) + " fall of g t^2 / 2 in 1 s, 2048 steps", error / (0.5 * eigen(scene.gravity).norm()), bound(1e-5, 1e-9));
+    check(std::string(name_of(cut)) + " fall of g t^2 / 2 in 1 s, 2048 steps", error / (0.5 * eigen(scene.gravity).norm()),
+          bound(1e-5, 1e-9));
   }
 }
 
@@ -127,7 +129,9 @@ TEST_P(Conservation, DampedVibration) {
   scene.bodies = {body};
   scene.dt = 2e-4;
   auto sim = simulate(scene, GetParam());
-  write_texels(*sim, "node_u", displaced(sim->model(), [](const Vector3d& x) { return Vector3d(1e-4 * std::sin(M_PI / 2 * x[0] / 0.1), 0, 0); }));
+  write_texels(*sim, "node_u", displaced(sim->model(), [](const Vector3d& x) {
+    return Vector3d(1e-4 * std::sin(M_PI / 2 * x[0] / 0.1), 0, 0);
+  }));
   write_texels(*sim, "node_w", std::vector<Vec3d>(sim->model().slots));
   // Peaks of the tip's motion, with a parabola through the largest of three samples.
   std::vector<std::array<double, 2>> peaks;
@@ -150,7 +154,7 @@ TEST_P(Conservation, DampedVibration) {
   }
   ASSERT_EQ(peaks.size(), 4u);
   const double rate = std::log(peaks[0][1] / peaks[3][1]) / (peaks[3][0] - peaks[0][0]);
-  check_relative("decay rate c / 2 [1/s]", rate, 4, bound(2e-2, 1e-2));
+  check_relative("decay rate c / 2 [1/s]", rate, 4, 1e-3);
 }
 
 TEST_P(Conservation, PrescribedMotion) {
@@ -184,7 +188,8 @@ TEST_P(Conservation, PrescribedMotion) {
         sim->advance(7);
         const auto u = sim->displacements(0);
         for (std::size_t n = 0; n < u.size(); ++n) {
-          if (sim->model().bodies[0].rest[n][0] > 0.0999) error = std::max(error, std::abs(u[n][0] - 0.01 * value(sim->time())));
+          if (sim->model().bodies[0].rest[n][0] > 0.0999)
+            error = std::max(error, std::abs(u[n][0] - 0.01 * value(sim->time())));
           if (sim->model().bodies[0].rest[n][0] < 1e-6) error = std::max(error, std::abs(u[n][0]));
         }
       }
@@ -217,7 +222,8 @@ TEST_P(Conservation, TotalOfLoads) {
     force.where = face(0, 0.15);
     force.total = {1, -2, 3};
     body.forces = {force};
-    check(name + " total of a force on a face", (loads_at(body) - Vector3d(1, -2, 3)).norm() / std::sqrt(14.0), bound(1e-5, 1e-12));
+    check(name + " total of a force on a face", (loads_at(body) - Vector3d(1, -2, 3)).norm() / std::sqrt(14.0),
+          bound(1e-5, 1e-12));
     const double read = is_lattice(cut) ? 1e-7 : 1e-12;  // surface files are read in float
     body = plain_body;
     Pressure pressure;
@@ -236,7 +242,9 @@ TEST_P(Conservation, TotalOfLoads) {
 /// Negative pressure on one face of a block on rollers: P = p times the area ratio, with the closed form's lateral stretch.
 TEST_P(Conservation, PressurePullsABlock) {
   const Material m = material_young(Law::neo_hookean, 3000, 0.3);
-  const auto lateral = [&](double s) { return root(0.2, 3, [&](double l) { return first_piola(Vector3d(s, l, l).asDiagonal(), m)(1, 1); }); };
+  const auto lateral = [&](double s) {
+    return root(0.2, 3, [&](double l) { return first_piola(Vector3d(s, l, l).asDiagonal(), m)(1, 1); });
+  };
   const double p = 600;
   // Cauchy stress p on the deformed area: P11 = p lateral^2.
   const double stretch = root(1, 2, [&](double s) {
@@ -265,8 +273,9 @@ TEST_P(Conservation, PressurePullsABlock) {
       mean += u[n][0];
       ++count;
     }
-    // Triangles share their force equally, so corner nodes of a regular quad face are not loaded evenly: a tenth of a percent.
-    check_relative(std::string(name_of(cut)) + " stretch under follower pressure", 1 + mean / count, stretch, 5e-3);
+    // Consistent for tetrahedra; the two triangles of a hexahedron's face load its corners unevenly.
+    check_relative(std::string(name_of(cut)) + " stretch under follower pressure", 1 + mean / count, stretch,
+                   is_tet(cut) ? bound(1e-5, 1e-8) : 1e-3);
   }
 }
 

@@ -60,7 +60,8 @@ inline void check(const std::string& what, double error, double bound) {
 }
 
 inline void check_relative(const std::string& what, double value, double exact, double bound) {
-  std::printf("  %-58s %14.7g  exact %14.7g  error %10.3e  bound %9.2e\n", what.c_str(), value, exact, value / exact - 1, bound);
+  std::printf("  %-58s %14.7g  exact %14.7g  error %10.3e  bound %9.2e\n", what.c_str(), value, exact, value / exact - 1,
+              bound);
   EXPECT_LE(std::abs(value - exact), bound * std::abs(exact)) << what;
 }
 
@@ -92,30 +93,41 @@ inline TempFolder& folder() {
 /// What a body is made of.
 enum class Cut { tet4, tet4anp, hex8, hex8full, hex8_bricks, hex8full_lattice };
 inline const std::vector<Cut>& all_cuts() {
-  static const std::vector<Cut> cuts{Cut::tet4, Cut::tet4anp, Cut::hex8, Cut::hex8full, Cut::hex8_bricks, Cut::hex8full_lattice};
+  static const std::vector<Cut> cuts{Cut::tet4,     Cut::tet4anp,     Cut::hex8,
+                                     Cut::hex8full, Cut::hex8_bricks, Cut::hex8full_lattice};
   return cuts;
 }
 inline bool is_lattice(Cut cut) { return cut == Cut::hex8_bricks || cut == Cut::hex8full_lattice; }
 inline bool is_tet(Cut cut) { return cut == Cut::tet4 || cut == Cut::tet4anp; }
 inline const char* name_of(Cut cut) {
   switch (cut) {
-    case Cut::tet4: return "tet4";
-    case Cut::tet4anp: return "tet4anp";
-    case Cut::hex8: return "hex8";
-    case Cut::hex8full: return "hex8full";
-    case Cut::hex8_bricks: return "hex8 bricks";
-    case Cut::hex8full_lattice: return "hex8full lattice";
+    case Cut::tet4:
+      return "tet4";
+    case Cut::tet4anp:
+      return "tet4anp";
+    case Cut::hex8:
+      return "hex8";
+    case Cut::hex8full:
+      return "hex8full";
+    case Cut::hex8_bricks:
+      return "hex8 bricks";
+    case Cut::hex8full_lattice:
+      return "hex8full lattice";
   }
   return "";
 }
 inline ElementKind kind_of(Cut cut) {
   switch (cut) {
-    case Cut::tet4: return ElementKind::tet4;
-    case Cut::tet4anp: return ElementKind::tet4anp;
+    case Cut::tet4:
+      return ElementKind::tet4;
+    case Cut::tet4anp:
+      return ElementKind::tet4anp;
     case Cut::hex8:
-    case Cut::hex8_bricks: return ElementKind::hex8;
+    case Cut::hex8_bricks:
+      return ElementKind::hex8;
     case Cut::hex8full:
-    case Cut::hex8full_lattice: return ElementKind::hex8full;
+    case Cut::hex8full_lattice:
+      return ElementKind::hex8full;
   }
   return ElementKind::hex8;
 }

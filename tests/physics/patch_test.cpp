@@ -1,4 +1,5 @@
-// Patch tests on distorted meshes, rigid motions, nodal forces against the energy's differences, and the single hexahedron's modes.
+// Patch tests on distorted meshes, rigid motions, nodal forces against the energy's differences, and the single hexahedron's
+// modes.
 #include "physics/harness.h"
 
 namespace pliant::physics {
@@ -36,7 +37,8 @@ TEST_P(Patch, InnerNodesFollowAffineBoundary) {
       settle(*sim);
       const auto u = sim->displacements(0);
       double error = 0;
-      for (std::size_t n = 0; n < u.size(); ++n) error = std::max(error, (eigen(u[n]) - h * eigen(free.bodies[0].rest[n])).norm());
+      for (std::size_t n = 0; n < u.size(); ++n)
+        error = std::max(error, (eigen(u[n]) - h * eigen(free.bodies[0].rest[n])).norm());
       const std::string name = std::string(name_of(cut)) + " " + to_string(law);
       check(name + " displacement of inner nodes / size", error, bound(2e-6, 1e-9));
       const Matrix3d p = mean_stress(sim->model(), forces(*sim), 1), exact = first_piola(Matrix3d::Identity() + h, m);
@@ -44,8 +46,10 @@ TEST_P(Patch, InnerNodesFollowAffineBoundary) {
       // Uniform stress: the energy is that of the affine field, which is the least for these boundary values.
       const auto zero = std::vector<Vec3d>(sim->model().slots);
       const Energies found = energies(sim->model(), read_texels(*sim, "node_u"), zero);
-      const Energies affine = energies(sim->model(), displaced(sim->model(), [&](const Vector3d& x) { return Vector3d(h * x); }), zero);
-      check(name + " energy above the affine field's", (found.strain + found.hourglass) / affine.strain - 1, bound(1e-6, 1e-12));
+      const Energies affine =
+          energies(sim->model(), displaced(sim->model(), [&](const Vector3d& x) { return Vector3d(h * x); }), zero);
+      check(name + " energy above the affine field's", (found.strain + found.hourglass) / affine.strain - 1,
+            bound(1e-6, 1e-12));
     }
   }
 }
@@ -60,7 +64,8 @@ TEST_P(Patch, RigidMotionIsForceFree) {
       double worst = 0;
       for (const double angle : {0.3, 1.5707963267948966, 2.9, 3.141592653589793}) {
         const Matrix3d r = Eigen::AngleAxisd(angle, Vector3d(0.3, -1, 0.7).normalized()).toRotationMatrix();
-        write_texels(*sim, "node_u", displaced(sim->model(), [&](const Vector3d& x) { return Vector3d(r * x - x + Vector3d(2, -3, 1)); }));
+        write_texels(*sim, "node_u",
+                     displaced(sim->model(), [&](const Vector3d& x) { return Vector3d(r * x - x + Vector3d(2, -3, 1)); }));
         worst = std::max(worst, largest(forces(*sim)));
       }
       const std::string name = std::string(name_of(cut)) + " " + to_string(law);
@@ -85,7 +90,8 @@ TEST_P(Patch, ForceIsTheEnergysGradient) {
       auto sim = simulate(scene, GetParam());
       std::mt19937 random(11);
       const auto noise = [&] { return (static_cast<double>(random()) / 4294967295.0 - 0.5) * 0.12; };
-      auto u = displaced(sim->model(), [&](const Vector3d& x) { return Vector3d(gradient() * x + Vector3d(noise(), noise(), noise())); });
+      auto u = displaced(sim->model(),
+                         [&](const Vector3d& x) { return Vector3d(gradient() * x + Vector3d(noise(), noise(), noise())); });
       write_texels(*sim, "node_u", u);
       u = read_texels(*sim, "node_u");
       const auto f = forces(*sim);
@@ -104,7 +110,8 @@ TEST_P(Patch, ForceIsTheEnergysGradient) {
           worst = std::max(worst, std::abs(f[slot][c] + (w[1] - w[0]) / (2 * h)));
         }
       }
-      check(std::string(name_of(cut)) + " " + to_string(law) + " force against differences of energy", worst / largest(f), bound(5e-6, 2e-7));
+      check(std::string(name_of(cut)) + " " + to_string(law) + " force against differences of energy", worst / largest(f),
+            bound(5e-6, 2e-7));
     }
   }
 }

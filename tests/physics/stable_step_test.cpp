@@ -1,4 +1,5 @@
-// The stable step: power iteration against the eigenproblem in Eigen, the measured limit, the element bound, fill, and divergence.
+// The stable step: power iteration against the eigenproblem in Eigen, the measured limit, the element bound, fill, and
+// divergence.
 #include "physics/harness.h"
 
 namespace pliant::physics {
@@ -91,13 +92,14 @@ TEST_P(StableStep, MeasuredLimit) {
       std::mt19937 random(5);
       const auto noise = [&] { return (static_cast<double>(random()) / 4294967295.0 - 0.5) * 1e-6; };
       write_texels(*sim, "node_u", displaced(sim->model(), [&](const Vector3d& x) {
-                     return x[0] < 1e-6 ? Vector3d(0, 0, 0) : Vector3d(noise(), noise(), noise());
-                   }));
+        return x[0] < 1e-6 ? Vector3d(0, 0, 0) : Vector3d(noise(), noise(), noise());
+      }));
       write_texels(*sim, "node_w", std::vector<Vec3d>(sim->model().slots));
       sim->advance(600);
       growth[side] = sim->divergence() ? HUGE_VAL : largest(sim->displacements(0)) / 1e-6;
     }
-    std::printf("  %-40s growth of noise in 600 steps: %.3g at 0.98, %.3g at 1.05 of the limit\n", name_of(cut), growth[0], growth[1]);
+    std::printf("  %-40s growth of noise in 600 steps: %.3g at 0.98, %.3g at 1.05 of the limit\n", name_of(cut), growth[0],
+                growth[1]);
     EXPECT_LT(growth[0], 20);
     EXPECT_GT(growth[1], 1e3);
   }
@@ -112,8 +114,9 @@ TEST_P(StableStep, IndependentOfFill) {
       Body body = box_body({{5, 5, 5}, 0.02}, cut, m);
       if (sliver) {  // the tips and edges of an octahedron fill their cells little
         const double r = 0.0525;
-        body.surface = save(TriangleMesh{{{r, 0, 0}, {-r, 0, 0}, {0, r, 0}, {0, -r, 0}, {0, 0, r}, {0, 0, -r}},
-                                         {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}});
+        body.surface =
+            save(TriangleMesh{{{r, 0, 0}, {-r, 0, 0}, {0, r, 0}, {0, -r, 0}, {0, 0, r}, {0, 0, -r}},
+                              {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}});
       }
       Scene scene;
       scene.bodies = {body};
@@ -124,7 +127,8 @@ TEST_P(StableStep, IndependentOfFill) {
         for (const double f : b.fill) fill[sliver] = std::min(fill[sliver], f);
       }
     }
-    std::printf("  %-20s smallest fill %.3g and %.3g, stable step %.6g and %.6g s\n", name_of(cut), fill[0], fill[1], dt[0], dt[1]);
+    std::printf("  %-20s smallest fill %.3g and %.3g, stable step %.6g and %.6g s\n", name_of(cut), fill[0], fill[1], dt[0],
+                dt[1]);
     EXPECT_LT(fill[1], 0.1);
     EXPECT_GT(dt[1], 0.9 * dt[0]);
   }
@@ -163,7 +167,8 @@ TEST_P(StableStep, RelaxationAgainstLinearStatics) {
       for (const NodeForce& f : sim->model().forces) load[i] += f.slot == slot ? f.force[component] : 0;
     }
     const Eigen::VectorXd exact = linear.stiffness.ldlt().solve(load);
-    check(std::string(name_of(cut)) + " displacement against K u = R", (found - exact).norm() / exact.norm(), bound(2e-4, 1e-4));
+    check(std::string(name_of(cut)) + " displacement against K u = R", (found - exact).norm() / exact.norm(),
+          bound(2e-4, 1e-4));
     std::printf("  %-58s %lld steps\n", "", static_cast<long long>(sim->step()));
   }
 }

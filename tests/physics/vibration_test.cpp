@@ -30,7 +30,9 @@ TEST_P(Vibration, ConfinedColumn) {
       Scene scene;
       scene.bodies = {body};
       auto sim = simulate(scene, GetParam());
-      write_texels(*sim, "node_u", displaced(sim->model(), [](const Vector3d& x) { return Vector3d(1e-4 * std::sin(M_PI / 2 * x[0] / 0.1), 0, 0); }));
+      write_texels(*sim, "node_u", displaced(sim->model(), [](const Vector3d& x) {
+        return Vector3d(1e-4 * std::sin(M_PI / 2 * x[0] / 0.1), 0, 0);
+      }));
       write_texels(*sim, "node_w", std::vector<Vec3d>(sim->model().slots));
       std::vector<std::array<double, 2>> samples;
       while (sim->time() < 0.6) {
@@ -40,7 +42,8 @@ TEST_P(Vibration, ConfinedColumn) {
         for (std::size_t n = 0; n < u.size(); ++n) tip += sim->model().bodies[0].rest[n][0] > 0.0999 ? u[n][0] : 0;
         samples.push_back({sim->time(), tip});
       }
-      check_relative(std::string(name_of(cut)) + " " + to_string(law) + " first frequency [Hz]", 1 / period(samples, 0), exact, 0.01);
+      check_relative(std::string(name_of(cut)) + " " + to_string(law) + " first frequency [Hz]", 1 / period(samples, 0), exact,
+                     0.01);
     }
   }
 }
@@ -117,11 +120,14 @@ double tip_drop(const char* backend, const Beam& beam, double load) {
   return drop();
 }
 
-// Which cells bend within 2 %: hex8 with a single layer; hex8full, whose corners cannot follow the curvature, only with many layers or
-// with cells much shorter than high; linear tetrahedra with eight to twelve layers, because each has one strain. tet4anp equals tet4
-// here: at nu = 0 it has no volumetric term to average.
+// Which cells bend within 2 %: hex8 with a single layer; hex8full, whose corners cannot follow the curvature, only with many
+// layers or with cells much shorter than high; linear tetrahedra with eight to twelve layers, because each has one strain.
+// tet4anp equals tet4 here: at nu = 0 it has no volumetric term to average.
 std::vector<Beam> beams(double load, bool costly) {
-  std::vector<Beam> all{{Cut::hex8_bricks, 20, {1, 1}, 20}, {Cut::hex8_bricks, 40, {2, 2}, 20}, {Cut::hex8, 20, {1, 1}, 20}, {Cut::hex8full, 120, {1, 1}, 20}};
+  std::vector<Beam> all{{Cut::hex8_bricks, 20, {1, 1}, 20},
+                        {Cut::hex8_bricks, 40, {2, 2}, 20},
+                        {Cut::hex8, 20, {1, 1}, 20},
+                        {Cut::hex8full, 120, {1, 1}, 20}};
   if (costly && load == 1) all.push_back({Cut::tet4, 108, {12, 1}, 10});
   if (costly && load == 2) all.push_back({Cut::hex8full_lattice, 60, {5, 5}, 12});
   if (costly && load > 1) all.push_back({Cut::tet4, 80, {8, 1}, 10});
@@ -134,8 +140,9 @@ TEST_P(Vibration, Elastica) {
     check_relative("closed form against the published figure", exact, published, 1e-5);
     // The costly meshes run on one backend; the others compute the same bits, or the same to seven digits.
     for (const Beam& beam : beams(load, std::string(GetParam()) == "cpu")) {
-      const std::string name = std::string(name_of(beam.cut)) + " " + std::to_string(beam.along) + " x " + std::to_string(beam.across[0]) +
-                               " x " + std::to_string(beam.across[1]) + ", load " + std::to_string(static_cast<int>(load)) + ": drop / L";
+      const std::string name = std::string(name_of(beam.cut)) + " " + std::to_string(beam.along) + " x " +
+                               std::to_string(beam.across[0]) + " x " + std::to_string(beam.across[1]) + ", load " +
+                               std::to_string(static_cast<int>(load)) + ": drop / L";
       check_relative(name, tip_drop(GetParam(), beam, load), exact, 0.02);
     }
   }
