@@ -1,4 +1,5 @@
-// Triangle surfaces through assimp. What assimp hands over is checked here: it may throw, and it passes garbage numbers on.
+// Triangle surfaces: PLY by our own reader (assimp hangs or aborts on damaged ones), the rest through assimp. What assimp hands
+// over is checked here: it may throw, and it passes garbage numbers on.
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
@@ -13,6 +14,7 @@
 
 #include "model/mesh.h"
 #include "model/orient.h"
+#include "model/read_ply.h"
 #include "model/vec.h"
 #include "pliant/error.h"
 
@@ -31,6 +33,7 @@ void check_file(const std::filesystem::path& file) {
   const auto status = std::filesystem::status(file, code);
   if (!std::filesystem::exists(status)) fail(file, "no such file");
   if (std::filesystem::is_directory(status)) fail(file, "is a folder; a mesh file (OBJ, STL, PLY, 3DS, glTF) is needed");
+  if (!std::filesystem::is_regular_file(status)) fail(file, "is no regular file");
   std::ifstream in(file, std::ios::binary);
   if (!in) fail(file, "cannot be opened for reading");
   if (in.peek() == std::ifstream::traits_type::eof()) fail(file, "is empty");
@@ -58,6 +61,8 @@ void check_obj_numbers(const std::filesystem::path& file) {
 }
 
 using Matrix = std::array<double, 12>;  // rows of the affine part
+
+constexpr Matrix kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
 Matrix multiply(const Matrix& a, const aiMatrix4x4& b) {
   Matrix out{};
@@ -106,8 +111,7 @@ struct Reader {
   Welder welder;
   std::int64_t vertices = 0;  // read so far, for messages
 
-  Vec3d place(const Matrix& m, const aiVector3D& v, std::int64_t index) const {
-    const Vec3d local{static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+  Vec3d place(const Matrix& m, const Vec3d& local, std::int64_t index) const {
     Vec3d out{};
     for (int r = 0; r < 3; ++r) {
       out[r] = scale * (m[4 * r] * local[0] + m[4 * r + 1] * local[1] + m[4 * r + 2] * local[2] + m[4 * r + 3]) + translate[r];
@@ -119,11 +123,20 @@ struct Reader {
     return out;
   }
 
+  void mesh(const TriangleMesh& ply) {
+    std::vector<Vec3d> points;
+    points.reserve(ply.vertices.size());
+    for (const Vec3d& v : ply.vertices) points.push_back(place(kIdentity, v, vertices++));
+    for (const auto& t : ply.triangles) welder.triangle({points[t[0]], points[t[1]], points[t[2]]});
+  }
+
   void mesh(const Matrix& m, const aiMesh& part) {
     std::vector<Vec3d> points;
     points.reserve(part.mNumVertices);
-    for (unsigned v = 0; v < part.mNumVertices; ++v) points.push_back(place(m, part.mVertices[v], vertices + v));
-    vertices += part.mNumVertices;
+    for (unsigned i = 0; i < part.mNumVertices; ++i) {
+      const aiVector3D& v = part.mVertices[i];
+      points.push_back(place(m, {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)}, vertices++));
+    }
     for (unsigned f = 0; f < part.mNumFaces; ++f) {
       const aiFace& face = part.mFaces[f];
       if (face.mNumIndices != 3) continue;  // points and lines
@@ -151,15 +164,10 @@ std::string lower_extension(const std::filesystem::path& file) {
   return extension;
 }
 
-}  // namespace
-
-TriangleMesh read_surface(const std::filesystem::path& file, double scale, const Vec3d& translate) {
-  check_file(file);
-  if (!std::isfinite(scale) || scale == 0)
-    fail(file, fmt::format("scale is {}; a finite number other than 0 is needed", scale));
-  if (lower_extension(file) == ".obj") check_obj_numbers(file);
-  Assimp::Importer importer;
+const aiScene* import(const std::filesystem::path& file, Assimp::Importer& importer) {
   const aiScene* scene = nullptr;
+  // Unknown extensions are recognised by content; no file may reach this one.
+  importer.UnregisterLoader(importer.GetImporter("ply"));
   try {
     scene = importer.ReadFile(file.string(), aiProcess_Triangulate);
   } catch (const std::exception& e) {
@@ -167,8 +175,25 @@ TriangleMesh read_surface(const std::filesystem::path& file, double scale, const
   }
   if (scene == nullptr) fail(file, fmt::format("cannot be read: {}", importer.GetErrorString()));
   if (scene->mRootNode == nullptr || scene->mNumMeshes == 0) fail(file, "holds no mesh");
-  Reader reader{file, scale, translate, scene, {}};
-  reader.node({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, *scene->mRootNode);
+  return scene;
+}
+
+}  // namespace
+
+TriangleMesh read_surface(const std::filesystem::path& file, double scale, const Vec3d& translate) {
+  check_file(file);
+  if (!std::isfinite(scale) || scale == 0)
+    fail(file, fmt::format("scale is {}; a finite number other than 0 is needed", scale));
+  const std::string extension = lower_extension(file);
+  if (extension == ".obj") check_obj_numbers(file);
+  Reader reader{file, scale, translate, nullptr, {}};
+  if (extension == ".ply") {
+    reader.mesh(read_ply(file));
+  } else {
+    Assimp::Importer importer;
+    reader.scene = import(file, importer);
+    reader.node(kIdentity, *reader.scene->mRootNode);
+  }
   TriangleMesh& mesh = reader.welder.mesh;
   if (mesh.triangles.empty()) {
     if (reader.welder.degenerate == 0) fail(file, fmt::format("holds {} vertices but no triangle", reader.vertices));

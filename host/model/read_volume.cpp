@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <fstream>
 #include <numeric>
 #include <system_error>
 
@@ -16,37 +15,20 @@ namespace fs = std::filesystem;
 using volume_file::RawMesh;
 namespace {
 
-std::string load(const fs::path& file) {
-  std::error_code code;
-  const fs::file_status status = fs::status(file, code);
-  if (!fs::exists(status)) throw Error(fmt::format("cannot read mesh '{}': no such file", file.string()));
-  if (!fs::is_regular_file(status)) throw Error(fmt::format("cannot read mesh '{}': it is not a file", file.string()));
-  const std::uintmax_t size = fs::file_size(file, code);
-  std::ifstream in(file, std::ios::binary);
-  if (code || !in) throw Error(fmt::format("cannot read mesh '{}': it cannot be opened", file.string()));
-  std::string data(static_cast<std::size_t>(size), '\0');
-  in.read(data.data(), static_cast<std::streamsize>(data.size()));
-  if (static_cast<std::uintmax_t>(in.gcount()) != size) {
-    throw Error(fmt::format("cannot read mesh '{}': {} of {} bytes could be read", file.string(), in.gcount(), size));
-  }
-  if (data.empty()) throw Error(fmt::format("cannot read mesh '{}': it is empty", file.string()));
-  return data;
-}
-
 RawMesh read_any(const fs::path& file) {
   std::string ext = file.extension().string();
   std::transform(ext.begin(), ext.end(), ext.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (ext == ".node" || ext == ".ele") {
     fs::path base = file;
-    const std::string node = load(base.replace_extension(".node"));
-    return volume_file::read_tetgen(base, node, load(base.replace_extension(".ele")));
+    const std::string node = volume_file::load(base.replace_extension(".node"));
+    return volume_file::read_tetgen(base, node, volume_file::load(base.replace_extension(".ele")));
   }
   if (ext != ".msh" && ext != ".vtk" && ext != ".vtu") {
     throw Error(
         fmt::format("cannot read mesh '{}': extension '{}'; allowed are .msh (Gmsh), .vtk, .vtu, .node and .ele (TetGen)",
                     file.string(), ext));
   }
-  const std::string data = load(file);
+  const std::string data = volume_file::load(file);
   return ext == ".msh"   ? volume_file::read_gmsh(file, data)
          : ext == ".vtk" ? volume_file::read_vtk(file, data)
                          : volume_file::read_vtu(file, data);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <charconv>
+#include <fstream>
+#include <system_error>
 
 #include "pliant/error.h"
 
@@ -12,14 +14,39 @@ namespace {
 
 bool blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
-/// What a message may quote of a file that can hold anything.
-std::string quoted(std::string_view word) {
+}  // namespace
+
+std::string load(const std::filesystem::path& file) {
+  std::error_code code;
+  const std::filesystem::file_status status = std::filesystem::status(file, code);
+  if (!std::filesystem::exists(status)) throw Error(fmt::format("cannot read mesh '{}': no such file", file.string()));
+  if (!std::filesystem::is_regular_file(status))
+    throw Error(fmt::format("cannot read mesh '{}': it is not a file", file.string()));
+  const std::uintmax_t size = std::filesystem::file_size(file, code);
+  std::ifstream in(file, std::ios::binary);
+  if (code || !in) throw Error(fmt::format("cannot read mesh '{}': it cannot be opened", file.string()));
+  std::string data(static_cast<std::size_t>(size), '\0');
+  in.read(data.data(), static_cast<std::streamsize>(data.size()));
+  if (static_cast<std::uintmax_t>(in.gcount()) != size) {
+    throw Error(fmt::format("cannot read mesh '{}': {} of {} bytes could be read", file.string(), in.gcount(), size));
+  }
+  if (data.empty()) throw Error(fmt::format("cannot read mesh '{}': it is empty", file.string()));
+  return data;
+}
+
+std::string shown(std::string_view word) {
   std::string out;
   for (const char c : word.substr(0, 40)) out += c >= ' ' && c <= '~' ? c : '?';
   return word.size() > 40 ? out + "..." : out;
 }
 
-}  // namespace
+std::optional<std::int64_t> parse_integer(std::string_view word) {
+  std::int64_t value = 0;
+  const char* from = word.data() + (word.starts_with('+') ? 1 : 0);
+  const auto [end, code] = std::from_chars(from, word.data() + word.size(), value);
+  if (code != std::errc{} || end != word.data() + word.size()) return std::nullopt;
+  return value;
+}
 
 bool Cursor::at_end() {
   while (at_ < data_.size()) {
@@ -55,11 +82,9 @@ std::string_view Cursor::line() {
 
 std::int64_t Cursor::integer(const char* what) {
   const std::string_view word = token(what);
-  std::int64_t value = 0;
-  const char* from = word.data() + (word.front() == '+' ? 1 : 0);
-  const auto [end, code] = std::from_chars(from, word.data() + word.size(), value);
-  if (code != std::errc{} || end != word.data() + word.size()) fail(fmt::format("expected {}, found '{}'", what, quoted(word)));
-  return value;
+  const auto value = parse_integer(word);
+  if (!value) fail(fmt::format("expected {}, found '{}'", what, shown(word)));
+  return *value;
 }
 
 double Cursor::real(const char* what) {
@@ -69,7 +94,7 @@ double Cursor::real(const char* what) {
   const auto [end, code] = std::from_chars(from, word.data() + word.size(), value);
   // A magnitude outside the range of double reads as zero or infinity would in any other reader; neither belongs in a mesh.
   if (code != std::errc{} || end != word.data() + word.size()) {
-    fail(fmt::format("expected {}, found '{}'{}", what, quoted(word),
+    fail(fmt::format("expected {}, found '{}'{}", what, shown(word),
                      code == std::errc::result_out_of_range ? " (out of range)" : ""));
   }
   return value;

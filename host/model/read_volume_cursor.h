@@ -4,11 +4,21 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
 
 namespace pliant::volume_file {
+
+/// The bytes of a file; throws Error when it is absent, empty, no regular file or cannot be read.
+std::string load(const std::filesystem::path& file);
+
+/// What a message may quote of a file that can hold anything.
+std::string shown(std::string_view word);
+
+/// A decimal integer, if that is all that the word is.
+std::optional<std::int64_t> parse_integer(std::string_view word);
 
 class Cursor {
  public:
