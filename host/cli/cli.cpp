@@ -8,6 +8,7 @@
 
 #include "io/atomic_file.h"
 #include "pliant/error.h"
+#include "scene/keys.h"
 
 namespace pliant::cli {
 namespace {
@@ -58,6 +59,32 @@ void check_writable(const std::filesystem::path& file) {
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) && !std::filesystem::is_directory(status))
     return;
   const AtomicFile probe(file);
+}
+
+void check_steps(const char* option, std::int64_t steps) {
+  constexpr std::int64_t kMost = 1'000'000'000'000'000;
+  if (steps < 0 || steps > kMost) throw Error(fmt::format("{} is {}; expected 0 to {}", option, steps, kMost));
+}
+
+std::string did_you_mean(const std::string& text, const std::vector<std::string>& words) {
+  const std::string near = nearest(text, words);
+  return near.empty() ? "" : fmt::format("; did you mean {}?", near);
+}
+
+std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
+  const auto chosen = app.get_subcommands();
+  const CLI::App& used = chosen.empty() ? app : *chosen.front();
+  std::string message = error.what();
+  const auto extras = app.remaining(true);
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !extras.empty()) {
+    const auto option = std::find_if(extras.begin(), extras.end(), [](const auto& word) { return word.rfind('-', 0) == 0; });
+    std::vector<std::string> known;
+    for (const auto* candidate : used.get_options()) known.push_back(candidate->get_name());
+    message = option == extras.end() ? fmt::format("unexpected argument \"{}\"", extras.back())
+                                     : fmt::format("unknown option \"{}\"{}", *option, did_you_mean(*option, known));
+  }
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  return fmt::format("{} (pliant {}--help lists the options)", message, chosen.empty() ? "" : used.get_name() + " ");
 }
 
 std::string scene_stem(const std::filesystem::path& scene) {

@@ -51,6 +51,12 @@ void check_writable(const std::filesystem::path& file);
 /// Throws Error unless `steps` is 0 to 10^15; `option` is for the message.
 void check_steps(const char* option, std::int64_t steps);
 
+/// "; did you mean WORD?" or nothing.
+std::string did_you_mean(const std::string& text, const std::vector<std::string>& words);
+
+/// What of the command line was not understood, and the option that was probably meant.
+std::string usage_message(const CLI::App& app, const CLI::ParseError& error);
+
 /// The scene's file without folder and extension: the stem of everything a run writes.
 std::string scene_stem(const std::filesystem::path& scene);
 

@@ -34,7 +34,7 @@ Json to_json(const BackendInfo& info) {
 
 void check(const Options& options) {
   options.common.check();
-  if (options.steps < 0) throw Error(fmt::format("--steps is {}; expected 0 or more", options.steps));
+  check_steps("--steps", options.steps);
   if (options.every != "pass" && options.every != "step") {
     throw Error(fmt::format("--every is \"{}\"; allowed are pass, step", options.every));
   }

@@ -23,11 +23,6 @@ constexpr pliant::cli::Command kCommands[] = {
     {"bench", "Measure the engine itself: pliant bench kernels", pliant::cli::setup_bench},
 };
 
-std::string did_you_mean(const std::string& text, const std::vector<std::string>& words) {
-  const std::string near = pliant::nearest(text, words);
-  return near.empty() ? "" : fmt::format("; did you mean {}?", near);
-}
-
 /// A first word that is neither command nor option gets an answer of its own.
 void check_first_word(int argc, char** argv) {
   std::vector<std::string> names;
@@ -39,24 +34,7 @@ void check_first_word(int argc, char** argv) {
   const auto& allowed = is_option ? options : names;
   if (std::find(allowed.begin(), allowed.end(), word) != allowed.end()) return;
   throw Error(fmt::format("unknown {} \"{}\"; allowed here are {}{}", is_option ? "option" : "command", word,
-                          pliant::listed(allowed), did_you_mean(word, allowed)));
-}
-
-/// What was not understood, and the option that was probably meant.
-std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
-  const auto chosen = app.get_subcommands();
-  const CLI::App& used = chosen.empty() ? app : *chosen.front();
-  std::string message = error.what();
-  const auto extras = app.remaining(true);
-  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !extras.empty()) {
-    const auto option = std::find_if(extras.begin(), extras.end(), [](const auto& word) { return word.rfind('-', 0) == 0; });
-    std::vector<std::string> known;
-    for (const auto* candidate : used.get_options()) known.push_back(candidate->get_name());
-    message = option == extras.end() ? fmt::format("unexpected argument \"{}\"", extras.back())
-                                     : fmt::format("unknown option \"{}\"{}", *option, did_you_mean(*option, known));
-  }
-  std::replace(message.begin(), message.end(), '\n', ' ');
-  return fmt::format("{} (pliant {}--help lists the options)", message, chosen.empty() ? "" : used.get_name() + " ");
+                          pliant::listed(allowed), pliant::cli::did_you_mean(word, allowed)));
 }
 
 int run(int argc, char** argv) {
@@ -75,7 +53,7 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    throw Error(usage_message(app, error));
+    throw Error(pliant::cli::usage_message(app, error));
   }
   return chosen();
 }

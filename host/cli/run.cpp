@@ -27,7 +27,7 @@ struct Options {
 };
 
 void check(const Options& o) {
-  if (o.steps && *o.steps < 0) throw Error(fmt::format("--steps is {}; expected 0 or more", *o.steps));
+  if (o.steps) check_steps("--steps", *o.steps);
   if (o.seconds && !(*o.seconds >= 0 && std::isfinite(*o.seconds))) {
     throw Error(fmt::format("--seconds is {}; expected 0 or more", *o.seconds));
   }
