@@ -73,9 +73,7 @@ int compare_command(const Options& options) {
   auto backend_a = open(options, 0), backend_b = open(options, 1);
   const auto model = std::make_shared<const Model>(build_model(scene));
   Simulation a(scene, model, std::move(backend_a));
-  SimulationOptions same_step;
-  same_step.dt = a.dt();
-  Simulation b(scene, model, std::move(backend_b), same_step);
+  Simulation b(scene, model, std::move(backend_b));
 
   watch_interrupt();
   Progress progress(!options.common.quiet);

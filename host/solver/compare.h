@@ -42,7 +42,8 @@ struct ComparisonResult {
 };
 
 /// Advance both by the same passes and compare every buffer as bits, NaN equal to NaN whatever its payload. Both must run the
-/// same Model with the same step on backends that compute in float: throws Error otherwise.
+/// same Model from the same step number on backends that compute in float: throws Error otherwise. Different sizes of the step
+/// are a difference like any other.
 ComparisonResult compare(Simulation& a, Simulation& b, const CompareOptions& options = {});
 
 }  // namespace pliant

@@ -197,10 +197,12 @@ TEST_F(Compare, BothMayDivergeAlike) {
   EXPECT_GE(result.steps, result.diverged->step);
 }
 
-TEST_F(Compare, RefusesDoubleAndDifferentSteps) {
+TEST_F(Compare, RefusesDoubleAndFindsDifferentSteps) {
   Simulation a = make(open_backend("cpu")), oracle = make(open_backend("cpu:double"), a.dt());
   EXPECT_THROW(compare(a, oracle), Error);
   Simulation slower = make(open_backend("cpu"), 0.5 * a.dt());
+  EXPECT_FALSE(compare(a, slower).identical);
+  slower.advance(1);
   EXPECT_THROW(compare(a, slower), Error);
 }
 
