@@ -76,7 +76,8 @@ Checkpoint take_checkpoint(const Simulation& simulation) {
   c.step = state.step;
   c.time = simulation.time();
   c.dt = state.dt;
-  c.host_state["clock"] = {static_cast<double>(state.origin_step), state.origin_time, state.stable_dt, state.damping};
+  c.host_state["clock"] = {static_cast<double>(state.origin_step), state.origin_time, state.stable_dt, state.damping,
+                          state.caution};
   for (const auto& [name, values] : state.vectors) c.host_state[kVector + name] = values;
   const auto& buffers = simulation.program().buffers;
   for (std::size_t id = 0; id < buffers.size(); ++id) {
@@ -99,7 +100,7 @@ void restore_checkpoint(Simulation& simulation, const Checkpoint& checkpoint, co
     throw Error(fmt::format("{}: a checkpoint in {} cannot resume on the backend {}, which computes in {}", file.string(),
                             checkpoint.real_type, simulation.backend().info().name, real));
   }
-  const auto& clock = host_group(checkpoint, "clock", 4, file);
+  const auto& clock = host_group(checkpoint, "clock", 5, file);
   const auto found = find_buffers(simulation, checkpoint, real == "double", file);
   SimulationState state;
   state.step = checkpoint.step;
@@ -108,6 +109,7 @@ void restore_checkpoint(Simulation& simulation, const Checkpoint& checkpoint, co
   state.origin_time = clock[1];
   state.stable_dt = clock[2];
   state.damping = clock[3];
+  state.caution = clock[4];
   for (const auto& [name, values] : checkpoint.host_state) {
     if (name.rfind(kVector, 0) == 0) state.vectors[name.substr(kVector.size())] = values;
   }

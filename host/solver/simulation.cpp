@@ -11,8 +11,12 @@
 namespace pliant {
 namespace {
 
-/// An automatic step is looked at again after this many steps (DESIGN section 4.2).
-constexpr std::int64_t kAdaptEvery = 512;
+/// An automatic step is looked at again every few hundred steps (DESIGN section 4.2), and sooner after the start, when loads come on.
+constexpr std::int64_t kAdaptEvery = 256;
+constexpr std::int64_t kFirstAdapts[] = {64, 128};
+constexpr int kAdaptIterations = 20;
+/// A diverged batch is tried again with a smaller automatic step until that is this share of what the estimate allows.
+constexpr double kLeastCaution = 0.1;
 constexpr std::int64_t kRelaxEvery = 32;
 
 }  // namespace
@@ -58,6 +62,7 @@ void Simulation::start(const SimulationOptions& options) {
     curves_end_ = std::max(curves_end_, end);
   }
   const double wanted = options.dt > 0 ? options.dt : scene_.dt;
+  automatic_ = wanted <= 0 && scene_.integrator == Integrator::increment;
   if (wanted <= 0 || options.stable_step) estimate_stable_dt();
   state_.dt = wanted > 0 ? wanted : scene_.safety * state_.stable_dt;
   if (!(state_.dt > 0) || !std::isfinite(state_.dt)) {
@@ -125,12 +130,14 @@ std::int32_t Simulation::next_batch(std::int64_t wanted) const {
   // Batches end at fixed step numbers, so that a resumed run looks and adapts exactly where an uninterrupted one does.
   std::int64_t n = batch_steps_ - state_.step % batch_steps_;
   if (scene_.relaxation.enabled) n = std::min(n, kRelaxEvery - state_.step % kRelaxEvery);
-  n = std::min(n, kAdaptEvery - state_.step % kAdaptEvery);
+  for (std::int64_t s = state_.step + 1; s < state_.step + n; ++s) {
+    if (adapts_at(s)) n = s - state_.step;
+  }
   return static_cast<std::int32_t>(std::min(n, wanted));
 }
 
 void Simulation::begin_batch(std::int32_t steps) {
-  if (scene_.dt <= 0 && state_.step > 0 && state_.step % kAdaptEvery == 0) adapt_dt();
+  if (adapts_at(state_.step)) adapt_dt();
   upload_params();
   upload_curves(steps);
   backend_->copy(u_, last_u_);
@@ -169,6 +176,11 @@ void Simulation::look_for_fault(std::int64_t batch_start) {
     }
   }
   if (step == 0) return;
+  backend_->copy(last_u_, u_);
+  backend_->copy(last_w_, w_);
+  backend_->finish();
+  state_.step = batch_start;
+  if (retry_smaller()) return;
   const FaultPlace found = find_fault(*model_, place);
   Divergence d;
   d.step = batch_start + step;
@@ -178,11 +190,18 @@ void Simulation::look_for_fault(std::int64_t batch_start) {
   d.dt = state_.dt;
   d.stable_dt = state_.stable_dt;
   d.last_good_step = batch_start;
-  backend_->copy(last_u_, u_);
-  backend_->copy(last_w_, w_);
-  backend_->finish();
-  state_.step = batch_start;
   divergence_ = d;
+}
+
+/// An automatic step may have been overtaken by a fast load: go back to the start of the batch and take it in smaller steps. False when
+/// the step is the user's, or when smaller steps have not helped.
+bool Simulation::retry_smaller() {
+  if (!automatic_) return false;
+  state_.caution *= 0.7;
+  if (state_.caution < kLeastCaution) return false;
+  backend_->write_ints(program_.find("fault"), std::vector<std::int32_t>(program_.buffers[program_.find("fault")].count, 0));
+  change_dt(std::min(0.7 * state_.dt, state_.caution * scene_.safety * estimate_stable_dt(kAdaptIterations)));
+  return true;
 }
 
 void Simulation::change_dt(double dt) {
@@ -199,9 +218,14 @@ void Simulation::change_dt(double dt) {
   backend_->write_reals(w_, w);
 }
 
+bool Simulation::adapts_at(std::int64_t step) const {
+  if (!automatic_ || step == 0) return false;
+  return step % kAdaptEvery == 0 || std::find(std::begin(kFirstAdapts), std::end(kFirstAdapts), step) != std::end(kFirstAdapts);
+}
+
 /// Follow the stable step of the deformed body down at once, and up again to the first step once it has recovered by a tenth.
 void Simulation::adapt_dt() {
-  const double allowed = std::min(first_dt_, scene_.safety * estimate_stable_dt(8));
+  const double allowed = std::min(first_dt_, state_.caution * scene_.safety * estimate_stable_dt(kAdaptIterations));
   if (allowed < state_.dt || allowed > 1.1 * state_.dt || (allowed == first_dt_ && state_.dt < first_dt_)) change_dt(allowed);
 }
 

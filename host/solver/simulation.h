@@ -30,7 +30,8 @@ struct Divergence {
 struct SimulationState {
   std::int64_t step = 0, origin_step = 0;
   double origin_time = 0, dt = 0, stable_dt = 0, damping = 0;
-  std::map<std::string, std::vector<double>> vectors;  ///< power iteration, relaxation
+  double caution = 1;  ///< share of the estimate that an automatic step still trusts
+  std::map<std::string, std::vector<double>> vectors;  ///< what dynamic relaxation and the automatic step remember
 };
 
 struct SimulationOptions {
@@ -62,10 +63,10 @@ class Simulation {
   [[nodiscard]] std::int64_t step() const { return state_.step; }
   [[nodiscard]] double time() const { return time_at(state_.step); }
   [[nodiscard]] double dt() const { return state_.dt; }
-  /// 2 / omega_max of the present configuration by power iteration, as of the last estimate [s]; 0 if none was made.
+  /// 2 / omega_max of the present configuration, as of the last estimate [s]; 0 if none was made.
   [[nodiscard]] double stable_dt() const { return state_.stable_dt; }
-  /// Run the power iteration now.
-  double estimate_stable_dt(int iterations = 60);
+  /// Estimate it now. More iterations make it tighter; it errs on the safe side.
+  double estimate_stable_dt(int iterations = 48);
 
   /// Displacements of a body's nodes in the order of its mesh or lattice [m].
   [[nodiscard]] std::vector<Vec3d> displacements(std::size_t body) const;
@@ -98,6 +99,7 @@ class Simulation {
   [[nodiscard]] double decay(std::size_t slot) const;
   void upload_curves(std::int32_t steps);
   void change_dt(double dt);
+  [[nodiscard]] bool adapts_at(std::int64_t step) const;
   void adapt_dt();
   void relax();
   [[nodiscard]] double time_at(std::int64_t step) const {
@@ -105,6 +107,7 @@ class Simulation {
   }
   [[nodiscard]] std::vector<double> forces_now();
   void look_for_fault(std::int64_t batch_start);
+  [[nodiscard]] bool retry_smaller();
   [[nodiscard]] std::vector<Vec3d> pick(const std::vector<double>& texels, std::size_t body, double factor) const;
 
   Scene scene_;
@@ -116,6 +119,7 @@ class Simulation {
   BufferId u_ = -1, w_ = -1, last_u_ = -1, last_w_ = -1, force_ = -1;
   std::vector<char> free_;  ///< [slots][3] component moves freely
   double first_dt_ = 0;
+  bool automatic_ = false;  ///< the step is Pliant's to choose
   double still_ = 0;  ///< increments below this are none [m]
   double curves_end_ = 0;
   std::optional<Divergence> divergence_;

@@ -145,7 +145,7 @@ struct Box {
 inline VolumeMesh make_mesh(const Box& box, bool tets) {
   VolumeMesh mesh;
   std::mt19937 random(box.seed);
-  const auto [nx, ny, nz] = box.cells;
+  const int nx = box.cells[0], ny = box.cells[1], nz = box.cells[2];
   const std::array<int, 3> n = box.cells;
   for (int k = 0; k <= nz; ++k) {
     for (int j = 0; j <= ny; ++j) {
