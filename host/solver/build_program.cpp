@@ -100,9 +100,9 @@ class Builder {
       corner_ = add(make_reals("corner_force", BufferType::real, numbers, BufferRole::scratch, "[tiles][corners][3][16]", "N",
                                "element kernels", std::move(corner)));
     }
-    // The last good state, taken at the start of every batch.
-    add(make_reals("last_u", BufferType::real4, slots, BufferRole::scratch, "[slots]", "m, m, m, 1/kg", "host"));
-    add(make_reals("last_w", BufferType::real4, slots, BufferRole::scratch, "[slots]", "m, m, m, 1", "host"));
+    // The state to go back to when an element fails.
+    add(make_reals("last_u", BufferType::real4, slots, BufferRole::state, "[slots]", "m, m, m, 1/kg", "host"));
+    add(make_reals("last_w", BufferType::real4, slots, BufferRole::state, "[slots]", "m, m, m, 1", "host"));
     fault_ = add(make_ints("fault", BufferRole::scratch, "[elements]", {}, std::max(layout_.faults, 1), "element kernels"));
     summary_ = add(make_ints("fault_summary", BufferRole::scratch, "[256][2]", {}, 512, "fault_reduce"));
     params_ = add(make_reals("step_params", BufferType::real, 8, BufferRole::control, "[8]", "s, m/s^2 (3), m", "host"));

@@ -128,20 +128,40 @@ std::vector<double> Simulation::forces_now() {
 
 std::int32_t Simulation::next_batch(std::int64_t wanted) const {
   // Batches end at fixed step numbers, so that a resumed run looks and adapts exactly where an uninterrupted one does.
-  std::int64_t n = batch_steps_ - state_.step % batch_steps_;
-  if (scene_.relaxation.enabled) n = std::min(n, kRelaxEvery - state_.step % kRelaxEvery);
-  for (std::int64_t s = state_.step + 1; s < state_.step + n; ++s) {
-    if (adapts_at(s)) n = s - state_.step;
-  }
+  std::int64_t n = 1;
+  while (n < batch_steps_ && !on_grid(state_.step + n)) ++n;
   return static_cast<std::int32_t>(std::min(n, wanted));
 }
 
 void Simulation::begin_batch(std::int32_t steps) {
   if (adapts_at(state_.step)) adapt_dt();
+  if (on_grid(state_.step) || state_.vectors.count("kept") == 0) keep_state();
   upload_params();
   upload_curves(steps);
+}
+
+/// Steps at which batches begin however a run is cut into pieces: only these states are kept to go back to.
+bool Simulation::on_grid(std::int64_t step) const {
+  return step % batch_steps_ == 0 || adapts_at(step) || (scene_.relaxation.enabled && step % kRelaxEvery == 0);
+}
+
+void Simulation::keep_state() {
   backend_->copy(u_, last_u_);
   backend_->copy(w_, last_w_);
+  state_.vectors["kept"] = {static_cast<double>(state_.step), static_cast<double>(state_.origin_step), state_.origin_time, state_.dt,
+                            state_.damping};
+}
+
+void Simulation::return_to_kept() {
+  backend_->copy(last_u_, u_);
+  backend_->copy(last_w_, w_);
+  backend_->finish();
+  const std::vector<double>& kept = state_.vectors.at("kept");
+  state_.step = static_cast<std::int64_t>(kept[0]);
+  state_.origin_step = static_cast<std::int64_t>(kept[1]);
+  state_.origin_time = kept[2];
+  state_.dt = kept[3];
+  state_.damping = kept[4];
 }
 
 void Simulation::end_batch(std::int32_t steps) {
@@ -176,10 +196,7 @@ void Simulation::look_for_fault(std::int64_t batch_start) {
     }
   }
   if (step == 0) return;
-  backend_->copy(last_u_, u_);
-  backend_->copy(last_w_, w_);
-  backend_->finish();
-  state_.step = batch_start;
+  return_to_kept();
   if (retry_smaller()) return;
   const FaultPlace found = find_fault(*model_, place);
   Divergence d;
@@ -189,11 +206,11 @@ void Simulation::look_for_fault(std::int64_t batch_start) {
   d.element = found.element;
   d.dt = state_.dt;
   d.stable_dt = state_.stable_dt;
-  d.last_good_step = batch_start;
+  d.last_good_step = state_.step;
   divergence_ = d;
 }
 
-/// An automatic step may have been overtaken by a fast load: go back to the start of the batch and take it in smaller steps. False when
+/// An automatic step may have been overtaken by a fast load: go back to the state kept last and take it in smaller steps. False when
 /// the step is the user's, or when smaller steps have not helped.
 bool Simulation::retry_smaller() {
   if (!automatic_) return false;

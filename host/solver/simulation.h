@@ -100,6 +100,9 @@ class Simulation {
   void upload_curves(std::int32_t steps);
   void change_dt(double dt);
   [[nodiscard]] bool adapts_at(std::int64_t step) const;
+  [[nodiscard]] bool on_grid(std::int64_t step) const;
+  void keep_state();
+  void return_to_kept();
   void adapt_dt();
   void relax();
   [[nodiscard]] double time_at(std::int64_t step) const {

@@ -62,6 +62,15 @@ TEST_P(Resume, AutomaticStepAcrossItsRenewal) {
   for (const std::int64_t at : {500, 512, 513}) expect_same_bits(scene, at, 520 - at);
 }
 
+TEST_P(Resume, AutomaticStepThatWasTriedAgain) {
+  const Scene scene = pressed_cube(0.04);  // pressed flat within a few dozen steps
+  Simulation probe = make(scene);
+  probe.advance(200);
+  ASSERT_LT(probe.state().caution, 1) << "the scene must be fast enough to overtake its step";
+  ASSERT_FALSE(probe.divergence());
+  for (const std::int64_t at : {17, 64, 100, 199}) expect_same_bits(scene, at, 200 - at);
+}
+
 TEST_P(Resume, Textbook) { expect_same_bits(pressed_cube(0.01, R"("integrator": "textbook", "dt": 0.002,)"), 64, 36); }
 
 std::string label(const ::testing::TestParamInfo<const char*>& backend) {
