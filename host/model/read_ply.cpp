@@ -312,9 +312,8 @@ class Reader {
 
 }  // namespace
 
-TriangleMesh read_ply(const std::filesystem::path& file) {
-  const std::string data = volume_file::load(file);
-  return Reader(file, data).read();
-}
+TriangleMesh read_ply(const std::filesystem::path& file, std::string_view data) { return Reader(file, data).read(); }
+
+TriangleMesh read_ply(const std::filesystem::path& file) { return read_ply(file, volume_file::load(file)); }
 
 }  // namespace pliant

@@ -1,6 +1,7 @@
 // Stanford PLY: text, little and big endian.
 #pragma once
 #include <filesystem>
+#include <string_view>
 
 #include "model/mesh.h"
 
@@ -13,5 +14,8 @@ namespace pliant {
 /// truncated or longer than its header says, or holds an index out of range or a coordinate that is not finite. Memory stays
 /// within a small multiple of the file's size whatever counts it claims.
 TriangleMesh read_ply(const std::filesystem::path& file);
+
+/// The same for the bytes of a file; its name is for messages.
+TriangleMesh read_ply(const std::filesystem::path& file, std::string_view data);
 
 }  // namespace pliant

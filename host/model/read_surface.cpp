@@ -1,5 +1,7 @@
 // Triangle surfaces: PLY by our own reader (assimp hangs or aborts on damaged ones), the rest through assimp. What assimp hands
 // over is checked here: it may throw, and it passes garbage numbers on.
+#include <assimp/BaseImporter.h>
+#include <assimp/DefaultIOSystem.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
@@ -15,6 +17,7 @@
 #include "model/mesh.h"
 #include "model/orient.h"
 #include "model/read_ply.h"
+#include "model/screen_gltf.h"
 #include "model/vec.h"
 #include "pliant/error.h"
 
@@ -164,10 +167,30 @@ std::string lower_extension(const std::filesystem::path& file) {
   return extension;
 }
 
+/// A mesh may name further files (materials, buffers); a device or a pipe among them would be read without end.
+class RegularFiles : public Assimp::DefaultIOSystem {
+ public:
+  Assimp::IOStream* Open(const char* name, const char* mode) override {
+    std::error_code code;
+    return std::filesystem::is_regular_file(name, code) ? DefaultIOSystem::Open(name, mode) : nullptr;
+  }
+};
+
+void forget(Assimp::Importer& importer, const char* extension) {
+  while (Assimp::BaseImporter* loader = importer.GetImporter(extension)) {
+    importer.UnregisterLoader(loader);
+    delete loader;  // no longer the importer's
+  }
+}
+
+bool is_gltf(const std::string& extension) { return extension == ".gltf" || extension == ".glb"; }
+
 const aiScene* import(const std::filesystem::path& file, Assimp::Importer& importer) {
   const aiScene* scene = nullptr;
-  // Unknown extensions are recognised by content; no file may reach this one.
-  importer.UnregisterLoader(importer.GetImporter("ply"));
+  importer.SetIOHandler(new RegularFiles);  // the importer owns it
+  // Files of other extensions are recognised by their content: none may reach what only its own extension is checked for.
+  forget(importer, "ply");
+  if (!is_gltf(lower_extension(file))) forget(importer, "gltf");
   try {
     scene = importer.ReadFile(file.string(), aiProcess_Triangulate);
   } catch (const std::exception& e) {
@@ -186,6 +209,7 @@ TriangleMesh read_surface(const std::filesystem::path& file, double scale, const
     fail(file, fmt::format("scale is {}; a finite number other than 0 is needed", scale));
   const std::string extension = lower_extension(file);
   if (extension == ".obj") check_obj_numbers(file);
+  if (is_gltf(extension)) screen_gltf(file);
   Reader reader{file, scale, translate, nullptr, {}};
   if (extension == ".ply") {
     reader.mesh(read_ply(file));

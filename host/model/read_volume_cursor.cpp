@@ -34,10 +34,10 @@ std::string load(const std::filesystem::path& file) {
   return data;
 }
 
-std::string shown(std::string_view word) {
+std::string shown(std::string_view word, std::size_t most) {
   std::string out;
-  for (const char c : word.substr(0, 40)) out += c >= ' ' && c <= '~' ? c : '?';
-  return word.size() > 40 ? out + "..." : out;
+  for (const char c : word.substr(0, most)) out += c >= ' ' && c <= '~' ? c : '?';
+  return word.size() > most ? out + "..." : out;
 }
 
 std::optional<std::int64_t> parse_integer(std::string_view word) {

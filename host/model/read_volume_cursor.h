@@ -14,8 +14,8 @@ namespace pliant::volume_file {
 /// The bytes of a file; throws Error when it is absent, empty, no regular file or cannot be read.
 std::string load(const std::filesystem::path& file);
 
-/// What a message may quote of a file that can hold anything.
-std::string shown(std::string_view word);
+/// What a message may quote of a file that can hold anything: at most `most` characters, all of them printable.
+std::string shown(std::string_view word, std::size_t most = 40);
 
 /// A decimal integer, if that is all that the word is.
 std::optional<std::int64_t> parse_integer(std::string_view word);
