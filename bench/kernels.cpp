@@ -11,9 +11,9 @@
 #include "backends/backends.h"
 #include "bench/block.h"
 #include "bench/machine_limits.h"
+#include "bench/timing.h"
 #include "pliant/error.h"
 #include "solver/simulation.h"
-#include "bench/timing.h"
 
 namespace pliant::bench {
 namespace {
@@ -45,8 +45,8 @@ struct Limits {
 };
 
 /// One row. `work` elements share `seconds`; traffic and operations are counted for all of them.
-json make_row(const std::string& kernel, const std::string& element, const std::string& backend, std::int64_t elements, double seconds,
-              double bytes, double flops, const Limits& limits) {
+json make_row(const std::string& kernel, const std::string& element, const std::string& backend, std::int64_t elements,
+              double seconds, double bytes, double flops, const Limits& limits) {
   const auto n = static_cast<double>(elements);
   const double limit = std::max(bytes / limits.bandwidth, flops / limits.flops);
   return {{"kernel", kernel},
@@ -70,7 +70,8 @@ std::string cpu_name() {
   return "unknown";
 }
 
-void measure(const KernelsOptions& options, const std::string& element, const std::string& backend_name, const Block& block, json& rows) {
+void measure(const KernelsOptions& options, const std::string& element, const std::string& backend_name, const Block& block,
+             json& rows) {
   SimulationOptions simulation_options;
   simulation_options.stable_step = false;
   Simulation simulation(block.scene, block.model, open_backend(backend_name), simulation_options);
@@ -126,7 +127,8 @@ json bench_kernels(const KernelsOptions& options) {
   json result;
   result["machine"] = machine_facts();
   for (const BackendInfo& info : present) {
-    result["machine"]["backends"].push_back({{"name", info.name}, {"device", info.device}, {"version", info.version}, {"bit_exact", info.bit_exact}});
+    result["machine"]["backends"].push_back(
+        {{"name", info.name}, {"device", info.device}, {"version", info.version}, {"bit_exact", info.bit_exact}});
   }
   result["rows"] = json::array();
   const double total = static_cast<double>(options.elements.size() * options.sizes.size() * backends.size());
@@ -146,13 +148,14 @@ json bench_kernels(const KernelsOptions& options) {
 }
 
 std::string kernels_table(const json& result) {
-  std::string text = fmt::format("{:<10} {:<11} {:>9}  {:<22} {:>9} {:>8} {:>8} {:>6} {:>7}  {}\n", "element", "backend", "elements", "kernel",
-                                 "ns/elem", "B/elem", "flop/el", "GB/s", "limit", "hash");
+  std::string text = fmt::format("{:<10} {:<11} {:>9}  {:<22} {:>9} {:>8} {:>8} {:>6} {:>7}  {}\n", "element", "backend",
+                                 "elements", "kernel", "ns/elem", "B/elem", "flop/el", "GB/s", "limit", "hash");
   for (const json& r : result["rows"]) {
-    text += fmt::format("{:<10} {:<11} {:>9}  {:<22} {:>9.2f} {:>8.1f} {:>8.1f} {:>6.1f} {:>6.0f}%  {}\n", r["element"].get<std::string>(),
-                        r["backend"].get<std::string>(), r["elements"].get<std::int64_t>(), r["kernel"].get<std::string>(),
-                        r["ns_per_element_step"].get<double>(), r["bytes_per_element"].get<double>(), r["flops_per_element"].get<double>(),
-                        r["bytes_per_second"].get<double>() / 1e9, 100 * r["fraction_of_limit"].get<double>(), r["hash"].get<std::string>());
+    text += fmt::format(
+        "{:<10} {:<11} {:>9}  {:<22} {:>9.2f} {:>8.1f} {:>8.1f} {:>6.1f} {:>6.0f}%  {}\n", r["element"].get<std::string>(),
+        r["backend"].get<std::string>(), r["elements"].get<std::int64_t>(), r["kernel"].get<std::string>(),
+        r["ns_per_element_step"].get<double>(), r["bytes_per_element"].get<double>(), r["flops_per_element"].get<double>(),
+        r["bytes_per_second"].get<double>() / 1e9, 100 * r["fraction_of_limit"].get<double>(), r["hash"].get<std::string>());
   }
   return text;
 }

@@ -17,7 +17,8 @@ struct KernelsOptions {
   std::function<void(double, const std::string&)> progress;  ///< share done, what is being measured
 };
 
-/// {"machine": {...}, "rows": [...]}, one row per kernel, element, backend and size, and one with kernel "step" for the whole step.
+/// {"machine": {...}, "rows": [...]}, one row per kernel, element, backend and size, and one with kernel "step" for the whole
+/// step.
 nlohmann::json bench_kernels(const KernelsOptions& options);
 
 /// The rows as a table for people and as CSV.

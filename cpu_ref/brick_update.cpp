@@ -6,8 +6,9 @@
 namespace pliant::ref {
 
 template <class Scalar, UpdateKind Kind>
-void brick_update(Range range, Scalar* node_u, Scalar* node_w, const std::int32_t* brick_neighbor, const std::int32_t* brick_rows,
-                  const Scalar* brick_force, const Scalar* node_load, Scalar* node_force, const Scalar* step_params) {
+void brick_update(Range range, Scalar* node_u, Scalar* node_w, const std::int32_t* brick_neighbor,
+                  const std::int32_t* brick_rows, const Scalar* brick_force, const Scalar* node_load, Scalar* node_force,
+                  const Scalar* step_params) {
   const StepParameters<Scalar> parameters(step_params);
   for (std::int64_t i = range.begin; i < range.end; ++i) {
     const std::int64_t x = i % 16, y = i / 16 % 4, z = i / 64 % 4;

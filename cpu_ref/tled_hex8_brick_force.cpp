@@ -121,9 +121,10 @@ void write_plane(const Face<Scalar> (&forces)[rows][columns], int plane, Scalar*
 }  // namespace
 
 template <class Scalar, int Law>
-void tled_hex8_brick_force(Range range, const Scalar* node_u, const std::int32_t* brick_neighbor, const std::int32_t* brick_rows,
-                           const Scalar* brick_fill, Scalar* brick_force, std::int32_t* fault, Scalar p0, Scalar p1, Scalar gradient, Scalar volume,
-                           Scalar stiffness, std::int32_t first_brick, std::int32_t fault_base, std::int32_t step) {
+void tled_hex8_brick_force(Range range, const Scalar* node_u, const std::int32_t* brick_neighbor,
+                           const std::int32_t* brick_rows, const Scalar* brick_fill, Scalar* brick_force, std::int32_t* fault,
+                           Scalar p0, Scalar p1, Scalar gradient, Scalar volume, Scalar stiffness, std::int32_t first_brick,
+                           std::int32_t fault_base, std::int32_t step) {
   const auto work = std::make_unique<Work<Scalar>>();
   for (std::int64_t brick = first_brick + range.begin; brick < first_brick + range.end; ++brick) {
     load_nodes(node_u, brick_neighbor + brick * PLIANT_BRICK_NEIGHBORS, *work);
@@ -142,7 +143,7 @@ void tled_hex8_brick_force(Range range, const Scalar* node_u, const std::int32_t
           Face<Scalar> lower{}, &plane = work->forces[z][y][x];
           work->forces[z + 1][y][x] = {};
           const bool bad = (brick_rows[2 * brick] >> (4 * z + y) & 1) != 0 &&
-                            cell_forces<Law>(work->faces[z][y][x], work->faces[z + 1][y][x], brick_fill[cell], p0, p1, gradient,
+                           cell_forces<Law>(work->faces[z][y][x], work->faces[z + 1][y][x], brick_fill[cell], p0, p1, gradient,
                                             volume, stiffness, lower, work->forces[z + 1][y][x]);
           mark_fault(bad, step, fault[fault_base + cell]);
           plane =

@@ -77,7 +77,7 @@ Checkpoint take_checkpoint(const Simulation& simulation) {
   c.time = simulation.time();
   c.dt = state.dt;
   c.host_state["clock"] = {static_cast<double>(state.origin_step), state.origin_time, state.stable_dt, state.damping,
-                          state.caution};
+                           state.caution};
   for (const auto& [name, values] : state.vectors) c.host_state[kVector + name] = values;
   const auto& buffers = simulation.program().buffers;
   for (std::size_t id = 0; id < buffers.size(); ++id) {

@@ -19,8 +19,8 @@ std::string extent_of(const ModelBody& body) {
       upper[c] = std::max(upper[c], x[c]);
     }
   }
-  return fmt::format("body '{}' has {} nodes between [{:.4g}] and [{:.4g}] m", body.name, body.rest.size(), fmt::join(lower, ", "),
-                     fmt::join(upper, ", "));
+  return fmt::format("body '{}' has {} nodes between [{:.4g}] and [{:.4g}] m", body.name, body.rest.size(),
+                     fmt::join(lower, ", "), fmt::join(upper, ", "));
 }
 
 std::vector<std::int32_t> select_nodes(const Selection& where, const ModelBody& body) {
@@ -92,7 +92,9 @@ void load(const Body& body, const ModelBody& placed, Model& model) {
       model.pressures.push_back({t, pressure.pressure, curve});
       any = true;
     }
-    if (!any) throw Error(fmt::format("{}: no surface triangle has its centre in this set; {}", pressure.where.pointer, extent_of(placed)));
+    if (!any)
+      throw Error(
+          fmt::format("{}: no surface triangle has its centre in this set; {}", pressure.where.pointer, extent_of(placed)));
   }
 }
 
@@ -109,7 +111,8 @@ void add_boundary_conditions(const Scene& scene, Model& model) {
     c.slot = slot;
     model.constraints.push_back(c);
   }
-  std::stable_sort(model.forces.begin(), model.forces.end(), [](const NodeForce& a, const NodeForce& b) { return a.slot < b.slot; });
+  std::stable_sort(model.forces.begin(), model.forces.end(),
+                   [](const NodeForce& a, const NodeForce& b) { return a.slot < b.slot; });
   std::stable_sort(model.pressures.begin(), model.pressures.end(),
                    [](const TrianglePressure& a, const TrianglePressure& b) { return a.triangle < b.triangle; });
 }

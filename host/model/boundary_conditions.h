@@ -4,8 +4,8 @@
 
 namespace pliant {
 
-/// Fill model.curves, constraints, forces and pressures. Throws Error when a selection matches nothing (says where the body is) or
-/// a node index is out of range.
+/// Fill model.curves, constraints, forces and pressures. Throws Error when a selection matches nothing (says where the body is)
+/// or a node index is out of range.
 void add_boundary_conditions(const Scene& scene, Model& model);
 
 }  // namespace pliant

@@ -12,7 +12,9 @@ using Index3 = std::array<std::int32_t, 3>;
 constexpr Index3 kSize{PLIANT_BRICK_X, PLIANT_BRICK_Y, PLIANT_BRICK_Z};
 constexpr std::int32_t kAbsent = -1;  // until close_bricks knows the empty brick
 
-Index3 brick_of(const Index3& node) { return {node[2] / kSize[2], node[1] / kSize[1], node[0] / kSize[0]}; }  // sorts by z, y, x
+Index3 brick_of(const Index3& node) {
+  return {node[2] / kSize[2], node[1] / kSize[1], node[0] / kSize[0]};
+}  // sorts by z, y, x
 
 std::int32_t place_of(const Index3& node) {
   return node[0] % kSize[0] + kSize[0] * (node[1] % kSize[1] + kSize[1] * (node[2] % kSize[2]));
@@ -42,7 +44,8 @@ std::vector<std::int32_t> place_in_bricks(const Solid& solid, std::int32_t body,
   for (const auto& [place, number] : bricks) {
     for (int side = 0; side < 16; ++side) {
       const int step = side < 8 ? 1 : -1;
-      const auto found = bricks.find({place[0] + (side & 4 ? step : 0), place[1] + (side & 2 ? step : 0), place[2] + (side & 1 ? step : 0)});
+      const auto found =
+          bricks.find({place[0] + (side & 4 ? step : 0), place[1] + (side & 2 ? step : 0), place[2] + (side & 1 ? step : 0)});
       if (found != bricks.end()) model.brick_neighbor[16 * number + side] = found->second;
     }
   }

@@ -44,7 +44,9 @@ std::vector<int> materials_of(const Body& body, const Solid& solid) {
   return material;
 }
 
-const Material& material_of(const Body& body, int index) { return index == 0 ? body.material : body.inclusions[index - 1].material; }
+const Material& material_of(const Body& body, int index) {
+  return index == 0 ? body.material : body.inclusions[index - 1].material;
+}
 
 /// Everything about one body that is known before its list nodes have slots.
 struct Draft {
@@ -64,9 +66,9 @@ void note_bound(Model& model, double frequency, double volume, const std::string
   }
 }
 
-/// Slots for the nodes outside the bricks: body by body in Cuthill-McKee order, so that the nodes of one element stand as close as
-/// the cross-section of the body allows (sweeping through the elements then finds them in the cache), and inside windows of 256 nodes
-/// by the number of elements they touch, so that the rows of a tile's gather list are nearly full.
+/// Slots for the nodes outside the bricks: body by body in Cuthill-McKee order, so that the nodes of one element stand as close
+/// as the cross-section of the body allows (sweeping through the elements then finds them in the cache), and inside windows of
+/// 256 nodes by the number of elements they touch, so that the rows of a tile's gather list are nearly full.
 void number_list_nodes(std::vector<Draft>& drafts, Model& model) {
   model.list_base = model.bricks > 0 ? (model.bricks + 1) * PLIANT_BRICK_NODES : 0;
   std::int32_t slot = model.list_base;
@@ -116,7 +118,8 @@ void add_tets(const Body& body, std::int32_t b, const Draft& draft, Model& model
       batch.volume.push_back(geometry.volume * draft.solid.fill[e]);
       batch.id.push_back(e);
       for (const std::int32_t n : slots[e]) model.mass[n] += batch.material.density * batch.volume.back() / 4;
-      note_bound(model, tet_frequency(geometry, batch.material), geometry.volume, fmt::format("{}: tetrahedron {}", body.name, e));
+      note_bound(model, tet_frequency(geometry, batch.material), geometry.volume,
+                 fmt::format("{}: tetrahedron {}", body.name, e));
     }
     if (!batch.nodes.empty()) model.tets.push_back(std::move(batch));
   }

@@ -44,14 +44,17 @@ std::array<GaussPoint, 8> gauss_points(const Corners& x, const std::string& what
     const Matrix3d jacobian = x.transpose() * local;  // dX_i / dxi_j
     const double det = jacobian.determinant();
     if (!(det > 0)) {
-      throw Error(fmt::format("{}: the Jacobian of the hexahedron is {:.6g} m^3 at Gauss point {}, it must be positive", what, det, p));
+      throw Error(
+          fmt::format("{}: the Jacobian of the hexahedron is {:.6g} m^3 at Gauss point {}, it must be positive", what, det, p));
     }
     points[p] = {local * jacobian.inverse(), det};
   }
   return points;
 }
 
-double largest_eigenvalue(const Matrix3d& a) { return Eigen::SelfAdjointEigenSolver<Matrix3d>(a, Eigen::EigenvaluesOnly).eigenvalues()[2]; }
+double largest_eigenvalue(const Matrix3d& a) {
+  return Eigen::SelfAdjointEigenSolver<Matrix3d>(a, Eigen::EigenvaluesOnly).eigenvalues()[2];
+}
 
 /// lambda tr A + 2 mu lambda_max(A) with A = sum_a grad N_a grad N_a^T [Pa/m^2].
 double modulus_bound(const Eigen::Matrix<double, Eigen::Dynamic, 3>& gradients, const Material& m) {
@@ -131,7 +134,8 @@ double hex8_frequency(const std::vector<double>& record, const Material& m) {
   const Eigen::Map<const Eigen::Matrix<double, 4, 8, Eigen::RowMajor>> gamma(record.data() + 24);
   const double volume = record[56], stiffness = record[57];
   const Eigen::Matrix4d gram = gamma * gamma.transpose();
-  const double hourglass = stiffness * Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d>(gram, Eigen::EigenvaluesOnly).eigenvalues()[3];
+  const double hourglass =
+      stiffness * Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d>(gram, Eigen::EigenvaluesOnly).eigenvalues()[3];
   // The two parts act on orthogonal modes of a cube, where the larger counts; in general their sum is safe.
   const double cross = (gamma * b).cwiseAbs().maxCoeff() * std::cbrt(volume);
   const double strain = volume * modulus_bound(b, m);

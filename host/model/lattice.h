@@ -29,12 +29,12 @@ struct Embedding {
 };
 
 struct Lattice {
-  Vec3d origin{};      ///< position of grid point (0, 0, 0) [m]
-  double spacing = 0;  ///< [m]
+  Vec3d origin{};                      ///< position of grid point (0, 0, 0) [m]
+  double spacing = 0;                  ///< [m]
   std::array<std::int32_t, 3> size{};  ///< cells along x, y, z of the bounding grid
-  std::vector<Cell> cells;        ///< ordered by (k, j, i), copies of one grid cell adjacent
-  std::vector<LatticeNode> nodes; ///< ordered by (k, j, i), then copy
-  std::vector<Embedding> embedding;  ///< one per vertex of the surface
+  std::vector<Cell> cells;             ///< ordered by (k, j, i), copies of one grid cell adjacent
+  std::vector<LatticeNode> nodes;      ///< ordered by (k, j, i), then copy
+  std::vector<Embedding> embedding;    ///< one per vertex of the surface
   [[nodiscard]] Vec3d position(const LatticeNode& n) const {
     return {origin[0] + spacing * n.index[0], origin[1] + spacing * n.index[1], origin[2] + spacing * n.index[2]};
   }

@@ -11,7 +11,7 @@
 namespace pliant {
 
 struct TriangleMesh {
-  std::vector<Vec3d> vertices;                    ///< [m]
+  std::vector<Vec3d> vertices;                         ///< [m]
   std::vector<std::array<std::int32_t, 3>> triangles;  ///< outward by the right-hand rule
 };
 
@@ -23,7 +23,8 @@ struct VolumeMesh {
 };
 
 /// Read a surface (OBJ, STL, PLY, 3DS, glTF/glb and whatever else assimp reads). Polygons are triangulated, equal positions
-/// welded, degenerate triangles dropped. Throws Error when missing, unreadable, empty or not finite, or if no triangle has area.
+/// welded, degenerate triangles dropped. Throws Error when missing, unreadable, empty or not finite, or if no triangle has
+/// area.
 TriangleMesh read_surface(const std::filesystem::path& file, double scale = 1, const Vec3d& translate = {});
 
 /// Read a volume mesh: Gmsh .msh (versions 1, 2 and 4, text; 2 and 4 also binary), VTK legacy, VTU, TetGen (.node/.ele).

@@ -1,6 +1,6 @@
-// The Model: everything that does not change while a scene runs, in double precision. Nodes are numbered by slot, the index that
-// the node buffers use: first the bricks of the lattices (256 slots each, many without a node), then one empty brick, then the nodes
-// of all other bodies in an order that keeps neighbours close, padded to a multiple of 16.
+// The Model: everything that does not change while a scene runs, in double precision. Nodes are numbered by slot, the index
+// that the node buffers use: first the bricks of the lattices (256 slots each, many without a node), then one empty brick, then
+// the nodes of all other bodies in an order that keeps neighbours close, padded to a multiple of 16.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -45,8 +45,8 @@ struct BrickBatch {
 
 /// The embedded surface of all bodies, for pressure and rendering.
 struct ModelSurface {
-  std::vector<Vec3d> rest;                             ///< [m]
-  std::vector<std::array<std::int32_t, 8>> nodes;      ///< slots; unused corners repeat the first with weight 0
+  std::vector<Vec3d> rest;                         ///< [m]
+  std::vector<std::array<std::int32_t, 8>> nodes;  ///< slots; unused corners repeat the first with weight 0
   std::vector<std::array<double, 8>> weights;
   std::vector<std::array<std::int32_t, 3>> triangles;
   std::vector<std::int32_t> triangle_body;
@@ -55,25 +55,25 @@ struct ModelSurface {
 struct ModelBody {
   std::string name;
   ElementKind element = ElementKind::hex8;
-  std::vector<std::int32_t> slot;  ///< slot of each node of the body, in the order of its mesh or lattice
-  std::vector<Vec3d> rest;         ///< [m]
+  std::vector<std::int32_t> slot;                  ///< slot of each node of the body, in the order of its mesh or lattice
+  std::vector<Vec3d> rest;                         ///< [m]
   std::vector<std::array<std::int32_t, 4>> tets;   ///< body-local nodes, for output
   std::vector<std::array<std::int32_t, 8>> hexes;  ///< body-local nodes in VTK order, for output
   std::int32_t first_vertex = 0, vertices = 0;     ///< its part of the surface
   std::int32_t first_triangle = 0, triangles = 0;
-  double spacing = 0;        ///< of its lattice [m], 0 for a volume mesh
-  double mass = 0;           ///< [kg]
-  double volume = 0;         ///< of the elements, fill counted [m^3]
-  double surface_volume = 0; ///< enclosed by the input surface [m^3]
+  double spacing = 0;         ///< of its lattice [m], 0 for a volume mesh
+  double mass = 0;            ///< [kg]
+  double volume = 0;          ///< of the elements, fill counted [m^3]
+  double surface_volume = 0;  ///< enclosed by the input surface [m^3]
   [[nodiscard]] std::int64_t elements() const { return static_cast<std::int64_t>(tets.size() + hexes.size()); }
 };
 
 /// One prescribed (or fixed) node.
 struct Constraint {
   std::int32_t slot = 0;
-  std::int32_t axes = 0;                 ///< bit mask of x, y, z
-  std::array<std::int32_t, 3> curve{};   ///< per component
-  Vec3d target{};                        ///< [m]
+  std::int32_t axes = 0;                ///< bit mask of x, y, z
+  std::array<std::int32_t, 3> curve{};  ///< per component
+  Vec3d target{};                       ///< [m]
 };
 
 /// A force on a node that follows a curve.
@@ -91,35 +91,35 @@ struct TrianglePressure {
 
 struct Model {
   std::vector<ModelBody> bodies;
-  std::int32_t bricks = 0;                        ///< without the empty one; 0 if there is none at all
-  std::vector<std::int32_t> brick_neighbor;       ///< [bricks + 1][16]
-  std::vector<std::int32_t> brick_rows;           ///< [bricks + 1][2] rows with a cell, rows with a node (layout.h)
-  std::vector<double> brick_fill;                 ///< [bricks + 1][256]
-  std::vector<std::int64_t> brick_cell;           ///< [bricks][256] number of the cell in its body, -1: none
-  std::vector<std::int32_t> brick_body;           ///< [bricks]
-  std::int32_t list_base = 0;                     ///< first slot after the bricks
-  std::int32_t slots = 0;                         ///< all slots, a multiple of 16
-  std::vector<Vec3d> rest;                        ///< [slots]
-  std::vector<double> mass;                       ///< [slots] lumped [kg], 0: no node
-  std::vector<double> damping;                    ///< [slots] c [1/s]
-  std::vector<Vec3d> velocity;                    ///< [slots] initial [m/s]
+  std::int32_t bricks = 0;                   ///< without the empty one; 0 if there is none at all
+  std::vector<std::int32_t> brick_neighbor;  ///< [bricks + 1][16]
+  std::vector<std::int32_t> brick_rows;      ///< [bricks + 1][2] rows with a cell, rows with a node (layout.h)
+  std::vector<double> brick_fill;            ///< [bricks + 1][256]
+  std::vector<std::int64_t> brick_cell;      ///< [bricks][256] number of the cell in its body, -1: none
+  std::vector<std::int32_t> brick_body;      ///< [bricks]
+  std::int32_t list_base = 0;                ///< first slot after the bricks
+  std::int32_t slots = 0;                    ///< all slots, a multiple of 16
+  std::vector<Vec3d> rest;                   ///< [slots]
+  std::vector<double> mass;                  ///< [slots] lumped [kg], 0: no node
+  std::vector<double> damping;               ///< [slots] c [1/s]
+  std::vector<Vec3d> velocity;               ///< [slots] initial [m/s]
   std::vector<TetBatch> tets;
   std::vector<HexBatch> hexes;
   std::vector<BrickBatch> brick_batches;
   ModelSurface surface;
   std::vector<Curve> curves;
-  std::vector<Constraint> constraints;            ///< one per constrained node, ascending slots
-  std::vector<NodeForce> forces;                  ///< ascending slots
-  std::vector<TrianglePressure> pressures;        ///< ascending triangles
-  double element_bound = 0;                       ///< 2 / max element frequency [s], safe for small strain
-  std::string bound_element;                      ///< the element that gives it
-  double shortest = 0;                            ///< cube root of the smallest element's volume [m]
-  [[nodiscard]] std::int64_t nodes() const;       ///< real nodes
+  std::vector<Constraint> constraints;       ///< one per constrained node, ascending slots
+  std::vector<NodeForce> forces;             ///< ascending slots
+  std::vector<TrianglePressure> pressures;   ///< ascending triangles
+  double element_bound = 0;                  ///< 2 / max element frequency [s], safe for small strain
+  std::string bound_element;                 ///< the element that gives it
+  double shortest = 0;                       ///< cube root of the smallest element's volume [m]
+  [[nodiscard]] std::int64_t nodes() const;  ///< real nodes
   [[nodiscard]] std::int64_t elements() const;
 };
 
-/// Load the meshes of a scene, fill them, number, and precompute. Throws Error for bad input (no node in a boundary set, an inverted
-/// element, ...).
+/// Load the meshes of a scene, fill them, number, and precompute. Throws Error for bad input (no node in a boundary set, an
+/// inverted element, ...).
 Model build_model(const Scene& scene);
 
 /// Gradients of the linear tetrahedron's shape functions 1..3 and its signed volume.
@@ -129,8 +129,8 @@ struct TetGeometry {
 };
 TetGeometry tet_geometry(const std::array<Vec3d, 4>& x);
 
-/// Records of kernels/layout.h for a hexahedron whose corners come in bit order. Throws Error (`what` names the element) when the
-/// Jacobian is not positive at the points used.
+/// Records of kernels/layout.h for a hexahedron whose corners come in bit order. Throws Error (`what` names the element) when
+/// the Jacobian is not positive at the points used.
 std::vector<double> hex8_record(const std::array<Vec3d, 8>& x, const Material& material, const std::string& what);
 std::vector<double> hex8full_record(const std::array<Vec3d, 8>& x, const std::string& what);
 
@@ -140,8 +140,8 @@ double tet_frequency(const TetGeometry& tet, const Material& material);
 double hex8_frequency(const std::vector<double>& record, const Material& material);
 double hex8full_frequency(const std::vector<double>& record, const Material& material);
 
-/// Hourglass stiffness k [N/m] of a cube of edge d: E d / 48 times the material's factor, which makes one layer of elements bend as a
-/// beam of modulus E at nu = 0. In general E V^(1/3) / 48.
+/// Hourglass stiffness k [N/m] of a cube of edge d: E d / 48 times the material's factor, which makes one layer of elements
+/// bend as a beam of modulus E at nu = 0. In general E V^(1/3) / 48.
 double hourglass_stiffness(const Material& material, double volume);
 
 }  // namespace pliant

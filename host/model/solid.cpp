@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-
 #include "model/model.h"
 #include "pliant/error.h"
 
@@ -11,9 +10,10 @@ namespace {
 
 bool takes_tets(ElementKind kind) { return kind == ElementKind::tet4 || kind == ElementKind::tet4anp; }
 
-/// Kuhn's subdivision of a cell into six tetrahedra along the diagonal from corner 0 to corner 7: the same in every cell, so that
-/// faces match.
-constexpr std::array<std::array<int, 4>, 6> kKuhn{{{0, 1, 3, 7}, {0, 5, 1, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 6, 4, 7}}};
+/// Kuhn's subdivision of a cell into six tetrahedra along the diagonal from corner 0 to corner 7: the same in every cell, so
+/// that faces match.
+constexpr std::array<std::array<int, 4>, 6> kKuhn{
+    {{0, 1, 3, 7}, {0, 5, 1, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 6, 4, 7}}};
 
 void from_lattice(const Body& body, Solid& solid) {
   const TriangleMesh mesh = read_surface(body.surface, body.scale, body.translate);
@@ -54,8 +54,8 @@ void from_mesh(const Body& body, Solid& solid) {
   const VolumeMesh mesh = read_volume(body.mesh, body.scale, body.translate);
   const bool tets = takes_tets(body.element);
   if (tets ? mesh.tets.empty() : mesh.hexes.empty()) {
-    throw Error(fmt::format("{}: element {} needs {} and the file has only {}; use {}", body.mesh.string(), to_string(body.element),
-                            tets ? "tetrahedra" : "hexahedra", tets ? "hexahedra" : "tetrahedra",
+    throw Error(fmt::format("{}: element {} needs {} and the file has only {}; use {}", body.mesh.string(),
+                            to_string(body.element), tets ? "tetrahedra" : "hexahedra", tets ? "hexahedra" : "tetrahedra",
                             tets ? "hex8 or hex8full" : "tet4 or tet4anp"));
   }
   if (!mesh.tets.empty() && !mesh.hexes.empty()) {

@@ -16,11 +16,11 @@ using Vec3d = std::array<double, 3>;
 struct Selection {
   enum class Kind { all, box, sphere, plane, nodes };
   Kind kind = Kind::all;
-  Vec3d a{};                     ///< box: lower corner; sphere: centre; plane: point
-  Vec3d b{};                     ///< box: upper corner; plane: normal (nodes with (X - a).b >= 0 are chosen)
-  double radius = 0;             ///< sphere [m]
+  Vec3d a{};                        ///< box: lower corner; sphere: centre; plane: point
+  Vec3d b{};                        ///< box: upper corner; plane: normal (nodes with (X - a).b >= 0 are chosen)
+  double radius = 0;                ///< sphere [m]
   std::vector<std::int64_t> nodes;  ///< nodes: indices into the body's nodes, ascending (the loader sorts them)
-  std::string pointer;           ///< JSON pointer, for messages ("/bodies/0/fixed/1")
+  std::string pointer;              ///< JSON pointer, for messages ("/bodies/0/fixed/1")
   /// True if a node with this rest position [m] and body-local index belongs to the set. Bounds are inclusive, with a slack
   /// of 1e-9 of the selection's largest coordinate or radius.
   [[nodiscard]] bool contains(const Vec3d& x, std::int64_t index) const;
@@ -36,12 +36,12 @@ const char* to_string(ElementKind element);
 /// Isotropic hyperelastic material. `lambda` is the first Lame constant; the isochoric law uses `kappa` instead.
 struct Material {
   Law law = Law::neo_hookean;
-  double mu = 0;       ///< shear modulus [Pa]
-  double lambda = 0;   ///< first Lame constant [Pa]
-  double kappa = 0;    ///< bulk modulus [Pa]: lambda + 2 mu / 3
-  double density = 1000;  ///< [kg/m^3]
-  double damping = 0;  ///< mass-proportional damping rate c [1/s]: M u'' + c M u' = R - F
-  double hourglass = 1;  ///< factor on the hourglass stiffness of hex8 (1: exact bending of a bar at nu = 0)
+  double mu = 0;                         ///< shear modulus [Pa]
+  double lambda = 0;                     ///< first Lame constant [Pa]
+  double kappa = 0;                      ///< bulk modulus [Pa]: lambda + 2 mu / 3
+  double density = 1000;                 ///< [kg/m^3]
+  double damping = 0;                    ///< mass-proportional damping rate c [1/s]: M u'' + c M u' = R - F
+  double hourglass = 1;                  ///< factor on the hourglass stiffness of hex8 (1: exact bending of a bar at nu = 0)
   [[nodiscard]] double young() const;    ///< [Pa]
   [[nodiscard]] double poisson() const;  ///< dimensionless
 };
@@ -55,9 +55,9 @@ struct Inclusion {
 /// Time course of a load or prescribed motion: a factor over time.
 struct Curve {
   enum class Kind { constant, ramp, smooth, table };
-  Kind kind = Kind::constant;  ///< constant: 1 from the start
-  double start = 0;            ///< [s]
-  double duration = 0;         ///< [s]; ramp: linear 0 to 1; smooth: 10 s^3 - 15 s^4 + 6 s^5
+  Kind kind = Kind::constant;                ///< constant: 1 from the start
+  double start = 0;                          ///< [s]
+  double duration = 0;                       ///< [s]; ramp: linear 0 to 1; smooth: 10 s^3 - 15 s^4 + 6 s^5
   std::vector<std::array<double, 2>> table;  ///< (time [s], factor), times ascending, linear in between, held outside
   [[nodiscard]] double value(double time) const;
 };
@@ -82,7 +82,7 @@ struct Force {
 
 /// Follower pressure on the chosen part of the surface: acts along the inward normal of the deformed surface.
 struct Pressure {
-  Selection where;  ///< applied to surface triangle centroids
+  Selection where;      ///< applied to surface triangle centroids
   double pressure = 0;  ///< [Pa]
   Curve curve;
 };
@@ -106,27 +106,27 @@ struct Body {
   std::vector<Prescribed> prescribed;
   std::vector<Force> forces;
   std::vector<Pressure> pressures;
-  Vec3d velocity{};         ///< initial velocity [m/s]
-  Vec3d angular_velocity{}; ///< initial angular velocity about the centre of mass [rad/s]
-  std::string pointer;      ///< JSON pointer ("/bodies/0")
+  Vec3d velocity{};          ///< initial velocity [m/s]
+  Vec3d angular_velocity{};  ///< initial angular velocity about the centre of mass [rad/s]
+  std::string pointer;       ///< JSON pointer ("/bodies/0")
 };
 
 /// Dynamic relaxation: adaptive damping towards static equilibrium.
 struct Relaxation {
   bool enabled = false;
-  double tolerance = 1e-4;       ///< stop at |R - F| <= tolerance * |largest of R, F|
+  double tolerance = 1e-4;  ///< stop at |R - F| <= tolerance * |largest of R, F|
   std::int64_t max_steps = 100000;
 };
 
 enum class Integrator { increment, textbook };
 
 struct Scene {
-  std::string name;                 ///< file stem, or what the caller set
-  std::filesystem::path file;       ///< empty if built in code
-  Vec3d gravity{0, 0, 0};           ///< [m/s^2]
-  double dt = 0;                    ///< [s]; 0 means automatic
-  double safety = 0.9;              ///< share of the stable step that an automatic step takes
-  double duration = 1;              ///< [s] simulated by `run` when neither --steps nor --seconds is given
+  std::string name;            ///< file stem, or what the caller set
+  std::filesystem::path file;  ///< empty if built in code
+  Vec3d gravity{0, 0, 0};      ///< [m/s^2]
+  double dt = 0;               ///< [s]; 0 means automatic
+  double safety = 0.9;         ///< share of the stable step that an automatic step takes
+  double duration = 1;         ///< [s] simulated by `run` when neither --steps nor --seconds is given
   Integrator integrator = Integrator::increment;
   Relaxation relaxation;
   std::vector<Body> bodies;

@@ -14,7 +14,7 @@ struct BackendInfo {
   std::string device;  ///< the processor's own name
   std::string kind;    ///< "reference", "cpu", "gpu", "accelerator"
   std::string platform, version, driver;
-  bool bit_exact = false;  ///< passed the start-up probe
+  bool bit_exact = false;        ///< passed the start-up probe
   std::string tolerance_reason;  ///< why not, if it did not
   std::uint64_t memory_bytes = 0;
   std::uint64_t max_buffer_bytes = 0;  ///< largest single allocation

@@ -8,9 +8,12 @@ namespace pliant {
 inline double law_flops(Law law) {
   constexpr double invariants = 27 + 5 + 7 + 1;  // cofactor, det, sums, the test of J
   switch (law) {
-    case Law::neo_hookean: return invariants + 55 + 12;
-    case Law::saint_venant_kirchhoff: return invariants + 116;
-    case Law::isochoric_neo_hookean: return invariants + 55 + 71;
+    case Law::neo_hookean:
+      return invariants + 55 + 12;
+    case Law::saint_venant_kirchhoff:
+      return invariants + 116;
+    case Law::isochoric_neo_hookean:
+      return invariants + 55 + 71;
   }
   return 0;
 }

@@ -23,20 +23,20 @@ inline Arg step_arg() { return Arg{StepInBatch{}}; }
 
 /// How a kernel's index space maps to work-items. It is a property of the kernel, not of the device: the device chooses lanes.
 enum class Shape {
-  lanes,  ///< one index per element or node, `count` a multiple of 16; a work-item takes LANES consecutive indices
-  items,  ///< one work-item per index, always scalar (short lists, bricks of irregular work)
-  bricks, ///< one brick per index; a work-item takes a brick (16 lanes) or a row of 16 work-items takes it (1 lane)
+  lanes,   ///< one index per element or node, `count` a multiple of 16; a work-item takes LANES consecutive indices
+  items,   ///< one work-item per index, always scalar (short lists, bricks of irregular work)
+  bricks,  ///< one brick per index; a work-item takes a brick (16 lanes) or a row of 16 work-items takes it (1 lane)
 };
 
 /// One kernel launch of the Schedule.
 struct Pass {
-  std::string kernel;   ///< the stem: file, kernel and twin share it
+  std::string kernel;                                ///< the stem: file, kernel and twin share it
   std::vector<std::pair<std::string, int>> defines;  ///< compile-time specialisation, e.g. {"LAW", 0}
   std::vector<Arg> args;
   Shape shape = Shape::lanes;
   std::int64_t count = 0;
-  std::string label;    ///< for people, e.g. "liver: tet4 neo-hookean"
-  std::int64_t elements = 0;  ///< elements or nodes it advances, for reports
+  std::string label;             ///< for people, e.g. "liver: tet4 neo-hookean"
+  std::int64_t elements = 0;     ///< elements or nodes it advances, for reports
   double bytes_per_element = 0;  ///< counted traffic, each datum once
   double flops_per_element = 0;  ///< counted operations; an fma counts two
 };

@@ -19,8 +19,9 @@ ProgramLayout lay_out(const Model& model) {
     fault += padded(count);
     // Indices in the kernels are 32-bit: 2^31 numbers of corner force are some 170 million tetrahedra.
     if (corner > std::numeric_limits<std::int32_t>::max() - 64 || fault > std::numeric_limits<std::int32_t>::max() - 64) {
-      throw Error(fmt::format("the scene has too many elements for 32-bit indices: {} numbers of corner force, at most {} are possible",
-                              corner, std::numeric_limits<std::int32_t>::max() - 64));
+      throw Error(
+          fmt::format("the scene has too many elements for 32-bit indices: {} numbers of corner force, at most {} are possible",
+                      corner, std::numeric_limits<std::int32_t>::max() - 64));
     }
     return here;
   };
@@ -40,7 +41,8 @@ FaultPlace find_fault(const Model& model, std::int32_t index) {
   const auto look = [&](const auto& batches, const std::vector<BatchPlace>& places) {
     for (std::size_t b = 0; b < batches.size(); ++b) {
       const std::int32_t local = index - places[b].fault_base;
-      if (local >= 0 && local < static_cast<std::int32_t>(batches[b].id.size())) found = {batches[b].body, batches[b].id[local]};
+      if (local >= 0 && local < static_cast<std::int32_t>(batches[b].id.size()))
+        found = {batches[b].body, batches[b].id[local]};
     }
   };
   look(model.tets, layout.tets);

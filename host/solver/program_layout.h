@@ -15,7 +15,9 @@ inline std::int32_t padded(std::size_t count) {
 }
 
 /// Position of plane 0 of element e in a tiled array.
-inline std::size_t tile_base(std::size_t e, std::size_t planes) { return e / PLIANT_TILE * (planes * PLIANT_TILE) + e % PLIANT_TILE; }
+inline std::size_t tile_base(std::size_t e, std::size_t planes) {
+  return e / PLIANT_TILE * (planes * PLIANT_TILE) + e % PLIANT_TILE;
+}
 
 struct BatchPlace {
   std::int32_t corner_base = 0;  ///< first number of its part of corner_force

@@ -6,8 +6,8 @@
 
 namespace pliant {
 
-/// Dynamic relaxation: damp the lowest mode that still moves critically, c = 2 omega with omega^2 = - du . df / (du . M du) from the
-/// change of displacement and force since the last look (Papadrakakis 1981; Joldes, Wittek and Miller 2009).
+/// Dynamic relaxation: damp the lowest mode that still moves critically, c = 2 omega with omega^2 = - du . df / (du . M du)
+/// from the change of displacement and force since the last look (Papadrakakis 1981; Joldes, Wittek and Miller 2009).
 void Simulation::relax() {
   const std::vector<double> u = backend_->read_reals(u_);
   const std::vector<double> force = forces_now();

@@ -11,7 +11,8 @@
 namespace pliant {
 namespace {
 
-/// An automatic step is looked at again every few hundred steps (DESIGN section 4.2), and sooner after the start, when loads come on.
+/// An automatic step is looked at again every few hundred steps (DESIGN section 4.2), and sooner after the start, when loads
+/// come on.
 constexpr std::int64_t kAdaptEvery = 256;
 constexpr std::int64_t kFirstAdapts[] = {64, 128};
 constexpr int kAdaptIterations = 20;
@@ -23,7 +24,8 @@ constexpr std::int64_t kRelaxEvery = 32;
 
 std::string Divergence::message() const {
   return fmt::format(
-      "the simulation diverged in step {} (t = {:.6g} s): element {} of body '{}' is inverted or not finite; dt = {:.6g} s, stable step "
+      "the simulation diverged in step {} (t = {:.6g} s): element {} of body '{}' is inverted or not finite; dt = {:.6g} s, "
+      "stable step "
       "{:.6g} s ({:.3g} times); the state of step {} was kept",
       step, time, element, body, dt, stable_dt, stable_dt > 0 ? dt / stable_dt : 0.0, last_good_step);
 }
@@ -33,7 +35,8 @@ Simulation::Simulation(Scene scene, std::unique_ptr<Backend> backend, const Simu
   start(options);
 }
 
-Simulation::Simulation(Scene scene, std::shared_ptr<const Model> model, std::unique_ptr<Backend> backend, const SimulationOptions& options)
+Simulation::Simulation(Scene scene, std::shared_ptr<const Model> model, std::unique_ptr<Backend> backend,
+                       const SimulationOptions& options)
     : scene_(std::move(scene)), model_(std::move(model)), backend_(std::move(backend)) {
   start(options);
 }
@@ -66,7 +69,8 @@ void Simulation::start(const SimulationOptions& options) {
   if (wanted <= 0 || options.stable_step) estimate_stable_dt();
   state_.dt = wanted > 0 ? wanted : scene_.safety * state_.stable_dt;
   if (!(state_.dt > 0) || !std::isfinite(state_.dt)) {
-    throw Error(fmt::format("no stable step could be found (estimate {} s): nothing in the scene can move freely", state_.stable_dt));
+    throw Error(
+        fmt::format("no stable step could be found (estimate {} s): nothing in the scene can move freely", state_.stable_dt));
   }
   first_dt_ = state_.dt;
   // Squares and cubes of what is left stay normal numbers; the double oracle needs no such floor.
@@ -148,8 +152,8 @@ bool Simulation::on_grid(std::int64_t step) const {
 void Simulation::keep_state() {
   backend_->copy(u_, last_u_);
   backend_->copy(w_, last_w_);
-  state_.vectors["kept"] = {static_cast<double>(state_.step), static_cast<double>(state_.origin_step), state_.origin_time, state_.dt,
-                            state_.damping};
+  state_.vectors["kept"] = {static_cast<double>(state_.step), static_cast<double>(state_.origin_step), state_.origin_time,
+                            state_.dt, state_.damping};
 }
 
 void Simulation::return_to_kept() {
@@ -210,8 +214,8 @@ void Simulation::look_for_fault(std::int64_t batch_start) {
   divergence_ = d;
 }
 
-/// An automatic step may have been overtaken by a fast load: go back to the state kept last and take it in smaller steps. False when
-/// the step is the user's, or when smaller steps have not helped.
+/// An automatic step may have been overtaken by a fast load: go back to the state kept last and take it in smaller steps. False
+/// when the step is the user's, or when smaller steps have not helped.
 bool Simulation::retry_smaller() {
   if (!automatic_) return false;
   state_.caution *= 0.7;

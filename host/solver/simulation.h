@@ -20,8 +20,8 @@ struct Divergence {
   std::int64_t step = 0;  ///< the step in which it was seen
   double time = 0;        ///< [s]
   std::string body;
-  std::int64_t element = -1;  ///< number in its body
-  double dt = 0, stable_dt = 0;  ///< [s]
+  std::int64_t element = -1;        ///< number in its body
+  double dt = 0, stable_dt = 0;     ///< [s]
   std::int64_t last_good_step = 0;  ///< the state that the simulation now holds
   [[nodiscard]] std::string message() const;
 };
@@ -30,14 +30,14 @@ struct Divergence {
 struct SimulationState {
   std::int64_t step = 0, origin_step = 0;
   double origin_time = 0, dt = 0, stable_dt = 0, damping = 0;
-  double caution = 1;  ///< share of the estimate that an automatic step still trusts
+  double caution = 1;                                  ///< share of the estimate that an automatic step still trusts
   std::map<std::string, std::vector<double>> vectors;  ///< what dynamic relaxation and the automatic step remember
 };
 
 struct SimulationOptions {
-  double dt = 0;                   ///< [s]; 0: what the scene says
-  std::int32_t batch_steps = 64;   ///< steps between two looks at the fault flag
-  bool stable_step = true;         ///< estimate it at the start (needed when the step is automatic)
+  double dt = 0;                  ///< [s]; 0: what the scene says
+  std::int32_t batch_steps = 64;  ///< steps between two looks at the fault flag
+  bool stable_step = true;        ///< estimate it at the start (needed when the step is automatic)
 };
 
 class Simulation {
@@ -45,7 +45,8 @@ class Simulation {
   /// Builds the model, loads the backend and sets the initial state. Throws Error.
   Simulation(Scene scene, std::unique_ptr<Backend> backend, const SimulationOptions& options = {});
   /// The same for a model built already (several backends can share one).
-  Simulation(Scene scene, std::shared_ptr<const Model> model, std::unique_ptr<Backend> backend, const SimulationOptions& options = {});
+  Simulation(Scene scene, std::shared_ptr<const Model> model, std::unique_ptr<Backend> backend,
+             const SimulationOptions& options = {});
 
   /// Advance by at most `steps`; stops early when diverged or, with dynamic relaxation, at equilibrium. Returns the steps done.
   std::int64_t advance(std::int64_t steps);
@@ -123,7 +124,7 @@ class Simulation {
   std::vector<char> free_;  ///< [slots][3] component moves freely
   double first_dt_ = 0;
   bool automatic_ = false;  ///< the step is Pliant's to choose
-  double still_ = 0;  ///< increments below this are none [m]
+  double still_ = 0;        ///< increments below this are none [m]
   double curves_end_ = 0;
   std::optional<Divergence> divergence_;
   bool equilibrium_ = false;

@@ -19,8 +19,9 @@ double noise(std::size_t i) {
 }
 
 /// How far below the largest eigenvalue the Ritz value of k Lanczos steps from a random start may lie, relative to it: 0.103
-/// (ln(n (k - 1)^4) / (k - 1))^2 on average, whatever the gaps of the spectrum (Kuczynski and Wozniakowski 1992, theorem 3.2). A plain
-/// power iteration needs the square of that number of steps: a mode of a few nodes at the rim of a large body hides from it.
+/// (ln(n (k - 1)^4) / (k - 1))^2 on average, whatever the gaps of the spectrum (Kuczynski and Wozniakowski 1992, theorem 3.2).
+/// A plain power iteration needs the square of that number of steps: a mode of a few nodes at the rim of a large body hides
+/// from it.
 double ritz_deficit(std::size_t unknowns, int steps) {
   const double k = steps - 1, logarithm = std::log(static_cast<double>(unknowns)) + 4 * std::log(k);
   return std::min(0.5, 0.103 * logarithm * logarithm / (k * k));
@@ -28,8 +29,8 @@ double ritz_deficit(std::size_t unknowns, int steps) {
 
 }  // namespace
 
-/// Lanczos iteration on M^-1 K in the norm of M. K v is a difference of two force evaluations on the backend itself: every element, law
-/// and constraint is in it, at the present deformation.
+/// Lanczos iteration on M^-1 K in the norm of M. K v is a difference of two force evaluations on the backend itself: every
+/// element, law and constraint is in it, at the present deformation.
 double Simulation::estimate_stable_dt(int iterations) {
   const std::vector<double>& mass = model_->mass;
   const std::vector<double> u = backend_->read_reals(u_);
@@ -66,7 +67,8 @@ double Simulation::estimate_stable_dt(int iterations) {
     for (std::size_t i = 0; i < n; ++i) {
       if (!free_[i]) continue;
       const std::size_t t = 4 * (i / 3) + i % 3;
-      const double next = (rest_force[t] - force[t]) / size / mass[i / 3] - projection * v[i] - (k > 0 ? beta.back() * before[i] : 0);
+      const double next =
+          (rest_force[t] - force[t]) / size / mass[i / 3] - projection * v[i] - (k > 0 ? beta.back() * before[i] : 0);
       before[i] = v[i];
       v[i] = next;
       norm += mass[i / 3] * next * next;
@@ -80,8 +82,8 @@ double Simulation::estimate_stable_dt(int iterations) {
   if (alpha.empty() || !std::isfinite(beta.back())) return 0;
   const auto size = static_cast<Eigen::Index>(alpha.size());
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
-  solver.computeFromTridiagonal(Eigen::Map<Eigen::VectorXd>(alpha.data(), size), Eigen::Map<Eigen::VectorXd>(beta.data(), size - 1),
-                                Eigen::EigenvaluesOnly);
+  solver.computeFromTridiagonal(Eigen::Map<Eigen::VectorXd>(alpha.data(), size),
+                                Eigen::Map<Eigen::VectorXd>(beta.data(), size - 1), Eigen::EigenvaluesOnly);
   double omega2 = solver.eigenvalues()[size - 1];
   if (static_cast<std::size_t>(size) < unknowns && size > 2) omega2 /= 1 - ritz_deficit(unknowns, static_cast<int>(size));
   if (omega2 > 0) state_.stable_dt = 2 / std::sqrt(omega2);

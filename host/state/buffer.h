@@ -29,11 +29,11 @@ struct Buffer {
   BufferType type = BufferType::real;
   std::size_t count = 0;
   BufferRole role = BufferRole::scratch;
-  std::string shape;     ///< for people: "[nodes]", "[tiles][10][16]"
-  std::string unit;      ///< "m", "N", "1"
-  std::string producer;  ///< the kernel that writes it, or "model" or "host"
-  std::vector<double> reals;        ///< initial values; empty means zero. Rounded once to the backend's real type.
-  std::vector<std::int32_t> ints;   ///< initial values; empty means zero
+  std::string shape;               ///< for people: "[nodes]", "[tiles][10][16]"
+  std::string unit;                ///< "m", "N", "1"
+  std::string producer;            ///< the kernel that writes it, or "model" or "host"
+  std::vector<double> reals;       ///< initial values; empty means zero. Rounded once to the backend's real type.
+  std::vector<std::int32_t> ints;  ///< initial values; empty means zero
 
   /// Numbers of four (or, in a double backend, eight) bytes.
   [[nodiscard]] std::size_t values() const { return type == BufferType::real4 ? 4 * count : count; }

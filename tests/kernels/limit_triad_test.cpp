@@ -11,7 +11,10 @@ TEST_F(LimitTriad, TwinGivesTheSameBits) {
   for (const Data data : all_data) {
     Random random(seed++);
     KernelCase test("limit_triad", {}, Shape::lanes, 2064);
-    test.reals("a", random.reals(2064, data, 1)).reals("b", random.reals(2064, data, 1)).reals("c", random.reals(2064, data, 1)).real(0.3);
+    test.reals("a", random.reals(2064, data, 1))
+        .reals("b", random.reals(2064, data, 1))
+        .reals("c", random.reals(2064, data, 1))
+        .real(0.3);
     expect_same_bits(test, name_of(data));
   }
 }

@@ -69,7 +69,10 @@ constexpr double mu = 1052, kappa = 52249, stiffness = 12;
 /// Nodal forces through the brick kernel and brick_update.
 Reals brick_forces(const Cells& cells, int law) {
   KernelCase force("tled_hex8_brick_force", {{"LAW", law}}, Shape::bricks, 8);
-  force.exact("node_u", cells.u).ints("brick_neighbor", Grid::neighbors()).ints("brick_rows", Ints(18, 0xFFFF)).exact("brick_fill", cells.fill);
+  force.exact("node_u", cells.u)
+      .ints("brick_neighbor", Grid::neighbors())
+      .ints("brick_rows", Ints(18, 0xFFFF))
+      .exact("brick_fill", cells.fill);
   force.exact("brick_force", Reals(9 * PLIANT_BRICK_FORCE)).ints("fault", Ints(Grid::slots)).exact(mu).exact(kappa);
   force.exact(1 / (4 * edge)).exact(edge * edge / 4).exact(stiffness).integer(1).integer(0).step();
   KernelCase update("brick_update", update_defines(0, 1, 0), Shape::lanes, Grid::slots);
