@@ -167,7 +167,7 @@ std::string lower_extension(const std::filesystem::path& file) {
   return extension;
 }
 
-/// A mesh may name further files (materials, buffers); a device or a pipe among them would be read without end.
+/// A mesh may name further files (materials, buffers); to open a pipe among them would block for ever.
 class RegularFiles : public Assimp::DefaultIOSystem {
  public:
   Assimp::IOStream* Open(const char* name, const char* mode) override {
