@@ -1,0 +1,92 @@
+// Whole steps on random distorted meshes, every element and law: OpenCL and the float twins hold the same bits after every
+// pass, and every work-group size, number of lanes and number of threads gives the same state.
+#include <gtest/gtest.h>
+
+#include "cpu_ref/backend.h"
+#include "physics/harness.h"
+#include "solver/compare.h"
+#include "solver/scenes.h"
+#include "state/hash.h"
+#ifdef PLIANT_HAVE_OPENCL
+#include "opencl/opencl_backend.h"
+#endif
+
+namespace pliant::physics {
+namespace {
+
+constexpr Law kLaws[] = {Law::neo_hookean, Law::saint_venant_kirchhoff, Law::isochoric_neo_hookean};
+
+/// A distorted block that falls on its fixed end, is pulled at the other, and starts with a spin.
+Scene random_scene(Cut cut, Law law, unsigned seed) {
+  std::mt19937 random(seed);
+  const auto count = [&] { return 2 + static_cast<int>(random() % 4); };
+  Box box{{count(), count(), count()}, 0.01};
+  if (!is_lattice(cut)) box.distortion = 0.15;
+  box.seed = seed;
+  Scene scene;
+  scene.gravity = {0.5, -9.81, 1};
+  scene.bodies = {box_body(box, cut, material_young(law, 3000, 0.4))};
+  Body& body = scene.bodies[0];
+  body.material.damping = 3;
+  body.angular_velocity = {1, 2, -3};
+  Fixed fixed;
+  fixed.where = face(0, 0);
+  body.fixed = {fixed};
+  body.prescribed = {pull(0, box.cells[0] * box.edge, 0.002, smooth(0.02))};
+  scene.safety = 0.5;
+  return scene;
+}
+
+bool has_law(Cut cut, Law law) { return cut != Cut::tet4anp || law != Law::saint_venant_kirchhoff; }
+
+TEST(RandomMeshes, LockstepOnOpenclAndTwins) {
+  if (!testing::has_opencl()) GTEST_SKIP() << "there is no OpenCL device";
+  unsigned seed = 1;
+  for (const Cut cut : all_cuts()) {
+    for (const Law law : kLaws) {
+      if (!has_law(cut, law)) continue;
+      const Scene scene = random_scene(cut, law, seed++);
+      Simulation a(scene, open_backend("opencl:0"));
+      Simulation b(scene, a.shared_model(), open_backend("cpu"));
+      CompareOptions options;
+      options.steps = 40;
+      const ComparisonResult result = compare(a, b, options);
+      EXPECT_TRUE(result.identical) << name_of(cut) << ' ' << to_string(law) << ": "
+                                    << (result.first_difference ? result.first_difference->message() : "");
+      EXPECT_EQ(result.steps, 40) << name_of(cut);
+    }
+  }
+}
+
+TEST(RandomMeshes, SameStateWhateverLanesGroupsAndThreads) {
+  unsigned seed = 100;
+  for (const Cut cut : all_cuts()) {
+    const Scene scene = random_scene(cut, Law::neo_hookean, seed++);
+    Simulation first(scene, open_backend("cpu"));
+    first.advance(30);
+    const auto expect_same = [&](std::unique_ptr<Backend> backend, const std::string& what) {
+      Simulation other(scene, first.shared_model(), std::move(backend));
+      other.advance(30);
+      EXPECT_EQ(other.hash(), first.hash()) << name_of(cut) << " with " << what;
+    };
+    for (const int threads : {1, 2, 3}) {
+      RefOptions options;
+      options.threads = threads;
+      expect_same(make_ref_backend(options), std::to_string(threads) + " threads");
+    }
+#ifdef PLIANT_HAVE_OPENCL
+    if (!testing::has_opencl()) continue;
+    for (const int lanes : {1, 16}) {
+      for (const int local : {0, 1, 4}) {
+        OpenclOptions options;
+        options.lanes = lanes;
+        options.local_size = local;
+        expect_same(make_opencl_backend(0, options), std::to_string(lanes) + " lanes, groups of " + std::to_string(local));
+      }
+    }
+#endif
+  }
+}
+
+}  // namespace
+}  // namespace pliant::physics
