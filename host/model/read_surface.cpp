@@ -170,9 +170,12 @@ std::string lower_extension(const std::filesystem::path& file) {
 /// A mesh may name further files (materials, buffers); to open a pipe among them would block for ever.
 class RegularFiles : public Assimp::DefaultIOSystem {
  public:
-  Assimp::IOStream* Open(const char* name, const char* mode) override {
+  bool Exists(const char* name) const override {
     std::error_code code;
-    return std::filesystem::is_regular_file(name, code) ? DefaultIOSystem::Open(name, mode) : nullptr;
+    return std::filesystem::is_regular_file(name, code);  // assimp's own opens the file
+  }
+  Assimp::IOStream* Open(const char* name, const char* mode) override {
+    return Exists(name) ? DefaultIOSystem::Open(name, mode) : nullptr;
   }
 };
 

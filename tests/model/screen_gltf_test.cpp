@@ -17,6 +17,7 @@ class ScreenGltf : public testing::Test {
   void SetUp() override {
     folder_ = std::filesystem::temp_directory_path() /
               ("pliant_gltf_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    std::filesystem::remove_all(folder_);  // what a killed run left
     std::filesystem::create_directories(folder_);
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
