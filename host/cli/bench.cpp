@@ -17,10 +17,14 @@ struct Options {
   std::filesystem::path out;
 };
 
-void write_folder(const std::filesystem::path& out, const std::string& stem, const nlohmann::json& result) {
+/// Made before the work, so that a folder that cannot be made is known at once.
+void make_folder(const std::filesystem::path& out) {
   std::error_code failed;
   std::filesystem::create_directories(out, failed);
   if (failed) throw Error(fmt::format("--out: folder \"{}\" cannot be made: {}", out.string(), failed.message()));
+}
+
+void write_folder(const std::filesystem::path& out, const std::string& stem, const nlohmann::json& result) {
   write_file(out / (stem + ".json"), result.dump(1) + "\n");
   write_file(out / (stem + ".csv"), bench::rows_csv(result["rows"]));
 }
@@ -30,7 +34,7 @@ int kernels(Options& options) {
   for (const std::int64_t size : options.kernels.sizes) {
     if (size < 1 || size > 100'000'000) throw Error(fmt::format("--sizes: got {}, expected 1 to 100000000 elements", size));
   }
-  if (!options.out.empty()) check_writable(options.out);
+  if (!options.out.empty()) make_folder(options.out);
   Progress progress(!options.common.quiet);
   options.kernels.progress = [&](double done, const std::string& what) {
     progress.show(static_cast<std::int64_t>(1000 * done), 1000, what);
@@ -38,7 +42,11 @@ int kernels(Options& options) {
   const nlohmann::json result = bench::bench_kernels(options.kernels);
   progress.clear();
   options.common.print(bench::kernels_table(result));
-  if (!options.out.empty()) write_folder(options.out, "kernels", result);
+  if (!options.out.empty()) {
+    write_folder(options.out, "kernels", result);
+    const std::string out = options.out.string();
+    options.common.note(fmt::format("wrote kernels.json and kernels.csv to {0}; python3 bench/report.py {0} draws the charts", out));
+  }
   options.common.write(nlohmann::ordered_json(result));
   return 0;
 }

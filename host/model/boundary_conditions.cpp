@@ -104,8 +104,13 @@ void add_boundary_conditions(const Scene& scene, Model& model) {
   model.curves.assign(1, Curve{});  // curve 0: constant 1
   std::map<std::int32_t, Constraint> constraints;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    constrain(scene.bodies[b], model.bodies[b], model, constraints);
-    load(scene.bodies[b], model.bodies[b], model);
+    try {
+      constrain(scene.bodies[b], model.bodies[b], model, constraints);
+      load(scene.bodies[b], model.bodies[b], model);
+    } catch (const Error& error) {
+      if (scene.file.empty()) throw;
+      throw Error(error.code(), fmt::format("{}: {}", scene.file.string(), error.what()));
+    }
   }
   for (auto& [slot, c] : constraints) {
     c.slot = slot;
