@@ -1,9 +1,12 @@
 #include "bench/kernels.h"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <chrono>
+#include <ctime>
 #include <fstream>
 #include <map>
 #include <thread>
@@ -113,7 +116,16 @@ void measure(const KernelsOptions& options, const std::string& element, const st
 }  // namespace
 
 json machine_facts() {
-  return {{"cpu", cpu_name()}, {"threads", std::thread::hardware_concurrency()}, {"compiler", __VERSION__}};
+#ifdef __clang__
+  const std::string compiler = __VERSION__;
+#else
+  const std::string compiler = "g++ " __VERSION__;
+#endif
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  return {{"cpu", cpu_name()},
+          {"threads", std::thread::hardware_concurrency()},
+          {"compiler", compiler},
+          {"date", fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(now))}};
 }
 
 json bench_kernels(const KernelsOptions& options) {

@@ -25,7 +25,7 @@ nlohmann::json bench_kernels(const KernelsOptions& options);
 std::string kernels_table(const nlohmann::json& result);
 std::string rows_csv(const nlohmann::json& rows);
 
-/// The processor, the number of threads, compiler and versions, for the "machine" member of every benchmark.
+/// The processor, the number of threads, the compiler and the time of the run, for the "machine" member of every benchmark.
 nlohmann::json machine_facts();
 
 }  // namespace pliant::bench

@@ -11,6 +11,7 @@ import matplotlib.pyplot as plt  # noqa: E402  (the backend is chosen first)
 from matplotlib.ticker import FuncFormatter, NullFormatter  # noqa: E402
 
 INK, FAINT, GRID, PAPER = "#202428", "#6b7278", "#dfe2e5", "#ffffff"
+ON_DARK = "#fefefe"  # words on a dark colour; not PAPER, since on a dark page these colours are light
 # Okabe and Ito's colours for any kind of colour vision, without their yellow, which is lost on white paper.
 # They differ in lightness too, so that a grey print can be read.
 COLOURS = ["#0072b2", "#e69f00", "#009e73", "#d55e00", "#56b4e9", "#cc79a7", "#8c8c8c"]
@@ -117,6 +118,6 @@ def inline(svg, stem):
 
 
 def colour_names():
-    names = {INK: "ink", FAINT: "faint", GRID: "grid", PAPER: "paper"}
+    names = {INK: "ink", FAINT: "faint", GRID: "grid", PAPER: "paper", ON_DARK: "on"}
     names.update({colour: f"c{i}" for i, colour in enumerate(COLOURS)})
     return names

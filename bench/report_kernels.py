@@ -139,7 +139,7 @@ def role(kernel):
 
 def readable_on(colour):
     r, g, b = (int(colour[i:i + 2], 16) / 255 for i in (1, 3, 5))
-    return "#000000" if 0.3 * r + 0.59 * g + 0.11 * b > 0.5 else "#fefefe"
+    return "#000000" if 0.3 * r + 0.59 * g + 0.11 * b > 0.5 else charts.ON_DARK
 
 
 def split_chart(result, folder):
@@ -306,8 +306,9 @@ def section(result, folder):
         heading("The largest blocks"), headline(r),
         heading("Time against size"),
         figure(step_chart(r, folder), "Time per element and step against the number of elements, a panel per element type",
-               "Lower is better. Bars reach from quartile to quartile. Along a dotted diagonal a whole step takes the same time; a step that "
-               "takes no longer than itself advances the simulation keeps up with real time. No figure can fall below the dashed line."),
+               "Lower is better. Vertical bars show the spread between the quartiles. All points of a dotted diagonal take the time written "
+               "on it for a whole step; a simulation whose time step is at least that long keeps up with real time. The dashed line is "
+               "the least time that the machine allows, which is explained below."),
         heading(f"Where the time goes: {r.main}"),
         figure(split_chart(r, folder), "Time of each pass of a step, stacked, for every element type and size", split),
         heading("How far from the limit"),

@@ -2,7 +2,7 @@
 import html
 from dataclasses import dataclass, field
 
-from report_charts import COLOURS, DARK, FAINT, GRID, INK, PAPER
+from report_charts import COLOURS, DARK, FAINT, GRID, INK, ON_DARK, PAPER
 
 
 def text(value):
@@ -53,7 +53,8 @@ def table(columns, rows, sortable=False, strong=lambda row: False):
     head = []
     for c in columns:
         unit = f'<span class="unit">{text(c.unit)}</span>' if c.unit else ""
-        words = f'<button type="button">{text(c.heading)}</button>' if sortable else text(c.heading)
+        # No <button>: Chromium leaves buttons out of the headings that it repeats on every printed page.
+        words = f'<span class="sort" role="button" tabindex="0">{text(c.heading)}</span>' if sortable else text(c.heading)
         note = f' title="{text(c.note)}"' if c.note else ""
         head.append(f'<th scope="col"{"" if c.number else " class=words"}{note}>{words}{unit}</th>')
     body = []
@@ -79,8 +80,8 @@ def machine_facts(machine):
     return facts(pairs + [(k.capitalize(), v) for k, v in machine.items() if k not in known and not isinstance(v, (dict, list))])
 
 
-def colours(palette, ink, faint, grid, paper, panel, bad):
-    names = {"ink": ink, "faint": faint, "grid": grid, "paper": paper, "panel": panel, "bad": bad}
+def colours(palette, ink, faint, grid, paper, on, panel, bad):
+    names = {"on": on, "ink": ink, "faint": faint, "grid": grid, "paper": paper, "panel": panel, "bad": bad}
     names.update({f"c{i}": c for i, c in enumerate(palette)})
     return "".join(f"--{k}:{v};" for k, v in names.items())
 
@@ -96,8 +97,8 @@ def page(title, lead, sections):
 
 
 def style():
-    light = colours(COLOURS, INK, FAINT, GRID, PAPER, "#f5f6f7", "#b3261e")
-    dark = colours(DARK, "#e4e7ea", "#9aa3ab", "#343b42", "#16191c", "#1f2428", "#ff8a80")
+    light = colours(COLOURS, INK, FAINT, GRID, PAPER, ON_DARK, "#f5f6f7", "#b3261e")
+    dark = colours(DARK, "#e4e7ea", "#9aa3ab", "#343b42", "#16191c", "#000000", "#1f2428", "#ff8a80")
     return STYLE.replace("LIGHT", light).replace("DARK", dark)
 
 
@@ -133,10 +134,10 @@ th:first-child,td:first-child{padding-left:0}
 tr.strong td{font-weight:600}
 td code{font-size:.95em}
 .differs{color:var(--bad);font-weight:600}
-th button{all:unset;cursor:pointer}
-th button:focus-visible{outline:2px solid var(--c0)}
-th[aria-sort=ascending] button::after{content:" \\2191"}
-th[aria-sort=descending] button::after{content:" \\2193"}
+.sort{cursor:pointer}
+.sort:focus-visible{outline:2px solid var(--c0)}
+th[aria-sort=ascending] .sort::after{content:" \\2191"}
+th[aria-sort=descending] .sort::after{content:" \\2193"}
 @page{size:A4;margin:14mm 12mm}
 @media print{
  body{max-width:none;padding:0;font-size:9.5pt}
@@ -144,6 +145,8 @@ th[aria-sort=descending] button::after{content:" \\2193"}
  h2,h3{break-after:avoid}
  figure,.facts,.notice,tr{break-inside:avoid}
  figure{margin:.7rem 0 1rem}
+ figure svg{max-width:150mm}
+ figcaption,.facts{font-size:8.5pt}
  .scroll{overflow:visible}
  thead{display:table-header-group}
  table{font-size:7.3pt}
@@ -155,13 +158,18 @@ th[aria-sort=descending] button::after{content:" \\2193"}
 SORT = """
 for (const table of document.querySelectorAll("table.sortable")) {
   const heads = [...table.tHead.rows[0].cells], body = table.tBodies[0];
-  heads.forEach((head, i) => head.querySelector("button").addEventListener("click", () => {
-    const up = head.getAttribute("aria-sort") !== "ascending";
-    heads.forEach(h => h.removeAttribute("aria-sort"));
-    head.setAttribute("aria-sort", up ? "ascending" : "descending");
-    const value = row => { const c = row.cells[i]; return "v" in c.dataset ? Number(c.dataset.v) : c.textContent; };
-    const order = (a, b) => typeof a === "number" && typeof b === "number" ? a - b : String(a).localeCompare(String(b));
-    body.append(...[...body.rows].sort((a, b) => (up ? 1 : -1) * order(value(a), value(b))));
-  }));
+  heads.forEach((head, i) => {
+    const sort = () => {
+      const up = head.getAttribute("aria-sort") !== "ascending";
+      heads.forEach(h => h.removeAttribute("aria-sort"));
+      head.setAttribute("aria-sort", up ? "ascending" : "descending");
+      const value = row => { const c = row.cells[i]; return "v" in c.dataset ? Number(c.dataset.v) : c.textContent; };
+      const order = (a, b) => typeof a === "number" && typeof b === "number" ? a - b : String(a).localeCompare(String(b));
+      body.append(...[...body.rows].sort((a, b) => (up ? 1 : -1) * order(value(a), value(b))));
+    };
+    const words = head.querySelector(".sort");
+    words.addEventListener("click", sort);
+    words.addEventListener("keydown", e => { if (e.key === "Enter" || e.key === " ") { e.preventDefault(); sort(); } });
+  });
 }
 """

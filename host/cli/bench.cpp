@@ -45,7 +45,8 @@ int kernels(Options& options) {
   if (!options.out.empty()) {
     write_folder(options.out, "kernels", result);
     const std::string out = options.out.string();
-    options.common.note(fmt::format("wrote kernels.json and kernels.csv to {0}; python3 bench/report.py {0} draws the charts", out));
+    options.common.note(
+        fmt::format("wrote kernels.json and kernels.csv to {0}; python3 bench/report.py {0} draws the charts", out));
   }
   options.common.write(nlohmann::ordered_json(result));
   return 0;
