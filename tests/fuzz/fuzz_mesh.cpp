@@ -25,9 +25,7 @@ constexpr std::size_t formats = surface_formats.size() + volume_formats.size();
 /// A folder of this process for the files under test, removed at exit.
 class Folder {
  public:
-  Folder() : path_(fs::temp_directory_path() / ("pliant_fuzz_mesh_" + std::to_string(getpid()))) {
-    fs::create_directories(path_);
-  }
+  Folder() : path_(parent() / ("pliant_fuzz_mesh_" + std::to_string(getpid()))) { fs::create_directories(path_); }
   ~Folder() {
     std::error_code ignored;
     fs::remove_all(path_, ignored);
@@ -37,6 +35,9 @@ class Folder {
   [[nodiscard]] fs::path file(const std::string& extension) const { return path_ / ("input" + extension); }
 
  private:
+  /// In memory where the system offers that: a busy disk can hold up one write for longer than an input may take.
+  static fs::path parent() { return access("/dev/shm", W_OK | X_OK) == 0 ? fs::path("/dev/shm") : fs::temp_directory_path(); }
+
   fs::path path_;
 };
 
