@@ -267,6 +267,166 @@ def remarks(result):
                             "pairings of element and size."))
     noisy = [r for r in result.rows if r["spread"] > NOISY]
     if noisy:
+        many = len(noisy) > len(result.rows) / 10
+        why = "the machine was not quiet, and figures are orders of magnitude" if many else "the table of all rows shows which"
+        parts.append(notice(f"{len(noisy)} of {len(result.rows)} rows spread by more than {100 * NOISY:.0f}&#8239;% between their "
+                            f"quartiles: {why}.", bad=many))
+    above = [v * r["spread"] / 2 for v, r in zip(y, line)]
+            look = result.look(backend)
+            axes.errorbar(x, y, yerr=[below, above], elinewidth=0.9, ecolor=look["color"], markeredgecolor=PAPER, markeredgewidth=0.6,
+                          zorder=3 + (backend == result.main), **look)
+            if backend == result.main:
+                axes.plot(x, [r["ns_per_element_step"] * r["fraction_of_limit"] for r in line], color=look["color"], linestyle="--",
+                          linewidth=1.1, zorder=2)
+    x_labels(result, panels)
+    for axes in panels[::2]:
+        axes.set_ylabel("ns per element and step")
+    handles = [Line2D([], [], markeredgecolor=PAPER, label=backend_name(b), **result.look(b)) for b in result.backends]
+    handles.append(Line2D([], [], color=result.look(result.main)["color"], linestyle="--", linewidth=1.1,
+                          label=f"the machine's limit for {result.main}"))
+    handles.append(Line2D([], [], color=FAINT, linestyle=(0, (1, 2)), linewidth=0.9, label="same time for the whole step"))
+    charts.legend_above(fig, handles, 3)
+    for axes in panels:
+        times_of_a_step(axes)
+    return charts.save(fig, folder, "kernels_step")
+
+
+# --- split ---------------------------------------------------------------------------------------------------------------------
+
+def role(kernel):
+    return next((words for end, words in ROLES if kernel.endswith(end)), kernel)
+
+
+def readable_on(colour):
+    r, g, b = (int(colour[i:i + 2], 16) / 255 for i in (1, 3, 5))
+    return "#000000" if 0.3 * r + 0.59 * g + 0.11 * b > 0.5 else charts.ON_DARK
+
+
+def split_chart(result, folder):
+    kernels = list(dict.fromkeys(r["kernel"] for r in result.rows if r["kernel"] != "step"))
+    roles = list(dict.fromkeys(role(k) for k in kernels))
+    order = [words for _, words in ROLES]
+    roles.sort(key=lambda r: order.index(r) if r in order else len(order))
+    colour = {r: COLOURS[i % len(COLOURS)] for i, r in enumerate(roles)}
+    deepest = max(len(result.line(e, result.main)) for e in result.elements)
+    fig, panels = charts.panels(result.titles(), 0.75 + 0.32 * deepest, sharex=False, sharey=False)
+    for axes, element in zip(panels, result.elements):
+        steps = result.line(element, result.main)
+        longest = max(max(s["ns_per_element_step"], sum(p["ns_per_element_step"] for p in result.passes(s))) for s in steps)
+        for i, step in enumerate(steps):
+            left, whole = 0.0, sum(p["ns_per_element_step"] for p in result.passes(step))
+            for row in result.passes(step):
+                ns, c = row["ns_per_element_step"], colour[role(row["kernel"])]
+                axes.barh(i, ns, left=left, height=0.62, color=c, edgecolor=PAPER, linewidth=0.6)
+                if ns > 0.09 * longest:
+                    axes.text(left + ns / 2, i, f"{100 * ns / whole:.0f}%", ha="center", va="center", fontsize=7, color=readable_on(c))
+                left += ns
+            for end in (-1, 1):  # beside the bar, so that it hides no share
+                axes.plot([step["ns_per_element_step"]] * 2, [i + 0.31 * end, i + 0.47 * end], color=INK, linewidth=1.8,
+                          solid_capstyle="butt")
+        axes.set_yticks(range(len(steps)), [short(s["elements"]) for s in steps])
+        axes.set_ylim(len(steps) - 0.45, -0.55)
+        axes.set_xlim(0, 1.06 * longest)
+        axes.grid(False, axis="y")
+        axes.tick_params(axis="y", length=0)
+    for axes in panels[::2]:
+        axes.set_ylabel("elements")
+    for axes in panels[-min(2, len(panels)):]:
+        axes.set_xlabel("ns per element and step")
+    handles = [Patch(color=colour[r], label=r) for r in roles]
+    handles.append(Line2D([], [], color=INK, linewidth=1.8, marker="|", linestyle="none", markersize=9, markeredgewidth=1.8,
+                          label="whole step, timed at once"))
+    charts.legend_above(fig, handles, 3)
+    return charts.save(fig, folder, "kernels_split")
+
+
+# --- limit ---------------------------------------------------------------------------------------------------------------------
+
+def limit_chart(result, folder):
+    fig, panels = charts.panels(result.titles(), 2.0)
+    highest = max(100 * r["fraction_of_limit"] for r in result.steps)
+    top = min(max(112, 1.08 * highest), 160)
+    for axes, element in zip(panels, result.elements):
+        size_axis(result, axes)
+        axes.set_ylim(0, top)
+        axes.set_yticks([0, 25, 50, 75, 100] + ([125, 150] if top > 130 else []))
+        axes.yaxis.set_major_formatter(lambda v, _: f"{v:.0f}\u2009%")
+        axes.axhline(100, color=INK, linewidth=1.1)
+        for backend in result.backends:
+            line, look = result.line(element, backend), result.look(backend)
+            x, y = [r["elements"] for r in line], [100 * r["fraction_of_limit"] for r in line]
+            axes.plot(x, [min(v, top * 1.2) for v in y], color=look["color"], zorder=3)
+            for r, v in zip(line, y):
+                inside = v <= top
+                filled = look["color"] if bound_by(r) == "memory" else PAPER
+                axes.plot(r["elements"], min(v, 0.97 * top), marker=look["marker"] if inside else "$\\uparrow$", color=look["color"],
+                          markerfacecolor=filled if inside else look["color"], markeredgewidth=1.2 if inside else 0.4,
+                          markersize=4.8 if inside else 8, zorder=4, clip_on=False)
+    x_labels(result, panels)
+    for axes in panels[::2]:
+        axes.set_ylabel("share of the limit")
+    handles = [Line2D([], [], label=backend_name(b), **result.look(b)) for b in result.backends]
+    dot = {"marker": "o", "color": FAINT, "linestyle": "none", "markeredgewidth": 1.2}
+    handles += [Line2D([], [], label="limit set by memory", **dot),
+                Line2D([], [], label="limit set by arithmetic", markerfacecolor=PAPER, **dot),
+                Line2D([], [], color=INK, linewidth=1.1, label="the machine's limit")]
+    charts.legend_above(fig, handles, 3)
+    return charts.save(fig, folder, "kernels_limit")
+
+
+# --- page ----------------------------------------------------------------------------------------------------------------------
+
+def headline(result):
+    """The largest size of every element: the figures that are quoted."""
+    rows = []
+    for element in result.elements:
+        for backend in result.backends:
+            line = result.line(element, backend)
+            if line:
+                rows.append({**line[-1], "bound": bound_by(line[-1])})
+    columns = [
+        Column("element", "element", show=text, number=False), Column("backend", "backend", show=text, number=False),
+        Column("elements", "elements", show=count), Column("nodes", "nodes", show=count),
+        Column("ns_per_element_step", "time", "ns/element", show=number), Column("ms_per_step", "one step", "ms", show=number),
+        Column("fraction_of_limit", "of the limit", "%", show=lambda v: f"{100 * v:.0f}"),
+        Column("bound", "limit set by", show=text, number=False), Column("spread", "spread", "%", show=lambda v: f"{100 * v:.0f}"),
+        Column("memory_bytes", "memory", "MiB", show=lambda v: number(v / 2**20)),
+    ]
+    return table(columns, rows, strong=lambda r: r["backend"] == result.main)
+
+
+def all_rows(result):
+    differing = {id(r) for group in result.twins().values() if len({x["hash"] for x in group}) > 1 for r in group}
+    bad = {r["hash"] for r in result.rows if id(r) in differing}
+    def percent(v):
+        return f"{100 * v:.0f}"
+    def giga(v):
+        return number(v / 1e9)
+    columns = [
+        Column("element", "element", show=text, number=False), Column("backend", "backend", show=text, number=False),
+        Column("elements", "elements", show=count), Column("kernel", "kernel", show=text, number=False),
+        Column("ns_per_element_step", "time", "ns/element", show=number), Column("spread", "spread", "%", percent),
+        Column("bytes_per_element", "traffic", "B/element", show=number, note="counted, each datum once"),
+        Column("flops_per_element", "work", "flop/element", show=number, note="counted; an fma is two"),
+        Column("bytes_per_second", "reached", "GB/s", giga), Column("triad_bytes_per_second", "triad", "GB/s", giga),
+        Column("fma_flops_per_second", "fma", "Gflop/s", giga), Column("fraction_of_limit", "of the limit", "%", percent),
+        Column("hash", "state hash", show=lambda v: f'<code class="{"differs" if v in bad else ""}">{text(v)}</code>', number=False),
+    ]
+    return table(columns, result.rows, sortable=True, strong=lambda r: r["kernel"] == "step")
+
+
+def remarks(result):
+    parts = []
+    groups = result.twins()
+    wrong = [f"{e} with {count(n)} elements" for (e, n), rows in groups.items() if len({r["hash"] for r in rows}) > 1]
+    if wrong:
+        parts.append(notice(f'<b>The backends differ in bits</b> for {text(", ".join(wrong))}. These times are times of a wrong answer.', bad=True))
+    elif groups:
+        names = " and ".join(dict.fromkeys(r["backend"] for rows in groups.values() for r in rows))
+        parts.append(notice(f"Same bits: after 16 steps the states of {text(names)} have the same hash in all {len(groups)} "
+                            "pairings of element and size."))
+    noisy = [r for r in result.rows if r["spread"] > NOISY]
+    if noisy:
         parts.append(notice(f"{len(noisy)} of {len(result.rows)} rows spread by more than {100 * NOISY:.0f}&#8239;% between their "
                             "quartiles: the machine was not quiet. Take those figures as orders of magnitude.", bad=len(noisy) > len(result.rows) / 10))
     above = [r for r in result.steps if r["fraction_of_limit"] > 1]
