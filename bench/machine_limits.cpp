@@ -27,7 +27,7 @@ double triad_bandwidth(Backend& backend, std::int64_t footprint) {
                           12,
                           2});
   backend.load(program);
-  return 3.0 * static_cast<double>(bytes * count) / time_passes(backend, program.step).median;
+  return 3.0 * static_cast<double>(bytes * count) / time_passes(backend, program.step).best;
 }
 
 double fma_rate(Backend& backend) {
@@ -36,7 +36,7 @@ double fma_rate(Backend& backend) {
   const BufferId a = program.add(numbers("a", count));
   program.step.push_back({"limit_fma", {}, {buffer_arg(a), real_arg(0.5)}, Shape::lanes, count, "fma", count, 8, 1024});
   backend.load(program);
-  return 1024.0 * static_cast<double>(count) / time_passes(backend, program.step).median;
+  return 1024.0 * static_cast<double>(count) / time_passes(backend, program.step).best;
 }
 
 }  // namespace pliant::bench

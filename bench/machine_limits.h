@@ -6,7 +6,7 @@
 
 namespace pliant::bench {
 
-/// Bytes per second of a triad whose three arrays take about `footprint` bytes together (a median of several batches).
+/// Bytes per second of a triad whose three arrays take about `footprint` bytes together (the fastest of several batches).
 double triad_bandwidth(Backend& backend, std::int64_t footprint);
 
 /// Floating-point operations per second of independent fma chains (an fma counts two).

@@ -26,7 +26,7 @@ Timing time_passes(Backend& backend, const std::vector<Pass>& passes, int batche
   for (int b = 0; b < batches; ++b) samples.push_back(seconds_for(backend, passes, runs) / runs);
   std::sort(samples.begin(), samples.end());
   const std::size_t n = samples.size();
-  return {samples[n / 2], (samples[3 * n / 4] - samples[n / 4]) / samples[n / 2], batches};
+  return {samples[n / 2], samples[0], (samples[3 * n / 4] - samples[n / 4]) / samples[n / 2], batches};
 }
 
 }  // namespace pliant::bench

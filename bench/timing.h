@@ -9,6 +9,7 @@ namespace pliant::bench {
 
 struct Timing {
   double median = 0;  ///< [s] per run of the list of passes
+  double best = 0;    ///< [s] of the fastest batch: for limits, which nothing should make look low
   double spread = 0;  ///< (third quartile - first quartile) / median
   int batches = 0;
 };

@@ -93,16 +93,21 @@ void number_list_nodes(std::vector<Draft>& drafts, Model& model) {
   model.slots = (slot + PLIANT_TILE - 1) / PLIANT_TILE * PLIANT_TILE;
 }
 
-void add_tets(const Body& body, std::int32_t b, const Draft& draft, Model& model) {
-  std::vector<std::int32_t> order(draft.solid.tets.size());
+/// Elements by their lowest slot: what a sweep over them touches lies close together.
+template <std::size_t N>
+std::vector<std::int32_t> element_order(const std::vector<std::array<std::int32_t, N>>& elements, const Draft& draft) {
+  std::vector<std::int32_t> order(elements.size()), lowest(elements.size());
   std::iota(order.begin(), order.end(), 0);
-  std::vector<std::array<std::int32_t, 4>> slots;
-  std::vector<std::int32_t> lowest;
-  for (const auto& tet : draft.solid.tets) {
-    slots.push_back({draft.slot[tet[0]], draft.slot[tet[1]], draft.slot[tet[2]], draft.slot[tet[3]]});
-    lowest.push_back(*std::min_element(slots.back().begin(), slots.back().end()));
+  for (std::size_t e = 0; e < elements.size(); ++e) {
+    lowest[e] = draft.slot[elements[e][0]];
+    for (const std::int32_t n : elements[e]) lowest[e] = std::min(lowest[e], draft.slot[n]);
   }
   std::stable_sort(order.begin(), order.end(), [&](std::int32_t i, std::int32_t j) { return lowest[i] < lowest[j]; });
+  return order;
+}
+
+void add_tets(const Body& body, std::int32_t b, const Draft& draft, Model& model) {
+  const std::vector<std::int32_t> order = element_order(draft.solid.tets, draft);
   for (std::size_t m = 0; m <= body.inclusions.size(); ++m) {
     TetBatch batch;
     batch.material = material_of(body, static_cast<int>(m));
@@ -111,13 +116,17 @@ void add_tets(const Body& body, std::int32_t b, const Draft& draft, Model& model
     for (const std::int32_t e : order) {
       if (draft.material[e] != static_cast<int>(m)) continue;
       std::array<Vec3d, 4> x;
-      for (int a = 0; a < 4; ++a) x[a] = draft.solid.nodes[draft.solid.tets[e][a]];
+      std::array<std::int32_t, 4> slots{};
+      for (int a = 0; a < 4; ++a) {
+        x[a] = draft.solid.nodes[draft.solid.tets[e][a]];
+        slots[a] = draft.slot[draft.solid.tets[e][a]];
+      }
       const TetGeometry geometry = tet_geometry(x);
-      batch.nodes.push_back(slots[e]);
+      batch.nodes.push_back(slots);
       batch.gradients.push_back(geometry.gradients);
       batch.volume.push_back(geometry.volume * draft.solid.fill[e]);
       batch.id.push_back(e);
-      for (const std::int32_t n : slots[e]) model.mass[n] += batch.material.density * batch.volume.back() / 4;
+      for (const std::int32_t n : slots) model.mass[n] += batch.material.density * batch.volume.back() / 4;
       note_bound(model, tet_frequency(geometry, batch.material), geometry.volume,
                  fmt::format("{}: tetrahedron {}", body.name, e));
     }
@@ -142,6 +151,7 @@ double hex_volume(const HexBatch& batch, const std::vector<double>& record) {
 
 void add_hexes(const Body& body, std::int32_t b, const Draft& draft, Model& model) {
   const Solid& solid = draft.solid;
+  const std::vector<std::int32_t> order = element_order(solid.hexes, draft);
   for (std::size_t m = 0; m <= body.inclusions.size(); ++m) {
     HexBatch batch;
     batch.material = material_of(body, static_cast<int>(m));
@@ -157,7 +167,8 @@ void add_hexes(const Body& body, std::int32_t b, const Draft& draft, Model& mode
       batch.records.push_back(hex_record(batch, cube, fmt::format("{}: lattice cell", body.name)));
       note_bound(model, hex_frequency(batch, batch.records[0]), d * d * d, fmt::format("{}: every lattice cell", body.name));
     }
-    for (std::size_t e = 0; e < solid.hexes.size(); ++e) {
+    for (const std::int32_t i : order) {
+      const auto e = static_cast<std::size_t>(i);
       if (draft.material[e] != static_cast<int>(m)) continue;
       std::array<std::int32_t, 8> slots{};
       std::array<Vec3d, 8> x;
