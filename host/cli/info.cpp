@@ -1,4 +1,4 @@
-// pliant info: what a scene holds and costs. Runs nothing but the power iteration, on the cpu backend.
+// pliant info: what a scene holds and costs. Runs nothing but the Lanczos iteration of the stable step, on the cpu backend.
 #include <fmt/format.h>
 
 #include "backends/backends.h"
@@ -56,7 +56,7 @@ class Info {
  public:
   Info(const Options& options, const Scene& scene, const Model& model) : options_(options), scene_(scene), model_(model) {}
 
-  void print_all(const Program& program, double power_dt, const std::string& no_power) {
+  void print_all(const Program& program, double iterated_dt, const std::string& not_iterated) {
     json_ = {{"scene", scene_stem(options_.scene)},
              {"title", scene_.name},
              {"nodes", model_.nodes()},
@@ -64,7 +64,7 @@ class Info {
     line(fmt::format("{}: {}", scene_stem(options_.scene), scene_.name));
     line(fmt::format("nodes {}, elements {}, slots {}", model_.nodes(), model_.elements(), model_.slots));
     bodies();
-    stable_step(power_dt, no_power);
+    stable_step(iterated_dt, not_iterated);
     memory(program);
     passes(program);
     if (options_.buffers) buffers(program);
@@ -98,17 +98,17 @@ class Info {
     json_["mass"] = mass;
   }
 
-  void stable_step(double power_dt, const std::string& no_power) {
-    const double step = scene_.dt > 0 ? scene_.dt : scene_.safety * power_dt;
+  void stable_step(double iterated_dt, const std::string& not_iterated) {
+    const double step = scene_.dt > 0 ? scene_.dt : scene_.safety * iterated_dt;
     json_["stable_step"] = {{"element_bound", model_.element_bound},
                             {"bound_element", model_.bound_element},
-                            {"power_iteration", power_dt > 0 ? Json(power_dt) : Json(nullptr)},
+                            {"iteration", iterated_dt > 0 ? Json(iterated_dt) : Json(nullptr)},
                             {"dt", step > 0 ? Json(step) : Json(nullptr)},
                             {"automatic", scene_.dt <= 0}};
     line(fmt::format("stable step: element bound {:.6g} s ({})", model_.element_bound, model_.bound_element));
-    line(power_dt > 0
-             ? fmt::format("  power iteration {:.6g} s, {:.3g} times the bound", power_dt, power_dt / model_.element_bound)
-             : "  power iteration: " + no_power);
+    line(iterated_dt > 0 ? fmt::format("  Lanczos iteration {:.6g} s, {:.3g} times the bound", iterated_dt,
+                                       iterated_dt / model_.element_bound)
+                         : "  Lanczos iteration: " + not_iterated);
     if (step > 0) {
       line(scene_.dt > 0 ? fmt::format("  the scene's step {:.6g} s", step)
                          : fmt::format("  the scene's step is automatic: {:.3g} of it, {:.6g} s", scene_.safety, step));
@@ -179,17 +179,17 @@ int info(const Options& options) {
   options.common.check();
   const Scene scene = load_scene(options.scene);
   const auto model = std::make_shared<const Model>(build_model(scene));
-  double power_dt = 0;
-  std::string no_power;
+  double iterated_dt = 0;
+  std::string not_iterated;
   try {
     const Simulation simulation(scene, model, open_backend("cpu"));
-    power_dt = simulation.stable_dt();
-    if (!(power_dt > 0)) no_power = "nothing moves freely";
+    iterated_dt = simulation.stable_dt();
+    if (!(iterated_dt > 0)) not_iterated = "nothing moves freely";
   } catch (const Error& error) {  // a scene too large for this machine may still be asked about
-    no_power = error.what();
+    not_iterated = error.what();
   }
   Info(options, scene, *model)
-      .print_all(build_program(*model, {scene.integrator, SimulationOptions{}.batch_steps}), power_dt, no_power);
+      .print_all(build_program(*model, {scene.integrator, SimulationOptions{}.batch_steps}), iterated_dt, not_iterated);
   return 0;
 }
 

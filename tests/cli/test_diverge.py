@@ -7,7 +7,7 @@ import harness
 
 class Diverge(harness.CliTest):
     def unstable(self):
-        stable = self.json("info", self.scene())["stable_step"]["power_iteration"]
+        stable = self.json("info", self.scene())["stable_step"]["iteration"]
         return ("run", self.scene(), "--backend", "cpu", "--dt", repr(3 * stable), "--steps", 2000)
 
     def check_message(self, stderr):

@@ -12,8 +12,8 @@ class Info(harness.CliTest):
         self.assertAlmostEqual(info["mass"], 1.0, delta=0.02)
         step = info["stable_step"]
         self.assertGreater(step["element_bound"], 0)
-        self.assertGreaterEqual(step["power_iteration"], 0.98 * step["element_bound"])
-        self.assertAlmostEqual(step["dt"], 0.9 * step["power_iteration"])
+        self.assertGreaterEqual(step["iteration"], 0.98 * step["element_bound"])
+        self.assertAlmostEqual(step["dt"], 0.9 * step["iteration"])
         self.assertTrue(step["automatic"])
 
     def test_memory_is_the_sum_of_the_buffers(self):

@@ -1,4 +1,4 @@
-// The stable step: power iteration against the eigenproblem in Eigen, the measured limit, the element bound, fill, and
+// The stable step: Lanczos iteration against the eigenproblem in Eigen, the measured limit, the element bound, fill, and
 // divergence.
 #include "physics/harness.h"
 
