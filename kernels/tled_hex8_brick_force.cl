@@ -15,33 +15,23 @@
 #include "law.cl"
 
 #if LANES == 16
-#define LOCAL_PARAM
-#define LOCAL_ARG
 #define FROM_RIGHT(v, last) (float16)((v).s12345678, (v).s9abc, (v).sde, (v).sf, last)
 #define FROM_LEFT(v) (float16)(-0.0f, (v).s01234567, (v).s89ab, (v).scd, (v).se)
-#define PUT_LAST(v, p, i) ((p)[i] = (v).sf)
+#define PUT_ROW(lo, hi, out, offset, lane) STORE((lo) + FROM_LEFT(hi), out, offset)
+#define PUT_LAST(v, p, i, lane) ((p)[i] = (v).sf)
 #else
-// One row of sixteen work-items takes a brick and passes neighbours through local memory.
-static inline float from_right(float v, float last, __local float* shared, int lane) {
-  barrier(CLK_LOCAL_MEM_FENCE);
-  shared[lane] = v;
-  if (lane == 15) shared[16] = last;
-  barrier(CLK_LOCAL_MEM_FENCE);
-  return shared[lane + 1];
+// One row of sixteen work-items takes a brick. A work-item reads its right neighbour's displacement itself, and passes its force to it
+// through the place in memory where the row's sum goes: PoCL 3.1 shares a __local array between work-groups that run at the same time.
+static inline void put_row(float lo, float hi, __global float* row, int lane) {
+  row[lane] = hi;
+  barrier(CLK_GLOBAL_MEM_FENCE);
+  const float left = lane > 0 ? row[lane - 1] : -0.0f;
+  barrier(CLK_GLOBAL_MEM_FENCE);
+  row[lane] = lo + left;
 }
-static inline float from_left(float v, __local float* shared, int lane) {
-  barrier(CLK_LOCAL_MEM_FENCE);
-  shared[lane + 1] = v;
-  if (lane == 0) shared[0] = -0.0f;
-  barrier(CLK_LOCAL_MEM_FENCE);
-  return shared[lane];
-}
-#define FROM_RIGHT(v, last) from_right(v, last, shared, lane)
-#define FROM_LEFT(v) from_left(v, shared, lane)
-#define PUT_LAST(v, p, i) \
-  if (lane == 15) (p)[i] = (v)
-#define LOCAL_PARAM , __local float* shared
-#define LOCAL_ARG , shared
+#define PUT_ROW(lo, hi, out, offset, lane) put_row(lo, hi, (out) + (offset), lane)
+#define PUT_LAST(v, p, i, lane) \
+  if ((lane) == 15) (p)[i] = (v)
 #endif
 
 typedef struct {
@@ -69,7 +59,7 @@ typedef struct {
 } face;
 
 // Back along y and x for one plane of nodes, and out.
-static inline void write_plane(const face* forces, __global float* out, int plane, int lane LOCAL_PARAM) {
+static inline void write_plane(const face* forces, __global float* out, int plane, int lane) {
   for (int y = 0; y < 5; ++y) {
     vec3 s, d;
     if (y > 0) {
@@ -85,13 +75,13 @@ static inline void write_plane(const face* forces, __global float* out, int plan
     }
     const vec3 lo = sub(s, d), hi = add(s, d);
     const int row = plane * 5 + y;
-    STORE(lo.x + FROM_LEFT(hi.x), out, (3 * row) * 16 + lane);
-    STORE(lo.y + FROM_LEFT(hi.y), out, (3 * row + 1) * 16 + lane);
-    STORE(lo.z + FROM_LEFT(hi.z), out, (3 * row + 2) * 16 + lane);
+    PUT_ROW(lo.x, hi.x, out, (3 * row) * 16, lane);
+    PUT_ROW(lo.y, hi.y, out, (3 * row + 1) * 16, lane);
+    PUT_ROW(lo.z, hi.z, out, (3 * row + 2) * 16, lane);
     __global float* last = out + PLIANT_BRICK_FORCE_X16 + 3 * row;
-    PUT_LAST(hi.x, last, 0);
-    PUT_LAST(hi.y, last, 1);
-    PUT_LAST(hi.z, last, 2);
+    PUT_LAST(hi.x, last, 0, lane);
+    PUT_LAST(hi.y, last, 1, lane);
+    PUT_LAST(hi.z, last, 2, lane);
   }
 }
 
@@ -102,7 +92,6 @@ __kernel void tled_hex8_brick_force(__global const float* node_u, __global const
   const int brick = first_brick + (int)get_global_id(0), lane = 0;
 #else
   const int brick = first_brick + (int)get_group_id(0), lane = (int)get_local_id(0);
-  __local float shared[17];
 #endif
   __global const int* neighbor = brick_neighbor + brick * PLIANT_BRICK_NEIGHBORS;
   __global float* out = brick_force + brick * PLIANT_BRICK_FORCE;
@@ -117,9 +106,15 @@ __kernel void tled_hex8_brick_force(__global const float* node_u, __global const
       const int mask = (y == 4 ? 2 : 0) + (z == 4 ? 4 : 0);
       const int row = ((z & 3) * 4 + (y & 3)) * 16;
       const texels t = texels_load(node_u, neighbor[mask] * PLIANT_BRICK_NODES + row + lane);
-      const float4 right = vload4(neighbor[mask + 1] * PLIANT_BRICK_NODES + row, node_u);
       const vec3 lo = {texels_x(t), texels_y(t), texels_z(t)};
+#if LANES == 16
+      const float4 right = vload4(neighbor[mask + 1] * PLIANT_BRICK_NODES + row, node_u);
       const vec3 hi = {FROM_RIGHT(lo.x, right.x), FROM_RIGHT(lo.y, right.y), FROM_RIGHT(lo.z, right.z)};
+#else
+      const int beside = lane == 15 ? neighbor[mask + 1] * PLIANT_BRICK_NODES + row : neighbor[mask] * PLIANT_BRICK_NODES + row + lane + 1;
+      const float4 right = vload4(beside, node_u);
+      const vec3 hi = {right.x, right.y, right.z};
+#endif
       const vec3 s = add(lo, hi), d = sub(hi, lo);
       if (y > 0) {
         above[y - 1].ss = add(sum, s);
@@ -164,7 +159,7 @@ __kernel void tled_hex8_brick_force(__global const float* node_u, __global const
       }
       below[y] = above[y];
     }
-    if (z > 0) write_plane(forces, out, z - 1, lane LOCAL_ARG);
+    if (z > 0) write_plane(forces, out, z - 1, lane);
   }
-  write_plane(pending, out, 4, lane LOCAL_ARG);
+  write_plane(pending, out, 4, lane);
 }
