@@ -198,26 +198,14 @@ ClosestPoint TriangleTree::closest(const Vec3d& p) const {
   return best;
 }
 
-double TriangleTree::winding(const Vec3d& p) const {
-  double sum = 0;
+template <class Open, class Visit>
+bool TriangleTree::descend(Open&& open, Visit&& visit) const {
   std::array<std::int32_t, kDepth> stack;
   int top = 0;
   stack[top++] = 0;
   while (top > 0) {
     const std::int32_t id = stack[--top];
-    const Far& far = far_[id];
-    const Vec3d r = sub(far.centre, p);
-    const double r2 = dot(r, r);
-    if (r2 > far.reach2) {
-      // Sum over triangles of n . g(c), g(x) = x / |x|^3, expanded about the centre: N . g + M : grad g.
-      const double inv3 = 1 / (r2 * std::sqrt(r2));
-      const auto& m = far.moment;
-      const double trace = m[0] + m[4] + m[8];
-      const double quad = r[0] * (m[0] * r[0] + m[1] * r[1] + m[2] * r[2]) + r[1] * (m[3] * r[0] + m[4] * r[1] + m[5] * r[2]) +
-                          r[2] * (m[6] * r[0] + m[7] * r[1] + m[8] * r[2]);
-      sum += inv3 * (dot(far.area, r) + trace - 3 * quad / r2);
-      continue;
-    }
+    if (!open(id)) continue;
     const Node& node = nodes_[id];
     if (node.count == 0) {
       stack[top++] = id + 1;
@@ -225,56 +213,53 @@ double TriangleTree::winding(const Vec3d& p) const {
       continue;
     }
     for (std::int32_t i = node.first; i < node.first + node.count; ++i) {
-      sum += solid_angle(sub(triangles_[i].a, p), sub(triangles_[i].b, p), sub(triangles_[i].c, p));
+      if (visit(i)) return true;
     }
   }
+  return false;
+}
+
+double TriangleTree::winding(const Vec3d& p) const {
+  double sum = 0;
+  const auto add_far = [&](std::int32_t id) {
+    const Far& far = far_[id];
+    const Vec3d r = sub(far.centre, p);
+    const double r2 = dot(r, r);
+    if (!(r2 > far.reach2)) return true;
+    // Sum over triangles of n . g(c), g(x) = x / |x|^3, expanded about the centre: N . g + M : grad g.
+    const double inv3 = 1 / (r2 * std::sqrt(r2));
+    const auto& m = far.moment;
+    const double trace = m[0] + m[4] + m[8];
+    const double quad = r[0] * (m[0] * r[0] + m[1] * r[1] + m[2] * r[2]) + r[1] * (m[3] * r[0] + m[4] * r[1] + m[5] * r[2]) +
+                        r[2] * (m[6] * r[0] + m[7] * r[1] + m[8] * r[2]);
+    sum += inv3 * (dot(far.area, r) + trace - 3 * quad / r2);
+    return false;
+  };
+  descend(add_far, [&](std::int32_t i) {
+    sum += solid_angle(sub(triangles_[i].a, p), sub(triangles_[i].b, p), sub(triangles_[i].c, p));
+    return false;
+  });
   return sum / (4 * std::numbers::pi);
 }
 
 void TriangleTree::overlapping(const vec::Box& box, std::vector<std::int32_t>& out) const {
   out.clear();
-  std::array<std::int32_t, kDepth> stack;
-  int top = 0;
-  stack[top++] = 0;
-  while (top > 0) {
-    const std::int32_t id = stack[--top];
-    const Node& node = nodes_[id];
-    if (!node.box.overlaps(box)) continue;
-    if (node.count == 0) {
-      stack[top++] = id + 1;
-      stack[top++] = node.right;
-      continue;
-    }
-    for (std::int32_t i = node.first; i < node.first + node.count; ++i) {
-      vec::Box tri;
-      tri.extend(triangles_[i].a);
-      tri.extend(triangles_[i].b);
-      tri.extend(triangles_[i].c);
-      if (tri.overlaps(box)) out.push_back(order_[i]);
-    }
-  }
+  descend([&](std::int32_t id) { return nodes_[id].box.overlaps(box); },
+          [&](std::int32_t i) {
+            vec::Box tri;
+            tri.extend(triangles_[i].a);
+            tri.extend(triangles_[i].b);
+            tri.extend(triangles_[i].c);
+            if (tri.overlaps(box)) out.push_back(order_[i]);
+            return false;
+          });
   std::sort(out.begin(), out.end());
 }
 
 bool TriangleTree::blocked(const Vec3d& p, const Vec3d& q) const {
   const Vec3d d = sub(q, p);
-  std::array<std::int32_t, kDepth> stack;
-  int top = 0;
-  stack[top++] = 0;
-  while (top > 0) {
-    const std::int32_t id = stack[--top];
-    const Node& node = nodes_[id];
-    if (!segment_meets(p, d, node.box)) continue;
-    if (node.count == 0) {
-      stack[top++] = id + 1;
-      stack[top++] = node.right;
-      continue;
-    }
-    for (std::int32_t i = node.first; i < node.first + node.count; ++i) {
-      if (segment_meets(p, d, triangles_[i].a, triangles_[i].b, triangles_[i].c)) return true;
-    }
-  }
-  return false;
+  return descend([&](std::int32_t id) { return segment_meets(p, d, nodes_[id].box); },
+                 [&](std::int32_t i) { return segment_meets(p, d, triangles_[i].a, triangles_[i].b, triangles_[i].c); });
 }
 
 }  // namespace pliant
