@@ -44,20 +44,13 @@ template <class Scalar>
           minor2(h.m01, h.m12, h.m02, h.m11), minor2(h.m02, h.m10, h.m00, h.m12), minor2(h.m00, h.m11, h.m01, h.m10)};
 }
 
-/// Strain components below this are none in float (kernels/deformation.cl says why); the double oracle keeps all.
-template <class Scalar>
-[[gnu::always_inline]] inline Scalar without_dust(Scalar x) {
-  constexpr Scalar dust = sizeof(Scalar) == 4 ? Scalar(1e-12) : Scalar(0);
-  return std::fabs(x) < dust ? Scalar(0) : x;
-}
-
 template <class Scalar>
 [[gnu::always_inline]] inline Deformation<Scalar> deformation_of(const Mat3<Scalar>& h) {
   Deformation<Scalar> d;
   // One by one: gcc keeps a copied structure in memory, and then the loop around it does not become vector instructions.
-  d.h.m00 = without_dust(h.m00), d.h.m01 = without_dust(h.m01), d.h.m02 = without_dust(h.m02);
-  d.h.m10 = without_dust(h.m10), d.h.m11 = without_dust(h.m11), d.h.m12 = without_dust(h.m12);
-  d.h.m20 = without_dust(h.m20), d.h.m21 = without_dust(h.m21), d.h.m22 = without_dust(h.m22);
+  d.h.m00 = h.m00, d.h.m01 = h.m01, d.h.m02 = h.m02;
+  d.h.m10 = h.m10, d.h.m11 = h.m11, d.h.m12 = h.m12;
+  d.h.m20 = h.m20, d.h.m21 = h.m21, d.h.m22 = h.m22;
   d.c = cofactor(d.h);
   d.t = (d.h.m00 + d.h.m11) + d.h.m22;
   const Scalar det = dot3(d.h.m00, d.c.m00, d.h.m01, d.c.m01, d.h.m02, d.c.m02);

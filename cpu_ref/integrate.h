@@ -15,11 +15,13 @@ struct UpdateKind {
 /// What all nodes of a pass share.
 template <class Scalar>
 struct StepParameters {
-  Scalar half_hh, gravity[3], still;
+  Scalar half_hh, gravity[3], still, fine, anchor;
   explicit StepParameters(const Scalar* step_params)
       : half_hh((Scalar(0.5) * step_params[0]) * step_params[0]),
         gravity{step_params[1], step_params[2], step_params[3]},
-        still(step_params[4]) {}
+        still(step_params[4]),
+        fine(step_params[5]),
+        anchor(Scalar(3) * step_params[5]) {}
 };
 
 /// Advance node i under the summed element force f.
@@ -46,7 +48,8 @@ inline void integrate(const Scalar (&f)[3], Scalar* node_u, Scalar* node_w, cons
       } else {
         const Scalar next = std::fma(a, w[c], push);
         w[c] = std::fabs(next) < step.still ? Scalar(0) : next;
-        u[c] = u[c] + w[c];
+        const Scalar sum = u[c] + w[c];
+        u[c] = std::fabs(sum) < step.fine ? (sum + step.anchor) - step.anchor : sum;
       }
     }
   }

@@ -27,17 +27,7 @@ static inline mat3 cofactor(mat3 h) {
   return c;
 }
 
-// A strain component that float cannot tell from rounding is none: its squares and cubes would be denormal numbers, each of which costs
-// a processor some hundred cycles (docs/decisions.md).
-static inline real without_dust(real x) {
-  const real none = 0.0f;
-  return fabs(x) < 1e-12f ? none : x;
-}
-
-static inline deformation deformation_of(mat3 given) {
-  const mat3 h = {without_dust(given.m00), without_dust(given.m01), without_dust(given.m02),
-                  without_dust(given.m10), without_dust(given.m11), without_dust(given.m12),
-                  without_dust(given.m20), without_dust(given.m21), without_dust(given.m22)};
+static inline deformation deformation_of(mat3 h) {
   deformation d;
   d.h = h;
   d.c = cofactor(h);

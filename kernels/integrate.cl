@@ -49,7 +49,8 @@ static inline void integrate_quad(quad f, __global float* node_u, __global float
   const quad full = fma(a, w, push);
   const quad next = fabs(full) < step_params[4] ? zero : full;
   STORE_QUAD(QUAD_XYZW(next, w), node_w);
-  STORE_QUAD(QUAD_XYZW(u + next, u), node_u);
+  const quad sum = u + next, anchor = 3.0f * step_params[5];
+  STORE_QUAD(QUAD_XYZW(fabs(sum) < step_params[5] ? (sum + anchor) - anchor : sum, u), node_u);
 #endif
 #endif
 }

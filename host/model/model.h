@@ -74,6 +74,8 @@ struct Constraint {
   std::int32_t axes = 0;                ///< bit mask of x, y, z
   std::array<std::int32_t, 3> curve{};  ///< per component
   Vec3d target{};                       ///< [m]
+  /// Whether the node stays where it is in all three components.
+  [[nodiscard]] bool holds() const { return axes == 7 && target == Vec3d{}; }
 };
 
 /// A force on a node that follows a curve.

@@ -32,6 +32,9 @@ void ProgramBuilder::add_shared_buffers() {
     u[4 * s + 3] = model_.mass[s] > 0 ? 1 / model_.mass[s] : 0;
     w[4 * s + 3] = 1;  // the decay per step: the host writes it once the step is known
   }
+  for (const Constraint& c : model_.constraints) {
+    if (c.holds()) u[4 * static_cast<std::size_t>(c.slot) + 3] = 0;
+  }
   node_u_ = add(make_reals("node_u", BufferType::real4, slots, BufferRole::state, "[slots]", "m, m, m, 1/kg",
                            "node_update, brick_update, node_prescribe", std::move(u)));
   node_w_ = add(make_reals("node_w", BufferType::real4, slots, BufferRole::state, "[slots]", "m, m, m, 1",
@@ -52,7 +55,7 @@ void ProgramBuilder::add_shared_buffers() {
   add(make_reals("last_w", BufferType::real4, slots, BufferRole::state, "[slots]", "m, m, m, 1", "host"));
   fault_ = add(make_ints("fault", BufferRole::scratch, "[elements]", {}, std::max(layout_.faults, 1), "element kernels"));
   summary_ = add(make_ints("fault_summary", BufferRole::scratch, "[256][2]", {}, 512, "fault_reduce"));
-  params_ = add(make_reals("step_params", BufferType::real, 8, BufferRole::control, "[8]", "s, m/s^2 (3), m", "host"));
+  params_ = add(make_reals("step_params", BufferType::real, 8, BufferRole::control, "[8]", "s, m/s^2 (3), m (2)", "host"));
   curves_ = add(make_reals("curve_value", BufferType::real,
                            (static_cast<std::size_t>(options_.batch_steps) + 1) * model_.curves.size(), BufferRole::control,
                            "[steps + 1][curves]", "1", "host"));
@@ -117,15 +120,16 @@ void ProgramBuilder::add_list_update() {
 }
 
 void ProgramBuilder::add_constraints() {
-  if (model_.constraints.empty()) return;
   std::vector<std::int32_t> node, axes, curve;
   std::vector<double> target;
   for (const Constraint& c : model_.constraints) {
+    if (c.holds()) continue;  // no inverse mass: the update leaves it where it is
     node.push_back(c.slot);
     axes.push_back(c.axes);
     curve.insert(curve.end(), c.curve.begin(), c.curve.end());
     target.insert(target.end(), {c.target[0], c.target[1], c.target[2], 0.0});
   }
+  if (node.empty()) return;
   // Whole work-groups: what fills them up holds no component.
   const std::size_t real_count = node.size(), count = (node.size() + 63) / 64 * 64;
   node.resize(count, node.back());

@@ -73,8 +73,11 @@ void Simulation::start(const SimulationOptions& options) {
         fmt::format("no stable step could be found (estimate {} s): nothing in the scene can move freely", state_.stable_dt));
   }
   first_dt_ = state_.dt;
-  // Squares and cubes of what is left stay normal numbers; the double oracle needs no such floor.
-  still_ = backend_->info().name == "cpu:double" ? 0 : 1e-12 * model_->shortest;
+  // Squares and cubes of what is left stay normal numbers; the double oracle needs neither floor nor grid.
+  if (backend_->info().name != "cpu:double") {
+    still_ = 1e-12 * model_->shortest;
+    fine_ = std::ldexp(1.0, 22 + std::ilogb(still_));
+  }
   set_initial_increment();
 }
 
@@ -97,7 +100,7 @@ void Simulation::set_initial_increment() {
 
 void Simulation::upload_params() {
   const Vec3d& g = scene_.gravity;
-  backend_->write_reals(program_.find("step_params"), {state_.dt, g[0], g[1], g[2], still_, 0, 0, 0});
+  backend_->write_reals(program_.find("step_params"), {state_.dt, g[0], g[1], g[2], still_, fine_, 0, 0});
 }
 
 /// a = (1 - k) / (1 + k) with k = c h / 2, c the material's damping rate plus that of dynamic relaxation.

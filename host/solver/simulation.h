@@ -125,6 +125,7 @@ class Simulation {
   double first_dt_ = 0;
   bool automatic_ = false;  ///< the step is Pliant's to choose
   double still_ = 0;        ///< increments below this are none [m]
+  double fine_ = 0;         ///< displacements below this are rounded to multiples of 2^-22 of it [m], a power of two
   double curves_end_ = 0;
   std::optional<Divergence> divergence_;
   bool equilibrium_ = false;

@@ -195,10 +195,10 @@ class TwinTest : public testing::Test {
   std::size_t values_ = 0, cases_ = 0;
 };
 
-/// The named buffer after the pass in the double twin.
-inline Reals run_in_double(const KernelCase& test, const std::string& name) {
+/// The named buffer after the pass in a twin.
+inline Reals run_in_twin(const KernelCase& test, const std::string& name, bool double_precision) {
   RefOptions options;
-  options.double_precision = true;
+  options.double_precision = double_precision;
   options.threads = 1;
   const auto backend = make_ref_backend(options);
   backend->load(test.program());
@@ -206,5 +206,8 @@ inline Reals run_in_double(const KernelCase& test, const std::string& name) {
   backend->finish();
   return backend->read_reals(test.program().find(name));
 }
+
+inline Reals run_in_double(const KernelCase& test, const std::string& name) { return run_in_twin(test, name, true); }
+inline Reals run_in_float(const KernelCase& test, const std::string& name) { return run_in_twin(test, name, false); }
 
 }  // namespace pliant::kernel_test

@@ -65,5 +65,26 @@ TEST(NodeUpdateOracle, DropsIncrementsBelowTheFloor) {
   EXPECT_EQ(u[4], -1.1e-9);
 }
 
+TEST(NodeUpdateOracle, RoundsSmallDisplacementsToTheGrid) {
+  const double fine = std::ldexp(1.0, -18), grid = std::ldexp(fine, -22);
+  Reals node_u(64, 0.0), node_w(64, 0.0);
+  for (const std::size_t i : {0U, 1U, 2U}) {
+    node_u[4 * i + 3] = 1;
+    node_w[4 * i + 3] = 1;
+  }
+  node_w[0] = 5.3 * grid;
+  node_w[4] = -1000.6 * grid;
+  node_w[8] = 1.25 * fine + 0.25 * grid;  // too large to be rounded
+  KernelCase test("node_update", update_defines(0, 0, 0), Shape::lanes, 16);
+  test.exact("node_u", node_u).exact("node_w", node_w).ints("gather_offset", {0, 0}).ints("gather_index", Ints(16, 0));
+  test.exact("corner_force", Reals(48, -0.0)).exact("node_load", Reals(64)).exact("node_force", Reals(64));
+  test.exact("step_params", {1e-3, 0, 0, 0, 0, fine, 0, 0}).integer(0);
+  const Reals u = run_in_float(test, "node_u"), w = run_in_float(test, "node_w");
+  EXPECT_EQ(u[0], 5 * grid);
+  EXPECT_EQ(u[4], -1001 * grid);
+  EXPECT_EQ(u[8], static_cast<float>(node_w[8]));
+  EXPECT_EQ(w[0], static_cast<float>(node_w[0]));  // the velocity is not rounded
+}
+
 }  // namespace
 }  // namespace pliant::kernel_test
