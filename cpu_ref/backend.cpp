@@ -12,6 +12,7 @@
 
 #include "pliant/error.h"
 #include "registry.h"
+#include "solver/buffer_checks.h"
 #include "solver/float_environment.h"
 #include "solver/pass_table.h"
 #include "solver/probe.h"
@@ -100,9 +101,7 @@ class RefBackend final : public Backend {
   void copy(BufferId from, BufferId to) override {
     const Storage& source = storage(from);
     Storage& target = storage(to);
-    if (source.reals.size() != target.reals.size() || source.ints.size() != target.ints.size()) {
-      throw Error(ErrorCode::internal, fmt::format("copy: \"{}\" and \"{}\" differ in size", row(from).name, row(to).name));
-    }
+    check_copy(row(from), row(to));
     std::copy(source.reals.begin(), source.reals.end(), target.reals.begin());
     std::copy(source.ints.begin(), source.ints.end(), target.ints.begin());
   }
@@ -117,13 +116,13 @@ class RefBackend final : public Backend {
   }
   void write_reals(BufferId id, const std::vector<double>& values) override {
     Storage& s = storage(id, false);
-    check_size(id, values.size());
+    check_size(row(id), values.size());
     const DefaultFloatEnvironment environment;
-    std::transform(values.begin(), values.end(), s.reals.begin(), [](double v) { return static_cast<Scalar>(v); });
+    round_reals(values, s.reals.data());
   }
   void write_ints(BufferId id, const std::vector<std::int32_t>& values) override {
     Storage& s = storage(id, true);
-    check_size(id, values.size());
+    check_size(row(id), values.size());
     std::copy(values.begin(), values.end(), s.ints.begin());
   }
   std::vector<std::uint8_t> read_bytes(BufferId id) override {
@@ -185,18 +184,13 @@ class RefBackend final : public Backend {
 
   static void fill(const Buffer& buffer, Storage& s) {
     const std::size_t size = std::max<std::size_t>(buffer.values(), 1);
-    const std::size_t given = buffer.is_int() ? buffer.ints.size() : buffer.reals.size();
-    if (given > buffer.values()) {
-      throw Error(ErrorCode::internal,
-                  fmt::format("buffer \"{}\" has {} initial values for {}", buffer.name, given, buffer.values()));
-    }
+    initial_count(buffer);  // throws if they do not fit
     if (buffer.is_int()) {
       s.ints.assign(size, 0);
       std::copy(buffer.ints.begin(), buffer.ints.end(), s.ints.begin());
     } else {
       s.reals.assign(size, Scalar(0));
-      std::transform(buffer.reals.begin(), buffer.reals.end(), s.reals.begin(),
-                     [](double v) { return static_cast<Scalar>(v); });
+      round_reals(buffer.reals, s.reals.data());
     }
   }
 
@@ -295,22 +289,13 @@ class RefBackend final : public Backend {
 
   const Buffer& row(BufferId id) const { return (*table_)[static_cast<std::size_t>(id)]; }
   Storage& storage(BufferId id) {
-    if (id < 0 || static_cast<std::size_t>(id) >= storage_.size()) {
-      throw Error(ErrorCode::internal, fmt::format("there is no buffer {}: the program has {}", id, storage_.size()));
-    }
+    check_id(id, storage_.size());
     return storage_[static_cast<std::size_t>(id)];
   }
   Storage& storage(BufferId id, bool ints) {
     Storage& s = storage(id);
-    if (row(id).is_int() != ints) {
-      throw Error(ErrorCode::internal, fmt::format("buffer \"{}\" holds {}", row(id).name, ints ? "reals" : "integers"));
-    }
+    check_type(row(id), ints);
     return s;
-  }
-  void check_size(BufferId id, std::size_t size) const {
-    if (size == row(id).values()) return;
-    throw Error(ErrorCode::internal,
-                fmt::format("buffer \"{}\" holds {} values, received {}", row(id).name, row(id).values(), size));
   }
 
   BackendInfo info_;

@@ -10,6 +10,7 @@
 #include "opencl/kernel_text.h"
 #include "opencl/launch.h"
 #include "opencl/opencl.h"
+#include "solver/buffer_checks.h"
 #include "solver/float_environment.h"
 #include "solver/pass_table.h"
 #include "solver/probe.h"
@@ -80,32 +81,30 @@ class OpenclBackend final : public Backend {
   }
 
   void copy(BufferId from, BufferId to) override {
+    check_copy(row(from), row(to));
     const std::size_t bytes = row(from).values() * 4;
-    if (row(from).is_int() != row(to).is_int() || bytes != row(to).values() * 4) {
-      throw Error(ErrorCode::internal, fmt::format("copy: \"{}\" and \"{}\" differ in size", row(from).name, row(to).name));
-    }
     if (bytes == 0 || from == to) return;
     guarded(ErrorCode::internal, where_, [&] { queue_.enqueueCopyBuffer(memory(from), memory(to), 0, 0, bytes); });
   }
 
   std::vector<double> read_reals(BufferId id) override {
-    require_type(id, false);
+    check_type(row(id), false);
     const auto values = read<float>(id);
     return {values.begin(), values.end()};
   }
   std::vector<std::int32_t> read_ints(BufferId id) override {
-    require_type(id, true);
+    check_type(row(id), true);
     return read<std::int32_t>(id);
   }
   std::vector<std::uint8_t> read_bytes(BufferId id) override { return read<std::uint8_t>(id); }
   void write_reals(BufferId id, const std::vector<double>& values) override {
-    require_type(id, false);
+    check_type(row(id), false);
     const DefaultFloatEnvironment environment;
-    write(id, rounded(values), values.size());
+    write(id, rounded(values));
   }
   void write_ints(BufferId id, const std::vector<std::int32_t>& values) override {
-    require_type(id, true);
-    write(id, values, values.size());
+    check_type(row(id), true);
+    write(id, values);
   }
 
   void profile(bool on) override {
@@ -145,16 +144,12 @@ class OpenclBackend final : public Backend {
 
   static std::vector<float> rounded(const std::vector<double>& values) {
     std::vector<float> result(values.size());
-    std::transform(values.begin(), values.end(), result.begin(), [](double v) { return static_cast<float>(v); });
+    round_reals(values, result.data());
     return result;
   }
 
   cl::Buffer upload(const Buffer& buffer) {
-    const std::size_t given = buffer.is_int() ? buffer.ints.size() : buffer.reals.size();
-    if (given > buffer.values()) {
-      throw Error(ErrorCode::internal,
-                  fmt::format("buffer \"{}\" has {} initial values for {}", buffer.name, given, buffer.values()));
-    }
+    const std::size_t given = initial_count(buffer);
     const std::size_t bytes = 4 * std::max<std::size_t>(buffer.values(), 1);
     cl::Buffer memory(context_, CL_MEM_READ_WRITE, bytes);
     if (given < buffer.values() || buffer.values() == 0) queue_.enqueueFillBuffer(memory, cl_uint{0}, 0, bytes);
@@ -249,27 +244,18 @@ class OpenclBackend final : public Backend {
     return values;
   }
   template <class T>
-  void write(BufferId id, const std::vector<T>& values, std::size_t size) {
-    if (size != row(id).values()) {
-      throw Error(ErrorCode::internal,
-                  fmt::format("buffer \"{}\" holds {} values, received {}", row(id).name, row(id).values(), size));
-    }
+  void write(BufferId id, const std::vector<T>& values) {
+    check_size(row(id), values.size());
     if (values.empty()) return;
     guarded(ErrorCode::internal, where_,
             [&] { queue_.enqueueWriteBuffer(memory(id), CL_TRUE, 0, values.size() * sizeof(T), values.data()); });
   }
 
   const Buffer& row(BufferId id) const {
-    if (id < 0 || static_cast<std::size_t>(id) >= memory_.size()) {
-      throw Error(ErrorCode::internal, fmt::format("there is no buffer {}: the program has {}", id, memory_.size()));
-    }
+    check_id(id, memory_.size());
     return (*table_)[static_cast<std::size_t>(id)];
   }
   cl::Buffer& memory(BufferId id) { return memory_[static_cast<std::size_t>(id)]; }
-  void require_type(BufferId id, bool ints) const {
-    if (row(id).is_int() == ints) return;
-    throw Error(ErrorCode::internal, fmt::format("buffer \"{}\" holds {}", row(id).name, ints ? "reals" : "integers"));
-  }
 
   BackendInfo info_;
   const std::string where_;
