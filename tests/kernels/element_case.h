@@ -13,9 +13,20 @@ struct ElementSizes {
 };
 inline constexpr ElementSizes element_sizes[] = {{16, 16}, {48, 80}, {2064, 528}};
 
-/// How random data of a class look around an element of `corners` corners: node texels, and a fault table with a base.
+/// Node texels of displacements [m] that suit elements of edge `edge`.
 inline Reals displacements(Random& random, std::size_t nodes, Data data) {
   return random.reals(4 * nodes, data, data == Data::large ? 0.6 * edge : edge);
+}
+
+/// What the list kernels take last: corner forces from value 32 on, faults from 16 on, and the moduli [Pa].
+inline void results(KernelCase& test, Random& random, std::size_t force_planes, std::size_t elements) {
+  test.reals("corner_force", random.reals(32 + force_planes * elements, Data::large, 1))
+      .ints("fault", random.faults(elements + 16))
+      .real(1000)
+      .real(50000)
+      .integer(32)
+      .integer(16)
+      .step();
 }
 
 inline KernelCase tet4_force_case(int law, int averaged, ElementSizes size, Data data, std::uint32_t seed) {
@@ -25,14 +36,8 @@ inline KernelCase tet4_force_case(int law, int averaged, ElementSizes size, Data
   test.reals("node_u", displacements(random, size.nodes, data))
       .ints("tet_nodes", random.ints(4 * size.elements, 0, static_cast<int>(size.nodes) - 1))
       .reals("tet_data", random.reals(PLIANT_TET_DATA_PLANES * size.elements, constants, 1 / edge))
-      .reals("anp_pressure", random.reals(size.nodes, data, 5000))
-      .reals("corner_force", random.reals(32 + PLIANT_TET_FORCE_PLANES * size.elements, Data::large, 1))
-      .ints("fault", random.faults(size.elements + 16))
-      .real(1000)
-      .real(50000)
-      .integer(32)
-      .integer(16)
-      .step();
+      .reals("anp_pressure", random.reals(size.nodes, data, 5000));
+  results(test, random, PLIANT_TET_FORCE_PLANES, size.elements);
   return test;
 }
 
@@ -57,14 +62,8 @@ inline KernelCase hex8_case(const std::string& stem, std::size_t planes, int law
   test.reals("node_u", displacements(random, size.nodes, data))
       .ints("hex_nodes", random.ints(8 * size.elements, 0, static_cast<int>(size.nodes) - 1))
       .reals("hex_data", random.reals(planes * (uniform != 0 ? 1 : size.elements), data_for_constants(data), 0.5 / edge))
-      .reals("hex_fill", std::move(fill))
-      .reals("corner_force", random.reals(32 + PLIANT_HEX_FORCE_PLANES * size.elements, Data::large, 1))
-      .ints("fault", random.faults(size.elements + 16))
-      .real(1000)
-      .real(50000)
-      .integer(32)
-      .integer(16)
-      .step();
+      .reals("hex_fill", std::move(fill));
+  results(test, random, PLIANT_HEX_FORCE_PLANES, size.elements);
   return test;
 }
 

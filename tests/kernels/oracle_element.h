@@ -65,7 +65,7 @@ inline Point hexahedron_point(const std::vector<Vector3d>& x, const Vector3d& at
   return point;
 }
 
-/// Random displacements up to `size` of an edge, together with a rotation about a random axis.
+/// Random displacements, each component up to `size` of an edge.
 inline Shift random_shift(Random& random, std::size_t corners, double size) {
   Shift u(corners);
   for (auto& v : u) v = size * edge * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
