@@ -47,6 +47,16 @@ double closed_form(const Material& m, double stretch, int pulled) {
   return stress(lateral, 0);
 }
 
+/// The block with the affine deformation x = F X imposed on every node.
+std::unique_ptr<Simulation> deformed_block(const char* backend, Cut cut, const Material& m, const Matrix3d& f) {
+  Scene scene;
+  scene.bodies = {box_body(block(), cut, m)};
+  auto sim = simulate(scene, backend);
+  const Matrix3d gradient = f - Matrix3d::Identity();
+  write_texels(*sim, "node_u", displaced(sim->model(), [&](const Vector3d& x) { return Vector3d(gradient * x); }));
+  return sim;
+}
+
 class Stress : public OnBackend {
  protected:
   void compare(Law law, double mu, double kappa, int pulled, double stretch, double exact) {
@@ -90,11 +100,7 @@ TEST_P(Stress, SimpleShear) {
   for (const Law law : {Law::isochoric_neo_hookean, Law::neo_hookean, Law::saint_venant_kirchhoff}) {
     const Material m = material(law, 1000, 50000);
     for (const Cut cut : all_cuts()) {
-      Scene scene;
-      scene.bodies = {box_body(block(), cut, m)};
-      auto sim = simulate(scene, GetParam());
-      write_texels(*sim, "node_u",
-                   displaced(sim->model(), [&](const Vector3d& x) { return Vector3d((f - Matrix3d::Identity()) * x); }));
+      auto sim = deformed_block(GetParam(), cut, m, f);
       const Matrix3d cauchy = mean_stress(sim->model(), forces(*sim), 1) * f.transpose();
       const Matrix3d exact = law == Law::isochoric_neo_hookean
                                  ? (Matrix3d() << 166.6666667, 500, 0, 500, -83.3333333, 0, 0, 0, -83.3333333).finished()
@@ -112,11 +118,7 @@ TEST_P(Stress, ArbitraryDeformation) {
   for (const Law law : {Law::isochoric_neo_hookean, Law::neo_hookean, Law::saint_venant_kirchhoff}) {
     const Material m = material(law, 1000, 9000);
     for (const Cut cut : all_cuts()) {
-      Scene scene;
-      scene.bodies = {box_body(block(), cut, m)};
-      auto sim = simulate(scene, GetParam());
-      write_texels(*sim, "node_u",
-                   displaced(sim->model(), [&](const Vector3d& x) { return Vector3d((f - Matrix3d::Identity()) * x); }));
+      auto sim = deformed_block(GetParam(), cut, m, f);
       const Matrix3d p = mean_stress(sim->model(), forces(*sim), 1), exact = first_piola(f, m);
       check(std::string(name_of(cut)) + " " + to_string(law) + " P relative", (p - exact).norm() / exact.norm(),
             bound(1e-5, 1e-13));
