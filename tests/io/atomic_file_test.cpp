@@ -7,21 +7,15 @@
 
 #include <csignal>
 #include <fstream>
-#include <sstream>
 
 #include "pliant/error.h"
-#include "temp_folder.h"
+#include "support/temp_folder.h"
 
 namespace pliant {
 namespace {
 
-using testing::TempFolder;
-
-std::string content(const std::filesystem::path& file) {
-  std::ostringstream s;
-  s << std::ifstream(file, std::ios::binary).rdbuf();
-  return s.str();
-}
+using test::bytes_of;
+using test::TempFolder;
 
 std::size_t entries(const std::filesystem::path& folder) {
   std::size_t n = 0;
@@ -50,10 +44,10 @@ TEST(AtomicFile, AppearsOnlyWhenCommitted) {
     file.write(std::string(1 << 20, 'x'));
     file.write("yz");
     EXPECT_EQ(file.bytes(), (1u << 20) + 2);
-    EXPECT_EQ(content(path), "old");
+    EXPECT_EQ(bytes_of(path), "old");
     file.commit();
   }
-  EXPECT_EQ(content(path), std::string(1 << 20, 'x') + "yz");
+  EXPECT_EQ(bytes_of(path), std::string(1 << 20, 'x') + "yz");
   EXPECT_EQ(entries(folder.path()), 1u);
 }
 
@@ -71,14 +65,14 @@ TEST(AtomicFile, FollowsLinksAndLeavesThem) {
   std::filesystem::create_symlink("real.txt", folder.path() / "link.txt");
   write_file(folder.path() / "link.txt", "text");
   EXPECT_TRUE(std::filesystem::is_symlink(folder.path() / "link.txt"));
-  EXPECT_EQ(content(folder.path() / "real.txt"), "text");
+  EXPECT_EQ(bytes_of(folder.path() / "real.txt"), "text");
 }
 
 TEST(AtomicFile, TakesTheLongestName) {
   const TempFolder folder;
   const auto path = folder.path() / std::string(255, 'n');
   write_file(path, "text");
-  EXPECT_EQ(content(path), "text");
+  EXPECT_EQ(bytes_of(path), "text");
   expect_error([&] { write_file(folder.path() / std::string(256, 'n'), "text"); }, {"cannot write"});
   EXPECT_EQ(entries(folder.path()), 1u);
 }
@@ -143,7 +137,7 @@ TEST(AtomicFile, SizeLimitKeepsTheOldFile) {
     const FileSizeLimit tiny(100);
     expect_error([&] { write_file(path, std::string(1000, 'x')); }, {"after 100 bytes"});
   }
-  EXPECT_EQ(content(path), "old");
+  EXPECT_EQ(bytes_of(path), "old");
   EXPECT_EQ(entries(folder.path()), 1u);
 }
 
@@ -172,7 +166,7 @@ TEST(AtomicFile, FullDiskKeepsTheOldFile) {
   const auto path = folder.path() / "a.bin";
   write_file(path, "old");
   expect_error([&] { write_file(path, std::string(1 << 20, 'x')); }, {"a.bin", "No space left"});
-  EXPECT_EQ(content(path), "old");
+  EXPECT_EQ(bytes_of(path), "old");
   EXPECT_EQ(entries(folder.path()), 1u);
 }
 

@@ -7,16 +7,17 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
-#include <sstream>
 
 #include "pliant/error.h"
 #include "state/hash.h"
-#include "temp_folder.h"
+#include "support/error_of.h"
+#include "support/temp_folder.h"
 
 namespace pliant {
 namespace {
 
-using testing::TempFolder;
+using test::bytes_of;
+using test::TempFolder;
 
 Checkpoint sample() {
   Checkpoint c;
@@ -33,26 +34,10 @@ Checkpoint sample() {
   return c;
 }
 
-std::string bytes_of(const std::filesystem::path& file) {
-  std::ostringstream s;
-  s << std::ifstream(file, std::ios::binary).rdbuf();
-  return s.str();
-}
-
-std::filesystem::path store(const TempFolder& folder, const std::string& bytes) {
-  std::filesystem::remove(folder.path() / "c");  // some file systems wait for the disk when a file is emptied and written again
-  std::ofstream(folder.path() / "c", std::ios::binary) << bytes;
-  return folder.path() / "c";
-}
+std::filesystem::path store(const TempFolder& folder, const std::string& bytes) { return folder.write("c", bytes); }
 
 std::string error_of(const std::filesystem::path& file) {
-  try {
-    read_checkpoint(file);
-  } catch (const Error& e) {
-    EXPECT_EQ(e.code(), ErrorCode::bad_input);
-    return e.what();
-  }
-  return "no error";
+  return test::error_of([&] { read_checkpoint(file); });
 }
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }

@@ -3,24 +3,18 @@
 #include <algorithm>
 #include <cstring>
 #include <fstream>
-#include <sstream>
 
 #include "io/obj.h"
 #include "io/vtu.h"
 #include "model/mesh.h"
 #include "pliant/error.h"
-#include "temp_folder.h"
+#include "support/temp_folder.h"
 
 namespace pliant {
 namespace {
 
-using testing::TempFolder;
-
-std::string text_of(const std::filesystem::path& file) {
-  std::ostringstream s;
-  s << std::ifstream(file, std::ios::binary).rdbuf();
-  return s.str();
-}
+using test::bytes_of;
+using test::TempFolder;
 
 VtuMesh sample() {
   VtuMesh m;
@@ -49,7 +43,7 @@ TEST(WriteVtu, IsReadBack) {
   EXPECT_EQ(m.hexes, sample().hexes);
 }
 
-/// A float of the appended section: `skip` arrays behind array `first_of`, found by the offset that the head gives.
+/// Value `index` of the array of that name (as the XML spells it), found by the offset that the head gives.
 float appended_float(const std::string& text, const std::string& name, std::size_t index) {
   const std::size_t tag = text.find("Name=\"" + name + "\"");
   const std::size_t offset = std::stoul(text.substr(text.find("offset=\"", tag) + 8));
@@ -62,7 +56,7 @@ float appended_float(const std::string& text, const std::string& name, std::size
 TEST(WriteVtu, ArraysStandWhereTheHeadSays) {
   const TempFolder folder;
   write_vtu(folder.path() / "m.vtu", sample());
-  const std::string text = text_of(folder.path() / "m.vtu");
+  const std::string text = bytes_of(folder.path() / "m.vtu");
   EXPECT_EQ(appended_float(text, "displacement", 3 * 11 + 2), 11.5f);
   EXPECT_EQ(appended_float(text, "a&lt;b&gt;&amp;&quot;c&quot;", 5), -5.0f);
   EXPECT_EQ(appended_float(text, "energy", 2), 30.0f);
@@ -101,9 +95,9 @@ TEST(PvdSeries, GrowsByFrames) {
   const TempFolder folder;
   PvdSeries series(folder.path() / "run.pvd");
   series.append(0, folder.path() / "run_0.vtu");
-  EXPECT_NE(text_of(folder.path() / "run.pvd").find("</VTKFile>"), std::string::npos);
+  EXPECT_NE(bytes_of(folder.path() / "run.pvd").find("</VTKFile>"), std::string::npos);
   series.append(0.1, folder.path() / "frames" / "run_1.vtu");
-  const std::string text = text_of(folder.path() / "run.pvd");
+  const std::string text = bytes_of(folder.path() / "run.pvd");
   EXPECT_NE(text.find("timestep=\"0\" group=\"\" part=\"0\" file=\"run_0.vtu\""), std::string::npos) << text;
   EXPECT_NE(text.find("timestep=\"0.1\" group=\"\" part=\"0\" file=\"frames/run_1.vtu\""), std::string::npos) << text;
   EXPECT_EQ(series.size(), 2u);

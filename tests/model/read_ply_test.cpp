@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstring>
 
+#include "support/temp_folder.h"
 #include "surfaces.h"
 
 namespace pliant {
@@ -12,17 +13,7 @@ namespace {
 
 class ReadPly : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() /
-              ("pliant_ply_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-  std::filesystem::path write(const std::string& bytes) {
-    const auto file = folder_ / "t.ply";
-    std::ofstream(file, std::ios::binary) << bytes;
-    return file;
-  }
+  std::filesystem::path write(const std::string& bytes) { return folder_.write("t.ply", bytes); }
   static TriangleMesh read(const std::string& bytes) { return read_ply("t.ply", bytes); }
   static std::string error(const std::string& bytes) {
     return test::error_of([&] { read(bytes); });
@@ -32,7 +23,7 @@ class ReadPly : public testing::Test {
     EXPECT_NE(message.find(words), std::string::npos) << "expected: " << words << "\nreceived: " << message;
     EXPECT_NE(message.find("t.ply"), std::string::npos) << message;
   }
-  std::filesystem::path folder_;
+  test::TempFolder folder_;
 };
 
 enum class Encoding { text, little, big };
@@ -317,8 +308,7 @@ TEST_F(ReadPly, SurfacesAreWeldedAndOrientedAsFromOtherFormats) {
   for (const auto& t : soup.triangles) {
     obj += "f " + std::to_string(t[0] + 1) + " " + std::to_string(t[1] + 1) + " " + std::to_string(t[2] + 1) + "\n";
   }
-  std::ofstream(folder_ / "t.obj") << obj;
-  const TriangleMesh expected = read_surface(folder_ / "t.obj", 2, {1, 0, 0});
+  const TriangleMesh expected = read_surface(folder_.write("t.obj", obj), 2, {1, 0, 0});
   for (const Encoding e : kEncodings) {
     const auto file = write(file_of<float, std::uint8_t, std::uint16_t>(soup, e, "float", "uchar ushort vertex_indices"));
     const TriangleMesh mesh = read_surface(file, 2, {1, 0, 0});

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "support/temp_folder.h"
 #include "surfaces.h"
 
 namespace pliant {
@@ -7,20 +8,11 @@ namespace {
 
 class ReadSurface : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() /
-              ("pliant_surface_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-  std::filesystem::path write(const std::string& name, const std::string& text) {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-    return folder_ / name;
-  }
+  std::filesystem::path write(const std::string& name, const std::string& text) { return folder_.write(name, text); }
   static std::string error(const std::filesystem::path& file) {
     return test::error_of([&] { read_surface(file); });
   }
-  std::filesystem::path folder_;
+  test::TempFolder folder_;
 };
 
 const char* const kTetra = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
@@ -98,8 +90,8 @@ TEST_F(ReadSurface, DegenerateTrianglesAreDropped) {
 }
 
 TEST_F(ReadSurface, ErrorsSayWhatIsWrong) {
-  EXPECT_TRUE(mentions(error(folder_ / "absent.obj"), "no such file"));
-  EXPECT_TRUE(mentions(error(folder_), "is a folder"));
+  EXPECT_TRUE(mentions(error(folder_.path() / "absent.obj"), "no such file"));
+  EXPECT_TRUE(mentions(error(folder_.path()), "is a folder"));
   EXPECT_TRUE(mentions(error(write("empty.obj", "")), "is empty"));
   EXPECT_TRUE(mentions(error(write("text.obj", "nothing that could be a mesh, but long enough\n")), "text.obj"));
   EXPECT_TRUE(mentions(error(write("noise.stl", std::string(200, '\x7f'))), "cannot be read"));

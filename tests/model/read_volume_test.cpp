@@ -8,12 +8,14 @@
 #include "model/mesh.h"
 #include "model/read_volume_parts.h"
 #include "pliant/error.h"
+#include "support/error_of.h"
+#include "support/temp_folder.h"
 #include "volume_files.h"
 
 namespace pliant {
 namespace {
 
-using testing::TempFolder;
+using test::TempFolder;
 using testing::VolumeFile;
 
 double tet_volume(const VolumeMesh& m, const std::array<std::int32_t, 4>& t) {
@@ -48,14 +50,9 @@ double enclosed(const TriangleMesh& m) {
 
 /// The message of the Error that reading gives; fails the test when there is none.
 std::string error_of(const std::filesystem::path& file) {
-  try {
-    read_volume(file);
-  } catch (const Error& e) {
-    EXPECT_EQ(e.code(), ErrorCode::bad_input);
-    return e.what();
-  }
-  ADD_FAILURE() << "no error";
-  return {};
+  const std::string message = test::error_of([&] { read_volume(file); });
+  EXPECT_NE(message, "") << "no error";
+  return message;
 }
 
 void expect_error(const std::filesystem::path& file, std::initializer_list<const char*> parts) {

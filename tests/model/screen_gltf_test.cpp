@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "support/temp_folder.h"
 #include "surfaces.h"
 
 namespace pliant {
@@ -14,16 +15,9 @@ using nlohmann::json;
 
 class ScreenGltf : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() /
-              ("pliant_gltf_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    std::filesystem::remove_all(folder_);  // what a killed run left
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
   std::string error_of_bytes(const std::string& name, const std::string& bytes) {
-    std::ofstream(folder_ / name, std::ios::binary) << bytes;
-    return test::error_of([&] { read_surface(folder_ / name); });
+    const auto file = folder_.write(name, bytes);
+    return test::error_of([&] { read_surface(file); });
   }
   /// The change is a merge patch.
   void expect(const json& change, const std::string& words) {
@@ -49,7 +43,7 @@ class ScreenGltf : public testing::Test {
       "buffers":[{"byteLength":44,"uri":
       "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAABAAIAAAA="}]})");
   }
-  std::filesystem::path folder_;
+  test::TempFolder folder_;
 };
 
 std::string word(std::uint32_t value) {
@@ -130,9 +124,9 @@ TEST_F(ScreenGltf, ChunksOfABinaryFile) {
 
 TEST_F(ScreenGltf, NoFurtherFileThatIsAPipe) {
   // Opened as the material file of an OBJ, it would block until somebody wrote to it: without the check this test times out.
-  ASSERT_EQ(mkfifo((folder_ / "t.mtl").c_str(), 0600), 0);
+  ASSERT_EQ(mkfifo((folder_.path() / "t.mtl").c_str(), 0600), 0);
   EXPECT_EQ(error_of_bytes("t.obj", "mtllib t.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), "");
-  EXPECT_NE(test::error_of([&] { read_surface(folder_ / "t.mtl"); }).find("is no regular file"), std::string::npos);
+  EXPECT_NE(test::error_of([&] { read_surface(folder_.path() / "t.mtl"); }).find("is no regular file"), std::string::npos);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 #include "model/mesh.h"
 #include "model/surface_nets.h"
-#include "pliant/error.h"
+#include "support/error_of.h"
 
 namespace pliant::test {
 
@@ -45,17 +45,6 @@ inline Vec3d random_point(std::mt19937& random, const Vec3d& low, const Vec3d& h
   Vec3d p{};
   for (int a = 0; a < 3; ++a) p[a] = low[a] + (high[a] - low[a]) * (static_cast<double>(random()) / 4294967296.0);
   return p;
-}
-
-/// The message of the Error that `run` throws; empty if it throws none.
-template <class Run>
-std::string error_of(const Run& run) {
-  try {
-    run();
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "";
 }
 
 inline const char* kBunny = "/usr/share/glmark2/models/bunny.obj";

@@ -1,7 +1,5 @@
 // The same small mesh (one hexahedron, two tetrahedra, one triangle, one unused vertex) in every format that read_volume reads.
 #pragma once
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -366,31 +364,5 @@ inline std::vector<VolumeFile> volume_files() {
   }
   return out;
 }
-
-/// A folder of its own that vanishes with it.
-class TempFolder {
- public:
-  TempFolder() {
-    static int counter = 0;
-    path_ = std::filesystem::temp_directory_path() /
-            ("pliant-test-" + std::to_string(::getpid()) + "-" + std::to_string(counter++));
-    std::filesystem::create_directories(path_);
-  }
-  ~TempFolder() {
-    std::error_code code;
-    std::filesystem::remove_all(path_, code);
-  }
-  TempFolder(const TempFolder&) = delete;
-  TempFolder& operator=(const TempFolder&) = delete;
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  [[nodiscard]] std::filesystem::path write(const std::string& name, const std::string& content) const {
-    std::filesystem::remove(path_ / name);  // some file systems wait for the disk when a file is emptied and written again
-    std::ofstream(path_ / name, std::ios::binary) << content;
-    return path_ / name;
-  }
-
- private:
-  std::filesystem::path path_;
-};
 
 }  // namespace pliant::testing

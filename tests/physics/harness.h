@@ -1,7 +1,6 @@
 // Scenes built in code, backends by name, and what the physics tests read from a Simulation.
 #pragma once
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <Eigen/Dense>
 #include <cmath>
@@ -19,6 +18,7 @@
 #include "model/mesh.h"
 #include "solver/energy.h"
 #include "solver/simulation.h"
+#include "support/temp_folder.h"
 
 namespace pliant::physics {
 
@@ -67,27 +67,11 @@ inline void check_relative(const std::string& what, double value, double exact, 
 
 // --- Meshes ---
 
-class TempFolder {
- public:
-  TempFolder() : path_(std::filesystem::temp_directory_path() / ("pliant-physics-" + std::to_string(::getpid()))) {
-    std::filesystem::create_directories(path_);
-  }
-  ~TempFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  [[nodiscard]] std::filesystem::path next(const char* extension) {
-    return path_ / ("mesh" + std::to_string(count_++) + extension);
-  }
-
- private:
-  std::filesystem::path path_;
-  int count_ = 0;
-};
-
-inline TempFolder& folder() {
-  static TempFolder one;
-  return one;
+/// A new file name in a folder that vanishes when the tests end.
+inline std::filesystem::path next_file(const char* extension) {
+  static const test::TempFolder folder;
+  static int count = 0;
+  return folder.path() / ("mesh" + std::to_string(count++) + extension);
 }
 
 /// What a body is made of.
@@ -181,7 +165,7 @@ inline VolumeMesh make_mesh(const Box& box, bool tets) {
 
 /// A legacy VTK file with every digit of the coordinates.
 inline std::filesystem::path save(const VolumeMesh& mesh) {
-  const auto file = folder().next(".vtk");
+  const auto file = next_file(".vtk");
   std::ofstream out(file);
   out.precision(17);
   out << "# vtk DataFile Version 3.0\nmesh\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS " << mesh.vertices.size() << " double\n";
@@ -219,7 +203,7 @@ inline TriangleMesh box_surface(const Box& box) {
 }
 
 inline std::filesystem::path save(const TriangleMesh& mesh) {
-  const auto file = folder().next(".obj");
+  const auto file = next_file(".obj");
   write_obj(file, mesh);
   return file;
 }

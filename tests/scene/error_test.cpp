@@ -7,6 +7,7 @@
 
 #include "scene/keys.h"
 #include "scene/scene.h"
+#include "support/error_of.h"
 
 namespace pliant {
 namespace {
@@ -23,13 +24,7 @@ const char* const good = R"({"format": "pliant-scene/1", "bodies": [
 
 /// The message for a scene text, or "" if it loads.
 std::string message(const std::string& text) {
-  try {
-    parse_scene(text, "dir/s.json");
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::bad_input);
-    return error.what();
-  }
-  return "";
+  return test::error_of([&] { parse_scene(text, "dir/s.json"); });
 }
 
 /// The message after one member of the good scene is replaced; "" as value removes it.

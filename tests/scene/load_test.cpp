@@ -1,10 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 
-#include "pliant/error.h"
 #include "scene/scene.h"
+#include "support/error_of.h"
+#include "support/temp_folder.h"
 
 namespace pliant {
 namespace {
@@ -167,22 +167,12 @@ TEST(Write, ModuliSurviveForManyPairs) {
 }
 
 TEST(Load, FilesThatCannotBeRead) {
-  const auto message = [](const std::filesystem::path& file) -> std::string {
-    try {
-      load_scene(file);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::bad_input);
-      return error.what();
-    }
-    return "";
-  };
+  const auto message = [](const std::filesystem::path& file) { return test::error_of([&] { load_scene(file); }); };
   EXPECT_EQ(message("no/such/scene.json"), "no/such/scene.json: no such file, expected a scene file");
-  const std::string folder = testing::TempDir();
-  EXPECT_NE(message(folder).find("got a folder"), std::string::npos) << message(folder);
-  const std::string empty = folder + "/pliant_empty_scene.json";
-  std::ofstream(empty).close();
+  const test::TempFolder folder;
+  EXPECT_NE(message(folder.path()).find("got a folder"), std::string::npos) << message(folder.path());
+  const auto empty = folder.write("empty.json", "");
   EXPECT_NE(message(empty).find("line 1, column 1"), std::string::npos) << message(empty);
-  std::filesystem::remove(empty);
 }
 
 }  // namespace

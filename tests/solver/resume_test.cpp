@@ -4,9 +4,10 @@
 #include <cmath>
 
 #include "io/save.h"
-#include "io/temp_folder.h"
 #include "pliant/error.h"
 #include "solver/scenes.h"
+#include "support/error_of.h"
+#include "support/temp_folder.h"
 
 namespace pliant {
 namespace {
@@ -44,7 +45,7 @@ class Resume : public ::testing::TestWithParam<const char*> {
     EXPECT_EQ(resumed.residual(), whole.residual());
   }
 
-  testing::TempFolder folder_;
+  test::TempFolder folder_;
 };
 
 TEST_P(Resume, FixedStep) { expect_same_bits(pressed_cube(0.01, R"("dt": 0.002,)"), 37, 63); }
@@ -81,13 +82,7 @@ INSTANTIATE_TEST_SUITE_P(On, Resume, ::testing::Values("cpu", "cpu:double", "ope
 
 std::string refusal(Simulation& simulation, const Checkpoint& checkpoint) {
   const std::uint64_t before = simulation.hash();
-  std::string message;
-  try {
-    restore_checkpoint(simulation, checkpoint, "state.pckpt");
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::bad_input);
-    message = error.what();
-  }
+  const std::string message = test::error_of([&] { restore_checkpoint(simulation, checkpoint, "state.pckpt"); });
   EXPECT_EQ(simulation.hash(), before) << "a refused checkpoint must change nothing";
   return message;
 }
