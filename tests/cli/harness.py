@@ -104,7 +104,7 @@ class CliTest(unittest.TestCase):
         return sorted(p.name for p in (self.folder / folder).iterdir())
 
     def opencl(self):
-        """Name of the first OpenCL device, or skip."""
+        """The first OpenCL device as `pliant devices` describes it, or skip."""
         for backend in json.loads(self.pliant("devices", "--json", "-").stdout)["backends"]:
             if backend["name"] == "opencl:0":
                 return backend
