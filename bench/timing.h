@@ -1,4 +1,4 @@
-// Timing as DESIGN section 7 asks for it: the median of several batches after warm-up.
+// Timing of passes: the median of several batches after warm-up.
 #pragma once
 #include <cstdint>
 #include <vector>

@@ -1,4 +1,4 @@
-// A surface filled with cubic cells, and the embedding of its vertices in them (DESIGN section 4.1).
+// A surface filled with cubic cells, and the embedding of its vertices in them.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -14,7 +14,7 @@ std::vector<cl::Device> all_devices();
 /// Everything but the probe's verdict. `index` is the N of opencl:N.
 BackendInfo describe_device(const cl::Device& device, int index);
 
-/// The build options that the contract asks of this device (DESIGN section 3).
+/// The build options that the contract asks of this device (docs/determinism.md).
 std::string build_options(const cl::Device& device);
 
 }  // namespace pliant::opencl

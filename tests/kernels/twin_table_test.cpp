@@ -114,7 +114,7 @@ TEST(TwinTable, ArgumentsMatchInNameAndOrder) {
   }
 }
 
-/// Calls of `text` that the contract forbids (DESIGN section 3).
+/// Calls of `text` that the contract forbids (docs/determinism.md).
 std::vector<std::string> forbidden_calls(const std::string& text) {
   static const std::set<std::string> forbidden{"dot",           "cross",
                                                "length",        "normalize",
@@ -162,7 +162,7 @@ std::vector<std::string> forbidden_calls(const std::string& text) {
 TEST(KernelSource, CallsNothingThatTheContractForbids) {
   for (const fs::path& path : kernel_files()) {
     for (const std::string& name : forbidden_calls(without_comments(text_of(path)))) {
-      ADD_FAILURE() << path.filename() << " calls " << name << "(), whose bits depend on the device (docs/determinism)";
+      ADD_FAILURE() << path.filename() << " calls " << name << "(), whose bits depend on the device (docs/determinism.md)";
     }
   }
 }

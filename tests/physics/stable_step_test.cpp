@@ -7,8 +7,8 @@ namespace {
 
 class StableStep : public OnBackend {};
 
-/// K at rest over the free components, from differences of the independent energy: a dense generalised eigenproblem with lumped
-/// masses gives omega_max, and K solves statics.
+/// K at rest over the free components: a dense generalised eigenproblem with lumped masses gives omega_max, and K solves
+/// statics.
 struct Linear {
   std::vector<std::pair<std::int32_t, int>> dof;  ///< slot, component
   Eigen::MatrixXd stiffness;
@@ -20,7 +20,7 @@ struct Linear {
   }
 };
 
-/// From forces of the double twin, which the patch tests compare with the energy.
+/// From differences of the double twin's forces, which the patch tests compare with the energy.
 Linear linearise(const Scene& scene) {
   auto sim = simulate(scene, "cpu:double");
   const Model& model = sim->model();
@@ -64,7 +64,7 @@ Scene clamped(Cut cut, double poisson) {
   return scene;
 }
 
-TEST_P(StableStep, PowerIterationAgainstEigen) {
+TEST_P(StableStep, LanczosAgainstEigen) {
   for (const double poisson : {0.0, 0.3, 0.45}) {
     for (const Cut cut : all_cuts()) {
       const Scene scene = clamped(cut, poisson);
