@@ -142,11 +142,15 @@ double hex_frequency(const HexBatch& batch, const std::vector<double>& record) {
   return batch.full ? hex8full_frequency(record, batch.material) : hex8_frequency(record, batch.material);
 }
 
-double hex_volume(const HexBatch& batch, const std::vector<double>& record) {
-  if (!batch.full) return record[56];
+/// The sum of the weights of a hex8full record.
+double gauss_volume(const std::vector<double>& record) {
   double volume = 0;
   for (int p = 0; p < 8; ++p) volume += record[25 * p + 24];
   return volume;
+}
+
+double hex_volume(const HexBatch& batch, const std::vector<double>& record) {
+  return batch.full ? gauss_volume(record) : record[56];
 }
 
 void add_hexes(const Body& body, std::int32_t b, const Draft& draft, Model& model) {
@@ -256,9 +260,7 @@ void add_totals(const Body& body, const Draft& draft, ModelBody& out) {
     } else if (solid.spacing == 0) {
       std::array<Vec3d, 8> x;
       for (int a = 0; a < 8; ++a) x[a] = solid.nodes[solid.hexes[e][a]];
-      const auto record = hex8full_record(x, body.name);
-      volume = 0;
-      for (int p = 0; p < 8; ++p) volume += record[25 * p + 24];
+      volume = gauss_volume(hex8full_record(x, body.name));
     }
     out.volume += volume * solid.fill[e];
     out.mass += material_of(body, draft.material[e]).density * volume * solid.fill[e];
