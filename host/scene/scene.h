@@ -87,6 +87,34 @@ struct Pressure {
   Curve curve;
 };
 
+/// Which nodes of a body follow finite elements (TLED) and which follow fast lattice shape matching (FLSM).
+enum class ModelType { tled, hybrid, flsm };
+const char* to_string(ModelType type);
+
+/// The key "model" of a body. FLSM: Rivers and James 2007; hybrid: the source's equations 1 to 9.
+struct DeformationModel {
+  ModelType type = ModelType::tled;
+  double ratio = 0.5;               ///< hybrid: share of the body's nodes in the operational region, in [0, 1]
+  std::optional<Vec3d> seed;        ///< hybrid: the operational region grows from here [m]; absent: from the first surface vertex
+  std::optional<Selection> region;  ///< hybrid: operational are the cells with their centre in here, instead of ratio and seed
+  double beta = 0;                  ///< stiffness of the interface [N/m]; 0: "auto", alpha m / H^2 of each node
+  int width = 2;                    ///< half-width w of the regions in cells, 1 to 5
+  double alpha = 0.5;               ///< in (0, 1]
+  double young = 0;                 ///< "stiffness": {"young": E} [Pa] chooses alpha instead; 0: alpha as it stands
+  double damping = 0;               ///< per-region damping, in [0, 1] per step
+  int substeps = 1;                 ///< steps of TLED per step of FLSM, 1 to 64
+  bool extrapolate = false;         ///< "goals": "extrapolated" instead of "held" between steps of FLSM
+  bool conservative = true;         ///< "coupling": "conservative" gives the reaction of the interface back, "one-sided" does not
+  bool follow = false;              ///< "follow": "tool": the operational region moves with the scene's tool
+  std::string pointer;              ///< JSON pointer ("/bodies/0/model")
+};
+
+/// A tool on a prescribed path: what a moving operational region follows.
+struct Tool {
+  std::vector<std::array<double, 4>> path;  ///< (time [s], x, y, z [m]), times ascending, linear in between, held outside
+  [[nodiscard]] Vec3d position(double time) const;
+};
+
 struct LatticeSpec {
   double spacing = 0;      ///< edge of a cell [m]; 0 if `nodes` is given
   std::int64_t nodes = 0;  ///< wanted number of nodes; 0 if `spacing` is given
@@ -100,6 +128,7 @@ struct Body {
   Vec3d translate{};              ///< [m], after scaling
   LatticeSpec lattice;            ///< used with `surface`
   ElementKind element = ElementKind::hex8;
+  DeformationModel model;
   Material material;
   std::vector<Inclusion> inclusions;
   std::vector<Fixed> fixed;
@@ -129,6 +158,7 @@ struct Scene {
   double duration = 1;         ///< [s] simulated by `run` when neither --steps nor --seconds is given
   Integrator integrator = Integrator::increment;
   Relaxation relaxation;
+  Tool tool;
   std::vector<Body> bodies;
 };
 
