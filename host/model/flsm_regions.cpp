@@ -1,0 +1,284 @@
+// Regions by three integer passes along links, and a search where those passes may have missed something.
+#include "model/flsm_regions.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include "model/parallel.h"
+#include "pliant/error.h"
+
+namespace pliant {
+namespace {
+
+constexpr int kMostWidth = 5;
+constexpr std::int64_t kBlock = 2048;  // nodes that a thread takes at a time
+
+// Call work(first, last) for blocks of [0, count).
+template <class Work>
+void for_blocks(std::int64_t count, const Work& work) {
+  parallel_for((count + kBlock - 1) / kBlock, [&](std::int64_t b) { work(b * kBlock, std::min(count, (b + 1) * kBlock)); });
+}
+
+void check_width(int width) {
+  if (width < 1 || width > kMostWidth) {
+    throw Error(fmt::format("the half-width of the regions is {}; allowed are 1 to {}", width, kMostWidth));
+  }
+}
+
+// All that follows relies on this: a link leads to the next grid point along its axis, and back.
+void check_links(const LinkedLattice& lattice) {
+  const auto nodes = static_cast<std::int64_t>(lattice.index.size());
+  if (lattice.link.size() != lattice.index.size() || nodes > std::numeric_limits<std::int32_t>::max()) {
+    throw Error(ErrorCode::internal, "the lattice of the regions has not one set of links per node, or too many nodes");
+  }
+  for_blocks(nodes, [&](std::int64_t first, std::int64_t last) {
+    for (std::int64_t i = first; i < last; ++i) {
+      for (int d = 0; d < 6; ++d) {
+        const std::int32_t n = lattice.link[i][d];
+        if (n == -1) continue;
+        auto expected = lattice.index[i];
+        expected[d / 2] += (d & 1) != 0 ? 1 : -1;
+        if (n < 0 || n >= nodes || lattice.index[n] != expected || lattice.link[n][d ^ 1] != i) {
+          throw Error(ErrorCode::internal, fmt::format("link {} of node {} leads to {}, which is not its neighbour", d, i, n));
+        }
+      }
+    }
+  });
+}
+
+// A flagged node shares its grid point with another one. The sums carry the number of nodes in the low and of flagged nodes in
+// the high half; both stay below (2 * 5 + 1)^3 = 1331.
+constexpr std::uint32_t kFlag = 1U << 16, kCount = kFlag - 1;
+
+// 1 for each node, and the flag for those that share their grid point.
+std::vector<std::uint32_t> ones_and_flags(const LinkedLattice& lattice) {
+  const auto nodes = static_cast<std::int32_t>(lattice.index.size());
+  const auto key = [&](std::int32_t i) {
+    const auto& p = lattice.index[i];
+    return std::array{p[2], p[1], p[0]};
+  };
+  const auto before = [&](std::int32_t a, std::int32_t b) { return key(a) < key(b); };
+  std::vector<std::int32_t> order(nodes);
+  std::iota(order.begin(), order.end(), 0);
+  if (!std::is_sorted(order.begin(), order.end(), before)) std::sort(order.begin(), order.end(), before);
+  std::vector<std::uint32_t> ones(nodes, 1);
+  for (std::int32_t n = 1; n < nodes; ++n) {
+    if (key(order[n - 1]) == key(order[n])) ones[order[n - 1]] = ones[order[n]] = 1 + kFlag;
+  }
+  return ones;
+}
+
+// The sum of `in` over the bar of each node: itself and up to `width` links to both sides along `axis`.
+std::vector<std::uint32_t> bar_sums(const LinkedLattice& lattice, const std::vector<std::uint32_t>& in, int axis, int width) {
+  std::vector<std::uint32_t> out(in.size());
+  for_blocks(static_cast<std::int64_t>(in.size()), [&](std::int64_t first, std::int64_t last) {
+    for (std::int64_t i = first; i < last; ++i) {
+      std::uint32_t sum = in[i];
+      for (int d = 2 * axis; d < 2 * axis + 2; ++d) {
+        std::int32_t n = lattice.link[i][d];
+        for (int k = 0; k < width && n >= 0; ++k, n = lattice.link[n][d]) sum += in[n];
+      }
+      out[i] = sum;
+    }
+  });
+  return out;
+}
+
+std::vector<std::uint32_t> ordered_sums(const LinkedLattice& lattice, const std::vector<std::uint32_t>& in, int width,
+                                        const std::array<int, 3>& axes) {
+  auto sums = bar_sums(lattice, in, axes[0], width);
+  for (int a = 1; a < 3; ++a) sums = bar_sums(lattice, sums, axes[a], width);
+  return sums;
+}
+
+// The search of one region at a time. A position is a place in the window with a border of one place around it; each holds the
+// chain of the nodes visited there, of which there are several only where nodes share a grid point.
+class RegionSearch {
+ public:
+  RegionSearch(const LinkedLattice& lattice, int width, bool shared_points)
+      : lattice_(lattice), width_(width), shared_points_(shared_points) {
+    const int edge = 2 * width + 3;
+    for (int p = 0; p < edge * edge * edge; ++p) {
+      const std::array<int, 3> offset{p % edge - width - 1, p / edge % edge - width - 1, p / (edge * edge) - width - 1};
+      const bool inside = std::max({std::abs(offset[0]), std::abs(offset[1]), std::abs(offset[2])}) <= width;
+      at_.push_back(inside ? kFree : kOutside);
+      offset_.push_back(offset);
+    }
+    for (int a = 0, step = 1; a < 3; ++a, step *= edge) {
+      step_[2 * a] = -step;
+      step_[2 * a + 1] = step;
+    }
+    centre_ = step_[1] * (width + 1) + step_[3] * (width + 1) + step_[5] * (width + 1);
+  }
+
+  // Find the region of `centre`, append the nodes that the ordered sums miss to `missing` and return its size. `ordered` is the
+  // number of nodes that the ordered sums count.
+  std::int32_t run(std::int32_t centre, std::uint32_t ordered, std::vector<RegionEntry>& missing) {
+    found_.clear();
+    visit(centre, centre_);
+    walk(4);
+    walk(2);
+    walk(0);
+    if (found_.size() != ordered) {
+      throw Error(ErrorCode::internal,
+                  fmt::format("the sums of region {} count {} nodes, its bars hold {}", centre, ordered, found_.size()));
+    }
+    for (std::size_t f = 0; f < found_.size(); ++f) spread(static_cast<std::int32_t>(f));
+    const auto begin = static_cast<std::ptrdiff_t>(missing.size());
+    for (std::size_t f = ordered; f < found_.size(); ++f) {
+      const auto& offset = offset_[found_[f].position];
+      missing.push_back({found_[f].node, {offset[0], offset[1], offset[2]}});
+    }
+    std::sort(missing.begin() + begin, missing.end(), [](const auto& a, const auto& b) { return a.other < b.other; });
+    for (const Found& f : found_) at_[f.position] = kFree;
+    return static_cast<std::int32_t>(found_.size());
+  }
+
+ private:
+  struct Found {
+    std::int32_t node, position, next;  // next: another node found at this position, or -1
+  };
+  static constexpr std::int32_t kFree = -1, kOutside = -2;
+
+  void visit(std::int32_t node, std::int32_t position) {
+    const auto number = static_cast<std::int32_t>(found_.size());
+    found_.push_back({node, position, at_[position]});
+    at_[position] = number;
+  }
+
+  // Visit the bars along one axis through all that has been found so far. No two of these nodes lie on one bar.
+  void walk(int axis) {
+    const std::size_t count = found_.size();
+    for (std::size_t f = 0; f < count; ++f) {
+      for (int d = axis; d < axis + 2; ++d) {
+        std::int32_t n = lattice_.link[found_[f].node][d], position = found_[f].position + step_[d];
+        for (int k = 0; k < width_ && n >= 0; ++k, n = lattice_.link[n][d], position += step_[d]) visit(n, position);
+      }
+    }
+  }
+
+  void spread(std::int32_t from) {
+    const Found here = found_[from];
+    const auto& links = lattice_.link[here.node];
+    for (int d = 0; d < 6; ++d) {
+      const std::int32_t position = here.position + step_[d], there = at_[position];
+      if (there == kOutside || (there >= 0 && !shared_points_)) continue;
+      const std::int32_t n = links[d];
+      if (n < 0) continue;
+      std::int32_t f = there;
+      while (f >= 0 && found_[f].node != n) f = found_[f].next;
+      if (f < 0) visit(n, position);
+    }
+  }
+
+  const LinkedLattice& lattice_;
+  const int width_;
+  const bool shared_points_;
+  std::array<std::int32_t, 6> step_{};  // from a position to the next along each link
+  std::int32_t centre_ = 0;
+  std::vector<std::int32_t> at_;            // per position: the node found last, as an index into found_
+  std::vector<std::array<int, 3>> offset_;  // per position
+  std::vector<Found> found_;
+};
+
+// Fill size, missing_offset and missing. `sums` are the ordered sums with x first.
+void find_missing(const LinkedLattice& lattice, const std::vector<std::uint32_t>& sums, bool shared_points,
+                  FlsmRegions& regions) {
+  const auto nodes = static_cast<std::int64_t>(sums.size());
+  const std::uint32_t edge = 2 * regions.width + 1, whole = edge * edge * edge;
+  std::vector<std::vector<RegionEntry>> found((nodes + kBlock - 1) / kBlock);
+  std::vector<std::int64_t> counts(nodes + 1, 0);
+  for_blocks(nodes, [&](std::int64_t first, std::int64_t last) {
+    RegionSearch search(lattice, regions.width, shared_points);
+    auto& list = found[first / kBlock];
+    for (std::int64_t i = first; i < last; ++i) {
+      // Sums that fill the window miss nothing, unless a grid point in it holds a further node.
+      if (sums[i] == whole) {
+        regions.size[i] = static_cast<std::int32_t>(whole);
+        continue;
+      }
+      const std::size_t before = list.size();
+      regions.size[i] = search.run(static_cast<std::int32_t>(i), sums[i] & kCount, list);
+      counts[i + 1] = static_cast<std::int64_t>(list.size() - before);
+    }
+  });
+  std::partial_sum(counts.begin(), counts.end(), counts.begin());
+  if (counts[nodes] > std::numeric_limits<std::int32_t>::max()) {
+    throw Error(
+        fmt::format("regions of half-width {} need {} corrections, more than fit: use a smaller half-width or fewer nodes",
+                    regions.width, counts[nodes]));
+  }
+  regions.missing_offset.assign(counts.begin(), counts.end());
+  regions.missing.resize(counts[nodes]);
+  parallel_for(static_cast<std::int64_t>(found.size()), [&](std::int64_t b) {
+    std::copy(found[b].begin(), found[b].end(), regions.missing.begin() + regions.missing_offset[b * kBlock]);
+    std::vector<RegionEntry>().swap(found[b]);
+  });
+}
+
+// Fill missing_of_offset and missing_of from missing.
+void transpose(FlsmRegions& regions) {
+  const std::size_t nodes = regions.size.size();
+  auto& begin = regions.missing_of_offset;
+  begin.assign(nodes + 1, 0);
+  for (const RegionEntry& e : regions.missing) ++begin[e.other + 1];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  regions.missing_of.resize(regions.missing.size());
+  std::vector<std::int32_t> next(begin.begin(), begin.end() - 1);
+  for (std::size_t r = 0; r < nodes; ++r) {
+    for (std::int32_t m = regions.missing_offset[r]; m < regions.missing_offset[r + 1]; ++m) {
+      const RegionEntry& e = regions.missing[m];
+      regions.missing_of[next[e.other]++] = {static_cast<std::int32_t>(r), e.offset};
+    }
+  }
+}
+
+}  // namespace
+
+FlsmRegions find_regions(const LinkedLattice& lattice, int width) {
+  check_width(width);
+  check_links(lattice);
+  const std::size_t nodes = lattice.index.size();
+  FlsmRegions regions;
+  regions.width = width;
+  regions.size.resize(nodes);
+  auto ones = ones_and_flags(lattice);
+  const bool shared_points = std::any_of(ones.begin(), ones.end(), [](std::uint32_t one) { return one != 1; });
+  find_missing(lattice, ordered_sums(lattice, ones, width, {0, 1, 2}), shared_points, regions);
+  transpose(regions);
+  // From a node back to the centres whose paths z, y, x reach it: the same links in reverse.
+  const auto back = ordered_sums(lattice, ones, width, {2, 1, 0});
+  regions.holders.resize(nodes);
+  for (std::size_t i = 0; i < nodes; ++i) {
+    const std::int32_t listed = regions.missing_of_offset[i + 1] - regions.missing_of_offset[i];
+    regions.holders[i] = static_cast<std::int32_t>(back[i] & kCount) + listed;
+  }
+  return regions;
+}
+
+std::vector<RegionEntry> region_by_search(const LinkedLattice& lattice, std::int32_t centre, int width) {
+  check_width(width);
+  std::map<std::int32_t, std::array<std::int32_t, 3>> region{{centre, {0, 0, 0}}};
+  std::set<std::int32_t> front{centre};
+  while (!front.empty()) {
+    const std::int32_t i = *front.begin();
+    front.erase(front.begin());
+    for (const std::int32_t n : lattice.link[i]) {
+      if (n < 0 || region.contains(n)) continue;
+      std::array<std::int32_t, 3> offset{};
+      for (int a = 0; a < 3; ++a) offset[a] = lattice.index[n][a] - lattice.index[centre][a];
+      if (std::max({std::abs(offset[0]), std::abs(offset[1]), std::abs(offset[2])}) > width) continue;
+      region.emplace(n, offset);
+      front.insert(n);
+    }
+  }
+  std::vector<RegionEntry> list;
+  for (const auto& [node, offset] : region) list.push_back({node, offset});
+  return list;
+}
+
+}  // namespace pliant
