@@ -70,16 +70,6 @@ void check_pressure_law(const Reader& material, const Body& b, const Material& m
       "neo-hookean or isochoric-neo-hookean: the averaged nodal pressure needs a law whose volumetric part depends on J alone");
 }
 
-void read_model(const Reader& body) {
-  if (!body.has("model")) return;
-  const Reader model = body.at("model");
-  if (!model.json().is_object()) model.fail("an object such as {\"type\": \"tled\"}");
-  const Reader type = model.at("type", "a model type: tled");
-  if (type.json() == "flsm" || type.json() == "hybrid") type.fail("tled: this model type is not available yet");
-  if (type.json() != "tled") type.fail_word({"tled"});
-  model.expect_object("model");
-}
-
 template <class Entry, class Read>
 void read_entries(const Reader& body, const char* key, const char* kind, std::vector<Entry>& list, Read read) {
   if (!body.has(key)) return;
@@ -135,7 +125,7 @@ Body read_body(const Reader& body, const fs::path& folder, std::size_t index) {
   b.name = read_name(body, index);
   read_geometry(body, folder, b);
   read_element(body, b);
-  read_model(body);
+  if (body.has("model")) b.model = read_model(body.at("model"), b.mesh.empty());
 
   const Reader material = body.at("material", "a material such as {\"young\": 3000, \"poisson\": 0.45, \"density\": 1060}");
   b.material = read_material(material);

@@ -27,13 +27,18 @@ std::map<std::string, List> make_keys() {
   const List selection = points + List{"nodes"};
   const List curve{"curve", "start", "duration", "table"};
   return {
-      {"scene", {"format", "name", "gravity", "dt", "safety", "duration", "integrator", "relaxation", "bodies"}},
+      {"scene", {"format", "name", "gravity", "dt", "safety", "duration", "integrator", "relaxation", "tool", "bodies"}},
       {"body",
        {"name", "surface", "mesh", "scale", "translate", "lattice", "element", "material", "model", "inclusions", "fixed",
         "prescribed", "forces", "pressures", "velocity", "angular_velocity"}},
       {"lattice", {"spacing", "nodes"}},
       {"material", {"law", "young", "poisson", "lambda", "mu", "kappa", "density", "damping", "hourglass"}},
-      {"model", {"type"}},
+      {"model",
+       {"type", "ratio", "seed", "region", "beta", "width", "alpha", "stiffness", "damping", "substeps", "goals", "coupling",
+        "follow"}},
+      {"region", {"box", "sphere"}},
+      {"stiffness", {"young"}},
+      {"tool", {"path"}},
       {"relaxation", {"tolerance", "max_steps"}},
       {"inclusion", points + List{"material"}},
       {"fixed", selection + List{"axes"}},
@@ -68,10 +73,11 @@ const std::map<std::string, List>& scene_keys() {
 }
 
 const std::map<std::string, List>& scene_words() {
-  static const std::map<std::string, List> words{{"law", words_only(law_words())},
-                                                 {"element", words_only(element_words())},
-                                                 {"curve", words_only(curve_words())},
-                                                 {"integrator", words_only(integrator_words())}};
+  static const std::map<std::string, List> words{
+      {"law", words_only(law_words())},           {"element", words_only(element_words())},
+      {"curve", words_only(curve_words())},       {"integrator", words_only(integrator_words())},
+      {"model", words_only(model_words())},       {"goals", words_only(goals_words())},
+      {"coupling", words_only(coupling_words())}, {"follow", words_only(follow_words())}};
   return words;
 }
 
@@ -100,6 +106,26 @@ const Words<Curve::Kind>& curve_words() {
 
 const Words<Integrator>& integrator_words() {
   static const Words<Integrator> words{{"increment", Integrator::increment}, {"textbook", Integrator::textbook}};
+  return words;
+}
+
+const Words<ModelType>& model_words() {
+  static const Words<ModelType> words{{"tled", ModelType::tled}, {"hybrid", ModelType::hybrid}, {"flsm", ModelType::flsm}};
+  return words;
+}
+
+const Words<bool>& goals_words() {
+  static const Words<bool> words{{"held", false}, {"extrapolated", true}};
+  return words;
+}
+
+const Words<bool>& coupling_words() {
+  static const Words<bool> words{{"conservative", true}, {"one-sided", false}};
+  return words;
+}
+
+const Words<bool>& follow_words() {
+  static const Words<bool> words{{"tool", true}};
   return words;
 }
 

@@ -11,11 +11,12 @@
 
 namespace pliant {
 
-/// The allowed keys by kind of object: "scene" (the file itself), "body", "lattice", "material", "model", "relaxation",
-/// "inclusion", "fixed", "prescribed", "force", "pressure". The same words name the definitions in scenes/schema.json.
+/// The allowed keys by kind of object: "scene" (the file itself), "body", "lattice", "material", "model", "region",
+/// "stiffness", "tool", "relaxation", "inclusion", "fixed", "prescribed", "force", "pressure". The same words name the
+/// definitions in scenes/schema.json.
 const std::map<std::string, std::vector<std::string>>& scene_keys();
 
-/// The allowed words by kind: "law", "element", "curve", "integrator".
+/// The allowed words by kind: "law", "element", "curve", "integrator", "model", "goals", "coupling", "follow".
 const std::map<std::string, std::vector<std::string>>& scene_words();
 
 template <class Enum>
@@ -25,6 +26,11 @@ const Words<Law>& law_words();
 const Words<ElementKind>& element_words();
 const Words<Curve::Kind>& curve_words();
 const Words<Integrator>& integrator_words();
+const Words<ModelType>& model_words();
+/// The flags of DeformationModel that a scene file writes as words: extrapolate, conservative, follow.
+const Words<bool>& goals_words();
+const Words<bool>& coupling_words();
+const Words<bool>& follow_words();
 
 /// The word of an enumerator.
 template <class Enum>

@@ -98,7 +98,9 @@ Scene parse_scene(const std::string& text, const fs::path& file) {
   if (top.has("duration")) scene.duration = top.at("duration").positive();
   if (top.has("integrator")) scene.integrator = top.at("integrator").word(integrator_words());
   read_relaxation(top, scene.relaxation);
+  if (top.has("tool")) scene.tool = read_tool(top.at("tool"));
   read_bodies(top, file.parent_path(), scene);
+  check_models(top, scene);
   return scene;
 }
 

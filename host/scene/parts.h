@@ -13,6 +13,11 @@ enum class NodeLists { allowed, refused };
 Selection read_selection(const Reader& entry, NodeLists lists);
 Curve read_curve(const Reader& entry);
 Material read_material(const Reader& material);
+/// `lattice`: whether the body is a surface filled with a lattice, which shape matching needs.
+DeformationModel read_model(const Reader& model, bool lattice);
+Tool read_tool(const Reader& tool);
+/// Models against the keys of the scene: its integrator, its relaxation and its tool.
+void check_models(const Reader& top, const Scene& scene);
 /// `folder` is what relative mesh paths are relative to; `index` numbers a body without a name.
 Body read_body(const Reader& body, const std::filesystem::path& folder, std::size_t index);
 

@@ -9,6 +9,7 @@ namespace pliant {
 
 const char* to_string(Law law) { return word_of(law_words(), law).c_str(); }
 const char* to_string(ElementKind element) { return word_of(element_words(), element).c_str(); }
+const char* to_string(ModelType type) { return word_of(model_words(), type).c_str(); }
 
 double Material::young() const { return 9 * kappa * mu / (3 * kappa + mu); }
 double Material::poisson() const { return (3 * kappa - 2 * mu) / (2 * (3 * kappa + mu)); }
@@ -66,6 +67,19 @@ double Curve::value(double time) const {
   if (time >= start + duration) return 1;
   const double s = (time - start) / duration;
   return kind == Kind::ramp ? s : s * s * s * (10 + s * (6 * s - 15));
+}
+
+Vec3d Tool::position(double time) const {
+  if (path.empty()) return {};
+  const auto place = [](const std::array<double, 4>& row) { return Vec3d{row[1], row[2], row[3]}; };
+  const auto after =
+      std::upper_bound(path.begin(), path.end(), time, [](double t, const std::array<double, 4>& row) { return t < row[0]; });
+  if (after == path.begin()) return place(path.front());
+  if (after == path.end()) return place(path.back());
+  const Vec3d left = place(*(after - 1));
+  const Vec3d right = place(*after);
+  const double s = (time - (*(after - 1))[0]) / ((*after)[0] - (*(after - 1))[0]);
+  return {left[0] + s * (right[0] - left[0]), left[1] + s * (right[1] - left[1]), left[2] + s * (right[2] - left[2])};
 }
 
 }  // namespace pliant

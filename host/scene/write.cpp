@@ -51,6 +51,31 @@ Json material_json(const Material& m) {
   return material;
 }
 
+Json model_json(const DeformationModel& m) {
+  Json model{{"type", to_string(m.type)}};
+  if (m.type == ModelType::hybrid) {
+    if (m.region) {
+      model["region"] = selection_json(*m.region);
+    } else {
+      model["ratio"] = m.ratio;
+      if (m.seed) model["seed"] = *m.seed;
+      if (m.follow) model["follow"] = word_of(follow_words(), m.follow);
+    }
+    model["beta"] = m.beta > 0 ? Json(m.beta) : Json("auto");
+    model["substeps"] = m.substeps;
+    model["goals"] = word_of(goals_words(), m.extrapolate);
+    model["coupling"] = word_of(coupling_words(), m.conservative);
+  }
+  model["width"] = m.width;
+  if (m.young > 0) {
+    model["stiffness"] = {{"young", m.young}};
+  } else {
+    model["alpha"] = m.alpha;
+  }
+  model["damping"] = m.damping;
+  return model;
+}
+
 std::string path_json(const fs::path& path, const fs::path& scene_file) {
   const fs::path folder = scene_file.parent_path();
   if (path.is_absolute() || folder.empty()) return path.string();
@@ -108,6 +133,7 @@ Json body_json(const Body& b, const fs::path& scene_file) {
   }
   body["element"] = to_string(b.element);
   body["material"] = material_json(b.material);
+  if (b.model.type != ModelType::tled) body["model"] = model_json(b.model);
   add_conditions(body, b);
   body["velocity"] = b.velocity;
   body["angular_velocity"] = b.angular_velocity;
@@ -129,6 +155,7 @@ std::string scene_to_json(const Scene& scene) {
   } else {
     top["relaxation"] = false;
   }
+  if (!scene.tool.path.empty()) top["tool"] = {{"path", scene.tool.path}};
   top["bodies"] = Json::array();
   for (const Body& b : scene.bodies) top["bodies"].push_back(body_json(b, scene.file));
   return top.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -51,7 +51,11 @@ TEST(Schema, HasTheWordsOfTheLoader) {
       {"law", {"/$defs/material/properties/law"}},
       {"element", {"/$defs/body/properties/element"}},
       {"integrator", {"/properties/integrator"}},
-      {"curve", {"/$defs/prescribed/properties/curve", "/$defs/force/properties/curve", "/$defs/pressure/properties/curve"}}};
+      {"curve", {"/$defs/prescribed/properties/curve", "/$defs/force/properties/curve", "/$defs/pressure/properties/curve"}},
+      {"model", {"/$defs/model/properties/type"}},
+      {"goals", {"/$defs/model/properties/goals"}},
+      {"coupling", {"/$defs/model/properties/coupling"}},
+      {"follow", {"/$defs/model/properties/follow"}}};
   ASSERT_EQ(pointers.size(), scene_words().size());
   for (const auto& [kind, list] : pointers) {
     for (const std::string& pointer : list) {
@@ -71,6 +75,18 @@ TEST(Schema, DefaultsAreThoseOfTheStructs) {
   EXPECT_EQ(number("/$defs/material/properties/damping"), Material().damping);
   EXPECT_EQ(number("/$defs/material/properties/hourglass"), Material().hourglass);
   EXPECT_EQ(number("/$defs/body/properties/scale"), Body().scale);
+  const std::string model = "/$defs/model/properties/";
+  EXPECT_EQ(number((model + "ratio").c_str()), DeformationModel().ratio);
+  EXPECT_EQ(number((model + "width").c_str()), DeformationModel().width);
+  EXPECT_EQ(number((model + "alpha").c_str()), DeformationModel().alpha);
+  EXPECT_EQ(number((model + "damping").c_str()), DeformationModel().damping);
+  EXPECT_EQ(number((model + "substeps").c_str()), DeformationModel().substeps);
+  const auto word = [&](const char* key) {
+    return schema.at(Json::json_pointer(model + key)).at("default").get<std::string>();
+  };
+  EXPECT_EQ(word("beta"), "auto");
+  EXPECT_EQ(word("goals"), word_of(goals_words(), DeformationModel().extrapolate));
+  EXPECT_EQ(word("coupling"), word_of(coupling_words(), DeformationModel().conservative));
 }
 
 TEST(Schema, ShippedScenesFollowItAndLoad) {

@@ -1,0 +1,138 @@
+// The key "model" of a body and the key "tool" of a scene.
+#include <fmt/format.h>
+
+#include <array>
+
+#include "scene/parts.h"
+
+namespace pliant {
+
+namespace {
+
+constexpr std::array hybrid_keys{"ratio", "seed", "region", "beta", "substeps", "goals", "coupling", "follow"};
+constexpr std::array region_keys{"width", "alpha", "stiffness", "damping"};
+
+template <class Keys>
+void refuse(const Reader& model, const Keys& keys, ModelType type, const char* needed) {
+  for (const char* key : keys) {
+    if (!model.has(key)) continue;
+    model.at(key).fail(fmt::format("no \"{}\" beside the type {} (it needs the type {})", key, to_string(type), needed));
+  }
+}
+
+void refuse_both(const Reader& model, const char* a, const char* b, const char* expected) {
+  if (model.has(a) && model.has(b)) model.fail(fmt::format("both \"{}\" and \"{}\"", a, b), expected);
+}
+
+void refuse_senseless(const Reader& model, ModelType type) {
+  if (type != ModelType::hybrid) refuse(model, hybrid_keys, type, "hybrid");
+  if (type == ModelType::tled) refuse(model, region_keys, type, "hybrid or flsm");
+  for (const char* key : {"ratio", "seed", "follow"}) {
+    refuse_both(model, "region", key, "either a region, or ratio, seed and follow");
+  }
+  refuse_both(model, "alpha", "stiffness", "at most one: a stiffness chooses alpha");
+}
+
+double share(const Reader& field, const char* expected) {
+  const double x = field.number(expected);
+  if (!(x >= 0 && x <= 1)) field.fail(expected);
+  return x;
+}
+
+Selection read_region(const Reader& region) {
+  region.expect_object("region");
+  if (region.has("box") == region.has("sphere")) {
+    region.fail(region.has("box") ? "both \"box\" and \"sphere\"" : "neither \"box\" nor \"sphere\"", "exactly one of them");
+  }
+  return read_selection(region, NodeLists::refused);
+}
+
+double read_beta(const Reader& beta) {
+  if (beta.json() == "auto") return 0;
+  const char* const expected = "\"auto\" or a stiffness > 0 in newton per metre";
+  const double x = beta.number(expected);
+  if (!(x >= 1e-30)) beta.fail(expected);
+  return x;
+}
+
+void read_shape_matching(const Reader& model, DeformationModel& m) {
+  if (model.has("width")) m.width = static_cast<int>(model.at("width").integer(1, 5));
+  if (model.has("alpha")) {
+    const Reader alpha = model.at("alpha");
+    const char* const expected = "a number with 0 < alpha <= 1";
+    m.alpha = alpha.number(expected);
+    if (!(m.alpha >= 1e-30 && m.alpha <= 1)) alpha.fail(expected);
+  }
+  if (model.has("stiffness")) {
+    const Reader stiffness = model.at("stiffness");
+    stiffness.expect_object("stiffness");
+    m.young = stiffness.at("young", "Young's modulus in pascal").positive();
+  }
+  if (model.has("damping")) m.damping = share(model.at("damping"), "a number with 0 <= damping <= 1");
+}
+
+void read_partition(const Reader& model, DeformationModel& m) {
+  if (model.has("ratio")) m.ratio = share(model.at("ratio"), "a number with 0 <= ratio <= 1");
+  if (model.has("seed")) m.seed = model.at("seed").vec3();
+  if (model.has("region")) m.region = read_region(model.at("region"));
+  if (model.has("beta")) m.beta = read_beta(model.at("beta"));
+  if (model.has("substeps")) m.substeps = static_cast<int>(model.at("substeps").integer(1, 64));
+  if (model.has("goals")) m.extrapolate = model.at("goals").word(goals_words());
+  if (model.has("coupling")) m.conservative = model.at("coupling").word(coupling_words());
+  if (model.has("follow")) m.follow = model.at("follow").word(follow_words());
+}
+
+}  // namespace
+
+DeformationModel read_model(const Reader& model, bool lattice) {
+  model.expect_object("model");
+  DeformationModel m;
+  m.pointer = model.pointer();
+  const Reader type = model.at("type", "a model type: " + listed(scene_words().at("model")));
+  m.type = type.word(model_words());
+  if (!lattice && m.type != ModelType::tled) {
+    type.fail("tled beside a volume mesh (shape matching needs a lattice: give a \"surface\" instead of the \"mesh\")");
+  }
+  refuse_senseless(model, m.type);
+  read_shape_matching(model, m);
+  read_partition(model, m);
+  return m;
+}
+
+Tool read_tool(const Reader& tool) {
+  tool.expect_object("tool");
+  Tool t;
+  const char* const expected = "a list of at least one row [time, x, y, z]";
+  for (const Reader& row : tool.at("path", expected).items(expected, 1)) {
+    const char* const row_expected = "a row [time, x, y, z] in seconds and metres";
+    const std::vector<Reader> parts = row.items(row_expected);
+    if (parts.size() != 4) row.fail(row_expected);
+    const double time = parts[0].number();
+    if (!t.path.empty() && !(time > t.path.back()[0])) {
+      parts[0].fail(fmt::format("a time after the previous row's {}", t.path.back()[0]));
+    }
+    t.path.push_back({time, parts[1].number(), parts[2].number(), parts[3].number()});
+  }
+  return t;
+}
+
+void check_models(const Reader& top, const Scene& scene) {
+  const std::vector<Reader> bodies = top.at("bodies").items("a list of bodies");
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const DeformationModel& m = scene.bodies[i].model;
+    if (m.type == ModelType::tled) continue;
+    if (scene.integrator != Integrator::increment) {
+      top.at("integrator").fail(fmt::format("increment, because {} has the type {}", m.pointer, to_string(m.type)));
+    }
+    if (scene.relaxation.enabled) {
+      top.at("relaxation")
+          .fail(fmt::format("false, because {} has the type {} (relaxation is for tled only)", m.pointer, to_string(m.type)));
+    }
+    if (m.follow && scene.tool.path.empty()) {
+      bodies[i].at("model").at("follow").fail(
+          "the scene's key \"tool\" to follow, such as \"tool\": {\"path\": [[0, 0, 0.1, 0]]}");
+    }
+  }
+}
+
+}  // namespace pliant

@@ -1,0 +1,359 @@
+// The keys "model" and "tool": what arrives, what comes back, what is refused and with which words.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "scene/scene.h"
+#include "scene/schema_check.h"
+#include "support/error_of.h"
+
+namespace pliant {
+namespace {
+
+using Json = nlohmann::json;
+
+const char* const good = R"({"format": "pliant-scene/1", "bodies": [
+  {"name": "a", "surface": "a.obj", "lattice": {"spacing": 0.1}, "material": {"young": 3000, "poisson": 0.45},
+   "model": {"type": "hybrid"}}]})";
+
+/// The good scene with the members of an RFC 7386 merge patch: null removes a member.
+std::string patched(const std::string& patch, const std::string& body = "{}") {
+  Json scene = Json::parse(good);
+  scene.merge_patch(Json::parse(patch));
+  scene["bodies"][0].merge_patch(Json::parse(body));
+  return scene.dump();
+}
+
+std::string with_model(const std::string& model, const std::string& patch = "{}") {
+  Json scene = Json::parse(patched(patch));
+  scene["bodies"][0]["model"] = Json::parse(model);
+  return scene.dump();
+}
+
+std::string message(const std::string& text) {
+  return test::error_of([&] { parse_scene(text, "dir/s.json"); });
+}
+
+DeformationModel model_of(const std::string& model) { return parse_scene(with_model(model), "dir/s.json").bodies[0].model; }
+
+const SchemaCheck& schema() {
+  static const SchemaCheck check([] {
+    std::ifstream stream(std::string(PLIANT_SOURCE_DIR) + "/scenes/schema.json");
+    return Json::parse(stream);
+  }());
+  return check;
+}
+
+const char* const moving_tool = R"({"tool": {"path": [[0, 0, 0.1, 0], [2, 0.5, 0.1, -1]]}})";
+
+/// Every key of the type hybrid but region and stiffness, none at its default.
+const char* const full = R"({"type": "hybrid", "ratio": 0.25, "seed": [0.1, -0.2, 0.3], "beta": 12.5, "width": 3, "alpha": 0.75,
+  "damping": 0.125, "substeps": 4, "goals": "extrapolated", "coupling": "one-sided", "follow": "tool"})";
+
+TEST(Model, EveryKeyArrives) {
+  const DeformationModel m = parse_scene(with_model(full, moving_tool), "dir/s.json").bodies[0].model;
+  EXPECT_EQ(m.type, ModelType::hybrid);
+  EXPECT_EQ(m.ratio, 0.25);
+  ASSERT_TRUE(m.seed);
+  EXPECT_EQ(*m.seed, (Vec3d{0.1, -0.2, 0.3}));
+  EXPECT_FALSE(m.region);
+  EXPECT_EQ(m.beta, 12.5);
+  EXPECT_EQ(m.width, 3);
+  EXPECT_EQ(m.alpha, 0.75);
+  EXPECT_EQ(m.young, 0);
+  EXPECT_EQ(m.damping, 0.125);
+  EXPECT_EQ(m.substeps, 4);
+  EXPECT_TRUE(m.extrapolate);
+  EXPECT_FALSE(m.conservative);
+  EXPECT_TRUE(m.follow);
+  EXPECT_EQ(m.pointer, "/bodies/0/model");
+}
+
+TEST(Model, RegionAndStiffnessArrive) {
+  const DeformationModel box =
+      model_of(R"({"type": "hybrid", "region": {"box": [[0, 1, 2], [3, 4, 5]]}, "stiffness": {"young": 4000}})");
+  ASSERT_TRUE(box.region);
+  EXPECT_EQ(box.region->kind, Selection::Kind::box);
+  EXPECT_EQ(box.region->a, (Vec3d{0, 1, 2}));
+  EXPECT_EQ(box.region->b, (Vec3d{3, 4, 5}));
+  EXPECT_EQ(box.region->pointer, "/bodies/0/model/region");
+  EXPECT_EQ(box.young, 4000);
+  const DeformationModel sphere = model_of(R"({"type": "hybrid", "region": {"sphere": [[1, 2, 3], 0.5]}})");
+  ASSERT_TRUE(sphere.region);
+  EXPECT_EQ(sphere.region->kind, Selection::Kind::sphere);
+  EXPECT_EQ(sphere.region->a, (Vec3d{1, 2, 3}));
+  EXPECT_EQ(sphere.region->radius, 0.5);
+}
+
+TEST(Model, WordsForTheDefaultsArrive) {
+  const DeformationModel m =
+      model_of(R"({"type": "hybrid", "beta": "auto", "goals": "held", "coupling": "conservative", "substeps": 1})");
+  EXPECT_EQ(m.beta, 0);
+  EXPECT_FALSE(m.extrapolate);
+  EXPECT_TRUE(m.conservative);
+}
+
+TEST(Model, Defaults) {
+  for (const char* text : {"hybrid", "flsm", "tled"}) {
+    const DeformationModel m = model_of(std::string(R"({"type": ")") + text + "\"}");
+    EXPECT_STREQ(to_string(m.type), text);
+    EXPECT_EQ(m.ratio, 0.5);
+    EXPECT_FALSE(m.seed);
+    EXPECT_FALSE(m.region);
+    EXPECT_EQ(m.beta, 0);
+    EXPECT_EQ(m.width, 2);
+    EXPECT_EQ(m.alpha, 0.5);
+    EXPECT_EQ(m.young, 0);
+    EXPECT_EQ(m.damping, 0);
+    EXPECT_EQ(m.substeps, 1);
+    EXPECT_FALSE(m.extrapolate);
+    EXPECT_TRUE(m.conservative);
+    EXPECT_FALSE(m.follow);
+  }
+  const Scene none = parse_scene(patched("{}", R"({"model": null})"), "dir/s.json");
+  EXPECT_EQ(none.bodies[0].model.type, ModelType::tled);
+  EXPECT_TRUE(none.tool.path.empty());
+}
+
+TEST(Model, EndsOfTheRangesAreAllowed) {
+  for (const char* text : {R"({"type": "hybrid", "ratio": 0, "damping": 0, "alpha": 1, "width": 1, "substeps": 1})",
+                           R"({"type": "hybrid", "ratio": 1, "damping": 1, "alpha": 1e-30, "width": 5, "substeps": 64})"}) {
+    EXPECT_EQ(message(with_model(text)), "") << text;
+  }
+}
+
+TEST(Model, EveryElementMayBeOperational) {
+  for (const char* element : {"hex8", "hex8full", "tet4", "tet4anp"}) {
+    EXPECT_EQ(message(patched("{}", std::string(R"({"element": ")") + element + "\"}")), "") << element;
+  }
+}
+
+TEST(Model, RoundTripKeepsEverything) {
+  const std::vector<std::string> models{
+      full,
+      R"({"type": "hybrid", "ratio": 0.1, "alpha": 0.3})",
+      R"({"type": "hybrid", "region": {"sphere": [[1, 2, 3], 0.7]}, "stiffness": {"young": 1234.5}, "beta": 3})",
+      R"({"type": "hybrid", "region": {"box": [[0, 1, 2], [3, 4, 5]]}, "goals": "extrapolated"})",
+      R"({"type": "flsm", "width": 4, "alpha": 0.9, "damping": 0.2})",
+      R"({"type": "flsm", "width": 5, "stiffness": {"young": 800}})"};
+  for (const std::string& text : models) {
+    const Scene a = parse_scene(with_model(text, moving_tool), "dir/s.json");
+    const std::string written = scene_to_json(a);
+    const Scene b = parse_scene(written, "dir/s.json");
+    EXPECT_EQ(scene_to_json(b), written);
+    const DeformationModel& m = a.bodies[0].model;
+    const DeformationModel& n = b.bodies[0].model;
+    EXPECT_EQ(n.type, m.type);
+    EXPECT_EQ(n.ratio, m.ratio);
+    EXPECT_EQ(n.seed, m.seed);
+    ASSERT_EQ(n.region.has_value(), m.region.has_value());
+    if (m.region) {
+      EXPECT_EQ(n.region->kind, m.region->kind);
+      EXPECT_EQ(n.region->a, m.region->a);
+      EXPECT_EQ(n.region->b, m.region->b);
+      EXPECT_EQ(n.region->radius, m.region->radius);
+    }
+    EXPECT_EQ(n.beta, m.beta);
+    EXPECT_EQ(n.width, m.width);
+    EXPECT_EQ(n.alpha, m.alpha);
+    EXPECT_EQ(n.young, m.young);
+    EXPECT_EQ(n.damping, m.damping);
+    EXPECT_EQ(n.substeps, m.substeps);
+    EXPECT_EQ(n.extrapolate, m.extrapolate);
+    EXPECT_EQ(n.conservative, m.conservative);
+    EXPECT_EQ(n.follow, m.follow);
+    EXPECT_EQ(n.pointer, m.pointer);
+    EXPECT_EQ(b.tool.path, a.tool.path);
+    EXPECT_EQ(schema().findings(Json::parse(written)), std::vector<std::string>()) << written;
+  }
+}
+
+TEST(Model, TledIsNotWritten) {
+  const Json written = Json::parse(scene_to_json(parse_scene(with_model(R"({"type": "tled"})"), "dir/s.json")));
+  EXPECT_FALSE(written["bodies"][0].contains("model"));
+  EXPECT_FALSE(written.contains("tool"));
+}
+
+struct Case {
+  const char* model;
+  const char* expected;  ///< the message after "dir/s.json: ", or its beginning
+};
+
+void expect_refused(const std::string& text, const std::string& expected) {
+  const std::string got = message(text);
+  EXPECT_EQ(got.substr(0, 12 + expected.size()), "dir/s.json: " + expected) << text << "\n" << got;
+  EXPECT_FALSE(schema().findings(Json::parse(text)).empty()) << text;
+}
+
+TEST(Model, ValuesOutOfRangeAreNamed) {
+  const std::vector<Case> cases{
+      {R"("hybrid")", R"(/bodies/0/model: got "hybrid", expected an object with the keys type, ratio, seed, region, beta)"},
+      {R"({})", R"(/bodies/0/model: got no "type", expected a model type: tled, hybrid, flsm)"},
+      {R"({"type": "hybird"})",
+       R"(/bodies/0/model/type: got "hybird", expected one of tled, hybrid, flsm (did you mean "hybrid"?))"},
+      {R"({"type": "hybrid", "ratio": 1.01})", "/bodies/0/model/ratio: got 1.01, expected a number with 0 <= ratio <= 1"},
+      {R"({"type": "hybrid", "ratio": -0.5})", "/bodies/0/model/ratio: got -0.5, expected a number with 0 <= ratio <= 1"},
+      {R"({"type": "hybrid", "ratio": "0.4"})", R"(/bodies/0/model/ratio: got "0.4", expected a number with 0 <= ratio)"},
+      {R"({"type": "hybrid", "seed": [1, 2]})", "/bodies/0/model/seed: got [1,2], expected three numbers [x, y, z]"},
+      {R"({"type": "hybrid", "seed": [1, 2, null]})", "/bodies/0/model/seed/2: got null, expected a number"},
+      {R"({"type": "hybrid", "region": {}})",
+       R"(/bodies/0/model/region: got neither "box" nor "sphere", expected exactly one of them)"},
+      {R"({"type": "hybrid", "region": {"box": [[0, 0, 0], [1, 1, 1]], "sphere": [[0, 0, 0], 1]}})",
+       R"(/bodies/0/model/region: got both "box" and "sphere", expected exactly one of them)"},
+      {R"({"type": "hybrid", "region": {"sphere": [[0, 0, 0], -1]}})",
+       "/bodies/0/model/region/sphere/1: got -1, expected a number > 0"},
+      {R"({"type": "hybrid", "region": {"all": true}})",
+       R"(/bodies/0/model/region: got the unknown key "all", expected one of box, sphere)"},
+      {R"({"type": "hybrid", "beta": 0})",
+       R"(/bodies/0/model/beta: got 0, expected "auto" or a stiffness > 0 in newton per metre)"},
+      {R"({"type": "hybrid", "beta": -3})", R"(/bodies/0/model/beta: got -3, expected "auto" or a stiffness > 0)"},
+      {R"({"type": "hybrid", "beta": "stiff"})", R"(/bodies/0/model/beta: got "stiff", expected "auto" or a stiffness > 0)"},
+      {R"({"type": "flsm", "width": 0})", "/bodies/0/model/width: got 0, expected a whole number from 1 to 5"},
+      {R"({"type": "flsm", "width": 6})", "/bodies/0/model/width: got 6, expected a whole number from 1 to 5"},
+      {R"({"type": "flsm", "width": 1.5})", "/bodies/0/model/width: got 1.5, expected a whole number from 1 to 5"},
+      {R"({"type": "flsm", "alpha": 0})", "/bodies/0/model/alpha: got 0, expected a number with 0 < alpha <= 1"},
+      {R"({"type": "flsm", "alpha": 1.5})", "/bodies/0/model/alpha: got 1.5, expected a number with 0 < alpha <= 1"},
+      {R"({"type": "flsm", "stiffness": 3000})", "/bodies/0/model/stiffness: got 3000, expected an object with the keys young"},
+      {R"({"type": "flsm", "stiffness": {}})",
+       R"(/bodies/0/model/stiffness: got no "young", expected Young's modulus in pascal)"},
+      {R"({"type": "flsm", "stiffness": {"young": 0}})", "/bodies/0/model/stiffness/young: got 0, expected a number > 0"},
+      {R"({"type": "flsm", "damping": -0.1})", "/bodies/0/model/damping: got -0.1, expected a number with 0 <= damping <= 1"},
+      {R"({"type": "flsm", "damping": 2})", "/bodies/0/model/damping: got 2, expected a number with 0 <= damping <= 1"},
+      {R"({"type": "hybrid", "substeps": 0})", "/bodies/0/model/substeps: got 0, expected a whole number from 1 to 64"},
+      {R"({"type": "hybrid", "substeps": 65})", "/bodies/0/model/substeps: got 65, expected a whole number from 1 to 64"},
+      {R"({"type": "hybrid", "goals": "hold"})",
+       R"(/bodies/0/model/goals: got "hold", expected one of held, extrapolated (did you mean "held"?))"},
+      {R"({"type": "hybrid", "coupling": "onesided"})",
+       R"(/bodies/0/model/coupling: got "onesided", expected one of conservative, one-sided (did you mean "one-sided"?))"},
+      {R"({"type": "hybrid", "follow": "path"})", R"(/bodies/0/model/follow: got "path", expected one of tool)"},
+  };
+  for (const Case& c : cases) expect_refused(with_model(c.model), c.expected);
+}
+
+TEST(Model, UnknownKeysSuggestTheNearest) {
+  expect_refused(with_model(R"({"type": "hybrid", "ration": 0.4})"),
+                 R"(/bodies/0/model: got the unknown key "ration", expected one of type, ratio, seed, region, beta, width, )"
+                 R"(alpha, stiffness, damping, substeps, goals, coupling, follow (did you mean "ratio"?))");
+  expect_refused(with_model(R"({"type": "flsm", "stiffness": {"yuong": 1}})"),
+                 R"(/bodies/0/model/stiffness: got the unknown key "yuong", expected one of young (did you mean "young"?))");
+  expect_refused(patched(R"({"tool": {"paths": []}})"),
+                 R"(/tool: got the unknown key "paths", expected one of path (did you mean "path"?))");
+  expect_refused(patched(R"({"tol": 1})"), R"(top level: got the unknown key "tol")");
+}
+
+TEST(Model, KeysThatMakeNoSenseForTheTypeAreRefused) {
+  const Json values = Json::parse(R"({"ratio": 0.5, "seed": [0, 0, 0], "region": {"sphere": [[0, 0, 0], 1]}, "beta": "auto",
+    "substeps": 2, "goals": "held", "coupling": "one-sided", "follow": "tool", "width": 2, "alpha": 0.5,
+    "stiffness": {"young": 1}, "damping": 0})");
+  const std::set<std::string> of_regions{"width", "alpha", "stiffness", "damping"};
+  for (const auto& [key, value] : values.items()) {
+    for (const std::string type : {"tled", "flsm", "hybrid"}) {
+      Json scene = Json::parse(patched(moving_tool));
+      scene["bodies"][0]["model"] = {{"type", type}, {key, value}};
+      if (type == "hybrid" || (type == "flsm" && of_regions.count(key) > 0)) {
+        EXPECT_EQ(message(scene.dump()), "") << key;
+        EXPECT_TRUE(schema().findings(scene).empty()) << key;
+        continue;
+      }
+      const std::string needed = of_regions.count(key) > 0 ? "hybrid or flsm" : "hybrid";
+      const std::string got = message(scene.dump());
+      EXPECT_EQ(got.find("dir/s.json: /bodies/0/model/" + key + ": got "), 0U) << got;
+      const std::string expected =
+          "expected no \"" + key + "\" beside the type " + type + " (it needs the type " + needed + ")";
+      EXPECT_NE(got.find(expected), std::string::npos) << got;
+      EXPECT_FALSE(schema().findings(scene).empty()) << key << " " << type;
+    }
+  }
+}
+
+TEST(Model, KeysThatExcludeEachOther) {
+  for (const std::string key : {R"("ratio": 0.5)", R"("seed": [0, 0, 0])", R"("follow": "tool")"}) {
+    const std::string name = key.substr(0, key.find(':'));
+    expect_refused(
+        with_model(R"({"type": "hybrid", "region": {"sphere": [[0, 0, 0], 1]}, )" + key + "}", moving_tool),
+        R"(/bodies/0/model: got both "region" and )" + name + ", expected either a region, or ratio, seed and follow");
+  }
+  for (const std::string type : {"hybrid", "flsm"}) {
+    expect_refused(with_model(R"({"type": ")" + type + R"(", "alpha": 0.5, "stiffness": {"young": 1}})"),
+                   R"(/bodies/0/model: got both "alpha" and "stiffness", expected at most one: a stiffness chooses alpha)");
+  }
+}
+
+TEST(Model, ShapeMatchingNeedsALattice) {
+  for (const std::string type : {"hybrid", "flsm"}) {
+    const std::string body = R"({"surface": null, "lattice": null, "mesh": "a.msh", "model": {"type": ")" + type + "\"}}";
+    expect_refused(patched("{}", body), R"(/bodies/0/model/type: got ")" + type + R"(", expected tled beside a volume mesh )" +
+                                            R"((shape matching needs a lattice: give a "surface" instead of the "mesh"))");
+  }
+  const std::string tled = R"({"surface": null, "lattice": null, "mesh": "a.msh", "model": {"type": "tled"}})";
+  EXPECT_EQ(message(patched("{}", tled)), "");
+  EXPECT_TRUE(schema().findings(Json::parse(patched("{}", tled))).empty());
+}
+
+TEST(Model, ShapeMatchingHasOneIntegratorAndNoRelaxation) {
+  for (const std::string type : {"hybrid", "flsm"}) {
+    const std::string model = R"({"type": ")" + type + "\"}";
+    const std::string because = ", because /bodies/0/model has the type " + type;
+    expect_refused(with_model(model, R"({"integrator": "textbook"})"),
+                   R"(/integrator: got "textbook", expected increment)" + because);
+    expect_refused(with_model(model, R"({"relaxation": true})"), "/relaxation: got true, expected false" + because);
+    expect_refused(with_model(model, R"({"relaxation": {"tolerance": 0.1}})"),
+                   "/relaxation: got an object with 1 key, expected false" + because);
+    EXPECT_EQ(message(with_model(model, R"({"integrator": "increment", "relaxation": false})")), "");
+  }
+  const std::string tled = with_model(R"({"type": "tled"})", R"({"integrator": "textbook", "relaxation": true})");
+  EXPECT_EQ(message(tled), "");
+  EXPECT_TRUE(schema().findings(Json::parse(tled)).empty());
+}
+
+TEST(Model, TheSecondBodyIsCheckedToo) {
+  Json scene = Json::parse(with_model(R"({"type": "tled"})", R"({"integrator": "textbook"})"));
+  scene["bodies"].push_back(Json::parse(good)["bodies"][0]);
+  scene["bodies"][1]["name"] = "b";
+  expect_refused(scene.dump(),
+                 R"(/integrator: got "textbook", expected increment, because /bodies/1/model has the type hybrid)");
+  scene.erase("integrator");
+  scene["bodies"][1]["model"]["follow"] = "tool";
+  expect_refused(scene.dump(), R"(/bodies/1/model/follow: got "tool", expected the scene's key "tool" to follow)");
+}
+
+TEST(Tool, PathIsHeldOutsideAndLinearInBetween) {
+  const Tool tool = parse_scene(patched(R"({"tool": {"path": [[1, 0, 10, -4], [3, 1, 20, -8], [3.5, 2, 20, 0]]}})"), "s").tool;
+  ASSERT_EQ(tool.path.size(), 3U);
+  EXPECT_EQ(tool.path[1], (std::array<double, 4>{3, 1, 20, -8}));
+  EXPECT_EQ(tool.position(-5), (Vec3d{0, 10, -4}));
+  EXPECT_EQ(tool.position(1), (Vec3d{0, 10, -4}));
+  EXPECT_EQ(tool.position(1.5), (Vec3d{0.25, 12.5, -5}));
+  EXPECT_EQ(tool.position(3), (Vec3d{1, 20, -8}));
+  EXPECT_EQ(tool.position(3.25), (Vec3d{1.5, 20, -4}));
+  EXPECT_EQ(tool.position(3.5), (Vec3d{2, 20, 0}));
+  EXPECT_EQ(tool.position(100), (Vec3d{2, 20, 0}));
+}
+
+TEST(Tool, OneRowStaysPut) {
+  const Tool tool = parse_scene(patched(R"({"tool": {"path": [[1, 2, 3, 4]]}})"), "s").tool;
+  for (const double time : {0.0, 1.0, 2.0}) EXPECT_EQ(tool.position(time), (Vec3d{2, 3, 4}));
+  EXPECT_EQ(Tool().position(1), (Vec3d{0, 0, 0}));
+}
+
+TEST(Tool, MistakesAreNamed) {
+  const char* const rows = "/tool/path: got ";
+  expect_refused(patched(R"({"tool": 1})"), "/tool: got 1, expected an object with the keys path");
+  expect_refused(patched(R"({"tool": {}})"), R"(/tool: got no "path", expected a list of at least one row [time, x, y, z])");
+  expect_refused(patched(R"({"tool": {"path": []}})"), std::string(rows) + "[], expected a list of at least one row");
+  expect_refused(patched(R"({"tool": {"path": 0}})"), std::string(rows) + "0, expected a list of at least one row");
+  expect_refused(patched(R"({"tool": {"path": [[0, 1, 2]]}})"),
+                 "/tool/path/0: got [0,1,2], expected a row [time, x, y, z] in seconds and metres");
+  expect_refused(patched(R"({"tool": {"path": [[0, 1, 2, "3"]]}})"), R"(/tool/path/0/3: got "3", expected a number)");
+  expect_refused(patched(R"({"tool": {"path": [[0, 1, 2, 1e31]]}})"),
+                 "/tool/path/0/3: got 1e+31, expected a number of magnitude");
+  // An order between rows is more than a JSON schema can say.
+  EXPECT_EQ(message(patched(R"({"tool": {"path": [[0, 1, 2, 3], [0, 1, 2, 3]]}})")),
+            "dir/s.json: /tool/path/1/0: got 0, expected a time after the previous row's 0");
+  EXPECT_EQ(message(patched(R"({"tool": {"path": [[1, 1, 2, 3], [0.5, 1, 2, 3]]}})")),
+            "dir/s.json: /tool/path/1/0: got 0.5, expected a time after the previous row's 1");
+}
+
+}  // namespace
+}  // namespace pliant
