@@ -15,6 +15,32 @@ using test::error_of;
 Lattice box_lattice() { return build_lattice(test::box({0, 0, 0}, {0.12, 0.1, 0.08}), {0.01, 0}); }
 Lattice ball_lattice() { return build_lattice(test::sphere(0.05, 0.01), {0.008, 0}); }
 
+// The cells (i, j, k) in [0, size) that `inside` chooses, of edge 1; nodes of the same grid point are one.
+template <class Inside>
+Lattice cells_of(const std::array<int, 3>& size, const Inside& inside) {
+  Lattice lattice;
+  lattice.spacing = 1;
+  std::map<std::array<std::int32_t, 3>, std::int32_t> number;
+  for (int k = 0; k < size[2]; ++k) {
+    for (int j = 0; j < size[1]; ++j) {
+      for (int i = 0; i < size[0]; ++i) {
+        if (!inside(i, j, k)) continue;
+        Cell cell;
+        cell.index = {i, j, k};
+        for (int a = 0; a < 8; ++a) {
+          const std::array<std::int32_t, 3> p{i + (a & 1), j + ((a >> 1) & 1), k + (a >> 2)};
+          const auto [at, added] = number.emplace(p, static_cast<std::int32_t>(lattice.nodes.size()));
+          if (added) lattice.nodes.push_back({p, 0});
+          cell.nodes[a] = at->second;
+        }
+        lattice.cells.push_back(cell);
+      }
+    }
+  }
+  lattice.embedding.push_back({0, {0.5, 0.5, 0.5}});
+  return lattice;
+}
+
 Body hybrid(double ratio) {
   Body body;
   body.pointer = "/bodies/0";
@@ -158,9 +184,9 @@ TEST(Partition, OfPureModels) {
 }
 
 TEST(Partition, GrowsAroundTheSeed) {
-  const Lattice lattice = box_lattice();
+  const Lattice lattice = build_lattice(test::box({0.3, -0.2, 0.1}, {0.42, -0.1, 0.18}), {0.01, 0});
   Body body = hybrid(0.2);
-  body.model.seed = Vec3d{0.02, 0.05, 0.09};  // a little outside
+  body.model.seed = Vec3d{0.32, -0.15, 0.19};  // a little outside
   const Partition p = partition_lattice(body, lattice);
   // In a convex body the region is a ball: what is in is nearer than what is out. Ties are decided by number.
   double in = 0, out = 1;
@@ -173,9 +199,51 @@ TEST(Partition, GrowsAroundTheSeed) {
 }
 
 TEST(Partition, StartsAtTheFirstVertexWithoutASeed) {
-  const Lattice lattice = ball_lattice();
-  const Partition p = partition_lattice(hybrid(0.05), lattice);
-  EXPECT_EQ(p.operational[lattice.embedding[0].cell], 1);
+  Lattice lattice = ball_lattice();
+  for (const Embedding& vertex : {lattice.embedding.front(), lattice.embedding.back()}) {
+    lattice.embedding[0] = vertex;
+    const Partition p = partition_lattice(hybrid(0.05), lattice);
+    EXPECT_EQ(p.operational[vertex.cell], 1);
+  }
+}
+
+TEST(Partition, StopsAtTheNearestCount) {
+  const Lattice bar = cells_of({10, 1, 1}, [](int, int, int) { return true; });  // 44 nodes; the counts are 8, 12, 16, ...
+  for (const auto& [target, count] : {std::pair{9, 8}, {11, 12}, {13, 12}, {15, 16}, {16, 16}, {41, 40}, {43, 44}}) {
+    const Partition p = partition_lattice(hybrid(target / 44.0), bar);
+    check(bar, p);
+    EXPECT_EQ(p.operational_nodes + p.interface_nodes, count) << "target " << target;
+  }
+}
+
+TEST(Partition, GrowsAlongTheBodyNotAcrossAGap) {
+  const Lattice u = cells_of({5, 12, 2}, [](int i, int j, int) { return i != 2 || j == 0; });
+  Body body = hybrid(0.35);
+  body.model.seed = Vec3d{1.9, 11, 1};  // the end of the first limb; the second is nearer than most of the first
+  const Partition p = partition_lattice(body, u);
+  check(u, p);
+  int count = 0;
+  groups(u, p, true, count);
+  EXPECT_EQ(count, 1);
+  for (std::size_t c = 0; c < u.cells.size(); ++c) {
+    if (u.cells[c].index[0] > 2) {
+      ASSERT_EQ(p.operational[c], 0) << "cell " << c;
+    }
+  }
+}
+
+TEST(Partition, DoesNotGrowOverAnEdgeOrACorner) {
+  const Lattice edge = cells_of({4, 2, 1}, [](int i, int j, int) { return (i < 2) == (j == 0); });
+  const Lattice corner = cells_of({4, 2, 2}, [](int i, int j, int k) { return (i < 2) == (j == 0) && j == k; });
+  for (Lattice lattice : {edge, corner}) {
+    ASSERT_EQ(lattice.cells.size(), 4U);
+    for (const bool last : {false, true}) {
+      lattice.embedding[0].cell = last ? 3 : 0;
+      const Partition p = partition_lattice(hybrid(0.95), lattice);
+      check(lattice, p);
+      EXPECT_EQ(p.operational, last ? (std::vector<char>{0, 0, 1, 1}) : (std::vector<char>{1, 1, 0, 0}));
+    }
+  }
 }
 
 TEST(Partition, RegionHoldsTheCellsWithTheirCentreInside) {
