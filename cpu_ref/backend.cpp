@@ -87,10 +87,22 @@ class RefBackend final : public Backend {
     passes_.load(program, [this](const Pass& pass) { return prepare(pass); });
   }
 
-  void run(const std::vector<Pass>& passes, std::int32_t first, std::int32_t count) override {
-    list_.clear();
-    for (const Pass& pass : passes) list_.push_back(&prepared(pass));
-    run_list(first, count);
+  void run(const std::vector<Pass>& passes, std::int32_t first, std::int32_t count, std::int64_t origin) override {
+    for (std::int32_t step = first; step < first + count;) {
+      // As many steps together as have the same passes.
+      const auto same = [&](std::int32_t other) {
+        return std::all_of(passes.begin(), passes.end(),
+                           [&](const Pass& p) { return p.runs_in(origin + step) == p.runs_in(origin + other); });
+      };
+      std::int32_t end = step + 1;
+      while (end < first + count && same(end)) ++end;
+      list_.clear();
+      for (const Pass& pass : passes) {
+        if (pass.runs_in(origin + step)) list_.push_back(&prepared(pass));
+      }
+      run_list(step, end - step);
+      step = end;
+    }
   }
   void run(const Pass& pass, std::int32_t step_in_batch) override {
     list_ = {&prepared(pass)};

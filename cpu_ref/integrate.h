@@ -22,6 +22,10 @@ struct StepParameters {
         still(step_params[4]),
         fine(step_params[5]),
         anchor(Scalar(3) * step_params[5]) {}
+  /// None where it is too small.
+  Scalar increment(Scalar w) const { return std::fabs(w) < still ? Scalar(0) : w; }
+  /// On the grid where it is small.
+  Scalar displacement(Scalar u) const { return std::fabs(u) < fine ? (u + anchor) - anchor : u; }
 };
 
 /// Advance node i under the summed element force f.
@@ -46,10 +50,8 @@ inline void integrate(const Scalar (&f)[3], Scalar* node_u, Scalar* node_w, cons
         w[c] = u[c];
         u[c] = next;
       } else {
-        const Scalar next = std::fma(a, w[c], push);
-        w[c] = std::fabs(next) < step.still ? Scalar(0) : next;
-        const Scalar sum = u[c] + w[c];
-        u[c] = std::fabs(sum) < step.fine ? (sum + step.anchor) - step.anchor : sum;
+        w[c] = step.increment(std::fma(a, w[c], push));
+        u[c] = step.displacement(u[c] + w[c]);
       }
     }
   }

@@ -26,7 +26,15 @@
   ROW(pressure_force) \
   ROW(fault_reduce) \
   ROW(limit_triad) \
-  ROW(limit_fma)
+  ROW(limit_fma) \
+  ROW(flsm_bar) \
+  ROW(flsm_plate) \
+  ROW(flsm_region) \
+  ROW(flsm_goal_plate) \
+  ROW(flsm_goal_bar) \
+  ROW(flsm_goal) \
+  ROW(flsm_update) \
+  ROW(flsm_interface)
 // clang-format on
 
 namespace pliant::ref {

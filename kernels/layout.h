@@ -27,6 +27,10 @@
 #define PLIANT_TET_FORCE_PLANES 12  // 4 corners x 3 components [N]
 #define PLIANT_HEX_FORCE_PLANES 24  // 8 corners x 3 components [N]
 
+// Shape matching: numbers per region record (four blocks of four), planes of a region's data at rest per tile.
+#define PLIANT_FLSM_RECORD 16
+#define PLIANT_FLSM_REST_PLANES 10  // 1 / sum m, centroid (3) [cells], second moment (6)
+
 // Material laws (the define LAW of a kernel).
 #define PLIANT_LAW_NEO_HOOKEAN 0
 #define PLIANT_LAW_SAINT_VENANT_KIRCHHOFF 1

@@ -29,8 +29,8 @@ void mark_row(std::int32_t slot, int kind, Model& model) {
 
 std::vector<std::int32_t> place_in_bricks(const Solid& solid, std::int32_t body, std::vector<char>& in_brick, Model& model) {
   std::map<Index3, std::int32_t> bricks;
-  for (const LatticeNode& n : solid.lattice_nodes) {
-    if (n.copy == 0) bricks.emplace(brick_of(n.index), 0);
+  for (std::size_t n = 0; n < solid.lattice_nodes.size(); ++n) {
+    if (solid.lattice_nodes[n].copy == 0 && !solid.matching(n)) bricks.emplace(brick_of(solid.lattice_nodes[n].index), 0);
   }
   const std::int32_t first = model.bricks;
   std::int32_t next = first;
@@ -52,7 +52,7 @@ std::vector<std::int32_t> place_in_bricks(const Solid& solid, std::int32_t body,
   std::vector<std::int32_t> slot(solid.nodes.size(), -1);
   for (std::size_t n = 0; n < solid.nodes.size(); ++n) {
     const LatticeNode& node = solid.lattice_nodes[n];
-    if (node.copy != 0) continue;
+    if (node.copy != 0 || solid.matching(n)) continue;
     slot[n] = bricks.at(brick_of(node.index)) * PLIANT_BRICK_NODES + place_of(node.index);
     mark_row(slot[n], 1, model);
   }

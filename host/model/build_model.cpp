@@ -8,6 +8,7 @@
 #include "layout.h"
 #include "model/boundary_conditions.h"
 #include "model/bricks.h"
+#include "model/flsm.h"
 #include "model/model.h"
 #include "model/solid.h"
 #include "pliant/error.h"
@@ -81,7 +82,8 @@ void number_list_nodes(std::vector<Draft>& drafts, Model& model) {
       for (const std::int32_t n : hex) ++valence[n];
     }
     std::vector<std::int32_t> order = sweep_order(draft.solid);
-    std::erase_if(order, [&](std::int32_t n) { return draft.slot[n] >= 0; });
+    std::erase_if(order,
+                  [&](std::int32_t n) { return draft.slot[n] >= 0 || draft.solid.matching(static_cast<std::size_t>(n)); });
     constexpr std::size_t kWindow = 256;
     for (std::size_t begin = 0; begin < order.size(); begin += kWindow) {
       const auto first = order.begin() + static_cast<std::ptrdiff_t>(begin);
@@ -90,7 +92,8 @@ void number_list_nodes(std::vector<Draft>& drafts, Model& model) {
     }
     for (const std::int32_t n : order) draft.slot[n] = slot++;
   }
-  model.slots = (slot + PLIANT_TILE - 1) / PLIANT_TILE * PLIANT_TILE;
+  model.list_end = (slot + PLIANT_TILE - 1) / PLIANT_TILE * PLIANT_TILE;
+  model.slots = model.list_end;
 }
 
 /// Elements by their lowest slot: what a sweep over them touches lies close together.
@@ -122,11 +125,13 @@ void add_tets(const Body& body, std::int32_t b, const Draft& draft, Model& model
         slots[a] = draft.slot[draft.solid.tets[e][a]];
       }
       const TetGeometry geometry = tet_geometry(x);
+      const double mass = batch.material.density * geometry.volume * draft.solid.fill[e];
+      for (const std::int32_t n : slots) model.mass[n] += mass / 4;
+      if (!draft.solid.operational(static_cast<std::size_t>(e))) continue;
       batch.nodes.push_back(slots);
       batch.gradients.push_back(geometry.gradients);
       batch.volume.push_back(geometry.volume * draft.solid.fill[e]);
       batch.id.push_back(e);
-      for (const std::int32_t n : slots) model.mass[n] += batch.material.density * batch.volume.back() / 4;
       note_bound(model, tet_frequency(geometry, batch.material), geometry.volume,
                  fmt::format("{}: tetrahedron {}", body.name, e));
     }
@@ -169,7 +174,8 @@ void add_hexes(const Body& body, std::int32_t b, const Draft& draft, Model& mode
       std::array<Vec3d, 8> cube;
       for (int a = 0; a < 8; ++a) cube[a] = {d * (a & 1), d * (a >> 1 & 1), d * (a >> 2 & 1)};
       batch.records.push_back(hex_record(batch, cube, fmt::format("{}: lattice cell", body.name)));
-      note_bound(model, hex_frequency(batch, batch.records[0]), d * d * d, fmt::format("{}: every lattice cell", body.name));
+      if (model.bodies[b].operational_elements > 0)
+        note_bound(model, hex_frequency(batch, batch.records[0]), d * d * d, fmt::format("{}: every lattice cell", body.name));
     }
     for (const std::int32_t i : order) {
       const auto e = static_cast<std::size_t>(i);
@@ -187,7 +193,7 @@ void add_hexes(const Body& body, std::int32_t b, const Draft& draft, Model& mode
         note_bound(model, hex_frequency(batch, batch.records.back()), volume, describe(e));
       }
       for (const std::int32_t n : slots) model.mass[n] += batch.material.density * volume * solid.fill[e] / 8;
-      if (draft.in_brick[e]) continue;
+      if (draft.in_brick[e] || !solid.operational(e)) continue;
       batch.nodes.push_back(slots);
       batch.fill.push_back(solid.fill[e]);
       batch.id.push_back(static_cast<std::int64_t>(e));
@@ -230,6 +236,12 @@ void fill_body(const Body& body, Draft& draft, ModelBody& out) {
   }
   out.spacing = draft.solid.spacing;
   out.surface_volume = draft.solid.surface_volume;
+  for (std::size_t e = 0; e < draft.material.size(); ++e) out.operational_elements += draft.solid.operational(e);
+  const Partition& partition = draft.solid.partition;
+  const auto nodes = static_cast<std::int64_t>(draft.solid.nodes.size());
+  out.operational_nodes = partition.kind.empty() ? nodes : partition.operational_nodes;
+  out.matching_nodes = partition.matching_nodes;
+  out.interface_nodes = partition.interface_nodes;
 }
 
 /// Rigid initial motion: velocity plus angular velocity about the centre of mass.
@@ -276,16 +288,24 @@ void place_bodies(const Scene& scene, std::vector<Draft>& drafts, Model& model) 
     draft.in_brick.assign(draft.material.size(), false);
     draft.slot.assign(draft.solid.nodes.size(), -1);
     if (!draft.solid.cells.empty() && body.element == ElementKind::hex8) {
-      for (std::size_t e = 0; e < draft.in_brick.size(); ++e) draft.in_brick[e] = draft.material[e] == 0;
+      for (std::size_t e = 0; e < draft.in_brick.size(); ++e)
+        draft.in_brick[e] = draft.material[e] == 0 && draft.solid.operational(e);
       const std::int32_t first = model.bricks;
       draft.slot = place_in_bricks(draft.solid, static_cast<std::int32_t>(b), draft.in_brick, model);
-      model.brick_batches.push_back(
-          {body.material, static_cast<std::int32_t>(b), draft.solid.spacing, first, model.bricks - first});
+      if (model.bricks > first) {
+        model.brick_batches.push_back(
+            {body.material, static_cast<std::int32_t>(b), draft.solid.spacing, first, model.bricks - first});
+      }
     }
     drafts.push_back(std::move(draft));
   }
   close_bricks(model);
   number_list_nodes(drafts, model);
+  for (std::size_t b = 0; b < drafts.size(); ++b) {
+    if (drafts[b].solid.matching_cells.empty()) continue;
+    model.flsm.push_back(
+        place_matching_nodes(drafts[b].solid, scene.bodies[b], static_cast<std::int32_t>(b), drafts[b].slot, model));
+  }
 }
 
 }  // namespace
@@ -328,6 +348,10 @@ Model build_model(const Scene& scene) {
     add_surface(draft, b, model);
     add_totals(body, draft, model.bodies[i]);
     set_velocity(body, model.bodies[i], model);
+  }
+  for (FlsmBatch& batch : model.flsm) {
+    weigh(batch, model.mass);
+    if (model.shortest == 0 || batch.spacing < model.shortest) model.shortest = batch.spacing;
   }
   add_boundary_conditions(scene, model);
   return model;

@@ -1,13 +1,15 @@
 // The Model: everything that does not change while a scene runs, in double precision. Nodes are numbered by slot, the index
 // that the node buffers use: first the bricks of the lattices (256 slots each, many without a node), then one empty brick, then
-// the nodes of all other bodies in an order that keeps neighbours close, padded to a multiple of 16.
+// the nodes of all other bodies in an order that keeps neighbours close, padded to a multiple of 16, then those of shape matching.
 #pragma once
 #include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "model/flsm_regions.h"
 #include "model/mesh.h"
+#include "model/partition.h"
 #include "scene/scene.h"
 
 namespace pliant {
@@ -43,6 +45,21 @@ struct BrickBatch {
   std::int32_t first = 0, count = 0;
 };
 
+/// Fast lattice shape matching of one body: the nodes of its cells that are not operational, and one region around each. Regions are
+/// numbered like these nodes: first the nodes that shape matching moves (`own`, slots first_slot, first_slot + 1, ...), then the interface.
+struct FlsmBatch {
+  std::int32_t body = 0;
+  DeformationModel settings;
+  double spacing = 0;                              ///< [m]
+  double density = 0;                              ///< [kg/m^3], for calibrated stiffness
+  std::int32_t own = 0, interface = 0;             ///< nodes
+  std::int32_t first_slot = 0, slots = 0;          ///< slots reserved for `own` and for the padding, a multiple of 16
+  std::vector<std::int32_t> slot;                  ///< [own + interface]
+  std::vector<std::array<std::int32_t, 6>> link;   ///< [own + interface] -x, +x, -y, +y, -z, +z, -1: none
+  FlsmRegions regions;
+  std::vector<double> weight;                      ///< [own + interface] node mass over the number of regions that hold it [kg]
+};
+
 /// The embedded surface of all bodies, for pressure and rendering.
 struct ModelSurface {
   std::vector<Vec3d> rest;                         ///< [m]
@@ -62,6 +79,8 @@ struct ModelBody {
   std::int32_t first_vertex = 0, vertices = 0;     ///< its part of the surface
   std::int32_t first_triangle = 0, triangles = 0;
   double spacing = 0;         ///< of its lattice [m], 0 for a volume mesh
+  std::int64_t operational_nodes = 0, matching_nodes = 0, interface_nodes = 0;
+  std::int64_t operational_elements = 0;  ///< of elements(): those that are finite elements
   double mass = 0;            ///< [kg]
   double volume = 0;          ///< of the elements, fill counted [m^3]
   double surface_volume = 0;  ///< enclosed by the input surface [m^3]
@@ -100,6 +119,7 @@ struct Model {
   std::vector<std::int64_t> brick_cell;      ///< [bricks][256] number of the cell in its body, -1: none
   std::vector<std::int32_t> brick_body;      ///< [bricks]
   std::int32_t list_base = 0;                ///< first slot after the bricks
+  std::int32_t list_end = 0;                 ///< first slot after the nodes of list elements, a multiple of 16; then shape matching
   std::int32_t slots = 0;                    ///< all slots, a multiple of 16
   std::vector<Vec3d> rest;                   ///< [slots]
   std::vector<double> mass;                  ///< [slots] lumped [kg], 0: no node
@@ -108,6 +128,7 @@ struct Model {
   std::vector<TetBatch> tets;
   std::vector<HexBatch> hexes;
   std::vector<BrickBatch> brick_batches;
+  std::vector<FlsmBatch> flsm;
   ModelSurface surface;
   std::vector<Curve> curves;
   std::vector<Constraint> constraints;       ///< one per constrained node, ascending slots

@@ -33,6 +33,12 @@ void from_lattice(const Body& body, Solid& solid) {
     solid.surface_nodes.push_back(cell.nodes);
     solid.surface_weights.push_back(weights);
   }
+  if (body.model.type != ModelType::tled) {
+    solid.partition = partition_lattice(body, lattice);
+    for (std::size_t c = 0; c < lattice.cells.size(); ++c) {
+      if (solid.partition.operational[c] == 0) solid.matching_cells.push_back(lattice.cells[c]);
+    }
+  }
   solid.lattice_nodes = std::move(lattice.nodes);
   if (takes_tets(body.element)) {
     for (const Cell& cell : lattice.cells) {

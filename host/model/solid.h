@@ -5,6 +5,7 @@
 
 #include "model/lattice.h"
 #include "model/mesh.h"
+#include "model/partition.h"
 
 namespace pliant {
 
@@ -15,12 +16,20 @@ struct Solid {
   std::vector<double> fill;                        ///< per element
   std::vector<LatticeNode> lattice_nodes;          ///< one per node if the body is a lattice, else empty
   std::vector<Cell> cells;                         ///< one per hexahedron if the body is a lattice of hexahedra, else empty
+  Partition partition;                             ///< of the lattice's cells, if body.model is not tled
+  std::vector<Cell> matching_cells;                ///< the cells left to shape matching
   double spacing = 0;                              ///< [m]
   std::vector<Vec3d> surface;                      ///< vertices [m]
   std::vector<std::array<std::int32_t, 3>> triangles;
   std::vector<std::array<std::int32_t, 8>> surface_nodes;
   std::vector<std::array<double, 8>> surface_weights;
   double surface_volume = 0;  ///< [m^3]
+  /// Whether element e is a finite element.
+  [[nodiscard]] bool operational(std::size_t e) const {
+    return partition.operational.empty() || partition.operational[tets.empty() ? e : e / 6] != 0;
+  }
+  /// Whether shape matching alone moves node n.
+  [[nodiscard]] bool matching(std::size_t n) const { return !partition.kind.empty() && partition.kind[n] == NodeKind::matching; }
 };
 
 /// Load the body's mesh and fill it.

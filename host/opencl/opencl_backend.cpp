@@ -64,11 +64,13 @@ class OpenclBackend final : public Backend {
     finish();
   }
 
-  void run(const std::vector<Pass>& passes, std::int32_t first, std::int32_t count) override {
+  void run(const std::vector<Pass>& passes, std::int32_t first, std::int32_t count, std::int64_t origin) override {
     list_.clear();
     for (const Pass& pass : passes) list_.push_back(&prepared(pass));
     for (std::int32_t step = first; step < first + count; ++step) {
-      for (Prepared* p : list_) enqueue(*p, step);
+      for (std::size_t p = 0; p < list_.size(); ++p) {
+        if (passes[p].runs_in(origin + step)) enqueue(*list_[p], step);
+      }
     }
     flush();
   }

@@ -94,8 +94,8 @@ const char* to_string(ModelType type);
 /// The key "model" of a body. FLSM: Rivers and James 2007; hybrid: the source's equations 1 to 9.
 struct DeformationModel {
   ModelType type = ModelType::tled;
-  double ratio = 0.5;               ///< hybrid: share of the body's nodes in the operational region, in [0, 1]
-  std::optional<Vec3d> seed;        ///< hybrid: the operational region grows from here [m]; absent: from the first surface vertex
+  double ratio = 0.5;         ///< hybrid: share of the body's nodes in the operational region, in [0, 1]
+  std::optional<Vec3d> seed;  ///< hybrid: the operational region grows from here [m]; absent: from the first surface vertex
   std::optional<Selection> region;  ///< hybrid: operational are the cells with their centre in here, instead of ratio and seed
   double beta = 0;                  ///< stiffness of the interface [N/m]; 0: "auto", alpha m / H^2 of each node
   int width = 2;                    ///< half-width w of the regions in cells, 1 to 5
@@ -104,9 +104,9 @@ struct DeformationModel {
   double damping = 0;               ///< per-region damping, in [0, 1] per step
   int substeps = 1;                 ///< steps of TLED per step of FLSM, 1 to 64
   bool extrapolate = false;         ///< "goals": "extrapolated" instead of "held" between steps of FLSM
-  bool conservative = true;         ///< "coupling": "conservative" gives the reaction of the interface back, "one-sided" does not
-  bool follow = false;              ///< "follow": "tool": the operational region moves with the scene's tool
-  std::string pointer;              ///< JSON pointer ("/bodies/0/model")
+  bool conservative = true;  ///< "coupling": "conservative" gives the reaction of the interface back, "one-sided" does not
+  bool follow = false;       ///< "follow": "tool": the operational region moves with the scene's tool
+  std::string pointer;       ///< JSON pointer ("/bodies/0/model")
 };
 
 /// A tool on a prescribed path: what a moving operational region follows.

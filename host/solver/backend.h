@@ -37,8 +37,10 @@ class Backend {
   /// Throws Error (memory: needed and available; build failure: the log).
   virtual void load(const Program& program) = 0;
   /// Run `passes` for steps first .. first + count - 1 of the current batch, in order, without host synchronisation in between.
-  virtual void run(const std::vector<Pass>& passes, std::int32_t first, std::int32_t count) = 0;
-  /// Run one pass (used by compare and by the tests).
+  /// `origin` is the number in the whole run of the batch's step 0: it decides when a pass runs that does not run in every
+  /// step.
+  virtual void run(const std::vector<Pass>& passes, std::int32_t first, std::int32_t count, std::int64_t origin = 0) = 0;
+  /// Run one pass, whatever its rhythm (used by compare and by the tests).
   virtual void run(const Pass& pass, std::int32_t step_in_batch) = 0;
   virtual void finish() = 0;
   /// Copy one buffer onto another of the same size, on the device.

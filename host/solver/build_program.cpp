@@ -19,6 +19,7 @@ Program ProgramBuilder::build() {
   for (std::size_t b = 0; b < model_.hexes.size(); ++b) add_hexes(b);
   add_loads();
   program_.force = program_.step;
+  for (std::size_t b = 0; b < model_.flsm.size(); ++b) add_flsm(b);
   add_updates();
   add_constraints();
   add_status();
@@ -86,7 +87,7 @@ void ProgramBuilder::add_updates() {
 }
 
 void ProgramBuilder::add_list_update() {
-  const std::int32_t nodes = model_.slots - model_.list_base;
+  const std::int32_t nodes = model_.list_end - model_.list_base;
   std::vector<std::vector<std::int32_t>> corners(nodes);
   const auto collect = [&](const auto& batches, const std::vector<BatchPlace>& places, int planes) {
     for (std::size_t b = 0; b < batches.size(); ++b) {

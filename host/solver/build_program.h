@@ -13,10 +13,11 @@ struct ProgramOptions {
 /// Build the buffer table and the Schedule of a model. Only what the model needs is in it.
 Program build_program(const Model& model, const ProgramOptions& options = {});
 
-/// Which element a position in the `fault` buffer means.
+/// Which element a position in the `fault` buffer means, or which node that shape matching moves.
 struct FaultPlace {
   std::int32_t body = -1;
   std::int64_t element = -1;  ///< number in its body
+  bool node = false;          ///< `element` is the number of a node
 };
 FaultPlace find_fault(const Model& model, std::int32_t fault_index);
 

@@ -87,6 +87,7 @@ class Lockstep {
     const auto& passes_a = a_.program().step;
     const auto& passes_b = b_.program().step;
     for (std::size_t p = 0; p < passes_a.size(); ++p) {
+      if (!passes_a[p].runs_in(first + i)) continue;
       // Both are queued before either is waited for.
       a_.backend().run(passes_a[p], i);
       b_.backend().run(passes_b[p], i);
@@ -97,8 +98,8 @@ class Lockstep {
   }
 
   bool whole_step(std::int64_t first, std::int32_t i) {
-    a_.backend().run(a_.program().step, i, 1);
-    b_.backend().run(b_.program().step, i, 1);
+    a_.backend().run(a_.program().step, i, 1, first);
+    b_.backend().run(b_.program().step, i, 1, first);
     return look({first + i + 1, -1, "step", "after the whole step"}, false);
   }
 

@@ -39,6 +39,8 @@ struct Pass {
   std::int64_t elements = 0;     ///< elements or nodes it advances, for reports
   double bytes_per_element = 0;  ///< counted traffic, each datum once
   double flops_per_element = 0;  ///< counted operations; an fma counts two
+  std::int32_t every = 1;        ///< runs in the steps of the whole run that are multiples of this (subcycling)
+  [[nodiscard]] bool runs_in(std::int64_t step) const { return step % every == 0; }
 };
 
 struct Program {

@@ -74,6 +74,9 @@ class ProgramBuilder {
   BufferId add_averaging(std::size_t index, BufferId nodes_id, BufferId data_id, std::size_t count, const std::string& label);
   void add_hexes(std::size_t index);
 
+  /// Defined in program_flsm.cpp: shape matching of one body, and the force on its interface.
+  void add_flsm(std::size_t index);
+
   /// Defined in program_loads.cpp: the embedded surface and the external forces.
   void add_surface();
   void add_pressure_passes();
@@ -85,10 +88,13 @@ class ProgramBuilder {
   [[nodiscard]] std::vector<std::pair<std::int32_t, std::int32_t>> brick_corners() const;
 
   BufferId add(Buffer buffer) { return program_.add(std::move(buffer)); }
-  [[nodiscard]] bool has_list_nodes() const { return model_.slots > model_.list_base; }
+  [[nodiscard]] bool has_list_nodes() const { return model_.list_end > model_.list_base; }
   [[nodiscard]] bool has_list_elements() const { return !model_.tets.empty() || !model_.hexes.empty(); }
   [[nodiscard]] bool needs_load() const {
-    return !model_.forces.empty() || !model_.pressures.empty() || !brick_corners_.empty();
+    return !model_.forces.empty() || !model_.pressures.empty() || !brick_corners_.empty() || has_interface();
+  }
+  [[nodiscard]] bool has_interface() const {
+    return std::any_of(model_.flsm.begin(), model_.flsm.end(), [](const FlsmBatch& b) { return b.interface > 0; });
   }
   [[nodiscard]] int textbook() const { return options_.integrator == Integrator::textbook ? 1 : 0; }
   [[nodiscard]] std::int32_t curve_count() const { return static_cast<std::int32_t>(model_.curves.size()); }
@@ -100,7 +106,7 @@ class ProgramBuilder {
   Program program_;
   BufferId node_u_ = -1, node_w_ = -1, node_force_ = -1, node_load_ = -1, corner_ = -1, fault_ = -1, summary_ = -1,
            params_ = -1, curves_ = -1, surface_x_ = -1, pressure_ = -1, brick_neighbor_ = -1, brick_rows_ = -1,
-           brick_fill_ = -1, brick_force_ = -1;
+           brick_fill_ = -1, brick_force_ = -1, flsm_alpha_ = -1;
 };
 
 }  // namespace pliant

@@ -71,7 +71,7 @@ void ProgramBuilder::add_tets(std::size_t index) {
                                       BufferRole::constant, "[tiles][10][16]", "1/m, m^3", "model", std::move(data)));
   const std::string label =
       fmt::format("{}: {} {}", model_.bodies[b.body].name, b.averaged ? "tet4anp" : "tet4", to_string(b.material.law));
-  const double texels = 16.0 * (model_.slots - model_.list_base) / double(b.nodes.size());
+  const double texels = 16.0 * (model_.list_end - model_.list_base) / double(b.nodes.size());
   BufferId pressure = node_u_;  // not read
   if (b.averaged) pressure = add_averaging(index, nodes_id, data_id, count, label);
   const BatchPlace& place = layout_.tets[index];
@@ -92,7 +92,7 @@ void ProgramBuilder::add_tets(std::size_t index) {
 BufferId ProgramBuilder::add_averaging(std::size_t index, BufferId nodes_id, BufferId data_id, std::size_t count,
                                        const std::string& label) {
   const TetBatch& b = model_.tets[index];
-  const std::int32_t nodes = model_.slots - model_.list_base;
+  const std::int32_t nodes = model_.list_end - model_.list_base;
   std::vector<std::vector<std::int32_t>> elements(nodes);
   std::vector<double> volume(nodes, 0.0), dilation(count + PLIANT_TILE, 0.0);
   std::fill(dilation.end() - PLIANT_TILE, dilation.end(), -0.0);

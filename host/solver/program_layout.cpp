@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "pliant/error.h"
@@ -27,6 +28,7 @@ ProgramLayout lay_out(const Model& model) {
   };
   for (const TetBatch& b : model.tets) layout.tets.push_back(place(b.nodes.size(), PLIANT_TET_FORCE_PLANES));
   for (const HexBatch& b : model.hexes) layout.hexes.push_back(place(b.nodes.size(), PLIANT_HEX_FORCE_PLANES));
+  for (const FlsmBatch& b : model.flsm) layout.flsm.push_back(place(static_cast<std::size_t>(b.slots), 0));
   layout.corner_numbers = static_cast<std::int32_t>(corner);
   layout.faults = static_cast<std::int32_t>(fault);
   return layout;
@@ -47,6 +49,13 @@ FaultPlace find_fault(const Model& model, std::int32_t index) {
   };
   look(model.tets, layout.tets);
   look(model.hexes, layout.hexes);
+  for (std::size_t b = 0; b < model.flsm.size(); ++b) {
+    const std::int32_t local = index - layout.flsm[b].fault_base;
+    if (local < 0 || local >= model.flsm[b].own) continue;
+    const auto& slots = model.bodies[model.flsm[b].body].slot;
+    const auto node = std::find(slots.begin(), slots.end(), model.flsm[b].slot[local]);
+    found = {model.flsm[b].body, node - slots.begin(), true};
+  }
   return found;
 }
 

@@ -25,12 +25,13 @@ struct BatchPlace {
 };
 
 struct ProgramLayout {
-  std::vector<BatchPlace> tets, hexes;
+  std::vector<BatchPlace> tets, hexes, flsm;
   std::int32_t corner_numbers = 0;  ///< all corner forces; a further row of -0 stands behind them
   std::int32_t faults = 0;
 };
 
-/// Bricks come first in `fault` (256 entries each), then tetrahedra, then hexahedra, batch by batch.
+/// Bricks come first in `fault` (256 entries each), then tetrahedra, then hexahedra, then nodes of shape matching, batch by
+/// batch.
 ProgramLayout lay_out(const Model& model);
 
 }  // namespace pliant

@@ -105,6 +105,8 @@ void ProgramBuilder::add_loads() {
   for (const NodeForce& f : model_.forces) slots.push_back(f.slot);
   for (const auto& s : shares) slots.push_back(std::get<0>(s));
   for (const auto& c : brick_corners_) slots.push_back(c.first);
+  // What flsm_interface adds to is written anew in every step.
+  for (const FlsmBatch& b : model_.flsm) slots.insert(slots.end(), b.slot.begin() + b.own, b.slot.end());
   std::sort(slots.begin(), slots.end());
   slots.erase(std::unique(slots.begin(), slots.end()), slots.end());
   std::vector<std::int32_t> offset, curve, triangle, corner;

@@ -24,10 +24,11 @@ constexpr std::int64_t kRelaxEvery = 32;
 
 std::string Divergence::message() const {
   return fmt::format(
-      "the simulation diverged in step {} (t = {:.6g} s): element {} of body '{}' is inverted or not finite; dt = {:.6g} s, "
+      "the simulation diverged in step {} (t = {:.6g} s): {} {} of body '{}' is {}not finite; dt = {:.6g} s, "
       "stable step "
       "{:.6g} s ({:.3g} times); the state of step {} was kept",
-      step, time, element, body, dt, stable_dt, stable_dt > 0 ? dt / stable_dt : 0.0, last_good_step);
+      step, time, node ? "node" : "element", element, body, node ? "" : "inverted or ", dt, stable_dt,
+      stable_dt > 0 ? dt / stable_dt : 0.0, last_good_step);
 }
 
 Simulation::Simulation(Scene scene, std::unique_ptr<Backend> backend, const SimulationOptions& options)
@@ -47,8 +48,15 @@ void Simulation::start(const SimulationOptions& options) {
   backend_->load(program_);
   u_ = program_.find("node_u");
   w_ = program_.find("node_w");
-  last_u_ = program_.find("last_u");
-  last_w_ = program_.find("last_w");
+  for (std::size_t id = 0; id < program_.buffers.size(); ++id) {
+    const std::string& name = program_.buffers[id].name;
+    if (name.starts_with("last_")) {
+      kept_.emplace_back(program_.find(name == "last_u"   ? "node_u"
+                                       : name == "last_w" ? "node_w"
+                                                          : name.substr(5)),
+                         static_cast<BufferId>(id));
+    }
+  }
   force_ = program_.find("node_force");
   free_.assign(3 * static_cast<std::size_t>(model_->slots), false);
   for (std::size_t s = 0; s < model_->mass.size(); ++s) {
@@ -66,8 +74,7 @@ void Simulation::start(const SimulationOptions& options) {
   }
   const double wanted = options.dt > 0 ? options.dt : scene_.dt;
   automatic_ = wanted <= 0 && scene_.integrator == Integrator::increment;
-  if (wanted <= 0 || options.stable_step) estimate_stable_dt();
-  state_.dt = wanted > 0 ? wanted : scene_.safety * state_.stable_dt;
+  choose_dt(wanted, options.stable_step);
   if (!(state_.dt > 0) || !std::isfinite(state_.dt)) {
     throw Error(
         fmt::format("no stable step could be found (estimate {} s): nothing in the scene can move freely", state_.stable_dt));
@@ -78,16 +85,17 @@ void Simulation::start(const SimulationOptions& options) {
     still_ = 1e-12 * model_->shortest;
     fine_ = std::ldexp(1.0, 22 + std::ilogb(still_));
   }
+  upload_shape_matching();
   set_initial_increment();
 }
 
 /// w_0 = h v_0 - h^2/2 a_0, so that the first step is that of a parabola through the initial position and velocity.
 void Simulation::set_initial_increment() {
-  const double h = state_.dt;
   const std::vector<double> force = forces_now();
   std::vector<double> w(4 * static_cast<std::size_t>(model_->slots));
   const double sign = scene_.integrator == Integrator::textbook ? -1 : 1;  // the textbook form keeps u_(-1) instead
   for (std::size_t s = 0; s < model_->mass.size(); ++s) {
+    const double h = substeps_of(s) * state_.dt;
     for (std::size_t c = 0; c < 3; ++c) {
       if (!free_[3 * s + c]) continue;
       const double a = force[4 * s + c] / model_->mass[s] + scene_.gravity[c] - model_->damping[s] * model_->velocity[s][c];
@@ -100,12 +108,13 @@ void Simulation::set_initial_increment() {
 
 void Simulation::upload_params() {
   const Vec3d& g = scene_.gravity;
-  backend_->write_reals(program_.find("step_params"), {state_.dt, g[0], g[1], g[2], still_, fine_, 0, 0});
+  backend_->write_reals(program_.find("step_params"),
+                        {state_.dt, g[0], g[1], g[2], still_, fine_, static_cast<double>(phase()), 0});
 }
 
 /// a = (1 - k) / (1 + k) with k = c h / 2, c the material's damping rate plus that of dynamic relaxation.
 double Simulation::decay(std::size_t slot) const {
-  const double k = 0.5 * state_.dt * (model_->damping[slot] + state_.damping);
+  const double k = 0.5 * substeps_of(slot) * state_.dt * (model_->damping[slot] + state_.damping);
   return (1 - k) / (1 + k);
 }
 
@@ -153,15 +162,13 @@ bool Simulation::on_grid(std::int64_t step) const {
 }
 
 void Simulation::keep_state() {
-  backend_->copy(u_, last_u_);
-  backend_->copy(w_, last_w_);
+  for (const auto& [live, copy] : kept_) backend_->copy(live, copy);
   state_.vectors["kept"] = {static_cast<double>(state_.step), static_cast<double>(state_.origin_step), state_.origin_time,
                             state_.dt, state_.damping};
 }
 
 void Simulation::return_to_kept() {
-  backend_->copy(last_u_, u_);
-  backend_->copy(last_w_, w_);
+  for (const auto& [live, copy] : kept_) backend_->copy(copy, live);
   backend_->finish();
   const std::vector<double>& kept = state_.vectors.at("kept");
   state_.step = static_cast<std::int64_t>(kept[0]);
@@ -183,7 +190,7 @@ std::int64_t Simulation::advance(std::int64_t steps) {
   while (state_.step - first < steps && !divergence_ && !equilibrium_) {
     const std::int32_t n = next_batch(steps - (state_.step - first));
     begin_batch(n);
-    backend_->run(program_.step, 0, n);
+    backend_->run(program_.step, 0, n, state_.step);
     end_batch(n);
   }
   return state_.step - first;
@@ -211,6 +218,7 @@ void Simulation::look_for_fault(std::int64_t batch_start) {
   d.time = time_at(d.step - 1);
   d.body = found.body >= 0 ? model_->bodies[static_cast<std::size_t>(found.body)].name : "?";
   d.element = found.element;
+  d.node = found.node;
   d.dt = state_.dt;
   d.stable_dt = state_.stable_dt;
   d.last_good_step = state_.step;
@@ -240,6 +248,7 @@ void Simulation::change_dt(double dt) {
   state_.dt = dt;
   for (std::size_t s = 0; s < model_->mass.size(); ++s) w[4 * s + 3] = decay(s);
   backend_->write_reals(w_, w);
+  upload_shape_matching();
 }
 
 bool Simulation::adapts_at(std::int64_t step) const {
@@ -266,7 +275,13 @@ std::vector<Vec3d> Simulation::pick(const std::vector<double>& texels, std::size
 std::vector<Vec3d> Simulation::displacements(std::size_t body) const { return pick(backend_->read_reals(u_), body, 1); }
 
 std::vector<Vec3d> Simulation::velocities(std::size_t body) const {
-  if (scene_.integrator == Integrator::increment) return pick(backend_->read_reals(w_), body, 1 / state_.dt);
+  if (scene_.integrator == Integrator::increment) {
+    std::vector<Vec3d> v = pick(backend_->read_reals(w_), body, 1 / state_.dt);
+    for (std::size_t n = 0; n < v.size() && !model_->flsm.empty(); ++n) {
+      for (double& c : v[n]) c /= substeps_of(static_cast<std::size_t>(model_->bodies[body].slot[n]));
+    }
+    return v;
+  }
   std::vector<double> u = backend_->read_reals(u_);
   const std::vector<double> before = backend_->read_reals(w_);
   for (std::size_t i = 0; i < u.size(); ++i) u[i] -= before[i];

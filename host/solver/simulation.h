@@ -21,6 +21,7 @@ struct Divergence {
   double time = 0;        ///< [s]
   std::string body;
   std::int64_t element = -1;        ///< number in its body
+  bool node = false;                ///< `element` is the number of a node that shape matching moves
   double dt = 0, stable_dt = 0;     ///< [s]
   std::int64_t last_good_step = 0;  ///< the state that the simulation now holds
   [[nodiscard]] std::string message() const;
@@ -94,6 +95,13 @@ class Simulation {
 
  private:
   void start(const SimulationOptions& options);
+  /// Defined in shape_matching.cpp.
+  void choose_dt(double wanted, bool estimate);
+  [[nodiscard]] bool has_elements() const;
+  [[nodiscard]] double coupled_step(double elements_alone) const;
+  [[nodiscard]] std::int32_t substeps_of(std::size_t slot) const;
+  [[nodiscard]] std::int64_t phase() const;
+  void upload_shape_matching();
   void set_initial_increment();
   void upload_params();
   void upload_decay();
@@ -120,8 +128,9 @@ class Simulation {
   std::unique_ptr<Backend> backend_;
   SimulationState state_;
   std::int32_t batch_steps_ = 64;
-  BufferId u_ = -1, w_ = -1, last_u_ = -1, last_w_ = -1, force_ = -1;
-  std::vector<char> free_;  ///< [slots][3] component moves freely
+  BufferId u_ = -1, w_ = -1, force_ = -1;
+  std::vector<std::pair<BufferId, BufferId>> kept_;  ///< state buffers and their copies at the last good step
+  std::vector<char> free_;                           ///< [slots][3] component moves freely
   double first_dt_ = 0;
   bool automatic_ = false;  ///< the step is Pliant's to choose
   double still_ = 0;        ///< increments below this are none [m]

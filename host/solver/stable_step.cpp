@@ -86,7 +86,7 @@ double Simulation::estimate_stable_dt(int iterations) {
                                 Eigen::Map<Eigen::VectorXd>(beta.data(), size - 1), Eigen::EigenvaluesOnly);
   double omega2 = solver.eigenvalues()[size - 1];
   if (static_cast<std::size_t>(size) < unknowns && size > 2) omega2 /= 1 - ritz_deficit(unknowns, static_cast<int>(size));
-  if (omega2 > 0) state_.stable_dt = 2 / std::sqrt(omega2);
+  if (omega2 > 0) state_.stable_dt = coupled_step(2 / std::sqrt(omega2));
   return state_.stable_dt;
 }
 

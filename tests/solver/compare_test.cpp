@@ -28,8 +28,8 @@ class TamperingBackend final : public Backend {
     program_ = &program;
     inner_->load(program);
   }
-  void run(const std::vector<Pass>& passes, std::int32_t first, std::int32_t count) override {
-    inner_->run(passes, first, count);
+  void run(const std::vector<Pass>& passes, std::int32_t first, std::int32_t count, std::int64_t origin) override {
+    inner_->run(passes, first, count, origin);
   }
   void run(const Pass& pass, std::int32_t step) override {
     inner_->run(pass, step);

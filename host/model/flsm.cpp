@@ -1,0 +1,141 @@
+#include "model/flsm.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "layout.h"
+#include "pliant/error.h"
+
+namespace pliant {
+namespace {
+
+/// Cells in tiles of 8 x 8 rows: the planes that the sums along y and z take in stay in the cache.
+std::array<std::int32_t, 5> place_in_tiles(const LatticeNode& n) {
+  return {n.index[2] >> 3, n.index[1] >> 3, n.index[2], n.index[1], n.index[0]};
+}
+
+std::vector<std::int32_t> nodes_in_order(const Solid& solid, NodeKind kind) {
+  std::vector<std::int32_t> nodes;
+  for (std::size_t n = 0; n < solid.partition.kind.size(); ++n) {
+    if (solid.partition.kind[n] == kind) nodes.push_back(static_cast<std::int32_t>(n));
+  }
+  std::stable_sort(nodes.begin(), nodes.end(), [&](std::int32_t a, std::int32_t b) {
+    return place_in_tiles(solid.lattice_nodes[a]) < place_in_tiles(solid.lattice_nodes[b]);
+  });
+  return nodes;
+}
+
+/// The edges of the shape-matching cells. `number` is the number in the batch of each node of the body. A node has one link in each
+/// direction: where the lattice branches (one node, two copies of its neighbour), the first cell's edge is the link.
+void link_nodes(const Solid& solid, const std::vector<std::int32_t>& number, FlsmBatch& batch) {
+  batch.link.assign(batch.slot.size(), {-1, -1, -1, -1, -1, -1});
+  for (const Cell& cell : solid.matching_cells) {
+    for (int a = 0; a < 8; ++a) {
+      for (int axis = 0; axis < 3; ++axis) {
+        if (a >> axis & 1) continue;
+        const std::int32_t low = number[cell.nodes[a]], high = number[cell.nodes[a | 1 << axis]];
+        std::int32_t &up = batch.link[low][2 * axis + 1], &down = batch.link[high][2 * axis];
+        if (up >= 0 || down >= 0) continue;
+        up = high;
+        down = low;
+      }
+    }
+  }
+}
+
+void require_width(const Body& body, const FlsmBatch& batch, const LinkedLattice& lattice) {
+  std::array<std::int32_t, 3> low = lattice.index[0], high = low;
+  for (const auto& at : lattice.index) {
+    for (int c = 0; c < 3; ++c) {
+      low[c] = std::min(low[c], at[c]);
+      high[c] = std::max(high[c], at[c]);
+    }
+  }
+  const std::int32_t longest = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+  if (batch.settings.width <= longest) return;
+  throw Error(
+      fmt::format("{}/width: got {}, but the shape-matching part of body '{}' is only {} cells long; allowed are 1 to {}, or a "
+                  "finer lattice",
+                  body.model.pointer, batch.settings.width, body.name, longest, longest));
+}
+
+/// Sums of moments along one axis, `width` links to both sides.
+std::vector<RestMoments> along(int axis, const FlsmBatch& batch, const std::vector<RestMoments>& in) {
+  constexpr int second[3][3] = {{4, 7, 8}, {7, 5, 9}, {8, 9, 6}};  // where m o_i o_j stands
+  std::vector<RestMoments> out = in;
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    for (const int side : {-1, 1}) {
+      std::int32_t n = static_cast<std::int32_t>(i);
+      for (int o = 1; o <= batch.settings.width; ++o) {
+        n = batch.link[n][2 * axis + (side > 0)];
+        if (n < 0) break;
+        const RestMoments& m = in[n];
+        const double s = side * o;
+        for (int k = 0; k < 10; ++k) out[i][k] += m[k];
+        for (int j = 0; j < 3; ++j) out[i][second[axis][j]] += s * m[1 + j] * (j == axis ? 2 : 1);
+        out[i][1 + axis] += s * m[0];
+        out[i][4 + axis] += s * s * m[0];
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+FlsmBatch place_matching_nodes(const Solid& solid, const Body& body, std::int32_t number, std::vector<std::int32_t>& slot,
+                               Model& model) {
+  FlsmBatch batch;
+  batch.body = number;
+  batch.settings = body.model;
+  batch.spacing = solid.spacing;
+  batch.density = body.material.density;
+  const std::vector<std::int32_t> own = nodes_in_order(solid, NodeKind::matching),
+                                  shared = nodes_in_order(solid, NodeKind::interface);
+  batch.own = static_cast<std::int32_t>(own.size());
+  batch.interface = static_cast<std::int32_t>(shared.size());
+  // One slot without a node for the region that stands for absent ones, and one for each region that fills up the interface's
+  // last tile.
+  batch.first_slot = model.slots;
+  batch.slots = (batch.own + 1 + PLIANT_TILE + PLIANT_TILE - 1) / PLIANT_TILE * PLIANT_TILE;
+  model.slots += batch.slots;
+  for (std::size_t i = 0; i < own.size(); ++i) slot[own[i]] = batch.first_slot + static_cast<std::int32_t>(i);
+  std::vector<std::int32_t> in_batch(solid.nodes.size(), -1);
+  LinkedLattice lattice;
+  for (const auto* nodes : {&own, &shared}) {
+    for (const std::int32_t n : *nodes) {
+      in_batch[n] = static_cast<std::int32_t>(batch.slot.size());
+      batch.slot.push_back(slot[n]);
+      lattice.index.push_back(solid.lattice_nodes[n].index);
+    }
+  }
+  link_nodes(solid, in_batch, batch);
+  require_width(body, batch, lattice);
+  lattice.link = batch.link;
+  batch.regions = find_regions(lattice, batch.settings.width);
+  return batch;
+}
+
+void weigh(FlsmBatch& batch, const std::vector<double>& mass) {
+  batch.weight.resize(batch.slot.size());
+  for (std::size_t i = 0; i < batch.slot.size(); ++i) batch.weight[i] = mass[batch.slot[i]] / batch.regions.holders[i];
+}
+
+std::vector<RestMoments> rest_moments(const FlsmBatch& batch) {
+  std::vector<RestMoments> moments(batch.slot.size(), RestMoments{});
+  for (std::size_t i = 0; i < moments.size(); ++i) moments[i][0] = batch.weight[i];
+  for (int axis = 0; axis < 3; ++axis) moments = along(axis, batch, moments);
+  const FlsmRegions& regions = batch.regions;
+  for (std::size_t r = 0; r < moments.size(); ++r) {
+    for (std::int32_t e = regions.missing_offset[r]; e < regions.missing_offset[r + 1]; ++e) {
+      const RegionEntry& entry = regions.missing[e];
+      const double m = batch.weight[entry.other], x = entry.offset[0], y = entry.offset[1], z = entry.offset[2];
+      const RestMoments added{m, m * x, m * y, m * z, m * x * x, m * y * y, m * z * z, m * x * y, m * x * z, m * y * z};
+      for (int k = 0; k < 10; ++k) moments[r][k] += added[k];
+    }
+  }
+  return moments;
+}
+
+}  // namespace pliant

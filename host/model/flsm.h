@@ -1,0 +1,24 @@
+// The nodes of a body that follow shape matching: slots, links, regions, weights.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "model/model.h"
+#include "model/solid.h"
+
+namespace pliant {
+
+/// Number the nodes of the body's shape-matching cells, give those that no finite element moves slots at the end of `model`,
+/// and find their regions. `slot` is the slot of each node of the body, -1 where it has none yet.
+FlsmBatch place_matching_nodes(const Solid& solid, const Body& body, std::int32_t number, std::vector<std::int32_t>& slot,
+                               Model& model);
+
+/// Weights of the region sums, once the masses are lumped: m / holders, so that the mean of the goals keeps the momentum.
+void weigh(FlsmBatch& batch, const std::vector<double>& mass);
+
+/// Moments of a region's weights at rest about its centre, in grid units: sum m; m o (3); m o o^T (xx yy zz xy xz yz).
+using RestMoments = std::array<double, 10>;
+std::vector<RestMoments> rest_moments(const FlsmBatch& batch);
+
+}  // namespace pliant

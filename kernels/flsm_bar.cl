@@ -1,0 +1,26 @@
+// Fast lattice shape matching, first of three passes from nodes to regions (Rivers and James 2007, section 4.2): sums along the x links
+// of a node, up to WIDTH links to both sides. With m the weights and o the number of links, sum m u and sum o m u.
+// Displacements instead of positions: far from the origin positions would lose the float.
+//
+// A weight of 0 and links to itself mark the region that stands for absent ones. All FLSM numbers are in blocks of four (x, y, z and one
+// without meaning). node_u: [slots] texels. flsm_slot: [regions]. flsm_weight: [regions] m [kg]. flsm_link: [regions][2] at -x, +x.
+// flsm_bars: [regions][2] blocks: sum m u, sum o_x m u [kg m].
+#include "arith.cl"
+
+__kernel void flsm_bar(__global const float* node_u, __global const int* flsm_slot, __global const float* flsm_weight,
+                       __global const int* flsm_link, __global float* flsm_bars) {
+  const float4 zero = 0.0f;
+  for (int i = FIRST_INDEX; i < FIRST_INDEX + LANES; ++i) {
+    float4 sum = fma((float4)(flsm_weight[i]), vload4(flsm_slot[i], node_u), zero), moment = zero;
+    int below = i, above = i;
+    for (int o = 1; o <= WIDTH; ++o) {
+      below = flsm_link[2 * below];
+      above = flsm_link[2 * above + 1];
+      const float4 u_below = vload4(flsm_slot[below], node_u), u_above = vload4(flsm_slot[above], node_u);
+      const float m_below = flsm_weight[below], m_above = flsm_weight[above];
+      sum = fma((float4)(m_above), u_above, fma((float4)(m_below), u_below, sum));
+      moment = fma((float4)((float)o * m_above), u_above, fma((float4)(-((float)o * m_below)), u_below, moment));
+    }
+    vstore8((float8)(sum, moment), i, flsm_bars);
+  }
+}

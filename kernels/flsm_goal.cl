@@ -1,0 +1,17 @@
+// Goals of the interface nodes: flsm_goals takes the mean displacement g - X over the regions that hold the node (the source's equation
+// 6), and keeps the one before beside it.
+// flsm_inverse_holders: [regions] 1 / number of regions that hold the node. flsm_goals: [interface][2] blocks [m]. region_base: region
+// of the first interface node; the other buffers as in flsm_goal_sum.
+#include "arith.cl"
+#include "texels.cl"
+#include "flsm_goal_sum.cl"
+
+__kernel void flsm_goal(__global const float* flsm_bars, __global const int* flsm_link, __global const float* flsm_regions,
+                        __global const int* missing_of_offset, __global const int* missing_of,
+                        __global const float* flsm_inverse_holders, __global float* flsm_goals, int region_base) {
+  for (int i = FIRST_INDEX; i < FIRST_INDEX + LANES; ++i) {
+    const int region = region_base + i;
+    const float4 goal = goal_sum(flsm_bars, flsm_link, flsm_regions, missing_of_offset, missing_of, region) * flsm_inverse_holders[region];
+    vstore8((float8)(goal, vload4(2 * i, flsm_goals)), i, flsm_goals);
+  }
+}

@@ -1,0 +1,24 @@
+// The extra force on interface nodes, F' = beta (g - x) (the source's equation 7), added to node_load.
+// With goals of a step of shape matching H = substeps h ago: held, or EXTRAPOLATED along g - (g before).
+// flsm_slot: [regions]; flsm_goals: [interface][2] blocks [m]; flsm_beta: [interface] [N/m]. step_params[6]: steps since the run began,
+// modulo a multiple of `substeps`, at the first step of the batch.
+#include "arith.cl"
+
+__kernel void flsm_interface(__global const float* node_u, __global float* node_load, __global const int* flsm_slot,
+                             __global const float* flsm_goals, __global const float* flsm_beta, __global const float* step_params,
+                             int substeps, int region_base, int step) {
+#if EXTRAPOLATED
+  const float ahead = (float)(((int)step_params[6] + step) % substeps) / (float)substeps;
+#endif
+  for (int i = FIRST_INDEX; i < FIRST_INDEX + LANES; ++i) {
+    const int slot = flsm_slot[region_base + i];
+    const float8 goals = vload8(i, flsm_goals);
+#if EXTRAPOLATED
+    const float4 goal = fma((float4)(ahead), goals.lo - goals.hi, goals.lo);
+#else
+    const float4 goal = goals.lo;
+#endif
+    const float4 force = fma((float4)(flsm_beta[i]), goal - vload4(slot, node_u), vload4(slot, node_load));
+    vstore4((float4)(force.xyz, 0.0f), slot, node_load);
+  }
+}
