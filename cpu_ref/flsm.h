@@ -27,24 +27,28 @@ inline void sum_links(const Scalar* records, const std::int32_t* link, std::int6
   }
 }
 
-/// The grid offset of a missing node from its region's centre along an axis.
-inline std::int32_t packed_offset(std::int32_t packed, int axis) { return (packed >> 8 * axis & 255) - 128; }
+/// Add one entry of a list of what the ordered sums miss: four factors times a record, or times one block (BlockStride 0).
+template <int BlockStride, class Scalar>
+inline void add_entry(const Scalar* factor, const Scalar* numbers, Scalar (&sum)[PLIANT_FLSM_RECORD]) {
+  for (int block = 0; block < 4; ++block) {
+    for (int k = 0; k < 4; ++k)
+      sum[4 * block + k] = std::fma(factor[block], numbers[BlockStride * block + k], sum[4 * block + k]);
+  }
+}
 
 /// The sum of T X - X over the regions that hold node i: twin of kernels/flsm_goal_sum.cl.
 template <int Width, class Scalar>
 inline void goal_sum(const Scalar* flsm_bars, const std::int32_t* flsm_link, const Scalar* flsm_regions,
-                     const std::int32_t* missing_of_offset, const std::int32_t* missing_of, std::int64_t i, Scalar (&goal)[4]) {
-  Scalar moment[4];
+                     const std::int32_t* missing_of_offset, const std::int32_t* missing_of, const Scalar* missing_of_factor,
+                     std::int64_t i, Scalar (&goal)[4]) {
+  Scalar moment[4], listed[PLIANT_FLSM_RECORD];
   sum_links<Width, 4, 8, 4, true>(flsm_bars, flsm_link, i, goal, moment);
-  for (int k = 0; k < 4; ++k) goal[k] = goal[k] + moment[k];
-  for (std::int32_t e = missing_of_offset[i]; e < missing_of_offset[i + 1]; ++e) {
-    const Scalar* region = flsm_regions + std::int64_t{PLIANT_FLSM_RECORD} * missing_of[2 * e];
-    for (int k = 0; k < 4; ++k) {
-      goal[k] = goal[k] + region[k];
-      for (int axis = 0; axis < 3; ++axis) {
-        goal[k] = std::fma(Scalar(packed_offset(missing_of[2 * e + 1], axis)), region[4 * axis + 4 + k], goal[k]);
-      }
-    }
+  for (Scalar& s : listed) s = Scalar(-0.0);
+  for (std::int64_t e = missing_of_offset[i]; e < missing_of_offset[i + 1]; ++e) {
+    add_entry<4>(missing_of_factor + 4 * e, flsm_regions + std::int64_t{PLIANT_FLSM_RECORD} * missing_of[e], listed);
+  }
+  for (int k = 0; k < 4; ++k) {
+    goal[k] = (goal[k] + moment[k]) + ((listed[k] + listed[4 + k]) + (listed[8 + k] + listed[12 + k]));
   }
 }
 

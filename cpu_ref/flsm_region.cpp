@@ -9,36 +9,30 @@ namespace {
 
 /// The moments of one region: sum m u, then sum m u o_x, o_y, o_z.
 template <int Width, class Scalar>
-void moments_of(const Scalar* node_u, const std::int32_t* flsm_slot, const Scalar* flsm_weight, const Scalar* flsm_plates,
-                const std::int32_t* flsm_link, const std::int32_t* missing_offset, const std::int32_t* missing, std::int64_t i,
-                Scalar (&s)[16]) {
-  Scalar sum[12], moment[4];
+void moments_of(const Scalar* node_u, const Scalar* flsm_plates, const std::int32_t* flsm_link,
+                const std::int32_t* missing_offset, const std::int32_t* missing, const Scalar* missing_factor, std::int64_t i,
+                Scalar (&s)[PLIANT_FLSM_RECORD]) {
+  Scalar sum[12], moment[4], listed[PLIANT_FLSM_RECORD];
   sum_links<Width, 12, PLIANT_FLSM_RECORD, 0, false>(flsm_plates, flsm_link, i, sum, moment);
-  for (int k = 0; k < 12; ++k) s[k] = sum[k];
-  for (int k = 0; k < 4; ++k) s[12 + k] = moment[k];
-  for (std::int32_t e = missing_offset[i]; e < missing_offset[i + 1]; ++e) {
-    const std::int32_t node = missing[2 * e], packed = missing[2 * e + 1];
-    const Scalar* u = node_u + std::int64_t{4} * flsm_slot[node];
-    const Scalar m = flsm_weight[node];
-    for (int k = 0; k < 4; ++k) s[k] = std::fma(m, u[k], s[k]);
-    for (int axis = 0; axis < 3; ++axis) {
-      const Scalar om = Scalar(packed_offset(packed, axis)) * m;
-      for (int k = 0; k < 4; ++k) s[4 * axis + 4 + k] = std::fma(om, u[k], s[4 * axis + 4 + k]);
-    }
+  for (Scalar& l : listed) l = Scalar(-0.0);
+  for (std::int64_t e = missing_offset[i]; e < missing_offset[i + 1]; ++e) {
+    add_entry<0>(missing_factor + 4 * e, node_u + std::int64_t{4} * missing[e], listed);
   }
+  for (int k = 0; k < 12; ++k) s[k] = sum[k] + listed[k];
+  for (int k = 0; k < 4; ++k) s[12 + k] = moment[k] + listed[12 + k];
 }
 
 }  // namespace
 
 template <class Scalar, int Width>
-void flsm_region(Range range, const Scalar* node_u, const std::int32_t* flsm_slot, const Scalar* flsm_weight,
-                 const Scalar* flsm_plates, const std::int32_t* flsm_link, const std::int32_t* missing_offset,
-                 const std::int32_t* missing, const Scalar* flsm_rest, Scalar* flsm_regions, Scalar spacing) {
+void flsm_region(Range range, const Scalar* node_u, const Scalar* flsm_plates, const std::int32_t* flsm_link,
+                 const std::int32_t* missing_offset, const std::int32_t* missing, const Scalar* missing_factor,
+                 const Scalar* flsm_rest, Scalar* flsm_regions, Scalar spacing) {
   for (std::int64_t tile = range.begin; tile < range.end; tile += PLIANT_TILE) {
     Scalar field[16][PLIANT_TILE];
     for (int l = 0; l < PLIANT_TILE; ++l) {
       Scalar s[16];
-      moments_of<Width>(node_u, flsm_slot, flsm_weight, flsm_plates, flsm_link, missing_offset, missing, tile + l, s);
+      moments_of<Width>(node_u, flsm_plates, flsm_link, missing_offset, missing, missing_factor, tile + l, s);
       for (int k = 0; k < 16; ++k) field[k][l] = s[k];
     }
     const Scalar* rest = flsm_rest + PLIANT_FLSM_REST_PLANES * tile;

@@ -1,6 +1,8 @@
 // The rotation of a region by Horn's quaternion; how and why is in kernels/flsm_rotation.cl.
 #pragma once
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "deformation.h"
@@ -30,11 +32,17 @@ template <class Scalar>
           dot4(n.n03, n.n03, n.n13, n.n13, n.n23, n.n23, n.n33, n.n33)};
 }
 
-/// Trace 1, entries on a grid of 2^-31 (in double of 2^-60).
+/// The power of two that brings x into [1, 2).
+inline float scale_to_one(float x) { return std::bit_cast<float>(0x7f000000U - (std::bit_cast<std::uint32_t>(x) & 0x7f800000U)); }
+inline double scale_to_one(double x) {
+  return std::bit_cast<double>(0x7fe0000000000000ULL - (std::bit_cast<std::uint64_t>(x) & 0x7ff0000000000000ULL));
+}
+
+/// Trace in [1, 2), entries on a grid of 2^-31 (in double of 2^-60).
 template <class Scalar>
 [[gnu::always_inline]] inline Symmetric4<Scalar> normalised(const Symmetric4<Scalar>& n) {
   constexpr Scalar grid = Scalar(0.005859375);
-  const Scalar scale = Scalar(1) / (((n.n00 + n.n11) + n.n22) + n.n33);
+  const Scalar scale = scale_to_one((n.n00 + n.n11) + (n.n22 + n.n33));
   const auto on_grid = [&](Scalar x) { return std::fma(x, scale, grid) - grid; };
   return {on_grid(n.n00), on_grid(n.n01), on_grid(n.n02), on_grid(n.n03), on_grid(n.n11),
           on_grid(n.n12), on_grid(n.n13), on_grid(n.n22), on_grid(n.n23), on_grid(n.n33)};

@@ -11,14 +11,14 @@ namespace pliant::ref {
 template <class Scalar, int Width, bool HasLoad>
 void flsm_update(Range range, Scalar* node_u, Scalar* node_w, const Scalar* node_load, const Scalar* flsm_bars,
                  const std::int32_t* flsm_link, const Scalar* flsm_regions, const std::int32_t* missing_of_offset,
-                 const std::int32_t* missing_of, const Scalar* flsm_inverse_holders, const Scalar* step_params,
-                 const Scalar* flsm_alpha, std::int32_t* fault, std::int32_t batch, std::int32_t substeps,
-                 std::int32_t node_base, std::int32_t fault_base, std::int32_t step) {
+                 const std::int32_t* missing_of, const Scalar* missing_of_factor, const Scalar* flsm_inverse_holders,
+                 const Scalar* step_params, const Scalar* flsm_alpha, std::int32_t* fault, std::int32_t batch,
+                 std::int32_t substeps, std::int32_t node_base, std::int32_t fault_base, std::int32_t step) {
   const StepParameters<Scalar> params(step_params);
   const Scalar h = Scalar(substeps) * step_params[0], half_hh = (Scalar(0.5) * h) * h;
   for (std::int64_t i = range.begin; i < range.end; ++i) {
     Scalar goal[4];
-    goal_sum<Width>(flsm_bars, flsm_link, flsm_regions, missing_of_offset, missing_of, i, goal);
+    goal_sum<Width>(flsm_bars, flsm_link, flsm_regions, missing_of_offset, missing_of, missing_of_factor, i, goal);
     Scalar *u = node_u + 4 * (node_base + i), *w = node_w + 4 * (node_base + i);
     const Scalar a = w[3], b = std::fma(half_hh, a, half_hh), bm = b * u[3];
     bool finite = true;

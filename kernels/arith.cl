@@ -11,12 +11,16 @@ typedef int16 integer;
 #define LOAD(p, i) vload16(0, (p) + (i))
 #define STORE(v, p, i) vstore16(v, 0, (p) + (i))
 #define ANY(c) any(c)
+#define AS_INTEGER(x) as_int16(x)
+#define AS_REAL(i) as_float16(i)
 #else
 typedef float real;
 typedef int integer;
 #define LOAD(p, i) ((p)[i])
 #define STORE(v, p, i) ((p)[i] = (v))
 #define ANY(c) (c)
+#define AS_INTEGER(x) as_int(x)
+#define AS_REAL(i) as_float(i)
 #endif
 
 // First element (or node) of this work-item, and where it stands in plane 0 of a tiled array.

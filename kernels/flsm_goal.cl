@@ -7,11 +7,11 @@
 #include "flsm_goal_sum.cl"
 
 __kernel void flsm_goal(__global const float* flsm_bars, __global const int* flsm_link, __global const float* flsm_regions,
-                        __global const int* missing_of_offset, __global const int* missing_of,
+                        __global const int* missing_of_offset, __global const int* missing_of, __global const float* missing_of_factor,
                         __global const float* flsm_inverse_holders, __global float* flsm_goals, int region_base) {
   for (int i = FIRST_INDEX; i < FIRST_INDEX + LANES; ++i) {
     const int region = region_base + i;
-    const float4 goal = goal_sum(flsm_bars, flsm_link, flsm_regions, missing_of_offset, missing_of, region) * flsm_inverse_holders[region];
+    const float4 goal = goal_sum(flsm_bars, flsm_link, flsm_regions, missing_of_offset, missing_of, missing_of_factor, region) * flsm_inverse_holders[region];
     vstore8((float8)(goal, vload4(2 * i, flsm_goals)), i, flsm_goals);
   }
 }

@@ -1,10 +1,9 @@
 // Last pass back from regions to nodes: the sum of T X - X over the regions that hold node i [m], along x links, then the regions that
-// reach it on no path x, y, z. missing_of_offset: [regions + 1]; missing_of: [entries][2] region and packed offset of the node from its
-// centre.
+// reach it on no path x, y, z. missing_of_offset: [regions + 1]; missing_of: [entries] regions; missing_of_factor: [entries] blocks.
 #include "flsm_records.cl"
 
 static inline float4 goal_sum(__global const float* flsm_bars, __global const int* flsm_link, __global const float* flsm_regions,
-                              __global const int* missing_of_offset, __global const int* missing_of, int i) {
+                              __global const int* missing_of_offset, __global const int* missing_of, __global const float* missing_of_factor, int i) {
   float4 sum = vload4(2 * i, flsm_bars), moment = 0.0f;
   int below = i, above = i;
   for (int o = 1; o <= WIDTH; ++o) {
@@ -15,11 +14,10 @@ static inline float4 goal_sum(__global const float* flsm_bars, __global const in
     moment = fma((float4)((float)o), at_below.hi - at_above.hi, moment);
   }
   sum = sum + moment;
-  for (int e = missing_of_offset[i]; e < missing_of_offset[i + 1]; ++e) {
-    const int packed = missing_of[2 * e + 1];
-    const float16 region = vload16(missing_of[2 * e], flsm_regions);
-    sum = fma((float4)(OFFSET_X(packed)), region.lo.hi, sum + region.lo.lo);
-    sum = fma((float4)(OFFSET_Z(packed)), region.hi.hi, fma((float4)(OFFSET_Y(packed)), region.hi.lo, sum));
-  }
+  const int first = missing_of_offset[i], last = missing_of_offset[i + 1];
+  if (first == last) return sum;
+  float16 listed = -0.0f;
+  for (int e = first; e < last; ++e) listed = add_entry(missing_of_factor, e, vload16(missing_of[e], flsm_regions), listed);
+  sum = sum + ((listed.lo.lo + listed.lo.hi) + (listed.hi.lo + listed.hi.hi));
   return sum;
 }

@@ -1,8 +1,11 @@
 // Records of shape matching: four blocks of four numbers per region (PLIANT_FLSM_RECORD), and their fields over lanes.
-// Packed offset of a missing node from the centre of its region: 8 bits per axis, 128 is 0.
-#define OFFSET_X(packed) ((float)(((packed)&255) - 128))
-#define OFFSET_Y(packed) ((float)(((packed) >> 8 & 255) - 128))
-#define OFFSET_Z(packed) ((float)(((packed) >> 16 & 255) - 128))
+// The lists of what the ordered sums miss hold a number (of a node's slot or of a region) and a block of factors per entry: s, s o_x,
+// s o_y, s o_z with o the offset of the node from the region's centre and s = 1, or -1 for what they reach in vain; times the node's weight
+// on the way to regions. Entries are summed by themselves, block by block.
+static inline float16 add_entry(__global const float* factors, int entry, float16 numbers, float16 sum) {
+  const float4 f = vload4(entry, factors);
+  return fma((float16)(f.xxxx, f.yyyy, f.zzzz, f.wwww), numbers, sum);
+}
 
 #if LANES == 16
 #define RECORD_TEXELS(p, k)                                                                                      \

@@ -4,8 +4,8 @@
 // With weights m (in units that make the moments plain numbers), d the centroid at rest minus the centre of the window in cells, and o the
 // grid offset of a node from the centre: A = sum m (x - c) (X - C)^T = A_0 + sum m u o^T - (sum m u) d^T, R its rotation,
 // T X = X + t + h D o with D = R - I and t = sum m u / sum m - h D d.
-// flsm_plates: [regions][4] blocks. flsm_link: [regions][2] at -z, +z. missing_offset: [regions + 1]; missing: [entries][2] node and
-// packed offset. flsm_rest: [tiles][10][16] 1 / sum m, d (3) [cells], A_0 (xx yy zz xy xz yz).
+// flsm_plates: [regions][4] blocks. flsm_link: [regions][2] at -z, +z. missing_offset: [regions + 1]; missing: [entries] slots;
+// missing_factor: [entries] blocks. flsm_rest: [tiles][10][16] 1 / sum m, d (3) [cells], A_0 (xx yy zz xy xz yz).
 // flsm_regions: [regions][4] blocks: t, h D e_x, h D e_y, h D e_z [m]; on entry those of the step before, kept where A vanishes.
 #include "arith.cl"
 #include "texels.cl"
@@ -15,9 +15,9 @@
 
 #define REST(plane) LOAD(rest, (plane)*PLIANT_TILE)
 
-__kernel void flsm_region(__global const float* node_u, __global const int* flsm_slot, __global const float* flsm_weight,
-                          __global const float* flsm_plates, __global const int* flsm_link, __global const int* missing_offset,
-                          __global const int* missing, __global const float* flsm_rest, __global float* flsm_regions,
+__kernel void flsm_region(__global const float* node_u, __global const float* flsm_plates, __global const int* flsm_link,
+                          __global const int* missing_offset, __global const int* missing,
+                          __global const float* missing_factor, __global const float* flsm_rest, __global float* flsm_regions,
                           float spacing) {
   const int first = FIRST_INDEX;
   float moments[LANES * PLIANT_FLSM_RECORD];
@@ -34,12 +34,14 @@ __kernel void flsm_region(__global const float* node_u, __global const int* flsm
       moment = fma((float4)((float)o), at_above.lo.lo - at_below.lo.lo, moment);
     }
     sum = (float16)(sum.lo, sum.hi.lo, moment);
-    for (int e = missing_offset[i]; e < missing_offset[i + 1]; ++e) {
-      const int node = missing[2 * e], packed = missing[2 * e + 1];
-      const float m = flsm_weight[node];
-      const float4 u = vload4(flsm_slot[node], node_u);
-      sum = fma((float16)((float4)(m), (float4)(OFFSET_X(packed) * m), (float4)(OFFSET_Y(packed) * m), (float4)(OFFSET_Z(packed) * m)),
-                (float16)(u, u, u, u), sum);
+    const int first_entry = missing_offset[i], last_entry = missing_offset[i + 1];
+    if (first_entry < last_entry) {
+      float16 listed = -0.0f;
+      for (int e = first_entry; e < last_entry; ++e) {
+        const float4 u = vload4(missing[e], node_u);
+        listed = add_entry(missing_factor, e, (float16)(u, u, u, u), listed);
+      }
+      sum = sum + listed;
     }
     vstore16(sum, l, moments);
   }

@@ -19,11 +19,11 @@ static inline symmetric4 squared(symmetric4 n) {
   return s;
 }
 
-// Trace 1, entries on a grid of 2^-31: what is smaller would become denormal within two squarings.
+// Trace in [1, 2) by a power of two, which a processor has sooner than a quotient, and entries on a grid of 2^-31: what is smaller would
+// become denormal within two squarings.
 static inline symmetric4 normalised(symmetric4 n) {
   const real grid = 0.005859375f;  // 1.5 * 2^23 * 2^-31
-  const real one = 1.0f;
-  const real scale = one / (((n.n00 + n.n11) + n.n22) + n.n33);
+  const real scale = AS_REAL(0x7f000000 - (AS_INTEGER((n.n00 + n.n11) + (n.n22 + n.n33)) & 0x7f800000));
   symmetric4 s;
   s.n00 = fma(n.n00, scale, grid) - grid;
   s.n01 = fma(n.n01, scale, grid) - grid;

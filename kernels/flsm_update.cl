@@ -8,7 +8,7 @@
 
 __kernel void flsm_update(__global float* node_u, __global float* node_w, __global const float* node_load,
                           __global const float* flsm_bars, __global const int* flsm_link, __global const float* flsm_regions,
-                          __global const int* missing_of_offset, __global const int* missing_of,
+                          __global const int* missing_of_offset, __global const int* missing_of, __global const float* missing_of_factor,
                           __global const float* flsm_inverse_holders, __global const float* step_params, __global const float* flsm_alpha,
                           __global int* fault, int batch, int substeps, int node_base, int fault_base, int step) {
   const float4 zero = 0.0f;
@@ -16,7 +16,7 @@ __kernel void flsm_update(__global float* node_u, __global float* node_w, __glob
   const float still = step_params[4], fine = step_params[5], anchor = 3.0f * fine;
   const float4 gravity = (float4)(step_params[1], step_params[2], step_params[3], 0.0f);
   for (int i = FIRST_INDEX; i < FIRST_INDEX + LANES; ++i) {
-    const float4 goal = goal_sum(flsm_bars, flsm_link, flsm_regions, missing_of_offset, missing_of, i);
+    const float4 goal = goal_sum(flsm_bars, flsm_link, flsm_regions, missing_of_offset, missing_of, missing_of_factor, i);
     const float4 u = vload4(node_base + i, node_u), w = vload4(node_base + i, node_w);
     const float b = fma(half_hh, w.w, half_hh);
 #if HAS_LOAD

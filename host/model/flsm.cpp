@@ -26,8 +26,8 @@ std::vector<std::int32_t> nodes_in_order(const Solid& solid, NodeKind kind) {
   return nodes;
 }
 
-/// The edges of the shape-matching cells. `number` is the number in the batch of each node of the body. A node has one link in each
-/// direction: where the lattice branches (one node, two copies of its neighbour), the first cell's edge is the link.
+/// The edges of the shape-matching cells. `number` is the number in the batch of each node of the body. A node has one link in
+/// each direction: where the lattice branches (one node, two copies of its neighbour), the first cell's edge is the link.
 void link_nodes(const Solid& solid, const std::vector<std::int32_t>& number, FlsmBatch& batch) {
   batch.link.assign(batch.slot.size(), {-1, -1, -1, -1, -1, -1});
   for (const Cell& cell : solid.matching_cells) {
@@ -112,8 +112,11 @@ FlsmBatch place_matching_nodes(const Solid& solid, const Body& body, std::int32_
   }
   link_nodes(solid, in_batch, batch);
   require_width(body, batch, lattice);
-  lattice.link = batch.link;
+  lattice.link = std::move(batch.link);
+  add_fillers(lattice, find_regions(lattice, batch.settings.width));
   batch.regions = find_regions(lattice, batch.settings.width);
+  batch.fillers = lattice.fillers;
+  batch.link = std::move(lattice.link);
   return batch;
 }
 
@@ -123,14 +126,15 @@ void weigh(FlsmBatch& batch, const std::vector<double>& mass) {
 }
 
 std::vector<RestMoments> rest_moments(const FlsmBatch& batch) {
-  std::vector<RestMoments> moments(batch.slot.size(), RestMoments{});
-  for (std::size_t i = 0; i < moments.size(); ++i) moments[i][0] = batch.weight[i];
+  std::vector<RestMoments> moments(batch.link.size(), RestMoments{});
+  for (std::size_t i = 0; i < batch.slot.size(); ++i) moments[i][0] = batch.weight[i];
   for (int axis = 0; axis < 3; ++axis) moments = along(axis, batch, moments);
+  moments.resize(batch.slot.size());
   const FlsmRegions& regions = batch.regions;
   for (std::size_t r = 0; r < moments.size(); ++r) {
     for (std::int32_t e = regions.missing_offset[r]; e < regions.missing_offset[r + 1]; ++e) {
       const RegionEntry& entry = regions.missing[e];
-      const double m = batch.weight[entry.other], x = entry.offset[0], y = entry.offset[1], z = entry.offset[2];
+      const double m = entry.sign * batch.weight[entry.other], x = entry.offset[0], y = entry.offset[1], z = entry.offset[2];
       const RestMoments added{m, m * x, m * y, m * z, m * x * x, m * y * y, m * z * z, m * x * y, m * x * z, m * y * z};
       for (int k = 0; k < 10; ++k) moments[r][k] += added[k];
     }

@@ -54,7 +54,7 @@ void check_links(const LinkedLattice& lattice) {
 // the high half; both stay below (2 * 5 + 1)^3 = 1331.
 constexpr std::uint32_t kFlag = 1U << 16, kCount = kFlag - 1;
 
-// 1 for each node, and the flag for those that share their grid point.
+// 1 for each node, 0 for each filler, and the flag for those that share their grid point.
 std::vector<std::uint32_t> ones_and_flags(const LinkedLattice& lattice) {
   const auto nodes = static_cast<std::int32_t>(lattice.index.size());
   const auto key = [&](std::int32_t i) {
@@ -66,6 +66,7 @@ std::vector<std::uint32_t> ones_and_flags(const LinkedLattice& lattice) {
   std::iota(order.begin(), order.end(), 0);
   if (!std::is_sorted(order.begin(), order.end(), before)) std::sort(order.begin(), order.end(), before);
   std::vector<std::uint32_t> ones(nodes, 1);
+  std::fill(ones.end() - lattice.fillers, ones.end(), 0);
   for (std::int32_t n = 1; n < nodes; ++n) {
     if (key(order[n - 1]) == key(order[n])) ones[order[n - 1]] = ones[order[n]] = 1 + kFlag;
   }
@@ -115,38 +116,44 @@ class RegionSearch {
     centre_ = step_[1] * (width + 1) + step_[3] * (width + 1) + step_[5] * (width + 1);
   }
 
-  // Find the region of `centre`, append the nodes that the ordered sums miss to `missing` and return its size. `ordered` is the
-  // number of nodes that the ordered sums count.
+  // Find the region of `centre`, append the nodes that the ordered sums miss or reach in vain to `missing` and return its size.
+  // `ordered` is the number of nodes that the ordered sums count.
   std::int32_t run(std::int32_t centre, std::uint32_t ordered, std::vector<RegionEntry>& missing) {
     found_.clear();
     visit(centre, centre_);
     walk(4);
     walk(2);
     walk(0);
-    if (found_.size() != ordered) {
+    const std::size_t walked = found_.size();
+    const auto counted = std::count_if(found_.begin(), found_.end(), [&](const Found& f) { return f.node < lattice_.nodes(); });
+    if (counted != static_cast<std::ptrdiff_t>(ordered)) {
       throw Error(ErrorCode::internal,
-                  fmt::format("the sums of region {} count {} nodes, its bars hold {}", centre, ordered, found_.size()));
+                  fmt::format("the sums of region {} count {} nodes, its bars hold {}", centre, ordered, counted));
     }
-    for (std::size_t f = 0; f < found_.size(); ++f) spread(static_cast<std::int32_t>(f));
+    reached_.assign(1, 0);
+    found_[0].reached = true;
+    for (std::size_t r = 0; r < reached_.size(); ++r) spread(reached_[r]);
     const auto begin = static_cast<std::ptrdiff_t>(missing.size());
-    for (std::size_t f = ordered; f < found_.size(); ++f) {
+    for (std::size_t f = 0; f < found_.size(); ++f) {
+      if (found_[f].reached == (f < walked) || found_[f].node >= lattice_.nodes()) continue;
       const auto& offset = offset_[found_[f].position];
-      missing.push_back({found_[f].node, {offset[0], offset[1], offset[2]}});
+      missing.push_back({found_[f].node, {offset[0], offset[1], offset[2]}, f < walked ? -1 : 1});
     }
     std::sort(missing.begin() + begin, missing.end(), [](const auto& a, const auto& b) { return a.other < b.other; });
     for (const Found& f : found_) at_[f.position] = kFree;
-    return static_cast<std::int32_t>(found_.size());
+    return static_cast<std::int32_t>(reached_.size());
   }
 
  private:
   struct Found {
     std::int32_t node, position, next;  // next: another node found at this position, or -1
+    bool reached;                       // through links between nodes
   };
   static constexpr std::int32_t kFree = -1, kOutside = -2;
 
   void visit(std::int32_t node, std::int32_t position) {
     const auto number = static_cast<std::int32_t>(found_.size());
-    found_.push_back({node, position, at_[position]});
+    found_.push_back({node, position, at_[position], false});
     at_[position] = number;
   }
 
@@ -166,12 +173,18 @@ class RegionSearch {
     const auto& links = lattice_.link[here.node];
     for (int d = 0; d < 6; ++d) {
       const std::int32_t position = here.position + step_[d], there = at_[position];
-      if (there == kOutside || (there >= 0 && !shared_points_)) continue;
+      if (there == kOutside || (there >= 0 && !shared_points_ && found_[there].reached)) continue;
       const std::int32_t n = links[d];
-      if (n < 0) continue;
+      if (n < 0 || n >= lattice_.nodes()) continue;
       std::int32_t f = there;
       while (f >= 0 && found_[f].node != n) f = found_[f].next;
-      if (f < 0) visit(n, position);
+      if (f < 0) {
+        f = static_cast<std::int32_t>(found_.size());
+        visit(n, position);
+      }
+      if (found_[f].reached) continue;
+      found_[f].reached = true;
+      reached_.push_back(f);
     }
   }
 
@@ -183,12 +196,13 @@ class RegionSearch {
   std::vector<std::int32_t> at_;            // per position: the node found last, as an index into found_
   std::vector<std::array<int, 3>> offset_;  // per position
   std::vector<Found> found_;
+  std::vector<std::int32_t> reached_;  // the nodes of the region, as indices into found_
 };
 
 // Fill size, missing_offset and missing. `sums` are the ordered sums with x first.
 void find_missing(const LinkedLattice& lattice, const std::vector<std::uint32_t>& sums, bool shared_points,
                   FlsmRegions& regions) {
-  const auto nodes = static_cast<std::int64_t>(sums.size());
+  const std::int64_t nodes = lattice.nodes();
   const std::uint32_t edge = 2 * regions.width + 1, whole = edge * edge * edge;
   std::vector<std::vector<RegionEntry>> found((nodes + kBlock - 1) / kBlock);
   std::vector<std::int64_t> counts(nodes + 1, 0);
@@ -232,17 +246,107 @@ void transpose(FlsmRegions& regions) {
   for (std::size_t r = 0; r < nodes; ++r) {
     for (std::int32_t m = regions.missing_offset[r]; m < regions.missing_offset[r + 1]; ++m) {
       const RegionEntry& e = regions.missing[m];
-      regions.missing_of[next[e.other]++] = {static_cast<std::int32_t>(r), e.offset};
+      regions.missing_of[next[e.other]++] = {static_cast<std::int32_t>(r), e.offset, e.sign};
     }
   }
 }
+
+// Makes paths across empty grid points.
+class FillerPaths {
+ public:
+  using Point = std::array<std::int32_t, 3>;
+
+  explicit FillerPaths(LinkedLattice& lattice) : lattice_(lattice), low_(lattice.index[0]) {
+    Point high = low_;
+    for (const Point& p : lattice.index) {
+      for (int a = 0; a < 3; ++a) {
+        low_[a] = std::min(low_[a], p[a]);
+        high[a] = std::max(high[a], p[a]);
+      }
+    }
+    for (int a = 0; a < 3; ++a) size_[a] = high[a] - low_[a] + 1;
+    at_.assign(static_cast<std::size_t>(size_[0] * size_[1] * size_[2]), kEmpty);
+    uses_.assign(at_.size(), 0);
+    for (std::size_t n = 0; n < lattice.index.size(); ++n) {
+      std::int32_t& here = at(lattice.index[n]);
+      here = here == kEmpty ? static_cast<std::int32_t>(n) : kShared;
+    }
+  }
+
+  // Count the paths that would cross each empty grid point.
+  void survey(std::int32_t node, const Point& offset) {
+    for_empty(node, offset, [&](std::uint16_t& uses) {
+      if (uses < kMost) ++uses;
+    });
+  }
+
+  // From `node` along z, y, x to the grid point at `offset`. Ends early at a cut or at a point that several nodes share, and is
+  // not made where it would cross a point that few others cross: then the list of what is missing keeps the entry.
+  void open(std::int32_t node, const Point& offset) {
+    bool pays = true;
+    for_empty(node, offset, [&](std::uint16_t uses) { pays = pays && uses >= kLeastUses; });
+    if (!pays) return;
+    for (const int axis : {2, 1, 0}) {
+      for (int k = 0; k < std::abs(offset[axis]) && node >= 0; ++k) node = next(node, 2 * axis + (offset[axis] > 0 ? 1 : 0));
+    }
+  }
+
+ private:
+  static constexpr std::int32_t kEmpty = -1, kShared = -2;
+  // A filler takes part in four passes of sums; an entry of the list costs about a tenth of that.
+  static constexpr std::uint16_t kLeastUses = 10, kMost = 60000;
+
+  [[nodiscard]] std::size_t place(const Point& p) const {
+    return static_cast<std::size_t>(p[0] - low_[0] + size_[0] * (p[1] - low_[1] + size_[1] * (p[2] - low_[2])));
+  }
+  std::int32_t& at(const Point& p) { return at_[place(p)]; }
+
+  // The grid points on the path z, y, x that hold no node.
+  template <class Work>
+  void for_empty(std::int32_t node, const Point& offset, const Work& work) {
+    Point p = lattice_.index[node];
+    for (const int axis : {2, 1, 0}) {
+      for (int k = 0; k < std::abs(offset[axis]); ++k) {
+        p[axis] += offset[axis] > 0 ? 1 : -1;
+        const std::int32_t there = at(p);
+        if (there == kEmpty || (there >= 0 && filler(there))) work(uses_[place(p)]);
+      }
+    }
+  }
+
+  [[nodiscard]] bool filler(std::int32_t n) const { return n >= lattice_.nodes(); }
+
+  std::int32_t next(std::int32_t n, int d) {
+    if (lattice_.link[n][d] >= 0) return lattice_.link[n][d];
+    Point p = lattice_.index[n];
+    p[d / 2] += (d & 1) != 0 ? 1 : -1;
+    std::int32_t& there = at(p);
+    if (there == kShared || (there >= 0 && !filler(there) && !filler(n))) return -1;
+    if (there == kEmpty) {
+      there = static_cast<std::int32_t>(lattice_.index.size());
+      lattice_.index.push_back(p);
+      lattice_.link.push_back({-1, -1, -1, -1, -1, -1});
+      ++lattice_.fillers;
+    }
+    if (lattice_.link[there][d ^ 1] >= 0) return -1;  // it belongs to another node of the grid point that n shares
+    lattice_.link[there][d ^ 1] = n;
+    lattice_.link[n][d] = there;
+    return there;
+  }
+
+  LinkedLattice& lattice_;
+  Point low_;
+  std::array<std::int64_t, 3> size_{};
+  std::vector<std::int32_t> at_;     // per grid point of the bounding box: a node, a filler, or one of the above
+  std::vector<std::uint16_t> uses_;  // per grid point: paths that would cross it
+};
 
 }  // namespace
 
 FlsmRegions find_regions(const LinkedLattice& lattice, int width) {
   check_width(width);
   check_links(lattice);
-  const std::size_t nodes = lattice.index.size();
+  const auto nodes = static_cast<std::size_t>(lattice.nodes());
   FlsmRegions regions;
   regions.width = width;
   regions.size.resize(nodes);
@@ -254,10 +358,25 @@ FlsmRegions find_regions(const LinkedLattice& lattice, int width) {
   const auto back = ordered_sums(lattice, ones, width, {2, 1, 0});
   regions.holders.resize(nodes);
   for (std::size_t i = 0; i < nodes; ++i) {
-    const std::int32_t listed = regions.missing_of_offset[i + 1] - regions.missing_of_offset[i];
-    regions.holders[i] = static_cast<std::int32_t>(back[i] & kCount) + listed;
+    regions.holders[i] = static_cast<std::int32_t>(back[i] & kCount);
+    for (std::int32_t m = regions.missing_of_offset[i]; m < regions.missing_of_offset[i + 1]; ++m) {
+      regions.holders[i] += regions.missing_of[m].sign;
+    }
   }
   return regions;
+}
+
+void add_fillers(LinkedLattice& lattice, const FlsmRegions& regions) {
+  if (regions.missing.empty()) return;
+  const auto for_entries = [&](const auto& work) {
+    for (std::int32_t r = 0; r < static_cast<std::int32_t>(regions.size.size()); ++r) {
+      for (std::int32_t m = regions.missing_offset[r]; m < regions.missing_offset[r + 1]; ++m)
+        work(r, regions.missing[m].offset);
+    }
+  };
+  FillerPaths paths(lattice);
+  for_entries([&](std::int32_t r, const auto& offset) { paths.survey(r, offset); });
+  for_entries([&](std::int32_t r, const auto& offset) { paths.open(r, offset); });
 }
 
 std::vector<RegionEntry> region_by_search(const LinkedLattice& lattice, std::int32_t centre, int width) {

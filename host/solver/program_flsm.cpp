@@ -9,40 +9,50 @@
 namespace pliant {
 namespace {
 
-/// Where the regions of a batch stand in its buffers: own nodes, the region that stands for absent ones (number `own`),
-/// fillers, the interface from `interface_base` on, fillers.
+/// Where the regions of a batch stand in its buffers: own nodes, the one that stands for absent ones (number `own`), padding,
+/// the interface from `interface_base` on, padding; these `nodes` have regions. Then come the fillers, which have sums only,
+/// and padding.
 struct RegionPlaces {
-  std::int32_t own, interface_base, count;
+  std::int32_t own, interface, interface_base, nodes, count;
   explicit RegionPlaces(const FlsmBatch& b)
       : own(b.own),
+        interface(b.interface),
         interface_base(b.slots - PLIANT_TILE),
-        count(interface_base + padded(static_cast<std::size_t>(b.interface))) {}
+        nodes(interface_base + padded(static_cast<std::size_t>(b.interface))),
+        count(nodes + padded(static_cast<std::size_t>(b.fillers))) {}
   [[nodiscard]] std::int32_t of(std::int32_t node) const {
-    return node < 0 ? own : node < own ? node : interface_base + node - own;
+    if (node < 0) return own;
+    if (node < own) return node;
+    return node < own + interface ? interface_base + node - own : nodes + node - own - interface;
   }
+};
+
+/// What to add to the ordered sums (kernels/flsm_records.cl).
+struct MissingList {
+  std::vector<std::int32_t> offset, other;
+  std::vector<double> factor;
 };
 
 /// What the buffers hold of the model, in the order of the regions.
 struct RegionData {
-  std::vector<std::int32_t> slot, link[3], missing_offset, missing, missing_of_offset, missing_of;
+  std::vector<std::int32_t> slot, link[3];
+  MissingList missing, missing_of;
   std::vector<double> weight, rest, inverse_holders;
 };
 
-std::int32_t pack(const std::array<std::int32_t, 3>& offset) {
-  return (offset[0] + 128) | (offset[1] + 128) << 8 | (offset[2] + 128) << 16;
-}
-
+/// Offsets by region, and per entry a number and four factors. `scale` and `number` are functions of the entry's other end.
+template <class Number, class Scale>
 void add_missing(const RegionPlaces& places, const std::vector<std::int32_t>& offset, const std::vector<RegionEntry>& entries,
-                 std::size_t nodes, std::vector<std::int32_t>& out_offset, std::vector<std::int32_t>& out) {
-  std::vector<std::int32_t> count(static_cast<std::size_t>(places.count) + 1, 0);
-  for (std::size_t n = 0; n < nodes; ++n) count[places.of(static_cast<std::int32_t>(n)) + 1] = offset[n + 1] - offset[n];
-  out_offset.assign(count.size(), 0);
-  for (std::size_t r = 1; r < count.size(); ++r) out_offset[r] = out_offset[r - 1] + count[r];
-  for (std::size_t n = 0; n < nodes; ++n) {
-    for (std::int32_t e = offset[n]; e < offset[n + 1]; ++e) {
-      out.push_back(places.of(entries[e].other));
-      out.push_back(pack(entries[e].offset));
-    }
+                 const Number& number, const Scale& scale, MissingList& out) {
+  std::vector<std::int32_t> count(static_cast<std::size_t>(places.nodes) + 1, 0);
+  for (std::size_t n = 0; n + 1 < offset.size(); ++n)
+    count[places.of(static_cast<std::int32_t>(n)) + 1] = offset[n + 1] - offset[n];
+  out.offset.assign(count.size(), 0);
+  for (std::size_t r = 1; r < count.size(); ++r) out.offset[r] = out.offset[r - 1] + count[r];
+  for (const RegionEntry& entry : entries) {
+    out.other.push_back(number(entry.other));
+    const double s = entry.sign * scale(entry.other);
+    out.factor.insert(out.factor.end(), {s, s * entry.offset[0], s * entry.offset[1], s * entry.offset[2]});
   }
 }
 
@@ -50,26 +60,23 @@ void add_missing(const RegionPlaces& places, const std::vector<std::int32_t>& of
 RegionData region_data(const FlsmBatch& b, const RegionPlaces& places) {
   RegionData data;
   const std::size_t nodes = b.slot.size(), count = static_cast<std::size_t>(places.count);
+  const auto with_region = static_cast<std::size_t>(places.nodes);
   data.slot.resize(count);
   for (std::int32_t r = 0; r < places.count; ++r) {
-    // Fillers get slots without a node, the interface's each its own.
-    const std::int32_t filler =
-        r < places.interface_base ? r : places.interface_base + (r - places.interface_base) % PLIANT_TILE;
-    data.slot[r] = b.first_slot + filler;
+    // What is no node gets a slot without a node; the interface's padding each its own, for flsm_interface writes there.
+    const std::int32_t last = places.interface_base + (r - places.interface_base) % PLIANT_TILE;
+    data.slot[r] = b.first_slot + (r < places.interface_base ? r : r < places.nodes ? last : places.own);
   }
   for (auto& link : data.link) link.assign(2 * count, places.own);
   data.weight.assign(count, 0.0);
-  data.inverse_holders.assign(count, 0.0);
-  data.rest.assign(PLIANT_FLSM_REST_PLANES * count, 0.0);
+  data.inverse_holders.assign(with_region, 0.0);
+  data.rest.assign(PLIANT_FLSM_REST_PLANES * with_region, 0.0);
   double mean = 0;
   for (const double w : b.weight) mean += w / static_cast<double>(nodes);
   const std::vector<RestMoments> moments = rest_moments(b);
   for (std::size_t n = 0; n < nodes; ++n) {
     const auto r = static_cast<std::size_t>(places.of(static_cast<std::int32_t>(n)));
     data.slot[r] = b.slot[n];
-    for (int axis = 0; axis < 3; ++axis) {
-      for (int side = 0; side < 2; ++side) data.link[axis][2 * r + side] = places.of(b.link[n][2 * axis + side]);
-    }
     data.weight[r] = b.weight[n] / (mean * b.spacing);
     data.inverse_holders[r] = 1.0 / b.regions.holders[n];
     const RestMoments& m = moments[n];
@@ -88,8 +95,19 @@ RegionData region_data(const FlsmBatch& b, const RegionPlaces& places) {
       data.rest[tile_base(r, PLIANT_FLSM_REST_PLANES) + p * PLIANT_TILE] = plane[p];
     }
   }
-  add_missing(places, b.regions.missing_offset, b.regions.missing, nodes, data.missing_offset, data.missing);
-  add_missing(places, b.regions.missing_of_offset, b.regions.missing_of, nodes, data.missing_of_offset, data.missing_of);
+  for (std::size_t n = 0; n < b.link.size(); ++n) {
+    const auto r = static_cast<std::size_t>(places.of(static_cast<std::int32_t>(n)));
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int side = 0; side < 2; ++side) data.link[axis][2 * r + side] = places.of(b.link[n][2 * axis + side]);
+    }
+  }
+  const FlsmRegions& regions = b.regions;
+  add_missing(
+      places, regions.missing_offset, regions.missing, [&](std::int32_t n) { return b.slot[n]; },
+      [&](std::int32_t n) { return b.weight[n] / (mean * b.spacing); }, data.missing);
+  add_missing(
+      places, regions.missing_of_offset, regions.missing_of, [&](std::int32_t r) { return places.of(r); },
+      [](std::int32_t) { return 1.0; }, data.missing_of);
   return data;
 }
 
@@ -99,10 +117,10 @@ void ProgramBuilder::add_flsm(std::size_t index) {
   const FlsmBatch& b = model_.flsm[index];
   const RegionPlaces places(b);
   RegionData data = region_data(b, places);
-  const auto count = static_cast<std::size_t>(places.count);
+  const auto count = static_cast<std::size_t>(places.count), with_region = static_cast<std::size_t>(places.nodes);
   const auto nodes = static_cast<std::int64_t>(b.slot.size());
-  const double missing = double(data.missing.size()) / 2 / double(nodes),
-               missing_of = double(data.missing_of.size()) / 2 / double(nodes);
+  const double missing = double(data.missing.other.size()) / double(nodes),
+               missing_of = double(data.missing_of.other.size()) / double(nodes);
   const auto name = [&](const char* stem) { return fmt::format("{}/{}", stem, index); };
   const auto constants = [&](const char* stem, const char* shape, std::vector<std::int32_t> values) {
     return add(make_ints(name(stem), BufferRole::constant, shape, std::move(values), 2));
@@ -115,15 +133,21 @@ void ProgramBuilder::add_flsm(std::size_t index) {
   const auto link_x = constants("flsm_link_x", "[regions][2]", std::move(data.link[0]));
   const auto link_y = constants("flsm_link_y", "[regions][2]", std::move(data.link[1]));
   const auto link_z = constants("flsm_link_z", "[regions][2]", std::move(data.link[2]));
-  const auto missing_offset = constants("flsm_missing_offset", "[regions + 1]", std::move(data.missing_offset));
-  const auto missing_id = constants("flsm_missing", "[entries][2]", std::move(data.missing));
-  const auto missing_of_offset = constants("flsm_missing_of_offset", "[regions + 1]", std::move(data.missing_of_offset));
-  const auto missing_of_id = constants("flsm_missing_of", "[entries][2]", std::move(data.missing_of));
+  const auto list = [&](const char* stem, MissingList& from) {
+    const std::string numbers_name = fmt::format("{}_factor", stem), offset_name = fmt::format("{}_offset", stem);
+    const std::size_t entries = std::max<std::size_t>(from.other.size(), 1);
+    const auto offset = constants(offset_name.c_str(), "[regions + 1]", std::move(from.offset));
+    const auto other = constants(stem, "[entries]", std::move(from.other));
+    const auto factor =
+        numbers(numbers_name.c_str(), 4 * entries, BufferRole::constant, "[entries][4]", "1", "model", std::move(from.factor));
+    return std::array<Arg, 3>{buffer_arg(offset), buffer_arg(other), buffer_arg(factor)};
+  };
+  const auto missing_args = list("flsm_missing", data.missing), missing_of_args = list("flsm_missing_of", data.missing_of);
   const auto weight = numbers("flsm_weight", count, BufferRole::constant, "[regions]", "1/m", "model", std::move(data.weight));
-  const auto rest = numbers("flsm_rest", PLIANT_FLSM_REST_PLANES * count, BufferRole::constant, "[tiles][10][16]", "m, 1",
+  const auto rest = numbers("flsm_rest", PLIANT_FLSM_REST_PLANES * with_region, BufferRole::constant, "[tiles][10][16]", "m, 1",
                             "model", std::move(data.rest));
-  const auto holders =
-      numbers("flsm_inverse_holders", count, BufferRole::constant, "[regions]", "1", "model", std::move(data.inverse_holders));
+  const auto holders = numbers("flsm_inverse_holders", with_region, BufferRole::constant, "[regions]", "1", "model",
+                               std::move(data.inverse_holders));
   const auto bars = numbers("flsm_bars", 8 * count, BufferRole::scratch, "[regions][2][4]", "1", "flsm_bar, flsm_goal_bar");
   const auto plates = numbers("flsm_plates", PLIANT_FLSM_RECORD * count, BufferRole::scratch, "[regions][4][4]", "1",
                               "flsm_plate, flsm_goal_plate");
@@ -148,22 +172,22 @@ void ProgramBuilder::add_flsm(std::size_t index) {
   pass("flsm_plate", {{"WIDTH", width}}, {buffer_arg(bars), buffer_arg(link_y), buffer_arg(plates)}, all, nodes, 104,
        28.0 * width, n);
   pass("flsm_region", {{"WIDTH", width}},
-       {u, buffer_arg(slot), buffer_arg(weight), buffer_arg(plates), buffer_arg(link_z), buffer_arg(missing_offset),
-        buffer_arg(missing_id), buffer_arg(rest), buffer_arg(regions), real_arg(b.spacing)},
-       all, nodes, 184 + 8 * missing, 36.0 * width + 35 * missing + 1480, n);
+       {u, buffer_arg(plates), buffer_arg(link_z), missing_args[0], missing_args[1], missing_args[2], buffer_arg(rest),
+        buffer_arg(regions), real_arg(b.spacing)},
+       places.nodes, nodes, 184 + 8 * missing, 36.0 * width + 35 * missing + 1480, n);
   pass("flsm_goal_plate", {{"WIDTH", width}}, {buffer_arg(regions), buffer_arg(link_z), buffer_arg(plates)}, all, nodes, 136,
        36.0 * width, n);
   pass("flsm_goal_bar", {{"WIDTH", width}}, {buffer_arg(plates), buffer_arg(link_y), buffer_arg(bars)}, all, nodes, 104,
        28.0 * width, n);
   const double goal_bytes = 44 + 8 * missing_of, goal_flops = 20.0 * width + 4 + 28 * missing_of;
   const auto goals_of = [&](std::vector<Arg> first, std::vector<Arg> last) {
-    first.insert(first.end(), {buffer_arg(bars), buffer_arg(link_x), buffer_arg(regions), buffer_arg(missing_of_offset),
-                               buffer_arg(missing_of_id), buffer_arg(holders)});
+    first.insert(first.end(), {buffer_arg(bars), buffer_arg(link_x), buffer_arg(regions), missing_of_args[0],
+                               missing_of_args[1], missing_of_args[2], buffer_arg(holders)});
     first.insert(first.end(), last.begin(), last.end());
     return first;
   };
   if (b.interface > 0) {
-    const auto shared = static_cast<std::size_t>(places.count - places.interface_base);
+    const auto shared = static_cast<std::size_t>(places.nodes - places.interface_base);
     const auto goals = numbers("flsm_goals", 8 * shared, BufferRole::state, "[interface][2][4]", "m", "flsm_goal");
     if (n > 1) {  // held or extrapolated over several steps, so a part of the state to go back to
       add(make_reals(fmt::format("last_flsm_goals/{}", index), BufferType::real, 8 * shared, BufferRole::state,
