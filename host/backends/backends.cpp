@@ -72,12 +72,24 @@ Candidate first_bit_exact(const std::vector<BackendInfo>& devices, const std::st
   return candidate;
 }
 
-std::unique_ptr<Backend> open_auto(std::string& why) {
+/// Below this one thread is faster than two with PoCL 3.1: 0.15 against 0.23 ms per step for a hybrid of 2900 nodes, 0.61
+/// against 0.46 for shape matching of 10,000.
+constexpr std::int64_t kFewNodes = 6000;
+
+std::unique_ptr<Backend> open_auto(std::string& why, std::int64_t nodes) {
   const std::vector<BackendInfo> devices = opencl_devices(false);
   Candidate gpu = first_bit_exact(devices, "gpu", true);
   if (gpu.backend != nullptr) {
     why = fmt::format("{} ({}): a bit-exact GPU{}", gpu.backend->info().name, gpu.backend->info().device, gpu.skipped);
     return std::move(gpu.backend);
+  }
+  for (std::size_t i = 0; i < devices.size() && nodes > 0 && nodes < kFewNodes; ++i) {
+    if (!devices[i].single_thread) continue;
+    auto single = open_opencl(static_cast<int>(i));
+    if (!single->info().bit_exact) continue;
+    why = fmt::format("{} ({}): bit-exact, one thread for a small scene, and there is no bit-exact GPU{}", single->info().name,
+                      single->info().device, gpu.skipped);
+    return single;
   }
   Candidate other = first_bit_exact(devices, "gpu", false);
   const std::string skipped = gpu.skipped + other.skipped;
@@ -112,11 +124,11 @@ std::vector<BackendInfo> list_backends() {
   return result;
 }
 
-std::unique_ptr<Backend> open_backend(const std::string& spec, std::string* why) {
+std::unique_ptr<Backend> open_backend(const std::string& spec, std::string* why, std::int64_t nodes) {
   std::string reason;
   std::unique_ptr<Backend> backend;
   if (spec == "auto") {
-    backend = open_auto(reason);
+    backend = open_auto(reason, nodes);
   } else if (spec == "cpu" || spec == "cpu:double") {
     backend = open_cpu(spec == "cpu:double");
   } else if (spec == "opencl" || spec.rfind("opencl:", 0) == 0) {

@@ -73,10 +73,11 @@ class Run {
     if (!o_.resume.empty()) saved = read_checkpoint(o_.resume);
     if (!o_.out.empty()) frames_.emplace(o_.out, stem_, parse_formats(o_.formats));
     std::string why;
-    auto backend = open_backend(o_.backend, &why);
+    const auto model = std::make_shared<const Model>(build_model(scene));
+    auto backend = open_backend(o_.backend, &why, model->nodes());
     o_.common.note("backend " + why);
     if (!backend->info().bit_exact) o_.common.note("tolerance mode: " + backend->info().tolerance_reason);
-    simulation_.emplace(std::move(scene), std::move(backend));
+    simulation_.emplace(std::move(scene), model, std::move(backend));
     if (saved) resume(*saved);
     if (simulation_->stable_dt() > 0 && simulation_->dt() > simulation_->stable_dt()) {
       o_.common.note(fmt::format("dt = {:.6g} s is {:.3g} times the stable step {:.6g} s: expect the simulation to diverge",
