@@ -196,10 +196,14 @@ void ProgramBuilder::add_flsm(std::size_t index) {
     const auto beta = numbers("flsm_beta", shared, BufferRole::control, "[interface]", "N/m", "host");
     pass("flsm_goal", {{"WIDTH", width}}, goals_of({}, {buffer_arg(goals), int_arg(places.interface_base)}),
          static_cast<std::int64_t>(shared), b.interface, goal_bytes + 64, goal_flops, n);
+    // Held goals pull in the first substep alone, n times as hard, when both ends of the spring are where the regions saw them:
+    // an impulse like that of shape matching's own nodes, so that momenta are kept. In later substeps they would drag at nodes
+    // that have moved on.
+    const int pulls = b.settings.extrapolate ? 1 : n;
     pass("flsm_interface", {{"EXTRAPOLATED", b.settings.extrapolate && n > 1 ? 1 : 0}},
          {u, buffer_arg(node_load_), buffer_arg(slot), buffer_arg(goals), buffer_arg(beta), buffer_arg(params_), int_arg(n),
           int_arg(places.interface_base), step_arg()},
-         static_cast<std::int64_t>(shared), b.interface, 88, 12, 1);
+         static_cast<std::int64_t>(shared), b.interface, 88, 12, pulls);
   }
   if (b.own > 0) {
     pass("flsm_update", {{"WIDTH", width}, {"HAS_LOAD", needs_load() ? 1 : 0}},

@@ -15,6 +15,9 @@ namespace {
 
 constexpr double kFrame = 1.0 / 60;  ///< automatic step of a scene without finite elements [s]
 
+/// How many times its beta the interface feels while it feels any: see flsm_interface in program_flsm.cpp.
+int strokes(const DeformationModel& m) { return m.extrapolate ? 1 : m.substeps; }
+
 /// beta over mass that a batch adds to omega^2 of its interface nodes, as a multiple of 1 / dt^2 (automatic) and as a number
 /// [1/s^2].
 struct InterfaceStiffness {
@@ -26,11 +29,12 @@ InterfaceStiffness interface_stiffness(const Model& model) {
   for (const FlsmBatch& b : model.flsm) {
     if (b.interface == 0) continue;
     if (b.settings.beta == 0) {
-      largest.per_step = std::max(largest.per_step, b.settings.alpha / (b.settings.substeps * b.settings.substeps));
+      largest.per_step =
+          std::max(largest.per_step, strokes(b.settings) * b.settings.alpha / (b.settings.substeps * b.settings.substeps));
       continue;
     }
     for (std::int32_t i = b.own; i < b.own + b.interface; ++i) {
-      largest.fixed = std::max(largest.fixed, b.settings.beta / model.mass[b.slot[i]]);
+      largest.fixed = std::max(largest.fixed, strokes(b.settings) * b.settings.beta / model.mass[b.slot[i]]);
     }
   }
   return largest;
@@ -44,7 +48,7 @@ bool Simulation::has_elements() const {
 }
 
 /// The spring beta between an interface node and its goal adds beta / m to omega^2 at most, for the goal follows the node. With
-/// beta = alpha m / H^2, H = n h: h^2 (omega^2 + alpha / (n h)^2) <= 4.
+/// beta = alpha m / H^2, H = n h: h^2 (omega^2 + alpha / (n h)^2) <= 4. Held goals pull n times as hard in one substep of n.
 double Simulation::coupled_step(double elements_alone) const {
   const InterfaceStiffness k = interface_stiffness(*model_);
   const double omega2 = 4 / (elements_alone * elements_alone) + k.fixed;
@@ -66,7 +70,7 @@ void Simulation::choose_dt(double wanted, bool estimate) {
     double mass = std::numeric_limits<double>::infinity();
     for (std::int32_t i = b.own; i < b.own + b.interface; ++i) mass = std::min(mass, model_->mass[b.slot[i]]);
     const double omega2 = (4 - k.per_step) / (state_.stable_dt * state_.stable_dt) - k.fixed;
-    const double most = mass * ((4 - k.per_step) / (wanted * wanted) - omega2);
+    const double most = mass * ((4 - k.per_step) / (wanted * wanted) - omega2) / strokes(b.settings);
     throw Error(fmt::format(
         "{}/beta: got {} N/m, which is beyond stability at dt = {} s; allowed is at most {}, or dt up to {:.6g} s",
         b.settings.pointer, b.settings.beta, wanted,
@@ -89,6 +93,11 @@ std::int64_t Simulation::phase() const {
   return state_.step % period;
 }
 
+void Simulation::restore(const SimulationState& state) {
+  state_ = state;
+  upload_shape_matching();  // the automatic beta belongs to the step
+}
+
 void Simulation::upload_shape_matching() {
   if (model_->flsm.empty()) return;
   std::vector<double> alpha;
@@ -100,7 +109,8 @@ void Simulation::upload_shape_matching() {
     const BufferId id = program_.find(fmt::format("flsm_beta/{}", i));
     std::vector<double> beta(program_.buffers[static_cast<std::size_t>(id)].count, 0.0);
     for (std::int32_t k = 0; k < b.interface; ++k) {
-      beta[k] = b.settings.beta > 0 ? b.settings.beta : b.settings.alpha * model_->mass[b.slot[b.own + k]] / (h * h);
+      const double mean = b.settings.beta > 0 ? b.settings.beta : b.settings.alpha * model_->mass[b.slot[b.own + k]] / (h * h);
+      beta[k] = strokes(b.settings) * mean;
     }
     backend_->write_reals(id, beta);
   }

@@ -85,7 +85,7 @@ class Simulation {
   [[nodiscard]] std::uint64_t model_hash() const;
 
   [[nodiscard]] const SimulationState& state() const { return state_; }
-  void restore(const SimulationState& state) { state_ = state; }
+  void restore(const SimulationState& state);  // in shape_matching.cpp
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
   [[nodiscard]] const Model& model() const { return *model_; }
