@@ -33,7 +33,9 @@ template <class Scalar>
 }
 
 /// The power of two that brings x into [1, 2).
-inline float scale_to_one(float x) { return std::bit_cast<float>(0x7f000000U - (std::bit_cast<std::uint32_t>(x) & 0x7f800000U)); }
+inline float scale_to_one(float x) {
+  return std::bit_cast<float>(0x7f000000U - (std::bit_cast<std::uint32_t>(x) & 0x7f800000U));
+}
 inline double scale_to_one(double x) {
   return std::bit_cast<double>(0x7fe0000000000000ULL - (std::bit_cast<std::uint64_t>(x) & 0x7ff0000000000000ULL));
 }

@@ -34,7 +34,10 @@
   ROW(flsm_goal_bar) \
   ROW(flsm_goal) \
   ROW(flsm_update) \
-  ROW(flsm_interface)
+  ROW(flsm_interface) \
+  ROW(flsm_damp_region) \
+  ROW(flsm_damp_update) \
+  ROW(flsm_excess)
 // clang-format on
 
 namespace pliant::ref {

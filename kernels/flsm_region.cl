@@ -12,6 +12,7 @@
 #include "deformation.cl"
 #include "flsm_rotation.cl"
 #include "flsm_records.cl"
+#include "flsm_moments.cl"
 
 #define REST(plane) LOAD(rest, (plane)*PLIANT_TILE)
 
@@ -22,36 +23,12 @@ __kernel void flsm_region(__global const float* node_u, __global const float* fl
   const int first = FIRST_INDEX;
   float moments[LANES * PLIANT_FLSM_RECORD];
   for (int l = 0; l < LANES; ++l) {
-    const int i = first + l;
-    float16 sum = vload16(i, flsm_plates);
-    float4 moment = 0.0f;
-    int below = i, above = i;
-    for (int o = 1; o <= WIDTH; ++o) {
-      below = flsm_link[2 * below];
-      above = flsm_link[2 * above + 1];
-      const float16 at_below = vload16(below, flsm_plates), at_above = vload16(above, flsm_plates);
-      sum = (sum + at_below) + at_above;
-      moment = fma((float4)((float)o), at_above.lo.lo - at_below.lo.lo, moment);
-    }
-    sum = (float16)(sum.lo, sum.hi.lo, moment);
-    const int first_entry = missing_offset[i], last_entry = missing_offset[i + 1];
-    if (first_entry < last_entry) {
-      float16 listed = -0.0f;
-      for (int e = first_entry; e < last_entry; ++e) {
-        const float4 u = vload4(missing[e], node_u);
-        listed = add_entry(missing_factor, e, (float16)(u, u, u, u), listed);
-      }
-      sum = sum + listed;
-    }
-    vstore16(sum, l, moments);
+    vstore16(region_moments(node_u, flsm_plates, flsm_link, missing_offset, missing, missing_factor, first + l), l, moments);
   }
   __global const float* rest = flsm_rest + TILE_BASE(first, PLIANT_FLSM_REST_PLANES);
-  const texels s = records_block(moments, 0), sx = records_block(moments, 1), sy = records_block(moments, 2), sz = records_block(moments, 3);
-  const real ux = texels_x(s), uy = texels_y(s), uz = texels_z(s);
   const real inverse = REST(0), dx = REST(1), dy = REST(2), dz = REST(3);
-  const mat3 e = {fma(-ux, dx, texels_x(sx)), fma(-ux, dy, texels_x(sy)), fma(-ux, dz, texels_x(sz)),
-                  fma(-uy, dx, texels_y(sx)), fma(-uy, dy, texels_y(sy)), fma(-uy, dz, texels_y(sz)),
-                  fma(-uz, dx, texels_z(sx)), fma(-uz, dy, texels_z(sy)), fma(-uz, dz, texels_z(sz))};
+  real ux, uy, uz;
+  const mat3 e = central_moments(moments, dx, dy, dz, &ux, &uy, &uz);
   const real axx = REST(4), ayy = REST(5), azz = REST(6);
   integer ok;
   const mat3 d = rotation_of(axx, ayy, azz, REST(7), REST(8), REST(9), e, (axx + ayy) + azz, &ok);

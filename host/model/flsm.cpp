@@ -44,9 +44,9 @@ void link_nodes(const Solid& solid, const std::vector<std::int32_t>& number, Fls
   }
 }
 
-void require_width(const Body& body, const FlsmBatch& batch, const LinkedLattice& lattice) {
-  std::array<std::int32_t, 3> low = lattice.index[0], high = low;
-  for (const auto& at : lattice.index) {
+void require_width(const Body& body, const FlsmBatch& batch) {
+  std::array<std::int32_t, 3> low = batch.index[0], high = low;
+  for (const auto& at : batch.index) {
     for (int c = 0; c < 3; ++c) {
       low[c] = std::min(low[c], at[c]);
       high[c] = std::max(high[c], at[c]);
@@ -102,22 +102,32 @@ FlsmBatch place_matching_nodes(const Solid& solid, const Body& body, std::int32_
   model.slots += batch.slots;
   for (std::size_t i = 0; i < own.size(); ++i) slot[own[i]] = batch.first_slot + static_cast<std::int32_t>(i);
   std::vector<std::int32_t> in_batch(solid.nodes.size(), -1);
-  LinkedLattice lattice;
   for (const auto* nodes : {&own, &shared}) {
     for (const std::int32_t n : *nodes) {
       in_batch[n] = static_cast<std::int32_t>(batch.slot.size());
       batch.slot.push_back(slot[n]);
-      lattice.index.push_back(solid.lattice_nodes[n].index);
+      batch.index.push_back(solid.lattice_nodes[n].index);
     }
   }
   link_nodes(solid, in_batch, batch);
-  require_width(body, batch, lattice);
-  lattice.link = std::move(batch.link);
+  require_width(body, batch);
+  find_batch_regions(batch);
+  return batch;
+}
+
+void find_batch_regions(FlsmBatch& batch) {
+  const std::size_t nodes = batch.slot.size();
+  LinkedLattice lattice{batch.index, std::move(batch.link)};
+  lattice.link.resize(nodes);
+  for (auto& links : lattice.link) {
+    for (std::int32_t& n : links) {
+      if (n >= static_cast<std::int32_t>(nodes)) n = -1;
+    }
+  }
   add_fillers(lattice, find_regions(lattice, batch.settings.width));
   batch.regions = find_regions(lattice, batch.settings.width);
   batch.fillers = lattice.fillers;
   batch.link = std::move(lattice.link);
-  return batch;
 }
 
 void weigh(FlsmBatch& batch, const std::vector<double>& mass) {

@@ -14,6 +14,10 @@ namespace pliant {
 FlsmBatch place_matching_nodes(const Solid& solid, const Body& body, std::int32_t number, std::vector<std::int32_t>& slot,
                                Model& model);
 
+/// Find the regions of a batch from the links among its nodes, and fillers for them; those it had before go. Called again after
+/// links were cut; weigh() has to follow.
+void find_batch_regions(FlsmBatch& batch);
+
 /// Weights of the region sums, once the masses are lumped: m / holders, so that the mean of the goals keeps the momentum.
 void weigh(FlsmBatch& batch, const std::vector<double>& mass);
 

@@ -56,6 +56,7 @@ struct FlsmBatch {
   std::int32_t first_slot = 0, slots = 0;          ///< slots reserved for `own` and for the padding, a multiple of 16
   std::int32_t fillers = 0;                        ///< empty grid points that the ordered sums cross; they have links only
   std::vector<std::int32_t> slot;                  ///< [own + interface]
+  std::vector<std::array<std::int32_t, 3>> index;  ///< [own + interface] grid point
   std::vector<std::array<std::int32_t, 6>> link;   ///< [own + interface + fillers] -x, +x, -y, +y, -z, +z, -1: none
   FlsmRegions regions;
   std::vector<double> weight;                      ///< [own + interface] node mass over the number of regions that hold it [kg]

@@ -1,0 +1,26 @@
+// Per-region damping of the increments: w <- w + damping (w_rigid - w), with w_rigid the mean over the regions that hold the node; or with
+// REACTION w <- w - w_rigid, for the w_rigid of flsm_excess. Both keep the momentum, and the angular momentum as far as the rotations of
+// the regions are those of their nodes.
+// flsm_bars: [regions][2] blocks of sums of flsm_rates; other arguments as in flsm_goal. Interface nodes, from region interface_base on,
+// take `substeps` steps for one of shape matching: their w is that much shorter. Nodes without inverse mass keep theirs.
+#include "arith.cl"
+#include "texels.cl"
+#include "flsm_goal_sum.cl"
+
+__kernel void flsm_damp_update(__global const float* node_u, __global float* node_w, __global const int* flsm_slot,
+                               __global const float* flsm_bars, __global const int* flsm_link, __global const float* flsm_rates,
+                               __global const int* missing_of_offset, __global const int* missing_of, __global const float* missing_of_factor,
+                               __global const float* flsm_inverse_holders, float damping, int substeps, int interface_base) {
+  for (int i = FIRST_INDEX; i < FIRST_INDEX + LANES; ++i) {
+    const int slot = flsm_slot[i];
+    const float4 rigid = goal_sum(flsm_bars, flsm_link, flsm_rates, missing_of_offset, missing_of, missing_of_factor, i);
+    const float share = i < interface_base ? flsm_inverse_holders[i] : flsm_inverse_holders[i] / (float)substeps;
+    const float4 w = vload4(slot, node_w);
+#if REACTION
+    const float4 next = fma(-rigid, (float4)(share), w);
+#else
+    const float4 next = fma((float4)(damping), fma(rigid, (float4)(share), -w), w);
+#endif
+    if (node_u[4 * slot + 3] > 0.0f) vstore4((float4)(next.xyz, w.w), slot, node_w);
+  }
+}
