@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "bench/deformation.h"
 #include "bench/kernels.h"
 #include "cli/cli.h"
 #include "io/atomic_file.h"
@@ -14,6 +15,7 @@ namespace {
 struct Options {
   Common common;
   bench::KernelsOptions kernels;
+  bench::DeformationOptions deformation;
   std::filesystem::path out;
 };
 
@@ -29,27 +31,55 @@ void write_folder(const std::filesystem::path& out, const std::string& stem, con
   write_file(out / (stem + ".csv"), bench::rows_csv(result["rows"]));
 }
 
+/// What every benchmark does around its measurements.
+template <class Wanted>
+int measure(Options& options, const std::string& stem, Wanted& wanted, nlohmann::json (*bench)(const Wanted&),
+            std::string (*table)(const nlohmann::json&)) {
+  if (!options.out.empty()) make_folder(options.out);
+  Progress progress(!options.common.quiet);
+  wanted.progress = [&](double done, const std::string& what) {
+    progress.show(static_cast<std::int64_t>(1000 * done), 1000, what);
+  };
+  const nlohmann::json result = bench(wanted);
+  progress.clear();
+  options.common.print(table(result));
+  if (!options.out.empty()) {
+    write_folder(options.out, stem, result);
+    const std::string out = options.out.string();
+    options.common.note(
+        fmt::format("wrote {1}.json and {1}.csv to {0}; python3 bench/report.py {0} draws the charts", out, stem));
+  }
+  options.common.write(nlohmann::ordered_json(result));
+  return 0;
+}
+
 int kernels(Options& options) {
   options.common.check();
   for (const std::int64_t size : options.kernels.sizes) {
     if (size < 1 || size > 100'000'000) throw Error(fmt::format("--sizes: got {}, expected 1 to 100000000 elements", size));
   }
-  if (!options.out.empty()) make_folder(options.out);
-  Progress progress(!options.common.quiet);
-  options.kernels.progress = [&](double done, const std::string& what) {
-    progress.show(static_cast<std::int64_t>(1000 * done), 1000, what);
-  };
-  const nlohmann::json result = bench::bench_kernels(options.kernels);
-  progress.clear();
-  options.common.print(bench::kernels_table(result));
-  if (!options.out.empty()) {
-    write_folder(options.out, "kernels", result);
-    const std::string out = options.out.string();
-    options.common.note(
-        fmt::format("wrote kernels.json and kernels.csv to {0}; python3 bench/report.py {0} draws the charts", out));
-  }
-  options.common.write(nlohmann::ordered_json(result));
-  return 0;
+  return measure(options, "kernels", options.kernels, bench::bench_kernels, bench::kernels_table);
+}
+
+int deformation(Options& options) {
+  options.common.check();
+  return measure(options, "deformation", options.deformation, bench::bench_deformation, bench::deformation_table);
+}
+
+void add_deformation(CLI::App& app, const std::shared_ptr<Options>& options) {
+  CLI::App* sub = app.add_subcommand(
+      "deformation", "Hybrid bodies beside finite elements and shape matching alone, the source's times, growth and error");
+  bench::DeformationOptions& d = options->deformation;
+  options->common.add_to(*sub);
+  sub->add_option("--scenes", d.scenes, "folder of the shipped scenes");
+  sub->add_option("--only", d.only, "bunny, apple, liver, kidney")->delimiter(',');
+  sub->add_option("--parts", d.parts, "scenes, scaling, accuracy")->delimiter(',');
+  sub->add_option("--backends", d.backends, "default: auto,cpu; the first one serves scaling and accuracy")->delimiter(',');
+  sub->add_option("--sizes", d.sizes, "nodes of the liver in part scaling, default: 10000,100000")->delimiter(',');
+  sub->add_option("--ratios", d.ratios, "operational shares in part accuracy, default: 0.1 to 0.9")->delimiter(',');
+  sub->add_flag("--full", d.full, "scaling to 1000000 nodes");
+  sub->add_flag("--quick", d.quick, "a few steps of everything; the times mean nothing");
+  sub->add_option("--out", options->out, "folder for deformation.json and deformation.csv");
 }
 
 }  // namespace
@@ -65,7 +95,8 @@ std::function<int()> setup_bench(CLI::App& app) {
   sub->add_option("--backends", options->kernels.backends, "default: the first OpenCL device, cpu, cpu:double")->delimiter(',');
   sub->add_option("--law", options->kernels.law, "neo-hookean, saint-venant-kirchhoff or isochoric-neo-hookean");
   sub->add_option("--out", options->out, "folder for kernels.json and kernels.csv");
-  return [options] { return kernels(*options); };
+  add_deformation(app, options);
+  return [options, sub] { return sub->parsed() ? kernels(*options) : deformation(*options); };
 }
 
 }  // namespace pliant::cli

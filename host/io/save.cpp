@@ -88,6 +88,19 @@ Checkpoint take_checkpoint(const Simulation& simulation) {
 }
 
 void restore_checkpoint(Simulation& simulation, const Checkpoint& checkpoint, const std::filesystem::path& file) {
+  const auto& clock = host_group(checkpoint, "clock", 5, file);
+  SimulationState state;
+  state.step = checkpoint.step;
+  state.dt = checkpoint.dt;
+  state.origin_step = static_cast<std::int64_t>(clock[0]);
+  state.origin_time = clock[1];
+  state.stable_dt = clock[2];
+  state.damping = clock[3];
+  state.caution = clock[4];
+  for (const auto& [name, values] : checkpoint.host_state) {
+    if (name.rfind(kVector, 0) == 0) state.vectors[name.substr(kVector.size())] = values;
+  }
+  simulation.prepare_restore(state);  // before the hash: an operational region may have moved
   if (checkpoint.scene_hash != simulation.model_hash()) {
     throw Error(fmt::format(
         "{}: a checkpoint of \"{}\" (model {}) cannot resume \"{}\" (model {}): the scene, its meshes, the step given "
@@ -100,19 +113,7 @@ void restore_checkpoint(Simulation& simulation, const Checkpoint& checkpoint, co
     throw Error(fmt::format("{}: a checkpoint in {} cannot resume on the backend {}, which computes in {}", file.string(),
                             checkpoint.real_type, simulation.backend().info().name, real));
   }
-  const auto& clock = host_group(checkpoint, "clock", 5, file);
   const auto found = find_buffers(simulation, checkpoint, real == "double", file);
-  SimulationState state;
-  state.step = checkpoint.step;
-  state.dt = checkpoint.dt;
-  state.origin_step = static_cast<std::int64_t>(clock[0]);
-  state.origin_time = clock[1];
-  state.stable_dt = clock[2];
-  state.damping = clock[3];
-  state.caution = clock[4];
-  for (const auto& [name, values] : checkpoint.host_state) {
-    if (name.rfind(kVector, 0) == 0) state.vectors[name.substr(kVector.size())] = values;
-  }
   const auto& buffers = simulation.program().buffers;
   std::size_t next = 0;
   for (std::size_t id = 0; id < buffers.size(); ++id) {

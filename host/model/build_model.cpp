@@ -279,11 +279,12 @@ void add_totals(const Body& body, const Draft& draft, ModelBody& out) {
   }
 }
 
-void place_bodies(const Scene& scene, std::vector<Draft>& drafts, Model& model) {
+void place_bodies(const Scene& scene, std::vector<Solid> solids, std::vector<Draft>& drafts, Model& model) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
     Draft draft;
-    draft.solid = make_solid(body);
+    draft.solid = std::move(solids[b]);
+    repartition(body, draft.solid);
     draft.material = materials_of(body, draft.solid);
     draft.in_brick.assign(draft.material.size(), false);
     draft.slot.assign(draft.solid.nodes.size(), -1);
@@ -322,10 +323,12 @@ std::int64_t Model::elements() const {
   return n;
 }
 
-Model build_model(const Scene& scene) {
+Model build_model(const Scene& scene) { return build_model(scene, make_solids(scene)); }
+
+Model build_model(const Scene& scene, std::vector<Solid> solids) {
   Model model;
   std::vector<Draft> drafts;
-  place_bodies(scene, drafts, model);
+  place_bodies(scene, std::move(solids), drafts, model);
   model.rest.resize(model.slots);
   model.mass.resize(model.slots);
   model.damping.resize(model.slots);

@@ -33,12 +33,7 @@ void from_lattice(const Body& body, Solid& solid) {
     solid.surface_nodes.push_back(cell.nodes);
     solid.surface_weights.push_back(weights);
   }
-  if (body.model.type != ModelType::tled) {
-    solid.partition = partition_lattice(body, lattice);
-    for (std::size_t c = 0; c < lattice.cells.size(); ++c) {
-      if (solid.partition.operational[c] == 0) solid.matching_cells.push_back(lattice.cells[c]);
-    }
-  }
+  if (body.model.type != ModelType::tled) solid.lattice = std::make_shared<const Lattice>(lattice);
   solid.lattice_nodes = std::move(lattice.nodes);
   if (takes_tets(body.element)) {
     for (const Cell& cell : lattice.cells) {
@@ -94,6 +89,22 @@ void from_mesh(const Body& body, Solid& solid) {
 }
 
 }  // namespace
+
+std::vector<Solid> make_solids(const Scene& scene) {
+  std::vector<Solid> solids;
+  for (const Body& body : scene.bodies) solids.push_back(make_solid(body));
+  return solids;
+}
+
+void repartition(const Body& body, Solid& solid) {
+  if (solid.lattice == nullptr) return;
+  const Lattice& lattice = *solid.lattice;
+  solid.partition = partition_lattice(body, lattice);
+  solid.matching_cells.clear();
+  for (std::size_t c = 0; c < lattice.cells.size(); ++c) {
+    if (solid.partition.operational[c] == 0) solid.matching_cells.push_back(lattice.cells[c]);
+  }
+}
 
 Solid make_solid(const Body& body) {
   Solid solid;

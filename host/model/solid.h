@@ -1,10 +1,12 @@
 // One body cut into elements, before it gets its place among the slots of the Model.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "model/lattice.h"
 #include "model/mesh.h"
+#include "model/model.h"
 #include "model/partition.h"
 
 namespace pliant {
@@ -16,6 +18,7 @@ struct Solid {
   std::vector<double> fill;                        ///< per element
   std::vector<LatticeNode> lattice_nodes;          ///< one per node if the body is a lattice, else empty
   std::vector<Cell> cells;                         ///< one per hexahedron if the body is a lattice of hexahedra, else empty
+  std::shared_ptr<const Lattice> lattice;          ///< if body.model is not tled: what repartition works on
   Partition partition;                             ///< of the lattice's cells, if body.model is not tled
   std::vector<Cell> matching_cells;                ///< the cells left to shape matching
   double spacing = 0;                              ///< [m]
@@ -29,11 +32,20 @@ struct Solid {
     return partition.operational.empty() || partition.operational[tets.empty() ? e : e / 6] != 0;
   }
   /// Whether shape matching alone moves node n.
-  [[nodiscard]] bool matching(std::size_t n) const { return !partition.kind.empty() && partition.kind[n] == NodeKind::matching; }
+  [[nodiscard]] bool matching(std::size_t n) const {
+    return !partition.kind.empty() && partition.kind[n] == NodeKind::matching;
+  }
 };
 
 /// Load the body's mesh and fill it.
 Solid make_solid(const Body& body);
+std::vector<Solid> make_solids(const Scene& scene);
+
+/// Choose the operational cells of a lattice anew, as body.model says now.
+void repartition(const Body& body, Solid& solid);
+
+/// Like build_model(scene), for bodies that are loaded and filled already; their partition is chosen anew.
+Model build_model(const Scene& scene, std::vector<Solid> solids);
 
 /// VTK's corner order of a hexahedron from bit order, and back: the same permutation both ways.
 inline constexpr std::array<int, 8> kVtkFromBits{0, 1, 3, 2, 4, 5, 7, 6};

@@ -20,7 +20,7 @@ struct BackendInfo {
   std::uint64_t max_buffer_bytes = 0;  ///< largest single allocation
   int compute_units = 0;
   bool single_thread = false;  ///< computes on the caller's thread: better for small scenes
-  int lanes = 1;  ///< indices per work-item of a `lanes` pass
+  int lanes = 1;               ///< indices per work-item of a `lanes` pass
 };
 
 /// Device time of one pass, summed.

@@ -148,16 +148,21 @@ class FlsmPasses {
     pass("flsm_interface", {{"EXTRAPOLATED", b_.settings.extrapolate && n > 1 ? 1 : 0}},
          {shared_.node_u, shared_.node_load, slot_, goals_, beta_, shared_.step_params, int_arg(n), base, step_arg()},
          static_cast<std::int32_t>(shared), 88, 12, b_.interface);
-    program_.step.back().every = 1;
+    // Held goals pull in the first substep alone, n times as hard, when both ends of the spring are where the regions saw them:
+    // an impulse like that of shape matching's own nodes, so that momenta are kept. In later substeps they would drag at nodes
+    // that have moved on.
+    program_.step.back().every = b_.settings.extrapolate ? 1 : n;
   }
 
   /// Gives the excess of the interface's springs back to the regions. It goes through the bars and plates, so the goals follow
   /// anew.
   void add_reaction(std::int32_t slots) {
+    const Arg mean = reals("flsm_mean_beta", static_cast<std::size_t>(places_.nodes - places_.interface_base),
+                           BufferRole::control, "[interface]", "N/m", "host");
     const Arg excess =
         reals("flsm_excess", 4 * static_cast<std::size_t>(slots), BufferRole::scratch, "[slots]", "m", "flsm_excess");
     pass("flsm_excess", {},
-         {shared_.node_u, slot_, goals_, beta_, shared_.alpha, shared_.step_params, excess, int_arg(index_),
+         {shared_.node_u, slot_, goals_, mean, shared_.alpha, shared_.step_params, excess, int_arg(index_),
           int_arg(b_.settings.substeps), int_arg(places_.interface_base)},
          places_.nodes - places_.interface_base, 88, 12, b_.interface);
     add_rates(excess, weight_, missing_args_, 1, 0, "reaction");

@@ -18,8 +18,36 @@ constexpr double kFrame = 1.0 / 60;  ///< automatic step of a scene without fini
 /// How many times its beta the interface feels while it feels any: see flsm_interface in program_flsm.cpp.
 int strokes(const DeformationModel& m) { return m.extrapolate ? 1 : m.substeps; }
 
+/// Young's modulus of shape matching is E = c rho d^2 alpha / b, with b = H^2 / (1 + D H / 2) for the step H and the damping
+/// rate D [1/s]. c by half-width, minus one: the uniaxial pull of bars of any thickness, which is (w^2 + w) / 3, the variance
+/// of a window of 2 w + 1 nodes. Measured by bench/calibrate.py; bending is stiffer where regions are thicker than the body
+/// (docs/flsm_stiffness.md).
+constexpr double kPullStiffness[] = {2.0 / 3, 2, 4, 20.0 / 3, 10};
+
+/// E b / alpha [Pa s^2]: what a batch's stiffness is in proportion to.
+double stiffness_unit(const FlsmBatch& batch) {
+  return kPullStiffness[batch.settings.width - 1] * batch.density * batch.spacing * batch.spacing;
+}
+
+/// The alpha of a batch at the step `dt` of the scene [s], for the damping rate of its material [1/s]: as it stands in the
+/// scene, or from "stiffness". It falls with the step: what a start allows, every smaller step allows. Throws Error above 1.
+double alpha_for(const FlsmBatch& batch, double dt, double damping) {
+  const DeformationModel& m = batch.settings;
+  if (m.young <= 0) return m.alpha;
+  const double h = m.substeps * dt, b = h * h / (1 + 0.5 * damping * h), most = stiffness_unit(batch) / b;
+  if (m.young > 1.00001 * most) {  // the message's digits are allowed
+    const double largest_b = stiffness_unit(batch) / m.young, quarter = 0.25 * damping * largest_b;
+    const double largest_dt = (quarter + std::sqrt(quarter * quarter + largest_b)) / m.substeps;
+    throw Error(fmt::format(
+        "{}/stiffness/young: got {} Pa, which no alpha reaches with width {} at dt = {:.6g} s{}; allowed is at most {:.6g} Pa, "
+        "or dt up to {:.6g} s",
+        m.pointer, m.young, m.width, dt, m.substeps > 1 ? fmt::format(" and {} substeps", m.substeps) : "", most, largest_dt));
+  }
+  return std::min(1.0, m.young / most);
+}
+
 /// beta over mass that a batch adds to omega^2 of its interface nodes, as a multiple of 1 / dt^2 (automatic) and as a number
-/// [1/s^2].
+/// [1/s^2] (given, or automatic with an alpha that falls with dt^2).
 struct InterfaceStiffness {
   double per_step = 0, fixed = 0;
 };
@@ -28,6 +56,10 @@ InterfaceStiffness interface_stiffness(const Model& model) {
   InterfaceStiffness largest;
   for (const FlsmBatch& b : model.flsm) {
     if (b.interface == 0) continue;
+    if (b.settings.beta == 0 && b.settings.young > 0) {
+      largest.fixed = std::max(largest.fixed, strokes(b.settings) * b.settings.young / stiffness_unit(b));
+      continue;
+    }
     if (b.settings.beta == 0) {
       largest.per_step =
           std::max(largest.per_step, strokes(b.settings) * b.settings.alpha / (b.settings.substeps * b.settings.substeps));
@@ -86,11 +118,15 @@ std::int32_t Simulation::substeps_of(std::size_t slot) const {
   return 1;
 }
 
-/// Steps since the start, as far as subcycling needs them.
-std::int64_t Simulation::phase() const {
+std::int64_t Simulation::period() const {
   std::int64_t period = 1;
   for (const FlsmBatch& b : model_->flsm) period = std::lcm(period, std::int64_t{b.settings.substeps});
-  return state_.step % period;
+  return period;
+}
+
+bool Simulation::begins_after(std::int64_t step, std::int64_t every) const {
+  const std::int64_t p = period();
+  return step % p == 0 && step % every < p;
 }
 
 void Simulation::restore(const SimulationState& state) {
@@ -104,15 +140,19 @@ void Simulation::upload_shape_matching() {
   for (std::size_t i = 0; i < model_->flsm.size(); ++i) {
     const FlsmBatch& b = model_->flsm[i];
     const double h = b.settings.substeps * state_.dt;
-    alpha.push_back(b.settings.alpha);
+    alpha.push_back(alpha_for(b, state_.dt, scene_.bodies[static_cast<std::size_t>(b.body)].material.damping));
     if (b.interface == 0) continue;
     const BufferId id = program_.find(fmt::format("flsm_beta/{}", i));
     std::vector<double> beta(program_.buffers[static_cast<std::size_t>(id)].count, 0.0);
     for (std::int32_t k = 0; k < b.interface; ++k) {
-      const double mean = b.settings.beta > 0 ? b.settings.beta : b.settings.alpha * model_->mass[b.slot[b.own + k]] / (h * h);
+      const double mean = b.settings.beta > 0 ? b.settings.beta : alpha.back() * model_->mass[b.slot[b.own + k]] / (h * h);
       beta[k] = strokes(b.settings) * mean;
     }
     backend_->write_reals(id, beta);
+    const BufferId mean = program_.find(fmt::format("flsm_mean_beta/{}", i));
+    if (mean < 0) continue;
+    for (double& k : beta) k /= strokes(b.settings);
+    backend_->write_reals(mean, beta);
   }
   backend_->write_reals(program_.find("flsm_alpha"), alpha);
 }

@@ -42,12 +42,13 @@ Simulation::Simulation(Scene scene, std::shared_ptr<const Model> model, std::uni
   start(options);
 }
 
-void Simulation::start(const SimulationOptions& options) {
-  batch_steps_ = options.batch_steps;
+/// Make the model's program and load it.
+void Simulation::load_program() {
   program_ = build_program(*model_, {scene_.integrator, batch_steps_});
   backend_->load(program_);
   u_ = program_.find("node_u");
   w_ = program_.find("node_w");
+  kept_.clear();
   for (std::size_t id = 0; id < program_.buffers.size(); ++id) {
     const std::string& name = program_.buffers[id].name;
     if (name.starts_with("last_")) {
@@ -67,6 +68,11 @@ void Simulation::start(const SimulationOptions& options) {
       if (constraint.axes & (1 << c)) free_[3 * static_cast<std::size_t>(constraint.slot) + c] = false;
     }
   }
+}
+
+void Simulation::start(const SimulationOptions& options) {
+  batch_steps_ = options.batch_steps;
+  load_program();
   for (const Curve& curve : model_->curves) {
     double end = curve.start + curve.duration;
     if (!curve.table.empty()) end = std::max(end, curve.table.back()[0]);
@@ -150,6 +156,7 @@ std::int32_t Simulation::next_batch(std::int64_t wanted) const {
 }
 
 void Simulation::begin_batch(std::int32_t steps) {
+  if (on_grid(state_.step)) follow_tool();
   if (adapts_at(state_.step)) adapt_dt();
   if (on_grid(state_.step) || state_.vectors.count("kept") == 0) keep_state();
   upload_params();
@@ -158,7 +165,7 @@ void Simulation::begin_batch(std::int32_t steps) {
 
 /// Steps at which batches begin however a run is cut into pieces: only these states are kept to go back to.
 bool Simulation::on_grid(std::int64_t step) const {
-  return step % batch_steps_ == 0 || adapts_at(step) || (scene_.relaxation.enabled && step % kRelaxEvery == 0);
+  return begins_after(step, batch_steps_) || adapts_at(step) || (scene_.relaxation.enabled && step % kRelaxEvery == 0);
 }
 
 void Simulation::keep_state() {
@@ -253,7 +260,9 @@ void Simulation::change_dt(double dt) {
 
 bool Simulation::adapts_at(std::int64_t step) const {
   if (!automatic_ || step == 0) return false;
-  return step % kAdaptEvery == 0 || std::find(std::begin(kFirstAdapts), std::end(kFirstAdapts), step) != std::end(kFirstAdapts);
+  const bool first = std::any_of(std::begin(kFirstAdapts), std::end(kFirstAdapts),
+                                 [&](std::int64_t k) { return step < 2 * k && begins_after(step, k); });
+  return first || (step >= kAdaptEvery && begins_after(step, kAdaptEvery));
 }
 
 /// Follow the stable step of the deformed body down at once, and up again to the first step once it has recovered by a tenth.

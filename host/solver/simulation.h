@@ -15,6 +15,8 @@
 
 namespace pliant {
 
+struct Solid;
+
 /// The first element whose J stopped being a positive, finite number.
 struct Divergence {
   std::int64_t step = 0;  ///< the step in which it was seen
@@ -90,17 +92,27 @@ class Simulation {
   [[nodiscard]] const Scene& scene() const { return scene_; }
   [[nodiscard]] const Model& model() const { return *model_; }
   [[nodiscard]] std::shared_ptr<const Model> shared_model() const { return model_; }
+  /// Build the model of a state whose operational regions had moved, before its buffers are written.
+  void prepare_restore(const SimulationState& state);
   [[nodiscard]] const Program& program() const { return program_; }
   [[nodiscard]] Backend& backend() const { return *backend_; }
 
  private:
   void start(const SimulationOptions& options);
+  void load_program();
+  /// Defined in follow_tool.cpp.
+  void follow_tool();
+  void move_region(const std::vector<double>& seeds);
   /// Defined in shape_matching.cpp.
   void choose_dt(double wanted, bool estimate);
   [[nodiscard]] bool has_elements() const;
   [[nodiscard]] double coupled_step(double elements_alone) const;
   [[nodiscard]] std::int32_t substeps_of(std::size_t slot) const;
-  [[nodiscard]] std::int64_t phase() const;
+  /// Steps of the elements after which all subcycles begin together.
+  [[nodiscard]] std::int64_t period() const;
+  [[nodiscard]] std::int64_t phase() const { return state_.step % period(); }
+  /// Whether all subcycles begin in this step, the first such step since a multiple of `every`.
+  [[nodiscard]] bool begins_after(std::int64_t step, std::int64_t every) const;
   void upload_shape_matching();
   void set_initial_increment();
   void upload_params();
@@ -123,6 +135,7 @@ class Simulation {
   [[nodiscard]] std::vector<Vec3d> pick(const std::vector<double>& texels, std::size_t body, double factor) const;
 
   Scene scene_;
+  std::shared_ptr<const std::vector<Solid>> solids_;  ///< the bodies as loaded, once an operational region has moved
   std::shared_ptr<const Model> model_;
   Program program_;
   std::unique_ptr<Backend> backend_;

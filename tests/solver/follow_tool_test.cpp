@@ -1,0 +1,93 @@
+// An operational region that follows the tool: nothing jumps when nodes change model, and both backends do it alike.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+
+#include "io/save.h"
+#include "solver/compare.h"
+#include "solver/scenes.h"
+#include "support/temp_folder.h"
+
+namespace pliant::testing {
+namespace {
+
+/// A free bar 0.2 m long that bends and turns while the tool goes along it.
+Scene followed_bar(int substeps) {
+  const std::string text = R"({"format": "pliant-scene/1", "tool": {"path": [[0, -0.08, 0, 0], [0.2, 0.08, 0, 0]]},
+    "bodies": [{"name": "bar", "surface": "meshes/cylinder.obj", "lattice": {"spacing": 0.01}, "element": "hex8",
+      "material": {"law": "neo-hookean", "young": 3000, "poisson": 0.4, "density": 1000},
+      "velocity": [0.1, 0, 0], "angular_velocity": [0, 2, 1],
+      "model": {"type": "hybrid", "ratio": 0.3, "follow": "tool", "goals": "extrapolated", "substeps": )" +
+                           std::to_string(substeps) + R"(}}]})";
+  return parse_scene(text, std::string(PLIANT_SOURCE_DIR) + "/scenes/followed_bar.json");
+}
+
+Vec3d momentum(const Simulation& sim) {
+  const auto v = sim.velocities(0);
+  Vec3d p{};
+  for (std::size_t n = 0; n < v.size(); ++n) {
+    for (int c = 0; c < 3; ++c) p[c] += sim.model().mass[sim.model().bodies[0].slot[n]] * v[n][c];
+  }
+  return p;
+}
+
+TEST(FollowTool, NothingJumpsWhenTheRegionMoves) {
+  for (const int substeps : {1, 2}) {
+    Simulation sim(followed_bar(substeps), open_backend("cpu"));
+    int moves = 0;
+    double jump = 0, change = 0;
+    for (int batch = 0; batch < 12; ++batch) {
+      sim.advance(sim.next_batch(64));
+      const auto before = sim.displacements(0);
+      const Vec3d p = momentum(sim);
+      const Model* model = &sim.model();
+      sim.begin_batch(1);  // where it looks at the tool
+      if (&sim.model() == model) continue;
+      ++moves;
+      EXPECT_NEAR(static_cast<double>(sim.model().bodies[0].operational_nodes + sim.model().bodies[0].interface_nodes) /
+                      static_cast<double>(sim.model().nodes()),
+                  0.3, 0.02);
+      const auto after = sim.displacements(0);
+      const Vec3d q = momentum(sim);
+      for (std::size_t n = 0; n < after.size(); ++n) {
+        for (int c = 0; c < 3; ++c) jump = std::max(jump, std::abs(after[n][c] - before[n][c]));
+      }
+      for (int c = 0; c < 3; ++c) change = std::max(change, std::abs(q[c] - p[c]) / std::hypot(p[0], p[1], p[2]));
+    }
+    std::cout << "             substeps " << substeps << ": " << moves << " moves, jump of position " << jump
+              << " m (bound 0), of momentum " << change << " (bound 1e-6)\n";
+    EXPECT_GE(moves, 3);
+    EXPECT_EQ(jump, 0);
+    EXPECT_LE(change, 1e-6);
+  }
+}
+
+TEST(FollowTool, BothBackendsMoveItAlike) {
+  if (!has_opencl()) GTEST_SKIP() << "no OpenCL device";
+  const Scene scene = followed_bar(2);
+  Simulation a(scene, open_backend("cpu")), b(scene, a.shared_model(), open_backend("opencl:0"));
+  const Model* first = &a.model();
+  CompareOptions options;
+  options.steps = 300;
+  const ComparisonResult result = compare(a, b, options);
+  EXPECT_TRUE(result.identical);
+  EXPECT_NE(&a.model(), first) << "the region must have moved";
+}
+
+TEST(FollowTool, AResumedRunGivesTheSameBits) {
+  const test::TempFolder folder;
+  const auto file = folder.path() / "bar.pckpt";
+  Simulation whole(followed_bar(1), open_backend("cpu"));
+  whole.advance(150);
+  write_checkpoint(file, take_checkpoint(whole));
+  whole.advance(150);
+  Simulation resumed(followed_bar(1), open_backend("cpu"));
+  restore_checkpoint(resumed, read_checkpoint(file), file);
+  resumed.advance(150);
+  EXPECT_EQ(resumed.hash(), whole.hash());
+  EXPECT_EQ(resumed.step(), whole.step());
+}
+
+}  // namespace
+}  // namespace pliant::testing
