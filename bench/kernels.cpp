@@ -5,8 +5,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 #include <chrono>
+#include <cmath>
 #include <ctime>
 #include <fstream>
 #include <map>
@@ -81,7 +81,8 @@ void measure(const KernelsOptions& options, const std::string& element, const st
   Simulation simulation(block.scene, block.model, open_backend(backend_name), simulation_options);
   Backend& backend = simulation.backend();
   const std::int64_t elements = block.model->elements();
-  // Until the first disturbance has crossed the block: ahead of it, strains of 1e-13 have denormal products (docs/decisions.md).
+  // Until the first disturbance has crossed the block: ahead of it, strains of 1e-13 have denormal products
+  // (docs/decisions.md).
   simulation.advance(16 + static_cast<std::int64_t>(1.2 * std::cbrt(static_cast<double>(elements))));
   if (simulation.divergence()) throw Error(ErrorCode::diverged, simulation.divergence()->message());
   const std::string hash = fmt::format("{:016x}", simulation.hash());
@@ -174,6 +175,20 @@ std::string kernels_table(const json& result) {
   return text;
 }
 
+namespace {
+
+/// As RFC 4180 wants it: quoted where it holds a comma or a quote.
+std::string csv_cell(const json& value) {
+  if (value.is_null()) return "";
+  const std::string plain = value.is_string() ? value.get<std::string>() : value.dump();
+  if (plain.find_first_of(",\"\n") == std::string::npos) return plain;
+  std::string quoted = "\"";
+  for (const char c : plain) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+}  // namespace
+
 std::string rows_csv(const json& rows) {
   std::vector<std::string> columns;
   for (const json& row : rows) {
@@ -184,13 +199,7 @@ std::string rows_csv(const json& rows) {
   std::string text = fmt::format("{}\n", fmt::join(columns, ","));
   for (const json& row : rows) {
     std::vector<std::string> cells;
-    for (const std::string& column : columns) {
-      if (!row.contains(column)) {
-        cells.emplace_back();
-      } else {
-        cells.push_back(row[column].is_string() ? row[column].get<std::string>() : row[column].dump());
-      }
-    }
+    for (const std::string& column : columns) cells.push_back(row.contains(column) ? csv_cell(row[column]) : "");
     text += fmt::format("{}\n", fmt::join(cells, ","));
   }
   return text;

@@ -24,9 +24,13 @@ Timing time_passes(Backend& backend, const std::vector<Pass>& passes, int batche
   seconds_for(backend, passes, runs);
   std::vector<double> samples;
   for (int b = 0; b < batches; ++b) samples.push_back(seconds_for(backend, passes, runs) / runs);
+  return summary(samples);
+}
+
+Timing summary(std::vector<double> samples) {
   std::sort(samples.begin(), samples.end());
   const std::size_t n = samples.size();
-  return {samples[n / 2], samples[0], (samples[3 * n / 4] - samples[n / 4]) / samples[n / 2], batches};
+  return {samples[n / 2], samples[0], (samples[3 * n / 4] - samples[n / 4]) / samples[n / 2], static_cast<int>(n)};
 }
 
 }  // namespace pliant::bench

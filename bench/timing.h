@@ -17,4 +17,7 @@ struct Timing {
 /// Run `passes` in batches of about `batch_seconds` until there are `batches` of them, after one batch of warm-up.
 Timing time_passes(Backend& backend, const std::vector<Pass>& passes, int batches = 9, double batch_seconds = 0.02);
 
+/// Median, best and spread of the times of batches [s].
+Timing summary(std::vector<double> samples);
+
 }  // namespace pliant::bench

@@ -1,0 +1,93 @@
+// The rows of `pliant bench deformation` as text.
+#include <fmt/format.h>
+
+#include "bench/deformation.h"
+
+namespace pliant::bench {
+namespace {
+
+using nlohmann::json;
+
+std::string words(const json& row, const char* key) { return row.at(key).get<std::string>(); }
+
+std::string number(const json& row, const char* key, int digits, double factor = 1) {
+  if (!row.contains(key) || row[key].is_null()) return "";
+  return fmt::format("{:.{}f}", factor * row[key].get<double>(), digits);
+}
+
+std::string against(const json& row, const char* key, const char* limit) {
+  if (!row.contains(limit)) return "";
+  return fmt::format("{} {}", row.at(key).get<double>() <= row[limit].get<double>() ? "<=" : "> ", number(row, limit, 1));
+}
+
+std::string scenes_table(const json& rows) {
+  std::string text =
+      fmt::format("{:<8} {:<7} {:<10} {:>6} {:>6}  {:>9} {:<7} {:>9} {:>10} {:>9} {:>7}  {}\n", "scene", "method", "backend",
+                  "nodes", "ratio", "ms/step", "limit", "source", "dt [ms]", "ms/frame", "spread", "hash");
+  for (const json& r : rows) {
+    if (r["part"] != "scenes") continue;
+    text += fmt::format("{:<8} {:<7} {:<10} {:>6} {:>6}  {:>9} {:<7} {:>9} {:>10} {:>9} {:>6}%  {}\n", words(r, "scene"),
+                        words(r, "method"), words(r, "backend"), r["nodes"].get<std::int64_t>(), number(r, "ratio", 3),
+                        number(r, "ms_per_step", 4), against(r, "ms_per_step", "limit_ms"), number(r, "source_ms", 1),
+                        number(r, "dt", 3, 1e3), number(r, "ms_per_frame", 2), number(r, "spread", 0, 100), words(r, "hash"));
+  }
+  return text;
+}
+
+std::string scaling_table(const json& rows) {
+  std::string text =
+      fmt::format("{:<7} {:<10} {:>9} {:>2} {:<7} {:>8} {:<8} {:>10} {:>10} {:>7} {:>7}  {}\n", "method", "backend", "nodes",
+                  "w", "cut", "ns/node", "limit", "ms/step", "set-up [s]", "of best", "spread", "hash");
+  for (const json& r : rows) {
+    if (r["part"] != "scaling") continue;
+    text += fmt::format("{:<7} {:<10} {:>9} {:>2} {:<7} {:>8} {:<8} {:>10} {:>10} {:>6}% {:>6}%  {}\n", words(r, "method"),
+                        words(r, "backend"), r["nodes"].get<std::int64_t>(), r["width"].get<int>(), words(r, "cut"),
+                        number(r, "ns_per_node", 1), against(r, "ns_per_node", "limit_ns"), number(r, "ms_per_step", 3),
+                        number(r, "set_up_seconds", 2), number(r, "fraction", 0, 100), number(r, "spread", 0, 100),
+                        words(r, "hash"));
+  }
+  return text;
+}
+
+std::string accuracy_table(const json& rows) {
+  std::string text = fmt::format("{:<7} {:>6} {:>9} {:>9} {:>15} {:>8} {:>10} {:>14} {:>10}\n", "method", "ratio", "ms/step",
+                                 "error", "near interface", "far", "near share", "other coupling", "speed-up");
+  for (const json& r : rows) {
+    if (r["part"] != "accuracy") continue;
+    const auto percent = [&](const char* key, int digits) {
+      const std::string value = number(r, key, digits, 100);
+      return value.empty() ? value : value + "%";
+    };
+    text += fmt::format("{:<7} {:>6} {:>9} {:>9} {:>15} {:>8} {:>10} {:>14} {:>10}\n", words(r, "method"),
+                        number(r, "ratio", 3), number(r, "ms_per_step", 4), percent("error_operational", 2),
+                        percent("error_near_interface", 2), percent("error_far", 2), percent("near_share", 0),
+                        percent("error_other_coupling", 2), number(r, "speedup", 2));
+  }
+  return text;
+}
+
+bool has(const json& rows, const char* part) {
+  for (const json& r : rows) {
+    if (r["part"] == part) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::string deformation_table(const json& result) {
+  const json& rows = result["rows"];
+  std::string text;
+  const auto add = [&](const char* title, const std::string& table) {
+    text += fmt::format("{}{}\n{}", text.empty() ? "" : "\n", title, table);
+  };
+  if (has(rows, "scenes")) add("Scenes of the source; the limit is per step [ms]", scenes_table(rows));
+  if (has(rows, "scaling")) add("The liver of more nodes; the limit is per node [ns]", scaling_table(rows));
+  if (has(rows, "accuracy")) {
+    add("The liver indented: errors of the operational nodes against finite elements alone, at the end of the load",
+        accuracy_table(rows));
+  }
+  return text;
+}
+
+}  // namespace pliant::bench
