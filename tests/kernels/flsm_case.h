@@ -11,9 +11,10 @@ struct FlsmData {
   std::size_t count = 0;  ///< regions in the launch, nodes of flsm_update, interface nodes of flsm_goal and flsm_interface
   Ints slot, link[3], missing_offset, missing, missing_of_offset, missing_of, fault;
   Reals node_u, node_w, node_load, weight, bars, plates, rest, regions, inverse_holders, goals, beta, alpha, step_params;
-  Reals missing_factor, missing_of_factor;
-  double spacing = 0.01;
+  Reals missing_factor, missing_of_factor, spin, rates, excess;
+  double spacing = 0.01, damping = 0;
   int region_base = 0, node_base = 0, fault_base = 0, batch = 0, substeps = 1;
+  int interface_base = 0;  ///< of flsm_damp_update: the first region of the interface
   bool exact = false;
 };
 
@@ -108,6 +109,34 @@ inline KernelCase flsm_interface_case(const FlsmData& d, int extrapolated) {
   return a.step().test();
 }
 
+inline KernelCase flsm_damp_region_case(const FlsmData& d, int width) {
+  FlsmArguments a(d, "flsm_damp_region", {{"WIDTH", width}});
+  a.reals("node_w", d.node_w).reals("flsm_plates", d.plates).ints("flsm_link_z", d.link[2]);
+  a.ints("flsm_missing_offset", d.missing_offset)
+      .ints("flsm_missing", d.missing)
+      .reals("flsm_missing_factor", d.missing_factor);
+  a.reals("flsm_rest", d.rest).reals("flsm_spin", d.spin).reals("flsm_regions", d.regions).reals("flsm_rates", d.rates);
+  return a.number(1 / d.spacing).test();
+}
+
+inline KernelCase flsm_damp_update_case(const FlsmData& d, int width, int reaction) {
+  FlsmArguments a(d, "flsm_damp_update", {{"WIDTH", width}, {"REACTION", reaction}});
+  a.reals("node_u", d.node_u).reals("node_w", d.node_w).ints("flsm_slot", d.slot);
+  a.reals("flsm_bars", d.bars).ints("flsm_link_x", d.link[0]).reals("flsm_rates", d.rates);
+  a.ints("flsm_missing_of_offset", d.missing_of_offset)
+      .ints("flsm_missing_of", d.missing_of)
+      .reals("flsm_missing_of_factor", d.missing_of_factor)
+      .reals("flsm_inverse_holders", d.inverse_holders);
+  return a.number(d.damping).integer(d.substeps).integer(d.interface_base).test();
+}
+
+inline KernelCase flsm_excess_case(const FlsmData& d) {
+  FlsmArguments a(d, "flsm_excess", {});
+  a.reals("node_u", d.node_u).ints("flsm_slot", d.slot).reals("flsm_goals", d.goals).reals("flsm_beta", d.beta);
+  a.reals("flsm_alpha", d.alpha).reals("step_params", d.step_params).reals("flsm_excess", d.excess);
+  return a.integer(d.batch).integer(d.substeps).integer(d.region_base).test();
+}
+
 /// Lists of 0 to 6 entries per region: any of `range` numbers, any four factors.
 inline void random_missing(Random& random, std::size_t regions, std::size_t range, Data data, Ints& offset, Ints& entries,
                            Reals& factor) {
@@ -177,6 +206,11 @@ inline FlsmData random_flsm(std::size_t count, Data data, std::uint32_t seed) {
   d.fault_base = 16;
   d.batch = 1;
   d.substeps = random.integer(1, 4);
+  d.spin = random.reals(PLIANT_FLSM_SPIN_PLANES * regions, constant, 1e-3);
+  d.rates = random.reals(PLIANT_FLSM_RECORD * regions, data, 1e-4);
+  d.excess = random.reals(4 * slots, Data::large, 1e-4);
+  d.damping = random.uniform(0, 1);
+  d.interface_base = random.integer(0, static_cast<int>(count));
   return d;
 }
 

@@ -52,6 +52,11 @@ class FlsmLattice {
     }
   }
 
+  /// Another field of displacements, or of increments: a function of the position at rest.
+  void set_u(const std::function<Vector3d(const Vector3d&)>& field) {
+    for (int i = 0; i < nodes(); ++i) u_[static_cast<std::size_t>(i)] = field(rest(i));
+  }
+
   [[nodiscard]] int nodes() const { return static_cast<int>(place_.size()); }
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] double mass(int i) const { return mass_[static_cast<std::size_t>(i)]; }
