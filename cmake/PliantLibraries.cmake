@@ -35,6 +35,8 @@ endif()
 
 pliant_room(pliant_solver host/solver pliant_model)
 
+pliant_room(pliant_statics host/statics pliant_model)
+
 pliant_room(pliant_io host/io pliant_solver)
 target_link_libraries(pliant_io PRIVATE pugixml::pugixml)
 
@@ -65,7 +67,7 @@ if(OpenCL_FOUND)
   target_compile_definitions(pliant_backends PUBLIC PLIANT_HAVE_OPENCL)
 endif()
 
-pliant_room(pliant_bench bench pliant_io pliant_backends)
+pliant_room(pliant_bench bench pliant_io pliant_backends pliant_statics)
 target_include_directories(pliant_bench PUBLIC ${CMAKE_SOURCE_DIR})  # "bench/kernels.h"
 
 find_package(CLI11 REQUIRED)
