@@ -33,7 +33,9 @@ if(embree_FOUND)
   target_compile_definitions(pliant_model PRIVATE PLIANT_HAVE_EMBREE)
 endif()
 
-pliant_room(pliant_solver host/solver pliant_model)
+pliant_room(pliant_cutting host/cutting pliant_model)
+
+pliant_room(pliant_solver host/solver pliant_cutting)
 
 pliant_room(pliant_statics host/statics pliant_model)
 

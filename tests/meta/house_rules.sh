@@ -80,9 +80,10 @@ allow_room() {  # ROOM INNER_ROOMS
 allow_room state 'state'
 allow_room scene 'scene|state'
 allow_room model 'model|scene|state'
-allow_room solver 'solver|model|scene|state'
+allow_room cutting 'cutting|model|scene|state'
+allow_room solver 'solver|cutting|model|scene|state'
 allow_room statics 'statics|model|scene|state'
-allow_room io 'io|solver|model|scene|state'
+allow_room io 'io|solver|cutting|model|scene|state'
 allow_room opencl 'opencl|solver|model|scene|state'
 allow_room backends 'backends|opencl|cpu_ref|solver|model|scene|state'
 forbid 'the command asks host/backends for a backend' '"(host/)?opencl/' host/cli/*.h host/cli/*.cpp

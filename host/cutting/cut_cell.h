@@ -1,0 +1,49 @@
+// The cells that a blade can cut: cells of a lattice (six Kuhn tetrahedra, 19 edges) and tetrahedra (one, six edges); and how
+// the inside of a cut cell is divided.
+//
+// A tetrahedron is divided at one point per edge, one per face and its centre into 24 tetrahedra, one per flag (vertex, edge,
+// face): the flag's tetrahedron (v, e, f, c) belongs to the component of its vertex v. The interface between two components is
+// made of the triangles (e, f, c) where the two ends of e differ. Points of edges and faces depend on what neighbours share, so
+// both sides of a face are divided alike.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "scene/scene.h"
+
+namespace pliant {
+
+/// A cut edge keeps this distance from both of its ends, as a share of its length: no part of a cell is without volume.
+inline constexpr double kLeastCrossing = 1e-3;
+
+/// Corners, tetrahedra, edges and faces of one kind of cell, by local corner numbers. Edges are those of the tetrahedra.
+struct CellShape {
+  int corners;
+  std::span<const std::array<int, 4>> tets;   ///< positive volume
+  std::span<const std::array<int, 2>> edges;  ///< lower corner first; of a lattice cell the first 12 are its axis edges
+  std::span<const std::array<int, 4>> faces;  ///< a tetrahedron's repeat their last corner
+};
+const CellShape& lattice_cell_shape();
+const CellShape& tetrahedron_shape();
+
+/// Corners of the six edges and four faces of a tetrahedron; face i lies opposite corner i, its corners counter-clockwise from
+/// outside.
+inline constexpr std::array<std::array<int, 2>, 6> kTetEdges{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
+inline constexpr std::array<std::array<int, 3>, 4> kTetFaces{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+/// Number in kTetEdges of the edge between two corners.
+inline constexpr std::array<std::array<int, 4>, 4> kTetEdgeOf{{{-1, 0, 1, 2}, {0, -1, 3, 4}, {1, 3, -1, 5}, {2, 4, 5, -1}}};
+
+/// The points at which one tetrahedron is divided, at rest [m].
+struct CutTet {
+  std::array<std::int32_t, 4> node{};  ///< nodes of the uncut body
+  std::array<int, 4> label{};          ///< component of each corner
+  std::array<Vec3d, 4> corner{};
+  std::array<Vec3d, 6> edge{};  ///< where it is cut; the middle if it is not
+  std::array<Vec3d, 4> face{};  ///< mean of the cut points of its edges if at least two are cut, else its centroid
+  Vec3d centre{};               ///< mean of the cut points between different labels, else the centroid
+  std::array<char, 6> cut{};    ///< whether the edge is cut
+  [[nodiscard]] bool mixed() const { return label[0] != label[1] || label[0] != label[2] || label[0] != label[3]; }
+};
+
+}  // namespace pliant
