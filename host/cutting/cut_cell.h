@@ -46,4 +46,19 @@ struct CutTet {
   [[nodiscard]] bool mixed() const { return label[0] != label[1] || label[0] != label[2] || label[0] != label[3]; }
 };
 
+/// The same division by barycentric coordinates. The share of the flag (v, e, f) in the tetrahedron's volume is
+/// centre[i] face[i][j] s, with i the corner opposite f, j that opposite e in f, and s the share of e between v and its point.
+struct TetDivision {
+  std::array<double, 6> edge{};  ///< share of the way from the first to the second corner of kTetEdges
+  std::array<std::array<double, 4>, 4> face{};
+  std::array<double, 4> centre{};
+};
+/// `crossing` of an edge that is not `cut` is not looked at.
+TetDivision divide(const std::array<int, 4>& label, const std::array<char, 6>& cut, const std::array<double, 6>& crossing);
+/// Volume shares of the corners' flags, in sum 1.
+std::array<double, 4> corner_shares(const TetDivision& division);
+/// The corner whose flags hold a point given by its barycentric coordinates; for one outside those nearest along the ray from
+/// the centre.
+int corner_at(const TetDivision& division, const std::array<double, 4>& point);
+
 }  // namespace pliant

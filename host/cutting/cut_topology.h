@@ -7,9 +7,10 @@
 // come in any order or grouping.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
-#include <optional>
+#include <span>
 #include <vector>
 
 #include "cutting/cut_cell.h"
@@ -36,14 +37,17 @@ using CutEdges = std::map<NodePair, double>;
 
 /// What became of a cell whose edges are cut.
 struct CellCut {
+  std::uint32_t cut = 0;               ///< bit i: edge i of the shape is cut
   std::array<std::int8_t, 8> label{};  ///< component of each corner; components are numbered by their lowest corner
   int components = 1;                  ///< 1: not completely cut yet, the cell is whole
-  std::int32_t first_copy = -1;        ///< element of component 1; component 0 keeps the cell's own number, the rest follow
+  /// The copy of each component; -1: the component holds no material and has none. One of them keeps the cell's own number.
+  std::array<std::int32_t, 8> element{-1, -1, -1, -1, -1, -1, -1, -1};
+  std::array<double, 8> share{};  ///< of the cell's material; 0 without a copy
 };
 
-/// Elements 0 .. cells - 1 are the cells, those cut completely being the copies of their component 0; the other copies follow,
-/// ascending by cell and component. Nodes 0 .. nodes - 1 are those of the uncut body: where a node is real in some element that
-/// is the real node. Virtual nodes follow.
+/// Elements 0 .. cells - 1 are the cells, those cut completely being the copies of their first component with material; the
+/// other copies follow, ascending by cell and component. Nodes 0 .. nodes - 1 are those of the uncut body, and real if any node
+/// there is; further virtual nodes follow, ascending by origin.
 struct CutElements {
   std::vector<std::array<std::int32_t, 8>> nodes;  ///< [elements] corners as in CutMesh::cells
   std::vector<std::int32_t> cell;                  ///< [elements] of the uncut body
@@ -52,36 +56,91 @@ struct CutElements {
   std::vector<std::int32_t> origin;  ///< [nodes] node of the uncut body at the same place; of the first ones themselves
 };
 
+/// Fill that changed hands between the copies of one cell because it was cut again: what `element` has now, and `from` had
+/// before.
+struct FillFlux {
+  std::int32_t element = 0;  ///< element now
+  std::int32_t from = 0;     ///< element before
+  double fill = 0;           ///< >= 0
+};
+
+/// What an edit did. An edit that changed no element has empty lists.
+struct CutEdit {
+  std::vector<std::int32_t> cells;         ///< cells whose CellCut changed, ascending
+  std::vector<std::int32_t> node_from;     ///< [nodes now] the node before
+  std::vector<std::int32_t> element_from;  ///< [elements now] the element before
+  std::vector<FillFlux> flux;              ///< by cell
+  [[nodiscard]] bool changed_elements() const { return !node_from.empty(); }
+};
+
+class CutTopology;
+/// Says for a cell with samples outside the material which components hold material that no sample saw (bit k: component k),
+/// for instance a thin wedge of the surface. Has to be a function of the cut edges alone.
+using MaterialProbe = std::function<std::uint32_t(const CutTopology&, std::int32_t cell, const CellCut&)>;
+
 class CutTopology {
  public:
-  explicit CutTopology(std::shared_ptr<const CutMesh> mesh);
+  /// Throws Error if an index is out of range. Without a probe every component counts as holding material.
+  explicit CutTopology(std::shared_ptr<const CutMesh> mesh, MaterialProbe probe = {});
 
   [[nodiscard]] const CutMesh& mesh() const { return *mesh_; }
   [[nodiscard]] const CutEdges& edges() const { return edges_; }
   [[nodiscard]] const CutElements& elements() const { return elements_; }
-  /// Cells with a cut edge, ascending. Those with components > 1 have copies.
+  /// Cells with a cut edge. Those with components > 1 have copies.
   [[nodiscard]] const std::map<std::int32_t, CellCut>& cells() const { return cells_; }
-  /// The element that holds component `label` of a cell.
+  /// The element that holds component `label` of a cell, -1 if it has none.
   [[nodiscard]] std::int32_t element_of(std::int32_t cell, int label) const;
-  /// Cells with a face in common with `cell` across its local face, -1 ended (nearly always one or none).
-  [[nodiscard]] std::vector<std::int32_t> cells_at_face(std::int32_t cell, int face) const;
+  /// Cells that share all nodes of a cell's local face; nearly always one or none.
+  [[nodiscard]] std::span<const std::int32_t> cells_at_face(std::int32_t cell, int face) const;
 
   /// The division of tetrahedron `tet` (of mesh().shape) of a cell. Points that cells share have the same bits in each.
   [[nodiscard]] CutTet tet(std::int32_t cell, int tet) const;
-  /// Component that holds a point of the cell at rest [m]: that of the flag's tetrahedron it lies in.
+  /// Component that holds a point of the cell at rest [m]: that of the flag's tetrahedron it lies in, or the nearest one.
   [[nodiscard]] int label_at(std::int32_t cell, const Vec3d& x) const;
 
-  /// Cut further edges; those that are cut already stay as they are. Returns the cells whose `CellCut` changed, ascending. Only
-  /// they and their neighbours are looked at.
-  std::vector<std::int32_t> cut(const CutEdges& edges);
+  /// Cut further edges; those that are cut already stay as they are. Throws Error, with nothing changed, for a pair that is no
+  /// edge of a cell or a crossing that is not in (0, 1). Work: the cells at new edges, plus a pass over all copies.
+  CutEdit cut(const CutEdges& edges);
+  /// Go back to a smaller set of cut edges (after an edit that failed elsewhere).
+  void reset(const CutEdges& edges);
 
-  /// Pieces: the number of connected sets of elements, and of which each element is one.
+  /// Pieces: the number of sets of elements that share nodes, numbered by their lowest element, and the piece of each element.
   [[nodiscard]] std::int32_t pieces(std::vector<std::int32_t>* piece_of = nullptr) const;
 
  private:
+  /// The nodes at one node of the uncut body: its copies of cells, grouped.
+  struct Member {
+    std::int32_t cell;
+    std::int8_t component, corner;
+  };
+  struct NodeClass {
+    std::int32_t node = -1;  ///< as of the last numbering
+    bool real = false;
+    std::vector<Member> members;
+  };
+  using OldCuts = std::map<std::int32_t, CellCut>;  ///< changed cells before the edit
+
+  void find_neighbors();
+  [[nodiscard]] int edge_of(std::int32_t cell, std::int32_t a, std::int32_t b) const;
+  [[nodiscard]] std::span<const std::int32_t> cells_at_node(std::int32_t node) const;
+  [[nodiscard]] const CellCut* find_cell(std::int32_t cell) const;
+  [[nodiscard]] double crossing(std::int32_t a, std::int32_t b) const;
+  OldCuts mark(const CutEdges& edges, CutEdit& edit);
+  void label(CellCut& cell) const;
+  [[nodiscard]] TetDivision division(std::int32_t cell, const CellCut& cut, int tet) const;
+  void share(std::int32_t cell, CellCut& cut) const;
+  void number_elements(const OldCuts& old, CutEdit& edit);
+  void add_flux(std::int32_t cell, const CellCut& before, CutEdit& edit) const;
+  [[nodiscard]] std::vector<NodeClass> classes_at(std::int32_t node) const;
+  void number_nodes(const OldCuts& old, const std::vector<std::array<std::int32_t, 8>>& old_nodes, CutEdit& edit);
+
   std::shared_ptr<const CutMesh> mesh_;
+  MaterialProbe probe_;
+  std::vector<std::int32_t> node_offset_, node_cells_;  ///< cells at each node
+  std::vector<std::int32_t> face_offset_, face_cells_;  ///< cells across each face of each cell
   CutEdges edges_;
   std::map<std::int32_t, CellCut> cells_;
+  std::map<std::int32_t, std::vector<NodeClass>> classes_;  ///< at nodes of cells with copies
   CutElements elements_;
 };
 

@@ -15,6 +15,11 @@ struct Cell {
   std::array<std::int32_t, 8> nodes{};  ///< into Lattice::nodes
 };
 
+/// Kuhn's subdivision of a cell into six tetrahedra along the diagonal from corner 0 to corner 7: the same in every cell, so
+/// that faces match.
+inline constexpr std::array<std::array<int, 4>, 6> kKuhnTets{
+    {{0, 1, 3, 7}, {0, 5, 1, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 6, 4, 7}}};
+
 /// A node sits on a grid point; several nodes may share one grid point when parts of the body pass near each other without
 /// touching (then `copy` is 1, 2, ...). Copy 0 is the first.
 struct LatticeNode {

@@ -10,13 +10,11 @@ namespace {
 
 bool takes_tets(ElementKind kind) { return kind == ElementKind::tet4 || kind == ElementKind::tet4anp; }
 
-/// Kuhn's subdivision of a cell into six tetrahedra along the diagonal from corner 0 to corner 7: the same in every cell, so
-/// that faces match.
-constexpr std::array<std::array<int, 4>, 6> kKuhn{
-    {{0, 1, 3, 7}, {0, 5, 1, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 6, 4, 7}}};
-
 void from_lattice(const Body& body, Solid& solid) {
-  const TriangleMesh mesh = read_surface(body.surface, body.scale, body.translate);
+  const TriangleMesh mesh =
+      body.surface_in_memory == nullptr
+          ? read_surface(body.surface, body.scale, body.translate)
+          : clean_surface(*body.surface_in_memory, body.surface.string(), body.scale, body.translate);
   Lattice lattice = build_lattice(mesh, body.lattice);
   solid.spacing = lattice.spacing;
   solid.surface_volume = signed_volume(mesh);
@@ -37,7 +35,7 @@ void from_lattice(const Body& body, Solid& solid) {
   solid.lattice_nodes = std::move(lattice.nodes);
   if (takes_tets(body.element)) {
     for (const Cell& cell : lattice.cells) {
-      for (const auto& tet : kKuhn) {
+      for (const auto& tet : kKuhnTets) {
         solid.tets.push_back({cell.nodes[tet[0]], cell.nodes[tet[1]], cell.nodes[tet[2]], cell.nodes[tet[3]]});
         solid.fill.push_back(cell.fill);
       }
