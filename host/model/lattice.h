@@ -10,9 +10,10 @@ namespace pliant {
 
 /// Corner a of a cell lies at (i + (a & 1), j + ((a >> 1) & 1), k + ((a >> 2) & 1)): x fastest, then y, then z.
 struct Cell {
-  std::array<std::int32_t, 3> index{};  ///< (i, j, k)
-  double fill = 1;                      ///< material volume over cell volume, in (0, 1]
-  std::array<std::int32_t, 8> nodes{};  ///< into Lattice::nodes
+  std::array<std::int32_t, 3> index{};        ///< (i, j, k)
+  double fill = 1;                            ///< material volume over cell volume, in (0, 1]
+  std::array<std::int32_t, 8> nodes{};        ///< into Lattice::nodes
+  std::uint64_t samples = ~std::uint64_t{0};  ///< which of its 4 x 4 x 4 samples lie in material (lattice_cell.h)
 };
 
 /// Kuhn's subdivision of a cell into six tetrahedra along the diagonal from corner 0 to corner 7: the same in every cell, so

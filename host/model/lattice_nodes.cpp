@@ -181,6 +181,7 @@ void number_nodes(const Parts& parts, const Contacts& contacts, Lattice& lattice
   for (std::size_t p = 0; p < parts.list.size(); ++p) {
     lattice.cells[p].index = parts.list[p].index;
     lattice.cells[p].fill = parts.list[p].fill;
+    lattice.cells[p].samples = parts.list[p].mask;
   }
   lattice.nodes.clear();
   struct Around {

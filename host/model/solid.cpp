@@ -29,10 +29,12 @@ void from_lattice(const Body& body, Solid& solid) {
                    ((a & 4) ? at.local[2] : 1 - at.local[2]);
     }
     solid.surface_nodes.push_back(cell.nodes);
+    solid.surface_cell.push_back(at.cell);
     solid.surface_weights.push_back(weights);
   }
   if (body.model.type != ModelType::tled) solid.lattice = std::make_shared<const Lattice>(lattice);
   solid.lattice_nodes = std::move(lattice.nodes);
+  for (const Cell& cell : lattice.cells) solid.samples.push_back(cell.samples);
   if (takes_tets(body.element)) {
     for (const Cell& cell : lattice.cells) {
       for (const auto& tet : kKuhnTets) {

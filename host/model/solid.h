@@ -20,12 +20,14 @@ struct Solid {
   std::vector<Cell> cells;                         ///< one per hexahedron if the body is a lattice of hexahedra, else empty
   std::shared_ptr<const Lattice> lattice;          ///< if body.model is not tled: what repartition works on
   Partition partition;                             ///< of the lattice's cells, if body.model is not tled
+  std::vector<std::uint64_t> samples;              ///< per cell of a lattice: Cell::samples
   std::vector<Cell> matching_cells;                ///< the cells left to shape matching
   double spacing = 0;                              ///< [m]
   std::vector<Vec3d> surface;                      ///< vertices [m]
   std::vector<std::array<std::int32_t, 3>> triangles;
   std::vector<std::array<std::int32_t, 8>> surface_nodes;
   std::vector<std::array<double, 8>> surface_weights;
+  std::vector<std::int32_t> surface_cell;  ///< the lattice cell in which each vertex hangs; empty for a volume mesh
   double surface_volume = 0;  ///< [m^3]
   /// Whether element e is a finite element.
   [[nodiscard]] bool operational(std::size_t e) const {

@@ -1,0 +1,14 @@
+// A body and its cut: from the filled body to what can be cut, and back to a filled body with virtual nodes.
+#pragma once
+#include <memory>
+
+#include "cutting/cut_topology.h"
+#include "model/solid.h"
+
+namespace pliant {
+
+/// What a blade can cut of a filled body. Throws Error for a volume mesh of hexahedra: their faces have no diagonals in common.
+/// `name` is the body's, for messages.
+std::shared_ptr<const CutMesh> cut_mesh(const Solid& solid, const std::string& name);
+
+}  // namespace pliant
