@@ -38,9 +38,18 @@ pliant_room(pliant_cutting host/cutting pliant_model)
 pliant_room(pliant_solver host/solver pliant_cutting)
 
 pliant_room(pliant_statics host/statics pliant_model)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")  # the twins need these instructions too
+  set_source_files_properties(host/statics/dense.cpp PROPERTIES COMPILE_OPTIONS "-mfma;-mavx2")
+endif()
 
 pliant_room(pliant_io host/io pliant_solver)
 target_link_libraries(pliant_io PRIVATE pugixml::pugixml)
+
+pliant_room(pliant_render host/render pliant_io Threads::Threads)
+if(embree_FOUND)
+  target_link_libraries(pliant_render PRIVATE embree)
+  target_compile_definitions(pliant_render PRIVATE PLIANT_HAVE_EMBREE)
+endif()
 
 # The twins: their own flags, so that nothing a consumer sets can change a bit.
 pliant_room(pliant_ref cpu_ref pliant_solver Threads::Threads)
@@ -69,6 +78,9 @@ if(OpenCL_FOUND)
   target_compile_definitions(pliant_backends PUBLIC PLIANT_HAVE_OPENCL)
 endif()
 
+# What include/pliant declares.
+pliant_room(pliant_api host/api pliant_io pliant_backends)
+
 pliant_room(pliant_bench bench pliant_io pliant_backends pliant_statics)
 target_include_directories(pliant_bench PUBLIC ${CMAKE_SOURCE_DIR})  # "bench/kernels.h"
 
@@ -77,6 +89,6 @@ file(GLOB cli_sources CONFIGURE_DEPENDS host/cli/*.cpp)
 if(cli_sources)
   add_executable(pliant_cli ${cli_sources})
   set_target_properties(pliant_cli PROPERTIES OUTPUT_NAME pliant)
-  target_link_libraries(pliant_cli PRIVATE pliant_bench CLI11::CLI11)
+  target_link_libraries(pliant_cli PRIVATE pliant_bench pliant_render CLI11::CLI11)
   target_compile_definitions(pliant_cli PRIVATE PLIANT_VERSION="${PROJECT_VERSION}")
 endif()

@@ -1,0 +1,145 @@
+// A body of a model as a static problem.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "layout.h"
+#include "model/solid.h"
+#include "pliant/error.h"
+#include "statics/shape.h"
+
+namespace pliant::statics {
+namespace {
+
+/// Value of a load curve after everything has happened.
+double final_value(const Curve& curve) { return curve.value(HUGE_VAL); }
+
+class FromModel {
+ public:
+  FromModel(const Scene& scene, const Model& model, std::size_t body)
+      : scene_(scene), model_(model), number_(static_cast<std::int32_t>(body)), body_(model.bodies[body]) {}
+
+  Problem operator()(bool quadratic) {
+    if (scene_.bodies[number_].model.type != ModelType::tled) {
+      throw Error(fmt::format("body '{}': the model is {}, the static solver takes tled only", body_.name,
+                              pliant::to_string(scene_.bodies[number_].model.type)));
+    }
+    if (body_.element == ElementKind::tet4anp && !quadratic) {
+      throw Error(fmt::format("body '{}': the static solver has no tet4anp; take tet4 or hex8full, or quadratic tetrahedra",
+                              body_.name));
+    }
+    out_.mesh.element = body_.tets.empty() ? Element::hex8full : Element::tet4;
+    quadratic_ = quadratic && out_.mesh.element == Element::tet4;
+    out_.mesh.nodes = body_.rest;
+    node_of_.assign(model_.slots, -1);
+    for (std::size_t n = 0; n < body_.slot.size(); ++n) node_of_[body_.slot[n]] = static_cast<std::int32_t>(n);
+    corners();
+    materials();
+    loads();
+    surface();
+    return quadratic_ ? to_quadratic(out_) : std::move(out_);
+  }
+
+ private:
+  void corners() {
+    for (const auto& tet : body_.tets) out_.mesh.corners.insert(out_.mesh.corners.end(), tet.begin(), tet.end());
+    for (const auto& hex : body_.hexes) {
+      for (const int a : kVtkFromBits) out_.mesh.corners.push_back(hex[a]);
+    }
+  }
+
+  void set_element(std::int64_t id, std::int32_t material, double fill) {
+    out_.mesh.material[id] = material;
+    out_.mesh.fill[id] = fill;
+  }
+
+  void materials() {
+    out_.mesh.material.assign(body_.elements(), 0);
+    out_.mesh.fill.assign(body_.elements(), 0);
+    const auto add = [&](const Material& m) {
+      out_.materials.push_back(m);
+      return static_cast<std::int32_t>(out_.materials.size()) - 1;
+    };
+    for (const TetBatch& batch : model_.tets) {
+      if (batch.body != number_) continue;
+      const std::int32_t m = add(batch.material);
+      for (std::size_t i = 0; i < batch.id.size(); ++i) {
+        std::array<Vec3d, 4> x;
+        for (int a = 0; a < 4; ++a) x[a] = body_.rest[body_.tets[batch.id[i]][a]];
+        set_element(batch.id[i], m, batch.volume[i] / tet_geometry(x).volume);
+      }
+    }
+    for (const HexBatch& batch : model_.hexes) {
+      if (batch.body != number_) continue;
+      const std::int32_t m = add(batch.material);
+      for (std::size_t i = 0; i < batch.id.size(); ++i) set_element(batch.id[i], m, batch.fill[i]);
+    }
+    for (const BrickBatch& batch : model_.brick_batches) {
+      std::int32_t m = -1;
+      for (std::int32_t b = batch.first; b < batch.first + batch.count; ++b) {
+        if (model_.brick_body[b] != number_) continue;
+        if (m < 0) m = add(batch.material);
+        for (std::int32_t c = 0; c < PLIANT_BRICK_NODES; ++c) {
+          const std::size_t cell = static_cast<std::size_t>(b) * PLIANT_BRICK_NODES + c;
+          if (model_.brick_cell[cell] >= 0) set_element(model_.brick_cell[cell], m, model_.brick_fill[cell]);
+        }
+      }
+    }
+    for (std::size_t e = 0; e < out_.mesh.fill.size(); ++e) {
+      if (!(out_.mesh.fill[e] > 0))
+        throw Error(ErrorCode::internal, fmt::format("body '{}': element {} is in no batch of the model", body_.name, e));
+    }
+  }
+
+  void loads() {
+    for (const Constraint& c : model_.constraints) {
+      if (node_of_[c.slot] < 0) continue;
+      for (int axis = 0; axis < 3; ++axis) {
+        if ((c.axes >> axis & 1) != 0)
+          out_.prescribed.push_back({node_of_[c.slot], axis, c.target[axis] * final_value(model_.curves[c.curve[axis]])});
+      }
+    }
+    for (const NodeForce& f : model_.forces) {
+      if (node_of_[f.slot] >= 0)
+        out_.forces.push_back({node_of_[f.slot], vec::mul(f.force, final_value(model_.curves[f.curve]))});
+    }
+    if (quadratic_) {
+      out_.gravity = scene_.gravity;
+    } else if (vec::norm(scene_.gravity) > 0) {
+      for (std::size_t n = 0; n < body_.slot.size(); ++n)
+        out_.forces.push_back({static_cast<std::int32_t>(n), vec::mul(scene_.gravity, model_.mass[body_.slot[n]])});
+    }
+  }
+
+  void surface() {
+    for (std::int32_t v = body_.first_vertex; v < body_.first_vertex + body_.vertices; ++v) {
+      SurfacePoint point{model_.surface.rest[v], {}, model_.surface.weights[v]};
+      for (int a = 0; a < 8; ++a) point.nodes[a] = node_of_[model_.surface.nodes[v][a]];
+      out_.surface.push_back(point);
+    }
+    for (const TrianglePressure& p : model_.pressures) {
+      if (model_.surface.triangle_body[p.triangle] != number_) continue;
+      std::array<std::int32_t, 3> points = model_.surface.triangles[p.triangle];
+      for (std::int32_t& v : points) v -= body_.first_vertex;
+      out_.pressures.push_back({points, p.pressure * final_value(model_.curves[p.curve])});
+    }
+  }
+
+  const Scene& scene_;
+  const Model& model_;
+  std::int32_t number_;
+  const ModelBody& body_;
+  bool quadratic_ = false;
+  std::vector<std::int32_t> node_of_;
+  Problem out_;
+};
+
+}  // namespace
+
+Problem problem_of(const Scene& scene, const Model& model, std::size_t body, bool quadratic) {
+  if (body >= model.bodies.size()) throw Error(fmt::format("static problem: body {} of {}", body, model.bodies.size()));
+  return FromModel(scene, model, body)(quadratic);
+}
+
+}  // namespace pliant::statics
