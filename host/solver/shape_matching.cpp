@@ -29,6 +29,22 @@ double stiffness_unit(const FlsmBatch& batch) {
   return kPullStiffness[batch.settings.width - 1] * batch.density * batch.spacing * batch.spacing;
 }
 
+/// The step of the scene at which alpha is 1, the longest that "stiffness" allows [s].
+double longest_step(const FlsmBatch& batch, double damping) {
+  const DeformationModel& m = batch.settings;
+  if (m.young <= 0) return std::numeric_limits<double>::infinity();
+  const double b = stiffness_unit(batch) / m.young, quarter = 0.25 * damping * b;
+  return (quarter + std::sqrt(quarter * quarter + b)) / m.substeps;
+}
+
+double longest_step(const Model& model, const Scene& scene) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const FlsmBatch& b : model.flsm) {
+    least = std::min(least, longest_step(b, scene.bodies[static_cast<std::size_t>(b.body)].material.damping));
+  }
+  return least;
+}
+
 /// The alpha of a batch at the step `dt` of the scene [s], for the damping rate of its material [1/s]: as it stands in the
 /// scene, or from "stiffness". It falls with the step: what a start allows, every smaller step allows. Throws Error above 1.
 double alpha_for(const FlsmBatch& batch, double dt, double damping) {
@@ -36,12 +52,11 @@ double alpha_for(const FlsmBatch& batch, double dt, double damping) {
   if (m.young <= 0) return m.alpha;
   const double h = m.substeps * dt, b = h * h / (1 + 0.5 * damping * h), most = stiffness_unit(batch) / b;
   if (m.young > 1.00001 * most) {  // the message's digits are allowed
-    const double largest_b = stiffness_unit(batch) / m.young, quarter = 0.25 * damping * largest_b;
-    const double largest_dt = (quarter + std::sqrt(quarter * quarter + largest_b)) / m.substeps;
     throw Error(fmt::format(
         "{}/stiffness/young: got {} Pa, which no alpha reaches with width {} at dt = {:.6g} s{}; allowed is at most {:.6g} Pa, "
         "or dt up to {:.6g} s",
-        m.pointer, m.young, m.width, dt, m.substeps > 1 ? fmt::format(" and {} substeps", m.substeps) : "", most, largest_dt));
+        m.pointer, m.young, m.width, dt, m.substeps > 1 ? fmt::format(" and {} substeps", m.substeps) : "", most,
+        longest_step(batch, damping)));
   }
   return std::min(1.0, m.young / most);
 }
@@ -87,14 +102,16 @@ double Simulation::coupled_step(double elements_alone) const {
   return std::sqrt((4 - k.per_step) / omega2);
 }
 
+/// An automatic step is short enough for the alpha that "stiffness" asks for; a given one is refused by alpha_for.
 void Simulation::choose_dt(double wanted, bool estimate) {
+  const double longest = longest_step(*model_, scene_);
   if (!has_elements()) {
-    state_.dt = wanted > 0 ? wanted : kFrame;
+    state_.dt = wanted > 0 ? wanted : std::min(kFrame, longest);
     automatic_ = false;
     return;
   }
   if (wanted <= 0 || estimate) estimate_stable_dt();
-  state_.dt = wanted > 0 ? wanted : scene_.safety * state_.stable_dt;
+  state_.dt = wanted > 0 ? wanted : std::min(scene_.safety * state_.stable_dt, longest);
   const InterfaceStiffness k = interface_stiffness(*model_);
   if (wanted <= 0 || k.fixed == 0 || state_.stable_dt <= 0 || wanted <= state_.stable_dt) return;
   for (const FlsmBatch& b : model_->flsm) {
