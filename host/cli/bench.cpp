@@ -3,8 +3,10 @@
 
 #include <memory>
 
+#include "bench/accuracy.h"
 #include "bench/deformation.h"
 #include "bench/kernels.h"
+#include "bench/stability.h"
 #include "cli/cli.h"
 #include "io/atomic_file.h"
 #include "pliant/error.h"
@@ -16,6 +18,8 @@ struct Options {
   Common common;
   bench::KernelsOptions kernels;
   bench::DeformationOptions deformation;
+  bench::StabilityOptions stability;
+  bench::AccuracyOptions accuracy;
   std::filesystem::path out;
 };
 
@@ -66,6 +70,45 @@ int deformation(Options& options) {
   return measure(options, "deformation", options.deformation, bench::bench_deformation, bench::deformation_table);
 }
 
+int stability(Options& options) {
+  options.common.check();
+  // Sweeps that an earlier call finished are taken from the folder.
+  if (!options.out.empty()) options.stability.keep = options.out / "stability-sweeps";
+  return measure(options, "stability", options.stability, bench::bench_stability, bench::stability_table);
+}
+
+void add_stability(CLI::App& app, const std::shared_ptr<Options>& options) {
+  CLI::App* sub = app.add_subcommand("stability", "Sweeps to the failure of every method: the limit predicted and measured");
+  bench::StabilityOptions& s = options->stability;
+  options->common.add_to(*sub);
+  sub->add_option("--sweeps", s.sweeps, "some of the sweeps only; a wrong name lists them")->delimiter(',');
+  sub->add_flag("--quick", s.quick, "few points and short runs: under a minute");
+  sub->add_option("--out", options->out,
+                  "folder for stability.json and stability.csv; finished sweeps kept there are not repeated");
+}
+
+int accuracy(Options& options) {
+  options.common.check();
+  options.accuracy.out = options.out;  // finished points are kept there
+  options.accuracy.note = [&](const std::string& text) { options.common.note(text); };
+  return measure(options, "accuracy", options.accuracy, bench::bench_accuracy, bench::accuracy_table);
+}
+
+void add_accuracy(CLI::App& app, const std::shared_ptr<Options>& options) {
+  CLI::App* sub =
+      app.add_subcommand("accuracy", "Speed against error of every method, on exact answers and converged references");
+  bench::AccuracyOptions& a = options->accuracy;
+  options->common.add_to(*sub);
+  sub->add_option("--scenes", a.scenes, "folder of the shipped scenes");
+  sub->add_option("--problems", a.problems, "some of the problems only; a wrong name lists them")->delimiter(',');
+  sub->add_option("--methods", a.methods, "some of the methods only; a wrong name lists them")->delimiter(',');
+  sub->add_option("--backends", a.backends, "default: auto,cpu:double; the first one serves every point")->delimiter(',');
+  sub->add_flag("--quick", a.quick, "coarse bodies and references, fewer methods: under a minute");
+  sub->add_flag("--again", a.again, "measure finished points of the folder again");
+  sub->add_option("--out", options->out,
+                  "folder for accuracy.json and accuracy.csv; finished points kept there are not measured again");
+}
+
 void add_deformation(CLI::App& app, const std::shared_ptr<Options>& options) {
   CLI::App* sub = app.add_subcommand(
       "deformation", "Hybrid bodies beside finite elements and shape matching alone, the source's times, growth and error");
@@ -96,7 +139,13 @@ std::function<int()> setup_bench(CLI::App& app) {
   sub->add_option("--law", options->kernels.law, "neo-hookean, saint-venant-kirchhoff or isochoric-neo-hookean");
   sub->add_option("--out", options->out, "folder for kernels.json and kernels.csv");
   add_deformation(app, options);
-  return [options, sub] { return sub->parsed() ? kernels(*options) : deformation(*options); };
+  add_stability(app, options);
+  add_accuracy(app, options);
+  return [options, &app] {
+    if (app.got_subcommand("kernels")) return kernels(*options);
+    if (app.got_subcommand("accuracy")) return accuracy(*options);
+    return app.got_subcommand("stability") ? stability(*options) : deformation(*options);
+  };
 }
 
 }  // namespace pliant::cli
