@@ -91,11 +91,25 @@ class Info {
       line(fmt::format("body {}: {} nodes, {} {} elements{}, {} surface triangles", b.name, b.slot.size(), b.elements(),
                        pliant::to_string(b.element), b.spacing > 0 ? fmt::format(" on a lattice of {:.5g} m", b.spacing) : "",
                        b.triangles));
+      if (b.matching_nodes + b.interface_nodes > 0) matching(b);
       const double excess = b.surface_volume > 0 ? 100 * (b.volume / b.surface_volume - 1) : 0;
       line(fmt::format("  mass {:.6g} kg, volume {:.6g} m^3, inside its surface {:.6g} m^3 ({:+.2f} %)", b.mass, b.volume,
                        b.surface_volume, excess));
     }
     json_["mass"] = mass;
+  }
+
+  /// One region of shape matching is centred at each node of its cells, the interface included.
+  void matching(const ModelBody& b) {
+    const std::int64_t tled = b.operational_nodes + b.interface_nodes, regions = b.matching_nodes + b.interface_nodes;
+    const double ratio = static_cast<double>(tled) / static_cast<double>(b.slot.size());
+    json_["bodies"].back()["shape_matching"] = {{"operational_nodes", b.operational_nodes},
+                                                {"interface_nodes", b.interface_nodes},
+                                                {"matching_nodes", b.matching_nodes},
+                                                {"regions", regions},
+                                                {"ratio", ratio}};
+    line(fmt::format("  shape matching: {} operational, {} interface and {} matching nodes (ratio {:.4g}), {} regions",
+                     b.operational_nodes, b.interface_nodes, b.matching_nodes, ratio, regions));
   }
 
   void stable_step(double iterated_dt, const std::string& not_iterated) {

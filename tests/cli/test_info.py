@@ -36,6 +36,17 @@ class Info(harness.CliTest):
         self.assertEqual(places, sorted(places))
         self.assertIn("node_u", text)
 
+    def test_partition_of_a_hybrid(self):
+        # The lower two of five layers of cells are operational: 2 layers of 36 nodes, 1 of interface, 3 of shape matching.
+        model = {"type": "hybrid", "width": 1, "region": {"box": [[-1, -1, -1], [1, -0.01, 1]]}}
+        scene = self.scene(body={"model": model})
+        self.assertEqual(self.json("info", scene)["bodies"][0]["shape_matching"],
+                         {"operational_nodes": 72, "interface_nodes": 36, "matching_nodes": 108, "regions": 144, "ratio": 0.5})
+        self.assertIn("72 operational, 36 interface and 108 matching nodes (ratio 0.5), 144 regions", self.pliant("info", scene).stdout)
+        pure = self.json("info", self.scene(body={"model": {"type": "flsm"}}))["bodies"][0]["shape_matching"]
+        self.assertEqual((pure["matching_nodes"], pure["regions"], pure["ratio"]), (216, 216, 0))
+        self.assertNotIn("shape_matching", self.json("info", self.scene())["bodies"][0])
+
     def test_shipped_scene(self):
         self.assertGreater(self.json("info", harness.SCENES / "beam_tet.json")["elements"], 100)
 
