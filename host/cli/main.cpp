@@ -72,7 +72,8 @@ int main(int argc, char** argv) {
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) return fail(2, "standard output could not be written");
     return code;
   } catch (const Error& error) {
-    return fail(static_cast<int>(error.code()), error.what());
+    const int code = static_cast<int>(error.code());
+    return fail(code > 4 ? 2 : code, error.what());  // the embedding API has finer codes than the command
   } catch (const std::bad_alloc&) {
     return fail(2, "out of memory: the scene needs more than this machine has (pliant info SCENE lists what it needs)");
   } catch (const std::exception& error) {

@@ -98,6 +98,19 @@ void load(const Body& body, const ModelBody& placed, Model& model) {
   }
 }
 
+/// Forces of zero that the host may change between steps, one per node, behind the scene's own forces on that node.
+void reserve_forces(Model& model) {
+  std::vector<bool> used(static_cast<std::size_t>(model.slots));
+  for (std::size_t v = 0; v < model.surface.rest.size(); ++v) {
+    for (std::size_t a = 0; a < 8; ++a) {
+      if (model.surface.weights[v][a] != 0) used[static_cast<std::size_t>(model.surface.nodes[v][a])] = true;
+    }
+  }
+  for (std::int32_t slot = 0; slot < model.slots; ++slot) {
+    if (used[static_cast<std::size_t>(slot)]) model.forces.push_back({slot, {}, 0, true});
+  }
+}
+
 }  // namespace
 
 void add_boundary_conditions(const Scene& scene, Model& model) {
@@ -116,6 +129,7 @@ void add_boundary_conditions(const Scene& scene, Model& model) {
     c.slot = slot;
     model.constraints.push_back(c);
   }
+  if (scene.interactive) reserve_forces(model);
   std::stable_sort(model.forces.begin(), model.forces.end(),
                    [](const NodeForce& a, const NodeForce& b) { return a.slot < b.slot; });
   std::stable_sort(model.pressures.begin(), model.pressures.end(),

@@ -27,6 +27,9 @@ struct VolumeMesh {
 /// area.
 TriangleMesh read_surface(const std::filesystem::path& file, double scale = 1, const Vec3d& translate = {});
 
+/// The same for a surface in memory; `name` is for messages.
+TriangleMesh clean_surface(const TriangleMesh& surface, const std::string& name, double scale = 1, const Vec3d& translate = {});
+
 /// Read a volume mesh: Gmsh .msh (versions 1, 2 and 4, text; 2 and 4 also binary), VTK legacy, VTU, TetGen (.node/.ele).
 /// Unused vertices are dropped; tetrahedra of negative volume are an error that names the element unless all are negative
 /// (then the file's orientation convention is swapped).

@@ -104,6 +104,7 @@ struct NodeForce {
   std::int32_t slot = 0;
   Vec3d force{};  ///< [N]
   std::int32_t curve = 0;
+  bool reserved = false;  ///< for what Simulation::set_forces puts there
 };
 
 struct TrianglePressure {

@@ -159,6 +159,16 @@ struct Reader {
     for (unsigned i = 0; i < n.mNumMeshes; ++i) mesh(m, *scene->mMeshes[n.mMeshes[i]]);
     for (unsigned i = 0; i < n.mNumChildren; ++i) node(m, *n.mChildren[i]);
   }
+
+  TriangleMesh finish() {
+    TriangleMesh& mesh = welder.mesh;
+    if (mesh.triangles.empty()) {
+      if (welder.degenerate == 0) fail(file, fmt::format("holds {} vertices but no triangle", vertices));
+      fail(file, fmt::format("all {} triangles have zero area", welder.degenerate));
+    }
+    orient_outward(mesh);
+    return std::move(mesh);
+  }
 };
 
 std::string lower_extension(const std::filesystem::path& file) {
@@ -221,13 +231,20 @@ TriangleMesh read_surface(const std::filesystem::path& file, double scale, const
     reader.scene = import(file, importer);
     reader.node(kIdentity, *reader.scene->mRootNode);
   }
-  TriangleMesh& mesh = reader.welder.mesh;
-  if (mesh.triangles.empty()) {
-    if (reader.welder.degenerate == 0) fail(file, fmt::format("holds {} vertices but no triangle", reader.vertices));
-    fail(file, fmt::format("all {} triangles have zero area", reader.welder.degenerate));
+  return reader.finish();
+}
+
+TriangleMesh clean_surface(const TriangleMesh& surface, const std::string& name, double scale, const Vec3d& translate) {
+  const std::filesystem::path shown = name;
+  const auto count = static_cast<std::int64_t>(surface.vertices.size());
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    for (const std::int32_t v : surface.triangles[t]) {
+      if (v < 0 || v >= count) fail(shown, fmt::format("triangle {} names vertex {}, but there are {}", t, v, count));
+    }
   }
-  orient_outward(mesh);
-  return std::move(mesh);
+  Reader reader{shown, scale, translate, nullptr, {}};
+  reader.mesh(surface);
+  return reader.finish();
 }
 
 double signed_volume(const TriangleMesh& mesh) {

@@ -99,6 +99,11 @@ class OpenclBackend final : public Backend {
     return read<std::int32_t>(id);
   }
   std::vector<std::uint8_t> read_bytes(BufferId id) override { return read<std::uint8_t>(id); }
+  void read_into(BufferId id, void* out) override {
+    const std::size_t bytes = row(id).values() * 4;
+    if (bytes == 0) return;
+    guarded(ErrorCode::internal, where_, [&] { queue_.enqueueReadBuffer(memory(id), CL_TRUE, 0, bytes, out); });
+  }
   void write_reals(BufferId id, const std::vector<double>& values) override {
     check_type(row(id), false);
     const DefaultFloatEnvironment environment;

@@ -4,11 +4,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace pliant {
+
+struct TriangleMesh;
 
 using Vec3d = std::array<double, 3>;
 
@@ -115,6 +118,14 @@ struct Tool {
   [[nodiscard]] Vec3d position(double time) const;
 };
 
+/// Where pictures are taken from. What is absent is found from the scene.
+struct SceneView {
+  std::optional<Vec3d> eye;     ///< [m]; absent: so far away that the scene fills the picture
+  std::optional<Vec3d> target;  ///< what is in the middle [m]; absent: the middle of the scene
+  std::optional<Vec3d> up;      ///< absent: against gravity, or y
+  double field_of_view = 30;    ///< vertical [degrees], in [1, 120]
+};
+
 struct LatticeSpec {
   double spacing = 0;      ///< edge of a cell [m]; 0 if `nodes` is given
   std::int64_t nodes = 0;  ///< wanted number of nodes; 0 if `spacing` is given
@@ -123,10 +134,12 @@ struct LatticeSpec {
 struct Body {
   std::string name;
   std::filesystem::path surface;  ///< triangle mesh to be filled with a lattice; empty if `mesh` is given
-  std::filesystem::path mesh;     ///< tetrahedral (or hexahedral) volume mesh; empty if `surface` is given
-  double scale = 1;               ///< applied to the file's coordinates first
-  Vec3d translate{};              ///< [m], after scaling
-  LatticeSpec lattice;            ///< used with `surface`
+  std::shared_ptr<const TriangleMesh> surface_in_memory;  ///< set in code: taken instead of the file, whose
+                                                          ///< name is for messages
+  std::filesystem::path mesh;  ///< tetrahedral (or hexahedral) volume mesh; empty if `surface` is given
+  double scale = 1;            ///< applied to the file's coordinates first
+  Vec3d translate{};           ///< [m], after scaling
+  LatticeSpec lattice;         ///< used with `surface`
   ElementKind element = ElementKind::hex8;
   DeformationModel model;
   Material material;
@@ -159,6 +172,8 @@ struct Scene {
   Integrator integrator = Integrator::increment;
   Relaxation relaxation;
   Tool tool;
+  SceneView view;
+  bool interactive = false;  ///< set in code: the Model reserves a force on every node that moves a vertex of the surface
   std::vector<Body> bodies;
 };
 

@@ -1,6 +1,7 @@
 // What runs a Program. Implemented by host/opencl (float) and cpu_ref (float and double).
 #pragma once
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <string>
 #include <vector>
@@ -53,6 +54,11 @@ class Backend {
   virtual void write_ints(BufferId id, const std::vector<std::int32_t>& values) = 0;
   /// The buffer's bytes, for comparison and hashing (4 or 8 bytes per value).
   virtual std::vector<std::uint8_t> read_bytes(BufferId id) = 0;
+  /// The same into the caller's memory, which must have exactly the buffer's size.
+  virtual void read_into(BufferId id, void* out) {
+    const std::vector<std::uint8_t> bytes = read_bytes(id);
+    if (!bytes.empty()) std::memcpy(out, bytes.data(), bytes.size());
+  }
   /// Turn per-pass timing on (it may serialise launches) or off, and collect it.
   virtual void profile(bool on) = 0;
   virtual std::vector<PassTime> take_profile() = 0;

@@ -68,6 +68,7 @@ void Simulation::load_program() {
       if (constraint.axes & (1 << c)) free_[3 * static_cast<std::size_t>(constraint.slot) + c] = false;
     }
   }
+  if (!host_forces_.empty()) upload_host_forces();
 }
 
 void Simulation::start(const SimulationOptions& options) {

@@ -81,6 +81,22 @@ class Simulation {
   /// Vertices of the embedded surface of all bodies [m].
   [[nodiscard]] std::vector<Vec3d> surface_positions();
 
+  /// Vertices of the embedded surface as the backend holds them, four reals each (the fourth is 0), padded to a multiple of 16
+  /// vertices: bytes that read_surface wants. 0 without a surface.
+  [[nodiscard]] std::size_t surface_bytes() const;
+  void read_surface_into(void* out);
+
+  /// Forces [N] that the host puts on nodes from now on, beside those of the scene; they replace those set before. Only nodes
+  /// for which the Model reserved a force (Scene::interactive) can have one: throws Error (state) for others.
+  struct HostForce {
+    std::size_t body = 0;
+    std::int64_t node = 0;
+    Vec3d force{};
+  };
+  void set_forces(std::vector<HostForce> forces);
+  /// Put the scene's tool at a point [m] from now on.
+  void set_tool(const Vec3d& position) { scene_.tool.path = {{0, position[0], position[1], position[2]}}; }
+
   /// Hash over the state buffers.
   [[nodiscard]] std::uint64_t hash() const;
   /// Hash over the model as the backend sees it and the scene's solver settings: a checkpoint belongs to one of these.
@@ -117,6 +133,7 @@ class Simulation {
   void set_initial_increment();
   void upload_params();
   void upload_decay();
+  void upload_host_forces();  // in host_forces.cpp
   [[nodiscard]] double decay(std::size_t slot) const;
   void upload_curves(std::int32_t steps);
   void change_dt(double dt);
@@ -152,6 +169,7 @@ class Simulation {
   std::optional<Divergence> divergence_;
   bool equilibrium_ = false;
   double residual_ = 0;
+  std::vector<HostForce> host_forces_;
 };
 
 }  // namespace pliant

@@ -1,0 +1,48 @@
+// Frames whose memory goes round: a frame that nobody holds any more is filled again.
+#pragma once
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "model/model.h"
+#include "pliant/frame.h"
+
+namespace pliant::api {
+
+/// What all frames of one topology share.
+struct Topology {
+  std::uint64_t version = 0;
+  std::shared_ptr<const Model> model;   ///< owns the triangles
+  std::vector<Vec4f> rest;              ///< [vertices] [m]
+  std::vector<std::uint8_t> cut_faces;  ///< [triangles] or empty
+};
+
+/// A frame and what it points to.
+struct FrameData {
+  Frame frame;
+  std::vector<Vec4f> positions, normals;  ///< padded as the backend pads them
+  std::shared_ptr<const Topology> topology;
+};
+
+class FramePool : public std::enable_shared_from_this<FramePool> {
+ public:
+  /// A frame to fill. When its last holder lets go it comes back here, or is freed if the pool is gone.
+  std::shared_ptr<FrameData> take();
+
+ private:
+  void give_back(std::unique_ptr<FrameData> data);
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<FrameData>> free_;
+};
+
+/// Unit normals of all vertices, the mean of their triangles weighted by area; zero where there is none. `count` vertices.
+void vertex_normals(const std::vector<Vec4f>& positions, std::size_t count, View<Triangle> triangles,
+                    std::vector<Vec4f>& normals);
+
+/// The smallest range outside of which both hold the same bits. `count` vertices.
+IndexRange changed_range(const std::vector<Vec4f>& before, const std::vector<Vec4f>& now, std::size_t count);
+
+/// The smallest range that holds both.
+IndexRange joined(const IndexRange& a, const IndexRange& b);
+
+}  // namespace pliant::api

@@ -1,0 +1,207 @@
+#include "api/tools.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace pliant::api {
+namespace {
+
+constexpr double kPeriod = 0.002;  ///< the springs of grabs are looked at this often [s]
+constexpr double kCatchUp = 0.1;   ///< time in which the pull takes up what the spring alone leaves [s]
+constexpr double kFree = 0.25;     ///< largest share of a free patch's momentum balance that one look may change
+constexpr std::int32_t kAnySteps = 1 << 20;
+
+Vec3d limited(const Vec3d& v, double most) {
+  const double size = std::hypot(v[0], v[1], v[2]);
+  if (size <= most) return v;
+  return {v[0] * most / size, v[1] * most / size, v[2] * most / size};
+}
+
+double edge_of(const ModelBody& body) {
+  if (body.spacing > 0) return body.spacing;
+  return std::cbrt(body.volume / static_cast<double>(std::max<std::int64_t>(body.elements(), 1)));
+}
+
+}  // namespace
+
+Tools::Tools(std::shared_ptr<const Model> model, const Scene& scene) : model_(std::move(model)) {
+  for (const Body& b : scene.bodies) materials_.push_back(b.material);
+  node_of_.resize(static_cast<std::size_t>(model_->slots));
+  for (std::size_t b = 0; b < model_->bodies.size(); ++b) {
+    const auto& slots = model_->bodies[b].slot;
+    for (std::size_t n = 0; n < slots.size(); ++n) {
+      node_of_[static_cast<std::size_t>(slots[n])] = {b, static_cast<std::int64_t>(n)};
+    }
+  }
+}
+
+void Tools::check_vertex(std::int32_t vertex) const {
+  const std::size_t count = model_->surface.rest.size();
+  if (vertex < 0 || static_cast<std::size_t>(vertex) >= count) {
+    throw Error(ErrorCode::usage, fmt::format("there is no vertex {}; the surface has {}", vertex, count));
+  }
+}
+
+std::vector<NodeShare> Tools::nodes_of(std::int32_t vertex) const {
+  std::vector<NodeShare> nodes;
+  const auto v = static_cast<std::size_t>(vertex);
+  for (std::size_t a = 0; a < 8; ++a) {
+    if (model_->surface.weights[v][a] == 0) continue;
+    const auto [body, node] = node_of_[static_cast<std::size_t>(model_->surface.nodes[v][a])];
+    nodes.push_back({body, node, model_->surface.weights[v][a]});
+  }
+  return nodes;
+}
+
+GrabId Tools::grab(std::int32_t vertex, const GrabOptions& options) {
+  check_vertex(vertex);
+  if (!(options.radius >= 0 && options.stiffness >= 0 && options.max_force >= 0)) {
+    throw Error(ErrorCode::usage, "radius, stiffness and max_force of a grab must be 0 or more");
+  }
+  Grab g;
+  g.vertex = vertex;
+  g.point = nodes_of(vertex);
+  g.body = g.point.front().body;
+  g.rest = model_->surface.rest[static_cast<std::size_t>(vertex)];
+  const ModelBody& body = model_->bodies[g.body];
+  // Only nodes with a reserved force can be held: those that move the surface.
+  for (const NodeForce& f : model_->forces) {
+    const auto [b, n] = node_of_[static_cast<std::size_t>(f.slot)];
+    if (!f.reserved || b != g.body) continue;
+    const Vec3d& x = body.rest[static_cast<std::size_t>(n)];
+    const bool own = std::any_of(g.point.begin(), g.point.end(), [n = n](const NodeShare& p) { return p.node == n; });
+    const double distance = std::hypot(x[0] - g.rest[0], x[1] - g.rest[1], x[2] - g.rest[2]);
+    if (!own && !(distance <= options.radius)) continue;
+    const double mass = model_->mass[static_cast<std::size_t>(f.slot)];
+    g.patch.push_back({b, n, mass});
+    g.mass += mass;
+  }
+  for (NodeShare& p : g.patch) p.share /= g.mass;
+  // A disk of radius r on a half-space has the stiffness 2 E r / (1 - nu^2): half of it cannot overshoot at rest.
+  const double r = std::max(options.radius, edge_of(body)), young = materials_[g.body].young();
+  g.stiffness = options.stiffness > 0 ? options.stiffness : young * r;
+  g.max_force = options.max_force > 0 ? options.max_force : young * r * r;
+  const std::lock_guard lock(mutex_);
+  grabs_.emplace(++last_id_, std::move(g));
+  return last_id_;
+}
+
+void Tools::move(GrabId id, const Vec3d& target) {
+  for (const double x : target) {
+    if (!std::isfinite(x)) throw Error(ErrorCode::usage, fmt::format("the target of a grab has the coordinate {}", x));
+  }
+  const std::lock_guard lock(mutex_);
+  const auto found = grabs_.find(id);
+  if (found == grabs_.end()) throw Error(ErrorCode::usage, fmt::format("there is no grab {}", id));
+  found->second.target = target;
+}
+
+void Tools::release(GrabId id) {
+  const std::lock_guard lock(mutex_);
+  if (grabs_.erase(id) == 0) throw Error(ErrorCode::usage, fmt::format("there is no grab {}", id));
+  changed_ = true;
+}
+
+void Tools::push(std::int32_t vertex, const Vec3d& force) {
+  check_vertex(vertex);
+  for (const double x : force) {
+    if (!std::isfinite(x)) throw Error(ErrorCode::usage, fmt::format("a force on vertex {} has the component {}", vertex, x));
+  }
+  const std::lock_guard lock(mutex_);
+  pushes_[vertex] = force;
+  if (force == Vec3d{}) pushes_.erase(vertex);
+  changed_ = true;
+}
+
+void Tools::push_node(std::size_t body, std::int64_t node, const Vec3d& force) {
+  if (body >= model_->bodies.size() || node < 0 || node >= static_cast<std::int64_t>(model_->bodies[body].slot.size())) {
+    throw Error(ErrorCode::usage, fmt::format("there is no node {} of body {}", node, body));
+  }
+  const std::int32_t slot = model_->bodies[body].slot[static_cast<std::size_t>(node)];
+  if (std::none_of(model_->forces.begin(), model_->forces.end(),
+                   [&](const NodeForce& f) { return f.reserved && f.slot == slot; })) {
+    throw Error(ErrorCode::usage, fmt::format("node {} of body {} moves no vertex of the surface", node, body));
+  }
+  for (const double x : force) {
+    if (!std::isfinite(x)) throw Error(ErrorCode::usage, fmt::format("a force on node {} has the component {}", node, x));
+  }
+  const std::lock_guard lock(mutex_);
+  node_pushes_[{body, node}] = force;
+  if (force == Vec3d{}) node_pushes_.erase({body, node});
+  changed_ = true;
+}
+
+void Tools::move_tool(const Vec3d& position) {
+  const std::lock_guard lock(mutex_);
+  tool_ = position;
+}
+
+void Tools::clear() {
+  const std::lock_guard lock(mutex_);
+  grabs_.clear();
+  pushes_.clear();
+  node_pushes_.clear();
+  tool_.reset();
+  changed_ = true;
+}
+
+/// Spring and damper on the vertex, and a part that grows until the vertex is where it should be. `period` is the time until
+/// the next look [s]: the gains stay where an explicit step of a free patch is stable.
+Vec3d Tools::pull(const Grab& grab, Pull& state, const Vec3d& position, double time, double period) const {
+  const double k = std::min(grab.stiffness, kFree * grab.mass / (period * period));
+  const double c = std::min(2 * std::sqrt(k * grab.mass), kFree * grab.mass / period);
+  const double elapsed = time - state.time;
+  Vec3d force{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double gap = state.target[i] - position[i];
+    const double speed = elapsed > 0 ? (position[i] - state.before[i]) / elapsed : 0;
+    state.held[i] += k * std::min(1.0, elapsed / kCatchUp) * gap;
+    force[i] = k * gap + state.held[i] - c * speed;
+  }
+  state.held = limited(state.held, grab.max_force);
+  state.before = position;
+  state.time = time;
+  return limited(force, grab.max_force);
+}
+
+std::int32_t Tools::apply(Simulation& simulation) {
+  std::map<GrabId, Grab> grabs;
+  std::vector<Simulation::HostForce> forces;
+  {
+    const std::lock_guard lock(mutex_);
+    if (tool_) simulation.set_tool(*tool_);
+    tool_.reset();
+    if (grabs_.empty() && !changed_) return kAnySteps;
+    changed_ = false;
+    grabs = grabs_;
+    for (const auto& [vertex, force] : pushes_) {
+      for (const NodeShare& n : nodes_of(vertex)) {
+        forces.push_back({n.body, n.node, {n.share * force[0], n.share * force[1], n.share * force[2]}});
+      }
+    }
+    for (const auto& [at, force] : node_pushes_) forces.push_back({at.first, at.second, force});
+  }
+  std::erase_if(pulls_, [&](const auto& entry) { return !grabs.contains(entry.first); });
+  const auto steps = static_cast<std::int32_t>(std::clamp(kPeriod / simulation.dt(), 1.0, 64.0));
+  std::map<std::size_t, std::vector<Vec3d>> displacements;
+  for (const auto& [id, grab] : grabs) {
+    if (!displacements.contains(grab.body)) displacements[grab.body] = simulation.displacements(grab.body);
+    const std::vector<Vec3d>& u = displacements[grab.body];
+    Vec3d position = grab.rest;
+    for (const NodeShare& n : grab.point) {
+      for (std::size_t c = 0; c < 3; ++c) position[c] += n.share * u[static_cast<std::size_t>(n.node)][c];
+    }
+    const auto [state, first] = pulls_.try_emplace(id, Pull{position, position, {}, simulation.time()});
+    if (grab.target) state->second.target = *grab.target;
+    const Vec3d f = pull(grab, state->second, position, simulation.time(), steps * simulation.dt());
+    for (const NodeShare& n : grab.patch) {
+      forces.push_back({n.body, n.node, {n.share * f[0], n.share * f[1], n.share * f[2]}});
+    }
+  }
+  simulation.set_forces(std::move(forces));
+  return grabs.empty() ? kAnySteps : steps;
+}
+
+}  // namespace pliant::api

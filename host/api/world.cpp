@@ -1,0 +1,309 @@
+// The public class: checks, waits where that is promised, and hands on.
+#include "pliant/world.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "api/scene_json.h"
+#include "api/world_impl.h"
+#include "backends/backends.h"
+#include "io/save.h"
+#include "pliant/version.h"
+
+#define PLIANT_TEXT_OF(x) #x
+#define PLIANT_TEXT(x) PLIANT_TEXT_OF(x)
+
+namespace pliant {
+namespace {
+
+/// One call at a time; and, if wanted, only when the worker is idle.
+class Call {
+ public:
+  explicit Call(const std::unique_ptr<World::Impl>& impl, bool wait = true) : impl_(impl.get()) {
+    if (impl_ == nullptr) throw Error(ErrorCode::state, "this World was moved from and holds nothing");
+    if (impl_->in_use.exchange(true)) {
+      throw Error(ErrorCode::state, "two threads use the same World at once; give each its own, or let them take turns");
+    }
+    if (wait) impl_->wait_until_idle();
+  }
+  ~Call() { impl_->in_use.store(false); }
+  Call(const Call&) = delete;
+  Call& operator=(const Call&) = delete;
+
+ private:
+  World::Impl* impl_;
+};
+
+void check_steps(std::int64_t steps) {
+  if (steps < 0) throw Error(ErrorCode::usage, fmt::format("the number of steps is {}; 0 or more are allowed", steps));
+}
+
+std::size_t check_body(const World::Impl& impl, std::size_t body) {
+  if (body >= impl.info.bodies.size()) {
+    throw Error(ErrorCode::usage, fmt::format("there is no body {}; the scene has {}", body, impl.info.bodies.size()));
+  }
+  return body;
+}
+
+void check_interactive(const World::Impl& impl) {
+  if (!impl.scene.interactive) {
+    throw Error(ErrorCode::state, "tools need forces reserved for them: create the World with WorldOptions::interactive");
+  }
+}
+
+std::unique_ptr<World::Impl> make_impl(Scene scene, const WorldOptions& options) {
+  if (options.dt < 0 || !std::isfinite(options.dt)) {
+    throw Error(ErrorCode::usage,
+                fmt::format("WorldOptions::dt is {} s; 0 (as the scene says) or more is allowed", options.dt));
+  }
+  if (options.dt > 0) scene.dt = options.dt;
+  scene.interactive = options.interactive;
+  const OpenBackend open = [spec = options.backend](std::string* why, std::int64_t nodes) {
+    return open_backend(spec, why, nodes);
+  };
+  return std::make_unique<World::Impl>(std::move(scene), open, options);
+}
+
+}  // namespace
+
+World::World(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+World::~World() = default;
+
+World::World(const SceneSpec& spec, const WorldOptions& options) {
+  std::vector<SurfaceSpec> surfaces;
+  const std::string text = api::scene_text(spec, surfaces);
+  impl_ = make_impl(api::read_scene(text, "", surfaces), options);
+}
+
+World World::open(const std::string& file, const WorldOptions& options) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) {
+    throw Error(ErrorCode::io, fmt::format("{}: no such file, expected a scene file", file));
+  }
+  return World(make_impl(load_scene(file), options));
+}
+
+World World::parse(const std::string& text, const std::string& folder, const WorldOptions& options,
+                   const std::vector<SurfaceSpec>& surfaces) {
+  const std::string file = folder.empty() ? "" : (std::filesystem::path(folder) / "scene.json").string();
+  return World(make_impl(api::read_scene(text, file, surfaces), options));
+}
+
+World WorldAccess::make(Scene scene, OpenBackend open, const WorldOptions& options) {
+  scene.interactive = options.interactive;
+  return World(std::make_unique<World::Impl>(std::move(scene), std::move(open), options));
+}
+
+Simulation& WorldAccess::simulation(World& world) {
+  const Call call(world.impl_);
+  return *world.impl_->simulation;
+}
+
+const WorldInfo& World::info() const {
+  if (impl_ == nullptr) throw Error(ErrorCode::state, "this World was moved from and holds nothing");
+  return impl_->info;
+}
+
+double World::time() const {
+  const Call call(impl_, false);
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->report.time;
+}
+
+std::int64_t World::step_number() const {
+  const Call call(impl_, false);
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->report.step;
+}
+
+double World::dt() const {
+  const Call call(impl_, false);
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->report.dt;
+}
+
+double World::stable_dt() const {
+  const Call call(impl_, false);
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->stable_dt;
+}
+
+StepReport World::step(std::int64_t steps) {
+  const Call call(impl_);
+  check_steps(steps);
+  impl_->throw_failure();
+  impl_->check_can_step();
+  return impl_->run(steps);
+}
+
+StepReport World::advance(double seconds) {
+  const Call call(impl_);
+  if (!(seconds >= 0) || !std::isfinite(seconds)) {
+    throw Error(ErrorCode::usage, fmt::format("the time to advance is {} s; 0 or more is allowed", seconds));
+  }
+  impl_->throw_failure();
+  impl_->check_can_step();
+  // An automatic step may change on the way, so what is left is looked at after every batch.
+  const double end = impl_->simulation->time() + impl_->seconds_left + seconds;
+  StepReport total = impl_->run(0);
+  std::int64_t done = 0;
+  while (!total.diverged && !total.at_equilibrium) {
+    const double fit = std::floor((end - impl_->simulation->time()) / impl_->simulation->dt() + 1e-6);
+    if (fit < 1) break;
+    total = impl_->run(impl_->simulation->next_batch(static_cast<std::int64_t>(std::min(fit, 1e15))));
+    done += total.done;
+  }
+  impl_->seconds_left = end - impl_->simulation->time();
+  total.done = done;
+  return total;
+}
+
+bool World::advance_async(std::int64_t steps) {
+  const Call call(impl_, false);
+  check_steps(steps);
+  return impl_->start_job(steps);
+}
+
+bool World::busy() const {
+  const Call call(impl_, false);
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->job >= 0;
+}
+
+bool World::poll() const noexcept {
+  if (impl_ == nullptr) return false;
+  const std::lock_guard lock(impl_->mutex);
+  if (impl_->newest != impl_->given) return true;
+  return impl_->job < 0 && impl_->newest != nullptr && impl_->newest->frame.step != impl_->report.step;
+}
+
+StepReport World::wait() {
+  const Call call(impl_);
+  impl_->throw_failure();
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->report;
+}
+
+FramePtr World::frame() {
+  const Call call(impl_, false);
+  bool idle = false;
+  {
+    const std::lock_guard lock(impl_->mutex);
+    idle = impl_->job < 0;
+  }
+  if (idle && impl_->lost.empty()) impl_->read_frame();
+  const std::lock_guard lock(impl_->mutex);
+  if (impl_->given != impl_->newest) {
+    impl_->given = impl_->newest;
+    // Nobody else has this frame yet.
+    impl_->given->frame.dirty_vertices = std::exchange(impl_->dirty_vertices, {});
+    impl_->given->frame.dirty_triangles = std::exchange(impl_->dirty_triangles, {});
+  }
+  return {impl_->given, &impl_->given->frame};
+}
+
+std::vector<Vec3d> World::displacements(std::size_t body) const {
+  const Call call(impl_);
+  return impl_->simulation->displacements(check_body(*impl_, body));
+}
+
+std::vector<Vec3d> World::velocities(std::size_t body) const {
+  const Call call(impl_);
+  return impl_->simulation->velocities(check_body(*impl_, body));
+}
+
+std::vector<Vec3d> World::rest_positions(std::size_t body) const {
+  const Call call(impl_);
+  return impl_->simulation->model().bodies[check_body(*impl_, body)].rest;
+}
+
+std::uint64_t World::hash() const {
+  const Call call(impl_);
+  return impl_->simulation->hash();
+}
+
+GrabId World::grab(std::int32_t vertex, const GrabOptions& options) {
+  const Call call(impl_, false);
+  check_interactive(*impl_);
+  return impl_->tools->grab(vertex, options);
+}
+
+void World::move_grab(GrabId grab, const Vec3d& target) {
+  const Call call(impl_, false);
+  check_interactive(*impl_);
+  impl_->tools->move(grab, target);
+}
+
+void World::release(GrabId grab) {
+  const Call call(impl_, false);
+  check_interactive(*impl_);
+  impl_->tools->release(grab);
+}
+
+void World::push(std::int32_t vertex, const Vec3d& force) {
+  const Call call(impl_, false);
+  check_interactive(*impl_);
+  impl_->tools->push(vertex, force);
+}
+
+void World::push_node(std::size_t body, std::int64_t node, const Vec3d& force) {
+  const Call call(impl_, false);
+  check_interactive(*impl_);
+  impl_->tools->push_node(body, node, force);
+}
+
+void World::clear_tools() {
+  const Call call(impl_, false);
+  check_interactive(*impl_);
+  impl_->tools->clear();
+}
+
+void World::move_tool(const Vec3d& position) {
+  const Call call(impl_, false);
+  impl_->tools->move_tool(position);
+}
+
+void World::save(const std::string& file) const {
+  const Call call(impl_);
+  if (!impl_->lost.empty()) throw Error(ErrorCode::device, impl_->lost);
+  const Checkpoint checkpoint = take_checkpoint(*impl_->simulation);
+  try {
+    write_checkpoint(file, checkpoint);
+  } catch (const Error& error) {
+    throw Error(ErrorCode::io, error.what());
+  }
+}
+
+void World::load(const std::string& file) {
+  const Call call(impl_);
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored))
+    throw Error(ErrorCode::io, fmt::format("{}: no such file, expected a checkpoint", file));
+  const Checkpoint checkpoint = read_checkpoint(file);
+  auto fresh = impl_->make_simulation(nullptr);
+  restore_checkpoint(*fresh, checkpoint, file);
+  impl_->restart(std::move(fresh));
+}
+
+void World::reset() {
+  const Call call(impl_);
+  auto fresh = impl_->make_simulation(nullptr);
+  impl_->tools->clear();
+  impl_->restart(std::move(fresh));
+}
+
+const char* version() {
+  return PLIANT_TEXT(PLIANT_VERSION_MAJOR) "." PLIANT_TEXT(PLIANT_VERSION_MINOR) "." PLIANT_TEXT(PLIANT_VERSION_PATCH);
+}
+
+std::vector<std::string> backend_names() {
+  std::vector<std::string> names;
+  for (const BackendInfo& b : list_backends()) names.push_back(b.name);
+  return names;
+}
+
+}  // namespace pliant

@@ -1,0 +1,81 @@
+// The inside of a World. Private to host/api and its tests.
+#pragma once
+#include <atomic>
+#include <condition_variable>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "api/frame_pool.h"
+#include "api/tools.h"
+#include "pliant/world.h"
+#include "solver/simulation.h"
+
+namespace pliant {
+
+/// Opens a backend for a scene of so many nodes; `why` receives the reason.
+using OpenBackend = std::function<std::unique_ptr<Backend>(std::string* why, std::int64_t nodes)>;
+
+/// One thread at a time steps the simulation: the caller's in step(), the worker in advance_async(). `mutex` protects what both
+/// touch.
+struct World::Impl {
+  Impl(Scene scene, OpenBackend open, const WorldOptions& options);
+  ~Impl();
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  // world_run.cpp
+  StepReport run(std::int64_t steps);
+  void read_frame(bool again = false);
+  void publish_clock();
+  [[nodiscard]] std::shared_ptr<Simulation> make_simulation(std::string* why);
+  void restart(std::shared_ptr<Simulation> fresh);
+  [[nodiscard]] Error as_device_error(const std::exception& error) const;
+  void check_can_step() const;
+
+  // world_worker.cpp
+  bool start_job(std::int64_t steps);
+  void wait_until_idle();
+  void throw_failure();
+  void serve();
+
+  const WorldOptions options;
+  const Scene scene;  ///< as of the start
+  const OpenBackend open_backend;
+  std::shared_ptr<const Model> model;  ///< as of the start
+  std::shared_ptr<Simulation> simulation;
+  WorldInfo info;
+  std::unique_ptr<api::Tools> tools;
+  std::string lost;         ///< message of the device's loss; empty: it works
+  double seconds_left = 0;  ///< of advance()
+  std::atomic<bool> in_use{false};
+
+  std::shared_ptr<api::FramePool> pool = std::make_shared<api::FramePool>();
+  std::shared_ptr<const api::Topology> topology;
+  std::shared_ptr<api::FrameData> last_read;  ///< of the thread that steps
+
+  mutable std::mutex mutex;
+  std::condition_variable changed;
+  std::thread worker;
+  bool stop = false;
+  std::int64_t job = -1;  ///< steps asked of the worker, -1: none
+  std::exception_ptr failure;
+  StepReport report;  ///< of the last work
+  double stable_dt = 0;
+  std::shared_ptr<api::FrameData> newest;      ///< the last frame that was read
+  std::shared_ptr<api::FrameData> given;       ///< the frame that the user got last
+  IndexRange dirty_vertices, dirty_triangles;  ///< from `given` to `newest`
+};
+
+/// What the rooms of Pliant and its tests may do with a World that its users may not.
+struct WorldAccess {
+  /// A World on a backend of the caller's.
+  static World make(Scene scene, OpenBackend open, const WorldOptions& options = {});
+  /// The simulation inside, once the worker is idle. It is replaced by reset() and load().
+  static Simulation& simulation(World& world);
+};
+
+}  // namespace pliant

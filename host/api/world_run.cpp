@@ -1,0 +1,181 @@
+// Stepping a World and reading its frames, on whichever thread does it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "api/world_impl.h"
+
+namespace pliant {
+namespace {
+
+/// A mesh file that does not exist is a matter of files; everything else of the scene is input.
+ErrorCode code_of_model(const Scene& scene, const Error& error) {
+  std::error_code ignored;
+  for (const Body& b : scene.bodies) {
+    const auto& file = b.mesh.empty() ? b.surface : b.mesh;
+    if (b.surface_in_memory == nullptr && !std::filesystem::exists(file, ignored)) return ErrorCode::io;
+  }
+  return error.code();
+}
+
+std::shared_ptr<const Model> model_of(const Scene& scene) {
+  try {
+    return std::make_shared<const Model>(build_model(scene));
+  } catch (const Error& error) {
+    throw Error(code_of_model(scene, error), error.what());
+  }
+}
+
+std::shared_ptr<const api::Topology> topology_of(std::shared_ptr<const Model> model, std::uint64_t version) {
+  auto topology = std::make_shared<api::Topology>();
+  topology->version = version;
+  for (const Vec3d& x : model->surface.rest) {
+    topology->rest.push_back({static_cast<float>(x[0]), static_cast<float>(x[1]), static_cast<float>(x[2]), 0});
+  }
+  topology->model = std::move(model);
+  return topology;
+}
+
+WorldInfo info_of(const Model& model, const BackendInfo& backend, std::string why) {
+  WorldInfo info{backend.name, backend.device, std::move(why), backend.bit_exact, model.nodes(), model.elements(), 0, 0, {}};
+  info.vertices = model.surface.rest.size();
+  info.triangles = model.surface.triangles.size();
+  for (const ModelBody& b : model.bodies) {
+    info.bodies.push_back({b.name,
+                           static_cast<std::int64_t>(b.slot.size()),
+                           b.elements(),
+                           b.mass,
+                           {static_cast<std::size_t>(b.first_vertex), static_cast<std::size_t>(b.vertices)},
+                           {static_cast<std::size_t>(b.first_triangle), static_cast<std::size_t>(b.triangles)}});
+  }
+  return info;
+}
+
+}  // namespace
+
+World::Impl::Impl(Scene scene_, OpenBackend open, const WorldOptions& options_)
+    : options(options_), scene(std::move(scene_)), open_backend(std::move(open)), model(model_of(scene)) {
+  std::string why;
+  simulation = make_simulation(&why);
+  info = info_of(*model, simulation->backend().info(), why);
+  tools = std::make_unique<api::Tools>(model, scene);
+  topology = topology_of(model, 1);
+  publish_clock();
+  read_frame();
+}
+
+std::shared_ptr<Simulation> World::Impl::make_simulation(std::string* why) {
+  std::unique_ptr<Backend> backend;
+  try {
+    backend = open_backend(why, model->nodes());
+  } catch (const Error& error) {
+    throw Error(ErrorCode::device, error.what());
+  }
+  return std::make_shared<Simulation>(scene, model, std::move(backend));
+}
+
+/// What went wrong on the device while it worked. Scenes are checked before, so whatever a step throws is the device's.
+Error World::Impl::as_device_error(const std::exception& error) const {
+  return {ErrorCode::device, fmt::format("the backend {} failed at step {}: {}", info.backend, report.step, error.what())};
+}
+
+void World::Impl::check_can_step() const {
+  if (!lost.empty()) throw Error(ErrorCode::device, lost + "; reset() opens it again");
+  if (report.diverged)
+    throw Error(ErrorCode::diverged, report.message + "; reset() or load() goes back to a state that can be stepped");
+}
+
+void World::Impl::publish_clock() {
+  const std::lock_guard lock(mutex);
+  report.step = simulation->step();
+  report.time = simulation->time();
+  report.dt = simulation->dt();
+  report.at_equilibrium = simulation->at_equilibrium();
+  report.diverged = simulation->divergence().has_value();
+  report.message = report.diverged ? simulation->divergence()->message() : "";
+  stable_dt = simulation->stable_dt();
+}
+
+StepReport World::Impl::run(std::int64_t steps) {
+  const std::int64_t first = simulation->step();
+  try {
+    while (simulation->step() - first < steps && !simulation->divergence() && !simulation->at_equilibrium()) {
+      const std::int64_t left = std::min<std::int64_t>(steps - (simulation->step() - first), tools->apply(*simulation));
+      simulation->advance(simulation->next_batch(left));
+      const std::lock_guard lock(mutex);
+      if (stop) break;
+    }
+  } catch (const std::exception& error) {
+    const Error failure_now = as_device_error(error);
+    lost = failure_now.what();
+    throw failure_now;
+  }
+  publish_clock();
+  const std::lock_guard lock(mutex);
+  report.done = std::max<std::int64_t>(0, simulation->step() - first);  // a divergence may go back to before this call
+  return report;
+}
+
+/// Read the surface into a frame that nobody holds, and make it the newest.
+void World::Impl::read_frame(bool again) {
+  if (!again && last_read != nullptr && last_read->frame.step == simulation->step() && last_read->topology == topology) return;
+  const std::size_t count = topology->rest.size();
+  auto data = pool->take();
+  data->topology = topology;
+  const std::size_t bytes = simulation->surface_bytes();
+  const bool is_double = simulation->backend().info().name == "cpu:double";
+  data->positions.resize(bytes / (is_double ? 2 : 1) / sizeof(Vec4f));
+  try {
+    if (is_double) {
+      std::vector<std::array<double, 4>> wide(data->positions.size());
+      simulation->read_surface_into(wide.data());
+      for (std::size_t v = 0; v < wide.size(); ++v) {
+        for (std::size_t c = 0; c < 4; ++c) data->positions[v][c] = static_cast<float>(wide[v][c]);
+      }
+    } else {
+      simulation->read_surface_into(data->positions.data());
+    }
+  } catch (const std::exception& error) {
+    const Error failure_now = as_device_error(error);
+    lost = failure_now.what();
+    throw failure_now;
+  }
+  const auto& triangles = topology->model->surface.triangles;
+  Frame& f = data->frame;
+  f = Frame{};
+  f.step = simulation->step();
+  f.time = simulation->time();
+  f.positions = {data->positions.data(), count};
+  f.rest = {topology->rest.data(), count};
+  f.triangles = {triangles.data(), triangles.size()};
+  f.cut_faces = {topology->cut_faces.data(), topology->cut_faces.size()};
+  f.topology_version = topology->version;
+  if (options.normals) {
+    api::vertex_normals(data->positions, count, f.triangles, data->normals);
+    f.normals = {data->normals.data(), count};
+  }
+  const bool same_topology = last_read != nullptr && last_read->topology == topology;
+  const IndexRange vertices =
+      same_topology ? api::changed_range(last_read->positions, data->positions, count) : IndexRange{0, count};
+  last_read = data;
+  const std::lock_guard lock(mutex);
+  dirty_vertices = same_topology ? api::joined(dirty_vertices, vertices) : vertices;
+  if (!same_topology) dirty_triangles = {0, triangles.size()};
+  newest = std::move(data);
+}
+
+/// Go on with another simulation of the same scene.
+void World::Impl::restart(std::shared_ptr<Simulation> fresh) {
+  simulation = std::move(fresh);
+  lost.clear();
+  seconds_left = 0;
+  {
+    const std::lock_guard lock(mutex);
+    failure = nullptr;
+  }
+  publish_clock();
+  read_frame(true);
+}
+
+}  // namespace pliant

@@ -1,0 +1,60 @@
+// What a renderer gets: the surface of one moment, in memory that nobody writes any more.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include "pliant/export.h"
+#include "pliant/scene.h"
+
+namespace pliant {
+
+/// A pointer and a length: an array that belongs to somebody else.
+template <class T>
+class View {
+ public:
+  View() = default;
+  View(const T* data, std::size_t size) : data_(data), size_(size) {}
+  [[nodiscard]] const T* data() const { return data_; }
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] bool empty() const { return size_ == 0; }
+  [[nodiscard]] const T* begin() const { return data_; }
+  [[nodiscard]] const T* end() const { return data_ + size_; }
+  const T& operator[](std::size_t i) const { return data_[i]; }
+
+ private:
+  const T* data_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+/// x, y, z and a w that is 0: 16 bytes, the stride that graphics and ray tracing interfaces like.
+using Vec4f = std::array<float, 4>;
+
+/// Indices first .. first + count - 1; count 0: none.
+struct IndexRange {
+  std::size_t first = 0, count = 0;
+};
+
+/// The surface of all bodies at one step. A frame does not change once it is there, and it stays as long as somebody holds it,
+/// also after its World is gone. Bodies follow one another: BodyInfo has their ranges.
+struct Frame {
+  std::int64_t step = 0;         ///< steps since the start
+  double time = 0;               ///< [s]
+  View<Vec4f> positions;         ///< [m], shape [vertices]
+  View<Vec4f> normals;           ///< unit length, shape [vertices]; empty if WorldOptions::normals is off
+  View<Vec4f> rest;              ///< positions at rest [m], shape [vertices]
+  View<Triangle> triangles;      ///< vertex numbers, shape [triangles]
+  View<std::uint8_t> cut_faces;  ///< 1: the triangle lies on a cut, shape [triangles]; empty: none does
+  std::uint64_t topology_version =
+      0;  ///< changes when vertices or triangles are others than before; positions alone do not count
+  /// The vertices whose positions may differ from those of the frame that World::frame() gave before this one (frames that
+  /// were never asked for count in). All of them in the first frame and after a change of topology.
+  IndexRange dirty_vertices;
+  /// The same for triangles: empty unless the topology changed.
+  IndexRange dirty_triangles;
+};
+
+using FramePtr = std::shared_ptr<const Frame>;
+
+}  // namespace pliant

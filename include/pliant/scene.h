@@ -1,0 +1,140 @@
+// A scene in code: plain data in SI units, with the words and defaults of the scene file (docs/scene.md). Nothing is checked
+// until a World is made of it; messages then name the place as in a scene file, for example "/bodies/0/material/young".
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pliant/export.h"
+
+namespace pliant {
+
+/// x, y, z.
+using Vec3d = std::array<double, 3>;
+/// Three indices, counter-clockwise from outside.
+using Triangle = std::array<std::int32_t, 3>;
+
+/// A triangle surface in memory. It may have small holes and need not be oriented consistently.
+struct SurfaceSpec {
+  std::vector<Vec3d> vertices;      ///< [m], shape [vertices]
+  std::vector<Triangle> triangles;  ///< shape [triangles]
+};
+
+/// The surface of a box: 8 vertices, 12 triangles. Corners in [m].
+PLIANT_API SurfaceSpec box_surface(const Vec3d& lower, const Vec3d& upper);
+
+/// A set of nodes chosen by rest position [m] or by number. For pressures the centres of surface triangles are chosen, for
+/// inclusions the centres of elements.
+struct RegionSpec {
+  enum class Kind { all, box, sphere, plane, nodes };
+  Kind kind = Kind::all;
+  Vec3d a{};                        ///< box: lower corner; sphere: centre; plane: a point
+  Vec3d b{};                        ///< box: upper corner; plane: normal, the side it points to is chosen
+  double radius = 0;                ///< sphere [m]
+  std::vector<std::int64_t> nodes;  ///< numbers in the body
+
+  static RegionSpec all() { return {}; }
+  static RegionSpec box(const Vec3d& lower, const Vec3d& upper) { return {Kind::box, lower, upper, 0, {}}; }
+  static RegionSpec sphere(const Vec3d& centre, double radius) { return {Kind::sphere, centre, {}, radius, {}}; }
+  static RegionSpec plane(const Vec3d& point, const Vec3d& normal) { return {Kind::plane, point, normal, 0, {}}; }
+  static RegionSpec of_nodes(std::vector<std::int64_t> numbers) { return {Kind::nodes, {}, {}, 0, std::move(numbers)}; }
+};
+
+/// A factor over time, for loads and prescribed motion.
+struct CurveSpec {
+  std::string kind = "constant";             ///< constant, ramp, smooth or table
+  double start = 0;                          ///< [s]
+  double duration = 1;                       ///< [s], ramp and smooth: from 0 to 1 within it
+  std::vector<std::array<double, 2>> table;  ///< table: (time [s], factor), times ascending
+};
+
+struct MaterialSpec {
+  std::string law = "neo-hookean";  ///< neo-hookean, saint-venant-kirchhoff or isochoric-neo-hookean
+  double young = 3000;              ///< Young's modulus at small strain [Pa]
+  double poisson = 0.45;            ///< in (-1, 0.5)
+  double density = 1000;            ///< [kg/m^3]
+  double damping = 0;               ///< mass-proportional damping rate [1/s]
+};
+
+/// A part of a body with another material; later entries win where they overlap.
+struct InclusionSpec {
+  RegionSpec where;
+  MaterialSpec material;
+};
+
+/// Nodes that stay where they are, in the axes named.
+struct FixedSpec {
+  RegionSpec where;
+  std::string axes = "xyz";
+};
+
+/// Nodes that move as told.
+struct PrescribedSpec {
+  RegionSpec where;
+  std::array<std::optional<double>, 3> displacement;  ///< [m]; an absent component stays free
+  CurveSpec curve;
+};
+
+/// A force [N] shared equally by the chosen nodes.
+struct ForceSpec {
+  RegionSpec where;
+  Vec3d force{};
+  CurveSpec curve;
+};
+
+/// Follower pressure [Pa] along the inward normal of the deformed surface.
+struct PressureSpec {
+  RegionSpec where;
+  double pressure = 0;
+  CurveSpec curve;
+};
+
+/// How the nodes of a body move: finite elements (tled), shape matching (flsm), or both (hybrid). The comments of docs/scene.md
+/// apply.
+struct ModelSpec {
+  std::string type = "tled";    ///< tled, hybrid or flsm
+  double ratio = 0.5;           ///< hybrid: share of the nodes that finite elements move, in [0, 1]
+  std::optional<Vec3d> seed;    ///< hybrid: the operational region grows from here [m]
+  bool follow_tool = false;     ///< hybrid: the operational region follows the tool
+  std::optional<double> beta;   ///< hybrid: stiffness of the interface [N/m]; absent: automatic
+  int width = 2;                ///< half-width of the regions of shape matching, in cells
+  double alpha = 0.5;           ///< stiffness of shape matching in (0, 1]
+  std::optional<double> young;  ///< wanted stiffness of shape matching [Pa] instead of alpha
+  double damping = 0;           ///< per-region damping, in [0, 1]
+  int substeps = 1;             ///< hybrid: steps of finite elements per step of shape matching
+};
+
+struct BodySpec {
+  std::string name = "body";
+  SurfaceSpec surface;                ///< either this,
+  std::string surface_file;           ///< or a triangle mesh (OBJ, STL, PLY, 3DS, glTF),
+  std::string volume_file;            ///< or a volume mesh (Gmsh, VTK, VTU, TetGen), taken as it is
+  double scale = 1;                   ///< applied to the coordinates first
+  Vec3d translate{};                  ///< [m], after scaling
+  double lattice_spacing = 0;         ///< edge of a cell [m]; 0: from lattice_nodes
+  std::int64_t lattice_nodes = 2000;  ///< about this many nodes, where no spacing is given
+  std::string element = "hex8";       ///< tet4, tet4anp, hex8 or hex8full
+  MaterialSpec material;
+  ModelSpec model;
+  std::vector<InclusionSpec> inclusions;
+  std::vector<FixedSpec> fixed;
+  std::vector<PrescribedSpec> prescribed;
+  std::vector<ForceSpec> forces;
+  std::vector<PressureSpec> pressures;
+  Vec3d velocity{};          ///< initial [m/s]
+  Vec3d angular_velocity{};  ///< initial, about the centre of mass [rad/s]
+};
+
+struct SceneSpec {
+  std::string name = "scene";
+  Vec3d gravity{};                               ///< [m/s^2]
+  double dt = 0;                                 ///< [s]; 0: automatic
+  double safety = 0.9;                           ///< share of the stable step that an automatic step takes, in (0, 1]
+  std::vector<std::array<double, 4>> tool_path;  ///< (time [s], x, y, z [m]): what a following operational region follows
+  std::vector<BodySpec> bodies;
+};
+
+}  // namespace pliant

@@ -1,0 +1,151 @@
+// A running simulation for programs that embed Pliant: step it, pull at it, draw it.
+//
+// Threads. A World may be used from any thread, but by one at a time; two at once are an Error (state). Worlds share nothing,
+// so each may have a thread of its own, and what one computes does not depend on the others. A World makes one worker thread,
+// at the first advance_async. While the worker is busy these calls do not wait for it: busy, poll, frame, info, the tools,
+// advance_async. All others wait until it is done. A Frame may be read by any number of threads.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "pliant/error.h"
+#include "pliant/export.h"
+#include "pliant/frame.h"
+#include "pliant/scene.h"
+
+namespace pliant {
+
+struct WorldOptions {
+  std::string backend = "auto";  ///< auto, cpu, cpu:double, opencl or opencl:N
+  double dt = 0;                 ///< [s]; 0: what the scene says
+  bool normals = true;           ///< frames have vertex normals
+  bool interactive = false;      ///< reserve forces on all nodes of the surface, which the tools below need
+};
+
+/// One body of a World.
+struct BodyInfo {
+  std::string name;
+  std::int64_t nodes = 0, elements = 0;
+  double mass = 0;                 ///< [kg]
+  IndexRange vertices, triangles;  ///< its part of a Frame, as of the start
+};
+
+struct WorldInfo {
+  std::string backend;     ///< "opencl:0"
+  std::string device;      ///< the processor's own name
+  std::string why;         ///< why this backend
+  bool bit_exact = false;  ///< the device passed the start-up probe
+  std::int64_t nodes = 0, elements = 0;
+  std::size_t vertices = 0, triangles = 0;
+  std::vector<BodyInfo> bodies;
+};
+
+/// What a call of step did. A divergence is reported here and not thrown; the World then holds the last good state, and
+/// stepping it again is an Error (diverged).
+struct StepReport {
+  std::int64_t done = 0;  ///< steps done by this call
+  std::int64_t step = 0;  ///< steps since the start
+  double time = 0;        ///< [s]
+  double dt = 0;          ///< [s], of the step to come
+  bool diverged = false;
+  bool at_equilibrium = false;  ///< dynamic relaxation has converged: there is nothing more to do
+  std::string message;          ///< of the divergence: step, body, element, dt against the stable step
+};
+
+/// A handful of the surface on a spring.
+struct GrabOptions {
+  double radius = 0;     ///< nodes within this distance of the vertex at rest are held too [m]; the vertex's own cell always is
+  double stiffness = 0;  ///< of the spring [N/m]; 0: of the order of the tissue's own
+  double max_force = 0;  ///< the pull never exceeds this [N]; 0: a limit that strains the tissue by about its own length
+};
+
+/// Names a grab of one World; 0 is none.
+using GrabId = std::uint64_t;
+
+class PLIANT_API World {
+ public:
+  /// Builds the model and opens the backend. Throws Error: input (the scene; the message names the place), io (a mesh file),
+  /// device (the backend).
+  explicit World(const SceneSpec& scene, const WorldOptions& options = {});
+  /// A scene file (docs/scene.md). Throws as above.
+  static World open(const std::string& file, const WorldOptions& options = {});
+  /// The text of a scene file; relative mesh paths start from `folder`. A body whose "surface" is "memory:N" takes surfaces[N].
+  static World parse(const std::string& text, const std::string& folder = "", const WorldOptions& options = {},
+                     const std::vector<SurfaceSpec>& surfaces = {});
+  World(World&&) noexcept;
+  World& operator=(World&&) noexcept;
+  /// Stops the worker after the batch it is at.
+  ~World();
+
+  [[nodiscard]] const WorldInfo& info() const;
+  [[nodiscard]] double time() const;  ///< [s], of the newest state
+  [[nodiscard]] std::int64_t step_number() const;
+  [[nodiscard]] double dt() const;         ///< [s], of the next step
+  [[nodiscard]] double stable_dt() const;  ///< 2 / omega_max as of the last estimate [s]; 0: none was made
+
+  /// Advance by `steps` (>= 0) and wait for them; stops early at a divergence or an equilibrium. Throws Error: diverged (it had
+  /// diverged before), device (lost while it worked: frame() still gives the last state that was read), usage.
+  StepReport step(std::int64_t steps = 1);
+  /// As many whole steps as `seconds` [s] hold, and what is left over is added to the next call.
+  StepReport advance(double seconds);
+
+  /// Ask the worker for `steps` steps and a frame. False, and nothing happens, while it is still busy. Throws like step, also
+  /// for what went wrong in the steps asked for last.
+  bool advance_async(std::int64_t steps);
+  [[nodiscard]] bool busy() const;
+  /// True if frame() would give another frame than last time. Never waits, never throws.
+  [[nodiscard]] bool poll() const noexcept;
+  /// Wait for the worker; what its last work did. Throws what it met.
+  StepReport wait();
+
+  /// The newest frame there is. While the worker is busy, that is the one of the steps before; otherwise the present state,
+  /// read from the device if that has not happened yet. After a divergence the last good state, after the loss of the device
+  /// the last one read.
+  FramePtr frame();
+
+  /// Displacements [m] of a body's nodes, shape [nodes]. Throws Error (usage) if there is no such body.
+  [[nodiscard]] std::vector<Vec3d> displacements(std::size_t body) const;
+  [[nodiscard]] std::vector<Vec3d> velocities(std::size_t body) const;      ///< [m/s]
+  [[nodiscard]] std::vector<Vec3d> rest_positions(std::size_t body) const;  ///< [m]
+  /// Hash over the state: equal for equal bits.
+  [[nodiscard]] std::uint64_t hash() const;
+
+  /// Tools. They need WorldOptions::interactive, otherwise they throw Error (state); a vertex or grab that does not exist is
+  /// usage. They take effect at the next batch of steps and do not wait.
+  ///
+  /// Hold the surface at a vertex and pull it to a point that begins where the vertex is now.
+  GrabId grab(std::int32_t vertex, const GrabOptions& options = {});
+  void move_grab(GrabId grab, const Vec3d& target);  ///< [m]
+  void release(GrabId grab);
+  /// A force [N] on a vertex, handed to the nodes of its cell, until it is set again; zero takes it away.
+  void push(std::int32_t vertex, const Vec3d& force);
+  /// A force [N] on a node of a body, likewise. The node must belong to a cell of the surface.
+  void push_node(std::size_t body, std::int64_t node, const Vec3d& force);
+  /// No grabs and no pushes any more.
+  void clear_tools();
+  /// The scene's tool, which a following operational region follows, stays at this point [m] from now on.
+  void move_tool(const Vec3d& position);
+
+  /// Write a checkpoint; `pliant run --resume` reads it too. Tools are not part of it. Throws Error: io.
+  void save(const std::string& file) const;
+  /// Go to the state of a checkpoint of the same scene. Throws Error: io, input (it belongs to another scene).
+  void load(const std::string& file);
+  /// Back to the start, also after a divergence or the loss of the device (the backend is opened anew). Tools are cleared.
+  void reset();
+
+  struct Impl;  ///< private
+
+ private:
+  friend struct WorldAccess;
+  explicit World(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+/// The version of the library that runs, "0.1.0".
+PLIANT_API const char* version();
+/// What --backend takes on this machine, "cpu" first, one by one with their devices; the text says whether each is bit-exact.
+PLIANT_API std::vector<std::string> backend_names();
+
+}  // namespace pliant
