@@ -40,12 +40,14 @@ inline void add_entry(const Scalar* factor, const Scalar* numbers, Scalar (&sum)
 template <int Width, class Scalar>
 inline void moments_of(const Scalar* node_u, const Scalar* flsm_plates, const std::int32_t* flsm_link,
                        const std::int32_t* missing_offset, const std::int32_t* missing, const Scalar* missing_factor,
-                       std::int64_t i, Scalar (&s)[PLIANT_FLSM_RECORD]) {
+                       const Scalar (&origin)[4], std::int64_t i, Scalar (&s)[PLIANT_FLSM_RECORD]) {
   Scalar sum[12], moment[4], listed[PLIANT_FLSM_RECORD];
   sum_links<Width, 12, PLIANT_FLSM_RECORD, 0, false>(flsm_plates, flsm_link, i, sum, moment);
   for (Scalar& l : listed) l = Scalar(-0.0);
   for (std::int64_t e = missing_offset[i]; e < missing_offset[i + 1]; ++e) {
-    add_entry<0>(missing_factor + 4 * e, node_u + std::int64_t{4} * missing[e], listed);
+    Scalar u[4];
+    for (int k = 0; k < 4; ++k) u[k] = node_u[std::int64_t{4} * missing[e] + k] - origin[k];
+    add_entry<0>(missing_factor + 4 * e, u, listed);
   }
   for (int k = 0; k < 12; ++k) s[k] = sum[k] + listed[k];
   for (int k = 0; k < 4; ++k) s[12 + k] = moment[k] + listed[12 + k];

@@ -11,9 +11,10 @@ void flsm_damp_region(Range range, const Scalar* node_w, const Scalar* flsm_plat
                       const std::int32_t* missing_offset, const std::int32_t* missing, const Scalar* missing_factor,
                       const Scalar* flsm_rest, const Scalar* flsm_spin, const Scalar* flsm_regions, Scalar* flsm_rates,
                       Scalar inverse_spacing) {
+  const Scalar origin[4] = {};
   for (std::int64_t i = range.begin; i < range.end; ++i) {
     Scalar s[PLIANT_FLSM_RECORD];
-    moments_of<Width>(node_w, flsm_plates, flsm_link, missing_offset, missing, missing_factor, i, s);
+    moments_of<Width>(node_w, flsm_plates, flsm_link, missing_offset, missing, missing_factor, origin, i, s);
     const auto rest = [&](int plane) { return flsm_rest[tile_base(i, PLIANT_FLSM_REST_PLANES) + plane * PLIANT_TILE]; };
     const auto spin = [&](int plane) { return flsm_spin[tile_base(i, PLIANT_FLSM_SPIN_PLANES) + plane * PLIANT_TILE]; };
     const Scalar d[3] = {rest(1), rest(2), rest(3)};

@@ -8,12 +8,13 @@ namespace pliant::ref {
 template <class Scalar, int Width>
 void flsm_region(Range range, const Scalar* node_u, const Scalar* flsm_plates, const std::int32_t* flsm_link,
                  const std::int32_t* missing_offset, const std::int32_t* missing, const Scalar* missing_factor,
-                 const Scalar* flsm_rest, Scalar* flsm_regions, Scalar spacing) {
+                 const Scalar* flsm_reference, const Scalar* flsm_rest, Scalar* flsm_regions, Scalar spacing) {
+  const Scalar origin[4] = {flsm_reference[0], flsm_reference[1], flsm_reference[2], flsm_reference[3]};
   for (std::int64_t tile = range.begin; tile < range.end; tile += PLIANT_TILE) {
     Scalar field[16][PLIANT_TILE];
     for (int l = 0; l < PLIANT_TILE; ++l) {
       Scalar s[16];
-      moments_of<Width>(node_u, flsm_plates, flsm_link, missing_offset, missing, missing_factor, tile + l, s);
+      moments_of<Width>(node_u, flsm_plates, flsm_link, missing_offset, missing, missing_factor, origin, tile + l, s);
       for (int k = 0; k < 16; ++k) field[k][l] = s[k];
     }
     const Scalar* rest = flsm_rest + PLIANT_FLSM_REST_PLANES * tile;

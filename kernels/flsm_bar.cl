@@ -1,6 +1,8 @@
 // Fast lattice shape matching, first of three passes from nodes to regions (Rivers and James 2007, section 4.2): sums along the x links
 // of a node, up to WIDTH links to both sides. With m the weights and o the number of links, sum m u and sum o m u.
-// Displacements instead of positions: far from the origin positions would lose the float.
+// Displacements instead of positions: far from the origin positions would lose the float. RELATIVE: less that of the first region's node,
+// or a body that has moved far would be drawn back or driven on by the rounding of its weights. flsm_reference: [2] texels, that
+// displacement and the one of the step of shape matching before.
 //
 // A weight of 0 and links to itself mark the region that stands for absent ones. All FLSM numbers are in blocks of four (x, y, z and one
 // without meaning). node_u: [slots] texels. flsm_slot: [regions]. flsm_weight: [regions] m [kg]. flsm_link: [regions][2] at -x, +x.
@@ -8,15 +10,21 @@
 #include "arith.cl"
 
 __kernel void flsm_bar(__global const float* node_u, __global const int* flsm_slot, __global const float* flsm_weight,
-                       __global const int* flsm_link, __global float* flsm_bars) {
+                       __global const int* flsm_link, __global float* flsm_reference, __global float* flsm_bars) {
   const float4 zero = 0.0f;
+#if RELATIVE
+  const float4 origin = vload4(flsm_slot[0], node_u);
+  if (get_global_id(0) == 0) vstore8((float8)(origin, vload4(0, flsm_reference)), 0, flsm_reference);
+#else
+  const float4 origin = zero;
+#endif
   for (int i = FIRST_INDEX; i < FIRST_INDEX + LANES; ++i) {
-    float4 sum = fma((float4)(flsm_weight[i]), vload4(flsm_slot[i], node_u), zero), moment = zero;
+    float4 sum = fma((float4)(flsm_weight[i]), vload4(flsm_slot[i], node_u) - origin, zero), moment = zero;
     int below = i, above = i;
     for (int o = 1; o <= WIDTH; ++o) {
       below = flsm_link[2 * below];
       above = flsm_link[2 * above + 1];
-      const float4 u_below = vload4(flsm_slot[below], node_u), u_above = vload4(flsm_slot[above], node_u);
+      const float4 u_below = vload4(flsm_slot[below], node_u) - origin, u_above = vload4(flsm_slot[above], node_u) - origin;
       const float m_below = flsm_weight[below], m_above = flsm_weight[above];
       sum = fma((float4)(m_above), u_above, fma((float4)(m_below), u_below, sum));
       moment = fma((float4)((float)o * m_above), u_above, fma((float4)(-((float)o * m_below)), u_below, moment));

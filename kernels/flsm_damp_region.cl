@@ -22,7 +22,7 @@ __kernel void flsm_damp_region(__global const float* node_w, __global const floa
   const int first = FIRST_INDEX;
   float moments[LANES * PLIANT_FLSM_RECORD];
   for (int l = 0; l < LANES; ++l) {
-    vstore16(region_moments(node_w, flsm_plates, flsm_link, missing_offset, missing, missing_factor, first + l), l, moments);
+    vstore16(region_moments(node_w, flsm_plates, flsm_link, missing_offset, missing, missing_factor, (float4)(0.0f), first + l), l, moments);
   }
   __global const float* rest = flsm_rest + TILE_BASE(first, PLIANT_FLSM_REST_PLANES);
   __global const float* spin = flsm_spin + TILE_BASE(first, PLIANT_FLSM_SPIN_PLANES);

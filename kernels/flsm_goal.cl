@@ -1,5 +1,5 @@
 // Goals of the interface nodes: flsm_goals takes the mean displacement g - X over the regions that hold the node (the source's equation
-// 6), and keeps the one before beside it.
+// 6), and keeps the one before beside it, both less the first texel of flsm_reference.
 // flsm_inverse_holders: [regions] 1 / number of regions that hold the node. flsm_goals: [interface][2] blocks [m]. region_base: region
 // of the first interface node; the other buffers as in flsm_goal_sum.
 #include "arith.cl"
@@ -8,10 +8,11 @@
 
 __kernel void flsm_goal(__global const float* flsm_bars, __global const int* flsm_link, __global const float* flsm_regions,
                         __global const int* missing_of_offset, __global const int* missing_of, __global const float* missing_of_factor,
-                        __global const float* flsm_inverse_holders, __global float* flsm_goals, int region_base) {
+                        __global const float* flsm_inverse_holders, __global const float* flsm_reference, __global float* flsm_goals, int region_base) {
+  const float4 moved = vload4(1, flsm_reference) - vload4(0, flsm_reference);
   for (int i = FIRST_INDEX; i < FIRST_INDEX + LANES; ++i) {
     const int region = region_base + i;
     const float4 goal = goal_sum(flsm_bars, flsm_link, flsm_regions, missing_of_offset, missing_of, missing_of_factor, region) * flsm_inverse_holders[region];
-    vstore8((float8)(goal, vload4(2 * i, flsm_goals)), i, flsm_goals);
+    vstore8((float8)(goal, vload4(2 * i, flsm_goals) + moved), i, flsm_goals);
   }
 }

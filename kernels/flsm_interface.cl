@@ -5,11 +5,12 @@
 #include "arith.cl"
 
 __kernel void flsm_interface(__global const float* node_u, __global float* node_load, __global const int* flsm_slot,
-                             __global const float* flsm_goals, __global const float* flsm_beta, __global const float* step_params,
+                             __global const float* flsm_reference, __global const float* flsm_goals, __global const float* flsm_beta, __global const float* step_params,
                              int substeps, int region_base, int step) {
 #if EXTRAPOLATED
   const float ahead = (float)(((int)step_params[6] + step) % substeps) / (float)substeps;
 #endif
+  const float4 origin = vload4(0, flsm_reference);
   for (int i = FIRST_INDEX; i < FIRST_INDEX + LANES; ++i) {
     const int slot = flsm_slot[region_base + i];
     const float8 goals = vload8(i, flsm_goals);
@@ -18,7 +19,7 @@ __kernel void flsm_interface(__global const float* node_u, __global float* node_
 #else
     const float4 goal = goals.lo;
 #endif
-    const float4 force = fma((float4)(flsm_beta[i]), goal - vload4(slot, node_u), vload4(slot, node_load));
+    const float4 force = fma((float4)(flsm_beta[i]), goal - (vload4(slot, node_u) - origin), vload4(slot, node_load));
     vstore4((float4)(force.xyz, 0.0f), slot, node_load);
   }
 }

@@ -1,7 +1,7 @@
 // The moments of a region: sums of plates along z links and of what the ordered sums miss; see flsm_region.cl.
 static inline float16 region_moments(__global const float* node_texels, __global const float* flsm_plates, __global const int* flsm_link,
                                      __global const int* missing_offset, __global const int* missing,
-                                     __global const float* missing_factor, int i) {
+                                     __global const float* missing_factor, float4 origin, int i) {
   float16 sum = vload16(i, flsm_plates);
   float4 moment = 0.0f;
   int below = i, above = i;
@@ -17,7 +17,7 @@ static inline float16 region_moments(__global const float* node_texels, __global
   if (first == last) return sum;
   float16 listed = -0.0f;
   for (int e = first; e < last; ++e) {
-    const float4 u = vload4(missing[e], node_texels);
+    const float4 u = vload4(missing[e], node_texels) - origin;
     listed = add_entry(missing_factor, e, (float16)(u, u, u, u), listed);
   }
   return sum + listed;

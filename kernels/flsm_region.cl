@@ -5,7 +5,7 @@
 // grid offset of a node from the centre: A = sum m (x - c) (X - C)^T = A_0 + sum m u o^T - (sum m u) d^T, R its rotation,
 // T X = X + t + h D o with D = R - I and t = sum m u / sum m - h D d.
 // flsm_plates: [regions][4] blocks. flsm_link: [regions][2] at -z, +z. missing_offset: [regions + 1]; missing: [entries] slots;
-// missing_factor: [entries] blocks. flsm_rest: [tiles][10][16] 1 / sum m, d (3) [cells], A_0 (xx yy zz xy xz yz).
+// missing_factor: [entries] blocks. flsm_reference as in flsm_bar. flsm_rest: [tiles][10][16] 1 / sum m, d (3) [cells], A_0 (xx yy zz xy xz yz).
 // flsm_regions: [regions][4] blocks: t, h D e_x, h D e_y, h D e_z [m]; on entry those of the step before, kept where A vanishes.
 #include "arith.cl"
 #include "texels.cl"
@@ -18,12 +18,12 @@
 
 __kernel void flsm_region(__global const float* node_u, __global const float* flsm_plates, __global const int* flsm_link,
                           __global const int* missing_offset, __global const int* missing,
-                          __global const float* missing_factor, __global const float* flsm_rest, __global float* flsm_regions,
+                          __global const float* missing_factor, __global const float* flsm_reference, __global const float* flsm_rest, __global float* flsm_regions,
                           float spacing) {
   const int first = FIRST_INDEX;
   float moments[LANES * PLIANT_FLSM_RECORD];
   for (int l = 0; l < LANES; ++l) {
-    vstore16(region_moments(node_u, flsm_plates, flsm_link, missing_offset, missing, missing_factor, first + l), l, moments);
+    vstore16(region_moments(node_u, flsm_plates, flsm_link, missing_offset, missing, missing_factor, vload4(0, flsm_reference), first + l), l, moments);
   }
   __global const float* rest = flsm_rest + TILE_BASE(first, PLIANT_FLSM_REST_PLANES);
   const real inverse = REST(0), dx = REST(1), dy = REST(2), dz = REST(3);

@@ -9,12 +9,14 @@
 __kernel void flsm_update(__global float* node_u, __global float* node_w, __global const float* node_load,
                           __global const float* flsm_bars, __global const int* flsm_link, __global const float* flsm_regions,
                           __global const int* missing_of_offset, __global const int* missing_of, __global const float* missing_of_factor,
-                          __global const float* flsm_inverse_holders, __global const float* step_params, __global const float* flsm_alpha,
+                          __global const float* flsm_inverse_holders, __global const float* flsm_reference,
+                          __global const float* step_params, __global const float* flsm_alpha,
                           __global int* fault, int batch, int substeps, int node_base, int fault_base, int step) {
   const float4 zero = 0.0f;
   const float h = (float)substeps * step_params[0], half_hh = (0.5f * h) * h;
   const float still = step_params[4], fine = step_params[5], anchor = 3.0f * fine;
   const float4 gravity = (float4)(step_params[1], step_params[2], step_params[3], 0.0f);
+  const float4 origin = vload4(0, flsm_reference);
   for (int i = FIRST_INDEX; i < FIRST_INDEX + LANES; ++i) {
     const float4 goal = goal_sum(flsm_bars, flsm_link, flsm_regions, missing_of_offset, missing_of, missing_of_factor, i);
     const float4 u = vload4(node_base + i, node_u), w = vload4(node_base + i, node_w);
@@ -24,7 +26,7 @@ __kernel void flsm_update(__global float* node_u, __global float* node_w, __glob
 #else
     const float4 push = b * gravity;
 #endif
-    const float4 full = fma((float4)(flsm_alpha[batch]), fma(goal, (float4)(flsm_inverse_holders[i]), -u), fma((float4)(w.w), w, push));
+    const float4 full = fma((float4)(flsm_alpha[batch]), fma(goal, (float4)(flsm_inverse_holders[i]), -(u - origin)), fma((float4)(w.w), w, push));
     const float4 moved = fabs(full) < still ? zero : full;
     const float4 next = u.w > 0.0f ? moved : zero;
     const float4 sum = u + next;

@@ -42,10 +42,10 @@ class FlsmPasses {
 
   void add(bool has_load, std::int32_t fault_base, std::int32_t slots) {
     missing_args_ = list("flsm_missing", data_.missing);
-    add_sums(shared_.node_u, weight_, "displacements");
+    add_sums(shared_.node_u, weight_, 1, "displacements");
     pass("flsm_region", width(),
-         Args{shared_.node_u, plates_, link_[2]} + missing_args_ + Args{rest_, regions_, real_arg(b_.spacing)}, places_.nodes,
-         184 + 24 * missing_, 36.0 * b_.settings.width + 32 * missing_ + 1480);
+         Args{shared_.node_u, plates_, link_[2]} + missing_args_ + Args{reference_, rest_, regions_, real_arg(b_.spacing)},
+         places_.nodes, 184 + 24 * missing_, 36.0 * b_.settings.width + 32 * missing_ + 1480);
     missing_of_args_ = list("flsm_missing_of", data_.missing_of);
     if (b_.settings.damping > 0) add_damping();
     add_goals(regions_, "goals");
@@ -54,8 +54,8 @@ class FlsmPasses {
     if (b_.own > 0) {
       pass("flsm_update", {{"WIDTH", b_.settings.width}, {"HAS_LOAD", has_load ? 1 : 0}},
            Args{shared_.node_u, shared_.node_w, shared_.node_load} + goal_args(regions_, bars_) +
-               Args{shared_.step_params, shared_.alpha, shared_.fault, int_arg(index_), int_arg(b_.settings.substeps),
-                    int_arg(b_.first_slot), int_arg(fault_base), step_arg()},
+               Args{reference_, shared_.step_params, shared_.alpha, shared_.fault, int_arg(index_),
+                    int_arg(b_.settings.substeps), int_arg(b_.first_slot), int_arg(fault_base), step_arg()},
            places_.interface_base, goal_bytes() + 64 + (has_load ? 16 : 0), goal_flops() + 27, b_.own);
     }
   }
@@ -92,6 +92,7 @@ class FlsmPasses {
                   std::move(data_.rest));
     holders_ = reals("flsm_inverse_holders", with_region, BufferRole::constant, "[regions]", "1", "model",
                      std::move(data_.inverse_holders));
+    reference_ = reals("flsm_reference", 8, BufferRole::state, "[2][4]", "m", "flsm_bar");
     bars_ = reals("flsm_bars", 8 * count, BufferRole::scratch, "[regions][2][4]", "1", "flsm_bar, flsm_goal_bar");
     plates_ = reals("flsm_plates", PLIANT_FLSM_RECORD * count, BufferRole::scratch, "[regions][4][4]", "1",
                     "flsm_plate, flsm_goal_plate");
@@ -104,8 +105,9 @@ class FlsmPasses {
   }
 
   /// Bars and plates of a texel buffer of the nodes.
-  void add_sums(const Arg& texels, const Arg& weight, const char* of) {
-    pass("flsm_bar", width(), {texels, slot_, weight, link_[0], bars_}, places_.count, 64, 8 + 32.0 * b_.settings.width, 0, of);
+  void add_sums(const Arg& texels, const Arg& weight, int relative, const char* of) {
+    pass("flsm_bar", {{"WIDTH", b_.settings.width}, {"RELATIVE", relative}},
+         {texels, slot_, weight, link_[0], reference_, bars_}, places_.count, 64, 8 + 32.0 * b_.settings.width, 0, of);
     pass("flsm_plate", width(), {bars_, link_[1], plates_}, places_.count, 104, 28.0 * b_.settings.width, 0, of);
   }
   /// Plates and bars of the regions' records on the way back.
@@ -118,7 +120,7 @@ class FlsmPasses {
   }
   /// The rigid motion of each region nearest to increments, and what it leaves of them at the nodes.
   void add_rates(const Arg& increments, const Arg& weight, const Args& missing, int reaction, double damping, const char* of) {
-    add_sums(increments, weight, of);
+    add_sums(increments, weight, 0, of);
     pass("flsm_damp_region", width(),
          Args{increments, plates_, link_[2]} + missing + Args{rest_, spin_, regions_, rates_, real_arg(1 / b_.spacing)},
          places_.nodes, 260 + 24 * missing_, 36.0 * b_.settings.width + 32 * missing_ + 160, 0, of);
@@ -139,14 +141,16 @@ class FlsmPasses {
     const int n = b_.settings.substeps;
     goals_ = reals("flsm_goals", 8 * shared, BufferRole::state, "[interface][2][4]", "m", "flsm_goal");
     if (n > 1) {  // held or extrapolated over several steps, so a part of the state to go back to
+      reals("last_flsm_reference", 8, BufferRole::state, "[2][4]", "m", "host");
       reals("last_flsm_goals", 8 * shared, BufferRole::state, "[interface][2][4]", "m", "host");
     }
     beta_ = reals("flsm_beta", shared, BufferRole::control, "[interface]", "N/m", "host");
     const Arg base = int_arg(places_.interface_base);
-    pass("flsm_goal", width(), goal_args(regions_, bars_) + Args{goals_, base}, static_cast<std::int32_t>(shared),
+    pass("flsm_goal", width(), goal_args(regions_, bars_) + Args{reference_, goals_, base}, static_cast<std::int32_t>(shared),
          goal_bytes() + 64, goal_flops(), b_.interface);
     pass("flsm_interface", {{"EXTRAPOLATED", b_.settings.extrapolate && n > 1 ? 1 : 0}},
-         {shared_.node_u, shared_.node_load, slot_, goals_, beta_, shared_.step_params, int_arg(n), base, step_arg()},
+         {shared_.node_u, shared_.node_load, slot_, reference_, goals_, beta_, shared_.step_params, int_arg(n), base,
+          step_arg()},
          static_cast<std::int32_t>(shared), 88, 12, b_.interface);
     // Held goals pull in the first substep alone, n times as hard, when both ends of the spring are where the regions saw them:
     // an impulse like that of shape matching's own nodes, so that momenta are kept. In later substeps they would drag at nodes
@@ -162,7 +166,7 @@ class FlsmPasses {
     const Arg excess =
         reals("flsm_excess", 4 * static_cast<std::size_t>(slots), BufferRole::scratch, "[slots]", "m", "flsm_excess");
     pass("flsm_excess", {},
-         {shared_.node_u, slot_, goals_, mean, shared_.alpha, shared_.step_params, excess, int_arg(index_),
+         {shared_.node_u, slot_, reference_, goals_, mean, shared_.alpha, shared_.step_params, excess, int_arg(index_),
           int_arg(b_.settings.substeps), int_arg(places_.interface_base)},
          places_.nodes - places_.interface_base, 88, 12, b_.interface);
     add_rates(excess, weight_, missing_args_, 1, 0, "reaction");
@@ -185,7 +189,7 @@ class FlsmPasses {
   Program& program_;
   RegionData data_;
   double missing_ = 0, missing_of_ = 0;  ///< entries per node
-  Arg slot_, link_[3], weight_, rest_, holders_, bars_, plates_, regions_, rates_, spin_, goals_, beta_;
+  Arg slot_, link_[3], weight_, rest_, holders_, bars_, plates_, regions_, rates_, spin_, goals_, beta_, reference_;
   Args missing_args_, missing_of_args_;
 };
 

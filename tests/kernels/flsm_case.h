@@ -11,7 +11,7 @@ struct FlsmData {
   std::size_t count = 0;  ///< regions in the launch, nodes of flsm_update, interface nodes of flsm_goal and flsm_interface
   Ints slot, link[3], missing_offset, missing, missing_of_offset, missing_of, fault;
   Reals node_u, node_w, node_load, weight, bars, plates, rest, regions, inverse_holders, goals, beta, alpha, step_params;
-  Reals missing_factor, missing_of_factor, spin, rates, excess;
+  Reals missing_factor, missing_of_factor, spin, rates, excess, reference = Reals(8, 0.0);
   double spacing = 0.01, damping = 0;
   int region_base = 0, node_base = 0, fault_base = 0, batch = 0, substeps = 1;
   int interface_base = 0;  ///< of flsm_damp_update: the first region of the interface
@@ -60,10 +60,10 @@ class FlsmArguments {
   KernelCase test_;
 };
 
-inline KernelCase flsm_bar_case(const FlsmData& d, int width) {
-  FlsmArguments a(d, "flsm_bar", {{"WIDTH", width}});
+inline KernelCase flsm_bar_case(const FlsmData& d, int width, int relative) {
+  FlsmArguments a(d, "flsm_bar", {{"WIDTH", width}, {"RELATIVE", relative}});
   a.reals("node_u", d.node_u).ints("flsm_slot", d.slot).reals("flsm_weight", d.weight).ints("flsm_link_x", d.link[0]);
-  return a.reals("flsm_bars", d.bars).test();
+  return a.reals("flsm_reference", d.reference).reals("flsm_bars", d.bars).test();
 }
 
 inline KernelCase flsm_plate_case(const FlsmData& d, int width) {
@@ -77,7 +77,8 @@ inline KernelCase flsm_region_case(const FlsmData& d, int width) {
   a.ints("flsm_missing_offset", d.missing_offset)
       .ints("flsm_missing", d.missing)
       .reals("flsm_missing_factor", d.missing_factor);
-  return a.reals("flsm_rest", d.rest).reals("flsm_regions", d.regions).number(d.spacing).test();
+  a.reals("flsm_reference", d.reference).reals("flsm_rest", d.rest).reals("flsm_regions", d.regions);
+  return a.number(d.spacing).test();
 }
 
 inline KernelCase flsm_goal_plate_case(const FlsmData& d, int width) {
@@ -92,19 +93,23 @@ inline KernelCase flsm_goal_bar_case(const FlsmData& d, int width) {
 
 inline KernelCase flsm_goal_case(const FlsmData& d, int width) {
   FlsmArguments a(d, "flsm_goal", {{"WIDTH", width}});
-  return a.goal_sum().reals("flsm_goals", d.goals).integer(d.region_base).test();
+  return a.goal_sum().reals("flsm_reference", d.reference).reals("flsm_goals", d.goals).integer(d.region_base).test();
 }
 
 inline KernelCase flsm_update_case(const FlsmData& d, int width, int has_load) {
   FlsmArguments a(d, "flsm_update", {{"WIDTH", width}, {"HAS_LOAD", has_load}});
   a.reals("node_u", d.node_u).reals("node_w", d.node_w).reals("node_load", d.node_load).goal_sum();
-  a.reals("step_params", d.step_params).reals("flsm_alpha", d.alpha).ints("fault", d.fault);
+  a.reals("flsm_reference", d.reference)
+      .reals("step_params", d.step_params)
+      .reals("flsm_alpha", d.alpha)
+      .ints("fault", d.fault);
   return a.integer(d.batch).integer(d.substeps).integer(d.node_base).integer(d.fault_base).step().test();
 }
 
 inline KernelCase flsm_interface_case(const FlsmData& d, int extrapolated) {
   FlsmArguments a(d, "flsm_interface", {{"EXTRAPOLATED", extrapolated}});
-  a.reals("node_u", d.node_u).reals("node_load", d.node_load).ints("flsm_slot", d.slot).reals("flsm_goals", d.goals);
+  a.reals("node_u", d.node_u).reals("node_load", d.node_load).ints("flsm_slot", d.slot);
+  a.reals("flsm_reference", d.reference).reals("flsm_goals", d.goals);
   a.reals("flsm_beta", d.beta).reals("step_params", d.step_params).integer(d.substeps).integer(d.region_base);
   return a.step().test();
 }
@@ -132,7 +137,8 @@ inline KernelCase flsm_damp_update_case(const FlsmData& d, int width, int reacti
 
 inline KernelCase flsm_excess_case(const FlsmData& d) {
   FlsmArguments a(d, "flsm_excess", {});
-  a.reals("node_u", d.node_u).ints("flsm_slot", d.slot).reals("flsm_goals", d.goals).reals("flsm_beta", d.beta);
+  a.reals("node_u", d.node_u).ints("flsm_slot", d.slot).reals("flsm_reference", d.reference);
+  a.reals("flsm_goals", d.goals).reals("flsm_beta", d.beta);
   a.reals("flsm_alpha", d.alpha).reals("step_params", d.step_params).reals("flsm_excess", d.excess);
   return a.integer(d.batch).integer(d.substeps).integer(d.region_base).test();
 }
@@ -206,6 +212,7 @@ inline FlsmData random_flsm(std::size_t count, Data data, std::uint32_t seed) {
   d.fault_base = 16;
   d.batch = 1;
   d.substeps = random.integer(1, 4);
+  d.reference = random.reals(8, data, 0.01);
   d.spin = random.reals(PLIANT_FLSM_SPIN_PLANES * regions, constant, 1e-3);
   d.rates = random.reals(PLIANT_FLSM_RECORD * regions, data, 1e-4);
   d.excess = random.reals(4 * slots, Data::large, 1e-4);

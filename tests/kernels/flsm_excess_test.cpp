@@ -36,7 +36,7 @@ TEST(FlsmExcessOracle, IsTheIncrementOfTheSpringsLessThatOfShapeMatching) {
     std::vector<bool> written(excess.size() / 4, false);
     for (std::size_t i = 0; i < d.count; ++i) {
       const std::size_t slot = slot_of(d, i);
-      const Vector3d way = vector_at(d.goals, 8 * i) - vector_at(d.node_u, 4 * slot);
+      const Vector3d way = vector_at(d.goals, 8 * i) - (vector_at(d.node_u, 4 * slot) - vector_at(d.reference, 0));
       const Vector3d springs = time * time * d.node_u[4 * slot + 3] * (d.beta[i] * way);
       const Vector3d matching = d.alpha[static_cast<std::size_t>(d.batch)] * way;
       expect_near(springs - matching, excess, 4 * slot, 1e-15, "slot " + std::to_string(slot));

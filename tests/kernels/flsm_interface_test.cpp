@@ -33,7 +33,9 @@ TEST(FlsmInterfaceOracle, PullsToTheGoalOfItsPhase) {
           const auto slot = static_cast<std::size_t>(d.slot[i + static_cast<std::size_t>(d.region_base)]);
           const Vector3d now = vector_at(d.goals, 8 * i), before = vector_at(d.goals, 8 * i + 4);
           const Vector3d goal = now + phase * (now - before);
-          put(expected, 4 * slot, vector_at(d.node_load, 4 * slot) + d.beta[i] * (goal - vector_at(d.node_u, 4 * slot)));
+          put(expected, 4 * slot,
+              vector_at(d.node_load, 4 * slot) +
+                  d.beta[i] * (goal - (vector_at(d.node_u, 4 * slot) - vector_at(d.reference, 0))));
         }
         for (std::size_t slot = 0; slot < expected.size() / 4; ++slot) {
           expect_near(vector_at(expected, 4 * slot), load, 4 * slot, 1e-14, "slot " + std::to_string(slot));

@@ -57,6 +57,12 @@ class FlsmLattice {
     for (int i = 0; i < nodes(); ++i) u_[static_cast<std::size_t>(i)] = field(rest(i));
   }
 
+  void set_u(const std::function<Vector3d(int)>& of_node) {
+    std::vector<Vector3d> all;
+    for (int i = 0; i < nodes(); ++i) all.push_back(of_node(i));
+    u_ = std::move(all);
+  }
+
   [[nodiscard]] int nodes() const { return static_cast<int>(place_.size()); }
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] double mass(int i) const { return mass_[static_cast<std::size_t>(i)]; }

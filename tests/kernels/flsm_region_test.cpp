@@ -53,6 +53,11 @@ TEST(FlsmRegionOracle, IsTheRigidMotionOfTheNodesInsideTheWindow) {
     FlsmData d = lattice.data();
     ASSERT_EQ(lattice.has_holes(), d.missing.size() > 100) << "holes without a list, or a list without holes";
     d.plates = lattice.moments(true, PLIANT_FLSM_RECORD);
+    d.reference = {2, -3, 1, 0, 9, 9, 9, 9};  // plates are relative to it already
+    for (int i = 0; i < lattice.nodes(); ++i) {
+      put(d.node_u, 4 * static_cast<std::size_t>(d.slot[static_cast<std::size_t>(i)]),
+          lattice.u(i) + vector_at(d.reference, 0));
+    }
     const Reals records = run_in_double(flsm_region_case(d, lattice.width()), "flsm_regions");
     for (int i = 0; i < lattice.nodes(); ++i) expect_region(lattice, records, i);
     for (std::size_t k = PLIANT_FLSM_RECORD * static_cast<std::size_t>(lattice.nodes()); k < records.size(); ++k) {
