@@ -27,7 +27,7 @@ std::map<std::string, List> make_keys() {
   const List selection = points + List{"nodes"};
   const List curve{"curve", "start", "duration", "table"};
   return {
-      {"scene", {"format", "name", "gravity", "dt", "safety", "duration", "integrator", "relaxation", "tool", "bodies"}},
+      {"scene", {"format", "name", "gravity", "dt", "safety", "duration", "integrator", "relaxation", "tool", "view", "bodies"}},
       {"body",
        {"name", "surface", "mesh", "scale", "translate", "lattice", "element", "material", "model", "inclusions", "fixed",
         "prescribed", "forces", "pressures", "velocity", "angular_velocity"}},
@@ -39,6 +39,7 @@ std::map<std::string, List> make_keys() {
       {"region", {"box", "sphere"}},
       {"stiffness", {"young"}},
       {"tool", {"path"}},
+      {"view", {"eye", "target", "up", "field_of_view"}},
       {"relaxation", {"tolerance", "max_steps"}},
       {"inclusion", points + List{"material"}},
       {"fixed", selection + List{"axes"}},

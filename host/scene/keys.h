@@ -12,7 +12,7 @@
 namespace pliant {
 
 /// The allowed keys by kind of object: "scene" (the file itself), "body", "lattice", "material", "model", "region",
-/// "stiffness", "tool", "relaxation", "inclusion", "fixed", "prescribed", "force", "pressure". The same words name the
+/// "stiffness", "tool", "view", "relaxation", "inclusion", "fixed", "prescribed", "force", "pressure". The same words name the
 /// definitions in scenes/schema.json.
 const std::map<std::string, std::vector<std::string>>& scene_keys();
 

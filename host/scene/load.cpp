@@ -99,6 +99,7 @@ Scene parse_scene(const std::string& text, const fs::path& file) {
   if (top.has("integrator")) scene.integrator = top.at("integrator").word(integrator_words());
   read_relaxation(top, scene.relaxation);
   if (top.has("tool")) scene.tool = read_tool(top.at("tool"));
+  if (top.has("view")) scene.view = read_view(top.at("view"));
   read_bodies(top, file.parent_path(), scene);
   check_models(top, scene);
   return scene;

@@ -140,6 +140,15 @@ Json body_json(const Body& b, const fs::path& scene_file) {
   return body;
 }
 
+Json view_json(const SceneView& v) {
+  Json view = Json::object();
+  if (v.eye) view["eye"] = *v.eye;
+  if (v.target) view["target"] = *v.target;
+  if (v.up) view["up"] = *v.up;
+  if (v.field_of_view != SceneView{}.field_of_view) view["field_of_view"] = v.field_of_view;
+  return view;
+}
+
 }  // namespace
 
 std::string scene_to_json(const Scene& scene) {
@@ -156,6 +165,7 @@ std::string scene_to_json(const Scene& scene) {
     top["relaxation"] = false;
   }
   if (!scene.tool.path.empty()) top["tool"] = {{"path", scene.tool.path}};
+  if (const Json view = view_json(scene.view); !view.empty()) top["view"] = view;
   top["bodies"] = Json::array();
   for (const Body& b : scene.bodies) top["bodies"].push_back(body_json(b, scene.file));
   return top.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

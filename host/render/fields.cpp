@@ -1,0 +1,193 @@
+#include "render/fields.h"
+
+#include <Eigen/Dense>
+#include <cmath>
+
+namespace pliant::render {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+Vector3d vector_of(const Vec3d& v) { return {v[0], v[1], v[2]}; }
+
+/// The material that the scene gives an element with this centroid.
+const Material& material_at(const Body& body, const Vec3d& centroid, std::int64_t element) {
+  const Material* found = &body.material;
+  for (const Inclusion& inclusion : body.inclusions) {
+    if (inclusion.where.contains(centroid, element)) found = &inclusion.material;
+  }
+  return *found;
+}
+
+/// Signs of a hexahedron's corners in VTK order.
+constexpr int kCorner[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
+                               {-1, -1, 1},  {1, -1, 1},  {1, 1, 1},  {-1, 1, 1}};
+
+struct ElementState {
+  Matrix3d f = Matrix3d::Identity();
+  double volume = 0;
+  Vec3d centroid{};
+};
+
+/// dx/dX from the tangents of the rest and the deformed shape.
+void set_gradient(ElementState& e, const Matrix3d& rest, const Matrix3d& moved, double volume_per_determinant) {
+  e.volume = rest.determinant() * volume_per_determinant;
+  if (e.volume > 0) e.f = moved * rest.inverse();
+}
+
+template <std::size_t N>
+ElementState element_state(const std::array<std::int32_t, N>& nodes, const std::vector<Vec3d>& rest,
+                           const std::vector<Vec3d>& u) {
+  ElementState e;
+  Matrix3d before = Matrix3d::Zero(), after = Matrix3d::Zero();
+  for (std::size_t a = 0; a < N; ++a) {
+    const auto n = static_cast<std::size_t>(nodes[a]);
+    const Vector3d x = vector_of(rest[n]), moved = x + vector_of(u[n]);
+    for (std::size_t c = 0; c < 3; ++c) e.centroid[c] += rest[n][c] / N;
+    for (int c = 0; c < 3; ++c) {
+      double slope = 0;  // of the node's shape function along the element's own coordinate c, at its centre
+      if constexpr (N == 8) {
+        slope = kCorner[a][c] / 8.0;
+      } else {
+        slope = a == 0 ? -1 : static_cast<int>(a) == c + 1 ? 1 : 0;
+      }
+      before.col(c) += slope * x;
+      after.col(c) += slope * moved;
+    }
+  }
+  set_gradient(e, before, after, N == 8 ? 8.0 : 1.0 / 6);
+  return e;
+}
+
+class NodeAverage {
+ public:
+  explicit NodeAverage(std::size_t nodes) : sum_(nodes), weight_(nodes) {}
+  template <std::size_t N>
+  void add(const std::array<std::int32_t, N>& nodes, double weight, double value) {
+    if (!(weight > 0) || !std::isfinite(value)) return;
+    for (const std::int32_t n : nodes) {
+      sum_[static_cast<std::size_t>(n)] += weight * value;
+      weight_[static_cast<std::size_t>(n)] += weight;
+    }
+  }
+  [[nodiscard]] std::vector<double> values() const {
+    std::vector<double> out(sum_.size());
+    for (std::size_t n = 0; n < out.size(); ++n) out[n] = weight_[n] > 0 ? sum_[n] / weight_[n] : 0;
+    return out;
+  }
+
+ private:
+  std::vector<double> sum_, weight_;
+};
+
+std::vector<double> node_values(const Body& scene_body, const ModelBody& body, const std::vector<Vec3d>& u, ColorBy by) {
+  NodeAverage average(body.rest.size());
+  const auto add = [&](const auto& elements) {
+    for (std::size_t e = 0; e < elements.size(); ++e) {
+      const ElementState state = element_state(elements[e], body.rest, u);
+      std::array<double, 9> f{};
+      Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(f.data()) = state.f;
+      const Strain s = strain_of(f, material_at(scene_body, state.centroid, static_cast<std::int64_t>(e)));
+      average.add(elements[e], state.volume, by == ColorBy::energy ? s.energy : s.mises);
+    }
+  };
+  add(body.tets);
+  add(body.hexes);
+  return average.values();
+}
+
+/// Values at vertices from values by slot.
+std::vector<float> embed(const Model& model, const std::vector<double>& by_slot) {
+  const ModelSurface& s = model.surface;
+  std::vector<float> out(s.rest.size());
+  for (std::size_t v = 0; v < out.size(); ++v) {
+    double value = 0;
+    for (std::size_t a = 0; a < 8; ++a) value += s.weights[v][a] * by_slot[static_cast<std::size_t>(s.nodes[v][a])];
+    out[v] = static_cast<float>(value);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::optional<ColorBy> color_by(const std::string& word) {
+  if (word == "none") return ColorBy::none;
+  if (word == "displacement") return ColorBy::displacement;
+  if (word == "energy") return ColorBy::energy;
+  if (word == "mises") return ColorBy::mises;
+  if (word == "model") return ColorBy::model;
+  return std::nullopt;
+}
+
+Strain strain_of(const std::array<double, 9>& row_major, const Material& m) {
+  const Matrix3d f = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(row_major.data());
+  const double j = f.determinant(), first = f.squaredNorm();
+  if (!(j > 0)) return {};
+  const Matrix3d to_minus_t = f.inverse().transpose();
+  Matrix3d p = Matrix3d::Zero();  // first Piola-Kirchhoff stress dW/dF
+  Strain out;
+  switch (m.law) {
+    case Law::neo_hookean:
+      out.energy = m.mu / 2 * (first - 3) - m.mu * std::log(j) + m.lambda / 2 * (j - 1) * (j - 1);
+      p = m.mu * (f - to_minus_t) + m.lambda * j * (j - 1) * to_minus_t;
+      break;
+    case Law::isochoric_neo_hookean: {
+      const double scale = std::pow(j, -2.0 / 3);
+      out.energy = m.mu / 2 * (scale * first - 3) + m.kappa / 2 * (j - 1) * (j - 1);
+      p = m.mu * scale * (f - first / 3 * to_minus_t) + m.kappa * j * (j - 1) * to_minus_t;
+      break;
+    }
+    case Law::saint_venant_kirchhoff: {
+      const Matrix3d e = 0.5 * (f.transpose() * f - Matrix3d::Identity());
+      out.energy = m.lambda / 2 * e.trace() * e.trace() + m.mu * e.squaredNorm();
+      p = f * (m.lambda * e.trace() * Matrix3d::Identity() + 2 * m.mu * e);
+      break;
+    }
+  }
+  const Matrix3d sigma = p * f.transpose() / j;
+  const Matrix3d deviator = sigma - sigma.trace() / 3 * Matrix3d::Identity();
+  out.mises = std::sqrt(1.5) * deviator.norm();
+  return out;
+}
+
+std::vector<float> vertex_values(const Scene& scene, const Model& model, const BodyDisplacements& u, ColorBy by) {
+  std::vector<double> by_slot(static_cast<std::size_t>(model.slots));
+  if (by == ColorBy::displacement) {
+    // |sum w u|, not sum w |u|: the way that the vertex itself has gone.
+    std::array<std::vector<float>, 3> component;
+    for (std::size_t c = 0; c < 3; ++c) {
+      for (std::size_t b = 0; b < u.size(); ++b) {
+        for (std::size_t n = 0; n < u[b].size(); ++n) by_slot[static_cast<std::size_t>(model.bodies[b].slot[n])] = u[b][n][c];
+      }
+      component[c] = embed(model, by_slot);
+    }
+    std::vector<float> out(component[0].size());
+    for (std::size_t v = 0; v < out.size(); ++v) out[v] = std::hypot(component[0][v], component[1][v], component[2][v]);
+    return out;
+  }
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const std::vector<double> values = node_values(scene.bodies[b], model.bodies[b], u[b], by);
+    for (std::size_t n = 0; n < values.size(); ++n) by_slot[static_cast<std::size_t>(model.bodies[b].slot[n])] = values[n];
+  }
+  return embed(model, by_slot);
+}
+
+std::vector<float> vertex_kinds(const Model& model) {
+  std::vector<int> kind(static_cast<std::size_t>(model.slots), 0);
+  for (const FlsmBatch& batch : model.flsm) {
+    for (std::size_t i = 0; i < batch.slot.size(); ++i) {
+      kind[static_cast<std::size_t>(batch.slot[i])] = static_cast<std::int32_t>(i) < batch.own ? 2 : 1;
+    }
+  }
+  std::vector<float> out(3 * model.surface.rest.size());
+  for (std::size_t v = 0; v < model.surface.rest.size(); ++v) {
+    for (std::size_t a = 0; a < 8; ++a) {
+      const int k = kind[static_cast<std::size_t>(model.surface.nodes[v][a])];
+      out[3 * v + static_cast<std::size_t>(k)] += static_cast<float>(model.surface.weights[v][a]);
+    }
+  }
+  return out;
+}
+
+}  // namespace pliant::render

@@ -1,0 +1,34 @@
+// What a surface can be coloured by: values of elements, averaged to nodes and embedded to vertices. All in double from the
+// deformation gradient at the centre of each element; nothing here shares code with the kernels.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/model.h"
+
+namespace pliant::render {
+
+enum class ColorBy { none, displacement, energy, mises, model };
+/// "none", "displacement", "energy", "mises", "model"; nothing for another word.
+std::optional<ColorBy> color_by(const std::string& word);
+
+/// Displacements [m] of every body's nodes, in the order of ModelBody::rest.
+using BodyDisplacements = std::vector<std::vector<Vec3d>>;
+
+/// One value per vertex of the surface: |u| [m], strain energy per rest volume [J/m^3], or von Mises stress of the Cauchy
+/// stress [Pa]. Node values are averages over the node's elements weighted by rest volume. Nodes that shape matching moves have
+/// a deformation gradient like all others; their stress is what the body's material would answer.
+std::vector<float> vertex_values(const Scene& scene, const Model& model, const BodyDisplacements& u, ColorBy by);
+
+/// [3 * vertices] shares of finite elements, interface and shape matching in the nodes that move a vertex.
+std::vector<float> vertex_kinds(const Model& model);
+
+/// Strain energy per rest volume [J/m^3] and von Mises stress [Pa] at the gradient f (row-major); 0 and 0 where det f <= 0
+/// leaves a law without a value. Laws as in solver/energy.h; sigma = P f^T / J.
+struct Strain {
+  double energy = 0, mises = 0;
+};
+Strain strain_of(const std::array<double, 9>& f, const Material& material);
+
+}  // namespace pliant::render

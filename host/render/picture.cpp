@@ -1,0 +1,132 @@
+#include "render/picture.h"
+
+#include <algorithm>
+
+#include "model/vec.h"
+#include "pliant/error.h"
+#include "render/color.h"
+
+namespace pliant::render {
+namespace {
+
+struct Quantity {
+  const char* title;
+  const char* unit;
+};
+
+Quantity quantity_of(ColorBy color) {
+  switch (color) {
+    case ColorBy::displacement:
+      return {"displacement", "m"};
+    case ColorBy::energy:
+      return {"strain energy density", "J/m^3"};
+    default:
+      return {"von Mises stress", "Pa"};
+  }
+}
+
+void append(std::vector<float>& list, const Vec3d& v) {
+  for (const double c : v) list.push_back(static_cast<float>(c));
+}
+
+/// What a bar must reach for most of the surface to lie inside it: corners of a fixed set have stresses without bound.
+double nearly_largest(std::vector<float> values, double share) {
+  if (values.empty()) return 0;
+  const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
+Vec3f vertical(const Scene& scene) {
+  const Vec3d& g = scene.gravity;
+  if (vec::norm(g) == 0) return {0, 1, 0};
+  return unit(-Vec3f{static_cast<float>(g[0]), static_cast<float>(g[1]), static_cast<float>(g[2])});
+}
+
+BodyDisplacements displacements(const Simulation& simulation) {
+  BodyDisplacements u;
+  for (std::size_t b = 0; b < simulation.model().bodies.size(); ++b) u.push_back(simulation.displacements(b));
+  return u;
+}
+
+}  // namespace
+
+Pictures::Pictures(const PictureOptions& options) : o_(options), renderer_(options.threads) {}
+
+void Pictures::aim(Simulation& simulation, const std::vector<float>& positions) {
+  const Vec3f up = vertical(simulation.scene());
+  if (!camera_) {
+    // What is held or moved is known beforehand; the rest stays near.
+    const Model& model = simulation.model();
+    std::vector<float> points = positions;
+    for (const Constraint& c : model.constraints)
+      append(points, vec::add(model.rest[static_cast<std::size_t>(c.slot)], c.target));
+    Framing framing;
+    framing.aspect = static_cast<float>(o_.width) / static_cast<float>(o_.height);
+    if (o_.bar && o_.color != ColorBy::none && o_.color != ColorBy::model) framing.right = kBarShare;
+    camera_ = fit_camera(simulation.scene().view, points, up, framing);
+    ground_ = HUGE_VALF;
+  }
+  for (std::size_t i = 0; i + 2 < positions.size(); i += 3) {
+    ground_ = std::min(ground_, dot(camera_->up, {positions[i], positions[i + 1], positions[i + 2]}));
+  }
+}
+
+void Pictures::color(Simulation& simulation, Surface& surface) {
+  if (o_.color == ColorBy::none) return;
+  const Model& model = simulation.model();
+  if (o_.color == ColorBy::model) {
+    kinds_ = vertex_kinds(model);
+    surface.kinds = kinds_;
+    return;
+  }
+  values_ = vertex_values(simulation.scene(), model, displacements(simulation), o_.color);
+  surface.values = values_;
+  largest_ = std::max(largest_, nearly_largest(values_, o_.color == ColorBy::displacement ? 1 : 0.99));
+  const ScaledUnit unit = scaled_unit(quantity_of(o_.color).unit, o_.range ? o_.range->second : largest_);
+  ticks_ = o_.range ? ticks_within(o_.range->first * unit.factor, o_.range->second * unit.factor)
+                    : nice_ticks(0, std::max(largest_ * unit.factor, 1e-12));
+}
+
+void Pictures::annotate(Image& image) const {
+  if (!o_.bar || o_.color == ColorBy::none) return;
+  if (o_.color == ColorBy::model) {
+    draw_key(image, {{srgb_of(kind_color(0)), "finite elements"},
+                     {srgb_of(kind_color(1)), "interface"},
+                     {srgb_of(kind_color(2)), "shape matching"}});
+    return;
+  }
+  const Quantity q = quantity_of(o_.color);
+  draw_color_bar(image, {q.title, scaled_unit(q.unit, o_.range ? o_.range->second : largest_).unit, ticks_});
+}
+
+Image Pictures::draw(Simulation& simulation) {
+  const ModelSurface& model = simulation.model().surface;
+  if (model.triangles.empty()) throw Error("a picture needs a surface, and the bodies of this scene have none");
+  positions_.clear();
+  for (const Vec3d& x : simulation.surface_positions()) append(positions_, x);
+  triangles_.clear();
+  for (const auto& t : model.triangles) triangles_.insert(triangles_.end(), t.begin(), t.end());
+  Surface surface;
+  surface.positions = positions_;
+  surface.triangles = triangles_;
+  surface.body = model.triangle_body;
+  aim(simulation, positions_);
+  color(simulation, surface);
+  renderer_.update(surface);
+  RenderOptions options;
+  options.width = o_.width;
+  options.height = o_.height;
+  options.samples = o_.samples;
+  options.ground_height = ground_;
+  if (!values_.empty()) {
+    const double factor = scaled_unit(quantity_of(o_.color).unit, o_.range ? o_.range->second : largest_).factor;
+    options.low = static_cast<float>(ticks_.low / factor);
+    options.high = static_cast<float>(ticks_.high / factor);
+  }
+  Image image = renderer_.render(*camera_, options);
+  annotate(image);
+  return image;
+}
+
+}  // namespace pliant::render

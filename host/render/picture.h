@@ -1,0 +1,50 @@
+// Pictures of a simulation: `pliant run --format png`.
+#pragma once
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "render/fields.h"
+#include "render/overlay.h"
+#include "render/renderer.h"
+#include "solver/simulation.h"
+
+namespace pliant::render {
+
+struct PictureOptions {
+  int width = 1280, height = 720;
+  int samples = 16;
+  ColorBy color = ColorBy::none;
+  std::optional<std::pair<double, double>> range;  ///< of the colours, in m, J/m^3 or Pa; absent: from the values
+  bool bar = true;                                 ///< draw the colour bar, or the key of models
+  int threads = 0;
+};
+
+class Pictures {
+ public:
+  /// Throws Error in a build without Embree, or for a size out of range.
+  explicit Pictures(const PictureOptions& options);
+
+  /// The present state. The camera and the colours' range stay as the first picture needed them; the range grows when values
+  /// do, and the ground sinks when the body does. Throws Error when the scene has no surface.
+  Image draw(Simulation& simulation);
+
+  [[nodiscard]] const RenderTimes& times() const { return renderer_.times(); }
+
+ private:
+  void aim(Simulation& simulation, const std::vector<float>& positions);
+  void color(Simulation& simulation, Surface& surface);
+  void annotate(Image& image) const;
+
+  PictureOptions o_;
+  Renderer renderer_;
+  std::optional<Camera> camera_;
+  float ground_ = 0;
+  double largest_ = 0;  ///< value so far
+  Ticks ticks_;
+  std::vector<float> positions_, values_, kinds_;
+  std::vector<std::int32_t> triangles_;
+};
+
+}  // namespace pliant::render
