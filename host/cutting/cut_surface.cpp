@@ -1,0 +1,155 @@
+#include "cutting/cut_surface.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace pliant {
+
+using overlay::Carrier;
+using overlay::CutGridCell;
+using overlay::GridIndex;
+using overlay::Patch;
+
+struct CutSurface::Base {
+  Base(const TriangleMesh& surface, const Lattice& full)
+      : lattice(full), overlay(surface, {full.origin, full.spacing, full.size}) {
+    originals = static_cast<std::int32_t>(overlay.source().mesh().triangles.size());
+    for (std::size_t c = 0; c < full.cells.size(); ++c) {
+      cell_at.try_emplace(overlay.source().grid().number(full.cells[c].index), static_cast<std::int32_t>(c));
+    }
+    lattice.embedding.clear();
+  }
+  Lattice lattice;
+  overlay::Overlay overlay;
+  std::int32_t originals = 0;  ///< triangles, fillers counted
+  std::unordered_map<std::int64_t, std::int32_t> cell_at;
+};
+
+CutSurface::~CutSurface() = default;
+
+CutSurface::CutSurface(const TriangleMesh& surface, const Lattice& lattice) : base_(std::make_unique<Base>(surface, lattice)) {
+  const TriangleMesh& closed = base_->overlay.source().mesh();
+  for (std::size_t v = 0; v < closed.vertices.size(); ++v) {
+    vertices_.push_back({closed.vertices[v], {lattice.embedding[v].cell, 0}, lattice.embedding[v].local});
+  }
+  const std::int32_t fillers = base_->overlay.source().fillers();
+  for (std::int32_t t = 0; t < base_->originals; ++t) {
+    triangles_.push_back(closed.triangles[t]);
+    kinds_.push_back(t < base_->originals - fillers ? SurfaceKind::original : SurfaceKind::filler);
+    owners_.push_back({false, t, 0});
+  }
+}
+
+void CutSurface::update(const CutTopology& topology, const std::vector<std::int32_t>& cells) {
+  std::vector<CutGridCell> changed;
+  const CutMesh& mesh = topology.mesh();
+  for (const std::int32_t c : cells) {
+    CutGridCell cell;
+    cell.index = base_->lattice.cells[c].index;
+    cell.crossing.fill(-1);
+    cell.carrier.fill({c, 0});
+    const auto found = topology.cells().find(c);
+    if (found != topology.cells().end() && found->second.components > 1) {
+      const CellCut& cut = found->second;
+      cell.label = cut.label;
+      for (int k = 0; k < cut.components; ++k) cell.carrier[k] = {c, k};
+      for (std::size_t e = 0; e < overlay::kKuhnEdges.size(); ++e) {
+        const auto [a, b] = overlay::kKuhnEdges[e];
+        const std::int32_t m = mesh.cells[c][a], n = mesh.cells[c][b];
+        if (const auto edge = topology.edges().find(node_pair(m, n)); edge != topology.edges().end()) {
+          cell.crossing[e] = m < n ? edge->second : 1 - edge->second;
+        }
+      }
+    }
+    changed.push_back(cell);
+  }
+  update(changed);
+}
+
+void CutSurface::update(const std::vector<CutGridCell>& cells) {
+  changed_vertices_ = {};
+  changed_triangles_ = {};
+  overlay::Overlay& overlay = base_->overlay;
+  overlay.update(cells);
+  for (const std::int32_t f : overlay.dirty_faces()) replace({true, f, 0}, overlay.caps_of(f), SurfaceKind::cut);
+  for (const std::int32_t t : overlay.dirty_triangles()) {
+    const bool filler = t >= base_->originals - overlay.source().fillers();
+    Patch patch = overlay.pieces_of(t);
+    if (patch.triangles.empty()) patch.triangles.push_back(overlay.source().mesh().triangles[t]);
+    replace({false, t, 0}, patch, filler ? SurfaceKind::filler : SurfaceKind::original);
+  }
+  for (const auto& [v, carrier] : overlay.moved_vertices) hang(v, carrier);
+  if (changed_vertices_.first != changed_vertices_.last || changed_triangles_.first != changed_triangles_.last) ++version_;
+}
+
+std::vector<std::int32_t>& CutSurface::slots_of(const Owner& owner) {
+  if (owner.cap) return cap_slots_[owner.what];
+  auto& slots = piece_slots_[owner.what];
+  if (slots.empty()) slots.push_back(owner.what);
+  return slots;
+}
+
+void CutSurface::set(std::int32_t slot, const std::array<std::int32_t, 3>& triangle, SurfaceKind kind, const Owner& owner) {
+  owners_[slot] = owner;
+  if (triangles_[slot] == triangle && kinds_[slot] == kind) return;
+  triangles_[slot] = triangle;
+  kinds_[slot] = kind;
+  changed_triangles_.add(slot);
+}
+
+// Slots stay dense: the last one moves into the gap.
+void CutSurface::remove_last_slot(std::vector<std::int32_t>& slots) {
+  const std::int32_t gap = slots.back(), last = static_cast<std::int32_t>(triangles_.size()) - 1;
+  slots.pop_back();
+  if (gap != last) {
+    const Owner owner = owners_[last];
+    slots_of(owner)[owner.place] = gap;
+    set(gap, triangles_[last], kinds_[last], owner);
+  }
+  triangles_.pop_back();
+  kinds_.pop_back();
+  owners_.pop_back();
+  changed_triangles_.last = std::min(changed_triangles_.last, last);
+  changed_triangles_.first = std::min(changed_triangles_.first, changed_triangles_.last);
+}
+
+void CutSurface::replace(const Owner& owner, const Patch& patch, SurfaceKind kind) {
+  std::vector<std::int32_t> ids;
+  for (const overlay::CutVertex& v : patch.vertices) ids.push_back(vertex(v));
+  auto& slots = slots_of(owner);
+  while (slots.size() > std::max<std::size_t>(patch.triangles.size(), owner.cap ? 0 : 1)) remove_last_slot(slots);
+  while (slots.size() < patch.triangles.size()) {
+    slots.push_back(static_cast<std::int32_t>(triangles_.size()));
+    triangles_.push_back({-1, -1, -1});
+    kinds_.push_back(kind);
+    owners_.push_back(owner);
+  }
+  for (std::size_t i = 0; i < patch.triangles.size(); ++i) {
+    auto t = patch.triangles[i];
+    for (auto& c : t) c = c < 0 ? ids[~c] : c;
+    set(slots[i], t, kind, {owner.cap, owner.what, static_cast<std::int32_t>(i)});
+  }
+}
+
+std::int32_t CutSurface::vertex(const overlay::CutVertex& v) {
+  const auto [found, is_new] = vertex_of_.try_emplace(v.key, static_cast<std::int32_t>(vertices_.size()));
+  if (is_new) vertices_.push_back({v.x, {}, {}});
+  if (vertices_[found->second].rest != v.x) {
+    vertices_[found->second].rest = v.x;
+    vertices_[found->second].carrier = {};
+  }
+  hang(found->second, v.carrier);
+  return found->second;
+}
+
+void CutSurface::hang(std::int32_t vertex, const Carrier& carrier) {
+  CutSurfaceVertex& v = vertices_[vertex];
+  if (v.carrier == carrier) return;
+  v.carrier = carrier;
+  const Lattice& lattice = base_->lattice;
+  const Vec3d corner = lattice.position({lattice.cells[carrier.cell].index, 0});
+  for (int a = 0; a < 3; ++a) v.local[a] = (v.rest[a] - corner[a]) / lattice.spacing;
+  changed_vertices_.add(vertex);
+}
+
+}  // namespace pliant

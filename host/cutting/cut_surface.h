@@ -1,0 +1,87 @@
+// The surface of a cut body: the original surface, split along the cut and closed by caps. It is a function of the original
+// surface and of how the cells are cut, nothing else: only what an edit touches is made anew, and errors do not add up.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "cutting/cell_interface.h"
+#include "cutting/cut_topology.h"
+#include "cutting/overlay.h"
+#include "model/lattice.h"
+
+namespace pliant {
+
+enum class SurfaceKind : std::uint8_t {
+  original,
+  cut,    ///< a face that the blade made
+  filler  ///< closes a hole of the input surface
+};
+
+/// A vertex hangs in the component of a lattice cell: u = sum_a weight[a] u(node a of that component's element), trilinear at
+/// `local`.
+struct CutSurfaceVertex {
+  Vec3d rest{};                ///< [m]
+  overlay::Carrier carrier{};  ///< cell of the lattice, and component (0 in a whole cell)
+  std::array<double, 3> local{};
+};
+
+/// Indices [first, last).
+struct ChangedRange {
+  std::int32_t first = 0, last = 0;
+  void add(std::int32_t i) {
+    first = first == last ? i : i < first ? i : first;
+    last = i >= last ? i + 1 : last;
+  }
+};
+
+class CutSurface {
+ public:
+  /// Vertices and triangles of `surface` keep their numbers; triangles that close its holes follow. `lattice` is the one built
+  /// from it.
+  CutSurface(const TriangleMesh& surface, const Lattice& lattice);
+  ~CutSurface();
+
+  /// After an edit that changed these cells. Work: what lies in them and around them.
+  void update(const CutTopology& topology, const std::vector<std::int32_t>& cells);
+  /// The same from the cells themselves, those with one component being whole again.
+  void update(const std::vector<overlay::CutGridCell>& cells);
+
+  /// Vertices never change their number; those no triangle uses any more stay.
+  [[nodiscard]] const std::vector<CutSurfaceVertex>& vertices() const { return vertices_; }
+  /// Outward. An original triangle that is whole, or one piece of it, has the number that it had.
+  [[nodiscard]] const std::vector<std::array<std::int32_t, 3>>& triangles() const { return triangles_; }
+  [[nodiscard]] const std::vector<SurfaceKind>& kinds() const { return kinds_; }
+  /// Counts the updates that changed anything.
+  [[nodiscard]] std::int64_t topology_version() const { return version_; }
+  /// What the last update changed, for renderers that upload in part. Vertices change when they are new or hang elsewhere.
+  [[nodiscard]] ChangedRange changed_vertices() const { return changed_vertices_; }
+  [[nodiscard]] ChangedRange changed_triangles() const { return changed_triangles_; }
+
+ private:
+  struct Owner {
+    bool cap = false;
+    std::int32_t what = 0;   ///< original triangle, or cut face
+    std::int32_t place = 0;  ///< in its list of slots
+  };
+  struct Base;
+  std::vector<std::int32_t>& slots_of(const Owner& owner);
+  void replace(const Owner& owner, const overlay::Patch& patch, SurfaceKind kind);
+  void set(std::int32_t slot, const std::array<std::int32_t, 3>& triangle, SurfaceKind kind, const Owner& owner);
+  void remove_last_slot(std::vector<std::int32_t>& slots);
+  std::int32_t vertex(const overlay::CutVertex& v);
+  void hang(std::int32_t vertex, const overlay::Carrier& carrier);
+
+  std::unique_ptr<Base> base_;
+  std::vector<CutSurfaceVertex> vertices_;
+  std::vector<std::array<std::int32_t, 3>> triangles_;
+  std::vector<SurfaceKind> kinds_;
+  std::vector<Owner> owners_;
+  std::unordered_map<overlay::VertexKey, std::int32_t, overlay::VertexKeyHash> vertex_of_;
+  std::unordered_map<std::int32_t, std::vector<std::int32_t>> piece_slots_, cap_slots_;
+  std::int64_t version_ = 0;
+  ChangedRange changed_vertices_, changed_triangles_;
+};
+
+}  // namespace pliant

@@ -1,0 +1,155 @@
+// Caps: the part of each cut face that lies inside the body.
+#include <algorithm>
+
+#include "cutting/overlay.h"
+#include "cutting/polygon.h"
+#include "pliant/error.h"
+
+namespace pliant::overlay {
+namespace {
+
+// Project along the axis that the normal is closest to, keeping the sense of rotation.
+struct Projection {
+  int u = 0, v = 1;
+  explicit Projection(const Vec3d& normal) {
+    int axis = 0;
+    for (int a = 1; a < 3; ++a) {
+      if (std::abs(normal[a]) > std::abs(normal[axis])) axis = a;
+    }
+    u = (axis + 1) % 3;
+    v = (axis + 2) % 3;
+    if (normal[axis] < 0) std::swap(u, v);
+  }
+  [[nodiscard]] FlatPoint operator()(const Vec3d& x, const Vec3d& base, int lines) const {
+    return {x[u] - base[u], x[v] - base[v], static_cast<std::uint8_t>(lines)};
+  }
+};
+
+}  // namespace
+
+// The outline follows the border of the face where it runs inside the body and the segments elsewhere. On each side of the face
+// places where the body begins and ends are matched like brackets, so a surface that overlaps itself gives overlapping caps
+// that are closed all the same.
+void Overlay::make_cap(std::int32_t f) {
+  Face& face = faces_[f];
+  const GridIndex cell = cells_[face.cell].cell.index;
+  std::vector<std::int32_t> next;
+  std::vector<int> lines;
+  const auto add = [&](const CapNode& node, int line) {
+    for (std::size_t i = 0; i < face.nodes.size(); ++i) {
+      const CapNode& n = face.nodes[i];
+      if (n.kind == node.kind && n.ref == node.ref && n.with == node.with) return static_cast<std::int32_t>(i);
+    }
+    face.nodes.push_back(node);
+    next.push_back(-1);
+    lines.push_back(line);
+    return static_cast<std::int32_t>(face.nodes.size() - 1);
+  };
+  const auto corner = [&](int i, int level) {
+    return add({VertexKey::point, face.p[i], level, points_[face.p[i]].x}, 1 << i | 1 << (i + 2) % 3);
+  };
+  int level = winding(face.p[0], cell);
+  for (int i = 0; i < 3; ++i) {
+    const Edge& edge = edges_[face.edge[i]];
+    std::vector<std::int32_t> open;  // begun inside, or (level below 0) begun outside
+    for (int k = 1; k <= std::abs(level); ++k) open.push_back(corner(i, level > 0 ? k : -k));
+    for (std::size_t h = 0; h < edge.hits.size(); ++h) {
+      const Hit& hit = edge.hits[face.forward[i] ? h : edge.hits.size() - 1 - h];
+      const std::int32_t node = add({VertexKey::triangle_edge, face.edge[i], hit.triangle, hit.x}, 1 << i);
+      const int step = (hit.sign > 0) == face.forward[i] ? -1 : 1;
+      if (level * step >= 0) {
+        open.push_back(node);
+      } else {
+        (step < 0 ? next[open.back()] : next[node]) = step < 0 ? node : open.back();
+        open.pop_back();
+      }
+      level += step;
+    }
+    const int j = (i + 1) % 3;
+    for (std::size_t k = 0; k < open.size(); ++k) {
+      const auto depth = static_cast<int>(k) + 1;
+      const std::int32_t node = corner(j, level > 0 ? depth : -depth);
+      (level > 0 ? next[open[k]] : next[node]) = level > 0 ? node : open[k];
+    }
+    points_[face.p[j]].winding = level;
+    points_[face.p[j]].has_winding = true;
+  }
+  const auto end_node = [&](const End& end, std::int32_t triangle) {
+    if (end.inner) return add({VertexKey::edge_face, end.ref, 0, cut_position(end.ref, f)}, 0);
+    return add({VertexKey::triangle_edge, end.ref, triangle, {}}, 0);
+  };
+  for (const Segment& s : face.segments) {
+    const std::int32_t start = end_node(s.start, s.triangle), end = end_node(s.end, s.triangle);
+    next[start] = end;
+  }
+  const Vec3d &a = points_[face.p[0]].x, &b = points_[face.p[1]].x, &c = points_[face.p[2]].x;
+  const Projection project(vec::cross(vec::sub(b, a), vec::sub(c, a)));
+  std::vector<FlatPoint> flat;
+  for (std::size_t i = 0; i < face.nodes.size(); ++i) flat.push_back(project(face.nodes[i].x, a, lines[i]));
+  std::vector<Loop> loops;
+  std::vector<char> seen(next.size(), 0);
+  for (std::size_t i = 0; i < next.size(); ++i) {
+    if (seen[i] != 0) continue;
+    Loop loop;
+    for (auto n = static_cast<std::int32_t>(i); seen[n] == 0; n = next[n]) {
+      if (next[n] < 0) throw Error("internal: the outline of a cut face is open");
+      seen[n] = 1;
+      loop.corners.push_back(n);
+    }
+    loop.hole = loop_area(flat, loop.corners) <= 0;
+    loops.push_back(std::move(loop));
+  }
+  if (loops.size() == 1) loops[0].hole = false;
+  face.cap = triangulate(flat, std::move(loops));
+}
+
+Patch Overlay::caps_of(std::int32_t f) const {
+  Patch patch;
+  const Face& face = faces_[f];
+  if (face.cell < 0) return patch;
+  const auto count = static_cast<std::int32_t>(face.nodes.size());
+  for (std::int32_t side = 2 * f; side <= 2 * f + 1; ++side) {
+    for (const CapNode& node : face.nodes) {
+      patch.vertices.push_back(node.kind == VertexKey::point           ? vertex_at(node.ref, node.with, side)
+                               : node.kind == VertexKey::triangle_edge ? vertex_on_edge(node.with, node.ref, side)
+                                                                       : vertex_on_face(node.ref, side));
+      patch.vertices.back().x = node.x;
+    }
+  }
+  for (const auto& t : face.cap) patch.triangles.push_back({~t[0], ~t[1], ~t[2]});
+  for (const auto& t : face.cap) patch.triangles.push_back({~(t[0] + count), ~(t[2] + count), ~(t[1] + count)});
+  return patch;
+}
+
+Carrier Overlay::carrier_of(std::int32_t side) const {
+  const Face& face = faces_[side / 2];
+  return cells_.at(face.cell).cell.carrier[side % 2 == 0 ? face.back : face.front];
+}
+
+bool Overlay::in_air(std::int32_t side) const { return cells_.at(faces_[side / 2].cell).cell.air; }
+
+CutVertex Overlay::vertex_on_face(std::int32_t source_edge, std::int32_t side) const {
+  return {{static_cast<std::int64_t>(source_edge) << 2 | VertexKey::edge_face, side}, {}, carrier_of(side)};
+}
+
+CutVertex Overlay::vertex_on_edge(std::int32_t triangle, std::int32_t e, std::int32_t side) const {
+  const std::int32_t other = across(edges_[e], side);
+  const std::int32_t low = std::min(side, other), high = std::max(side, other);
+  return {{static_cast<std::int64_t>(triangle) << 2 | VertexKey::triangle_edge, static_cast<std::int64_t>(e) << 32 | low},
+          {},
+          carrier_of(in_air(low) && !in_air(high) ? high : low)};
+}
+
+CutVertex Overlay::vertex_at(std::int32_t p, std::int32_t level, std::int32_t side) const {
+  const auto& root = points_[p].root;
+  const std::int32_t lowest = (*std::lower_bound(root.begin(), root.end(), std::array{side, -1}))[1];
+  std::int32_t best = lowest;
+  for (const auto& [member, its_root] : root) {
+    if (its_root == lowest && in_air(best) && !in_air(member)) best = member;
+  }
+  return {{static_cast<std::int64_t>(p) << 2 | VertexKey::point, static_cast<std::int64_t>(lowest) << 32 | (level + 128)},
+          {},
+          carrier_of(best)};
+}
+
+}  // namespace pliant::overlay

@@ -1,0 +1,173 @@
+// Pieces of original triangles: the faces of the graph that its border and its segments with the cut faces make.
+#include <algorithm>
+
+#include "cutting/overlay.h"
+#include "cutting/polygon.h"
+#include "model/lattice_parts.h"
+#include "pliant/error.h"
+
+namespace pliant::overlay {
+
+// Nodes are the corners of the triangle, then the cuts of its edges, then the places where edges of the cut surface cross it.
+// Each piece lies to the left of its half-edges. Half-edges of the border have no twin; segment s has 2 s + border (start to
+// end, its left is the face's front) and the next one.
+struct Overlay::Graph {
+  struct Node {
+    int kind = -1;          // -1: corner, else as VertexKey::Kind
+    std::int32_t ref = 0;   // original vertex, original edge, or edge of the cut surface
+    std::int32_t face = 0;  // of an edge_face node
+    int lines = 0;
+    std::int32_t border = -1;                      // half-edge that leaves it along the border
+    std::vector<std::array<std::int32_t, 2>> out;  // {face, half-edge}: segments that leave it
+  };
+  struct Half {
+    std::int32_t from = 0, to = 0;
+    std::int32_t side = -1;  // of the cut face to its left, -1: border
+  };
+  std::vector<Node> nodes;
+  std::vector<Half> halves;
+  std::int32_t border = 0;
+
+  std::int32_t find(int kind, std::int32_t ref, std::int32_t face) {
+    for (std::size_t i = 3; i < nodes.size(); ++i) {
+      if (nodes[i].kind == kind && nodes[i].ref == ref && nodes[i].face == face) return static_cast<std::int32_t>(i);
+    }
+    nodes.push_back({kind, ref, face, 0, -1, {}});
+    return static_cast<std::int32_t>(nodes.size() - 1);
+  }
+};
+
+Patch Overlay::pieces_of(std::int32_t triangle) {
+  Patch patch;
+  const auto found = triangle_faces_.find(triangle);
+  if (found == triangle_faces_.end()) return patch;
+  const auto& corner = source_.mesh().triangles[triangle];
+  const auto& x = source_.mesh().vertices;
+  Graph graph;
+  for (int i = 0; i < 3; ++i) graph.nodes.push_back({-1, corner[i], 0, 1 << i | 1 << (i + 2) % 3, -1, {}});
+  const auto leave = [&](std::int32_t from, std::int32_t to) {
+    graph.nodes[from].border = static_cast<std::int32_t>(graph.halves.size());
+    graph.halves.push_back({from, to, -1});
+  };
+  for (std::int32_t i = 0; i < 3; ++i) {
+    const std::int32_t e = source_.edges_of(triangle)[i];
+    std::int32_t last = i;
+    if (const auto cuts = edge_cuts_.find(e); cuts != edge_cuts_.end()) {
+      std::vector<std::int32_t> faces;
+      for (const EdgeCut& cut : cuts->second) faces.push_back(cut.face);
+      if (source_.edges()[e].face[0] != triangle) std::reverse(faces.begin(), faces.end());
+      for (const std::int32_t f : faces) {
+        const std::int32_t node = graph.find(VertexKey::edge_face, e, f);
+        graph.nodes[node].lines = 1 << i;
+        leave(last, node);
+        last = node;
+      }
+    }
+    leave(last, (i + 1) % 3);
+  }
+  graph.border = static_cast<std::int32_t>(graph.halves.size());
+  for (const std::int32_t f : found->second) {
+    const auto& segments = faces_[f].segments;
+    const auto s = std::lower_bound(segments.begin(), segments.end(), triangle,
+                                    [](const Segment& segment, std::int32_t t) { return segment.triangle < t; });
+    const auto node = [&](const End& end) {
+      return graph.find(end.inner ? VertexKey::edge_face : VertexKey::triangle_edge, end.ref, end.inner ? f : 0);
+    };
+    const std::int32_t start = node(s->start), end = node(s->end);
+    graph.nodes[start].out.push_back({f, static_cast<std::int32_t>(graph.halves.size())});
+    graph.halves.push_back({start, end, 2 * f + 1});
+    graph.nodes[end].out.push_back({f, static_cast<std::int32_t>(graph.halves.size())});
+    graph.halves.push_back({end, start, 2 * f});
+  }
+
+  // The half-edge that follows around the piece.
+  const auto follow = [&](std::int32_t h) -> std::int32_t {
+    const Graph::Half& half = graph.halves[h];
+    const Graph::Node& node = graph.nodes[half.to];
+    if (half.side < 0) return node.out.empty() ? node.border : node.out.front()[1];
+    if (node.kind != VertexKey::triangle_edge) return node.border;
+    const Edge& edge = edges_[node.ref];
+    const std::int32_t next = across(edge, half.side) / 2;
+    for (const auto& [face, out] : node.out) {
+      if (face == next) return out;
+    }
+    throw Error("internal: a cut edge crosses a triangle that one of its faces misses");
+  };
+  const auto vertex = [&](std::int32_t h, std::int32_t after) {
+    const Graph::Node& node = graph.nodes[graph.halves[h].to];
+    const std::int32_t side = std::max(graph.halves[h].side, graph.halves[after].side);
+    if (node.kind == VertexKey::edge_face) {
+      CutVertex v = vertex_on_face(node.ref, side);
+      v.x = cut_position(node.ref, node.face);
+      return v;
+    }
+    CutVertex v = vertex_on_edge(triangle, node.ref, graph.halves[h].side);
+    for (const Hit& hit : edges_[node.ref].hits) {
+      if (hit.triangle == triangle) v.x = hit.x;
+    }
+    return v;
+  };
+
+  const Vec3d &a = x[corner[0]], &b = x[corner[1]], &c = x[corner[2]];
+  const Vec3d normal = vec::cross(vec::sub(b, a), vec::sub(c, a));
+  int axis = 0;
+  for (int k = 1; k < 3; ++k) {
+    if (std::abs(normal[k]) > std::abs(normal[axis])) axis = k;
+  }
+  int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  if (normal[axis] < 0) std::swap(u, v);
+
+  std::vector<FlatPoint> flat;
+  std::vector<std::int32_t> id;  // of each corner of each loop: original vertex, or ~index into the patch
+  std::vector<Loop> loops;
+  std::vector<std::int32_t> component;  // of each loop: a node
+  DisjointSets sets(graph.nodes.size());
+  for (const Graph::Half& half : graph.halves) sets.join(half.from, half.to);
+  std::vector<char> seen(graph.halves.size(), 0);
+  for (std::size_t first = 0; first < graph.halves.size(); ++first) {
+    if (seen[first] != 0) continue;
+    Loop loop;
+    for (auto h = static_cast<std::int32_t>(first); seen[h] == 0;) {
+      seen[h] = 1;
+      const std::int32_t after = follow(h);
+      const Graph::Node& node = graph.nodes[graph.halves[h].to];
+      Vec3d place = a;
+      if (node.kind < 0) {
+        id.push_back(node.ref);
+        place = x[node.ref];
+        for (const std::int32_t end : {graph.halves[h].from, graph.halves[after].to}) {
+          // A vertex next to a cut of its own cell lies on that cut's side, whatever its position says.
+          const Graph::Node& cut = graph.nodes[end];
+          if (cut.kind != VertexKey::edge_face) continue;
+          const auto cell = vertex_cell_.find(node.ref);
+          if (cell == vertex_cell_.end() || cell->second != faces_[cut.face].cell) continue;
+          const std::int32_t side =
+              graph.halves[cut.out.front()[1]].side;  // to the left when leaving the border: before the cut
+          moved_vertices[node.ref] = carrier_of(end == graph.halves[h].from ? side ^ 1 : side);
+        }
+      } else {
+        patch.vertices.push_back(vertex(h, after));
+        place = patch.vertices.back().x;
+        id.push_back(~static_cast<std::int32_t>(patch.vertices.size() - 1));
+      }
+      loop.corners.push_back(static_cast<std::int32_t>(flat.size()));
+      flat.push_back({place[u] - a[u], place[v] - a[v], static_cast<std::uint8_t>(node.lines)});
+      h = after;
+    }
+    component.push_back(sets.find(graph.halves[first].from));
+    loops.push_back(std::move(loop));
+  }
+  // What hangs together inside the triangle, away from its border, has one loop around it: a hole of the piece that holds it.
+  std::unordered_map<std::int32_t, std::size_t> outermost;
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    if (component[i] == sets.find(0)) continue;
+    const auto [entry, is_new] = outermost.try_emplace(component[i], i);
+    if (!is_new && loop_area(flat, loops[i].corners) < loop_area(flat, loops[entry->second].corners)) entry->second = i;
+  }
+  for (const auto& [node, loop] : outermost) loops[loop].hole = true;
+  patch.triangles = triangulate(flat, std::move(loops));
+  for (auto& t : patch.triangles) t = {id[t[0]], id[t[1]], id[t[2]]};
+  return patch;
+}
+
+}  // namespace pliant::overlay
