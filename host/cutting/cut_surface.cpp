@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "cutting/cut_air.h"
+
 namespace pliant {
 
 using overlay::Carrier;
@@ -12,17 +14,26 @@ using overlay::Patch;
 
 struct CutSurface::Base {
   Base(const TriangleMesh& surface, const Lattice& full)
-      : lattice(full), overlay(surface, {full.origin, full.spacing, full.size}) {
+      : lattice(full), overlay(surface, {full.origin, full.spacing, full.size}), air(overlay.source(), cell_at) {
     originals = static_cast<std::int32_t>(overlay.source().mesh().triangles.size());
     for (std::size_t c = 0; c < full.cells.size(); ++c) {
       cell_at.try_emplace(overlay.source().grid().number(full.cells[c].index), static_cast<std::int32_t>(c));
     }
-    lattice.embedding.clear();
+    hung_offset.assign(full.cells.size() + 1, 0);
+    for (const Embedding& e : full.embedding) ++hung_offset[e.cell + 1];
+    for (std::size_t c = 0; c < full.cells.size(); ++c) hung_offset[c + 1] += hung_offset[c];
+    hung.resize(full.embedding.size());
+    std::vector<std::int32_t> next(hung_offset.begin(), hung_offset.end() - 1);
+    for (std::size_t v = 0; v < full.embedding.size(); ++v) {
+      hung[next[full.embedding[v].cell]++] = static_cast<std::int32_t>(v);
+    }
   }
   Lattice lattice;
   overlay::Overlay overlay;
   std::int32_t originals = 0;  ///< triangles, fillers counted
   std::unordered_map<std::int64_t, std::int32_t> cell_at;
+  overlay::AirCells air;
+  std::vector<std::int32_t> hung_offset, hung;  ///< original vertices by the cell they hang in
 };
 
 CutSurface::~CutSurface() = default;
@@ -70,7 +81,9 @@ void CutSurface::update(const std::vector<CutGridCell>& cells) {
   changed_vertices_ = {};
   changed_triangles_ = {};
   overlay::Overlay& overlay = base_->overlay;
-  overlay.update(cells);
+  std::vector<CutGridCell> all = base_->air.update(cells);
+  all.insert(all.end(), cells.begin(), cells.end());
+  overlay.update(all);
   for (const std::int32_t f : overlay.dirty_faces()) replace({true, f, 0}, overlay.caps_of(f), SurfaceKind::cut);
   for (const std::int32_t t : overlay.dirty_triangles()) {
     const bool filler = t >= base_->originals - overlay.source().fillers();
@@ -79,7 +92,21 @@ void CutSurface::update(const std::vector<CutGridCell>& cells) {
     replace({false, t, 0}, patch, filler ? SurfaceKind::filler : SurfaceKind::original);
   }
   for (const auto& [v, carrier] : overlay.moved_vertices) hang(v, carrier);
+  for (const CutGridCell& cell : cells) hang_outside(cell);
   if (changed_vertices_.first != changed_vertices_.last || changed_triangles_.first != changed_triangles_.last) ++version_;
+}
+
+// Vertices that hang in a cell without lying in any cell that is cut: they go with its nearest corner.
+void CutSurface::hang_outside(const CutGridCell& cell) {
+  const auto found = base_->cell_at.find(base_->overlay.source().grid().number(cell.index));
+  if (found == base_->cell_at.end()) return;
+  for (std::int32_t i = base_->hung_offset[found->second]; i < base_->hung_offset[found->second + 1]; ++i) {
+    const std::int32_t v = base_->hung[i];
+    if (base_->overlay.holds(v)) continue;
+    int corner = 0;
+    for (int a = 0; a < 3; ++a) corner |= vertices_[v].local[a] > 0.5 ? 1 << a : 0;
+    hang(v, cell.carrier[cell.label[corner]]);
+  }
 }
 
 std::vector<std::int32_t>& CutSurface::slots_of(const Owner& owner) {

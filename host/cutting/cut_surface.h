@@ -72,6 +72,7 @@ class CutSurface {
   void remove_last_slot(std::vector<std::int32_t>& slots);
   std::int32_t vertex(const overlay::CutVertex& v);
   void hang(std::int32_t vertex, const overlay::Carrier& carrier);
+  void hang_outside(const overlay::CutGridCell& cell);
 
   std::unique_ptr<Base> base_;
   std::vector<CutSurfaceVertex> vertices_;

@@ -65,6 +65,8 @@ class Overlay {
   /// Both caps of a cut face, the back's first; empty if it is gone or outside the body.
   [[nodiscard]] Patch caps_of(std::int32_t face) const;
   [[nodiscard]] bool is_cut(std::int32_t triangle) const { return triangle_faces_.contains(triangle); }
+  /// Whether an original vertex lies in a cell that is or was cut.
+  [[nodiscard]] bool holds(std::int32_t vertex) const { return vertex_cell_.contains(vertex); }
 
  private:
   struct Point {
