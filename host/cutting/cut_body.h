@@ -11,4 +11,8 @@ namespace pliant {
 /// `name` is the body's, for messages.
 std::shared_ptr<const CutMesh> cut_mesh(const Solid& solid, const std::string& name);
 
+/// The body with its cut elements, their fill and the virtual nodes. Vertices of the surface hang in the copy that holds their
+/// place at rest; triangles stay as they are.
+Solid cut_solid(const Solid& uncut, const CutTopology& cut);
+
 }  // namespace pliant

@@ -23,7 +23,18 @@ std::string extent_of(const ModelBody& body) {
                      fmt::join(lower, ", "), fmt::join(upper, ", "));
 }
 
-std::vector<std::int32_t> select_nodes(const Selection& where, const ModelBody& body) {
+/// Whether a virtual node goes with the chosen ones: if all its anchors do. So a piece is not held by the far side of its
+/// elements.
+bool follows(const VirtualNodes& nodes, std::size_t virtual_node, const std::vector<char>& chosen) {
+  for (std::int32_t i = nodes.offset[virtual_node]; i < nodes.offset[virtual_node + 1]; ++i) {
+    if (chosen[nodes.anchor[i]] == 0) return false;
+  }
+  return true;
+}
+
+enum class Virtual { with_anchors, never };
+
+std::vector<std::int32_t> select_nodes(const Selection& where, const ModelBody& body, Virtual rule) {
   if (where.kind == Selection::Kind::nodes) {
     for (const std::int64_t n : where.nodes) {
       if (n < 0 || n >= static_cast<std::int64_t>(body.rest.size())) {
@@ -32,8 +43,15 @@ std::vector<std::int32_t> select_nodes(const Selection& where, const ModelBody& 
     }
   }
   std::vector<std::int32_t> chosen;
-  for (std::size_t n = 0; n < body.rest.size(); ++n) {
-    if (where.contains(body.rest[n], static_cast<std::int64_t>(n))) chosen.push_back(static_cast<std::int32_t>(n));
+  const VirtualNodes& virtual_nodes = body.virtual_nodes;
+  const std::size_t real = virtual_nodes.first < 0 ? body.rest.size() : static_cast<std::size_t>(virtual_nodes.first);
+  std::vector<char> is_chosen(real, 0);
+  for (std::size_t n = 0; n < real; ++n) {
+    is_chosen[n] = where.contains(body.rest[n], static_cast<std::int64_t>(n));
+    if (is_chosen[n] != 0) chosen.push_back(static_cast<std::int32_t>(n));
+  }
+  for (std::size_t n = real; n < body.rest.size() && rule == Virtual::with_anchors; ++n) {
+    if (follows(virtual_nodes, n - real, is_chosen)) chosen.push_back(static_cast<std::int32_t>(n));
   }
   if (chosen.empty()) throw Error(fmt::format("{}: no node in this set; {}", where.pointer, extent_of(body)));
   return chosen;
@@ -53,7 +71,7 @@ void set_component(Constraint& c, int axis, double target, std::int32_t curve) {
 
 void constrain(const Body& body, const ModelBody& placed, Model& model, std::map<std::int32_t, Constraint>& all) {
   for (const Fixed& fixed : body.fixed) {
-    for (const std::int32_t n : select_nodes(fixed.where, placed)) {
+    for (const std::int32_t n : select_nodes(fixed.where, placed, Virtual::with_anchors)) {
       Constraint& c = all[placed.slot[n]];
       for (int axis = 0; axis < 3; ++axis) {
         if (fixed.axes[axis]) set_component(c, axis, 0, 0);
@@ -62,7 +80,7 @@ void constrain(const Body& body, const ModelBody& placed, Model& model, std::map
   }
   for (const Prescribed& prescribed : body.prescribed) {
     const std::int32_t curve = add_curve(model, prescribed.curve);
-    for (const std::int32_t n : select_nodes(prescribed.where, placed)) {
+    for (const std::int32_t n : select_nodes(prescribed.where, placed, Virtual::with_anchors)) {
       Constraint& c = all[placed.slot[n]];
       for (int axis = 0; axis < 3; ++axis) {
         if (prescribed.displacement[axis]) set_component(c, axis, *prescribed.displacement[axis], curve);
@@ -74,7 +92,7 @@ void constrain(const Body& body, const ModelBody& placed, Model& model, std::map
 void load(const Body& body, const ModelBody& placed, Model& model) {
   for (const Force& force : body.forces) {
     const std::int32_t curve = add_curve(model, force.curve);
-    const auto nodes = select_nodes(force.where, placed);
+    const auto nodes = select_nodes(force.where, placed, Virtual::never);
     const double share = 1.0 / static_cast<double>(nodes.size());
     for (const std::int32_t n : nodes) {
       model.forces.push_back({placed.slot[n], {force.total[0] * share, force.total[1] * share, force.total[2] * share}, curve});
@@ -88,6 +106,7 @@ void load(const Body& body, const ModelBody& placed, Model& model) {
       for (const std::int32_t v : model.surface.triangles[t]) {
         for (int c = 0; c < 3; ++c) centre[c] += model.surface.rest[v][c] / 3;
       }
+      if (!placed.triangle_middle.empty()) centre = placed.triangle_middle[t - placed.first_triangle];
       if (!pressure.where.contains(centre, t - placed.first_triangle)) continue;
       model.pressures.push_back({t, pressure.pressure, curve});
       any = true;

@@ -229,6 +229,8 @@ void fill_body(const Body& body, Draft& draft, ModelBody& out) {
   out.slot = draft.slot;
   out.rest = draft.solid.nodes;
   out.tets = draft.solid.tets;
+  out.virtual_nodes = draft.solid.virtual_nodes;
+  out.triangle_middle = draft.solid.triangle_middle;
   for (const auto& hex : draft.solid.hexes) {
     std::array<std::int32_t, 8> corners{};
     for (int a = 0; a < 8; ++a) corners[a] = hex[kVtkFromBits[a]];
@@ -321,6 +323,12 @@ std::int64_t Model::elements() const {
   std::int64_t n = 0;
   for (const ModelBody& b : bodies) n += b.elements();
   return n;
+}
+
+std::vector<double> densities(const Body& body, const Solid& solid) {
+  std::vector<double> density;
+  for (const int m : materials_of(body, solid)) density.push_back(material_of(body, m).density);
+  return density;
 }
 
 Model build_model(const Scene& scene) { return build_model(scene, make_solids(scene)); }

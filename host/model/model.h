@@ -1,6 +1,7 @@
 // The Model: everything that does not change while a scene runs, in double precision. Nodes are numbered by slot, the index
 // that the node buffers use: first the bricks of the lattices (256 slots each, many without a node), then one empty brick, then
-// the nodes of all other bodies in an order that keeps neighbours close, padded to a multiple of 16, then those of shape matching.
+// the nodes of all other bodies in an order that keeps neighbours close, padded to a multiple of 16, then those of shape
+// matching.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -45,8 +46,9 @@ struct BrickBatch {
   std::int32_t first = 0, count = 0;
 };
 
-/// Fast lattice shape matching of one body: the nodes of its cells that are not operational, and one region around each. Regions are
-/// numbered like these nodes: first the nodes that shape matching moves (`own`, slots first_slot, first_slot + 1, ...), then the interface.
+/// Fast lattice shape matching of one body: the nodes of its cells that are not operational, and one region around each.
+/// Regions are numbered like these nodes: first the nodes that shape matching moves (`own`, slots first_slot, first_slot + 1,
+/// ...), then the interface.
 struct FlsmBatch {
   std::int32_t body = 0;
   DeformationModel settings;
@@ -59,7 +61,7 @@ struct FlsmBatch {
   std::vector<std::array<std::int32_t, 3>> index;  ///< [own + interface] grid point
   std::vector<std::array<std::int32_t, 6>> link;   ///< [own + interface + fillers] -x, +x, -y, +y, -z, +z, -1: none
   FlsmRegions regions;
-  std::vector<double> weight;                      ///< [own + interface] node mass over the number of regions that hold it [kg]
+  std::vector<double> weight;  ///< [own + interface] node mass over the number of regions that hold it [kg]
 };
 
 /// The embedded surface of all bodies, for pressure and rendering.
@@ -71,6 +73,13 @@ struct ModelSurface {
   std::vector<std::int32_t> triangle_body;
 };
 
+/// Nodes that a cut made: each holds the far side of elements whose material belongs to other nodes, its anchors.
+struct VirtualNodes {
+  std::int32_t first = -1;           ///< nodes from here on are virtual; -1: none is
+  std::vector<std::int32_t> offset;  ///< [virtual nodes + 1] into `anchor`
+  std::vector<std::int32_t> anchor;  ///< real nodes of the elements at each virtual node, ascending
+};
+
 struct ModelBody {
   std::string name;
   ElementKind element = ElementKind::hex8;
@@ -80,12 +89,15 @@ struct ModelBody {
   std::vector<std::array<std::int32_t, 8>> hexes;  ///< body-local nodes in VTK order, for output
   std::int32_t first_vertex = 0, vertices = 0;     ///< its part of the surface
   std::int32_t first_triangle = 0, triangles = 0;
-  double spacing = 0;         ///< of its lattice [m], 0 for a volume mesh
+  VirtualNodes virtual_nodes;
+  std::vector<Vec3d>
+      triangle_middle;  ///< if the surface is cut: centroid of the uncut triangle that each is part of, NaN on a cut
+  double spacing = 0;   ///< of its lattice [m], 0 for a volume mesh
   std::int64_t operational_nodes = 0, matching_nodes = 0, interface_nodes = 0;
   std::int64_t operational_elements = 0;  ///< of elements(): those that are finite elements
-  double mass = 0;            ///< [kg]
-  double volume = 0;          ///< of the elements, fill counted [m^3]
-  double surface_volume = 0;  ///< enclosed by the input surface [m^3]
+  double mass = 0;                        ///< [kg]
+  double volume = 0;                      ///< of the elements, fill counted [m^3]
+  double surface_volume = 0;              ///< enclosed by the input surface [m^3]
   [[nodiscard]] std::int64_t elements() const { return static_cast<std::int64_t>(tets.size() + hexes.size()); }
 };
 
@@ -122,12 +134,12 @@ struct Model {
   std::vector<std::int64_t> brick_cell;      ///< [bricks][256] number of the cell in its body, -1: none
   std::vector<std::int32_t> brick_body;      ///< [bricks]
   std::int32_t list_base = 0;                ///< first slot after the bricks
-  std::int32_t list_end = 0;                 ///< first slot after the nodes of list elements, a multiple of 16; then shape matching
-  std::int32_t slots = 0;                    ///< all slots, a multiple of 16
-  std::vector<Vec3d> rest;                   ///< [slots]
-  std::vector<double> mass;                  ///< [slots] lumped [kg], 0: no node
-  std::vector<double> damping;               ///< [slots] c [1/s]
-  std::vector<Vec3d> velocity;               ///< [slots] initial [m/s]
+  std::int32_t list_end = 0;    ///< first slot after the nodes of list elements, a multiple of 16; then shape matching
+  std::int32_t slots = 0;       ///< all slots, a multiple of 16
+  std::vector<Vec3d> rest;      ///< [slots]
+  std::vector<double> mass;     ///< [slots] lumped [kg], 0: no node
+  std::vector<double> damping;  ///< [slots] c [1/s]
+  std::vector<Vec3d> velocity;  ///< [slots] initial [m/s]
   std::vector<TetBatch> tets;
   std::vector<HexBatch> hexes;
   std::vector<BrickBatch> brick_batches;

@@ -11,10 +11,9 @@ namespace {
 bool takes_tets(ElementKind kind) { return kind == ElementKind::tet4 || kind == ElementKind::tet4anp; }
 
 void from_lattice(const Body& body, Solid& solid) {
-  const TriangleMesh mesh =
-      body.surface_in_memory == nullptr
-          ? read_surface(body.surface, body.scale, body.translate)
-          : clean_surface(*body.surface_in_memory, body.surface.string(), body.scale, body.translate);
+  const TriangleMesh mesh = body.surface_in_memory == nullptr
+                                ? read_surface(body.surface, body.scale, body.translate)
+                                : clean_surface(*body.surface_in_memory, body.surface.string(), body.scale, body.translate);
   Lattice lattice = build_lattice(mesh, body.lattice);
   solid.spacing = lattice.spacing;
   solid.surface_volume = signed_volume(mesh);
@@ -88,6 +87,26 @@ void from_mesh(const Body& body, Solid& solid) {
   solid.surface_volume = signed_volume({solid.surface, solid.triangles});
 }
 
+/// The partition of the uncut lattice's cells holds for their copies; a node is what its elements make of it.
+void spread_to_copies(Solid& solid) {
+  Partition& partition = solid.partition;
+  const std::vector<char> of_cell = std::move(partition.operational);
+  partition = {};
+  std::vector<char> on(solid.nodes.size(), 0);  // 1: on an operational element, 2: on a shape-matching one
+  const std::size_t corners = solid.tets.empty() ? 8 : 4, parts = solid.tets.empty() ? 1 : kKuhnTets.size();
+  for (std::size_t c = 0; c < solid.copy_of.size(); ++c) {
+    partition.operational.push_back(of_cell[solid.copy_of[c]]);
+    for (std::size_t p = parts * c; p < parts * (c + 1); ++p) {
+      const std::int32_t* nodes = solid.tets.empty() ? solid.hexes[p].data() : solid.tets[p].data();
+      for (std::size_t a = 0; a < corners; ++a) on[nodes[a]] |= static_cast<char>(partition.operational.back() != 0 ? 1 : 2);
+    }
+  }
+  for (const char where : on) {
+    partition.kind.push_back(where == 1 ? NodeKind::operational : where == 2 ? NodeKind::matching : NodeKind::interface);
+    ++(where == 1 ? partition.operational_nodes : where == 2 ? partition.matching_nodes : partition.interface_nodes);
+  }
+}
+
 }  // namespace
 
 std::vector<Solid> make_solids(const Scene& scene) {
@@ -96,13 +115,25 @@ std::vector<Solid> make_solids(const Scene& scene) {
   return solids;
 }
 
+std::array<std::int32_t, 8> cell_corners(const std::array<std::int32_t, 4>* tets) {
+  std::array<std::int32_t, 8> corners{};
+  for (std::size_t t = 0; t < kKuhnTets.size(); ++t) {
+    for (std::size_t a = 0; a < 4; ++a) corners[kKuhnTets[t][a]] = tets[t][a];
+  }
+  return corners;
+}
+
 void repartition(const Body& body, Solid& solid) {
   if (solid.lattice == nullptr) return;
   const Lattice& lattice = *solid.lattice;
   solid.partition = partition_lattice(body, lattice);
   solid.matching_cells.clear();
-  for (std::size_t c = 0; c < lattice.cells.size(); ++c) {
-    if (solid.partition.operational[c] == 0) solid.matching_cells.push_back(lattice.cells[c]);
+  if (!solid.copy_of.empty()) spread_to_copies(solid);
+  for (std::size_t c = 0; c < solid.partition.operational.size(); ++c) {
+    if (solid.partition.operational[c] != 0) continue;
+    Cell cell = lattice.cells[solid.copy_of.empty() ? c : static_cast<std::size_t>(solid.copy_of[c])];
+    if (!solid.copy_of.empty()) cell.nodes = solid.tets.empty() ? solid.hexes[c] : cell_corners(&solid.tets[6 * c]);
+    solid.matching_cells.push_back(cell);
   }
 }
 

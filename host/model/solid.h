@@ -21,14 +21,17 @@ struct Solid {
   std::shared_ptr<const Lattice> lattice;          ///< if body.model is not tled: what repartition works on
   Partition partition;                             ///< of the lattice's cells, if body.model is not tled
   std::vector<std::uint64_t> samples;              ///< per cell of a lattice: Cell::samples
-  std::vector<Cell> matching_cells;                ///< the cells left to shape matching
-  double spacing = 0;                              ///< [m]
-  std::vector<Vec3d> surface;                      ///< vertices [m]
+  std::vector<std::int32_t> copy_of;  ///< if the body is cut: per element (six tetrahedra of a lattice: one) its uncut cell
+  VirtualNodes virtual_nodes;
+  std::vector<Vec3d> triangle_middle;  ///< ModelBody::triangle_middle
+  std::vector<Cell> matching_cells;    ///< the cells left to shape matching
+  double spacing = 0;                  ///< [m]
+  std::vector<Vec3d> surface;          ///< vertices [m]
   std::vector<std::array<std::int32_t, 3>> triangles;
   std::vector<std::array<std::int32_t, 8>> surface_nodes;
   std::vector<std::array<double, 8>> surface_weights;
   std::vector<std::int32_t> surface_cell;  ///< the lattice cell in which each vertex hangs; empty for a volume mesh
-  double surface_volume = 0;  ///< [m^3]
+  double surface_volume = 0;               ///< [m^3]
   /// Whether element e is a finite element.
   [[nodiscard]] bool operational(std::size_t e) const {
     return partition.operational.empty() || partition.operational[tets.empty() ? e : e / 6] != 0;
@@ -48,6 +51,12 @@ void repartition(const Body& body, Solid& solid);
 
 /// Like build_model(scene), for bodies that are loaded and filled already; their partition is chosen anew.
 Model build_model(const Scene& scene, std::vector<Solid> solids);
+
+/// Density of each element [kg/m^3].
+std::vector<double> densities(const Body& body, const Solid& solid);
+
+/// The corners of a lattice cell from its six tetrahedra (kKuhnTets), which follow each other.
+std::array<std::int32_t, 8> cell_corners(const std::array<std::int32_t, 4>* tets);
 
 /// VTK's corner order of a hexahedron from bit order, and back: the same permutation both ways.
 inline constexpr std::array<int, 8> kVtkFromBits{0, 1, 3, 2, 4, 5, 7, 6};
