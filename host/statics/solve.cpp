@@ -130,7 +130,7 @@ class Newton {
     Forces f;
     if (!system_.forces(u_ + s * d, target, f)) return HUGE_VAL;
     const double value = d.dot(f.internal - f.external) / first;
-    return std::isfinite(value) ? -value : HUGE_VAL;
+    return std::isfinite(value) ? value : HUGE_VAL;
   }
 
   /// Moves u_ along d until the residual does at most half as much work along d as at the start; all of d when d moves
