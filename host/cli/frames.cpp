@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "cli/cli.h"
 #include "io/obj.h"
+#include "io/png.h"
 #include "layout.h"
 #include "pliant/error.h"
 
@@ -44,10 +47,13 @@ std::vector<std::vector<float>> fills(const Model& model) {
 std::set<std::string> parse_formats(const std::vector<std::string>& formats) {
   std::set<std::string> chosen;
   for (const std::string& format : formats) {
-    if (format == "png" || format == "gltf") {
-      throw Error(fmt::format("--format: {} is not available yet; allowed are vtu, obj", format));
+    if (format == "png" && !render::Renderer::available()) {
+      throw Error(fmt::format("--format: png is not available: {}; allowed are vtu, obj, gltf", render::Renderer::missing()));
     }
-    if (format != "vtu" && format != "obj") throw Error(fmt::format("--format: got \"{}\"; allowed are vtu, obj", format));
+    const std::vector<std::string> known{"vtu", "obj", "png", "gltf"};
+    if (std::find(known.begin(), known.end(), format) == known.end()) {
+      throw Error(fmt::format("--format: got \"{}\"; allowed are vtu, obj, png, gltf{}", format, did_you_mean(format, known)));
+    }
     chosen.insert(format);
   }
   return chosen;
@@ -105,7 +111,8 @@ VtuMesh surface_frame(Simulation& simulation) {
   return mesh;
 }
 
-FrameWriter::FrameWriter(std::filesystem::path folder, std::string stem, std::set<std::string> formats)
+FrameWriter::FrameWriter(std::filesystem::path folder, std::string stem, std::set<std::string> formats,
+                         const render::PictureOptions& pictures)
     : folder_(std::move(folder)),
       stem_(std::move(stem)),
       formats_(std::move(formats)),
@@ -117,6 +124,7 @@ FrameWriter::FrameWriter(std::filesystem::path folder, std::string stem, std::se
   if (!std::filesystem::is_directory(folder_))
     throw Error(fmt::format("--out: {} is a file, expected a folder", folder_.string()));
   check_writable(folder_ / (stem_ + ".pvd"));
+  if (formats_.count("png") != 0) pictures_.emplace(pictures);
 }
 
 void FrameWriter::write(Simulation& simulation) {
@@ -138,7 +146,18 @@ void FrameWriter::write(Simulation& simulation) {
   if (formats_.count("obj") != 0 && has_surface) {
     write_obj(folder_ / (stem_ + "_surface" + number + ".obj"), {surface.points, surface.triangles});
   }
+  if (pictures_ && has_surface) write_png(folder_ / (stem_ + number + ".png"), pictures_->draw(simulation));
+  if (formats_.count("gltf") != 0 && has_surface) {
+    render::SurfaceCopy copy;
+    copy.read(simulation);
+    animation_.add(splitter_.split(copy.view(), simulation.time()));
+  }
   ++frames_;
+}
+
+void FrameWriter::finish() {
+  if (animation_.empty()) return;
+  write_glb(folder_ / (stem_ + ".glb"), animation_);
 }
 
 }  // namespace pliant::cli

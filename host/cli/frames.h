@@ -6,12 +6,16 @@
 #include <string>
 #include <vector>
 
+#include "io/gltf.h"
 #include "io/vtu.h"
+#include "render/export.h"
+#include "render/picture.h"
 #include "solver/simulation.h"
 
 namespace pliant::cli {
 
-/// "vtu,obj" split at commas and checked. Throws Error that lists the formats there are.
+/// "vtu,obj,png,gltf" split at commas and checked. Throws Error that lists the formats there are, or says why this build has no
+/// pictures.
 std::set<std::string> parse_formats(const std::vector<std::string>& formats);
 
 /// All bodies as volume elements in their present shape: displacement [m], velocity [m/s] at the points, body and fill at the
@@ -24,11 +28,14 @@ VtuMesh surface_frame(Simulation& simulation);
 class FrameWriter {
  public:
   /// Makes the folder where it is missing and tries it. Throws Error when nothing can be written there.
-  FrameWriter(std::filesystem::path folder, std::string stem, std::set<std::string> formats);
+  FrameWriter(std::filesystem::path folder, std::string stem, std::set<std::string> formats,
+              const render::PictureOptions& pictures);
 
   /// Write the present state. Files carry the number of the step: bunny_00000100.vtu, bunny_surface_00000100.vtu and .obj,
-  /// listed in bunny.pvd and bunny_surface.pvd.
+  /// listed in bunny.pvd and bunny_surface.pvd; bunny_00000100.png.
   void write(Simulation& simulation);
+  /// What can only be written at the end: bunny.glb, all frames in one animation.
+  void finish();
   [[nodiscard]] std::size_t frames() const { return frames_; }
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
 
@@ -37,6 +44,9 @@ class FrameWriter {
   std::string stem_;
   std::set<std::string> formats_;
   PvdSeries volume_, surface_;
+  std::optional<render::Pictures> pictures_;
+  SurfaceAnimation animation_;
+  render::FrameSplitter splitter_;
   std::optional<std::int64_t> last_step_;
   std::size_t frames_ = 0;
 };

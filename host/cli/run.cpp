@@ -6,6 +6,7 @@
 #include "backends/backends.h"
 #include "cli/cli.h"
 #include "cli/frames.h"
+#include "cli/picture_words.h"
 #include "cli/run_loop.h"
 #include "io/save.h"
 #include "pliant/error.h"
@@ -21,6 +22,7 @@ struct Options {
   Common common;
   std::string scene, backend = "auto", out, checkpoint, resume;
   std::vector<std::string> formats{"vtu"};
+  PictureWords picture;
   std::optional<std::int64_t> steps, every;
   std::optional<double> seconds, dt;
   bool hash = false, profile = false;
@@ -34,7 +36,11 @@ void check(const Options& o) {
   if (o.dt && !(*o.dt > 0 && std::isfinite(*o.dt))) throw Error(fmt::format("--dt is {} s; expected more than 0", *o.dt));
   if (o.every && *o.every < 1) throw Error(fmt::format("--every is {}; expected 1 or more steps", *o.every));
   if (o.every && o.out.empty()) throw Error("--every says how often to write into a folder; it needs --out DIR");
-  parse_formats(o.formats);
+  const std::set<std::string> formats = parse_formats(o.formats);
+  if (!o.picture.given().empty() && formats.count("png") == 0) {
+    throw Error(fmt::format("{} is for pictures; it needs --format png", o.picture.given()));
+  }
+  (void)o.picture.options();  // refuses words that mean nothing
   o.common.check();
   if (!o.checkpoint.empty()) check_writable(o.checkpoint);
 }
@@ -59,7 +65,10 @@ class Run {
     }
     progress.clear();
     if (!result_.diverged.empty()) return diverged();
-    if (frames_) frames_->write(*simulation_);
+    if (frames_) {
+      frames_->write(*simulation_);
+      frames_->finish();
+    }
     if (!o_.checkpoint.empty()) write_checkpoint(o_.checkpoint, checkpoint());
     report();
     return result_.interrupted ? kInterrupted : 0;
@@ -71,7 +80,7 @@ class Run {
     if (o_.dt) scene.dt = *o_.dt;  // from here on the step is a fixed one, and part of what a checkpoint belongs to
     std::optional<Checkpoint> saved;
     if (!o_.resume.empty()) saved = read_checkpoint(o_.resume);
-    if (!o_.out.empty()) frames_.emplace(o_.out, stem_, parse_formats(o_.formats));
+    if (!o_.out.empty()) frames_.emplace(o_.out, stem_, parse_formats(o_.formats), o_.picture.options());
     std::string why;
     const auto model = std::make_shared<const Model>(build_model(scene));
     auto backend = open_backend(o_.backend, &why, model->nodes());
@@ -134,6 +143,7 @@ class Run {
     const fs::path folder = o_.out.empty() ? fs::path(".") : fs::path(o_.out);
     const fs::path saved = folder / (stem_ + "-last-good.pckpt");
     write_checkpoint(saved, checkpoint());
+    if (frames_) frames_->finish();
     if (frames_) write_vtu(folder / (stem_ + "-last-good.vtu"), volume_frame(*simulation_));
     report();
     throw Error(ErrorCode::diverged, fmt::format("{}; saved as {}", result_.diverged, saved.lexically_normal().string()));
@@ -224,7 +234,8 @@ std::function<int()> setup_run(CLI::App& app) {
   app.add_option("--dt", o->dt, "Step [s] instead of the scene's");
   app.add_option("--out", o->out, "Folder for frames; made where missing")->type_name("DIR");
   app.add_option("--every", o->every, "Steps between two frames; default: 1/60 s");
-  app.add_option("--format", o->formats, "vtu, obj, or both")->delimiter(',')->capture_default_str();
+  app.add_option("--format", o->formats, "vtu, obj, png, gltf")->delimiter(',')->capture_default_str();
+  o->picture.add_to(app);
   app.add_option("--checkpoint", o->checkpoint, "Save the last state")->type_name("FILE");
   app.add_option("--resume", o->resume, "Go on from a saved state of the same scene")->type_name("FILE");
   app.add_flag("--hash", o->hash, "Print the hash of the last state, with --quiet as the only output");

@@ -100,18 +100,30 @@ void Pictures::annotate(Image& image) const {
   draw_color_bar(image, {q.title, scaled_unit(q.unit, o_.range ? o_.range->second : largest_).unit, ticks_});
 }
 
-Image Pictures::draw(Simulation& simulation) {
+void SurfaceCopy::read(Simulation& simulation) {
   const ModelSurface& model = simulation.model().surface;
-  if (model.triangles.empty()) throw Error("a picture needs a surface, and the bodies of this scene have none");
-  positions_.clear();
-  for (const Vec3d& x : simulation.surface_positions()) append(positions_, x);
-  triangles_.clear();
-  for (const auto& t : model.triangles) triangles_.insert(triangles_.end(), t.begin(), t.end());
-  Surface surface;
-  surface.positions = positions_;
-  surface.triangles = triangles_;
-  surface.body = model.triangle_body;
-  aim(simulation, positions_);
+  positions.clear();
+  for (const Vec3d& x : simulation.surface_positions()) append(positions, x);
+  triangles.clear();
+  for (const auto& t : model.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
+  body = model.triangle_body;
+}
+
+Surface SurfaceCopy::view() const {
+  Surface s;
+  s.positions = positions;
+  s.triangles = triangles;
+  s.cut = cut;
+  s.body = body;
+  s.topology = topology;
+  return s;
+}
+
+Image Pictures::draw(Simulation& simulation) {
+  surface_.read(simulation);
+  if (surface_.triangles.empty()) throw Error("a picture needs a surface, and the bodies of this scene have none");
+  Surface surface = surface_.view();
+  aim(simulation, surface_.positions);
   color(simulation, surface);
   renderer_.update(surface);
   RenderOptions options;

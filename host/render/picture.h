@@ -12,6 +12,17 @@
 
 namespace pliant::render {
 
+/// A copy of a simulation's present surface as the renderer takes it.
+struct SurfaceCopy {
+  std::vector<float> positions;
+  std::vector<std::int32_t> triangles, body;
+  std::vector<std::uint8_t> cut;
+  std::uint64_t topology = 0;
+
+  void read(Simulation& simulation);
+  [[nodiscard]] Surface view() const;
+};
+
 struct PictureOptions {
   int width = 1280, height = 720;
   int samples = 16;
@@ -43,8 +54,8 @@ class Pictures {
   float ground_ = 0;
   double largest_ = 0;  ///< value so far
   Ticks ticks_;
-  std::vector<float> positions_, values_, kinds_;
-  std::vector<std::int32_t> triangles_;
+  SurfaceCopy surface_;
+  std::vector<float> values_, kinds_;
 };
 
 }  // namespace pliant::render

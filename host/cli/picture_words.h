@@ -1,0 +1,21 @@
+// The options of pictures on the command line.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "render/picture.h"
+
+namespace pliant::cli {
+
+struct PictureWords {
+  std::string size, color, range;
+  int samples = 0;
+
+  void add_to(CLI::App& app);
+  /// The first of them that was given, "--size", or "".
+  [[nodiscard]] std::string given() const;
+  /// What the words mean. Throws Error with what is allowed.
+  [[nodiscard]] render::PictureOptions options() const;
+};
+
+}  // namespace pliant::cli
