@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kSmallestStep = 1.0 / 4096;  ///< of the loads
 constexpr double kLargestTurn = 0.5;          ///< change of the displacement gradient in one iteration
+constexpr int kBold = 16;                     ///< iterations of a load step before the line search becomes strict
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 class Newton {
@@ -95,7 +96,7 @@ class Newton {
       if (!d.allFinite()) return give_up("the stiffness is singular (a part hinged at a node or an edge?)");
       if (settings_.linear) {
         u_ += d;
-      } else if (!search(d, predict, target, residual)) {
+      } else if (!search(d, predict, target, residual, i)) {
         return false;
       }
       predict = false;
@@ -135,7 +136,7 @@ class Newton {
 
   /// Moves u_ along d until the residual does at most half as much work along d as at the start; all of d when d moves
   /// prescribed components. Roots of the slope are bracketed and approached by regula falsi (Illinois).
-  bool search(const VectorXd& d, bool predict, double target, const VectorXd& residual) {
+  bool search(const VectorXd& d, bool predict, double target, const VectorXd& residual, int iteration) {
     if (predict) {
       Forces f;
       if (!system_.forces(u_ + d, target, f)) return give_up("an element is turned inside out");
@@ -148,14 +149,15 @@ class Newton {
       return true;
     }
     // Far from equilibrium the linear step may be many times too long; beyond a turn of this size it says nothing.
+    const bool bold = iteration < kBold;
     double high = std::min(1.0, kLargestTurn / system_.largest_gradient(d));
     double low = 0, at_low = -1, at_high = slope(d, high, target, first);
     double s = high, at = at_high;
-    for (int i = 0; i < 12 && at > 0.5; ++i) {
+    for (int i = 0; i < 12 && (bold ? !std::isfinite(at) : at > 0.5); ++i) {
       s = std::isfinite(at_high) ? (low * at_high - high * at_low) / (at_high - at_low) : (low + high) / 2;
       s = std::clamp(s, low + 0.05 * (high - low), high - 0.05 * (high - low));
       at = slope(d, s, target, first);
-      if (std::abs(at) <= 0.5) break;
+      if (std::abs(at) <= 0.5 || (bold && std::isfinite(at))) break;
       if (at < 0) {
         low = s;
         at_low = at;
