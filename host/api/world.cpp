@@ -47,6 +47,10 @@ std::size_t check_body(const World::Impl& impl, std::size_t body) {
   return body;
 }
 
+void check_device(const World::Impl& impl) {
+  if (!impl.lost.empty()) throw Error(ErrorCode::device, impl.lost + "; only frame() can still be read");
+}
+
 void check_interactive(const World::Impl& impl) {
   if (!impl.scene.interactive) {
     throw Error(ErrorCode::state, "tools need forces reserved for them: create the World with WorldOptions::interactive");
@@ -208,11 +212,13 @@ FramePtr World::frame() {
 
 std::vector<Vec3d> World::displacements(std::size_t body) const {
   const Call call(impl_);
+  check_device(*impl_);
   return impl_->simulation->displacements(check_body(*impl_, body));
 }
 
 std::vector<Vec3d> World::velocities(std::size_t body) const {
   const Call call(impl_);
+  check_device(*impl_);
   return impl_->simulation->velocities(check_body(*impl_, body));
 }
 
@@ -223,6 +229,7 @@ std::vector<Vec3d> World::rest_positions(std::size_t body) const {
 
 std::uint64_t World::hash() const {
   const Call call(impl_);
+  check_device(*impl_);
   return impl_->simulation->hash();
 }
 
@@ -269,7 +276,7 @@ void World::move_tool(const Vec3d& position) {
 
 void World::save(const std::string& file) const {
   const Call call(impl_);
-  if (!impl_->lost.empty()) throw Error(ErrorCode::device, impl_->lost);
+  check_device(*impl_);
   const Checkpoint checkpoint = take_checkpoint(*impl_->simulation);
   try {
     write_checkpoint(file, checkpoint);

@@ -242,7 +242,13 @@ TriangleMesh clean_surface(const TriangleMesh& surface, const std::string& name,
       if (v < 0 || v >= count) fail(shown, fmt::format("triangle {} names vertex {}, but there are {}", t, v, count));
     }
   }
-  Reader reader{shown, scale, translate, nullptr, {}};
+  Reader used{shown, scale, translate, nullptr, {}}, reader = used;
+  used.mesh(surface);
+  // Vertices keep their order, so those of a clean surface keep their numbers.
+  for (const Vec3d& v : surface.vertices) {
+    const Vec3d p = reader.place(kIdentity, v, 0);
+    if (used.welder.ids.contains(p)) reader.welder.vertex(p);
+  }
   reader.mesh(surface);
   return reader.finish();
 }

@@ -14,13 +14,17 @@ namespace pliant {
 template <class T>
 class View {
  public:
+  /// Empty.
   View() = default;
+  /// `size` elements from `data` on.
   View(const T* data, std::size_t size) : data_(data), size_(size) {}
-  [[nodiscard]] const T* data() const { return data_; }
-  [[nodiscard]] std::size_t size() const { return size_; }
-  [[nodiscard]] bool empty() const { return size_ == 0; }
-  [[nodiscard]] const T* begin() const { return data_; }
-  [[nodiscard]] const T* end() const { return data_ + size_; }
+  [[nodiscard]] const T* data() const { return data_; }         ///< null if empty
+  [[nodiscard]] std::size_t size() const { return size_; }      ///< elements
+  [[nodiscard]] bool empty() const { return size_ == 0; }       ///< no element
+  [[nodiscard]] const T* begin() const { return data_; }        ///< for loops
+  [[nodiscard]] const T* end() const { return data_ + size_; }  ///< for loops
+
+  /// Not checked.
   const T& operator[](std::size_t i) const { return data_[i]; }
 
  private:
@@ -33,7 +37,8 @@ using Vec4f = std::array<float, 4>;
 
 /// Indices first .. first + count - 1; count 0: none.
 struct IndexRange {
-  std::size_t first = 0, count = 0;
+  std::size_t first = 0;  ///< the first one
+  std::size_t count = 0;  ///< how many
 };
 
 /// The surface of all bodies at one step. A frame does not change once it is there, and it stays as long as somebody holds it,
@@ -48,6 +53,7 @@ struct Frame {
   View<std::uint8_t> cut_faces;  ///< 1: the triangle lies on a cut, shape [triangles]; empty: none does
   std::uint64_t topology_version =
       0;  ///< changes when vertices or triangles are others than before; positions alone do not count
+
   /// The vertices whose positions may differ from those of the frame that World::frame() gave before this one (frames that
   /// were never asked for count in). All of them in the first frame and after a change of topology.
   IndexRange dirty_vertices;
@@ -55,6 +61,7 @@ struct Frame {
   IndexRange dirty_triangles;
 };
 
+/// Keep it as long as you like.
 using FramePtr = std::shared_ptr<const Frame>;
 
 }  // namespace pliant

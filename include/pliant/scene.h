@@ -29,17 +29,29 @@ PLIANT_API SurfaceSpec box_surface(const Vec3d& lower, const Vec3d& upper);
 /// A set of nodes chosen by rest position [m] or by number. For pressures the centres of surface triangles are chosen, for
 /// inclusions the centres of elements.
 struct RegionSpec {
-  enum class Kind { all, box, sphere, plane, nodes };
-  Kind kind = Kind::all;
+  /// How it chooses.
+  enum class Kind {
+    all,     ///< everything
+    box,     ///< between a and b
+    sphere,  ///< within radius of a
+    plane,   ///< on the side of the plane through a to which b points
+    nodes,   ///< by number
+  };
+  Kind kind = Kind::all;            ///< decides which of the others count
   Vec3d a{};                        ///< box: lower corner; sphere: centre; plane: a point
   Vec3d b{};                        ///< box: upper corner; plane: normal, the side it points to is chosen
   double radius = 0;                ///< sphere [m]
   std::vector<std::int64_t> nodes;  ///< numbers in the body
 
+  /// Everything.
   static RegionSpec all() { return {}; }
+  /// Between two corners [m], bounds included.
   static RegionSpec box(const Vec3d& lower, const Vec3d& upper) { return {Kind::box, lower, upper, 0, {}}; }
+  /// Within a radius [m] of a point [m].
   static RegionSpec sphere(const Vec3d& centre, double radius) { return {Kind::sphere, centre, {}, radius, {}}; }
+  /// The side of a plane to which its normal points.
   static RegionSpec plane(const Vec3d& point, const Vec3d& normal) { return {Kind::plane, point, normal, 0, {}}; }
+  /// Nodes by their numbers in the body.
   static RegionSpec of_nodes(std::vector<std::int64_t> numbers) { return {Kind::nodes, {}, {}, 0, std::move(numbers)}; }
 };
 
@@ -51,6 +63,7 @@ struct CurveSpec {
   std::vector<std::array<double, 2>> table;  ///< table: (time [s], factor), times ascending
 };
 
+/// An isotropic hyperelastic material.
 struct MaterialSpec {
   std::string law = "neo-hookean";  ///< neo-hookean, saint-venant-kirchhoff or isochoric-neo-hookean
   double young = 3000;              ///< Young's modulus at small strain [Pa]
@@ -61,35 +74,35 @@ struct MaterialSpec {
 
 /// A part of a body with another material; later entries win where they overlap.
 struct InclusionSpec {
-  RegionSpec where;
-  MaterialSpec material;
+  RegionSpec where;       ///< which nodes (of an inclusion: elements; of a pressure: triangles)
+  MaterialSpec material;  ///< of all elements, or of the inclusion
 };
 
 /// Nodes that stay where they are, in the axes named.
 struct FixedSpec {
-  RegionSpec where;
-  std::string axes = "xyz";
+  RegionSpec where;          ///< which nodes (of an inclusion: elements; of a pressure: triangles)
+  std::string axes = "xyz";  ///< one to three letters of xyz
 };
 
 /// Nodes that move as told.
 struct PrescribedSpec {
-  RegionSpec where;
+  RegionSpec where;                                   ///< which nodes (of an inclusion: elements; of a pressure: triangles)
   std::array<std::optional<double>, 3> displacement;  ///< [m]; an absent component stays free
-  CurveSpec curve;
+  CurveSpec curve;                                    ///< the factor over time
 };
 
 /// A force [N] shared equally by the chosen nodes.
 struct ForceSpec {
-  RegionSpec where;
-  Vec3d force{};
-  CurveSpec curve;
+  RegionSpec where;  ///< which nodes (of an inclusion: elements; of a pressure: triangles)
+  Vec3d force{};     ///< total [N] at factor 1
+  CurveSpec curve;   ///< the factor over time
 };
 
 /// Follower pressure [Pa] along the inward normal of the deformed surface.
 struct PressureSpec {
-  RegionSpec where;
-  double pressure = 0;
-  CurveSpec curve;
+  RegionSpec where;     ///< which nodes (of an inclusion: elements; of a pressure: triangles)
+  double pressure = 0;  ///< [Pa] at factor 1
+  CurveSpec curve;      ///< the factor over time
 };
 
 /// How the nodes of a body move: finite elements (tled), shape matching (flsm), or both (hybrid). The comments of docs/scene.md
@@ -107,34 +120,36 @@ struct ModelSpec {
   int substeps = 1;             ///< hybrid: steps of finite elements per step of shape matching
 };
 
+/// One body: its shape, what it is made of, and what holds and loads it.
 struct BodySpec {
-  std::string name = "body";
-  SurfaceSpec surface;                ///< either this,
-  std::string surface_file;           ///< or a triangle mesh (OBJ, STL, PLY, 3DS, glTF),
-  std::string volume_file;            ///< or a volume mesh (Gmsh, VTK, VTU, TetGen), taken as it is
-  double scale = 1;                   ///< applied to the coordinates first
-  Vec3d translate{};                  ///< [m], after scaling
-  double lattice_spacing = 0;         ///< edge of a cell [m]; 0: from lattice_nodes
-  std::int64_t lattice_nodes = 2000;  ///< about this many nodes, where no spacing is given
-  std::string element = "hex8";       ///< tet4, tet4anp, hex8 or hex8full
-  MaterialSpec material;
-  ModelSpec model;
-  std::vector<InclusionSpec> inclusions;
-  std::vector<FixedSpec> fixed;
-  std::vector<PrescribedSpec> prescribed;
-  std::vector<ForceSpec> forces;
-  std::vector<PressureSpec> pressures;
-  Vec3d velocity{};          ///< initial [m/s]
-  Vec3d angular_velocity{};  ///< initial, about the centre of mass [rad/s]
+  std::string name = "body";               ///< unique in the scene
+  SurfaceSpec surface;                     ///< either this,
+  std::string surface_file;                ///< or a triangle mesh (OBJ, STL, PLY, 3DS, glTF),
+  std::string volume_file;                 ///< or a volume mesh (Gmsh, VTK, VTU, TetGen), taken as it is
+  double scale = 1;                        ///< applied to the coordinates first
+  Vec3d translate{};                       ///< [m], after scaling
+  double lattice_spacing = 0;              ///< edge of a cell [m]; 0: from lattice_nodes
+  std::int64_t lattice_nodes = 2000;       ///< about this many nodes, where no spacing is given
+  std::string element = "hex8";            ///< tet4, tet4anp, hex8 or hex8full
+  MaterialSpec material;                   ///< of all elements, or of the inclusion
+  ModelSpec model;                         ///< finite elements, shape matching or both
+  std::vector<InclusionSpec> inclusions;   ///< parts of another material
+  std::vector<FixedSpec> fixed;            ///< nodes that stay
+  std::vector<PrescribedSpec> prescribed;  ///< nodes that move as told
+  std::vector<ForceSpec> forces;           ///< dead loads
+  std::vector<PressureSpec> pressures;     ///< follower loads
+  Vec3d velocity{};                        ///< initial [m/s]
+  Vec3d angular_velocity{};                ///< initial, about the centre of mass [rad/s]
 };
 
+/// Everything that a World is made of.
 struct SceneSpec {
-  std::string name = "scene";
+  std::string name = "scene";                    ///< for people
   Vec3d gravity{};                               ///< [m/s^2]
   double dt = 0;                                 ///< [s]; 0: automatic
   double safety = 0.9;                           ///< share of the stable step that an automatic step takes, in (0, 1]
   std::vector<std::array<double, 4>> tool_path;  ///< (time [s], x, y, z [m]): what a following operational region follows
-  std::vector<BodySpec> bodies;
+  std::vector<BodySpec> bodies;                  ///< at least one
 };
 
 }  // namespace pliant

@@ -17,6 +17,7 @@
 
 namespace pliant {
 
+/// How a World runs its scene.
 struct WorldOptions {
   std::string backend = "auto";  ///< auto, cpu, cpu:double, opencl or opencl:N
   double dt = 0;                 ///< [s]; 0: what the scene says
@@ -26,30 +27,35 @@ struct WorldOptions {
 
 /// One body of a World.
 struct BodyInfo {
-  std::string name;
-  std::int64_t nodes = 0, elements = 0;
-  double mass = 0;                 ///< [kg]
-  IndexRange vertices, triangles;  ///< its part of a Frame, as of the start
+  std::string name;           ///< as in the scene
+  std::int64_t nodes = 0;     ///< of its mesh or lattice
+  std::int64_t elements = 0;  ///< cells or elements of the mesh
+  double mass = 0;            ///< [kg]
+  IndexRange vertices;        ///< its part of a Frame, as of the start
+  IndexRange triangles;       ///< likewise
 };
 
+/// What does not change while a World runs.
 struct WorldInfo {
-  std::string backend;     ///< "opencl:0"
-  std::string device;      ///< the processor's own name
-  std::string why;         ///< why this backend
-  bool bit_exact = false;  ///< the device passed the start-up probe
-  std::int64_t nodes = 0, elements = 0;
-  std::size_t vertices = 0, triangles = 0;
-  std::vector<BodyInfo> bodies;
+  std::string backend;           ///< "opencl:0"
+  std::string device;            ///< the processor's own name
+  std::string why;               ///< why this backend
+  bool bit_exact = false;        ///< the device passed the start-up probe
+  std::int64_t nodes = 0;        ///< of all bodies
+  std::int64_t elements = 0;     ///< of all bodies
+  std::size_t vertices = 0;      ///< of the surface, as of the start
+  std::size_t triangles = 0;     ///< likewise
+  std::vector<BodyInfo> bodies;  ///< in the order of the scene
 };
 
 /// What a call of step did. A divergence is reported here and not thrown; the World then holds the last good state, and
 /// stepping it again is an Error (diverged).
 struct StepReport {
-  std::int64_t done = 0;  ///< steps done by this call
-  std::int64_t step = 0;  ///< steps since the start
-  double time = 0;        ///< [s]
-  double dt = 0;          ///< [s], of the step to come
-  bool diverged = false;
+  std::int64_t done = 0;        ///< steps done by this call
+  std::int64_t step = 0;        ///< steps since the start
+  double time = 0;              ///< [s]
+  double dt = 0;                ///< [s], of the step to come
+  bool diverged = false;        ///< `message` says where
   bool at_equilibrium = false;  ///< dynamic relaxation has converged: there is nothing more to do
   std::string message;          ///< of the divergence: step, body, element, dt against the stable step
 };
@@ -64,6 +70,7 @@ struct GrabOptions {
 /// Names a grab of one World; 0 is none.
 using GrabId = std::uint64_t;
 
+/// A scene on a backend.
 class PLIANT_API World {
  public:
   /// Builds the model and opens the backend. Throws Error: input (the scene; the message names the place), io (a mesh file),
@@ -74,16 +81,18 @@ class PLIANT_API World {
   /// The text of a scene file; relative mesh paths start from `folder`. A body whose "surface" is "memory:N" takes surfaces[N].
   static World parse(const std::string& text, const std::string& folder = "", const WorldOptions& options = {},
                      const std::vector<SurfaceSpec>& surfaces = {});
-  World(World&&) noexcept;
-  World& operator=(World&&) noexcept;
+  World(World&&) noexcept;             ///< leaves the other one empty
+  World& operator=(World&&) noexcept;  ///< likewise
+
   /// Stops the worker after the batch it is at.
   ~World();
 
+  /// Holds as long as the World.
   [[nodiscard]] const WorldInfo& info() const;
-  [[nodiscard]] double time() const;  ///< [s], of the newest state
-  [[nodiscard]] std::int64_t step_number() const;
-  [[nodiscard]] double dt() const;         ///< [s], of the next step
-  [[nodiscard]] double stable_dt() const;  ///< 2 / omega_max as of the last estimate [s]; 0: none was made
+  [[nodiscard]] double time() const;               ///< [s], of the newest state
+  [[nodiscard]] std::int64_t step_number() const;  ///< steps since the start
+  [[nodiscard]] double dt() const;                 ///< [s], of the next step
+  [[nodiscard]] double stable_dt() const;          ///< 2 / omega_max as of the last estimate [s]; 0: none was made
 
   /// Advance by `steps` (>= 0) and wait for them; stops early at a divergence or an equilibrium. Throws Error: diverged (it had
   /// diverged before), device (lost while it worked: frame() still gives the last state that was read), usage.
@@ -94,7 +103,8 @@ class PLIANT_API World {
   /// Ask the worker for `steps` steps and a frame. False, and nothing happens, while it is still busy. Throws like step, also
   /// for what went wrong in the steps asked for last.
   bool advance_async(std::int64_t steps);
-  [[nodiscard]] bool busy() const;
+  [[nodiscard]] bool busy() const;  ///< the worker has something to do
+
   /// True if frame() would give another frame than last time. Never waits, never throws.
   [[nodiscard]] bool poll() const noexcept;
   /// Wait for the worker; what its last work did. Throws what it met.
@@ -109,6 +119,7 @@ class PLIANT_API World {
   [[nodiscard]] std::vector<Vec3d> displacements(std::size_t body) const;
   [[nodiscard]] std::vector<Vec3d> velocities(std::size_t body) const;      ///< [m/s]
   [[nodiscard]] std::vector<Vec3d> rest_positions(std::size_t body) const;  ///< [m]
+
   /// Hash over the state: equal for equal bits.
   [[nodiscard]] std::uint64_t hash() const;
 
@@ -118,7 +129,8 @@ class PLIANT_API World {
   /// Hold the surface at a vertex and pull it to a point that begins where the vertex is now.
   GrabId grab(std::int32_t vertex, const GrabOptions& options = {});
   void move_grab(GrabId grab, const Vec3d& target);  ///< [m]
-  void release(GrabId grab);
+  void release(GrabId grab);                         ///< let go
+
   /// A force [N] on a vertex, handed to the nodes of its cell, until it is set again; zero takes it away.
   void push(std::int32_t vertex, const Vec3d& force);
   /// A force [N] on a node of a body, likewise. The node must belong to a cell of the surface.

@@ -64,7 +64,7 @@ forbid() {
 }
 cl='^[<"]CL/|opencl\.hpp|cl\.h[>"]$'
 allow 'kernels include kernels and layout.h only' '^"([a-z0-9_]+\.cl|layout\.h)"$' kernels/*.cl kernels/*.h
-allow 'the public API uses the standard library only' '^(<[a-z_0-9]+>|"pliant/[a-z_/]+\.h")$' include/**/*.h
+allow 'the public API uses the standard library only' '^(<[a-z_0-9]+>|<std(def|int)\.h>|"pliant/[a-z_/]+\.h")$' include/**/*.h
 core=()
 for file in host/**/*.h host/**/*.cpp; do
   [[ $file == host/opencl/* ]] || core+=("$file")
