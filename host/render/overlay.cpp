@@ -134,7 +134,7 @@ ScaledUnit scaled_unit(const std::string& unit, double largest) {
 
 void draw_color_bar(Image& image, const ColorBar& bar) {
   const auto w = static_cast<float>(image.width), h = static_cast<float>(image.height);
-  const float size = std::fmax(0.022F * h, 7.0F), top = 0.24F * h, bottom = 0.86F * h;
+  const float size = std::fmax(0.022F * h, 7.0F), top = std::round(0.24F * h), bottom = std::round(0.86F * h);
   const float left = w * (1 - kBarShare) + 0.2F * kBarShare * w, right = left + 0.026F * h;
   for (float y = top; y < bottom; ++y) {
     const Vec3f c = srgb_of(map_color((bottom - y - 0.5F) / (bottom - top)));

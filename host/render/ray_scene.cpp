@@ -45,6 +45,10 @@ struct RayScene::Embree {
     release();
     scene = rtcNewScene(device);
     rtcSetSceneFlags(scene, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_DYNAMIC | RTC_SCENE_FLAG_ROBUST));
+    if (surface.triangles.empty()) {  // Embree makes no buffer of nothing
+      rtcCommitScene(scene);
+      return;
+    }
     geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_REFIT);  // the first commit builds, later ones refit
     vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
@@ -60,6 +64,7 @@ struct RayScene::Embree {
   }
 
   void refit(const std::vector<float>& positions) {
+    if (geometry == nullptr) return;
     std::memcpy(vertices, positions.data(), positions.size() * sizeof(float));
     rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0);
     rtcCommitGeometry(geometry);
