@@ -4,7 +4,8 @@
 //
 // A vertex of the result is an original vertex, an original edge x a cut face, an original triangle x a cut edge, or a point of
 // the cut surface inside the body; all but the first come once per *sector*, the material between neighbouring cut faces around
-// it. A cut face has two sides: 2 f for its back, 2 f + 1 for its front.
+// it. At the front of a cut its sides meet; a side of a triangle with both ends there would be used by both sides of the cut,
+// so it gets a middle, which comes once per sector again. A cut face has two sides: 2 f for its back, 2 f + 1 for its front.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -19,7 +20,10 @@ namespace pliant::overlay {
 
 /// What a vertex of the result is: (kind, what, which sector).
 struct VertexKey {
-  enum Kind : std::int64_t { edge_face = 0, triangle_edge = 1, point = 2 };
+  /// The last three are middles of sides: of an edge of the cut surface, of a segment, of a side between two triangles of a
+  /// cap.
+  enum Kind : std::int64_t { edge_face, triangle_edge, point, edge_middle, segment_middle, cap_middle };
+  static std::int64_t of(Kind kind, std::int64_t what) { return what << 3 | kind; }
   std::int64_t a = 0, b = 0;
   friend bool operator==(const VertexKey&, const VertexKey&) = default;
 };
@@ -151,6 +155,12 @@ class Overlay {
   /// Side of the neighbour across the sector that a face's side bounds at an edge.
   [[nodiscard]] std::int32_t across(const Edge& edge, std::int32_t side) const;
   [[nodiscard]] Vec3d cut_position(std::int32_t source_edge, std::int32_t face) const;
+  /// Whether a place on an edge of a face is the same vertex on both sides of the face.
+  [[nodiscard]] bool merged_at(std::int32_t edge, std::int32_t face) const;
+  /// Whether two sectors of an edge have the same vertices at both of its ends.
+  [[nodiscard]] bool pinched(const Edge& edge) const;
+  [[nodiscard]] std::int32_t root_of(std::int32_t point, std::int32_t side) const;
+  void split_sides(std::int32_t face, Patch& patch) const;
   [[nodiscard]] Carrier carrier_of(std::int32_t side) const;
   [[nodiscard]] bool in_air(std::int32_t side) const;
   [[nodiscard]] CutVertex vertex_on_face(std::int32_t source_edge, std::int32_t side) const;

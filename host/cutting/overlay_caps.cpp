@@ -103,11 +103,121 @@ void Overlay::make_cap(std::int32_t f) {
   face.cap = triangulate(flat, std::move(loops));
 }
 
+std::int32_t Overlay::root_of(std::int32_t p, std::int32_t side) const {
+  const auto& root = points_[p].root;
+  return (*std::lower_bound(root.begin(), root.end(), std::array{side, -1}))[1];
+}
+
+bool Overlay::merged_at(std::int32_t e, std::int32_t f) const {
+  const Edge& edge = edges_[e];
+  return std::min(2 * f, across(edge, 2 * f)) == std::min(2 * f + 1, across(edge, 2 * f + 1));
+}
+
+bool Overlay::pinched(const Edge& edge) const {
+  if (edge.faces.size() < 2) return false;
+  std::vector<std::array<std::int32_t, 2>> ends;  // of each sector
+  for (const std::int32_t f : edge.faces) {
+    for (std::int32_t side = 2 * f; side <= 2 * f + 1; ++side) {
+      if (side < across(edge, side)) ends.push_back({root_of(edge.p, side), root_of(edge.q, side)});
+    }
+  }
+  std::sort(ends.begin(), ends.end());
+  return std::adjacent_find(ends.begin(), ends.end()) != ends.end();
+}
+
+// Give middles to the sides of cap triangles that would otherwise be used more than twice.
+void Overlay::split_sides(std::int32_t f, Patch& patch) const {
+  const Face& face = faces_[f];
+  const auto count = static_cast<std::int32_t>(face.nodes.size());
+  const auto merged = [&](std::int32_t n) { return patch.vertices[n].key == patch.vertices[n + count].key; };
+  const auto node_of = [&](const End& end, std::int32_t triangle, std::int32_t n) {
+    const CapNode& node = face.nodes[n];
+    return node.ref == end.ref &&
+           (end.inner ? node.kind == VertexKey::edge_face : node.kind == VertexKey::triangle_edge && node.with == triangle);
+  };
+  struct Middle {
+    std::array<std::int32_t, 2> ends{};
+    std::int32_t vertex = -1;  // in the patch: of the back, the front's follows; -1: none
+  };
+  std::vector<Middle> middles;
+  const auto key_of = [&](std::int32_t a, std::int32_t b) -> VertexKey {
+    const CapNode &m = face.nodes[a], &n = face.nodes[b];
+    if (m.kind == VertexKey::point && n.kind == VertexKey::point && m.with == n.with) {  // a side of the face?
+      for (const std::int32_t e : face.edge) {
+        const Edge& edge = edges_[e];
+        if (std::min(m.ref, n.ref) != edge.p || std::max(m.ref, n.ref) != edge.q) continue;
+        if (!pinched(edge)) return {};
+        return {VertexKey::of(VertexKey::edge_middle, e), m.with + 128};
+      }
+    }
+    if (!merged(a) || !merged(b)) return {};
+    for (int i = 0; i < 3; ++i) {  // part of a side of the face, which is used once per sector
+      const auto on = [&](const CapNode& x) {
+        return x.kind == VertexKey::triangle_edge ? x.ref == face.edge[i] : x.ref == face.p[i] || x.ref == face.p[(i + 1) % 3];
+      };
+      if (on(m) && on(n)) return {};
+    }
+    for (const Segment& s : face.segments) {
+      if ((node_of(s.start, s.triangle, a) && node_of(s.end, s.triangle, b)) ||
+          (node_of(s.start, s.triangle, b) && node_of(s.end, s.triangle, a))) {
+        return {VertexKey::of(VertexKey::segment_middle, s.triangle), 0};
+      }
+    }
+    return {VertexKey::of(VertexKey::cap_middle, f), static_cast<std::int64_t>(a) << 32 | b};
+  };
+  const auto middle = [&](std::int32_t a, std::int32_t b) {
+    if (a > b) std::swap(a, b);
+    for (const Middle& m : middles) {
+      if (m.ends == std::array{a, b}) return m.vertex;
+    }
+    middles.push_back({{a, b}, -1});
+    VertexKey key = key_of(a, b);
+    if (key == VertexKey{}) return -1;
+    const Vec3d x = vec::mul(vec::add(face.nodes[a].x, face.nodes[b].x), 0.5);
+    const auto kind = static_cast<VertexKey::Kind>(key.a & 7);
+    for (std::int32_t side = 2 * f; side <= 2 * f + 1; ++side) {
+      CutVertex v{key, x, carrier_of(side)};
+      if (kind == VertexKey::edge_middle) {
+        const auto e = static_cast<std::int32_t>(key.a >> 3);
+        const CutVertex at = vertex_on_edge(0, e, side);
+        v = {{key.a, (at.key.b & 0xffffffff) << 8 | key.b}, x, at.carrier};
+      } else {
+        v.key.b = key.b << 1 | (side & 1);
+        if (kind == VertexKey::segment_middle) v.key.b = side;
+      }
+      patch.vertices.push_back(v);
+    }
+    return middles.back().vertex = static_cast<std::int32_t>(patch.vertices.size()) - 2;
+  };
+  for (const auto& t : face.cap) {
+    const std::array<std::int32_t, 3> m{middle(t[0], t[1]), middle(t[1], t[2]), middle(t[2], t[0])};
+    std::vector<std::int32_t> ring;  // corners and middles
+    int first = 0;                   // a place from which a fan has no flat triangle
+    for (int i = 0; i < 3; ++i) {
+      ring.push_back(t[i]);
+      if (m[i] >= 0) ring.push_back(m[i]);
+    }
+    const auto emit = [&](std::int32_t a, std::int32_t b, std::int32_t c) {
+      const auto front = [&](std::int32_t n) { return ~(n < count ? n + count : n + 1); };
+      patch.triangles.push_back({~a, ~b, ~c});
+      patch.triangles.push_back({front(a), front(c), front(b)});
+    };
+    if (ring.size() == 6) {
+      emit(m[0], m[1], m[2]);
+      for (int i = 0; i < 3; ++i) emit(t[i], m[i], m[(i + 2) % 3]);
+      continue;
+    }
+    while (first < 3 && m[first] < 0) ++first;
+    const auto size = static_cast<int>(ring.size());
+    const int start = first == 3 ? 0 : static_cast<int>(std::find(ring.begin(), ring.end(), m[first]) - ring.begin());
+    for (int i = 1; i + 1 < size; ++i) emit(ring[start], ring[(start + i) % size], ring[(start + i + 1) % size]);
+  }
+}
+
 Patch Overlay::caps_of(std::int32_t f) const {
   Patch patch;
   const Face& face = faces_[f];
   if (face.cell < 0) return patch;
-  const auto count = static_cast<std::int32_t>(face.nodes.size());
   for (std::int32_t side = 2 * f; side <= 2 * f + 1; ++side) {
     for (const CapNode& node : face.nodes) {
       patch.vertices.push_back(node.kind == VertexKey::point           ? vertex_at(node.ref, node.with, side)
@@ -116,8 +226,7 @@ Patch Overlay::caps_of(std::int32_t f) const {
       patch.vertices.back().x = node.x;
     }
   }
-  for (const auto& t : face.cap) patch.triangles.push_back({~t[0], ~t[1], ~t[2]});
-  for (const auto& t : face.cap) patch.triangles.push_back({~(t[0] + count), ~(t[2] + count), ~(t[1] + count)});
+  split_sides(f, patch);
   return patch;
 }
 
@@ -129,27 +238,25 @@ Carrier Overlay::carrier_of(std::int32_t side) const {
 bool Overlay::in_air(std::int32_t side) const { return cells_.at(faces_[side / 2].cell).cell.air; }
 
 CutVertex Overlay::vertex_on_face(std::int32_t source_edge, std::int32_t side) const {
-  return {{static_cast<std::int64_t>(source_edge) << 2 | VertexKey::edge_face, side}, {}, carrier_of(side)};
+  return {{VertexKey::of(VertexKey::edge_face, source_edge), side}, {}, carrier_of(side)};
 }
 
 CutVertex Overlay::vertex_on_edge(std::int32_t triangle, std::int32_t e, std::int32_t side) const {
   const std::int32_t other = across(edges_[e], side);
   const std::int32_t low = std::min(side, other), high = std::max(side, other);
-  return {{static_cast<std::int64_t>(triangle) << 2 | VertexKey::triangle_edge, static_cast<std::int64_t>(e) << 32 | low},
+  return {{VertexKey::of(VertexKey::triangle_edge, triangle), static_cast<std::int64_t>(e) << 32 | low},
           {},
           carrier_of(in_air(low) && !in_air(high) ? high : low)};
 }
 
 CutVertex Overlay::vertex_at(std::int32_t p, std::int32_t level, std::int32_t side) const {
   const auto& root = points_[p].root;
-  const std::int32_t lowest = (*std::lower_bound(root.begin(), root.end(), std::array{side, -1}))[1];
+  const std::int32_t lowest = root_of(p, side);
   std::int32_t best = lowest;
   for (const auto& [member, its_root] : root) {
     if (its_root == lowest && in_air(best) && !in_air(member)) best = member;
   }
-  return {{static_cast<std::int64_t>(p) << 2 | VertexKey::point, static_cast<std::int64_t>(lowest) << 32 | (level + 128)},
-          {},
-          carrier_of(best)};
+  return {{VertexKey::of(VertexKey::point, p), static_cast<std::int64_t>(lowest) << 32 | (level + 128)}, {}, carrier_of(best)};
 }
 
 }  // namespace pliant::overlay

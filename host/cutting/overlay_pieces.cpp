@@ -74,10 +74,19 @@ Patch Overlay::pieces_of(std::int32_t triangle) {
       return graph.find(end.inner ? VertexKey::edge_face : VertexKey::triangle_edge, end.ref, end.inner ? f : 0);
     };
     const std::int32_t start = node(s->start), end = node(s->end);
-    graph.nodes[start].out.push_back({f, static_cast<std::int32_t>(graph.halves.size())});
-    graph.halves.push_back({start, end, 2 * f + 1});
-    graph.nodes[end].out.push_back({f, static_cast<std::int32_t>(graph.halves.size())});
-    graph.halves.push_back({end, start, 2 * f});
+    const auto join = [&](std::int32_t from, std::int32_t to) {
+      graph.nodes[from].out.push_back({f, static_cast<std::int32_t>(graph.halves.size())});
+      graph.halves.push_back({from, to, 2 * f + 1});
+      graph.nodes[to].out.push_back({f, static_cast<std::int32_t>(graph.halves.size())});
+      graph.halves.push_back({to, from, 2 * f});
+    };
+    if (!s->start.inner && !s->end.inner && merged_at(s->start.ref, f) && merged_at(s->end.ref, f)) {
+      const std::int32_t middle = graph.find(VertexKey::segment_middle, f, 0);
+      join(start, middle);
+      join(middle, end);
+    } else {
+      join(start, end);
+    }
   }
 
   // The half-edge that follows around the piece.
@@ -85,6 +94,10 @@ Patch Overlay::pieces_of(std::int32_t triangle) {
     const Graph::Half& half = graph.halves[h];
     const Graph::Node& node = graph.nodes[half.to];
     if (half.side < 0) return node.out.empty() ? node.border : node.out.front()[1];
+    if (node.kind == VertexKey::segment_middle) {  // two segments leave it, to either side
+      const std::int32_t out = node.out[0][1];
+      return graph.halves[out].side == half.side ? out : node.out[1][1];
+    }
     if (node.kind != VertexKey::triangle_edge) return node.border;
     const Edge& edge = edges_[node.ref];
     const std::int32_t next = across(edge, half.side) / 2;
@@ -93,6 +106,15 @@ Patch Overlay::pieces_of(std::int32_t triangle) {
     }
     throw Error("internal: a cut edge crosses a triangle that one of its faces misses");
   };
+  const auto middle_of = [&](std::int32_t f, std::int32_t t) {
+    Vec3d sum{};
+    for (const std::int32_t e : faces_[f].edge) {
+      for (const Hit& hit : edges_[e].hits) {
+        if (hit.triangle == t) sum = vec::add(sum, hit.x);
+      }
+    }
+    return vec::mul(sum, 0.5);
+  };
   const auto vertex = [&](std::int32_t h, std::int32_t after) {
     const Graph::Node& node = graph.nodes[graph.halves[h].to];
     const std::int32_t side = std::max(graph.halves[h].side, graph.halves[after].side);
@@ -100,6 +122,10 @@ Patch Overlay::pieces_of(std::int32_t triangle) {
       CutVertex v = vertex_on_face(node.ref, side);
       v.x = cut_position(node.ref, node.face);
       return v;
+    }
+    if (node.kind == VertexKey::segment_middle) {
+      return CutVertex{
+          {VertexKey::of(VertexKey::segment_middle, triangle), side}, middle_of(node.ref, triangle), carrier_of(side)};
     }
     CutVertex v = vertex_on_edge(triangle, node.ref, graph.halves[h].side);
     for (const Hit& hit : edges_[node.ref].hits) {
