@@ -24,6 +24,8 @@ using nlohmann::json;
 
 constexpr int kSuite = 1;  ///< counts up when a kept point would no longer be what is measured now
 
+constexpr double kNoisy = 0.15;  ///< a spread of times above this is worth another try
+
 template <class Named>
 void keep_only(const char* option, const std::vector<std::string>& wanted, std::vector<Named>& all) {
   std::vector<std::string> names;
@@ -62,7 +64,7 @@ class Kept {
     data_ = {{"suite", kSuite}, {"cpu", machine_facts()["cpu"]}, {"references", json::object()}, {"points", json::object()}};
     if (o.again || !fs::exists(file_)) return;
     std::ifstream in(file_);
-    const json old = json::parse(in, nullptr, false);
+    json old = json::parse(in, nullptr, false);
     if (!old.is_object() || !old.contains("points") || !old.contains("references"))
       throw Error(fmt::format("{}: is not a file of finished points; remove it or use --again", file_.string()));
     if (old["suite"] != data_["suite"] || old["cpu"] != data_["cpu"]) {
@@ -109,7 +111,7 @@ class Kept {
   std::chrono::steady_clock::time_point written_{};
 };
 
-Reference reference_of(const Problem& p, const AccuracyOptions& o, const fs::path& scenes, Kept& kept) {
+Reference reference_of(const Problem& p, const fs::path& scenes, Kept& kept) {
   if (const json* old = kept.find("references", p.name)) {
     return {(*old)["u"].get<std::vector<Vec3d>>(), (*old)["text"], (*old)["error"], (*old)["nodes"], (*old)["seconds"]};
   }
@@ -118,8 +120,26 @@ Reference reference_of(const Problem& p, const AccuracyOptions& o, const fs::pat
     kept.add("references", p.name,
              {{"u", r.u}, {"text", r.text}, {"error", r.error}, {"nodes", r.nodes}, {"seconds", r.seconds}});
   }
-  static_cast<void>(o);
   return r;
+}
+
+/// A kept point, or one that is measured now.
+json point_of(const Case& c, const Reference& reference, const AccuracyOptions& o, const fs::path& scenes, Kept& kept) {
+  const auto spread = [](const json& row) { return row["spread"].is_null() ? 0.0 : row["spread"].get<double>(); };
+  const json* found = kept.find("points", c.key());
+  if (found != nullptr && !(o.noisy && spread(*found) > kNoisy)) return *found;
+  const json row = measure(c, reference, scenes, o.quick);
+  if (found != nullptr) {
+    const json old = *found;
+    if (old["error_l2"] != row["error_l2"] || old["error_max"] != row["error_max"]) {
+      throw Error(
+          fmt::format("accuracy: {}: the error was {} and is now {}; the kept points are of another version, use --again",
+                      c.text(), old["error_l2"].dump(), row["error_l2"].dump()));
+    }
+    if (spread(old) <= spread(row)) return old;
+  }
+  kept.add("points", c.key(), row);
+  return row;
 }
 
 /// Every resolution at nine tenths of the stable step; at the second one also half the step, shape matching at the step of a
@@ -186,7 +206,7 @@ json bench_accuracy(const AccuracyOptions& asked) {
   for (const Problem& p : all) total += static_cast<double>(cases_of(p, by, o).size() + 1);
   for (const Problem& p : all) {
     if (o.progress) o.progress(done++ / total, p.name + ": reference");
-    const Reference reference = reference_of(p, o, scenes, kept);
+    const Reference reference = reference_of(p, scenes, kept);
     result["problems"].push_back({{"name", p.name},
                                   {"title", p.title},
                                   {"lead", p.lead},
@@ -202,10 +222,7 @@ json bench_accuracy(const AccuracyOptions& asked) {
                                   {"floor", std::max(reference.error, 2e-5)}});
     for (const Case& c : cases_of(p, by, o)) {
       if (o.progress) o.progress(done++ / total, c.text());
-      const json* old = kept.find("points", c.key());
-      const json row = old ? *old : measure(c, reference, scenes, o.quick);
-      if (!old) kept.add("points", c.key(), row);
-      result["rows"].push_back(row);
+      result["rows"].push_back(point_of(c, reference, o, scenes, kept));
     }
   }
   kept.write();

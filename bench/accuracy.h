@@ -16,6 +16,7 @@ struct AccuracyOptions {
   std::vector<std::string> backends{"auto", "cpu:double"};  ///< the first serves every point, the others one resolution each
   bool quick = false;  ///< coarse bodies, coarse references, few methods: a look at the whole
   bool again = false;  ///< measure what `out` holds already, too
+  bool noisy = false;  ///< measure those of them again whose times spread by more than 15 %, and keep the quieter ones
   std::function<void(double, const std::string&)> progress;  ///< share done, what is being measured
   std::function<void(const std::string&)> note;              ///< remarks; may be empty
 };

@@ -101,7 +101,7 @@ Problem elastica() {
   p.samples.clear();
   for (int i = 1; i <= 40; ++i) p.samples.push_back({0.2 * i / 40, 0.01, 0.01});
   p.exact = exact_elastica;
-  p.exact_error = 1e-3;
+  p.exact_error = 1.7e-3;  // measured: against tet10 of 19 000 nodes, itself good to 3e-5
   p.reference = "exact for a beam that shears and stretches (Reissner)";
   p.characteristic = 0.02;
   return p;

@@ -88,7 +88,7 @@ Timing time_steps(Simulation& simulation, bool quick) {
     simulation.backend().finish();
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
-  const double once = seconds_for(16) / 16, longest = quick ? 0.02 : 0.1;  // [s] per batch
+  const double once = seconds_for(16) / 16, longest = quick ? 0.02 : 0.05;  // [s] per batch
   std::int64_t steps = static_cast<std::int64_t>(longest / once);
   steps = steps >= kPeriod ? kPeriod : std::max<std::int64_t>(steps, 4);
   std::vector<double> samples;

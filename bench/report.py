@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Charts and one page from the files that `pliant bench NAME --out DIR` writes.
 
-usage: report.py DIR    reads DIR/kernels.json; writes DIR/report.html and, for each chart, DIR/NAME.svg and DIR/NAME.png
+usage: report.py DIR    reads DIR/kernels.json, DIR/accuracy.json, ... ; writes DIR/report.html and, for each chart, DIR/NAME.svg and DIR/NAME.png
 """
 import importlib
 import json
@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 # Another benchmark is one more name here and a module report_NAME with section(result, folder) -> report_page.Section.
-BENCHMARKS = ["kernels"]
+BENCHMARKS = ["kernels", "accuracy"]
 
 
 class Refused(Exception):
@@ -54,7 +54,8 @@ def main(arguments):
             raise Refused(f"{folder / name}.json: a row has no {e}; was it written by another version of pliant?") from e
     machine = results[found[0]]["machine"]
     when = f', {machine["date"]}' if "date" in machine else ""
-    html = report_page.page("Pliant: what a step costs" if found == ["kernels"] else "Pliant: measurements",
+    titles = {"kernels": "Pliant: what a step costs", "accuracy": "Pliant: speed against accuracy"}
+    html = report_page.page(titles[found[0]] if len(found) == 1 and found[0] in titles else "Pliant: measurements",
                             f'{machine.get("cpu", "unknown processor")}{when}', sections)
     report_charts.write_whole(folder / "report.html", html.encode())
     print(f"report: {folder / 'report.html'}")

@@ -104,6 +104,7 @@ void add_accuracy(CLI::App& app, const std::shared_ptr<Options>& options) {
   sub->add_option("--methods", a.methods, "some of the methods only; a wrong name lists them")->delimiter(',');
   sub->add_option("--backends", a.backends, "default: auto,cpu:double; the first one serves every point")->delimiter(',');
   sub->add_flag("--quick", a.quick, "coarse bodies and references, fewer methods: under a minute");
+  sub->add_flag("--noisy", a.noisy, "measure finished points again whose times spread by more than 15 %");
   sub->add_flag("--again", a.again, "measure finished points of the folder again");
   sub->add_option("--out", options->out,
                   "folder for accuracy.json and accuracy.csv; finished points kept there are not measured again");
