@@ -96,7 +96,7 @@ int run(const std::string& scene, const std::filesystem::path& folder, int frame
     pliant::Image image = renderer.render(camera, options);
     now.refit = 1e3 * renderer.times().refit;
     now.trace = 1e3 * renderer.times().trace;
-    draw_color_bar(image, {"displacement", "mm", ticks});
+    pliant::render::draw_color_bar(image, {"displacement", "mm", ticks});
     char name[32];
     std::snprintf(name, sizeof name, "frame_%04d.png", i);
     pliant::write_png(folder / name, image);
