@@ -102,14 +102,15 @@ void sweep_share(SweepRun& run) {
 }
 
 void sweep_poisson(SweepRun& run) {
-  const auto poissons = run.pick<double>({0, 0.3, 0.45, 0.49, 0.499, 0.4999}, {0.3, 0.4999});
+  const auto poissons = run.pick<double>({0, 0.3, 0.45, 0.49, 0.499, 0.4999}, {0.3, 0.49});
   for (const Method method : kMethods) {
     if (method == Method::flsm) continue;  // has no Poisson's ratio
     for (const double poisson : poissons) {
+      if (method == Method::hybrid && poisson != 0.3) continue;  // its shape matching keeps it from what relaxation looks for
       run.show(fmt::format("{}, nu {}", name_of(method), poisson));
       Specimen specimen = clamped(method, {{6, 2, 2}, {kEdge, kEdge, kEdge}}, material(kYoung, poisson));
       specimen.scene.gravity = {0, -1, 0};
-      specimen.scene.relaxation = {true, 1e-4, 100000};
+      specimen.scene.relaxation = {true, 1e-4, method == Method::hybrid ? 20000 : 100000};
       const auto simulation = simulate(specimen, 0, false, true);
       const Ending end = stability::run(*simulation, specimen.scene.relaxation.max_steps);
       const bool found = simulation->at_equilibrium();

@@ -82,10 +82,10 @@ void add_stretch(SweepRun& run, Method method, Law law, double end, bool fixed) 
 /// Where J of an element's point becomes 0 when one corner of a face moves inwards by so many edges.
 Number push_of_inversion(Method method) {
   const double gauss = 0.5 * (1 + 1 / std::sqrt(3.0));
-  if (method == Method::hex8) return 4;                        // the mean gradient of a corner is 1 / (4 d)
-  if (method == Method::hex8full) return 1 / (gauss * gauss);  // at the corner's own point
-  if (method == Method::flsm) return {};
-  return method == Method::hybrid ? 4 : 1;
+  if (method == Method::hex8) return 4;                               // the mean gradient of a corner is 1 / (4 d)
+  if (method == Method::hex8full) return 1 / (gauss * gauss);         // at the corner's own point
+  if (method == Method::flsm || method == Method::hybrid) return {};  // the end of the hybrid is shape matching's
+  return 1;
 }
 
 /// One corner of the end, pushed inwards by `push` edges, let go.
@@ -116,24 +116,24 @@ std::string words_of(const Return& r) {
   return r.end.diverged ? r.end.words() : r.end.finite ? "stayed in another shape" : "was not finite";
 }
 
-/// Shear-free motion of the whole body: its mirror image, flat, or all in one point.
+/// All coordinates multiplied: the mirror image of the body, flat, all in one point.
 struct Start {
   const char* name;
   Vec3d factor;  ///< of the coordinates
 };
 constexpr Start kStarts[]{{"mirrored", {-1, 1, 1}}, {"flat", {1, 1, 0}}, {"a point", {0, 0, 0}}, {"inside out", {-1, -1, -1}}};
 
-/// The largest traction over E, switched on at once at the end of a free bar, that it survives.
-Ending load_at_once(const Specimen& bar, double dt, double traction_over_young, bool traction) {
+/// A load or motion of `bar` switched on at once: a traction over E, or a motion in edges.
+Ending load_at_once(const Specimen& bar, double dt, double size, bool traction) {
   Specimen loaded = bar;
   auto model = std::make_shared<Model>(*bar.model);
   if (traction) {
     for (NodeForce& f : model->forces) {
-      for (double& c : f.force) c *= traction_over_young * kYoung * kSide * kSide;
+      for (double& c : f.force) c *= size * kYoung * kSide * kSide;
     }
   } else {
     for (Constraint& c : model->constraints) {
-      for (double& t : c.target) t *= traction_over_young * kEdge;
+      for (double& t : c.target) t *= size * kEdge;
     }
   }
   loaded.model = model;
@@ -162,6 +162,27 @@ Specimen unit_load(Method method, bool traction) {
   return make_specimen(scene, {{kCells, {kEdge, kEdge, kEdge}}});
 }
 
+/// The traction over E that, switched on at once, swings a free bar to the stretch at which the engine's own estimate falls to
+/// the step: there the work of the load is the energy of the neo-Hookean bar, whose sides carry no stress.
+Number traction_for(const Specimen& bar, double dt, double sign) {
+  const Material m = material(kYoung, kPoisson);
+  const auto width = [&](double s) {  // mu (b - 1/b) + lambda (J - 1) s b = 0, J = s b^2
+    return bisect(1e-3, 10, 1e-9, [&](double b) { return m.mu * (b - 1 / b) + m.lambda * (s * b * b - 1) * s * b < 0; });
+  };
+  const auto allowed = [&](double s) {
+    const double b = width(s);
+    const State u = state_of(*bar.model, [&](const Vec3d& x) {
+      return Vec3d{(s - 1) * x[0], (b - 1) * (x[1] - 0.5 * kSide), (b - 1) * (x[2] - 0.5 * kSide)};
+    });
+    return estimated_step(bar, u) >= dt;
+  };
+  const double end = sign < 0 ? 0.05 : 20;
+  if (allowed(end)) return {};
+  const double s = bisect(1, end, 1e-3, allowed, true), b = width(s), j = s * b * b;
+  const double energy = 0.5 * m.mu * (s * s + 2 * b * b - 3) - m.mu * std::log(j) + 0.5 * m.lambda * (j - 1) * (j - 1);
+  return energy / std::abs(s - 1) / kYoung;
+}
+
 void add_load(SweepRun& run, Method method, const Specimen& bar, bool traction, double sign, bool fixed) {
   const double estimate = method == Method::flsm ? 0 : estimated_step(bar);
   const double dt = method == Method::flsm ? 1e-3 : fixed ? 0.9 * estimate : 0;
@@ -173,10 +194,13 @@ void add_load(SweepRun& run, Method method, const Specimen& bar, bool traction, 
   Finding f;
   f.quantity = traction ? "traction over E" : "motion in edges";
   // A layer of elements pressed by its own thickness has no volume left; tension and tractions have no such limit.
-  if (!traction && sign < 0 && method != Method::flsm) f.predicted = fixed ? 1.0 : 1.0;
-  f.reached = !survives(most);
-  f.measured = f.reached ? bisect(survives(0.01) ? 0.01 : 1e-6, most, run.quick() ? 0.05 : 0.01, survives, true) : most;
-  const Ending past = load_at_once(bar, dt, sign * 1.05 * *f.measured, traction);
+  const bool pressed_elements = sign < 0 && method != Method::flsm && method != Method::hybrid;
+  if (!traction && pressed_elements) f.predicted = 1;
+  if (traction && fixed && has_elements(method)) f.predicted = traction_for(bar, dt, sign);
+  const Bracket size = first_bad(0.01, most, run.quick() ? 1.5 : 1.2, run.quick() ? 0.05 : 0.01, survives);
+  f.reached = size.reached;
+  f.measured = size.good;
+  const Ending past = load_at_once(bar, dt, sign * size.bad, traction);
   f.outcome = f.reached ? past.words() : "went on";
   f.diagnosis = f.reached ? past.message : "";
   f.exit_code = f.reached ? past.exit_code() : 0;
@@ -212,9 +236,9 @@ void sweep_inversion(SweepRun& run) {
     specimen.model = model;
     const double dt = method == Method::flsm ? 2e-3 : 0.9 * estimated_step(specimen);
     const auto returns = [&](double push) { return let_go(specimen, dt, pushed(*model, push)).back; };
-    Finding f{"push in edges", push_of_inversion(method), 20.0, !returns(20), "", "", 0};
-    if (f.reached) f.measured = bisect(0.05, 20, run.quick() ? 0.05 : 5e-3, returns, true);
-    const Return past = let_go(specimen, dt, pushed(*model, 1.02 * *f.measured));
+    const Bracket push = first_bad(0.05, 10, run.quick() ? 1.3 : 1.1, 5e-3, returns);
+    Finding f{"push in edges", push_of_inversion(method), push.good, push.reached, "", "", 0};
+    const Return past = let_go(specimen, dt, pushed(*model, push.bad));
     f.outcome = words_of(past);
     f.diagnosis = past.end.message;
     f.exit_code = past.end.exit_code();

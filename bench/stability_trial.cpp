@@ -294,6 +294,23 @@ Ending run_past(const Specimen& specimen, double dt, std::int64_t steps, const S
   return run(*simulation, steps);
 }
 
+Bracket first_bad(double low, double high, double factor, double tolerance, const std::function<bool(double)>& good) {
+  Bracket found{low, low, true};
+  while (found.bad < high) {
+    found.bad = std::min(high, found.good * factor);
+    if (!good(found.bad)) {
+      while (found.bad - found.good > tolerance * found.bad) {
+        const double middle = 0.5 * (found.good + found.bad);
+        (good(middle) ? found.good : found.bad) = middle;
+      }
+      return found;
+    }
+    found.good = found.bad;
+  }
+  found.reached = false;
+  return found;
+}
+
 double bisect(double low, double high, double tolerance, const std::function<bool(double)>& good, bool logarithmic) {
   while (std::abs(high - low) > tolerance * std::max(std::abs(high), std::abs(low))) {
     const double middle = logarithmic ? std::sqrt(low * high) : 0.5 * (low + high);

@@ -1,6 +1,7 @@
 // Small bodies and short runs: what every sweep of `pliant bench stability` is made of.
 #pragma once
 #include <array>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -83,6 +84,15 @@ Ending run(Simulation& simulation, std::int64_t steps);
 
 /// A step beyond the limit on a scene as `pliant run` would take it: from `u` with noise of a thousandth of an edge.
 Ending run_past(const Specimen& specimen, double dt, std::int64_t steps, const State& u = {});
+
+/// Neighbouring values of a parameter, one that is still good and one that is not.
+struct Bracket {
+  double good = 0, bad = 0;
+  bool reached = false;  ///< false: all were good up to `good`
+};
+/// The first bad value above `low` on a grid of `factor`, made finer by bisection to `tolerance`: near a limit good and bad
+/// values may alternate.
+Bracket first_bad(double low, double high, double factor, double tolerance, const std::function<bool(double)>& good);
 
 /// The last value of a parameter that `good` accepts, by bisection between a good `low` and a bad `high`.
 double bisect(double low, double high, double tolerance, const std::function<bool(double)>& good, bool logarithmic = false);
