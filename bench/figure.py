@@ -48,7 +48,7 @@ class Maker:
 
     def frames(self, scene, size, seconds, every=10**9, extra=()):
         """Pictures of a run at step 0, every so many steps, and at its end, scaled to `size`."""
-        factor, samples = (1, 2) if self.quick else (2, 16)
+        factor, samples = (1, 2) if self.quick else (2, 8)
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "scene.json"
             file.write_text(json.dumps(scene))
@@ -74,7 +74,8 @@ class Maker:
         return [pictures[round(t / unit)] for t in times]
 
     def save(self, name, image):
-        image.quantize(256, method=Image.MEDIANCUT, dither=Image.FLOYDSTEINBERG).save(self.out / f"{name}.png", optimize=True)
+        palette = image.quantize(256, kmeans=1)
+        image.quantize(palette=palette, dither=Image.FLOYDSTEINBERG).save(self.out / f"{name}.png", optimize=True)
         print(f"{self.out / name}.png: {image.width} x {image.height}, {(self.out / f'{name}.png').stat().st_size // 1024} KB")
 
     # --- the pictures --------------------------------------------------------------------------------------------------------

@@ -134,8 +134,16 @@ ScaledUnit scaled_unit(const std::string& unit, double largest) {
 
 void draw_color_bar(Image& image, const ColorBar& bar) {
   const auto w = static_cast<float>(image.width), h = static_cast<float>(image.height);
-  const float size = std::fmax(0.022F * h, 7.0F), top = std::round(0.24F * h), bottom = std::round(0.86F * h);
+  const float top = std::round(0.24F * h), bottom = std::round(0.86F * h);
   const float left = w * (1 - kBarShare) + 0.2F * kBarShare * w, right = left + 0.026F * h;
+  const float room = 0.98F * w - left;
+  float size = std::fmax(0.022F * h, 7.0F);
+  for (std::size_t from = 0; from < bar.title.size();) {  // no word is wider than the strip
+    const std::size_t to = std::min(bar.title.find(' ', from), bar.title.size());
+    const float width = text_width(size, bar.title.substr(from, to - from));
+    if (width > room) size *= room / width;
+    from = to + 1;
+  }
   for (float y = top; y < bottom; ++y) {
     const Vec3f c = srgb_of(map_color((bottom - y - 0.5F) / (bottom - top)));
     Pen(image, c).rectangle(left, y, right, std::min(y + 1, bottom));
@@ -154,7 +162,6 @@ void draw_color_bar(Image& image, const ColorBar& bar) {
   float y = top - 1.6F * size;
   ink.text(left, y, size, unit);
   std::vector<std::string> lines{""};
-  const float room = 0.97F * w - left;
   for (std::size_t from = 0; from < bar.title.size();) {
     const std::size_t to = std::min(bar.title.find(' ', from), bar.title.size());
     const std::string word = bar.title.substr(from, to - from);
