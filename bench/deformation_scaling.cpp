@@ -51,6 +51,7 @@ Scene liver(const DeformationRun& run, std::int64_t nodes, ModelType type, int w
   Scene scene = run.scene("liver");
   Body& body = scene.bodies[0];
   scene.gravity = {0, -9.81, 0};  // so that every node moves from the first step on
+  body.prescribed.clear();        // 20 mm of indentation would turn the small cells of a large lattice inside out
   body.lattice.nodes = nodes;
   body.model.type = type;
   body.model.width = width;

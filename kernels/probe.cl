@@ -1,16 +1,12 @@
-// Known answers: every operation that DESIGN section 3 allows, on inputs where devices are known to differ. The host compares the
+// Known answers: every operation that docs/determinism.md allows, on inputs where devices are known to differ. The host compares the
 // results bit for bit before a device may call itself bit-exact (host/solver/probe.cpp).
 // a, b, c, k: [count]. reals: [17][count], ints: [5][count].
 #include "arith.cl"
 
 #if LANES == 16
-#define AS_REAL as_float16
-#define AS_INTEGER as_int16
 #define TO_REAL convert_float16
 #define TO_INTEGER convert_int16
 #else
-#define AS_REAL as_float
-#define AS_INTEGER as_int
 #define TO_REAL convert_float
 #define TO_INTEGER convert_int
 #endif

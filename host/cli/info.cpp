@@ -56,7 +56,7 @@ class Info {
  public:
   Info(const Options& options, const Scene& scene, const Model& model) : options_(options), scene_(scene), model_(model) {}
 
-  void print_all(const Program& program, double iterated_dt, const std::string& not_iterated) {
+  void print_all(const Program& program, double iterated_dt, double dt, const std::string& not_iterated) {
     json_ = {{"scene", scene_stem(options_.scene)},
              {"title", scene_.name},
              {"nodes", model_.nodes()},
@@ -64,7 +64,7 @@ class Info {
     line(fmt::format("{}: {}", scene_stem(options_.scene), scene_.name));
     line(fmt::format("nodes {}, elements {}, slots {}", model_.nodes(), model_.elements(), model_.slots));
     bodies();
-    stable_step(iterated_dt, not_iterated);
+    stable_step(iterated_dt, dt, not_iterated);
     memory(program);
     passes(program);
     if (options_.buffers) buffers(program);
@@ -112,8 +112,8 @@ class Info {
                      b.operational_nodes, b.interface_nodes, b.matching_nodes, ratio, regions));
   }
 
-  void stable_step(double iterated_dt, const std::string& not_iterated) {
-    const double step = scene_.dt > 0 ? scene_.dt : scene_.safety * iterated_dt;
+  void stable_step(double iterated_dt, double dt, const std::string& not_iterated) {
+    const double step = scene_.dt > 0 ? scene_.dt : dt;
     json_["stable_step"] = {{"element_bound", model_.element_bound},
                             {"bound_element", model_.bound_element},
                             {"iteration", iterated_dt > 0 ? Json(iterated_dt) : Json(nullptr)},
@@ -124,7 +124,9 @@ class Info {
                                        iterated_dt / model_.element_bound)
                          : "  Lanczos iteration: " + not_iterated);
     if (step > 0) {
+      const bool limited = !(step > 0.999 * scene_.safety * iterated_dt);  // by alpha, or there are no elements
       line(scene_.dt > 0 ? fmt::format("  the scene's step {:.6g} s", step)
+           : limited     ? fmt::format("  the scene's step is automatic: {:.6g} s, as shape matching asks", step)
                          : fmt::format("  the scene's step is automatic: {:.3g} of it, {:.6g} s", scene_.safety, step));
     }
   }
@@ -193,17 +195,18 @@ int info(const Options& options) {
   options.common.check();
   const Scene scene = load_scene(options.scene);
   const auto model = std::make_shared<const Model>(build_model(scene));
-  double iterated_dt = 0;
+  double iterated_dt = 0, dt = 0;
   std::string not_iterated;
   try {
     const Simulation simulation(scene, model, open_backend("cpu"));
     iterated_dt = simulation.stable_dt();
-    if (!(iterated_dt > 0)) not_iterated = "nothing moves freely";
-  } catch (const Error& error) {  // a scene too large for this machine may still be asked about
+    dt = simulation.dt();
+    if (!(iterated_dt > 0)) not_iterated = "no element moves freely";
+  } catch (const Error& error) {  // a scene too large for this machine, or with an error further on, may still be asked about
     not_iterated = error.what();
   }
   Info(options, scene, *model)
-      .print_all(build_program(*model, {scene.integrator, SimulationOptions{}.batch_steps}), iterated_dt, not_iterated);
+      .print_all(build_program(*model, {scene.integrator, SimulationOptions{}.batch_steps}), iterated_dt, dt, not_iterated);
   return 0;
 }
 

@@ -11,7 +11,7 @@
 namespace pliant {
 namespace {
 
-/// An automatic step is looked at again every few hundred steps (DESIGN section 4.2), and sooner after the start, when loads
+/// An automatic step is looked at again every few hundred steps, and sooner after the start, when loads
 /// come on.
 constexpr std::int64_t kAdaptEvery = 256;
 constexpr std::int64_t kFirstAdapts[] = {64, 128};
@@ -288,7 +288,10 @@ std::vector<Vec3d> Simulation::velocities(std::size_t body) const {
   if (scene_.integrator == Integrator::increment) {
     std::vector<Vec3d> v = pick(backend_->read_reals(w_), body, 1 / state_.dt);
     for (std::size_t n = 0; n < v.size() && !model_->flsm.empty(); ++n) {
-      for (double& c : v[n]) c /= substeps_of(static_cast<std::size_t>(model_->bodies[body].slot[n]));
+      const auto slot = static_cast<std::size_t>(model_->bodies[body].slot[n]);
+      for (std::size_t c = 0; c < 3; ++c) {
+        if (free_[3 * slot + c]) v[n][c] /= substeps_of(slot);  // a prescribed component moves in every substep
+      }
     }
     return v;
   }

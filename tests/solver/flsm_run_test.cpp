@@ -123,6 +123,23 @@ TEST_F(FlsmCompare, FourBodiesAndAGivenBeta) {
 }
 
 /// Steps of TLED per step of FLSM are counted from the start of the run, whatever the batches: a run in pieces is the same.
+/// The far end, of shape matching, is moved at 80 mm/s in every substep.
+TEST(FlsmRun, VelocitiesOfPrescribedNodes) {
+  Body body = busy_bar(ModelType::hybrid);
+  body.prescribed = {pull(0, 0.07, 0.004, {Curve::Kind::ramp, 0, 0.05, {}})};
+  body.model.substeps = 4;
+  Simulation sim(scene_of({body}, 5e-4), open_backend("cpu"));
+  sim.advance(40);
+  const std::vector<Vec3d> v = sim.velocities(0);
+  int pulled = 0;
+  for (std::size_t n = 0; n < v.size(); ++n) {
+    if (sim.model().bodies[0].rest[n][0] < 0.0699) continue;
+    EXPECT_NEAR(v[n][0], 0.08, 1e-5);
+    ++pulled;
+  }
+  EXPECT_EQ(pulled, 20);
+}
+
 TEST(FlsmRun, PiecesOfARunGiveTheSameBits) {
   Body body = busy_bar(ModelType::hybrid);
   body.model.substeps = 3;
