@@ -179,4 +179,19 @@ void CutSurface::hang(std::int32_t vertex, const Carrier& carrier) {
   changed_vertices_.add(vertex);
 }
 
+void CutSurface::embedding(const CutTopology& topology, std::int32_t vertex, std::array<std::int32_t, 8>& nodes,
+                           std::array<double, 8>& weights) const {
+  const CutSurfaceVertex& v = vertices_[vertex];
+  std::int32_t element = topology.element_of(v.carrier.cell, v.carrier.label);
+  const auto found = topology.cells().find(v.carrier.cell);
+  if (element < 0 && found != topology.cells().end()) {  // a component without material, which nothing visible hangs in
+    for (const std::int32_t other : found->second.element) element = std::max(element, other);
+  }
+  nodes = topology.elements().nodes[element < 0 ? v.carrier.cell : element];
+  for (int a = 0; a < 8; ++a) {
+    weights[a] = 1;
+    for (int k = 0; k < 3; ++k) weights[a] *= (a >> k & 1) != 0 ? v.local[k] : 1 - v.local[k];
+  }
+}
+
 }  // namespace pliant

@@ -53,6 +53,13 @@ class CutSurface {
   /// Outward. An original triangle that is whole, or one piece of it, has the number that it had.
   [[nodiscard]] const std::vector<std::array<std::int32_t, 3>>& triangles() const { return triangles_; }
   [[nodiscard]] const std::vector<SurfaceKind>& kinds() const { return kinds_; }
+  /// The triangle of the uncut surface that a triangle is part of, -1 on a cut.
+  [[nodiscard]] std::int32_t original_of(std::int32_t triangle) const {
+    return owners_[triangle].cap ? -1 : owners_[triangle].what;
+  }
+  /// Where a vertex hangs: nodes of `topology` (numbers of CutElements) and trilinear weights, which add up to 1.
+  void embedding(const CutTopology& topology, std::int32_t vertex, std::array<std::int32_t, 8>& nodes,
+                 std::array<double, 8>& weights) const;
   /// Counts the updates that changed anything.
   [[nodiscard]] std::int64_t topology_version() const { return version_; }
   /// What the last update changed, for renderers that upload in part. Vertices change when they are new or hang elsewhere.

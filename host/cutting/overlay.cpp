@@ -340,6 +340,13 @@ void Overlay::locate_vertices(const CellState& state) {
   }
   make_unique(near);
   const CutGrid& grid = source_.grid();
+  if (state.faces.empty()) {  // not divided: where its vertices hang is not decided here
+    for (const std::int32_t v : near) {
+      const auto found = vertex_cell_.find(v);
+      if (found != vertex_cell_.end() && found->second == grid.number(state.cell.index)) vertex_cell_.erase(found);
+    }
+    return;
+  }
   const vec::Box box =
       box_of(kMargin * grid.spacing, grid.position(state.cell.index), grid.position(corner_index(state.cell.index, 7)));
   for (const std::int32_t v : near) {

@@ -146,7 +146,6 @@ Patch Overlay::pieces_of(std::int32_t triangle) {
   std::vector<FlatPoint> flat;
   std::vector<std::int32_t> id;  // of each corner of each loop: original vertex, or ~index into the patch
   std::vector<Loop> loops;
-  std::vector<std::int32_t> component;  // of each loop: a node
   DisjointSets sets(graph.nodes.size());
   for (const Graph::Half& half : graph.halves) sets.join(half.from, half.to);
   std::vector<char> seen(graph.halves.size(), 0);
@@ -180,14 +179,14 @@ Patch Overlay::pieces_of(std::int32_t triangle) {
       flat.push_back({place[u] - a[u], place[v] - a[v], static_cast<std::uint8_t>(node.lines)});
       h = after;
     }
-    component.push_back(sets.find(graph.halves[first].from));
+    loop.group = sets.find(graph.halves[first].from);
     loops.push_back(std::move(loop));
   }
   // What hangs together inside the triangle, away from its border, has one loop around it: a hole of the piece that holds it.
   std::unordered_map<std::int32_t, std::size_t> outermost;
   for (std::size_t i = 0; i < loops.size(); ++i) {
-    if (component[i] == sets.find(0)) continue;
-    const auto [entry, is_new] = outermost.try_emplace(component[i], i);
+    if (loops[i].group == sets.find(0)) continue;
+    const auto [entry, is_new] = outermost.try_emplace(loops[i].group, i);
     if (!is_new && loop_area(flat, loops[i].corners) < loop_area(flat, loops[entry->second].corners)) entry->second = i;
   }
   for (const auto& [node, loop] : outermost) loops[loop].hole = true;

@@ -206,6 +206,7 @@ std::vector<std::array<std::int32_t, 3>> triangulate(const Points& points, std::
     double smallest = HUGE_VAL, largest = -HUGE_VAL;
     bool found = false;
     for (const std::size_t o : outlines) {
+      if (loops[h].group >= 0 && loops[o].group == loops[h].group) continue;
       const double area = loop_area(points, loops[o].corners);
       if (contains(points, loops[o].corners, points[loops[h].corners[0]])) {
         if (area < smallest) owner[h] = o;

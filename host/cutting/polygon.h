@@ -19,6 +19,7 @@ struct FlatPoint {
 struct Loop {
   std::vector<std::int32_t> corners;
   bool hole = false;
+  std::int32_t group = -1;  ///< a hole does not belong to an outline of its own group, unless that is -1
 };
 
 /// Twice the signed area of a loop.
