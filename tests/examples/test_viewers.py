@@ -1,0 +1,68 @@
+#!/usr/bin/env python3
+"""The viewers of examples/ run and draw: the window under Xvfb with software rendering, the ray tracer headless."""
+import json
+import os
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+import zlib
+from pathlib import Path
+
+SOURCE = Path(os.environ["PLIANT_SOURCE"])
+WINDOW, VIEWER = os.environ.get("WINDOW", ""), os.environ.get("EMBREE_VIEWER", "")
+
+
+def rows(path):
+    """Width, height and the inflated rows of a PNG."""
+    data, at, packed = path.read_bytes(), 8, b""
+    width, height = struct.unpack(">II", data[16:24])
+    while at < len(data):
+        (length,) = struct.unpack(">I", data[at : at + 4])
+        if data[at + 4 : at + 8] == b"IDAT":
+            packed += data[at + 8 : at + 8 + length]
+        at += 12 + length
+    return width, height, zlib.decompress(packed)
+
+
+class Viewers(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp(prefix="pliant-viewers-"))
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+        scene = {"format": "pliant-scene/1", "bodies": [{
+            "surface": str(SOURCE / "scenes/meshes/cube.obj"), "lattice": {"spacing": 0.02},
+            "material": {"young": 3000, "poisson": 0.4, "damping": 5}, "fixed": [{"plane": [[0, -0.049, 0], [0, -1, 0]]}]}]}
+        self.scene = self.folder / "cube.json"
+        self.scene.write_text(json.dumps(scene))
+
+    def run_here(self, *command):
+        done = subprocess.run(list(map(str, command)), capture_output=True, text=True, cwd=self.folder, timeout=300)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        return done.stdout
+
+    @unittest.skipUnless(WINDOW and shutil.which("xvfb-run"), "needs the example window and xvfb-run")
+    def test_window(self):
+        pictures = []
+        for name, pull in (("still", "0,0"), ("pulled", "0.3,0.3")):
+            self.run_here("xvfb-run", "-a", "-s", "-screen 0 640x480x24", WINDOW, self.scene, "--screenshot", f"{name}.png",
+                          "--seconds", 0.2, "--size", "320x240", "--pull", pull)
+            pictures.append(rows(self.folder / f"{name}.png"))
+        self.assertEqual(pictures[0][:2], (320, 240))
+        self.assertGreater(len(set(pictures[0][2])), 20, "one colour only")
+        self.assertNotEqual(pictures[0][2], pictures[1][2], "pulling shows nothing")
+
+    @unittest.skipUnless(VIEWER, "needs the example embree_viewer")
+    def test_embree_viewer(self):
+        text = self.run_here(VIEWER, self.scene, "frames", 3, 1)
+        self.assertEqual(text.count("(hierarchy built)"), 1, text)
+        for word in ("simulate", "refit", "trace", "mean"):
+            self.assertIn(word, text)
+        self.assertEqual([rows(f)[:2] for f in sorted((self.folder / "frames").iterdir())], [(640, 480)] * 3)
+
+
+if __name__ == "__main__":
+    if not WINDOW and not VIEWER:
+        sys.exit(77)
+    unittest.main(verbosity=2)
