@@ -68,7 +68,7 @@ class Maker:
             done = subprocess.run([self.pliant, "info", file, "--json", "-", "--quiet"], check=True, capture_output=True, text=True)
         unit = times[1] - times[0]
         # Half of the step at rest leaves room for what the deformation does to the stable step.
-        steps = int(unit / (0.5 * json.loads(done.stdout)["dt"])) + 1
+        steps = int(unit / (0.5 * json.loads(done.stdout)["stable_step"]["dt"])) + 1
         scene["dt"] = unit / steps
         pictures = self.frames(scene, size, times[-1], steps, extra)
         return [pictures[round(t / unit)] for t in times]

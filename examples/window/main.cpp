@@ -103,7 +103,7 @@ class Window {
     }
     const Vec3 size = high - low;
     camera_.target = (low + high) * 0.5F;
-    camera_.distance = 2.4F * std::sqrt(dot(size, size));
+    camera_.distance = start_distance_ = 2.1F * std::sqrt(dot(size, size));
     ground_ = low[1];
   }
 
@@ -118,7 +118,7 @@ class Window {
     const std::int32_t vertex = vertex_under(*frame_, ray);
     if (vertex < 0) return;
     held_from_ = xyz(frame_->positions[static_cast<std::size_t>(vertex)]);
-    held_ = world_.grab(vertex);
+    held_ = world_.grab(vertex, {.radius = 0.03 * static_cast<double>(start_distance_)});
   }
 
   /// The hand stays in the plane through where it began that faces the viewer.
@@ -200,7 +200,7 @@ class Window {
   GLFWwindow* window_ = nullptr;
   std::unique_ptr<Drawing> drawing_;
   Orbit camera_;
-  float ground_ = 0;
+  float ground_ = 0, start_distance_ = 1;
   pliant::GrabId held_ = 0;
   Vec3 held_from_{};
   std::int32_t poked_ = -1;
