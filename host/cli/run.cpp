@@ -8,6 +8,7 @@
 #include "cli/frames.h"
 #include "cli/picture_words.h"
 #include "cli/run_loop.h"
+#include "cli/run_static.h"
 #include "io/save.h"
 #include "pliant/error.h"
 #include "state/hash.h"
@@ -51,7 +52,9 @@ class Run {
 
   int operator()() {
     check(o_);
-    open();
+    Scene scene = load_scene(o_.scene);
+    if (scene.solver.enabled) return solve(scene);
+    open(std::move(scene));
     watch_interrupt();
     const std::int64_t every = write_first_frame();
     if (o_.profile) simulation_->backend().profile(true);
@@ -75,8 +78,26 @@ class Run {
   }
 
  private:
-  void open() {
-    Scene scene = load_scene(o_.scene);
+  int solve(const Scene& scene) {
+    for (const auto& [given, option] : {std::pair{o_.steps.has_value(), "--steps"},
+                                        {o_.seconds.has_value(), "--seconds"},
+                                        {o_.dt.has_value(), "--dt"},
+                                        {o_.every.has_value(), "--every"},
+                                        {!o_.checkpoint.empty(), "--checkpoint"},
+                                        {!o_.resume.empty(), "--resume"},
+                                        {o_.profile, "--profile"}}) {
+      if (given)
+        throw Error(
+            fmt::format("{} means nothing for {}, which asks for a static solver: there are no steps", option, o_.scene));
+    }
+    if (o_.backend != "auto" && o_.backend != "cpu:double") {
+      throw Error(fmt::format("--backend is \"{}\"; {} asks for a static solver, which runs in double on the processor alone",
+                              o_.backend, o_.scene));
+    }
+    return run_static(scene, {o_.common, stem_, o_.out, parse_formats(o_.formats), o_.hash});
+  }
+
+  void open(Scene scene) {
     if (o_.dt) scene.dt = *o_.dt;  // from here on the step is a fixed one, and part of what a checkpoint belongs to
     std::optional<Checkpoint> saved;
     if (!o_.resume.empty()) saved = read_checkpoint(o_.resume);

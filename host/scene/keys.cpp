@@ -27,7 +27,7 @@ std::map<std::string, List> make_keys() {
   const List selection = points + List{"nodes"};
   const List curve{"curve", "start", "duration", "table"};
   return {
-      {"scene", {"format", "name", "gravity", "dt", "safety", "duration", "integrator", "relaxation", "tool", "view", "bodies"}},
+      {"scene", {"format", "name", "gravity", "dt", "safety", "duration", "integrator", "relaxation", "solver", "tool", "view", "bodies"}},
       {"body",
        {"name", "surface", "mesh", "scale", "translate", "lattice", "element", "material", "model", "inclusions", "fixed",
         "prescribed", "forces", "pressures", "velocity", "angular_velocity"}},
@@ -41,6 +41,7 @@ std::map<std::string, List> make_keys() {
       {"tool", {"path"}},
       {"view", {"eye", "target", "up", "field_of_view"}},
       {"relaxation", {"tolerance", "max_steps"}},
+      {"solver", {"type", "linear", "load_steps", "tolerance", "order"}},
       {"inclusion", points + List{"material"}},
       {"fixed", selection + List{"axes"}},
       {"prescribed", selection + List{"displacement"} + curve},
@@ -78,7 +79,8 @@ const std::map<std::string, List>& scene_words() {
       {"law", words_only(law_words())},           {"element", words_only(element_words())},
       {"curve", words_only(curve_words())},       {"integrator", words_only(integrator_words())},
       {"model", words_only(model_words())},       {"goals", words_only(goals_words())},
-      {"coupling", words_only(coupling_words())}, {"follow", words_only(follow_words())}};
+      {"coupling", words_only(coupling_words())}, {"follow", words_only(follow_words())},
+      {"solver", words_only(solver_words())}};
   return words;
 }
 
@@ -107,6 +109,11 @@ const Words<Curve::Kind>& curve_words() {
 
 const Words<Integrator>& integrator_words() {
   static const Words<Integrator> words{{"increment", Integrator::increment}, {"textbook", Integrator::textbook}};
+  return words;
+}
+
+const Words<bool>& solver_words() {
+  static const Words<bool> words{{"dynamic", false}, {"static", true}};
   return words;
 }
 

@@ -26,6 +26,7 @@ const Words<Law>& law_words();
 const Words<ElementKind>& element_words();
 const Words<Curve::Kind>& curve_words();
 const Words<Integrator>& integrator_words();
+const Words<bool>& solver_words();
 const Words<ModelType>& model_words();
 /// The flags of DeformationModel that a scene file writes as words: extrapolate, conservative, follow.
 const Words<bool>& goals_words();

@@ -63,6 +63,28 @@ void read_relaxation(const Reader& top, Relaxation& relaxation) {
   if (field.has("max_steps")) relaxation.max_steps = field.at("max_steps").integer(1, 1'000'000'000'000);
 }
 
+void read_solver(const Reader& top, Scene& scene) {
+  if (!top.has("solver")) return;
+  const Reader field = top.at("solver");
+  field.expect_object("solver");
+  StaticSolver& solver = scene.solver;
+  solver.enabled = field.at("type", "\"type\": \"static\" or \"dynamic\"").word(solver_words());
+  for (const char* key : {"linear", "load_steps", "tolerance", "order"}) {
+    if (!solver.enabled && field.has(key)) field.at(key).fail("this key only beside \"type\": \"static\"");
+  }
+  if (field.has("linear")) solver.linear = field.at("linear").boolean();
+  if (field.has("load_steps")) {
+    const Reader steps = field.at("load_steps");
+    if (steps.json() != "auto") solver.load_steps = static_cast<int>(steps.integer(1, 1'000'000));
+  }
+  if (field.has("tolerance")) {
+    const Reader tolerance = field.at("tolerance");
+    solver.tolerance = tolerance.positive();
+    if (!(solver.tolerance < 1)) tolerance.fail("a number with 0 < tolerance < 1");
+  }
+  if (field.has("order")) solver.quadratic = field.at("order").integer(1, 2) == 2;
+}
+
 void read_bodies(const Reader& top, const fs::path& folder, Scene& scene) {
   const char* const expected = "a list of at least one body";
   std::map<std::string, std::string> names;
@@ -98,6 +120,7 @@ Scene parse_scene(const std::string& text, const fs::path& file) {
   if (top.has("duration")) scene.duration = top.at("duration").positive();
   if (top.has("integrator")) scene.integrator = top.at("integrator").word(integrator_words());
   read_relaxation(top, scene.relaxation);
+  read_solver(top, scene);
   if (top.has("tool")) scene.tool = read_tool(top.at("tool"));
   if (top.has("view")) scene.view = read_view(top.at("view"));
   read_bodies(top, file.parent_path(), scene);

@@ -162,6 +162,15 @@ struct Relaxation {
 
 enum class Integrator { increment, textbook };
 
+/// The key "solver": what `pliant run` does with the scene.
+struct StaticSolver {
+  bool enabled = false;     ///< "type": "static" instead of "dynamic"
+  bool linear = false;      ///< small displacements
+  int load_steps = 0;       ///< 0: "auto"
+  double tolerance = 1e-8;  ///< |R - F| <= tolerance * largest of |R|, |F|
+  bool quadratic = false;   ///< "order": 2: tetrahedra get a node in the middle of every edge
+};
+
 struct Scene {
   std::string name;            ///< file stem, or what the caller set
   std::filesystem::path file;  ///< empty if built in code
@@ -171,6 +180,7 @@ struct Scene {
   double duration = 1;         ///< [s] simulated by `run` when neither --steps nor --seconds is given
   Integrator integrator = Integrator::increment;
   Relaxation relaxation;
+  StaticSolver solver;
   Tool tool;
   SceneView view;
   bool interactive = false;  ///< set in code: the Model reserves a force on every node that moves a vertex of the surface

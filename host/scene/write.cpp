@@ -164,6 +164,11 @@ std::string scene_to_json(const Scene& scene) {
   } else {
     top["relaxation"] = false;
   }
+  if (scene.solver.enabled) {
+    const StaticSolver& s = scene.solver;
+    top["solver"] = {{"type", "static"}, {"linear", s.linear}, {"tolerance", s.tolerance}, {"order", s.quadratic ? 2 : 1}};
+    top["solver"]["load_steps"] = s.load_steps > 0 ? Json(s.load_steps) : Json("auto");
+  }
   if (!scene.tool.path.empty()) top["tool"] = {{"path", scene.tool.path}};
   if (const Json view = view_json(scene.view); !view.empty()) top["view"] = view;
   top["bodies"] = Json::array();
