@@ -11,6 +11,7 @@ namespace {
 constexpr double kPeriod = 0.002;  ///< the springs of grabs are looked at this often [s]
 constexpr double kCatchUp = 0.1;   ///< time in which the pull takes up what the spring alone leaves [s]
 constexpr double kFree = 0.25;     ///< largest share of a free patch's momentum balance that one look may change
+constexpr double kStrain = 0.25;   ///< largest pull over Young's modulus and the handful's area
 constexpr std::int32_t kAnySteps = 1 << 20;
 
 Vec3d limited(const Vec3d& v, double most) {
@@ -82,7 +83,7 @@ GrabId Tools::grab(std::int32_t vertex, const GrabOptions& options) {
   // A disk of radius r on a half-space has the stiffness 2 E r / (1 - nu^2): half of it cannot overshoot at rest.
   const double r = std::max(options.radius, edge_of(body)), young = materials_[g.body].young();
   g.stiffness = options.stiffness > 0 ? options.stiffness : young * r;
-  g.max_force = options.max_force > 0 ? options.max_force : young * r * r;
+  g.max_force = options.max_force > 0 ? options.max_force : kStrain * young * r * r;
   const std::lock_guard lock(mutex_);
   grabs_.emplace(++last_id_, std::move(g));
   return last_id_;

@@ -30,6 +30,7 @@ struct World::Impl {
   // world_run.cpp
   StepReport run(std::int64_t steps);
   void read_frame(bool again = false);
+  void follow_topology();
   void publish_clock();
   [[nodiscard]] std::shared_ptr<Simulation> make_simulation(std::string* why);
   void restart(std::shared_ptr<Simulation> fresh);
@@ -54,6 +55,7 @@ struct World::Impl {
   std::atomic<bool> in_use{false};
 
   std::shared_ptr<api::FramePool> pool = std::make_shared<api::FramePool>();
+  std::shared_ptr<const Model> seen_model;  ///< the simulation's, when the topology was looked at last
   std::shared_ptr<const api::Topology> topology;
   std::shared_ptr<api::FrameData> last_read;  ///< of the thread that steps
 

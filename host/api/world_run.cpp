@@ -61,6 +61,7 @@ World::Impl::Impl(Scene scene_, OpenBackend open, const WorldOptions& options_)
   info = info_of(*model, simulation->backend().info(), why);
   tools = std::make_unique<api::Tools>(model, scene);
   topology = topology_of(model, 1);
+  seen_model = model;
   publish_clock();
   read_frame();
 }
@@ -117,8 +118,18 @@ StepReport World::Impl::run(std::int64_t steps) {
   return report;
 }
 
+/// A cut makes a new model with other vertices and triangles; an operational region that moves, one with the same.
+void World::Impl::follow_topology() {
+  std::shared_ptr<const Model> now = simulation->shared_model();
+  if (now == seen_model) return;
+  seen_model = now;
+  const ModelSurface &a = now->surface, &b = topology->model->surface;
+  if (a.triangles != b.triangles || a.rest != b.rest) topology = topology_of(std::move(now), topology->version + 1);
+}
+
 /// Read the surface into a frame that nobody holds, and make it the newest.
 void World::Impl::read_frame(bool again) {
+  follow_topology();
   if (!again && last_read != nullptr && last_read->frame.step == simulation->step() && last_read->topology == topology) return;
   const std::size_t count = topology->rest.size();
   auto data = pool->take();

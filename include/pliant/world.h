@@ -64,7 +64,7 @@ struct StepReport {
 struct GrabOptions {
   double radius = 0;     ///< nodes within this distance of the vertex at rest are held too [m]; the vertex's own cell always is
   double stiffness = 0;  ///< of the spring [N/m]; 0: of the order of the tissue's own
-  double max_force = 0;  ///< the pull never exceeds this [N]; 0: a limit that strains the tissue by about its own length
+  double max_force = 0;  ///< the pull never exceeds this [N]; 0: a quarter of Young's modulus on the handful's area
 };
 
 /// Names a grab of one World; 0 is none.

@@ -1,0 +1,205 @@
+// The C API: what it computes, and that no misuse gets past it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "api/c_handles.h"
+#include "pliant/pliant.h"
+#include "scenes.h"
+
+namespace pliant {
+namespace {
+
+const std::string kScene = R"({"format": "pliant-scene/1", "gravity": [0, -9.81, 0], "bodies": [{"name": "block",
+  "surface": "memory:0", "lattice": {"spacing": 0.02}, "material": {"young": 3000, "poisson": 0.45, "damping": 5},
+  "fixed": [{"plane": [[0, 0.001, 0], [0, -1, 0]]}]}]})";
+
+class CApi : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    options.backend = "cpu";
+    options.interactive = 1;
+    const pliant_surface surface{box.vertices[0].data(), box.vertices.size(), box.triangles[0].data(), box.triangles.size()};
+    ASSERT_EQ(pliant_world_parse(kScene.c_str(), nullptr, &surface, 1, &options, &world), PLIANT_OK) << pliant_last_error();
+  }
+  void TearDown() override { pliant_world_destroy(world); }
+
+  SurfaceSpec box = box_surface({0, 0, 0}, {0.1, 0.08, 0.06});
+  pliant_options options = PLIANT_OPTIONS_INIT;
+  pliant_world world{0};
+};
+
+TEST_F(CApi, ComputesWhatTheCppApiComputes) {
+  World other(test::block(0), test::on("cpu", true));
+  other.step(100);
+  pliant_report report{};
+  ASSERT_EQ(pliant_world_step(world, 100, &report), PLIANT_OK);
+  EXPECT_EQ(report.done, 100);
+  EXPECT_EQ(report.step, 100);
+  EXPECT_EQ(report.diverged, 0);
+  std::uint64_t hash = 0;
+  ASSERT_EQ(pliant_world_hash(world, &hash), PLIANT_OK);
+  EXPECT_EQ(hash, other.hash());
+  pliant_info info{};
+  ASSERT_EQ(pliant_world_info(world, &info), PLIANT_OK);
+  EXPECT_EQ(info.vertices, 8U);
+  EXPECT_EQ(info.triangles, 12U);
+  EXPECT_EQ(info.nodes, other.info().nodes);
+  std::vector<float> x(24), n(24);
+  std::vector<std::int32_t> t(36);
+  std::vector<double> u(3 * static_cast<std::size_t>(info.nodes));
+  ASSERT_EQ(pliant_world_positions(world, x.data(), x.size()), PLIANT_OK);
+  ASSERT_EQ(pliant_world_normals(world, n.data(), n.size()), PLIANT_OK);
+  ASSERT_EQ(pliant_world_triangles(world, t.data(), t.size()), PLIANT_OK);
+  ASSERT_EQ(pliant_world_displacements(world, 0, u.data(), u.size()), PLIANT_OK);
+  const FramePtr frame = other.frame();
+  for (std::size_t v = 0; v < 8; ++v) {
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(x[3 * v + c], frame->positions[v][c]);
+  }
+  EXPECT_EQ(t[0], frame->triangles[0][0]);
+  pliant_frame view{};
+  ASSERT_EQ(pliant_world_frame(world, &view), PLIANT_OK);
+  EXPECT_EQ(view.positions[4], frame->positions[1][0]);
+  EXPECT_EQ(view.vertex_count, 8U);
+  EXPECT_EQ(view.cut_faces, nullptr);
+  char text[200];
+  ASSERT_EQ(pliant_world_backend(world, text, sizeof text), PLIANT_OK);
+  EXPECT_EQ(std::string(text).rfind("cpu (", 0), 0U);
+  char small[4];
+  ASSERT_EQ(pliant_world_backend(world, small, sizeof small), PLIANT_OK);
+  EXPECT_STREQ(small, "cpu");
+}
+
+TEST_F(CApi, StepsAsynchronouslyAndPullsAtTheSurface) {
+  int started = 0, fresh = 1, busy = 1;
+  std::uint64_t grab = 0;
+  const double target[3]{0.12, 0.08, 0.06}, force[3]{0, 0, 0.01};
+  pliant_frame frame{};
+  ASSERT_EQ(pliant_world_frame(world, &frame), PLIANT_OK);
+  ASSERT_EQ(pliant_world_poll(world, &fresh), PLIANT_OK);
+  EXPECT_EQ(fresh, 0);
+  ASSERT_EQ(pliant_world_grab(world, 7, 0, 0, 0, &grab), PLIANT_OK);
+  ASSERT_EQ(pliant_world_move_grab(world, grab, target), PLIANT_OK);
+  ASSERT_EQ(pliant_world_push(world, 6, force), PLIANT_OK);
+  ASSERT_EQ(pliant_world_advance_async(world, 200, &started), PLIANT_OK);
+  EXPECT_EQ(started, 1);
+  ASSERT_EQ(pliant_world_wait(world, nullptr), PLIANT_OK);
+  ASSERT_EQ(pliant_world_busy(world, &busy), PLIANT_OK);
+  EXPECT_EQ(busy, 0);
+  ASSERT_EQ(pliant_world_poll(world, &fresh), PLIANT_OK);
+  EXPECT_EQ(fresh, 1);
+  ASSERT_EQ(pliant_world_frame(world, &frame), PLIANT_OK);
+  EXPECT_GT(frame.positions[4 * 7], 0.1F);
+  EXPECT_EQ(pliant_world_release(world, grab), PLIANT_OK);
+  EXPECT_EQ(pliant_world_release(world, grab), PLIANT_USAGE);
+  EXPECT_EQ(pliant_world_clear_tools(world), PLIANT_OK);
+  EXPECT_EQ(pliant_world_reset(world), PLIANT_OK);
+  EXPECT_EQ(pliant_world_advance(world, 0.01, nullptr), PLIANT_OK);
+}
+
+TEST_F(CApi, UseAfterDestroyIsCaught) {
+  const pliant_world dead = world;
+  ASSERT_EQ(pliant_world_destroy(world), PLIANT_OK);
+  pliant_report report{};
+  pliant_frame frame{};
+  EXPECT_EQ(pliant_world_step(dead, 1, &report), PLIANT_STATE);
+  EXPECT_NE(std::string(pliant_last_error()).find("destroyed"), std::string::npos);
+  EXPECT_EQ(pliant_world_frame(dead, &frame), PLIANT_STATE);
+  EXPECT_EQ(pliant_world_destroy(dead), PLIANT_STATE);
+  EXPECT_EQ(pliant_world_step({0}, 1, &report), PLIANT_USAGE);
+  EXPECT_EQ(pliant_world_step({~std::uint64_t{0}}, 1, &report), PLIANT_STATE);
+  SetUp();  // a new world gets another handle
+  EXPECT_NE(world.id, dead.id);
+  EXPECT_EQ(pliant_world_step(dead, 1, &report), PLIANT_STATE);
+}
+
+TEST_F(CApi, AWorldDestroyedInAnotherThreadFinishesItsCall) {
+  std::thread stepping([w = world] { pliant_world_step(w, 3000, nullptr); });
+  EXPECT_EQ(pliant_world_destroy(world), PLIANT_OK);
+  stepping.join();
+}
+
+TEST_F(CApi, NullPointersAndWrongSizes) {
+  pliant_world out{17};
+  EXPECT_EQ(pliant_world_open(nullptr, nullptr, &out), PLIANT_USAGE);
+  EXPECT_EQ(out.id, 0U);
+  EXPECT_EQ(pliant_world_open("scene.json", nullptr, nullptr), PLIANT_USAGE);
+  EXPECT_EQ(pliant_world_open("no/such/scene.json", nullptr, &out), PLIANT_IO);
+  EXPECT_EQ(pliant_world_parse("{", nullptr, nullptr, 0, nullptr, &out), PLIANT_INPUT);
+  EXPECT_EQ(pliant_world_parse(kScene.c_str(), nullptr, nullptr, 1, nullptr, &out), PLIANT_USAGE);
+  EXPECT_EQ(pliant_world_parse(kScene.c_str(), nullptr, nullptr, 0, nullptr, &out), PLIANT_INPUT);
+  pliant_options bad = options;
+  bad.size = 3;
+  EXPECT_EQ(pliant_world_open("scene.json", &bad, &out), PLIANT_USAGE);
+  EXPECT_EQ(pliant_world_frame(world, nullptr), PLIANT_USAGE);
+  EXPECT_EQ(pliant_world_info(world, nullptr), PLIANT_USAGE);
+  EXPECT_EQ(pliant_world_positions(world, nullptr, 24), PLIANT_USAGE);
+  EXPECT_EQ(pliant_world_push(world, 0, nullptr), PLIANT_USAGE);
+  EXPECT_EQ(pliant_world_save(world, nullptr), PLIANT_USAGE);
+  EXPECT_EQ(pliant_world_poll(world, nullptr), PLIANT_USAGE);
+  EXPECT_EQ(pliant_world_step(world, 1, nullptr), PLIANT_OK);
+  std::vector<float> x(25);
+  EXPECT_EQ(pliant_world_positions(world, x.data(), 23), PLIANT_USAGE);
+  EXPECT_EQ(pliant_world_positions(world, x.data(), 25), PLIANT_USAGE);
+  EXPECT_NE(std::string(pliant_last_error()).find("holds 25 numbers, expected 24"), std::string::npos) << pliant_last_error();
+  std::vector<double> u(2);
+  EXPECT_EQ(pliant_world_displacements(world, 0, u.data(), 2), PLIANT_USAGE);
+  EXPECT_EQ(pliant_world_displacements(world, 5, u.data(), 2), PLIANT_USAGE);
+  EXPECT_EQ(pliant_world_step(world, -1, nullptr), PLIANT_USAGE);
+  EXPECT_EQ(pliant_world_step(world, 1, nullptr), PLIANT_OK);
+  EXPECT_STREQ(pliant_last_error(), "");
+}
+
+TEST_F(CApi, DivergenceIsReportedAndThenRefused) {
+  pliant_world unstable{0};
+  const pliant_surface surface{box.vertices[0].data(), box.vertices.size(), box.triangles[0].data(), box.triangles.size()};
+  options.dt = 0.05;
+  ASSERT_EQ(pliant_world_parse(kScene.c_str(), nullptr, &surface, 1, &options, &unstable), PLIANT_OK) << pliant_last_error();
+  pliant_report report{};
+  for (int i = 0; i < 1000 && report.diverged == 0; ++i) ASSERT_EQ(pliant_world_step(unstable, 10, &report), PLIANT_OK);
+  ASSERT_EQ(report.diverged, 1);
+  EXPECT_EQ(pliant_world_step(unstable, 1, &report), PLIANT_DIVERGED);
+  std::vector<float> x(24);
+  EXPECT_EQ(pliant_world_positions(unstable, x.data(), x.size()), PLIANT_OK);
+  for (const float v : x) EXPECT_TRUE(std::isfinite(v));
+  pliant_world_destroy(unstable);
+}
+
+TEST_F(CApi, ALostDeviceLeavesTheLastFrame) {
+  const auto left = std::make_shared<std::atomic<int>>(1 << 30);
+  std::vector<SurfaceSpec> surfaces{box};
+  Scene scene = parse_scene(
+      R"({"format": "pliant-scene/1", "bodies": [{"name": "cube", "surface": ")" PLIANT_SOURCE_DIR
+      R"(/scenes/meshes/cube.obj", "lattice": {"spacing": 0.02}, "material": {"young": 3000, "poisson": 0.4}, "velocity": [1, 0, 0]}]})",
+      "");
+  const pliant_world lost{api::Handles::all().add(std::make_shared<api::CWorld>(
+      WorldAccess::make(std::move(scene), [left](std::string*, std::int64_t) -> std::unique_ptr<Backend> {
+        return std::make_unique<test::FaultyBackend>(open_backend("cpu"), left);
+      })))};
+  ASSERT_EQ(pliant_world_step(lost, 50, nullptr), PLIANT_OK);
+  pliant_frame before{}, after{};
+  ASSERT_EQ(pliant_world_frame(lost, &before), PLIANT_OK);
+  *left = 0;
+  EXPECT_EQ(pliant_world_step(lost, 50, nullptr), PLIANT_DEVICE);
+  EXPECT_NE(std::string(pliant_last_error()).find("CL_DEVICE_NOT_AVAILABLE"), std::string::npos);
+  ASSERT_EQ(pliant_world_frame(lost, &after), PLIANT_OK);
+  EXPECT_EQ(after.positions, before.positions);
+  EXPECT_EQ(after.step, 50);
+  pliant_world_destroy(lost);
+}
+
+TEST(CApiNames, EveryStatusHasOne) {
+  for (const pliant_status s :
+       {PLIANT_OK, PLIANT_INTERNAL, PLIANT_INPUT, PLIANT_DIVERGED, PLIANT_USAGE, PLIANT_IO, PLIANT_DEVICE, PLIANT_STATE}) {
+    EXPECT_STRNE(pliant_status_name(s), "unknown");
+  }
+  const std::string expected = std::to_string(PLIANT_VERSION_MAJOR) + "." + std::to_string(PLIANT_VERSION_MINOR) + "." +
+                               std::to_string(PLIANT_VERSION_PATCH);
+  EXPECT_EQ(pliant_version(), expected);
+}
+
+}  // namespace
+}  // namespace pliant

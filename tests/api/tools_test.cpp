@@ -1,0 +1,104 @@
+// Grabs and pushes: they do what they say, and stay stable.
+#include <cmath>
+
+#include "scenes.h"
+
+namespace pliant {
+namespace {
+
+using test::block;
+using test::on;
+
+double distance(const Vec4f& a, const Vec3d& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
+
+/// The vertex at the corner (0.1, 0.08, 0.06) of the block.
+constexpr std::int32_t kCorner = 7;
+
+TEST(Tools, AGrabBringsTheVertexToItsTarget) {
+  SceneSpec scene = block(0);
+  scene.gravity = {};
+  World world(scene, on("cpu", true));
+  GrabOptions options;
+  options.radius = 0.025;
+  const GrabId grab = world.grab(kCorner, options);
+  world.step(100);
+  EXPECT_EQ(world.displacements(0).at(0), (Vec3d{}));  // a grab that was not moved does not pull
+  const Vec3d target{0.11, 0.09, 0.06};
+  world.move_grab(grab, target);
+  world.advance(2);
+  EXPECT_LT(distance(world.frame()->positions[kCorner], target), 0.001);
+  world.release(grab);
+  world.advance(5);
+  EXPECT_LT(distance(world.frame()->positions[kCorner], {0.1, 0.08, 0.06}), 0.001);
+}
+
+TEST(Tools, AWildGrabDoesNotDiverge) {
+  World world(block(0), on("cpu", true));
+  const GrabId grab = world.grab(kCorner);
+  for (int i = 0; i < 40; ++i) {
+    world.move_grab(grab, {0.1 + (i % 2 ? 5 : -5), 0.08 + (i % 3 ? 3 : -3), 0.06});
+    ASSERT_FALSE(world.advance(0.02).diverged) << world.wait().message;
+  }
+}
+
+TEST(Tools, APushIsThatForceOfTheScene) {
+  // The same force as a load of the scene: on the nodes of the vertex's cell, at the far corner all on one node.
+  SceneSpec loaded = block(0);
+  World probe(block(0), on("cpu"));
+  const auto rest = probe.rest_positions(0);
+  std::int64_t corner = -1;
+  for (std::size_t n = 0; n < rest.size(); ++n) {
+    if (std::hypot(rest[n][0] - 0.1, rest[n][1] - 0.08, rest[n][2] - 0.06) < 1e-6) corner = static_cast<std::int64_t>(n);
+  }
+  ASSERT_GE(corner, 0) << "the lattice has a node at the corner";
+  loaded.bodies[0].forces.push_back({RegionSpec::of_nodes({corner}), {0.05, 0.02, 0}, {}});
+  World scene(loaded, on("cpu")), pushed(block(0), on("cpu", true)), node(block(0), on("cpu", true));
+  pushed.push(kCorner, {0.05, 0.02, 0});
+  node.push_node(0, corner, {0.05, 0.02, 0});
+  for (World* w : {&scene, &pushed, &node}) w->step(200);
+  const auto a = scene.displacements(0), b = pushed.displacements(0), c = node.displacements(0);
+  double worst = 0, largest = 0;
+  for (std::size_t n = 0; n < a.size(); ++n) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      worst = std::max({worst, std::fabs(a[n][k] - b[n][k]), std::fabs(a[n][k] - c[n][k])});
+      largest = std::max(largest, std::fabs(a[n][k]));
+    }
+  }
+  EXPECT_GT(largest, 1e-3);
+  EXPECT_LT(worst, 5e-3 * largest);  // the first step of a load begins as a parabola, that of a push does not
+  pushed.clear_tools();
+  pushed.step(1);
+}
+
+TEST(Tools, WorkWhileTheWorkerIsBusyAndOnShapeMatching) {
+  SceneSpec scene = block(0);
+  scene.gravity = {};
+  scene.dt = 0.002;
+  scene.bodies[0].model.type = "flsm";
+  World world(scene, on("cpu", true));
+  ASSERT_TRUE(world.advance_async(3000));
+  world.push(kCorner, {0.2, 0, 0});
+  world.wait();
+  ASSERT_TRUE(world.advance_async(100));
+  world.wait();
+  EXPECT_GT(world.frame()->positions[kCorner][0], 0.1F + 1e-5F);
+}
+
+TEST(Tools, WhatCannotBeHeldIsRefused) {
+  World plain(block(0), on("cpu")), world(block(0), on("cpu", true));
+  EXPECT_EQ(test::code_of([&] { plain.grab(0); }), ErrorCode::state);
+  EXPECT_EQ(test::code_of([&] { plain.push(0, {1, 0, 0}); }), ErrorCode::state);
+  EXPECT_EQ(test::code_of([&] { world.grab(8); }), ErrorCode::usage);
+  EXPECT_EQ(test::code_of([&] { world.grab(-1); }), ErrorCode::usage);
+  EXPECT_EQ(test::code_of([&] { world.grab(0, {-1, 0, 0}); }), ErrorCode::usage);
+  EXPECT_EQ(test::code_of([&] { world.push(0, {NAN, 0, 0}); }), ErrorCode::usage);
+  EXPECT_EQ(test::code_of([&] { world.push_node(1, 0, {1, 0, 0}); }), ErrorCode::usage);
+  EXPECT_EQ(test::code_of([&] { world.push_node(0, 1 << 20, {1, 0, 0}); }), ErrorCode::usage);
+  EXPECT_EQ(test::code_of([&] { world.release(17); }), ErrorCode::usage);
+  const GrabId grab = world.grab(0);
+  world.release(grab);
+  EXPECT_EQ(test::code_of([&] { world.move_grab(grab, {}); }), ErrorCode::usage);
+}
+
+}  // namespace
+}  // namespace pliant

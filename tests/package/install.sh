@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# Install into an empty prefix, then build and run examples/find_package against it, with find_package and with pkg-config.
+# Usage: install.sh SOURCE BUILD STATIC_LIBRARY|SHARED_LIBRARY COMPILER
+set -euo pipefail
+source=$1 build=$2 kind=$3 cxx=$4
+grep -q '^PLIANT_SANITIZE:STRING=.\+' "$build/CMakeCache.txt" && { echo 'skipped: a library with sanitizers is not for consumers'; exit 77; }
+case $cxx in *clang++*) cc=${cxx/clang++/clang} ;; *) cc=${cxx/g++/gcc} ;; esac
+case $cxx in */c++) cc=${cxx%c++}cc ;; esac
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+prefix=$work/prefix
+
+cmake --install "$build" --prefix "$prefix" --component dev >/dev/null
+cmake --install "$build" --prefix "$prefix" --component runtime >/dev/null
+lib=$(dirname "$(find "$prefix" -name 'libpliant.*' | head -n 1)")
+version=$(sed -n 's/^Version: //p' "$lib/pkgconfig/pliant.pc")
+[ -f "$prefix/include/pliant/pliant.h" ] || { echo 'the headers are missing'; exit 1; }
+
+if [ "$kind" = SHARED_LIBRARY ]; then
+  [ -f "$lib/libpliant.so.$version" ] || { echo "there is no libpliant.so.$version"; exit 1; }
+  # Only the API can be seen: C functions, World, Error, the functions of include/pliant, and templates of the standard library.
+  seen=$(nm -D --defined-only -C "$lib/libpliant.so" |
+    grep -vE ' (pliant_[a-z_]+|pliant::World::|pliant::Error|(typeinfo|typeinfo name|vtable) for (pliant::Error|std::|__)|pliant::(box_surface|version|backend_names)|std::|operator |void std::|bool std::|.* std::|.* __gnu_cxx::|__gnu)' || true)
+  [ -z "$seen" ] || { printf 'symbols that should be hidden:\n%s\n' "$seen" | head -n 20; exit 1; }
+fi
+
+cmake -S "$source/examples/find_package" -B "$work/consumer" -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$prefix" \
+  -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_C_COMPILER="$cc" >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+cmake --build "$work/consumer" >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+! grep -q 'warning:' "$work/log" || { cat "$work/log"; exit 1; }
+"$work/consumer/consumer"
+"$work/consumer/consumer_c"
+
+# What this build lacks is refused by name.
+printf 'find_package(pliant REQUIRED COMPONENTS Teleport)\n' >"$work/need.cmake"
+if cmake -S "$source/examples/find_package" -B "$work/lacking" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_PROJECT_INCLUDE="$work/need.cmake" \
+  -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_C_COMPILER="$cc" >"$work/log" 2>&1; then
+  echo 'find_package accepted a component that does not exist'
+  exit 1
+fi
+grep -q 'Teleport' "$work/log" || { cat "$work/log"; exit 1; }
+
+if command -v pkg-config >/dev/null; then
+  read -ra flags < <(PKG_CONFIG_PATH=$lib/pkgconfig pkg-config --define-variable=prefix="$prefix" --cflags --libs pliant)
+  [ "$(PKG_CONFIG_PATH=$lib/pkgconfig pkg-config --modversion pliant)" = "$version" ]
+  "$cxx" -std=c++17 "$source/examples/find_package/main.cpp" "${flags[@]}" -o "$work/by_pkg_config"
+  LD_LIBRARY_PATH=$lib "$work/by_pkg_config"
+fi

@@ -1,0 +1,90 @@
+"""The Python module from the build folder: views, errors, and the example."""
+import gc
+import os
+import runpy
+import sys
+
+try:
+    import numpy as np
+except ImportError:
+    print("skipped: NumPy is not installed (Debian: python3-numpy)")
+    sys.exit(77)
+import pliant
+
+SOURCE = os.environ["PLIANT_SOURCE"]
+VERTICES = np.array([[x, y, z] for z in (0, 0.06) for y in (0, 0.08) for x in (0, 0.1)])
+TRIANGLES = np.array([[0, 4, 6], [0, 6, 2], [1, 3, 7], [1, 7, 5], [0, 1, 5], [0, 5, 4],
+                      [2, 6, 7], [2, 7, 3], [0, 2, 3], [0, 3, 1], [4, 5, 7], [4, 7, 6]])
+
+
+def block(**options):
+    scene = {"format": "pliant-scene/1", "gravity": [0, -9.81, 0], "bodies": [{
+        "name": "block", "surface": "memory:0", "lattice": {"spacing": 0.02},
+        "material": {"young": 3000, "poisson": 0.45, "damping": 5}, "fixed": [{"plane": [[0, 0.001, 0], [0, -1, 0]]}]}]}
+    return pliant.World(scene, surfaces=[(VERTICES, TRIANGLES)], backend="cpu", **options)
+
+
+def error_of(call):
+    try:
+        call()
+    except pliant.Error as error:
+        return error
+    raise AssertionError("no pliant.Error")
+
+
+def test_views():
+    world = block()
+    frame = world.frame()
+    x = frame.positions
+    assert x.shape == (8, 3) and x.dtype == np.float32 and x.strides == (16, 4)
+    assert frame.triangles.shape == (12, 3) and frame.normals.shape == (8, 3)
+    assert np.allclose(x, VERTICES, atol=1e-6)
+    assert not x.flags.owndata and not x.flags.writeable
+    assert x.__array_interface__["data"] == frame.positions.__array_interface__["data"], "each access shows the same memory"
+    before = x.copy()
+    for _ in range(10):
+        world.step(20)
+        world.frame()
+    del frame, world
+    gc.collect()
+    assert np.array_equal(x, before), "a view keeps its frame"
+
+
+def test_steps():
+    a, b = block(), block()
+    report = a.step(100)
+    assert report.done == 100 and not report.diverged and a.step_number == 100
+    assert b.advance_async(100)
+    b.wait()
+    assert b.poll() and a.hash() == b.hash()
+    assert a.displacements().shape == (a.info["nodes"], 3)
+    assert a.displacements().min() < -1e-3
+    a.reset()
+    assert a.time == 0 and not np.any(a.displacements())
+
+
+def test_errors():
+    assert error_of(lambda: pliant.World("no/such/scene.json")).code == 6
+    assert error_of(lambda: pliant.World({"format": "?"})).code == 2
+    world = block()
+    assert error_of(lambda: world.step(-1)).code == 5
+    assert error_of(lambda: world.grab(0)).code == 8
+    assert error_of(lambda: world.displacements(3)).code == 5
+    assert error_of(lambda: pliant.World({}, surfaces=[(VERTICES[:, :2], TRIANGLES)])).code == 5
+
+
+def test_tools():
+    world = block(interactive=True)
+    hand = world.grab(7, radius=0.03)
+    world.move_grab(hand, [0.11, 0.08, 0.06])
+    world.advance(0.5)
+    assert world.frame().positions[7, 0] > 0.105
+    world.release(hand)
+
+
+if __name__ == "__main__":
+    for name, test in list(globals().items()):
+        if name.startswith("test_"):
+            test()
+    runpy.run_path(os.path.join(SOURCE, "examples/python/pull_a_block.py"))
+    print("ok")
