@@ -74,7 +74,7 @@ class Maker:
         return [pictures[round(t / unit)] for t in times]
 
     def save(self, name, image):
-        palette = image.quantize(256, kmeans=1)
+        palette = image.quantize(256, kmeans=4)
         image.quantize(palette=palette, dither=Image.FLOYDSTEINBERG).save(self.out / f"{name}.png", optimize=True)
         print(f"{self.out / name}.png: {image.width} x {image.height}, {(self.out / f'{name}.png').stat().st_size // 1024} KB")
 
@@ -121,7 +121,8 @@ class Maker:
 
     def liver(self):
         scene = load("liver")
-        self.strip("liver", scene, (0, 0.2, 0.4, 0.6), (480, 320), ["--color", "mises", "--range", "0,1500"])
+        scene["view"] = {"eye": [-0.12, 0.34, 0.4], "target": [0.012, 0.035, 0], "field_of_view": 26}
+        self.strip("liver", scene, (0, 0.2, 0.4, 0.6), (480, 320), ["--color", "mises", "--range", "0,600"])
 
     def parts(self):
         sheet = Image.new("RGB", (960, 360), PAPER)
