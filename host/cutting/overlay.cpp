@@ -130,8 +130,8 @@ void Overlay::add_faces(CellState& state, std::int64_t number) {
     face.p = p;
     face.edge = e;
     face.cell = number;
-    face.back = shape.back;
-    face.front = shape.front;
+    face.carrier = {state.cell.carrier[shape.back], state.cell.carrier[shape.front]};
+    face.air = state.cell.air;
     for (int i = 0; i < 3; ++i) {
       Edge& edge = edges_[e[i]];
       face.forward[i] = edge.p == p[i];

@@ -112,8 +112,9 @@ class Overlay {
   struct Face {
     std::array<std::int32_t, 3> p{}, edge{};
     std::array<bool, 3> forward{};
-    std::int64_t cell = -1;  ///< -1: gone
-    int back = 0, front = 0;
+    std::int64_t cell = -1;            ///< -1: gone
+    std::array<Carrier, 2> carrier{};  ///< of its back and of its front
+    bool air = false;
     std::vector<std::array<std::int32_t, 2>> crossed;  ///< {original edge, sign as in EdgeCut}
     std::vector<Segment> segments;
     std::vector<CapNode> nodes;

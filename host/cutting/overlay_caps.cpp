@@ -48,6 +48,15 @@ void Overlay::make_cap(std::int32_t f) {
   const auto corner = [&](int i, int level) {
     return add({VertexKey::point, face.p[i], level, points_[face.p[i]].x}, 1 << i | 1 << (i + 2) % 3);
   };
+  for (int i = 0; i < 3 && !points_[face.p[0]].has_winding; i += 2) {  // along a side from a corner where it is known
+    const Point& known = points_[face.p[i == 0 ? 1 : 2]];
+    if (!known.has_winding) continue;
+    const bool arrives = face.forward[i] == (i == 2);  // the edge leads to the first corner
+    int level = known.winding;
+    for (const Hit& hit : edges_[face.edge[i]].hits) level += arrives ? -hit.sign : hit.sign;
+    points_[face.p[0]].winding = level;
+    points_[face.p[0]].has_winding = true;
+  }
   int level = winding(face.p[0], cell);
   for (int i = 0; i < 3; ++i) {
     const Edge& edge = edges_[face.edge[i]];
@@ -230,12 +239,9 @@ Patch Overlay::caps_of(std::int32_t f) const {
   return patch;
 }
 
-Carrier Overlay::carrier_of(std::int32_t side) const {
-  const Face& face = faces_[side / 2];
-  return cells_.at(face.cell).cell.carrier[side % 2 == 0 ? face.back : face.front];
-}
+Carrier Overlay::carrier_of(std::int32_t side) const { return faces_[side / 2].carrier[side % 2]; }
 
-bool Overlay::in_air(std::int32_t side) const { return cells_.at(faces_[side / 2].cell).cell.air; }
+bool Overlay::in_air(std::int32_t side) const { return faces_[side / 2].air; }
 
 CutVertex Overlay::vertex_on_face(std::int32_t source_edge, std::int32_t side) const {
   return {{VertexKey::of(VertexKey::edge_face, source_edge), side}, {}, carrier_of(side)};
