@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
+#include "model/vec.h"
 #include "pliant/error.h"
 
 namespace pliant {
@@ -108,6 +110,43 @@ Solid cut_solid(const Solid& uncut, const CutTopology& cut) {
     solid.surface_nodes[v] = cut.elements().nodes[element >= 0 ? element : cell];
   }
   return solid;
+}
+
+void hang_surface(const CutSurface& surface, const CutTopology& cut, Solid& solid) {
+  const std::vector<Vec3d> middles = [&] {
+    std::vector<Vec3d> all;
+    for (const auto& t : solid.triangles) {
+      const Vec3d sum = vec::add(vec::add(solid.surface[t[0]], solid.surface[t[1]]), solid.surface[t[2]]);
+      all.push_back(vec::mul(sum, 1.0 / 3));
+    }
+    return all;
+  }();
+  solid.surface.clear();
+  solid.surface_nodes.clear();
+  solid.surface_weights.clear();
+  solid.surface_cell.clear();
+  for (const CutSurfaceVertex& v : surface.vertices()) {
+    const std::int32_t element = cut.element_of(v.carrier.cell, v.carrier.label);
+    std::array<double, 8> weights{};
+    for (int a = 0; a < 8; ++a) {
+      weights[a] = ((a & 1) ? v.local[0] : 1 - v.local[0]) * ((a & 2) ? v.local[1] : 1 - v.local[1]) *
+                   ((a & 4) ? v.local[2] : 1 - v.local[2]);
+    }
+    solid.surface.push_back(v.rest);
+    solid.surface_nodes.push_back(cut.elements().nodes[element >= 0 ? element : v.carrier.cell]);
+    solid.surface_weights.push_back(weights);
+    solid.surface_cell.push_back(v.carrier.cell);
+  }
+  solid.triangles = surface.triangles();
+  solid.triangle_middle.clear();
+  solid.triangle_cut.clear();
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t t = 0; t < solid.triangles.size(); ++t) {
+    const std::int32_t original = surface.original_of(static_cast<std::int32_t>(t));
+    const bool known = original >= 0 && original < static_cast<std::int32_t>(middles.size());
+    solid.triangle_middle.push_back(known ? middles[original] : Vec3d{none, none, none});
+    solid.triangle_cut.push_back(surface.kinds()[t] == SurfaceKind::cut ? 1 : 0);
+  }
 }
 
 }  // namespace pliant

@@ -2,6 +2,7 @@
 #pragma once
 #include <memory>
 
+#include "cutting/cut_surface.h"
 #include "cutting/cut_topology.h"
 #include "model/solid.h"
 
@@ -14,5 +15,8 @@ std::shared_ptr<const CutMesh> cut_mesh(const Solid& solid, const std::string& n
 /// The body with its cut elements, their fill and the virtual nodes. Vertices of the surface hang in the copy that holds their
 /// place at rest; triangles stay as they are.
 Solid cut_solid(const Solid& uncut, const CutTopology& cut);
+
+/// Put the split and capped surface in place of the one that `solid` has from cut_solid.
+void hang_surface(const CutSurface& surface, const CutTopology& cut, Solid& solid);
 
 }  // namespace pliant

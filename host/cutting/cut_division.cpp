@@ -54,6 +54,17 @@ std::array<double, 4> barycentric(const std::array<Vec3d, 4>& x, const Vec3d& p)
   return {1 - wa - wb - wc, wa, wb, wc};
 }
 
+/// No copy is lighter than the lightest part of a lattice cell may be: nodes with next to no mass are beyond what float resolves when
+/// the stable step is estimated. The shares' sum stays 1.
+void raise_to_floor(std::array<double, 8>& share) {
+  double sum = 0;
+  for (double& s : share) {
+    if (s > 0) s = std::max(s, kFillFloor);
+    sum += s;
+  }
+  for (double& s : share) s /= sum;
+}
+
 }  // namespace
 
 TetDivision CutTopology::division(std::int32_t cell, const CellCut& cut, int tet) const {
@@ -90,6 +101,7 @@ void CutTopology::share(std::int32_t cell, CellCut& cut) const {
   }
   if (mesh_->material.empty() || mesh_->material[cell] == kAllSamples) {
     cut.share = volume;
+    raise_to_floor(cut.share);
     return;
   }
   std::array<double, 8> samples{};
@@ -106,6 +118,7 @@ void CutTopology::share(std::int32_t cell, CellCut& cut) const {
   }
   if (sum == 0) cut.share[std::max_element(volume.begin(), volume.end()) - volume.begin()] = sum = 1;
   for (double& s : cut.share) s /= sum;
+  raise_to_floor(cut.share);
 }
 
 CutTet CutTopology::tet(std::int32_t cell, int tet) const {

@@ -112,7 +112,8 @@ void CutTopology::number_nodes(const OldCuts& old, const std::vector<std::array<
 
 /// Cutting a cell again moves the points at which it is divided, so that copies gain or lose a little fill beside what their
 /// parts share out.
-void CutTopology::add_flux(std::int32_t cell, const CellCut& before, CutEdit& edit) const {
+void CutTopology::add_flux(std::int32_t cell, const CellCut& before, const std::vector<std::array<std::int32_t, 8>>& old_copies,
+                           CutEdit& edit) const {
   const CellCut& now = cells_.at(cell);
   if (before.components < 2) return;
   std::array<double, 8> children{}, gain{}, loss{};
@@ -126,7 +127,12 @@ void CutTopology::add_flux(std::int32_t cell, const CellCut& before, CutEdit& ed
   }
   for (int k = 0, j = 0; k < now.components && j < before.components;) {
     const double part = std::min(gain[k], loss[j]);
-    if (part > 0) edit.flux.push_back({now.element[k], before.element[j], part * mesh_->fill[cell]});
+    const std::int32_t from = before.element[j];
+    const auto cells = static_cast<std::int32_t>(mesh_->cells.size());
+    if (part > 0) {
+      edit.flux.push_back(
+          {now.element[k], from, part * mesh_->fill[cell], from < cells ? elements_.nodes[from] : old_copies[from - cells]});
+    }
     gain[k] -= part;
     loss[j] -= part;
     (gain[k] <= loss[j] ? k : j) += 1;

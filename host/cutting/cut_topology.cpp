@@ -100,6 +100,14 @@ int CutTopology::edge_of(std::int32_t cell, std::int32_t a, std::int32_t b) cons
   return -1;
 }
 
+std::vector<std::int32_t> CutTopology::cells_at_edge(const NodePair& edge) const {
+  std::vector<std::int32_t> cells;
+  for (const std::int32_t c : cells_at_node(edge[0])) {
+    if (edge_of(c, edge[0], edge[1]) >= 0) cells.push_back(c);
+  }
+  return cells;
+}
+
 CutEdit CutTopology::cut(const CutEdges& edges) {
   CutEdit edit;
   const OldCuts old = mark(edges, edit);
@@ -114,6 +122,7 @@ CutEdit CutTopology::cut(const CutEdges& edges) {
   const auto copies = elements_.nodes.begin() + static_cast<std::ptrdiff_t>(mesh_->cells.size());
   const std::vector<std::array<std::int32_t, 8>> old_copies(copies, elements_.nodes.end());
   number_elements(old, edit);
+  for (const auto& [c, before] : old) add_flux(c, before, old_copies, edit);
   number_nodes(old, old_copies, edit);
   return edit;
 }
@@ -209,7 +218,6 @@ void CutTopology::number_elements(const OldCuts& old, CutEdit& edit) {
       edit.element_from[e] = from >= 0 ? from : c;
     }
   }
-  for (const auto& [c, before] : old) add_flux(c, before, edit);
 }
 
 }  // namespace pliant

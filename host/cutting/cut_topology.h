@@ -59,9 +59,10 @@ struct CutElements {
 /// Fill that changed hands between the copies of one cell because it was cut again: what `element` has now, and `from` had
 /// before.
 struct FillFlux {
-  std::int32_t element = 0;  ///< element now
-  std::int32_t from = 0;     ///< element before
-  double fill = 0;           ///< >= 0
+  std::int32_t element = 0;                  ///< element now
+  std::int32_t from = 0;                     ///< element before
+  double fill = 0;                           ///< > 0
+  std::array<std::int32_t, 8> from_nodes{};  ///< of `from`, before
 };
 
 /// What an edit did. An edit that changed no element has empty lists.
@@ -92,6 +93,9 @@ class CutTopology {
   [[nodiscard]] std::int32_t element_of(std::int32_t cell, int label) const;
   /// Cells that share all nodes of a cell's local face; nearly always one or none.
   [[nodiscard]] std::span<const std::int32_t> cells_at_face(std::int32_t cell, int face) const;
+
+  /// Cells that have an edge.
+  [[nodiscard]] std::vector<std::int32_t> cells_at_edge(const NodePair& edge) const;
 
   /// The division of tetrahedron `tet` (of mesh().shape) of a cell. Points that cells share have the same bits in each.
   [[nodiscard]] CutTet tet(std::int32_t cell, int tet) const;
@@ -130,7 +134,8 @@ class CutTopology {
   [[nodiscard]] TetDivision division(std::int32_t cell, const CellCut& cut, int tet) const;
   void share(std::int32_t cell, CellCut& cut) const;
   void number_elements(const OldCuts& old, CutEdit& edit);
-  void add_flux(std::int32_t cell, const CellCut& before, CutEdit& edit) const;
+  void add_flux(std::int32_t cell, const CellCut& before, const std::vector<std::array<std::int32_t, 8>>& old_copies,
+                CutEdit& edit) const;
   [[nodiscard]] std::vector<NodeClass> classes_at(std::int32_t node) const;
   void number_nodes(const OldCuts& old, const std::vector<std::array<std::int32_t, 8>>& old_nodes, CutEdit& edit);
 

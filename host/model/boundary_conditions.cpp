@@ -23,8 +23,8 @@ std::string extent_of(const ModelBody& body) {
                      fmt::join(lower, ", "), fmt::join(upper, ", "));
 }
 
-/// Whether a virtual node goes with the chosen ones: if all its anchors do. So a piece is not held by the far side of its
-/// elements.
+/// Whether a virtual node that stands among chosen nodes is chosen too: if all its anchors are. So a piece is not held by the
+/// far side of its elements.
 bool follows(const VirtualNodes& nodes, std::size_t virtual_node, const std::vector<char>& chosen) {
   for (std::int32_t i = nodes.offset[virtual_node]; i < nodes.offset[virtual_node + 1]; ++i) {
     if (chosen[nodes.anchor[i]] == 0) return false;
@@ -51,7 +51,8 @@ std::vector<std::int32_t> select_nodes(const Selection& where, const ModelBody& 
     if (is_chosen[n] != 0) chosen.push_back(static_cast<std::int32_t>(n));
   }
   for (std::size_t n = real; n < body.rest.size() && rule == Virtual::with_anchors; ++n) {
-    if (follows(virtual_nodes, n - real, is_chosen)) chosen.push_back(static_cast<std::int32_t>(n));
+    const bool among = where.contains(body.rest[n], static_cast<std::int64_t>(n));
+    if (among && follows(virtual_nodes, n - real, is_chosen)) chosen.push_back(static_cast<std::int32_t>(n));
   }
   if (chosen.empty()) throw Error(fmt::format("{}: no node in this set; {}", where.pointer, extent_of(body)));
   return chosen;

@@ -221,6 +221,11 @@ void add_surface(const Draft& draft, std::int32_t b, Model& model) {
     surface.triangles.push_back({t[0] + body.first_vertex, t[1] + body.first_vertex, t[2] + body.first_vertex});
     surface.triangle_body.push_back(b);
   }
+  if (!solid.triangle_cut.empty() || !surface.triangle_cut.empty()) {
+    surface.triangle_cut.resize(body.first_triangle, 0);
+    surface.triangle_cut.insert(surface.triangle_cut.end(), solid.triangle_cut.begin(), solid.triangle_cut.end());
+    surface.triangle_cut.resize(surface.triangles.size(), 0);
+  }
 }
 
 void fill_body(const Body& body, Draft& draft, ModelBody& out) {

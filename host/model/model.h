@@ -71,6 +71,7 @@ struct ModelSurface {
   std::vector<std::array<double, 8>> weights;
   std::vector<std::array<std::int32_t, 3>> triangles;
   std::vector<std::int32_t> triangle_body;
+  std::vector<char> triangle_cut;  ///< whether it is a face that a blade made; empty: none
 };
 
 /// Nodes that a cut made: each holds the far side of elements whose material belongs to other nodes, its anchors.

@@ -31,7 +31,7 @@ void from_lattice(const Body& body, Solid& solid) {
     solid.surface_cell.push_back(at.cell);
     solid.surface_weights.push_back(weights);
   }
-  if (body.model.type != ModelType::tled) solid.lattice = std::make_shared<const Lattice>(lattice);
+  solid.lattice = std::make_shared<const Lattice>(lattice);
   solid.lattice_nodes = std::move(lattice.nodes);
   for (const Cell& cell : lattice.cells) solid.samples.push_back(cell.samples);
   if (takes_tets(body.element)) {
@@ -124,7 +124,7 @@ std::array<std::int32_t, 8> cell_corners(const std::array<std::int32_t, 4>* tets
 }
 
 void repartition(const Body& body, Solid& solid) {
-  if (solid.lattice == nullptr) return;
+  if (body.model.type == ModelType::tled) return;
   const Lattice& lattice = *solid.lattice;
   solid.partition = partition_lattice(body, lattice);
   solid.matching_cells.clear();

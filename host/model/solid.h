@@ -18,12 +18,13 @@ struct Solid {
   std::vector<double> fill;                        ///< per element
   std::vector<LatticeNode> lattice_nodes;          ///< one per node if the body is a lattice, else empty
   std::vector<Cell> cells;                         ///< one per hexahedron if the body is a lattice of hexahedra, else empty
-  std::shared_ptr<const Lattice> lattice;          ///< if body.model is not tled: what repartition works on
+  std::shared_ptr<const Lattice> lattice;          ///< uncut, if the body is one
   Partition partition;                             ///< of the lattice's cells, if body.model is not tled
   std::vector<std::uint64_t> samples;              ///< per cell of a lattice: Cell::samples
   std::vector<std::int32_t> copy_of;  ///< if the body is cut: per element (six tetrahedra of a lattice: one) its uncut cell
   VirtualNodes virtual_nodes;
   std::vector<Vec3d> triangle_middle;  ///< ModelBody::triangle_middle
+  std::vector<char> triangle_cut;      ///< if the body is cut: whether the triangle lies on a cut
   std::vector<Cell> matching_cells;    ///< the cells left to shape matching
   double spacing = 0;                  ///< [m]
   std::vector<Vec3d> surface;          ///< vertices [m]

@@ -27,7 +27,9 @@ std::map<std::string, List> make_keys() {
   const List selection = points + List{"nodes"};
   const List curve{"curve", "start", "duration", "table"};
   return {
-      {"scene", {"format", "name", "gravity", "dt", "safety", "duration", "integrator", "relaxation", "solver", "tool", "view", "bodies"}},
+      {"scene",
+       {"format", "name", "gravity", "dt", "safety", "duration", "integrator", "relaxation", "solver", "tool", "blades", "view",
+        "bodies"}},
       {"body",
        {"name", "surface", "mesh", "scale", "translate", "lattice", "element", "material", "model", "inclusions", "fixed",
         "prescribed", "forces", "pressures", "velocity", "angular_velocity"}},
@@ -35,10 +37,11 @@ std::map<std::string, List> make_keys() {
       {"material", {"law", "young", "poisson", "lambda", "mu", "kappa", "density", "damping", "hourglass"}},
       {"model",
        {"type", "ratio", "seed", "region", "beta", "width", "alpha", "stiffness", "damping", "substeps", "goals", "coupling",
-        "follow"}},
+        "follow", "cut"}},
       {"region", {"box", "sphere"}},
       {"stiffness", {"young"}},
       {"tool", {"path"}},
+      {"blade", {"name", "path", "start", "end"}},
       {"view", {"eye", "target", "up", "field_of_view"}},
       {"relaxation", {"tolerance", "max_steps"}},
       {"solver", {"type", "linear", "load_steps", "tolerance", "order"}},

@@ -122,9 +122,11 @@ Scene parse_scene(const std::string& text, const fs::path& file) {
   read_relaxation(top, scene.relaxation);
   read_solver(top, scene);
   if (top.has("tool")) scene.tool = read_tool(top.at("tool"));
+  if (top.has("blades")) scene.blades = read_blades(top.at("blades"));
   if (top.has("view")) scene.view = read_view(top.at("view"));
   read_bodies(top, file.parent_path(), scene);
   check_models(top, scene);
+  check_blades(top, scene);
   return scene;
 }
 

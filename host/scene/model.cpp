@@ -10,7 +10,7 @@ namespace pliant {
 namespace {
 
 constexpr std::array hybrid_keys{"ratio", "seed", "region", "beta", "substeps", "goals", "coupling", "follow"};
-constexpr std::array region_keys{"width", "alpha", "stiffness", "damping"};
+constexpr std::array region_keys{"width", "alpha", "stiffness", "damping", "cut"};
 
 template <class Keys>
 void refuse(const Reader& model, const Keys& keys, ModelType type, const char* needed) {
@@ -68,6 +68,7 @@ void read_shape_matching(const Reader& model, DeformationModel& m) {
     stiffness.expect_object("stiffness");
     m.young = stiffness.at("young", "Young's modulus in pascal").positive();
   }
+  if (model.has("cut")) m.cut = model.at("cut").boolean();
   if (model.has("damping")) m.damping = share(model.at("damping"), "a number with 0 <= damping <= 1");
 }
 

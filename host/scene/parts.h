@@ -16,9 +16,11 @@ Material read_material(const Reader& material);
 /// `lattice`: whether the body is a surface filled with a lattice, which shape matching needs.
 DeformationModel read_model(const Reader& model, bool lattice);
 Tool read_tool(const Reader& tool);
+std::vector<Blade> read_blades(const Reader& blades);
 SceneView read_view(const Reader& view);
 /// Models against the keys of the scene: its integrator, its relaxation and its tool.
 void check_models(const Reader& top, const Scene& scene);
+void check_blades(const Reader& top, const Scene& scene);
 /// `folder` is what relative mesh paths are relative to; `index` numbers a body without a name.
 Body read_body(const Reader& body, const std::filesystem::path& folder, std::size_t index);
 

@@ -108,6 +108,7 @@ struct DeformationModel {
   int substeps = 1;                 ///< steps of TLED per step of FLSM, 1 to 64
   bool extrapolate = false;         ///< "goals": "extrapolated" instead of "held" between steps of FLSM
   bool conservative = true;  ///< "coupling": "conservative" gives the reaction of the interface back, "one-sided" does not
+  bool cut = true;           ///< "cut": false: a blade passes through the shape-matching part without effect
   bool follow = false;       ///< "follow": "tool": the operational region moves with the scene's tool
   std::string pointer;       ///< JSON pointer ("/bodies/0/model")
 };
@@ -116,6 +117,18 @@ struct DeformationModel {
 struct Tool {
   std::vector<std::array<double, 4>> path;  ///< (time [s], x, y, z [m]), times ascending, linear in between, held outside
   [[nodiscard]] Vec3d position(double time) const;
+};
+
+/// A blade on a prescribed path: a segment that cuts whatever it sweeps over.
+struct Blade {
+  std::string name;
+  std::vector<std::array<double, 7>>
+      path;  ///< (time [s], both ends [m]), at least two rows, times ascending, linear in between
+  double start = -std::numeric_limits<double>::infinity();  ///< it cuts from here [s], and not before its path begins
+  double end = std::numeric_limits<double>::infinity();     ///< ... to here [s], and not after its path ends
+  std::string pointer;                                      ///< JSON pointer ("/blades/0")
+  /// Both ends at a time [m]; held outside the path.
+  [[nodiscard]] std::array<Vec3d, 2> at(double time) const;
 };
 
 /// Where pictures are taken from. What is absent is found from the scene.
@@ -134,8 +147,7 @@ struct LatticeSpec {
 struct Body {
   std::string name;
   std::filesystem::path surface;  ///< triangle mesh to be filled with a lattice; empty if `mesh` is given
-  std::shared_ptr<const TriangleMesh> surface_in_memory;  ///< set in code: taken instead of the file, whose
-                                                          ///< name is for messages
+  std::shared_ptr<const TriangleMesh> surface_in_memory;  ///< set in code: instead of the file, which names it in messages
   std::filesystem::path mesh;  ///< tetrahedral (or hexahedral) volume mesh; empty if `surface` is given
   double scale = 1;            ///< applied to the file's coordinates first
   Vec3d translate{};           ///< [m], after scaling
@@ -182,6 +194,7 @@ struct Scene {
   Relaxation relaxation;
   StaticSolver solver;
   Tool tool;
+  std::vector<Blade> blades;
   SceneView view;
   bool interactive = false;  ///< set in code: the Model reserves a force on every node that moves a vertex of the surface
   std::vector<Body> bodies;

@@ -1,4 +1,5 @@
 // A scene back into its file format.
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "scene/keys.h"
@@ -73,6 +74,7 @@ Json model_json(const DeformationModel& m) {
     model["alpha"] = m.alpha;
   }
   model["damping"] = m.damping;
+  model["cut"] = m.cut;
   return model;
 }
 
@@ -140,6 +142,13 @@ Json body_json(const Body& b, const fs::path& scene_file) {
   return body;
 }
 
+Json blade_json(const Blade& b) {
+  Json blade{{"name", b.name}, {"path", b.path}};
+  if (std::isfinite(b.start)) blade["start"] = b.start;
+  if (std::isfinite(b.end)) blade["end"] = b.end;
+  return blade;
+}
+
 Json view_json(const SceneView& v) {
   Json view = Json::object();
   if (v.eye) view["eye"] = *v.eye;
@@ -170,6 +179,7 @@ std::string scene_to_json(const Scene& scene) {
     top["solver"]["load_steps"] = s.load_steps > 0 ? Json(s.load_steps) : Json("auto");
   }
   if (!scene.tool.path.empty()) top["tool"] = {{"path", scene.tool.path}};
+  for (const Blade& b : scene.blades) top["blades"].push_back(blade_json(b));
   if (const Json view = view_json(scene.view); !view.empty()) top["view"] = view;
   top["bodies"] = Json::array();
   for (const Body& b : scene.bodies) top["bodies"].push_back(body_json(b, scene.file));

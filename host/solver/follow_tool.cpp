@@ -72,12 +72,16 @@ void Simulation::follow_tool() {
   if (automatic_) adapt_dt();
 }
 
-/// Build and load the model with the operational regions around `seeds`, three numbers per body.
-void Simulation::move_region(const std::vector<double>& seeds) {
+void Simulation::set_seeds(const std::vector<double>& seeds) {
   for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
     DeformationModel& model = scene_.bodies[b].model;
     if (model.follow) model.seed = Vec3d{seeds[3 * b], seeds[3 * b + 1], seeds[3 * b + 2]};
   }
+}
+
+/// Build and load the model with the operational regions around `seeds`, three numbers per body.
+void Simulation::move_region(const std::vector<double>& seeds) {
+  set_seeds(seeds);
   if (solids_ == nullptr) solids_ = std::make_shared<const std::vector<Solid>>(make_solids(scene_));
   backend_->finish();
   model_ = std::make_shared<const Model>(build_model(scene_, *solids_));
@@ -86,7 +90,14 @@ void Simulation::move_region(const std::vector<double>& seeds) {
 
 void Simulation::prepare_restore(const SimulationState& state) {
   const auto seeds = state.vectors.find("seeds");
-  if (seeds != state.vectors.end() && seeds->second.size() == 3 * scene_.bodies.size()) move_region(seeds->second);
+  const bool moved = seeds != state.vectors.end() && seeds->second.size() == 3 * scene_.bodies.size();
+  if (moved) set_seeds(seeds->second);
+  const auto cuts = state.vectors.find("cuts");
+  if (cuts != state.vectors.end()) {
+    replay_cuts(cuts->second);
+  } else if (moved) {
+    move_region(seeds->second);
+  }
 }
 
 }  // namespace pliant

@@ -87,6 +87,7 @@ void Simulation::start(const SimulationOptions& options) {
         fmt::format("no stable step could be found (estimate {} s): nothing in the scene can move freely", state_.stable_dt));
   }
   first_dt_ = state_.dt;
+  prepare_blades();
   // Squares and cubes of what is left stay normal numbers; the double oracle needs neither floor nor grid.
   if (backend_->info().name != "cpu:double") {
     still_ = 1e-12 * model_->shortest;
@@ -157,7 +158,10 @@ std::int32_t Simulation::next_batch(std::int64_t wanted) const {
 }
 
 void Simulation::begin_batch(std::int32_t steps) {
-  if (on_grid(state_.step)) follow_tool();
+  if (on_grid(state_.step)) {
+    move_blades();
+    follow_tool();
+  }
   if (adapts_at(state_.step)) adapt_dt();
   if (on_grid(state_.step) || state_.vectors.count("kept") == 0) keep_state();
   upload_params();
@@ -166,7 +170,8 @@ void Simulation::begin_batch(std::int32_t steps) {
 
 /// Steps at which batches begin however a run is cut into pieces: only these states are kept to go back to.
 bool Simulation::on_grid(std::int64_t step) const {
-  return begins_after(step, batch_steps_) || adapts_at(step) || (scene_.relaxation.enabled && step % kRelaxEvery == 0);
+  return begins_after(step, batch_steps_) || adapts_at(step) || (blade_steps_ > 0 && begins_after(step, blade_steps_)) ||
+         (scene_.relaxation.enabled && step % kRelaxEvery == 0);
 }
 
 void Simulation::keep_state() {

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,9 @@
 namespace pliant {
 
 struct Solid;
+struct CutState;
+struct CutEdit;
+class CutTopology;
 
 /// The first element whose J stopped being a positive, finite number.
 struct Divergence {
@@ -35,6 +39,14 @@ struct SimulationState {
   double origin_time = 0, dt = 0, stable_dt = 0, damping = 0;
   double caution = 1;                                  ///< share of the estimate that an automatic step still trusts
   std::map<std::string, std::vector<double>> vectors;  ///< what dynamic relaxation and the automatic step remember
+};
+
+/// What an edit of the topology did, and the time it took [s].
+struct CutReport {
+  std::int64_t edges = 0;  ///< newly cut
+  bool changed = false;    ///< whether elements were split
+  double search = 0, topology = 0, model = 0, upload = 0;
+  [[nodiscard]] double seconds() const { return search + topology + model + upload; }
 };
 
 struct SimulationOptions {
@@ -81,6 +93,18 @@ class Simulation {
   /// Vertices of the embedded surface of all bodies [m].
   [[nodiscard]] std::vector<Vec3d> surface_positions();
 
+  /// Cut everything that these triangles [m] cross, in present positions. Between two batches of a run (now, if shape matching
+  /// has substeps, at the next batch that begins with one of its steps). Throws Error, with nothing changed, for triangles that
+  /// are not finite, a body that cannot be cut, or a model that does not fit the device.
+  CutReport cut(std::span<const std::array<Vec3d, 3>> triangles);
+  /// Move a blade to a segment; it cuts what it sweeps over. Its first call only puts it there. `blade` is any name. Throws
+  /// like cut(), and for a segment without length.
+  CutReport move_blade(const std::string& blade, const std::array<Vec3d, 2>& segment);
+  /// Grows with each edit that changed elements.
+  [[nodiscard]] std::int64_t topology_version() const { return topology_version_; }
+  /// How a body is cut; nullptr if no blade has touched it.
+  [[nodiscard]] const CutTopology* cut_topology(std::size_t body) const;
+
   /// Vertices of the embedded surface as the backend holds them, four reals each (the fourth is 0), padded to a multiple of 16
   /// vertices: bytes that read_surface wants. 0 without a surface.
   [[nodiscard]] std::size_t surface_bytes() const;
@@ -119,6 +143,14 @@ class Simulation {
   /// Defined in follow_tool.cpp.
   void follow_tool();
   void move_region(const std::vector<double>& seeds);
+  void set_seeds(const std::vector<double>& seeds);
+  /// Defined in blades.cpp and cut_model.cpp.
+  void prepare_blades();
+  void move_blades();
+  CutReport cut_now(std::span<const std::array<Vec3d, 3>> triangles);
+  void rebuild(const std::vector<CutEdit>& edits, CutReport& report);
+  void replay_cuts(const std::vector<double>& cuts);
+  void limit_to_element_bound();
   /// Defined in shape_matching.cpp.
   void choose_dt(double wanted, bool estimate);
   [[nodiscard]] bool has_elements() const;
@@ -170,6 +202,10 @@ class Simulation {
   bool equilibrium_ = false;
   double residual_ = 0;
   std::vector<HostForce> host_forces_;
+  std::shared_ptr<CutState> cuts_;             ///< once a blade has touched something
+  std::vector<std::array<Vec3d, 3>> pending_;  ///< triangles that wait for a step of shape matching
+  std::int64_t topology_version_ = 0;
+  std::int64_t blade_steps_ = 0;  ///< steps between two looks at the scene's blades; 0: it has none
 };
 
 }  // namespace pliant

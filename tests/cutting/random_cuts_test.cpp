@@ -80,7 +80,7 @@ void check_edit(const CutElements& before, const CutTopology& body, const CutEdi
   for (const FillFlux& f : edit.flux) {
     EXPECT_GT(f.fill, 0);
     for (int a = 0; a < corners; ++a) {
-      momentum += f.fill * (speed[before.nodes[f.from][a]] - speed[edit.node_from[now.nodes[f.element][a]]]);
+      momentum += f.fill * (speed[f.from_nodes[a]] - speed[edit.node_from[now.nodes[f.element][a]]]);
     }
   }
   EXPECT_NEAR(momentum, momentum_before, 1e-12 * corners * static_cast<double>(now.nodes.size()));

@@ -1,0 +1,82 @@
+// The key "blades" of a scene.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scene/parts.h"
+
+namespace pliant {
+namespace {
+
+using Row = std::array<double, 7>;
+
+Row read_row(const Reader& row, const std::vector<Row>& before) {
+  const char* const expected = "a row [time, x, y, z, x, y, z] in seconds and metres: both ends of the blade";
+  const std::vector<Reader> parts = row.items(expected);
+  if (parts.size() != 7) row.fail(expected);
+  Row out{};
+  for (std::size_t i = 0; i < 7; ++i) out[i] = parts[i].number();
+  if (!before.empty() && !(out[0] > before.back()[0])) {
+    parts[0].fail(fmt::format("a time after the previous row's {}", before.back()[0]));
+  }
+  if (std::equal(out.begin() + 1, out.begin() + 4, out.begin() + 4)) {
+    row.fail("two different ends (a blade has a length)");
+  }
+  return out;
+}
+
+Blade read_blade(const Reader& blade, std::size_t index) {
+  blade.expect_object("blade");
+  Blade b;
+  b.pointer = blade.pointer();
+  b.name = blade.has("name") ? blade.at("name").text("a text that is not empty") : fmt::format("blade{}", index);
+  const char* const expected = "a list of at least two rows [time, x, y, z, x, y, z]";
+  for (const Reader& row : blade.at("path", expected).items(expected, 2)) b.path.push_back(read_row(row, b.path));
+  if (blade.has("start")) b.start = blade.at("start").number();
+  if (blade.has("end")) {
+    b.end = blade.at("end").number();
+    if (!(b.end > b.start)) blade.at("end").fail(fmt::format("a time after the start {}", b.start));
+  }
+  return b;
+}
+
+}  // namespace
+
+std::vector<Blade> read_blades(const Reader& blades) {
+  const char* const expected = "a list of blades";
+  std::vector<Blade> all;
+  for (const Reader& entry : blades.items(expected)) {
+    all.push_back(read_blade(entry, all.size()));
+    for (std::size_t i = 0; i + 1 < all.size(); ++i) {
+      if (all[i].name != all.back().name) continue;
+      entry.fail(fmt::format("the name \"{}\", which {} has already", all[i].name, all[i].pointer),
+                 "a different name for every blade");
+    }
+  }
+  return all;
+}
+
+void check_blades(const Reader& top, const Scene& scene) {
+  if (scene.blades.empty()) return;
+  if (scene.integrator != Integrator::increment) top.at("integrator").fail("increment, because the scene has blades");
+  if (scene.relaxation.enabled) top.at("relaxation").fail("false, because the scene has blades");
+  const std::vector<Reader> bodies = top.at("bodies").items("a list of bodies");
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Body& b = scene.bodies[i];
+    const bool hexes = b.element == ElementKind::hex8 || b.element == ElementKind::hex8full;
+    if (b.mesh.empty() || !hexes) continue;
+    bodies[i].at("element").fail("tet4 or tet4anp, because the scene has blades (a mesh of hexahedra cannot be cut)");
+  }
+}
+
+std::array<Vec3d, 2> Blade::at(double time) const {
+  const auto after = std::upper_bound(path.begin(), path.end(), time, [](double t, const Row& row) { return t < row[0]; });
+  const Row& left = after == path.begin() ? *after : *(after - 1);
+  const Row& right = after == path.end() ? left : *after;
+  const double span = right[0] - left[0], s = span > 0 ? (time - left[0]) / span : 0;
+  Row row{};
+  for (std::size_t i = 1; i < 7; ++i) row[i] = s == 0 ? left[i] : left[i] + s * (right[i] - left[i]);
+  return {Vec3d{row[1], row[2], row[3]}, Vec3d{row[4], row[5], row[6]}};
+}
+
+}  // namespace pliant

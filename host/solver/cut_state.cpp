@@ -1,0 +1,76 @@
+#include "solver/cut_state.h"
+
+#include "model/partition.h"
+
+namespace pliant {
+
+BodyCut::BodyCut(const Body& body, std::shared_ptr<const Solid> uncut)
+    : uncut_(std::move(uncut)), topology_(cut_mesh(*uncut_, body.name)) {
+  make_surface();
+}
+
+void BodyCut::make_surface() {
+  if (uncut_->lattice != nullptr) {
+    surface_ = std::make_unique<CutSurface>(TriangleMesh{uncut_->surface, uncut_->triangles}, *uncut_->lattice);
+  }
+}
+
+CutEdges BodyCut::crossed(const Body& body, std::span<const Vec3d> x, std::span<const SweepTriangle> triangles) const {
+  CutEdges edges = crossed_edges(topology_, x, triangles);
+  if (body.model.cut || body.model.type == ModelType::tled || edges.empty()) return edges;
+  const Partition partition = partition_lattice(body, *uncut_->lattice);
+  std::erase_if(edges, [&](const auto& edge) {
+    for (const std::int32_t c : topology_.cells_at_edge(edge.first)) {
+      if (partition.operational[c] == 0) return true;
+    }
+    return false;
+  });
+  return edges;
+}
+
+CutEdit BodyCut::cut(const CutEdges& edges) {
+  history_.push_back(edges);
+  try {
+    return enter(edges);
+  } catch (...) {
+    undo();
+    throw;
+  }
+}
+
+CutEdit BodyCut::enter(const CutEdges& edges) {
+  CutEdit edit = topology_.cut(edges);
+  if (surface_ != nullptr && edit.changed_elements()) surface_->update(topology_, edit.cells);
+  return edit;
+}
+
+void BodyCut::undo() {
+  history_.pop_back();
+  topology_.reset({});
+  make_surface();
+  for (const CutEdges& edges : history_) enter(edges);
+}
+
+Solid BodyCut::solid() const {
+  Solid solid = cut_solid(*uncut_, topology_);
+  if (surface_ == nullptr) return solid;
+  hang_surface(*surface_, topology_, solid);
+  return solid;
+}
+
+CutState::CutState(const Scene& scene) : bodies(scene.bodies.size()) {
+  for (Solid& solid : make_solids(scene)) uncut.push_back(std::make_shared<const Solid>(std::move(solid)));
+}
+
+BodyCut& CutState::body(const Scene& scene, std::size_t b) {
+  if (bodies[b] == nullptr) bodies[b] = std::make_unique<BodyCut>(scene.bodies[b], uncut[b]);
+  return *bodies[b];
+}
+
+std::vector<Solid> CutState::solids() const {
+  std::vector<Solid> all;
+  for (std::size_t b = 0; b < bodies.size(); ++b) all.push_back(bodies[b] != nullptr ? bodies[b]->solid() : *uncut[b]);
+  return all;
+}
+
+}  // namespace pliant

@@ -1,0 +1,53 @@
+// The bodies of a simulation that are cut, and where its blades are. Private to host/solver.
+#pragma once
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "cutting/blade.h"
+#include "cutting/cut_body.h"
+#include "cutting/cut_surface.h"
+#include "cutting/cut_topology.h"
+#include "model/solid.h"
+
+namespace pliant {
+
+/// One body: as it was filled, its cut, its surface.
+class BodyCut {
+ public:
+  /// Throws Error for a body that cannot be cut.
+  BodyCut(const Body& body, std::shared_ptr<const Solid> uncut);
+
+  [[nodiscard]] const CutTopology& topology() const { return topology_; }
+  /// The edges that the triangles cross and that may be cut: not those of cells left to shape matching where the scene says so.
+  [[nodiscard]] CutEdges crossed(const Body& body, std::span<const Vec3d> x, std::span<const SweepTriangle> triangles) const;
+  /// Throws, with nothing changed, what CutTopology::cut throws.
+  CutEdit cut(const CutEdges& edges);
+  /// Take the last edit back.
+  void undo();
+  /// The body as it is cut now.
+  [[nodiscard]] Solid solid() const;
+  /// Edits so far, in order.
+  [[nodiscard]] const std::vector<CutEdges>& history() const { return history_; }
+  [[nodiscard]] const CutSurface* surface() const { return surface_.get(); }
+
+ private:
+  void make_surface();
+  CutEdit enter(const CutEdges& edges);
+  std::shared_ptr<const Solid> uncut_;
+  CutTopology topology_;
+  std::unique_ptr<CutSurface> surface_;  ///< of a lattice
+  std::vector<CutEdges> history_;
+};
+
+/// All bodies of a scene; those never touched by a blade have no BodyCut.
+struct CutState {
+  explicit CutState(const Scene& scene);
+  std::vector<std::shared_ptr<const Solid>> uncut;
+  std::vector<std::unique_ptr<BodyCut>> bodies;
+  [[nodiscard]] BodyCut& body(const Scene& scene, std::size_t b);
+  [[nodiscard]] std::vector<Solid> solids() const;
+};
+
+}  // namespace pliant

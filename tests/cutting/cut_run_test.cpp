@@ -1,0 +1,193 @@
+// Cuts of running simulations: what they keep, both backends, checkpoints, and what is refused.
+#include <gtest/gtest.h>
+
+#include "cutting/cut_bodies.h"
+#include "cutting/cut_scenes.h"
+#include "io/save.h"
+#include "pliant/error.h"
+#include "solver/compare.h"
+#include "solver/scenes.h"
+
+namespace pliant {
+namespace {
+
+using namespace cut_test;
+
+class CutRun : public ::testing::TestWithParam<ElementKind> {};
+INSTANTIATE_TEST_SUITE_P(Cutting, CutRun,
+                         ::testing::Values(ElementKind::hex8, ElementKind::hex8full, ElementKind::tet4, ElementKind::tet4anp),
+                         [](const auto& element) { return std::string(to_string(element.param)); });
+
+TEST_P(CutRun, a_moving_body_keeps_mass_and_momentum_at_every_cut) {
+  Body body = box_body("box", {0.06, 0.04, 0.03}, GetParam());
+  body.velocity = {0.005, -0.02, 0.01};
+  body.angular_velocity = {0.3, 0.5, -0.4};
+  Simulation s(scene_with(body), open_backend("cpu"));
+  const double mass = mass_of(s), bound = s.model().element_bound;
+  const std::size_t nodes = s.model().bodies[0].rest.size();
+  std::int64_t version = 0;
+  for (const double at : {0.031, 0.045, 0.018, 0.035}) {
+    s.advance(25);
+    const Vec3d before = momentum_of(s);
+    const std::vector<Vec3d> u = s.displacements(0);
+    const CutReport report = s.cut(wall(at, at < 0.033 ? 0.4 : -0.2));
+    EXPECT_TRUE(report.changed);
+    EXPECT_EQ(s.topology_version(), ++version);
+    EXPECT_NEAR(mass_of(s), mass, 1e-12 * mass);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(momentum_of(s)[c], before[c], 2e-6 * 0.03 * mass);
+    EXPECT_EQ(s.model().element_bound, bound);
+    for (std::size_t n = 0; n < nodes; ++n) EXPECT_EQ(s.displacements(0)[n], u[n]) << "a node of the uncut body has moved";
+    check_body(*s.cut_topology(0), false);
+  }
+  EXPECT_GE(s.cut_topology(0)->pieces(), 3);
+  EXPECT_EQ(s.advance(200), 200) << (s.divergence() ? s.divergence()->message() : "");
+}
+
+TEST_P(CutRun, the_stable_step_does_not_shrink) {
+  Simulation s(scene_with(box_body("box", {0.05, 0.04, 0.03}, GetParam())), open_backend("cpu:double"));
+  const double before = s.estimate_stable_dt(), bound = s.model().element_bound;
+  EXPECT_GE(before, 0.99 * bound);
+  double least = before;
+  for (const double at : {0.0213, 0.03, 0.0101, 0.0299, 0.0399999}) {
+    s.cut(wall(at, at == 0.0213 ? 0.3 : 0));
+    least = std::min(least, s.estimate_stable_dt());
+    EXPECT_GE(least, 0.99 * bound);
+    EXPECT_EQ(s.model().element_bound, bound);
+  }
+  std::printf("%s: element bound %.4g s, Lanczos %.4g s uncut, least after cuts %.4g s\n", to_string(GetParam()), bound, before,
+              least);
+}
+
+TEST_P(CutRun, a_piece_that_nothing_holds_falls) {
+  Body body = box_body("box", {0.06, 0.02, 0.02}, GetParam());
+  Selection end;
+  end.kind = Selection::Kind::box;
+  end.a = {-1, -1, -1};
+  end.b = {0.001, 1, 1};
+  body.fixed.push_back({end});
+  Scene scene = scene_with(body);
+  scene.gravity = {0, -9.81, 0};
+  scene.blades.push_back(blade("scalpel", {{0, 0.034, -0.03, -1, 0.034, -0.03, 1}, {0.02, 0.034, 0.05, -1, 0.034, 0.05, 1}}));
+  Simulation s(scene, open_backend("cpu"));
+  while (s.time() < 0.06) s.advance(64);
+  ASSERT_EQ(s.cut_topology(0)->pieces(), 2);
+  double held = 0, loose = 0;
+  const std::vector<Vec3d> u = s.displacements(0);
+  for (std::size_t n = 0; n < u.size(); ++n) {
+    const double x = s.model().bodies[0].rest[n][0];
+    if (x < 0.0201) held = std::min(held, u[n][1]);
+    if (x > 0.0599) loose = std::min(loose, u[n][1]);
+  }
+  EXPECT_LT(loose, -0.004) << "free fall for 40 ms is 7.8 mm";
+  EXPECT_GT(held, loose / 2);
+}
+
+TEST(CutRun, virtual_nodes_of_a_loose_piece_are_not_fixed) {
+  Body body = box_body("box", {0.04, 0.02, 0.02});
+  Selection end;
+  end.kind = Selection::Kind::box;
+  end.a = {-1, -1, -1};
+  end.b = {0.001, 1, 1};
+  body.fixed.push_back({end});
+  Simulation s(scene_with(body), open_backend("cpu"));
+  const std::size_t fixed = s.model().constraints.size();
+  s.cut(wall(0.005));
+  EXPECT_EQ(s.model().constraints.size(), fixed);
+  Body plane = box_body("box", {0.04, 0.02, 0.02});
+  plane.fixed.push_back({Selection{}, {false, false, true}});
+  Simulation strain(scene_with(plane), open_backend("cpu"));
+  strain.cut(wall(0.005));
+  EXPECT_EQ(strain.model().constraints.size(), strain.model().bodies[0].rest.size());
+}
+
+Scene five_cuts(ModelType type, ElementKind element) {
+  Body body = box_body("box", {0.08, 0.03, 0.03}, element);
+  body.model.type = type;
+  body.model.width = 1;
+  body.model.ratio = 0.5;
+  body.angular_velocity = {1, 3, -2};
+  Scene scene = scene_with(body);
+  scene.gravity = {0, -9.81, 0};
+  const double t = 0.006;
+  for (int k = 0; k < 5; ++k) {
+    const double x = 0.013 + 0.0137 * k, start = t * k;
+    scene.blades.push_back(blade("blade" + std::to_string(k), {{start, x, -0.02, -1, x + 0.01, -0.02, 1},
+                                                               {start + 1.3 * t, x, 0.08, -1, x + 0.01, 0.08, 1}}));
+  }
+  return scene;
+}
+
+class CutModels : public ::testing::TestWithParam<std::tuple<ModelType, ElementKind>> {};
+INSTANTIATE_TEST_SUITE_P(Cutting, CutModels,
+                         ::testing::Values(std::tuple(ModelType::tled, ElementKind::hex8),
+                                           std::tuple(ModelType::tled, ElementKind::tet4anp),
+                                           std::tuple(ModelType::hybrid, ElementKind::hex8),
+                                           std::tuple(ModelType::hybrid, ElementKind::tet4),
+                                           std::tuple(ModelType::flsm, ElementKind::hex8)));
+
+SimulationOptions short_batches() {
+  SimulationOptions options;
+  options.batch_steps = 16;
+  options.dt = 2e-4;
+  return options;
+}
+
+TEST_P(CutModels, both_backends_agree_through_200_steps_with_5_cuts) {
+  if (!testing::has_opencl()) GTEST_SKIP() << "no OpenCL device";
+  const Scene scene = five_cuts(std::get<0>(GetParam()), std::get<1>(GetParam()));
+  Simulation a(scene, open_backend("cpu"), short_batches()), b(scene, open_backend("opencl:0"), short_batches());
+  CompareOptions options;
+  options.steps = 200;
+  options.every_pass = false;
+  const ComparisonResult result = compare(a, b, options);
+  EXPECT_TRUE(result.identical) << (result.first_difference ? result.first_difference->message() : "");
+  EXPECT_GE(a.topology_version(), 5);
+  EXPECT_EQ(a.topology_version(), b.topology_version());
+  EXPECT_FALSE(a.divergence());
+}
+
+TEST_P(CutModels, a_run_resumed_between_cuts_has_the_same_bits) {
+  const Scene scene = five_cuts(std::get<0>(GetParam()), std::get<1>(GetParam()));
+  Simulation whole(scene, open_backend("cpu"), short_batches());
+  whole.advance(75);
+  const Checkpoint saved = take_checkpoint(whole);
+  const std::int64_t version = whole.topology_version();
+  EXPECT_GE(version, 1);
+  whole.advance(125);
+  EXPECT_GT(whole.topology_version(), version);
+  Simulation resumed(scene, open_backend("cpu"), short_batches());
+  restore_checkpoint(resumed, saved, "saved");
+  EXPECT_EQ(resumed.topology_version(), version);
+  resumed.advance(125);
+  EXPECT_EQ(whole.hash(), resumed.hash());
+  EXPECT_EQ(whole.topology_version(), resumed.topology_version());
+  EXPECT_EQ(whole.surface_positions(), resumed.surface_positions());
+  expect_same(whole.cut_topology(0)->elements(), resumed.cut_topology(0)->elements());
+}
+
+TEST(CutRun, a_scene_can_forbid_cuts_of_its_shape_matching_part) {
+  Scene scene = five_cuts(ModelType::flsm, ElementKind::hex8);
+  scene.bodies[0].model.cut = false;
+  scene.blades.clear();
+  Simulation s(scene, open_backend("cpu"));
+  const std::uint64_t before = s.hash();
+  EXPECT_EQ(s.cut(wall(0.033)).edges, 0);
+  EXPECT_EQ(s.topology_version(), 0);
+  EXPECT_EQ(s.hash(), before);
+}
+
+TEST(CutRun, bad_blades_are_refused_and_change_nothing) {
+  Simulation s(scene_with(box_body("box", {0.04, 0.03, 0.03})), open_backend("cpu"));
+  s.advance(10);
+  const std::uint64_t before = s.hash();
+  EXPECT_THROW(s.move_blade("b", {{{0, 0, 0}, {0, 0, 0}}}), Error);
+  EXPECT_THROW(s.move_blade("b", {{{0, 0, 0}, {0, NAN, 0}}}), Error);
+  EXPECT_THROW(s.cut(std::vector<SweepTriangle>{{Vec3d{0, 0, INFINITY}, {}, {}}}), Error);
+  EXPECT_EQ(s.hash(), before);
+  EXPECT_FALSE(s.move_blade("b", {{{0.02, -1, -1}, {0.02, -1, 1}}}).changed) << "the first call puts it there";
+  EXPECT_TRUE(s.move_blade("b", {{{0.021, 1, -1}, {0.021, 1, 1}}}).changed);
+  EXPECT_EQ(s.cut_topology(0)->pieces(), 2);
+}
+
+}  // namespace
+}  // namespace pliant
