@@ -7,12 +7,12 @@ from report_charts import COLOURS, FAINT, INK, MARKERS, PAPER, WIDTH, count, num
 from report_kernels import readable_on
 from report_page import Column, Section, figure, heading, machine_facts, notice, paragraph, table, text
 
-METHODS = {"hybrid": ("hybrid", COLOURS[0]), "tled": ("finite elements alone", COLOURS[1]), "flsm": ("shape matching alone", COLOURS[2])}
+METHODS = {"hybrid": ("hybrid", COLOURS[0]), "tled": ("elements alone", COLOURS[1]), "flsm": ("matching alone", COLOURS[2])}
 # What passes do, by the beginning of their kernel's name; the first that fits.
 ROLES = [("tled_", "element forces"), ("flsm_bar", "sums over regions"), ("flsm_plate", "sums over regions"),
          ("flsm_region", "rotations of regions"), ("flsm_goal", "goals of nodes"), ("flsm_", "update by goals, interface"),
          ("brick_update", "update by forces"), ("node_update", "update by forces"), ("", "loads, prescribed nodes")]
-CUTS = {"none": "whole", "plane": "all links across a plane cut", "random": "one link in 100 cut"}
+CUTS = {"none": "whole", "plane": "a plane cut", "random": "1 % of the links cut"}
 FRAME = 1000 / 60  # [ms]
 NOISY = 0.15
 
@@ -60,7 +60,8 @@ def bars(r, axes, backend, key, low, high):
                 continue
             y = i + 0.27 * (j - 1)
             axes.barh(y, row[key] - low, left=low, height=0.25, color=colour)
-            axes.text(row[key] * 1.06, y, number(row[key], 2), va="center", fontsize=6.4, color=INK)
+            axes.text(row[key] * 1.08, y, number(row[key]), va="center", fontsize=6.4, color=INK, zorder=5,
+                      bbox={"facecolor": PAPER, "edgecolor": "none", "pad": 0.4})
         source = next(row["source_ms"] for row in r.scenes if row["scene"] == scene)
         axes.plot([source, source], [i - 0.43, i + 0.43], color=INK, linewidth=2.2, solid_capstyle="butt", zorder=4)
     axes.set_yticks(range(len(r.names)), r.names)
@@ -94,9 +95,9 @@ def scenes_table(r):
         Column("scene", "scene", show=text, number=False), Column("words", "method", show=text, number=False),
         Column("backend", "backend", show=text, number=False), Column("nodes", "nodes", show=count),
         Column("ratio", "ratio", show=lambda v: f"{v:.3f}", note="operational and interface nodes over all nodes"),
-        Column("ms_per_step", "one step", "ms", number), Column("dt", "its length", "ms", lambda v: number(1e3 * v)),
-        Column("ms_per_frame", "1/60 s", "ms", number), Column("source_ms", "source", "ms", lambda v: f"{v:.1f}"),
-        Column("over_step", "source over", "step", number), Column("over_frame", "source over", "1/60 s", number),
+        Column("ms_per_step", "step", "ms", number), Column("dt", "dt", "ms", lambda v: number(1e3 * v)),
+        Column("ms_per_frame", "frame", "ms", number), Column("source_ms", "source", "ms", lambda v: f"{v:.1f}"),
+        Column("over_step", "source", "/ step", number), Column("over_frame", "source", "/ frame", number),
         Column("spread", "spread", "%", share),
         Column("hash", "state hash", show=lambda v: f'<code class="{"differs" if v in differing else ""}">{text(v)}</code>', number=False),
     ]
@@ -110,7 +111,7 @@ def role(kernel):
 def split_chart(r, folder):
     backend = r.backends[0]
     roles = list(dict.fromkeys(words for _, words in ROLES))
-    fig, panels = charts.panels(r.names, 1.25, sharex=True, sharey=False)
+    fig, panels = charts.panels(r.names, 1.5, sharex=True, sharey=False)
     used, longest = set(), 0.0
     totals = {}
     for scene in r.names:
@@ -119,7 +120,8 @@ def split_chart(r, folder):
             sums = totals[scene, method] = dict.fromkeys(roles, 0.0)
             for p in row["passes"] if row else []:
                 sums[role(p["kernel"])] += p["us_per_launch"] * p["launches_per_step"]
-            longest = max(longest, sum(sums.values()), 1e3 * row["ms_per_step"] if row else 0)
+            if row:  # a pass that was disturbed must not make all others small: bars end at twice the whole step
+                longest = max(longest, 1e3 * row["ms_per_step"], min(sum(sums.values()), 2e3 * row["ms_per_step"]))
     for axes, scene in zip(panels, r.names):
         for i, method in enumerate(METHODS):
             row, left = r.row(scene, method, backend), 0.0
@@ -129,13 +131,16 @@ def split_chart(r, folder):
                 colour = COLOURS[roles.index(words) % len(COLOURS)]
                 used.add(words)
                 axes.barh(i, us, left=left, height=0.6, color=colour, edgecolor=PAPER, linewidth=0.6)
-                if us > 0.09 * longest:
+                seen = min(left + us, 1.05 * longest) - left
+                if seen > 0.09 * longest:
                     whole = sum(totals[scene, method].values())
-                    axes.text(left + us / 2, i, f"{100 * us / whole:.0f}%", ha="center", va="center", fontsize=6.6, color=readable_on(colour))
+                    axes.text(left + seen / 2, i, f"{100 * us / whole:.0f}%", ha="center", va="center", fontsize=6.6, color=readable_on(colour))
                 left += us
+            if left > 1.05 * longest:
+                axes.annotate(f"{number(left)} \u2192", (1, i + 0.5), xycoords=("axes fraction", "data"), ha="right", va="center", fontsize=6.6)
             for end in (-1, 1) if row else ():
                 axes.plot([1e3 * row["ms_per_step"]] * 2, [i + 0.3 * end, i + 0.46 * end], color=INK, linewidth=1.8, solid_capstyle="butt")
-        axes.set_yticks(range(len(METHODS)), [words.replace(" alone", "\nalone") for words, _ in METHODS.values()], fontsize=7)
+        axes.set_yticks(range(len(METHODS)), [words for words, _ in METHODS.values()], fontsize=7.5)
         axes.set_ylim(len(METHODS) - 0.45, -0.55)
         axes.set_xlim(0, 1.05 * longest)
         axes.grid(False, axis="y")
@@ -219,7 +224,7 @@ def scaling_table(r):
         Column("words", "method", show=text, number=False), Column("nodes", "nodes", show=count), Column("width", "half-width"),
         Column("links", "links", show=text, number=False), Column("ns_per_node", "one step", "ns/node", number),
         Column("limit_ns", "limit", "ns/node", number), Column("ms_per_step", "one step", "ms", number),
-        Column("fraction", "of the machine's limit", "%", share), Column("set_up_seconds", "set-up", "s", number), Column("spread", "spread", "%", share),
+        Column("fraction", "of best", "%", share, note="least time by the machine's bandwidth and arithmetic over the measured time"), Column("set_up_seconds", "set-up", "s", number), Column("spread", "spread", "%", share),
     ]
     return table(columns, rows, sortable=True, strong=lambda row: row["ns_per_node"] > row.get("limit_ns", float("inf")))
 
@@ -256,7 +261,7 @@ def error_chart(r, folder):
         axes.set_xlim(0, 1)
         axes.set_xlabel("share of nodes in finite elements")
     left.set_ylabel("relative L2 error")
-    right.set_ylabel("time of finite elements / hybrid")
+    right.set_ylabel("finite elements over hybrid")
     handles = [Line2D([], [], color=COLOURS[i % 7], marker=MARKERS[i % 7], markeredgecolor=PAPER, label=name,
                       linestyle=("-", "-", "--", "-.")[i % 4]) for i, name in enumerate(lines)]
     charts.legend_above(fig, handles, 2)
@@ -350,10 +355,10 @@ def section(result, folder):
         parts += [heading("The source's four scenes"),
                   figure(scenes_chart(r, folder), "Time per step and per frame for each scene and method, with the source's total",
                          "Lower is better; logarithmic axes. The heavy stroke is the total cost of a step in the source, on its machine. A frame takes as many steps as "
-                         "1/60&#8239;s needs, each within the stable step; left of its dashed line a scene keeps up with real time."),
+                         "1/60&#8239;s needs, each within the stable step; left of the dashed line a scene keeps up with real time."),
                   scenes_table(r), heading(f"Where the time goes: {r.backends[0]}"),
                   figure(split_chart(r, folder), "Time of the passes of a step, stacked, for each scene and method",
-                         "Each pass by the device's own clock; the mark above and below a bar is the whole step, timed at once and with what the host does.")]
+                         "Each pass by the device's own clock; the mark above and below a bar is the whole step, timed at once. A bar that ends with an arrow holds a pass that something else delayed.")]
     if r.scaling:
         parts += [heading(f'Larger bodies: {r.scaling[0]["backend"]}'),
                   figure(scaling_chart(r, folder), "Time per node and step against the half-width of the regions, a panel per size",
