@@ -17,7 +17,8 @@ struct CutSurface::Base {
       : lattice(full), overlay(surface, {full.origin, full.spacing, full.size}), air(overlay.source(), cell_at) {
     originals = static_cast<std::int32_t>(overlay.source().mesh().triangles.size());
     for (std::size_t c = 0; c < full.cells.size(); ++c) {
-      cell_at.try_emplace(overlay.source().grid().number(full.cells[c].index), static_cast<std::int32_t>(c));
+      const std::int64_t number = overlay.source().grid().number(full.cells[c].index);
+      if (!cell_at.try_emplace(number, static_cast<std::int32_t>(c)).second) shared.try_emplace(number);
     }
     hung_offset.assign(full.cells.size() + 1, 0);
     for (const Embedding& e : full.embedding) ++hung_offset[e.cell + 1];
@@ -33,6 +34,31 @@ struct CutSurface::Base {
   std::int32_t originals = 0;  ///< triangles, fillers counted
   std::unordered_map<std::int64_t, std::int32_t> cell_at;
   overlay::AirCells air;
+  /// Grid cells that several cells of the lattice share, because parts of the body pass near each other: all of them as cut
+  /// now. The surface is divided by the first that is cut.
+  std::unordered_map<std::int64_t, std::vector<CutGridCell>> shared;
+
+  std::vector<CutGridCell> one_per_place(const std::vector<CutGridCell>& cells) {
+    std::vector<CutGridCell> out;
+    for (const CutGridCell& cell : cells) {
+      const auto place = shared.find(overlay.source().grid().number(cell.index));
+      if (place == shared.end()) {
+        out.push_back(cell);
+        continue;
+      }
+      auto& all = place->second;
+      std::erase_if(all, [&](const CutGridCell& other) { return other.carrier[0].cell == cell.carrier[0].cell; });
+      all.push_back(cell);
+      std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.carrier[0].cell < b.carrier[0].cell; });
+      const auto divided = std::find_if(all.begin(), all.end(), [](const CutGridCell& c) {
+        return std::any_of(c.label.begin(), c.label.end(), [](int label) { return label != 0; });
+      });
+      std::erase_if(out, [&](const CutGridCell& other) { return other.index == cell.index; });
+      out.push_back(divided == all.end() ? all.front() : *divided);
+    }
+    return out;
+  }
+
   std::vector<std::int32_t> hung_offset, hung;  ///< original vertices by the cell they hang in
 };
 
@@ -81,8 +107,9 @@ void CutSurface::update(const std::vector<CutGridCell>& cells) {
   changed_vertices_ = {};
   changed_triangles_ = {};
   overlay::Overlay& overlay = base_->overlay;
-  std::vector<CutGridCell> all = base_->air.update(cells);
-  all.insert(all.end(), cells.begin(), cells.end());
+  const std::vector<CutGridCell> places = base_->one_per_place(cells);
+  std::vector<CutGridCell> all = base_->air.update(places);
+  all.insert(all.end(), places.begin(), places.end());
   overlay.update(all);
   for (const std::int32_t f : overlay.dirty_faces()) replace({true, f, 0}, overlay.caps_of(f), SurfaceKind::cut);
   for (const std::int32_t t : overlay.dirty_triangles()) {
@@ -98,9 +125,8 @@ void CutSurface::update(const std::vector<CutGridCell>& cells) {
 
 // Vertices that hang in a cell without lying in any cell that is cut: they go with its nearest corner.
 void CutSurface::hang_outside(const CutGridCell& cell) {
-  const auto found = base_->cell_at.find(base_->overlay.source().grid().number(cell.index));
-  if (found == base_->cell_at.end()) return;
-  for (std::int32_t i = base_->hung_offset[found->second]; i < base_->hung_offset[found->second + 1]; ++i) {
+  const std::int32_t own = cell.carrier[0].cell;
+  for (std::int32_t i = base_->hung_offset[own]; i < base_->hung_offset[own + 1]; ++i) {
     const std::int32_t v = base_->hung[i];
     if (base_->overlay.holds(v)) continue;
     int corner = 0;

@@ -282,6 +282,18 @@ TEST(CutSurface, pieces_hang_in_their_own_elements) {
   }
 }
 
+// The bunny has holes below, and places where several cells of the lattice share one cell of the grid.
+TEST(CutSurface, bunny) {
+  const char* file = "/usr/share/glmark2/models/bunny.obj";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not installed";
+  CutCase body(read_surface(file), 0.11);
+  const Vec3d middle = vec::mul(vec::add(body.box.lower, body.box.upper), 0.5);
+  body.cut(middle, {0.1, 0.2, 1});
+  body.expect_closed();
+  body.cut(middle, {1, 0.2, 0.1}, 0.4);
+  body.expect_closed();
+}
+
 TEST(CutSurface, holes_are_closed) {
   TriangleMesh mesh = shape("sphere");
   std::erase_if(mesh.triangles, [&](const auto& t) { return mesh.vertices[t[0]][2] < -0.085; });
