@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "scene/tool.h"
+
 namespace pliant {
 
 struct TriangleMesh;
-
-using Vec3d = std::array<double, 3>;
 
 /// A set of nodes chosen by rest position [m], or by index.
 struct Selection {
@@ -111,32 +111,6 @@ struct DeformationModel {
   bool cut = true;           ///< "cut": false: a blade passes through the shape-matching part without effect
   bool follow = false;       ///< "follow": "tool": the operational region moves with the scene's tool
   std::string pointer;       ///< JSON pointer ("/bodies/0/model")
-};
-
-/// A tool on a prescribed path: what a moving operational region follows.
-struct Tool {
-  std::vector<std::array<double, 4>> path;  ///< (time [s], x, y, z [m]), times ascending, linear in between, held outside
-  [[nodiscard]] Vec3d position(double time) const;
-};
-
-/// A blade on a prescribed path: a segment that cuts whatever it sweeps over.
-struct Blade {
-  std::string name;
-  std::vector<std::array<double, 7>>
-      path;  ///< (time [s], both ends [m]), at least two rows, times ascending, linear in between
-  double start = -std::numeric_limits<double>::infinity();  ///< it cuts from here [s], and not before its path begins
-  double end = std::numeric_limits<double>::infinity();     ///< ... to here [s], and not after its path ends
-  std::string pointer;                                      ///< JSON pointer ("/blades/0")
-  /// Both ends at a time [m]; held outside the path.
-  [[nodiscard]] std::array<Vec3d, 2> at(double time) const;
-};
-
-/// Where pictures are taken from. What is absent is found from the scene.
-struct SceneView {
-  std::optional<Vec3d> eye;     ///< [m]; absent: so far away that the scene fills the picture
-  std::optional<Vec3d> target;  ///< what is in the middle [m]; absent: the middle of the scene
-  std::optional<Vec3d> up;      ///< absent: against gravity, or y
-  double field_of_view = 30;    ///< vertical [degrees], in [1, 120]
 };
 
 struct LatticeSpec {
