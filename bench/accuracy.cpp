@@ -142,14 +142,14 @@ json point_of(const Case& c, const Reference& reference, const AccuracyOptions& 
   return row;
 }
 
-/// Every resolution at nine tenths of the stable step; at the second one also half the step, shape matching at the step of a
-/// screen, and the other backends.
+/// Every resolution at nine tenths of the stable step, shape matching also at the step of a screen; at the second resolution
+/// half the step and the other backends too (quick: the other backends at the first one).
 std::vector<Case> cases_of(const Problem& p, const std::vector<Method>& methods, const AccuracyOptions& o) {
   std::vector<Case> all;
   for (const Method& m : methods) {
     const bool matching = m.type == ModelType::flsm;
     for (const int refine : p.refine) {
-      const bool second = refine == p.refine[1];
+      const bool second = refine == p.refine[o.quick ? 0 : 1];
       all.push_back({&p, &m, refine, "0.9", o.backends[0]});
       if (matching) all.push_back({&p, &m, refine, "1/60", o.backends[0]});
       if (!second) continue;

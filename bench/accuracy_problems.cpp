@@ -181,7 +181,7 @@ Problem indentation() {
 
 Problem liver(const std::filesystem::path& scenes) {
   const TriangleMesh surface = read_surface(scenes / "meshes" / "liver.obj");
-  Problem p = box("liver", {0.216, 0.216, 0.216}, {12, 12, 12}, 3000, 0.45);
+  Problem p = box("liver", {0.216, 0.216, 0.216}, {10, 10, 10}, 3000, 0.45);
   p.title = "Liver under a local pull";
   p.lead =
       "An organ, held at its right side, is pulled up by 15 mm at a patch; lattice, clamp and patch are chosen as a user "
@@ -199,8 +199,9 @@ Problem liver(const std::filesystem::path& scenes) {
   p.samples.clear();
   const std::size_t every = std::max<std::size_t>(1, surface.vertices.size() / 400);
   for (std::size_t v = 0; v < surface.vertices.size(); v += every) p.samples.push_back(surface.vertices[v]);
-  p.levels = {{{36, 0, 0}, {48, 0, 0}}};
-  p.quick_levels = {{{18, 0, 0}, {24, 0, 0}}};
+  // Twice as fine: the nodes that clamp and patch hold are then among those of the finer lattice.
+  p.levels = {{{20, 0, 0}, {40, 0, 0}}};
+  p.quick_levels = {{{15, 0, 0}, {30, 0, 0}}};
   return p;
 }
 
