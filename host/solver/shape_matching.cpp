@@ -87,6 +87,33 @@ InterfaceStiffness interface_stiffness(const Model& model) {
   return largest;
 }
 
+/// The largest alpha = beta H^2 / m that an interface with held goals stands, where h is the step and 2 / omega_max of the
+/// elements is `elements`. Held goals pull once in n steps, n times as hard: an impulse. Between two pulls a mode turns by n
+/// phi with sin(phi / 2) = h omega / 2; one period has the trace 2 cos(n phi) - (alpha / n) sin(n phi) / sin(phi), which stays
+/// above -2 while (alpha / n) tan(n phi / 2) <= 2 sin(phi). Just below n phi = pi every pull pushes a mode that has turned half
+/// a circle: the resonance of multiple time steps (Biesiadecki and Skeel 1993). For n = 1 this is h^2 omega^2 + alpha <= 4.
+double largest_held_alpha(int n, double h, double elements) {
+  const double phi = 2 * std::asin(std::min(1.0, h / elements));
+  return n * phi < M_PI ? 2 * n * std::sin(phi) / std::tan(0.5 * n * phi) : 0;
+}
+
+/// The longest step that a batch of held goals stands: what its pull takes grows with the step, what is left for it shrinks.
+double held_step(const FlsmBatch& b, const Model& model, double elements) {
+  const DeformationModel& m = b.settings;
+  double fixed = m.young > 0 ? m.young / stiffness_unit(b) : 0;  // alpha = fixed H^2
+  if (m.beta > 0) {
+    fixed = 0;
+    for (std::int32_t i = b.own; i < b.own + b.interface; ++i) fixed = std::max(fixed, m.beta / model.mass[b.slot[i]]);
+  }
+  double low = 0, high = elements;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high), h = m.substeps * middle;
+    const double alpha = fixed > 0 ? fixed * h * h : m.alpha;
+    (alpha <= largest_held_alpha(m.substeps, middle, elements) ? low : high) = middle;
+  }
+  return low;
+}
+
 }  // namespace
 
 bool Simulation::has_elements() const {
@@ -95,11 +122,17 @@ bool Simulation::has_elements() const {
 }
 
 /// The spring beta between an interface node and its goal adds beta / m to omega^2 at most, for the goal follows the node. With
-/// beta = alpha m / H^2, H = n h: h^2 (omega^2 + alpha / (n h)^2) <= 4. Held goals pull n times as hard in one substep of n.
+/// beta = alpha m / H^2, H = n h: h^2 (omega^2 + alpha / (n h)^2) <= 4. Held goals pull n times as hard in one substep of n,
+/// and resonate.
 double Simulation::coupled_step(double elements_alone) const {
   const InterfaceStiffness k = interface_stiffness(*model_);
   const double omega2 = 4 / (elements_alone * elements_alone) + k.fixed;
-  return std::sqrt((4 - k.per_step) / omega2);
+  double step = std::sqrt((4 - k.per_step) / omega2);
+  for (const FlsmBatch& b : model_->flsm) {
+    if (b.interface > 0 && b.settings.substeps > 1 && !b.settings.extrapolate)
+      step = std::min(step, held_step(b, *model_, elements_alone));
+  }
+  return step;
 }
 
 /// An automatic step is short enough for the alpha that "stiffness" asks for; a given one is refused by alpha_for.
@@ -112,10 +145,6 @@ void Simulation::choose_dt(double wanted, bool estimate) {
   }
   if (wanted <= 0 || estimate) estimate_stable_dt();
   state_.dt = wanted > 0 ? wanted : std::min(scene_.safety * state_.stable_dt, longest);
-  // Every cut leaves elements that are stable at the element bound: each copy's mass and stiffness scale alike.
-  if (wanted <= 0 && !scene_.blades.empty()) {
-    state_.dt = std::min(state_.dt, scene_.safety * coupled_step(model_->element_bound));
-  }
   const InterfaceStiffness k = interface_stiffness(*model_);
   if (wanted <= 0 || k.fixed == 0 || state_.stable_dt <= 0 || wanted <= state_.stable_dt) return;
   for (const FlsmBatch& b : model_->flsm) {
@@ -123,7 +152,11 @@ void Simulation::choose_dt(double wanted, bool estimate) {
     double mass = std::numeric_limits<double>::infinity();
     for (std::int32_t i = b.own; i < b.own + b.interface; ++i) mass = std::min(mass, model_->mass[b.slot[i]]);
     const double omega2 = (4 - k.per_step) / (state_.stable_dt * state_.stable_dt) - k.fixed;
-    const double most = mass * ((4 - k.per_step) / (wanted * wanted) - omega2) / strokes(b.settings);
+    double most = mass * ((4 - k.per_step) / (wanted * wanted) - omega2) / strokes(b.settings);
+    if (b.settings.substeps > 1 && !b.settings.extrapolate) {
+      const double h = b.settings.substeps * wanted;
+      most = std::min(most, mass * largest_held_alpha(b.settings.substeps, wanted, 2 / std::sqrt(omega2)) / (h * h));
+    }
     throw Error(fmt::format(
         "{}/beta: got {} N/m, which is beyond stability at dt = {} s; allowed is at most {}, or dt up to {:.6g} s",
         b.settings.pointer, b.settings.beta, wanted,
