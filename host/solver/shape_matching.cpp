@@ -145,6 +145,10 @@ void Simulation::choose_dt(double wanted, bool estimate) {
   }
   if (wanted <= 0 || estimate) estimate_stable_dt();
   state_.dt = wanted > 0 ? wanted : std::min(scene_.safety * state_.stable_dt, longest);
+  // Every cut leaves elements that are stable at the element bound: each copy's mass and stiffness scale alike.
+  if (wanted <= 0 && !scene_.blades.empty()) {
+    state_.dt = std::min(state_.dt, scene_.safety * coupled_step(model_->element_bound));
+  }
   const InterfaceStiffness k = interface_stiffness(*model_);
   if (wanted <= 0 || k.fixed == 0 || state_.stable_dt <= 0 || wanted <= state_.stable_dt) return;
   for (const FlsmBatch& b : model_->flsm) {
