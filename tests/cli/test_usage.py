@@ -30,8 +30,6 @@ class Usage(harness.CliTest):
         self.refused("run", scene, "--dt", "0", words=["--dt is 0 s", "more than 0"])
         self.refused("run", scene, "--every", "5", words=["--out"])
         self.refused("run", scene, "--out", "o", "--every", "0", words=["--every is 0"])
-        self.refused("run", scene, "--out", "o", "--format", "png", words=["png is not available yet", "vtu, obj"])
-        self.refused("run", scene, "--out", "o", "--format", "vtu,gltf", words=["gltf is not available yet"])
         self.refused("run", scene, "--out", "o", "--format", "jpg", words=["\"jpg\"", "vtu, obj"])
         self.refused("run", scene, "--backend", "gpu", words=["\"gpu\"", "opencl:N"])
         self.refused("run", scene, "--backend", "opencl:999", words=["opencl"])

@@ -55,7 +55,8 @@ TEST(Schema, HasTheWordsOfTheLoader) {
       {"model", {"/$defs/model/properties/type"}},
       {"goals", {"/$defs/model/properties/goals"}},
       {"coupling", {"/$defs/model/properties/coupling"}},
-      {"follow", {"/$defs/model/properties/follow"}}};
+      {"follow", {"/$defs/model/properties/follow"}},
+      {"solver", {"/$defs/solver/properties/type"}}};
   ASSERT_EQ(pointers.size(), scene_words().size());
   for (const auto& [kind, list] : pointers) {
     for (const std::string& pointer : list) {
