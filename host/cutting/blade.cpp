@@ -43,9 +43,12 @@ class CrossingSearch {
       vec::Box box;
       for (std::size_t k = 0; k < 3; ++k) {
         box.extend(triangles_[t][k]);
-        corner_.push_back(frame_.snap(triangles_[t][k], point_number(triangles_[t][k])));
       }
-      hash.insert(grown(box), static_cast<std::int32_t>(t));
+      box = grown(box);
+      corner_.resize(corner_.size() + 3);
+      if (!box.overlaps(all_)) continue;
+      for (std::size_t k = 0; k < 3; ++k) corner_[3 * t + k] = frame_.snap(triangles_[t][k], point_number(triangles_[t][k]));
+      hash.insert(box, static_cast<std::int32_t>(t));
     }
     for (const auto& [cell, box] : near_) {
       hits_.clear();

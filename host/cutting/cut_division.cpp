@@ -180,7 +180,13 @@ int CutTopology::label_at(std::int32_t cell, const Vec3d& x) const {
     weight = w;
     best = static_cast<int>(t);
   }
-  return cut->label[mesh_->shape->tets[best][corner_at(division(cell, *cut, best), weight)]];
+  return label_in(cell, best, weight);
+}
+
+int CutTopology::label_in(std::int32_t cell, int tet, const std::array<double, 4>& weight) const {
+  const CellCut* cut = find_cell(cell);
+  if (cut == nullptr || cut->components == 1) return 0;
+  return cut->label[mesh_->shape->tets[tet][corner_at(division(cell, *cut, tet), weight)]];
 }
 
 }  // namespace pliant

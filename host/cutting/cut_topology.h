@@ -101,6 +101,8 @@ class CutTopology {
   [[nodiscard]] CutTet tet(std::int32_t cell, int tet) const;
   /// Component that holds a point of the cell at rest [m]: that of the flag's tetrahedron it lies in, or the nearest one.
   [[nodiscard]] int label_at(std::int32_t cell, const Vec3d& x) const;
+  /// The same by barycentric coordinates in one of its tetrahedra.
+  [[nodiscard]] int label_in(std::int32_t cell, int tet, const std::array<double, 4>& weight) const;
 
   /// Cut further edges; those that are cut already stay as they are. Throws Error, with nothing changed, for a pair that is no
   /// edge of a cell or a crossing that is not in (0, 1). Work: the cells at new edges, plus a pass over all copies.

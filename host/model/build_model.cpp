@@ -286,7 +286,8 @@ void add_totals(const Body& body, const Draft& draft, ModelBody& out) {
   }
 }
 
-void place_bodies(const Scene& scene, std::vector<Solid> solids, std::vector<Draft>& drafts, Model& model) {
+void place_bodies(const Scene& scene, std::vector<Solid> solids, const Model* previous, std::vector<Draft>& drafts,
+                  Model& model) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
     Draft draft;
@@ -312,7 +313,7 @@ void place_bodies(const Scene& scene, std::vector<Solid> solids, std::vector<Dra
   for (std::size_t b = 0; b < drafts.size(); ++b) {
     if (drafts[b].solid.matching_cells.empty()) continue;
     model.flsm.push_back(
-        place_matching_nodes(drafts[b].solid, scene.bodies[b], static_cast<std::int32_t>(b), drafts[b].slot, model));
+        place_matching_nodes(drafts[b].solid, scene.bodies[b], static_cast<std::int32_t>(b), drafts[b].slot, previous, model));
   }
 }
 
@@ -338,10 +339,10 @@ std::vector<double> densities(const Body& body, const Solid& solid) {
 
 Model build_model(const Scene& scene) { return build_model(scene, make_solids(scene)); }
 
-Model build_model(const Scene& scene, std::vector<Solid> solids) {
+Model build_model(const Scene& scene, std::vector<Solid> solids, const Model* previous) {
   Model model;
   std::vector<Draft> drafts;
-  place_bodies(scene, std::move(solids), drafts, model);
+  place_bodies(scene, std::move(solids), previous, drafts, model);
   model.rest.resize(model.slots);
   model.mass.resize(model.slots);
   model.damping.resize(model.slots);

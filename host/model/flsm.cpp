@@ -44,6 +44,22 @@ void link_nodes(const Solid& solid, const std::vector<std::int32_t>& number, Fls
   }
 }
 
+/// A batch of the same body with the same nodes and links, before fillers.
+const FlsmBatch* same_links(const FlsmBatch& batch, const Model& previous) {
+  for (const FlsmBatch& other : previous.flsm) {
+    if (other.body != batch.body || other.settings.width != batch.settings.width || other.index != batch.index) continue;
+    const auto nodes = static_cast<std::int32_t>(batch.slot.size());
+    for (std::int32_t n = 0; n < nodes; ++n) {
+      for (int d = 0; d < 6; ++d) {
+        const std::int32_t link = other.link[n][d];
+        if ((link < nodes ? link : -1) != batch.link[n][d]) return nullptr;
+      }
+    }
+    return &other;
+  }
+  return nullptr;
+}
+
 void require_width(const Body& body, const FlsmBatch& batch) {
   std::array<std::int32_t, 3> low = batch.index[0], high = low;
   for (const auto& at : batch.index) {
@@ -85,7 +101,7 @@ std::vector<RestMoments> along(int axis, const FlsmBatch& batch, const std::vect
 }  // namespace
 
 FlsmBatch place_matching_nodes(const Solid& solid, const Body& body, std::int32_t number, std::vector<std::int32_t>& slot,
-                               Model& model) {
+                               const Model* previous, Model& model) {
   FlsmBatch batch;
   batch.body = number;
   batch.settings = body.model;
@@ -111,7 +127,14 @@ FlsmBatch place_matching_nodes(const Solid& solid, const Body& body, std::int32_
   }
   link_nodes(solid, in_batch, batch);
   require_width(body, batch);
-  find_batch_regions(batch);
+  const FlsmBatch* same = previous != nullptr ? same_links(batch, *previous) : nullptr;
+  if (same != nullptr) {
+    batch.link = same->link;
+    batch.fillers = same->fillers;
+    batch.regions = same->regions;
+  } else {
+    find_batch_regions(batch);
+  }
   return batch;
 }
 

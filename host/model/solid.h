@@ -51,7 +51,8 @@ std::vector<Solid> make_solids(const Scene& scene);
 void repartition(const Body& body, Solid& solid);
 
 /// Like build_model(scene), for bodies that are loaded and filled already; their partition is chosen anew.
-Model build_model(const Scene& scene, std::vector<Solid> solids);
+/// `previous`, a model of the same bodies before an edit, lends what did not change.
+Model build_model(const Scene& scene, std::vector<Solid> solids, const Model* previous = nullptr);
 
 /// Density of each element [kg/m^3].
 std::vector<double> densities(const Body& body, const Solid& solid);

@@ -1,5 +1,6 @@
 // The model of a cut scene: built aside from the bodies as they are cut, then swapped in with every node's displacement and
 // velocity.
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -38,25 +39,28 @@ std::array<double, 8> corner_masses(const Solid& solid, const std::vector<double
   return mass;
 }
 
-/// What changes hands with fill takes its momentum along.
-void add_momentum(const Body& body, const Solid& solid, const CutEdit& edit, const std::vector<Vec3d>& before,
-                  const Model& model, const ModelBody& placed, std::vector<Vec3d>& velocity) {
-  if (edit.flux.empty()) return;
+/// Mass that a node takes over from another one than its own origin.
+struct FluxMass {
+  std::int32_t node, from;
+  double mass;
+};
+
+std::vector<FluxMass> flux_masses(const Body& body, const Solid& solid, const CutEdit& edit) {
+  std::vector<FluxMass> all;
+  if (edit.flux.empty()) return all;
   const std::vector<double> density = densities(body, solid);
   const bool lattice = !solid.lattice_nodes.empty();
   for (const FillFlux& f : edit.flux) {
     const std::array<double, 8> mass = corner_masses(solid, density, f.element);
     for (std::size_t a = 0; a < (lattice ? 8U : 4U); ++a) {
-      // Corner a of the element; of a lattice cell's tetrahedra the one that has it.
       std::int32_t node = -1;
       if (solid.tets.empty()) node = solid.hexes[f.element][a];
       if (!solid.tets.empty() && lattice) node = cell_corners(&solid.tets[kKuhnTets.size() * f.element])[a];
       if (!solid.tets.empty() && !lattice) node = solid.tets[f.element][a];
-      const double share = f.fill * mass[a] / model.mass[placed.slot[node]];
-      for (std::size_t c = 0; c < 3; ++c)
-        velocity[node][c] += share * (before[f.from_nodes[a]][c] - before[edit.node_from[node]][c]);
+      all.push_back({node, f.from_nodes[a], f.fill * mass[a]});
     }
   }
+  return all;
 }
 
 }  // namespace
@@ -71,9 +75,13 @@ void Simulation::rebuild(const std::vector<CutEdit>& edits, CutReport& report) {
     u.push_back(displacements(b));
     v.push_back(velocities(b));
   }
-  const auto solids = std::make_shared<const std::vector<Solid>>(cuts_->solids());
+  std::vector<Solid> solids = cuts_->solids();
+  std::vector<std::vector<FluxMass>> flux(edits.size());
+  for (std::size_t b = 0; b < edits.size(); ++b) flux[b] = flux_masses(scene_.bodies[b], solids[b], edits[b]);
+  const bool follows = std::any_of(scene_.bodies.begin(), scene_.bodies.end(), [](const Body& b) { return b.model.follow; });
+  const auto kept = follows ? std::make_shared<const std::vector<Solid>>(solids) : nullptr;
   const std::shared_ptr<const Model> old_model = model_;
-  auto model = std::make_shared<const Model>(build_model(scene_, *solids));
+  auto model = std::make_shared<const Model>(build_model(scene_, std::move(solids), old_model.get()));
   report.model += lap(start);
   model_ = model;
   try {
@@ -86,14 +94,18 @@ void Simulation::rebuild(const std::vector<CutEdit>& edits, CutReport& report) {
     upload_shape_matching();
     throw;
   }
-  solids_ = solids;
+  solids_ = kept;
   std::vector<double> new_u = backend_->read_reals(u_), new_w = backend_->read_reals(w_);
   for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
     const ModelBody& body = model_->bodies[b];
     const bool changed = edits[b].changed_elements();
     std::vector<Vec3d> velocity(body.slot.size());
     for (std::size_t n = 0; n < velocity.size(); ++n) velocity[n] = v[b][changed ? edits[b].node_from[n] : n];
-    if (changed) add_momentum(scene_.bodies[b], (*solids)[b], edits[b], v[b], *model_, body, velocity);
+    for (const FluxMass& f : flux[b]) {
+      const double share = f.mass / model_->mass[body.slot[f.node]];
+      for (std::size_t c = 0; c < 3; ++c)
+        velocity[f.node][c] += share * (v[b][f.from][c] - v[b][edits[b].node_from[f.node]][c]);
+    }
     for (std::size_t n = 0; n < velocity.size(); ++n) {
       const auto slot = static_cast<std::size_t>(body.slot[n]);
       const Vec3d& moved = u[b][changed ? edits[b].node_from[n] : n];
@@ -112,24 +124,14 @@ void Simulation::rebuild(const std::vector<CutEdit>& edits, CutReport& report) {
   report.upload += lap(start);
 }
 
-/// Cut what the triangles cross, in every body.
-CutReport Simulation::cut_now(std::span<const std::array<Vec3d, 3>> triangles) {
+/// Cut what the triangles of each body cross. `x`: where its nodes are [m].
+CutReport Simulation::cut_now(const std::vector<std::vector<std::array<Vec3d, 3>>>& triangles,
+                              const std::vector<std::vector<Vec3d>>& x) {
   CutReport report;
-  if (cuts_ == nullptr) {
-    if (scene_.integrator != Integrator::increment || scene_.relaxation.enabled) {
-      throw Error("a scene with \"integrator\": \"textbook\" or with relaxation cannot be cut");
-    }
-    cuts_ = std::make_shared<CutState>(scene_);
-  }
   Clock::time_point start = Clock::now();
   std::vector<CutEdges> edges(scene_.bodies.size());
   for (std::size_t b = 0; b < edges.size(); ++b) {
-    BodyCut& body = cuts_->body(scene_, b);
-    std::vector<Vec3d> x = displacements(b);
-    for (std::size_t n = 0; n < x.size(); ++n) {
-      for (std::size_t c = 0; c < 3; ++c) x[n][c] += model_->bodies[b].rest[n][c];
-    }
-    edges[b] = body.crossed(scene_.bodies[b], x, triangles);
+    if (!triangles[b].empty()) edges[b] = cuts_->body(scene_, b).crossed(scene_.bodies[b], x[b], triangles[b]);
     report.edges += static_cast<std::int64_t>(edges[b].size());
   }
   report.search = lap(start);

@@ -1,12 +1,24 @@
 #include "solver/cut_state.h"
 
+#include <algorithm>
+
 #include "model/partition.h"
+#include "model/vec.h"
 
 namespace pliant {
 
 BodyCut::BodyCut(const Body& body, std::shared_ptr<const Solid> uncut)
     : uncut_(std::move(uncut)), topology_(cut_mesh(*uncut_, body.name)) {
   make_surface();
+  const CutMesh& mesh = topology_.mesh();
+  std::size_t count = 0;
+  for (std::size_t c = 0; c < std::min<std::size_t>(mesh.cells.size(), 1000); ++c) {
+    for (const auto& [a, b] : mesh.shape->edges) {
+      edge_ += vec::norm(vec::sub(mesh.rest[mesh.cells[c][a]], mesh.rest[mesh.cells[c][b]]));
+      ++count;
+    }
+  }
+  edge_ /= static_cast<double>(std::max<std::size_t>(count, 1));
 }
 
 void BodyCut::make_surface() {

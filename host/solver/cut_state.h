@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "cutting/blade.h"
@@ -30,6 +31,8 @@ class BodyCut {
   [[nodiscard]] Solid solid() const;
   /// Edits so far, in order.
   [[nodiscard]] const std::vector<CutEdges>& history() const { return history_; }
+  /// Mean edge of a cell at rest [m].
+  [[nodiscard]] double edge() const { return edge_; }
   [[nodiscard]] const CutSurface* surface() const { return surface_.get(); }
 
  private:
@@ -39,6 +42,14 @@ class BodyCut {
   CutTopology topology_;
   std::unique_ptr<CutSurface> surface_;  ///< of a lattice
   std::vector<CutEdges> history_;
+  double edge_ = 0;
+};
+
+/// Where a blade goes in one look: first along straight lines to each of these places. `key` names it in the state.
+struct BladeMove {
+  std::string key;
+  BladeSegment from{};
+  std::vector<BladeSegment> to;
 };
 
 /// All bodies of a scene; those never touched by a blade have no BodyCut.
@@ -48,6 +59,8 @@ struct CutState {
   std::vector<std::unique_ptr<BodyCut>> bodies;
   [[nodiscard]] BodyCut& body(const Scene& scene, std::size_t b);
   [[nodiscard]] std::vector<Solid> solids() const;
+  std::vector<SweepTriangle> pending_triangles;  ///< wait for a step of shape matching
+  std::vector<BladeMove> pending_moves;          ///< likewise
 };
 
 }  // namespace pliant

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "model/solid.h"
+#include "solver/cut_state.h"
 #include "solver/simulation.h"
 
 namespace pliant {
@@ -82,7 +83,9 @@ void Simulation::set_seeds(const std::vector<double>& seeds) {
 /// Build and load the model with the operational regions around `seeds`, three numbers per body.
 void Simulation::move_region(const std::vector<double>& seeds) {
   set_seeds(seeds);
-  if (solids_ == nullptr) solids_ = std::make_shared<const std::vector<Solid>>(make_solids(scene_));
+  if (solids_ == nullptr) {
+    solids_ = std::make_shared<const std::vector<Solid>>(cuts_ != nullptr ? cuts_->solids() : make_solids(scene_));
+  }
   backend_->finish();
   model_ = std::make_shared<const Model>(build_model(scene_, *solids_));
   load_program();

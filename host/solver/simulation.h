@@ -20,6 +20,7 @@ namespace pliant {
 struct Solid;
 struct CutState;
 struct CutEdit;
+struct BladeMove;
 class CutTopology;
 
 struct SimulationOptions {
@@ -120,7 +121,10 @@ class Simulation {
   /// Defined in blades.cpp and cut_model.cpp.
   void prepare_blades();
   void move_blades();
-  CutReport cut_now(std::span<const std::array<Vec3d, 3>> triangles);
+  CutState& cut_state();
+  CutReport run_blades(const std::vector<BladeMove>& moves, std::span<const std::array<Vec3d, 3>> triangles);
+  CutReport cut_now(const std::vector<std::vector<std::array<Vec3d, 3>>>& triangles, const std::vector<std::vector<Vec3d>>& x);
+  [[nodiscard]] std::vector<Vec3d> positions(std::size_t body) const;
   void rebuild(const std::vector<CutEdit>& edits, CutReport& report);
   void replay_cuts(const std::vector<double>& cuts);
   void limit_to_element_bound();
@@ -175,8 +179,7 @@ class Simulation {
   bool equilibrium_ = false;
   double residual_ = 0;
   std::vector<HostForce> host_forces_;
-  std::shared_ptr<CutState> cuts_;             ///< once a blade has touched something
-  std::vector<std::array<Vec3d, 3>> pending_;  ///< triangles that wait for a step of shape matching
+  std::shared_ptr<CutState> cuts_;  ///< once a blade has touched something
   std::int64_t topology_version_ = 0;
   std::int64_t blade_steps_ = 0;  ///< steps between two looks at the scene's blades; 0: it has none
 };
