@@ -2,6 +2,7 @@
 # Install into an empty prefix, then build and run examples/find_package against it, with find_package and with pkg-config.
 # Usage: install.sh SOURCE BUILD STATIC_LIBRARY|SHARED_LIBRARY COMPILER
 set -euo pipefail
+export CMAKE_GENERATOR=Ninja  # make need not be there
 source=$1 build=$2 kind=$3 cxx=$4
 grep -q '^PLIANT_SANITIZE:STRING=.\+' "$build/CMakeCache.txt" && { echo 'skipped: a library with sanitizers is not for consumers'; exit 77; }
 case $cxx in *clang++*) cc=${cxx/clang++/clang} ;; *) cc=${cxx/g++/gcc} ;; esac

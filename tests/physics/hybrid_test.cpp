@@ -29,7 +29,7 @@ TEST_P(Hybrid, RestIsRest) {
 }
 
 struct Drift {
-  double linear = 0, angular = 0, shape = 0;
+  double linear = 0, angular = 0, shape = 0, kinetic = 0;
 };
 
 /// A free bar flies and spins for `steps` steps, 0.01 rad in each.
@@ -40,7 +40,9 @@ Drift fly(const char* backend, const Body& shape, int steps) {
   scene.bodies[0].angular_velocity = {1, 4, 2.75};
   auto sim = simulate(scene, backend);
   EXPECT_LT(scene.dt, 0.9 * sim->stable_dt());
+  const auto kinetic_now = [&] { return energies(sim->model(), read_texels(*sim, "node_u"), velocities_of(*sim)).kinetic; };
   const Momenta before = momenta_now(*sim);
+  const double kinetic = kinetic_now();
   Drift drift;
   const int period = body.model.substeps;
   for (int i = 0; i < 50; ++i) {
@@ -51,6 +53,7 @@ Drift fly(const char* backend, const Body& shape, int steps) {
   const Momenta after = momenta_now(*sim);
   drift.linear = (eigen(after.linear) - eigen(before.linear)).norm() / eigen(before.linear).norm();
   drift.angular = (spin_of(after) - spin_of(before)).norm() / spin_of(before).norm();
+  drift.kinetic = kinetic_now() / kinetic - 1;
   return drift;
 }
 
@@ -62,6 +65,7 @@ TEST_P(Hybrid, FreeSpinningBar) {
   const Drift whole = fly(GetParam(), body, 10000);
   check("linear momentum over 10,000 steps", whole.linear, bound(0.03, 1e-8));
   check("angular momentum over 10,000 steps", whole.angular, bound(1e-3, 1e-9));
+  check("kinetic energy over 10,000 steps", whole.kinetic, 0.03);
   check("distance of the FLSM part from its rest shape / length", whole.shape / 0.16, 2e-3);
   const Drift brief = fly(GetParam(), body, 1000);
   check("linear momentum over 1000 steps", brief.linear, bound(2e-3, 1e-10));
@@ -80,9 +84,11 @@ TEST_P(Hybrid, FreeSpinningBar) {
   const Drift given_back = fly(GetParam(), body, 10000);
   check("beta 200 N/m, conservative: linear momentum", given_back.linear, bound(0.03, 1e-8));
   check("beta 200 N/m, conservative: angular momentum", given_back.angular, 2e-3);
+  check("beta 200 N/m, conservative: kinetic energy", given_back.kinetic, 0.05);
   body.model.conservative = false;
   const Drift kept = fly(GetParam(), body, 10000);
-  std::printf("  %-58s %g linear, %g angular\n", "beta 200 N/m, one-sided: change of momentum", kept.linear, kept.angular);
+  std::printf("  %-58s %g linear, %g angular, kinetic energy %g\n", "beta 200 N/m, one-sided: change of momentum", kept.linear,
+              kept.angular, kept.kinetic);
   EXPECT_GT(kept.linear, 3 * given_back.linear);
   EXPECT_GT(kept.angular, 3 * given_back.angular);
 }
