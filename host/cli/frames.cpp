@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "cli/cli.h"
+#include "cutting/cut_topology.h"
 #include "io/obj.h"
 #include "io/png.h"
 #include "layout.h"
@@ -42,6 +43,35 @@ std::vector<std::vector<float>> fills(const Model& model) {
   return fill;
 }
 
+/// A series has the same arrays in all its files.
+bool shows_cuts(const Simulation& simulation) {
+  return !simulation.scene().blades.empty() || simulation.topology_version() > 0;
+}
+
+/// What a blade did to every element: whether it is a copy of a divided cell, and the number of its piece.
+struct ElementCuts {
+  std::vector<float> cut, piece;
+};
+
+ElementCuts element_cuts(const Simulation& simulation, std::size_t body) {
+  const ModelBody& b = simulation.model().bodies[body];
+  ElementCuts out{std::vector<float>(static_cast<std::size_t>(b.elements())),
+                  std::vector<float>(static_cast<std::size_t>(b.elements()))};
+  const CutTopology* topology = simulation.cut_topology(body);
+  if (topology == nullptr) return out;
+  const CutElements& elements = topology->elements();
+  std::vector<std::int32_t> piece;
+  static_cast<void>(topology->pieces(&piece));
+  // A cell of a lattice may stand for six tetrahedra.
+  const std::size_t parts = std::max<std::size_t>(1, out.cut.size() / elements.nodes.size());
+  for (std::size_t e = 0; e < out.cut.size(); ++e) {
+    const auto cell = topology->cells().find(elements.cell[e / parts]);
+    out.cut[e] = cell != topology->cells().end() && cell->second.components > 1 ? 1.0F : 0.0F;
+    out.piece[e] = static_cast<float>(piece[e / parts]);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::set<std::string> parse_formats(const std::vector<std::string>& formats) {
@@ -63,7 +93,7 @@ VtuMesh volume_frame(const Simulation& simulation) {
   const Model& model = simulation.model();
   VtuMesh mesh;
   VtuArray displacement{"displacement", 3, {}}, velocity{"velocity", 3, {}};
-  std::vector<float> tet_body, tet_fill, hex_body, hex_fill;
+  std::vector<float> tet_body, tet_fill, tet_cut, tet_piece, hex_body, hex_fill, hex_cut, hex_piece;
   const auto fill = fills(model);
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const ModelBody& body = model.bodies[b];
@@ -87,11 +117,23 @@ VtuMesh volume_frame(const Simulation& simulation) {
     }
     auto& of_kind = body.tets.empty() ? hex_fill : tet_fill;  // a body has elements of one kind
     of_kind.insert(of_kind.end(), fill[b].begin(), fill[b].end());
+    if (!shows_cuts(simulation)) continue;
+    const ElementCuts cuts = element_cuts(simulation, b);
+    auto& cut = body.tets.empty() ? hex_cut : tet_cut;
+    auto& piece = body.tets.empty() ? hex_piece : tet_piece;
+    cut.insert(cut.end(), cuts.cut.begin(), cuts.cut.end());
+    piece.insert(piece.end(), cuts.piece.begin(), cuts.piece.end());
   }
   tet_body.insert(tet_body.end(), hex_body.begin(), hex_body.end());
   tet_fill.insert(tet_fill.end(), hex_fill.begin(), hex_fill.end());
   mesh.point_arrays = {std::move(displacement), std::move(velocity)};
   mesh.cell_arrays = {{"body", 1, std::move(tet_body)}, {"fill", 1, std::move(tet_fill)}};
+  if (shows_cuts(simulation)) {
+    tet_cut.insert(tet_cut.end(), hex_cut.begin(), hex_cut.end());
+    tet_piece.insert(tet_piece.end(), hex_piece.begin(), hex_piece.end());
+    mesh.cell_arrays.push_back({"cut", 1, std::move(tet_cut)});
+    mesh.cell_arrays.push_back({"piece", 1, std::move(tet_piece)});
+  }
   return mesh;
 }
 
@@ -108,6 +150,11 @@ VtuMesh surface_frame(Simulation& simulation) {
   for (const std::int32_t b : surface.triangle_body) body.values.push_back(static_cast<float>(b));
   mesh.point_arrays = {std::move(displacement)};
   mesh.cell_arrays = {std::move(body)};
+  if (shows_cuts(simulation)) {
+    VtuArray cut{"cut", 1, {surface.triangle_cut.begin(), surface.triangle_cut.end()}};
+    cut.values.resize(mesh.triangles.size(), 0.0F);  // empty as long as nothing is cut
+    mesh.cell_arrays.push_back(std::move(cut));
+  }
   return mesh;
 }
 

@@ -19,10 +19,12 @@ namespace pliant::cli {
 std::set<std::string> parse_formats(const std::vector<std::string>& formats);
 
 /// All bodies as volume elements in their present shape: displacement [m], velocity [m/s] at the points, body and fill at the
-/// cells.
+/// cells; in a scene with blades also cut (1: a copy of a cell that a blade has divided) and piece (elements that hold together
+/// have one number, counted from 0 in each body).
 VtuMesh volume_frame(const Simulation& simulation);
 
-/// The embedded surface in its present shape: displacement [m] at the points, body at the cells.
+/// The embedded surface in its present shape: displacement [m] at the points, body at the cells; in a scene with blades also
+/// cut (1: a face that a blade made).
 VtuMesh surface_frame(Simulation& simulation);
 
 class FrameWriter {

@@ -107,6 +107,8 @@ void SurfaceCopy::read(Simulation& simulation) {
   triangles.clear();
   for (const auto& t : model.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
   body = model.triangle_body;
+  cut.assign(model.triangle_cut.begin(), model.triangle_cut.end());
+  topology = static_cast<std::uint64_t>(simulation.topology_version());
 }
 
 Surface SurfaceCopy::view() const {

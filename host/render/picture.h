@@ -12,7 +12,7 @@
 
 namespace pliant::render {
 
-/// A copy of a simulation's present surface as the renderer takes it.
+/// A copy of a simulation's present surface, as it is cut now, in the form that the renderer takes.
 struct SurfaceCopy {
   std::vector<float> positions;
   std::vector<std::int32_t> triangles, body;
