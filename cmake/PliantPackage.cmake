@@ -37,6 +37,11 @@ set_target_properties(
 target_link_libraries(pliant_lib PRIVATE $<BUILD_INTERFACE:pliant_flags> ${api_links})
 target_include_directories(pliant_lib INTERFACE $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 target_compile_features(pliant_lib INTERFACE cxx_std_17)
+if(BUILD_SHARED_LIBS)
+  set(exported ${CMAKE_SOURCE_DIR}/cmake/exported.map)
+  target_link_options(pliant_lib PRIVATE LINKER:--version-script=${exported})
+  set_property(TARGET pliant_lib APPEND PROPERTY LINK_DEPENDS ${exported})
+endif()
 
 # --- install -------------------------------------------------------------------------------------------------------------------
 set(pliant_cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/pliant)

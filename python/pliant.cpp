@@ -186,7 +186,7 @@ void bind_world(py::module_& m) {
 PYBIND11_MODULE(pliant, m) {
   m.doc() = "Soft-tissue deformation. SI units.";
   m.attr("__version__") = pliant::version();
-  static py::exception<pliant::Error> error(m, "Error");
+  static const py::handle error = py::exception<pliant::Error>(m, "Error").release();  // never freed: exceptions may come late
   py::register_exception_translator([](std::exception_ptr p) {
     try {
       if (p) std::rethrow_exception(p);

@@ -4,8 +4,10 @@
 
 #if defined(_WIN32)
 #define PLIANT_API
+#define PLIANT_HIDDEN
 #else
 #define PLIANT_API __attribute__((visibility("default")))
+#define PLIANT_HIDDEN __attribute__((visibility("hidden")))
 #endif
 
 #endif

@@ -147,7 +147,7 @@ class PLIANT_API World {
   /// Back to the start, also after a divergence or the loss of the device (the backend is opened anew). Tools are cleared.
   void reset();
 
-  struct Impl;  ///< private
+  struct PLIANT_HIDDEN Impl;  ///< private
 
  private:
   friend struct WorldAccess;
