@@ -121,18 +121,40 @@ bool Simulation::has_elements() const {
                      [](const ModelBody& b) { return b.operational_elements > 0; });
 }
 
-/// The spring beta between an interface node and its goal adds beta / m to omega^2 at most, for the goal follows the node. With
+/// A bound without an iteration: the spring beta between an interface node and its goal adds beta / m to omega^2 at most. With
 /// beta = alpha m / H^2, H = n h: h^2 (omega^2 + alpha / (n h)^2) <= 4. Held goals pull n times as hard in one substep of n,
 /// and resonate.
 double Simulation::coupled_step(double elements_alone) const {
   const InterfaceStiffness k = interface_stiffness(*model_);
   const double omega2 = 4 / (elements_alone * elements_alone) + k.fixed;
-  double step = std::sqrt((4 - k.per_step) / omega2);
+  return std::min(std::sqrt((4 - k.per_step) / omega2), held_goals_step(elements_alone));
+}
+
+/// The longest step that held goals stand [s].
+double Simulation::held_goals_step(double elements_alone) const {
+  double step = std::numeric_limits<double>::infinity();
   for (const FlsmBatch& b : model_->flsm) {
     if (b.interface > 0 && b.settings.substeps > 1 && !b.settings.extrapolate)
       step = std::min(step, held_step(b, *model_, elements_alone));
   }
   return step;
+}
+
+/// What the springs between interface nodes and their goals add to omega^2 at most, at the step `dt` [s], per slot [1/s^2];
+/// empty without an interface.
+std::vector<double> Simulation::interface_springs(double dt) const {
+  std::vector<double> spring;
+  for (const FlsmBatch& b : model_->flsm) {
+    if (b.interface == 0) continue;
+    spring.resize(model_->mass.size(), 0.0);
+    const DeformationModel& m = b.settings;
+    const double h = m.substeps * dt, automatic = m.young > 0 ? m.young / stiffness_unit(b) : m.alpha / (h * h);
+    for (std::int32_t i = b.own; i < b.own + b.interface; ++i) {
+      const auto slot = static_cast<std::size_t>(b.slot[i]);
+      spring[slot] = strokes(m) * (m.beta > 0 ? m.beta / model_->mass[slot] : automatic);
+    }
+  }
+  return spring;
 }
 
 /// An automatic step is short enough for the alpha that "stiffness" asks for; a given one is refused by alpha_for.
@@ -150,12 +172,12 @@ void Simulation::choose_dt(double wanted, bool estimate) {
     state_.dt = std::min(state_.dt, scene_.safety * coupled_step(model_->element_bound));
   }
   const InterfaceStiffness k = interface_stiffness(*model_);
-  if (wanted <= 0 || k.fixed == 0 || state_.stable_dt <= 0 || wanted <= state_.stable_dt) return;
+  if (wanted <= 0 || k.fixed == 0 || state_.stable_dt <= 0 || elements_dt_ <= 0 || wanted <= state_.stable_dt) return;
   for (const FlsmBatch& b : model_->flsm) {
     if (b.settings.beta == 0 || b.interface == 0) continue;
     double mass = std::numeric_limits<double>::infinity();
     for (std::int32_t i = b.own; i < b.own + b.interface; ++i) mass = std::min(mass, model_->mass[b.slot[i]]);
-    const double omega2 = (4 - k.per_step) / (state_.stable_dt * state_.stable_dt) - k.fixed;
+    const double omega2 = 4 / (elements_dt_ * elements_dt_);
     double most = mass * ((4 - k.per_step) / (wanted * wanted) - omega2) / strokes(b.settings);
     if (b.settings.substeps > 1 && !b.settings.extrapolate) {
       const double h = b.settings.substeps * wanted;

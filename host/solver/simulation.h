@@ -123,7 +123,9 @@ class Simulation {
   void move_blades();
   CutState& cut_state();
   CutReport run_blades(const std::vector<BladeMove>& moves, std::span<const std::array<Vec3d, 3>> triangles);
-  CutReport cut_now(const std::vector<std::vector<std::array<Vec3d, 3>>>& triangles, const std::vector<std::vector<Vec3d>>& x);
+  void cut_now(const std::vector<std::map<std::array<std::int32_t, 2>, double>>& edges, CutReport& report);
+  [[nodiscard]] bool reached(std::size_t body, const std::vector<Vec3d>& x, const std::vector<BladeMove>& moves,
+                             std::span<const std::array<Vec3d, 3>> triangles) const;
   [[nodiscard]] std::vector<Vec3d> positions(std::size_t body) const;
   void rebuild(const std::vector<CutEdit>& edits, CutReport& report);
   void replay_cuts(const std::vector<double>& cuts);
@@ -132,6 +134,9 @@ class Simulation {
   void choose_dt(double wanted, bool estimate);
   [[nodiscard]] bool has_elements() const;
   [[nodiscard]] double coupled_step(double elements_alone) const;
+  [[nodiscard]] double held_goals_step(double elements_alone) const;
+  [[nodiscard]] std::vector<double> interface_springs(double dt) const;
+  double largest_omega2(int iterations, const std::vector<double>& spring);  // in stable_step.cpp
   [[nodiscard]] std::int32_t substeps_of(std::size_t slot) const;
   /// Steps of the elements after which all subcycles begin together.
   [[nodiscard]] std::int64_t period() const;
@@ -170,6 +175,7 @@ class Simulation {
   BufferId u_ = -1, w_ = -1, force_ = -1;
   std::vector<std::pair<BufferId, BufferId>> kept_;  ///< state buffers and their copies at the last good step
   std::vector<char> free_;                           ///< [slots][3] component moves freely
+  double elements_dt_ = 0;  ///< the stable step without the springs of an interface [s], as of the last estimate; 0: none
   double first_dt_ = 0;
   bool automatic_ = false;  ///< the step is Pliant's to choose
   double still_ = 0;        ///< increments below this are none [m]

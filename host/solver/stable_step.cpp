@@ -31,7 +31,9 @@ double ritz_deficit(std::size_t unknowns, int steps) {
 
 /// Lanczos iteration on M^-1 K in the norm of M. K v is a difference of two force evaluations on the backend itself: every
 /// element, law and constraint is in it, at the present deformation.
-double Simulation::estimate_stable_dt(int iterations) {
+/// The springs between interface nodes and their goals are no part of a force evaluation and are given: `spring` [1/s^2] per
+/// slot, empty: none.
+double Simulation::largest_omega2(int iterations, const std::vector<double>& spring) {
   const std::vector<double>& mass = model_->mass;
   const std::vector<double> u = backend_->read_reals(u_);
   const std::vector<double> rest_force = forces_now();
@@ -61,14 +63,16 @@ double Simulation::estimate_stable_dt(int iterations) {
     const std::vector<double> force = backend_->read_reals(force_);
     double projection = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      if (free_[i]) projection += v[i] * (rest_force[4 * (i / 3) + i % 3] - force[4 * (i / 3) + i % 3]) / size;
+      if (!free_[i]) continue;
+      projection += v[i] * (rest_force[4 * (i / 3) + i % 3] - force[4 * (i / 3) + i % 3]) / size;
+      if (!spring.empty()) projection += mass[i / 3] * spring[i / 3] * v[i] * v[i];
     }
     norm = 0;
     for (std::size_t i = 0; i < n; ++i) {
       if (!free_[i]) continue;
       const std::size_t t = 4 * (i / 3) + i % 3;
-      const double next =
-          (rest_force[t] - force[t]) / size / mass[i / 3] - projection * v[i] - (k > 0 ? beta.back() * before[i] : 0);
+      const double own = projection - (spring.empty() ? 0 : spring[i / 3]);
+      const double next = (rest_force[t] - force[t]) / size / mass[i / 3] - own * v[i] - (k > 0 ? beta.back() * before[i] : 0);
       before[i] = v[i];
       v[i] = next;
       norm += mass[i / 3] * next * next;
@@ -78,7 +82,6 @@ double Simulation::estimate_stable_dt(int iterations) {
     if (!(beta.back() > 1e-6 * std::abs(projection))) break;  // the whole space is spanned
   }
   backend_->write_reals(u_, u);
-  state_.stable_dt = 0;
   if (alpha.empty() || !std::isfinite(beta.back())) return 0;
   const auto size = static_cast<Eigen::Index>(alpha.size());
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
@@ -86,7 +89,22 @@ double Simulation::estimate_stable_dt(int iterations) {
                                 Eigen::Map<Eigen::VectorXd>(beta.data(), size - 1), Eigen::EigenvaluesOnly);
   double omega2 = solver.eigenvalues()[size - 1];
   if (static_cast<std::size_t>(size) < unknowns && size > 2) omega2 /= 1 - ritz_deficit(unknowns, static_cast<int>(size));
-  if (omega2 > 0) state_.stable_dt = coupled_step(2 / std::sqrt(omega2));
+  return omega2;
+}
+
+double Simulation::estimate_stable_dt(int iterations) {
+  state_.stable_dt = elements_dt_ = 0;
+  const double omega2 = largest_omega2(iterations, {});
+  if (!(omega2 > 0)) return 0;
+  elements_dt_ = 2 / std::sqrt(omega2);
+  state_.stable_dt = coupled_step(elements_dt_);
+  const std::vector<double> spring = interface_springs(state_.stable_dt);
+  if (!spring.empty()) {
+    // Springs soften as the step grows, so what the springs of a shorter step allow is allowed.
+    const double coupled = largest_omega2(iterations, spring);
+    if (coupled > 0) state_.stable_dt = std::max(state_.stable_dt, 2 / std::sqrt(coupled));
+    state_.stable_dt = std::min(state_.stable_dt, held_goals_step(elements_dt_));
+  }
   return state_.stable_dt;
 }
 
