@@ -4,26 +4,15 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "cutting/predicates.h"
+#include "cutting/rest_edges.h"
 #include "cutting/spatial_hash.h"
 #include "pliant/error.h"
 
 namespace pliant {
 namespace {
-
-/// The number of a blade's point: the same for the same coordinates, so that triangles that meet there agree in every call.
-std::int64_t point_number(const Vec3d& p) {
-  std::uint64_t h = 0x9e3779b97f4a7c15U;
-  for (const double c : p) {
-    h ^= std::bit_cast<std::uint64_t>(c + 0.0);  // -0 is 0
-    h *= 0xff51afd7ed558ccdU;
-    h ^= h >> 32;
-  }
-  return static_cast<std::int64_t>(h >> 2 | std::uint64_t{1} << 62);  // above every node
-}
 
 /// Cells of the body and the triangles in reach of each other.
 class CrossingSearch {
@@ -47,7 +36,8 @@ class CrossingSearch {
       box = grown(box);
       corner_.resize(corner_.size() + 3);
       if (!box.overlaps(all_)) continue;
-      for (std::size_t k = 0; k < 3; ++k) corner_[3 * t + k] = frame_.snap(triangles_[t][k], point_number(triangles_[t][k]));
+      for (std::size_t k = 0; k < 3; ++k)
+        corner_[3 * t + k] = frame_.snap(triangles_[t][k], blade_point_number(triangles_[t][k]));
       hash.insert(box, static_cast<std::int32_t>(t));
     }
     for (const auto& [cell, box] : near_) {

@@ -1,41 +1,78 @@
-// The front of a cut: where a blade stands in the material. Tissue moves between two looks at the blade; what the blade sweeps
-// is therefore measured from where its last place has been carried by the material, so that sweeps join and leave no bridges,
-// and tissue that is pulled across a resting blade is cut.
+// How a blade cuts a body that moves. Its path is followed at rest: points of the blade, at most half an edge apart, are mapped
+// to where the material at that place was at rest (rest_map.h), and what they sweep there is tested against edges that never
+// move. The line where the blade stood last is kept at rest; the next sweep begins with these very points. So successive sweeps
+// join exactly, no bridge is left between them however the body deforms, and tissue that is pulled across a resting blade is
+// cut, too.
 #pragma once
 #include <span>
 #include <vector>
 
 #include "cutting/blade.h"
 #include "cutting/cut_topology.h"
+#include "cutting/rest_edges.h"
+#include "cutting/rest_map.h"
 
 namespace pliant {
 
-/// A point of a blade inside a body.
+/// A point of a blade that goes with the body.
 struct FrontPoint {
-  std::int32_t place = 0;          ///< along the blade: place / 2^levels of the way from its first end
-  std::int32_t cell = 0, tet = 0;  ///< of the uncut body
-  std::array<double, 4> weight{};  ///< barycentric
+  std::int32_t place = 0;  ///< along the blade: place / 2^levels of the way from its first end
+  std::int32_t node = -1;  ///< with no material near: the real node that it goes with, `carried.rest` being the offset [m]
+  CarriedPoint carried{};
 };
 
+/// Where a blade stood last.
 struct BladeFront {
   BladeSegment blade{};
   int levels = 0;
-  std::vector<FrontPoint> points;  ///< ascending places; those that lie in no material are left out
+  std::vector<FrontPoint> points;  ///< ascending places; the others are where they were
 };
 
-/// Levels for points at most half of `edge` apart [m], at most 12.
-int front_levels(const BladeSegment& blade, double edge);
+inline constexpr int kMostLevels = 30;  ///< of a blade: it may be 2^29 edges long
 
-/// Remember what of the body a blade stands in. `x` [m]: present positions of all nodes of the body's elements.
-BladeFront hold_front(const CutTopology& body, std::span<const Vec3d> x, const BladeSegment& blade, int levels);
+class BladeSweep {
+ public:
+  /// `x` [m]: present positions of all nodes of the body's elements. `edge` [m]: mean edge of a cell at rest.
+  BladeSweep(const CutTopology& body, std::span<const Vec3d> x, RestEdges& edges, double edge);
 
-/// The 2^levels + 1 points of the blade where it was.
-std::vector<Vec3d> front_points(const BladeFront& front);
+  /// Whether a blade in this box [m] comes so near the body that it has to be followed.
+  [[nodiscard]] bool reaches(const vec::Box& box) const { return reach_.overlaps(box); }
+  /// Sweep from the front to the blade's next place, which becomes the front. Both along straight lines as seen now.
+  void move(BladeFront& front, const BladeSegment& to);
+  /// Edges crossed so far that are not cut yet. An edge crossed several times is cut where it was crossed first.
+  [[nodiscard]] const CutEdges& crossed() const { return crossed_; }
 
-/// Where the 2^levels + 1 points of the blade are now: those in the material carried by it, the others where they were.
-std::vector<Vec3d> carried_front(const BladeFront& front, const CutTopology& body, std::span<const Vec3d> x);
+ private:
+  struct Vertex {
+    CarriedPoint carried{};
+    Vec3d now{};
+  };
+  struct Row {
+    int levels = 0;
+    std::int64_t first = 0;  ///< place of the first vertex
+    std::vector<Vertex> vertices;
+    [[nodiscard]] const Vertex* at(std::int64_t place) const {
+      const bool known = place >= first && place < first + static_cast<std::int64_t>(vertices.size());
+      return known && vertices[static_cast<std::size_t>(place - first)].carried.cell >= 0
+                 ? &vertices[static_cast<std::size_t>(place - first)]
+                 : nullptr;
+    }
+  };
+  [[nodiscard]] Row stored(const BladeFront& front) const;
+  void strip(const Row& a, const Row& b);
+  void triangle(const Vertex* a, const Vertex* b, const Vertex* c);
+  [[nodiscard]] std::array<std::int64_t, 2> range(const BladeFront& front, const BladeSegment& to, int levels) const;
+  [[nodiscard]] Vertex vertex(const Vec3d& p, RestMap& map) const;
+  [[nodiscard]] Row mapped(int levels, std::int64_t first, const std::vector<Vec3d>& points, RestMap& map) const;
+  void keep(BladeFront& front, const Row& last) const;
+  [[nodiscard]] std::int32_t nearest_node(const Vec3d& p) const;
 
-/// What is swept from a line of points to a blade, whose points have the same places.
-std::vector<SweepTriangle> sweep_to(const std::vector<Vec3d>& from, const BladeSegment& to);
+  const CutTopology& body_;
+  std::span<const Vec3d> x_;
+  RestEdges& edges_;
+  double edge_;
+  vec::Box reach_;
+  CutEdges crossed_;
+};
 
 }  // namespace pliant

@@ -3,6 +3,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -33,41 +36,45 @@ BladeMove move_of(const Blade& blade, double from, double to) {
 
 std::string front_key(const BladeMove& move, std::size_t body) { return fmt::format("front/{}/{}", body, move.key); }
 
+constexpr std::size_t kFrontHead = 7, kFrontPoint = 11;
+
 std::vector<double> pack(const BladeFront& front) {
   std::vector<double> out{static_cast<double>(front.levels)};
   for (const Vec3d& end : front.blade) out.insert(out.end(), end.begin(), end.end());
   for (const FrontPoint& p : front.points) {
-    out.insert(out.end(), {static_cast<double>(p.place), static_cast<double>(p.cell), static_cast<double>(p.tet)});
-    out.insert(out.end(), p.weight.begin(), p.weight.end());
+    const CarriedPoint& c = p.carried;
+    for (const std::int32_t i : {p.place, p.node, c.cell, c.tet}) out.push_back(static_cast<double>(i));
+    out.insert(out.end(), c.weight.begin(), c.weight.end());
+    out.insert(out.end(), c.rest.begin(), c.rest.end());
   }
   return out;
 }
 
 /// Empty if `packed` does not belong to the body: it came with a checkpoint.
 std::optional<BladeFront> unpack(const std::vector<double>& packed, const CutMesh& mesh) {
-  const auto within = [](double value, double count) { return value >= 0 && value < count; };
-  if (packed.size() < 7 || packed.size() % 7 != 0 || !within(packed[0], 13)) return {};
+  const auto within = [](double value, double low, double count) { return value >= low && value < count; };
+  if (packed.size() < kFrontHead || (packed.size() - kFrontHead) % kFrontPoint != 0) return {};
+  if (!within(packed[0], 0, kMostLevels + 1)) return {};
   BladeFront front;
   front.levels = static_cast<int>(packed[0]);
   for (std::size_t i = 0; i < 6; ++i) front.blade[i / 3][i % 3] = packed[1 + i];
-  for (std::size_t i = 7; i < packed.size(); i += 7) {
-    if (!within(packed[i], (1 << front.levels) + 1) || !within(packed[i + 1], static_cast<double>(mesh.cells.size())) ||
-        !within(packed[i + 2], static_cast<double>(mesh.shape->tets.size()))) {
+  double place = -1;
+  for (std::size_t i = kFrontHead; i < packed.size(); i += kFrontPoint) {
+    const double* p = &packed[i];
+    const bool carried = p[2] >= 0;
+    if (!within(p[0], place + 1, std::ldexp(1.0, front.levels) + 1) || !within(p[0], 0, packed[kFrontHead] + (1 << 17)) ||
+        !within(p[1], -1, static_cast<double>(mesh.rest.size())) || carried == (p[1] >= 0) ||
+        !within(p[2], -1, static_cast<double>(mesh.cells.size())) ||
+        !within(p[3], 0, static_cast<double>(mesh.shape->tets.size()))) {
       return {};
     }
-    front.points.push_back({static_cast<std::int32_t>(packed[i]),
-                            static_cast<std::int32_t>(packed[i + 1]),
-                            static_cast<std::int32_t>(packed[i + 2]),
-                            {packed[i + 3], packed[i + 4], packed[i + 5], packed[i + 6]}});
+    place = p[0];
+    FrontPoint point{static_cast<std::int32_t>(p[0]), static_cast<std::int32_t>(p[1]), {}};
+    point.carried = {
+        static_cast<std::int32_t>(p[2]), static_cast<std::int32_t>(p[3]), {p[4], p[5], p[6], p[7]}, {p[8], p[9], p[10]}};
+    front.points.push_back(point);
   }
   return front;
-}
-
-std::vector<Vec3d> straight(const BladeSegment& blade, int levels) {
-  BladeFront front;
-  front.blade = blade;
-  front.levels = levels;
-  return front_points(front);
 }
 
 vec::Box box_of(const std::vector<Vec3d>& x) {
@@ -116,53 +123,62 @@ CutState& Simulation::cut_state() {
   return *cuts_;
 }
 
-/// Sweep from where the material has carried each blade's last place to its new ones, and cut.
+/// Follow each blade to its new places, and cut.
 CutReport Simulation::run_blades(const std::vector<BladeMove>& moves, std::span<const SweepTriangle> triangles) {
   cut_state();
-  vec::Box reach;
-  for (const SweepTriangle& t : triangles) {
-    for (const Vec3d& p : t) reach.extend(p);
-  }
-  for (const BladeMove& move : moves) {
-    for (const BladeSegment& place : move.to) reach.extend(box_of({move.from[0], move.from[1], place[0], place[1]}));
-  }
-  std::vector<std::vector<SweepTriangle>> sweeps(scene_.bodies.size());
-  std::vector<std::vector<Vec3d>> x(scene_.bodies.size());
-  bool any = false;
-  for (std::size_t b = 0; b < sweeps.size(); ++b) {
-    x[b] = positions(b);
-    if (!reach.overlaps(box_of(x[b]))) continue;
-    any = true;
-    const BodyCut& body = cuts_->body(scene_, b);
-    sweeps[b].assign(triangles.begin(), triangles.end());
+  CutReport report;
+  const auto start = std::chrono::steady_clock::now();
+  std::vector<CutEdges> edges(scene_.bodies.size());
+  std::map<std::string, std::vector<double>> fronts;
+  for (std::size_t b = 0; b < edges.size(); ++b) {
+    const std::vector<Vec3d> x = positions(b);
+    if (!reached(b, x, moves, triangles)) continue;
+    BodyCut& body = cuts_->body(scene_, b);
+    edges[b] = crossed_edges(body.topology(), x, triangles);
+    BladeSweep sweep(body.topology(), x, body.rest_edges(), body.edge());
     for (const BladeMove& move : moves) {
       if (move.to.empty()) continue;
       const auto known = state_.vectors.find(front_key(move, b));
       std::optional<BladeFront> front;
       if (known != state_.vectors.end()) front = unpack(known->second, body.topology().mesh());
-      const int levels = front ? front->levels : front_levels(move.from, body.edge());
-      std::vector<Vec3d> line = front ? carried_front(*front, body.topology(), x[b]) : straight(move.from, levels);
-      for (const BladeSegment& place : move.to) {
-        const std::vector<SweepTriangle> part = sweep_to(line, place);
-        sweeps[b].insert(sweeps[b].end(), part.begin(), part.end());
-        line = straight(place, levels);
-      }
+      if (!front) front = BladeFront{move.from, 0, {}};
+      for (const BladeSegment& place : move.to) sweep.move(*front, place);
+      if (!front->points.empty()) fronts[front_key(move, b)] = pack(*front);
     }
+    edges[b].insert(sweep.crossed().begin(), sweep.crossed().end());
+    body.keep_allowed(scene_.bodies[b], edges[b]);
+    report.edges += static_cast<std::int64_t>(edges[b].size());
   }
-  CutReport report;
-  if (any) report = cut_now(sweeps, x);
+  report.search = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (report.edges > 0) cut_now(edges, report);
   for (const BladeMove& move : moves) {
-    for (std::size_t b = 0; b < sweeps.size(); ++b) {
-      state_.vectors.erase(front_key(move, b));
-      if (move.to.empty() || cuts_->bodies[b] == nullptr || sweeps[b].empty()) continue;
-      if (report.changed) x[b] = positions(b);
-      const BodyCut& body = *cuts_->bodies[b];
-      const BladeSegment& place = move.to.back();
-      const BladeFront front = hold_front(body.topology(), x[b], place, front_levels(place, body.edge()));
-      if (!front.points.empty()) state_.vectors[front_key(move, b)] = pack(front);
-    }
+    for (std::size_t b = 0; b < edges.size(); ++b) state_.vectors.erase(front_key(move, b));
   }
+  state_.vectors.merge(fronts);
   return report;
+}
+
+/// Whether anything that cuts may come near a body.
+bool Simulation::reached(std::size_t body, const std::vector<Vec3d>& x, const std::vector<BladeMove>& moves,
+                         std::span<const SweepTriangle> triangles) const {
+  vec::Box reach = box_of(x);
+  double size = 0;
+  for (int a = 0; a < 3; ++a) size = std::max(size, reach.upper[a] - reach.lower[a]);
+  for (int a = 0; a < 3; ++a) {
+    reach.lower[a] -= 0.25 * size;
+    reach.upper[a] += 0.25 * size;
+  }
+  for (const SweepTriangle& t : triangles) {
+    if (reach.overlaps(box_of({t[0], t[1], t[2]}))) return true;
+  }
+  for (const BladeMove& move : moves) {
+    if (move.to.empty()) continue;
+    if (state_.vectors.contains(front_key(move, body))) return true;
+    vec::Box path = box_of({move.from[0], move.from[1]});
+    for (const BladeSegment& place : move.to) path.extend(box_of({place[0], place[1]}));
+    if (reach.overlaps(path)) return true;
+  }
+  return false;
 }
 
 CutReport Simulation::cut(std::span<const std::array<Vec3d, 3>> triangles) {

@@ -124,18 +124,9 @@ void Simulation::rebuild(const std::vector<CutEdit>& edits, CutReport& report) {
   report.upload += lap(start);
 }
 
-/// Cut what the triangles of each body cross. `x`: where its nodes are [m].
-CutReport Simulation::cut_now(const std::vector<std::vector<std::array<Vec3d, 3>>>& triangles,
-                              const std::vector<std::vector<Vec3d>>& x) {
-  CutReport report;
+/// Cut these edges of each body.
+void Simulation::cut_now(const std::vector<CutEdges>& edges, CutReport& report) {
   Clock::time_point start = Clock::now();
-  std::vector<CutEdges> edges(scene_.bodies.size());
-  for (std::size_t b = 0; b < edges.size(); ++b) {
-    if (!triangles[b].empty()) edges[b] = cuts_->body(scene_, b).crossed(scene_.bodies[b], x[b], triangles[b]);
-    report.edges += static_cast<std::int64_t>(edges[b].size());
-  }
-  report.search = lap(start);
-  if (report.edges == 0) return report;
   std::vector<CutEdit> edits(edges.size());
   std::size_t done = 0;
   try {
@@ -159,7 +150,6 @@ CutReport Simulation::cut_now(const std::vector<std::vector<std::array<Vec3d, 3>
       cuts.insert(cuts.end(), {static_cast<double>(pair[0]), static_cast<double>(pair[1]), t});
   }
   if (report.changed) limit_to_element_bound();
-  return report;
 }
 
 /// A scene that nobody meant to cut may run at a step beyond what its elements allow when a cut frees them.

@@ -19,6 +19,7 @@ BodyCut::BodyCut(const Body& body, std::shared_ptr<const Solid> uncut)
     }
   }
   edge_ /= static_cast<double>(std::max<std::size_t>(count, 1));
+  rest_edges_ = std::make_unique<RestEdges>(mesh, edge_);
 }
 
 void BodyCut::make_surface() {
@@ -27,9 +28,8 @@ void BodyCut::make_surface() {
   }
 }
 
-CutEdges BodyCut::crossed(const Body& body, std::span<const Vec3d> x, std::span<const SweepTriangle> triangles) const {
-  CutEdges edges = crossed_edges(topology_, x, triangles);
-  if (body.model.cut || body.model.type == ModelType::tled || edges.empty()) return edges;
+void BodyCut::keep_allowed(const Body& body, CutEdges& edges) const {
+  if (body.model.cut || body.model.type == ModelType::tled || edges.empty()) return;
   const Partition partition = partition_lattice(body, *uncut_->lattice);
   std::erase_if(edges, [&](const auto& edge) {
     for (const std::int32_t c : topology_.cells_at_edge(edge.first)) {
@@ -37,7 +37,6 @@ CutEdges BodyCut::crossed(const Body& body, std::span<const Vec3d> x, std::span<
     }
     return false;
   });
-  return edges;
 }
 
 CutEdit BodyCut::cut(const CutEdges& edges) {

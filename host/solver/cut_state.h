@@ -10,6 +10,7 @@
 #include "cutting/cut_body.h"
 #include "cutting/cut_surface.h"
 #include "cutting/cut_topology.h"
+#include "cutting/rest_edges.h"
 #include "model/solid.h"
 
 namespace pliant {
@@ -21,8 +22,8 @@ class BodyCut {
   BodyCut(const Body& body, std::shared_ptr<const Solid> uncut);
 
   [[nodiscard]] const CutTopology& topology() const { return topology_; }
-  /// The edges that the triangles cross and that may be cut: not those of cells left to shape matching where the scene says so.
-  [[nodiscard]] CutEdges crossed(const Body& body, std::span<const Vec3d> x, std::span<const SweepTriangle> triangles) const;
+  /// Take out edges that may not be cut: those of cells left to shape matching where the scene says so.
+  void keep_allowed(const Body& body, CutEdges& edges) const;
   /// Throws, with nothing changed, what CutTopology::cut throws.
   CutEdit cut(const CutEdges& edges);
   /// Take the last edit back.
@@ -34,6 +35,7 @@ class BodyCut {
   /// Mean edge of a cell at rest [m].
   [[nodiscard]] double edge() const { return edge_; }
   [[nodiscard]] const CutSurface* surface() const { return surface_.get(); }
+  [[nodiscard]] RestEdges& rest_edges() { return *rest_edges_; }
 
  private:
   void make_surface();
@@ -41,6 +43,7 @@ class BodyCut {
   std::shared_ptr<const Solid> uncut_;
   CutTopology topology_;
   std::unique_ptr<CutSurface> surface_;  ///< of a lattice
+  std::unique_ptr<RestEdges> rest_edges_;
   std::vector<CutEdges> history_;
   double edge_ = 0;
 };

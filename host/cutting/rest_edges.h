@@ -1,0 +1,55 @@
+// The edges of a body at rest, ready to be crossed by triangles. At rest nothing moves, so this is built once.
+#pragma once
+#include <span>
+#include <vector>
+
+#include "cutting/cut_topology.h"
+#include "cutting/predicates.h"
+#include "cutting/spatial_hash.h"
+
+namespace pliant {
+
+/// The number of a blade's point: the same for the same coordinates, so that triangles that meet there agree in every call.
+std::int64_t blade_point_number(const Vec3d& p);
+
+class RestEdges {
+ public:
+  RestEdges(const CutMesh& mesh, double edge);
+
+  /// Call visit(pair, t) for each edge of the mesh that the triangle [m] crosses, t being the share of the way from the lower
+  /// node to the higher one. An edge comes once per cell that has it. Touching counts as in crossed_edges (blade.h).
+  template <class Visit>
+  void crossed(const std::array<Vec3d, 3>& triangle, Visit&& visit) {
+    std::array<ExactPoint, 3> tri;
+    vec::Box box;
+    for (std::size_t k = 0; k < 3; ++k) {
+      tri[k] = frame_.snap(triangle[k], blade_point_number(triangle[k]));
+      box.extend(triangle[k]);
+    }
+    for (int a = 0; a < 3; ++a) {
+      box.lower[a] -= 4 * frame_.step();
+      box.upper[a] += 4 * frame_.step();
+    }
+    hash_.query(box, [&](std::int32_t cell) {
+      const auto& nodes = mesh_.cells[cell];
+      std::array<int, 8> side{};
+      for (int a = 0; a < mesh_.shape->corners; ++a) side[a] = orient(tri[0], tri[1], tri[2], node_[nodes[a]]);
+      for (const auto& [i, j] : mesh_.shape->edges) {
+        if (side[i] == side[j]) continue;
+        const NodePair pair = node_pair(nodes[i], nodes[j]);
+        if (crosses(node_[pair[0]], node_[pair[1]], tri[0], tri[1], tri[2]) == 0) continue;
+        visit(pair, place(pair, triangle));
+      }
+    });
+  }
+
+ private:
+  [[nodiscard]] double place(const NodePair& pair, const std::array<Vec3d, 3>& t) const;
+
+  const CutMesh& mesh_;
+  ExactFrame frame_;
+  std::vector<ExactPoint> node_;
+  SpatialHash hash_;  ///< cells
+};
+
+}  // namespace pliant
