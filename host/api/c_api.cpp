@@ -76,6 +76,10 @@ void report(const pliant::StepReport& r, pliant_report* out) {
   *out = {r.done, r.step, r.time, r.dt, r.diverged ? 1 : 0, r.at_equilibrium ? 1 : 0};
 }
 
+void result(const pliant::CutResult& r, pliant_cut* out) {
+  if (out != nullptr) *out = {r.pending ? 1 : 0, r.changed ? 1 : 0, r.edges, r.seconds};
+}
+
 pliant_world made(pliant::World world) {
   return {pliant::api::Handles::all().add(std::make_shared<pliant::api::CWorld>(std::move(world)))};
 }
@@ -113,6 +117,8 @@ pliant::SurfaceSpec surface_of(const pliant_surface& s) {
 }  // namespace
 
 using pliant::api::CWorld;
+
+static_assert(sizeof(pliant::IndexRange) == 2 * sizeof(size_t));  // pliant_frame::body_vertices
 
 const char* pliant_version(void) { return pliant::version(); }
 const char* pliant_last_error(void) { return last_error.c_str(); }
@@ -241,7 +247,9 @@ pliant_status pliant_world_frame(pliant_world world, pliant_frame* out) {
             f.dirty_vertices.first,
             f.dirty_vertices.count,
             f.dirty_triangles.first,
-            f.dirty_triangles.count};
+            f.dirty_triangles.count,
+            &f.body_vertices.data()->first,
+            &f.body_triangles.data()->first};
   });
 }
 
@@ -257,6 +265,15 @@ pliant_status pliant_world_triangles(pliant_world world, int32_t* out, size_t co
     const pliant::FramePtr frame = w.world.frame();
     check_count(count, 3 * frame->triangles.size(), "triangles");
     for (const pliant::Triangle& t : frame->triangles) out = std::copy(t.begin(), t.end(), out);
+  });
+}
+pliant_status pliant_world_cut_faces(pliant_world world, uint8_t* out, size_t count) {
+  return on(world, [&](CWorld& w) {
+    need(out, "out");
+    const pliant::FramePtr frame = w.world.frame();
+    check_count(count, frame->triangles.size(), "cut_faces");
+    std::fill_n(out, count, std::uint8_t{0});
+    std::copy(frame->cut_faces.begin(), frame->cut_faces.end(), out);
   });
 }
 pliant_status pliant_world_displacements(pliant_world world, size_t body, double* out, size_t count) {
@@ -292,6 +309,36 @@ pliant_status pliant_world_push(pliant_world world, int32_t vertex, const double
 }
 pliant_status pliant_world_clear_tools(pliant_world world) {
   return on(world, [&](CWorld& w) { w.world.clear_tools(); });
+}
+
+pliant_status pliant_world_cut(pliant_world world, const double* triangles, size_t triangle_count, pliant_cut* out) {
+  return on(world, [&](CWorld& w) {
+    if (triangle_count > 0) need(triangles, "triangles");
+    std::vector<std::array<pliant::Vec3d, 3>> copies(triangle_count);
+    for (auto& t : copies) {
+      for (pliant::Vec3d& corner : t) corner = {*triangles++, *triangles++, *triangles++};
+    }
+    result(w.world.cut(copies), out);
+  });
+}
+pliant_status pliant_world_move_blade(pliant_world world, const char* blade, const double a[3], const double b[3],
+                                      pliant_cut* out) {
+  return on(world, [&](CWorld& w) {
+    need(blade, "blade");
+    result(w.world.move_blade(blade, vector_of(a, "a"), vector_of(b, "b")), out);
+  });
+}
+pliant_status pliant_world_lift_blade(pliant_world world, const char* blade) {
+  return on(world, [&](CWorld& w) {
+    need(blade, "blade");
+    w.world.lift_blade(blade);
+  });
+}
+pliant_status pliant_world_pieces(pliant_world world, size_t body, int64_t* out) {
+  return on(world, [&](CWorld& w) {
+    need(out, "out");
+    *out = w.world.pieces(body);
+  });
 }
 
 pliant_status pliant_world_save(pliant_world world, const char* file) {

@@ -52,12 +52,28 @@ void vertex_normals(const std::vector<Vec4f>& positions, std::size_t count, View
   }
 }
 
-IndexRange changed_range(const std::vector<Vec4f>& before, const std::vector<Vec4f>& now, std::size_t count) {
-  const auto same = [&](std::size_t v) { return std::memcmp(&before[v], &now[v], sizeof(Vec4f)) == 0; };
-  std::size_t first = 0, end = count;
-  while (first < end && same(first)) ++first;
-  while (end > first && same(end - 1)) --end;
+namespace {
+
+/// The first `both` elements are compared; what `now` has beyond them is new.
+template <class Same>
+IndexRange changed(std::size_t before, std::size_t now, const Same& same) {
+  const std::size_t both = std::min(before, now);
+  std::size_t first = 0, end = now;
+  while (first < both && same(first)) ++first;
+  while (end > first && end <= both && same(end - 1)) --end;
   return {first, end - first};
+}
+
+}  // namespace
+
+IndexRange changed_range(const std::vector<Vec4f>& from, std::size_t before, const std::vector<Vec4f>& to, std::size_t now) {
+  return changed(before, now, [&](std::size_t v) { return std::memcmp(&from[v], &to[v], sizeof(Vec4f)) == 0; });
+}
+
+IndexRange changed_triangles(const Topology& from, const Topology& to) {
+  const auto &a = from.model->surface.triangles, &b = to.model->surface.triangles;
+  const auto flag = [](const Topology& t, std::size_t i) { return t.cut_faces.empty() ? 0 : t.cut_faces[i]; };
+  return changed(a.size(), b.size(), [&](std::size_t t) { return a[t] == b[t] && flag(from, t) == flag(to, t); });
 }
 
 IndexRange joined(const IndexRange& a, const IndexRange& b) {

@@ -15,6 +15,7 @@ struct Topology {
   std::shared_ptr<const Model> model;   ///< owns the triangles
   std::vector<Vec4f> rest;              ///< [vertices] [m]
   std::vector<std::uint8_t> cut_faces;  ///< [triangles] or empty
+  std::vector<IndexRange> body_vertices, body_triangles;
 };
 
 /// A frame and what it points to.
@@ -39,8 +40,12 @@ class FramePool : public std::enable_shared_from_this<FramePool> {
 void vertex_normals(const std::vector<Vec4f>& positions, std::size_t count, View<Triangle> triangles,
                     std::vector<Vec4f>& normals);
 
-/// The smallest range outside of which both hold the same bits. `count` vertices.
-IndexRange changed_range(const std::vector<Vec4f>& before, const std::vector<Vec4f>& now, std::size_t count);
+/// The smallest range of `to` outside of which both hold the same bits. The first `before` elements of `from` count and the
+/// first `now` of `to`.
+IndexRange changed_range(const std::vector<Vec4f>& from, std::size_t before, const std::vector<Vec4f>& to, std::size_t now);
+
+/// The same of triangles and of the flags that say which of them lie on a cut.
+IndexRange changed_triangles(const Topology& from, const Topology& to);
 
 /// The smallest range that holds both.
 IndexRange joined(const IndexRange& a, const IndexRange& b);

@@ -27,9 +27,14 @@ double edge_of(const ModelBody& body) {
 
 }  // namespace
 
-Tools::Tools(std::shared_ptr<const Model> model, const Scene& scene) : model_(std::move(model)) {
+Tools::Tools(std::shared_ptr<const Model> model, const Scene& scene) {
   for (const Body& b : scene.bodies) materials_.push_back(b.material);
-  node_of_.resize(static_cast<std::size_t>(model_->slots));
+  set_model(std::move(model));
+}
+
+void Tools::set_model(std::shared_ptr<const Model> model) {
+  model_ = std::move(model);
+  node_of_.assign(static_cast<std::size_t>(model_->slots), {});
   for (std::size_t b = 0; b < model_->bodies.size(); ++b) {
     const auto& slots = model_->bodies[b].slot;
     for (std::size_t n = 0; n < slots.size(); ++n) {
@@ -38,16 +43,32 @@ Tools::Tools(std::shared_ptr<const Model> model, const Scene& scene) : model_(st
   }
 }
 
-void Tools::check_vertex(std::int32_t vertex) const {
-  const std::size_t count = model_->surface.rest.size();
-  if (vertex < 0 || static_cast<std::size_t>(vertex) >= count) {
-    throw Error(ErrorCode::usage, fmt::format("there is no vertex {}; the surface has {}", vertex, count));
-  }
+void Tools::follow(std::shared_ptr<const Model> model) {
+  const std::lock_guard lock(mutex_);
+  if (model == model_) return;
+  set_model(std::move(model));
+  // Going back to a state before a cut takes vertices and nodes away.
+  std::erase_if(grabs_, [&](const auto& entry) { return !has(entry.second.vertex); });
+  std::erase_if(pushes_, [&](const auto& entry) { return !has(entry.first); });
+  std::erase_if(node_pushes_, [&](const auto& entry) {
+    return entry.first.second >= static_cast<std::int64_t>(model_->bodies[entry.first.first].slot.size());
+  });
+  for (auto& [id, grab] : grabs_) hold(grab);
+  changed_ = changed_ || !pushes_.empty() || !node_pushes_.empty();
 }
 
-std::vector<NodeShare> Tools::nodes_of(std::int32_t vertex) const {
+bool Tools::has(const SurfaceVertex& vertex) const {
+  return vertex.body < model_->bodies.size() && vertex.local >= 0 && vertex.local < model_->bodies[vertex.body].vertices;
+}
+
+void Tools::check_vertex(const SurfaceVertex& vertex) const {
+  if (has(vertex)) return;
+  throw Error(ErrorCode::usage, fmt::format("there is no vertex {} of body {} any more", vertex.local, vertex.body));
+}
+
+std::vector<NodeShare> Tools::nodes_of(const SurfaceVertex& vertex) const {
   std::vector<NodeShare> nodes;
-  const auto v = static_cast<std::size_t>(vertex);
+  const auto v = static_cast<std::size_t>(model_->bodies[vertex.body].first_vertex + vertex.local);
   for (std::size_t a = 0; a < 8; ++a) {
     if (model_->surface.weights[v][a] == 0) continue;
     const auto [body, node] = node_of_[static_cast<std::size_t>(model_->surface.nodes[v][a])];
@@ -56,35 +77,42 @@ std::vector<NodeShare> Tools::nodes_of(std::int32_t vertex) const {
   return nodes;
 }
 
-GrabId Tools::grab(std::int32_t vertex, const GrabOptions& options) {
-  check_vertex(vertex);
-  if (!(options.radius >= 0 && options.stiffness >= 0 && options.max_force >= 0)) {
-    throw Error(ErrorCode::usage, "radius, stiffness and max_force of a grab must be 0 or more");
-  }
-  Grab g;
-  g.vertex = vertex;
-  g.point = nodes_of(vertex);
-  g.body = g.point.front().body;
-  g.rest = model_->surface.rest[static_cast<std::size_t>(vertex)];
-  const ModelBody& body = model_->bodies[g.body];
-  // Only nodes with a reserved force can be held: those that move the surface.
+/// Find the nodes of a grab. Only those with a reserved force can be held: those that move the surface.
+void Tools::hold(Grab& g) const {
+  const std::size_t b = g.vertex.body;
+  const ModelBody& body = model_->bodies[b];
+  g.point = nodes_of(g.vertex);
+  g.rest = model_->surface.rest[static_cast<std::size_t>(body.first_vertex + g.vertex.local)];
+  g.patch.clear();
+  g.mass = 0;
   for (const NodeForce& f : model_->forces) {
-    const auto [b, n] = node_of_[static_cast<std::size_t>(f.slot)];
-    if (!f.reserved || b != g.body) continue;
+    const auto [of, n] = node_of_[static_cast<std::size_t>(f.slot)];
+    if (!f.reserved || of != b) continue;
     const Vec3d& x = body.rest[static_cast<std::size_t>(n)];
     const bool own = std::any_of(g.point.begin(), g.point.end(), [n = n](const NodeShare& p) { return p.node == n; });
     const double distance = std::hypot(x[0] - g.rest[0], x[1] - g.rest[1], x[2] - g.rest[2]);
-    if (!own && !(distance <= options.radius)) continue;
+    if (!own && !(distance <= g.options.radius)) continue;
     const double mass = model_->mass[static_cast<std::size_t>(f.slot)];
     g.patch.push_back({b, n, mass});
     g.mass += mass;
   }
   for (NodeShare& p : g.patch) p.share /= g.mass;
   // A disk of radius r on a half-space has the stiffness 2 E r / (1 - nu^2): half of it cannot overshoot at rest.
-  const double r = std::max(options.radius, edge_of(body)), young = materials_[g.body].young();
-  g.stiffness = options.stiffness > 0 ? options.stiffness : young * r;
-  g.max_force = options.max_force > 0 ? options.max_force : kStrain * young * r * r;
+  const double r = std::max(g.options.radius, edge_of(body)), young = materials_[b].young();
+  g.stiffness = g.options.stiffness > 0 ? g.options.stiffness : young * r;
+  g.max_force = g.options.max_force > 0 ? g.options.max_force : kStrain * young * r * r;
+}
+
+GrabId Tools::grab(const SurfaceVertex& vertex, const GrabOptions& options) {
+  if (!(options.radius >= 0 && options.stiffness >= 0 && options.max_force >= 0)) {
+    throw Error(ErrorCode::usage, "radius, stiffness and max_force of a grab must be 0 or more");
+  }
   const std::lock_guard lock(mutex_);
+  check_vertex(vertex);
+  Grab g;
+  g.vertex = vertex;
+  g.options = options;
+  hold(g);
   grabs_.emplace(++last_id_, std::move(g));
   return last_id_;
 }
@@ -105,18 +133,22 @@ void Tools::release(GrabId id) {
   changed_ = true;
 }
 
-void Tools::push(std::int32_t vertex, const Vec3d& force) {
-  check_vertex(vertex);
+void Tools::push(const SurfaceVertex& vertex, const Vec3d& force) {
   for (const double x : force) {
-    if (!std::isfinite(x)) throw Error(ErrorCode::usage, fmt::format("a force on vertex {} has the component {}", vertex, x));
+    if (!std::isfinite(x)) {
+      throw Error(ErrorCode::usage,
+                  fmt::format("a force on vertex {} of body {} has the component {}", vertex.local, vertex.body, x));
+    }
   }
   const std::lock_guard lock(mutex_);
+  check_vertex(vertex);
   pushes_[vertex] = force;
   if (force == Vec3d{}) pushes_.erase(vertex);
   changed_ = true;
 }
 
 void Tools::push_node(std::size_t body, std::int64_t node, const Vec3d& force) {
+  const std::lock_guard lock(mutex_);
   if (body >= model_->bodies.size() || node < 0 || node >= static_cast<std::int64_t>(model_->bodies[body].slot.size())) {
     throw Error(ErrorCode::usage, fmt::format("there is no node {} of body {}", node, body));
   }
@@ -128,7 +160,6 @@ void Tools::push_node(std::size_t body, std::int64_t node, const Vec3d& force) {
   for (const double x : force) {
     if (!std::isfinite(x)) throw Error(ErrorCode::usage, fmt::format("a force on node {} has the component {}", node, x));
   }
-  const std::lock_guard lock(mutex_);
   node_pushes_[{body, node}] = force;
   if (force == Vec3d{}) node_pushes_.erase({body, node});
   changed_ = true;
@@ -168,6 +199,7 @@ Vec3d Tools::pull(const Grab& grab, Pull& state, const Vec3d& position, double t
 }
 
 std::int32_t Tools::apply(Simulation& simulation) {
+  follow(simulation.shared_model());
   std::map<GrabId, Grab> grabs;
   std::vector<Simulation::HostForce> forces;
   {
@@ -188,8 +220,9 @@ std::int32_t Tools::apply(Simulation& simulation) {
   const auto steps = static_cast<std::int32_t>(std::clamp(kPeriod / simulation.dt(), 1.0, 64.0));
   std::map<std::size_t, std::vector<Vec3d>> displacements;
   for (const auto& [id, grab] : grabs) {
-    if (!displacements.contains(grab.body)) displacements[grab.body] = simulation.displacements(grab.body);
-    const std::vector<Vec3d>& u = displacements[grab.body];
+    const std::size_t body = grab.vertex.body;
+    if (!displacements.contains(body)) displacements[body] = simulation.displacements(body);
+    const std::vector<Vec3d>& u = displacements[body];
     Vec3d position = grab.rest;
     for (const NodeShare& n : grab.point) {
       for (std::size_t c = 0; c < 3; ++c) position[c] += n.share * u[static_cast<std::size_t>(n.node)][c];

@@ -1,5 +1,6 @@
 // What a user does to the surface between two batches: grabs on springs, pushes, and the place of the scene's tool.
 #pragma once
+#include <compare>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -18,17 +19,27 @@ struct NodeShare {
   double share = 0;
 };
 
+/// A vertex by its number in its body, which cuts do not change.
+struct SurfaceVertex {
+  std::size_t body = 0;
+  std::int32_t local = 0;
+  auto operator<=>(const SurfaceVertex&) const = default;
+};
+
 /// The caller's thread changes the tools, the thread that steps reads them at the start of a batch; neither waits for the other
 /// longer than it takes to copy a few numbers.
 class Tools {
  public:
-  /// `model` is that of the start: bodies and their nodes keep their numbers when an operational region moves.
   Tools(std::shared_ptr<const Model> model, const Scene& scene);
 
-  GrabId grab(std::int32_t vertex, const GrabOptions& options);
+  /// The simulation has another model now: a cut divided cells, or an operational region moved. What holds on to the surface
+  /// goes on with the nodes that move it there.
+  void follow(std::shared_ptr<const Model> model);
+
+  GrabId grab(const SurfaceVertex& vertex, const GrabOptions& options);
   void move(GrabId id, const Vec3d& target);
   void release(GrabId id);
-  void push(std::int32_t vertex, const Vec3d& force);
+  void push(const SurfaceVertex& vertex, const Vec3d& force);
   void push_node(std::size_t body, std::int64_t node, const Vec3d& force);
   void move_tool(const Vec3d& position);
   void clear();
@@ -39,9 +50,9 @@ class Tools {
  private:
   /// A grab, as the caller sees it.
   struct Grab {
-    std::int32_t vertex = 0;
-    std::optional<Vec3d> target;  ///< [m]; none yet: where the vertex is
-    std::size_t body = 0;
+    SurfaceVertex vertex;
+    GrabOptions options;
+    std::optional<Vec3d> target;   ///< [m]; none yet: where the vertex is
     std::vector<NodeShare> point;  ///< weights of the vertex
     std::vector<NodeShare> patch;  ///< shares of the pull
     Vec3d rest{};
@@ -53,17 +64,21 @@ class Tools {
     double time = 0;
   };
 
-  [[nodiscard]] std::vector<NodeShare> nodes_of(std::int32_t vertex) const;
-  void check_vertex(std::int32_t vertex) const;
+  // With the mutex held.
+  void set_model(std::shared_ptr<const Model> model);
+  [[nodiscard]] bool has(const SurfaceVertex& vertex) const;
+  void check_vertex(const SurfaceVertex& vertex) const;
+  [[nodiscard]] std::vector<NodeShare> nodes_of(const SurfaceVertex& vertex) const;
+  void hold(Grab& grab) const;
   Vec3d pull(const Grab& grab, Pull& state, const Vec3d& position, double time, double period) const;
 
-  std::shared_ptr<const Model> model_;
   std::vector<Material> materials_;
-  std::vector<std::pair<std::size_t, std::int64_t>> node_of_;  ///< [slots] body, node
   std::mutex mutex_;
+  std::shared_ptr<const Model> model_;                         ///< the one that the simulation runs
+  std::vector<std::pair<std::size_t, std::int64_t>> node_of_;  ///< [slots] body, node
   GrabId last_id_ = 0;
   std::map<GrabId, Grab> grabs_;
-  std::map<std::int32_t, Vec3d> pushes_;
+  std::map<SurfaceVertex, Vec3d> pushes_;
   std::map<std::pair<std::size_t, std::int64_t>, Vec3d> node_pushes_;
   std::optional<Vec3d> tool_;
   bool changed_ = false;

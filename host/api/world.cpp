@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "api/scene_json.h"
-#include "api/world_impl.h"
+#include "api/world_call.h"
 #include "backends/backends.h"
 #include "io/save.h"
 #include "pliant/version.h"
@@ -18,33 +18,11 @@
 namespace pliant {
 namespace {
 
-/// One call at a time; and, if wanted, only when the worker is idle.
-class Call {
- public:
-  explicit Call(const std::unique_ptr<World::Impl>& impl, bool wait = true) : impl_(impl.get()) {
-    if (impl_ == nullptr) throw Error(ErrorCode::state, "this World was moved from and holds nothing");
-    if (impl_->in_use.exchange(true)) {
-      throw Error(ErrorCode::state, "two threads use the same World at once; give each its own, or let them take turns");
-    }
-    if (wait) impl_->wait_until_idle();
-  }
-  ~Call() { impl_->in_use.store(false); }
-  Call(const Call&) = delete;
-  Call& operator=(const Call&) = delete;
-
- private:
-  World::Impl* impl_;
-};
+using api::Call;
+using api::check_body;
 
 void check_steps(std::int64_t steps) {
   if (steps < 0) throw Error(ErrorCode::usage, fmt::format("the number of steps is {}; 0 or more are allowed", steps));
-}
-
-std::size_t check_body(const World::Impl& impl, std::size_t body) {
-  if (body >= impl.info.bodies.size()) {
-    throw Error(ErrorCode::usage, fmt::format("there is no body {}; the scene has {}", body, impl.info.bodies.size()));
-  }
-  return body;
 }
 
 void check_device(const World::Impl& impl) {
@@ -181,7 +159,7 @@ bool World::busy() const {
 bool World::poll() const noexcept {
   if (impl_ == nullptr) return false;
   const std::lock_guard lock(impl_->mutex);
-  if (impl_->newest != impl_->given) return true;
+  if (impl_->newest != impl_->given || impl_->cut_since_read) return true;
   return impl_->job < 0 && impl_->newest != nullptr && impl_->newest->frame.step != impl_->report.step;
 }
 
@@ -236,7 +214,7 @@ std::uint64_t World::hash() const {
 GrabId World::grab(std::int32_t vertex, const GrabOptions& options) {
   const Call call(impl_, false);
   check_interactive(*impl_);
-  return impl_->tools->grab(vertex, options);
+  return impl_->tools->grab(impl_->vertex_of(vertex), options);
 }
 
 void World::move_grab(GrabId grab, const Vec3d& target) {
@@ -254,7 +232,7 @@ void World::release(GrabId grab) {
 void World::push(std::int32_t vertex, const Vec3d& force) {
   const Call call(impl_, false);
   check_interactive(*impl_);
-  impl_->tools->push(vertex, force);
+  impl_->tools->push(impl_->vertex_of(vertex), force);
 }
 
 void World::push_node(std::size_t body, std::int64_t node, const Vec3d& force) {

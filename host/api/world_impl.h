@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <exception>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -15,6 +16,16 @@
 #include "solver/simulation.h"
 
 namespace pliant {
+
+namespace api {
+
+/// A cut that could not be made; the simulation is as it was before.
+struct CutRefused : Error {
+  using Error::Error;
+  explicit CutRefused(const Error& error) : Error(error) {}
+};
+
+}  // namespace api
 
 /// Opens a backend for a scene of so many nodes; `why` receives the reason.
 using OpenBackend = std::function<std::unique_ptr<Backend>(std::string* why, std::int64_t nodes)>;
@@ -37,6 +48,13 @@ struct World::Impl {
   [[nodiscard]] Error as_device_error(const std::exception& error) const;
   void check_can_step() const;
 
+  // world_cut.cpp
+  using CutCall = std::function<CutReport(Simulation&)>;
+  CutResult cut(CutCall call);
+  CutReport cut_now(const CutCall& call);
+  void cut_pending();
+  [[nodiscard]] api::SurfaceVertex vertex_of(std::int32_t vertex) const;
+
   // world_worker.cpp
   bool start_job(std::int64_t steps);
   void wait_until_idle();
@@ -53,6 +71,8 @@ struct World::Impl {
   std::string lost;         ///< message of the device's loss; empty: it works
   double seconds_left = 0;  ///< of advance()
   std::atomic<bool> in_use{false};
+  std::int64_t strokes = 0;                      ///< blades put somewhere so far
+  std::map<std::string, std::string> blade_key;  ///< what the simulation calls the blades that are in use
 
   std::shared_ptr<api::FramePool> pool = std::make_shared<api::FramePool>();
   std::shared_ptr<const Model> seen_model;  ///< the simulation's, when the topology was looked at last
@@ -63,7 +83,9 @@ struct World::Impl {
   std::condition_variable changed;
   std::thread worker;
   bool stop = false;
-  std::int64_t job = -1;  ///< steps asked of the worker, -1: none
+  std::int64_t job = -1;              ///< steps asked of the worker, -1: none
+  std::vector<CutCall> pending_cuts;  ///< asked for while the worker was busy
+  bool cut_since_read = false;        ///< `newest` does not show the last cut
   std::exception_ptr failure;
   StepReport report;  ///< of the last work
   double stable_dt = 0;

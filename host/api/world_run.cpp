@@ -33,8 +33,20 @@ std::shared_ptr<const api::Topology> topology_of(std::shared_ptr<const Model> mo
   for (const Vec3d& x : model->surface.rest) {
     topology->rest.push_back({static_cast<float>(x[0]), static_cast<float>(x[1]), static_cast<float>(x[2]), 0});
   }
+  const std::vector<char>& cut = model->surface.triangle_cut;
+  if (std::find(cut.begin(), cut.end(), 1) != cut.end()) topology->cut_faces.assign(cut.begin(), cut.end());
+  for (const ModelBody& b : model->bodies) {
+    topology->body_vertices.push_back({static_cast<std::size_t>(b.first_vertex), static_cast<std::size_t>(b.vertices)});
+    topology->body_triangles.push_back({static_cast<std::size_t>(b.first_triangle), static_cast<std::size_t>(b.triangles)});
+  }
   topology->model = std::move(model);
   return topology;
+}
+
+/// What is left of a range in an array that may have become shorter.
+IndexRange within(const IndexRange& range, std::size_t count) {
+  if (range.first >= count) return {};
+  return {range.first, std::min(range.count, count - range.first)};
 }
 
 WorldInfo info_of(const Model& model, const BackendInfo& backend, std::string why) {
@@ -102,11 +114,15 @@ StepReport World::Impl::run(std::int64_t steps) {
   const std::int64_t first = simulation->step();
   try {
     while (simulation->step() - first < steps && !simulation->divergence() && !simulation->at_equilibrium()) {
+      cut_pending();
       const std::int64_t left = std::min<std::int64_t>(steps - (simulation->step() - first), tools->apply(*simulation));
       simulation->advance(simulation->next_batch(left));
       const std::lock_guard lock(mutex);
       if (stop) break;
     }
+  } catch (const api::CutRefused& refused) {
+    publish_clock();
+    throw Error(refused.code(), refused.what());
   } catch (const std::exception& error) {
     const Error failure_now = as_device_error(error);
     lost = failure_now.what();
@@ -124,7 +140,8 @@ void World::Impl::follow_topology() {
   if (now == seen_model) return;
   seen_model = now;
   const ModelSurface &a = now->surface, &b = topology->model->surface;
-  if (a.triangles != b.triangles || a.rest != b.rest) topology = topology_of(std::move(now), topology->version + 1);
+  if (a.triangles != b.triangles || a.rest != b.rest || a.triangle_cut != b.triangle_cut)
+    topology = topology_of(std::move(now), topology->version + 1);
 }
 
 /// Read the surface into a frame that nobody holds, and make it the newest.
@@ -161,18 +178,27 @@ void World::Impl::read_frame(bool again) {
   f.rest = {topology->rest.data(), count};
   f.triangles = {triangles.data(), triangles.size()};
   f.cut_faces = {topology->cut_faces.data(), topology->cut_faces.size()};
+  f.body_vertices = {topology->body_vertices.data(), topology->body_vertices.size()};
+  f.body_triangles = {topology->body_triangles.data(), topology->body_triangles.size()};
   f.topology_version = topology->version;
   if (options.normals) {
     api::vertex_normals(data->positions, count, f.triangles, data->normals);
     f.normals = {data->normals.data(), count};
   }
-  const bool same_topology = last_read != nullptr && last_read->topology == topology;
-  const IndexRange vertices =
-      same_topology ? api::changed_range(last_read->positions, data->positions, count) : IndexRange{0, count};
+  IndexRange vertices{0, count}, faces{0, triangles.size()};
+  if (last_read != nullptr) {
+    const std::size_t before = last_read->topology->rest.size();
+    vertices = api::changed_range(last_read->positions, before, data->positions, count);
+    if (options.normals) {
+      vertices = api::joined(vertices, api::changed_range(last_read->normals, before, data->normals, count));
+    }
+    faces = last_read->topology == topology ? IndexRange{} : api::changed_triangles(*last_read->topology, *topology);
+  }
   last_read = data;
   const std::lock_guard lock(mutex);
-  dirty_vertices = same_topology ? api::joined(dirty_vertices, vertices) : vertices;
-  if (!same_topology) dirty_triangles = {0, triangles.size()};
+  dirty_vertices = within(api::joined(dirty_vertices, vertices), count);
+  dirty_triangles = within(api::joined(dirty_triangles, faces), triangles.size());
+  cut_since_read = false;
   newest = std::move(data);
 }
 
@@ -181,9 +207,11 @@ void World::Impl::restart(std::shared_ptr<Simulation> fresh) {
   simulation = std::move(fresh);
   lost.clear();
   seconds_left = 0;
+  blade_key.clear();
   {
     const std::lock_guard lock(mutex);
     failure = nullptr;
+    pending_cuts.clear();
   }
   publish_clock();
   read_frame(true);

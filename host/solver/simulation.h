@@ -74,6 +74,8 @@ class Simulation {
   /// Move a blade to a segment; it cuts what it sweeps over. Its first call only puts it there. `blade` is any name. Throws
   /// like cut(), and for a segment without length.
   CutReport move_blade(const std::string& blade, const std::array<Vec3d, 2>& segment);
+  /// Forget where a blade of move_blade is, if there is one: its next call puts it somewhere else.
+  void lift_blade(const std::string& blade);
   /// Grows with each edit that changed elements.
   [[nodiscard]] std::int64_t topology_version() const { return topology_version_; }
   /// How a body is cut; nullptr if no blade has touched it.

@@ -42,22 +42,28 @@ struct IndexRange {
 };
 
 /// The surface of all bodies at one step. A frame does not change once it is there, and it stays as long as somebody holds it,
-/// also after its World is gone. Bodies follow one another: BodyInfo has their ranges.
+/// also after its World is gone. Bodies follow one another.
+///
+/// A cut adds vertices and triangles at the end of its body's part and closes the body along the cut. Vertex k of a body is the
+/// same one in all frames, counted from the first of that body: what lies beside the cut keeps its vertices. Those that no
+/// triangle uses any more stay in the list.
 struct Frame {
-  std::int64_t step = 0;         ///< steps since the start
-  double time = 0;               ///< [s]
-  View<Vec4f> positions;         ///< [m], shape [vertices]
-  View<Vec4f> normals;           ///< unit length, shape [vertices]; empty if WorldOptions::normals is off
-  View<Vec4f> rest;              ///< positions at rest [m], shape [vertices]
-  View<Triangle> triangles;      ///< vertex numbers, shape [triangles]
-  View<std::uint8_t> cut_faces;  ///< 1: the triangle lies on a cut, shape [triangles]; empty: none does
+  std::int64_t step = 0;            ///< steps since the start
+  double time = 0;                  ///< [s]
+  View<Vec4f> positions;            ///< [m], shape [vertices]
+  View<Vec4f> normals;              ///< unit length, shape [vertices]; empty if WorldOptions::normals is off
+  View<Vec4f> rest;                 ///< positions at rest [m], shape [vertices]
+  View<Triangle> triangles;         ///< vertex numbers, shape [triangles]
+  View<std::uint8_t> cut_faces;     ///< 1: the triangle lies on a cut, shape [triangles]; empty: none does
+  View<IndexRange> body_vertices;   ///< part of each body, shape [bodies]
+  View<IndexRange> body_triangles;  ///< likewise
   std::uint64_t topology_version =
       0;  ///< changes when vertices or triangles are others than before; positions alone do not count
 
-  /// The vertices whose positions may differ from those of the frame that World::frame() gave before this one (frames that
-  /// were never asked for count in). All of them in the first frame and after a change of topology.
+  /// The vertices whose position or normal may differ from the one of the same number in the frame that World::frame() gave
+  /// before this one (frames that were never asked for count in). All of them in the first frame.
   IndexRange dirty_vertices;
-  /// The same for triangles: empty unless the topology changed.
+  /// The same for triangles and cut_faces: empty unless the topology changed.
   IndexRange dirty_triangles;
 };
 

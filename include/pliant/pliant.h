@@ -57,8 +57,8 @@ typedef struct pliant_surface {
 /** Numbers that do not change while a world runs. */
 typedef struct pliant_info {
   size_t bodies;    /**< in the order of the scene */
-  size_t vertices;  /**< of the surface */
-  size_t triangles; /**< of the surface */
+  size_t vertices;  /**< of the surface, as of the start */
+  size_t triangles; /**< likewise */
   int64_t nodes;    /**< of all bodies */
   int64_t elements; /**< of all bodies */
   int bit_exact;    /**< 1: the device passed the start-up probe */
@@ -77,20 +77,30 @@ typedef struct pliant_report {
 /** The surface at one step: see pliant::Frame. The pointers hold until the next pliant_world_frame or pliant_world_destroy of
  * the same world. */
 typedef struct pliant_frame {
-  int64_t step;                /**< steps since the start */
-  double time;                 /**< [s] */
-  const float* positions;      /**< [m], shape [vertex_count][4]; the fourth is 0 */
-  const float* normals;        /**< unit length, shape [vertex_count][4], or null */
-  size_t vertex_count;         /**< vertices */
-  const int32_t* triangles;    /**< shape [triangle_count][3] */
-  size_t triangle_count;       /**< triangles */
-  const uint8_t* cut_faces;    /**< shape [triangle_count], or null: there are none */
-  uint64_t topology_version;   /**< changes when vertices or triangles are others than before */
-  size_t dirty_vertex_first;   /**< first vertex that may have moved since the frame before */
-  size_t dirty_vertex_count;   /**< and how many */
-  size_t dirty_triangle_first; /**< first triangle that may be another one */
-  size_t dirty_triangle_count; /**< and how many; 0 unless the topology changed */
+  int64_t step;                 /**< steps since the start */
+  double time;                  /**< [s] */
+  const float* positions;       /**< [m], shape [vertex_count][4]; the fourth is 0 */
+  const float* normals;         /**< unit length, shape [vertex_count][4], or null */
+  size_t vertex_count;          /**< vertices */
+  const int32_t* triangles;     /**< shape [triangle_count][3] */
+  size_t triangle_count;        /**< triangles */
+  const uint8_t* cut_faces;     /**< shape [triangle_count], or null: there are none */
+  uint64_t topology_version;    /**< changes when vertices or triangles are others than before */
+  size_t dirty_vertex_first;    /**< first vertex that may have moved since the frame before */
+  size_t dirty_vertex_count;    /**< and how many */
+  size_t dirty_triangle_first;  /**< first triangle that may be another one */
+  size_t dirty_triangle_count;  /**< and how many; 0 unless the topology changed */
+  const size_t* body_vertices;  /**< first vertex and count, shape [bodies][2]; vertex k of a body is always the same */
+  const size_t* body_triangles; /**< first triangle and count, likewise */
 } pliant_frame;
+
+/** What a cut did: see pliant::CutResult. */
+typedef struct pliant_cut {
+  int pending;    /**< 1: done at the start of the next batch of steps, nothing else is known */
+  int changed;    /**< 1: elements were divided */
+  int64_t edges;  /**< edges between nodes that were cut now */
+  double seconds; /**< what it took [s] */
+} pliant_cut;
 
 /** "0.1.0", of the library that runs. */
 PLIANT_API const char* pliant_version(void);
@@ -127,6 +137,8 @@ PLIANT_API pliant_status pliant_world_frame(pliant_world world, pliant_frame* ou
 PLIANT_API pliant_status pliant_world_positions(pliant_world world, float* out, size_t count);
 PLIANT_API pliant_status pliant_world_normals(pliant_world world, float* out, size_t count);
 PLIANT_API pliant_status pliant_world_triangles(pliant_world world, int32_t* out, size_t count);
+/** One number per triangle: 1 on a cut, else 0. */
+PLIANT_API pliant_status pliant_world_cut_faces(pliant_world world, uint8_t* out, size_t count);
 /** Displacements [m] of a body's nodes, three per node. */
 PLIANT_API pliant_status pliant_world_displacements(pliant_world world, size_t body, double* out, size_t count);
 /** Equal for equal bits of the state. */
@@ -140,6 +152,17 @@ PLIANT_API pliant_status pliant_world_release(pliant_world world, uint64_t grab)
 /** A force [N] on a vertex until it is set again. */
 PLIANT_API pliant_status pliant_world_push(pliant_world world, int32_t vertex, const double force[3]);
 PLIANT_API pliant_status pliant_world_clear_tools(pliant_world world);
+
+/** Cut all bodies where triangles [m], shape [triangle_count][3][3], cross them now. `out` may be null. */
+PLIANT_API pliant_status pliant_world_cut(pliant_world world, const double* triangles, size_t triangle_count, pliant_cut* out);
+/** Move a blade of any name to the segment from `a` to `b` [m]; it cuts what it sweeps over. The first call only puts it there.
+ * `out` may be null. */
+PLIANT_API pliant_status pliant_world_move_blade(pliant_world world, const char* blade, const double a[3], const double b[3],
+                                                 pliant_cut* out);
+/** Take a blade out: the next move puts it somewhere else without a cut. */
+PLIANT_API pliant_status pliant_world_lift_blade(pliant_world world, const char* blade);
+/** Pieces that a body has come apart into. */
+PLIANT_API pliant_status pliant_world_pieces(pliant_world world, size_t body, int64_t* out);
 
 PLIANT_API pliant_status pliant_world_save(pliant_world world, const char* file);
 PLIANT_API pliant_status pliant_world_load(pliant_world world, const char* file);

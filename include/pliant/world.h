@@ -3,7 +3,7 @@
 // Threads. A World may be used from any thread, but by one at a time; two at once are an Error (state). Worlds share nothing,
 // so each may have a thread of its own, and what one computes does not depend on the others. A World makes one worker thread,
 // at the first advance_async. While the worker is busy these calls do not wait for it: busy, poll, frame, info, the tools,
-// advance_async. All others wait until it is done. A Frame may be read by any number of threads.
+// cut, move_blade, lift_blade, advance_async. All others wait until it is done. A Frame may be read by any number of threads.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -69,6 +69,14 @@ struct GrabOptions {
 
 /// Names a grab of one World; 0 is none.
 using GrabId = std::uint64_t;
+
+/// What a cut did.
+struct CutResult {
+  bool pending = false;  ///< the worker is busy: it is done at the start of the next batch of steps, and nothing else is known
+  bool changed = false;  ///< elements were divided; the next frame shows it if the surface is another one
+  std::int64_t edges = 0;  ///< edges between nodes that were cut now
+  double seconds = 0;      ///< what it took [s]
+};
 
 /// A scene on a backend.
 class PLIANT_API World {
@@ -140,11 +148,30 @@ class PLIANT_API World {
   /// The scene's tool, which a following operational region follows, stays at this point [m] from now on.
   void move_tool(const Vec3d& position);
 
-  /// Write a checkpoint; `pliant run --resume` reads it too. Tools are not part of it. Throws Error: io.
+  /// Cuts. They need no WorldOptions::interactive. A volume mesh of hexahedra and a scene with relaxation or the textbook
+  /// integrator cannot be cut: Error (input), with nothing changed. If a cut had to wait for the worker (CutResult::pending),
+  /// that is thrown by the next call that tells what the worker met. Where shape matching has substeps, a cut waits for the
+  /// next batch that begins with one of its steps. Throw Error: usage (numbers that are not finite), diverged, device.
+  ///
+  /// Cut all bodies where these triangles [m] cross them now. A triangle without area cuts nothing.
+  CutResult cut(const std::vector<std::array<Vec3d, 3>>& triangles);
+  /// Move a blade of any name to the segment from `a` to `b` [m], which must differ (usage); it cuts what it sweeps over since
+  /// its last place, measured from where the tissue has carried that. Its first call only puts it there.
+  CutResult move_blade(const std::string& blade, const Vec3d& a, const Vec3d& b);
+  /// Take it out of the tissue: the next move_blade puts it somewhere else without a cut. Throws Error (usage) if there is no
+  /// such blade.
+  void lift_blade(const std::string& blade);
+  /// Into how many pieces a body has come apart: sets of elements that share nodes; 1 if no blade has touched it. Waits for the
+  /// worker. Throws Error (usage) if there is no such body.
+  [[nodiscard]] std::int64_t pieces(std::size_t body) const;
+
+  /// Write a checkpoint; `pliant run --resume` reads it too. Tools and the places of blades are not part of it; cuts are.
+  /// Throws Error: io.
   void save(const std::string& file) const;
   /// Go to the state of a checkpoint of the same scene. Throws Error: io, input (it belongs to another scene).
   void load(const std::string& file);
-  /// Back to the start, also after a divergence or the loss of the device (the backend is opened anew). Tools are cleared.
+  /// Back to the start, without cuts, also after a divergence or the loss of the device (the backend is opened anew). Tools are
+  /// cleared and blades lifted.
   void reset();
 
   struct PLIANT_HIDDEN Impl;  ///< private

@@ -1,0 +1,141 @@
+// Cuts of a World. They are made by the thread that steps, between two batches.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "api/world_call.h"
+#include "cutting/cut_topology.h"
+
+namespace pliant {
+namespace {
+
+void check_finite(const Vec3d& p, const char* what) {
+  if (std::all_of(p.begin(), p.end(), [](double x) { return std::isfinite(x); })) return;
+  throw Error(ErrorCode::usage, fmt::format("{}: got the point [{}] m; allowed are finite numbers", what, fmt::join(p, ", ")));
+}
+
+}  // namespace
+
+/// What Simulation refuses is the caller's; everything else is the device's.
+CutReport World::Impl::cut_now(const CutCall& call) {
+  try {
+    const CutReport done = call(*simulation);
+    if (!done.changed) return done;
+    tools->follow(simulation->shared_model());
+    const std::lock_guard lock(mutex);
+    cut_since_read = true;
+    return done;
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::internal || error.code() == ErrorCode::device) throw;
+    throw api::CutRefused(error);
+  }
+}
+
+void World::Impl::cut_pending() {
+  std::vector<CutCall> calls;
+  {
+    const std::lock_guard lock(mutex);
+    calls.swap(pending_cuts);
+  }
+  std::exception_ptr refused;  // the others are done all the same
+  for (const CutCall& call : calls) {
+    try {
+      cut_now(call);
+    } catch (const api::CutRefused&) {
+      if (refused == nullptr) refused = std::current_exception();
+    }
+  }
+  if (refused != nullptr) std::rethrow_exception(refused);
+}
+
+CutResult World::Impl::cut(CutCall call) {
+  {
+    const std::lock_guard lock(mutex);
+    if (job >= 0) {
+      pending_cuts.push_back(std::move(call));
+      CutResult result;
+      result.pending = true;
+      return result;
+    }
+  }
+  throw_failure();
+  check_can_step();
+  try {
+    cut_pending();
+    const CutReport done = cut_now(call);
+    publish_clock();
+    return {false, done.changed, done.edges, done.seconds()};
+  } catch (const api::CutRefused& refused) {
+    throw Error(refused.code(), refused.what());
+  } catch (const std::exception& error) {
+    const Error failure_now = as_device_error(error);
+    lost = failure_now.what();
+    throw failure_now;
+  }
+}
+
+/// The vertex of the frame that the user got last, by its body.
+api::SurfaceVertex World::Impl::vertex_of(std::int32_t vertex) const {
+  std::shared_ptr<const api::Topology> seen;
+  {
+    const std::lock_guard lock(mutex);
+    seen = given != nullptr ? given->topology : newest->topology;
+  }
+  for (std::size_t b = 0; b < seen->body_vertices.size(); ++b) {
+    const IndexRange& part = seen->body_vertices[b];
+    const std::int64_t local = vertex - static_cast<std::int64_t>(part.first);
+    if (local >= 0 && local < static_cast<std::int64_t>(part.count)) return {b, static_cast<std::int32_t>(local)};
+  }
+  throw Error(ErrorCode::usage, fmt::format("there is no vertex {}; the surface has {}", vertex, seen->rest.size()));
+}
+
+CutResult World::cut(const std::vector<std::array<Vec3d, 3>>& triangles) {
+  const api::Call call(impl_, false);
+  for (const auto& t : triangles) {
+    for (const Vec3d& p : t) check_finite(p, "cut");
+  }
+  return impl_->cut([triangles](Simulation& s) { return s.cut(triangles); });
+}
+
+CutResult World::move_blade(const std::string& blade, const Vec3d& a, const Vec3d& b) {
+  const api::Call call(impl_, false);
+  const std::string what = fmt::format("blade '{}'", blade);
+  check_finite(a, what.c_str());
+  check_finite(b, what.c_str());
+  if (a == b) {
+    throw Error(ErrorCode::usage, fmt::format("{}: got a segment from [{}] m to itself; allowed are two different points", what,
+                                              fmt::join(a, ", ")));
+  }
+  // Every stroke has a name of its own, so that nothing of an older one is left.
+  const auto [key, fresh] = impl_->blade_key.try_emplace(blade);
+  if (fresh) key->second = fmt::format("{}#{}", blade, impl_->strokes++);
+  return impl_->cut([name = key->second, fresh = fresh, a, b](Simulation& s) {
+    if (fresh) s.lift_blade(name);
+    return s.move_blade(name, {a, b});
+  });
+}
+
+void World::lift_blade(const std::string& blade) {
+  const api::Call call(impl_, false);
+  const auto key = impl_->blade_key.find(blade);
+  if (key == impl_->blade_key.end()) {
+    throw Error(ErrorCode::usage, fmt::format("there is no blade '{}' to lift: move_blade makes it", blade));
+  }
+  const std::string name = key->second;
+  impl_->blade_key.erase(key);
+  const std::lock_guard lock(impl_->mutex);
+  impl_->pending_cuts.push_back([name](Simulation& s) {
+    s.lift_blade(name);
+    return CutReport{};
+  });
+}
+
+std::int64_t World::pieces(std::size_t body) const {
+  const api::Call call(impl_);
+  const CutTopology* topology = impl_->simulation->cut_topology(api::check_body(*impl_, body));
+  return topology == nullptr ? 1 : topology->pieces();
+}
+
+}  // namespace pliant
