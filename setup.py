@@ -1,4 +1,7 @@
-"""pip install . : configures and builds the Python module with CMake. Needs what ./dev build needs, python3-dev and pybind11-dev."""
+"""pip install . : configures and builds the Python module with CMake. Needs what ./dev build needs, python3-dev and pybind11-dev.
+
+PLIANT_PYTHON_BUILD names a build folder that holds the module already; it is then taken from there.
+"""
 import os
 import re
 import subprocess
@@ -16,16 +19,25 @@ def version():
     return ".".join(re.search(rf"PLIANT_VERSION_{part} (\d+)", text)[1] for part in ("MAJOR", "MINOR", "PATCH"))
 
 
+def cmake_build(folder):
+    options = ["-DCMAKE_BUILD_TYPE=Release", "-DPLIANT_TESTS=OFF", "-DPLIANT_EXAMPLES=OFF", "-DPLIANT_BENCH=OFF", "-DPLIANT_PYTHON=ON",
+               f"-DPython3_EXECUTABLE={sys.executable}"]
+    subprocess.run(["cmake", "-S", SOURCE, "-B", folder, *options], check=True)
+    subprocess.run(["cmake", "--build", folder, "--target", "pliant_python", "-j", str(os.cpu_count() or 1)], check=True)
+
+
 class CMakeBuild(build_ext):
     def build_extension(self, ext):
-        build = Path(os.environ.get("PLIANT_PYTHON_BUILD", Path(self.build_temp).resolve() / "cmake"))
-        out = Path(self.get_ext_fullpath(ext.name)).resolve().parent
-        subprocess.run(["cmake", "-S", SOURCE, "-B", build, "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_POSITION_INDEPENDENT_CODE=ON",
-                        "-DPLIANT_TESTS=OFF", "-DPLIANT_EXAMPLES=OFF", "-DPLIANT_PYTHON=ON", f"-DPython3_EXECUTABLE={sys.executable}"], check=True)
-        subprocess.run(["cmake", "--build", build, "--target", "pliant_python", "-j", str(os.cpu_count() or 1)], check=True)
-        out.mkdir(parents=True, exist_ok=True)
-        module = next((build / "python").glob("pliant*.so"))
-        (out / Path(self.get_ext_filename(ext.name)).name).write_bytes(module.read_bytes())
+        ready = os.environ.get("PLIANT_PYTHON_BUILD")
+        folder = Path(ready) if ready else Path(self.build_temp).resolve() / "cmake"
+        if not ready:
+            cmake_build(folder)
+        modules = sorted((folder / "python").glob("pliant*.so"))
+        if not modules:
+            raise SystemExit(f"{folder}/python holds no module pliant: it was left out, see what CMake says about pybind11 above")
+        out = Path(self.get_ext_fullpath(ext.name)).resolve()
+        out.parent.mkdir(parents=True, exist_ok=True)
+        out.write_bytes(modules[0].read_bytes())
 
 
 setup(name="pliant", version=version(), description="Soft-tissue deformation on OpenCL and on a bit-exact CPU reference",

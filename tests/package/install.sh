@@ -33,14 +33,16 @@ cmake --build "$work/consumer" >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 "$work/consumer/consumer"
 "$work/consumer/consumer_c"
 
-# What this build lacks is refused by name.
-printf 'find_package(pliant REQUIRED COMPONENTS Teleport)\n' >"$work/need.cmake"
-if cmake -S "$source/examples/find_package" -B "$work/lacking" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_PROJECT_INCLUDE="$work/need.cmake" \
-  -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_C_COMPILER="$cc" >"$work/log" 2>&1; then
-  echo 'find_package accepted a component that does not exist'
-  exit 1
-fi
-grep -q 'Teleport' "$work/log" || { cat "$work/log"; exit 1; }
+# A component that this build has is found; one that it lacks is refused by name.
+for component in OpenCL Embree Teleport; do
+  printf 'find_package(pliant REQUIRED COMPONENTS %s)\n' "$component" >"$work/need.cmake"
+  expected=refused answer=refused
+  grep -qiE "^set\(pliant_${component}_FOUND (1|ON|TRUE|YES)\)" "$lib/cmake/pliant/pliantConfig.cmake" && expected=found
+  cmake -S "$source/examples/find_package" -B "$work/with_$component" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_PROJECT_INCLUDE="$work/need.cmake" \
+    -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_C_COMPILER="$cc" >"$work/log" 2>&1 && answer=found
+  [ "$answer" = refused ] && ! grep -q "lacks the component $component" "$work/log" && { cat "$work/log"; exit 1; }
+  [ "$answer" = "$expected" ] || { echo "component $component: $answer, expected: $expected"; exit 1; }
+done
 
 if command -v pkg-config >/dev/null; then
   read -ra flags < <(PKG_CONFIG_PATH=$lib/pkgconfig pkg-config --define-variable=prefix="$prefix" --cflags --libs pliant)

@@ -50,6 +50,20 @@ def test_views():
     assert np.array_equal(x, before), "a view keeps its frame"
 
 
+def test_a_view_outlives_a_world_that_is_busy():
+    world = block()
+    assert world.advance_async(1_000_000_000)
+    x = world.frame().positions
+    before = x.copy()
+    del world  # stops the worker after its batch
+    gc.collect()
+    held = [block() for _ in range(4)]  # memory that was freed would be taken again
+    for other in held:
+        other.step(10)
+        other.frame()
+    assert np.array_equal(x, before)
+
+
 def test_steps():
     a, b = block(), block()
     report = a.step(100)
@@ -63,6 +77,16 @@ def test_steps():
     assert a.time == 0 and not np.any(a.displacements())
 
 
+def test_divergence_is_reported_and_the_last_good_state_stays():
+    world = block(dt=0.05)
+    report = world.step(10000)
+    assert report.diverged and "block" in report.message
+    assert np.isfinite(world.frame().positions).all()
+    assert error_of(lambda: world.step(1)).code == 4
+    world.reset()
+    assert world.step(1).step == 1
+
+
 def test_errors():
     assert error_of(lambda: pliant.World("no/such/scene.json")).code == 6
     assert error_of(lambda: pliant.World({"format": "?"})).code == 2
@@ -71,6 +95,12 @@ def test_errors():
     assert error_of(lambda: world.grab(0)).code == 8
     assert error_of(lambda: world.displacements(3)).code == 5
     assert error_of(lambda: pliant.World({}, surfaces=[(VERTICES[:, :2], TRIANGLES)])).code == 5
+    for wrong in (lambda: world.step("many"), lambda: pliant.World(3), lambda: world.grab(2**40)):
+        try:
+            wrong()
+        except TypeError:
+            continue
+        raise AssertionError("no TypeError")
 
 
 def test_tools():
@@ -86,5 +116,6 @@ if __name__ == "__main__":
     for name, test in list(globals().items()):
         if name.startswith("test_"):
             test()
-    runpy.run_path(os.path.join(SOURCE, "examples/python/pull_a_block.py"))
+    example = runpy.run_path(os.path.join(SOURCE, "examples/python/pull_a_block.py"))
+    assert example["path"][-1, 0] > example["path"][0, 0] + 0.01, "the corner followed the hand"
     print("ok")
