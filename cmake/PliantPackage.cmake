@@ -43,6 +43,9 @@ if(BUILD_SHARED_LIBS)
   set_property(TARGET pliant_lib APPEND PROPERTY LINK_DEPENDS ${exported})
 endif()
 
+# cpack and the target install take what is built: neither needs the tests.
+set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)
+
 # --- install -------------------------------------------------------------------------------------------------------------------
 set(pliant_cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/pliant)
 install(
@@ -83,6 +86,8 @@ configure_package_config_file(cmake/pliantConfig.cmake.in ${CMAKE_BINARY_DIR}/pa
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/package/pliantConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/package/pliantConfig.cmake ${CMAKE_BINARY_DIR}/package/pliantConfigVersion.cmake
         DESTINATION ${pliant_cmake_dir} COMPONENT dev)
+# The prefix from where the file lies, because --prefix and packages put it elsewhere than this configuration says.
+file(RELATIVE_PATH PLIANT_PC_TO_PREFIX /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
 configure_file(cmake/pliant.pc.in ${CMAKE_BINARY_DIR}/package/pliant.pc @ONLY)
 install(FILES ${CMAKE_BINARY_DIR}/package/pliant.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)
 
@@ -117,6 +122,11 @@ else()
   if(OpenCL_FOUND)
     string(APPEND CPACK_DEBIAN_DEV_PACKAGE_DEPENDS ", ocl-icd-opencl-dev")
   endif()
+endif()
+install(FILES cmake/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/pliant COMPONENT command)
+install(FILES cmake/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libpliant-dev COMPONENT dev)
+if(BUILD_SHARED_LIBS)
+  install(FILES cmake/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${libpliant} COMPONENT runtime)
 endif()
 set(CPACK_PACKAGE_CONTACT "The Pliant authors <pliant@localhost>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "soft-tissue deformation on OpenCL and on a bit-exact CPU reference")

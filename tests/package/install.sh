@@ -45,7 +45,7 @@ for component in OpenCL Embree Teleport; do
 done
 
 if command -v pkg-config >/dev/null; then
-  read -ra flags < <(PKG_CONFIG_PATH=$lib/pkgconfig pkg-config --define-variable=prefix="$prefix" --cflags --libs pliant)
+  read -ra flags < <(PKG_CONFIG_PATH=$lib/pkgconfig pkg-config --cflags --libs pliant)
   [ "$(PKG_CONFIG_PATH=$lib/pkgconfig pkg-config --modversion pliant)" = "$version" ]
   "$cxx" -std=c++17 "$source/examples/find_package/main.cpp" "${flags[@]}" -o "$work/by_pkg_config"
   LD_LIBRARY_PATH=$lib "$work/by_pkg_config"
