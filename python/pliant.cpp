@@ -4,6 +4,8 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <limits>
+
 namespace py = pybind11;
 using pliant::Vec3d;
 
@@ -33,9 +35,18 @@ py::array_t<double> copy(const std::vector<Vec3d>& v) {
 }
 
 using Vertices = py::array_t<double, py::array::c_style | py::array::forcecast>;
-using Triangles = py::array_t<std::int32_t, py::array::c_style | py::array::forcecast>;
 
-pliant::SurfaceSpec surface(const Vertices& vertices, const Triangles& triangles) {
+std::int32_t vertex_number(std::int64_t v) {
+  if (v >= 0 && v <= std::numeric_limits<std::int32_t>::max()) return static_cast<std::int32_t>(v);
+  throw pliant::Error(pliant::ErrorCode::usage, "a triangle of a surface names the vertex " + std::to_string(v));
+}
+
+pliant::SurfaceSpec surface(const Vertices& vertices, const py::object& given) {
+  const auto numbers = py::array::ensure(given);
+  if (!numbers || (numbers.dtype().kind() != 'i' && numbers.dtype().kind() != 'u')) {
+    throw pliant::Error(pliant::ErrorCode::usage, "the triangles of a surface are an array of integers");
+  }
+  const auto triangles = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>::ensure(numbers);
   if (vertices.ndim() != 2 || vertices.shape(1) != 3 || triangles.ndim() != 2 || triangles.shape(1) != 3) {
     throw pliant::Error(pliant::ErrorCode::usage,
                         "a surface is a pair of arrays of the shapes [vertices, 3] and [triangles, 3]");
@@ -44,7 +55,8 @@ pliant::SurfaceSpec surface(const Vertices& vertices, const Triangles& triangles
   for (py::ssize_t v = 0; v < vertices.shape(0); ++v)
     s.vertices.push_back({vertices.at(v, 0), vertices.at(v, 1), vertices.at(v, 2)});
   for (py::ssize_t t = 0; t < triangles.shape(0); ++t) {
-    s.triangles.push_back({triangles.at(t, 0), triangles.at(t, 1), triangles.at(t, 2)});
+    s.triangles.push_back(
+        {vertex_number(triangles.at(t, 0)), vertex_number(triangles.at(t, 1)), vertex_number(triangles.at(t, 2))});
   }
   return s;
 }
@@ -59,7 +71,7 @@ pliant::WorldOptions options(const std::string& backend, double dt, bool normals
 }
 
 /// A scene is the name of a file, or a dict with the keys of a scene file.
-std::unique_ptr<pliant::World> make_world(const py::object& scene, const std::vector<std::pair<Vertices, Triangles>>& surfaces,
+std::unique_ptr<pliant::World> make_world(const py::object& scene, const std::vector<std::pair<Vertices, py::object>>& surfaces,
                                           const std::string& folder, const std::string& backend, double dt, bool normals,
                                           bool interactive) {
   const pliant::WorldOptions o = options(backend, dt, normals, interactive);
@@ -98,8 +110,18 @@ void bind_frame(py::module_& m) {
           },
           "vertex numbers, int32, shape [triangles, 3]")
       .def_property_readonly(
+          "cut_faces",
+          [](const py::object& self) {
+            const auto& faces = self.cast<const Frame&>().cut_faces;
+            return view(faces.data(), faces.size(), 0, 1, self);
+          },
+          "1: the triangle lies on a cut, uint8, shape [triangles]; empty: none does")
+      .def_property_readonly(
           "dirty_vertices", [](const Frame& f) { return py::make_tuple(f.dirty_vertices.first, f.dirty_vertices.count); },
-          "(first, count) of what may have moved since the frame before");
+          "(first, count) of what may have moved since the frame before")
+      .def_property_readonly(
+          "dirty_triangles", [](const Frame& f) { return py::make_tuple(f.dirty_triangles.first, f.dirty_triangles.count); },
+          "(first, count) of what may be another triangle; the count is 0 unless the topology changed");
 }
 
 void bind_report(py::module_& m) {
@@ -136,11 +158,29 @@ py::dict info(const pliant::World& world) {
   return d;
 }
 
+py::dict result(const pliant::CutResult& r) {
+  py::dict d;
+  d["pending"] = r.pending;
+  d["changed"] = r.changed;
+  d["edges"] = r.edges;
+  d["seconds"] = r.seconds;
+  return d;
+}
+
+py::dict cut(pliant::World& w, const Vertices& triangles) {
+  if (triangles.ndim() != 3 || triangles.shape(1) != 3 || triangles.shape(2) != 3) {
+    throw pliant::Error(pliant::ErrorCode::usage, "the triangles of a cut are an array of the shape [triangles, 3, 3]");
+  }
+  std::vector<std::array<Vec3d, 3>> list(static_cast<std::size_t>(triangles.shape(0)));
+  if (!list.empty()) std::copy_n(triangles.data(), 9 * list.size(), list[0][0].data());
+  return result(w.cut(list));
+}
+
 void bind_world(py::module_& m) {
   using pliant::World;
   using Free = py::call_guard<py::gil_scoped_release>;
   py::class_<World>(m, "World", "A scene on a backend: see docs/embedding.md. One thread at a time.")
-      .def(py::init(&make_world), py::arg("scene"), py::arg("surfaces") = std::vector<std::pair<Vertices, Triangles>>{},
+      .def(py::init(&make_world), py::arg("scene"), py::arg("surfaces") = std::vector<std::pair<Vertices, py::object>>{},
            py::arg("folder") = "", py::arg("backend") = "auto", py::arg("dt") = 0.0, py::arg("normals") = true,
            py::arg("interactive") = false,
            "scene: a file, or a dict with the keys of a scene file whose \"surface\": \"memory:N\" takes surfaces[N] = "
@@ -176,6 +216,13 @@ void bind_world(py::module_& m) {
       .def("push", &World::push, py::arg("vertex"), py::arg("force"))
       .def("clear_tools", &World::clear_tools)
       .def("move_tool", &World::move_tool, py::arg("position"))
+      .def("cut", &cut, py::arg("triangles"), "triangles: shape [triangles, 3, 3] [m]; a dict with the fields of CutResult")
+      .def(
+          "move_blade",
+          [](World& w, const std::string& blade, const Vec3d& a, const Vec3d& b) { return result(w.move_blade(blade, a, b)); },
+          py::arg("blade"), py::arg("a"), py::arg("b"))
+      .def("lift_blade", &World::lift_blade, py::arg("blade"))
+      .def("pieces", &World::pieces, py::arg("body") = 0, Free())
       .def("save", &World::save, py::arg("file"), Free())
       .def("load", &World::load, py::arg("file"), Free())
       .def("reset", &World::reset, Free());

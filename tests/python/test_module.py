@@ -64,6 +64,12 @@ def test_a_view_outlives_a_world_that_is_busy():
     assert np.array_equal(x, before)
 
 
+def test_lists_will_do_for_a_surface():
+    scene = {"format": "pliant-scene/1", "bodies": [{"name": "block", "surface": "memory:0", "lattice": {"spacing": 0.02},
+                                                     "material": {"young": 3000, "poisson": 0.45}}]}
+    assert pliant.World(scene, [(VERTICES.tolist(), TRIANGLES.tolist())], backend="cpu").info["nodes"] == block().info["nodes"]
+
+
 def test_steps():
     a, b = block(), block()
     report = a.step(100)
@@ -95,6 +101,8 @@ def test_errors():
     assert error_of(lambda: world.grab(0)).code == 8
     assert error_of(lambda: world.displacements(3)).code == 5
     assert error_of(lambda: pliant.World({}, surfaces=[(VERTICES[:, :2], TRIANGLES)])).code == 5
+    assert error_of(lambda: pliant.World({}, surfaces=[(VERTICES, TRIANGLES + 2**32)])).code == 5
+    assert error_of(lambda: pliant.World({}, surfaces=[(VERTICES, TRIANGLES + 0.5)])).code == 5
     for wrong in (lambda: world.step("many"), lambda: pliant.World(3), lambda: world.grab(2**40)):
         try:
             wrong()
@@ -110,6 +118,24 @@ def test_tools():
     world.advance(0.5)
     assert world.frame().positions[7, 0] > 0.105
     world.release(hand)
+
+
+def test_cuts():
+    world = block()
+    before = world.frame()
+    assert before.cut_faces.size == 0
+    sheet = np.array([[[-1, 0.045, -1], [-1, 0.045, 3], [3, 0.045, -1]]])  # from side to side, 4.5 cm above the ground
+    result = world.cut(sheet)
+    assert result["changed"] and result["edges"] > 0 and not result["pending"]
+    after = world.frame()
+    assert after.topology_version > before.topology_version
+    assert after.cut_faces.shape == (len(after.triangles),) and after.cut_faces.any() and after.cut_faces.dtype == np.uint8
+    assert after.dirty_triangles[1] == len(after.triangles)
+    assert len(before.triangles) == 12, "a frame stays as it was"
+    assert world.pieces() == 2
+    assert error_of(lambda: world.cut(sheet[0])).code == 5
+    world.move_blade("knife", [0, 0, 0], [0, 0, 0.1])
+    world.lift_blade("knife")
 
 
 if __name__ == "__main__":
