@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <mutex>
 #include <new>
 #include <string>
 
@@ -233,8 +234,8 @@ pliant_status pliant_world_wait(pliant_world world, pliant_report* out) {
 pliant_status pliant_world_frame(pliant_world world, pliant_frame* out) {
   return on(world, [&](CWorld& w) {
     need(out, "out");
-    w.frame = w.world.frame();
-    const pliant::Frame& f = *w.frame;
+    const pliant::FramePtr frame = w.world.frame();
+    const pliant::Frame& f = *frame;
     *out = {f.step,
             f.time,
             f.positions.empty() ? nullptr : f.positions.data()->data(),

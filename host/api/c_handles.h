@@ -12,7 +12,8 @@ namespace pliant::api {
 struct CWorld {
   explicit CWorld(World w) : world(std::move(w)) {}
   World world;
-  FramePtr frame;  ///< what the caller's pointers point to
+  std::mutex mutex;  ///< protects `frame` from callers who forget to take turns
+  FramePtr frame;    ///< what the caller's pointers point to
 };
 
 /// The only state that all users of the C API share: which handles are alive.

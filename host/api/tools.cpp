@@ -166,6 +166,9 @@ void Tools::push_node(std::size_t body, std::int64_t node, const Vec3d& force) {
 }
 
 void Tools::move_tool(const Vec3d& position) {
+  for (const double x : position) {
+    if (!std::isfinite(x)) throw Error(ErrorCode::usage, fmt::format("the position of the tool has the coordinate {}", x));
+  }
   const std::lock_guard lock(mutex_);
   tool_ = position;
 }

@@ -19,11 +19,11 @@ bool World::Impl::start_job(std::int64_t steps) {
   }
   throw_failure();
   check_can_step();
+  if (!worker.joinable()) worker = std::thread([this] { serve(); });  // may fail: no job is pending then
   {
     const std::lock_guard lock(mutex);
     job = steps;
   }
-  if (!worker.joinable()) worker = std::thread([this] { serve(); });
   changed.notify_all();
   return true;
 }
