@@ -230,7 +230,7 @@ def overview_chart(result, folder):
                       color=charts.ON_DARK if dark else "#202429")
     axes.set_xlim(-0.5, len(methods) - 0.5)
     axes.set_ylim(len(names) - 0.5, -0.5)
-    axes.set_xticks(range(len(methods)), methods)
+    axes.set_xticks(range(len(methods)), [m.replace("hybrid-", "hybrid\n") for m in methods])
     axes.set_yticks(range(len(names)), names)
     axes.tick_params(length=0, labeltop=True, labelbottom=False)
     axes.grid(False)

@@ -142,7 +142,7 @@ th[aria-sort=descending] .sort::after{content:" \\2193"}
 @media print{
  body{max-width:none;padding:0;font-size:9.5pt}
  h2{margin-top:1.2rem}
- h2,h3{break-after:avoid}
+ h2,h3,h2+p,h3+p{break-after:avoid}
  figure,.facts,.notice,tr{break-inside:avoid}
  figure{margin:.7rem 0 1rem}
  figure svg{max-width:150mm}

@@ -26,6 +26,7 @@ std::function<int()> setup_info(CLI::App& app);
 std::function<int()> setup_run(CLI::App& app);
 std::function<int()> setup_compare(CLI::App& app);
 std::function<int()> setup_bench(CLI::App& app);
+std::function<int()> setup_plan(CLI::App& app);
 
 inline constexpr int kInterrupted = 130;  ///< exit code after SIGINT, as shells expect
 

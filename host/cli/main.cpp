@@ -21,6 +21,7 @@ constexpr pliant::cli::Command kCommands[] = {
     {"run", "Simulate a scene and write what comes out", pliant::cli::setup_run},
     {"compare", "Run a scene on two backends in lockstep and find the first bit that differs", pliant::cli::setup_compare},
     {"bench", "Measure the engine itself: pliant bench kernels", pliant::cli::setup_bench},
+    {"plan", "The cheapest lattice, element and model of a scene for a tolerance and a frame budget", pliant::cli::setup_plan},
 };
 
 /// A first word that is neither command nor option gets an answer of its own.

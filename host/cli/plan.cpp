@@ -1,0 +1,87 @@
+// pliant plan: choose lattice, element and model of a scene for a tolerance and a frame budget.
+#include "bench/plan.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+
+#include "cli/cli.h"
+#include "io/atomic_file.h"
+#include "pliant/error.h"
+
+namespace pliant::cli {
+namespace {
+
+struct Options {
+  Common common;
+  bench::PlanOptions plan;
+  std::string scene, out, tolerance = "2%", budget = "4ms";
+};
+
+/// "2%" -> 0.02, "4ms" -> 4: a number and one of the units.
+double quantity(const std::string& option, const std::string& text, const std::vector<std::pair<std::string, double>>& units,
+                const std::string& expected) {
+  std::size_t used = 0;
+  double value = NAN;
+  try {
+    value = std::stod(text, &used);
+  } catch (const std::exception&) {
+  }
+  for (const auto& [unit, factor] : units) {
+    if (text.substr(used) == unit && std::isfinite(value) && value > 0) return value * factor;
+  }
+  throw Error(fmt::format("{} is \"{}\"; expected {}", option, text, expected));
+}
+
+int plan(Options& o) {
+  o.common.check();
+  o.plan.tolerance = quantity("--tolerance", o.tolerance, {{"%", 0.01}, {"", 1}}, "a share such as 2% or 0.02");
+  if (!(o.plan.tolerance < 1)) throw Error(fmt::format("--tolerance is \"{}\"; expected less than 100%", o.tolerance));
+  o.plan.budget = quantity("--budget", o.budget, {{"ms", 1}, {"us", 1e-3}, {"s", 1e3}, {"", 1}}, "a time such as 4ms");
+  const auto nodes = [](const char* option, std::int64_t value) {
+    if (value < 8 || value > 1'000'000) throw Error(fmt::format("{} is {}; expected 8 to 1000000 nodes", option, value));
+  };
+  nodes("--least", o.plan.least_nodes);
+  nodes("--most", o.plan.most_nodes);
+  nodes("--reference", o.plan.reference_nodes);
+  if (!o.out.empty()) check_writable(o.out);
+  const Scene scene = load_scene(o.scene);
+  Progress progress(!o.common.quiet);
+  std::int64_t done = 0;
+  o.plan.progress = [&](const std::string& what) { progress.show(done++, 24, what); };
+  bench::Plan result = bench::plan_scene(scene, o.plan);
+  progress.clear();
+  o.common.print(result.text);
+  if (!o.out.empty()) {
+    result.scene.file = std::filesystem::absolute(o.out);
+    for (Body& body : result.scene.bodies) body.surface = std::filesystem::absolute(body.surface);
+    write_file(o.out, scene_to_json(result.scene));
+    o.common.print(fmt::format("{} as {}", result.found ? "the choice is written" : "the first of them is written", o.out));
+  }
+  o.common.write(result.report);
+  return 0;
+}
+
+}  // namespace
+
+std::function<int()> setup_plan(CLI::App& app) {
+  auto o = std::make_shared<Options>();
+  app.add_option("scene", o->scene, "Scene file")->required();
+  app.add_option("--tolerance", o->tolerance, "Relative L2 error of the surface at rest")->capture_default_str();
+  app.add_option("--budget", o->budget, "Computing time per frame")->capture_default_str();
+  app.add_option("--frame", o->plan.frame, "Simulated time per frame [s]; default 1/60")->check(CLI::PositiveNumber);
+  app.add_option("--backend", o->plan.backend, "auto, cpu, opencl or opencl:N")->capture_default_str();
+  app.add_option("--out", o->out, "Scene file for the choice")->type_name("FILE");
+  app.add_option("--least", o->plan.least_nodes, "Nodes of the coarsest lattice")->capture_default_str();
+  app.add_option("--most", o->plan.most_nodes, "Nodes of the finest lattice")->capture_default_str();
+  app.add_option("--reference", o->plan.reference_nodes,
+                 "Nodes of the first reference; finer ones follow while they are needed and affordable")
+      ->capture_default_str();
+  app.add_option("--reference-seconds", o->plan.reference_seconds, "Time that finer references may take")
+      ->capture_default_str();
+  o->common.add_to(app);
+  return [o] { return plan(*o); };
+}
+
+}  // namespace pliant::cli
