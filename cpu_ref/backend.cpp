@@ -87,6 +87,31 @@ class RefBackend final : public Backend {
     passes_.load(program, [this](const Pass& pass) { return prepare(pass); });
   }
 
+  void update(const Program& loaded, const Program& next) override {
+    check_memory(next.buffers, sizeof(Scalar), info_.max_buffer_bytes, info_.memory_bytes, info_.name);
+    const DefaultFloatEnvironment environment;
+    passes_.clear();
+    table_ = &next.buffers;
+    try {
+      std::vector<Storage> old = std::move(storage_);
+      storage_.clear();
+      storage_.resize(next.buffers.size());
+      for (std::size_t i = 0; i < storage_.size(); ++i) {
+        const Buffer& buffer = next.buffers[i];
+        const Buffer* before = find_same(loaded.buffers, buffer, i);
+        if (before == nullptr) {
+          fill(buffer, storage_[i]);
+          continue;
+        }
+        storage_[i] = std::move(old[static_cast<std::size_t>(before - loaded.buffers.data())]);
+        patch(*before, buffer, storage_[i]);
+      }
+    } catch (const std::bad_alloc&) {
+      throw Error(fmt::format("out of memory while the scene's {} buffers were allocated", next.buffers.size()));
+    }
+    passes_.load(next, [this](const Pass& pass) { return prepare(pass); });
+  }
+
   void run(const std::vector<Pass>& passes, std::int32_t first, std::int32_t count, std::int64_t origin) override {
     for (std::int32_t step = first; step < first + count;) {
       // As many steps together as have the same passes.
@@ -129,12 +154,14 @@ class RefBackend final : public Backend {
   void write_reals(BufferId id, const std::vector<double>& values) override {
     Storage& s = storage(id, false);
     check_size(row(id), values.size());
+    s.written = true;
     const DefaultFloatEnvironment environment;
     round_reals(values, s.reals.data());
   }
   void write_ints(BufferId id, const std::vector<std::int32_t>& values) override {
     Storage& s = storage(id, true);
     check_size(row(id), values.size());
+    s.written = true;
     std::copy(values.begin(), values.end(), s.ints.begin());
   }
   std::vector<std::uint8_t> read_bytes(BufferId id) override {
@@ -161,6 +188,7 @@ class RefBackend final : public Backend {
   struct Storage {
     std::vector<Scalar> reals;  // one of the two; never empty, so that a pointer into it is valid
     std::vector<std::int32_t> ints;
+    bool written = false;  // by the host, since its initial values
   };
   struct Prepared {
     std::function<void(Range, const ArgValue<Scalar>*)> call;
@@ -197,12 +225,34 @@ class RefBackend final : public Backend {
   static void fill(const Buffer& buffer, Storage& s) {
     const std::size_t size = std::max<std::size_t>(buffer.values(), 1);
     initial_count(buffer);  // throws if they do not fit
+    s.written = false;
     if (buffer.is_int()) {
       s.ints.assign(size, 0);
       std::copy(buffer.ints.begin(), buffer.ints.end(), s.ints.begin());
     } else {
       s.reals.assign(size, Scalar(0));
       round_reals(buffer.reals, s.reals.data());
+    }
+  }
+
+  /// Bring what held `before` to the initial values of `buffer`. What passes or the host write is set anew.
+  static void patch(const Buffer& before, const Buffer& buffer, Storage& s) {
+    if (buffer.role != BufferRole::constant || s.written) return fill(buffer, s);
+    const std::size_t size = std::max<std::size_t>(buffer.values(), 1);
+    if (buffer.is_int()) {
+      s.ints.resize(size, 0);
+    } else {
+      s.reals.resize(size, Scalar(0));
+    }
+    for (const ValueRange& range : changed_values(before, buffer)) {
+      const std::size_t given = std::max(range.first, std::min(range.last, initial_count(buffer)));
+      if (buffer.is_int()) {
+        std::copy(buffer.ints.data() + range.first, buffer.ints.data() + given, s.ints.data() + range.first);
+        std::fill(s.ints.data() + given, s.ints.data() + range.last, 0);
+      } else {
+        round_reals(std::span(buffer.reals).subspan(range.first, given - range.first), s.reals.data() + range.first);
+        std::fill(s.reals.data() + given, s.reals.data() + range.last, Scalar(0));
+      }
     }
   }
 

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <limits>
+#include <numeric>
 
+#include "cutting/tet_surface.h"
 #include "model/vec.h"
 #include "pliant/error.h"
 
@@ -14,50 +17,92 @@ namespace {
 /// Which real nodes each virtual node goes with: those of the elements that it belongs to.
 VirtualNodes anchors_of(const CutTopology& cut) {
   const CutElements& e = cut.elements();
-  const std::size_t real = cut.mesh().rest.size(), count = e.origin.size() - real;
-  std::vector<std::vector<std::int32_t>> anchors(count);
-  for (std::size_t i = 0; i < e.nodes.size() && count > 0; ++i) {
-    for (int a = 0; a < cut.mesh().shape->corners; ++a) {
-      if (e.nodes[i][a] < static_cast<std::int32_t>(real)) continue;
-      auto& list = anchors[static_cast<std::size_t>(e.nodes[i][a]) - real];
-      for (int b = 0; b < cut.mesh().shape->corners; ++b) {
-        if (e.real[i] >> b & 1) list.push_back(e.nodes[i][b]);
+  const int corners = cut.mesh().shape->corners;
+  const auto real = static_cast<std::int32_t>(cut.mesh().rest.size());
+  const std::size_t count = e.origin.size() - cut.mesh().rest.size();
+  VirtualNodes out;
+  if (count > 0) out.first = real;
+  std::vector<std::int32_t> next(count + 1, 0);
+  const auto for_corners = [&](auto&& visit) {  // visit(virtual node, element)
+    for (std::size_t i = 0; i < e.nodes.size() && count > 0; ++i) {
+      if (e.real[i] == (1 << corners) - 1) continue;
+      for (int a = 0; a < corners; ++a) {
+        if (e.nodes[i][a] >= real) visit(static_cast<std::size_t>(e.nodes[i][a] - real), i);
       }
     }
-  }
-  VirtualNodes out;
-  if (count > 0) out.first = static_cast<std::int32_t>(real);
+  };
+  for_corners([&](std::size_t n, std::size_t i) { next[n + 1] += std::popcount(e.real[i]); });
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  const std::vector<std::int32_t> begin = next;
+  std::vector<std::int32_t> all(static_cast<std::size_t>(next.back()));
+  for_corners([&](std::size_t n, std::size_t i) {
+    for (int b = 0; b < corners; ++b) {
+      if ((e.real[i] >> b & 1) != 0) all[next[n]++] = e.nodes[i][b];
+    }
+  });
   out.offset.push_back(0);
-  for (auto& list : anchors) {
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-    out.anchor.insert(out.anchor.end(), list.begin(), list.end());
+  for (std::size_t n = 0; n < count; ++n) {
+    std::sort(all.begin() + begin[n], all.begin() + begin[n + 1]);
+    const auto last = std::unique(all.begin() + begin[n], all.begin() + begin[n + 1]);
+    out.anchor.insert(out.anchor.end(), all.begin() + begin[n], last);
     out.offset.push_back(static_cast<std::int32_t>(out.anchor.size()));
   }
   return out;
 }
 
-void set_elements(const CutTopology& cut, Solid& solid) {
+/// Elements 0 .. cells - 1 that are cut, and all copies behind them.
+void set_elements(const Solid& uncut, const CutTopology& cut, Solid& solid) {
   const CutElements& e = cut.elements();
-  const bool lattice = cut.mesh().shape->corners == 8, tets = !solid.tets.empty();
+  const bool lattice = cut.mesh().shape->corners == 8, tets = !uncut.tets.empty();
+  const std::size_t cells = cut.mesh().cells.size(), count = e.nodes.size(), parts = tets && lattice ? kKuhnTets.size() : 1;
   solid.copy_of = e.cell;
-  solid.fill.clear();
-  solid.tets.clear();
-  solid.hexes.clear();
-  for (std::size_t i = 0; i < e.nodes.size(); ++i) {
-    if (!tets) solid.hexes.push_back(e.nodes[i]);
-    if (tets && !lattice) solid.tets.push_back({e.nodes[i][0], e.nodes[i][1], e.nodes[i][2], e.nodes[i][3]});
-    if (tets && lattice) {
-      for (const auto& t : kKuhnTets) {
-        solid.tets.push_back({e.nodes[i][t[0]], e.nodes[i][t[1]], e.nodes[i][t[2]], e.nodes[i][t[3]]});
-      }
+  solid.fill.resize(parts * count);
+  if (tets) solid.tets.resize(parts * count);
+  if (!tets) solid.hexes.resize(count);
+  if (!uncut.cells.empty()) solid.cells.resize(count);
+  const auto set = [&](std::size_t i) {
+    if (!tets) solid.hexes[i] = e.nodes[i];
+    for (std::size_t p = 0; p < parts; ++p) {
+      solid.fill[parts * i + p] = e.fill[i];
+      if (!tets) continue;
+      for (std::size_t a = 0; a < 4; ++a) solid.tets[parts * i + p][a] = e.nodes[i][lattice ? kKuhnTets[p][a] : a];
     }
-    solid.fill.resize(solid.fill.size() + (tets && lattice ? kKuhnTets.size() : 1), e.fill[i]);
-  }
-  for (std::size_t i = 0; i < e.nodes.size() && !solid.cells.empty(); ++i) {
-    if (i >= cut.mesh().cells.size()) solid.cells.push_back(solid.cells[e.cell[i]]);
+    if (uncut.cells.empty()) return;
+    if (i >= cells) solid.cells[i] = uncut.cells[e.cell[i]];
     solid.cells[i].nodes = e.nodes[i];
     solid.cells[i].fill = e.fill[i];
+  };
+  for (const auto& [cell, how] : cut.cells()) {
+    if (how.components > 1) set(static_cast<std::size_t>(cell));
+  }
+  for (std::size_t i = cells; i < count; ++i) set(i);
+}
+
+void set_nodes(const Solid& uncut, const CutTopology& cut, Solid& solid) {
+  const std::vector<std::int32_t>& origin = cut.elements().origin;
+  solid.nodes.resize(uncut.nodes.size());
+  solid.lattice_nodes.resize(uncut.lattice_nodes.size());
+  int copies = 0;  // of one origin; they follow each other
+  for (std::size_t n = uncut.nodes.size(); n < origin.size(); ++n) {
+    solid.nodes.push_back(uncut.nodes[origin[n]]);
+    if (uncut.lattice_nodes.empty()) continue;
+    copies = n > uncut.nodes.size() && origin[n - 1] == origin[n] ? copies + 1 : 1;
+    LatticeNode node = uncut.lattice_nodes[origin[n]];
+    node.copy += copies;
+    solid.lattice_nodes.push_back(node);
+  }
+  solid.virtual_nodes = anchors_of(cut);
+}
+
+/// Vertices that hang in a component of a cell; `v` is new or known.
+void hang_vertex(const CutSurfaceVertex& from, std::size_t v, Solid& solid) {
+  if (solid.surface[v] == from.rest && solid.surface_cell[v] == from.carrier.cell) return;
+  solid.surface[v] = from.rest;
+  solid.surface_cell[v] = from.carrier.cell;
+  for (std::size_t a = 0; a < 8; ++a) {
+    solid.surface_weights[v][a] = ((a & 1) != 0 ? from.local[0] : 1 - from.local[0]) *
+                                  ((a & 2) != 0 ? from.local[1] : 1 - from.local[1]) *
+                                  ((a & 4) != 0 ? from.local[2] : 1 - from.local[2]);
   }
 }
 
@@ -90,62 +135,51 @@ std::shared_ptr<const CutMesh> cut_mesh(const Solid& solid, const std::string& n
   return mesh;
 }
 
-Solid cut_solid(const Solid& uncut, const CutTopology& cut) {
-  Solid solid = uncut;
-  const std::size_t real = cut.mesh().rest.size();
-  const std::vector<std::int32_t>& origin = cut.elements().origin;
-  std::map<std::int32_t, std::int32_t> copies;
-  for (std::size_t n = real; n < origin.size(); ++n) {
-    solid.nodes.push_back(uncut.nodes[origin[n]]);
-    if (uncut.lattice_nodes.empty()) continue;
-    LatticeNode node = uncut.lattice_nodes[origin[n]];
-    node.copy += ++copies[origin[n]];
-    solid.lattice_nodes.push_back(node);
+void update_solid(const Solid& uncut, const CutTopology& cut, const CutSurface* surface, Solid& solid) {
+  set_nodes(uncut, cut, solid);
+  set_elements(uncut, cut, solid);
+  if (surface != nullptr) {
+    hang_surface(*surface, cut, uncut, solid);
+    return;
   }
-  set_elements(cut, solid);
-  solid.virtual_nodes = anchors_of(cut);
+  if (uncut.lattice_nodes.empty() && cut.mesh().shape->corners == 4) return cut_tet_surface(cut, uncut, solid);
   for (std::size_t v = 0; v < solid.surface_cell.size(); ++v) {
     const std::int32_t cell = solid.surface_cell[v];
     const std::int32_t element = cut.element_of(cell, cut.label_at(cell, solid.surface[v]));
     solid.surface_nodes[v] = cut.elements().nodes[element >= 0 ? element : cell];
   }
+}
+
+Solid cut_solid(const Solid& uncut, const CutTopology& cut, const CutSurface* surface) {
+  Solid solid = uncut;
+  update_solid(uncut, cut, surface, solid);
   return solid;
 }
 
-void hang_surface(const CutSurface& surface, const CutTopology& cut, Solid& solid) {
-  const std::vector<Vec3d> middles = [&] {
-    std::vector<Vec3d> all;
-    for (const auto& t : solid.triangles) {
-      const Vec3d sum = vec::add(vec::add(solid.surface[t[0]], solid.surface[t[1]]), solid.surface[t[2]]);
-      all.push_back(vec::mul(sum, 1.0 / 3));
-    }
-    return all;
-  }();
-  solid.surface.clear();
-  solid.surface_nodes.clear();
-  solid.surface_weights.clear();
-  solid.surface_cell.clear();
-  for (const CutSurfaceVertex& v : surface.vertices()) {
-    const std::int32_t element = cut.element_of(v.carrier.cell, v.carrier.label);
-    std::array<double, 8> weights{};
-    for (int a = 0; a < 8; ++a) {
-      weights[a] = ((a & 1) ? v.local[0] : 1 - v.local[0]) * ((a & 2) ? v.local[1] : 1 - v.local[1]) *
-                   ((a & 4) ? v.local[2] : 1 - v.local[2]);
-    }
-    solid.surface.push_back(v.rest);
-    solid.surface_nodes.push_back(cut.elements().nodes[element >= 0 ? element : v.carrier.cell]);
-    solid.surface_weights.push_back(weights);
-    solid.surface_cell.push_back(v.carrier.cell);
+void hang_surface(const CutSurface& surface, const CutTopology& cut, const Solid& uncut, Solid& solid) {
+  const std::vector<CutSurfaceVertex>& vertices = surface.vertices();
+  solid.surface.resize(vertices.size());
+  solid.surface_nodes.resize(vertices.size());
+  solid.surface_weights.resize(vertices.size());
+  solid.surface_cell.resize(vertices.size(), -1);
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    const overlay::Carrier& carrier = vertices[v].carrier;
+    const std::int32_t element = cut.element_of(carrier.cell, carrier.label);
+    hang_vertex(vertices[v], v, solid);
+    solid.surface_nodes[v] = cut.elements().nodes[element >= 0 ? element : carrier.cell];
   }
   solid.triangles = surface.triangles();
-  solid.triangle_middle.clear();
-  solid.triangle_cut.clear();
+  const std::size_t count = solid.triangles.size();
+  solid.triangle_cut.resize(count);
+  solid.triangle_middle.resize(count);
   const double none = std::numeric_limits<double>::quiet_NaN();
-  for (std::size_t t = 0; t < solid.triangles.size(); ++t) {
+  for (std::size_t t = 0; t < count; ++t) {
     const std::int32_t original = surface.original_of(static_cast<std::int32_t>(t));
-    const bool known = original >= 0 && original < static_cast<std::int32_t>(middles.size());
-    solid.triangle_middle.push_back(known ? middles[original] : Vec3d{none, none, none});
-    solid.triangle_cut.push_back(surface.kinds()[t] == SurfaceKind::cut ? 1 : 0);
+    solid.triangle_cut[t] = surface.kinds()[t] == SurfaceKind::cut ? 1 : 0;
+    solid.triangle_middle[t] = {none, none, none};
+    if (original < 0 || original >= static_cast<std::int32_t>(uncut.triangles.size())) continue;
+    const auto& [a, b, c] = uncut.triangles[original];
+    solid.triangle_middle[t] = vec::mul(vec::add(vec::add(uncut.surface[a], uncut.surface[b]), uncut.surface[c]), 1.0 / 3);
   }
 }
 

@@ -12,11 +12,14 @@ namespace pliant {
 /// `name` is the body's, for messages.
 std::shared_ptr<const CutMesh> cut_mesh(const Solid& solid, const std::string& name);
 
-/// The body with its cut elements, their fill and the virtual nodes. Vertices of the surface hang in the copy that holds their
-/// place at rest; triangles stay as they are.
-Solid cut_solid(const Solid& uncut, const CutTopology& cut);
+/// The body with its cut elements, their fill and the virtual nodes, and with the split and capped surface if there is one.
+/// Without, vertices hang in the copy that holds their place at rest, and triangles stay as they are.
+Solid cut_solid(const Solid& uncut, const CutTopology& cut, const CutSurface* surface = nullptr);
 
-/// Put the split and capped surface in place of the one that `solid` has from cut_solid.
-void hang_surface(const CutSurface& surface, const CutTopology& cut, Solid& solid);
+/// The same where `solid` is what an earlier state of the same cut gave, or the uncut body: what did not change is left alone.
+void update_solid(const Solid& uncut, const CutTopology& cut, const CutSurface* surface, Solid& solid);
+
+/// Put the split and capped surface in place of the one that `solid` has.
+void hang_surface(const CutSurface& surface, const CutTopology& cut, const Solid& uncut, Solid& solid);
 
 }  // namespace pliant

@@ -18,19 +18,21 @@ int corner_of(const CutMesh& mesh, std::int32_t cell, std::int32_t node) {
 /// The copies around one node of the uncut body, grouped into nodes: the real one first, then by their lowest copy.
 std::vector<CutTopology::NodeClass> CutTopology::classes_at(std::int32_t node) const {
   const CellShape& shape = *mesh_->shape;
+  const std::span<const std::int32_t> around = cells_at_node(node);  // ascending
   std::vector<Member> members;
-  std::map<std::int32_t, std::array<std::int32_t, 8>> number;  // of a cell's component among the members
+  std::vector<std::array<std::int32_t, 8>> number(around.size());  // of a cell's component among the members
+  std::vector<int> corner_at(around.size());
   static constexpr CellCut kWhole{};
   const auto cut_of = [&](std::int32_t cell) {
     const CellCut* cut = find_cell(cell);
     return cut == nullptr ? &kWhole : cut;
   };
-  for (const std::int32_t c : cells_at_node(node)) {
-    const auto corner = static_cast<std::int8_t>(corner_of(*mesh_, c, node));
-    auto& numbers = number[c];
+  for (std::size_t i = 0; i < around.size(); ++i) {
+    const std::int32_t c = around[i];
+    corner_at[i] = corner_of(*mesh_, c, node);
     for (int k = 0; k < cut_of(c)->components; ++k) {
-      numbers[k] = element_of(c, k) < 0 ? -1 : static_cast<std::int32_t>(members.size());
-      if (numbers[k] >= 0) members.push_back({c, static_cast<std::int8_t>(k), corner});
+      number[i][k] = element_of(c, k) < 0 ? -1 : static_cast<std::int32_t>(members.size());
+      if (number[i][k] >= 0) members.push_back({c, static_cast<std::int8_t>(k), static_cast<std::int8_t>(corner_at[i])});
     }
   }
   DisjointSets sets(members.size());
@@ -38,20 +40,21 @@ std::vector<CutTopology::NodeClass> CutTopology::classes_at(std::int32_t node) c
     if (a >= 0 && b >= 0) sets.join(a, b);
   };
   std::int32_t real = -1;
-  for (const auto& [c, numbers] : number) {
+  for (std::size_t i = 0; i < around.size(); ++i) {
+    const std::int32_t c = around[i];
     const CellCut* cut = cut_of(c);
-    const std::int32_t here = numbers[cut->label[corner_of(*mesh_, c, node)]];
+    const std::int32_t here = number[i][cut->label[corner_at[i]]];
     if (real < 0) real = here;
     join(real, here);
     for (std::size_t f = 0; f < shape.faces.size(); ++f) {
       const auto& face = shape.faces[f];
-      if (std::none_of(face.begin(), face.end(), [&, c = c](int a) { return mesh_->cells[c][a] == node; })) continue;
+      if (std::find(face.begin(), face.end(), corner_at[i]) == face.end()) continue;
       for (const std::int32_t other : cells_at_face(c, static_cast<int>(f))) {
         if (other < c) continue;
         const CellCut* across = cut_of(other);
+        const auto& there = number[static_cast<std::size_t>(std::find(around.begin(), around.end(), other) - around.begin())];
         for (const int a : face) {
-          const int b = corner_of(*mesh_, other, mesh_->cells[c][a]);
-          join(numbers[cut->label[a]], number.at(other)[across->label[b]]);
+          join(number[i][cut->label[a]], there[across->label[corner_of(*mesh_, other, mesh_->cells[c][a])]]);
         }
       }
     }

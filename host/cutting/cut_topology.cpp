@@ -66,8 +66,7 @@ std::span<const std::int32_t> CutTopology::cells_at_face(std::int32_t cell, int 
 }
 
 const CellCut* CutTopology::find_cell(std::int32_t cell) const {
-  const auto found = cells_.find(cell);
-  return found == cells_.end() ? nullptr : &found->second;
+  return cell_at_[cell];
 }
 
 std::int32_t CutTopology::element_of(std::int32_t cell, int label) const {
@@ -78,6 +77,7 @@ std::int32_t CutTopology::element_of(std::int32_t cell, int label) const {
 void CutTopology::reset(const CutEdges& edges) {
   edges_.clear();
   cells_.clear();
+  cell_at_.assign(mesh_->cells.size(), nullptr);
   classes_.clear();
   elements_.nodes = mesh_->cells;
   elements_.fill = mesh_->fill;
@@ -150,6 +150,7 @@ CutTopology::OldCuts CutTopology::mark(const CutEdges& edges, CutEdit& edit) {
       if (e < 0) continue;
       auto [at, added] = cells_.try_emplace(c);
       if (added) {
+        cell_at_[c] = &at->second;
         at->second.element[0] = c;
         at->second.share[0] = 1;
       }

@@ -83,6 +83,8 @@ class CutTopology {
  public:
   /// Throws Error if an index is out of range. Without a probe every component counts as holding material.
   explicit CutTopology(std::shared_ptr<const CutMesh> mesh, MaterialProbe probe = {});
+  CutTopology(const CutTopology&) = delete;
+  CutTopology& operator=(const CutTopology&) = delete;
 
   [[nodiscard]] const CutMesh& mesh() const { return *mesh_; }
   [[nodiscard]] const CutEdges& edges() const { return edges_; }
@@ -147,6 +149,7 @@ class CutTopology {
   std::vector<std::int32_t> face_offset_, face_cells_;  ///< cells across each face of each cell
   CutEdges edges_;
   std::map<std::int32_t, CellCut> cells_;
+  std::vector<const CellCut*> cell_at_;  ///< [cells] into cells_, nullptr: no edge is cut
   std::map<std::int32_t, std::vector<NodeClass>> classes_;  ///< at nodes of cells with copies
   CutElements elements_;
 };

@@ -8,6 +8,7 @@
 #include "layout.h"
 #include "model/boundary_conditions.h"
 #include "model/bricks.h"
+#include "model/draft.h"
 #include "model/flsm.h"
 #include "model/model.h"
 #include "model/solid.h"
@@ -49,14 +50,6 @@ const Material& material_of(const Body& body, int index) {
   return index == 0 ? body.material : body.inclusions[index - 1].material;
 }
 
-/// Everything about one body that is known before its list nodes have slots.
-struct Draft {
-  Solid solid;
-  std::vector<int> material;
-  std::vector<char> in_brick;
-  std::vector<std::int32_t> slot;
-};
-
 void note_bound(Model& model, double frequency, double volume, const std::string& element) {
   const double edge = std::cbrt(volume);
   if (model.shortest == 0 || edge < model.shortest) model.shortest = edge;
@@ -65,35 +58,6 @@ void note_bound(Model& model, double frequency, double volume, const std::string
     model.element_bound = bound;
     model.bound_element = element;
   }
-}
-
-/// Slots for the nodes outside the bricks: body by body in Cuthill-McKee order, so that the nodes of one element stand as close
-/// as the cross-section of the body allows (sweeping through the elements then finds them in the cache), and inside windows of
-/// 256 nodes by the number of elements they touch, so that the rows of a tile's gather list are nearly full.
-void number_list_nodes(std::vector<Draft>& drafts, Model& model) {
-  model.list_base = model.bricks > 0 ? (model.bricks + 1) * PLIANT_BRICK_NODES : 0;
-  std::int32_t slot = model.list_base;
-  for (Draft& draft : drafts) {
-    std::vector<std::int32_t> valence(draft.solid.nodes.size(), 0);
-    for (const auto& tet : draft.solid.tets) {
-      for (const std::int32_t n : tet) ++valence[n];
-    }
-    for (const auto& hex : draft.solid.hexes) {
-      for (const std::int32_t n : hex) ++valence[n];
-    }
-    std::vector<std::int32_t> order = sweep_order(draft.solid);
-    std::erase_if(order,
-                  [&](std::int32_t n) { return draft.slot[n] >= 0 || draft.solid.matching(static_cast<std::size_t>(n)); });
-    constexpr std::size_t kWindow = 256;
-    for (std::size_t begin = 0; begin < order.size(); begin += kWindow) {
-      const auto first = order.begin() + static_cast<std::ptrdiff_t>(begin);
-      const auto last = order.begin() + static_cast<std::ptrdiff_t>(std::min(begin + kWindow, order.size()));
-      std::stable_sort(first, last, [&](std::int32_t a, std::int32_t b) { return valence[a] > valence[b]; });
-    }
-    for (const std::int32_t n : order) draft.slot[n] = slot++;
-  }
-  model.list_end = (slot + PLIANT_TILE - 1) / PLIANT_TILE * PLIANT_TILE;
-  model.slots = model.list_end;
 }
 
 /// Elements by their lowest slot: what a sweep over them touches lies close together.
@@ -110,7 +74,7 @@ std::vector<std::int32_t> element_order(const std::vector<std::array<std::int32_
 }
 
 void add_tets(const Body& body, std::int32_t b, const Draft& draft, Model& model) {
-  const std::vector<std::int32_t> order = element_order(draft.solid.tets, draft);
+  const std::vector<std::int32_t> order = element_order(draft.solid().tets, draft);
   for (std::size_t m = 0; m <= body.inclusions.size(); ++m) {
     TetBatch batch;
     batch.material = material_of(body, static_cast<int>(m));
@@ -121,16 +85,16 @@ void add_tets(const Body& body, std::int32_t b, const Draft& draft, Model& model
       std::array<Vec3d, 4> x;
       std::array<std::int32_t, 4> slots{};
       for (int a = 0; a < 4; ++a) {
-        x[a] = draft.solid.nodes[draft.solid.tets[e][a]];
-        slots[a] = draft.slot[draft.solid.tets[e][a]];
+        x[a] = draft.solid().nodes[draft.solid().tets[e][a]];
+        slots[a] = draft.slot[draft.solid().tets[e][a]];
       }
       const TetGeometry geometry = tet_geometry(x);
-      const double mass = batch.material.density * geometry.volume * draft.solid.fill[e];
+      const double mass = batch.material.density * geometry.volume * draft.solid().fill[e];
       for (const std::int32_t n : slots) model.mass[n] += mass / 4;
-      if (!draft.solid.operational(static_cast<std::size_t>(e))) continue;
+      if (!draft.solid().operational(static_cast<std::size_t>(e))) continue;
       batch.nodes.push_back(slots);
       batch.gradients.push_back(geometry.gradients);
-      batch.volume.push_back(geometry.volume * draft.solid.fill[e]);
+      batch.volume.push_back(geometry.volume * draft.solid().fill[e]);
       batch.id.push_back(e);
       note_bound(model, tet_frequency(geometry, batch.material), geometry.volume,
                  fmt::format("{}: tetrahedron {}", body.name, e));
@@ -159,7 +123,7 @@ double hex_volume(const HexBatch& batch, const std::vector<double>& record) {
 }
 
 void add_hexes(const Body& body, std::int32_t b, const Draft& draft, Model& model) {
-  const Solid& solid = draft.solid;
+  const Solid& solid = draft.solid();
   const std::vector<std::int32_t> order = element_order(solid.hexes, draft);
   for (std::size_t m = 0; m <= body.inclusions.size(); ++m) {
     HexBatch batch;
@@ -203,7 +167,7 @@ void add_hexes(const Body& body, std::int32_t b, const Draft& draft, Model& mode
 }
 
 void add_surface(const Draft& draft, std::int32_t b, Model& model) {
-  const Solid& solid = draft.solid;
+  const Solid& solid = draft.solid();
   ModelSurface& surface = model.surface;
   ModelBody& body = model.bodies[b];
   body.first_vertex = static_cast<std::int32_t>(surface.rest.size());
@@ -232,20 +196,20 @@ void fill_body(const Body& body, Draft& draft, ModelBody& out) {
   out.name = body.name;
   out.element = body.element;
   out.slot = draft.slot;
-  out.rest = draft.solid.nodes;
-  out.tets = draft.solid.tets;
-  out.virtual_nodes = draft.solid.virtual_nodes;
-  out.triangle_middle = draft.solid.triangle_middle;
-  for (const auto& hex : draft.solid.hexes) {
+  out.rest = draft.solid().nodes;
+  out.tets = draft.solid().tets;
+  out.virtual_nodes = draft.solid().virtual_nodes;
+  out.triangle_middle = draft.solid().triangle_middle;
+  for (const auto& hex : draft.solid().hexes) {
     std::array<std::int32_t, 8> corners{};
     for (int a = 0; a < 8; ++a) corners[a] = hex[kVtkFromBits[a]];
     out.hexes.push_back(corners);
   }
-  out.spacing = draft.solid.spacing;
-  out.surface_volume = draft.solid.surface_volume;
-  for (std::size_t e = 0; e < draft.material.size(); ++e) out.operational_elements += draft.solid.operational(e);
-  const Partition& partition = draft.solid.partition;
-  const auto nodes = static_cast<std::int64_t>(draft.solid.nodes.size());
+  out.spacing = draft.solid().spacing;
+  out.surface_volume = draft.solid().surface_volume;
+  for (std::size_t e = 0; e < draft.material.size(); ++e) out.operational_elements += draft.solid().operational(e);
+  const Partition& partition = draft.solid().partition;
+  const auto nodes = static_cast<std::int64_t>(draft.solid().nodes.size());
   out.operational_nodes = partition.kind.empty() ? nodes : partition.operational_nodes;
   out.matching_nodes = partition.matching_nodes;
   out.interface_nodes = partition.interface_nodes;
@@ -269,7 +233,7 @@ void set_velocity(const Body& body, const ModelBody& placed, Model& model) {
 }
 
 void add_totals(const Body& body, const Draft& draft, ModelBody& out) {
-  const Solid& solid = draft.solid;
+  const Solid& solid = draft.solid();
   for (std::size_t e = 0; e < draft.material.size(); ++e) {
     double volume = solid.spacing * solid.spacing * solid.spacing;
     if (!solid.tets.empty()) {
@@ -286,24 +250,27 @@ void add_totals(const Body& body, const Draft& draft, ModelBody& out) {
   }
 }
 
-void place_bodies(const Scene& scene, std::vector<Solid> solids, const Model* previous, std::vector<Draft>& drafts,
+void place_bodies(const Scene& scene, std::span<const Solid* const> solids, const Model* previous, std::vector<Draft>& drafts,
                   Model& model) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
     Draft draft;
-    draft.solid = std::move(solids[b]);
-    repartition(body, draft.solid);
-    draft.material = materials_of(body, draft.solid);
+    draft.given = solids[b];
+    if (body.model.type != ModelType::tled) {
+      draft.own = *solids[b];
+      repartition(body, *draft.own);
+    }
+    draft.material = materials_of(body, draft.solid());
     draft.in_brick.assign(draft.material.size(), false);
-    draft.slot.assign(draft.solid.nodes.size(), -1);
-    if (!draft.solid.cells.empty() && body.element == ElementKind::hex8) {
+    draft.slot.assign(draft.solid().nodes.size(), -1);
+    if (!draft.solid().cells.empty() && body.element == ElementKind::hex8) {
       for (std::size_t e = 0; e < draft.in_brick.size(); ++e)
-        draft.in_brick[e] = draft.material[e] == 0 && draft.solid.operational(e);
+        draft.in_brick[e] = draft.material[e] == 0 && draft.solid().operational(e);
       const std::int32_t first = model.bricks;
-      draft.slot = place_in_bricks(draft.solid, static_cast<std::int32_t>(b), draft.in_brick, model);
+      draft.slot = place_in_bricks(draft.solid(), static_cast<std::int32_t>(b), draft.in_brick, model);
       if (model.bricks > first) {
         model.brick_batches.push_back(
-            {body.material, static_cast<std::int32_t>(b), draft.solid.spacing, first, model.bricks - first});
+            {body.material, static_cast<std::int32_t>(b), draft.solid().spacing, first, model.bricks - first});
       }
     }
     drafts.push_back(std::move(draft));
@@ -311,9 +278,9 @@ void place_bodies(const Scene& scene, std::vector<Solid> solids, const Model* pr
   close_bricks(model);
   number_list_nodes(drafts, model);
   for (std::size_t b = 0; b < drafts.size(); ++b) {
-    if (drafts[b].solid.matching_cells.empty()) continue;
-    model.flsm.push_back(
-        place_matching_nodes(drafts[b].solid, scene.bodies[b], static_cast<std::int32_t>(b), drafts[b].slot, previous, model));
+    if (drafts[b].solid().matching_cells.empty()) continue;
+    model.flsm.push_back(place_matching_nodes(drafts[b].solid(), scene.bodies[b], static_cast<std::int32_t>(b), drafts[b].slot,
+                                              previous, model));
   }
 }
 
@@ -339,10 +306,16 @@ std::vector<double> densities(const Body& body, const Solid& solid) {
 
 Model build_model(const Scene& scene) { return build_model(scene, make_solids(scene)); }
 
-Model build_model(const Scene& scene, std::vector<Solid> solids, const Model* previous) {
+Model build_model(const Scene& scene, const std::vector<Solid>& solids) {
+  std::vector<const Solid*> all;
+  for (const Solid& solid : solids) all.push_back(&solid);
+  return build_model(scene, all);
+}
+
+Model build_model(const Scene& scene, std::span<const Solid* const> solids, const Model* previous) {
   Model model;
   std::vector<Draft> drafts;
-  place_bodies(scene, std::move(solids), previous, drafts, model);
+  place_bodies(scene, solids, previous, drafts, model);
   model.rest.resize(model.slots);
   model.mass.resize(model.slots);
   model.damping.resize(model.slots);
@@ -354,10 +327,10 @@ Model build_model(const Scene& scene, std::vector<Solid> solids, const Model* pr
     Draft& draft = drafts[i];
     fill_body(body, draft, model.bodies[i]);
     for (std::size_t n = 0; n < draft.slot.size(); ++n) {
-      model.rest[draft.slot[n]] = draft.solid.nodes[n];
+      model.rest[draft.slot[n]] = draft.solid().nodes[n];
       model.damping[draft.slot[n]] = body.material.damping;
     }
-    if (!draft.solid.tets.empty()) {
+    if (!draft.solid().tets.empty()) {
       add_tets(body, b, draft, model);
     } else {
       add_hexes(body, b, draft, model);

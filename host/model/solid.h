@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "model/lattice.h"
@@ -52,7 +53,8 @@ void repartition(const Body& body, Solid& solid);
 
 /// Like build_model(scene), for bodies that are loaded and filled already; their partition is chosen anew.
 /// `previous`, a model of the same bodies before an edit, lends what did not change.
-Model build_model(const Scene& scene, std::vector<Solid> solids, const Model* previous = nullptr);
+Model build_model(const Scene& scene, std::span<const Solid* const> solids, const Model* previous = nullptr);
+Model build_model(const Scene& scene, const std::vector<Solid>& solids);
 
 /// Density of each element [kg/m^3].
 std::vector<double> densities(const Body& body, const Solid& solid);

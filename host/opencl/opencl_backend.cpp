@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <exception>
 
+#include "opencl/device_memory.h"
 #include "opencl/devices.h"
 #include "opencl/kernel_cache.h"
 #include "opencl/kernel_text.h"
@@ -57,10 +58,31 @@ class OpenclBackend final : public Backend {
     table_ = &program.buffers;
     const DefaultFloatEnvironment environment;
     for (const Buffer& buffer : program.buffers) {
-      guarded(ErrorCode::bad_input, fmt::format("buffer \"{}\" {} on {}", buffer.name, buffer.shape, where_),
-              [&] { memory_.push_back(upload(buffer)); });
+      guarded(ErrorCode::bad_input, place(buffer), [&] { memory_.push_back(opencl::load_memory(context_, queue_, buffer)); });
     }
     passes_.load(program, [this](const Pass& pass) { return prepare(pass); });
+    finish();
+  }
+
+  void update(const Program& loaded, const Program& next) override {
+    check_memory(next.buffers, sizeof(float), info_.max_buffer_bytes, info_.memory_bytes, where_);
+    finish();
+    collect_events();
+    keep_kernels();
+    table_ = &next.buffers;
+    const DefaultFloatEnvironment environment;
+    std::vector<opencl::DeviceMemory> old = std::move(memory_);
+    memory_.clear();
+    for (const Buffer& buffer : next.buffers) {
+      const Buffer* before = find_same(loaded.buffers, buffer, memory_.size());
+      opencl::DeviceMemory memory;
+      if (before != nullptr) memory = old[static_cast<std::size_t>(before - loaded.buffers.data())];
+      guarded(ErrorCode::bad_input, place(buffer), [&] {
+        memory_.push_back(opencl::patch_memory(context_, queue_, {before, &buffer, info_.max_buffer_bytes}, memory));
+      });
+    }
+    passes_.load(next, [this](const Pass& pass) { return prepare(pass); });
+    spare_kernels_.clear();
     finish();
   }
 
@@ -155,18 +177,25 @@ class OpenclBackend final : public Backend {
     return result;
   }
 
-  cl::Buffer upload(const Buffer& buffer) {
-    const std::size_t given = initial_count(buffer);
-    const std::size_t bytes = 4 * std::max<std::size_t>(buffer.values(), 1);
-    cl::Buffer memory(context_, CL_MEM_READ_WRITE, bytes);
-    if (given < buffer.values() || buffer.values() == 0) queue_.enqueueFillBuffer(memory, cl_uint{0}, 0, bytes);
-    if (given == 0) return memory;
-    if (buffer.is_int()) {
-      queue_.enqueueWriteBuffer(memory, CL_TRUE, 0, 4 * given, buffer.ints.data());
-    } else {
-      queue_.enqueueWriteBuffer(memory, CL_TRUE, 0, 4 * given, rounded(buffer.reals).data());
-    }
-    return memory;
+  [[nodiscard]] std::string place(const Buffer& buffer) const {
+    return fmt::format("buffer \"{}\" {} on {}", buffer.name, buffer.shape, where_);
+  }
+
+  using KernelKey = std::pair<std::string, std::vector<std::pair<std::string, int>>>;
+
+  /// Making kernel objects takes longer than setting their arguments.
+  void keep_kernels() {
+    passes_.for_each([&](const Pass& pass, Prepared& p) {
+      spare_kernels_.emplace(KernelKey{pass.kernel, pass.defines}, std::move(p.kernel));
+    });
+    passes_.clear();
+  }
+  cl::Kernel make_kernel(const Pass& pass, int lanes) {
+    const auto spare = spare_kernels_.find({pass.kernel, pass.defines});
+    if (spare == spare_kernels_.end()) return kernels_.make(pass.kernel, pass.defines, lanes);
+    cl::Kernel kernel = std::move(spare->second);
+    spare_kernels_.erase(spare);
+    return kernel;
   }
 
   Prepared prepare(const Pass& pass) {
@@ -175,7 +204,7 @@ class OpenclBackend final : public Backend {
     Prepared p;
     p.where = fmt::format("pass \"{}\" (kernel {}{}{}) on {}", pass.label, pass.kernel, pass.defines.empty() ? "" : ", ",
                           defines_text(pass.defines), where_);
-    p.kernel = kernels_.make(pass.kernel, pass.defines, lanes);
+    p.kernel = make_kernel(pass, lanes);
     guarded(ErrorCode::internal, p.where, [&] {
       const auto parameters = p.kernel.getInfo<CL_KERNEL_NUM_ARGS>();
       if (pass.args.size() != parameters) {
@@ -253,6 +282,7 @@ class OpenclBackend final : public Backend {
   template <class T>
   void write(BufferId id, const std::vector<T>& values) {
     check_size(row(id), values.size());
+    memory_[static_cast<std::size_t>(id)].written = true;
     if (values.empty()) return;
     guarded(ErrorCode::internal, where_,
             [&] { queue_.enqueueWriteBuffer(memory(id), CL_TRUE, 0, values.size() * sizeof(T), values.data()); });
@@ -262,7 +292,7 @@ class OpenclBackend final : public Backend {
     check_id(id, memory_.size());
     return (*table_)[static_cast<std::size_t>(id)];
   }
-  cl::Buffer& memory(BufferId id) { return memory_[static_cast<std::size_t>(id)]; }
+  cl::Buffer& memory(BufferId id) { return memory_[static_cast<std::size_t>(id)].buffer; }
 
   BackendInfo info_;
   const std::string where_;
@@ -272,7 +302,8 @@ class OpenclBackend final : public Backend {
   opencl::KernelCache kernels_;
   const int local_size_;
   const std::vector<Buffer>* table_ = nullptr;
-  std::vector<cl::Buffer> memory_;
+  std::vector<opencl::DeviceMemory> memory_;
+  std::multimap<KernelKey, cl::Kernel> spare_kernels_;
   PassTable<Prepared> passes_;
   std::vector<Prepared*> list_;
   std::vector<Timed> events_;

@@ -38,6 +38,12 @@ class Backend {
   /// Compile what the program needs, allocate its buffers and upload their initial values. The program must outlive the use.
   /// Throws Error (memory: needed and available; build failure: the log).
   virtual void load(const Program& program) = 0;
+  /// As load(next) after load(loaded), with the same bits in every buffer, but only what differs goes to the device: changed
+  /// ranges of constant buffers, and the initial values of what passes write. Buffers that grow get half as much again.
+  virtual void update(const Program& loaded, const Program& next) {
+    (void)loaded;
+    load(next);
+  }
   /// Run `passes` for steps first .. first + count - 1 of the current batch, in order, without host synchronisation in between.
   /// `origin` is the number in the whole run of the batch's step 0: it decides when a pass runs that does not run in every
   /// step.

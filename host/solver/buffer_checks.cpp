@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 
 #include "pliant/error.h"
 
@@ -38,10 +39,54 @@ std::size_t initial_count(const Buffer& buffer) {
   return given;
 }
 
-void round_reals(const std::vector<double>& values, float* out) {
+void round_reals(std::span<const double> values, float* out) {
   std::transform(values.begin(), values.end(), out, [](double v) { return static_cast<float>(v); });
 }
 
-void round_reals(const std::vector<double>& values, double* out) { std::copy(values.begin(), values.end(), out); }
+void round_reals(std::span<const double> values, double* out) { std::copy(values.begin(), values.end(), out); }
+
+namespace {
+
+constexpr std::size_t kBlock = 32;  // values that are compared, and sent, together
+
+/// Whether values [first, last) are the same bits; those that are not given are zero.
+template <class T>
+bool same_values(const std::vector<T>& a, const std::vector<T>& b, std::size_t first, std::size_t last) {
+  if (last <= a.size() && last <= b.size()) return std::memcmp(&a[first], &b[first], (last - first) * sizeof(T)) == 0;
+  for (std::size_t i = first; i < last; ++i) {
+    const T u = i < a.size() ? a[i] : T(0), v = i < b.size() ? b[i] : T(0);
+    if (std::memcmp(&u, &v, sizeof(T)) != 0) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::vector<ValueRange> changed_values(const Buffer& before, const Buffer& next) {
+  std::vector<ValueRange> ranges;
+  const std::size_t count = next.values(), known = std::min(before.values(), count);
+  const auto add = [&](std::size_t first, std::size_t last) {
+    if (!ranges.empty() && first <= ranges.back().last + kBlock) {
+      ranges.back().last = last;
+    } else {
+      ranges.push_back({first, last});
+    }
+  };
+  for (std::size_t first = 0; first < known; first += kBlock) {
+    const std::size_t last = std::min(first + kBlock, known);
+    const bool same =
+        next.is_int() ? same_values(before.ints, next.ints, first, last) : same_values(before.reals, next.reals, first, last);
+    if (!same) add(first, last);
+  }
+  if (known < count) add(known, count);
+  return ranges;
+}
+
+const Buffer* find_same(const std::vector<Buffer>& table, const Buffer& wanted, std::size_t near) {
+  const auto same = [&](const Buffer& b) { return b.name == wanted.name && b.type == wanted.type && b.role == wanted.role; };
+  if (near < table.size() && same(table[near])) return &table[near];
+  const auto found = std::find_if(table.begin(), table.end(), same);
+  return found == table.end() ? nullptr : &*found;
+}
 
 }  // namespace pliant

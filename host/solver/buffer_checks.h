@@ -2,6 +2,7 @@
 // Error(ErrorCode::internal) that names the buffer.
 #pragma once
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "state/buffer.h"
@@ -24,7 +25,19 @@ void check_copy(const Buffer& from, const Buffer& to);
 std::size_t initial_count(const Buffer& buffer);
 
 /// Rounds each value once to the backend's real type, in the rounding mode of the calling thread.
-void round_reals(const std::vector<double>& values, float* out);
-void round_reals(const std::vector<double>& values, double* out);
+void round_reals(std::span<const double> values, float* out);
+void round_reals(std::span<const double> values, double* out);
+
+/// Values [first, last) of a buffer.
+struct ValueRange {
+  std::size_t first = 0, last = 0;
+};
+
+/// Where the initial values of `next` differ in a bit from those of `before`, or lie beyond its end. Ranges that are close to
+/// each other are one.
+std::vector<ValueRange> changed_values(const Buffer& before, const Buffer& next);
+
+/// The buffer of this name, kind and role in a table, or nullptr; `near` is where it probably stands.
+const Buffer* find_same(const std::vector<Buffer>& table, const Buffer& wanted, std::size_t near);
 
 }  // namespace pliant

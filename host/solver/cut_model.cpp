@@ -70,22 +70,25 @@ void Simulation::rebuild(const std::vector<CutEdit>& edits, CutReport& report) {
   Clock::time_point start = Clock::now();
   backend_->finish();
   const std::vector<double> old_u = backend_->read_reals(u_), old_w = backend_->read_reals(w_);
+  const std::shared_ptr<const Model> old_model = model_;
   std::vector<std::vector<Vec3d>> u, v;
   for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
-    u.push_back(displacements(b));
-    v.push_back(velocities(b));
+    u.push_back(pick(old_u, b, 1));
+    v.push_back(velocities_from(old_w, b));
   }
-  std::vector<Solid> solids = cuts_->solids();
+  const std::vector<const Solid*> solids = cuts_->solids();
   std::vector<std::vector<FluxMass>> flux(edits.size());
-  for (std::size_t b = 0; b < edits.size(); ++b) flux[b] = flux_masses(scene_.bodies[b], solids[b], edits[b]);
-  const bool follows = std::any_of(scene_.bodies.begin(), scene_.bodies.end(), [](const Body& b) { return b.model.follow; });
-  const auto kept = follows ? std::make_shared<const std::vector<Solid>>(solids) : nullptr;
-  const std::shared_ptr<const Model> old_model = model_;
-  auto model = std::make_shared<const Model>(build_model(scene_, std::move(solids), old_model.get()));
+  for (std::size_t b = 0; b < edits.size(); ++b) flux[b] = flux_masses(scene_.bodies[b], *solids[b], edits[b]);
+  std::shared_ptr<std::vector<Solid>> kept;
+  if (std::any_of(scene_.bodies.begin(), scene_.bodies.end(), [](const Body& b) { return b.model.follow; })) {
+    kept = std::make_shared<std::vector<Solid>>();
+    for (const Solid* solid : solids) kept->push_back(*solid);
+  }
+  auto model = std::make_shared<const Model>(build_model(scene_, solids, old_model.get()));
   report.model += lap(start);
   model_ = model;
   try {
-    load_program();
+    load_program(true);
   } catch (...) {
     model_ = old_model;
     load_program();
@@ -95,7 +98,7 @@ void Simulation::rebuild(const std::vector<CutEdit>& edits, CutReport& report) {
     throw;
   }
   solids_ = kept;
-  std::vector<double> new_u = backend_->read_reals(u_), new_w = backend_->read_reals(w_);
+  std::vector<double> new_u = program_.buffers[u_].reals, new_w = program_.buffers[w_].reals;
   for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
     const ModelBody& body = model_->bodies[b];
     const bool changed = edits[b].changed_elements();
@@ -179,7 +182,10 @@ void Simulation::replay_cuts(const std::vector<double>& cuts) {
     }
     topology_version_ += cuts_->body(scene_, body).cut(edges).changed_elements() ? 1 : 0;
   }
-  solids_ = std::make_shared<const std::vector<Solid>>(cuts_->solids());
+  const std::vector<const Solid*> solids = cuts_->solids();
+  auto kept = std::make_shared<std::vector<Solid>>();
+  for (const Solid* solid : solids) kept->push_back(*solid);
+  solids_ = kept;
   backend_->finish();
   model_ = std::make_shared<const Model>(build_model(scene_, *solids_));
   load_program();

@@ -8,7 +8,7 @@
 namespace pliant {
 
 BodyCut::BodyCut(const Body& body, std::shared_ptr<const Solid> uncut)
-    : uncut_(std::move(uncut)), topology_(cut_mesh(*uncut_, body.name)) {
+    : uncut_(std::move(uncut)), solid_(*uncut_), topology_(cut_mesh(*uncut_, body.name)) {
   make_surface();
   const CutMesh& mesh = topology_.mesh();
   std::size_t count = 0;
@@ -58,15 +58,14 @@ CutEdit BodyCut::enter(const CutEdges& edges) {
 void BodyCut::undo() {
   history_.pop_back();
   topology_.reset({});
+  solid_ = *uncut_;
   make_surface();
   for (const CutEdges& edges : history_) enter(edges);
 }
 
-Solid BodyCut::solid() const {
-  Solid solid = cut_solid(*uncut_, topology_);
-  if (surface_ == nullptr) return solid;
-  hang_surface(*surface_, topology_, solid);
-  return solid;
+const Solid& BodyCut::solid() {
+  update_solid(*uncut_, topology_, surface_.get(), solid_);
+  return solid_;
 }
 
 CutState::CutState(const Scene& scene) : bodies(scene.bodies.size()) {
@@ -78,9 +77,9 @@ BodyCut& CutState::body(const Scene& scene, std::size_t b) {
   return *bodies[b];
 }
 
-std::vector<Solid> CutState::solids() const {
-  std::vector<Solid> all;
-  for (std::size_t b = 0; b < bodies.size(); ++b) all.push_back(bodies[b] != nullptr ? bodies[b]->solid() : *uncut[b]);
+std::vector<const Solid*> CutState::solids() const {
+  std::vector<const Solid*> all;
+  for (std::size_t b = 0; b < bodies.size(); ++b) all.push_back(bodies[b] != nullptr ? &bodies[b]->solid() : uncut[b].get());
   return all;
 }
 

@@ -28,8 +28,8 @@ class BodyCut {
   CutEdit cut(const CutEdges& edges);
   /// Take the last edit back.
   void undo();
-  /// The body as it is cut now.
-  [[nodiscard]] Solid solid() const;
+  /// The body as it is cut now. Brought up to date at each call: only what edits have changed.
+  [[nodiscard]] const Solid& solid();
   /// Edits so far, in order.
   [[nodiscard]] const std::vector<CutEdges>& history() const { return history_; }
   /// Mean edge of a cell at rest [m].
@@ -41,6 +41,7 @@ class BodyCut {
   void make_surface();
   CutEdit enter(const CutEdges& edges);
   std::shared_ptr<const Solid> uncut_;
+  Solid solid_;
   CutTopology topology_;
   std::unique_ptr<CutSurface> surface_;  ///< of a lattice
   std::unique_ptr<RestEdges> rest_edges_;
@@ -61,7 +62,7 @@ struct CutState {
   std::vector<std::shared_ptr<const Solid>> uncut;
   std::vector<std::unique_ptr<BodyCut>> bodies;
   [[nodiscard]] BodyCut& body(const Scene& scene, std::size_t b);
-  [[nodiscard]] std::vector<Solid> solids() const;
+  [[nodiscard]] std::vector<const Solid*> solids() const;
   std::vector<SweepTriangle> pending_triangles;  ///< wait for a step of shape matching
   std::vector<BladeMove> pending_moves;          ///< likewise
 };

@@ -84,7 +84,12 @@ void Simulation::set_seeds(const std::vector<double>& seeds) {
 void Simulation::move_region(const std::vector<double>& seeds) {
   set_seeds(seeds);
   if (solids_ == nullptr) {
-    solids_ = std::make_shared<const std::vector<Solid>>(cuts_ != nullptr ? cuts_->solids() : make_solids(scene_));
+    auto solids = std::make_shared<std::vector<Solid>>();
+    if (cuts_ == nullptr) *solids = make_solids(scene_);
+    if (cuts_ != nullptr) {
+      for (const Solid* solid : cuts_->solids()) solids->push_back(*solid);
+    }
+    solids_ = solids;
   }
   backend_->finish();
   model_ = std::make_shared<const Model>(build_model(scene_, *solids_));
@@ -95,6 +100,8 @@ void Simulation::prepare_restore(const SimulationState& state) {
   const auto seeds = state.vectors.find("seeds");
   const bool moved = seeds != state.vectors.end() && seeds->second.size() == 3 * scene_.bodies.size();
   if (moved) set_seeds(seeds->second);
+  const auto torn = state.vectors.find("tears");
+  if (torn != state.vectors.end()) replay_tears(torn->second);
   const auto cuts = state.vectors.find("cuts");
   if (cuts != state.vectors.end()) {
     replay_cuts(cuts->second);

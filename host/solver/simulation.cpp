@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "pliant/error.h"
+#include "solver/tear_state.h"
 #include "state/hash.h"
 
 namespace pliant {
@@ -42,10 +44,14 @@ Simulation::Simulation(Scene scene, std::shared_ptr<const Model> model, std::uni
   start(options);
 }
 
-/// Make the model's program and load it.
-void Simulation::load_program() {
-  program_ = build_program(*model_, {scene_.integrator, batch_steps_});
-  backend_->load(program_);
+/// Make the model's program and load it, in place of the one that is loaded or beside nothing.
+void Simulation::load_program(bool patch) {
+  const Program loaded = std::exchange(program_, build_program(*model_, {scene_.integrator, batch_steps_}));
+  if (patch) {
+    backend_->update(loaded, program_);
+  } else {
+    backend_->load(program_);
+  }
   u_ = program_.find("node_u");
   w_ = program_.find("node_w");
   kept_.clear();
@@ -88,6 +94,7 @@ void Simulation::start(const SimulationOptions& options) {
   }
   first_dt_ = state_.dt;
   prepare_blades();
+  prepare_tears();
   // Squares and cubes of what is left stay normal numbers; the double oracle needs neither floor nor grid.
   if (backend_->info().name != "cpu:double") {
     still_ = 1e-12 * model_->shortest;
@@ -160,6 +167,7 @@ std::int32_t Simulation::next_batch(std::int64_t wanted) const {
 void Simulation::begin_batch(std::int32_t steps) {
   if (on_grid(state_.step)) {
     move_blades();
+    tear();
     follow_tool();
   }
   if (adapts_at(state_.step)) adapt_dt();
@@ -171,7 +179,7 @@ void Simulation::begin_batch(std::int32_t steps) {
 /// Steps at which batches begin however a run is cut into pieces: only these states are kept to go back to.
 bool Simulation::on_grid(std::int64_t step) const {
   return begins_after(step, batch_steps_) || adapts_at(step) || (blade_steps_ > 0 && begins_after(step, blade_steps_)) ||
-         (scene_.relaxation.enabled && step % kRelaxEvery == 0);
+         (tears_ != nullptr && begins_after(step, kTearSteps)) || (scene_.relaxation.enabled && step % kRelaxEvery == 0);
 }
 
 void Simulation::keep_state() {
@@ -289,17 +297,19 @@ std::vector<Vec3d> Simulation::pick(const std::vector<double>& texels, std::size
 
 std::vector<Vec3d> Simulation::displacements(std::size_t body) const { return pick(backend_->read_reals(u_), body, 1); }
 
-std::vector<Vec3d> Simulation::velocities(std::size_t body) const {
-  if (scene_.integrator == Integrator::increment) {
-    std::vector<Vec3d> v = pick(backend_->read_reals(w_), body, 1 / state_.dt);
-    for (std::size_t n = 0; n < v.size() && !model_->flsm.empty(); ++n) {
-      const auto slot = static_cast<std::size_t>(model_->bodies[body].slot[n]);
-      for (std::size_t c = 0; c < 3; ++c) {
-        if (free_[3 * slot + c]) v[n][c] /= substeps_of(slot);  // a prescribed component moves in every substep
-      }
+std::vector<Vec3d> Simulation::velocities_from(const std::vector<double>& w, std::size_t body) const {
+  std::vector<Vec3d> v = pick(w, body, 1 / state_.dt);
+  for (std::size_t n = 0; n < v.size() && !model_->flsm.empty(); ++n) {
+    const auto slot = static_cast<std::size_t>(model_->bodies[body].slot[n]);
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (free_[3 * slot + c]) v[n][c] /= substeps_of(slot);  // a prescribed component moves in every substep
     }
-    return v;
   }
+  return v;
+}
+
+std::vector<Vec3d> Simulation::velocities(std::size_t body) const {
+  if (scene_.integrator == Integrator::increment) return velocities_from(backend_->read_reals(w_), body);
   std::vector<double> u = backend_->read_reals(u_);
   const std::vector<double> before = backend_->read_reals(w_);
   for (std::size_t i = 0; i < u.size(); ++i) u[i] -= before[i];

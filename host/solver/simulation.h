@@ -19,6 +19,7 @@ namespace pliant {
 
 struct Solid;
 struct CutState;
+struct TearState;
 struct CutEdit;
 struct BladeMove;
 class CutTopology;
@@ -115,7 +116,7 @@ class Simulation {
 
  private:
   void start(const SimulationOptions& options);
-  void load_program();
+  void load_program(bool patch = false);
   /// Defined in follow_tool.cpp.
   void follow_tool();
   void move_region(const std::vector<double>& seeds);
@@ -132,6 +133,11 @@ class Simulation {
   void rebuild(const std::vector<CutEdit>& edits, CutReport& report);
   void replay_cuts(const std::vector<double>& cuts);
   void limit_to_element_bound();
+  /// Defined in tear.cpp.
+  void prepare_tears();
+  void tear();
+  void install_torn(const std::vector<std::vector<std::int32_t>>& from);
+  void replay_tears(const std::vector<double>& list);
   /// Defined in shape_matching.cpp.
   void choose_dt(double wanted, bool estimate);
   [[nodiscard]] bool has_elements() const;
@@ -165,6 +171,7 @@ class Simulation {
   [[nodiscard]] std::vector<double> forces_now();
   void look_for_fault(std::int64_t batch_start);
   [[nodiscard]] bool retry_smaller();
+  [[nodiscard]] std::vector<Vec3d> velocities_from(const std::vector<double>& w, std::size_t body) const;
   [[nodiscard]] std::vector<Vec3d> pick(const std::vector<double>& texels, std::size_t body, double factor) const;
 
   Scene scene_;
@@ -188,6 +195,7 @@ class Simulation {
   double residual_ = 0;
   std::vector<HostForce> host_forces_;
   std::shared_ptr<CutState> cuts_;  ///< once a blade has touched something
+  std::shared_ptr<TearState> tears_;  ///< if a material tears
   std::int64_t topology_version_ = 0;
   std::int64_t blade_steps_ = 0;  ///< steps between two looks at the scene's blades; 0: it has none
 };
