@@ -122,6 +122,76 @@ TEST_F(CApi, AWorldDestroyedInAnotherThreadFinishesItsCall) {
   stepping.join();
 }
 
+/// Every function that takes a world, with pointers that are all right or all null.
+std::vector<std::pair<const char*, pliant_status>> call_all(pliant_world w, bool null) {
+  static std::vector<double> u(3000);
+  static float x[24];
+  static std::int32_t t[36];
+  static char text[64];
+  static int flag;
+  static std::int64_t count;
+  static std::uint64_t number;
+  static pliant_info info;
+  static pliant_report report;
+  static pliant_frame frame;
+  static std::uint8_t faces[12];
+  const double point[3]{}, triangle[3][3]{{1, 0, 0}, {2, 0, 0}, {1, 1, 0}};
+  const auto p = [null](auto* pointer) { return null ? nullptr : pointer; };
+  return {{"info", pliant_world_info(w, p(&info))},
+          {"backend", pliant_world_backend(w, p(text), sizeof text)},
+          {"body_nodes", pliant_world_body_nodes(w, 0, p(&count))},
+          {"advance_async", pliant_world_advance_async(w, 0, p(&flag))},
+          {"busy", pliant_world_busy(w, p(&flag))},
+          {"poll", pliant_world_poll(w, p(&flag))},
+          {"frame", pliant_world_frame(w, p(&frame))},
+          {"positions", pliant_world_positions(w, p(x), 24)},
+          {"normals", pliant_world_normals(w, p(x), 24)},
+          {"triangles", pliant_world_triangles(w, p(t), 36)},
+          {"displacements", pliant_world_displacements(w, 0, p(u.data()), 3000)},
+          {"hash", pliant_world_hash(w, p(&number))},
+          {"grab", pliant_world_grab(w, 0, 0, 0, 0, p(&number))},
+          {"move_grab", pliant_world_move_grab(w, number, p(point))},
+          {"push", pliant_world_push(w, 0, p(point))},
+          {"cut_faces", pliant_world_cut_faces(w, p(faces), 12)},
+          {"cut", pliant_world_cut(w, p(&triangle[0][0]), 1, nullptr)},
+          {"move_blade", pliant_world_move_blade(w, p("blade"), p(triangle[0]), p(triangle[1]), nullptr)},
+          {"lift_blade", pliant_world_lift_blade(w, p("blade"))},
+          {"pieces", pliant_world_pieces(w, 0, p(&count))},
+          {"save", pliant_world_save(w, p("no/such/folder/state"))},
+          {"load", pliant_world_load(w, p("no/such/state"))},
+          {"step", null ? PLIANT_USAGE : pliant_world_step(w, 0, &report)},  // these may have none
+          {"advance", null ? PLIANT_USAGE : pliant_world_advance(w, 0, &report)},
+          {"wait", null ? PLIANT_USAGE : pliant_world_wait(w, &report)},
+          {"release", null ? PLIANT_USAGE : pliant_world_release(w, 0)},
+          {"clear_tools", null ? PLIANT_USAGE : pliant_world_clear_tools(w)},
+          {"reset", null ? PLIANT_USAGE : pliant_world_reset(w)},
+          {"destroy", null ? PLIANT_USAGE : pliant_world_destroy(w)}};
+}
+
+TEST_F(CApi, EveryFunctionRefusesNullPointersAndDeadWorlds) {
+  for (const auto& [name, status] : call_all(world, true)) EXPECT_EQ(status, PLIANT_USAGE) << name;
+  EXPECT_EQ(pliant_world_step(world, 1, nullptr), PLIANT_OK) << "a world that was called wrongly goes on";
+  const pliant_world dead = world;
+  ASSERT_EQ(pliant_world_destroy(world), PLIANT_OK);
+  for (const auto& [name, status] : call_all(dead, false)) EXPECT_EQ(status, PLIANT_STATE) << name;
+  for (const auto& [name, status] : call_all({0}, false)) EXPECT_EQ(status, PLIANT_USAGE) << name;
+}
+
+TEST_F(CApi, TwoThreadsThatDoNotTakeTurnsAreRefusedAndHarmNothing) {
+  const auto read = [w = world] {
+    for (int i = 0; i < 200; ++i) {
+      pliant_frame frame{};
+      const pliant_status status = pliant_world_frame(w, &frame);
+      EXPECT_TRUE(status == PLIANT_OK || status == PLIANT_STATE) << pliant_last_error();
+      pliant_world_step(w, 1, nullptr);
+    }
+  };
+  std::thread other(read);
+  read();
+  other.join();
+  EXPECT_EQ(pliant_world_step(world, 1, nullptr), PLIANT_OK);
+}
+
 TEST_F(CApi, NullPointersAndWrongSizes) {
   pliant_world out{17};
   EXPECT_EQ(pliant_world_open(nullptr, nullptr, &out), PLIANT_USAGE);
