@@ -46,7 +46,7 @@ CuttingTraction cutting_traction(const Matrix3d& stress, const Vector3d& normal,
 double cutting_stress(const Matrix3d& stress, const BreakingLaw& law) {
   Eigen::SelfAdjointEigenSolver<Matrix3d> solver;
   solver.computeDirect(0.5 * (stress + stress.transpose()) / law.sharpness, Eigen::EigenvaluesOnly);
-  return solver.eigenvalues()[2] / law.damage;
+  return solver.eigenvalues()[2] / law.integrity;
 }
 
 }  // namespace pliant

@@ -15,7 +15,7 @@ namespace pliant {
 
 struct BreakingLaw {
   double sharpness = 1;  ///< kappa, the smaller the sharper; 1: no blade
-  double damage = 1;     ///< zeta in (0, 1], what earlier loads have left; 1: intact
+  double integrity = 1;  ///< zeta in (0, 1], what earlier loads have left ("damage" in the source); 1: intact
   double toughness = 0;  ///< K_I [Pa]
 };
 
@@ -29,7 +29,7 @@ struct CuttingTraction {
 };
 CuttingTraction cutting_traction(const Eigen::Matrix3d& stress, const Eigen::Vector3d& normal, const BreakingLaw& law);
 
-/// sigma_c [Pa]: the largest principal stress over sharpness and damage.
+/// sigma_c [Pa]: the largest principal stress over sharpness and integrity.
 double cutting_stress(const Eigen::Matrix3d& stress, const BreakingLaw& law);
 
 inline bool breaks(const Eigen::Matrix3d& stress, const BreakingLaw& law) {

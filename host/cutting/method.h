@@ -37,13 +37,16 @@ double mean_edge(const PlainMesh& mesh);
 /// 2 / the highest frequency of a single element [s] at rest: the stable step that can be counted on.
 double element_bound(const PlainMesh& mesh, const Material& material);
 
+/// Edges of a surface that are not used by exactly two triangles, once in each direction: 0 if it is closed.
+std::int64_t singular_edges(const std::vector<std::array<std::int32_t, 3>>& triangles);
+
 /// Figures of one mesh.
 struct MeshFigures {
   std::int64_t elements = 0, nodes = 0;  ///< nodes that an element has
   double material = 0;                   ///< volume of the elements, fill counted [m^3]
   double enclosed = 0;                   ///< by the boundary [m^3]
   double least_quality = 0;              ///< of the tetrahedra
-  std::int64_t singular_edges = 0;       ///< of the boundary: not shared by exactly two triangles, once in each direction
+  std::int64_t singular_edges = 0;       ///< of the boundary
   std::int32_t pieces = 0;               ///< sets of elements that share nodes
   [[nodiscard]] bool closed() const { return singular_edges == 0; }
 };

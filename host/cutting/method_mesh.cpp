@@ -32,7 +32,9 @@ VolumeMesh as_volume_mesh(const PlainMesh& mesh) {
   return out;
 }
 
-std::int64_t count_singular(const std::vector<std::array<std::int32_t, 3>>& triangles) {
+}  // namespace
+
+std::int64_t singular_edges(const std::vector<std::array<std::int32_t, 3>>& triangles) {
   std::map<std::array<std::int32_t, 2>, std::array<int, 2>> uses;  // of an edge, upwards and downwards
   for (const auto& t : triangles) {
     for (int k = 0; k < 3; ++k) {
@@ -44,8 +46,6 @@ std::int64_t count_singular(const std::vector<std::array<std::int32_t, 3>>& tria
   for (const auto& [edge, count] : uses) singular += count[0] != 1 || count[1] != 1;
   return singular;
 }
-
-}  // namespace
 
 PlainMesh plain_mesh(const Solid& solid) {
   return {solid.nodes, solid.tets, solid.tets.empty() ? solid.hexes : decltype(solid.hexes){}, solid.fill};
@@ -157,7 +157,7 @@ MeshFigures figures_of(const PlainMesh& mesh) {
   }
   const auto triangles = boundary_of(mesh);
   f.enclosed = signed_volume({mesh.nodes, triangles});
-  f.singular_edges = count_singular(triangles);
+  f.singular_edges = pliant::singular_edges(triangles);
   return f;
 }
 

@@ -34,7 +34,7 @@ std::map<std::string, List> make_keys() {
        {"name", "surface", "mesh", "scale", "translate", "lattice", "element", "material", "model", "inclusions", "fixed",
         "prescribed", "forces", "pressures", "velocity", "angular_velocity"}},
       {"lattice", {"spacing", "nodes"}},
-      {"material", {"law", "young", "poisson", "lambda", "mu", "kappa", "density", "damping", "hourglass"}},
+      {"material", {"law", "young", "poisson", "lambda", "mu", "kappa", "density", "damping", "hourglass", "toughness", "integrity"}},
       {"model",
        {"type", "ratio", "seed", "region", "beta", "width", "alpha", "stiffness", "damping", "substeps", "goals", "coupling",
         "follow", "cut"}},

@@ -127,6 +127,7 @@ Scene parse_scene(const std::string& text, const fs::path& file) {
   read_bodies(top, file.parent_path(), scene);
   check_models(top, scene);
   check_blades(top, scene);
+  check_tearing(top, scene);
   return scene;
 }
 

@@ -61,6 +61,13 @@ Material read_material(const Reader& material) {
   if (material.has("density")) m.density = material.at("density").positive();
   if (material.has("damping")) m.damping = material.at("damping").non_negative();
   if (material.has("hourglass")) m.hourglass = material.at("hourglass").non_negative();
+  if (material.has("toughness")) m.toughness = material.at("toughness").positive();
+  if (material.has("integrity")) {
+    const Reader integrity = material.at("integrity");
+    m.integrity = integrity.positive();
+    if (m.toughness == 0) integrity.fail("no integrity without a toughness");
+    if (!(m.integrity <= 1)) integrity.fail("a number with 0 < integrity <= 1");
+  }
   return m;
 }
 

@@ -21,6 +21,8 @@ SceneView read_view(const Reader& view);
 /// Models against the keys of the scene: its integrator, its relaxation and its tool.
 void check_models(const Reader& top, const Scene& scene);
 void check_blades(const Reader& top, const Scene& scene);
+/// Materials with a toughness against the rest of the scene.
+void check_tearing(const Reader& top, const Scene& scene);
 /// `folder` is what relative mesh paths are relative to; `index` numbers a body without a name.
 Body read_body(const Reader& body, const std::filesystem::path& folder, std::size_t index);
 

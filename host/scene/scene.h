@@ -45,6 +45,8 @@ struct Material {
   double density = 1000;                 ///< [kg/m^3]
   double damping = 0;                    ///< mass-proportional damping rate c [1/s]: M u'' + c M u' = R - F
   double hourglass = 1;                  ///< factor on the hourglass stiffness of hex8 (1: exact bending of a bar at nu = 0)
+  double toughness = 0;                  ///< K_I: principal stress at which it tears [Pa]; 0: it does not
+  double integrity = 1;                  ///< zeta in (0, 1]: the share of the toughness that is left
   [[nodiscard]] double young() const;    ///< [Pa]
   [[nodiscard]] double poisson() const;  ///< dimensionless
 };

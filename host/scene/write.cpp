@@ -49,6 +49,10 @@ Json material_json(const Material& m) {
   material["density"] = m.density;
   material["damping"] = m.damping;
   material["hourglass"] = m.hourglass;
+  if (m.toughness > 0) {
+    material["toughness"] = m.toughness;
+    material["integrity"] = m.integrity;
+  }
   return material;
 }
 

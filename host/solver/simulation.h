@@ -19,7 +19,6 @@ namespace pliant {
 
 struct Solid;
 struct CutState;
-struct TearState;
 struct CutEdit;
 struct BladeMove;
 class CutTopology;
@@ -133,9 +132,7 @@ class Simulation {
   void rebuild(const std::vector<CutEdit>& edits, CutReport& report);
   void replay_cuts(const std::vector<double>& cuts);
   void limit_to_element_bound();
-  /// Defined in tear.cpp.
-  void prepare_tears();
-  void tear();
+  void prepare_tears(), tear();  // these and the next two in tear.cpp
   void install_torn(const std::vector<std::vector<std::int32_t>>& from);
   void replay_tears(const std::vector<double>& list);
   /// Defined in shape_matching.cpp.
@@ -195,7 +192,7 @@ class Simulation {
   double residual_ = 0;
   std::vector<HostForce> host_forces_;
   std::shared_ptr<CutState> cuts_;  ///< once a blade has touched something
-  std::shared_ptr<TearState> tears_;  ///< if a material tears
+  std::shared_ptr<struct TearState> tears_;  ///< if a material tears
   std::int64_t topology_version_ = 0;
   std::int64_t blade_steps_ = 0;  ///< steps between two looks at the scene's blades; 0: it has none
 };

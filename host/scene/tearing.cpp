@@ -1,0 +1,28 @@
+// What a scene with materials that tear must and must not have.
+#include "scene/parts.h"
+
+namespace pliant {
+
+void check_tearing(const Reader& top, const Scene& scene) {
+  if (scene.solver.enabled) return;  // a static solution does not look at it
+  const std::vector<Reader> bodies = top.at("bodies").items("a list of bodies");
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Body& body = scene.bodies[i];
+    std::vector<Reader> materials{bodies[i].at("material")};
+    if (bodies[i].has("inclusions")) {
+      for (const Reader& entry : bodies[i].at("inclusions").items("a list of objects"))
+        materials.push_back(entry.at("material"));
+    }
+    for (const Reader& material : materials) {
+      if (!material.has("toughness")) continue;
+      const Reader field = material.at("toughness");
+      const bool tets = body.element == ElementKind::tet4 || body.element == ElementKind::tet4anp;
+      if (body.mesh.empty() || !tets) field.fail("no toughness here: only a volume mesh (\"mesh\") of tetrahedra tears");
+      if (scene.integrator != Integrator::increment) top.at("integrator").fail("increment, because a material has a toughness");
+      if (scene.relaxation.enabled) top.at("relaxation").fail("false, because a material has a toughness");
+      if (!scene.blades.empty()) top.at("blades").fail("no blades, because a material has a toughness");
+    }
+  }
+}
+
+}  // namespace pliant

@@ -1,0 +1,180 @@
+// Tearing: the physical criterion alone parts the faces of a mesh while it runs.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "cutting/cut_bodies.h"
+#include "cutting/cut_scenes.h"
+#include "cutting/torn_body.h"
+#include "io/save.h"
+#include "solver/scenes.h"
+#include "support/error_of.h"
+#include "support/temp_folder.h"
+
+namespace pliant {
+namespace {
+
+using namespace cut_test;
+using test::error_of;
+
+/// A bar of 6 x 2 x 2 cells of 1 cm along x as a file.
+std::filesystem::path bar_file(const test::TempFolder& folder) {
+  const auto mesh = box_mesh(6, 2, 2, true);
+  std::string text = fmt::format("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n", mesh->rest.size());
+  for (std::size_t n = 0; n < mesh->rest.size(); ++n) {
+    text += fmt::format("{} {} {} {}\n", n + 1, 0.01 * mesh->rest[n][0], 0.01 * mesh->rest[n][1], 0.01 * mesh->rest[n][2]);
+  }
+  text += fmt::format("$EndNodes\n$Elements\n{}\n", mesh->cells.size());
+  for (std::size_t t = 0; t < mesh->cells.size(); ++t) {
+    const auto& c = mesh->cells[t];
+    text += fmt::format("{} 4 2 1 1 {} {} {} {}\n", t + 1, c[0] + 1, c[1] + 1, c[2] + 1, c[3] + 1);
+  }
+  return folder.write("bar.msh", text + "$EndElements\n");
+}
+
+/// Pulled along x to twice its length, with a weak slice in its middle.
+Scene bar_scene(const std::filesystem::path& file, double toughness) {
+  Body body;
+  body.name = "bar";
+  body.mesh = file;
+  body.element = ElementKind::tet4;
+  body.material.mu = 1000;
+  body.material.lambda = 2000;
+  body.material.kappa = 2000 + 2000.0 / 3;
+  body.material.damping = 20;
+  Inclusion weak{{Selection::Kind::box, {0.02, -1, -1}, {0.03, 1, 1}, 0, {}, ""}, body.material};
+  weak.material.toughness = toughness;
+  body.inclusions.push_back(weak);
+  Fixed fixed;
+  fixed.where = {Selection::Kind::plane, {0, 0, 0}, {-1, 0, 0}, 0, {}, ""};
+  body.fixed.push_back(fixed);
+  Prescribed pull;
+  pull.where = {Selection::Kind::plane, {0.06, 0, 0}, {1, 0, 0}, 0, {}, ""};
+  pull.displacement = {0.06, 0.0, 0.0};
+  pull.curve.kind = Curve::Kind::smooth;
+  pull.curve.duration = 0.3;
+  body.prescribed.push_back(pull);
+  return scene_with(body);
+}
+
+struct Tear : ::testing::Test {
+  test::TempFolder folder;
+  std::filesystem::path file = bar_file(folder);
+};
+
+std::int32_t pieces_of(const Simulation& s) {
+  const ModelBody& body = s.model().bodies[0];
+  return figures_of(PlainMesh{body.rest, body.tets, {}, std::vector<double>(body.tets.size(), 1.0)}).pieces;
+}
+
+TEST_F(Tear, a_bar_parts_in_its_weak_slice_and_nowhere_else) {
+  Simulation s(bar_scene(file, 1500), open_backend("cpu"));
+  const double mass = mass_of(s), volume = signed_volume({s.model().surface.rest, s.model().surface.triangles});
+  while (s.time() < 0.4 && !s.divergence()) s.advance(16);
+  ASSERT_FALSE(s.divergence()) << s.divergence()->message();
+  EXPECT_GT(s.topology_version(), 0);
+  EXPECT_GE(pieces_of(s), 2);
+  EXPECT_NEAR(mass_of(s) / mass, 1, 1e-12);
+  const ModelSurface& surface = s.model().surface;
+  EXPECT_EQ(singular_edges(surface.triangles), 0);
+  EXPECT_NEAR(signed_volume({surface.rest, surface.triangles}) / volume, 1, 1e-12);
+  std::size_t cut = 0;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    if (surface.triangle_cut[t] == 0) continue;
+    ++cut;
+    for (const std::int32_t v : surface.triangles[t]) {
+      EXPECT_GE(surface.rest[v][0], 0.02 - 1e-9);
+      EXPECT_LE(surface.rest[v][0], 0.03 + 1e-9);
+    }
+  }
+  EXPECT_GE(cut, 16U);
+  // The held part has come back to rest, the pulled one has followed.
+  const auto u = s.displacements(0);
+  EXPECT_NEAR(u[0][0], 0, 1e-9);
+  EXPECT_LT(std::abs(u[1][0]), 0.003);
+}
+
+TEST_F(Tear, below_its_toughness_it_holds) {
+  Simulation s(bar_scene(file, 20000), open_backend("cpu"));
+  while (s.time() < 0.4) s.advance(64);
+  EXPECT_EQ(s.topology_version(), 0);
+  Scene without = bar_scene(file, 20000);
+  without.bodies[0].inclusions[0].material.toughness = 0;
+  SimulationOptions same;
+  same.dt = s.dt();
+  Simulation a(bar_scene(file, 20000), open_backend("cpu"), same), b(without, open_backend("cpu"), same);
+  a.advance(200);
+  b.advance(200);
+  EXPECT_EQ(a.hash(), b.hash()) << "looking at the stress changes the run";
+}
+
+TEST_F(Tear, integrity_lowers_what_it_bears) {
+  Scene scene = bar_scene(file, 6000);
+  scene.bodies[0].inclusions[0].material.integrity = 0.25;
+  Simulation s(scene, open_backend("cpu"));
+  while (s.time() < 0.35) s.advance(64);
+  EXPECT_GT(s.topology_version(), 0);
+}
+
+TEST_F(Tear, momentum_is_kept_where_it_tears) {
+  Scene scene = bar_scene(file, 1500);
+  Body& body = scene.bodies[0];
+  body.fixed.clear();
+  body.prescribed.clear();
+  body.angular_velocity = {0, 0, 90};  // torn by its own spin
+  body.material.damping = 0;
+  body.inclusions[0].material.damping = 0;
+  body.velocity = {0.3, -0.2, 0.1};
+  Simulation s(scene, open_backend("cpu:double"));
+  const Vec3d before = momentum_of(s);
+  for (int k = 0; k < 40; ++k) s.advance(16);
+  ASSERT_FALSE(s.divergence());
+  EXPECT_GT(s.topology_version(), 0);
+  const Vec3d after = momentum_of(s);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(after[c], before[c], 1e-9 * mass_of(s));
+}
+
+TEST_F(Tear, a_resumed_run_and_the_other_backend_have_the_same_bits) {
+  const Scene scene = bar_scene(file, 1500);
+  SimulationOptions options;
+  options.dt = 4e-4;
+  Simulation whole(scene, open_backend("cpu"), options);
+  while (whole.topology_version() == 0 && whole.step() < 2000) whole.advance(16);
+  ASSERT_GT(whole.topology_version(), 0);
+  whole.advance(5);
+  const Checkpoint saved = take_checkpoint(whole);
+  whole.advance(200);
+  Simulation resumed(scene, open_backend("cpu"), options);
+  restore_checkpoint(resumed, saved, "saved");
+  resumed.advance(200);
+  EXPECT_EQ(whole.hash(), resumed.hash());
+  EXPECT_EQ(whole.surface_positions(), resumed.surface_positions());
+  if (!testing::has_opencl()) return;
+  Simulation device(scene, open_backend("opencl:0"), options);
+  device.advance(whole.step());
+  EXPECT_EQ(whole.hash(), device.hash());
+}
+
+TEST_F(Tear, what_cannot_tear_is_refused) {
+  Scene scene = bar_scene(file, 1500);
+  scene.relaxation.enabled = true;
+  EXPECT_NE(error_of([&] { Simulation(scene, open_backend("cpu")); }).find("relaxation"), std::string::npos);
+  Scene lattice = scene_with(box_body("box", {0.04, 0.03, 0.03}, ElementKind::tet4));
+  lattice.bodies[0].material.toughness = 100;
+  EXPECT_NE(error_of([&] { Simulation(lattice, open_backend("cpu")); }).find("volume meshes"), std::string::npos);
+  const auto load = [](const std::string& material, const std::string& more) {
+    return error_of([&] {
+      parse_scene(R"({"format": "pliant-scene/1", "bodies": [{)" + more + R"(, "material": {"young": 1, "poisson": 0.3, )" +
+                      material + "}}]}",
+                  "s.json");
+    });
+  };
+  const std::string surface = R"("surface": "a.obj", "lattice": {"spacing": 1})", mesh = R"("mesh": "a.msh")";
+  EXPECT_NE(load(R"("toughness": 5)", surface).find("/bodies/0/material/toughness"), std::string::npos);
+  EXPECT_EQ(load(R"("toughness": 5)", mesh), "");
+  EXPECT_NE(load(R"("toughness": 5, "integrity": 1.5)", mesh).find("integrity"), std::string::npos);
+  EXPECT_NE(load(R"("integrity": 0.5)", mesh).find("toughness"), std::string::npos);
+  EXPECT_NE(load(R"("toughness": -1)", mesh).find("toughness"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace pliant
