@@ -10,13 +10,13 @@
 #include "backends/backends.h"
 #include "bench/deformation_parts.h"
 #include "bench/kernels.h"
+#include "bench/shipped_scenes.h"
 #include "pliant/error.h"
 #include "state/hash.h"
 
 namespace pliant::bench {
 namespace {
 
-namespace fs = std::filesystem;
 using nlohmann::json;
 
 const std::vector<std::string> kScenes{"bunny", "apple", "liver", "kidney"};
@@ -29,24 +29,6 @@ void require_known(const char* option, std::vector<std::string>& chosen, const s
       throw Error(fmt::format("{}: got \"{}\", expected {}", option, word, fmt::join(known, ", ")));
     }
   }
-}
-
-/// The folder with the shipped scenes: here, or beside the program where it was built or installed.
-fs::path find_scenes(const fs::path& asked) {
-  const auto file = [](const fs::path& folder) { return folder / "liver_hybrid.json"; };
-  std::error_code ignored;
-  if (!asked.empty()) {
-    if (!fs::exists(file(asked), ignored)) {
-      throw Error(fmt::format("--scenes: folder \"{}\" holds no liver_hybrid.json", asked.string()));
-    }
-    return asked;
-  }
-  const fs::path program = fs::read_symlink("/proc/self/exe", ignored).parent_path();
-  for (const fs::path& folder : {fs::path("scenes"), program / "scenes", program / "../scenes", program / "../../scenes",
-                                 program / "../share/pliant/scenes"}) {
-    if (fs::exists(file(folder), ignored)) return folder;
-  }
-  throw Error("--scenes: the shipped scenes are neither in ./scenes nor near the program; name their folder");
 }
 
 DeformationOptions completed(DeformationOptions options) {
@@ -67,7 +49,7 @@ DeformationOptions completed(DeformationOptions options) {
   for (const double ratio : options.ratios) {
     if (!(ratio > 0 && ratio < 1)) throw Error(fmt::format("--ratios: got {}, expected numbers between 0 and 1", ratio));
   }
-  options.scenes = find_scenes(options.scenes);
+  options.scenes = find_shipped_scenes(options.scenes, "liver_hybrid.json");
   return options;
 }
 

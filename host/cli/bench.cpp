@@ -4,12 +4,15 @@
 #include <memory>
 
 #include "bench/accuracy.h"
+#include "bench/cutting.h"
 #include "bench/deformation.h"
 #include "bench/kernels.h"
 #include "bench/stability.h"
 #include "cli/cli.h"
 #include "io/atomic_file.h"
+#include "io/png.h"
 #include "pliant/error.h"
+#include "render/picture.h"
 
 namespace pliant::cli {
 namespace {
@@ -20,6 +23,7 @@ struct Options {
   bench::DeformationOptions deformation;
   bench::StabilityOptions stability;
   bench::AccuracyOptions accuracy;
+  bench::CuttingOptions cutting;
   std::filesystem::path out;
 };
 
@@ -126,6 +130,32 @@ void add_deformation(CLI::App& app, const std::shared_ptr<Options>& options) {
   sub->add_option("--out", options->out, "folder for deformation.json and deformation.csv");
 }
 
+int cutting(Options& options) {
+  options.common.check();
+  if (!options.out.empty() && render::Renderer::available()) {
+    options.cutting.picture = [&](const std::string& name, Simulation& simulation) {
+      render::PictureOptions picture;
+      picture.width = 640;
+      picture.height = 400;
+      write_png(options.out / ("cutting_" + name + ".png"), render::Pictures(picture).draw(simulation));
+    };
+  }
+  return measure(options, "cutting", options.cutting, bench::bench_cutting, bench::cutting_table);
+}
+
+void add_cutting(CLI::App& app, const std::shared_ptr<Options>& options) {
+  CLI::App* sub =
+      app.add_subcommand("cutting", "What a cut costs and leaves behind: virtual nodes beside removal, decomposition, separation");
+  bench::CuttingOptions& c = options->cutting;
+  options->common.add_to(*sub);
+  sub->add_option("--scenes", c.scenes, "folder of the shipped scenes");
+  sub->add_option("--parts", c.parts, "scenes, methods, steps")->delimiter(',');
+  sub->add_option("--backend", c.backend, "of parts scenes and methods, default: auto");
+  sub->add_option("--cuts", c.cuts, "random cuts of part steps, default: 10000")->check(CLI::Range(1, 10'000'000));
+  sub->add_flag("--quick", c.quick, "small bodies, 200 random cuts; the times mean nothing");
+  sub->add_option("--out", options->out, "folder for cutting.json, cutting.csv and the pictures");
+}
+
 }  // namespace
 
 std::function<int()> setup_bench(CLI::App& app) {
@@ -142,9 +172,11 @@ std::function<int()> setup_bench(CLI::App& app) {
   add_deformation(app, options);
   add_stability(app, options);
   add_accuracy(app, options);
+  add_cutting(app, options);
   return [options, &app] {
     if (app.got_subcommand("kernels")) return kernels(*options);
     if (app.got_subcommand("accuracy")) return accuracy(*options);
+    if (app.got_subcommand("cutting")) return cutting(*options);
     return app.got_subcommand("stability") ? stability(*options) : deformation(*options);
   };
 }

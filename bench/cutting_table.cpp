@@ -1,0 +1,83 @@
+// The rows of `pliant bench cutting` as text.
+#include <fmt/format.h>
+
+#include "bench/cutting.h"
+
+namespace pliant::bench {
+namespace {
+
+using nlohmann::json;
+
+std::string words(const json& row, const char* key) { return row.at(key).get<std::string>(); }
+
+std::string number(const json& row, const char* key, int digits, double factor = 1) {
+  if (!row.contains(key) || row[key].is_null()) return "";
+  return fmt::format("{:.{}f}", factor * row[key].get<double>(), digits);
+}
+
+std::string power(const json& row, const char* key) { return fmt::format("{:.1e}", row.at(key).get<double>()); }
+
+std::string counts(const json& row, const char* before, const char* after) {
+  return fmt::format("{} -> {}", row.at(before).get<std::int64_t>(), row.at(after).get<std::int64_t>());
+}
+
+std::string ratio(const json& row) {
+  return fmt::format("{:.4f}", row.at("dt_after").get<double>() / row.at("dt_before").get<double>());
+}
+
+std::string costs_table(const json& rows, const char* part) {
+  std::string text =
+      fmt::format("{:<22} {:<14} {:<8} {:>5} {:>9} {:>8} {:>8} {:>8} {:>8} {:>8} {:>9} {:>9} {:>8} {:>7} {:>16} {:>9} {:>9}\n",
+                  "scene", "method", "element", "cuts", "ms/cut", "search", "topology", "surface", "model", "upload", "mass",
+                  "volume", "dt ratio", "closed", "elements", "step", "after");
+  for (const json& r : rows) {
+    if (r["part"] != part) continue;
+    text += fmt::format(
+        "{:<22} {:<14} {:<8} {:>5} {:>9} {:>8} {:>8} {:>8} {:>8} {:>8} {:>9} {:>9} {:>8} {:>7} {:>16} {:>9} {:>9}\n",
+        words(r, "scene"), words(r, "method"), words(r, "element"), r["cuts"].get<std::int64_t>(), number(r, "ms_per_cut", 2),
+        number(r, "ms_search", 2), number(r, "ms_topology", 2), number(r, "ms_surface", 2), number(r, "ms_model", 2),
+        number(r, "ms_upload", 2), power(r, "mass_error"), power(r, "volume_error"), ratio(r),
+        r["closed"].get<bool>() ? "yes" : "no", counts(r, "elements_before", "elements_after"),
+        number(r, "ms_per_step_before", 3), number(r, "ms_per_step_after", 3));
+  }
+  return text;
+}
+
+std::string steps_table(const json& rows) {
+  std::string text =
+      fmt::format("{:<14} {:<8} {:>7} {:>12} {:>12} {:>12} {:>12} {:>14} {:>9} {:>9} {:>7}\n", "method", "element", "cuts",
+                  "least", "1 in 100", "median", "dt [ms]", "Lanczos least", "mass", "volume", "closed");
+  for (const json& r : rows) {
+    if (r["part"] != "steps") continue;
+    const json& q = r["dt_ratio_quantiles"];
+    text +=
+        fmt::format("{:<14} {:<8} {:>7} {:>12.6f} {:>12.6f} {:>12.6f} {:>12} {:>14} {:>9} {:>9} {:>7}\n", words(r, "method"),
+                    words(r, "element"), r["cuts"].get<std::int64_t>(), r["dt_ratio_least"].get<double>(), q[1].get<double>(),
+                    q[50].get<double>(), number(r, "dt_before", 4, 1e3), number(r, "stable_ratio_least", 6),
+                    power(r, "mass_error"), power(r, "volume_error"), r["closed"].get<bool>() ? "yes" : "no");
+  }
+  return text;
+}
+
+bool has(const json& rows, const char* part) {
+  for (const json& r : rows) {
+    if (r["part"] == part) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::string cutting_table(const json& result) {
+  const json& rows = result["rows"];
+  std::string text;
+  const auto add = [&](const char* title, const std::string& table) {
+    text += fmt::format("{}{}\n{}", text.empty() ? "" : "\n", title, table);
+  };
+  if (has(rows, "scenes")) add("The shipped scenes, per frame that changed elements [ms]", costs_table(rows, "scenes"));
+  if (has(rows, "methods")) add("The same cuts by four methods [ms]", costs_table(rows, "methods"));
+  if (has(rows, "steps")) add("The stable step over random cuts, as a share of that before", steps_table(rows));
+  return text;
+}
+
+}  // namespace pliant::bench
