@@ -238,9 +238,11 @@ class Planner {
       }
     }
     if (reference_.uncertainty > o_.tolerance / 2) {
-      plan.text +=
-          fmt::format("\nthe reference is known to {:.2g} % only; errors below that mean little (--reference takes more nodes)",
-                      100 * reference_.uncertainty);
+      plan.text += fmt::format(
+          "\nthe reference is known to {:.2g} % only, and so is every error here (--reference takes more nodes); where planes "
+          "and "
+          "spheres hold nodes, what they hold changes with the lattice",
+          100 * reference_.uncertainty);
     }
     return plan;
   }

@@ -133,19 +133,20 @@ Scene configured(const Scene& scene, const Size& size, ElementKind element, std:
 
 Reference make_reference(const Scene& scene, const Size& size, const PlanOptions& options) {
   const auto start = Clock::now();
-  AtRest half = solve(scene, size, options.reference_nodes / 2);
+  const AtRest coarse = solve(scene, size, options.reference_nodes / 8);
   Reference out;
   for (std::int64_t nodes = options.reference_nodes;; nodes *= 2) {
     const auto began = Clock::now();
-    AtRest fine = solve(scene, size, nodes);
+    const AtRest fine = solve(scene, size, nodes);
     out.u = fine.u;
     out.norm = norm_of(fine.u);
     out.frequency = fine.frequency;
     out.nodes = fine.nodes;
-    out.uncertainty = norm_of(difference(fine.u, half.u)) / out.norm;
+    // First order at worst: what a plane or a sphere holds moves with the lattice by a share of its spacing.
+    const double ratio = std::cbrt(static_cast<double>(fine.nodes) / static_cast<double>(coarse.nodes));
+    out.uncertainty = norm_of(difference(fine.u, coarse.u)) / out.norm / (ratio - 1);
     // Twice the nodes take about four times as long.
     if (out.uncertainty <= options.tolerance / 2 || since(start) + 4 * since(began) > options.reference_seconds) break;
-    half = std::move(fine);
   }
   out.seconds = since(start);
   return out;

@@ -19,7 +19,7 @@ struct Reference {
   std::vector<Vec3d> u;    ///< displacements of the surface's vertices [m]
   double norm = 0;         ///< square root of the sum of their squares [m]
   double frequency = 0;    ///< of the slowest motion towards rest, by Rayleigh's quotient of the displacements [rad/s]
-  double uncertainty = 0;  ///< relative difference to the same on a lattice of half as many nodes
+  double uncertainty = 0;  ///< relative; from a lattice of an eighth of the nodes, first order taken for granted
   std::int64_t nodes = 0;
   double seconds = 0;
 };
