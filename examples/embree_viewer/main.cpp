@@ -1,5 +1,6 @@
 // A renderer that embeds Pliant: simulate, hand the surface over, trace, write a picture, again. Prints what each of these
-// costs.
+// costs. Skin is coloured by displacement, faces of cuts as flesh; a cut makes the hierarchy of rays anew, motion only refits
+// it.
 //   embree_viewer SCENE [FOLDER] [FRAMES] [SAMPLES]
 #include <pliant/world.h>
 
@@ -72,6 +73,7 @@ int run(const std::string& scene, const std::filesystem::path& folder, int frame
   options.width = 640;
   options.height = 480;
   options.samples = samples;
+  options.color_cuts = false;  // inside is flesh
   const pliant::render::Ticks ticks = pliant::render::nice_ticks(0, 30);
   options.high = static_cast<float>(ticks.high / 1000);
   std::filesystem::create_directories(folder);

@@ -24,11 +24,13 @@ in vec3 direction;
 uniform vec3 eye;
 uniform vec3 color;
 uniform vec3 key;
+uniform int inside;
 out vec4 result;
 void main() {
   vec3 v = normalize(eye - place);
-  vec3 n = normalize(direction);
-  if (!gl_FrontFacing) n = -n;
+  // Normals along the rim of a cut are the skin's: faces of a cut have their own.
+  vec3 n = normalize(inside == 1 ? cross(dFdx(place), dFdy(place)) : direction);
+  if (inside == 0 && !gl_FrontFacing) n = -n;
   vec3 sky = mix(vec3(0.22, 0.19, 0.18), vec3(0.52, 0.55, 0.60), 0.5 + 0.5 * n.y);
   float facing = max(dot(n, key), 0.0);
   vec3 light = color * (sky + vec3(0.95, 0.91, 0.86) * facing);
@@ -145,8 +147,10 @@ void Drawing::update(const pliant::Frame& frame) {
 
 void Drawing::draw_body() {
   gl_.BindVertexArray(body_);
+  set(gl_, body_program_, "inside", 0);
   gl_.DrawElements(GL_TRIANGLES, outside_, GL_UNSIGNED_INT, nullptr);
   if (cut_ == 0) return;
+  set(gl_, body_program_, "inside", 1);
   set(gl_, body_program_, "color", Vec3{0.72F, 0.34F, 0.30F});
   gl_.DrawElements(GL_TRIANGLES, cut_, GL_UNSIGNED_INT, reinterpret_cast<const void*>(sizeof(GLuint) * outside_));
 }

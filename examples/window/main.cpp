@@ -1,9 +1,9 @@
 // A soft body to play with.
-//   window SCENE [--screenshot FILE.png] [--seconds T] [--pull X,Y] [--size WxH]
-// Left button: grab and pull. Right button: turn. Wheel: nearer and farther. Space: poke what is under the mouse, R: start
-// again.
-// --screenshot writes a picture after T seconds of simulation and ends; --pull then drags what is in the middle of the window
-// by a part of its height.
+//   window SCENE [--screenshot FILE.png] [--seconds T] [--pull X,Y] [--cut X,Y,X,Y] [--size WxH]
+// Left button: grab and pull. With Control: cut along the way of the mouse, as deep as the eye sees. Right button: turn.
+// Wheel: nearer and farther. Space: poke what is under the mouse, R: start again.
+// --screenshot writes a picture after T seconds of simulation and ends; in its first half --cut sweeps from one place to
+// another (parts of the window's height, from its middle), and --pull drags what is in the middle.
 #include <pliant/world.h>
 
 #include <algorithm>
@@ -24,6 +24,7 @@ struct Options {
   std::string scene, screenshot;
   double seconds = 0.5;
   std::optional<std::array<float, 2>> pull;
+  std::optional<std::array<float, 4>> cut;
   int width = 1024, height = 768;
 };
 
@@ -145,11 +146,29 @@ class Window {
                          force * static_cast<double>(ray.along[2])});
   }
 
+  /// A blade along the line of sight, through everything that is there.
+  void cut(const Ray& ray) {
+    const float reach = camera_.distance + 2 * start_distance_;
+    const Vec3 near = ray.from + ray.along * (0.01F * reach), far = ray.from + ray.along * reach;
+    world_.move_blade("mouse", {near[0], near[1], near[2]}, {far[0], far[1], far[2]});
+    cutting_ = true;
+  }
+
+  void lift() {
+    if (cutting_) world_.lift_blade("mouse");
+    cutting_ = false;
+  }
+
   void use_mouse() {
     double x = 0, y = 0;
     glfwGetCursorPos(window_, &x, &y);
     const Ray ray = ray_at(static_cast<float>(x), static_cast<float>(y));
-    const bool left = glfwGetMouseButton(window_, GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS;
+    const bool pressed = glfwGetMouseButton(window_, GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS;
+    const bool blade = pressed && held_ == 0 &&
+                       (cutting_ || glfwGetKey(window_, GLFW_KEY_LEFT_CONTROL) == GLFW_PRESS ||
+                        glfwGetKey(window_, GLFW_KEY_RIGHT_CONTROL) == GLFW_PRESS);
+    blade ? cut(ray) : lift();
+    const bool left = pressed && !blade;
     if (left && held_ == 0) grab(ray);
     if (left) drag(ray);
     if (!left && held_ != 0) {
@@ -165,17 +184,22 @@ class Window {
     poke(ray, glfwGetKey(window_, GLFW_KEY_SPACE) == GLFW_PRESS);
   }
 
-  /// What --pull does: the hand goes from the middle to its goal within the first half of the time.
-  void pull_by_script() {
+  /// What --cut and --pull do: blade and hand reach their goal within the first half of the time.
+  void use_script() {
     const float w = static_cast<float>(o_.width), h = static_cast<float>(o_.height);
-    if (held_ == 0) grab(ray_at(w / 2, h / 2));
     const float share = static_cast<float>(std::min(1.0, 2 * frame_->time / o_.seconds));
-    drag(ray_at(w / 2 + share * (*o_.pull)[0] * h, h / 2 - share * (*o_.pull)[1] * h));
+    if (o_.pull) {
+      if (held_ == 0) grab(ray_at(w / 2, h / 2));
+      drag(ray_at(w / 2 + share * (*o_.pull)[0] * h, h / 2 - share * (*o_.pull)[1] * h));
+    }
+    if (!o_.cut) return;
+    const auto& [x0, y0, x1, y1] = *o_.cut;
+    cut(ray_at(w / 2 + (x0 + share * (x1 - x0)) * h, h / 2 - (y0 + share * (y1 - y0)) * h));
   }
 
   void simulate() {
-    if (o_.pull) {
-      pull_by_script();
+    if (o_.pull || o_.cut) {
+      use_script();
     } else {
       use_mouse();
     }
@@ -183,6 +207,7 @@ class Window {
       world_.reset();
       held_ = 0;
       poked_ = -1;
+      cutting_ = false;
     }
     // The worker computes the next sixtieth of a second while this frame is drawn; the window never waits for it.
     if (!o_.screenshot.empty()) {
@@ -204,6 +229,7 @@ class Window {
   pliant::GrabId held_ = 0;
   Vec3 held_from_{};
   std::int32_t poked_ = -1;
+  bool cutting_ = false;
   double last_x_ = 0, last_y_ = 0;
 };
 
@@ -212,13 +238,15 @@ Options read(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     const char* const value = i + 1 < argc ? argv[i + 1] : "";
-    float x = 0, y = 0;
+    float x = 0, y = 0, to_x = 0, to_y = 0;
     if (word == "--screenshot") {
       o.screenshot = value;
     } else if (word == "--seconds") {
       o.seconds = std::atof(value);
     } else if (word == "--pull" && std::sscanf(value, "%f,%f", &x, &y) == 2) {
       o.pull = {x, y};
+    } else if (word == "--cut" && std::sscanf(value, "%f,%f,%f,%f", &x, &y, &to_x, &to_y) == 4) {
+      o.cut = {x, y, to_x, to_y};
     } else if (word == "--size" && std::sscanf(value, "%dx%d", &o.width, &o.height) == 2) {
     } else if (word[0] != '-' && o.scene.empty()) {
       o.scene = word;
@@ -229,7 +257,7 @@ Options read(int argc, char** argv) {
     ++i;
   }
   if (o.scene.empty())
-    throw std::runtime_error("usage: window SCENE [--screenshot FILE] [--seconds T] [--pull X,Y] [--size WxH]");
+    throw std::runtime_error("usage: window SCENE [--screenshot FILE] [--seconds T] [--pull X,Y] [--cut X,Y,X,Y] [--size WxH]");
   return o;
 }
 

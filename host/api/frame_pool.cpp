@@ -27,16 +27,31 @@ void FramePool::give_back(std::unique_ptr<FrameData> data) {
   if (free_.size() < 4) free_.push_back(std::move(data));
 }
 
+namespace {
+
+/// Twice the area, along the normal.
+std::array<float, 3> face_normal(const std::vector<Vec4f>& positions, const Triangle& t) {
+  const Vec4f &a = positions[static_cast<std::size_t>(t[0])], &b = positions[static_cast<std::size_t>(t[1])],
+              &c = positions[static_cast<std::size_t>(t[2])];
+  const float ux = b[0] - a[0], uy = b[1] - a[1], uz = b[2] - a[2];
+  const float vx = c[0] - a[0], vy = c[1] - a[1], vz = c[2] - a[2];
+  return {uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx};
+}
+
+}  // namespace
+
 void vertex_normals(const std::vector<Vec4f>& positions, std::size_t count, View<Triangle> triangles,
-                    std::vector<Vec4f>& normals) {
+                    View<std::uint8_t> cut_faces, std::vector<Vec4f>& normals) {
   normals.assign(positions.size(), Vec4f{});
-  for (const Triangle& t : triangles) {
-    const Vec4f &a = positions[static_cast<std::size_t>(t[0])], &b = positions[static_cast<std::size_t>(t[1])],
-                &c = positions[static_cast<std::size_t>(t[2])];
-    const float ux = b[0] - a[0], uy = b[1] - a[1], uz = b[2] - a[2];
-    const float vx = c[0] - a[0], vy = c[1] - a[1], vz = c[2] - a[2];
-    const float n[3]{uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx};
-    for (const std::int32_t corner : t) {
+  std::vector<char> on_skin(cut_faces.empty() ? 0 : positions.size(), 0);
+  for (std::size_t t = 0; t < cut_faces.size(); ++t) {
+    if (cut_faces[t] != 0) continue;
+    for (const std::int32_t corner : triangles[t]) on_skin[static_cast<std::size_t>(corner)] = 1;
+  }
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const std::array<float, 3> n = face_normal(positions, triangles[t]);
+    for (const std::int32_t corner : triangles[t]) {
+      if (!cut_faces.empty() && cut_faces[t] != 0 && on_skin[static_cast<std::size_t>(corner)] != 0) continue;
       Vec4f& sum = normals[static_cast<std::size_t>(corner)];
       for (std::size_t k = 0; k < 3; ++k) sum[k] += n[k];
     }

@@ -36,9 +36,10 @@ class FramePool : public std::enable_shared_from_this<FramePool> {
   std::vector<std::unique_ptr<FrameData>> free_;
 };
 
-/// Unit normals of all vertices, the mean of their triangles weighted by area; zero where there is none. `count` vertices.
+/// Unit normals of all vertices, the mean of their triangles weighted by area, where skin meets a cut those of the skin; zero
+/// where there is none. `count` vertices.
 void vertex_normals(const std::vector<Vec4f>& positions, std::size_t count, View<Triangle> triangles,
-                    std::vector<Vec4f>& normals);
+                    View<std::uint8_t> cut_faces, std::vector<Vec4f>& normals);
 
 /// The smallest range of `to` outside of which both hold the same bits. The first `before` elements of `from` count and the
 /// first `now` of `to`.

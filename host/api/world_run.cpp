@@ -182,7 +182,7 @@ void World::Impl::read_frame(bool again) {
   f.body_triangles = {topology->body_triangles.data(), topology->body_triangles.size()};
   f.topology_version = topology->version;
   if (options.normals) {
-    api::vertex_normals(data->positions, count, f.triangles, data->normals);
+    api::vertex_normals(data->positions, count, f.triangles, f.cut_faces, data->normals);
     f.normals = {data->normals.data(), count};
   }
   IndexRange vertices{0, count}, faces{0, triangles.size()};

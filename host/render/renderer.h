@@ -27,6 +27,7 @@ struct RenderOptions {
   int width = 1280, height = 720;
   int samples = 16;         ///< per pixel
   float low = 0, high = 1;  ///< values at the ends of the colour map
+  bool color_cuts = true;   ///< values and kinds colour the faces of cuts, too; otherwise those look like flesh
   bool ground = true;
   std::optional<float> ground_height;  ///< along the camera's up [m]; absent: the lowest vertex
 };

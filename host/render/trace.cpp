@@ -137,6 +137,7 @@ class Tracer {
       // Flesh inside is lighter and wetter than the skin outside.
       m.albedo = mix(m.albedo, linear_of({0.93F, 0.66F, 0.60F}), 0.75F);
       m.roughness = 0.28F;
+      if (!o_.color_cuts) return m;
     }
     if (!s.values.empty()) {
       float value = 0;
