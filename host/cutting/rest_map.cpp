@@ -93,8 +93,15 @@ CarriedPoint RestMap::find(const Vec3d& p) {
   hits_.clear();
   hash_.query(box, [&](std::int32_t item) { hits_.push_back(item); });
   std::sort(hits_.begin(), hits_.end());
+  // The nearest boxes first: most of the others then cannot hold anything nearer.
+  near_.clear();
+  for (const std::int32_t item : hits_) near_.emplace_back(hash_.box(item).distance2(p), element_[item]);
+  std::sort(near_.begin(), near_.end());
   Best best{reach_ * reach_, {}};
-  for (const std::int32_t item : hits_) nearest(element_[item], p, best);
+  for (const auto& [distance2, element] : near_) {
+    if (distance2 >= best.distance2) break;
+    nearest(element, p, best);
+  }
   return best.point;
 }
 

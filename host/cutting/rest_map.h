@@ -2,6 +2,7 @@
 // it has swept does not move any more.
 #pragma once
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "cutting/cut_topology.h"
@@ -47,6 +48,7 @@ class RestMap {
   SpatialHash hash_;
   std::vector<std::int32_t> element_;  ///< items of the hash
   std::vector<std::int32_t> hits_;
+  std::vector<std::pair<double, std::int32_t>> near_;
 };
 
 }  // namespace pliant

@@ -26,6 +26,8 @@ class SpatialHash {
     });
   }
 
+  [[nodiscard]] const vec::Box& box(std::int32_t item) const { return box_[item]; }
+
   /// Call visit(item) once for each item whose box overlaps `box`.
   template <class Visit>
   void query(const vec::Box& box, Visit&& visit) {

@@ -10,21 +10,16 @@ namespace {
 /// Slots from `slot` on for nodes below `real` that have none yet; returns the next slot.
 std::int32_t number_real_nodes(Draft& draft, std::int32_t real, std::int32_t slot) {
   const Solid& solid = draft.solid();
-  std::vector<std::int32_t> valence(solid.nodes.size(), 0);
-  for (const auto& tet : solid.tets) {
-    for (const std::int32_t n : tet) ++valence[n];
-  }
-  for (const auto& hex : solid.hexes) {
-    for (const std::int32_t n : hex) ++valence[n];
-  }
-  std::vector<std::int32_t> order = sweep_order(solid);
+  const NodeOrder found = solid.uncut_order == nullptr ? node_order(solid) : NodeOrder{};
+  const NodeOrder& all = solid.uncut_order == nullptr ? found : *solid.uncut_order;
+  std::vector<std::int32_t> order = all.order;
   std::erase_if(order,
                 [&](std::int32_t n) { return n >= real || draft.slot[n] >= 0 || solid.matching(static_cast<std::size_t>(n)); });
   constexpr std::size_t kWindow = 256;
   for (std::size_t begin = 0; begin < order.size(); begin += kWindow) {
     const auto first = order.begin() + static_cast<std::ptrdiff_t>(begin);
     const auto last = order.begin() + static_cast<std::ptrdiff_t>(std::min(begin + kWindow, order.size()));
-    std::stable_sort(first, last, [&](std::int32_t a, std::int32_t b) { return valence[a] > valence[b]; });
+    std::stable_sort(first, last, [&](std::int32_t a, std::int32_t b) { return all.valence[a] > all.valence[b]; });
   }
   for (const std::int32_t n : order) draft.slot[n] = slot++;
   return slot;

@@ -12,6 +12,11 @@
 
 namespace pliant {
 
+/// The order in which a sweep over the elements meets the nodes (Cuthill-McKee), and the number of elements at each node.
+struct NodeOrder {
+  std::vector<std::int32_t> order, valence;
+};
+
 struct Solid {
   std::vector<Vec3d> nodes;                        ///< rest positions [m]
   std::vector<std::array<std::int32_t, 4>> tets;   ///< positive volume
@@ -34,6 +39,7 @@ struct Solid {
   std::vector<std::array<double, 8>> surface_weights;
   std::vector<std::int32_t> surface_cell;  ///< the lattice cell in which each vertex hangs; empty for a volume mesh
   double surface_volume = 0;               ///< [m^3]
+  std::shared_ptr<const NodeOrder> uncut_order;  ///< of the uncut body, if it was found already; the body may be cut
   /// Whether element e is a finite element.
   [[nodiscard]] bool operational(std::size_t e) const {
     return partition.operational.empty() || partition.operational[tets.empty() ? e : e / 6] != 0;
@@ -67,5 +73,6 @@ inline constexpr std::array<int, 8> kVtkFromBits{0, 1, 3, 2, 4, 5, 7, 6};
 
 /// All nodes in Cuthill-McKee order: breadth first over the elements from a node at the far end of each connected part.
 std::vector<std::int32_t> sweep_order(const Solid& solid);
+NodeOrder node_order(const Solid& solid);
 
 }  // namespace pliant

@@ -66,4 +66,15 @@ std::vector<std::int32_t> sweep_order(const Solid& solid) {
   return order;
 }
 
+NodeOrder node_order(const Solid& solid) {
+  NodeOrder out{sweep_order(solid), std::vector<std::int32_t>(solid.nodes.size(), 0)};
+  for (const auto& tet : solid.tets) {
+    for (const std::int32_t n : tet) ++out.valence[n];
+  }
+  for (const auto& hex : solid.hexes) {
+    for (const std::int32_t n : hex) ++out.valence[n];
+  }
+  return out;
+}
+
 }  // namespace pliant

@@ -83,11 +83,31 @@ vec::Box box_of(const std::vector<Vec3d>& x) {
   return box;
 }
 
+/// What the scene's file cannot hold, but a Scene made in memory can.
+void check_blade(const Blade& blade) {
+  const auto fail = [&](const std::string& what) { throw Error(fmt::format("blade '{}': {}", blade.name, what)); };
+  if (blade.path.size() < 2) fail(fmt::format("got a path of {} rows; allowed are two or more", blade.path.size()));
+  for (std::size_t i = 0; i < blade.path.size(); ++i) {
+    const auto& row = blade.path[i];
+    const bool finite = std::all_of(row.begin(), row.end(), [](double v) { return std::isfinite(v); });
+    if (!finite) fail(fmt::format("got [{}] in row {} of the path; allowed are finite numbers", fmt::join(row, ", "), i));
+    if (Vec3d{row[1], row[2], row[3]} == Vec3d{row[4], row[5], row[6]}) {
+      fail(fmt::format("both ends are [{}] m in row {} of the path; allowed are two different points",
+                       fmt::join(row.begin() + 1, row.begin() + 4, ", "), i));
+    }
+    if (i > 0 && !(row[0] > blade.path[i - 1][0])) {
+      fail(fmt::format("got {} s after {} s in row {} of the path; allowed are ascending times", row[0], blade.path[i - 1][0],
+                       i));
+    }
+  }
+}
+
 }  // namespace
 
 /// A look at the blades every sixtieth of a second; the bodies are filled once more, to be cut.
 void Simulation::prepare_blades() {
   if (scene_.blades.empty()) return;
+  for (const Blade& blade : scene_.blades) check_blade(blade);
   cuts_ = std::make_shared<CutState>(scene_);
   const double steps = kFrame / first_dt_;
   blade_steps_ = steps < 1 ? 1 : static_cast<std::int64_t>(std::min(steps, static_cast<double>(batch_steps_)));

@@ -134,10 +134,10 @@ void Simulation::cut_now(const std::vector<CutEdges>& edges, CutReport& report) 
   std::size_t done = 0;
   try {
     for (; done < edges.size(); ++done) {
-      if (!edges[done].empty()) edits[done] = cuts_->body(scene_, done).cut(edges[done]);
+      if (!edges[done].empty()) edits[done] = cuts_->body(scene_, done).cut(edges[done], report.surface);
       report.changed = report.changed || edits[done].changed_elements();
     }
-    report.topology = lap(start);
+    report.topology = lap(start) - report.surface;
     if (report.changed) rebuild(edits, report);
   } catch (...) {
     for (std::size_t b = 0; b < done; ++b) {
@@ -167,6 +167,7 @@ void Simulation::limit_to_element_bound() {
 void Simulation::replay_cuts(const std::vector<double>& cuts) {
   cuts_ = std::make_shared<CutState>(scene_);
   topology_version_ = 0;
+  double surface = 0;
   const auto damaged = [] { return Error("the checkpoint's list of cuts does not belong to this scene, or is damaged"); };
   for (std::size_t i = 0; i < cuts.size();) {
     if (cuts.size() - i < 2 || !(cuts[i] >= 0 && cuts[i] < static_cast<double>(scene_.bodies.size())) ||
@@ -180,7 +181,7 @@ void Simulation::replay_cuts(const std::vector<double>& cuts) {
       if (!(std::abs(cuts[i]) < 2e9 && std::abs(cuts[i + 1]) < 2e9)) throw damaged();
       edges[{static_cast<std::int32_t>(cuts[i]), static_cast<std::int32_t>(cuts[i + 1])}] = cuts[i + 2];
     }
-    topology_version_ += cuts_->body(scene_, body).cut(edges).changed_elements() ? 1 : 0;
+    topology_version_ += cuts_->body(scene_, body).cut(edges, surface).changed_elements() ? 1 : 0;
   }
   const std::vector<const Solid*> solids = cuts_->solids();
   auto kept = std::make_shared<std::vector<Solid>>();

@@ -1,6 +1,7 @@
 #include "solver/cut_state.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include "model/partition.h"
 #include "model/vec.h"
@@ -39,19 +40,21 @@ void BodyCut::keep_allowed(const Body& body, CutEdges& edges) const {
   });
 }
 
-CutEdit BodyCut::cut(const CutEdges& edges) {
+CutEdit BodyCut::cut(const CutEdges& edges, double& surface) {
   history_.push_back(edges);
   try {
-    return enter(edges);
+    return enter(edges, surface);
   } catch (...) {
     undo();
     throw;
   }
 }
 
-CutEdit BodyCut::enter(const CutEdges& edges) {
+CutEdit BodyCut::enter(const CutEdges& edges, double& surface) {
   CutEdit edit = topology_.cut(edges);
+  const auto start = std::chrono::steady_clock::now();
   if (surface_ != nullptr && edit.changed_elements()) surface_->update(topology_, edit.cells);
+  surface += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return edit;
 }
 
@@ -60,7 +63,8 @@ void BodyCut::undo() {
   topology_.reset({});
   solid_ = *uncut_;
   make_surface();
-  for (const CutEdges& edges : history_) enter(edges);
+  double surface = 0;
+  for (const CutEdges& edges : history_) enter(edges, surface);
 }
 
 const Solid& BodyCut::solid() {
@@ -69,7 +73,10 @@ const Solid& BodyCut::solid() {
 }
 
 CutState::CutState(const Scene& scene) : bodies(scene.bodies.size()) {
-  for (Solid& solid : make_solids(scene)) uncut.push_back(std::make_shared<const Solid>(std::move(solid)));
+  for (Solid& solid : make_solids(scene)) {
+    solid.uncut_order = std::make_shared<const NodeOrder>(node_order(solid));
+    uncut.push_back(std::make_shared<const Solid>(std::move(solid)));
+  }
 }
 
 BodyCut& CutState::body(const Scene& scene, std::size_t b) {

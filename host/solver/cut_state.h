@@ -24,8 +24,8 @@ class BodyCut {
   [[nodiscard]] const CutTopology& topology() const { return topology_; }
   /// Take out edges that may not be cut: those of cells left to shape matching where the scene says so.
   void keep_allowed(const Body& body, CutEdges& edges) const;
-  /// Throws, with nothing changed, what CutTopology::cut throws.
-  CutEdit cut(const CutEdges& edges);
+  /// Throws, with nothing changed, what CutTopology::cut throws. Adds to `surface` the time that the surface took [s].
+  CutEdit cut(const CutEdges& edges, double& surface);
   /// Take the last edit back.
   void undo();
   /// The body as it is cut now. Brought up to date at each call: only what edits have changed.
@@ -39,7 +39,7 @@ class BodyCut {
 
  private:
   void make_surface();
-  CutEdit enter(const CutEdges& edges);
+  CutEdit enter(const CutEdges& edges, double& surface);
   std::shared_ptr<const Solid> uncut_;
   Solid solid_;
   CutTopology topology_;

@@ -363,6 +363,15 @@ std::uint64_t Simulation::model_hash() const {
   const double relaxed = scene_.relaxation.enabled ? 1 : 0;
   const double settings[6]{scene_.gravity[0], scene_.gravity[1], scene_.gravity[2], scene_.dt, scene_.safety, relaxed};
   add(settings, sizeof settings);
+  for (const Blade& blade : scene_.blades) {
+    const double when[2]{blade.start, blade.end};
+    add(blade.name.data(), blade.name.size());
+    add(when, sizeof when);
+    add(blade.path.data(), blade.path.size() * sizeof blade.path[0]);
+  }
+  for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
+    if (!scene_.bodies[b].model.cut) add(&b, sizeof b);
+  }
   return h;
 }
 

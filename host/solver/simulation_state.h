@@ -31,8 +31,8 @@ struct SimulationState {
 struct CutReport {
   std::int64_t edges = 0;  ///< newly cut
   bool changed = false;    ///< whether elements were split
-  double search = 0, topology = 0, model = 0, upload = 0;
-  [[nodiscard]] double seconds() const { return search + topology + model + upload; }
+  double search = 0, topology = 0, surface = 0, model = 0, upload = 0;
+  [[nodiscard]] double seconds() const { return search + topology + surface + model + upload; }
 };
 
 }  // namespace pliant

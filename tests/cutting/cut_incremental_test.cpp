@@ -1,0 +1,185 @@
+// What edits patch is what a fresh start builds, bit for bit: bodies, models, programs and the buffers of both backends.
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "cutting/cut_bodies.h"
+#include "cutting/cut_body.h"
+#include "cutting/cut_scenes.h"
+#include "io/save.h"
+#include "pliant/error.h"
+#include "solver/compare.h"
+#include "solver/scenes.h"
+
+namespace pliant {
+namespace {
+
+using namespace cut_test;
+
+std::vector<SweepTriangle> random_cut(std::mt19937& random, const Vec3d& size) {
+  std::uniform_real_distribution<double> real(-1, 1);
+  const Vec3d point{size[0] * 0.5 * (1 + real(random)), size[1] * 0.5 * (1 + real(random)), size[2] * 0.5 * (1 + real(random))};
+  return plane_cut(point, {real(random), real(random), real(random)}, 0.02 + 0.1 * std::abs(real(random)));
+}
+
+void expect_same_programs(const Program& a, const Program& b) {
+  ASSERT_EQ(a.buffers.size(), b.buffers.size());
+  for (std::size_t i = 0; i < a.buffers.size(); ++i) {
+    const Buffer &p = a.buffers[i], &q = b.buffers[i];
+    ASSERT_EQ(p.name, q.name);
+    ASSERT_EQ(p.count, q.count) << p.name;
+    ASSERT_EQ(p.ints, q.ints) << p.name;
+    ASSERT_EQ(p.reals.size(), q.reals.size()) << p.name;
+    if (p.reals.empty()) continue;
+    EXPECT_EQ(std::memcmp(p.reals.data(), q.reals.data(), p.reals.size() * sizeof(double)), 0) << p.name;
+  }
+}
+
+class CutIncremental : public ::testing::TestWithParam<std::tuple<ModelType, ElementKind, const char*>> {};
+INSTANTIATE_TEST_SUITE_P(Cutting, CutIncremental,
+                         ::testing::Values(std::tuple(ModelType::tled, ElementKind::hex8, "cpu"),
+                                           std::tuple(ModelType::tled, ElementKind::tet4anp, "cpu"),
+                                           std::tuple(ModelType::hybrid, ElementKind::hex8, "cpu"),
+                                           std::tuple(ModelType::tled, ElementKind::hex8, "opencl:0"),
+                                           std::tuple(ModelType::hybrid, ElementKind::tet4, "opencl:0")));
+
+TEST_P(CutIncremental, patched_buffers_have_the_bits_of_a_fresh_start) {
+  const auto [type, element, backend] = GetParam();
+  if (std::string(backend) != "cpu" && !testing::has_opencl()) GTEST_SKIP() << "no OpenCL device";
+  const Vec3d size{0.06, 0.03, 0.04};
+  Body body = box_body("box", size, element);
+  body.model.type = type;
+  body.model.width = 1;
+  body.model.ratio = 0.5;
+  body.velocity = {0.01, 0, 0.02};
+  const Scene scene = scene_with(body);
+  SimulationOptions options;
+  options.dt = 2e-4;
+  Simulation s(scene, open_backend(backend), options);
+  std::mt19937 random(11);
+  for (int k = 0; k < 6; ++k) {
+    s.advance(3);
+    s.cut(random_cut(random, size));
+    if (k % 2 == 0) continue;
+    Simulation fresh(scene, open_backend(backend), options);
+    restore_checkpoint(fresh, take_checkpoint(s), "saved");
+    ASSERT_EQ(fresh.topology_version(), s.topology_version());
+    expect_same_programs(s.program(), fresh.program());
+    for (std::size_t i = 0; i < s.program().buffers.size(); ++i) {
+      const Buffer& buffer = s.program().buffers[i];
+      if (buffer.role != BufferRole::constant && buffer.name != "node_u" && buffer.name != "node_w") continue;
+      const auto id = static_cast<BufferId>(i);
+      EXPECT_EQ(s.backend().read_bytes(id), fresh.backend().read_bytes(id)) << buffer.name;
+    }
+  }
+  EXPECT_GE(s.topology_version(), 4);
+}
+
+TEST(CutIncremental, a_backend_that_is_updated_holds_what_a_loaded_one_holds) {
+  const Vec3d size{0.05, 0.03, 0.03};
+  const Scene scene = scene_with(box_body("box", size));
+  for (const char* name : {"cpu", "opencl:0"}) {
+    if (std::string(name) != "cpu" && !testing::has_opencl()) continue;
+    Simulation s(scene, open_backend(name));
+    const auto patched = open_backend(name), loaded = open_backend(name);
+    std::mt19937 random(5);
+    std::vector<Program> programs{s.program()};
+    for (int k = 0; k < 5; ++k) {
+      s.cut(random_cut(random, size));
+      programs.push_back(s.program());
+    }
+    std::reverse(programs.begin() + 3, programs.end());  // some get smaller
+    patched->load(programs[0]);
+    for (std::size_t k = 1; k < programs.size(); ++k) {
+      patched->run(programs[k - 1].step, 0, 2);  // leaves something behind in what passes write
+      patched->finish();
+      patched->update(programs[k - 1], programs[k]);
+      loaded->load(programs[k]);
+      for (std::size_t i = 0; i < programs[k].buffers.size(); ++i) {
+        const auto id = static_cast<BufferId>(i);
+        ASSERT_EQ(patched->read_bytes(id), loaded->read_bytes(id)) << name << ": " << programs[k].buffers[i].name;
+      }
+    }
+  }
+}
+
+TEST(CutIncremental, a_body_brought_up_to_date_is_the_body_cut_at_once) {
+  for (const ElementKind element : {ElementKind::hex8, ElementKind::tet4}) {
+    const Vec3d size{0.05, 0.03, 0.03};
+    const Body body = box_body("box", size, element);
+    const Solid uncut = make_solid(body);
+    CutTopology topology(cut_mesh(uncut, "box"));
+    CutSurface surface({uncut.surface, uncut.triangles}, *uncut.lattice);
+    Solid patched = uncut;
+    std::mt19937 random(2);
+    for (int k = 0; k < 6; ++k) {
+      const CutEdit edit = cut_at_rest(topology, random_cut(random, size));
+      if (edit.changed_elements()) surface.update(topology, edit.cells);
+      if (k == 3) continue;
+      update_solid(uncut, topology, &surface, patched);
+      const Solid whole = cut_solid(uncut, topology, &surface);
+      EXPECT_EQ(patched.nodes, whole.nodes);
+      EXPECT_EQ(patched.tets, whole.tets);
+      EXPECT_EQ(patched.hexes, whole.hexes);
+      EXPECT_EQ(patched.fill, whole.fill);
+      EXPECT_EQ(patched.copy_of, whole.copy_of);
+      EXPECT_EQ(patched.virtual_nodes.offset, whole.virtual_nodes.offset);
+      EXPECT_EQ(patched.virtual_nodes.anchor, whole.virtual_nodes.anchor);
+      EXPECT_EQ(patched.surface, whole.surface);
+      EXPECT_EQ(patched.surface_nodes, whole.surface_nodes);
+      EXPECT_EQ(patched.surface_weights, whole.surface_weights);
+      EXPECT_EQ(patched.surface_cell, whole.surface_cell);
+      EXPECT_EQ(patched.triangles, whole.triangles);
+      EXPECT_EQ(patched.triangle_cut, whole.triangle_cut);
+    }
+    EXPECT_GT(patched.nodes.size(), uncut.nodes.size());
+  }
+}
+
+TEST(CutBadInput, blades_of_a_scene_in_memory_are_checked) {
+  const Scene plain = scene_with(box_body("box", {0.02, 0.02, 0.02}));
+  const auto refused = [&](const std::vector<std::array<double, 7>>& path, const std::string& part) {
+    Scene scene = plain;
+    scene.blades.push_back(blade("b", path));
+    try {
+      const Simulation s(scene, open_backend("cpu"));
+      ADD_FAILURE() << part;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    }
+  };
+  refused({{0, 0, 0, 0, 0, 0, 1}}, "two or more");
+  refused({{0, 0, 0, 0, 0, 0, 1}, {1, 2, 2, 2, 2, 2, 2}}, "two different points");
+  refused({{0, 0, 0, 0, 0, 0, 1}, {1, NAN, 2, 2, 2, 2, 2}}, "finite");
+  refused({{0, 0, 0, 0, 0, 0, 1}, {0, 1, 2, 2, 2, 2, 2}}, "ascending");
+}
+
+TEST(CutBadInput, a_blade_that_meets_nothing_changes_nothing) {
+  Simulation s(scene_with(box_body("box", {0.04, 0.03, 0.03})), open_backend("cpu"));
+  s.advance(10);
+  const std::uint64_t before = s.hash();
+  EXPECT_FALSE(s.move_blade("b", {{{0.02, 5, -1}, {0.02, 5, 1}}}).changed);
+  EXPECT_EQ(s.move_blade("b", {{{0.02, 4, -1}, {0.02, 4, 1}}}).edges, 0);
+  EXPECT_EQ(s.move_blade("b", {{{0.02, 4, -1}, {0.02, 4, 1}}}).edges, 0) << "it rests";
+  EXPECT_EQ(s.cut({}).edges, 0);
+  EXPECT_EQ(s.move_blade("c", {{{0.02, 0.01, 0.01}, {0.021, 0.01, 0.01}}}).edges, 0) << "put into the body";
+  EXPECT_EQ(s.move_blade("c", {{{0.02, 0.012, 0.01}, {0.021, 0.012, 0.01}}}).changed, false) << "too short to cut a cell";
+  EXPECT_EQ(s.hash(), before);
+  EXPECT_EQ(s.topology_version(), 0);
+}
+
+TEST(CutBadInput, a_checkpoint_does_not_go_on_with_other_blades) {
+  Scene scene = scene_with(box_body("box", {0.04, 0.03, 0.03}));
+  scene.blades.push_back(blade("b", {{0, 0.02, 0.05, -1, 0.02, 0.05, 1}, {0.1, 0.02, -0.05, -1, 0.02, -0.05, 1}}));
+  Simulation s(scene, open_backend("cpu"));
+  s.advance(20);
+  const Checkpoint saved = take_checkpoint(s);
+  Simulation same(scene, open_backend("cpu"));
+  restore_checkpoint(same, saved, "saved");
+  scene.blades[0].path[1][2] = -0.06;
+  Simulation other(scene, open_backend("cpu"));
+  EXPECT_THROW(restore_checkpoint(other, saved, "saved"), Error);
+}
+
+}  // namespace
+}  // namespace pliant
