@@ -51,7 +51,7 @@ struct Frame {
   std::int64_t step = 0;            ///< steps since the start
   double time = 0;                  ///< [s]
   View<Vec4f> positions;            ///< [m], shape [vertices]
-  View<Vec4f> normals;              ///< unit length, shape [vertices]; empty if WorldOptions::normals is off
+  View<Vec4f> normals;              ///< unit length, shape [vertices], of the skin where that meets a cut; empty if not wanted
   View<Vec4f> rest;                 ///< positions at rest [m], shape [vertices]
   View<Triangle> triangles;         ///< vertex numbers, shape [triangles]
   View<std::uint8_t> cut_faces;     ///< 1: the triangle lies on a cut, shape [triangles]; empty: none does
