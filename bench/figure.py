@@ -5,12 +5,14 @@
               alpha = 0.8) and soft (20000 Pa, 0.5), under the same force
   bunny       four moments of scenes/bunny.json
   liver       four moments of scenes/liver.json, coloured by von Mises stress
+  cut         four moments of scenes/cut_liver.json: at rest, stretched, half cut, cut through
   parts       who computes what in scenes/bunny_hybrid.json and liver_hybrid.json
 
 Pictures are traced at twice their size and scaled down, and saved with 256 colours so that they stay small.
 """
 import argparse
 import json
+import math
 import subprocess
 import sys
 import tempfile
@@ -66,7 +68,7 @@ class Maker:
             file = Path(folder) / "scene.json"
             file.write_text(json.dumps(scene))
             done = subprocess.run([self.pliant, "info", file, "--json", "-", "--quiet"], check=True, capture_output=True, text=True)
-        unit = times[1] - times[0]
+        unit = math.gcd(*(round(1000 * t) for t in times)) / 1000
         # Half of the step at rest leaves room for what the deformation does to the stable step.
         steps = int(unit / (0.5 * json.loads(done.stdout)["stable_step"]["dt"])) + 1
         scene["dt"] = unit / steps
@@ -124,6 +126,9 @@ class Maker:
         scene["view"] = {"eye": [-0.12, 0.34, 0.4], "target": [0.012, 0.035, 0], "field_of_view": 26}
         self.strip("liver", scene, (0, 0.2, 0.4, 0.6), (480, 320), ["--color", "mises", "--range", "0,600"])
 
+    def cut(self):
+        self.strip("cut", load("cut_liver"), (0, 0.4, 0.7, 1.0), (480, 340))
+
     def parts(self):
         sheet = Image.new("RGB", (960, 360), PAPER)
         for i, name in enumerate(("bunny_hybrid", "liver_hybrid")):
@@ -136,12 +141,12 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("pliant", help="the pliant command")
     parser.add_argument("--out", type=Path, default=ROOT / "docs" / "images")
-    parser.add_argument("--only", default="parameters,bunny,liver,parts", help="names, separated by commas")
+    parser.add_argument("--only", default="parameters,bunny,liver,cut,parts", help="names, separated by commas")
     parser.add_argument("--quick", action="store_true", help="few rays: to see that it works")
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     maker = Maker(Path(options.pliant).resolve(), options.out, options.quick)
-    known = ("parameters", "bunny", "liver", "parts")
+    known = ("parameters", "bunny", "liver", "cut", "parts")
     for name in options.only.split(","):
         if name not in known:
             sys.exit(f"figure.py: --only names \"{name}\"; there are {', '.join(known)}")

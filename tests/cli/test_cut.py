@@ -1,0 +1,105 @@
+#!/usr/bin/env python3
+"""Blades through the command: what the files of a run show of a cut."""
+import json
+import re
+import struct
+
+from harness import CliTest, main
+from test_picture import glb
+
+BLADE = {"name": "knife", "path": [[0, 0.013, 0.08, -0.1, 0.013, 0.08, 0.1], [0.05, 0.013, -0.08, -0.1, 0.013, -0.08, 0.1]]}
+
+
+def vtu(path):
+    """The arrays of a file that Pliant wrote, by name."""
+    data = path.read_bytes()
+    start = data.index(b"<AppendedData")
+    start = data.index(b"_", start) + 1
+    arrays = {}
+    for kind, name, offset in re.findall(r'type="(\w+)" Name="([^"]+)".*?offset="(\d+)"', data[:start].decode()):
+        at = start + int(offset)
+        (size,) = struct.unpack("<Q", data[at : at + 8])
+        letter, width = {"Float32": ("f", 4), "Int32": ("i", 4), "UInt8": ("B", 1)}[kind]
+        arrays[name] = struct.unpack(f"<{size // width}{letter}", data[at + 8 : at + 8 + size])
+    return arrays
+
+
+class Cut(CliTest):
+    def scene_with_blade(self, **keys):
+        return self.scene(body={"prescribed": []}, gravity=[0, 0, 0], blades=[BLADE], **keys)
+
+    def test_vtu_marks_what_is_cut(self):
+        self.pliant("run", self.scene_with_blade(), "--seconds", 0.08, "--every", 10, "--out", "out")
+        surfaces = sorted((self.folder / "out").glob("*_surface_*.vtu"))
+        cells = sorted(set((self.folder / "out").glob("*.vtu")) - set(surfaces))
+        first, last = vtu(surfaces[0]), vtu(surfaces[-1])
+        self.assertEqual(sum(first["cut"]), 0)
+        self.assertEqual(len(first["cut"]), len(first["types"]))
+        self.assertEqual(set(last["cut"]), {0.0, 1.0})
+        self.assertEqual(len(last["cut"]), len(last["types"]))
+        edges = {}
+        for t in zip(*[iter(last["connectivity"])] * 3):
+            for a, b in zip(t, t[1:] + t[:1]):
+                edges[a, b] = edges.get((a, b), 0) + 1
+        for (a, b), count in edges.items():
+            self.assertEqual((count, edges.get((b, a))), (1, 1), "an open surface")
+        first, last = vtu(cells[0]), vtu(cells[-1])
+        self.assertEqual((len(first["cut"]), sum(first["cut"]), sum(first["piece"])), (125, 0, 0))
+        self.assertEqual((len(last["cut"]), sum(last["cut"])), (150, 50))  # the 25 cells of one layer are there twice
+        self.assertEqual(set(last["piece"]), {0.0, 1.0})
+        self.assertAlmostEqual(sum(last["fill"]), sum(first["fill"]), places=4)
+
+    def test_files_without_blades_have_no_arrays_of_cuts(self):
+        self.pliant("run", self.scene(), "--steps", 2, "--out", "out")
+        for file in (self.folder / "out").glob("*.vtu"):
+            self.assertTrue({"cut", "piece"}.isdisjoint(vtu(file)), file)
+
+    def test_gltf_has_a_mesh_per_topology(self):
+        self.pliant("run", self.scene_with_blade(), "--seconds", 0.08, "--every", 10, "--out", "out", "--format", "gltf")
+        document = glb(self.folder / "out" / "scene.glb")
+        count = len(document["meshes"])
+        self.assertGreater(count, 1)
+        self.assertEqual(len(document["nodes"]), count)
+        names = [material["name"] for material in document["materials"]]
+        used = [{names[p["material"]] for p in mesh["primitives"]} for mesh in document["meshes"]]
+        self.assertEqual(used[0], {"tissue"})
+        self.assertEqual(used[-1], {"tissue", "cut"})
+        data = (self.folder / "out" / "scene.glb").read_bytes()
+        (text,) = struct.unpack("<I", data[12:16])
+
+        def floats(accessor):
+            view = document["bufferViews"][document["accessors"][accessor]["bufferView"]]
+            at = 28 + text + view["byteOffset"]
+            return struct.unpack(f"<{view['byteLength'] // 4}f", data[at : at + view["byteLength"]])
+
+        # One mesh is there at a time: the steps of their scales follow each other without a gap.
+        animation = document["animations"][0]
+        shown = {}
+        for channel in animation["channels"]:
+            if channel["target"]["path"] != "scale":
+                continue
+            sampler = animation["samplers"][channel["sampler"]]
+            self.assertEqual(sampler["interpolation"], "STEP")
+            scale = dict(zip(floats(sampler["input"]), floats(sampler["output"])[::3]))
+            begin = [t for t, s in scale.items() if s == 1]
+            end = [t for t, s in scale.items() if s == 0 and t > begin[0]]
+            shown[channel["target"]["node"]] = (begin, end)
+        self.assertEqual(len(shown), count)
+        for p in range(count - 1):
+            self.assertEqual(shown[p][1], shown[p + 1][0])
+
+    def test_bad_blades(self):
+        for path, words in [
+            ([[0, 0, 0, 0, 0, 0, 0], [1, 0, 1, 0, 0, 1, 1]], ["/blades/0/path/0"]),
+            ([[0, 0, 0, 0, 0, 0, 1]], ["/blades/0/path"]),
+            ([[1, 0, 0, 0, 0, 0, 1], [0, 0, 1, 0, 0, 1, 1]], ["/blades/0/path"]),
+        ]:
+            scene = json.loads(self.scene_with_blade().read_text())
+            scene["blades"][0]["path"] = path
+            file = self.folder / "bad.json"
+            file.write_text(json.dumps(scene))
+            self.refused("run", file, "--steps", 1, words=words)
+
+
+if __name__ == "__main__":
+    main()
