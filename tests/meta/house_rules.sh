@@ -87,7 +87,7 @@ allow_room io 'io|solver|cutting|model|scene|state'
 allow_room render 'render|io|solver|cutting|model|scene|state'
 allow_room opencl 'opencl|solver|model|scene|state'
 allow_room backends 'backends|opencl|cpu_ref|solver|model|scene|state'
-allow_room api 'api|backends|io|solver|model|scene|state'
+allow_room api 'api|backends|cutting|io|solver|model|scene|state'
 forbid 'the command asks host/backends for a backend' '"(host/)?opencl/' host/cli/*.h host/cli/*.cpp
 
 # --- kernels and twins -----------------------------------------------------------------------------------------------------------
