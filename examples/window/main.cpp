@@ -51,7 +51,9 @@ std::int32_t vertex_under(const pliant::Frame& frame, const Ray& ray) {
 class Window {
  public:
   explicit Window(const Options& options)
-      : o_(options), world_(pliant::World::open(options.scene, {.interactive = true})), frame_(world_.frame()) {
+      : o_(options),
+        world_(pliant::World::open(options.scene, {.interactive = true, .cutting = true})),
+        frame_(world_.frame()) {
     if (glfwInit() == GLFW_FALSE) throw std::runtime_error("no display: GLFW could not start");
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);

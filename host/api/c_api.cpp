@@ -69,6 +69,7 @@ pliant::WorldOptions options_of(const pliant_options* given) {
   options.dt = given->dt;
   options.normals = given->normals != 0;
   options.interactive = given->interactive != 0;
+  options.cutting = given->cutting != 0;
   return options;
 }
 

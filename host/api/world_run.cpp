@@ -85,7 +85,9 @@ std::shared_ptr<Simulation> World::Impl::make_simulation(std::string* why) {
   } catch (const Error& error) {
     throw Error(ErrorCode::device, error.what());
   }
-  return std::make_shared<Simulation>(scene, model, std::move(backend));
+  auto fresh = std::make_shared<Simulation>(scene, model, std::move(backend));
+  if (options.cutting) prepare_cuts(*fresh);
+  return fresh;
 }
 
 /// What went wrong on the device while it worked. Scenes are checked before, so whatever a step throws is the device's.

@@ -42,9 +42,10 @@ typedef struct pliant_options {
   double dt;           /**< [s]; 0: what the scene says */
   int normals;         /**< 1: frames have normals */
   int interactive;     /**< 1: grabs and pushes are possible */
+  int cutting;         /**< 1: prepare for cuts at the start */
 } pliant_options;
 #define PLIANT_OPTIONS_INIT \
-  { sizeof(pliant_options), NULL, 0.0, 1, 0 }
+  { sizeof(pliant_options), NULL, 0.0, 1, 0, 0 }
 
 /** A triangle surface in memory, which a scene names "memory:0", "memory:1", ... Copied. */
 typedef struct pliant_surface {

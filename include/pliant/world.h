@@ -23,6 +23,7 @@ struct WorldOptions {
   double dt = 0;                 ///< [s]; 0: what the scene says
   bool normals = true;           ///< frames have vertex normals
   bool interactive = false;      ///< reserve forces on all nodes of the surface, which the tools below need
+  bool cutting = false;          ///< prepare for cuts at the start, so that the first one does not take longer than others
 };
 
 /// One body of a World.

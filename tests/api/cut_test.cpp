@@ -216,6 +216,22 @@ TEST(ApiCut, bad_blades_are_refused_and_change_nothing) {
   EXPECT_TRUE(world.move_blade("b", {0.041, -0.2, -1}, {0.041, -0.2, 1}).changed) << "the blade is still where it was";
 }
 
+TEST(ApiCut, preparing_for_cuts_changes_nothing) {
+  World plain(held_block(), on("cpu"));
+  WorldOptions options = on("cpu");
+  options.cutting = true;
+  World prepared(held_block(), options);
+  EXPECT_EQ(prepared.pieces(0), 1);
+  EXPECT_EQ(prepared.frame()->topology_version, 1U);
+  for (World* world : {&plain, &prepared}) {
+    world->step(50);
+    world->cut(wall(0.047));
+    world->step(50);
+  }
+  EXPECT_EQ(plain.hash(), prepared.hash());
+  EXPECT_EQ(plain.frame()->triangles.size(), prepared.frame()->triangles.size());
+}
+
 TEST(ApiCut, a_scene_that_cannot_be_cut_says_so_and_goes_on) {
   const char* const text = R"({"format": "pliant-scene/1", "integrator": "textbook", "bodies": [{"surface": "memory:0",
     "lattice": {"spacing": 0.02}, "material": {"law": "neo-hookean", "young": 3000, "poisson": 0.4, "density": 1000}}]})";
