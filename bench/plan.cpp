@@ -219,7 +219,7 @@ class Planner {
                    {"choice", plan.found ? row(*best) : Json(nullptr)},
                    {"nearest", Json::array()},
                    {"trials", Json::array()}};
-    plan.text = fmt::format("reference: hex8full, {} nodes, itself known to {:.3f} %\n", reference_.nodes,
+    plan.text = fmt::format("reference: hex8full, three lattices up to {} nodes, {:.2f} % apart\n", reference_.nodes,
                             100 * reference_.uncertainty);
     for (const Trial& t : trials_) {
       plan.report["trials"].push_back(row(t));

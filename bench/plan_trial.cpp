@@ -133,18 +133,25 @@ Scene configured(const Scene& scene, const Size& size, ElementKind element, std:
 
 Reference make_reference(const Scene& scene, const Size& size, const PlanOptions& options) {
   const auto start = Clock::now();
-  const AtRest coarse = solve(scene, size, options.reference_nodes / 8);
   Reference out;
   for (std::int64_t nodes = options.reference_nodes;; nodes *= 2) {
     const auto began = Clock::now();
-    const AtRest fine = solve(scene, size, nodes);
-    out.u = fine.u;
-    out.norm = norm_of(fine.u);
-    out.frequency = fine.frequency;
-    out.nodes = fine.nodes;
-    // First order at worst: what a plane or a sphere holds moves with the lattice by a share of its spacing.
-    const double ratio = std::cbrt(static_cast<double>(fine.nodes) / static_cast<double>(coarse.nodes));
-    out.uncertainty = norm_of(difference(fine.u, coarse.u)) / out.norm / (ratio - 1);
+    std::vector<AtRest> answers;
+    // Spacings that are no multiples of each other, so that the rims of what is held fall differently between the nodes.
+    for (const double share : {1.0, 0.8, 0.64}) {
+      answers.push_back(solve(scene, size, std::llround(share * static_cast<double>(nodes))));
+    }
+    out.u.assign(answers[0].u.size(), Vec3d{});
+    for (const AtRest& a : answers) {
+      for (std::size_t i = 0; i < out.u.size(); ++i)
+        out.u[i] = vec::add(out.u[i], vec::mul(a.u[i], 1.0 / static_cast<double>(answers.size())));
+    }
+    out.norm = norm_of(out.u);
+    double square = 0;
+    for (const AtRest& a : answers) square += std::pow(norm_of(difference(a.u, out.u)), 2);
+    out.uncertainty = std::sqrt(square / static_cast<double>(answers.size() - 1)) / out.norm;
+    out.frequency = answers[0].frequency;
+    out.nodes = answers[0].nodes;
     // Twice the nodes take about four times as long.
     if (out.uncertainty <= options.tolerance / 2 || since(start) + 4 * since(began) > options.reference_seconds) break;
   }

@@ -14,13 +14,14 @@ struct Size {
 };
 Size size_of(const Scene& scene);
 
-/// The scene at rest on a fine lattice.
+/// The scene at rest: the mean of three fine lattices. What a plane or a sphere holds changes with the lattice by a share of
+/// its spacing, and that is most of the difference between two fine lattices.
 struct Reference {
   std::vector<Vec3d> u;    ///< displacements of the surface's vertices [m]
   double norm = 0;         ///< square root of the sum of their squares [m]
   double frequency = 0;    ///< of the slowest motion towards rest, by Rayleigh's quotient of the displacements [rad/s]
-  double uncertainty = 0;  ///< relative; from a lattice of an eighth of the nodes, first order taken for granted
-  std::int64_t nodes = 0;
+  double uncertainty = 0;  ///< standard deviation of the three from their mean, relative
+  std::int64_t nodes = 0;  ///< of the finest
   double seconds = 0;
 };
 /// Twice as many nodes again until the reference is known to half the tolerance, or the time is up.
