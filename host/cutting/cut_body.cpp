@@ -171,11 +171,12 @@ void hang_surface(const CutSurface& surface, const CutTopology& cut, const Solid
   solid.triangles = surface.triangles();
   const std::size_t count = solid.triangles.size();
   solid.triangle_cut.resize(count);
-  solid.triangle_middle.resize(count);
+  solid.triangle_middle.resize(solid.wants_middles ? count : 0);
   const double none = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t t = 0; t < count; ++t) {
     const std::int32_t original = surface.original_of(static_cast<std::int32_t>(t));
     solid.triangle_cut[t] = surface.kinds()[t] == SurfaceKind::cut ? 1 : 0;
+    if (!solid.wants_middles) continue;
     solid.triangle_middle[t] = {none, none, none};
     if (original < 0 || original >= static_cast<std::int32_t>(uncut.triangles.size())) continue;
     const auto& [a, b, c] = uncut.triangles[original];

@@ -174,17 +174,18 @@ void add_surface(const Draft& draft, std::int32_t b, Model& model) {
   body.vertices = static_cast<std::int32_t>(solid.surface.size());
   body.first_triangle = static_cast<std::int32_t>(surface.triangles.size());
   body.triangles = static_cast<std::int32_t>(solid.triangles.size());
+  surface.rest.insert(surface.rest.end(), solid.surface.begin(), solid.surface.end());
+  surface.weights.insert(surface.weights.end(), solid.surface_weights.begin(), solid.surface_weights.end());
+  surface.nodes.resize(surface.rest.size());
   for (std::size_t v = 0; v < solid.surface.size(); ++v) {
-    std::array<std::int32_t, 8> slots{};
-    for (int a = 0; a < 8; ++a) slots[a] = draft.slot[solid.surface_nodes[v][a]];
-    surface.rest.push_back(solid.surface[v]);
-    surface.nodes.push_back(slots);
-    surface.weights.push_back(solid.surface_weights[v]);
+    auto& slots = surface.nodes[static_cast<std::size_t>(body.first_vertex) + v];
+    for (std::size_t a = 0; a < 8; ++a) slots[a] = draft.slot[solid.surface_nodes[v][a]];
   }
-  for (const auto& t : solid.triangles) {
-    surface.triangles.push_back({t[0] + body.first_vertex, t[1] + body.first_vertex, t[2] + body.first_vertex});
-    surface.triangle_body.push_back(b);
+  surface.triangles.insert(surface.triangles.end(), solid.triangles.begin(), solid.triangles.end());
+  for (std::size_t t = static_cast<std::size_t>(body.first_triangle); t < surface.triangles.size() && b > 0; ++t) {
+    for (std::int32_t& v : surface.triangles[t]) v += body.first_vertex;
   }
+  surface.triangle_body.resize(surface.triangles.size(), b);
   if (!solid.triangle_cut.empty() || !surface.triangle_cut.empty()) {
     surface.triangle_cut.resize(body.first_triangle, 0);
     surface.triangle_cut.insert(surface.triangle_cut.end(), solid.triangle_cut.begin(), solid.triangle_cut.end());

@@ -30,6 +30,7 @@ struct Solid {
   std::vector<std::int32_t> copy_of;  ///< if the body is cut: per element (six tetrahedra of a lattice: one) its uncut cell
   VirtualNodes virtual_nodes;
   std::vector<Vec3d> triangle_middle;  ///< ModelBody::triangle_middle
+  bool wants_middles = true;           ///< whether a cut keeps triangle_middle: pressures need it
   std::vector<char> triangle_cut;      ///< if the body is cut: whether the triangle lies on a cut
   std::vector<Cell> matching_cells;    ///< the cells left to shape matching
   double spacing = 0;                  ///< [m]

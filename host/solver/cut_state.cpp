@@ -74,6 +74,7 @@ const Solid& BodyCut::solid() {
 
 CutState::CutState(const Scene& scene) : bodies(scene.bodies.size()) {
   for (Solid& solid : make_solids(scene)) {
+    solid.wants_middles = !scene.bodies[uncut.size()].pressures.empty();
     solid.uncut_order = std::make_shared<const NodeOrder>(node_order(solid));
     uncut.push_back(std::make_shared<const Solid>(std::move(solid)));
   }

@@ -1,5 +1,6 @@
 // Buffers and passes of the embedded surface and of the external forces: pressure, nodal forces, corners on brick nodes.
 #include <algorithm>
+#include <numeric>
 #include <tuple>
 
 #include "solver/program_builder.h"
@@ -75,16 +76,27 @@ void ProgramBuilder::add_pressure_passes() {
 }
 
 std::vector<std::pair<std::int32_t, std::int32_t>> ProgramBuilder::brick_corners() const {
-  std::vector<std::pair<std::int32_t, std::int32_t>> found;
-  for (std::size_t b = 0; b < model_.hexes.size(); ++b) {
-    for (std::size_t e = 0; e < model_.hexes[b].nodes.size(); ++e) {
-      for (int a = 0; a < 8; ++a) {
-        const std::int32_t slot = model_.hexes[b].nodes[e][a];
-        if (slot < model_.list_base) found.emplace_back(slot, corner_position(layout_.hexes[b], e, a, PLIANT_HEX_FORCE_PLANES));
+  // Sorted by counting: a cut body has thousands of them, few at each slot.
+  std::vector<std::int32_t> next(static_cast<std::size_t>(model_.list_base) + 1, 0);
+  const auto for_corners = [&](auto&& visit) {
+    for (std::size_t b = 0; b < model_.hexes.size(); ++b) {
+      for (std::size_t e = 0; e < model_.hexes[b].nodes.size(); ++e) {
+        for (int a = 0; a < 8; ++a) {
+          const std::int32_t slot = model_.hexes[b].nodes[e][static_cast<std::size_t>(a)];
+          if (slot < model_.list_base) visit(slot, b, e, a);
+        }
       }
     }
+  };
+  for_corners([&](std::int32_t slot, std::size_t, std::size_t, int) { ++next[slot + 1]; });
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  std::vector<std::pair<std::int32_t, std::int32_t>> found(static_cast<std::size_t>(next.back()));
+  for_corners([&](std::int32_t slot, std::size_t b, std::size_t e, int a) {
+    found[next[slot]++] = {slot, corner_position(layout_.hexes[b], e, a, PLIANT_HEX_FORCE_PLANES)};
+  });
+  for (std::size_t i = 1; i < found.size(); ++i) {
+    for (std::size_t k = i; k > 0 && found[k] < found[k - 1]; --k) std::swap(found[k], found[k - 1]);
   }
-  std::sort(found.begin(), found.end());
   return found;
 }
 
