@@ -26,6 +26,7 @@ void move_blades(Simulation& simulation, const std::vector<Blade>& blades, doubl
     cut = cut || report.changed;
     all.search += report.search;
     all.topology += report.topology;
+    all.surface += report.surface;
     all.model += report.model;
     all.upload += report.upload;
   }
