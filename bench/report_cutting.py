@@ -176,7 +176,7 @@ def steps_part(rows, folder):
         known = [r["stable_ratio_least"] for r in mine if r.get("stable_ratio_least") is not None]
         if known:
             words.append(f"The limit itself, estimated after every cut by a Lanczos iteration, keeps at least {share(min(known))} of that of the "
-                         "whole body; it stays above the bound.")
+                         "whole body. The step keeps to the bound of the single elements, which lies below it.")
     columns = [page.Column("method", "method", number=False, show=page.text), page.Column("element", "element", number=False, show=page.text),
                page.Column("cuts", "cuts", show=charts.count),
                page.Column("dt_ratio_least", "least", "of the step", lambda v: f"{v:.2e}" if v < 1e-3 else f"{v:.4f}"),
