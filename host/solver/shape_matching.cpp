@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 
 #include "pliant/error.h"
@@ -61,6 +62,24 @@ double alpha_for(const FlsmBatch& batch, double dt, double damping) {
   return std::min(1.0, m.young / most);
 }
 
+/// The mass at the place of each interface node [kg]: its own, or that of all its copies where a cut has divided it. A given
+/// beta belongs to the place; the copies share it like their mass, or a cut would stiffen the lighter ones.
+std::vector<double> place_masses(const Model& model, const FlsmBatch& batch) {
+  const ModelBody& body = model.bodies[static_cast<std::size_t>(batch.body)];
+  std::map<Vec3d, double> sum;
+  for (std::size_t n = 0; n < body.rest.size(); ++n) sum[body.rest[n]] += model.mass[static_cast<std::size_t>(body.slot[n])];
+  std::map<std::int32_t, double> of_slot;
+  for (std::size_t n = 0; n < body.rest.size(); ++n) of_slot[body.slot[n]] = sum[body.rest[n]];
+  std::vector<double> masses;
+  for (std::int32_t i = batch.own; i < batch.own + batch.interface; ++i) masses.push_back(of_slot[batch.slot[i]]);
+  return masses;
+}
+
+double least_place_mass(const Model& model, const FlsmBatch& batch) {
+  const std::vector<double> masses = place_masses(model, batch);
+  return *std::min_element(masses.begin(), masses.end());
+}
+
 /// beta over mass that a batch adds to omega^2 of its interface nodes, as a multiple of 1 / dt^2 (automatic) and as a number
 /// [1/s^2] (given, or automatic with an alpha that falls with dt^2).
 struct InterfaceStiffness {
@@ -80,9 +99,7 @@ InterfaceStiffness interface_stiffness(const Model& model) {
           std::max(largest.per_step, strokes(b.settings) * b.settings.alpha / (b.settings.substeps * b.settings.substeps));
       continue;
     }
-    for (std::int32_t i = b.own; i < b.own + b.interface; ++i) {
-      largest.fixed = std::max(largest.fixed, strokes(b.settings) * b.settings.beta / model.mass[b.slot[i]]);
-    }
+    largest.fixed = std::max(largest.fixed, strokes(b.settings) * b.settings.beta / least_place_mass(model, b));
   }
   return largest;
 }
@@ -101,10 +118,7 @@ double largest_held_alpha(int n, double h, double elements) {
 double held_step(const FlsmBatch& b, const Model& model, double elements) {
   const DeformationModel& m = b.settings;
   double fixed = m.young > 0 ? m.young / stiffness_unit(b) : 0;  // alpha = fixed H^2
-  if (m.beta > 0) {
-    fixed = 0;
-    for (std::int32_t i = b.own; i < b.own + b.interface; ++i) fixed = std::max(fixed, m.beta / model.mass[b.slot[i]]);
-  }
+  if (m.beta > 0) fixed = m.beta / least_place_mass(model, b);
   double low = 0, high = elements;
   for (int i = 0; i < 60; ++i) {
     const double middle = 0.5 * (low + high), h = m.substeps * middle;
@@ -149,9 +163,9 @@ std::vector<double> Simulation::interface_springs(double dt) const {
     spring.resize(model_->mass.size(), 0.0);
     const DeformationModel& m = b.settings;
     const double h = m.substeps * dt, automatic = m.young > 0 ? m.young / stiffness_unit(b) : m.alpha / (h * h);
-    for (std::int32_t i = b.own; i < b.own + b.interface; ++i) {
-      const auto slot = static_cast<std::size_t>(b.slot[i]);
-      spring[slot] = strokes(m) * (m.beta > 0 ? m.beta / model_->mass[slot] : automatic);
+    const std::vector<double> masses = m.beta > 0 ? place_masses(*model_, b) : std::vector<double>();
+    for (std::int32_t k = 0; k < b.interface; ++k) {
+      spring[static_cast<std::size_t>(b.slot[b.own + k])] = strokes(m) * (m.beta > 0 ? m.beta / masses[k] : automatic);
     }
   }
   return spring;
@@ -175,8 +189,7 @@ void Simulation::choose_dt(double wanted, bool estimate) {
   if (wanted <= 0 || k.fixed == 0 || state_.stable_dt <= 0 || elements_dt_ <= 0 || wanted <= state_.stable_dt) return;
   for (const FlsmBatch& b : model_->flsm) {
     if (b.settings.beta == 0 || b.interface == 0) continue;
-    double mass = std::numeric_limits<double>::infinity();
-    for (std::int32_t i = b.own; i < b.own + b.interface; ++i) mass = std::min(mass, model_->mass[b.slot[i]]);
+    const double mass = least_place_mass(*model_, b);
     const double omega2 = 4 / (elements_dt_ * elements_dt_);
     double most = mass * ((4 - k.per_step) / (wanted * wanted) - omega2) / strokes(b.settings);
     if (b.settings.substeps > 1 && !b.settings.extrapolate) {
@@ -224,8 +237,10 @@ void Simulation::upload_shape_matching() {
     if (b.interface == 0) continue;
     const BufferId id = program_.find(fmt::format("flsm_beta/{}", i));
     std::vector<double> beta(program_.buffers[static_cast<std::size_t>(id)].count, 0.0);
+    const std::vector<double> masses = b.settings.beta > 0 ? place_masses(*model_, b) : std::vector<double>();
     for (std::int32_t k = 0; k < b.interface; ++k) {
-      const double mean = b.settings.beta > 0 ? b.settings.beta : alpha.back() * model_->mass[b.slot[b.own + k]] / (h * h);
+      const double own = model_->mass[static_cast<std::size_t>(b.slot[b.own + k])];
+      const double mean = b.settings.beta > 0 ? b.settings.beta * (own / masses[k]) : alpha.back() * own / (h * h);
       beta[k] = strokes(b.settings) * mean;
     }
     backend_->write_reals(id, beta);

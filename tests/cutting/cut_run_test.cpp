@@ -1,6 +1,9 @@
 // Cuts of running simulations: what they keep, both backends, checkpoints, and what is refused.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
+
 #include "cutting/cut_bodies.h"
 #include "cutting/cut_scenes.h"
 #include "io/save.h"
@@ -163,6 +166,43 @@ TEST_P(CutModels, a_run_resumed_between_cuts_has_the_same_bits) {
   EXPECT_EQ(whole.topology_version(), resumed.topology_version());
   EXPECT_EQ(whole.surface_positions(), resumed.surface_positions());
   expect_same(whole.cut_topology(0)->elements(), resumed.cut_topology(0)->elements());
+}
+
+TEST(CutRun, copies_of_an_interface_node_share_its_beta_like_its_mass) {
+  Scene scene = five_cuts(ModelType::hybrid, ElementKind::hex8);
+  scene.blades.clear();
+  scene.bodies[0].model.beta = 100;
+  scene.dt = 2e-4;
+  Simulation s(scene, open_backend("cpu:double"));
+  struct Spring {
+    Vec3d place;
+    double beta, mass;
+  };
+  const auto springs = [&] {
+    const FlsmBatch& b = s.model().flsm[0];
+    const ModelBody& body = s.model().bodies[0];
+    const std::vector<double> beta = s.backend().read_reals(s.program().find("flsm_beta/0"));
+    std::vector<Spring> all;
+    for (std::int32_t i = 0; i < b.interface; ++i) {
+      const std::int32_t slot = b.slot[b.own + i];
+      const auto node = std::find(body.slot.begin(), body.slot.end(), slot) - body.slot.begin();
+      all.push_back({body.rest[static_cast<std::size_t>(node)], beta[i], s.model().mass[static_cast<std::size_t>(slot)]});
+    }
+    return all;
+  };
+  std::map<Vec3d, double> whole;  // mass
+  for (const Spring& k : springs()) {
+    EXPECT_EQ(k.beta, 100);
+    whole[k.place] = k.mass;
+  }
+  const std::size_t interface = whole.size();
+  const double step = s.estimate_stable_dt();
+  // Along the body, through the middle of its cells: every interface node beside the cut has a copy.
+  s.cut(sweep({{{-1, 0.0151, -1}, {-1, 0.0151, 1}}}, {{{1, 0.0151, -1}, {1, 0.0151, 1}}}));
+  const std::vector<Spring> cut = springs();
+  EXPECT_GT(cut.size(), interface);
+  for (const Spring& k : cut) EXPECT_NEAR(k.beta, 100 * k.mass / whole.at(k.place), 1e-9) << k.place[0];
+  EXPECT_GE(s.estimate_stable_dt(), 0.99 * std::min(step, s.model().element_bound));
 }
 
 TEST(CutRun, a_scene_can_forbid_cuts_of_its_shape_matching_part) {
