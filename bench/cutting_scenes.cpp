@@ -20,8 +20,9 @@ void move_blades(Simulation& simulation, const std::vector<Blade>& blades, doubl
   CutTimes all;
   bool cut = false;
   for (const Blade& blade : blades) {
-    const double last = std::min(blade.end, blade.path.back()[0]);
-    if (time < std::max(blade.start, blade.path.front()[0]) || time >= last + kFrame) continue;
+    const double first = std::max(blade.start, blade.path.front()[0]), last = std::min(blade.end, blade.path.back()[0]);
+    if (time < first || time >= last + kFrame) continue;
+    if (time < first + kFrame) simulation.move_blade(blade.name, blade.at(first));  // puts it there
     const CutReport report = simulation.move_blade(blade.name, blade.at(std::min(time, last)));
     cut = cut || report.changed;
     all.search += report.search;
