@@ -163,7 +163,7 @@ def methods_part(rows, folder):
             table(rows),
             page.figure(split_chart(rows, folder, "cutting_split_methods", lambda r: f'{r["scene"]}: {r["method"]}'),
                         "time of a cut by stage", "Where the time of a cut goes. The other methods make body, model and buffers anew; their "
-                        "search is part of their topology."),
+                        "search is part of their topology. Medians of the stages do not add up to the median of the whole."),
             pictures(rows, folder)]
 
 
@@ -199,7 +199,7 @@ def scenes_part(rows, folder):
                  f'The median cut takes longer than {FRAME_LIMIT:g} ms in {", ".join(late)}.')
     return [page.heading("Scenes, frame by frame"), page.paragraph(*words), table(rows),
             page.figure(split_chart(rows, folder, "cutting_split", lambda r: r["scene"]), "time of a cut by stage",
-                        "Median over the frames in which elements were divided.")]
+                        "Median of each stage, and beside the bar of the whole, over the frames in which elements were divided.")]
 
 
 def section(result, folder):
