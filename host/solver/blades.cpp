@@ -136,6 +136,7 @@ void Simulation::move_blades() {
 
 CutState& Simulation::cut_state() {
   if (cuts_ != nullptr) return *cuts_;
+  if (tears_ != nullptr) throw Error("a scene with a material that tears (\"toughness\") cannot be cut");
   if (scene_.integrator != Integrator::increment || scene_.relaxation.enabled) {
     throw Error("a scene with \"integrator\": \"textbook\" or with relaxation cannot be cut");
   }

@@ -158,6 +158,8 @@ TEST_F(Tear, what_cannot_tear_is_refused) {
   Scene scene = bar_scene(file, 1500);
   scene.relaxation.enabled = true;
   EXPECT_NE(error_of([&] { Simulation(scene, open_backend("cpu")); }).find("relaxation"), std::string::npos);
+  Simulation tears(bar_scene(file, 1500), open_backend("cpu"));
+  EXPECT_NE(error_of([&] { tears.cut(wall(0.03)); }).find("toughness"), std::string::npos);
   Scene lattice = scene_with(box_body("box", {0.04, 0.03, 0.03}, ElementKind::tet4));
   lattice.bodies[0].material.toughness = 100;
   EXPECT_NE(error_of([&] { Simulation(lattice, open_backend("cpu")); }).find("volume meshes"), std::string::npos);
