@@ -141,10 +141,10 @@ class Simulation {
   [[nodiscard]] double coupled_step(double elements_alone) const;
   [[nodiscard]] double held_goals_step(double elements_alone) const;
   [[nodiscard]] std::vector<double> interface_springs(double dt) const;
-  double largest_omega2(int iterations, const std::vector<double>& spring);  // in stable_step.cpp
+  double largest_omega2(const std::vector<double>& spring, int iterations = 48);  // in stable_step.cpp
+  double largest_beta(const FlsmBatch& batch, double dt, double bound);
   [[nodiscard]] std::int32_t substeps_of(std::size_t slot) const;
-  /// Steps of the elements after which all subcycles begin together.
-  [[nodiscard]] std::int64_t period() const;
+  [[nodiscard]] std::int64_t period() const;  ///< steps of the elements after which all subcycles begin together
   [[nodiscard]] std::int64_t phase() const { return state_.step % period(); }
   /// Whether all subcycles begin in this step, the first such step since a multiple of `every`.
   [[nodiscard]] bool begins_after(std::int64_t step, std::int64_t every) const;
@@ -191,7 +191,7 @@ class Simulation {
   bool equilibrium_ = false;
   double residual_ = 0;
   std::vector<HostForce> host_forces_;
-  std::shared_ptr<CutState> cuts_;  ///< once a blade has touched something
+  std::shared_ptr<CutState> cuts_;           ///< once a blade has touched something
   std::shared_ptr<struct TearState> tears_;  ///< if a material tears
   std::int64_t topology_version_ = 0;
   std::int64_t blade_steps_ = 0;  ///< steps between two looks at the scene's blades; 0: it has none

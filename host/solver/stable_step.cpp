@@ -33,7 +33,7 @@ double ritz_deficit(std::size_t unknowns, int steps) {
 /// element, law and constraint is in it, at the present deformation.
 /// The springs between interface nodes and their goals are no part of a force evaluation and are given: `spring` [1/s^2] per
 /// slot, empty: none.
-double Simulation::largest_omega2(int iterations, const std::vector<double>& spring) {
+double Simulation::largest_omega2(const std::vector<double>& spring, int iterations) {
   const std::vector<double>& mass = model_->mass;
   const std::vector<double> u = backend_->read_reals(u_);
   const std::vector<double> rest_force = forces_now();
@@ -94,14 +94,14 @@ double Simulation::largest_omega2(int iterations, const std::vector<double>& spr
 
 double Simulation::estimate_stable_dt(int iterations) {
   state_.stable_dt = elements_dt_ = 0;
-  const double omega2 = largest_omega2(iterations, {});
+  const double omega2 = largest_omega2({}, iterations);
   if (!(omega2 > 0)) return 0;
   elements_dt_ = 2 / std::sqrt(omega2);
   state_.stable_dt = coupled_step(elements_dt_);
   const std::vector<double> spring = interface_springs(state_.stable_dt);
   if (!spring.empty()) {
     // Springs soften as the step grows, so what the springs of a shorter step allow is allowed.
-    const double coupled = largest_omega2(iterations, spring);
+    const double coupled = largest_omega2(spring, iterations);
     if (coupled > 0) state_.stable_dt = std::max(state_.stable_dt, 2 / std::sqrt(coupled));
     state_.stable_dt = std::min(state_.stable_dt, held_goals_step(elements_dt_));
   }
