@@ -53,14 +53,25 @@ vec::Box grown(vec::Box box, double by) {
 }  // namespace
 
 Vec3d carried_to(const CutTopology& body, std::span<const Vec3d> x, const CarriedPoint& point) {
-  std::int32_t element = body.element_of(point.cell, body.label_in(point.cell, point.tet, point.weight));
-  if (element < 0) element = point.cell;
-  Vec3d p{};
-  for (std::size_t a = 0; a < 4; ++a) {
-    const int corner = body.mesh().shape->tets[point.tet][a];
-    p = vec::add(p, vec::mul(x[body.elements().nodes[element][corner]], point.weight[a]));
+  const auto in = [&](std::int32_t element) {
+    Vec3d p{};
+    for (std::size_t a = 0; a < 4; ++a) {
+      const int corner = body.mesh().shape->tets[point.tet][a];
+      p = vec::add(p, vec::mul(x[body.elements().nodes[element][corner]], point.weight[a]));
+    }
+    return p;
+  };
+  const auto cut = body.cells().find(point.cell);
+  if (cut == body.cells().end() || cut->second.components == 1) return in(point.cell);
+  // The point lies on the cut: both sides have carried it away from where the blade was, and the front is between them.
+  Vec3d sum{};
+  double count = 0;
+  for (const std::int32_t element : cut->second.element) {
+    if (element < 0) continue;
+    sum = vec::add(sum, in(element));
+    ++count;
   }
-  return p;
+  return count > 0 ? vec::mul(sum, 1 / count) : in(point.cell);
 }
 
 RestMap::RestMap(const CutTopology& body, std::span<const Vec3d> x, const vec::Box& region, double edge, double reach)
