@@ -213,8 +213,9 @@ std::vector<CutGridCell> AirCells::update(const std::vector<CutGridCell>& change
       for (int j = -kReach; j <= kReach; ++j) {
         for (int i = -kReach; i <= kReach; ++i) {
           const GridIndex other = sum(cell.index, {i, j, k});
+          // The grid has one more cell on every side: a skin on the outer faces of the lattice may count as lying in those.
           bool inside = true;
-          for (int a = 0; a < 3; ++a) inside = inside && other[a] >= 0 && other[a] < source_.grid().size[a];
+          for (int a = 0; a < 3; ++a) inside = inside && other[a] >= -1 && other[a] <= source_.grid().size[a];
           if (inside && lattice_cell(other) < 0 && !source_.triangles_at(other).empty()) around.insert(other);
         }
       }
