@@ -20,9 +20,9 @@ namespace pliant::overlay {
 
 /// What a vertex of the result is: (kind, what, which sector).
 struct VertexKey {
-  /// The last three are middles of sides: of an edge of the cut surface, of a segment, of a side between two triangles of a
-  /// cap.
-  enum Kind : std::int64_t { edge_face, triangle_edge, point, edge_middle, segment_middle, cap_middle };
+  /// The last four are middles of sides: of an edge of the cut surface, of a segment, of a side between two triangles of a
+  /// cap or of a piece.
+  enum Kind : std::int64_t { edge_face, triangle_edge, point, edge_middle, segment_middle, cap_middle, piece_middle };
   static std::int64_t of(Kind kind, std::int64_t what) { return what << 3 | kind; }
   std::int64_t a = 0, b = 0;
   friend bool operator==(const VertexKey&, const VertexKey&) = default;
@@ -162,6 +162,7 @@ class Overlay {
   [[nodiscard]] bool pinched(const Edge& edge) const;
   [[nodiscard]] std::int32_t root_of(std::int32_t point, std::int32_t side) const;
   void split_sides(std::int32_t face, Patch& patch) const;
+  void split_doubled_sides(std::int32_t triangle, Patch& patch) const;
   [[nodiscard]] Carrier carrier_of(std::int32_t side) const;
   [[nodiscard]] bool in_air(std::int32_t side) const;
   [[nodiscard]] CutVertex vertex_on_face(std::int32_t source_edge, std::int32_t side) const;

@@ -1,5 +1,7 @@
 // Pieces of original triangles: the faces of the graph that its border and its segments with the cut faces make.
 #include <algorithm>
+#include <map>
+#include <optional>
 
 #include "cutting/overlay.h"
 #include "cutting/polygon.h"
@@ -192,7 +194,52 @@ Patch Overlay::pieces_of(std::int32_t triangle) {
   for (const auto& [node, loop] : outermost) loops[loop].hole = true;
   patch.triangles = triangulate(flat, std::move(loops));
   for (auto& t : patch.triangles) t = {id[t[0]], id[t[1]], id[t[2]]};
+  split_doubled_sides(triangle, patch);
   return patch;
+}
+
+// A vertex where both sides of a cut meet comes several times around a piece. Inner sides that join the same two vertices
+// again, or a vertex to itself, get middles: every edge of the result is used once in each direction.
+void Overlay::split_doubled_sides(std::int32_t triangle, Patch& patch) const {
+  using Side = std::pair<std::int32_t, std::int32_t>;
+  const auto& x = source_.mesh().vertices;
+  const auto insert = [&](const Side& half, std::int32_t middle) {
+    for (std::size_t t = patch.triangles.size(); t-- > 0;) {
+      const std::array<std::int32_t, 3> old = patch.triangles[t];
+      for (int i = 0; i < 3; ++i) {
+        if (old[i] != half.first || old[(i + 1) % 3] != half.second) continue;
+        patch.triangles[t] = {old[i], middle, old[(i + 2) % 3]};
+        patch.triangles.push_back({middle, old[(i + 1) % 3], old[(i + 2) % 3]});
+        return;
+      }
+    }
+  };
+  const auto split = [&](const Side& side) {
+    const auto [u, w] = side;
+    const auto place = [&](std::int32_t v) { return v >= 0 ? x[v] : patch.vertices[~v].x; };
+    const Carrier carrier = patch.vertices[~std::min(u, w)].carrier;  // one of them is no corner of the triangle
+    const auto number = static_cast<std::int64_t>(patch.vertices.size());
+    const std::int32_t middle = ~static_cast<std::int32_t>(number);
+    patch.vertices.push_back({{VertexKey::of(VertexKey::piece_middle, triangle), number},
+                              u == w ? place(u) : vec::mul(vec::add(place(u), place(w)), 0.5),
+                              carrier});
+    insert({u, w}, middle);
+    insert({w, u}, middle);
+  };
+  const auto next = [&](bool loops) -> std::optional<Side> {
+    std::map<Side, int> uses;
+    for (const auto& t : patch.triangles) {
+      for (int i = 0; i < 3; ++i) ++uses[{t[i], t[(i + 1) % 3]}];
+    }
+    for (const auto& [side, count] : uses) {
+      if (loops ? side.first == side.second : count > 1 && uses.contains({side.second, side.first})) return side;
+    }
+    return {};
+  };
+  // Loops first: afterwards no triangle has a vertex twice. A loop that is split once is a doubled side.
+  for (const bool loops : {true, false}) {
+    for (std::optional<Side> side = next(loops); side; side = next(loops)) split(*side);
+  }
 }
 
 }  // namespace pliant::overlay

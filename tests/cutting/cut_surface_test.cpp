@@ -5,10 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <map>
 
 #include "cut_bodies.h"
+#include "cut_scenes.h"
 #include "model/organs.h"
 #include "model/surface_nets.h"
 
@@ -284,6 +286,32 @@ TEST(CutSurface, pieces_hang_in_their_own_elements) {
       ASSERT_EQ(pieces.size(), 1U) << name << " " << spacing;
     }
     EXPECT_EQ(static_cast<std::int32_t>(body.pieces().size()), body.topology->pieces()) << name << " " << spacing;
+  }
+}
+
+// Cuts along faces and through nodes of the lattice, whole ones and short ones, in a box whose skin lies on the lattice: fronts
+// of cuts meet on the sharp edges of the box.
+TEST(CutSurface, any_cuts_of_a_box_leave_it_closed) {
+  const auto box = box_surface({0.04, 0.03, 0.03});
+  const unsigned seeds = std::getenv("PLIANT_RANDOM_CUTS") != nullptr ? 1000 : 50;
+  for (unsigned seed = 0; seed < seeds; ++seed) {
+    std::mt19937 random(seed);
+    CutCase body(*box, 0.01);
+    for (int c = 0; c < 4; ++c) {
+      Vec3d point = body.somewhere(random), normal = direction(random);
+      if (random() % 3 == 0) {
+        for (double& v : point) v = 0.01 * std::round(v / 0.01);
+      }
+      if (random() % 3 == 0) {
+        const std::size_t axis = random() % 3;
+        normal = {};
+        normal[axis] = 1;
+        if (random() % 2 == 0) normal[(axis + 1) % 3] = 1;
+      }
+      body.cut(point, normal, random() % 2 == 0 ? 100 : 0.012);
+      body.expect_closed();
+      if (HasFatalFailure()) FAIL() << "seed " << seed << ", cut " << c;
+    }
   }
 }
 
