@@ -71,8 +71,7 @@ class Cutting(unittest.TestCase):
             with self.subTest(part=row["part"], scene=row["scene"]):
                 self.assertLess(abs(row["mass_error"]), 1e-6)
                 self.assertLess(abs(row["volume_error"]), 1e-3)
-                if row["part"] != "steps":  # cuts along edges of a box of twelve triangles can leave an edge with four triangles
-                    self.assertTrue(row["closed"])
+                self.assertTrue(row["closed"])
                 self.assertGreaterEqual(row["dt_after"] / row["dt_before"], 0.99)
                 self.assertGreater(row["elements_after"], row["elements_before"])
 

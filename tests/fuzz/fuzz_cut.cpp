@@ -131,9 +131,7 @@ void check(const CutSurface& surface, const CutTopology& body, double whole) {
         require(n >= 0 && n < static_cast<std::int32_t>(body.elements().origin.size()), "a vertex that hangs in a stale node");
     }
   }
-  // Nearly all are 1 and 1. Where several cuts meet on a sharp edge of the input, two sheets may touch along it and share its
-  // vertices: 2 and 2.
-  for (const auto& [edge, count] : edges) require(count[0] == count[1], "an open surface");
+  for (const auto& [edge, count] : edges) require(count[0] == 1 && count[1] == 1, "an edge without exactly two triangles");
   require(std::abs(volume(surface) - whole) < 1e-9 * whole, "volume that was lost");
 }
 
