@@ -45,13 +45,14 @@ class Viewers(unittest.TestCase):
     @unittest.skipUnless(WINDOW and shutil.which("xvfb-run"), "needs the example window and xvfb-run")
     def test_window(self):
         pictures = []
-        for name, pull in (("still", "0,0"), ("pulled", "0.3,0.3")):
+        for name, *action in (("still", "--pull", "0,0"), ("pulled", "--pull", "0.3,0.3"), ("cut", "--cut", "-0.6,0.1,0.6,0.1")):
             self.run_here("xvfb-run", "-a", "-s", "-screen 0 640x480x24", WINDOW, self.scene, "--screenshot", f"{name}.png",
-                          "--seconds", 0.2, "--size", "320x240", "--pull", pull)
+                          "--seconds", 0.2, "--size", "320x240", *action)
             pictures.append(rows(self.folder / f"{name}.png"))
         self.assertEqual(pictures[0][:2], (320, 240))
         self.assertGreater(len(set(pictures[0][2])), 20, "one colour only")
         self.assertNotEqual(pictures[0][2], pictures[1][2], "pulling shows nothing")
+        self.assertNotEqual(pictures[0][2], pictures[2][2], "cutting shows nothing")
 
     @unittest.skipUnless(VIEWER, "needs the example embree_viewer")
     def test_embree_viewer(self):
