@@ -194,11 +194,7 @@ json bench_accuracy(const AccuracyOptions& asked) {
   if (kept.found() > 0 && o.note)
     o.note(fmt::format("{} finished points are in {} and are not measured again", kept.found(), kept.file().string()));
   json result;
-  result["machine"] = machine_facts();
-  for (const BackendInfo& info : list_backends()) {
-    result["machine"]["backends"].push_back(
-        {{"name", info.name}, {"device", info.device}, {"version", info.version}, {"bit_exact", info.bit_exact}});
-  }
+  result["machine"] = machine_and_backends();
   result["quick"] = o.quick;
   result["problems"] = json::array();
   result["rows"] = json::array();

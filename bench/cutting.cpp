@@ -117,11 +117,7 @@ std::vector<SweepTriangle> wavy_sweep(const Vec3d& point, double reach, double s
 json bench_cutting(const CuttingOptions& asked) {
   const CuttingOptions options = completed(asked);
   json result;
-  result["machine"] = machine_facts();
-  for (const BackendInfo& info : list_backends()) {
-    result["machine"]["backends"].push_back(
-        {{"name", info.name}, {"device", info.device}, {"version", info.version}, {"bit_exact", info.bit_exact}});
-  }
+  result["machine"] = machine_and_backends();
   result["rows"] = json::array();
   double done = 0;
   const double total = static_cast<double>(options.parts.size());

@@ -1,19 +1,11 @@
 // The rows of `pliant bench cutting` as text.
-#include <fmt/format.h>
-
 #include "bench/cutting.h"
+#include "bench/table_cells.h"
 
 namespace pliant::bench {
 namespace {
 
 using nlohmann::json;
-
-std::string words(const json& row, const char* key) { return row.at(key).get<std::string>(); }
-
-std::string number(const json& row, const char* key, int digits, double factor = 1) {
-  if (!row.contains(key) || row[key].is_null()) return "";
-  return fmt::format("{:.{}f}", factor * row[key].get<double>(), digits);
-}
 
 std::string power(const json& row, const char* key) { return fmt::format("{:.1e}", row.at(key).get<double>()); }
 
@@ -59,25 +51,17 @@ std::string steps_table(const json& rows) {
   return text;
 }
 
-bool has(const json& rows, const char* part) {
-  for (const json& r : rows) {
-    if (r["part"] == part) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 std::string cutting_table(const json& result) {
   const json& rows = result["rows"];
-  std::string text;
-  const auto add = [&](const char* title, const std::string& table) {
-    text += fmt::format("{}{}\n{}", text.empty() ? "" : "\n", title, table);
-  };
-  if (has(rows, "scenes")) add("The shipped scenes, per frame that changed elements [ms]", costs_table(rows, "scenes"));
-  if (has(rows, "methods")) add("The same cuts by four methods [ms]", costs_table(rows, "methods"));
-  if (has(rows, "steps")) add("The stable step over random cuts, as a share of that before", steps_table(rows));
-  return text;
+  std::vector<std::pair<std::string, std::string>> tables;
+  if (has_part(rows, "scenes"))
+    tables.emplace_back("The shipped scenes, per frame that changed elements [ms]", costs_table(rows, "scenes"));
+  if (has_part(rows, "methods")) tables.emplace_back("The same cuts by four methods [ms]", costs_table(rows, "methods"));
+  if (has_part(rows, "steps"))
+    tables.emplace_back("The stable step over random cuts, as a share of that before", steps_table(rows));
+  return titled(tables);
 }
 
 }  // namespace pliant::bench

@@ -140,11 +140,7 @@ void add_timing(json& row, const Timing& step, double dt) {
 json bench_deformation(const DeformationOptions& asked) {
   const DeformationOptions options = completed(asked);
   json result;
-  result["machine"] = machine_facts();
-  for (const BackendInfo& info : list_backends()) {
-    result["machine"]["backends"].push_back(
-        {{"name", info.name}, {"device", info.device}, {"version", info.version}, {"bit_exact", info.bit_exact}});
-  }
+  result["machine"] = machine_and_backends();
   result["rows"] = json::array();
   const double total = measurements(options);
   double begun = 0;

@@ -1,19 +1,11 @@
 // The rows of `pliant bench deformation` as text.
-#include <fmt/format.h>
-
 #include "bench/deformation.h"
+#include "bench/table_cells.h"
 
 namespace pliant::bench {
 namespace {
 
 using nlohmann::json;
-
-std::string words(const json& row, const char* key) { return row.at(key).get<std::string>(); }
-
-std::string number(const json& row, const char* key, int digits, double factor = 1) {
-  if (!row.contains(key) || row[key].is_null()) return "";
-  return fmt::format("{:.{}f}", factor * row[key].get<double>(), digits);
-}
 
 std::string against(const json& row, const char* key, const char* limit) {
   if (!row.contains(limit)) return "";
@@ -66,28 +58,20 @@ std::string accuracy_table(const json& rows) {
   return text;
 }
 
-bool has(const json& rows, const char* part) {
-  for (const json& r : rows) {
-    if (r["part"] == part) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 std::string deformation_table(const json& result) {
   const json& rows = result["rows"];
-  std::string text;
-  const auto add = [&](const char* title, const std::string& table) {
-    text += fmt::format("{}{}\n{}", text.empty() ? "" : "\n", title, table);
-  };
-  if (has(rows, "scenes")) add("Scenes of the source; the limit is per step [ms]", scenes_table(rows));
-  if (has(rows, "scaling")) add("The liver of more nodes; the limit is per node [ns]", scaling_table(rows));
-  if (has(rows, "accuracy")) {
-    add("The liver indented: errors of the operational nodes against finite elements alone, at the end of the load",
+  std::vector<std::pair<std::string, std::string>> tables;
+  if (has_part(rows, "scenes")) tables.emplace_back("Scenes of the source; the limit is per step [ms]", scenes_table(rows));
+  if (has_part(rows, "scaling"))
+    tables.emplace_back("The liver of more nodes; the limit is per node [ns]", scaling_table(rows));
+  if (has_part(rows, "accuracy")) {
+    tables.emplace_back(
+        "The liver indented: errors of the operational nodes against finite elements alone, at the end of the load",
         accuracy_table(rows));
   }
-  return text;
+  return titled(tables);
 }
 
 }  // namespace pliant::bench

@@ -131,20 +131,24 @@ json machine_facts() {
           {"date", fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(now))}};
 }
 
+json machine_and_backends() {
+  json machine = machine_facts();
+  for (const BackendInfo& info : list_backends()) {
+    machine["backends"].push_back(
+        {{"name", info.name}, {"device", info.device}, {"version", info.version}, {"bit_exact", info.bit_exact}});
+  }
+  return machine;
+}
+
 json bench_kernels(const KernelsOptions& options) {
   std::vector<std::string> backends = options.backends;
-  const auto present = list_backends();
   if (backends.empty()) {
-    for (const BackendInfo& info : present) {
+    for (const BackendInfo& info : list_backends()) {
       if (info.name == "opencl:0" || info.name.starts_with("cpu")) backends.push_back(info.name);
     }
   }
   json result;
-  result["machine"] = machine_facts();
-  for (const BackendInfo& info : present) {
-    result["machine"]["backends"].push_back(
-        {{"name", info.name}, {"device", info.device}, {"version", info.version}, {"bit_exact", info.bit_exact}});
-  }
+  result["machine"] = machine_and_backends();
   result["rows"] = json::array();
   const double total = static_cast<double>(options.elements.size() * options.sizes.size() * backends.size());
   double done = 0;

@@ -27,5 +27,7 @@ std::string rows_csv(const nlohmann::json& rows);
 
 /// The processor, the number of threads, the compiler and the time of the run, for the "machine" member of every benchmark.
 nlohmann::json machine_facts();
+/// The same with every backend of this machine.
+nlohmann::json machine_and_backends();
 
 }  // namespace pliant::bench

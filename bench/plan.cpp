@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bench/kernels.h"
 #include "bench/plan_trial.h"
 #include "pliant/error.h"
 

@@ -38,9 +38,6 @@ struct Trial {
   double error = -1, error_max = -1;               ///< relative to the reference; -1: not measured or not at rest
   double predicted_error = -1, predicted_ms = -1;  ///< made before the measurement, -1: none was
   std::string remark;
-  [[nodiscard]] bool meets(const PlanOptions& o) const {
-    return error >= 0 && error <= o.tolerance && ms_per_frame <= o.budget;
-  }
 };
 
 /// The base scene with this element and about this many nodes.

@@ -1,6 +1,5 @@
 // Pieces of original triangles: the faces of the graph that its border and its segments with the cut faces make.
 #include <algorithm>
-#include <map>
 #include <optional>
 
 #include "cutting/overlay.h"
@@ -226,20 +225,25 @@ void Overlay::split_doubled_sides(std::int32_t triangle, Patch& patch) const {
     insert({u, w}, middle);
     insert({w, u}, middle);
   };
-  const auto next = [&](bool loops) -> std::optional<Side> {
-    std::map<Side, int> uses;
+  // Loops first: afterwards no triangle has a vertex twice. A loop that is split once is a doubled side.
+  std::vector<Side> sides;
+  const auto next = [&]() -> std::optional<Side> {
+    sides.clear();
     for (const auto& t : patch.triangles) {
-      for (int i = 0; i < 3; ++i) ++uses[{t[i], t[(i + 1) % 3]}];
+      for (int i = 0; i < 3; ++i) sides.emplace_back(t[i], t[(i + 1) % 3]);
     }
-    for (const auto& [side, count] : uses) {
-      if (loops ? side.first == side.second : count > 1 && uses.contains({side.second, side.first})) return side;
+    std::sort(sides.begin(), sides.end());
+    for (const Side& side : sides) {
+      if (side.first == side.second) return side;
+    }
+    for (std::size_t i = 1; i < sides.size(); ++i) {
+      if (sides[i] == sides[i - 1] && std::binary_search(sides.begin(), sides.end(), Side{sides[i].second, sides[i].first})) {
+        return sides[i];
+      }
     }
     return {};
   };
-  // Loops first: afterwards no triangle has a vertex twice. A loop that is split once is a doubled side.
-  for (const bool loops : {true, false}) {
-    for (std::optional<Side> side = next(loops); side; side = next(loops)) split(*side);
-  }
+  for (std::optional<Side> side = next(); side; side = next()) split(*side);
 }
 
 }  // namespace pliant::overlay

@@ -174,10 +174,11 @@ std::vector<double> Simulation::interface_springs(double dt) const {
 /// The largest beta of a batch that the step `dt` stands [N/m], between what a bound without an iteration allows and what is
 /// given, to 0.2 %.
 double Simulation::largest_beta(const FlsmBatch& batch, double dt, double bound) {
+  const std::vector<double> given = interface_springs(dt);
   double low = bound, high = batch.settings.beta;
   while (low > 0 && high > 1.002 * low) {
     const double middle = std::sqrt(low * high);
-    std::vector<double> spring = interface_springs(dt);
+    std::vector<double> spring = given;
     for (std::int32_t i = batch.own; i < batch.own + batch.interface; ++i) {
       spring[static_cast<std::size_t>(batch.slot[i])] *= middle / batch.settings.beta;
     }

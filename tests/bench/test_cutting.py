@@ -1,39 +1,20 @@
 """What `pliant bench cutting` writes: its members, what each method keeps and loses, the stable step over random cuts; and its report. No
 time is looked at."""
-import functools
-import importlib.util
 import json
-import os
 import subprocess
-import sys
 import tempfile
 import unittest
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
-PLIANT = os.environ.get("PLIANT", "pliant")
-SOURCE = Path(os.environ.get("PLIANT_SOURCE", Path(__file__).resolve().parents[2]))
+from bench_harness import PLIANT, SOURCE, python_with_matplotlib, schema_errors
+
 METHODS = ["virtual nodes", "removal", "decomposition", "separation"]
-
-
-def schema_errors(value):
-    spec = importlib.util.spec_from_file_location("harness", SOURCE / "tests" / "cli" / "harness.py")
-    harness = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(harness)
-    return harness.schema_errors(value, json.loads((SOURCE / "docs" / "schema" / "bench-cutting.json").read_text()))
 
 
 def pliant(*arguments):
     return subprocess.run([PLIANT, "bench", "cutting", "--quick", "--scenes", SOURCE / "scenes", *map(str, arguments)],
                           capture_output=True, text=True, timeout=500)
-
-
-@functools.cache
-def python_with_matplotlib():
-    for python in (sys.executable, "/usr/bin/python3"):
-        if Path(python).exists() and subprocess.run([python, "-c", "import matplotlib"], capture_output=True).returncode == 0:
-            return python
-    return None
 
 
 class Cutting(unittest.TestCase):
@@ -55,7 +36,7 @@ class Cutting(unittest.TestCase):
         return [r for r in self.result["rows"] if r["part"] == part and method in (None, r["method"])]
 
     def test_every_row_has_its_members(self):
-        self.assertEqual(schema_errors(self.result), [])
+        self.assertEqual(schema_errors(self.result, "bench-cutting"), [])
         self.assertEqual({(r["scene"], r["method"]) for r in self.rows("methods")}, {(s, m) for s in ("block", "liver") for m in METHODS})
         self.assertEqual({r["scene"] for r in self.rows("scenes")}, {"cut_liver", "cut_block_progressive", "slice_many"})
         self.assertEqual({(r["method"], r["element"]) for r in self.rows("steps")},

@@ -1,19 +1,15 @@
 """What `pliant bench deformation` writes: its members, the source's sizes, the same bits on bit-exact backends; and its report, on these
 rows and on rows made up here. No time is looked at."""
-import functools
-import importlib.util
 import json
 import math
-import os
 import subprocess
-import sys
 import tempfile
 import unittest
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
-PLIANT = os.environ.get("PLIANT", "pliant")
-SOURCE = Path(os.environ.get("PLIANT_SOURCE", Path(__file__).resolve().parents[2]))
+from bench_harness import PLIANT, SOURCE, python_with_matplotlib, schema_errors
+
 NODES = {"bunny": 2250, "apple": 2250, "liver": 2886, "kidney": 2886}
 RATIO = {"bunny": 0.4, "apple": 0.6, "liver": 0.4, "kidney": 0.6}
 TOTAL = {"bunny": 13.5, "apple": 16.2, "liver": 20.4, "kidney": 24.6}
@@ -21,24 +17,9 @@ COLUMNS = {"scene", "method", "backend", "nodes", "ratio", "ms_per_step", "ms_pe
 FORCES = {"tled": {"tled"}, "flsm": {"flsm"}, "hybrid": {"tled", "flsm"}}
 
 
-def schema_errors(value):
-    spec = importlib.util.spec_from_file_location("harness", SOURCE / "tests" / "cli" / "harness.py")
-    harness = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(harness)
-    return harness.schema_errors(value, json.loads((SOURCE / "docs" / "schema" / "bench-deformation.json").read_text()))
-
-
 def pliant(*arguments):
     return subprocess.run([PLIANT, "bench", "deformation", "--quick", "--scenes", SOURCE / "scenes", *map(str, arguments)],
                           capture_output=True, text=True, timeout=500)
-
-
-@functools.cache
-def python_with_matplotlib():
-    for python in (sys.executable, "/usr/bin/python3"):
-        if Path(python).exists() and subprocess.run([python, "-c", "import matplotlib"], capture_output=True).returncode == 0:
-            return python
-    return None
 
 
 def made_up_rows(errors):
@@ -79,7 +60,7 @@ class Deformation(unittest.TestCase):
         self.result, self.on_device = json.loads(self.done.stdout), json.loads(self.twin.stdout)
 
     def test_every_row_has_its_members(self):
-        self.assertEqual(schema_errors(self.result), [])
+        self.assertEqual(schema_errors(self.result, "bench-deformation"), [])
         self.assertEqual({(r["scene"], r["method"]) for r in self.result["rows"]}, {(s, m) for s in NODES for m in FORCES})
         for row in self.result["rows"]:
             self.assertEqual(COLUMNS - set(row), set())
@@ -137,7 +118,7 @@ class Deformation(unittest.TestCase):
 
     def test_report(self):
         rows = self.on_device["rows"] + self.result["rows"] + made_up_rows((0.5, 0.1, 0.1, 0.05))
-        self.assertEqual(schema_errors({"machine": {}, "rows": rows}), [])
+        self.assertEqual(schema_errors({"machine": {}, "rows": rows}, "bench-deformation"), [])
         charts, page = self.report("all", rows)
         self.assertEqual(charts, {f"deformation_{c}" for c in ("scenes", "split", "scaling", "set_up", "error")})
         self.assertEqual(page.count("<svg"), 5)

@@ -1,6 +1,5 @@
 """bench/report.py on rows made up here: which files it makes, what it says about them, what it refuses."""
 import json
-import os
 import re
 import subprocess
 import sys
@@ -10,18 +9,10 @@ import xml.etree.ElementTree as ElementTree
 from html.parser import HTMLParser
 from pathlib import Path
 
-SOURCE = Path(os.environ.get("PLIANT_SOURCE", Path(__file__).resolve().parents[2]))
+from bench_harness import SOURCE, python_with_matplotlib
+
 CHARTS = ["kernels_limit", "kernels_split", "kernels_step"]
 PASSES = {"tet4": ["tled_tet4_force", "node_update"], "hex8": ["tled_hex8_brick_force", "brick_update", "a_new_kernel"]}
-
-
-def python_with_matplotlib():
-    """This Python, or the system's, whose packages Debian installs."""
-    for python in (sys.executable, "/usr/bin/python3"):
-        if Path(python).exists() and subprocess.run([python, "-c", "import matplotlib"], capture_output=True).returncode == 0:
-            return python
-    print("skipped: no Python here has matplotlib (Debian: python3-matplotlib)")
-    sys.exit(77)
 
 
 def result(backends=("cpu", "cpu:double", "opencl:0"), sizes=(1000, 100000), elements=("tet4", "hex8")):
@@ -141,4 +132,7 @@ class Report(unittest.TestCase):
 
 if __name__ == "__main__":
     PYTHON = python_with_matplotlib()
+    if PYTHON is None:
+        print("skipped: no Python here has matplotlib (Debian: python3-matplotlib)")
+        sys.exit(77)
     unittest.main(verbosity=2)
