@@ -87,8 +87,7 @@ class RefBackend final : public Backend {
     passes_.load(program, [this](const Pass& pass) { return prepare(pass); });
   }
 
-  void update(const Program& loaded, const Program& next) override {
-    check_memory(next.buffers, sizeof(Scalar), info_.max_buffer_bytes, info_.memory_bytes, info_.name);
+  void update(const Program& loaded, const Program& next, const std::function<void()>& complete) override {
     const DefaultFloatEnvironment environment;
     passes_.clear();
     table_ = &next.buffers;
@@ -96,16 +95,20 @@ class RefBackend final : public Backend {
       std::vector<Storage> old = std::move(storage_);
       storage_.clear();
       storage_.resize(next.buffers.size());
-      for (std::size_t i = 0; i < storage_.size(); ++i) {
+      const auto bring = [&](std::size_t i) {
         const Buffer& buffer = next.buffers[i];
         const Buffer* before = find_same(loaded.buffers, buffer, i);
-        if (before == nullptr) {
-          fill(buffer, storage_[i]);
-          continue;
-        }
+        if (before == nullptr) return fill(buffer, storage_[i]);
         storage_[i] = std::move(old[static_cast<std::size_t>(before - loaded.buffers.data())]);
         patch(*before, buffer, storage_[i]);
+      };
+      const auto late = [&](std::size_t i) { return std::binary_search(next.late.begin(), next.late.end(), BufferId(i)); };
+      for (std::size_t i = 0; i < storage_.size(); ++i) {
+        if (!late(i)) bring(i);
       }
+      if (complete != nullptr) complete();
+      check_memory(next.buffers, sizeof(Scalar), info_.max_buffer_bytes, info_.memory_bytes, info_.name);
+      for (const BufferId id : next.late) bring(id);
     } catch (const std::bad_alloc&) {
       throw Error(fmt::format("out of memory while the scene's {} buffers were allocated", next.buffers.size()));
     }
@@ -230,7 +233,7 @@ class RefBackend final : public Backend {
       s.ints.assign(size, 0);
       std::copy(buffer.ints.begin(), buffer.ints.end(), s.ints.begin());
     } else {
-      s.reals.assign(size, Scalar(0));
+      s.reals.assign(size, static_cast<Scalar>(buffer.padding));
       round_reals(buffer.reals, s.reals.data());
     }
   }
@@ -251,7 +254,7 @@ class RefBackend final : public Backend {
         std::fill(s.ints.data() + given, s.ints.data() + range.last, 0);
       } else {
         round_reals(std::span(buffer.reals).subspan(range.first, given - range.first), s.reals.data() + range.first);
-        std::fill(s.reals.data() + given, s.reals.data() + range.last, Scalar(0));
+        std::fill(s.reals.data() + given, s.reals.data() + range.last, static_cast<Scalar>(buffer.padding));
       }
     }
   }

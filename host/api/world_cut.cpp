@@ -77,22 +77,6 @@ CutResult World::Impl::cut(CutCall call) {
   }
 }
 
-/// Fills the bodies once more and finds their edges, by a triangle beside each body that cuts nothing.
-void World::Impl::prepare_cuts(Simulation& fresh) {
-  for (const ModelBody& body : fresh.model().bodies) {
-    vec::Box box;
-    for (const Vec3d& x : body.rest) box.extend(x);
-    const double size = vec::norm(vec::sub(box.upper, box.lower));
-    const Vec3d a = vec::sub(box.lower, vec::mul({1, 1, 1}, 0.01 * size)), b{a[0] - 0.01 * size, a[1], a[2]};
-    const std::array<Vec3d, 3> triangle{a, b, Vec3d{a[0], a[1] - 0.01 * size, a[2]}};
-    try {
-      fresh.cut(std::span(&triangle, 1));
-    } catch (const Error& error) {  // a body that cannot be cut: the first real cut says so
-      if (error.code() == ErrorCode::internal || error.code() == ErrorCode::device) throw;
-    }
-  }
-}
-
 /// The vertex of the frame that the user got last, by its body.
 api::SurfaceVertex World::Impl::vertex_of(std::int32_t vertex) const {
   std::shared_ptr<const api::Topology> seen;

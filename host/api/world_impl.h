@@ -53,7 +53,6 @@ struct World::Impl {
   CutResult cut(CutCall call);
   CutReport cut_now(const CutCall& call);
   void cut_pending();
-  static void prepare_cuts(Simulation& fresh);
   [[nodiscard]] api::SurfaceVertex vertex_of(std::int32_t vertex) const;
 
   // world_worker.cpp

@@ -86,7 +86,11 @@ std::shared_ptr<Simulation> World::Impl::make_simulation(std::string* why) {
     throw Error(ErrorCode::device, error.what());
   }
   auto fresh = std::make_shared<Simulation>(scene, model, std::move(backend));
-  if (options.cutting) prepare_cuts(*fresh);
+  try {
+    if (options.cutting) fresh->prepare_cuts();
+  } catch (const Error& error) {  // of a scene that cannot be cut: the first real cut says so
+    if (error.code() == ErrorCode::internal || error.code() == ErrorCode::device) throw;
+  }
   return fresh;
 }
 

@@ -31,7 +31,7 @@ struct AirCells::Block {
   [[nodiscard]] double distance(const Vec3d& x) const { return vec::dot(normal, vec::sub(x, middle)); }
 };
 
-AirCells::AirCells(const SurfaceSource& source, const std::unordered_map<std::int64_t, std::int32_t>& cell_at)
+AirCells::AirCells(const SurfaceSource& source, const std::vector<std::int32_t>& cell_at)
     : source_(source), cell_at_(cell_at) {}
 AirCells::~AirCells() = default;
 
@@ -39,8 +39,7 @@ std::int32_t AirCells::lattice_cell(const GridIndex& cell) const {
   for (int a = 0; a < 3; ++a) {
     if (cell[a] < 0 || cell[a] >= source_.grid().size[a]) return -1;
   }
-  const auto found = cell_at_.find(source_.grid().number(cell));
-  return found == cell_at_.end() ? -1 : found->second;
+  return cell_at_[source_.grid().number(cell)];
 }
 
 const CutGridCell* AirCells::cut_cell(const GridIndex& cell) const {
@@ -110,8 +109,10 @@ const AirCells::Block& AirCells::block(const GridIndex& centre) {
 
 // The corner of the lattice that a corner in air goes with: the nearest one on its side of the cut.
 GridIndex AirCells::anchor(const GridIndex& corner) {
+  for (int c = 0; c < 8; ++c) {
+    if (lattice_cell(sum(corner, {-(c & 1), -(c >> 1 & 1), -(c >> 2 & 1)})) >= 0) return corner;
+  }
   const Block& around = block(corner);
-  if (around.joined[around.at(corner)] >= 0) return corner;
   const double mine = around.plane ? around.distance(source_.grid().position(corner)) : 0;
   GridIndex best = corner;
   int least = 100;

@@ -12,8 +12,8 @@ namespace pliant::overlay {
 
 class AirCells {
  public:
-  /// `cell_at`: a cell of the lattice by its grid number; has to outlive this object, like `source`.
-  AirCells(const SurfaceSource& source, const std::unordered_map<std::int64_t, std::int32_t>& cell_at);
+  /// `cell_at`: the cell of the lattice of each grid number, or -1; has to outlive this object, like `source`.
+  AirCells(const SurfaceSource& source, const std::vector<std::int32_t>& cell_at);
   ~AirCells();
 
   /// Cells of the lattice that changed, one component or more. Returns the cells of air around them that hold surface, as they
@@ -31,7 +31,7 @@ class AirCells {
   CutGridCell cut(const GridIndex& cell);
 
   const SurfaceSource& source_;
-  const std::unordered_map<std::int64_t, std::int32_t>& cell_at_;
+  const std::vector<std::int32_t>& cell_at_;
   std::unordered_map<std::int64_t, CutGridCell> cut_;  ///< completely cut cells of the lattice
   std::unordered_map<std::int64_t, Block> blocks_;     ///< of one update
 };

@@ -51,7 +51,7 @@ VirtualNodes anchors_of(const CutTopology& cut) {
 }
 
 /// Elements 0 .. cells - 1 that are cut, and all copies behind them.
-void set_elements(const Solid& uncut, const CutTopology& cut, Solid& solid) {
+void set_elements(const Solid& uncut, const CutTopology& cut, SolidElements& solid) {
   const CutElements& e = cut.elements();
   const bool lattice = cut.mesh().shape->corners == 8, tets = !uncut.tets.empty();
   const std::size_t cells = cut.mesh().cells.size(), count = e.nodes.size(), parts = tets && lattice ? kKuhnTets.size() : 1;
@@ -78,7 +78,7 @@ void set_elements(const Solid& uncut, const CutTopology& cut, Solid& solid) {
   for (std::size_t i = cells; i < count; ++i) set(i);
 }
 
-void set_nodes(const Solid& uncut, const CutTopology& cut, Solid& solid) {
+void set_nodes(const Solid& uncut, const CutTopology& cut, SolidElements& solid) {
   const std::vector<std::int32_t>& origin = cut.elements().origin;
   solid.nodes.resize(uncut.nodes.size());
   solid.lattice_nodes.resize(uncut.lattice_nodes.size());
@@ -94,15 +94,48 @@ void set_nodes(const Solid& uncut, const CutTopology& cut, Solid& solid) {
   solid.virtual_nodes = anchors_of(cut);
 }
 
-/// Vertices that hang in a component of a cell; `v` is new or known.
-void hang_vertex(const CutSurfaceVertex& from, std::size_t v, Solid& solid) {
-  if (solid.surface[v] == from.rest && solid.surface_cell[v] == from.carrier.cell) return;
+/// Vertices that hang in a component of a cell; `v` is new or known. Whether it has moved to another cell.
+bool hang_vertex(const CutSurfaceVertex& from, std::size_t v, SolidSurface& solid) {
+  if (solid.surface[v] == from.rest && solid.surface_cell[v] == from.carrier.cell) return false;
   solid.surface[v] = from.rest;
   solid.surface_cell[v] = from.carrier.cell;
   for (std::size_t a = 0; a < 8; ++a) {
     solid.surface_weights[v][a] = ((a & 1) != 0 ? from.local[0] : 1 - from.local[0]) *
                                   ((a & 2) != 0 ? from.local[1] : 1 - from.local[1]) *
                                   ((a & 4) != 0 ? from.local[2] : 1 - from.local[2]);
+  }
+  return true;
+}
+
+/// The split and capped surface in place of the one that `solid` has.
+void hang_surface(const CutSurface& surface, const CutTopology& cut, const Solid& uncut, SolidSurface& solid) {
+  const std::vector<CutSurfaceVertex>& vertices = surface.vertices();
+  solid.surface.resize(vertices.size());
+  solid.surface_nodes.resize(vertices.size());
+  solid.surface_weights.resize(vertices.size());
+  solid.surface_cell.resize(vertices.size(), -1);
+  solid.moved.emplace();
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    const overlay::Carrier& carrier = vertices[v].carrier;
+    const bool moved = hang_vertex(vertices[v], v, solid);
+    if (!moved && !cut.divided(carrier.cell)) continue;  // a whole cell keeps its nodes
+    solid.moved->push_back(static_cast<std::int32_t>(v));
+    const std::int32_t element = cut.element_of(carrier.cell, carrier.label);
+    solid.surface_nodes[v] = cut.elements().nodes[element >= 0 ? element : carrier.cell];
+  }
+  solid.triangles = surface.triangles();
+  const std::size_t count = solid.triangles.size();
+  solid.triangle_cut.resize(count);
+  solid.triangle_middle.resize(solid.wants_middles ? count : 0);
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t t = 0; t < count; ++t) {
+    const std::int32_t original = surface.original_of(static_cast<std::int32_t>(t));
+    solid.triangle_cut[t] = surface.kinds()[t] == SurfaceKind::cut ? 1 : 0;
+    if (!solid.wants_middles) continue;
+    solid.triangle_middle[t] = {none, none, none};
+    if (original < 0 || original >= static_cast<std::int32_t>(uncut.triangles.size())) continue;
+    const auto& [a, b, c] = uncut.triangles[original];
+    solid.triangle_middle[t] = vec::mul(vec::add(vec::add(uncut.surface[a], uncut.surface[b]), uncut.surface[c]), 1.0 / 3);
   }
 }
 
@@ -135,9 +168,12 @@ std::shared_ptr<const CutMesh> cut_mesh(const Solid& solid, const std::string& n
   return mesh;
 }
 
-void update_solid(const Solid& uncut, const CutTopology& cut, const CutSurface* surface, Solid& solid) {
+void update_solid_elements(const Solid& uncut, const CutTopology& cut, SolidElements& solid) {
   set_nodes(uncut, cut, solid);
   set_elements(uncut, cut, solid);
+}
+
+void update_solid_surface(const Solid& uncut, const CutTopology& cut, const CutSurface* surface, SolidSurface& solid) {
   if (surface != nullptr) {
     hang_surface(*surface, cut, uncut, solid);
     return;
@@ -150,38 +186,15 @@ void update_solid(const Solid& uncut, const CutTopology& cut, const CutSurface* 
   }
 }
 
+void update_solid(const Solid& uncut, const CutTopology& cut, const CutSurface* surface, Solid& solid) {
+  update_solid_elements(uncut, cut, solid);
+  update_solid_surface(uncut, cut, surface, solid);
+}
+
 Solid cut_solid(const Solid& uncut, const CutTopology& cut, const CutSurface* surface) {
   Solid solid = uncut;
   update_solid(uncut, cut, surface, solid);
   return solid;
-}
-
-void hang_surface(const CutSurface& surface, const CutTopology& cut, const Solid& uncut, Solid& solid) {
-  const std::vector<CutSurfaceVertex>& vertices = surface.vertices();
-  solid.surface.resize(vertices.size());
-  solid.surface_nodes.resize(vertices.size());
-  solid.surface_weights.resize(vertices.size());
-  solid.surface_cell.resize(vertices.size(), -1);
-  for (std::size_t v = 0; v < vertices.size(); ++v) {
-    const overlay::Carrier& carrier = vertices[v].carrier;
-    const std::int32_t element = cut.element_of(carrier.cell, carrier.label);
-    hang_vertex(vertices[v], v, solid);
-    solid.surface_nodes[v] = cut.elements().nodes[element >= 0 ? element : carrier.cell];
-  }
-  solid.triangles = surface.triangles();
-  const std::size_t count = solid.triangles.size();
-  solid.triangle_cut.resize(count);
-  solid.triangle_middle.resize(solid.wants_middles ? count : 0);
-  const double none = std::numeric_limits<double>::quiet_NaN();
-  for (std::size_t t = 0; t < count; ++t) {
-    const std::int32_t original = surface.original_of(static_cast<std::int32_t>(t));
-    solid.triangle_cut[t] = surface.kinds()[t] == SurfaceKind::cut ? 1 : 0;
-    if (!solid.wants_middles) continue;
-    solid.triangle_middle[t] = {none, none, none};
-    if (original < 0 || original >= static_cast<std::int32_t>(uncut.triangles.size())) continue;
-    const auto& [a, b, c] = uncut.triangles[original];
-    solid.triangle_middle[t] = vec::mul(vec::add(vec::add(uncut.surface[a], uncut.surface[b]), uncut.surface[c]), 1.0 / 3);
-  }
 }
 
 }  // namespace pliant

@@ -19,7 +19,8 @@ Solid cut_solid(const Solid& uncut, const CutTopology& cut, const CutSurface* su
 /// The same where `solid` is what an earlier state of the same cut gave, or the uncut body: what did not change is left alone.
 void update_solid(const Solid& uncut, const CutTopology& cut, const CutSurface* surface, Solid& solid);
 
-/// Put the split and capped surface in place of the one that `solid` has.
-void hang_surface(const CutSurface& surface, const CutTopology& cut, const Solid& uncut, Solid& solid);
+/// Its two halves, which may run beside each other.
+void update_solid_elements(const Solid& uncut, const CutTopology& cut, SolidElements& solid);
+void update_solid_surface(const Solid& uncut, const CutTopology& cut, const CutSurface* surface, SolidSurface& solid);
 
 }  // namespace pliant

@@ -54,8 +54,8 @@ std::array<double, 4> barycentric(const std::array<Vec3d, 4>& x, const Vec3d& p)
   return {1 - wa - wb - wc, wa, wb, wc};
 }
 
-/// No copy is lighter than the lightest part of a lattice cell may be: nodes with next to no mass are beyond what float resolves when
-/// the stable step is estimated. The shares' sum stays 1.
+/// No copy is lighter than the lightest part of a lattice cell may be: nodes with next to no mass are beyond what float
+/// resolves when the stable step is estimated. The shares' sum stays 1.
 void raise_to_floor(std::array<double, 8>& share) {
   double sum = 0;
   for (double& s : share) {

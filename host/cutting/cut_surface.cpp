@@ -14,11 +14,18 @@ using overlay::Patch;
 
 struct CutSurface::Base {
   Base(const TriangleMesh& surface, const Lattice& full)
-      : lattice(full), overlay(surface, {full.origin, full.spacing, full.size}), air(overlay.source(), cell_at) {
+      : lattice(full),
+        overlay(surface, {full.origin, full.spacing, full.size}),
+        cell_at(overlay.source().grid().numbers(), -1),
+        air(overlay.source(), cell_at) {
     originals = static_cast<std::int32_t>(overlay.source().mesh().triangles.size());
     for (std::size_t c = 0; c < full.cells.size(); ++c) {
       const std::int64_t number = overlay.source().grid().number(full.cells[c].index);
-      if (!cell_at.try_emplace(number, static_cast<std::int32_t>(c)).second) shared.try_emplace(number);
+      if (cell_at[number] >= 0) {
+        shared.try_emplace(number);
+      } else {
+        cell_at[number] = static_cast<std::int32_t>(c);
+      }
     }
     hung_offset.assign(full.cells.size() + 1, 0);
     for (const Embedding& e : full.embedding) ++hung_offset[e.cell + 1];
@@ -31,8 +38,8 @@ struct CutSurface::Base {
   }
   Lattice lattice;
   overlay::Overlay overlay;
-  std::int32_t originals = 0;  ///< triangles, fillers counted
-  std::unordered_map<std::int64_t, std::int32_t> cell_at;
+  std::int32_t originals = 0;         ///< triangles, fillers counted
+  std::vector<std::int32_t> cell_at;  ///< by grid number
   overlay::AirCells air;
   /// Grid cells that several cells of the lattice share, because parts of the body pass near each other: all of them as cut
   /// now. The surface is divided by the first that is cut.

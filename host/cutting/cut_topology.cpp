@@ -65,9 +65,7 @@ std::span<const std::int32_t> CutTopology::cells_at_face(std::int32_t cell, int 
   return {face_cells_.data() + face_offset_[at], face_cells_.data() + face_offset_[at + 1]};
 }
 
-const CellCut* CutTopology::find_cell(std::int32_t cell) const {
-  return cell_at_[cell];
-}
+const CellCut* CutTopology::find_cell(std::int32_t cell) const { return cell_at_[cell]; }
 
 std::int32_t CutTopology::element_of(std::int32_t cell, int label) const {
   const CellCut* cut = find_cell(cell);

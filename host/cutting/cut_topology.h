@@ -91,6 +91,8 @@ class CutTopology {
   [[nodiscard]] const CutElements& elements() const { return elements_; }
   /// Cells with a cut edge. Those with components > 1 have copies.
   [[nodiscard]] const std::map<std::int32_t, CellCut>& cells() const { return cells_; }
+  /// Whether a cell has copies.
+  [[nodiscard]] bool divided(std::int32_t cell) const { return cell_at_[cell] != nullptr && cell_at_[cell]->components > 1; }
   /// The element that holds component `label` of a cell, -1 if it has none.
   [[nodiscard]] std::int32_t element_of(std::int32_t cell, int label) const;
   /// Cells that share all nodes of a cell's local face; nearly always one or none.
@@ -149,7 +151,7 @@ class CutTopology {
   std::vector<std::int32_t> face_offset_, face_cells_;  ///< cells across each face of each cell
   CutEdges edges_;
   std::map<std::int32_t, CellCut> cells_;
-  std::vector<const CellCut*> cell_at_;  ///< [cells] into cells_, nullptr: no edge is cut
+  std::vector<const CellCut*> cell_at_;                     ///< [cells] into cells_, nullptr: no edge is cut
   std::map<std::int32_t, std::vector<NodeClass>> classes_;  ///< at nodes of cells with copies
   CutElements elements_;
 };

@@ -1,6 +1,8 @@
 #include "cutting/overlay.h"
 
 #include <algorithm>
+#include <numeric>
+#include <utility>
 
 #include "cutting/overlay_order.h"
 #include "pliant/error.h"
@@ -87,7 +89,10 @@ std::int32_t Overlay::find_face(const std::array<std::int32_t, 3>& p) {
   return found->second;
 }
 
-void Overlay::mark(std::int32_t point) { dirty_points_.push_back(point); }
+void Overlay::mark(std::int32_t point) {
+  if (std::exchange(points_[point].dirty, true)) return;
+  dirty_points_.push_back(point);
+}
 
 void Overlay::remove_faces(CellState& state) {
   for (const std::int32_t f : state.faces) {
@@ -268,35 +273,40 @@ std::int32_t Overlay::across(const Edge& edge, std::int32_t side) const {
 
 void Overlay::find_sectors(std::int32_t p) {
   Point& point = points_[p];
-  point.root.clear();
-  for (const std::int32_t f : point.faces) {
-    point.root.push_back({2 * f, 2 * f});
-    point.root.push_back({2 * f + 1, 2 * f + 1});
-  }
-  std::sort(point.root.begin(), point.root.end());
-  const auto entry = [&](std::int32_t side) -> std::int32_t& {
-    return (*std::lower_bound(point.root.begin(), point.root.end(), std::array{side, -1}))[1];
+  std::vector<std::int32_t>& faces = sorted_faces_;
+  faces = point.faces;
+  std::sort(faces.begin(), faces.end());
+  std::vector<std::int32_t>& root = side_root_;  // by place: twice the face's place in the list, and which side
+  root.resize(2 * faces.size());
+  std::iota(root.begin(), root.end(), 0);
+  const auto find = [&](std::int32_t i) {
+    while (root[i] != i) i = root[i] = root[root[i]];
+    return i;
   };
-  const auto find = [&](std::int32_t side) {
-    while (entry(side) != side) side = entry(side);
-    return side;
-  };
-  for (const std::int32_t f : point.faces) {
-    for (const std::int32_t e : faces_[f].edge) {
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    for (const std::int32_t e : faces_[faces[i]].edge) {
       const Edge& edge = edges_[e];
       if (edge.p != p && edge.q != p) continue;
-      for (std::int32_t side = 2 * f; side <= 2 * f + 1; ++side) {
-        const std::int32_t a = find(side), b = find(across(edge, side));
-        entry(std::max(a, b)) = std::min(a, b);
+      for (std::int32_t half = 0; half < 2; ++half) {
+        const std::int32_t other = across(edge, 2 * faces[i] + half);
+        const auto at = std::lower_bound(faces.begin(), faces.end(), other / 2) - faces.begin();
+        const std::int32_t a = find(static_cast<std::int32_t>(2 * i) + half),
+                           b = find(static_cast<std::int32_t>(2 * at) + other % 2);
+        root[std::max(a, b)] = std::min(a, b);
       }
     }
   }
-  for (auto& [side, root] : point.root) root = find(side);
+  point.root.clear();
+  for (std::int32_t i = 0; i < static_cast<std::int32_t>(root.size()); ++i) {
+    const std::int32_t lowest = find(i);
+    point.root.push_back({2 * faces[i / 2] + i % 2, 2 * faces[lowest / 2] + lowest % 2});
+  }
 }
 
 void Overlay::collect_dirty() {
-  make_unique(dirty_points_);
+  std::sort(dirty_points_.begin(), dirty_points_.end());
   for (const std::int32_t p : dirty_points_) {
+    points_[p].dirty = false;
     for (const std::int32_t f : points_[p].faces) dirty_faces_.push_back(f);
   }
   make_unique(dirty_faces_);

@@ -77,7 +77,7 @@ class Overlay {
     ExactPoint exact{};
     Vec3d x{};
     int winding = 0;
-    bool has_winding = false;
+    bool has_winding = false, dirty = false;
     std::vector<std::int32_t> faces;
     std::vector<std::array<std::int32_t, 2>> root;  ///< {side of a face, lowest side of its sector}
   };
@@ -182,7 +182,8 @@ class Overlay {
   std::unordered_map<std::int32_t, std::vector<std::int32_t>> triangle_faces_;  ///< by original triangle: faces it crosses
   std::unordered_map<std::int32_t, std::int64_t> vertex_cell_;                  ///< cut cell that holds an original vertex
   std::vector<std::int32_t> dirty_points_, dirty_faces_, dirty_triangles_;
-  std::unordered_set<std::int32_t> dirty_edges_;  ///< original edges whose cuts have to be sorted
+  std::vector<std::int32_t> sorted_faces_, side_root_;  ///< of find_sectors
+  std::unordered_set<std::int32_t> dirty_edges_;        ///< original edges whose cuts have to be sorted
 };
 
 }  // namespace pliant::overlay

@@ -31,10 +31,40 @@ RestEdges::RestEdges(const CutMesh& mesh, double edge)
     node_.push_back(frame_.snap(mesh.rest[n], static_cast<std::int64_t>(n)));
   }
   for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
-    vec::Box box;
-    for (int a = 0; a < mesh.shape->corners; ++a) box.extend(mesh.rest[mesh.cells[c][a]]);
+    vec::Box box, exact;
+    for (int a = 0; a < mesh.shape->corners; ++a) {
+      const auto& x = node_[mesh.cells[c][a]].x;
+      box.extend(mesh.rest[mesh.cells[c][a]]);
+      exact.extend(Vec3d{static_cast<double>(x[0]), static_cast<double>(x[1]), static_cast<double>(x[2])});
+    }
     hash_.insert(box, static_cast<std::int32_t>(c));
+    middle_.push_back(vec::mul(vec::add(exact.lower, exact.upper), 0.5));
+    reach_.push_back(vec::mul(vec::sub(exact.upper, exact.lower), 0.5));
   }
+}
+
+RestEdges::Plane::Plane(const std::array<ExactPoint, 3>& t) {
+  Vec3d u{}, v{};
+  for (int k = 0; k < 3; ++k) {
+    base_[k] = static_cast<double>(t[0].x[k]);
+    u[k] = static_cast<double>(t[1].x[k] - t[0].x[k]);
+    v[k] = static_cast<double>(t[2].x[k] - t[0].x[k]);
+  }
+  normal_ = vec::cross(u, v);
+  for (int k = 0; k < 3; ++k) {  // of two products and their difference, with room
+    const int i = (k + 1) % 3, j = (k + 2) % 3;
+    error_[k] = 1e-15 * (std::abs(u[i] * v[j]) + std::abs(u[j] * v[i]));
+  }
+}
+
+bool RestEdges::Plane::misses(const Vec3d& middle, const Vec3d& reach) const {
+  double distance = 0, extent = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double d = middle[k] - base_[k];
+    distance += normal_[k] * d;
+    extent += std::abs(normal_[k]) * reach[k] + (error_[k] + 1e-15 * std::abs(normal_[k])) * (std::abs(d) + reach[k]);
+  }
+  return std::abs(distance) > extent;
 }
 
 double RestEdges::place(const NodePair& pair, const std::array<Vec3d, 3>& t) const {

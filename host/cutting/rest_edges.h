@@ -30,8 +30,10 @@ class RestEdges {
       box.lower[a] -= 4 * frame_.step();
       box.upper[a] += 4 * frame_.step();
     }
+    const Plane plane(tri);
     hash_.query(box, [&](std::int32_t cell) {
       const auto& nodes = mesh_.cells[cell];
+      if (plane.misses(middle_[cell], reach_[cell])) return;
       std::array<int, 8> side{};
       for (int a = 0; a < mesh_.shape->corners; ++a) side[a] = orient(tri[0], tri[1], tri[2], node_[nodes[a]]);
       for (const auto& [i, j] : mesh_.shape->edges) {
@@ -44,12 +46,23 @@ class RestEdges {
   }
 
  private:
+  /// Tells cells that lie on one side of a triangle's plane, in steps of the exact grid, without a look at their corners.
+  class Plane {
+   public:
+    explicit Plane(const std::array<ExactPoint, 3>& t);
+    /// Whether a box around `middle` that extends by `reach` along each axis has all its points on one side. Errs towards no.
+    [[nodiscard]] bool misses(const Vec3d& middle, const Vec3d& reach) const;
+
+   private:
+    Vec3d base_{}, normal_{}, error_{};
+  };
   [[nodiscard]] double place(const NodePair& pair, const std::array<Vec3d, 3>& t) const;
 
   const CutMesh& mesh_;
   ExactFrame frame_;
   std::vector<ExactPoint> node_;
-  SpatialHash hash_;  ///< cells
+  std::vector<Vec3d> middle_, reach_;  ///< of each cell, in steps of the exact grid
+  SpatialHash hash_;                   ///< cells
 };
 
 }  // namespace pliant

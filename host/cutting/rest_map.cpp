@@ -10,6 +10,7 @@ using Weights = std::array<double, 4>;
 
 constexpr double kInside = -1e-9;
 constexpr int kBisections = 10;
+constexpr std::uint8_t kNotFinite = 1 << 6;
 constexpr double kFarthest = 3;  ///< that a map is continued, in edges
 
 /// Barycentric coordinates; not finite in a tetrahedron without volume.
@@ -77,15 +78,25 @@ Vec3d carried_to(const CutTopology& body, std::span<const Vec3d> x, const Carrie
 RestMap::RestMap(const CutTopology& body, std::span<const Vec3d> x, const vec::Box& region, double edge, double reach)
     : body_(body), x_(x), edge_(edge), reach_(reach), hash_(1.5 * edge) {
   const vec::Box near = grown(region, reach);
-  const auto& nodes = body.elements().nodes;
-  for (std::size_t e = 0; e < nodes.size(); ++e) {
-    vec::Box box;
-    bool finite = true;
-    for (int a = 0; a < body.mesh().shape->corners; ++a) {
-      finite = finite && vec::finite(x[nodes[e][a]]);
-      box.extend(x[nodes[e][a]]);
+  // Beyond which sides of the region a node lies: an element is far where all its nodes lie beyond one side.
+  std::vector<std::uint8_t> beyond(x.size());
+  for (std::size_t n = 0; n < x.size(); ++n) {
+    for (int a = 0; a < 3; ++a) {
+      beyond[n] |= static_cast<std::uint8_t>((x[n][a] < near.lower[a]) << 2 * a | (x[n][a] > near.upper[a]) << (2 * a + 1));
     }
-    if (!finite || !box.overlaps(near)) continue;
+    if (!vec::finite(x[n])) beyond[n] |= kNotFinite;
+  }
+  const auto& nodes = body.elements().nodes;
+  const int corners = body.mesh().shape->corners;
+  for (std::size_t e = 0; e < nodes.size(); ++e) {
+    unsigned all = 0xff, any = 0;
+    for (int a = 0; a < corners; ++a) {
+      all &= beyond[nodes[e][a]];
+      any |= beyond[nodes[e][a]];
+    }
+    if (all != 0 || (any & kNotFinite) != 0) continue;
+    vec::Box box;
+    for (int a = 0; a < corners; ++a) box.extend(x[nodes[e][a]]);
     hash_.insert(box, static_cast<std::int32_t>(element_.size()));
     element_.push_back(static_cast<std::int32_t>(e));
   }

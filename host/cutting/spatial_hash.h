@@ -11,7 +11,7 @@ namespace pliant {
 
 class SpatialHash {
  public:
-  /// `edge` [m] of a grid cell, positive: about the size of what is looked for.
+  /// `edge` [m] of a grid cell, positive: about the size of what is looked for. `buckets`: a power of two.
   explicit SpatialHash(double edge, std::size_t buckets = 1024) : edge_(edge), bucket_(buckets) {}
 
   /// Enter number `item`, 0 .. . Its box is kept.
@@ -22,7 +22,12 @@ class SpatialHash {
     }
     box_[item] = box;
     for_cells(box, [&](std::size_t b) {
-      if (bucket_[b].empty() || bucket_[b].back() != item) bucket_[b].push_back(item);
+      Bucket& bucket = bucket_[b];
+      if (bucket.last >= 0 && entry_[bucket.last].item == item) return;
+      const auto added = static_cast<std::int32_t>(entry_.size());
+      entry_.push_back({item, -1});
+      (bucket.last >= 0 ? entry_[bucket.last].next : bucket.first) = added;
+      bucket.last = added;
     });
   }
 
@@ -33,7 +38,8 @@ class SpatialHash {
   void query(const vec::Box& box, Visit&& visit) {
     ++stamp_;
     for_cells(box, [&](std::size_t b) {
-      for (const std::int32_t item : bucket_[b]) {
+      for (std::int32_t e = bucket_[b].first; e >= 0; e = entry_[e].next) {
+        const std::int32_t item = entry_[e].item;
         if (seen_[item] == stamp_) continue;
         seen_[item] = stamp_;
         if (box_[item].overlaps(box)) visit(item);
@@ -66,11 +72,20 @@ class SpatialHash {
   [[nodiscard]] std::size_t hash(std::int64_t i, std::int64_t j, std::int64_t k) const {
     const auto h = (static_cast<std::uint64_t>(i) * 73856093U) ^ (static_cast<std::uint64_t>(j) * 19349663U) ^
                    (static_cast<std::uint64_t>(k) * 83492791U);
-    return h % bucket_.size();
+    return h & (bucket_.size() - 1);
   }
 
+  /// Items in the order in which they came, as a list in entry_: no allocation per bucket.
+  struct Bucket {
+    std::int32_t first = -1, last = -1;
+  };
+  struct Entry {
+    std::int32_t item, next;
+  };
+
   double edge_;
-  std::vector<std::vector<std::int32_t>> bucket_;
+  std::vector<Bucket> bucket_;
+  std::vector<Entry> entry_;
   std::vector<vec::Box> box_;
   std::vector<std::uint32_t> seen_;
   std::uint32_t stamp_ = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "cutting/polygon.h"
@@ -182,17 +183,20 @@ void SurfaceSource::sort_into_cells() {
     }
   }
   std::sort(pairs.begin(), pairs.end());
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    cell_triangles_.push_back(pairs[i].second);
-    auto& range = cells_.try_emplace(pairs[i].first, std::array{static_cast<std::int32_t>(i), 0}).first->second;
-    range[1] = static_cast<std::int32_t>(i) + 1;
+  cell_offset_.assign(grid_.numbers() + 1, 0);
+  for (const auto& [cell, triangle] : pairs) {
+    cell_triangles_.push_back(triangle);
+    ++cell_offset_[cell + 1];
   }
+  std::partial_sum(cell_offset_.begin(), cell_offset_.end(), cell_offset_.begin());
 }
 
 std::span<const std::int32_t> SurfaceSource::triangles_at(const GridIndex& cell) const {
-  const auto found = cells_.find(grid_.number(cell));
-  if (found == cells_.end()) return {};
-  return {cell_triangles_.data() + found->second[0], static_cast<std::size_t>(found->second[1] - found->second[0])};
+  for (int a = 0; a < 3; ++a) {
+    if (cell[a] < -1 || cell[a] > grid_.size[a]) return {};
+  }
+  const std::int64_t number = grid_.number(cell);
+  return {cell_triangles_.data() + cell_offset_[number], cell_triangles_.data() + cell_offset_[number + 1]};
 }
 
 int SurfaceSource::winding(const GridIndex& corner) {

@@ -23,6 +23,11 @@ struct CutGrid {
   [[nodiscard]] std::int64_t number(const GridIndex& corner) const {
     return (static_cast<std::int64_t>(corner[2] + 1) * (size[1] + 3) + corner[1] + 1) * (size[0] + 3) + corner[0] + 1;
   }
+  /// Above every number.
+  [[nodiscard]] std::size_t numbers() const {
+    return static_cast<std::size_t>(size[0] + 3) * static_cast<std::size_t>(size[1] + 3) *
+           static_cast<std::size_t>(size[2] + 3);
+  }
   [[nodiscard]] Vec3d position(const GridIndex& corner) const {
     return {origin[0] + spacing * corner[0], origin[1] + spacing * corner[1], origin[2] + spacing * corner[2]};
   }
@@ -74,8 +79,7 @@ class SurfaceSource {
   std::vector<SourceEdge> edges_;
   std::vector<std::array<std::int32_t, 3>> triangle_edges_;
   std::vector<ExactPoint> exact_;
-  std::unordered_map<std::int64_t, std::array<std::int32_t, 2>> cells_;  ///< by number: range in cell_triangles_
-  std::vector<std::int32_t> cell_triangles_;
+  std::vector<std::int32_t> cell_offset_, cell_triangles_;               ///< triangles of each cell, by its number
   std::unordered_map<std::int64_t, std::vector<std::int8_t>> windings_;  ///< rows of corners along x
 };
 

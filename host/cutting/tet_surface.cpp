@@ -20,10 +20,11 @@ struct Key {
 
 class TetSurface {
  public:
-  TetSurface(const CutTopology& cut, const Solid& uncut, Solid& solid) : cut_(cut), uncut_(uncut), solid_(solid) {}
+  TetSurface(const CutTopology& cut, const Solid& uncut, SolidSurface& solid) : cut_(cut), uncut_(uncut), solid_(solid) {}
 
   void run() {
     solid_.surface.resize(uncut_.surface.size());
+    solid_.moved.reset();
     solid_.surface_nodes = uncut_.surface_nodes;
     solid_.surface_weights = uncut_.surface_weights;
     solid_.triangles = uncut_.triangles;
@@ -261,7 +262,7 @@ class TetSurface {
 
   const CutTopology& cut_;
   const Solid& uncut_;
-  Solid& solid_;
+  SolidSurface& solid_;
   std::map<NodePair, CutEdge> edges_;
   std::map<Key, std::int32_t> vertex_of_;
   std::vector<std::int32_t> original_;
@@ -269,6 +270,6 @@ class TetSurface {
 
 }  // namespace
 
-void cut_tet_surface(const CutTopology& cut, const Solid& uncut, Solid& solid) { TetSurface(cut, uncut, solid).run(); }
+void cut_tet_surface(const CutTopology& cut, const Solid& uncut, SolidSurface& solid) { TetSurface(cut, uncut, solid).run(); }
 
 }  // namespace pliant

@@ -9,6 +9,6 @@ namespace pliant {
 
 /// Put the divided and capped surface of the uncut body, a volume mesh of tetrahedra, in place of the one that `solid` has. The
 /// vertices of `uncut` keep their numbers; a triangle that is whole, or one piece of it, keeps its own.
-void cut_tet_surface(const CutTopology& cut, const Solid& uncut, Solid& solid);
+void cut_tet_surface(const CutTopology& cut, const Solid& uncut, SolidSurface& solid);
 
 }  // namespace pliant

@@ -133,6 +133,11 @@ void reserve_forces(Model& model) {
 
 }  // namespace
 
+bool needs_surface(const Scene& scene) {
+  return scene.interactive ||
+         std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& b) { return !b.pressures.empty(); });
+}
+
 void add_boundary_conditions(const Scene& scene, Model& model) {
   model.curves.assign(1, Curve{});  // curve 0: constant 1
   std::map<std::int32_t, Constraint> constraints;

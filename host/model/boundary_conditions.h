@@ -8,4 +8,7 @@ namespace pliant {
 /// or a node index is out of range.
 void add_boundary_conditions(const Scene& scene, Model& model);
 
+/// Whether that looks at the model's surface.
+bool needs_surface(const Scene& scene);
+
 }  // namespace pliant

@@ -1,7 +1,7 @@
 #include "model/bricks.h"
 
 #include <algorithm>
-#include <map>
+#include <limits>
 
 #include "layout.h"
 
@@ -20,6 +20,56 @@ std::int32_t place_of(const Index3& node) {
   return node[0] % kSize[0] + kSize[0] * (node[1] % kSize[1] + kSize[1] * (node[2] % kSize[2]));
 }
 
+/// The number of each brick of a body, by its place in the box around all of them.
+class BrickMap {
+ public:
+  explicit BrickMap(const SolidElements& solid) {
+    for (const LatticeNode& node : solid.lattice_nodes) {
+      const Index3 place = brick_of(node.index);
+      for (std::size_t a = 0; a < 3; ++a) {
+        low_[a] = std::min(low_[a], place[a]);
+        size_[a] = std::max(size_[a], place[a] + 1);
+      }
+    }
+    std::size_t all = solid.lattice_nodes.empty() ? 0 : 1;
+    for (std::size_t a = 0; a < 3; ++a) {
+      size_[a] -= low_[a];
+      all *= static_cast<std::size_t>(size_[a]);
+    }
+    number_.assign(all, kAbsent);
+  }
+  std::int32_t& at(const Index3& place) { return number_[index(place)]; }
+  [[nodiscard]] std::int32_t find(const Index3& place) const {
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (place[a] < low_[a] || place[a] >= low_[a] + size_[a]) return kAbsent;
+    }
+    return number_[index(place)];
+  }
+  /// Numbers those that are not absent in the order of their places; returns the number after the last.
+  std::int32_t number_from(std::int32_t first) {
+    for (std::int32_t& number : number_) {
+      if (number != kAbsent) number = first++;
+    }
+    return first;
+  }
+  template <class Visit>
+  void for_each(Visit&& visit) const {
+    for (std::size_t i = 0; i < number_.size(); ++i) {
+      if (number_[i] == kAbsent) continue;
+      const auto k = static_cast<std::int32_t>(i);
+      visit(Index3{low_[0] + k / (size_[1] * size_[2]), low_[1] + k / size_[2] % size_[1], low_[2] + k % size_[2]}, number_[i]);
+    }
+  }
+
+ private:
+  [[nodiscard]] std::size_t index(const Index3& place) const {
+    return (static_cast<std::size_t>(place[0] - low_[0]) * size_[1] + place[1] - low_[1]) * size_[2] + place[2] - low_[2];
+  }
+  static constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
+  Index3 low_{kMost, kMost, kMost}, size_{-kMost, -kMost, -kMost};
+  std::vector<std::int32_t> number_;
+};
+
 /// Note that the row of `slot` holds a cell (kind 0) or a node (kind 1).
 void mark_row(std::int32_t slot, int kind, Model& model) {
   model.brick_rows[2 * (slot / PLIANT_BRICK_NODES) + kind] |= 1 << slot % PLIANT_BRICK_NODES / PLIANT_BRICK_X;
@@ -27,32 +77,31 @@ void mark_row(std::int32_t slot, int kind, Model& model) {
 
 }  // namespace
 
-std::vector<std::int32_t> place_in_bricks(const Solid& solid, std::int32_t body, std::vector<char>& in_brick, Model& model) {
-  std::map<Index3, std::int32_t> bricks;
+std::vector<std::int32_t> place_in_bricks(const SolidElements& solid, std::int32_t body, std::vector<char>& in_brick,
+                                          Model& model) {
+  const auto in_bricks = [&](std::size_t n) { return solid.lattice_nodes[n].copy == 0 && !solid.matching(n); };
+  BrickMap bricks(solid);
   for (std::size_t n = 0; n < solid.lattice_nodes.size(); ++n) {
-    if (solid.lattice_nodes[n].copy == 0 && !solid.matching(n)) bricks.emplace(brick_of(solid.lattice_nodes[n].index), 0);
+    if (in_bricks(n)) bricks.at(brick_of(solid.lattice_nodes[n].index)) = 0;
   }
-  const std::int32_t first = model.bricks;
-  std::int32_t next = first;
-  for (auto& [place, number] : bricks) number = next++;
+  const std::int32_t next = bricks.number_from(model.bricks);
   model.bricks = next;
   model.brick_neighbor.resize(std::size_t{PLIANT_BRICK_NEIGHBORS} * next, kAbsent);
   model.brick_fill.resize(std::size_t{PLIANT_BRICK_NODES} * next, 0.0);
   model.brick_cell.resize(std::size_t{PLIANT_BRICK_NODES} * next, -1);
   model.brick_body.resize(next, body);
   model.brick_rows.resize(std::size_t{2} * next, 0);
-  for (const auto& [place, number] : bricks) {
+  bricks.for_each([&](const Index3& place, std::int32_t number) {
     for (int side = 0; side < 16; ++side) {
       const int step = side < 8 ? 1 : -1;
-      const auto found =
+      model.brick_neighbor[16 * number + side] =
           bricks.find({place[0] + (side & 4 ? step : 0), place[1] + (side & 2 ? step : 0), place[2] + (side & 1 ? step : 0)});
-      if (found != bricks.end()) model.brick_neighbor[16 * number + side] = found->second;
     }
-  }
+  });
   std::vector<std::int32_t> slot(solid.nodes.size(), -1);
   for (std::size_t n = 0; n < solid.nodes.size(); ++n) {
+    if (!in_bricks(n)) continue;
     const LatticeNode& node = solid.lattice_nodes[n];
-    if (node.copy != 0 || solid.matching(n)) continue;
     slot[n] = bricks.at(brick_of(node.index)) * PLIANT_BRICK_NODES + place_of(node.index);
     mark_row(slot[n], 1, model);
   }

@@ -17,7 +17,7 @@
 namespace pliant {
 namespace {
 
-Vec3d centroid(const Solid& solid, const std::int32_t* corners, int count) {
+Vec3d centroid(const SolidElements& solid, const std::int32_t* corners, int count) {
   Vec3d sum{};
   for (int a = 0; a < count; ++a) {
     for (int c = 0; c < 3; ++c) sum[c] += solid.nodes[corners[a]][c] / count;
@@ -26,7 +26,7 @@ Vec3d centroid(const Solid& solid, const std::int32_t* corners, int count) {
 }
 
 /// Index of the material of each element: 0 for the body's own, i + 1 for inclusion i; the last match wins.
-std::vector<int> materials_of(const Body& body, const Solid& solid) {
+std::vector<int> materials_of(const Body& body, const SolidElements& solid) {
   const bool tets = !solid.tets.empty();
   const std::size_t count = tets ? solid.tets.size() : solid.hexes.size();
   std::vector<int> material(count, 0);
@@ -60,21 +60,23 @@ void note_bound(Model& model, double frequency, double volume, const std::string
   }
 }
 
-/// Elements by their lowest slot: what a sweep over them touches lies close together.
+/// Elements by their lowest slot, of `slots`: what a sweep over them touches lies close together.
 template <std::size_t N>
-std::vector<std::int32_t> element_order(const std::vector<std::array<std::int32_t, N>>& elements, const Draft& draft) {
-  std::vector<std::int32_t> order(elements.size()), lowest(elements.size());
-  std::iota(order.begin(), order.end(), 0);
+std::vector<std::int32_t> element_order(const std::vector<std::array<std::int32_t, N>>& elements, const Draft& draft,
+                                        std::int32_t slots) {
+  std::vector<std::int32_t> order(elements.size()), lowest(elements.size()), next(static_cast<std::size_t>(slots) + 1, 0);
   for (std::size_t e = 0; e < elements.size(); ++e) {
     lowest[e] = draft.slot[elements[e][0]];
     for (const std::int32_t n : elements[e]) lowest[e] = std::min(lowest[e], draft.slot[n]);
+    ++next[lowest[e] + 1];
   }
-  std::stable_sort(order.begin(), order.end(), [&](std::int32_t i, std::int32_t j) { return lowest[i] < lowest[j]; });
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  for (std::size_t e = 0; e < elements.size(); ++e) order[next[lowest[e]]++] = static_cast<std::int32_t>(e);
   return order;
 }
 
 void add_tets(const Body& body, std::int32_t b, const Draft& draft, Model& model) {
-  const std::vector<std::int32_t> order = element_order(draft.solid().tets, draft);
+  const std::vector<std::int32_t> order = element_order(draft.solid().tets, draft, model.slots);
   for (std::size_t m = 0; m <= body.inclusions.size(); ++m) {
     TetBatch batch;
     batch.material = material_of(body, static_cast<int>(m));
@@ -123,8 +125,8 @@ double hex_volume(const HexBatch& batch, const std::vector<double>& record) {
 }
 
 void add_hexes(const Body& body, std::int32_t b, const Draft& draft, Model& model) {
-  const Solid& solid = draft.solid();
-  const std::vector<std::int32_t> order = element_order(solid.hexes, draft);
+  const SolidElements& solid = draft.solid();
+  const std::vector<std::int32_t> order = element_order(solid.hexes, draft, model.slots);
   for (std::size_t m = 0; m <= body.inclusions.size(); ++m) {
     HexBatch batch;
     batch.material = material_of(body, static_cast<int>(m));
@@ -166,20 +168,22 @@ void add_hexes(const Body& body, std::int32_t b, const Draft& draft, Model& mode
   }
 }
 
-void add_surface(const Draft& draft, std::int32_t b, Model& model) {
-  const Solid& solid = draft.solid();
+/// The nodes in which a body's vertices hang, and its triangles.
+void hang_body(const SolidSurface& solid, std::int32_t b, const std::vector<std::int32_t>* moved, Model& model) {
   ModelSurface& surface = model.surface;
   ModelBody& body = model.bodies[b];
-  body.first_vertex = static_cast<std::int32_t>(surface.rest.size());
+  body.triangle_middle = solid.triangle_middle;
   body.vertices = static_cast<std::int32_t>(solid.surface.size());
   body.first_triangle = static_cast<std::int32_t>(surface.triangles.size());
   body.triangles = static_cast<std::int32_t>(solid.triangles.size());
-  surface.rest.insert(surface.rest.end(), solid.surface.begin(), solid.surface.end());
-  surface.weights.insert(surface.weights.end(), solid.surface_weights.begin(), solid.surface_weights.end());
-  surface.nodes.resize(surface.rest.size());
-  for (std::size_t v = 0; v < solid.surface.size(); ++v) {
+  const auto hang = [&](std::size_t v) {
     auto& slots = surface.nodes[static_cast<std::size_t>(body.first_vertex) + v];
-    for (std::size_t a = 0; a < 8; ++a) slots[a] = draft.slot[solid.surface_nodes[v][a]];
+    for (std::size_t a = 0; a < 8; ++a) slots[a] = body.slot[solid.surface_nodes[v][a]];
+  };
+  if (moved != nullptr) {
+    for (const std::int32_t v : *moved) hang(static_cast<std::size_t>(v));
+  } else {
+    for (std::size_t v = 0; v < solid.surface.size(); ++v) hang(v);
   }
   surface.triangles.insert(surface.triangles.end(), solid.triangles.begin(), solid.triangles.end());
   for (std::size_t t = static_cast<std::size_t>(body.first_triangle); t < surface.triangles.size() && b > 0; ++t) {
@@ -200,14 +204,13 @@ void fill_body(const Body& body, Draft& draft, ModelBody& out) {
   out.rest = draft.solid().nodes;
   out.tets = draft.solid().tets;
   out.virtual_nodes = draft.solid().virtual_nodes;
-  out.triangle_middle = draft.solid().triangle_middle;
   for (const auto& hex : draft.solid().hexes) {
     std::array<std::int32_t, 8> corners{};
     for (int a = 0; a < 8; ++a) corners[a] = hex[kVtkFromBits[a]];
     out.hexes.push_back(corners);
   }
   out.spacing = draft.solid().spacing;
-  out.surface_volume = draft.solid().surface_volume;
+  out.surface_volume = draft.given->surface_volume;
   for (std::size_t e = 0; e < draft.material.size(); ++e) out.operational_elements += draft.solid().operational(e);
   const Partition& partition = draft.solid().partition;
   const auto nodes = static_cast<std::int64_t>(draft.solid().nodes.size());
@@ -234,7 +237,7 @@ void set_velocity(const Body& body, const ModelBody& placed, Model& model) {
 }
 
 void add_totals(const Body& body, const Draft& draft, ModelBody& out) {
-  const Solid& solid = draft.solid();
+  const SolidElements& solid = draft.solid();
   for (std::size_t e = 0; e < draft.material.size(); ++e) {
     double volume = solid.spacing * solid.spacing * solid.spacing;
     if (!solid.tets.empty()) {
@@ -258,7 +261,7 @@ void place_bodies(const Scene& scene, std::span<const Solid* const> solids, cons
     Draft draft;
     draft.given = solids[b];
     if (body.model.type != ModelType::tled) {
-      draft.own = *solids[b];
+      draft.own = static_cast<const SolidElements&>(*solids[b]);
       repartition(body, *draft.own);
     }
     draft.material = materials_of(body, draft.solid());
@@ -299,7 +302,7 @@ std::int64_t Model::elements() const {
   return n;
 }
 
-std::vector<double> densities(const Body& body, const Solid& solid) {
+std::vector<double> densities(const Body& body, const SolidElements& solid) {
   std::vector<double> density;
   for (const int m : materials_of(body, solid)) density.push_back(material_of(body, m).density);
   return density;
@@ -313,7 +316,7 @@ Model build_model(const Scene& scene, const std::vector<Solid>& solids) {
   return build_model(scene, all);
 }
 
-Model build_model(const Scene& scene, std::span<const Solid* const> solids, const Model* previous) {
+Model build_elements(const Scene& scene, std::span<const Solid* const> solids, const Model* previous) {
   Model model;
   std::vector<Draft> drafts;
   place_bodies(scene, solids, previous, drafts, model);
@@ -336,7 +339,6 @@ Model build_model(const Scene& scene, std::span<const Solid* const> solids, cons
     } else {
       add_hexes(body, b, draft, model);
     }
-    add_surface(draft, b, model);
     add_totals(body, draft, model.bodies[i]);
     set_velocity(body, model.bodies[i], model);
   }
@@ -344,6 +346,38 @@ Model build_model(const Scene& scene, std::span<const Solid* const> solids, cons
     weigh(batch, model.mass);
     if (model.shortest == 0 || batch.spacing < model.shortest) model.shortest = batch.spacing;
   }
+  return model;
+}
+
+void add_surfaces(std::span<const Solid* const> solids, Model& model, const std::vector<std::int32_t>* moved) {
+  ModelSurface& surface = model.surface;
+  if (moved == nullptr) {
+    surface.rest.clear();
+    surface.weights.clear();
+    for (const Solid* solid : solids) {
+      surface.rest.insert(surface.rest.end(), solid->surface.begin(), solid->surface.end());
+      surface.weights.insert(surface.weights.end(), solid->surface_weights.begin(), solid->surface_weights.end());
+    }
+  } else {
+    surface.rest.resize(solids[0]->surface.size());
+    surface.weights.resize(solids[0]->surface.size());
+    for (const std::int32_t v : *moved) {
+      surface.rest[v] = solids[0]->surface[v];
+      surface.weights[v] = solids[0]->surface_weights[v];
+    }
+  }
+  surface.nodes.resize(surface.rest.size());
+  std::int32_t first = 0;
+  for (std::size_t b = 0; b < solids.size(); ++b) {
+    model.bodies[b].first_vertex = first;
+    hang_body(*solids[b], static_cast<std::int32_t>(b), moved, model);
+    first += model.bodies[b].vertices;
+  }
+}
+
+Model build_model(const Scene& scene, std::span<const Solid* const> solids) {
+  Model model = build_elements(scene, solids);
+  add_surfaces(solids, model);
   add_boundary_conditions(scene, model);
   return model;
 }

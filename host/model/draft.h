@@ -10,8 +10,8 @@ namespace pliant {
 /// Everything about one body that is known before its list nodes have slots.
 struct Draft {
   const Solid* given = nullptr;
-  std::optional<Solid> own;  ///< with a partition of its own
-  [[nodiscard]] const Solid& solid() const { return own ? *own : *given; }
+  std::optional<SolidElements> own;  ///< with a partition of its own
+  [[nodiscard]] const SolidElements& solid() const { return own ? *own : *given; }
   std::vector<int> material;
   std::vector<char> in_brick;
   std::vector<std::int32_t> slot;

@@ -88,7 +88,7 @@ void from_mesh(const Body& body, Solid& solid) {
 }
 
 /// The partition of the uncut lattice's cells holds for their copies; a node is what its elements make of it.
-void spread_to_copies(Solid& solid) {
+void spread_to_copies(SolidElements& solid) {
   Partition& partition = solid.partition;
   const std::vector<char> of_cell = std::move(partition.operational);
   partition = {};
@@ -123,7 +123,7 @@ std::array<std::int32_t, 8> cell_corners(const std::array<std::int32_t, 4>* tets
   return corners;
 }
 
-void repartition(const Body& body, Solid& solid) {
+void repartition(const Body& body, SolidElements& solid) {
   if (body.model.type == ModelType::tled) return;
   const Lattice& lattice = *solid.lattice;
   solid.partition = partition_lattice(body, lattice);

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,7 +18,8 @@ struct NodeOrder {
   std::vector<std::int32_t> order, valence;
 };
 
-struct Solid {
+/// Everything but the surface.
+struct SolidElements {
   std::vector<Vec3d> nodes;                        ///< rest positions [m]
   std::vector<std::array<std::int32_t, 4>> tets;   ///< positive volume
   std::vector<std::array<std::int32_t, 8>> hexes;  ///< corners in bit order (x, y, z)
@@ -29,17 +31,8 @@ struct Solid {
   std::vector<std::uint64_t> samples;              ///< per cell of a lattice: Cell::samples
   std::vector<std::int32_t> copy_of;  ///< if the body is cut: per element (six tetrahedra of a lattice: one) its uncut cell
   VirtualNodes virtual_nodes;
-  std::vector<Vec3d> triangle_middle;  ///< ModelBody::triangle_middle
-  bool wants_middles = true;           ///< whether a cut keeps triangle_middle: pressures need it
-  std::vector<char> triangle_cut;      ///< if the body is cut: whether the triangle lies on a cut
-  std::vector<Cell> matching_cells;    ///< the cells left to shape matching
-  double spacing = 0;                  ///< [m]
-  std::vector<Vec3d> surface;          ///< vertices [m]
-  std::vector<std::array<std::int32_t, 3>> triangles;
-  std::vector<std::array<std::int32_t, 8>> surface_nodes;
-  std::vector<std::array<double, 8>> surface_weights;
-  std::vector<std::int32_t> surface_cell;  ///< the lattice cell in which each vertex hangs; empty for a volume mesh
-  double surface_volume = 0;               ///< [m^3]
+  std::vector<Cell> matching_cells;              ///< the cells left to shape matching
+  double spacing = 0;                            ///< [m]
   std::shared_ptr<const NodeOrder> uncut_order;  ///< of the uncut body, if it was found already; the body may be cut
   /// Whether element e is a finite element.
   [[nodiscard]] bool operational(std::size_t e) const {
@@ -51,20 +44,43 @@ struct Solid {
   }
 };
 
+struct SolidSurface {
+  std::vector<Vec3d> surface;  ///< vertices [m]
+  std::vector<std::array<std::int32_t, 3>> triangles;
+  std::vector<std::array<std::int32_t, 8>> surface_nodes;
+  std::vector<std::array<double, 8>> surface_weights;
+  std::vector<std::int32_t> surface_cell;  ///< the lattice cell in which each vertex hangs; empty for a volume mesh
+  double surface_volume = 0;               ///< uncut [m^3]
+  std::vector<char> triangle_cut;          ///< if the body is cut: whether the triangle lies on a cut
+  std::vector<Vec3d> triangle_middle;      ///< ModelBody::triangle_middle
+  bool wants_middles = true;               ///< whether a cut keeps triangle_middle: pressures need it
+  /// Vertices that are new, have another place at rest, other weights or other nodes than before the last edit, ascending, and
+  /// perhaps some that have not; nothing: not known.
+  std::optional<std::vector<std::int32_t>> moved;
+};
+
+struct Solid : SolidElements, SolidSurface {};
+
 /// Load the body's mesh and fill it.
 Solid make_solid(const Body& body);
 std::vector<Solid> make_solids(const Scene& scene);
 
 /// Choose the operational cells of a lattice anew, as body.model says now.
-void repartition(const Body& body, Solid& solid);
+void repartition(const Body& body, SolidElements& solid);
 
 /// Like build_model(scene), for bodies that are loaded and filled already; their partition is chosen anew.
-/// `previous`, a model of the same bodies before an edit, lends what did not change.
-Model build_model(const Scene& scene, std::span<const Solid* const> solids, const Model* previous = nullptr);
+Model build_model(const Scene& scene, std::span<const Solid* const> solids);
 Model build_model(const Scene& scene, const std::vector<Solid>& solids);
 
+/// The first part of it: no surfaces and no boundary conditions, and no look at the SolidSurface of a body, which may be made
+/// meanwhile. `previous`, a model of the same bodies before an edit, lends what did not change.
+Model build_elements(const Scene& scene, std::span<const Solid* const> solids, const Model* previous = nullptr);
+/// The next one. With `moved`, the model has vertices, weights and nodes from before an edit of its only body already, and only
+/// those listed differ (SolidSurface::moved).
+void add_surfaces(std::span<const Solid* const> solids, Model& model, const std::vector<std::int32_t>* moved = nullptr);
+
 /// Density of each element [kg/m^3].
-std::vector<double> densities(const Body& body, const Solid& solid);
+std::vector<double> densities(const Body& body, const SolidElements& solid);
 
 /// The corners of a lattice cell from its six tetrahedra (kKuhnTets), which follow each other.
 std::array<std::int32_t, 8> cell_corners(const std::array<std::int32_t, 4>* tets);
@@ -73,7 +89,7 @@ std::array<std::int32_t, 8> cell_corners(const std::array<std::int32_t, 4>* tets
 inline constexpr std::array<int, 8> kVtkFromBits{0, 1, 3, 2, 4, 5, 7, 6};
 
 /// All nodes in Cuthill-McKee order: breadth first over the elements from a node at the far end of each connected part.
-std::vector<std::int32_t> sweep_order(const Solid& solid);
-NodeOrder node_order(const Solid& solid);
+std::vector<std::int32_t> sweep_order(const SolidElements& solid);
+NodeOrder node_order(const SolidElements& solid);
 
 }  // namespace pliant

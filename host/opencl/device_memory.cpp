@@ -12,34 +12,45 @@ DeviceMemory allocate(const cl::Context& context, std::size_t values) {
   return {cl::Buffer(context, CL_MEM_READ_WRITE, 4 * std::max<std::size_t>(values, 1)), values, false};
 }
 
-/// Initial values [first, last); those that are not given are zero.
-void write_values(cl::CommandQueue& queue, const Buffer& buffer, const ValueRange& range, cl::Buffer& memory) {
-  const std::size_t end = std::max(range.first, std::min(range.last, initial_count(buffer))), count = end - range.first;
-  if (end < range.last) queue.enqueueFillBuffer(memory, cl_uint{0}, 4 * end, 4 * (range.last - end));
-  if (count == 0) return;
-  if (buffer.is_int()) {
-    queue.enqueueWriteBuffer(memory, CL_TRUE, 4 * range.first, 4 * count, buffer.ints.data() + range.first);
-    return;
-  }
-  std::vector<float> values(count);
-  round_reals(std::span(buffer.reals).subspan(range.first, count), values.data());
-  queue.enqueueWriteBuffer(memory, CL_TRUE, 4 * range.first, 4 * count, values.data());
-}
-
-void initialize(cl::CommandQueue& queue, const Buffer& buffer, cl::Buffer& memory) {
-  write_values(queue, buffer, {0, std::max<std::size_t>(buffer.values(), 1)}, memory);
+void initialize(Upload& upload, const Buffer& buffer, cl::Buffer& memory) {
+  upload.write(buffer, 0, std::max<std::size_t>(buffer.values(), 1), memory);
 }
 
 }  // namespace
 
-DeviceMemory load_memory(const cl::Context& context, cl::CommandQueue& queue, const Buffer& buffer) {
+Upload::~Upload() {
+  try {
+    finish();
+  } catch (const cl::Error&) {  // what was under way has failed already
+  }
+}
+
+void Upload::write(const Buffer& buffer, std::size_t first, std::size_t last, cl::Buffer& memory) {
+  const std::size_t end = std::max(first, std::min(last, initial_count(buffer))), count = end - first;
+  const float padding = buffer.is_int() ? 0.0F : static_cast<float>(buffer.padding);  // of an integer: the same bits
+  if (end < last) queue_.enqueueFillBuffer(memory, padding, 4 * end, 4 * (last - end));
+  if (count == 0) return;
+  if (buffer.is_int()) {
+    queue_.enqueueWriteBuffer(memory, CL_FALSE, 4 * first, 4 * count, buffer.ints.data() + first);
+    return;
+  }
+  std::vector<float>& values = staged_.emplace_back(count);
+  round_reals(std::span(buffer.reals).subspan(first, count), values.data());
+  queue_.enqueueWriteBuffer(memory, CL_FALSE, 4 * first, 4 * count, values.data());
+}
+
+void Upload::finish() {
+  queue_.finish();
+  staged_.clear();
+}
+
+DeviceMemory load_memory(const cl::Context& context, Upload& upload, const Buffer& buffer) {
   DeviceMemory memory = allocate(context, buffer.values());
-  initialize(queue, buffer, memory.buffer);
+  initialize(upload, buffer, memory.buffer);
   return memory;
 }
 
-DeviceMemory patch_memory(const cl::Context& context, cl::CommandQueue& queue, const BufferChange& change,
-                          DeviceMemory memory) {
+DeviceMemory patch_memory(const cl::Context& context, Upload& upload, const BufferChange& change, DeviceMemory memory) {
   const Buffer& buffer = *change.next;
   const std::size_t needed = buffer.values();
   const bool fits = change.before != nullptr && needed <= memory.values && memory.values > 0;
@@ -52,11 +63,13 @@ DeviceMemory patch_memory(const cl::Context& context, cl::CommandQueue& queue, c
     }
   }
   if (!fits || memory.written || buffer.role != BufferRole::constant) {
-    initialize(queue, buffer, memory.buffer);
+    initialize(upload, buffer, memory.buffer);
     memory.written = false;
     return memory;
   }
-  for (const ValueRange& range : changed_values(*change.before, buffer)) write_values(queue, buffer, range, memory.buffer);
+  for (const ValueRange& range : changed_values(*change.before, buffer)) {
+    upload.write(buffer, range.first, range.last, memory.buffer);
+  }
   return memory;
 }
 

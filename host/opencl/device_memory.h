@@ -2,6 +2,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "opencl/opencl.h"
 #include "state/buffer.h"
@@ -14,7 +15,23 @@ struct DeviceMemory {
   bool written = false;    ///< by the host, since its initial values
 };
 
-DeviceMemory load_memory(const cl::Context& context, cl::CommandQueue& queue, const Buffer& buffer);
+/// Transfers that the host does not wait for one by one: each wait costs as much as several of them.
+class Upload {
+ public:
+  explicit Upload(cl::CommandQueue& queue) : queue_(queue) {}
+  Upload(const Upload&) = delete;
+  Upload& operator=(const Upload&) = delete;
+  ~Upload();
+  /// Initial values [first, last) of a buffer, which must stay as it is until finish().
+  void write(const Buffer& buffer, std::size_t first, std::size_t last, cl::Buffer& memory);
+  void finish();
+
+ private:
+  cl::CommandQueue& queue_;
+  std::vector<std::vector<float>> staged_;
+};
+
+DeviceMemory load_memory(const cl::Context& context, Upload& upload, const Buffer& buffer);
 
 /// The same table row in two programs; `before` is nullptr if the first has none.
 struct BufferChange {
@@ -24,6 +41,6 @@ struct BufferChange {
 };
 
 /// `memory` holds change.before. What it returns holds the initial values of change.next.
-DeviceMemory patch_memory(const cl::Context& context, cl::CommandQueue& queue, const BufferChange& change, DeviceMemory memory);
+DeviceMemory patch_memory(const cl::Context& context, Upload& upload, const BufferChange& change, DeviceMemory memory);
 
 }  // namespace pliant::opencl

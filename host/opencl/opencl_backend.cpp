@@ -57,15 +57,18 @@ class OpenclBackend final : public Backend {
     memory_.clear();
     table_ = &program.buffers;
     const DefaultFloatEnvironment environment;
+    opencl::Upload upload(queue_);
     for (const Buffer& buffer : program.buffers) {
-      guarded(ErrorCode::bad_input, place(buffer), [&] { memory_.push_back(opencl::load_memory(context_, queue_, buffer)); });
+      guarded(ErrorCode::bad_input, place(buffer), [&] {
+        memory_.push_back(opencl::load_memory(context_, upload, buffer));
+        upload.finish();
+      });
     }
     passes_.load(program, [this](const Pass& pass) { return prepare(pass); });
     finish();
   }
 
-  void update(const Program& loaded, const Program& next) override {
-    check_memory(next.buffers, sizeof(float), info_.max_buffer_bytes, info_.memory_bytes, where_);
+  void update(const Program& loaded, const Program& next, const std::function<void()>& complete) override {
     finish();
     collect_events();
     keep_kernels();
@@ -73,14 +76,25 @@ class OpenclBackend final : public Backend {
     const DefaultFloatEnvironment environment;
     std::vector<opencl::DeviceMemory> old = std::move(memory_);
     memory_.clear();
-    for (const Buffer& buffer : next.buffers) {
-      const Buffer* before = find_same(loaded.buffers, buffer, memory_.size());
+    memory_.resize(next.buffers.size());
+    opencl::Upload upload(queue_);
+    const auto bring = [&](std::size_t i) {
+      const Buffer& buffer = next.buffers[i];
+      const Buffer* before = find_same(loaded.buffers, buffer, i);
       opencl::DeviceMemory memory;
       if (before != nullptr) memory = old[static_cast<std::size_t>(before - loaded.buffers.data())];
       guarded(ErrorCode::bad_input, place(buffer), [&] {
-        memory_.push_back(opencl::patch_memory(context_, queue_, {before, &buffer, info_.max_buffer_bytes}, memory));
+        memory_[i] = opencl::patch_memory(context_, upload, {before, &buffer, info_.max_buffer_bytes}, memory);
       });
+    };
+    const auto late = [&](std::size_t i) { return std::binary_search(next.late.begin(), next.late.end(), BufferId(i)); };
+    for (std::size_t i = 0; i < memory_.size(); ++i) {
+      if (!late(i)) bring(i);
     }
+    if (complete != nullptr) complete();
+    check_memory(next.buffers, sizeof(float), info_.max_buffer_bytes, info_.memory_bytes, where_);
+    for (const BufferId id : next.late) bring(static_cast<std::size_t>(id));
+    guarded(ErrorCode::internal, where_, [&] { upload.finish(); });
     passes_.load(next, [this](const Pass& pass) { return prepare(pass); });
     spare_kernels_.clear();
     finish();

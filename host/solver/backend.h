@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -40,8 +41,11 @@ class Backend {
   virtual void load(const Program& program) = 0;
   /// As load(next) after load(loaded), with the same bits in every buffer, but only what differs goes to the device: changed
   /// ranges of constant buffers, and the initial values of what passes write. Buffers that grow get half as much again.
-  virtual void update(const Program& loaded, const Program& next) {
+  /// `complete` is called when only next.late is left, and may supply that; what it throws goes through, and the backend then
+  /// wants a load().
+  virtual void update(const Program& loaded, const Program& next, const std::function<void()>& complete = nullptr) {
     (void)loaded;
+    if (complete != nullptr) complete();
     load(next);
   }
   /// Run `passes` for steps first .. first + count - 1 of the current batch, in order, without host synchronisation in between.

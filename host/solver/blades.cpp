@@ -108,7 +108,7 @@ void check_blade(const Blade& blade) {
 void Simulation::prepare_blades() {
   if (scene_.blades.empty()) return;
   for (const Blade& blade : scene_.blades) check_blade(blade);
-  cuts_ = std::make_shared<CutState>(scene_);
+  prepare_cuts();
   const double steps = kFrame / first_dt_;
   blade_steps_ = steps < 1 ? 1 : static_cast<std::int64_t>(std::min(steps, static_cast<double>(batch_steps_)));
 }
@@ -142,6 +142,13 @@ CutState& Simulation::cut_state() {
   }
   cuts_ = std::make_shared<CutState>(scene_);
   return *cuts_;
+}
+
+void Simulation::prepare_cuts() {
+  CutState& cuts = cut_state();
+  for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
+    if (cuts.uncut[b]->lattice != nullptr || cuts.uncut[b]->hexes.empty()) static_cast<void>(cuts.body(scene_, b));
+  }
 }
 
 /// Follow each blade to its new places, and cut.

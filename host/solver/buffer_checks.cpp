@@ -47,14 +47,16 @@ void round_reals(std::span<const double> values, double* out) { std::copy(values
 
 namespace {
 
-constexpr std::size_t kBlock = 32;  // values that are compared, and sent, together
+constexpr std::size_t kBlock = 32;  // values that are compared together
+constexpr std::size_t kGap = 1024;  // unchanged values that are sent rather than a range of its own
 
-/// Whether values [first, last) are the same bits; those that are not given are zero.
+/// Whether values [first, last) are the same bits; those that are not given are the padding.
 template <class T>
-bool same_values(const std::vector<T>& a, const std::vector<T>& b, std::size_t first, std::size_t last) {
+bool same_values(const std::vector<T>& a, T a_padding, const std::vector<T>& b, T b_padding, std::size_t first,
+                 std::size_t last) {
   if (last <= a.size() && last <= b.size()) return std::memcmp(&a[first], &b[first], (last - first) * sizeof(T)) == 0;
   for (std::size_t i = first; i < last; ++i) {
-    const T u = i < a.size() ? a[i] : T(0), v = i < b.size() ? b[i] : T(0);
+    const T u = i < a.size() ? a[i] : a_padding, v = i < b.size() ? b[i] : b_padding;
     if (std::memcmp(&u, &v, sizeof(T)) != 0) return false;
   }
   return true;
@@ -66,16 +68,21 @@ std::vector<ValueRange> changed_values(const Buffer& before, const Buffer& next)
   std::vector<ValueRange> ranges;
   const std::size_t count = next.values(), known = std::min(before.values(), count);
   const auto add = [&](std::size_t first, std::size_t last) {
-    if (!ranges.empty() && first <= ranges.back().last + kBlock) {
+    if (!ranges.empty() && first <= ranges.back().last + kGap) {
       ranges.back().last = last;
     } else {
       ranges.push_back({first, last});
     }
   };
-  for (std::size_t first = 0; first < known; first += kBlock) {
+  if (next.changed) {
+    for (const ValueRange& range : *next.changed) {
+      if (range.first < known) add(range.first, std::min(range.last, known));
+    }
+  }
+  for (std::size_t first = 0; first < known && !next.changed; first += kBlock) {
     const std::size_t last = std::min(first + kBlock, known);
-    const bool same =
-        next.is_int() ? same_values(before.ints, next.ints, first, last) : same_values(before.reals, next.reals, first, last);
+    const bool same = next.is_int() ? same_values(before.ints, 0, next.ints, 0, first, last)
+                                    : same_values(before.reals, before.padding, next.reals, next.padding, first, last);
     if (!same) add(first, last);
   }
   if (known < count) add(known, count);

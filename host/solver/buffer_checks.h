@@ -28,11 +28,6 @@ std::size_t initial_count(const Buffer& buffer);
 void round_reals(std::span<const double> values, float* out);
 void round_reals(std::span<const double> values, double* out);
 
-/// Values [first, last) of a buffer.
-struct ValueRange {
-  std::size_t first = 0, last = 0;
-};
-
 /// Where the initial values of `next` differ in a bit from those of `before`, or lie beyond its end. Ranges that are close to
 /// each other are one.
 std::vector<ValueRange> changed_values(const Buffer& before, const Buffer& next);

@@ -45,11 +45,10 @@ void ProgramBuilder::add_shared_buffers() {
   node_load_ = add(
       make_reals("node_load", BufferType::real4, needs_load() ? slots : 1, BufferRole::scratch, "[slots]", "N", "node_load"));
   if (has_list_elements()) {
-    std::vector<double> corner(static_cast<std::size_t>(layout_.corner_numbers) + 3 * PLIANT_TILE, 0.0);
-    std::fill(corner.end() - 3 * PLIANT_TILE, corner.end(), -0.0);
-    const std::size_t numbers = corner.size();
+    const std::size_t numbers = static_cast<std::size_t>(layout_.corner_numbers) + 3 * PLIANT_TILE;
     corner_ = add(make_reals("corner_force", BufferType::real, numbers, BufferRole::scratch, "[tiles][corners][3][16]", "N",
-                             "element kernels", std::move(corner)));
+                             "element kernels"));
+    program_.buffers[corner_].padding = -0.0;  // what the gather lists point to where a node has fewer corners than others
   }
   // The state to go back to when an element fails.
   add(make_reals("last_u", BufferType::real4, slots, BufferRole::state, "[slots]", "m, m, m, 1/kg", "host"));

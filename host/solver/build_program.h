@@ -8,10 +8,15 @@ namespace pliant {
 struct ProgramOptions {
   Integrator integrator = Integrator::increment;
   std::int32_t batch_steps = 64;  ///< steps that one batch may hold: rows of curve_value
+  bool surface_follows = false;   ///< the model has no surface yet, and set_surface supplies it; not with pressures
 };
 
 /// Build the buffer table and the Schedule of a model. Only what the model needs is in it.
 Program build_program(const Model& model, const ProgramOptions& options = {});
+
+/// What ProgramOptions::surface_follows left open. With `moved`, the buffers hold what they held before an edit already, and
+/// only the listed vertices differ.
+void set_surface(const ModelSurface& surface, Program& program, const std::vector<std::int32_t>* moved = nullptr);
 
 /// Which element a position in the `fault` buffer means, or which node that shape matching moves.
 struct FaultPlace {

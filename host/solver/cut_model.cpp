@@ -1,11 +1,13 @@
-// The model of a cut scene: built aside from the bodies as they are cut, then swapped in with every node's displacement and
-// velocity.
+// The model of a cut scene: built aside from the bodies as they are cut, then swapped in.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <future>
+#include <utility>
 
 #include "pliant/error.h"
 #include "solver/cut_state.h"
+#include "solver/model_swap.h"
 #include "solver/simulation.h"
 
 namespace pliant {
@@ -39,12 +41,6 @@ std::array<double, 8> corner_masses(const Solid& solid, const std::vector<double
   return mass;
 }
 
-/// Mass that a node takes over from another one than its own origin.
-struct FluxMass {
-  std::int32_t node, from;
-  double mass;
-};
-
 std::vector<FluxMass> flux_masses(const Body& body, const Solid& solid, const CutEdit& edit) {
   std::vector<FluxMass> all;
   if (edit.flux.empty()) return all;
@@ -65,68 +61,6 @@ std::vector<FluxMass> flux_masses(const Body& body, const Solid& solid, const Cu
 
 }  // namespace
 
-/// Build and load the model of the bodies as they are cut now. Throws with the old model back in place.
-void Simulation::rebuild(const std::vector<CutEdit>& edits, CutReport& report) {
-  Clock::time_point start = Clock::now();
-  backend_->finish();
-  const std::vector<double> old_u = backend_->read_reals(u_), old_w = backend_->read_reals(w_);
-  const std::shared_ptr<const Model> old_model = model_;
-  std::vector<std::vector<Vec3d>> u, v;
-  for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
-    u.push_back(pick(old_u, b, 1));
-    v.push_back(velocities_from(old_w, b));
-  }
-  const std::vector<const Solid*> solids = cuts_->solids();
-  std::vector<std::vector<FluxMass>> flux(edits.size());
-  for (std::size_t b = 0; b < edits.size(); ++b) flux[b] = flux_masses(scene_.bodies[b], *solids[b], edits[b]);
-  std::shared_ptr<std::vector<Solid>> kept;
-  if (std::any_of(scene_.bodies.begin(), scene_.bodies.end(), [](const Body& b) { return b.model.follow; })) {
-    kept = std::make_shared<std::vector<Solid>>();
-    for (const Solid* solid : solids) kept->push_back(*solid);
-  }
-  auto model = std::make_shared<const Model>(build_model(scene_, solids, old_model.get()));
-  report.model += lap(start);
-  model_ = model;
-  try {
-    load_program(true);
-  } catch (...) {
-    model_ = old_model;
-    load_program();
-    backend_->write_reals(u_, old_u);
-    backend_->write_reals(w_, old_w);
-    upload_shape_matching();
-    throw;
-  }
-  solids_ = kept;
-  std::vector<double> new_u = program_.buffers[u_].reals, new_w = program_.buffers[w_].reals;
-  for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
-    const ModelBody& body = model_->bodies[b];
-    const bool changed = edits[b].changed_elements();
-    std::vector<Vec3d> velocity(body.slot.size());
-    for (std::size_t n = 0; n < velocity.size(); ++n) velocity[n] = v[b][changed ? edits[b].node_from[n] : n];
-    for (const FluxMass& f : flux[b]) {
-      const double share = f.mass / model_->mass[body.slot[f.node]];
-      for (std::size_t c = 0; c < 3; ++c)
-        velocity[f.node][c] += share * (v[b][f.from][c] - v[b][edits[b].node_from[f.node]][c]);
-    }
-    for (std::size_t n = 0; n < velocity.size(); ++n) {
-      const auto slot = static_cast<std::size_t>(body.slot[n]);
-      const Vec3d& moved = u[b][changed ? edits[b].node_from[n] : n];
-      for (std::size_t c = 0; c < 3; ++c) {
-        new_u[4 * slot + c] = moved[c];
-        new_w[4 * slot + c] = substeps_of(slot) * state_.dt * velocity[n][c];
-      }
-    }
-  }
-  for (std::size_t s = 0; s < model_->mass.size(); ++s) new_w[4 * s + 3] = decay(s);
-  backend_->write_reals(u_, new_u);
-  backend_->write_reals(w_, new_w);
-  upload_shape_matching();
-  state_.vectors.erase("kept");  // copies of the old model's buffers
-  ++topology_version_;
-  report.upload += lap(start);
-}
-
 /// Cut these edges of each body.
 void Simulation::cut_now(const std::vector<CutEdges>& edges, CutReport& report) {
   Clock::time_point start = Clock::now();
@@ -134,11 +68,27 @@ void Simulation::cut_now(const std::vector<CutEdges>& edges, CutReport& report) 
   std::size_t done = 0;
   try {
     for (; done < edges.size(); ++done) {
-      if (!edges[done].empty()) edits[done] = cuts_->body(scene_, done).cut(edges[done], report.surface);
+      if (!edges[done].empty()) edits[done] = cuts_->body(scene_, done).cut(edges[done]);
       report.changed = report.changed || edits[done].changed_elements();
     }
-    report.topology = lap(start) - report.surface;
-    if (report.changed) rebuild(edits, report);
+    report.topology += lap(start);
+    if (report.changed) {
+      std::future<void> surfaces = cuts_->helper.run([&] {
+        for (std::size_t b = 0; b < edits.size(); ++b) {
+          if (edits[b].changed_elements()) cuts_->bodies[b]->update_surface(edits[b]);
+        }
+      });
+      const WaitFor end(surfaces);
+      ModelSwap swap(*this, report);
+      std::vector<NodeOrigins> origins(edits.size());
+      for (std::size_t b = 0; b < edits.size(); ++b) {
+        if (!edits[b].changed_elements()) continue;
+        cuts_->bodies[b]->update_elements();
+        origins[b] = {edits[b].node_from, flux_masses(scene_.bodies[b], cuts_->bodies[b]->solid(), edits[b])};
+      }
+      swap.run(cuts_->solids(), std::move(origins), [&] { surfaces.get(); });
+      keep_solids();
+    }
   } catch (...) {
     for (std::size_t b = 0; b < done; ++b) {
       if (!edges[b].empty()) cuts_->body(scene_, b).undo();
@@ -155,6 +105,16 @@ void Simulation::cut_now(const std::vector<CutEdges>& edges, CutReport& report) 
   if (report.changed) limit_to_element_bound();
 }
 
+/// For operational regions that follow the tool.
+void Simulation::keep_solids() {
+  const auto& bodies = scene_.bodies;
+  solids_ = nullptr;
+  if (std::none_of(bodies.begin(), bodies.end(), [](const Body& b) { return b.model.follow; })) return;
+  const auto kept = std::make_shared<std::vector<Solid>>();
+  for (const Solid* solid : cuts_->solids()) kept->push_back(*solid);
+  solids_ = kept;
+}
+
 /// A scene that nobody meant to cut may run at a step beyond what its elements allow when a cut frees them.
 void Simulation::limit_to_element_bound() {
   if (!automatic_ || model_->element_bound <= 0) return;
@@ -167,7 +127,6 @@ void Simulation::limit_to_element_bound() {
 void Simulation::replay_cuts(const std::vector<double>& cuts) {
   cuts_ = std::make_shared<CutState>(scene_);
   topology_version_ = 0;
-  double surface = 0;
   const auto damaged = [] { return Error("the checkpoint's list of cuts does not belong to this scene, or is damaged"); };
   for (std::size_t i = 0; i < cuts.size();) {
     if (cuts.size() - i < 2 || !(cuts[i] >= 0 && cuts[i] < static_cast<double>(scene_.bodies.size())) ||
@@ -181,7 +140,13 @@ void Simulation::replay_cuts(const std::vector<double>& cuts) {
       if (!(std::abs(cuts[i]) < 2e9 && std::abs(cuts[i + 1]) < 2e9)) throw damaged();
       edges[{static_cast<std::int32_t>(cuts[i]), static_cast<std::int32_t>(cuts[i + 1])}] = cuts[i + 2];
     }
-    topology_version_ += cuts_->body(scene_, body).cut(edges, surface).changed_elements() ? 1 : 0;
+    const CutEdit edit = cuts_->body(scene_, body).cut(edges);
+    if (!edit.changed_elements()) continue;
+    cuts_->body(scene_, body).update_surface(edit);
+    ++topology_version_;
+  }
+  for (const auto& body : cuts_->bodies) {
+    if (body != nullptr) body->update_elements();
   }
   const std::vector<const Solid*> solids = cuts_->solids();
   auto kept = std::make_shared<std::vector<Solid>>();

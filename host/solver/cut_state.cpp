@@ -1,7 +1,6 @@
 #include "solver/cut_state.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include "model/partition.h"
 #include "model/vec.h"
@@ -40,22 +39,19 @@ void BodyCut::keep_allowed(const Body& body, CutEdges& edges) const {
   });
 }
 
-CutEdit BodyCut::cut(const CutEdges& edges, double& surface) {
+CutEdit BodyCut::cut(const CutEdges& edges) {
   history_.push_back(edges);
   try {
-    return enter(edges, surface);
+    return topology_.cut(edges);
   } catch (...) {
     undo();
     throw;
   }
 }
 
-CutEdit BodyCut::enter(const CutEdges& edges, double& surface) {
-  CutEdit edit = topology_.cut(edges);
-  const auto start = std::chrono::steady_clock::now();
-  if (surface_ != nullptr && edit.changed_elements()) surface_->update(topology_, edit.cells);
-  surface += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return edit;
+void BodyCut::update_surface(const CutEdit& edit) {
+  if (surface_ != nullptr) surface_->update(topology_, edit.cells);
+  update_solid_surface(*uncut_, topology_, surface_.get(), solid_);
 }
 
 void BodyCut::undo() {
@@ -63,13 +59,11 @@ void BodyCut::undo() {
   topology_.reset({});
   solid_ = *uncut_;
   make_surface();
-  double surface = 0;
-  for (const CutEdges& edges : history_) enter(edges, surface);
-}
-
-const Solid& BodyCut::solid() {
+  for (const CutEdges& edges : history_) {
+    const CutEdit edit = topology_.cut(edges);
+    if (surface_ != nullptr && edit.changed_elements()) surface_->update(topology_, edit.cells);
+  }
   update_solid(*uncut_, topology_, surface_.get(), solid_);
-  return solid_;
 }
 
 CutState::CutState(const Scene& scene) : bodies(scene.bodies.size()) {

@@ -12,6 +12,7 @@
 #include "cutting/cut_topology.h"
 #include "cutting/rest_edges.h"
 #include "model/solid.h"
+#include "solver/helper_thread.h"
 
 namespace pliant {
 
@@ -24,12 +25,15 @@ class BodyCut {
   [[nodiscard]] const CutTopology& topology() const { return topology_; }
   /// Take out edges that may not be cut: those of cells left to shape matching where the scene says so.
   void keep_allowed(const Body& body, CutEdges& edges) const;
-  /// Throws, with nothing changed, what CutTopology::cut throws. Adds to `surface` the time that the surface took [s].
-  CutEdit cut(const CutEdges& edges, double& surface);
+  /// Divide the elements. Throws, with nothing changed, what CutTopology::cut throws.
+  CutEdit cut(const CutEdges& edges);
+  /// Bring the elements of solid(), or its surface, up to date after an edit: only what it changed. Both may run at once.
+  void update_elements() { update_solid_elements(*uncut_, topology_, solid_); }
+  void update_surface(const CutEdit& edit);
   /// Take the last edit back.
   void undo();
-  /// The body as it is cut now. Brought up to date at each call: only what edits have changed.
-  [[nodiscard]] const Solid& solid();
+  /// The body as it is cut now, in what was brought up to date.
+  [[nodiscard]] const Solid& solid() const { return solid_; }
   /// Edits so far, in order.
   [[nodiscard]] const std::vector<CutEdges>& history() const { return history_; }
   /// Mean edge of a cell at rest [m].
@@ -39,7 +43,6 @@ class BodyCut {
 
  private:
   void make_surface();
-  CutEdit enter(const CutEdges& edges, double& surface);
   std::shared_ptr<const Solid> uncut_;
   Solid solid_;
   CutTopology topology_;
@@ -65,6 +68,7 @@ struct CutState {
   [[nodiscard]] std::vector<const Solid*> solids() const;
   std::vector<SweepTriangle> pending_triangles;  ///< wait for a step of shape matching
   std::vector<BladeMove> pending_moves;          ///< likewise
+  HelperThread helper;                           ///< divides surfaces while elements become a model
 };
 
 }  // namespace pliant

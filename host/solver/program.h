@@ -45,10 +45,11 @@ struct Pass {
 
 struct Program {
   std::vector<Buffer> buffers;
-  std::vector<Pass> step;     ///< one time step
-  std::vector<Pass> force;    ///< R - F of the present configuration into node_force, without advancing
-  std::vector<Pass> status;   ///< once per batch: first fault of the batch into fault_summary
-  std::vector<Pass> surface;  ///< on demand: positions of the embedded surface
+  std::vector<Pass> step;      ///< one time step
+  std::vector<Pass> force;     ///< R - F of the present configuration into node_force, without advancing
+  std::vector<Pass> status;    ///< once per batch: first fault of the batch into fault_summary
+  std::vector<Pass> surface;   ///< on demand: positions of the embedded surface
+  std::vector<BufferId> late;  ///< buffers (ascending) and passes `surface` that Backend::update leaves for last
   [[nodiscard]] BufferId find(const std::string& name) const;  ///< -1 if absent
   BufferId add(Buffer buffer);                                 ///< returns its id
 };

@@ -32,9 +32,9 @@ void ProgramBuilder::add_bricks(const BrickBatch& b) {
     brick_rows_ = add(make_ints("brick_rows", BufferRole::constant, "[bricks + 1][2]", model_.brick_rows));
     brick_fill_ = add(make_reals("brick_fill", BufferType::real, model_.brick_fill.size(), BufferRole::constant,
                                  "[bricks + 1][256]", "1", "model", model_.brick_fill));
-    brick_force_ =
-        add(make_reals("brick_force", BufferType::real, bricks * PLIANT_BRICK_FORCE, BufferRole::scratch, "[bricks + 1][1280]",
-                       "N", "tled_hex8_brick_force", std::vector<double>(bricks * PLIANT_BRICK_FORCE, -0.0)));
+    brick_force_ = add(make_reals("brick_force", BufferType::real, bricks * PLIANT_BRICK_FORCE, BufferRole::scratch,
+                                  "[bricks + 1][1280]", "N", "tled_hex8_brick_force"));
+    program_.buffers[brick_force_].padding = -0.0;
   }
   const double d = b.spacing;
   std::int64_t cells = 0;

@@ -8,38 +8,67 @@
 namespace pliant {
 
 void ProgramBuilder::add_surface() {
-  const ModelSurface& s = model_.surface;
-  const std::size_t count = padded(s.rest.size());
-  if (count == 0) return;
-  bool single = true;
-  for (const auto& w : s.weights) single = single && w[0] == 1 && w[1] == 0;
-  const std::size_t width = single ? 1 : 8;
-  std::vector<double> rest(4 * count), weight(width * count);
-  std::vector<std::int32_t> node(width * count, 0);
-  for (std::size_t v = 0; v < s.rest.size(); ++v) {
-    for (int c = 0; c < 3; ++c) rest[4 * v + c] = s.rest[v][c];
-    for (std::size_t a = 0; a < width; ++a) {
-      node[tile_base(v, width) + a * PLIANT_TILE] = s.nodes[v][a];
-      weight[tile_base(v, width) + a * PLIANT_TILE] = s.weights[v][a];
-    }
-  }
-  const auto rest_id = add(
-      make_reals("surface_rest", BufferType::real4, count, BufferRole::constant, "[vertices]", "m", "model", std::move(rest)));
-  const auto node_id = add(make_ints("surface_node", BufferRole::constant, "[tiles][8][16]", std::move(node)));
-  const auto weight_id = add(make_reals("surface_weight", BufferType::real, width * count, BufferRole::constant,
-                                        "[tiles][8][16]", "1", "model", std::move(weight)));
-  surface_x_ =
-      add(make_reals("surface_x", BufferType::real4, count, BufferRole::scratch, "[vertices]", "m", "surface_position"));
+  if (model_.surface.rest.empty() && !options_.surface_follows) return;
+  const auto rest = add(make_reals("surface_rest", BufferType::real4, 0, BufferRole::constant, "[vertices]", "m", "model"));
+  const auto node = add(make_ints("surface_node", BufferRole::constant, "[tiles][8][16]", {}));
+  const auto weight =
+      add(make_reals("surface_weight", BufferType::real, 0, BufferRole::constant, "[tiles][8][16]", "1", "model"));
+  surface_x_ = add(make_reals("surface_x", BufferType::real4, 0, BufferRole::scratch, "[vertices]", "m", "surface_position"));
   program_.surface.push_back(
       {"surface_position",
-       {{"WIDTH", static_cast<int>(width)}},
-       {buffer_arg(node_u_), buffer_arg(rest_id), buffer_arg(node_id), buffer_arg(weight_id), buffer_arg(surface_x_)},
+       {{"WIDTH", 8}},
+       {buffer_arg(node_u_), buffer_arg(rest), buffer_arg(node), buffer_arg(weight), buffer_arg(surface_x_)},
        Shape::lanes,
-       static_cast<std::int64_t>(count),
-       "surface",
-       static_cast<std::int64_t>(s.rest.size()),
-       static_cast<double>(32 + width * 24),
-       static_cast<double>(6 * width + 3)});
+       0,
+       "surface"});
+  if (options_.surface_follows) {
+    program_.late = {rest, node, weight, surface_x_};
+  } else {
+    set_surface(model_.surface, program_);
+  }
+}
+
+void set_surface(const ModelSurface& s, Program& program, const std::vector<std::int32_t>* moved) {
+  const std::size_t count = padded(s.rest.size());
+  const bool single = std::all_of(s.weights.begin(), s.weights.end(), [](const auto& w) { return w[0] == 1 && w[1] == 0; });
+  const std::size_t width = single ? 1 : 8;
+  const BufferId first = program.find("surface_rest");
+  Buffer &rest = program.buffers[first], &node = program.buffers[first + 1], &weight = program.buffers[first + 2];
+  rest.count = program.buffers[first + 3].count = count;
+  node.count = weight.count = width * count;
+  const auto place = [&](std::size_t v) {
+    std::copy(s.rest[v].begin(), s.rest[v].end(), &rest.reals[4 * v]);
+    for (std::size_t a = 0; a < width; ++a) {
+      weight.reals[tile_base(v, width) + a * PLIANT_TILE] = s.weights[v][a];
+      node.ints[tile_base(v, width) + a * PLIANT_TILE] = s.nodes[v][a];
+    }
+  };
+  if (moved == nullptr || single) {
+    rest.reals.assign(4 * count, 0.0);
+    weight.reals.assign(weight.count, 0.0);
+    node.ints.assign(node.count, 0);
+    for (std::size_t v = 0; v < s.rest.size(); ++v) place(v);
+  } else {
+    rest.reals.resize(4 * count, 0.0);
+    weight.reals.resize(weight.count, 0.0);
+    node.ints.resize(node.count, 0);
+    std::vector<ValueRange> in_rest, in_tiles;
+    for (const std::int32_t v : *moved) {
+      place(static_cast<std::size_t>(v));
+      const std::size_t tile = static_cast<std::size_t>(v) / PLIANT_TILE * PLIANT_TILE;
+      if (!in_rest.empty() && in_rest.back().first == 4 * tile) continue;
+      in_rest.push_back({4 * tile, 4 * (tile + PLIANT_TILE)});
+      in_tiles.push_back({width * tile, width * (tile + PLIANT_TILE)});
+    }
+    rest.changed = in_rest;
+    weight.changed = node.changed = in_tiles;
+  }
+  Pass& pass = program.surface.front();
+  pass.defines = {{"WIDTH", static_cast<int>(width)}};
+  pass.count = static_cast<std::int64_t>(count);
+  pass.elements = static_cast<std::int64_t>(s.rest.size());
+  pass.bytes_per_element = static_cast<double>(32 + width * 24);
+  pass.flops_per_element = static_cast<double>(6 * width + 3);
 }
 
 void ProgramBuilder::add_pressure_passes() {

@@ -44,11 +44,14 @@ Simulation::Simulation(Scene scene, std::shared_ptr<const Model> model, std::uni
   start(options);
 }
 
-/// Make the model's program and load it, in place of the one that is loaded or beside nothing.
-void Simulation::load_program(bool patch) {
-  const Program loaded = std::exchange(program_, build_program(*model_, {scene_.integrator, batch_steps_}));
-  if (patch) {
-    backend_->update(loaded, program_);
+void Simulation::load_program() { install(build_program(*model_, {scene_.integrator, batch_steps_}), nullptr); }
+
+/// Load the model's program, in place of the one that is loaded or, with `complete`, over it (Backend::update).
+void Simulation::install(Program program, const std::function<void()>& complete) {
+  const Program loaded = std::exchange(program_, std::move(program));
+  if (complete != nullptr) {
+    backend_->update(loaded, program_, complete);
+    for (Buffer& buffer : program_.buffers) buffer.changed.reset();  // it says nothing about the next program
   } else {
     backend_->load(program_);
   }

@@ -71,6 +71,8 @@ class Simulation {
   /// has substeps, at the next batch that begins with one of its steps). Throws Error, with nothing changed, for triangles that
   /// are not finite, a body that cannot be cut, or a model that does not fit the device.
   CutReport cut(std::span<const std::array<Vec3d, 3>> triangles);
+  /// Do now what the first cut would do once, such as filling the bodies. Throws like cut().
+  void prepare_cuts();
   /// Move a blade to a segment; it cuts what it sweeps over. Its first call only puts it there. `blade` is any name. Throws
   /// like cut(), and for a segment without length.
   CutReport move_blade(const std::string& blade, const std::array<Vec3d, 2>& segment);
@@ -78,7 +80,7 @@ class Simulation {
   void lift_blade(const std::string& blade);
   /// Grows with each edit that changed elements.
   [[nodiscard]] std::int64_t topology_version() const { return topology_version_; }
-  /// How a body is cut; nullptr if no blade has touched it.
+  /// How a body is cut; nullptr if nothing was prepared to cut it.
   [[nodiscard]] const CutTopology* cut_topology(std::size_t body) const;
 
   /// Vertices of the embedded surface as the backend holds them, four reals each (the fourth is 0), padded to a multiple of 16
@@ -115,21 +117,22 @@ class Simulation {
 
  private:
   void start(const SimulationOptions& options);
-  void load_program(bool patch = false);
+  void load_program();
+  void install(Program program, const std::function<void()>& complete);
   /// Defined in follow_tool.cpp.
   void follow_tool();
   void move_region(const std::vector<double>& seeds);
   void set_seeds(const std::vector<double>& seeds);
   /// Defined in blades.cpp and cut_model.cpp.
-  void prepare_blades();
-  void move_blades();
+  void prepare_blades(), move_blades();
   CutState& cut_state();
   CutReport run_blades(const std::vector<BladeMove>& moves, std::span<const std::array<Vec3d, 3>> triangles);
   void cut_now(const std::vector<std::map<std::array<std::int32_t, 2>, double>>& edges, CutReport& report);
   [[nodiscard]] bool reached(std::size_t body, const std::vector<Vec3d>& x, const std::vector<BladeMove>& moves,
                              std::span<const std::array<Vec3d, 3>> triangles) const;
   [[nodiscard]] std::vector<Vec3d> positions(std::size_t body) const;
-  void rebuild(const std::vector<CutEdit>& edits, CutReport& report);
+  friend class ModelSwap;
+  void keep_solids();
   void replay_cuts(const std::vector<double>& cuts);
   void limit_to_element_bound();
   void prepare_tears(), tear();  // these and the next two in tear.cpp
@@ -149,19 +152,14 @@ class Simulation {
   /// Whether all subcycles begin in this step, the first such step since a multiple of `every`.
   [[nodiscard]] bool begins_after(std::int64_t step, std::int64_t every) const;
   void upload_shape_matching();
-  void set_initial_increment();
-  void upload_params();
-  void upload_decay();
-  void upload_host_forces();  // in host_forces.cpp
+  void set_initial_increment(), upload_params(), upload_decay(), upload_host_forces();
   [[nodiscard]] double decay(std::size_t slot) const;
   void upload_curves(std::int32_t steps);
   void change_dt(double dt);
   [[nodiscard]] bool adapts_at(std::int64_t step) const;
   [[nodiscard]] bool on_grid(std::int64_t step) const;
-  void keep_state();
-  void return_to_kept();
-  void adapt_dt();
-  void relax();
+  void keep_state(), return_to_kept();
+  void adapt_dt(), relax();
   [[nodiscard]] double time_at(std::int64_t step) const {
     return state_.origin_time + static_cast<double>(step - state_.origin_step) * state_.dt;
   }

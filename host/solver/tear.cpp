@@ -6,7 +6,7 @@
 #include "cutting/torn_body.h"
 #include "model/vec.h"
 #include "pliant/error.h"
-#include "solver/simulation.h"
+#include "solver/model_swap.h"
 #include "solver/tear_state.h"
 
 namespace pliant {
@@ -90,32 +90,12 @@ void Simulation::tear() {
 /// The model of the torn bodies, every node with the displacement and velocity of the one it comes from: masses of copies add
 /// up to that of their node, so momentum is kept.
 void Simulation::install_torn(const std::vector<std::vector<std::int32_t>>& from) {
-  std::vector<std::vector<Vec3d>> u, v;
-  for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
-    u.push_back(displacements(b));
-    v.push_back(velocities(b));
-  }
-  backend_->finish();
-  model_ = std::make_shared<const Model>(build_model(scene_, tears_->solids));
-  load_program();
-  std::vector<double> new_u = backend_->read_reals(u_), new_w = backend_->read_reals(w_);
-  for (std::size_t b = 0; b < u.size(); ++b) {
-    const std::vector<std::int32_t>& slots = model_->bodies[b].slot;
-    for (std::size_t n = 0; n < slots.size(); ++n) {
-      const auto slot = static_cast<std::size_t>(slots[n]);
-      const std::size_t before = from[b].empty() ? n : static_cast<std::size_t>(from[b][n]);
-      for (std::size_t c = 0; c < 3; ++c) {
-        new_u[4 * slot + c] = u[b][before][c];
-        new_w[4 * slot + c] = substeps_of(slot) * state_.dt * v[b][before][c];
-      }
-    }
-  }
-  for (std::size_t s = 0; s < model_->mass.size(); ++s) new_w[4 * s + 3] = decay(s);
-  backend_->write_reals(u_, new_u);
-  backend_->write_reals(w_, new_w);
-  upload_shape_matching();
-  state_.vectors.erase("kept");  // copies of the old model's buffers
-  ++topology_version_;
+  std::vector<NodeOrigins> origins;
+  for (const std::vector<std::int32_t>& nodes : from) origins.push_back({nodes, {}});
+  std::vector<const Solid*> solids;
+  for (const Solid& solid : tears_->solids) solids.push_back(&solid);
+  CutReport report;
+  ModelSwap(*this, report).run(solids, std::move(origins), [] {});
 }
 
 /// Break what a checkpoint says is broken, and load the model that it gives.

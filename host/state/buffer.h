@@ -2,6 +2,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,11 @@ enum class BufferRole {
 
 using BufferId = std::int32_t;
 
+/// Values [first, last) of a buffer.
+struct ValueRange {
+  std::size_t first = 0, last = 0;
+};
+
 /// One row of the table. `count` counts elements of `type` (a real4 holds four reals).
 struct Buffer {
   std::string name;
@@ -32,8 +38,12 @@ struct Buffer {
   std::string shape;               ///< for people: "[nodes]", "[tiles][10][16]"
   std::string unit;                ///< "m", "N", "1"
   std::string producer;            ///< the kernel that writes it, or "model" or "host"
-  std::vector<double> reals;       ///< initial values; empty means zero. Rounded once to the backend's real type.
-  std::vector<std::int32_t> ints;  ///< initial values; empty means zero
+  std::vector<double> reals;       ///< initial values, rounded once to the backend's real type; missing ones are `padding`
+  std::vector<std::int32_t> ints;  ///< initial values; missing ones are zero
+  double padding = 0;
+  /// Where the initial values differ from those that the program before had, if that is known; ascending. What lies beyond the
+  /// end of those need not be in it.
+  std::optional<std::vector<ValueRange>> changed = std::nullopt;
 
   /// Numbers of four (or, in a double backend, eight) bytes.
   [[nodiscard]] std::size_t values() const { return type == BufferType::real4 ? 4 * count : count; }

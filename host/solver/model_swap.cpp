@@ -1,0 +1,130 @@
+#include "solver/model_swap.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "model/boundary_conditions.h"
+
+namespace pliant {
+namespace {
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+double lap(double& start) {
+  const double end = now();
+  return end - std::exchange(start, end);
+}
+
+}  // namespace
+
+ModelSwap::ModelSwap(Simulation& simulation, CutReport& report) : s_(simulation), report_(report), start_(now()) {
+  s_.backend_->finish();
+  old_u_ = s_.backend_->read_reals(s_.u_);
+  old_w_ = s_.backend_->read_reals(s_.w_);
+  for (std::size_t b = 0; b < s_.scene_.bodies.size(); ++b) {
+    u_.push_back(s_.pick(old_u_, b, 1));
+    v_.push_back(s_.velocities_from(old_w_, b));
+  }
+}
+
+/// Most of a surface stays as it is, and there is time to copy it while the rest is made.
+void ModelSwap::keep_surface(Program& program) {
+  if (s_.scene_.bodies.size() != 1) return;
+  const ModelBody &body = model_->bodies[0], &before = s_.model_->bodies[0];
+  const std::int32_t first = before.virtual_nodes.first;
+  const auto real = first < 0 ? before.slot.size() : static_cast<std::size_t>(first);
+  if (!std::equal(before.slot.begin(), before.slot.begin() + static_cast<std::ptrdiff_t>(real), body.slot.begin())) return;
+  const auto keep = [](const auto& from, auto& to) {
+    to.reserve(from.size() + from.size() / 8);  // for what the edit adds
+    to = from;
+  };
+  for (const char* name : {"surface_rest", "surface_node", "surface_weight"}) {
+    const Buffer& from = s_.program_.buffers[s_.program_.find(name)];
+    Buffer& to = program.buffers[program.find(name)];
+    keep(from.reals, to.reals);
+    keep(from.ints, to.ints);
+  }
+  keep(s_.model_->surface.rest, model_->surface.rest);
+  keep(s_.model_->surface.weights, model_->surface.weights);
+  keep(s_.model_->surface.nodes, model_->surface.nodes);
+  model_->surface.triangles.reserve(s_.model_->surface.triangles.size() + s_.model_->surface.triangles.size() / 8);
+  kept_ = true;
+}
+
+void ModelSwap::take_surfaces(std::span<const Solid* const> solids, const std::function<void()>& ready) {
+  ready();
+  report_.surface += lap(start_);
+  if (kept_ && solids[0]->moved) moved_ = &*solids[0]->moved;
+  add_surfaces(solids, *model_, moved_);
+}
+
+void ModelSwap::run(std::span<const Solid* const> solids, std::vector<NodeOrigins> origins,
+                    const std::function<void()>& ready) {
+  origins_ = std::move(origins);
+  model_ = std::make_shared<Model>(build_elements(s_.scene_, solids, s_.model_.get()));
+  // What only the surface needs comes last: it takes longest to make.
+  const bool follows = !needs_surface(s_.scene_) && !s_.program_.surface.empty();
+  if (!follows) {
+    report_.model += lap(start_);
+    take_surfaces(solids, ready);
+  }
+  add_boundary_conditions(s_.scene_, *model_);
+  Program program = build_program(*model_, {s_.scene_.integrator, s_.batch_steps_, follows});
+  new_u_ = program.buffers[program.find("node_u")].reals;
+  new_w_ = program.buffers[program.find("node_w")].reals;
+  if (follows) keep_surface(program);
+  report_.model += lap(start_);
+  const std::shared_ptr<const Model> old_model = std::exchange(s_.model_, model_);
+  try {
+    s_.install(std::move(program), [&] {
+      carry_motion();
+      report_.upload += lap(start_);
+      if (!follows) return;
+      take_surfaces(solids, ready);
+      set_surface(model_->surface, s_.program_, moved_);
+      report_.model += lap(start_);
+    });
+  } catch (...) {
+    restore(old_model);
+    throw;
+  }
+  s_.backend_->write_reals(s_.u_, new_u_);
+  s_.backend_->write_reals(s_.w_, new_w_);
+  s_.upload_shape_matching();
+  s_.state_.vectors.erase("kept");  // copies of the old model's buffers
+  ++s_.topology_version_;
+  report_.upload += lap(start_);
+}
+
+void ModelSwap::carry_motion() {
+  for (std::size_t b = 0; b < u_.size(); ++b) {
+    const NodeOrigins& origins = origins_[b];
+    const std::vector<std::int32_t>& slots = model_->bodies[b].slot;
+    std::vector<Vec3d> velocity(slots.size());
+    for (std::size_t n = 0; n < velocity.size(); ++n) velocity[n] = v_[b][origins.of(n)];
+    for (const FluxMass& f : origins.flux) {
+      const double share = f.mass / model_->mass[slots[f.node]];
+      for (std::size_t c = 0; c < 3; ++c) velocity[f.node][c] += share * (v_[b][f.from][c] - v_[b][origins.of(f.node)][c]);
+    }
+    for (std::size_t n = 0; n < slots.size(); ++n) {
+      const auto slot = static_cast<std::size_t>(slots[n]);
+      const Vec3d& moved = u_[b][origins.of(n)];
+      for (std::size_t c = 0; c < 3; ++c) {
+        new_u_[4 * slot + c] = moved[c];
+        new_w_[4 * slot + c] = s_.substeps_of(slot) * s_.state_.dt * velocity[n][c];
+      }
+    }
+  }
+  for (std::size_t slot = 0; slot < model_->mass.size(); ++slot) new_w_[4 * slot + 3] = s_.decay(slot);
+}
+
+void ModelSwap::restore(const std::shared_ptr<const Model>& model) {
+  s_.model_ = model;
+  s_.load_program();
+  s_.backend_->write_reals(s_.u_, old_u_);
+  s_.backend_->write_reals(s_.w_, old_w_);
+  s_.upload_shape_matching();
+}
+
+}  // namespace pliant
