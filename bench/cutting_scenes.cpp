@@ -17,22 +17,17 @@ constexpr double kFrame = 1.0 / 60;  // [s]
 
 void move_blades(Simulation& simulation, const std::vector<Blade>& blades, double time, std::vector<CutTimes>& changed,
                  std::vector<double>& frames) {
-  CutTimes all;
-  bool cut = false;
+  std::vector<BladePlace> begin, places;
   for (const Blade& blade : blades) {
     const double first = std::max(blade.start, blade.path.front()[0]), last = std::min(blade.end, blade.path.back()[0]);
     if (time < first || time >= last + kFrame) continue;
-    if (time < first + kFrame) simulation.move_blade(blade.name, blade.at(first));  // puts it there
-    const CutReport report = simulation.move_blade(blade.name, blade.at(std::min(time, last)));
-    cut = cut || report.changed;
-    all.search += report.search;
-    all.topology += report.topology;
-    all.surface += report.surface;
-    all.model += report.model;
-    all.upload += report.upload;
+    if (time < first + kFrame) begin.push_back({blade.name, blade.at(first)});
+    places.push_back({blade.name, blade.at(std::min(time, last))});
   }
-  frames.push_back(1e3 * all.total());
-  if (cut) changed.push_back(all);
+  simulation.move_blades(begin);  // puts them there
+  const CutReport report = simulation.move_blades(places);
+  frames.push_back(1e3 * report.seconds());
+  if (report.changed) changed.push_back({report.search, report.topology, report.surface, report.model, report.upload});
 }
 
 void measure(const CuttingRun& run, const std::string& name) {
@@ -60,6 +55,7 @@ void measure(const CuttingRun& run, const std::string& name) {
     return ms_per_step(uncut, run.options.quick);
   }();
   Simulation simulation = start();
+  simulation.prepare_cuts();
   std::vector<CutTimes> changed;
   std::vector<double> frames;
   bool closed = true;

@@ -223,25 +223,36 @@ CutReport Simulation::cut(std::span<const std::array<Vec3d, 3>> triangles) {
   return {};
 }
 
-CutReport Simulation::move_blade(const std::string& blade, const std::array<Vec3d, 2>& segment) {
-  if (!vec::finite(segment[0]) || !vec::finite(segment[1]) || segment[0] == segment[1]) {
+CutReport Simulation::move_blades(std::span<const BladePlace> places) {
+  for (const auto& [blade, segment] : places) {
+    if (vec::finite(segment[0]) && vec::finite(segment[1]) && segment[0] != segment[1]) continue;
     throw Error(fmt::format("blade '{}': got a segment from [{}] m to [{}] m; allowed are two different finite points", blade,
                             fmt::join(segment[0], ", "), fmt::join(segment[1], ", ")));
   }
-  std::vector<double>& place = state_.vectors["blade/" + blade];
-  const std::vector<double> before = place;
-  CutReport report;
-  if (before.size() == 6) {
+  std::vector<BladeMove> moves;
+  for (const auto& [blade, segment] : places) {
+    const std::vector<double>& before = state_.vectors["blade/" + blade];
+    if (before.size() != 6) continue;
     const BladeSegment from{Vec3d{before[0], before[1], before[2]}, Vec3d{before[3], before[4], before[5]}};
-    const BladeMove move{"host/" + blade, from, {segment}};
-    if (phase() == 0) {
-      report = run_blades({move}, {});
-    } else {
-      cut_state().pending_moves.push_back(move);
-    }
+    moves.push_back({"host/" + blade, from, {segment}});
   }
-  state_.vectors["blade/" + blade] = {segment[0][0], segment[0][1], segment[0][2], segment[1][0], segment[1][1], segment[1][2]};
+  CutReport report;
+  if (!moves.empty() && phase() == 0) {
+    report = run_blades(moves, {});
+  } else if (!moves.empty()) {
+    auto& pending = cut_state().pending_moves;
+    pending.insert(pending.end(), moves.begin(), moves.end());
+  }
+  for (const auto& [blade, segment] : places) {
+    const auto& [a, b] = segment;
+    state_.vectors["blade/" + blade] = {a[0], a[1], a[2], b[0], b[1], b[2]};
+  }
   return report;
+}
+
+CutReport Simulation::move_blade(const std::string& blade, const std::array<Vec3d, 2>& segment) {
+  const BladePlace place{blade, segment};
+  return move_blades(std::span(&place, 1));
 }
 
 }  // namespace pliant

@@ -108,6 +108,11 @@ void Simulation::prepare_restore(const SimulationState& state) {
   } else if (moved) {
     move_region(seeds->second);
   }
+  // An edit may have changed several bodies: the replay cannot count them.
+  const auto version = state.vectors.find("topology_version");
+  if (version != state.vectors.end() && version->second.size() == 1 && std::abs(version->second[0]) < 1e15) {
+    topology_version_ = static_cast<std::int64_t>(version->second[0]);
+  }
 }
 
 }  // namespace pliant

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <numeric>
 #include <utility>
 
 #include "model/boundary_conditions.h"
@@ -40,10 +41,10 @@ void ModelSwap::keep_surface(Program& program) {
     to = from;
   };
   for (const char* name : {"surface_rest", "surface_node", "surface_weight"}) {
-    const Buffer& from = s_.program_.buffers[s_.program_.find(name)];
+    Buffer& from = s_.program_.buffers[s_.program_.find(name)];  // nobody looks at its values again: changed is known
     Buffer& to = program.buffers[program.find(name)];
-    keep(from.reals, to.reals);
-    keep(from.ints, to.ints);
+    to.reals = std::move(from.reals);
+    to.ints = std::move(from.ints);
   }
   keep(s_.model_->surface.rest, model_->surface.rest);
   keep(s_.model_->surface.weights, model_->surface.weights);
@@ -55,7 +56,13 @@ void ModelSwap::keep_surface(Program& program) {
 void ModelSwap::take_surfaces(std::span<const Solid* const> solids, const std::function<void()>& ready) {
   ready();
   report_.surface += lap(start_);
-  if (kept_ && solids[0]->moved) moved_ = &*solids[0]->moved;
+  if (kept_ && solids[0]->moved) {
+    moved_ = &*solids[0]->moved;
+  } else if (kept_) {
+    all_.resize(solids[0]->surface.size());
+    std::iota(all_.begin(), all_.end(), 0);
+    moved_ = &all_;
+  }
   add_surfaces(solids, *model_, moved_);
 }
 
@@ -73,7 +80,7 @@ void ModelSwap::run(std::span<const Solid* const> solids, std::vector<NodeOrigin
   Program program = build_program(*model_, {s_.scene_.integrator, s_.batch_steps_, follows});
   new_u_ = program.buffers[program.find("node_u")].reals;
   new_w_ = program.buffers[program.find("node_w")].reals;
-  if (follows) keep_surface(program);
+  if (follows && solids[0]->lattice != nullptr) keep_surface(program);
   report_.model += lap(start_);
   const std::shared_ptr<const Model> old_model = std::exchange(s_.model_, model_);
   try {
@@ -93,7 +100,7 @@ void ModelSwap::run(std::span<const Solid* const> solids, std::vector<NodeOrigin
   s_.backend_->write_reals(s_.w_, new_w_);
   s_.upload_shape_matching();
   s_.state_.vectors.erase("kept");  // copies of the old model's buffers
-  ++s_.topology_version_;
+  s_.state_.vectors["topology_version"] = {static_cast<double>(++s_.topology_version_)};
   report_.upload += lap(start_);
 }
 

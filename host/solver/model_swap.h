@@ -1,4 +1,4 @@
-// Replaces the model of a running simulation by that of its bodies after an edit. Private to host/solver.
+// Replaces the model of a running simulation by that of its bodies after a cut or a tear. Private to host/solver.
 #pragma once
 #include <functional>
 #include <memory>
@@ -46,8 +46,9 @@ class ModelSwap {
   std::vector<std::vector<Vec3d>> u_, v_;  ///< [bodies][nodes before the edit]
   std::vector<NodeOrigins> origins_;
   std::shared_ptr<Model> model_;
-  bool kept_ = false;  ///< the surface of the old model is in the new one
-  const std::vector<std::int32_t>* moved_ = nullptr;
+  bool kept_ = false;                                 ///< the surface of the old model is in the new one
+  const std::vector<std::int32_t>* moved_ = nullptr;  ///< vertices that differ from what was kept
+  std::vector<std::int32_t> all_;
   std::vector<double> new_u_, new_w_;
 };
 

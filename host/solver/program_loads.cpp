@@ -48,6 +48,10 @@ void set_surface(const ModelSurface& s, Program& program, const std::vector<std:
     weight.reals.assign(weight.count, 0.0);
     node.ints.assign(node.count, 0);
     for (std::size_t v = 0; v < s.rest.size(); ++v) place(v);
+    if (moved != nullptr) {
+      rest.changed = {{0, rest.values()}};
+      weight.changed = node.changed = {{0, weight.count}};
+    }
   } else {
     rest.reals.resize(4 * count, 0.0);
     weight.reals.resize(weight.count, 0.0);

@@ -1,5 +1,6 @@
 // A scene on a backend: advance it, look at it, save and restore it.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -53,7 +54,7 @@ class Simulation {
   [[nodiscard]] std::int64_t step() const { return state_.step; }
   [[nodiscard]] double time() const { return time_at(state_.step); }
   [[nodiscard]] double dt() const { return state_.dt; }
-  /// 2 / omega_max of the present configuration, as of the last estimate [s]; 0 if none was made.
+  /// 2 / omega_max of the present configuration, as of the last estimate [s]; 0: none.
   [[nodiscard]] double stable_dt() const { return state_.stable_dt; }
   /// Estimate it now. More iterations make it tighter; it errs on the safe side.
   double estimate_stable_dt(int iterations = 48);
@@ -67,14 +68,14 @@ class Simulation {
   /// Vertices of the embedded surface of all bodies [m].
   [[nodiscard]] std::vector<Vec3d> surface_positions();
 
-  /// Cut everything that these triangles [m] cross, in present positions. Between two batches of a run (now, if shape matching
-  /// has substeps, at the next batch that begins with one of its steps). Throws Error, with nothing changed, for triangles that
-  /// are not finite, a body that cannot be cut, or a model that does not fit the device.
+  /// Cut everything that these triangles [m] cross, in present positions. Between two batches of a run (with substeps of shape
+  /// matching at the next batch that begins with one of its steps). Throws Error, with nothing changed, for triangles that are
+  /// not finite, a body that cannot be cut, or a model that does not fit the device.
   CutReport cut(std::span<const std::array<Vec3d, 3>> triangles);
   /// Do now what the first cut would do once, such as filling the bodies. Throws like cut().
   void prepare_cuts();
-  /// Move a blade to a segment; it cuts what it sweeps over. Its first call only puts it there. `blade` is any name. Throws
-  /// like cut(), and for a segment without length.
+  /// Move blades; they cut what they sweep over. A blade's first call only puts it there. Throws like cut().
+  CutReport move_blades(std::span<const BladePlace> places);
   CutReport move_blade(const std::string& blade, const std::array<Vec3d, 2>& segment);
   /// Forget where a blade of move_blade is, if there is one: its next call puts it somewhere else.
   void lift_blade(const std::string& blade);
@@ -189,7 +190,7 @@ class Simulation {
   bool equilibrium_ = false;
   double residual_ = 0;
   std::vector<HostForce> host_forces_;
-  std::shared_ptr<CutState> cuts_;           ///< once a blade has touched something
+  std::shared_ptr<CutState> cuts_;           ///< once something was prepared to be cut
   std::shared_ptr<struct TearState> tears_;  ///< if a material tears
   std::int64_t topology_version_ = 0;
   std::int64_t blade_steps_ = 0;  ///< steps between two looks at the scene's blades; 0: it has none

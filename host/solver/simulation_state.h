@@ -1,5 +1,6 @@
 // What a simulation reports, and what it needs beside its buffers to go on.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -27,7 +28,13 @@ struct SimulationState {
   std::map<std::string, std::vector<double>> vectors;  ///< what dynamic relaxation and the automatic step remember
 };
 
-/// What an edit of the topology did, and the time it took [s].
+/// Where a blade is to go.
+struct BladePlace {
+  std::string blade;               ///< any name
+  std::array<Vec3d, 2> segment{};  ///< [m]
+};
+
+/// What an edit of the topology did, and the time it took [s]. `surface` is what the model waited for its surface.
 struct CutReport {
   std::int64_t edges = 0;  ///< newly cut
   bool changed = false;    ///< whether elements were split

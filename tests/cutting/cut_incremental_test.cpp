@@ -35,6 +35,33 @@ void expect_same_programs(const Program& a, const Program& b) {
   }
 }
 
+void expect_patched_as_fresh(const Scene& scene, const char* backend, const Vec3d& size) {
+  SimulationOptions options;
+  options.dt = 2e-4;
+  Simulation s(scene, open_backend(backend), options);
+  std::mt19937 random(11);
+  for (int k = 0; k < 6; ++k) {
+    s.advance(3);
+    s.cut(random_cut(random, size));
+    if (k % 2 == 0) continue;
+    Simulation fresh(scene, open_backend(backend), options);
+    restore_checkpoint(fresh, take_checkpoint(s), "saved");
+    ASSERT_EQ(fresh.topology_version(), s.topology_version());
+    expect_same_programs(s.program(), fresh.program());
+    EXPECT_EQ(s.surface_positions(), fresh.surface_positions());
+    EXPECT_EQ(s.model().surface.weights, fresh.model().surface.weights);
+    EXPECT_EQ(s.model().surface.nodes, fresh.model().surface.nodes);
+    EXPECT_EQ(s.model().surface.triangles, fresh.model().surface.triangles);
+    for (std::size_t i = 0; i < s.program().buffers.size(); ++i) {
+      const Buffer& buffer = s.program().buffers[i];
+      if (buffer.role != BufferRole::constant && buffer.name != "node_u" && buffer.name != "node_w") continue;
+      const auto id = static_cast<BufferId>(i);
+      EXPECT_EQ(s.backend().read_bytes(id), fresh.backend().read_bytes(id)) << buffer.name;
+    }
+  }
+  EXPECT_GE(s.topology_version(), 4);
+}
+
 class CutIncremental : public ::testing::TestWithParam<std::tuple<ModelType, ElementKind, const char*>> {};
 INSTANTIATE_TEST_SUITE_P(Cutting, CutIncremental,
                          ::testing::Values(std::tuple(ModelType::tled, ElementKind::hex8, "cpu"),
@@ -52,27 +79,26 @@ TEST_P(CutIncremental, patched_buffers_have_the_bits_of_a_fresh_start) {
   body.model.width = 1;
   body.model.ratio = 0.5;
   body.velocity = {0.01, 0, 0.02};
-  const Scene scene = scene_with(body);
-  SimulationOptions options;
-  options.dt = 2e-4;
-  Simulation s(scene, open_backend(backend), options);
-  std::mt19937 random(11);
-  for (int k = 0; k < 6; ++k) {
-    s.advance(3);
-    s.cut(random_cut(random, size));
-    if (k % 2 == 0) continue;
-    Simulation fresh(scene, open_backend(backend), options);
-    restore_checkpoint(fresh, take_checkpoint(s), "saved");
-    ASSERT_EQ(fresh.topology_version(), s.topology_version());
-    expect_same_programs(s.program(), fresh.program());
-    for (std::size_t i = 0; i < s.program().buffers.size(); ++i) {
-      const Buffer& buffer = s.program().buffers[i];
-      if (buffer.role != BufferRole::constant && buffer.name != "node_u" && buffer.name != "node_w") continue;
-      const auto id = static_cast<BufferId>(i);
-      EXPECT_EQ(s.backend().read_bytes(id), fresh.backend().read_bytes(id)) << buffer.name;
-    }
-  }
-  EXPECT_GE(s.topology_version(), 4);
+  expect_patched_as_fresh(scene_with(body), backend, size);
+}
+
+// What may not be made before the surface is known, or kept from before.
+TEST(CutIncremental, surfaces_with_loads_and_of_several_bodies_are_patched_too) {
+  const Vec3d size{0.06, 0.03, 0.04};
+  Scene scene = scene_with(box_body("box", size));
+  scene.interactive = true;
+  expect_patched_as_fresh(scene, "cpu", size);
+  scene.interactive = false;
+  Pressure pressure;
+  pressure.where.kind = Selection::Kind::all;
+  pressure.pressure = 10;
+  scene.bodies[0].pressures.push_back(pressure);
+  expect_patched_as_fresh(scene, "cpu", size);
+  scene.bodies[0].pressures.clear();
+  Body other = box_body("other", {0.03, 0.04, 0.03}, ElementKind::tet4);
+  other.pointer = "/bodies/1";
+  scene.bodies.push_back(other);
+  expect_patched_as_fresh(scene, "cpu", size);
 }
 
 TEST(CutIncremental, a_backend_that_is_updated_holds_what_a_loaded_one_holds) {
