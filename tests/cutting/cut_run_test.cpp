@@ -229,6 +229,21 @@ TEST(CutRun, bad_blades_are_refused_and_change_nothing) {
   EXPECT_EQ(s.cut_topology(0)->pieces(), 2);
 }
 
+TEST(CutRun, nodes_of_a_cut_are_damped_like_others) {
+  Body body = box_body("box", {0.04, 0.03, 0.03});
+  body.material.damping = 40;
+  SimulationOptions options;
+  options.dt = 5e-4;  // one that no cut changes
+  Simulation s(scene_with(body), open_backend("cpu"), options);
+  s.advance(3);
+  ASSERT_TRUE(s.cut(wall(0.021)).changed);
+  const std::vector<double> w = s.backend().read_reals(s.program().find("node_w"));
+  const double k = 0.5 * s.dt() * 40;
+  for (const std::int32_t slot : s.model().bodies[0].slot) {
+    ASSERT_NEAR(w[4 * static_cast<std::size_t>(slot) + 3], (1 - k) / (1 + k), 1e-7);
+  }
+}
+
 TEST(CutRun, blades_that_move_together_make_one_edit) {
   const Scene scene = scene_with(box_body("box", {0.06, 0.03, 0.03}));
   Simulation together(scene, open_backend("cpu")), apart(scene, open_backend("cpu"));
