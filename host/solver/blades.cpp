@@ -113,8 +113,8 @@ void Simulation::prepare_blades() {
   blade_steps_ = steps < 1 ? 1 : static_cast<std::int64_t>(std::min(steps, static_cast<double>(batch_steps_)));
 }
 
-std::vector<Vec3d> Simulation::positions(std::size_t body) const {
-  std::vector<Vec3d> x = displacements(body);
+std::vector<Vec3d> Simulation::positions(const std::vector<double>& u, std::size_t body) const {
+  std::vector<Vec3d> x = pick(u, body, 1);
   for (std::size_t n = 0; n < x.size(); ++n) x[n] = vec::add(model_->bodies[body].rest[n], x[n]);
   return x;
 }
@@ -157,9 +157,10 @@ CutReport Simulation::run_blades(const std::vector<BladeMove>& moves, std::span<
   CutReport report;
   const auto start = std::chrono::steady_clock::now();
   std::vector<CutEdges> edges(scene_.bodies.size());
+  std::vector<double> u = backend_->read_reals(u_);
   std::map<std::string, std::vector<double>> fronts;
   for (std::size_t b = 0; b < edges.size(); ++b) {
-    const std::vector<Vec3d> x = positions(b);
+    const std::vector<Vec3d> x = positions(u, b);
     if (!reached(b, x, moves, triangles)) continue;
     BodyCut& body = cuts_->body(scene_, b);
     edges[b] = crossed_edges(body.topology(), x, triangles);
@@ -178,7 +179,7 @@ CutReport Simulation::run_blades(const std::vector<BladeMove>& moves, std::span<
     report.edges += static_cast<std::int64_t>(edges[b].size());
   }
   report.search = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (report.edges > 0) cut_now(edges, report);
+  if (report.edges > 0) cut_now(edges, std::move(u), report);
   for (const BladeMove& move : moves) {
     for (std::size_t b = 0; b < edges.size(); ++b) state_.vectors.erase(front_key(move, b));
   }

@@ -61,8 +61,8 @@ std::vector<FluxMass> flux_masses(const Body& body, const Solid& solid, const Cu
 
 }  // namespace
 
-/// Cut these edges of each body.
-void Simulation::cut_now(const std::vector<CutEdges>& edges, CutReport& report) {
+/// Cut these edges of each body. `u`: what node_u holds.
+void Simulation::cut_now(const std::vector<CutEdges>& edges, std::vector<double> u, CutReport& report) {
   Clock::time_point start = Clock::now();
   std::vector<CutEdit> edits(edges.size());
   std::size_t done = 0;
@@ -79,7 +79,7 @@ void Simulation::cut_now(const std::vector<CutEdges>& edges, CutReport& report) 
         }
       });
       const WaitFor end(surfaces);
-      ModelSwap swap(*this, report);
+      ModelSwap swap(*this, std::move(u), report);
       std::vector<NodeOrigins> origins(edits.size());
       for (std::size_t b = 0; b < edits.size(); ++b) {
         if (!edits[b].changed_elements()) continue;

@@ -19,9 +19,8 @@ double lap(double& start) {
 
 }  // namespace
 
-ModelSwap::ModelSwap(Simulation& simulation, CutReport& report) : s_(simulation), report_(report), start_(now()) {
-  s_.backend_->finish();
-  old_u_ = s_.backend_->read_reals(s_.u_);
+ModelSwap::ModelSwap(Simulation& simulation, std::vector<double> u, CutReport& report)
+    : s_(simulation), report_(report), start_(now()), old_u_(std::move(u)) {
   old_w_ = s_.backend_->read_reals(s_.w_);
   for (std::size_t b = 0; b < s_.scene_.bodies.size(); ++b) {
     u_.push_back(s_.pick(old_u_, b, 1));
@@ -83,9 +82,15 @@ void ModelSwap::run(std::span<const Solid* const> solids, std::vector<NodeOrigin
   if (follows && solids[0]->lattice != nullptr) keep_surface(program);
   report_.model += lap(start_);
   const std::shared_ptr<const Model> old_model = std::exchange(s_.model_, model_);
+  carry_motion();
+  // The buffers of the state are sent once, as they go on, and begin as always for whoever asks for the program.
+  const auto exchange_state = [&](Program& of) {
+    of.buffers[of.find("node_u")].reals.swap(new_u_);
+    of.buffers[of.find("node_w")].reals.swap(new_w_);
+  };
+  exchange_state(program);
   try {
     s_.install(std::move(program), [&] {
-      carry_motion();
       report_.upload += lap(start_);
       if (!follows) return;
       take_surfaces(solids, ready);
@@ -96,8 +101,7 @@ void ModelSwap::run(std::span<const Solid* const> solids, std::vector<NodeOrigin
     restore(old_model);
     throw;
   }
-  s_.backend_->write_reals(s_.u_, new_u_);
-  s_.backend_->write_reals(s_.w_, new_w_);
+  exchange_state(s_.program_);
   s_.upload_shape_matching();
   s_.state_.vectors.erase("kept");  // copies of the old model's buffers
   s_.state_.vectors["topology_version"] = {static_cast<double>(++s_.topology_version_)};

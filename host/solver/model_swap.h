@@ -26,8 +26,8 @@ struct NodeOrigins {
 /// Every node keeps its displacement, and its momentum goes where its mass goes. Construct and run() once.
 class ModelSwap {
  public:
-  /// Adds its times to `report`.
-  ModelSwap(Simulation& simulation, CutReport& report);
+  /// `u`: what node_u holds. Adds its times to `report`.
+  ModelSwap(Simulation& simulation, std::vector<double> u, CutReport& report);
   /// `solids`: the bodies as edited; their surfaces may still be in the making until `ready` returns, which may throw. Throws
   /// with the old model back in place.
   void run(std::span<const Solid* const> solids, std::vector<NodeOrigins> origins, const std::function<void()>& ready);

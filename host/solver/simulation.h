@@ -128,16 +128,17 @@ class Simulation {
   void prepare_blades(), move_blades();
   CutState& cut_state();
   CutReport run_blades(const std::vector<BladeMove>& moves, std::span<const std::array<Vec3d, 3>> triangles);
-  void cut_now(const std::vector<std::map<std::array<std::int32_t, 2>, double>>& edges, CutReport& report);
+  void cut_now(const std::vector<std::map<std::array<std::int32_t, 2>, double>>& edges, std::vector<double> u,
+               CutReport& report);
   [[nodiscard]] bool reached(std::size_t body, const std::vector<Vec3d>& x, const std::vector<BladeMove>& moves,
                              std::span<const std::array<Vec3d, 3>> triangles) const;
-  [[nodiscard]] std::vector<Vec3d> positions(std::size_t body) const;
+  [[nodiscard]] std::vector<Vec3d> positions(const std::vector<double>& u, std::size_t body) const;
   friend class ModelSwap;
   void keep_solids();
   void replay_cuts(const std::vector<double>& cuts);
   void limit_to_element_bound();
   void prepare_tears(), tear();  // these and the next two in tear.cpp
-  void install_torn(const std::vector<std::vector<std::int32_t>>& from);
+  void install_torn(const std::vector<std::vector<std::int32_t>>& from, const std::vector<double>& u);
   void replay_tears(const std::vector<double>& list);
   /// Defined in shape_matching.cpp.
   void choose_dt(double wanted, bool estimate);

@@ -61,11 +61,12 @@ void Simulation::prepare_tears() {
 
 void Simulation::tear() {
   if (tears_ == nullptr || !begins_after(state_.step, kTearSteps)) return;
+  const std::vector<double> u = backend_->read_reals(u_);
   std::vector<std::vector<TetFace>> faces(scene_.bodies.size());
   bool any = false;
   for (std::size_t b = 0; b < faces.size(); ++b) {
     if (!tears_->bodies[b]) continue;
-    faces[b] = tears_->bodies[b]->breaking_faces(positions(b));
+    faces[b] = tears_->bodies[b]->breaking_faces(positions(u, b));
     any = any || !faces[b].empty();
   }
   if (!any) return;
@@ -75,7 +76,7 @@ void Simulation::tear() {
     from[b] = tears_->bodies[b]->tear(faces[b]);
     tears_->solids[b] = tears_->bodies[b]->solid();
   }
-  install_torn(from);
+  install_torn(from, u);
   std::vector<double>& list = state_.vectors["tears"];
   list.clear();
   for (std::size_t b = 0; b < faces.size(); ++b) {
@@ -89,13 +90,13 @@ void Simulation::tear() {
 
 /// The model of the torn bodies, every node with the displacement and velocity of the one it comes from: masses of copies add
 /// up to that of their node, so momentum is kept.
-void Simulation::install_torn(const std::vector<std::vector<std::int32_t>>& from) {
+void Simulation::install_torn(const std::vector<std::vector<std::int32_t>>& from, const std::vector<double>& u) {
   std::vector<NodeOrigins> origins;
   for (const std::vector<std::int32_t>& nodes : from) origins.push_back({nodes, {}});
   std::vector<const Solid*> solids;
   for (const Solid& solid : tears_->solids) solids.push_back(&solid);
   CutReport report;
-  ModelSwap(*this, report).run(solids, std::move(origins), [] {});
+  ModelSwap(*this, u, report).run(solids, std::move(origins), [] {});
 }
 
 /// Break what a checkpoint says is broken, and load the model that it gives.
