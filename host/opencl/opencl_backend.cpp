@@ -100,6 +100,12 @@ class OpenclBackend final : public Backend {
     finish();
   }
 
+  void compile(const Program& program) override {
+    for (const auto* passes : {&program.step, &program.force, &program.status, &program.surface}) {
+      for (const Pass& pass : *passes) kernels_.make(pass.kernel, pass.defines, pass.shape == Shape::items ? 1 : info_.lanes);
+    }
+  }
+
   void run(const std::vector<Pass>& passes, std::int32_t first, std::int32_t count, std::int64_t origin) override {
     list_.clear();
     for (const Pass& pass : passes) list_.push_back(&prepared(pass));

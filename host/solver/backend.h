@@ -48,6 +48,8 @@ class Backend {
     if (complete != nullptr) complete();
     load(next);
   }
+  /// Compile now what a program may need later, without loading it.
+  virtual void compile(const Program& program) { (void)program; }
   /// Run `passes` for steps first .. first + count - 1 of the current batch, in order, without host synchronisation in between.
   /// `origin` is the number in the whole run of the batch's step 0: it decides when a pass runs that does not run in every
   /// step.

@@ -146,8 +146,9 @@ CutState& Simulation::cut_state() {
 
 void Simulation::prepare_cuts() {
   CutState& cuts = cut_state();
+  backend_->compile(build_program(cuts.trial_model(scene_), {scene_.integrator, batch_steps_}));
   for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
-    if (cuts.uncut[b]->lattice != nullptr || cuts.uncut[b]->hexes.empty()) static_cast<void>(cuts.body(scene_, b));
+    if (can_be_cut(*cuts.uncut[b])) static_cast<void>(cuts.body(scene_, b));
   }
 }
 

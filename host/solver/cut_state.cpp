@@ -79,6 +79,25 @@ BodyCut& CutState::body(const Scene& scene, std::size_t b) {
   return *bodies[b];
 }
 
+Model CutState::trial_model(const Scene& scene) const {
+  std::vector<Solid> solids;
+  for (std::size_t b = 0; b < uncut.size(); ++b) {
+    solids.push_back(*uncut[b]);
+    if (!can_be_cut(*uncut[b])) continue;
+    CutTopology topology(cut_mesh(*uncut[b], scene.bodies[b].name));
+    const CutMesh& mesh = topology.mesh();
+    CutEdges edges;
+    for (const std::size_t cell : {std::size_t{0}, mesh.cells.size() / 2, mesh.cells.size() - 1}) {
+      for (const auto& [i, j] : mesh.shape->edges) edges[node_pair(mesh.cells[cell][i], mesh.cells[cell][j])] = 0.5;
+    }
+    topology.cut(edges);
+    update_solid_elements(*uncut[b], topology, solids.back());
+  }
+  return build_model(scene, solids);
+}
+
+bool can_be_cut(const Solid& solid) { return solid.lattice != nullptr || solid.hexes.empty(); }
+
 std::vector<const Solid*> CutState::solids() const {
   std::vector<const Solid*> all;
   for (std::size_t b = 0; b < bodies.size(); ++b) all.push_back(bodies[b] != nullptr ? &bodies[b]->solid() : uncut[b].get());

@@ -59,6 +59,9 @@ struct BladeMove {
   std::vector<BladeSegment> to;
 };
 
+/// Not a volume mesh of hexahedra.
+bool can_be_cut(const Solid& solid);
+
 /// All bodies of a scene; those never touched by a blade have no BodyCut.
 struct CutState {
   explicit CutState(const Scene& scene);
@@ -66,6 +69,8 @@ struct CutState {
   std::vector<std::unique_ptr<BodyCut>> bodies;
   [[nodiscard]] BodyCut& body(const Scene& scene, std::size_t b);
   [[nodiscard]] std::vector<const Solid*> solids() const;
+  /// The model as it would be with a few cells cut: it has the kinds of elements, loads and tables that cuts bring.
+  [[nodiscard]] Model trial_model(const Scene& scene) const;
   std::vector<SweepTriangle> pending_triangles;  ///< wait for a step of shape matching
   std::vector<BladeMove> pending_moves;          ///< likewise
   HelperThread helper;                           ///< divides surfaces while elements become a model
