@@ -146,7 +146,9 @@ CutState& Simulation::cut_state() {
 
 void Simulation::prepare_cuts() {
   CutState& cuts = cut_state();
-  backend_->compile(build_program(cuts.trial_model(scene_), {scene_.integrator, batch_steps_}));
+  if (backend_->info().kind != "reference") {  // that has nothing to compile
+    backend_->compile(build_program(cuts.trial_model(scene_), {scene_.integrator, batch_steps_}));
+  }
   for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
     if (can_be_cut(*cuts.uncut[b])) static_cast<void>(cuts.body(scene_, b));
   }

@@ -62,7 +62,7 @@ struct BladeMove {
 /// Not a volume mesh of hexahedra.
 bool can_be_cut(const Solid& solid);
 
-/// All bodies of a scene; those never touched by a blade have no BodyCut.
+/// All bodies of a scene; those that were neither prepared nor touched by a blade have no BodyCut.
 struct CutState {
   explicit CutState(const Scene& scene);
   std::vector<std::shared_ptr<const Solid>> uncut;

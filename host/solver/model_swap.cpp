@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <numeric>
 #include <utility>
 
 #include "model/boundary_conditions.h"
@@ -55,13 +54,7 @@ void ModelSwap::keep_surface(Program& program) {
 void ModelSwap::take_surfaces(std::span<const Solid* const> solids, const std::function<void()>& ready) {
   ready();
   report_.surface += lap(start_);
-  if (kept_ && solids[0]->moved) {
-    moved_ = &*solids[0]->moved;
-  } else if (kept_) {
-    all_.resize(solids[0]->surface.size());
-    std::iota(all_.begin(), all_.end(), 0);
-    moved_ = &all_;
-  }
+  if (kept_) moved_ = &solids[0]->moved.value();  // every edit of a lattice lists them
   add_surfaces(solids, *model_, moved_);
 }
 
@@ -82,14 +75,14 @@ void ModelSwap::run(std::span<const Solid* const> solids, std::vector<NodeOrigin
   if (follows && solids[0]->lattice != nullptr) keep_surface(program);
   report_.model += lap(start_);
   const std::shared_ptr<const Model> old_model = std::exchange(s_.model_, model_);
-  carry_motion();
   // The buffers of the state are sent once, as they go on, and begin as always for whoever asks for the program.
   const auto exchange_state = [&](Program& of) {
     of.buffers[of.find("node_u")].reals.swap(new_u_);
     of.buffers[of.find("node_w")].reals.swap(new_w_);
   };
-  exchange_state(program);
   try {
+    carry_motion();
+    exchange_state(program);
     s_.install(std::move(program), [&] {
       report_.upload += lap(start_);
       if (!follows) return;

@@ -48,7 +48,6 @@ class ModelSwap {
   std::shared_ptr<Model> model_;
   bool kept_ = false;                                 ///< the surface of the old model is in the new one
   const std::vector<std::int32_t>* moved_ = nullptr;  ///< vertices that differ from what was kept
-  std::vector<std::int32_t> all_;
   std::vector<double> new_u_, new_w_;
 };
 
