@@ -6,6 +6,7 @@
 #include <bit>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "cutting/tet_surface.h"
 #include "model/vec.h"
@@ -94,49 +95,49 @@ void set_nodes(const Solid& uncut, const CutTopology& cut, SolidElements& solid)
   solid.virtual_nodes = anchors_of(cut);
 }
 
-/// Vertices that hang in a component of a cell; `v` is new or known. Whether it has moved to another cell.
-bool hang_vertex(const CutSurfaceVertex& from, std::size_t v, SolidSurface& solid) {
-  if (solid.surface[v] == from.rest && solid.surface_cell[v] == from.carrier.cell) return false;
+/// Where a vertex hangs now.
+void hang_vertex(const CutSurfaceVertex& from, const CutTopology& cut, std::size_t v, SolidSurface& solid) {
+  const overlay::Carrier& carrier = from.carrier;
   solid.surface[v] = from.rest;
-  solid.surface_cell[v] = from.carrier.cell;
+  solid.surface_cell[v] = carrier.cell;
+  const std::int32_t element = cut.element_of(carrier.cell, carrier.label);
+  solid.surface_nodes[v] = cut.elements().nodes[element >= 0 ? element : carrier.cell];
   for (std::size_t a = 0; a < 8; ++a) {
     solid.surface_weights[v][a] = ((a & 1) != 0 ? from.local[0] : 1 - from.local[0]) *
                                   ((a & 2) != 0 ? from.local[1] : 1 - from.local[1]) *
                                   ((a & 4) != 0 ? from.local[2] : 1 - from.local[2]);
   }
-  return true;
+}
+
+void set_triangle(const CutSurface& surface, const Solid& uncut, std::size_t t, SolidSurface& solid) {
+  solid.triangles[t] = surface.triangles()[t];
+  solid.triangle_cut[t] = surface.kinds()[t] == SurfaceKind::cut ? 1 : 0;
+  if (!solid.wants_middles) return;
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  solid.triangle_middle[t] = {none, none, none};
+  const std::int32_t original = surface.original_of(static_cast<std::int32_t>(t));
+  if (original < 0 || original >= static_cast<std::int32_t>(uncut.triangles.size())) return;
+  const auto& [a, b, c] = uncut.triangles[original];
+  solid.triangle_middle[t] = vec::mul(vec::add(vec::add(uncut.surface[a], uncut.surface[b]), uncut.surface[c]), 1.0 / 3);
+}
+
+void resize_surface(const CutSurface& surface, SolidSurface& solid) {
+  const std::size_t vertices = surface.vertices().size(), triangles = surface.triangles().size();
+  solid.surface.resize(vertices);
+  solid.surface_nodes.resize(vertices);
+  solid.surface_weights.resize(vertices);
+  solid.surface_cell.resize(vertices, -1);
+  solid.triangles.resize(triangles);
+  solid.triangle_cut.resize(triangles);
+  solid.triangle_middle.resize(solid.wants_middles ? triangles : 0);
 }
 
 /// The split and capped surface in place of the one that `solid` has.
 void hang_surface(const CutSurface& surface, const CutTopology& cut, const Solid& uncut, SolidSurface& solid) {
-  const std::vector<CutSurfaceVertex>& vertices = surface.vertices();
-  solid.surface.resize(vertices.size());
-  solid.surface_nodes.resize(vertices.size());
-  solid.surface_weights.resize(vertices.size());
-  solid.surface_cell.resize(vertices.size(), -1);
-  solid.moved.emplace();
-  for (std::size_t v = 0; v < vertices.size(); ++v) {
-    const overlay::Carrier& carrier = vertices[v].carrier;
-    const bool moved = hang_vertex(vertices[v], v, solid);
-    if (!moved && !cut.divided(carrier.cell)) continue;  // a whole cell keeps its nodes
-    solid.moved->push_back(static_cast<std::int32_t>(v));
-    const std::int32_t element = cut.element_of(carrier.cell, carrier.label);
-    solid.surface_nodes[v] = cut.elements().nodes[element >= 0 ? element : carrier.cell];
-  }
-  solid.triangles = surface.triangles();
-  const std::size_t count = solid.triangles.size();
-  solid.triangle_cut.resize(count);
-  solid.triangle_middle.resize(solid.wants_middles ? count : 0);
-  const double none = std::numeric_limits<double>::quiet_NaN();
-  for (std::size_t t = 0; t < count; ++t) {
-    const std::int32_t original = surface.original_of(static_cast<std::int32_t>(t));
-    solid.triangle_cut[t] = surface.kinds()[t] == SurfaceKind::cut ? 1 : 0;
-    if (!solid.wants_middles) continue;
-    solid.triangle_middle[t] = {none, none, none};
-    if (original < 0 || original >= static_cast<std::int32_t>(uncut.triangles.size())) continue;
-    const auto& [a, b, c] = uncut.triangles[original];
-    solid.triangle_middle[t] = vec::mul(vec::add(vec::add(uncut.surface[a], uncut.surface[b]), uncut.surface[c]), 1.0 / 3);
-  }
+  resize_surface(surface, solid);
+  for (std::size_t v = 0; v < solid.surface.size(); ++v) hang_vertex(surface.vertices()[v], cut, v, solid);
+  for (std::size_t t = 0; t < solid.triangles.size(); ++t) set_triangle(surface, uncut, t, solid);
+  solid.changes.reset();
 }
 
 }  // namespace
@@ -184,6 +185,25 @@ void update_solid_surface(const Solid& uncut, const CutTopology& cut, const CutS
     const std::int32_t element = cut.element_of(cell, cut.label_at(cell, solid.surface[v]));
     solid.surface_nodes[v] = cut.elements().nodes[element >= 0 ? element : cell];
   }
+}
+
+void patch_solid_surface(const Solid& uncut, const CutTopology& cut, const CutSurface& surface, SurfaceChanges changes,
+                         SolidSurface& solid) {
+  const bool has_middles = !solid.triangle_middle.empty() || !solid.wants_middles;
+  const std::vector<std::int32_t> changed = std::exchange(changes.vertices, {});
+  resize_surface(surface, solid);
+  for (std::size_t t = 0; t < solid.triangles.size() && !has_middles; ++t) set_triangle(surface, uncut, t, solid);
+  auto next = changed.begin();
+  for (std::size_t v = 0; v < solid.surface_cell.size(); ++v) {
+    const bool listed = next != changed.end() && static_cast<std::size_t>(*next) == v;
+    if (listed) ++next;
+    // The nodes of divided cells are numbered anew by every edit.
+    if (!listed && !cut.divided(solid.surface_cell[v])) continue;
+    hang_vertex(surface.vertices()[v], cut, v, solid);
+    changes.vertices.push_back(static_cast<std::int32_t>(v));
+  }
+  for (const std::int32_t t : changes.triangles) set_triangle(surface, uncut, static_cast<std::size_t>(t), solid);
+  solid.changes = std::move(changes);
 }
 
 void update_solid(const Solid& uncut, const CutTopology& cut, const CutSurface* surface, Solid& solid) {

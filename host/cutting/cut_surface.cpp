@@ -81,6 +81,7 @@ CutSurface::CutSurface(const TriangleMesh& surface, const Lattice& lattice) : ba
     triangles_.push_back(closed.triangles[t]);
     kinds_.push_back(t < base_->originals - fillers ? SurfaceKind::original : SurfaceKind::filler);
     owners_.push_back({false, t, 0});
+    if (kinds_.back() == SurfaceKind::filler) changes_.triangles.push_back(t);
   }
 }
 
@@ -111,8 +112,7 @@ void CutSurface::update(const CutTopology& topology, const std::vector<std::int3
 }
 
 void CutSurface::update(const std::vector<CutGridCell>& cells) {
-  changed_vertices_ = {};
-  changed_triangles_ = {};
+  const std::size_t known = changes_.vertices.size() + changes_.triangles.size();
   overlay::Overlay& overlay = base_->overlay;
   const std::vector<CutGridCell> places = base_->one_per_place(cells);
   std::vector<CutGridCell> all = base_->air.update(places);
@@ -127,7 +127,18 @@ void CutSurface::update(const std::vector<CutGridCell>& cells) {
   }
   for (const auto& [v, carrier] : overlay.moved_vertices) hang(v, carrier);
   for (const CutGridCell& cell : cells) hang_outside(cell);
-  if (changed_vertices_.first != changed_vertices_.last || changed_triangles_.first != changed_triangles_.last) ++version_;
+  if (changes_.vertices.size() + changes_.triangles.size() > known) ++version_;
+}
+
+SurfaceChanges CutSurface::take_changes() {
+  const auto tidy = [](std::vector<std::int32_t>& list, std::size_t count) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    list.erase(std::lower_bound(list.begin(), list.end(), static_cast<std::int32_t>(count)), list.end());
+  };
+  tidy(changes_.vertices, vertices_.size());
+  tidy(changes_.triangles, triangles_.size());
+  return std::exchange(changes_, {});
 }
 
 // Vertices that hang in a cell without lying in any cell that is cut: they go with its nearest corner.
@@ -150,11 +161,11 @@ std::vector<std::int32_t>& CutSurface::slots_of(const Owner& owner) {
 }
 
 void CutSurface::set(std::int32_t slot, const std::array<std::int32_t, 3>& triangle, SurfaceKind kind, const Owner& owner) {
-  owners_[slot] = owner;
-  if (triangles_[slot] == triangle && kinds_[slot] == kind) return;
+  const Owner before = std::exchange(owners_[slot], owner);
+  if (triangles_[slot] == triangle && kinds_[slot] == kind && before.cap == owner.cap && before.what == owner.what) return;
   triangles_[slot] = triangle;
   kinds_[slot] = kind;
-  changed_triangles_.add(slot);
+  changes_.triangles.push_back(slot);
 }
 
 // Slots stay dense: the last one moves into the gap.
@@ -169,8 +180,7 @@ void CutSurface::remove_last_slot(std::vector<std::int32_t>& slots) {
   triangles_.pop_back();
   kinds_.pop_back();
   owners_.pop_back();
-  changed_triangles_.last = std::min(changed_triangles_.last, last);
-  changed_triangles_.first = std::min(changed_triangles_.first, changed_triangles_.last);
+  changes_.triangles.push_back(last);
 }
 
 void CutSurface::replace(const Owner& owner, const Patch& patch, SurfaceKind kind) {
@@ -209,7 +219,7 @@ void CutSurface::hang(std::int32_t vertex, const Carrier& carrier) {
   const Lattice& lattice = base_->lattice;
   const Vec3d corner = lattice.position({lattice.cells[carrier.cell].index, 0});
   for (int a = 0; a < 3; ++a) v.local[a] = (v.rest[a] - corner[a]) / lattice.spacing;
-  changed_vertices_.add(vertex);
+  changes_.vertices.push_back(vertex);
 }
 
 void CutSurface::embedding(const CutTopology& topology, std::int32_t vertex, std::array<std::int32_t, 8>& nodes,

@@ -10,6 +10,7 @@
 #include "cutting/cut_topology.h"
 #include "cutting/overlay.h"
 #include "model/lattice.h"
+#include "model/model.h"
 
 namespace pliant {
 
@@ -25,15 +26,6 @@ struct CutSurfaceVertex {
   Vec3d rest{};                ///< [m]
   overlay::Carrier carrier{};  ///< cell of the lattice, and component (0 in a whole cell)
   std::array<double, 3> local{};
-};
-
-/// Indices [first, last).
-struct ChangedRange {
-  std::int32_t first = 0, last = 0;
-  void add(std::int32_t i) {
-    first = first == last ? i : i < first ? i : first;
-    last = i >= last ? i + 1 : last;
-  }
 };
 
 class CutSurface {
@@ -62,9 +54,8 @@ class CutSurface {
                  std::array<double, 8>& weights) const;
   /// Counts the updates that changed anything.
   [[nodiscard]] std::int64_t topology_version() const { return version_; }
-  /// What the last update changed, for renderers that upload in part. Vertices change when they are new or hang elsewhere.
-  [[nodiscard]] ChangedRange changed_vertices() const { return changed_vertices_; }
-  [[nodiscard]] ChangedRange changed_triangles() const { return changed_triangles_; }
+  /// What differs from when this was called last, or from the surface given. Vertices change when they are new or hang elsewhere.
+  [[nodiscard]] SurfaceChanges take_changes();
 
  private:
   struct Owner {
@@ -89,7 +80,7 @@ class CutSurface {
   std::unordered_map<overlay::VertexKey, std::int32_t, overlay::VertexKeyHash> vertex_of_;
   std::unordered_map<std::int32_t, std::vector<std::int32_t>> piece_slots_, cap_slots_;
   std::int64_t version_ = 0;
-  ChangedRange changed_vertices_, changed_triangles_;
+  SurfaceChanges changes_;  ///< in any order, perhaps several times, perhaps gone again
 };
 
 }  // namespace pliant

@@ -106,7 +106,7 @@ std::vector<std::int32_t> CutTopology::cells_at_edge(const NodePair& edge) const
   return cells;
 }
 
-CutEdit CutTopology::cut(const CutEdges& edges) {
+CutEdit CutTopology::cut(const CutEdges& edges, const std::function<void(const std::vector<std::int32_t>&)>& divided) {
   CutEdit edit;
   const OldCuts old = mark(edges, edit);
   bool split = false;
@@ -117,6 +117,7 @@ CutEdit CutTopology::cut(const CutEdges& edges) {
     split |= cell.components > 1;
   }
   if (!split) return edit;
+  if (divided) divided(edit.cells);
   const auto copies = elements_.nodes.begin() + static_cast<std::ptrdiff_t>(mesh_->cells.size());
   const std::vector<std::array<std::int32_t, 8>> old_copies(copies, elements_.nodes.end());
   number_elements(old, edit);

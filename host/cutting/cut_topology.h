@@ -107,10 +107,17 @@ class CutTopology {
   [[nodiscard]] int label_at(std::int32_t cell, const Vec3d& x) const;
   /// The same by barycentric coordinates in one of its tetrahedra.
   [[nodiscard]] int label_in(std::int32_t cell, int tet, const std::array<double, 4>& weight) const;
+  /// For many places in one tetrahedron. The cell is divided.
+  [[nodiscard]] TetDivision division(std::int32_t cell, int tet) const { return division(cell, *cell_at_[cell], tet); }
+  [[nodiscard]] int label_in(std::int32_t cell, int tet, const TetDivision& division, const std::array<double, 4>& weight) const {
+    return cell_at_[cell]->label[mesh_->shape->tets[tet][corner_at(division, weight)]];
+  }
 
   /// Cut further edges; those that are cut already stay as they are. Throws Error, with nothing changed, for a pair that is no
   /// edge of a cell or a crossing that is not in (0, 1). Work: the cells at new edges, plus a pass over all copies.
-  CutEdit cut(const CutEdges& edges);
+  /// `divided`, if given, is called with CutEdit::cells as soon as it is clear how they are divided, unless none is; what does
+  /// not ask for elements and their nodes may look at the cells from then on, beside the rest of the work.
+  CutEdit cut(const CutEdges& edges, const std::function<void(const std::vector<std::int32_t>& cells)>& divided = {});
   /// Go back to a smaller set of cut edges (after an edit that failed elsewhere).
   void reset(const CutEdges& edges);
 

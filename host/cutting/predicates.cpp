@@ -131,9 +131,12 @@ int orient(const ExactPoint& a, const ExactPoint& b, const ExactPoint& c, const 
 int crosses(const ExactPoint& u, const ExactPoint& w, const ExactPoint& a, const ExactPoint& b, const ExactPoint& c) {
   const int from = orient(a, b, c, u);
   if (orient(a, b, c, w) == from) return 0;
+  return passes(u, w, a, b, c) ? -from : 0;
+}
+
+bool passes(const ExactPoint& u, const ExactPoint& w, const ExactPoint& a, const ExactPoint& b, const ExactPoint& c) {
   const int side = orient(u, w, a, b);
-  if (orient(u, w, b, c) != side || orient(u, w, c, a) != side) return 0;
-  return -from;
+  return orient(u, w, b, c) == side && orient(u, w, c, a) == side;
 }
 
 }  // namespace pliant

@@ -38,5 +38,7 @@ int orient(const ExactPoint& a, const ExactPoint& b, const ExactPoint& c, const 
 /// Whether the segment from u to w crosses the triangle (a, b, c): 1 from its back to its front, -1 from its front to its back,
 /// 0 not at all. The five ids have to differ.
 int crosses(const ExactPoint& u, const ExactPoint& w, const ExactPoint& a, const ExactPoint& b, const ExactPoint& c);
+/// The same where u and w are known to lie on different sides of the triangle.
+bool passes(const ExactPoint& u, const ExactPoint& w, const ExactPoint& a, const ExactPoint& b, const ExactPoint& c);
 
 }  // namespace pliant

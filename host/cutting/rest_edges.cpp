@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <unordered_set>
 
 namespace pliant {
 
@@ -30,7 +31,15 @@ RestEdges::RestEdges(const CutMesh& mesh, double edge)
   for (std::size_t n = 0; n < mesh.rest.size(); ++n) {
     node_.push_back(frame_.snap(mesh.rest[n], static_cast<std::int64_t>(n)));
   }
+  side_.resize(node_.size());
+  std::unordered_set<std::uint64_t> met;
   for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+    own_edges_.push_back(0);
+    for (std::size_t e = 0; e < mesh.shape->edges.size(); ++e) {
+      const NodePair pair = node_pair(mesh.cells[c][mesh.shape->edges[e][0]], mesh.cells[c][mesh.shape->edges[e][1]]);
+      const std::uint64_t key = static_cast<std::uint64_t>(pair[0]) << 32 | static_cast<std::uint32_t>(pair[1]);
+      if (met.insert(key).second) own_edges_.back() |= 1U << e;
+    }
     vec::Box box, exact;
     for (int a = 0; a < mesh.shape->corners; ++a) {
       const auto& x = node_[mesh.cells[c][a]].x;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace pliant {
 namespace {
@@ -112,14 +113,14 @@ CarriedPoint RestMap::find(const Vec3d& p) {
     if (inside(element_[item], p, out)) return out;
   }
   box = grown(box, reach_);
-  hits_.clear();
-  hash_.query(box, [&](std::int32_t item) { hits_.push_back(item); });
-  std::sort(hits_.begin(), hits_.end());
+  Best best{reach_ * reach_, {}};
   // The nearest boxes first: most of the others then cannot hold anything nearer.
   near_.clear();
-  for (const std::int32_t item : hits_) near_.emplace_back(hash_.box(item).distance2(p), element_[item]);
+  hash_.query(box, [&](std::int32_t item) {
+    const double distance2 = hash_.box(item).distance2(p);
+    if (distance2 < best.distance2) near_.emplace_back(distance2, element_[item]);
+  });
   std::sort(near_.begin(), near_.end());
-  Best best{reach_ * reach_, {}};
   for (const auto& [distance2, element] : near_) {
     if (distance2 >= best.distance2) break;
     nearest(element, p, best);
@@ -139,17 +140,35 @@ std::array<Vec3d, 4> RestMap::rest_corners(std::int32_t cell, int tet) const {
   return out;
 }
 
-/// Whether an element's own part, not its virtual one, lies there.
-bool RestMap::holds(std::int32_t element, int tet, const Weights& weight) const {
-  const std::int32_t cell = body_.elements().cell[element];
-  return body_.element_of(cell, body_.label_in(cell, tet, weight)) == element;
-}
+/// Which places of a tetrahedron belong to an element's own part, not its virtual one.
+class RestMap::OwnPart {
+ public:
+  OwnPart(const CutTopology& body, std::int32_t element, int tet)
+      : body_(body), element_(element), cell_(body.elements().cell[element]), tet_(tet) {
+    const auto real = body.elements().real[element];
+    int own = 0;
+    for (const int corner : body.mesh().shape->tets[tet]) own += real >> corner & 1;
+    whole_ = own == 4;
+    if (body.divided(cell_) && own > 0 && own < 4) division_ = body.division(cell_, tet);
+  }
+  [[nodiscard]] bool holds(const Weights& weight) const {
+    if (!division_) return whole_;
+    return body_.element_of(cell_, body_.label_in(cell_, tet_, *division_, weight)) == element_;
+  }
+
+ private:
+  const CutTopology& body_;
+  std::int32_t element_, cell_;
+  int tet_;
+  bool whole_ = false;
+  std::optional<TetDivision> division_;  ///< of one that has corners in several parts
+};
 
 bool RestMap::inside(std::int32_t element, const Vec3d& p, CarriedPoint& out) const {
   const auto tets = static_cast<int>(body_.mesh().shape->tets.size());
   for (int t = 0; t < tets; ++t) {
     const Weights w = barycentric(corners(element, t), p);
-    if (!(least(w) >= kInside) || !holds(element, t, w)) continue;
+    if (!(least(w) >= kInside) || !OwnPart(body_, element, t).holds(w)) continue;
     const std::int32_t cell = body_.elements().cell[element];
     out = {cell, t, w, blend(rest_corners(cell, t), w)};
     return true;
@@ -158,7 +177,7 @@ bool RestMap::inside(std::int32_t element, const Vec3d& p, CarriedPoint& out) co
 }
 
 /// Move a place in an element's virtual part to the face of the cut, on the way to one of the element's real corners.
-bool RestMap::to_own_part(std::int32_t element, int tet, Weights& weight) const {
+bool RestMap::to_own_part(std::int32_t element, int tet, const OwnPart& part, Weights& weight) const {
   const auto& corner = body_.mesh().shape->tets[tet];
   int real = -1;
   for (int a = 0; a < 4; ++a) {
@@ -171,7 +190,7 @@ bool RestMap::to_own_part(std::int32_t element, int tet, Weights& weight) const 
   double low = 0, high = 1;  // own part at `high`
   for (int k = 0; k < kBisections; ++k) {
     const double middle = 0.5 * (low + high);
-    (holds(element, tet, mix(weight, own, middle)) ? high : low) = middle;
+    (part.holds(mix(weight, own, middle)) ? high : low) = middle;
   }
   weight = mix(weight, own, high);
   return true;
@@ -192,8 +211,9 @@ void RestMap::nearest(std::int32_t element, const Vec3d& p, Best& best) const {
     double d2 = distance2();
     if (!(d2 < best.distance2)) continue;
     const std::array<Vec3d, 4> rest = rest_corners(cell, t);
-    if (!holds(element, t, at)) {
-      if (!to_own_part(element, t, at)) continue;
+    const OwnPart part(body_, element, t);
+    if (!part.holds(at)) {
+      if (!to_own_part(element, t, part, at)) continue;
       d2 = distance2();
       if (!(d2 < best.distance2)) continue;
       best = {d2, {cell, t, at, blend(rest, at)}};

@@ -35,12 +35,12 @@ class RestMap {
     double distance2;
     CarriedPoint point;
   };
+  class OwnPart;
   [[nodiscard]] bool inside(std::int32_t element, const Vec3d& p, CarriedPoint& out) const;
   void nearest(std::int32_t element, const Vec3d& p, Best& best) const;
   [[nodiscard]] std::array<Vec3d, 4> corners(std::int32_t element, int tet) const;
   [[nodiscard]] std::array<Vec3d, 4> rest_corners(std::int32_t cell, int tet) const;
-  [[nodiscard]] bool holds(std::int32_t element, int tet, const std::array<double, 4>& weight) const;
-  [[nodiscard]] bool to_own_part(std::int32_t element, int tet, std::array<double, 4>& weight) const;
+  [[nodiscard]] bool to_own_part(std::int32_t element, int tet, const OwnPart& part, std::array<double, 4>& weight) const;
 
   const CutTopology& body_;
   std::span<const Vec3d> x_;

@@ -24,7 +24,7 @@ class TetSurface {
 
   void run() {
     solid_.surface.resize(uncut_.surface.size());
-    solid_.moved.reset();
+    solid_.changes.reset();
     solid_.surface_nodes = uncut_.surface_nodes;
     solid_.surface_weights = uncut_.surface_weights;
     solid_.triangles = uncut_.triangles;

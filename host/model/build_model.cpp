@@ -147,13 +147,11 @@ void add_hexes(const Body& body, std::int32_t b, const Draft& draft, Model& mode
       const auto e = static_cast<std::size_t>(i);
       if (draft.material[e] != static_cast<int>(m)) continue;
       std::array<std::int32_t, 8> slots{};
-      std::array<Vec3d, 8> x;
-      for (int a = 0; a < 8; ++a) {
-        slots[a] = draft.slot[solid.hexes[e][a]];
-        x[a] = solid.nodes[solid.hexes[e][a]];
-      }
+      for (int a = 0; a < 8; ++a) slots[a] = draft.slot[solid.hexes[e][a]];
       double volume = d * d * d;
       if (!batch.uniform) {
+        std::array<Vec3d, 8> x;
+        for (int a = 0; a < 8; ++a) x[a] = solid.nodes[solid.hexes[e][a]];
         batch.records.push_back(hex_record(batch, x, describe(e)));
         volume = hex_volume(batch, batch.records.back());
         note_bound(model, hex_frequency(batch, batch.records.back()), volume, describe(e));
@@ -168,35 +166,6 @@ void add_hexes(const Body& body, std::int32_t b, const Draft& draft, Model& mode
   }
 }
 
-/// The nodes in which a body's vertices hang, and its triangles.
-void hang_body(const SolidSurface& solid, std::int32_t b, const std::vector<std::int32_t>* moved, Model& model) {
-  ModelSurface& surface = model.surface;
-  ModelBody& body = model.bodies[b];
-  body.triangle_middle = solid.triangle_middle;
-  body.vertices = static_cast<std::int32_t>(solid.surface.size());
-  body.first_triangle = static_cast<std::int32_t>(surface.triangles.size());
-  body.triangles = static_cast<std::int32_t>(solid.triangles.size());
-  const auto hang = [&](std::size_t v) {
-    auto& slots = surface.nodes[static_cast<std::size_t>(body.first_vertex) + v];
-    for (std::size_t a = 0; a < 8; ++a) slots[a] = body.slot[solid.surface_nodes[v][a]];
-  };
-  if (moved != nullptr) {
-    for (const std::int32_t v : *moved) hang(static_cast<std::size_t>(v));
-  } else {
-    for (std::size_t v = 0; v < solid.surface.size(); ++v) hang(v);
-  }
-  surface.triangles.insert(surface.triangles.end(), solid.triangles.begin(), solid.triangles.end());
-  for (std::size_t t = static_cast<std::size_t>(body.first_triangle); t < surface.triangles.size() && b > 0; ++t) {
-    for (std::int32_t& v : surface.triangles[t]) v += body.first_vertex;
-  }
-  surface.triangle_body.resize(surface.triangles.size(), b);
-  if (!solid.triangle_cut.empty() || !surface.triangle_cut.empty()) {
-    surface.triangle_cut.resize(body.first_triangle, 0);
-    surface.triangle_cut.insert(surface.triangle_cut.end(), solid.triangle_cut.begin(), solid.triangle_cut.end());
-    surface.triangle_cut.resize(surface.triangles.size(), 0);
-  }
-}
-
 void fill_body(const Body& body, Draft& draft, ModelBody& out) {
   out.name = body.name;
   out.element = body.element;
@@ -204,6 +173,7 @@ void fill_body(const Body& body, Draft& draft, ModelBody& out) {
   out.rest = draft.solid().nodes;
   out.tets = draft.solid().tets;
   out.virtual_nodes = draft.solid().virtual_nodes;
+  out.hexes.reserve(draft.solid().hexes.size());
   for (const auto& hex : draft.solid().hexes) {
     std::array<std::int32_t, 8> corners{};
     for (int a = 0; a < 8; ++a) corners[a] = hex[kVtkFromBits[a]];
@@ -221,6 +191,7 @@ void fill_body(const Body& body, Draft& draft, ModelBody& out) {
 
 /// Rigid initial motion: velocity plus angular velocity about the centre of mass.
 void set_velocity(const Body& body, const ModelBody& placed, Model& model) {
+  if (body.velocity == Vec3d{} && body.angular_velocity == Vec3d{}) return;
   Vec3d centre{};
   double mass = 0;
   for (const std::int32_t s : placed.slot) {
@@ -347,32 +318,6 @@ Model build_elements(const Scene& scene, std::span<const Solid* const> solids, c
     if (model.shortest == 0 || batch.spacing < model.shortest) model.shortest = batch.spacing;
   }
   return model;
-}
-
-void add_surfaces(std::span<const Solid* const> solids, Model& model, const std::vector<std::int32_t>* moved) {
-  ModelSurface& surface = model.surface;
-  if (moved == nullptr) {
-    surface.rest.clear();
-    surface.weights.clear();
-    for (const Solid* solid : solids) {
-      surface.rest.insert(surface.rest.end(), solid->surface.begin(), solid->surface.end());
-      surface.weights.insert(surface.weights.end(), solid->surface_weights.begin(), solid->surface_weights.end());
-    }
-  } else {
-    surface.rest.resize(solids[0]->surface.size());
-    surface.weights.resize(solids[0]->surface.size());
-    for (const std::int32_t v : *moved) {
-      surface.rest[v] = solids[0]->surface[v];
-      surface.weights[v] = solids[0]->surface_weights[v];
-    }
-  }
-  surface.nodes.resize(surface.rest.size());
-  std::int32_t first = 0;
-  for (std::size_t b = 0; b < solids.size(); ++b) {
-    model.bodies[b].first_vertex = first;
-    hang_body(*solids[b], static_cast<std::int32_t>(b), moved, model);
-    first += model.bodies[b].vertices;
-  }
 }
 
 Model build_model(const Scene& scene, std::span<const Solid* const> solids) {

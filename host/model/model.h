@@ -74,6 +74,12 @@ struct ModelSurface {
   std::vector<char> triangle_cut;  ///< whether it is a face that a blade made; empty: none
 };
 
+/// What an edit changed of a surface, ascending: vertices that are new, have another place at rest, other weights or other nodes
+/// (and perhaps some that have not), and triangles that are new or have other corners.
+struct SurfaceChanges {
+  std::vector<std::int32_t> vertices, triangles;
+};
+
 /// Nodes that a cut made: each holds the far side of elements whose material belongs to other nodes, its anchors.
 struct VirtualNodes {
   std::int32_t first = -1;           ///< nodes from here on are virtual; -1: none is

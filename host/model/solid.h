@@ -54,9 +54,7 @@ struct SolidSurface {
   std::vector<char> triangle_cut;          ///< if the body is cut: whether the triangle lies on a cut
   std::vector<Vec3d> triangle_middle;      ///< ModelBody::triangle_middle
   bool wants_middles = true;               ///< whether a cut keeps triangle_middle: pressures need it
-  /// Vertices that are new, have another place at rest, other weights or other nodes than before the last edit, ascending, and
-  /// perhaps some that have not; nothing: not known.
-  std::optional<std::vector<std::int32_t>> moved;
+  std::optional<SurfaceChanges> changes;   ///< by the last edit; nothing: not known
 };
 
 struct Solid : SolidElements, SolidSurface {};
@@ -75,9 +73,8 @@ Model build_model(const Scene& scene, const std::vector<Solid>& solids);
 /// The first part of it: no surfaces and no boundary conditions, and no look at the SolidSurface of a body, which may be made
 /// meanwhile. `previous`, a model of the same bodies before an edit, lends what did not change.
 Model build_elements(const Scene& scene, std::span<const Solid* const> solids, const Model* previous = nullptr);
-/// The next one. With `moved`, the model has vertices, weights and nodes from before an edit of its only body already, and only
-/// those listed differ (SolidSurface::moved).
-void add_surfaces(std::span<const Solid* const> solids, Model& model, const std::vector<std::int32_t>* moved = nullptr);
+/// The next one. With `changes`, the model has the surface from before an edit of its only body already, and only these differ.
+void add_surfaces(std::span<const Solid* const> solids, Model& model, const SurfaceChanges* changes = nullptr);
 
 /// Density of each element [kg/m^3].
 std::vector<double> densities(const Body& body, const SolidElements& solid);

@@ -1,7 +1,6 @@
 #include "opencl/device_memory.h"
 
 #include <algorithm>
-#include <vector>
 
 #include "solver/buffer_checks.h"
 
@@ -34,9 +33,9 @@ void Upload::write(const Buffer& buffer, std::size_t first, std::size_t last, cl
     queue_.enqueueWriteBuffer(memory, CL_FALSE, 4 * first, 4 * count, buffer.ints.data() + first);
     return;
   }
-  std::vector<float>& values = staged_.emplace_back(count);
-  round_reals(std::span(buffer.reals).subspan(first, count), values.data());
-  queue_.enqueueWriteBuffer(memory, CL_FALSE, 4 * first, 4 * count, values.data());
+  float* values = staged_.emplace_back(std::make_unique_for_overwrite<float[]>(count)).get();
+  round_reals(std::span(buffer.reals).subspan(first, count), values);
+  queue_.enqueueWriteBuffer(memory, CL_FALSE, 4 * first, 4 * count, values);
 }
 
 void Upload::finish() {

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "opencl/opencl.h"
@@ -28,7 +29,7 @@ class Upload {
 
  private:
   cl::CommandQueue& queue_;
-  std::vector<std::vector<float>> staged_;
+  std::vector<std::unique_ptr<float[]>> staged_;
 };
 
 DeviceMemory load_memory(const cl::Context& context, Upload& upload, const Buffer& buffer);

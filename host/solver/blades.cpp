@@ -152,6 +152,7 @@ void Simulation::prepare_cuts() {
   for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
     if (can_be_cut(*cuts.uncut[b])) static_cast<void>(cuts.body(scene_, b));
   }
+  if (scene_.bodies.size() == 1) cuts.surface_copy.make(model_, cuts.helper);
 }
 
 /// Follow each blade to its new places, and cut.

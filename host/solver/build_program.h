@@ -14,9 +14,9 @@ struct ProgramOptions {
 /// Build the buffer table and the Schedule of a model. Only what the model needs is in it.
 Program build_program(const Model& model, const ProgramOptions& options = {});
 
-/// What ProgramOptions::surface_follows left open. With `moved`, the buffers hold what they held before an edit already,
-/// only the listed vertices differ, and Buffer::changed says so.
-void set_surface(const ModelSurface& surface, Program& program, const std::vector<std::int32_t>* moved = nullptr);
+/// What ProgramOptions::surface_follows left open. With `changes`, the buffers hold what they held before an edit already, only
+/// the vertices listed differ, and Buffer::changed says so.
+void set_surface(const ModelSurface& surface, Program& program, const SurfaceChanges* changes = nullptr);
 
 /// Which element a position in the `fault` buffer means, or which node that shape matching moves.
 struct FaultPlace {

@@ -68,14 +68,14 @@ void Simulation::cut_now(const std::vector<CutEdges>& edges, std::vector<double>
   std::size_t done = 0;
   try {
     for (; done < edges.size(); ++done) {
-      if (!edges[done].empty()) edits[done] = cuts_->body(scene_, done).cut(edges[done]);
+      if (!edges[done].empty()) edits[done] = cuts_->body(scene_, done).cut(edges[done], cuts_->helper);
       report.changed = report.changed || edits[done].changed_elements();
     }
     report.topology += lap(start);
     if (report.changed) {
       std::future<void> surfaces = cuts_->helper.run([&] {
         for (std::size_t b = 0; b < edits.size(); ++b) {
-          if (edits[b].changed_elements()) cuts_->bodies[b]->update_surface(edits[b]);
+          if (edits[b].changed_elements()) cuts_->bodies[b]->update_surface();
         }
       });
       const WaitFor end(surfaces);
@@ -88,6 +88,7 @@ void Simulation::cut_now(const std::vector<CutEdges>& edges, std::vector<double>
       }
       swap.run(cuts_->solids(), std::move(origins), [&] { surfaces.get(); });
       keep_solids();
+      if (scene_.bodies.size() == 1) cuts_->surface_copy.make(model_, cuts_->helper);
     }
   } catch (...) {
     for (std::size_t b = 0; b < done; ++b) {
@@ -140,9 +141,9 @@ void Simulation::replay_cuts(const std::vector<double>& cuts) {
       if (!(std::abs(cuts[i]) < 2e9 && std::abs(cuts[i + 1]) < 2e9)) throw damaged();
       edges[{static_cast<std::int32_t>(cuts[i]), static_cast<std::int32_t>(cuts[i + 1])}] = cuts[i + 2];
     }
-    const CutEdit edit = cuts_->body(scene_, body).cut(edges);
+    const CutEdit edit = cuts_->body(scene_, body).cut(edges, cuts_->helper);
     if (!edit.changed_elements()) continue;
-    cuts_->body(scene_, body).update_surface(edit);
+    cuts_->body(scene_, body).update_surface();
     ++topology_version_;
   }
   for (const auto& body : cuts_->bodies) {

@@ -1,6 +1,7 @@
 #include "solver/cut_state.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "model/partition.h"
 #include "model/vec.h"
@@ -39,22 +40,27 @@ void BodyCut::keep_allowed(const Body& body, CutEdges& edges) const {
   });
 }
 
-CutEdit BodyCut::cut(const CutEdges& edges) {
+CutEdit BodyCut::cut(const CutEdges& edges, HelperThread& helper) {
   history_.push_back(edges);
   try {
-    return topology_.cut(edges);
+    return topology_.cut(edges, [&](const std::vector<std::int32_t>& cells) {
+      if (surface_ != nullptr) dividing_ = helper.run([this, cells] { surface_->update(topology_, cells); });
+    });
   } catch (...) {
     undo();
     throw;
   }
 }
 
-void BodyCut::update_surface(const CutEdit& edit) {
-  if (surface_ != nullptr) surface_->update(topology_, edit.cells);
-  update_solid_surface(*uncut_, topology_, surface_.get(), solid_);
+void BodyCut::update_surface() {
+  if (surface_ == nullptr) return update_solid_surface(*uncut_, topology_, nullptr, solid_);
+  if (dividing_.valid()) dividing_.get();
+  patch_solid_surface(*uncut_, topology_, *surface_, surface_->take_changes(), solid_);
 }
 
 void BodyCut::undo() {
+  if (dividing_.valid()) dividing_.wait();
+  dividing_ = {};
   history_.pop_back();
   topology_.reset({});
   solid_ = *uncut_;
@@ -64,6 +70,38 @@ void BodyCut::undo() {
     if (surface_ != nullptr && edit.changed_elements()) surface_->update(topology_, edit.cells);
   }
   update_solid(*uncut_, topology_, surface_.get(), solid_);
+  if (surface_ != nullptr) static_cast<void>(surface_->take_changes());
+}
+
+namespace {
+
+ModelSurface copy_of(const ModelSurface& from) {
+  ModelSurface out;
+  const auto copy = [](const auto& values, auto& to) {
+    to.reserve(values.size() + values.size() / 8);  // for what an edit adds
+    to = values;
+  };
+  copy(from.rest, out.rest);
+  copy(from.nodes, out.nodes);
+  copy(from.weights, out.weights);
+  copy(from.triangles, out.triangles);
+  copy(from.triangle_body, out.triangle_body);
+  copy(from.triangle_cut, out.triangle_cut);
+  return out;
+}
+
+}  // namespace
+
+void SurfaceCopy::make(const std::shared_ptr<const Model>& model, HelperThread& helper) {
+  if (made_.valid()) made_.wait();
+  model_ = model;
+  made_ = helper.run([this, model] { surface_ = copy_of(model->surface); });
+}
+
+ModelSurface SurfaceCopy::take(const Model& model) {
+  if (made_.valid()) made_.get();
+  const bool same = std::exchange(model_, nullptr).get() == &model;
+  return same ? std::exchange(surface_, {}) : copy_of(model.surface);
 }
 
 CutState::CutState(const Scene& scene) : bodies(scene.bodies.size()) {

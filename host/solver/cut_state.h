@@ -1,5 +1,6 @@
 // The bodies of a simulation that are cut, and where its blades are. Private to host/solver.
 #pragma once
+#include <future>
 #include <memory>
 #include <optional>
 #include <span>
@@ -25,11 +26,11 @@ class BodyCut {
   [[nodiscard]] const CutTopology& topology() const { return topology_; }
   /// Take out edges that may not be cut: those of cells left to shape matching where the scene says so.
   void keep_allowed(const Body& body, CutEdges& edges) const;
-  /// Divide the elements. Throws, with nothing changed, what CutTopology::cut throws.
-  CutEdit cut(const CutEdges& edges);
+  /// Divide the elements, and let `helper` begin with the surface. Throws, with nothing changed, what CutTopology::cut throws.
+  CutEdit cut(const CutEdges& edges, HelperThread& helper);
   /// Bring the elements of solid(), or its surface, up to date after an edit: only what it changed. Both may run at once.
   void update_elements() { update_solid_elements(*uncut_, topology_, solid_); }
-  void update_surface(const CutEdit& edit);
+  void update_surface();
   /// Take the last edit back.
   void undo();
   /// The body as it is cut now, in what was brought up to date.
@@ -47,6 +48,7 @@ class BodyCut {
   Solid solid_;
   CutTopology topology_;
   std::unique_ptr<CutSurface> surface_;  ///< of a lattice
+  std::future<void> dividing_;           ///< the helper's work on it
   std::unique_ptr<RestEdges> rest_edges_;
   std::vector<CutEdges> history_;
   double edge_ = 0;
@@ -62,6 +64,19 @@ struct BladeMove {
 /// Not a volume mesh of hexahedra.
 bool can_be_cut(const Solid& solid);
 
+/// The surface of the model that runs, for the next edit to change: a copy that is made while the bodies move.
+class SurfaceCopy {
+ public:
+  void make(const std::shared_ptr<const Model>& model, HelperThread& helper);
+  /// The copy, or one made now.
+  [[nodiscard]] ModelSurface take(const Model& model);
+
+ private:
+  ModelSurface surface_;
+  std::shared_ptr<const Model> model_;  ///< whose surface it is
+  std::future<void> made_;
+};
+
 /// All bodies of a scene; those that were neither prepared nor touched by a blade have no BodyCut.
 struct CutState {
   explicit CutState(const Scene& scene);
@@ -73,7 +88,8 @@ struct CutState {
   [[nodiscard]] Model trial_model(const Scene& scene) const;
   std::vector<SweepTriangle> pending_triangles;  ///< wait for a step of shape matching
   std::vector<BladeMove> pending_moves;          ///< likewise
-  HelperThread helper;                           ///< divides surfaces while elements become a model
+  SurfaceCopy surface_copy;
+  HelperThread helper;  ///< divides surfaces while elements become a model
 };
 
 }  // namespace pliant

@@ -5,6 +5,7 @@
 #include <functional>
 #include <future>
 #include <mutex>
+#include <queue>
 #include <thread>
 #include <utility>
 
@@ -25,14 +26,14 @@ class HelperThread {
     thread_.join();
   }
 
-  /// What the future's get() throws is what `job` threw. One job at a time; whoever gives it waits for it before it goes out of
-  /// scope.
+  /// What the future's get() throws is what `job` threw. Jobs are done in the order in which they came; whoever gives one waits
+  /// for it before what it uses goes out of scope.
   [[nodiscard]] std::future<void> run(std::function<void()> job) {
     std::packaged_task<void()> task(std::move(job));
     std::future<void> done = task.get_future();
     {
       const std::lock_guard lock(mutex_);
-      task_ = std::move(task);
+      tasks_.push(std::move(task));
     }
     wake_.notify_one();
     return done;
@@ -42,9 +43,10 @@ class HelperThread {
   void work() {
     std::unique_lock lock(mutex_);
     while (true) {
-      wake_.wait(lock, [this] { return stop_ || task_.valid(); });
-      if (!task_.valid()) return;
-      std::packaged_task<void()> task = std::exchange(task_, {});
+      wake_.wait(lock, [this] { return stop_ || !tasks_.empty(); });
+      if (tasks_.empty()) return;
+      std::packaged_task<void()> task = std::move(tasks_.front());
+      tasks_.pop();
       lock.unlock();
       task();
       lock.lock();
@@ -53,7 +55,7 @@ class HelperThread {
 
   std::mutex mutex_;
   std::condition_variable wake_;
-  std::packaged_task<void()> task_;
+  std::queue<std::packaged_task<void()>> tasks_;
   bool stop_ = false;
   std::thread thread_;
 };

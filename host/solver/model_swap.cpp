@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "model/boundary_conditions.h"
+#include "solver/cut_state.h"
 
 namespace pliant {
 namespace {
@@ -27,35 +28,28 @@ ModelSwap::ModelSwap(Simulation& simulation, std::vector<double> u, CutReport& r
   }
 }
 
-/// Most of a surface stays as it is, and there is time to copy it while the rest is made.
+/// Most of a surface stays as it is.
 void ModelSwap::keep_surface(Program& program) {
-  if (s_.scene_.bodies.size() != 1) return;
+  if (s_.cuts_ == nullptr || s_.scene_.bodies.size() != 1) return;
   const ModelBody &body = model_->bodies[0], &before = s_.model_->bodies[0];
   const std::int32_t first = before.virtual_nodes.first;
   const auto real = first < 0 ? before.slot.size() : static_cast<std::size_t>(first);
   if (!std::equal(before.slot.begin(), before.slot.begin() + static_cast<std::ptrdiff_t>(real), body.slot.begin())) return;
-  const auto keep = [](const auto& from, auto& to) {
-    to.reserve(from.size() + from.size() / 8);  // for what the edit adds
-    to = from;
-  };
   for (const char* name : {"surface_rest", "surface_node", "surface_weight"}) {
     Buffer& from = s_.program_.buffers[s_.program_.find(name)];  // nobody looks at its values again: changed is known
     Buffer& to = program.buffers[program.find(name)];
     to.reals = std::move(from.reals);
     to.ints = std::move(from.ints);
   }
-  keep(s_.model_->surface.rest, model_->surface.rest);
-  keep(s_.model_->surface.weights, model_->surface.weights);
-  keep(s_.model_->surface.nodes, model_->surface.nodes);
-  model_->surface.triangles.reserve(s_.model_->surface.triangles.size() + s_.model_->surface.triangles.size() / 8);
+  model_->surface = s_.cuts_->surface_copy.take(*s_.model_);
   kept_ = true;
 }
 
 void ModelSwap::take_surfaces(std::span<const Solid* const> solids, const std::function<void()>& ready) {
   ready();
   report_.surface += lap(start_);
-  if (kept_) moved_ = &solids[0]->moved.value();  // every edit of a lattice lists them
-  add_surfaces(solids, *model_, moved_);
+  if (kept_) changes_ = &solids[0]->changes.value();  // every edit of a lattice lists them
+  add_surfaces(solids, *model_, changes_);
 }
 
 void ModelSwap::run(std::span<const Solid* const> solids, std::vector<NodeOrigins> origins,
@@ -87,7 +81,7 @@ void ModelSwap::run(std::span<const Solid* const> solids, std::vector<NodeOrigin
       report_.upload += lap(start_);
       if (!follows) return;
       take_surfaces(solids, ready);
-      set_surface(model_->surface, s_.program_, moved_);
+      set_surface(model_->surface, s_.program_, changes_);
       report_.model += lap(start_);
     });
   } catch (...) {

@@ -46,8 +46,8 @@ class ModelSwap {
   std::vector<std::vector<Vec3d>> u_, v_;  ///< [bodies][nodes before the edit]
   std::vector<NodeOrigins> origins_;
   std::shared_ptr<Model> model_;
-  bool kept_ = false;                                 ///< the surface of the old model is in the new one
-  const std::vector<std::int32_t>* moved_ = nullptr;  ///< vertices that differ from what was kept
+  bool kept_ = false;                        ///< the surface of the old model is in the new one
+  const SurfaceChanges* changes_ = nullptr;  ///< where it differs from what was kept
   std::vector<double> new_u_, new_w_;
 };
 

@@ -28,7 +28,7 @@ void ProgramBuilder::add_surface() {
   }
 }
 
-void set_surface(const ModelSurface& s, Program& program, const std::vector<std::int32_t>* moved) {
+void set_surface(const ModelSurface& s, Program& program, const SurfaceChanges* changes) {
   const std::size_t count = padded(s.rest.size());
   const bool single = std::all_of(s.weights.begin(), s.weights.end(), [](const auto& w) { return w[0] == 1 && w[1] == 0; });
   const std::size_t width = single ? 1 : 8;
@@ -43,12 +43,12 @@ void set_surface(const ModelSurface& s, Program& program, const std::vector<std:
       node.ints[tile_base(v, width) + a * PLIANT_TILE] = s.nodes[v][a];
     }
   };
-  if (moved == nullptr || single) {
+  if (changes == nullptr || single) {
     rest.reals.assign(4 * count, 0.0);
     weight.reals.assign(weight.count, 0.0);
     node.ints.assign(node.count, 0);
     for (std::size_t v = 0; v < s.rest.size(); ++v) place(v);
-    if (moved != nullptr) {
+    if (changes != nullptr) {
       rest.changed = {{0, rest.values()}};
       weight.changed = node.changed = {{0, weight.count}};
     }
@@ -57,7 +57,7 @@ void set_surface(const ModelSurface& s, Program& program, const std::vector<std:
     weight.reals.resize(weight.count, 0.0);
     node.ints.resize(node.count, 0);
     std::vector<ValueRange> in_rest, in_tiles;
-    for (const std::int32_t v : *moved) {
+    for (const std::int32_t v : changes->vertices) {
       place(static_cast<std::size_t>(v));
       const std::size_t tile = static_cast<std::size_t>(v) / PLIANT_TILE * PLIANT_TILE;
       if (!in_rest.empty() && in_rest.back().first == 4 * tile) continue;

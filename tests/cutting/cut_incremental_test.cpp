@@ -142,7 +142,8 @@ TEST(CutIncremental, a_body_brought_up_to_date_is_the_body_cut_at_once) {
       const CutEdit edit = cut_at_rest(topology, random_cut(random, size));
       if (edit.changed_elements()) surface.update(topology, edit.cells);
       if (k == 3) continue;
-      update_solid(uncut, topology, &surface, patched);
+      update_solid_elements(uncut, topology, patched);
+      patch_solid_surface(uncut, topology, surface, surface.take_changes(), patched);
       const Solid whole = cut_solid(uncut, topology, &surface);
       EXPECT_EQ(patched.nodes, whole.nodes);
       EXPECT_EQ(patched.tets, whole.tets);
@@ -157,6 +158,12 @@ TEST(CutIncremental, a_body_brought_up_to_date_is_the_body_cut_at_once) {
       EXPECT_EQ(patched.surface_cell, whole.surface_cell);
       EXPECT_EQ(patched.triangles, whole.triangles);
       EXPECT_EQ(patched.triangle_cut, whole.triangle_cut);
+      ASSERT_EQ(patched.triangle_middle.size(), whole.triangle_middle.size());
+      for (std::size_t t = 0; t < whole.triangle_middle.size(); ++t) {
+        EXPECT_EQ(std::isnan(patched.triangle_middle[t][0]), std::isnan(whole.triangle_middle[t][0]));
+        if (std::isnan(whole.triangle_middle[t][0])) continue;
+        EXPECT_EQ(patched.triangle_middle[t], whole.triangle_middle[t]);
+      }
     }
     EXPECT_GT(patched.nodes.size(), uncut.nodes.size());
   }

@@ -243,16 +243,23 @@ TEST(CutSurface, numbers_are_stable) {
   const auto triangles = body.cut_surface->triangles();
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) ASSERT_EQ(first[v].rest, mesh.vertices[v]);
   const std::int64_t version = body.cut_surface->topology_version();
+  static_cast<void>(body.cut_surface->take_changes());
   body.cut({-0.05, 0, 0}, {1, 0.1, 0});
   EXPECT_EQ(body.cut_surface->topology_version(), version + 1);
   for (std::size_t v = 0; v < first.size(); ++v) ASSERT_EQ(body.cut_surface->vertices()[v].rest, first[v].rest);
-  const ChangedRange changed = body.cut_surface->changed_triangles();
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const auto slot = static_cast<std::int32_t>(t);
-    if (slot < changed.first || slot >= changed.last) {
-      ASSERT_EQ(body.cut_surface->triangles()[t], triangles[t]);
-    }
+  const SurfaceChanges changes = body.cut_surface->take_changes();
+  for (std::size_t v = 0; v < body.cut_surface->vertices().size(); ++v) {
+    if (std::binary_search(changes.vertices.begin(), changes.vertices.end(), static_cast<std::int32_t>(v))) continue;
+    ASSERT_LT(v, first.size());
+    ASSERT_EQ(body.cut_surface->vertices()[v].carrier, first[v].carrier);
   }
+  for (std::size_t t = 0; t < body.cut_surface->triangles().size(); ++t) {
+    if (std::binary_search(changes.triangles.begin(), changes.triangles.end(), static_cast<std::int32_t>(t))) continue;
+    ASSERT_LT(t, triangles.size());
+    ASSERT_EQ(body.cut_surface->triangles()[t], triangles[t]);
+  }
+  EXPECT_LT(changes.triangles.size(), triangles.size() / 2);
+  EXPECT_LT(changes.vertices.size(), first.size() / 2);
 }
 
 // Every vertex of a piece hangs in the same piece of the topology, so that pieces come apart as wholes.
