@@ -22,7 +22,8 @@ void update_solid(const Solid& uncut, const CutTopology& cut, const CutSurface* 
 /// Its two halves, which may run beside each other.
 void update_solid_elements(const Solid& uncut, const CutTopology& cut, SolidElements& solid);
 void update_solid_surface(const Solid& uncut, const CutTopology& cut, const CutSurface* surface, SolidSurface& solid);
-/// The same from what `surface` changed since `solid` had all of it (CutSurface::take_changes); solid.changes says what that was.
+/// The same from what `surface` changed since `solid` had all of it (CutSurface::take_changes); solid.changes says what that
+/// was.
 void patch_solid_surface(const Solid& uncut, const CutTopology& cut, const CutSurface& surface, SurfaceChanges changes,
                          SolidSurface& solid);
 

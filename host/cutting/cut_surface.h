@@ -54,7 +54,8 @@ class CutSurface {
                  std::array<double, 8>& weights) const;
   /// Counts the updates that changed anything.
   [[nodiscard]] std::int64_t topology_version() const { return version_; }
-  /// What differs from when this was called last, or from the surface given. Vertices change when they are new or hang elsewhere.
+  /// What differs from when this was called last, or from the surface given. Vertices change when they are new or hang
+  /// elsewhere.
   [[nodiscard]] SurfaceChanges take_changes();
 
  private:

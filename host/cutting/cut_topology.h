@@ -109,7 +109,8 @@ class CutTopology {
   [[nodiscard]] int label_in(std::int32_t cell, int tet, const std::array<double, 4>& weight) const;
   /// For many places in one tetrahedron. The cell is divided.
   [[nodiscard]] TetDivision division(std::int32_t cell, int tet) const { return division(cell, *cell_at_[cell], tet); }
-  [[nodiscard]] int label_in(std::int32_t cell, int tet, const TetDivision& division, const std::array<double, 4>& weight) const {
+  [[nodiscard]] int label_in(std::int32_t cell, int tet, const TetDivision& division,
+                             const std::array<double, 4>& weight) const {
     return cell_at_[cell]->label[mesh_->shape->tets[tet][corner_at(division, weight)]];
   }
 

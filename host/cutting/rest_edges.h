@@ -74,8 +74,8 @@ class RestEdges {
   std::vector<Side> side_;                ///< [nodes]
   std::uint32_t triangles_ = 0;           ///< looked at so far
   std::vector<std::uint32_t> own_edges_;  ///< of each cell, as bits: those that no cell before it has
-  std::vector<Vec3d> middle_, reach_;  ///< of each cell, in steps of the exact grid
-  SpatialHash hash_;                   ///< cells
+  std::vector<Vec3d> middle_, reach_;     ///< of each cell, in steps of the exact grid
+  SpatialHash hash_;                      ///< cells
 };
 
 }  // namespace pliant

@@ -74,8 +74,8 @@ struct ModelSurface {
   std::vector<char> triangle_cut;  ///< whether it is a face that a blade made; empty: none
 };
 
-/// What an edit changed of a surface, ascending: vertices that are new, have another place at rest, other weights or other nodes
-/// (and perhaps some that have not), and triangles that are new or have other corners.
+/// What an edit changed of a surface, ascending: vertices that are new, have another place at rest, other weights or other
+/// nodes (and perhaps some that have not), and triangles that are new or have other corners.
 struct SurfaceChanges {
   std::vector<std::int32_t> vertices, triangles;
 };

@@ -22,7 +22,8 @@ void hang_vertex(const SolidSurface& solid, std::size_t v, const ModelBody& body
 void hang_body(const SolidSurface& solid, std::int32_t b, Model& model) {
   ModelSurface& surface = model.surface;
   ModelBody& body = model.bodies[b];
-  place_surface(solid, static_cast<std::int32_t>(surface.rest.size()), static_cast<std::int32_t>(surface.triangles.size()), body);
+  place_surface(solid, static_cast<std::int32_t>(surface.rest.size()), static_cast<std::int32_t>(surface.triangles.size()),
+                body);
   surface.rest.insert(surface.rest.end(), solid.surface.begin(), solid.surface.end());
   surface.weights.insert(surface.weights.end(), solid.surface_weights.begin(), solid.surface_weights.end());
   surface.nodes.resize(surface.rest.size());
