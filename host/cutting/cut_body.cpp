@@ -95,13 +95,14 @@ void set_nodes(const Solid& uncut, const CutTopology& cut, SolidElements& solid)
   solid.virtual_nodes = anchors_of(cut);
 }
 
-/// Where a vertex hangs now.
-void hang_vertex(const CutSurfaceVertex& from, const CutTopology& cut, std::size_t v, SolidSurface& solid) {
-  const overlay::Carrier& carrier = from.carrier;
+void hang_vertex(const CutSurfaceVertex& from, const CutTopology& cut, std::array<std::int32_t, 8>& nodes) {
+  const std::int32_t element = cut.element_of(from.carrier.cell, from.carrier.label);
+  nodes = cut.elements().nodes[element >= 0 ? element : from.carrier.cell];
+}
+
+void place_vertex(const CutSurfaceVertex& from, std::size_t v, SolidSurface& solid) {
   solid.surface[v] = from.rest;
-  solid.surface_cell[v] = carrier.cell;
-  const std::int32_t element = cut.element_of(carrier.cell, carrier.label);
-  solid.surface_nodes[v] = cut.elements().nodes[element >= 0 ? element : carrier.cell];
+  solid.surface_cell[v] = from.carrier.cell;
   for (std::size_t a = 0; a < 8; ++a) {
     solid.surface_weights[v][a] = ((a & 1) != 0 ? from.local[0] : 1 - from.local[0]) *
                                   ((a & 2) != 0 ? from.local[1] : 1 - from.local[1]) *
@@ -135,7 +136,10 @@ void resize_surface(const CutSurface& surface, SolidSurface& solid) {
 /// The split and capped surface in place of the one that `solid` has.
 void hang_surface(const CutSurface& surface, const CutTopology& cut, const Solid& uncut, SolidSurface& solid) {
   resize_surface(surface, solid);
-  for (std::size_t v = 0; v < solid.surface.size(); ++v) hang_vertex(surface.vertices()[v], cut, v, solid);
+  for (std::size_t v = 0; v < solid.surface.size(); ++v) {
+    place_vertex(surface.vertices()[v], v, solid);
+    hang_vertex(surface.vertices()[v], cut, solid.surface_nodes[v]);
+  }
   for (std::size_t t = 0; t < solid.triangles.size(); ++t) set_triangle(surface, uncut, t, solid);
   solid.changes.reset();
 }
@@ -190,17 +194,20 @@ void update_solid_surface(const Solid& uncut, const CutTopology& cut, const CutS
 void patch_solid_surface(const Solid& uncut, const CutTopology& cut, const CutSurface& surface, SurfaceChanges changes,
                          SolidSurface& solid) {
   const bool has_middles = !solid.triangle_middle.empty() || !solid.wants_middles;
-  const std::vector<std::int32_t> changed = std::exchange(changes.vertices, {});
   resize_surface(surface, solid);
   for (std::size_t t = 0; t < solid.triangles.size() && !has_middles; ++t) set_triangle(surface, uncut, t, solid);
-  auto next = changed.begin();
+  for (const std::int32_t v : changes.vertices) {
+    place_vertex(surface.vertices()[v], static_cast<std::size_t>(v), solid);
+  }
+  changes.hung.clear();
+  auto next = changes.vertices.begin();
   for (std::size_t v = 0; v < solid.surface_cell.size(); ++v) {
-    const bool listed = next != changed.end() && static_cast<std::size_t>(*next) == v;
-    if (listed) ++next;
+    const bool changed = next != changes.vertices.end() && static_cast<std::size_t>(*next) == v;
+    if (changed) ++next;
     // The nodes of divided cells are numbered anew by every edit.
-    if (!listed && !cut.divided(solid.surface_cell[v])) continue;
-    hang_vertex(surface.vertices()[v], cut, v, solid);
-    changes.vertices.push_back(static_cast<std::int32_t>(v));
+    if (!changed && !cut.divided(solid.surface_cell[v])) continue;
+    hang_vertex(surface.vertices()[v], cut, solid.surface_nodes[v]);
+    changes.hung.push_back(static_cast<std::int32_t>(v));
   }
   for (const std::int32_t t : changes.triangles) set_triangle(surface, uncut, static_cast<std::size_t>(t), solid);
   solid.changes = std::move(changes);

@@ -43,15 +43,24 @@ int opposite(const std::array<double, 4>& point, const std::array<double, 4>& fr
   return best;
 }
 
+CellShape with_edge_numbers(CellShape shape) {
+  for (auto& row : shape.edge_of) row.fill(-1);
+  for (std::size_t e = 0; e < shape.edges.size(); ++e) {
+    const auto [a, b] = shape.edges[e];
+    shape.edge_of[a][b] = shape.edge_of[b][a] = static_cast<std::int8_t>(e);
+  }
+  return shape;
+}
+
 }  // namespace
 
 const CellShape& lattice_cell_shape() {
-  static const CellShape shape{8, kKuhnTets, kLatticeEdges, kLatticeFaces};
+  static const CellShape shape = with_edge_numbers({8, kKuhnTets, kLatticeEdges, kLatticeFaces, {}});
   return shape;
 }
 
 const CellShape& tetrahedron_shape() {
-  static const CellShape shape{4, kOneTet, kTetEdges, kPaddedFaces};
+  static const CellShape shape = with_edge_numbers({4, kOneTet, kTetEdges, kPaddedFaces, {}});
   return shape;
 }
 

@@ -23,6 +23,8 @@ struct CellShape {
   std::span<const std::array<int, 4>> tets;   ///< positive volume
   std::span<const std::array<int, 2>> edges;  ///< lower corner first; of a lattice cell the first 12 are its axis edges
   std::span<const std::array<int, 4>> faces;  ///< a tetrahedron's repeat their last corner
+  /// Number in `edges` of the edge between two corners, -1 if they have none.
+  std::array<std::array<std::int8_t, 8>, 8> edge_of{};
 };
 const CellShape& lattice_cell_shape();
 const CellShape& tetrahedron_shape();

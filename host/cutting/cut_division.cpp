@@ -74,11 +74,12 @@ TetDivision CutTopology::division(std::int32_t cell, const CellCut& cut, int tet
   std::array<char, 6> is_cut{};
   std::array<double, 6> crossing{};
   for (int e = 0; e < 6; ++e) {
-    const std::int32_t a = mesh_->cells[cell][corner[kTetEdges[e][0]]], b = mesh_->cells[cell][corner[kTetEdges[e][1]]];
-    const auto found = edges_.find(node_pair(a, b));
-    if (found == edges_.end()) continue;
+    const int from = corner[kTetEdges[e][0]], to = corner[kTetEdges[e][1]];
+    if ((cut.cut >> mesh_->shape->edge_of[from][to] & 1) == 0) continue;
+    const std::int32_t a = mesh_->cells[cell][from], b = mesh_->cells[cell][to];
+    const double t = edges_.at(node_pair(a, b));
     is_cut[e] = 1;
-    crossing[e] = a < b ? found->second : 1 - found->second;
+    crossing[e] = a < b ? t : 1 - t;
   }
   return divide(label, is_cut, crossing);
 }

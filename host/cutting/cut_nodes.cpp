@@ -1,6 +1,5 @@
 // The nodes of the copies: which corners are one node, and what each node was before an edit.
 #include <algorithm>
-#include <set>
 
 #include "cutting/cut_topology.h"
 #include "model/lattice_parts.h"
@@ -77,11 +76,13 @@ std::vector<CutTopology::NodeClass> CutTopology::classes_at(std::int32_t node) c
 /// Group the corners of the copies anew at the nodes of changed cells, then number all nodes.
 void CutTopology::number_nodes(const OldCuts& old, const std::vector<std::array<std::int32_t, 8>>& old_copies, CutEdit& edit) {
   const auto cells = static_cast<std::int32_t>(mesh_->cells.size()), nodes = static_cast<std::int32_t>(mesh_->rest.size());
-  std::set<std::int32_t> touched;
+  std::vector<std::int32_t> touched;
   for (const auto& [c, before] : old) {
     if (cells_.at(c).components < 2) continue;
-    touched.insert(mesh_->cells[c].begin(), mesh_->cells[c].begin() + mesh_->shape->corners);
+    touched.insert(touched.end(), mesh_->cells[c].begin(), mesh_->cells[c].begin() + mesh_->shape->corners);
   }
+  std::sort(touched.begin(), touched.end());
+  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
   const auto node_before = [&](const Member& m) {
     const std::int32_t e = edit.element_from[element_of(m.cell, m.component)];
     return (e < cells ? elements_.nodes[e] : old_copies[e - cells])[m.corner];

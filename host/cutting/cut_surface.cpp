@@ -100,10 +100,10 @@ void CutSurface::update(const CutTopology& topology, const std::vector<std::int3
       for (int k = 0; k < cut.components; ++k) cell.carrier[k] = {c, k};
       for (std::size_t e = 0; e < overlay::kKuhnEdges.size(); ++e) {
         const auto [a, b] = overlay::kKuhnEdges[e];
+        if ((cut.cut >> mesh.shape->edge_of[a][b] & 1) == 0) continue;
         const std::int32_t m = mesh.cells[c][a], n = mesh.cells[c][b];
-        if (const auto edge = topology.edges().find(node_pair(m, n)); edge != topology.edges().end()) {
-          cell.crossing[e] = m < n ? edge->second : 1 - edge->second;
-        }
+        const double t = topology.edges().at(node_pair(m, n));
+        cell.crossing[e] = m < n ? t : 1 - t;
       }
     }
     changed.push_back(cell);

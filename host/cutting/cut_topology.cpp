@@ -90,12 +90,12 @@ void CutTopology::reset(const CutEdges& edges) {
 /// Number in the shape of the edge between two nodes of a cell, -1 if it has none.
 int CutTopology::edge_of(std::int32_t cell, std::int32_t a, std::int32_t b) const {
   const auto& corners = mesh_->cells[cell];
-  const auto& edges = mesh_->shape->edges;
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    const std::int32_t first = corners[edges[e][0]], second = corners[edges[e][1]];
-    if ((first == a && second == b) || (first == b && second == a)) return static_cast<int>(e);
+  int from = -1, to = -1;
+  for (int i = 0; i < mesh_->shape->corners; ++i) {
+    if (corners[i] == a) from = i;
+    if (corners[i] == b) to = i;
   }
-  return -1;
+  return from >= 0 && to >= 0 ? mesh_->shape->edge_of[from][to] : -1;
 }
 
 std::vector<std::int32_t> CutTopology::cells_at_edge(const NodePair& edge) const {

@@ -98,6 +98,7 @@ RestMap::RestMap(const CutTopology& body, std::span<const Vec3d> x, const vec::B
     if (all != 0 || (any & kNotFinite) != 0) continue;
     vec::Box box;
     for (int a = 0; a < corners; ++a) box.extend(x[nodes[e][a]]);
+    all_.extend(box);
     hash_.insert(box, static_cast<std::int32_t>(element_.size()));
     element_.push_back(static_cast<std::int32_t>(e));
   }
@@ -105,18 +106,18 @@ RestMap::RestMap(const CutTopology& body, std::span<const Vec3d> x, const vec::B
 
 CarriedPoint RestMap::find(const Vec3d& p) {
   CarriedPoint out;
-  vec::Box box{p, p};
+  if (all_.distance2(p) >= reach_ * reach_) return out;
+  const vec::Box box{p, p};
   hits_.clear();
   hash_.query(box, [&](std::int32_t item) { hits_.push_back(item); });
   std::sort(hits_.begin(), hits_.end());
   for (const std::int32_t item : hits_) {
     if (inside(element_[item], p, out)) return out;
   }
-  box = grown(box, reach_);
   Best best{reach_ * reach_, {}};
   // The nearest boxes first: most of the others then cannot hold anything nearer.
   near_.clear();
-  hash_.query(box, [&](std::int32_t item) {
+  hash_.query(grown(box, reach_), [&](std::int32_t item) {
     const double distance2 = hash_.box(item).distance2(p);
     if (distance2 < best.distance2) near_.emplace_back(distance2, element_[item]);
   });

@@ -47,6 +47,7 @@ class RestMap {
   double edge_, reach_;
   SpatialHash hash_;
   std::vector<std::int32_t> element_;  ///< items of the hash
+  vec::Box all_;                       ///< that holds all of them
   std::vector<std::int32_t> hits_;
   std::vector<std::pair<double, std::int32_t>> near_;
 };

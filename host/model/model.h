@@ -74,10 +74,11 @@ struct ModelSurface {
   std::vector<char> triangle_cut;  ///< whether it is a face that a blade made; empty: none
 };
 
-/// What an edit changed of a surface, ascending: vertices that are new, have another place at rest, other weights or other
-/// nodes (and perhaps some that have not), and triangles that are new or have other corners.
+/// What an edit changed of a surface, ascending.
 struct SurfaceChanges {
-  std::vector<std::int32_t> vertices, triangles;
+  std::vector<std::int32_t> vertices;   ///< that are new or have another place at rest or other weights
+  std::vector<std::int32_t> hung;       ///< these, and those that may hang in other nodes
+  std::vector<std::int32_t> triangles;  ///< that are new or have other corners
 };
 
 /// Nodes that a cut made: each holds the far side of elements whose material belongs to other nodes, its anchors.

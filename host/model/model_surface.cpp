@@ -49,8 +49,8 @@ void patch_surface(const SolidSurface& solid, const SurfaceChanges& changes, Mod
   for (const std::int32_t v : changes.vertices) {
     surface.rest[v] = solid.surface[v];
     surface.weights[v] = solid.surface_weights[v];
-    hang_vertex(solid, static_cast<std::size_t>(v), model.bodies[0], surface);
   }
+  for (const std::int32_t v : changes.hung) hang_vertex(solid, static_cast<std::size_t>(v), model.bodies[0], surface);
   surface.triangles.resize(solid.triangles.size());
   surface.triangle_body.resize(solid.triangles.size(), 0);
   surface.triangle_cut.resize(solid.triangle_cut.size(), 0);

@@ -133,8 +133,10 @@ class OpenclBackend final : public Backend {
 
   std::vector<double> read_reals(BufferId id) override {
     check_type(row(id), false);
-    const auto values = read<float>(id);
-    return {values.begin(), values.end()};
+    const std::size_t count = row(id).values();
+    const auto values = std::make_unique_for_overwrite<float[]>(count);
+    read_into(id, values.get());
+    return {values.get(), values.get() + count};
   }
   std::vector<std::int32_t> read_ints(BufferId id) override {
     check_type(row(id), true);

@@ -114,8 +114,11 @@ void Simulation::prepare_blades() {
 }
 
 std::vector<Vec3d> Simulation::positions(const std::vector<double>& u, std::size_t body) const {
-  std::vector<Vec3d> x = pick(u, body, 1);
-  for (std::size_t n = 0; n < x.size(); ++n) x[n] = vec::add(model_->bodies[body].rest[n], x[n]);
+  std::vector<Vec3d> x = model_->bodies[body].rest;
+  for (std::size_t n = 0; n < x.size(); ++n) {
+    const double* moved = &u[4 * static_cast<std::size_t>(model_->bodies[body].slot[n])];
+    for (std::size_t c = 0; c < 3; ++c) x[n][c] += moved[c];
+  }
   return x;
 }
 

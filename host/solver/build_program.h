@@ -15,7 +15,7 @@ struct ProgramOptions {
 Program build_program(const Model& model, const ProgramOptions& options = {});
 
 /// What ProgramOptions::surface_follows left open. With `changes`, the buffers hold what they held before an edit already, only
-/// the vertices listed differ, and Buffer::changed says so.
+/// what is listed differs, and Buffer::changed says so.
 void set_surface(const ModelSurface& surface, Program& program, const SurfaceChanges* changes = nullptr);
 
 /// Which element a position in the `fault` buffer means, or which node that shape matching moves.

@@ -86,7 +86,7 @@ void Simulation::cut_now(const std::vector<CutEdges>& edges, std::vector<double>
         cuts_->bodies[b]->update_elements();
         origins[b] = {edits[b].node_from, flux_masses(scene_.bodies[b], cuts_->bodies[b]->solid(), edits[b])};
       }
-      swap.run(cuts_->solids(), std::move(origins), [&] { surfaces.get(); });
+      swap.run(cuts_->solids(), std::move(origins), [&] { get_soon(surfaces); });
       keep_solids();
       if (scene_.bodies.size() == 1) cuts_->surface_copy.make(model_, cuts_->helper);
     }

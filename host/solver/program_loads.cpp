@@ -7,6 +7,22 @@
 
 namespace pliant {
 
+namespace {
+
+/// The values of the tiles in which vertices lie, `width` for each vertex.
+std::vector<ValueRange> tiles_of(const std::vector<std::int32_t>& vertices, std::size_t width) {
+  std::vector<ValueRange> ranges;
+  for (const std::int32_t v : vertices) {
+    const std::size_t tile = static_cast<std::size_t>(v) / PLIANT_TILE * PLIANT_TILE;
+    if (ranges.empty() || ranges.back().last <= width * tile) {
+      ranges.push_back({width * tile, width * (tile + PLIANT_TILE)});
+    }
+  }
+  return ranges;
+}
+
+}  // namespace
+
 void ProgramBuilder::add_surface() {
   if (model_.surface.rest.empty() && !options_.surface_follows) return;
   const auto rest = add(make_reals("surface_rest", BufferType::real4, 0, BufferRole::constant, "[vertices]", "m", "model"));
@@ -38,16 +54,19 @@ void set_surface(const ModelSurface& s, Program& program, const SurfaceChanges* 
   node.count = weight.count = width * count;
   const auto place = [&](std::size_t v) {
     std::copy(s.rest[v].begin(), s.rest[v].end(), &rest.reals[4 * v]);
-    for (std::size_t a = 0; a < width; ++a) {
-      weight.reals[tile_base(v, width) + a * PLIANT_TILE] = s.weights[v][a];
-      node.ints[tile_base(v, width) + a * PLIANT_TILE] = s.nodes[v][a];
-    }
+    for (std::size_t a = 0; a < width; ++a) weight.reals[tile_base(v, width) + a * PLIANT_TILE] = s.weights[v][a];
+  };
+  const auto hang = [&](std::size_t v) {
+    for (std::size_t a = 0; a < width; ++a) node.ints[tile_base(v, width) + a * PLIANT_TILE] = s.nodes[v][a];
   };
   if (changes == nullptr || single) {
     rest.reals.assign(4 * count, 0.0);
     weight.reals.assign(weight.count, 0.0);
     node.ints.assign(node.count, 0);
-    for (std::size_t v = 0; v < s.rest.size(); ++v) place(v);
+    for (std::size_t v = 0; v < s.rest.size(); ++v) {
+      place(v);
+      hang(v);
+    }
     if (changes != nullptr) {
       rest.changed = {{0, rest.values()}};
       weight.changed = node.changed = {{0, weight.count}};
@@ -56,16 +75,11 @@ void set_surface(const ModelSurface& s, Program& program, const SurfaceChanges* 
     rest.reals.resize(4 * count, 0.0);
     weight.reals.resize(weight.count, 0.0);
     node.ints.resize(node.count, 0);
-    std::vector<ValueRange> in_rest, in_tiles;
-    for (const std::int32_t v : changes->vertices) {
-      place(static_cast<std::size_t>(v));
-      const std::size_t tile = static_cast<std::size_t>(v) / PLIANT_TILE * PLIANT_TILE;
-      if (!in_rest.empty() && in_rest.back().first == 4 * tile) continue;
-      in_rest.push_back({4 * tile, 4 * (tile + PLIANT_TILE)});
-      in_tiles.push_back({width * tile, width * (tile + PLIANT_TILE)});
-    }
-    rest.changed = in_rest;
-    weight.changed = node.changed = in_tiles;
+    for (const std::int32_t v : changes->vertices) place(static_cast<std::size_t>(v));
+    for (const std::int32_t v : changes->hung) hang(static_cast<std::size_t>(v));
+    rest.changed = tiles_of(changes->vertices, 4);
+    weight.changed = tiles_of(changes->vertices, width);
+    node.changed = tiles_of(changes->hung, width);
   }
   Pass& pass = program.surface.front();
   pass.defines = {{"WIDTH", static_cast<int>(width)}};
