@@ -4,7 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <map>
+#include <utility>
 
 #include "pliant/error.h"
 
@@ -70,7 +70,28 @@ void set_component(Constraint& c, int axis, double target, std::int32_t curve) {
   c.curve[axis] = curve;
 }
 
-void constrain(const Body& body, const ModelBody& placed, Model& model, std::map<std::int32_t, Constraint>& all) {
+/// The constraints so far, at most one per slot.
+class Constraints {
+ public:
+  explicit Constraints(std::int32_t slots) : at_(static_cast<std::size_t>(slots), -1) {}
+  Constraint& operator[](std::int32_t slot) {
+    if (at_[slot] < 0) {
+      at_[slot] = static_cast<std::int32_t>(all_.size());
+      all_.emplace_back().slot = slot;
+    }
+    return all_[at_[slot]];
+  }
+  [[nodiscard]] std::vector<Constraint> by_slot() && {
+    std::sort(all_.begin(), all_.end(), [](const Constraint& a, const Constraint& b) { return a.slot < b.slot; });
+    return std::move(all_);
+  }
+
+ private:
+  std::vector<std::int32_t> at_;  ///< of each slot: place in all_, or -1
+  std::vector<Constraint> all_;
+};
+
+void constrain(const Body& body, const ModelBody& placed, Model& model, Constraints& all) {
   for (const Fixed& fixed : body.fixed) {
     for (const std::int32_t n : select_nodes(fixed.where, placed, Virtual::with_anchors)) {
       Constraint& c = all[placed.slot[n]];
@@ -140,7 +161,7 @@ bool needs_surface(const Scene& scene) {
 
 void add_boundary_conditions(const Scene& scene, Model& model) {
   model.curves.assign(1, Curve{});  // curve 0: constant 1
-  std::map<std::int32_t, Constraint> constraints;
+  Constraints constraints(model.slots);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     try {
       constrain(scene.bodies[b], model.bodies[b], model, constraints);
@@ -150,10 +171,7 @@ void add_boundary_conditions(const Scene& scene, Model& model) {
       throw Error(error.code(), fmt::format("{}: {}", scene.file.string(), error.what()));
     }
   }
-  for (auto& [slot, c] : constraints) {
-    c.slot = slot;
-    model.constraints.push_back(c);
-  }
+  model.constraints = std::move(constraints).by_slot();
   if (scene.interactive) reserve_forces(model);
   std::stable_sort(model.forces.begin(), model.forces.end(),
                    [](const NodeForce& a, const NodeForce& b) { return a.slot < b.slot; });
