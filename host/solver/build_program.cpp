@@ -28,11 +28,18 @@ Program ProgramBuilder::build() {
 
 void ProgramBuilder::add_shared_buffers() {
   const auto slots = static_cast<std::size_t>(model_.slots);
+  std::vector<double> u(4 * slots), w(4 * slots);
+  for (std::size_t s = 0; s < slots; ++s) {
+    u[4 * s + 3] = model_.mass[s] > 0 ? 1 / model_.mass[s] : 0;
+    w[4 * s + 3] = 1;  // the decay per step: the host writes it once the step is known
+  }
+  for (const Constraint& c : model_.constraints) {
+    if (c.holds()) u[4 * static_cast<std::size_t>(c.slot) + 3] = 0;
+  }
   node_u_ = add(make_reals("node_u", BufferType::real4, slots, BufferRole::state, "[slots]", "m, m, m, 1/kg",
-                           "node_update, brick_update, node_prescribe"));
+                           "node_update, brick_update, node_prescribe", std::move(u)));
   node_w_ = add(make_reals("node_w", BufferType::real4, slots, BufferRole::state, "[slots]", "m, m, m, 1",
-                           "node_update, brick_update, node_prescribe"));
-  set_initial_state(model_, program_);
+                           "node_update, brick_update, node_prescribe", std::move(w)));
   node_force_ = add(make_reals("node_force", BufferType::real4, slots, BufferRole::scratch, "[slots]", "N",
                                "node_update, brick_update (FORCE_ONLY)"));
   node_load_ = add(
@@ -52,21 +59,6 @@ void ProgramBuilder::add_shared_buffers() {
   curves_ = add(make_reals("curve_value", BufferType::real,
                            (static_cast<std::size_t>(options_.batch_steps) + 1) * model_.curves.size(), BufferRole::control,
                            "[steps + 1][curves]", "1", "host"));
-}
-
-void set_initial_state(const Model& model, Program& program) {
-  const auto slots = static_cast<std::size_t>(model.slots);
-  std::vector<double>& u = program.buffers[program.find("node_u")].reals;
-  std::vector<double>& w = program.buffers[program.find("node_w")].reals;
-  u.assign(4 * slots, 0.0);
-  w.assign(4 * slots, 0.0);
-  for (std::size_t s = 0; s < slots; ++s) {
-    u[4 * s + 3] = model.mass[s] > 0 ? 1 / model.mass[s] : 0;
-    w[4 * s + 3] = 1;  // the decay per step: the host writes it once the step is known
-  }
-  for (const Constraint& c : model.constraints) {
-    if (c.holds()) u[4 * static_cast<std::size_t>(c.slot) + 3] = 0;
-  }
 }
 
 std::vector<std::pair<std::string, int>> ProgramBuilder::update_defines(int force_only) const {

@@ -18,9 +18,6 @@ Program build_program(const Model& model, const ProgramOptions& options = {});
 /// what is listed differs, and Buffer::changed says so.
 void set_surface(const ModelSurface& surface, Program& program, const SurfaceChanges* changes = nullptr);
 
-/// Nothing has moved: the initial values of node_u and node_w.
-void set_initial_state(const Model& model, Program& program);
-
 /// Which element a position in the `fault` buffer means, or which node that shape matching moves.
 struct FaultPlace {
   std::int32_t body = -1;

@@ -22,7 +22,9 @@ double lap(double& start) {
 ModelSwap::ModelSwap(Simulation& simulation, std::vector<double> u, CutReport& report)
     : s_(simulation), report_(report), start_(now()), old_model_(s_.model_), old_u_(std::move(u)) {
   old_w_ = s_.backend_->read_reals(s_.w_);
-  for (std::size_t b = 0; b < s_.scene_.bodies.size(); ++b) old_velocity_.push_back(s_.velocities_from(old_w_, b));
+  for (std::size_t b = 0; b < s_.scene_.bodies.size(); ++b) {
+    v_.push_back(s_.velocities_from(old_w_, b));
+  }
 }
 
 /// Most of a surface stays as it is.
@@ -61,11 +63,19 @@ void ModelSwap::run(std::span<const Solid* const> solids, std::vector<NodeOrigin
   }
   add_boundary_conditions(s_.scene_, *model_);
   Program program = build_program(*model_, {s_.scene_.integrator, s_.batch_steps_, follows});
+  new_u_ = program.buffers[program.find("node_u")].reals;
+  new_w_ = program.buffers[program.find("node_w")].reals;
   if (follows && solids[0]->lattice != nullptr) keep_surface(program);
   report_.model += lap(start_);
   s_.model_ = model_;
+  // The buffers of the state are sent once, as they go on, and begin as always for whoever asks for the program.
+  const auto exchange_state = [&](Program& of) {
+    of.buffers[of.find("node_u")].reals.swap(new_u_);
+    of.buffers[of.find("node_w")].reals.swap(new_w_);
+  };
   try {
-    carry_motion(program);
+    carry_motion();
+    exchange_state(program);
     s_.install(std::move(program), [&] {
       report_.upload += lap(start_);
       if (!follows) return;
@@ -77,38 +87,34 @@ void ModelSwap::run(std::span<const Solid* const> solids, std::vector<NodeOrigin
     restore();
     throw;
   }
-  set_initial_state(*model_, s_.program_);  // the state was sent with the rest; whoever asks for the program finds what it was
+  exchange_state(s_.program_);
   s_.upload_shape_matching();
   s_.state_.vectors.erase("kept");  // copies of the old model's buffers
   s_.state_.vectors["topology_version"] = {static_cast<double>(++s_.topology_version_)};
   report_.upload += lap(start_);
 }
 
-void ModelSwap::carry_motion(Program& program) const {
-  std::vector<double>& u = program.buffers[program.find("node_u")].reals;
-  std::vector<double>& w = program.buffers[program.find("node_w")].reals;
-  for (std::size_t b = 0; b < old_velocity_.size(); ++b) {
+void ModelSwap::carry_motion() {
+  for (std::size_t b = 0; b < v_.size(); ++b) {
     const NodeOrigins& origins = origins_[b];
     const std::vector<std::int32_t>&slots = model_->bodies[b].slot, &old_slots = old_model_->bodies[b].slot;
-    const std::vector<Vec3d>& old_velocity = old_velocity_[b];
     std::vector<Vec3d> velocity(slots.size());
-    for (std::size_t n = 0; n < velocity.size(); ++n) velocity[n] = old_velocity[origins.of(n)];
+    for (std::size_t n = 0; n < velocity.size(); ++n) velocity[n] = v_[b][origins.of(n)];
     for (const FluxMass& f : origins.flux) {
       const double share = f.mass / model_->mass[slots[f.node]];
-      const Vec3d &from = old_velocity[f.from], &own = old_velocity[origins.of(f.node)];
-      for (std::size_t c = 0; c < 3; ++c) velocity[f.node][c] += share * (from[c] - own[c]);
+      for (std::size_t c = 0; c < 3; ++c) velocity[f.node][c] += share * (v_[b][f.from][c] - v_[b][origins.of(f.node)][c]);
     }
     for (std::size_t n = 0; n < slots.size(); ++n) {
       const auto slot = static_cast<std::size_t>(slots[n]);
       const double* moved = &old_u_[4 * static_cast<std::size_t>(old_slots[origins.of(n)])];
       const double step = s_.substeps_of(slot) * s_.state_.dt;
       for (std::size_t c = 0; c < 3; ++c) {
-        u[4 * slot + c] = moved[c];
-        w[4 * slot + c] = step * velocity[n][c];
+        new_u_[4 * slot + c] = moved[c];
+        new_w_[4 * slot + c] = step * velocity[n][c];
       }
     }
   }
-  for (std::size_t slot = 0; slot < model_->mass.size(); ++slot) w[4 * slot + 3] = s_.decay(slot);
+  for (std::size_t slot = 0; slot < model_->mass.size(); ++slot) new_w_[4 * slot + 3] = s_.decay(slot);
 }
 
 void ModelSwap::restore() {

@@ -36,8 +36,7 @@ class ModelSwap {
   void keep_surface(Program& program);
   /// Wait for the surfaces, and put them into the model.
   void take_surfaces(std::span<const Solid* const> solids, const std::function<void()>& ready);
-  /// Into the initial values of the program's state.
-  void carry_motion(Program& program) const;
+  void carry_motion();
   void restore();
 
   Simulation& s_;
@@ -45,11 +44,12 @@ class ModelSwap {
   double start_;
   std::shared_ptr<const Model> old_model_;
   std::vector<double> old_u_, old_w_;
-  std::vector<std::vector<Vec3d>> old_velocity_;  ///< [bodies][nodes before the edit]
+  std::vector<std::vector<Vec3d>> v_;  ///< [bodies][nodes before the edit]
   std::vector<NodeOrigins> origins_;
   std::shared_ptr<Model> model_;
   bool kept_ = false;                        ///< the surface of the old model is in the new one
   const SurfaceChanges* changes_ = nullptr;  ///< where it differs from what was kept
+  std::vector<double> new_u_, new_w_;
 };
 
 }  // namespace pliant
