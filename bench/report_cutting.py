@@ -139,8 +139,9 @@ COLUMNS = [
 
 
 def table(rows):
-    """Only columns that these rows fill."""
+    """Only columns that these rows fill, and what kind of rows they are only where they differ."""
     columns = [c for c in COLUMNS if any(r.get(c.key) is not None for r in rows)]
+    columns = [c for c in columns if c.key not in ("method", "element", "cuts") or len({r.get(c.key) for r in rows}) > 1]
     return page.table(columns, rows, sortable=True, strong=lambda r: r["method"] == "virtual nodes" and len({x["method"] for x in rows}) > 1)
 
 
