@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "cutting/cut_bodies.h"
 #include "cutting/cut_body.h"
 #include "cutting/cut_scenes.h"
@@ -67,16 +69,20 @@ TEST(RestMap, a_point_goes_with_the_material_around_it_and_lies_between_the_side
 TEST(RestMap, elements_without_a_place_hold_nothing) {
   const Solid uncut = make_solid(box_body("box", {0.03, 0.03, 0.03}));
   const CutTopology topology(cut_mesh(uncut, "box"));
+  const Vec3d inside{0.0165, 0.0142, 0.0133};
+  const CarriedPoint before = RestMap(topology, topology.mesh().rest, everywhere(), 0.01, 0.015).find(inside);
+  ASSERT_GE(before.cell, 0);
+  // A corner of the cell that its tetrahedron around the point does not have.
+  const auto& tet = topology.mesh().shape->tets[before.tet];
+  int corner = 0;
+  while (std::find(tet.begin(), tet.end(), corner) != tet.end()) ++corner;
   std::vector<Vec3d> x = topology.mesh().rest;
-  std::size_t corner = 0;
-  for (std::size_t n = 0; n < x.size(); ++n) {
-    if (vec::norm(x[n]) < vec::norm(x[corner])) corner = n;
-  }
-  x[corner][1] = NAN;
+  x[topology.mesh().cells[before.cell][corner]][1] = NAN;
   RestMap map(topology, x, everywhere(), 0.01, 0.015);
+  const CarriedPoint after = map.find(inside);
+  EXPECT_NE(after.cell, before.cell);
+  EXPECT_TRUE(after.cell < 0 || vec::finite(after.rest));
   EXPECT_GE(map.find({0.025, 0.025, 0.025}).cell, 0);
-  const CarriedPoint near = map.find({0.006, 0.006, 0.006});
-  EXPECT_TRUE(near.cell < 0 || vec::finite(near.rest));
   RestMap part(topology, topology.mesh().rest, {{0.028, 0.028, 0.028}, {0.029, 0.029, 0.029}}, 0.01, 0.002);
   EXPECT_GE(part.find({0.0285, 0.0285, 0.0285}).cell, 0);
   EXPECT_LT(part.find({0.005, 0.005, 0.005}).cell, 0) << "outside of the region of the map";
