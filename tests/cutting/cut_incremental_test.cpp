@@ -101,6 +101,72 @@ TEST(CutIncremental, surfaces_with_loads_and_of_several_bodies_are_patched_too) 
   expect_patched_as_fresh(scene, "cpu", size);
 }
 
+/// Hands everything on, but an update fails where it is told to.
+class FailingUpdates final : public Backend {
+ public:
+  enum class Where { nowhere, at_first, after_the_surface };
+  FailingUpdates(std::unique_ptr<Backend> inner, std::shared_ptr<Where> where)
+      : inner_(std::move(inner)), where_(std::move(where)) {}
+  [[nodiscard]] const BackendInfo& info() const override { return inner_->info(); }
+  void load(const Program& program) override { inner_->load(program); }
+  void update(const Program& loaded, const Program& next, const std::function<void()>& complete) override {
+    if (*where_ == Where::at_first) throw Error(ErrorCode::device, "gone");
+    inner_->update(loaded, next, complete);
+    if (*where_ == Where::after_the_surface) throw Error(ErrorCode::device, "gone");
+  }
+  void run(const std::vector<Pass>& passes, std::int32_t first, std::int32_t count, std::int64_t origin) override {
+    inner_->run(passes, first, count, origin);
+  }
+  void run(const Pass& pass, std::int32_t step) override { inner_->run(pass, step); }
+  void finish() override { inner_->finish(); }
+  void copy(BufferId from, BufferId to) override { inner_->copy(from, to); }
+  std::vector<double> read_reals(BufferId id) override { return inner_->read_reals(id); }
+  std::vector<std::int32_t> read_ints(BufferId id) override { return inner_->read_ints(id); }
+  void write_reals(BufferId id, const std::vector<double>& values) override { inner_->write_reals(id, values); }
+  void write_ints(BufferId id, const std::vector<std::int32_t>& values) override { inner_->write_ints(id, values); }
+  std::vector<std::uint8_t> read_bytes(BufferId id) override { return inner_->read_bytes(id); }
+  void profile(bool on) override { inner_->profile(on); }
+  std::vector<PassTime> take_profile() override { return inner_->take_profile(); }
+
+ private:
+  std::unique_ptr<Backend> inner_;
+  std::shared_ptr<Where> where_;
+};
+
+TEST(CutIncremental, edits_after_one_that_failed_are_those_of_a_run_in_which_none_did) {
+  using Where = FailingUpdates::Where;
+  const Vec3d size{0.06, 0.03, 0.04};
+  Body body = box_body("box", size);
+  body.velocity = {0.01, 0, 0.02};
+  const Scene scene = scene_with(body);
+  const auto where = std::make_shared<Where>(Where::nowhere);
+  Simulation smooth(scene, open_backend("cpu")), rough(scene, std::make_unique<FailingUpdates>(open_backend("cpu"), where));
+  std::mt19937 random(4);
+  for (int k = 0; k < 6; ++k) {
+    smooth.advance(3);
+    rough.advance(3);
+    const std::vector<SweepTriangle> cut = random_cut(random, size);
+    const std::int64_t version = rough.topology_version();
+    const bool changes = smooth.cut(cut).changed;
+    for (const Where place : {Where::at_first, Where::after_the_surface}) {
+      if (!changes || k % 3 == 0) break;
+      *where = place;
+      const std::uint64_t before = rough.hash();
+      EXPECT_THROW(rough.cut(cut), Error);
+      EXPECT_EQ(rough.hash(), before);
+      EXPECT_EQ(rough.topology_version(), version);
+    }
+    *where = Where::nowhere;
+    EXPECT_EQ(rough.cut(cut).changed, changes);
+    expect_same_programs(smooth.program(), rough.program());
+    EXPECT_EQ(smooth.hash(), rough.hash());
+    EXPECT_EQ(smooth.surface_positions(), rough.surface_positions());
+    EXPECT_EQ(smooth.model().surface.triangles, rough.model().surface.triangles);
+    EXPECT_EQ(smooth.model().surface.triangle_cut, rough.model().surface.triangle_cut);
+  }
+  EXPECT_GE(rough.topology_version(), 4);
+}
+
 TEST(CutIncremental, a_backend_that_is_updated_holds_what_a_loaded_one_holds) {
   const Vec3d size{0.05, 0.03, 0.03};
   const Scene scene = scene_with(box_body("box", size));
