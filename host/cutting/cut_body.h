@@ -16,7 +16,8 @@ std::shared_ptr<const CutMesh> cut_mesh(const Solid& solid, const std::string& n
 /// Without, vertices hang in the copy that holds their place at rest, and triangles stay as they are.
 Solid cut_solid(const Solid& uncut, const CutTopology& cut, const CutSurface* surface = nullptr);
 
-/// The same where `solid` is what an earlier state of the same cut gave, or the uncut body: what did not change is left alone.
+/// The same where `solid` is what an earlier state of the same cut gave, or the uncut body: only elements that
+/// changed are written, and the whole surface.
 void update_solid(const Solid& uncut, const CutTopology& cut, const CutSurface* surface, Solid& solid);
 
 /// Its two halves, which may run beside each other.
