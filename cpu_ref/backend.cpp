@@ -10,12 +10,12 @@
 #include <new>
 #include <type_traits>
 
+#include "backend/buffer_checks.h"
+#include "backend/float_environment.h"
+#include "backend/pass_table.h"
+#include "backend/probe.h"
 #include "pliant/error.h"
 #include "registry.h"
-#include "solver/buffer_checks.h"
-#include "solver/float_environment.h"
-#include "solver/pass_table.h"
-#include "solver/probe.h"
 #include "thread_pool.h"
 
 namespace pliant {
@@ -42,9 +42,9 @@ std::uint64_t physical_memory() {
 void require_fma() {
 #if defined(__x86_64__)
   if (!__builtin_cpu_supports("fma") || !__builtin_cpu_supports("avx2")) {
-    throw Error(fmt::format(
-        "the processor ({}) has no hardware fma (FMA3 and AVX2), which the CPU reference needs: use an OpenCL device instead",
-        processor_name()));
+    throw Error(ErrorCode::bad_input, fmt::format("the processor ({}) has no hardware fma (FMA3 and AVX2), which the CPU "
+                                                  "reference needs: use an OpenCL device instead",
+                                                  processor_name()));
   }
 #endif
 }
@@ -82,7 +82,8 @@ class RefBackend final : public Backend {
       storage_.resize(program.buffers.size());
       for (std::size_t i = 0; i < storage_.size(); ++i) fill(program.buffers[i], storage_[i]);
     } catch (const std::bad_alloc&) {
-      throw Error(fmt::format("out of memory while the scene's {} buffers were allocated", storage_.size()));
+      throw Error(ErrorCode::bad_input,
+                  fmt::format("out of memory while the scene's {} buffers were allocated", storage_.size()));
     }
     passes_.load(program, [this](const Pass& pass) { return prepare(pass); });
   }
@@ -110,7 +111,8 @@ class RefBackend final : public Backend {
       check_memory(next.buffers, sizeof(Scalar), info_.max_buffer_bytes, info_.memory_bytes, info_.name);
       for (const BufferId id : next.late) bring(id);
     } catch (const std::bad_alloc&) {
-      throw Error(fmt::format("out of memory while the scene's {} buffers were allocated", next.buffers.size()));
+      throw Error(ErrorCode::bad_input,
+                  fmt::format("out of memory while the scene's {} buffers were allocated", next.buffers.size()));
     }
     passes_.load(next, [this](const Pass& pass) { return prepare(pass); });
   }

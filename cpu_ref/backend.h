@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "solver/backend.h"
+#include "backend/backend.h"
 
 namespace pliant {
 

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
+#include "backend/pass_table.h"
 #include "pliant/error.h"
-#include "solver/pass_table.h"
 
 // One row per kernel: each cpu_ref/<stem>.cpp ends with `void register_<stem>(Registry&)`, which names its instantiations.
 // clang-format off

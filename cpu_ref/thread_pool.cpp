@@ -8,7 +8,7 @@
 #include <sched.h>
 #endif
 
-#include "solver/float_environment.h"
+#include "backend/float_environment.h"
 
 namespace pliant::ref {
 namespace {

@@ -5,7 +5,7 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 
-#include "model/mesh.h"
+#include "geometry/mesh.h"
 #include "pliant/error.h"
 
 namespace pliant {
@@ -107,7 +107,8 @@ void add_entries(Json& body, const BodySpec& b) {
 Json body(const BodySpec& b, std::vector<SurfaceSpec>& surfaces) {
   const bool in_memory = !b.surface.vertices.empty() || !b.surface.triangles.empty();
   if (int{in_memory} + int{!b.surface_file.empty()} + int{!b.volume_file.empty()} != 1) {
-    throw Error(fmt::format("body \"{}\": exactly one of surface, surface_file and volume_file must be set", b.name));
+    throw Error(ErrorCode::bad_input,
+                fmt::format("body \"{}\": exactly one of surface, surface_file and volume_file must be set", b.name));
   }
   Json json{{"name", b.name}};
   if (!b.volume_file.empty()) {
@@ -148,8 +149,8 @@ Scene read_scene(const std::string& text, const std::string& file, const std::ve
     std::size_t number = surfaces.size();
     std::from_chars(name.data() + kMemory.size(), name.data() + name.size(), number);
     if (number >= surfaces.size()) {
-      throw Error(
-          fmt::format("{}/surface: got \"{}\", but {} surfaces were given in memory", b.pointer, name, surfaces.size()));
+      throw Error(ErrorCode::bad_input, fmt::format("{}/surface: got \"{}\", but {} surfaces were given in memory", b.pointer,
+                                                    name, surfaces.size()));
     }
     b.surface = name;
     b.surface_in_memory =

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "pliant/world.h"
-#include "solver/simulation.h"
+#include "simulation/simulation.h"
 
 namespace pliant::api {
 

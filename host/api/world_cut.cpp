@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "api/world_call.h"
-#include "cutting/cut_topology.h"
-#include "model/vec.h"
+#include "cutting/topology/cut_topology.h"
+#include "geometry/vec.h"
 
 namespace pliant {
 namespace {

@@ -13,7 +13,7 @@
 #include "api/frame_pool.h"
 #include "api/tools.h"
 #include "pliant/world.h"
-#include "solver/simulation.h"
+#include "simulation/simulation.h"
 
 namespace pliant {
 

@@ -21,10 +21,12 @@ constexpr const char* no_opencl = "there is no OpenCL device";
 #else
 std::vector<BackendInfo> opencl_devices(bool) { return {}; }
 std::unique_ptr<Backend> open_opencl(int index) {
-  throw Error(fmt::format(
-      "opencl:{} is not available: this build of Pliant has no OpenCL. Install the headers and the loader (Debian: apt install "
-      "opencl-headers opencl-clhpp-headers ocl-icd-opencl-dev) and configure again, or use the backend \"cpu\"",
-      index));
+  throw Error(
+      ErrorCode::bad_input,
+      fmt::format("opencl:{} is not available: this build of Pliant has no OpenCL. Install the headers and the loader (Debian: "
+                  "apt install "
+                  "opencl-headers opencl-clhpp-headers ocl-icd-opencl-dev) and configure again, or use the backend \"cpu\"",
+                  index));
 }
 constexpr const char* no_opencl = "this build has no OpenCL";
 #endif
@@ -43,7 +45,8 @@ int opencl_index(const std::string& spec) {
   const char* last = spec.data() + spec.size();
   const auto [end, error] = std::from_chars(first, last, index);
   if (error != std::errc{} || end != last || index < 0) {
-    throw Error(fmt::format("backend \"{}\": N of opencl:N must be a number, 0 for the first device", spec));
+    throw Error(ErrorCode::bad_input,
+                fmt::format("backend \"{}\": N of opencl:N must be a number, 0 for the first device", spec));
   }
   return index;
 }
@@ -134,7 +137,8 @@ std::unique_ptr<Backend> open_backend(const std::string& spec, std::string* why,
   } else if (spec == "opencl" || spec.rfind("opencl:", 0) == 0) {
     backend = open_opencl(opencl_index(spec));
   } else {
-    throw Error(fmt::format("unknown backend \"{}\"; allowed are auto, cpu, cpu:double, opencl and opencl:N", spec));
+    throw Error(ErrorCode::bad_input,
+                fmt::format("unknown backend \"{}\"; allowed are auto, cpu, cpu:double, opencl and opencl:N", spec));
   }
   if (spec != "auto") reason = fmt::format("{} ({}): asked for", backend->info().name, backend->info().device);
   if (why != nullptr) *why = reason;

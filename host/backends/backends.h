@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "solver/backend.h"
+#include "backend/backend.h"
 
 namespace pliant {
 

@@ -3,11 +3,11 @@
 
 #include <memory>
 
-#include "bench/accuracy.h"
-#include "bench/cutting.h"
-#include "bench/deformation.h"
-#include "bench/kernels.h"
-#include "bench/stability.h"
+#include "bench/accuracy/accuracy.h"
+#include "bench/cutting/cutting.h"
+#include "bench/deformation/deformation.h"
+#include "bench/kernels/kernels.h"
+#include "bench/stability/stability.h"
 #include "cli/cli.h"
 #include "io/atomic_file.h"
 #include "io/png.h"
@@ -31,7 +31,8 @@ struct Options {
 void make_folder(const std::filesystem::path& out) {
   std::error_code failed;
   std::filesystem::create_directories(out, failed);
-  if (failed) throw Error(fmt::format("--out: folder \"{}\" cannot be made: {}", out.string(), failed.message()));
+  if (failed)
+    throw Error(ErrorCode::bad_input, fmt::format("--out: folder \"{}\" cannot be made: {}", out.string(), failed.message()));
 }
 
 void write_folder(const std::filesystem::path& out, const std::string& stem, const nlohmann::json& result) {
@@ -55,7 +56,7 @@ int measure(Options& options, const std::string& stem, Wanted& wanted, nlohmann:
     write_folder(options.out, stem, result);
     const std::string out = options.out.string();
     options.common.note(
-        fmt::format("wrote {1}.json and {1}.csv to {0}; python3 bench/report.py {0} draws the charts", out, stem));
+        fmt::format("wrote {1}.json and {1}.csv to {0}; python3 bench/report/report.py {0} draws the charts", out, stem));
   }
   options.common.write(nlohmann::ordered_json(result));
   return 0;
@@ -64,7 +65,8 @@ int measure(Options& options, const std::string& stem, Wanted& wanted, nlohmann:
 int kernels(Options& options) {
   options.common.check();
   for (const std::int64_t size : options.kernels.sizes) {
-    if (size < 1 || size > 100'000'000) throw Error(fmt::format("--sizes: got {}, expected 1 to 100000000 elements", size));
+    if (size < 1 || size > 100'000'000)
+      throw Error(ErrorCode::bad_input, fmt::format("--sizes: got {}, expected 1 to 100000000 elements", size));
   }
   return measure(options, "kernels", options.kernels, bench::bench_kernels, bench::kernels_table);
 }
@@ -144,8 +146,8 @@ int cutting(Options& options) {
 }
 
 void add_cutting(CLI::App& app, const std::shared_ptr<Options>& options) {
-  CLI::App* sub =
-      app.add_subcommand("cutting", "What a cut costs and leaves behind: virtual nodes beside removal, decomposition, separation");
+  CLI::App* sub = app.add_subcommand(
+      "cutting", "What a cut costs and leaves behind: virtual nodes beside removal, decomposition, separation");
   bench::CuttingOptions& c = options->cutting;
   options->common.add_to(*sub);
   sub->add_option("--scenes", c.scenes, "folder of the shipped scenes");

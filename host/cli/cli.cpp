@@ -46,7 +46,7 @@ void Common::write(const nlohmann::ordered_json& object) const {
   const std::string text = object.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
   if (json == "-") {
     if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
-      throw Error("standard output: the JSON could not be written");
+      throw Error(ErrorCode::bad_input, "standard output: the JSON could not be written");
     }
   } else {
     write_file(json, text);
@@ -63,7 +63,8 @@ void check_writable(const std::filesystem::path& file) {
 
 void check_steps(const char* option, std::int64_t steps) {
   constexpr std::int64_t kMost = 1'000'000'000'000'000;
-  if (steps < 0 || steps > kMost) throw Error(fmt::format("{} is {}; expected 0 to {}", option, steps, kMost));
+  if (steps < 0 || steps > kMost)
+    throw Error(ErrorCode::bad_input, fmt::format("{} is {}; expected 0 to {}", option, steps, kMost));
 }
 
 std::string did_you_mean(const std::string& text, const std::vector<std::string>& words) {

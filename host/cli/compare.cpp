@@ -1,5 +1,5 @@
 // pliant compare: two backends in lockstep.
-#include "solver/compare.h"
+#include "simulation/compare.h"
 
 #include <fmt/format.h>
 
@@ -36,10 +36,11 @@ void check(const Options& options) {
   options.common.check();
   check_steps("--steps", options.steps);
   if (options.every != "pass" && options.every != "step") {
-    throw Error(fmt::format("--every is \"{}\"; allowed are pass, step", options.every));
+    throw Error(ErrorCode::bad_input, fmt::format("--every is \"{}\"; allowed are pass, step", options.every));
   }
   if (!options.backends.empty() && options.backends.size() != 2) {
-    throw Error(fmt::format("--backends names {} backends; expected two, for example opencl:0,cpu", options.backends.size()));
+    throw Error(ErrorCode::bad_input,
+                fmt::format("--backends names {} backends; expected two, for example opencl:0,cpu", options.backends.size()));
   }
 }
 
@@ -50,6 +51,7 @@ std::unique_ptr<Backend> open(const Options& options, std::size_t which) {
     return open_backend("opencl:0");
   } catch (const Error& error) {
     throw Error(
+        ErrorCode::bad_input,
         fmt::format("compare takes the first OpenCL device and cpu unless --backends A,B names others: {}", error.what()));
   }
 }

@@ -1,9 +1,9 @@
 // pliant devices: every backend of this machine.
 #include <fmt/format.h>
 
+#include "backend/pass_table.h"
 #include "backends/backends.h"
 #include "cli/cli.h"
-#include "solver/pass_table.h"
 
 namespace pliant::cli {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "cli/cli.h"
-#include "cutting/cut_topology.h"
+#include "cutting/topology/cut_topology.h"
 #include "io/obj.h"
 #include "io/png.h"
 #include "layout.h"
@@ -78,11 +78,13 @@ std::set<std::string> parse_formats(const std::vector<std::string>& formats) {
   std::set<std::string> chosen;
   for (const std::string& format : formats) {
     if (format == "png" && !render::Renderer::available()) {
-      throw Error(fmt::format("--format: png is not available: {}; allowed are vtu, obj, gltf", render::Renderer::missing()));
+      throw Error(ErrorCode::bad_input,
+                  fmt::format("--format: png is not available: {}; allowed are vtu, obj, gltf", render::Renderer::missing()));
     }
     const std::vector<std::string> known{"vtu", "obj", "png", "gltf"};
     if (std::find(known.begin(), known.end(), format) == known.end()) {
-      throw Error(fmt::format("--format: got \"{}\"; allowed are vtu, obj, png, gltf{}", format, did_you_mean(format, known)));
+      throw Error(ErrorCode::bad_input,
+                  fmt::format("--format: got \"{}\"; allowed are vtu, obj, png, gltf{}", format, did_you_mean(format, known)));
     }
     chosen.insert(format);
   }
@@ -167,9 +169,10 @@ FrameWriter::FrameWriter(std::filesystem::path folder, std::string stem, std::se
       surface_(folder_ / (stem_ + "_surface.pvd")) {
   std::error_code code;
   std::filesystem::create_directories(folder_, code);
-  if (code) throw Error(fmt::format("--out: the folder {} cannot be made: {}", folder_.string(), code.message()));
+  if (code)
+    throw Error(ErrorCode::bad_input, fmt::format("--out: the folder {} cannot be made: {}", folder_.string(), code.message()));
   if (!std::filesystem::is_directory(folder_))
-    throw Error(fmt::format("--out: {} is a file, expected a folder", folder_.string()));
+    throw Error(ErrorCode::bad_input, fmt::format("--out: {} is a file, expected a folder", folder_.string()));
   check_writable(folder_ / (stem_ + ".pvd"));
   if (formats_.count("png") != 0) pictures_.emplace(pictures);
 }

@@ -10,7 +10,7 @@
 #include "io/vtu.h"
 #include "render/export.h"
 #include "render/picture.h"
-#include "solver/simulation.h"
+#include "simulation/simulation.h"
 
 namespace pliant::cli {
 

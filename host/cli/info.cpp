@@ -1,11 +1,11 @@
 // pliant info: what a scene holds and costs. Runs nothing but the Lanczos iteration of the stable step, on the cpu backend.
 #include <fmt/format.h>
 
+#include "backend/pass_table.h"
 #include "backends/backends.h"
 #include "cli/cli.h"
 #include "pliant/error.h"
-#include "solver/pass_table.h"
-#include "solver/simulation.h"
+#include "simulation/simulation.h"
 
 namespace pliant::cli {
 namespace {

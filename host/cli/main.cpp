@@ -28,14 +28,16 @@ constexpr pliant::cli::Command kCommands[] = {
 void check_first_word(int argc, char** argv) {
   std::vector<std::string> names;
   for (const auto& command : kCommands) names.emplace_back(command.name);
-  if (argc < 2) throw Error(fmt::format("no command given; allowed are {} (pliant --help says more)", pliant::listed(names)));
+  if (argc < 2)
+    throw Error(ErrorCode::bad_input,
+                fmt::format("no command given; allowed are {} (pliant --help says more)", pliant::listed(names)));
   const std::string word = argv[1];
   const std::vector<std::string> options{"--help", "-h", "--version"};
   const bool is_option = word.rfind('-', 0) == 0;
   const auto& allowed = is_option ? options : names;
   if (std::find(allowed.begin(), allowed.end(), word) != allowed.end()) return;
-  throw Error(fmt::format("unknown {} \"{}\"; allowed here are {}{}", is_option ? "option" : "command", word,
-                          pliant::listed(allowed), pliant::cli::did_you_mean(word, allowed)));
+  throw Error(ErrorCode::bad_input, fmt::format("unknown {} \"{}\"; allowed here are {}{}", is_option ? "option" : "command",
+                                                word, pliant::listed(allowed), pliant::cli::did_you_mean(word, allowed)));
 }
 
 int run(int argc, char** argv) {
@@ -54,7 +56,7 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    throw Error(pliant::cli::usage_message(app, error));
+    throw Error(ErrorCode::bad_input, pliant::cli::usage_message(app, error));
   }
   return chosen();
 }

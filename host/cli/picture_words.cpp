@@ -43,12 +43,14 @@ render::PictureOptions PictureWords::options() const {
   render::PictureOptions o;
   if (!size.empty() &&
       (!two_numbers(size, 'x', o.width, o.height) || o.width < 16 || o.height < 16 || o.width > 8192 || o.height > 8192)) {
-    throw Error(fmt::format("--size is \"{}\"; expected width x height with 16 to 8192 pixels each, such as 1280x720", size));
+    throw Error(ErrorCode::bad_input,
+                fmt::format("--size is \"{}\"; expected width x height with 16 to 8192 pixels each, such as 1280x720", size));
   }
   if (!color.empty()) {
     const auto by = render::color_by(color);
     if (!by) {
-      throw Error(fmt::format("--color is \"{}\"; allowed are none, displacement, energy, mises, model{}", color,
+      throw Error(ErrorCode::bad_input,
+                  fmt::format("--color is \"{}\"; allowed are none, displacement, energy, mises, model{}", color,
                               did_you_mean(color, {"none", "displacement", "energy", "mises", "model"})));
     }
     o.color = *by;
@@ -57,14 +59,16 @@ render::PictureOptions PictureWords::options() const {
     std::pair<double, double> ends;
     if (!two_numbers(range, ',', ends.first, ends.second) || !(ends.first < ends.second) ||
         !std::isfinite(ends.second - ends.first)) {
-      throw Error(fmt::format("--range is \"{}\"; expected two ascending numbers, such as 0,0.02", range));
+      throw Error(ErrorCode::bad_input,
+                  fmt::format("--range is \"{}\"; expected two ascending numbers, such as 0,0.02", range));
     }
     if (o.color == render::ColorBy::none || o.color == render::ColorBy::model) {
-      throw Error("--range is for the colours of values; it needs --color displacement, energy or mises");
+      throw Error(ErrorCode::bad_input, "--range is for the colours of values; it needs --color displacement, energy or mises");
     }
     o.range = ends;
   }
-  if (samples < 0 || samples > 4096) throw Error(fmt::format("--samples is {}; expected 1 to 4096", samples));
+  if (samples < 0 || samples > 4096)
+    throw Error(ErrorCode::bad_input, fmt::format("--samples is {}; expected 1 to 4096", samples));
   if (samples > 0) o.samples = samples;
   return o;
 }

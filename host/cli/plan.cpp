@@ -1,5 +1,5 @@
 // pliant plan: choose lattice, element and model of a scene for a tolerance and a frame budget.
-#include "bench/plan.h"
+#include "plan/plan.h"
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 struct Options {
   Common common;
-  bench::PlanOptions plan;
+  PlanOptions plan;
   std::string scene, out, tolerance = "2%", budget = "4ms";
 };
 
@@ -31,16 +31,18 @@ double quantity(const std::string& option, const std::string& text, const std::v
   for (const auto& [unit, factor] : units) {
     if (text.substr(used) == unit && std::isfinite(value) && value > 0) return value * factor;
   }
-  throw Error(fmt::format("{} is \"{}\"; expected {}", option, text, expected));
+  throw Error(ErrorCode::bad_input, fmt::format("{} is \"{}\"; expected {}", option, text, expected));
 }
 
 int plan(Options& o) {
   o.common.check();
   o.plan.tolerance = quantity("--tolerance", o.tolerance, {{"%", 0.01}, {"", 1}}, "a share such as 2% or 0.02");
-  if (!(o.plan.tolerance < 1)) throw Error(fmt::format("--tolerance is \"{}\"; expected less than 100%", o.tolerance));
+  if (!(o.plan.tolerance < 1))
+    throw Error(ErrorCode::bad_input, fmt::format("--tolerance is \"{}\"; expected less than 100%", o.tolerance));
   o.plan.budget = quantity("--budget", o.budget, {{"ms", 1}, {"us", 1e-3}, {"s", 1e3}, {"", 1}}, "a time such as 4ms");
   const auto nodes = [](const char* option, std::int64_t value) {
-    if (value < 8 || value > 1'000'000) throw Error(fmt::format("{} is {}; expected 8 to 1000000 nodes", option, value));
+    if (value < 8 || value > 1'000'000)
+      throw Error(ErrorCode::bad_input, fmt::format("{} is {}; expected 8 to 1000000 nodes", option, value));
   };
   nodes("--least", o.plan.least_nodes);
   nodes("--most", o.plan.most_nodes);
@@ -50,7 +52,7 @@ int plan(Options& o) {
   Progress progress(!o.common.quiet);
   std::int64_t done = 0;
   o.plan.progress = [&](const std::string& what) { progress.show(done++, 24, what); };
-  bench::Plan result = bench::plan_scene(scene, o.plan);
+  Plan result = plan_scene(scene, o.plan);
   progress.clear();
   o.common.print(result.text);
   if (!o.out.empty()) {

@@ -11,7 +11,7 @@
 #include "cli/run_static.h"
 #include "io/save.h"
 #include "pliant/error.h"
-#include "state/hash.h"
+#include "program/hash.h"
 
 namespace pliant::cli {
 namespace {
@@ -32,14 +32,17 @@ struct Options {
 void check(const Options& o) {
   if (o.steps) check_steps("--steps", *o.steps);
   if (o.seconds && !(*o.seconds >= 0 && std::isfinite(*o.seconds))) {
-    throw Error(fmt::format("--seconds is {}; expected 0 or more", *o.seconds));
+    throw Error(ErrorCode::bad_input, fmt::format("--seconds is {}; expected 0 or more", *o.seconds));
   }
-  if (o.dt && !(*o.dt > 0 && std::isfinite(*o.dt))) throw Error(fmt::format("--dt is {} s; expected more than 0", *o.dt));
-  if (o.every && *o.every < 1) throw Error(fmt::format("--every is {}; expected 1 or more steps", *o.every));
-  if (o.every && o.out.empty()) throw Error("--every says how often to write into a folder; it needs --out DIR");
+  if (o.dt && !(*o.dt > 0 && std::isfinite(*o.dt)))
+    throw Error(ErrorCode::bad_input, fmt::format("--dt is {} s; expected more than 0", *o.dt));
+  if (o.every && *o.every < 1)
+    throw Error(ErrorCode::bad_input, fmt::format("--every is {}; expected 1 or more steps", *o.every));
+  if (o.every && o.out.empty())
+    throw Error(ErrorCode::bad_input, "--every says how often to write into a folder; it needs --out DIR");
   const std::set<std::string> formats = parse_formats(o.formats);
   if (!o.picture.given().empty() && formats.count("png") == 0) {
-    throw Error(fmt::format("{} is for pictures; it needs --format png", o.picture.given()));
+    throw Error(ErrorCode::bad_input, fmt::format("{} is for pictures; it needs --format png", o.picture.given()));
   }
   (void)o.picture.options();  // refuses words that mean nothing
   o.common.check();
@@ -88,10 +91,12 @@ class Run {
                                         {o_.profile, "--profile"}}) {
       if (given)
         throw Error(
+            ErrorCode::bad_input,
             fmt::format("{} means nothing for {}, which asks for a static solver: there are no steps", option, o_.scene));
     }
     if (o_.backend != "auto" && o_.backend != "cpu:double") {
-      throw Error(fmt::format("--backend is \"{}\"; {} asks for a static solver, which runs in double on the processor alone",
+      throw Error(ErrorCode::bad_input,
+                  fmt::format("--backend is \"{}\"; {} asks for a static solver, which runs in double on the processor alone",
                               o_.backend, o_.scene));
     }
     return run_static(scene, {o_.common, stem_, o_.out, parse_formats(o_.formats), o_.hash});

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "solver/simulation.h"
+#include "simulation/simulation.h"
 
 namespace pliant::cli {
 

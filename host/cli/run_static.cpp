@@ -8,7 +8,7 @@
 #include "io/obj.h"
 #include "io/vtu.h"
 #include "pliant/error.h"
-#include "state/hash.h"
+#include "program/hash.h"
 #include "statics/statics.h"
 
 namespace pliant::cli {
@@ -20,7 +20,8 @@ using Json = nlohmann::ordered_json;
 /// What has no meaning at rest is refused rather than left out in silence.
 void check(const Scene& scene, const StaticRun& run) {
   const auto refuse = [&](const std::string& pointer, const std::string& what) {
-    throw Error(fmt::format("{}: {}: got {}, expected none of it beside a static solver", scene.file.string(), pointer, what));
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{}: {}: got {}, expected none of it beside a static solver", scene.file.string(), pointer, what));
   };
   if (scene.relaxation.enabled) refuse("/relaxation", "dynamic relaxation");
   if (!scene.tool.path.empty()) refuse("/tool", "a tool");
@@ -29,6 +30,7 @@ void check(const Scene& scene, const StaticRun& run) {
       refuse(body.model.pointer + "/type", fmt::format("\"{}\"", to_string(body.model.type)));
     if (body.element == ElementKind::tet4anp && !scene.solver.quadratic) {
       throw Error(
+          ErrorCode::bad_input,
           fmt::format("{}: {}/element: got \"tet4anp\", expected tet4, hex8 or hex8full, or tet4anp beside the solver's "
                       "\"order\": 2",
                       scene.file.string(), body.pointer));
@@ -36,12 +38,14 @@ void check(const Scene& scene, const StaticRun& run) {
   }
   for (const std::string& format : run.formats) {
     if (format != "vtu" && format != "obj")
-      throw Error(fmt::format("--format: got \"{}\" with a static scene, which writes vtu and obj", format));
+      throw Error(ErrorCode::bad_input,
+                  fmt::format("--format: got \"{}\" with a static scene, which writes vtu and obj", format));
   }
   if (run.out.empty()) return;
   std::error_code code;
   fs::create_directories(run.out, code);
-  if (code || !fs::is_directory(run.out)) throw Error(fmt::format("--out: the folder {} cannot be made", run.out));
+  if (code || !fs::is_directory(run.out))
+    throw Error(ErrorCode::bad_input, fmt::format("--out: the folder {} cannot be made", run.out));
   check_writable(fs::path(run.out) / (run.stem + ".vtu"));
 }
 

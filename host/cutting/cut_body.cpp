@@ -8,8 +8,8 @@
 #include <numeric>
 #include <utility>
 
-#include "cutting/tet_surface.h"
-#include "model/vec.h"
+#include "cutting/surface/tet_surface.h"
+#include "geometry/vec.h"
 #include "pliant/error.h"
 
 namespace pliant {
@@ -163,6 +163,7 @@ std::shared_ptr<const CutMesh> cut_mesh(const Solid& solid, const std::string& n
   }
   if (solid.tets.empty()) {
     throw Error(
+        ErrorCode::bad_input,
         fmt::format("body '{}' is a volume mesh of hexahedra, which cannot be cut; allowed are lattices (\"surface\") and "
                     "volume meshes of tetrahedra",
                     name));

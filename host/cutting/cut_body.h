@@ -2,8 +2,8 @@
 #pragma once
 #include <memory>
 
-#include "cutting/cut_surface.h"
-#include "cutting/cut_topology.h"
+#include "cutting/surface/cut_surface.h"
+#include "cutting/topology/cut_topology.h"
 #include "model/solid.h"
 
 namespace pliant {

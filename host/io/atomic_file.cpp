@@ -34,8 +34,10 @@ fs::path follow(fs::path path) {
 AtomicFile::AtomicFile(const fs::path& target) : target_(target), final_(follow(target)) {
   std::error_code code;
   const fs::file_status status = fs::status(final_, code);
-  if (!final_.has_filename()) throw Error(fmt::format("cannot write '{}': a file name is needed", target_.string()));
-  if (fs::is_directory(status)) throw Error(fmt::format("cannot write '{}': it is a folder", target_.string()));
+  if (!final_.has_filename())
+    throw Error(ErrorCode::bad_input, fmt::format("cannot write '{}': a file name is needed", target_.string()));
+  if (fs::is_directory(status))
+    throw Error(ErrorCode::bad_input, fmt::format("cannot write '{}': it is a folder", target_.string()));
   if (fs::exists(status) && !fs::is_regular_file(status)) {
     file_ = ::open(final_.c_str(), O_WRONLY | O_CLOEXEC);
     if (file_ < 0) fail("cannot be opened", errno);
@@ -43,7 +45,8 @@ AtomicFile::AtomicFile(const fs::path& target) : target_(target), final_(follow(
   }
   const fs::path folder = final_.has_parent_path() ? final_.parent_path() : fs::path(".");
   if (!fs::is_directory(fs::status(folder, code))) {
-    throw Error(fmt::format("cannot write '{}': '{}' is not an existing folder", target_.string(), folder.string()));
+    throw Error(ErrorCode::bad_input,
+                fmt::format("cannot write '{}': '{}' is not an existing folder", target_.string(), folder.string()));
   }
   // A short name of its own: a target whose name has the greatest allowed length must still work.
   static std::atomic<unsigned> counter{0};
@@ -70,7 +73,8 @@ void AtomicFile::discard() noexcept {
 
 void AtomicFile::fail(const std::string& what, int error) {
   discard();
-  throw Error(fmt::format("cannot write '{}': {} after {} bytes: {}", target_.string(), what, on_disk_, reason(error)));
+  throw Error(ErrorCode::bad_input,
+              fmt::format("cannot write '{}': {} after {} bytes: {}", target_.string(), what, on_disk_, reason(error)));
 }
 
 void AtomicFile::write(const void* data, std::size_t size) {

@@ -9,7 +9,7 @@
 
 #include "io/atomic_file.h"
 #include "pliant/error.h"
-#include "state/hash.h"
+#include "program/hash.h"
 
 // Layout: "PLIANTCK", u32 version, u32 zero, u64 length of the whole file, then u64 scene hash, string name, string real type,
 // i64 step, f64 time, f64 dt, u64 groups {string, u64 n, n f64}, u64 buffers {string, u64 n, n bytes}, u64 hash of all before.
@@ -55,8 +55,8 @@ class Reader {
   std::size_t count(std::size_t size, const char* what) {
     const std::uint64_t n = number(what);
     if (n > (data_.size() - at_) / size) {
-      throw Error(fmt::format("'{}' is damaged: {} {} at byte {}, but only {} bytes follow", file_.string(), n, what, at_ - 8,
-                              data_.size() - at_));
+      throw Error(ErrorCode::bad_input, fmt::format("'{}' is damaged: {} {} at byte {}, but only {} bytes follow",
+                                                    file_.string(), n, what, at_ - 8, data_.size() - at_));
     }
     return static_cast<std::size_t>(n);
   }
@@ -67,13 +67,14 @@ class Reader {
   }
   void end() const {
     if (at_ != data_.size())
-      throw Error(fmt::format("'{}' is damaged: {} unexpected bytes at its end", file_.string(), data_.size() - at_));
+      throw Error(ErrorCode::bad_input,
+                  fmt::format("'{}' is damaged: {} unexpected bytes at its end", file_.string(), data_.size() - at_));
   }
 
  private:
   void need(std::size_t n, const char* what) const {
     if (data_.size() - at_ < n)
-      throw Error(fmt::format("'{}' is damaged: no room for {} at byte {}", file_.string(), what, at_));
+      throw Error(ErrorCode::bad_input, fmt::format("'{}' is damaged: no room for {} at byte {}", file_.string(), what, at_));
   }
   const std::filesystem::path& file_;
   std::string_view data_;
@@ -83,14 +84,16 @@ class Reader {
 std::string load(const std::filesystem::path& file) {
   std::error_code code;
   if (!std::filesystem::is_regular_file(file, code))
-    throw Error(fmt::format("cannot read checkpoint '{}': no such file", file.string()));
+    throw Error(ErrorCode::bad_input, fmt::format("cannot read checkpoint '{}': no such file", file.string()));
   const std::uintmax_t size = std::filesystem::file_size(file, code);
   std::ifstream in(file, std::ios::binary);
-  if (code || !in) throw Error(fmt::format("cannot read checkpoint '{}': it cannot be opened", file.string()));
+  if (code || !in)
+    throw Error(ErrorCode::bad_input, fmt::format("cannot read checkpoint '{}': it cannot be opened", file.string()));
   std::string data(static_cast<std::size_t>(size), '\0');
   in.read(data.data(), static_cast<std::streamsize>(data.size()));
   if (static_cast<std::uintmax_t>(in.gcount()) != size) {
-    throw Error(fmt::format("cannot read checkpoint '{}': {} of {} bytes could be read", file.string(), in.gcount(), size));
+    throw Error(ErrorCode::bad_input,
+                fmt::format("cannot read checkpoint '{}': {} of {} bytes could be read", file.string(), in.gcount(), size));
   }
   return data;
 }
@@ -98,29 +101,31 @@ std::string load(const std::filesystem::path& file) {
 /// Magic, version, length and hash; afterwards the content is what was written.
 void check_frame(const std::filesystem::path& file, std::string_view data) {
   if (data.substr(0, kMagic.size()) != kMagic.substr(0, data.size()) || data.empty()) {
-    throw Error(fmt::format("'{}' is not a Pliant checkpoint", file.string()));
+    throw Error(ErrorCode::bad_input, fmt::format("'{}' is not a Pliant checkpoint", file.string()));
   }
   if (data.size() < kHead + kTail) {
-    throw Error(
-        fmt::format("'{}' is truncated: expected at least {} bytes, found {}", file.string(), kHead + kTail, data.size()));
+    throw Error(ErrorCode::bad_input, fmt::format("'{}' is truncated: expected at least {} bytes, found {}", file.string(),
+                                                  kHead + kTail, data.size()));
   }
   const auto version = static_cast<std::uint32_t>(get(data, 8, 4));
   if (version != kVersion) {
-    throw Error(
-        fmt::format("'{}' is a checkpoint of version {}; this program reads version {}", file.string(), version, kVersion));
+    throw Error(ErrorCode::bad_input, fmt::format("'{}' is a checkpoint of version {}; this program reads version {}",
+                                                  file.string(), version, kVersion));
   }
   const std::uint64_t length = get(data, 16);
   if (length > data.size()) {
-    throw Error(fmt::format("'{}' is truncated: expected {} bytes, found {}", file.string(), length, data.size()));
+    throw Error(ErrorCode::bad_input,
+                fmt::format("'{}' is truncated: expected {} bytes, found {}", file.string(), length, data.size()));
   }
   if (length < data.size()) {
-    throw Error(fmt::format("'{}' is damaged: expected {} bytes, found {}", file.string(), length, data.size()));
+    throw Error(ErrorCode::bad_input,
+                fmt::format("'{}' is damaged: expected {} bytes, found {}", file.string(), length, data.size()));
   }
   const std::uint64_t stored = get(data, data.size() - kTail);
   const std::uint64_t actual = hash_bytes(data.data(), data.size() - kTail);
   if (stored != actual) {
-    throw Error(fmt::format("'{}' is damaged: its content has hash {}, stored is {}", file.string(), hash_text(actual),
-                            hash_text(stored)));
+    throw Error(ErrorCode::bad_input, fmt::format("'{}' is damaged: its content has hash {}, stored is {}", file.string(),
+                                                  hash_text(actual), hash_text(stored)));
   }
 }
 
@@ -168,7 +173,8 @@ Checkpoint read_checkpoint(const std::filesystem::path& file) {
   c.scene_name = in.bytes("bytes of scene name");
   c.real_type = in.bytes("bytes of real type");
   if (c.real_type != "float" && c.real_type != "double") {
-    throw Error(fmt::format("'{}' is damaged: real type '{}' is neither float nor double", file.string(), c.real_type));
+    throw Error(ErrorCode::bad_input,
+                fmt::format("'{}' is damaged: real type '{}' is neither float nor double", file.string(), c.real_type));
   }
   c.step = static_cast<std::int64_t>(in.number("the step"));
   c.time = in.real("the time");

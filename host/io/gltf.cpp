@@ -205,7 +205,8 @@ void write_glb(const std::filesystem::path& file, const SurfaceAnimation& animat
   text.resize((text.size() + 3) / 4 * 4, ' ');
   const std::uint64_t total = 12 + 8 + text.size() + 8 + blob.bytes.size();
   if (total > 0xffffffffULL) {
-    throw Error(fmt::format("{}: a glTF file holds at most 4 GiB, this one would have {} bytes; write fewer frames (--every)",
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{}: a glTF file holds at most 4 GiB, this one would have {} bytes; write fewer frames (--every)",
                             file.string(), total));
   }
   std::string bytes = "glTF";

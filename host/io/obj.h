@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "model/mesh.h"
+#include "geometry/mesh.h"
 
 namespace pliant {
 

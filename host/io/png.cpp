@@ -41,7 +41,8 @@ void write_png(const std::filesystem::path& file, const Image& image) {
   };
   std::string bytes;
   if (stbi_write_png_to_func(put, &bytes, image.width, image.height, 3, image.rgb.data(), 3 * image.width) == 0) {
-    throw Error(fmt::format("{}: a picture of {} x {} pixels could not be encoded", file.string(), image.width, image.height));
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{}: a picture of {} x {} pixels could not be encoded", file.string(), image.width, image.height));
   }
   out.write(bytes);
   out.commit();
@@ -50,14 +51,15 @@ void write_png(const std::filesystem::path& file, const Image& image) {
 Image read_png(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  if (!in.is_open() || bytes.size() > INT_MAX) throw Error(fmt::format("{}: cannot be read as a picture", file.string()));
+  if (!in.is_open() || bytes.size() > INT_MAX)
+    throw Error(ErrorCode::bad_input, fmt::format("{}: cannot be read as a picture", file.string()));
   Image image;
   int channels = 0;
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
       stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(bytes.data()), static_cast<int>(bytes.size()), &image.width,
                             &image.height, &channels, 3),
       stbi_image_free);
-  if (!pixels) throw Error(fmt::format("{}: no PNG file ({})", file.string(), stbi_failure_reason()));
+  if (!pixels) throw Error(ErrorCode::bad_input, fmt::format("{}: no PNG file ({})", file.string(), stbi_failure_reason()));
   const auto size = 3 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
   image.rgb.assign(pixels.get(), pixels.get() + size);
   return image;

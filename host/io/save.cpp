@@ -4,8 +4,8 @@
 
 #include <cstring>
 
-#include "io/hash.h"
 #include "pliant/error.h"
+#include "program/hash.h"
 
 namespace pliant {
 namespace {
@@ -48,8 +48,8 @@ std::vector<const NamedBytes*> find_buffers(const Simulation& simulation, const 
     }
     const std::size_t expected = buffer.values() * (is_double && !buffer.is_int() ? 8 : 4);
     if (match == nullptr || match->bytes.size() != expected) {
-      throw Error(fmt::format("{}: buffer {} has {} bytes, the scene needs {}", file.string(), buffer.name,
-                              match == nullptr ? 0 : match->bytes.size(), expected));
+      throw Error(ErrorCode::bad_input, fmt::format("{}: buffer {} has {} bytes, the scene needs {}", file.string(),
+                                                    buffer.name, match == nullptr ? 0 : match->bytes.size(), expected));
     }
     found.push_back(match);
   }
@@ -60,7 +60,8 @@ const std::vector<double>& host_group(const Checkpoint& checkpoint, const std::s
                                       const std::filesystem::path& file) {
   const auto group = checkpoint.host_state.find(name);
   if (group == checkpoint.host_state.end() || group->second.size() != size) {
-    throw Error(fmt::format("{}: the checkpoint lacks its group \"{}\" of {} numbers", file.string(), name, size));
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{}: the checkpoint lacks its group \"{}\" of {} numbers", file.string(), name, size));
   }
   return group->second;
 }
@@ -102,15 +103,18 @@ void restore_checkpoint(Simulation& simulation, const Checkpoint& checkpoint, co
   }
   simulation.prepare_restore(state);  // before the hash: an operational region may have moved
   if (checkpoint.scene_hash != simulation.model_hash()) {
-    throw Error(fmt::format(
-        "{}: a checkpoint of \"{}\" (model {}) cannot resume \"{}\" (model {}): the scene, its meshes, the step given "
-        "or the settings of the solver are not the same",
-        file.string(), checkpoint.scene_name, hash_text(checkpoint.scene_hash), simulation.scene().name,
-        hash_text(simulation.model_hash())));
+    throw Error(
+        ErrorCode::bad_input,
+        fmt::format(
+            "{}: a checkpoint of \"{}\" (model {}) cannot resume \"{}\" (model {}): the scene, its meshes, the step given "
+            "or the settings of the solver are not the same",
+            file.string(), checkpoint.scene_name, hash_text(checkpoint.scene_hash), simulation.scene().name,
+            hash_text(simulation.model_hash())));
   }
   const std::string real = real_type(simulation);
   if (checkpoint.real_type != real) {
-    throw Error(fmt::format("{}: a checkpoint in {} cannot resume on the backend {}, which computes in {}", file.string(),
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{}: a checkpoint in {} cannot resume on the backend {}, which computes in {}", file.string(),
                             checkpoint.real_type, simulation.backend().info().name, real));
   }
   const auto found = find_buffers(simulation, checkpoint, real == "double", file);

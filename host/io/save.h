@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "io/checkpoint.h"
-#include "solver/simulation.h"
+#include "simulation/simulation.h"
 
 namespace pliant {
 

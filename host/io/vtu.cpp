@@ -109,8 +109,8 @@ void check(const VtuMesh& mesh, const std::filesystem::path& file) {
   check_cells(mesh.hexes, mesh.points.size(), file);
   check_cells(mesh.triangles, mesh.points.size(), file);
   if (corner_count(mesh) > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
-    throw Error(
-        fmt::format("cannot write '{}': {} cell corners, at most 2147483647 are possible", file.string(), corner_count(mesh)));
+    throw Error(ErrorCode::bad_input, fmt::format("cannot write '{}': {} cell corners, at most 2147483647 are possible",
+                                                  file.string(), corner_count(mesh)));
   }
 }
 

@@ -38,7 +38,7 @@ std::vector<std::int32_t> select_nodes(const Selection& where, const ModelBody& 
   if (where.kind == Selection::Kind::nodes) {
     for (const std::int64_t n : where.nodes) {
       if (n < 0 || n >= static_cast<std::int64_t>(body.rest.size())) {
-        throw Error(fmt::format("{}: node {} does not exist; {}", where.pointer, n, extent_of(body)));
+        throw Error(ErrorCode::bad_input, fmt::format("{}: node {} does not exist; {}", where.pointer, n, extent_of(body)));
       }
     }
   }
@@ -54,7 +54,8 @@ std::vector<std::int32_t> select_nodes(const Selection& where, const ModelBody& 
     const bool among = where.contains(body.rest[n], static_cast<std::int64_t>(n));
     if (among && follows(virtual_nodes, n - real, is_chosen)) chosen.push_back(static_cast<std::int32_t>(n));
   }
-  if (chosen.empty()) throw Error(fmt::format("{}: no node in this set; {}", where.pointer, extent_of(body)));
+  if (chosen.empty())
+    throw Error(ErrorCode::bad_input, fmt::format("{}: no node in this set; {}", where.pointer, extent_of(body)));
   return chosen;
 }
 
@@ -134,8 +135,8 @@ void load(const Body& body, const ModelBody& placed, Model& model) {
       any = true;
     }
     if (!any)
-      throw Error(
-          fmt::format("{}: no surface triangle has its centre in this set; {}", pressure.where.pointer, extent_of(placed)));
+      throw Error(ErrorCode::bad_input, fmt::format("{}: no surface triangle has its centre in this set; {}",
+                                                    pressure.where.pointer, extent_of(placed)));
   }
 }
 

@@ -41,7 +41,9 @@ std::vector<int> materials_of(const Body& body, const SolidElements& solid) {
     }
   }
   for (std::size_t i = 0; i < hit.size(); ++i) {
-    if (!hit[i]) throw Error(fmt::format("{}: no element has its centre in this inclusion", body.inclusions[i].where.pointer));
+    if (!hit[i])
+      throw Error(ErrorCode::bad_input,
+                  fmt::format("{}: no element has its centre in this inclusion", body.inclusions[i].where.pointer));
   }
   return material;
 }

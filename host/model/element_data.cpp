@@ -45,6 +45,7 @@ std::array<GaussPoint, 8> gauss_points(const Corners& x, const std::string& what
     const double det = jacobian.determinant();
     if (!(det > 0)) {
       throw Error(
+          ErrorCode::bad_input,
           fmt::format("{}: the Jacobian of the hexahedron is {:.6g} m^3 at Gauss point {}, it must be positive", what, det, p));
     }
     points[p] = {local * jacobian.inverse(), det};

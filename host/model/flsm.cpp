@@ -71,6 +71,7 @@ void require_width(const Body& body, const FlsmBatch& batch) {
   const std::int32_t longest = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
   if (batch.settings.width <= longest) return;
   throw Error(
+      ErrorCode::bad_input,
       fmt::format("{}/width: got {}, but the shape-matching part of body '{}' is only {} cells long; allowed are 1 to {}, or a "
                   "finer lattice",
                   body.model.pointer, batch.settings.width, body.name, longest, longest));

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <set>
 
-#include "model/parallel.h"
+#include "geometry/parallel.h"
 #include "pliant/error.h"
 
 namespace pliant {
@@ -25,7 +25,8 @@ void for_blocks(std::int64_t count, const Work& work) {
 
 void check_width(int width) {
   if (width < 1 || width > kMostWidth) {
-    throw Error(fmt::format("the half-width of the regions is {}; allowed are 1 to {}", width, kMostWidth));
+    throw Error(ErrorCode::bad_input,
+                fmt::format("the half-width of the regions is {}; allowed are 1 to {}", width, kMostWidth));
   }
 }
 
@@ -223,6 +224,7 @@ void find_missing(const LinkedLattice& lattice, const std::vector<std::uint32_t>
   std::partial_sum(counts.begin(), counts.end(), counts.begin());
   if (counts[nodes] > std::numeric_limits<std::int32_t>::max()) {
     throw Error(
+        ErrorCode::bad_input,
         fmt::format("regions of half-width {} need {} corrections, more than fit: use a smaller half-width or fewer nodes",
                     regions.width, counts[nodes]));
   }

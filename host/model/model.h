@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "geometry/mesh.h"
 #include "model/flsm_regions.h"
-#include "model/mesh.h"
 #include "model/partition.h"
 #include "scene/scene.h"
 

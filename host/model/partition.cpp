@@ -7,7 +7,7 @@
 #include <cmath>
 #include <queue>
 
-#include "model/vec.h"
+#include "geometry/vec.h"
 #include "pliant/error.h"
 
 namespace pliant {
@@ -109,6 +109,7 @@ Start start_of(const DeformationModel& model, const Lattice& lattice) {
   if (model.seed && !(away <= reach)) {
     const Vec3d& s = *model.seed;
     throw Error(
+        ErrorCode::bad_input,
         fmt::format("{}/seed ({:g}, {:g}, {:g}) lies {:g} m from the body, which reaches from {} m; allowed is up to {:g} m",
                     model.pointer, s[0], s[1], s[2], away, range_text(box), reach));
   }
@@ -158,7 +159,8 @@ void choose_inside(const DeformationModel& model, const Lattice& lattice, std::v
     given = fmt::format("the sphere of radius {:g} m around ({:g}, {:g}, {:g}) ", region.radius, region.a[0], region.a[1],
                         region.a[2]);
   }
-  throw Error(fmt::format("{}: {}holds no centre of a cell; the body reaches from {} m in cells of {:g} m", region.pointer,
+  throw Error(ErrorCode::bad_input,
+              fmt::format("{}: {}holds no centre of a cell; the body reaches from {} m in cells of {:g} m", region.pointer,
                           given, range_text(extent(lattice)), lattice.spacing));
 }
 
@@ -207,7 +209,7 @@ Partition partition_lattice(const Body& body, const Lattice& lattice) {
   partition.operational.assign(lattice.cells.size(), all ? 1 : 0);
   if (model.type == ModelType::hybrid && !all) {
     if (!model.region && !(model.ratio >= 0 && model.ratio <= 1)) {
-      throw Error(fmt::format("{}/ratio is {:g}; allowed is 0 to 1", model.pointer, model.ratio));
+      throw Error(ErrorCode::bad_input, fmt::format("{}/ratio is {:g}; allowed is 0 to 1", model.pointer, model.ratio));
     }
     const CellFaces faces(lattice);
     if (model.region) {

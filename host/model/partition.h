@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "model/lattice.h"
+#include "lattice/lattice.h"
 #include "scene/scene.h"
 
 namespace pliant {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "mesh_io/mesh_io.h"
 #include "model/model.h"
 #include "pliant/error.h"
 
@@ -54,13 +55,14 @@ void from_mesh(const Body& body, Solid& solid) {
   const VolumeMesh mesh = read_volume(body.mesh, body.scale, body.translate);
   const bool tets = takes_tets(body.element);
   if (tets ? mesh.tets.empty() : mesh.hexes.empty()) {
-    throw Error(fmt::format("{}: element {} needs {} and the file has only {}; use {}", body.mesh.string(),
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{}: element {} needs {} and the file has only {}; use {}", body.mesh.string(),
                             to_string(body.element), tets ? "tetrahedra" : "hexahedra", tets ? "hexahedra" : "tetrahedra",
                             tets ? "hex8 or hex8full" : "tet4 or tet4anp"));
   }
   if (!mesh.tets.empty() && !mesh.hexes.empty()) {
-    throw Error(fmt::format("{}: the file mixes {} tetrahedra and {} hexahedra; a body takes one kind", body.mesh.string(),
-                            mesh.tets.size(), mesh.hexes.size()));
+    throw Error(ErrorCode::bad_input, fmt::format("{}: the file mixes {} tetrahedra and {} hexahedra; a body takes one kind",
+                                                  body.mesh.string(), mesh.tets.size(), mesh.hexes.size()));
   }
   solid.nodes = mesh.vertices;
   solid.tets = mesh.tets;

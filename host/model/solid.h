@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "model/lattice.h"
-#include "model/mesh.h"
+#include "geometry/mesh.h"
+#include "lattice/lattice.h"
 #include "model/model.h"
 #include "model/partition.h"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "solver/buffer_checks.h"
+#include "backend/buffer_checks.h"
 
 namespace pliant::opencl {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "opencl/opencl.h"
-#include "state/buffer.h"
+#include "program/buffer.h"
 
 namespace pliant::opencl {
 

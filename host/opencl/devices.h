@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "backend/backend.h"
 #include "opencl/opencl.h"
-#include "solver/backend.h"
 
 namespace pliant::opencl {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <sstream>
 
+#include "backend/pass_table.h"
 #include "opencl/devices.h"
-#include "solver/pass_table.h"
 
 namespace pliant::opencl {
 namespace {
@@ -89,7 +89,8 @@ cl::Program KernelCache::build(const std::string& stem, const std::string& optio
   } catch (const cl::BuildError& error) {
     std::string log;
     for (const auto& [device, text] : error.getBuildLog()) log += text;
-    throw Error(fmt::format("{} cannot build kernel \"{}\" (options {}): {}. The compiler's log:\n{}", device_name_, stem,
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{} cannot build kernel \"{}\" (options {}): {}. The compiler's log:\n{}", device_name_, stem,
                             options, error_name(error.err()), log.empty() ? "(empty)" : log));
   } catch (const cl::Error& error) {
     throw translate(error, ErrorCode::bad_input,

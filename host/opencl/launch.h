@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "opencl/opencl.h"
-#include "solver/program.h"
+#include "program/program.h"
 
 namespace pliant::opencl {
 

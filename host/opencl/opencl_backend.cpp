@@ -5,16 +5,16 @@
 #include <algorithm>
 #include <exception>
 
+#include "backend/buffer_checks.h"
+#include "backend/float_environment.h"
+#include "backend/pass_table.h"
+#include "backend/probe.h"
 #include "opencl/device_memory.h"
 #include "opencl/devices.h"
 #include "opencl/kernel_cache.h"
 #include "opencl/kernel_text.h"
 #include "opencl/launch.h"
 #include "opencl/opencl.h"
-#include "solver/buffer_checks.h"
-#include "solver/float_environment.h"
-#include "solver/pass_table.h"
-#include "solver/probe.h"
 
 namespace pliant {
 namespace {
@@ -40,7 +40,8 @@ class OpenclBackend final : public Backend {
     if (options.lanes != 0) info_.lanes = options.lanes;
     if (options.memory_bytes != 0) info_.memory_bytes = options.memory_bytes;
     if (options.max_buffer_bytes != 0) info_.max_buffer_bytes = options.max_buffer_bytes;
-    if (info_.lanes != 1 && info_.lanes != 16) throw Error(fmt::format("lanes is {}; allowed are 1 and 16", info_.lanes));
+    if (info_.lanes != 1 && info_.lanes != 16)
+      throw Error(ErrorCode::bad_input, fmt::format("lanes is {}; allowed are 1 and 16", info_.lanes));
   }
 
   [[nodiscard]] const BackendInfo& info() const override { return info_; }
@@ -371,12 +372,14 @@ std::unique_ptr<Backend> make_opencl_backend(int index, const OpenclOptions& opt
   const std::vector<cl::Device> devices = opencl::all_devices();
   if (devices.empty()) {
     throw Error(
+        ErrorCode::bad_input,
         "there is no OpenCL device: the OpenCL loader found no platform, or no platform has a device. Install a driver, for "
         "example "
         "PoCL for the processor (Debian: apt install pocl-opencl-icd), or use the backend \"cpu\"");
   }
   if (index < 0 || static_cast<std::size_t>(index) >= devices.size()) {
-    throw Error(fmt::format("there is no OpenCL device {}: allowed are opencl:0 to opencl:{}", index, devices.size() - 1));
+    throw Error(ErrorCode::bad_input,
+                fmt::format("there is no OpenCL device {}: allowed are opencl:0 to opencl:{}", index, devices.size() - 1));
   }
   return open(devices[static_cast<std::size_t>(index)], index, options);
 }

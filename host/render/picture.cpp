@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "model/vec.h"
+#include "geometry/vec.h"
 #include "pliant/error.h"
 #include "render/color.h"
 
@@ -123,7 +123,8 @@ Surface SurfaceCopy::view() const {
 
 Image Pictures::draw(Simulation& simulation) {
   surface_.read(simulation);
-  if (surface_.triangles.empty()) throw Error("a picture needs a surface, and the bodies of this scene have none");
+  if (surface_.triangles.empty())
+    throw Error(ErrorCode::bad_input, "a picture needs a surface, and the bodies of this scene have none");
   Surface surface = surface_.view();
   aim(simulation, surface_.positions);
   color(simulation, surface);

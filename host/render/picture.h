@@ -8,7 +8,7 @@
 #include "render/fields.h"
 #include "render/overlay.h"
 #include "render/renderer.h"
-#include "solver/simulation.h"
+#include "simulation/simulation.h"
 
 namespace pliant::render {
 

@@ -25,7 +25,8 @@ struct RayScene::Embree {
     // One thread builds: the hierarchy is then the same in every run.
     device = rtcNewDevice("threads=1,set_affinity=0");
     if (device == nullptr)
-      throw Error(fmt::format("Embree could not start (error {})", static_cast<int>(rtcGetDeviceError(nullptr))));
+      throw Error(ErrorCode::bad_input,
+                  fmt::format("Embree could not start (error {})", static_cast<int>(rtcGetDeviceError(nullptr))));
   }
   ~Embree() {
     release();
@@ -55,7 +56,8 @@ struct RayScene::Embree {
                                        positions.size() / 3);
     void* const indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                                   3 * sizeof(std::int32_t), surface.triangles.size() / 3);
-    if (vertices == nullptr || indices == nullptr) throw Error("Embree: no memory for the surface of the picture");
+    if (vertices == nullptr || indices == nullptr)
+      throw Error(ErrorCode::bad_input, "Embree: no memory for the surface of the picture");
     std::memcpy(indices, surface.triangles.data(), surface.triangles.size_bytes());
     std::memcpy(vertices, positions.data(), positions.size() * sizeof(float));
     rtcCommitGeometry(geometry);
@@ -102,7 +104,7 @@ struct RayScene::Embree {
   void build(const Surface&, const std::vector<float>&) {}
   void refit(const std::vector<float>&) {}
 };
-RayScene::RayScene() { throw Error(Renderer::missing()); }
+RayScene::RayScene() { throw Error(ErrorCode::bad_input, Renderer::missing()); }
 RayScene::~RayScene() = default;
 bool RayScene::available() { return false; }
 Hit RayScene::nearest(Vec3f, Vec3f) const { return {}; }

@@ -27,10 +27,11 @@ void Renderer::update(const Surface& surface) {
 
 Image Renderer::render(const Camera& camera, const RenderOptions& options) {
   if (options.width < 1 || options.height < 1 || options.width > 16384 || options.height > 16384) {
-    throw Error(fmt::format("a picture of {} x {} pixels: expected 1 to 16384 each", options.width, options.height));
+    throw Error(ErrorCode::bad_input,
+                fmt::format("a picture of {} x {} pixels: expected 1 to 16384 each", options.width, options.height));
   }
   if (options.samples < 1 || options.samples > 4096) {
-    throw Error(fmt::format("{} samples per pixel: expected 1 to 4096", options.samples));
+    throw Error(ErrorCode::bad_input, fmt::format("{} samples per pixel: expected 1 to 4096", options.samples));
   }
   const Stopwatch clock;
   Image image = trace(scene_->rays, camera, options, scene_->threads);

@@ -35,8 +35,8 @@ class Builder final : public nlohmann::json_sax<Json> {
 
   bool key(string_t& value) override {
     if (stack_.back()->contains(value)) {
-      throw Error(fmt::format("{}: {}: got the key a second time, expected every key at most once", file_,
-                              shortened(pointer_to(pointer(), value), 200)));
+      throw Error(ErrorCode::bad_input, fmt::format("{}: {}: got the key a second time, expected every key at most once", file_,
+                                                    shortened(pointer_to(pointer(), value), 200)));
     }
     keys_.back() = std::move(value);
     return true;
@@ -48,7 +48,7 @@ class Builder final : public nlohmann::json_sax<Json> {
     const auto line = 1 + std::count(begin, begin + static_cast<std::ptrdiff_t>(end), '\n');
     const std::size_t newline = end == 0 ? std::string::npos : text_.rfind('\n', end - 1);
     const std::size_t column = newline == std::string::npos ? end + 1 : end - newline;
-    throw Error(fmt::format("{}: line {}, column {}: {}", file_, line, column, reason(error.what())));
+    throw Error(ErrorCode::bad_input, fmt::format("{}: line {}, column {}: {}", file_, line, column, reason(error.what())));
   }
 
  private:
@@ -59,7 +59,8 @@ class Builder final : public nlohmann::json_sax<Json> {
 
   bool open(Json value) {
     if (stack_.size() >= max_scene_depth) {
-      throw Error(fmt::format("{}: {}: got arrays or objects nested deeper than {}, expected a scene (which needs 7)", file_,
+      throw Error(ErrorCode::bad_input,
+                  fmt::format("{}: {}: got arrays or objects nested deeper than {}, expected a scene (which needs 7)", file_,
                               shortened(pointer(), 60), max_scene_depth));
     }
     Json* const child = place(std::move(value));
@@ -119,12 +120,12 @@ class Builder final : public nlohmann::json_sax<Json> {
 
 nlohmann::json parse_json(const std::string& text, const std::string& file) {
   if (text.size() > max_scene_bytes) {
-    throw Error(
-        fmt::format("{}: got more than {} MiB, expected a scene file of at most that size", file, max_scene_bytes >> 20));
+    throw Error(ErrorCode::bad_input, fmt::format("{}: got more than {} MiB, expected a scene file of at most that size", file,
+                                                  max_scene_bytes >> 20));
   }
   // The library takes a NUL for the end of the text and would ignore what follows it.
   if (const std::size_t nul = text.find('\0'); nul != std::string::npos) {
-    throw Error(fmt::format("{}: got a NUL byte at offset {}, expected JSON text", file, nul));
+    throw Error(ErrorCode::bad_input, fmt::format("{}: got a NUL byte at offset {}, expected JSON text", file, nul));
   }
   Builder builder(text, file);
   nlohmann::json::sax_parse(text, &builder);

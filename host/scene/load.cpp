@@ -18,14 +18,17 @@ namespace fs = std::filesystem;
 std::string read_file(const fs::path& file) {
   const std::string name = file.string();
   std::error_code ignored;
-  if (!fs::exists(file, ignored)) throw Error(fmt::format("{}: no such file, expected a scene file", name));
-  if (fs::is_directory(file, ignored)) throw Error(fmt::format("{}: got a folder, expected a scene file", name));
+  if (!fs::exists(file, ignored))
+    throw Error(ErrorCode::bad_input, fmt::format("{}: no such file, expected a scene file", name));
+  if (fs::is_directory(file, ignored))
+    throw Error(ErrorCode::bad_input, fmt::format("{}: got a folder, expected a scene file", name));
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
   std::string text(max_scene_bytes + 1, '\0');
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (stream.bad() || (stream.gcount() == 0 && !stream.eof())) {
-    throw Error(fmt::format("{}: cannot be read ({}), expected a scene file", name, std::strerror(errno)));
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{}: cannot be read ({}), expected a scene file", name, std::strerror(errno)));
   }
   text.resize(static_cast<std::size_t>(stream.gcount()));
   return text;

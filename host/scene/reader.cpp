@@ -34,7 +34,7 @@ void Reader::fail(const std::string& expected) const { fail(shown(value_), expec
 
 void Reader::fail(const std::string& got, const std::string& expected) const {
   const std::string where = pointer_.empty() ? "top level" : shortened(pointer_, 200);
-  throw Error(fmt::format("{}: {}: got {}, expected {}", file_, where, got, expected));
+  throw Error(ErrorCode::bad_input, fmt::format("{}: {}: got {}, expected {}", file_, where, got, expected));
 }
 
 void Reader::expect_object(const std::string& kind) const {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/lattice_spec.h"
 #include "scene/tool.h"
 
 namespace pliant {
@@ -113,11 +114,6 @@ struct DeformationModel {
   bool cut = true;           ///< "cut": false: a blade passes through the shape-matching part without effect
   bool follow = false;       ///< "follow": "tool": the operational region moves with the scene's tool
   std::string pointer;       ///< JSON pointer ("/bodies/0/model")
-};
-
-struct LatticeSpec {
-  double spacing = 0;      ///< edge of a cell [m]; 0 if `nodes` is given
-  std::int64_t nodes = 0;  ///< wanted number of nodes; 0 if `spacing` is given
 };
 
 struct Body {

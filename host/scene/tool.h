@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-namespace pliant {
+#include "geometry/vec3.h"
 
-using Vec3d = std::array<double, 3>;
+namespace pliant {
 
 /// A tool on a prescribed path: what a moving operational region follows.
 struct Tool {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <atomic>
 
-#include "model/parallel.h"
+#include "geometry/parallel.h"
 #include "statics/dense.h"
 
 namespace pliant::statics {

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/parallel.h"
+#include "geometry/parallel.h"
 #include "statics/shape.h"
 
 namespace pliant::statics {

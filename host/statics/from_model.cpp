@@ -22,11 +22,12 @@ class FromModel {
 
   Problem operator()(bool quadratic) {
     if (scene_.bodies[number_].model.type != ModelType::tled) {
-      throw Error(fmt::format("body '{}': the model is {}, the static solver takes tled only", body_.name,
-                              pliant::to_string(scene_.bodies[number_].model.type)));
+      throw Error(ErrorCode::bad_input, fmt::format("body '{}': the model is {}, the static solver takes tled only", body_.name,
+                                                    pliant::to_string(scene_.bodies[number_].model.type)));
     }
     if (body_.element == ElementKind::tet4anp && !quadratic) {
-      throw Error(fmt::format("body '{}': the static solver has no tet4anp; take tet4 or hex8full, or quadratic tetrahedra",
+      throw Error(ErrorCode::bad_input,
+                  fmt::format("body '{}': the static solver has no tet4anp; take tet4 or hex8full, or quadratic tetrahedra",
                               body_.name));
     }
     out_.mesh.element = body_.tets.empty() ? Element::hex8full : Element::tet4;
@@ -138,7 +139,8 @@ class FromModel {
 }  // namespace
 
 Problem problem_of(const Scene& scene, const Model& model, std::size_t body, bool quadratic) {
-  if (body >= model.bodies.size()) throw Error(fmt::format("static problem: body {} of {}", body, model.bodies.size()));
+  if (body >= model.bodies.size())
+    throw Error(ErrorCode::bad_input, fmt::format("static problem: body {} of {}", body, model.bodies.size()));
   return FromModel(scene, model, body)(quadratic);
 }
 

@@ -62,10 +62,12 @@ void check_held(const Problem& problem) {
   for (const auto& [root, p] : parts) {
     const double least = Eigen::SelfAdjointEigenSolver<Matrix6d>(p.held).eigenvalues()[0];
     if (least > 1e-10 * std::max(1.0, p.held.trace())) continue;
-    throw Error(fmt::format(
-        "static problem: the part of the mesh that holds node {} ({:.0f} nodes) may still move as a rigid body, so it has "
-        "no one equilibrium; fix or prescribe at least three of its nodes that are not on one line",
-        root, p.nodes));
+    throw Error(
+        ErrorCode::bad_input,
+        fmt::format(
+            "static problem: the part of the mesh that holds node {} ({:.0f} nodes) may still move as a rigid body, so it has "
+            "no one equilibrium; fix or prescribe at least three of its nodes that are not on one line",
+            root, p.nodes));
   }
 }
 

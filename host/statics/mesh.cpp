@@ -18,7 +18,7 @@ Edge edge_of(std::int32_t a, std::int32_t b) { return {std::min(a, b), std::max(
 
 Mesh to_quadratic(const Mesh& mesh, std::map<Edge, std::int32_t>& middles) {
   if (mesh.element != Element::tet4)
-    throw Error(fmt::format("to_quadratic: got a mesh of {}, expected tet4", to_string(mesh.element)));
+    throw Error(ErrorCode::bad_input, fmt::format("to_quadratic: got a mesh of {}, expected tet4", to_string(mesh.element)));
   Mesh out{Element::tet10, mesh.nodes, {}, mesh.material, mesh.fill};
   for (std::int64_t e = 0; e < mesh.elements(); ++e) {
     const std::int32_t* const nodes = mesh.nodes_of(e);
@@ -135,6 +135,7 @@ Mesh box_mesh(Element element, const std::array<int, 3>& cells, const Vec3d& siz
   for (int c = 0; c < 3; ++c) {
     if (cells[c] < 1 || !(size[c] > 0))
       throw Error(
+          ErrorCode::bad_input,
           fmt::format("box_mesh: {} cells over {} m, expected at least one cell and a positive size", cells[c], size[c]));
   }
   Mesh mesh;

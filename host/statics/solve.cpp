@@ -209,9 +209,11 @@ int Solution::iterations() const {
 
 Solution solve(const Problem& problem, const Settings& settings) {
   if (!(settings.tolerance > 0 && settings.tolerance < 1))
-    throw Error(fmt::format("static solver: tolerance {}, expected 0 < tolerance < 1", settings.tolerance));
+    throw Error(ErrorCode::bad_input,
+                fmt::format("static solver: tolerance {}, expected 0 < tolerance < 1", settings.tolerance));
   if (settings.max_iterations < 1)
-    throw Error(fmt::format("static solver: max_iterations {}, expected 1 or more", settings.max_iterations));
+    throw Error(ErrorCode::bad_input,
+                fmt::format("static solver: max_iterations {}, expected 1 or more", settings.max_iterations));
   const System system(problem, settings.linear);
   return Newton(system, problem.mesh.nodes, settings).run();
 }

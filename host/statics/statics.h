@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "geometry/vec.h"
 #include "model/model.h"
-#include "model/vec.h"
 #include "scene/scene.h"
 
 namespace pliant::statics {

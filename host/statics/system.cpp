@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "model/parallel.h"
+#include "geometry/parallel.h"
 #include "pliant/error.h"
 
 namespace pliant::statics {
@@ -26,7 +26,7 @@ System::System(const Problem& problem, bool linear) : problem_(problem), linear_
 void System::check() const {
   const Mesh& mesh = problem_.mesh;
   const auto nodes = static_cast<std::int32_t>(mesh.nodes.size());
-  const auto fail = [](const std::string& text) { throw Error("static problem: " + text); };
+  const auto fail = [](const std::string& text) { throw Error(ErrorCode::bad_input, "static problem: " + text); };
   const auto check_node = [&](std::int32_t n, const char* where) {
     if (n < 0 || n >= nodes) fail(fmt::format("{} names node {}, allowed are 0 to {}", where, n, nodes - 1));
   };
@@ -89,7 +89,8 @@ void System::precompute() {
       const Matrix3d jacobian = x * local.transpose();
       const double determinant = jacobian.determinant();
       if (!(determinant > 0)) {
-        throw Error(fmt::format("static problem: {} {} has volume {:.6g} m^3 at a point of quadrature, expected more than 0",
+        throw Error(ErrorCode::bad_input,
+                    fmt::format("static problem: {} {} has volume {:.6g} m^3 at a point of quadrature, expected more than 0",
                                 to_string(mesh.element), e, determinant * rule[p].weight));
       }
       Point& point = points_[e * rule.size() + p];

@@ -26,10 +26,8 @@ enum class ErrorCode : int {
 /// The message says what is wrong, where, what was received and what is allowed.
 class PLIANT_API Error : public std::runtime_error {
  public:
-  /// With its code.
+  /// There is no default code: a defect of Pliant must not pass for the user's mistake.
   Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
-  /// Bad input is by far the most frequent reason.
-  explicit Error(const std::string& message) : Error(ErrorCode::bad_input, message) {}
   /// What kind of error it is.
   [[nodiscard]] ErrorCode code() const noexcept { return code_; }
 

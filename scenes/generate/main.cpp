@@ -1,8 +1,8 @@
 // Writes the meshes that the shipped scenes use: generate_meshes FOLDER
 #include <cstdio>
 
-#include "model/organs.h"
 #include "pliant/error.h"
+#include "scenes/generate/organs.h"
 
 int main(int argc, char** argv) {
   if (argc != 2) {

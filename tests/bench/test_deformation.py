@@ -89,7 +89,7 @@ class Deformation(unittest.TestCase):
     def test_files_hold_the_same_rows(self):
         self.assertEqual(json.loads((self.out / "deformation.json").read_text()), self.result)
         self.assertEqual(len((self.out / "deformation.csv").read_text().splitlines()), 1 + len(self.result["rows"]))
-        self.assertIn("bench/report.py", self.done.stderr)
+        self.assertIn("bench/report/report.py", self.done.stderr)
 
     def test_refusals_name_the_option_and_the_value(self):
         for arguments, words in ((("--only", "heart"), ("--only", "heart", "bunny")), (("--parts", "colour"), ("--parts", "colour", "scaling")),

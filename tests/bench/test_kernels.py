@@ -73,7 +73,7 @@ class Kernels(unittest.TestCase):
         lines = (self.out / "kernels.csv").read_text().splitlines()
         self.assertEqual(len(lines), 1 + len(self.result["rows"]))
         self.assertEqual({line.count(",") for line in lines}, {len(WORDS | COUNTS | POSITIVE | OF_A_STEP)})
-        self.assertIn("bench/report.py", self.done.stderr)
+        self.assertIn("bench/report/report.py", self.done.stderr)
 
     def test_refusals_name_the_option_and_the_value(self):
         for arguments, words in ((("--elements", "tet5"), ("--elements", "tet5")), (("--sizes", 0), ("--sizes", "0")),

@@ -1,4 +1,4 @@
-"""bench/report.py on rows made up here: which files it makes, what it says about them, what it refuses."""
+"""bench/report/report.py on rows made up here: which files it makes, what it says about them, what it refuses."""
 import json
 import re
 import subprocess

@@ -8,11 +8,11 @@
 #include <random>
 #include <set>
 
-#include "cutting/blade.h"
-#include "cutting/cut_topology.h"
-#include "model/lattice.h"
-#include "model/lattice_parts.h"
-#include "model/vec.h"
+#include "cutting/blade/blade.h"
+#include "cutting/topology/cut_topology.h"
+#include "geometry/vec.h"
+#include "lattice/lattice.h"
+#include "lattice/lattice_parts.h"
 
 namespace pliant::cut_test {
 

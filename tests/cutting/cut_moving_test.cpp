@@ -1,7 +1,7 @@
 // Blades in bodies that move and deform while they are cut.
 #include <gtest/gtest.h>
 
-#include "cutting/blade_front.h"
+#include "cutting/blade/blade_front.h"
 #include "cutting/cut_bodies.h"
 #include "cutting/cut_scenes.h"
 #include "scene/scene.h"

@@ -9,7 +9,7 @@
 #include "backends/backends.h"
 #include "cutting/cut_bodies.h"
 #include "cutting/cut_scenes.h"
-#include "solver/compare.h"
+#include "simulation/compare.h"
 #include "solver/scenes.h"
 
 namespace pliant {

@@ -4,9 +4,9 @@
 #include <memory>
 
 #include "backends/backends.h"
-#include "model/mesh.h"
-#include "model/vec.h"
-#include "solver/simulation.h"
+#include "geometry/mesh.h"
+#include "geometry/vec.h"
+#include "simulation/simulation.h"
 
 namespace pliant::cut_test {
 

@@ -1,6 +1,6 @@
 // The surface after cuts: closed, oriented, of the same volume, in the pieces that the topology says, and stable in its
 // numbers.
-#include "cutting/cut_surface.h"
+#include "cutting/surface/cut_surface.h"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,9 @@
 
 #include "cut_bodies.h"
 #include "cut_scenes.h"
-#include "model/organs.h"
-#include "model/surface_nets.h"
+#include "mesh_io/mesh_io.h"
+#include "scenes/generate/organs.h"
+#include "scenes/generate/surface_nets.h"
 
 namespace pliant::cut_test {
 namespace {

@@ -1,5 +1,5 @@
 // Virtual nodes: known cuts, and the definition of the algorithm over random ones.
-#include "cutting/cut_topology.h"
+#include "cutting/topology/cut_topology.h"
 
 #include "cutting/cut_bodies.h"
 #include "pliant/error.h"

@@ -4,8 +4,8 @@
 #include <random>
 
 #include "cutting/cut_bodies.h"
-#include "cutting/method.h"
 #include "support/error_of.h"
+#include "tearing/method.h"
 
 namespace pliant {
 namespace {

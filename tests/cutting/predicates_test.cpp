@@ -1,5 +1,5 @@
 // The exact decisions: signs, ties, and that ties are broken as by one common movement of the points.
-#include "cutting/predicates.h"
+#include "geometry/predicates.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Where the material at a point is, and where it has carried a point.
-#include "cutting/rest_map.h"
+#include "cutting/blade/rest_map.h"
 
 #include <gtest/gtest.h>
 

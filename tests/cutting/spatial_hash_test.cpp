@@ -1,5 +1,5 @@
 // What the hash finds against a look at every box.
-#include "cutting/spatial_hash.h"
+#include "geometry/spatial_hash.h"
 
 #include <gtest/gtest.h>
 

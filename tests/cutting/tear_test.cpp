@@ -4,11 +4,11 @@
 
 #include "cutting/cut_bodies.h"
 #include "cutting/cut_scenes.h"
-#include "cutting/torn_body.h"
 #include "io/save.h"
 #include "solver/scenes.h"
 #include "support/error_of.h"
 #include "support/temp_folder.h"
+#include "tearing/torn_body.h"
 
 namespace pliant {
 namespace {

@@ -1,11 +1,11 @@
 // Surfaces of cut meshes of tetrahedra.
-#include "cutting/tet_surface.h"
+#include "cutting/surface/tet_surface.h"
 
 #include <gtest/gtest.h>
 
 #include "cutting/cut_bodies.h"
 #include "cutting/cut_body.h"
-#include "model/mesh.h"
+#include "geometry/mesh.h"
 
 namespace pliant {
 namespace {

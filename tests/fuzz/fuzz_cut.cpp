@@ -7,12 +7,12 @@
 #include <map>
 #include <memory>
 
-#include "cutting/blade.h"
-#include "cutting/blade_front.h"
-#include "cutting/cut_surface.h"
-#include "cutting/cut_topology.h"
-#include "model/lattice.h"
-#include "model/vec.h"
+#include "cutting/blade/blade.h"
+#include "cutting/blade/blade_front.h"
+#include "cutting/surface/cut_surface.h"
+#include "cutting/topology/cut_topology.h"
+#include "geometry/vec.h"
+#include "lattice/lattice.h"
 
 namespace {
 

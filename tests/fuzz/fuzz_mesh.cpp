@@ -11,7 +11,7 @@
 #include <fstream>
 #include <string>
 
-#include "model/mesh.h"
+#include "mesh_io/mesh_io.h"
 #include "pliant/error.h"
 
 namespace {

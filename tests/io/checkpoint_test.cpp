@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "pliant/error.h"
-#include "state/hash.h"
+#include "program/hash.h"
 #include "support/error_of.h"
 #include "support/temp_folder.h"
 

@@ -6,7 +6,7 @@
 
 #include "io/obj.h"
 #include "io/vtu.h"
-#include "model/mesh.h"
+#include "mesh_io/mesh_io.h"
 #include "pliant/error.h"
 #include "support/temp_folder.h"
 

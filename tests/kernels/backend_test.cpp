@@ -9,10 +9,10 @@
 #include <functional>
 #include <limits>
 
+#include "backend/pass_table.h"
 #include "backends/backends.h"
 #include "cpu_ref/registry.h"
 #include "pliant/error.h"
-#include "solver/pass_table.h"
 #ifdef PLIANT_HAVE_OPENCL
 #include "opencl/kernel_text.h"
 #include "opencl/opencl_backend.h"

@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include "backend/backend.h"
 #include "cpu_ref/backend.h"
-#include "solver/backend.h"
-#include "solver/program.h"
+#include "program/program.h"
 #ifdef PLIANT_HAVE_OPENCL
 #include "opencl/opencl_backend.h"
 #endif

@@ -1,5 +1,5 @@
 // The known-answer probe passes on every backend, whatever the lane width and the work-group size, and it can fail.
-#include "solver/probe.h"
+#include "backend/probe.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,9 @@
-#include "model/distance.h"
+#include "geometry/distance.h"
 
 #include <gtest/gtest.h>
 
-#include "model/organs.h"
+#include "mesh_io/mesh_io.h"
+#include "scenes/generate/organs.h"
 #include "surfaces.h"
 
 namespace pliant {

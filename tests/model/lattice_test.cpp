@@ -1,10 +1,11 @@
-#include "model/lattice.h"
+#include "lattice/lattice.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "model/organs.h"
+#include "mesh_io/mesh_io.h"
+#include "scenes/generate/organs.h"
 #include "surfaces.h"
 
 namespace pliant {

@@ -1,9 +1,10 @@
-#include "model/organs.h"
+#include "scenes/generate/organs.h"
 
 #include <gtest/gtest.h>
 
 #include <map>
 
+#include "mesh_io/mesh_io.h"
 #include "surfaces.h"
 
 namespace pliant {

@@ -1,10 +1,11 @@
-#include "model/read_ply.h"
+#include "mesh_io/read_ply.h"
 
 #include <gtest/gtest.h>
 
 #include <bit>
 #include <cstring>
 
+#include "mesh_io/mesh_io.h"
 #include "support/temp_folder.h"
 #include "surfaces.h"
 

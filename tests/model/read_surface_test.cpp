@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "mesh_io/mesh_io.h"
 #include "support/temp_folder.h"
 #include "surfaces.h"
 

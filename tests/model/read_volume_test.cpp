@@ -5,8 +5,8 @@
 #include <random>
 #include <set>
 
-#include "model/mesh.h"
-#include "model/read_volume_parts.h"
+#include "mesh_io/mesh_io.h"
+#include "mesh_io/read_volume_parts.h"
 #include "pliant/error.h"
 #include "support/error_of.h"
 #include "support/temp_folder.h"

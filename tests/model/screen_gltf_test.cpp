@@ -1,10 +1,11 @@
-#include "model/screen_gltf.h"
+#include "mesh_io/screen_gltf.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include <nlohmann/json.hpp>
 
+#include "mesh_io/mesh_io.h"
 #include "support/temp_folder.h"
 #include "surfaces.h"
 

@@ -6,8 +6,8 @@
 #include <random>
 #include <string>
 
-#include "model/mesh.h"
-#include "model/surface_nets.h"
+#include "geometry/mesh.h"
+#include "scenes/generate/surface_nets.h"
 #include "support/error_of.h"
 
 namespace pliant::test {

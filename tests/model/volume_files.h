@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "model/mesh.h"
+#include "geometry/mesh.h"
 
 namespace pliant::testing {
 

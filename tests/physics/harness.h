@@ -14,10 +14,10 @@
 #include <vector>
 
 #include "backends/backends.h"
+#include "geometry/mesh.h"
 #include "io/obj.h"
-#include "model/mesh.h"
-#include "solver/energy.h"
-#include "solver/simulation.h"
+#include "simulation/energy.h"
+#include "simulation/simulation.h"
 #include "support/temp_folder.h"
 
 namespace pliant::physics {

@@ -1,5 +1,5 @@
 // Lockstep comparison: equal runs are equal, and one wrong bit is found where it was made.
-#include "solver/compare.h"
+#include "simulation/compare.h"
 
 #include <gtest/gtest.h>
 

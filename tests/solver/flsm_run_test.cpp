@@ -6,7 +6,7 @@
 #include "io/save.h"
 #include "physics/flsm_harness.h"
 #include "pliant/error.h"
-#include "solver/compare.h"
+#include "simulation/compare.h"
 #include "solver/scenes.h"
 #include "support/error_of.h"
 #include "support/temp_folder.h"

@@ -5,7 +5,7 @@
 #include <iostream>
 
 #include "io/save.h"
-#include "solver/compare.h"
+#include "simulation/compare.h"
 #include "solver/scenes.h"
 #include "support/temp_folder.h"
 

@@ -6,8 +6,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "program/hash.h"
 #include "solver/scenes.h"
-#include "state/hash.h"
 
 namespace pliant {
 namespace {

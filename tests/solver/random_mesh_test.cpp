@@ -4,9 +4,9 @@
 
 #include "cpu_ref/backend.h"
 #include "physics/harness.h"
-#include "solver/compare.h"
+#include "program/hash.h"
+#include "simulation/compare.h"
 #include "solver/scenes.h"
-#include "state/hash.h"
 #ifdef PLIANT_HAVE_OPENCL
 #include "opencl/opencl_backend.h"
 #endif

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "backends/backends.h"
-#include "solver/simulation.h"
+#include "simulation/simulation.h"
 
 namespace pliant::testing {
 

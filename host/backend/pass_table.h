@@ -1,0 +1,76 @@
+// What both backends need around a Program: pass equality, a table of prepared passes, and the memory check.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "program/program.h"
+
+namespace pliant {
+
+/// The same launch: kernel, defines, arguments, shape, count and label agree.
+bool same_pass(const Pass& a, const Pass& b);
+
+/// "LAW=0 FORCE_ONLY=1", for messages.
+std::string defines_text(const std::vector<std::pair<std::string, int>>& defines);
+
+/// "1.50 GiB (1610612736 bytes)".
+std::string bytes_text(std::uint64_t bytes);
+
+/// Throws Error if an argument names no buffer of the table, if a size is impossible, or if `count` does not suit the shape.
+void check_pass(const Pass& pass, const std::vector<Buffer>& buffers);
+
+/// Throws Error if a buffer is larger than `max_buffer` bytes or all together larger than `total` bytes: it says how much is
+/// needed, what there is, and which buffer is the largest. `real_bytes` is 4 or 8.
+void check_memory(const std::vector<Buffer>& buffers, std::size_t real_bytes, std::uint64_t max_buffer, std::uint64_t total,
+                  const std::string& device);
+
+/// Every pass is prepared once. Those of the loaded program are found by their address, copies of them by value, and passes
+/// never seen before are prepared on demand.
+template <class Prepared>
+class PassTable {
+ public:
+  void clear() {
+    entries_.clear();
+    by_address_.clear();
+  }
+  /// Prepare all lists of a program with `make(pass)`, which returns a Prepared.
+  template <class Make>
+  void load(const Program& program, Make&& make) {
+    clear();
+    for (const auto* list : {&program.step, &program.force, &program.status, &program.surface}) {
+      for (const Pass& pass : *list) by_address_.emplace(&pass, &by_value(pass, make));
+    }
+  }
+  template <class Make>
+  Prepared& get(const Pass& pass, Make&& make) {
+    const auto found = by_address_.find(&pass);
+    if (found != by_address_.end() && same_pass(found->second->pass, pass)) return found->second->prepared;
+    return by_value(pass, make).prepared;
+  }
+  /// In the order in which they were prepared: visit(pass, prepared).
+  template <class Visit>
+  void for_each(Visit&& visit) {
+    for (auto& entry : entries_) visit(entry->pass, entry->prepared);
+  }
+
+ private:
+  struct Entry {
+    Pass pass;
+    Prepared prepared;
+  };
+  template <class Make>
+  Entry& by_value(const Pass& pass, Make&& make) {
+    for (auto& entry : entries_) {
+      if (same_pass(entry->pass, pass)) return *entry;
+    }
+    entries_.push_back(std::make_unique<Entry>(Entry{pass, make(pass)}));
+    return *entries_.back();
+  }
+  std::vector<std::unique_ptr<Entry>> entries_;
+  std::unordered_map<const Pass*, Entry*> by_address_;
+};
+
+}  // namespace pliant

@@ -1,0 +1,193 @@
+// Where the components of a cut cell lie, and how its material is shared among them.
+#include <algorithm>
+#include <bit>
+
+#include "cutting/topology/cut_topology.h"
+#include "geometry/vec.h"
+#include "lattice/lattice_cell.h"
+
+namespace pliant {
+namespace {
+
+/// A component in which no sample of the cell lies, but some surface, has this share of what its volume would have in a full
+/// cell.
+constexpr double kUnseen = 1e-3;
+
+struct SamplePlace {
+  int tet;
+  std::array<double, 4> weight;
+};
+
+/// The tetrahedron of a lattice cell that holds a point in cell units, and its barycentric coordinates.
+SamplePlace place_in_cell(const Vec3d& x) {
+  std::array<int, 3> axis{0, 1, 2};
+  std::stable_sort(axis.begin(), axis.end(), [&](int i, int j) { return x[i] > x[j]; });
+  std::array<double, 8> weight{};
+  const int first = 1 << axis[0], second = first | 1 << axis[1];
+  weight[0] = 1 - x[axis[0]];
+  weight[first] = x[axis[0]] - x[axis[1]];
+  weight[second] = x[axis[1]] - x[axis[2]];
+  weight[7] = x[axis[2]];
+  const auto tets = lattice_cell_shape().tets;
+  for (std::size_t t = 0; t < tets.size(); ++t) {
+    if (std::find(tets[t].begin(), tets[t].end(), first) == tets[t].end()) continue;
+    if (std::find(tets[t].begin(), tets[t].end(), second) == tets[t].end()) continue;
+    return {static_cast<int>(t), {weight[tets[t][0]], weight[tets[t][1]], weight[tets[t][2]], weight[tets[t][3]]}};
+  }
+  return {};  // not reached: the six tetrahedra are the six orders of the axes
+}
+
+const std::array<SamplePlace, 64>& sample_places() {
+  static const std::array<SamplePlace, 64> places = [] {
+    std::array<SamplePlace, 64> all{};
+    for (int s = 0; s < 64; ++s) all[s] = place_in_cell(sample_point(s));
+    return all;
+  }();
+  return places;
+}
+
+std::array<double, 4> barycentric(const std::array<Vec3d, 4>& x, const Vec3d& p) {
+  const Vec3d a = vec::sub(x[1], x[0]), b = vec::sub(x[2], x[0]), c = vec::sub(x[3], x[0]), r = vec::sub(p, x[0]);
+  const double volume = vec::dot(a, vec::cross(b, c));
+  const double wa = vec::dot(r, vec::cross(b, c)) / volume, wb = vec::dot(a, vec::cross(r, c)) / volume,
+               wc = vec::dot(a, vec::cross(b, r)) / volume;
+  return {1 - wa - wb - wc, wa, wb, wc};
+}
+
+/// No copy is lighter than the lightest part of a lattice cell may be: nodes with next to no mass are beyond what float
+/// resolves when the stable step is estimated. The shares' sum stays 1.
+void raise_to_floor(std::array<double, 8>& share) {
+  double sum = 0;
+  for (double& s : share) {
+    if (s > 0) s = std::max(s, kFillFloor);
+    sum += s;
+  }
+  for (double& s : share) s /= sum;
+}
+
+}  // namespace
+
+TetDivision CutTopology::division(std::int32_t cell, const CellCut& cut, int tet) const {
+  const auto& corner = mesh_->shape->tets[tet];
+  std::array<int, 4> label{};
+  for (int a = 0; a < 4; ++a) label[a] = cut.label[corner[a]];
+  std::array<char, 6> is_cut{};
+  std::array<double, 6> crossing{};
+  for (int e = 0; e < 6; ++e) {
+    const int from = corner[kTetEdges[e][0]], to = corner[kTetEdges[e][1]];
+    if ((cut.cut >> mesh_->shape->edge_of[from][to] & 1) == 0) continue;
+    const std::int32_t a = mesh_->cells[cell][from], b = mesh_->cells[cell][to];
+    const double t = edges_.at(node_pair(a, b));
+    is_cut[e] = 1;
+    crossing[e] = a < b ? t : 1 - t;
+  }
+  return divide(label, is_cut, crossing);
+}
+
+/// Share the material of a cell out among its components.
+void CutTopology::share(std::int32_t cell, CellCut& cut) const {
+  cut.share.fill(0);
+  if (cut.components == 1) {
+    cut.share[0] = 1;
+    return;
+  }
+  const CellShape& shape = *mesh_->shape;
+  std::array<TetDivision, 6> tets;
+  std::array<double, 8> volume{};
+  const auto count = static_cast<int>(shape.tets.size());  // of a lattice cell all have the same volume
+  for (int t = 0; t < count; ++t) {
+    tets[t] = division(cell, cut, t);
+    const std::array<double, 4> part = corner_shares(tets[t]);
+    for (int a = 0; a < 4; ++a) volume[cut.label[shape.tets[t][a]]] += part[a] / count;
+  }
+  if (mesh_->material.empty() || mesh_->material[cell] == kAllSamples) {
+    cut.share = volume;
+    raise_to_floor(cut.share);
+    return;
+  }
+  std::array<double, 8> samples{};
+  for (std::uint64_t rest = mesh_->material[cell]; rest != 0; rest &= rest - 1) {
+    const SamplePlace& place = sample_places()[std::countr_zero(rest)];
+    samples[cut.label[shape.tets[place.tet][corner_at(tets[place.tet], place.weight)]]] += 1.0 / 64;
+  }
+  std::uint32_t held = probe_ ? probe_(*this, cell, cut) : ~0U;
+  for (int k = 0; k < cut.components; ++k) held |= samples[k] > 0 ? 1U << k : 0U;
+  double sum = 0;
+  for (int k = 0; k < cut.components; ++k) {
+    cut.share[k] = (held >> k & 1) ? samples[k] + kUnseen * volume[k] : 0;
+    sum += cut.share[k];
+  }
+  if (sum == 0) cut.share[std::max_element(volume.begin(), volume.end()) - volume.begin()] = sum = 1;
+  for (double& s : cut.share) s /= sum;
+  raise_to_floor(cut.share);
+}
+
+CutTet CutTopology::tet(std::int32_t cell, int tet) const {
+  CutTet out;
+  const CellCut* cut = find_cell(cell);
+  const auto& corner = mesh_->shape->tets[tet];
+  for (int a = 0; a < 4; ++a) {
+    out.node[a] = mesh_->cells[cell][corner[a]];
+    out.label[a] = cut == nullptr ? 0 : cut->label[corner[a]];
+    out.corner[a] = mesh_->rest[out.node[a]];
+  }
+  std::array<NodePair, 6> pair{};
+  for (int e = 0; e < 6; ++e) {
+    pair[e] = node_pair(out.node[kTetEdges[e][0]], out.node[kTetEdges[e][1]]);
+    const auto found = edges_.find(pair[e]);
+    out.cut[e] = found != edges_.end();
+    const Vec3d &a = mesh_->rest[pair[e][0]], &b = mesh_->rest[pair[e][1]];
+    out.edge[e] = vec::add(a, vec::mul(vec::sub(b, a), out.cut[e] ? found->second : 0.5));
+  }
+  for (int f = 0; f < 4; ++f) {
+    // Edges ascending by their nodes: the cell on the other side sums in the same order.
+    const auto& [a, b, c] = kTetFaces[f];
+    std::array<int, 3> edges{kTetEdgeOf[a][b], kTetEdgeOf[b][c], kTetEdgeOf[c][a]};
+    std::sort(edges.begin(), edges.end(), [&](int i, int j) { return pair[i] < pair[j]; });
+    const int count = out.cut[edges[0]] + out.cut[edges[1]] + out.cut[edges[2]];
+    for (const int e : edges) {
+      // The centroid of a face is the mean of the middles of its edges.
+      const Vec3d middle = vec::mul(vec::add(mesh_->rest[pair[e][0]], mesh_->rest[pair[e][1]]), 0.5);
+      if (count < 2) out.face[f] = vec::add(out.face[f], vec::mul(middle, 1.0 / 3));
+      if (count >= 2 && out.cut[e]) out.face[f] = vec::add(out.face[f], vec::mul(out.edge[e], 1.0 / count));
+    }
+  }
+  int count = 0;
+  Vec3d between{}, corners{};
+  for (int e = 0; e < 6; ++e) {
+    if (out.label[kTetEdges[e][0]] == out.label[kTetEdges[e][1]]) continue;
+    between = vec::add(between, out.edge[e]);
+    ++count;
+  }
+  for (const Vec3d& x : out.corner) corners = vec::add(corners, x);
+  out.centre = count > 0 ? vec::mul(between, 1.0 / count) : vec::mul(corners, 0.25);
+  return out;
+}
+
+int CutTopology::label_at(std::int32_t cell, const Vec3d& x) const {
+  const CellCut* cut = find_cell(cell);
+  if (cut == nullptr || cut->components == 1) return 0;
+  // The tetrahedron in which the least coordinate is largest: the one around the point, or the nearest.
+  int best = 0;
+  double depth = -HUGE_VAL;
+  std::array<double, 4> weight{};
+  for (std::size_t t = 0; t < mesh_->shape->tets.size(); ++t) {
+    std::array<Vec3d, 4> corner;
+    for (int a = 0; a < 4; ++a) corner[a] = mesh_->rest[mesh_->cells[cell][mesh_->shape->tets[t][a]]];
+    const std::array<double, 4> w = barycentric(corner, x);
+    const double least = *std::min_element(w.begin(), w.end());
+    if (least <= depth) continue;
+    depth = least;
+    weight = w;
+    best = static_cast<int>(t);
+  }
+  return label_in(cell, best, weight);
+}
+
+int CutTopology::label_in(std::int32_t cell, int tet, const std::array<double, 4>& weight) const {
+  const CellCut* cut = find_cell(cell);
+  if (cut == nullptr || cut->components == 1) return 0;
+  return cut->label[mesh_->shape->tets[tet][corner_at(division(cell, *cut, tet), weight)]];
+}
+
+}  // namespace pliant

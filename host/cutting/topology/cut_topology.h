@@ -1,0 +1,167 @@
+// The topology of a cut body by the virtual node algorithm (Molino, Bao and Fedkiw 2004).
+//
+// What is cut are edges between nodes of the uncut body, each at one point. A cell is *completely cut* when the graph of its
+// corners through its uncut edges falls apart; it is then replaced by one copy per component. In a copy the corners of its
+// component are real, the others virtual. Real corners at one node are one node. Copies on both sides of a face share the nodes
+// of that face when one of its corners is real in both. Everything here is a function of the set of cut edges alone: edits may
+// come in any order or grouping.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "cutting/topology/cut_cell.h"
+
+namespace pliant {
+
+/// The uncut body.
+struct CutMesh {
+  const CellShape* shape = nullptr;
+  std::vector<Vec3d> rest;                         ///< [nodes] [m]
+  std::vector<std::array<std::int32_t, 8>> cells;  ///< lattice corners in bit order; a tetrahedron uses the first four
+  std::vector<double> fill;                        ///< [cells]
+  /// [cells] which of the 4 x 4 x 4 samples of a lattice cell lie in material (lattice_cell.h); empty: all of every cell.
+  std::vector<std::uint64_t> material;
+};
+
+/// Two nodes of the uncut body, the lower one first.
+using NodePair = std::array<std::int32_t, 2>;
+inline NodePair node_pair(std::int32_t a, std::int32_t b) { return a < b ? NodePair{a, b} : NodePair{b, a}; }
+
+/// Cut edges and where they are cut: the share of the way from the lower to the higher node, in [kLeastCrossing, 1 -
+/// kLeastCrossing].
+using CutEdges = std::map<NodePair, double>;
+
+/// What became of a cell whose edges are cut.
+struct CellCut {
+  std::uint32_t cut = 0;               ///< bit i: edge i of the shape is cut
+  std::array<std::int8_t, 8> label{};  ///< component of each corner; components are numbered by their lowest corner
+  int components = 1;                  ///< 1: not completely cut yet, the cell is whole
+  /// The copy of each component; -1: the component holds no material and has none. One of them keeps the cell's own number.
+  std::array<std::int32_t, 8> element{-1, -1, -1, -1, -1, -1, -1, -1};
+  std::array<double, 8> share{};  ///< of the cell's material; 0 without a copy
+};
+
+/// Elements 0 .. cells - 1 are the cells, those cut completely being the copies of their first component with material; the
+/// other copies follow, ascending by cell and component. Nodes 0 .. nodes - 1 are those of the uncut body, and real if any node
+/// there is; further virtual nodes follow, ascending by origin.
+struct CutElements {
+  std::vector<std::array<std::int32_t, 8>> nodes;  ///< [elements] corners as in CutMesh::cells
+  std::vector<std::int32_t> cell;                  ///< [elements] of the uncut body
+  std::vector<std::uint8_t> real;                  ///< [elements] bit a: corner a is real
+  std::vector<double> fill;                        ///< [elements] of a whole cell's volume; copies of a cell add up to its fill
+  std::vector<std::int32_t> origin;  ///< [nodes] node of the uncut body at the same place; of the first ones themselves
+};
+
+/// Fill that changed hands between the copies of one cell because it was cut again: what `element` has now, and `from` had
+/// before.
+struct FillFlux {
+  std::int32_t element = 0;                  ///< element now
+  std::int32_t from = 0;                     ///< element before
+  double fill = 0;                           ///< > 0
+  std::array<std::int32_t, 8> from_nodes{};  ///< of `from`, before
+};
+
+/// What an edit did. An edit that changed no element has empty lists.
+struct CutEdit {
+  std::vector<std::int32_t> cells;         ///< cells whose CellCut changed, ascending
+  std::vector<std::int32_t> node_from;     ///< [nodes now] the node before
+  std::vector<std::int32_t> element_from;  ///< [elements now] the element before
+  std::vector<FillFlux> flux;              ///< by cell
+  [[nodiscard]] bool changed_elements() const { return !node_from.empty(); }
+};
+
+class CutTopology;
+/// Says for a cell with samples outside the material which components hold material that no sample saw (bit k: component k),
+/// for instance a thin wedge of the surface. Has to be a function of the cut edges alone.
+using MaterialProbe = std::function<std::uint32_t(const CutTopology&, std::int32_t cell, const CellCut&)>;
+
+class CutTopology {
+ public:
+  /// Throws Error if an index is out of range. Without a probe every component counts as holding material.
+  explicit CutTopology(std::shared_ptr<const CutMesh> mesh, MaterialProbe probe = {});
+  CutTopology(const CutTopology&) = delete;
+  CutTopology& operator=(const CutTopology&) = delete;
+
+  [[nodiscard]] const CutMesh& mesh() const { return *mesh_; }
+  [[nodiscard]] const CutEdges& edges() const { return edges_; }
+  [[nodiscard]] const CutElements& elements() const { return elements_; }
+  /// Cells with a cut edge. Those with components > 1 have copies.
+  [[nodiscard]] const std::map<std::int32_t, CellCut>& cells() const { return cells_; }
+  /// Whether a cell has copies.
+  [[nodiscard]] bool divided(std::int32_t cell) const { return cell_at_[cell] != nullptr && cell_at_[cell]->components > 1; }
+  /// The element that holds component `label` of a cell, -1 if it has none.
+  [[nodiscard]] std::int32_t element_of(std::int32_t cell, int label) const;
+  /// Cells that share all nodes of a cell's local face; nearly always one or none.
+  [[nodiscard]] std::span<const std::int32_t> cells_at_face(std::int32_t cell, int face) const;
+
+  /// Cells that have an edge.
+  [[nodiscard]] std::vector<std::int32_t> cells_at_edge(const NodePair& edge) const;
+
+  /// The division of tetrahedron `tet` (of mesh().shape) of a cell. Points that cells share have the same bits in each.
+  [[nodiscard]] CutTet tet(std::int32_t cell, int tet) const;
+  /// Component that holds a point of the cell at rest [m]: that of the flag's tetrahedron it lies in, or the nearest one.
+  [[nodiscard]] int label_at(std::int32_t cell, const Vec3d& x) const;
+  /// The same by barycentric coordinates in one of its tetrahedra.
+  [[nodiscard]] int label_in(std::int32_t cell, int tet, const std::array<double, 4>& weight) const;
+  /// For many places in one tetrahedron. The cell is divided.
+  [[nodiscard]] TetDivision division(std::int32_t cell, int tet) const { return division(cell, *cell_at_[cell], tet); }
+  [[nodiscard]] int label_in(std::int32_t cell, int tet, const TetDivision& division,
+                             const std::array<double, 4>& weight) const {
+    return cell_at_[cell]->label[mesh_->shape->tets[tet][corner_at(division, weight)]];
+  }
+
+  /// Cut further edges; those that are cut already stay as they are. Throws Error, with nothing changed, for a pair that is no
+  /// edge of a cell or a crossing that is not in (0, 1). Work: the cells at new edges, plus a pass over all copies.
+  /// `divided`, if given, is called with CutEdit::cells as soon as it is clear how they are divided, unless none is; what does
+  /// not ask for elements and their nodes may look at the cells from then on, beside the rest of the work.
+  CutEdit cut(const CutEdges& edges, const std::function<void(const std::vector<std::int32_t>& cells)>& divided = {});
+  /// Go back to a smaller set of cut edges (after an edit that failed elsewhere).
+  void reset(const CutEdges& edges);
+
+  /// Pieces: the number of sets of elements that share nodes, numbered by their lowest element, and the piece of each element.
+  [[nodiscard]] std::int32_t pieces(std::vector<std::int32_t>* piece_of = nullptr) const;
+
+ private:
+  /// The nodes at one node of the uncut body: its copies of cells, grouped.
+  struct Member {
+    std::int32_t cell;
+    std::int8_t component, corner;
+  };
+  struct NodeClass {
+    std::int32_t node = -1;  ///< as of the last numbering
+    bool real = false;
+    std::vector<Member> members;
+  };
+  using OldCuts = std::map<std::int32_t, CellCut>;  ///< changed cells before the edit
+
+  void find_neighbors();
+  [[nodiscard]] int edge_of(std::int32_t cell, std::int32_t a, std::int32_t b) const;
+  [[nodiscard]] std::span<const std::int32_t> cells_at_node(std::int32_t node) const;
+  [[nodiscard]] const CellCut* find_cell(std::int32_t cell) const;
+  [[nodiscard]] double crossing(std::int32_t a, std::int32_t b) const;
+  OldCuts mark(const CutEdges& edges, CutEdit& edit);
+  void label(CellCut& cell) const;
+  [[nodiscard]] TetDivision division(std::int32_t cell, const CellCut& cut, int tet) const;
+  void share(std::int32_t cell, CellCut& cut) const;
+  void number_elements(const OldCuts& old, CutEdit& edit);
+  void add_flux(std::int32_t cell, const CellCut& before, const std::vector<std::array<std::int32_t, 8>>& old_copies,
+                CutEdit& edit) const;
+  [[nodiscard]] std::vector<NodeClass> classes_at(std::int32_t node) const;
+  void number_nodes(const OldCuts& old, const std::vector<std::array<std::int32_t, 8>>& old_nodes, CutEdit& edit);
+
+  std::shared_ptr<const CutMesh> mesh_;
+  MaterialProbe probe_;
+  std::vector<std::int32_t> node_offset_, node_cells_;  ///< cells at each node
+  std::vector<std::int32_t> face_offset_, face_cells_;  ///< cells across each face of each cell
+  CutEdges edges_;
+  std::map<std::int32_t, CellCut> cells_;
+  std::vector<const CellCut*> cell_at_;                     ///< [cells] into cells_, nullptr: no edge is cut
+  std::map<std::int32_t, std::vector<NodeClass>> classes_;  ///< at nodes of cells with copies
+  CutElements elements_;
+};
+
+}  // namespace pliant

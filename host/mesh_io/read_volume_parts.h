@@ -1,0 +1,90 @@
+// What the readers of the volume formats share: cell types, the mesh as the file has it, and one function per format.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "geometry/mesh.h"
+#include "mesh_io/read_volume_cursor.h"
+
+namespace pliant::volume_file {
+
+enum class CellKind {
+  flat,         ///< points, lines, faces: not needed
+  tet,          ///< the first four nodes are the corners
+  hex,          ///< the first eight nodes are the corners, VTK order
+  voxel,        ///< VTK's box with x running fastest
+  unsupported,  ///< a volume cell that cannot be used; leaving it out would leave a hole in the body
+};
+
+struct CellType {
+  const char* name;  ///< plural, for messages
+  CellKind kind;
+  int nodes;  ///< 0: varies
+};
+
+/// Null for a number the format does not define.
+const CellType* gmsh_cell(std::int64_t type);
+const CellType* vtk_cell(std::int64_t type);
+
+/// Points and volume cells with the file's own numbers.
+struct RawMesh {
+  std::vector<Vec3d> points;
+  std::vector<std::int64_t> point_numbers;  ///< empty: 0, 1, 2, ...
+  std::vector<std::array<std::int32_t, 4>> tets;
+  std::vector<std::int64_t> tet_numbers;
+  std::vector<std::array<std::int32_t, 8>> hexes;
+  std::vector<std::int64_t> hex_numbers;
+  std::map<std::string, std::int64_t> others;  ///< cells that were passed over, by name
+
+  [[nodiscard]] std::int64_t point_number(std::size_t i) const {
+    return point_numbers.empty() ? static_cast<std::int64_t>(i) : point_numbers[i];
+  }
+};
+
+/// From the node numbers of a file, which may be any distinct integers, to indices.
+class NodeNumbers {
+ public:
+  /// False if the number was there before.
+  bool add(std::int64_t number) { return map_.emplace(number, static_cast<std::int32_t>(map_.size())).second; }
+  /// -1 if unknown.
+  [[nodiscard]] std::int32_t find(std::int64_t number) const {
+    const auto it = map_.find(number);
+    return it == map_.end() ? -1 : it->second;
+  }
+  [[nodiscard]] std::size_t size() const { return map_.size(); }
+
+ private:
+  std::unordered_map<std::int64_t, std::int32_t> map_;
+};
+
+/// Add a cell whose nodes are already indices into the points. Throws through `at` for an unsupported volume cell.
+void add_cell(RawMesh& mesh, const CellType& type, std::int64_t number, std::span<const std::int32_t> nodes, const Cursor& at);
+
+/// Add cells in VTK's arrays: offsets[i] to offsets[i + 1] are the nodes of cell i. Numbers of cells and points start at the
+/// given ones.
+void append_vtk_cells(RawMesh& mesh, std::span<const std::int64_t> offsets, std::span<const std::int64_t> nodes,
+                      std::span<const std::int64_t> types, std::int64_t first_cell, std::int64_t first_point, const Cursor& at);
+
+RawMesh read_gmsh(const std::filesystem::path& file, std::string_view data);
+RawMesh read_vtk(const std::filesystem::path& file, std::string_view data);
+RawMesh read_vtu(const std::filesystem::path& file, std::string_view data);
+/// `node` and `ele` are the contents of the two files, whose names differ in the extension.
+RawMesh read_tetgen(const std::filesystem::path& base, std::string_view node, std::string_view ele);
+
+/// Gmsh 4.0 and 4.1, called by read_gmsh; `at` stands behind $Nodes or $Elements.
+void read_gmsh4_nodes(Cursor& at, bool v41, bool binary, RawMesh& mesh, NodeNumbers& numbers);
+void read_gmsh4_elements(Cursor& at, bool v41, bool binary, RawMesh& mesh, const NodeNumbers& numbers);
+
+/// Add one point of a format with explicit numbers; duplicates and non-finite coordinates are errors.
+void add_point(RawMesh& mesh, NodeNumbers& numbers, std::int64_t number, const Vec3d& x, const Cursor& at);
+/// Map the node numbers of one element; throws naming the element and the number that is unknown.
+std::int32_t node_of(const NodeNumbers& numbers, std::int64_t number, std::int64_t element, const Cursor& at);
+
+}  // namespace pliant::volume_file

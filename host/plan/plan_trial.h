@@ -1,0 +1,51 @@
+// The parts of host/plan/plan.cpp: the reference of a scene at rest, and one configuration measured against it.
+#pragma once
+#include <vector>
+
+#include "model/model.h"
+#include "plan/plan.h"
+
+namespace pliant::planning {
+
+/// Size of the body, for the spacing that gives about as many nodes as wanted: V / h^3 inside and A / 2 h^2 on the surface.
+struct Size {
+  double volume = 0;  ///< [m^3]
+  double area = 0;    ///< [m^2]
+};
+Size size_of(const Scene& scene);
+
+/// The scene at rest: the mean of three fine lattices. What a plane or a sphere holds changes with the lattice by a share of
+/// its spacing, and that is most of the difference between two fine lattices.
+struct Reference {
+  std::vector<Vec3d> u;    ///< displacements of the surface's vertices [m]
+  double norm = 0;         ///< square root of the sum of their squares [m]
+  double frequency = 0;    ///< of the slowest motion towards rest, by Rayleigh's quotient of the displacements [rad/s]
+  double uncertainty = 0;  ///< standard deviation of the three from their mean, relative
+  std::int64_t nodes = 0;  ///< of the finest
+  double seconds = 0;
+};
+/// Twice as many nodes again until the reference is known to half the tolerance, or the time is up.
+Reference make_reference(const Scene& scene, const Size& size, const PlanOptions& options);
+
+/// One configuration. Its scene is the base scene with another lattice, element and model.
+struct Trial {
+  Scene scene;
+  std::string what;  ///< "hex8, 2300 nodes"
+  std::string element, model;
+  std::int64_t nodes = 0, wanted_nodes = 0;
+  double spacing = 0, dt = 0;
+  double ms_per_step = 0, ms_per_frame = 0;
+  double error = -1, error_max = -1;               ///< relative to the reference; -1: not measured or not at rest
+  double predicted_error = -1, predicted_ms = -1;  ///< made before the measurement, -1: none was
+  std::string remark;
+};
+
+/// The base scene with this element and about this many nodes.
+Scene configured(const Scene& scene, const Size& size, ElementKind element, std::int64_t nodes);
+
+/// Steps of the loaded body, timed.
+void measure_time(Trial& trial, const PlanOptions& options);
+/// The body brought to rest, compared at the surface's vertices.
+void measure_error(Trial& trial, const Reference& reference, const PlanOptions& options);
+
+}  // namespace pliant::planning

@@ -1,0 +1,57 @@
+// A Program is a Model ready to run: the buffer table and the Schedule, the ordered passes of one step. It is built once and is
+// the same object for every backend.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "program/buffer.h"
+
+namespace pliant {
+
+/// An argument of a pass that changes from step to step: the index of the step inside the running batch.
+struct StepInBatch {};
+
+/// Arguments stand in the order of the kernel's parameters.
+using Arg = std::variant<BufferId, double, std::int32_t, StepInBatch>;
+inline Arg buffer_arg(BufferId id) { return Arg{std::in_place_index<0>, id}; }
+inline Arg real_arg(double value) { return Arg{std::in_place_index<1>, value}; }
+inline Arg int_arg(std::int32_t value) { return Arg{std::in_place_index<2>, value}; }
+inline Arg step_arg() { return Arg{StepInBatch{}}; }
+
+/// How a kernel's index space maps to work-items. It is a property of the kernel, not of the device: the device chooses lanes.
+enum class Shape {
+  lanes,   ///< one index per element or node, `count` a multiple of 16; a work-item takes LANES consecutive indices
+  items,   ///< one work-item per index, always scalar (short lists, bricks of irregular work)
+  bricks,  ///< one brick per index; a work-item takes a brick (16 lanes) or a row of 16 work-items takes it (1 lane)
+};
+
+/// One kernel launch of the Schedule.
+struct Pass {
+  std::string kernel;                                ///< the stem: file, kernel and twin share it
+  std::vector<std::pair<std::string, int>> defines;  ///< compile-time specialisation, e.g. {"LAW", 0}
+  std::vector<Arg> args;
+  Shape shape = Shape::lanes;
+  std::int64_t count = 0;
+  std::string label;             ///< for people, e.g. "liver: tet4 neo-hookean"
+  std::int64_t elements = 0;     ///< elements or nodes it advances, for reports
+  double bytes_per_element = 0;  ///< counted traffic, each datum once
+  double flops_per_element = 0;  ///< counted operations; an fma counts two
+  std::int32_t every = 1;        ///< runs in the steps of the whole run that are multiples of this (subcycling)
+  [[nodiscard]] bool runs_in(std::int64_t step) const { return step % every == 0; }
+};
+
+struct Program {
+  std::vector<Buffer> buffers;
+  std::vector<Pass> step;      ///< one time step
+  std::vector<Pass> force;     ///< R - F of the present configuration into node_force, without advancing
+  std::vector<Pass> status;    ///< once per batch: first fault of the batch into fault_summary
+  std::vector<Pass> surface;   ///< on demand: positions of the embedded surface
+  std::vector<BufferId> late;  ///< buffers (ascending) and passes `surface` that Backend::update leaves for last
+  [[nodiscard]] BufferId find(const std::string& name) const;  ///< -1 if absent
+  BufferId add(Buffer buffer);                                 ///< returns its id
+};
+
+}  // namespace pliant

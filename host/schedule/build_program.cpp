@@ -1,0 +1,171 @@
+#include "schedule/build_program.h"
+
+#include <algorithm>
+
+#include "schedule/kernel_cost.h"
+#include "schedule/program_builder.h"
+
+namespace pliant {
+
+ProgramBuilder::ProgramBuilder(const Model& model, const ProgramOptions& options)
+    : model_(model), options_(options), layout_(lay_out(model)), brick_corners_(brick_corners()) {}
+
+Program ProgramBuilder::build() {
+  add_shared_buffers();
+  add_surface();
+  add_pressure_passes();
+  for (std::size_t b = 0; b < model_.brick_batches.size(); ++b) add_bricks(model_.brick_batches[b]);
+  for (std::size_t b = 0; b < model_.tets.size(); ++b) add_tets(b);
+  for (std::size_t b = 0; b < model_.hexes.size(); ++b) add_hexes(b);
+  add_loads();
+  program_.force = program_.step;
+  for (std::size_t b = 0; b < model_.flsm.size(); ++b) add_flsm(b);
+  add_updates();
+  add_constraints();
+  add_status();
+  return std::move(program_);
+}
+
+void ProgramBuilder::add_shared_buffers() {
+  const auto slots = static_cast<std::size_t>(model_.slots);
+  std::vector<double> u(4 * slots), w(4 * slots);
+  for (std::size_t s = 0; s < slots; ++s) {
+    u[4 * s + 3] = model_.mass[s] > 0 ? 1 / model_.mass[s] : 0;
+    w[4 * s + 3] = 1;  // the decay per step: the host writes it once the step is known
+  }
+  for (const Constraint& c : model_.constraints) {
+    if (c.holds()) u[4 * static_cast<std::size_t>(c.slot) + 3] = 0;
+  }
+  node_u_ = add(make_reals("node_u", BufferType::real4, slots, BufferRole::state, "[slots]", "m, m, m, 1/kg",
+                           "node_update, brick_update, node_prescribe", std::move(u)));
+  node_w_ = add(make_reals("node_w", BufferType::real4, slots, BufferRole::state, "[slots]", "m, m, m, 1",
+                           "node_update, brick_update, node_prescribe", std::move(w)));
+  node_force_ = add(make_reals("node_force", BufferType::real4, slots, BufferRole::scratch, "[slots]", "N",
+                               "node_update, brick_update (FORCE_ONLY)"));
+  node_load_ = add(
+      make_reals("node_load", BufferType::real4, needs_load() ? slots : 1, BufferRole::scratch, "[slots]", "N", "node_load"));
+  if (has_list_elements()) {
+    const std::size_t numbers = static_cast<std::size_t>(layout_.corner_numbers) + 3 * PLIANT_TILE;
+    corner_ = add(make_reals("corner_force", BufferType::real, numbers, BufferRole::scratch, "[tiles][corners][3][16]", "N",
+                             "element kernels"));
+    program_.buffers[corner_].padding = -0.0;  // what the gather lists point to where a node has fewer corners than others
+  }
+  // The state to go back to when an element fails.
+  add(make_reals("last_u", BufferType::real4, slots, BufferRole::state, "[slots]", "m, m, m, 1/kg", "host"));
+  add(make_reals("last_w", BufferType::real4, slots, BufferRole::state, "[slots]", "m, m, m, 1", "host"));
+  fault_ = add(make_ints("fault", BufferRole::scratch, "[elements]", {}, std::max(layout_.faults, 1), "element kernels"));
+  summary_ = add(make_ints("fault_summary", BufferRole::scratch, "[256][2]", {}, 512, "fault_reduce"));
+  params_ = add(make_reals("step_params", BufferType::real, 8, BufferRole::control, "[8]", "s, m/s^2 (3), m (2)", "host"));
+  curves_ = add(make_reals("curve_value", BufferType::real,
+                           (static_cast<std::size_t>(options_.batch_steps) + 1) * model_.curves.size(), BufferRole::control,
+                           "[steps + 1][curves]", "1", "host"));
+}
+
+std::vector<std::pair<std::string, int>> ProgramBuilder::update_defines(int force_only) const {
+  return {{"FORCE_ONLY", force_only}, {"HAS_LOAD", needs_load() ? 1 : 0}, {"TEXTBOOK", textbook()}};
+}
+
+void ProgramBuilder::add_updates() {
+  if (model_.bricks > 0) {
+    const std::int64_t count = std::int64_t{model_.bricks} * PLIANT_BRICK_NODES;
+    for (const int force_only : {0, 1}) {
+      Pass pass{"brick_update",
+                update_defines(force_only),
+                {buffer_arg(node_u_), buffer_arg(node_w_), buffer_arg(brick_neighbor_), buffer_arg(brick_rows_),
+                 buffer_arg(brick_force_), buffer_arg(node_load_), buffer_arg(node_force_), buffer_arg(params_)},
+                Shape::lanes,
+                count,
+                "brick nodes",
+                count,
+                brick_update_bytes(needs_load()),
+                24};
+      (force_only ? program_.force : program_.step).push_back(std::move(pass));
+    }
+  }
+  if (has_list_nodes()) add_list_update();
+}
+
+void ProgramBuilder::add_list_update() {
+  const std::int32_t nodes = model_.list_end - model_.list_base;
+  std::vector<std::vector<std::int32_t>> corners(nodes);
+  const auto collect = [&](const auto& batches, const std::vector<BatchPlace>& places, int planes) {
+    for (std::size_t b = 0; b < batches.size(); ++b) {
+      for (std::size_t e = 0; e < batches[b].nodes.size(); ++e) {
+        for (std::size_t a = 0; a < batches[b].nodes[e].size(); ++a) {
+          const std::int32_t node = batches[b].nodes[e][a] - model_.list_base;
+          if (node >= 0) corners[node].push_back(corner_position(places[b], e, static_cast<int>(a), planes));
+        }
+      }
+    }
+  };
+  collect(model_.tets, layout_.tets, PLIANT_TET_FORCE_PLANES);
+  collect(model_.hexes, layout_.hexes, PLIANT_HEX_FORCE_PLANES);
+  GatherList list = pack_rows(corners, layout_.corner_numbers);
+  const double entries = double(list.index.size()) / nodes;
+  const auto offset_id = add(make_ints("gather_offset", BufferRole::constant, "[tiles + 1]", std::move(list.offset)));
+  const auto index_id = add(make_ints("gather_index", BufferRole::constant, "[rows][16]", std::move(list.index)));
+  for (const int force_only : {0, 1}) {
+    Pass pass{"node_update",
+              update_defines(force_only),
+              {buffer_arg(node_u_), buffer_arg(node_w_), buffer_arg(offset_id), buffer_arg(index_id), buffer_arg(corner_),
+               buffer_arg(node_load_), buffer_arg(node_force_), buffer_arg(params_), int_arg(model_.list_base)},
+              Shape::lanes,
+              nodes,
+              "list nodes",
+              nodes,
+              16 * entries + 64 + (needs_load() ? 16 : 0),
+              3 * entries + 21};
+    (force_only ? program_.force : program_.step).push_back(std::move(pass));
+  }
+}
+
+void ProgramBuilder::add_constraints() {
+  std::vector<std::int32_t> node, axes, curve;
+  std::vector<double> target;
+  for (const Constraint& c : model_.constraints) {
+    if (c.holds()) continue;  // no inverse mass: the update leaves it where it is
+    node.push_back(c.slot);
+    axes.push_back(c.axes);
+    curve.insert(curve.end(), c.curve.begin(), c.curve.end());
+    target.insert(target.end(), {c.target[0], c.target[1], c.target[2], 0.0});
+  }
+  if (node.empty()) return;
+  // Whole work-groups: what fills them up holds no component.
+  const std::size_t real_count = node.size(), count = (node.size() + 63) / 64 * 64;
+  node.resize(count, node.back());
+  axes.resize(count, 0);
+  curve.resize(3 * count, 0);
+  target.resize(4 * count, 0.0);
+  const auto node_id = add(make_ints("prescribed_node", BufferRole::constant, "[prescribed]", std::move(node)));
+  const auto axes_id = add(make_ints("prescribed_axes", BufferRole::constant, "[prescribed]", std::move(axes)));
+  const auto curve_id = add(make_ints("prescribed_curve", BufferRole::constant, "[prescribed][3]", std::move(curve)));
+  const auto target_id = add(make_reals("prescribed_target", BufferType::real4, count, BufferRole::constant, "[prescribed]",
+                                        "m", "model", std::move(target)));
+  program_.step.push_back(
+      {"node_prescribe",
+       {{"TEXTBOOK", textbook()}},
+       {buffer_arg(node_u_), buffer_arg(node_w_), buffer_arg(node_id), buffer_arg(axes_id), buffer_arg(curve_id),
+        buffer_arg(target_id), buffer_arg(curves_), int_arg(curve_count()), step_arg()},
+       Shape::items,
+       static_cast<std::int64_t>(count),
+       "prescribed nodes",
+       static_cast<std::int64_t>(real_count),
+       60,
+       9});
+}
+
+void ProgramBuilder::add_status() {
+  program_.status.push_back({"fault_reduce",
+                             {},
+                             {buffer_arg(fault_), buffer_arg(summary_), int_arg(layout_.faults)},
+                             Shape::items,
+                             256,
+                             "first fault",
+                             0,
+                             0,
+                             0});
+}
+
+Program build_program(const Model& model, const ProgramOptions& options) { return ProgramBuilder(model, options).build(); }
+
+}  // namespace pliant

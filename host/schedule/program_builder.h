@@ -1,0 +1,112 @@
+// How build_program works: the buffer table and the passes, topic by topic. Private to host/solver.
+#pragma once
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "schedule/build_program.h"
+#include "schedule/program_layout.h"
+
+namespace pliant {
+
+/// `count` elements of a real type; without `reals` they begin as zero.
+inline Buffer make_reals(std::string name, BufferType type, std::size_t count, BufferRole role, std::string shape,
+                         std::string unit, std::string producer, std::vector<double> reals = {}) {
+  return {std::move(name), type, count, role, std::move(shape), std::move(unit), std::move(producer), std::move(reals), {}};
+}
+
+/// The length is that of `ints`, or `count` where there are none.
+inline Buffer make_ints(std::string name, BufferRole role, std::string shape, std::vector<std::int32_t> ints,
+                        std::size_t count = 0, std::string producer = "model") {
+  const std::size_t n = ints.empty() ? count : ints.size();
+  return {std::move(name), BufferType::int32, n, role, std::move(shape), "1", std::move(producer), {}, std::move(ints)};
+}
+
+/// A gather list in rows of 16: for each tile of owners, as many rows as its fullest owner has entries, padded with `padding`.
+struct GatherList {
+  std::vector<std::int32_t> offset{0};
+  std::vector<std::int32_t> index;
+};
+
+/// One list of entries per owner; the owners are whole tiles.
+inline GatherList pack_rows(const std::vector<std::vector<std::int32_t>>& entries, std::int32_t padding) {
+  GatherList list;
+  for (std::size_t tile = 0; tile < entries.size() / PLIANT_TILE; ++tile) {
+    const auto* own = &entries[tile * PLIANT_TILE];
+    std::size_t rows = 0;
+    for (int l = 0; l < PLIANT_TILE; ++l) rows = std::max(rows, own[l].size());
+    for (std::size_t r = 0; r < rows; ++r) {
+      for (int l = 0; l < PLIANT_TILE; ++l) list.index.push_back(r < own[l].size() ? own[l][r] : padding);
+    }
+    list.offset.push_back(list.offset.back() + static_cast<std::int32_t>(rows));
+  }
+  return list;
+}
+
+/// Position in corner_force of the x component of a corner of element e of a batch.
+inline std::int32_t corner_position(const BatchPlace& place, std::size_t e, int corner, int planes) {
+  return place.corner_base + static_cast<std::int32_t>(tile_base(e, static_cast<std::size_t>(planes))) +
+         3 * corner * PLIANT_TILE;
+}
+
+/// Builds one Program: construct, then build() once. The order of the calls in build() is the order of the buffers and passes.
+class ProgramBuilder {
+ public:
+  /// Both must outlive the builder.
+  ProgramBuilder(const Model& model, const ProgramOptions& options);
+  Program build();
+
+ private:
+  /// Defined in build_program.cpp: what all batches share.
+  void add_shared_buffers();
+  void add_updates();
+  void add_list_update();
+  void add_constraints();
+  void add_status();
+  [[nodiscard]] std::vector<std::pair<std::string, int>> update_defines(int force_only) const;
+
+  /// Defined in program_elements.cpp: internal forces, one call per batch.
+  void add_bricks(const BrickBatch& b);
+  void add_tets(std::size_t index);
+  /// The two passes before the force of tet4anp; returns the buffer of nodal pressures.
+  BufferId add_averaging(std::size_t index, BufferId nodes_id, BufferId data_id, std::size_t count, const std::string& label);
+  void add_hexes(std::size_t index);
+
+  /// Defined in program_flsm.cpp: shape matching of one body, and the force on its interface.
+  void add_flsm(std::size_t index);
+
+  /// Defined in program_loads.cpp: the embedded surface and the external forces.
+  void add_surface();
+  void add_pressure_passes();
+  void add_loads();
+  void emit_loads(const std::vector<std::int32_t>& slots, std::vector<std::int32_t> offset, std::vector<double> force,
+                  std::vector<std::int32_t> curve, std::vector<std::int32_t> triangle, std::vector<double> weight,
+                  std::vector<std::int32_t> corner);
+  /// (slot, position in corner_force) of list hexahedra that touch brick nodes, in ascending order.
+  [[nodiscard]] std::vector<std::pair<std::int32_t, std::int32_t>> brick_corners() const;
+
+  BufferId add(Buffer buffer) { return program_.add(std::move(buffer)); }
+  [[nodiscard]] bool has_list_nodes() const { return model_.list_end > model_.list_base; }
+  [[nodiscard]] bool has_list_elements() const { return !model_.tets.empty() || !model_.hexes.empty(); }
+  [[nodiscard]] bool needs_load() const {
+    return !model_.forces.empty() || !model_.pressures.empty() || !brick_corners_.empty() || has_interface();
+  }
+  [[nodiscard]] bool has_interface() const {
+    return std::any_of(model_.flsm.begin(), model_.flsm.end(), [](const FlsmBatch& b) { return b.interface > 0; });
+  }
+  [[nodiscard]] int textbook() const { return options_.integrator == Integrator::textbook ? 1 : 0; }
+  [[nodiscard]] std::int32_t curve_count() const { return static_cast<std::int32_t>(model_.curves.size()); }
+
+  const Model& model_;
+  const ProgramOptions& options_;
+  ProgramLayout layout_;
+  std::vector<std::pair<std::int32_t, std::int32_t>> brick_corners_;  ///< needs layout_; found once, it goes over all hexahedra
+  Program program_;
+  BufferId node_u_ = -1, node_w_ = -1, node_force_ = -1, node_load_ = -1, corner_ = -1, fault_ = -1, summary_ = -1,
+           params_ = -1, curves_ = -1, surface_x_ = -1, pressure_ = -1, brick_neighbor_ = -1, brick_rows_ = -1,
+           brick_fill_ = -1, brick_force_ = -1, flsm_alpha_ = -1;
+};
+
+}  // namespace pliant

@@ -1,0 +1,103 @@
+// The methods of the sources that Pliant's cutting is compared with: removal of the crossed elements, decomposition of them
+// into smaller tetrahedra, and separation along existing faces. Each works on plain elements and makes a new mesh; the surface
+// of such a mesh is the boundary of its elements. docs/cutting.md says what each loses.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "cutting/blade/blade.h"
+#include "model/solid.h"
+#include "tearing/breaking.h"
+
+namespace pliant {
+
+/// A body as plain elements: tetrahedra, or hexahedra with their corners in bit order.
+struct PlainMesh {
+  std::vector<Vec3d> nodes;  ///< rest [m]
+  std::vector<std::array<std::int32_t, 4>> tets;
+  std::vector<std::array<std::int32_t, 8>> hexes;
+  std::vector<double> fill;  ///< per element: material over its volume
+};
+
+PlainMesh plain_mesh(const Solid& solid);
+/// Every hexahedron as its six Kuhn tetrahedra, in order; a mesh of tetrahedra as it is.
+PlainMesh kuhn_tetrahedra(const PlainMesh& mesh);
+/// The elements as a body ready for build_model(scene, solids), its surface their boundary. Nodes without an element are left
+/// out.
+Solid solid_of(const PlainMesh& mesh);
+
+/// Boundary triangles, outward.
+std::vector<std::array<std::int32_t, 3>> boundary_of(const PlainMesh& mesh);
+/// Mean ratio 12 (3 V)^(2/3) / (sum of squared edges) of a tetrahedron: 1 if regular, 0 if flat, negative if inverted.
+double tet_quality(const std::array<Vec3d, 4>& x);
+/// Mean length of the tetrahedra's edges [m].
+double mean_edge(const PlainMesh& mesh);
+/// 2 / the highest frequency of a single element [s] at rest: the stable step that can be counted on.
+double element_bound(const PlainMesh& mesh, const Material& material);
+
+/// Edges of a surface that are not used by exactly two triangles, once in each direction: 0 if it is closed.
+std::int64_t singular_edges(const std::vector<std::array<std::int32_t, 3>>& triangles);
+
+/// Figures of one mesh.
+struct MeshFigures {
+  std::int64_t elements = 0, nodes = 0;  ///< nodes that an element has
+  double material = 0;                   ///< volume of the elements, fill counted [m^3]
+  double enclosed = 0;                   ///< by the boundary [m^3]
+  double least_quality = 0;              ///< of the tetrahedra
+  std::int64_t singular_edges = 0;       ///< of the boundary
+  std::int32_t pieces = 0;               ///< sets of elements that share nodes
+  [[nodiscard]] bool closed() const { return singular_edges == 0; }
+};
+MeshFigures figures_of(const PlainMesh& mesh);
+
+/// What a method makes of a mesh.
+struct MethodResult {
+  PlainMesh mesh;
+  std::vector<std::int32_t> node_from;     ///< [nodes] node of the mesh before, -1: new on an edge or inside an element
+  std::vector<std::int32_t> element_from;  ///< [elements] element of the mesh before (after kuhn_tetrahedra, where it is used)
+  std::int64_t crossed = 0;                ///< elements (removal, decomposition) or faces (separation) that the sweep crosses
+  double distance = 0;                     ///< separation: mean distance of the cut's nodes from the sweep [m]
+  double distance_before = 0;              ///< the same before nodes were moved
+};
+
+/// Leave out every element that a triangle touches, with its mass.
+MethodResult remove_crossed(const PlainMesh& mesh, std::span<const SweepTriangle> sweep);
+
+/// Divide every tetrahedron with a crossed edge along its crossings, alike on both sides of a face (quadrilaterals along the
+/// diagonal at the lowest node), and part those that are completely cut; nodes on the cut are doubled. One corner or two
+/// against two: 4 or 6 tetrahedra; any other pattern: a fan around the element's centroid. Hexahedra are split by Kuhn first.
+MethodResult decompose_crossed(const PlainMesh& mesh, std::span<const SweepTriangle> sweep);
+
+struct SeparationOptions {
+  bool remesh = true;          ///< move the nodes of the cut onto the sweep
+  double least_quality = 0.2;  ///< a move may not make a tetrahedron worse than this, unless it was so before
+  /// With a law: of the faces that the sweep crosses only those that the physical criterion breaks too, by the stress of
+  /// `displacement` [nodes] [m] in `material`.
+  const BreakingLaw* law = nullptr;
+  const Material* material = nullptr;
+  std::span<const Vec3d> displacement;
+};
+
+/// Part the tetrahedra along existing faces: those between two elements whose centroids lie on different sides of the sweep.
+MethodResult separate_crossed(const PlainMesh& mesh, std::span<const SweepTriangle> sweep,
+                              const SeparationOptions& options = {});
+
+/// A face of a tetrahedron, kTetFaces[face] (cut_cell.h).
+struct TetFace {
+  std::int32_t tet = 0;
+  std::int8_t face = 0;
+  friend bool operator==(const TetFace&, const TetFace&) = default;
+};
+/// The face across which another tetrahedron lies, for each tetrahedron and face; tet -1 on the boundary.
+std::vector<std::array<TetFace, 4>> tet_neighbors(const std::vector<std::array<std::int32_t, 4>>& tets);
+
+/// A mesh parted at faces: `mesh` with `cut` faces ([tets], bit f; both sides) opened. Where tetrahedra at a node hang together
+/// through no face there, each part gets a node of its own; where they hang together at an edge only, the faces that hold the
+/// smaller part at one end of the edge are cut as well, and `cut` says so afterwards. Nodes of no cut face (and not in
+/// `touched`) stay as they are. Returns node_from of the nodes now.
+std::vector<std::int32_t> part_at_faces(std::vector<std::array<std::int32_t, 4>>& tets, std::size_t nodes,
+                                        std::vector<std::uint8_t>& cut, std::span<const std::int32_t> touched = {});
+
+}  // namespace pliant
