@@ -58,6 +58,7 @@ class RefBackend final : public Backend {
     info_.name = is_float ? "cpu" : "cpu:double";
     info_.device = processor_name();
     info_.kind = "reference";
+    info_.real_bytes = sizeof(Scalar);
     info_.platform = "Pliant";
     info_.version = is_float ? "C++ twins, float" : "C++ twins, double";
     info_.memory_bytes = options.memory_bytes != 0 ? options.memory_bytes : physical_memory();
@@ -73,48 +74,25 @@ class RefBackend final : public Backend {
   }
 
   void load(const Program& program) override {
-    check_memory(program.buffers, sizeof(Scalar), info_.max_buffer_bytes, info_.memory_bytes, info_.name);
-    const DefaultFloatEnvironment environment;
-    passes_.clear();
-    table_ = &program.buffers;
-    try {
-      storage_.clear();
-      storage_.resize(program.buffers.size());
-      for (std::size_t i = 0; i < storage_.size(); ++i) fill(program.buffers[i], storage_[i]);
-    } catch (const std::bad_alloc&) {
-      throw Error(ErrorCode::bad_input,
-                  fmt::format("out of memory while the scene's {} buffers were allocated", storage_.size()));
-    }
-    passes_.load(program, [this](const Pass& pass) { return prepare(pass); });
+    table_.load(program);
+    check_memory(table_, sizeof(Scalar), info_.max_buffer_bytes, info_.memory_bytes, info_.name);
+    bring(nullptr, program, storage_, passes_);
+    extension_.clear();
+    extension_passes_.clear();
   }
 
-  void update(const Program& loaded, const Program& next, const std::function<void()>& complete) override {
-    const DefaultFloatEnvironment environment;
-    passes_.clear();
-    table_ = &next.buffers;
-    try {
-      std::vector<Storage> old = std::move(storage_);
-      storage_.clear();
-      storage_.resize(next.buffers.size());
-      const auto bring = [&](std::size_t i) {
-        const Buffer& buffer = next.buffers[i];
-        const Buffer* before = find_same(loaded.buffers, buffer, i);
-        if (before == nullptr) return fill(buffer, storage_[i]);
-        storage_[i] = std::move(old[static_cast<std::size_t>(before - loaded.buffers.data())]);
-        patch(*before, buffer, storage_[i]);
-      };
-      const auto late = [&](std::size_t i) { return std::binary_search(next.late.begin(), next.late.end(), BufferId(i)); };
-      for (std::size_t i = 0; i < storage_.size(); ++i) {
-        if (!late(i)) bring(i);
-      }
-      if (complete != nullptr) complete();
-      check_memory(next.buffers, sizeof(Scalar), info_.max_buffer_bytes, info_.memory_bytes, info_.name);
-      for (const BufferId id : next.late) bring(id);
-    } catch (const std::bad_alloc&) {
-      throw Error(ErrorCode::bad_input,
-                  fmt::format("out of memory while the scene's {} buffers were allocated", next.buffers.size()));
-    }
-    passes_.load(next, [this](const Pass& pass) { return prepare(pass); });
+  void update(const Program& loaded, const Program& next) override {
+    table_.load(next);
+    extension_passes_.clear();  // its arguments were buffers of the old program; its own stay for extend()
+    check_memory(table_, sizeof(Scalar), info_.max_buffer_bytes, info_.memory_bytes, info_.name);
+    bring(&loaded, next, storage_, passes_);
+  }
+
+  void extend(const Program* before, const Program& extension) override {
+    check_extension(extension, storage_.size());
+    table_.extend(extension);
+    check_memory(table_, sizeof(Scalar), info_.max_buffer_bytes, info_.memory_bytes, info_.name);
+    bring(before, extension, extension_, extension_passes_);
   }
 
   void run(const std::vector<Pass>& passes, std::int32_t first, std::int32_t count, std::int64_t origin) override {
@@ -181,11 +159,13 @@ class RefBackend final : public Backend {
   void profile(bool on) override { profiling_ = on; }
   std::vector<PassTime> take_profile() override {
     std::vector<PassTime> times;
-    passes_.for_each([&](const Pass& pass, Prepared& p) {
-      if (p.launches > 0) times.push_back({pass.kernel, pass.label, p.seconds, p.launches});
-      p.seconds = 0;
-      p.launches = 0;
-    });
+    for (auto* table : {&passes_, &extension_passes_}) {
+      table->for_each([&](const Pass& pass, Prepared& p) {
+        if (p.launches > 0) times.push_back({pass.kernel, pass.label, p.seconds, p.launches});
+        p.seconds = 0;
+        p.launches = 0;
+      });
+    }
     return times;
   }
 
@@ -261,8 +241,33 @@ class RefBackend final : public Backend {
     }
   }
 
+  /// The buffers of `next` with their initial values, from those of `before` where there are some, and its passes.
+  void bring(const Program* before, const Program& next, std::vector<Storage>& storage, PassTable<Prepared>& passes) {
+    const DefaultFloatEnvironment environment;
+    passes.clear();
+    try {
+      std::vector<Storage> old = std::move(storage);
+      storage.clear();
+      storage.resize(next.buffers.size());
+      for (std::size_t i = 0; i < storage.size(); ++i) {
+        const Buffer& buffer = next.buffers[i];
+        const Buffer* same = before != nullptr ? find_same(before->buffers, buffer, i) : nullptr;
+        if (same == nullptr) {
+          fill(buffer, storage[i]);
+        } else {
+          storage[i] = std::move(old[static_cast<std::size_t>(same - before->buffers.data())]);
+          patch(*same, buffer, storage[i]);
+        }
+      }
+    } catch (const std::bad_alloc&) {
+      throw Error(ErrorCode::bad_input,
+                  fmt::format("out of memory while the scene's {} buffers were allocated", next.buffers.size()));
+    }
+    passes.load(next, [this](const Pass& pass) { return prepare(pass); });
+  }
+
   Prepared prepare(const Pass& pass) {
-    check_pass(pass, *table_);
+    check_pass(pass, table_.size());
     const ref::Twin twin = registry_.find(pass.kernel, pass.defines);
     const ref::TwinFunction<Scalar>* function = nullptr;
     if constexpr (std::is_same_v<Scalar, float>) {
@@ -303,7 +308,8 @@ class RefBackend final : public Backend {
   }
 
   Prepared& prepared(const Pass& pass) {
-    return passes_.get(pass, [this](const Pass& p) { return prepare(p); });
+    auto& table = extension_passes_.holds(pass) ? extension_passes_ : passes_;
+    return table.get(pass, [this](const Pass& p) { return prepare(p); });
   }
 
   void run_list(std::int32_t first, std::int32_t count) {
@@ -354,10 +360,11 @@ class RefBackend final : public Backend {
     });
   }
 
-  const Buffer& row(BufferId id) const { return (*table_)[static_cast<std::size_t>(id)]; }
+  const Buffer& row(BufferId id) const { return table_.row(id); }
   Storage& storage(BufferId id) {
-    check_id(id, storage_.size());
-    return storage_[static_cast<std::size_t>(id)];
+    check_id(id, storage_.size() + extension_.size());
+    const auto i = static_cast<std::size_t>(id);
+    return i < storage_.size() ? storage_[i] : extension_[i - storage_.size()];
   }
   Storage& storage(BufferId id, bool ints) {
     Storage& s = storage(id);
@@ -368,9 +375,9 @@ class RefBackend final : public Backend {
   BackendInfo info_;
   const ref::Registry& registry_;
   ref::ThreadPool pool_;
-  const std::vector<Buffer>* table_ = nullptr;
-  std::vector<Storage> storage_;
-  PassTable<Prepared> passes_;
+  BufferTable table_;
+  std::vector<Storage> storage_, extension_;
+  PassTable<Prepared> passes_, extension_passes_;
   std::vector<Prepared*> list_;
   bool profiling_ = false;
 };

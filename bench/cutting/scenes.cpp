@@ -17,7 +17,7 @@ constexpr double kFrame = 1.0 / 60;  // [s]
 
 void move_blades(Simulation& simulation, const std::vector<Blade>& blades, double time, std::vector<CutTimes>& changed,
                  std::vector<double>& frames) {
-  std::vector<BladePlace> begin, places;
+  std::vector<BladePose> begin, places;
   for (const Blade& blade : blades) {
     const double first = std::max(blade.start, blade.path.front()[0]), last = std::min(blade.end, blade.path.back()[0]);
     if (time < first || time >= last + kFrame) continue;

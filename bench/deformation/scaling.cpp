@@ -66,7 +66,7 @@ std::int64_t program_bytes(const Program& program, std::int64_t real_bytes) {
 
 /// Least time of a step by the machine's limits over `seconds`. Loads other programs into the backend.
 double fraction_of_limit(Backend& backend, const Program& program, double seconds) {
-  const std::int64_t real_bytes = backend.info().name == "cpu:double" ? 8 : 4;
+  const std::int64_t real_bytes = backend.info().real_bytes;
   double bytes = 0, flops = 0;
   for (const Pass& pass : program.step) {
     bytes += pass.bytes_per_element * static_cast<double>(pass.elements) * static_cast<double>(real_bytes) / 4;

@@ -87,7 +87,7 @@ void measure(const KernelsOptions& options, const std::string& element, const st
   simulation.advance(16 + static_cast<std::int64_t>(1.2 * std::cbrt(static_cast<double>(elements))));
   if (simulation.divergence()) throw Error(ErrorCode::diverged, simulation.divergence()->message());
   const std::string hash = fmt::format("{:016x}", simulation.hash());
-  const std::int64_t real_bytes = backend.info().name == "cpu:double" ? 8 : 4;
+  const std::int64_t real_bytes = backend.info().real_bytes;
   const std::int64_t footprint = program_bytes(simulation.program(), real_bytes);
   const Timing step = time_passes(backend, simulation.program().step);
   std::vector<Timing> passes;

@@ -12,7 +12,7 @@ Buffer numbers(const char* name, std::int64_t count) {
 }  // namespace
 
 double triad_bandwidth(Backend& backend, std::int64_t footprint) {
-  const std::int64_t bytes = backend.info().name == "cpu:double" ? 8 : 4;
+  const std::int64_t bytes = backend.info().real_bytes;
   const std::int64_t count = std::max<std::int64_t>(footprint / (3 * bytes) / 1024, 1) * 1024;
   Program program;
   const BufferId a = program.add(numbers("a", count)), b = program.add(numbers("b", count)),

@@ -204,7 +204,7 @@ Vec3d Tools::pull(const Grab& grab, Pull& state, const Vec3d& position, double t
 std::int32_t Tools::apply(Simulation& simulation) {
   follow(simulation.shared_model());
   std::map<GrabId, Grab> grabs;
-  std::vector<Simulation::HostForce> forces;
+  std::vector<HostForce> forces;
   {
     const std::lock_guard lock(mutex_);
     if (tool_) simulation.set_tool(*tool_);

@@ -2,7 +2,6 @@
 #pragma once
 #include <cstdint>
 #include <cstring>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,6 +21,8 @@ struct BackendInfo {
   std::uint64_t max_buffer_bytes = 0;  ///< largest single allocation
   int compute_units = 0;
   bool single_thread = false;  ///< computes on the caller's thread: better for small scenes
+  bool compiles = false;       ///< kernels are compiled when a program is loaded
+  int real_bytes = 4;          ///< of a real number: 4 or 8
   int lanes = 1;               ///< indices per work-item of a `lanes` pass
 };
 
@@ -36,18 +37,19 @@ class Backend {
  public:
   virtual ~Backend() = default;
   [[nodiscard]] virtual const BackendInfo& info() const = 0;
-  /// Compile what the program needs, allocate its buffers and upload their initial values. The program must outlive the use.
-  /// Throws Error (memory: needed and available; build failure: the log).
+  /// Compile what the program needs, allocate its buffers and upload their initial values. The program must outlive the use;
+  /// an extension of the one before is gone. Throws Error (memory: needed and available; build failure: the log).
   virtual void load(const Program& program) = 0;
   /// As load(next) after load(loaded), with the same bits in every buffer, but only what differs goes to the device: changed
-  /// ranges of constant buffers, and the initial values of what passes write. Buffers that grow get half as much again.
-  /// `complete` is called when only next.late is left, and may supply that; what it throws goes through, and the backend then
-  /// wants a load().
-  virtual void update(const Program& loaded, const Program& next, const std::function<void()>& complete = nullptr) {
+  /// ranges of constant buffers, and the initial values of what passes write. Buffers that grow get half as much again. After
+  /// an error the backend wants a load().
+  virtual void update(const Program& loaded, const Program& next) {
     (void)loaded;
-    if (complete != nullptr) complete();
     load(next);
   }
+  /// Load an extension (Program::first) beside the loaded program; `before`: the extension that it replaces, of which only what
+  /// differs goes to the device, or nullptr. An extension wants to be loaded again after load() or update().
+  virtual void extend(const Program* before, const Program& extension) = 0;
   /// Compile now what a program may need later, without loading it.
   virtual void compile(const Program& program) { (void)program; }
   /// Run `passes` for steps first .. first + count - 1 of the current batch, in order, without host synchronisation in between.

@@ -53,15 +53,15 @@ std::string bytes_text(std::uint64_t bytes) {
   return unit == 0 ? fmt::format("{} bytes", bytes) : fmt::format("{:.2f} {} ({} bytes)", value, units[unit], bytes);
 }
 
-void check_pass(const Pass& pass, const std::vector<Buffer>& buffers) {
+void check_pass(const Pass& pass, std::size_t buffers) {
   const auto fail = [&](const std::string& what) {
     throw Error(ErrorCode::internal, fmt::format("pass \"{}\" (kernel {}): {}", pass.label, pass.kernel, what));
   };
   for (std::size_t i = 0; i < pass.args.size(); ++i) {
     if (pass.args[i].index() != 0) continue;
     const BufferId id = std::get<0>(pass.args[i]);
-    if (id < 0 || static_cast<std::size_t>(id) >= buffers.size()) {
-      fail(fmt::format("argument {} names buffer {}, but the program has {} buffers", i, id, buffers.size()));
+    if (id < 0 || static_cast<std::size_t>(id) >= buffers) {
+      fail(fmt::format("argument {} names buffer {}, but the program has {} buffers", i, id, buffers));
     }
   }
   if (pass.count < 0 || pass.count > std::numeric_limits<std::int32_t>::max()) {
@@ -70,11 +70,18 @@ void check_pass(const Pass& pass, const std::vector<Buffer>& buffers) {
   if (pass.shape == Shape::lanes && pass.count % 16 != 0) fail(fmt::format("count {} is not a multiple of 16", pass.count));
 }
 
-void check_memory(const std::vector<Buffer>& buffers, std::size_t real_bytes, std::uint64_t max_buffer, std::uint64_t total,
+void check_extension(const Program& extension, std::size_t buffers) {
+  if (static_cast<std::size_t>(extension.first) == buffers) return;
+  throw Error(ErrorCode::internal,
+              fmt::format("an extension of a program of {} buffers cannot extend one of {}", extension.first, buffers));
+}
+
+void check_memory(const BufferTable& table, std::size_t real_bytes, std::uint64_t max_buffer, std::uint64_t total,
                   const std::string& device) {
   std::uint64_t needed = 0, largest = 0;
   const Buffer* largest_buffer = nullptr;
-  for (const Buffer& buffer : buffers) {
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const Buffer& buffer = table.row(static_cast<BufferId>(i));
     const std::uint64_t bytes = buffer_bytes(buffer, real_bytes);
     needed += bytes;
     if (bytes > largest) {

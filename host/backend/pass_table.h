@@ -1,5 +1,6 @@
 // What both backends need around a Program: pass equality, a table of prepared passes, and the memory check.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -19,12 +20,35 @@ std::string defines_text(const std::vector<std::pair<std::string, int>>& defines
 /// "1.50 GiB (1610612736 bytes)".
 std::string bytes_text(std::uint64_t bytes);
 
-/// Throws Error if an argument names no buffer of the table, if a size is impossible, or if `count` does not suit the shape.
-void check_pass(const Pass& pass, const std::vector<Buffer>& buffers);
+/// The rows of the loaded program and of its extension, by id. Both programs stay where they are.
+class BufferTable {
+ public:
+  void load(const Program& program) { parts_ = {&program, nullptr}; }
+  void extend(const Program& extension) { parts_[1] = &extension; }
+  void drop_extension() { parts_[1] = nullptr; }
+  [[nodiscard]] std::size_t size() const { return own() + (parts_[1] != nullptr ? parts_[1]->buffers.size() : 0); }
+  /// Buffers of the program itself.
+  [[nodiscard]] std::size_t own() const { return parts_[0] != nullptr ? parts_[0]->buffers.size() : 0; }
+  [[nodiscard]] const Buffer& row(BufferId id) const {
+    const auto i = static_cast<std::size_t>(id);
+    return i < own() ? parts_[0]->buffers[i] : parts_[1]->buffers.at(i - own());
+  }
+  [[nodiscard]] const std::array<const Program*, 2>& parts() const { return parts_; }
+
+ private:
+  std::array<const Program*, 2> parts_{};
+};
+
+/// Throws Error if an argument names none of the table's `buffers` buffers, if a size is impossible, or if `count` does not
+/// suit the shape.
+void check_pass(const Pass& pass, std::size_t buffers);
+
+/// Throws Error if an extension was built for a program of another number of buffers than the loaded one.
+void check_extension(const Program& extension, std::size_t buffers);
 
 /// Throws Error if a buffer is larger than `max_buffer` bytes or all together larger than `total` bytes: it says how much is
 /// needed, what there is, and which buffer is the largest. `real_bytes` is 4 or 8.
-void check_memory(const std::vector<Buffer>& buffers, std::size_t real_bytes, std::uint64_t max_buffer, std::uint64_t total,
+void check_memory(const BufferTable& table, std::size_t real_bytes, std::uint64_t max_buffer, std::uint64_t total,
                   const std::string& device);
 
 /// Every pass is prepared once. Those of the loaded program are found by their address, copies of them by value, and passes
@@ -40,9 +64,14 @@ class PassTable {
   template <class Make>
   void load(const Program& program, Make&& make) {
     clear();
-    for (const auto* list : {&program.step, &program.force, &program.status, &program.surface}) {
+    for (const auto* list : {&program.step, &program.force, &program.status}) {
       for (const Pass& pass : *list) by_address_.emplace(&pass, &by_value(pass, make));
     }
+  }
+  /// Whether it is a pass of the loaded program itself.
+  [[nodiscard]] bool holds(const Pass& pass) const {
+    const auto found = by_address_.find(&pass);
+    return found != by_address_.end() && same_pass(found->second->pass, pass);
   }
   template <class Make>
   Prepared& get(const Pass& pass, Make&& make) {

@@ -26,7 +26,7 @@ struct Options {
   PictureWords picture;
   std::optional<std::int64_t> steps, every;
   std::optional<double> seconds, dt;
-  bool hash = false, profile = false;
+  bool hash = false, deep_hash = false, profile = false;
 };
 
 void check(const Options& o) {
@@ -63,8 +63,8 @@ class Run {
     if (o_.profile) simulation_->backend().profile(true);
     Progress progress(!o_.common.quiet);
     RunLoop loop(*simulation_, end());
-    const std::int64_t total = equilibrium_before_ ? 0 : loop.remaining();
-    if (!equilibrium_before_) {
+    const std::int64_t total = converged() ? 0 : loop.remaining();
+    if (!converged()) {
       result_ = loop.run(
           every, [&] { frames_->write(*simulation_); },
           [&](std::int64_t done) { progress.show(done, total, fmt::format("t = {:.4g} s", simulation_->time())); });
@@ -123,19 +123,14 @@ class Run {
 
   void resume(const Checkpoint& saved) {
     restore_checkpoint(*simulation_, saved, o_.resume);
-    const auto relaxation = saved.host_state.find("relaxation");
-    if (relaxation != saved.host_state.end() && relaxation->second.size() == 2) {
-      equilibrium_before_ = relaxation->second[0] != 0;
-      residual_before_ = relaxation->second[1];
-    }
     o_.common.note(
         fmt::format("resumed at step {} (t = {:.6g} s) from {}", simulation_->step(), simulation_->time(), o_.resume));
-    if (equilibrium_before_) o_.common.note("the checkpoint is at equilibrium: nothing is left to do");
+    if (converged()) o_.common.note("the checkpoint is at equilibrium: nothing is left to do");
   }
 
   [[nodiscard]] bool relaxes() const { return simulation_->scene().relaxation.enabled; }
-  [[nodiscard]] bool converged() const { return equilibrium_before_ || simulation_->at_equilibrium(); }
-  [[nodiscard]] double residual() const { return result_.steps > 0 ? simulation_->residual() : residual_before_; }
+  [[nodiscard]] bool converged() const { return simulation_->at_equilibrium(); }
+  [[nodiscard]] double residual() const { return simulation_->residual(); }
 
   [[nodiscard]] RunEnd end() const {
     RunEnd end;
@@ -158,11 +153,7 @@ class Run {
     return std::max<std::int64_t>(1, std::llround(1.0 / 60 / simulation_->dt()));  // a viewer then plays in real time
   }
 
-  [[nodiscard]] Checkpoint checkpoint() const {
-    Checkpoint c = take_checkpoint(*simulation_);
-    if (relaxes()) c.host_state["relaxation"] = {converged() ? 1.0 : 0.0, residual()};
-    return c;
-  }
+  [[nodiscard]] Checkpoint checkpoint() const { return take_checkpoint(*simulation_); }
 
   /// Save the last good state, report, and leave with the divergence's exit code.
   int diverged() {
@@ -192,6 +183,7 @@ class Run {
               {"simulated_seconds", simulated},
               {"ms_per_step", result_.ms_per_step},
               {"hash", hash},
+              {"deep_hash", hash_text(s.deep_hash())},
               {"diverged", !result_.diverged.empty()},
               {"step", s.step()},
               {"time", s.time()},
@@ -207,6 +199,7 @@ class Run {
     if (o_.profile) json["profile"] = profile();
     if (o_.hash && o_.common.quiet && o_.common.json != "-") fmt::print("{}\n", hash);
     o_.common.print("hash " + hash);
+    if (o_.deep_hash) o_.common.print("deep hash " + hash_text(s.deep_hash()));
     o_.common.write(json);
   }
 
@@ -245,8 +238,7 @@ class Run {
   std::optional<Simulation> simulation_;
   std::optional<FrameWriter> frames_;
   RunResult result_;
-  double first_time_ = 0, residual_before_ = 0;
-  bool equilibrium_before_ = false;
+  double first_time_ = 0;
 };
 
 }  // namespace
@@ -264,6 +256,8 @@ std::function<int()> setup_run(CLI::App& app) {
   o->picture.add_to(app);
   app.add_option("--checkpoint", o->checkpoint, "Save the last state")->type_name("FILE");
   app.add_option("--resume", o->resume, "Go on from a saved state of the same scene")->type_name("FILE");
+  app.add_flag("--deep-hash", o->deep_hash,
+               "Also print the hash of all that decides what comes: model, state buffers and run state");
   app.add_flag("--hash", o->hash, "Print the hash of the last state, with --quiet as the only output");
   app.add_flag("--profile", o->profile, "Time every pass on the device; this slows a run down");
   o->common.add_to(app);

@@ -4,8 +4,10 @@
 #include <chrono>
 #include <utility>
 
-#include "edits/cut_state.h"
 #include "model/boundary_conditions.h"
+#include "schedule/build_program.h"
+#include "schedule/surface_program.h"
+#include "simulation/coupling.h"
 
 namespace pliant {
 namespace {
@@ -19,78 +21,85 @@ double lap(double& start) {
 
 }  // namespace
 
-ModelSwap::ModelSwap(Simulation& simulation, std::vector<double> u, CutReport& report)
-    : s_(simulation), report_(report), start_(now()), old_model_(s_.model_), old_u_(std::move(u)) {
-  old_w_ = s_.backend_->read_reals(s_.w_);
-  for (std::size_t b = 0; b < s_.scene_.bodies.size(); ++b) {
-    v_.push_back(s_.velocities_from(old_w_, b));
-  }
+ModelSwap::ModelSwap(RunContext& run, HostLoads& loads, EditedBodies& bodies, std::vector<double> u, CutReport& report)
+    : run_(run),
+      loads_(loads),
+      bodies_(bodies),
+      report_(report),
+      start_(now()),
+      old_model_(run.loaded.shared_model()),
+      old_u_(std::move(u)),
+      old_w_(run.loaded.w()) {
+  for (std::size_t b = 0; b < bodies.size(); ++b) v_.push_back(run.velocities(old_w_, b));
 }
 
-/// Most of a surface stays as it is.
-void ModelSwap::keep_surface(Program& program) {
-  if (s_.cuts_ == nullptr || s_.scene_.bodies.size() != 1) return;
-  const ModelBody &body = model_->bodies[0], &before = s_.model_->bodies[0];
+/// Most of a surface stays as it is, if real nodes keep their slots.
+bool ModelSwap::keeps_surface() const {
+  if (bodies_.size() != 1 || bodies_.find_cut(0) == nullptr || bodies_.uncut(0).lattice == nullptr) return false;
+  const ModelBody &body = model_->bodies[0], &before = old_model_->bodies[0];
   const std::int32_t first = before.virtual_nodes.first;
-  const auto real = first < 0 ? before.slot.size() : static_cast<std::size_t>(first);
-  if (!std::equal(before.slot.begin(), before.slot.begin() + static_cast<std::ptrdiff_t>(real), body.slot.begin())) return;
-  for (const char* name : {"surface_rest", "surface_node", "surface_weight"}) {
-    Buffer& from = s_.program_.buffers[s_.program_.find(name)];  // nobody looks at its values again: changed is known
-    Buffer& to = program.buffers[program.find(name)];
-    to.reals = std::move(from.reals);
-    to.ints = std::move(from.ints);
-  }
-  model_->surface = s_.cuts_->surface_copy.take(*s_.model_);
-  kept_ = true;
+  const auto real = static_cast<std::ptrdiff_t>(first < 0 ? before.slot.size() : static_cast<std::size_t>(first));
+  return !origins_[0].from.empty() && std::equal(before.slot.begin(), before.slot.begin() + real, body.slot.begin());
 }
 
-void ModelSwap::take_surfaces(std::span<const Solid* const> solids, const std::function<void()>& ready) {
+void ModelSwap::take_surfaces(const std::vector<const Solid*>& solids, const std::function<void()>& ready) {
+  if (kept_) model_->surface = bodies_.surface_copy.take(*old_model_);
   ready();
   report_.surface += lap(start_);
   if (kept_) changes_ = &solids[0]->changes.value();  // every edit of a lattice lists them
   add_surfaces(solids, *model_, changes_);
 }
 
-void ModelSwap::run(std::span<const Solid* const> solids, std::vector<NodeOrigins> origins,
-                    const std::function<void()>& ready) {
+void ModelSwap::run(const Scene& scene, std::vector<NodeOrigins> origins, const std::function<void()>& ready) {
   origins_ = std::move(origins);
-  model_ = std::make_shared<Model>(build_elements(s_.scene_, solids, s_.model_.get()));
-  // What only the surface needs comes last: it takes longest to make.
-  const bool follows = !needs_surface(s_.scene_) && !s_.program_.surface.empty();
-  if (!follows) {
-    report_.model += lap(start_);
-    take_surfaces(solids, ready);
-  }
-  add_boundary_conditions(s_.scene_, *model_);
-  Program program = build_program(*model_, {s_.scene_.integrator, s_.batch_steps_, follows});
-  new_u_ = program.buffers[program.find("node_u")].reals;
-  new_w_ = program.buffers[program.find("node_w")].reals;
-  if (follows && solids[0]->lattice != nullptr) keep_surface(program);
-  report_.model += lap(start_);
-  s_.model_ = model_;
-  // The buffers of the state are sent once, as they go on, and begin as always for whoever asks for the program.
-  const auto exchange_state = [&](Program& of) {
-    of.buffers[of.find("node_u")].reals.swap(new_u_);
-    of.buffers[of.find("node_w")].reals.swap(new_w_);
-  };
+  const std::vector<const Solid*> solids = bodies_.solids();
+  model_ = std::make_shared<Model>(build_elements(scene, solids, old_model_.get()));
+  kept_ = keeps_surface();
+  // A surface takes longest to make: it comes last unless loads ask for it.
+  const bool first = needs_surface(scene);
   try {
-    carry_motion();
-    exchange_state(program);
-    s_.install(std::move(program), [&] {
-      report_.upload += lap(start_);
-      if (!follows) return;
-      take_surfaces(solids, ready);
-      set_surface(model_->surface, s_.program_, changes_);
+    if (first) {
       report_.model += lap(start_);
-    });
+      take_surfaces(solids, ready);
+    }
+    load_steps(scene);
+    if (!first) {
+      take_surfaces(solids, ready);
+      report_.model += lap(start_);
+    }
+    load_surface();
   } catch (...) {
     restore();
     throw;
   }
-  exchange_state(s_.program_);
-  s_.upload_shape_matching();
-  s_.state_.vectors.erase("kept");  // copies of the old model's buffers
-  s_.state_.vectors["topology_version"] = {static_cast<double>(++s_.topology_version_)};
+  upload_coupling(run_);
+  run_.state.kept.reset();  // copies of the old model's buffers
+  if (!run_.state.forces.empty()) loads_.upload();
+  report_.upload += lap(start_);
+}
+
+void ModelSwap::load_steps(const Scene& scene) {
+  add_boundary_conditions(scene, *model_);
+  Program program = build_program(*model_, {scene.integrator, run_.settings.batch_steps});
+  Buffer &u = program.at(program.find("node_u")), &w = program.at(program.find("node_w"));
+  new_u_ = u.reals;
+  new_w_ = w.reals;
+  report_.model += lap(start_);
+  carry_motion();
+  // The buffers of the state are sent once, as they go on, and begin as always for whoever asks for the program.
+  u.reals.swap(new_u_);
+  w.reals.swap(new_w_);
+  run_.loaded.update(model_, std::move(program));
+  run_.loaded.reset_initial_state(std::move(new_u_), std::move(new_w_));
+  report_.upload += lap(start_);
+}
+
+void ModelSwap::load_surface() {
+  Program before = run_.loaded.take_surface();
+  Program surface = surface_program(model_->surface, run_.loaded.program(), &before, changes_);
+  const bool patched = std::any_of(surface.buffers.begin(), surface.buffers.end(),
+                                   [](const Buffer& buffer) { return buffer.changed.has_value(); });
+  run_.loaded.update_surface(std::move(surface), patched);
   report_.upload += lap(start_);
 }
 
@@ -107,22 +116,25 @@ void ModelSwap::carry_motion() {
     for (std::size_t n = 0; n < slots.size(); ++n) {
       const auto slot = static_cast<std::size_t>(slots[n]);
       const double* moved = &old_u_[4 * static_cast<std::size_t>(old_slots[origins.of(n)])];
-      const double step = s_.substeps_of(slot) * s_.state_.dt;
+      const double step = substeps_of(*model_, slot) * run_.state.clock.dt;
       for (std::size_t c = 0; c < 3; ++c) {
         new_u_[4 * slot + c] = moved[c];
         new_w_[4 * slot + c] = step * velocity[n][c];
       }
     }
   }
-  for (std::size_t slot = 0; slot < model_->mass.size(); ++slot) new_w_[4 * slot + 3] = s_.decay(slot);
+  for (std::size_t slot = 0; slot < model_->mass.size(); ++slot) new_w_[4 * slot + 3] = run_.decay(*model_, slot);
 }
 
 void ModelSwap::restore() {
-  s_.model_ = old_model_;
-  s_.load_program();
-  s_.backend_->write_reals(s_.u_, old_u_);
-  s_.backend_->write_reals(s_.w_, old_w_);
-  s_.upload_shape_matching();
+  Program program = build_program(*old_model_, {run_.scene.integrator, run_.settings.batch_steps});
+  Program surface = surface_program(old_model_->surface, program);
+  run_.loaded.load(old_model_, std::move(program), std::move(surface));
+  run_.loaded.write_u(old_u_);
+  run_.loaded.write_w(old_w_);
+  upload_coupling(run_);
+  if (!run_.state.forces.empty()) loads_.upload();
+  run_.state.kept.reset();  // its copies are gone
 }
 
 }  // namespace pliant

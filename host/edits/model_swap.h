@@ -1,12 +1,13 @@
-// Replaces the model of a running simulation by that of its bodies after a cut or a tear. Private to host/solver.
+// Replaces the model of a running simulation by that of its bodies after an edit. Private to host/edits.
 #pragma once
 #include <functional>
 #include <memory>
-#include <span>
 #include <vector>
 
-#include "model/solid.h"
-#include "simulation/simulation.h"
+#include "edits/cut_report.h"
+#include "edits/edited_bodies.h"
+#include "simulation/host_loads.h"
+#include "simulation/run_context.h"
 
 namespace pliant {
 
@@ -23,23 +24,27 @@ struct NodeOrigins {
   [[nodiscard]] std::size_t of(std::size_t node) const { return from.empty() ? node : static_cast<std::size_t>(from[node]); }
 };
 
-/// Every node keeps its displacement, and its momentum goes where its mass goes. Construct and run() once.
+/// Every node keeps its displacement, and its momentum goes where its mass goes. Construct, edit the bodies, and run() once.
 class ModelSwap {
  public:
   /// `u`: what node_u holds. Adds its times to `report`.
-  ModelSwap(Simulation& simulation, std::vector<double> u, CutReport& report);
-  /// `solids`: the bodies as edited; their surfaces may still be in the making until `ready` returns, which may throw. Throws
-  /// with the old model back in place.
-  void run(std::span<const Solid* const> solids, std::vector<NodeOrigins> origins, const std::function<void()>& ready);
+  ModelSwap(RunContext& run, HostLoads& loads, EditedBodies& bodies, std::vector<double> u, CutReport& report);
+  /// `scene`: with its operational regions as they are to be. The bodies' surfaces may still be in the making until `ready`
+  /// returns, which may throw. Throws with the old model back in place.
+  void run(const Scene& scene, std::vector<NodeOrigins> origins, const std::function<void()>& ready);
 
  private:
-  void keep_surface(Program& program);
+  [[nodiscard]] bool keeps_surface() const;
   /// Wait for the surfaces, and put them into the model.
-  void take_surfaces(std::span<const Solid* const> solids, const std::function<void()>& ready);
+  void take_surfaces(const std::vector<const Solid*>& solids, const std::function<void()>& ready);
+  void load_steps(const Scene& scene);
+  void load_surface();
   void carry_motion();
   void restore();
 
-  Simulation& s_;
+  RunContext& run_;
+  HostLoads& loads_;
+  EditedBodies& bodies_;
   CutReport& report_;
   double start_;
   std::shared_ptr<const Model> old_model_;

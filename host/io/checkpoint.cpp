@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <bit>
 #include <cstring>
 #include <fstream>
 #include <string_view>
@@ -11,14 +10,14 @@
 #include "pliant/error.h"
 #include "program/hash.h"
 
-// Layout: "PLIANTCK", u32 version, u32 zero, u64 length of the whole file, then u64 scene hash, string name, string real type,
-// i64 step, f64 time, f64 dt, u64 groups {string, u64 n, n f64}, u64 buffers {string, u64 n, n bytes}, u64 hash of all before.
-// A string is a u64 length and its bytes.
+// Layout: "PLIANTCK", u32 version, u32 zero, u64 length of the whole file, then u64 model hash, string name, string real type,
+// string run state (run_state.h), u64 buffers {string, u64 n, n bytes}, u64 hash of all before. A string is a u64 length and
+// its bytes.
 namespace pliant {
 namespace {
 
 constexpr std::string_view kMagic = "PLIANTCK";
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr std::size_t kHead = 24;
 constexpr std::size_t kTail = 8;
 
@@ -30,8 +29,6 @@ void put(std::string& out, std::string_view text) {
   put(out, static_cast<std::uint64_t>(text.size()));
   out += text;
 }
-
-void put_real(std::string& out, double value) { put(out, std::bit_cast<std::uint64_t>(value)); }
 
 std::uint64_t get(std::string_view data, std::size_t at, int bytes = 8) {
   std::uint64_t value = 0;
@@ -50,7 +47,6 @@ class Reader {
     at_ += 8;
     return value;
   }
-  double real(const char* what) { return std::bit_cast<double>(number(what)); }
   /// A number of items that need at least `size` bytes each.
   std::size_t count(std::size_t size, const char* what) {
     const std::uint64_t n = number(what);
@@ -131,29 +127,22 @@ void check_frame(const std::filesystem::path& file, std::string_view data) {
 
 }  // namespace
 
-void write_checkpoint(const std::filesystem::path& file, const Checkpoint& c) {
-  if (c.real_type != "float" && c.real_type != "double") {
+void write_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint) {
+  const Snapshot& s = checkpoint.snapshot;
+  if (s.real_type != "float" && s.real_type != "double") {
     throw Error(ErrorCode::internal,
-                fmt::format("checkpoint '{}': real type '{}' is neither float nor double", file.string(), c.real_type));
+                fmt::format("checkpoint '{}': real type '{}' is neither float nor double", file.string(), s.real_type));
   }
   std::string out(kMagic);
   put(out, kVersion, 4);
   put(out, 0, 4);
   put(out, 0);
-  put(out, c.scene_hash);
-  put(out, c.scene_name);
-  put(out, c.real_type);
-  put(out, static_cast<std::uint64_t>(c.step));
-  put_real(out, c.time);
-  put_real(out, c.dt);
-  put(out, static_cast<std::uint64_t>(c.host_state.size()));
-  for (const auto& [name, values] : c.host_state) {
-    put(out, name);
-    put(out, static_cast<std::uint64_t>(values.size()));
-    for (const double v : values) put_real(out, v);
-  }
-  put(out, static_cast<std::uint64_t>(c.buffers.size()));
-  for (const NamedBytes& b : c.buffers) {
+  put(out, s.model_hash);
+  put(out, checkpoint.scene_name);
+  put(out, s.real_type);
+  put(out, write_state(s.state));
+  put(out, static_cast<std::uint64_t>(s.buffers.size()));
+  for (const NamedBytes& b : s.buffers) {
     put(out, b.name);
     put(out, std::string_view(reinterpret_cast<const char*>(b.bytes.data()), b.bytes.size()));
   }
@@ -169,28 +158,25 @@ Checkpoint read_checkpoint(const std::filesystem::path& file) {
   check_frame(file, data);
   Reader in(file, std::string_view(data).substr(0, data.size() - kTail));
   Checkpoint c;
-  c.scene_hash = in.number("the scene hash");
+  Snapshot& s = c.snapshot;
+  s.model_hash = in.number("the model hash");
   c.scene_name = in.bytes("bytes of scene name");
-  c.real_type = in.bytes("bytes of real type");
-  if (c.real_type != "float" && c.real_type != "double") {
+  s.real_type = in.bytes("bytes of real type");
+  if (s.real_type != "float" && s.real_type != "double") {
     throw Error(ErrorCode::bad_input,
-                fmt::format("'{}' is damaged: real type '{}' is neither float nor double", file.string(), c.real_type));
+                fmt::format("'{}' is damaged: real type '{}' is neither float nor double", file.string(), s.real_type));
   }
-  c.step = static_cast<std::int64_t>(in.number("the step"));
-  c.time = in.real("the time");
-  c.dt = in.real("the time step");
-  for (std::size_t groups = in.count(16, "groups of host state"); groups > 0; --groups) {
-    std::string name(in.bytes("bytes of a group's name"));
-    std::vector<double> values(in.count(8, "values of host state"));
-    for (double& v : values) v = in.real("a value of host state");
-    c.host_state.emplace(std::move(name), std::move(values));
+  try {
+    s.state = read_state(std::string(in.bytes("bytes of the run state")));
+  } catch (const Error& error) {
+    throw Error(error.code(), fmt::format("'{}' is damaged: {}", file.string(), error.what()));
   }
   for (std::size_t buffers = in.count(16, "buffers"); buffers > 0; --buffers) {
     NamedBytes b;
     b.name = in.bytes("bytes of a buffer's name");
     const std::string_view bytes = in.bytes("bytes of a buffer");
     b.bytes.assign(bytes.begin(), bytes.end());
-    c.buffers.push_back(std::move(b));
+    s.buffers.push_back(std::move(b));
   }
   in.end();
   return c;

@@ -37,6 +37,7 @@ class OpenclBackend final : public Backend {
         queue_(context_, device, cl_command_queue_properties{0}),
         kernels_(context_, device, all_files(options), where_),
         local_size_(options.local_size) {
+    info_.compiles = true;
     if (options.lanes != 0) info_.lanes = options.lanes;
     if (options.memory_bytes != 0) info_.memory_bytes = options.memory_bytes;
     if (options.max_buffer_bytes != 0) info_.max_buffer_bytes = options.max_buffer_bytes;
@@ -51,58 +52,40 @@ class OpenclBackend final : public Backend {
   }
 
   void load(const Program& program) override {
-    check_memory(program.buffers, sizeof(float), info_.max_buffer_bytes, info_.memory_bytes, where_);
+    table_.load(program);
+    check_memory(table_, sizeof(float), info_.max_buffer_bytes, info_.memory_bytes, where_);
     finish();
     events_.clear();
     passes_.clear();
+    extension_passes_.clear();
     memory_.clear();
-    table_ = &program.buffers;
-    const DefaultFloatEnvironment environment;
-    opencl::Upload upload(queue_);
-    for (const Buffer& buffer : program.buffers) {
-      guarded(ErrorCode::bad_input, place(buffer), [&] {
-        memory_.push_back(opencl::load_memory(context_, upload, buffer));
-        upload.finish();
-      });
-    }
-    passes_.load(program, [this](const Pass& pass) { return prepare(pass); });
-    finish();
+    extension_.clear();
+    bring(nullptr, program, memory_, passes_);
   }
 
-  void update(const Program& loaded, const Program& next, const std::function<void()>& complete) override {
+  void update(const Program& loaded, const Program& next) override {
     finish();
     collect_events();
-    keep_kernels();
-    table_ = &next.buffers;
-    const DefaultFloatEnvironment environment;
-    std::vector<opencl::DeviceMemory> old = std::move(memory_);
-    memory_.clear();
-    memory_.resize(next.buffers.size());
-    opencl::Upload upload(queue_);
-    const auto bring = [&](std::size_t i) {
-      const Buffer& buffer = next.buffers[i];
-      const Buffer* before = find_same(loaded.buffers, buffer, i);
-      opencl::DeviceMemory memory;
-      if (before != nullptr) memory = old[static_cast<std::size_t>(before - loaded.buffers.data())];
-      guarded(ErrorCode::bad_input, place(buffer), [&] {
-        memory_[i] = opencl::patch_memory(context_, upload, {before, &buffer, info_.max_buffer_bytes}, memory);
-      });
-    };
-    const auto late = [&](std::size_t i) { return std::binary_search(next.late.begin(), next.late.end(), BufferId(i)); };
-    for (std::size_t i = 0; i < memory_.size(); ++i) {
-      if (!late(i)) bring(i);
-    }
-    if (complete != nullptr) complete();
-    check_memory(next.buffers, sizeof(float), info_.max_buffer_bytes, info_.memory_bytes, where_);
-    for (const BufferId id : next.late) bring(static_cast<std::size_t>(id));
-    guarded(ErrorCode::internal, where_, [&] { upload.finish(); });
-    passes_.load(next, [this](const Pass& pass) { return prepare(pass); });
-    spare_kernels_.clear();
+    keep_kernels(passes_);
+    keep_kernels(extension_passes_);  // its arguments were buffers of the old program; its own stay for extend()
+    table_.load(next);
+    check_memory(table_, sizeof(float), info_.max_buffer_bytes, info_.memory_bytes, where_);
+    bring(&loaded, next, memory_, passes_);
+  }
+
+  void extend(const Program* before, const Program& extension) override {
     finish();
+    collect_events();
+    keep_kernels(extension_passes_);
+    check_extension(extension, memory_.size());
+    table_.extend(extension);
+    check_memory(table_, sizeof(float), info_.max_buffer_bytes, info_.memory_bytes, where_);
+    bring(before, extension, extension_, extension_passes_);
+    spare_kernels_.clear();
   }
 
   void compile(const Program& program) override {
-    for (const auto* passes : {&program.step, &program.force, &program.status, &program.surface}) {
+    for (const auto* passes : {&program.step, &program.force, &program.status}) {
       for (const Pass& pass : *passes) kernels_.make(pass.kernel, pass.defines, pass.shape == Shape::items ? 1 : info_.lanes);
     }
   }
@@ -172,11 +155,13 @@ class OpenclBackend final : public Backend {
     finish();
     collect_events();
     std::vector<PassTime> times;
-    passes_.for_each([&](const Pass& pass, Prepared& p) {
-      if (p.launches > 0) times.push_back({pass.kernel, pass.label, p.seconds, p.launches});
-      p.seconds = 0;
-      p.launches = 0;
-    });
+    for (auto* table : {&passes_, &extension_passes_}) {
+      table->for_each([&](const Pass& pass, Prepared& p) {
+        if (p.launches > 0) times.push_back({pass.kernel, pass.label, p.seconds, p.launches});
+        p.seconds = 0;
+        p.launches = 0;
+      });
+    }
     return times;
   }
 
@@ -207,11 +192,11 @@ class OpenclBackend final : public Backend {
   using KernelKey = std::pair<std::string, std::vector<std::pair<std::string, int>>>;
 
   /// Making kernel objects takes longer than setting their arguments.
-  void keep_kernels() {
-    passes_.for_each([&](const Pass& pass, Prepared& p) {
+  void keep_kernels(PassTable<Prepared>& passes) {
+    passes.for_each([&](const Pass& pass, Prepared& p) {
       spare_kernels_.emplace(KernelKey{pass.kernel, pass.defines}, std::move(p.kernel));
     });
-    passes_.clear();
+    passes.clear();
   }
   cl::Kernel make_kernel(const Pass& pass, int lanes) {
     const auto spare = spare_kernels_.find({pass.kernel, pass.defines});
@@ -221,8 +206,34 @@ class OpenclBackend final : public Backend {
     return kernel;
   }
 
+  /// The buffers of `next` with their initial values, from those of `before` where there are some, and its passes.
+  void bring(const Program* before, const Program& next, std::vector<opencl::DeviceMemory>& memory,
+             PassTable<Prepared>& passes) {
+    const DefaultFloatEnvironment environment;
+    std::vector<opencl::DeviceMemory> old = std::move(memory);
+    memory.clear();
+    memory.resize(next.buffers.size());
+    opencl::Upload upload(queue_);
+    for (std::size_t i = 0; i < memory.size(); ++i) {
+      const Buffer& buffer = next.buffers[i];
+      const Buffer* same = before != nullptr ? find_same(before->buffers, buffer, i) : nullptr;
+      guarded(ErrorCode::bad_input, place(buffer), [&] {
+        if (same == nullptr) {
+          memory[i] = opencl::load_memory(context_, upload, buffer);
+          if (before == nullptr) upload.finish();  // what does not fit is told with its name
+        } else {
+          memory[i] = opencl::patch_memory(context_, upload, {same, &buffer, info_.max_buffer_bytes},
+                                           old[static_cast<std::size_t>(same - before->buffers.data())]);
+        }
+      });
+    }
+    guarded(ErrorCode::internal, where_, [&] { upload.finish(); });
+    passes.load(next, [this](const Pass& pass) { return prepare(pass); });
+    finish();
+  }
+
   Prepared prepare(const Pass& pass) {
-    check_pass(pass, *table_);
+    check_pass(pass, table_.size());
     const int lanes = pass.shape == Shape::items ? 1 : info_.lanes;
     Prepared p;
     p.where = fmt::format("pass \"{}\" (kernel {}{}{}) on {}", pass.label, pass.kernel, pass.defines.empty() ? "" : ", ",
@@ -253,7 +264,8 @@ class OpenclBackend final : public Backend {
   }
 
   Prepared& prepared(const Pass& pass) {
-    return passes_.get(pass, [this](const Pass& p) { return prepare(p); });
+    auto& table = extension_passes_.holds(pass) ? extension_passes_ : passes_;
+    return table.get(pass, [this](const Pass& p) { return prepare(p); });
   }
 
   void enqueue(Prepared& p, cl_int step) {
@@ -305,17 +317,21 @@ class OpenclBackend final : public Backend {
   template <class T>
   void write(BufferId id, const std::vector<T>& values) {
     check_size(row(id), values.size());
-    memory_[static_cast<std::size_t>(id)].written = true;
+    device_memory(id).written = true;
     if (values.empty()) return;
     guarded(ErrorCode::internal, where_,
             [&] { queue_.enqueueWriteBuffer(memory(id), CL_TRUE, 0, values.size() * sizeof(T), values.data()); });
   }
 
   const Buffer& row(BufferId id) const {
-    check_id(id, memory_.size());
-    return (*table_)[static_cast<std::size_t>(id)];
+    check_id(id, table_.size());
+    return table_.row(id);
   }
-  cl::Buffer& memory(BufferId id) { return memory_[static_cast<std::size_t>(id)].buffer; }
+  opencl::DeviceMemory& device_memory(BufferId id) {
+    const auto i = static_cast<std::size_t>(id);
+    return i < memory_.size() ? memory_[i] : extension_.at(i - memory_.size());
+  }
+  cl::Buffer& memory(BufferId id) { return device_memory(id).buffer; }
 
   BackendInfo info_;
   const std::string where_;
@@ -324,10 +340,10 @@ class OpenclBackend final : public Backend {
   cl::CommandQueue queue_;
   opencl::KernelCache kernels_;
   const int local_size_;
-  const std::vector<Buffer>* table_ = nullptr;
-  std::vector<opencl::DeviceMemory> memory_;
+  BufferTable table_;
+  std::vector<opencl::DeviceMemory> memory_, extension_;
   std::multimap<KernelKey, cl::Kernel> spare_kernels_;
-  PassTable<Prepared> passes_;
+  PassTable<Prepared> passes_, extension_passes_;
   std::vector<Prepared*> list_;
   std::vector<Timed> events_;
   bool profiling_ = false;

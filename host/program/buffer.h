@@ -44,6 +44,7 @@ struct Buffer {
   /// Where the initial values differ from those that the program before had, if that is known; ascending. What lies beyond the
   /// end of those need not be in it.
   std::optional<std::vector<ValueRange>> changed = std::nullopt;
+  BufferId copy_of = -1;  ///< the state buffer whose last good values this one keeps
 
   /// Numbers of four (or, in a double backend, eight) bytes.
   [[nodiscard]] std::size_t values() const { return type == BufferType::real4 ? 4 * count : count; }

@@ -6,14 +6,14 @@ namespace pliant {
 
 BufferId Program::find(const std::string& name) const {
   for (std::size_t i = 0; i < buffers.size(); ++i) {
-    if (buffers[i].name == name) return static_cast<BufferId>(i);
+    if (buffers[i].name == name) return first + static_cast<BufferId>(i);
   }
   return -1;
 }
 
 BufferId Program::add(Buffer buffer) {
   buffers.push_back(std::move(buffer));
-  return static_cast<BufferId>(buffers.size()) - 1;
+  return first + static_cast<BufferId>(buffers.size()) - 1;
 }
 
 }  // namespace pliant

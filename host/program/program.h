@@ -44,14 +44,17 @@ struct Pass {
 };
 
 struct Program {
+  /// Number of its first buffer. 0: a program that runs by itself. Otherwise it extends the program of so many buffers that is
+  /// loaded: its passes may use the buffers of both.
+  BufferId first = 0;
   std::vector<Buffer> buffers;
-  std::vector<Pass> step;      ///< one time step
-  std::vector<Pass> force;     ///< R - F of the present configuration into node_force, without advancing
-  std::vector<Pass> status;    ///< once per batch: first fault of the batch into fault_summary
-  std::vector<Pass> surface;   ///< on demand: positions of the embedded surface
-  std::vector<BufferId> late;  ///< buffers (ascending) and passes `surface` that Backend::update leaves for last
+  std::vector<Pass> step;    ///< one time step; of an extension: all that it does
+  std::vector<Pass> force;   ///< R - F of the present configuration into node_force, without advancing
+  std::vector<Pass> status;  ///< once per batch: first fault of the batch into fault_summary
   [[nodiscard]] BufferId find(const std::string& name) const;  ///< -1 if absent
   BufferId add(Buffer buffer);                                 ///< returns its id
+  [[nodiscard]] Buffer& at(BufferId id) { return buffers.at(static_cast<std::size_t>(id - first)); }
+  [[nodiscard]] const Buffer& at(BufferId id) const { return buffers.at(static_cast<std::size_t>(id - first)); }
 };
 
 }  // namespace pliant

@@ -23,7 +23,15 @@ Program ProgramBuilder::build() {
   add_updates();
   add_constraints();
   add_status();
+  for (Buffer& buffer : program_.buffers) {
+    if (buffer.name.starts_with("last_")) buffer.copy_of = kept_by(buffer.name.substr(5));
+  }
   return std::move(program_);
+}
+
+/// The buffer that "last_NAME" keeps.
+BufferId ProgramBuilder::kept_by(const std::string& name) const {
+  return program_.find(name == "u" ? "node_u" : name == "w" ? "node_w" : name);
 }
 
 void ProgramBuilder::add_shared_buffers() {

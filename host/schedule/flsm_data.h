@@ -1,4 +1,4 @@
-// A batch of shape matching as its buffers hold it. Private to host/solver.
+// A batch of shape matching as its buffers hold it. Private to host/schedule.
 #pragma once
 #include <cstdint>
 #include <vector>

@@ -1,4 +1,4 @@
-// How build_program works: the buffer table and the passes, topic by topic. Private to host/solver.
+// How build_program works: the buffer table and the passes, topic by topic. Private to host/schedule.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -65,6 +65,7 @@ class ProgramBuilder {
   void add_list_update();
   void add_constraints();
   void add_status();
+  [[nodiscard]] BufferId kept_by(const std::string& name) const;
   [[nodiscard]] std::vector<std::pair<std::string, int>> update_defines(int force_only) const;
 
   /// Defined in program_elements.cpp: internal forces, one call per batch.
@@ -77,7 +78,7 @@ class ProgramBuilder {
   /// Defined in program_flsm.cpp: shape matching of one body, and the force on its interface.
   void add_flsm(std::size_t index);
 
-  /// Defined in program_loads.cpp: the embedded surface and the external forces.
+  /// Defined in program_loads.cpp: the external forces, and the embedded surface where a pressure acts on it.
   void add_surface();
   void add_pressure_passes();
   void add_loads();

@@ -35,12 +35,12 @@ ProgramLayout lay_out(const Model& model) {
   return layout;
 }
 
-FaultPlace find_fault(const Model& model, std::int32_t index) {
+FaultLocation find_fault(const Model& model, std::int32_t index) {
   if (index < model.bricks * PLIANT_BRICK_NODES) {
     return {model.brick_body[index / PLIANT_BRICK_NODES], model.brick_cell[index]};
   }
   const ProgramLayout layout = lay_out(model);
-  FaultPlace found;
+  FaultLocation found;
   const auto look = [&](const auto& batches, const std::vector<BatchPlace>& places) {
     for (std::size_t b = 0; b < batches.size(); ++b) {
       const std::int32_t local = index - places[b].fault_base;

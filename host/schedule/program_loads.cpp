@@ -1,92 +1,19 @@
-// Buffers and passes of the embedded surface and of the external forces: pressure, nodal forces, corners on brick nodes.
+// Buffers and passes of the external forces: pressure, nodal forces, corners on brick nodes.
 #include <algorithm>
 #include <numeric>
 #include <tuple>
 
 #include "schedule/program_builder.h"
+#include "schedule/surface_program.h"
 
 namespace pliant {
 
-namespace {
-
-/// The values of the tiles in which vertices lie, `width` for each vertex.
-std::vector<ValueRange> tiles_of(const std::vector<std::int32_t>& vertices, std::size_t width) {
-  std::vector<ValueRange> ranges;
-  for (const std::int32_t v : vertices) {
-    const std::size_t tile = static_cast<std::size_t>(v) / PLIANT_TILE * PLIANT_TILE;
-    if (ranges.empty() || ranges.back().last <= width * tile) {
-      ranges.push_back({width * tile, width * (tile + PLIANT_TILE)});
-    }
-  }
-  return ranges;
-}
-
-}  // namespace
-
 void ProgramBuilder::add_surface() {
-  if (model_.surface.rest.empty() && !options_.surface_follows) return;
-  const auto rest = add(make_reals("surface_rest", BufferType::real4, 0, BufferRole::constant, "[vertices]", "m", "model"));
-  const auto node = add(make_ints("surface_node", BufferRole::constant, "[tiles][8][16]", {}));
-  const auto weight =
-      add(make_reals("surface_weight", BufferType::real, 0, BufferRole::constant, "[tiles][8][16]", "1", "model"));
-  surface_x_ = add(make_reals("surface_x", BufferType::real4, 0, BufferRole::scratch, "[vertices]", "m", "surface_position"));
-  program_.surface.push_back(
-      {"surface_position",
-       {{"WIDTH", 8}},
-       {buffer_arg(node_u_), buffer_arg(rest), buffer_arg(node), buffer_arg(weight), buffer_arg(surface_x_)},
-       Shape::lanes,
-       0,
-       "surface"});
-  if (options_.surface_follows) {
-    program_.late = {rest, node, weight, surface_x_};
-  } else {
-    set_surface(model_.surface, program_);
-  }
-}
-
-void set_surface(const ModelSurface& s, Program& program, const SurfaceChanges* changes) {
-  const std::size_t count = padded(s.rest.size());
-  const bool single = std::all_of(s.weights.begin(), s.weights.end(), [](const auto& w) { return w[0] == 1 && w[1] == 0; });
-  const std::size_t width = single ? 1 : 8;
-  const BufferId first = program.find("surface_rest");
-  Buffer &rest = program.buffers[first], &node = program.buffers[first + 1], &weight = program.buffers[first + 2];
-  rest.count = program.buffers[first + 3].count = count;
-  node.count = weight.count = width * count;
-  const auto place = [&](std::size_t v) {
-    std::copy(s.rest[v].begin(), s.rest[v].end(), &rest.reals[4 * v]);
-    for (std::size_t a = 0; a < width; ++a) weight.reals[tile_base(v, width) + a * PLIANT_TILE] = s.weights[v][a];
-  };
-  const auto hang = [&](std::size_t v) {
-    for (std::size_t a = 0; a < width; ++a) node.ints[tile_base(v, width) + a * PLIANT_TILE] = s.nodes[v][a];
-  };
-  if (changes == nullptr || single) {
-    rest.reals.assign(4 * count, 0.0);
-    weight.reals.assign(weight.count, 0.0);
-    node.ints.assign(node.count, 0);
-    for (std::size_t v = 0; v < s.rest.size(); ++v) {
-      place(v);
-      hang(v);
-    }
-    if (changes != nullptr) {
-      rest.changed = {{0, rest.values()}};
-      weight.changed = node.changed = {{0, weight.count}};
-    }
-  } else {
-    rest.reals.resize(4 * count, 0.0);
-    weight.reals.resize(weight.count, 0.0);
-    node.ints.resize(node.count, 0);
-    for (const std::int32_t v : changes->vertices) place(static_cast<std::size_t>(v));
-    for (const std::int32_t v : changes->hung) hang(static_cast<std::size_t>(v));
-    rest.changed = tiles_of(changes->vertices, 4);
-    weight.changed = tiles_of(changes->vertices, width);
-    node.changed = tiles_of(changes->hung, width);
-  }
-  Pass& pass = program.surface.front();
-  pass.defines = {{"WIDTH", static_cast<int>(width)}};
-  pass.count = static_cast<std::int64_t>(count);
-  pass.elements = static_cast<std::int64_t>(s.rest.size());
-  pass.bytes_per_element = static_cast<double>(32 + width * 24);
-  pass.flops_per_element = static_cast<double>(6 * width + 3);
+  if (model_.pressures.empty()) return;  // nothing in a step asks for it
+  Program surface = surface_program(model_.surface, program_);
+  for (Buffer& buffer : surface.buffers) add(std::move(buffer));
+  program_.step = std::move(surface.step);
+  surface_x_ = program_.find("surface_x");
 }
 
 void ProgramBuilder::add_pressure_passes() {
@@ -109,7 +36,6 @@ void ProgramBuilder::add_pressure_passes() {
   const auto curve_id = add(make_ints("pressure_curve", BufferRole::constant, "[triangles]", std::move(curve)));
   pressure_ =
       add(make_reals("pressure_force", BufferType::real4, count, BufferRole::scratch, "[triangles]", "N", "pressure_force"));
-  program_.step.push_back(program_.surface.front());
   program_.step.push_back({"pressure_force",
                            {},
                            {buffer_arg(surface_x_), buffer_arg(triangle_id), buffer_arg(value_id), buffer_arg(curve_id),

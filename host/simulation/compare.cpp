@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "pliant/error.h"
+#include "program/hash.h"
 
 namespace pliant {
 namespace {
@@ -150,11 +151,12 @@ class Lockstep {
              fmt::format("{}", vb));
       return false;
     };
-    const SimulationState& sa = a_.state();
-    const SimulationState& sb = b_.state();
-    return same("host: dt", sa.dt, sb.dt) && same("host: stable_dt", sa.stable_dt, sb.stable_dt) &&
-           same("host: damping", sa.damping, sb.damping) &&
-           same("host: step", static_cast<double>(sa.step), static_cast<double>(sb.step)) &&
+    const RunState &sa = a_.state(), &sb = b_.state();
+    return same("host: dt", sa.clock.dt, sb.clock.dt) && same("host: stable_dt", sa.limit.stable_dt, sb.limit.stable_dt) &&
+           same("host: damping", sa.relaxation.damping, sb.relaxation.damping) &&
+           same("host: step", static_cast<double>(sa.clock.step), static_cast<double>(sb.clock.step)) &&
+           same("host: run state", static_cast<double>(hash_bytes(write_state(sa)) >> 11),
+                static_cast<double>(hash_bytes(write_state(sb)) >> 11)) &&
            same("host: diverged", a_.divergence().has_value(), b_.divergence().has_value()) &&
            same("host: at_equilibrium", a_.at_equilibrium(), b_.at_equilibrium());
   }

@@ -1,9 +1,10 @@
-// The stable step 2 / omega_max of the present configuration.
+#include "simulation/stable_step.h"
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
-#include "simulation/simulation.h"
+#include "simulation/coupling.h"
 
 namespace pliant {
 namespace {
@@ -29,20 +30,18 @@ double ritz_deficit(std::size_t unknowns, int steps) {
 
 }  // namespace
 
-/// Lanczos iteration on M^-1 K in the norm of M. K v is a difference of two force evaluations on the backend itself: every
-/// element, law and constraint is in it, at the present deformation.
-/// The springs between interface nodes and their goals are no part of a force evaluation and are given: `spring` [1/s^2] per
-/// slot, empty: none.
-double Simulation::largest_omega2(const std::vector<double>& spring, int iterations) {
-  const std::vector<double>& mass = model_->mass;
-  const std::vector<double> u = backend_->read_reals(u_);
-  const std::vector<double> rest_force = forces_now();
-  const std::size_t n = free_.size();
+double largest_omega2(const RunContext& run, const std::vector<double>& spring, int iterations) {
+  LoadedModel& loaded = run.loaded;
+  const std::vector<double>& mass = run.model().mass;
+  const std::vector<char>& is_free = loaded.free();
+  const std::vector<double> u = loaded.u();
+  const std::vector<double> rest_force = run.forces_now();
+  const std::size_t n = is_free.size();
   std::vector<double> v(n, 0), before(n, 0), probe = u;
   double norm = 0;
   std::size_t unknowns = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    if (!free_[i]) continue;
+    if (!is_free[i]) continue;
     v[i] = noise(i);
     norm += mass[i / 3] * v[i] * v[i];
     ++unknowns;
@@ -56,20 +55,20 @@ double Simulation::largest_omega2(const std::vector<double>& spring, int iterati
       x *= unit;
       largest = std::max(largest, std::abs(x));
     }
-    const double size = kStrain * model_->shortest / largest;
+    const double size = kStrain * run.model().shortest / largest;
     for (std::size_t i = 0; i < n; ++i) probe[4 * (i / 3) + i % 3] = u[4 * (i / 3) + i % 3] + size * v[i];
-    backend_->write_reals(u_, probe);
-    backend_->run(program_.force, 0, 1);
-    const std::vector<double> force = backend_->read_reals(force_);
+    loaded.write_u(probe);
+    run.backend().run(loaded.program().force, 0, 1);
+    const std::vector<double> force = loaded.force();
     double projection = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      if (!free_[i]) continue;
+      if (!is_free[i]) continue;
       projection += v[i] * (rest_force[4 * (i / 3) + i % 3] - force[4 * (i / 3) + i % 3]) / size;
       if (!spring.empty()) projection += mass[i / 3] * spring[i / 3] * v[i] * v[i];
     }
     norm = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      if (!free_[i]) continue;
+      if (!is_free[i]) continue;
       const std::size_t t = 4 * (i / 3) + i % 3;
       const double own = projection - (spring.empty() ? 0 : spring[i / 3]);
       const double next = (rest_force[t] - force[t]) / size / mass[i / 3] - own * v[i] - (k > 0 ? beta.back() * before[i] : 0);
@@ -81,7 +80,7 @@ double Simulation::largest_omega2(const std::vector<double>& spring, int iterati
     beta.push_back(std::sqrt(norm));
     if (!(beta.back() > 1e-6 * std::abs(projection))) break;  // the whole space is spanned
   }
-  backend_->write_reals(u_, u);
+  loaded.write_u(u);
   if (alpha.empty() || !std::isfinite(beta.back())) return 0;
   const auto size = static_cast<Eigen::Index>(alpha.size());
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
@@ -92,20 +91,20 @@ double Simulation::largest_omega2(const std::vector<double>& spring, int iterati
   return omega2;
 }
 
-double Simulation::estimate_stable_dt(int iterations) {
-  state_.stable_dt = elements_dt_ = 0;
-  const double omega2 = largest_omega2({}, iterations);
-  if (!(omega2 > 0)) return 0;
-  elements_dt_ = 2 / std::sqrt(omega2);
-  state_.stable_dt = coupled_step(elements_dt_);
-  const std::vector<double> spring = interface_springs(state_.stable_dt);
+StableStep estimate_stable_step(const RunContext& run, int iterations) {
+  StableStep step;
+  const double omega2 = largest_omega2(run, {}, iterations);
+  if (!(omega2 > 0)) return step;
+  step.elements = 2 / std::sqrt(omega2);
+  step.coupled = coupled_step(run.model(), step.elements);
+  const std::vector<double> spring = interface_springs(run.model(), step.coupled);
   if (!spring.empty()) {
     // Springs soften as the step grows, so what the springs of a shorter step allow is allowed.
-    const double coupled = largest_omega2(spring, iterations);
-    if (coupled > 0) state_.stable_dt = std::max(state_.stable_dt, 2 / std::sqrt(coupled));
-    state_.stable_dt = std::min(state_.stable_dt, held_goals_step(elements_dt_));
+    const double coupled = largest_omega2(run, spring, iterations);
+    if (coupled > 0) step.coupled = std::max(step.coupled, 2 / std::sqrt(coupled));
+    step.coupled = std::min(step.coupled, held_goals_step(run.model(), step.elements));
   }
-  return state_.stable_dt;
+  return step;
 }
 
 }  // namespace pliant

@@ -10,6 +10,7 @@
 #include "api/world_impl.h"
 #include "backends/backends.h"
 #include "pliant/world.h"
+#include "support/forwarding_backend.h"
 
 namespace pliant::test {
 
@@ -71,30 +72,26 @@ inline std::vector<Vec4f> positions(World& world) {
   return {frame->positions.begin(), frame->positions.end()};
 }
 
-/// Hands everything on to another backend until `left` runs are used up, and then fails like a device that is gone.
-class FaultyBackend final : public Backend {
+/// Works until `left` runs are used up, and then fails like a device that is gone.
+class FaultyBackend final : public ForwardingBackend {
  public:
   FaultyBackend(std::unique_ptr<Backend> inner, std::shared_ptr<std::atomic<int>> left)
-      : inner_(std::move(inner)), left_(std::move(left)) {}
-  [[nodiscard]] const BackendInfo& info() const override { return inner_->info(); }
-  void load(const Program& program) override { inner_->load(program); }
+      : ForwardingBackend(std::move(inner)), left_(std::move(left)) {}
   void run(const std::vector<Pass>& passes, std::int32_t first, std::int32_t count, std::int64_t origin) override {
     use();
-    inner_->run(passes, first, count, origin);
+    ForwardingBackend::run(passes, first, count, origin);
   }
   void run(const Pass& pass, std::int32_t step) override {
     use();
-    inner_->run(pass, step);
+    ForwardingBackend::run(pass, step);
   }
-  void finish() override { inner_->finish(); }
-  void copy(BufferId from, BufferId to) override { inner_->copy(from, to); }
-  std::vector<double> read_reals(BufferId id) override { return alive(), inner_->read_reals(id); }
-  std::vector<std::int32_t> read_ints(BufferId id) override { return alive(), inner_->read_ints(id); }
-  void write_reals(BufferId id, const std::vector<double>& values) override { inner_->write_reals(id, values); }
-  void write_ints(BufferId id, const std::vector<std::int32_t>& values) override { inner_->write_ints(id, values); }
-  std::vector<std::uint8_t> read_bytes(BufferId id) override { return alive(), inner_->read_bytes(id); }
-  void profile(bool on) override { inner_->profile(on); }
-  std::vector<PassTime> take_profile() override { return inner_->take_profile(); }
+  std::vector<double> read_reals(BufferId id) override { return alive(), ForwardingBackend::read_reals(id); }
+  std::vector<std::int32_t> read_ints(BufferId id) override { return alive(), ForwardingBackend::read_ints(id); }
+  std::vector<std::uint8_t> read_bytes(BufferId id) override { return alive(), ForwardingBackend::read_bytes(id); }
+  void read_into(BufferId id, void* out) override {
+    alive();
+    ForwardingBackend::read_into(id, out);
+  }
 
  private:
   void alive() const {
@@ -104,7 +101,6 @@ class FaultyBackend final : public Backend {
     alive();
     --*left_;
   }
-  std::unique_ptr<Backend> inner_;
   std::shared_ptr<std::atomic<int>> left_;
 };
 

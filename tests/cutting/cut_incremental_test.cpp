@@ -10,6 +10,7 @@
 #include "pliant/error.h"
 #include "simulation/compare.h"
 #include "solver/scenes.h"
+#include "support/forwarding_backend.h"
 
 namespace pliant {
 namespace {
@@ -101,35 +102,22 @@ TEST(CutIncremental, surfaces_with_loads_and_of_several_bodies_are_patched_too) 
   expect_patched_as_fresh(scene, "cpu", size);
 }
 
-/// Hands everything on, but an update fails where it is told to.
-class FailingUpdates final : public Backend {
+/// An update fails where it is told to.
+class FailingUpdates final : public test::ForwardingBackend {
  public:
   enum class Where { nowhere, at_first, after_the_surface };
   FailingUpdates(std::unique_ptr<Backend> inner, std::shared_ptr<Where> where)
-      : inner_(std::move(inner)), where_(std::move(where)) {}
-  [[nodiscard]] const BackendInfo& info() const override { return inner_->info(); }
-  void load(const Program& program) override { inner_->load(program); }
-  void update(const Program& loaded, const Program& next, const std::function<void()>& complete) override {
+      : ForwardingBackend(std::move(inner)), where_(std::move(where)) {}
+  void update(const Program& loaded, const Program& next) override {
     if (*where_ == Where::at_first) throw Error(ErrorCode::device, "gone");
-    inner_->update(loaded, next, complete);
-    if (*where_ == Where::after_the_surface) throw Error(ErrorCode::device, "gone");
+    ForwardingBackend::update(loaded, next);
   }
-  void run(const std::vector<Pass>& passes, std::int32_t first, std::int32_t count, std::int64_t origin) override {
-    inner_->run(passes, first, count, origin);
+  void extend(const Program* before, const Program& extension) override {
+    ForwardingBackend::extend(before, extension);
+    if (*where_ == Where::after_the_surface && before != nullptr) throw Error(ErrorCode::device, "gone");
   }
-  void run(const Pass& pass, std::int32_t step) override { inner_->run(pass, step); }
-  void finish() override { inner_->finish(); }
-  void copy(BufferId from, BufferId to) override { inner_->copy(from, to); }
-  std::vector<double> read_reals(BufferId id) override { return inner_->read_reals(id); }
-  std::vector<std::int32_t> read_ints(BufferId id) override { return inner_->read_ints(id); }
-  void write_reals(BufferId id, const std::vector<double>& values) override { inner_->write_reals(id, values); }
-  void write_ints(BufferId id, const std::vector<std::int32_t>& values) override { inner_->write_ints(id, values); }
-  std::vector<std::uint8_t> read_bytes(BufferId id) override { return inner_->read_bytes(id); }
-  void profile(bool on) override { inner_->profile(on); }
-  std::vector<PassTime> take_profile() override { return inner_->take_profile(); }
 
  private:
-  std::unique_ptr<Backend> inner_;
   std::shared_ptr<Where> where_;
 };
 

@@ -247,11 +247,11 @@ TEST(CutRun, nodes_of_a_cut_are_damped_like_others) {
 TEST(CutRun, blades_that_move_together_make_one_edit) {
   const Scene scene = scene_with(box_body("box", {0.06, 0.03, 0.03}));
   Simulation together(scene, open_backend("cpu")), apart(scene, open_backend("cpu"));
-  const auto at = [](const char* name, double x, double y) { return BladePlace{name, {{{x, y, -1}, {x, y, 1}}}}; };
+  const auto at = [](const char* name, double x, double y) { return BladePose{name, {{{x, y, -1}, {x, y, 1}}}}; };
   for (const double y : {-1.0, 1.0}) {
-    const std::vector<BladePlace> places{at("a", 0.021, y), at("b", 0.041, y)};
+    const std::vector<BladePose> places{at("a", 0.021, y), at("b", 0.041, y)};
     EXPECT_EQ(together.move_blades(places).changed, y > 0);
-    for (const BladePlace& p : places) EXPECT_EQ(apart.move_blade(p.blade, p.segment).changed, y > 0);
+    for (const BladePose& p : places) EXPECT_EQ(apart.move_blade(p.blade, p.segment).changed, y > 0);
   }
   EXPECT_EQ(together.topology_version(), 1);
   EXPECT_EQ(apart.topology_version(), 2);

@@ -21,16 +21,25 @@ using test::TempFolder;
 
 Checkpoint sample() {
   Checkpoint c;
-  c.scene_hash = 0x0123456789abcdefULL;
   c.scene_name = "liver";
-  c.real_type = "float";
-  c.step = -5'000'000'000;
-  c.time = 0.1;
-  c.dt = std::numeric_limits<double>::denorm_min();
-  c.host_state["empty"] = {};
-  c.host_state["relaxation"] = {1.5, -0.0, std::numeric_limits<double>::infinity(),
-                                std::bit_cast<double>(0x7ff8000000000123ULL)};
-  c.buffers = {{"u", {1, 2, 3, 255, 0, 7, 8, 9, 10}}, {"", {}}, {"w", std::vector<std::uint8_t>(50, 17)}};
+  Snapshot& s = c.snapshot;
+  s.model_hash = 0x0123456789abcdefULL;
+  s.real_type = "float";
+  s.state.clock = {-5'000'000'000, 7, 0.1, std::numeric_limits<double>::denorm_min()};
+  s.state.relaxation.u = {1.5, -0.0, std::numeric_limits<double>::infinity(), std::bit_cast<double>(0x7ff8000000000123ULL)};
+  s.state.kept = KeptState{{1, 2, 3, 4}, 5};
+  s.state.cuts = {{1, {{{2, 3}, 0.25}, {{2, 4}, 0.5}}}};
+  s.state.tears = {{0, 17, 5}};
+  s.state.seeds = {{1, 2, 3}};
+  s.state.blades.seen = 0.25;
+  s.state.blades.placed["scalpel"] = {Vec3d{1, 2, 3}, Vec3d{4, 5, 6}};
+  s.state.blades.fronts["scalpel"][1] = {{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}}, 3, {{1, -1, {4, 2, {0.25, 0.25, 0.25, 0.25}, {}}}}};
+  s.state.pending.triangles = {{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}}};
+  s.state.pending.moves = {{"host/scalpel", {}, {{Vec3d{1, 1, 1}, Vec3d{2, 2, 2}}}}};
+  s.state.forces = {{0, 12, {1, 0, 0}}};
+  s.state.tool = Vec3d{0, 0, 1};
+  s.state.topology_version = 3;
+  s.buffers = {{"u", {1, 2, 3, 255, 0, 7, 8, 9, 10}}, {"", {}}, {"w", std::vector<std::uint8_t>(50, 17)}};
   return c;
 }
 
@@ -54,18 +63,16 @@ TEST(Checkpoint, KeepsEveryBit) {
   const Checkpoint c = sample();
   write_checkpoint(folder.path() / "c", c);
   const Checkpoint r = read_checkpoint(folder.path() / "c");
-  EXPECT_EQ(r.scene_hash, c.scene_hash);
   EXPECT_EQ(r.scene_name, c.scene_name);
-  EXPECT_EQ(r.real_type, c.real_type);
-  EXPECT_EQ(r.step, c.step);
-  EXPECT_EQ(r.time, c.time);
-  EXPECT_EQ(r.dt, c.dt);
-  EXPECT_EQ(r.buffers, c.buffers);
-  ASSERT_EQ(r.host_state.size(), 2u);
-  const auto& values = r.host_state.at("relaxation");
-  ASSERT_EQ(values.size(), 4u);
+  EXPECT_EQ(r.snapshot.model_hash, c.snapshot.model_hash);
+  EXPECT_EQ(r.snapshot.real_type, c.snapshot.real_type);
+  EXPECT_EQ(r.snapshot.buffers, c.snapshot.buffers);
+  EXPECT_EQ(write_state(r.snapshot.state), write_state(c.snapshot.state));
+  EXPECT_EQ(r.snapshot.state.clock.step, c.snapshot.state.clock.step);
+  ASSERT_EQ(r.snapshot.state.relaxation.u.size(), 4u);
   for (std::size_t i = 0; i < 4; ++i) {
-    EXPECT_EQ(std::bit_cast<std::uint64_t>(values[i]), std::bit_cast<std::uint64_t>(c.host_state.at("relaxation")[i]));
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(r.snapshot.state.relaxation.u[i]),
+              std::bit_cast<std::uint64_t>(c.snapshot.state.relaxation.u[i]));
   }
   write_checkpoint(folder.path() / "d", r);
   EXPECT_EQ(bytes_of(folder.path() / "c"), bytes_of(folder.path() / "d"));
@@ -130,7 +137,7 @@ TEST(Checkpoint, SaysWhatTheFileIs) {
   bytes[8] = 9;
   EXPECT_TRUE(contains(error_of(store(folder, sealed(bytes))), "version 9"));
   Checkpoint c = sample();
-  c.real_type = "half";
+  c.snapshot.real_type = "half";
   EXPECT_THROW(write_checkpoint(folder.path() / "c", c), Error);
 }
 

@@ -9,48 +9,36 @@
 
 #include "pliant/error.h"
 #include "solver/scenes.h"
+#include "support/forwarding_backend.h"
 
 namespace pliant {
 namespace {
 
 using testing::pressed_cube;
 
-/// Passes everything on, and once, after the given run of the given pass, moves one value to the next float.
-class TamperingBackend final : public Backend {
+/// Once, after the given run of the given pass, one value moves to the next float.
+class TamperingBackend final : public test::ForwardingBackend {
  public:
   TamperingBackend(std::unique_ptr<Backend> inner, std::string kernel, int run, std::string buffer, std::size_t index)
-      : inner_(std::move(inner)), kernel_(std::move(kernel)), run_(run), buffer_(std::move(buffer)), index_(index) {}
+      : ForwardingBackend(std::move(inner)), kernel_(std::move(kernel)), run_(run), buffer_(std::move(buffer)), index_(index) {}
 
   bool armed = false;
 
-  [[nodiscard]] const BackendInfo& info() const override { return inner_->info(); }
   void load(const Program& program) override {
     program_ = &program;
-    inner_->load(program);
+    ForwardingBackend::load(program);
   }
-  void run(const std::vector<Pass>& passes, std::int32_t first, std::int32_t count, std::int64_t origin) override {
-    inner_->run(passes, first, count, origin);
-  }
+  using ForwardingBackend::run;
   void run(const Pass& pass, std::int32_t step) override {
-    inner_->run(pass, step);
+    ForwardingBackend::run(pass, step);
     if (!armed || pass.kernel != kernel_ || --run_ != 0) return;
     const BufferId id = program_->find(buffer_);
     std::vector<double> values = inner_->read_reals(id);
     values.at(index_) = std::nextafter(static_cast<float>(values[index_]), 1e30F);
     inner_->write_reals(id, values);
   }
-  void finish() override { inner_->finish(); }
-  void copy(BufferId from, BufferId to) override { inner_->copy(from, to); }
-  std::vector<double> read_reals(BufferId id) override { return inner_->read_reals(id); }
-  std::vector<std::int32_t> read_ints(BufferId id) override { return inner_->read_ints(id); }
-  void write_reals(BufferId id, const std::vector<double>& v) override { inner_->write_reals(id, v); }
-  void write_ints(BufferId id, const std::vector<std::int32_t>& v) override { inner_->write_ints(id, v); }
-  std::vector<std::uint8_t> read_bytes(BufferId id) override { return inner_->read_bytes(id); }
-  void profile(bool on) override { inner_->profile(on); }
-  std::vector<PassTime> take_profile() override { return inner_->take_profile(); }
 
  private:
-  std::unique_ptr<Backend> inner_;
   const Program* program_ = nullptr;
   std::string kernel_;
   int run_;

@@ -1,23 +1,21 @@
-// What shape matching asks of the host: its stiffness for the present step, the step that its interface allows, and its longer
-// steps.
+// Stiffness and stability of shape matching and of its interface with finite elements.
+#include "simulation/coupling.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 
 #include "pliant/error.h"
-#include "simulation/simulation.h"
+#include "simulation/stable_step.h"
 
 namespace pliant {
 namespace {
 
-constexpr double kFrame = 1.0 / 60;  ///< automatic step of a scene without finite elements [s]
-
 /// How many times its beta the interface feels while it feels any: see flsm_interface in program_flsm.cpp.
-int strokes(const DeformationModel& m) { return m.extrapolate ? 1 : m.substeps; }
+int pull_factor(const DeformationModel& m) { return m.extrapolate ? 1 : m.substeps; }
 
 /// Young's modulus of shape matching is E = c rho d^2 alpha / b, with b = H^2 / (1 + D H / 2) for the step H and the damping
 /// rate D [1/s]. c by half-width, minus one: the uniaxial pull of bars of any thickness, which is (w^2 + w) / 3, the variance
@@ -36,14 +34,6 @@ double longest_step(const FlsmBatch& batch, double damping) {
   if (m.young <= 0) return std::numeric_limits<double>::infinity();
   const double b = stiffness_unit(batch) / m.young, quarter = 0.25 * damping * b;
   return (quarter + std::sqrt(quarter * quarter + b)) / m.substeps;
-}
-
-double longest_step(const Model& model, const Scene& scene) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const FlsmBatch& b : model.flsm) {
-    least = std::min(least, longest_step(b, scene.bodies[static_cast<std::size_t>(b.body)].material.damping));
-  }
-  return least;
 }
 
 /// The alpha of a batch at the step `dt` of the scene [s], for the damping rate of its material [1/s]: as it stands in the
@@ -92,15 +82,15 @@ InterfaceStiffness interface_stiffness(const Model& model) {
   for (const FlsmBatch& b : model.flsm) {
     if (b.interface == 0) continue;
     if (b.settings.beta == 0 && b.settings.young > 0) {
-      largest.fixed = std::max(largest.fixed, strokes(b.settings) * b.settings.young / stiffness_unit(b));
+      largest.fixed = std::max(largest.fixed, pull_factor(b.settings) * b.settings.young / stiffness_unit(b));
       continue;
     }
     if (b.settings.beta == 0) {
       largest.per_step =
-          std::max(largest.per_step, strokes(b.settings) * b.settings.alpha / (b.settings.substeps * b.settings.substeps));
+          std::max(largest.per_step, pull_factor(b.settings) * b.settings.alpha / (b.settings.substeps * b.settings.substeps));
       continue;
     }
-    largest.fixed = std::max(largest.fixed, strokes(b.settings) * b.settings.beta / least_place_mass(model, b));
+    largest.fixed = std::max(largest.fixed, pull_factor(b.settings) * b.settings.beta / least_place_mass(model, b));
   }
   return largest;
 }
@@ -131,51 +121,54 @@ double held_step(const FlsmBatch& b, const Model& model, double elements) {
 
 }  // namespace
 
-bool Simulation::has_elements() const {
-  return std::any_of(model_->bodies.begin(), model_->bodies.end(),
-                     [](const ModelBody& b) { return b.operational_elements > 0; });
+bool has_elements(const Model& model) {
+  return std::any_of(model.bodies.begin(), model.bodies.end(), [](const ModelBody& b) { return b.operational_elements > 0; });
 }
 
-/// A bound without an iteration: the spring beta between an interface node and its goal adds beta / m to omega^2 at most. With
-/// beta = alpha m / H^2, H = n h: h^2 (omega^2 + alpha / (n h)^2) <= 4. Held goals pull n times as hard in one substep of n,
-/// and resonate.
-double Simulation::coupled_step(double elements_alone) const {
-  const InterfaceStiffness k = interface_stiffness(*model_);
+double longest_step(const Model& model, const Scene& scene) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const FlsmBatch& b : model.flsm) {
+    least = std::min(least, longest_step(b, scene.bodies[static_cast<std::size_t>(b.body)].material.damping));
+  }
+  return least;
+}
+
+double coupled_step(const Model& model, double elements_alone) {
+  const InterfaceStiffness k = interface_stiffness(model);
   const double omega2 = 4 / (elements_alone * elements_alone) + k.fixed;
-  return std::min(std::sqrt((4 - k.per_step) / omega2), held_goals_step(elements_alone));
+  return std::min(std::sqrt((4 - k.per_step) / omega2), held_goals_step(model, elements_alone));
 }
 
-/// The longest step that held goals stand [s].
-double Simulation::held_goals_step(double elements_alone) const {
+double held_goals_step(const Model& model, double elements_alone) {
   double step = std::numeric_limits<double>::infinity();
-  for (const FlsmBatch& b : model_->flsm) {
+  for (const FlsmBatch& b : model.flsm) {
     if (b.interface > 0 && b.settings.substeps > 1 && !b.settings.extrapolate)
-      step = std::min(step, held_step(b, *model_, elements_alone));
+      step = std::min(step, held_step(b, model, elements_alone));
   }
   return step;
 }
 
-/// What the springs between interface nodes and their goals add to omega^2 at most, at the step `dt` [s], per slot [1/s^2];
-/// empty without an interface.
-std::vector<double> Simulation::interface_springs(double dt) const {
+std::vector<double> interface_springs(const Model& model, double dt) {
   std::vector<double> spring;
-  for (const FlsmBatch& b : model_->flsm) {
+  for (const FlsmBatch& b : model.flsm) {
     if (b.interface == 0) continue;
-    spring.resize(model_->mass.size(), 0.0);
+    spring.resize(model.mass.size(), 0.0);
     const DeformationModel& m = b.settings;
     const double h = m.substeps * dt, automatic = m.young > 0 ? m.young / stiffness_unit(b) : m.alpha / (h * h);
-    const std::vector<double> masses = m.beta > 0 ? place_masses(*model_, b) : std::vector<double>();
+    const std::vector<double> masses = m.beta > 0 ? place_masses(model, b) : std::vector<double>();
     for (std::int32_t k = 0; k < b.interface; ++k) {
-      spring[static_cast<std::size_t>(b.slot[b.own + k])] = strokes(m) * (m.beta > 0 ? m.beta / masses[k] : automatic);
+      spring[static_cast<std::size_t>(b.slot[b.own + k])] = pull_factor(m) * (m.beta > 0 ? m.beta / masses[k] : automatic);
     }
   }
   return spring;
 }
 
+namespace {
+
 /// The largest beta of a batch that the step `dt` stands [N/m], between what a bound without an iteration allows and what is
 /// given, to 0.2 %.
-double Simulation::largest_beta(const FlsmBatch& batch, double dt, double bound) {
-  const std::vector<double> given = interface_springs(dt);
+double largest_beta(const RunContext& run, const FlsmBatch& batch, double dt, double bound) {
+  const std::vector<double> given = interface_springs(run.model(), dt);
   double low = bound, high = batch.settings.beta;
   while (low > 0 && high > 1.002 * low) {
     const double middle = std::sqrt(low * high);
@@ -183,92 +176,60 @@ double Simulation::largest_beta(const FlsmBatch& batch, double dt, double bound)
     for (std::int32_t i = batch.own; i < batch.own + batch.interface; ++i) {
       spring[static_cast<std::size_t>(batch.slot[i])] *= middle / batch.settings.beta;
     }
-    (dt * dt * largest_omega2(spring) <= 4 ? low : high) = middle;
+    (dt * dt * largest_omega2(run, spring) <= 4 ? low : high) = middle;
   }
   return low;
 }
 
-/// An automatic step is short enough for the alpha that "stiffness" asks for; a given one is refused by alpha_for.
-void Simulation::choose_dt(double wanted, bool estimate) {
-  const double longest = longest_step(*model_, scene_);
-  if (!has_elements()) {
-    state_.dt = wanted > 0 ? wanted : std::min(kFrame, longest);
-    automatic_ = false;
-    return;
-  }
-  if (wanted <= 0 || estimate) estimate_stable_dt();
-  state_.dt = wanted > 0 ? wanted : std::min(scene_.safety * state_.stable_dt, longest);
-  // Every cut leaves elements that are stable at the element bound: each copy's mass and stiffness scale alike.
-  if (wanted <= 0 && !scene_.blades.empty()) {
-    state_.dt = std::min(state_.dt, scene_.safety * coupled_step(model_->element_bound));
-  }
-  const InterfaceStiffness k = interface_stiffness(*model_);
-  if (wanted <= 0 || k.fixed == 0 || state_.stable_dt <= 0 || elements_dt_ <= 0 || wanted <= state_.stable_dt) return;
-  for (const FlsmBatch& b : model_->flsm) {
+}  // namespace
+
+void check_beta(const RunContext& run, double dt, double elements_dt) {
+  const Model& model = run.model();
+  const double stable_dt = run.state.limit.stable_dt;
+  const InterfaceStiffness k = interface_stiffness(model);
+  if (k.fixed == 0 || stable_dt <= 0 || elements_dt <= 0 || dt <= stable_dt) return;
+  for (const FlsmBatch& b : model.flsm) {
     if (b.settings.beta == 0 || b.interface == 0) continue;
-    const double mass = least_place_mass(*model_, b);
-    const double omega2 = 4 / (elements_dt_ * elements_dt_);
-    double most = largest_beta(b, wanted, mass * ((4 - k.per_step) / (wanted * wanted) - omega2) / strokes(b.settings));
+    const double mass = least_place_mass(model, b);
+    const double omega2 = 4 / (elements_dt * elements_dt);
+    double most = largest_beta(run, b, dt, mass * ((4 - k.per_step) / (dt * dt) - omega2) / pull_factor(b.settings));
     if (b.settings.substeps > 1 && !b.settings.extrapolate) {
-      const double h = b.settings.substeps * wanted;
-      most = std::min(most, mass * largest_held_alpha(b.settings.substeps, wanted, 2 / std::sqrt(omega2)) / (h * h));
+      const double h = b.settings.substeps * dt;
+      most = std::min(most, mass * largest_held_alpha(b.settings.substeps, dt, 2 / std::sqrt(omega2)) / (h * h));
     }
     throw Error(
         ErrorCode::bad_input,
         fmt::format("{}/beta: got {} N/m, which is beyond stability at dt = {} s; allowed is at most {}, or dt up to {:.6g} s",
-                    b.settings.pointer, b.settings.beta, wanted,
-                    most > 0 ? fmt::format("{:.6g} N/m", most) : "none (dt is too large for the elements already)",
-                    state_.stable_dt));
+                    b.settings.pointer, b.settings.beta, dt,
+                    most > 0 ? fmt::format("{:.6g} N/m", most) : "none (dt is too large for the elements already)", stable_dt));
   }
 }
 
-std::int32_t Simulation::substeps_of(std::size_t slot) const {
-  for (const FlsmBatch& b : model_->flsm) {
-    if (static_cast<std::int64_t>(slot) >= b.first_slot && static_cast<std::int64_t>(slot) < b.first_slot + b.slots)
-      return b.settings.substeps;
-  }
-  return 1;
-}
-
-std::int64_t Simulation::period() const {
-  std::int64_t period = 1;
-  for (const FlsmBatch& b : model_->flsm) period = std::lcm(period, std::int64_t{b.settings.substeps});
-  return period;
-}
-
-bool Simulation::begins_after(std::int64_t step, std::int64_t every) const {
-  const std::int64_t p = period();
-  return step % p == 0 && step % every < p;
-}
-
-void Simulation::restore(const SimulationState& state) {
-  state_ = state;
-  upload_shape_matching();  // the automatic beta belongs to the step
-}
-
-void Simulation::upload_shape_matching() {
-  if (model_->flsm.empty()) return;
+void upload_coupling(const RunContext& run) {
+  const Model& model = run.model();
+  if (model.flsm.empty()) return;
+  const Program& program = run.loaded.program();
   std::vector<double> alpha;
-  for (std::size_t i = 0; i < model_->flsm.size(); ++i) {
-    const FlsmBatch& b = model_->flsm[i];
-    const double h = b.settings.substeps * state_.dt;
-    alpha.push_back(alpha_for(b, state_.dt, scene_.bodies[static_cast<std::size_t>(b.body)].material.damping));
+  for (std::size_t i = 0; i < model.flsm.size(); ++i) {
+    const FlsmBatch& b = model.flsm[i];
+    const double dt = run.state.clock.dt, h = b.settings.substeps * dt;
+    alpha.push_back(alpha_for(b, dt, run.scene.bodies[static_cast<std::size_t>(b.body)].material.damping));
     if (b.interface == 0) continue;
-    const BufferId id = program_.find(fmt::format("flsm_beta/{}", i));
-    std::vector<double> beta(program_.buffers[static_cast<std::size_t>(id)].count, 0.0);
-    const std::vector<double> masses = b.settings.beta > 0 ? place_masses(*model_, b) : std::vector<double>();
+    const BufferId id = program.find(fmt::format("flsm_beta/{}", i));
+    std::vector<double> beta(program.at(id).count, 0.0);
+    const std::vector<double> masses = b.settings.beta > 0 ? place_masses(model, b) : std::vector<double>();
     for (std::int32_t k = 0; k < b.interface; ++k) {
-      const double own = model_->mass[static_cast<std::size_t>(b.slot[b.own + k])];
+      const double own = model.mass[static_cast<std::size_t>(b.slot[b.own + k])];
       const double mean = b.settings.beta > 0 ? b.settings.beta * (own / masses[k]) : alpha.back() * own / (h * h);
-      beta[k] = strokes(b.settings) * mean;
+      beta[k] = pull_factor(b.settings) * mean;
     }
-    backend_->write_reals(id, beta);
-    const BufferId mean = program_.find(fmt::format("flsm_mean_beta/{}", i));
+    run.backend().write_reals(id, beta);
+    const BufferId mean = program.find(fmt::format("flsm_mean_beta/{}", i));
     if (mean < 0) continue;
-    for (double& k : beta) k /= strokes(b.settings);
-    backend_->write_reals(mean, beta);
+    for (double& k : beta) k /= pull_factor(b.settings);
+    run.backend().write_reals(mean, beta);
   }
-  backend_->write_reals(program_.find("flsm_alpha"), alpha);
+  run.backend().write_reals(program.find("flsm_alpha"), alpha);
 }
 
 }  // namespace pliant

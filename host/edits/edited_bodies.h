@@ -1,4 +1,4 @@
-// The bodies of a simulation that are cut, and where its blades are. Private to host/solver.
+// The bodies of a simulation as cuts and tears have made them. Private to host/edits.
 #pragma once
 #include <future>
 #include <memory>
@@ -14,6 +14,8 @@
 #include "cutting/topology/cut_topology.h"
 #include "edits/helper_thread.h"
 #include "model/solid.h"
+#include "simulation/run_state.h"
+#include "tearing/torn_body.h"
 
 namespace pliant {
 
@@ -31,15 +33,14 @@ class BodyCut {
   /// Bring the elements of solid(), or its surface, up to date after an edit: only what it changed. Both may run at once.
   void update_elements() { update_solid_elements(*uncut_, topology_, solid_); }
   void update_surface();
-  /// Take the last edit back.
-  void undo();
+  /// Be what these edits make of the uncut body.
+  void rebuild(std::span<const CutEdges* const> edits);
   /// The body as it is cut now, in what was brought up to date.
   [[nodiscard]] const Solid& solid() const { return solid_; }
-  /// Edits so far, in order.
-  [[nodiscard]] const std::vector<CutEdges>& history() const { return history_; }
   /// Mean edge of a cell at rest [m].
   [[nodiscard]] double edge() const { return edge_; }
   [[nodiscard]] const CutSurface* surface() const { return surface_.get(); }
+  [[nodiscard]] const Solid& uncut() const { return *uncut_; }
   [[nodiscard]] RestEdges& rest_edges() { return *rest_edges_; }
 
  private:
@@ -50,15 +51,7 @@ class BodyCut {
   std::unique_ptr<CutSurface> surface_;  ///< of a lattice
   std::future<void> dividing_;           ///< the helper's work on it
   std::unique_ptr<RestEdges> rest_edges_;
-  std::vector<CutEdges> history_;
   double edge_ = 0;
-};
-
-/// Where a blade goes in one look: first along straight lines to each of these places. `key` names it in the state.
-struct BladeMove {
-  std::string key;
-  BladeSegment from{};
-  std::vector<BladeSegment> to;
 };
 
 /// Not a volume mesh of hexahedra.
@@ -77,19 +70,44 @@ class SurfaceCopy {
   std::future<void> made_;
 };
 
-/// All bodies of a scene; those that were neither prepared nor touched by a blade have no BodyCut.
-struct CutState {
-  explicit CutState(const Scene& scene);
-  std::vector<std::shared_ptr<const Solid>> uncut;
-  std::vector<std::unique_ptr<BodyCut>> bodies;
-  [[nodiscard]] BodyCut& body(const Scene& scene, std::size_t b);
+/// All bodies of a scene, filled once more than for the first model. One is cut, or torn, or as it was.
+class EditedBodies {
+ public:
+  /// Throws what make_solids throws, and Error (bad_input) for a body that has a toughness and is no volume mesh of tetrahedra.
+  explicit EditedBodies(const Scene& scene);
+  /// Whether a material of the scene has a toughness.
+  static bool tears(const Scene& scene);
+
+  [[nodiscard]] std::size_t size() const { return uncut_.size(); }
+  [[nodiscard]] const Solid& uncut(std::size_t b) const { return *uncut_[b]; }
+  /// The body's cut, made when it is asked for. Throws Error (bad_input) for a body that cannot be cut.
+  [[nodiscard]] BodyCut& cut(std::size_t b);
+  [[nodiscard]] const BodyCut* find_cut(std::size_t b) const { return cuts_[b].get(); }
+  /// nullptr for a body that does not tear.
+  [[nodiscard]] TornBody* torn(std::size_t b) { return torn_[b].get(); }
+  [[nodiscard]] const Solid& solid(std::size_t b) const;
   [[nodiscard]] std::vector<const Solid*> solids() const;
+
+  /// Make the edits of a state, which may come from anywhere. Throws Error (bad_input) for those that do not belong to these
+  /// bodies; the bodies are then in no defined state.
+  void replay(const RunState& state);
+  /// One body as the state has it, after an edit that failed.
+  void rebuild(std::size_t b, const RunState& state);
+
   /// The model as it would be with a few cells cut: it has the kinds of elements, loads and tables that cuts bring.
-  [[nodiscard]] Model trial_model(const Scene& scene) const;
-  std::vector<SweepTriangle> pending_triangles;  ///< wait for a step of shape matching
-  std::vector<BladeMove> pending_moves;          ///< likewise
+  [[nodiscard]] Model trial_model() const;
+
   SurfaceCopy surface_copy;
   HelperThread helper;  ///< divides surfaces while elements become a model
+
+ private:
+  void make_torn(std::size_t b);
+  void replay_tears(const RunState& state);
+
+  const Scene& scene_;
+  std::vector<std::shared_ptr<const Solid>> uncut_;
+  std::vector<std::unique_ptr<BodyCut>> cuts_;
+  std::vector<std::unique_ptr<TornBody>> torn_;
 };
 
 }  // namespace pliant

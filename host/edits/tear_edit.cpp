@@ -1,0 +1,45 @@
+// Tearing: bodies of tetrahedra come apart along faces where their stress breaks them, between two batches of a run. Every node
+// keeps the displacement and velocity of the one it comes from: masses of copies add up to that of their node, so momentum is
+// kept.
+#include "edits/model_swap.h"
+#include "edits/topology_edits.h"
+
+namespace pliant {
+
+void TopologyEdits::make_tears() {
+  if (!run_.settings.tears || !run_.begins_after(run_.state.clock.step, kTearSteps)) return;
+  EditedBodies& all = bodies();
+  const std::vector<double> u = run_.loaded.u();
+  std::vector<std::vector<TetFace>> faces(all.size());
+  bool any = false;
+  for (std::size_t b = 0; b < faces.size(); ++b) {
+    if (all.torn(b) != nullptr) faces[b] = all.torn(b)->breaking_faces(run_.loaded.positions(u, b));
+    any = any || !faces[b].empty();
+  }
+  if (!any) return;
+  CutReport report;
+  try {
+    ModelSwap swap(run_, loads_, all, u, report);
+    std::vector<NodeOrigins> origins(all.size());
+    for (std::size_t b = 0; b < all.size(); ++b) {
+      if (!faces[b].empty()) origins[b].from = all.torn(b)->tear(faces[b]);
+    }
+    swap.run(scene_at(run_.state), std::move(origins), [] {});
+  } catch (...) {
+    for (std::size_t b = 0; b < all.size(); ++b) {
+      if (!faces[b].empty()) all.rebuild(b, run_.state);
+    }
+    throw;
+  }
+  run_.state.tears.clear();
+  for (std::size_t b = 0; b < all.size(); ++b) {
+    for (std::size_t t = 0; all.torn(b) != nullptr && t < all.torn(b)->broken().size(); ++t) {
+      const int bits = all.torn(b)->broken()[t];
+      if (bits != 0) run_.state.tears.push_back({static_cast<std::int32_t>(b), static_cast<std::int32_t>(t), bits});
+    }
+  }
+  ++run_.state.topology_version;
+  step_.limit_to_element_bound();
+}
+
+}  // namespace pliant

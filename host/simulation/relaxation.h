@@ -1,0 +1,11 @@
+// Dynamic relaxation: damping that follows the lowest mode still moving, until the body is at rest.
+#pragma once
+#include "simulation/run_context.h"
+
+namespace pliant {
+
+/// Damp the lowest mode that still moves critically, c = 2 omega with omega^2 = - du . df / (du . M du) from the change of
+/// displacement and force since the last call (Papadrakakis 1981; Joldes, Wittek and Miller 2009), and look for equilibrium.
+void relax(RunContext& run);
+
+}  // namespace pliant

@@ -1,0 +1,73 @@
+#include "simulation/run_context.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace pliant {
+
+std::int32_t substeps_of(const Model& model, std::size_t slot) {
+  for (const FlsmBatch& b : model.flsm) {
+    if (static_cast<std::int64_t>(slot) >= b.first_slot && static_cast<std::int64_t>(slot) < b.first_slot + b.slots)
+      return b.settings.substeps;
+  }
+  return 1;
+}
+
+std::int64_t RunContext::period() const {
+  std::int64_t period = 1;
+  for (const FlsmBatch& b : model().flsm) period = std::lcm(period, std::int64_t{b.settings.substeps});
+  return period;
+}
+
+bool RunContext::begins_after(std::int64_t step, std::int64_t every) const {
+  const std::int64_t p = period();
+  return step % p == 0 && step % every < p;
+}
+
+double RunContext::decay(const Model& of, std::size_t slot) const {
+  const double k = 0.5 * substeps_of(of, slot) * state.clock.dt * (of.damping[slot] + state.relaxation.damping);
+  return (1 - k) / (1 + k);
+}
+
+std::vector<Vec3d> RunContext::velocities(const std::vector<double>& w, std::size_t body) const {
+  std::vector<Vec3d> v = loaded.pick(w, body, 1 / state.clock.dt);
+  for (std::size_t n = 0; n < v.size() && !model().flsm.empty(); ++n) {
+    const auto slot = static_cast<std::size_t>(model().bodies[body].slot[n]);
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (loaded.free()[3 * slot + c]) v[n][c] /= substeps_of(model(), slot);  // a prescribed component moves in every substep
+    }
+  }
+  return v;
+}
+
+void RunContext::upload_params() const {
+  const Vec3d& g = scene.gravity;
+  loaded.write_params({state.clock.dt, g[0], g[1], g[2], settings.increment_floor, settings.displacement_grid,
+                       static_cast<double>(phase()), 0});
+}
+
+void RunContext::upload_curves(std::int32_t steps) const {
+  std::vector<double> values;
+  const std::size_t rows = static_cast<std::size_t>(settings.batch_steps) + 1;
+  values.reserve(rows * model().curves.size());
+  for (std::size_t row = 0; row < rows; ++row) {
+    const double t = state.clock.time_at(state.clock.step + std::min<std::int64_t>(static_cast<std::int64_t>(row), steps));
+    for (const Curve& curve : model().curves) values.push_back(curve.value(t));
+  }
+  loaded.write_curves(values);
+}
+
+void RunContext::upload_decay() const {
+  std::vector<double> w = loaded.w();
+  for (std::size_t s = 0; s < model().mass.size(); ++s) w[4 * s + 3] = decay(model(), s);
+  loaded.write_w(w);
+}
+
+std::vector<double> RunContext::forces_now() const {
+  upload_params();
+  upload_curves(0);
+  backend().run(loaded.program().force, 0, 1);
+  return loaded.force();
+}
+
+}  // namespace pliant

@@ -1,0 +1,164 @@
+// Everything that decides the next step of a run and is neither in the Model nor in the Program nor in a state buffer. One
+// visitor names every member: checkpoints, the deep hash and comparisons see what it visits. What is not in here does not exist
+// for a run.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cutting/blade/blade_front.h"
+
+namespace pliant {
+
+/// Steps done and their length. The time of a step counts from where the length changed last.
+struct Clock {
+  std::int64_t step = 0;         ///< steps done
+  std::int64_t origin_step = 0;  ///< the step in which dt changed last
+  double origin_time = 0;        ///< [s] then
+  double dt = 0;                 ///< [s]
+  [[nodiscard]] double time_at(std::int64_t at) const { return origin_time + static_cast<double>(at - origin_step) * dt; }
+  [[nodiscard]] double time() const { return time_at(step); }
+};
+
+/// How long an automatic step may be.
+struct StepLimit {
+  double stable_dt = 0;   ///< 2 / omega_max as of the last estimate [s]; 0: none
+  double dt_ceiling = 0;  ///< an automatic step never grows beyond this [s]
+  double dt_backoff = 1;  ///< share of the estimate that an automatic step still trusts
+};
+
+/// Dynamic relaxation: its damping rate, and what its next change is measured against.
+struct RelaxationState {
+  double damping = 0;            ///< [1/s], beside that of the materials
+  bool equilibrium = false;      ///< reached: nothing is left to do
+  double residual = 0;           ///< |R - F| over the largest of external and reaction force
+  std::vector<double> u, force;  ///< node_u and node_force at the last change; empty: there was none
+};
+
+/// The good state that last_u and last_w hold.
+struct KeptState {
+  Clock clock;
+  double damping = 0;
+};
+
+/// The edges that one edit cut of one body.
+struct CutRecord {
+  std::int32_t body = 0;
+  CutEdges edges;
+};
+
+/// The broken faces of one tetrahedron: bit f of `faces` is face f.
+struct TearRecord {
+  std::int32_t body = 0, tet = 0, faces = 0;
+};
+
+/// Where a blade goes in one update: along straight lines to each of these places. `key` names it in BladeState::fronts.
+struct BladeMove {
+  std::string key;
+  BladeSegment from{};
+  std::vector<BladeSegment> to;
+};
+
+struct BladeState {
+  std::optional<double> seen;                                        ///< time up to which the scene's blades have moved [s]
+  std::map<std::string, BladeSegment> placed;                        ///< where the host put its own blades
+  std::map<std::string, std::map<std::int32_t, BladeFront>> fronts;  ///< by key and body: the trace that it goes on from
+};
+
+/// Edits asked for inside a step of shape matching, made when the next one begins.
+struct PendingEdits {
+  std::vector<std::array<Vec3d, 3>> triangles;
+  std::vector<BladeMove> moves;
+};
+
+/// A force that the host puts on a node [N].
+struct HostForce {
+  std::size_t body = 0;
+  std::int64_t node = 0;
+  Vec3d force{};
+};
+
+struct RunState {
+  Clock clock;
+  StepLimit limit;
+  RelaxationState relaxation;
+  std::optional<KeptState> kept;
+  std::vector<CutRecord> cuts;  ///< in the order in which they were made
+  std::vector<TearRecord> tears;
+  std::vector<Vec3d> seeds;  ///< [bodies] of the operational regions, once one has moved; empty: as in the scene
+  BladeState blades;
+  PendingEdits pending;
+  std::vector<HostForce> forces;
+  std::optional<Vec3d> tool;          ///< where the host put the tool [m]; nothing: on its path
+  std::int64_t topology_version = 0;  ///< edits that changed elements
+};
+
+// The visitor: v(name, member) for every member, in this order.
+template <class V>
+void visit(V& v, Clock& s) {
+  v("step", s.step), v("origin_step", s.origin_step), v("origin_time", s.origin_time), v("dt", s.dt);
+}
+template <class V>
+void visit(V& v, StepLimit& s) {
+  v("stable_dt", s.stable_dt), v("dt_ceiling", s.dt_ceiling), v("dt_backoff", s.dt_backoff);
+}
+template <class V>
+void visit(V& v, RelaxationState& s) {
+  v("damping", s.damping), v("equilibrium", s.equilibrium), v("residual", s.residual), v("u", s.u), v("force", s.force);
+}
+template <class V>
+void visit(V& v, KeptState& s) {
+  v("clock", s.clock), v("damping", s.damping);
+}
+template <class V>
+void visit(V& v, CutRecord& s) {
+  v("body", s.body), v("edges", s.edges);
+}
+template <class V>
+void visit(V& v, TearRecord& s) {
+  v("body", s.body), v("tet", s.tet), v("faces", s.faces);
+}
+template <class V>
+void visit(V& v, BladeMove& s) {
+  v("key", s.key), v("from", s.from), v("to", s.to);
+}
+template <class V>
+void visit(V& v, CarriedPoint& s) {
+  v("cell", s.cell), v("tet", s.tet), v("weight", s.weight), v("rest", s.rest);
+}
+template <class V>
+void visit(V& v, FrontPoint& s) {
+  v("place", s.place), v("node", s.node), v("point", s.carried);
+}
+template <class V>
+void visit(V& v, BladeFront& s) {
+  v("blade", s.blade), v("levels", s.levels), v("points", s.points);
+}
+template <class V>
+void visit(V& v, BladeState& s) {
+  v("seen", s.seen), v("placed", s.placed), v("fronts", s.fronts);
+}
+template <class V>
+void visit(V& v, PendingEdits& s) {
+  v("triangles", s.triangles), v("moves", s.moves);
+}
+template <class V>
+void visit(V& v, HostForce& s) {
+  v("body", s.body), v("node", s.node), v("force", s.force);
+}
+template <class V>
+void visit(V& v, RunState& s) {
+  v("clock", s.clock), v("limit", s.limit), v("relaxation", s.relaxation), v("kept", s.kept), v("cuts", s.cuts);
+  v("tears", s.tears), v("seeds", s.seeds), v("blades", s.blades), v("pending", s.pending), v("forces", s.forces);
+  v("tool", s.tool), v("topology_version", s.topology_version);
+}
+
+/// Its bytes, the same on every machine: names, then values of eight little-endian bytes.
+std::string write_state(const RunState& state);
+/// Throws Error (bad_input) that names the first member that is not there as it should be.
+RunState read_state(const std::string& bytes);
+
+}  // namespace pliant

@@ -1,0 +1,188 @@
+#include "simulation/snapshot.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "geometry/vec.h"
+#include "pliant/error.h"
+#include "program/hash.h"
+
+namespace pliant {
+namespace {
+
+class Hash {
+ public:
+  void add(const void* data, std::size_t bytes) { value = hash_bytes(data, bytes, value); }
+  void add(const std::string& text) { add(text.data(), text.size()); }
+  template <class T>
+  void add(const std::vector<T>& values) {
+    add(values.data(), values.size() * sizeof(T));
+  }
+  void add(const Program& program) {
+    for (const Buffer& b : program.buffers) {
+      if (b.role != BufferRole::constant && b.name != "node_u" && b.name != "node_w") continue;
+      add(b.name);
+      add(b.reals);
+      add(b.ints);
+    }
+    for (const Pass& p : program.step) {
+      add(p.kernel);
+      for (const auto& [name, number] : p.defines) {
+        add(name);
+        add(&number, sizeof number);
+      }
+      for (const Arg& a : p.args) {
+        if (const double* real = std::get_if<double>(&a)) add(real, sizeof *real);
+      }
+    }
+  }
+  std::uint64_t value = 0;
+};
+
+template <class T>
+std::vector<T> values_of(const std::vector<std::uint8_t>& bytes) {
+  std::vector<T> values(bytes.size() / sizeof(T));
+  if (!values.empty()) std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
+  return values;
+}
+
+const NamedBytes* find(const Snapshot& snapshot, const std::string& name) {
+  for (const NamedBytes& named : snapshot.buffers) {
+    if (named.name == name) return &named;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+std::uint64_t model_hash(const Scene& scene, const RunSettings& settings, const Model& model, const Program& program,
+                         const Program& surface) {
+  Hash hash;
+  hash.add(program);
+  hash.add(surface);
+  for (const Curve& c : model.curves) {
+    const double numbers[3]{static_cast<double>(c.kind), c.start, c.duration};
+    hash.add(numbers, sizeof numbers);
+    hash.add(c.table);
+  }
+  const double relaxed = scene.relaxation.enabled ? 1 : 0;
+  const double numbers[]{scene.gravity[0],
+                         scene.gravity[1],
+                         scene.gravity[2],
+                         scene.dt,
+                         scene.safety,
+                         relaxed,
+                         static_cast<double>(settings.batch_steps),
+                         static_cast<double>(settings.automatic),
+                         static_cast<double>(settings.tears),
+                         static_cast<double>(settings.blade_steps),
+                         settings.curves_end,
+                         settings.increment_floor,
+                         settings.displacement_grid};
+  hash.add(numbers, sizeof numbers);
+  for (const Blade& blade : scene.blades) {
+    const double when[2]{blade.start, blade.end};
+    hash.add(blade.name);
+    hash.add(when, sizeof when);
+    hash.add(blade.path);
+  }
+  hash.add(scene.tool.path);
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    if (!scene.bodies[b].model.cut) hash.add(&b, sizeof b);
+  }
+  return hash.value;
+}
+
+Snapshot take_snapshot(const RunContext& run) {
+  const Program& program = run.loaded.program();
+  Snapshot snapshot{model_hash(run.scene, run.settings, run.model(), program, run.loaded.surface()),
+                    run.backend().info().real_bytes == 8 ? "double" : "float",
+                    run.state,
+                    {}};
+  for (std::size_t id = 0; id < program.buffers.size(); ++id) {
+    if (program.buffers[id].role != BufferRole::state) continue;
+    snapshot.buffers.push_back({program.buffers[id].name, run.backend().read_bytes(static_cast<BufferId>(id))});
+  }
+  return snapshot;
+}
+
+std::uint64_t deep_hash(const Snapshot& snapshot) {
+  Hash hash;
+  hash.add(&snapshot.model_hash, sizeof snapshot.model_hash);
+  hash.add(write_state(snapshot.state));
+  for (const NamedBytes& buffer : snapshot.buffers) {
+    hash.add(buffer.name);
+    hash.add(buffer.bytes);
+  }
+  return hash.value;
+}
+
+void check_state(const RunState& state, const Model& model, const Scene& scene) {
+  const auto need = [](bool good, const char* what) {
+    if (!good) throw Error(ErrorCode::bad_input, fmt::format("its run state is damaged: {}", what));
+  };
+  const auto good_clock = [&](const Clock& c) {
+    need(c.dt > 0 && std::isfinite(c.dt) && std::isfinite(c.origin_time), "its step is no positive, finite number");
+    need(c.origin_step >= 0 && c.step >= c.origin_step && c.step < (std::int64_t{1} << 62), "its numbers of steps");
+  };
+  good_clock(state.clock);
+  if (state.kept) good_clock(state.kept->clock);
+  const StepLimit& limit = state.limit;
+  need(limit.stable_dt >= 0 && limit.dt_ceiling > 0 && limit.dt_backoff > 0 && limit.dt_backoff <= 1, "its limits of the step");
+  const RelaxationState& r = state.relaxation;
+  need(std::isfinite(r.damping) && (!state.kept || std::isfinite(state.kept->damping)), "its damping is not finite");
+  const std::size_t texels = 4 * static_cast<std::size_t>(model.slots);
+  need(r.u.size() == r.force.size() && (r.u.empty() || r.u.size() == texels), "what relaxation remembers");
+  need(scene.relaxation.enabled || (!r.equilibrium && r.u.empty()), "it relaxes, and the scene does not");
+  for (const SweepTriangle& t : state.pending.triangles) {
+    for (const Vec3d& p : t) need(vec::finite(p), "a pending triangle is not finite");
+  }
+  const auto good_segment = [&](const BladeSegment& s) {
+    need(vec::finite(s[0]) && vec::finite(s[1]), "a blade is not finite");
+  };
+  for (const BladeMove& move : state.pending.moves) {
+    good_segment(move.from);
+    for (const BladeSegment& s : move.to) good_segment(s);
+  }
+  for (const auto& [name, segment] : state.blades.placed) good_segment(segment);
+  need(!state.blades.seen || std::isfinite(*state.blades.seen), "the time of its blades");
+  for (const HostForce& f : state.forces) {
+    need(f.body < model.bodies.size() && f.node >= 0 && vec::finite(f.force), "a force of the host");
+  }
+  need(!state.tool || vec::finite(*state.tool), "the tool is not finite");
+  need(state.topology_version >= 0, "its number of edits");
+}
+
+void check_buffers(const Snapshot& snapshot, const Program& program) {
+  for (const Buffer& buffer : program.buffers) {
+    if (buffer.role != BufferRole::state) continue;
+    const NamedBytes* match = find(snapshot, buffer.name);
+    const std::size_t expected = buffer.values() * (snapshot.real_type == "double" && !buffer.is_int() ? 8 : 4);
+    if (match == nullptr || match->bytes.size() != expected) {
+      throw Error(ErrorCode::bad_input, fmt::format("buffer {} has {} bytes, the scene needs {}", buffer.name,
+                                                    match == nullptr ? 0 : match->bytes.size(), expected));
+    }
+  }
+}
+
+void write_buffers(const Snapshot& snapshot, LoadedModel& loaded) {
+  const Program& program = loaded.program();
+  for (std::size_t i = 0; i < program.buffers.size(); ++i) {
+    const Buffer& buffer = program.buffers[i];
+    if (buffer.role != BufferRole::state) continue;
+    const std::vector<std::uint8_t>& bytes = find(snapshot, buffer.name)->bytes;
+    const auto id = static_cast<BufferId>(i);
+    if (buffer.is_int()) {
+      loaded.backend().write_ints(id, values_of<std::int32_t>(bytes));
+    } else if (snapshot.real_type == "double") {
+      loaded.backend().write_reals(id, values_of<double>(bytes));
+    } else {
+      const std::vector<float> values = values_of<float>(bytes);
+      loaded.backend().write_reals(id, {values.begin(), values.end()});
+    }
+  }
+}
+
+}  // namespace pliant

@@ -1,0 +1,43 @@
+// All that a run is at one moment: from it a simulation of the same scene goes on with the same bits.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "simulation/run_context.h"
+
+namespace pliant {
+
+/// The content of one buffer, as the backend holds it.
+struct NamedBytes {
+  std::string name;
+  std::vector<std::uint8_t> bytes;
+  bool operator==(const NamedBytes&) const = default;
+};
+
+struct Snapshot {
+  std::uint64_t model_hash = 0;  ///< of everything that shapes the Program; a snapshot is taken up only by the same one
+  std::string real_type;         ///< "float" or "double"
+  RunState state;
+  std::vector<NamedBytes> buffers;  ///< those of the role `state`, in the order of the table
+};
+
+/// Hash over a model as the backend sees it, the scene's solver settings and what follows from the options.
+std::uint64_t model_hash(const Scene& scene, const RunSettings& settings, const Model& model, const Program& program,
+                         const Program& surface);
+
+[[nodiscard]] Snapshot take_snapshot(const RunContext& run);
+
+/// Hash over all of a snapshot: two runs with the same one go on alike.
+[[nodiscard]] std::uint64_t deep_hash(const Snapshot& snapshot);
+
+/// Throws Error (bad_input) for a state that came from elsewhere and holds numbers that no run of this model has: a step that
+/// is not positive, vectors of another length, forces on nodes that do not exist, points that are not finite.
+void check_state(const RunState& state, const Model& model, const Scene& scene);
+
+/// Throws Error (bad_input) that says what a snapshot holds of another size than `program` wants.
+void check_buffers(const Snapshot& snapshot, const Program& program);
+/// Write the state buffers. check_buffers() passed for the loaded program.
+void write_buffers(const Snapshot& snapshot, LoadedModel& loaded);
+
+}  // namespace pliant

@@ -1,0 +1,40 @@
+// How long the next step is, where batches end, and what a failed batch is tried again with.
+#pragma once
+#include <cstdint>
+
+#include "simulation/run_context.h"
+
+namespace pliant {
+
+class StepControl {
+ public:
+  explicit StepControl(RunContext& run) : run_(run) {}
+
+  /// The first step. `wanted` [s]: 0 for an automatic one; `estimate`: look for the stable step also if nobody needs it. Throws
+  /// Error (bad_input) if there is none, or for a stiffness that the given step does not stand.
+  void start(double wanted, bool estimate);
+  /// 2 / omega_max of the present configuration into StepLimit::stable_dt [s].
+  double estimate(int iterations = 48);
+
+  /// Whether batches end here however a run is cut into pieces: only these states are kept to go back to.
+  [[nodiscard]] bool on_grid(std::int64_t step) const;
+  /// Steps that the next batch may hold, at most `wanted`.
+  [[nodiscard]] std::int32_t next_batch(std::int64_t wanted) const;
+
+  /// Follow the stable step of the deformed body down at once, and up again to the first step once it has recovered by a tenth.
+  void adapt();
+  /// adapt() where an automatic step is looked at again.
+  void adapt_when_due();
+  /// A scene that nobody meant to cut may run at a step beyond what its elements allow when an edit frees them.
+  void limit_to_element_bound();
+  /// An automatic step may have been overtaken by a fast load: take what follows in smaller steps. False when the step is the
+  /// user's, or when smaller steps have not helped.
+  [[nodiscard]] bool retry_smaller();
+
+ private:
+  [[nodiscard]] bool adapts_at(std::int64_t step) const;
+  void change(double dt);
+  RunContext& run_;
+};
+
+}  // namespace pliant
