@@ -1,0 +1,139 @@
+// Run states that came from elsewhere: whatever their bytes, a simulation takes them up or refuses them and stays as it is.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "cutting/cut_scenes.h"
+#include "pliant/error.h"
+#include "solver/scenes.h"
+#include "support/error_of.h"
+
+namespace pliant {
+namespace {
+
+using namespace cut_test;
+
+/// A hybrid in a moment with everything in it: cuts, a blade on its way with its trace, edits that wait for a step of shape
+/// matching, forces, a tool.
+Scene rich_scene() {
+  Body body = box_body("box", {0.05, 0.03, 0.03});
+  body.model.type = ModelType::hybrid;
+  body.model.ratio = 0.6;
+  body.model.substeps = 3;
+  body.fixed.push_back({});
+  body.fixed[0].where.kind = Selection::Kind::plane;
+  body.fixed[0].where.a = {0.001, 0, 0};
+  body.fixed[0].where.b = {-1, 0, 0};
+  Scene scene = scene_with(body);
+  scene.interactive = true;
+  scene.gravity = {0, -9.81, 0};
+  scene.blades.push_back(blade("scalpel", {{0, 0.02, 0.1, -1, 0.02, 0.1, 1}, {0.4, 0.02, -0.1, -1, 0.02, -0.1, 1}}));
+  return scene;
+}
+
+std::unique_ptr<Simulation> rich_simulation(const Scene& scene) {
+  auto s = std::make_unique<Simulation>(scene, open_backend("cpu"));
+  while (s->topology_version() == 0 && s->step() < 5000) s->advance(64);
+  s->set_forces({{0, s->model().bodies[0].slot.size() > 40 ? 40 : 0, {0, 1e-3, 0}}});
+  s->set_tool({0.1, 0.2, 0.3});
+  while (s->step() % 3 == 0) s->advance(1);
+  const BladePose first{"knife", {Vec3d{0.041, 0.05, -1}, Vec3d{0.041, 0.05, 1}}};
+  const BladePose second{"knife", {Vec3d{0.041, 0.02, -1}, Vec3d{0.041, 0.02, 1}}};
+  s->move_blades({&first, 1});
+  s->move_blades({&second, 1});
+  return s;
+}
+
+TEST(DamagedState, whatever_the_bytes_it_is_taken_up_or_refused) {
+  const Scene scene = rich_scene();
+  const auto source = rich_simulation(scene);
+  const Snapshot good = source->snapshot();
+  ASSERT_FALSE(good.state.cuts.empty());
+  ASSERT_FALSE(good.state.blades.fronts.empty());
+  ASSERT_FALSE(good.state.pending.moves.empty());
+  const std::string bytes = write_state(good.state);
+  Simulation target(scene, open_backend("cpu"));
+  target.advance(10);
+  std::uint64_t before = target.deep_hash();
+  std::mt19937 random(5);
+  int refused = 0, unreadable = 0, taken = 0;
+  for (std::uint32_t i = 0; i < 1200; ++i) {
+    std::string bad = bytes;
+    for (std::uint32_t k = 0; k <= i % 3; ++k) {
+      const std::size_t at = random() % bad.size();
+      switch (i < 600 ? 1 : random() % 4) {
+        case 0:
+          bad[at] = static_cast<char>(random());
+          break;
+        case 1:
+          bad[at] = static_cast<char>(bad[at] ^ (1 << random() % 8));
+          break;
+        case 2:
+          bad.erase(at, 1 + random() % 16);
+          break;
+        default:
+          for (std::size_t b = at; b < std::min(bad.size(), at + 8); ++b)
+            bad[b] = static_cast<char>(random() % 2 != 0 ? -1 : 0);
+      }
+    }
+    Snapshot snapshot = good;
+    try {
+      snapshot.state = read_state(bad);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::bad_input);
+      ++unreadable;
+      continue;
+    }
+    try {
+      target.restore(snapshot);
+      ++taken;  // a number that any run may have
+      before = target.deep_hash();
+    } catch (const Error& error) {
+      ++refused;
+      EXPECT_NE(error.code(), ErrorCode::internal) << error.what();
+      ASSERT_EQ(target.deep_hash(), before) << "a refused state must change nothing: " << error.what();
+    }
+  }
+  std::printf("%d unreadable, %d refused, %d taken up\n", unreadable, refused, taken);
+  EXPECT_GT(unreadable, 50);
+  EXPECT_GT(refused, 20);
+  target.restore(good);
+  EXPECT_EQ(target.deep_hash(), source->deep_hash());
+  target.advance(64);
+  source->advance(64);
+  EXPECT_EQ(target.deep_hash(), source->deep_hash());
+}
+
+TEST(DamagedState, what_is_refused_is_named) {
+  const Scene scene = rich_scene();
+  const auto source = rich_simulation(scene);
+  Simulation target(scene, open_backend("cpu"));
+  const auto refusal = [&](auto&& damage) {
+    Snapshot snapshot = source->snapshot();
+    damage(snapshot.state);
+    const std::uint64_t before = target.deep_hash();
+    const std::string message = test::error_of([&] { target.restore(snapshot); });
+    EXPECT_EQ(target.deep_hash(), before) << message;
+    return message;
+  };
+  const auto has = [](const std::string& message, const char* part) {
+    EXPECT_NE(message.find(part), std::string::npos) << message;
+  };
+  has(refusal([](RunState& s) { s.cuts[0].body = 7; }), "cuts");
+  has(refusal([](RunState& s) { s.cuts[0].edges[{0, 1000000}] = 0.5; }), "edge");
+  has(refusal([](RunState& s) { s.cuts.clear(); }), "");
+  has(refusal([](RunState& s) { s.tears.push_back({0, 0, 1}); }), "tears");
+  has(refusal([](RunState& s) { s.seeds = {{0, 0, 0}}; }), "regions");
+  has(refusal([](RunState& s) { s.blades.fronts.begin()->second.begin()->second.points[0].carried.cell = 1 << 30; }), "traces");
+  has(refusal([](RunState& s) { s.blades.fronts.begin()->second.begin()->second.levels = 60; }), "traces");
+  has(refusal([](RunState& s) { s.forces[0].body = 3; }), "force");
+  has(refusal([](RunState& s) { s.forces[0].force[1] = NAN; }), "force");
+  has(refusal([](RunState& s) { s.relaxation.u = {1, 2, 3}; }), "relax");
+  has(refusal([](RunState& s) { s.clock.dt = 0; }), "step");
+  has(refusal([](RunState& s) { s.kept->clock.step = -1; }), "step");
+  has(refusal([](RunState& s) { (*s.tool)[0] = INFINITY; }), "tool");
+  has(refusal([](RunState& s) { s.pending.moves[0].to[0][1][2] = NAN; }), "blade");
+}
+
+}  // namespace
+}  // namespace pliant
