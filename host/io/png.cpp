@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <climits>
-
 #include "io/atomic_file.h"
 #include "pliant/error.h"
 
@@ -12,20 +10,11 @@
 #pragma GCC diagnostic ignored "-Wshadow"
 #pragma GCC diagnostic ignored "-Wunused-function"
 #pragma GCC diagnostic ignored "-Wmissing-field-initializers"
-#define STB_IMAGE_STATIC
 #define STB_IMAGE_WRITE_STATIC
-#define STBI_ONLY_PNG
-#define STBI_NO_STDIO
 #define STBI_WRITE_NO_STDIO
-#define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_IMPLEMENTATION
-#include <stb/stb_image.h>
 #include <stb/stb_image_write.h>
 #pragma GCC diagnostic pop
-
-#include <fstream>
-#include <iterator>
-#include <memory>
 
 namespace pliant {
 
@@ -46,23 +35,6 @@ void write_png(const std::filesystem::path& file, const Image& image) {
   }
   out.write(bytes);
   out.commit();
-}
-
-Image read_png(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  if (!in.is_open() || bytes.size() > INT_MAX)
-    throw Error(ErrorCode::bad_input, fmt::format("{}: cannot be read as a picture", file.string()));
-  Image image;
-  int channels = 0;
-  const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
-      stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(bytes.data()), static_cast<int>(bytes.size()), &image.width,
-                            &image.height, &channels, 3),
-      stbi_image_free);
-  if (!pixels) throw Error(ErrorCode::bad_input, fmt::format("{}: no PNG file ({})", file.string(), stbi_failure_reason()));
-  const auto size = 3 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
-  image.rgb.assign(pixels.get(), pixels.get() + size);
-  return image;
 }
 
 }  // namespace pliant

@@ -10,7 +10,4 @@ namespace pliant {
 /// (internal) when the image holds another number of bytes than its size says.
 void write_png(const std::filesystem::path& file, const Image& image);
 
-/// Read it again, whatever its number of channels. Throws Error when the file is missing or no PNG.
-Image read_png(const std::filesystem::path& file);
-
 }  // namespace pliant

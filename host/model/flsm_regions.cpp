@@ -278,25 +278,4 @@ FlsmRegions find_regions(const LinkedLattice& lattice, int width) {
   return regions;
 }
 
-std::vector<RegionEntry> region_by_search(const LinkedLattice& lattice, std::int32_t centre, int width) {
-  check_width(width);
-  std::map<std::int32_t, std::array<std::int32_t, 3>> region{{centre, {0, 0, 0}}};
-  std::set<std::int32_t> front{centre};
-  while (!front.empty()) {
-    const std::int32_t i = *front.begin();
-    front.erase(front.begin());
-    for (const std::int32_t n : lattice.link[i]) {
-      if (n < 0 || region.contains(n)) continue;
-      std::array<std::int32_t, 3> offset{};
-      for (int a = 0; a < 3; ++a) offset[a] = lattice.index[n][a] - lattice.index[centre][a];
-      if (std::max({std::abs(offset[0]), std::abs(offset[1]), std::abs(offset[2])}) > width) continue;
-      region.emplace(n, offset);
-      front.insert(n);
-    }
-  }
-  std::vector<RegionEntry> list;
-  for (const auto& [node, offset] : region) list.push_back({node, offset});
-  return list;
-}
-
 }  // namespace pliant

@@ -44,7 +44,4 @@ void add_fillers(LinkedLattice& lattice, const FlsmRegions& regions);
 /// Find all regions; linear in the nodes. `width` is 1 to 5. All lists are over nodes, without fillers.
 FlsmRegions find_regions(const LinkedLattice& lattice, int width);
 
-/// The nodes of one region by breadth-first search, with their offsets, ascending by node: the definition.
-std::vector<RegionEntry> region_by_search(const LinkedLattice& lattice, std::int32_t centre, int width);
-
 }  // namespace pliant

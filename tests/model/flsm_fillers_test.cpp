@@ -5,6 +5,7 @@
 #include <string>
 
 #include "flsm_shapes.h"
+#include "model/region_by_search.h"
 
 namespace pliant {
 namespace {

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "flsm_shapes.h"
+#include "model/region_by_search.h"
 #include "support/error_of.h"
 
 namespace pliant {

@@ -112,7 +112,6 @@ void CutSurface::update(const CutTopology& topology, const std::vector<std::int3
 }
 
 void CutSurface::update(const std::vector<CutGridCell>& cells) {
-  const std::size_t known = changes_.vertices.size() + changes_.triangles.size();
   overlay::Overlay& overlay = base_->overlay;
   const std::vector<CutGridCell> places = base_->one_per_place(cells);
   std::vector<CutGridCell> all = base_->air.update(places);
@@ -127,7 +126,6 @@ void CutSurface::update(const std::vector<CutGridCell>& cells) {
   }
   for (const auto& [v, carrier] : overlay.moved_vertices) hang(v, carrier);
   for (const CutGridCell& cell : cells) hang_outside(cell);
-  if (changes_.vertices.size() + changes_.triangles.size() > known) ++version_;
 }
 
 SurfaceChanges CutSurface::take_changes() {

@@ -52,8 +52,6 @@ class CutSurface {
   /// Where a vertex hangs: nodes of `topology` (numbers of CutElements) and trilinear weights, which add up to 1.
   void embedding(const CutTopology& topology, std::int32_t vertex, std::array<std::int32_t, 8>& nodes,
                  std::array<double, 8>& weights) const;
-  /// Counts the updates that changed anything.
-  [[nodiscard]] std::int64_t topology_version() const { return version_; }
   /// What differs from when this was called last, or from the surface given. Vertices change when they are new or hang
   /// elsewhere.
   [[nodiscard]] SurfaceChanges take_changes();
@@ -80,7 +78,6 @@ class CutSurface {
   std::vector<Owner> owners_;
   std::unordered_map<overlay::VertexKey, std::int32_t, overlay::VertexKeyHash> vertex_of_;
   std::unordered_map<std::int32_t, std::vector<std::int32_t>> piece_slots_, cap_slots_;
-  std::int64_t version_ = 0;
   SurfaceChanges changes_;  ///< in any order, perhaps several times, perhaps gone again
 };
 

@@ -110,11 +110,9 @@ void CutTopology::share(std::int32_t cell, CellCut& cut) const {
     const SamplePlace& place = sample_places()[std::countr_zero(rest)];
     samples[cut.label[shape.tets[place.tet][corner_at(tets[place.tet], place.weight)]]] += 1.0 / 64;
   }
-  std::uint32_t held = probe_ ? probe_(*this, cell, cut) : ~0U;
-  for (int k = 0; k < cut.components; ++k) held |= samples[k] > 0 ? 1U << k : 0U;
   double sum = 0;
   for (int k = 0; k < cut.components; ++k) {
-    cut.share[k] = (held >> k & 1) ? samples[k] + kUnseen * volume[k] : 0;
+    cut.share[k] = samples[k] + kUnseen * volume[k];
     sum += cut.share[k];
   }
   if (sum == 0) cut.share[std::max_element(volume.begin(), volume.end()) - volume.begin()] = sum = 1;

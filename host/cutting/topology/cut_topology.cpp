@@ -12,8 +12,7 @@
 
 namespace pliant {
 
-CutTopology::CutTopology(std::shared_ptr<const CutMesh> mesh, MaterialProbe probe)
-    : mesh_(std::move(mesh)), probe_(std::move(probe)) {
+CutTopology::CutTopology(std::shared_ptr<const CutMesh> mesh) : mesh_(std::move(mesh)) {
   const auto nodes = static_cast<std::int32_t>(mesh_->rest.size());
   const int corners = mesh_->shape->corners;
   node_offset_.assign(mesh_->rest.size() + 1, 0);

@@ -74,15 +74,10 @@ struct CutEdit {
   [[nodiscard]] bool changed_elements() const { return !node_from.empty(); }
 };
 
-class CutTopology;
-/// Says for a cell with samples outside the material which components hold material that no sample saw (bit k: component k),
-/// for instance a thin wedge of the surface. Has to be a function of the cut edges alone.
-using MaterialProbe = std::function<std::uint32_t(const CutTopology&, std::int32_t cell, const CellCut&)>;
-
 class CutTopology {
  public:
-  /// Throws Error if an index is out of range. Without a probe every component counts as holding material.
-  explicit CutTopology(std::shared_ptr<const CutMesh> mesh, MaterialProbe probe = {});
+  /// Throws Error if an index is out of range.
+  explicit CutTopology(std::shared_ptr<const CutMesh> mesh);
   CutTopology(const CutTopology&) = delete;
   CutTopology& operator=(const CutTopology&) = delete;
 
@@ -154,7 +149,6 @@ class CutTopology {
   void number_nodes(const OldCuts& old, const std::vector<std::array<std::int32_t, 8>>& old_nodes, CutEdit& edit);
 
   std::shared_ptr<const CutMesh> mesh_;
-  MaterialProbe probe_;
   std::vector<std::int32_t> node_offset_, node_cells_;  ///< cells at each node
   std::vector<std::int32_t> face_offset_, face_cells_;  ///< cells across each face of each cell
   CutEdges edges_;
