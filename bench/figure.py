@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """The pictures of docs/images, from the shipped scenes: python3 bench/figure.py PLIANT [--out DIR] [--only NAME,...] [--quick]
 
-  parameters  the source's figure: rows ratio 0.7 and 0.3; columns the parts of the body, stiff (lambda = mu = 200000 Pa,
-              alpha = 0.8) and soft (20000 Pa, 0.5), under the same force
+  parameters  a figure of the Hybrid Deformation Model: rows ratio 0.7 and 0.3; columns the parts of the body, stiff (lambda = mu =
+              200000 Pa, alpha = 0.8) and soft (20000 Pa, 0.5), under the same force
   bunny       four moments of scenes/bunny.json
   liver       four moments of scenes/liver.json, coloured by von Mises stress
   cut         four moments of scenes/cut_liver.json: at rest, stretched, half cut, cut through

@@ -1,5 +1,5 @@
-// Goals of the interface nodes: flsm_goals takes the mean displacement g - X over the regions that hold the node (the source's equation
-// 6), and keeps the one before beside it, both less the first texel of flsm_reference.
+// Goals of the interface nodes: flsm_goals takes the mean displacement g - X over the regions that hold the node (Hybrid
+// Deformation Model, equation 6), and keeps the one before beside it, both less the first texel of flsm_reference.
 // flsm_inverse_holders: [regions] 1 / number of regions that hold the node. flsm_goals: [interface][2] blocks [m]. region_base: region
 // of the first interface node; the other buffers as in flsm_goal_sum.
 #include "arith.cl"

@@ -1,4 +1,4 @@
-// The extra force on interface nodes, F' = beta (g - x) (the source's equation 7), added to node_load.
+// The extra force on interface nodes, F' = beta (g - x) (Hybrid Deformation Model, equation 7), added to node_load.
 // With goals of a step of shape matching H = substeps h ago: held, or EXTRAPOLATED along g - (g before).
 // flsm_slot: [regions]; flsm_goals: [interface][2] blocks [m]; flsm_beta: [interface] [N/m]. step_params[6]: steps since the run began,
 // modulo a multiple of `substeps`, at the first step of the batch.

@@ -1,5 +1,5 @@
 // Third pass from nodes to regions: sums of plates along z links and the nodes that no such path reaches; then the region's rigid
-// transformation T (the source's equations 1 to 5).
+// transformation T (Hybrid Deformation Model, equations 1 to 5; Rivers and James 2007).
 //
 // With weights m (in units that make the moments plain numbers), d the centroid at rest minus the centre of the window in cells, and o the
 // grid offset of a node from the centre: A = sum m (x - c) (X - C)^T = A_0 + sum m u o^T - (sum m u) d^T, R its rotation,

@@ -1,4 +1,5 @@
-// Corner forces of linear tetrahedra: f_a = V P grad N_a (total Lagrangian, one point; the source's equations 10 to 13).
+// Corner forces of linear tetrahedra: f_a = V P grad N_a (total Lagrangian, one point; Miller et al. 2007;
+// Hybrid Deformation Model, equations 10 to 13).
 // tet_nodes: [tiles][4][16] node indices. tet_data: [tiles][10][16] grad N_1..3 [1/m], V [m^3]; grad N_0 is minus their sum.
 // corner_force: [tiles][4 corners][3][16] from corner_base on [N]. fault: step of the first fault per element, from fault_base on.
 // AVERAGED: the volumetric stress is the mean of the four nodal pressures (tet4anp) instead of p1 (J - 1).

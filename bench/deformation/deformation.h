@@ -1,5 +1,5 @@
-// `pliant bench deformation`: what a step of hybrid, finite-element and shape-matching bodies costs, beside the source's
-// figures.
+// `pliant bench deformation`: what a step of hybrid, finite-element and shape-matching bodies costs, beside the
+// published times (Hybrid Deformation Model, docs/references.md).
 #pragma once
 #include <cstdint>
 #include <filesystem>

@@ -1,4 +1,4 @@
-// The source's table of execution times with its own scenes: hybrid as shipped, and the same body of one kind only.
+// The table of execution times of the Hybrid Deformation Model (docs/references.md): hybrid as shipped, and one kind only.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ constexpr double kLimit = 0.2;  // [ms] per step of each scene
 
 struct Case {
   const char* scene;
-  double source_ms;  // total cost of a step of the source's program on its machine
+  double source_ms;  // published total cost of a step, on the machine of its authors
 };
 constexpr Case kCases[] = {{"bunny", 13.5}, {"apple", 16.2}, {"liver", 20.4}, {"kidney", 24.6}};
 

@@ -1,4 +1,4 @@
-"""`pliant bench deformation`: the source's scenes, what a node costs on larger bodies, and the error that the hybrid pays."""
+"""`pliant bench deformation`: the published scenes, what a node costs on larger bodies, and the error that the hybrid pays."""
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
@@ -47,7 +47,7 @@ class Result:
         return {k: v for k, v in groups.items() if len({r["backend"] for r in v}) > 1}
 
 
-# --- the source's scenes -------------------------------------------------------------------------------------------------------
+# --- the published scenes ----------------------------------------------------------------------------------------------------
 
 def bars(r, axes, backend, key, low, high):
     axes.set_xscale("log")

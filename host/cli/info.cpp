@@ -5,6 +5,8 @@
 #include "backends/backends.h"
 #include "cli/cli.h"
 #include "pliant/error.h"
+#include "schedule/build_program.h"
+#include "schedule/surface_program.h"
 #include "simulation/simulation.h"
 
 namespace pliant::cli {
@@ -205,8 +207,10 @@ int info(const Options& options) {
   } catch (const Error& error) {  // a scene too large for this machine, or with an error further on, may still be asked about
     not_iterated = error.what();
   }
-  Info(options, scene, *model)
-      .print_all(build_program(*model, {scene.integrator, SimulationOptions{}.batch_steps}), iterated_dt, dt, not_iterated);
+  Program program = build_program(*model, {scene.integrator, SimulationOptions{}.batch_steps});
+  Program surface = surface_program(model->surface, program);
+  for (Buffer& buffer : surface.buffers) program.add(std::move(buffer));
+  Info(options, scene, *model).print_all(program, iterated_dt, dt, not_iterated);
   return 0;
 }
 

@@ -1,4 +1,4 @@
-// Decomposition ("subdivision" in the source): crossed tetrahedra become smaller ones whose faces follow the cut.
+// Decomposition ("subdivision" in Mendoza et al.): crossed tetrahedra become smaller ones whose faces follow the cut.
 #include <algorithm>
 #include <map>
 #include <numeric>

@@ -1,4 +1,4 @@
-// Removal ("destruction" in the source): what the blade touches goes, and its mass with it.
+// Removal ("destruction" in Mendoza et al.): what the blade touches goes, and its mass with it.
 #include <algorithm>
 
 #include "cutting_methods/sweep_probe.h"

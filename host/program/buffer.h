@@ -1,4 +1,4 @@
-// The table of named texel buffers. Allocation, hashing, dumping, NaN-filling and comparison are all driven by it.
+// The table of named texel buffers. Allocation, checks, hashing and comparison are all driven by it.
 #pragma once
 #include <cstddef>
 #include <cstdint>

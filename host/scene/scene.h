@@ -97,7 +97,7 @@ struct Pressure {
 enum class ModelType { tled, hybrid, flsm };
 const char* to_string(ModelType type);
 
-/// The key "model" of a body. FLSM: Rivers and James 2007; hybrid: the source's equations 1 to 9.
+/// The key "model" of a body. FLSM: Rivers and James 2007; hybrid: Hybrid Deformation Model, eq. 1 to 9.
 struct DeformationModel {
   ModelType type = ModelType::tled;
   double ratio = 0.5;         ///< hybrid: share of the body's nodes in the operational region, in [0, 1]

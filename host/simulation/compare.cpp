@@ -30,12 +30,14 @@ class Lockstep {
   Lockstep(Simulation& a, Simulation& b, const CompareOptions& options) : a_(a), b_(b), options_(options) {
     require_comparable();
     result_.passes = static_cast<std::int32_t>(a.program().step.size());
-    for (const Buffer& buffer : a.program().buffers) result_.buffers += buffer.role != BufferRole::constant;
+    for (const Program* program : {&a.program(), &a.surface_program()}) {
+      for (const Buffer& buffer : program->buffers) result_.buffers += buffer.role != BufferRole::constant;
+    }
   }
 
   ComparisonResult run() {
     const Place start{a_.step(), -1, "host", "initial state"};
-    if (!look(start, true) || !same_host(start)) return finish();
+    if (!look(start, true) || !look_at(a_.surface_program(), start, true) || !same_host(start)) return finish();
     const std::int64_t first = a_.step();
     while (result_.steps < options_.steps && !a_.divergence() && !a_.at_equilibrium()) {
       const std::int32_t n = a_.next_batch(options_.steps - result_.steps);
@@ -82,7 +84,8 @@ class Lockstep {
     a_.end_batch(steps);
     b_.end_batch(steps);
     const Place end{first + steps, -1, "host", "after the batch"};
-    return look(end, false) && same_host(end);
+    for (Simulation* s : {&a_, &b_}) s->backend().run(s->surface_program().step, 0, 1);
+    return look(end, false) && look_at(a_.surface_program(), end, false) && same_host(end);
   }
 
   bool step_by_pass(std::int64_t first, std::int32_t i) {
@@ -106,13 +109,15 @@ class Lockstep {
   }
 
   /// Compare the buffers; remembers the first difference and returns false when there is one.
-  bool look(const Place& place, bool constants) {
-    const auto& buffers = a_.program().buffers;
-    for (std::size_t id = 0; id < buffers.size(); ++id) {
-      const Buffer& buffer = buffers[id];
+  bool look(const Place& place, bool constants) { return look_at(a_.program(), place, constants); }
+
+  bool look_at(const Program& program, const Place& place, bool constants) {
+    for (std::size_t i = 0; i < program.buffers.size(); ++i) {
+      const Buffer& buffer = program.buffers[i];
       if (buffer.role == BufferRole::constant && !constants) continue;
-      const auto bytes_a = a_.backend().read_bytes(static_cast<BufferId>(id));
-      const auto bytes_b = b_.backend().read_bytes(static_cast<BufferId>(id));
+      const BufferId id = program.first + static_cast<BufferId>(i);
+      const auto bytes_a = a_.backend().read_bytes(id);
+      const auto bytes_b = b_.backend().read_bytes(id);
       result_.values_compared += static_cast<std::int64_t>(buffer.values());
       if (bytes_a.size() == bytes_b.size() &&
           (bytes_a.empty() || std::memcmp(bytes_a.data(), bytes_b.data(), bytes_a.size()) == 0)) {

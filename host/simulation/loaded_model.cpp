@@ -29,7 +29,13 @@ void LoadedModel::update_surface(Program surface, bool patched) {
   // What is patched says itself what differs: of the rows before only kind and size are asked for.
   surface_ = std::move(surface);
   Program before;
-  for (const Buffer& buffer : surface_.buffers) before.buffers.push_back({buffer.name, buffer.type, 0, buffer.role});
+  for (const Buffer& buffer : surface_.buffers) {
+    Buffer row;
+    row.name = buffer.name;
+    row.type = buffer.type;
+    row.role = buffer.role;
+    before.buffers.push_back(std::move(row));
+  }
   for (std::size_t i = 0; patched && i < before.buffers.size(); ++i) before.buffers[i].count = surface_counts_.at(i);
   backend_->extend(patched ? &before : nullptr, surface_);
   for (Buffer& buffer : surface_.buffers) buffer.changed.reset();  // it says nothing about the next surface

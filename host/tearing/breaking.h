@@ -1,5 +1,5 @@
-// The physical breaking criterion of the source (Mendoza and Laugier): what stress an edge of sharpness kappa makes, and when
-// the material gives way to it.
+// The physical breaking criterion of Mendoza et al. (docs/references.md): what stress an edge of sharpness kappa makes, and
+// when the material gives way to it.
 //
 //   cutting traction on a surface with normal n:   t = (sigma n + tau s) / kappa, normal stress sigma, shear stress tau along s
 //   T = stress / kappa, principal stresses sigma_1, sigma_2, sigma_3;  cutting stress sigma_c = sigma_max / zeta;  it breaks if
@@ -15,7 +15,7 @@ namespace pliant {
 
 struct BreakingLaw {
   double sharpness = 1;  ///< kappa, the smaller the sharper; 1: no blade
-  double integrity = 1;  ///< zeta in (0, 1], what earlier loads have left ("damage" in the source); 1: intact
+  double integrity = 1;  ///< zeta in (0, 1], what earlier loads have left ("damage" in Mendoza et al.); 1: intact
   double toughness = 0;  ///< K_I [Pa]
 };
 

@@ -1,4 +1,4 @@
-// The methods of the sources that Pliant's cutting is compared with: removal of the crossed elements, decomposition of them
+// Methods that Pliant's cutting is compared with (docs/references.md): removal of the crossed elements, decomposition of them
 // into smaller tetrahedra, and separation along existing faces. Each works on plain elements and makes a new mesh; the surface
 // of such a mesh is the boundary of its elements. docs/cutting.md says what each loses.
 #pragma once

@@ -1,5 +1,7 @@
-// A scene in code: plain data in SI units, with the words and defaults of the scene file (docs/scene.md). Nothing is checked
-// until a World is made of it; messages then name the place as in a scene file, for example "/bodies/0/material/young".
+// A scene in code: plain data in SI units, with the words of the scene file (docs/scene.md). Defaults are those of the file
+// where it has one; young, poisson, lattice_nodes and the duration of a curve are required there and have a value here. A body
+// with a volume_file of tetrahedra has to say its element. Nothing is checked until a World is made of it; messages then name
+// the place as in a scene file, for example "/bodies/0/material/young".
 #pragma once
 #include <array>
 #include <cstdint>
@@ -74,39 +76,38 @@ struct MaterialSpec {
 
 /// A part of a body with another material; later entries win where they overlap.
 struct InclusionSpec {
-  RegionSpec where;       ///< which nodes (of an inclusion: elements; of a pressure: triangles)
-  MaterialSpec material;  ///< of all elements, or of the inclusion
+  RegionSpec where;       ///< which elements
+  MaterialSpec material;  ///< of these elements
 };
 
 /// Nodes that stay where they are, in the axes named.
 struct FixedSpec {
-  RegionSpec where;          ///< which nodes (of an inclusion: elements; of a pressure: triangles)
+  RegionSpec where;          ///< which nodes
   std::string axes = "xyz";  ///< one to three letters of xyz
 };
 
 /// Nodes that move as told.
 struct PrescribedSpec {
-  RegionSpec where;                                   ///< which nodes (of an inclusion: elements; of a pressure: triangles)
+  RegionSpec where;                                   ///< which nodes
   std::array<std::optional<double>, 3> displacement;  ///< [m]; an absent component stays free
   CurveSpec curve;                                    ///< the factor over time
 };
 
 /// A force [N] shared equally by the chosen nodes.
 struct ForceSpec {
-  RegionSpec where;  ///< which nodes (of an inclusion: elements; of a pressure: triangles)
+  RegionSpec where;  ///< which nodes
   Vec3d force{};     ///< total [N] at factor 1
   CurveSpec curve;   ///< the factor over time
 };
 
 /// Follower pressure [Pa] along the inward normal of the deformed surface.
 struct PressureSpec {
-  RegionSpec where;     ///< which nodes (of an inclusion: elements; of a pressure: triangles)
+  RegionSpec where;     ///< which triangles of the surface
   double pressure = 0;  ///< [Pa] at factor 1
   CurveSpec curve;      ///< the factor over time
 };
 
-/// How the nodes of a body move: finite elements (tled), shape matching (flsm), or both (hybrid). The comments of docs/scene.md
-/// apply.
+/// How the nodes of a body move: finite elements (tled), shape matching (flsm), or both (hybrid), as docs/scene.md describes.
 struct ModelSpec {
   std::string type = "tled";    ///< tled, hybrid or flsm
   double ratio = 0.5;           ///< hybrid: share of the nodes that finite elements move, in [0, 1]
@@ -131,7 +132,7 @@ struct BodySpec {
   double lattice_spacing = 0;              ///< edge of a cell [m]; 0: from lattice_nodes
   std::int64_t lattice_nodes = 2000;       ///< about this many nodes, where no spacing is given
   std::string element = "hex8";            ///< tet4, tet4anp, hex8 or hex8full
-  MaterialSpec material;                   ///< of all elements, or of the inclusion
+  MaterialSpec material;                   ///< of all elements that are in no inclusion
   ModelSpec model;                         ///< finite elements, shape matching or both
   std::vector<InclusionSpec> inclusions;   ///< parts of another material
   std::vector<FixedSpec> fixed;            ///< nodes that stay

@@ -157,7 +157,7 @@ class PLIANT_API World {
   /// Cut all bodies where these triangles [m] cross them now. A triangle without area cuts nothing.
   CutResult cut(const std::vector<std::array<Vec3d, 3>>& triangles);
   /// Move a blade of any name to the segment from `a` to `b` [m], which must differ (usage); it cuts what it sweeps over since
-  /// its last place, measured from where the tissue has carried that. Its first call only puts it there.
+  /// its last place, measured from where the tissue has moved that place. Its first call only puts it there.
   CutResult move_blade(const std::string& blade, const Vec3d& a, const Vec3d& b);
   /// Take it out of the tissue: the next move_blade puts it somewhere else without a cut. Throws Error (usage) if there is no
   /// such blade.
@@ -166,10 +166,11 @@ class PLIANT_API World {
   /// worker. Throws Error (usage) if there is no such body.
   [[nodiscard]] std::int64_t pieces(std::size_t body) const;
 
-  /// Write a checkpoint; `pliant run --resume` reads it too. Tools and the places of blades are not part of it; cuts are.
-  /// Throws Error: io.
+  /// Write a checkpoint; `pliant run --resume` reads it too. Cuts and the places of blades are part of it, grabs and pushes are
+  /// not. Throws Error: io.
   void save(const std::string& file) const;
-  /// Go to the state of a checkpoint of the same scene. Throws Error: io, input (it belongs to another scene).
+  /// Go to the state of a checkpoint of the same scene. Blades are lifted: the next move_blade puts them somewhere without a
+  /// cut. Throws Error: io, input (it belongs to another scene).
   void load(const std::string& file);
   /// Back to the start, without cuts, also after a divergence or the loss of the device (the backend is opened anew). Tools are
   /// cleared and blades lifted.

@@ -1,4 +1,4 @@
-"""What `pliant bench deformation` writes: its members, the source's sizes, the same bits on bit-exact backends; and its report, on these
+"""What `pliant bench deformation` writes: its members, the published sizes, the same bits on bit-exact backends; and its report, on these
 rows and on rows made up here. No time is looked at."""
 import json
 import math

@@ -49,15 +49,18 @@ void expect_patched_as_fresh(const Scene& scene, const char* backend, const Vec3
     restore_checkpoint(fresh, take_checkpoint(s), "saved");
     ASSERT_EQ(fresh.topology_version(), s.topology_version());
     expect_same_programs(s.program(), fresh.program());
+    expect_same_programs(s.surface_program(), fresh.surface_program());
     EXPECT_EQ(s.surface_positions(), fresh.surface_positions());
     EXPECT_EQ(s.model().surface.weights, fresh.model().surface.weights);
     EXPECT_EQ(s.model().surface.nodes, fresh.model().surface.nodes);
     EXPECT_EQ(s.model().surface.triangles, fresh.model().surface.triangles);
-    for (std::size_t i = 0; i < s.program().buffers.size(); ++i) {
-      const Buffer& buffer = s.program().buffers[i];
-      if (buffer.role != BufferRole::constant && buffer.name != "node_u" && buffer.name != "node_w") continue;
-      const auto id = static_cast<BufferId>(i);
-      EXPECT_EQ(s.backend().read_bytes(id), fresh.backend().read_bytes(id)) << buffer.name;
+    for (const Program* program : {&s.program(), &s.surface_program()}) {
+      for (std::size_t i = 0; i < program->buffers.size(); ++i) {
+        const Buffer& buffer = program->buffers[i];
+        if (buffer.role != BufferRole::constant && buffer.name != "node_u" && buffer.name != "node_w") continue;
+        const BufferId id = program->first + static_cast<BufferId>(i);
+        EXPECT_EQ(s.backend().read_bytes(id), fresh.backend().read_bytes(id)) << buffer.name;
+      }
     }
   }
   EXPECT_GE(s.topology_version(), 4);
