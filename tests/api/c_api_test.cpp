@@ -9,6 +9,7 @@
 #include "api/c_handles.h"
 #include "pliant/pliant.h"
 #include "scenes.h"
+#include "support/source_dir.h"
 
 namespace pliant {
 namespace {
@@ -242,8 +243,8 @@ TEST_F(CApi, ALostDeviceLeavesTheLastFrame) {
   const auto left = std::make_shared<std::atomic<int>>(1 << 30);
   std::vector<SurfaceSpec> surfaces{box};
   Scene scene = parse_scene(
-      R"({"format": "pliant-scene/1", "bodies": [{"name": "cube", "surface": ")" PLIANT_SOURCE_DIR
-      R"(/scenes/meshes/cube.obj", "lattice": {"spacing": 0.02}, "material": {"young": 3000, "poisson": 0.4}, "velocity": [1, 0, 0]}]})",
+      R"({"format": "pliant-scene/1", "bodies": [{"name": "cube", "surface": ")" + test::source_dir() +
+          R"(/scenes/meshes/cube.obj", "lattice": {"spacing": 0.02}, "material": {"young": 3000, "poisson": 0.4}, "velocity": [1, 0, 0]}]})",
       "");
   const pliant_world lost{api::Handles::all().add(std::make_shared<api::CWorld>(
       WorldAccess::make(std::move(scene), [left](std::string*, std::int64_t) -> std::unique_ptr<Backend> {

@@ -3,6 +3,7 @@
 #include <thread>
 
 #include "scenes.h"
+#include "support/source_dir.h"
 
 namespace pliant {
 namespace {
@@ -104,8 +105,8 @@ struct Losing {
     return std::make_unique<test::FaultyBackend>(open_backend("cpu"), left);
   });
   static Scene scene() {
-    return parse_scene(R"({"format": "pliant-scene/1", "bodies": [{"name": "cube", "surface": ")" PLIANT_SOURCE_DIR
-                       R"(/scenes/meshes/cube.obj", "lattice": {"spacing": 0.02},
+    return parse_scene(R"({"format": "pliant-scene/1", "bodies": [{"name": "cube", "surface": ")" + test::source_dir() +
+                           R"(/scenes/meshes/cube.obj", "lattice": {"spacing": 0.02},
       "material": {"young": 3000, "poisson": 0.4}, "velocity": [1, 0, 0]}]})",
                        "");
   }

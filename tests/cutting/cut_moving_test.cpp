@@ -5,6 +5,7 @@
 #include "cutting/cut_bodies.h"
 #include "cutting/cut_scenes.h"
 #include "scene/scene.h"
+#include "support/source_dir.h"
 
 namespace pliant {
 namespace {
@@ -84,7 +85,7 @@ TEST(CutMoving, a_deforming_block_falls_into_two_pieces) {
 
 TEST(CutMoving, a_liver_that_a_tool_indents_falls_into_two_pieces) {
   for (const double lean : {0.0, 0.02}) {
-    Scene scene = load_scene(PLIANT_SOURCE_DIR "/scenes/liver.json");
+    Scene scene = load_scene(test::source_dir() + "/scenes/liver.json");
     scene.blades.push_back(
         blade("scalpel", {{0, 0.005, 0.1, -0.09, 0.005 + lean, 0.1, 0.09}, {0.6, 0.015, -0.1, -0.09, 0.015, -0.1, 0.09}}));
     Simulation s(scene, open_backend("cpu"));

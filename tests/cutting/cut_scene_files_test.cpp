@@ -11,6 +11,7 @@
 #include "cutting/cut_scenes.h"
 #include "simulation/compare.h"
 #include "solver/scenes.h"
+#include "support/source_dir.h"
 
 namespace pliant {
 namespace {
@@ -24,7 +25,7 @@ class CutScene : public ::testing::TestWithParam<const char*> {
   void SetUp() override {
     if (std::string(GetParam()) == "cut_bunny" && !std::filesystem::exists(kBunny)) GTEST_SKIP() << "no " << kBunny;
   }
-  [[nodiscard]] static Scene scene() { return load_scene(std::string(PLIANT_SOURCE_DIR) + "/scenes/" + GetParam() + ".json"); }
+  [[nodiscard]] static Scene scene() { return load_scene(test::source_dir() + "/scenes/" + GetParam() + ".json"); }
 };
 INSTANTIATE_TEST_SUITE_P(Cutting, CutScene, ::testing::Values("cut_liver", "cut_bunny", "cut_block_progressive", "slice_many"),
                          [](const auto& name) { return std::string(name.param); });

@@ -10,13 +10,14 @@
 #include <vector>
 
 #include "cpu_ref/registry.h"
+#include "support/source_dir.h"
 
 namespace pliant {
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path root = PLIANT_SOURCE_DIR;
+const fs::path root = test::source_dir();
 
 std::string text_of(const fs::path& path) {
   std::ifstream file(path);

@@ -9,6 +9,7 @@
 #include "mesh_io/read_volume_parts.h"
 #include "pliant/error.h"
 #include "support/error_of.h"
+#include "support/source_dir.h"
 #include "support/temp_folder.h"
 #include "volume_files.h"
 
@@ -287,7 +288,7 @@ TEST(BoundaryTriangles, EnclosesTheVolumeOutwards) {
 }
 
 TEST(ShippedMeshes, FillTheirBoxes) {
-  const std::filesystem::path meshes = std::filesystem::path(PLIANT_SOURCE_DIR) / "scenes" / "meshes";
+  const std::filesystem::path meshes = std::filesystem::path(test::source_dir()) / "scenes" / "meshes";
   const VolumeMesh beam = read_volume(meshes / "beam_tet.msh");
   EXPECT_EQ(beam.tets.size(), 1080u);
   EXPECT_NEAR(total_volume(beam), 0.1 * 0.02 * 0.02, 1e-12);
@@ -303,7 +304,7 @@ TEST(ShippedMeshes, FillTheirBoxes) {
 TEST(RealMeshes, AreReadAndClosed) {
   const char* set = std::getenv("PLIANT_TEST_MESHES");
   const std::filesystem::path folder =
-      set != nullptr ? std::filesystem::path(set) : std::filesystem::path(PLIANT_SOURCE_DIR) / ".." / "shared" / "meshes";
+      set != nullptr ? std::filesystem::path(set) : std::filesystem::path(test::source_dir()) / ".." / "shared" / "meshes";
   if (!std::filesystem::exists(folder / "liver-tetra.msh")) {
     GTEST_SKIP() << "real meshes are absent; set PLIANT_TEST_MESHES to their folder";
   }

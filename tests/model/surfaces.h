@@ -9,6 +9,7 @@
 #include "geometry/mesh.h"
 #include "scenes/generate/surface_nets.h"
 #include "support/error_of.h"
+#include "support/source_dir.h"
 
 namespace pliant::test {
 
@@ -50,14 +51,14 @@ inline Vec3d random_point(std::mt19937& random, const Vec3d& low, const Vec3d& h
 inline const char* kBunny = "/usr/share/glmark2/models/bunny.obj";
 
 inline std::filesystem::path shipped(const std::string& name) {
-  return std::filesystem::path(PLIANT_SOURCE_DIR) / "scenes" / "meshes" / (name + ".obj");
+  return std::filesystem::path(test::source_dir()) / "scenes" / "meshes" / (name + ".obj");
 }
 
 /// A mesh that is not part of the project; empty if absent.
 inline std::filesystem::path outside(const std::string& name) {
   const char* folder = std::getenv("PLIANT_TEST_MESHES");
   const auto file = (folder != nullptr ? std::filesystem::path(folder)
-                                       : std::filesystem::path(PLIANT_SOURCE_DIR) / ".." / "shared" / "meshes") /
+                                       : std::filesystem::path(test::source_dir()) / ".." / "shared" / "meshes") /
                     name;
   return std::filesystem::exists(file) ? file : std::filesystem::path();
 }

@@ -7,6 +7,7 @@
 #include "scene/scene.h"
 #include "scene/schema_check.h"
 #include "support/error_of.h"
+#include "support/source_dir.h"
 
 namespace pliant {
 namespace {
@@ -39,7 +40,7 @@ DeformationModel model_of(const std::string& model) { return parse_scene(with_mo
 
 const SchemaCheck& schema() {
   static const SchemaCheck check([] {
-    std::ifstream stream(std::string(PLIANT_SOURCE_DIR) + "/scenes/schema.json");
+    std::ifstream stream(test::source_dir() + "/scenes/schema.json");
     return Json::parse(stream);
   }());
   return check;

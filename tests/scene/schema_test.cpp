@@ -6,6 +6,7 @@
 #include "scene/keys.h"
 #include "scene/scene.h"
 #include "scene/schema_check.h"
+#include "support/source_dir.h"
 
 namespace pliant {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-const fs::path scenes = fs::path(PLIANT_SOURCE_DIR) / "scenes";
+const fs::path scenes = fs::path(test::source_dir()) / "scenes";
 
 Json json_of(const fs::path& file) {
   std::ifstream stream(file);

@@ -9,6 +9,7 @@
 #include "simulation/compare.h"
 #include "solver/scenes.h"
 #include "support/error_of.h"
+#include "support/source_dir.h"
 #include "support/temp_folder.h"
 
 namespace pliant::physics {
@@ -260,7 +261,7 @@ TEST(FlsmRun, WhatIsRefused) {
       {R"({"type": "hybrid", "beta": 1e6})", R"("dt": 0.002, )", {"/bodies/0/model/beta", "1000000", "N/m", "at most", "dt"}},
       {R"({"type": "hybrid", "beta": 1})", R"("dt": 0.2, )", {"/bodies/0/model/beta", "got 1", "none", "dt up to"}},
   };
-  const std::string file = std::string(PLIANT_SOURCE_DIR) + "/scenes/refused.json";
+  const std::string file = test::source_dir() + "/scenes/refused.json";
   for (const Case& c : cases) {
     const std::string message = test::error_of([&] {
       const Scene scene = parse_scene(scene_text(c.model, c.extra), file);

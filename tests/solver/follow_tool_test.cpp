@@ -7,6 +7,7 @@
 #include "io/save.h"
 #include "simulation/compare.h"
 #include "solver/scenes.h"
+#include "support/source_dir.h"
 #include "support/temp_folder.h"
 
 namespace pliant::testing {
@@ -20,7 +21,7 @@ Scene followed_bar(int substeps) {
       "velocity": [0.1, 0, 0], "angular_velocity": [0, 2, 1],
       "model": {"type": "hybrid", "ratio": 0.3, "follow": "tool", "goals": "extrapolated", "substeps": )" +
                            std::to_string(substeps) + R"(}}]})";
-  return parse_scene(text, std::string(PLIANT_SOURCE_DIR) + "/scenes/followed_bar.json");
+  return parse_scene(text, test::source_dir() + "/scenes/followed_bar.json");
 }
 
 Vec3d momentum(const Simulation& sim) {

@@ -8,15 +8,16 @@
 
 #include "program/hash.h"
 #include "solver/scenes.h"
+#include "support/source_dir.h"
 
 namespace pliant {
 namespace {
 
 constexpr std::int64_t kSteps = 200;
-const std::string kFile = std::string(PLIANT_SOURCE_DIR) + "/tests/golden/hashes.json";
+const std::string kFile = test::source_dir() + "/tests/golden/hashes.json";
 
 std::string run(const std::string& scene, const std::string& backend) {
-  Simulation simulation(load_scene(std::string(PLIANT_SOURCE_DIR) + "/scenes/" + scene + ".json"), open_backend(backend));
+  Simulation simulation(load_scene(test::source_dir() + "/scenes/" + scene + ".json"), open_backend(backend));
   simulation.advance(kSteps);
   return hash_text(simulation.hash());
 }

@@ -7,6 +7,7 @@
 
 #include "backends/backends.h"
 #include "simulation/simulation.h"
+#include "support/source_dir.h"
 
 namespace pliant::testing {
 
@@ -23,7 +24,7 @@ inline Scene pressed_cube(double press, const std::string& extra = "", double yo
       "prescribed": [{"plane": [[0, 0.049, 0], [0, 1, 0]], "displacement": [0, )" +
                            std::to_string(-press) + R"(, 0], "curve": "smooth", "duration": )" + std::to_string(duration) +
                            "}]}]}";
-  return parse_scene(text, std::string(PLIANT_SOURCE_DIR) + "/scenes/pressed_cube.json");
+  return parse_scene(text, test::source_dir() + "/scenes/pressed_cube.json");
 }
 
 inline bool has_opencl() {
