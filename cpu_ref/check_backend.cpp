@@ -120,7 +120,7 @@ class CheckBackend final : public Backend {
     checked(id, values.size(), true).write(values.data());
   }
   std::vector<std::uint8_t> read_bytes(BufferId id) override {
-    const CheckBuffer& b = buffer(id);
+    const CheckBuffer& b = written(id);
     return {b.bytes(0), b.bytes(0) + 4 * b.values()};
   }
 
@@ -265,7 +265,7 @@ class CheckBackend final : public Backend {
 
   template <class Value>
   std::vector<Value> read(BufferId id, bool ints) {
-    const CheckBuffer& b = buffer(id);
+    const CheckBuffer& b = written(id);
     check_type(table_.row(id), ints);
     std::vector<Value> values(static_cast<std::size_t>(b.values()));
     if (!values.empty()) std::memcpy(values.data(), b.bytes(0), 4 * values.size());
@@ -275,6 +275,14 @@ class CheckBackend final : public Backend {
     CheckBuffer& b = buffer(id);
     check_type(table_.row(id), ints);
     check_size(table_.row(id), values);
+    return b;
+  }
+  /// For the host, which must not ask for what nothing wrote either.
+  const CheckBuffer& written(BufferId id) {
+    const CheckBuffer& b = buffer(id);
+    if (const auto index = b.unwritten()) {
+      fail(fmt::format("the host read value {} of {}, which no pass had written", *index, b.name()));
+    }
     return b;
   }
   CheckBuffer& buffer(BufferId id) {

@@ -48,11 +48,10 @@ CheckBuffer::CheckBuffer(const Buffer& row, BufferId id)
 std::uint32_t CheckBuffer::bits_in(const WorldImage& image, std::ptrdiff_t i) { return get_bits(image.data(), i + kZone); }
 
 std::uint32_t CheckBuffer::poison(int world, std::ptrdiff_t i) const {
-  if (is_int_) return world == 0 ? 17 : 42;
-  if (world == 0) return 0x7fc0deadu;
+  if (world == 0) return is_int_ ? 17 : 0x7fc0deadu;
   std::uint32_t h = static_cast<std::uint32_t>(i) * 0x9e3779b1u ^ static_cast<std::uint32_t>(id_ + 1) * 0x85ebca77u;
   h ^= h >> 15;
-  return 0x3f800000u | (h & 0x807fffffu);
+  return is_int_ ? 32u | (h & 31u) : 0x3f800000u | (h & 0x807fffffu);
 }
 
 void CheckBuffer::fill_poison(std::ptrdiff_t first, std::ptrdiff_t last) {
@@ -120,6 +119,10 @@ std::optional<std::ptrdiff_t> CheckBuffer::changed() const {
 std::optional<std::ptrdiff_t> CheckBuffer::doubtful() const {
   return first_difference(bytes(0), bytes(1), 0, values_,
                           [this](std::ptrdiff_t i) { return !may_be_undefined() || !undefined(i); });
+}
+
+std::optional<std::ptrdiff_t> CheckBuffer::unwritten() const {
+  return first_difference(bytes(0), bytes(1), 0, values_, [](std::ptrdiff_t) { return true; });
 }
 
 void CheckBuffer::note_written() {

@@ -1,7 +1,7 @@
 // A buffer as the checking backend keeps it: in two worlds that hold the same numbers except where nothing was written. There
 // world 0 holds a quiet NaN and world 1 numbers between 1 and 2 of either sign, another at every place, so that whatever
-// depends on such a value, also a copy of it, differs between the worlds. Integers are 17 and 42: one that is used as an index
-// must not lead away from all buffers, or the process would end without a message.
+// depends on such a value, also a copy of it, differs between the worlds. Integers are 17 and something from 32 to 63: one that
+// is used as an index must not lead away from all buffers, or the process would end without a message.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -49,6 +49,8 @@ class CheckBuffer {
   [[nodiscard]] std::optional<std::ptrdiff_t> changed() const;
   /// A value that was written and depends on what was not.
   [[nodiscard]] std::optional<std::ptrdiff_t> doubtful() const;
+  /// A value that nothing wrote.
+  [[nodiscard]] std::optional<std::ptrdiff_t> unwritten() const;
   /// Remember which values passes write, where the others keep their initial ones.
   void note_written();
 

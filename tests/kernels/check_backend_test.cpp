@@ -173,6 +173,24 @@ TEST(CheckBackend, NamesAnUnwrittenIndex) {
             "on it");
 }
 
+TEST(CheckBackend, NamesWhatTheHostReadsAndNoPassWrote) {
+  Toy toy;
+  toy.pass("toy_scatter", toy.given, toy.middle, 42, 41);
+  const auto backend = make_check_backend({.probe = false, .registry = &toys()});
+  backend->load(toy.program);
+  EXPECT_EQ(backend->read_reals(toy.middle)[42], 0);  // its initial value
+  backend->run(toy.program.step, 0, 1);
+  for (const auto& read : {std::function([&] { (void)backend->read_reals(toy.middle); }),
+                           std::function([&] { (void)backend->read_bytes(toy.middle); })}) {
+    try {
+      read();
+      ADD_FAILURE() << "nothing thrown";
+    } catch (const Error& error) {
+      EXPECT_EQ(std::string(error.what()), "the host read value 42 of middle, which no pass had written");
+    }
+  }
+}
+
 TEST(CheckBackend, AsksForWhatAStepBeforeWroteOnlyWhereTheTableSaysSo) {
   const auto verdict = [](Carried carried, int left_out) {
     Toy toy;
