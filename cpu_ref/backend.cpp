@@ -1,12 +1,10 @@
 #include "backend.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstring>
-#include <fstream>
 #include <new>
 #include <type_traits>
 
@@ -15,39 +13,16 @@
 #include "backend/pass_table.h"
 #include "backend/probe.h"
 #include "pliant/error.h"
-#include "registry.h"
+#include "prepared_twin.h"
+#include "processor.h"
 #include "thread_pool.h"
 
 namespace pliant {
 namespace {
 
 using ref::ArgValue;
-using ref::ParameterKind;
 using ref::Range;
 using Clock = std::chrono::steady_clock;
-
-std::string processor_name() {
-  std::ifstream file("/proc/cpuinfo");
-  for (std::string line; std::getline(file, line);) {
-    const std::size_t colon = line.find(": ");
-    if (line.rfind("model name", 0) == 0 && colon != std::string::npos) return line.substr(colon + 2);
-  }
-  return "processor";
-}
-
-std::uint64_t physical_memory() {
-  return static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
-}
-
-void require_fma() {
-#if defined(__x86_64__)
-  if (!__builtin_cpu_supports("fma") || !__builtin_cpu_supports("avx2")) {
-    throw Error(ErrorCode::bad_input, fmt::format("the processor ({}) has no hardware fma (FMA3 and AVX2), which the CPU "
-                                                  "reference needs: use an OpenCL device instead",
-                                                  processor_name()));
-  }
-#endif
-}
 
 template <class Scalar>
 class RefBackend final : public Backend {
@@ -56,12 +31,12 @@ class RefBackend final : public Backend {
       : registry_(options.registry != nullptr ? *options.registry : ref::registry()), pool_(options.threads) {
     constexpr bool is_float = std::is_same_v<Scalar, float>;
     info_.name = is_float ? "cpu" : "cpu:double";
-    info_.device = processor_name();
+    info_.device = ref::processor_name();
     info_.kind = "reference";
     info_.real_bytes = sizeof(Scalar);
     info_.platform = "Pliant";
     info_.version = is_float ? "C++ twins, float" : "C++ twins, double";
-    info_.memory_bytes = options.memory_bytes != 0 ? options.memory_bytes : physical_memory();
+    info_.memory_bytes = options.memory_bytes != 0 ? options.memory_bytes : ref::physical_memory();
     info_.max_buffer_bytes = info_.memory_bytes;
     info_.compute_units = pool_.threads();
     if (!is_float) info_.tolerance_reason = "double precision is the rounding-error oracle";
@@ -175,26 +150,11 @@ class RefBackend final : public Backend {
     std::vector<std::int32_t> ints;
     bool written = false;  // by the host, since its initial values
   };
-  struct Prepared {
-    std::function<void(Range, const ArgValue<Scalar>*)> call;
-    std::vector<ArgValue<Scalar>> args;
-    std::vector<std::size_t> step_args;
+  struct Prepared : ref::PreparedTwin<Scalar> {
     Shape shape = Shape::lanes;
     std::int64_t count = 0;
     double seconds = 0;
     std::int64_t launches = 0;
-
-    /// Each thread has its own copy of the arguments only where they change from step to step.
-    void execute(Range range, std::int32_t step) const {
-      if (range.begin == range.end) return;
-      if (step_args.empty()) {
-        call(range, args.data());
-        return;
-      }
-      std::vector<ArgValue<Scalar>> own = args;
-      for (const std::size_t i : step_args) own[i].integer = step;
-      call(range, own.data());
-    }
   };
 
   /// A few indices, or bricks, are not worth a second thread.
@@ -267,44 +227,11 @@ class RefBackend final : public Backend {
   }
 
   Prepared prepare(const Pass& pass) {
-    check_pass(pass, table_.size());
-    const ref::Twin twin = registry_.find(pass.kernel, pass.defines);
-    const ref::TwinFunction<Scalar>* function = nullptr;
-    if constexpr (std::is_same_v<Scalar, float>) {
-      function = &twin.of_float;
-    } else {
-      function = &twin.of_double;
-    }
-    const auto fail = [&](const std::string& what) {
-      throw Error(ErrorCode::internal, fmt::format("pass \"{}\", twin of kernel \"{}\": {}", pass.label, pass.kernel, what));
+    const auto values_of = [this](BufferId id) {
+      Storage& s = storage(id);
+      return s.ints.empty() ? ArgValue<Scalar>{s.reals.data()} : ArgValue<Scalar>{nullptr, s.ints.data()};
     };
-    if (pass.args.size() != function->parameters.size()) {
-      fail(fmt::format("{} arguments for {} parameters", pass.args.size(), function->parameters.size()));
-    }
-    Prepared p{function->call, std::vector<ArgValue<Scalar>>(pass.args.size()), {}, pass.shape, pass.count};
-    static constexpr const char* kind_names[] = {"a buffer of reals", "a buffer of integers", "a real", "an integer"};
-    for (std::size_t i = 0; i < pass.args.size(); ++i) {
-      ParameterKind kind = ParameterKind::integer;
-      if (pass.args[i].index() == 0) {
-        Storage& s = storage(std::get<0>(pass.args[i]));
-        kind = s.ints.empty() ? ParameterKind::reals : ParameterKind::ints;
-        p.args[i].reals = s.reals.data();
-        p.args[i].ints = s.ints.data();
-      } else if (pass.args[i].index() == 1) {
-        kind = ParameterKind::real;
-        p.args[i].real = static_cast<Scalar>(std::get<1>(pass.args[i]));
-      } else if (pass.args[i].index() == 2) {
-        p.args[i].integer = std::get<2>(pass.args[i]);
-      } else {
-        p.step_args.push_back(i);
-      }
-      const ParameterKind wanted = function->parameters[i];
-      if (kind != wanted) {
-        fail(fmt::format("argument {} is {}, the parameter is {}", i, kind_names[static_cast<int>(kind)],
-                         kind_names[static_cast<int>(wanted)]));
-      }
-    }
-    return p;
+    return {ref::prepare_twin<Scalar>(registry_, pass, table_.size(), values_of), pass.shape, pass.count};
   }
 
   Prepared& prepared(const Pass& pass) {
@@ -385,7 +312,7 @@ class RefBackend final : public Backend {
 }  // namespace
 
 std::unique_ptr<Backend> make_ref_backend(const RefOptions& options) {
-  require_fma();
+  ref::require_fma();
   if (options.double_precision) return std::make_unique<RefBackend<double>>(options);
   auto backend = std::make_unique<RefBackend<float>>(options);
   if (options.probe) backend->set_probe_result(run_probe(*backend));

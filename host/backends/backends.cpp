@@ -6,6 +6,7 @@
 #include <exception>
 
 #include "cpu_ref/backend.h"
+#include "cpu_ref/check_backend.h"
 #include "pliant/error.h"
 #ifdef PLIANT_HAVE_OPENCL
 #include "opencl/opencl_backend.h"
@@ -134,11 +135,13 @@ std::unique_ptr<Backend> open_backend(const std::string& spec, std::string* why,
     backend = open_auto(reason, nodes);
   } else if (spec == "cpu" || spec == "cpu:double") {
     backend = open_cpu(spec == "cpu:double");
+  } else if (spec == "cpu:check") {
+    backend = make_check_backend();
   } else if (spec == "opencl" || spec.rfind("opencl:", 0) == 0) {
     backend = open_opencl(opencl_index(spec));
   } else {
     throw Error(ErrorCode::bad_input,
-                fmt::format("unknown backend \"{}\"; allowed are auto, cpu, cpu:double, opencl and opencl:N", spec));
+                fmt::format("unknown backend \"{}\"; allowed are auto, cpu, cpu:double, cpu:check, opencl and opencl:N", spec));
   }
   if (spec != "auto") reason = fmt::format("{} ({}): asked for", backend->info().name, backend->info().device);
   if (why != nullptr) *why = reason;

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "backends/backends.h"
 #include "cli/cli.h"
 #include "pliant/error.h"
@@ -41,6 +43,10 @@ void check(const Options& options) {
   if (!options.backends.empty() && options.backends.size() != 2) {
     throw Error(ErrorCode::bad_input,
                 fmt::format("--backends names {} backends; expected two, for example opencl:0,cpu", options.backends.size()));
+  }
+  if (std::find(options.backends.begin(), options.backends.end(), "cpu:check") != options.backends.end()) {
+    throw Error(ErrorCode::bad_input,
+                "--backends names cpu:check, which holds NaN where nothing was written; use it with run, and cpu to compare");
   }
 }
 

@@ -246,7 +246,7 @@ class Run {
 std::function<int()> setup_run(CLI::App& app) {
   auto o = std::make_shared<Options>();
   app.add_option("scene", o->scene, "Scene file")->required();
-  app.add_option("--backend", o->backend, "auto, cpu, cpu:double, opencl or opencl:N")->capture_default_str();
+  app.add_option("--backend", o->backend, "auto, cpu, cpu:double, cpu:check, opencl or opencl:N")->capture_default_str();
   auto* steps = app.add_option("--steps", o->steps, "Steps of this run; default: to the scene's duration, or to equilibrium");
   app.add_option("--seconds", o->seconds, "Simulated time of this run [s]")->excludes(steps);
   app.add_option("--dt", o->dt, "Step [s] instead of the scene's");

@@ -1,4 +1,5 @@
-// The table of named texel buffers. Allocation, checks, hashing and comparison are all driven by it.
+// The table of named texel buffers. Allocation, hashing, comparison and what the checking backend fills with NaN
+// (cpu_ref/check_backend.h) are all driven by it.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -20,6 +21,13 @@ enum class BufferRole {
   state,     ///< carries the simulation from step to step: checkpointed, hashed, compared
   scratch,   ///< written and read within a step: compared, not checkpointed
   control,   ///< written by the host between batches (step parameters, curve values)
+};
+
+/// What scratch still holds when the next step begins. Anything else is of no use: passes write it before they read it.
+enum class Carried {
+  nothing,    ///< all of it is written anew
+  unwritten,  ///< values that no pass ever writes keep their initial values
+  all,        ///< what passes wrote in the steps before counts
 };
 
 using BufferId = std::int32_t;
@@ -44,6 +52,8 @@ struct Buffer {
   /// Where the initial values differ from those that the program before had, if that is known; ascending. What lies beyond the
   /// end of those need not be in it.
   std::optional<std::vector<ValueRange>> changed = std::nullopt;
+  Carried carried = Carried::nothing;  ///< of scratch
+  std::size_t fixed = 0;               ///< of scratch: so many values at its end no pass writes; they keep their initial values
   BufferId copy_of = -1;  ///< the state buffer whose last good values this one keeps
 
   /// Numbers of four (or, in a double backend, eight) bytes.

@@ -50,18 +50,23 @@ void ProgramBuilder::add_shared_buffers() {
                            "node_update, brick_update, node_prescribe", std::move(w)));
   node_force_ = add(make_reals("node_force", BufferType::real4, slots, BufferRole::scratch, "[slots]", "N",
                                "node_update, brick_update (FORCE_ONLY)"));
+  program_.buffers[node_force_].carried = Carried::unwritten;  // zero at slots without a node and at those of shape matching
   node_load_ = add(
       make_reals("node_load", BufferType::real4, needs_load() ? slots : 1, BufferRole::scratch, "[slots]", "N", "node_load"));
+  program_.buffers[node_load_].carried = Carried::unwritten;  // zero where nothing loads a node
   if (has_list_elements()) {
     const std::size_t numbers = static_cast<std::size_t>(layout_.corner_numbers) + 3 * PLIANT_TILE;
     corner_ = add(make_reals("corner_force", BufferType::real, numbers, BufferRole::scratch, "[tiles][corners][3][16]", "N",
                              "element kernels"));
-    program_.buffers[corner_].padding = -0.0;  // what the gather lists point to where a node has fewer corners than others
+    program_.buffers[corner_].padding = -0.0;
+    // What the gather lists point to where a node has fewer corners than others.
+    program_.buffers[corner_].fixed = 3 * PLIANT_TILE;
   }
   // The state to go back to when an element fails.
   add(make_reals("last_u", BufferType::real4, slots, BufferRole::state, "[slots]", "m, m, m, 1/kg", "host"));
   add(make_reals("last_w", BufferType::real4, slots, BufferRole::state, "[slots]", "m, m, m, 1", "host"));
   fault_ = add(make_ints("fault", BufferRole::scratch, "[elements]", {}, std::max(layout_.faults, 1), "element kernels"));
+  program_.buffers[fault_].carried = Carried::all;  // the first step in which an element failed, until the host clears it
   summary_ = add(make_ints("fault_summary", BufferRole::scratch, "[256][2]", {}, 512, "fault_reduce"));
   params_ = add(make_reals("step_params", BufferType::real, 8, BufferRole::control, "[8]", "s, m/s^2 (3), m (2)", "host"));
   curves_ = add(make_reals("curve_value", BufferType::real,

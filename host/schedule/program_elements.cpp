@@ -35,6 +35,7 @@ void ProgramBuilder::add_bricks(const BrickBatch& b) {
     brick_force_ = add(make_reals("brick_force", BufferType::real, bricks * PLIANT_BRICK_FORCE, BufferRole::scratch,
                                   "[bricks + 1][1280]", "N", "tled_hex8_brick_force"));
     program_.buffers[brick_force_].padding = -0.0;
+    program_.buffers[brick_force_].fixed = PLIANT_BRICK_FORCE;  // the empty brick
   }
   const double d = b.spacing;
   std::int64_t cells = 0;
@@ -108,6 +109,7 @@ BufferId ProgramBuilder::add_averaging(std::size_t index, BufferId nodes_id, Buf
   const auto name = [&](const char* stem) { return fmt::format("{}/{}", stem, index); };
   const auto dilation_id = add(make_reals(name("anp_dilation"), BufferType::real, count + PLIANT_TILE, BufferRole::scratch,
                                           "[elements + 16]", "m^3", "tled_tet4_dilation", std::move(dilation)));
+  program_.buffers[dilation_id].fixed = PLIANT_TILE;  // what anp_index points to where a node has fewer elements than others
   const auto offset_id = add(make_ints(name("anp_offset"), BufferRole::constant, "[tiles + 1]", std::move(list.offset)));
   const auto index_id = add(make_ints(name("anp_index"), BufferRole::constant, "[rows][16]", std::move(list.index)));
   const auto volume_id = add(make_reals(name("anp_inverse_volume"), BufferType::real, nodes, BufferRole::constant,

@@ -99,6 +99,8 @@ class FlsmPasses {
     regions_ = reals("flsm_regions", PLIANT_FLSM_RECORD * count, BufferRole::state, "[regions][4][4]", "m", "flsm_region");
     if (b_.settings.damping > 0 || reaction()) {
       rates_ = reals("flsm_rates", PLIANT_FLSM_RECORD * count, BufferRole::scratch, "[regions][4][4]", "m", "flsm_damp_region");
+      // Only regions move: the fillers behind them have sums alone and add nothing.
+      program_.buffers[std::get<0>(rates_)].fixed = PLIANT_FLSM_RECORD * (count - with_region);
       spin_ = reals("flsm_spin", PLIANT_FLSM_SPIN_PLANES * with_region, BufferRole::constant, "[tiles][6][16]", "m", "model",
                     std::move(data_.spin));
     }
@@ -165,6 +167,7 @@ class FlsmPasses {
                            BufferRole::control, "[interface]", "N/m", "host");
     const Arg excess =
         reals("flsm_excess", 4 * static_cast<std::size_t>(slots), BufferRole::scratch, "[slots]", "m", "flsm_excess");
+    program_.buffers[std::get<0>(excess)].carried = Carried::unwritten;  // zero at all nodes but those of the interface
     pass("flsm_excess", {},
          {shared_.node_u, slot_, reference_, goals_, mean, shared_.alpha, shared_.step_params, excess, int_arg(index_),
           int_arg(b_.settings.substeps), int_arg(places_.interface_base)},

@@ -38,7 +38,7 @@ typedef struct pliant_world {
 /** Begin with PLIANT_OPTIONS_INIT, so that a library with more options knows which ones are set. */
 typedef struct pliant_options {
   size_t size;         /**< sizeof(pliant_options) */
-  const char* backend; /**< auto, cpu, cpu:double, opencl or opencl:N; null: auto */
+  const char* backend; /**< auto, cpu, cpu:double, cpu:check, opencl or opencl:N; null: auto */
   double dt;           /**< [s]; 0: what the scene says */
   int normals;         /**< 1: frames have normals */
   int interactive;     /**< 1: grabs and pushes are possible */

@@ -19,7 +19,7 @@ namespace pliant {
 
 /// How a World runs its scene.
 struct WorldOptions {
-  std::string backend = "auto";  ///< auto, cpu, cpu:double, opencl or opencl:N
+  std::string backend = "auto";  ///< auto, cpu, cpu:double, cpu:check, opencl or opencl:N
   double dt = 0;                 ///< [s]; 0: what the scene says
   bool normals = true;           ///< frames have vertex normals
   bool interactive = false;      ///< reserve forces on all nodes of the surface, which the tools below need

@@ -11,6 +11,7 @@
 
 #include "backend/pass_table.h"
 #include "backends/backends.h"
+#include "cpu_ref/check_backend.h"
 #include "cpu_ref/registry.h"
 #include "pliant/error.h"
 #ifdef PLIANT_HAVE_OPENCL
@@ -88,6 +89,7 @@ Program toy_program(std::int64_t count) {
   Buffer x, y, list, weight, out;
   x.name = "x", y.name = "y", list.name = "list", weight.name = "weight", out.name = "out";
   list.type = weight.type = BufferType::int32;
+  x.role = list.role = weight.role = BufferRole::constant, y.role = BufferRole::state;
   x.count = y.count = weight.count = out.count = static_cast<std::size_t>(count);
   for (std::int64_t i = 0; i < count; ++i) {
     x.reals.push_back(0.1 * static_cast<double>(i % 1000) - 7);
@@ -162,6 +164,7 @@ class EachBackend : public testing::TestWithParam<const char*> {
     const std::string name = GetParam();
     if (name == "cpu") backend = make_toy_ref();
     if (name == "double") backend = make_toy_ref(0, true);
+    if (name == "check") backend = make_check_backend({.probe = false, .registry = &toy_twins()});
 #ifdef PLIANT_HAVE_OPENCL
     if (name == "opencl" && have_opencl()) backend = make_toy_opencl();
 #endif
@@ -170,7 +173,7 @@ class EachBackend : public testing::TestWithParam<const char*> {
   [[nodiscard]] bool is_double() const { return std::string(GetParam()) == "double"; }
   std::unique_ptr<Backend> backend;
 };
-INSTANTIATE_TEST_SUITE_P(Backends, EachBackend, testing::Values("cpu", "double", "opencl"),
+INSTANTIATE_TEST_SUITE_P(Backends, EachBackend, testing::Values("cpu", "double", "check", "opencl"),
                          [](const auto& row) { return std::string(row.param); });
 
 TEST_P(EachBackend, PassesArgumentsInOrderAndCountsSteps) {
@@ -315,11 +318,12 @@ TEST(Backends, OpensByNameAndSaysWhy) {
   std::string why;
   EXPECT_EQ(open_backend("cpu", &why)->info().name, "cpu");
   EXPECT_MENTIONS(why, "asked for");
-  EXPECT_EQ(open_backend("cpu:double")->info().name, "cpu:double");
+  for (const char* name : {"cpu:double", "cpu:check"}) EXPECT_EQ(open_backend(name)->info().name, name);
   const auto chosen = open_backend("auto", &why);
   EXPECT_TRUE(chosen->info().bit_exact);
   EXPECT_EQ(why.rfind(chosen->info().name, 0), 0u) << why;
-  EXPECT_MENTIONS(message_of([] { open_backend("cuda"); }), "allowed are auto, cpu, cpu:double, opencl and opencl:N");
+  EXPECT_MENTIONS(message_of([] { open_backend("cuda"); }),
+                  "allowed are auto, cpu, cpu:double, cpu:check, opencl and opencl:N");
   EXPECT_MENTIONS(message_of([] { open_backend("opencl:x"); }), "must be a number");
   EXPECT_EQ(list_backends().front().name, "cpu");
 }
