@@ -164,6 +164,16 @@ TEST(CheckBackend, TakesACopyOfAnUnwrittenValueForARead) {
             "it");
 }
 
+TEST(CheckBackend, TakesACopyWithinABufferForARead) {
+  Toy toy;
+  toy.pass("toy_gather", toy.middle, toy.middle, 3, 5);
+  toy.pass("toy_scatter", toy.given, toy.middle);
+  EXPECT_EQ(
+      toy.verdict(),
+      "pass 0 (toy_gather, toy) in step 1 read value 5 of middle, which no pass had written: value 3 of middle depends on "
+      "it");
+}
+
 TEST(CheckBackend, NamesAnUnwrittenIndex) {
   Toy toy;
   toy.pass("toy_gather", toy.given, toy.result);
