@@ -201,6 +201,11 @@ Vec3d Tools::pull(const Grab& grab, Pull& state, const Vec3d& position, double t
   return limited(force, grab.max_force);
 }
 
+void Tools::renew() {
+  const std::lock_guard lock(mutex_);
+  changed_ = true;
+}
+
 std::int32_t Tools::apply(Simulation& simulation) {
   follow(simulation.shared_model());
   std::map<GrabId, Grab> grabs;

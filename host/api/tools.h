@@ -43,6 +43,8 @@ class Tools {
   void push_node(std::size_t body, std::int64_t node, const Vec3d& force);
   void move_tool(const Vec3d& position);
   void clear();
+  /// The simulation is another one: its forces are these tools' to set.
+  void renew();
 
   /// Bring the simulation's forces up to date, at the start of a batch; how many steps the batch may have.
   std::int32_t apply(Simulation& simulation);

@@ -211,6 +211,7 @@ void World::Impl::read_frame(bool again) {
 /// Go on with another simulation of the same scene.
 void World::Impl::restart(std::shared_ptr<Simulation> fresh) {
   simulation = std::move(fresh);
+  tools->renew();
   lost.clear();
   seconds_left = 0;
   blade_key.clear();

@@ -166,8 +166,8 @@ class PLIANT_API World {
   /// worker. Throws Error (usage) if there is no such body.
   [[nodiscard]] std::int64_t pieces(std::size_t body) const;
 
-  /// Write a checkpoint; `pliant run --resume` reads it too. Cuts and the places of blades are part of it, grabs and pushes are
-  /// not. Throws Error: io.
+  /// Write a checkpoint; `pliant run --resume` reads it too. Cuts and the places of blades are part of it. Grabs and
+  /// pushes belong to a World: after load() they are those of the one that loads. Throws Error: io.
   void save(const std::string& file) const;
   /// Go to the state of a checkpoint of the same scene. Blades are lifted: the next move_blade puts them somewhere without a
   /// cut. Throws Error: io, input (it belongs to another scene).

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "scenes.h"
+#include "support/temp_folder.h"
 
 namespace pliant {
 namespace {
@@ -68,6 +69,27 @@ TEST(Tools, APushIsThatForceOfTheScene) {
   EXPECT_LT(worst, 5e-3 * largest);  // the first step of a load begins as a parabola, that of a push does not
   pushed.clear_tools();
   pushed.step(1);
+}
+
+TEST(Tools, ALoadedWorldHasItsOwnTools) {
+  const test::TempFolder folder;
+  const std::string file = (folder.path() / "state.pckpt").string();
+  World world(block(0), on("cpu", true)), without(block(0), on("cpu", true)), with(block(0), on("cpu", true));
+  world.push(kCorner, {0.05, 0.02, 0});
+  world.step(64);
+  world.save(file);
+  without.load(file);
+  with.push(kCorner, {0.05, 0.02, 0});
+  with.load(file);
+  world.step(64);
+  with.step(64);
+  EXPECT_EQ(with.hash(), world.hash());
+  world.load(file);
+  world.clear_tools();
+  world.step(64);
+  without.step(64);
+  EXPECT_EQ(without.hash(), world.hash()) << "a force of the world that was saved goes on";
+  EXPECT_NE(without.hash(), with.hash());
 }
 
 TEST(Tools, WorkWhileTheWorkerIsBusyAndOnShapeMatching) {
