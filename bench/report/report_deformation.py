@@ -81,7 +81,7 @@ def scenes_chart(r, folder):
         axes.axvline(line, color=FAINT, linestyle="--", linewidth=1.1, zorder=0.9)
         axes.set_xlabel("ms per step" if i % 2 == 0 else "ms per frame")
     handles = [Patch(color=colour, label=words) for words, colour in METHODS.values()]
-    handles.append(Line2D([], [], color=INK, marker="|", linestyle="none", markersize=10, markeredgewidth=2.2, label="the source's total"))
+    handles.append(Line2D([], [], color=INK, marker="|", linestyle="none", markersize=10, markeredgewidth=2.2, label="published total"))
     handles.append(Line2D([], [], color=FAINT, linestyle="--", linewidth=1.1, label=f'{r.scenes[0]["limit_ms"]:g} ms per step; real time per frame'))
     charts.legend_above(fig, handles, 3)
     return charts.save(fig, folder, "deformation_scenes")
@@ -352,9 +352,9 @@ def section(result, folder):
     parts = [paragraph("Bodies of finite elements where the tool works and of lattice shape matching elsewhere. Commands: "
                        "<code>pliant bench deformation --out DIR</code>, then <code>python3 bench/report/report.py DIR</code>."), *remarks(r)]
     if r.scenes:
-        parts += [heading("The source's four scenes"),
-                  figure(scenes_chart(r, folder), "Time per step and per frame for each scene and method, with the source's total",
-                         "Lower is better; logarithmic axes. The heavy stroke is the total cost of a step in the source, on its machine. A frame takes as many steps as "
+        parts += [heading("The four published scenes (Hybrid Deformation Model)"),
+                  figure(scenes_chart(r, folder), "Time per step and per frame for each scene and method, with the published total",
+                         "Lower is better; logarithmic axes. The heavy stroke is the published total cost of a step, on the authors' machine. A frame takes as many steps as "
                          "1/60&#8239;s needs, each within the stable step; left of the dashed line a scene keeps up with real time."),
                   scenes_table(r), heading(f"Where the time goes: {r.backends[0]}"),
                   figure(split_chart(r, folder), "Time of the passes of a step, stacked, for each scene and method",

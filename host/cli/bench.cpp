@@ -118,7 +118,7 @@ void add_accuracy(CLI::App& app, const std::shared_ptr<Options>& options) {
 
 void add_deformation(CLI::App& app, const std::shared_ptr<Options>& options) {
   CLI::App* sub = app.add_subcommand(
-      "deformation", "Hybrid bodies beside finite elements and shape matching alone, the source's times, growth and error");
+      "deformation", "Hybrid bodies beside finite elements and shape matching alone, the published times, growth and error");
   bench::DeformationOptions& d = options->deformation;
   options->common.add_to(*sub);
   sub->add_option("--scenes", d.scenes, "folder of the shipped scenes");
