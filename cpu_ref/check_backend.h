@@ -1,5 +1,5 @@
-// The backend "cpu:check": the float twins on one thread, with the bits of "cpu", several times slower. It looks at what each pass
-// does to the buffers and names the pass that
+// The backend "cpu:check": the float twins on one thread, with the bits of "cpu", several times slower. It looks at what each
+// pass does to the buffers and names the pass that
 //   - reads a value of scratch that no pass of the step has written (Buffer::carried and Buffer::fixed say what else may be
 //     read), or a value outside a buffer: the pass runs in two worlds that differ in nothing but such values, so that whatever
 //     depends on one differs between them. Likewise, what the host reads must have been written;

@@ -54,7 +54,7 @@ struct Buffer {
   std::optional<std::vector<ValueRange>> changed = std::nullopt;
   Carried carried = Carried::nothing;  ///< of scratch
   std::size_t fixed = 0;               ///< of scratch: so many values at its end no pass writes; they keep their initial values
-  BufferId copy_of = -1;  ///< the state buffer whose last good values this one keeps
+  BufferId copy_of = -1;               ///< the state buffer whose last good values this one keeps
 
   /// Numbers of four (or, in a double backend, eight) bytes.
   [[nodiscard]] std::size_t values() const { return type == BufferType::real4 ? 4 * count : count; }
