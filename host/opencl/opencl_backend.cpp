@@ -365,25 +365,6 @@ std::unique_ptr<Backend> open(const cl::Device& device, int index, const OpenclO
 
 }  // namespace
 
-std::vector<BackendInfo> list_opencl_devices(bool probe) {
-  std::vector<BackendInfo> result;
-  int index = 0;
-  for (const cl::Device& device : opencl::all_devices()) {
-    BackendInfo info;
-    info.name = fmt::format("opencl:{}", index);
-    try {
-      info = opencl::describe_device(device, index);
-      info.tolerance_reason = "not probed";
-      if (probe) info = open(device, index, {})->info();
-    } catch (const std::exception& error) {
-      info.tolerance_reason = error.what();
-    }
-    result.push_back(info);
-    ++index;
-  }
-  return result;
-}
-
 std::unique_ptr<Backend> make_opencl_backend(int index, const OpenclOptions& options) {
   const std::vector<cl::Device> devices = opencl::all_devices();
   if (devices.empty()) {
