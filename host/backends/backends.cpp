@@ -7,30 +7,11 @@
 
 #include "cpu_ref/backend.h"
 #include "cpu_ref/check_backend.h"
-#include "pliant/error.h"
-#ifdef PLIANT_HAVE_OPENCL
 #include "opencl/opencl_backend.h"
-#endif
+#include "pliant/error.h"
 
 namespace pliant {
 namespace {
-
-#ifdef PLIANT_HAVE_OPENCL
-std::vector<BackendInfo> opencl_devices(bool probe) { return list_opencl_devices(probe); }
-std::unique_ptr<Backend> open_opencl(int index) { return make_opencl_backend(index); }
-constexpr const char* no_opencl = "there is no OpenCL device";
-#else
-std::vector<BackendInfo> opencl_devices(bool) { return {}; }
-std::unique_ptr<Backend> open_opencl(int index) {
-  throw Error(
-      ErrorCode::bad_input,
-      fmt::format("opencl:{} is not available: this build of Pliant has no OpenCL. Install the headers and the loader (Debian: "
-                  "apt install "
-                  "opencl-headers opencl-clhpp-headers ocl-icd-opencl-dev) and configure again, or use the backend \"cpu\"",
-                  index));
-}
-constexpr const char* no_opencl = "this build has no OpenCL";
-#endif
 
 std::unique_ptr<Backend> open_cpu(bool double_precision) {
   RefOptions options;
@@ -64,7 +45,7 @@ Candidate first_bit_exact(const std::vector<BackendInfo>& devices, const std::st
     if ((devices[i].kind == kind) != wanted) continue;
     std::string reason;
     try {
-      candidate.backend = open_opencl(static_cast<int>(i));
+      candidate.backend = make_opencl_backend(static_cast<int>(i));
       if (candidate.backend->info().bit_exact) return candidate;
       reason = "not bit-exact: " + candidate.backend->info().tolerance_reason;
     } catch (const std::exception& error) {
@@ -81,7 +62,7 @@ Candidate first_bit_exact(const std::vector<BackendInfo>& devices, const std::st
 constexpr std::int64_t kFewNodes = 6000;
 
 std::unique_ptr<Backend> open_auto(std::string& why, std::int64_t nodes) {
-  const std::vector<BackendInfo> devices = opencl_devices(false);
+  const std::vector<BackendInfo> devices = list_opencl_devices(false);
   Candidate gpu = first_bit_exact(devices, "gpu", true);
   if (gpu.backend != nullptr) {
     why = fmt::format("{} ({}): a bit-exact GPU{}", gpu.backend->info().name, gpu.backend->info().device, gpu.skipped);
@@ -89,7 +70,7 @@ std::unique_ptr<Backend> open_auto(std::string& why, std::int64_t nodes) {
   }
   for (std::size_t i = 0; i < devices.size() && nodes > 0 && nodes < kFewNodes; ++i) {
     if (!devices[i].single_thread) continue;
-    auto single = open_opencl(static_cast<int>(i));
+    auto single = make_opencl_backend(static_cast<int>(i));
     if (!single->info().bit_exact) continue;
     why = fmt::format("{} ({}): bit-exact, one thread for a small scene, and there is no bit-exact GPU{}", single->info().name,
                       single->info().device, gpu.skipped);
@@ -103,8 +84,10 @@ std::unique_ptr<Backend> open_auto(std::string& why, std::int64_t nodes) {
     return std::move(other.backend);
   }
   auto cpu = open_cpu(false);
-  why =
-      fmt::format("cpu ({}): {}{}", cpu->info().device, devices.empty() ? no_opencl : "no OpenCL device is bit-exact", skipped);
+  const char* const reason = !devices.empty()       ? "no OpenCL device is bit-exact"
+                             : opencl_is_built_in() ? "there is no OpenCL device"
+                                                    : "this build has no OpenCL";
+  why = fmt::format("cpu ({}): {}{}", cpu->info().device, reason, skipped);
   return cpu;
 }
 
@@ -123,7 +106,7 @@ std::vector<BackendInfo> list_backends() {
       result.push_back(info);
     }
   }
-  const std::vector<BackendInfo> devices = opencl_devices(true);
+  const std::vector<BackendInfo> devices = list_opencl_devices(true);
   result.insert(result.end(), devices.begin(), devices.end());
   return result;
 }
@@ -138,7 +121,7 @@ std::unique_ptr<Backend> open_backend(const std::string& spec, std::string* why,
   } else if (spec == "cpu:check") {
     backend = make_check_backend();
   } else if (spec == "opencl" || spec.rfind("opencl:", 0) == 0) {
-    backend = open_opencl(opencl_index(spec));
+    backend = make_opencl_backend(opencl_index(spec));
   } else {
     throw Error(ErrorCode::bad_input,
                 fmt::format("unknown backend \"{}\"; allowed are auto, cpu, cpu:double, cpu:check, opencl and opencl:N", spec));

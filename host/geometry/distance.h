@@ -16,7 +16,6 @@ class SurfaceDistance {
   /// Copies the mesh and winds it outward (see orient_outward). Throws Error if it has no triangles, or if Embree is asked for
   /// by name and absent.
   explicit SurfaceDistance(TriangleMesh mesh, DistanceEngine engine = DistanceEngine::automatic);
-  ~SurfaceDistance();
   SurfaceDistance(const SurfaceDistance&) = delete;
   SurfaceDistance& operator=(const SurfaceDistance&) = delete;
 
@@ -38,12 +37,15 @@ class SurfaceDistance {
   [[nodiscard]] const TriangleTree& tree() const { return tree_; }
 
  private:
-  struct Embree;
+  struct Embree;  // distance_embree.cpp, or distance_no_embree.cpp
+  static std::shared_ptr<const Embree> start_embree(const TriangleMesh& surface, const vec::Box& box);
+  [[nodiscard]] ClosestPoint closest_by_embree(const Vec3d& p) const;
+
   OrientationReport orientation_;  // before mesh_, whose initialiser fills it
   TriangleMesh mesh_;
   TriangleTree tree_;
   std::unique_ptr<TriangleTree> rim_;  // rim edges as triangles without area
-  std::unique_ptr<Embree> embree_;
+  std::shared_ptr<const Embree> embree_;
 };
 
 }  // namespace pliant

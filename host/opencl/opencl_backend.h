@@ -1,4 +1,5 @@
-// The backend that runs the kernels on an OpenCL device. The only header of this folder that the rest of Pliant needs.
+// The backend that runs the kernels on an OpenCL device. The only header of this folder that the rest of Pliant needs; a build
+// without OpenCL has host/opencl_absent behind it.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -18,6 +19,10 @@ struct OpenclOptions {
   std::uint64_t max_buffer_bytes = 0;  ///< 0: the device's limit for one allocation; otherwise a lower one
   std::map<std::string, std::string> extra_kernels;  ///< file name to text, in addition to kernels/
 };
+
+/// Whether this build has OpenCL. Without it there are no devices, and asking for one throws an Error that says what to
+/// install.
+bool opencl_is_built_in();
 
 /// Every device of every platform, in the order in which opencl:N counts them. With `probe` each is opened and probed; a device
 /// that cannot be opened has the reason in tolerance_reason. Empty when there is no platform or no loader; never throws.

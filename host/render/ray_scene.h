@@ -1,4 +1,4 @@
-// The surface as Embree holds it, and what a ray finds there. The only part that knows Embree.
+// The surface as Embree holds it, and what a ray finds there. Only ray_scene_embree.cpp knows Embree.
 #pragma once
 #include <chrono>
 #include <memory>
@@ -56,7 +56,9 @@ class RayScene {
   static bool available();
 
  private:
-  struct Embree;
+  struct Embree;  // ray_scene_embree.cpp, or ray_scene_no_embree.cpp
+  void build(const Surface& surface);
+  void refit();
   void check() const;
   void pack();
   void measure();

@@ -13,7 +13,9 @@
 #include "backends/backends.h"
 #include "cpu_ref/check_backend.h"
 #include "cpu_ref/registry.h"
+#include "opencl/opencl_backend.h"
 #include "pliant/error.h"
+#include "support/opencl.h"
 #ifdef PLIANT_HAVE_OPENCL
 #include "opencl/kernel_text.h"
 #include "opencl/opencl_backend.h"
@@ -124,7 +126,6 @@ std::unique_ptr<Backend> make_toy_ref(int threads = 0, bool double_precision = f
   return make_ref_backend(options);
 }
 
-#ifdef PLIANT_HAVE_OPENCL
 OpenclOptions toy_options(int lanes = 0, int local_size = 0) {
   OpenclOptions options;
   options.lanes = lanes;
@@ -133,9 +134,7 @@ OpenclOptions toy_options(int lanes = 0, int local_size = 0) {
   options.extra_kernels = {{"toy_axpy.cl", toy_axpy_text}, {"toy_list.cl", toy_list_text}, {"toy_brick.cl", toy_brick_text}};
   return options;
 }
-bool have_opencl() { return !list_opencl_devices(false).empty(); }
 std::unique_ptr<Backend> make_toy_opencl() { return make_opencl_backend(0, toy_options()); }
-#endif
 
 /// The bytes of y and out after three steps, the last one pass by pass.
 std::vector<std::vector<std::uint8_t>> run_toy(Backend& backend, std::int64_t count = toy_count) {
@@ -165,9 +164,7 @@ class EachBackend : public testing::TestWithParam<const char*> {
     if (name == "cpu") backend = make_toy_ref();
     if (name == "double") backend = make_toy_ref(0, true);
     if (name == "check") backend = make_check_backend({.probe = false, .registry = &toy_twins()});
-#ifdef PLIANT_HAVE_OPENCL
-    if (name == "opencl" && have_opencl()) backend = make_toy_opencl();
-#endif
+    if (name == "opencl" && test::has_opencl()) backend = make_toy_opencl();
     if (backend == nullptr) GTEST_SKIP() << "there is no OpenCL device";
   }
   [[nodiscard]] bool is_double() const { return std::string(GetParam()) == "double"; }
@@ -328,15 +325,15 @@ TEST(Backends, OpensByNameAndSaysWhy) {
   EXPECT_EQ(list_backends().front().name, "cpu");
 }
 
-#ifndef PLIANT_HAVE_OPENCL
 TEST(Backends, SayWhenTheBuildHasNoOpencl) {
+  if (opencl_is_built_in()) GTEST_SKIP() << "this build has OpenCL";
   EXPECT_MENTIONS(message_of([] { open_backend("opencl"); }), "this build of Pliant has no OpenCL");
 }
-#else
+
 class OnOpencl : public testing::Test {
  protected:
   void SetUp() override {
-    if (!have_opencl()) GTEST_SKIP() << "there is no OpenCL device";
+    if (!test::has_opencl()) GTEST_SKIP() << "there is no OpenCL device";
   }
 };
 
@@ -390,6 +387,7 @@ TEST_F(OnOpencl, NamesTheDevicesThereAre) {
 /// The loader reads its list of drivers once per process, so a process without a driver is another process: this one, started
 /// again with OCL_ICD_VENDORS naming a folder that does not exist.
 TEST(WithoutOpencl, ListIsEmptyAndAskingForItSaysWhatToInstall) {
+  if (!opencl_is_built_in()) GTEST_SKIP() << "this build has no OpenCL";
   if (std::getenv("PLIANT_TEST_NO_DRIVER") == nullptr) {
     const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
     const std::string command = "PLIANT_TEST_NO_DRIVER=1 OCL_ICD_VENDORS=/nonexistent/ \"" + self +
@@ -403,7 +401,6 @@ TEST(WithoutOpencl, ListIsEmptyAndAskingForItSaysWhatToInstall) {
   EXPECT_EQ(open_backend("auto", &why)->info().name, "cpu");
   EXPECT_MENTIONS(why, "there is no OpenCL device");
 }
-#endif
 
 }  // namespace
 }  // namespace pliant

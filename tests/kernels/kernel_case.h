@@ -13,10 +13,9 @@
 
 #include "backend/backend.h"
 #include "cpu_ref/backend.h"
-#include "program/program.h"
-#ifdef PLIANT_HAVE_OPENCL
 #include "opencl/opencl_backend.h"
-#endif
+#include "program/program.h"
+#include "support/opencl.h"
 
 namespace pliant::kernel_test {
 
@@ -101,7 +100,6 @@ inline std::vector<NamedBackend>& backends_under_test() {
       options.probe = false;
       list.push_back({"cpu_ref, " + std::to_string(threads) + " threads", make_ref_backend(options)});
     }
-#ifdef PLIANT_HAVE_OPENCL
     const auto devices = list_opencl_devices(false);
     for (std::size_t i = 0; i < devices.size(); ++i) {
       for (const auto& [lanes, local] : {std::array{1, 1}, std::array{1, 32}, std::array{16, 1}, std::array{16, 4}}) {
@@ -114,19 +112,9 @@ inline std::vector<NamedBackend>& backends_under_test() {
              make_opencl_backend(static_cast<int>(i), options)});
       }
     }
-#endif
     return list;
   }();
   return all;
-}
-
-inline bool has_opencl() {
-#ifdef PLIANT_HAVE_OPENCL
-  static const bool any = !list_opencl_devices(false).empty();
-  return any;
-#else
-  return false;
-#endif
 }
 
 /// Bits of every buffer after the pass.
@@ -166,7 +154,7 @@ inline std::string first_difference(const Program& program, const std::vector<st
 class TwinTest : public testing::Test {
  protected:
   void SetUp() override {
-    if (!has_opencl()) GTEST_SKIP() << "no OpenCL device: the kernels cannot be compared with their twins";
+    if (!test::has_opencl()) GTEST_SKIP() << "no OpenCL device: the kernels cannot be compared with their twins";
   }
   void TearDown() override {
     if (values_ > 0) std::cout << "             " << values_ << " values compared in " << cases_ << " cases\n";

@@ -3,13 +3,11 @@
 #include <gtest/gtest.h>
 
 #include "cpu_ref/backend.h"
+#include "opencl/opencl_backend.h"
 #include "physics/harness.h"
 #include "program/hash.h"
 #include "simulation/compare.h"
 #include "solver/scenes.h"
-#ifdef PLIANT_HAVE_OPENCL
-#include "opencl/opencl_backend.h"
-#endif
 
 namespace pliant::physics {
 namespace {
@@ -74,7 +72,6 @@ TEST(RandomMeshes, SameStateWhateverLanesGroupsAndThreads) {
       options.threads = threads;
       expect_same(make_ref_backend(options), std::to_string(threads) + " threads");
     }
-#ifdef PLIANT_HAVE_OPENCL
     if (!testing::has_opencl()) continue;
     for (const int lanes : {1, 16}) {
       for (const int local : {0, 1, 4}) {
@@ -84,7 +81,6 @@ TEST(RandomMeshes, SameStateWhateverLanesGroupsAndThreads) {
         expect_same(make_opencl_backend(0, options), std::to_string(lanes) + " lanes, groups of " + std::to_string(local));
       }
     }
-#endif
   }
 }
 

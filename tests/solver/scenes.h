@@ -7,6 +7,7 @@
 
 #include "backends/backends.h"
 #include "simulation/simulation.h"
+#include "support/opencl.h"
 #include "support/source_dir.h"
 
 namespace pliant::testing {
@@ -27,12 +28,6 @@ inline Scene pressed_cube(double press, const std::string& extra = "", double yo
   return parse_scene(text, test::source_dir() + "/scenes/pressed_cube.json");
 }
 
-inline bool has_opencl() {
-  try {
-    return open_backend("opencl:0") != nullptr;
-  } catch (const std::exception&) {
-    return false;
-  }
-}
+using test::has_opencl;
 
 }  // namespace pliant::testing
