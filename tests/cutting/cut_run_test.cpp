@@ -244,6 +244,69 @@ TEST(CutRun, nodes_of_a_cut_are_damped_like_others) {
   }
 }
 
+/// A good state of before the edit belongs to a model that is gone.
+TEST(CutRun, a_divergence_after_an_edit_goes_back_to_it) {
+  Body body = box_body("box", {0.06, 0.03, 0.03});
+  body.velocity = {0.01, 0, 0.02};
+  Scene scene = scene_with(body);
+  scene.interactive = true;
+  SimulationOptions options;
+  options.dt = 2e-4;  // given, so that nothing is tried again
+  Simulation s(scene, open_backend("cpu"), options);
+  s.advance(70);  // between two of the steps at which a state is kept
+  ASSERT_TRUE(s.cut(wall(0.031)).changed);
+  const std::uint64_t cut = s.hash();
+  s.set_forces({{0, 0, {1e6, 0, 0}}});
+  s.advance(20);
+  ASSERT_TRUE(s.divergence());
+  EXPECT_EQ(s.divergence()->last_good_step, 70);
+  EXPECT_EQ(s.step(), 70);
+  EXPECT_EQ(s.hash(), cut);
+  EXPECT_EQ(s.topology_version(), 1);
+}
+
+/// Without blades in the scene the step is that of the whole body, which is longer than that of its elements.
+TEST(CutRun, an_automatic_step_falls_to_the_element_bound) {
+  for (const ElementKind element : {ElementKind::hex8, ElementKind::tet4}) {
+    Body body = box_body("box", {0.05, 0.03, 0.03}, element);
+    body.velocity = {0.01, -0.02, 0.03};
+    const Scene scene = scene_with(body);
+    Simulation s(scene, open_backend("cpu:double"));
+    const double most = scene.safety * s.model().element_bound;
+    ASSERT_GT(s.dt(), 1.001 * most) << "or the cut has nothing to do";
+    s.advance(5);
+    ASSERT_TRUE(s.cut(wall(0.021)).changed);
+    EXPECT_LE(s.dt(), 1.000001 * most);
+    s.advance(5);
+    EXPECT_LE(s.dt(), 1.000001 * most);
+    for (const Vec3d& v : s.velocities(0)) {
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(v[c], body.velocity[c], 1e-9);
+    }
+  }
+}
+
+TEST(CutRun, nodes_of_shape_matching_keep_their_velocity) {
+  Body body = box_body("box", {0.06, 0.03, 0.03});
+  body.model.type = ModelType::flsm;
+  body.model.width = 1;
+  body.model.substeps = 3;
+  body.velocity = {0.01, -0.02, 0.03};
+  SimulationOptions options;
+  options.dt = 2e-4;
+  Simulation s(scene_with(body), open_backend("cpu:double"), options);
+  s.advance(6);
+  const auto expect_velocity = [&] {
+    for (const Vec3d& v : s.velocities(0)) {
+      for (int c = 0; c < 3; ++c) ASSERT_NEAR(v[c], body.velocity[c], 1e-9);
+    }
+  };
+  expect_velocity();
+  ASSERT_TRUE(s.cut(wall(0.031)).changed);
+  expect_velocity();
+  s.advance(30);
+  expect_velocity();
+}
+
 TEST(CutRun, blades_that_move_together_make_one_edit) {
   const Scene scene = scene_with(box_body("box", {0.06, 0.03, 0.03}));
   Simulation together(scene, open_backend("cpu")), apart(scene, open_backend("cpu"));

@@ -1,6 +1,8 @@
 // Virtual nodes: known cuts, and the definition of the algorithm over random ones.
 #include "cutting/topology/cut_topology.h"
 
+#include <numeric>
+
 #include "cutting/cut_bodies.h"
 #include "pliant/error.h"
 
@@ -153,6 +155,51 @@ TEST_P(BothShapes, all_edges_cut_leaves_single_corners) {
   body.cut(all);
   check_body(body);
   EXPECT_EQ(body.pieces(), 12);  // one around each node
+}
+
+/// A blade that crosses an edge twice cuts it where it came first, however far it goes on.
+TEST_P(BothShapes, the_first_crossing_of_an_edge_counts) {
+  const CutTopology body(box_mesh(2, 1, 1, GetParam()));
+  std::vector<SweepTriangle> way = plane_cut({0.3, 0, 0}, {1, 0, 0});
+  const std::vector<SweepTriangle> further = plane_cut({0.6, 0, 0}, {1, 0, 0});
+  way.insert(way.end(), further.begin(), further.end());
+  const std::vector<Vec3d>& x = body.mesh().rest;
+  const CutEdges edges = crossed_edges(body, x, way);
+  EXPECT_GE(edges.size(), 4U);
+  for (const auto& [pair, at] : edges) {
+    const double from = x[pair[0]][0], to = x[pair[1]][0];
+    EXPECT_NEAR(from + at * (to - from), 0.3, 1e-6);
+  }
+}
+
+TEST_P(BothShapes, no_copy_is_lighter_than_the_floor) {
+  CutTopology body(box_mesh(2, 2, 2, GetParam()));
+  // A corner of the body and the node in its middle lose next to nothing.
+  cut_at_rest(body, plane_cut({0.01, 0.01, 0.01}, {1, 1, 1}));
+  cut_at_rest(body, plane_cut({1.005, 1.005, 1.005}, {1, 1, 1}));
+  const CutElements& e = body.elements();
+  ASSERT_GT(e.fill.size(), body.mesh().cells.size());
+  double least = 1;
+  for (const double fill : e.fill) least = std::min(least, fill);
+  EXPECT_GE(least, kFillFloor / (1 + 8 * kFillFloor));
+  EXPECT_LE(least, kFillFloor) << "the floor had something to raise";
+  const std::vector<double> volume = piece_volumes(body);
+  EXPECT_NEAR(std::accumulate(volume.begin(), volume.end(), 0.0), 8, 1e-11);
+}
+
+TEST(CutTopology, a_part_without_a_sample_has_some_material) {
+  const auto mesh = box_mesh(1, 1, 1);
+  mesh->fill[0] = 0.25;
+  mesh->material = {0};
+  for (int s = 0; s < 64; ++s) mesh->material[0] |= (s & 3) == 0 ? std::uint64_t{1} << s : 0;  // the quarter x < 1 / 4
+  CutTopology body(mesh);
+  cut_at_rest(body, plane_cut({0.5, 0.5, 0.5}, {1, 0, 0}));
+  const CutElements& e = body.elements();
+  ASSERT_EQ(e.fill.size(), 2U) << "there is surface on either side";
+  EXPECT_GT(e.fill[1], 0);
+  EXPECT_NEAR(e.fill[0], 0.25, 0.25 * 2e-3);
+  EXPECT_NEAR(e.fill[0] + e.fill[1], 0.25, 1e-15);
+  check_body(body, false);
 }
 
 TEST(CutTopology, one_lattice_cell_in_two) {

@@ -107,6 +107,42 @@ TEST_F(Tear, below_its_toughness_it_holds) {
   EXPECT_EQ(a.hash(), b.hash()) << "looking at the stress changes the run";
 }
 
+/// Faces of tetrahedra with all corners at `at` on an axis.
+std::vector<TetFace> faces_in_plane(const Solid& whole, std::size_t axis, double at) {
+  std::vector<TetFace> faces;
+  for (std::size_t t = 0; t < whole.tets.size(); ++t) {
+    for (std::size_t f = 0; f < 4; ++f) {
+      const auto& corners = kTetFaces[f];
+      const bool all = std::all_of(corners.begin(), corners.end(), [&](int a) {
+        return std::fabs(whole.nodes[whole.tets[t][static_cast<std::size_t>(a)]][axis] - at) < 1e-9;
+      });
+      if (all) faces.push_back({static_cast<std::int32_t>(t), static_cast<std::int8_t>(f)});
+    }
+  }
+  return faces;
+}
+
+/// A node comes from the one that its tetrahedra had at that corner before: also one that tears for the second time.
+TEST_F(Tear, every_corner_comes_from_the_node_it_had) {
+  const auto whole = std::make_shared<const Solid>(make_solid(bar_scene(file, 1500).bodies[0]));
+  TornBody body(whole, std::vector<Material>(whole->tets.size()));
+  std::size_t nodes = whole->nodes.size();
+  const std::pair<std::size_t, double> planes[]{{0, 0.03}, {1, 0.01}, {2, 0.01}};
+  for (const auto& [axis, at] : planes) {
+    const auto before = body.solid().tets;
+    const std::vector<std::int32_t> from = body.tear(faces_in_plane(*whole, axis, at));
+    const Solid& now = body.solid();
+    ASSERT_EQ(from.size(), now.nodes.size());
+    EXPECT_GT(now.nodes.size(), nodes);
+    nodes = now.nodes.size();
+    for (std::size_t t = 0; t < before.size(); ++t) {
+      for (std::size_t a = 0; a < 4; ++a) ASSERT_EQ(from[now.tets[t][a]], before[t][a]) << "tetrahedron " << t;
+    }
+  }
+  EXPECT_EQ(
+      figures_of(PlainMesh{body.solid().nodes, body.solid().tets, {}, std::vector<double>(whole->tets.size(), 1.0)}).pieces, 8);
+}
+
 TEST_F(Tear, integrity_lowers_what_it_bears) {
   Scene scene = bar_scene(file, 6000);
   scene.bodies[0].inclusions[0].material.integrity = 0.25;

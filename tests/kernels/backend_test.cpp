@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -242,15 +243,19 @@ TEST_P(EachBackend, ProfileCountsLaunchesPerPassAndOnlyWhenOn) {
   backend->run(program.step, 0, 3);
   EXPECT_TRUE(backend->take_profile().empty());
   backend->profile(true);
+  const auto start = std::chrono::steady_clock::now();
   backend->run(program.step, 0, 3);
   const auto times = backend->take_profile();
+  double left = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   ASSERT_EQ(times.size(), 3u);
   EXPECT_EQ(times[0].kernel, "toy_axpy");
   EXPECT_EQ(times[1].label, "list");
   for (const PassTime& time : times) {
     EXPECT_EQ(time.launches, 3) << time.kernel;
     EXPECT_GT(time.seconds, 0) << time.kernel;
+    left -= time.seconds;
   }
+  EXPECT_GE(left, 0) << "the passes ran one after the other, within the call";
   backend->profile(false);
   backend->run(program.step, 0, 1);
   EXPECT_TRUE(backend->take_profile().empty());

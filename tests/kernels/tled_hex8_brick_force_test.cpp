@@ -17,31 +17,7 @@ TEST_F(TledHex8BrickForce, TwinGivesTheSameBits) {
   }
 }
 
-/// A grid of 2 x 2 x 2 bricks; brick 0 is the empty one.
-struct Grid {
-  static constexpr int bricks = 2, nx = 2 * PLIANT_BRICK_X, ny = 2 * PLIANT_BRICK_Y, nz = 2 * PLIANT_BRICK_Z;
-  static constexpr std::size_t slots = 9 * PLIANT_BRICK_NODES;
-  static int brick(int x, int y, int z) {
-    const bool inside = x >= 0 && y >= 0 && z >= 0 && x < bricks && y < bricks && z < bricks;
-    return inside ? 1 + x + bricks * (y + bricks * z) : 0;
-  }
-  /// Where node (or cell) (x, y, z) stands.
-  static std::int32_t slot(int x, int y, int z) {
-    return brick(x / 16, y / 4, z / 4) * PLIANT_BRICK_NODES + (z % 4 * 4 + y % 4) * 16 + x % 16;
-  }
-  static Ints neighbors() {
-    Ints result(9 * PLIANT_BRICK_NEIGHBORS, 0);
-    for (int b = 1; b < 9; ++b) {
-      const int x = (b - 1) % 2, y = (b - 1) / 2 % 2, z = (b - 1) / 4;
-      for (int mask = 0; mask < 8; ++mask) {
-        const int dx = mask & 1, dy = mask >> 1 & 1, dz = mask >> 2 & 1;
-        result[static_cast<std::size_t>(b * 16 + mask)] = brick(x + dx, y + dy, z + dz);
-        result[static_cast<std::size_t>(b * 16 + 8 + mask)] = brick(x - dx, y - dy, z - dz);
-      }
-    }
-    return result;
-  }
-};
+using Grid = BrickGrid;
 
 struct Cells {
   Reals u = Reals(4 * Grid::slots, 0.0), fill = Reals(Grid::slots, 0.0);
@@ -66,18 +42,21 @@ Cells random_cells(std::uint32_t seed) {
 
 constexpr double mu = 1052, kappa = 52249, stiffness = 12;
 
+/// All rows of cells and of nodes.
+Ints all_rows() { return Ints(18, 0xFFFF); }
+
 /// Nodal forces through the brick kernel and brick_update.
-Reals brick_forces(const Cells& cells, int law) {
+Reals brick_forces(const Cells& cells, int law, const Ints& rows = all_rows()) {
   KernelCase force("tled_hex8_brick_force", {{"LAW", law}}, Shape::bricks, 8);
   force.exact("node_u", cells.u)
       .ints("brick_neighbor", Grid::neighbors())
-      .ints("brick_rows", Ints(18, 0xFFFF))
+      .ints("brick_rows", rows)
       .exact("brick_fill", cells.fill);
   force.exact("brick_force", Reals(9 * PLIANT_BRICK_FORCE)).ints("fault", Ints(Grid::slots)).exact(mu).exact(kappa);
   force.exact(1 / (4 * edge)).exact(edge * edge / 4).exact(stiffness).integer(1).integer(0).step();
   KernelCase update("brick_update", update_defines(0, 1, 0), Shape::lanes, Grid::slots);
   update.exact("node_u", cells.u).exact("node_w", Reals(4 * Grid::slots)).ints("brick_neighbor", Grid::neighbors());
-  update.ints("brick_rows", Ints(18, 0xFFFF));
+  update.ints("brick_rows", rows);
   update.exact("brick_force", run_in_double(force, "brick_force")).exact("node_load", Reals(4));
   update.exact("node_force", Reals(4 * Grid::slots)).exact("step_params", step_parameters(0));
   return run_in_double(update, "node_force");
@@ -155,6 +134,31 @@ TEST(TledHex8BrickForceOracle, GivesTheForcesOfTheHexahedronKernel) {
     ASSERT_GT(scale, 0);
     EXPECT_LE(difference, 1e-12 * scale) << "law " << law;
   }
+}
+
+/// Rows that brick_rows names hold cells, all others do not, whatever their fill.
+TEST(TledHex8BrickForceOracle, LeavesOutTheRowsThatHoldNoCell) {
+  Random random(12);
+  const Cells cells = random_cells(13);
+  Cells without = cells;
+  Ints rows = all_rows();
+  for (int brick = 1; brick < 9; ++brick) {
+    const auto b = static_cast<std::size_t>(brick);
+    for (std::size_t row = 0; row < 16; ++row) {
+      if (random.chance(0.5)) continue;
+      rows[2 * b] &= ~(1 << row);
+      for (std::size_t x = 0; x < 16; ++x) without.fill[b * PLIANT_BRICK_NODES + 16 * row + x] = 0;
+    }
+  }
+  const Reals skipped = brick_forces(cells, 0, rows), empty = element_forces(without, 0), all = element_forces(cells, 0);
+  double scale = 0, difference = 0, missing = 0;
+  for (std::size_t i = 0; i < empty.size(); ++i) {
+    scale = std::max(scale, std::fabs(empty[i]));
+    difference = std::max(difference, std::fabs(skipped[i] - empty[i]));
+    missing = std::max(missing, std::fabs(all[i] - empty[i]));
+  }
+  EXPECT_GT(missing, 0.1 * scale);
+  EXPECT_LE(difference, 1e-12 * scale);
 }
 
 }  // namespace

@@ -5,6 +5,32 @@
 
 namespace pliant::kernel_test {
 
+/// A grid of 2 x 2 x 2 bricks; brick 0 is the empty one.
+struct BrickGrid {
+  static constexpr int bricks = 2, nx = 2 * PLIANT_BRICK_X, ny = 2 * PLIANT_BRICK_Y, nz = 2 * PLIANT_BRICK_Z;
+  static constexpr std::size_t slots = 9 * PLIANT_BRICK_NODES;
+  static int brick(int x, int y, int z) {
+    const bool inside = x >= 0 && y >= 0 && z >= 0 && x < bricks && y < bricks && z < bricks;
+    return inside ? 1 + x + bricks * (y + bricks * z) : 0;
+  }
+  /// Where node (or cell) (x, y, z) stands.
+  static std::int32_t slot(int x, int y, int z) {
+    return brick(x / 16, y / 4, z / 4) * PLIANT_BRICK_NODES + (z % 4 * 4 + y % 4) * 16 + x % 16;
+  }
+  static Ints neighbors() {
+    Ints result(9 * PLIANT_BRICK_NEIGHBORS, 0);
+    for (int b = 1; b < 9; ++b) {
+      const int x = (b - 1) % 2, y = (b - 1) / 2 % 2, z = (b - 1) / 4;
+      for (int mask = 0; mask < 8; ++mask) {
+        const int dx = mask & 1, dy = mask >> 1 & 1, dz = mask >> 2 & 1;
+        result[static_cast<std::size_t>(b * 16 + mask)] = brick(x + dx, y + dy, z + dz);
+        result[static_cast<std::size_t>(b * 16 + 8 + mask)] = brick(x - dx, y - dy, z - dz);
+      }
+    }
+    return result;
+  }
+};
+
 /// [nodes] texels (u, 1/m): a third of the slots hold no node or a fixed one.
 inline Reals node_u_texels(Random& random, std::size_t nodes, Data data) {
   Reals u = random.reals(4 * nodes, data, 0.01);

@@ -125,7 +125,14 @@ TEST(DamagedState, what_is_refused_is_named) {
   has(refusal([](RunState& s) { s.tears.push_back({0, 0, 1}); }), "tears");
   has(refusal([](RunState& s) { s.seeds = {{0, 0, 0}}; }), "regions");
   has(refusal([](RunState& s) { s.blades.fronts.begin()->second.begin()->second.points[0].carried.cell = 1 << 30; }), "traces");
+  has(refusal([](RunState& s) {
+        FrontPoint& point = s.blades.fronts.begin()->second.begin()->second.points[0];
+        point.carried.cell = -1;
+        point.node = 1 << 30;
+      }),
+      "traces");
   has(refusal([](RunState& s) { s.blades.fronts.begin()->second.begin()->second.levels = 60; }), "traces");
+  has(refusal([](RunState& s) { s.blades.placed.begin()->second[0][2] = INFINITY; }), "blade");
   has(refusal([](RunState& s) { s.forces[0].body = 3; }), "force");
   has(refusal([](RunState& s) { s.forces[0].force[1] = NAN; }), "force");
   has(refusal([](RunState& s) { s.relaxation.u = {1, 2, 3}; }), "relax");

@@ -1,5 +1,9 @@
 // Quadrature, factorisation, point location, quadratic meshes.
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <set>
 
 #include "problems.h"
 #include "statics/cholesky.h"
@@ -142,6 +146,17 @@ TEST(Field, FindsPointsAndReproducesLinearFields) {
   }
 }
 
+/// What is prescribed, by place, axis and displacement, all in steps of a nanometre.
+std::multiset<std::array<std::int64_t, 5>> conditions_of(const Problem& p) {
+  const auto steps = [](double x) { return static_cast<std::int64_t>(std::llround(x * 1e9)); };
+  std::multiset<std::array<std::int64_t, 5>> all;
+  for (const Prescribed& c : p.prescribed) {
+    const Vec3d& x = p.mesh.nodes[c.node];
+    all.insert({steps(x[0]), steps(x[1]), steps(x[2]), c.axis, steps(c.displacement)});
+  }
+  return all;
+}
+
 TEST(Quadratic, KeepsNodesAndConditions) {
   Problem p;
   p.mesh = statics::box_mesh(Element::tet4, {2, 1, 1}, {0.2, 0.1, 0.1});
@@ -158,6 +173,22 @@ TEST(Quadratic, KeepsNodesAndConditions) {
       direct, [](const Vec3d& x) { return on(x[0], 0); }, 7);
   statics::prescribe(direct, [](const Vec3d& x) { return on(x[0], 0.2); }, 1, {0.01, 0, 0});
   EXPECT_EQ(q.prescribed.size(), direct.prescribed.size());
+  EXPECT_EQ(conditions_of(q), conditions_of(direct));
+}
+
+/// The middle of an edge moves by the mean of its ends, so that a linear field stays one.
+TEST(Quadratic, PrescribesALinearFieldLinearly) {
+  Problem p;
+  p.mesh = statics::box_mesh(Element::tet4, {2, 1, 1}, {0.2, 0.1, 0.1});
+  const auto field = [](const Vec3d& x, int axis) { return 0.01 + 0.1 * x[0] - 0.2 * x[1] + 0.3 * x[2] * (1 + axis); };
+  for (std::size_t n = 0; n < p.mesh.nodes.size(); ++n) {
+    for (int axis = 0; axis < 3; ++axis) {
+      p.prescribed.push_back({static_cast<std::int32_t>(n), axis, field(p.mesh.nodes[n], axis)});
+    }
+  }
+  const Problem q = statics::to_quadratic(p);
+  EXPECT_EQ(q.prescribed.size(), 3 * q.mesh.nodes.size());
+  for (const Prescribed& c : q.prescribed) EXPECT_NEAR(c.displacement, field(q.mesh.nodes[c.node], c.axis), 1e-15);
 }
 
 }  // namespace

@@ -1,0 +1,63 @@
+// Which part of a surface is new: ranges against their definition.
+#include "api/frame_pool.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace pliant::api {
+namespace {
+
+Topology topology_of(std::vector<Triangle> triangles, std::vector<std::uint8_t> cut_faces) {
+  Model model;
+  model.surface.triangles = std::move(triangles);
+  Topology topology;
+  topology.model = std::make_shared<const Model>(std::move(model));
+  topology.cut_faces = std::move(cut_faces);
+  return topology;
+}
+
+bool holds(const IndexRange& range, std::size_t i) { return i >= range.first && i < range.first + range.count; }
+
+TEST(FramePool, TrianglesAreNewWhereCornersOrFlagsAre) {
+  const std::vector<Triangle> all{{0, 1, 2}, {1, 2, 3}, {2, 3, 4}, {3, 4, 5}};
+  const Topology plain = topology_of(all, {}), flagged = topology_of(all, {0, 0, 1, 0});
+  EXPECT_EQ(changed_triangles(plain, plain).count, 0U);
+  for (const auto& [from, to] : {std::pair{&plain, &flagged}, std::pair{&flagged, &plain}}) {
+    const IndexRange range = changed_triangles(*from, *to);
+    EXPECT_EQ(range.first, 2U);
+    EXPECT_EQ(range.count, 1U);
+  }
+  std::vector<Triangle> other = all;
+  other[1] = {1, 3, 2};
+  other.push_back({4, 5, 6});
+  const IndexRange more = changed_triangles(flagged, topology_of(other, {0, 0, 1, 0, 1}));
+  EXPECT_EQ(more.first, 1U);
+  EXPECT_EQ(more.count, 4U);
+  const IndexRange fewer = changed_triangles(topology_of(other, {}), topology_of({all[0]}, {}));
+  EXPECT_EQ(fewer.count, 0U) << "what is left is as it was";
+}
+
+TEST(FramePool, ChangedRangesAreTheSmallest) {
+  std::mt19937 random(9);
+  const auto pick = [&](std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random); };
+  for (int trial = 0; trial < 200; ++trial) {
+    std::vector<Vec4f> from(1 + pick(20), Vec4f{1, 2, 3, 0});
+    std::vector<Vec4f> to = from;
+    to.resize(1 + pick(20), Vec4f{});
+    for (std::size_t k = pick(3); k > 0; --k) to[pick(to.size())][pick(3)] = -0.0F;
+    const IndexRange range = changed_range(from, from.size(), to, to.size());
+    ASSERT_LE(range.first + range.count, to.size());
+    const auto same = [&](std::size_t i) { return i < from.size() && from[i] == to[i]; };
+    for (std::size_t i = 0; i < to.size(); ++i) {
+      if (!same(i)) ASSERT_TRUE(holds(range, i)) << trial;
+    }
+    if (range.count > 0) {
+      EXPECT_FALSE(same(range.first));
+      EXPECT_FALSE(same(range.first + range.count - 1));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace pliant::api
