@@ -105,7 +105,7 @@ target_sources(pliant_simulation PRIVATE ${edits})
 
 pliant_room(pliant_statics host/statics pliant_model)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")  # the twins need these instructions too
-  set_source_files_properties(host/statics/dense.cpp PROPERTIES COMPILE_OPTIONS "-mfma;-mavx2")
+  set_source_files_properties(host/statics/dense.cpp PROPERTIES COMPILE_OPTIONS "-mfma;-mavx2" SKIP_PRECOMPILE_HEADERS ON)
 endif()
 
 pliant_room(pliant_io host/io pliant_simulation)
