@@ -53,6 +53,7 @@ pliant_room(pliant_backend host/backend pliant_program)
 # The twins: their own flags, so that nothing a consumer sets can change a bit.
 pliant_room(pliant_ref cpu_ref pliant_backend Threads::Threads)
 target_include_directories(pliant_ref PUBLIC ${CMAKE_SOURCE_DIR})  # "cpu_ref/backend.h"
+target_include_directories(pliant_ref PRIVATE ${PLIANT_GENERATED})  # "twin_laws.h"
 set(ref_options -O3 -fno-math-errno -fno-trapping-math)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   list(PREPEND ref_options -mfma -mavx2)
@@ -83,8 +84,10 @@ pliant_room(pliant_backends host/backends pliant_ref ${opencl_room})
 
 # What is simulated: from files to the Model.
 pliant_room(pliant_geometry host/geometry fmt::fmt Eigen3::Eigen Threads::Threads)
+pliant_room(pliant_material host/material Eigen3::Eigen fmt::fmt)
+target_include_directories(pliant_material PRIVATE ${PLIANT_GENERATED})  # "material/host_laws.h"
 pliant_with_embree(pliant_geometry host/geometry/distance)
-pliant_room(pliant_scene host/scene pliant_geometry nlohmann_json::nlohmann_json)
+pliant_room(pliant_scene host/scene pliant_material pliant_geometry nlohmann_json::nlohmann_json)
 pliant_room(pliant_mesh_io host/mesh_io pliant_geometry nlohmann_json::nlohmann_json)
 target_link_libraries(pliant_mesh_io PRIVATE assimp::assimp pugixml::pugixml)
 if(ZLIB_FOUND)

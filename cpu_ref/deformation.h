@@ -59,11 +59,11 @@ template <class Scalar>
   return d;
 }
 
-/// True where J is not a positive, finite number: inverted, collapsed or blown up.
+/// |H|^2; |F|^2 = 3 + 2 tr H + |H|^2.
 template <class Scalar>
-inline bool is_faulty(const Deformation<Scalar>& d) {
-  const Scalar jacobian = Scalar(1) + d.j;
-  return !(jacobian > Scalar(0)) || !(jacobian < std::numeric_limits<Scalar>::infinity());
+[[gnu::always_inline]] inline Scalar squared_norm(const Mat3<Scalar>& h) {
+  const Scalar first = dot3(h.m00, h.m00, h.m01, h.m01, h.m02, h.m02);
+  return add_dot3(add_dot3(first, h.m10, h.m10, h.m11, h.m11, h.m12, h.m12), h.m20, h.m20, h.m21, h.m21, h.m22, h.m22);
 }
 
 /// a I + b H + c H^T + e C

@@ -68,8 +68,8 @@ Face<Scalar> face_of(const Vec3<Scalar>& u00, const Vec3<Scalar>& u10, const Vec
 }
 
 /// Forces on the upper and lower face of one cell.
-template <int Law, class Scalar>
-bool cell_forces(const Face<Scalar>& below, const Face<Scalar>& above, Scalar fill, Scalar p0, Scalar p1, Scalar gradient,
+template <class LawType, class Scalar>
+bool cell_forces(const Face<Scalar>& below, const Face<Scalar>& above, Scalar fill, const LawType& law, Scalar gradient,
                  Scalar volume, Scalar stiffness, Face<Scalar>& lower, Face<Scalar>& upper) {
   const Vec3<Scalar> mx = below.ds + above.ds, my = below.sd + above.sd, mxy = below.dd + above.dd;
   const Vec3<Scalar> mz = above.ss - below.ss, mxz = above.ds - below.ds, myz = above.sd - below.sd, mxyz = above.dd - below.dd;
@@ -77,12 +77,12 @@ bool cell_forces(const Face<Scalar>& below, const Face<Scalar>& above, Scalar fi
   const auto scaled = [&](Scalar m) { return std::fma(own, m, Scalar(0)); };
   const Deformation<Scalar> d = deformation_of<Scalar>({scaled(mx.x), scaled(my.x), scaled(mz.x), scaled(mx.y), scaled(my.y),
                                                         scaled(mz.y), scaled(mx.z), scaled(my.z), scaled(mz.z)});
-  const Mat3<Scalar> p = law_stress<Law>(d, fill * volume, p0, p1, p1 * d.j);
+  const Mat3<Scalar> p = law.stress(d, fill * volume, law.pressure(d.j));
   const Scalar k = fill * stiffness;
   const Vec3<Scalar> qx{p.m00, p.m10, p.m20}, qy{p.m01, p.m11, p.m21}, qz{p.m02, p.m12, p.m22}, qxy = k * mxy;
   upper = {qz, fma(k, mxz, qx), fma(k, myz, qy), fma(k, mxyz, qxy)};
   lower = {Vec3<Scalar>{} - qz, fma(-k, mxz, qx), fma(-k, myz, qy), fma(-k, mxyz, qxy)};
-  return fill > Scalar(0) && is_faulty(d);
+  return fill > Scalar(0) && is_faulty(law, d);
 }
 
 /// Back along y and x for the rows of one plane of nodes.
@@ -120,11 +120,12 @@ void write_plane(const Face<Scalar> (&forces)[rows][columns], int plane, Scalar*
 
 }  // namespace
 
-template <class Scalar, int Law>
+template <class Scalar, int Number>
 void tled_hex8_brick_force(Range range, const Scalar* node_u, const std::int32_t* brick_neighbor,
                            const std::int32_t* brick_rows, const Scalar* brick_fill, Scalar* brick_force, std::int32_t* fault,
-                           Scalar p0, Scalar p1, Scalar gradient, Scalar volume, Scalar stiffness, std::int32_t first_brick,
-                           std::int32_t fault_base, std::int32_t step) {
+                           const Scalar* law_parameters, Scalar gradient, Scalar volume, Scalar stiffness,
+                           std::int32_t first_brick, std::int32_t fault_base, std::int32_t step) {
+  const MaterialLaw<Number, Scalar> law(law_parameters);
   const auto work = std::make_unique<Work<Scalar>>();
   for (std::int64_t brick = first_brick + range.begin; brick < first_brick + range.end; ++brick) {
     load_nodes(node_u, brick_neighbor + brick * PLIANT_BRICK_NEIGHBORS, *work);
@@ -143,8 +144,8 @@ void tled_hex8_brick_force(Range range, const Scalar* node_u, const std::int32_t
           Face<Scalar> lower{}, &plane = work->forces[z][y][x];
           work->forces[z + 1][y][x] = {};
           const bool bad = (brick_rows[2 * brick] >> (4 * z + y) & 1) != 0 &&
-                           cell_forces<Law>(work->faces[z][y][x], work->faces[z + 1][y][x], brick_fill[cell], p0, p1, gradient,
-                                            volume, stiffness, lower, work->forces[z + 1][y][x]);
+                           cell_forces(work->faces[z][y][x], work->faces[z + 1][y][x], brick_fill[cell], law, gradient, volume,
+                                       stiffness, lower, work->forces[z + 1][y][x]);
           mark_fault(bad, step, fault[fault_base + cell]);
           plane =
               z > 0 ? Face<Scalar>{plane.ss + lower.ss, plane.ds + lower.ds, plane.sd + lower.sd, plane.dd + lower.dd} : lower;

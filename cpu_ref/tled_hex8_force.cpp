@@ -5,18 +5,19 @@
 
 namespace pliant::ref {
 
-template <class Scalar, int Law, bool Uniform>
+template <class Scalar, int Number, bool Uniform>
 void tled_hex8_force(Range range, const Scalar* node_u, const std::int32_t* hex_nodes, const Scalar* hex_data,
-                     const Scalar* hex_fill, Scalar* corner_force, std::int32_t* fault, Scalar p0, Scalar p1,
+                     const Scalar* hex_fill, Scalar* corner_force, std::int32_t* fault, const Scalar* law_parameters,
                      std::int32_t corner_base, std::int32_t fault_base, std::int32_t step) {
+  const MaterialLaw<Number, Scalar> law(law_parameters);
   constexpr int gamma = 24, volume = 56, stiffness = 57;  // where they stand in the record
   for (std::int64_t e = range.begin; e < range.end; ++e) {
     const HexRecord<Scalar, Uniform> data(hex_data, e, PLIANT_HEX_DATA_PLANES);
     const Corners<Scalar> u = hex8_displacements(e, node_u, hex_nodes);
     const Deformation<Scalar> d = deformation_of(hex8_gradient(u, data, 0));
     const Scalar fill = hex_fill[e];
-    mark_fault(fill > Scalar(0) && is_faulty(d), step, fault[fault_base + e]);
-    const Mat3<Scalar> p = law_stress<Law>(d, fill * data[volume], p0, p1, p1 * d.j);
+    mark_fault(fill > Scalar(0) && is_faulty(law, d), step, fault[fault_base + e]);
+    const Mat3<Scalar> p = law.stress(d, fill * data[volume], law.pressure(d.j));
 
     Corners<Scalar> f;
     for (std::size_t a = 0; a < 8; ++a) {

@@ -5,10 +5,11 @@
 
 namespace pliant::ref {
 
-template <class Scalar, int Law, bool Uniform>
+template <class Scalar, int Number, bool Uniform>
 void tled_hex8full_force(Range range, const Scalar* node_u, const std::int32_t* hex_nodes, const Scalar* hex_data,
-                         const Scalar* hex_fill, Scalar* corner_force, std::int32_t* fault, Scalar p0, Scalar p1,
+                         const Scalar* hex_fill, Scalar* corner_force, std::int32_t* fault, const Scalar* law_parameters,
                          std::int32_t corner_base, std::int32_t fault_base, std::int32_t step) {
+  const MaterialLaw<Number, Scalar> law(law_parameters);
   for (std::int64_t e = range.begin; e < range.end; ++e) {
     const HexRecord<Scalar, Uniform> data(hex_data, e, PLIANT_HEXFULL_DATA_PLANES);
     const Corners<Scalar> u = hex8_displacements(e, node_u, hex_nodes);
@@ -18,8 +19,8 @@ void tled_hex8full_force(Range range, const Scalar* node_u, const std::int32_t* 
     for (std::int64_t point = 0; point < 8; ++point) {
       const std::int64_t gradients = 25 * point, weight = gradients + 24;
       const Deformation<Scalar> d = deformation_of(hex8_gradient(u, data, gradients));
-      bad = bad || (fill > Scalar(0) && is_faulty(d));
-      const Mat3<Scalar> p = law_stress<Law>(d, fill * data[weight], p0, p1, p1 * d.j);
+      bad = bad || (fill > Scalar(0) && is_faulty(law, d));
+      const Mat3<Scalar> p = law.stress(d, fill * data[weight], law.pressure(d.j));
       for (std::size_t a = 0; a < 8; ++a) {
         const auto b = gradients + 3 * static_cast<std::int64_t>(a);
         const Scalar bx = data[b], by = data[b + 1], bz = data[b + 2];

@@ -7,10 +7,11 @@
 
 namespace pliant::ref {
 
-template <class Scalar, int Law, bool Averaged>
+template <class Scalar, int Number, bool Averaged>
 void tled_tet4_force(Range range, const Scalar* node_u, const std::int32_t* tet_nodes, const Scalar* tet_data,
-                     const Scalar* anp_pressure, Scalar* corner_force, std::int32_t* fault, Scalar p0, Scalar p1,
+                     const Scalar* anp_pressure, Scalar* corner_force, std::int32_t* fault, const Scalar* law_parameters,
                      std::int32_t corner_base, std::int32_t fault_base, std::int32_t step) {
+  const MaterialLaw<Number, Scalar> law(law_parameters);
   for (std::int64_t tile = range.begin; tile < range.end; tile += PLIANT_TILE) {
     const std::int32_t* nodes = tet_nodes + 4 * tile;
     const Scalar* data = tet_data + PLIANT_TET_DATA_PLANES * tile;
@@ -26,8 +27,8 @@ void tled_tet4_force(Range range, const Scalar* node_u, const std::int32_t* tet_
     for (int e = 0; e < PLIANT_TILE; ++e) {
       const Tet4<Scalar> t = tet4_load(u, data, e);
       const Deformation<Scalar> d = deformation_of(t.h);
-      bad[e] = is_faulty(d) ? 1 : 0;
-      const Mat3<Scalar> p = law_stress<Law>(d, t.volume, p0, p1, Averaged ? mean_pressure[e] : p1 * d.j);
+      bad[e] = is_faulty(law, d) ? 1 : 0;
+      const Mat3<Scalar> p = law.stress(d, t.volume, Averaged ? mean_pressure[e] : law.pressure(d.j));
       f[3][e] = dot3(p.m00, t.b1x, p.m01, t.b1y, p.m02, t.b1z);
       f[4][e] = dot3(p.m10, t.b1x, p.m11, t.b1y, p.m12, t.b1z);
       f[5][e] = dot3(p.m20, t.b1x, p.m21, t.b1y, p.m22, t.b1z);

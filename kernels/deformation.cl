@@ -38,10 +38,10 @@ static inline deformation deformation_of(mat3 h) {
   return d;
 }
 
-// True where J is not a positive, finite number: inverted, collapsed or blown up.
-static inline integer is_faulty(deformation d) {
-  const real jacobian = 1.0f + d.j;
-  return !(jacobian > 0.0f) || !(jacobian < INFINITY);
+// |H|^2; |F|^2 = 3 + 2 tr H + |H|^2.
+static inline real squared_norm(mat3 h) {
+  return fma(h.m22, h.m22, fma(h.m21, h.m21, fma(h.m20, h.m20, fma(h.m12, h.m12, fma(h.m11, h.m11, fma(h.m10, h.m10,
+         fma(h.m02, h.m02, fma(h.m01, h.m01, h.m00 * h.m00))))))));
 }
 
 // a I + b H + c H^T + e C

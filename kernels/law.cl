@@ -1,11 +1,19 @@
-// The material law of this batch: first Piola-Kirchhoff stress P = F S times `scale` (a volume).
-//   mat3 law_stress(deformation d, real scale, float p0, float p1, real pressure)
-// p0, p1: the law's two parameters [Pa]; pressure: dU/dJ [Pa] of the volumetric part U(J), p1 (J - 1) or its nodal average.
+// The material law of this batch, the define LAW (laws.h). Its fragment law_STEM.cl gives
+//   law                                                  its parameters [Pa], or what the host makes of them
+//   law law_load(__global const float* law_parameters)   the same for all elements of a batch: loaded once, before any loop
+//   LAW_INVERTIBLE                                       1: the law is finite for J <= 0 too
+//   real law_pressure(law m, real j)                     dU/dJ [Pa] of the volumetric part U(J) at j = J - 1; 0 if it has none
+//   mat3 law_stress(deformation d, real scale, law m, real pressure)
+// The last is the first Piola-Kirchhoff stress P = F S times `scale` (a volume); `pressure` is law_pressure or its nodal average.
 #include "deformation.cl"
-#if LAW == PLIANT_LAW_NEO_HOOKEAN
-#include "law_neo_hookean.cl"
-#elif LAW == PLIANT_LAW_SAINT_VENANT_KIRCHHOFF
-#include "law_saint_venant_kirchhoff.cl"
-#elif LAW == PLIANT_LAW_ISOCHORIC_NEO_HOOKEAN
-#include "law_isochoric_neo_hookean.cl"
+#include "laws.cl"
+
+// True where the law has no stress: J is not finite, or not positive though the law needs that (inverted, collapsed).
+static inline integer is_faulty(deformation d) {
+  const real jacobian = 1.0f + d.j;
+#if LAW_INVERTIBLE
+  return !(fabs(jacobian) < INFINITY);
+#else
+  return !(jacobian > 0.0f) || !(jacobian < INFINITY);
 #endif
+}

@@ -32,9 +32,4 @@
 #define PLIANT_FLSM_REST_PLANES 10  // 1 / sum m, centroid (3) [cells], second moment (6)
 #define PLIANT_FLSM_SPIN_PLANES 6   // inverse of the inertia at rest (6)
 
-// Material laws (the define LAW of a kernel).
-#define PLIANT_LAW_NEO_HOOKEAN 0
-#define PLIANT_LAW_SAINT_VENANT_KIRCHHOFF 1
-#define PLIANT_LAW_ISOCHORIC_NEO_HOOKEAN 2
-
 #endif

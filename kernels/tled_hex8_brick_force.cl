@@ -85,9 +85,10 @@ static inline void write_plane(const face* forces, __global float* out, int plan
   }
 }
 
-__kernel void tled_hex8_brick_force(__global const float* node_u, __global const int* brick_neighbor, __global const int* brick_rows, __global const float* brick_fill,
-                                    __global float* brick_force, __global int* fault, float p0, float p1, float gradient,
-                                    float volume, float stiffness, int first_brick, int fault_base, int step) {
+__kernel void tled_hex8_brick_force(__global const float* node_u, __global const int* brick_neighbor,
+                                    __global const int* brick_rows, __global const float* brick_fill, __global float* brick_force,
+                                    __global int* fault, __global const float* law_parameters, float gradient, float volume,
+                                    float stiffness, int first_brick, int fault_base, int step) {
 #if LANES == 16
   const int brick = first_brick + (int)get_global_id(0), lane = 0;
 #else
@@ -98,6 +99,7 @@ __kernel void tled_hex8_brick_force(__global const float* node_u, __global const
   const vec3 zero = {0.0f, 0.0f, 0.0f};
   const face no_force = {zero, zero, zero, zero};
   const int rows = brick_rows[2 * brick];
+  const law m = law_load(law_parameters);
   face below[4], pending[4];  // displacement butterflies of the plane below; forces of the cells below on the present plane
   for (int z = 0; z < 5; ++z) {
     face above[4];
@@ -144,7 +146,7 @@ __kernel void tled_hex8_brick_force(__global const float* node_u, __global const
           const deformation d = deformation_of(h);
           const integer bad = full && is_faulty(d);
           MARK_FAULT(bad, step, fault, fault_base + brick * PLIANT_BRICK_NODES + cell)
-          const mat3 p = law_stress(d, fill * volume, p0, p1, p1 * d.j);
+          const mat3 p = law_stress(d, fill * volume, m, law_pressure(m, d.j));
           const real k = fill * stiffness;
           const vec3 qx = {p.m00, p.m10, p.m20}, qy = {p.m01, p.m11, p.m21}, qz = {p.m02, p.m12, p.m22};
           const vec3 qxy = times(k, mxy);

@@ -1,5 +1,5 @@
 // Corner forces of 8-node hexahedra with one point and total Lagrangian hourglass control (Flanagan and Belytschko 1981; Joldes,
-// Wittek and Miller 2008): f_a = fill (V P b_a + k sum_m gamma_ma q_m) with q_m = sum_a gamma_ma u_a.
+// Wittek and Miller 2008): f_a = fill (V P b_a + k sum_i gamma_ia q_i) with q_i = sum_a gamma_ia u_a.
 // hex_nodes: [tiles][8][16]. hex_data, one record of 58 numbers: mean gradients b_a [8][3] [1/m], gamma [4 modes][8 corners] [1],
 // V [m^3], hourglass stiffness k [N/m]. UNIFORM: one record for all elements, else [tiles][58][16].
 // hex_fill: fill fraction per element (0 for padding). corner_force: [tiles][8 corners][3][16] from corner_base on [N].
@@ -15,13 +15,14 @@
 #endif
 
 __kernel void tled_hex8_force(__global const float* node_u, __global const int* hex_nodes, __global const float* hex_data,
-                              __global const float* hex_fill, __global float* corner_force, __global int* fault, float p0, float p1,
-                              int corner_base, int fault_base, int step) {
+                              __global const float* hex_fill, __global float* corner_force, __global int* fault,
+                              __global const float* law_parameters, int corner_base, int fault_base, int step) {
   const int e = FIRST_INDEX;
   __global const int* nodes = hex_nodes + TILE_BASE(e, 8);
 #if !UNIFORM
   __global const float* data = hex_data + TILE_BASE(e, PLIANT_HEX_DATA_PLANES);
 #endif
+  const law m = law_load(law_parameters);
   real x[8], y[8], z[8];
   for (int a = 0; a < 8; ++a) {
     const texels u = texels_gather(node_u, nodes + a * PLIANT_TILE);
@@ -46,20 +47,20 @@ __kernel void tled_hex8_force(__global const float* node_u, __global const int* 
   const real fill = LOAD(hex_fill, e);
   const integer bad = (fill > 0.0f) && is_faulty(d);
   MARK_FAULT(bad, step, fault, fault_base + e)
-  const mat3 p = law_stress(d, fill * DATA(56), p0, p1, p1 * d.j);
+  const mat3 p = law_stress(d, fill * DATA(56), m, law_pressure(m, d.j));
   const real k = fill * DATA(57);
   real qx[4], qy[4], qz[4];
-  for (int m = 0; m < 4; ++m) {
-    qx[m] = qy[m] = qz[m] = 0.0f;
+  for (int i = 0; i < 4; ++i) {
+    qx[i] = qy[i] = qz[i] = 0.0f;
     for (int a = 0; a < 8; ++a) {
-      const RECORD_TYPE gamma = DATA(24 + 8 * m + a);
-      qx[m] = fma(gamma, x[a], qx[m]);
-      qy[m] = fma(gamma, y[a], qy[m]);
-      qz[m] = fma(gamma, z[a], qz[m]);
+      const RECORD_TYPE gamma = DATA(24 + 8 * i + a);
+      qx[i] = fma(gamma, x[a], qx[i]);
+      qy[i] = fma(gamma, y[a], qy[i]);
+      qz[i] = fma(gamma, z[a], qz[i]);
     }
-    qx[m] = k * qx[m];
-    qy[m] = k * qy[m];
-    qz[m] = k * qz[m];
+    qx[i] = k * qx[i];
+    qy[i] = k * qy[i];
+    qz[i] = k * qz[i];
   }
   __global float* out = corner_force + corner_base + TILE_BASE(e, PLIANT_HEX_FORCE_PLANES);
   for (int a = 0; a < 8; ++a) {
@@ -67,11 +68,11 @@ __kernel void tled_hex8_force(__global const float* node_u, __global const int* 
     real fx = fma(p.m02, bz, fma(p.m01, by, p.m00 * bx));
     real fy = fma(p.m12, bz, fma(p.m11, by, p.m10 * bx));
     real fz = fma(p.m22, bz, fma(p.m21, by, p.m20 * bx));
-    for (int m = 0; m < 4; ++m) {
-      const RECORD_TYPE gamma = DATA(24 + 8 * m + a);
-      fx = fma(gamma, qx[m], fx);
-      fy = fma(gamma, qy[m], fy);
-      fz = fma(gamma, qz[m], fz);
+    for (int i = 0; i < 4; ++i) {
+      const RECORD_TYPE gamma = DATA(24 + 8 * i + a);
+      fx = fma(gamma, qx[i], fx);
+      fy = fma(gamma, qy[i], fy);
+      fz = fma(gamma, qz[i], fz);
     }
     STORE(fx, out, (3 * a) * PLIANT_TILE);
     STORE(fy, out, (3 * a + 1) * PLIANT_TILE);

@@ -2,16 +2,17 @@
 // Hybrid Deformation Model, equations 10 to 13).
 // tet_nodes: [tiles][4][16] node indices. tet_data: [tiles][10][16] grad N_1..3 [1/m], V [m^3]; grad N_0 is minus their sum.
 // corner_force: [tiles][4 corners][3][16] from corner_base on [N]. fault: step of the first fault per element, from fault_base on.
-// AVERAGED: the volumetric stress is the mean of the four nodal pressures (tet4anp) instead of p1 (J - 1).
+// AVERAGED: the volumetric stress is the mean of the four nodal pressures (tet4anp) instead of dU/dJ.
 #include "arith.cl"
 #include "texels.cl"
 #include "law.cl"
 #include "tet4.cl"
 
 __kernel void tled_tet4_force(__global const float* node_u, __global const int* tet_nodes, __global const float* tet_data,
-                              __global const float* anp_pressure, __global float* corner_force, __global int* fault, float p0,
-                              float p1, int corner_base, int fault_base, int step) {
+                              __global const float* anp_pressure, __global float* corner_force, __global int* fault,
+                              __global const float* law_parameters, int corner_base, int fault_base, int step) {
   const int e = FIRST_INDEX;
+  const law m = law_load(law_parameters);
   __global const int* nodes = tet_nodes + TILE_BASE(e, 4);
   __global const float* data = tet_data + TILE_BASE(e, PLIANT_TET_DATA_PLANES);
   const tet4 t = tet4_load(node_u, nodes, data);
@@ -22,9 +23,9 @@ __kernel void tled_tet4_force(__global const float* node_u, __global const int* 
   const real pressure = 0.25f * ((gather(anp_pressure, nodes) + gather(anp_pressure, nodes + PLIANT_TILE)) +
                                  (gather(anp_pressure, nodes + 2 * PLIANT_TILE) + gather(anp_pressure, nodes + 3 * PLIANT_TILE)));
 #else
-  const real pressure = p1 * d.j;
+  const real pressure = law_pressure(m, d.j);
 #endif
-  const mat3 p = law_stress(d, DATA(9), p0, p1, pressure);
+  const mat3 p = law_stress(d, DATA(9), m, pressure);
   const real f1x = fma(p.m02, t.b1z, fma(p.m01, t.b1y, p.m00 * t.b1x));
   const real f1y = fma(p.m12, t.b1z, fma(p.m11, t.b1y, p.m10 * t.b1x));
   const real f1z = fma(p.m22, t.b1z, fma(p.m21, t.b1y, p.m20 * t.b1x));

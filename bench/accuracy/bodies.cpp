@@ -59,9 +59,7 @@ Body plain_body(const Problem& p) {
   Body body;
   body.name = p.name;
   Material& m = body.material;
-  m.mu = p.young / (2 * (1 + p.poisson));
-  m.lambda = p.young * p.poisson / ((1 + p.poisson) * (1 - 2 * p.poisson));
-  m.kappa = m.lambda + 2 * m.mu / 3;
+  m.set_moduli(Law::neo_hookean, Moduli::from_young(p.young, p.poisson));
   m.density = kDensity;
   return body;
 }
@@ -226,7 +224,7 @@ Built build(const Case& c, const fs::path& scenes) {
   built.scene.gravity = p.gravity;
   built.scene.bodies.push_back(body);
   if (c.method->type == ModelType::tled || c.method->type == ModelType::hybrid) built.scene.safety = std::stod(c.step);
-  const double wave = std::sqrt((body.material.lambda + 2 * body.material.mu) / kDensity);
+  const double wave = std::sqrt((body.material.moduli.lambda + 2 * body.material.moduli.mu) / kDensity);
   choose_method(c, built.spacing, body.material.damping, built.spacing / wave, built);
   Model model = build_model(built.scene, std::move(solids));
   merge_curves(model);

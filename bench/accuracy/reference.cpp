@@ -36,9 +36,7 @@ statics::Problem problem_for(const Problem& p, const std::array<int, 3>& level, 
   statics::Problem problem;
   problem.mesh = mesh_for(p, level, scenes);
   Material m;
-  m.mu = p.young / (2 * (1 + p.poisson));
-  m.lambda = p.young * p.poisson / ((1 + p.poisson) * (1 - 2 * p.poisson));
-  m.kappa = m.lambda + 2 * m.mu / 3;
+  m.set_moduli(Law::neo_hookean, Moduli::from_young(p.young, p.poisson));
   m.density = kDensity;
   problem.materials = {m};
   problem.gravity = p.gravity;

@@ -42,9 +42,7 @@ Comparison block(bool quick) {
   body.surface_in_memory = box;
   body.lattice.spacing = quick ? 0.02 : 0.01;
   body.element = ElementKind::tet4;
-  body.material.mu = 3000 / 2.9;
-  body.material.lambda = 3000 * 0.45 / (1.45 * 0.1);
-  body.material.kappa = body.material.lambda + 2 * body.material.mu / 3;
+  body.material.set_moduli(Law::neo_hookean, Moduli::from_young(3000, 0.45));
   body.material.damping = 5;
   body.pointer = "/bodies/0";
   c.scene.bodies.push_back(body);

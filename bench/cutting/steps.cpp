@@ -32,9 +32,7 @@ Scene block(ElementKind element) {
   body.surface_in_memory = box;
   body.lattice.spacing = kEdge;
   body.element = element;
-  body.material.mu = 1000;
-  body.material.lambda = 4000;
-  body.material.kappa = body.material.lambda + 2 * body.material.mu / 3;
+  body.material.set_moduli(Law::neo_hookean, Moduli::from_lame(4000, 1000));
   body.pointer = "/bodies/0";
   scene.bodies.push_back(body);
   return scene;

@@ -111,12 +111,8 @@ class SeriesRun {
   void measure_all() {
     Body& body = scene_.bodies[0];
     Material& material = body.material;
-    const double young = material.young();
-    if (series_.poisson_free) {
-      material.mu = young / 2;
-      material.lambda = 0;
-      material.kappa = young / 3;
-    }
+    const double young = material.moduli.young();
+    if (series_.poisson_free) material.set_moduli(material.law, {young / 2, 0, young / 3});
     body.model.type = ModelType::tled;
     run_.show(fmt::format("liver indented, finite elements alone ({})", series_.name));
     const auto elements = model_of(scene_);

@@ -50,11 +50,7 @@ Block make_block(ElementKind element, Law law, std::int64_t elements) {
   body.lattice.spacing = size / cells;
   body.element = element;
   Material& m = body.material;
-  m.law = law;
-  const double young = 3000, poisson = 0.45;
-  m.mu = young / (2 * (1 + poisson));
-  m.lambda = young * poisson / ((1 + poisson) * (1 - 2 * poisson));
-  m.kappa = m.lambda + 2 * m.mu / 3;
+  m.set_moduli(law, Moduli::from_young(3000, 0.45));
   m.density = 1000;
   m.damping = 5;
   Fixed fixed;

@@ -17,6 +17,7 @@
 #include "bench/kernels/block.h"
 #include "bench/kernels/machine_limits.h"
 #include "pliant/error.h"
+#include "scene/keys.h"
 #include "simulation/simulation.h"
 
 namespace pliant::bench {
@@ -24,19 +25,13 @@ namespace {
 
 using nlohmann::json;
 
-ElementKind element_of(const std::string& name) {
-  for (const ElementKind kind : {ElementKind::tet4, ElementKind::tet4anp, ElementKind::hex8, ElementKind::hex8full}) {
-    if (name == to_string(kind)) return kind;
+/// The enumerator that an option names.
+template <class Enum>
+Enum named(const char* option, const Words<Enum>& words, const std::string& name) {
+  for (const auto& [word, value] : words) {
+    if (name == word) return value;
   }
-  throw Error(ErrorCode::bad_input, fmt::format("--elements: got \"{}\", expected tet4, tet4anp, hex8 or hex8full", name));
-}
-
-Law law_of(const std::string& name) {
-  for (const Law law : {Law::neo_hookean, Law::saint_venant_kirchhoff, Law::isochoric_neo_hookean}) {
-    if (name == to_string(law)) return law;
-  }
-  throw Error(ErrorCode::bad_input,
-              fmt::format("--law: got \"{}\", expected neo-hookean, saint-venant-kirchhoff or isochoric-neo-hookean", name));
+  throw Error(ErrorCode::bad_input, fmt::format("{}: got \"{}\", expected {}", option, name, alternatives(words_only(words))));
 }
 
 std::int64_t program_bytes(const Program& program, std::int64_t real_bytes) {
@@ -155,7 +150,8 @@ json bench_kernels(const KernelsOptions& options) {
   double done = 0;
   for (const std::string& element : options.elements) {
     for (const std::int64_t size : options.sizes) {
-      const Block block = make_block(element_of(element), law_of(options.law), size);
+      const Block block =
+          make_block(named("--elements", element_words(), element), named("--law", law_words(), options.law), size);
       for (const std::string& backend : backends) {
         if (options.progress) options.progress(done / total, fmt::format("{} {} {}", element, backend, size));
         measure(options, element, backend, block, result["rows"]);

@@ -165,7 +165,7 @@ Specimen unit_load(Method method, bool traction) {
 /// The traction over E that, switched on at once, swings a free bar to the stretch at which the engine's own estimate falls to
 /// the step: there the work of the load is the energy of the neo-Hookean bar, whose sides carry no stress.
 Number traction_for(const Specimen& bar, double dt, double sign) {
-  const Material m = material(kYoung, kPoisson);
+  const Moduli m = Moduli::from_young(kYoung, kPoisson);
   const auto width = [&](double s) {  // mu (b - 1/b) + lambda (J - 1) s b = 0, J = s b^2
     return bisect(1e-3, 10, 1e-9, [&](double b) { return m.mu * (b - 1 / b) + m.lambda * (s * b * b - 1) * s * b < 0; });
   };

@@ -117,13 +117,7 @@ const char* name_of(Method method) {
 }
 
 Material material(double young, double poisson, double density, Law law) {
-  Material m;
-  m.law = law;
-  m.mu = young / (2 * (1 + poisson));
-  m.lambda = young * poisson / ((1 + poisson) * (1 - 2 * poisson));
-  m.kappa = m.lambda + 2 * m.mu / 3;
-  m.density = density;
-  return m;
+  return make_material(law, Moduli::from_young(young, poisson), density);
 }
 
 Body body_of(Method method, const Material& material, double split) {

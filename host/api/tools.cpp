@@ -98,7 +98,7 @@ void Tools::hold(Grab& g) const {
   }
   for (NodeShare& p : g.patch) p.share /= g.mass;
   // A disk of radius r on a half-space has the stiffness 2 E r / (1 - nu^2): half of it cannot overshoot at rest.
-  const double r = std::max(g.options.radius, edge_of(body)), young = materials_[b].young();
+  const double r = std::max(g.options.radius, edge_of(body)), young = materials_[b].moduli.young();
   g.stiffness = g.options.stiffness > 0 ? g.options.stiffness : young * r;
   g.max_force = g.options.max_force > 0 ? g.options.max_force : kStrain * young * r * r;
 }

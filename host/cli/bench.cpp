@@ -13,6 +13,7 @@
 #include "io/png.h"
 #include "pliant/error.h"
 #include "render/picture.h"
+#include "scene/keys.h"
 
 namespace pliant::cli {
 namespace {
@@ -166,10 +167,10 @@ std::function<int()> setup_bench(CLI::App& app) {
   CLI::App* sub =
       app.add_subcommand("kernels", "Every pass of a step: ns, bytes and flops per element, share of the machine's limit");
   options->common.add_to(*sub);
-  sub->add_option("--elements", options->kernels.elements, "tet4, tet4anp, hex8, hex8full")->delimiter(',');
+  sub->add_option("--elements", options->kernels.elements, listed(words_only(element_words())))->delimiter(',');
   sub->add_option("--sizes", options->kernels.sizes, "numbers of elements")->delimiter(',');
   sub->add_option("--backends", options->kernels.backends, "default: the first OpenCL device, cpu, cpu:double")->delimiter(',');
-  sub->add_option("--law", options->kernels.law, "neo-hookean, saint-venant-kirchhoff or isochoric-neo-hookean");
+  sub->add_option("--law", options->kernels.law, alternatives(words_only(law_words())));
   sub->add_option("--out", options->out, "folder for kernels.json and kernels.csv");
   add_deformation(app, options);
   add_stability(app, options);

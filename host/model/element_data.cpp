@@ -60,7 +60,7 @@ double largest_eigenvalue(const Matrix3d& a) {
 /// lambda tr A + 2 mu lambda_max(A) with A = sum_a grad N_a grad N_a^T [Pa/m^2].
 double modulus_bound(const Eigen::Matrix<double, Eigen::Dynamic, 3>& gradients, const Material& m) {
   const Matrix3d a = gradients.transpose() * gradients;
-  return std::max(m.lambda, 0.0) * a.trace() + 2 * m.mu * largest_eigenvalue(a);
+  return std::max(m.moduli.lambda, 0.0) * a.trace() + 2 * m.moduli.mu * largest_eigenvalue(a);
 }
 
 }  // namespace
@@ -80,7 +80,7 @@ TetGeometry tet_geometry(const std::array<Vec3d, 4>& x) {
 }
 
 double hourglass_stiffness(const Material& material, double volume) {
-  return material.hourglass * material.young() * std::cbrt(volume) / 48;
+  return material.hourglass * material.moduli.young() * std::cbrt(volume) / 48;
 }
 
 std::vector<double> hex8_record(const std::array<Vec3d, 8>& corners, const Material& material, const std::string& what) {

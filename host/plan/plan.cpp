@@ -36,7 +36,7 @@ class Planner {
     say(fmt::format("reference: hex8full, {} nodes or more, static", o_.reference_nodes));
     reference_ = make_reference(scene_, size_, o_);
     for (const ElementKind element : {ElementKind::hex8, ElementKind::tet4anp, ElementKind::hex8full, ElementKind::tet4}) {
-      if (element == ElementKind::tet4anp && scene_.bodies[0].material.law == Law::saint_venant_kirchhoff) continue;
+      if (element == ElementKind::tet4anp && !law_info(scene_.bodies[0].material.law).volumetric) continue;
       climb(element);
     }
     try_hybrids();
@@ -133,7 +133,7 @@ class Planner {
       if (c.alpha > 0) {
         m.alpha = c.alpha;
       } else {
-        m.young = scene_.bodies[0].material.young();
+        m.young = scene_.bodies[0].material.moduli.young();
       }
       t.model = "hybrid";
       t.what = fmt::format("hybrid of hex8, about {} nodes, ratio {}, w {}, {}, substeps {}", nodes, c.ratio, c.width,

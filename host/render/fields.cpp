@@ -3,6 +3,8 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "material/response.h"
+
 namespace pliant::render {
 namespace {
 
@@ -122,32 +124,14 @@ std::optional<ColorBy> color_by(const std::string& word) {
 
 Strain strain_of(const std::array<double, 9>& row_major, const Material& m) {
   const Matrix3d f = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(row_major.data());
-  const double j = f.determinant(), first = f.squaredNorm();
-  if (!(j > 0)) return {};
-  const Matrix3d to_minus_t = f.inverse().transpose();
-  Matrix3d p = Matrix3d::Zero();  // first Piola-Kirchhoff stress dW/dF
+  const Matrix3d h = f - Matrix3d::Identity();
+  Response response;
   Strain out;
-  switch (m.law) {
-    case Law::neo_hookean:
-      out.energy = m.mu / 2 * (first - 3) - m.mu * std::log(j) + m.lambda / 2 * (j - 1) * (j - 1);
-      p = m.mu * (f - to_minus_t) + m.lambda * j * (j - 1) * to_minus_t;
-      break;
-    case Law::isochoric_neo_hookean: {
-      const double scale = std::pow(j, -2.0 / 3);
-      out.energy = m.mu / 2 * (scale * first - 3) + m.kappa / 2 * (j - 1) * (j - 1);
-      p = m.mu * scale * (f - first / 3 * to_minus_t) + m.kappa * j * (j - 1) * to_minus_t;
-      break;
-    }
-    case Law::saint_venant_kirchhoff: {
-      const Matrix3d e = 0.5 * (f.transpose() * f - Matrix3d::Identity());
-      out.energy = m.lambda / 2 * e.trace() * e.trace() + m.mu * e.squaredNorm();
-      p = f * (m.lambda * e.trace() * Matrix3d::Identity() + 2 * m.mu * e);
-      break;
-    }
+  if (!respond(m, h, false, response)) return out;
+  out.energy = response.energy;
+  if (const auto sigma = cauchy_stress(m, h)) {
+    out.mises = std::sqrt(1.5) * (*sigma - sigma->trace() / 3 * Matrix3d::Identity()).norm();
   }
-  const Matrix3d sigma = p * f.transpose() / j;
-  const Matrix3d deviator = sigma - sigma.trace() / 3 * Matrix3d::Identity();
-  out.mises = std::sqrt(1.5) * deviator.norm();
   return out;
 }
 

@@ -24,8 +24,8 @@ std::vector<float> vertex_values(const Scene& scene, const Model& model, const B
 /// [3 * vertices] shares of finite elements, interface and shape matching in the nodes that move a vertex.
 std::vector<float> vertex_kinds(const Model& model);
 
-/// Strain energy per rest volume [J/m^3] and von Mises stress [Pa] at the gradient f (row-major); 0 and 0 where det f <= 0
-/// leaves a law without a value. Laws as in solver/energy.h; sigma = P f^T / J.
+/// Strain energy per rest volume [J/m^3] and von Mises stress [Pa] at the gradient f (row-major); 0 and 0 where the
+/// law has no value, as most where det f <= 0; sigma = P f^T / J, 0 where det f <= 0.
 struct Strain {
   double energy = 0, mises = 0;
 };

@@ -64,10 +64,10 @@ void read_element(const Reader& body, Body& b) {
 
 /// The averaged nodal pressure replaces the volumetric part of the stress, so that part must depend on J alone.
 void check_pressure_law(const Reader& material, const Body& b, const Material& m) {
-  if (b.element != ElementKind::tet4anp || m.law != Law::saint_venant_kirchhoff) return;
+  if (b.element != ElementKind::tet4anp || law_info(m.law).volumetric) return;
   material.fail(
-      "the law saint-venant-kirchhoff with the element tet4anp",
-      "neo-hookean or isochoric-neo-hookean: the averaged nodal pressure needs a law whose volumetric part depends on J alone");
+      fmt::format("the law {} with the element tet4anp", to_string(m.law)),
+      laws_with(&LawInfo::volumetric) + ": the averaged nodal pressure needs a law whose volumetric part depends on J alone");
 }
 
 template <class Entry, class Read>

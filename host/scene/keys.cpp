@@ -15,13 +15,6 @@ List operator+(List a, const List& b) {
   return a;
 }
 
-template <class Enum>
-List words_only(const Words<Enum>& words) {
-  List list;
-  for (const auto& [word, value] : words) list.push_back(word);
-  return list;
-}
-
 std::map<std::string, List> make_keys() {
   const List points{"box", "sphere", "plane", "all"};
   const List selection = points + List{"nodes"};
@@ -34,7 +27,7 @@ std::map<std::string, List> make_keys() {
        {"name", "surface", "mesh", "scale", "translate", "lattice", "element", "material", "model", "inclusions", "fixed",
         "prescribed", "forces", "pressures", "velocity", "angular_velocity"}},
       {"lattice", {"spacing", "nodes"}},
-      {"material", {"law", "young", "poisson", "lambda", "mu", "kappa", "density", "damping", "hourglass", "toughness", "integrity"}},
+      {"material", List{"law"} + elastic_keys() + List{"density", "damping", "hourglass", "toughness", "integrity"}},
       {"model",
        {"type", "ratio", "seed", "region", "beta", "width", "alpha", "stiffness", "damping", "substeps", "goals", "coupling",
         "follow", "cut"}},
@@ -72,6 +65,33 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 
 }  // namespace
 
+List moduli_keys() { return {"young", "poisson", "lambda", "mu", "kappa"}; }
+
+List elastic_keys(const LawInfo& law) {
+  if (law.takes_moduli) return moduli_keys();
+  List keys;
+  for (const ParameterInfo& p : law.parameters) keys.emplace_back(p.name);
+  return keys;
+}
+
+List elastic_keys() {
+  List keys = moduli_keys();
+  for (const Law law : all_laws()) {
+    for (const std::string& key : elastic_keys(law_info(law))) {
+      if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
+    }
+  }
+  return keys;
+}
+
+std::string laws_with(bool LawInfo::*property) {
+  List words;
+  for (const Law law : all_laws()) {
+    if (law_info(law).*property) words.emplace_back(to_string(law));
+  }
+  return alternatives(words);
+}
+
 const std::map<std::string, List>& scene_keys() {
   static const std::map<std::string, List> keys = make_keys();
   return keys;
@@ -88,9 +108,11 @@ const std::map<std::string, List>& scene_words() {
 }
 
 const Words<Law>& law_words() {
-  static const Words<Law> words{{"neo-hookean", Law::neo_hookean},
-                                {"saint-venant-kirchhoff", Law::saint_venant_kirchhoff},
-                                {"isochoric-neo-hookean", Law::isochoric_neo_hookean}};
+  static const Words<Law> words = [] {
+    Words<Law> list;
+    for (const Law law : all_laws()) list.emplace_back(to_string(law), law);
+    return list;
+  }();
   return words;
 }
 
@@ -159,6 +181,11 @@ std::string listed(const List& words) {
   std::string text;
   for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
   return text;
+}
+
+std::string alternatives(const List& words) {
+  if (words.size() < 2) return listed(words);
+  return listed({words.begin(), words.end() - 1}) + " or " + words.back();
 }
 
 }  // namespace pliant

@@ -16,6 +16,15 @@ namespace pliant {
 /// definitions in scenes/schema.json.
 const std::map<std::string, std::vector<std::string>>& scene_keys();
 
+/// What a law can be given by: the moduli (young, poisson, lambda, mu, kappa), or its own parameters; those of all laws, each
+/// once.
+std::vector<std::string> moduli_keys();
+std::vector<std::string> elastic_keys(const LawInfo& law);
+std::vector<std::string> elastic_keys();
+
+/// The laws with a property, as "a, b or c".
+std::string laws_with(bool LawInfo::*property);
+
 /// The allowed words by kind: "law", "element", "curve", "integrator", "model", "goals", "coupling", "follow".
 const std::map<std::string, std::vector<std::string>>& scene_words();
 
@@ -33,6 +42,13 @@ const Words<bool>& goals_words();
 const Words<bool>& coupling_words();
 const Words<bool>& follow_words();
 
+template <class Enum>
+std::vector<std::string> words_only(const Words<Enum>& words) {
+  std::vector<std::string> list;
+  for (const auto& [word, value] : words) list.push_back(word);
+  return list;
+}
+
 /// The word of an enumerator.
 template <class Enum>
 const std::string& word_of(const Words<Enum>& words, Enum value) {
@@ -47,5 +63,7 @@ std::string nearest(const std::string& text, const std::vector<std::string>& wor
 
 /// "a, b, c"
 std::string listed(const std::vector<std::string>& words);
+/// "a, b or c"
+std::string alternatives(const std::vector<std::string>& words);
 
 }  // namespace pliant

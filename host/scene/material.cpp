@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "scene/parts.h"
 
 namespace pliant {
@@ -11,28 +13,75 @@ const char* const pairs = "exactly one of the pairs young + poisson, lambda + mu
 /// "young, mu": the moduli that are there.
 std::vector<std::string> given_moduli(const Reader& material) {
   std::vector<std::string> given;
-  for (const char* key : {"young", "poisson", "lambda", "mu", "kappa"}) {
-    if (material.has(key)) given.emplace_back(key);
+  for (const std::string& key : moduli_keys()) {
+    if (material.has(key)) given.push_back(key);
   }
   return given;
 }
 
-void from_young(const Reader& material, Material& m) {
+Moduli from_young(const Reader& material) {
   const double young = material.at("young").positive();
   const Reader field = material.at("poisson");
   const double poisson = field.number("a number with -1 < poisson < 0.5");
   if (!(poisson > -1 && poisson < 0.5)) field.fail("a number with -1 < poisson < 0.5");
-  m.mu = young / (2 * (1 + poisson));
-  m.lambda = young * poisson / ((1 + poisson) * (1 - 2 * poisson));
-  m.kappa = m.lambda + 2 * m.mu / 3;
+  return Moduli::from_young(young, poisson);
 }
 
-void from_lame(const Reader& material, Material& m) {
-  m.mu = material.at("mu").positive();
+Moduli from_lame(const Reader& material) {
+  const double mu = material.at("mu").positive();
   const Reader field = material.at("lambda");
-  m.lambda = field.number();
-  m.kappa = m.lambda + 2 * m.mu / 3;
+  const Moduli m = Moduli::from_lame(field.number(), mu);
   if (!(m.kappa > 0)) field.fail(fmt::format("a number > -2 mu / 3 = {}, so that the bulk modulus is positive", -2 * m.mu / 3));
+  return m;
+}
+
+Moduli read_moduli(const Reader& material) {
+  const std::vector<std::string> given = given_moduli(material);
+  if (given == std::vector<std::string>{"young", "poisson"}) return from_young(material);
+  if (given == std::vector<std::string>{"lambda", "mu"}) return from_lame(material);
+  if (given == std::vector<std::string>{"mu", "kappa"}) {
+    const double mu = material.at("mu").positive();
+    return Moduli::from_bulk(mu, material.at("kappa").positive());
+  }
+  material.fail(given.empty() ? "no elastic constants" : "the elastic constants " + listed(given), pairs);
+}
+
+std::vector<double> read_parameters(const Reader& material, const LawInfo& law) {
+  std::vector<double> values;
+  for (const ParameterInfo& p : law.parameters) {
+    const Reader field = material.at(p.name, fmt::format("the {} of the law {} [{}]", p.what, law.word, p.unit));
+    const double value = p.lower == least_modulus ? field.positive() : field.number();
+    if (!(value >= p.lower && value <= p.upper)) field.fail(fmt::format("a number from {} to {}", p.lower, p.upper));
+    values.push_back(value);
+  }
+  return values;
+}
+
+/// Elastic constants that the law does not take.
+void refuse_foreign(const Reader& material, const LawInfo& law) {
+  const std::vector<std::string> own = elastic_keys(law);
+  for (const std::string& key : elastic_keys()) {
+    if (!material.has(key) || std::find(own.begin(), own.end(), key) != own.end()) continue;
+    material.at(key).fail(
+        fmt::format("no \"{}\" beside the law {}, which takes {}", key, law.word, law.takes_moduli ? pairs : listed(own)));
+  }
+}
+
+void read_elasticity(const Reader& material, Material& m) {
+  const Law law = material.has("law") ? material.at("law").word(law_words()) : m.law;
+  const LawInfo& info = law_info(law);
+  refuse_foreign(material, info);
+  if (info.takes_moduli) {
+    m.set_moduli(law, read_moduli(material));
+  } else {
+    m.set_parameters(law, read_parameters(material, info));
+  }
+  // Float kernels use all three; poisson near 0.5 or -1 makes some of them run away.
+  const Moduli& e = m.moduli;
+  if (!(e.mu > 0 && e.mu <= most_modulus && e.kappa <= most_modulus && e.kappa >= least_modulus)) {
+    material.fail(fmt::format("mu = {:g} Pa and kappa = {:g} Pa from these elastic constants", e.mu, e.kappa),
+                  "moduli from 1e-30 to 1e30 Pa");
+  }
 }
 
 }  // namespace
@@ -40,24 +89,7 @@ void from_lame(const Reader& material, Material& m) {
 Material read_material(const Reader& material) {
   material.expect_object("material");
   Material m;
-  if (material.has("law")) m.law = material.at("law").word(law_words());
-  const std::vector<std::string> given = given_moduli(material);
-  if (given == std::vector<std::string>{"young", "poisson"}) {
-    from_young(material, m);
-  } else if (given == std::vector<std::string>{"lambda", "mu"}) {
-    from_lame(material, m);
-  } else if (given == std::vector<std::string>{"mu", "kappa"}) {
-    m.mu = material.at("mu").positive();
-    m.kappa = material.at("kappa").positive();
-    m.lambda = m.kappa - 2 * m.mu / 3;
-  } else {
-    material.fail(given.empty() ? "no elastic constants" : "the elastic constants " + listed(given), pairs);
-  }
-  // Float kernels use all three; poisson near 0.5 or -1 makes some of them run away.
-  if (!(m.mu <= 1e30 && m.kappa <= 1e30 && m.kappa >= 1e-30)) {
-    material.fail(fmt::format("mu = {:g} Pa and kappa = {:g} Pa from these elastic constants", m.mu, m.kappa),
-                  "moduli from 1e-30 to 1e30 Pa");
-  }
+  read_elasticity(material, m);
   if (material.has("density")) m.density = material.at("density").positive();
   if (material.has("damping")) m.damping = material.at("damping").non_negative();
   if (material.has("hourglass")) m.hourglass = material.at("hourglass").non_negative();

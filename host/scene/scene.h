@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "material/material.h"
 #include "scene/lattice_spec.h"
 #include "scene/tool.h"
 
@@ -30,27 +31,10 @@ struct Selection {
   [[nodiscard]] bool contains(const Vec3d& x, std::int64_t index) const;
 };
 
-enum class Law { neo_hookean, saint_venant_kirchhoff, isochoric_neo_hookean };
 enum class ElementKind { tet4, tet4anp, hex8, hex8full };
 
 /// Names as they stand in a scene file ("neo-hookean", "hex8", ...).
-const char* to_string(Law law);
 const char* to_string(ElementKind element);
-
-/// Isotropic hyperelastic material. `lambda` is the first Lame constant; the isochoric law uses `kappa` instead.
-struct Material {
-  Law law = Law::neo_hookean;
-  double mu = 0;                         ///< shear modulus [Pa]
-  double lambda = 0;                     ///< first Lame constant [Pa]
-  double kappa = 0;                      ///< bulk modulus [Pa]: lambda + 2 mu / 3
-  double density = 1000;                 ///< [kg/m^3]
-  double damping = 0;                    ///< mass-proportional damping rate c [1/s]: M u'' + c M u' = R - F
-  double hourglass = 1;                  ///< factor on the hourglass stiffness of hex8 (1: exact bending of a bar at nu = 0)
-  double toughness = 0;                  ///< K_I: principal stress at which it tears [Pa]; 0: it does not
-  double integrity = 1;                  ///< zeta in (0, 1]: the share of the toughness that is left
-  [[nodiscard]] double young() const;    ///< [Pa]
-  [[nodiscard]] double poisson() const;  ///< dimensionless
-};
 
 /// A part of a body with another material (a stiff inclusion). Later entries win where they overlap.
 struct Inclusion {

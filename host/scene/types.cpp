@@ -7,12 +7,8 @@
 
 namespace pliant {
 
-const char* to_string(Law law) { return word_of(law_words(), law).c_str(); }
 const char* to_string(ElementKind element) { return word_of(element_words(), element).c_str(); }
 const char* to_string(ModelType type) { return word_of(model_words(), type).c_str(); }
-
-double Material::young() const { return 9 * kappa * mu / (3 * kappa + mu); }
-double Material::poisson() const { return (3 * kappa - 2 * mu) / (2 * (3 * kappa + mu)); }
 
 namespace {
 

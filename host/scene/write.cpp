@@ -39,12 +39,19 @@ void add_curve(Json& entry, const Curve& curve) {
 }
 
 Json material_json(const Material& m) {
-  Json material{{"law", to_string(m.law)}, {"mu", m.mu}};
-  // The pair from which the loader computes the same three moduli to the last bit.
-  if (m.lambda + 2 * m.mu / 3 == m.kappa) {
-    material["lambda"] = m.lambda;
+  const LawInfo& law = law_info(m.law);
+  Json material{{"law", law.word}};
+  if (!law.takes_moduli) {
+    for (std::size_t i = 0; i < law.parameters.size(); ++i) material[law.parameters[i].name] = m.parameters.at(i);
   } else {
-    material["kappa"] = m.kappa;
+    const Moduli& e = m.moduli;
+    material["mu"] = e.mu;
+    // The pair from which the loader computes the same three moduli to the last bit.
+    if (e.lambda + 2 * e.mu / 3 == e.kappa) {
+      material["lambda"] = e.lambda;
+    } else {
+      material["kappa"] = e.kappa;
+    }
   }
   material["density"] = m.density;
   material["damping"] = m.damping;

@@ -1,21 +1,13 @@
 // Counted traffic [bytes] and operations (an fma is two) per element and step: each datum once, what a cache serves not at all.
 #pragma once
-#include "scene/scene.h"
+#include "material/material.h"
 
 namespace pliant {
 
 /// Invariants of H and the first Piola-Kirchhoff stress, counted from kernels/deformation.cl and kernels/law_*.cl.
 inline double law_flops(Law law) {
   constexpr double invariants = 27 + 5 + 7 + 1;  // cofactor, det, sums, the test of J
-  switch (law) {
-    case Law::neo_hookean:
-      return invariants + 55 + 12;
-    case Law::saint_venant_kirchhoff:
-      return invariants + 116;
-    case Law::isochoric_neo_hookean:
-      return invariants + 55 + 71;
-  }
-  return 0;
+  return invariants + law_info(law).flops;
 }
 
 /// Indices 16, data 40, corner forces 48; node texels come on top (16 per node).

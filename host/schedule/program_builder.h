@@ -69,10 +69,14 @@ class ProgramBuilder {
   [[nodiscard]] std::vector<std::pair<std::string, int>> update_defines(int force_only) const;
 
   /// Defined in program_elements.cpp: internal forces, one call per batch.
+  /// The parameters of a batch's law, one constant buffer of any length. A law whose parameters vary within a batch would get
+  /// them as planes per element, as other element data.
+  BufferId add_law(const Material& material);
   void add_bricks(const BrickBatch& b);
   void add_tets(std::size_t index);
   /// The two passes before the force of tet4anp; returns the buffer of nodal pressures.
-  BufferId add_averaging(std::size_t index, BufferId nodes_id, BufferId data_id, std::size_t count, const std::string& label);
+  BufferId add_averaging(std::size_t index, BufferId nodes_id, BufferId data_id, BufferId law_id, std::size_t count,
+                         const std::string& label);
   void add_hexes(std::size_t index);
 
   /// Defined in program_flsm.cpp: shape matching of one body, and the force on its interface.
@@ -108,6 +112,7 @@ class ProgramBuilder {
   BufferId node_u_ = -1, node_w_ = -1, node_force_ = -1, node_load_ = -1, corner_ = -1, fault_ = -1, summary_ = -1,
            params_ = -1, curves_ = -1, surface_x_ = -1, pressure_ = -1, brick_neighbor_ = -1, brick_rows_ = -1,
            brick_fill_ = -1, brick_force_ = -1, flsm_alpha_ = -1;
+  int laws_ = 0;  ///< batches that have their law
 };
 
 }  // namespace pliant

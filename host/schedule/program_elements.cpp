@@ -7,23 +7,12 @@
 #include "schedule/program_builder.h"
 
 namespace pliant {
-namespace {
-
-int law_index(Law law) {
-  switch (law) {
-    case Law::neo_hookean:
-      return PLIANT_LAW_NEO_HOOKEAN;
-    case Law::saint_venant_kirchhoff:
-      return PLIANT_LAW_SAINT_VENANT_KIRCHHOFF;
-    case Law::isochoric_neo_hookean:
-      return PLIANT_LAW_ISOCHORIC_NEO_HOOKEAN;
-  }
-  return -1;
+BufferId ProgramBuilder::add_law(const Material& material) {
+  std::vector<double> constants = law_constants(material);
+  const std::size_t count = constants.size();
+  return add(make_reals(fmt::format("law_parameters/{}", laws_++), BufferType::real, count, BufferRole::constant,
+                        "[parameters]", "Pa", "model", std::move(constants)));
 }
-
-double second_parameter(const Material& m) { return m.law == Law::isochoric_neo_hookean ? m.kappa : m.lambda; }
-
-}  // namespace
 
 void ProgramBuilder::add_bricks(const BrickBatch& b) {
   if (brick_neighbor_ < 0) {
@@ -42,18 +31,18 @@ void ProgramBuilder::add_bricks(const BrickBatch& b) {
   for (std::int32_t i = b.first * PLIANT_BRICK_NODES; i < (b.first + b.count) * PLIANT_BRICK_NODES; ++i)
     cells += model_.brick_cell[i] >= 0;
   const double slots_per_cell = cells == 0 ? 0 : double(b.count) * PLIANT_BRICK_NODES / double(cells);
-  program_.step.push_back({"tled_hex8_brick_force",
-                           {{"LAW", law_index(b.material.law)}},
-                           {buffer_arg(node_u_), buffer_arg(brick_neighbor_), buffer_arg(brick_rows_), buffer_arg(brick_fill_),
-                            buffer_arg(brick_force_), buffer_arg(fault_), real_arg(b.material.mu),
-                            real_arg(second_parameter(b.material)), real_arg(1 / (4 * d)), real_arg(d * d / 4),
-                            real_arg(hourglass_stiffness(b.material, d * d * d)), int_arg(b.first), int_arg(0), step_arg()},
-                           Shape::bricks,
-                           b.count,
-                           fmt::format("{}: hex8 bricks {}", model_.bodies[b.body].name, to_string(b.material.law)),
-                           cells,
-                           brick_force_bytes() * slots_per_cell,
-                           brick_force_flops(b.material.law)});
+  program_.step.push_back(
+      {"tled_hex8_brick_force",
+       {{"LAW", static_cast<int>(b.material.law)}},
+       {buffer_arg(node_u_), buffer_arg(brick_neighbor_), buffer_arg(brick_rows_), buffer_arg(brick_fill_),
+        buffer_arg(brick_force_), buffer_arg(fault_), buffer_arg(add_law(b.material)), real_arg(1 / (4 * d)),
+        real_arg(d * d / 4), real_arg(hourglass_stiffness(b.material, d * d * d)), int_arg(b.first), int_arg(0), step_arg()},
+       Shape::bricks,
+       b.count,
+       fmt::format("{}: hex8 bricks {}", model_.bodies[b.body].name, to_string(b.material.law)),
+       cells,
+       brick_force_bytes() * slots_per_cell,
+       brick_force_flops(b.material.law)});
 }
 
 void ProgramBuilder::add_tets(std::size_t index) {
@@ -74,14 +63,14 @@ void ProgramBuilder::add_tets(std::size_t index) {
       fmt::format("{}: {} {}", model_.bodies[b.body].name, b.averaged ? "tet4anp" : "tet4", to_string(b.material.law));
   const double texels = 16.0 * (model_.list_end - model_.list_base) / double(b.nodes.size());
   BufferId pressure = node_u_;  // not read
-  if (b.averaged) pressure = add_averaging(index, nodes_id, data_id, count, label);
+  const BufferId law_id = add_law(b.material);
+  if (b.averaged) pressure = add_averaging(index, nodes_id, data_id, law_id, count, label);
   const BatchPlace& place = layout_.tets[index];
   program_.step.push_back(
       {"tled_tet4_force",
-       {{"LAW", law_index(b.material.law)}, {"AVERAGED", b.averaged ? 1 : 0}},
+       {{"LAW", static_cast<int>(b.material.law)}, {"AVERAGED", b.averaged ? 1 : 0}},
        {buffer_arg(node_u_), buffer_arg(nodes_id), buffer_arg(data_id), buffer_arg(pressure), buffer_arg(corner_),
-        buffer_arg(fault_), real_arg(b.material.mu), real_arg(second_parameter(b.material)), int_arg(place.corner_base),
-        int_arg(place.fault_base), step_arg()},
+        buffer_arg(fault_), buffer_arg(law_id), int_arg(place.corner_base), int_arg(place.fault_base), step_arg()},
        Shape::lanes,
        static_cast<std::int64_t>(count),
        label,
@@ -90,8 +79,8 @@ void ProgramBuilder::add_tets(std::size_t index) {
        tet_force_flops(b.material.law)});
 }
 
-BufferId ProgramBuilder::add_averaging(std::size_t index, BufferId nodes_id, BufferId data_id, std::size_t count,
-                                       const std::string& label) {
+BufferId ProgramBuilder::add_averaging(std::size_t index, BufferId nodes_id, BufferId data_id, BufferId law_id,
+                                       std::size_t count, const std::string& label) {
   const TetBatch& b = model_.tets[index];
   const std::int32_t nodes = model_.list_end - model_.list_base;
   std::vector<std::vector<std::int32_t>> elements(nodes);
@@ -127,9 +116,9 @@ BufferId ProgramBuilder::add_averaging(std::size_t index, BufferId nodes_id, Buf
                            60 + 16.0 * nodes / double(elements_count),
                            93});
   program_.step.push_back({"anp_node_pressure",
-                           {},
+                           {{"LAW", static_cast<int>(b.material.law)}},
                            {buffer_arg(dilation_id), buffer_arg(offset_id), buffer_arg(index_id), buffer_arg(volume_id),
-                            buffer_arg(pressure_id), real_arg(second_parameter(b.material)), int_arg(model_.list_base)},
+                            buffer_arg(pressure_id), buffer_arg(law_id), int_arg(model_.list_base)},
                            Shape::lanes,
                            nodes,
                            label + " nodal pressure",
@@ -165,13 +154,13 @@ void ProgramBuilder::add_hexes(std::size_t index) {
                      b.uniform ? "[record]" : "[tiles][record][16]", "1/m, m^3, N/m", "model", std::move(data)));
   const auto fill_id = add(make_reals(fmt::format("hex_fill/{}", index), BufferType::real, count, BufferRole::constant,
                                       "[elements]", "1", "model", std::move(fill)));
+  const BufferId law_id = add_law(b.material);
   const BatchPlace& place = layout_.hexes[index];
   program_.step.push_back(
       {b.full ? "tled_hex8full_force" : "tled_hex8_force",
-       {{"LAW", law_index(b.material.law)}, {"UNIFORM", b.uniform ? 1 : 0}},
+       {{"LAW", static_cast<int>(b.material.law)}, {"UNIFORM", b.uniform ? 1 : 0}},
        {buffer_arg(node_u_), buffer_arg(nodes_id), buffer_arg(data_id), buffer_arg(fill_id), buffer_arg(corner_),
-        buffer_arg(fault_), real_arg(b.material.mu), real_arg(second_parameter(b.material)), int_arg(place.corner_base),
-        int_arg(place.fault_base), step_arg()},
+        buffer_arg(fault_), buffer_arg(law_id), int_arg(place.corner_base), int_arg(place.fault_base), step_arg()},
        Shape::lanes,
        static_cast<std::int64_t>(count),
        fmt::format("{}: {} {}", model_.bodies[b.body].name, b.full ? "hex8full" : "hex8", to_string(b.material.law)),

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "layout.h"
+#include "material/response.h"
 
 namespace pliant {
 namespace {
@@ -18,36 +19,9 @@ using RowMajor8 = Eigen::Matrix<double, 8, 3, Eigen::RowMajor>;
 Vector3d vector_of(const Vec3d& a) { return {a[0], a[1], a[2]}; }
 Vec3d array_of(const Vector3d& a) { return {a[0], a[1], a[2]}; }
 
-/// Energy per volume without the term in (J - 1)^2, and that term's modulus (0 for a law without such a term).
-double density_without_volume(const Matrix3d& f, const Material& m) {
-  const double first = f.squaredNorm(), jacobian = f.determinant();
-  switch (m.law) {
-    case Law::neo_hookean:
-      return m.mu / 2 * (first - 3) - m.mu * std::log(jacobian);
-    case Law::isochoric_neo_hookean:
-      return m.mu / 2 * (std::pow(jacobian, -2.0 / 3) * first - 3);
-    case Law::saint_venant_kirchhoff:
-      break;
-  }
-  const Matrix3d e = 0.5 * (f.transpose() * f - Matrix3d::Identity());
-  return m.lambda / 2 * e.trace() * e.trace() + m.mu * e.squaredNorm();
-}
-
-double volume_modulus(const Material& m) {
-  switch (m.law) {
-    case Law::neo_hookean:
-      return m.lambda;
-    case Law::isochoric_neo_hookean:
-      return m.kappa;
-    case Law::saint_venant_kirchhoff:
-      break;
-  }
-  return 0;
-}
-
-double density(const Matrix3d& f, const Material& m) {
-  const double dilation = f.determinant() - 1;
-  return density_without_volume(f, m) + volume_modulus(m) / 2 * dilation * dilation;
+double density(const Matrix3d& h, const Material& m) {
+  const double dilation = Kinematics(h).j;
+  return energy_without_volume(m, h) + volume_modulus(m) / 2 * dilation * dilation;
 }
 
 class Sum {
@@ -58,20 +32,20 @@ class Sum {
     std::map<std::int32_t, std::array<double, 2>> nodal;  // a quarter of the volumes, rest and deformed
     for (std::size_t e = 0; e < batch.nodes.size(); ++e) {
       const auto& nodes = batch.nodes[e];
-      Matrix3d f = Matrix3d::Identity();
+      Matrix3d h = Matrix3d::Zero();
       for (int a = 0; a < 3; ++a) {
         const Eigen::Map<const Vector3d> gradient(batch.gradients[e].data() + 3 * a);
-        f += (displacement(nodes[a + 1]) - displacement(nodes[0])) * gradient.transpose();
+        h += (displacement(nodes[a + 1]) - displacement(nodes[0])) * gradient.transpose();
       }
       const double volume = batch.volume[e];
       if (!batch.averaged) {
-        out.strain += volume * density(f, batch.material);
+        out.strain += volume * density(h, batch.material);
         continue;
       }
-      out.strain += volume * density_without_volume(f, batch.material);
+      out.strain += volume * energy_without_volume(batch.material, h);
       for (const std::int32_t n : nodes) {
         nodal[n][0] += volume / 4;
-        nodal[n][1] += volume / 4 * f.determinant();
+        nodal[n][1] += volume / 4 * (1 + Kinematics(h).j);
       }
     }
     for (const auto& [node, volume] : nodal) {
@@ -129,8 +103,8 @@ class Sum {
 
   void point(const std::array<std::int32_t, 8>& nodes, const double* gradients, double weight, const Material& material) {
     const Gradients8 b = Eigen::Map<const RowMajor8>(gradients);
-    const Matrix3d f = Matrix3d::Identity() + gather(nodes) * b;
-    out.strain += weight * density(f, material);
+    const Matrix3d h = gather(nodes) * b;
+    out.strain += weight * density(h, material);
   }
 
   void one_point(const std::array<std::int32_t, 8>& nodes, const std::vector<double>& record, double fill,

@@ -22,10 +22,7 @@ struct DeadLoads {
 };
 
 /// u, v: displacement [m] and velocity [m/s] by slot, [Model::slots]. An element with J <= 0 gives NaN or infinity where its
-/// law has no energy there. Densities per rest volume, with I1 = |F|^2 and J = det F (Bonet and Wood 2008):
-///   neo-Hookean            mu/2 (I1 - 3) - mu ln J + lambda/2 (J - 1)^2
-///   Saint-Venant-Kirchhoff lambda/2 (tr E)^2 + mu E:E,  E = (F^T F - I)/2
-///   isochoric neo-Hookean  mu/2 (J^-2/3 I1 - 3) + kappa/2 (J - 1)^2
+/// law has no energy there (host/material: the energies of the laws).
 /// tet4anp takes the term in (J - 1)^2 at the nodes, with J averaged over the volumes of a node's elements of one batch.
 Energies energies(const Model& model, const std::vector<Vec3d>& u, const std::vector<Vec3d>& v, const DeadLoads& loads = {});
 

@@ -3,7 +3,7 @@
 #include <Eigen/Sparse>
 #include <vector>
 
-#include "statics/law.h"
+#include "material/response.h"
 #include "statics/shape.h"
 
 namespace pliant::statics {

@@ -1,6 +1,6 @@
 #include "tearing/breaking.h"
 
-#include <cmath>
+#include "material/response.h"
 
 namespace pliant {
 namespace {
@@ -19,20 +19,8 @@ Matrix3d edges_of(const std::array<Vec3d, 4>& x) {
 }  // namespace
 
 std::optional<Matrix3d> tet_stress(const std::array<Vec3d, 4>& rest, const std::array<Vec3d, 4>& now, const Material& m) {
-  const Matrix3d f = edges_of(now) * edges_of(rest).inverse();
-  const double j = f.determinant();
-  if (!(j > 0) || !f.allFinite()) return {};
-  const Matrix3d identity = Matrix3d::Identity(), left = f * f.transpose();
-  switch (m.law) {
-    case Law::neo_hookean:
-      return m.mu / j * (left - identity) + m.lambda * (j - 1) * identity;
-    case Law::isochoric_neo_hookean:
-      return m.mu * std::pow(j, -5.0 / 3) * (left - left.trace() / 3 * identity) + m.kappa * (j - 1) * identity;
-    case Law::saint_venant_kirchhoff:
-      break;
-  }
-  const Matrix3d strain = 0.5 * (f.transpose() * f - identity);
-  return f * (m.lambda * strain.trace() * identity + 2 * m.mu * strain) * f.transpose() / j;
+  const Matrix3d before = edges_of(rest);
+  return cauchy_stress(m, (edges_of(now) - before) * before.inverse());
 }
 
 CuttingTraction cutting_traction(const Matrix3d& stress, const Vector3d& normal, const BreakingLaw& law) {

@@ -29,8 +29,7 @@ inline Body box_body(const std::string& name, const Vec3d& size, ElementKind ele
   body.surface_in_memory = box_surface(size);
   body.lattice.spacing = 0.01;
   body.element = element;
-  body.material.mu = 1000;
-  body.material.lambda = 4000;
+  body.material.set_moduli(Law::neo_hookean, Moduli::from_lame(4000, 1000));
   body.material.density = 1000;
   body.pointer = "/bodies/0";
   body.model.pointer = "/bodies/0/model";

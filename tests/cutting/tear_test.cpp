@@ -37,9 +37,7 @@ Scene bar_scene(const std::filesystem::path& file, double toughness) {
   body.name = "bar";
   body.mesh = file;
   body.element = ElementKind::tet4;
-  body.material.mu = 1000;
-  body.material.lambda = 2000;
-  body.material.kappa = 2000 + 2000.0 / 3;
+  body.material.set_moduli(Law::neo_hookean, Moduli::from_lame(2000, 1000));
   body.material.damping = 20;
   Inclusion weak{{Selection::Kind::box, {0.02, -1, -1}, {0.03, 1, 1}, 0, {}, ""}, body.material};
   weak.material.toughness = toughness;

@@ -1,42 +1,94 @@
-// The three laws in their textbook form, in double with Eigen: the oracle that is neither twin.
+// The laws in their textbook form: energies W(F), whose stress follows by differentiation. The third leg beside kernel and
+// twin, and beside host/material: it shares nothing with any of them.
 #pragma once
 #include <Eigen/Dense>
 #include <cmath>
 #include <optional>
+#include <vector>
 
-#include "layout.h"
+#include "laws.h"
 
 namespace pliant::kernel_test {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// First Piola-Kirchhoff stress P = F S [Pa]. `pressure` replaces dU/dJ = p1 (J - 1).
-inline Matrix3d piola_stress(int law, const Matrix3d& f, double p0, double p1, std::optional<double> pressure = {}) {
-  const Matrix3d identity = Matrix3d::Identity(), c = f.transpose() * f, inverse = c.inverse();
-  const double j = f.determinant(), p = pressure.value_or(p1 * (j - 1));
-  Matrix3d s;
-  if (law == PLIANT_LAW_NEO_HOOKEAN) {
-    s = p0 * (identity - inverse) + p * j * inverse;
-  } else if (law == PLIANT_LAW_SAINT_VENANT_KIRCHHOFF) {
-    const Matrix3d e = 0.5 * (c - identity);
-    s = p1 * e.trace() * identity + 2 * p0 * e;
-  } else {
-    s = p0 * std::pow(j, -2.0 / 3) * (identity - c.trace() / 3 * inverse) + p * j * inverse;
+/// A number and its derivatives by the nine components of F.
+struct Dual {
+  using Slope = Eigen::Matrix<double, 9, 1>;
+  double value = 0;
+  Slope slope = Slope::Zero();
+  Dual(double v = 0) : value(v) {}  // NOLINT: numbers are constants
+  Dual(double v, Slope s) : value(v), slope(std::move(s)) {}
+  friend Dual operator+(const Dual& a, const Dual& b) { return {a.value + b.value, a.slope + b.slope}; }
+  friend Dual operator-(const Dual& a, const Dual& b) { return {a.value - b.value, a.slope - b.slope}; }
+  friend Dual operator*(const Dual& a, const Dual& b) { return {a.value * b.value, a.value * b.slope + b.value * a.slope}; }
+  friend Dual log(const Dual& a) { return {std::log(a.value), a.slope / a.value}; }
+  friend Dual pow(const Dual& a, double n) { return {std::pow(a.value, n), n * std::pow(a.value, n - 1) * a.slope}; }
+};
+
+/// What energies of isotropic materials are made of: C = F^T F, I1 = tr C, I2 = ((tr C)^2 - tr C^2) / 2, J = det F.
+template <class Number>
+struct Invariants {
+  Number i1, i2, j, c_squared;  ///< c_squared: tr C^2
+  explicit Invariants(const Number (&f)[9]) {
+    Number c[9];
+    for (int a = 0; a < 3; ++a) {
+      for (int b = 0; b < 3; ++b) c[3 * a + b] = f[a] * f[b] + f[3 + a] * f[3 + b] + f[6 + a] * f[6 + b];
+    }
+    i1 = c[0] + c[4] + c[8];
+    for (const Number& x : c) c_squared = c_squared + x * x;
+    i2 = 0.5 * (i1 * i1 - c_squared);
+    j = f[0] * (f[4] * f[8] - f[5] * f[7]) + f[1] * (f[5] * f[6] - f[3] * f[8]) + f[2] * (f[3] * f[7] - f[4] * f[6]);
   }
-  return f * s;
+};
+
+/// W without the volumetric part U(J) = k/2 (J - 1)^2, and k (0: the law has no such part). `p`: its parameters, in the order
+/// of docs/scene.md.
+template <class Number>
+struct Textbook {
+  Number energy;
+  double bulk = 0;
+};
+template <class Number>
+Textbook<Number> textbook(Law law, const Number (&f)[9], const std::vector<double>& p) {
+  using std::log, std::pow;
+  const Invariants<Number> k(f);
+  switch (law) {
+    case Law::neo_hookean:  // mu, lambda
+      return {p[0] / 2 * (k.i1 - 3) - p[0] * log(k.j), p[1]};
+    case Law::saint_venant_kirchhoff:  // mu, lambda; tr E = (I1 - 3) / 2, E:E = (tr C^2 - 2 I1 + 3) / 4
+      return {p[1] / 8 * (k.i1 - 3) * (k.i1 - 3) + p[0] / 4 * (k.c_squared - 2 * k.i1 + 3), 0};
+    case Law::isochoric_neo_hookean:  // mu, kappa
+      return {p[0] / 2 * (pow(k.j, -2.0 / 3) * k.i1 - 3), p[1]};
+  }
+  return {};
+}
+
+inline Matrix3d cofactors(const Matrix3d& f) {
+  Matrix3d c;
+  for (int i = 0; i < 3; ++i) c.row(i) = f.row((i + 1) % 3).cross(f.row((i + 2) % 3));
+  return c;
+}
+
+/// First Piola-Kirchhoff stress P = dW/dF [Pa]. `pressure` replaces dU/dJ where there is a volumetric part.
+inline Matrix3d piola_stress(Law law, const Matrix3d& f, const std::vector<double>& p, std::optional<double> pressure = {}) {
+  Dual components[9];
+  for (int c = 0; c < 9; ++c) components[c] = {f(c / 3, c % 3), Dual::Slope::Unit(c)};
+  const Textbook<Dual> w = textbook(law, components, p);
+  const double dudj = w.bulk == 0 ? 0 : pressure.value_or(w.bulk * (f.determinant() - 1));
+  Matrix3d stress = dudj * cofactors(f);
+  for (int c = 0; c < 9; ++c) stress(c / 3, c % 3) += w.energy.slope[c];
+  return stress;
 }
 
 /// Strain energy density W(F) [Pa].
-inline double energy_density(int law, const Matrix3d& f, double p0, double p1) {
-  const Matrix3d c = f.transpose() * f;
-  const double j = f.determinant(), volumetric = p1 / 2 * (j - 1) * (j - 1);
-  if (law == PLIANT_LAW_NEO_HOOKEAN) return p0 / 2 * (c.trace() - 3) - p0 * std::log(j) + volumetric;
-  if (law == PLIANT_LAW_SAINT_VENANT_KIRCHHOFF) {
-    const Matrix3d e = 0.5 * (c - Matrix3d::Identity());
-    return p1 / 2 * e.trace() * e.trace() + p0 * (e * e).trace();
-  }
-  return p0 / 2 * (std::pow(j, -2.0 / 3) * c.trace() - 3) + volumetric;
+inline double energy_density(Law law, const Matrix3d& f, const std::vector<double>& p) {
+  double components[9];
+  for (int c = 0; c < 9; ++c) components[c] = f(c / 3, c % 3);
+  const Textbook<double> w = textbook(law, components, p);
+  const double dilation = f.determinant() - 1;
+  return w.energy + w.bulk / 2 * dilation * dilation;
 }
 
 }  // namespace pliant::kernel_test

@@ -10,7 +10,7 @@ class TledHex8BrickForce : public TwinTest {};
 
 TEST_F(TledHex8BrickForce, TwinGivesTheSameBits) {
   std::uint32_t seed = 500;
-  for (int law = 0; law < 3; ++law) {
+  for (const Law law : all_laws()) {
     for (const std::size_t bricks : {1U, 9U}) {
       for (const Data data : all_data) expect_same_bits(brick_force_case(law, bricks, data, seed++), name_of(data));
     }
@@ -40,19 +40,21 @@ Cells random_cells(std::uint32_t seed) {
   return cells;
 }
 
-constexpr double mu = 1052, kappa = 52249, stiffness = 12;
+constexpr double stiffness = 12;
 
 /// All rows of cells and of nodes.
 Ints all_rows() { return Ints(18, 0xFFFF); }
 
 /// Nodal forces through the brick kernel and brick_update.
-Reals brick_forces(const Cells& cells, int law, const Ints& rows = all_rows()) {
-  KernelCase force("tled_hex8_brick_force", {{"LAW", law}}, Shape::bricks, 8);
+Reals brick_forces(const Cells& cells, Law law, const Ints& rows = all_rows()) {
+  KernelCase force("tled_hex8_brick_force", with_law(law), Shape::bricks, 8);
   force.exact("node_u", cells.u)
       .ints("brick_neighbor", Grid::neighbors())
       .ints("brick_rows", rows)
       .exact("brick_fill", cells.fill);
-  force.exact("brick_force", Reals(9 * PLIANT_BRICK_FORCE)).ints("fault", Ints(Grid::slots)).exact(mu).exact(kappa);
+  force.exact("brick_force", Reals(9 * PLIANT_BRICK_FORCE))
+      .ints("fault", Ints(Grid::slots))
+      .exact("law_parameters", law_data(law));
   force.exact(1 / (4 * edge)).exact(edge * edge / 4).exact(stiffness).integer(1).integer(0).step();
   KernelCase update("brick_update", update_defines(0, 1, 0), Shape::lanes, Grid::slots);
   update.exact("node_u", cells.u).exact("node_w", Reals(4 * Grid::slots)).ints("brick_neighbor", Grid::neighbors());
@@ -63,7 +65,7 @@ Reals brick_forces(const Cells& cells, int law, const Ints& rows = all_rows()) {
 }
 
 /// The same through tled_hex8_force and a plain loop over corners.
-Reals element_forces(const Cells& cells, int law) {
+Reals element_forces(const Cells& cells, Law law) {
   Reals record;
   const auto sign = [](int a, int axes) {
     double s = 1;
@@ -106,9 +108,9 @@ Reals element_forces(const Cells& cells, int law) {
   for (std::size_t e = 0; e < fill.size(); ++e) {
     for (std::size_t a = 0; a < 8; ++a) nodes[place(e, 8, a)] = corners[e][a];
   }
-  KernelCase force("tled_hex8_force", {{"LAW", law}, {"UNIFORM", 1}}, Shape::lanes, fill.size());
+  KernelCase force("tled_hex8_force", with_law(law, {{"UNIFORM", 1}}), Shape::lanes, fill.size());
   force.exact("node_u", cells.u).ints("hex_nodes", nodes).exact("hex_data", record).exact("hex_fill", fill);
-  force.exact("corner_force", Reals(24 * fill.size())).ints("fault", Ints(fill.size())).exact(mu).exact(kappa);
+  force.exact("corner_force", Reals(24 * fill.size())).ints("fault", Ints(fill.size())).exact("law_parameters", law_data(law));
   force.integer(0).integer(0).step();
   const Reals corner_force = run_in_double(force, "corner_force");
   Reals result(4 * Grid::slots, 0.0);
@@ -124,7 +126,7 @@ Reals element_forces(const Cells& cells, int law) {
 
 TEST(TledHex8BrickForceOracle, GivesTheForcesOfTheHexahedronKernel) {
   const Cells cells = random_cells(11);
-  for (int law = 0; law < 3; ++law) {
+  for (const Law law : all_laws()) {
     const Reals bricks = brick_forces(cells, law), elements = element_forces(cells, law);
     double scale = 0, difference = 0;
     for (std::size_t i = 0; i < elements.size(); ++i) {
@@ -132,7 +134,7 @@ TEST(TledHex8BrickForceOracle, GivesTheForcesOfTheHexahedronKernel) {
       difference = std::max(difference, std::fabs(bricks[i] - elements[i]));
     }
     ASSERT_GT(scale, 0);
-    EXPECT_LE(difference, 1e-12 * scale) << "law " << law;
+    EXPECT_LE(difference, 1e-12 * scale) << to_string(law);
   }
 }
 

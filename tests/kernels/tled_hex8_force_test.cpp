@@ -8,7 +8,7 @@ class TledHex8Force : public TwinTest {};
 
 TEST_F(TledHex8Force, TwinGivesTheSameBits) {
   std::uint32_t seed = 300;
-  for (int law = 0; law < 3; ++law) {
+  for (const Law law : all_laws()) {
     for (int uniform = 0; uniform < 2; ++uniform) {
       for (const ElementSizes size : element_sizes) {
         for (const Data data : all_data) {

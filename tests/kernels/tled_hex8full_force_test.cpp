@@ -8,7 +8,7 @@ class TledHex8FullForce : public TwinTest {};
 
 TEST_F(TledHex8FullForce, TwinGivesTheSameBits) {
   std::uint32_t seed = 400;
-  for (int law = 0; law < 3; ++law) {
+  for (const Law law : all_laws()) {
     for (int uniform = 0; uniform < 2; ++uniform) {
       for (const ElementSizes size : element_sizes) {
         for (const Data data : all_data) {

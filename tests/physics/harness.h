@@ -16,6 +16,7 @@
 #include "backends/backends.h"
 #include "geometry/mesh.h"
 #include "io/obj.h"
+#include "kernels/law_oracle.h"
 #include "simulation/energy.h"
 #include "simulation/simulation.h"
 #include "support/opencl.h"
@@ -208,17 +209,10 @@ inline std::filesystem::path save(const TriangleMesh& mesh) {
 // --- Scenes ---
 
 inline Material material(Law law, double mu, double kappa, double density = 1000) {
-  Material m;
-  m.law = law;
-  m.mu = mu;
-  m.kappa = kappa;
-  m.lambda = kappa - 2 * mu / 3;
-  m.density = density;
-  return m;
+  return make_material(law, Moduli::from_bulk(mu, kappa), density);
 }
 inline Material material_young(Law law, double young, double poisson, double density = 1000) {
-  const double mu = young / (2 * (1 + poisson));
-  return material(law, mu, young / (3 * (1 - 2 * poisson)), density);
+  return material(law, young / (2 * (1 + poisson)), young / (3 * (1 - 2 * poisson)), density);
 }
 
 inline Body box_body(const Box& box, Cut cut, const Material& m) {
@@ -316,17 +310,8 @@ inline Matrix3d mean_stress(const Model& model, const std::vector<Vec3d>& f, dou
   return p / volume;
 }
 
-/// First Piola-Kirchhoff stress of the three laws, written from the energies: P = dW/dF.
-inline Matrix3d first_piola(const Matrix3d& f, const Material& m) {
-  const double j = f.determinant();
-  const Matrix3d inverse_t = f.inverse().transpose(), identity = Matrix3d::Identity();
-  if (m.law == Law::neo_hookean) return m.mu * (f - inverse_t) + m.lambda * (j - 1) * j * inverse_t;
-  if (m.law == Law::isochoric_neo_hookean) {
-    return m.mu * std::pow(j, -2.0 / 3) * (f - f.squaredNorm() / 3 * inverse_t) + m.kappa * (j - 1) * j * inverse_t;
-  }
-  const Matrix3d e = 0.5 * (f.transpose() * f - identity);
-  return f * (m.lambda * e.trace() * identity + 2 * m.mu * e);
-}
+/// First Piola-Kirchhoff stress P = dW/dF of the textbook energy.
+inline Matrix3d first_piola(const Matrix3d& f, const Material& m) { return kernel_test::piola_stress(m.law, f, m.parameters); }
 
 inline double largest(const std::vector<Vec3d>& v) {
   double size = 0;

@@ -135,7 +135,7 @@ double reflected(const char* backend, int width, double alpha, double beta_facto
   body.model.width = width;
   body.model.alpha = alpha;
   body.fixed = {{all_nodes(), {false, true, true}}};
-  const double c = std::sqrt((body.material.lambda + 2 * body.material.mu) / body.material.density);
+  const double c = std::sqrt((body.material.moduli.lambda + 2 * body.material.moduli.mu) / body.material.density);
   auto sim = simulate(scene_of(body, 0.8 * d / c), backend);
   const BufferId id = sim->program().find("flsm_beta/0");
   auto beta = sim->backend().read_reals(id);

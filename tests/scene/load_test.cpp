@@ -58,21 +58,21 @@ TEST(Load, MaterialsArrive) {
   const Scene s = parse_scene(full, "dir/scene.json");
   const Material& m = s.bodies[0].material;
   EXPECT_EQ(m.law, Law::isochoric_neo_hookean);
-  EXPECT_EQ(m.mu, 1000);
-  EXPECT_EQ(m.kappa, 50000);
-  EXPECT_DOUBLE_EQ(m.lambda, 50000 - 2000.0 / 3);
+  EXPECT_EQ(m.moduli.mu, 1000);
+  EXPECT_EQ(m.moduli.kappa, 50000);
+  EXPECT_DOUBLE_EQ(m.moduli.lambda, 50000 - 2000.0 / 3);
   EXPECT_EQ(m.density, 1060);
   EXPECT_EQ(m.damping, 5);
   EXPECT_EQ(m.hourglass, 0.5);
   const Material& stiff = s.bodies[0].inclusions.at(0).material;
-  EXPECT_DOUBLE_EQ(stiff.mu, 50000 / 2.6);
-  EXPECT_DOUBLE_EQ(stiff.lambda, 50000 * 0.3 / (1.3 * 0.4));
-  EXPECT_DOUBLE_EQ(stiff.kappa, 50000 / (3 * 0.4));
-  EXPECT_NEAR(stiff.young(), 50000, 1e-8);
-  EXPECT_NEAR(stiff.poisson(), 0.3, 1e-14);
+  EXPECT_DOUBLE_EQ(stiff.moduli.mu, 50000 / 2.6);
+  EXPECT_DOUBLE_EQ(stiff.moduli.lambda, 50000 * 0.3 / (1.3 * 0.4));
+  EXPECT_DOUBLE_EQ(stiff.moduli.kappa, 50000 / (3 * 0.4));
+  EXPECT_NEAR(stiff.moduli.young(), 50000, 1e-8);
+  EXPECT_NEAR(stiff.moduli.poisson(), 0.3, 1e-14);
   const Material& lame = s.bodies[1].material;
-  EXPECT_EQ(lame.lambda, 2000);
-  EXPECT_DOUBLE_EQ(lame.kappa, 2000 + 2000.0 / 3);
+  EXPECT_EQ(lame.moduli.lambda, 2000);
+  EXPECT_DOUBLE_EQ(lame.moduli.kappa, 2000 + 2000.0 / 3);
 }
 
 TEST(Load, ConditionsArrive) {
@@ -123,9 +123,10 @@ TEST(Load, AbsolutePathsStay) { EXPECT_EQ(parse_scene(full, "dir/scene.json").bo
 /// The moduli must come back to the last bit, whichever pair was given.
 void expect_same(const Material& a, const Material& b) {
   EXPECT_EQ(a.law, b.law);
-  EXPECT_EQ(a.mu, b.mu);
-  EXPECT_EQ(a.lambda, b.lambda);
-  EXPECT_EQ(a.kappa, b.kappa);
+  EXPECT_EQ(a.parameters, b.parameters);
+  EXPECT_EQ(a.moduli.mu, b.moduli.mu);
+  EXPECT_EQ(a.moduli.lambda, b.moduli.lambda);
+  EXPECT_EQ(a.moduli.kappa, b.moduli.kappa);
   EXPECT_EQ(a.density, b.density);
   EXPECT_EQ(a.damping, b.damping);
   EXPECT_EQ(a.hourglass, b.hourglass);

@@ -8,10 +8,7 @@ namespace pliant {
 namespace {
 
 TEST(MaterialTest, YoungAndPoissonFollowFromTheModuli) {
-  Material m;
-  m.mu = 1000;
-  m.lambda = 2000;
-  m.kappa = m.lambda + 2 * m.mu / 3;
+  const Moduli m = Moduli::from_lame(2000, 1000);
   // E = mu (3 lambda + 2 mu) / (lambda + mu), nu = lambda / (2 (lambda + mu))
   EXPECT_NEAR(m.young(), 1000.0 * 8000 / 3000, 1e-9);
   EXPECT_NEAR(m.poisson(), 2000.0 / 6000, 1e-15);

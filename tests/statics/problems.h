@@ -16,10 +16,6 @@ using statics::Problem;
 using statics::Settings;
 using statics::Solution;
 
-inline const std::vector<Law>& all_laws() {
-  static const std::vector<Law> laws{Law::neo_hookean, Law::saint_venant_kirchhoff, Law::isochoric_neo_hookean};
-  return laws;
-}
 inline const std::vector<Element>& all_elements() {
   static const std::vector<Element> elements{Element::tet4, Element::tet10, Element::hex8full};
   return elements;

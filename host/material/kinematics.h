@@ -1,0 +1,71 @@
+// What the laws are written in: F = I + H and its invariants in double, without cancellation at small strain, and the pieces of
+// their tangents. A tangent dP_ij/dF_kl stands at row 3 i + j, column 3 k + l.
+#pragma once
+#include <Eigen/Dense>
+
+namespace pliant {
+
+using Matrix9d = Eigen::Matrix<double, 9, 9>;
+
+struct Kinematics {
+  using Matrix3d = Eigen::Matrix3d;
+  Matrix3d h, f, cofactor;  ///< H = F - I, F, cof F
+  double j = 0;             ///< J - 1
+  double trace = 0;         ///< tr H
+  double norm2 = 0;         ///< |H|^2
+  Matrix3d difference;      ///< J F - cof F: J times F - F^-T, to rounding of its own size
+
+  explicit Kinematics(const Matrix3d& gradient) : h(gradient) {
+    const Matrix3d identity = Matrix3d::Identity(), minors = cofactor_of(h);
+    trace = h.trace();
+    norm2 = h.squaredNorm();
+    f = identity + h;
+    cofactor = (1 + trace) * identity - h.transpose() + minors;
+    j = trace + minors.trace() + h.row(0).dot(minors.row(0));
+    difference = h + h.transpose() + (j - trace) * identity + j * h - minors;
+  }
+  /// |F|^2 - 3.
+  [[nodiscard]] double stretch() const { return 2 * trace + norm2; }
+  /// F^-T; only where J is not zero.
+  [[nodiscard]] Matrix3d inverse_transposed() const { return cofactor / (1 + j); }
+
+  static Matrix3d cofactor_of(const Matrix3d& m) {
+    Matrix3d c;
+    for (int i = 0; i < 3; ++i) {
+      const Eigen::Vector3d a = m.row((i + 1) % 3), b = m.row((i + 2) % 3);
+      c.row(i) = a.cross(b);
+    }
+    return c;
+  }
+};
+
+/// out_ijkl += scale a_ij b_kl
+inline void add_product(Matrix9d& out, double scale, const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
+  for (int r = 0; r < 9; ++r) {
+    for (int c = 0; c < 9; ++c) out(r, c) += scale * a(r / 3, r % 3) * b(c / 3, c % 3);
+  }
+}
+
+/// out_ijkl += scale q_il q_kj: the derivative of -F^-T in the direction dF is q dF^T q with q = F^-T.
+inline void add_crossed(Matrix9d& out, double scale, const Eigen::Matrix3d& q) {
+  for (int r = 0; r < 9; ++r) {
+    for (int c = 0; c < 9; ++c) out(r, c) += scale * q(r / 3, c % 3) * q(c / 3, r % 3);
+  }
+}
+
+/// out_ijkl += scale d(cof F)_ij / dF_kl. Each entry is a component of F, whatever J is.
+inline void add_cofactor_slope(Matrix9d& out, double scale, const Eigen::Matrix3d& f) {
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+      // (cof F)_ij = F_i1j1 F_i2j2 - F_i1j2 F_i2j1
+      const int row = 3 * i + j;
+      out(row, 3 * i1 + j1) += scale * f(i2, j2);
+      out(row, 3 * i2 + j2) += scale * f(i1, j1);
+      out(row, 3 * i1 + j2) -= scale * f(i2, j1);
+      out(row, 3 * i2 + j1) -= scale * f(i1, j2);
+    }
+  }
+}
+
+}  // namespace pliant

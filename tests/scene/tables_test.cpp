@@ -1,0 +1,174 @@
+// What scenes/schema.json and docs/scene.md say about laws and words is written from the tables of the code. After a change of
+// those run this test once with PLIANT_WRITE_TABLES=1, which writes both files anew.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "scene/keys.h"
+
+namespace pliant {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string file_text(const std::string& name) {
+  std::ifstream stream(std::filesystem::path(PLIANT_SOURCE_DIR) / name);
+  EXPECT_TRUE(stream) << name;
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+void expect_file(const std::string& name, const std::string& expected) {
+  if (std::getenv("PLIANT_WRITE_TABLES") != nullptr) {
+    std::ofstream(std::filesystem::path(PLIANT_SOURCE_DIR) / name) << expected;
+    return;
+  }
+  const std::string found = file_text(name);
+  std::istringstream a(found), b(expected);
+  std::string line, wanted;
+  for (int number = 1; found != expected && std::getline(b, wanted); ++number) {
+    if (!std::getline(a, line) || line != wanted) {
+      FAIL() << name << " line " << number << " is\n  " << line << "\nand should be\n  " << wanted
+             << "\nRun this test with PLIANT_WRITE_TABLES=1 to write the file anew.";
+    }
+  }
+  EXPECT_EQ(found.size(), expected.size()) << name;
+}
+
+// --- scenes/schema.json ---
+
+std::string compact(const Json& value) {
+  if (!value.is_structured()) return value.dump();
+  std::string text;
+  for (const auto& [key, member] : value.items()) {
+    text += (text.empty() ? "" : ", ") + (value.is_object() ? Json(key).dump() + ": " : "") + compact(member);
+  }
+  return value.is_object() ? "{" + text + "}" : "[" + text + "]";
+}
+
+/// A value on one line if that ends within 128 columns, else one member a line. `around`: what stands beside it on its line.
+std::string pretty(const Json& value, std::size_t indent = 0, std::size_t around = 0) {
+  std::string line = compact(value);
+  if (!value.is_structured() || indent + around + line.size() <= 128) return line;
+  std::string text;
+  std::size_t left = value.size();
+  for (const auto& [key, member] : value.items()) {
+    const std::string name = value.is_object() ? Json(key).dump() + ": " : "";
+    --left;
+    text += std::string(indent + 2, ' ') + name + pretty(member, indent + 2, name.size() + (left > 0 ? 1 : 0)) +
+            (left > 0 ? ",\n" : "\n");
+  }
+  return (value.is_object() ? "{\n" : "[\n") + text + std::string(indent, ' ') + (value.is_object() ? "}" : "]");
+}
+
+Json bounds(const ParameterInfo& p, const std::string& description) {
+  Json number{{"description", description}, {"type", "number"}};
+  if (p.lower == least_modulus) {
+    number["exclusiveMinimum"] = 0;
+  } else {
+    number["minimum"] = p.lower;
+  }
+  number["maximum"] = p.upper;
+  return number;
+}
+
+/// Exactly these elastic constants.
+Json only(const std::vector<std::string>& keys, const Json& law) {
+  Json others = Json::array();
+  for (const std::string& key : elastic_keys()) {
+    if (std::find(keys.begin(), keys.end(), key) == keys.end()) others.push_back({{"required", {key}}});
+  }
+  return {{"properties", {{"law", law}}}, {"required", keys}, {"not", {{"anyOf", others}}}};
+}
+
+void set_laws(Json& material) {
+  Json properties{{"law", {{"enum", words_only(law_words())}, {"default", to_string(Material().law)}}}};
+  for (const std::string& key : moduli_keys()) properties[key] = material["properties"][key];
+  Json ways = Json::array();
+  Json moduli{{"enum", Json::array()}};
+  for (const Law law : all_laws()) {
+    if (law_info(law).takes_moduli) moduli["enum"].push_back(to_string(law));
+  }
+  for (const auto& pair : {std::array{"young", "poisson"}, std::array{"lambda", "mu"}, std::array{"mu", "kappa"}}) {
+    ways.push_back(only({pair.begin(), pair.end()}, moduli));
+  }
+  for (const Law law : all_laws()) {
+    const LawInfo& info = law_info(law);
+    if (info.takes_moduli) continue;
+    for (const ParameterInfo& p : info.parameters) {
+      std::string what = p.what;
+      what[0] = static_cast<char>(std::toupper(what[0]));
+      if (!properties.contains(p.name)) properties[p.name] = bounds(p, what + " [" + p.unit + "]");
+    }
+    ways.push_back(only(elastic_keys(info), {{"const", info.word}}));
+    ways.back()["required"].insert(ways.back()["required"].begin(), "law");
+  }
+  for (const auto& [key, value] : material["properties"].items()) {
+    if (!properties.contains(key)) {
+      const std::vector<std::string> known = scene_keys().at("material");
+      if (std::find(known.begin(), known.end(), key) != known.end()) properties[key] = value;
+    }
+  }
+  material["properties"] = properties;
+  material["oneOf"] = ways;
+}
+
+TEST(Tables, SchemaHasTheLawsAndTheWordsOfTheCode) {
+  Json schema = Json::parse(file_text("scenes/schema.json"));
+  set_laws(schema["$defs"]["material"]);
+  schema["$defs"]["body"]["properties"]["element"]["enum"] = words_only(element_words());
+  schema["properties"]["integrator"]["enum"] = words_only(integrator_words());
+  expect_file("scenes/schema.json", pretty(schema) + "\n");
+}
+
+// --- docs/scene.md ---
+
+std::string code(const std::string& word) { return "`" + word + "`"; }
+
+std::string allowed(const ParameterInfo& p) {
+  if (p.lower == least_modulus) return "> 0";
+  if (p.lower == -most_modulus && p.upper == most_modulus) return "a number";
+  std::ostringstream text;
+  text << p.lower << " to " << p.upper;
+  return text.str();
+}
+
+/// The laws, and the parameters of those that elastic constants do not determine.
+std::string law_tables() {
+  std::string laws = "| law | energy per volume at rest | given by | `tet4anp` | J <= 0 | as in |\n|---|---|---|---|---|---|\n";
+  std::string parameters;
+  for (const Law law : all_laws()) {
+    const LawInfo& info = law_info(law);
+    std::string given;
+    if (info.takes_moduli) {
+      given = "two elastic constants";
+    } else {
+      for (const ParameterInfo& p : info.parameters) {
+        given += (given.empty() ? "" : ", ") + code(p.name);
+        parameters +=
+            "| " + code(p.name) + " | " + code(info.word) + " | " + p.unit + " | " + allowed(p) + " | " + p.what + " |\n";
+      }
+    }
+    laws += "| " + code(info.word) + " | " + info.energy + " | " + given + " | " + (info.volumetric ? "yes" : "no") + " | " +
+            (info.invertible ? "finite" : "refused") + " | " + info.source + " |\n";
+  }
+  if (parameters.empty()) return laws;
+  return laws + "\n| key | law | unit | allowed | meaning |\n|---|---|---|---|---|\n" + parameters;
+}
+
+TEST(Tables, ScenesDocumentHasTheLawsOfTheCode) {
+  const std::string begin = "<!-- laws: written by tests/scene/tables_test.cpp -->\n", end = "<!-- end of the laws -->\n";
+  const std::string text = file_text("docs/scene.md");
+  const std::size_t from = text.find(begin), to = text.find(end);
+  ASSERT_NE(from, std::string::npos);
+  ASSERT_NE(to, std::string::npos);
+  expect_file("docs/scene.md", text.substr(0, from + begin.size()) + law_tables() + text.substr(to));
+}
+
+}  // namespace
+}  // namespace pliant
