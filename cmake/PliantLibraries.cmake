@@ -52,7 +52,7 @@ pliant_room(pliant_backend host/backend pliant_program)
 
 # The twins: their own flags, so that nothing a consumer sets can change a bit.
 pliant_room(pliant_ref cpu_ref pliant_backend Threads::Threads)
-target_include_directories(pliant_ref PUBLIC ${CMAKE_SOURCE_DIR})  # "cpu_ref/backend.h"
+target_include_directories(pliant_ref PUBLIC ${CMAKE_SOURCE_DIR})  # "cpu_ref/ref_backend.h"
 target_include_directories(pliant_ref PRIVATE ${PLIANT_GENERATED})  # "twin_laws.h"
 set(ref_options -O3 -fno-math-errno -fno-trapping-math)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")

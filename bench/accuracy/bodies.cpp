@@ -9,7 +9,7 @@
 #include "bench/accuracy/parts.h"
 #include "geometry/mesh.h"
 #include "io/obj.h"
-#include "model/solid.h"
+#include "model/body_mesh.h"
 
 namespace pliant::bench::accuracy {
 namespace {
@@ -65,11 +65,11 @@ Body plain_body(const Problem& p) {
 }
 
 /// Conforming elements of a tapered panel; boxes and organs are lattices.
-Solid panel(const Problem& p, const Method& method, int refine) {
+BodyMesh panel(const Problem& p, const Method& method, int refine) {
   const bool tets = method.element == ElementKind::tet4 || method.element == ElementKind::tet4anp;
   std::array<int, 3> cells{p.cells[0] * refine, p.cells[1] * refine, 1};
   statics::Mesh mesh = statics::box_mesh(tets ? statics::Element::tet4 : statics::Element::hex8full, cells, size_at(p, refine));
-  Solid solid;
+  BodyMesh solid;
   for (const Vec3d& x : mesh.nodes) solid.nodes.push_back(shaped(p, x));
   for (std::int64_t e = 0; e < mesh.elements(); ++e) {
     const std::int32_t* n = mesh.nodes_of(e);
@@ -83,7 +83,7 @@ Solid panel(const Problem& p, const Method& method, int refine) {
   return solid;
 }
 
-void add_supports(const Problem& p, const Solid& solid, const Curve& curve, Body& body) {
+void add_supports(const Problem& p, const BodyMesh& solid, const Curve& curve, Body& body) {
   std::map<std::pair<int, Vec3d>, std::vector<std::int64_t>> moved;
   std::map<int, std::vector<std::int64_t>> held;
   for (const Support& s : p.supports) {
@@ -207,15 +207,15 @@ Built build(const Case& c, const fs::path& scenes) {
   body.model.type = c.method->type;
   body.material.damping = 2 * p.omega;
   built.spacing = p.size[0] / (p.cells[0] * c.refine);
-  std::vector<Solid> solids;
+  std::vector<BodyMesh> solids;
   if (p.shape == Shape::cook && c.method->type == ModelType::tled) {
     solids.push_back(panel(p, *c.method, c.refine));
   } else {
     body.surface = p.shape == Shape::liver ? scenes / "meshes" / "liver.obj" : surface_of(p, folder.path(), c.refine);
     body.lattice.spacing = built.spacing;
-    solids.push_back(make_solid(body));
+    solids.push_back(make_body_mesh(body));
   }
-  const Solid& solid = solids[0];
+  const BodyMesh& solid = solids[0];
   built.mesh = mesh_of(solid);
   const Curve curve = load_curve(p);
   add_supports(p, solid, curve, body);
@@ -232,7 +232,7 @@ Built build(const Case& c, const fs::path& scenes) {
   return built;
 }
 
-statics::Mesh mesh_of(const Solid& solid) {
+statics::Mesh mesh_of(const BodyMesh& solid) {
   statics::Mesh mesh;
   mesh.nodes = solid.nodes;
   mesh.fill = solid.fill;
@@ -246,7 +246,7 @@ statics::Mesh lattice_mesh(const Problem& p, int cells, const fs::path& scenes) 
   Body body = plain_body(p);
   body.surface = scenes / "meshes" / "liver.obj";
   body.lattice.spacing = p.size[0] / cells;
-  return mesh_of(make_solid(body));
+  return mesh_of(make_body_mesh(body));
 }
 
 }  // namespace pliant::bench::accuracy

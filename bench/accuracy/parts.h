@@ -15,7 +15,7 @@
 #include "statics/statics.h"
 
 namespace pliant {
-struct Solid;
+struct BodyMesh;
 }
 
 namespace pliant::bench::accuracy {
@@ -115,7 +115,7 @@ Built build(const Case& c, const std::filesystem::path& scenes);
 Vec3d shaped(const Problem& p, const Vec3d& x);
 /// The time course of loads and prescribed displacements.
 Curve load_curve(const Problem& p);
-statics::Mesh mesh_of(const Solid& solid);
+statics::Mesh mesh_of(const BodyMesh& solid);
 /// The liver as hexahedra, `cells` of them along size[0].
 statics::Mesh lattice_mesh(const Problem& p, int cells, const std::filesystem::path& scenes);
 

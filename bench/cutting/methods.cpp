@@ -135,7 +135,7 @@ void virtual_nodes(const CuttingRun& run, const Comparison& c) {
 }
 
 /// Boundary triangles that do not lie on the boundary before are faces of the cut.
-void mark_cut(const PlainMesh& whole, Solid& solid) {
+void mark_cut(const ElementMesh& whole, BodyMesh& solid) {
   std::vector<SweepTriangle> outside;
   vec::Box box;
   for (const auto& t : boundary_of(whole)) outside.push_back({whole.nodes[t[0]], whole.nodes[t[1]], whole.nodes[t[2]]});
@@ -149,15 +149,15 @@ void mark_cut(const PlainMesh& whole, Solid& solid) {
   }
 }
 
-using Method = MethodResult (*)(const PlainMesh&, std::span<const SweepTriangle>);
+using Method = MethodResult (*)(const ElementMesh&, std::span<const SweepTriangle>);
 
 void other_method(const CuttingRun& run, const Comparison& c, const std::string& name, Method method) {
-  const PlainMesh whole = plain_mesh(make_solid(c.scene.bodies[0]));
+  const ElementMesh whole = plain_mesh(make_body_mesh(c.scene.bodies[0]));
   const auto model = std::make_shared<const Model>(build_model(c.scene, {solid_of(whole)}));
   const BodyFigures before = figures_of(*model);
   std::unique_ptr<Simulation> simulation = start(run, c, model);
   const double step_before = ms_per_step(*simulation, run.options.quick);
-  PlainMesh mesh = whole;
+  ElementMesh mesh = whole;
   std::vector<CutTimes> times;
   double distance = 0;
   std::shared_ptr<const Model> after = model;
@@ -168,7 +168,7 @@ void other_method(const CuttingRun& run, const Comparison& c, const std::string&
     mesh = std::move(cut.mesh);
     distance = std::max(distance, cut.distance);
     t.topology = lap(clock);
-    Solid solid = solid_of(mesh);
+    BodyMesh solid = solid_of(mesh);
     t.surface = lap(clock);
     if (run.options.picture && &sweep == &c.cuts.back()) mark_cut(whole, solid);
     clock = std::chrono::steady_clock::now();
@@ -192,7 +192,7 @@ void other_method(const CuttingRun& run, const Comparison& c, const std::string&
   finish(run, std::move(row), *simulation, step_before);
 }
 
-MethodResult separate(const PlainMesh& mesh, std::span<const SweepTriangle> sweep) { return separate_crossed(mesh, sweep); }
+MethodResult separate(const ElementMesh& mesh, std::span<const SweepTriangle> sweep) { return separate_crossed(mesh, sweep); }
 
 }  // namespace
 

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "bench/cutting/parts.h"
-#include "cpu_ref/backend.h"
+#include "cpu_ref/ref_backend.h"
 #include "geometry/vec.h"
 
 namespace pliant::bench {
@@ -113,7 +113,7 @@ BodyFigures cut_virtual_nodes(const Trial& trial, RandomSweep& random, int cuts,
 }
 
 BodyFigures cut_mesh(const Trial& trial, RandomSweep& random, int cuts, double bound, double stable, Ratios& out) {
-  PlainMesh mesh = plain_mesh(make_solid(trial.scene.bodies[0]));
+  ElementMesh mesh = plain_mesh(make_body_mesh(trial.scene.bodies[0]));
   for (; cuts > 0; --cuts) {
     const auto sweep = random.next();
     mesh = trial.method == "decomposition" ? decompose_crossed(mesh, sweep).mesh : separate_crossed(mesh, sweep).mesh;

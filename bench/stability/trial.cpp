@@ -10,8 +10,8 @@
 #include <functional>
 #include <random>
 
-#include "cpu_ref/backend.h"
-#include "model/solid.h"
+#include "cpu_ref/ref_backend.h"
+#include "model/body_mesh.h"
 #include "pliant/error.h"
 
 namespace pliant::bench::stability {
@@ -99,7 +99,7 @@ double extent(const Model& model) {
   return std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
 }
 
-double centre_x(const Solid& solid, std::size_t e) {
+double centre_x(const BodyMesh& solid, std::size_t e) {
   double sum = 0;
   if (!solid.tets.empty()) {
     for (const std::int32_t n : solid.tets[e]) sum += solid.nodes[n][0] / 4;
@@ -166,8 +166,8 @@ Specimen make_specimen(Scene scene, const std::vector<Box>& boxes, double fill, 
     if (lattice) body.lattice.spacing = edge[0];
   }
   Specimen specimen;
-  std::vector<Solid> solids = make_solids(scene);
-  for (Solid& solid : solids) {
+  std::vector<BodyMesh> solids = make_body_meshes(scene);
+  for (BodyMesh& solid : solids) {
     for (std::size_t e = 0; e < solid.fill.size() && fill < 1; ++e) {
       if (centre_x(solid, e) <= thin_beyond) continue;
       solid.fill[e] = fill;

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "io/png.h"
-#include "render/overlay.h"
+#include "render/annotations.h"
 #include "render/renderer.h"
 
 namespace {

@@ -5,8 +5,8 @@
 #include <charconv>
 #include <exception>
 
-#include "cpu_ref/backend.h"
 #include "cpu_ref/check_backend.h"
+#include "cpu_ref/ref_backend.h"
 #include "opencl/opencl_backend.h"
 #include "pliant/error.h"
 

@@ -52,7 +52,7 @@ VirtualNodes anchors_of(const CutTopology& cut) {
 }
 
 /// Elements 0 .. cells - 1 that are cut, and all copies behind them.
-void set_elements(const Solid& uncut, const CutTopology& cut, SolidElements& solid) {
+void set_elements(const BodyMesh& uncut, const CutTopology& cut, BodyElements& solid) {
   const CutElements& e = cut.elements();
   const bool lattice = cut.mesh().shape->corners == 8, tets = !uncut.tets.empty();
   const std::size_t cells = cut.mesh().cells.size(), count = e.nodes.size(), parts = tets && lattice ? kKuhnTets.size() : 1;
@@ -79,7 +79,7 @@ void set_elements(const Solid& uncut, const CutTopology& cut, SolidElements& sol
   for (std::size_t i = cells; i < count; ++i) set(i);
 }
 
-void set_nodes(const Solid& uncut, const CutTopology& cut, SolidElements& solid) {
+void set_nodes(const BodyMesh& uncut, const CutTopology& cut, BodyElements& solid) {
   const std::vector<std::int32_t>& origin = cut.elements().origin;
   solid.nodes.resize(uncut.nodes.size());
   solid.lattice_nodes.resize(uncut.lattice_nodes.size());
@@ -95,12 +95,12 @@ void set_nodes(const Solid& uncut, const CutTopology& cut, SolidElements& solid)
   solid.virtual_nodes = anchors_of(cut);
 }
 
-void hang_vertex(const CutSurfaceVertex& from, const CutTopology& cut, std::array<std::int32_t, 8>& nodes) {
+void embed_vertex(const CutSurfaceVertex& from, const CutTopology& cut, std::array<std::int32_t, 8>& nodes) {
   const std::int32_t element = cut.element_of(from.carrier.cell, from.carrier.label);
   nodes = cut.elements().nodes[element >= 0 ? element : from.carrier.cell];
 }
 
-void place_vertex(const CutSurfaceVertex& from, std::size_t v, SolidSurface& solid) {
+void place_vertex(const CutSurfaceVertex& from, std::size_t v, BodySurface& solid) {
   solid.surface[v] = from.rest;
   solid.surface_cell[v] = from.carrier.cell;
   for (std::size_t a = 0; a < 8; ++a) {
@@ -110,7 +110,7 @@ void place_vertex(const CutSurfaceVertex& from, std::size_t v, SolidSurface& sol
   }
 }
 
-void set_triangle(const CutSurface& surface, const Solid& uncut, std::size_t t, SolidSurface& solid) {
+void set_triangle(const CutSurface& surface, const BodyMesh& uncut, std::size_t t, BodySurface& solid) {
   solid.triangles[t] = surface.triangles()[t];
   solid.triangle_cut[t] = surface.kinds()[t] == SurfaceKind::cut ? 1 : 0;
   if (!solid.wants_middles) return;
@@ -122,7 +122,7 @@ void set_triangle(const CutSurface& surface, const Solid& uncut, std::size_t t, 
   solid.triangle_middle[t] = vec::mul(vec::add(vec::add(uncut.surface[a], uncut.surface[b]), uncut.surface[c]), 1.0 / 3);
 }
 
-void resize_surface(const CutSurface& surface, SolidSurface& solid) {
+void resize_surface(const CutSurface& surface, BodySurface& solid) {
   const std::size_t vertices = surface.vertices().size(), triangles = surface.triangles().size();
   solid.surface.resize(vertices);
   solid.surface_nodes.resize(vertices);
@@ -134,11 +134,11 @@ void resize_surface(const CutSurface& surface, SolidSurface& solid) {
 }
 
 /// The split and capped surface in place of the one that `solid` has.
-void hang_surface(const CutSurface& surface, const CutTopology& cut, const Solid& uncut, SolidSurface& solid) {
+void hang_surface(const CutSurface& surface, const CutTopology& cut, const BodyMesh& uncut, BodySurface& solid) {
   resize_surface(surface, solid);
   for (std::size_t v = 0; v < solid.surface.size(); ++v) {
     place_vertex(surface.vertices()[v], v, solid);
-    hang_vertex(surface.vertices()[v], cut, solid.surface_nodes[v]);
+    embed_vertex(surface.vertices()[v], cut, solid.surface_nodes[v]);
   }
   for (std::size_t t = 0; t < solid.triangles.size(); ++t) set_triangle(surface, uncut, t, solid);
   solid.changes.reset();
@@ -146,7 +146,7 @@ void hang_surface(const CutSurface& surface, const CutTopology& cut, const Solid
 
 }  // namespace
 
-std::shared_ptr<const CutMesh> cut_mesh(const Solid& solid, const std::string& name) {
+std::shared_ptr<const CutMesh> cut_mesh(const BodyMesh& solid, const std::string& name) {
   auto mesh = std::make_shared<CutMesh>();
   mesh->rest = solid.nodes;
   if (!solid.lattice_nodes.empty()) {
@@ -174,12 +174,12 @@ std::shared_ptr<const CutMesh> cut_mesh(const Solid& solid, const std::string& n
   return mesh;
 }
 
-void update_solid_elements(const Solid& uncut, const CutTopology& cut, SolidElements& solid) {
+void update_body_elements(const BodyMesh& uncut, const CutTopology& cut, BodyElements& solid) {
   set_nodes(uncut, cut, solid);
   set_elements(uncut, cut, solid);
 }
 
-void update_solid_surface(const Solid& uncut, const CutTopology& cut, const CutSurface* surface, SolidSurface& solid) {
+void update_body_surface(const BodyMesh& uncut, const CutTopology& cut, const CutSurface* surface, BodySurface& solid) {
   if (surface != nullptr) {
     hang_surface(*surface, cut, uncut, solid);
     return;
@@ -192,36 +192,36 @@ void update_solid_surface(const Solid& uncut, const CutTopology& cut, const CutS
   }
 }
 
-void patch_solid_surface(const Solid& uncut, const CutTopology& cut, const CutSurface& surface, SurfaceChanges changes,
-                         SolidSurface& solid) {
+void patch_body_surface(const BodyMesh& uncut, const CutTopology& cut, const CutSurface& surface, SurfaceChanges changes,
+                        BodySurface& solid) {
   const bool has_middles = !solid.triangle_middle.empty() || !solid.wants_middles;
   resize_surface(surface, solid);
   for (std::size_t t = 0; t < solid.triangles.size() && !has_middles; ++t) set_triangle(surface, uncut, t, solid);
   for (const std::int32_t v : changes.vertices) {
     place_vertex(surface.vertices()[v], static_cast<std::size_t>(v), solid);
   }
-  changes.hung.clear();
+  changes.reembedded.clear();
   auto next = changes.vertices.begin();
   for (std::size_t v = 0; v < solid.surface_cell.size(); ++v) {
     const bool changed = next != changes.vertices.end() && static_cast<std::size_t>(*next) == v;
     if (changed) ++next;
     // The nodes of divided cells are numbered anew by every edit.
     if (!changed && !cut.divided(solid.surface_cell[v])) continue;
-    hang_vertex(surface.vertices()[v], cut, solid.surface_nodes[v]);
-    changes.hung.push_back(static_cast<std::int32_t>(v));
+    embed_vertex(surface.vertices()[v], cut, solid.surface_nodes[v]);
+    changes.reembedded.push_back(static_cast<std::int32_t>(v));
   }
   for (const std::int32_t t : changes.triangles) set_triangle(surface, uncut, static_cast<std::size_t>(t), solid);
   solid.changes = std::move(changes);
 }
 
-void update_solid(const Solid& uncut, const CutTopology& cut, const CutSurface* surface, Solid& solid) {
-  update_solid_elements(uncut, cut, solid);
-  update_solid_surface(uncut, cut, surface, solid);
+void update_body_mesh(const BodyMesh& uncut, const CutTopology& cut, const CutSurface* surface, BodyMesh& solid) {
+  update_body_elements(uncut, cut, solid);
+  update_body_surface(uncut, cut, surface, solid);
 }
 
-Solid cut_solid(const Solid& uncut, const CutTopology& cut, const CutSurface* surface) {
-  Solid solid = uncut;
-  update_solid(uncut, cut, surface, solid);
+BodyMesh cut_body_mesh(const BodyMesh& uncut, const CutTopology& cut, const CutSurface* surface) {
+  BodyMesh solid = uncut;
+  update_body_mesh(uncut, cut, surface, solid);
   return solid;
 }
 

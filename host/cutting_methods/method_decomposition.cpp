@@ -58,7 +58,7 @@ void add_face(const Divided& d, const std::array<int, 3>& face, std::vector<Tria
 
 class Decomposer {
  public:
-  explicit Decomposer(const PlainMesh& mesh) : mesh_(mesh) { out_.mesh.nodes = mesh.nodes; }
+  explicit Decomposer(const ElementMesh& mesh) : mesh_(mesh) { out_.mesh.nodes = mesh.nodes; }
 
   MethodResult run(std::span<const SweepTriangle> sweep) {
     vec::Box box;
@@ -207,7 +207,7 @@ class Decomposer {
     }
   }
 
-  const PlainMesh& mesh_;
+  const ElementMesh& mesh_;
   MethodResult out_;
   std::unique_ptr<SweepProbe> probe_;
   std::map<NodePair, std::int32_t> middle_;
@@ -216,8 +216,8 @@ class Decomposer {
 
 }  // namespace
 
-MethodResult decompose_crossed(const PlainMesh& mesh, std::span<const SweepTriangle> sweep) {
-  const PlainMesh parts = kuhn_tetrahedra(mesh);
+MethodResult decompose_crossed(const ElementMesh& mesh, std::span<const SweepTriangle> sweep) {
+  const ElementMesh parts = kuhn_tetrahedra(mesh);
   return Decomposer(parts).run(sweep);
 }
 

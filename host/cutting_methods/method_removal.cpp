@@ -7,10 +7,10 @@
 
 namespace pliant {
 
-MethodResult remove_crossed(const PlainMesh& mesh, std::span<const SweepTriangle> sweep) {
+MethodResult remove_crossed(const ElementMesh& mesh, std::span<const SweepTriangle> sweep) {
   MethodResult out;
   out.mesh.nodes = mesh.nodes;
-  const PlainMesh parts = kuhn_tetrahedra(mesh);
+  const ElementMesh parts = kuhn_tetrahedra(mesh);
   const std::size_t per = mesh.hexes.empty() ? 1 : kKuhnTets.size();
   vec::Box box;
   for (const Vec3d& x : mesh.nodes) box.extend(x);

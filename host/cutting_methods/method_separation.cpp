@@ -21,7 +21,7 @@ constexpr int kHalvings = 5;
 
 class Separator {
  public:
-  Separator(const PlainMesh& mesh, std::span<const SweepTriangle> sweep, const SeparationOptions& options)
+  Separator(const ElementMesh& mesh, std::span<const SweepTriangle> sweep, const SeparationOptions& options)
       : options_(options), neighbors_(tet_neighbors(mesh.tets)), cut_(mesh.tets.size(), 0) {
     out_.mesh = mesh;
     vec::Box box;
@@ -167,8 +167,8 @@ class Separator {
 
 }  // namespace
 
-MethodResult separate_crossed(const PlainMesh& mesh, std::span<const SweepTriangle> sweep, const SeparationOptions& options) {
-  const PlainMesh parts = kuhn_tetrahedra(mesh);
+MethodResult separate_crossed(const ElementMesh& mesh, std::span<const SweepTriangle> sweep, const SeparationOptions& options) {
+  const ElementMesh parts = kuhn_tetrahedra(mesh);
   if (options.law != nullptr && (options.material == nullptr || options.displacement.size() != parts.nodes.size())) {
     throw Error(ErrorCode::bad_input,
                 fmt::format("a breaking law needs a material and a displacement of each of {} nodes, got {}",

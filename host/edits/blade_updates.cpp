@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "cutting/blade/blade_front.h"
+#include "cutting/blade/blade_trace.h"
 #include "edits/topology_edits.h"
 #include "geometry/vec.h"
 #include "pliant/error.h"
@@ -50,9 +50,9 @@ void TopologyEdits::move_scene_blades() {
   if (!pending.triangles.empty() || !moves.empty()) run_blades(moves, pending.triangles);
 }
 
-const BladeFront* TopologyEdits::front(const BladeMove& move, std::size_t body) const {
-  const auto blade = run_.state.blades.fronts.find(move.key);
-  if (blade == run_.state.blades.fronts.end()) return nullptr;
+const BladeTrace* TopologyEdits::front(const BladeMove& move, std::size_t body) const {
+  const auto blade = run_.state.blades.traces.find(move.key);
+  if (blade == run_.state.blades.traces.end()) return nullptr;
   const auto found = blade->second.find(static_cast<std::int32_t>(body));
   return found == blade->second.end() ? nullptr : &found->second;
 }
@@ -64,7 +64,7 @@ CutReport TopologyEdits::run_blades(const std::vector<BladeMove>& moves, std::sp
   const auto start = std::chrono::steady_clock::now();
   std::vector<CutEdges> edges(run_.scene.bodies.size());
   std::vector<double> u = run_.loaded.u();
-  std::map<std::string, std::map<std::int32_t, BladeFront>> fronts;
+  std::map<std::string, std::map<std::int32_t, BladeTrace>> traces;
   for (std::size_t b = 0; b < edges.size(); ++b) {
     const std::vector<Vec3d> x = run_.loaded.positions(u, b);
     if (!reached(b, x, moves, triangles)) continue;
@@ -73,10 +73,10 @@ CutReport TopologyEdits::run_blades(const std::vector<BladeMove>& moves, std::sp
     BladeSweep sweep(body.topology(), x, body.rest_edges(), body.edge());
     for (const BladeMove& move : moves) {
       if (move.to.empty()) continue;
-      const BladeFront* known = front(move, b);
-      BladeFront trace = known != nullptr ? *known : BladeFront{move.from, 0, {}};
+      const BladeTrace* known = front(move, b);
+      BladeTrace trace = known != nullptr ? *known : BladeTrace{move.from, 0, {}};
       for (const BladeSegment& place : move.to) sweep.move(trace, place);
-      if (!trace.points.empty()) fronts[move.key][static_cast<std::int32_t>(b)] = std::move(trace);
+      if (!trace.points.empty()) traces[move.key][static_cast<std::int32_t>(b)] = std::move(trace);
     }
     edges[b].insert(sweep.crossed().begin(), sweep.crossed().end());
     body.keep_allowed(run_.scene.bodies[b], edges[b]);
@@ -84,8 +84,8 @@ CutReport TopologyEdits::run_blades(const std::vector<BladeMove>& moves, std::sp
   }
   report.search = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (report.edges > 0) make_cut(std::move(edges), std::move(u), report);
-  for (const BladeMove& move : moves) run_.state.blades.fronts.erase(move.key);
-  run_.state.blades.fronts.merge(fronts);
+  for (const BladeMove& move : moves) run_.state.blades.traces.erase(move.key);
+  run_.state.blades.traces.merge(traces);
   return report;
 }
 
@@ -155,7 +155,7 @@ CutReport TopologyEdits::move_blades(std::span<const BladePose> poses) {
 
 void TopologyEdits::lift_blade(const std::string& blade) {
   run_.state.blades.placed.erase(blade);
-  run_.state.blades.fronts.erase("host/" + blade);
+  run_.state.blades.traces.erase("host/" + blade);
 }
 
 }  // namespace pliant

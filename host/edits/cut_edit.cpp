@@ -22,7 +22,7 @@ double lap(Moment& start) {
 }
 
 /// Mass that one unit of fill of an element puts on each of its corners [kg].
-std::array<double, 8> corner_masses(const Solid& solid, const std::vector<double>& density, std::int32_t element) {
+std::array<double, 8> corner_masses(const BodyMesh& solid, const std::vector<double>& density, std::int32_t element) {
   std::array<double, 8> mass{};
   const bool lattice = !solid.lattice_nodes.empty();
   if (solid.tets.empty()) {
@@ -40,7 +40,7 @@ std::array<double, 8> corner_masses(const Solid& solid, const std::vector<double
   return mass;
 }
 
-std::vector<FluxMass> flux_masses(const Body& body, const Solid& solid, const CutEdit& edit) {
+std::vector<FluxMass> flux_masses(const Body& body, const BodyMesh& solid, const CutEdit& edit) {
   std::vector<FluxMass> all;
   if (edit.flux.empty()) return all;
   const std::vector<double> density = densities(body, solid);

@@ -12,7 +12,7 @@
 
 namespace pliant {
 
-BodyCut::BodyCut(const Body& body, std::shared_ptr<const Solid> uncut)
+BodyCut::BodyCut(const Body& body, std::shared_ptr<const BodyMesh> uncut)
     : uncut_(std::move(uncut)), solid_(*uncut_), topology_(cut_mesh(*uncut_, body.name)) {
   make_surface();
   const CutMesh& mesh = topology_.mesh();
@@ -51,9 +51,9 @@ CutEdit BodyCut::cut(const CutEdges& edges, HelperThread& helper) {
 }
 
 void BodyCut::update_surface() {
-  if (surface_ == nullptr) return update_solid_surface(*uncut_, topology_, nullptr, solid_);
+  if (surface_ == nullptr) return update_body_surface(*uncut_, topology_, nullptr, solid_);
   if (dividing_.valid()) dividing_.get();
-  patch_solid_surface(*uncut_, topology_, *surface_, surface_->take_changes(), solid_);
+  patch_body_surface(*uncut_, topology_, *surface_, surface_->take_changes(), solid_);
 }
 
 void BodyCut::rebuild(std::span<const CutEdges* const> edits) {
@@ -66,7 +66,7 @@ void BodyCut::rebuild(std::span<const CutEdges* const> edits) {
     const CutEdit edit = topology_.cut(*edges);
     if (surface_ != nullptr && edit.changed_elements()) surface_->update(topology_, edit.cells);
   }
-  update_solid(*uncut_, topology_, surface_.get(), solid_);
+  update_body_mesh(*uncut_, topology_, surface_.get(), solid_);
   if (surface_ != nullptr) static_cast<void>(surface_->take_changes());
 }
 
@@ -101,7 +101,7 @@ ModelSurface SurfaceCopy::take(const Model& model) {
   return same ? std::exchange(surface_, {}) : copy_of(model.surface);
 }
 
-bool can_be_cut(const Solid& solid) { return solid.lattice != nullptr || solid.hexes.empty(); }
+bool can_be_cut(const BodyMesh& solid) { return solid.lattice != nullptr || solid.hexes.empty(); }
 
 namespace {
 
@@ -111,7 +111,7 @@ bool tears(const Body& body) {
 }
 
 /// The material of each tetrahedron, as build_model gives it.
-std::vector<Material> materials_of(const Body& body, const Solid& solid) {
+std::vector<Material> materials_of(const Body& body, const BodyMesh& solid) {
   std::vector<Material> material(solid.tets.size(), body.material);
   for (std::size_t t = 0; t < solid.tets.size(); ++t) {
     Vec3d middle{};
@@ -135,13 +135,13 @@ bool EditedBodies::tears(const Scene& scene) {
 
 EditedBodies::EditedBodies(const Scene& scene) : scene_(scene), cuts_(scene.bodies.size()), torn_(scene.bodies.size()) {
   const bool torn = tears(scene);
-  for (Solid& solid : make_solids(scene)) {
+  for (BodyMesh& solid : make_body_meshes(scene)) {
     const std::size_t b = uncut_.size();
     if (!torn) {
       solid.wants_middles = !scene.bodies[b].pressures.empty();
       solid.uncut_order = std::make_shared<const NodeOrder>(node_order(solid));
     }
-    uncut_.push_back(std::make_shared<const Solid>(std::move(solid)));
+    uncut_.push_back(std::make_shared<const BodyMesh>(std::move(solid)));
     if (torn && pliant::tears(scene.bodies[b])) make_torn(b);
   }
 }
@@ -160,13 +160,13 @@ BodyCut& EditedBodies::cut(std::size_t b) {
   return *cuts_[b];
 }
 
-const Solid& EditedBodies::solid(std::size_t b) const {
+const BodyMesh& EditedBodies::solid(std::size_t b) const {
   if (cuts_[b] != nullptr) return cuts_[b]->solid();
   return torn_[b] != nullptr ? torn_[b]->solid() : *uncut_[b];
 }
 
-std::vector<const Solid*> EditedBodies::solids() const {
-  std::vector<const Solid*> all;
+std::vector<const BodyMesh*> EditedBodies::solids() const {
+  std::vector<const BodyMesh*> all;
   for (std::size_t b = 0; b < size(); ++b) all.push_back(&solid(b));
   return all;
 }
@@ -217,7 +217,7 @@ void EditedBodies::rebuild(std::size_t b, const RunState& state) {
 }
 
 Model EditedBodies::trial_model() const {
-  std::vector<Solid> solids;
+  std::vector<BodyMesh> solids;
   for (std::size_t b = 0; b < size(); ++b) {
     solids.push_back(*uncut_[b]);
     if (!can_be_cut(*uncut_[b])) continue;
@@ -228,7 +228,7 @@ Model EditedBodies::trial_model() const {
       for (const auto& [i, j] : mesh.shape->edges) edges[node_pair(mesh.cells[cell][i], mesh.cells[cell][j])] = 0.5;
     }
     topology.cut(edges);
-    update_solid_elements(*uncut_[b], topology, solids.back());
+    update_body_elements(*uncut_[b], topology, solids.back());
   }
   return build_model(scene_, solids);
 }

@@ -42,7 +42,7 @@ bool ModelSwap::keeps_surface() const {
   return !origins_[0].from.empty() && std::equal(before.slot.begin(), before.slot.begin() + real, body.slot.begin());
 }
 
-void ModelSwap::take_surfaces(const std::vector<const Solid*>& solids, const std::function<void()>& ready) {
+void ModelSwap::take_surfaces(const std::vector<const BodyMesh*>& solids, const std::function<void()>& ready) {
   if (kept_) model_->surface = bodies_.surface_copy.take(*old_model_);
   ready();
   report_.surface += lap(start_);
@@ -52,7 +52,7 @@ void ModelSwap::take_surfaces(const std::vector<const Solid*>& solids, const std
 
 void ModelSwap::run(const Scene& scene, std::vector<NodeOrigins> origins, const std::function<void()>& ready) {
   origins_ = std::move(origins);
-  const std::vector<const Solid*> solids = bodies_.solids();
+  const std::vector<const BodyMesh*> solids = bodies_.solids();
   model_ = std::make_shared<Model>(build_elements(scene, solids, old_model_.get()));
   kept_ = keeps_surface();
   // A surface takes longest to make: it comes last unless loads ask for it.

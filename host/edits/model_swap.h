@@ -36,7 +36,7 @@ class ModelSwap {
  private:
   [[nodiscard]] bool keeps_surface() const;
   /// Wait for the surfaces, and put them into the model.
-  void take_surfaces(const std::vector<const Solid*>& solids, const std::function<void()>& ready);
+  void take_surfaces(const std::vector<const BodyMesh*>& solids, const std::function<void()>& ready);
   void load_steps(const Scene& scene);
   void load_surface();
   void carry_motion();

@@ -36,10 +36,10 @@ void check_blade(const Blade& blade) {
 }
 
 /// Whether a blade's trace names places that this body has; it may have come with a checkpoint.
-bool belongs(const BladeFront& front, const CutMesh& mesh) {
+bool belongs(const BladeTrace& front, const CutMesh& mesh) {
   if (front.levels < 0 || front.levels > kMostLevels) return false;
   std::int64_t place = -1;
-  for (const FrontPoint& p : front.points) {
+  for (const TracePoint& p : front.points) {
     const bool carried = p.carried.cell >= 0;
     if (p.place <= place || p.place > (std::int64_t{1} << front.levels) || p.place > front.points[0].place + (1 << 17) ||
         p.node < -1 || p.node >= static_cast<std::int64_t>(mesh.rest.size()) || carried == (p.node >= 0) ||
@@ -131,7 +131,7 @@ std::unique_ptr<EditedBodies> TopologyEdits::bodies_at(const RunState& state) co
   };
   if (!state.seeds.empty() && (state.seeds.size() != scene.bodies.size() || !follows(scene))) refuse("its moved regions");
   const auto edited = [](const RunState& s) {
-    return !s.cuts.empty() || !s.tears.empty() || !s.seeds.empty() || !s.blades.fronts.empty();
+    return !s.cuts.empty() || !s.tears.empty() || !s.seeds.empty() || !s.blades.traces.empty();
   };
   if (!edited(state) && !edited(run_.state)) return nullptr;
   auto all = std::make_unique<EditedBodies>(scene);
@@ -139,8 +139,8 @@ std::unique_ptr<EditedBodies> TopologyEdits::bodies_at(const RunState& state) co
     if (cut_topology(b) != nullptr) static_cast<void>(all->cut(b));
   }
   all->replay(state);
-  for (const auto& [key, fronts] : state.blades.fronts) {
-    for (const auto& [body, front] : fronts) {
+  for (const auto& [key, traces] : state.blades.traces) {
+    for (const auto& [body, front] : traces) {
       const bool known = body >= 0 && static_cast<std::size_t>(body) < all->size() &&
                          can_be_cut(all->uncut(static_cast<std::size_t>(body))) &&
                          belongs(front, all->cut(static_cast<std::size_t>(body)).topology().mesh());

@@ -48,7 +48,7 @@ class TopologyEdits {
   CutReport run_blades(const std::vector<BladeMove>& moves, std::span<const SweepTriangle> triangles);
   [[nodiscard]] bool reached(std::size_t body, const std::vector<Vec3d>& x, const std::vector<BladeMove>& moves,
                              std::span<const SweepTriangle> triangles) const;
-  [[nodiscard]] const BladeFront* front(const BladeMove& move, std::size_t body) const;
+  [[nodiscard]] const BladeTrace* front(const BladeMove& move, std::size_t body) const;
   // cut_edit.cpp, tear_edit.cpp, region_edit.cpp
   void make_cut(std::vector<CutEdges> edges, std::vector<double> u, CutReport& report);
   void make_tears();

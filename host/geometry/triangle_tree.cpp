@@ -22,7 +22,7 @@ constexpr int kDepth = 128;  // the tree is balanced by count, so its depth stay
 // on fine meshes and below 2e-2 on coarse ones; a side needs 0.5.
 constexpr double kReach = 2.3;
 
-// Solid angle of a triangle seen from the origin: tan(omega / 2) = a . (b x c) / (abc + (a.b) c + (b.c) a + (c.a) b).
+// BodyMesh angle of a triangle seen from the origin: tan(omega / 2) = a . (b x c) / (abc + (a.b) c + (b.c) a + (c.a) b).
 double solid_angle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   const double la = vec::norm(a), lb = vec::norm(b), lc = vec::norm(c);
   const double y = dot(a, cross(b, c));

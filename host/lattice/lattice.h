@@ -29,7 +29,7 @@ struct LatticeNode {
   std::int32_t copy = 0;
 };
 
-/// Where a surface vertex hangs: u(vertex) = sum_a weight[a] u(cell.nodes[a]), trilinear.
+/// Where a surface vertex is embedded: u(vertex) = sum_a weight[a] u(cell.nodes[a]), trilinear.
 struct Embedding {
   std::int32_t cell = 0;
   std::array<double, 3> local{};  ///< position in the cell, normally in [0, 1]^3

@@ -1,4 +1,4 @@
-// Which part of which cell a surface vertex hangs in.
+// Which part of which cell a surface vertex is embedded in.
 #include <algorithm>
 #include <bit>
 #include <cmath>

@@ -23,7 +23,7 @@ std::int32_t place_of(const Index3& node) {
 /// The number of each brick of a body, by its place in the box around all of them.
 class BrickMap {
  public:
-  explicit BrickMap(const SolidElements& solid) {
+  explicit BrickMap(const BodyElements& solid) {
     for (const LatticeNode& node : solid.lattice_nodes) {
       const Index3 place = brick_of(node.index);
       for (std::size_t a = 0; a < 3; ++a) {
@@ -77,7 +77,7 @@ void mark_row(std::int32_t slot, int kind, Model& model) {
 
 }  // namespace
 
-std::vector<std::int32_t> place_in_bricks(const SolidElements& solid, std::int32_t body, std::vector<char>& in_brick,
+std::vector<std::int32_t> place_in_bricks(const BodyElements& solid, std::int32_t body, std::vector<char>& in_brick,
                                           Model& model) {
   const auto in_bricks = [&](std::size_t n) { return solid.lattice_nodes[n].copy == 0 && !solid.matching(n); };
   BrickMap bricks(solid);

@@ -3,15 +3,15 @@
 #include <cstdint>
 #include <vector>
 
+#include "model/body_mesh.h"
 #include "model/model.h"
-#include "model/solid.h"
 
 namespace pliant {
 
 /// Give every first copy of a lattice node that finite elements move a slot in new bricks at the end of `model`, and put the
 /// cells of `solid` that consist of such nodes and have `in_brick[cell]` into them. Returns the slot of each node, -1 for those
 /// that stay outside; cells that were placed have `in_brick[cell]` left true, the others set to false.
-std::vector<std::int32_t> place_in_bricks(const SolidElements& solid, std::int32_t body, std::vector<char>& in_brick,
+std::vector<std::int32_t> place_in_bricks(const BodyElements& solid, std::int32_t body, std::vector<char>& in_brick,
                                           Model& model);
 
 /// Append the empty brick, which stands in for absent neighbours.

@@ -6,18 +6,18 @@
 #include <numeric>
 
 #include "layout.h"
+#include "model/body_mesh.h"
 #include "model/boundary_conditions.h"
 #include "model/bricks.h"
-#include "model/draft.h"
 #include "model/flsm.h"
 #include "model/model.h"
-#include "model/solid.h"
+#include "model/node_numbering.h"
 #include "pliant/error.h"
 
 namespace pliant {
 namespace {
 
-Vec3d centroid(const SolidElements& solid, const std::int32_t* corners, int count) {
+Vec3d centroid(const BodyElements& solid, const std::int32_t* corners, int count) {
   Vec3d sum{};
   for (int a = 0; a < count; ++a) {
     for (int c = 0; c < 3; ++c) sum[c] += solid.nodes[corners[a]][c] / count;
@@ -26,7 +26,7 @@ Vec3d centroid(const SolidElements& solid, const std::int32_t* corners, int coun
 }
 
 /// Index of the material of each element: 0 for the body's own, i + 1 for inclusion i; the last match wins.
-std::vector<int> materials_of(const Body& body, const SolidElements& solid) {
+std::vector<int> materials_of(const Body& body, const BodyElements& solid) {
   const bool tets = !solid.tets.empty();
   const std::size_t count = tets ? solid.tets.size() : solid.hexes.size();
   std::vector<int> material(count, 0);
@@ -64,7 +64,7 @@ void note_bound(Model& model, double frequency, double volume, const std::string
 
 /// Elements by their lowest slot, of `slots`: what a sweep over them touches lies close together.
 template <std::size_t N>
-std::vector<std::int32_t> element_order(const std::vector<std::array<std::int32_t, N>>& elements, const Draft& draft,
+std::vector<std::int32_t> element_order(const std::vector<std::array<std::int32_t, N>>& elements, const NodeNumbering& draft,
                                         std::int32_t slots) {
   std::vector<std::int32_t> order(elements.size()), lowest(elements.size()), next(static_cast<std::size_t>(slots) + 1, 0);
   for (std::size_t e = 0; e < elements.size(); ++e) {
@@ -77,7 +77,7 @@ std::vector<std::int32_t> element_order(const std::vector<std::array<std::int32_
   return order;
 }
 
-void add_tets(const Body& body, std::int32_t b, const Draft& draft, Model& model) {
+void add_tets(const Body& body, std::int32_t b, const NodeNumbering& draft, Model& model) {
   const std::vector<std::int32_t> order = element_order(draft.solid().tets, draft, model.slots);
   for (std::size_t m = 0; m <= body.inclusions.size(); ++m) {
     TetBatch batch;
@@ -126,8 +126,8 @@ double hex_volume(const HexBatch& batch, const std::vector<double>& record) {
   return batch.full ? gauss_volume(record) : record[56];
 }
 
-void add_hexes(const Body& body, std::int32_t b, const Draft& draft, Model& model) {
-  const SolidElements& solid = draft.solid();
+void add_hexes(const Body& body, std::int32_t b, const NodeNumbering& draft, Model& model) {
+  const BodyElements& solid = draft.solid();
   const std::vector<std::int32_t> order = element_order(solid.hexes, draft, model.slots);
   for (std::size_t m = 0; m <= body.inclusions.size(); ++m) {
     HexBatch batch;
@@ -168,7 +168,7 @@ void add_hexes(const Body& body, std::int32_t b, const Draft& draft, Model& mode
   }
 }
 
-void fill_body(const Body& body, Draft& draft, ModelBody& out) {
+void fill_body(const Body& body, NodeNumbering& draft, ModelBody& out) {
   out.name = body.name;
   out.element = body.element;
   out.slot = draft.slot;
@@ -209,8 +209,8 @@ void set_velocity(const Body& body, const ModelBody& placed, Model& model) {
   }
 }
 
-void add_totals(const Body& body, const Draft& draft, ModelBody& out) {
-  const SolidElements& solid = draft.solid();
+void add_totals(const Body& body, const NodeNumbering& draft, ModelBody& out) {
+  const BodyElements& solid = draft.solid();
   for (std::size_t e = 0; e < draft.material.size(); ++e) {
     double volume = solid.spacing * solid.spacing * solid.spacing;
     if (!solid.tets.empty()) {
@@ -227,14 +227,14 @@ void add_totals(const Body& body, const Draft& draft, ModelBody& out) {
   }
 }
 
-void place_bodies(const Scene& scene, std::span<const Solid* const> solids, const Model* previous, std::vector<Draft>& drafts,
-                  Model& model) {
+void place_bodies(const Scene& scene, std::span<const BodyMesh* const> solids, const Model* previous,
+                  std::vector<NodeNumbering>& drafts, Model& model) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
-    Draft draft;
+    NodeNumbering draft;
     draft.given = solids[b];
     if (body.model.type != ModelType::tled) {
-      draft.own = static_cast<const SolidElements&>(*solids[b]);
+      draft.own = static_cast<const BodyElements&>(*solids[b]);
       repartition(body, *draft.own);
     }
     draft.material = materials_of(body, draft.solid());
@@ -275,23 +275,23 @@ std::int64_t Model::elements() const {
   return n;
 }
 
-std::vector<double> densities(const Body& body, const SolidElements& solid) {
+std::vector<double> densities(const Body& body, const BodyElements& solid) {
   std::vector<double> density;
   for (const int m : materials_of(body, solid)) density.push_back(material_of(body, m).density);
   return density;
 }
 
-Model build_model(const Scene& scene) { return build_model(scene, make_solids(scene)); }
+Model build_model(const Scene& scene) { return build_model(scene, make_body_meshes(scene)); }
 
-Model build_model(const Scene& scene, const std::vector<Solid>& solids) {
-  std::vector<const Solid*> all;
-  for (const Solid& solid : solids) all.push_back(&solid);
+Model build_model(const Scene& scene, const std::vector<BodyMesh>& solids) {
+  std::vector<const BodyMesh*> all;
+  for (const BodyMesh& solid : solids) all.push_back(&solid);
   return build_model(scene, all);
 }
 
-Model build_elements(const Scene& scene, std::span<const Solid* const> solids, const Model* previous) {
+Model build_elements(const Scene& scene, std::span<const BodyMesh* const> solids, const Model* previous) {
   Model model;
-  std::vector<Draft> drafts;
+  std::vector<NodeNumbering> drafts;
   place_bodies(scene, solids, previous, drafts, model);
   model.rest.resize(model.slots);
   model.mass.resize(model.slots);
@@ -301,7 +301,7 @@ Model build_elements(const Scene& scene, std::span<const Solid* const> solids, c
   for (std::size_t i = 0; i < drafts.size(); ++i) {
     const auto b = static_cast<std::int32_t>(i);
     const Body& body = scene.bodies[i];
-    Draft& draft = drafts[i];
+    NodeNumbering& draft = drafts[i];
     fill_body(body, draft, model.bodies[i]);
     for (std::size_t n = 0; n < draft.slot.size(); ++n) {
       model.rest[draft.slot[n]] = draft.solid().nodes[n];
@@ -322,7 +322,7 @@ Model build_elements(const Scene& scene, std::span<const Solid* const> solids, c
   return model;
 }
 
-Model build_model(const Scene& scene, std::span<const Solid* const> solids) {
+Model build_model(const Scene& scene, std::span<const BodyMesh* const> solids) {
   Model model = build_elements(scene, solids);
   add_surfaces(solids, model);
   add_boundary_conditions(scene, model);

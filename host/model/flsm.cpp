@@ -15,7 +15,7 @@ std::array<std::int32_t, 5> place_in_tiles(const LatticeNode& n) {
   return {n.index[2] >> 3, n.index[1] >> 3, n.index[2], n.index[1], n.index[0]};
 }
 
-std::vector<std::int32_t> nodes_in_order(const SolidElements& solid, NodeKind kind) {
+std::vector<std::int32_t> nodes_in_order(const BodyElements& solid, NodeKind kind) {
   std::vector<std::int32_t> nodes;
   for (std::size_t n = 0; n < solid.partition.kind.size(); ++n) {
     if (solid.partition.kind[n] == kind) nodes.push_back(static_cast<std::int32_t>(n));
@@ -28,7 +28,7 @@ std::vector<std::int32_t> nodes_in_order(const SolidElements& solid, NodeKind ki
 
 /// The edges of the shape-matching cells. `number` is the number in the batch of each node of the body. A node has one link in
 /// each direction: where the lattice branches (one node, two copies of its neighbour), the first cell's edge is the link.
-void link_nodes(const SolidElements& solid, const std::vector<std::int32_t>& number, FlsmBatch& batch) {
+void link_nodes(const BodyElements& solid, const std::vector<std::int32_t>& number, FlsmBatch& batch) {
   batch.link.assign(batch.slot.size(), {-1, -1, -1, -1, -1, -1});
   for (const Cell& cell : solid.matching_cells) {
     for (int a = 0; a < 8; ++a) {
@@ -101,7 +101,7 @@ std::vector<RestMoments> along(int axis, const FlsmBatch& batch, const std::vect
 
 }  // namespace
 
-FlsmBatch place_matching_nodes(const SolidElements& solid, const Body& body, std::int32_t number,
+FlsmBatch place_matching_nodes(const BodyElements& solid, const Body& body, std::int32_t number,
                                std::vector<std::int32_t>& slot, const Model* previous, Model& model) {
   FlsmBatch batch;
   batch.body = number;

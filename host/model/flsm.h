@@ -4,15 +4,15 @@
 #include <cstdint>
 #include <vector>
 
+#include "model/body_mesh.h"
 #include "model/model.h"
-#include "model/solid.h"
 
 namespace pliant {
 
 /// Number the nodes of the body's shape-matching cells, give those that no finite element moves slots at the end of `model`,
 /// and find their regions. `slot` is the slot of each node of the body, -1 where it has none yet.
 /// `previous` lends its regions where nodes and links are the same; it may be null.
-FlsmBatch place_matching_nodes(const SolidElements& solid, const Body& body, std::int32_t number,
+FlsmBatch place_matching_nodes(const BodyElements& solid, const Body& body, std::int32_t number,
                                std::vector<std::int32_t>& slot, const Model* previous, Model& model);
 
 /// Find the regions of a batch from the links among its nodes, and fillers for them; those it had before go. Called again after

@@ -76,9 +76,9 @@ struct ModelSurface {
 
 /// What an edit changed of a surface, ascending.
 struct SurfaceChanges {
-  std::vector<std::int32_t> vertices;   ///< that are new or have another place at rest or other weights
-  std::vector<std::int32_t> hung;       ///< these, and those that may hang in other nodes
-  std::vector<std::int32_t> triangles;  ///< that are new or have other corners
+  std::vector<std::int32_t> vertices;    ///< that are new or have another place at rest or other weights
+  std::vector<std::int32_t> reembedded;  ///< these, and those that may have other nodes
+  std::vector<std::int32_t> triangles;   ///< that are new or have other corners
 };
 
 /// Nodes that a cut made: each holds the far side of elements whose material belongs to other nodes, its anchors.

@@ -1,11 +1,11 @@
-// The surfaces of the bodies in the model: hung in its slots, as a whole or where an edit changed them.
-#include "model/solid.h"
+// The surfaces of the bodies in the model: embedded in its slots, as a whole or where an edit changed them.
+#include "model/body_mesh.h"
 
 namespace pliant {
 namespace {
 
 /// Where a body's part of the surface lies in that of the model.
-void place_surface(const SolidSurface& solid, std::int32_t first_vertex, std::int32_t first_triangle, ModelBody& body) {
+void place_surface(const BodySurface& solid, std::int32_t first_vertex, std::int32_t first_triangle, ModelBody& body) {
   body.triangle_middle = solid.triangle_middle;
   body.first_vertex = first_vertex;
   body.vertices = static_cast<std::int32_t>(solid.surface.size());
@@ -13,13 +13,13 @@ void place_surface(const SolidSurface& solid, std::int32_t first_vertex, std::in
   body.triangles = static_cast<std::int32_t>(solid.triangles.size());
 }
 
-void hang_vertex(const SolidSurface& solid, std::size_t v, const ModelBody& body, ModelSurface& surface) {
+void embed_vertex(const BodySurface& solid, std::size_t v, const ModelBody& body, ModelSurface& surface) {
   auto& slots = surface.nodes[static_cast<std::size_t>(body.first_vertex) + v];
   for (std::size_t a = 0; a < 8; ++a) slots[a] = body.slot[solid.surface_nodes[v][a]];
 }
 
 /// The vertices of a body and its triangles, behind those of the bodies before it.
-void hang_body(const SolidSurface& solid, std::int32_t b, Model& model) {
+void embed_body(const BodySurface& solid, std::int32_t b, Model& model) {
   ModelSurface& surface = model.surface;
   ModelBody& body = model.bodies[b];
   place_surface(solid, static_cast<std::int32_t>(surface.rest.size()), static_cast<std::int32_t>(surface.triangles.size()),
@@ -27,7 +27,7 @@ void hang_body(const SolidSurface& solid, std::int32_t b, Model& model) {
   surface.rest.insert(surface.rest.end(), solid.surface.begin(), solid.surface.end());
   surface.weights.insert(surface.weights.end(), solid.surface_weights.begin(), solid.surface_weights.end());
   surface.nodes.resize(surface.rest.size());
-  for (std::size_t v = 0; v < solid.surface.size(); ++v) hang_vertex(solid, v, body, surface);
+  for (std::size_t v = 0; v < solid.surface.size(); ++v) embed_vertex(solid, v, body, surface);
   surface.triangles.insert(surface.triangles.end(), solid.triangles.begin(), solid.triangles.end());
   for (std::size_t t = static_cast<std::size_t>(body.first_triangle); t < surface.triangles.size() && b > 0; ++t) {
     for (std::int32_t& v : surface.triangles[t]) v += body.first_vertex;
@@ -40,7 +40,7 @@ void hang_body(const SolidSurface& solid, std::int32_t b, Model& model) {
   }
 }
 
-void patch_surface(const SolidSurface& solid, const SurfaceChanges& changes, Model& model) {
+void patch_surface(const BodySurface& solid, const SurfaceChanges& changes, Model& model) {
   ModelSurface& surface = model.surface;
   place_surface(solid, 0, 0, model.bodies[0]);
   surface.rest.resize(solid.surface.size());
@@ -50,7 +50,7 @@ void patch_surface(const SolidSurface& solid, const SurfaceChanges& changes, Mod
     surface.rest[v] = solid.surface[v];
     surface.weights[v] = solid.surface_weights[v];
   }
-  for (const std::int32_t v : changes.hung) hang_vertex(solid, static_cast<std::size_t>(v), model.bodies[0], surface);
+  for (const std::int32_t v : changes.reembedded) embed_vertex(solid, static_cast<std::size_t>(v), model.bodies[0], surface);
   surface.triangles.resize(solid.triangles.size());
   surface.triangle_body.resize(solid.triangles.size(), 0);
   surface.triangle_cut.resize(solid.triangle_cut.size(), 0);
@@ -62,10 +62,10 @@ void patch_surface(const SolidSurface& solid, const SurfaceChanges& changes, Mod
 
 }  // namespace
 
-void add_surfaces(std::span<const Solid* const> solids, Model& model, const SurfaceChanges* changes) {
+void add_surfaces(std::span<const BodyMesh* const> solids, Model& model, const SurfaceChanges* changes) {
   if (changes != nullptr) return patch_surface(*solids[0], *changes, model);
   model.surface = {};
-  for (std::size_t b = 0; b < solids.size(); ++b) hang_body(*solids[b], static_cast<std::int32_t>(b), model);
+  for (std::size_t b = 0; b < solids.size(); ++b) embed_body(*solids[b], static_cast<std::int32_t>(b), model);
 }
 
 }  // namespace pliant

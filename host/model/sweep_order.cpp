@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "model/solid.h"
+#include "model/body_mesh.h"
 
 namespace pliant {
 namespace {
@@ -10,7 +10,7 @@ namespace {
 /// Elements at each node, and nodes of each element, as one list of corners.
 class Incidence {
  public:
-  explicit Incidence(const SolidElements& solid) : width_(solid.tets.empty() ? 8 : 4), nodes_(solid.nodes.size()) {
+  explicit Incidence(const BodyElements& solid) : width_(solid.tets.empty() ? 8 : 4), nodes_(solid.nodes.size()) {
     for (const auto& tet : solid.tets) corners_.insert(corners_.end(), tet.begin(), tet.end());
     for (const auto& hex : solid.hexes) corners_.insert(corners_.end(), hex.begin(), hex.end());
     offset_.assign(nodes_ + 1, 0);
@@ -52,7 +52,7 @@ void breadth_first(const Incidence& incidence, std::int32_t start, std::int32_t 
 
 }  // namespace
 
-std::vector<std::int32_t> sweep_order(const SolidElements& solid) {
+std::vector<std::int32_t> sweep_order(const BodyElements& solid) {
   const Incidence incidence(solid);
   std::vector<std::int32_t> order, scout, marks(incidence.nodes(), 0);
   order.reserve(incidence.nodes());
@@ -66,7 +66,7 @@ std::vector<std::int32_t> sweep_order(const SolidElements& solid) {
   return order;
 }
 
-NodeOrder node_order(const SolidElements& solid) {
+NodeOrder node_order(const BodyElements& solid) {
   NodeOrder out{sweep_order(solid), std::vector<std::int32_t>(solid.nodes.size(), 0)};
   for (const auto& tet : solid.tets) {
     for (const std::int32_t n : tet) ++out.valence[n];

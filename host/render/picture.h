@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "render/annotations.h"
 #include "render/fields.h"
-#include "render/overlay.h"
 #include "render/renderer.h"
 #include "simulation/simulation.h"
 

@@ -101,7 +101,7 @@ void ProgramBuilder::add_updates() {
 void ProgramBuilder::add_list_update() {
   const std::int32_t nodes = model_.list_end - model_.list_base;
   std::vector<std::vector<std::int32_t>> corners(nodes);
-  const auto collect = [&](const auto& batches, const std::vector<BatchPlace>& places, int planes) {
+  const auto collect = [&](const auto& batches, const std::vector<BatchOffsets>& places, int planes) {
     for (std::size_t b = 0; b < batches.size(); ++b) {
       for (std::size_t e = 0; e < batches[b].nodes.size(); ++e) {
         for (std::size_t a = 0; a < batches[b].nodes[e].size(); ++a) {

@@ -10,7 +10,7 @@ namespace {
 
 /// Offsets by region, and per entry a number and four factors. `scale` and `number` are functions of the entry's other end.
 template <class Number, class Scale>
-void add_missing(const RegionPlaces& places, const std::vector<std::int32_t>& offset, const std::vector<RegionEntry>& entries,
+void add_missing(const RegionLayout& places, const std::vector<std::int32_t>& offset, const std::vector<RegionEntry>& entries,
                  const Number& number, const Scale& scale, MissingList& out) {
   std::vector<std::int32_t> count(static_cast<std::size_t>(places.nodes) + 1, 0);
   for (std::size_t n = 0; n + 1 < offset.size(); ++n)
@@ -39,7 +39,7 @@ void set_spin(const double (&plane)[PLIANT_FLSM_REST_PLANES], double spacing, st
 }  // namespace
 
 /// Sums run over displacements [m] with weights m / (mean m, spacing): the moments are plain numbers of moderate size.
-RegionData region_data(const FlsmBatch& b, const RegionPlaces& places) {
+RegionData region_data(const FlsmBatch& b, const RegionLayout& places) {
   RegionData data;
   const std::size_t nodes = b.slot.size(), count = static_cast<std::size_t>(places.count);
   const auto with_region = static_cast<std::size_t>(places.nodes);

@@ -11,9 +11,9 @@ namespace pliant {
 /// Where the regions of a batch stand in its buffers: own nodes, the one that stands for absent ones (number `own`), padding,
 /// the interface from `interface_base` on, padding; these `nodes` have regions. Then come the fillers, which have sums only,
 /// and padding.
-struct RegionPlaces {
+struct RegionLayout {
   std::int32_t own, interface, interface_base, nodes, count;
-  explicit RegionPlaces(const FlsmBatch& b)
+  explicit RegionLayout(const FlsmBatch& b)
       : own(b.own),
         interface(b.interface),
         interface_base(b.slots - PLIANT_TILE),
@@ -41,6 +41,6 @@ struct RegionData {
   std::vector<double> weight, rate_weight, rest, spin, inverse_holders;
 };
 
-RegionData region_data(const FlsmBatch& b, const RegionPlaces& places);
+RegionData region_data(const FlsmBatch& b, const RegionLayout& places);
 
 }  // namespace pliant

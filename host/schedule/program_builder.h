@@ -46,7 +46,7 @@ inline GatherList pack_rows(const std::vector<std::vector<std::int32_t>>& entrie
 }
 
 /// Position in corner_force of the x component of a corner of element e of a batch.
-inline std::int32_t corner_position(const BatchPlace& place, std::size_t e, int corner, int planes) {
+inline std::int32_t corner_position(const BatchOffsets& place, std::size_t e, int corner, int planes) {
   return place.corner_base + static_cast<std::int32_t>(tile_base(e, static_cast<std::size_t>(planes))) +
          3 * corner * PLIANT_TILE;
 }

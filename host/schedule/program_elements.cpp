@@ -65,7 +65,7 @@ void ProgramBuilder::add_tets(std::size_t index) {
   BufferId pressure = node_u_;  // not read
   const BufferId law_id = add_law(b.material);
   if (b.averaged) pressure = add_averaging(index, nodes_id, data_id, law_id, count, label);
-  const BatchPlace& place = layout_.tets[index];
+  const BatchOffsets& place = layout_.tets[index];
   program_.step.push_back(
       {"tled_tet4_force",
        {{"LAW", static_cast<int>(b.material.law)}, {"AVERAGED", b.averaged ? 1 : 0}},
@@ -155,7 +155,7 @@ void ProgramBuilder::add_hexes(std::size_t index) {
   const auto fill_id = add(make_reals(fmt::format("hex_fill/{}", index), BufferType::real, count, BufferRole::constant,
                                       "[elements]", "1", "model", std::move(fill)));
   const BufferId law_id = add_law(b.material);
-  const BatchPlace& place = layout_.hexes[index];
+  const BatchOffsets& place = layout_.hexes[index];
   program_.step.push_back(
       {b.full ? "tled_hex8full_force" : "tled_hex8_force",
        {{"LAW", static_cast<int>(b.material.law)}, {"UNIFORM", b.uniform ? 1 : 0}},

@@ -185,7 +185,7 @@ class FlsmPasses {
   }
 
   const FlsmBatch& b_;
-  const RegionPlaces places_;
+  const RegionLayout places_;
   const std::int32_t index_;
   const std::string label_;
   const SharedBuffers& shared_;

@@ -15,7 +15,7 @@ ProgramLayout lay_out(const Model& model) {
   std::int64_t corner = 0;
   std::int64_t fault = std::int64_t{model.bricks} * PLIANT_BRICK_NODES;
   const auto place = [&](std::size_t count, int planes) {
-    const BatchPlace here{static_cast<std::int32_t>(corner), static_cast<std::int32_t>(fault)};
+    const BatchOffsets here{static_cast<std::int32_t>(corner), static_cast<std::int32_t>(fault)};
     corner += std::int64_t{padded(count)} * planes;
     fault += padded(count);
     // Indices in the kernels are 32-bit: 2^31 numbers of corner force are some 170 million tetrahedra.
@@ -41,7 +41,7 @@ FaultLocation find_fault(const Model& model, std::int32_t index) {
   }
   const ProgramLayout layout = lay_out(model);
   FaultLocation found;
-  const auto look = [&](const auto& batches, const std::vector<BatchPlace>& places) {
+  const auto look = [&](const auto& batches, const std::vector<BatchOffsets>& places) {
     for (std::size_t b = 0; b < batches.size(); ++b) {
       const std::int32_t local = index - places[b].fault_base;
       if (local >= 0 && local < static_cast<std::int32_t>(batches[b].id.size()))

@@ -19,13 +19,13 @@ inline std::size_t tile_base(std::size_t e, std::size_t planes) {
   return e / PLIANT_TILE * (planes * PLIANT_TILE) + e % PLIANT_TILE;
 }
 
-struct BatchPlace {
+struct BatchOffsets {
   std::int32_t corner_base = 0;  ///< first number of its part of corner_force
   std::int32_t fault_base = 0;   ///< first entry of its part of fault
 };
 
 struct ProgramLayout {
-  std::vector<BatchPlace> tets, hexes, flsm;
+  std::vector<BatchOffsets> tets, hexes, flsm;
   std::int32_t corner_numbers = 0;  ///< all corner forces; a further row of -0 stands behind them
   std::int32_t faults = 0;
 };

@@ -59,10 +59,10 @@ void fill(const ModelSurface& s, std::size_t width, const SurfaceChanges* change
     return;
   }
   for (const std::int32_t v : changes->vertices) place(static_cast<std::size_t>(v));
-  for (const std::int32_t v : changes->hung) embed(static_cast<std::size_t>(v));
+  for (const std::int32_t v : changes->reembedded) embed(static_cast<std::size_t>(v));
   rows.rest.changed = tiles_of(changes->vertices, 4);
   rows.weight.changed = tiles_of(changes->vertices, width);
-  rows.node.changed = tiles_of(changes->hung, width);
+  rows.node.changed = tiles_of(changes->reembedded, width);
 }
 
 Pass surface_pass(const ModelSurface& s, std::size_t width, const Program& steps, BufferId first) {

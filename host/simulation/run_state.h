@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "cutting/blade/blade_front.h"
+#include "cutting/blade/blade_trace.h"
 
 namespace pliant {
 
@@ -55,7 +55,7 @@ struct TearRecord {
   std::int32_t body = 0, tet = 0, faces = 0;
 };
 
-/// Where a blade goes in one update: along straight lines to each of these places. `key` names it in BladeState::fronts.
+/// Where a blade goes in one update: along straight lines to each of these places. `key` names it in BladeState::traces.
 struct BladeMove {
   std::string key;
   BladeSegment from{};
@@ -65,7 +65,7 @@ struct BladeMove {
 struct BladeState {
   std::optional<double> seen;                                        ///< time up to which the scene's blades have moved [s]
   std::map<std::string, BladeSegment> placed;                        ///< where the host put its own blades
-  std::map<std::string, std::map<std::int32_t, BladeFront>> fronts;  ///< by key and body: the trace that it goes on from
+  std::map<std::string, std::map<std::int32_t, BladeTrace>> traces;  ///< by key and body: the trace that it goes on from
 };
 
 /// Edits asked for inside a step of shape matching, made when the next one begins.
@@ -126,20 +126,20 @@ void visit(V& v, BladeMove& s) {
   v("key", s.key), v("from", s.from), v("to", s.to);
 }
 template <class V>
-void visit(V& v, CarriedPoint& s) {
+void visit(V& v, MaterialPoint& s) {
   v("cell", s.cell), v("tet", s.tet), v("weight", s.weight), v("rest", s.rest);
 }
 template <class V>
-void visit(V& v, FrontPoint& s) {
+void visit(V& v, TracePoint& s) {
   v("place", s.place), v("node", s.node), v("point", s.carried);
 }
 template <class V>
-void visit(V& v, BladeFront& s) {
+void visit(V& v, BladeTrace& s) {
   v("blade", s.blade), v("levels", s.levels), v("points", s.points);
 }
 template <class V>
 void visit(V& v, BladeState& s) {
-  v("seen", s.seen), v("placed", s.placed), v("fronts", s.fronts);
+  v("seen", s.seen), v("placed", s.placed), v("traces", s.traces);
 }
 template <class V>
 void visit(V& v, PendingEdits& s) {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "layout.h"
-#include "model/solid.h"
+#include "model/body_mesh.h"
 #include "pliant/error.h"
 #include "statics/shape.h"
 

@@ -43,7 +43,7 @@ struct Force {
   Vec3d force{};  ///< [N]
 };
 
-/// A point that hangs in the nodes of the mesh by fixed weights; what follower pressures act on.
+/// A point embedded in the nodes of the mesh by fixed weights; what follower pressures act on.
 struct SurfacePoint {
   Vec3d rest{};  ///< [m]
   std::array<std::int32_t, 8> nodes{};

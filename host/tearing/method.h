@@ -8,34 +8,34 @@
 #include <vector>
 
 #include "cutting/blade/blade.h"
-#include "model/solid.h"
+#include "model/body_mesh.h"
 #include "tearing/breaking.h"
 
 namespace pliant {
 
 /// A body as plain elements: tetrahedra, or hexahedra with their corners in bit order.
-struct PlainMesh {
+struct ElementMesh {
   std::vector<Vec3d> nodes;  ///< rest [m]
   std::vector<std::array<std::int32_t, 4>> tets;
   std::vector<std::array<std::int32_t, 8>> hexes;
   std::vector<double> fill;  ///< per element: material over its volume
 };
 
-PlainMesh plain_mesh(const Solid& solid);
+ElementMesh plain_mesh(const BodyMesh& solid);
 /// Every hexahedron as its six Kuhn tetrahedra, in order; a mesh of tetrahedra as it is.
-PlainMesh kuhn_tetrahedra(const PlainMesh& mesh);
+ElementMesh kuhn_tetrahedra(const ElementMesh& mesh);
 /// The elements as a body ready for build_model(scene, solids), its surface their boundary. Nodes without an element are left
 /// out.
-Solid solid_of(const PlainMesh& mesh);
+BodyMesh solid_of(const ElementMesh& mesh);
 
 /// Boundary triangles, outward.
-std::vector<std::array<std::int32_t, 3>> boundary_of(const PlainMesh& mesh);
+std::vector<std::array<std::int32_t, 3>> boundary_of(const ElementMesh& mesh);
 /// Mean ratio 12 (3 V)^(2/3) / (sum of squared edges) of a tetrahedron: 1 if regular, 0 if flat, negative if inverted.
 double tet_quality(const std::array<Vec3d, 4>& x);
 /// Mean length of the tetrahedra's edges [m].
-double mean_edge(const PlainMesh& mesh);
+double mean_edge(const ElementMesh& mesh);
 /// 2 / the highest frequency of a single element [s] at rest: the stable step that can be counted on.
-double element_bound(const PlainMesh& mesh, const Material& material);
+double element_bound(const ElementMesh& mesh, const Material& material);
 
 /// Edges of a surface that are not used by exactly two triangles, once in each direction: 0 if it is closed.
 std::int64_t singular_edges(const std::vector<std::array<std::int32_t, 3>>& triangles);
@@ -50,11 +50,11 @@ struct MeshFigures {
   std::int32_t pieces = 0;               ///< sets of elements that share nodes
   [[nodiscard]] bool closed() const { return singular_edges == 0; }
 };
-MeshFigures figures_of(const PlainMesh& mesh);
+MeshFigures figures_of(const ElementMesh& mesh);
 
 /// What a method makes of a mesh.
 struct MethodResult {
-  PlainMesh mesh;
+  ElementMesh mesh;
   std::vector<std::int32_t> node_from;     ///< [nodes] node of the mesh before, -1: new on an edge or inside an element
   std::vector<std::int32_t> element_from;  ///< [elements] element of the mesh before (after kuhn_tetrahedra, where it is used)
   std::int64_t crossed = 0;                ///< elements (removal, decomposition) or faces (separation) that the sweep crosses
@@ -63,12 +63,12 @@ struct MethodResult {
 };
 
 /// Leave out every element that a triangle touches, with its mass.
-MethodResult remove_crossed(const PlainMesh& mesh, std::span<const SweepTriangle> sweep);
+MethodResult remove_crossed(const ElementMesh& mesh, std::span<const SweepTriangle> sweep);
 
 /// Divide every tetrahedron with a crossed edge along its crossings, alike on both sides of a face (quadrilaterals along the
 /// diagonal at the lowest node), and part those that are completely cut; nodes on the cut are doubled. One corner or two
 /// against two: 4 or 6 tetrahedra; any other pattern: a fan around the element's centroid. Hexahedra are split by Kuhn first.
-MethodResult decompose_crossed(const PlainMesh& mesh, std::span<const SweepTriangle> sweep);
+MethodResult decompose_crossed(const ElementMesh& mesh, std::span<const SweepTriangle> sweep);
 
 struct SeparationOptions {
   bool remesh = true;          ///< move the nodes of the cut onto the sweep
@@ -81,7 +81,7 @@ struct SeparationOptions {
 };
 
 /// Part the tetrahedra along existing faces: those between two elements whose centroids lie on different sides of the sweep.
-MethodResult separate_crossed(const PlainMesh& mesh, std::span<const SweepTriangle> sweep,
+MethodResult separate_crossed(const ElementMesh& mesh, std::span<const SweepTriangle> sweep,
                               const SeparationOptions& options = {});
 
 /// A face of a tetrahedron, kTetFaces[face] (cut_cell.h).

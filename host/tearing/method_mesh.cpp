@@ -13,7 +13,7 @@
 namespace pliant {
 namespace {
 
-std::array<Vec3d, 4> corners_of(const PlainMesh& mesh, const std::array<std::int32_t, 4>& tet) {
+std::array<Vec3d, 4> corners_of(const ElementMesh& mesh, const std::array<std::int32_t, 4>& tet) {
   return {mesh.nodes[tet[0]], mesh.nodes[tet[1]], mesh.nodes[tet[2]], mesh.nodes[tet[3]]};
 }
 
@@ -22,7 +22,7 @@ double volume_of(const std::array<Vec3d, 4>& x) {
 }
 
 /// VolumeMesh wants VTK's order of corners.
-VolumeMesh as_volume_mesh(const PlainMesh& mesh) {
+VolumeMesh as_volume_mesh(const ElementMesh& mesh) {
   VolumeMesh out{mesh.nodes, mesh.tets, {}};
   for (const auto& hex : mesh.hexes) {
     std::array<std::int32_t, 8> corners{};
@@ -47,13 +47,13 @@ std::int64_t singular_edges(const std::vector<std::array<std::int32_t, 3>>& tria
   return singular;
 }
 
-PlainMesh plain_mesh(const Solid& solid) {
+ElementMesh plain_mesh(const BodyMesh& solid) {
   return {solid.nodes, solid.tets, solid.tets.empty() ? solid.hexes : decltype(solid.hexes){}, solid.fill};
 }
 
-PlainMesh kuhn_tetrahedra(const PlainMesh& mesh) {
+ElementMesh kuhn_tetrahedra(const ElementMesh& mesh) {
   if (mesh.hexes.empty()) return mesh;
-  PlainMesh out;
+  ElementMesh out;
   out.nodes = mesh.nodes;
   for (std::size_t e = 0; e < mesh.hexes.size(); ++e) {
     const auto& h = mesh.hexes[e];
@@ -63,10 +63,12 @@ PlainMesh kuhn_tetrahedra(const PlainMesh& mesh) {
   return out;
 }
 
-std::vector<std::array<std::int32_t, 3>> boundary_of(const PlainMesh& mesh) { return boundary_triangles(as_volume_mesh(mesh)); }
+std::vector<std::array<std::int32_t, 3>> boundary_of(const ElementMesh& mesh) {
+  return boundary_triangles(as_volume_mesh(mesh));
+}
 
-Solid solid_of(const PlainMesh& mesh) {
-  Solid solid;
+BodyMesh solid_of(const ElementMesh& mesh) {
+  BodyMesh solid;
   solid.tets = mesh.tets;
   solid.hexes = mesh.hexes;
   solid.fill = mesh.fill;
@@ -108,7 +110,7 @@ double tet_quality(const std::array<Vec3d, 4>& x) {
   return edges > 0 ? std::copysign(12 * std::cbrt(9 * volume * volume) / edges, volume) : 0;
 }
 
-double mean_edge(const PlainMesh& mesh) {
+double mean_edge(const ElementMesh& mesh) {
   double sum = 0;
   for (const auto& tet : mesh.tets) {
     for (const auto& [a, b] : kTetEdges) sum += vec::norm(vec::sub(mesh.nodes[tet[a]], mesh.nodes[tet[b]]));
@@ -116,7 +118,7 @@ double mean_edge(const PlainMesh& mesh) {
   return mesh.tets.empty() ? 0 : sum / (6.0 * static_cast<double>(mesh.tets.size()));
 }
 
-double element_bound(const PlainMesh& mesh, const Material& material) {
+double element_bound(const ElementMesh& mesh, const Material& material) {
   double highest = 0;
   for (const auto& tet : mesh.tets) highest = std::max(highest, tet_frequency(tet_geometry(corners_of(mesh, tet)), material));
   for (const auto& hex : mesh.hexes) {
@@ -127,7 +129,7 @@ double element_bound(const PlainMesh& mesh, const Material& material) {
   return highest > 0 ? 2 / highest : 0;
 }
 
-MeshFigures figures_of(const PlainMesh& mesh) {
+MeshFigures figures_of(const ElementMesh& mesh) {
   MeshFigures f;
   f.elements = static_cast<std::int64_t>(mesh.tets.size() + mesh.hexes.size());
   f.least_quality = mesh.tets.empty() ? 0 : std::numeric_limits<double>::infinity();
@@ -145,7 +147,7 @@ MeshFigures figures_of(const PlainMesh& mesh) {
     f.least_quality = std::min(f.least_quality, tet_quality(x));
     join(mesh.tets[e]);
   }
-  const PlainMesh parts = kuhn_tetrahedra({mesh.nodes, {}, mesh.hexes, std::vector<double>(mesh.hexes.size(), 1.0)});
+  const ElementMesh parts = kuhn_tetrahedra({mesh.nodes, {}, mesh.hexes, std::vector<double>(mesh.hexes.size(), 1.0)});
   for (std::size_t t = 0; t < parts.tets.size(); ++t) {
     const std::size_t e = t / kKuhnTets.size();
     f.material += volume_of(corners_of(parts, parts.tets[t])) * (mesh.fill.empty() ? 1 : mesh.fill[e]);

@@ -25,7 +25,7 @@ std::array<std::int32_t, 3> sorted_face(const std::array<std::int32_t, 4>& tet, 
 
 }  // namespace
 
-TornBody::TornBody(std::shared_ptr<const Solid> whole, std::vector<Material> material)
+TornBody::TornBody(std::shared_ptr<const BodyMesh> whole, std::vector<Material> material)
     : whole_(std::move(whole)),
       material_(std::move(material)),
       neighbors_(tet_neighbors(whole_->tets)),

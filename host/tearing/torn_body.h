@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "model/solid.h"
+#include "model/body_mesh.h"
 #include "tearing/breaking.h"
 #include "tearing/method.h"
 
@@ -14,7 +14,7 @@ namespace pliant {
 class TornBody {
  public:
   /// `whole` is a volume mesh of tetrahedra; `material` of each, of which those without toughness do not tear.
-  TornBody(std::shared_ptr<const Solid> whole, std::vector<Material> material);
+  TornBody(std::shared_ptr<const BodyMesh> whole, std::vector<Material> material);
 
   /// Faces that break with the nodes of solid() at `x` [m]. At a node the mean stress of its tetrahedra, weighted by volume, is
   /// looked at. Where its cutting stress reaches the least toughness there, the node's tetrahedra are divided by the plane
@@ -28,7 +28,7 @@ class TornBody {
 
   /// The body now. Elements keep their numbers, and so do nodes and vertices of the surface that were there at first; triangles
   /// of tears follow those of the surface and count as cut.
-  [[nodiscard]] const Solid& solid() const { return torn_; }
+  [[nodiscard]] const BodyMesh& solid() const { return torn_; }
   /// All broken faces, [tetrahedra] bit f.
   [[nodiscard]] const std::vector<std::uint8_t>& broken() const { return broken_; }
 
@@ -43,12 +43,12 @@ class TornBody {
   [[nodiscard]] std::vector<Peak> peaks(const std::vector<Vec3d>& x) const;
   void make_surface();
 
-  std::shared_ptr<const Solid> whole_;
+  std::shared_ptr<const BodyMesh> whole_;
   std::vector<Material> material_;
   std::vector<std::array<TetFace, 4>> neighbors_;
   std::vector<TetFace> outside_;  ///< of each triangle of the whole surface
   std::vector<std::uint8_t> broken_;
-  Solid torn_;
+  BodyMesh torn_;
 };
 
 }  // namespace pliant

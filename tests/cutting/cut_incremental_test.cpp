@@ -190,18 +190,18 @@ TEST(CutIncremental, a_body_brought_up_to_date_is_the_body_cut_at_once) {
   for (const ElementKind element : {ElementKind::hex8, ElementKind::tet4}) {
     const Vec3d size{0.05, 0.03, 0.03};
     const Body body = box_body("box", size, element);
-    const Solid uncut = make_solid(body);
+    const BodyMesh uncut = make_body_mesh(body);
     CutTopology topology(cut_mesh(uncut, "box"));
     CutSurface surface({uncut.surface, uncut.triangles}, *uncut.lattice);
-    Solid patched = uncut;
+    BodyMesh patched = uncut;
     std::mt19937 random(2);
     for (int k = 0; k < 6; ++k) {
       const CutEdit edit = cut_at_rest(topology, random_cut(random, size));
       if (edit.changed_elements()) surface.update(topology, edit.cells);
       if (k == 3) continue;
-      update_solid_elements(uncut, topology, patched);
-      patch_solid_surface(uncut, topology, surface, surface.take_changes(), patched);
-      const Solid whole = cut_solid(uncut, topology, &surface);
+      update_body_elements(uncut, topology, patched);
+      patch_body_surface(uncut, topology, surface, surface.take_changes(), patched);
+      const BodyMesh whole = cut_body_mesh(uncut, topology, &surface);
       EXPECT_EQ(patched.nodes, whole.nodes);
       EXPECT_EQ(patched.tets, whole.tets);
       EXPECT_EQ(patched.hexes, whole.hexes);

@@ -1,7 +1,7 @@
 // Blades in bodies that move and deform while they are cut.
 #include <gtest/gtest.h>
 
-#include "cutting/blade/blade_front.h"
+#include "cutting/blade/blade_trace.h"
 #include "cutting/cut_bodies.h"
 #include "cutting/cut_scenes.h"
 #include "scene/scene.h"
@@ -60,7 +60,7 @@ TEST(CutMoving, a_deforming_block_falls_into_two_pieces) {
     // The blade lies along z and goes down in y, in deformed space, while the block deforms.
     const double lean = 0.2 * real(random), side = 0.3 * real(random);
     std::vector<Vec3d> rest = mesh->rest;
-    BladeFront front;
+    BladeTrace front;
     for (int look = 0; look <= looks; ++look) {
       const double t = static_cast<double>(look) / looks;
       std::vector<Vec3d> x;
@@ -102,7 +102,7 @@ TEST(CutMoving, tissue_pulled_across_a_resting_blade_is_cut) {
   CutTopology body(mesh);
   RestEdges edges(*mesh, 1.2);
   const BladeSegment blade{Vec3d{2.3, 5, -4}, Vec3d{2.4, 5, 8}};
-  BladeFront front{blade, 0, {}};
+  BladeTrace front{blade, 0, {}};
   for (int look = 1; look <= 9; ++look) {
     std::vector<Vec3d> x;
     for (const std::int32_t n : body.elements().origin) x.push_back(vec::add(mesh->rest[n], {0, look * 0.8, 0}));
@@ -118,7 +118,7 @@ TEST(CutMoving, a_blade_may_stop_leave_return_and_cross_an_older_cut) {
   CutTopology body(mesh);
   RestEdges edges(*mesh, 1.2);
   const auto go = [&](const std::vector<BladeSegment>& places) {
-    BladeFront front{places.front(), 0, {}};
+    BladeTrace front{places.front(), 0, {}};
     for (std::size_t k = 1; k < places.size(); ++k) {
       std::vector<Vec3d> x;
       for (const std::int32_t n : body.elements().origin) x.push_back(mesh->rest[n]);
@@ -146,7 +146,7 @@ TEST(CutMoving, a_blade_far_away_or_of_absurd_size_does_nothing_or_cuts) {
   RestEdges edges(*mesh, 1.2);
   const auto crossed = [&](const BladeSegment& from, const BladeSegment& to) {
     BladeSweep sweep(body, mesh->rest, edges, 1.2);
-    BladeFront front{from, 0, {}};
+    BladeTrace front{from, 0, {}};
     sweep.move(front, to);
     return sweep.crossed().size();
   };

@@ -263,7 +263,7 @@ TEST(CutSurface, numbers_are_stable) {
   EXPECT_LT(changes.vertices.size(), first.size() / 2);
 }
 
-// Every vertex of a piece hangs in the same piece of the topology, so that pieces come apart as wholes.
+// Every vertex of a piece is embedded in the same piece of the topology, so that pieces come apart as wholes.
 TEST(CutSurface, pieces_hang_in_their_own_elements) {
   std::mt19937 random(3);
   // The skin of the second cube lies on faces of the lattice.

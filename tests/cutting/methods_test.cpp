@@ -13,9 +13,9 @@ namespace {
 using namespace cut_test;
 using test::error_of;
 
-PlainMesh box(int nx, int ny, int nz, bool tets = true) {
+ElementMesh box(int nx, int ny, int nz, bool tets = true) {
   const auto cells = box_mesh(nx, ny, nz, tets);
-  PlainMesh mesh{cells->rest, {}, {}, cells->fill};
+  ElementMesh mesh{cells->rest, {}, {}, cells->fill};
   for (const auto& c : cells->cells) {
     if (tets) mesh.tets.push_back({c[0], c[1], c[2], c[3]});
     if (!tets) mesh.hexes.push_back(c);
@@ -57,7 +57,7 @@ TEST(Methods, removal_sees_a_blade_that_ends_inside_an_element) {
 }
 
 TEST(Methods, decomposition_keeps_mass_and_volume_and_shortens_the_stable_step) {
-  const PlainMesh whole = box(3, 2, 2);
+  const ElementMesh whole = box(3, 2, 2);
   const double before = element_bound(whole, material());
   double last = before;
   for (const double past : {0.3, 0.03, 0.003}) {  // the closer to a layer of nodes, the thinner the pieces
@@ -96,7 +96,7 @@ TEST(Methods, a_blade_that_stops_inside_leaves_one_closed_piece) {
 }
 
 TEST(Methods, separation_adds_no_element_and_keeps_volume) {
-  const PlainMesh whole = box(3, 2, 2);
+  const ElementMesh whole = box(3, 2, 2);
   for (const bool remesh : {false, true}) {
     SeparationOptions options;
     options.remesh = remesh;
@@ -121,7 +121,7 @@ TEST(Methods, remeshing_keeps_every_tetrahedron_above_the_bound) {
   SeparationOptions options;
   for (const double bound : {0.1, 0.4, 0.7}) {
     options.least_quality = bound;
-    const PlainMesh whole = box(4, 4, 4);
+    const ElementMesh whole = box(4, 4, 4);
     const double worst = figures_of(whole).least_quality;
     for (int k = 0; k < 10; ++k) {
       const MethodResult cut = separate_crossed(whole, plane_cut({1.1 + 0.2 * k, 2, 2}, {1, 0.1 * k, -0.3}), options);
@@ -132,9 +132,9 @@ TEST(Methods, remeshing_keeps_every_tetrahedron_above_the_bound) {
 
 /// Two bricks of tetrahedra that share the middle edge (or node) only, after everything between them is taken away.
 TEST(Methods, what_hangs_together_at_a_point_or_an_edge_is_parted) {
-  const PlainMesh whole = box(2, 2, 2);
+  const ElementMesh whole = box(2, 2, 2);
   for (const bool edge : {true, false}) {
-    PlainMesh mesh{whole.nodes, {}, {}, {}};
+    ElementMesh mesh{whole.nodes, {}, {}, {}};
     for (std::size_t t = 0; t < whole.tets.size(); ++t) {
       Vec3d c{};
       for (const std::int32_t n : whole.tets[t]) c = vec::add(c, vec::mul(whole.nodes[n], 0.25));
@@ -162,7 +162,7 @@ TEST(Methods, random_cuts_stay_closed_and_keep_what_they_should) {
   const auto pick = [&](int n) { return std::uniform_int_distribution<int>(0, n - 1)(random); };
   int opened = 0;
   for (int k = 0; k < 120; ++k) {
-    PlainMesh whole = box(3, 3, 2);
+    ElementMesh whole = box(3, 3, 2);
     std::vector<SweepTriangle> sweep;
     for (int s = 1 + pick(2); s > 0; --s) {
       Vec3d point{}, normal{};
@@ -238,7 +238,7 @@ TEST(Breaking, sharpness_and_damage_raise_the_cutting_stress) {
 }
 
 TEST(Breaking, a_blunt_blade_parts_only_what_is_under_stress) {
-  const PlainMesh whole = box(3, 2, 2);
+  const ElementMesh whole = box(3, 2, 2);
   const Material m = material();
   std::vector<Vec3d> u(whole.nodes.size());
   for (std::size_t n = 0; n < u.size(); ++n) u[n] = {0.1 * whole.nodes[n][0], 0, 0};  // 10 % along x: about 630 Pa

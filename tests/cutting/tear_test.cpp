@@ -61,7 +61,7 @@ struct Tear : ::testing::Test {
 
 std::int32_t pieces_of(const Simulation& s) {
   const ModelBody& body = s.model().bodies[0];
-  return figures_of(PlainMesh{body.rest, body.tets, {}, std::vector<double>(body.tets.size(), 1.0)}).pieces;
+  return figures_of(ElementMesh{body.rest, body.tets, {}, std::vector<double>(body.tets.size(), 1.0)}).pieces;
 }
 
 TEST_F(Tear, a_bar_parts_in_its_weak_slice_and_nowhere_else) {
@@ -106,7 +106,7 @@ TEST_F(Tear, below_its_toughness_it_holds) {
 }
 
 /// Faces of tetrahedra with all corners at `at` on an axis.
-std::vector<TetFace> faces_in_plane(const Solid& whole, std::size_t axis, double at) {
+std::vector<TetFace> faces_in_plane(const BodyMesh& whole, std::size_t axis, double at) {
   std::vector<TetFace> faces;
   for (std::size_t t = 0; t < whole.tets.size(); ++t) {
     for (std::size_t f = 0; f < 4; ++f) {
@@ -122,14 +122,14 @@ std::vector<TetFace> faces_in_plane(const Solid& whole, std::size_t axis, double
 
 /// A node comes from the one that its tetrahedra had at that corner before: also one that tears for the second time.
 TEST_F(Tear, every_corner_comes_from_the_node_it_had) {
-  const auto whole = std::make_shared<const Solid>(make_solid(bar_scene(file, 1500).bodies[0]));
+  const auto whole = std::make_shared<const BodyMesh>(make_body_mesh(bar_scene(file, 1500).bodies[0]));
   TornBody body(whole, std::vector<Material>(whole->tets.size()));
   std::size_t nodes = whole->nodes.size();
   const std::pair<std::size_t, double> planes[]{{0, 0.03}, {1, 0.01}, {2, 0.01}};
   for (const auto& [axis, at] : planes) {
     const auto before = body.solid().tets;
     const std::vector<std::int32_t> from = body.tear(faces_in_plane(*whole, axis, at));
-    const Solid& now = body.solid();
+    const BodyMesh& now = body.solid();
     ASSERT_EQ(from.size(), now.nodes.size());
     EXPECT_GT(now.nodes.size(), nodes);
     nodes = now.nodes.size();
@@ -138,7 +138,8 @@ TEST_F(Tear, every_corner_comes_from_the_node_it_had) {
     }
   }
   EXPECT_EQ(
-      figures_of(PlainMesh{body.solid().nodes, body.solid().tets, {}, std::vector<double>(whole->tets.size(), 1.0)}).pieces, 8);
+      figures_of(ElementMesh{body.solid().nodes, body.solid().tets, {}, std::vector<double>(whole->tets.size(), 1.0)}).pieces,
+      8);
 }
 
 TEST_F(Tear, integrity_lowers_what_it_bears) {

@@ -12,8 +12,8 @@ namespace {
 
 using namespace cut_test;
 
-Solid solid_of(const CutMesh& mesh) {
-  Solid solid;
+BodyMesh solid_of(const CutMesh& mesh) {
+  BodyMesh solid;
   solid.nodes = mesh.rest;
   solid.fill = mesh.fill;
   VolumeMesh volume;
@@ -30,7 +30,7 @@ Solid solid_of(const CutMesh& mesh) {
   return solid;
 }
 
-void check_surface(const CutTopology& body, const Solid& uncut, const Solid& solid) {
+void check_surface(const CutTopology& body, const BodyMesh& uncut, const BodyMesh& solid) {
   std::map<std::array<std::int32_t, 2>, int> used;
   for (const auto& t : solid.triangles) {
     for (int i = 0; i < 3; ++i) {
@@ -64,7 +64,7 @@ void check_surface(const CutTopology& body, const Solid& uncut, const Solid& sol
     EXPECT_NEAR(enclosed[p], volume[p], 0.02) << "a copy's fill has a floor";
   }
   EXPECT_NEAR(sum, 8, 1e-9);
-  // Vertices hang where they are.
+  // Vertices are embedded where they are.
   for (std::size_t v = uncut.surface.size(); v < solid.surface.size(); ++v) {
     Vec3d x{};
     for (std::size_t a = 0; a < 8; ++a) {
@@ -81,7 +81,7 @@ TEST(TetSurface, every_cut_leaves_closed_pieces_of_the_right_volume) {
   int split = 0;
   for (int trial = 0; trial < 60; ++trial) {
     const auto mesh = box_mesh(2, 2, 2, true);
-    const Solid uncut = solid_of(*mesh);
+    const BodyMesh uncut = solid_of(*mesh);
     CutTopology body(mesh);
     for (int k = 0; k < 4; ++k) {
       const Vec3d point{1 + real(random), 1 + real(random), 1 + real(random)};
@@ -89,7 +89,7 @@ TEST(TetSurface, every_cut_leaves_closed_pieces_of_the_right_volume) {
       if (trial % 5 == 0) normal = {1, 0, 0};
       const double reach = trial % 3 == 0 ? 0.9 : 20;  // a third of the cuts end inside
       cut_at_rest(body, plane_cut(trial % 5 == 0 ? Vec3d{1, 1, 1} : point, normal, reach));
-      const Solid solid = cut_solid(uncut, body);
+      const BodyMesh solid = cut_body_mesh(uncut, body);
       split += body.pieces() > 1;
       check_surface(body, uncut, solid);
       if (HasFailure()) FAIL() << "trial " << trial << ", cut " << k;

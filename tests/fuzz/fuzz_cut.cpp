@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "cutting/blade/blade.h"
-#include "cutting/blade/blade_front.h"
+#include "cutting/blade/blade_trace.h"
 #include "cutting/surface/cut_surface.h"
 #include "cutting/topology/cut_topology.h"
 #include "geometry/vec.h"
@@ -128,7 +128,7 @@ void check(const CutSurface& surface, const CutTopology& body, double whole) {
       std::array<double, 8> weights{};
       surface.embedding(body, a, nodes, weights);
       for (const std::int32_t n : nodes)
-        require(n >= 0 && n < static_cast<std::int32_t>(body.elements().origin.size()), "a vertex that hangs in a stale node");
+        require(n >= 0 && n < static_cast<std::int32_t>(body.elements().origin.size()), "a vertex embedded in a stale node");
     }
   }
   for (const auto& [edge, count] : edges) require(count[0] == 1 && count[1] == 1, "an edge without exactly two triangles");
@@ -167,7 +167,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const double whole = tets ? 0 : volume(*surface);
   const double gape = in.next() * 0.001;
   std::vector<Vec3d> moved(body.mesh().rest.size());
-  BladeFront front{{in.point(), in.point()}, 0, {}};
+  BladeTrace front{{in.point(), in.point()}, 0, {}};
   if (front.blade[0] == front.blade[1]) return 0;
   for (int k = 0; k < 12 && in.left > 6; ++k) {
     const int how = in.next();

@@ -33,7 +33,7 @@ Checkpoint sample() {
   s.state.seeds = {{1, 2, 3}};
   s.state.blades.seen = 0.25;
   s.state.blades.placed["scalpel"] = {Vec3d{1, 2, 3}, Vec3d{4, 5, 6}};
-  s.state.blades.fronts["scalpel"][1] = {{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}}, 3, {{1, -1, {4, 2, {0.25, 0.25, 0.25, 0.25}, {}}}}};
+  s.state.blades.traces["scalpel"][1] = {{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}}, 3, {{1, -1, {4, 2, {0.25, 0.25, 0.25, 0.25}, {}}}}};
   s.state.pending.triangles = {{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}}};
   s.state.pending.moves = {{"host/scalpel", {}, {{Vec3d{1, 1, 1}, Vec3d{2, 2, 2}}}}};
   s.state.forces = {{0, 12, {1, 0, 0}}};

@@ -1,6 +1,4 @@
 // The backends themselves, on toy kernels with toy twins: arguments, shapes, transfers, timing and clear errors.
-#include "cpu_ref/backend.h"
-
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -13,6 +11,7 @@
 #include "backend/pass_table.h"
 #include "backends/backends.h"
 #include "cpu_ref/check_backend.h"
+#include "cpu_ref/ref_backend.h"
 #include "cpu_ref/registry.h"
 #include "opencl/opencl_backend.h"
 #include "pliant/error.h"

@@ -6,7 +6,7 @@
 #include <functional>
 #include <numeric>
 
-#include "cpu_ref/backend.h"
+#include "cpu_ref/ref_backend.h"
 #include "cpu_ref/registry.h"
 #include "pliant/error.h"
 

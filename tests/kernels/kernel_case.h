@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "backend/backend.h"
-#include "cpu_ref/backend.h"
+#include "cpu_ref/ref_backend.h"
 #include "opencl/opencl_backend.h"
 #include "program/program.h"
 #include "support/opencl.h"

@@ -5,7 +5,7 @@
 
 #include <cstring>
 
-#include "cpu_ref/backend.h"
+#include "cpu_ref/ref_backend.h"
 #include "cpu_ref/registry.h"
 #include "opencl/kernel_text.h"
 #include "opencl/opencl_backend.h"

@@ -161,7 +161,7 @@ TEST(Lattice, SlabsThatDoNotTouchShareNoNode) {
       EXPECT_EQ(pieces(lattice), 2) << gap << ' ' << middle;
       EXPECT_NEAR(material(lattice), signed_volume(mesh), 0.01 * signed_volume(mesh)) << gap << ' ' << middle;
       check(lattice, mesh);
-      // Every vertex hangs on its own slab: the cells of the two slabs have no node in common.
+      // Every vertex is embedded in its own slab: the cells of the two slabs have no node in common.
       std::set<std::int32_t> lower, upper;
       for (std::size_t v = 0; v < 16; ++v) {
         for (const std::int32_t n : lattice.cells[lattice.embedding[v].cell].nodes) (v < 8 ? lower : upper).insert(n);

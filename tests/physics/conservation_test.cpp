@@ -24,7 +24,7 @@ Momenta momenta_of(Simulation& sim) {
 
 TEST_P(Conservation, FreeSpinningBody) {
   const Box box{{4, 2, 2}, 0.05, 0.2, 4};
-  for (const Cut cut : all_cuts()) {
+  for (const Discretization cut : all_cuts()) {
     Scene scene;
     Body body = box_body(box, cut, material_young(Law::neo_hookean, 3000, 0.45));
     body.velocity = {0.3, -0.2, 0.1};
@@ -57,7 +57,7 @@ TEST_P(Conservation, FreeSpinningBody) {
 }
 
 TEST_P(Conservation, EnergyOfAVibratingBody) {
-  for (const Cut cut : all_cuts()) {
+  for (const Discretization cut : all_cuts()) {
     Scene scene;
     Body body = box_body({{4, 2, 2}, 0.05, 0.2, 4}, cut, material_young(Law::neo_hookean, 3000, 0.3));
     body.fixed.push_back({face(0, 0), {true, true, true}});
@@ -87,7 +87,7 @@ TEST_P(Conservation, EnergyOfAVibratingBody) {
 }
 
 TEST_P(Conservation, FreeFall) {
-  for (const Cut cut : {Cut::tet4, Cut::hex8_bricks}) {
+  for (const Discretization cut : {Discretization::tet4, Discretization::hex8_bricks}) {
     Scene scene;
     Body body = box_body({{2, 2, 2}, 0.05}, cut, material_young(Law::neo_hookean, 3000, 0.45));
     scene.bodies = {body};
@@ -107,7 +107,7 @@ TEST_P(Conservation, DampingOfAThrownBody) {
   Scene scene;
   Material m = material_young(Law::neo_hookean, 3000, 0.45);
   m.damping = 5;
-  Body body = box_body({{2, 2, 2}, 0.05}, Cut::tet4, m);
+  Body body = box_body({{2, 2, 2}, 0.05}, Discretization::tet4, m);
   body.velocity = {1, 0.5, -0.2};
   scene.bodies = {body};
   scene.dt = 2e-4;
@@ -124,7 +124,7 @@ TEST_P(Conservation, DampedVibration) {
   Scene scene;
   Material m = material_young(Law::neo_hookean, 3000, 0.3);
   m.damping = 8;
-  Body body = box_body({{8, 1, 1}, 0.0125}, Cut::hex8_bricks, m);
+  Body body = box_body({{8, 1, 1}, 0.0125}, Discretization::hex8_bricks, m);
   body.fixed = {roller(0), {all_nodes(), {false, true, true}}};
   scene.bodies = {body};
   scene.dt = 2e-4;
@@ -175,7 +175,7 @@ TEST_P(Conservation, PrescribedMotion) {
       {table, [](double t) {
          return t < 0.01 ? 50 * t : t < 0.02 ? 0.5 - 75 * (t - 0.01) : t < 0.04 ? -0.25 + 62.5 * (t - 0.02) : 1.0;
        }}};
-  for (const Cut cut : {Cut::tet4, Cut::hex8_bricks}) {
+  for (const Discretization cut : {Discretization::tet4, Discretization::hex8_bricks}) {
     for (const auto& [curve, value] : cases) {
       Body body = box_body({{2, 2, 2}, 0.05}, cut, material_young(Law::neo_hookean, 3000, 0.45));
       body.fixed.push_back(roller(0));
@@ -205,7 +205,7 @@ Vector3d total(const std::vector<Vec3d>& f) {
 }
 
 TEST_P(Conservation, TotalOfLoads) {
-  for (const Cut cut : all_cuts()) {
+  for (const Discretization cut : all_cuts()) {
     Body plain_body = box_body({{3, 2, 2}, 0.05, 0.2, 6}, cut, material_young(Law::neo_hookean, 3000, 0.45));
     const std::string name = name_of(cut);
     const Matrix3d h = (Matrix3d() << 0.2, 0.1, 0, -0.1, 0.1, 0.3, 0.1, 0, -0.2).finished();
@@ -251,7 +251,7 @@ TEST_P(Conservation, PressurePullsABlock) {
     const double l = lateral(s);
     return first_piola(Vector3d(s, l, l).asDiagonal(), m)(0, 0) - p * l * l;
   });
-  for (const Cut cut : all_cuts()) {
+  for (const Discretization cut : all_cuts()) {
     Body body = box_body({{2, 2, 2}, 0.5, 0.1, 8}, cut, m);
     for (int axis = 0; axis < 3; ++axis) body.fixed.push_back(roller(axis));
     Pressure pressure;

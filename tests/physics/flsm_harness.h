@@ -10,7 +10,7 @@ namespace pliant::physics {
 
 /// A box of lattice cells that follows `type`; a hybrid has finite elements below x = `split` [m].
 inline Body matched_box(const Box& box, ModelType type, double split = 0, ElementKind element = ElementKind::hex8) {
-  Body body = box_body(box, Cut::hex8_bricks, material_young(Law::neo_hookean, 3000, 0.3));
+  Body body = box_body(box, Discretization::hex8_bricks, material_young(Law::neo_hookean, 3000, 0.3));
   body.name = to_string(type);
   body.element = element;
   body.model.type = type;

@@ -73,42 +73,45 @@ inline std::filesystem::path next_file(const char* extension) {
 }
 
 /// What a body is made of.
-enum class Cut { tet4, tet4anp, hex8, hex8full, hex8_bricks, hex8full_lattice };
-inline const std::vector<Cut>& all_cuts() {
-  static const std::vector<Cut> cuts{Cut::tet4,     Cut::tet4anp,     Cut::hex8,
-                                     Cut::hex8full, Cut::hex8_bricks, Cut::hex8full_lattice};
+enum class Discretization { tet4, tet4anp, hex8, hex8full, hex8_bricks, hex8full_lattice };
+inline const std::vector<Discretization>& all_cuts() {
+  static const std::vector<Discretization> cuts{Discretization::tet4,        Discretization::tet4anp,
+                                                Discretization::hex8,        Discretization::hex8full,
+                                                Discretization::hex8_bricks, Discretization::hex8full_lattice};
   return cuts;
 }
-inline bool is_lattice(Cut cut) { return cut == Cut::hex8_bricks || cut == Cut::hex8full_lattice; }
-inline bool is_tet(Cut cut) { return cut == Cut::tet4 || cut == Cut::tet4anp; }
-inline const char* name_of(Cut cut) {
+inline bool is_lattice(Discretization cut) {
+  return cut == Discretization::hex8_bricks || cut == Discretization::hex8full_lattice;
+}
+inline bool is_tet(Discretization cut) { return cut == Discretization::tet4 || cut == Discretization::tet4anp; }
+inline const char* name_of(Discretization cut) {
   switch (cut) {
-    case Cut::tet4:
+    case Discretization::tet4:
       return "tet4";
-    case Cut::tet4anp:
+    case Discretization::tet4anp:
       return "tet4anp";
-    case Cut::hex8:
+    case Discretization::hex8:
       return "hex8";
-    case Cut::hex8full:
+    case Discretization::hex8full:
       return "hex8full";
-    case Cut::hex8_bricks:
+    case Discretization::hex8_bricks:
       return "hex8 bricks";
-    case Cut::hex8full_lattice:
+    case Discretization::hex8full_lattice:
       return "hex8full lattice";
   }
   return "";
 }
-inline ElementKind kind_of(Cut cut) {
+inline ElementKind kind_of(Discretization cut) {
   switch (cut) {
-    case Cut::tet4:
+    case Discretization::tet4:
       return ElementKind::tet4;
-    case Cut::tet4anp:
+    case Discretization::tet4anp:
       return ElementKind::tet4anp;
-    case Cut::hex8:
-    case Cut::hex8_bricks:
+    case Discretization::hex8:
+    case Discretization::hex8_bricks:
       return ElementKind::hex8;
-    case Cut::hex8full:
-    case Cut::hex8full_lattice:
+    case Discretization::hex8full:
+    case Discretization::hex8full_lattice:
       return ElementKind::hex8full;
   }
   return ElementKind::hex8;
@@ -215,7 +218,7 @@ inline Material material_young(Law law, double young, double poisson, double den
   return material(law, young / (2 * (1 + poisson)), young / (3 * (1 - 2 * poisson)), density);
 }
 
-inline Body box_body(const Box& box, Cut cut, const Material& m) {
+inline Body box_body(const Box& box, Discretization cut, const Material& m) {
   Body body;
   body.name = name_of(cut);
   body.element = kind_of(cut);

@@ -7,7 +7,7 @@ namespace {
 class Increment : public OnBackend {};
 
 /// A clamped block loaded slowly over 1e5 steps far below the stable one: u_n and u_(n-1) nearly cancel.
-std::vector<Vec3d> run(const char* backend, Cut cut, Integrator integrator) {
+std::vector<Vec3d> run(const char* backend, Discretization cut, Integrator integrator) {
   Scene scene;
   Body body = box_body({{2, 1, 1}, 0.05}, cut, material_young(Law::neo_hookean, 3000, 0.45));
   body.fixed.push_back({face(0, 0), {true, true, true}});
@@ -40,7 +40,8 @@ double distance(const std::vector<Vec3d>& a, const std::vector<Vec3d>& b) {
 TEST_P(Increment, RoundingAfterAHundredThousandSteps) {
   if (in_double()) GTEST_SKIP() << "the double twin is the reference of this test";
   const bool device = std::string(GetParam()) == "opencl:0";  // small launches take their time there
-  for (const Cut cut : device ? std::vector<Cut>{Cut::hex8_bricks} : std::vector<Cut>{Cut::tet4, Cut::hex8_bricks}) {
+  for (const Discretization cut : device ? std::vector<Discretization>{Discretization::hex8_bricks}
+                                         : std::vector<Discretization>{Discretization::tet4, Discretization::hex8_bricks}) {
     const auto exact = run("cpu:double", cut, Integrator::increment), other = run("cpu:double", cut, Integrator::textbook);
     const std::string name = name_of(cut);
     check(name + " in double the two forms agree", distance(other, exact), 1e-9);

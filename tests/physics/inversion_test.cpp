@@ -7,7 +7,7 @@ namespace pliant::physics {
 namespace {
 
 /// A cube whose upper face is pressed along x, beyond the lower one, and released; it moves along x only.
-Scene pressed(Cut cut, Law law) {
+Scene pressed(Discretization cut, Law law) {
   const double edge = 0.1;
   const Material m = material(law, 1000, 9000, 1000);
   Body body = box_body({{1, 1, 1}, edge}, cut, m);
@@ -40,7 +40,7 @@ double stretch(const Simulation& sim) {
 
 TEST(Inversion, AnElementPressedThroughItselfComesBackIfTheLawIsFinite) {
   for (const Law law : all_laws()) {
-    for (const Cut cut : all_cuts()) {
+    for (const Discretization cut : all_cuts()) {
       SCOPED_TRACE(std::string(name_of(cut)) + " " + to_string(law));
       std::vector<std::string> hashes;
       for (const BackendInfo& info : list_backends()) {

@@ -14,7 +14,7 @@ TEST_P(Patch, InnerNodesFollowAffineBoundary) {
   const Box box{{3, 3, 3}, 1.0 / 3, 0.25, 3};
   const Matrix3d h = gradient();
   for (const Law law : all_laws()) {
-    for (const Cut cut : all_cuts()) {
+    for (const Discretization cut : all_cuts()) {
       const Material m = material_young(law, 3000, 0.45);
       Body body = box_body(box, cut, m);
       Scene scene;
@@ -57,7 +57,7 @@ TEST_P(Patch, InnerNodesFollowAffineBoundary) {
 TEST_P(Patch, RigidMotionIsForceFree) {
   const Box box{{3, 2, 2}, 0.5, 0.2, 5};
   for (const Law law : all_laws()) {
-    for (const Cut cut : all_cuts()) {
+    for (const Discretization cut : all_cuts()) {
       Scene scene;
       scene.bodies = {box_body(box, cut, material(law, 1000, 9000))};
       auto sim = simulate(scene, GetParam());
@@ -81,7 +81,7 @@ TEST_P(Patch, RigidMotionIsForceFree) {
 TEST_P(Patch, ForceIsTheEnergysGradient) {
   const Box box{{2, 2, 2}, 0.5, 0.2, 9};
   for (const Law law : all_laws()) {
-    for (const Cut cut : all_cuts()) {
+    for (const Discretization cut : all_cuts()) {
       Scene scene;
       Material soft = material(law, 1000, 9000), stiff = material(law, 4000, 20000);
       scene.bodies = {box_body(box, cut, soft)};
@@ -139,9 +139,9 @@ Eigen::MatrixXd element_stiffness(Simulation& sim, double size) {
 
 /// 24 modes: 6 rigid without energy, 18 with; without hourglass control twelve more have none, and they are hourglass fields.
 TEST(SingleHexahedron, Modes) {
-  for (const Cut cut : {Cut::hex8, Cut::hex8full, Cut::hex8_bricks}) {
+  for (const Discretization cut : {Discretization::hex8, Discretization::hex8full, Discretization::hex8_bricks}) {
     for (const double distortion : {0.0, 0.2}) {
-      if (distortion > 0 && cut == Cut::hex8_bricks) continue;
+      if (distortion > 0 && cut == Discretization::hex8_bricks) continue;
       std::array<Eigen::VectorXd, 2> values;
       for (const int with : {0, 1}) {
         Material m = material_young(Law::neo_hookean, 3000, 0.3);
@@ -163,7 +163,7 @@ TEST(SingleHexahedron, Modes) {
       check(name + " largest of the 6 rigid modes", values[1].head(6).cwiseAbs().maxCoeff() / scale, 1e-8);
       std::printf("  %-58s %.3e of the stiffest\n", (name + " softest of the other 18").c_str(), values[1][6] / scale);
       EXPECT_GT(values[1][6], 1e-3 * scale);
-      if (cut == Cut::hex8full) continue;
+      if (cut == Discretization::hex8full) continue;
       check(name + " largest of 18 modes without hourglass control", values[0].head(18).cwiseAbs().maxCoeff() / scale, 1e-8);
       EXPECT_GT(values[0][18], 1e-2 * scale);
     }

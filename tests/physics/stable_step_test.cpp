@@ -56,7 +56,7 @@ Linear linearise(const Scene& scene) {
   return out;
 }
 
-Scene clamped(Cut cut, double poisson) {
+Scene clamped(Discretization cut, double poisson) {
   Scene scene;
   Body body = box_body({{3, 2, 2}, 0.02, 0.2, 12}, cut, material_young(Law::neo_hookean, 3000, poisson));
   body.fixed.push_back({face(0, 0), {true, true, true}});
@@ -66,7 +66,7 @@ Scene clamped(Cut cut, double poisson) {
 
 TEST_P(StableStep, LanczosAgainstEigen) {
   for (const double poisson : {0.0, 0.3, 0.45}) {
-    for (const Cut cut : all_cuts()) {
+    for (const Discretization cut : all_cuts()) {
       const Scene scene = clamped(cut, poisson);
       const double exact = 2 / linearise(scene).omega_max();
       auto sim = simulate(scene, GetParam());
@@ -82,7 +82,7 @@ TEST_P(StableStep, LanczosAgainstEigen) {
 
 /// 0.98 of the exact limit keeps small noise small, 1.05 blows it up.
 TEST_P(StableStep, MeasuredLimit) {
-  for (const Cut cut : all_cuts()) {
+  for (const Discretization cut : all_cuts()) {
     Scene scene = clamped(cut, 0.45);
     const double exact = 2 / linearise(scene).omega_max();
     std::array<double, 2> growth{};
@@ -108,7 +108,7 @@ TEST_P(StableStep, MeasuredLimit) {
 /// Cells with little material scale mass and stiffness alike: slivers do not cost a step.
 TEST_P(StableStep, IndependentOfFill) {
   const Material m = material_young(Law::neo_hookean, 3000, 0.45);
-  for (const Cut cut : {Cut::hex8_bricks, Cut::hex8full_lattice}) {
+  for (const Discretization cut : {Discretization::hex8_bricks, Discretization::hex8full_lattice}) {
     std::array<double, 2> dt{}, fill{1, 1};
     for (const int sliver : {0, 1}) {
       Body body = box_body({{5, 5, 5}, 0.02}, cut, m);
@@ -136,7 +136,7 @@ TEST_P(StableStep, IndependentOfFill) {
 
 /// Many cells have many modes near the highest: the estimate of the start must still be safe.
 TEST_P(StableStep, SafeOnALargerLattice) {
-  for (const Cut cut : {Cut::hex8_bricks, Cut::tet4}) {
+  for (const Discretization cut : {Discretization::hex8_bricks, Discretization::tet4}) {
     Scene scene;
     scene.bodies = {box_body({{30, 12, 12}, 0.01}, cut, material_young(Law::neo_hookean, 3000, 0.45))};
     auto sim = simulate(scene, GetParam());
@@ -148,7 +148,7 @@ TEST_P(StableStep, SafeOnALargerLattice) {
 }
 
 TEST_P(StableStep, RelaxationAgainstLinearStatics) {
-  for (const Cut cut : all_cuts()) {
+  for (const Discretization cut : all_cuts()) {
     Scene scene = clamped(cut, 0.3);
     Force force;
     force.where = face(0, 0.06);
@@ -174,7 +174,7 @@ TEST_P(StableStep, RelaxationAgainstLinearStatics) {
 }
 
 TEST_P(StableStep, DivergenceIsReported) {
-  for (const Cut cut : all_cuts()) {
+  for (const Discretization cut : all_cuts()) {
     Scene scene = clamped(cut, 0.45);
     scene.gravity = {0, -9.81, 0};
     auto probe = simulate(scene, GetParam());

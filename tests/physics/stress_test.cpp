@@ -26,7 +26,8 @@ double face_force(const Model& model, const std::vector<Vec3d>& f, int axis, dou
 }
 
 /// First Piola stress at the pulled face x = 1 with the axes in `pulled` stretched and the others free.
-double stress_at_rest(const char* backend, Cut cut, const Material& m, double stretch, int pulled, double tolerance) {
+double stress_at_rest(const char* backend, Discretization cut, const Material& m, double stretch, int pulled,
+                      double tolerance) {
   Body body = box_body(block(), cut, m);
   for (int axis = 0; axis < 3; ++axis) {
     body.fixed.push_back(roller(axis));
@@ -48,7 +49,7 @@ double closed_form(const Material& m, double stretch, int pulled) {
 }
 
 /// The block with the affine deformation x = F X imposed on every node.
-std::unique_ptr<Simulation> deformed_block(const char* backend, Cut cut, const Material& m, const Matrix3d& f) {
+std::unique_ptr<Simulation> deformed_block(const char* backend, Discretization cut, const Material& m, const Matrix3d& f) {
   Scene scene;
   scene.bodies = {box_body(block(), cut, m)};
   auto sim = simulate(scene, backend);
@@ -62,7 +63,7 @@ class Stress : public OnBackend {
   void compare(Law law, double mu, double kappa, int pulled, double stretch, double exact) {
     const Material m = material(law, mu, kappa);
     check_relative("closed form against the published figure", closed_form(m, stretch, pulled), exact, 2e-6);
-    for (const Cut cut : all_cuts()) {
+    for (const Discretization cut : all_cuts()) {
       const double p = stress_at_rest(GetParam(), cut, m, stretch, pulled, bound(1e-5, 1e-8));
       check_relative(std::string(name_of(cut)) + " stretch " + std::to_string(stretch), p, closed_form(m, stretch, pulled),
                      bound(1e-4, 1e-7));
@@ -100,7 +101,7 @@ TEST_P(Stress, SimpleShear) {
   f(0, 1) = 0.5;
   for (const Law law : all_laws()) {
     const Material m = material(law, 1000, 50000);
-    for (const Cut cut : all_cuts()) {
+    for (const Discretization cut : all_cuts()) {
       auto sim = deformed_block(GetParam(), cut, m, f);
       const Matrix3d cauchy = mean_stress(sim->model(), forces(*sim), 1) * f.transpose();
       const Matrix3d exact = law == Law::isochoric_neo_hookean
@@ -118,7 +119,7 @@ TEST_P(Stress, ArbitraryDeformation) {
   const Matrix3d f = Eigen::AngleAxisd(1.1, Vector3d(1, -2, 0.5).normalized()).toRotationMatrix() * stretch;
   for (const Law law : all_laws()) {
     const Material m = material(law, 1000, 9000);
-    for (const Cut cut : all_cuts()) {
+    for (const Discretization cut : all_cuts()) {
       auto sim = deformed_block(GetParam(), cut, m, f);
       const Matrix3d p = mean_stress(sim->model(), forces(*sim), 1), exact = first_piola(f, m);
       check(std::string(name_of(cut)) + " " + to_string(law) + " P relative", (p - exact).norm() / exact.norm(),
@@ -139,7 +140,7 @@ TEST_P(Stress, ArbitraryDeformation) {
 /// One 0.1 m hexahedron, mu 1052, kappa 52249, confined 30 % stretch.
 TEST_P(Stress, ConfinedSingleElement) {
   const Material m = material(Law::isochoric_neo_hookean, 1052, 52249);
-  for (const Cut cut : all_cuts()) {
+  for (const Discretization cut : all_cuts()) {
     Body body = box_body({{1, 1, 1}, 0.1}, cut, m);
     for (int axis = 0; axis < 3; ++axis) body.fixed.push_back(roller(axis));
     for (int axis = 1; axis < 3; ++axis) body.fixed.push_back(roller(axis, 0.1));

@@ -23,8 +23,8 @@ TEST_P(Vibration, ConfinedColumn) {
   const double exact = std::sqrt((base.moduli.lambda + 2 * base.moduli.mu) / 1000) / 0.4;
   check_relative("closed form against the published figure [Hz]", exact, 8.4333, 1e-5);
   for (const Law law : all_laws()) {
-    for (const Cut cut : all_cuts()) {
-      if (law != Law::neo_hookean && cut != Cut::hex8_bricks && cut != Cut::tet4) continue;
+    for (const Discretization cut : all_cuts()) {
+      if (law != Law::neo_hookean && cut != Discretization::hex8_bricks && cut != Discretization::tet4) continue;
       Body body = box_body({{20, 2, 2}, 0.005}, cut, material_young(law, 3000, 0.45));
       body.fixed = {roller(0), {all_nodes(), {false, true, true}}};
       Scene scene;
@@ -70,7 +70,7 @@ double elastica(double load) {
 }
 
 struct Beam {
-  Cut cut;
+  Discretization cut;
   int along;                  ///< cells along the beam
   std::array<int, 2> across;  ///< cells over its height (the plane of bending) and its width
   double slenderness;         ///< L / h
@@ -124,13 +124,13 @@ double tip_drop(const char* backend, const Beam& beam, double load) {
 // layers or with cells much shorter than high; linear tetrahedra with eight to twelve layers, because each has one strain.
 // tet4anp equals tet4 here: at nu = 0 it has no volumetric term to average.
 std::vector<Beam> beams(double load, bool costly) {
-  std::vector<Beam> all{{Cut::hex8_bricks, 20, {1, 1}, 20},
-                        {Cut::hex8_bricks, 40, {2, 2}, 20},
-                        {Cut::hex8, 20, {1, 1}, 20},
-                        {Cut::hex8full, 120, {1, 1}, 20}};
-  if (costly && load == 1) all.push_back({Cut::tet4, 108, {12, 1}, 10});
-  if (costly && load == 2) all.push_back({Cut::hex8full_lattice, 60, {5, 5}, 12});
-  if (costly && load > 1) all.push_back({Cut::tet4, 80, {8, 1}, 10});
+  std::vector<Beam> all{{Discretization::hex8_bricks, 20, {1, 1}, 20},
+                        {Discretization::hex8_bricks, 40, {2, 2}, 20},
+                        {Discretization::hex8, 20, {1, 1}, 20},
+                        {Discretization::hex8full, 120, {1, 1}, 20}};
+  if (costly && load == 1) all.push_back({Discretization::tet4, 108, {12, 1}, 10});
+  if (costly && load == 2) all.push_back({Discretization::hex8full_lattice, 60, {5, 5}, 12});
+  if (costly && load > 1) all.push_back({Discretization::tet4, 80, {8, 1}, 10});
   return all;
 }
 

@@ -10,10 +10,10 @@
 #include "io/gltf.h"
 #include "io/png.h"
 #include "read_png.h"
+#include "render/annotations.h"
 #include "render/color.h"
 #include "render/export.h"
 #include "render/fields.h"
-#include "render/overlay.h"
 #include "shapes.h"
 #include "support/temp_folder.h"
 

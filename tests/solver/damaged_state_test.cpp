@@ -49,7 +49,7 @@ TEST(DamagedState, whatever_the_bytes_it_is_taken_up_or_refused) {
   const auto source = rich_simulation(scene);
   const Snapshot good = source->snapshot();
   ASSERT_FALSE(good.state.cuts.empty());
-  ASSERT_FALSE(good.state.blades.fronts.empty());
+  ASSERT_FALSE(good.state.blades.traces.empty());
   ASSERT_FALSE(good.state.pending.moves.empty());
   const std::string bytes = write_state(good.state);
   Simulation target(scene, open_backend("cpu"));
@@ -124,14 +124,14 @@ TEST(DamagedState, what_is_refused_is_named) {
   has(refusal([](RunState& s) { s.cuts.clear(); }), "");
   has(refusal([](RunState& s) { s.tears.push_back({0, 0, 1}); }), "tears");
   has(refusal([](RunState& s) { s.seeds = {{0, 0, 0}}; }), "regions");
-  has(refusal([](RunState& s) { s.blades.fronts.begin()->second.begin()->second.points[0].carried.cell = 1 << 30; }), "traces");
+  has(refusal([](RunState& s) { s.blades.traces.begin()->second.begin()->second.points[0].carried.cell = 1 << 30; }), "traces");
   has(refusal([](RunState& s) {
-        FrontPoint& point = s.blades.fronts.begin()->second.begin()->second.points[0];
+        TracePoint& point = s.blades.traces.begin()->second.begin()->second.points[0];
         point.carried.cell = -1;
         point.node = 1 << 30;
       }),
       "traces");
-  has(refusal([](RunState& s) { s.blades.fronts.begin()->second.begin()->second.levels = 60; }), "traces");
+  has(refusal([](RunState& s) { s.blades.traces.begin()->second.begin()->second.levels = 60; }), "traces");
   has(refusal([](RunState& s) { s.blades.placed.begin()->second[0][2] = INFINITY; }), "blade");
   has(refusal([](RunState& s) { s.forces[0].body = 3; }), "force");
   has(refusal([](RunState& s) { s.forces[0].force[1] = NAN; }), "force");

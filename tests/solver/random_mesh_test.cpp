@@ -2,7 +2,7 @@
 // pass, and every work-group size, number of lanes and number of threads gives the same state.
 #include <gtest/gtest.h>
 
-#include "cpu_ref/backend.h"
+#include "cpu_ref/ref_backend.h"
 #include "opencl/opencl_backend.h"
 #include "physics/harness.h"
 #include "program/hash.h"
@@ -13,7 +13,7 @@ namespace pliant::physics {
 namespace {
 
 /// A distorted block that falls on its fixed end, is pulled at the other, and starts with a spin.
-Scene random_scene(Cut cut, Law law, unsigned seed) {
+Scene random_scene(Discretization cut, Law law, unsigned seed) {
   std::mt19937 random(seed);
   const auto count = [&] { return 2 + static_cast<int>(random() % 4); };
   Box box{{count(), count(), count()}, 0.01};
@@ -33,12 +33,12 @@ Scene random_scene(Cut cut, Law law, unsigned seed) {
   return scene;
 }
 
-bool has_law(Cut cut, Law law) { return cut != Cut::tet4anp || law_info(law).volumetric; }
+bool has_law(Discretization cut, Law law) { return cut != Discretization::tet4anp || law_info(law).volumetric; }
 
 TEST(RandomMeshes, LockstepOnOpenclAndTwins) {
   if (!testing::has_opencl()) GTEST_SKIP() << "there is no OpenCL device";
   unsigned seed = 1;
-  for (const Cut cut : all_cuts()) {
+  for (const Discretization cut : all_cuts()) {
     for (const Law law : all_laws()) {
       if (!has_law(cut, law)) continue;
       const Scene scene = random_scene(cut, law, seed++);
@@ -56,7 +56,7 @@ TEST(RandomMeshes, LockstepOnOpenclAndTwins) {
 
 TEST(RandomMeshes, SameStateWhateverLanesGroupsAndThreads) {
   unsigned seed = 100;
-  for (const Cut cut : all_cuts()) {
+  for (const Discretization cut : all_cuts()) {
     const Scene scene = random_scene(cut, Law::neo_hookean, seed++);
     Simulation first(scene, open_backend("cpu"));
     first.advance(30);

@@ -6,9 +6,9 @@
 namespace pliant::statics_test {
 namespace {
 
-using physics::Cut;
+using physics::Discretization;
 
-Scene loaded(Cut cut, Law law) {
+Scene loaded(Discretization cut, Law law) {
   Scene scene;
   scene.gravity = {0, -4, 0};
   Body body = physics::box_body({{4, 2, 2}, 0.05, 0.2, 5}, cut, physics::material_young(law, 10000, 0.4));
@@ -40,7 +40,7 @@ Scene loaded(Cut cut, Law law) {
 }
 
 TEST(Engine, ComesToRestWhereTheStaticSolverSays) {
-  for (const Cut cut : {Cut::tet4, Cut::hex8full, Cut::hex8full_lattice}) {
+  for (const Discretization cut : {Discretization::tet4, Discretization::hex8full, Discretization::hex8full_lattice}) {
     for (const Law law : all_laws()) {
       const Scene scene = loaded(cut, law);
       const auto sim = physics::simulate(scene, "cpu:double");
@@ -58,7 +58,7 @@ TEST(Engine, ComesToRestWhereTheStaticSolverSays) {
 }
 
 TEST(Engine, BricksBecomeFullHexahedraAndShapeMatchingIsRefused) {
-  Scene scene = loaded(Cut::hex8_bricks, Law::neo_hookean);
+  Scene scene = loaded(Discretization::hex8_bricks, Law::neo_hookean);
   const Model bricks = build_model(scene);
   const Problem a = statics::problem_of(scene, bricks, 0);
   scene.bodies[0].element = ElementKind::hex8full;

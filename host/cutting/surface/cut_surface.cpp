@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "cutting/surface/cut_air.h"
+#include "cutting/surface/exterior_cells.h"
 
 namespace pliant {
 
@@ -27,20 +27,20 @@ struct CutSurface::Base {
         cell_at[number] = static_cast<std::int32_t>(c);
       }
     }
-    hung_offset.assign(full.cells.size() + 1, 0);
-    for (const Embedding& e : full.embedding) ++hung_offset[e.cell + 1];
-    for (std::size_t c = 0; c < full.cells.size(); ++c) hung_offset[c + 1] += hung_offset[c];
-    hung.resize(full.embedding.size());
-    std::vector<std::int32_t> next(hung_offset.begin(), hung_offset.end() - 1);
+    embedded_offset.assign(full.cells.size() + 1, 0);
+    for (const Embedding& e : full.embedding) ++embedded_offset[e.cell + 1];
+    for (std::size_t c = 0; c < full.cells.size(); ++c) embedded_offset[c + 1] += embedded_offset[c];
+    embedded.resize(full.embedding.size());
+    std::vector<std::int32_t> next(embedded_offset.begin(), embedded_offset.end() - 1);
     for (std::size_t v = 0; v < full.embedding.size(); ++v) {
-      hung[next[full.embedding[v].cell]++] = static_cast<std::int32_t>(v);
+      embedded[next[full.embedding[v].cell]++] = static_cast<std::int32_t>(v);
     }
   }
   Lattice lattice;
   overlay::Overlay overlay;
   std::int32_t originals = 0;         ///< triangles, fillers counted
   std::vector<std::int32_t> cell_at;  ///< by grid number
-  overlay::AirCells air;
+  overlay::ExteriorCells air;
   /// Grid cells that several cells of the lattice share, because parts of the body pass near each other: all of them as cut
   /// now. The surface is divided by the first that is cut.
   std::unordered_map<std::int64_t, std::vector<CutGridCell>> shared;
@@ -66,7 +66,7 @@ struct CutSurface::Base {
     return out;
   }
 
-  std::vector<std::int32_t> hung_offset, hung;  ///< original vertices by the cell they hang in
+  std::vector<std::int32_t> embedded_offset, embedded;  ///< original vertices by the cell they are embedded in
 };
 
 CutSurface::~CutSurface() = default;
@@ -124,8 +124,8 @@ void CutSurface::update(const std::vector<CutGridCell>& cells) {
     if (patch.triangles.empty()) patch.triangles.push_back(overlay.source().mesh().triangles[t]);
     replace({false, t, 0}, patch, filler ? SurfaceKind::filler : SurfaceKind::original);
   }
-  for (const auto& [v, carrier] : overlay.moved_vertices) hang(v, carrier);
-  for (const CutGridCell& cell : cells) hang_outside(cell);
+  for (const auto& [v, carrier] : overlay.moved_vertices) embed(v, carrier);
+  for (const CutGridCell& cell : cells) embed_outside(cell);
 }
 
 SurfaceChanges CutSurface::take_changes() {
@@ -139,15 +139,15 @@ SurfaceChanges CutSurface::take_changes() {
   return std::exchange(changes_, {});
 }
 
-// Vertices that hang in a cell without lying in any cell that is cut: they go with its nearest corner.
-void CutSurface::hang_outside(const CutGridCell& cell) {
+// Vertices embedded in a cell without lying in any cell that is cut: they go with its nearest corner.
+void CutSurface::embed_outside(const CutGridCell& cell) {
   const std::int32_t own = cell.carrier[0].cell;
-  for (std::int32_t i = base_->hung_offset[own]; i < base_->hung_offset[own + 1]; ++i) {
-    const std::int32_t v = base_->hung[i];
+  for (std::int32_t i = base_->embedded_offset[own]; i < base_->embedded_offset[own + 1]; ++i) {
+    const std::int32_t v = base_->embedded[i];
     if (base_->overlay.holds(v)) continue;
     int corner = 0;
     for (int a = 0; a < 3; ++a) corner |= vertices_[v].local[a] > 0.5 ? 1 << a : 0;
-    hang(v, cell.carrier[cell.label[corner]]);
+    embed(v, cell.carrier[cell.label[corner]]);
   }
 }
 
@@ -206,11 +206,11 @@ std::int32_t CutSurface::vertex(const overlay::CutVertex& v) {
     vertices_[found->second].rest = v.x;
     vertices_[found->second].carrier = {};
   }
-  hang(found->second, v.carrier);
+  embed(found->second, v.carrier);
   return found->second;
 }
 
-void CutSurface::hang(std::int32_t vertex, const Carrier& carrier) {
+void CutSurface::embed(std::int32_t vertex, const Carrier& carrier) {
   CutSurfaceVertex& v = vertices_[vertex];
   if (v.carrier == carrier) return;
   v.carrier = carrier;

@@ -20,8 +20,8 @@ enum class SurfaceKind : std::uint8_t {
   filler  ///< closes a hole of the input surface
 };
 
-/// A vertex hangs in the component of a lattice cell: u = sum_a weight[a] u(node a of that component's element), trilinear at
-/// `local`.
+/// A vertex is embedded in the component of a lattice cell: u = sum_a weight[a] u(node a of that component's element),
+/// trilinear at `local`.
 struct CutSurfaceVertex {
   Vec3d rest{};                ///< [m]
   overlay::Carrier carrier{};  ///< cell of the lattice, and component (0 in a whole cell)
@@ -49,7 +49,7 @@ class CutSurface {
   [[nodiscard]] std::int32_t original_of(std::int32_t triangle) const {
     return owners_[triangle].cap ? -1 : owners_[triangle].what;
   }
-  /// Where a vertex hangs: nodes of `topology` (numbers of CutElements) and trilinear weights, which add up to 1.
+  /// Where a vertex is embedded: nodes of `topology` (numbers of CutElements) and trilinear weights, which add up to 1.
   void embedding(const CutTopology& topology, std::int32_t vertex, std::array<std::int32_t, 8>& nodes,
                  std::array<double, 8>& weights) const;
   /// What differs from when this was called last, or from the surface given. Vertices change when they are new or hang
@@ -68,8 +68,8 @@ class CutSurface {
   void set(std::int32_t slot, const std::array<std::int32_t, 3>& triangle, SurfaceKind kind, const Owner& owner);
   void remove_last_slot(std::vector<std::int32_t>& slots);
   std::int32_t vertex(const overlay::CutVertex& v);
-  void hang(std::int32_t vertex, const overlay::Carrier& carrier);
-  void hang_outside(const overlay::CutGridCell& cell);
+  void embed(std::int32_t vertex, const overlay::Carrier& carrier);
+  void embed_outside(const overlay::CutGridCell& cell);
 
   std::unique_ptr<Base> base_;
   std::vector<CutSurfaceVertex> vertices_;

@@ -350,7 +350,7 @@ void Overlay::locate_vertices(const CellState& state) {
   }
   make_unique(near);
   const CutGrid& grid = source_.grid();
-  if (state.faces.empty()) {  // not divided: where its vertices hang is not decided here
+  if (state.faces.empty()) {  // not divided: how its vertices are embedded is not decided here
     for (const std::int32_t v : near) {
       const auto found = vertex_cell_.find(v);
       if (found != vertex_cell_.end() && found->second == grid.number(state.cell.index)) vertex_cell_.erase(found);

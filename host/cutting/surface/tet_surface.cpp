@@ -20,7 +20,7 @@ struct Key {
 
 class TetSurface {
  public:
-  TetSurface(const CutTopology& cut, const Solid& uncut, SolidSurface& solid) : cut_(cut), uncut_(uncut), solid_(solid) {}
+  TetSurface(const CutTopology& cut, const BodyMesh& uncut, BodySurface& solid) : cut_(cut), uncut_(uncut), solid_(solid) {}
 
   void run() {
     solid_.surface.resize(uncut_.surface.size());
@@ -77,7 +77,7 @@ class TetSurface {
     }
   }
 
-  /// The vertex of this key; the first time it hangs in the cell's copy of a component.
+  /// The vertex of this key; the first time it is embedded in the cell's copy of a component.
   std::int32_t vertex(const Key& key, const Vec3d& rest, std::int32_t cell, int component,
                       const std::array<double, 4>& weight) {
     const auto [at, added] = vertex_of_.try_emplace(key, static_cast<std::int32_t>(solid_.surface.size()));
@@ -261,8 +261,8 @@ class TetSurface {
   }
 
   const CutTopology& cut_;
-  const Solid& uncut_;
-  SolidSurface& solid_;
+  const BodyMesh& uncut_;
+  BodySurface& solid_;
   std::map<NodePair, CutEdge> edges_;
   std::map<Key, std::int32_t> vertex_of_;
   std::vector<std::int32_t> original_;
@@ -270,6 +270,6 @@ class TetSurface {
 
 }  // namespace
 
-void cut_tet_surface(const CutTopology& cut, const Solid& uncut, SolidSurface& solid) { TetSurface(cut, uncut, solid).run(); }
+void cut_tet_surface(const CutTopology& cut, const BodyMesh& uncut, BodySurface& solid) { TetSurface(cut, uncut, solid).run(); }
 
 }  // namespace pliant

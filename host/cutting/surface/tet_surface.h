@@ -3,12 +3,12 @@
 // it is a function of the cut alone.
 #pragma once
 #include "cutting/topology/cut_topology.h"
-#include "model/solid.h"
+#include "model/body_mesh.h"
 
 namespace pliant {
 
 /// Put the divided and capped surface of the uncut body, a volume mesh of tetrahedra, in place of the one that `solid` has. The
 /// vertices of `uncut` keep their numbers; a triangle that is whole, or one piece of it, keeps its own.
-void cut_tet_surface(const CutTopology& cut, const Solid& uncut, SolidSurface& solid);
+void cut_tet_surface(const CutTopology& cut, const BodyMesh& uncut, BodySurface& solid);
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-#include "model/solid.h"
+#include "model/body_mesh.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@ namespace {
 
 bool takes_tets(ElementKind kind) { return kind == ElementKind::tet4 || kind == ElementKind::tet4anp; }
 
-void from_lattice(const Body& body, Solid& solid) {
+void from_lattice(const Body& body, BodyMesh& solid) {
   const TriangleMesh mesh = body.surface_in_memory == nullptr
                                 ? read_surface(body.surface, body.scale, body.translate)
                                 : clean_surface(*body.surface_in_memory, body.surface.string(), body.scale, body.translate);
@@ -51,7 +51,7 @@ void from_lattice(const Body& body, Solid& solid) {
   solid.cells = std::move(lattice.cells);
 }
 
-void from_mesh(const Body& body, Solid& solid) {
+void from_mesh(const Body& body, BodyMesh& solid) {
   const VolumeMesh mesh = read_volume(body.mesh, body.scale, body.translate);
   const bool tets = takes_tets(body.element);
   if (tets ? mesh.tets.empty() : mesh.hexes.empty()) {
@@ -90,7 +90,7 @@ void from_mesh(const Body& body, Solid& solid) {
 }
 
 /// The partition of the uncut lattice's cells holds for their copies; a node is what its elements make of it.
-void spread_to_copies(SolidElements& solid) {
+void spread_to_copies(BodyElements& solid) {
   Partition& partition = solid.partition;
   const std::vector<char> of_cell = std::move(partition.operational);
   partition = {};
@@ -111,9 +111,9 @@ void spread_to_copies(SolidElements& solid) {
 
 }  // namespace
 
-std::vector<Solid> make_solids(const Scene& scene) {
-  std::vector<Solid> solids;
-  for (const Body& body : scene.bodies) solids.push_back(make_solid(body));
+std::vector<BodyMesh> make_body_meshes(const Scene& scene) {
+  std::vector<BodyMesh> solids;
+  for (const Body& body : scene.bodies) solids.push_back(make_body_mesh(body));
   return solids;
 }
 
@@ -125,7 +125,7 @@ std::array<std::int32_t, 8> cell_corners(const std::array<std::int32_t, 4>* tets
   return corners;
 }
 
-void repartition(const Body& body, SolidElements& solid) {
+void repartition(const Body& body, BodyElements& solid) {
   if (body.model.type == ModelType::tled) return;
   const Lattice& lattice = *solid.lattice;
   solid.partition = partition_lattice(body, lattice);
@@ -139,8 +139,8 @@ void repartition(const Body& body, SolidElements& solid) {
   }
 }
 
-Solid make_solid(const Body& body) {
-  Solid solid;
+BodyMesh make_body_mesh(const Body& body) {
+  BodyMesh solid;
   if (body.mesh.empty()) {
     from_lattice(body, solid);
   } else {

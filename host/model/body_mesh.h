@@ -19,7 +19,7 @@ struct NodeOrder {
 };
 
 /// Everything but the surface.
-struct SolidElements {
+struct BodyElements {
   std::vector<Vec3d> nodes;                        ///< rest positions [m]
   std::vector<std::array<std::int32_t, 4>> tets;   ///< positive volume
   std::vector<std::array<std::int32_t, 8>> hexes;  ///< corners in bit order (x, y, z)
@@ -44,12 +44,12 @@ struct SolidElements {
   }
 };
 
-struct SolidSurface {
+struct BodySurface {
   std::vector<Vec3d> surface;  ///< vertices [m]
   std::vector<std::array<std::int32_t, 3>> triangles;
   std::vector<std::array<std::int32_t, 8>> surface_nodes;
   std::vector<std::array<double, 8>> surface_weights;
-  std::vector<std::int32_t> surface_cell;  ///< the lattice cell in which each vertex hangs; empty for a volume mesh
+  std::vector<std::int32_t> surface_cell;  ///< the lattice cell in which each vertex is embedded; empty for a volume mesh
   double surface_volume = 0;               ///< uncut [m^3]
   std::vector<char> triangle_cut;          ///< if the body is cut: whether the triangle lies on a cut
   std::vector<Vec3d> triangle_middle;      ///< ModelBody::triangle_middle
@@ -57,27 +57,27 @@ struct SolidSurface {
   std::optional<SurfaceChanges> changes;   ///< by the last edit; nothing: not known
 };
 
-struct Solid : SolidElements, SolidSurface {};
+struct BodyMesh : BodyElements, BodySurface {};
 
 /// Load the body's mesh and fill it.
-Solid make_solid(const Body& body);
-std::vector<Solid> make_solids(const Scene& scene);
+BodyMesh make_body_mesh(const Body& body);
+std::vector<BodyMesh> make_body_meshes(const Scene& scene);
 
 /// Choose the operational cells of a lattice anew, as body.model says now.
-void repartition(const Body& body, SolidElements& solid);
+void repartition(const Body& body, BodyElements& solid);
 
 /// Like build_model(scene), for bodies that are loaded and filled already; their partition is chosen anew.
-Model build_model(const Scene& scene, std::span<const Solid* const> solids);
-Model build_model(const Scene& scene, const std::vector<Solid>& solids);
+Model build_model(const Scene& scene, std::span<const BodyMesh* const> solids);
+Model build_model(const Scene& scene, const std::vector<BodyMesh>& solids);
 
-/// The first part of it: no surfaces and no boundary conditions, and no look at the SolidSurface of a body, which may be made
+/// The first part of it: no surfaces and no boundary conditions, and no look at the BodySurface of a body, which may be made
 /// meanwhile. `previous`, a model of the same bodies before an edit, lends what did not change.
-Model build_elements(const Scene& scene, std::span<const Solid* const> solids, const Model* previous = nullptr);
+Model build_elements(const Scene& scene, std::span<const BodyMesh* const> solids, const Model* previous = nullptr);
 /// The next one. With `changes`, the model has the surface from before an edit of its only body already, and only these differ.
-void add_surfaces(std::span<const Solid* const> solids, Model& model, const SurfaceChanges* changes = nullptr);
+void add_surfaces(std::span<const BodyMesh* const> solids, Model& model, const SurfaceChanges* changes = nullptr);
 
 /// Density of each element [kg/m^3].
-std::vector<double> densities(const Body& body, const SolidElements& solid);
+std::vector<double> densities(const Body& body, const BodyElements& solid);
 
 /// The corners of a lattice cell from its six tetrahedra (kKuhnTets), which follow each other.
 std::array<std::int32_t, 8> cell_corners(const std::array<std::int32_t, 4>* tets);
@@ -86,7 +86,7 @@ std::array<std::int32_t, 8> cell_corners(const std::array<std::int32_t, 4>* tets
 inline constexpr std::array<int, 8> kVtkFromBits{0, 1, 3, 2, 4, 5, 7, 6};
 
 /// All nodes in Cuthill-McKee order: breadth first over the elements from a node at the far end of each connected part.
-std::vector<std::int32_t> sweep_order(const SolidElements& solid);
-NodeOrder node_order(const SolidElements& solid);
+std::vector<std::int32_t> sweep_order(const BodyElements& solid);
+NodeOrder node_order(const BodyElements& solid);
 
 }  // namespace pliant

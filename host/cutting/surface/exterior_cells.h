@@ -10,11 +10,11 @@
 
 namespace pliant::overlay {
 
-class AirCells {
+class ExteriorCells {
  public:
   /// `cell_at`: the cell of the lattice of each grid number, or -1; has to outlive this object, like `source`.
-  AirCells(const SurfaceSource& source, const std::vector<std::int32_t>& cell_at);
-  ~AirCells();
+  ExteriorCells(const SurfaceSource& source, const std::vector<std::int32_t>& cell_at);
+  ~ExteriorCells();
 
   /// Cells of the lattice that changed, one component or more. Returns the cells of air around them that hold surface, as they
   /// are to be cut now: a function of all cells cut so far.

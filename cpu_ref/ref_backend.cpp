@@ -1,4 +1,4 @@
-#include "backend.h"
+#include "ref_backend.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "model/draft.h"
+#include "model/node_numbering.h"
 
 #include <algorithm>
 
@@ -8,8 +8,8 @@ namespace pliant {
 namespace {
 
 /// Slots from `slot` on for nodes below `real` that have none yet; returns the next slot.
-std::int32_t number_real_nodes(Draft& draft, std::int32_t real, std::int32_t slot) {
-  const SolidElements& solid = draft.solid();
+std::int32_t number_real_nodes(NodeNumbering& draft, std::int32_t real, std::int32_t slot) {
+  const BodyElements& solid = draft.solid();
   const NodeOrder found = solid.uncut_order == nullptr ? node_order(solid) : NodeOrder{};
   const NodeOrder& all = solid.uncut_order == nullptr ? found : *solid.uncut_order;
   std::vector<std::int32_t> order = all.order;
@@ -27,11 +27,11 @@ std::int32_t number_real_nodes(Draft& draft, std::int32_t real, std::int32_t slo
 
 }  // namespace
 
-void number_list_nodes(std::vector<Draft>& drafts, Model& model) {
+void number_list_nodes(std::vector<NodeNumbering>& drafts, Model& model) {
   model.list_base = model.bricks > 0 ? (model.bricks + 1) * PLIANT_BRICK_NODES : 0;
   std::int32_t slot = model.list_base;
-  for (Draft& draft : drafts) {
-    const SolidElements& solid = draft.solid();
+  for (NodeNumbering& draft : drafts) {
+    const BodyElements& solid = draft.solid();
     const auto on_list = [&](std::int32_t n) { return draft.slot[n] < 0 && !solid.matching(static_cast<std::size_t>(n)); };
     const auto nodes = static_cast<std::int32_t>(solid.nodes.size());
     const std::int32_t real = solid.virtual_nodes.first < 0 ? nodes : solid.virtual_nodes.first;

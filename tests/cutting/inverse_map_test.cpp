@@ -1,5 +1,5 @@
 // Where the material at a point is, and where it has carried a point.
-#include "cutting/blade/rest_map.h"
+#include "cutting/blade/inverse_map.h"
 
 #include <gtest/gtest.h>
 
@@ -16,16 +16,16 @@ using namespace cut_test;
 
 vec::Box everywhere() { return {{-1, -1, -1}, {1, 1, 1}}; }
 
-TEST(RestMap, a_point_goes_with_the_material_around_it_and_lies_between_the_sides_of_a_cut) {
+TEST(InverseMap, a_point_goes_with_the_material_around_it_and_lies_between_the_sides_of_a_cut) {
   for (const ElementKind element : {ElementKind::hex8, ElementKind::tet4}) {
-    const Solid uncut = make_solid(box_body("box", {0.03, 0.03, 0.03}, element));
+    const BodyMesh uncut = make_body_mesh(box_body("box", {0.03, 0.03, 0.03}, element));
     CutTopology topology(cut_mesh(uncut, "box"));
     const Vec3d on_cut{0.0155, 0.0142, 0.0133}, beside{0.0235, 0.0142, 0.0133};
-    RestMap map(topology, topology.mesh().rest, everywhere(), 0.01, 0.015);
-    const CarriedPoint first = map.find(on_cut), second = map.find(beside);
+    InverseMap map(topology, topology.mesh().rest, everywhere(), 0.01, 0.015);
+    const MaterialPoint first = map.find(on_cut), second = map.find(beside);
     ASSERT_GE(first.cell, 0);
     EXPECT_LT(vec::norm(vec::sub(first.rest, on_cut)), 1e-12);
-    EXPECT_LT(vec::norm(vec::sub(carried_to(topology, topology.mesh().rest, first), on_cut)), 1e-12);
+    EXPECT_LT(vec::norm(vec::sub(present_position(topology, topology.mesh().rest, first), on_cut)), 1e-12);
 
     cut_at_rest(topology, wall(0.0155));
     std::vector<std::int32_t> piece;
@@ -51,26 +51,26 @@ TEST(RestMap, a_point_goes_with_the_material_around_it_and_lies_between_the_side
       }
     }
     const Vec3d middle = vec::add(on_cut, vec::mul(vec::add(left, right), 0.5));
-    EXPECT_LT(vec::norm(vec::sub(carried_to(topology, x, first), middle)), 1e-12);
-    EXPECT_LT(vec::norm(vec::sub(carried_to(topology, x, second), vec::add(beside, right))), 1e-12);
+    EXPECT_LT(vec::norm(vec::sub(present_position(topology, x, first), middle)), 1e-12);
+    EXPECT_LT(vec::norm(vec::sub(present_position(topology, x, second), vec::add(beside, right))), 1e-12);
 
     // A place in the gap belongs to the nearest side, at the cut.
-    RestMap moved(topology, x, everywhere(), 0.01, 0.015);
-    const CarriedPoint in_gap = moved.find(middle);
+    InverseMap moved(topology, x, everywhere(), 0.01, 0.015);
+    const MaterialPoint in_gap = moved.find(middle);
     ASSERT_GE(in_gap.cell, 0);
     EXPECT_NEAR(in_gap.rest[0], 0.0155, 2e-5);
-    const CarriedPoint inside = moved.find(vec::add(beside, right));
+    const MaterialPoint inside = moved.find(vec::add(beside, right));
     EXPECT_LT(vec::norm(vec::sub(inside.rest, beside)), 1e-12);
     EXPECT_LT(moved.find({0.5, 0, 0}).cell, 0) << "no material is near";
   }
 }
 
 // A node that is not finite takes its elements out of the map, no others.
-TEST(RestMap, elements_without_a_place_hold_nothing) {
-  const Solid uncut = make_solid(box_body("box", {0.03, 0.03, 0.03}));
+TEST(InverseMap, elements_without_a_place_hold_nothing) {
+  const BodyMesh uncut = make_body_mesh(box_body("box", {0.03, 0.03, 0.03}));
   const CutTopology topology(cut_mesh(uncut, "box"));
   const Vec3d inside{0.0165, 0.0142, 0.0133};
-  const CarriedPoint before = RestMap(topology, topology.mesh().rest, everywhere(), 0.01, 0.015).find(inside);
+  const MaterialPoint before = InverseMap(topology, topology.mesh().rest, everywhere(), 0.01, 0.015).find(inside);
   ASSERT_GE(before.cell, 0);
   // A corner of the cell that its tetrahedron around the point does not have.
   const auto& tet = topology.mesh().shape->tets[before.tet];
@@ -78,12 +78,12 @@ TEST(RestMap, elements_without_a_place_hold_nothing) {
   while (std::find(tet.begin(), tet.end(), corner) != tet.end()) ++corner;
   std::vector<Vec3d> x = topology.mesh().rest;
   x[topology.mesh().cells[before.cell][corner]][1] = NAN;
-  RestMap map(topology, x, everywhere(), 0.01, 0.015);
-  const CarriedPoint after = map.find(inside);
+  InverseMap map(topology, x, everywhere(), 0.01, 0.015);
+  const MaterialPoint after = map.find(inside);
   EXPECT_NE(after.cell, before.cell);
   EXPECT_TRUE(after.cell < 0 || vec::finite(after.rest));
   EXPECT_GE(map.find({0.025, 0.025, 0.025}).cell, 0);
-  RestMap part(topology, topology.mesh().rest, {{0.028, 0.028, 0.028}, {0.029, 0.029, 0.029}}, 0.01, 0.002);
+  InverseMap part(topology, topology.mesh().rest, {{0.028, 0.028, 0.028}, {0.029, 0.029, 0.029}}, 0.01, 0.002);
   EXPECT_GE(part.find({0.0285, 0.0285, 0.0285}).cell, 0);
   EXPECT_LT(part.find({0.005, 0.005, 0.005}).cell, 0) << "outside of the region of the map";
 }

@@ -1,4 +1,4 @@
-#include "cutting/blade/blade_front.h"
+#include "cutting/blade/blade_trace.h"
 
 #include <algorithm>
 #include <cmath>
@@ -71,26 +71,26 @@ BladeSweep::BladeSweep(const CutTopology& body, std::span<const Vec3d> x, RestEd
 }
 
 /// Where the points that go with the body are now.
-BladeSweep::Row BladeSweep::stored(const BladeFront& front) const {
+BladeSweep::Row BladeSweep::stored(const BladeTrace& front) const {
   Row row{front.levels, 0, {}};
   if (front.points.empty()) return row;
   row.first = front.points.front().place;
   for (std::int64_t p = row.first; p <= front.points.back().place; ++p) {
     row.vertices.push_back({{}, point_of(front.blade, p, front.levels)});
   }
-  for (const FrontPoint& p : front.points) {
+  for (const TracePoint& p : front.points) {
     Vertex& v = row.vertices[static_cast<std::size_t>(p.place - row.first)];
     if (p.node >= 0) {
       v.now = vec::add(x_[p.node], p.carried.rest);
     } else {
-      v = {p.carried, carried_to(body_, x_, p.carried)};
+      v = {p.carried, present_position(body_, x_, p.carried)};
     }
   }
   return row;
 }
 
 /// Places in reach of the body at any time of the move: [first, last], empty if first > last.
-std::array<std::int64_t, 2> BladeSweep::range(const BladeFront& front, const BladeSegment& to, int levels) const {
+std::array<std::int64_t, 2> BladeSweep::range(const BladeTrace& front, const BladeSegment& to, int levels) const {
   const double places = std::ldexp(1.0, levels);
   double first = HUGE_VAL, last = -HUGE_VAL;
   if (!front.points.empty()) {
@@ -110,19 +110,19 @@ std::array<std::int64_t, 2> BladeSweep::range(const BladeFront& front, const Bla
   return {static_cast<std::int64_t>(std::max(first, 0.0)), static_cast<std::int64_t>(std::min(last, places))};
 }
 
-BladeSweep::Vertex BladeSweep::vertex(const Vec3d& p, RestMap& map) const {
+BladeSweep::Vertex BladeSweep::vertex(const Vec3d& p, InverseMap& map) const {
   Vertex v{{}, p};
   if (reach_.distance2(p) == 0) v.carried = map.find(p);
   return v;
 }
 
-BladeSweep::Row BladeSweep::mapped(int levels, std::int64_t first, const std::vector<Vec3d>& points, RestMap& map) const {
+BladeSweep::Row BladeSweep::mapped(int levels, std::int64_t first, const std::vector<Vec3d>& points, InverseMap& map) const {
   Row row{levels, first, {}};
   for (const Vec3d& p : points) row.vertices.push_back(vertex(p, map));
   return row;
 }
 
-void BladeSweep::move(BladeFront& front, const BladeSegment& to) {
+void BladeSweep::move(BladeTrace& front, const BladeSegment& to) {
   int levels = levels_of(to, edge_);
   while (levels > 0 && range(front, to, levels)[1] - range(front, to, levels)[0] > kMostPlaces) --levels;
   const auto [first, last] = range(front, to, levels);
@@ -153,7 +153,7 @@ void BladeSweep::move(BladeFront& front, const BladeSegment& to) {
   if (from.empty() || begin > finish) return;
   vec::Box region = start;
   region.extend(end);
-  RestMap map(body_, x_, region, edge_, kNear * edge_);
+  InverseMap map(body_, x_, region, edge_, kNear * edge_);
   double longest = 0;
   for (std::size_t i = 0; i < from.size(); ++i) longest = std::max(longest, vec::norm(vec::sub(until[i], from[i])));
   const double wanted = std::ceil(longest * (finish - begin) / (kSpacing * edge_));
@@ -224,10 +224,10 @@ void BladeSweep::triangle(const Vertex* a, const Vertex* b, const Vertex* c) {
   });
 }
 
-void BladeSweep::keep(BladeFront& front, const Row& last) const {
+void BladeSweep::keep(BladeTrace& front, const Row& last) const {
   for (std::size_t i = 0; i < last.vertices.size(); ++i) {
     const Vertex& v = last.vertices[i];
-    FrontPoint point{static_cast<std::int32_t>(last.first + static_cast<std::int64_t>(i)), -1, v.carried};
+    TracePoint point{static_cast<std::int32_t>(last.first + static_cast<std::int64_t>(i)), -1, v.carried};
     if (v.carried.cell < 0) {
       if (reach_.distance2(v.now) > 0) continue;
       point.node = nearest_node(v.now);

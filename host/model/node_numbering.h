@@ -3,15 +3,15 @@
 #include <optional>
 #include <vector>
 
-#include "model/solid.h"
+#include "model/body_mesh.h"
 
 namespace pliant {
 
 /// Everything about one body that is known before its list nodes have slots.
-struct Draft {
-  const Solid* given = nullptr;
-  std::optional<SolidElements> own;  ///< with a partition of its own
-  [[nodiscard]] const SolidElements& solid() const { return own ? *own : *given; }
+struct NodeNumbering {
+  const BodyMesh* given = nullptr;
+  std::optional<BodyElements> own;  ///< with a partition of its own
+  [[nodiscard]] const BodyElements& solid() const { return own ? *own : *given; }
   std::vector<int> material;
   std::vector<char> in_brick;
   std::vector<std::int32_t> slot;
@@ -20,6 +20,6 @@ struct Draft {
 /// Slots for the nodes outside the bricks: body by body in Cuthill-McKee order, so that the nodes of one element stand as close
 /// as the cross-section of the body allows (sweeping through the elements then finds them in the cache), and inside windows of
 /// 256 nodes by the number of elements they touch, so that the rows of a tile's gather list are nearly full.
-void number_list_nodes(std::vector<Draft>& drafts, Model& model);
+void number_list_nodes(std::vector<NodeNumbering>& drafts, Model& model);
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-#include "cutting/surface/cut_air.h"
+#include "cutting/surface/exterior_cells.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -18,7 +18,7 @@ GridIndex sum(const GridIndex& a, const GridIndex& b) { return {a[0] + b[0], a[1
 }  // namespace
 
 // The corners around one corner: which of them material of the lattice joins inside the block, and the plane of the cut there.
-struct AirCells::Block {
+struct ExteriorCells::Block {
   std::array<std::int16_t, kSide * kSide * kSide> joined{};  // -1: no cell of the lattice has the corner
   std::array<double, kSide * kSide * kSide> side{};          // of a set: mean distance of its corners from the plane
   bool plane = false;
@@ -31,23 +31,23 @@ struct AirCells::Block {
   [[nodiscard]] double distance(const Vec3d& x) const { return vec::dot(normal, vec::sub(x, middle)); }
 };
 
-AirCells::AirCells(const SurfaceSource& source, const std::vector<std::int32_t>& cell_at)
+ExteriorCells::ExteriorCells(const SurfaceSource& source, const std::vector<std::int32_t>& cell_at)
     : source_(source), cell_at_(cell_at) {}
-AirCells::~AirCells() = default;
+ExteriorCells::~ExteriorCells() = default;
 
-std::int32_t AirCells::lattice_cell(const GridIndex& cell) const {
+std::int32_t ExteriorCells::lattice_cell(const GridIndex& cell) const {
   for (int a = 0; a < 3; ++a) {
     if (cell[a] < 0 || cell[a] >= source_.grid().size[a]) return -1;
   }
   return cell_at_[source_.grid().number(cell)];
 }
 
-const CutGridCell* AirCells::cut_cell(const GridIndex& cell) const {
+const CutGridCell* ExteriorCells::cut_cell(const GridIndex& cell) const {
   const auto found = cut_.find(source_.grid().number(cell));
   return found == cut_.end() ? nullptr : &found->second;
 }
 
-const AirCells::Block& AirCells::block(const GridIndex& centre) {
+const ExteriorCells::Block& ExteriorCells::block(const GridIndex& centre) {
   const auto [found, is_new] = blocks_.try_emplace(source_.grid().number(centre));
   Block& block = found->second;
   if (!is_new) return block;
@@ -108,7 +108,7 @@ const AirCells::Block& AirCells::block(const GridIndex& centre) {
 }
 
 // The corner of the lattice that a corner in air goes with: the nearest one on its side of the cut.
-GridIndex AirCells::anchor(const GridIndex& corner) {
+GridIndex ExteriorCells::anchor(const GridIndex& corner) {
   for (int c = 0; c < 8; ++c) {
     if (lattice_cell(sum(corner, {-(c & 1), -(c >> 1 & 1), -(c >> 2 & 1)})) >= 0) return corner;
   }
@@ -134,7 +134,7 @@ GridIndex AirCells::anchor(const GridIndex& corner) {
 }
 
 // Where an edge is cut, from its lower corner; -1 if it is not.
-double AirCells::crossing(const GridIndex& a, const GridIndex& b) {
+double ExteriorCells::crossing(const GridIndex& a, const GridIndex& b) {
   bool known = false;
   for (int c = 0; c < 8; ++c) {  // a cell that has both ends
     const GridIndex cell = sum(a, {-(c & 1), -(c >> 1 & 1), -(c >> 2 & 1)});
@@ -153,7 +153,7 @@ double AirCells::crossing(const GridIndex& a, const GridIndex& b) {
 }
 
 // The component of the lattice next to a cell of air that holds a corner: of the cell that is nearest.
-Carrier AirCells::carrier(const GridIndex& cell, const GridIndex& corner) {
+Carrier ExteriorCells::carrier(const GridIndex& cell, const GridIndex& corner) {
   Carrier best;
   int least = 100;
   for (int c = 0; c < 8; ++c) {
@@ -170,7 +170,7 @@ Carrier AirCells::carrier(const GridIndex& cell, const GridIndex& corner) {
   return best;
 }
 
-CutGridCell AirCells::cut(const GridIndex& index) {
+CutGridCell ExteriorCells::cut(const GridIndex& index) {
   CutGridCell cell;
   cell.index = index;
   cell.air = true;
@@ -198,7 +198,7 @@ CutGridCell AirCells::cut(const GridIndex& index) {
   return cell;
 }
 
-std::vector<CutGridCell> AirCells::update(const std::vector<CutGridCell>& changed) {
+std::vector<CutGridCell> ExteriorCells::update(const std::vector<CutGridCell>& changed) {
   blocks_.clear();
   std::set<GridIndex> around;
   for (const CutGridCell& cell : changed) {

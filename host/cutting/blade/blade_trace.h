@@ -8,24 +8,24 @@
 #include <vector>
 
 #include "cutting/blade/blade.h"
+#include "cutting/blade/inverse_map.h"
 #include "cutting/blade/rest_edges.h"
-#include "cutting/blade/rest_map.h"
 #include "cutting/topology/cut_topology.h"
 
 namespace pliant {
 
 /// A point of a blade that goes with the body.
-struct FrontPoint {
+struct TracePoint {
   std::int32_t place = 0;  ///< along the blade: place / 2^levels of the way from its first end
   std::int32_t node = -1;  ///< with no material near: the real node that it goes with, `carried.rest` being the offset [m]
-  CarriedPoint carried{};
+  MaterialPoint carried{};
 };
 
 /// Where a blade stood last.
-struct BladeFront {
+struct BladeTrace {
   BladeSegment blade{};
   int levels = 0;
-  std::vector<FrontPoint> points;  ///< ascending places; the others are where they were
+  std::vector<TracePoint> points;  ///< ascending places; the others are where they were
 };
 
 inline constexpr int kMostLevels = 30;  ///< of a blade: it may be 2^29 edges long
@@ -38,13 +38,13 @@ class BladeSweep {
   /// Whether a blade in this box [m] comes so near the body that it has to be followed.
   [[nodiscard]] bool reaches(const vec::Box& box) const { return reach_.overlaps(box); }
   /// Sweep from the front to the blade's next place, which becomes the front. Both along straight lines as seen now.
-  void move(BladeFront& front, const BladeSegment& to);
+  void move(BladeTrace& front, const BladeSegment& to);
   /// Edges crossed so far that are not cut yet. An edge crossed several times is cut where it was crossed first.
   [[nodiscard]] const CutEdges& crossed() const { return crossed_; }
 
  private:
   struct Vertex {
-    CarriedPoint carried{};
+    MaterialPoint carried{};
     Vec3d now{};
   };
   struct Row {
@@ -58,13 +58,13 @@ class BladeSweep {
                  : nullptr;
     }
   };
-  [[nodiscard]] Row stored(const BladeFront& front) const;
+  [[nodiscard]] Row stored(const BladeTrace& front) const;
   void strip(const Row& a, const Row& b);
   void triangle(const Vertex* a, const Vertex* b, const Vertex* c);
-  [[nodiscard]] std::array<std::int64_t, 2> range(const BladeFront& front, const BladeSegment& to, int levels) const;
-  [[nodiscard]] Vertex vertex(const Vec3d& p, RestMap& map) const;
-  [[nodiscard]] Row mapped(int levels, std::int64_t first, const std::vector<Vec3d>& points, RestMap& map) const;
-  void keep(BladeFront& front, const Row& last) const;
+  [[nodiscard]] std::array<std::int64_t, 2> range(const BladeTrace& front, const BladeSegment& to, int levels) const;
+  [[nodiscard]] Vertex vertex(const Vec3d& p, InverseMap& map) const;
+  [[nodiscard]] Row mapped(int levels, std::int64_t first, const std::vector<Vec3d>& points, InverseMap& map) const;
+  void keep(BladeTrace& front, const Row& last) const;
   [[nodiscard]] std::int32_t nearest_node(const Vec3d& p) const;
 
   const CutTopology& body_;

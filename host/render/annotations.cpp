@@ -1,4 +1,4 @@
-#include "render/overlay.h"
+#include "render/annotations.h"
 
 #include <fmt/format.h>
 

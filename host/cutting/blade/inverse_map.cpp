@@ -1,4 +1,4 @@
-#include "cutting/blade/rest_map.h"
+#include "cutting/blade/inverse_map.h"
 
 #include <algorithm>
 #include <cmath>
@@ -54,7 +54,7 @@ vec::Box grown(vec::Box box, double by) {
 
 }  // namespace
 
-Vec3d carried_to(const CutTopology& body, std::span<const Vec3d> x, const CarriedPoint& point) {
+Vec3d present_position(const CutTopology& body, std::span<const Vec3d> x, const MaterialPoint& point) {
   const auto in = [&](std::int32_t element) {
     Vec3d p{};
     for (std::size_t a = 0; a < 4; ++a) {
@@ -76,7 +76,7 @@ Vec3d carried_to(const CutTopology& body, std::span<const Vec3d> x, const Carrie
   return count > 0 ? vec::mul(sum, 1 / count) : in(point.cell);
 }
 
-RestMap::RestMap(const CutTopology& body, std::span<const Vec3d> x, const vec::Box& region, double edge, double reach)
+InverseMap::InverseMap(const CutTopology& body, std::span<const Vec3d> x, const vec::Box& region, double edge, double reach)
     : body_(body), x_(x), edge_(edge), reach_(reach), hash_(1.5 * edge) {
   const vec::Box near = grown(region, reach);
   // Beyond which sides of the region a node lies: an element is far where all its nodes lie beyond one side.
@@ -104,8 +104,8 @@ RestMap::RestMap(const CutTopology& body, std::span<const Vec3d> x, const vec::B
   }
 }
 
-CarriedPoint RestMap::find(const Vec3d& p) {
-  CarriedPoint out;
+MaterialPoint InverseMap::find(const Vec3d& p) {
+  MaterialPoint out;
   if (all_.distance2(p) >= reach_ * reach_) return out;
   const vec::Box box{p, p};
   hits_.clear();
@@ -129,20 +129,20 @@ CarriedPoint RestMap::find(const Vec3d& p) {
   return best.point;
 }
 
-std::array<Vec3d, 4> RestMap::corners(std::int32_t element, int tet) const {
+std::array<Vec3d, 4> InverseMap::corners(std::int32_t element, int tet) const {
   std::array<Vec3d, 4> out;
   for (std::size_t a = 0; a < 4; ++a) out[a] = x_[body_.elements().nodes[element][body_.mesh().shape->tets[tet][a]]];
   return out;
 }
 
-std::array<Vec3d, 4> RestMap::rest_corners(std::int32_t cell, int tet) const {
+std::array<Vec3d, 4> InverseMap::rest_corners(std::int32_t cell, int tet) const {
   std::array<Vec3d, 4> out;
   for (std::size_t a = 0; a < 4; ++a) out[a] = body_.mesh().rest[body_.mesh().cells[cell][body_.mesh().shape->tets[tet][a]]];
   return out;
 }
 
 /// Which places of a tetrahedron belong to an element's own part, not its virtual one.
-class RestMap::OwnPart {
+class InverseMap::OwnPart {
  public:
   OwnPart(const CutTopology& body, std::int32_t element, int tet)
       : body_(body), element_(element), cell_(body.elements().cell[element]), tet_(tet) {
@@ -165,7 +165,7 @@ class RestMap::OwnPart {
   std::optional<TetDivision> division_;  ///< of one that has corners in several parts
 };
 
-bool RestMap::inside(std::int32_t element, const Vec3d& p, CarriedPoint& out) const {
+bool InverseMap::inside(std::int32_t element, const Vec3d& p, MaterialPoint& out) const {
   const auto tets = static_cast<int>(body_.mesh().shape->tets.size());
   for (int t = 0; t < tets; ++t) {
     const Weights w = barycentric(corners(element, t), p);
@@ -178,7 +178,7 @@ bool RestMap::inside(std::int32_t element, const Vec3d& p, CarriedPoint& out) co
 }
 
 /// Move a place in an element's virtual part to the face of the cut, on the way to one of the element's real corners.
-bool RestMap::to_own_part(std::int32_t element, int tet, const OwnPart& part, Weights& weight) const {
+bool InverseMap::to_own_part(std::int32_t element, int tet, const OwnPart& part, Weights& weight) const {
   const auto& corner = body_.mesh().shape->tets[tet];
   int real = -1;
   for (int a = 0; a < 4; ++a) {
@@ -197,7 +197,7 @@ bool RestMap::to_own_part(std::int32_t element, int tet, const OwnPart& part, We
   return true;
 }
 
-void RestMap::nearest(std::int32_t element, const Vec3d& p, Best& best) const {
+void InverseMap::nearest(std::int32_t element, const Vec3d& p, Best& best) const {
   const auto tets = static_cast<int>(body_.mesh().shape->tets.size());
   const std::int32_t cell = body_.elements().cell[element];
   for (int t = 0; t < tets; ++t) {
