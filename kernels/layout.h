@@ -16,16 +16,17 @@
 #define PLIANT_BRICK_ROWS 25
 #define PLIANT_BRICK_FORCE 1280
 #define PLIANT_BRICK_FORCE_X16 1200
-// brick_neighbor: 8 bricks at (+x, +y, +z) by bit mask (0 is the brick itself), then 8 at (-x, -y, -z); absent: the empty brick.
+// brick_neighbor: 8 bricks at (+x, +y, +z) by bit mask (0 is the brick itself), then 8 at (-x, -y, -z); absent: the empty
+// brick.
 #define PLIANT_BRICK_NEIGHBORS 16
 // brick_rows: per brick the rows (bit 4 z + y) that hold a cell, and the rows that hold a node; the others are left out.
 
 // Planes per tile.
-#define PLIANT_TET_DATA_PLANES 10   // dN1..dN3 / dX (9) [1/m], volume [m^3]
+#define PLIANT_TET_DATA_PLANES 10       // dN1..dN3 / dX (9) [1/m], volume [m^3]
 #define PLIANT_HEX_DATA_PLANES 58       // b (24) [1/m], gamma (32), V [m^3], k [N/m]
 #define PLIANT_HEXFULL_DATA_PLANES 200  // 8 points x (grad N (24) [1/m], weight [m^3])
-#define PLIANT_TET_FORCE_PLANES 12  // 4 corners x 3 components [N]
-#define PLIANT_HEX_FORCE_PLANES 24  // 8 corners x 3 components [N]
+#define PLIANT_TET_FORCE_PLANES 12      // 4 corners x 3 components [N]
+#define PLIANT_HEX_FORCE_PLANES 24      // 8 corners x 3 components [N]
 
 // Shape matching: numbers per region record (four blocks of four), planes of a region's data at rest per tile.
 #define PLIANT_FLSM_RECORD 16

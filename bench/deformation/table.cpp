@@ -63,7 +63,8 @@ std::string accuracy_table(const json& rows) {
 std::string deformation_table(const json& result) {
   const json& rows = result["rows"];
   std::vector<std::pair<std::string, std::string>> tables;
-  if (has_part(rows, "scenes")) tables.emplace_back("Published scenes (Hybrid Deformation Model); the limit is per step [ms]", scenes_table(rows));
+  if (has_part(rows, "scenes"))
+    tables.emplace_back("Published scenes (Hybrid Deformation Model); the limit is per step [ms]", scenes_table(rows));
   if (has_part(rows, "scaling"))
     tables.emplace_back("The liver of more nodes; the limit is per node [ns]", scaling_table(rows));
   if (has_part(rows, "accuracy")) {

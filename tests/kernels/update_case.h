@@ -48,7 +48,7 @@ inline Reals node_w_texels(Random& random, std::size_t nodes, Data data) {
 }
 
 /// With every other seed, increments below a floor are none.
-inline Reals step_parameters(std::uint32_t seed) { 
+inline Reals step_parameters(std::uint32_t seed) {
   return {1e-3, 0.1, -9.81, 0.25, seed % 2 != 0 ? 2e-5 : 0, seed % 3 != 0 ? 0.03125 : 0, 0, 0};
 }
 

@@ -38,6 +38,52 @@ for file in "${!exception[@]}"; do
   [ -f "$file" ] || report "$file: is gone; remove its exception from tests/meta/size_exceptions.txt"
 done
 
+# Functions at the margin of a .cpp file (clang-format puts their last brace there) have 60 lines, from the first of their own to that
+# brace. Exceptions: file, the function as its first line names it, its own limit, why.
+declare -A long_function=() long_seen=()
+if [ -f tests/meta/function_exceptions.txt ]; then
+  while read -r file name limit _; do
+    [[ -z $file || $file == \#* ]] || long_function[$file $name]=$limit
+  done <tests/meta/function_exceptions.txt
+fi
+while IFS=: read -r file line lines name; do
+  key="$file $name"
+  long_seen[$key]=1
+  [ "$lines" -le "${long_function[$key]:-60}" ] || report "$file:$line: $name has $lines lines, allowed are ${long_function[$key]:-60}"
+done < <(awk '
+  FNR == 1 { start = 0; open = 0; raw = 0 }
+  raw { if (index($0, close_)) raw = 0; next }
+  match($0, /R"[a-z_]*\(/) {
+    close_ = ")" substr($0, RSTART + 2, RLENGTH - 3) "\""
+    raw = index(substr($0, RSTART + RLENGTH), close_) == 0
+  }
+  !open && /^[A-Za-z_~[]/ && !/^(namespace|struct|class|enum|union|using|typedef|static_assert|extern) / { start = FNR; name = $0 }
+  start && !open && /\{$/ { if (name ~ /\(/) open = 1; else start = 0 }
+  start && !open && /[;}]$/ { start = 0 }  # a declaration, or a function of one line
+  /^}/ {
+    if (open && FNR - start >= 60) {
+      sub(/\(.*/, "", name)
+      sub(/.*[ &*]/, "", name)
+      printf "%s:%d:%d:%s\n", FILENAME, start, FNR - start + 1, name
+    }
+    start = 0
+    open = 0
+  }' host/**/*.cpp cpu_ref/*.cpp bench/**/*.cpp scenes/**/*.cpp examples/**/*.cpp python/*.cpp tests/**/*.cpp /dev/null)
+for key in "${!long_function[@]}"; do
+  [ -n "${long_seen[$key]:-}" ] || report "$key needs no exception any more: tests/meta/function_exceptions.txt"
+done
+
+# --- words that strangers do not know --------------------------------------------------------------------------------------------
+# One extended regular expression a line, matched as a word and whatever its case; what stands in git is searched.
+if [ -f tests/meta/banned_words.txt ] && git rev-parse --is-inside-work-tree >/dev/null 2>&1; then
+  while IFS= read -r word; do
+    [[ -z $word || $word == \#* ]] && continue
+    while IFS= read -r place; do
+      report "$place: \"$word\" is banned by tests/meta/banned_words.txt"
+    done < <(git grep -nwiEI -e "$word" -- . ':!tests/meta/banned_words.txt' ':!tests/meta/house_rules_test.sh' | cut -d: -f1-2)
+  done <tests/meta/banned_words.txt
+fi
+
 # --- who includes whom ---------------------------------------------------------------------------------------------------------
 # includes FILE: what it includes, with its brackets or quotes.
 includes() { sed -nE 's/^[[:space:]]*#[[:space:]]*include[[:space:]]*([<"][^>"]+[>"]).*/\1/p' "$1"; }

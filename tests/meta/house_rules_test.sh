@@ -20,6 +20,15 @@ printf '#include <fmt/format.h>\n' >include/pliant/api.h
 printf '#include "model/mesh.h"\n#include <CL/cl.h>\n' >host/scene/load.cpp
 printf '#include "turn.cl"\n' >host/model/text.cpp
 printf '#include "opencl/devices.h"\n' >host/cli/devices.cpp
+printf 'host/io/folded.cpp fold 70 it was long\n' >tests/meta/function_exceptions.txt
+{
+  printf 'namespace pliant {\nint endless(int a,\n            int b) {\n  const char* text = R"(\nvoid inner() {\n}\n)";\n'
+  yes '  a += b;' | head -n 60 || true
+  printf '  return a;\n}\nint brief() { return 1; }\nstruct Kept {\n  int x = 0;\n};\n}  // namespace pliant\n'
+} >host/io/endless.cpp
+printf 'frobnicate\n' >tests/meta/banned_words.txt
+printf '// Frobnicate the nodes.\n' >host/io/words.cpp
+git init -q . && git add host/io/words.cpp
 found=$(bash "$source/tests/meta/house_rules.sh" "$tree") && { echo 'a tree that breaks every rule passed'; exit 1; }
 missing=0
 expect() {
@@ -27,6 +36,9 @@ expect() {
 }
 expect '^kernels/long\.cl: 151 lines, allowed are 150'
 expect '^host/io/long\.cpp: 401 lines, allowed are 400'
+expect '^host/io/endless\.cpp:2: endless has 68 lines, allowed are 60'
+expect '^host/io/folded\.cpp fold needs no exception'
+expect '^host/io/words\.cpp:1: "frobnicate" is banned'
 expect '^host/io/long\.h: 201 lines, allowed are 200'
 expect '^host/io/short\.cpp: 1 lines need no exception'
 expect '^host/io/gone\.cpp: is gone'
