@@ -8,7 +8,8 @@
 #define PLIANT_LAWS(LAW) \
   LAW(neo_hookean, NeoHookean) \
   LAW(saint_venant_kirchhoff, SaintVenantKirchhoff) \
-  LAW(isochoric_neo_hookean, IsochoricNeoHookean)
+  LAW(isochoric_neo_hookean, IsochoricNeoHookean) \
+  LAW(mooney_rivlin, MooneyRivlin)
 // clang-format on
 
 namespace pliant {

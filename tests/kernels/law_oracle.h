@@ -61,6 +61,8 @@ Textbook<Number> textbook(Law law, const Number (&f)[9], const std::vector<doubl
       return {p[1] / 8 * (k.i1 - 3) * (k.i1 - 3) + p[0] / 4 * (k.c_squared - 2 * k.i1 + 3), 0};
     case Law::isochoric_neo_hookean:  // mu, kappa
       return {p[0] / 2 * (pow(k.j, -2.0 / 3) * k.i1 - 3), p[1]};
+    case Law::mooney_rivlin:  // c10, c01, kappa
+      return {p[0] * (pow(k.j, -2.0 / 3) * k.i1 - 3) + p[1] * (pow(k.j, -4.0 / 3) * k.i2 - 3), p[2]};
   }
   return {};
 }
