@@ -9,7 +9,8 @@
   LAW(neo_hookean, NeoHookean) \
   LAW(saint_venant_kirchhoff, SaintVenantKirchhoff) \
   LAW(isochoric_neo_hookean, IsochoricNeoHookean) \
-  LAW(mooney_rivlin, MooneyRivlin)
+  LAW(mooney_rivlin, MooneyRivlin) \
+  LAW(yeoh, Yeoh)
 // clang-format on
 
 namespace pliant {

@@ -63,6 +63,10 @@ Textbook<Number> textbook(Law law, const Number (&f)[9], const std::vector<doubl
       return {p[0] / 2 * (pow(k.j, -2.0 / 3) * k.i1 - 3), p[1]};
     case Law::mooney_rivlin:  // c10, c01, kappa
       return {p[0] * (pow(k.j, -2.0 / 3) * k.i1 - 3) + p[1] * (pow(k.j, -4.0 / 3) * k.i2 - 3), p[2]};
+    case Law::yeoh: {  // c10, c20, c30, kappa
+      const Number x = pow(k.j, -2.0 / 3) * k.i1 - 3;
+      return {x * (p[0] + x * (p[1] + x * p[2])), p[3]};
+    }
   }
   return {};
 }
