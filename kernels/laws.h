@@ -10,7 +10,8 @@
   LAW(saint_venant_kirchhoff, SaintVenantKirchhoff) \
   LAW(isochoric_neo_hookean, IsochoricNeoHookean) \
   LAW(mooney_rivlin, MooneyRivlin) \
-  LAW(yeoh, Yeoh)
+  LAW(yeoh, Yeoh) \
+  LAW(stable_neo_hookean, StableNeoHookean)
 // clang-format on
 
 namespace pliant {
