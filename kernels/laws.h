@@ -8,7 +8,10 @@
 #define PLIANT_LAWS(LAW) \
   LAW(neo_hookean, NeoHookean) \
   LAW(saint_venant_kirchhoff, SaintVenantKirchhoff) \
-  LAW(isochoric_neo_hookean, IsochoricNeoHookean)
+  LAW(isochoric_neo_hookean, IsochoricNeoHookean) \
+  LAW(mooney_rivlin, MooneyRivlin) \
+  LAW(yeoh, Yeoh) \
+  LAW(stable_neo_hookean, StableNeoHookean)
 // clang-format on
 
 namespace pliant {

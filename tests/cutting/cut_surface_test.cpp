@@ -174,7 +174,7 @@ TEST(CutSurface, a_cut_that_ends_inside_leaves_one_closed_piece) {
     body.expect_closed();
     ASSERT_EQ(body.pieces().size(), 1U) << name;
     EXPECT_EQ(body.pieces()[0].euler(), 2) << name;
-    EXPECT_GT(body.cut_surface->topology_version(), 0);
+    EXPECT_FALSE(body.cut_surface->take_changes().triangles.empty());
   }
 }
 
@@ -243,12 +243,11 @@ TEST(CutSurface, numbers_are_stable) {
   const auto first = body.cut_surface->vertices();
   const auto triangles = body.cut_surface->triangles();
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) ASSERT_EQ(first[v].rest, mesh.vertices[v]);
-  const std::int64_t version = body.cut_surface->topology_version();
   static_cast<void>(body.cut_surface->take_changes());
   body.cut({-0.05, 0, 0}, {1, 0.1, 0});
-  EXPECT_EQ(body.cut_surface->topology_version(), version + 1);
   for (std::size_t v = 0; v < first.size(); ++v) ASSERT_EQ(body.cut_surface->vertices()[v].rest, first[v].rest);
   const SurfaceChanges changes = body.cut_surface->take_changes();
+  EXPECT_FALSE(changes.triangles.empty());
   for (std::size_t v = 0; v < body.cut_surface->vertices().size(); ++v) {
     if (std::binary_search(changes.vertices.begin(), changes.vertices.end(), static_cast<std::int32_t>(v))) continue;
     ASSERT_LT(v, first.size());

@@ -61,6 +61,17 @@ Textbook<Number> textbook(Law law, const Number (&f)[9], const std::vector<doubl
       return {p[1] / 8 * (k.i1 - 3) * (k.i1 - 3) + p[0] / 4 * (k.c_squared - 2 * k.i1 + 3), 0};
     case Law::isochoric_neo_hookean:  // mu, kappa
       return {p[0] / 2 * (pow(k.j, -2.0 / 3) * k.i1 - 3), p[1]};
+    case Law::mooney_rivlin:  // c10, c01, kappa
+      return {p[0] * (pow(k.j, -2.0 / 3) * k.i1 - 3) + p[1] * (pow(k.j, -4.0 / 3) * k.i2 - 3), p[2]};
+    case Law::yeoh: {  // c10, c20, c30, kappa
+      const Number x = pow(k.j, -2.0 / 3) * k.i1 - 3;
+      return {x * (p[0] + x * (p[1] + x * p[2])), p[3]};
+    }
+    case Law::stable_neo_hookean: {  // mu, lambda of linear elasticity
+      const double mu = 4 * p[0] / 3, lambda = p[1] + 5 * p[0] / 6, alpha = 1 + mu / lambda - mu / (4 * lambda);
+      const Number volume = lambda / 2 * ((k.j - alpha) * (k.j - alpha) - (k.j - 1) * (k.j - 1));  // beside U(J)
+      return {mu / 2 * (k.i1 - 3) - mu / 2 * log(k.i1 + 1) + volume, lambda};
+    }
   }
   return {};
 }

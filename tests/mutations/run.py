@@ -207,9 +207,6 @@ def try_one(mutation, baseline, log):
     except Bad as bad:
         return STALE, str(bad)
     for command in mutation.tests:
-        if command not in baseline:
-            who, ran = notice(command, log)
-            baseline[command] = f"{who} fails without it" if who else "" if ran else "no test ran without it"
         if baseline[command]:
             return BAD_TEST, f"{command}: {baseline[command]}"
     try:
@@ -263,6 +260,9 @@ def main():
         targets = sorted({target for m in missing for target in m.build})
         print(f"== building {' '.join(targets)} in {COPY.relative_to(ROOT)}", flush=True)
         build(targets, log)
+        for command in dict.fromkeys(command for m in missing for command in m.tests):
+            who, ran = notice(command, log)
+            baseline[command] = f"{who} fails without it" if who else "" if ran else "no test ran without it"
     for m in missing:
         start = time.monotonic()
         result, remark = try_one(m, baseline, log)

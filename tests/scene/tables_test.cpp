@@ -66,8 +66,8 @@ std::string pretty(const Json& value, std::size_t indent = 0, std::size_t around
   return (value.is_object() ? "{\n" : "[\n") + text + std::string(indent, ' ') + (value.is_object() ? "}" : "]");
 }
 
-Json bounds(const ParameterInfo& p, const std::string& description) {
-  Json number{{"description", description}, {"type", "number"}};
+Json bounds(const ParameterInfo& p) {
+  Json number{{"description", std::string(p.what) + " [" + p.unit + "]"}};
   if (p.lower == least_modulus) {
     number["exclusiveMinimum"] = 0;
   } else {
@@ -100,13 +100,16 @@ void set_laws(Json& material) {
   for (const Law law : all_laws()) {
     const LawInfo& info = law_info(law);
     if (info.takes_moduli) continue;
-    for (const ParameterInfo& p : info.parameters) {
-      std::string what = p.what;
-      what[0] = static_cast<char>(std::toupper(what[0]));
-      if (!properties.contains(p.name)) properties[p.name] = bounds(p, what + " [" + p.unit + "]");
-    }
     ways.push_back(only(elastic_keys(info), {{"const", info.word}}));
     ways.back()["required"].insert(ways.back()["required"].begin(), "law");
+    for (const ParameterInfo& p : info.parameters) {
+      if (!properties.contains(p.name)) {
+        properties[p.name] = {{"description", std::string("A parameter of ") + info.word}, {"type", "number"}};
+      } else if (properties[p.name]["description"].get<std::string>().rfind("A parameter of ", 0) == 0) {
+        properties[p.name]["description"] = properties[p.name]["description"].get<std::string>() + ", " + info.word;
+      }
+      ways.back()["properties"][p.name] = bounds(p);
+    }
   }
   for (const auto& [key, value] : material["properties"].items()) {
     if (!properties.contains(key)) {
