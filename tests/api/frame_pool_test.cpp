@@ -50,7 +50,8 @@ TEST(FramePool, ChangedRangesAreTheSmallest) {
     ASSERT_LE(range.first + range.count, to.size());
     const auto same = [&](std::size_t i) { return i < from.size() && from[i] == to[i]; };
     for (std::size_t i = 0; i < to.size(); ++i) {
-      if (!same(i)) ASSERT_TRUE(holds(range, i)) << trial;
+      if (same(i)) continue;
+      ASSERT_TRUE(holds(range, i)) << trial;
     }
     if (range.count > 0) {
       EXPECT_FALSE(same(range.first));

@@ -8,6 +8,7 @@
 #include "scene/keys.h"
 #include "scene/schema_check.h"
 #include "support/error_of.h"
+#include "support/source_dir.h"
 
 namespace pliant {
 namespace {
@@ -24,7 +25,7 @@ Scene scene_with(Law law) {
 
 class EveryLaw : public ::testing::Test {
  protected:
-  EveryLaw() : schema_(Json::parse(std::ifstream(std::string(PLIANT_SOURCE_DIR) + "/scenes/schema.json"))) {}
+  EveryLaw() : schema_(Json::parse(std::ifstream(test::source_dir() + "/scenes/schema.json"))) {}
 
   /// Neither the loader nor the schema takes the file; the loader's message holds `text`.
   void expect_refused(const Json& file, const std::string& text) {

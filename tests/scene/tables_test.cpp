@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "scene/keys.h"
+#include "support/source_dir.h"
 
 namespace pliant {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string file_text(const std::string& name) {
-  std::ifstream stream(std::filesystem::path(PLIANT_SOURCE_DIR) / name);
+  std::ifstream stream(std::filesystem::path(test::source_dir()) / name);
   EXPECT_TRUE(stream) << name;
   std::ostringstream text;
   text << stream.rdbuf();
@@ -25,7 +26,7 @@ std::string file_text(const std::string& name) {
 
 void expect_file(const std::string& name, const std::string& expected) {
   if (std::getenv("PLIANT_WRITE_TABLES") != nullptr) {
-    std::ofstream(std::filesystem::path(PLIANT_SOURCE_DIR) / name) << expected;
+    std::ofstream(std::filesystem::path(test::source_dir()) / name) << expected;
     return;
   }
   const std::string found = file_text(name);

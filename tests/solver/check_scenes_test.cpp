@@ -9,6 +9,7 @@
 
 #include "scene/scene.h"
 #include "solver/scenes.h"
+#include "support/source_dir.h"
 
 namespace pliant {
 namespace {
@@ -72,7 +73,7 @@ bool can_be_cut_or_tear(const Scene& scene) {
 
 TEST(CheckScenes, NoShippedSceneReadsOrWritesWhatItMayNot) {
   int scenes = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(PLIANT_SOURCE_DIR "/scenes")) {
+  for (const auto& entry : std::filesystem::directory_iterator(test::source_dir() + "/scenes")) {
     const std::string name = entry.path().stem().string();
     if (entry.path().extension() != ".json" || name == "schema") continue;
     SCOPED_TRACE(name);

@@ -66,7 +66,7 @@ TEST(DamagedState, whatever_the_bytes_it_is_taken_up_or_refused) {
           bad[at] = static_cast<char>(random());
           break;
         case 1:
-          bad[at] = static_cast<char>(bad[at] ^ (1 << random() % 8));
+          bad[at] = static_cast<char>(bad[at] ^ (1 << static_cast<int>(random() % 8)));
           break;
         case 2:
           bad.erase(at, 1 + random() % 16);

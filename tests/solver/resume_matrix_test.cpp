@@ -11,6 +11,7 @@
 #include "io/save.h"
 #include "pliant/error.h"
 #include "solver/scenes.h"
+#include "support/source_dir.h"
 #include "support/temp_folder.h"
 
 namespace pliant {
@@ -32,7 +33,7 @@ struct Case {
 
 std::vector<Case> all_cases() {
   std::vector<Case> cases;
-  for (const auto& entry : fs::directory_iterator(PLIANT_SOURCE_DIR "/scenes")) {
+  for (const auto& entry : fs::directory_iterator(test::source_dir() + "/scenes")) {
     const std::string name = entry.path().stem();
     if (entry.path().extension() != ".json" || name == "schema") continue;
     if (load_scene(entry.path()).solver.enabled) continue;  // static: there are no steps
@@ -65,7 +66,7 @@ class ResumeMatrix : public ::testing::TestWithParam<Case> {
  protected:
   void SetUp() override {
     if (GetParam().backend == "opencl:0" && !testing::has_opencl()) GTEST_SKIP() << "there is no OpenCL device";
-    scene_ = load_scene(fs::path(PLIANT_SOURCE_DIR) / "scenes" / (GetParam().scene + ".json"));
+    scene_ = load_scene(fs::path(test::source_dir()) / "scenes" / (GetParam().scene + ".json"));
     for (const Body& b : scene_.bodies) {
       const fs::path& file = b.mesh.empty() ? b.surface : b.mesh;
       if (!fs::exists(file)) GTEST_SKIP() << "there is no " << file;
