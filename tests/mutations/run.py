@@ -7,12 +7,14 @@ folder. Results are kept in build/mutate/results.json: a second call goes on wit
 begins anew. The exit code is 0 only if every mutation asked for is caught.
 """
 import argparse
+import fcntl
 import hashlib
 import json
 import os
 import re
 import shlex
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -246,6 +248,11 @@ def main():
             print(f"{m.number:3d}  {m.title}")
         return 0
     WORK.mkdir(parents=True, exist_ok=True)
+    lock = open(WORK / "lock", "w")  # held until the end
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        raise Bad(f"another one is at work in {WORK.relative_to(ROOT)}") from None
     log = WORK / "mutate.log"
     log.write_text("")
     results = json.loads(RESULTS.read_text()) if RESULTS.is_file() else {}
@@ -281,7 +288,13 @@ def main():
     return 0 if caught == len(chosen) else 1
 
 
+def stop(*_):
+    raise KeyboardInterrupt
+
+
 if __name__ == "__main__":
+    for number in (signal.SIGINT, signal.SIGTERM):  # what runs in the background ignores the first
+        signal.signal(number, stop)
     try:
         sys.exit(main())
     except Bad as bad:
