@@ -188,7 +188,7 @@ TEST(Quadratic, PrescribesALinearFieldLinearly) {
   }
   const Problem q = statics::to_quadratic(p);
   EXPECT_EQ(q.prescribed.size(), 3 * q.mesh.nodes.size());
-  for (const Prescribed& c : q.prescribed) EXPECT_NEAR(c.displacement, field(q.mesh.nodes[c.node], c.axis), 1e-15);
+  for (const statics::Prescribed& c : q.prescribed) EXPECT_NEAR(c.displacement, field(q.mesh.nodes[c.node], c.axis), 1e-15);
 }
 
 }  // namespace
