@@ -59,9 +59,10 @@ TEST(AnpNodePressureOracle, IsTheMeanWeightedByVolume) {
 TEST(AnpNodePressureOracle, WritesFromItsBaseOn) {
   Ints index(16, 1);
   index[3] = 0;
-  KernelCase test("anp_node_pressure", {}, Shape::lanes, 16);
+  KernelCase test("anp_node_pressure", with_law(Law::neo_hookean), Shape::lanes, 16);
   test.reals("anp_dilation", {2, -0.0}).ints("anp_offset", {0, 1}).ints("anp_index", index);
-  test.reals("anp_inverse_volume", Reals(16, 0.25)).reals("anp_pressure", Reals(48, 99)).real(100).integer(16);
+  test.reals("anp_inverse_volume", Reals(16, 0.25)).reals("anp_pressure", Reals(48, 99));
+  test.reals("law_parameters", {1, 100}).integer(16);
   Reals expected(48, 99);
   for (std::size_t i = 16; i < 32; ++i) expected[i] = i == 16 + 3 ? 50 : 0;
   EXPECT_EQ(run_in_double(test, "anp_pressure"), expected);

@@ -30,7 +30,7 @@ struct Dual {
 /// What energies of isotropic materials are made of: C = F^T F, I1 = tr C, I2 = ((tr C)^2 - tr C^2) / 2, J = det F.
 template <class Number>
 struct Invariants {
-  Number i1, i2, j, c_squared;  ///< c_squared: tr C^2
+  Number i1{}, i2{}, j{}, c_squared{};  ///< c_squared: tr C^2
   explicit Invariants(const Number (&f)[9]) {
     Number c[9];
     for (int a = 0; a < 3; ++a) {

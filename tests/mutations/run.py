@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Break the code on purpose and see which tests notice: ./dev mutate [--again] [--list] [N...]
+"""Break the code on purpose and see which tests notice: ./dev mutate [--again] [--list] [--check] [N...]
 
 Each file NN_name.mutation beside this script is one small error: why it matters, what has to be built, which tests should
 notice, and the text that is replaced. They are made in a copy of the tracked files in build/mutate/src, which has its own build
@@ -7,12 +7,14 @@ folder. Results are kept in build/mutate/results.json: a second call goes on wit
 begins anew. The exit code is 0 only if every mutation asked for is caught.
 """
 import argparse
+import fcntl
 import hashlib
 import json
 import os
 import re
 import shlex
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -88,11 +90,11 @@ class Mutation:
     def digest(self):
         return hashlib.sha256(self.text.encode()).hexdigest()[:16]
 
-    def changed_files(self):
+    def changed_files(self, tree):
         """{path: (text before, text after)}; throws Bad where the text that is replaced is not there exactly once."""
         files = {}
         for name, old, new in self.blocks:
-            path = COPY / name
+            path = tree / name
             if not path.is_file():
                 raise Bad(f"{name} is not there")
             before, now = files.get(name, (None, None))
@@ -125,10 +127,14 @@ def run(command, log, seconds=None, **options):
         output, _ = process.communicate(timeout=seconds)
         code = process.returncode
     except subprocess.TimeoutExpired:
-        os.killpg(process.pid, 9)
+        os.killpg(process.pid, signal.SIGKILL)
         output, _ = process.communicate()
     except BaseException:
-        os.killpg(process.pid, 9)
+        os.killpg(process.pid, signal.SIGTERM)  # ninja then ends its compilers and removes what they have begun
+        try:
+            process.wait(20)
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
         raise
     with open(log, "a") as out:
         out.write(output)
@@ -203,7 +209,7 @@ def notice(command, log):
 def try_one(mutation, baseline, log):
     """(result, remark)"""
     try:
-        files = mutation.changed_files()
+        files = mutation.changed_files(COPY)
     except Bad as bad:
         return STALE, str(bad)
     for command in mutation.tests:
@@ -235,6 +241,7 @@ def main():
     parser.add_argument("numbers", metavar="N", type=int, nargs="*", help="numbers of mutations (default: all)")
     parser.add_argument("--again", action="store_true", help="also those that were caught before")
     parser.add_argument("--list", action="store_true", help="name them and do nothing")
+    parser.add_argument("--check", action="store_true", help="only see whether they still apply to the working tree")
     arguments = parser.parse_args()
     chosen = load_all()
     unknown = set(arguments.numbers) - {m.number for m in chosen}
@@ -245,7 +252,21 @@ def main():
         for m in chosen:
             print(f"{m.number:3d}  {m.title}")
         return 0
+    if arguments.check:
+        stale = 0
+        for m in chosen:
+            try:
+                m.changed_files(ROOT)
+            except Bad as bad:
+                stale += 1
+                print(f"{m.path.name} does not apply any more: {bad}")
+        return 1 if stale else 0
     WORK.mkdir(parents=True, exist_ok=True)
+    lock = open(WORK / "lock", "w")  # held until the end
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        raise Bad(f"another one is at work in {WORK.relative_to(ROOT)}") from None
     log = WORK / "mutate.log"
     log.write_text("")
     results = json.loads(RESULTS.read_text()) if RESULTS.is_file() else {}
@@ -281,7 +302,13 @@ def main():
     return 0 if caught == len(chosen) else 1
 
 
+def stop(*_):
+    raise KeyboardInterrupt
+
+
 if __name__ == "__main__":
+    for number in (signal.SIGINT, signal.SIGTERM):  # what runs in the background ignores the first
+        signal.signal(number, stop)
     try:
         sys.exit(main())
     except Bad as bad:

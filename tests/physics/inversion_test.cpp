@@ -1,5 +1,5 @@
 // Laws that are finite for J <= 0: an element pressed through itself and released comes back, with the same bits everywhere.
-// Other laws report it.
+// Other laws hold, or report it.
 #include "physics/harness.h"
 #include "program/hash.h"
 
@@ -51,14 +51,17 @@ TEST(Inversion, AnElementPressedThroughItselfComesBackIfTheLawIsFinite) {
           sim->advance(100);
           least = std::min(least, stretch(*sim));
         }
-        EXPECT_EQ(sim->divergence().has_value(), !law_info(law).invertible);
-        if (!law_info(law).invertible) continue;
-        check(std::string(name_of(cut)) + " " + to_string(law) + " least stretch (negative: J < 0)", least, least);
+        if (!law_info(law).invertible) {  // laws with a barrier at J = 0 may hold; nobody passes it unseen
+          EXPECT_TRUE(sim->divergence() || least > 0) << "least stretch " << least;
+          continue;
+        }
+        EXPECT_FALSE(sim->divergence());
+        std::printf("  %s %s: least stretch %.3f\n", name_of(cut), to_string(law), least);
         EXPECT_LT(least, -0.1);
         EXPECT_NEAR(stretch(*sim), 1, 1e-5);
         hashes.push_back(hash_text(sim->hash()));
       }
-      if (hashes.size() == 2) EXPECT_EQ(hashes[0], hashes[1]);
+      EXPECT_TRUE(hashes.size() < 2 || hashes[0] == hashes[1]);
     }
   }
 }

@@ -1,6 +1,7 @@
 // Run states that came from elsewhere: whatever their bytes, a simulation takes them up or refuses them and stays as it is.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 #include "cutting/cut_scenes.h"
@@ -34,7 +35,10 @@ Scene rich_scene() {
 std::unique_ptr<Simulation> rich_simulation(const Scene& scene) {
   auto s = std::make_unique<Simulation>(scene, open_backend("cpu"));
   while (s->topology_version() == 0 && s->step() < 5000) s->advance(64);
-  s->set_forces({{0, s->model().bodies[0].slot.size() > 40 ? 40 : 0, {0, 1e-3, 0}}});
+  const auto& forces = s->model().forces;
+  const auto reserved = std::find_if(forces.begin(), forces.end(), [](const NodeForce& force) { return force.reserved; });
+  const auto& slots = s->model().bodies[0].slot;
+  s->set_forces({{0, std::find(slots.begin(), slots.end(), reserved->slot) - slots.begin(), {0, 1e-3, 0}}});
   s->set_tool({0.1, 0.2, 0.3});
   while (s->step() % 3 == 0) s->advance(1);
   const BladePose first{"knife", {Vec3d{0.041, 0.05, -1}, Vec3d{0.041, 0.05, 1}}};

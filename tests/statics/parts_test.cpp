@@ -150,7 +150,7 @@ TEST(Field, FindsPointsAndReproducesLinearFields) {
 std::multiset<std::array<std::int64_t, 5>> conditions_of(const Problem& p) {
   const auto steps = [](double x) { return static_cast<std::int64_t>(std::llround(x * 1e9)); };
   std::multiset<std::array<std::int64_t, 5>> all;
-  for (const Prescribed& c : p.prescribed) {
+  for (const statics::Prescribed& c : p.prescribed) {
     const Vec3d& x = p.mesh.nodes[c.node];
     all.insert({steps(x[0]), steps(x[1]), steps(x[2]), c.axis, steps(c.displacement)});
   }
@@ -188,7 +188,7 @@ TEST(Quadratic, PrescribesALinearFieldLinearly) {
   }
   const Problem q = statics::to_quadratic(p);
   EXPECT_EQ(q.prescribed.size(), 3 * q.mesh.nodes.size());
-  for (const Prescribed& c : q.prescribed) EXPECT_NEAR(c.displacement, field(q.mesh.nodes[c.node], c.axis), 1e-15);
+  for (const statics::Prescribed& c : q.prescribed) EXPECT_NEAR(c.displacement, field(q.mesh.nodes[c.node], c.axis), 1e-15);
 }
 
 }  // namespace
