@@ -26,7 +26,7 @@ set(replaced_clang libpliant_ref.a)
 add_custom_target(variant_contract)
 add_library(pliant_ref_contract OBJECT EXCLUDE_FROM_ALL ${ref_sources})
 target_link_libraries(pliant_ref_contract PRIVATE pliant_flags pliant_backend Threads::Threads)
-target_include_directories(pliant_ref_contract PRIVATE ${CMAKE_SOURCE_DIR} ${PLIANT_GENERATED})
+target_include_directories(pliant_ref_contract PRIVATE $<TARGET_PROPERTY:pliant_ref,INCLUDE_DIRECTORIES>)
 target_compile_options(pliant_ref_contract PRIVATE ${ref_options})
 set_source_files_properties(${ref_sources} PROPERTIES COMPILE_OPTIONS -ffp-contract=fast)  # of this folder's targets
 pliant_variant(contract kernels 4 $<TARGET_OBJECTS:pliant_ref_contract>)
@@ -43,8 +43,8 @@ if(PLIANT_OTHER_COMPILER AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     set(object ${CMAKE_CURRENT_BINARY_DIR}/ref_clang/${stem}.o)
     add_custom_command(
       OUTPUT ${object}
-      COMMAND ${CMAKE_CXX_COMPILER_LAUNCHER} ${PLIANT_OTHER_COMPILER} ${configuration} ${flags} ${ref_options} -std=c++20 ${folders}
-              -I${CMAKE_SOURCE_DIR} -I${PLIANT_GENERATED} -MD -MF ${object}.d -c ${source} -o ${object}
+      COMMAND ${CMAKE_CXX_COMPILER_LAUNCHER} ${PLIANT_OTHER_COMPILER} ${configuration} ${flags} ${ref_options} -std=c++20 "${folders}"
+              -MD -MF ${object}.d -c ${source} -o ${object}
       DEPENDS ${source}
       DEPFILE ${object}.d
       COMMENT "clang++: cpu_ref/${stem}.cpp"
