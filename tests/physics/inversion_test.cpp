@@ -21,7 +21,7 @@ Scene pressed(Discretization cut, Law law) {
   body.forces = {push};
   Scene scene;
   scene.bodies = {body};
-  scene.dt = 2e-4;
+  scene.dt = 1e-3;
   return scene;
 }
 
@@ -48,12 +48,13 @@ TEST(Inversion, AnElementPressedThroughItselfComesBackIfTheLawIsFinite) {
         auto sim = simulate(pressed(cut, law), info.name.c_str());
         double least = 1;
         for (int i = 0; i < 100 && !sim->divergence(); ++i) {
-          sim->advance(100);
+          sim->advance(20);
           least = std::min(least, stretch(*sim));
         }
         EXPECT_EQ(sim->divergence().has_value(), !law_info(law).invertible);
         if (!law_info(law).invertible) continue;
-        check(std::string(name_of(cut)) + " " + to_string(law) + " least stretch (negative: J < 0)", least, least);
+        std::printf("  %-20s %-20s %-9s least x / edge %9.6f, at the end %.9f, hash %s\n", to_string(law), name_of(cut),
+                    info.name.c_str(), least, stretch(*sim), hash_text(sim->hash()).c_str());
         EXPECT_LT(least, -0.1);
         EXPECT_NEAR(stretch(*sim), 1, 1e-5);
         hashes.push_back(hash_text(sim->hash()));
