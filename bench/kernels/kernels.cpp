@@ -28,8 +28,8 @@ using nlohmann::json;
 /// The enumerator that an option names.
 template <class Enum>
 Enum named(const char* option, const Words<Enum>& words, const std::string& name) {
-  for (const auto& [word, value] : words) {
-    if (name == word) return value;
+  for (const Word<Enum>& w : words) {
+    if (name == w.word) return w.value;
   }
   throw Error(ErrorCode::bad_input, fmt::format("{}: got \"{}\", expected {}", option, name, alternatives(words_only(words))));
 }

@@ -7,10 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "scene/keys.h"
+
 namespace pliant::bench {
 
 struct KernelsOptions {
-  std::vector<std::string> elements{"tet4", "tet4anp", "hex8", "hex8full"};
+  std::vector<std::string> elements = words_only(element_words());
   std::vector<std::string> backends;  ///< empty: the first OpenCL device, cpu and cpu:double
   std::vector<std::int64_t> sizes{10'000, 100'000, 1'000'000};
   std::string law = "neo-hookean";

@@ -6,11 +6,12 @@
 #include <cmath>
 #include <filesystem>
 
-#include "api/scene_json.h"
+#include "api/surfaces.h"
 #include "api/world_call.h"
 #include "backends/backends.h"
 #include "io/save.h"
 #include "pliant/version.h"
+#include "scene/spec.h"
 
 #define PLIANT_TEXT_OF(x) #x
 #define PLIANT_TEXT(x) PLIANT_TEXT_OF(x)
@@ -55,11 +56,7 @@ World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 World::~World() = default;
 
-World::World(const SceneSpec& spec, const WorldOptions& options) {
-  std::vector<SurfaceSpec> surfaces;
-  const std::string text = api::scene_text(spec, surfaces);
-  impl_ = make_impl(api::read_scene(text, "", surfaces), options);
-}
+World::World(const SceneSpec& spec, const WorldOptions& options) { impl_ = make_impl(scene_of(spec), options); }
 
 World World::open(const std::string& file, const WorldOptions& options) {
   std::error_code ignored;
@@ -72,7 +69,9 @@ World World::open(const std::string& file, const WorldOptions& options) {
 World World::parse(const std::string& text, const std::string& folder, const WorldOptions& options,
                    const std::vector<SurfaceSpec>& surfaces) {
   const std::string file = folder.empty() ? "" : (std::filesystem::path(folder) / "scene.json").string();
-  return World(make_impl(api::read_scene(text, file, surfaces), options));
+  Scene scene = parse_scene(text, file);
+  api::set_surfaces(scene, surfaces);
+  return World(make_impl(std::move(scene), options));
 }
 
 World WorldAccess::make(Scene scene, OpenBackend open, const WorldOptions& options) {

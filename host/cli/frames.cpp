@@ -74,19 +74,37 @@ ElementCuts element_cuts(const Simulation& simulation, std::size_t body) {
 
 }  // namespace
 
-std::set<std::string> parse_formats(const std::vector<std::string>& formats) {
-  std::set<std::string> chosen;
+const Words<OutputFormat>& format_words() {
+  static const Words<OutputFormat> words{{"vtu", OutputFormat::vtu, "volume and surface, for ParaView"},
+                                         {"obj", OutputFormat::obj, "the surface"},
+                                         {"png", OutputFormat::png, "ray-traced pictures"},
+                                         {"gltf", OutputFormat::gltf, "one animation of the surface"}};
+  return words;
+}
+
+Words<OutputFormat> available_formats() {
+  Words<OutputFormat> words = format_words();
+  if (!render::Renderer::available()) {
+    std::erase_if(words, [](const Word<OutputFormat>& w) { return w.value == OutputFormat::png; });
+  }
+  return words;
+}
+
+std::set<OutputFormat> parse_formats(const std::vector<std::string>& formats) {
+  std::set<OutputFormat> chosen;
+  const std::vector<std::string> known = words_only(format_words());
   for (const std::string& format : formats) {
-    if (format == "png" && !render::Renderer::available()) {
+    const auto place = std::find(known.begin(), known.end(), format);
+    if (place == known.end()) {
       throw Error(ErrorCode::bad_input,
-                  fmt::format("--format: png is not available: {}; allowed are vtu, obj, gltf", render::Renderer::missing()));
+                  fmt::format("--format: got \"{}\"; allowed are {}{}", format, listed(known), did_you_mean(format, known)));
     }
-    const std::vector<std::string> known{"vtu", "obj", "png", "gltf"};
-    if (std::find(known.begin(), known.end(), format) == known.end()) {
-      throw Error(ErrorCode::bad_input,
-                  fmt::format("--format: got \"{}\"; allowed are vtu, obj, png, gltf{}", format, did_you_mean(format, known)));
+    const OutputFormat value = format_words()[static_cast<std::size_t>(place - known.begin())].value;
+    if (value == OutputFormat::png && !render::Renderer::available()) {
+      throw Error(ErrorCode::bad_input, fmt::format("--format: png is not available: {}; allowed are {}",
+                                                    render::Renderer::missing(), listed(words_only(available_formats()))));
     }
-    chosen.insert(format);
+    chosen.insert(value);
   }
   return chosen;
 }
@@ -160,7 +178,7 @@ VtuMesh surface_frame(Simulation& simulation) {
   return mesh;
 }
 
-FrameWriter::FrameWriter(std::filesystem::path folder, std::string stem, std::set<std::string> formats,
+FrameWriter::FrameWriter(std::filesystem::path folder, std::string stem, std::set<OutputFormat> formats,
                          const render::PictureOptions& pictures)
     : folder_(std::move(folder)),
       stem_(std::move(stem)),
@@ -174,7 +192,7 @@ FrameWriter::FrameWriter(std::filesystem::path folder, std::string stem, std::se
   if (!std::filesystem::is_directory(folder_))
     throw Error(ErrorCode::bad_input, fmt::format("--out: {} is a file, expected a folder", folder_.string()));
   check_writable(folder_ / (stem_ + ".pvd"));
-  if (formats_.count("png") != 0) pictures_.emplace(pictures);
+  if (formats_.count(OutputFormat::png) != 0) pictures_.emplace(pictures);
 }
 
 void FrameWriter::write(Simulation& simulation) {
@@ -183,7 +201,7 @@ void FrameWriter::write(Simulation& simulation) {
   const std::string number = fmt::format("_{:08}", simulation.step());
   const bool has_surface = !simulation.model().surface.triangles.empty();
   const VtuMesh surface = has_surface ? surface_frame(simulation) : VtuMesh{};
-  if (formats_.count("vtu") != 0) {
+  if (formats_.count(OutputFormat::vtu) != 0) {
     const auto file = folder_ / (stem_ + number + ".vtu");
     write_vtu(file, volume_frame(simulation));
     volume_.append(simulation.time(), file);
@@ -193,11 +211,11 @@ void FrameWriter::write(Simulation& simulation) {
       surface_.append(simulation.time(), surface_file);
     }
   }
-  if (formats_.count("obj") != 0 && has_surface) {
+  if (formats_.count(OutputFormat::obj) != 0 && has_surface) {
     write_obj(folder_ / (stem_ + "_surface" + number + ".obj"), {surface.points, surface.triangles});
   }
   if (pictures_ && has_surface) write_png(folder_ / (stem_ + number + ".png"), pictures_->draw(simulation));
-  if (formats_.count("gltf") != 0 && has_surface) {
+  if (formats_.count(OutputFormat::gltf) != 0 && has_surface) {
     render::SurfaceCopy copy;
     copy.read(simulation);
     animation_.add(splitter_.split(copy.view(), simulation.time()));

@@ -10,13 +10,18 @@
 #include "io/vtu.h"
 #include "render/export.h"
 #include "render/picture.h"
+#include "scene/keys.h"
 #include "simulation/simulation.h"
 
 namespace pliant::cli {
 
-/// "vtu,obj,png,gltf" split at commas and checked. Throws Error that lists the formats there are, or says why this build has no
-/// pictures.
-std::set<std::string> parse_formats(const std::vector<std::string>& formats);
+enum class OutputFormat { vtu, obj, png, gltf };
+const Words<OutputFormat>& format_words();
+/// Those that this build can write.
+Words<OutputFormat> available_formats();
+
+/// Words of --format, checked. Throws Error that lists the formats there are, or says why this build has no pictures.
+std::set<OutputFormat> parse_formats(const std::vector<std::string>& formats);
 
 /// All bodies as volume elements in their present shape: displacement [m], velocity [m/s] at the points, body and fill at the
 /// cells; in a scene with blades also cut (1: a copy of a cell that a blade has divided) and piece (elements that hold together
@@ -30,7 +35,7 @@ VtuMesh surface_frame(Simulation& simulation);
 class FrameWriter {
  public:
   /// Makes the folder where it is missing and tries it. Throws Error when nothing can be written there.
-  FrameWriter(std::filesystem::path folder, std::string stem, std::set<std::string> formats,
+  FrameWriter(std::filesystem::path folder, std::string stem, std::set<OutputFormat> formats,
               const render::PictureOptions& pictures);
 
   /// Write the present state. Files carry the number of the step: bunny_00000100.vtu, bunny_surface_00000100.vtu and .obj,
@@ -44,7 +49,7 @@ class FrameWriter {
  private:
   std::filesystem::path folder_;
   std::string stem_;
-  std::set<std::string> formats_;
+  std::set<OutputFormat> formats_;
   PvdSeries volume_, surface_;
   std::optional<render::Pictures> pictures_;
   SurfaceAnimation animation_;

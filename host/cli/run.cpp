@@ -40,8 +40,8 @@ void check(const Options& o) {
     throw Error(ErrorCode::bad_input, fmt::format("--every is {}; expected 1 or more steps", *o.every));
   if (o.every && o.out.empty())
     throw Error(ErrorCode::bad_input, "--every says how often to write into a folder; it needs --out DIR");
-  const std::set<std::string> formats = parse_formats(o.formats);
-  if (!o.picture.given().empty() && formats.count("png") == 0) {
+  const std::set<OutputFormat> formats = parse_formats(o.formats);
+  if (!o.picture.given().empty() && formats.count(OutputFormat::png) == 0) {
     throw Error(ErrorCode::bad_input, fmt::format("{} is for pictures; it needs --format png", o.picture.given()));
   }
   (void)o.picture.options();  // refuses words that mean nothing
@@ -252,7 +252,7 @@ std::function<int()> setup_run(CLI::App& app) {
   app.add_option("--dt", o->dt, "Step [s] instead of the scene's");
   app.add_option("--out", o->out, "Folder for frames; made where missing")->type_name("DIR");
   app.add_option("--every", o->every, "Steps between two frames; default: 1/60 s");
-  app.add_option("--format", o->formats, "vtu, obj, png, gltf")->delimiter(',')->capture_default_str();
+  app.add_option("--format", o->formats, explained(format_words()))->delimiter(',')->capture_default_str();
   o->picture.add_to(app);
   app.add_option("--checkpoint", o->checkpoint, "Save the last state")->type_name("FILE");
   app.add_option("--resume", o->resume, "Go on from a saved state of the same scene")->type_name("FILE");

@@ -36,10 +36,11 @@ void check(const Scene& scene, const StaticRun& run) {
                       scene.file.string(), body.pointer));
     }
   }
-  for (const std::string& format : run.formats) {
-    if (format != "vtu" && format != "obj")
-      throw Error(ErrorCode::bad_input,
-                  fmt::format("--format: got \"{}\" with a static scene, which writes vtu and obj", format));
+  for (const OutputFormat format : run.formats) {
+    if (format != OutputFormat::vtu && format != OutputFormat::obj) {
+      throw Error(ErrorCode::bad_input, fmt::format("--format: got \"{}\" with a static scene, which writes vtu and obj",
+                                                    word_of(format_words(), format)));
+    }
   }
   if (run.out.empty()) return;
   std::error_code code;
@@ -194,14 +195,14 @@ class Static {
       }
     }
     surface.triangles = model_.surface.triangles;
-    if (run_.formats.count("vtu") != 0) {
+    if (run_.formats.count(OutputFormat::vtu) != 0) {
       mesh.point_arrays = {u, reaction};
       mesh.cell_arrays = {body};
       write_vtu(stem.string() + ".vtu", mesh);
       surface.point_arrays = {surface_u};
       if (!surface.triangles.empty()) write_vtu(surface_stem + ".vtu", surface);
     }
-    if (run_.formats.count("obj") != 0) write_obj(surface_stem + ".obj", {surface.points, surface.triangles});
+    if (run_.formats.count(OutputFormat::obj) != 0) write_obj(surface_stem + ".obj", {surface.points, surface.triangles});
     run_.common.print(fmt::format("written to {}", run_.out));
   }
 

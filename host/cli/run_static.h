@@ -4,16 +4,17 @@
 #include <string>
 
 #include "cli/cli.h"
+#include "cli/frames.h"
 #include "scene/scene.h"
 
 namespace pliant::cli {
 
 struct StaticRun {
   Common common;
-  std::string stem;               ///< of the files
-  std::string out;                ///< folder for the result; empty: none
-  std::set<std::string> formats;  ///< vtu, obj
-  bool hash = false;              ///< print it also with --quiet
+  std::string stem;                ///< of the files
+  std::string out;                 ///< folder for the result; empty: none
+  std::set<OutputFormat> formats;  ///< vtu, obj
+  bool hash = false;               ///< print it also with --quiet
 };
 
 /// Solves every body, writes and reports. Throws Error for what the static solver does not do, and (diverged) when it does not

@@ -110,55 +110,63 @@ const std::map<std::string, List>& scene_words() {
 const Words<Law>& law_words() {
   static const Words<Law> words = [] {
     Words<Law> list;
-    for (const Law law : all_laws()) list.emplace_back(to_string(law), law);
+    for (const Law law : all_laws()) list.push_back({to_string(law), law, law_info(law).energy});
     return list;
   }();
   return words;
 }
 
 const Words<ElementKind>& element_words() {
-  static const Words<ElementKind> words{{"tet4", ElementKind::tet4},
-                                        {"tet4anp", ElementKind::tet4anp},
-                                        {"hex8", ElementKind::hex8},
-                                        {"hex8full", ElementKind::hex8full}};
+  static const Words<ElementKind> words{
+      {"tet4", ElementKind::tet4, "linear tetrahedron"},
+      {"tet4anp", ElementKind::tet4anp,
+       "the same with averaged nodal pressure, which does not lock when nearly incompressible"},
+      {"hex8", ElementKind::hex8, "hexahedron with one Gauss point and hourglass control"},
+      {"hex8full", ElementKind::hex8full, "hexahedron with 2x2x2 points"}};
   return words;
 }
 
+std::vector<ElementKind> all_elements() { return values_of(element_words()); }
+
 const Words<Curve::Kind>& curve_words() {
-  static const Words<Curve::Kind> words{{"constant", Curve::Kind::constant},
-                                        {"ramp", Curve::Kind::ramp},
-                                        {"smooth", Curve::Kind::smooth},
-                                        {"table", Curve::Kind::table}};
+  static const Words<Curve::Kind> words{{"constant", Curve::Kind::constant, "1 from the start on"},
+                                        {"ramp", Curve::Kind::ramp, "linear from 0 to 1"},
+                                        {"smooth", Curve::Kind::smooth, "10 s^3 - 15 s^4 + 6 s^5"},
+                                        {"table", Curve::Kind::table, "linear between rows"}};
   return words;
 }
 
 const Words<Integrator>& integrator_words() {
-  static const Words<Integrator> words{{"increment", Integrator::increment}, {"textbook", Integrator::textbook}};
+  static const Words<Integrator> words{
+      {"increment", Integrator::increment, "central differences in the increment of the displacement"},
+      {"textbook", Integrator::textbook, "2 u_n - u_(n-1), which loses small increments in float; for comparison"}};
   return words;
 }
 
 const Words<bool>& solver_words() {
-  static const Words<bool> words{{"dynamic", false}, {"static", true}};
+  static const Words<bool> words{{"dynamic", false, "steps in time"}, {"static", true, "equilibrium"}};
   return words;
 }
 
 const Words<ModelType>& model_words() {
-  static const Words<ModelType> words{{"tled", ModelType::tled}, {"hybrid", ModelType::hybrid}, {"flsm", ModelType::flsm}};
+  static const Words<ModelType> words{{"tled", ModelType::tled, "finite elements"},
+                                      {"hybrid", ModelType::hybrid, "finite elements in the operational region"},
+                                      {"flsm", ModelType::flsm, "shape matching"}};
   return words;
 }
 
 const Words<bool>& goals_words() {
-  static const Words<bool> words{{"held", false}, {"extrapolated", true}};
+  static const Words<bool> words{{"held", false, "in the first of the substeps"}, {"extrapolated", true, "in all of them"}};
   return words;
 }
 
 const Words<bool>& coupling_words() {
-  static const Words<bool> words{{"conservative", true}, {"one-sided", false}};
+  static const Words<bool> words{{"conservative", true, "with the reaction of the interface"}, {"one-sided", false, "without"}};
   return words;
 }
 
 const Words<bool>& follow_words() {
-  static const Words<bool> words{{"tool", true}};
+  static const Words<bool> words{{"tool", true, "the tool of the scene"}};
   return words;
 }
 

@@ -4,9 +4,9 @@
 #include <array>
 #include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "pliant/error.h"
 #include "scene/scene.h"
 
 namespace pliant {
@@ -28,11 +28,19 @@ std::string laws_with(bool LawInfo::*property);
 /// The allowed words by kind: "law", "element", "curve", "integrator", "model", "goals", "coupling", "follow".
 const std::map<std::string, std::vector<std::string>>& scene_words();
 
+/// A word of a scene file or of an option, the enumerator that it names, and what that is, for people.
 template <class Enum>
-using Words = std::vector<std::pair<std::string, Enum>>;
+struct Word {
+  std::string word;
+  Enum value;
+  std::string what;
+};
+template <class Enum>
+using Words = std::vector<Word<Enum>>;
 
 const Words<Law>& law_words();
 const Words<ElementKind>& element_words();
+std::vector<ElementKind> all_elements();
 const Words<Curve::Kind>& curve_words();
 const Words<Integrator>& integrator_words();
 const Words<bool>& solver_words();
@@ -45,17 +53,33 @@ const Words<bool>& follow_words();
 template <class Enum>
 std::vector<std::string> words_only(const Words<Enum>& words) {
   std::vector<std::string> list;
-  for (const auto& [word, value] : words) list.push_back(word);
+  for (const Word<Enum>& w : words) list.push_back(w.word);
   return list;
+}
+
+/// The enumerators: what a loop over all elements, integrators, ... runs over.
+template <class Enum>
+std::vector<Enum> values_of(const Words<Enum>& words) {
+  std::vector<Enum> list;
+  for (const Word<Enum>& w : words) list.push_back(w.value);
+  return list;
+}
+
+/// "tet4 (linear tetrahedron), ...", for the help of an option.
+template <class Enum>
+std::string explained(const Words<Enum>& words) {
+  std::string text;
+  for (const Word<Enum>& w : words) text += (text.empty() ? "" : ", ") + w.word + " (" + w.what + ")";
+  return text;
 }
 
 /// The word of an enumerator.
 template <class Enum>
 const std::string& word_of(const Words<Enum>& words, Enum value) {
-  for (const auto& [word, enumerator] : words) {
-    if (enumerator == value) return word;
+  for (const Word<Enum>& w : words) {
+    if (w.value == value) return w.word;
   }
-  return words.front().first;
+  throw Error(ErrorCode::internal, "an enumerator has no word in host/scene/keys.cpp");
 }
 
 /// The word nearest to `text` by edit distance, or "" when none is near enough to be a likely slip.

@@ -34,6 +34,9 @@ std::string read_file(const fs::path& file) {
   return text;
 }
 
+/// In messages.
+std::string name_of(const fs::path& file) { return file.empty() ? "scene" : file.string(); }
+
 void read_format(const Reader& top) {
   const Reader format = top.at("format", "\"format\": \"pliant-scene/1\"");
   if (format.json() != "pliant-scene/1") format.fail("\"pliant-scene/1\"");
@@ -103,9 +106,8 @@ void read_bodies(const Reader& top, const fs::path& folder, Scene& scene) {
 
 }  // namespace
 
-Scene parse_scene(const std::string& text, const fs::path& file) {
-  const std::string shown = file.empty() ? "scene" : file.string();
-  const nlohmann::json document = parse_json(text, shown);
+Scene read_document(const nlohmann::json& document, const fs::path& file) {
+  const std::string shown = name_of(file);
   const Reader top(document, shown, "");
   top.expect_object("scene");
   read_format(top);
@@ -132,6 +134,10 @@ Scene parse_scene(const std::string& text, const fs::path& file) {
   check_blades(top, scene);
   check_tearing(top, scene);
   return scene;
+}
+
+Scene parse_scene(const std::string& text, const fs::path& file) {
+  return read_document(parse_json(text, name_of(file)), file);
 }
 
 Scene load_scene(const fs::path& file) { return parse_scene(read_file(file), file); }

@@ -10,6 +10,8 @@ namespace pliant {
 /// pressures on triangle centroids, which have no node index.
 enum class NodeLists { allowed, refused };
 
+/// A whole scene. Throws Error as parse_scene does.
+Scene read_document(const nlohmann::json& document, const std::filesystem::path& file);
 Selection read_selection(const Reader& entry, NodeLists lists);
 Curve read_curve(const Reader& entry);
 Material read_material(const Reader& material);

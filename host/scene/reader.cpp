@@ -20,6 +20,7 @@ std::string shown(const nlohmann::json& value) {
     if (value.empty()) return "{}";
     return fmt::format("an object with {} key{}", value.size(), value.size() == 1 ? "" : "s");
   }
+  if (value.is_number_float()) return fmt::format("{}", value.get<double>());
   if (value.is_array() && value.size() > 8) return fmt::format("an array of {} values", value.size());
   return shortened(value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }

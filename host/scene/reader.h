@@ -44,9 +44,9 @@ class Reader {
   template <class Enum>
   [[nodiscard]] Enum word(const Words<Enum>& words) const {
     std::vector<std::string> allowed;
-    for (const auto& [word, value] : words) {
-      if (value_ == word) return value;
-      allowed.push_back(word);
+    for (const Word<Enum>& w : words) {
+      if (value_ == w.word) return w.value;
+      allowed.push_back(w.word);
     }
     fail_word(allowed);
   }

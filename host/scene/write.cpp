@@ -3,7 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "scene/keys.h"
-#include "scene/scene.h"
+#include "scene/parts.h"
+#include "scene/spec.h"
 
 namespace pliant {
 
@@ -56,7 +57,7 @@ Json material_json(const Material& m) {
   material["density"] = m.density;
   material["damping"] = m.damping;
   material["hourglass"] = m.hourglass;
-  if (m.toughness > 0) {
+  if (m.toughness != 0) {
     material["toughness"] = m.toughness;
     material["integrity"] = m.integrity;
   }
@@ -73,13 +74,13 @@ Json model_json(const DeformationModel& m) {
       if (m.seed) model["seed"] = *m.seed;
       if (m.follow) model["follow"] = word_of(follow_words(), m.follow);
     }
-    model["beta"] = m.beta > 0 ? Json(m.beta) : Json("auto");
+    model["beta"] = m.beta != 0 ? Json(m.beta) : Json("auto");
     model["substeps"] = m.substeps;
     model["goals"] = word_of(goals_words(), m.extrapolate);
     model["coupling"] = word_of(coupling_words(), m.conservative);
   }
   model["width"] = m.width;
-  if (m.young > 0) {
+  if (m.young != 0) {
     model["stiffness"] = {{"young", m.young}};
   } else {
     model["alpha"] = m.alpha;
@@ -142,7 +143,7 @@ Json body_json(const Body& b, const fs::path& scene_file) {
   body["scale"] = b.scale;
   body["translate"] = b.translate;
   if (b.mesh.empty()) {
-    body["lattice"] = b.lattice.nodes > 0 ? Json{{"nodes", b.lattice.nodes}} : Json{{"spacing", b.lattice.spacing}};
+    body["lattice"] = b.lattice.spacing != 0 ? Json{{"spacing", b.lattice.spacing}} : Json{{"nodes", b.lattice.nodes}};
   }
   body["element"] = to_string(b.element);
   body["material"] = material_json(b.material);
@@ -169,13 +170,12 @@ Json view_json(const SceneView& v) {
   return view;
 }
 
-}  // namespace
-
-std::string scene_to_json(const Scene& scene) {
+// Nothing is left out because of its value, or validate() would not see it: 0 alone means "auto".
+Json document_of(const Scene& scene) {
   Json top{{"format", "pliant-scene/1"}};
   if (!scene.name.empty()) top["name"] = scene.name;
   top["gravity"] = scene.gravity;
-  top["dt"] = scene.dt > 0 ? Json(scene.dt) : Json("auto");
+  top["dt"] = scene.dt != 0 ? Json(scene.dt) : Json("auto");
   top["safety"] = scene.safety;
   top["duration"] = scene.duration;
   top["integrator"] = word_of(integrator_words(), scene.integrator);
@@ -187,14 +187,22 @@ std::string scene_to_json(const Scene& scene) {
   if (scene.solver.enabled) {
     const StaticSolver& s = scene.solver;
     top["solver"] = {{"type", "static"}, {"linear", s.linear}, {"tolerance", s.tolerance}, {"order", s.quadratic ? 2 : 1}};
-    top["solver"]["load_steps"] = s.load_steps > 0 ? Json(s.load_steps) : Json("auto");
+    top["solver"]["load_steps"] = s.load_steps != 0 ? Json(s.load_steps) : Json("auto");
   }
   if (!scene.tool.path.empty()) top["tool"] = {{"path", scene.tool.path}};
   for (const Blade& b : scene.blades) top["blades"].push_back(blade_json(b));
   if (const Json view = view_json(scene.view); !view.empty()) top["view"] = view;
   top["bodies"] = Json::array();
   for (const Body& b : scene.bodies) top["bodies"].push_back(body_json(b, scene.file));
-  return top.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return top;
 }
+
+}  // namespace
+
+std::string scene_to_json(const Scene& scene) {
+  return document_of(scene).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void validate(const Scene& scene) { (void)read_document(document_of(scene), scene.file); }
 
 }  // namespace pliant

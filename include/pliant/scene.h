@@ -5,6 +5,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -65,13 +66,17 @@ struct CurveSpec {
   std::vector<std::array<double, 2>> table;  ///< table: (time [s], factor), times ascending
 };
 
-/// An isotropic hyperelastic material.
+/// An isotropic hyperelastic material. The laws and their parameters are listed in docs/scene.md.
 struct MaterialSpec {
-  std::string law = "neo-hookean";  ///< neo-hookean, saint-venant-kirchhoff or isochoric-neo-hookean
-  double young = 3000;              ///< Young's modulus at small strain [Pa]
-  double poisson = 0.45;            ///< in (-1, 0.5)
-  double density = 1000;            ///< [kg/m^3]
-  double damping = 0;               ///< mass-proportional damping rate [1/s]
+  std::string law = "neo-hookean";           ///< by its word
+  double young = 3000;                       ///< Young's modulus at small strain [Pa]
+  double poisson = 0.45;                     ///< in (-1, 0.5)
+  std::map<std::string, double> parameters;  ///< instead of both: by their keys, {{"mu", 1000}, {"kappa", 50000}}
+  double density = 1000;                     ///< [kg/m^3]
+  double damping = 0;                        ///< mass-proportional damping rate [1/s]
+  double hourglass = 1;                      ///< factor on the hourglass stiffness of hex8
+  std::optional<double> toughness;           ///< stress at which it tears [Pa]; absent: it does not
+  std::optional<double> integrity;           ///< share of the toughness that is left, in (0, 1]
 };
 
 /// A part of a body with another material; later entries win where they overlap.
@@ -109,16 +114,20 @@ struct PressureSpec {
 
 /// How the nodes of a body move: finite elements (tled), shape matching (flsm), or both (hybrid), as docs/scene.md describes.
 struct ModelSpec {
-  std::string type = "tled";    ///< tled, hybrid or flsm
-  double ratio = 0.5;           ///< hybrid: share of the nodes that finite elements move, in [0, 1]
-  std::optional<Vec3d> seed;    ///< hybrid: the operational region grows from here [m]
-  bool follow_tool = false;     ///< hybrid: the operational region follows the tool
-  std::optional<double> beta;   ///< hybrid: stiffness of the interface [N/m]; absent: automatic
-  int width = 2;                ///< half-width of the regions of shape matching, in cells
-  double alpha = 0.5;           ///< stiffness of shape matching in (0, 1]
-  std::optional<double> young;  ///< wanted stiffness of shape matching [Pa] instead of alpha
-  double damping = 0;           ///< per-region damping, in [0, 1]
-  int substeps = 1;             ///< hybrid: steps of finite elements per step of shape matching
+  std::string type = "tled";              ///< tled, hybrid or flsm
+  double ratio = 0.5;                     ///< hybrid: share of the nodes that finite elements move, in [0, 1]
+  std::optional<Vec3d> seed;              ///< hybrid: the operational region grows from here [m]
+  bool follow_tool = false;               ///< hybrid: the operational region follows the tool
+  std::optional<RegionSpec> region;       ///< hybrid: a box or a sphere, instead of ratio and seed: the operational region
+  std::string goals = "held";             ///< hybrid: held or extrapolated between the steps of shape matching
+  std::string coupling = "conservative";  ///< hybrid: conservative, or one-sided
+  bool cut = true;                        ///< hybrid, flsm: whether blades cut the shape-matching part
+  std::optional<double> beta;             ///< hybrid: stiffness of the interface [N/m]; absent or 0: automatic
+  int width = 2;                          ///< half-width of the regions of shape matching, in cells
+  double alpha = 0.5;                     ///< stiffness of shape matching in (0, 1]
+  std::optional<double> young;            ///< wanted stiffness of shape matching [Pa] instead of alpha
+  double damping = 0;                     ///< per-region damping, in [0, 1]
+  int substeps = 1;                       ///< hybrid: steps of finite elements per step of shape matching
 };
 
 /// One body: its shape, what it is made of, and what holds and loads it.
@@ -143,12 +152,29 @@ struct BodySpec {
   Vec3d angular_velocity{};                ///< initial, about the centre of mass [rad/s]
 };
 
+/// A segment on a prescribed path; it cuts while it moves.
+struct BladeSpec {
+  std::string name;                         ///< different for every blade; empty: blade0, blade1, ...
+  std::vector<std::array<double, 7>> path;  ///< (time [s], both ends [m]), at least two rows, times ascending
+  std::optional<double> start;              ///< it does not cut before [s]
+  std::optional<double> end;                ///< ... nor after [s]
+};
+
+/// Adaptive damping towards static equilibrium.
+struct RelaxationSpec {
+  double tolerance = 1e-4;          ///< done at |R - F| <= tolerance * |largest of R, F|
+  std::int64_t max_steps = 100000;  ///< give up after so many steps
+};
+
 /// Everything that a World is made of.
 struct SceneSpec {
   std::string name = "scene";                    ///< for people
   Vec3d gravity{};                               ///< [m/s^2]
   double dt = 0;                                 ///< [s]; 0: automatic
   double safety = 0.9;                           ///< share of the stable step that an automatic step takes, in (0, 1]
+  std::string integrator = "increment";          ///< increment or textbook
+  std::optional<RelaxationSpec> relaxation;      ///< absent: none
+  std::vector<BladeSpec> blades;                 ///< blades that cut what they sweep over
   std::vector<std::array<double, 4>> tool_path;  ///< (time [s], x, y, z [m]): what a following operational region follows
   std::vector<BodySpec> bodies;                  ///< at least one
 };

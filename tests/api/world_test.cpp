@@ -4,7 +4,7 @@
 #include <cmath>
 #include <thread>
 
-#include "api/scene_json.h"
+#include "scene/spec.h"
 #include "scenes.h"
 #include "support/temp_folder.h"
 
@@ -13,12 +13,6 @@ namespace {
 
 using test::block;
 using test::on;
-
-Scene internal(const SceneSpec& spec) {
-  std::vector<SurfaceSpec> surfaces;
-  const std::string text = api::scene_text(spec, surfaces);
-  return api::read_scene(text, "", surfaces);
-}
 
 /// Steps of the bare schedule: batches of passes, without World.
 void run_schedule(Simulation& simulation, std::int64_t steps) {
@@ -42,7 +36,7 @@ class OnBackend : public ::testing::TestWithParam<const char*> {
 };
 
 TEST_P(OnBackend, GivesTheBitsOfTheBareSchedule) {
-  Simulation simulation(internal(block()), open_backend(GetParam()));
+  Simulation simulation(scene_of(block()), open_backend(GetParam()));
   run_schedule(simulation, 150);
   World whole(block(), on(GetParam())), pieces(block(), on(GetParam())), async(block(), on(GetParam()));
   EXPECT_EQ(whole.step(150).done, 150);
@@ -76,8 +70,8 @@ INSTANTIATE_TEST_SUITE_P(Backends, OnBackend, ::testing::Values("cpu", "cpu:doub
 });
 
 TEST(World, ReadsTheSameSceneFromCodeTextAndFile) {
-  std::vector<SurfaceSpec> surfaces;
-  const std::string text = api::scene_text(block(), surfaces);
+  const std::vector<SurfaceSpec> surfaces{block().bodies[0].surface};
+  const std::string text = scene_to_json(scene_of(block()));
   World code(block(), on("cpu")), parsed = World::parse(text, "", on("cpu"), surfaces);
   const test::TempFolder folder;
   (void)folder.write("box.obj", [&] {
@@ -99,6 +93,21 @@ TEST(World, ReadsTheSameSceneFromCodeTextAndFile) {
   EXPECT_EQ(code.info().nodes, file.info().nodes);
   EXPECT_EQ(code.info().bodies.at(0).name, "block");
   EXPECT_NEAR(code.info().bodies.at(0).mass, 1000 * 0.1 * 0.08 * 0.06, 1e-3);
+}
+
+TEST(World, TakesEveryLawFromCodeAndText) {
+  for (const Law law : all_laws()) {
+    const Material material = make_material(law, Moduli::from_bulk(1000, 9000));
+    SceneSpec spec = block();
+    spec.bodies[0].material.law = to_string(law);
+    for (std::size_t i = 0; i < material.parameters.size(); ++i)
+      spec.bodies[0].material.parameters[law_info(law).parameters[i].name] = material.parameters[i];
+    const std::string text = scene_to_json(scene_of(spec));
+    World code(spec, on("cpu")), parsed = World::parse(text, "", on("cpu"), {spec.bodies[0].surface});
+    code.step(20);
+    parsed.step(20);
+    EXPECT_EQ(code.hash(), parsed.hash()) << to_string(law);
+  }
 }
 
 TEST(World, FramesStayAsTheyAreAndOutliveTheWorld) {

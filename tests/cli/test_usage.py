@@ -37,6 +37,14 @@ class Usage(harness.CliTest):
         self.refused("compare", scene, "--backends", "cpu", words=["expected two"])
         self.assertEqual(self.names(), ["scene.json"])
 
+    def test_help_and_messages_list_what_there_is(self):
+        help_text = " ".join(self.pliant("run", "--help").stdout.split())
+        for word in ("vtu (", "obj (", "png (", "gltf ("):
+            self.assertIn(word, help_text)
+        bench = " ".join(self.pliant("bench", "kernels", "--help").stdout.split())
+        for word in ("tet4 (", "tet4anp (", "hex8 (", "hex8full (", "neo-hookean", "stable-neo-hookean", "yeoh", "mooney-rivlin"):
+            self.assertIn(word, bench)
+
     def test_bad_scenes(self):
         self.refused("run", "missing.json", words=["missing.json", "no such file"])
         self.refused("info", self.scene(gravty=[0, 0, 0]), words=["gravty", "gravity"])

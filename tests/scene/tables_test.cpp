@@ -165,13 +165,40 @@ std::string law_tables() {
   return laws + "\n| key | law | unit | allowed | meaning |\n|---|---|---|---|---|\n" + parameters;
 }
 
-TEST(Tables, ScenesDocumentHasTheLawsOfTheCode) {
-  const std::string begin = "<!-- laws: written by tests/scene/tables_test.cpp -->\n", end = "<!-- end of the laws -->\n";
-  const std::string text = file_text("docs/scene.md");
+std::string element_table() {
+  std::string text = "| element | what it is |\n|---|---|\n";
+  for (const Word<ElementKind>& w : element_words()) text += "| " + code(w.word) + " | " + w.what + " |\n";
+  return text;
+}
+
+/// The part of a document between two marks.
+void replace_part(std::string& text, const std::string& what, const std::string& part) {
+  const std::string begin = "<!-- " + what + ": written by tests/scene/tables_test.cpp -->\n",
+                    end = "<!-- end of the " + what + " -->\n";
   const std::size_t from = text.find(begin), to = text.find(end);
-  ASSERT_NE(from, std::string::npos);
-  ASSERT_NE(to, std::string::npos);
-  expect_file("docs/scene.md", text.substr(0, from + begin.size()) + law_tables() + text.substr(to));
+  ASSERT_NE(from, std::string::npos) << what;
+  ASSERT_NE(to, std::string::npos) << what;
+  text = text.substr(0, from + begin.size()) + part + text.substr(to);
+}
+
+TEST(Tables, ScenesDocumentHasTheLawsAndElementsOfTheCode) {
+  std::string text = file_text("docs/scene.md");
+  replace_part(text, "elements", element_table());
+  replace_part(text, "laws", law_tables());
+  expect_file("docs/scene.md", text);
+}
+
+TEST(Tables, ScenesDocumentNamesEveryKeyAndWord) {
+  const std::string text = file_text("docs/scene.md");
+  const auto named = [&](const std::string& word) {
+    return text.find("`" + word + "`") != std::string::npos || text.find("\"" + word + "\"") != std::string::npos;
+  };
+  for (const auto& [kind, words] : scene_words()) {
+    for (const std::string& word : words) EXPECT_TRUE(named(word)) << kind << ' ' << word;
+  }
+  for (const auto& [kind, keys] : scene_keys()) {
+    for (const std::string& key : keys) EXPECT_TRUE(named(key)) << kind << ' ' << key;
+  }
 }
 
 }  // namespace

@@ -1,0 +1,186 @@
+#include "scene/spec.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "geometry/mesh.h"
+#include "pliant/error.h"
+#include "scene/parts.h"
+
+namespace pliant {
+
+namespace {
+
+const std::string kName = "scene";  // in messages, where a file would stand
+
+template <class Enum>
+Enum word(const Words<Enum>& words, const std::string& text, const std::string& pointer) {
+  const nlohmann::json value = text;
+  return Reader(value, kName, pointer).word(words);
+}
+
+Selection selection(const RegionSpec& r, const std::string& pointer) {
+  Selection s;
+  switch (r.kind) {
+    case RegionSpec::Kind::all:
+      break;
+    case RegionSpec::Kind::box:
+      s = {Selection::Kind::box, r.a, r.b, 0, {}, ""};
+      break;
+    case RegionSpec::Kind::sphere:
+      s = {Selection::Kind::sphere, r.a, {}, r.radius, {}, ""};
+      break;
+    case RegionSpec::Kind::plane:
+      s = {Selection::Kind::plane, r.a, r.b, 0, {}, ""};
+      break;
+    case RegionSpec::Kind::nodes:
+      s = {Selection::Kind::nodes, {}, {}, 0, r.nodes, ""};
+      std::sort(s.nodes.begin(), s.nodes.end());
+      break;
+  }
+  s.pointer = pointer;
+  return s;
+}
+
+Curve curve(const CurveSpec& c, const std::string& pointer) {
+  Curve out;
+  out.kind = word(curve_words(), c.kind, pointer + "/curve");
+  if (out.kind == Curve::Kind::table) {
+    out.table = c.table;
+  } else {
+    out.start = c.start;
+    if (out.kind != Curve::Kind::constant) out.duration = c.duration;
+  }
+  return out;
+}
+
+/// Elastic constants become moduli and parameters here, so what is wrong with them is found here, by the reader's own rules.
+Material material(const MaterialSpec& m, const std::string& pointer) {
+  nlohmann::json keys(m.parameters);
+  if (m.parameters.empty()) keys = {{"young", m.young}, {"poisson", m.poisson}};
+  keys["law"] = m.law;
+  keys["density"] = m.density;
+  keys["damping"] = m.damping;
+  keys["hourglass"] = m.hourglass;
+  if (m.toughness) keys["toughness"] = *m.toughness;
+  if (m.integrity) keys["integrity"] = *m.integrity;
+  return read_material(Reader(keys, kName, pointer));
+}
+
+DeformationModel model(const ModelSpec& m, const std::string& pointer) {
+  DeformationModel out;
+  out.pointer = pointer;
+  out.type = word(model_words(), m.type, pointer + "/type");
+  out.ratio = m.ratio;
+  out.seed = m.seed;
+  if (m.region) out.region = selection(*m.region, pointer + "/region");
+  out.follow = m.follow_tool;
+  out.beta = m.beta.value_or(0);
+  out.width = m.width;
+  out.alpha = m.alpha;
+  out.young = m.young.value_or(0);
+  out.damping = m.damping;
+  out.substeps = m.substeps;
+  out.extrapolate = word(goals_words(), m.goals, pointer + "/goals");
+  out.conservative = word(coupling_words(), m.coupling, pointer + "/coupling");
+  out.cut = m.cut;
+  return out;
+}
+
+std::array<bool, 3> axes(const std::string& letters, const std::string& pointer) {
+  std::array<bool, 3> out{false, false, false};
+  for (const char c : letters.empty() ? std::string("?") : letters) {
+    if (c < 'x' || c > 'z' || out[c - 'x']) {
+      throw Error(ErrorCode::bad_input,
+                  fmt::format("{}: {}: got \"{}\", expected one to three different letters of xyz", kName, pointer, letters));
+    }
+    out[c - 'x'] = true;
+  }
+  return out;
+}
+
+/// make(entry, pointer) for each entry of a list.
+template <class Out, class In, class Make>
+void convert(std::vector<Out>& out, const std::vector<In>& in, const std::string& pointer, Make make) {
+  for (const In& entry : in) out.push_back(make(entry, fmt::format("{}/{}", pointer, out.size())));
+}
+
+void add_conditions(const BodySpec& spec, Body& b) {
+  convert(b.inclusions, spec.inclusions, b.pointer + "/inclusions", [](const InclusionSpec& s, const std::string& at) {
+    return Inclusion{selection(s.where, at), material(s.material, at + "/material")};
+  });
+  convert(b.fixed, spec.fixed, b.pointer + "/fixed", [](const FixedSpec& s, const std::string& at) {
+    return Fixed{selection(s.where, at), axes(s.axes, at + "/axes")};
+  });
+  convert(b.prescribed, spec.prescribed, b.pointer + "/prescribed", [](const PrescribedSpec& s, const std::string& at) {
+    return Prescribed{selection(s.where, at), s.displacement, curve(s.curve, at)};
+  });
+  convert(b.forces, spec.forces, b.pointer + "/forces", [](const ForceSpec& s, const std::string& at) {
+    return Force{selection(s.where, at), s.force, curve(s.curve, at)};
+  });
+  convert(b.pressures, spec.pressures, b.pointer + "/pressures", [](const PressureSpec& s, const std::string& at) {
+    return Pressure{selection(s.where, at), s.pressure, curve(s.curve, at)};
+  });
+}
+
+/// `surfaces`: surfaces in memory so far.
+Body body(const BodySpec& spec, const std::string& pointer, std::size_t& surfaces) {
+  const bool in_memory = !spec.surface.vertices.empty() || !spec.surface.triangles.empty();
+  if (int{in_memory} + int{!spec.surface_file.empty()} + int{!spec.volume_file.empty()} != 1) {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("body \"{}\": exactly one of surface, surface_file and volume_file must be set", spec.name));
+  }
+  Body b;
+  b.pointer = pointer;
+  b.name = spec.name;
+  b.mesh = spec.volume_file;
+  b.surface = spec.surface_file;
+  if (in_memory) {
+    b.surface = fmt::format("memory:{}", surfaces++);
+    b.surface_in_memory = std::make_shared<const TriangleMesh>(TriangleMesh{spec.surface.vertices, spec.surface.triangles});
+  }
+  b.scale = spec.scale;
+  b.translate = spec.translate;
+  if (b.mesh.empty()) {
+    b.lattice.spacing = spec.lattice_spacing;
+    if (spec.lattice_spacing == 0) b.lattice.nodes = spec.lattice_nodes;
+  }
+  b.element = word(element_words(), spec.element, pointer + "/element");
+  b.material = material(spec.material, pointer + "/material");
+  if (spec.model.type != to_string(ModelType::tled)) b.model = model(spec.model, pointer + "/model");
+  b.model.pointer = pointer + "/model";
+  add_conditions(spec, b);
+  b.velocity = spec.velocity;
+  b.angular_velocity = spec.angular_velocity;
+  return b;
+}
+
+}  // namespace
+
+Scene scene_of(const SceneSpec& spec) {
+  Scene scene;
+  scene.name = spec.name;
+  scene.gravity = spec.gravity;
+  scene.dt = spec.dt;
+  scene.safety = spec.safety;
+  scene.integrator = word(integrator_words(), spec.integrator, "/integrator");
+  if (spec.relaxation) scene.relaxation = {true, spec.relaxation->tolerance, spec.relaxation->max_steps};
+  scene.tool.path = spec.tool_path;
+  convert(scene.blades, spec.blades, "/blades", [&](const BladeSpec& s, const std::string& at) {
+    Blade b;
+    b.name = s.name.empty() ? fmt::format("blade{}", scene.blades.size()) : s.name;
+    b.path = s.path;
+    if (s.start) b.start = *s.start;
+    if (s.end) b.end = *s.end;
+    b.pointer = at;
+    return b;
+  });
+  std::size_t surfaces = 0;
+  convert(scene.bodies, spec.bodies, "/bodies",
+          [&](const BodySpec& s, const std::string& at) { return body(s, at, surfaces); });
+  validate(scene);
+  return scene;
+}
+
+}  // namespace pliant

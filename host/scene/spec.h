@@ -1,0 +1,16 @@
+// From the scene in code that include/pliant declares to the Scene that everything else works with.
+#pragma once
+#include "pliant/scene.h"
+#include "scene/scene.h"
+
+namespace pliant {
+
+/// What load_scene checks of a file, of a scene made in code: the reader reads what the writer writes of it, so that both doors
+/// have one set of rules and of messages. Throws Error.
+void validate(const Scene& scene);
+
+/// Throws Error (input) as load_scene does; places are named as in a scene file. Surfaces in memory get the names "memory:0",
+/// "memory:1", ... in the order of the bodies.
+Scene scene_of(const SceneSpec& spec);
+
+}  // namespace pliant

@@ -1,0 +1,201 @@
+// A scene in code becomes the Scene that the file with the same content becomes, and is refused with the same messages.
+#include "scene/spec.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "geometry/mesh.h"
+#include "scene/keys.h"
+#include "support/error_of.h"
+
+namespace pliant {
+namespace {
+
+/// Two bodies with one of everything.
+SceneSpec everything() {
+  SceneSpec s;
+  s.name = "everything";
+  s.gravity = {0, -9.81, 0};
+  s.dt = 1e-4;
+  s.safety = 0.8;
+  s.tool_path = {{0, 0, 0.1, 0}, {1, 0.1, 0.1, 0}};
+  BladeSpec blade;
+  blade.path = {{0, 0, -0.1, 0, 0, 0.1, 0}, {1, 0.2, -0.1, 0, 0.2, 0.1, 0}};
+  blade.start = 0.1;
+  s.blades = {blade};
+  BodySpec a;
+  a.name = "a";
+  a.surface_file = "a.obj";
+  a.lattice_spacing = 0.01;
+  a.scale = 2;
+  a.translate = {1, 2, 3};
+  a.material.law = "yeoh";
+  a.material.parameters = {{"c10", 500}, {"c20", 20}, {"c30", 3}, {"kappa", 50000}};
+  a.material.hourglass = 0.5;
+  a.material.damping = 4;
+  a.inclusions = {{RegionSpec::sphere({0, 0, 0}, 0.1), {}}};
+  a.fixed = {{RegionSpec::plane({0, 0, 0}, {0, -1, 0}), "xz"}};
+  a.prescribed = {{RegionSpec::of_nodes({7, 3}), {0.1, std::nullopt, 0}, {"smooth", 0.1, 2, {}}}};
+  a.forces = {{RegionSpec::box({0, 0, 0}, {1, 1, 1}), {0, 0, 1}, {"table", 0, 1, {{0, 0}, {1, 2}}}}};
+  a.pressures = {{RegionSpec::all(), 100, {}}};
+  a.model.type = "hybrid";
+  a.model.ratio = 0.4;
+  a.model.seed = Vec3d{0, 0, 0.1};
+  a.model.follow_tool = true;
+  a.model.substeps = 4;
+  a.model.goals = "extrapolated";
+  a.model.coupling = "one-sided";
+  a.model.cut = false;
+  BodySpec b;
+  b.name = "b";
+  b.surface.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  b.surface.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
+  b.velocity = {1, 0, 0};
+  s.bodies = {a, b};
+  return s;
+}
+
+const char* const file =
+    R"({"format": "pliant-scene/1", "name": "everything", "gravity": [0, -9.81, 0], "dt": 1e-4, "safety": 0.8,
+  "tool": {"path": [[0, 0, 0.1, 0], [1, 0.1, 0.1, 0]]},
+  "blades": [{"path": [[0, 0, -0.1, 0, 0, 0.1, 0], [1, 0.2, -0.1, 0, 0.2, 0.1, 0]], "start": 0.1}],
+  "bodies": [{"name": "a", "surface": "a.obj", "lattice": {"spacing": 0.01}, "scale": 2, "translate": [1, 2, 3],
+    "material": {"law": "yeoh", "c10": 500, "c20": 20, "c30": 3, "kappa": 50000, "hourglass": 0.5, "damping": 4},
+    "inclusions": [{"sphere": [[0, 0, 0], 0.1], "material": {"young": 3000, "poisson": 0.45}}],
+    "fixed": [{"plane": [[0, 0, 0], [0, -1, 0]], "axes": "xz"}],
+    "prescribed": [{"nodes": [7, 3], "displacement": [0.1, null, 0], "curve": "smooth", "start": 0.1, "duration": 2}],
+    "forces": [{"box": [[0, 0, 0], [1, 1, 1]], "force": [0, 0, 1], "table": [[0, 0], [1, 2]]}],
+    "pressures": [{"all": true, "pressure": 100}],
+    "model": {"type": "hybrid", "ratio": 0.4, "seed": [0, 0, 0.1], "follow": "tool", "substeps": 4, "goals": "extrapolated",
+      "coupling": "one-sided", "cut": false}},
+   {"name": "b", "surface": "memory:0", "lattice": {"nodes": 2000}, "material": {"young": 3000, "poisson": 0.45},
+    "velocity": [1, 0, 0]}]})";
+
+TEST(Spec, IsTheSceneOfTheFileWithTheSameContent) {
+  const Scene scene = scene_of(everything());
+  EXPECT_EQ(scene_to_json(scene), scene_to_json(parse_scene(file, "")));
+  EXPECT_EQ(scene.bodies[0].inclusions[0].where.pointer, "/bodies/0/inclusions/0");
+  EXPECT_EQ(scene.bodies[0].model.pointer, "/bodies/0/model");
+  ASSERT_TRUE(scene.bodies[1].surface_in_memory);
+  EXPECT_EQ(scene.bodies[1].surface_in_memory->vertices.size(), 4U);
+}
+
+TEST(Spec, TakesEveryLawByItsParameters) {
+  for (const Law law : all_laws()) {
+    const Material wanted = make_material(law, Moduli::from_bulk(1000, 50000));
+    SceneSpec spec = everything();
+    MaterialSpec& m = spec.bodies[1].material;
+    m.law = to_string(law);
+    for (std::size_t i = 0; i < wanted.parameters.size(); ++i)
+      m.parameters[law_info(law).parameters[i].name] = wanted.parameters[i];
+    const Material found = scene_of(spec).bodies[1].material;
+    EXPECT_EQ(found.law, law);
+    EXPECT_EQ(found.parameters, wanted.parameters) << to_string(law);
+    spec.bodies[1].element = "tet4anp";
+    EXPECT_EQ(test::error_of([&] { scene_of(spec); }).empty(), law_info(law).volumetric) << to_string(law);
+  }
+}
+
+TEST(Spec, WorksForTearingAndRelaxationToo) {
+  SceneSpec spec = everything();
+  spec.blades.clear();
+  spec.bodies.erase(spec.bodies.begin());
+  spec.relaxation = RelaxationSpec{1e-5, 500};
+  EXPECT_TRUE(scene_of(spec).relaxation.enabled);
+  spec.relaxation.reset();
+  BodySpec& b = spec.bodies[0];
+  b.surface = {};
+  b.volume_file = "b.msh";
+  b.element = "tet4";
+  b.material.toughness = 9000;
+  b.material.integrity = 0.5;
+  const Scene scene = scene_of(spec);
+  EXPECT_EQ(scene.bodies[0].material.toughness, 9000);
+  EXPECT_EQ(scene.bodies[0].material.integrity, 0.5);
+}
+
+struct Case {
+  std::function<void(SceneSpec&)> spoil;
+  const char* message;  ///< its beginning
+};
+const double kNan = std::numeric_limits<double>::quiet_NaN();
+
+const std::vector<Case> of_scenes{
+    {[](SceneSpec& s) { s.gravity[1] = kNan; }, "scene: /gravity/1: got nan, expected a number"},
+    {[](SceneSpec& s) { s.dt = -1; }, "scene: /dt: got -1, expected \"auto\" or a time step > 0"},
+    {[](SceneSpec& s) { s.safety = 1.5; }, "scene: /safety: got 1.5, expected a number with 0 < safety <= 1"},
+    {[](SceneSpec& s) { s.integrator = "verlet"; }, "scene: /integrator: got \"verlet\", expected one of increment, textbook"},
+    {[](SceneSpec& s) { s.integrator = "textbook"; }, "scene: /integrator: got \"textbook\", expected increment, because"},
+    {[](SceneSpec& s) {
+       s.relaxation = RelaxationSpec{2, 10};
+     },
+     "scene: /relaxation/tolerance: got 2, expected a number"},
+    {[](SceneSpec& s) { s.tool_path.pop_back(), s.tool_path.pop_back(); }, "scene: /bodies/0/model/follow: got \"tool\""},
+    {[](SceneSpec& s) { s.blades[0].path.pop_back(); }, "scene: /blades/0/path: got"},
+    {[](SceneSpec& s) { s.blades[0].end = 0; }, "scene: /blades/0/end: got 0, expected a time after the start 0.1"},
+    {[](SceneSpec& s) { s.bodies.clear(); }, "scene: /bodies: got [], expected a list of at least one body"},
+    {[](SceneSpec& s) { s.bodies[1].name = "a"; }, "scene: /bodies/1: got the name \"a\", which /bodies/0 has already"},
+    {[](SceneSpec& s) { s.bodies[0].name = "a/b"; }, "scene: /bodies/0/name: got \"a/b\", expected a name of 1 to 100"},
+    {[](SceneSpec& s) { s.bodies[0].volume_file = "x"; }, "body \"a\": exactly one of surface, surface_file and volume_file"},
+    {[](SceneSpec& s) { s.bodies[0].scale = 0; }, "scene: /bodies/0/scale: got 0, expected a number > 0"},
+    {[](SceneSpec& s) { s.bodies[0].lattice_spacing = -1; }, "scene: /bodies/0/lattice/spacing: got -1, expected a number > 0"},
+    {[](SceneSpec& s) { s.bodies[1].lattice_nodes = 3; },
+     "scene: /bodies/1/lattice/nodes: got 3, expected a whole number from 8"},
+    {[](SceneSpec& s) { s.bodies[0].element = "hex9"; }, "scene: /bodies/0/element: got \"hex9\", expected one of"},
+};
+
+const std::vector<Case> of_materials_and_entries{
+    {[](SceneSpec& s) { s.bodies[0].material.law = "yeho"; }, "scene: /bodies/0/material/law: got \"yeho\", expected one of"},
+    {[](SceneSpec& s) { s.bodies[0].material.parameters.erase("c20"); }, "scene: /bodies/0/material: got no \"c20\", expected"},
+    {[](SceneSpec& s) { s.bodies[0].material.parameters.clear(); }, "scene: /bodies/0/material/young: got 3000, expected no"},
+    {[](SceneSpec& s) { s.bodies[1].material.poisson = 0.5; }, "scene: /bodies/1/material/poisson: got 0.5, expected a number"},
+    {[](SceneSpec& s) { s.bodies[1].material.density = 0; }, "scene: /bodies/1/material/density: got 0, expected a number > 0"},
+    {[](SceneSpec& s) { s.bodies[1].material.hourglass = -1; }, "scene: /bodies/1/material/hourglass: got -1, expected"},
+    {[](SceneSpec& s) { s.bodies[1].material.integrity = 0.5; }, "scene: /bodies/1/material/integrity: got 0.5, expected no"},
+    {[](SceneSpec& s) { s.bodies[1].material.toughness = 1; }, "scene: /bodies/1/material/toughness: got 1, expected no"},
+    {[](SceneSpec& s) { s.bodies[0].inclusions[0].material.young = -1; },
+     "scene: /bodies/0/inclusions/0/material/young: got -1, expected a number > 0"},
+    {[](SceneSpec& s) { s.bodies[0].inclusions[0].where.radius = 0; },
+     "scene: /bodies/0/inclusions/0/sphere/1: got 0, expected a number > 0"},
+    {[](SceneSpec& s) { s.bodies[0].fixed[0].where.b = {}; }, "scene: /bodies/0/fixed/0/plane/1: got"},
+    {[](SceneSpec& s) { s.bodies[0].fixed[0].axes = "xx"; },
+     "scene: /bodies/0/fixed/0/axes: got \"xx\", expected one to three"},
+    {[](SceneSpec& s) { s.bodies[0].fixed[0].axes = ""; }, "scene: /bodies/0/fixed/0/axes: got \"\", expected one to three"},
+    {[](SceneSpec& s) {
+       s.bodies[0].prescribed[0].where.nodes = {3, 3};
+     },
+     "scene: /bodies/0/prescribed/0/nodes: got node 3"},
+    {[](SceneSpec& s) { s.bodies[0].prescribed[0].curve.kind = "sine"; }, "scene: /bodies/0/prescribed/0/curve: got \"sine\""},
+    {[](SceneSpec& s) { s.bodies[0].prescribed[0].curve.duration = 0; },
+     "scene: /bodies/0/prescribed/0/duration: got 0, expected a number > 0"},
+    {[](SceneSpec& s) { s.bodies[0].prescribed[0].displacement = {}; }, "scene: /bodies/0/prescribed/0/displacement: got"},
+    {[](SceneSpec& s) {
+       s.bodies[0].forces[0].where.b = {-1, 0, 0};
+     },
+     "scene: /bodies/0/forces/0/box: got x from 0 to -1"},
+    {[](SceneSpec& s) { s.bodies[0].forces[0].curve.table[1][0] = 0; }, "scene: /bodies/0/forces/0/table/1/0: got 0, expected"},
+    {[](SceneSpec& s) { s.bodies[0].pressures[0].pressure = kNan; }, "scene: /bodies/0/pressures/0/pressure: got nan"},
+    {[](SceneSpec& s) { s.bodies[0].model.type = "fem"; }, "scene: /bodies/0/model/type: got \"fem\", expected one of"},
+    {[](SceneSpec& s) { s.bodies[0].model.width = 9; }, "scene: /bodies/0/model/width: got 9, expected a whole number from 1"},
+    {[](SceneSpec& s) { s.bodies[0].model.beta = -1; }, "scene: /bodies/0/model/beta: got -1, expected \"auto\" or"},
+    {[](SceneSpec& s) { s.bodies[0].model.goals = "hold"; }, "scene: /bodies/0/model/goals: got \"hold\", expected one of"},
+    {[](SceneSpec& s) { s.bodies[0].model.region = RegionSpec::all(); }, "scene: /bodies/0/model/region: got"},
+};
+
+TEST(Spec, MistakesAreNamedAsInAFile) {
+  for (const std::vector<Case>* cases : {&of_scenes, &of_materials_and_entries}) {
+    for (const Case& c : *cases) {
+      SceneSpec spec = everything();
+      c.spoil(spec);
+      const std::string message = test::error_of([&] { scene_of(spec); });
+      EXPECT_EQ(message.substr(0, std::string(c.message).size()), c.message) << message;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace pliant
