@@ -150,7 +150,7 @@ py::dict info(const pliant::World& world) {
   py::dict d;
   d["backend"] = i.backend;
   d["device"] = i.device;
-  d["why"] = i.why;
+  d["reason"] = i.reason;
   d["bit_exact"] = i.bit_exact;
   d["nodes"] = i.nodes;
   d["elements"] = i.elements;

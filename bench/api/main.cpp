@@ -66,7 +66,7 @@ int run(const std::string& scene, const std::string& backend) {
       if (round >= 0) way.seconds.push_back(seconds / kSteps);
     }
   }
-  fmt::print("{}\n{} nodes, {} surface vertices\n", world.info().why, world.info().nodes, world.info().vertices);
+  fmt::print("{}\n{} nodes, {} surface vertices\n", world.info().reason, world.info().nodes, world.info().vertices);
   const double base = median(ways[0].seconds);
   for (Way& way : ways) {
     const double ms = 1e3 * median(way.seconds);

@@ -17,7 +17,7 @@ int main() try {
   pliant::WorldOptions options;
   options.interactive = true;
   pliant::World world(scene, options);
-  std::printf("%lld nodes on %s\n", static_cast<long long>(world.info().nodes), world.info().why.c_str());
+  std::printf("%lld nodes on %s\n", static_cast<long long>(world.info().nodes), world.info().reason.c_str());
 
   const pliant::GrabId hand = world.grab(7);
   world.move_grab(hand, {0.12, 0.08, 0.06});

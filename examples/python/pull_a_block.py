@@ -24,7 +24,7 @@ scene = {
 
 # %% A world on the best backend of this machine.
 world = pliant.World(scene, surfaces=[(vertices, triangles)], interactive=True)
-print(f"{world.info['nodes']} nodes on {world.info['why']}; a step of {1e3 * world.dt:.3f} ms")
+print(f"{world.info['nodes']} nodes on {world.info['reason']}; a step of {1e3 * world.dt:.3f} ms")
 
 # %% Take the corner and pull it 2 cm. The worker steps while Python does something else.
 corner = 7

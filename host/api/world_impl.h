@@ -27,8 +27,8 @@ struct CutRefused : Error {
 
 }  // namespace api
 
-/// Opens a backend for a scene of so many nodes; `why` receives the reason.
-using OpenBackend = std::function<std::unique_ptr<Backend>(std::string* why, std::int64_t nodes)>;
+/// Opens a backend for a scene of so many nodes; `reason` receives the reason.
+using OpenBackend = std::function<std::unique_ptr<Backend>(std::string* reason, std::int64_t nodes)>;
 
 /// One thread at a time steps the simulation: the caller's in step(), the worker in advance_async(). `mutex` protects what both
 /// touch.
@@ -43,7 +43,7 @@ struct World::Impl {
   void read_frame(bool again = false);
   void follow_topology();
   void publish_clock();
-  [[nodiscard]] std::shared_ptr<Simulation> make_simulation(std::string* why);
+  [[nodiscard]] std::shared_ptr<Simulation> make_simulation(std::string* reason);
   void restart(std::shared_ptr<Simulation> fresh);
   [[nodiscard]] Error as_device_error(const std::exception& error) const;
   void check_can_step() const;

@@ -49,8 +49,8 @@ IndexRange within(const IndexRange& range, std::size_t count) {
   return {range.first, std::min(range.count, count - range.first)};
 }
 
-WorldInfo info_of(const Model& model, const BackendInfo& backend, std::string why) {
-  WorldInfo info{backend.name, backend.device, std::move(why), backend.bit_exact, model.nodes(), model.elements(), 0, 0, {}};
+WorldInfo info_of(const Model& model, const BackendInfo& backend, std::string reason) {
+  WorldInfo info{backend.name, backend.device, std::move(reason), backend.bit_exact, model.nodes(), model.elements(), 0, 0, {}};
   info.vertices = model.surface.rest.size();
   info.triangles = model.surface.triangles.size();
   for (const ModelBody& b : model.bodies) {
@@ -68,9 +68,9 @@ WorldInfo info_of(const Model& model, const BackendInfo& backend, std::string wh
 
 World::Impl::Impl(Scene scene_, OpenBackend open, const WorldOptions& options_)
     : options(options_), scene(std::move(scene_)), open_backend(std::move(open)), model(model_of(scene)) {
-  std::string why;
-  simulation = make_simulation(&why);
-  info = info_of(*model, simulation->backend().info(), why);
+  std::string reason;
+  simulation = make_simulation(&reason);
+  info = info_of(*model, simulation->backend().info(), reason);
   tools = std::make_unique<api::Tools>(model, scene);
   topology = topology_of(model, 1);
   seen_model = model;
@@ -78,10 +78,10 @@ World::Impl::Impl(Scene scene_, OpenBackend open, const WorldOptions& options_)
   read_frame();
 }
 
-std::shared_ptr<Simulation> World::Impl::make_simulation(std::string* why) {
+std::shared_ptr<Simulation> World::Impl::make_simulation(std::string* reason) {
   std::unique_ptr<Backend> backend;
   try {
-    backend = open_backend(why, model->nodes());
+    backend = open_backend(reason, model->nodes());
   } catch (const Error& error) {
     throw Error(ErrorCode::device, error.what());
   }

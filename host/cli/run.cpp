@@ -107,10 +107,10 @@ class Run {
     std::optional<Checkpoint> saved;
     if (!o_.resume.empty()) saved = read_checkpoint(o_.resume);
     if (!o_.out.empty()) frames_.emplace(o_.out, stem_, parse_formats(o_.formats), o_.picture.options());
-    std::string why;
+    std::string reason;
     const auto model = std::make_shared<const Model>(build_model(scene));
-    auto backend = open_backend(o_.backend, &why, model->nodes());
-    o_.common.note("backend " + why);
+    auto backend = open_backend(o_.backend, &reason, model->nodes());
+    o_.common.note("backend " + reason);
     if (!backend->info().bit_exact) o_.common.note("tolerance mode: " + backend->info().tolerance_reason);
     simulation_.emplace(std::move(scene), model, std::move(backend));
     if (saved) resume(*saved);

@@ -1,10 +1,10 @@
 #include "cli/run_loop.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "cli/cli.h"
+#include "geometry/stopwatch.h"
 
 namespace pliant::cli {
 namespace {
@@ -29,7 +29,6 @@ std::int64_t RunLoop::remaining() const {
 
 RunResult RunLoop::run(std::int64_t every, const std::function<void()>& frame,
                        const std::function<void(std::int64_t)>& after_batch) {
-  using Clock = std::chrono::steady_clock;
   RunResult result;
   std::vector<double> batch_ms;
   while (!simulation_.at_equilibrium() && !result.interrupted) {
@@ -37,9 +36,9 @@ RunResult RunLoop::run(std::int64_t every, const std::function<void()>& frame,
     if (wanted == 0) break;
     if (every > 0) wanted = std::min(wanted, every - simulation_.step() % every);
     const std::int32_t n = simulation_.next_batch(wanted);
-    const auto before = Clock::now();
+    const Stopwatch clock;
     simulation_.advance(n);
-    const double seconds = std::chrono::duration<double>(Clock::now() - before).count();
+    const double seconds = clock.seconds();
     result.seconds += seconds;
     batch_ms.push_back(1e3 * seconds / n);
     if (const auto& divergence = simulation_.divergence()) {

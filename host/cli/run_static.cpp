@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 
+#include "geometry/stopwatch.h"
 #include "io/obj.h"
 #include "io/vtu.h"
 #include "pliant/error.h"
@@ -60,7 +60,7 @@ class Static {
   Static(const Scene& scene, const StaticRun& run) : scene_(scene), run_(run), model_(build_model(scene)) {}
 
   int operator()() {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch clock;
     statics::Settings settings;
     settings.linear = scene_.solver.linear;
     settings.load_steps = scene_.solver.load_steps;
@@ -78,7 +78,7 @@ class Static {
       solved_.push_back(std::move(solved));
     }
     progress.clear();
-    seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    seconds_ = clock.seconds();
     report(failure);
     if (!failure.empty()) {
       throw Error(ErrorCode::diverged, fmt::format("the static solver did not converge: {}; smaller loads, another law or more "

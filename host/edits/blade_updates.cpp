@@ -3,12 +3,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <utility>
 
 #include "cutting/blade/blade_trace.h"
 #include "edits/topology_edits.h"
+#include "geometry/stopwatch.h"
 #include "geometry/vec.h"
 #include "pliant/error.h"
 
@@ -61,7 +61,7 @@ const BladeTrace* TopologyEdits::front(const BladeMove& move, std::size_t body) 
 CutReport TopologyEdits::run_blades(const std::vector<BladeMove>& moves, std::span<const SweepTriangle> triangles) {
   EditedBodies& all = cut_bodies();
   CutReport report;
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch clock;
   std::vector<CutEdges> edges(run_.scene.bodies.size());
   std::vector<double> u = run_.loaded.u();
   std::map<std::string, std::map<std::int32_t, BladeTrace>> traces;
@@ -82,7 +82,7 @@ CutReport TopologyEdits::run_blades(const std::vector<BladeMove>& moves, std::sp
     body.keep_allowed(run_.scene.bodies[b], edges[b]);
     report.edges += static_cast<std::int64_t>(edges[b].size());
   }
-  report.search = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  report.search = clock.seconds();
   if (report.edges > 0) make_cut(std::move(edges), std::move(u), report);
   for (const BladeMove& move : moves) run_.state.blades.traces.erase(move.key);
   run_.state.blades.traces.merge(traces);

@@ -1,25 +1,16 @@
 // A cut: edges become split elements, and mass that changes hands takes its momentum along.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <future>
 #include <utility>
 
 #include "edits/model_swap.h"
 #include "edits/topology_edits.h"
+#include "geometry/stopwatch.h"
 #include "pliant/error.h"
 
 namespace pliant {
 namespace {
-
-using Moment = std::chrono::steady_clock::time_point;
-
-double lap(Moment& start) {
-  const Moment now = std::chrono::steady_clock::now();
-  const double seconds = std::chrono::duration<double>(now - start).count();
-  start = now;
-  return seconds;
-}
 
 /// Mass that one unit of fill of an element puts on each of its corners [kg].
 std::array<double, 8> corner_masses(const BodyMesh& solid, const std::vector<double>& density, std::int32_t element) {
@@ -61,7 +52,7 @@ std::vector<FluxMass> flux_masses(const Body& body, const BodyMesh& solid, const
 }  // namespace
 
 void TopologyEdits::make_cut(std::vector<CutEdges> edges, std::vector<double> u, CutReport& report) {
-  Moment start = std::chrono::steady_clock::now();
+  Stopwatch clock;
   EditedBodies& all = bodies();
   std::vector<CutEdit> edits(edges.size());
   std::size_t done = 0;
@@ -70,7 +61,7 @@ void TopologyEdits::make_cut(std::vector<CutEdges> edges, std::vector<double> u,
       if (!edges[done].empty()) edits[done] = all.cut(done).cut(edges[done], all.helper);
       report.changed = report.changed || edits[done].changed_elements();
     }
-    report.topology += lap(start);
+    report.topology += clock.lap();
     if (report.changed) {
       std::future<void> surfaces = all.helper.run([&] {
         for (std::size_t b = 0; b < edits.size(); ++b) {

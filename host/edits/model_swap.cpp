@@ -1,7 +1,6 @@
 #include "edits/model_swap.h"
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "model/boundary_conditions.h"
@@ -10,23 +9,11 @@
 #include "simulation/coupling.h"
 
 namespace pliant {
-namespace {
-
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
-double lap(double& start) {
-  const double end = now();
-  return end - std::exchange(start, end);
-}
-
-}  // namespace
-
 ModelSwap::ModelSwap(RunContext& run, HostLoads& loads, EditedBodies& bodies, std::vector<double> u, CutReport& report)
     : run_(run),
       loads_(loads),
       bodies_(bodies),
       report_(report),
-      start_(now()),
       old_model_(run.loaded.shared_model()),
       old_u_(std::move(u)),
       old_w_(run.loaded.w()) {
@@ -45,7 +32,7 @@ bool ModelSwap::keeps_surface() const {
 void ModelSwap::take_surfaces(const std::vector<const BodyMesh*>& solids, const std::function<void()>& ready) {
   if (kept_) model_->surface = bodies_.surface_copy.take(*old_model_);
   ready();
-  report_.surface += lap(start_);
+  report_.surface += clock_.lap();
   if (kept_) changes_ = &solids[0]->changes.value();  // every edit of a lattice lists them
   add_surfaces(solids, *model_, changes_);
 }
@@ -59,13 +46,13 @@ void ModelSwap::run(const Scene& scene, std::vector<NodeOrigins> origins, const 
   const bool first = needs_surface(scene);
   try {
     if (first) {
-      report_.model += lap(start_);
+      report_.model += clock_.lap();
       take_surfaces(solids, ready);
     }
     load_steps(scene);
     if (!first) {
       take_surfaces(solids, ready);
-      report_.model += lap(start_);
+      report_.model += clock_.lap();
     }
     load_surface();
   } catch (...) {
@@ -75,7 +62,7 @@ void ModelSwap::run(const Scene& scene, std::vector<NodeOrigins> origins, const 
   upload_coupling(run_);
   run_.state.kept.reset();  // copies of the old model's buffers
   if (!run_.state.forces.empty()) loads_.upload();
-  report_.upload += lap(start_);
+  report_.upload += clock_.lap();
 }
 
 void ModelSwap::load_steps(const Scene& scene) {
@@ -84,14 +71,14 @@ void ModelSwap::load_steps(const Scene& scene) {
   Buffer &u = program.at(program.find("node_u")), &w = program.at(program.find("node_w"));
   new_u_ = u.reals;
   new_w_ = w.reals;
-  report_.model += lap(start_);
+  report_.model += clock_.lap();
   carry_motion();
   // The buffers of the state are sent once, as they go on, and begin as always for whoever asks for the program.
   u.reals.swap(new_u_);
   w.reals.swap(new_w_);
   run_.loaded.update(model_, std::move(program));
   run_.loaded.reset_initial_state(std::move(new_u_), std::move(new_w_));
-  report_.upload += lap(start_);
+  report_.upload += clock_.lap();
 }
 
 void ModelSwap::load_surface() {
@@ -100,7 +87,7 @@ void ModelSwap::load_surface() {
   const bool patched = std::any_of(surface.buffers.begin(), surface.buffers.end(),
                                    [](const Buffer& buffer) { return buffer.changed.has_value(); });
   run_.loaded.update_surface(std::move(surface), patched);
-  report_.upload += lap(start_);
+  report_.upload += clock_.lap();
 }
 
 void ModelSwap::carry_motion() {

@@ -6,6 +6,7 @@
 
 #include "edits/cut_report.h"
 #include "edits/edited_bodies.h"
+#include "geometry/stopwatch.h"
 #include "simulation/host_loads.h"
 #include "simulation/run_context.h"
 
@@ -46,7 +47,7 @@ class ModelSwap {
   HostLoads& loads_;
   EditedBodies& bodies_;
   CutReport& report_;
-  double start_;
+  Stopwatch clock_;
   std::shared_ptr<const Model> old_model_;
   std::vector<double> old_u_, old_w_;
   std::vector<std::vector<Vec3d>> v_;  ///< [bodies][nodes before the edit]

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <map>
 
+#include "geometry/disjoint_sets.h"
 #include "lattice/lattice_parts.h"
 
 namespace pliant {

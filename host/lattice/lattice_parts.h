@@ -72,28 +72,7 @@ class Contacts {
 /// Nodes and cells: parts around a grid point share a node if they are connected through face contacts around that point.
 void number_nodes(const Parts& parts, const Contacts& contacts, Lattice& lattice);
 
-/// Hang every vertex in the part whose material it bounds.
+/// Embed every vertex in the part whose material it bounds.
 std::vector<Embedding> embed_vertices(const SurfaceDistance& surface, const Grid& grid, const Parts& parts);
-
-/// Sets of indices that are joined pairwise; the representative is the lowest index.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count) : parent_(count) {
-    for (std::size_t i = 0; i < count; ++i) parent_[i] = static_cast<std::int32_t>(i);
-  }
-  std::int32_t find(std::int32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::int32_t a, std::int32_t b) {
-    a = find(a);
-    b = find(b);
-    if (a < b) parent_[b] = a;
-    if (b < a) parent_[a] = b;
-  }
-
- private:
-  std::vector<std::int32_t> parent_;
-};
 
 }  // namespace pliant

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "backend/timing.h"
 #include "backends/backends.h"
+#include "geometry/stopwatch.h"
 #include "geometry/vec.h"
 #include "mesh_io/mesh_io.h"
 #include "pliant/error.h"
@@ -16,9 +16,6 @@
 
 namespace pliant::planning {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-double since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 constexpr double kMostSeconds = 20;  ///< that one body may take to come to rest
 
@@ -135,10 +132,10 @@ Scene configured(const Scene& scene, const Size& size, ElementKind element, std:
 }
 
 Reference make_reference(const Scene& scene, const Size& size, const PlanOptions& options) {
-  const auto start = Clock::now();
+  const Stopwatch start;
   Reference out;
   for (std::int64_t nodes = options.reference_nodes;; nodes *= 2) {
-    const auto began = Clock::now();
+    const Stopwatch began;
     std::vector<AtRest> answers;
     // Spacings that are no multiples of each other, so that the rims of what is held fall differently between the nodes.
     for (const double share : {1.0, 0.8, 0.64}) {
@@ -156,9 +153,9 @@ Reference make_reference(const Scene& scene, const Size& size, const PlanOptions
     out.frequency = answers[0].frequency;
     out.nodes = answers[0].nodes;
     // Twice the nodes take about four times as long.
-    if (out.uncertainty <= options.tolerance / 2 || since(start) + 4 * since(began) > options.reference_seconds) break;
+    if (out.uncertainty <= options.tolerance / 2 || start.seconds() + 4 * began.seconds() > options.reference_seconds) break;
   }
-  out.seconds = since(start);
+  out.seconds = start.seconds();
   return out;
 }
 
@@ -173,9 +170,9 @@ void measure_time(Trial& trial, const PlanOptions& options) {
   std::vector<double> times;
   std::int64_t steps = 64;
   for (int b = 0; b < kBatches && !simulation.divergence(); ++b) {
-    const auto start = Clock::now();
+    const Stopwatch start;
     const std::int64_t done = simulation.advance(steps);
-    const double seconds = since(start);
+    const double seconds = start.seconds();
     if (done > 0) times.push_back(seconds / static_cast<double>(done));
     if (b == 0 && seconds < 0.02)
       steps = std::min<std::int64_t>(1024, static_cast<std::int64_t>(64 * 0.02 / std::max(1e-5, seconds)));
@@ -188,7 +185,7 @@ void measure_time(Trial& trial, const PlanOptions& options) {
 }
 
 void measure_error(Trial& trial, const Reference& reference, const PlanOptions& options) {
-  const auto start = Clock::now();
+  const Stopwatch start;
   Scene scene = trial.scene;
   const bool relaxes = scene.bodies[0].model.type == ModelType::tled;
   if (relaxes) {
@@ -202,13 +199,13 @@ void measure_error(Trial& trial, const Reference& reference, const PlanOptions& 
   Simulation simulation(scene, open_backend(options.backend, nullptr, trial.nodes));
   bool rest = false;
   if (relaxes) {
-    while (!simulation.at_equilibrium() && !simulation.divergence() && since(start) < kMostSeconds) simulation.advance(1024);
+    while (!simulation.at_equilibrium() && !simulation.divergence() && start.seconds() < kMostSeconds) simulation.advance(1024);
     rest = simulation.at_equilibrium();
   } else {
     const double beat = 2 / reference.frequency, small = std::min(1e-3, options.tolerance / 20);
     go(simulation, end_of_curves(scene) + beat);
     std::vector<Vec3d> last = moved(simulation);
-    while (!rest && !simulation.divergence() && since(start) < kMostSeconds) {
+    while (!rest && !simulation.divergence() && start.seconds() < kMostSeconds) {
       go(simulation, simulation.time() + beat);
       std::vector<Vec3d> now = moved(simulation);
       rest = norm_of(difference(now, last)) <= small * reference.norm;

@@ -1,6 +1,5 @@
 // The surface as Embree holds it, and what a ray finds there. Only ray_scene_embree.cpp knows Embree.
 #pragma once
-#include <chrono>
 #include <memory>
 #include <vector>
 
@@ -8,15 +7,6 @@
 #include "render/smooth_normals.h"
 
 namespace pliant::render {
-
-class Stopwatch {
- public:
-  [[nodiscard]] double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point start_ = Clock::now();
-};
 
 struct Hit {
   float distance = 0;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "geometry/stopwatch.h"
 #include "pliant/error.h"
 #include "render/ray_scene.h"
 #include "render/trace.h"

@@ -4,6 +4,8 @@
 #include <numeric>
 #include <utility>
 
+#include "geometry/disjoint_sets.h"
+
 namespace pliant::render {
 namespace {
 
@@ -16,24 +18,6 @@ Vec3f face_normal(std::span<const float> positions, std::span<const std::int32_t
   const Vec3f a = point(positions, triangles[3 * t]);
   return cross(point(positions, triangles[3 * t + 1]) - a, point(positions, triangles[3 * t + 2]) - a);
 }
-
-/// Union-find over corners; the root of a set is its lowest corner.
-class Sets {
- public:
-  explicit Sets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
-  std::int32_t find(std::int32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::int32_t a, std::int32_t b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::int32_t> parent_;
-};
 
 struct HalfEdge {
   std::int32_t low, high;  ///< vertices
@@ -63,7 +47,7 @@ SmoothNormals::SmoothNormals(std::span<const float> positions, std::span<const s
   const std::size_t count = triangles.size() / 3;
   std::vector<Vec3f> normal(count);
   for (std::size_t t = 0; t < count; ++t) normal[t] = unit(face_normal(positions, triangles, t), {0, 0, 0});
-  Sets sets(triangles.size());
+  DisjointSets sets(triangles.size());
   const std::vector<HalfEdge> edges = sorted_edges(triangles);
   const float least = std::cos(crease);
   for (std::size_t e = 0; e + 1 < edges.size(); ++e) {

@@ -6,8 +6,8 @@
 #include <numeric>
 
 #include "cutting/topology/cut_cell.h"
+#include "geometry/disjoint_sets.h"
 #include "geometry/vec.h"
-#include "lattice/lattice_parts.h"
 #include "tearing/method.h"
 
 namespace pliant {

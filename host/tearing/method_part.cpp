@@ -4,7 +4,7 @@
 #include <set>
 
 #include "cutting/topology/cut_cell.h"
-#include "lattice/lattice_parts.h"
+#include "geometry/disjoint_sets.h"
 #include "tearing/method.h"
 
 namespace pliant {

@@ -40,7 +40,7 @@ struct BodyInfo {
 struct WorldInfo {
   std::string backend;           ///< "opencl:0"
   std::string device;            ///< the processor's own name
-  std::string why;               ///< why this backend
+  std::string reason;            ///< why this backend
   bool bit_exact = false;        ///< the device passed the start-up probe
   std::int64_t nodes = 0;        ///< of all bodies
   std::int64_t elements = 0;     ///< of all bodies

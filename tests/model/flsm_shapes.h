@@ -104,7 +104,7 @@ inline LinkedLattice torn_ball(double share) {
   return lattice;
 }
 
-// A box whose part x >= 3 exists twice at the same grid points. One sheet hangs on the rest below y = 4, the other above.
+// A box whose part x >= 3 exists twice at the same grid points. One sheet is joined to the rest below y = 4, the other above.
 inline LinkedLattice two_sheets() {
   LinkedLattice lattice = shape({7, 8, 5}, [](int, int, int) { return true; });
   std::map<Index, std::int32_t> first, second;

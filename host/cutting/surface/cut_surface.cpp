@@ -225,7 +225,7 @@ void CutSurface::embedding(const CutTopology& topology, std::int32_t vertex, std
   const CutSurfaceVertex& v = vertices_[vertex];
   std::int32_t element = topology.element_of(v.carrier.cell, v.carrier.label);
   const auto found = topology.cells().find(v.carrier.cell);
-  if (element < 0 && found != topology.cells().end()) {  // a component without material, which nothing visible hangs in
+  if (element < 0 && found != topology.cells().end()) {  // a component without material: nothing visible is embedded in it
     for (const std::int32_t other : found->second.element) element = std::max(element, other);
   }
   nodes = topology.elements().nodes[element < 0 ? v.carrier.cell : element];

@@ -52,7 +52,7 @@ class CutSurface {
   /// Where a vertex is embedded: nodes of `topology` (numbers of CutElements) and trilinear weights, which add up to 1.
   void embedding(const CutTopology& topology, std::int32_t vertex, std::array<std::int32_t, 8>& nodes,
                  std::array<double, 8>& weights) const;
-  /// What differs from when this was called last, or from the surface given. Vertices change when they are new or hang
+  /// What differs from when this was called last, or from the surface given. Vertices change when they are new or embedded
   /// elsewhere.
   [[nodiscard]] SurfaceChanges take_changes();
 

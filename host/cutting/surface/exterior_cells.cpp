@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <set>
 
-#include "lattice/lattice_parts.h"
+#include "geometry/disjoint_sets.h"
 
 namespace pliant::overlay {
 namespace {

@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "cutting/surface/overlay.h"
+#include "geometry/disjoint_sets.h"
 #include "geometry/polygon.h"
-#include "lattice/lattice_parts.h"
 #include "pliant/error.h"
 
 namespace pliant::overlay {
