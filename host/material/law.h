@@ -1,7 +1,7 @@
 // What a law_STEM.h gives: a struct, named in kernels/laws.h, with
 //   info                       the constant LawInfo
 //   Name(const double* p)      from its parameters, in the order of info.parameters
-//   from_moduli(m)             the parameters (if takes_moduli), or those of a typical material (if not), with these moduli at rest
+//   from_moduli(m)             the parameters, or those of a typical material (if not takes_moduli), with these moduli at rest
 //   moduli()                   the moduli at rest
 //   constants()                what kernels/law_STEM.cl finds in law_parameters
 //   bulk()                     k of the volumetric part U(J) = k/2 (J - 1)^2, 0 without one
