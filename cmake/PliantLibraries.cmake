@@ -18,8 +18,8 @@ endif()
 set(standard_headers <algorithm> <array> <cmath> <cstdint> <cstring> <filesystem> <fstream> <functional> <limits> <map> <memory>
     <numeric> <optional> <random> <set> <span> <sstream> <string> <utility> <vector> <fmt/format.h> <fmt/ranges.h>)
 pliant_headers(pliant_room_headers pliant_flags fmt::fmt Eigen3::Eigen HEADERS ${standard_headers} <Eigen/Dense>)
-pliant_headers(pliant_command_headers pliant_flags fmt::fmt Eigen3::Eigen nlohmann_json::nlohmann_json CLI11::CLI11
-               HEADERS ${standard_headers} <Eigen/Dense> <nlohmann/json.hpp> <CLI/CLI.hpp>)
+pliant_headers(pliant_command_headers pliant_flags fmt::fmt Eigen3::Eigen nlohmann_json::nlohmann_json
+               HEADERS ${standard_headers} <Eigen/Dense> <nlohmann/json.hpp>)
 
 # pliant_room(NAME FOLDER LINKS...): the .cpp files of the folder and of its shelves (subfolders).
 function(pliant_room name folder)

@@ -7,8 +7,8 @@
 #include "backends/backends.h"
 #include "bench/cutting/parts.h"
 #include "cutting_methods/sweep_probe.h"
+#include "geometry/disjoint_sets.h"
 #include "geometry/vec.h"
-#include "lattice/lattice_parts.h"
 
 namespace pliant::bench {
 namespace {

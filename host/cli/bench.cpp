@@ -1,7 +1,9 @@
 // pliant bench NAME: measurements of the engine itself. Every benchmark prints {"machine": {...}, "rows": [...]}.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "bench/accuracy/accuracy.h"
 #include "bench/cutting/cutting.h"

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
+#include <nlohmann/json.hpp>
 
 #include "io/atomic_file.h"
 #include "pliant/error.h"

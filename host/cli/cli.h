@@ -1,13 +1,18 @@
 // What the commands share: registration, --json and --quiet, progress, interruption.
 #pragma once
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <functional>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
+
+namespace CLI {  // its header is long: only what uses it includes it
+class App;
+class ParseError;
+}  // namespace CLI
 
 namespace pliant::cli {
 

@@ -1,6 +1,9 @@
 // pliant devices: every backend of this machine.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
 #include "backend/pass_table.h"
 #include "backends/backends.h"
 #include "cli/cli.h"

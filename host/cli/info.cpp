@@ -1,6 +1,9 @@
 // pliant info: what a scene holds and costs. Runs nothing but the Lanczos iteration of the stable step, on the cpu backend.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
 #include "backend/pass_table.h"
 #include "backends/backends.h"
 #include "cli/cli.h"

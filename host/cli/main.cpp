@@ -1,6 +1,7 @@
 // The pliant command: one row per command, and the one place where errors become exit codes.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
 #include <exception>

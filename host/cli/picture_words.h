@@ -1,9 +1,12 @@
 // The options of pictures on the command line.
 #pragma once
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "render/picture.h"
+
+namespace CLI {
+class App;
+}
 
 namespace pliant::cli {
 

@@ -1,7 +1,9 @@
 // pliant run: simulate a scene and write what comes out.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "backends/backends.h"
 #include "cli/cli.h"

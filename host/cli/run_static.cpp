@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "geometry/stopwatch.h"
 #include "io/obj.h"
@@ -151,7 +152,7 @@ class Static {
     if (!run_.out.empty() && solved_.size() == model_.bodies.size()) write(failure.empty() ? "" : "-last-good");
     run_.common.print(fmt::format("solved in {:.3g} s", seconds_));
     if (run_.hash && run_.common.quiet && run_.common.json != "-") fmt::print("{}\n", hash_text(hash()));
-    run_.common.print("hash " + hash_text(hash()));
+    run_.common.print(fmt::format("hash {}", hash_text(hash())));
     run_.common.write(json);
   }
 

@@ -10,9 +10,9 @@
 
 #include "cutting/blade/blade.h"
 #include "cutting/topology/cut_topology.h"
+#include "geometry/disjoint_sets.h"
 #include "geometry/vec.h"
 #include "lattice/lattice.h"
-#include "lattice/lattice_parts.h"
 
 namespace pliant::cut_test {
 

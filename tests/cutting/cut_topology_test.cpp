@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "cutting/cut_bodies.h"
+#include "lattice/lattice_cell.h"
 #include "pliant/error.h"
 
 namespace pliant {
