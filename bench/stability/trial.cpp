@@ -48,7 +48,7 @@ class BoxFile {
   }
 
   static void write_volume(std::ostream& out, const Box& box, bool tets) {
-    const auto [nx, ny, nz] = box.cells;
+    const int nx = box.cells[0], ny = box.cells[1], nz = box.cells[2];
     const int nodes = (nx + 1) * (ny + 1) * (nz + 1), cells = nx * ny * nz;
     out << "# vtk DataFile Version 3.0\nbox\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS " << nodes << " double\n";
     for (int n = 0; n < nodes; ++n) {
