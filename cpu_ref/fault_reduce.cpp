@@ -1,4 +1,5 @@
 // Twin of kernels/fault_reduce.cl.
+#include "layout.h"
 #include "registry.h"
 
 namespace pliant::ref {
@@ -6,15 +7,19 @@ namespace pliant::ref {
 template <class Scalar>
 void fault_reduce(Range range, const std::int32_t* fault, std::int32_t* fault_summary, std::int32_t elements) {
   for (std::int64_t lane = range.begin; lane < range.end; ++lane) {
-    std::int32_t step = 0, element = 0;
+    std::int32_t step = 0, element = 0, inverted = 0, lowest = 0;
     for (std::int32_t e = static_cast<std::int32_t>(lane); e < elements; e += 256) {
       if (fault[e] > 0 && (step == 0 || fault[e] < step)) {
         step = fault[e];
         element = e;
       }
+      if (fault[e] < 0 && inverted++ == 0) lowest = e;
     }
-    fault_summary[2 * lane] = step;
-    fault_summary[2 * lane + 1] = element;
+    std::int32_t* out = fault_summary + PLIANT_FAULT_SUMMARY * lane;
+    out[0] = step;
+    out[1] = element;
+    out[2] = inverted;
+    out[3] = lowest;
   }
 }
 

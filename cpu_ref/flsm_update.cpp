@@ -33,7 +33,7 @@ void flsm_update(Range range, Scalar* node_u, Scalar* node_w, const Scalar* node
       u[c] = params.displacement(u[c] + next);
       finite = finite && std::fabs(u[c]) < std::numeric_limits<Scalar>::infinity();
     }
-    mark_fault(!finite, step, fault[fault_base + i]);
+    mark_fault(finite ? 0 : 2, step, fault[fault_base + i]);
   }
 }
 

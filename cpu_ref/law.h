@@ -1,5 +1,6 @@
 // The material law of a batch. A twin of a fragment is a class template
-//   static constexpr bool invertible                                whether the law is finite for J <= 0 too
+//   static constexpr bool invertible                                whether the law is finite for J <= 0 as it is
+//   Scalar low                                                      below this J the law is continued (inversion.h)
 //   Name(const Scalar* law_parameters)                              the parameters [Pa], or what the host makes of them
 //   Scalar pressure(Scalar j)                                       dU/dJ [Pa] of the volumetric part at j = J - 1
 //   Mat3<Scalar> stress(deformation, scale, pressure)               `scale` (a volume) times the first Piola-Kirchhoff stress
@@ -24,13 +25,15 @@ PLIANT_LAWS(PLIANT_TWIN)
 template <int Number, class Scalar>
 using MaterialLaw = typename LawOf<Number, Scalar>::type;
 
-/// True where the law has no stress: J is not finite, or not positive though the law needs that (inverted, collapsed).
+constexpr std::int32_t no_fault = 0, inverted = 1, lost = 2;
+/// inverted: J <= 0, and the law goes on; lost: no stress, for J is not finite, or not positive where the law ends there.
 template <class LawType, class Scalar>
-inline bool is_faulty(const LawType&, const Deformation<Scalar>& d) {
+inline std::int32_t fault_of(const LawType& law, const Deformation<Scalar>& d) {
   constexpr Scalar infinity = std::numeric_limits<Scalar>::infinity();
   const Scalar jacobian = Scalar(1) + d.j;
-  if constexpr (LawType::invertible) return !(std::fabs(jacobian) < infinity);
-  return !(jacobian > Scalar(0)) || !(jacobian < infinity);
+  const bool finite = std::fabs(jacobian) < infinity;
+  if (jacobian > Scalar(0) && finite) return no_fault;
+  return finite && (LawType::invertible || law.low > Scalar(0)) ? inverted : lost;
 }
 
 }  // namespace pliant::ref

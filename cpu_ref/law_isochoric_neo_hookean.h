@@ -2,15 +2,17 @@
 #pragma once
 #include "cube_root.h"
 #include "deformation.h"
+#include "inversion.h"
 
 namespace pliant::ref {
 
 template <class Scalar>
 struct IsochoricNeoHookean {
   static constexpr bool invertible = false;
-  Scalar mu, kappa;
+  Scalar low, mu, kappa;
 
-  explicit IsochoricNeoHookean(const Scalar* law_parameters) : mu(law_parameters[0]), kappa(law_parameters[1]) {}
+  explicit IsochoricNeoHookean(const Scalar* law_parameters)
+      : low(law_parameters[0]), mu(law_parameters[1]), kappa(law_parameters[2]) {}
   [[nodiscard]] Scalar pressure(Scalar j) const { return kappa * j; }
 
   [[nodiscard, gnu::always_inline]] inline Mat3<Scalar> stress(const Deformation<Scalar>& d, Scalar scale,
@@ -22,10 +24,16 @@ struct IsochoricNeoHookean {
     const Scalar excess = std::fma(Scalar(3), d.q, d.t) - hh;  // 3 J (1 - s)
     const Scalar one_minus_s = excess * third;
     const Scalar s = std::fma(-excess, third, Scalar(1));
-    const Scalar m = scale * (mu * (root * root));
+    const Scalar low_d = low_distance(d.j), squared = root * root, low_power = low_first(low_d);
+    const bool is_low = jacobian < low;
+    const Scalar m = scale * (mu * (is_low ? low_power : squared));
     const Scalar p = scale * pressure;
-    const Scalar difference = std::fma(m, s, -p);
-    return combine(d, std::fma(p, d.t, std::fma(m, std::fma(-s, d.t, one_minus_s), p)), m, difference, -difference);
+    const Scalar low_s = (scale * mu) * (low_first_slope(low_d) * (Scalar(3) + std::fma(Scalar(2), d.t, hh)));
+    const Scalar low_difference = low_s - p, high_difference = std::fma(m, s, -p);
+    const Scalar difference = is_low ? low_difference : high_difference;
+    const Scalar low_identity = std::fma(-difference, d.t, m - difference);
+    const Scalar identity = std::fma(p, d.t, std::fma(m, std::fma(-s, d.t, one_minus_s), p));
+    return combine(d, is_low ? low_identity : identity, m, difference, -difference);
   }
 };
 

@@ -8,9 +8,10 @@ namespace pliant::ref {
 template <class Scalar>
 struct StableNeoHookean {
   static constexpr bool invertible = true;
-  Scalar mu, lambda;  ///< mu, lambda' = lambda + 5/6 mu
+  Scalar low, mu, lambda;  ///< mu, lambda' = lambda + 5/6 mu
 
-  explicit StableNeoHookean(const Scalar* law_parameters) : mu(law_parameters[0]), lambda(law_parameters[1]) {}
+  explicit StableNeoHookean(const Scalar* law_parameters)
+      : low(law_parameters[0]), mu(law_parameters[1]), lambda(law_parameters[2]) {}
   [[nodiscard]] Scalar pressure(Scalar j) const { return lambda * j; }
 
   [[nodiscard, gnu::always_inline]] inline Mat3<Scalar> stress(const Deformation<Scalar>& d, Scalar scale,

@@ -2,16 +2,21 @@
 #pragma once
 #include "cube_root.h"
 #include "deformation.h"
+#include "inversion.h"
 
 namespace pliant::ref {
 
 template <class Scalar>
 struct Yeoh {
   static constexpr bool invertible = false;
-  Scalar first, second, third, kappa;  ///< 2 c10, 4 c20, 6 c30, kappa
+  Scalar low, first, second, third, kappa;  ///< 2 c10, 4 c20, 6 c30, kappa
 
   explicit Yeoh(const Scalar* law_parameters)
-      : first(law_parameters[0]), second(law_parameters[1]), third(law_parameters[2]), kappa(law_parameters[3]) {}
+      : low(law_parameters[0]),
+        first(law_parameters[1]),
+        second(law_parameters[2]),
+        third(law_parameters[3]),
+        kappa(law_parameters[4]) {}
   [[nodiscard]] Scalar pressure(Scalar j) const { return kappa * j; }
 
   [[nodiscard, gnu::always_inline]] inline Mat3<Scalar> stress(const Deformation<Scalar>& d, Scalar scale,
@@ -22,11 +27,19 @@ struct Yeoh {
     const Scalar inverse = Scalar(1) / (Scalar(3) * jacobian);
     const Scalar excess = std::fma(Scalar(3), d.q, d.t) - hh;
     const Scalar s = std::fma(-excess, inverse, Scalar(1));
-    const Scalar x = std::fma(squared, Scalar(3) + std::fma(Scalar(2), d.t, hh), Scalar(-3));
-    const Scalar g = scale * (std::fma(x, std::fma(third, x, second), first) * squared);
+    const Scalar low_d = low_distance(d.j), low_power = low_first(low_d);
+    const bool is_low = jacobian < low;
+    const Scalar power = is_low ? low_power : squared, i1 = Scalar(3) + std::fma(Scalar(2), d.t, hh);
+    const Scalar x = std::fma(power, i1, Scalar(-3));
+    const Scalar slope = std::fma(x, std::fma(third, x, second), first);
+    const Scalar g = scale * (slope * power);
     const Scalar p = scale * pressure;
-    const Scalar difference = std::fma(g, s, -p);
-    return combine(d, std::fma(p, d.t, std::fma(g, std::fma(-s, d.t, excess * inverse), p)), g, difference, -difference);
+    const Scalar low_difference = std::fma(scale * slope, low_first_slope(low_d) * i1, -p),
+                 high_difference = std::fma(g, s, -p);
+    const Scalar difference = is_low ? low_difference : high_difference;
+    const Scalar low_identity = std::fma(-difference, d.t, g - difference);
+    const Scalar identity = std::fma(p, d.t, std::fma(g, std::fma(-s, d.t, excess * inverse), p));
+    return combine(d, is_low ? low_identity : identity, g, difference, -difference);
   }
 };
 

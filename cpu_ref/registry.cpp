@@ -25,6 +25,7 @@
   ROW(surface_position) \
   ROW(pressure_force) \
   ROW(fault_reduce) \
+  ROW(increment_reduce) \
   ROW(limit_triad) \
   ROW(limit_fma) \
   ROW(flsm_bar) \

@@ -11,9 +11,10 @@ constexpr std::int64_t tile_base(std::int64_t e, std::int64_t planes) {
   return e / PLIANT_TILE * planes * PLIANT_TILE + e % PLIANT_TILE;
 }
 
-/// Keep the step of the first fault only, counted from 1.
-inline void mark_fault(bool bad, std::int32_t step, std::int32_t& fault) {
-  if (bad && fault == 0) fault = step + 1;
+/// Keep the step of the first fault, counted from 1, negative while the element is only inverted. kind: fault_of (law.h).
+inline void mark_fault(std::int32_t kind, std::int32_t step, std::int32_t& fault) {
+  if (kind > 1 && fault <= 0) fault = step + 1;
+  if (kind == 1 && fault == 0) fault = -step - 1;
 }
 
 }  // namespace pliant::ref

@@ -69,8 +69,8 @@ Face<Scalar> face_of(const Vec3<Scalar>& u00, const Vec3<Scalar>& u10, const Vec
 
 /// Forces on the upper and lower face of one cell.
 template <class LawType, class Scalar>
-bool cell_forces(const Face<Scalar>& below, const Face<Scalar>& above, Scalar fill, const LawType& law, Scalar gradient,
-                 Scalar volume, Scalar stiffness, Face<Scalar>& lower, Face<Scalar>& upper) {
+std::int32_t cell_forces(const Face<Scalar>& below, const Face<Scalar>& above, Scalar fill, const LawType& law, Scalar gradient,
+                         Scalar volume, Scalar stiffness, Face<Scalar>& lower, Face<Scalar>& upper) {
   const Vec3<Scalar> mx = below.ds + above.ds, my = below.sd + above.sd, mxy = below.dd + above.dd;
   const Vec3<Scalar> mz = above.ss - below.ss, mxz = above.ds - below.ds, myz = above.sd - below.sd, mxyz = above.dd - below.dd;
   const Scalar own = fill > Scalar(0) ? gradient : Scalar(0);
@@ -82,7 +82,7 @@ bool cell_forces(const Face<Scalar>& below, const Face<Scalar>& above, Scalar fi
   const Vec3<Scalar> qx{p.m00, p.m10, p.m20}, qy{p.m01, p.m11, p.m21}, qz{p.m02, p.m12, p.m22}, qxy = k * mxy;
   upper = {qz, fma(k, mxz, qx), fma(k, myz, qy), fma(k, mxyz, qxy)};
   lower = {Vec3<Scalar>{} - qz, fma(-k, mxz, qx), fma(-k, myz, qy), fma(-k, mxyz, qxy)};
-  return fill > Scalar(0) && is_faulty(law, d);
+  return fill > Scalar(0) ? fault_of(law, d) : no_fault;
 }
 
 /// Back along y and x for the rows of one plane of nodes.
@@ -143,10 +143,11 @@ void tled_hex8_brick_force(Range range, const Scalar* node_u, const std::int32_t
           const std::int64_t cell = brick * PLIANT_BRICK_NODES + (z * rows + y) * columns + x;
           Face<Scalar> lower{}, &plane = work->forces[z][y][x];
           work->forces[z + 1][y][x] = {};
-          const bool bad = (brick_rows[2 * brick] >> (4 * z + y) & 1) != 0 &&
-                           cell_forces(work->faces[z][y][x], work->faces[z + 1][y][x], brick_fill[cell], law, gradient, volume,
-                                       stiffness, lower, work->forces[z + 1][y][x]);
-          mark_fault(bad, step, fault[fault_base + cell]);
+          if ((brick_rows[2 * brick] >> (4 * z + y) & 1) != 0) {
+            mark_fault(cell_forces(work->faces[z][y][x], work->faces[z + 1][y][x], brick_fill[cell], law, gradient, volume,
+                                   stiffness, lower, work->forces[z + 1][y][x]),
+                       step, fault[fault_base + cell]);
+          }
           plane =
               z > 0 ? Face<Scalar>{plane.ss + lower.ss, plane.ds + lower.ds, plane.sd + lower.sd, plane.dd + lower.dd} : lower;
         }

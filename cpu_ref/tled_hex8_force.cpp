@@ -16,7 +16,7 @@ void tled_hex8_force(Range range, const Scalar* node_u, const std::int32_t* hex_
     const Corners<Scalar> u = hex8_displacements(e, node_u, hex_nodes);
     const Deformation<Scalar> d = deformation_of(hex8_gradient(u, data, 0));
     const Scalar fill = hex_fill[e];
-    mark_fault(fill > Scalar(0) && is_faulty(law, d), step, fault[fault_base + e]);
+    mark_fault(fill > Scalar(0) ? fault_of(law, d) : no_fault, step, fault[fault_base + e]);
     const Mat3<Scalar> p = law.stress(d, fill * data[volume], law.pressure(d.j));
 
     Corners<Scalar> f;

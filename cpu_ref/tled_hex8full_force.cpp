@@ -1,4 +1,6 @@
 // Twin of kernels/tled_hex8full_force.cl.
+#include <algorithm>
+
 #include "hex8.h"
 #include "law.h"
 #include "registry.h"
@@ -15,11 +17,11 @@ void tled_hex8full_force(Range range, const Scalar* node_u, const std::int32_t* 
     const Corners<Scalar> u = hex8_displacements(e, node_u, hex_nodes);
     const Scalar fill = hex_fill[e];
     Corners<Scalar> f{};
-    bool bad = false;
+    std::int32_t kind = no_fault;
     for (std::int64_t point = 0; point < 8; ++point) {
       const std::int64_t gradients = 25 * point, weight = gradients + 24;
       const Deformation<Scalar> d = deformation_of(hex8_gradient(u, data, gradients));
-      bad = bad || (fill > Scalar(0) && is_faulty(law, d));
+      kind = std::max(kind, fill > Scalar(0) ? fault_of(law, d) : no_fault);
       const Mat3<Scalar> p = law.stress(d, fill * data[weight], law.pressure(d.j));
       for (std::size_t a = 0; a < 8; ++a) {
         const auto b = gradients + 3 * static_cast<std::int64_t>(a);
@@ -29,7 +31,7 @@ void tled_hex8full_force(Range range, const Scalar* node_u, const std::int32_t* 
         f.z[a] = std::fma(p.m22, bz, std::fma(p.m21, by, std::fma(p.m20, bx, f.z[a])));
       }
     }
-    mark_fault(bad, step, fault[fault_base + e]);
+    mark_fault(kind, step, fault[fault_base + e]);
     hex8_store(f, e, corner_force + corner_base);
   }
 }

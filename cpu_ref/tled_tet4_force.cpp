@@ -23,11 +23,11 @@ void tled_tet4_force(Range range, const Scalar* node_u, const std::int32_t* tet_
       mean_pressure[e] = Scalar(0.25) * ((pressure(0) + pressure(1)) + (pressure(2) + pressure(3)));
     }
     Scalar f[PLIANT_TET_FORCE_PLANES][PLIANT_TILE];  // local, for no other array can overlap it
-    std::int32_t bad[PLIANT_TILE];
+    std::int32_t fault_kind[PLIANT_TILE];
     for (int e = 0; e < PLIANT_TILE; ++e) {
       const Tet4<Scalar> t = tet4_load(u, data, e);
       const Deformation<Scalar> d = deformation_of(t.h);
-      bad[e] = is_faulty(law, d) ? 1 : 0;
+      fault_kind[e] = fault_of(law, d);
       const Mat3<Scalar> p = law.stress(d, t.volume, Averaged ? mean_pressure[e] : law.pressure(d.j));
       f[3][e] = dot3(p.m00, t.b1x, p.m01, t.b1y, p.m02, t.b1z);
       f[4][e] = dot3(p.m10, t.b1x, p.m11, t.b1y, p.m12, t.b1z);
@@ -44,7 +44,7 @@ void tled_tet4_force(Range range, const Scalar* node_u, const std::int32_t* tet_
     }
     std::copy(&f[0][0], &f[0][0] + PLIANT_TET_FORCE_PLANES * PLIANT_TILE,
               corner_force + corner_base + PLIANT_TET_FORCE_PLANES * tile);
-    for (int e = 0; e < PLIANT_TILE; ++e) mark_fault(bad[e] != 0, step, fault[fault_base + tile + e]);
+    for (int e = 0; e < PLIANT_TILE; ++e) mark_fault(fault_kind[e], step, fault[fault_base + tile + e]);
   }
 }
 

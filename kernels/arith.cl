@@ -27,14 +27,16 @@ typedef int integer;
 #define FIRST_INDEX ((int)get_global_id(0) * LANES)
 #define TILE_BASE(e, planes) (((e) / PLIANT_TILE) * ((planes)*PLIANT_TILE) + (e) % PLIANT_TILE)
 
-// Mark the elements whose J is not a positive, finite number, with the step of their first fault (counted from 1).
+// Mark elements with the step of their first fault (counted from 1), negative while they are only INVERTED (law.cl).
+#define FAULT_STEP(kind, step, seen) \
+  ((kind) > 1 && (seen) <= 0 ? (integer)((step) + 1) : (kind) == 1 && (seen) == 0 ? (integer)(-(step)-1) : (seen))
 #if LANES == 16
-#define MARK_FAULT(bad, step, fault, i)                        \
-  if (ANY(bad)) {                                              \
-    const integer seen = LOAD(fault, i);                       \
-    STORE((bad) && (seen == 0) ? (integer)((step) + 1) : seen, fault, i); \
+#define MARK_FAULT(kind, step, fault, i)                 \
+  if (ANY((kind) > 0)) {                                 \
+    const integer seen = LOAD(fault, i);                 \
+    STORE(FAULT_STEP(kind, step, seen), fault, i);       \
   }
 #else
-#define MARK_FAULT(bad, step, fault, i) \
-  if ((bad) && (fault)[i] == 0) (fault)[i] = (step) + 1;
+#define MARK_FAULT(kind, step, fault, i) \
+  if ((kind) > 0) (fault)[i] = FAULT_STEP(kind, step, (fault)[i]);
 #endif

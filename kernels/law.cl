@@ -1,19 +1,26 @@
 // The material law of this batch, the define LAW (laws.h). Its fragment law_STEM.cl gives
-//   law                                                  its parameters [Pa], or what the host makes of them
+//   law                                                  its parameters [Pa], or what the host makes of them, behind float low:
+//                                                        below this J the law is continued (inversion.cl)
+//   LAW_INVERTIBLE                                       1: the law is finite for J <= 0 as it is
 //   law law_load(__global const float* law_parameters)   the same for all elements of a batch: loaded once, before any loop
-//   LAW_INVERTIBLE                                       1: the law is finite for J <= 0 too
 //   real law_pressure(law m, real j)                     dU/dJ [Pa] of the volumetric part U(J) at j = J - 1; 0 if it has none
 //   mat3 law_stress(deformation d, real scale, law m, real pressure)
 // The last is the first Piola-Kirchhoff stress P = F S times `scale` (a volume); `pressure` is law_pressure or its nodal average.
 #include "deformation.cl"
+#include "inversion.cl"
 #include "laws.cl"
 
-// True where the law has no stress: J is not finite, or not positive though the law needs that (inverted, collapsed).
-static inline integer is_faulty(deformation d) {
+#define NO_FAULT 0
+#define INVERTED 1  // J <= 0, and the law goes on
+#define LOST 2      // no stress: J is not finite, or not positive where the law ends there
+static inline integer fault_of(deformation d, law m) {
   const real jacobian = 1.0f + d.j;
+  const integer none = NO_FAULT, inverted = INVERTED, lost = LOST;
+  const integer positive = jacobian > 0.0f, finite = fabs(jacobian) < INFINITY;
 #if LAW_INVERTIBLE
-  return !(fabs(jacobian) < INFINITY);
+  const integer goes_on = finite;
 #else
-  return !(jacobian > 0.0f) || !(jacobian < INFINITY);
+  const integer goes_on = finite && (real)(m.low) > 0.0f;
 #endif
+  return positive && finite ? none : goes_on ? inverted : lost;
 }

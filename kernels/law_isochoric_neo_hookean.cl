@@ -5,10 +5,10 @@
 #include "cube_root.cl"
 #define LAW_INVERTIBLE 0
 typedef struct {
-  float mu, kappa;
+  float low, mu, kappa;
 } law;
 static inline law law_load(__global const float* law_parameters) {
-  const law m = {law_parameters[0], law_parameters[1]};
+  const law m = {law_parameters[0], law_parameters[1], law_parameters[2]};
   return m;
 }
 static inline real law_pressure(law m, real j) { return m.kappa * j; }
@@ -21,8 +21,12 @@ static inline mat3 law_stress(deformation d, real scale, law m, real pressure) {
   const real excess = fma(3.0f, d.q, d.t) - hh;  // 3 J (1 - s)
   const real one_minus_s = excess * third;
   const real s = fma(-excess, third, 1.0f);
-  const real g = scale * (m.mu * (root * root));
+  const real low_d = low_distance(d.j);
+  const integer low = jacobian < m.low;
+  const real g = scale * (m.mu * (low ? low_first(low_d) : root * root));
   const real p = scale * pressure;
-  const real difference = fma(g, s, -p);
-  return combine(d, fma(p, d.t, fma(g, fma(-s, d.t, one_minus_s), p)), g, difference, -difference);
+  const real low_s = (scale * m.mu) * (low_first_slope(low_d) * (3.0f + fma(2.0f, d.t, hh)));
+  const real difference = low ? low_s - p : fma(g, s, -p);
+  const real identity = low ? fma(-difference, d.t, g - difference) : fma(p, d.t, fma(g, fma(-s, d.t, one_minus_s), p));
+  return combine(d, identity, g, difference, -difference);
 }

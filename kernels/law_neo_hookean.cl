@@ -3,18 +3,22 @@
 //   P = mu/J (J F - cof F) + lambda (J - 1) cof F.
 #define LAW_INVERTIBLE 0
 typedef struct {
-  float mu, lambda;
+  float low, mu, lambda;
 } law;
 static inline law law_load(__global const float* law_parameters) {
-  const law m = {law_parameters[0], law_parameters[1]};
+  const law m = {law_parameters[0], law_parameters[1], law_parameters[2]};
   return m;
 }
 static inline real law_pressure(law m, real j) { return m.lambda * j; }
 
 static inline mat3 law_stress(deformation d, real scale, law m, real pressure) {
-  const real ratio = m.mu / (1.0f + d.j);
+  const real jacobian = 1.0f + d.j;
+  const integer low = jacobian < m.low;
+  const real ratio = low ? m.mu * low_inverse(low_distance(d.j)) : m.mu / jacobian;
   const real s = scale * ratio;
   const real p = scale * pressure;
   const real difference = fma(scale, ratio, -p);  // s - p
-  return combine(d, fma(p, d.t, fma(s, d.q, p)), fma(s, d.j, s), difference, -difference);
+  const real whole = scale * m.mu;  // s J where J is not low
+  const real identity = low ? fma(-difference, d.t, whole - difference) : fma(p, d.t, fma(s, d.q, p));
+  return combine(d, identity, low ? whole : fma(s, d.j, s), difference, -difference);
 }

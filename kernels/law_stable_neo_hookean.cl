@@ -5,10 +5,10 @@
 // Nothing is divided by J: the law is finite for every F.
 #define LAW_INVERTIBLE 1
 typedef struct {
-  float mu, lambda;
+  float low, mu, lambda;
 } law;
 static inline law law_load(__global const float* law_parameters) {
-  const law m = {law_parameters[0], law_parameters[1]};
+  const law m = {law_parameters[0], law_parameters[1], law_parameters[2]};
   return m;
 }
 static inline real law_pressure(law m, real j) { return m.lambda * j; }

@@ -4,10 +4,10 @@
 #include "cube_root.cl"
 #define LAW_INVERTIBLE 0
 typedef struct {
-  float first, second, third, kappa;
+  float low, first, second, third, kappa;
 } law;
 static inline law law_load(__global const float* law_parameters) {
-  const law m = {law_parameters[0], law_parameters[1], law_parameters[2], law_parameters[3]};
+  const law m = {law_parameters[0], law_parameters[1], law_parameters[2], law_parameters[3], law_parameters[4]};
   return m;
 }
 static inline real law_pressure(law m, real j) { return m.kappa * j; }
@@ -19,9 +19,15 @@ static inline mat3 law_stress(deformation d, real scale, law m, real pressure) {
   const real third = 1.0f / (3.0f * jacobian);
   const real excess = fma(3.0f, d.q, d.t) - hh;  // 3 J (1 - s)
   const real s = fma(-excess, third, 1.0f);
-  const real x = fma(squared, 3.0f + fma(2.0f, d.t, hh), -3.0f);
-  const real g = scale * (fma(x, fma(m.third, x, m.second), m.first) * squared);
+  const real low_d = low_distance(d.j);
+  const integer low = jacobian < m.low;
+  const real power = low ? low_first(low_d) : squared, i1 = 3.0f + fma(2.0f, d.t, hh);
+  const real x = fma(power, i1, -3.0f);
+  const real slope = fma(x, fma(m.third, x, m.second), m.first);
+  const real g = scale * (slope * power);
   const real p = scale * pressure;
-  const real difference = fma(g, s, -p);
-  return combine(d, fma(p, d.t, fma(g, fma(-s, d.t, excess * third), p)), g, difference, -difference);
+  const real difference = low ? fma(scale * slope, low_first_slope(low_d) * i1, -p) : fma(g, s, -p);
+  const real identity =
+      low ? fma(-difference, d.t, g - difference) : fma(p, d.t, fma(g, fma(-s, d.t, excess * third), p));
+  return combine(d, identity, g, difference, -difference);
 }

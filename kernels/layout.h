@@ -28,6 +28,8 @@
 #define PLIANT_TET_FORCE_PLANES 12      // 4 corners x 3 components [N]
 #define PLIANT_HEX_FORCE_PLANES 24      // 8 corners x 3 components [N]
 
+#define PLIANT_FAULT_SUMMARY 4  // numbers that each of 256 work-items of fault_reduce leaves
+
 // Shape matching: numbers per region record (four blocks of four), planes of a region's data at rest per tile.
 #define PLIANT_FLSM_RECORD 16
 #define PLIANT_FLSM_REST_PLANES 10  // 1 / sum m, centroid (3) [cells], second moment (6)

@@ -144,8 +144,9 @@ __kernel void tled_hex8_brick_force(__global const float* node_u, __global const
           const mat3 h = {fma(g, mx.x, none), fma(g, my.x, none), fma(g, mz.x, none), fma(g, mx.y, none), fma(g, my.y, none),
                           fma(g, mz.y, none), fma(g, mx.z, none), fma(g, my.z, none), fma(g, mz.z, none)};
           const deformation d = deformation_of(h);
-          const integer bad = full && is_faulty(d);
-          MARK_FAULT(bad, step, fault, fault_base + brick * PLIANT_BRICK_NODES + cell)
+          const integer sound = NO_FAULT;
+          const integer kind = full ? fault_of(d, m) : sound;
+          MARK_FAULT(kind, step, fault, fault_base + brick * PLIANT_BRICK_NODES + cell)
           const mat3 p = law_stress(d, fill * volume, m, law_pressure(m, d.j));
           const real k = fill * stiffness;
           const vec3 qx = {p.m00, p.m10, p.m20}, qy = {p.m01, p.m11, p.m21}, qz = {p.m02, p.m12, p.m22};

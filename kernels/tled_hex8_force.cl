@@ -45,8 +45,9 @@ __kernel void tled_hex8_force(__global const float* node_u, __global const int* 
   }
   const deformation d = deformation_of(h);
   const real fill = LOAD(hex_fill, e);
-  const integer bad = (fill > 0.0f) && is_faulty(d);
-  MARK_FAULT(bad, step, fault, fault_base + e)
+  const integer none = NO_FAULT;
+  const integer kind = fill > 0.0f ? fault_of(d, m) : none;
+  MARK_FAULT(kind, step, fault, fault_base + e)
   const mat3 p = law_stress(d, fill * DATA(56), m, law_pressure(m, d.j));
   const real k = fill * DATA(57);
   real qx[4], qy[4], qz[4];

@@ -30,7 +30,8 @@ __kernel void tled_hex8full_force(__global const float* node_u, __global const i
     fx[a] = fy[a] = fz[a] = 0.0f;
   }
   const real fill = LOAD(hex_fill, e);
-  integer bad = 0;
+  const integer none = NO_FAULT;
+  integer kind = none;
   for (int g = 0; g < 8; ++g) {
     mat3 h = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
     for (int a = 0; a < 8; ++a) {
@@ -46,7 +47,8 @@ __kernel void tled_hex8full_force(__global const float* node_u, __global const i
       h.m22 = fma(z[a], bz, h.m22);
     }
     const deformation d = deformation_of(h);
-    bad = bad || ((fill > 0.0f) && is_faulty(d));
+    const integer found = fill > 0.0f ? fault_of(d, m) : none;
+    kind = found > kind ? found : kind;
     const mat3 p = law_stress(d, fill * DATA(25 * g + 24), m, law_pressure(m, d.j));
     for (int a = 0; a < 8; ++a) {
       const RECORD_TYPE bx = DATA(25 * g + 3 * a), by = DATA(25 * g + 3 * a + 1), bz = DATA(25 * g + 3 * a + 2);
@@ -55,7 +57,7 @@ __kernel void tled_hex8full_force(__global const float* node_u, __global const i
       fz[a] = fma(p.m22, bz, fma(p.m21, by, fma(p.m20, bx, fz[a])));
     }
   }
-  MARK_FAULT(bad, step, fault, fault_base + e)
+  MARK_FAULT(kind, step, fault, fault_base + e)
   __global float* out = corner_force + corner_base + TILE_BASE(e, PLIANT_HEX_FORCE_PLANES);
   for (int a = 0; a < 8; ++a) {
     STORE(fx[a], out, (3 * a) * PLIANT_TILE);

@@ -17,8 +17,8 @@ __kernel void tled_tet4_force(__global const float* node_u, __global const int* 
   __global const float* data = tet_data + TILE_BASE(e, PLIANT_TET_DATA_PLANES);
   const tet4 t = tet4_load(node_u, nodes, data);
   const deformation d = deformation_of(t.h);
-  const integer bad = is_faulty(d);
-  MARK_FAULT(bad, step, fault, fault_base + e)
+  const integer kind = fault_of(d, m);
+  MARK_FAULT(kind, step, fault, fault_base + e)
 #if AVERAGED
   const real pressure = 0.25f * ((gather(anp_pressure, nodes) + gather(anp_pressure, nodes + PLIANT_TILE)) +
                                  (gather(anp_pressure, nodes + 2 * PLIANT_TILE) + gather(anp_pressure, nodes + 3 * PLIANT_TILE)));

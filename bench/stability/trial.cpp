@@ -155,6 +155,7 @@ Fixed held(int axis, double value) { return {face(axis, value), {true, true, tru
 Fixed roller(int axis, double value) { return {face(axis, value), {axis == 0, axis == 1, axis == 2}}; }
 
 Specimen make_specimen(Scene scene, const std::vector<Box>& boxes, double fill, double thin_beyond) {
+  scene.inverted = Inverted::stop;  // what is measured is where a method fails
   std::vector<std::unique_ptr<BoxFile>> files;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     Body& body = scene.bodies[b];

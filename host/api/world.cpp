@@ -43,6 +43,7 @@ std::unique_ptr<World::Impl> make_impl(Scene scene, const WorldOptions& options)
   }
   if (options.dt > 0) scene.dt = options.dt;
   scene.interactive = options.interactive;
+  scene.cuttable = options.cutting;
   const OpenBackend open = [spec = options.backend](std::string* why, std::int64_t nodes) {
     return open_backend(spec, why, nodes);
   };
@@ -76,6 +77,7 @@ World World::parse(const std::string& text, const std::string& folder, const Wor
 
 World WorldAccess::make(Scene scene, OpenBackend open, const WorldOptions& options) {
   scene.interactive = options.interactive;
+  scene.cuttable = options.cutting;
   return World(std::make_unique<World::Impl>(std::move(scene), std::move(open), options));
 }
 

@@ -120,6 +120,7 @@ class Run {
       o_.common.note(fmt::format("dt = {:.6g} s is {:.3g} times the stable step {:.6g} s: expect the simulation to diverge",
                                  simulation_->dt(), simulation_->dt() / simulation_->stable_dt(), simulation_->stable_dt()));
     }
+    for (const std::string& remark : simulation_->remarks()) o_.common.note(remark);
     first_time_ = simulation_->time();
   }
 
@@ -195,6 +196,23 @@ class Run {
     if (relaxes()) {
       json["converged"] = converged();
       json["residual"] = residual();
+    }
+    double mass = 0, added = 0;
+    for (const ModelBody& body : s.model().bodies) {
+      mass += body.mass;
+      added += body.added_mass;
+    }
+    json["mass"] = mass;
+    json["added_mass"] = added;
+    const Inversions& inverted = s.inversions();
+    json["inverted"] = {{"batches", inverted.batches}, {"most", inverted.most}, {"now", inverted.last}};
+    if (inverted.batches > 0) {
+      json["inverted"]["first"] = {
+          {"step", inverted.first_step}, {"time", inverted.first_time}, {"body", inverted.body}, {"element", inverted.element}};
+      o_.common.note(
+          fmt::format("up to {} elements at a time were turned inside out and driven back, first in step {} (t = {:.4g} s), "
+                      "element {} of body '{}'; {} in the last steps",
+                      inverted.most, inverted.first_step, inverted.first_time, inverted.element, inverted.body, inverted.last));
     }
     if (!result_.diverged.empty()) json["diverged_step"] = result_.diverged_step;
     print_summary(info, simulated);

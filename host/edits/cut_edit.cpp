@@ -76,7 +76,9 @@ void TopologyEdits::make_cut(std::vector<CutEdges> edges, std::vector<double> u,
         all.cut(b).update_elements();
         origins[b] = {edits[b].node_from, flux_masses(run_.scene.bodies[b], all.solid(b), edits[b])};
       }
-      swap.run(scene_at(run_.state), std::move(origins), [&] { get_soon(surfaces); });
+      Scene scene = scene_at(run_.state);
+      scene.cuttable = true;
+      swap.run(scene, std::move(origins), [&] { get_soon(surfaces); });
     }
   } catch (...) {
     for (std::size_t b = 0; b < std::min(done + 1, edges.size()); ++b) {

@@ -97,7 +97,7 @@ void ModelSwap::carry_motion() {
     std::vector<Vec3d> velocity(slots.size());
     for (std::size_t n = 0; n < velocity.size(); ++n) velocity[n] = v_[b][origins.of(n)];
     for (const FluxMass& f : origins.flux) {
-      const double share = f.mass / model_->mass[slots[f.node]];
+      const double share = f.mass / model_->own_mass(static_cast<std::size_t>(slots[f.node]));
       for (std::size_t c = 0; c < 3; ++c) velocity[f.node][c] += share * (v_[b][f.from][c] - v_[b][origins.of(f.node)][c]);
     }
     for (std::size_t n = 0; n < slots.size(); ++n) {

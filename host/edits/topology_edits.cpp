@@ -118,6 +118,7 @@ const CutTopology* TopologyEdits::cut_topology(std::size_t body) const {
 
 Scene TopologyEdits::scene_at(const RunState& state) const {
   Scene scene = run_.scene;
+  scene.cuttable = scene.cuttable || !state.cuts.empty();
   for (std::size_t b = 0; b < scene.bodies.size() && !state.seeds.empty(); ++b) {
     if (scene.bodies[b].model.follow) scene.bodies[b].model.seed = state.seeds[b];
   }

@@ -2,10 +2,16 @@
 // their tangents. A tangent dP_ij/dF_kl stands at row 3 i + j, column 3 k + l.
 #pragma once
 #include <Eigen/Dense>
+#include <cmath>
 
 namespace pliant {
 
 using Matrix9d = Eigen::Matrix<double, 9, 9>;
+
+/// A function of J and its first two derivatives.
+struct OfJ {
+  double value = 0, slope = 0, curvature = 0;
+};
 
 struct Kinematics {
   using Matrix3d = Eigen::Matrix3d;
@@ -13,9 +19,10 @@ struct Kinematics {
   double j = 0;             ///< J - 1
   double trace = 0;         ///< tr H
   double norm2 = 0;         ///< |H|^2
+  double low = 0;           ///< Material::low
   Matrix3d difference;      ///< J F - cof F: J times F - F^-T, to rounding of its own size
 
-  explicit Kinematics(const Matrix3d& gradient) : h(gradient) {
+  explicit Kinematics(const Matrix3d& gradient, double low_j = 0) : h(gradient), low(low_j) {
     const Matrix3d identity = Matrix3d::Identity(), minors = cofactor_of(h);
     trace = h.trace();
     norm2 = h.squaredNorm();
@@ -26,6 +33,16 @@ struct Kinematics {
   }
   /// |F|^2 - 3.
   [[nodiscard]] double stretch() const { return 2 * trace + norm2; }
+  /// Whether J is below `low`, where functions of J alone that are singular at 0 are continued by their polynomials of second
+  /// order about it, and the invariants of F^T F stay.
+  [[nodiscard]] bool is_low() const { return 1 + j < low; }
+  /// J^p, continued.
+  [[nodiscard]] OfJ continued_power(double p) const {
+    return continued({std::pow(low, p), p * std::pow(low, p - 1), p * (p - 1) * std::pow(low, p - 2)});
+  }
+  /// ln J, continued.
+  [[nodiscard]] OfJ continued_log() const { return continued({std::log(low), 1 / low, -1 / (low * low)}); }
+
   /// F^-T; only where J is not zero.
   [[nodiscard]] Matrix3d inverse_transposed() const { return cofactor / (1 + j); }
 
@@ -36,6 +53,12 @@ struct Kinematics {
       c.row(i) = a.cross(b);
     }
     return c;
+  }
+
+ private:
+  [[nodiscard]] OfJ continued(const OfJ& at) const {
+    const double d = 1 + j - low;
+    return {at.value + d * (at.slope + d / 2 * at.curvature), at.slope + d * at.curvature, at.curvature};
   }
 };
 
@@ -66,6 +89,16 @@ inline void add_cofactor_slope(Matrix9d& out, double scale, const Eigen::Matrix3
       out(row, 3 * i2 + j1) -= scale * f(i1, j2);
     }
   }
+}
+
+/// Second derivative of f(J) i(F), where i has the derivative `slope` and its second derivative is added by the caller:
+/// out += scale (f' (slope cof + cof slope) + f'' i cof cof + f' i d(cof F)/dF).
+inline void add_function_of_j(Matrix9d& out, double scale, const OfJ& f, double i, const Eigen::Matrix3d& slope,
+                              const Kinematics& k) {
+  add_product(out, scale * f.slope, slope, k.cofactor);
+  add_product(out, scale * f.slope, k.cofactor, slope);
+  add_product(out, scale * f.curvature * i, k.cofactor, k.cofactor);
+  add_cofactor_slope(out, scale * f.slope * i, k.f);
 }
 
 }  // namespace pliant

@@ -30,11 +30,19 @@ struct MooneyRivlin {
 
   [[nodiscard]] double bulk() const { return kappa; }
   [[nodiscard]] double energy(const Kinematics& k) const {
+    if (k.is_low()) {
+      return c10 * IsochoricFirst(k).excess + c01 * (k.continued_power(-4.0 / 3).value * (3 + excess_of_second(k)) - 3);
+    }
     const double second = 3 * std::expm1(std::log1p(excess_of_second(k) / 3) - 4.0 / 3 * std::log1p(k.j));
     return c10 * IsochoricFirst(k).excess + c01 * second;
   }
   [[nodiscard]] Eigen::Matrix3d stress(const Kinematics& k) const {
     const Eigen::Matrix3d g = twice_strain(k);
+    if (k.is_low()) {
+      const OfJ power = k.continued_power(-4.0 / 3);
+      return c10 * IsochoricFirst(k).gradient + c01 * power.value * slope_of_second(k) +
+             c01 * power.slope * (3 + excess_of_second(k)) * k.cofactor;
+    }
     // I1 F - F C - 2/3 I2 F^-T without the large terms that cancel.
     const Eigen::Matrix3d deviator = k.f * (g.trace() * Eigen::Matrix3d::Identity() - g) +
                                      (2 * k.difference - 2.0 / 3 * excess_of_second(k) * k.cofactor) / (1 + k.j);
@@ -42,9 +50,9 @@ struct MooneyRivlin {
   }
   void add_tangent(const Kinematics& k, Matrix9d& out) const {
     IsochoricFirst(k).add_curvature(k, c10, out);
-    const Eigen::Matrix3d c = k.f.transpose() * k.f, b = k.f * k.f.transpose(), q = k.inverse_transposed();
-    const double first = c.trace(), second = 3 + excess_of_second(k), scale = c01 * scale_of_second(k);
-    const Eigen::Matrix3d slope = 2 * (first * k.f - k.f * c);
+    const OfJ power = k.is_low() ? k.continued_power(-4.0 / 3) : OfJ{scale_of_second(k)};
+    const Eigen::Matrix3d c = k.f.transpose() * k.f, b = k.f * k.f.transpose(), slope = slope_of_second(k);
+    const double first = c.trace(), second = 3 + excess_of_second(k), scale = c01 * power.value;
     out += 2 * scale * first * Matrix9d::Identity();
     add_product(out, 4 * scale, k.f, k.f);
     add_crossed(out, -2 * scale, k.f);
@@ -54,6 +62,11 @@ struct MooneyRivlin {
         if (r % 3 == s % 3) out(r, s) -= 2 * scale * b(r / 3, s / 3);
       }
     }
+    if (k.is_low()) {
+      add_function_of_j(out, c01, power, second, slope, k);
+      return;
+    }
+    const Eigen::Matrix3d q = k.inverse_transposed();
     add_product(out, -4.0 / 3 * scale, q, slope);
     add_product(out, -4.0 / 3 * scale, slope, q);
     add_product(out, 16.0 / 9 * scale * second, q, q);
@@ -67,6 +80,11 @@ struct MooneyRivlin {
   static double excess_of_second(const Kinematics& k) {
     const Eigen::Matrix3d g = twice_strain(k);
     return 2 * g.trace() + 0.5 * (g.trace() * g.trace() - g.squaredNorm());
+  }
+  /// dI2/dF
+  static Eigen::Matrix3d slope_of_second(const Kinematics& k) {
+    const Eigen::Matrix3d c = k.f.transpose() * k.f;
+    return 2 * (c.trace() * k.f - k.f * c);
   }
   static double scale_of_second(const Kinematics& k) { return std::exp(-4.0 / 3 * std::log1p(k.j)); }
 };

@@ -26,10 +26,19 @@ struct NeoHookean {
   [[nodiscard]] std::vector<double> constants() const { return {mu, lambda}; }
 
   [[nodiscard]] double bulk() const { return lambda; }
-  [[nodiscard]] double energy(const Kinematics& k) const { return mu / 2 * k.stretch() - mu * std::log1p(k.j); }
-  [[nodiscard]] Eigen::Matrix3d stress(const Kinematics& k) const { return mu / (1 + k.j) * k.difference; }
+  [[nodiscard]] double energy(const Kinematics& k) const {
+    return mu / 2 * k.stretch() - mu * (k.is_low() ? k.continued_log().value : std::log1p(k.j));
+  }
+  [[nodiscard]] Eigen::Matrix3d stress(const Kinematics& k) const {
+    if (k.is_low()) return mu * (k.f - k.continued_log().slope * k.cofactor);
+    return mu / (1 + k.j) * k.difference;
+  }
   void add_tangent(const Kinematics& k, Matrix9d& out) const {
     out += mu * Matrix9d::Identity();
+    if (k.is_low()) {
+      add_function_of_j(out, -mu, k.continued_log(), 1, Eigen::Matrix3d::Zero(), k);
+      return;
+    }
     add_crossed(out, mu, k.inverse_transposed());
   }
 };

@@ -45,7 +45,9 @@ Material make_material(Law law, const Moduli& moduli, double density) {
 }
 
 std::vector<double> law_constants(const Material& material) {
-  return with_law(material, [](const auto& l) { return l.constants(); });
+  std::vector<double> constants = with_law(material, [](const auto& l) { return l.constants(); });
+  constants.insert(constants.begin(), material.low);
+  return constants;
 }
 
 }  // namespace pliant

@@ -11,6 +11,9 @@ namespace pliant {
 /// Kernels work in float: positive numbers of a material reach from the least to the most.
 inline constexpr double least_modulus = 1e-30, most_modulus = 1e30;
 
+/// Below this J what is singular at J = 0 gives way to polynomials, so that elements survive their inversion.
+inline constexpr double low_volume = 0.25;
+
 /// Isotropic linear elasticity; kappa = lambda + 2 mu / 3.
 struct Moduli {
   double mu = 0;      ///< shear modulus [Pa]
@@ -40,7 +43,7 @@ struct LawInfo {
   bool takes_moduli;  ///< two elastic constants determine it: a scene file gives those (young + poisson, ...), not its
                       ///< parameters
   bool volumetric;    ///< W = (...) + U(J) with U = k/2 (J - 1)^2, whose derivative tet4anp averages
-  bool invertible;    ///< finite for J <= 0 too: an inverted element is no fault
+  bool invertible;    ///< finite for J <= 0 as it is; others need Material::low
   double flops;       ///< of law_stress in its kernel fragment (an fma is two)
 };
 
@@ -59,6 +62,7 @@ struct Material {
   double hourglass = 1;            ///< factor on the hourglass stiffness of hex8 (1: exact bending of a bar at nu = 0)
   double toughness = 0;            ///< K_I: principal stress at which it tears [Pa]; 0: it does not
   double integrity = 1;            ///< zeta in (0, 1]: the share of the toughness that is left
+  double low = 0;                  ///< low_volume: below this J the law is continued (kinematics.h); 0: it ends at J = 0
 
   /// The law with these moduli at small strain. Where they do not determine it, it is a typical one with them.
   void set_moduli(Law law, const Moduli& moduli);
@@ -67,7 +71,7 @@ struct Material {
 
 Material make_material(Law law, const Moduli& moduli, double density = 1000);
 
-/// What the kernels get as `law_parameters`: the parameters, or what the law makes of them.
+/// What the kernels get as `law_parameters`: `low`, then the parameters, or what the law makes of them.
 std::vector<double> law_constants(const Material& material);
 
 }  // namespace pliant

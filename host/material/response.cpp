@@ -9,8 +9,8 @@ namespace pliant {
 using Eigen::Matrix3d;
 
 bool respond(const Material& material, const Matrix3d& h, bool tangent, Response& out) {
-  const Kinematics k(h);
-  if (!std::isfinite(k.j) || !(1 + k.j > 0 || law_info(material.law).invertible)) return false;
+  const Kinematics k(h, material.low);
+  if (!std::isfinite(k.j) || !(1 + k.j > 0 || material.low > 0 || law_info(material.law).invertible)) return false;
   with_law(material, [&](const auto& law) {
     const double bulk = law.bulk();
     out.energy = law.energy(k) + bulk / 2 * k.j * k.j;
@@ -35,7 +35,7 @@ void respond_linear(const Material& material, const Matrix3d& h, Response& out) 
 }
 
 double energy_without_volume(const Material& material, const Matrix3d& h) {
-  const Kinematics k(h);
+  const Kinematics k(h, material.low);
   return with_law(material, [&](const auto& law) { return law.energy(k); });
 }
 

@@ -116,8 +116,12 @@ void load(const Body& body, const ModelBody& placed, Model& model) {
   for (const Force& force : body.forces) {
     const std::int32_t curve = add_curve(model, force.curve);
     const auto nodes = select_nodes(force.where, placed, Virtual::never);
-    const double share = 1.0 / static_cast<double>(nodes.size());
+    // In a lattice by mass, so that a node of nearly empty cells gets nearly nothing, and a face what a traction would give.
+    const bool by_mass = placed.spacing > 0;
+    double whole = 0;
+    for (const std::int32_t n : nodes) whole += by_mass ? model.own_mass(placed.slot[n]) : 1;
     for (const std::int32_t n : nodes) {
+      const double share = (by_mass ? model.own_mass(placed.slot[n]) : 1) / whole;
       model.forces.push_back({placed.slot[n], {force.total[0] * share, force.total[1] * share, force.total[2] * share}, curve});
     }
   }
@@ -137,6 +141,18 @@ void load(const Body& body, const ModelBody& placed, Model& model) {
     if (!any)
       throw Error(ErrorCode::bad_input, fmt::format("{}: no surface triangle has its centre in this set; {}",
                                                     pressure.where.pointer, extent_of(placed)));
+  }
+}
+
+/// Every mass accelerates with gravity; what is only inertia is held against it.
+void weigh_added_inertia(const Scene& scene, Model& model) {
+  if (scene.gravity == Vec3d{}) return;
+  for (std::size_t s = 0; s < model.added.size(); ++s) {
+    const double m = model.added[s];
+    if (m > 0) {
+      model.forces.push_back(
+          {static_cast<std::int32_t>(s), {-m * scene.gravity[0], -m * scene.gravity[1], -m * scene.gravity[2]}, 0});
+    }
   }
 }
 
@@ -173,6 +189,7 @@ void add_boundary_conditions(const Scene& scene, Model& model) {
     }
   }
   model.constraints = std::move(constraints).by_slot();
+  weigh_added_inertia(scene, model);
   if (scene.interactive) reserve_forces(model);
   std::stable_sort(model.forces.begin(), model.forces.end(),
                    [](const NodeForce& a, const NodeForce& b) { return a.slot < b.slot; });

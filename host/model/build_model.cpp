@@ -52,6 +52,13 @@ const Material& material_of(const Body& body, int index) {
   return index == 0 ? body.material : body.inclusions[index - 1].material;
 }
 
+/// A material as its elements have it.
+Material material_for(const Model& model, const Body& body, int index) {
+  Material material = material_of(body, index);
+  material.low = model.recovers ? low_volume : 0;
+  return material;
+}
+
 void note_bound(Model& model, double frequency, double volume, const std::string& element) {
   const double edge = std::cbrt(volume);
   if (model.shortest == 0 || edge < model.shortest) model.shortest = edge;
@@ -77,11 +84,24 @@ std::vector<std::int32_t> element_order(const std::vector<std::array<std::int32_
   return order;
 }
 
+/// What a cell or one of its copies holds less than least_inertia of a full one, it gets as inertia: however thin, its nodes
+/// then have a stiffness that grows no faster with its deformation than that of a full cell would. `full`: mass of a full one
+/// [kg].
+template <std::size_t N>
+void add_inertia(Model& model, const std::array<std::int32_t, N>& slots, double fill, double full) {
+  if (model.added.empty() || fill >= model.least_inertia || fill <= 0) return;
+  const double more = (model.least_inertia - fill) * full / static_cast<double>(N);
+  for (const std::int32_t n : slots) {
+    model.mass[n] += more;
+    model.added[n] += more;
+  }
+}
+
 void add_tets(const Body& body, std::int32_t b, const NodeNumbering& draft, Model& model) {
   const std::vector<std::int32_t> order = element_order(draft.solid().tets, draft, model.slots);
   for (std::size_t m = 0; m <= body.inclusions.size(); ++m) {
     TetBatch batch;
-    batch.material = material_of(body, static_cast<int>(m));
+    batch.material = material_for(model, body, static_cast<int>(m));
     batch.body = b;
     batch.averaged = body.element == ElementKind::tet4anp;
     for (const std::int32_t e : order) {
@@ -95,6 +115,7 @@ void add_tets(const Body& body, std::int32_t b, const NodeNumbering& draft, Mode
       const TetGeometry geometry = tet_geometry(x);
       const double mass = batch.material.density * geometry.volume * draft.solid().fill[e];
       for (const std::int32_t n : slots) model.mass[n] += mass / 4;
+      add_inertia(model, slots, draft.solid().fill[e], batch.material.density * geometry.volume);
       if (!draft.solid().operational(static_cast<std::size_t>(e))) continue;
       batch.nodes.push_back(slots);
       batch.gradients.push_back(geometry.gradients);
@@ -131,7 +152,7 @@ void add_hexes(const Body& body, std::int32_t b, const NodeNumbering& draft, Mod
   const std::vector<std::int32_t> order = element_order(solid.hexes, draft, model.slots);
   for (std::size_t m = 0; m <= body.inclusions.size(); ++m) {
     HexBatch batch;
-    batch.material = material_of(body, static_cast<int>(m));
+    batch.material = material_for(model, body, static_cast<int>(m));
     batch.body = b;
     batch.full = body.element == ElementKind::hex8full;
     batch.uniform = solid.spacing > 0;
@@ -159,6 +180,7 @@ void add_hexes(const Body& body, std::int32_t b, const NodeNumbering& draft, Mod
         note_bound(model, hex_frequency(batch, batch.records.back()), volume, describe(e));
       }
       for (const std::int32_t n : slots) model.mass[n] += batch.material.density * volume * solid.fill[e] / 8;
+      add_inertia(model, slots, solid.fill[e], batch.material.density * volume);
       if (draft.in_brick[e] || !solid.operational(e)) continue;
       batch.nodes.push_back(slots);
       batch.fill.push_back(solid.fill[e]);
@@ -197,8 +219,9 @@ void set_velocity(const Body& body, const ModelBody& placed, Model& model) {
   Vec3d centre{};
   double mass = 0;
   for (const std::int32_t s : placed.slot) {
-    mass += model.mass[s];
-    for (int c = 0; c < 3; ++c) centre[c] += model.mass[s] * model.rest[s][c];
+    const double own = model.own_mass(s);
+    mass += own;
+    for (int c = 0; c < 3; ++c) centre[c] += own * model.rest[s][c];
   }
   for (double& c : centre) c /= mass;
   const Vec3d& w = body.angular_velocity;
@@ -247,7 +270,7 @@ void place_bodies(const Scene& scene, std::span<const BodyMesh* const> solids, c
       draft.slot = place_in_bricks(draft.solid(), static_cast<std::int32_t>(b), draft.in_brick, model);
       if (model.bricks > first) {
         model.brick_batches.push_back(
-            {body.material, static_cast<std::int32_t>(b), draft.solid().spacing, first, model.bricks - first});
+            {material_for(model, body, 0), static_cast<std::int32_t>(b), draft.solid().spacing, first, model.bricks - first});
       }
     }
     drafts.push_back(std::move(draft));
@@ -291,10 +314,15 @@ Model build_model(const Scene& scene, const std::vector<BodyMesh>& solids) {
 
 Model build_elements(const Scene& scene, std::span<const BodyMesh* const> solids, const Model* previous) {
   Model model;
+  model.recovers = scene.inverted == Inverted::recover;
   std::vector<NodeNumbering> drafts;
   place_bodies(scene, solids, previous, drafts, model);
   model.rest.resize(model.slots);
   model.mass.resize(model.slots);
+  if (scene.least_inertia > 0 && (scene.cuttable || !scene.blades.empty())) {
+    model.least_inertia = scene.least_inertia;
+    model.added.resize(model.slots);
+  }
   model.damping.resize(model.slots);
   model.velocity.resize(model.slots);
   model.bodies.resize(scene.bodies.size());
@@ -313,6 +341,7 @@ Model build_elements(const Scene& scene, std::span<const BodyMesh* const> solids
       add_hexes(body, b, draft, model);
     }
     add_totals(body, draft, model.bodies[i]);
+    for (const std::int32_t s : model.bodies[i].slot) model.bodies[i].added_mass += model.mass[s] - model.own_mass(s);
     set_velocity(body, model.bodies[i], model);
   }
   for (FlsmBatch& batch : model.flsm) {

@@ -104,6 +104,7 @@ struct ModelBody {
   std::int64_t operational_nodes = 0, matching_nodes = 0, interface_nodes = 0;
   std::int64_t operational_elements = 0;  ///< of elements(): those that are finite elements
   double mass = 0;                        ///< [kg]
+  double added_mass = 0;                  ///< inertia without weight beside it [kg]
   double volume = 0;                      ///< of the elements, fill counted [m^3]
   double surface_volume = 0;              ///< enclosed by the input surface [m^3]
   [[nodiscard]] std::int64_t elements() const { return static_cast<std::int64_t>(tets.size() + hexes.size()); }
@@ -135,6 +136,7 @@ struct TrianglePressure {
 
 struct Model {
   std::vector<ModelBody> bodies;
+  bool recovers = false;                     ///< Inverted::recover
   std::int32_t bricks = 0;                   ///< without the empty one; 0 if there is none at all
   std::vector<std::int32_t> brick_neighbor;  ///< [bricks + 1][16]
   std::vector<std::int32_t> brick_rows;      ///< [bricks + 1][2] rows with a cell, rows with a node (layout.h)
@@ -145,7 +147,8 @@ struct Model {
   std::int32_t list_end = 0;    ///< first slot after the nodes of list elements, a multiple of 16; then shape matching
   std::int32_t slots = 0;       ///< all slots, a multiple of 16
   std::vector<Vec3d> rest;      ///< [slots]
-  std::vector<double> mass;     ///< [slots] lumped [kg], 0: no node
+  std::vector<double> mass;     ///< [slots] lumped [kg], what accelerates; 0: no node
+  std::vector<double> added;    ///< [slots] share of `mass` that is inertia without weight (Scene::least_inertia); empty: none
   std::vector<double> damping;  ///< [slots] c [1/s]
   std::vector<Vec3d> velocity;  ///< [slots] initial [m/s]
   std::vector<TetBatch> tets;
@@ -154,12 +157,15 @@ struct Model {
   std::vector<FlsmBatch> flsm;
   ModelSurface surface;
   std::vector<Curve> curves;
-  std::vector<Constraint> constraints;       ///< one per constrained node, ascending slots
-  std::vector<NodeForce> forces;             ///< ascending slots
-  std::vector<TrianglePressure> pressures;   ///< ascending triangles
-  double element_bound = 0;                  ///< 2 / max element frequency [s], safe for small strain
-  std::string bound_element;                 ///< the element that gives it
-  double shortest = 0;                       ///< cube root of the smallest element's volume [m]
+  std::vector<Constraint> constraints;      ///< one per constrained node, ascending slots
+  std::vector<NodeForce> forces;            ///< ascending slots
+  std::vector<TrianglePressure> pressures;  ///< ascending triangles
+  double element_bound = 0;                 ///< 2 / max element frequency [s], safe for small strain
+  std::string bound_element;                ///< the element that gives it
+  double shortest = 0;                      ///< cube root of the smallest element's volume [m]
+  double least_inertia = 0;                 ///< of a cell, as a share of a full one's mass
+  /// Mass without added inertia [kg].
+  [[nodiscard]] double own_mass(std::size_t slot) const { return mass[slot] - (added.empty() ? 0 : added[slot]); }
   [[nodiscard]] std::int64_t nodes() const;  ///< real nodes
   [[nodiscard]] std::int64_t elements() const;
 };

@@ -21,8 +21,8 @@ std::map<std::string, List> make_keys() {
   const List curve{"curve", "start", "duration", "table"};
   return {
       {"scene",
-       {"format", "name", "gravity", "dt", "safety", "duration", "integrator", "relaxation", "solver", "tool", "blades", "view",
-        "bodies"}},
+       {"format", "name", "gravity", "dt", "safety", "duration", "integrator", "inverted", "least_inertia", "relaxation",
+        "solver", "tool", "blades", "view", "bodies"}},
       {"body",
        {"name", "surface", "mesh", "scale", "translate", "lattice", "element", "material", "model", "inclusions", "fixed",
         "prescribed", "forces", "pressures", "velocity", "angular_velocity"}},
@@ -101,9 +101,9 @@ const std::map<std::string, List>& scene_words() {
   static const std::map<std::string, List> words{
       {"law", words_only(law_words())},           {"element", words_only(element_words())},
       {"curve", words_only(curve_words())},       {"integrator", words_only(integrator_words())},
-      {"model", words_only(model_words())},       {"goals", words_only(goals_words())},
-      {"coupling", words_only(coupling_words())}, {"follow", words_only(follow_words())},
-      {"solver", words_only(solver_words())}};
+      {"inverted", words_only(inverted_words())}, {"model", words_only(model_words())},
+      {"goals", words_only(goals_words())},       {"coupling", words_only(coupling_words())},
+      {"follow", words_only(follow_words())},     {"solver", words_only(solver_words())}};
   return words;
 }
 
@@ -140,6 +140,12 @@ const Words<Integrator>& integrator_words() {
   static const Words<Integrator> words{
       {"increment", Integrator::increment, "central differences in the increment of the displacement"},
       {"textbook", Integrator::textbook, "2 u_n - u_(n-1), which loses small increments in float; for comparison"}};
+  return words;
+}
+
+const Words<Inverted>& inverted_words() {
+  static const Words<Inverted> words{{"recover", Inverted::recover, "goes on and is driven back; counted"},
+                                     {"stop", Inverted::stop, "ends the run, as a divergence"}};
   return words;
 }
 

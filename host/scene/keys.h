@@ -25,7 +25,7 @@ std::vector<std::string> elastic_keys();
 /// The laws with a property, as "a, b or c".
 std::string laws_with(bool LawInfo::*property);
 
-/// The allowed words by kind: "law", "element", "curve", "integrator", "model", "goals", "coupling", "follow".
+/// The allowed words by kind: "law", "element", "curve", "integrator", "inverted", "model", "goals", "coupling", "follow".
 const std::map<std::string, std::vector<std::string>>& scene_words();
 
 /// A word of a scene file or of an option, the enumerator that it names, and what that is, for people.
@@ -43,6 +43,7 @@ const Words<ElementKind>& element_words();
 std::vector<ElementKind> all_elements();
 const Words<Curve::Kind>& curve_words();
 const Words<Integrator>& integrator_words();
+const Words<Inverted>& inverted_words();
 const Words<bool>& solver_words();
 const Words<ModelType>& model_words();
 /// The flags of DeformationModel that a scene file writes as words: extrapolate, conservative, follow.

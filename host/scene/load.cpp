@@ -124,6 +124,12 @@ Scene read_document(const nlohmann::json& document, const fs::path& file) {
   }
   if (top.has("duration")) scene.duration = top.at("duration").positive();
   if (top.has("integrator")) scene.integrator = top.at("integrator").word(integrator_words());
+  if (top.has("inverted")) scene.inverted = top.at("inverted").word(inverted_words());
+  if (top.has("least_inertia")) {
+    const Reader least = top.at("least_inertia");
+    scene.least_inertia = least.number();
+    if (!(scene.least_inertia >= 0 && scene.least_inertia <= 1)) least.fail("a number with 0 <= least_inertia <= 1");
+  }
   read_relaxation(top, scene.relaxation);
   read_solver(top, scene);
   if (top.has("tool")) scene.tool = read_tool(top.at("tool"));

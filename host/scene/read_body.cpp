@@ -129,6 +129,7 @@ Body read_body(const Reader& body, const fs::path& folder, std::size_t index) {
 
   const Reader material = body.at("material", "a material such as {\"young\": 3000, \"poisson\": 0.45, \"density\": 1060}");
   b.material = read_material(material);
+  if (b.model.matched) b.model.young = b.material.moduli.young();
   check_pressure_law(material, b, b.material);
   read_entries(body, "inclusions", "inclusion", b.inclusions, [&b](const Reader& entry) {
     const Reader other = entry.at("material", "the material of the inclusion");

@@ -68,6 +68,7 @@ void read_shape_matching(const Reader& model, DeformationModel& m) {
     stiffness.expect_object("stiffness");
     m.young = stiffness.at("young", "Young's modulus in pascal").positive();
   }
+  m.matched = m.type == ModelType::hybrid && !model.has("alpha") && !model.has("stiffness");
   if (model.has("cut")) m.cut = model.at("cut").boolean();
   if (model.has("damping")) m.damping = share(model.at("damping"), "a number with 0 <= damping <= 1");
 }

@@ -63,7 +63,7 @@ struct Prescribed {
   Curve curve;
 };
 
-/// A force shared equally by the chosen nodes.
+/// A force shared by the chosen nodes: of a lattice in proportion to their mass, of a mesh equally.
 struct Force {
   Selection where;
   Vec3d total{};  ///< [N]
@@ -91,6 +91,7 @@ struct DeformationModel {
   int width = 2;                    ///< half-width w of the regions in cells, 1 to 5
   double alpha = 0.5;               ///< in (0, 1]
   double young = 0;                 ///< "stiffness": {"young": E} [Pa] chooses alpha instead; 0: alpha as it stands
+  bool matched = false;             ///< young is the material's, for nothing was said: as far as an alpha of 1 reaches
   double damping = 0;               ///< per-region damping, in [0, 1] per step
   int substeps = 1;                 ///< steps of TLED per step of FLSM, 1 to 64
   bool extrapolate = false;         ///< "goals": "extrapolated" instead of "held" between steps of FLSM
@@ -139,6 +140,9 @@ struct StaticSolver {
   bool quadratic = false;   ///< "order": 2: tetrahedra get a node in the middle of every edge
 };
 
+/// What becomes of an element whose J is not positive: it goes on and comes back, or the run ends.
+enum class Inverted { recover, stop };
+
 struct Scene {
   std::string name;            ///< file stem, or what the caller set
   std::filesystem::path file;  ///< empty if built in code
@@ -147,12 +151,15 @@ struct Scene {
   double safety = 0.9;         ///< share of the stable step that an automatic step takes
   double duration = 1;         ///< [s] simulated by `run` when neither --steps nor --seconds is given
   Integrator integrator = Integrator::increment;
+  Inverted inverted = Inverted::recover;
   Relaxation relaxation;
   StaticSolver solver;
   Tool tool;
   std::vector<Blade> blades;
   SceneView view;
-  bool interactive = false;  ///< set in code: the Model reserves a force on every node that moves a vertex of the surface
+  double least_inertia = 0.05;  ///< of a cell where blades cut, as a share of a full cell's mass; 0: what it holds
+  bool cuttable = false;        ///< set in code: something may be cut though there are no blades
+  bool interactive = false;     ///< set in code: the Model reserves a force on every node that moves a vertex of the surface
   std::vector<Body> bodies;
 };
 

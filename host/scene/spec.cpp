@@ -78,8 +78,9 @@ DeformationModel model(const ModelSpec& m, const std::string& pointer) {
   out.follow = m.follow_tool;
   out.beta = m.beta.value_or(0);
   out.width = m.width;
-  out.alpha = m.alpha;
+  out.alpha = m.alpha.value_or(out.alpha);
   out.young = m.young.value_or(0);
+  out.matched = out.type == ModelType::hybrid && !m.alpha && !m.young;
   out.damping = m.damping;
   out.substeps = m.substeps;
   out.extrapolate = word(goals_words(), m.goals, pointer + "/goals");
@@ -150,6 +151,7 @@ Body body(const BodySpec& spec, const std::string& pointer, std::size_t& surface
   b.material = material(spec.material, pointer + "/material");
   if (spec.model.type != to_string(ModelType::tled)) b.model = model(spec.model, pointer + "/model");
   b.model.pointer = pointer + "/model";
+  if (b.model.matched) b.model.young = b.material.moduli.young();
   add_conditions(spec, b);
   b.velocity = spec.velocity;
   b.angular_velocity = spec.angular_velocity;
@@ -165,6 +167,8 @@ Scene scene_of(const SceneSpec& spec) {
   scene.dt = spec.dt;
   scene.safety = spec.safety;
   scene.integrator = word(integrator_words(), spec.integrator, "/integrator");
+  scene.least_inertia = spec.least_inertia;
+  scene.inverted = word(inverted_words(), spec.inverted, "/inverted");
   if (spec.relaxation) scene.relaxation = {true, spec.relaxation->tolerance, spec.relaxation->max_steps};
   scene.tool.path = spec.tool_path;
   convert(scene.blades, spec.blades, "/blades", [&](const BladeSpec& s, const std::string& at) {

@@ -80,7 +80,9 @@ Json model_json(const DeformationModel& m) {
     model["coupling"] = word_of(coupling_words(), m.conservative);
   }
   model["width"] = m.width;
-  if (m.young != 0) {
+  if (m.matched) {
+    // What a reader does without either.
+  } else if (m.young != 0) {
     model["stiffness"] = {{"young", m.young}};
   } else {
     model["alpha"] = m.alpha;
@@ -179,6 +181,8 @@ Json document_of(const Scene& scene) {
   top["safety"] = scene.safety;
   top["duration"] = scene.duration;
   top["integrator"] = word_of(integrator_words(), scene.integrator);
+  top["least_inertia"] = scene.least_inertia;
+  top["inverted"] = word_of(inverted_words(), scene.inverted);
   if (scene.relaxation.enabled) {
     top["relaxation"] = {{"tolerance", scene.relaxation.tolerance}, {"max_steps", scene.relaxation.max_steps}};
   } else {

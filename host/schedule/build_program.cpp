@@ -67,7 +67,8 @@ void ProgramBuilder::add_shared_buffers() {
   add(make_reals("last_w", BufferType::real4, slots, BufferRole::state, "[slots]", "m, m, m, 1", "host"));
   fault_ = add(make_ints("fault", BufferRole::scratch, "[elements]", {}, std::max(layout_.faults, 1), "element kernels"));
   program_.buffers[fault_].carried = Carried::all;  // the first step in which an element failed, until the host clears it
-  summary_ = add(make_ints("fault_summary", BufferRole::scratch, "[256][2]", {}, 512, "fault_reduce"));
+  summary_ = add(make_ints("fault_summary", BufferRole::scratch, "[256][4]", {}, 256 * PLIANT_FAULT_SUMMARY, "fault_reduce"));
+  fastest_ = add(make_reals("increment_summary", BufferType::real, 256, BufferRole::scratch, "[256]", "m", "increment_reduce"));
   params_ = add(make_reals("step_params", BufferType::real, 8, BufferRole::control, "[8]", "s, m/s^2 (3), m (2)", "host"));
   curves_ = add(make_reals("curve_value", BufferType::real,
                            (static_cast<std::size_t>(options_.batch_steps) + 1) * model_.curves.size(), BufferRole::control,
@@ -174,6 +175,15 @@ void ProgramBuilder::add_status() {
                              Shape::items,
                              256,
                              "first fault",
+                             0,
+                             0,
+                             0});
+  program_.status.push_back({"increment_reduce",
+                             {},
+                             {buffer_arg(node_w_), buffer_arg(fastest_), int_arg(model_.slots)},
+                             Shape::items,
+                             256,
+                             "largest increment",
                              0,
                              0,
                              0});

@@ -1,5 +1,6 @@
 // Stiffness and stability of shape matching and of its interface with finite elements.
 #pragma once
+#include <string>
 #include <vector>
 
 #include "simulation/run_context.h"
@@ -27,6 +28,10 @@ namespace pliant {
 /// Throws Error (bad_input) with what is allowed for a beta that a given step does not stand. `elements_dt`: the stable step of
 /// the elements alone [s].
 void check_beta(const RunContext& run, double dt, double elements_dt);
+
+/// What a user should know about the stiffness of shape matching at the step `dt` [s], a sentence each: that it is far from
+/// that of the material, or that the body's own weight is too much for it. Empty: nothing.
+[[nodiscard]] std::vector<std::string> matching_remarks(const Model& model, const Scene& scene, double dt);
 
 /// Write alpha and beta of the present step to the backend. Throws Error (bad_input) for a "stiffness" that no alpha reaches.
 void upload_coupling(const RunContext& run);

@@ -1,4 +1,4 @@
-// How a simulation ends that cannot go on.
+// How a simulation ends that cannot go on, and what it went through.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -15,6 +15,17 @@ struct Divergence {
   double dt = 0, stable_dt = 0;     ///< [s]
   std::int64_t last_good_step = 0;  ///< the state that the simulation now holds
   [[nodiscard]] std::string message() const;
+};
+
+/// Elements that had J <= 0 and went on. Counted since the simulation was made: nothing that comes depends on it.
+struct Inversions {
+  std::int64_t batches = 0;     ///< in how many batches there were some
+  std::int64_t most = 0;        ///< most of them in one batch
+  std::int64_t last = 0;        ///< in the last batch
+  std::int64_t first_step = 0;  ///< the first batch with some began with this step
+  double first_time = 0;        ///< [s]
+  std::string body;             ///< of one of the first
+  std::int64_t element = -1;    ///< its number in the body
 };
 
 }  // namespace pliant

@@ -1,5 +1,7 @@
 #include "simulation/loaded_model.h"
 
+#include <algorithm>
+
 namespace pliant {
 
 void LoadedModel::load(std::shared_ptr<const Model> model, Program program, Program surface) {
@@ -48,8 +50,9 @@ void LoadedModel::count_surface() {
 }
 
 void LoadedModel::look_up() {
-  ids_ = {program_.find("node_u"),      program_.find("node_w"), program_.find("node_force"),   program_.find("step_params"),
-          program_.find("curve_value"), program_.find("fault"),  program_.find("fault_summary")};
+  ids_ = {program_.find("node_u"),        program_.find("node_w"),           program_.find("node_force"),
+          program_.find("step_params"),   program_.find("curve_value"),      program_.find("fault"),
+          program_.find("fault_summary"), program_.find("increment_summary")};
   kept_.clear();
   for (std::size_t id = 0; id < program_.buffers.size(); ++id) {
     const BufferId live = program_.buffers[id].copy_of;
@@ -73,6 +76,11 @@ BufferId LoadedModel::surface_x() const {
 
 void LoadedModel::clear_faults() {
   backend_->write_ints(ids_.fault, std::vector<std::int32_t>(program_.at(ids_.fault).count, 0));
+}
+
+double LoadedModel::largest_increment() const {
+  const std::vector<double> most = backend_->read_reals(ids_.fastest);
+  return *std::max_element(most.begin(), most.end());
 }
 
 void LoadedModel::keep_state() {

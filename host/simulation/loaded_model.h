@@ -44,9 +44,11 @@ class LoadedModel {
   void write_curves(const std::vector<double>& values) { backend_->write_reals(ids_.curves, values); }
   /// R - F as Program::force leaves it.
   [[nodiscard]] std::vector<double> force() const { return backend_->read_reals(ids_.force); }
-  /// Steps in which elements failed and where, two integers per group; clear_faults() forgets them.
+  /// What fault_reduce found, [256][4] (its kernel); clear_faults() forgets it.
   [[nodiscard]] std::vector<std::int32_t> faults() const { return backend_->read_ints(ids_.summary); }
   void clear_faults();
+  /// The largest component of node_w when Program::status ran last.
+  [[nodiscard]] double largest_increment() const;
 
   /// Copy the state aside, or back.
   void keep_state();
@@ -61,7 +63,7 @@ class LoadedModel {
 
  private:
   struct Ids {
-    BufferId u = -1, w = -1, force = -1, params = -1, curves = -1, fault = -1, summary = -1;
+    BufferId u = -1, w = -1, force = -1, params = -1, curves = -1, fault = -1, summary = -1, fastest = -1;
   };
   void look_up();
   void count_surface();

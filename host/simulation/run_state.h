@@ -28,6 +28,7 @@ struct StepLimit {
   double stable_dt = 0;   ///< 2 / omega_max as of the last estimate [s]; 0: none
   double dt_ceiling = 0;  ///< an automatic step never grows beyond this [s]
   double dt_backoff = 1;  ///< share of the estimate that an automatic step still trusts
+  std::int64_t hold = 0;  ///< it does not grow before this step
 };
 
 /// Dynamic relaxation: its damping rate, and what its next change is measured against.
@@ -103,7 +104,7 @@ void visit(V& v, Clock& s) {
 }
 template <class V>
 void visit(V& v, StepLimit& s) {
-  v("stable_dt", s.stable_dt), v("dt_ceiling", s.dt_ceiling), v("dt_backoff", s.dt_backoff);
+  v("stable_dt", s.stable_dt), v("dt_ceiling", s.dt_ceiling), v("dt_backoff", s.dt_backoff), v("hold", s.hold);
 }
 template <class V>
 void visit(V& v, RelaxationState& s) {

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
+#include "layout.h"
 #include "pliant/error.h"
 #include "program/hash.h"
 #include "schedule/build_program.h"
@@ -14,6 +16,9 @@
 #include "simulation/relaxation.h"
 
 namespace pliant {
+
+/// An increment of a step that calls for a look at its length, as a share of the shortest element.
+constexpr double kFastIncrement = 0.1;
 
 std::string Divergence::message() const {
   return fmt::format(
@@ -115,18 +120,31 @@ void Simulation::look_for_fault(std::int64_t batch_start) {
   backend().run(program().force, static_cast<std::int32_t>(step() - batch_start), 1);
   backend().run(program().status, 0, 1);
   const std::vector<std::int32_t> summary = loaded_.faults();
-  std::int32_t fault = 0, element = 0;
-  for (std::size_t i = 0; i < summary.size(); i += 2) {
+  std::int32_t fault = 0, element = 0, lowest = std::numeric_limits<std::int32_t>::max();
+  std::int64_t inverted = 0;
+  for (std::size_t i = 0; i < summary.size(); i += PLIANT_FAULT_SUMMARY) {
+    if (summary[i + 2] > 0) {
+      inverted += summary[i + 2];
+      lowest = std::min(lowest, summary[i + 3]);
+    }
     if (summary[i] == 0) continue;
     if (fault == 0 || summary[i] < fault || (summary[i] == fault && summary[i + 1] < element)) {
       fault = summary[i];
       element = summary[i + 1];
     }
   }
-  if (fault == 0) return;
-  loaded_.return_to_kept_state();
-  state_.clock = state_.kept->clock;
-  state_.relaxation.damping = state_.kept->damping;
+  inversions_.last = 0;
+  if (fault == 0) {
+    if (inverted > 0) count_inversions(batch_start, inverted, lowest);
+    // Judged by the state alone, and only where states are kept: a run may be cut into pieces anywhere else.
+    if (!settings_.automatic || !state_.kept || !step_.on_grid(step())) return;
+    const bool fast = loaded_.largest_increment() > kFastIncrement * model().shortest;
+    if ((!fast && (inverted == 0 || !inverted_now())) || !step_.outgrown()) return;
+    return_to_kept();
+    step_.shorten();
+    return;
+  }
+  return_to_kept();
   if (step_.retry_smaller()) return;
   const FaultLocation found = find_fault(model(), element);
   divergence_ = Divergence{batch_start + fault,
@@ -137,6 +155,37 @@ void Simulation::look_for_fault(std::int64_t batch_start) {
                            dt(),
                            stable_dt(),
                            step()};
+}
+
+void Simulation::return_to_kept() {
+  loaded_.return_to_kept_state();
+  state_.clock = state_.kept->clock;
+  state_.relaxation.damping = state_.kept->damping;
+}
+
+bool Simulation::inverted_now() {
+  backend().run(program().force, 0, 1);
+  backend().run(program().status, 0, 1);
+  const std::vector<std::int32_t> summary = loaded_.faults();
+  loaded_.clear_faults();
+  for (std::size_t i = 0; i < summary.size(); i += PLIANT_FAULT_SUMMARY) {
+    if (summary[i + 2] > 0) return true;
+  }
+  return false;
+}
+
+void Simulation::count_inversions(std::int64_t batch_start, std::int64_t count, std::int32_t element) {
+  if (inversions_.batches == 0) {
+    const FaultLocation found = find_fault(model(), element);
+    inversions_.first_step = batch_start + 1;
+    inversions_.first_time = state_.clock.time_at(batch_start);
+    inversions_.body = found.body >= 0 ? model().bodies[static_cast<std::size_t>(found.body)].name : "?";
+    inversions_.element = found.element;
+  }
+  ++inversions_.batches;
+  inversions_.last = count;
+  inversions_.most = std::max(inversions_.most, count);
+  loaded_.clear_faults();
 }
 
 std::vector<Vec3d> Simulation::velocities(std::size_t body) const {
@@ -173,6 +222,8 @@ CutReport Simulation::move_blade(const std::string& blade, const BladeSegment& s
   const BladePose pose{blade, segment};
   return move_blades(std::span(&pose, 1));
 }
+
+std::vector<std::string> Simulation::remarks() const { return matching_remarks(model(), scene_, dt()); }
 
 std::uint64_t Simulation::hash() const {
   std::uint64_t h = 0;

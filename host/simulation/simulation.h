@@ -40,6 +40,7 @@ class Simulation {
   void end_batch(std::int32_t steps);
 
   [[nodiscard]] const std::optional<Divergence>& divergence() const { return divergence_; }
+  [[nodiscard]] const Inversions& inversions() const { return inversions_; }
   [[nodiscard]] bool at_equilibrium() const { return state_.relaxation.equilibrium; }
   /// |R - F| over the largest of external and reaction force, as of the last change of dynamic relaxation.
   [[nodiscard]] double residual() const { return state_.relaxation.residual; }
@@ -86,6 +87,9 @@ class Simulation {
   /// Put the scene's tool at a point [m] from now on.
   void set_tool(const Vec3d& position) { state_.tool = position; }
 
+  /// What a user should know before the first step (coupling.h).
+  [[nodiscard]] std::vector<std::string> remarks() const;
+
   /// Hash over node_u and node_w.
   [[nodiscard]] std::uint64_t hash() const;
   /// Hash over everything that decides what comes: model, state buffers and run state.
@@ -113,6 +117,9 @@ class Simulation {
   void set_initial_increment();
   void keep_state();
   void look_for_fault(std::int64_t batch_start);
+  void return_to_kept();
+  [[nodiscard]] bool inverted_now();
+  void count_inversions(std::int64_t batch_start, std::int64_t count, std::int32_t element);
 
   const Scene scene_;
   RunSettings settings_;  ///< fixed when the constructor is done
@@ -122,6 +129,7 @@ class Simulation {
   StepControl step_{run_};
   HostLoads loads_{run_};
   TopologyEdits edits_{run_, step_, loads_};
+  Inversions inversions_;
   std::optional<Divergence> divergence_;  ///< a run that has diverged has no next step
 };
 

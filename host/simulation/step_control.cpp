@@ -19,6 +19,7 @@ constexpr std::int64_t kFirstAdapts[] = {64, 128};
 constexpr int kAdaptIterations = 20;
 /// A diverged batch is tried again with a smaller automatic step until that is this share of what the estimate allows.
 constexpr double kLeastBackoff = 0.1;
+constexpr double kLeastStep = 0.02;  ///< share of the first step below which inverted elements shorten it no more
 constexpr double kFrame = 1.0 / 60;  ///< automatic step of a scene without finite elements [s]
 
 }  // namespace
@@ -82,7 +83,8 @@ void StepControl::adapt() {
   const StepLimit& limit = run_.state.limit;
   const double dt = run_.state.clock.dt, ceiling = limit.dt_ceiling;
   const double allowed = std::min(ceiling, limit.dt_backoff * run_.scene.safety * estimate(kAdaptIterations));
-  if (allowed < dt || allowed > 1.1 * dt || (allowed == ceiling && dt < ceiling)) change(allowed);
+  const bool may_grow = run_.state.clock.step >= limit.hold;
+  if (allowed < dt || (may_grow && (allowed > 1.1 * dt || (allowed == ceiling && dt < ceiling)))) change(allowed);
 }
 
 void StepControl::limit_to_element_bound() {
@@ -90,6 +92,21 @@ void StepControl::limit_to_element_bound() {
   double& ceiling = run_.state.limit.dt_ceiling;
   ceiling = std::min(ceiling, run_.scene.safety * coupled_step(run_.model(), run_.model().element_bound));
   if (run_.state.clock.dt > ceiling) change(ceiling);
+}
+
+bool StepControl::outgrown() {
+  const StepLimit& limit = run_.state.limit;
+  const double dt = run_.state.clock.dt, least = kLeastStep * limit.dt_ceiling;
+  if (!run_.settings.automatic || dt <= least) return false;
+  const double stable = limit.dt_backoff * run_.scene.safety * estimate(kAdaptIterations);
+  if (stable >= dt) return false;
+  shorter_ = std::max({stable, 0.35 * dt, least});
+  return true;
+}
+
+void StepControl::shorten() {
+  run_.state.limit.hold = run_.state.clock.step + kAdaptEvery;
+  change(shorter_);
 }
 
 bool StepControl::retry_smaller() {

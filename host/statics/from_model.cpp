@@ -60,6 +60,7 @@ class FromModel {
     out_.mesh.fill.assign(body_.elements(), 0);
     const auto add = [&](const Material& m) {
       out_.materials.push_back(m);
+      out_.materials.back().low = 0;  // equilibrium of an inverted element is no answer
       return static_cast<std::int32_t>(out_.materials.size()) - 1;
     };
     for (const TetBatch& batch : model_.tets) {

@@ -124,10 +124,10 @@ struct ModelSpec {
   bool cut = true;                        ///< hybrid, flsm: whether blades cut the shape-matching part
   std::optional<double> beta;             ///< hybrid: stiffness of the interface [N/m]; absent or 0: automatic
   int width = 2;                          ///< half-width of the regions of shape matching, in cells
-  double alpha = 0.5;                     ///< stiffness of shape matching in (0, 1]
-  std::optional<double> young;            ///< wanted stiffness of shape matching [Pa] instead of alpha
-  double damping = 0;                     ///< per-region damping, in [0, 1]
-  int substeps = 1;                       ///< hybrid: steps of finite elements per step of shape matching
+  std::optional<double> alpha;            ///< stiffness of shape matching in (0, 1]; absent: see young
+  std::optional<double> young;  ///< its modulus [Pa] instead of alpha; without both a hybrid's material's, else alpha = 0.5
+  double damping = 0;           ///< per-region damping, in [0, 1]
+  int substeps = 1;             ///< hybrid: steps of finite elements per step of shape matching
 };
 
 /// One body: its shape, what it is made of, and what holds and loads it.
@@ -173,6 +173,8 @@ struct SceneSpec {
   double dt = 0;                                 ///< [s]; 0: automatic
   double safety = 0.9;                           ///< share of the stable step that an automatic step takes, in (0, 1]
   std::string integrator = "increment";          ///< increment or textbook
+  std::string inverted = "recover";              ///< elements with J <= 0: recover or stop
+  double least_inertia = 0.05;                   ///< of a cell where blades cut, as a share of a full cell's mass, 0 to 1
   std::optional<RelaxationSpec> relaxation;      ///< absent: none
   std::vector<BladeSpec> blades;                 ///< blades that cut what they sweep over
   std::vector<std::array<double, 4>> tool_path;  ///< (time [s], x, y, z [m]): what a following operational region follows

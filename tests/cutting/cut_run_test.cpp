@@ -85,6 +85,33 @@ TEST_P(CutRun, a_piece_that_nothing_holds_falls) {
   EXPECT_GT(held, loose / 2);
 }
 
+/// What falls freely gains the momentum of its weight, whatever inertia its thin cells were given.
+TEST_P(CutRun, the_inertia_of_thin_cells_has_no_weight) {
+  Body body = box_body("box", {0.06, 0.04, 0.03}, GetParam());
+  body.angular_velocity = {0.3, 0.5, -0.4};
+  Scene scene = scene_with(body);
+  scene.gravity = {1, -9.81, 2};
+  Simulation s(scene, open_backend("cpu"));
+  const double mass = mass_of(s);
+  EXPECT_EQ(s.model().bodies[0].added_mass, 0) << "nothing says that this body will be cut";
+  s.cut(wall(0.0302));  // leaves a fiftieth of a cell
+  s.cut(wall(0.045, 0.4));
+  double added = 0, least = 1;
+  for (const double m : s.model().added) added += m;
+  for (const double fill : s.cut_topology(0)->elements().fill) least = std::min(least, fill);
+  EXPECT_LT(least, 0.04);
+  EXPECT_GT(added, 1e-4 * mass);
+  EXPECT_LT(added, 0.3 * mass);
+  EXPECT_NEAR(s.model().bodies[0].added_mass, added, 1e-12 * mass);
+  EXPECT_NEAR(mass_of(s), mass, 1e-12 * mass);
+  s.advance(1);
+  const Vec3d before = momentum_of(s, true);
+  const double start = s.time();
+  s.advance(500);
+  const double gained = mass * (s.time() - start);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(momentum_of(s, true)[c] - before[c], gained * scene.gravity[c], 1e-3 * gained * 9.81);
+}
+
 TEST(CutRun, virtual_nodes_of_a_loose_piece_are_not_fixed) {
   Body body = box_body("box", {0.04, 0.02, 0.02});
   Selection end;

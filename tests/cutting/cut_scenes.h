@@ -57,15 +57,18 @@ inline Blade blade(const std::string& name, std::vector<std::array<double, 7>> p
 
 inline double mass_of(const Simulation& s) {
   double mass = 0;
-  for (const double m : s.model().mass) mass += m;
+  for (std::size_t slot = 0; slot < s.model().mass.size(); ++slot) mass += s.model().own_mass(slot);
   return mass;
 }
 
-inline Vec3d momentum_of(const Simulation& s) {
+inline Vec3d momentum_of(const Simulation& s, bool with_added_inertia = false) {
   Vec3d sum{};
   for (std::size_t b = 0; b < s.model().bodies.size(); ++b) {
     const std::vector<Vec3d> v = s.velocities(b);
-    for (std::size_t n = 0; n < v.size(); ++n) sum = vec::add(sum, vec::mul(v[n], s.model().mass[s.model().bodies[b].slot[n]]));
+    for (std::size_t n = 0; n < v.size(); ++n) {
+      const auto slot = static_cast<std::size_t>(s.model().bodies[b].slot[n]);
+      sum = vec::add(sum, vec::mul(v[n], with_added_inertia ? s.model().mass[slot] : s.model().own_mass(slot)));
+    }
   }
   return sum;
 }

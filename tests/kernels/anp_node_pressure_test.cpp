@@ -49,7 +49,7 @@ TEST(AnpNodePressureOracle, IsTheMeanWeightedByVolume) {
   KernelCase test("anp_node_pressure", with_law(Law::isochoric_neo_hookean), Shape::lanes, 16);
   test.reals("anp_dilation", {1, 4, -0.0}).ints("anp_offset", {0, 2}).ints("anp_index", index);
   test.reals("anp_inverse_volume", Reals(16, 1.0 / 8)).reals("anp_pressure", Reals(16, 99));
-  test.reals("law_parameters", {7, 1000}).integer(0);
+  test.reals("law_parameters", {0.25, 7, 1000}).integer(0);
   const Reals pressure = run_in_double(test, "anp_pressure");
   EXPECT_DOUBLE_EQ(pressure[0], 1000 * 5.0 / 8);
   EXPECT_EQ(pressure[1], 0);
@@ -62,7 +62,7 @@ TEST(AnpNodePressureOracle, WritesFromItsBaseOn) {
   KernelCase test("anp_node_pressure", with_law(Law::neo_hookean), Shape::lanes, 16);
   test.reals("anp_dilation", {2, -0.0}).ints("anp_offset", {0, 1}).ints("anp_index", index);
   test.reals("anp_inverse_volume", Reals(16, 0.25)).reals("anp_pressure", Reals(48, 99));
-  test.reals("law_parameters", {1, 100}).integer(16);
+  test.reals("law_parameters", {0.25, 1, 100}).integer(16);
   Reals expected(48, 99);
   for (std::size_t i = 16; i < 32; ++i) expected[i] = i == 16 + 3 ? 50 : 0;
   EXPECT_EQ(run_in_double(test, "anp_pressure"), expected);

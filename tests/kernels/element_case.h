@@ -25,20 +25,26 @@ inline Defines with_law(Law law, Defines others = {}) {
   return others;
 }
 
-/// The parameters of a law with moduli of tissue at rest.
-inline Reals law_data(Law law) { return law_constants(make_material(law, Moduli::from_bulk(1000, 50000))); }
+/// The parameters of a law with moduli of tissue at rest; `low` as in Material.
+inline Reals law_data(Law law, double low = low_volume) {
+  Material m = make_material(law, Moduli::from_bulk(1000, 50000));
+  m.low = low;
+  return law_constants(m);
+}
 
 /// What the list kernels take last: corner forces from value 32 on, faults from 16 on, and the law.
-inline void results(KernelCase& test, Random& random, Law law, std::size_t force_planes, std::size_t elements) {
+inline void results(KernelCase& test, Random& random, Law law, std::size_t force_planes, std::size_t elements,
+                    double low = low_volume) {
   test.reals("corner_force", random.reals(32 + force_planes * elements, Data::large, 1))
       .ints("fault", random.faults(elements + 16))
-      .reals("law_parameters", law_data(law))
+      .reals("law_parameters", law_data(law, low))
       .integer(32)
       .integer(16)
       .step();
 }
 
-inline KernelCase tet4_force_case(Law law, int averaged, ElementSizes size, Data data, std::uint32_t seed) {
+inline KernelCase tet4_force_case(Law law, int averaged, ElementSizes size, Data data, std::uint32_t seed,
+                                  double low = low_volume) {
   Random random(seed);
   const Data constants = data_for_constants(data);
   KernelCase test("tled_tet4_force", with_law(law, {{"AVERAGED", averaged}}), Shape::lanes, size.elements);
@@ -46,7 +52,7 @@ inline KernelCase tet4_force_case(Law law, int averaged, ElementSizes size, Data
       .ints("tet_nodes", random.ints(4 * size.elements, 0, static_cast<int>(size.nodes) - 1))
       .reals("tet_data", random.reals(PLIANT_TET_DATA_PLANES * size.elements, constants, 1 / edge))
       .reals("anp_pressure", random.reals(size.nodes, data, 5000));
-  results(test, random, law, PLIANT_TET_FORCE_PLANES, size.elements);
+  results(test, random, law, PLIANT_TET_FORCE_PLANES, size.elements, low);
   return test;
 }
 

@@ -105,6 +105,15 @@ inline Shift hexahedron_forces(const Hexahedra& h, std::size_t e, Law law) {
   return f;
 }
 
+/// How many points of the elements are inverted, or nearly.
+inline int low_points(const Hexahedra& h) {
+  int low = 0;
+  for (std::size_t e = 0; e < 16; ++e) {
+    for (const Point& p : h.points[e]) low += deformation_gradient(p, h.tile.u[e]).determinant() < low_volume;
+  }
+  return low;
+}
+
 inline void expect_textbook_and_energy(const std::string& stem, const Hexahedra& h) {
   for (const Law law : all_laws()) {
     const auto forces = element_forces(stem, law, {{"UNIFORM", 0}}, h.tile);

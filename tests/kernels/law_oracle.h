@@ -27,6 +27,27 @@ struct Dual {
   friend Dual pow(const Dual& a, double n) { return {std::pow(a.value, n), n * std::pow(a.value, n - 1) * a.slope}; }
 };
 
+inline double value_of(double a) { return a; }
+inline double value_of(const Dual& a) { return a.value; }
+
+/// Below J = 1/4: Taylor's polynomial of second order about it.
+template <class Number>
+Number from_quarter(const Number& j, double value, double first, double second) {
+  const Number d = j - Number(0.25);
+  return Number(value) + Number(first) * d + Number(second / 2) * d * d;
+}
+template <class Number>
+Number low_log(const Number& j) {
+  using std::log;
+  return value_of(j) < 0.25 ? from_quarter(j, std::log(0.25), 4, -16) : log(j);
+}
+template <class Number>
+Number low_pow(const Number& j, double n) {
+  using std::pow;
+  if (!(value_of(j) < 0.25)) return pow(j, n);
+  return from_quarter(j, std::pow(0.25, n), n * std::pow(0.25, n - 1), n * (n - 1) * std::pow(0.25, n - 2));
+}
+
 /// What energies of isotropic materials are made of: C = F^T F, I1 = tr C, I2 = ((tr C)^2 - tr C^2) / 2, J = det F.
 template <class Number>
 struct Invariants {
@@ -43,8 +64,8 @@ struct Invariants {
   }
 };
 
-/// W without the volumetric part U(J) = k/2 (J - 1)^2, and k (0: the law has no such part). `p`: its parameters, in the order
-/// of docs/scene.md.
+/// W without the volumetric part U(J) = k/2 (J - 1)^2, and k (0: the law has no such part), continued below J = 1/4 if it is
+/// singular at 0. `p`: its parameters, in the order of docs/scene.md.
 template <class Number>
 struct Textbook {
   Number energy;
@@ -52,19 +73,24 @@ struct Textbook {
 };
 template <class Number>
 Textbook<Number> textbook(Law law, const Number (&f)[9], const std::vector<double>& p) {
-  using std::log, std::pow;
+  using std::log;
   const Invariants<Number> k(f);
   switch (law) {
     case Law::neo_hookean:  // mu, lambda
-      return {p[0] / 2 * (k.i1 - 3) - p[0] * log(k.j), p[1]};
+      return {p[0] / 2 * (k.i1 - 3) - p[0] * low_log(k.j), p[1]};
     case Law::saint_venant_kirchhoff:  // mu, lambda; tr E = (I1 - 3) / 2, E:E = (tr C^2 - 2 I1 + 3) / 4
-      return {p[1] / 8 * (k.i1 - 3) * (k.i1 - 3) + p[0] / 4 * (k.c_squared - 2 * k.i1 + 3), 0};
+    {
+      const Number below = value_of(k.j) < 0.25 ? Number(0.25) - k.j : Number(0);
+      return {p[1] / 8 * (k.i1 - 3) * (k.i1 - 3) + p[0] / 4 * (k.c_squared - 2 * k.i1 + 3) +
+                  16 * (p[1] + 2 * p[0]) / 3 * below * below * below,
+              0};
+    }
     case Law::isochoric_neo_hookean:  // mu, kappa
-      return {p[0] / 2 * (pow(k.j, -2.0 / 3) * k.i1 - 3), p[1]};
+      return {p[0] / 2 * (low_pow(k.j, -2.0 / 3) * k.i1 - 3), p[1]};
     case Law::mooney_rivlin:  // c10, c01, kappa
-      return {p[0] * (pow(k.j, -2.0 / 3) * k.i1 - 3) + p[1] * (pow(k.j, -4.0 / 3) * k.i2 - 3), p[2]};
+      return {p[0] * (low_pow(k.j, -2.0 / 3) * k.i1 - 3) + p[1] * (low_pow(k.j, -4.0 / 3) * k.i2 - 3), p[2]};
     case Law::yeoh: {  // c10, c20, c30, kappa
-      const Number x = pow(k.j, -2.0 / 3) * k.i1 - 3;
+      const Number x = low_pow(k.j, -2.0 / 3) * k.i1 - 3;
       return {x * (p[0] + x * (p[1] + x * p[2])), p[3]};
     }
     case Law::stable_neo_hookean: {  // mu, lambda of linear elasticity

@@ -10,7 +10,11 @@
 namespace pliant::kernel_test {
 
 /// What the oracles are asked about: moduli at rest of 1052 Pa and 52249 Pa (bulk).
-inline Material oracle_material(Law law) { return make_material(law, Moduli::from_bulk(1052, 52249)); }
+inline Material oracle_material(Law law) {
+  Material m = make_material(law, Moduli::from_bulk(1052, 52249));
+  m.low = low_volume;
+  return m;
+}
 
 /// A point of quadrature: gradients of the shape functions [corners][3] and its weight.
 struct Point {

@@ -89,7 +89,7 @@ class Random {
   /// Fault steps: most elements have had none.
   Ints faults(std::size_t n) {
     Ints v(n);
-    for (auto& x : v) x = chance(0.1) ? integer(1, 9) : 0;
+    for (auto& x : v) x = chance(0.1) ? (chance(0.3) ? -1 : 1) * integer(1, 9) : 0;  // negative: only inverted
     return v;
   }
 

@@ -24,6 +24,12 @@ TEST(TledHex8ForceOracle, IsTheForceOfTheTextbookStressAndTheDerivativeOfTheEner
   expect_textbook_and_energy("tled_hex8_force", one_point_hexahedra(0.1, 8));
 }
 
+TEST(TledHex8ForceOracle, AndThroughItsInversion) {
+  const Hexahedra h = one_point_hexahedra(2.5, 18);
+  EXPECT_GT(low_points(h), 3);
+  expect_textbook_and_energy("tled_hex8_force", h);
+}
+
 TEST(TledHex8ForceOracle, OneRecordServesAllElements) { expect_uniform_record("tled_hex8_force", one_point_hexahedra(0.1, 9)); }
 
 }  // namespace

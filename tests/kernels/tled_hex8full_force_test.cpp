@@ -24,6 +24,12 @@ TEST(TledHex8FullForceOracle, IsTheForceOfTheTextbookStressAndTheDerivativeOfThe
   expect_textbook_and_energy("tled_hex8full_force", eight_point_hexahedra(0.1, 8));
 }
 
+TEST(TledHex8FullForceOracle, AndThroughItsInversion) {
+  const Hexahedra h = eight_point_hexahedra(0.8, 18);
+  EXPECT_GT(low_points(h), 3);
+  expect_textbook_and_energy("tled_hex8full_force", h);
+}
+
 TEST(TledHex8FullForceOracle, OneRecordServesAllElements) {
   expect_uniform_record("tled_hex8full_force", eight_point_hexahedra(0.1, 9));
 }

@@ -11,6 +11,7 @@ namespace {
 
 const char* const full = R"({
   "format": "pliant-scene/1", "name": "everything", "gravity": [0, -9.81, 0], "dt": 1e-4, "safety": 0.8, "duration": 2.5,
+  "inverted": "stop", "least_inertia": 0.1,
   "integrator": "textbook", "relaxation": {"tolerance": 1e-6, "max_steps": 500},
   "bodies": [
     {"name": "liver", "surface": "meshes/liver.obj", "scale": 0.001, "translate": [1, 2, 3], "lattice": {"spacing": 0.008},
@@ -33,6 +34,8 @@ TEST(Load, EveryKeyArrives) {
   EXPECT_EQ(s.gravity, (Vec3d{0, -9.81, 0}));
   EXPECT_EQ(s.dt, 1e-4);
   EXPECT_EQ(s.safety, 0.8);
+  EXPECT_EQ(s.inverted, Inverted::stop);
+  EXPECT_EQ(s.least_inertia, 0.1);
   EXPECT_EQ(s.duration, 2.5);
   EXPECT_EQ(s.integrator, Integrator::textbook);
   EXPECT_TRUE(s.relaxation.enabled);

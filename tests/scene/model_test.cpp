@@ -105,7 +105,8 @@ TEST(Model, Defaults) {
     EXPECT_EQ(m.beta, 0);
     EXPECT_EQ(m.width, 2);
     EXPECT_EQ(m.alpha, 0.5);
-    EXPECT_EQ(m.young, 0);
+    EXPECT_EQ(m.matched, m.type == ModelType::hybrid);
+    EXPECT_EQ(m.young > 0, m.matched) << "that of the material";
     EXPECT_EQ(m.damping, 0);
     EXPECT_EQ(m.substeps, 1);
     EXPECT_FALSE(m.extrapolate);
@@ -136,6 +137,7 @@ TEST(Model, RoundTripKeepsEverything) {
       R"({"type": "hybrid", "ratio": 0.1, "alpha": 0.3})",
       R"({"type": "hybrid", "region": {"sphere": [[1, 2, 3], 0.7]}, "stiffness": {"young": 1234.5}, "beta": 3})",
       R"({"type": "hybrid", "region": {"box": [[0, 1, 2], [3, 4, 5]]}, "goals": "extrapolated"})",
+      R"({"type": "hybrid"})",
       R"({"type": "flsm", "width": 4, "alpha": 0.9, "damping": 0.2})",
       R"({"type": "flsm", "width": 5, "stiffness": {"young": 800}})"};
   for (const std::string& text : models) {
@@ -159,6 +161,7 @@ TEST(Model, RoundTripKeepsEverything) {
     EXPECT_EQ(n.width, m.width);
     EXPECT_EQ(n.alpha, m.alpha);
     EXPECT_EQ(n.young, m.young);
+    EXPECT_EQ(n.matched, m.matched);
     EXPECT_EQ(n.damping, m.damping);
     EXPECT_EQ(n.substeps, m.substeps);
     EXPECT_EQ(n.extrapolate, m.extrapolate);

@@ -52,6 +52,7 @@ TEST(Schema, HasTheWordsOfTheLoader) {
       {"law", {"/$defs/material/properties/law"}},
       {"element", {"/$defs/body/properties/element"}},
       {"integrator", {"/properties/integrator"}},
+      {"inverted", {"/properties/inverted"}},
       {"curve", {"/$defs/prescribed/properties/curve", "/$defs/force/properties/curve", "/$defs/pressure/properties/curve"}},
       {"model", {"/$defs/model/properties/type"}},
       {"goals", {"/$defs/model/properties/goals"}},
@@ -70,6 +71,7 @@ TEST(Schema, DefaultsAreThoseOfTheStructs) {
   const Json schema = json_of(scenes / "schema.json");
   const auto number = [&](const char* pointer) { return schema.at(Json::json_pointer(pointer)).at("default").get<double>(); };
   EXPECT_EQ(number("/properties/safety"), Scene().safety);
+  EXPECT_EQ(number("/properties/least_inertia"), Scene().least_inertia);
   EXPECT_EQ(number("/properties/duration"), Scene().duration);
   EXPECT_EQ(number("/$defs/relaxation/properties/tolerance"), Relaxation().tolerance);
   EXPECT_EQ(number("/$defs/relaxation/properties/max_steps"), static_cast<double>(Relaxation().max_steps));
@@ -80,7 +82,6 @@ TEST(Schema, DefaultsAreThoseOfTheStructs) {
   const std::string model = "/$defs/model/properties/";
   EXPECT_EQ(number((model + "ratio").c_str()), DeformationModel().ratio);
   EXPECT_EQ(number((model + "width").c_str()), DeformationModel().width);
-  EXPECT_EQ(number((model + "alpha").c_str()), DeformationModel().alpha);
   EXPECT_EQ(number((model + "damping").c_str()), DeformationModel().damping);
   EXPECT_EQ(number((model + "substeps").c_str()), DeformationModel().substeps);
   const auto word = [&](const char* key) {

@@ -64,12 +64,23 @@ TEST_P(Resume, AutomaticStepAcrossItsRenewal) {
 }
 
 TEST_P(Resume, AutomaticStepThatWasTriedAgain) {
-  const Scene scene = pressed_cube(0.04);  // pressed flat within a few dozen steps
+  Scene scene = pressed_cube(0.04);  // pressed flat within a few dozen steps
+  scene.inverted = Inverted::stop;
   Simulation probe = make(scene);
   probe.advance(200);
   ASSERT_LT(probe.state().limit.dt_backoff, 1) << "the scene must be fast enough to overtake its step";
   ASSERT_FALSE(probe.divergence());
   for (const std::int64_t at : {17, 64, 100, 199}) expect_same_bits(scene, at, 200 - at);
+}
+
+TEST_P(Resume, AutomaticStepThatElementsOutgrew) {
+  const Scene scene = pressed_cube(0.12);  // beyond its other side
+  Simulation probe = make(scene);
+  probe.advance(400);
+  ASSERT_FALSE(probe.divergence());
+  ASSERT_GT(probe.inversions().batches, 0);
+  ASSERT_GT(probe.state().limit.hold, 0) << "the scene must be fast enough to overtake its step";
+  for (const std::int64_t at : {17, 64, 100, 199, 333}) expect_same_bits(scene, at, 400 - at);
 }
 
 TEST_P(Resume, Textbook) { expect_same_bits(pressed_cube(0.01, R"("integrator": "textbook", "dt": 0.002,)"), 64, 36); }
