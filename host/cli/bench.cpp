@@ -10,6 +10,7 @@
 #include "bench/deformation/deformation.h"
 #include "bench/kernels/kernels.h"
 #include "bench/stability/stability.h"
+#include "bench/survival/survival.h"
 #include "cli/cli.h"
 #include "io/atomic_file.h"
 #include "io/png.h"
@@ -27,6 +28,7 @@ struct Options {
   bench::StabilityOptions stability;
   bench::AccuracyOptions accuracy;
   bench::CuttingOptions cutting;
+  bench::SurvivalOptions survival;
   std::filesystem::path out;
 };
 
@@ -161,6 +163,26 @@ void add_cutting(CLI::App& app, const std::shared_ptr<Options>& options) {
   sub->add_option("--out", options->out, "folder for cutting.json, cutting.csv and the pictures");
 }
 
+int survival(Options& options) {
+  options.common.check();
+  options.survival.out = options.out;  // finished scenes are kept there
+  return measure(options, "survival", options.survival, bench::bench_survival, bench::survival_table);
+}
+
+void add_survival(CLI::App& app, const std::shared_ptr<Options>& options) {
+  CLI::App* sub =
+      app.add_subcommand("survival", "Random scenes of the kind that strangers write: pulled, pushed, cut, torn, to their end");
+  bench::SurvivalOptions& s = options->survival;
+  options->common.add_to(*sub);
+  sub->add_option("--scenes", s.scenes, "folder of the shipped scenes");
+  sub->add_option("--backend", s.backend, "default: cpu");
+  sub->add_option("--first", s.first, "number of the first scene, default: 0");
+  sub->add_option("--count", s.count, "default: 1000");
+  sub->add_flag("--quick", s.quick, "50 scenes for a quarter of the time");
+  sub->add_option("--out", options->out,
+                  "folder for survival.json and survival.csv, and the scenes that end badly; finished ones are not run again");
+}
+
 }  // namespace
 
 std::function<int()> setup_bench(CLI::App& app) {
@@ -178,9 +200,11 @@ std::function<int()> setup_bench(CLI::App& app) {
   add_stability(app, options);
   add_accuracy(app, options);
   add_cutting(app, options);
+  add_survival(app, options);
   return [options, &app] {
     if (app.got_subcommand("kernels")) return kernels(*options);
     if (app.got_subcommand("accuracy")) return accuracy(*options);
+    if (app.got_subcommand("survival")) return survival(*options);
     if (app.got_subcommand("cutting")) return cutting(*options);
     return app.got_subcommand("stability") ? stability(*options) : deformation(*options);
   };

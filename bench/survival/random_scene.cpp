@@ -1,0 +1,210 @@
+// Random scenes: bodies that ship with Pliant, held somewhere, and loaded as hard as anybody would.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "bench/survival/survival.h"
+#include "geometry/mesh.h"
+#include "geometry/vec.h"
+#include "material/material.h"
+#include "mesh_io/mesh_io.h"
+
+namespace pliant::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The distributions of the standard library differ from one library to the next.
+class Dice {
+ public:
+  explicit Dice(std::int64_t seed) : engine_(static_cast<std::uint64_t>(seed) * 0x9E3779B97F4A7C15u + 1) { engine_.discard(8); }
+  double uniform(double low, double high) { return low + (high - low) * std::ldexp(static_cast<double>(engine_() >> 11), -53); }
+  double logarithmic(double low, double high) { return std::exp(uniform(std::log(low), std::log(high))); }
+  bool chance(double share) { return uniform(0, 1) < share; }
+  std::size_t below(std::size_t n) { return std::min(n - 1, static_cast<std::size_t>(uniform(0, static_cast<double>(n)))); }
+  Vec3d direction() {
+    for (;;) {
+      const Vec3d v{uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
+      const double length = vec::norm(v);
+      if (length > 0.1 && length < 1) return vec::mul(v, 1 / length);
+    }
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+struct Shape {
+  const char* file;
+  bool tets;
+};
+constexpr Shape kShapes[] = {{"apple.obj", false},          {"beam.obj", false},    {"cube.obj", false},
+                             {"cylinder.obj", false},       {"kidney.obj", false},  {"liver.obj", false},
+                             {"liver.obj", false},          {"beam_tet.msh", true}, {"cube_tet.vtu", true},
+                             {"gallbladder_tet.msh", true}, {"sheet_tet.msh", true}};
+
+vec::Box box_of(const std::filesystem::path& file, bool tets) {
+  vec::Box box;
+  for (const Vec3d& x : tets ? read_volume(file).vertices : read_surface(file).vertices) box.extend(x);
+  return box;
+}
+
+class RandomScene {
+ public:
+  RandomScene(std::int64_t number, const std::filesystem::path& scenes) : dice_(number), number_(number) {
+    shape_ = kShapes[dice_.below(std::size(kShapes))];
+    file_ = std::filesystem::absolute(scenes / "meshes" / shape_.file);
+    box_ = box_of(file_, shape_.tets);
+    size_ = vec::sub(box_.upper, box_.lower);
+    for (std::size_t c = 1; c < 3; ++c) {
+      if (size_[c] > size_[axis_]) axis_ = c;
+    }
+    extent_ = size_[axis_];
+  }
+
+  Json operator()() {
+    Json body{{"name", std::filesystem::path(shape_.file).stem().string()}};
+    body[shape_.tets ? "mesh" : "surface"] = file_.string();
+    method(body);
+    const bool tears = shape_.tets && body["element"] == "tet4" && dice_.chance(0.35);
+    material(body, tears);
+    Json scene{{"format", "pliant-scene/1"}, {"name", fmt::format("survival {}", number_)}, {"duration", 2.0}};
+    hold(body);
+    const bool weight = dice_.chance(0.75);
+    if (weight) scene["gravity"] = vec::mul(dice_.chance(0.6) ? Vec3d{0, -1, 0} : dice_.direction(), 9.81);
+    const std::size_t load = dice_.below(weight ? 4 : 3);
+    if (load < 2) move(body);
+    if (load == 2) push(body);
+    const bool cuts = !tears && body["model"]["type"] != "flsm" && dice_.chance(0.5);
+    if (cuts) scene["blades"] = blades();
+    scene["bodies"] = Json::array({std::move(body)});
+    return scene;
+  }
+
+ private:
+  /// A point of the body's box.
+  [[nodiscard]] Vec3d at(const Vec3d& share) const {
+    return {box_.lower[0] + share[0] * size_[0], box_.lower[1] + share[1] * size_[1], box_.lower[2] + share[2] * size_[2]};
+  }
+
+  void method(Json& body) {
+    if (shape_.tets) {
+      body["element"] = dice_.chance(0.5) ? "tet4" : "tet4anp";
+      body["model"] = {{"type", "tled"}};
+      return;
+    }
+    body["lattice"] = {{"spacing", std::cbrt(size_[0] * size_[1] * size_[2] / dice_.logarithmic(300, 1500))}};
+    constexpr const char* elements[] = {"hex8", "hex8", "hex8full", "tet4", "tet4anp"};
+    const std::size_t kind = dice_.below(10);
+    body["element"] = kind < 5 ? elements[kind] : "hex8";
+    if (kind < 7) {
+      body["model"] = {{"type", "tled"}};
+    } else if (kind < 9) {
+      const Vec3d seed = at({dice_.uniform(0.2, 0.8), dice_.uniform(0.2, 0.8), dice_.uniform(0.2, 0.8)});
+      body["model"] = {{"type", "hybrid"}, {"seed", seed}, {"ratio", dice_.uniform(0.2, 0.8)}};
+    } else {
+      body["model"] = {{"type", "flsm"}};
+    }
+  }
+
+  void material(Json& body, bool tears) {
+    young_ = dice_.logarithmic(1e3, 300e3);
+    const double poisson = dice_.uniform(0.3, 0.49), damping = dice_.chance(0.3) ? 0 : dice_.logarithmic(0.5, 50);
+    Law law = Law::neo_hookean;
+    if (dice_.chance(0.5)) law = all_laws()[dice_.below(law_count)];
+    if (body["element"] == "tet4anp" && !law_info(law).volumetric) law = Law::neo_hookean;  // refused
+    const LawInfo& info = law_info(law);
+    Json m{{"law", info.word}};
+    if (info.takes_moduli) {
+      m["young"] = young_;
+      m["poisson"] = poisson;
+    } else {
+      const Material made = make_material(law, Moduli::from_young(young_, poisson));
+      for (std::size_t i = 0; i < made.parameters.size(); ++i) m[info.parameters[i].name] = made.parameters[i];
+    }
+    m["density"] = dice_.uniform(900, 1100);
+    m["damping"] = damping;
+    if (tears) m["toughness"] = young_ * dice_.uniform(0.1, 0.8);
+    body["material"] = m;
+  }
+
+  /// All beyond a share of the longest axis: {"plane": [point, normal]}.
+  [[nodiscard]] Json cap(double share, bool upper) const {
+    Vec3d point = at({0.5, 0.5, 0.5}), normal{};
+    point[axis_] = upper ? box_.upper[axis_] - share * extent_ : box_.lower[axis_] + share * extent_;
+    normal[axis_] = upper ? 1 : -1;
+    return Json::array({point, normal});
+  }
+
+  void hold(Json& body) {
+    upper_ = dice_.chance(0.5);
+    body["fixed"] = Json::array({{{"plane", cap(dice_.uniform(0.05, 0.2), upper_)}}});
+  }
+
+  /// The far end is moved along the axis or anywhere, by up to twice the body's length away and by up to half of it inwards.
+  void move(Json& body) {
+    Vec3d way = dice_.direction();
+    if (dice_.chance(0.5)) {
+      way = {};
+      way[axis_] = upper_ ? -1 : 1;
+    }
+    const double outwards = (upper_ ? -1 : 1) * way[axis_];
+    const double most = outwards < 0 ? 0.5 : 2;
+    body["prescribed"] = Json::array({{{"plane", cap(dice_.uniform(0.05, 0.2), !upper_)},
+                                       {"displacement", vec::mul(way, dice_.uniform(0.05, most) * extent_)},
+                                       {"curve", dice_.chance(0.6) ? "smooth" : "ramp"},
+                                       {"duration", dice_.uniform(0.3, 1.5)}}});
+  }
+
+  /// A force of up to what doubles the length of a bar of that size.
+  void push(Json& body) {
+    const double area = size_[0] * size_[1] * size_[2] / extent_;
+    body["forces"] = Json::array({{{"plane", cap(0.25, !upper_)},
+                                   {"force", vec::mul(dice_.direction(), dice_.uniform(0.05, 1) * young_ * area)},
+                                   {"curve", dice_.chance(0.6) ? "smooth" : "ramp"},
+                                   {"duration", dice_.uniform(0.1, 1)}}});
+  }
+
+  /// Blades that go through the body somewhere, at any angle, some deep and some not.
+  Json blades() {
+    Json list = Json::array();
+    const std::size_t count = 1 + dice_.below(3);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec3d through = at({dice_.uniform(0.15, 0.85), dice_.uniform(0.15, 0.85), dice_.uniform(0.15, 0.85)});
+      const Vec3d along = dice_.direction();
+      Vec3d edge = vec::cross(along, dice_.direction());
+      if (vec::norm(edge) < 0.1) edge = vec::cross(along, {along[1], -along[2], along[0] + 1});
+      edge = vec::mul(edge, 1 / vec::norm(edge));
+      const double half = extent_ * dice_.uniform(0.3, 1.2), reach = 1.3 * extent_, depth = extent_ * dice_.uniform(-0.2, 1.3);
+      const double start = dice_.uniform(0.05, 1), end = start + dice_.uniform(0.2, 0.8);
+      const auto row = [&](double time, const Vec3d& middle) {
+        const Vec3d a = vec::sub(middle, vec::mul(edge, half)), b = vec::add(middle, vec::mul(edge, half));
+        return Json::array({time, a[0], a[1], a[2], b[0], b[1], b[2]});
+      };
+      list.push_back({{"name", fmt::format("blade{}", i)},
+                      {"path", Json::array({row(start, vec::sub(through, vec::mul(along, reach))),
+                                            row(end, vec::add(through, vec::mul(along, depth)))})}});
+    }
+    return list;
+  }
+
+  Dice dice_;
+  std::int64_t number_;
+  Shape shape_{};
+  std::filesystem::path file_;
+  vec::Box box_;
+  Vec3d size_{};
+  std::size_t axis_ = 0;
+  double extent_ = 0, young_ = 0;
+  bool upper_ = false;
+};
+
+}  // namespace
+
+std::string survival_scene(std::int64_t number, const std::filesystem::path& scenes) {
+  return RandomScene(number, scenes)().dump(1) + "\n";
+}
+
+}  // namespace pliant::bench

@@ -1,0 +1,197 @@
+#include "bench/survival/survival.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <map>
+
+#include "backends/backends.h"
+#include "bench/common/shipped_scenes.h"
+#include "bench/kernels/kernels.h"
+#include "geometry/stopwatch.h"
+#include "geometry/vec.h"
+#include "io/atomic_file.h"
+#include "pliant/error.h"
+#include "simulation/simulation.h"
+
+namespace pliant::bench {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kEnd = 2;  // [s]
+
+/// Largest displacement over the largest extent of the body at rest; not a number if one of them is not.
+double largest_displacement(const Simulation& s) {
+  double most = 0, extent = 0;
+  for (std::size_t b = 0; b < s.model().bodies.size(); ++b) {
+    const std::vector<Vec3d>& rest = s.model().bodies[b].rest;
+    for (const Vec3d& u : s.displacements(b)) most = std::isfinite(vec::norm(u)) ? std::max(most, vec::norm(u)) : vec::norm(u);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto [low, high] =
+          std::minmax_element(rest.begin(), rest.end(), [c](const Vec3d& p, const Vec3d& q) { return p[c] < q[c]; });
+      extent = std::max(extent, (*high)[c] - (*low)[c]);
+    }
+  }
+  return most / extent;
+}
+
+std::int64_t pieces_of(const Simulation& s) {
+  std::int64_t pieces = 0;
+  for (std::size_t b = 0; b < s.model().bodies.size(); ++b) {
+    pieces += s.cut_topology(b) != nullptr ? s.cut_topology(b)->pieces() : 1;
+  }
+  return pieces;
+}
+
+json describe(const Scene& scene) {
+  const Body& body = scene.bodies[0];
+  return {{"body", body.name},
+          {"element", to_string(body.element)},
+          {"model", to_string(body.model.type)},
+          {"law", to_string(body.material.law)},
+          {"young", body.material.moduli.young()},
+          {"poisson", body.material.moduli.poisson()},
+          {"damping", body.material.damping},
+          {"gravity", vec::norm(scene.gravity)},
+          {"blades", scene.blades.size()},
+          {"tears", body.material.toughness > 0},
+          {"load", !body.prescribed.empty() ? "moved"
+                   : !body.forces.empty()   ? "force"
+                                            : "none"}};
+}
+
+/// One scene to its end.
+json run_one(std::int64_t number, const SurvivalOptions& options) {
+  const Scene scene = parse_scene(survival_scene(number, options.scenes), fmt::format("survival-{}.json", number));
+  json row = describe(scene);
+  row["number"] = number;
+  try {
+    const Stopwatch building;
+    Simulation s(scene, open_backend(options.backend));
+    row["nodes"] = s.model().nodes();
+    const double first = s.dt(), end = options.quick ? kEnd / 4 : kEnd;
+    double least = first;
+    const Stopwatch clock;
+    while (s.time() < end && !s.divergence()) {
+      s.advance(64);
+      least = std::min(least, s.dt());
+    }
+    double mass = 0, added = 0;
+    for (const ModelBody& b : s.model().bodies) {
+      mass += b.mass;
+      added += b.added_mass;
+    }
+    const double largest = largest_displacement(s);
+    row["outcome"] = s.divergence() ? "diverged" : std::isfinite(largest) ? "ended" : "not finite";
+    row["message"] = s.divergence() ? s.divergence()->message() : "";
+    row["time"] = s.time();
+    row["first_dt"] = first;
+    row["least_dt"] = least / first;
+    row["last_dt"] = s.dt() / first;
+    row["inverted"] = s.inversions().most;
+    row["inverted_now"] = s.inversions().last;
+    row["added_mass"] = added / mass;
+    row["largest"] = std::isfinite(largest) ? json(largest) : json();
+    row["pieces"] = pieces_of(s);
+    row["edits"] = s.topology_version();
+    row["ms_per_frame"] = 1e3 * clock.seconds() / (std::max(s.time(), first) * 60);
+  } catch (const Error& error) {
+    row["outcome"] = "refused";
+    row["message"] = error.what();
+  }
+  return row;
+}
+
+/// Finished scenes: a line each, so that an interrupted call loses at most one.
+class Kept {
+ public:
+  explicit Kept(const SurvivalOptions& o) {
+    if (o.out.empty()) return;
+    std::filesystem::create_directories(o.out);
+    file_ = o.out / (o.quick ? "survival-quick.rows.jsonl" : "survival.rows.jsonl");
+    std::ifstream in(file_);
+    for (std::string line; std::getline(in, line);) {
+      const json row = json::parse(line, nullptr, false);
+      if (row.is_object() && row.contains("number")) rows_[row["number"].get<std::int64_t>()] = row;
+    }
+  }
+  [[nodiscard]] const json* find(std::int64_t number) const {
+    const auto found = rows_.find(number);
+    return found == rows_.end() ? nullptr : &found->second;
+  }
+  void add(const json& row) {
+    if (!file_.empty()) std::ofstream(file_, std::ios::app) << row.dump() << "\n";
+  }
+
+ private:
+  std::filesystem::path file_;
+  std::map<std::int64_t, json> rows_;
+};
+
+json summary_of(const json& rows) {
+  std::map<std::string, int> outcomes;
+  int short_steps = 0, inverted = 0, left_inverted = 0;
+  for (const json& row : rows) {
+    ++outcomes[row["outcome"].get<std::string>()];
+    short_steps += row.value("least_dt", 1.0) < 0.1;
+    inverted += row.value("inverted", 0) > 0;
+    left_inverted += row.value("inverted_now", 0) > 0;
+  }
+  return {{"scenes", rows.size()},
+          {"ended", outcomes["ended"]},
+          {"diverged", outcomes["diverged"]},
+          {"not_finite", outcomes["not finite"]},
+          {"refused", outcomes["refused"]},
+          {"least_dt_below_a_tenth", short_steps},
+          {"inverted", inverted},
+          {"left_inverted", left_inverted}};
+}
+
+}  // namespace
+
+json bench_survival(const SurvivalOptions& asked) {
+  SurvivalOptions options = asked;
+  options.scenes = find_shipped_scenes(asked.scenes, "liver.json");
+  if (options.quick) options.count = std::min<std::int64_t>(options.count, 50);
+  if (options.count < 1 || options.first < 0) {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("--count is {} and --first {}; at least 1 and 0 are allowed", options.count, options.first));
+  }
+  Kept kept(options);
+  json rows = json::array();
+  for (std::int64_t i = 0; i < options.count; ++i) {
+    const std::int64_t number = options.first + i;
+    if (options.progress) options.progress(double(i) / double(options.count), fmt::format("scene {}", number));
+    if (const json* found = kept.find(number)) {
+      rows.push_back(*found);
+      continue;
+    }
+    rows.push_back(run_one(number, options));
+    kept.add(rows.back());
+    if (!options.out.empty() && rows.back()["outcome"] != "ended") {
+      write_file(options.out / fmt::format("survival-{}.json", number), survival_scene(number, options.scenes));
+    }
+  }
+  return {{"machine", machine_facts()}, {"backend", options.backend}, {"summary", summary_of(rows)}, {"rows", rows}};
+}
+
+std::string survival_table(const json& result) {
+  const json& s = result["summary"];
+  std::string text =
+      fmt::format("{} of {} scenes ended well; {} diverged, {} were not finite, {} were refused\n", s["ended"].get<int>(),
+                  s["scenes"].get<int>(), s["diverged"].get<int>(), s["not_finite"].get<int>(), s["refused"].get<int>());
+  text += fmt::format("{} took a step below a tenth of the first, {} had inverted elements, {} at the end\n",
+                      s["least_dt_below_a_tenth"].get<int>(), s["inverted"].get<int>(), s["left_inverted"].get<int>());
+  for (const json& row : result["rows"]) {
+    if (row["outcome"] == "ended") continue;
+    text += fmt::format("  {:>4} {} {} {} {}: {}\n", row["number"].get<std::int64_t>(), row["body"].get<std::string>(),
+                        row["element"].get<std::string>(), row["model"].get<std::string>(), row["outcome"].get<std::string>(),
+                        row["message"].get<std::string>());
+  }
+  return text;
+}
+
+}  // namespace pliant::bench
