@@ -138,7 +138,8 @@ void Simulation::look_for_fault(std::int64_t batch_start) {
     if (inverted > 0) count_inversions(batch_start, inverted, lowest);
     // Judged by the state alone, and only where states are kept: a run may be cut into pieces anywhere else.
     if (!settings_.automatic || !state_.kept || !step_.on_grid(step())) return;
-    const bool fast = loaded_.largest_increment() > kFastIncrement * model().shortest;
+    // Where tissue tears, splinters fly off, and the estimate of their step is no better.
+    const bool fast = !settings_.tears && loaded_.largest_increment() > kFastIncrement * model().shortest;
     if ((!fast && (inverted == 0 || !inverted_now())) || !step_.outgrown()) return;
     return_to_kept();
     step_.shorten();
