@@ -234,6 +234,24 @@ std::string scene_text(const std::string& model, const std::string& extra = "") 
          model + "}]}";
 }
 
+/// What `pliant run` says of shape matching before the first step.
+TEST(FlsmRun, RemarksOnStiffnessAndWeight) {
+  const auto remarks = [](const std::string& model, const std::string& extra) {
+    const Scene scene = parse_scene(scene_text(model, extra), test::source_dir() + "/scenes/hybrid.json");
+    return Simulation(scene, open_backend("cpu")).remarks();
+  };
+  const std::string hybrid = R"({"type": "hybrid"})", weight = R"("gravity": [0, -9.81, 0], )";
+  EXPECT_TRUE(remarks(hybrid, "").empty()) << "its stiffness is the material's, and nothing weighs on it";
+  EXPECT_TRUE(remarks(R"({"type": "hybrid", "stiffness": {"young": 90000}})", weight).size() == 1)
+      << "too stiff, but strong enough";
+  const std::vector<std::string> heavy = remarks(hybrid, weight);
+  ASSERT_EQ(heavy.size(), 1U);
+  EXPECT_NE(heavy[0].find("its weight strains its shape matching"), std::string::npos) << heavy[0];
+  const std::vector<std::string> soft = remarks(R"({"type": "hybrid", "stiffness": {"young": 300}})", "");
+  ASSERT_EQ(soft.size(), 1U);
+  EXPECT_NE(soft[0].find("0.1 times that of its material"), std::string::npos) << soft[0];
+}
+
 TEST(FlsmRun, WhatIsRefused) {
   struct Case {
     const char* model;
