@@ -34,6 +34,6 @@ __kernel void flsm_update(__global float* node_u, __global float* node_w, __glob
     vstore4((float4)(next.xyz, w.w), node_base + i, node_w);
     vstore4((float4)(placed.xyz, u.w), node_base + i, node_u);
     const int finite = fabs(placed.x) < INFINITY && fabs(placed.y) < INFINITY && fabs(placed.z) < INFINITY;
-    if (!finite && fault[fault_base + i] == 0) fault[fault_base + i] = step + 1;
+    if (!finite && fault[fault_base + i] <= 0) fault[fault_base + i] = step + 1;
   }
 }
