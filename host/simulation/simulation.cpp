@@ -140,9 +140,11 @@ void Simulation::look_for_fault(std::int64_t batch_start) {
     if (!settings_.automatic || !state_.kept || !step_.on_grid(step())) return;
     // Where tissue tears, splinters fly off, and the estimate of their step is no better.
     const bool fast = !settings_.tears && loaded_.largest_increment() > kFastIncrement * model().shortest;
-    if ((!fast && (inverted == 0 || !inverted_now())) || !step_.outgrown()) return;
+    if (!fast && (inverted == 0 || !inverted_now())) return;
+    const std::optional<double> shorter = step_.outgrown();
+    if (!shorter) return;
     return_to_kept();
-    step_.shorten();
+    step_.shorten(*shorter);
     return;
   }
   return_to_kept();

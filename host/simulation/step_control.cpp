@@ -94,19 +94,18 @@ void StepControl::limit_to_element_bound() {
   if (run_.state.clock.dt > ceiling) change(ceiling);
 }
 
-bool StepControl::outgrown() {
+std::optional<double> StepControl::outgrown() {
   const StepLimit& limit = run_.state.limit;
   const double dt = run_.state.clock.dt, least = kLeastStep * limit.dt_ceiling;
-  if (!run_.settings.automatic || dt <= least) return false;
+  if (!run_.settings.automatic || dt <= least) return {};
   const double stable = limit.dt_backoff * run_.scene.safety * estimate(kAdaptIterations);
-  if (stable >= dt) return false;
-  shorter_ = std::max({stable, 0.35 * dt, least});
-  return true;
+  if (stable >= dt) return {};
+  return std::max({stable, 0.35 * dt, least});
 }
 
-void StepControl::shorten() {
+void StepControl::shorten(double dt) {
   run_.state.limit.hold = run_.state.clock.step + kAdaptEvery;
-  change(shorter_);
+  change(dt);
 }
 
 bool StepControl::retry_smaller() {

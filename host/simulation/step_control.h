@@ -1,6 +1,7 @@
 // How long the next step is, where batches end, and what a failed batch is tried again with.
 #pragma once
 #include <cstdint>
+#include <optional>
 
 #include "simulation/run_context.h"
 
@@ -27,10 +28,10 @@ class StepControl {
   void adapt_when_due();
   /// A scene that nobody meant to cut may run at a step beyond what its elements allow when an edit frees them.
   void limit_to_element_bound();
-  /// Elements are inverted: whether an automatic step is longer than this state stands, so that the batch that led here is not
-  /// to be trusted. `shorten` is then called in the kept state.
-  [[nodiscard]] bool outgrown();
-  void shorten();
+  /// Elements are inverted, or nodes fast: the step to take instead [s] if an automatic one is longer than this state stands,
+  /// so that the batch that led here is not to be trusted. `shorten` is then called in the kept state.
+  [[nodiscard]] std::optional<double> outgrown();
+  void shorten(double dt);
   /// An automatic step may have been overtaken by a fast load: take what follows in smaller steps. False when the step is the
   /// user's, or when smaller steps have not helped.
   [[nodiscard]] bool retry_smaller();
@@ -38,7 +39,6 @@ class StepControl {
  private:
   [[nodiscard]] bool adapts_at(std::int64_t step) const;
   void change(double dt);
-  double shorter_ = 0;  ///< [s] what outgrown() found, for shorten()
   RunContext& run_;
 };
 
