@@ -26,12 +26,12 @@ struct IsochoricNeoHookean {
     const Scalar s = std::fma(-excess, third, Scalar(1));
     const Scalar low_d = low_distance(d.j), squared = root * root, low_power = low_first(low_d);
     const bool is_low = jacobian < low;
-    const Scalar m = scale * (mu * (is_low ? low_power : squared));
+    const Scalar power = mu * (is_low ? low_power : squared), m = scale * power;
     const Scalar p = scale * pressure;
-    const Scalar low_s = (scale * mu) * (low_first_slope(low_d) * (Scalar(3) + std::fma(Scalar(2), d.t, hh)));
-    const Scalar low_difference = low_s - p, high_difference = std::fma(m, s, -p);
+    const Scalar low_difference = std::fma(scale * mu, low_first_slope(low_d) * (Scalar(3) + std::fma(Scalar(2), d.t, hh)), -p);
+    const Scalar high_difference = std::fma(m, s, -p);
     const Scalar difference = is_low ? low_difference : high_difference;
-    const Scalar low_identity = std::fma(-difference, d.t, m - difference);
+    const Scalar low_identity = std::fma(-difference, d.t, std::fma(scale, power, -difference));
     const Scalar identity = std::fma(p, d.t, std::fma(m, std::fma(-s, d.t, one_minus_s), p));
     return combine(d, is_low ? low_identity : identity, m, difference, -difference);
   }

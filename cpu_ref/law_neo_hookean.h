@@ -24,7 +24,7 @@ struct NeoHookean {
     const Scalar p = scale * pressure;
     const Scalar difference = std::fma(scale, ratio, -p);
     const Scalar whole = scale * mu, high_whole = std::fma(s, d.j, s);
-    const Scalar low_identity = std::fma(-difference, d.t, whole - difference),
+    const Scalar low_identity = std::fma(-difference, d.t, std::fma(scale, mu, -difference)),
                  identity = std::fma(p, d.t, std::fma(s, d.q, p));
     return combine(d, is_low ? low_identity : identity, is_low ? whole : high_whole, difference, -difference);
   }

@@ -32,12 +32,12 @@ struct Yeoh {
     const Scalar power = is_low ? low_power : squared, i1 = Scalar(3) + std::fma(Scalar(2), d.t, hh);
     const Scalar x = std::fma(power, i1, Scalar(-3));
     const Scalar slope = std::fma(x, std::fma(third, x, second), first);
-    const Scalar g = scale * (slope * power);
+    const Scalar factor = slope * power, g = scale * factor;
     const Scalar p = scale * pressure;
     const Scalar low_difference = std::fma(scale * slope, low_first_slope(low_d) * i1, -p),
                  high_difference = std::fma(g, s, -p);
     const Scalar difference = is_low ? low_difference : high_difference;
-    const Scalar low_identity = std::fma(-difference, d.t, g - difference);
+    const Scalar low_identity = std::fma(-difference, d.t, std::fma(scale, factor, -difference));
     const Scalar identity = std::fma(p, d.t, std::fma(g, std::fma(-s, d.t, excess * inverse), p));
     return combine(d, is_low ? low_identity : identity, g, difference, -difference);
   }

@@ -23,10 +23,11 @@ static inline mat3 law_stress(deformation d, real scale, law m, real pressure) {
   const real s = fma(-excess, third, 1.0f);
   const real low_d = low_distance(d.j);
   const integer low = jacobian < m.low;
-  const real g = scale * (m.mu * (low ? low_first(low_d) : root * root));
+  const real power = m.mu * (low ? low_first(low_d) : root * root), g = scale * power;
   const real p = scale * pressure;
-  const real low_s = (scale * m.mu) * (low_first_slope(low_d) * (3.0f + fma(2.0f, d.t, hh)));
-  const real difference = low ? low_s - p : fma(g, s, -p);
-  const real identity = low ? fma(-difference, d.t, g - difference) : fma(p, d.t, fma(g, fma(-s, d.t, one_minus_s), p));
+  const real difference =
+      low ? fma(scale * m.mu, low_first_slope(low_d) * (3.0f + fma(2.0f, d.t, hh)), -p) : fma(g, s, -p);
+  const real identity = low ? fma(-difference, d.t, fma(scale, power, -difference))
+                            : fma(p, d.t, fma(g, fma(-s, d.t, one_minus_s), p));
   return combine(d, identity, g, difference, -difference);
 }

@@ -19,6 +19,6 @@ static inline mat3 law_stress(deformation d, real scale, law m, real pressure) {
   const real p = scale * pressure;
   const real difference = fma(scale, ratio, -p);  // s - p
   const real whole = scale * m.mu;  // s J where J is not low
-  const real identity = low ? fma(-difference, d.t, whole - difference) : fma(p, d.t, fma(s, d.q, p));
+  const real identity = low ? fma(-difference, d.t, fma(scale, m.mu, -difference)) : fma(p, d.t, fma(s, d.q, p));
   return combine(d, identity, low ? whole : fma(s, d.j, s), difference, -difference);
 }

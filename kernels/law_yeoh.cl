@@ -24,10 +24,10 @@ static inline mat3 law_stress(deformation d, real scale, law m, real pressure) {
   const real power = low ? low_first(low_d) : squared, i1 = 3.0f + fma(2.0f, d.t, hh);
   const real x = fma(power, i1, -3.0f);
   const real slope = fma(x, fma(m.third, x, m.second), m.first);
-  const real g = scale * (slope * power);
+  const real factor = slope * power, g = scale * factor;
   const real p = scale * pressure;
   const real difference = low ? fma(scale * slope, low_first_slope(low_d) * i1, -p) : fma(g, s, -p);
-  const real identity =
-      low ? fma(-difference, d.t, g - difference) : fma(p, d.t, fma(g, fma(-s, d.t, excess * third), p));
+  const real identity = low ? fma(-difference, d.t, fma(scale, factor, -difference))
+                            : fma(p, d.t, fma(g, fma(-s, d.t, excess * third), p));
   return combine(d, identity, g, difference, -difference);
 }
