@@ -94,6 +94,8 @@ json run_one(std::int64_t number, const SurvivalOptions& options) {
     row["inverted"] = s.inversions().most;
     row["inverted_now"] = s.inversions().last;
     row["added_mass"] = added / mass;
+    row["opened"] = s.state().opened;
+    row["ballast"] = s.ballast().most / mass;
     row["largest"] = std::isfinite(largest) ? json(largest) : json();
     row["pieces"] = pieces_of(s);
     row["edits"] = s.topology_version();

@@ -214,6 +214,19 @@ class Run {
                       "element {} of body '{}'; {} in the last steps",
                       inverted.most, inverted.first_step, inverted.first_time, inverted.element, inverted.body, inverted.last));
     }
+    const BallastReport& ballast = s.ballast();
+    json["opened_edges"] = s.state().opened;
+    if (s.state().opened > 0) {
+      o_.common.note(fmt::format("{} edges were stretched beyond {:.3g} times their length and parted (\"break_stretch\")",
+                                 s.state().opened, s.scene().break_stretch));
+    }
+    json["ballast"] = {{"nodes", ballast.nodes}, {"mass", ballast.mass}, {"most", ballast.most}};
+    if (ballast.most > 0) {
+      o_.common.note(fmt::format(
+          "elements that asked for less than {:.3g} of the first step got inertia instead: at most {:.3g} of the mass, {:.3g} "
+          "on {} nodes at the end",
+          s.scene().least_step, ballast.most / mass, ballast.mass / mass, ballast.nodes));
+    }
     if (!result_.diverged.empty()) json["diverged_step"] = result_.diverged_step;
     print_summary(info, simulated);
     if (o_.profile) json["profile"] = profile();

@@ -13,7 +13,7 @@
 namespace pliant {
 
 BodyCut::BodyCut(const Body& body, std::shared_ptr<const BodyMesh> uncut)
-    : uncut_(std::move(uncut)), solid_(*uncut_), topology_(cut_mesh(*uncut_, body.name)) {
+    : uncut_(std::move(uncut)), solid_(*uncut_), topology_(cut_mesh(*uncut_, body.name)), mesh_edges_(topology_.mesh()) {
   make_surface();
   const CutMesh& mesh = topology_.mesh();
   std::size_t count = 0;

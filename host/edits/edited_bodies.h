@@ -12,6 +12,7 @@
 #include "cutting/cut_body.h"
 #include "cutting/surface/cut_surface.h"
 #include "cutting/topology/cut_topology.h"
+#include "cutting/topology/mesh_edges.h"
 #include "edits/helper_thread.h"
 #include "model/body_mesh.h"
 #include "simulation/run_state.h"
@@ -42,6 +43,7 @@ class BodyCut {
   [[nodiscard]] const CutSurface* surface() const { return surface_.get(); }
   [[nodiscard]] const BodyMesh& uncut() const { return *uncut_; }
   [[nodiscard]] RestEdges& rest_edges() { return *rest_edges_; }
+  [[nodiscard]] const MeshEdges& mesh_edges() const { return mesh_edges_; }
 
  private:
   void make_surface();
@@ -51,6 +53,7 @@ class BodyCut {
   std::unique_ptr<CutSurface> surface_;  ///< of a lattice
   std::future<void> dividing_;           ///< the helper's work on it
   std::unique_ptr<RestEdges> rest_edges_;
+  MeshEdges mesh_edges_;
   double edge_ = 0;
 };
 

@@ -1,8 +1,10 @@
 #include "edits/model_swap.h"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
+#include "model/ballast.h"
 #include "model/boundary_conditions.h"
 #include "schedule/build_program.h"
 #include "schedule/surface_program.h"
@@ -41,6 +43,7 @@ void ModelSwap::run(const Scene& scene, std::vector<NodeOrigins> origins, const 
   origins_ = std::move(origins);
   const std::vector<const BodyMesh*> solids = bodies_.solids();
   model_ = std::make_shared<Model>(build_elements(scene, solids, old_model_.get()));
+  ballast_ = carried_ballast();
   kept_ = keeps_surface();
   // A surface takes longest to make: it comes last unless loads ask for it.
   const bool first = needs_surface(scene);
@@ -60,13 +63,32 @@ void ModelSwap::run(const Scene& scene, std::vector<NodeOrigins> origins, const 
     throw;
   }
   upload_coupling(run_);
+  run_.state.ballast = std::move(ballast_);
   run_.state.kept.reset();  // copies of the old model's buffers
   if (!run_.state.forces.empty()) loads_.upload();
   report_.upload += clock_.lap();
 }
 
+std::vector<NodeInertia> ModelSwap::carried_ballast() const {
+  std::vector<NodeInertia> out;
+  if (old_model_->ballast.empty()) return out;
+  std::map<std::int32_t, const Ballast*> before;
+  for (const Ballast& b : old_model_->ballast) before[b.slot] = &b;
+  for (std::size_t b = 0; b < v_.size(); ++b) {
+    const std::vector<std::int32_t>&slots = model_->bodies[b].slot, &old_slots = old_model_->bodies[b].slot;
+    for (std::size_t n = 0; n < slots.size(); ++n) {
+      const auto found = before.find(old_slots[origins_[b].of(n)]);
+      if (found == before.end()) continue;
+      const Ballast& had = *found->second;
+      out.push_back({slots[n], had.inertia * model_->mass[static_cast<std::size_t>(slots[n])] / had.mass});
+    }
+  }
+  std::sort(out.begin(), out.end(), [](const NodeInertia& a, const NodeInertia& b) { return a.slot < b.slot; });
+  return out;
+}
+
 void ModelSwap::load_steps(const Scene& scene) {
-  add_boundary_conditions(scene, *model_);
+  set_ballast(scene, *model_, ballast_);
   Program program = build_program(*model_, {scene.integrator, run_.settings.batch_steps});
   Buffer &u = program.at(program.find("node_u")), &w = program.at(program.find("node_w"));
   new_u_ = u.reals;
@@ -97,7 +119,8 @@ void ModelSwap::carry_motion() {
     std::vector<Vec3d> velocity(slots.size());
     for (std::size_t n = 0; n < velocity.size(); ++n) velocity[n] = v_[b][origins.of(n)];
     for (const FluxMass& f : origins.flux) {
-      const double share = f.mass / model_->own_mass(static_cast<std::size_t>(slots[f.node]));
+      // own_mass is a difference: of a node with nearly nothing, mostly rounding.
+      const double share = std::min(1.0, f.mass / model_->own_mass(static_cast<std::size_t>(slots[f.node])));
       for (std::size_t c = 0; c < 3; ++c) velocity[f.node][c] += share * (v_[b][f.from][c] - v_[b][origins.of(f.node)][c]);
     }
     for (std::size_t n = 0; n < slots.size(); ++n) {

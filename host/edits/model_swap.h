@@ -38,6 +38,8 @@ class ModelSwap {
   [[nodiscard]] bool keeps_surface() const;
   /// Wait for the surfaces, and put them into the model.
   void take_surfaces(const std::vector<const BodyMesh*>& solids, const std::function<void()>& ready);
+  /// What the nodes had of ballast, shared among their copies like their masses.
+  [[nodiscard]] std::vector<NodeInertia> carried_ballast() const;
   void load_steps(const Scene& scene);
   void load_surface();
   void carry_motion();
@@ -53,6 +55,7 @@ class ModelSwap {
   std::vector<std::vector<Vec3d>> v_;  ///< [bodies][nodes before the edit]
   std::vector<NodeOrigins> origins_;
   std::shared_ptr<Model> model_;
+  std::vector<NodeInertia> ballast_;
   bool kept_ = false;                        ///< the surface of the old model is in the new one
   const SurfaceChanges* changes_ = nullptr;  ///< where it differs from what was kept
   std::vector<double> new_u_, new_w_;

@@ -80,6 +80,7 @@ void TopologyEdits::start() {
 
 void TopologyEdits::update() {
   move_scene_blades();
+  if (run_.phase() == 0) open_overstretched();
   make_tears();
   move_regions();
 }

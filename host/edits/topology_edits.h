@@ -21,7 +21,8 @@ class TopologyEdits {
   /// At the start of a simulation: fill bodies that blades of the scene will cut or that may tear, and settle when both are
   /// looked at. Throws Error (bad_input) for scenes that cannot be edited so.
   void start();
-  /// Before a batch that begins on the grid: move the scene's blades, break faces, let regions follow the tool.
+  /// Before a batch that begins on the grid: move the scene's blades, part what is stretched too far, break faces, let regions
+  /// follow the tool.
   void update();
 
   /// Described at Simulation's functions of the same names.
@@ -49,9 +50,10 @@ class TopologyEdits {
   [[nodiscard]] bool reached(std::size_t body, const std::vector<Vec3d>& x, const std::vector<BladeMove>& moves,
                              std::span<const SweepTriangle> triangles) const;
   [[nodiscard]] const BladeTrace* front(const BladeMove& move, std::size_t body) const;
-  // cut_edit.cpp, tear_edit.cpp, region_edit.cpp
+  // cut_edit.cpp, overstretch_edit.cpp, tear_edit.cpp, region_edit.cpp
   void make_cut(std::vector<CutEdges> edges, std::vector<double> u, CutReport& report);
   void make_tears();
+  void open_overstretched();
   void move_regions();
 
   RunContext& run_;

@@ -178,6 +178,8 @@ bool needs_surface(const Scene& scene) {
 
 void add_boundary_conditions(const Scene& scene, Model& model) {
   model.curves.assign(1, Curve{});  // curve 0: constant 1
+  model.forces.clear();
+  model.pressures.clear();
   Constraints constraints(model.slots);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     try {

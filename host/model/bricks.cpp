@@ -113,7 +113,7 @@ std::vector<std::int32_t> place_in_bricks(const BodyElements& solid, std::int32_
       in_brick[c] = false;
       continue;
     }
-    model.brick_fill[place] = cell.fill;
+    model.brick_fill[place] = model.stiff_fill(cell.fill);
     mark_row(place, 0, model);
     model.brick_cell[place] = static_cast<std::int64_t>(c);
   }

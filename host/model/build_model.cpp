@@ -84,13 +84,12 @@ std::vector<std::int32_t> element_order(const std::vector<std::array<std::int32_
   return order;
 }
 
-/// What a cell or one of its copies holds less than least_inertia of a full one, it gets as inertia: however thin, its nodes
-/// then have a stiffness that grows no faster with its deformation than that of a full cell would. `full`: mass of a full one
-/// [kg].
+/// What a cell or one of its copies holds less than least_fill of a full one, it gets as inertia, and it is as stiff as one
+/// that holds that much: however thin, it keeps its shape and vibrates like any other. `full`: mass of a full one [kg].
 template <std::size_t N>
 void add_inertia(Model& model, const std::array<std::int32_t, N>& slots, double fill, double full) {
-  if (model.added.empty() || fill >= model.least_inertia || fill <= 0) return;
-  const double more = (model.least_inertia - fill) * full / static_cast<double>(N);
+  if (model.added.empty() || fill >= model.least_fill || fill <= 0) return;
+  const double more = (model.least_fill - fill) * full / static_cast<double>(N);
   for (const std::int32_t n : slots) {
     model.mass[n] += more;
     model.added[n] += more;
@@ -119,7 +118,7 @@ void add_tets(const Body& body, std::int32_t b, const NodeNumbering& draft, Mode
       if (!draft.solid().operational(static_cast<std::size_t>(e))) continue;
       batch.nodes.push_back(slots);
       batch.gradients.push_back(geometry.gradients);
-      batch.volume.push_back(geometry.volume * draft.solid().fill[e]);
+      batch.volume.push_back(geometry.volume * model.stiff_fill(draft.solid().fill[e]));
       batch.id.push_back(e);
       note_bound(model, tet_frequency(geometry, batch.material), geometry.volume,
                  fmt::format("{}: tetrahedron {}", body.name, e));
@@ -183,7 +182,7 @@ void add_hexes(const Body& body, std::int32_t b, const NodeNumbering& draft, Mod
       add_inertia(model, slots, solid.fill[e], batch.material.density * volume);
       if (draft.in_brick[e] || !solid.operational(e)) continue;
       batch.nodes.push_back(slots);
-      batch.fill.push_back(solid.fill[e]);
+      batch.fill.push_back(model.stiff_fill(solid.fill[e]));
       batch.id.push_back(static_cast<std::int64_t>(e));
     }
     if (!batch.nodes.empty()) model.hexes.push_back(std::move(batch));
@@ -316,13 +315,12 @@ Model build_elements(const Scene& scene, std::span<const BodyMesh* const> solids
   Model model;
   model.recovers = scene.inverted == Inverted::recover;
   std::vector<NodeNumbering> drafts;
+  const bool thin_cells = scene.least_fill > 0 && (scene.cuttable || !scene.blades.empty());
+  if (thin_cells) model.least_fill = scene.least_fill;
   place_bodies(scene, solids, previous, drafts, model);
   model.rest.resize(model.slots);
   model.mass.resize(model.slots);
-  if (scene.least_inertia > 0 && (scene.cuttable || !scene.blades.empty())) {
-    model.least_inertia = scene.least_inertia;
-    model.added.resize(model.slots);
-  }
+  if (thin_cells) model.added.resize(model.slots);
   model.damping.resize(model.slots);
   model.velocity.resize(model.slots);
   model.bodies.resize(scene.bodies.size());

@@ -134,6 +134,17 @@ struct TrianglePressure {
   std::int32_t curve = 0;
 };
 
+/// Inertia of a node beside its mass [kg].
+struct NodeInertia {
+  std::int32_t slot = 0;
+  double inertia = 0;
+};
+
+/// Such inertia, and what Model::mass and added were without it.
+struct Ballast : NodeInertia {
+  double mass = 0, added = 0;
+};
+
 struct Model {
   std::vector<ModelBody> bodies;
   bool recovers = false;                     ///< Inverted::recover
@@ -144,13 +155,15 @@ struct Model {
   std::vector<std::int64_t> brick_cell;      ///< [bricks][256] number of the cell in its body, -1: none
   std::vector<std::int32_t> brick_body;      ///< [bricks]
   std::int32_t list_base = 0;                ///< first slot after the bricks
-  std::int32_t list_end = 0;    ///< first slot after the nodes of list elements, a multiple of 16; then shape matching
-  std::int32_t slots = 0;       ///< all slots, a multiple of 16
-  std::vector<Vec3d> rest;      ///< [slots]
-  std::vector<double> mass;     ///< [slots] lumped [kg], what accelerates; 0: no node
-  std::vector<double> added;    ///< [slots] share of `mass` that is inertia without weight (Scene::least_inertia); empty: none
-  std::vector<double> damping;  ///< [slots] c [1/s]
-  std::vector<Vec3d> velocity;  ///< [slots] initial [m/s]
+  std::int32_t list_end = 0;  ///< first slot after the nodes of list elements, a multiple of 16; then shape matching
+  std::int32_t slots = 0;     ///< all slots, a multiple of 16
+  std::vector<Vec3d> rest;    ///< [slots]
+  std::vector<double> mass;   ///< [slots] lumped [kg], what accelerates; 0: no node
+  std::vector<double>
+      added;  ///< [slots] share of `mass` that is inertia without weight (Scene::least_fill, ballast); empty: none
+  std::vector<Ballast> ballast;  ///< counted in `mass` and `added` (ballast.h), ascending slots
+  std::vector<double> damping;   ///< [slots] c [1/s]
+  std::vector<Vec3d> velocity;   ///< [slots] initial [m/s]
   std::vector<TetBatch> tets;
   std::vector<HexBatch> hexes;
   std::vector<BrickBatch> brick_batches;
@@ -163,7 +176,9 @@ struct Model {
   double element_bound = 0;                 ///< 2 / max element frequency [s], safe for small strain
   std::string bound_element;                ///< the element that gives it
   double shortest = 0;                      ///< cube root of the smallest element's volume [m]
-  double least_inertia = 0;                 ///< of a cell, as a share of a full one's mass
+  double least_fill = 0;                    ///< of a cell, as a share of a full one's mass
+  /// The share of a full cell that a cell of this fill is as stiff as.
+  [[nodiscard]] double stiff_fill(double fill) const { return fill > 0 && fill < least_fill ? least_fill : fill; }
   /// Mass without added inertia [kg].
   [[nodiscard]] double own_mass(std::size_t slot) const { return mass[slot] - (added.empty() ? 0 : added[slot]); }
   [[nodiscard]] std::int64_t nodes() const;  ///< real nodes

@@ -21,8 +21,8 @@ std::map<std::string, List> make_keys() {
   const List curve{"curve", "start", "duration", "table"};
   return {
       {"scene",
-       {"format", "name", "gravity", "dt", "safety", "duration", "integrator", "inverted", "least_inertia", "relaxation",
-        "solver", "tool", "blades", "view", "bodies"}},
+       {"format", "name", "break_stretch", "gravity", "dt", "safety", "duration", "integrator", "inverted", "least_fill",
+        "least_step", "relaxation", "solver", "tool", "blades", "view", "bodies"}},
       {"body",
        {"name", "surface", "mesh", "scale", "translate", "lattice", "element", "material", "model", "inclusions", "fixed",
         "prescribed", "forces", "pressures", "velocity", "angular_velocity"}},

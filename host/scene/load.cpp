@@ -125,10 +125,20 @@ Scene read_document(const nlohmann::json& document, const fs::path& file) {
   if (top.has("duration")) scene.duration = top.at("duration").positive();
   if (top.has("integrator")) scene.integrator = top.at("integrator").word(integrator_words());
   if (top.has("inverted")) scene.inverted = top.at("inverted").word(inverted_words());
-  if (top.has("least_inertia")) {
-    const Reader least = top.at("least_inertia");
-    scene.least_inertia = least.number();
-    if (!(scene.least_inertia >= 0 && scene.least_inertia <= 1)) least.fail("a number with 0 <= least_inertia <= 1");
+  if (top.has("least_fill")) {
+    const Reader least = top.at("least_fill");
+    scene.least_fill = least.number();
+    if (!(scene.least_fill >= 0 && scene.least_fill <= 1)) least.fail("a number with 0 <= least_fill <= 1");
+  }
+  if (top.has("break_stretch")) {
+    const Reader stretch = top.at("break_stretch");
+    scene.break_stretch = stretch.number();
+    if (scene.break_stretch != 0 && !(scene.break_stretch > 1)) stretch.fail("a number above 1, or 0");
+  }
+  if (top.has("least_step")) {
+    const Reader least = top.at("least_step");
+    scene.least_step = least.number();
+    if (!(scene.least_step >= 0 && scene.least_step <= 1)) least.fail("a number with 0 <= least_step <= 1");
   }
   read_relaxation(top, scene.relaxation);
   read_solver(top, scene);

@@ -157,9 +157,11 @@ struct Scene {
   Tool tool;
   std::vector<Blade> blades;
   SceneView view;
-  double least_inertia = 0.05;  ///< of a cell where blades cut, as a share of a full cell's mass; 0: what it holds
-  bool cuttable = false;        ///< set in code: something may be cut though there are no blades
-  bool interactive = false;     ///< set in code: the Model reserves a force on every node that moves a vertex of the surface
+  double break_stretch = 4;  ///< of an edge, beyond which it parts in a scene that is cut; 0: none does
+  double least_step = 0.1;   ///< floor of an automatic step, as a share of the first; 0: none
+  double least_fill = 0.05;  ///< of a cell where blades cut, as a share of a full cell's mass; 0: what it holds
+  bool cuttable = false;     ///< set in code: something may be cut though there are no blades
+  bool interactive = false;  ///< set in code: the Model reserves a force on every node that moves a vertex of the surface
   std::vector<Body> bodies;
 };
 

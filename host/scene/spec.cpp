@@ -167,7 +167,9 @@ Scene scene_of(const SceneSpec& spec) {
   scene.dt = spec.dt;
   scene.safety = spec.safety;
   scene.integrator = word(integrator_words(), spec.integrator, "/integrator");
-  scene.least_inertia = spec.least_inertia;
+  scene.least_fill = spec.least_fill;
+  scene.least_step = spec.least_step;
+  scene.break_stretch = spec.break_stretch;
   scene.inverted = word(inverted_words(), spec.inverted, "/inverted");
   if (spec.relaxation) scene.relaxation = {true, spec.relaxation->tolerance, spec.relaxation->max_steps};
   scene.tool.path = spec.tool_path;

@@ -181,7 +181,9 @@ Json document_of(const Scene& scene) {
   top["safety"] = scene.safety;
   top["duration"] = scene.duration;
   top["integrator"] = word_of(integrator_words(), scene.integrator);
-  top["least_inertia"] = scene.least_inertia;
+  top["least_fill"] = scene.least_fill;
+  top["least_step"] = scene.least_step;
+  top["break_stretch"] = scene.break_stretch;
   top["inverted"] = word_of(inverted_words(), scene.inverted);
   if (scene.relaxation.enabled) {
     top["relaxation"] = {{"tolerance", scene.relaxation.tolerance}, {"max_steps", scene.relaxation.max_steps}};

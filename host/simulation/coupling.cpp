@@ -151,6 +151,16 @@ double coupled_step(const Model& model, double elements_alone) {
   return std::min(std::sqrt((4 - k.per_step) / omega2), held_goals_step(model, elements_alone));
 }
 
+double elements_step(const Model& model, double dt) {
+  double low = dt, high = 2 * dt;
+  for (int i = 0; i < 60 && coupled_step(model, high) < dt; ++i) high *= 2;  // no elements are stiff enough for some springs
+  for (int i = 0; i < 40; ++i) {
+    const double middle = 0.5 * (low + high);
+    (coupled_step(model, middle) < dt ? low : high) = middle;
+  }
+  return high;
+}
+
 double held_goals_step(const Model& model, double elements_alone) {
   double step = std::numeric_limits<double>::infinity();
   for (const FlsmBatch& b : model.flsm) {

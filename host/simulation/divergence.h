@@ -24,8 +24,16 @@ struct Inversions {
   std::int64_t last = 0;        ///< in the last batch
   std::int64_t first_step = 0;  ///< the first batch with some began with this step
   double first_time = 0;        ///< [s]
+  std::int64_t calmed = 0;      ///< elements that lost relative motion (calm.h)
   std::string body;             ///< of one of the first
   std::int64_t element = -1;    ///< its number in the body
+};
+
+/// Inertia given to nodes whose elements asked for a shorter step than Scene::least_step. Counted likewise.
+struct BallastReport {
+  std::int64_t nodes = 0;  ///< now
+  double mass = 0;         ///< now [kg]
+  double most = 0;         ///< at any time [kg]
 };
 
 }  // namespace pliant

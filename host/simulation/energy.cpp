@@ -4,8 +4,8 @@
 #include <cmath>
 #include <map>
 
-#include "layout.h"
 #include "material/response.h"
+#include "model/each_hex.h"
 
 namespace pliant {
 namespace {
@@ -26,7 +26,7 @@ double density(const Matrix3d& h, const Material& m) {
 
 class Sum {
  public:
-  Sum(const Model& model, const std::vector<Vec3d>& u) : model_(model), u_(u) {}
+  explicit Sum(const std::vector<Vec3d>& u) : u_(u) {}
 
   void tets(const TetBatch& batch) {
     std::map<std::int32_t, std::array<double, 2>> nodal;  // a quarter of the volumes, rest and deformed
@@ -54,46 +54,21 @@ class Sum {
     }
   }
 
-  void hexes(const HexBatch& batch) {
-    for (std::size_t e = 0; e < batch.nodes.size(); ++e) {
-      const std::vector<double>& record = batch.uniform ? batch.records[0] : batch.records[e];
-      if (batch.full) {
-        for (int g = 0; g < 8; ++g)
-          point(batch.nodes[e], record.data() + 25 * g, batch.fill[e] * record[25 * g + 24], batch.material);
-      } else {
-        one_point(batch.nodes[e], record, batch.fill[e], batch.material);
-      }
+  void hex(const HexView& view) {
+    if (!view.full) {
+      point(view.slots, view.record.data(), view.fill * view.record[56], view.material);
+      const Eigen::Map<const Eigen::Matrix<double, 4, 8, Eigen::RowMajor>> gamma(view.record.data() + 24);
+      out.hourglass += view.fill * view.record[57] / 2 * (gamma * gather(view.slots).transpose()).squaredNorm();
+      return;
     }
-  }
-
-  void bricks(const BrickBatch& batch) {
-    const double d = batch.spacing;
-    std::array<Vec3d, 8> cube;
-    for (int a = 0; a < 8; ++a) cube[a] = {d * (a & 1), d * (a >> 1 & 1), d * (a >> 2 & 1)};
-    const std::vector<double> record = hex8_record(cube, batch.material, "lattice cell");
-    for (std::int32_t slot = batch.first * PLIANT_BRICK_NODES; slot < (batch.first + batch.count) * PLIANT_BRICK_NODES;
-         ++slot) {
-      if (model_.brick_fill[slot] > 0) one_point(cell_corners(slot), record, model_.brick_fill[slot], batch.material);
-    }
+    for (int g = 0; g < 8; ++g)
+      point(view.slots, view.record.data() + 25 * g, view.fill * view.record[25 * g + 24], view.material);
   }
 
   Energies out;
 
  private:
   [[nodiscard]] Vector3d displacement(std::int32_t slot) const { return vector_of(u_[slot]); }
-
-  /// Slots of the corners of the brick cell whose low corner is `slot`.
-  [[nodiscard]] std::array<std::int32_t, 8> cell_corners(std::int32_t slot) const {
-    const std::int32_t brick = slot / PLIANT_BRICK_NODES, place = slot % PLIANT_BRICK_NODES;
-    std::array<std::int32_t, 8> corners{};
-    for (int a = 0; a < 8; ++a) {
-      const int x = place % 16 + (a & 1), y = place / 16 % 4 + (a >> 1 & 1), z = place / 64 + (a >> 2 & 1);
-      const int side = (x == 16 ? 1 : 0) + (y == 4 ? 2 : 0) + (z == 4 ? 4 : 0);
-      const std::int32_t owner = model_.brick_neighbor[PLIANT_BRICK_NEIGHBORS * brick + side];
-      corners[a] = owner * PLIANT_BRICK_NODES + x % 16 + 16 * (y % 4) + 64 * (z % 4);
-    }
-    return corners;
-  }
 
   [[nodiscard]] Displacements8 gather(const std::array<std::int32_t, 8>& nodes) const {
     Displacements8 u;
@@ -107,24 +82,15 @@ class Sum {
     out.strain += weight * density(h, material);
   }
 
-  void one_point(const std::array<std::int32_t, 8>& nodes, const std::vector<double>& record, double fill,
-                 const Material& material) {
-    point(nodes, record.data(), fill * record[56], material);
-    const Eigen::Map<const Eigen::Matrix<double, 4, 8, Eigen::RowMajor>> gamma(record.data() + 24);
-    out.hourglass += fill * record[57] / 2 * (gamma * gather(nodes).transpose()).squaredNorm();
-  }
-
-  const Model& model_;
   const std::vector<Vec3d>& u_;
 };
 
 }  // namespace
 
 Energies energies(const Model& model, const std::vector<Vec3d>& u, const std::vector<Vec3d>& v, const DeadLoads& loads) {
-  Sum sum(model, u);
+  Sum sum(u);
   for (const TetBatch& batch : model.tets) sum.tets(batch);
-  for (const HexBatch& batch : model.hexes) sum.hexes(batch);
-  for (const BrickBatch& batch : model.brick_batches) sum.bricks(batch);
+  for_each_hex(model, [&](const HexView& view) { sum.hex(view); });
   Energies out = sum.out;
   const Vector3d gravity = vector_of(loads.gravity);
   for (std::size_t s = 0; s < model.mass.size(); ++s) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cutting/blade/blade_trace.h"
+#include "model/model.h"
 
 namespace pliant {
 
@@ -93,7 +94,9 @@ struct RunState {
   BladeState blades;
   PendingEdits pending;
   std::vector<HostForce> forces;
+  std::vector<NodeInertia> ballast;   ///< what elements got so that they stand the step (model/ballast.h)
   std::optional<Vec3d> tool;          ///< where the host put the tool [m]; nothing: on its path
+  std::int64_t opened = 0;            ///< edges that parted because they were stretched too far
   std::int64_t topology_version = 0;  ///< edits that changed elements
 };
 
@@ -151,10 +154,14 @@ void visit(V& v, HostForce& s) {
   v("body", s.body), v("node", s.node), v("force", s.force);
 }
 template <class V>
+void visit(V& v, NodeInertia& s) {
+  v("slot", s.slot), v("inertia", s.inertia);
+}
+template <class V>
 void visit(V& v, RunState& s) {
   v("clock", s.clock), v("limit", s.limit), v("relaxation", s.relaxation), v("kept", s.kept), v("cuts", s.cuts);
   v("tears", s.tears), v("seeds", s.seeds), v("blades", s.blades), v("pending", s.pending), v("forces", s.forces);
-  v("tool", s.tool), v("topology_version", s.topology_version);
+  v("ballast", s.ballast), v("tool", s.tool), v("opened", s.opened), v("topology_version", s.topology_version);
 }
 
 /// Its bytes, the same on every machine: names, then values of eight little-endian bytes.

@@ -8,10 +8,12 @@
 #include <utility>
 
 #include "layout.h"
+#include "model/ballast.h"
 #include "pliant/error.h"
 #include "program/hash.h"
 #include "schedule/build_program.h"
 #include "schedule/surface_program.h"
+#include "simulation/calm.h"
 #include "simulation/coupling.h"
 #include "simulation/relaxation.h"
 
@@ -19,6 +21,9 @@ namespace pliant {
 
 /// An increment of a step that calls for a look at its length, as a share of the shortest element.
 constexpr double kFastIncrement = 0.1;
+/// Largest increment of an element's nodes against each other, as a share of its edge. Steps below half the first take less:
+/// the limit is then that of the first step, a velocity of about half that of sound.
+constexpr double kFastest = 0.25;
 
 std::string Divergence::message() const {
   return fmt::format(
@@ -108,6 +113,10 @@ void Simulation::end_batch(std::int32_t steps) {
   state_.clock.step += steps;
   look_for_fault(start);
   if (!divergence_ && scene_.relaxation.enabled && step() % kRelaxEvery == 0) relax(run_);
+  ballast_.nodes = static_cast<std::int64_t>(state_.ballast.size());
+  ballast_.mass = 0;
+  for (const NodeInertia& b : state_.ballast) ballast_.mass += b.inertia;
+  ballast_.most = std::max(ballast_.most, ballast_.mass);
 }
 
 void Simulation::keep_state() {
@@ -138,17 +147,21 @@ void Simulation::look_for_fault(std::int64_t batch_start) {
     if (inverted > 0) count_inversions(batch_start, inverted, lowest);
     // Judged by the state alone, and only where states are kept: a run may be cut into pieces anywhere else.
     if (!settings_.automatic || !state_.kept || !step_.on_grid(step())) return;
-    // Where tissue tears, splinters fly off, and the estimate of their step is no better.
-    const bool fast = !settings_.tears && loaded_.largest_increment() > kFastIncrement * model().shortest;
-    if (!fast && (inverted == 0 || !inverted_now())) return;
-    const std::optional<double> shorter = step_.outgrown();
-    if (!shorter) return;
+    const double largest = loaded_.largest_increment() / model().shortest;
+    if (largest > kFastIncrement * fast_share()) inversions_.calmed += calm(run_, kFastest * fast_share());
+    if (largest <= kFastIncrement && (inverted == 0 || !inverted_now())) return;
+    const std::optional<StepControl::Outgrown> outgrown = step_.outgrown();
+    if (!outgrown) return;
     return_to_kept();
-    step_.shorten(*shorter);
+    step_.shorten(*outgrown);
+    inversions_.calmed += calm(run_, kFastest * fast_share() * state_.limit.dt_backoff);
     return;
   }
   return_to_kept();
-  if (step_.retry_smaller()) return;
+  if (step_.retry_smaller()) {
+    inversions_.calmed += calm(run_, kFastest * fast_share() * state_.limit.dt_backoff);
+    return;
+  }
   const FaultLocation found = find_fault(model(), element);
   divergence_ = Divergence{batch_start + fault,
                            state_.clock.time_at(batch_start + fault - 1),
@@ -159,6 +172,8 @@ void Simulation::look_for_fault(std::int64_t batch_start) {
                            stable_dt(),
                            step()};
 }
+
+double Simulation::fast_share() const { return std::min(1.0, 2 * dt() / state_.limit.dt_ceiling); }
 
 void Simulation::return_to_kept() {
   loaded_.return_to_kept_state();
@@ -251,7 +266,14 @@ void Simulation::restore(const Snapshot& snapshot) {
   // Everything is made and checked aside.
   std::unique_ptr<EditedBodies> bodies = edits_.bodies_at(next);
   std::shared_ptr<const Model> model = loaded_.shared_model();
-  if (bodies != nullptr) model = std::make_shared<const Model>(build_model(edits_.scene_at(next), bodies->solids()));
+  const Scene scene = edits_.scene_at(next);
+  if (bodies != nullptr) model = std::make_shared<const Model>(build_model(scene, bodies->solids()));
+  check_ballast(next, *model);
+  if (!next.ballast.empty() || !model->ballast.empty()) {
+    const auto heavier = std::make_shared<Model>(*model);
+    set_ballast(scene, *heavier, next.ballast);
+    model = heavier;
+  }
   Program program = build_program(*model, {scene_.integrator, settings_.batch_steps});
   Program surface = pliant::surface_program(model->surface, program);
   const std::uint64_t hash = pliant::model_hash(scene_, settings_, *model, program, surface);

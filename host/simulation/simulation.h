@@ -41,6 +41,7 @@ class Simulation {
 
   [[nodiscard]] const std::optional<Divergence>& divergence() const { return divergence_; }
   [[nodiscard]] const Inversions& inversions() const { return inversions_; }
+  [[nodiscard]] const BallastReport& ballast() const { return ballast_; }
   [[nodiscard]] bool at_equilibrium() const { return state_.relaxation.equilibrium; }
   /// |R - F| over the largest of external and reaction force, as of the last change of dynamic relaxation.
   [[nodiscard]] double residual() const { return state_.relaxation.residual; }
@@ -118,6 +119,8 @@ class Simulation {
   void keep_state();
   void look_for_fault(std::int64_t batch_start);
   void return_to_kept();
+  /// The part of the limits of increments that a step of this length has.
+  [[nodiscard]] double fast_share() const;
   [[nodiscard]] bool inverted_now();
   void count_inversions(std::int64_t batch_start, std::int64_t count, std::int32_t element);
 
@@ -130,6 +133,7 @@ class Simulation {
   HostLoads loads_{run_};
   TopologyEdits edits_{run_, step_, loads_};
   Inversions inversions_;
+  BallastReport ballast_;
   std::optional<Divergence> divergence_;  ///< a run that has diverged has no next step
 };
 

@@ -155,6 +155,16 @@ void check_state(const RunState& state, const Model& model, const Scene& scene) 
   need(state.topology_version >= 0, "its number of edits");
 }
 
+void check_ballast(const RunState& state, const Model& model) {
+  std::int32_t last = -1;
+  for (const NodeInertia& b : state.ballast) {
+    const bool good = b.slot > last && b.slot < model.slots && model.mass[static_cast<std::size_t>(b.slot)] > 0 &&
+                      b.inertia > 0 && std::isfinite(b.inertia);
+    if (!good) throw Error(ErrorCode::bad_input, "its run state is damaged: the inertia given to a node");
+    last = b.slot;
+  }
+}
+
 void check_buffers(const Snapshot& snapshot, const Program& program) {
   for (const Buffer& buffer : program.buffers) {
     if (buffer.role != BufferRole::state) continue;

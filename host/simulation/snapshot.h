@@ -35,6 +35,9 @@ std::uint64_t model_hash(const Scene& scene, const RunSettings& settings, const 
 /// is not positive, vectors of another length, forces on nodes that do not exist, points that are not finite.
 void check_state(const RunState& state, const Model& model, const Scene& scene);
 
+/// Throws Error (bad_input) for ballast (RunState) that no node of this model can have.
+void check_ballast(const RunState& state, const Model& model);
+
 /// Throws Error (bad_input) that says what a snapshot holds of another size than `program` wants.
 void check_buffers(const Snapshot& snapshot, const Program& program);
 /// Write the state buffers. check_buffers() passed for the loaded program.

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <vector>
 
+#include "model/ballast.h"
 #include "pliant/error.h"
+#include "simulation/ballast_swap.h"
 #include "simulation/coupling.h"
 #include "simulation/stable_step.h"
 
@@ -19,8 +21,16 @@ constexpr std::int64_t kFirstAdapts[] = {64, 128};
 constexpr int kAdaptIterations = 20;
 /// A diverged batch is tried again with a smaller automatic step until that is this share of what the estimate allows.
 constexpr double kLeastBackoff = 0.1;
-constexpr double kLeastStep = 0.02;  ///< share of the first step below which inverted elements shorten it no more
-constexpr double kFrame = 1.0 / 60;  ///< automatic step of a scene without finite elements [s]
+constexpr double kBackoff = 0.7;
+constexpr double kMostBallast = 0.01;  ///< of the mass
+constexpr double kMostGrowth = 2;      ///< of the step from one look to the next
+constexpr double kFrame = 1.0 / 60;    ///< automatic step of a scene without finite elements [s]
+
+double total(const std::vector<NodeInertia>& ballast) {
+  double sum = 0;
+  for (const NodeInertia& b : ballast) sum += b.inertia;
+  return sum;
+}
 
 }  // namespace
 
@@ -81,10 +91,57 @@ void StepControl::adapt_when_due() {
 void StepControl::adapt() {
   if (!run_.settings.automatic) return;
   const StepLimit& limit = run_.state.limit;
+  Allowed now = allowed();
+  if (now.dt < least_step() || !run_.state.ballast.empty()) {
+    if (now.stiffness.empty()) now.stiffness = nodal_stiffness(run_.model(), run_.loaded.u());
+    now.dt = balance(now.dt, now.stiffness);
+  }
   const double dt = run_.state.clock.dt, ceiling = limit.dt_ceiling;
-  const double allowed = std::min(ceiling, limit.dt_backoff * run_.scene.safety * estimate(kAdaptIterations));
   const bool may_grow = run_.state.clock.step >= limit.hold;
-  if (allowed < dt || (may_grow && (allowed > 1.1 * dt || (allowed == ceiling && dt < ceiling)))) change(allowed);
+  if (may_grow) run_.state.limit.dt_backoff = std::min(1.0, limit.dt_backoff / kBackoff);
+  const double next = std::min({ceiling, now.dt, kMostGrowth * dt});
+  if (next < dt || (may_grow && (next > 1.1 * dt || (next == ceiling && dt < ceiling)))) change(next);
+}
+
+double StepControl::least_step() const {
+  const StepLimit& limit = run_.state.limit;
+  return run_.scene.least_step * limit.dt_ceiling;
+}
+
+StepControl::Allowed StepControl::allowed() {
+  StepLimit& limit = run_.state.limit;
+  const double share = limit.dt_backoff * run_.scene.safety;
+  Allowed out{share * estimate(kAdaptIterations), {}};
+  if (out.dt >= run_.state.clock.dt) return out;
+  // The estimate takes differences of forces, which far from the place at rest are mostly rounding. The bound by elements is
+  // coarser, but in double, and certain.
+  out.stiffness = nodal_stiffness(run_.model(), run_.loaded.u());
+  const double bound = stiffness_bound(run_.model(), out.stiffness);
+  if (bound > 0) limit.stable_dt = std::max(limit.stable_dt, coupled_step(run_.model(), bound));
+  out.dt = share * limit.stable_dt;
+  return out;
+}
+
+double StepControl::balance(double wanted, const std::vector<double>& stiffness) {
+  const Model& model = run_.model();
+  const double share = run_.state.limit.dt_backoff * run_.scene.safety;
+  const auto ballast_for = [&](double dt) { return wanted_ballast(model, stiffness, elements_step(model, dt / share)); };
+  const auto too_much = [&](const std::vector<NodeInertia>& ballast) {
+    double mass = 0;
+    for (const ModelBody& body : model.bodies) mass += body.mass;
+    return total(ballast) > kMostBallast * mass;
+  };
+  double dt = std::max(wanted, least_step());
+  std::vector<NodeInertia> ballast = ballast_for(dt);
+  while (dt > wanted && too_much(ballast)) {
+    dt = std::max(wanted, 0.8 * dt);
+    ballast = ballast_for(dt);
+  }
+  if (too_much(ballast)) ballast.clear();  // the bound that asks for it is far from what is measured
+  const auto same = [](const NodeInertia& a, const NodeInertia& b) { return a.slot == b.slot && a.inertia == b.inertia; };
+  const std::vector<NodeInertia>& before = run_.state.ballast;
+  if (!std::equal(ballast.begin(), ballast.end(), before.begin(), before.end(), same)) load_ballast(run_, std::move(ballast));
+  return dt;
 }
 
 void StepControl::limit_to_element_bound() {
@@ -94,27 +151,35 @@ void StepControl::limit_to_element_bound() {
   if (run_.state.clock.dt > ceiling) change(ceiling);
 }
 
-std::optional<double> StepControl::outgrown() {
-  const StepLimit& limit = run_.state.limit;
-  const double dt = run_.state.clock.dt, least = kLeastStep * limit.dt_ceiling;
-  if (!run_.settings.automatic || dt <= least) return {};
-  const double stable = limit.dt_backoff * run_.scene.safety * estimate(kAdaptIterations);
-  if (stable >= dt) return {};
-  return std::max({stable, 0.35 * dt, least});
+std::optional<StepControl::Outgrown> StepControl::outgrown() {
+  if (!run_.settings.automatic) return {};
+  const double dt = run_.state.clock.dt, least = least_step();
+  const Allowed now = allowed();
+  if (now.dt >= dt) return {};
+  if (dt > least) return Outgrown{std::max({now.dt, 0.35 * dt, least}), {}};
+  if (kBackoff * run_.state.limit.dt_backoff < kLeastBackoff) return {};  // smaller steps have not helped: go on
+  return Outgrown{0, now.stiffness};
 }
 
-void StepControl::shorten(double dt) {
+void StepControl::shorten(const Outgrown& found) {
   run_.state.limit.hold = run_.state.clock.step + kAdaptEvery;
-  change(dt);
+  if (found.dt > 0) {
+    change(found.dt);
+    return;
+  }
+  const double dt = run_.state.clock.dt, before = total(run_.state.ballast);
+  if (balance(kBackoff * dt, found.stiffness) >= dt && total(run_.state.ballast) > before) return;
+  (void)retry_smaller();
 }
 
 bool StepControl::retry_smaller() {
   if (!run_.settings.automatic) return false;
   double& backoff = run_.state.limit.dt_backoff;
-  backoff *= 0.7;
+  backoff *= kBackoff;
+  run_.state.limit.hold = run_.state.clock.step + kAdaptEvery;
   if (backoff < kLeastBackoff) return false;
   run_.loaded.clear_faults();
-  change(std::min(0.7 * run_.state.clock.dt, backoff * run_.scene.safety * estimate(kAdaptIterations)));
+  change(std::min(kBackoff * run_.state.clock.dt, backoff * run_.scene.safety * estimate(kAdaptIterations)));
   return true;
 }
 

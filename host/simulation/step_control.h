@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "simulation/run_context.h"
 
@@ -28,16 +29,32 @@ class StepControl {
   void adapt_when_due();
   /// A scene that nobody meant to cut may run at a step beyond what its elements allow when an edit frees them.
   void limit_to_element_bound();
-  /// Elements are inverted, or nodes fast: the step to take instead [s] if an automatic one is longer than this state stands,
-  /// so that the batch that led here is not to be trusted. `shorten` is then called in the kept state.
-  [[nodiscard]] std::optional<double> outgrown();
-  void shorten(double dt);
+  /// Elements are inverted, or nodes fast: what to do instead if an automatic step is longer than this state stands, so that
+  /// the batch that led here is not to be trusted. `shorten` is then called in the kept state.
+  struct Outgrown {
+    double dt = 0;                  ///< the step to take [s]; 0: it is the shortest already
+    std::vector<double> stiffness;  ///< then, of the nodes
+  };
+  [[nodiscard]] std::optional<Outgrown> outgrown();
+  void shorten(const Outgrown& found);
   /// An automatic step may have been overtaken by a fast load: take what follows in smaller steps. False when the step is the
   /// user's, or when smaller steps have not helped.
   [[nodiscard]] bool retry_smaller();
 
  private:
   [[nodiscard]] bool adapts_at(std::int64_t step) const;
+  /// The shortest automatic step [s].
+  [[nodiscard]] double least_step() const;
+  /// What an automatic step may be in the present configuration [s], `stiffness` (model/ballast.h) if it had to be looked at
+  /// element by element.
+  struct Allowed {
+    double dt = 0;
+    std::vector<double> stiffness;
+  };
+  [[nodiscard]] Allowed allowed();
+  /// Let the elements stand least_step() where they need less, and take back what they need no more; where that is too much of
+  /// the mass, a step between `wanted` and that. Returns this step [s].
+  double balance(double wanted, const std::vector<double>& stiffness);
   void change(double dt);
   RunContext& run_;
 };

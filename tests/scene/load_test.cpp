@@ -11,7 +11,7 @@ namespace {
 
 const char* const full = R"({
   "format": "pliant-scene/1", "name": "everything", "gravity": [0, -9.81, 0], "dt": 1e-4, "safety": 0.8, "duration": 2.5,
-  "inverted": "stop", "least_inertia": 0.1,
+  "inverted": "stop", "least_fill": 0.1, "least_step": 0.2, "break_stretch": 3,
   "integrator": "textbook", "relaxation": {"tolerance": 1e-6, "max_steps": 500},
   "bodies": [
     {"name": "liver", "surface": "meshes/liver.obj", "scale": 0.001, "translate": [1, 2, 3], "lattice": {"spacing": 0.008},
@@ -35,7 +35,9 @@ TEST(Load, EveryKeyArrives) {
   EXPECT_EQ(s.dt, 1e-4);
   EXPECT_EQ(s.safety, 0.8);
   EXPECT_EQ(s.inverted, Inverted::stop);
-  EXPECT_EQ(s.least_inertia, 0.1);
+  EXPECT_EQ(s.least_fill, 0.1);
+  EXPECT_EQ(s.least_step, 0.2);
+  EXPECT_EQ(s.break_stretch, 3);
   EXPECT_EQ(s.duration, 2.5);
   EXPECT_EQ(s.integrator, Integrator::textbook);
   EXPECT_TRUE(s.relaxation.enabled);

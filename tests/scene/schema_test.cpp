@@ -71,7 +71,9 @@ TEST(Schema, DefaultsAreThoseOfTheStructs) {
   const Json schema = json_of(scenes / "schema.json");
   const auto number = [&](const char* pointer) { return schema.at(Json::json_pointer(pointer)).at("default").get<double>(); };
   EXPECT_EQ(number("/properties/safety"), Scene().safety);
-  EXPECT_EQ(number("/properties/least_inertia"), Scene().least_inertia);
+  EXPECT_EQ(number("/properties/least_fill"), Scene().least_fill);
+  EXPECT_EQ(number("/properties/least_step"), Scene().least_step);
+  EXPECT_EQ(number("/properties/break_stretch"), Scene().break_stretch);
   EXPECT_EQ(number("/properties/duration"), Scene().duration);
   EXPECT_EQ(number("/$defs/relaxation/properties/tolerance"), Relaxation().tolerance);
   EXPECT_EQ(number("/$defs/relaxation/properties/max_steps"), static_cast<double>(Relaxation().max_steps));

@@ -23,7 +23,9 @@ SceneSpec everything() {
   s.dt = 1e-4;
   s.safety = 0.8;
   s.inverted = "stop";
-  s.least_inertia = 0.1;
+  s.least_fill = 0.1;
+  s.least_step = 0.2;
+  s.break_stretch = 3;
   s.tool_path = {{0, 0, 0.1, 0}, {1, 0.1, 0.1, 0}};
   BladeSpec blade;
   blade.path = {{0, 0, -0.1, 0, 0, 0.1, 0}, {1, 0.2, -0.1, 0, 0.2, 0.1, 0}};
@@ -63,7 +65,7 @@ SceneSpec everything() {
 
 const char* const file =
     R"({"format": "pliant-scene/1", "name": "everything", "gravity": [0, -9.81, 0], "dt": 1e-4, "safety": 0.8,
-        "inverted": "stop", "least_inertia": 0.1,
+        "inverted": "stop", "least_fill": 0.1, "least_step": 0.2, "break_stretch": 3,
   "tool": {"path": [[0, 0, 0.1, 0], [1, 0.1, 0.1, 0]]},
   "blades": [{"path": [[0, 0, -0.1, 0, 0, 0.1, 0], [1, 0.2, -0.1, 0, 0.2, 0.1, 0]], "start": 0.1}],
   "bodies": [{"name": "a", "surface": "a.obj", "lattice": {"spacing": 0.01}, "scale": 2, "translate": [1, 2, 3],

@@ -1,0 +1,79 @@
+#include "simulation/calm.h"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "model/each_hex.h"
+
+namespace pliant {
+namespace {
+
+class Calm {
+ public:
+  Calm(RunContext& run, double share) : run_(run), share_(share), w_(run.loaded.w()) {}
+
+  void element(std::span<const std::int32_t> slots, double volume) {
+    const std::vector<char>& is_free = run_.loaded.free();
+    const std::vector<double>& mass = run_.model().mass;
+    double sum = 0;
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    const auto moves = [&](std::size_t s) { return is_free[3 * s] && is_free[3 * s + 1] && is_free[3 * s + 2]; };
+    const auto increment = [&](std::size_t s) { return Eigen::Map<Eigen::Vector3d>(w_.data() + 4 * s); };
+    for (const std::int32_t n : slots) {
+      const auto s = static_cast<std::size_t>(n);
+      if (!moves(s)) continue;
+      sum += mass[s];
+      mean += mass[s] * increment(s);
+    }
+    if (!(sum > 0)) return;
+    mean /= sum;
+    double most = 0;
+    for (const std::int32_t n : slots) {
+      const auto s = static_cast<std::size_t>(n);
+      if (moves(s)) most = std::max(most, (increment(s) - mean).norm());
+    }
+    const double allowed = share_ * std::cbrt(volume);
+    if (!(most > allowed)) return;
+    ++count;
+    for (const std::int32_t n : slots) {
+      const auto s = static_cast<std::size_t>(n);
+      if (moves(s)) increment(s) = mean + allowed / most * (increment(s) - mean);
+    }
+  }
+
+  void write() { run_.loaded.write_w(w_); }
+
+  std::int64_t count = 0;
+
+ private:
+  RunContext& run_;
+  double share_;
+  std::vector<double> w_;
+};
+
+double rest_volume(const HexView& hex) {
+  if (!hex.full) return hex.record[56];
+  double volume = 0;
+  for (int g = 0; g < 8; ++g) volume += hex.record[25 * g + 24];
+  return volume;
+}
+
+double rest_volume(const std::array<double, 9>& gradients) {
+  return 1 / (6 * std::abs(Eigen::Map<const Eigen::Matrix3d>(gradients.data()).determinant()));
+}
+
+}  // namespace
+
+std::int64_t calm(RunContext& run, double share) {
+  Calm calm(run, share);
+  for (const TetBatch& batch : run.model().tets) {
+    for (std::size_t e = 0; e < batch.nodes.size(); ++e) calm.element(batch.nodes[e], rest_volume(batch.gradients[e]));
+  }
+  for_each_hex(run.model(), [&](const HexView& hex) { calm.element(hex.slots, rest_volume(hex)); });
+  if (calm.count > 0) calm.write();
+  return calm.count;
+}
+
+}  // namespace pliant

@@ -1,0 +1,14 @@
+// Takes motion out of elements that would turn inside out within a few steps.
+#pragma once
+#include <cstdint>
+
+#include "simulation/run_context.h"
+
+namespace pliant {
+
+/// Where the nodes of an element move against each other by more than `share` of its edge in one step, faster than its own
+/// waves could carry, that relative motion is brought down to this, as by a plastic impact: the momentum of its free nodes
+/// stays, kinetic energy only falls. Returns the number of such elements.
+std::int64_t calm(RunContext& run, double share);
+
+}  // namespace pliant

@@ -1,0 +1,235 @@
+// What keeps a run going: inertia for elements that ask for too short a step, motion taken out of those that would turn inside
+// out, and tissue that parts where it is stretched too far.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "cutting/cut_scenes.h"
+#include "model/ballast.h"
+#include "model/each_hex.h"
+#include "pliant/error.h"
+#include "schedule/build_program.h"
+#include "schedule/surface_program.h"
+#include "simulation/ballast_swap.h"
+#include "simulation/calm.h"
+#include "solver/scenes.h"
+#include "support/error_of.h"
+
+namespace pliant {
+namespace {
+
+using namespace cut_test;
+
+/// A scene, loaded, without a Simulation around it.
+struct Loaded {
+  explicit Loaded(Scene of) : scene(std::move(of)), loaded(open_backend("cpu:double")) {
+    const auto model = std::make_shared<const Model>(build_model(scene));
+    Program program = build_program(*model, {scene.integrator, settings.batch_steps});
+    Program surface = surface_program(model->surface, program);
+    loaded.load(model, std::move(program), std::move(surface));
+    state.clock.dt = 1e-3;
+  }
+  Scene scene;
+  RunSettings settings;
+  LoadedModel loaded;
+  RunState state;
+  RunContext run{scene, settings, loaded, state};
+};
+
+Vec3d momentum(const Loaded& l) {
+  Vec3d sum{};
+  const std::vector<double> w = l.loaded.w();
+  for (std::size_t s = 0; s < l.run.model().mass.size(); ++s) {
+    for (std::size_t c = 0; c < 3; ++c) sum[c] += l.run.model().mass[s] * w[4 * s + c] / l.state.clock.dt;
+  }
+  return sum;
+}
+
+double kinetic(const Loaded& l) {
+  double sum = 0;
+  const std::vector<double> w = l.loaded.w();
+  for (std::size_t s = 0; s < l.run.model().mass.size(); ++s) {
+    for (std::size_t c = 0; c < 3; ++c) sum += 0.5 * l.run.model().mass[s] * std::pow(w[4 * s + c] / l.state.clock.dt, 2);
+  }
+  return sum;
+}
+
+/// Every node has a velocity of its own.
+void stir(Loaded& l, double largest) {
+  std::vector<double> w = l.loaded.w();
+  for (std::size_t s = 0; s < l.run.model().mass.size(); ++s) {
+    for (std::size_t c = 0; c < 3; ++c) w[4 * s + c] = largest * std::sin(1.7 * static_cast<double>(3 * s + c));
+  }
+  l.loaded.write_w(w);
+}
+
+Scene box_scene() {
+  Scene scene = scene_with(box_body("box", {0.03, 0.02, 0.02}));
+  scene.gravity = {0, 0, -9.81};
+  return scene;
+}
+
+/// All nodes with x above (`side` 1) or below (-1) this.
+Selection beyond(double x, double side) {
+  Selection where;
+  where.kind = Selection::Kind::plane;
+  where.a = {x, 0, 0};
+  where.b = {side, 0, 0};
+  return where;
+}
+
+Scene held(Scene scene) {
+  scene.bodies[0].fixed.push_back({beyond(0.001, -1)});
+  return scene;
+}
+
+TEST(Ballast, HeavierNodesKeepTheirMomentumLighterOnesTheirVelocity) {
+  Loaded l(box_scene());
+  stir(l, 1e-4);
+  const Vec3d before = momentum(l);
+  const double energy = kinetic(l);
+  const std::int32_t slot = l.run.model().bodies[0].slot[5];
+  load_ballast(l.run, {{slot, 3e-3}});
+  EXPECT_EQ(l.run.model().own_mass(static_cast<std::size_t>(slot)) + 3e-3, l.run.model().mass[static_cast<std::size_t>(slot)]);
+  for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(momentum(l)[c], before[c], 1e-15);
+  EXPECT_LT(kinetic(l), energy);
+  EXPECT_EQ(l.loaded.u()[4 * static_cast<std::size_t>(slot) + 3], 1 / l.run.model().mass[static_cast<std::size_t>(slot)]);
+  const std::vector<double> w = l.loaded.w();
+  load_ballast(l.run, {});
+  EXPECT_EQ(l.loaded.w(), w);
+}
+
+TEST(Ballast, HasNoWeightAndLeavesNoTrace) {
+  Loaded l(held(box_scene()));
+  const Model first = l.run.model();
+  const std::vector<double> u = l.loaded.u(), rest = l.run.forces_now();
+  const std::int32_t slot = first.bodies[0].slot.back();
+  load_ballast(l.run, {{slot, 0.1}});
+  const double up = l.run.forces_now()[4 * static_cast<std::size_t>(slot) + 2];
+  EXPECT_NEAR(up, 0.1 * 9.81, 1e-12) << "against what gravity does to it";
+  load_ballast(l.run, {});
+  EXPECT_EQ(l.run.model().mass, first.mass);
+  EXPECT_EQ(l.run.forces_now(), rest);
+  EXPECT_EQ(l.loaded.u(), u) << "held nodes have no inverse mass";
+}
+
+TEST(Ballast, TheBoundIsBelowTheStableStepAndNotFarBelow) {
+  for (const ElementKind element : {ElementKind::hex8, ElementKind::hex8full, ElementKind::tet4}) {
+    for (const double pull : {0.0, 0.02}) {
+      Scene scene = held(scene_with(box_body("box", {0.03, 0.02, 0.02}, element)));
+      Prescribed far;
+      far.where = beyond(0.029, 1);
+      far.displacement = {pull, 0.3 * pull, 0.0};
+      far.curve.kind = Curve::Kind::smooth;
+      far.curve.duration = 0.1;
+      scene.bodies[0].material.damping = 30;
+      scene.bodies[0].prescribed.push_back(far);
+      Simulation s(scene, open_backend("cpu:double"));
+      s.advance(300);
+      const std::vector<double> u = s.backend().read_reals(s.program().find("node_u"));
+      const double bound = stiffness_bound(s.model(), nodal_stiffness(s.model(), u)), stable = s.estimate_stable_dt(100);
+      SCOPED_TRACE(fmt::format("{} {}: bound {:.4g} s, stable step {:.4g} s", to_string(element), pull, bound, stable));
+      EXPECT_LT(bound, 1.05 * stable);  // the estimate errs on the safe side
+      EXPECT_GT(bound, 0.4 * stable);
+    }
+  }
+}
+
+TEST(Ballast, WhatIsWantedIsEnoughAndIsGivenBack) {
+  const Scene scene = box_scene();
+  Model model = build_model(scene);
+  const std::vector<double> u(4 * static_cast<std::size_t>(model.slots));
+  std::vector<double> k = nodal_stiffness(model, u);
+  const double bound = stiffness_bound(model, k);
+  EXPECT_TRUE(wanted_ballast(model, k, 0.99 * bound).empty());
+  const auto one = static_cast<std::size_t>(model.bodies[0].slot[7]);
+  k[one] *= 100;
+  const std::vector<NodeInertia> wanted = wanted_ballast(model, k, 0.9 * bound);
+  ASSERT_EQ(wanted.size(), 1);
+  EXPECT_EQ(wanted[0].slot, static_cast<std::int32_t>(one));
+  set_ballast(scene, model, wanted);
+  EXPECT_GT(stiffness_bound(model, k), 0.9 * bound);
+  EXPECT_EQ(wanted_ballast(model, k, 0.9 * bound).size(), 1) << "it lasts";
+  k[one] /= 100;
+  EXPECT_TRUE(wanted_ballast(model, k, 0.9 * bound).empty());
+}
+
+TEST(Ballast, ADamagedStateIsRefused) {
+  Simulation s(box_scene(), open_backend("cpu"));
+  const std::int32_t node = s.model().bodies[0].slot[0];
+  for (const std::vector<NodeInertia>& bad : {std::vector<NodeInertia>{{-1, 1.0}},
+                                              {{s.model().slots, 1.0}},
+                                              {{node, -1.0}},
+                                              {{node, NAN}},
+                                              {{node, 1.0}, {node, 1.0}}}) {
+    Snapshot snapshot = s.snapshot();
+    snapshot.state.ballast = bad;
+    EXPECT_NE(test::error_of([&] { s.restore(snapshot); }).find("damaged"), std::string::npos);
+  }
+}
+
+TEST(Calm, KeepsMomentumAndBringsFastMotionDown) {
+  Loaded l(box_scene());
+  stir(l, 0.1);
+  const Vec3d before = momentum(l);
+  const double energy = kinetic(l);
+  EXPECT_GT(calm(l.run, 0.25), 0);
+  for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(momentum(l)[c], before[c], 1e-12 * std::abs(before[c]) + 1e-13);
+  EXPECT_LT(kinetic(l), 0.2 * energy);
+  Loaded slow(box_scene());
+  stir(slow, 1e-4);
+  const std::vector<double> w = slow.loaded.w();
+  EXPECT_EQ(calm(slow.run, 0.25), 0);
+  EXPECT_EQ(slow.loaded.w(), w);
+}
+
+/// A box of 4 cm that is pulled by 20 cm, and a blade that stays far away.
+Scene pulled(double break_stretch, bool with_blade = true, double by = 0.2) {
+  Scene scene = held(scene_with(box_body("box", {0.04, 0.02, 0.02})));
+  Prescribed far;
+  far.where = beyond(0.039, 1);
+  far.displacement = {by, 0.0, 0.0};
+  far.curve.kind = Curve::Kind::smooth;
+  far.curve.duration = 0.5;
+  scene.bodies[0].prescribed.push_back(far);
+  scene.bodies[0].material.damping = 20;
+  if (with_blade) scene.blades.push_back(blade("far", {{0, 5, 5, 5, 5, 6, 5}, {1, 5, 5, 6, 5, 6, 6}}));
+  scene.break_stretch = break_stretch;
+  return scene;
+}
+
+TEST(Overstretched, PartsInASceneThatIsCut) {
+  const double whole = mass_of(Simulation(pulled(4), open_backend("cpu")));
+  Simulation s(pulled(4), open_backend("cpu"));
+  while (s.time() < 0.6 && !s.divergence()) s.advance(64);
+  EXPECT_FALSE(s.divergence());
+  EXPECT_GT(s.state().opened, 0);
+  EXPECT_EQ(s.cut_topology(0)->pieces(), 2);
+  EXPECT_NEAR(mass_of(s), whole, 1e-14 * whole);
+  for (const Scene& scene : {pulled(0), pulled(4, false), pulled(4, true, 0.06)}) {
+    Simulation other(scene, open_backend("cpu"));
+    while (other.time() < 0.6 && !other.divergence()) other.advance(64);
+    EXPECT_EQ(other.state().opened, 0);
+  }
+}
+
+TEST(ThinCells, AreAsStiffAndAsInertAsATwentiethOfAFullOneAndAsHeavyAsTheyAre) {
+  Scene scene = scene_with(box_body("box", {0.04, 0.02, 0.02}));
+  scene.cuttable = true;
+  Simulation s(scene, open_backend("cpu"));
+  const double mass = mass_of(s);
+  s.cut(wall(0.0101));  // leaves a hundredth of a cell on one side
+  ASSERT_EQ(s.cut_topology(0)->pieces(), 2);
+  std::size_t thin = 0;
+  for_each_hex(s.model(), [&](const HexView& hex) {
+    EXPECT_GE(hex.fill, scene.least_fill);
+    thin += hex.fill == scene.least_fill ? 1 : 0;
+  });
+  EXPECT_GE(thin, 4);
+  EXPECT_NEAR(mass_of(s), mass, 1e-14);
+  EXPECT_GT(s.model().bodies[0].added_mass, 0);
+}
+
+}  // namespace
+}  // namespace pliant
