@@ -206,6 +206,11 @@ class Run {
     json["added_mass"] = added;
     const Inversions& inverted = s.inversions();
     json["inverted"] = {{"batches", inverted.batches}, {"most", inverted.most}, {"now", inverted.last}};
+    json["calmed_elements"] = inverted.calmed;
+    if (inverted.calmed > 0) {
+      o_.common.note(
+          fmt::format("in {} elements, counted batch by batch, motion faster than sound was taken out", inverted.calmed));
+    }
     if (inverted.batches > 0) {
       json["inverted"]["first"] = {
           {"step", inverted.first_step}, {"time", inverted.first_time}, {"body", inverted.body}, {"element", inverted.element}};

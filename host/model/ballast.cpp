@@ -115,7 +115,7 @@ std::vector<NodeInertia> wanted_ballast(const Model& model, const std::vector<do
     if (has) ++now;
     if (!(own > 0) || !std::isfinite(needed)) continue;
     if (needed > own + inertia || kTooMuch * kReserve * needed < own + inertia) {
-      inertia = std::max(0.0, kReserve * needed - own);
+      inertia = needed > own ? kReserve * needed - own : 0;
     }
     if (inertia > 0) out.push_back({static_cast<std::int32_t>(s), inertia});
   }

@@ -42,9 +42,11 @@ TEST(FollowTool, NothingJumpsWhenTheRegionMoves) {
       sim.advance(sim.next_batch(64));
       const auto before = sim.displacements(0);
       const Vec3d p = momentum(sim);
-      const Model* model = &sim.model();
+      const std::vector<Vec3d> seeds = sim.state().seeds;
+      const std::size_t ballast = sim.state().ballast.size();
       sim.begin_batch(1);  // where it looks at the tool
-      if (&sim.model() == model) continue;
+      // Inertia that elements give back takes its momentum along, and has nothing to do with the region.
+      if (sim.state().seeds == seeds || sim.state().ballast.size() != ballast) continue;
       ++moves;
       EXPECT_NEAR(static_cast<double>(sim.model().bodies[0].operational_nodes + sim.model().bodies[0].interface_nodes) /
                       static_cast<double>(sim.model().nodes()),

@@ -85,12 +85,12 @@ TEST_P(Resume, AutomaticStepThatElementsOutgrew) {
 
 /// A needle is pushed into the cube: single elements ask for a shorter step than the scene allows.
 TEST_P(Resume, ElementsThatGotInertia) {
-  Scene scene = pressed_cube(0.0, R"("least_step": 0.9,)");
+  Scene scene = pressed_cube(0.0, R"("least_step": 0.7,)");
   Prescribed needle;
   needle.where.kind = Selection::Kind::sphere;
   needle.where.a = {0, 0.05, 0};
-  needle.where.radius = 0.012;
-  needle.displacement = {0.0, -0.06, 0.0};
+  needle.where.radius = 0.016;
+  needle.displacement = {0.0, -0.08, 0.0};
   needle.curve.kind = Curve::Kind::smooth;
   needle.curve.duration = 0.3;
   scene.bodies[0].prescribed = {needle};

@@ -176,7 +176,7 @@ TEST(Calm, KeepsMomentumAndBringsFastMotionDown) {
   const double energy = kinetic(l);
   EXPECT_GT(calm(l.run, 0.25), 0);
   for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(momentum(l)[c], before[c], 1e-12 * std::abs(before[c]) + 1e-13);
-  EXPECT_LT(kinetic(l), 0.2 * energy);
+  EXPECT_LT(kinetic(l), 0.5 * energy);
   Loaded slow(box_scene());
   stir(slow, 1e-4);
   const std::vector<double> w = slow.loaded.w();

@@ -1,4 +1,4 @@
-// All edges of a body, to see which are stretched too far.
+// The edges of a body, to see which are stretched too far.
 #pragma once
 #include <span>
 #include <vector>
@@ -10,18 +10,18 @@ namespace pliant {
 class MeshEdges {
  public:
   explicit MeshEdges(const CutMesh& mesh);
-  /// What is to be cut because it is longer than `times` its length at rest, each edge in its middle: edges that are not cut,
-  /// and where an edge of a divided cell's copy is four times as long as that, all edges at the copy's real corners: what hangs
-  /// there comes off. `x` [m] are present positions of the nodes of `body`, which has this mesh. One with an end that is not
-  /// finite is left alone.
+  /// What is to be cut because it is longer than `times` its length at rest, in the middle of its edges: of a tetrahedron the
+  /// long edge, of a lattice cell with one all that lead to the other side; and where an edge of a divided cell's copy is four
+  /// times as long as that, all edges of the cell at the copy's real corners: what hangs there comes off. `x` [m] are present
+  /// positions of the nodes of `body`, which has this mesh. An edge with an end that is not finite is left alone.
   [[nodiscard]] CutEdges longer(const CutTopology& body, std::span<const Vec3d> x, double times) const;
 
  private:
+  void part(const CutTopology& body, const NodePair& pair, CutEdges& out) const;
   void free_corners(const CutTopology& body, std::span<const Vec3d> x, double times, CutEdges& out) const;
 
-  std::vector<NodePair> pairs_;           ///< ascending
-  std::vector<double> squared_;           ///< length at rest [m^2]
-  std::vector<std::int32_t> first_, at_;  ///< [nodes + 1] and the pairs at each node
+  std::vector<NodePair> pairs_;  ///< edges of tetrahedra, edges of lattice cells without diagonals; ascending
+  std::vector<double> squared_;  ///< length at rest [m^2]
 };
 
 }  // namespace pliant
