@@ -1,0 +1,61 @@
+// Elements and regions of one body and one material, as the Program takes them.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "model/flsm_regions.h"
+#include "scene/scene.h"
+
+namespace pliant {
+
+/// Tetrahedra of one material. `nodes` are slots; `volume` [m^3] counts the fill of the lattice cell they were cut from.
+struct TetBatch {
+  Material material;
+  std::int32_t body = 0;
+  bool averaged = false;  ///< tet4anp
+  std::vector<std::array<std::int32_t, 4>> nodes;
+  std::vector<std::array<double, 9>> gradients;  ///< grad N_1..3, rows [1/m]
+  std::vector<double> volume;
+  std::vector<std::int64_t> id;  ///< the element's number in its body, for messages
+};
+
+/// Hexahedra of one material outside the bricks; corner a of a record is at bits (x, y, z) = (a & 1, a >> 1 & 1, a >> 2 & 1).
+struct HexBatch {
+  Material material;
+  std::int32_t body = 0;
+  bool full = false;     ///< hex8full: 2 x 2 x 2 points
+  bool uniform = false;  ///< all elements are cubes of the same edge: one record
+  std::vector<std::array<std::int32_t, 8>> nodes;
+  std::vector<std::vector<double>> records;  ///< element data as in kernels/layout.h; one if uniform
+  std::vector<double> fill;
+  std::vector<std::int64_t> id;
+};
+
+/// A run of bricks that share one material and spacing.
+struct BrickBatch {
+  Material material;
+  std::int32_t body = 0;  ///< of the first brick, for labels
+  double spacing = 0;     ///< [m]
+  std::int32_t first = 0, count = 0;
+};
+
+/// Fast lattice shape matching of one body: the nodes of its cells that are not operational, and one region around each.
+/// Regions are numbered like these nodes: first the nodes that shape matching moves (`own`, slots first_slot, first_slot + 1,
+/// ...), then the interface.
+struct FlsmBatch {
+  std::int32_t body = 0;
+  DeformationModel settings;
+  double spacing = 0;                              ///< [m]
+  double density = 0;                              ///< [kg/m^3], for calibrated stiffness
+  std::int32_t own = 0, interface = 0;             ///< nodes
+  std::int32_t first_slot = 0, slots = 0;          ///< slots reserved for `own` and for the padding, a multiple of 16
+  std::int32_t fillers = 0;                        ///< empty grid points that the ordered sums cross; they have links only
+  std::vector<std::int32_t> slot;                  ///< [own + interface]
+  std::vector<std::array<std::int32_t, 3>> index;  ///< [own + interface] grid point
+  std::vector<std::array<std::int32_t, 6>> link;   ///< [own + interface + fillers] -x, +x, -y, +y, -z, +z, -1: none
+  FlsmRegions regions;
+  std::vector<double> weight;  ///< [own + interface] node mass over the number of regions that hold it [kg]
+};
+
+}  // namespace pliant
