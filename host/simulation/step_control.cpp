@@ -155,8 +155,10 @@ std::optional<StepControl::Outgrown> StepControl::outgrown() {
   if (!run_.settings.automatic) return {};
   const double dt = run_.state.clock.dt, least = least_step();
   const Allowed now = allowed();
-  if (now.dt >= dt) return {};
-  if (dt > least) return Outgrown{std::max({now.dt, 0.35 * dt, least}), {}};
+  // What the state stands, without the distrust that shortens the step as well: both would shrink alike for ever.
+  if (now.dt / run_.state.limit.dt_backoff >= dt) return {};
+  // By a tenth at least: a batch that is made again for a thousandth is made again a hundred times.
+  if (dt > least) return Outgrown{std::max({std::min(now.dt, 0.9 * dt), 0.35 * dt, least}), {}};
   if (kBackoff * run_.state.limit.dt_backoff < kLeastBackoff) return {};  // smaller steps have not helped: go on
   return Outgrown{0, now.stiffness};
 }
@@ -168,7 +170,10 @@ void StepControl::shorten(const Outgrown& found) {
     return;
   }
   const double dt = run_.state.clock.dt, before = total(run_.state.ballast);
-  if (balance(kBackoff * dt, found.stiffness) >= dt && total(run_.state.ballast) > before) return;
+  if (balance(kBackoff * dt, found.stiffness) >= dt && total(run_.state.ballast) > before) {
+    run_.state.limit.dt_backoff *= kBackoff;  // so that this, too, ends
+    return;
+  }
   (void)retry_smaller();
 }
 
