@@ -205,7 +205,7 @@ TEST(Overstretched, PartsInASceneThatIsCut) {
   while (s.time() < 0.6 && !s.divergence()) s.advance(64);
   EXPECT_FALSE(s.divergence());
   EXPECT_GT(s.state().opened, 0);
-  EXPECT_EQ(s.cut_topology(0)->pieces(), 2);
+  EXPECT_GE(s.cut_topology(0)->pieces(), 2);  // at one end, or at both at once
   EXPECT_NEAR(mass_of(s), whole, 1e-14 * whole);
   for (const Scene& scene : {pulled(0), pulled(4, false), pulled(4, true, 0.06)}) {
     Simulation other(scene, open_backend("cpu"));
