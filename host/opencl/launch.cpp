@@ -31,9 +31,11 @@ std::vector<Launch> plan_launches(const Pass& pass, const LaunchRules& rules) {
   if (forced != 0 && global % forced == 0 && forced <= rules.largest) return {{0, global, forced}};
   if (pass.shape == Shape::bricks) return {{0, global, 1}};  // a brick is work enough for a group
   const Aim aim = aim_for(pass, rules);
-  std::size_t local = aim.local;
+  if (global % aim.local == 0) return {{0, global, aim.local}};
+  // A CPU's kernels are compiled for each local size, a cut or a tear changes the count: two sizes are enough.
+  std::size_t local = rules.cpu ? 1 : aim.local;
   while (global % local != 0) local /= 2;
-  if (local == aim.local || global / local <= aim.most_groups) return {{0, global, local}};
+  if (global / local <= aim.most_groups) return {{0, global, local}};
   const std::size_t rest = global % aim.local;
   return {{0, global - rest, aim.local}, {global - rest, rest, rules.cpu ? 1 : rest}};
 }
