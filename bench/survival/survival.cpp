@@ -22,6 +22,7 @@ namespace {
 using nlohmann::json;
 
 constexpr double kEnd = 2;  // [s]
+constexpr double kShortStep = 0.1;  // of the first
 
 /// Largest displacement over the largest extent of the body at rest; not a number if one of them is not.
 double largest_displacement(const Simulation& s) {
@@ -138,7 +139,7 @@ json summary_of(const json& rows) {
   int short_steps = 0, inverted = 0, left_inverted = 0;
   for (const json& row : rows) {
     ++outcomes[row["outcome"].get<std::string>()];
-    short_steps += row.value("least_dt", 1.0) < 0.1;
+    short_steps += row.value("least_dt", 1.0) < kShortStep;
     inverted += row.value("inverted", 0) > 0;
     left_inverted += row.value("inverted_now", 0) > 0;
   }
@@ -171,11 +172,13 @@ json bench_survival(const SurvivalOptions& asked) {
       rows.push_back(*found);
       continue;
     }
+    // Written first, so that a scene that hangs is there, too.
+    const std::filesystem::path file = options.out / fmt::format("survival-{}.json", number);
+    if (!options.out.empty()) write_file(file, survival_scene(number, options.scenes));
     rows.push_back(run_one(number, options));
     kept.add(rows.back());
-    if (!options.out.empty() && rows.back()["outcome"] != "ended") {
-      write_file(options.out / fmt::format("survival-{}.json", number), survival_scene(number, options.scenes));
-    }
+    const json& row = rows.back();
+    if (!options.out.empty() && row["outcome"] == "ended" && row["least_dt"].get<double>() >= kShortStep) std::filesystem::remove(file);
   }
   return {{"machine", machine_facts()}, {"backend", options.backend}, {"summary", summary_of(rows)}, {"rows", rows}};
 }

@@ -133,6 +133,13 @@ void ModelSwap::carry_motion() {
       }
     }
   }
+  // A cut may leave a moving virtual node with held anchors only: it would go on as it moved, for nothing moves a held node.
+  for (const Constraint& held : model_->constraints) {
+    const auto at = static_cast<std::ptrdiff_t>(4) * held.slot;
+    if (!held.holds()) continue;
+    std::fill_n(new_u_.begin() + at, 3, 0.0);
+    std::fill_n(new_w_.begin() + at, 3, 0.0);
+  }
   for (std::size_t slot = 0; slot < model_->mass.size(); ++slot) new_w_[4 * slot + 3] = run_.decay(*model_, slot);
 }
 

@@ -85,6 +85,43 @@ TEST_P(CutRun, a_piece_that_nothing_holds_falls) {
   EXPECT_GT(held, loose / 2);
 }
 
+/// A virtual node moves until a cut leaves it held anchors only. Nothing moves it from then on, nor may what it did before.
+TEST_P(CutRun, a_virtual_node_that_becomes_held_rests) {
+  Body body = box_body("box", {0.06, 0.02, 0.02}, GetParam());
+  Selection end;
+  end.kind = Selection::Kind::box;
+  end.a = {-1, -1, -1};
+  end.b = {0.011, 1, 1};
+  body.fixed.push_back({end});
+  Scene scene = scene_with(body);
+  scene.gravity = {3, 0, -9.81};
+  Simulation s(scene, open_backend("cpu"));
+  s.cut(sweep({{{-1, -1, 0.0152}, {-1, 1, 0.0152}}}, {{{1, -1, 0.0152}, {1, 1, 0.0152}}}));
+  s.advance(60);
+  const auto held_nodes = [&] {
+    std::vector<std::size_t> nodes;
+    for (const Constraint& c : s.model().constraints) {
+      const std::vector<std::int32_t>& slot = s.model().bodies[0].slot;
+      if (c.holds()) nodes.push_back(static_cast<std::size_t>(std::find(slot.begin(), slot.end(), c.slot) - slot.begin()));
+    }
+    return nodes;
+  };
+  const std::size_t before = held_nodes().size();
+  double moved = 0;
+  for (std::size_t n = 0; n < s.model().bodies[0].rest.size(); ++n) {
+    if (s.model().bodies[0].rest[n][0] < 0.011) moved = std::max(moved, vec::norm(s.displacements(0)[n]));
+  }
+  s.cut(wall(0.0122));
+  ASSERT_GT(held_nodes().size(), before);
+  ASSERT_GT(moved, 1e-5);
+  s.advance(60);
+  const std::vector<Vec3d> u = s.displacements(0), v = s.velocities(0);
+  for (const std::size_t n : held_nodes()) {
+    EXPECT_EQ(u[n], Vec3d{}) << n;
+    EXPECT_EQ(v[n], Vec3d{}) << n;
+  }
+}
+
 /// What falls freely gains the momentum of its weight, whatever inertia its thin cells were given.
 TEST_P(CutRun, the_inertia_of_thin_cells_has_no_weight) {
   Body body = box_body("box", {0.06, 0.04, 0.03}, GetParam());

@@ -11,7 +11,7 @@ namespace {
 
 /// Copies take a while to spring back after the edge between them has parted: only those that are stretched this much further
 /// have not been freed by it.
-constexpr double kFar = 4;
+constexpr double kFar = 2;
 
 bool is_long(const Vec3d& a, const Vec3d& b, double squared) {
   const Vec3d d = vec::sub(a, b);
