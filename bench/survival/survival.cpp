@@ -10,6 +10,7 @@
 #include "backends/backends.h"
 #include "bench/common/shipped_scenes.h"
 #include "bench/kernels/kernels.h"
+#include "bench/survival/energy_watch.h"
 #include "geometry/stopwatch.h"
 #include "geometry/vec.h"
 #include "io/atomic_file.h"
@@ -21,8 +22,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kEnd = 2;  // [s]
+constexpr double kEnd = 2;          // [s]
 constexpr double kShortStep = 0.1;  // of the first
+constexpr double kEnergy = 0.01;
 
 /// Largest displacement over the largest extent of the body at rest; not a number if one of them is not.
 double largest_displacement(const Simulation& s) {
@@ -75,11 +77,17 @@ json run_one(std::int64_t number, const SurvivalOptions& options) {
     row["nodes"] = s.model().nodes();
     const double first = s.dt(), end = options.quick ? kEnd / 4 : kEnd;
     double least = first;
+    EnergyWatch energy(scene);
     const Stopwatch clock;
+    double watched = 0;
     while (s.time() < end && !s.divergence()) {
       s.advance(64);
       least = std::min(least, s.dt());
+      const Stopwatch watching;
+      if (!s.divergence()) energy.look(s);
+      watched += watching.seconds();
     }
+    const double wall = clock.seconds() - watched;
     double mass = 0, added = 0;
     for (const ModelBody& b : s.model().bodies) {
       mass += b.mass;
@@ -100,7 +108,9 @@ json run_one(std::int64_t number, const SurvivalOptions& options) {
     row["largest"] = std::isfinite(largest) ? json(largest) : json();
     row["pieces"] = pieces_of(s);
     row["edits"] = s.topology_version();
-    row["ms_per_frame"] = 1e3 * clock.seconds() / (std::max(s.time(), first) * 60);
+    const std::optional<double> created = energy.created();
+    row["energy_created"] = created ? json(*created) : json();
+    row["ms_per_frame"] = 1e3 * wall / (std::max(s.time(), first) * 60);
   } catch (const Error& error) {
     row["outcome"] = "refused";
     row["message"] = error.what();
@@ -136,12 +146,13 @@ class Kept {
 
 json summary_of(const json& rows) {
   std::map<std::string, int> outcomes;
-  int short_steps = 0, inverted = 0, left_inverted = 0;
+  int short_steps = 0, inverted = 0, left_inverted = 0, created = 0;
   for (const json& row : rows) {
     ++outcomes[row["outcome"].get<std::string>()];
     short_steps += row.value("least_dt", 1.0) < kShortStep;
     inverted += row.value("inverted", 0) > 0;
     left_inverted += row.value("inverted_now", 0) > 0;
+    created += row.contains("energy_created") && row["energy_created"].is_number() && row["energy_created"] > kEnergy;
   }
   return {{"scenes", rows.size()},
           {"ended", outcomes["ended"]},
@@ -150,7 +161,8 @@ json summary_of(const json& rows) {
           {"refused", outcomes["refused"]},
           {"least_dt_below_a_tenth", short_steps},
           {"inverted", inverted},
-          {"left_inverted", left_inverted}};
+          {"left_inverted", left_inverted},
+          {"energy_created_above_a_hundredth", created}};
 }
 
 }  // namespace
@@ -178,7 +190,8 @@ json bench_survival(const SurvivalOptions& asked) {
     rows.push_back(run_one(number, options));
     kept.add(rows.back());
     const json& row = rows.back();
-    if (!options.out.empty() && row["outcome"] == "ended" && row["least_dt"].get<double>() >= kShortStep) std::filesystem::remove(file);
+    if (!options.out.empty() && row["outcome"] == "ended" && row["least_dt"].get<double>() >= kShortStep)
+      std::filesystem::remove(file);
   }
   return {{"machine", machine_facts()}, {"backend", options.backend}, {"summary", summary_of(rows)}, {"rows", rows}};
 }
@@ -190,6 +203,8 @@ std::string survival_table(const json& result) {
                   s["scenes"].get<int>(), s["diverged"].get<int>(), s["not_finite"].get<int>(), s["refused"].get<int>());
   text += fmt::format("{} took a step below a tenth of the first, {} had inverted elements, {} at the end\n",
                       s["least_dt_below_a_tenth"].get<int>(), s["inverted"].get<int>(), s["left_inverted"].get<int>());
+  text += fmt::format("{} gained more than a hundredth of their energy while all loads were constant\n",
+                      s["energy_created_above_a_hundredth"].get<int>());
   for (const json& row : result["rows"]) {
     if (row["outcome"] == "ended") continue;
     text += fmt::format("  {:>4} {} {} {} {}: {}\n", row["number"].get<std::int64_t>(), row["body"].get<std::string>(),

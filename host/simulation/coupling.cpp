@@ -24,11 +24,6 @@ int pull_factor(const DeformationModel& m) { return m.extrapolate ? 1 : m.subste
 /// (docs/flsm_stiffness.md).
 constexpr double kPullStiffness[] = {2.0 / 3, 2, 4, 20.0 / 3, 10};
 
-/// Shape matching and the material of one body are alike if their moduli are within this factor.
-constexpr double kFarApart = 2;
-/// Strain by its own weight that shape matching still carries like a material (docs/flsm_stiffness.md).
-constexpr double kMostWeight = 0.02;
-
 /// E b / alpha [Pa s^2]: what a batch's stiffness is in proportion to.
 double stiffness_unit(const FlsmBatch& batch) {
   return kPullStiffness[batch.settings.width - 1] * batch.density * batch.spacing * batch.spacing;
@@ -57,12 +52,6 @@ double alpha_for(const FlsmBatch& batch, double dt, double damping) {
                             most, longest_step(batch, damping)));
   }
   return std::min(1.0, m.young / most);
-}
-
-/// Young's modulus that shape matching has at small strain [Pa], at the step `dt` of the scene [s].
-double matching_modulus(const FlsmBatch& batch, double dt, double damping) {
-  const double h = batch.settings.substeps * dt, b = h * h / (1 + 0.5 * damping * h);
-  return alpha_for(batch, dt, damping) * stiffness_unit(batch) / b;
 }
 
 /// The mass at the place of each interface node [kg]: its own, or that of all its copies where a cut has divided it. A given
@@ -227,37 +216,9 @@ void check_beta(const RunContext& run, double dt, double elements_dt) {
   }
 }
 
-std::vector<std::string> matching_remarks(const Model& model, const Scene& scene, double dt) {
-  std::vector<std::string> remarks;
-  for (const FlsmBatch& b : model.flsm) {
-    const auto index = static_cast<std::size_t>(b.body);
-    const Material& material = scene.bodies[index].material;
-    const double modulus = matching_modulus(b, dt, material.damping), ratio = modulus / material.moduli.young();
-    const std::string& name = model.bodies[index].name;
-    if (b.interface > 0 && (ratio < 1 / kFarApart || ratio > kFarApart)) {
-      remarks.push_back(
-          fmt::format("body '{}': at this step its shape matching behaves like a modulus of {:.3g} Pa, {:.3g} times that "
-                      "of its material; \"stiffness\": {{\"young\": {:.6g}}} would make both alike",
-                      name, modulus, ratio, material.moduli.young()));
-    }
-    const double g = vec::norm(scene.gravity);
-    if (g == 0) continue;
-    double low = HUGE_VAL, high = -HUGE_VAL;  // along gravity
-    for (const Vec3d& x : model.bodies[index].rest) {
-      const double at = vec::dot(x, scene.gravity) / g;
-      low = std::min(low, at);
-      high = std::max(high, at);
-    }
-    const double strain = material.density * g * (high - low) / modulus;
-    if (strain > kMostWeight) {
-      remarks.push_back(
-          fmt::format("body '{}': its weight strains its shape matching (modulus {:.3g} Pa) by about {:.2g}; above {} it "
-                      "sags further than the material would, and may buckle. Stiffer shape matching, or finite elements "
-                      "(\"type\": \"tled\"), carry it",
-                      name, modulus, strain, kMostWeight));
-    }
-  }
-  return remarks;
+double matching_modulus(const FlsmBatch& batch, double dt, double damping) {
+  const double h = batch.settings.substeps * dt, b = h * h / (1 + 0.5 * damping * h);
+  return alpha_for(batch, dt, damping) * stiffness_unit(batch) / b;
 }
 
 void upload_coupling(const RunContext& run) {

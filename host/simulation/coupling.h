@@ -1,6 +1,5 @@
 // Stiffness and stability of shape matching and of its interface with finite elements.
 #pragma once
-#include <string>
 #include <vector>
 
 #include "simulation/run_context.h"
@@ -32,9 +31,8 @@ namespace pliant {
 /// the elements alone [s].
 void check_beta(const RunContext& run, double dt, double elements_dt);
 
-/// What a user should know about the stiffness of shape matching at the step `dt` [s], a sentence each: that it is far from
-/// that of the material, or that the body's own weight is too much for it. Empty: nothing.
-[[nodiscard]] std::vector<std::string> matching_remarks(const Model& model, const Scene& scene, double dt);
+/// Young's modulus that shape matching has at small strain [Pa], at the step `dt` of the scene [s]; `damping` [1/s].
+[[nodiscard]] double matching_modulus(const FlsmBatch& batch, double dt, double damping);
 
 /// Write alpha and beta of the present step to the backend. Throws Error (bad_input) for a "stiffness" that no alpha reaches.
 void upload_coupling(const RunContext& run);

@@ -16,6 +16,7 @@
 #include "simulation/calm.h"
 #include "simulation/coupling.h"
 #include "simulation/relaxation.h"
+#include "simulation/remarks.h"
 
 namespace pliant {
 
@@ -241,7 +242,7 @@ CutReport Simulation::move_blade(const std::string& blade, const BladeSegment& s
   return move_blades(std::span(&pose, 1));
 }
 
-std::vector<std::string> Simulation::remarks() const { return matching_remarks(model(), scene_, dt()); }
+std::vector<std::string> Simulation::remarks() const { return remarks_on(model(), scene_, dt()); }
 
 std::uint64_t Simulation::hash() const {
   std::uint64_t h = 0;

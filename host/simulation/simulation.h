@@ -88,7 +88,7 @@ class Simulation {
   /// Put the scene's tool at a point [m] from now on.
   void set_tool(const Vec3d& position) { state_.tool = position; }
 
-  /// What a user should know before the first step (coupling.h).
+  /// What a user should know before the first step (remarks.h).
   [[nodiscard]] std::vector<std::string> remarks() const;
 
   /// Hash over node_u and node_w.

@@ -122,20 +122,23 @@ StepControl::Allowed StepControl::allowed() {
   return out;
 }
 
-double StepControl::balance(double wanted, const std::vector<double>& stiffness) {
-  const Model& model = run_.model();
+std::vector<NodeInertia> StepControl::ballast_for(double dt, const std::vector<double>& stiffness) const {
   const double share = run_.state.limit.dt_backoff * run_.scene.safety;
-  const auto ballast_for = [&](double dt) { return wanted_ballast(model, stiffness, elements_step(model, dt / share)); };
-  const auto too_much = [&](const std::vector<NodeInertia>& ballast) {
-    double mass = 0;
-    for (const ModelBody& body : model.bodies) mass += body.mass;
-    return total(ballast) > kMostBallast * mass;
-  };
+  return wanted_ballast(run_.model(), stiffness, elements_step(run_.model(), dt / share));
+}
+
+bool StepControl::too_much(const std::vector<NodeInertia>& ballast) const {
+  double mass = 0;
+  for (const ModelBody& body : run_.model().bodies) mass += body.mass;
+  return total(ballast) > kMostBallast * mass;
+}
+
+double StepControl::balance(double wanted, const std::vector<double>& stiffness) {
   double dt = std::max(wanted, least_step());
-  std::vector<NodeInertia> ballast = ballast_for(dt);
+  std::vector<NodeInertia> ballast = ballast_for(dt, stiffness);
   while (dt > wanted && too_much(ballast)) {
     dt = std::max(wanted, 0.8 * dt);
-    ballast = ballast_for(dt);
+    ballast = ballast_for(dt, stiffness);
   }
   if (too_much(ballast)) ballast.clear();  // the bound that asks for it is far from what is measured
   const auto same = [](const NodeInertia& a, const NodeInertia& b) { return a.slot == b.slot && a.inertia == b.inertia; };
@@ -159,8 +162,11 @@ std::optional<StepControl::Outgrown> StepControl::outgrown() {
   if (now.dt / run_.state.limit.dt_backoff >= dt) return {};
   // By a tenth at least: a batch that is made again for a thousandth is made again a hundred times.
   if (dt > least) return Outgrown{std::max({std::min(now.dt, 0.9 * dt), 0.35 * dt, least}), {}};
-  if (kBackoff * run_.state.limit.dt_backoff < kLeastBackoff) return {};  // smaller steps have not helped: go on
-  return Outgrown{0, now.stiffness};
+  // Below the shortest step only a state that is lost leads: elements that are let go on are driven back by their laws.
+  if (kBackoff * run_.state.limit.dt_backoff < kLeastBackoff) return {};
+  std::vector<NodeInertia> ballast = ballast_for(dt, now.stiffness);
+  if (too_much(ballast) || total(ballast) <= total(run_.state.ballast)) return {};
+  return Outgrown{0, std::move(ballast)};
 }
 
 void StepControl::shorten(const Outgrown& found) {
@@ -169,12 +175,8 @@ void StepControl::shorten(const Outgrown& found) {
     change(found.dt);
     return;
   }
-  const double dt = run_.state.clock.dt, before = total(run_.state.ballast);
-  if (balance(kBackoff * dt, found.stiffness) >= dt && total(run_.state.ballast) > before) {
-    run_.state.limit.dt_backoff *= kBackoff;  // so that this, too, ends
-    return;
-  }
-  (void)retry_smaller();
+  load_ballast(run_, found.ballast);
+  run_.state.limit.dt_backoff *= kBackoff;  // so that this, too, ends
 }
 
 bool StepControl::retry_smaller() {

@@ -32,8 +32,8 @@ class StepControl {
   /// Elements are inverted, or nodes fast: what to do instead if an automatic step is longer than this state stands, so that
   /// the batch that led here is not to be trusted. `shorten` is then called in the kept state.
   struct Outgrown {
-    double dt = 0;                  ///< the step to take [s]; 0: it is the shortest already
-    std::vector<double> stiffness;  ///< then, of the nodes
+    double dt = 0;                     ///< the step to take [s]; 0: it is the shortest already
+    std::vector<NodeInertia> ballast;  ///< what the elements stand it with, then
   };
   [[nodiscard]] std::optional<Outgrown> outgrown();
   void shorten(const Outgrown& found);
@@ -55,6 +55,9 @@ class StepControl {
   /// Let the elements stand least_step() where they need less, and take back what they need no more; where that is too much of
   /// the mass, a step between `wanted` and that. Returns this step [s].
   double balance(double wanted, const std::vector<double>& stiffness);
+  /// The ballast for a step, and whether it is more than a scene may be given.
+  [[nodiscard]] std::vector<NodeInertia> ballast_for(double dt, const std::vector<double>& stiffness) const;
+  [[nodiscard]] bool too_much(const std::vector<NodeInertia>& ballast) const;
   void change(double dt);
   RunContext& run_;
 };

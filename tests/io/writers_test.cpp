@@ -128,6 +128,9 @@ TEST(WriteObj, IsReadBack) {
   for (std::size_t i = 0; i < 4; ++i) {
     for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(static_cast<float>(r.vertices[i][k]), static_cast<float>(m.vertices[i][k]));
   }
+  write_obj(folder.path() / "bare.obj", m);
+  const std::string text = bytes_of(folder.path() / "bare.obj");
+  EXPECT_NE(text.find("\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n"), std::string::npos) << text;
   EXPECT_THROW(write_obj(folder.path() / "n.obj", m, {{0, 0, 1}}), Error);
   EXPECT_THROW(write_obj(folder.path() / "n.obj", {m.vertices, {{0, 1, 4}}}), Error);
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "n.obj"));
