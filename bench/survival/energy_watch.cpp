@@ -53,7 +53,7 @@ EnergyWatch::EnergyWatch(const Scene& scene) : from_(last_change(scene)) {}
 
 void EnergyWatch::look(Simulation& s) {
   const Model& m = s.model();
-  if (s.time() < from_ || !m.flsm.empty()) return;
+  if (s.time() < from_ || s.inversions().last > 0 || !m.flsm.empty()) return;
   std::vector<std::vector<Vec3d>> u(m.bodies.size()), v(m.bodies.size());
   for (std::size_t b = 0; b < m.bodies.size(); ++b) {
     u[b] = s.displacements(b);

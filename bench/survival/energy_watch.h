@@ -10,7 +10,8 @@ namespace pliant::bench {
 class EnergyWatch {
  public:
   explicit EnergyWatch(const Scene& scene);
-  /// Between two batches, the more often the better. States with an element whose law has no energy are passed over.
+  /// Between two batches, the more often the better. States with inverted elements are passed over: they swing too fast for
+  /// what is kinetic between two steps to be known.
   void look(Simulation& s);
   /// The highest rise above an earlier state as a share of the highest kinetic and strain energy; nothing if there was nothing
   /// to look at: shape matching has no energy, a load may change to the end.
