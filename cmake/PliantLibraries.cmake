@@ -21,12 +21,17 @@ pliant_headers(pliant_room_headers pliant_flags fmt::fmt Eigen3::Eigen HEADERS $
 pliant_headers(pliant_command_headers pliant_flags fmt::fmt Eigen3::Eigen nlohmann_json::nlohmann_json
                HEADERS ${standard_headers} <Eigen/Dense> <nlohmann/json.hpp>)
 
+# libpliant is made of rooms, and a host may link it into a shared library of its own, of which only what PLIANT_API marks can be seen.
+set(shareable POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+set_target_properties(pliant_room_headers PROPERTIES ${shareable})
+
 # pliant_room(NAME FOLDER LINKS...): the .cpp files of the folder and of its shelves (subfolders).
 function(pliant_room name folder)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${folder}/*.cpp)
   add_library(${name} STATIC ${sources})
   target_link_libraries(${name} PUBLIC pliant_flags ${ARGN})
   target_precompile_headers(${name} REUSE_FROM pliant_room_headers)
+  set_target_properties(${name} PROPERTIES ${shareable})
 endfunction()
 
 # pliant_with_embree(ROOM STEM): of STEM_embree.cpp and STEM_no_embree.cpp the room gets one, and ROOM_absent is the other.

@@ -5,6 +5,9 @@
 #include <pybind11/stl.h>
 
 #include <limits>
+#include <regex>
+#include <set>
+#include <string>
 
 namespace py = pybind11;
 using pliant::Vec3d;
@@ -34,6 +37,14 @@ py::array_t<double> copy(const std::vector<Vec3d>& v) {
   return array;
 }
 
+py::tuple range(const pliant::IndexRange& r) { return py::make_tuple(r.first, r.count); }
+
+py::list ranges(pliant::View<pliant::IndexRange> all) {
+  py::list list;
+  for (const pliant::IndexRange& r : all) list.append(range(r));
+  return list;
+}
+
 using Vertices = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 std::int32_t vertex_number(std::int64_t v) {
@@ -61,20 +72,21 @@ pliant::SurfaceSpec surface(const Vertices& vertices, const py::object& given) {
   return s;
 }
 
-pliant::WorldOptions options(const std::string& backend, double dt, bool normals, bool interactive) {
+pliant::WorldOptions options(const std::string& backend, double dt, bool normals, bool interactive, bool cutting) {
   pliant::WorldOptions o;
   o.backend = backend;
   o.dt = dt;
   o.normals = normals;
   o.interactive = interactive;
+  o.cutting = cutting;
   return o;
 }
 
 /// A scene is the name of a file, or a dict with the keys of a scene file.
 std::unique_ptr<pliant::World> make_world(const py::object& scene, const std::vector<std::pair<Vertices, py::object>>& surfaces,
                                           const std::string& folder, const std::string& backend, double dt, bool normals,
-                                          bool interactive) {
-  const pliant::WorldOptions o = options(backend, dt, normals, interactive);
+                                          bool interactive, bool cutting) {
+  const pliant::WorldOptions o = options(backend, dt, normals, interactive, cutting);
   std::vector<pliant::SurfaceSpec> meshes;
   for (const auto& [vertices, triangles] : surfaces) meshes.push_back(surface(vertices, triangles));
   if (py::isinstance<py::dict>(scene)) {
@@ -117,10 +129,14 @@ void bind_frame(py::module_& m) {
           },
           "1: the triangle lies on a cut, uint8, shape [triangles]; empty: none does")
       .def_property_readonly(
-          "dirty_vertices", [](const Frame& f) { return py::make_tuple(f.dirty_vertices.first, f.dirty_vertices.count); },
+          "body_vertices", [](const Frame& f) { return ranges(f.body_vertices); }, "(first, count) of each body's part")
+      .def_property_readonly(
+          "body_triangles", [](const Frame& f) { return ranges(f.body_triangles); }, "likewise")
+      .def_property_readonly(
+          "dirty_vertices", [](const Frame& f) { return range(f.dirty_vertices); },
           "(first, count) of what may have moved since the frame before")
       .def_property_readonly(
-          "dirty_triangles", [](const Frame& f) { return py::make_tuple(f.dirty_triangles.first, f.dirty_triangles.count); },
+          "dirty_triangles", [](const Frame& f) { return range(f.dirty_triangles); },
           "(first, count) of what may be another triangle; the count is 0 unless the topology changed");
 }
 
@@ -145,6 +161,8 @@ py::dict info(const pliant::World& world) {
     body["nodes"] = b.nodes;
     body["elements"] = b.elements;
     body["mass"] = b.mass;
+    body["vertices"] = range(b.vertices);
+    body["triangles"] = range(b.triangles);
     bodies.append(body);
   }
   py::dict d;
@@ -154,6 +172,8 @@ py::dict info(const pliant::World& world) {
   d["bit_exact"] = i.bit_exact;
   d["nodes"] = i.nodes;
   d["elements"] = i.elements;
+  d["vertices"] = i.vertices;
+  d["triangles"] = i.triangles;
   d["bodies"] = bodies;
   return d;
 }
@@ -176,13 +196,23 @@ py::dict cut(pliant::World& w, const Vertices& triangles) {
   return result(w.cut(list));
 }
 
+py::tuple frame_since(pliant::World& w, const std::shared_ptr<pliant::Frame>& seen) {
+  pliant::FrameChange change;
+  {
+    const py::gil_scoped_release release;
+    change = w.frame_since(seen);
+  }
+  return py::make_tuple(std::const_pointer_cast<pliant::Frame>(change.frame), range(change.dirty_vertices),
+                        range(change.dirty_triangles));
+}
+
 void bind_world(py::module_& m) {
   using pliant::World;
   using Free = py::call_guard<py::gil_scoped_release>;
   py::class_<World>(m, "World", "A scene on a backend: see docs/embedding.md. One thread at a time.")
       .def(py::init(&make_world), py::arg("scene"), py::arg("surfaces") = std::vector<std::pair<Vertices, py::object>>{},
            py::arg("folder") = "", py::arg("backend") = "auto", py::arg("dt") = 0.0, py::arg("normals") = true,
-           py::arg("interactive") = false,
+           py::arg("interactive") = false, py::arg("cutting") = false,
            "scene: a file, or a dict with the keys of a scene file whose \"surface\": \"memory:N\" takes surfaces[N] = "
            "(vertices, triangles)")
       .def_property_readonly("info", &info)
@@ -192,12 +222,15 @@ void bind_world(py::module_& m) {
       .def_property_readonly("stable_dt", &World::stable_dt, "[s]")
       .def("step", &World::step, py::arg("steps") = 1, Free())
       .def("advance", &World::advance, py::arg("seconds"), Free())
-      .def("advance_async", &World::advance_async, py::arg("steps"), Free())
+      .def("step_async", &World::step_async, py::arg("steps"), Free())
+      .def("advance_async", static_cast<bool (World::*)(double)>(&World::advance_async), py::arg("seconds"), Free())
       .def("busy", &World::busy)
       .def("poll", &World::poll)
       .def("wait", &World::wait, Free())
       .def(
           "frame", [](World& w) { return std::const_pointer_cast<pliant::Frame>(w.frame()); }, Free())
+      .def("frame_since", &frame_since, py::arg("seen"),
+           "seen: the frame that one of several consumers got last, or None; (frame, dirty_vertices, dirty_triangles)")
       .def(
           "displacements", [](const World& w, std::size_t body) { return copy(w.displacements(body)); }, py::arg("body") = 0)
       .def(
@@ -214,6 +247,7 @@ void bind_world(py::module_& m) {
       .def("move_grab", &World::move_grab, py::arg("grab"), py::arg("target"))
       .def("release", &World::release, py::arg("grab"))
       .def("push", &World::push, py::arg("vertex"), py::arg("force"))
+      .def("push_node", &World::push_node, py::arg("body"), py::arg("node"), py::arg("force"))
       .def("clear_tools", &World::clear_tools)
       .def("move_tool", &World::move_tool, py::arg("position"))
       .def("cut", &cut, py::arg("triangles"), "triangles: shape [triangles, 3, 3] [m]; a dict with the fields of CutResult")
@@ -226,6 +260,62 @@ void bind_world(py::module_& m) {
       .def("save", &World::save, py::arg("file"), Free())
       .def("load", &World::load, py::arg("file"), Free())
       .def("reset", &World::reset, Free());
+}
+
+/// Names and types of a function's parameters without `self`, as its text says them: "steps: int = 1, ...".
+std::string parameters_of(const std::string& text) {
+  const std::size_t open = text.find('('), close = text.find(") -> ");
+  std::string all = text.substr(open + 1, close - open - 1);
+  const std::size_t comma = all.find(", ");
+  return comma == std::string::npos ? "" : all.substr(comma + 2);
+}
+
+[[noreturn]] void refuse(const std::string& call, const std::string& parameters, const py::args& args,
+                         const py::kwargs& kwargs) {
+  std::set<std::string> names;
+  std::string allowed;
+  const std::regex name("(\\w+): ");
+  for (std::sregex_iterator at(parameters.begin(), parameters.end(), name), end; at != end; ++at) {
+    names.insert((*at)[1]);
+    allowed += (allowed.empty() ? "'" : ", '") + (*at)[1].str() + "'";
+  }
+  for (const auto& [key, value] : kwargs) {
+    const auto word = key.cast<std::string>();
+    if (names.count(word) > 0) continue;
+    throw py::type_error(call + "() has no argument '" + word + "'; allowed are: " + (allowed.empty() ? "none" : allowed));
+  }
+  std::string given;
+  const auto type = [](const py::handle& of) { return py::type::of(of).attr("__name__").cast<std::string>(); };
+  for (std::size_t i = 1; i < args.size(); ++i) given += (given.empty() ? "" : ", ") + type(args[i]);
+  for (const auto& [key, value] : kwargs) given += (given.empty() ? "" : ", ") + key.cast<std::string>() + ": " + type(value);
+  throw py::type_error(call + "() takes (" + parameters + "), got (" + given + ")");
+}
+
+/// What pybind11 says about a wrong call is a list of C++ signatures. Each method gets a shell that says it like Python does,
+/// from the text that pybind11 wrote about the method.
+void in_pythons_words(const py::object& type) {
+  const auto type_name = type.attr("__name__").cast<std::string>();
+  const py::dict members(type.attr("__dict__"));
+  for (const auto& [key, member] : members) {
+    const auto name = key.cast<std::string>();
+    if (!PyInstanceMethod_Check(member.ptr())) continue;
+    const auto inner = py::reinterpret_borrow<py::object>(member);
+    const auto text = inner.attr("__doc__").cast<std::string>();
+    const std::string call = name == "__init__" ? type_name : type_name + "." + name;
+    const auto shell = [inner, call, parameters = parameters_of(text)](const py::args& args, const py::kwargs& kwargs) {
+      try {
+        return py::object(inner(*args, **kwargs));
+      } catch (py::error_already_set& error) {
+        const bool of_pybind =
+            std::string(error.what()).find("The following argument types are supported") != std::string::npos;
+        if (!error.matches(PyExc_TypeError) || !of_pybind) throw;
+      }
+      refuse(call, parameters, args, kwargs);
+    };
+    py::options options;
+    options.disable_function_signatures();
+    type.attr(name.c_str()) = py::cpp_function(shell, py::name(name.c_str()), py::is_method(type), py::doc(text.c_str()));
+  }
 }
 
 }  // namespace
@@ -246,5 +336,6 @@ PYBIND11_MODULE(pliant, m) {
   bind_frame(m);
   bind_report(m);
   bind_world(m);
+  in_pythons_words(m.attr("World"));
   m.def("backends", &pliant::backend_names, "names of the backends of this machine");
 }

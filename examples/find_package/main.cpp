@@ -18,7 +18,7 @@ int main() try {
 
   int drawn = 0, fresh = 0;
   while (drawn < 30) {
-    world.advance_async(20);  // does nothing while the worker is busy
+    world.step_async(20);  // does nothing while the worker is busy
     if (world.poll()) ++fresh;
     const pliant::FramePtr frame = world.frame();  // upload frame->positions, trace, draw ...
     drawn += frame->positions.empty() ? 0 : 1;

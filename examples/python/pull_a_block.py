@@ -30,10 +30,9 @@ print(f"{world.info['nodes']} nodes on {world.info['reason']}; a step of {1e3 * 
 corner = 7
 hand = world.grab(corner, radius=0.02)
 world.move_grab(hand, vertices[corner] + [0.02, 0, 0])
-steps = round(1 / 60 / world.dt)
 path = []
 for _ in range(60):
-    world.advance_async(steps)
+    world.advance_async(1 / 60)
     world.wait()
     path.append(world.frame().positions[corner].copy())  # positions is a view; a row that is kept is copied
 path = np.array(path)

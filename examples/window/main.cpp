@@ -215,8 +215,7 @@ class Window {
     if (!o_.screenshot.empty()) {
       world_.advance(1.0 / 60);
     } else if (!world_.busy()) {
-      const auto steps = static_cast<std::int64_t>(1.0 / 60 / world_.dt());
-      world_.advance_async(std::max<std::int64_t>(1, steps));
+      world_.advance_async(1.0 / 60);
     }
     frame_ = world_.frame();
   }

@@ -12,8 +12,9 @@ namespace pliant::api {
 struct CWorld {
   explicit CWorld(World w) : world(std::move(w)) {}
   World world;
-  std::mutex mutex;  ///< protects `frame` from callers who forget to take turns
-  FramePtr frame;    ///< what the caller's pointers point to
+  std::mutex mutex;                        ///< protects what follows from callers who forget to take turns
+  FramePtr frame;                          ///< what the caller's pointers point to
+  std::map<std::uint64_t, FramePtr> seen;  ///< the same for each consumer
 };
 
 /// The only state that all users of the C API share: which handles are alive.

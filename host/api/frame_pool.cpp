@@ -81,14 +81,30 @@ IndexRange changed(std::size_t before, std::size_t now, const Same& same) {
 
 }  // namespace
 
-IndexRange changed_range(const std::vector<Vec4f>& from, std::size_t before, const std::vector<Vec4f>& to, std::size_t now) {
-  return changed(before, now, [&](std::size_t v) { return std::memcmp(&from[v], &to[v], sizeof(Vec4f)) == 0; });
+IndexRange changed_range(View<Vec4f> from, View<Vec4f> to) {
+  return changed(from.size(), to.size(), [&](std::size_t v) { return std::memcmp(&from[v], &to[v], sizeof(Vec4f)) == 0; });
 }
 
-IndexRange changed_triangles(const Topology& from, const Topology& to) {
-  const auto &a = from.model->surface.triangles, &b = to.model->surface.triangles;
-  const auto flag = [](const Topology& t, std::size_t i) { return t.cut_faces.empty() ? 0 : t.cut_faces[i]; };
-  return changed(a.size(), b.size(), [&](std::size_t t) { return a[t] == b[t] && flag(from, t) == flag(to, t); });
+IndexRange changed_vertices(const Frame& from, const Frame& to) {
+  return joined(changed_range(from.positions, to.positions), changed_range(from.normals, to.normals));
+}
+
+IndexRange changed_triangles(const Frame& from, const Frame& to) {
+  if (from.triangles.data() == to.triangles.data() && from.cut_faces.data() == to.cut_faces.data())
+    return {};  // of one topology
+  const auto flag = [](const Frame& f, std::size_t t) { return f.cut_faces.empty() ? 0 : f.cut_faces[t]; };
+  return changed(from.triangles.size(), to.triangles.size(),
+                 [&](std::size_t t) { return from.triangles[t] == to.triangles[t] && flag(from, t) == flag(to, t); });
+}
+
+FrameChange change_since(const Frame* seen, FramePtr now) {
+  FrameChange change{std::move(now), {}, {}};
+  const Frame& f = *change.frame;
+  if (seen == &f) return change;
+  const Frame none;
+  change.dirty_vertices = changed_vertices(seen == nullptr ? none : *seen, f);
+  change.dirty_triangles = changed_triangles(seen == nullptr ? none : *seen, f);
+  return change;
 }
 
 IndexRange joined(const IndexRange& a, const IndexRange& b) {

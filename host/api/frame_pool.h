@@ -20,7 +20,8 @@ struct Topology {
 
 /// A frame and what it points to.
 struct FrameData {
-  Frame frame;
+  Frame frame;                            ///< without dirty ranges: for all who ask by World::frame_since
+  Frame polled;                           ///< the same with them: for the one who asks by World::frame
   std::vector<Vec4f> positions, normals;  ///< padded as the backend pads them
   std::shared_ptr<const Topology> topology;
 };
@@ -41,12 +42,17 @@ class FramePool : public std::enable_shared_from_this<FramePool> {
 void vertex_normals(const std::vector<Vec4f>& positions, std::size_t count, View<Triangle> triangles,
                     View<std::uint8_t> cut_faces, std::vector<Vec4f>& normals);
 
-/// The smallest range of `to` outside of which both hold the same bits. The first `before` elements of `from` count and the
-/// first `now` of `to`.
-IndexRange changed_range(const std::vector<Vec4f>& from, std::size_t before, const std::vector<Vec4f>& to, std::size_t now);
+/// The smallest range of `to` outside of which both hold the same bits.
+IndexRange changed_range(View<Vec4f> from, View<Vec4f> to);
 
-/// The same of triangles and of the flags that say which of them lie on a cut.
-IndexRange changed_triangles(const Topology& from, const Topology& to);
+/// Positions and normals.
+IndexRange changed_vertices(const Frame& from, const Frame& to);
+
+/// Triangles and the flags that say which of them lie on a cut.
+IndexRange changed_triangles(const Frame& from, const Frame& to);
+
+/// World::frame_since: `seen` may be null.
+FrameChange change_since(const Frame* seen, FramePtr now);
 
 /// The smallest range that holds both.
 IndexRange joined(const IndexRange& a, const IndexRange& b);

@@ -26,6 +26,11 @@ void check_steps(std::int64_t steps) {
   if (steps < 0) throw Error(ErrorCode::usage, fmt::format("the number of steps is {}; 0 or more are allowed", steps));
 }
 
+void check_seconds(double seconds) {
+  if (seconds >= 0 && std::isfinite(seconds)) return;
+  throw Error(ErrorCode::usage, fmt::format("the time to advance is {} s; 0 or more is allowed", seconds));
+}
+
 void check_device(const World::Impl& impl) {
   if (!impl.lost.empty()) throw Error(ErrorCode::device, impl.lost + "; only frame() can still be read");
 }
@@ -125,43 +130,35 @@ StepReport World::step(std::int64_t steps) {
 
 StepReport World::advance(double seconds) {
   const Call call(impl_);
-  if (!(seconds >= 0) || !std::isfinite(seconds)) {
-    throw Error(ErrorCode::usage, fmt::format("the time to advance is {} s; 0 or more is allowed", seconds));
-  }
+  check_seconds(seconds);
   impl_->throw_failure();
   impl_->check_can_step();
-  // An automatic step may change on the way, so what is left is looked at after every batch.
-  const double end = impl_->simulation->time() + impl_->seconds_left + seconds;
-  StepReport total = impl_->run(0);
-  std::int64_t done = 0;
-  while (!total.diverged && !total.at_equilibrium) {
-    const double fit = std::floor((end - impl_->simulation->time()) / impl_->simulation->dt() + 1e-6);
-    if (fit < 1) break;
-    total = impl_->run(impl_->simulation->next_batch(static_cast<std::int64_t>(std::min(fit, 1e15))));
-    done += total.done;
-  }
-  impl_->seconds_left = end - impl_->simulation->time();
-  total.done = done;
-  return total;
+  return impl_->advance(seconds);
 }
 
-bool World::advance_async(std::int64_t steps) {
+bool World::step_async(std::int64_t steps) {
   const Call call(impl_, false);
   check_steps(steps);
-  return impl_->start_job(steps);
+  return impl_->start_job([impl = impl_.get(), steps] { impl->run(steps); });
+}
+
+bool World::advance_async(double seconds) {
+  const Call call(impl_, false);
+  check_seconds(seconds);
+  return impl_->start_job([impl = impl_.get(), seconds] { impl->advance(seconds); });
 }
 
 bool World::busy() const {
   const Call call(impl_, false);
   const std::lock_guard lock(impl_->mutex);
-  return impl_->job >= 0;
+  return impl_->job != nullptr;
 }
 
 bool World::poll() const noexcept {
   if (impl_ == nullptr) return false;
   const std::lock_guard lock(impl_->mutex);
   if (impl_->newest != impl_->given || impl_->cut_since_read) return true;
-  return impl_->job < 0 && impl_->newest != nullptr && impl_->newest->frame.step != impl_->report.step;
+  return !impl_->job && impl_->newest != nullptr && impl_->newest->frame.step != impl_->report.step;
 }
 
 StepReport World::wait() {
@@ -173,20 +170,12 @@ StepReport World::wait() {
 
 FramePtr World::frame() {
   const Call call(impl_, false);
-  bool idle = false;
-  {
-    const std::lock_guard lock(impl_->mutex);
-    idle = impl_->job < 0;
-  }
-  if (idle && impl_->lost.empty()) impl_->read_frame();
-  const std::lock_guard lock(impl_->mutex);
-  if (impl_->given != impl_->newest) {
-    impl_->given = impl_->newest;
-    // Nobody else has this frame yet.
-    impl_->given->frame.dirty_vertices = std::exchange(impl_->dirty_vertices, {});
-    impl_->given->frame.dirty_triangles = std::exchange(impl_->dirty_triangles, {});
-  }
-  return {impl_->given, &impl_->given->frame};
+  return impl_->hand_out(true);
+}
+
+FrameChange World::frame_since(const FramePtr& seen) {
+  const Call call(impl_, false);
+  return api::change_since(seen.get(), impl_->hand_out(false));
 }
 
 std::vector<Vec3d> World::displacements(std::size_t body) const {

@@ -54,7 +54,7 @@ void World::Impl::cut_pending() {
 CutResult World::Impl::cut(CutCall call) {
   {
     const std::lock_guard lock(mutex);
-    if (job >= 0) {
+    if (job) {
       pending_cuts.push_back(std::move(call));
       CutResult result;
       result.pending = true;
@@ -82,7 +82,7 @@ api::SurfaceVertex World::Impl::vertex_of(std::int32_t vertex) const {
   std::shared_ptr<const api::Topology> seen;
   {
     const std::lock_guard lock(mutex);
-    seen = given != nullptr ? given->topology : newest->topology;
+    seen = shown != nullptr ? shown : newest->topology;
   }
   for (std::size_t b = 0; b < seen->body_vertices.size(); ++b) {
     const IndexRange& part = seen->body_vertices[b];

@@ -40,7 +40,9 @@ struct World::Impl {
 
   // world_run.cpp
   StepReport run(std::int64_t steps);
+  StepReport advance(double seconds);
   void read_frame(bool again = false);
+  FramePtr hand_out(bool to_poll);
   void follow_topology();
   void publish_clock();
   [[nodiscard]] std::shared_ptr<Simulation> make_simulation(std::string* reason);
@@ -56,7 +58,7 @@ struct World::Impl {
   [[nodiscard]] api::SurfaceVertex vertex_of(std::int32_t vertex) const;
 
   // world_worker.cpp
-  bool start_job(std::int64_t steps);
+  bool start_job(std::function<void()> work);
   void wait_until_idle();
   void throw_failure();
   void serve();
@@ -69,7 +71,7 @@ struct World::Impl {
   WorldInfo info;
   std::unique_ptr<api::Tools> tools;
   std::string lost;         ///< message of the device's loss; empty: it works
-  double seconds_left = 0;  ///< of advance()
+  double seconds_left = 0;  ///< asked of advance() and not yet a whole step; of the thread that steps
   std::atomic<bool> in_use{false};
   std::int64_t strokes = 0;                      ///< blades put somewhere so far
   std::map<std::string, std::string> blade_key;  ///< what the simulation calls the blades that are in use
@@ -83,15 +85,17 @@ struct World::Impl {
   std::condition_variable changed;
   std::thread worker;
   bool stop = false;
-  std::int64_t job = -1;              ///< steps asked of the worker, -1: none
+  std::function<void()> job;          ///< asked of the worker; empty: nothing
   std::vector<CutCall> pending_cuts;  ///< asked for while the worker was busy
   bool cut_since_read = false;        ///< `newest` does not show the last cut
   std::exception_ptr failure;
   StepReport report;  ///< of the last work
   double stable_dt = 0;
   std::shared_ptr<api::FrameData> newest;      ///< the last frame that was read
-  std::shared_ptr<api::FrameData> given;       ///< the frame that the user got last
+  std::shared_ptr<api::FrameData> given;       ///< what frame() gave last
   IndexRange dirty_vertices, dirty_triangles;  ///< from `given` to `newest`
+  std::shared_ptr<const api::Topology>
+      shown;  ///< of the frame that the user got last, by whichever call: what its vertices name
 };
 
 /// What the rooms of Pliant and its tests may do with a World that its users may not.

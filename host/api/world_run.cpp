@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "api/world_impl.h"
@@ -140,6 +141,30 @@ StepReport World::Impl::run(std::int64_t steps) {
   return report;
 }
 
+/// As many whole steps as fit, counted from where the calls before have left off.
+StepReport World::Impl::advance(double seconds) {
+  const double end = simulation->time() + seconds_left + seconds;
+  const std::int64_t first = simulation->step();
+  try {
+    run(0);
+    // An automatic step may change on the way, so what is left is looked at after every batch.
+    while (!simulation->divergence() && !simulation->at_equilibrium()) {
+      const double fit = std::floor((end - simulation->time()) / simulation->dt() + 1e-6);
+      if (fit < 1) break;
+      run(simulation->next_batch(static_cast<std::int64_t>(std::min(fit, 1e15))));
+      const std::lock_guard lock(mutex);
+      if (stop) break;
+    }
+  } catch (...) {
+    seconds_left = end - simulation->time();
+    throw;
+  }
+  seconds_left = end - simulation->time();
+  const std::lock_guard lock(mutex);
+  report.done = std::max<std::int64_t>(0, simulation->step() - first);
+  return report;
+}
+
 /// A cut makes a new model with other vertices and triangles; an operational region that moves, one with the same.
 void World::Impl::follow_topology() {
   std::shared_ptr<const Model> now = simulation->shared_model();
@@ -193,12 +218,8 @@ void World::Impl::read_frame(bool again) {
   }
   IndexRange vertices{0, count}, faces{0, triangles.size()};
   if (last_read != nullptr) {
-    const std::size_t before = last_read->topology->rest.size();
-    vertices = api::changed_range(last_read->positions, before, data->positions, count);
-    if (options.normals) {
-      vertices = api::joined(vertices, api::changed_range(last_read->normals, before, data->normals, count));
-    }
-    faces = last_read->topology == topology ? IndexRange{} : api::changed_triangles(*last_read->topology, *topology);
+    vertices = api::changed_vertices(last_read->frame, f);
+    faces = api::changed_triangles(last_read->frame, f);
   }
   last_read = data;
   const std::lock_guard lock(mutex);
@@ -206,6 +227,27 @@ void World::Impl::read_frame(bool again) {
   dirty_triangles = within(api::joined(dirty_triangles, faces), triangles.size());
   cut_since_read = false;
   newest = std::move(data);
+}
+
+/// While the worker is busy the frame of the steps before, otherwise that of the present state. Its topology is what the
+/// vertices of tools are numbered by from now on. `to_poll`: poll() and the frame's own dirty ranges count from here.
+FramePtr World::Impl::hand_out(bool to_poll) {
+  bool idle = false;
+  {
+    const std::lock_guard lock(mutex);
+    idle = !job;
+  }
+  if (idle && lost.empty()) read_frame();
+  const std::lock_guard lock(mutex);
+  shown = newest->topology;
+  if (!to_poll) return {newest, &newest->frame};
+  if (given != newest) {
+    given = newest;
+    given->polled = given->frame;
+    given->polled.dirty_vertices = std::exchange(dirty_vertices, {});
+    given->polled.dirty_triangles = std::exchange(dirty_triangles, {});
+  }
+  return {newest, &newest->polled};
 }
 
 /// Go on with another simulation of the same scene.

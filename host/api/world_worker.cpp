@@ -12,17 +12,17 @@ World::Impl::~Impl() {
   if (worker.joinable()) worker.join();
 }
 
-bool World::Impl::start_job(std::int64_t steps) {
+bool World::Impl::start_job(std::function<void()> work) {
   {
     const std::lock_guard lock(mutex);
-    if (job >= 0) return false;
+    if (job) return false;
   }
   throw_failure();
   check_can_step();
   if (!worker.joinable()) worker = std::thread([this] { serve(); });  // may fail: no job is pending then
   {
     const std::lock_guard lock(mutex);
-    job = steps;
+    job = std::move(work);
   }
   changed.notify_all();
   return true;
@@ -30,7 +30,7 @@ bool World::Impl::start_job(std::int64_t steps) {
 
 void World::Impl::wait_until_idle() {
   std::unique_lock lock(mutex);
-  changed.wait(lock, [this] { return job < 0; });
+  changed.wait(lock, [this] { return !job; });
 }
 
 /// What the worker met is told once.
@@ -45,16 +45,16 @@ void World::Impl::throw_failure() {
 
 void World::Impl::serve() {
   while (true) {
-    std::int64_t steps = 0;
+    std::function<void()> work;
     {
       std::unique_lock lock(mutex);
-      changed.wait(lock, [this] { return stop || job >= 0; });
+      changed.wait(lock, [this] { return stop || job; });
       if (stop) return;
-      steps = job;
+      work = job;
     }
     std::exception_ptr met;
     try {
-      run(steps);
+      work();
       read_frame();
     } catch (...) {
       met = std::current_exception();
@@ -62,7 +62,7 @@ void World::Impl::serve() {
     {
       const std::lock_guard lock(mutex);
       failure = met;
-      job = -1;
+      job = nullptr;
     }
     changed.notify_all();
   }

@@ -61,7 +61,8 @@ struct Frame {
       0;  ///< changes when vertices or triangles are others than before; positions alone do not count
 
   /// The vertices whose position or normal may differ from the one of the same number in the frame that World::frame() gave
-  /// before this one (frames that were never asked for count in). All of them in the first frame.
+  /// before this one (frames that were never asked for count in). All of them in the first frame. Empty in
+  /// frames from World::frame_since(), which returns the ranges of each of several consumers beside the frame.
   IndexRange dirty_vertices;
   /// The same for triangles and cut_faces: empty unless the topology changed.
   IndexRange dirty_triangles;
@@ -69,5 +70,12 @@ struct Frame {
 
 /// Keep it as long as you like.
 using FramePtr = std::shared_ptr<const Frame>;
+
+/// The newest frame for one of several consumers, and what of it is new to that consumer.
+struct FrameChange {
+  FramePtr frame;              ///< the one that was seen already if there is no newer one
+  IndexRange dirty_vertices;   ///< vertices whose position or normal differs from that of the same number in what was seen
+  IndexRange dirty_triangles;  ///< the same for triangles and cut_faces
+};
 
 }  // namespace pliant

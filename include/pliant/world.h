@@ -1,13 +1,14 @@
 // A running simulation for programs that embed Pliant: step it, pull at it, draw it.
 //
 // Threads. A World may be used from any thread, but by one at a time; two at once are an Error (state). Worlds share nothing,
-// so each may have a thread of its own, and what one computes does not depend on the others. A World makes one worker thread,
-// at the first advance_async. While the worker is busy these calls do not wait for it: busy, poll, frame, info, the tools,
-// cut, move_blade, lift_blade, advance_async. All others wait until it is done. A Frame may be read by any number of threads.
+// so each may have a thread of its own, and what one computes does not depend on the others. The first step_async or
+// advance_async makes a worker thread. While it is busy these calls do not wait for it: busy, poll, frame, frame_since, info,
+// the tools, cut, move_blade, lift_blade, step_async, advance_async. All others do. Any number of threads may read a Frame.
 #pragma once
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "pliant/error.h"
@@ -111,7 +112,12 @@ class PLIANT_API World {
 
   /// Ask the worker for `steps` steps and a frame. False, and nothing happens, while it is still busy. Throws like step, also
   /// for what went wrong in the steps asked for last.
-  bool advance_async(std::int64_t steps);
+  bool step_async(std::int64_t steps);
+  /// The same for `seconds` [s], which count as in advance(): what is left of them below a whole step goes into the next call.
+  bool advance_async(double seconds);
+  /// Steps are counted by step_async(); an integer of seconds has to be written as a double.
+  template <class Integer, class = std::enable_if_t<std::is_integral_v<Integer>>>
+  bool advance_async(Integer) = delete;
   [[nodiscard]] bool busy() const;  ///< the worker has something to do
 
   /// True if frame() would give another frame than last time. Never waits, never throws.
@@ -119,10 +125,12 @@ class PLIANT_API World {
   /// Wait for the worker; what its last work did. Throws what it met.
   StepReport wait();
 
-  /// The newest frame there is. While the worker is busy, that is the one of the steps before; otherwise the present state,
-  /// read from the device if that has not happened yet. After a divergence the last good state, after the loss of the device
-  /// the last one read.
+  /// The newest frame there is: while the worker is busy, that of the steps before; otherwise the present state, read from the
+  /// device if need be. After a divergence the last good state, after the loss of the device the last one read.
   FramePtr frame();
+  /// The same for one of several consumers, with what differs from `seen`, the frame that this consumer got last (null: none
+  /// yet, so everything does). The World remembers nothing of it: neither poll() nor the ranges of other consumers change.
+  FrameChange frame_since(const FramePtr& seen);
 
   /// Displacements [m] of a body's nodes, shape [nodes]. Throws Error (usage) if there is no such body.
   [[nodiscard]] std::vector<Vec3d> displacements(std::size_t body) const;
@@ -133,7 +141,7 @@ class PLIANT_API World {
   [[nodiscard]] std::uint64_t hash() const;
 
   /// Tools. They need WorldOptions::interactive, otherwise they throw Error (state); a vertex or grab that does not exist is
-  /// usage. They take effect at the next batch of steps and do not wait.
+  /// usage. They take effect at the next batch of steps and do not wait. Vertices are those of the frame handed out last.
   ///
   /// Hold the surface at a vertex and pull it to a point that begins where the vertex is now.
   GrabId grab(std::int32_t vertex, const GrabOptions& options = {});

@@ -136,10 +136,10 @@ TEST(ApiCut, the_worker_cuts_before_its_next_batch) {
   between.step(64);
   between.cut(wall(0.047));
   for (World* world : {&before, &between}) world->step(128 - world->step_number());
-  behind.advance_async(64);
+  behind.step_async(64);
   behind.cut(wall(0.047));  // at once if the worker is done, before its first batch if it has not begun
   behind.wait();
-  ASSERT_TRUE(behind.advance_async(64));
+  ASSERT_TRUE(behind.step_async(64));
   behind.wait();
   EXPECT_EQ(behind.pieces(0), 2);
   EXPECT_TRUE(behind.poll());
@@ -265,7 +265,8 @@ TEST(ApiCut, a_device_lost_while_it_is_cut_leaves_the_last_frame) {
 
 TEST(ApiCut, the_same_from_c) {
   const SurfaceSpec box = box_surface({0, 0, 0}, {0.1, 0.08, 0.06});
-  const pliant_surface surface{box.vertices[0].data(), box.vertices.size(), box.triangles[0].data(), box.triangles.size()};
+  const pliant_surface surface{sizeof(pliant_surface), box.vertices[0].data(), box.vertices.size(), box.triangles[0].data(),
+                               box.triangles.size()};
   const char* const text = R"({"format": "pliant-scene/1", "bodies": [{"surface": "memory:0", "lattice": {"spacing": 0.02},
     "material": {"law": "neo-hookean", "young": 3000, "poisson": 0.4, "density": 1000}}]})";
   pliant_options options = PLIANT_OPTIONS_INIT;
@@ -273,7 +274,7 @@ TEST(ApiCut, the_same_from_c) {
   pliant_world world{};
   ASSERT_EQ(pliant_world_parse(text, nullptr, &surface, 1, &options, &world), PLIANT_OK) << pliant_last_error();
   const double high[2][3]{{0.041, 0.2, -1}, {0.041, 0.2, 1}}, low[2][3]{{0.041, -0.2, -1}, {0.041, -0.2, 1}};
-  pliant_cut cut{};
+  pliant_cut cut = PLIANT_CUT_INIT;
   EXPECT_EQ(pliant_world_move_blade(world, "b", high[0], high[1], nullptr), PLIANT_OK);
   EXPECT_EQ(pliant_world_move_blade(world, "b", low[0], low[1], &cut), PLIANT_OK) << pliant_last_error();
   EXPECT_EQ(cut.changed, 1);
@@ -285,7 +286,7 @@ TEST(ApiCut, the_same_from_c) {
   int64_t pieces = 0;
   EXPECT_EQ(pliant_world_pieces(world, 0, &pieces), PLIANT_OK);
   EXPECT_EQ(pieces, 3);
-  pliant_frame frame{};
+  pliant_frame frame = PLIANT_FRAME_INIT;
   ASSERT_EQ(pliant_world_frame(world, &frame), PLIANT_OK);
   ASSERT_NE(frame.cut_faces, nullptr);
   EXPECT_EQ(frame.body_vertices[0], 0U);

@@ -49,7 +49,7 @@ TEST(Misuse, CallsThatMakeNoSense) {
   World world(block(), on("cpu"));
   EXPECT_EQ(code_of([&] { world.step(-1); }), ErrorCode::usage);
   EXPECT_EQ(code_of([&] { world.advance(-1); }), ErrorCode::usage);
-  EXPECT_EQ(code_of([&] { world.advance_async(-1); }), ErrorCode::usage);
+  EXPECT_EQ(code_of([&] { world.step_async(-1); }), ErrorCode::usage);
   EXPECT_EQ(code_of([&] { (void)world.displacements(1); }), ErrorCode::usage);
   EXPECT_EQ(code_of([&] { world.move_tool({0, std::nan(""), 0}); }), ErrorCode::usage);
   WorldOptions options;
@@ -92,7 +92,7 @@ TEST(Misuse, SteppingAfterDivergenceKeepsTheLastGoodState) {
   EXPECT_EQ(frame->step, report.step);
   for (const Vec4f& x : frame->positions) EXPECT_TRUE(std::isfinite(x[0] + x[1] + x[2]));
   EXPECT_EQ(code_of([&] { world.step(); }), ErrorCode::diverged);
-  EXPECT_EQ(code_of([&] { world.advance_async(1); }), ErrorCode::diverged);
+  EXPECT_EQ(code_of([&] { world.step_async(1); }), ErrorCode::diverged);
   EXPECT_EQ(world.frame(), frame);
   world.reset();
   EXPECT_EQ(world.step(1).step, 1);
@@ -134,10 +134,10 @@ TEST(Misuse, TheWorkerTellsOnceWhatItMet) {
   Losing losing;
   World& world = losing.world;
   *losing.left = 3;
-  ASSERT_TRUE(world.advance_async(500));
+  ASSERT_TRUE(world.step_async(500));
   EXPECT_EQ(code_of([&] { world.wait(); }), ErrorCode::device);
   EXPECT_NO_THROW(world.wait());
-  EXPECT_EQ(code_of([&] { world.advance_async(1); }), ErrorCode::device);
+  EXPECT_EQ(code_of([&] { world.step_async(1); }), ErrorCode::device);
   EXPECT_EQ(world.frame()->step, 0);
 }
 

@@ -98,10 +98,10 @@ TEST(Tools, WorkWhileTheWorkerIsBusyAndOnShapeMatching) {
   scene.dt = 0.002;
   scene.bodies[0].model.type = "flsm";
   World world(scene, on("cpu", true));
-  ASSERT_TRUE(world.advance_async(3000));
+  ASSERT_TRUE(world.step_async(3000));
   world.push(kCorner, {0.2, 0, 0});
   world.wait();
-  ASSERT_TRUE(world.advance_async(100));
+  ASSERT_TRUE(world.step_async(100));
   world.wait();
   EXPECT_GT(world.frame()->positions[kCorner][0], 0.1F + 1e-5F);
 }

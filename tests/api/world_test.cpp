@@ -41,9 +41,9 @@ TEST_P(OnBackend, GivesTheBitsOfTheBareSchedule) {
   World whole(block(), on(GetParam())), pieces(block(), on(GetParam())), async(block(), on(GetParam()));
   EXPECT_EQ(whole.step(150).done, 150);
   for (const int n : {1, 0, 40, 100, 9}) pieces.step(n);
-  ASSERT_TRUE(async.advance_async(77));
+  ASSERT_TRUE(async.step_async(77));
   async.wait();
-  ASSERT_TRUE(async.advance_async(73));
+  ASSERT_TRUE(async.step_async(73));
   EXPECT_EQ(whole.hash(), simulation.hash());
   EXPECT_EQ(pieces.hash(), simulation.hash());
   EXPECT_EQ(async.hash(), simulation.hash());
@@ -147,7 +147,7 @@ TEST(World, DirtyRangesHoldWhatChanged) {
   EXPECT_EQ(frame->dirty_vertices.count, frame->positions.size());
   EXPECT_EQ(frame->dirty_triangles.count, frame->triangles.size());
   for (int i = 0; i < 3; ++i) {  // the middle ones are read, and not asked for
-    ASSERT_TRUE(world.advance_async(20));
+    ASSERT_TRUE(world.step_async(20));
     world.wait();
   }
   const FramePtr next = world.frame();
@@ -179,9 +179,9 @@ TEST(World, NormalsPointOutwardAndCanBeLeftOut) {
 TEST(World, AFrameDoesNotWaitForTheWorker) {
   World world(block(), on("cpu"));
   const FramePtr before = world.frame();
-  ASSERT_TRUE(world.advance_async(20000));
+  ASSERT_TRUE(world.step_async(20000));
   EXPECT_TRUE(world.busy());
-  EXPECT_FALSE(world.advance_async(1));
+  EXPECT_FALSE(world.step_async(1));
   EXPECT_EQ(world.frame(), before);
   EXPECT_FALSE(world.poll());
   EXPECT_EQ(world.wait().step, 20000);
@@ -192,7 +192,7 @@ TEST(World, AFrameDoesNotWaitForTheWorker) {
 
 TEST(World, IsDestroyedWhileItsWorkerIsBusy) {
   World world(block(), on("cpu"));
-  ASSERT_TRUE(world.advance_async(1000000000));
+  ASSERT_TRUE(world.step_async(1000000000));
 }
 
 TEST(World, AdvancesBySecondsAndKeepsTheRest) {
@@ -225,7 +225,7 @@ std::vector<std::uint64_t> hashes(bool together) {
   const auto run = [&](std::size_t i) {
     World world(block(i == 0 ? 0.5 : 0.2), on("cpu", i == 1));
     for (int k = 0; k < 10; ++k) {
-      world.advance_async(15);
+      world.step_async(15);
       world.wait();
       if (i == 1) world.push(6, {0.01 * k, 0, 0});
     }

@@ -33,6 +33,43 @@ cmake --build "$work/consumer" >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 "$work/consumer/consumer"
 "$work/consumer/consumer_c"
 
+# The library may become a part of somebody's shared one, also the static library: a plugin, loaded by a program that knows nothing of it.
+cat >"$work/plugin.c" <<'C'
+#include <pliant/pliant.h>
+#include <string.h>
+int plugin_works(void) {
+  char names[4000];
+  pliant_world none = {0};
+  return pliant_backend_names(names, sizeof names, NULL) == PLIANT_OK && strncmp(names, "cpu", 3) == 0 &&
+         pliant_world_step(none, 1, NULL) == PLIANT_USAGE;
+}
+C
+cat >"$work/host.c" <<'C'
+#include <dlfcn.h>
+#include <stdio.h>
+int main(int count, char** words) {
+  void* plugin = dlopen(words[count - 1], RTLD_NOW | RTLD_LOCAL);
+  int (*works)(void) = plugin ? (int (*)(void))dlsym(plugin, "plugin_works") : 0;
+  if (!works) fprintf(stderr, "%s\n", dlerror());
+  return works && works() ? 0 : 1;
+}
+C
+mkdir "$work/plugin"
+cat >"$work/plugin/CMakeLists.txt" <<'CMAKE'
+cmake_minimum_required(VERSION 3.16)
+project(plugin LANGUAGES C CXX)
+find_package(pliant REQUIRED)
+add_library(plugin SHARED ../plugin.c)
+target_link_libraries(plugin PRIVATE pliant::pliant)
+set_target_properties(plugin PROPERTIES LINKER_LANGUAGE CXX)
+target_link_options(plugin PRIVATE LINKER:--no-undefined)
+add_executable(host ../host.c)
+target_link_libraries(host PRIVATE ${CMAKE_DL_LIBS})
+CMAKE
+cmake -S "$work/plugin" -B "$work/plugin/build" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_C_COMPILER="$cc" \
+  >"$work/log" 2>&1 && cmake --build "$work/plugin/build" >>"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+LD_LIBRARY_PATH=$lib "$work/plugin/build/host" "$work/plugin/build/libplugin.so"
+
 # A component that this build has is found; one that it lacks is refused by name.
 for component in OpenCL Embree Teleport; do
   printf 'find_package(pliant REQUIRED COMPONENTS %s)\n' "$component" >"$work/need.cmake"

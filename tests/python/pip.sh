@@ -15,6 +15,21 @@ cp "$source/include/pliant/version.h" "$work/source/include/pliant"
 "$python" -m venv --system-site-packages "$work/venv"
 PLIANT_PYTHON_BUILD=$build "$work/venv/bin/python" -m pip --disable-pip-version-check install --quiet --no-index --no-build-isolation \
   "$work/source"
+
+# Without pybind11 one line names it. (Configuring looks for nothing else first.)
+CMAKE_ARGS=-DCMAKE_DISABLE_FIND_PACKAGE_pybind11=ON "$work/venv/bin/python" - "$source" "$work" <<'PYTHON'
+import os
+import subprocess
+import sys
+
+source, work = sys.argv[1:]
+done = subprocess.run([sys.executable, "setup.py", "-q", "build_ext", "--build-temp", f"{work}/temp", "--build-lib", f"{work}/lib"], cwd=source,
+                      stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=dict(os.environ, PLIANT_PYTHON_BUILD=""))
+lines = done.stdout.strip().splitlines()
+assert done.returncode != 0 and len(lines) == 1 and "The Python module needs pybind11 (Debian: pybind11-dev" in lines[0], done.stdout
+print(lines[0])
+PYTHON
+
 cd "$work"
 unset PYTHONPATH
 "$work/venv/bin/python" - <<'PYTHON'

@@ -52,7 +52,7 @@ def test_views():
 
 def test_a_view_outlives_a_world_that_is_busy():
     world = block()
-    assert world.advance_async(1_000_000_000)
+    assert world.step_async(1_000_000_000)
     x = world.frame().positions
     before = x.copy()
     del world  # stops the worker after its batch
@@ -74,7 +74,7 @@ def test_steps():
     a, b = block(), block()
     report = a.step(100)
     assert report.done == 100 and not report.diverged and a.step_number == 100
-    assert b.advance_async(100)
+    assert b.step_async(100)
     b.wait()
     assert b.poll() and a.hash() == b.hash()
     assert a.displacements().shape == (a.info["nodes"], 3)
@@ -109,6 +109,79 @@ def test_errors():
         except TypeError:
             continue
         raise AssertionError("no TypeError")
+
+
+def type_error_of(call):
+    try:
+        call()
+    except TypeError as error:
+        assert "\n" not in str(error) and "std::" not in str(error), error
+        return str(error)
+    raise AssertionError("no TypeError")
+
+
+def test_wrong_calls_are_told_in_words_of_python():
+    world = block()
+    assert type_error_of(lambda: block(cuting=True)) == (
+        "World() has no argument 'cuting'; allowed are: 'scene', 'surfaces', 'folder', 'backend', 'dt', 'normals', 'interactive', 'cutting'")
+    assert type_error_of(lambda: world.advance_async(steps=20)) == "World.advance_async() has no argument 'steps'; allowed are: 'seconds'"
+    assert type_error_of(lambda: world.hash(deep=True)) == "World.hash() has no argument 'deep'; allowed are: none"
+    assert type_error_of(lambda: world.step("many")) == "World.step() takes (steps: int = 1), got (str)"
+    assert type_error_of(lambda: world.grab()).startswith("World.grab() takes (vertex: int, ")
+    assert type_error_of(lambda: world.push(0, force="up")).endswith("got (int, force: str)")
+    assert "World() takes (scene: object" in type_error_of(pliant.World)
+    assert "JSON" in type_error_of(lambda: pliant.World({"format": object()})), "errors of Python itself stay as they are"
+    assert pliant.World.step.__doc__.startswith("step(self: pliant.World, steps: int = 1)")
+    assert world.step(steps=2).done == 2 and world.step().done == 1
+
+
+def test_prepared_for_cuts():
+    a, b = block(cutting=True), block()
+    sheet = np.array([[[-1, 0.045, -1], [-1, 0.045, 3], [3, 0.045, -1]]])
+    for world in (a, b):
+        world.step(20)
+        world.cut(sheet)
+        world.step(20)
+    assert a.hash() == b.hash() and a.pieces() == 2
+
+
+def test_seconds_in_the_background():
+    world = block()
+    for i in range(300):
+        assert world.advance_async(1 / 60)
+        world.wait()
+    assert -1e-5 * world.dt < 5 - world.time < world.dt * (1 + 1e-5)
+    assert world.advance_async(seconds=0)
+    world.wait()
+
+
+def test_two_consumers():
+    world = block()
+    seen, uploaded = {1: None, 3: None}, {1: np.zeros((0, 3), np.float32), 3: np.zeros((0, 3), np.float32)}
+    for i in range(12):
+        world.step(10)
+        if i == 5:
+            world.cut(np.array([[[-1, 0.045, -1], [-1, 0.045, 3], [3, 0.045, -1]]]))
+        for every in (1, 3):
+            if i % every:
+                continue
+            seen[every], (first, count), triangles = world.frame_since(seen[every])
+            buffer = np.resize(uploaded[every], seen[every].positions.shape)
+            buffer[first:first + count] = seen[every].positions[first:first + count]
+            uploaded[every] = buffer
+            assert np.array_equal(buffer, seen[every].positions), (every, i)
+            assert (triangles[1] > 0) == (i in ({1: (0, 5), 3: (0, 6)}[every])), (every, i)
+    assert world.poll()
+    again, vertices, triangles = world.frame_since(seen[1])
+    assert vertices[1] == 0 and triangles[1] == 0
+    assert again.body_vertices == [(0, len(again.positions))]
+
+
+def test_push_a_node():
+    world = block(interactive=True)
+    world.push_node(0, 5, [0.1, 0, 0])
+    world.step(50)
+    assert not np.array_equal(world.displacements(), block(interactive=True).displacements())
 
 
 def test_tools():

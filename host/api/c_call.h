@@ -1,0 +1,68 @@
+// What every call of the C API begins with. Private to host/api.
+#pragma once
+#include <fmt/format.h>
+
+#include <new>
+#include <string>
+
+#include "api/c_handles.h"
+#include "api/c_structs.h"
+#include "pliant/pliant.h"
+
+namespace pliant::api {
+
+/// Of the calling thread.
+inline thread_local std::string last_error;
+
+/// Runs `call` and turns what it throws into a status.
+template <class Call>
+pliant_status guarded(Call&& call) noexcept {
+  try {
+    last_error.clear();
+    call();
+    return PLIANT_OK;
+  } catch (const Error& error) {
+    try {
+      last_error = error.what();
+    } catch (...) {
+    }
+    return static_cast<pliant_status>(error.code());
+  } catch (const std::bad_alloc&) {
+    try {
+      last_error = "out of memory";
+    } catch (...) {
+    }
+  } catch (const std::exception& error) {
+    try {
+      last_error = error.what();
+    } catch (...) {
+    }
+  } catch (...) {
+    last_error.clear();
+  }
+  return PLIANT_INTERNAL;
+}
+
+inline void need(const void* pointer, const char* name) {
+  if (pointer == nullptr) throw Error(ErrorCode::usage, fmt::format("\"{}\" is a null pointer", name));
+}
+
+template <class Call>
+pliant_status on(pliant_world world, Call&& call) noexcept {
+  return guarded([&] {
+    const auto held = Handles::all().find(world.id);
+    call(*held);
+  });
+}
+
+inline void check_count(std::size_t given, std::size_t needed, const char* what) {
+  if (given == needed) return;
+  throw Error(ErrorCode::usage, fmt::format("the buffer for {} holds {} numbers, expected {}", what, given, needed));
+}
+
+inline Vec3d vector_of(const double* v, const char* name) {
+  need(v, name);
+  return {v[0], v[1], v[2]};
+}
+
+}  // namespace pliant::api

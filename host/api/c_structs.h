@@ -1,0 +1,73 @@
+// Structs of the C API that may be older or younger than this library: pliant/types.h states the contract.
+#pragma once
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+
+#include "pliant/error.h"
+#include "pliant/types.h"
+
+namespace pliant::api {
+
+constexpr std::size_t kLargestStruct = 4096;  // beyond this `size` was never set
+
+/// Name and size in 0.2.0, the first version with sizes in its structs: up to the last member of that version, padded. A member
+/// that comes later begins behind that.
+template <class T>
+struct CStruct;
+
+#define PLIANT_C_STRUCT(type, last)                                                                      \
+  template <>                                                                                            \
+  struct CStruct<type> {                                                                                 \
+    static constexpr const char* name = #type;                                                           \
+    static constexpr std::size_t first_size =                                                            \
+        (offsetof(type, last) + sizeof(type::last) + alignof(type) - 1) / alignof(type) * alignof(type); \
+  }
+PLIANT_C_STRUCT(pliant_options, reserved);
+PLIANT_C_STRUCT(pliant_surface, triangle_count);
+PLIANT_C_STRUCT(pliant_info, reserved);
+PLIANT_C_STRUCT(pliant_body, triangle_count);
+PLIANT_C_STRUCT(pliant_report, message);
+PLIANT_C_STRUCT(pliant_frame, body_triangles);
+PLIANT_C_STRUCT(pliant_cut, seconds);
+#undef PLIANT_C_STRUCT
+
+/// Throws Error (usage) for a size that no version has.
+template <class T>
+void check_struct(const T* given) {
+  if (given == nullptr || (given->size >= CStruct<T>::first_size && given->size <= kLargestStruct)) return;
+  throw Error(ErrorCode::usage,
+              fmt::format("{}::size is {}; allowed are {} (of 0.2.0) to {}: sizeof({}) in your program", CStruct<T>::name,
+                          given->size, CStruct<T>::first_size, kLargestStruct, CStruct<T>::name));
+}
+
+/// What the caller says, and the defaults of what an older one cannot say. Throws Error (usage) for a size that no version has,
+/// and where a younger one asks for what this library does not know.
+template <class T>
+T take_struct(const T& given, T defaults) {
+  check_struct(&given);
+  const std::size_t known = std::min(given.size, sizeof(T));
+  const auto* bytes = reinterpret_cast<const unsigned char*>(&given);
+  const auto* unknown = std::find_if(bytes + known, bytes + given.size, [](unsigned char b) { return b != 0; });
+  if (unknown != bytes + given.size) {
+    throw Error(ErrorCode::usage, fmt::format("{}: the member at byte {} is set, and this library knows {} bytes: it is older "
+                                              "than the headers of your program",
+                                              CStruct<T>::name, unknown - bytes, sizeof(T)));
+  }
+  std::memcpy(&defaults, &given, known);
+  return defaults;
+}
+
+/// As much of `value` as the caller has room for; 0 in what a younger caller has beyond it. `out` was checked.
+template <class T>
+void give_struct(T value, T* out) {
+  if (out == nullptr) return;
+  const std::size_t size = out->size, known = std::min(size, sizeof(T));
+  value.size = size;
+  std::memcpy(out, &value, known);
+  std::memset(reinterpret_cast<unsigned char*>(out) + known, 0, size - known);
+}
+
+}  // namespace pliant::api

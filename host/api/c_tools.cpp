@@ -1,0 +1,89 @@
+// Tools, cuts and checkpoints of the C API.
+#include <array>
+#include <vector>
+
+#include "api/c_call.h"
+
+namespace {
+
+using namespace pliant::api;
+
+void give_cut(const pliant::CutResult& r, pliant_cut* out) {
+  give_struct({0, r.pending ? 1 : 0, r.changed ? 1 : 0, r.edges, r.seconds}, out);
+}
+
+}  // namespace
+
+pliant_status pliant_world_grab(pliant_world world, int32_t vertex, double radius, double stiffness, double max_force,
+                                uint64_t* out) {
+  return on(world, [&](CWorld& w) {
+    need(out, "out");
+    *out = w.world.grab(vertex, {radius, stiffness, max_force});
+  });
+}
+pliant_status pliant_world_move_grab(pliant_world world, uint64_t grab, const double target[3]) {
+  return on(world, [&](CWorld& w) { w.world.move_grab(grab, vector_of(target, "target")); });
+}
+pliant_status pliant_world_release(pliant_world world, uint64_t grab) {
+  return on(world, [&](CWorld& w) { w.world.release(grab); });
+}
+pliant_status pliant_world_push(pliant_world world, int32_t vertex, const double force[3]) {
+  return on(world, [&](CWorld& w) { w.world.push(vertex, vector_of(force, "force")); });
+}
+pliant_status pliant_world_push_node(pliant_world world, size_t body, int64_t node, const double force[3]) {
+  return on(world, [&](CWorld& w) { w.world.push_node(body, node, vector_of(force, "force")); });
+}
+pliant_status pliant_world_move_tool(pliant_world world, const double position[3]) {
+  return on(world, [&](CWorld& w) { w.world.move_tool(vector_of(position, "position")); });
+}
+pliant_status pliant_world_clear_tools(pliant_world world) {
+  return on(world, [&](CWorld& w) { w.world.clear_tools(); });
+}
+
+pliant_status pliant_world_cut(pliant_world world, const double* triangles, size_t triangle_count, pliant_cut* out) {
+  return on(world, [&](CWorld& w) {
+    if (triangle_count > 0) need(triangles, "triangles");
+    check_struct(out);
+    std::vector<std::array<pliant::Vec3d, 3>> copies(triangle_count);
+    for (auto& t : copies) {
+      for (pliant::Vec3d& corner : t) corner = {*triangles++, *triangles++, *triangles++};
+    }
+    give_cut(w.world.cut(copies), out);
+  });
+}
+pliant_status pliant_world_move_blade(pliant_world world, const char* blade, const double a[3], const double b[3],
+                                      pliant_cut* out) {
+  return on(world, [&](CWorld& w) {
+    need(blade, "blade");
+    check_struct(out);
+    give_cut(w.world.move_blade(blade, vector_of(a, "a"), vector_of(b, "b")), out);
+  });
+}
+pliant_status pliant_world_lift_blade(pliant_world world, const char* blade) {
+  return on(world, [&](CWorld& w) {
+    need(blade, "blade");
+    w.world.lift_blade(blade);
+  });
+}
+pliant_status pliant_world_pieces(pliant_world world, size_t body, int64_t* out) {
+  return on(world, [&](CWorld& w) {
+    need(out, "out");
+    *out = w.world.pieces(body);
+  });
+}
+
+pliant_status pliant_world_save(pliant_world world, const char* file) {
+  return on(world, [&](CWorld& w) {
+    need(file, "file");
+    w.world.save(file);
+  });
+}
+pliant_status pliant_world_load(pliant_world world, const char* file) {
+  return on(world, [&](CWorld& w) {
+    need(file, "file");
+    w.world.load(file);
+  });
+}
+pliant_status pliant_world_reset(pliant_world world) {
+  return on(world, [&](CWorld& w) { w.world.reset(); });
+}
