@@ -275,10 +275,9 @@ pliant_status pliant_world_frame(pliant_world world, pliant_frame* out) {
   return on(world, [&](CWorld& w) {
     need(out, "out");
     check_struct(out);
-    const pliant::FramePtr frame = w.world.frame();
+    const pliant::FramePtr frame =
+        w.world.frame();  // the World holds it until the next call of frame(), which nobody else makes
     give_frame(*frame, frame->dirty_vertices, frame->dirty_triangles, out);
-    const std::lock_guard lock(w.mutex);
-    w.frame = frame;
   });
 }
 pliant_status pliant_world_frame_since(pliant_world world, uint64_t consumer, pliant_frame* out) {

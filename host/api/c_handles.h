@@ -12,9 +12,8 @@ namespace pliant::api {
 struct CWorld {
   explicit CWorld(World w) : world(std::move(w)) {}
   World world;
-  std::mutex mutex;                        ///< protects what follows from callers who forget to take turns
-  FramePtr frame;                          ///< what the caller's pointers point to
-  std::map<std::uint64_t, FramePtr> seen;  ///< the same for each consumer
+  std::mutex mutex;                        ///< protects `seen` from callers who forget to take turns
+  std::map<std::uint64_t, FramePtr> seen;  ///< the last frame of each consumer, which its pointers point to
 };
 
 /// The only state that all users of the C API share: which handles are alive.

@@ -76,7 +76,14 @@ std::vector<std::array<Vec3d, 3>> wall(double at) {
 }
 
 TEST(Consumers, EachKeepsUpWithItsOwnRangesThroughCuts) {
-  World world(two_blocks(), on("cpu"));
+  SceneSpec scene = two_blocks();
+  scene.bodies.push_back(
+      scene.bodies[1]);  // one that moves early on, and not between the last two frames before somebody looks
+  BodySpec& early = scene.bodies[2];
+  early.name = "early";
+  early.fixed.clear();
+  early.prescribed = {{RegionSpec::all(), {0.01, 0.0, 0.0}, {"ramp", 0, 52 * World(two_blocks(), on("cpu")).dt(), {}}}};
+  World world(scene, on("cpu"));
   Consumer fast{"fast", 1, {}, {}}, slow{"slow", 4, {}, {}};
   Upload polled;
   for (int i = 0; i < 24; ++i) {
@@ -216,6 +223,11 @@ TEST(Seconds, WhatIsRefusedWhileTheWorkerIsBusyIsTheCallersToKeep) {
   expect_on_time(world, 400 * 0.05);
   EXPECT_EQ(code_of([&] { world.advance_async(-1.0); }), ErrorCode::usage);
   EXPECT_EQ(code_of([&] { world.advance_async(std::nan("")); }), ErrorCode::usage);
+}
+
+TEST(Seconds, TheDestructorStopsThem) {
+  World world(few_cells(0.2), on("cpu"));
+  ASSERT_TRUE(world.advance_async(1e7));
 }
 
 template <class T>

@@ -26,7 +26,7 @@ source, work = sys.argv[1:]
 done = subprocess.run([sys.executable, "setup.py", "-q", "build_ext", "--build-temp", f"{work}/temp", "--build-lib", f"{work}/lib"], cwd=source,
                       stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=dict(os.environ, PLIANT_PYTHON_BUILD=""))
 lines = done.stdout.strip().splitlines()
-assert done.returncode != 0 and len(lines) == 1 and "The Python module needs pybind11 (Debian: pybind11-dev" in lines[0], done.stdout
+assert done.returncode != 0 and len(lines) == 1 and lines[0].endswith("needs pybind11 (Debian: pybind11-dev, or pip install pybind11)"), done.stdout
 print(lines[0])
 PYTHON
 
