@@ -298,10 +298,11 @@ void in_pythons_words(const py::object& type) {
   const py::dict members(type.attr("__dict__"));
   for (const auto& [key, member] : members) {
     const auto name = key.cast<std::string>();
-    if (!PyInstanceMethod_Check(member.ptr())) continue;
+    if (!PyInstanceMethod_Check(member.ptr()) || member.attr("__doc__").is_none()) continue;
     const auto inner = py::reinterpret_borrow<py::object>(member);
     const auto text = inner.attr("__doc__").cast<std::string>();
-    const std::string call = name == "__init__" ? type_name : type_name + "." + name;
+    const bool init = name == "__init__";  // a name by which pybind11 would take the shell for a constructor of its own
+    const std::string call = init ? type_name : type_name + "." + name;
     const auto shell = [inner, call, parameters = parameters_of(text)](const py::args& args, const py::kwargs& kwargs) {
       try {
         return py::object(inner(*args, **kwargs));
@@ -314,7 +315,8 @@ void in_pythons_words(const py::object& type) {
     };
     py::options options;
     options.disable_function_signatures();
-    type.attr(name.c_str()) = py::cpp_function(shell, py::name(name.c_str()), py::is_method(type), py::doc(text.c_str()));
+    type.attr(name.c_str()) =
+        py::cpp_function(shell, py::name(init ? "init" : name.c_str()), py::is_method(type), py::doc(text.c_str()));
   }
 }
 

@@ -126,12 +126,13 @@ def test_wrong_calls_are_told_in_words_of_python():
         "World() has no argument 'cuting'; allowed are: 'scene', 'surfaces', 'folder', 'backend', 'dt', 'normals', 'interactive', 'cutting'")
     assert type_error_of(lambda: world.advance_async(steps=20)) == "World.advance_async() has no argument 'steps'; allowed are: 'seconds'"
     assert type_error_of(lambda: world.hash(deep=True)) == "World.hash() has no argument 'deep'; allowed are: none"
-    assert type_error_of(lambda: world.step("many")) == "World.step() takes (steps: int = 1), got (str)"
-    assert type_error_of(lambda: world.grab()).startswith("World.grab() takes (vertex: int, ")
+    wrong_type = type_error_of(lambda: world.step("many"))  # versions of pybind11 describe an int in different words
+    assert wrong_type.startswith("World.step() takes (steps: ") and wrong_type.endswith(" = 1), got (str)"), wrong_type
+    assert type_error_of(lambda: world.grab()).startswith("World.grab() takes (vertex: ")
     assert type_error_of(lambda: world.push(0, force="up")).endswith("got (int, force: str)")
     assert "World() takes (scene: object" in type_error_of(pliant.World)
     assert "JSON" in type_error_of(lambda: pliant.World({"format": object()})), "errors of Python itself stay as they are"
-    assert pliant.World.step.__doc__.startswith("step(self: pliant.World, steps: int = 1)")
+    assert pliant.World.step.__doc__.startswith("step(self: pliant.World, steps: ")
     assert world.step(steps=2).done == 2 and world.step().done == 1
 
 
