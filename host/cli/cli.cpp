@@ -1,10 +1,12 @@
 #include "cli/cli.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <nlohmann/json.hpp>
 
@@ -17,10 +19,19 @@ namespace {
 
 volatile std::sig_atomic_t interrupt_flag = 0;
 
-void on_interrupt(int) {
+void on_interrupt(int signal) {
   interrupt_flag = 1;
-  std::signal(SIGINT, SIG_DFL);
+  // A closing terminal sends SIGHUP more than once, and what stops services may add it to SIGTERM: neither is impatience.
+  if (signal == SIGINT) std::signal(SIGINT, SIG_DFL);
 }
+
+bool takes_output(int descriptor) {
+  const int flags = ::fcntl(descriptor, F_GETFL);
+  return flags >= 0 && (flags & O_ACCMODE) != O_RDONLY;
+}
+
+/// A stream that does not take it is looked at when the command ends.
+void put(std::FILE* stream, const std::string& line) { (void)std::fwrite(line.data(), 1, line.size(), stream); }
 
 }  // namespace
 
@@ -30,16 +41,21 @@ void Common::add_to(CLI::App& app) {
   app.add_flag("--quiet", quiet, "Print nothing but errors and what was asked for");
 }
 
-void Common::check() const {
+void Common::check(bool prints) const {
   if (!json.empty() && json != "-") check_writable(json);
+  if ((!quiet || prints || json == "-") && !takes_output(STDOUT_FILENO)) {
+    throw Error(
+        ErrorCode::bad_input,
+        "standard output is closed, and the result goes there; redirect it (> FILE), or leave it closed and give --quiet");
+  }
 }
 
 void Common::print(const std::string& text) const {
-  if (!quiet) fmt::print(json == "-" ? stderr : stdout, "{}\n", text);
+  if (!quiet) put(json == "-" ? stderr : stdout, text + "\n");
 }
 
 void Common::note(const std::string& text) const {
-  if (!quiet) fmt::print(stderr, "pliant: {}\n", text);
+  if (!quiet) tell(text);
 }
 
 void Common::write(const nlohmann::ordered_json& object) const {
@@ -54,6 +70,16 @@ void Common::write(const nlohmann::ordered_json& object) const {
     write_file(json, text);
   }
 }
+
+void reserve_standard_streams() {
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(descriptor, F_GETFD) >= 0 || errno != EBADF) continue;
+    // The lowest free number is given. What is lost on standard error is no result; on standard output it must be noticed.
+    if (::open("/dev/null", descriptor == STDERR_FILENO ? O_WRONLY : O_RDONLY) != descriptor) return;
+  }
+}
+
+void tell(const std::string& text) { put(stderr, fmt::format("pliant: {}\n", text)); }
 
 void check_writable(const std::filesystem::path& file) {
   std::error_code ignored;
@@ -98,16 +124,21 @@ std::string scene_stem(const std::filesystem::path& scene) {
 Progress::Progress(bool wanted) : on_(wanted && ::isatty(STDERR_FILENO) == 1) {}
 
 void Progress::show(std::int64_t done, std::int64_t total, const std::string& text) {
+  const double share = total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 0;
+  show(share, fmt::format("step {} of {}  {}", done, total, text));
+}
+
+void Progress::show(double share, const std::string& text) {
   if (!on_) return;
   const auto now = std::chrono::steady_clock::now();
   if (drawn_ && now - last_ < std::chrono::milliseconds(100)) return;
   last_ = now;
   drawn_ = true;
   constexpr int kWidth = 30;
-  const double share = total > 0 ? std::clamp(static_cast<double>(done) / static_cast<double>(total), 0.0, 1.0) : 0;
+  share = std::clamp(share, 0.0, 1.0);
   const int filled = static_cast<int>(share * kWidth);
-  fmt::print(stderr, "\r[{}{}] {:3.0f} %  step {} of {}  {}\033[K", std::string(static_cast<std::size_t>(filled), '#'),
-             std::string(static_cast<std::size_t>(kWidth - filled), '.'), 100 * share, done, total, text);
+  put(stderr, fmt::format("\r[{}{}] {:3.0f} %  {}\033[K", std::string(static_cast<std::size_t>(filled), '#'),
+                          std::string(static_cast<std::size_t>(kWidth - filled), '.'), 100 * share, text));
   std::fflush(stderr);
 }
 
@@ -118,7 +149,12 @@ void Progress::clear() {
   drawn_ = false;
 }
 
-void watch_interrupt() { std::signal(SIGINT, on_interrupt); }
+void watch_interrupt() {
+  std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
+  if (std::signal(SIGHUP, on_interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
+}
+
 bool interrupted() { return interrupt_flag != 0; }
 
 }  // namespace pliant::cli

@@ -33,7 +33,7 @@ std::function<int()> setup_compare(CLI::App& app);
 std::function<int()> setup_bench(CLI::App& app);
 std::function<int()> setup_plan(CLI::App& app);
 
-inline constexpr int kInterrupted = 130;  ///< exit code after SIGINT, as shells expect
+inline constexpr int kInterrupted = 130;  ///< exit code after SIGINT (as shells expect), SIGTERM or SIGHUP
 
 /// The options of every command.
 struct Common {
@@ -41,8 +41,9 @@ struct Common {
   bool quiet = false;
 
   void add_to(CLI::App& app);
-  /// Refuses a JSON file that cannot be written, before the work.
-  void check() const;
+  /// Refuses a JSON file that cannot be written, and a closed standard output that something goes to, before the work.
+  /// `prints`: something goes there even with --quiet.
+  void check(bool prints = false) const;
   /// Text for people: standard output, or standard error where that carries JSON; nowhere with --quiet.
   void print(const std::string& text) const;
   /// Remarks that are no result: standard error, nowhere with --quiet.
@@ -50,6 +51,13 @@ struct Common {
   /// One object, to where --json says; nothing without it.
   void write(const nlohmann::ordered_json& object) const;
 };
+
+/// Descriptors 0 to 2 that the caller has closed would be given to the first files that are opened: put what takes nothing
+/// there.
+void reserve_standard_streams();
+
+/// "pliant: TEXT" on standard error. One that is closed, full or gone ends nothing.
+void tell(const std::string& text);
 
 /// Throws Error if `file` could not be written now. Leaves nothing behind.
 void check_writable(const std::filesystem::path& file);
@@ -74,6 +82,8 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   void show(std::int64_t done, std::int64_t total, const std::string& text = "");
+  /// The same for a share of the whole, 0 to 1.
+  void show(double share, const std::string& text);
   void clear();
 
  private:
@@ -82,7 +92,8 @@ class Progress {
   std::chrono::steady_clock::time_point last_{};
 };
 
-/// From here on SIGINT only sets a flag; a second one ends the process at once.
+/// From here on SIGINT, SIGTERM and SIGHUP only set a flag; a second SIGINT ends the process at once. A SIGHUP that is ignored
+/// (nohup) stays so.
 void watch_interrupt();
 bool interrupted();
 

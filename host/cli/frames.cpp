@@ -192,6 +192,7 @@ FrameWriter::FrameWriter(std::filesystem::path folder, std::string stem, std::se
   if (!std::filesystem::is_directory(folder_))
     throw Error(ErrorCode::bad_input, fmt::format("--out: {} is a file, expected a folder", folder_.string()));
   check_writable(folder_ / (stem_ + ".pvd"));
+  lock_.emplace(folder_);
   if (formats_.count(OutputFormat::png) != 0) pictures_.emplace(pictures);
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "io/folder_lock.h"
 #include "io/gltf.h"
 #include "io/vtu.h"
 #include "render/export.h"
@@ -34,7 +35,8 @@ VtuMesh surface_frame(Simulation& simulation);
 
 class FrameWriter {
  public:
-  /// Makes the folder where it is missing and tries it. Throws Error when nothing can be written there.
+  /// Makes the folder where it is missing, locks it (FolderLock) and tries it. Throws Error when nothing can be written there,
+  /// or another run writes there.
   FrameWriter(std::filesystem::path folder, std::string stem, std::set<OutputFormat> formats,
               const render::PictureOptions& pictures);
 
@@ -48,6 +50,7 @@ class FrameWriter {
 
  private:
   std::filesystem::path folder_;
+  std::optional<FolderLock> lock_;
   std::string stem_;
   std::set<OutputFormat> formats_;
   PvdSeries volume_, surface_;

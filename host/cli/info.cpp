@@ -10,6 +10,7 @@
 #include "pliant/error.h"
 #include "schedule/build_program.h"
 #include "schedule/surface_program.h"
+#include "simulation/coupling.h"
 #include "simulation/simulation.h"
 
 namespace pliant::cli {
@@ -129,11 +130,18 @@ class Info {
                                        iterated_dt / model_.element_bound)
                          : "  Lanczos iteration: " + not_iterated);
     if (step > 0) {
-      const bool limited = !(step > 0.999 * scene_.safety * iterated_dt);  // by alpha, or there are no elements
       line(scene_.dt > 0 ? fmt::format("  the scene's step {:.6g} s", step)
-           : limited     ? fmt::format("  the scene's step is automatic: {:.6g} s, as shape matching asks", step)
-                         : fmt::format("  the scene's step is automatic: {:.3g} of it, {:.6g} s", scene_.safety, step));
+                         : fmt::format("  the scene's step is automatic: {}", automatic_text(step, iterated_dt)));
     }
+  }
+
+  /// What the automatic step follows (StepControl::start).
+  [[nodiscard]] std::string automatic_text(double step, double iterated_dt) const {
+    if (iterated_dt > 0 && step > 0.999 * scene_.safety * iterated_dt)
+      return fmt::format("{:.3g} of it, {:.6g} s", scene_.safety, step);
+    if (step > 0.999 * longest_step(model_, scene_)) return fmt::format("{:.6g} s, as shape matching asks", step);
+    if (iterated_dt > 0) return fmt::format("{:.6g} s, {:.3g} of the element bound, as cuts ask", step, scene_.safety);
+    return fmt::format("{:.6g} s, one frame, as no finite element limits it", step);
   }
 
   void memory(const Program& program) {

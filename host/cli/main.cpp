@@ -63,18 +63,20 @@ int run(int argc, char** argv) {
 }
 
 int fail(int code, const std::string& message) {
-  fmt::print(stderr, "pliant: {}\n", message);
+  pliant::cli::tell(message);
   return code;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  pliant::cli::reserve_standard_streams();
   std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit then fails a write, which names the file
   try {
     const int code = run(argc, argv);
-    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) return fail(2, "standard output could not be written");
-    return code;
+    // After SIGHUP the terminal is gone; what was asked for in files is there all the same.
+    const bool lost = std::fflush(stdout) != 0 || std::ferror(stdout) != 0;
+    return lost && code != pliant::cli::kInterrupted ? fail(2, "standard output could not be written") : code;
   } catch (const Error& error) {
     const int code = static_cast<int>(error.code());
     return fail(code > 4 ? 2 : code, error.what());  // the embedding API has finer codes than the command

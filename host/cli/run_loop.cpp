@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cli/cli.h"
+#include "cli/frame_grid.h"
 #include "geometry/stopwatch.h"
 
 namespace pliant::cli {
@@ -19,38 +20,54 @@ double median(std::vector<double> values) {
 
 }  // namespace
 
-std::int64_t RunLoop::remaining() const {
-  double steps = 1e15;
-  if (end_.step) steps = std::min(steps, static_cast<double>(*end_.step - simulation_.step()));
-  // A millionth of a step covers the rounding of time / dt where the end is a multiple of the step.
-  if (end_.time) steps = std::min(steps, std::ceil((*end_.time - simulation_.time()) / simulation_.dt() - 1e-6));
-  return static_cast<std::int64_t>(std::max(0.0, steps));
+std::int64_t steps_until(const Simulation& simulation, double time) {
+  const double steps = std::ceil((time - simulation.time()) / simulation.dt() - kStepSlack);
+  return static_cast<std::int64_t>(std::clamp(steps, 0.0, static_cast<double>(kMostSteps)));
 }
 
-RunResult RunLoop::run(std::int64_t every, const std::function<void()>& frame,
-                       const std::function<void(std::int64_t)>& after_batch) {
+std::int64_t RunLoop::remaining() const {
+  std::int64_t steps = kMostSteps;
+  if (end_.step) steps = std::min(steps, *end_.step - simulation_.step());
+  if (end_.time) steps = std::min(steps, steps_until(simulation_, *end_.time));
+  return std::max<std::int64_t>(0, steps);
+}
+
+/// One batch that goes beyond neither the next frame nor the end. Returns its steps.
+std::int32_t RunLoop::batch(const FrameGrid& grid) {
+  const auto wanted = [&] { return std::max<std::int64_t>(1, std::min(remaining(), grid.steps_left(simulation_))); };
+  std::int32_t n = simulation_.next_batch(wanted());
+  simulation_.begin_batch(n);
+  // Only now the length of its steps is known: they may have grown, and fewer lead to the same time.
+  n = static_cast<std::int32_t>(std::min<std::int64_t>(n, wanted()));
+  simulation_.backend().run(simulation_.program().step, 0, n, simulation_.step());
+  simulation_.end_batch(n);
+  return n;
+}
+
+RunResult RunLoop::run(FrameGrid& grid, const std::function<void()>& frame,
+                       const std::function<void(const RunResult&)>& after_batch) {
   RunResult result;
   std::vector<double> batch_ms;
-  while (!simulation_.at_equilibrium() && !result.interrupted) {
-    std::int64_t wanted = remaining();
-    if (wanted == 0) break;
-    if (every > 0) wanted = std::min(wanted, every - simulation_.step() % every);
-    const std::int32_t n = simulation_.next_batch(wanted);
+  const std::int64_t first = simulation_.step();
+  grid.start(simulation_);
+  while (!simulation_.at_equilibrium() && !result.interrupted && remaining() > 0) {
     const Stopwatch clock;
-    simulation_.advance(n);
+    const std::int32_t n = batch(grid);
     const double seconds = clock.seconds();
     result.seconds += seconds;
     batch_ms.push_back(1e3 * seconds / n);
+    result.steps = std::max<std::int64_t>(0, simulation_.step() - first);  // a batch that is made again takes steps back
     if (const auto& divergence = simulation_.divergence()) {
       result.diverged = divergence->message();
       result.diverged_step = divergence->step;
       break;
     }
-    const bool is_frame = every > 0 && simulation_.step() % every == 0;
+    const double dt = simulation_.dt();
+    result.shortest_dt = batch_ms.size() == 1 ? dt : std::min(dt, result.shortest_dt);
+    result.longest_dt = std::max(dt, result.longest_dt);
     result.interrupted = interrupted();
-    result.steps += n;
-    after_batch(result.steps);
-    if (is_frame) frame();
+    after_batch(result);
+    if (grid.take(simulation_)) frame();
   }
   result.ms_per_step = median(std::move(batch_ms));
   return result;

@@ -9,6 +9,14 @@
 
 namespace pliant::cli {
 
+class FrameGrid;
+
+inline constexpr double kStepSlack = 1e-6;  ///< of a step: covers the rounding of time / dt at a multiple of the step
+inline constexpr std::int64_t kMostSteps = 1'000'000'000'000'000;
+
+/// Steps of the present length to the first one at or after `time` [s]; 0: it is reached.
+std::int64_t steps_until(const Simulation& simulation, double time);
+
 /// When a run ends. The first limit that is reached wins; equilibrium and divergence always end it.
 struct RunEnd {
   std::optional<std::int64_t> step;  ///< number of the last step
@@ -17,9 +25,10 @@ struct RunEnd {
 
 struct RunResult {
   std::int64_t steps = 0;
-  double seconds = 0;      ///< wall time of stepping, without output [s]
-  double ms_per_step = 0;  ///< median over batches
-  std::string diverged;    ///< the message; empty: it did not
+  double seconds = 0;                      ///< wall time of stepping, without output [s]
+  double ms_per_step = 0;                  ///< median over batches
+  double shortest_dt = 0, longest_dt = 0;  ///< of all steps [s]; 0: there was none
+  std::string diverged;                    ///< the message; empty: it did not
   std::int64_t diverged_step = 0;
   bool interrupted = false;
 };
@@ -29,11 +38,14 @@ class RunLoop {
   RunLoop(Simulation& simulation, const RunEnd& end) : simulation_(simulation), end_(end) {}
   /// Steps still to do at the present size of the step.
   [[nodiscard]] std::int64_t remaining() const;
-  /// Run to the end; calls `frame` at every multiple of `every` steps (0: never) and `after_batch` with the steps done after
-  /// every batch. After a divergence the simulation holds the last good state.
-  RunResult run(std::int64_t every, const std::function<void()>& frame, const std::function<void(std::int64_t)>& after_batch);
+  [[nodiscard]] const RunEnd& end() const { return end_; }
+  /// Run to the end; calls `frame` where `grid` says so and `after_batch` with what was done so far after every batch. After a
+  /// divergence the simulation holds the last good state.
+  RunResult run(FrameGrid& grid, const std::function<void()>& frame, const std::function<void(const RunResult&)>& after_batch);
 
  private:
+  std::int32_t batch(const FrameGrid& grid);
+
   Simulation& simulation_;
   RunEnd end_;
 };

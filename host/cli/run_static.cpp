@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "geometry/stopwatch.h"
+#include "io/folder_lock.h"
 #include "io/obj.h"
 #include "io/vtu.h"
 #include "pliant/error.h"
@@ -151,7 +153,7 @@ class Static {
     json["bodies"] = bodies;
     if (!run_.out.empty() && solved_.size() == model_.bodies.size()) write(failure.empty() ? "" : "-last-good");
     run_.common.print(fmt::format("solved in {:.3g} s", seconds_));
-    if (run_.hash && run_.common.quiet && run_.common.json != "-") fmt::print("{}\n", hash_text(hash()));
+    if (run_.hash && run_.common.quiet && run_.common.json != "-") std::puts(hash_text(hash()).c_str());
     run_.common.print(fmt::format("hash {}", hash_text(hash())));
     run_.common.write(json);
   }
@@ -218,6 +220,8 @@ class Static {
 
 int run_static(const Scene& scene, const StaticRun& run) {
   check(scene, run);
+  std::optional<FolderLock> lock;
+  if (!run.out.empty()) lock.emplace(run.out);
   return Static(scene, run)();
 }
 

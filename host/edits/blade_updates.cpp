@@ -29,6 +29,11 @@ BladeMove move_of(const Blade& blade, double from, double to) {
   return move;
 }
 
+/// Whether some of a blade stands where material is, and not merely near it.
+bool in_material(const BladeTrace& trace) {
+  return std::any_of(trace.points.begin(), trace.points.end(), [](const TracePoint& p) { return p.carried.cell >= 0; });
+}
+
 vec::Box box_of(const std::vector<Vec3d>& x) {
   vec::Box box;
   for (const Vec3d& p : x) box.extend(p);
@@ -65,6 +70,7 @@ CutReport TopologyEdits::run_blades(const std::vector<BladeMove>& moves, std::sp
   std::vector<CutEdges> edges(run_.scene.bodies.size());
   std::vector<double> u = run_.loaded.u();
   std::map<std::string, std::map<std::int32_t, BladeTrace>> traces;
+  std::vector<std::string> met = run_.state.blades.met;
   for (std::size_t b = 0; b < edges.size(); ++b) {
     const std::vector<Vec3d> x = run_.loaded.positions(u, b);
     if (!reached(b, x, moves, triangles)) continue;
@@ -75,7 +81,10 @@ CutReport TopologyEdits::run_blades(const std::vector<BladeMove>& moves, std::sp
       if (move.to.empty()) continue;
       const BladeTrace* known = front(move, b);
       BladeTrace trace = known != nullptr ? *known : BladeTrace{move.from, 0, {}};
+      const std::size_t before = sweep.crossed().size();
       for (const BladeSegment& place : move.to) sweep.move(trace, place);
+      const bool meets = sweep.crossed().size() > before || in_material(trace);
+      if (meets && std::find(met.begin(), met.end(), move.key) == met.end()) met.push_back(move.key);
       if (!trace.points.empty()) traces[move.key][static_cast<std::int32_t>(b)] = std::move(trace);
     }
     edges[b].insert(sweep.crossed().begin(), sweep.crossed().end());
@@ -86,6 +95,7 @@ CutReport TopologyEdits::run_blades(const std::vector<BladeMove>& moves, std::sp
   if (report.edges > 0) make_cut(std::move(edges), std::move(u), report);
   for (const BladeMove& move : moves) run_.state.blades.traces.erase(move.key);
   run_.state.blades.traces.merge(traces);
+  run_.state.blades.met = std::move(met);
   return report;
 }
 

@@ -7,6 +7,7 @@
 #include <exception>
 
 #include "opencl/opencl_backend.h"
+#include "opencl/pocl_cache.h"
 
 namespace pliant::opencl {
 namespace {
@@ -36,6 +37,7 @@ std::vector<cl::Device> all_devices() {
   }
   for (const cl::Platform& platform : platforms) {
     try {
+      if (platform.getInfo<CL_PLATFORM_NAME>().rfind("Portable Computing Language", 0) == 0) ensure_pocl_cache();
       std::vector<cl::Device> own;
       platform.getDevices(CL_DEVICE_TYPE_ALL, &own);
       std::stable_partition(own.begin(), own.end(), [](const cl::Device& d) { return !is_single_thread(d); });
@@ -77,5 +79,7 @@ std::string build_options(const cl::Device& device) {
 namespace pliant {
 
 bool opencl_is_built_in() { return true; }
+
+std::string opencl_remark() { return opencl::pocl_cache_remark(); }
 
 }  // namespace pliant

@@ -372,7 +372,8 @@ std::unique_ptr<Backend> make_opencl_backend(int index, const OpenclOptions& opt
         ErrorCode::bad_input,
         "there is no OpenCL device: the OpenCL loader found no platform, or no platform has a device. Install a driver, for "
         "example "
-        "PoCL for the processor (Debian: apt install pocl-opencl-icd), or use the backend \"cpu\"");
+        "PoCL for the processor (Debian: apt install pocl-opencl-icd), or use the backend \"cpu\"" +
+            (opencl_remark().empty() ? "" : ". " + opencl_remark()));
   }
   if (index < 0 || static_cast<std::size_t>(index) >= devices.size()) {
     throw Error(ErrorCode::bad_input,

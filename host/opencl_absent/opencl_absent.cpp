@@ -8,6 +8,8 @@ namespace pliant {
 
 bool opencl_is_built_in() { return false; }
 
+std::string opencl_remark() { return {}; }
+
 std::vector<BackendInfo> list_opencl_devices(bool) { return {}; }
 
 std::unique_ptr<Backend> make_opencl_backend(int index, const OpenclOptions&) {

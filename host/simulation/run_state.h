@@ -68,6 +68,7 @@ struct BladeState {
   std::optional<double> seen;                                        ///< time up to which the scene's blades have moved [s]
   std::map<std::string, BladeSegment> placed;                        ///< where the host put its own blades
   std::map<std::string, std::map<std::int32_t, BladeTrace>> traces;  ///< by key and body: the trace that it goes on from
+  std::vector<std::string> met;                                      ///< keys of those that have come upon a body
 };
 
 /// Edits asked for inside a step of shape matching, made when the next one begins.
@@ -143,7 +144,7 @@ void visit(V& v, BladeTrace& s) {
 }
 template <class V>
 void visit(V& v, BladeState& s) {
-  v("seen", s.seen), v("placed", s.placed), v("traces", s.traces);
+  v("seen", s.seen), v("placed", s.placed), v("traces", s.traces), v("met", s.met);
 }
 template <class V>
 void visit(V& v, PendingEdits& s) {

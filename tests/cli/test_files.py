@@ -40,6 +40,36 @@ class Files(harness.CliTest):
             for entry in sets:
                 self.assertTrue((self.folder / "out" / entry.get("file")).exists())
 
+    def times(self):
+        sets = ElementTree.parse(self.folder / "out" / "scene.pvd").iter("DataSet")
+        return [float(d.get("timestep")) for d in sets]
+
+    def test_frames_in_time(self):
+        for every in ("16ms", "0.016s", "16000us"):
+            run = self.run_frames("--steps", 25, "--every", every)
+            self.assertEqual([round(t, 6) for t in self.times()], [0, 0.016, 0.032, 0.048, 0.05])
+        self.run_frames("--steps", 25, "--every", "5ms")  # between two steps: the first one after it
+        self.assertEqual([round(t, 6) for t in self.times()], [0, 0.006, 0.01, 0.016, 0.02, 0.026, 0.03, 0.036, 0.04, 0.046, 0.05])
+        self.run_frames("--steps", 25)
+        self.assertEqual([round(t, 6) for t in self.times()], [0, 0.018, 0.034, 0.05])
+        self.assertEqual(run["frames"], 5)
+
+    def test_frames_in_time_when_the_step_changes(self):
+        """First the step shrinks, as the cube is pressed flat, and grows again when it is let go."""
+        curve = [[0, 0], [0.15, 1], [0.3, 0], [0.6, 0]]
+        flat = {"prescribed": [{"plane": [[0, 0.049, 0], [0, 1, 0]], "displacement": [0, -0.065, 0], "table": curve}]}
+        scene = self.scene(body=flat)
+        run = self.json("run", scene, "--backend", "cpu", "--seconds", 0.6, "--out", "out", "--every", "10ms")
+        first = self.json("run", scene, "--backend", "cpu", "--steps", 1)["dt"]
+        self.assertLess(run["simulated_seconds"] / run["steps"], 0.95 * first)  # otherwise this tests nothing
+        times = self.times()
+        self.assertEqual((len(times), run["frames"]), (61, 61))
+        for number, t in enumerate(times):
+            self.assertGreaterEqual(t, 0.01 * number - 1e-6 * first)
+            self.assertLess(t, 0.01 * number + first)
+        plain = self.json("run", scene, "--backend", "cpu", "--seconds", 0.6)
+        self.assertEqual((run["deep_hash"], run["step"]), (plain["deep_hash"], plain["step"]))
+
     def test_frames_do_not_change_a_bit(self):
         plain = self.json("run", self.scene(dt=0.002), "--backend", "cpu", "--steps", 25)
         self.assertEqual(self.run_frames("--steps", 25, "--every", 3)["hash"], plain["hash"])

@@ -47,6 +47,15 @@ class Info(harness.CliTest):
         self.assertEqual((pure["matching_nodes"], pure["regions"], pure["ratio"]), (216, 216, 0))
         self.assertNotIn("shape_matching", self.json("info", self.scene())["bodies"][0])
 
+    def test_what_the_automatic_step_follows(self):
+        blade = {"name": "b", "path": [[0, 0.013, 0.08, -0.1, 0.013, 0.08, 0.1], [1, 0.013, -0.08, -0.1, 0.013, -0.08, 0.1]]}
+        flsm = {"type": "flsm", "stiffness": {"young": 3000}}
+        for keys, text in ((dict(), "automatic: 0.9 of it, "), (dict(blades=[blade]), "of the element bound, as cuts ask"),
+                           (dict(body={"model": flsm}), "as shape matching asks"), (dict(body={"model": {"type": "flsm"}}), "one frame")):
+            said = self.pliant("info", self.scene(**keys)).stdout
+            for other in ("automatic: 0.9 of it, ", "as cuts ask", "as shape matching asks", "one frame"):
+                self.assertEqual(other in said, other in text, said)
+
     def test_shipped_scene(self):
         self.assertGreater(self.json("info", harness.SCENES / "beam_tet.json")["elements"], 100)
 

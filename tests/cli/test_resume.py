@@ -1,5 +1,7 @@
 """Checkpoints: a resumed run gives the bits of an uninterrupted one, and what cannot be resumed is refused."""
 import resource
+import subprocess
+import time
 
 import harness
 
@@ -74,6 +76,31 @@ class Resume(harness.CliTest):
                            ("flipped", good[:200] + bytes([good[200] ^ 1]) + good[201:])):
             (self.folder / name).write_bytes(data)
             self.refused(*run, "--resume", name, words=[name])
+
+    def test_saved_on_the_way(self):
+        """What a run that is killed has left goes on with the bits of one that was not."""
+        squeezed = {"prescribed": [{"plane": [[0, 0.049, 0], [0, 1, 0]], "displacement": [0, -0.05, 0], "curve": "smooth",
+                                    "duration": 0.2}]}
+        scene, file = self.scene(body=squeezed), self.folder / "c.pckpt"
+        command = [harness.PLIANT, "run", str(scene), "--backend", "cpu", "--steps", "100000000", "--checkpoint", "c.pckpt",
+                   "--checkpoint-every", "0.05"]
+        process = subprocess.Popen(command, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        kept = []
+        while len(kept) < 3:
+            self.assertIsNone(process.poll())
+            if file.exists() and (not kept or file.stat().st_ino != kept[-1]):
+                kept.append(file.stat().st_ino)
+            time.sleep(0.01)
+        process.kill()
+        process.wait()
+        steps = lambda *rest: self.json("run", scene, "--backend", "cpu", "--steps", *rest)
+        done = steps(0, "--resume", "c.pckpt")["step"]
+        self.assertGreater(done, 0)
+        resumed, whole = steps(77, "--resume", "c.pckpt"), steps(done + 77)
+        for key in ("hash", "deep_hash", "step", "time", "dt"):
+            self.assertEqual(resumed[key], whole[key], key)
 
     def test_full_disk_keeps_the_older_checkpoint(self):
         run = ("run", self.scene(), "--backend", "cpu", "--steps", 1)

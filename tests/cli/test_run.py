@@ -1,5 +1,7 @@
 """pliant run: the end of a run, its figures, and what goes to which stream."""
 import json
+import os
+import pty
 import signal
 import subprocess
 import time
@@ -68,20 +70,113 @@ class Run(harness.CliTest):
             self.assertIn(sum(row["launches"] for row in rows), (10, 11), kernel)  # one more where the batch's end is looked at
             self.assertGreater(sum(row["seconds"] for row in rows), 0)
 
-    def test_interrupt_writes_what_there_is(self):
+    def start(self, *arguments, **options):
+        """A run that does not end by itself, once its first frame is there."""
         command = [harness.PLIANT, "run", str(self.scene(dt=0.001)), "--backend", "cpu", "--steps", "1000000000", "--out", "out",
-                   "--every", "1000000000", "--checkpoint", "c.pckpt", "--json", "r.json"]
-        process = subprocess.Popen(command, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                   "--every", "1000000000", *arguments]
+        streams = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, **options}
+        process = subprocess.Popen(command, cwd=self.folder, **streams)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
         while not (self.folder / "out" / "scene.pvd").exists() and process.poll() is None:
             time.sleep(0.05)
-        time.sleep(0.5)
-        process.send_signal(signal.SIGINT)
+        return process
+
+    def test_signals_write_what_there_is(self):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            with self.subTest(signal=number.name):
+                process = self.start("--checkpoint", "c.pckpt", "--json", "r.json")
+                time.sleep(0.5)
+                process.send_signal(number)
+                self.assertEqual(process.wait(60), 130)
+                run = json.loads((self.folder / "r.json").read_text())
+                self.assertTrue(run["interrupted"])
+                self.assertGreater(run["steps"], 0)
+                self.assertIn(f"scene_{run['step']:08}.vtu", self.names("out"))
+                steps = ("run", self.scene(dt=0.001), "--backend", "cpu", "--steps")
+                resumed = self.json(*steps, 1, "--resume", "c.pckpt")
+                self.assertEqual(resumed["step"], run["step"] + 1)
+                for name in ("c.pckpt", "r.json", "out/scene.pvd"):
+                    (self.folder / name).unlink()
+
+    def test_nohup_stays_ignored(self):
+        process = self.start("--json", "r.json", preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
+        process.send_signal(signal.SIGHUP)
+        time.sleep(0.3)
+        self.assertIsNone(process.poll())
+        process.send_signal(signal.SIGTERM)
         self.assertEqual(process.wait(60), 130)
-        run = json.loads((self.folder / "r.json").read_text())
-        self.assertTrue(run["interrupted"])
-        self.assertGreater(run["steps"], 0)
-        self.assertIn(f"scene_{run['step']:08}.vtu", self.names("out"))
-        self.json("run", self.scene(dt=0.001), "--backend", "cpu", "--steps", "1", "--resume", "c.pckpt")
+
+    def test_two_runs_into_one_folder(self):
+        process = self.start()
+        self.refused("run", self.scene("other"), "--backend", "cpu", "--steps", 1, "--out", "out",
+                     words=["'out'", f"process {process.pid}"])
+        self.assertFalse([n for n in self.names("out") if n.startswith("other")])
+        process.kill()
+        process.wait()
+        self.pliant("run", self.scene("other"), "--backend", "cpu", "--steps", 1, "--out", "out")  # the dead hold no lock
+        self.assertNotIn(".pliant-lock", self.names("out"))
+
+    def test_closed_streams(self):
+        run = f"{harness.PLIANT} run {self.scene()} --backend cpu --steps 2 --hash"
+        shell = lambda line: subprocess.run(["bash", "-c", line], capture_output=True, text=True, cwd=self.folder)
+        plain = shell(run)
+        for closed in ("2>&-", "2>/dev/full"):
+            done = shell(f"{run} {closed}")
+            self.assertEqual(done.returncode, 0, closed)
+            self.assertEqual(done.stdout.splitlines()[-1], plain.stdout.splitlines()[-1], closed)
+            self.assertEqual(shell(f"{harness.PLIANT} run none.json {closed}").returncode, 2)
+        for arguments in ("", " --quiet", " --json - --quiet"):
+            done = shell(f"{run}{arguments} --out closed >&-")
+            self.assertEqual(done.returncode, 2, arguments)
+            self.assertIn("standard output is closed", done.stderr)
+            self.assertEqual(self.names(), ["scene.json"])  # refused before anything was written
+        self.assertEqual(shell(f"{harness.PLIANT} run {self.scene()} --backend cpu --steps 2 --quiet --json r.json >&- 2>&-").returncode, 0)
+        self.assertEqual(json.loads((self.folder / "r.json").read_text())["steps"], 2)  # and nothing of the text got into it
+        self.assertEqual(shell(f"{run} >/dev/full").returncode, 2)
+        self.assertEqual(shell(f"{run} >&- 2>&-").returncode, 2)
+
+    def test_a_step_that_changes_is_told_as_a_range(self):
+        pressed = {"prescribed": [{"plane": [[0, 0.049, 0], [0, 1, 0]], "displacement": [0, -0.06, 0], "curve": "smooth",
+                                   "duration": 0.2}]}
+        done = self.pliant("run", self.scene(body=pressed), "--backend", "cpu", "--seconds", 0.2)
+        self.assertRegex(done.stdout, r"\d+ steps of [0-9.e-]+ to [0-9.e-]+ s to t = 0\.2\d* s, the last ")
+        self.assertRegex(done.stdout, r"largest displacement 0\.06\d* m\n")
+
+    def test_end_in_time_is_the_first_step_there(self):
+        run = self.json("run", self.scene(), "--backend", "cpu", "--seconds", 0.1)
+        self.assertGreaterEqual(run["time"], 0.1 - 1e-6 * run["dt"])
+        self.assertLess(run["time"], 0.1 + run["dt"])
+        self.assertAlmostEqual(run["max_displacement"], 0.005, delta=1e-3)
+        self.assertEqual((run["pieces"], run["cut_edges"], run["broken_faces"], run["blades_without_contact"]), (1, 0, 0, []))
+
+    def test_a_run_without_an_end_says_so(self):
+        process = self.start("--dt", "1e-13", stderr=subprocess.PIPE, text=True)
+        said = []
+        for line in process.stderr:
+            said.append(line)
+            if "this run needs about" in line:
+                break
+        self.assertRegex(said[-1], r"days more: .* steps of dt = 1e-13 s at .* ms each; the step was given, and [0-9.]+ s is stable")
+
+    def test_progress_on_a_terminal(self):
+        main, terminal = pty.openpty()
+        process = self.start(stderr=terminal)
+        os.close(terminal)
+        time.sleep(1)
+        process.send_signal(signal.SIGINT)
+        shown = b""
+        while True:
+            try:
+                part = os.read(main, 65536)
+            except OSError:  # the other end is closed
+                break
+            if not part:
+                break
+            shown += part
+        os.close(main)
+        self.assertEqual(process.wait(60), 130)
+        self.assertRegex(shown.decode(), r"\[\.*\] +0 %  step \d+  t = [0-9.]+ s  \d+ \S+( \d+ \S+)? left")
 
 
 if __name__ == "__main__":

@@ -30,6 +30,10 @@ class Usage(harness.CliTest):
         self.refused("run", scene, "--dt", "0", words=["--dt is 0 s", "more than 0"])
         self.refused("run", scene, "--every", "5", words=["--out"])
         self.refused("run", scene, "--out", "o", "--every", "0", words=["--every is 0"])
+        for every in ("-5", "5 s", "5m", "0s", "-1ms", "nans", "1e-30s", "infs", "s"):
+            self.refused("run", scene, "--out", "o", f"--every={every}", words=["--every is " + every, "16ms", "1 or more steps"])
+        self.refused("run", scene, "--checkpoint", "c", "--checkpoint-every", "0", words=["--checkpoint-every is 0 s", "more than 0"])
+        self.refused("run", scene, "--checkpoint-every", "5", words=["--checkpoint-every", "needs --checkpoint"])
         self.refused("run", scene, "--out", "o", "--format", "jpg", words=["\"jpg\"", "vtu, obj"])
         self.refused("run", scene, "--backend", "gpu", words=["\"gpu\"", "opencl:N"])
         self.refused("run", scene, "--backend", "opencl:999", words=["opencl"])

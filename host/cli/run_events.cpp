@@ -1,0 +1,58 @@
+#include "cli/run_events.h"
+
+#include <algorithm>
+#include <bit>
+#include <set>
+
+#include "cli/run_loop.h"
+#include "geometry/disjoint_sets.h"
+#include "geometry/vec.h"
+
+namespace pliant::cli {
+namespace {
+
+std::int64_t pieces(const ModelBody& body) {
+  DisjointSets sets(body.rest.size());
+  const auto join = [&](const auto& elements) {
+    for (const auto& nodes : elements) {
+      for (std::size_t a = 1; a < nodes.size(); ++a) sets.join(nodes[0], nodes[a]);
+    }
+  };
+  join(body.tets);
+  join(body.hexes);
+  std::set<std::int64_t> roots;
+  for (const auto& nodes : body.tets) roots.insert(sets.find(nodes[0]));
+  for (const auto& nodes : body.hexes) roots.insert(sets.find(nodes[0]));
+  return static_cast<std::int64_t>(roots.size());
+}
+
+}  // namespace
+
+RunEvents run_events(const Simulation& simulation) {
+  const RunState& state = simulation.state();
+  RunEvents events;
+  for (const CutRecord& cut : state.cuts) events.cut_edges += static_cast<std::int64_t>(cut.edges.size());
+  events.cut_edges -= state.opened;
+  for (const TearRecord& tear : state.tears) events.broken_faces += std::popcount(static_cast<unsigned>(tear.faces));
+  events.broken_faces /= 2;  // each is a face of two tetrahedra
+  for (std::size_t b = 0; b < simulation.model().bodies.size(); ++b) {
+    events.pieces += pieces(simulation.model().bodies[b]);
+    for (const Vec3d& u : simulation.displacements(b))
+      events.max_displacement = std::max(events.max_displacement, vec::norm(u));
+  }
+  return events;
+}
+
+std::vector<std::string> blades_without_contact(const Simulation& simulation, bool certain) {
+  const BladeState& state = simulation.state().blades;
+  const double now = certain ? state.seen.value_or(0) : simulation.time();
+  std::vector<std::string> names;
+  for (const Blade& blade : simulation.scene().blades) {
+    const double end = std::min(blade.end, blade.path.back()[0]);
+    const bool over = now >= end - kStepSlack * simulation.dt();
+    if (over && std::find(state.met.begin(), state.met.end(), blade.name) == state.met.end()) names.push_back(blade.name);
+  }
+  return names;
+}
+
+}  // namespace pliant::cli

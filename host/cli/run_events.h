@@ -1,0 +1,25 @@
+// What happened to the bodies in a run: cuts, tears, pieces, displacements.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "simulation/simulation.h"
+
+namespace pliant::cli {
+
+/// Since the scene's start, as the present state has it.
+struct RunEvents {
+  std::int64_t cut_edges = 0;     ///< that blades have cut, without those that parted by themselves (RunState::opened)
+  std::int64_t broken_faces = 0;  ///< of tetrahedra, by tearing
+  std::int64_t pieces = 0;        ///< of all bodies: elements that share a node belong to one piece
+  double max_displacement = 0;    ///< of any node [m]
+};
+
+RunEvents run_events(const Simulation& simulation);
+
+/// Names of blades of the scene that have come to the end of their path and met no body. `certain`: only those that have been
+/// followed to the end, which a blade is not while steps of its last batch are still to come.
+std::vector<std::string> blades_without_contact(const Simulation& simulation, bool certain);
+
+}  // namespace pliant::cli

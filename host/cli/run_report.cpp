@@ -1,0 +1,202 @@
+// What a run reports at its end: the JSON object, a summary for people, remarks.
+#include "cli/run_report.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/run_events.h"
+#include "program/hash.h"
+
+namespace pliant::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double total_mass(const Model& model) {
+  double mass = 0;
+  for (const ModelBody& body : model.bodies) mass += body.mass;
+  return mass;
+}
+
+class Report {
+ public:
+  explicit Report(const RunReport& report)
+      : r_(report),
+        s_(report.simulation),
+        out_(report.common),
+        result_(report.result),
+        events_(run_events(report.simulation)) {}
+
+  void operator()() {
+    const std::string hash = hash_text(s_.hash()), deep_hash = hash_text(s_.deep_hash());
+    Json json = figures(hash, deep_hash);
+    add_events(json);
+    if (!r_.probes.empty()) json["probes"] = probes();
+    add_mass(json);
+    add_inversions(json);
+    if (!result_.diverged.empty()) json["diverged_step"] = result_.diverged_step;
+    print_summary();
+    if (r_.profile) json["profile"] = profile();
+    if (r_.hash && out_.quiet && out_.json != "-") std::puts(hash.c_str());
+    out_.print("hash " + hash);
+    if (r_.deep_hash) out_.print("deep hash " + deep_hash);
+    out_.write(json);
+  }
+
+ private:
+  [[nodiscard]] bool relaxes() const { return s_.scene().relaxation.enabled; }
+  [[nodiscard]] double simulated() const { return s_.time() - r_.first_time; }
+
+  [[nodiscard]] Json figures(const std::string& hash, const std::string& deep_hash) const {
+    const BackendInfo& info = s_.backend().info();
+    Json json{{"scene", r_.stem},
+              {"backend", info.name},
+              {"device", info.device},
+              {"bit_exact", info.bit_exact},
+              {"nodes", s_.model().nodes()},
+              {"elements", s_.model().elements()},
+              {"steps", result_.steps},
+              {"dt", s_.dt()},
+              {"stable_dt", s_.stable_dt()},
+              {"simulated_seconds", simulated()},
+              {"ms_per_step", result_.ms_per_step},
+              {"hash", hash},
+              {"deep_hash", deep_hash},
+              {"diverged", !result_.diverged.empty()},
+              {"step", s_.step()},
+              {"time", s_.time()},
+              {"wall_seconds", result_.seconds},
+              {"frames", r_.frames != nullptr ? r_.frames->frames() : 0},
+              {"interrupted", result_.interrupted}};
+    if (relaxes()) {
+      json["converged"] = s_.at_equilibrium();
+      json["residual"] = s_.residual();
+    }
+    return json;
+  }
+
+  void add_events(Json& json) const {
+    json["max_displacement"] = events_.max_displacement;
+    json["cut_edges"] = events_.cut_edges;
+    json["broken_faces"] = events_.broken_faces;
+    json["pieces"] = events_.pieces;
+    json["blades_without_contact"] = blades_without_contact(s_, false);
+    json["opened_edges"] = s_.state().opened;
+    if (s_.state().opened > 0) {
+      out_.note(fmt::format("{} edges were stretched beyond {:.3g} times their length and parted (\"break_stretch\")",
+                            s_.state().opened, s_.scene().break_stretch));
+    }
+  }
+
+  [[nodiscard]] Json probes() const {
+    Json rows = Json::array();
+    const std::vector<ProbeState> now = r_.probes.states(s_);
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      const ProbePoint& point = r_.probes.point(i);
+      rows.push_back({{"name", point.name},
+                      {"body", s_.model().bodies[r_.probes.body(i)].name},
+                      {"rest", point.rest},
+                      {"position", now[i].position},
+                      {"displacement", now[i].displacement},
+                      {"velocity", now[i].velocity}});
+      out_.print(fmt::format("probe {}: displacement [{:.6g}, {:.6g}, {:.6g}] m", point.name, now[i].displacement[0],
+                             now[i].displacement[1], now[i].displacement[2]));
+    }
+    return rows;
+  }
+
+  void add_mass(Json& json) const {
+    const double mass = total_mass(s_.model());
+    double added = 0;
+    for (const ModelBody& body : s_.model().bodies) added += body.added_mass;
+    json["mass"] = mass;
+    json["added_mass"] = added;
+    const BallastReport& ballast = s_.ballast();
+    json["ballast"] = {{"nodes", ballast.nodes}, {"mass", ballast.mass}, {"most", ballast.most}};
+    if (ballast.most > 0) {
+      out_.note(fmt::format(
+          "elements that asked for less than {:.3g} of the first step got inertia instead: at most {:.3g} of the mass, {:.3g} "
+          "on {} nodes at the end",
+          s_.scene().least_step, ballast.most / mass, ballast.mass / mass, ballast.nodes));
+    }
+  }
+
+  void add_inversions(Json& json) const {
+    const Inversions& inverted = s_.inversions();
+    json["inverted"] = {{"batches", inverted.batches}, {"most", inverted.most}, {"now", inverted.last}};
+    json["calmed_elements"] = inverted.calmed;
+    if (inverted.calmed > 0) {
+      out_.note(fmt::format("in {} elements, counted batch by batch, motion faster than sound was taken out", inverted.calmed));
+    }
+    if (inverted.batches == 0) return;
+    json["inverted"]["first"] = {
+        {"step", inverted.first_step}, {"time", inverted.first_time}, {"body", inverted.body}, {"element", inverted.element}};
+    out_.note(
+        fmt::format("up to {} elements at a time were turned inside out and driven back, first in step {} (t = {:.4g} s), "
+                    "element {} of body '{}'; {} in the last steps",
+                    inverted.most, inverted.first_step, inverted.first_time, inverted.element, inverted.body, inverted.last));
+  }
+
+  void print_summary() const {
+    const BackendInfo& info = s_.backend().info();
+    out_.print(fmt::format("{}: {} nodes, {} elements on {} ({}), {}", r_.stem, s_.model().nodes(), s_.model().elements(),
+                           info.name, info.device, info.bit_exact ? "bit-exact" : "tolerance"));
+    out_.print(steps_text());
+    if (relaxes()) {
+      out_.print(fmt::format("{}: residual {:.3g}, tolerance {:.3g}",
+                             s_.at_equilibrium() ? "at equilibrium" : "not at equilibrium", s_.residual(),
+                             s_.scene().relaxation.tolerance));
+    }
+    out_.print(fmt::format("simulated {:.6g} s in {:.3g} s: {:.4g} ms per step (median), {:.3g} times real time", simulated(),
+                           result_.seconds, result_.ms_per_step, result_.seconds > 0 ? simulated() / result_.seconds : 0.0));
+    if (r_.frames != nullptr) out_.print(fmt::format("{} frames in {}", r_.frames->frames(), r_.frames->folder().string()));
+    out_.print(events_text());
+  }
+
+  /// A step that changed is told as a range: steps times the last one is not the time.
+  [[nodiscard]] std::string steps_text() const {
+    const std::string share =
+        s_.stable_dt() > 0 ? fmt::format(", {:.3g} of the stable {:.6g} s", s_.dt() / s_.stable_dt(), s_.stable_dt()) : "";
+    if (result_.shortest_dt < result_.longest_dt) {
+      return fmt::format("{} steps of {:.6g} to {:.6g} s to t = {:.6g} s, the last{}", result_.steps, result_.shortest_dt,
+                         result_.longest_dt, s_.time(), share.empty() ? fmt::format(" of {:.6g} s", s_.dt()) : share.substr(1));
+    }
+    return fmt::format("{} steps of {:.6g} s{}", result_.steps, s_.dt(), share);
+  }
+
+  [[nodiscard]] std::string events_text() const {
+    std::string text = fmt::format("largest displacement {:.4g} m", events_.max_displacement);
+    const bool cuts = !s_.scene().blades.empty() || events_.cut_edges > 0;
+    if (cuts) text += fmt::format(", {} edges cut", events_.cut_edges);
+    if (events_.broken_faces > 0) text += fmt::format(", {} faces broken by tears", events_.broken_faces);
+    if (cuts || events_.broken_faces > 0)
+      text += fmt::format(", {} {}", events_.pieces, events_.pieces == 1 ? "piece" : "pieces");
+    return text;
+  }
+
+  Json profile() const {
+    Json rows = Json::array();
+    const auto times = s_.backend().take_profile();
+    double total = 0;
+    for (const PassTime& t : times) total += t.seconds;
+    for (const PassTime& t : times) {
+      rows.push_back({{"kernel", t.kernel}, {"label", t.label}, {"seconds", t.seconds}, {"launches", t.launches}});
+      out_.print(fmt::format("  {:<22} {:<36} {:>8} launches {:>9.3f} us each {:>5.1f} %", t.kernel, t.label, t.launches,
+                             1e6 * t.seconds / static_cast<double>(t.launches), total > 0 ? 100 * t.seconds / total : 0));
+    }
+    return rows;
+  }
+
+  const RunReport& r_;
+  const Simulation& s_;
+  const Common& out_;
+  const RunResult& result_;
+  const RunEvents events_;
+};
+
+}  // namespace
+
+void report_run(const RunReport& report) { Report{report}(); }
+
+}  // namespace pliant::cli

@@ -1,0 +1,26 @@
+// What a run reports at its end.
+#pragma once
+#include <string>
+
+#include "cli/cli.h"
+#include "cli/frames.h"
+#include "cli/probes.h"
+#include "cli/run_loop.h"
+
+namespace pliant::cli {
+
+struct RunReport {
+  const Common& common;
+  const std::string& stem;  ///< of the scene
+  const Simulation& simulation;
+  const RunResult& result;
+  const Probes& probes;
+  const FrameWriter* frames = nullptr;  ///< nullptr: none were written
+  double first_time = 0;                ///< when this run began, on the scene's clock [s]
+  bool hash = false, deep_hash = false, profile = false;
+};
+
+/// Print what people read, remarks, and the JSON object (docs/schema/run.json).
+void report_run(const RunReport& report);
+
+}  // namespace pliant::cli
