@@ -7,6 +7,7 @@
 
 #include "backend/pass_table.h"
 #include "opencl/devices.h"
+#include "opencl/pocl_cache.h"
 
 namespace pliant::opencl {
 namespace {
@@ -90,8 +91,9 @@ cl::Program KernelCache::build(const std::string& stem, const std::string& optio
     std::string log;
     for (const auto& [device, text] : error.getBuildLog()) log += text;
     throw Error(ErrorCode::bad_input,
-                fmt::format("{} cannot build kernel \"{}\" (options {}): {}. The compiler's log:\n{}", device_name_, stem,
-                            options, error_name(error.err()), log.empty() ? "(empty)" : log));
+                fmt::format("{} cannot build kernel \"{}\" (options {}): {}. {}The compiler's log:\n{}", device_name_, stem,
+                            options, error_name(error.err()), pocl_cache_remark().empty() ? "" : pocl_cache_remark() + ". ",
+                            log.empty() ? "(empty)" : log));
   } catch (const cl::Error& error) {
     throw translate(error, ErrorCode::bad_input,
                     fmt::format("building kernel \"{}\" (options {}) on {}", stem, options, device_name_));

@@ -57,7 +57,7 @@ class PoclCache {
     std::error_code code;
     std::string name = (fs::temp_directory_path(code) / "pliant-kernels-XXXXXX").string();
     if (code || ::mkdtemp(name.data()) == nullptr) {
-      found += "; set POCL_CACHE_DIR to a folder that can";
+      found += "; set POCL_CACHE_DIR to a folder that can be";
       return;
     }
     ::setenv("POCL_CACHE_DIR", name.c_str(), 1);

@@ -54,17 +54,17 @@ class Cut(CliTest):
         late = {"name": "late", "path": [[1, 0.5, 0.08, -0.1, 0.5, 0.08, 0.1], [2, 0.5, -0.08, -0.1, 0.5, -0.08, 0.1]]}
         scene = self.scene(body={"prescribed": []}, gravity=[0, 0, 0], blades=[BLADE, far, late])
         run = self.json("run", scene, "--backend", "cpu", "--seconds", 0.08)
-        # 36 edges of the lattice cross the plane between two layers of cells' nodes.
-        self.assertEqual((run["cut_edges"], run["pieces"], run["broken_faces"]), (36, 2, 0))
+        # Across a layer of 25 cells: 36 edges of the lattice, 60 diagonals of faces, 25 of cells.
+        self.assertEqual((run["cut_edges"], run["pieces"], run["broken_faces"]), (121, 2, 0))
         self.assertEqual(run["blades_without_contact"], ["astray"])
         done = self.pliant("run", scene, "--backend", "cpu", "--seconds", 0.08)
         self.assertEqual(done.stderr.count("met nothing"), 1)
         self.assertIn("blade 'astray' met nothing", done.stderr)
-        self.assertIn(", 36 edges cut, 2 pieces\n", done.stdout)
+        self.assertIn(", 121 edges cut, 2 pieces\n", done.stdout)
         # A blade that has left the body before the run is resumed has met it all the same.
         self.pliant("run", scene, "--backend", "cpu", "--seconds", 0.06, "--checkpoint", "c.pckpt")
         resumed = self.json("run", scene, "--backend", "cpu", "--seconds", 0.02, "--resume", "c.pckpt")
-        self.assertEqual((resumed["cut_edges"], resumed["blades_without_contact"]), (36, ["astray"]))
+        self.assertEqual((resumed["cut_edges"], resumed["blades_without_contact"]), (121, ["astray"]))
 
     def test_files_without_blades_have_no_arrays_of_cuts(self):
         self.pliant("run", self.scene(), "--steps", 2, "--out", "out")
