@@ -57,7 +57,9 @@ class Files(harness.CliTest):
     def test_frames_in_time_when_the_step_changes(self):
         """First the step shrinks, as the cube is pressed flat, and grows again when it is let go."""
         curve = [[0, 0], [0.15, 1], [0.3, 0], [0.6, 0]]
-        flat = {"prescribed": [{"plane": [[0, 0.049, 0], [0, 1, 0]], "displacement": [0, -0.065, 0], "table": curve}]}
+        material = {"law": "neo-hookean", "young": 300000, "poisson": 0.4, "density": 1000, "damping": 5}
+        flat = {"material": material, "prescribed": [{"plane": [[0, 0.049, 0], [0, 1, 0]], "displacement": [0, -0.065, 0],
+                                                      "table": curve}]}
         scene = self.scene(body=flat)
         run = self.json("run", scene, "--backend", "cpu", "--seconds", 0.6, "--out", "out", "--every", "10ms")
         first = self.json("run", scene, "--backend", "cpu", "--steps", 1)["dt"]

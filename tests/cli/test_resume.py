@@ -87,9 +87,10 @@ class Resume(harness.CliTest):
         process = subprocess.Popen(command, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         self.addCleanup(process.wait)
         self.addCleanup(process.kill)
-        kept = []
+        kept, end = [], time.monotonic() + 120
         while len(kept) < 3:
             self.assertIsNone(process.poll())
+            self.assertLess(time.monotonic(), end, "no checkpoint on the way")
             if file.exists() and (not kept or file.stat().st_ino != kept[-1]):
                 kept.append(file.stat().st_ino)
             time.sleep(0.01)

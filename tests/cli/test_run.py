@@ -133,6 +133,10 @@ class Run(harness.CliTest):
             self.assertEqual(self.names(), ["scene.json"])  # refused before anything was written
         self.assertEqual(shell(f"{harness.PLIANT} run {self.scene()} --backend cpu --steps 2 --quiet --json r.json >&- 2>&-").returncode, 0)
         self.assertEqual(json.loads((self.folder / "r.json").read_text())["steps"], 2)  # and nothing of the text got into it
+        # The lock is a file that stays open: remarks must not get into it.
+        process = self.start(preexec_fn=lambda: os.close(2))
+        self.assertEqual((self.folder / "out" / ".pliant-lock").read_text(), f"{process.pid}\n")
+        process.kill()
         self.assertEqual(shell(f"{run} >/dev/full").returncode, 2)
         self.assertEqual(shell(f"{run} >&- 2>&-").returncode, 2)
 
