@@ -4,7 +4,7 @@ import json
 import re
 import struct
 
-from harness import CliTest, main
+from harness import SCENES, CliTest, main
 from test_picture import glb
 
 BLADE = {"name": "knife", "path": [[0, 0.013, 0.08, -0.1, 0.013, 0.08, 0.1], [0.05, 0.013, -0.08, -0.1, 0.013, -0.08, 0.1]]}
@@ -65,6 +65,14 @@ class Cut(CliTest):
         self.pliant("run", scene, "--backend", "cpu", "--seconds", 0.06, "--checkpoint", "c.pckpt")
         resumed = self.json("run", scene, "--backend", "cpu", "--seconds", 0.02, "--resume", "c.pckpt")
         self.assertEqual((resumed["cut_edges"], resumed["blades_without_contact"]), (121, ["astray"]))
+
+    def test_tears_are_counted(self):
+        """Each broken face is two triangles of the surface."""
+        run = self.json("run", SCENES / "tear_sheet.json", "--backend", "cpu", "--out", "out", "--every", "10s")
+        last = sorted((self.folder / "out").glob("*_surface_*.vtu"))[-1]
+        self.assertGreater(run["broken_faces"], 50)
+        self.assertEqual(2 * run["broken_faces"], sum(vtu(last)["cut"]))
+        self.assertEqual((run["cut_edges"], run["max_displacement"] >= 0.024 - 1e-6), (0, True))
 
     def test_files_without_blades_have_no_arrays_of_cuts(self):
         self.pliant("run", self.scene(), "--steps", 2, "--out", "out")

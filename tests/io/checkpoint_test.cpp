@@ -32,6 +32,7 @@ Checkpoint sample() {
   s.state.tears = {{0, 17, 5}};
   s.state.seeds = {{1, 2, 3}};
   s.state.blades.seen = 0.25;
+  s.state.blades.met = {"knife", "host/saw"};
   s.state.blades.placed["scalpel"] = {Vec3d{1, 2, 3}, Vec3d{4, 5, 6}};
   s.state.blades.traces["scalpel"][1] = {{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}}, 3, {{1, -1, {4, 2, {0.25, 0.25, 0.25, 0.25}, {}}}}};
   s.state.pending.triangles = {{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}}};
