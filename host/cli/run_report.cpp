@@ -32,11 +32,11 @@ class Report {
     const std::string hash = hash_text(s_.hash()), deep_hash = hash_text(s_.deep_hash());
     Json json = figures(hash, deep_hash);
     add_events(json);
-    if (!r_.probes.empty()) json["probes"] = probes();
     add_mass(json);
     add_inversions(json);
     if (!result_.diverged.empty()) json["diverged_step"] = result_.diverged_step;
     print_summary();
+    if (!r_.probes.empty()) json["probes"] = probes();
     if (r_.profile) json["profile"] = profile();
     if (r_.hash && out_.quiet && out_.json != "-") std::puts(hash.c_str());
     out_.print("hash " + hash);
