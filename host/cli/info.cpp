@@ -6,6 +6,7 @@
 
 #include "backend/pass_table.h"
 #include "backends/backends.h"
+#include "cli/checked_model.h"
 #include "cli/cli.h"
 #include "pliant/error.h"
 #include "schedule/build_program.h"
@@ -60,7 +61,8 @@ double per(std::uint64_t bytes, std::int64_t count) {
 
 class Info {
  public:
-  Info(const Options& options, const Scene& scene, const Model& model) : options_(options), scene_(scene), model_(model) {}
+  Info(const Options& options, const Scene& scene, const Model& model, const std::vector<SurfaceCheck>& surfaces)
+      : options_(options), scene_(scene), model_(model), surfaces_(surfaces) {}
 
   void print_all(const Program& program, double iterated_dt, double dt, const std::string& not_iterated) {
     json_ = {{"scene", scene_stem(options_.scene)},
@@ -102,7 +104,29 @@ class Info {
       line(fmt::format("  mass {:.6g} kg, volume {:.6g} m^3, inside its surface {:.6g} m^3 ({:+.2f} %)", b.mass, b.volume,
                        b.surface_volume, excess));
     }
+    surface_checks();
     json_["mass"] = mass;
+  }
+
+  void surface_checks() {
+    json_["warnings"] = tell(surfaces_, options_.common);
+    for (const SurfaceCheck& check : surfaces_) {
+      const SurfaceReport& r = check.report;
+      for (Json& body : json_["bodies"]) {
+        if (body["name"] != check.body) continue;
+        body["surface"] = {{"merged_points", r.merged},
+                           {"degenerate_triangles", r.degenerate},
+                           {"doubled_triangles", r.doubled},
+                           {"dropped_copies", r.doubled_dropped},
+                           {"turned_triangles", r.flipped},
+                           {"sheet_triangles", r.sheet_triangles},
+                           {"holes", r.holes.size()},
+                           {"hole_edges", r.hole_edges()},
+                           {"hole_area", r.hole_area()},
+                           {"crossing_pairs", check.crossings.pairs},
+                           {"searched", check.crossings.searched}};
+      }
+    }
   }
 
   /// One region of shape matching is centred at each node of its cells, the interface included.
@@ -201,13 +225,15 @@ class Info {
   const Options& options_;
   const Scene& scene_;
   const Model& model_;
+  const std::vector<SurfaceCheck>& surfaces_;
   Json json_;
 };
 
 int info(const Options& options) {
   options.common.check();
   const Scene scene = load_scene(options.scene);
-  const auto model = std::make_shared<const Model>(build_model(scene));
+  std::vector<SurfaceCheck> surfaces;
+  const auto model = std::make_shared<const Model>(build_model(scene, surfaces));
   double iterated_dt = 0, dt = 0;
   std::string not_iterated;
   try {
@@ -221,7 +247,7 @@ int info(const Options& options) {
   Program program = build_program(*model, {scene.integrator, SimulationOptions{}.batch_steps});
   Program surface = surface_program(model->surface, program);
   for (Buffer& buffer : surface.buffers) program.add(std::move(buffer));
-  Info(options, scene, *model).print_all(program, iterated_dt, dt, not_iterated);
+  Info(options, scene, *model, surfaces).print_all(program, iterated_dt, dt, not_iterated);
   return 0;
 }
 

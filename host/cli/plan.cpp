@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <cmath>
 #include <memory>
 
@@ -23,12 +24,8 @@ struct Options {
 /// "2%" -> 0.02, "4ms" -> 4: a number and one of the units.
 double quantity(const std::string& option, const std::string& text, const std::vector<std::pair<std::string, double>>& units,
                 const std::string& expected) {
-  std::size_t used = 0;
   double value = NAN;
-  try {
-    value = std::stod(text, &used);
-  } catch (const std::exception&) {
-  }
+  const auto used = static_cast<std::size_t>(std::from_chars(text.data(), text.data() + text.size(), value).ptr - text.data());
   for (const auto& [unit, factor] : units) {
     if (text.substr(used) == unit && std::isfinite(value) && value > 0) return value * factor;
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "backends/backends.h"
+#include "cli/checked_model.h"
 #include "cli/cli.h"
 #include "cli/frame_grid.h"
 #include "cli/frames.h"
@@ -127,7 +128,7 @@ class Run {
     if (!o_.resume.empty()) saved = read_checkpoint(o_.resume);
     if (!o_.out.empty()) frames_.emplace(o_.out, stem_, parse_formats(o_.formats), o_.picture.options());
     std::string reason;
-    const auto model = std::make_shared<const Model>(build_model(scene));
+    const auto model = std::make_shared<const Model>(checked_model(scene, o_.common, warnings_));
     std::vector<ProbePoint> points;
     for (const std::string& probe : o_.probes) points.push_back(parse_probe(probe));
     probes_ = Probes(std::move(points), *model);
@@ -202,7 +203,7 @@ class Run {
   }
 
   void report() {
-    report_run({o_.common, stem_, *simulation_, result_, probes_, frames_ ? &*frames_ : nullptr, first_time_, o_.hash,
+    report_run({o_.common, stem_, *simulation_, result_, probes_, warnings_, frames_ ? &*frames_ : nullptr, first_time_, o_.hash,
                 o_.deep_hash, o_.profile});
   }
 
@@ -212,6 +213,7 @@ class Run {
   std::optional<FrameWriter> frames_;
   Probes probes_;
   RunResult result_;
+  std::vector<std::string> warnings_;  // about surfaces
   double first_time_ = 0;
 };
 

@@ -68,7 +68,8 @@ class Report {
               {"time", s_.time()},
               {"wall_seconds", result_.seconds},
               {"frames", r_.frames != nullptr ? r_.frames->frames() : 0},
-              {"interrupted", result_.interrupted}};
+              {"interrupted", result_.interrupted},
+              {"warnings", r_.warnings}};
     if (relaxes()) {
       json["converged"] = s_.at_equilibrium();
       json["residual"] = s_.residual();

@@ -1,6 +1,7 @@
 // What a run reports at its end.
 #pragma once
 #include <string>
+#include <vector>
 
 #include "cli/cli.h"
 #include "cli/frames.h"
@@ -15,6 +16,7 @@ struct RunReport {
   const Simulation& simulation;
   const RunResult& result;
   const Probes& probes;
+  const std::vector<std::string>& warnings;  ///< about surfaces
   const FrameWriter* frames = nullptr;  ///< nullptr: none were written
   double first_time = 0;                ///< when this run began, on the scene's clock [s]
   bool hash = false, deep_hash = false, profile = false;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "cli/checked_model.h"
 #include "geometry/stopwatch.h"
 #include "io/folder_lock.h"
 #include "io/obj.h"
@@ -60,7 +61,8 @@ struct Solved {
 
 class Static {
  public:
-  Static(const Scene& scene, const StaticRun& run) : scene_(scene), run_(run), model_(build_model(scene)) {}
+  Static(const Scene& scene, const StaticRun& run)
+      : scene_(scene), run_(run), model_(checked_model(scene, run.common, warnings_)) {}
 
   int operator()() {
     const Stopwatch clock;
@@ -151,6 +153,7 @@ class Static {
     json["wall_seconds"] = seconds_;
     json["hash"] = hash_text(hash());
     json["bodies"] = bodies;
+    json["warnings"] = warnings_;
     if (!run_.out.empty() && solved_.size() == model_.bodies.size()) write(failure.empty() ? "" : "-last-good");
     run_.common.print(fmt::format("solved in {:.3g} s", seconds_));
     if (run_.hash && run_.common.quiet && run_.common.json != "-") std::puts(hash_text(hash()).c_str());
@@ -211,6 +214,7 @@ class Static {
 
   const Scene& scene_;
   const StaticRun& run_;
+  std::vector<std::string> warnings_;  // before model_, whose initialiser fills it
   Model model_;
   std::vector<Solved> solved_;
   double seconds_ = 0;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -21,6 +22,10 @@ struct HalfEdge {
 
 // A shell is opposite to another one on purpose only if this share of its area says so.
 constexpr double kMajority = 0.75;
+// Triangles at an edge closer than this [rad] lie on each other.
+constexpr double kSameAngle = 1e-6;
+// An edge of more triangles is no place where parts meet, and all ways to pair them would be too many.
+constexpr std::size_t kMostAtEdge = 10;
 
 struct Shell {
   std::vector<std::int32_t> triangles;
@@ -57,18 +62,67 @@ struct Link {
   bool opposite = false;  // the two triangles run the shared edge in the same direction: one must be flipped
 };
 
-// Neighbours over edges that exactly two triangles share.
+// At an edge of more than two triangles, as many of them running up as down, each of the first bounds material together with
+// one of the second. Of all ways to pair them the best is that with the narrowest wedges of material and without two triangles
+// that lie on each other: so parts that touch or overlap stay apart, also where one of them is inside out.
+std::vector<std::array<std::size_t, 2>> wedges(const TriangleMesh& mesh, const std::vector<HalfEdge>& edges, std::size_t first,
+                                               std::size_t last) {
+  const Vec3d& from = mesh.vertices[edges[first].low];
+  const Vec3d along = vec::sub(mesh.vertices[edges[first].high], from);
+  const Vec3d axis = vec::mul(along, 1 / vec::norm(along));
+  Vec3d zero{};
+  std::vector<double> angle;  // about the edge, from its first triangle
+  std::vector<std::size_t> up, down;
+  for (std::size_t i = first; i < last; ++i) {
+    const auto& t = mesh.triangles[edges[i].triangle];
+    const auto third = std::find_if(t.begin(), t.end(), [&](auto v) { return v != edges[i].low && v != edges[i].high; });
+    const Vec3d d = vec::sub(mesh.vertices[*third], from), across = vec::sub(d, vec::mul(axis, vec::dot(axis, d)));
+    if (i == first) zero = across;
+    angle.push_back(std::atan2(vec::dot(axis, vec::cross(zero, across)), vec::dot(zero, across)));
+    (edges[i].forward ? up : down).push_back(i);
+  }
+  const auto cost = [&] {
+    double sum = 0;
+    for (std::size_t i = 0; i < up.size(); ++i) {
+      double wedge = angle[up[i] - first] - angle[down[i] - first];
+      if (wedge < -kSameAngle) wedge += 2 * std::numbers::pi;
+      const bool closed = wedge < kSameAngle || wedge > 2 * std::numbers::pi - kSameAngle;
+      sum += closed ? 100 : std::sqrt(wedge);  // concave: all ways that have the same sum of wedges would cost the same
+    }
+    return sum;
+  };
+  std::vector<std::size_t> best = down;
+  double least = HUGE_VAL;
+  do {
+    const double now = cost();
+    if (now < least - kSameAngle) {
+      least = now;
+      best = down;
+    }
+  } while (std::next_permutation(down.begin(), down.end()));
+  std::vector<std::array<std::size_t, 2>> out;
+  for (std::size_t i = 0; i < up.size(); ++i) out.push_back({up[i], best[i]});
+  return out;
+}
+
+// Neighbours over edges that exactly two triangles share, or evenly many that run it equally often both ways.
 std::vector<std::array<Link, 3>> neighbours(const TriangleMesh& mesh) {
   const std::vector<HalfEdge> edges = sorted_edges(mesh);
   std::vector<std::array<Link, 3>> links(mesh.triangles.size());
   std::vector<int> used(mesh.triangles.size(), 0);
+  const auto link = [&](const HalfEdge& x, const HalfEdge& y) {
+    links[x.triangle][used[x.triangle]++] = {y.triangle, x.forward == y.forward};
+    links[y.triangle][used[y.triangle]++] = {x.triangle, x.forward == y.forward};
+  };
   for (std::size_t i = 0; i < edges.size();) {
-    std::size_t end = i;
-    while (end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high) ++end;
+    std::size_t end = i, forward = 0;
+    for (; end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high; ++end) {
+      forward += edges[end].forward ? 1 : 0;
+    }
     if (end - i == 2) {
-      const HalfEdge &x = edges[i], &y = edges[i + 1];
-      links[x.triangle][used[x.triangle]++] = {y.triangle, x.forward == y.forward};
-      links[y.triangle][used[y.triangle]++] = {x.triangle, x.forward == y.forward};
+      link(edges[i], edges[i + 1]);
+    } else if (2 * forward == end - i && end - i <= kMostAtEdge) {
+      for (const auto& [up, down] : wedges(mesh, edges, i, end)) link(edges[up], edges[down]);
     }
     i = end;
   }

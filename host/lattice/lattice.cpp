@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "geometry/defects.h"
 #include "lattice/lattice_parts.h"
 #include "pliant/error.h"
 
@@ -15,12 +16,16 @@ namespace {
 constexpr double kTolerance = 0.02;    // on the number of nodes
 constexpr double kGoodEnough = 0.005;  // the search ends here
 constexpr int kSteps = 24;             // evaluations of the bracketing search
+constexpr int kLeastSteps = 8;         // of these, whatever they cost
 constexpr int kScan = 160;             // evaluations of the local search, for small lattices only
 constexpr std::int64_t kSmall = 20'000;
+// Work (Parts::work) after which the search makes do with what it has, a few seconds of it.
+constexpr std::int64_t kEnough = 2'000'000;
 
-Lattice fill(const SurfaceDistance& surface, double spacing, std::int64_t max_cells, bool embed) {
+Lattice fill(const SurfaceDistance& surface, double spacing, std::int64_t max_cells, bool embed, std::int64_t* work = nullptr) {
   const Grid grid(surface.tree().bounds(), spacing);
   Parts parts(surface, grid, max_cells);
+  if (work != nullptr) *work += parts.work;
   Contacts contacts(parts, surface, grid);
   const std::vector<char> drop = contacts.mend();
   if (std::find(drop.begin(), drop.end(), 1) != drop.end()) {
@@ -46,15 +51,12 @@ class SpacingSearch {
   double run() {
     bracket();
     if (error() > kTolerance && wanted_ <= kSmall) scan();
-    if (error() > kTolerance) fail();
     return best_;
   }
 
  private:
   double evaluate(double spacing) {
-    const auto nodes = static_cast<std::int64_t>(fill(surface_, spacing, max_cells_, false).nodes.size());
-    auto& seen = nodes < wanted_ ? below_ : above_;
-    if (!seen || std::abs(nodes - wanted_) < std::abs(*seen - wanted_)) seen = nodes;
+    const auto nodes = static_cast<std::int64_t>(fill(surface_, spacing, max_cells_, false, &work_).nodes.size());
     if (best_ == 0 || std::abs(nodes - wanted_) < std::abs(best_nodes_ - wanted_)) {
       best_ = spacing;
       best_nodes_ = nodes;
@@ -71,9 +73,12 @@ class SpacingSearch {
     const double longest = std::max({extent[0], extent[1], extent[2]}), n = static_cast<double>(wanted_);
     const double volume = std::max(std::abs(signed_volume(surface_.mesh())), 1e-6 * longest * longest * longest);
     double spacing = std::min(longest, 1.2 * std::cbrt(volume / n)), low = 0, high = 1.001 * longest;
+    // A thin body has its cells along its surface: by its volume there would be far too many.
+    const double thin = std::min(longest, std::sqrt(area() / n));
+    if (thin > 4 * spacing) spacing = thin;
     for (int step = 0; step < kSteps; ++step) {
       const double nodes = evaluate(spacing);
-      if (error() <= kGoodEnough) return;
+      if (error() <= kGoodEnough || (work_ > kEnough && (error() <= kTolerance || step >= kLeastSteps))) return;
       (nodes < n ? high : low) = spacing;
       double next = spacing * std::cbrt(nodes / n);
       // Outside the bracket, or no longer converging: halve it.
@@ -85,25 +90,23 @@ class SpacingSearch {
 
   void scan() {
     const double centre = best_;
-    for (int i = 0; i < kScan && error() > kGoodEnough; ++i) {
+    for (int i = 0; i < kScan && error() > kGoodEnough && work_ <= kEnough; ++i) {
       const int offset = (i + 2) / 2 * (i % 2 == 0 ? 1 : -1);  // outwards from the centre, both ways
       evaluate(centre * std::exp(0.25 * offset / (kScan / 2)));
     }
   }
 
-  [[noreturn]] void fail() const {
-    std::string nearest;
-    if (below_) nearest = fmt::format("{}", *below_);
-    if (above_) nearest += fmt::format("{}{}", below_ ? " and " : "", *above_);
-    throw Error(ErrorCode::bad_input,
-                fmt::format("no lattice of this surface has {} nodes within 2 %; the nearest found have {}", wanted_, nearest));
+  [[nodiscard]] double area() const {
+    double sum = 0;
+    for (std::size_t t = 0; t < surface_.mesh().triangles.size(); ++t)
+      sum += area_of(surface_.mesh(), static_cast<std::int64_t>(t));
+    return sum;
   }
 
   const SurfaceDistance& surface_;
   std::int64_t wanted_, max_cells_;
   double best_ = 0;
-  std::int64_t best_nodes_ = 0;
-  std::optional<std::int64_t> below_, above_;
+  std::int64_t best_nodes_ = 0, work_ = 0;
 };
 
 }  // namespace
@@ -120,9 +123,16 @@ Lattice build_lattice(const TriangleMesh& surface, const LatticeSpec& spec, std:
   for (std::size_t v = 0; v < surface.vertices.size(); ++v) {
     if (!vec::finite(surface.vertices[v])) throw Error(ErrorCode::bad_input, fmt::format("surface vertex {} is not finite", v));
   }
-  const SurfaceDistance distance(surface);
-  const double spacing = by_nodes ? SpacingSearch(distance, spec.nodes, max_cells).run() : spec.spacing;
-  return fill(distance, spacing, max_cells, true);
+  std::optional<SurfaceDistance> distance(surface);
+  if (!distance->orientation().closed()) {
+    const std::vector<char> sheets = sheets_of(distance->mesh(), distance->orientation());
+    if (!sheets.empty() && std::find(sheets.begin(), sheets.end(), 0) != sheets.end()) {
+      const TriangleMesh rest = without(distance->mesh(), sheets);
+      distance.emplace(rest);
+    }
+  }
+  const double spacing = by_nodes ? SpacingSearch(*distance, spec.nodes, max_cells).run() : spec.spacing;
+  return fill(*distance, spacing, max_cells, true);
 }
 
 }  // namespace pliant

@@ -39,7 +39,10 @@ std::uint64_t flood(std::uint64_t seed, std::uint64_t within, const std::array<s
 
 }  // namespace
 
-double CellSampler::winding(const Vec3d& local) const { return surface_.winding(vec::add(lower_, vec::mul(local, spacing_))); }
+double CellSampler::winding(const Vec3d& local) {
+  ++work_;
+  return surface_.winding(vec::add(lower_, vec::mul(local, spacing_)));
+}
 
 void CellSampler::sample(const std::array<std::int32_t, 3>& index, std::vector<CellPart>& parts) {
   for (int a = 0; a < 3; ++a) lower_[a] = origin_[a] + spacing_ * index[a];

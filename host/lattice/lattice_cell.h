@@ -47,6 +47,8 @@ class CellSampler {
 
   /// Append the parts of cell `index` to `parts`.
   void sample(const std::array<std::int32_t, 3>& index, std::vector<CellPart>& parts);
+  /// Winding numbers that were asked for, which is what cells cost.
+  [[nodiscard]] std::int64_t work() const { return work_; }
 
  private:
   struct Crossing {
@@ -65,12 +67,13 @@ class CellSampler {
   void collect(const std::array<std::int32_t, 3>& index, std::vector<CellPart>& parts);
   void add_part(const std::array<std::int32_t, 3>& index, std::uint64_t mask, bool thin, int axis,
                 std::vector<CellPart>& parts);
-  [[nodiscard]] double winding(const Vec3d& local) const;
+  [[nodiscard]] double winding(const Vec3d& local);
 
   const SurfaceDistance& surface_;
   Vec3d origin_;
   double spacing_;
   Vec3d lower_{};
+  std::int64_t work_ = 0;
   bool near_rim_ = false;
   std::vector<std::int32_t> triangles_;
   std::array<std::array<std::vector<Crossing>, 16>, 3> lines_;

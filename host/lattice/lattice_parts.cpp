@@ -115,15 +115,18 @@ Parts::Parts(const SurfaceDistance& surface, const Grid& grid, std::int64_t max_
     area += vec::norm(vec::cross(vec::sub(v[t[1]], v[t[0]]), vec::sub(v[t[2]], v[t[0]]))) / 2;
   }
   const double d = grid.spacing;
-  const double needed = std::max(1.0, std::abs(signed_volume(surface.mesh())) / (d * d * d) + 0.75 * area / (d * d));
+  const double least = std::abs(signed_volume(surface.mesh())) / (d * d * d), most = static_cast<double>(max_cells);
+  const double needed = std::max(1.0, least + 0.75 * area / (d * d));
   const auto too_many = [&](double cells, const char* about) {
     return Error(ErrorCode::bad_input,
                  fmt::format("lattice spacing {} m needs {}{:.0f} cells; at most {} are allowed (choose a larger spacing)", d,
                              about, cells, max_cells));
   };
-  if (needed > 1.5 * static_cast<double>(max_cells) || count > 100'000'000) throw too_many(needed, "about ");
+  // Before anything is filled: full cells alone are too many, or the estimate is far off what is allowed.
+  if (least > most * (1 + 1e-6)) throw too_many(least, "at least ");
+  if (needed > 1.5 * most || count > 100'000'000) throw too_many(needed, "about ");
   std::vector<std::vector<CellPart>> filled(static_cast<std::size_t>(count));
-  std::atomic<std::int64_t> total{0};
+  std::atomic<std::int64_t> total{0}, windings{0};
   parallel_for(count, [&](std::int64_t b) {
     if (total > 2 * max_cells + 1000) return;  // hopeless: do not fill the memory first
     BlockFiller filler(surface, grid);
@@ -133,10 +136,12 @@ Parts::Parts(const SurfaceDistance& surface, const Grid& grid, std::int64_t max_
         kBlock);
     std::stable_sort(filler.parts.begin(), filler.parts.end(), before);
     total += static_cast<std::int64_t>(filler.parts.size());
+    windings += filler.sampler.work();
     filled[b] = std::move(filler.parts);
   });
   if (total > 2 * max_cells + 1000) throw too_many(std::max(needed, static_cast<double>(total)), "about ");
   if (total > max_cells) throw too_many(static_cast<double>(total), "");
+  work = total + windings;
   list.reserve(static_cast<std::size_t>(total));
   std::vector<std::size_t> cursor(filled.size(), 0);
   for (std::int32_t k = 0; k < grid.size[2]; ++k) {

@@ -33,6 +33,7 @@ class Parts {
   void remove(const std::vector<char>& drop);
 
   std::vector<CellPart> list;
+  std::int64_t work = 0;  ///< cells, and winding numbers that were asked for: what they cost, the same on every machine
 
  private:
   void index_cells();

@@ -7,13 +7,17 @@
 
 namespace pliant {
 
+struct SurfaceReport;
+
 /// Read a surface (OBJ, STL, PLY, 3DS, glTF/glb and whatever else assimp reads). Polygons are triangulated, equal positions
-/// welded, degenerate triangles dropped. Throws Error when missing, unreadable, empty or not finite, or if no triangle has
-/// area.
-TriangleMesh read_surface(const std::filesystem::path& file, double scale = 1, const Vec3d& translate = {});
+/// welded, degenerate triangles and superfluous copies dropped; `report` says what (surface_report.h). Throws Error when
+/// missing, unreadable, empty or not finite, or if no triangle has area.
+TriangleMesh read_surface(const std::filesystem::path& file, double scale = 1, const Vec3d& translate = {},
+                          SurfaceReport* report = nullptr);
 
 /// The same for a surface in memory; `name` is for messages.
-TriangleMesh clean_surface(const TriangleMesh& surface, const std::string& name, double scale = 1, const Vec3d& translate = {});
+TriangleMesh clean_surface(const TriangleMesh& surface, const std::string& name, double scale = 1, const Vec3d& translate = {},
+                           SurfaceReport* report = nullptr);
 
 /// Read a volume mesh: Gmsh .msh (versions 1, 2 and 4, text; 2 and 4 also binary), VTK legacy, VTU, TetGen (.node/.ele).
 /// Unused vertices are dropped; tetrahedra of negative volume are an error that names the element unless all are negative

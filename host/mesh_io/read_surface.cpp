@@ -10,15 +10,17 @@
 #include <cmath>
 #include <fstream>
 #include <map>
-#include <sstream>
 #include <system_error>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "geometry/orient.h"
 #include "geometry/vec.h"
 #include "mesh_io/mesh_io.h"
+#include "mesh_io/obj_points.h"
 #include "mesh_io/read_ply.h"
 #include "mesh_io/screen_gltf.h"
+#include "mesh_io/surface_report.h"
 #include "pliant/error.h"
 
 namespace pliant {
@@ -42,27 +44,6 @@ void check_file(const std::filesystem::path& file) {
   if (in.peek() == std::ifstream::traits_type::eof()) fail(file, "is empty");
 }
 
-// assimp hands over OBJ vertices in the order of the faces; the file's own numbering is what its author knows.
-void check_obj_numbers(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  std::string line, word;
-  for (std::int64_t number = 1, vertex = 0; std::getline(in, line); ++number) {
-    if (line.size() < 2 || line[0] != 'v' || (line[1] != ' ' && line[1] != '\t')) continue;
-    std::istringstream words(line.substr(2));
-    for (int axis = 0; axis < 3; ++axis) {
-      word.clear();
-      words >> word;
-      char* end = nullptr;
-      const double value = std::strtod(word.c_str(), &end);
-      if (word.empty() || *end != '\0' || !std::isfinite(value)) {
-        fail(file,
-             fmt::format("vertex {} (line {}): {} is '{}'; a finite number is needed", vertex, number, "xyz"[axis], word));
-      }
-    }
-    ++vertex;
-  }
-}
-
 using Matrix = std::array<double, 12>;  // rows of the affine part
 
 constexpr Matrix kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
@@ -78,17 +59,19 @@ Matrix multiply(const Matrix& a, const aiMatrix4x4& b) {
   return out;
 }
 
+struct Hash {
+  std::size_t operator()(const Vec3d& p) const {
+    std::size_t h = 0;
+    for (const double x : p) h = (h ^ std::hash<double>{}(x)) * 0x9E3779B97F4A7C15ULL;
+    return h;
+  }
+};
+
 struct Welder {
-  struct Hash {
-    std::size_t operator()(const Vec3d& p) const {
-      std::size_t h = 0;
-      for (const double x : p) h = (h ^ std::hash<double>{}(x)) * 0x9E3779B97F4A7C15ULL;
-      return h;
-    }
-  };
   TriangleMesh mesh;
   std::unordered_map<Vec3d, std::int32_t, Hash> ids;
   std::int64_t degenerate = 0;
+  Vec3d degenerate_at{};
 
   std::int32_t vertex(const Vec3d& p) {
     const auto [at, added] = ids.try_emplace(p, static_cast<std::int32_t>(mesh.vertices.size()));
@@ -99,7 +82,7 @@ struct Welder {
     const Vec3d a = vec::sub(p[1], p[0]), b = vec::sub(p[2], p[0]), c = vec::sub(p[2], p[1]);
     const double longest2 = std::max({vec::dot(a, a), vec::dot(b, b), vec::dot(c, c)});
     if (!(vec::norm(vec::cross(a, b)) > kFlat * longest2)) {
-      ++degenerate;
+      if (degenerate++ == 0) degenerate_at = p[0];
       return;
     }
     mesh.triangles.push_back({vertex(p[0]), vertex(p[1]), vertex(p[2])});
@@ -110,9 +93,10 @@ struct Reader {
   const std::filesystem::path& file;
   double scale;
   Vec3d translate;
-  const aiScene* scene;
-  Welder welder;
+  const aiScene* scene = nullptr;
+  Welder welder{};
   std::int64_t vertices = 0;  // read so far, for messages
+  SurfaceReport report{};
 
   Vec3d place(const Matrix& m, const Vec3d& local, std::int64_t index) const {
     Vec3d out{};
@@ -126,10 +110,20 @@ struct Reader {
     return out;
   }
 
+  /// Counts those points of the file that stand where another stands.
+  void count_merged(const std::vector<Vec3d>& points) {
+    std::unordered_set<Vec3d, Hash> places;
+    for (const Vec3d& p : points) {
+      if (places.insert(p).second) continue;
+      if (report.merged++ == 0) report.merged_at = p;
+    }
+  }
+
   void mesh(const TriangleMesh& ply) {
     std::vector<Vec3d> points;
     points.reserve(ply.vertices.size());
     for (const Vec3d& v : ply.vertices) points.push_back(place(kIdentity, v, vertices++));
+    count_merged(points);
     for (const auto& t : ply.triangles) welder.triangle({points[t[0]], points[t[1]], points[t[2]]});
   }
 
@@ -166,8 +160,47 @@ struct Reader {
       if (welder.degenerate == 0) fail(file, fmt::format("holds {} vertices but no triangle", vertices));
       fail(file, fmt::format("all {} triangles have zero area", welder.degenerate));
     }
-    orient_outward(mesh);
+    drop_copies(mesh);
+    const auto given = mesh.triangles;
+    const OrientationReport orientation = orient_outward(mesh);
+    describe(mesh, given, orientation);
     return std::move(mesh);
+  }
+
+  void drop_copies(TriangleMesh& mesh) {
+    const Copies copies = copies_of(mesh);
+    report.doubled = copies.found;
+    report.doubled_dropped = copies.dropped;
+    if (copies.found > 0) report.doubled_at = centroid_of(mesh, copies.first);
+    if (copies.dropped > 0) mesh = without(mesh, copies.drop);
+  }
+
+  void describe(const TriangleMesh& mesh, const std::vector<std::array<std::int32_t, 3>>& given,
+                const OrientationReport& orientation) {
+    report.name = file.string();
+    report.degenerate = welder.degenerate;
+    report.degenerate_at = welder.degenerate_at;
+    report.triangles = static_cast<std::int64_t>(mesh.triangles.size());
+    report.flipped = orientation.flipped;
+    report.shell = orientation.shell;
+    report.volume = signed_volume(mesh);
+    std::vector<char> sheets;
+    if (!orientation.closed()) sheets = sheets_of(mesh, orientation);
+    for (std::int64_t t = report.triangles; t-- > 0;) {
+      const double area = area_of(mesh, t);
+      report.area += area;
+      if (given[t] != mesh.triangles[t]) report.flipped_at = centroid_of(mesh, t);
+      if (sheets.empty() || sheets[t] == 0) continue;
+      ++report.sheet_triangles;
+      report.sheet_area += area;
+      report.sheet_at = centroid_of(mesh, t);
+    }
+    if (orientation.closed() || report.sheet_triangles == report.triangles) return;
+    TriangleMesh rest = without(mesh, sheets);
+    orient_outward(rest);
+    report.volume = signed_volume(rest);
+    report.holes = holes_of(rest);
+    for (const Hole& hole : report.holes) report.volume += hole.volume;
   }
 };
 
@@ -216,14 +249,18 @@ const aiScene* import(const std::filesystem::path& file, Assimp::Importer& impor
 
 }  // namespace
 
-TriangleMesh read_surface(const std::filesystem::path& file, double scale, const Vec3d& translate) {
+TriangleMesh read_surface(const std::filesystem::path& file, double scale, const Vec3d& translate, SurfaceReport* report) {
   check_file(file);
   if (!std::isfinite(scale) || scale == 0)
     fail(file, fmt::format("scale is {}; a finite number other than 0 is needed", scale));
   const std::string extension = lower_extension(file);
-  if (extension == ".obj") check_obj_numbers(file);
   if (is_gltf(extension)) screen_gltf(file);
-  Reader reader{file, scale, translate, nullptr, {}};
+  Reader reader{file, scale, translate};
+  if (extension == ".obj") {
+    std::vector<Vec3d> points = obj_points(file);
+    for (Vec3d& p : points) p = reader.place(kIdentity, p, 0);
+    reader.count_merged(points);
+  }
   if (extension == ".ply") {
     reader.mesh(read_ply(file));
   } else {
@@ -231,10 +268,13 @@ TriangleMesh read_surface(const std::filesystem::path& file, double scale, const
     reader.scene = import(file, importer);
     reader.node(kIdentity, *reader.scene->mRootNode);
   }
-  return reader.finish();
+  TriangleMesh mesh = reader.finish();
+  if (report != nullptr) *report = std::move(reader.report);
+  return mesh;
 }
 
-TriangleMesh clean_surface(const TriangleMesh& surface, const std::string& name, double scale, const Vec3d& translate) {
+TriangleMesh clean_surface(const TriangleMesh& surface, const std::string& name, double scale, const Vec3d& translate,
+                           SurfaceReport* report) {
   const std::filesystem::path shown = name;
   const auto count = static_cast<std::int64_t>(surface.vertices.size());
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
@@ -242,7 +282,7 @@ TriangleMesh clean_surface(const TriangleMesh& surface, const std::string& name,
       if (v < 0 || v >= count) fail(shown, fmt::format("triangle {} names vertex {}, but there are {}", t, v, count));
     }
   }
-  Reader used{shown, scale, translate, nullptr, {}}, reader = used;
+  Reader used{shown, scale, translate}, reader = used;
   used.mesh(surface);
   // Vertices keep their order, so those of a clean surface keep their numbers.
   for (const Vec3d& v : surface.vertices) {
@@ -250,7 +290,9 @@ TriangleMesh clean_surface(const TriangleMesh& surface, const std::string& name,
     if (used.welder.ids.contains(p)) reader.welder.vertex(p);
   }
   reader.mesh(surface);
-  return reader.finish();
+  TriangleMesh mesh = reader.finish();
+  if (report != nullptr) *report = std::move(reader.report);
+  return mesh;
 }
 
 double signed_volume(const TriangleMesh& mesh) {

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include "mesh_io/mesh_io.h"
+#include "mesh_io/surface_report.h"
 #include "model/model.h"
+#include "model/surface_check.h"
 #include "pliant/error.h"
 
 namespace pliant {
@@ -11,13 +13,14 @@ namespace {
 
 bool takes_tets(ElementKind kind) { return kind == ElementKind::tet4 || kind == ElementKind::tet4anp; }
 
-void from_lattice(const Body& body, BodyMesh& solid) {
-  const TriangleMesh mesh = body.surface_in_memory == nullptr
-                                ? read_surface(body.surface, body.scale, body.translate)
-                                : clean_surface(*body.surface_in_memory, body.surface.string(), body.scale, body.translate);
+void from_lattice(const Body& body, BodyMesh& solid, SurfaceReport& report) {
+  const TriangleMesh mesh = body.surface_in_memory == nullptr ? read_surface(body.surface, body.scale, body.translate, &report)
+                                                              : clean_surface(*body.surface_in_memory, body.surface.string(),
+                                                                              body.scale, body.translate, &report);
+  require_inside(report);
   Lattice lattice = build_lattice(mesh, body.lattice);
   solid.spacing = lattice.spacing;
-  solid.surface_volume = signed_volume(mesh);
+  solid.surface_volume = report.volume;
   solid.surface = mesh.vertices;
   solid.triangles = mesh.triangles;
   for (const LatticeNode& n : lattice.nodes) solid.nodes.push_back(lattice.position(n));
@@ -140,9 +143,14 @@ void repartition(const Body& body, BodyElements& solid) {
 }
 
 BodyMesh make_body_mesh(const Body& body) {
+  SurfaceReport report;
+  return make_body_mesh(body, report);
+}
+
+BodyMesh make_body_mesh(const Body& body, SurfaceReport& report) {
   BodyMesh solid;
   if (body.mesh.empty()) {
-    from_lattice(body, solid);
+    from_lattice(body, solid, report);
   } else {
     from_mesh(body, solid);
   }

@@ -1,0 +1,28 @@
+// The Model of a scene, with what its surfaces have that a user should know.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "cli/cli.h"
+#include "model/surface_check.h"
+
+namespace pliant::cli {
+
+/// Sentences of all bodies, told as remarks.
+inline std::vector<std::string> tell(const std::vector<SurfaceCheck>& checks, const Common& common) {
+  std::vector<std::string> warnings;
+  for (const SurfaceCheck& check : checks) {
+    for (const std::string& warning : check.warnings) warnings.push_back("body '" + check.body + "': " + warning);
+  }
+  for (const std::string& warning : warnings) common.note(warning);
+  return warnings;
+}
+
+inline Model checked_model(const Scene& scene, const Common& common, std::vector<std::string>& warnings) {
+  std::vector<SurfaceCheck> checks;
+  Model model = build_model(scene, checks);
+  warnings = tell(checks, common);
+  return model;
+}
+
+}  // namespace pliant::cli

@@ -1,0 +1,106 @@
+#include "mesh_io/surface_report.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "pliant/error.h"
+
+namespace pliant {
+namespace {
+
+// A closed surface with less volume, in units of its area to the power of 3/2, is a sheet of which both sides coincide.
+constexpr double kFlat = 1e-9;
+// Between the lattice's volume and that inside the surface.
+constexpr double kDisagree = 0.05;
+
+std::string at(const Vec3d& p) { return fmt::format("({:.6g}, {:.6g}, {:.6g}) m", p[0], p[1], p[2]); }
+
+std::string holes(const SurfaceReport& r) {
+  return fmt::format(
+      "{} hole{} of {} edges and {:.3g} m^2 together, {:.3g} % of the area; the largest, {} edges, {:.3g} m^2, is at {}",
+      r.holes.size(), r.holes.size() == 1 ? "" : "s", r.hole_edges(), r.hole_area(),
+      100 * r.hole_area() / (r.area - r.sheet_area), r.holes[0].edges, r.holes[0].area, at(r.holes[0].centre));
+}
+
+[[noreturn]] void fail(const SurfaceReport& r, const std::string& what) {
+  throw Error(ErrorCode::bad_input, fmt::format("surface mesh '{}': {}", r.name, what));
+}
+
+}  // namespace
+
+double SurfaceReport::hole_area() const {
+  double sum = 0;
+  for (const Hole& hole : holes) sum += hole.area;
+  return sum;
+}
+
+std::int64_t SurfaceReport::hole_edges() const {
+  std::int64_t sum = 0;
+  for (const Hole& hole : holes) sum += hole.edges;
+  return sum;
+}
+
+void require_inside(const SurfaceReport& r) {
+  const char* const mend = "close it in a mesh editor, or give a sheet a thickness";
+  if (r.sheet_area > 0.5 * r.area) {
+    fail(r, fmt::format("has no inside to fill: {} of its {} triangles, {:.3g} % of the area, the first at {}, belong to parts "
+                        "whose holes are larger than {:.0f} % of the part; {}",
+                        r.sheet_triangles, r.triangles, 100 * r.sheet_area / r.area, at(r.sheet_at), 100 * kLargestHole, mend));
+  }
+  if (r.hole_area() > kLargestHole * (r.area - r.sheet_area)) {
+    fail(r, fmt::format("has no inside to fill: {}; up to {:.0f} % are closed; {}", holes(r), 100 * kLargestHole, mend));
+  }
+  if (!(r.volume > kFlat * std::pow(r.area, 1.5))) {
+    fail(r, fmt::format("has no inside to fill: its {:.3g} m^2 enclose {:.3g} m^3; {}", r.area, r.volume, mend));
+  }
+}
+
+std::vector<std::string> surface_warnings(const SurfaceReport& r, const Crossings& crossings, double filled) {
+  std::vector<std::string> out;
+  const auto say = [&](const std::string& text) { out.push_back(fmt::format("surface mesh '{}': {}", r.name, text)); };
+  if (r.merged > 0) {
+    say(fmt::format("{} points stand where another stands and were merged with it, the first at {}", r.merged,
+                    at(r.merged_at)));
+  }
+  if (r.degenerate > 0) {
+    say(fmt::format("{} triangles without area were dropped, the first at {}", r.degenerate, at(r.degenerate_at)));
+  }
+  if (r.doubled > 0) {
+    say(fmt::format("{} triangles stand where another stands, the first at {}; {} were dropped{}", r.doubled, at(r.doubled_at),
+                    r.doubled_dropped,
+                    r.doubled > r.doubled_dropped ? ", the others belong to parts that touch or overlap" : ""));
+  }
+  if (r.flipped == r.triangles) {
+    say(fmt::format("all {} triangles were wound inward and were turned round", r.triangles));
+  } else if (r.flipped > 0) {
+    say(fmt::format("{} of {} triangles were wound against the rest and were turned round, the first at {}", r.flipped,
+                    r.triangles, at(r.flipped_at)));
+  }
+  if (r.sheet_triangles > 0) {
+    say(fmt::format(
+        "{} triangles, the first at {}, belong to open sheets that bound nothing; they move along with the body, but "
+        "nothing is filled there",
+        r.sheet_triangles, at(r.sheet_at)));
+  }
+  if (!r.holes.empty()) say(holes(r) + "; the body ends there as if they were closed");
+  if (crossings.pairs > 0) {
+    say(fmt::format(
+        "{} pairs of triangles pass through each other ({} of them of two parts), the first at {}; what lies in several "
+        "parts counts once",
+        crossings.pairs, crossings.between_shells, at(crossings.place)));
+  }
+  if (crossings.searched < 1) {
+    say(fmt::format("the search for triangles that pass through each other was cut short after {:.0f} % of them",
+                    100 * crossings.searched));
+  }
+  if (r.volume > 0 && std::abs(filled / r.volume - 1) > kDisagree) {
+    say(fmt::format(
+        "the elements fill {:.6g} m^3, the surface encloses {:.6g} m^3 ({:+.3g} %): parts that overlap count once in the "
+        "elements, and a spacing that is coarse for thin parts shows here",
+        filled, r.volume, 100 * (filled / r.volume - 1)));
+  }
+  return out;
+}
+
+}  // namespace pliant
