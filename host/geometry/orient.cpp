@@ -63,8 +63,9 @@ struct Link {
 };
 
 // At an edge of more than two triangles, as many of them running up as down, each of the first bounds material together with
-// one of the second. Of all ways to pair them the best is that with the narrowest wedges of material and without two triangles
-// that lie on each other: so parts that touch or overlap stay apart, also where one of them is inside out.
+// one of the second. Of all ways to pair them the best is the straightest one (surfaces that cross go on), of these the one
+// with the narrowest wedges of material, and none pairs triangles that lie on each other: so parts that touch or overlap stay
+// apart, also where one of them is inside out.
 std::vector<std::array<std::size_t, 2>> wedges(const TriangleMesh& mesh, const std::vector<HalfEdge>& edges, std::size_t first,
                                                std::size_t last) {
   const Vec3d& from = mesh.vertices[edges[first].low];
@@ -87,7 +88,7 @@ std::vector<std::array<std::size_t, 2>> wedges(const TriangleMesh& mesh, const s
       double wedge = angle[up[i] - first] - angle[down[i] - first];
       if (wedge < -kSameAngle) wedge += 2 * std::numbers::pi;
       const bool closed = wedge < kSameAngle || wedge > 2 * std::numbers::pi - kSameAngle;
-      sum += closed ? 100 : std::sqrt(wedge);  // concave: all ways that have the same sum of wedges would cost the same
+      sum += closed ? 100 : std::abs(wedge - std::numbers::pi) + 1e-3 * wedge;
     }
     return sum;
   };

@@ -19,6 +19,7 @@ constexpr int kSteps = 24;             // evaluations of the bracketing search
 constexpr int kLeastSteps = 8;         // of these, whatever they cost
 constexpr int kScan = 160;             // evaluations of the local search, for small lattices only
 constexpr std::int64_t kSmall = 20'000;
+constexpr std::int64_t kFarTooMany = 4;  // cells for each node that is wanted
 // Work (Parts::work) after which the search makes do with what it has, a few seconds of it.
 constexpr std::int64_t kEnough = 2'000'000;
 
@@ -50,13 +51,22 @@ class SpacingSearch {
 
   double run() {
     bracket();
+    if (best_ == 0) throw Error(*failure_);
     if (error() > kTolerance && wanted_ <= kSmall) scan();
     return best_;
   }
 
  private:
   double evaluate(double spacing) {
-    const auto nodes = static_cast<std::int64_t>(fill(surface_, spacing, max_cells_, false, &work_).nodes.size());
+    const std::int64_t limit = std::min(max_cells_, kFarTooMany * wanted_ + kSmall);
+    std::int64_t nodes = 0;
+    try {
+      nodes = static_cast<std::int64_t>(fill(surface_, spacing, limit, false, &work_).nodes.size());
+    } catch (const Error& error) {  // far too many cells: not worth counting
+      failure_ = error;
+      work_ += limit;
+      return static_cast<double>(16 * kFarTooMany * wanted_);
+    }
     if (best_ == 0 || std::abs(nodes - wanted_) < std::abs(best_nodes_ - wanted_)) {
       best_ = spacing;
       best_nodes_ = nodes;
@@ -107,6 +117,7 @@ class SpacingSearch {
   std::int64_t wanted_, max_cells_;
   double best_ = 0;
   std::int64_t best_nodes_ = 0, work_ = 0;
+  std::optional<Error> failure_;
 };
 
 }  // namespace
@@ -116,6 +127,9 @@ Lattice build_lattice(const TriangleMesh& surface, const LatticeSpec& spec, std:
   if (by_nodes && spec.nodes < 8) {
     throw Error(ErrorCode::bad_input,
                 fmt::format("lattice nodes is {}; a lattice has at least the 8 nodes of one cell", spec.nodes));
+  }
+  if (spec.nodes > max_cells) {
+    throw Error(ErrorCode::bad_input, fmt::format("lattice nodes is {}; at most {} are allowed", spec.nodes, max_cells));
   }
   if (!by_nodes && !(spec.spacing > 0 && std::isfinite(spec.spacing))) {
     throw Error(ErrorCode::bad_input, fmt::format("lattice spacing is {} m; a positive number is needed", spec.spacing));

@@ -17,10 +17,11 @@ constexpr double kDisagree = 0.05;
 std::string at(const Vec3d& p) { return fmt::format("({:.6g}, {:.6g}, {:.6g}) m", p[0], p[1], p[2]); }
 
 std::string holes(const SurfaceReport& r) {
+  const Hole& largest = r.holes[0];
   return fmt::format(
-      "{} hole{} of {} edges and {:.3g} m^2 together, {:.3g} % of the area; the largest, {} edges, {:.3g} m^2, is at {}",
-      r.holes.size(), r.holes.size() == 1 ? "" : "s", r.hole_edges(), r.hole_area(),
-      100 * r.hole_area() / (r.area - r.sheet_area), r.holes[0].edges, r.holes[0].area, at(r.holes[0].centre));
+      "holes: {}, of {} edges and {:.3g} m^2 together, {:.3g} % of the area; the largest, of {} edges and {:.3g} m^2, is at {}",
+      r.holes.size(), r.hole_edges(), r.hole_area(), 100 * r.hole_area() / (r.area - r.sheet_area), largest.edges, largest.area,
+      at(largest.centre));
 }
 
 [[noreturn]] void fail(const SurfaceReport& r, const std::string& what) {
@@ -59,36 +60,31 @@ void require_inside(const SurfaceReport& r) {
 std::vector<std::string> surface_warnings(const SurfaceReport& r, const Crossings& crossings, double filled) {
   std::vector<std::string> out;
   const auto say = [&](const std::string& text) { out.push_back(fmt::format("surface mesh '{}': {}", r.name, text)); };
-  if (r.merged > 0) {
-    say(fmt::format("{} points stand where another stands and were merged with it, the first at {}", r.merged,
-                    at(r.merged_at)));
-  }
+  if (r.merged > 0) say(fmt::format("points in the place of another, merged with it: {}, the first at {}", r.merged, at(r.merged_at)));
   if (r.degenerate > 0) {
-    say(fmt::format("{} triangles without area were dropped, the first at {}", r.degenerate, at(r.degenerate_at)));
+    say(fmt::format("triangles without area, dropped: {}, the first at {}", r.degenerate, at(r.degenerate_at)));
   }
   if (r.doubled > 0) {
-    say(fmt::format("{} triangles stand where another stands, the first at {}; {} were dropped{}", r.doubled, at(r.doubled_at),
-                    r.doubled_dropped,
-                    r.doubled > r.doubled_dropped ? ", the others belong to parts that touch or overlap" : ""));
+    say(fmt::format("triangles in the place of another: {}, of these dropped: {}, the first at {}{}", r.doubled, r.doubled_dropped,
+                    at(r.doubled_at),
+                    r.doubled > r.doubled_dropped ? "; those that are left belong to parts that touch or overlap" : ""));
   }
   if (r.flipped == r.triangles) {
     say(fmt::format("all {} triangles were wound inward and were turned round", r.triangles));
   } else if (r.flipped > 0) {
-    say(fmt::format("{} of {} triangles were wound against the rest and were turned round, the first at {}", r.flipped,
-                    r.triangles, at(r.flipped_at)));
+    say(fmt::format("triangles wound against the rest, turned round: {} of {}, the first at {}", r.flipped, r.triangles,
+                    at(r.flipped_at)));
   }
   if (r.sheet_triangles > 0) {
-    say(fmt::format(
-        "{} triangles, the first at {}, belong to open sheets that bound nothing; they move along with the body, but "
-        "nothing is filled there",
-        r.sheet_triangles, at(r.sheet_at)));
+    say(fmt::format("triangles of open sheets that bound nothing: {}, the first at {}; they move along with the body, but nothing is "
+                    "filled there",
+                    r.sheet_triangles, at(r.sheet_at)));
   }
   if (!r.holes.empty()) say(holes(r) + "; the body ends there as if they were closed");
   if (crossings.pairs > 0) {
-    say(fmt::format(
-        "{} pairs of triangles pass through each other ({} of them of two parts), the first at {}; what lies in several "
-        "parts counts once",
-        crossings.pairs, crossings.between_shells, at(crossings.place)));
+    say(fmt::format("pairs of triangles that pass through each other: {} ({} of them of two parts), the first at {}; what lies in "
+                    "several parts counts once",
+                    crossings.pairs, crossings.between_shells, at(crossings.place)));
   }
   if (crossings.searched < 1) {
     say(fmt::format("the search for triangles that pass through each other was cut short after {:.0f} % of them",

@@ -56,6 +56,54 @@ class Info(harness.CliTest):
             for other in ("automatic: 0.9 of it, ", "as cuts ask", "as shape matching asks", "one frame"):
                 self.assertEqual(other in said, other in text, said)
 
+    def cube(self, low, high, first=1):
+        """The lines of an OBJ file: a box of twelve triangles."""
+        lines = [f"v {high[0] if c & 1 else low[0]} {high[1] if c & 2 else low[1]} {high[2] if c & 4 else low[2]}" for c in range(8)]
+        faces = ["023", "031", "457", "476", "015", "054", "267", "273", "046", "062", "137", "175"]
+        return lines + ["f " + " ".join(str(first + int(c)) for c in face) for face in faces]
+
+    def surface(self, lines, **lattice):
+        (self.folder / "surface.obj").write_text("\n".join(lines) + "\n")
+        return self.scene(body={"surface": "surface.obj", "lattice": lattice or {"spacing": 0.01}, "prescribed": [],
+                                "fixed": [{"box": [[-1, -1, -1], [1, -0.04, 1]]}]})
+
+    def test_a_sound_surface_has_no_warnings(self):
+        self.assertEqual(self.json("info", self.scene())["warnings"], [])
+        self.assertEqual(self.json("run", self.scene(), "--backend", "cpu", "--steps", "2")["warnings"], [])
+
+    def test_a_bad_surface_is_told_and_run(self):
+        lines = self.cube((-0.05, -0.05, -0.05), (0.05, 0.05, 0.05))
+        lines += self.cube((0.003, -0.041, -0.042), (0.103, 0.059, 0.058), 9) + ["f 1 1 2", "f 1 3 4"]
+        scene = self.surface(lines)
+        info = self.json("info", scene)
+        united = 2 - (0.047 * 0.091 * 0.092) / 1e-3
+        self.assertAlmostEqual(info["mass"], united, delta=0.01 * united)
+        surface = info["bodies"][0]["surface"]
+        self.assertEqual((surface["degenerate_triangles"], surface["dropped_copies"], surface["holes"]), (1, 1, 0))
+        self.assertGreater(surface["crossing_pairs"], 0)
+        self.assertEqual(surface["searched"], 1)
+        text = "\n".join(info["warnings"])
+        for words in ("without area, dropped: 1, the first at (-0.05, -0.05, -0.05) m", "pass through each other", "the elements fill 0.00"):
+            self.assertIn(words, text)
+        done = self.pliant("run", scene, "--backend", "cpu", "--steps", "2")
+        self.assertEqual([w for w in info["warnings"] if f"pliant: {w}\n" not in done.stderr], [])
+        self.assertEqual(self.pliant("run", scene, "--backend", "cpu", "--steps", "2", "--quiet").stderr, "")
+        self.assertEqual(self.json("run", scene, "--backend", "cpu", "--steps", "2")["warnings"], info["warnings"])
+
+    def test_no_inside_is_refused(self):
+        lines = self.cube((-0.05, -0.05, -0.05), (0.05, 0.05, 0.05))
+        scene = self.surface(lines[:13])  # five triangles
+        for command in (["info"], ["run", "--backend", "cpu", "--out", "frames"]):
+            self.refused(command[0], scene, *command[1:], words=("surface.obj", "has no inside to fill", "mesh editor"))
+        self.assertEqual([n for n in self.names() if n == "frames" and self.names("frames")], [])
+
+    def test_wanted_nodes_and_far_too_fine_a_spacing(self):
+        lines = self.cube((-0.05, -0.05, -0.05), (0.05, 0.05, 0.05))
+        info = self.json("info", self.surface(lines, nodes=9))
+        self.assertEqual(info["nodes"], 8)
+        self.assertIn("asks for 9 nodes; the nearest lattice that was found has 8 (-11.1 %)", info["warnings"][0])
+        self.refused("info", self.surface(lines, spacing=2e-4), words=("at least 12500000", "at most 100000000 are allowed"))
+
     def test_shipped_scene(self):
         self.assertGreater(self.json("info", harness.SCENES / "beam_tet.json")["elements"], 100)
 

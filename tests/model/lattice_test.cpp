@@ -251,6 +251,33 @@ TEST(Lattice, WantedNumberOfNodes) {
   }
 }
 
+// Where no spacing gives that many nodes, the nearest lattice is taken: a cube of one cell, of 27 or of 64 nodes.
+TEST(Lattice, NearestNumberOfNodes) {
+  for (const auto& [wanted, nodes] : {std::pair{9, 8U}, {25, 27U}, {35, 36U}}) {
+    const TriangleMesh mesh = test::box({0, 0, 0}, {1, 1, wanted == 35 ? 2.0 : 1.0});
+    EXPECT_LE(std::abs(static_cast<double>(build_lattice(mesh, {0, wanted}).nodes.size()) - nodes), 1) << wanted;
+  }
+  const Lattice sheet = build_lattice(test::box({0, 0, 0}, {5, 0.01, 5}), {0, 1000});
+  EXPECT_NEAR(static_cast<double>(sheet.nodes.size()), 1000, 100);
+  // Cells of this one hold next to nothing until there are a million: too coarse is nearer.
+  EXPECT_LT(build_lattice(test::box({0, 0, 0}, {5, 1e-5, 5}), {0, 1000}).nodes.size(), 1000U);
+  // A loose triangle far away.
+  TriangleMesh fin = make_shape("cube");
+  const auto first = static_cast<std::int32_t>(fin.vertices.size());
+  fin.vertices.insert(fin.vertices.end(), {{0, 0, 0}, {0.3, 0, 0}, {0.3, 0.2, 0.2}});
+  fin.triangles.push_back({first, first + 1, first + 2});
+  const Lattice body = build_lattice(fin, {0, 1000});
+  EXPECT_EQ(body.nodes.size(), 1000U);
+  EXPECT_EQ(body.embedding.size(), fin.vertices.size());
+}
+
+// Before anything is filled: the cells of this one would not fit into memory.
+TEST(Lattice, FarTooManyCellsAreRefusedAtOnce) {
+  const auto error = [](double spacing) { return test::error_of([&] { build_lattice(make_shape("cube"), {spacing, 0}); }); };
+  EXPECT_NE(error(2e-4).find("spacing 0.0002 m needs at least 12500000"), std::string::npos) << error(2e-4);
+  EXPECT_NE(error(2e-4).find("at most 100000000 are allowed (choose a larger spacing)"), std::string::npos);
+}
+
 TEST(Lattice, ErrorsSayWhatIsWrong) {
   const TriangleMesh cube = make_shape("cube");
   const auto error = [&](const LatticeSpec& spec, std::int64_t most) {
@@ -262,11 +289,11 @@ TEST(Lattice, ErrorsSayWhatIsWrong) {
   EXPECT_TRUE(mentions(error({-0.01, 0}, 1000), "spacing is -0.01 m; a positive number is needed"));
   EXPECT_TRUE(mentions(error({0, 0}, 1000), "spacing is 0 m"));
   EXPECT_TRUE(mentions(error({std::nan(""), 0}, 1000), "a positive number is needed"));
-  EXPECT_TRUE(mentions(error({0.01, 0}, 999), "needs 1000 cells; at most 999 are allowed"));
+  EXPECT_TRUE(mentions(error({0.01, 0}, 999), "needs at least 1000 cells; at most 999 are allowed"));
   EXPECT_TRUE(mentions(error({0.0001, 0}, 1000), "cells; at most 1000 are allowed"));
   EXPECT_TRUE(mentions(error({1e-9, 0}, 1000), "1e+08 cells along x"));
   EXPECT_TRUE(mentions(error({0, 7}, 1000), "at least the 8 nodes of one cell"));
-  EXPECT_TRUE(mentions(error({0, 9}, 100000), "the nearest found have 8"));
+  EXPECT_TRUE(mentions(error({0, 1001}, 1000), "lattice nodes is 1001; at most 1000 are allowed"));
   EXPECT_EQ(error({0.01, 0}, 1000), "");
   TriangleMesh bad = cube;
   bad.vertices[3][1] = std::nan("");
