@@ -95,10 +95,11 @@ Crossings crossings_of(const TriangleMesh& mesh, const std::vector<std::int32_t>
   for (std::int64_t round = 0; round < rounds && work <= budget; ++round) {  // each goes over the whole surface
     const std::int64_t own = (count - round + rounds - 1) / rounds;
     std::vector<Found> found(static_cast<std::size_t>((own + kChunk - 1) / kChunk));
+    const std::int64_t most = (budget - work) / (4 * static_cast<std::int64_t>(found.size()));  // by one chunk
     parallel_for(static_cast<std::int64_t>(found.size()), [&](std::int64_t c) {
       std::vector<std::int32_t> near;
       for (std::int64_t i = c * kChunk; i < std::min(own, (c + 1) * kChunk); ++i) {
-        if (found[c].work > budget / 8) return;  // everything is close to everything here
+        if (found[c].work > most) return;  // everything is close to everything here
         search.look(static_cast<std::int32_t>(round + i * rounds), near, found[c]);
       }
     });

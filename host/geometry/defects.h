@@ -51,6 +51,6 @@ struct Crossings {
   Vec3d place{};                    ///< on one of the first pair [m]
   double searched = 1;              ///< share of the triangles that were looked at
 };
-Crossings crossings_of(const TriangleMesh& mesh, const std::vector<std::int32_t>& shell, std::int64_t budget = 10'000'000);
+Crossings crossings_of(const TriangleMesh& mesh, const std::vector<std::int32_t>& shell, std::int64_t budget = 8'000'000);
 
 }  // namespace pliant
