@@ -7,7 +7,6 @@
 #include <cmath>
 #include <fstream>
 #include <string>
-#include <string>
 #include <string_view>
 
 #include "pliant/error.h"

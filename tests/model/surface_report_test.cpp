@@ -98,8 +98,8 @@ TEST(SurfaceReport, OverlappingCubesAreUnited) {
 }
 
 TEST(SurfaceReport, TouchingCubesAreBothThere) {
-  TriangleMesh both = cube({0, 0, 0}, 4);
-  test::append(both, cube({1, 0, 0}, 4));
+  TriangleMesh both = cube({0.1, 0.2, 0.3}, 4);
+  test::append(both, cube({1.1, 0.2, 0.3}, 4));
   const Checked c = checked(welded(both));
   EXPECT_NEAR(c.filled, 2, 1e-9);
   EXPECT_EQ(c.report.flipped, 0);
