@@ -47,8 +47,9 @@ struct Lattice {
   }
 };
 
-/// Fill `surface` with cells of edge spec.spacing, or find the spacing that gives about spec.nodes nodes (within 2 %).
-/// Throws Error if the spacing gives no cell or more than `max_cells`.
+/// Fill `surface` with cells of edge spec.spacing, or find the spacing that gives about spec.nodes nodes: within 2 % where a
+/// bounded search finds one, else the nearest that it found. Sheets that bound nothing (geometry/defects.h) are not filled;
+/// their vertices are embedded in the nearest cells. Throws Error if the spacing gives no cell or more than `max_cells`.
 Lattice build_lattice(const TriangleMesh& surface, const LatticeSpec& spec, std::int64_t max_cells = 100'000'000);
 
 }  // namespace pliant
