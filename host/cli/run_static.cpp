@@ -1,6 +1,7 @@
 #include "cli/run_static.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -102,6 +103,12 @@ class Static {
     }
   }
 
+  /// The entry of the scene that holds set `i` of a body's prescribed components.
+  [[nodiscard]] const std::string& pointer_of_set(std::size_t b, std::size_t i) const {
+    const Body& body = scene_.bodies[b];
+    return i < body.fixed.size() ? body.fixed[i].where.pointer : body.prescribed[i - body.fixed.size()].where.pointer;
+  }
+
   [[nodiscard]] std::uint64_t hash() const {
     std::uint64_t value = 0;
     for (const Solved& s : solved_)
@@ -136,7 +143,10 @@ class Static {
                         {"iterations", s.iterations()},
                         {"residual", s.residual},
                         {"strain_energy", s.strain_energy},
-                        {"largest_displacement", largest}});
+                        {"largest_displacement", largest},
+                        {"applied", s.applied},
+                        {"reactions", Json::array()}});
+      const std::vector<Vec3d> sums = statics::reactions(solved_[b].problem, s);
       nodes += static_cast<std::int64_t>(mesh.nodes.size());
       iterations += s.iterations();
       energy += s.strain_energy;
@@ -145,6 +155,12 @@ class Static {
                       "largest displacement {:.6g} m, strain energy {:.6g} J",
                       model_.bodies[b].name, mesh.nodes.size(), mesh.elements(), statics::to_string(mesh.element), s.unknowns,
                       s.iterations(), s.steps.size(), s.residual, largest, s.strain_energy));
+      run_.common.print(fmt::format("  loads [{:.6g}] N", fmt::join(s.applied, ", ")));
+      for (std::size_t i = 0; i < sums.size(); ++i) {
+        const std::string& at = pointer_of_set(b, i);
+        bodies.back()["reactions"].push_back({{"at", at}, {"force", sums[i]}});
+        run_.common.print(fmt::format("  reaction [{:.6g}] N at {}", fmt::join(sums[i], ", "), at));
+      }
     }
     json["nodes"] = nodes;
     json["iterations"] = iterations;
@@ -161,7 +177,7 @@ class Static {
     run_.common.write(json);
   }
 
-  /// The volume with the nodes that its linear elements have, and the surface.
+  /// The volume, quadratic tetrahedra with all their nodes, and the surface.
   void write(const std::string& suffix) const {
     const fs::path stem = fs::path(run_.out) / (run_.stem + suffix);
     const std::string surface_stem = (fs::path(run_.out) / (run_.stem + "_surface" + suffix)).string();
@@ -174,14 +190,20 @@ class Static {
       const ModelBody& placed = model_.bodies[b];
       const statics::Solution& s = solved_[b].solution;
       const auto first = static_cast<std::int32_t>(mesh.points.size());
-      for (std::size_t n = 0; n < placed.rest.size(); ++n) {
-        mesh.points.push_back(vec::add(placed.rest[n], s.displacement[n]));
+      const statics::Mesh& solved = solved_[b].problem.mesh;
+      const bool quadratic = solved.element == statics::Element::tet10;
+      for (std::size_t n = 0; n < solved.nodes.size(); ++n) {
+        mesh.points.push_back(vec::add(solved.nodes[n], s.displacement[n]));
         append(u, s.displacement[n]);
         append(reaction, s.reaction[n]);
       }
-      for (auto tet : placed.tets) {
+      for (std::int64_t e = 0; quadratic && e < solved.elements(); ++e) {
+        auto& tet = mesh.quadratic_tets.emplace_back();
+        for (std::size_t a = 0; a < tet.size(); ++a) tet[a] = solved.nodes_of(e)[a] + first;
+      }
+      for (std::size_t e = 0; !quadratic && e < placed.tets.size(); ++e) {
+        auto& tet = mesh.tets.emplace_back(placed.tets[e]);
         for (std::int32_t& n : tet) n += first;
-        mesh.tets.push_back(tet);
       }
       for (auto hex : placed.hexes) {
         for (std::int32_t& n : hex) n += first;
@@ -189,7 +211,8 @@ class Static {
       }
       for (const statics::SurfacePoint& p : solved_[b].problem.surface) {
         Vec3d moved{};
-        for (int a = 0; a < 8; ++a) moved = vec::add(moved, vec::mul(s.displacement[p.nodes[a]], p.weights[a]));
+        for (std::size_t a = 0; a < p.nodes.size(); ++a)
+          moved = vec::add(moved, vec::mul(s.displacement[p.nodes[a]], p.weights[a]));
         surface.points.push_back(vec::add(p.rest, moved));
         append(surface_u, moved);
       }

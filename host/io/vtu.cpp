@@ -78,8 +78,12 @@ class Head {
   std::uint64_t offset_ = 0;
 };
 
-std::size_t cell_count(const VtuMesh& m) { return m.tets.size() + m.hexes.size() + m.triangles.size(); }
-std::size_t corner_count(const VtuMesh& m) { return 4 * m.tets.size() + 8 * m.hexes.size() + 3 * m.triangles.size(); }
+std::size_t cell_count(const VtuMesh& m) {
+  return m.tets.size() + m.quadratic_tets.size() + m.hexes.size() + m.triangles.size();
+}
+std::size_t corner_count(const VtuMesh& m) {
+  return 4 * m.tets.size() + 10 * m.quadratic_tets.size() + 8 * m.hexes.size() + 3 * m.triangles.size();
+}
 
 void check_arrays(const std::vector<VtuArray>& arrays, std::size_t count, const char* what, const std::filesystem::path& file) {
   for (const VtuArray& a : arrays) {
@@ -106,6 +110,7 @@ void check(const VtuMesh& mesh, const std::filesystem::path& file) {
   check_arrays(mesh.point_arrays, mesh.points.size(), "points", file);
   check_arrays(mesh.cell_arrays, cell_count(mesh), "cells", file);
   check_cells(mesh.tets, mesh.points.size(), file);
+  check_cells(mesh.quadratic_tets, mesh.points.size(), file);
   check_cells(mesh.hexes, mesh.points.size(), file);
   check_cells(mesh.triangles, mesh.points.size(), file);
   if (corner_count(mesh) > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
@@ -159,6 +164,7 @@ void send_cells(AtomicFile& out, const VtuMesh& mesh) {
   Stream<std::int32_t> ints(out);
   send_size(out, 4 * corner_count(mesh));
   send_corners(ints, mesh.tets);
+  send_corners(ints, mesh.quadratic_tets);
   send_corners(ints, mesh.hexes);
   send_corners(ints, mesh.triangles);
   ints.flush();
@@ -168,7 +174,10 @@ void send_cells(AtomicFile& out, const VtuMesh& mesh) {
     std::int32_t corners;
     std::uint8_t type;
   };
-  const std::array<Kind, 3> kinds{{{mesh.tets.size(), 4, 10}, {mesh.hexes.size(), 8, 12}, {mesh.triangles.size(), 3, 5}}};
+  const std::array<Kind, 4> kinds{{{mesh.tets.size(), 4, 10},
+                                   {mesh.quadratic_tets.size(), 10, 24},
+                                   {mesh.hexes.size(), 8, 12},
+                                   {mesh.triangles.size(), 3, 5}}};
   send_size(out, 4 * cell_count(mesh));
   std::int32_t end = 0;
   for (const Kind& kind : kinds) {

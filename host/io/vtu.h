@@ -18,12 +18,13 @@ struct VtuArray {
   std::vector<float> values;
 };
 
-/// What one .vtu file holds. Cells stand in the file as tetrahedra, then hexahedra, then triangles; `cells` arrays follow that
-/// order.
+/// What one .vtu file holds. Cells stand in the file as tetrahedra, quadratic tetrahedra, hexahedra, triangles; `cells` arrays
+/// follow that order.
 struct VtuMesh {
   std::vector<Vec3d> points;  ///< [m]; written as Float32
   std::vector<std::array<std::int32_t, 4>> tets;
-  std::vector<std::array<std::int32_t, 8>> hexes;  ///< VTK order: bottom face counter-clockwise, then top
+  std::vector<std::array<std::int32_t, 10>> quadratic_tets;  ///< corners, then the middles of the edges 01, 12, 02, 03, 13, 23
+  std::vector<std::array<std::int32_t, 8>> hexes;            ///< VTK order: bottom face counter-clockwise, then top
   std::vector<std::array<std::int32_t, 3>> triangles;
   std::vector<VtuArray> point_arrays;
   std::vector<VtuArray> cell_arrays;

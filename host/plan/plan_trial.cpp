@@ -23,7 +23,7 @@ std::vector<Vec3d> surface_of(const statics::Problem& problem, const std::vector
   std::vector<Vec3d> out;
   for (const statics::SurfacePoint& p : problem.surface) {
     Vec3d sum{};
-    for (int a = 0; a < 8; ++a) sum = vec::add(sum, vec::mul(u[p.nodes[a]], p.weights[a]));
+    for (std::size_t a = 0; a < p.nodes.size(); ++a) sum = vec::add(sum, vec::mul(u[p.nodes[a]], p.weights[a]));
     out.push_back(sum);
   }
   return out;

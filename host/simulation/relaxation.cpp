@@ -2,16 +2,38 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace pliant {
+namespace {
 
-void relax(RunContext& run) {
+constexpr double kExcited = 4;    ///< times the fast motion that rounding is expected to excite, in energy
+constexpr double kStandsOut = 3;  ///< elastic work of a change over that of the fast motion, for the change to be trusted
+constexpr double kSettled = 10;  ///< time constants of the damping without such a change after which nothing is left to resolve
+
+/// Sums over the free components of what has happened since the last change of the damping.
+struct Sums {
+  double stiffness = 0;   ///< - du . df [J]
+  double inertia = 0;     ///< du . M du [kg m^2]
+  double fast = 0;        ///< w . M w [J], w the mean of both velocities less du / time: motion faster than the interval
+  double mean = 0;        ///< |mean force|^2 [N^2], from the change of momentum and what the damping took
+  double mean_noise = 0;  ///< the part of the fast motion in it
+  double residual = 0, external = 0, reaction = 0;  ///< |R - F|^2, |R|^2, |reaction|^2 now [N^2]
+  double size = 0;                                  ///< u . M u [kg m^2]
+};
+
+std::vector<double> velocities(const RunContext& run, const std::vector<double>& u) {
+  std::vector<double> v = run.loaded.w();
+  const bool textbook = run.scene.integrator == Integrator::textbook;  // which keeps the displacement before
+  for (std::size_t i = 0; i < v.size(); ++i) v[i] = (textbook ? u[i] - v[i] : v[i]) / run.state.clock.dt;
+  return v;
+}
+
+Sums sum(const RunContext& run, const std::vector<double>& u, const std::vector<double>& force, const std::vector<double>& v) {
   const Model& model = run.model();
-  RelaxationState& relaxation = run.state.relaxation;
-  const std::vector<double> u = run.loaded.u();
-  const std::vector<double> force = run.forces_now();
-  std::vector<double>&old_u = relaxation.u, &old_force = relaxation.force;
-  double stiffness = 0, inertia = 0, residual = 0, external = 0, reaction = 0;
+  const RelaxationState& last = run.state.relaxation;
+  const double time = run.state.clock.time() - last.time;
+  Sums out;
   for (std::size_t s = 0; s < model.mass.size(); ++s) {
     const double m = model.mass[s];
     if (!(m > 0)) continue;
@@ -19,32 +41,77 @@ void relax(RunContext& run) {
       const std::size_t t = 4 * s + c;
       const double weight = m * run.scene.gravity[c];
       if (!run.loaded.free()[3 * s + c]) {
-        reaction += force[t] * force[t];
+        out.reaction += force[t] * force[t];
         continue;
       }
-      residual += (force[t] + weight) * (force[t] + weight);
-      external += weight * weight;
-      if (!old_u.empty()) {
-        const double du = u[t] - old_u[t];
-        stiffness -= du * (force[t] - old_force[t]);
-        inertia += m * du * du;
-      }
+      out.residual += (force[t] + weight) * (force[t] + weight);
+      out.external += weight * weight;
+      out.size += m * u[t] * u[t];
+      if (last.u.empty()) continue;
+      const double du = u[t] - last.u[t];
+      out.stiffness -= du * (force[t] - last.force[t]);
+      out.inertia += m * du * du;
+      const double fast = (v[t] + last.v[t]) / 2 - du / time;
+      out.fast += m * fast * fast;
+      const double mean = m * (v[t] - last.v[t] + (model.damping[s] + last.damping) * du) / time;
+      out.mean += mean * mean;
+      out.mean_noise += 4 * m * fast * m * fast / (time * time);
     }
   }
   for (const NodeForce& f : model.forces) {
-    for (const double component : f.force) external += component * component;
+    for (const double component : f.force) out.external += component * component;
   }
-  if (stiffness > 0 && inertia > 0) {
-    const double material = *std::max_element(model.damping.begin(), model.damping.end());
-    relaxation.damping = std::max(0.0, 2 * std::sqrt(stiffness / inertia) - material);
+  return out;
+}
+
+/// Whether the fast motion is what rounding excites: u is rounded in every step, by a third of (eps u)^2 on average at most,
+/// which is a random velocity that the damping c takes out again within 1 / (2 c h) steps.
+bool only_rounding(const RunContext& run, const Sums& sums, double c) {
+  const double h = run.state.clock.dt;
+  const double eps = run.backend().info().real_bytes == 4 ? std::numeric_limits<float>::epsilon() / 2
+                                                          : std::numeric_limits<double>::epsilon() / 2;
+  return c > 0 && sums.fast * c * h * h * h <= kExcited * eps * eps * sums.size;
+}
+
+}  // namespace
+
+// A body in float never rests: rounding of u shakes its highest modes, whose forces hide those of the lowest. Such motion has
+// as much elastic as kinetic energy, so that it adds four times `fast` to -du . df (two ends, and half of the variance in a
+// mean of two), and its momentum enters a mean force by 1 / time only.
+void relax(RunContext& run) {
+  const Model& model = run.model();
+  RelaxationState& last = run.state.relaxation;
+  const std::vector<double> u = run.loaded.u();
+  const std::vector<double> force = run.forces_now();
+  const std::vector<double> v = velocities(run, u);
+  const bool first = last.u.empty();
+  const double material = *std::max_element(model.damping.begin(), model.damping.end());
+  const double c = material + last.damping, now = run.state.clock.time();
+  Sums sums = sum(run, u, force, v);
+  const double scale = std::sqrt(std::max(sums.external, sums.reaction));
+  last.residual = scale > 0 ? std::sqrt(sums.residual) / scale : (sums.residual > 0 ? 1 : 0);
+  bool settled = false, hidden = false;
+  if (!first && only_rounding(run, sums, c)) {
+    const double noise = 4 * sums.fast, x = c * (now - last.time) / 2;
+    sums.stiffness -= noise;
+    hidden = std::abs(sums.stiffness) <= kStandsOut * noise;
+    if (scale > 0 && last.time >= run.settings.curves_end) {
+      // A mode that is damped critically decays as exp(-c t / 2): its force at the end from the mean.
+      const double end = std::sqrt(std::max(0.0, sums.mean - sums.mean_noise)) * x / std::expm1(x);
+      last.residual = std::min(last.residual, std::max(end, std::sqrt(sums.mean_noise)) / scale);
+      settled = hidden && x >= kSettled;
+    }
+  }
+  last.equilibrium = now >= run.settings.curves_end && (settled || last.residual <= run.scene.relaxation.tolerance);
+  if (hidden) return;
+  if (sums.stiffness > 0 && sums.inertia > 0) {
+    last.damping = std::max(0.0, 2 * std::sqrt(sums.stiffness / sums.inertia) - material);
     run.upload_decay();
   }
-  const double scale = std::sqrt(std::max(external, reaction));
-  relaxation.residual = scale > 0 ? std::sqrt(residual) / scale : (residual > 0 ? 1 : 0);
-  relaxation.equilibrium =
-      run.state.clock.time() >= run.settings.curves_end && relaxation.residual <= run.scene.relaxation.tolerance;
-  old_u = u;
-  old_force = force;
+  last.u = u;
+  last.force = force;
+  last.v = v;
+  last.time = now;
 }
 
 }  // namespace pliant

@@ -34,10 +34,11 @@ struct StepLimit {
 
 /// Dynamic relaxation: its damping rate, and what its next change is measured against.
 struct RelaxationState {
-  double damping = 0;            ///< [1/s], beside that of the materials
-  bool equilibrium = false;      ///< reached: nothing is left to do
-  double residual = 0;           ///< |R - F| over the largest of external and reaction force
-  std::vector<double> u, force;  ///< node_u and node_force at the last change; empty: there was none
+  double damping = 0;               ///< [1/s], beside that of the materials
+  bool equilibrium = false;         ///< reached: nothing is left to do
+  double residual = 0;              ///< |R - F| over the largest of external and reaction force
+  double time = 0;                  ///< of the last change [s]
+  std::vector<double> u, force, v;  ///< node_u, node_force and velocities [m/s] at the last change; empty: there was none
 };
 
 /// The good state that last_u and last_w hold.
@@ -113,6 +114,7 @@ void visit(V& v, StepLimit& s) {
 template <class V>
 void visit(V& v, RelaxationState& s) {
   v("damping", s.damping), v("equilibrium", s.equilibrium), v("residual", s.residual), v("u", s.u), v("force", s.force);
+  v("time", s.time), v("v", s.v);
 }
 template <class V>
 void visit(V& v, KeptState& s) {

@@ -134,7 +134,9 @@ void check_state(const RunState& state, const Model& model, const Scene& scene) 
   const RelaxationState& r = state.relaxation;
   need(std::isfinite(r.damping) && (!state.kept || std::isfinite(state.kept->damping)), "its damping is not finite");
   const std::size_t texels = 4 * static_cast<std::size_t>(model.slots);
-  need(r.u.size() == r.force.size() && (r.u.empty() || r.u.size() == texels), "what relaxation remembers");
+  need(r.u.size() == r.force.size() && r.u.size() == r.v.size() && std::isfinite(r.time) &&
+           (r.u.empty() || r.u.size() == texels),
+       "what relaxation remembers");
   need(scene.relaxation.enabled || (!r.equilibrium && r.u.empty()), "it relaxes, and the scene does not");
   for (const SweepTriangle& t : state.pending.triangles) {
     for (const Vec3d& p : t) need(vec::finite(p), "a pending triangle is not finite");

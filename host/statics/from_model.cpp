@@ -39,7 +39,10 @@ class FromModel {
     materials();
     loads();
     surface();
-    return quadratic_ ? to_quadratic(out_) : std::move(out_);
+    if (!quadratic_) return std::move(out_);
+    Problem quadratic_problem = to_quadratic(out_);
+    if (body_.spacing > 0) embed_again(quadratic_problem);
+    return quadratic_problem;
   }
 
  private:
@@ -96,10 +99,13 @@ class FromModel {
 
   void loads() {
     for (const Constraint& c : model_.constraints) {
-      if (node_of_[c.slot] < 0) continue;
+      const std::int32_t node = node_of_[c.slot];
+      if (node < 0) continue;
       for (int axis = 0; axis < 3; ++axis) {
-        if ((c.axes >> axis & 1) != 0)
-          out_.prescribed.push_back({node_of_[c.slot], axis, c.target[axis] * final_value(model_.curves[c.curve[axis]])});
+        if ((c.axes >> axis & 1) != 0) {
+          const double displacement = c.target[axis] * final_value(model_.curves[c.curve[axis]]);
+          out_.prescribed.push_back({node, axis, displacement, set_of(node, axis)});
+        }
       }
     }
     for (const NodeForce& f : model_.forces) {
@@ -114,17 +120,75 @@ class FromModel {
     }
   }
 
+  /// The entry that holds a component: the last of `fixed`, then of `prescribed`, that names it.
+  [[nodiscard]] std::int32_t set_of(std::int32_t node, int axis) const {
+    const Body& body = scene_.bodies[number_];
+    const auto names = [&](const Selection& where) { return where.contains(body_.rest[node], node); };
+    for (std::size_t i = body.prescribed.size(); i-- > 0;) {
+      if (body.prescribed[i].displacement[axis] && names(body.prescribed[i].where))
+        return static_cast<std::int32_t>(body.fixed.size() + i);
+    }
+    for (std::size_t i = body.fixed.size(); i-- > 0;) {
+      if (body.fixed[i].axes[axis] && names(body.fixed[i].where)) return static_cast<std::int32_t>(i);
+    }
+    throw Error(ErrorCode::internal, fmt::format("body '{}': node {} is held by no entry of the scene", body_.name, node));
+  }
+
   void surface() {
     for (std::int32_t v = body_.first_vertex; v < body_.first_vertex + body_.vertices; ++v) {
-      SurfacePoint point{model_.surface.rest[v], {}, model_.surface.weights[v]};
-      for (int a = 0; a < 8; ++a) point.nodes[a] = node_of_[model_.surface.nodes[v][a]];
+      SurfacePoint point{model_.surface.rest[v], {}, {}};
+      for (int a = 0; a < 8; ++a) {
+        point.nodes[a] = node_of_[model_.surface.nodes[v][a]];
+        point.weights[a] = model_.surface.weights[v][a];
+      }
       out_.surface.push_back(point);
     }
     for (const TrianglePressure& p : model_.pressures) {
       if (model_.surface.triangle_body[p.triangle] != number_) continue;
       std::array<std::int32_t, 3> points = model_.surface.triangles[p.triangle];
       for (std::int32_t& v : points) v -= body_.first_vertex;
-      out_.pressures.push_back({points, p.pressure * final_value(model_.curves[p.curve])});
+      const double pressure = p.pressure * final_value(model_.curves[p.curve]);
+      if (body_.spacing > 0) {
+        out_.pressures.push_back({points, pressure});
+      } else {
+        out_.face_pressures.push_back(face_of(points, pressure));
+      }
+    }
+  }
+
+  /// The triangle of a volume mesh as a face, or half a face, of its element.
+  FacePressure face_of(const std::array<std::int32_t, 3>& points, double pressure) {
+    const Mesh& mesh = out_.mesh;
+    if (elements_at_.empty()) {
+      elements_at_.resize(mesh.nodes.size());
+      for (std::int64_t e = 0; e < mesh.elements(); ++e) {
+        for (int a = 0; a < corners_of(mesh.element); ++a) elements_at_[mesh.nodes_of(e)[a]].push_back(e);
+      }
+    }
+    for (const std::int64_t e : elements_at_[out_.surface[points[0]].nodes[0]]) {
+      FacePressure face{e, {}, pressure};
+      const std::int32_t *const first = mesh.nodes_of(e), *const last = first + corners_of(mesh.element);
+      int found = 0;
+      for (int v = 0; v < 3; ++v) {
+        face.corners[v] = static_cast<int>(std::find(first, last, out_.surface[points[v]].nodes[0]) - first);
+        found += first + face.corners[v] != last ? 1 : 0;
+      }
+      if (found == 3) return face;
+    }
+    throw Error(ErrorCode::internal, fmt::format("body '{}': a triangle of its surface is no face of an element", body_.name));
+  }
+
+  /// The surface in the nodes of quadratic elements, which move what lies between the corners of a cell otherwise than these
+  /// do.
+  static void embed_again(Problem& problem) {
+    const Field field(problem.mesh);
+    for (SurfacePoint& point : problem.surface) {
+      const Place place = field.locate(point.rest);
+      const ShapeValues n = shape_values(problem.mesh.element, eigen(place.local));
+      for (int a = 0; a < n.size(); ++a) {
+        point.nodes[a] = problem.mesh.nodes_of(place.element)[a];
+        point.weights[a] = n[a];
+      }
     }
   }
 
@@ -134,6 +198,7 @@ class FromModel {
   const ModelBody& body_;
   bool quadratic_ = false;
   std::vector<std::int32_t> node_of_;
+  std::vector<std::vector<std::int64_t>> elements_at_;  ///< of each node; filled when it is asked for
   Problem out_;
 };
 

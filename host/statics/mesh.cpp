@@ -64,14 +64,14 @@ std::vector<std::pair<std::int64_t, int>> boundary_faces(const Mesh& mesh) {
 }
 
 /// Shape functions of a face with 3, 4 or 6 nodes and their two local derivatives.
-struct FacePoint {
+struct TractionPoint {
   Eigen::VectorXd n;
   Eigen::Matrix2Xd gradient;
   double weight = 0;
 };
 
-FacePoint triangle_point(std::size_t nodes, double r, double s, double weight) {
-  FacePoint p{Eigen::VectorXd(nodes), Eigen::Matrix2Xd(2, nodes), weight};
+TractionPoint triangle_point(std::size_t nodes, double r, double s, double weight) {
+  TractionPoint p{Eigen::VectorXd(nodes), Eigen::Matrix2Xd(2, nodes), weight};
   const Vector3d l(1 - r - s, r, s);
   Eigen::Matrix<double, 2, 3> b;
   b << -1, 1, 0, -1, 0, 1;
@@ -87,15 +87,15 @@ FacePoint triangle_point(std::size_t nodes, double r, double s, double weight) {
   return p;
 }
 
-FacePoint square_point(double r, double s, double weight) {
-  FacePoint p{Eigen::VectorXd(4), Eigen::Matrix2Xd(2, 4), weight};
+TractionPoint square_point(double r, double s, double weight) {
+  TractionPoint p{Eigen::VectorXd(4), Eigen::Matrix2Xd(2, 4), weight};
   p.n << (1 - r) * (1 - s), r * (1 - s), r * s, (1 - r) * s;
   p.gradient << -(1 - s), 1 - s, s, -s, -(1 - r), -r, r, 1 - r;
   return p;
 }
 
-std::vector<FacePoint> face_rule(std::size_t nodes) {
-  std::vector<FacePoint> rule;
+std::vector<TractionPoint> face_rule(std::size_t nodes) {
+  std::vector<TractionPoint> rule;
   if (nodes == 4) {
     const double g = 0.5 * (1 - std::sqrt(1.0 / 3));
     for (const double s : {g, 1 - g}) {
@@ -120,12 +120,14 @@ Problem to_quadratic(const Problem& tet4) {
   Problem out = tet4;
   std::map<Edge, std::int32_t> middles;
   out.mesh = to_quadratic(tet4.mesh, middles);
-  std::map<std::pair<std::int32_t, int>, double> prescribed;
-  for (const Prescribed& p : tet4.prescribed) prescribed[{p.node, p.axis}] = p.displacement;
+  std::map<std::pair<std::int32_t, int>, const Prescribed*> prescribed;
+  for (const Prescribed& p : tet4.prescribed) prescribed[{p.node, p.axis}] = &p;
   for (const auto& [edge, middle] : middles) {
     for (int axis = 0; axis < 3; ++axis) {
       const auto a = prescribed.find({edge.first, axis}), b = prescribed.find({edge.second, axis});
-      if (a != prescribed.end() && b != prescribed.end()) out.prescribed.push_back({middle, axis, (a->second + b->second) / 2});
+      if (a == prescribed.end() || b == prescribed.end()) continue;
+      const Prescribed &p = *a->second, &q = *b->second;
+      out.prescribed.push_back({middle, axis, (p.displacement + q.displacement) / 2, std::max(p.set, q.set)});
     }
   }
   return out;
@@ -191,7 +193,7 @@ double add_traction(Problem& problem, const std::function<bool(const Vec3d&)>& c
     for (std::size_t a = 0; a < face.size(); ++a) x.col(a) = eigen(mesh.nodes[mesh.nodes_of(element)[face[a]]]);
     const std::size_t corners = face.size() == 4 ? 4 : 3;
     if (!chosen(plain(x.leftCols(corners).rowwise().mean()))) continue;
-    for (const FacePoint& p : face_rule(face.size())) {
+    for (const TractionPoint& p : face_rule(face.size())) {
       const Vector3d a = x * p.gradient.row(0).transpose(), b = x * p.gradient.row(1).transpose();
       const double weight = p.weight * a.cross(b).norm();
       area += weight;
@@ -200,6 +202,18 @@ double add_traction(Problem& problem, const std::function<bool(const Vec3d&)>& c
     }
   }
   return area;
+}
+
+void add_pressure(Problem& problem, const std::function<bool(const Vec3d&)>& chosen, double pressure) {
+  const Mesh& mesh = problem.mesh;
+  for (const auto& [element, number] : boundary_faces(mesh)) {
+    const std::vector<int>& face = faces_of(mesh.element)[number];
+    const int corners = mesh.element == Element::hex8full ? 4 : 3;
+    Vector3d centre = Vector3d::Zero();
+    for (int a = 0; a < corners; ++a) centre += eigen(mesh.nodes[mesh.nodes_of(element)[face[a]]]) / corners;
+    if (!chosen(plain(centre))) continue;
+    for (int a = 2; a < corners; ++a) problem.face_pressures.push_back({element, {face[0], face[a - 1], face[a]}, pressure});
+  }
 }
 
 }  // namespace pliant::statics

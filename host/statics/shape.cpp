@@ -133,6 +133,20 @@ const std::vector<LocalPoint>& accurate_quadrature(Element element) {
   return element == Element::hex8full ? hex : tet;
 }
 
+const std::vector<FacePoint>& triangle_rule(Element element) {
+  static const std::vector<FacePoint> one{{1.0 / 3, 1.0 / 3, 0.5}}, six = [] {
+    // Six points of degree 4 (Strang and Fix 1973); a test integrates all monomials.
+    std::vector<FacePoint> rule;
+    for (const auto& [a, weight] : {std::pair{0.44594849091596488632, 0.22338158967801146570},
+                                    std::pair{0.09157621350977074346, 0.10995174365532186764}}) {
+      for (const auto& [r, s] : {std::pair{a, a}, std::pair{1 - 2 * a, a}, std::pair{a, 1 - 2 * a}})
+        rule.push_back({r, s, weight / 2});
+    }
+    return rule;
+  }();
+  return element == Element::tet4 ? one : six;
+}
+
 Gradients corners_at(const Mesh& mesh, std::int64_t element) {
   const int count = corners_of(mesh.element);
   Gradients x(3, count);

@@ -27,6 +27,13 @@ struct LocalPoint {
 const std::vector<LocalPoint>& quadrature(Element element);           ///< of the element's forces
 const std::vector<LocalPoint>& accurate_quadrature(Element element);  ///< exact for degree 5
 
+/// A point of a rule over the triangle r, s >= 0, r + s <= 1; weights sum to its area, 1/2.
+struct FacePoint {
+  double r = 0, s = 0, weight = 0;
+};
+/// Exact for n x_r cross x_s on a face or half a face of the element: degree 1 (tet4), 4 (tet10; hex8full wants 3).
+const std::vector<FacePoint>& triangle_rule(Element element);
+
 /// Column a: rest position of corner a.
 Gradients corners_at(const Mesh& mesh, std::int64_t element);
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "pliant/error.h"
 #include "statics/cholesky.h"
@@ -15,6 +16,8 @@ namespace {
 constexpr double kSmallestStep = 1.0 / 4096;  ///< of the loads
 constexpr double kLargestTurn = 0.5;          ///< change of the displacement gradient in one iteration
 constexpr int kBold = 16;                     ///< iterations of a load step before the line search becomes strict
+constexpr int kMostSolves = 60;               ///< with one factorisation
+constexpr double kSolved = 1e-9;              ///< relative residual of a direction
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 class Newton {
@@ -90,9 +93,8 @@ class Newton {
       record.iterations = i + 1;
       if (system_.unknowns() > 0 && !factorize())
         return give_up("the stiffness is singular (a part hinged at a node or an edge?)");
-      VectorXd d = moved;
-      if (!predict) d.setZero();
-      if (system_.unknowns() > 0) d += system_.spread(cholesky_.solve(-residual - (predict ? moved_force : zero())));
+      const VectorXd d = direction(predict ? moved : VectorXd::Zero(system_.components()),
+                                   -residual - (predict ? moved_force : zero()), target);
       if (!d.allFinite()) return give_up("the stiffness is singular (a part hinged at a node or an edge?)");
       if (settings_.linear) {
         u_ += d;
@@ -104,6 +106,36 @@ class Newton {
     }
     return give_up(fmt::format("no convergence within {} iterations (relative residual {:.3g}, tolerance {:.3g})",
                                settings_.max_iterations, record.residuals.back(), settings_.tolerance));
+  }
+
+  /// `moved`, and the free components d that solve (K + A) d = force - A moved, with K the tangent, which is factorised, and A
+  /// the unsymmetric part of what pressures add: GMRES (Saad and Schultz 1986) on (1 + K^-1 A) d, which takes a few solves as A
+  /// acts at the rims of surfaces alone.
+  [[nodiscard]] VectorXd direction(const VectorXd& moved, const VectorXd& force, double target) const {
+    if (system_.unknowns() == 0) return moved;
+    if (!system_.has_skew_part()) return moved + system_.spread(cholesky_.solve(force));
+    const VectorXd start = cholesky_.solve(force - system_.skew_product(u_, target, moved));
+    const double size = start.norm();
+    if (!(size > 0) || !std::isfinite(size)) return moved + system_.spread(start);
+    std::vector<VectorXd> basis{start / size};
+    Eigen::MatrixXd h = Eigen::MatrixXd::Zero(kMostSolves + 1, kMostSolves);
+    VectorXd weights;
+    for (int k = 0; k < kMostSolves; ++k) {
+      VectorXd next = basis[k] + cholesky_.solve(system_.skew_product(u_, target, system_.spread(basis[k])));
+      for (int i = 0; i <= k; ++i) {
+        h(i, k) = basis[i].dot(next);
+        next -= h(i, k) * basis[i];
+      }
+      h(k + 1, k) = next.norm();
+      const Eigen::MatrixXd block = h.topLeftCorner(k + 2, k + 1);
+      const VectorXd wanted = size * VectorXd::Unit(k + 2, 0);
+      weights = block.colPivHouseholderQr().solve(wanted);
+      if ((block * weights - wanted).norm() <= kSolved * size || !(h(k + 1, k) > 0)) break;
+      basis.push_back(next / h(k + 1, k));
+    }
+    VectorXd d = VectorXd::Zero(system_.unknowns());
+    for (Eigen::Index i = 0; i < weights.size(); ++i) d += weights[i] * basis[i];
+    return moved + system_.spread(d);
   }
 
   [[nodiscard]] VectorXd zero() const { return VectorXd::Zero(system_.unknowns()); }
@@ -182,6 +214,7 @@ class Newton {
       out_.displacement.push_back(plain(u_.segment<3>(static_cast<Eigen::Index>(3 * n))));
       out_.reaction.push_back(plain(reaction.segment<3>(static_cast<Eigen::Index>(3 * n))));
     }
+    for (std::size_t i = 0; i < 3 * nodes; ++i) out_.applied[i % 3] += f.external[static_cast<Eigen::Index>(i)];
     out_.load = load_;
     out_.strain_energy = f.energy;
     out_.residual = relative(f, system_.free_part(reaction).norm());
@@ -205,6 +238,19 @@ int Solution::iterations() const {
   int sum = 0;
   for (const LoadStep& step : steps) sum += step.iterations;
   return sum;
+}
+
+std::vector<Vec3d> reactions(const Problem& problem, const Solution& solution) {
+  std::map<std::pair<std::int32_t, int>, std::int32_t> holder;
+  std::int32_t sets = 0;
+  for (const Prescribed& p : problem.prescribed) {
+    holder[{p.node, p.axis}] = p.set;
+    sets = std::max(sets, p.set + 1);
+  }
+  std::vector<Vec3d> out(static_cast<std::size_t>(sets));
+  for (const auto& [component, set] : holder)
+    out[set][component.second] += solution.reaction[component.first][component.second];
+  return out;
 }
 
 Solution solve(const Problem& problem, const Settings& settings) {

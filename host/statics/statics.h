@@ -35,6 +35,7 @@ struct Prescribed {
   std::int32_t node = 0;
   int axis = 0;
   double displacement = 0;  ///< [m]
+  std::int32_t set = 0;     ///< whose reaction it belongs to, see reactions()
 };
 
 /// A dead force on a node.
@@ -46,14 +47,24 @@ struct Force {
 /// A point embedded in the nodes of the mesh by fixed weights; what follower pressures act on.
 struct SurfacePoint {
   Vec3d rest{};  ///< [m]
-  std::array<std::int32_t, 8> nodes{};
-  std::array<double, 8> weights{};
+  std::array<std::int32_t, 10> nodes{};
+  std::array<double, 10> weights{};
 };
 
-/// Follower pressure on a triangle of surface points: against the normal of the deformed triangle (right-hand rule).
+/// Follower pressure on a triangle of surface points, which stays flat: against the normal of the deformed triangle (right-hand
+/// rule).
 struct Pressure {
   std::array<std::int32_t, 3> points{};
   double pressure = 0;  ///< [Pa]
+};
+
+/// Follower pressure on the face of an element that three of its corners name, or on half of a quadrilateral: against the
+/// normal of the deformed, curved face, shared by its nodes as their shape functions say. Loads over the undeformed face if
+/// linear.
+struct FacePressure {
+  std::int64_t element = 0;
+  std::array<int, 3> corners{};  ///< local; counter-clockwise as seen from outside
+  double pressure = 0;           ///< [Pa]
 };
 
 struct Problem {
@@ -66,6 +77,7 @@ struct Problem {
   std::vector<Force> forces;           ///< entries for the same node add up
   std::vector<SurfacePoint> surface;
   std::vector<Pressure> pressures;
+  std::vector<FacePressure> face_pressures;
 };
 
 struct Settings {
@@ -91,6 +103,7 @@ struct Solution {
   double load = 0;                  ///< share of the loads that was reached
   std::vector<Vec3d> displacement;  ///< [nodes] [m], the last converged state
   std::vector<Vec3d> reaction;      ///< [nodes] internal minus external force [N], zero to the tolerance at free components
+  Vec3d applied{};                  ///< sum of the loads, which the reactions balance [N]
   double residual = 0;              ///< relative, at the end
   double strain_energy = 0;         ///< [J]
   std::vector<LoadStep> steps;
@@ -102,11 +115,15 @@ struct Solution {
 /// volume, an index out of range. Failure to converge is reported in the Solution.
 Solution solve(const Problem& problem, const Settings& settings = {});
 
+/// Sum of the reactions over what each set of prescribed components holds [N]; the last entry for a component holds it.
+std::vector<Vec3d> reactions(const Problem& problem, const Solution& solution);
+
 /// The same nodes, and one in the middle of every edge behind them: nodes keep their numbers.
 Mesh to_quadratic(const Mesh& tet4);
 
-/// A problem over tet4 as one over tet10. A component of an edge's middle is prescribed where it is at both ends, to the mean.
-/// Node forces stay on their nodes: prefer add_traction, or body forces.
+/// A problem over tet4 as one over tet10. A component of an edge's middle is prescribed where it is at both ends, to the mean,
+/// and belongs to the later set of both. Node forces and surface points stay on their nodes: prefer add_traction, add_pressure
+/// and body forces.
 Problem to_quadratic(const Problem& tet4);
 
 /// A box [0, size] of cells[0] x cells[1] x cells[2] cells; tetrahedra split each into six around the diagonal from corner 0
@@ -123,9 +140,13 @@ void prescribe(Problem& problem, const std::function<bool(const Vec3d&)>& chosen
 /// area [m^2].
 double add_traction(Problem& problem, const std::function<bool(const Vec3d&)>& chosen, const Vec3d& traction);
 
+/// Follower pressure [Pa] on the boundary faces whose centre is chosen.
+void add_pressure(Problem& problem, const std::function<bool(const Vec3d&)>& chosen, double pressure);
+
 /// One body of a model at the final values of its load curves, and the loads of the engine: gravity on lumped masses. Nodes are
-/// those of the body. hex8 becomes hex8full. Throws Error for shape matching, and for tet4anp unless `quadratic`, which turns
-/// tetrahedra into tet10 with gravity on the density.
+/// those of the body. hex8 becomes hex8full. Sets of prescribed components: the entries of `fixed`, then those of `prescribed`.
+/// Pressures act on the faces of a volume mesh, and on the triangles of a surface that is embedded in a lattice. Throws Error
+/// for shape matching, and for tet4anp unless `quadratic`, which turns tetrahedra into tet10 with gravity on the density.
 Problem problem_of(const Scene& scene, const Model& model, std::size_t body, bool quadratic = false);
 
 /// Where a rest position lies in a mesh.

@@ -20,6 +20,7 @@ System::System(const Problem& problem, bool linear) : problem_(problem), linear_
   number();
   precompute();
   add_dead_loads();
+  patches_ = pressure_patches(problem_);
   make_pattern();
 }
 
@@ -63,6 +64,14 @@ void System::check() const {
       if (v < 0 || v >= static_cast<std::int32_t>(problem_.surface.size()))
         fail(fmt::format("a pressure names surface point {}, allowed are 0 to {}", v,
                          static_cast<std::int64_t>(problem_.surface.size()) - 1));
+    }
+  }
+  const int corners = mesh.element == Element::hex8full ? 8 : 4;
+  for (const FacePressure& p : problem_.face_pressures) {
+    if (p.element < 0 || p.element >= mesh.elements())
+      fail(fmt::format("a pressure names element {}, allowed are 0 to {}", p.element, mesh.elements() - 1));
+    for (const int c : p.corners) {
+      if (c < 0 || c >= corners) fail(fmt::format("a pressure names corner {}, allowed are 0 to {}", c, corners - 1));
     }
   }
 }
@@ -141,14 +150,7 @@ void System::make_pattern() {
   };
   for (std::int64_t e = 0; e < problem_.mesh.elements(); ++e)
     couple(problem_.mesh.nodes_of(e), corners_of(problem_.mesh.element));
-  for (const Pressure& p : problem_.pressures) {
-    std::vector<std::int32_t> all;
-    for (const std::int32_t v : p.points)
-      all.insert(all.end(), problem_.surface[v].nodes.begin(), problem_.surface[v].nodes.end());
-    std::sort(all.begin(), all.end());
-    all.erase(std::unique(all.begin(), all.end()), all.end());
-    couple(all.data(), static_cast<int>(all.size()));
-  }
+  for (const PressurePatch& patch : patches_) couple(patch.nodes.data(), static_cast<int>(patch.nodes.size()));
   std::vector<int> start(unknowns_ + 1, 0), rows;
   for (std::size_t n = 0; n < neighbors.size(); ++n) {
     auto& list = neighbors[n];
@@ -290,59 +292,29 @@ bool System::tangent(const VectorXd& u, double load, Forces& out, SparseMatrix& 
   return evaluate(u, load, out, &stiffness, &sink);
 }
 
-namespace {
-
-/// [a] x b = a x b
-Matrix3d cross_matrix(const Vector3d& a) {
-  Matrix3d m;
-  m << 0, -a[2], a[1], a[2], 0, -a[0], -a[1], a[0], 0;
-  return m;
+// The tangent takes the symmetric part of what the pressures add, so that Newton's method stays a Cholesky method; the solver
+// adds the other part by iteration (skew_product).
+void System::add_pressures(const VectorXd& u, double load, Forces& out, SparseMatrix* stiffness, Sink* sink) const {
+  for (const PressurePatch& patch : patches_) {
+    Eigen::Matrix3Xd moved = patch.of(u);
+    if (linear_) moved.setZero();
+    const Eigen::Matrix3Xd force = load * patch.forces(moved);
+    for (std::size_t a = 0; a < patch.nodes.size(); ++a)
+      out.external.segment<3>(3 * patch.nodes[a]) += force.col(static_cast<Eigen::Index>(a));
+    if (stiffness == nullptr || linear_) continue;
+    scatter(components_of(patch.nodes.data(), static_cast<int>(patch.nodes.size())), load * patch.stiffness(moved), *stiffness,
+            sink);
+  }
 }
 
-}  // namespace
-
-// The force on each vertex is -p/6 (x0 x x1 + x1 x x2 + x2 x x0). Its derivative is symmetric for a closed surface but for
-// terms at the rim of an open one; the tangent takes the symmetric part, so that Newton's method stays a Cholesky method.
-void System::add_pressures(const VectorXd& u, double load, Forces& out, SparseMatrix* stiffness, Sink* sink) const {
-  for (const Pressure& pressure : problem_.pressures) {
-    const double p = load * pressure.pressure / 6;
-    Matrix3d x;
-    for (int v = 0; v < 3; ++v) {
-      const SurfacePoint& point = problem_.surface[pressure.points[v]];
-      x.col(v) = eigen(point.rest);
-      for (int a = 0; a < 8 && !linear_; ++a) x.col(v) += point.weights[a] * u.segment<3>(3 * point.nodes[a]);
-    }
-    const Vector3d area2 = (x.col(1) - x.col(0)).cross(x.col(2) - x.col(0));
-    std::vector<std::int32_t> nodes;
-    std::vector<double> weights;
-    for (const std::int32_t v : pressure.points) {
-      const SurfacePoint& point = problem_.surface[v];
-      for (int a = 0; a < 8; ++a) {
-        nodes.push_back(point.nodes[a]);
-        weights.push_back(point.weights[a]);
-        out.external.segment<3>(3 * point.nodes[a]) -= p * point.weights[a] * area2;
-      }
-    }
-    if (stiffness == nullptr || linear_) continue;
-    // d(force of any vertex) / d x_v = -p [x_(v+2) - x_(v+1)]; stiffness is minus that.
-    Matrix3d b[3];
-    for (int v = 0; v < 3; ++v) b[v] = p * cross_matrix(x.col((v + 2) % 3) - x.col((v + 1) % 3));
-    Eigen::MatrixXd block(72, 72);
-    for (int i = 0; i < 24; ++i) {
-      for (int j = 0; j < 24; ++j) block.block<3, 3>(3 * i, 3 * j) = 0.5 * weights[i] * weights[j] * (b[j / 8] - b[i / 8]);
-    }
-    // One node may stand several times: its blocks are added up.
-    std::vector<std::int32_t> unique = nodes;
-    std::sort(unique.begin(), unique.end());
-    unique.erase(std::unique(unique.begin(), unique.end()), unique.end());
-    const auto count = static_cast<int>(unique.size());
-    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(3 * count, 3 * count);
-    const auto place = [&](int i) { return std::lower_bound(unique.begin(), unique.end(), nodes[i]) - unique.begin(); };
-    for (int i = 0; i < 24; ++i) {
-      for (int j = 0; j < 24; ++j) sum.block<3, 3>(3 * place(i), 3 * place(j)) += block.block<3, 3>(3 * i, 3 * j);
-    }
-    scatter(components_of(unique.data(), count), sum, *stiffness, sink);
+VectorXd System::skew_product(const VectorXd& u, double load, const VectorXd& d) const {
+  VectorXd out = VectorXd::Zero(components());
+  for (const PressurePatch& patch : patches_) {
+    const Eigen::Matrix3Xd product = load * patch.skew_product(patch.of(u), patch.of(d));
+    for (std::size_t a = 0; a < patch.nodes.size(); ++a)
+      out.segment<3>(3 * patch.nodes[a]) += product.col(static_cast<Eigen::Index>(a));
   }
+  return free_part(out);
 }
 
 VectorXd System::free_part(const VectorXd& all) const {

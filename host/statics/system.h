@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "material/response.h"
+#include "statics/pressure.h"
 #include "statics/shape.h"
 
 namespace pliant::statics {
@@ -35,6 +36,11 @@ class System {
   /// change `moved` of the prescribed ones gives (not touched where `moved` is null).
   bool tangent(const VectorXd& u, double load, Forces& out, SparseMatrix& stiffness, VectorXd* moved_force = nullptr,
                const VectorXd* moved = nullptr) const;
+
+  /// What the unsymmetric part of the pressures' stiffness, which the tangent lacks, gives on the free components for a change
+  /// d of all.
+  [[nodiscard]] VectorXd skew_product(const VectorXd& u, double load, const VectorXd& d) const;
+  [[nodiscard]] bool has_skew_part() const { return !linear_ && !patches_.empty(); }
 
   /// Largest Frobenius norm of the displacement gradient of d at a point of quadrature.
   [[nodiscard]] double largest_gradient(const VectorXd& d) const;
@@ -72,6 +78,7 @@ class System {
   std::vector<int> free_;
   VectorXd prescribed_, dead_;
   std::vector<Point> points_;  ///< [elements][points]
+  std::vector<PressurePatch> patches_;
   SparseMatrix pattern_;
 };
 

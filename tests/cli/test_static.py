@@ -38,6 +38,37 @@ class Static(harness.CliTest):
         self.assertEqual(quadratic["bodies"][0]["element"], "tet10")
         self.assertAlmostEqual(quadratic["strain_energy"] / full["strain_energy"], 1, delta=0.05)
 
+    def pressed(self, element, order):
+        """A cube of 0.1 m on three rollers under 1 kPa, as six tetrahedra or one hexahedron."""
+        corners = [[0.1 * (n & 1), 0.1 * (n >> 1 & 1), 0.1 * (n >> 2 & 1)] for n in range(8)]
+        paths = [(1, 3), (3, 2), (2, 6), (6, 4), (4, 5), (5, 1)]
+        tets = element == "tet4"
+        cells = [[0, a, b, 7] for a, b in paths] if tets else [[0, 1, 3, 2, 4, 5, 7, 6]]
+        lines = ["# vtk DataFile Version 3.0", "cube", "ASCII", "DATASET UNSTRUCTURED_GRID", "POINTS 8 double"]
+        lines += [" ".join(map(repr, x)) for x in corners]
+        lines += [f"CELLS {len(cells)} {sum(len(c) + 1 for c in cells)}"]
+        lines += [" ".join(map(str, [len(c), *c])) for c in cells]
+        lines += [f"CELL_TYPES {len(cells)}"] + ["10" if tets else "12"] * len(cells)
+        (self.folder / f"{element}.vtk").write_text("\n".join(lines) + "\n")
+        rollers = [{"box": [[-1, -1, -1], [0 if c == axis else 1 for c in range(3)]], "axes": "xyz"[axis]} for axis in range(3)]
+        body = {"name": "b", "mesh": f"{element}.vtk", "element": element, "material": {"young": 10000, "poisson": 0.3},
+                "fixed": rollers, "pressures": [{"box": [[-1, -1, 0.0999], [1, 1, 1]], "pressure": 1000}]}
+        file = self.folder / "pressed.json"
+        file.write_text(json.dumps({"format": "pliant-scene/1", "bodies": [body],
+                                    "solver": {"type": "static", "linear": True, **({"order": 2} if order == 2 else {})}}))
+        return file
+
+    def test_pressure_is_uniform_and_its_reactions_balance_it(self):
+        for element, order, nodes in [("tet4", 1, 8), ("tet4", 2, 27), ("hex8full", 1, 8)]:
+            solved = self.solve(self.pressed(element, order), "--out", "out")["bodies"][0]
+            self.assertAlmostEqual(solved["largest_displacement"], 0.01 * (1 + 2 * 0.3**2)**0.5, delta=1e-11)
+            self.assertEqual([r["at"] for r in solved["reactions"]], [f"/bodies/0/fixed/{c}" for c in range(3)])
+            for axis, load in enumerate([0, 0, -10]):
+                self.assertAlmostEqual(solved["applied"][axis], load, delta=1e-9)
+                self.assertAlmostEqual(sum(r["force"][axis] for r in solved["reactions"]), -load, delta=1e-9)
+            # The file has every node, so that what it holds adds up, too.
+            self.assertIn(f'NumberOfPoints="{nodes}"'.encode(), (self.folder / "out" / "pressed.vtu").read_bytes())
+
     def test_linear_is_one_iteration(self):
         solved = self.solve(self.scene(solver={"type": "static", "linear": True}))
         self.assertEqual(solved["iterations"], 1)

@@ -7,6 +7,7 @@
 
 #include "problems.h"
 #include "statics/cholesky.h"
+#include "statics/shape.h"
 
 namespace pliant::statics_test {
 namespace {
@@ -33,6 +34,20 @@ TEST(Shape, RulesIntegrateMonomials) {
             EXPECT_NEAR(sum, exact, 1e-15) << statics::to_string(element) << " " << i << j << k;
           }
         }
+      }
+    }
+  }
+}
+
+TEST(Shape, RulesOverTrianglesIntegrateMonomials) {
+  for (const auto& [element, degree] : {std::pair{Element::tet4, 1}, {Element::tet10, 4}, {Element::hex8full, 4}}) {
+    for (int i = 0; i <= degree; ++i) {
+      for (int j = 0; i + j <= degree; ++j) {
+        double sum = 0;
+        for (const statics::FacePoint& p : statics::triangle_rule(element))
+          sum += p.weight * std::pow(p.r, i) * std::pow(p.s, j);
+        EXPECT_NEAR(sum, factorial(i) * factorial(j) / factorial(i + j + 2), 1e-15)
+            << statics::to_string(element) << " " << i << j;
       }
     }
   }
