@@ -91,7 +91,8 @@ void relax(RunContext& run) {
   const double scale = std::sqrt(std::max(sums.external, sums.reaction));
   last.residual = scale > 0 ? std::sqrt(sums.residual) / scale : (sums.residual > 0 ? 1 : 0);
   bool settled = false, hidden = false;
-  if (!first && only_rounding(run, sums, c)) {
+  // Nodes of shape matching have no force that could be told from rounding: nothing is taken for rest there.
+  if (!first && model.flsm.empty() && only_rounding(run, sums, c)) {
     const double noise = 4 * sums.fast, x = c * (now - last.time) / 2;
     sums.stiffness -= noise;
     hidden = std::abs(sums.stiffness) <= kStandsOut * noise;
