@@ -180,7 +180,8 @@ void add_survival(CLI::App& app, const std::shared_ptr<Options>& options) {
   sub->add_option("--count", s.count, "default: 1000");
   sub->add_flag("--quick", s.quick, "50 scenes for a quarter of the time");
   sub->add_option("--out", options->out,
-                  "folder for survival.json and survival.csv, and the scenes that end badly or take short steps; finished ones are not run again");
+                  "folder for survival.json and survival.csv, and the scenes that end badly or take short steps; finished ones "
+                  "are not run again");
 }
 
 }  // namespace

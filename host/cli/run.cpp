@@ -203,8 +203,8 @@ class Run {
   }
 
   void report() {
-    report_run({o_.common, stem_, *simulation_, result_, probes_, warnings_, frames_ ? &*frames_ : nullptr, first_time_, o_.hash,
-                o_.deep_hash, o_.profile});
+    report_run({o_.common, stem_, *simulation_, result_, probes_, warnings_, frames_ ? &*frames_ : nullptr, first_time_,
+                o_.hash, o_.deep_hash, o_.profile});
   }
 
   const Options& o_;

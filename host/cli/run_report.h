@@ -17,8 +17,8 @@ struct RunReport {
   const RunResult& result;
   const Probes& probes;
   const std::vector<std::string>& warnings;  ///< about surfaces
-  const FrameWriter* frames = nullptr;  ///< nullptr: none were written
-  double first_time = 0;                ///< when this run began, on the scene's clock [s]
+  const FrameWriter* frames = nullptr;       ///< nullptr: none were written
+  double first_time = 0;                     ///< when this run began, on the scene's clock [s]
   bool hash = false, deep_hash = false, profile = false;
 };
 

@@ -60,13 +60,14 @@ void require_inside(const SurfaceReport& r) {
 std::vector<std::string> surface_warnings(const SurfaceReport& r, const Crossings& crossings, double filled) {
   std::vector<std::string> out;
   const auto say = [&](const std::string& text) { out.push_back(fmt::format("surface mesh '{}': {}", r.name, text)); };
-  if (r.merged > 0) say(fmt::format("points in the place of another, merged with it: {}, the first at {}", r.merged, at(r.merged_at)));
+  if (r.merged > 0)
+    say(fmt::format("points in the place of another, merged with it: {}, the first at {}", r.merged, at(r.merged_at)));
   if (r.degenerate > 0) {
     say(fmt::format("triangles without area, dropped: {}, the first at {}", r.degenerate, at(r.degenerate_at)));
   }
   if (r.doubled > 0) {
-    say(fmt::format("triangles in the place of another: {}, of these dropped: {}, the first at {}{}", r.doubled, r.doubled_dropped,
-                    at(r.doubled_at),
+    say(fmt::format("triangles in the place of another: {}, of these dropped: {}, the first at {}{}", r.doubled,
+                    r.doubled_dropped, at(r.doubled_at),
                     r.doubled > r.doubled_dropped ? "; those that are left belong to parts that touch or overlap" : ""));
   }
   if (r.flipped == r.triangles) {
@@ -76,15 +77,17 @@ std::vector<std::string> surface_warnings(const SurfaceReport& r, const Crossing
                     at(r.flipped_at)));
   }
   if (r.sheet_triangles > 0) {
-    say(fmt::format("triangles of open sheets that bound nothing: {}, the first at {}; they move along with the body, but nothing is "
-                    "filled there",
-                    r.sheet_triangles, at(r.sheet_at)));
+    say(fmt::format(
+        "triangles of open sheets that bound nothing: {}, the first at {}; they move along with the body, but nothing is "
+        "filled there",
+        r.sheet_triangles, at(r.sheet_at)));
   }
   if (!r.holes.empty()) say(holes(r) + "; the body ends there as if they were closed");
   if (crossings.pairs > 0) {
-    say(fmt::format("pairs of triangles that pass through each other: {} ({} of them of two parts), the first at {}; what lies in "
-                    "several parts counts once",
-                    crossings.pairs, crossings.between_shells, at(crossings.place)));
+    say(fmt::format(
+        "pairs of triangles that pass through each other: {} ({} of them of two parts), the first at {}; what lies in "
+        "several parts counts once",
+        crossings.pairs, crossings.between_shells, at(crossings.place)));
   }
   if (crossings.searched < 1) {
     say(fmt::format("the search for triangles that pass through each other was cut short after {:.0f} % of them",
