@@ -31,8 +31,10 @@ std::vector<Launch> plan_launches(const Pass& pass, const LaunchRules& rules) {
   if (forced != 0 && global % forced == 0 && forced <= rules.largest) return {{0, global, forced}};
   if (pass.shape == Shape::bricks) return {{0, global, 1}};  // a brick is work enough for a group
   const Aim aim = aim_for(pass, rules);
-  if (global % aim.local == 0) return {{0, global, aim.local}};
-  // A CPU's kernels are compiled for each local size, a cut or a tear changes the count: two sizes are enough.
+  // A CPU's kernels are compiled for each local size, and a cut or a tear changes the count: one size where groups are few, two
+  // where they are many.
+  const bool few = rules.cpu && pass.shape == Shape::lanes && global <= aim.most_groups;
+  if (!few && global % aim.local == 0) return {{0, global, aim.local}};
   std::size_t local = rules.cpu ? 1 : aim.local;
   while (global % local != 0) local /= 2;
   if (global / local <= aim.most_groups) return {{0, global, local}};
