@@ -92,7 +92,7 @@ void TopologyEdits::make_cut(std::vector<CutEdges> edges, std::vector<double> u,
   if (!report.changed) return;
   ++run_.state.topology_version;
   if (all.size() == 1) all.surface_copy.make(run_.loaded.shared_model(), all.helper);
-  step_.limit_to_element_bound();
+  step_.limit_after_edit();
 }
 
 }  // namespace pliant

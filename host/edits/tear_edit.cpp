@@ -39,7 +39,7 @@ void TopologyEdits::make_tears() {
     }
   }
   ++run_.state.topology_version;
-  step_.limit_to_element_bound();
+  step_.limit_after_edit();
 }
 
 }  // namespace pliant

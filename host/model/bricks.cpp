@@ -77,8 +77,8 @@ void mark_row(std::int32_t slot, int kind, Model& model) {
 
 }  // namespace
 
-std::vector<std::int32_t> place_in_bricks(const BodyElements& solid, std::int32_t body, std::vector<char>& in_brick,
-                                          Model& model) {
+std::vector<std::int32_t> place_in_bricks(const BodyElements& solid, std::span<const double> stiff, std::int32_t body,
+                                          std::vector<char>& in_brick, Model& model) {
   const auto in_bricks = [&](std::size_t n) { return solid.lattice_nodes[n].copy == 0 && !solid.matching(n); };
   BrickMap bricks(solid);
   for (std::size_t n = 0; n < solid.lattice_nodes.size(); ++n) {
@@ -113,7 +113,7 @@ std::vector<std::int32_t> place_in_bricks(const BodyElements& solid, std::int32_
       in_brick[c] = false;
       continue;
     }
-    model.brick_fill[place] = model.stiff_fill(cell.fill);
+    model.brick_fill[place] = stiff[c];
     mark_row(place, 0, model);
     model.brick_cell[place] = static_cast<std::int64_t>(c);
   }

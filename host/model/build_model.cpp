@@ -10,6 +10,7 @@
 #include "model/boundary_conditions.h"
 #include "model/bricks.h"
 #include "model/flsm.h"
+#include "model/least_fill.h"
 #include "model/model.h"
 #include "model/node_numbering.h"
 #include "pliant/error.h"
@@ -84,12 +85,12 @@ std::vector<std::int32_t> element_order(const std::vector<std::array<std::int32_
   return order;
 }
 
-/// What a cell or one of its copies holds less than least_fill of a full one, it gets as inertia, and it is as stiff as one
-/// that holds that much: however thin, it keeps its shape and vibrates like any other. `full`: mass of a full one [kg].
+/// What a thin element holds less than what it is as stiff as, it gets as inertia: however thin, it keeps its shape and vibrates
+/// like any other. `full`: mass of a full one [kg].
 template <std::size_t N>
-void add_inertia(Model& model, const std::array<std::int32_t, N>& slots, double fill, double full) {
-  if (model.added.empty() || fill >= model.least_fill || fill <= 0) return;
-  const double more = (model.least_fill - fill) * full / static_cast<double>(N);
+void add_inertia(Model& model, const std::array<std::int32_t, N>& slots, double fill, double stiff, double full) {
+  if (model.added.empty() || stiff <= fill) return;
+  const double more = (stiff - fill) * full / static_cast<double>(N);
   for (const std::int32_t n : slots) {
     model.mass[n] += more;
     model.added[n] += more;
@@ -114,11 +115,11 @@ void add_tets(const Body& body, std::int32_t b, const NodeNumbering& draft, Mode
       const TetGeometry geometry = tet_geometry(x);
       const double mass = batch.material.density * geometry.volume * draft.solid().fill[e];
       for (const std::int32_t n : slots) model.mass[n] += mass / 4;
-      add_inertia(model, slots, draft.solid().fill[e], batch.material.density * geometry.volume);
+      add_inertia(model, slots, draft.solid().fill[e], draft.stiff[e], batch.material.density * geometry.volume);
       if (!draft.solid().operational(static_cast<std::size_t>(e))) continue;
       batch.nodes.push_back(slots);
       batch.gradients.push_back(geometry.gradients);
-      batch.volume.push_back(geometry.volume * model.stiff_fill(draft.solid().fill[e]));
+      batch.volume.push_back(geometry.volume * draft.stiff[e]);
       batch.id.push_back(e);
       note_bound(model, tet_frequency(geometry, batch.material), geometry.volume,
                  fmt::format("{}: tetrahedron {}", body.name, e));
@@ -179,10 +180,10 @@ void add_hexes(const Body& body, std::int32_t b, const NodeNumbering& draft, Mod
         note_bound(model, hex_frequency(batch, batch.records.back()), volume, describe(e));
       }
       for (const std::int32_t n : slots) model.mass[n] += batch.material.density * volume * solid.fill[e] / 8;
-      add_inertia(model, slots, solid.fill[e], batch.material.density * volume);
+      add_inertia(model, slots, solid.fill[e], draft.stiff[e], batch.material.density * volume);
       if (draft.in_brick[e] || !solid.operational(e)) continue;
       batch.nodes.push_back(slots);
-      batch.fill.push_back(model.stiff_fill(solid.fill[e]));
+      batch.fill.push_back(draft.stiff[e]);
       batch.id.push_back(static_cast<std::int64_t>(e));
     }
     if (!batch.nodes.empty()) model.hexes.push_back(std::move(batch));
@@ -260,13 +261,14 @@ void place_bodies(const Scene& scene, std::span<const BodyMesh* const> solids, c
       repartition(body, *draft.own);
     }
     draft.material = materials_of(body, draft.solid());
+    draft.stiff = stiff_fills(draft.solid(), model.least_fill);
     draft.in_brick.assign(draft.material.size(), false);
     draft.slot.assign(draft.solid().nodes.size(), -1);
     if (!draft.solid().cells.empty() && body.element == ElementKind::hex8) {
       for (std::size_t e = 0; e < draft.in_brick.size(); ++e)
         draft.in_brick[e] = draft.material[e] == 0 && draft.solid().operational(e);
       const std::int32_t first = model.bricks;
-      draft.slot = place_in_bricks(draft.solid(), static_cast<std::int32_t>(b), draft.in_brick, model);
+      draft.slot = place_in_bricks(draft.solid(), draft.stiff, static_cast<std::int32_t>(b), draft.in_brick, model);
       if (model.bricks > first) {
         model.brick_batches.push_back(
             {material_for(model, body, 0), static_cast<std::int32_t>(b), draft.solid().spacing, first, model.bricks - first});

@@ -128,8 +128,6 @@ struct Model {
   std::string bound_element;                ///< the element that gives it
   double shortest = 0;                      ///< cube root of the smallest element's volume [m]
   double least_fill = 0;                    ///< of a cell, as a share of a full one's mass
-  /// The share of a full cell that a cell of this fill is as stiff as.
-  [[nodiscard]] double stiff_fill(double fill) const { return fill > 0 && fill < least_fill ? least_fill : fill; }
   /// Mass without added inertia [kg].
   [[nodiscard]] double own_mass(std::size_t slot) const { return mass[slot] - (added.empty() ? 0 : added[slot]); }
   [[nodiscard]] std::int64_t nodes() const;  ///< real nodes

@@ -13,6 +13,7 @@ struct NodeNumbering {
   std::optional<BodyElements> own;  ///< with a partition of its own
   [[nodiscard]] const BodyElements& solid() const { return own ? *own : *given; }
   std::vector<int> material;
+  std::vector<double> stiff;  ///< stiff_fills()
   std::vector<char> in_brick;
   std::vector<std::int32_t> slot;
 };

@@ -1,6 +1,7 @@
 #include "simulation/calm.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -36,7 +37,8 @@ class Calm {
     }
     const double allowed = share_ * std::cbrt(volume);
     if (!(most > allowed)) return;
-    ++count;
+    ++done.elements;
+    done.fastest = std::max(done.fastest, share_ * most / allowed);
     for (const std::int32_t n : slots) {
       const auto s = static_cast<std::size_t>(n);
       if (moves(s)) increment(s) = mean + allowed / most * (increment(s) - mean);
@@ -45,7 +47,7 @@ class Calm {
 
   void write() { run_.loaded.write_w(w_); }
 
-  std::int64_t count = 0;
+  Calmed done;
 
  private:
   RunContext& run_;
@@ -66,14 +68,14 @@ double rest_volume(const std::array<double, 9>& gradients) {
 
 }  // namespace
 
-std::int64_t calm(RunContext& run, double share) {
+Calmed calm(RunContext& run, double share) {
   Calm calm(run, share);
   for (const TetBatch& batch : run.model().tets) {
     for (std::size_t e = 0; e < batch.nodes.size(); ++e) calm.element(batch.nodes[e], rest_volume(batch.gradients[e]));
   }
   for_each_hex(run.model(), [&](const HexView& hex) { calm.element(hex.slots, rest_volume(hex)); });
-  if (calm.count > 0) calm.write();
-  return calm.count;
+  if (calm.done.elements > 0) calm.write();
+  return calm.done;
 }
 
 }  // namespace pliant

@@ -8,7 +8,11 @@ namespace pliant {
 
 /// Where the nodes of an element move against each other by more than `share` of its edge in one step, faster than its own
 /// waves could carry, that relative motion is brought down to this, as by a plastic impact: the momentum of its free nodes
-/// stays, kinetic energy only falls. Returns the number of such elements.
-std::int64_t calm(RunContext& run, double share);
+/// stays, kinetic energy only falls.
+struct Calmed {
+  std::int64_t elements = 0;
+  double fastest = 0;  ///< largest such motion before, in edges per step; 0 if there was none above `share`
+};
+Calmed calm(RunContext& run, double share);
 
 }  // namespace pliant

@@ -25,6 +25,8 @@ constexpr double kFastIncrement = 0.1;
 /// Largest increment of an element's nodes against each other, as a share of its edge. Steps below half the first take less:
 /// the limit is then that of the first step, a velocity of about half that of sound.
 constexpr double kFastest = 0.25;
+/// An element whose nodes move so many edges against each other in one step has burst, even if its numbers are finite still.
+constexpr double kBurst = 2;
 
 std::string Divergence::message() const {
   return fmt::format(
@@ -149,20 +151,22 @@ void Simulation::look_for_fault(std::int64_t batch_start) {
     // Judged by the state alone, and only where states are kept: a run may be cut into pieces anywhere else.
     if (!settings_.automatic || !state_.kept || !step_.on_grid(step())) return;
     const double largest = loaded_.largest_increment() / model().shortest;
-    if (largest > kFastIncrement * fast_share()) inversions_.calmed += calm(run_, kFastest * fast_share());
+    double fastest = 0;
+    if (largest > kFastIncrement * fast_share()) {
+      const Calmed calmed = calm(run_, kFastest * fast_share());
+      inversions_.calmed += calmed.elements;
+      fastest = calmed.fastest;
+    }
+    if (fastest > kBurst && step_.can_retry() && retry_from_kept()) return;
     if (largest <= kFastIncrement && (inverted == 0 || !inverted_now())) return;
     const std::optional<StepControl::Outgrown> outgrown = step_.outgrown();
     if (!outgrown) return;
     return_to_kept();
     step_.shorten(*outgrown);
-    inversions_.calmed += calm(run_, kFastest * fast_share() * state_.limit.dt_backoff);
+    inversions_.calmed += calm(run_, kFastest * fast_share() * state_.limit.dt_backoff).elements;
     return;
   }
-  return_to_kept();
-  if (step_.retry_smaller()) {
-    inversions_.calmed += calm(run_, kFastest * fast_share() * state_.limit.dt_backoff);
-    return;
-  }
+  if (retry_from_kept()) return;
   const FaultLocation found = find_fault(model(), element);
   divergence_ = Divergence{batch_start + fault,
                            state_.clock.time_at(batch_start + fault - 1),
@@ -172,6 +176,14 @@ void Simulation::look_for_fault(std::int64_t batch_start) {
                            dt(),
                            stable_dt(),
                            step()};
+}
+
+/// The batch that led here is not to be trusted: the kept state again, and a smaller step if there is one.
+bool Simulation::retry_from_kept() {
+  return_to_kept();
+  if (!step_.retry_smaller()) return false;
+  inversions_.calmed += calm(run_, kFastest * fast_share() * state_.limit.dt_backoff).elements;
+  return true;
 }
 
 double Simulation::fast_share() const { return std::min(1.0, 2 * dt() / state_.limit.dt_ceiling); }

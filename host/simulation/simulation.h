@@ -119,6 +119,7 @@ class Simulation {
   void keep_state();
   void look_for_fault(std::int64_t batch_start);
   void return_to_kept();
+  bool retry_from_kept();
   /// The part of the limits of increments that a step of this length has.
   [[nodiscard]] double fast_share() const;
   [[nodiscard]] bool inverted_now();

@@ -24,6 +24,7 @@ constexpr double kLeastBackoff = 0.1;
 constexpr double kBackoff = 0.7;
 constexpr double kMostBallast = 0.01;  ///< of the mass
 constexpr double kMostGrowth = 2;      ///< of the step from one look to the next
+constexpr double kClearlyLess = 0.8;   ///< the estimate by kAdaptIterations steps is up to a tenth too low
 constexpr double kFrame = 1.0 / 60;    ///< automatic step of a scene without finite elements [s]
 
 double total(const std::vector<NodeInertia>& ballast) {
@@ -147,11 +148,16 @@ double StepControl::balance(double wanted, const std::vector<double>& stiffness)
   return dt;
 }
 
-void StepControl::limit_to_element_bound() {
-  if (!run_.settings.automatic || run_.model().element_bound <= 0) return;
+void StepControl::limit_after_edit() {
+  if (!run_.settings.automatic) return;
   double& ceiling = run_.state.limit.dt_ceiling;
-  ceiling = std::min(ceiling, run_.scene.safety * coupled_step(run_.model(), run_.model().element_bound));
+  if (run_.model().element_bound > 0)
+    ceiling = std::min(ceiling, run_.scene.safety * coupled_step(run_.model(), run_.model().element_bound));
   if (run_.state.clock.dt > ceiling) change(ceiling);
+  // New elements are as stretched as those they come from, on nodes of less mass. At rest the bound above is certain, and the
+  // estimate may lie below it.
+  const double next = std::max(allowed().dt, least_step());
+  if (next < kClearlyLess * run_.state.clock.dt) change(next);
 }
 
 std::optional<StepControl::Outgrown> StepControl::outgrown() {
@@ -179,12 +185,15 @@ void StepControl::shorten(const Outgrown& found) {
   run_.state.limit.dt_backoff *= kBackoff;  // so that this, too, ends
 }
 
+bool StepControl::can_retry() const {
+  return run_.settings.automatic && kBackoff * run_.state.limit.dt_backoff >= kLeastBackoff;
+}
+
 bool StepControl::retry_smaller() {
-  if (!run_.settings.automatic) return false;
+  if (!can_retry()) return false;
   double& backoff = run_.state.limit.dt_backoff;
   backoff *= kBackoff;
   run_.state.limit.hold = run_.state.clock.step + kAdaptEvery;
-  if (backoff < kLeastBackoff) return false;
   run_.loaded.clear_faults();
   change(std::min(kBackoff * run_.state.clock.dt, backoff * run_.scene.safety * estimate(kAdaptIterations)));
   return true;

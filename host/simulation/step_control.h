@@ -27,8 +27,8 @@ class StepControl {
   void adapt();
   /// adapt() where an automatic step is looked at again.
   void adapt_when_due();
-  /// A scene that nobody meant to cut may run at a step beyond what its elements allow when an edit frees them.
-  void limit_to_element_bound();
+  /// An edit has made elements of others: no step beyond what they stand, at rest and as they are deformed now.
+  void limit_after_edit();
   /// Elements are inverted, or nodes fast: what to do instead if an automatic step is longer than this state stands, so that
   /// the batch that led here is not to be trusted. `shorten` is then called in the kept state.
   struct Outgrown {
@@ -40,6 +40,7 @@ class StepControl {
   /// An automatic step may have been overtaken by a fast load: take what follows in smaller steps. False when the step is the
   /// user's, or when smaller steps have not helped.
   [[nodiscard]] bool retry_smaller();
+  [[nodiscard]] bool can_retry() const;
 
  private:
   [[nodiscard]] bool adapts_at(std::int64_t step) const;

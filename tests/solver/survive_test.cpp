@@ -8,11 +8,13 @@
 #include "cutting/cut_scenes.h"
 #include "model/ballast.h"
 #include "model/each_hex.h"
+#include "model/least_fill.h"
 #include "pliant/error.h"
 #include "schedule/build_program.h"
 #include "schedule/surface_program.h"
 #include "simulation/ballast_swap.h"
 #include "simulation/calm.h"
+#include "simulation/energy.h"
 #include "solver/scenes.h"
 #include "support/error_of.h"
 
@@ -174,13 +176,13 @@ TEST(Calm, KeepsMomentumAndBringsFastMotionDown) {
   stir(l, 0.1);
   const Vec3d before = momentum(l);
   const double energy = kinetic(l);
-  EXPECT_GT(calm(l.run, 0.25), 0);
+  EXPECT_GT(calm(l.run, 0.25).elements, 0);
   for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(momentum(l)[c], before[c], 1e-12 * std::abs(before[c]) + 1e-13);
   EXPECT_LT(kinetic(l), 0.5 * energy);
   Loaded slow(box_scene());
   stir(slow, 1e-4);
   const std::vector<double> w = slow.loaded.w();
-  EXPECT_EQ(calm(slow.run, 0.25), 0);
+  EXPECT_EQ(calm(slow.run, 0.25).elements, 0);
   EXPECT_EQ(slow.loaded.w(), w);
 }
 
@@ -229,6 +231,51 @@ TEST(ThinCells, AreAsStiffAndAsInertAsATwentiethOfAFullOneAndAsHeavyAsTheyAre) {
   EXPECT_GE(thin, 4);
   EXPECT_NEAR(mass_of(s), mass, 1e-14);
   EXPECT_GT(s.model().bodies[0].added_mass, 0);
+}
+
+double elastic(const Simulation& s) {
+  const std::vector<std::vector<Vec3d>> u{s.displacements(0)}, v{s.velocities(0)};
+  const Energies e = energies(s.model(), by_slot(s.model(), u), by_slot(s.model(), v), {{}, s.time()});
+  return e.strain + e.hourglass;
+}
+
+// Copies are deformed like the cell they come from, and share its stiffness, however thin they are.
+TEST(ThinCells, CuttingDeformedTissueChangesNoElasticEnergy) {
+  for (const ElementKind element : {ElementKind::hex8, ElementKind::hex8full, ElementKind::tet4}) {
+    Scene scene = pulled(0);
+    scene.bodies[0].element = element;
+    Simulation s(scene, open_backend("cpu:double"));
+    while (s.time() < 0.1) s.advance(64);
+    const double before = elastic(s);
+    ASSERT_GT(before, 0);
+    s.cut(wall(0.0101));  // a hundredth of a cell on one side
+    EXPECT_NEAR(elastic(s), before, 1e-9 * before) << to_string(element);
+    s.cut(wall(0.0102));
+    s.cut(wall(0.0297));
+    EXPECT_NEAR(elastic(s), before, 1e-9 * before) << to_string(element);
+    ASSERT_GE(s.cut_topology(0)->pieces(), 3);
+  }
+}
+
+TEST(StiffFills, ShareWhatTheWholeCellWas) {
+  BodyElements solid;
+  const double least = 0.05;
+  const auto of = [&](std::vector<double> fill, std::vector<std::int32_t> copy_of) {
+    solid.fill = std::move(fill);
+    solid.copy_of = std::move(copy_of);
+    return stiff_fills(solid, least);
+  };
+  EXPECT_EQ(of({1, 0.5, 0.01}, {}), (std::vector<double>{1, 0.5, 0.05}));
+  EXPECT_EQ(of({0.3, 0.5, 0.7}, {0, 1, 0}), (std::vector<double>{0.3, 0.5, 0.7}));  // nothing is thin
+  const std::vector<double> thin = of({0.001, 1, 0.599, 0.4}, {0, 1, 0, 0});
+  EXPECT_DOUBLE_EQ(thin[0] + thin[2] + thin[3], 1);
+  EXPECT_EQ(thin[0], least);
+  EXPECT_GT(thin[2], thin[3]);
+  EXPECT_GT(thin[2], 0.56);
+  const std::vector<double> skin = of({0.008, 0.002}, {0, 0});  // of a cell that was thin before
+  EXPECT_DOUBLE_EQ(skin[0] + skin[1], least);
+  EXPECT_DOUBLE_EQ(skin[1], least / 2);
+  EXPECT_EQ(of({0.02, 0, 0.03}, {0, 0, 1}), (std::vector<double>{0.05, 0, 0.05}));  // a copy without material is none
 }
 
 }  // namespace
