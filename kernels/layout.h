@@ -23,7 +23,8 @@
 
 // Planes per tile.
 #define PLIANT_TET_DATA_PLANES 10       // dN1..dN3 / dX (9) [1/m], volume [m^3]
-#define PLIANT_HEX_DATA_PLANES 58       // b (24) [1/m], gamma (32), V [m^3], k [N/m]
+#define PLIANT_HEX_DATA_PLANES 56       // b (24) [1/m], hourglass control (31, hex8_hourglass.cl), V [m^3]
+#define PLIANT_HEX_CUBE_RECORD 58       // of a cube, one for all: b (24) [1/m], gamma (32), V [m^3], k [N/m]
 #define PLIANT_HEXFULL_DATA_PLANES 200  // 8 points x (grad N (24) [1/m], weight [m^3])
 #define PLIANT_TET_FORCE_PLANES 12      // 4 corners x 3 components [N]
 #define PLIANT_HEX_FORCE_PLANES 24      // 8 corners x 3 components [N]

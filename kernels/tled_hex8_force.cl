@@ -1,7 +1,8 @@
 // Corner forces of 8-node hexahedra with one point and total Lagrangian hourglass control (Flanagan and Belytschko 1981; Joldes,
 // Wittek and Miller 2008): f_a = fill (V P b_a + k sum_i gamma_ia q_i) with q_i = sum_a gamma_ia u_a.
-// hex_nodes: [tiles][8][16]. hex_data, one record of 58 numbers: mean gradients b_a [8][3] [1/m], gamma [4 modes][8 corners] [1],
-// V [m^3], hourglass stiffness k [N/m]. UNIFORM: one record for all elements, else [tiles][58][16].
+// That of a cube (UNIFORM) has one stiffness for all its modes; every other one follows its shape, hex8_hourglass.cl.
+// hex_nodes: [tiles][8][16]. hex_data: mean gradients b_a [8][3] [1/m], then, UNIFORM, for all elements: gamma [4 modes][8 corners] [1],
+// V [m^3], hourglass stiffness k [N/m] ([58]); else: 31 numbers of hex8_hourglass.cl, V [m^3] ([tiles][56][16]).
 // hex_fill: fill fraction per element (0 for padding). corner_force: [tiles][8 corners][3][16] from corner_base on [N].
 #include "arith.cl"
 #include "texels.cl"
@@ -9,9 +10,12 @@
 #if UNIFORM
 #define DATA(k) hex_data[k]
 #define RECORD_TYPE float
+#define VOLUME 56
 #else
+#include "hex8_hourglass.cl"
 #define DATA(k) LOAD(data, (k)*PLIANT_TILE)
 #define RECORD_TYPE real
+#define VOLUME 55
 #endif
 
 __kernel void tled_hex8_force(__global const float* node_u, __global const int* hex_nodes, __global const float* hex_data,
@@ -48,7 +52,8 @@ __kernel void tled_hex8_force(__global const float* node_u, __global const int* 
   const integer none = NO_FAULT;
   const integer kind = fill > 0.0f ? fault_of(d, m) : none;
   MARK_FAULT(kind, step, fault, fault_base + e)
-  const mat3 p = law_stress(d, fill * DATA(56), m, law_pressure(m, d.j));
+#if UNIFORM
+  const mat3 p = law_stress(d, fill * DATA(VOLUME), m, law_pressure(m, d.j));
   const real k = fill * DATA(57);
   real qx[4], qy[4], qz[4];
   for (int i = 0; i < 4; ++i) {
@@ -63,9 +68,19 @@ __kernel void tled_hex8_force(__global const float* node_u, __global const int* 
     qy[i] = k * qy[i];
     qz[i] = k * qz[i];
   }
+#else
+  mat3 p = law_stress(d, fill * DATA(VOLUME), m, law_pressure(m, d.j));
+  const modes qx = modes_of(x), qy = modes_of(y), qz = modes_of(z);
+  vec3 q[4] = {{qx.xy, qy.xy, qz.xy}, {qx.xz, qy.xz, qz.xz}, {qx.yz, qy.yz, qz.yz}, {qx.xyz, qy.xyz, qz.xyz}};
+  p = hourglass(q, h, p, fill, data);
+  modes_back((modes){q[0].x, q[1].x, q[2].x, q[3].x}, x);  // from here on forces
+  modes_back((modes){q[0].y, q[1].y, q[2].y, q[3].y}, y);
+  modes_back((modes){q[0].z, q[1].z, q[2].z, q[3].z}, z);
+#endif
   __global float* out = corner_force + corner_base + TILE_BASE(e, PLIANT_HEX_FORCE_PLANES);
   for (int a = 0; a < 8; ++a) {
     const RECORD_TYPE bx = DATA(3 * a), by = DATA(3 * a + 1), bz = DATA(3 * a + 2);
+#if UNIFORM
     real fx = fma(p.m02, bz, fma(p.m01, by, p.m00 * bx));
     real fy = fma(p.m12, bz, fma(p.m11, by, p.m10 * bx));
     real fz = fma(p.m22, bz, fma(p.m21, by, p.m20 * bx));
@@ -75,6 +90,11 @@ __kernel void tled_hex8_force(__global const float* node_u, __global const int* 
       fy = fma(gamma, qy[i], fy);
       fz = fma(gamma, qz[i], fz);
     }
+#else
+    const real fx = fma(p.m02, bz, fma(p.m01, by, fma(p.m00, bx, x[a])));
+    const real fy = fma(p.m12, bz, fma(p.m11, by, fma(p.m10, bx, y[a])));
+    const real fz = fma(p.m22, bz, fma(p.m21, by, fma(p.m20, bx, z[a])));
+#endif
     STORE(fx, out, (3 * a) * PLIANT_TILE);
     STORE(fy, out, (3 * a + 1) * PLIANT_TILE);
     STORE(fz, out, (3 * a + 2) * PLIANT_TILE);

@@ -7,6 +7,7 @@
 #include "material/response.h"
 #include "model/boundary_conditions.h"
 #include "model/each_hex.h"
+#include "model/hourglass.h"
 
 namespace pliant {
 namespace {
@@ -48,11 +49,8 @@ double hex_stiffness(const HexView& view, const std::vector<double>& u) {
     }
     return sum;
   }
-  const Eigen::Map<const Eigen::Matrix<double, 4, 8, Eigen::RowMajor>> gamma(view.record.data() + 24);
-  const Eigen::Matrix4d gram = gamma * gamma.transpose();
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> hourglass(gram, Eigen::EigenvaluesOnly);
-  return point_stiffness<8>(gradients(0), moved, view.fill * view.record[56], view.material) +
-         view.fill * view.record[57] * hourglass.eigenvalues()[3];
+  return point_stiffness<8>(gradients(0), moved, view.fill * hex8_volume(view.record), view.material) +
+         view.fill * hourglass_bound(view.record, moved);
 }
 
 double tet_stiffness(const TetBatch& batch, std::size_t e, const std::vector<double>& u) {

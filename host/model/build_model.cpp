@@ -10,6 +10,7 @@
 #include "model/boundary_conditions.h"
 #include "model/bricks.h"
 #include "model/flsm.h"
+#include "model/hourglass.h"
 #include "model/least_fill.h"
 #include "model/model.h"
 #include "model/node_numbering.h"
@@ -144,7 +145,7 @@ double gauss_volume(const std::vector<double>& record) {
 }
 
 double hex_volume(const HexBatch& batch, const std::vector<double>& record) {
-  return batch.full ? gauss_volume(record) : record[56];
+  return batch.full ? gauss_volume(record) : hex8_volume(record);
 }
 
 void add_hexes(const Body& body, std::int32_t b, const NodeNumbering& draft, Model& model) {
@@ -162,7 +163,8 @@ void add_hexes(const Body& body, std::int32_t b, const NodeNumbering& draft, Mod
     if (batch.uniform) {
       std::array<Vec3d, 8> cube;
       for (int a = 0; a < 8; ++a) cube[a] = {d * (a & 1), d * (a >> 1 & 1), d * (a >> 2 & 1)};
-      batch.records.push_back(hex_record(batch, cube, fmt::format("{}: lattice cell", body.name)));
+      const std::string what = fmt::format("{}: lattice cell", body.name);
+      batch.records.push_back(batch.full ? hex8full_record(cube, what) : hex8_cube_record(d, batch.material, what));
       if (model.bodies[b].operational_elements > 0)
         note_bound(model, hex_frequency(batch, batch.records[0]), d * d * d, fmt::format("{}: every lattice cell", body.name));
     }

@@ -15,10 +15,7 @@ std::array<std::int32_t, 8> brick_cell_corners(const Model& model, std::int32_t 
 }
 
 std::vector<double> brick_record(const BrickBatch& batch) {
-  const double d = batch.spacing;
-  std::array<Vec3d, 8> cube;
-  for (int a = 0; a < 8; ++a) cube[a] = {d * (a & 1), d * (a >> 1 & 1), d * (a >> 2 & 1)};
-  return hex8_record(cube, batch.material, "lattice cell");
+  return hex8_cube_record(batch.spacing, batch.material, "lattice cell");
 }
 
 }  // namespace pliant

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/hourglass.h"
 #include "model/model.h"
 #include "pliant/error.h"
 
@@ -12,7 +13,7 @@ namespace pliant {
 namespace {
 
 using Eigen::Matrix3d;
-using Corners = Eigen::Matrix<double, 8, 3>;
+using Corners = Corners8;
 
 Corners corners_of(const std::array<Vec3d, 8>& x) {
   Corners m;
@@ -83,30 +84,51 @@ double hourglass_stiffness(const Material& material, double volume) {
   return material.hourglass * material.moduli.young() * std::cbrt(volume) / 48;
 }
 
-std::vector<double> hex8_record(const std::array<Vec3d, 8>& corners, const Material& material, const std::string& what) {
-  const Corners x = corners_of(corners);
-  // Mean gradients over the element (exact with 2 x 2 x 2 points), as Flanagan and Belytschko 1981: linear fields are exact.
+namespace {
+
+/// What the records of all one-point hexahedra begin with, and what follows from it.
+struct OnePoint {
+  OnePoint(const Corners& x, const std::string& what) {
+    // Mean gradients over the element (exact with 2 x 2 x 2 points), as Flanagan and Belytschko 1981: linear fields are exact.
+    for (const GaussPoint& p : gauss_points(x, what)) {
+      mean += p.weight * p.gradients;
+      volume += p.weight;
+    }
+    mean /= volume;
+    for (int a = 0; a < 8; ++a) {
+      for (int c = 0; c < 3; ++c) record.push_back(mean(a, c));
+    }
+  }
   Corners mean = Corners::Zero();
   double volume = 0;
-  for (const GaussPoint& p : gauss_points(x, what)) {
-    mean += p.weight * p.gradients;
-    volume += p.weight;
-  }
-  mean /= volume;
   std::vector<double> record;
-  for (int a = 0; a < 8; ++a) {
-    for (int c = 0; c < 3; ++c) record.push_back(mean(a, c));
-  }
+};
+
+}  // namespace
+
+std::vector<double> hex8_record(const std::array<Vec3d, 8>& corners, const Material& material, const std::string& what) {
+  const Corners x = corners_of(corners);
+  OnePoint e(x, what);
+  const std::vector<double> hourglass = hourglass_numbers(x, e.mean, e.volume, material);
+  e.record.insert(e.record.end(), hourglass.begin(), hourglass.end());
+  e.record.push_back(e.volume);
+  return e.record;
+}
+
+std::vector<double> hex8_cube_record(double edge, const Material& material, const std::string& what) {
+  Corners x;
+  for (int a = 0; a < 8; ++a) x.row(a) << edge * (a & 1), edge * (a >> 1 & 1), edge * (a >> 2 & 1);
+  OnePoint e(x, what);
   // gamma = h - (h . X) b: the products of two or three corner signs, made orthogonal to every linear field.
   for (const int mode : {3, 5, 6, 7}) {
     Eigen::Matrix<double, 8, 1> h;
     for (int a = 0; a < 8; ++a) h[a] = __builtin_popcount(~a & mode) % 2 ? -1 : 1;
-    const Eigen::Matrix<double, 8, 1> gamma = h - mean * (x.transpose() * h);
-    record.insert(record.end(), gamma.begin(), gamma.end());
+    const Eigen::Matrix<double, 8, 1> gamma = h - e.mean * (x.transpose() * h);
+    e.record.insert(e.record.end(), gamma.begin(), gamma.end());
   }
-  record.push_back(volume);
-  record.push_back(hourglass_stiffness(material, volume));
-  return record;
+  e.record.push_back(e.volume);
+  e.record.push_back(hourglass_stiffness(material, e.volume));
+  return e.record;
 }
 
 std::vector<double> hex8full_record(const std::array<Vec3d, 8>& corners, const std::string& what) {
@@ -132,12 +154,9 @@ double tet_frequency(const TetGeometry& tet, const Material& m) {
 
 double hex8_frequency(const std::vector<double>& record, const Material& m) {
   const Corners b = Eigen::Map<const Eigen::Matrix<double, 8, 3, Eigen::RowMajor>>(record.data());
-  const Eigen::Map<const Eigen::Matrix<double, 4, 8, Eigen::RowMajor>> gamma(record.data() + 24);
-  const double volume = record[56], stiffness = record[57];
-  const Eigen::Matrix4d gram = gamma * gamma.transpose();
-  const double hourglass =
-      stiffness * Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d>(gram, Eigen::EigenvaluesOnly).eigenvalues()[3];
-  // The two parts act on orthogonal modes of a cube, where the larger counts; in general their sum is safe.
+  const Eigen::Matrix<double, 4, 8> gamma = hourglass_vectors(record);
+  const double volume = hex8_volume(record), hourglass = hourglass_bound(record, Displacements8::Zero());
+  // The two parts act on orthogonal modes of a parallelepiped, where the larger counts; in general their sum is safe.
   const double cross = (gamma * b).cwiseAbs().maxCoeff() * std::cbrt(volume);
   const double strain = volume * modulus_bound(b, m);
   const double total = cross < 1e-9 ? std::max(strain, hourglass) : strain + hourglass;

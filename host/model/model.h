@@ -145,9 +145,10 @@ struct TetGeometry {
 };
 TetGeometry tet_geometry(const std::array<Vec3d, 4>& x);
 
-/// Records of kernels/layout.h for a hexahedron whose corners come in bit order. Throws Error (`what` names the element) when
-/// the Jacobian is not positive at the points used.
+/// Records of kernels/layout.h for a hexahedron whose corners come in bit order, or for a cube of this edge [m]. Throws Error
+/// (`what` names the element) when the Jacobian is not positive at the points used.
 std::vector<double> hex8_record(const std::array<Vec3d, 8>& x, const Material& material, const std::string& what);
+std::vector<double> hex8_cube_record(double edge, const Material& material, const std::string& what);
 std::vector<double> hex8full_record(const std::array<Vec3d, 8>& x, const std::string& what);
 
 /// Upper bounds of an element's highest angular frequency [rad/s] at rest with lumped mass (independent of fill). With
@@ -157,7 +158,7 @@ double hex8_frequency(const std::vector<double>& record, const Material& materia
 double hex8full_frequency(const std::vector<double>& record, const Material& material);
 
 /// Hourglass stiffness k [N/m] of a cube of edge d: E d / 48 times the material's factor, which makes one layer of elements
-/// bend as a beam of modulus E at nu = 0. In general E V^(1/3) / 48.
+/// bend as a beam of modulus E at nu = 0. Lattices have it; hourglass.h has that of other hexahedra.
 double hourglass_stiffness(const Material& material, double volume);
 
 }  // namespace pliant

@@ -151,7 +151,7 @@ void ProgramBuilder::add_hexes(std::size_t index) {
   const std::size_t numbers = data.size();
   const auto data_id =
       add(make_reals(fmt::format("hex_data/{}", index), BufferType::real, numbers, BufferRole::constant,
-                     b.uniform ? "[record]" : "[tiles][record][16]", "1/m, m^3, N/m", "model", std::move(data)));
+                     b.uniform ? "[record]" : "[tiles][record][16]", "1/m, m, m^3, N/m", "model", std::move(data)));
   const auto fill_id = add(make_reals(fmt::format("hex_fill/{}", index), BufferType::real, count, BufferRole::constant,
                                       "[elements]", "1", "model", std::move(fill)));
   const BufferId law_id = add_law(b.material);
@@ -166,7 +166,7 @@ void ProgramBuilder::add_hexes(std::size_t index) {
        fmt::format("{}: {} {}", model_.bodies[b.body].name, b.full ? "hex8full" : "hex8", to_string(b.material.law)),
        static_cast<std::int64_t>(b.nodes.size()),
        hex_force_bytes(b.full, b.uniform) + 16,
-       hex_force_flops(b.material.law, b.full)});
+       hex_force_flops(b.material.law, b.full, b.uniform)});
 }
 
 }  // namespace pliant

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "model/each_hex.h"
+#include "model/hourglass.h"
 
 namespace pliant {
 namespace {
@@ -56,7 +57,7 @@ class Calm {
 };
 
 double rest_volume(const HexView& hex) {
-  if (!hex.full) return hex.record[56];
+  if (!hex.full) return hex8_volume(hex.record);
   double volume = 0;
   for (int g = 0; g < 8; ++g) volume += hex.record[25 * g + 24];
   return volume;

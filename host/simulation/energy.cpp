@@ -6,6 +6,7 @@
 
 #include "material/response.h"
 #include "model/each_hex.h"
+#include "model/hourglass.h"
 
 namespace pliant {
 namespace {
@@ -13,7 +14,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Gradients8 = Eigen::Matrix<double, 8, 3>;
-using Displacements8 = Eigen::Matrix<double, 3, 8>;
 using RowMajor8 = Eigen::Matrix<double, 8, 3, Eigen::RowMajor>;
 
 Vector3d vector_of(const Vec3d& a) { return {a[0], a[1], a[2]}; }
@@ -56,9 +56,8 @@ class Sum {
 
   void hex(const HexView& view) {
     if (!view.full) {
-      point(view.slots, view.record.data(), view.fill * view.record[56], view.material);
-      const Eigen::Map<const Eigen::Matrix<double, 4, 8, Eigen::RowMajor>> gamma(view.record.data() + 24);
-      out.hourglass += view.fill * view.record[57] / 2 * (gamma * gather(view.slots).transpose()).squaredNorm();
+      point(view.slots, view.record.data(), view.fill * hex8_volume(view.record), view.material);
+      out.hourglass += view.fill * hourglass_energy(view.record, gather(view.slots));
       return;
     }
     for (int g = 0; g < 8; ++g)

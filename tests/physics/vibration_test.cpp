@@ -127,6 +127,9 @@ std::vector<Beam> beams(double load, bool costly) {
   std::vector<Beam> all{{Discretization::hex8_bricks, 20, {1, 1}, 20},
                         {Discretization::hex8_bricks, 40, {2, 2}, 20},
                         {Discretization::hex8, 20, {1, 1}, 20},
+                        {Discretization::hex8, 40, {1, 1}, 20},  // half as long as wide, 2 and 4 times
+                        {Discretization::hex8, 10, {1, 1}, 20},
+                        {Discretization::hex8, 10, {1, 1}, 40},
                         {Discretization::hex8full, 120, {1, 1}, 20}};
   if (costly && load == 1) all.push_back({Discretization::tet4, 108, {12, 1}, 10});
   if (costly && load == 2) all.push_back({Discretization::hex8full_lattice, 60, {5, 5}, 12});
