@@ -87,10 +87,12 @@ static inline mat3 hourglass(vec3* q, mat3 h, mat3 stress, real fill, __global c
   const real k = fill * RECORD(54), one = 1.0f, two = 2.0f;
   vec3 e[3], g[3];
   real scale[3], p[3][4], w[3][4];
+#pragma unroll
   for (int a = 0; a < 4; ++a) {
     const vec3 minus = {-RECORD(24 + 3 * a), -RECORD(25 + 3 * a), -RECORD(26 + 3 * a)};
     q[a] = add_product(q[a], h, minus);
   }
+#pragma unroll
   for (int i = 0; i < 3; ++i) {
     e[i].x = RECORD(36 + 3 * i);
     e[i].y = RECORD(37 + 3 * i);
@@ -100,12 +102,15 @@ static inline mat3 hourglass(vec3* q, mat3 h, mat3 stress, real fill, __global c
     g[i].x = scale[i] * moved.x;
     g[i].y = scale[i] * moved.y;
     g[i].z = scale[i] * moved.z;
+#pragma unroll
     for (int a = 0; a < 4; ++a) p[i][a] = dot3(g[i], q[a]);
   }
   hourglass_strains(p, k, fill, data, w);
+#pragma unroll
   for (int i = 0; i < 3; ++i) {  // dW/dG_i = scale sum_a w_ia q_a - (sum_a w_ia p_ia) g_i
     vec3 sum = {w[i][0] * q[0].x, w[i][0] * q[0].y, w[i][0] * q[0].z};
     real work = w[i][0] * p[i][0];
+#pragma unroll
     for (int a = 1; a < 4; ++a) {
       sum = add_times(sum, w[i][a], q[a]);
       work = fma(w[i][a], p[i][a], work);
@@ -113,8 +118,10 @@ static inline mat3 hourglass(vec3* q, mat3 h, mat3 stress, real fill, __global c
     const vec3 scaled = {scale[i] * sum.x, scale[i] * sum.y, scale[i] * sum.z};
     stress = add_outer(stress, add_times(scaled, -work, g[i]), e[i]);
   }
+#pragma unroll
   for (int a = 0; a < 4; ++a) {
     vec3 force = {k * q[a].x, k * q[a].y, k * q[a].z};
+#pragma unroll
     for (int i = 0; i < 3; ++i) force = add_times(force, w[i][a], g[i]);
     q[a] = force;
     const vec3 minus = {-force.x, -force.y, -force.z}, m = {RECORD(24 + 3 * a), RECORD(25 + 3 * a), RECORD(26 + 3 * a)};

@@ -35,6 +35,10 @@ __kernel void tled_hex8_force(__global const float* node_u, __global const int* 
     z[a] = texels_z(u);
   }
   mat3 h = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
+#if !UNIFORM
+// Otherwise PoCL keeps the private arrays in memory, which takes half as long again. (No comment behind a pragma: it is then ignored.)
+#pragma unroll
+#endif
   for (int a = 0; a < 8; ++a) {
     const RECORD_TYPE bx = DATA(3 * a), by = DATA(3 * a + 1), bz = DATA(3 * a + 2);
     h.m00 = fma(x[a], bx, h.m00);
@@ -78,6 +82,9 @@ __kernel void tled_hex8_force(__global const float* node_u, __global const int* 
   modes_back((modes){q[0].z, q[1].z, q[2].z, q[3].z}, z);
 #endif
   __global float* out = corner_force + corner_base + TILE_BASE(e, PLIANT_HEX_FORCE_PLANES);
+#if !UNIFORM
+#pragma unroll
+#endif
   for (int a = 0; a < 8; ++a) {
     const RECORD_TYPE bx = DATA(3 * a), by = DATA(3 * a + 1), bz = DATA(3 * a + 2);
 #if UNIFORM
