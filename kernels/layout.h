@@ -35,5 +35,6 @@
 #define PLIANT_FLSM_RECORD 16
 #define PLIANT_FLSM_REST_PLANES 10  // 1 / sum m, centroid (3) [cells], second moment (6)
 #define PLIANT_FLSM_SPIN_PLANES 6   // inverse of the inertia at rest (6)
+#define PLIANT_FLSM_ELASTIC_PLANES 7  // inverse of the second moment (6), the material's second moment
 
 #endif

@@ -40,6 +40,12 @@ struct BrickBatch {
   std::int32_t first = 0, count = 0;
 };
 
+/// What a region resists a strain with, where shape matching has the stiffness of a material (model/flsm_elastic.cpp).
+struct RegionElasticity {
+  std::array<double, 6> inverse{};  ///< of its second moments at rest (xx yy zz xy xz yz) [1/kg]; of a thin region nothing
+  double share = 0;                 ///< second moment of a whole window that holds as much material [kg]; 0: it stays rigid
+};
+
 /// Fast lattice shape matching of one body: the nodes of its cells that are not operational, and one region around each.
 /// Regions are numbered like these nodes: first the nodes that shape matching moves (`own`, slots first_slot, first_slot + 1,
 /// ...), then the interface.
@@ -55,7 +61,12 @@ struct FlsmBatch {
   std::vector<std::array<std::int32_t, 3>> index;  ///< [own + interface] grid point
   std::vector<std::array<std::int32_t, 6>> link;   ///< [own + interface + fillers] -x, +x, -y, +y, -z, +z, -1: none
   FlsmRegions regions;
-  std::vector<double> weight;  ///< [own + interface] node mass over the number of regions that hold it [kg]
+  std::vector<double> weight;             ///< [own + interface] node mass over the number of regions that hold it [kg]
+  std::vector<double> matter;             ///< [own + interface] share of the node's mass in cells of shape matching
+  std::vector<RegionElasticity> elastic;  ///< [own + interface] with settings.young > 0, else empty
+  double poisson = 0;                     ///< that of `elastic`
+  /// The highest omega^2 of shape matching alone over alpha / H^2, at most: anywhere, and at interface nodes.
+  double stiffest = 1, stiffest_interface = 1;
 };
 
 }  // namespace pliant

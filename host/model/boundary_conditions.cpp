@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "model/flsm.h"
 #include "pliant/error.h"
 
 namespace pliant {
@@ -191,6 +192,7 @@ void add_boundary_conditions(const Scene& scene, Model& model) {
     }
   }
   model.constraints = std::move(constraints).by_slot();
+  for (FlsmBatch& batch : model.flsm) make_elastic(batch, model);  // which has to know what is held
   weigh_added_inertia(scene, model);
   if (scene.interactive) reserve_forces(model);
   std::stable_sort(model.forces.begin(), model.forces.end(),

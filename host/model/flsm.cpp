@@ -10,6 +10,10 @@
 namespace pliant {
 namespace {
 
+/// The largest Poisson's ratio of a region: near 1/2 its resistance to a change of volume would ask for shorter steps than
+/// alpha = 1 does.
+constexpr double kMostPoisson = 0.3;
+
 /// Cells in tiles of 8 x 8 rows: the planes that the sums along y and z take in stay in the cache.
 std::array<std::int32_t, 5> place_in_tiles(const LatticeNode& n) {
   return {n.index[2] >> 3, n.index[1] >> 3, n.index[2], n.index[1], n.index[0]};
@@ -77,6 +81,22 @@ void require_width(const Body& body, const FlsmBatch& batch) {
                   body.model.pointer, batch.settings.width, body.name, longest, longest));
 }
 
+/// The share of each node's material that lies in cells of shape matching. `number` is the number in the batch of each node.
+std::vector<double> matter_of(const BodyElements& solid, const std::vector<std::int32_t>& number, std::size_t nodes) {
+  std::vector<double> inside(nodes), all(nodes);
+  const auto add = [&](const auto& corners, std::size_t e) {
+    for (const std::int32_t n : corners) {
+      if (number[n] < 0) continue;
+      all[number[n]] += solid.fill[e];
+      if (!solid.operational(e)) inside[number[n]] += solid.fill[e];
+    }
+  };
+  for (std::size_t e = 0; e < solid.hexes.size(); ++e) add(solid.hexes[e], e);
+  for (std::size_t e = 0; e < solid.tets.size(); ++e) add(solid.tets[e], e);
+  for (std::size_t n = 0; n < nodes; ++n) inside[n] = all[n] > 0 ? inside[n] / all[n] : 0;
+  return inside;
+}
+
 /// Sums of moments along one axis, `width` links to both sides.
 std::vector<RestMoments> along(int axis, const FlsmBatch& batch, const std::vector<RestMoments>& in) {
   constexpr int second[3][3] = {{4, 7, 8}, {7, 5, 9}, {8, 9, 6}};  // where m o_i o_j stands
@@ -126,6 +146,8 @@ FlsmBatch place_matching_nodes(const BodyElements& solid, const Body& body, std:
       batch.index.push_back(solid.lattice_nodes[n].index);
     }
   }
+  batch.matter = matter_of(solid, in_batch, batch.slot.size());
+  batch.poisson = std::clamp(body.material.moduli.poisson(), 0.0, kMostPoisson);
   link_nodes(solid, in_batch, batch);
   require_width(body, batch);
   const FlsmBatch* same = previous != nullptr ? same_links(batch, *previous) : nullptr;

@@ -22,6 +22,13 @@ void find_batch_regions(FlsmBatch& batch);
 /// Weights of the region sums, once the masses are lumped: m / holders, so that the mean of the goals keeps the momentum.
 void weigh(FlsmBatch& batch, const std::vector<double>& mass);
 
+/// Where shape matching is to have a stiffness (settings.young > 0): weights that know what is held, and what makes regions
+/// deform like the material. After weigh(), once model.constraints are there.
+void make_elastic(FlsmBatch& batch, const Model& model);
+
+/// Sums of `values` [own + interface] over the nodes of each region; with `back`, over the regions that hold each node.
+std::vector<double> region_sums(const FlsmBatch& batch, const std::vector<double>& values, bool back);
+
 /// Moments of a region's weights at rest about its centre, in grid units: sum m; m o (3); m o o^T (xx yy zz xy xz yz).
 using RestMoments = std::array<double, 10>;
 std::vector<RestMoments> rest_moments(const FlsmBatch& batch);

@@ -36,6 +36,16 @@ void set_spin(const double (&plane)[PLIANT_FLSM_REST_PLANES], double spacing, st
   for (int p = 0; p < PLIANT_FLSM_SPIN_PLANES; ++p) spin[tile_base(r, PLIANT_FLSM_SPIN_PLANES) + p * PLIANT_TILE] = value[p];
 }
 
+/// Planes of flsm_elastic, and the moments at rest of its best affine fit. `mean`: the weight that the sums are in [kg].
+void set_elastic(const RegionElasticity& e, double mean, std::size_t r, RegionData& data) {
+  double* const plane = data.elastic.data() + tile_base(r, PLIANT_FLSM_ELASTIC_PLANES);
+  for (int p = 0; p < 6; ++p) plane[p * PLIANT_TILE] = e.share > 0 ? mean * e.inverse[p] : p < 3;
+  plane[6 * PLIANT_TILE] = e.share / mean;
+  if (e.share == 0) return;
+  double* const rest = data.rest.data() + tile_base(r, PLIANT_FLSM_REST_PLANES);
+  for (int p = 0; p < 6; ++p) rest[(4 + p) * PLIANT_TILE] = p < 3;
+}
+
 }  // namespace
 
 /// Sums run over displacements [m] with weights m / (mean m, spacing): the moments are plain numbers of moderate size.
@@ -55,6 +65,7 @@ RegionData region_data(const FlsmBatch& b, const RegionLayout& places) {
   data.rest.assign(PLIANT_FLSM_REST_PLANES * with_region, 0.0);
   data.spin.assign(PLIANT_FLSM_SPIN_PLANES * with_region, 0.0);
   data.rate_weight.assign(count, 0.0);
+  if (!b.elastic.empty()) data.elastic.assign(PLIANT_FLSM_ELASTIC_PLANES * with_region, 0.0);
   double mean = 0;
   for (const double w : b.weight) mean += w / static_cast<double>(nodes);
   const auto weight = [&](std::int32_t n) { return b.weight[n] / (mean * b.spacing); };
@@ -82,6 +93,7 @@ RegionData region_data(const FlsmBatch& b, const RegionLayout& places) {
       data.rest[tile_base(r, PLIANT_FLSM_REST_PLANES) + p * PLIANT_TILE] = plane[p];
     }
     set_spin(plane, b.spacing, r, data.spin);
+    if (!b.elastic.empty()) set_elastic(b.elastic[n], mean, r, data);
   }
   for (std::size_t n = 0; n < b.link.size(); ++n) {
     const auto r = static_cast<std::size_t>(places.of(static_cast<std::int32_t>(n)));

@@ -38,7 +38,7 @@ struct MissingList {
 struct RegionData {
   std::vector<std::int32_t> slot, link[3];
   MissingList missing, missing_of, rate_missing;
-  std::vector<double> weight, rate_weight, rest, spin, inverse_holders;
+  std::vector<double> weight, rate_weight, rest, spin, inverse_holders, elastic;
 };
 
 RegionData region_data(const FlsmBatch& b, const RegionLayout& places);

@@ -43,17 +43,21 @@ class FlsmPasses {
   void add(bool has_load, std::int32_t fault_base, std::int32_t slots) {
     missing_args_ = list("flsm_missing", data_.missing);
     add_sums(shared_.node_u, weight_, 1, "displacements");
-    pass("flsm_region", width(),
-         Args{shared_.node_u, plates_, link_[2]} + missing_args_ + Args{reference_, rest_, regions_, real_arg(b_.spacing)},
-         places_.nodes, 184 + 24 * missing_, 36.0 * b_.settings.width + 32 * missing_ + 1480);
+    const double nu = b_.poisson;
+    pass("flsm_region", {{"WIDTH", b_.settings.width}, {"ELASTIC", elastic() ? 1 : 0}},
+         Args{shared_.node_u, plates_, link_[2]} + missing_args_ +
+             Args{reference_, rest_, regions_, elastic_, pulls_, real_arg(b_.spacing), real_arg(1 / (1 + nu)),
+                  real_arg(nu / ((1 + nu) * (1 - 2 * nu)))},
+         places_.nodes, (elastic() ? 276 : 184) + 24 * missing_,
+         36.0 * b_.settings.width + 32 * missing_ + (elastic() ? 1690 : 1480));
     missing_of_args_ = list("flsm_missing_of", data_.missing_of);
     if (b_.settings.damping > 0) add_damping();
-    add_goals(regions_, "goals");
+    add_goals(pulls_, "goals");
     if (b_.interface > 0) add_interface();
     if (reaction()) add_reaction(slots);
     if (b_.own > 0) {
       pass("flsm_update", {{"WIDTH", b_.settings.width}, {"HAS_LOAD", has_load ? 1 : 0}},
-           Args{shared_.node_u, shared_.node_w, shared_.node_load} + goal_args(regions_, bars_) +
+           Args{shared_.node_u, shared_.node_w, shared_.node_load} + goal_args(pulls_, bars_) +
                Args{reference_, shared_.step_params, shared_.alpha, shared_.fault, int_arg(index_),
                     int_arg(b_.settings.substeps), int_arg(b_.first_slot), int_arg(fault_base), step_arg()},
            places_.interface_base, goal_bytes() + 64 + (has_load ? 16 : 0), goal_flops() + 27, b_.own);
@@ -61,6 +65,8 @@ class FlsmPasses {
   }
 
  private:
+  /// Whether regions deform like a material.
+  [[nodiscard]] bool elastic() const { return !b_.elastic.empty(); }
   /// Whether the interface's springs take more or less momentum than shape matching gives.
   [[nodiscard]] bool reaction() const { return b_.interface > 0 && b_.settings.beta > 0 && b_.settings.conservative; }
   [[nodiscard]] Defines width() const { return {{"WIDTH", b_.settings.width}}; }
@@ -97,6 +103,14 @@ class FlsmPasses {
     plates_ = reals("flsm_plates", PLIANT_FLSM_RECORD * count, BufferRole::scratch, "[regions][4][4]", "1",
                     "flsm_plate, flsm_goal_plate");
     regions_ = reals("flsm_regions", PLIANT_FLSM_RECORD * count, BufferRole::state, "[regions][4][4]", "m", "flsm_region");
+    elastic_ = rest_;  // which a rigid region does not look at
+    pulls_ = regions_;
+    if (elastic()) {
+      elastic_ = reals("flsm_elastic", PLIANT_FLSM_ELASTIC_PLANES * with_region, BufferRole::constant, "[tiles][7][16]", "1",
+                       "model", std::move(data_.elastic));
+      pulls_ = reals("flsm_pulls", PLIANT_FLSM_RECORD * count, BufferRole::scratch, "[regions][4][4]", "m", "flsm_region");
+      program_.buffers[std::get<0>(pulls_)].fixed = PLIANT_FLSM_RECORD * (count - with_region);  // fillers, as below
+    }
     if (b_.settings.damping > 0 || reaction()) {
       rates_ = reals("flsm_rates", PLIANT_FLSM_RECORD * count, BufferRole::scratch, "[regions][4][4]", "m", "flsm_damp_region");
       // Only regions move: the fillers behind them have sums alone and add nothing.
@@ -148,7 +162,7 @@ class FlsmPasses {
     }
     beta_ = reals("flsm_beta", shared, BufferRole::control, "[interface]", "N/m", "host");
     const Arg base = int_arg(places_.interface_base);
-    pass("flsm_goal", width(), goal_args(regions_, bars_) + Args{reference_, goals_, base}, static_cast<std::int32_t>(shared),
+    pass("flsm_goal", width(), goal_args(pulls_, bars_) + Args{reference_, goals_, base}, static_cast<std::int32_t>(shared),
          goal_bytes() + 64, goal_flops(), b_.interface);
     pass("flsm_interface", {{"EXTRAPOLATED", b_.settings.extrapolate && n > 1 ? 1 : 0}},
          {shared_.node_u, shared_.node_load, slot_, reference_, goals_, beta_, shared_.step_params, int_arg(n), base,
@@ -173,7 +187,7 @@ class FlsmPasses {
           int_arg(b_.settings.substeps), int_arg(places_.interface_base)},
          places_.nodes - places_.interface_base, 88, 12, b_.interface);
     add_rates(excess, weight_, missing_args_, 1, 0, "reaction");
-    add_goals(regions_, "goals");
+    add_goals(pulls_, "goals");
   }
 
   void pass(const char* kernel, Defines defines, Args args, std::int64_t indices, double bytes, double flops,
@@ -192,7 +206,8 @@ class FlsmPasses {
   Program& program_;
   RegionData data_;
   double missing_ = 0, missing_of_ = 0;  ///< entries per node
-  Arg slot_, link_[3], weight_, rest_, holders_, bars_, plates_, regions_, rates_, spin_, goals_, beta_, reference_;
+  Arg slot_, link_[3], weight_, rest_, holders_, bars_, plates_, regions_, rates_, spin_, elastic_, pulls_, goals_, beta_,
+      reference_;
   Args missing_args_, missing_of_args_;
 };
 

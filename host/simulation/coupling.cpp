@@ -29,11 +29,17 @@ double stiffness_unit(const FlsmBatch& batch) {
   return kPullStiffness[batch.settings.width - 1] * batch.density * batch.spacing * batch.spacing;
 }
 
-/// The step of the scene at which alpha is 1, the longest that "stiffness" allows [s].
+/// b of a step h [s^2]: the acceleration by an increment, with the damping rate D [1/s].
+double step_square(double h, double damping) { return h * h / (1 + 0.5 * damping * h); }
+
+/// The largest alpha that the nodes of shape matching stand with a margin: omega^2 H^2 = alpha times their highest, below 4.
+double largest_alpha(const FlsmBatch& batch) { return std::min(1.0, 3.8 / batch.stiffest); }
+
+/// The step of the scene at which alpha is that, the longest that "stiffness" allows [s].
 double longest_step(const FlsmBatch& batch, double damping) {
   const DeformationModel& m = batch.settings;
   if (m.young <= 0) return std::numeric_limits<double>::infinity();
-  const double b = stiffness_unit(batch) / m.young, quarter = 0.25 * damping * b;
+  const double b = largest_alpha(batch) * stiffness_unit(batch) / m.young, quarter = 0.25 * damping * b;
   return (quarter + std::sqrt(quarter * quarter + b)) / m.substeps;
 }
 
@@ -42,7 +48,8 @@ double longest_step(const FlsmBatch& batch, double damping) {
 double alpha_for(const FlsmBatch& batch, double dt, double damping) {
   const DeformationModel& m = batch.settings;
   if (m.young <= 0) return m.alpha;
-  const double h = m.substeps * dt, b = h * h / (1 + 0.5 * damping * h), most = stiffness_unit(batch) / b;
+  const double b = step_square(m.substeps * dt, damping);
+  const double largest = largest_alpha(batch), most = largest * stiffness_unit(batch) / b;
   if (m.young > 1.00001 * most && !m.matched) {  // the message's digits are allowed
     throw Error(ErrorCode::bad_input,
                 fmt::format("{}/stiffness/young: got {} Pa, which no alpha reaches with width {} at dt = {:.6g} s{}; allowed "
@@ -51,7 +58,7 @@ double alpha_for(const FlsmBatch& batch, double dt, double damping) {
                             m.pointer, m.young, m.width, dt, m.substeps > 1 ? fmt::format(" and {} substeps", m.substeps) : "",
                             most, longest_step(batch, damping)));
   }
-  return std::min(1.0, m.young / most);
+  return std::min(largest, largest * (m.young / most));
 }
 
 /// The mass at the place of each interface node [kg]: its own, or that of all its copies where a cut has divided it. A given
@@ -72,6 +79,12 @@ double least_place_mass(const Model& model, const FlsmBatch& batch) {
   return *std::min_element(masses.begin(), masses.end());
 }
 
+/// beta / m of the interface with an automatic beta and a "stiffness" [1/s^2].
+double spring_of(const FlsmBatch& b) { return b.settings.young / stiffness_unit(b); }
+
+/// What the interface feels at most while it feels any, over its beta: regions may be stiffer than the springs to their goals.
+double pull_bound(const FlsmBatch& b) { return pull_factor(b.settings) * b.stiffest_interface; }
+
 /// beta over mass that a batch adds to omega^2 of its interface nodes, as a multiple of 1 / dt^2 (automatic) and as a number
 /// [1/s^2] (given, or automatic with an alpha that falls with dt^2).
 struct InterfaceStiffness {
@@ -83,15 +96,15 @@ InterfaceStiffness interface_stiffness(const Model& model) {
   for (const FlsmBatch& b : model.flsm) {
     if (b.interface == 0) continue;
     if (b.settings.beta == 0 && b.settings.young > 0) {
-      largest.fixed = std::max(largest.fixed, pull_factor(b.settings) * b.settings.young / stiffness_unit(b));
+      largest.fixed = std::max(largest.fixed, pull_bound(b) * spring_of(b));
       continue;
     }
     if (b.settings.beta == 0) {
       largest.per_step =
-          std::max(largest.per_step, pull_factor(b.settings) * b.settings.alpha / (b.settings.substeps * b.settings.substeps));
+          std::max(largest.per_step, pull_bound(b) * b.settings.alpha / (b.settings.substeps * b.settings.substeps));
       continue;
     }
-    largest.fixed = std::max(largest.fixed, pull_factor(b.settings) * b.settings.beta / least_place_mass(model, b));
+    largest.fixed = std::max(largest.fixed, pull_bound(b) * b.settings.beta / least_place_mass(model, b));
   }
   return largest;
 }
@@ -109,12 +122,12 @@ double largest_held_alpha(int n, double h, double elements) {
 /// The longest step that a batch of held goals stands: what its pull takes grows with the step, what is left for it shrinks.
 double held_step(const FlsmBatch& b, const Model& model, double elements) {
   const DeformationModel& m = b.settings;
-  double fixed = m.young > 0 ? m.young / stiffness_unit(b) : 0;  // alpha = fixed H^2
+  double fixed = m.young > 0 ? spring_of(b) : 0;  // alpha = fixed H^2
   if (m.beta > 0) fixed = m.beta / least_place_mass(model, b);
   double low = 0, high = elements;
   for (int i = 0; i < 60; ++i) {
     const double middle = 0.5 * (low + high), h = m.substeps * middle;
-    const double alpha = fixed > 0 ? fixed * h * h : m.alpha;
+    const double alpha = b.stiffest_interface * (fixed > 0 ? fixed * h * h : m.alpha);
     (alpha <= largest_held_alpha(m.substeps, middle, elements) ? low : high) = middle;
   }
   return low;
@@ -165,10 +178,10 @@ std::vector<double> interface_springs(const Model& model, double dt) {
     if (b.interface == 0) continue;
     spring.resize(model.mass.size(), 0.0);
     const DeformationModel& m = b.settings;
-    const double h = m.substeps * dt, automatic = m.young > 0 ? m.young / stiffness_unit(b) : m.alpha / (h * h);
+    const double h = m.substeps * dt, automatic = m.young > 0 ? spring_of(b) : m.alpha / (h * h);
     const std::vector<double> masses = m.beta > 0 ? place_masses(model, b) : std::vector<double>();
     for (std::int32_t k = 0; k < b.interface; ++k) {
-      spring[static_cast<std::size_t>(b.slot[b.own + k])] = pull_factor(m) * (m.beta > 0 ? m.beta / masses[k] : automatic);
+      spring[static_cast<std::size_t>(b.slot[b.own + k])] = pull_bound(b) * (m.beta > 0 ? m.beta / masses[k] : automatic);
     }
   }
   return spring;
@@ -203,10 +216,11 @@ void check_beta(const RunContext& run, double dt, double elements_dt) {
     if (b.settings.beta == 0 || b.interface == 0) continue;
     const double mass = least_place_mass(model, b);
     const double omega2 = 4 / (elements_dt * elements_dt);
-    double most = largest_beta(run, b, dt, mass * ((4 - k.per_step) / (dt * dt) - omega2) / pull_factor(b.settings));
+    double most = largest_beta(run, b, dt, mass * ((4 - k.per_step) / (dt * dt) - omega2) / pull_bound(b));
     if (b.settings.substeps > 1 && !b.settings.extrapolate) {
       const double h = b.settings.substeps * dt;
-      most = std::min(most, mass * largest_held_alpha(b.settings.substeps, dt, 2 / std::sqrt(omega2)) / (h * h));
+      most = std::min(
+          most, mass * largest_held_alpha(b.settings.substeps, dt, 2 / std::sqrt(omega2)) / (h * h * b.stiffest_interface));
     }
     throw Error(
         ErrorCode::bad_input,
@@ -217,8 +231,7 @@ void check_beta(const RunContext& run, double dt, double elements_dt) {
 }
 
 double matching_modulus(const FlsmBatch& batch, double dt, double damping) {
-  const double h = batch.settings.substeps * dt, b = h * h / (1 + 0.5 * damping * h);
-  return alpha_for(batch, dt, damping) * stiffness_unit(batch) / b;
+  return alpha_for(batch, dt, damping) * stiffness_unit(batch) / step_square(batch.settings.substeps * dt, damping);
 }
 
 void upload_coupling(const RunContext& run) {
@@ -229,14 +242,19 @@ void upload_coupling(const RunContext& run) {
   for (std::size_t i = 0; i < model.flsm.size(); ++i) {
     const FlsmBatch& b = model.flsm[i];
     const double dt = run.state.clock.dt, h = b.settings.substeps * dt;
-    alpha.push_back(alpha_for(b, dt, run.scene.bodies[static_cast<std::size_t>(b.body)].material.damping));
+    const double damping = run.scene.bodies[static_cast<std::size_t>(b.body)].material.damping;
+    alpha.push_back(alpha_for(b, dt, damping));
     if (b.interface == 0) continue;
     const BufferId id = program.find(fmt::format("flsm_beta/{}", i));
     std::vector<double> beta(program.at(id).count, 0.0);
     const std::vector<double> masses = b.settings.beta > 0 ? place_masses(model, b) : std::vector<double>();
     for (std::int32_t k = 0; k < b.interface; ++k) {
       const double own = model.mass[static_cast<std::size_t>(b.slot[b.own + k])];
-      const double mean = b.settings.beta > 0 ? b.settings.beta * (own / masses[k]) : alpha.back() * own / (h * h);
+      // With a stiffness as the own nodes feel it, alpha m / b, whatever the damping: both ends of a spring pull alike at rest.
+      const double automatic = b.settings.young > 0 ? alpha.back() / step_square(h, damping) : alpha.back() / (h * h);
+      const auto node = static_cast<std::size_t>(b.own + k);
+      const double pulled = b.settings.young > 0 ? b.weight[node] * b.regions.holders[node] : own;
+      const double mean = b.settings.beta > 0 ? b.settings.beta * (own / masses[k]) : automatic * pulled;
       beta[k] = pull_factor(b.settings) * mean;
     }
     run.backend().write_reals(id, beta);

@@ -14,7 +14,7 @@ namespace {
 /// Shape matching and the material of one body are alike if their moduli are within this factor.
 constexpr double kFarApart = 2;
 /// Strain by its own weight that shape matching still carries like a material (docs/flsm_stiffness.md).
-constexpr double kMostWeight = 0.02;
+constexpr double kMostWeight = 0.1;
 
 /// From this taper or skewness on (distortion) hex8 elements bend more than 10 % too little, where a part is few elements
 /// thick.
@@ -44,8 +44,8 @@ void add_matching(const Model& model, const Scene& scene, double dt, std::vector
     if (strain > kMostWeight) {
       remarks.push_back(
           fmt::format("body '{}': its weight strains its shape matching (modulus {:.3g} Pa) by about {:.2g}; above {} it "
-                      "sags further than the material would, and may buckle. Stiffer shape matching, or finite elements "
-                      "(\"type\": \"tled\"), carry it",
+                      "sags further than the material would (by a tenth to a half at 0.3), and may buckle. Stiffer shape "
+                      "matching, or finite elements (\"type\": \"tled\"), carry it",
                       name, modulus, strain, kMostWeight));
     }
   }

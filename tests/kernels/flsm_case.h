@@ -11,8 +11,9 @@ struct FlsmData {
   std::size_t count = 0;  ///< regions in the launch, nodes of flsm_update, interface nodes of flsm_goal and flsm_interface
   Ints slot, link[3], missing_offset, missing, missing_of_offset, missing_of, fault;
   Reals node_u, node_w, node_load, weight, bars, plates, rest, regions, inverse_holders, goals, beta, alpha, step_params;
-  Reals missing_factor, missing_of_factor, spin, rates, excess, reference = Reals(8, 0.0);
-  double spacing = 0.01, damping = 0;
+  Reals missing_factor, missing_of_factor, spin, rates, excess, elastic = Reals(16, 0.0), pulls = Reals(16, 0.0),
+                                                                reference = Reals(8, 0.0);
+  double spacing = 0.01, damping = 0, shear = 1, bulk = 0;
   int region_base = 0, node_base = 0, fault_base = 0, batch = 0, substeps = 1;
   int interface_base = 0;  ///< of flsm_damp_update: the first region of the interface
   bool exact = false;
@@ -71,14 +72,15 @@ inline KernelCase flsm_plate_case(const FlsmData& d, int width) {
   return a.reals("flsm_bars", d.bars).ints("flsm_link_y", d.link[1]).reals("flsm_plates", d.plates).test();
 }
 
-inline KernelCase flsm_region_case(const FlsmData& d, int width) {
-  FlsmArguments a(d, "flsm_region", {{"WIDTH", width}});
+inline KernelCase flsm_region_case(const FlsmData& d, int width, int elastic = 0) {
+  FlsmArguments a(d, "flsm_region", {{"WIDTH", width}, {"ELASTIC", elastic}});
   a.reals("node_u", d.node_u).reals("flsm_plates", d.plates).ints("flsm_link_z", d.link[2]);
   a.ints("flsm_missing_offset", d.missing_offset)
       .ints("flsm_missing", d.missing)
       .reals("flsm_missing_factor", d.missing_factor);
   a.reals("flsm_reference", d.reference).reals("flsm_rest", d.rest).reals("flsm_regions", d.regions);
-  return a.number(d.spacing).test();
+  a.reals("flsm_elastic", d.elastic).reals("flsm_pulls", d.pulls);
+  return a.number(d.spacing).number(d.shear).number(d.bulk).test();
 }
 
 inline KernelCase flsm_goal_plate_case(const FlsmData& d, int width) {
@@ -217,6 +219,10 @@ inline FlsmData random_flsm(std::size_t count, Data data, std::uint32_t seed) {
   d.rates = random.reals(PLIANT_FLSM_RECORD * regions, data, 1e-4);
   d.excess = random.reals(4 * slots, Data::large, 1e-4);
   d.damping = random.uniform(0, 1);
+  d.elastic = random.reals(PLIANT_FLSM_ELASTIC_PLANES * regions, data, 1);
+  d.pulls = random.reals(PLIANT_FLSM_RECORD * regions, data, 0.01);
+  d.shear = random.uniform(0.7, 1);
+  d.bulk = random.uniform(0, 0.6);
   d.interface_base = random.integer(0, static_cast<int>(count));
   return d;
 }

@@ -9,7 +9,12 @@ namespace {
 
 class FlsmRegion : public FlsmTwinTest {};
 
-TEST_F(FlsmRegion, TwinGivesTheSameBits) { compare(flsm_region_case, 4800); }
+TEST_F(FlsmRegion, TwinGivesTheSameBits) {
+  for (const int elastic : {0, 1}) {
+    compare([elastic](const FlsmData& d, int width) { return flsm_region_case(d, width, elastic); },
+            4800 + 100 * static_cast<std::uint32_t>(elastic));
+  }
+}
 
 /// T X = R (X - C) + c by positions; the record says it as X + t + h D o.
 void expect_region(const FlsmLattice& lattice, const Reals& records, int i) {
@@ -64,6 +69,93 @@ TEST(FlsmRegionOracle, IsTheRigidMotionOfTheNodesInsideTheWindow) {
       EXPECT_EQ(records[k], 0) << "the region that stands for absent ones moved";
     }
   }
+}
+
+/// Mass, centroids at rest and now, and the moments of the nodes that a region holds.
+struct RegionSums {
+  double mass = 0;
+  Vector3d rest = Vector3d::Zero(), now = Vector3d::Zero();
+  Matrix3d moved = Matrix3d::Zero(), at_rest = Matrix3d::Zero();
+};
+
+RegionSums sums_of(const FlsmLattice& lattice, int i) {
+  RegionSums s;
+  for (const bool centred : {false, true}) {
+    lattice.for_window(true, true, true, [&](const Offset& o) {
+      if (!lattice.holds(i, o)) return;
+      const int node = lattice.at(i, o);
+      const double m = lattice.mass(node);
+      const Vector3d rest = lattice.rest(node), x = rest + lattice.u(node);
+      if (!centred) {
+        s.mass += m;
+        s.rest += m * rest;
+        s.now += m * x;
+        return;
+      }
+      s.moved += m * (x - s.now) * (rest - s.rest).transpose();
+      s.at_rest += m * (rest - s.rest) * (rest - s.rest).transpose();
+    });
+    if (centred) break;
+    s.rest /= s.mass;
+    s.now /= s.mass;
+  }
+  return s;
+}
+
+void put_elastic(Reals& planes, std::size_t region, const Matrix3d& inverse, double q) {
+  const double plane[PLIANT_FLSM_ELASTIC_PLANES] = {
+      inverse(0, 0), inverse(1, 1), inverse(2, 2), inverse(0, 1), inverse(0, 2), inverse(1, 2), q};
+  const std::size_t base = region / PLIANT_TILE * PLIANT_FLSM_ELASTIC_PLANES * PLIANT_TILE + region % PLIANT_TILE;
+  for (std::size_t p = 0; p < PLIANT_FLSM_ELASTIC_PLANES; ++p) planes[base + p * PLIANT_TILE] = plane[p];
+}
+
+/// From positions: F the best affine fit, F - q P(F) A^-1 with a stress that is a polynomial of U - 1, F = R U; the rigid
+/// motion beside it is that of F. Every third region stays rigid.
+TEST(FlsmRegionOracle, PullsLikeAnElasticBody) {
+  Random random(15);
+  constexpr double h = FlsmLattice::spacing;
+  int checked = 0;
+  for (const FlsmLattice& lattice : lattices(random)) {
+    FlsmData d = lattice.data();
+    d.plates = lattice.moments(true, PLIANT_FLSM_RECORD);
+    d.pulls = d.regions;
+    d.elastic.assign(PLIANT_FLSM_ELASTIC_PLANES * d.count, 0.0);
+    d.shear = 0.8;
+    d.bulk = 0.4;
+    const auto q = [](int i) { return i % 3 == 0 ? 0.0 : 1.0 + 0.1 * (i % 7); };
+    for (int i = 0; i < lattice.nodes(); ++i) {
+      const RegionSums s = sums_of(lattice, i);
+      const auto r = static_cast<std::size_t>(i);
+      put_elastic(d.elastic, r, q(i) > 0 ? Matrix3d(h * h * s.at_rest.inverse()) : Matrix3d::Identity(), q(i));
+      if (q(i) > 0) put_rest(d.rest, r, h / s.mass, (s.rest - lattice.rest(i)) / h, Matrix3d::Identity());
+      put(d.node_u, 4 * static_cast<std::size_t>(d.slot[r]), lattice.u(i));
+    }
+    const KernelCase test = flsm_region_case(d, lattice.width(), 1);
+    const Reals rigid = run_in_double(test, "flsm_regions"), pulls = run_in_double(test, "flsm_pulls");
+    for (int i = 0; i < lattice.nodes(); ++i) {
+      const RegionSums s = sums_of(lattice, i);
+      const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(s.at_rest, Eigen::EigenvaluesOnly);
+      if (solver.eigenvalues()[0] < 1e-2 * solver.eigenvalues()[2]) continue;  // few nodes: F is hardly determined
+      const Matrix3d fit = s.moved * s.at_rest.inverse(), f = q(i) > 0 ? fit : s.moved / (h * h);
+      const Vector3d sigma = f.jacobiSvd().singularValues();
+      if (sigma[1] + (f.determinant() > 0 ? sigma[2] : -sigma[2]) < 1e-2 * sigma[0]) continue;
+      const Matrix3d r = nearest_rotation(f), one = Matrix3d::Identity();
+      const Matrix3d s2 = r.transpose() * f - one, law = d.shear * (s2 - s2 * s2 / 2 + s2 * s2 * s2 / 8);
+      const Matrix3d stress = r * (law + d.bulk * s2.trace() * one);
+      const Matrix3d g = q(i) > 0 ? Matrix3d(f - q(i) * h * h * stress * s.at_rest.inverse()) : r;
+      const std::size_t at = PLIANT_FLSM_RECORD * static_cast<std::size_t>(i);
+      const std::string what = "region " + std::to_string(i);
+      const double scale = 1 + g.norm();
+      expect_near(s.now + g * (lattice.rest(i) - s.rest) - lattice.rest(i), pulls, at, 1e-9 * scale, what + ", t");
+      for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        const std::size_t block = at + 4 * static_cast<std::size_t>(axis) + 4;
+        expect_near(h * (g - one).col(axis), pulls, block, 1e-9 * scale, what + ", pull");
+        expect_near(h * (r - one).col(axis), rigid, block, 1e-9 * scale, what + ", rotation");
+      }
+      ++checked;
+    }
+  }
+  EXPECT_GT(checked, 1500);
 }
 
 TEST(FlsmRegionOracle, IsExactlyZeroAtRest) {
@@ -290,6 +382,13 @@ TEST(FlsmRotation, CollapsedMomentsKeepTheRotationBefore) {
     }
   }
   const Reals records = run_in_float(flsm_region_case(d, 1), "flsm_regions");
+  d.elastic.assign(PLIANT_FLSM_ELASTIC_PLANES * d.count, 0.0);
+  for (std::size_t i = 0; i < moments.size(); ++i) put_elastic(d.elastic, i, Matrix3d::Identity(), 1);
+  d.pulls.assign(d.regions.size(), 9.0);
+  const Reals pulls = run_in_float(flsm_region_case(d, 1, 1), "flsm_pulls");
+  for (std::size_t i = 0; i + 1 < moments.size(); ++i) {
+    EXPECT_EQ(difference_at(pulls, i), difference_at(d.regions, i)) << "the pull of " << i;
+  }
   for (std::size_t i = 0; i < moments.size(); ++i) {
     const Matrix3d kept = i + 1 < moments.size() ? difference_at(d.regions, i) : Matrix3d::Zero();
     EXPECT_EQ(difference_at(records, i), kept) << i;
