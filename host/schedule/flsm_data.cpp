@@ -101,13 +101,12 @@ RegionData region_data(const FlsmBatch& b, const RegionLayout& places) {
       for (int side = 0; side < 2; ++side) data.link[axis][2 * r + side] = places.of(b.link[n][2 * axis + side]);
     }
   }
-  const FlsmRegions& regions = b.regions;
   const auto slot_of = [&](std::int32_t n) { return b.slot[n]; };
-  add_missing(places, regions.missing_offset, regions.missing, slot_of, weight, data.missing);
-  add_missing(places, regions.missing_offset, regions.missing, slot_of, rate_weight, data.rate_missing);
+  add_missing(places, b.regions.missing_offset, b.regions.missing, slot_of, weight, data.missing);
+  add_missing(places, b.regions.missing_offset, b.regions.missing, slot_of, rate_weight, data.rate_missing);
   const auto region_of = [&](std::int32_t r) { return places.of(r); };
   add_missing(
-      places, regions.missing_of_offset, regions.missing_of, region_of, [](std::int32_t) { return 1.0; }, data.missing_of);
+      places, b.regions.missing_of_offset, b.regions.missing_of, region_of, [](std::int32_t) { return 1.0; }, data.missing_of);
   return data;
 }
 
