@@ -38,11 +38,11 @@ static inline mat3 corotated_stress(mat3 h, mat3 d, real shear, real bulk) {
   const real yz = fma(d.m21, r.m22, fma(d.m11, r.m12, fma(d.m01, r.m02, r.m12))), zz = fma(d.m22, r.m22, fma(d.m12, r.m12, fma(d.m02, r.m02, r.m22)));
   const mat3 s = {xx, xy, xz, xy, yy, yz, xz, yz, zz};
   // 1 - s / 2 + s^2 / 8, times s.
-  const real half = 0.5f, eighth = 0.125f, one = 1.0f;
+  const real second = 0.5f, eighth = 0.125f, one = 1.0f;
   const mat3 square = times_symmetric(s, xx, yy, zz, xy, xz, yz);
-  const mat3 factor = {fma(eighth, square.m00, fma(-half, xx, one)), fma(eighth, square.m01, -half * xy), fma(eighth, square.m02, -half * xz),
-                       fma(eighth, square.m10, -half * xy), fma(eighth, square.m11, fma(-half, yy, one)), fma(eighth, square.m12, -half * yz),
-                       fma(eighth, square.m20, -half * xz), fma(eighth, square.m21, -half * yz), fma(eighth, square.m22, fma(-half, zz, one))};
+  const mat3 factor = {fma(eighth, square.m00, fma(-second, xx, one)), fma(eighth, square.m01, -second * xy), fma(eighth, square.m02, -second * xz),
+                       fma(eighth, square.m10, -second * xy), fma(eighth, square.m11, fma(-second, yy, one)), fma(eighth, square.m12, -second * yz),
+                       fma(eighth, square.m20, -second * xz), fma(eighth, square.m21, -second * yz), fma(eighth, square.m22, fma(-second, zz, one))};
   const mat3 f = times_symmetric(factor, xx, yy, zz, xy, xz, yz);
   const real p = bulk * ((xx + yy) + zz);
   const real fxx = fma(shear, f.m00, p), fyy = fma(shear, f.m11, p), fzz = fma(shear, f.m22, p), fxy = shear * f.m01, fxz = shear * f.m02, fyz = shear * f.m12;
