@@ -33,8 +33,8 @@
 
 // Shape matching: numbers per region record (four blocks of four), planes of a region's data at rest per tile.
 #define PLIANT_FLSM_RECORD 16
-#define PLIANT_FLSM_REST_PLANES 10  // 1 / sum m, centroid (3) [cells], second moment (6)
-#define PLIANT_FLSM_SPIN_PLANES 6   // inverse of the inertia at rest (6)
+#define PLIANT_FLSM_REST_PLANES 10    // 1 / sum m, centroid (3) [cells], second moment (6)
+#define PLIANT_FLSM_SPIN_PLANES 6     // inverse of the inertia at rest (6)
 #define PLIANT_FLSM_ELASTIC_PLANES 7  // inverse of the second moment (6), the material's second moment
 
 #endif
