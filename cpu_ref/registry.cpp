@@ -21,7 +21,9 @@
   ROW(node_update) \
   ROW(brick_update) \
   ROW(node_prescribe) \
+  ROW(node_rotate) \
   ROW(node_load) \
+  ROW(step_gravity) \
   ROW(surface_position) \
   ROW(pressure_force) \
   ROW(fault_reduce) \

@@ -27,7 +27,7 @@ double kinetic(Simulation& s, const std::vector<Vec3d>& before) {
     const double h = substeps_of(m, slot) * s.dt(), k = m.damping[slot] * h / 2;
     for (std::size_t c = 0; c < 3; ++c) {
       if ((held[slot] >> c & 1) != 0) continue;
-      const double v = before[slot][c], a = force[slot][c] / m.mass[slot] + s.scene().gravity[c];
+      const double v = before[slot][c], a = force[slot][c] / m.mass[slot] + s.scene().gravity_at(s.time())[c];
       sum += m.mass[slot] / 2 * v * ((1 - k) * v + h * a) / (1 + k);
     }
   }
@@ -37,9 +37,9 @@ double kinetic(Simulation& s, const std::vector<Vec3d>& before) {
 double last_change(const Scene& scene) {
   double last = 0;
   const auto add = [&](const Curve& curve) {
-    if (curve.kind != Curve::Kind::constant) last = std::max(last, curve.start + curve.duration);
-    if (!curve.table.empty()) last = std::max(last, curve.table.back()[0]);
+    if (curve.kind != Curve::Kind::constant) last = std::max(last, curve.end());
   };
+  add(scene.gravity_curve);
   for (const Body& body : scene.bodies) {
     for (const Prescribed& p : body.prescribed) add(p.curve);
     for (const Force& f : body.forces) add(f.curve);
@@ -60,7 +60,7 @@ void EnergyWatch::look(Simulation& s) {
     v[b] = s.velocities(b);
   }
   const std::vector<Vec3d> velocity = by_slot(m, v);
-  Energies now = energies(m, by_slot(m, u), velocity, {s.scene().gravity, s.time()});
+  Energies now = energies(m, by_slot(m, u), velocity, {s.scene().gravity_at(s.time()), s.time()});
   now.kinetic = kinetic(s, velocity);
   if (!std::isfinite(now.total())) return;
   highest_ = std::max(highest_, now.kinetic + now.strain + now.hourglass);

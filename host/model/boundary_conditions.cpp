@@ -33,7 +33,7 @@ bool follows(const VirtualNodes& nodes, std::size_t virtual_node, const std::vec
   return true;
 }
 
-enum class Virtual { with_anchors, never };
+}  // namespace
 
 std::vector<std::int32_t> select_nodes(const Selection& where, const ModelBody& body, Virtual rule) {
   if (where.kind == Selection::Kind::nodes) {
@@ -60,54 +60,112 @@ std::vector<std::int32_t> select_nodes(const Selection& where, const ModelBody& 
   return chosen;
 }
 
+namespace {
+
 std::int32_t add_curve(Model& model, const Curve& curve) {
-  if (curve.kind == Curve::Kind::constant && curve.start <= 0) return 0;
+  if (curve.always()) return 0;
   model.curves.push_back(curve);
   return static_cast<std::int32_t>(model.curves.size()) - 1;
 }
 
-void set_component(Constraint& c, int axis, double target, std::int32_t curve) {
-  c.axes |= 1 << axis;
-  c.target[axis] = target;
-  c.curve[axis] = curve;
+/// The two curves of a rotation, one behind the other; the number of the first.
+std::int32_t add_turn(Model& model, Curve curve, double angle) {
+  curve.angle = angle;
+  for (const Curve::Of of : {Curve::Of::cosine_less_one, Curve::Of::sine}) {
+    curve.of = of;
+    model.curves.push_back(curve);
+  }
+  return static_cast<std::int32_t>(model.curves.size()) - 2;
 }
+
+/// What one entry asks of one component of one node.
+struct Wish {
+  const std::string* entry = nullptr;  ///< its pointer
+  bool turned = false;
+  double target = 0, sine = 0;  ///< [m]
+  std::int32_t curve = 0;
+};
 
 /// The constraints so far, at most one per slot.
 class Constraints {
  public:
   explicit Constraints(std::int32_t slots) : at_(static_cast<std::size_t>(slots), -1) {}
-  Constraint& operator[](std::int32_t slot) {
+
+  void add(const Model& model, const ModelBody& body, std::int32_t node, int axis, const Wish& wish) {
+    const std::int32_t slot = body.slot[node];
     if (at_[slot] < 0) {
       at_[slot] = static_cast<std::int32_t>(all_.size());
       all_.emplace_back().slot = slot;
+      wishes_.emplace_back();
     }
-    return all_[at_[slot]];
+    Constraint& c = all_[at_[slot]];
+    Wish& before = wishes_[at_[slot]][axis];
+    if (before.entry != nullptr && !agree(model, before, wish)) refuse(body, node, axis, before, wish);
+    before = wish;
+    c.axes |= 1 << axis;
+    c.turned = wish.turned ? c.turned | 1 << axis : c.turned & ~(1 << axis);
+    c.target[axis] = wish.target;
+    c.sine[axis] = wish.sine;
+    c.curve[axis] = wish.curve;
   }
+
   [[nodiscard]] std::vector<Constraint> by_slot() && {
     std::sort(all_.begin(), all_.end(), [](const Constraint& a, const Constraint& b) { return a.slot < b.slot; });
     return std::move(all_);
   }
 
  private:
+  static bool still(const Wish& w) { return w.target == 0 && w.sine == 0; }
+  static bool agree(const Model& model, const Wish& a, const Wish& b) {
+    if (still(a) && still(b)) return true;
+    return a.turned == b.turned && a.target == b.target && a.sine == b.sine && model.curves[a.curve] == model.curves[b.curve];
+  }
+  static std::string told(const Wish& w) {
+    if (still(w)) return fmt::format("{} holds it", *w.entry);
+    return w.turned ? fmt::format("{} rotates it", *w.entry) : fmt::format("{} moves it by {:.6g} m", *w.entry, w.target);
+  }
+  [[noreturn]] static void refuse(const ModelBody& body, std::int32_t node, int axis, const Wish& a, const Wish& b) {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{}: got the {} component of node {} of body '{}', at [{:.6g}] m, which two entries move "
+                            "differently: {}, {}; expected one motion per component (take the node out of one selection, or "
+                            "leave the component free there)",
+                            *b.entry, "xyz"[axis], node, body.name, fmt::join(body.rest[node], ", "), told(a), told(b)));
+  }
+
   std::vector<std::int32_t> at_;  ///< of each slot: place in all_, or -1
   std::vector<Constraint> all_;
+  std::vector<std::array<Wish, 3>> wishes_;  ///< beside all_
 };
+
+void rotate(const Prescribed& prescribed, const ModelBody& placed, Model& model, Constraints& all) {
+  const std::int32_t curve = add_turn(model, prescribed.curve, prescribed.rotate->angle);
+  for (const std::int32_t n : select_nodes(prescribed.where, placed, Virtual::with_anchors)) {
+    const Circle circle = circle_of(*prescribed.rotate, placed.rest[n]);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!prescribed.moves(axis)) continue;
+      all.add(model, placed, n, axis, {&prescribed.where.pointer, true, circle.cosine[axis], circle.sine[axis], curve});
+    }
+  }
+}
 
 void constrain(const Body& body, const ModelBody& placed, Model& model, Constraints& all) {
   for (const Fixed& fixed : body.fixed) {
     for (const std::int32_t n : select_nodes(fixed.where, placed, Virtual::with_anchors)) {
-      Constraint& c = all[placed.slot[n]];
       for (int axis = 0; axis < 3; ++axis) {
-        if (fixed.axes[axis]) set_component(c, axis, 0, 0);
+        if (fixed.axes[axis]) all.add(model, placed, n, axis, {&fixed.where.pointer});
       }
     }
   }
   for (const Prescribed& prescribed : body.prescribed) {
+    if (prescribed.rotate) {
+      rotate(prescribed, placed, model, all);
+      continue;
+    }
     const std::int32_t curve = add_curve(model, prescribed.curve);
     for (const std::int32_t n : select_nodes(prescribed.where, placed, Virtual::with_anchors)) {
-      Constraint& c = all[placed.slot[n]];
       for (int axis = 0; axis < 3; ++axis) {
-        if (prescribed.displacement[axis]) set_component(c, axis, *prescribed.displacement[axis], curve);
+        if (prescribed.moves(axis))
+          all.add(model, placed, n, axis, {&prescribed.where.pointer, false, *prescribed.displacement[axis], 0, curve});
       }
     }
   }
@@ -151,8 +209,9 @@ void weigh_added_inertia(const Scene& scene, Model& model) {
   for (std::size_t s = 0; s < model.added.size(); ++s) {
     const double m = model.added[s];
     if (m > 0) {
-      model.forces.push_back(
-          {static_cast<std::int32_t>(s), {-m * scene.gravity[0], -m * scene.gravity[1], -m * scene.gravity[2]}, 0});
+      model.forces.push_back({static_cast<std::int32_t>(s),
+                              {-m * scene.gravity[0], -m * scene.gravity[1], -m * scene.gravity[2]},
+                              model.gravity_curve});
     }
   }
 }
@@ -179,6 +238,7 @@ bool needs_surface(const Scene& scene) {
 
 void add_boundary_conditions(const Scene& scene, Model& model) {
   model.curves.assign(1, Curve{});  // curve 0: constant 1
+  model.gravity_curve = scene.gravity == Vec3d{} ? 0 : add_curve(model, scene.gravity_curve);
   model.forces.clear();
   model.pressures.clear();
   Constraints constraints(model.slots);

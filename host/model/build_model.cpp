@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "geometry/vec.h"
 #include "layout.h"
 #include "model/body_mesh.h"
 #include "model/boundary_conditions.h"
@@ -234,6 +235,19 @@ void set_velocity(const Body& body, const ModelBody& placed, Model& model) {
   }
 }
 
+/// Fields of motion at the start, beside the rigid one.
+void add_initial(const Body& body, const ModelBody& placed, Model& model) {
+  for (const Initial& initial : body.initial) {
+    const bool moved = !initial.displacement.zero();
+    if (moved) model.displacement.resize(model.slots);
+    for (const std::int32_t n : select_nodes(initial.where, placed, Virtual::with_anchors)) {
+      const std::int32_t s = placed.slot[n];
+      model.velocity[s] = vec::add(model.velocity[s], initial.velocity.at(model.rest[s]));
+      if (moved) model.displacement[s] = vec::add(model.displacement[s], initial.displacement.at(model.rest[s]));
+    }
+  }
+}
+
 void add_totals(const Body& body, const NodeNumbering& draft, ModelBody& out) {
   const BodyElements& solid = draft.solid();
   for (std::size_t e = 0; e < draft.material.size(); ++e) {
@@ -345,6 +359,7 @@ Model build_elements(const Scene& scene, std::span<const BodyMesh* const> solids
     add_totals(body, draft, model.bodies[i]);
     for (const std::int32_t s : model.bodies[i].slot) model.bodies[i].added_mass += model.mass[s] - model.own_mass(s);
     set_velocity(body, model.bodies[i], model);
+    add_initial(body, model.bodies[i], model);
   }
   for (FlsmBatch& batch : model.flsm) {
     weigh(batch, model.mass);

@@ -65,10 +65,12 @@ struct ModelBody {
 struct Constraint {
   std::int32_t slot = 0;
   std::int32_t axes = 0;                ///< bit mask of x, y, z
-  std::array<std::int32_t, 3> curve{};  ///< per component
-  Vec3d target{};                       ///< [m]
+  std::int32_t turned = 0;              ///< of these, those that a rotation moves
+  std::array<std::int32_t, 3> curve{};  ///< per component; of a turned one that of its cosine less one, its sine comes next
+  Vec3d target{};                       ///< [m]; of a turned component Circle::cosine
+  Vec3d sine{};                         ///< [m]; of a turned component Circle::sine
   /// Whether the node stays where it is in all three components.
-  [[nodiscard]] bool holds() const { return axes == 7 && target == Vec3d{}; }
+  [[nodiscard]] bool holds() const { return axes == 7 && target == Vec3d{} && sine == Vec3d{}; }
 };
 
 /// A force on a node that follows a curve.
@@ -112,15 +114,17 @@ struct Model {
   std::vector<double> mass;   ///< [slots] lumped [kg], what accelerates; 0: no node
   std::vector<double>
       added;  ///< [slots] share of `mass` that is inertia without weight (Scene::least_fill, ballast); empty: none
-  std::vector<Ballast> ballast;  ///< counted in `mass` and `added` (ballast.h), ascending slots
-  std::vector<double> damping;   ///< [slots] c [1/s]
-  std::vector<Vec3d> velocity;   ///< [slots] initial [m/s]
+  std::vector<Ballast> ballast;     ///< counted in `mass` and `added` (ballast.h), ascending slots
+  std::vector<double> damping;      ///< [slots] c [1/s]
+  std::vector<Vec3d> velocity;      ///< [slots] initial [m/s]
+  std::vector<Vec3d> displacement;  ///< [slots] initial [m]; empty: none
   std::vector<TetBatch> tets;
   std::vector<HexBatch> hexes;
   std::vector<BrickBatch> brick_batches;
   std::vector<FlsmBatch> flsm;
   ModelSurface surface;
   std::vector<Curve> curves;
+  std::int32_t gravity_curve = 0;           ///< of gravity; 0: constant
   std::vector<Constraint> constraints;      ///< one per constrained node, ascending slots
   std::vector<NodeForce> forces;            ///< ascending slots
   std::vector<TrianglePressure> pressures;  ///< ascending triangles

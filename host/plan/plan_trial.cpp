@@ -75,10 +75,8 @@ AtRest solve(const Scene& scene, const Size& size, std::int64_t nodes) {
 
 double end_of_curves(const Scene& scene) {
   double end = 0;
-  const auto note = [&](const Curve& c) {
-    end = std::max(end, c.kind == Curve::Kind::table ? (c.table.empty() ? 0 : c.table.back()[0])
-                                                     : c.start + (c.kind == Curve::Kind::constant ? 0 : c.duration));
-  };
+  const auto note = [&](const Curve& c) { end = std::max(end, c.end()); };
+  note(scene.gravity_curve);
   for (const Prescribed& p : scene.bodies[0].prescribed) note(p.curve);
   for (const Force& f : scene.bodies[0].forces) note(f.curve);
   for (const Pressure& p : scene.bodies[0].pressures) note(p.curve);

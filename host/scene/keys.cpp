@@ -16,16 +16,16 @@ List operator+(List a, const List& b) {
 }
 
 std::map<std::string, List> make_keys() {
-  const List points{"box", "sphere", "plane", "all"};
+  const List points{"box", "sphere", "plane", "surface", "all"};
   const List selection = points + List{"nodes"};
   const List curve{"curve", "start", "duration", "table"};
   return {
       {"scene",
        {"format", "name", "break_stretch", "gravity", "dt", "safety", "duration", "integrator", "inverted", "least_fill",
-        "least_step", "relaxation", "solver", "tool", "blades", "view", "bodies"}},
+        "least_step", "relaxation", "solver", "tool", "blades", "view", "probes", "probe_every", "bodies"}},
       {"body",
        {"name", "surface", "mesh", "scale", "translate", "lattice", "element", "material", "model", "inclusions", "fixed",
-        "prescribed", "forces", "pressures", "velocity", "angular_velocity"}},
+        "prescribed", "forces", "pressures", "velocity", "angular_velocity", "initial"}},
       {"lattice", {"spacing", "nodes"}},
       {"material", List{"law"} + elastic_keys() + List{"density", "damping", "hourglass", "toughness", "integrity"}},
       {"model",
@@ -33,6 +33,7 @@ std::map<std::string, List> make_keys() {
         "follow", "cut"}},
       {"region", {"box", "sphere"}},
       {"stiffness", {"young"}},
+      {"gravity", List{"acceleration"} + curve},
       {"tool", {"path"}},
       {"blade", {"name", "path", "start", "end"}},
       {"view", {"eye", "target", "up", "field_of_view"}},
@@ -40,7 +41,12 @@ std::map<std::string, List> make_keys() {
       {"solver", {"type", "linear", "load_steps", "tolerance", "order"}},
       {"inclusion", points + List{"material"}},
       {"fixed", selection + List{"axes"}},
-      {"prescribed", selection + List{"displacement"} + curve},
+      {"prescribed", selection + List{"displacement", "rotate", "axes"} + curve},
+      {"probe", selection + List{"name", "point", "body", "quantities"}},
+      {"probe_every", {"steps"}},
+      {"rotation", {"axis", "about", "angle"}},
+      {"initial", selection + List{"velocity", "displacement"}},
+      {"field", {"offset", "linear", "about"}},
       {"force", selection + List{"force"} + curve},
       {"pressure", points + List{"pressure"} + curve},
   };
@@ -103,7 +109,8 @@ const std::map<std::string, List>& scene_words() {
       {"curve", words_only(curve_words())},       {"integrator", words_only(integrator_words())},
       {"inverted", words_only(inverted_words())}, {"model", words_only(model_words())},
       {"goals", words_only(goals_words())},       {"coupling", words_only(coupling_words())},
-      {"follow", words_only(follow_words())},     {"solver", words_only(solver_words())}};
+      {"follow", words_only(follow_words())},     {"solver", words_only(solver_words())},
+      {"quantity", words_only(quantity_words())}};
   return words;
 }
 
@@ -173,6 +180,15 @@ const Words<bool>& coupling_words() {
 
 const Words<bool>& follow_words() {
   static const Words<bool> words{{"tool", true, "the tool of the scene"}};
+  return words;
+}
+
+const Words<Quantity>& quantity_words() {
+  static const Words<Quantity> words{{"position", Quantity::position, "where it is"},
+                                     {"displacement", Quantity::displacement, "from where it was at rest"},
+                                     {"velocity", Quantity::velocity, "of the material"},
+                                     {"stress", Quantity::stress, "Cauchy stress at a point"},
+                                     {"reaction", Quantity::reaction, "force that fixes or moves nodes, summed"}};
   return words;
 }
 

@@ -7,13 +7,14 @@
 #include <vector>
 
 #include "pliant/error.h"
+#include "scene/probe.h"
 #include "scene/scene.h"
 
 namespace pliant {
 
 /// The allowed keys by kind of object: "scene" (the file itself), "body", "lattice", "material", "model", "region",
-/// "stiffness", "tool", "view", "relaxation", "inclusion", "fixed", "prescribed", "force", "pressure". The same words name the
-/// definitions in scenes/schema.json.
+/// "stiffness", "gravity", "tool", "view", "relaxation", "inclusion", "fixed", "prescribed", "rotation", "initial", "field",
+/// "probe", "force", "pressure". The same words name the definitions in scenes/schema.json.
 const std::map<std::string, std::vector<std::string>>& scene_keys();
 
 /// What a law can be given by: the moduli (young, poisson, lambda, mu, kappa), or its own parameters; those of all laws, each
@@ -25,7 +26,8 @@ std::vector<std::string> elastic_keys();
 /// The laws with a property, as "a, b or c".
 std::string laws_with(bool LawInfo::*property);
 
-/// The allowed words by kind: "law", "element", "curve", "integrator", "inverted", "model", "goals", "coupling", "follow".
+/// The allowed words by kind: "law", "element", "curve", "integrator", "inverted", "model", "goals", "coupling", "follow",
+/// "solver", "quantity".
 const std::map<std::string, std::vector<std::string>>& scene_words();
 
 /// A word of a scene file or of an option, the enumerator that it names, and what that is, for people.
@@ -50,6 +52,7 @@ const Words<ModelType>& model_words();
 const Words<bool>& goals_words();
 const Words<bool>& coupling_words();
 const Words<bool>& follow_words();
+const Words<Quantity>& quantity_words();
 
 template <class Enum>
 std::vector<std::string> words_only(const Words<Enum>& words) {

@@ -42,6 +42,19 @@ void read_format(const Reader& top) {
   if (format.json() != "pliant-scene/1") format.fail("\"pliant-scene/1\"");
 }
 
+void read_gravity(const Reader& top, Scene& scene) {
+  if (!top.has("gravity")) return;
+  const Reader field = top.at("gravity");
+  if (field.json().is_array()) {
+    scene.gravity = field.vec3();
+    return;
+  }
+  if (!field.json().is_object()) field.fail("three numbers [x, y, z], or an object with acceleration and a curve");
+  field.expect_object("gravity");
+  scene.gravity = field.at("acceleration", "the acceleration [x, y, z] at factor 1").vec3();
+  scene.gravity_curve = read_curve(field);
+}
+
 void read_dt(const Reader& top, Scene& scene) {
   if (!top.has("dt")) return;
   const Reader dt = top.at("dt");
@@ -104,6 +117,15 @@ void read_bodies(const Reader& top, const fs::path& folder, Scene& scene) {
   }
 }
 
+/// Equilibrium has no start.
+void check_initial(const Reader& top, const Scene& scene) {
+  if (!scene.solver.enabled) return;
+  for (const Reader& body : top.at("bodies").items("bodies")) {
+    if (body.has("initial") && !body.at("initial").json().empty())
+      body.at("initial").fail("none beside \"solver\": {\"type\": \"static\"}, which finds the equilibrium whatever the start");
+  }
+}
+
 }  // namespace
 
 Scene read_document(const nlohmann::json& document, const fs::path& file) {
@@ -115,7 +137,7 @@ Scene read_document(const nlohmann::json& document, const fs::path& file) {
   Scene scene;
   scene.file = file;
   scene.name = top.has("name") ? top.at("name").text("a text that is not empty") : file.stem().string();
-  if (top.has("gravity")) scene.gravity = top.at("gravity").vec3();
+  read_gravity(top, scene);
   read_dt(top, scene);
   if (top.has("safety")) {
     const Reader safety = top.at("safety");
@@ -146,6 +168,8 @@ Scene read_document(const nlohmann::json& document, const fs::path& file) {
   if (top.has("blades")) scene.blades = read_blades(top.at("blades"));
   if (top.has("view")) scene.view = read_view(top.at("view"));
   read_bodies(top, file.parent_path(), scene);
+  scene.probes = read_probes(top, scene);
+  check_initial(top, scene);
   check_models(top, scene);
   check_blades(top, scene);
   check_tearing(top, scene);

@@ -2,6 +2,7 @@
 #pragma once
 #include <filesystem>
 
+#include "scene/probe.h"
 #include "scene/reader.h"
 
 namespace pliant {
@@ -12,7 +13,17 @@ enum class NodeLists { allowed, refused };
 
 /// A whole scene. Throws Error as parse_scene does.
 Scene read_document(const nlohmann::json& document, const std::filesystem::path& file);
-Selection read_selection(const Reader& entry, NodeLists lists);
+/// What paths and surfaces of a selection are relative to.
+struct SelectionFrame {
+  std::filesystem::path folder{};
+  double scale = 1;
+  Vec3d translate{};
+};
+Selection read_selection(const Reader& entry, NodeLists lists, const SelectionFrame& frame);
+/// The entries of `prescribed` and `initial`.
+Prescribed read_prescribed(const Reader& entry, const SelectionFrame& frame);
+Initial read_initial(const Reader& entry, const SelectionFrame& frame);
+std::array<bool, 3> read_axes(const Reader& field);
 Curve read_curve(const Reader& entry);
 Material read_material(const Reader& material);
 /// `lattice`: whether the body is a surface filled with a lattice, which shape matching needs.
@@ -20,6 +31,8 @@ DeformationModel read_model(const Reader& model, bool lattice);
 Tool read_tool(const Reader& tool);
 std::vector<Blade> read_blades(const Reader& blades);
 SceneView read_view(const Reader& view);
+/// After the bodies. Null without probes.
+std::shared_ptr<const SceneProbes> read_probes(const Reader& top, const Scene& scene);
 /// Models against the keys of the scene: its integrator, its relaxation and its tool.
 void check_models(const Reader& top, const Scene& scene);
 void check_blades(const Reader& top, const Scene& scene);

@@ -79,40 +79,19 @@ void read_entries(const Reader& body, const char* key, const char* kind, std::ve
   }
 }
 
-Fixed read_fixed(const Reader& entry) {
-  Fixed fixed{read_selection(entry, NodeLists::allowed)};
-  if (!entry.has("axes")) return fixed;
-  const Reader field = entry.at("axes");
-  const char* const expected = "one to three different letters of xyz, such as \"xz\"";
-  fixed.axes = {false, false, false};
-  for (const char c : field.text(expected)) {
-    if (c < 'x' || c > 'z' || fixed.axes[c - 'x']) field.fail(expected);
-    fixed.axes[c - 'x'] = true;
-  }
+Fixed read_fixed(const Reader& entry, const SelectionFrame& frame) {
+  Fixed fixed{read_selection(entry, NodeLists::allowed, frame)};
+  if (entry.has("axes")) fixed.axes = read_axes(entry.at("axes"));
   return fixed;
 }
 
-Prescribed read_prescribed(const Reader& entry) {
-  Prescribed prescribed{read_selection(entry, NodeLists::allowed), {}, read_curve(entry)};
-  const char* const expected = "three numbers [x, y, z], null for a component that stays free";
-  const Reader field = entry.at("displacement", expected);
-  const std::vector<Reader> parts = field.items(expected);
-  if (parts.size() != 3) field.fail(expected);
-  for (int c = 0; c < 3; ++c) {
-    if (!parts[c].json().is_null()) prescribed.displacement[c] = parts[c].number("a number or null");
-  }
-  const auto& d = prescribed.displacement;
-  if (!d[0] && !d[1] && !d[2]) field.fail("at least one component that is not null");
-  return prescribed;
-}
-
-Force read_force(const Reader& entry) {
-  return {read_selection(entry, NodeLists::allowed), entry.at("force", "the total force [x, y, z] in newton").vec3(),
+Force read_force(const Reader& entry, const SelectionFrame& frame) {
+  return {read_selection(entry, NodeLists::allowed, frame), entry.at("force", "the total force [x, y, z] in newton").vec3(),
           read_curve(entry)};
 }
 
-Pressure read_pressure(const Reader& entry) {
-  return {read_selection(entry, NodeLists::refused), entry.at("pressure", "the pressure in pascal").number(),
+Pressure read_pressure(const Reader& entry, const SelectionFrame& frame) {
+  return {read_selection(entry, NodeLists::refused, frame), entry.at("pressure", "the pressure in pascal").number(),
           read_curve(entry)};
 }
 
@@ -131,16 +110,19 @@ Body read_body(const Reader& body, const fs::path& folder, std::size_t index) {
   b.material = read_material(material);
   if (b.model.matched) b.model.young = b.material.moduli.young();
   check_pressure_law(material, b, b.material);
-  read_entries(body, "inclusions", "inclusion", b.inclusions, [&b](const Reader& entry) {
+  const SelectionFrame frame{folder, b.scale, b.translate};
+  read_entries(body, "inclusions", "inclusion", b.inclusions, [&](const Reader& entry) {
     const Reader other = entry.at("material", "the material of the inclusion");
-    Inclusion inclusion{read_selection(entry, NodeLists::refused), read_material(other)};
+    Inclusion inclusion{read_selection(entry, NodeLists::refused, frame), read_material(other)};
     check_pressure_law(other, b, inclusion.material);
     return inclusion;
   });
-  read_entries(body, "fixed", "fixed", b.fixed, read_fixed);
-  read_entries(body, "prescribed", "prescribed", b.prescribed, read_prescribed);
-  read_entries(body, "forces", "force", b.forces, read_force);
-  read_entries(body, "pressures", "pressure", b.pressures, read_pressure);
+  const auto in = [&frame](auto read) { return [&frame, read](const Reader& entry) { return read(entry, frame); }; };
+  read_entries(body, "fixed", "fixed", b.fixed, in(read_fixed));
+  read_entries(body, "prescribed", "prescribed", b.prescribed, in(read_prescribed));
+  read_entries(body, "forces", "force", b.forces, in(read_force));
+  read_entries(body, "pressures", "pressure", b.pressures, in(read_pressure));
+  read_entries(body, "initial", "initial", b.initial, in(read_initial));
   if (body.has("velocity")) b.velocity = body.at("velocity").vec3();
   if (body.has("angular_velocity")) b.angular_velocity = body.at("angular_velocity").vec3();
   return b;

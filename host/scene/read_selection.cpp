@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "scene/closed_surface.h"
 #include "scene/parts.h"
 
 namespace pliant {
@@ -91,11 +92,12 @@ void read_table(const Reader& entry, Curve& curve) {
 
 }  // namespace
 
-Selection read_selection(const Reader& entry, NodeLists lists) {
+Selection read_selection(const Reader& entry, NodeLists lists, const SelectionFrame& frame) {
   const bool with_nodes = lists == NodeLists::allowed;
-  const std::string expected = std::string("exactly one of box, sphere, plane, ") + (with_nodes ? "nodes, all" : "all");
+  const std::string expected =
+      std::string("exactly one of box, sphere, plane, surface, ") + (with_nodes ? "nodes, all" : "all");
   std::vector<std::string> given;
-  for (const char* key : {"box", "sphere", "plane", "nodes", "all"}) {
+  for (const char* key : {"box", "sphere", "plane", "surface", "nodes", "all"}) {
     if (entry.has(key)) given.emplace_back(key);
   }
   if (given.size() != 1) entry.fail(given.empty() ? "no selection" : listed(given), expected);
@@ -107,6 +109,12 @@ Selection read_selection(const Reader& entry, NodeLists lists) {
   if (key == "sphere") s = read_sphere(value);
   if (key == "plane") s = read_plane(value);
   if (key == "nodes") s = read_nodes(value);
+  if (key == "surface") {
+    const std::filesystem::path file = value.text("the path of a closed surface");
+    s.kind = Selection::Kind::surface;
+    s.surface = std::make_shared<const ClosedSurface>(file.is_absolute() ? file : frame.folder / file, frame.scale,
+                                                      frame.translate, value.pointer());
+  }
   if (key == "all" && !value.boolean()) value.fail("true (or another selection)");
   s.pointer = entry.pointer();
   return s;

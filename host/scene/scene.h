@@ -10,26 +10,16 @@
 #include <vector>
 
 #include "material/material.h"
+#include "scene/curve.h"
 #include "scene/lattice_spec.h"
+#include "scene/motion.h"
+#include "scene/selection.h"
 #include "scene/tool.h"
 
 namespace pliant {
 
+struct SceneProbes;
 struct TriangleMesh;
-
-/// A set of nodes chosen by rest position [m], or by index.
-struct Selection {
-  enum class Kind { all, box, sphere, plane, nodes };
-  Kind kind = Kind::all;
-  Vec3d a{};                        ///< box: lower corner; sphere: centre; plane: point
-  Vec3d b{};                        ///< box: upper corner; plane: normal (nodes with (X - a).b >= 0 are chosen)
-  double radius = 0;                ///< sphere [m]
-  std::vector<std::int64_t> nodes;  ///< nodes: indices into the body's nodes, ascending (the loader sorts them)
-  std::string pointer;              ///< JSON pointer, for messages ("/bodies/0/fixed/1")
-  /// True if a node with this rest position [m] and body-local index belongs to the set. Bounds are inclusive, with a slack
-  /// of 1e-9 of the selection's largest coordinate or radius.
-  [[nodiscard]] bool contains(const Vec3d& x, std::int64_t index) const;
-};
 
 enum class ElementKind { tet4, tet4anp, hex8, hex8full };
 
@@ -42,16 +32,6 @@ struct Inclusion {
   Material material;
 };
 
-/// Time course of a load or prescribed motion: a factor over time.
-struct Curve {
-  enum class Kind { constant, ramp, smooth, table };
-  Kind kind = Kind::constant;                ///< constant: 1 from the start
-  double start = 0;                          ///< [s]
-  double duration = 0;                       ///< [s]; ramp: linear 0 to 1; smooth: 10 s^3 - 15 s^4 + 6 s^5
-  std::vector<std::array<double, 2>> table;  ///< (time [s], factor), times ascending, linear in between, held outside
-  [[nodiscard]] double value(double time) const;
-};
-
 struct Fixed {
   Selection where;
   std::array<bool, 3> axes{true, true, true};
@@ -61,6 +41,9 @@ struct Prescribed {
   Selection where;
   std::array<std::optional<double>, 3> displacement;  ///< [m]; an absent component (null in JSON) stays free
   Curve curve;
+  std::optional<Rotation> rotate{};            ///< instead of a displacement
+  std::array<bool, 3> axes{true, true, true};  ///< the components that the rotation prescribes
+  [[nodiscard]] bool moves(int axis) const { return rotate ? axes[axis] : displacement[axis].has_value(); }
 };
 
 /// A force shared by the chosen nodes: of a lattice in proportion to their mass, of a mesh equally.
@@ -119,7 +102,8 @@ struct Body {
   std::vector<Pressure> pressures;
   Vec3d velocity{};          ///< initial velocity [m/s]
   Vec3d angular_velocity{};  ///< initial angular velocity about the centre of mass [rad/s]
-  std::string pointer;       ///< JSON pointer ("/bodies/0")
+  std::vector<Initial> initial;
+  std::string pointer;  ///< JSON pointer ("/bodies/0")
 };
 
 /// Dynamic relaxation: adaptive damping towards static equilibrium.
@@ -146,7 +130,8 @@ enum class Inverted { recover, stop };
 struct Scene {
   std::string name;            ///< file stem, or what the caller set
   std::filesystem::path file;  ///< empty if built in code
-  Vec3d gravity{0, 0, 0};      ///< [m/s^2]
+  Vec3d gravity{0, 0, 0};      ///< [m/s^2] at factor 1
+  Curve gravity_curve;         ///< over time
   double dt = 0;               ///< [s]; 0 means automatic
   double safety = 0.9;         ///< share of the stable step that an automatic step takes
   double duration = 1;         ///< [s] simulated by `run` when neither --steps nor --seconds is given
@@ -157,12 +142,15 @@ struct Scene {
   Tool tool;
   std::vector<Blade> blades;
   SceneView view;
-  double break_stretch = 4;  ///< of an edge, beyond which it parts in a scene that is cut; 0: none does
-  double least_step = 0.1;   ///< floor of an automatic step, as a share of the first; 0: none
+  std::shared_ptr<const SceneProbes> probes;  ///< what `run` writes down over time (scene/probe.h); null: nothing
+  double break_stretch = 4;                   ///< of an edge, beyond which it parts in a scene that is cut; 0: none does
+  double least_step = 0.1;                    ///< floor of an automatic step, as a share of the first; 0: none
   double least_fill = 0.05;  ///< of a cell where blades cut, as a share of a full cell's mass; 0: what it holds
   bool cuttable = false;     ///< set in code: something may be cut though there are no blades
   bool interactive = false;  ///< set in code: the Model reserves a force on every node that moves a vertex of the surface
   std::vector<Body> bodies;
+  /// [m/s^2] at a time [s].
+  [[nodiscard]] Vec3d gravity_at(double time) const;
 };
 
 /// Read and validate a scene file. Throws Error with the file, the JSON pointer, the value and what is allowed.

@@ -6,6 +6,7 @@
 
 #include "geometry/mesh.h"
 #include "pliant/error.h"
+#include "scene/closed_surface.h"
 #include "scene/parts.h"
 
 namespace pliant {
@@ -20,7 +21,8 @@ Enum word(const Words<Enum>& words, const std::string& text, const std::string& 
   return Reader(value, kName, pointer).word(words);
 }
 
-Selection selection(const RegionSpec& r, const std::string& pointer) {
+/// `body`: whose scale and translate a surface shares; null: there is none.
+Selection selection(const RegionSpec& r, const std::string& pointer, const BodySpec* body) {
   Selection s;
   switch (r.kind) {
     case RegionSpec::Kind::all:
@@ -37,6 +39,11 @@ Selection selection(const RegionSpec& r, const std::string& pointer) {
     case RegionSpec::Kind::nodes:
       s = {Selection::Kind::nodes, {}, {}, 0, r.nodes, ""};
       std::sort(s.nodes.begin(), s.nodes.end());
+      break;
+    case RegionSpec::Kind::surface:
+      s.kind = Selection::Kind::surface;
+      s.surface = std::make_shared<const ClosedSurface>(r.surface_file, body != nullptr ? body->scale : 1,
+                                                        body != nullptr ? body->translate : Vec3d{}, pointer + "/surface");
       break;
   }
   s.pointer = pointer;
@@ -74,7 +81,7 @@ DeformationModel model(const ModelSpec& m, const std::string& pointer) {
   out.type = word(model_words(), m.type, pointer + "/type");
   out.ratio = m.ratio;
   out.seed = m.seed;
-  if (m.region) out.region = selection(*m.region, pointer + "/region");
+  if (m.region) out.region = selection(*m.region, pointer + "/region", nullptr);
   out.follow = m.follow_tool;
   out.beta = m.beta.value_or(0);
   out.width = m.width;
@@ -107,21 +114,32 @@ void convert(std::vector<Out>& out, const std::vector<In>& in, const std::string
   for (const In& entry : in) out.push_back(make(entry, fmt::format("{}/{}", pointer, out.size())));
 }
 
+AffineField field(const std::optional<FieldSpec>& f) {
+  if (!f) return {};
+  return {f->offset, f->linear, f->about};
+}
+
 void add_conditions(const BodySpec& spec, Body& b) {
-  convert(b.inclusions, spec.inclusions, b.pointer + "/inclusions", [](const InclusionSpec& s, const std::string& at) {
-    return Inclusion{selection(s.where, at), material(s.material, at + "/material")};
+  convert(b.inclusions, spec.inclusions, b.pointer + "/inclusions", [&spec](const InclusionSpec& s, const std::string& at) {
+    return Inclusion{selection(s.where, at, &spec), material(s.material, at + "/material")};
   });
-  convert(b.fixed, spec.fixed, b.pointer + "/fixed", [](const FixedSpec& s, const std::string& at) {
-    return Fixed{selection(s.where, at), axes(s.axes, at + "/axes")};
+  convert(b.fixed, spec.fixed, b.pointer + "/fixed", [&spec](const FixedSpec& s, const std::string& at) {
+    return Fixed{selection(s.where, at, &spec), axes(s.axes, at + "/axes")};
   });
-  convert(b.prescribed, spec.prescribed, b.pointer + "/prescribed", [](const PrescribedSpec& s, const std::string& at) {
-    return Prescribed{selection(s.where, at), s.displacement, curve(s.curve, at)};
+  convert(b.prescribed, spec.prescribed, b.pointer + "/prescribed", [&spec](const PrescribedSpec& s, const std::string& at) {
+    Prescribed out{selection(s.where, at, &spec), s.displacement, curve(s.curve, at)};
+    if (s.rotate) out.rotate = Rotation{s.rotate->axis, s.rotate->about, s.rotate->angle};
+    if (s.rotate) out.axes = axes(s.axes, at + "/axes");
+    return out;
   });
-  convert(b.forces, spec.forces, b.pointer + "/forces", [](const ForceSpec& s, const std::string& at) {
-    return Force{selection(s.where, at), s.force, curve(s.curve, at)};
+  convert(b.initial, spec.initial, b.pointer + "/initial", [&spec](const InitialSpec& s, const std::string& at) {
+    return Initial{selection(s.where, at, &spec), field(s.velocity), field(s.displacement)};
   });
-  convert(b.pressures, spec.pressures, b.pointer + "/pressures", [](const PressureSpec& s, const std::string& at) {
-    return Pressure{selection(s.where, at), s.pressure, curve(s.curve, at)};
+  convert(b.forces, spec.forces, b.pointer + "/forces", [&spec](const ForceSpec& s, const std::string& at) {
+    return Force{selection(s.where, at, &spec), s.force, curve(s.curve, at)};
+  });
+  convert(b.pressures, spec.pressures, b.pointer + "/pressures", [&spec](const PressureSpec& s, const std::string& at) {
+    return Pressure{selection(s.where, at, &spec), s.pressure, curve(s.curve, at)};
   });
 }
 
@@ -164,6 +182,7 @@ Scene scene_of(const SceneSpec& spec) {
   Scene scene;
   scene.name = spec.name;
   scene.gravity = spec.gravity;
+  scene.gravity_curve = curve(spec.gravity_curve, "/gravity");
   scene.dt = spec.dt;
   scene.safety = spec.safety;
   scene.integrator = word(integrator_words(), spec.integrator, "/integrator");

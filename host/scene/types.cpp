@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/closed_surface.h"
 #include "scene/keys.h"
 #include "scene/scene.h"
 
@@ -43,11 +44,35 @@ bool Selection::contains(const Vec3d& x, std::int64_t index) const {
     }
     case Kind::nodes:
       return std::binary_search(nodes.begin(), nodes.end(), index);
+    case Kind::surface:
+      return surface != nullptr && surface->contains(x);
   }
   return false;
 }
 
+namespace {
+
+/// Of an angle in degrees, exact at multiples of 90: whole turns are taken off before anything is rounded.
+double sine(double degrees) {
+  const double rest = std::remainder(degrees, 360);
+  if (std::fabs(rest) == 180) return 0;
+  // Within 45 degrees of zero, where the sine is steep, or of a right angle, where the cosine is.
+  if (std::fabs(rest) > 135) return std::sin((rest > 0 ? 180 - rest : -180 - rest) * M_PI / 180);
+  if (std::fabs(rest) < 45) return std::sin(rest * M_PI / 180);
+  return (rest > 0 ? 1 : -1) * std::cos((std::fabs(rest) - 90) * M_PI / 180);
+}
+
+}  // namespace
+
 double Curve::value(double time) const {
+  const double f = factor(time);
+  if (of == Of::factor) return f;
+  if (of == Of::sine) return sine(angle * f);
+  const double half = sine(angle * f / 2);
+  return -2 * half * half;  // nothing cancels at small angles
+}
+
+double Curve::factor(double time) const {
   if (kind == Kind::constant) return time >= start ? 1 : 0;
   if (kind == Kind::table) {
     if (table.empty()) return 1;
@@ -63,6 +88,25 @@ double Curve::value(double time) const {
   if (time >= start + duration) return 1;
   const double s = (time - start) / duration;
   return kind == Kind::ramp ? s : s * s * s * (10 + s * (6 * s - 15));
+}
+
+double Curve::largest() const {
+  if (kind != Kind::table || table.empty()) return 1;
+  double most = 0;
+  for (const std::array<double, 2>& row : table) most = std::max(most, std::fabs(row[1]));
+  return most;
+}
+
+double Curve::end() const {
+  double last = start + duration;
+  if (!table.empty()) last = table.back()[0];
+  return last;
+}
+
+Vec3d Scene::gravity_at(double time) const {
+  if (gravity_curve.always()) return gravity;
+  const double factor = gravity_curve.value(time);
+  return {factor * gravity[0], factor * gravity[1], factor * gravity[2]};
 }
 
 Vec3d Tool::position(double time) const {

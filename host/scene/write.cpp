@@ -2,8 +2,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "scene/closed_surface.h"
 #include "scene/keys.h"
 #include "scene/parts.h"
+#include "scene/probe.h"
 #include "scene/spec.h"
 
 namespace pliant {
@@ -13,7 +15,14 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-Json selection_json(const Selection& s) {
+std::string path_json(const fs::path& path, const fs::path& scene_file) {
+  const fs::path folder = scene_file.parent_path();
+  if (path.is_absolute() || folder.empty()) return path.string();
+  const fs::path relative = path.lexically_relative(folder);
+  return relative.empty() ? fs::absolute(path).string() : relative.string();
+}
+
+Json selection_json(const Selection& s, const fs::path& scene_file) {
   switch (s.kind) {
     case Selection::Kind::all:
       return {{"all", true}};
@@ -25,6 +34,8 @@ Json selection_json(const Selection& s) {
       return {{"plane", Json::array({s.a, s.b})}};
     case Selection::Kind::nodes:
       return {{"nodes", s.nodes}};
+    case Selection::Kind::surface:
+      return {{"surface", path_json(s.surface->file(), scene_file)}};
   }
   return Json::object();
 }
@@ -37,6 +48,13 @@ void add_curve(Json& entry, const Curve& curve) {
   }
   entry["start"] = curve.start;
   if (curve.kind != Curve::Kind::constant) entry["duration"] = curve.duration;
+}
+
+Json gravity_json(const Scene& scene) {
+  if (scene.gravity_curve.kind == Curve::Kind::constant && scene.gravity_curve.start == 0) return scene.gravity;
+  Json gravity{{"acceleration", scene.gravity}};
+  add_curve(gravity, scene.gravity_curve);
+  return gravity;
 }
 
 Json material_json(const Material& m) {
@@ -68,7 +86,7 @@ Json model_json(const DeformationModel& m) {
   Json model{{"type", to_string(m.type)}};
   if (m.type == ModelType::hybrid) {
     if (m.region) {
-      model["region"] = selection_json(*m.region);
+      model["region"] = selection_json(*m.region, {});
     } else {
       model["ratio"] = m.ratio;
       if (m.seed) model["seed"] = *m.seed;
@@ -92,43 +110,57 @@ Json model_json(const DeformationModel& m) {
   return model;
 }
 
-std::string path_json(const fs::path& path, const fs::path& scene_file) {
-  const fs::path folder = scene_file.parent_path();
-  if (path.is_absolute() || folder.empty()) return path.string();
-  const fs::path relative = path.lexically_relative(folder);
-  return relative.empty() ? fs::absolute(path).string() : relative.string();
+std::string axes_text(const std::array<bool, 3>& axes) {
+  std::string text;
+  for (int c = 0; c < 3; ++c) {
+    if (axes[c]) text += "xyz"[c];
+  }
+  return text;
 }
 
-void add_conditions(Json& body, const Body& b) {
+Json field_json(const AffineField& field) {
+  if (field.linear == std::array<Vec3d, 3>{} && field.about == Vec3d{}) return field.offset;
+  return {{"linear", field.linear}, {"about", field.about}, {"offset", field.offset}};
+}
+
+void add_conditions(Json& body, const Body& b, const fs::path& file) {
   for (const Inclusion& inclusion : b.inclusions) {
-    Json entry = selection_json(inclusion.where);
+    Json entry = selection_json(inclusion.where, file);
     entry["material"] = material_json(inclusion.material);
     body["inclusions"].push_back(entry);
   }
   for (const Fixed& fixed : b.fixed) {
-    Json entry = selection_json(fixed.where);
-    std::string axes;
-    for (int c = 0; c < 3; ++c) {
-      if (fixed.axes[c]) axes += "xyz"[c];
-    }
-    entry["axes"] = axes;
+    Json entry = selection_json(fixed.where, file);
+    entry["axes"] = axes_text(fixed.axes);
     body["fixed"].push_back(entry);
   }
   for (const Prescribed& prescribed : b.prescribed) {
-    Json entry = selection_json(prescribed.where);
-    for (const std::optional<double>& d : prescribed.displacement)
-      entry["displacement"].push_back(d ? Json(*d) : Json(nullptr));
+    Json entry = selection_json(prescribed.where, file);
+    if (prescribed.rotate) {
+      const Rotation& r = *prescribed.rotate;
+      entry["rotate"] = {{"axis", r.axis}, {"about", r.about}, {"angle", r.angle}};
+      entry["axes"] = axes_text(prescribed.axes);
+    } else {
+      for (const std::optional<double>& d : prescribed.displacement)
+        entry["displacement"].push_back(d ? Json(*d) : Json(nullptr));
+    }
     add_curve(entry, prescribed.curve);
     body["prescribed"].push_back(entry);
   }
+  for (const Initial& initial : b.initial) {
+    Json entry = selection_json(initial.where, file);
+    entry["velocity"] = field_json(initial.velocity);
+    entry["displacement"] = field_json(initial.displacement);
+    body["initial"].push_back(entry);
+  }
   for (const Force& force : b.forces) {
-    Json entry = selection_json(force.where);
+    Json entry = selection_json(force.where, file);
     entry["force"] = force.total;
     add_curve(entry, force.curve);
     body["forces"].push_back(entry);
   }
   for (const Pressure& pressure : b.pressures) {
-    Json entry = selection_json(pressure.where);
+    Json entry = selection_json(pressure.where, file);
     entry["pressure"] = pressure.pressure;
     add_curve(entry, pressure.curve);
     body["pressures"].push_back(entry);
@@ -150,7 +182,7 @@ Json body_json(const Body& b, const fs::path& scene_file) {
   body["element"] = to_string(b.element);
   body["material"] = material_json(b.material);
   if (b.model.type != ModelType::tled) body["model"] = model_json(b.model);
-  add_conditions(body, b);
+  add_conditions(body, b, scene_file);
   body["velocity"] = b.velocity;
   body["angular_velocity"] = b.angular_velocity;
   return body;
@@ -172,11 +204,25 @@ Json view_json(const SceneView& v) {
   return view;
 }
 
+void add_probes(Json& top, const Scene& scene) {
+  if (scene.probes == nullptr) return;
+  top["probes"] = Json::array();
+  for (const SceneProbe& p : scene.probes->list) {
+    Json probe = p.point ? Json{{"point", *p.point}} : selection_json(p.where, scene.file);
+    if (!p.point) probe["body"] = p.body;
+    probe["name"] = p.name;
+    for (const Quantity q : p.quantities) probe["quantities"].push_back(word_of(quantity_words(), q));
+    top["probes"].push_back(probe);
+  }
+  if (scene.probes->every_steps > 0) top["probe_every"] = {{"steps", scene.probes->every_steps}};
+  if (scene.probes->every_seconds > 0) top["probe_every"] = scene.probes->every_seconds;
+}
+
 // Nothing is left out because of its value, or validate() would not see it: 0 alone means "auto".
 Json document_of(const Scene& scene) {
   Json top{{"format", "pliant-scene/1"}};
   if (!scene.name.empty()) top["name"] = scene.name;
-  top["gravity"] = scene.gravity;
+  top["gravity"] = gravity_json(scene);
   top["dt"] = scene.dt != 0 ? Json(scene.dt) : Json("auto");
   top["safety"] = scene.safety;
   top["duration"] = scene.duration;
@@ -198,6 +244,7 @@ Json document_of(const Scene& scene) {
   if (!scene.tool.path.empty()) top["tool"] = {{"path", scene.tool.path}};
   for (const Blade& b : scene.blades) top["blades"].push_back(blade_json(b));
   if (const Json view = view_json(scene.view); !view.empty()) top["view"] = view;
+  add_probes(top, scene);
   top["bodies"] = Json::array();
   for (const Body& b : scene.bodies) top["bodies"].push_back(body_json(b, scene.file));
   return top;

@@ -19,9 +19,11 @@ Program ProgramBuilder::build() {
   for (std::size_t b = 0; b < model_.hexes.size(); ++b) add_hexes(b);
   add_loads();
   program_.force = program_.step;
+  add_gravity();
   for (std::size_t b = 0; b < model_.flsm.size(); ++b) add_flsm(b);
   add_updates();
   add_constraints();
+  add_rotations();
   add_status();
   for (Buffer& buffer : program_.buffers) {
     if (buffer.name.starts_with("last_")) buffer.copy_of = kept_by(buffer.name.substr(5));
@@ -41,13 +43,19 @@ void ProgramBuilder::add_shared_buffers() {
     u[4 * s + 3] = model_.mass[s] > 0 ? 1 / model_.mass[s] : 0;
     w[4 * s + 3] = 1;  // the decay per step: the host writes it once the step is known
   }
+  for (std::size_t s = 0; s < model_.displacement.size(); ++s) {
+    for (std::size_t c = 0; c < 3; ++c) u[4 * s + c] = model_.displacement[s][c];
+  }
   for (const Constraint& c : model_.constraints) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if ((c.axes >> axis & 1) != 0) u[4 * static_cast<std::size_t>(c.slot) + axis] = 0;
+    }
     if (c.holds()) u[4 * static_cast<std::size_t>(c.slot) + 3] = 0;
   }
   node_u_ = add(make_reals("node_u", BufferType::real4, slots, BufferRole::state, "[slots]", "m, m, m, 1/kg",
-                           "node_update, brick_update, node_prescribe", std::move(u)));
+                           "node_update, brick_update, node_prescribe, node_rotate", std::move(u)));
   node_w_ = add(make_reals("node_w", BufferType::real4, slots, BufferRole::state, "[slots]", "m, m, m, 1",
-                           "node_update, brick_update, node_prescribe", std::move(w)));
+                           "node_update, brick_update, node_prescribe, node_rotate", std::move(w)));
   node_force_ = add(make_reals("node_force", BufferType::real4, slots, BufferRole::scratch, "[slots]", "N",
                                "node_update, brick_update (FORCE_ONLY)"));
   program_.buffers[node_force_].carried = Carried::unwritten;  // zero at slots without a node and at those of shape matching
@@ -75,6 +83,23 @@ void ProgramBuilder::add_shared_buffers() {
                            "[steps + 1][curves]", "1", "host"));
 }
 
+/// What the updates of a step read: the host's parameters, or with a curve of gravity what it makes of them.
+void ProgramBuilder::add_gravity() {
+  now_ = params_;
+  if (model_.gravity_curve == 0) return;
+  now_ = add(make_reals("step_now", BufferType::real, 8, BufferRole::scratch, "[8]", "s, m/s^2 (3), m (2)", "step_gravity"));
+  program_.step.push_back({"step_gravity",
+                           {},
+                           {buffer_arg(now_), buffer_arg(params_), buffer_arg(curves_), int_arg(curve_count()),
+                            int_arg(model_.gravity_curve), step_arg()},
+                           Shape::items,
+                           8,
+                           "gravity",
+                           0,
+                           0,
+                           0});
+}
+
 std::vector<std::pair<std::string, int>> ProgramBuilder::update_defines(int force_only) const {
   return {{"FORCE_ONLY", force_only}, {"HAS_LOAD", needs_load() ? 1 : 0}, {"TEXTBOOK", textbook()}};
 }
@@ -83,16 +108,17 @@ void ProgramBuilder::add_updates() {
   if (model_.bricks > 0) {
     const std::int64_t count = std::int64_t{model_.bricks} * PLIANT_BRICK_NODES;
     for (const int force_only : {0, 1}) {
-      Pass pass{"brick_update",
-                update_defines(force_only),
-                {buffer_arg(node_u_), buffer_arg(node_w_), buffer_arg(brick_neighbor_), buffer_arg(brick_rows_),
-                 buffer_arg(brick_force_), buffer_arg(node_load_), buffer_arg(node_force_), buffer_arg(params_)},
-                Shape::lanes,
-                count,
-                "brick nodes",
-                count,
-                brick_update_bytes(needs_load()),
-                24};
+      Pass pass{
+          "brick_update",
+          update_defines(force_only),
+          {buffer_arg(node_u_), buffer_arg(node_w_), buffer_arg(brick_neighbor_), buffer_arg(brick_rows_),
+           buffer_arg(brick_force_), buffer_arg(node_load_), buffer_arg(node_force_), buffer_arg(force_only ? params_ : now_)},
+          Shape::lanes,
+          count,
+          "brick nodes",
+          count,
+          brick_update_bytes(needs_load()),
+          24};
       (force_only ? program_.force : program_.step).push_back(std::move(pass));
     }
   }
@@ -119,16 +145,17 @@ void ProgramBuilder::add_list_update() {
   const auto offset_id = add(make_ints("gather_offset", BufferRole::constant, "[tiles + 1]", std::move(list.offset)));
   const auto index_id = add(make_ints("gather_index", BufferRole::constant, "[rows][16]", std::move(list.index)));
   for (const int force_only : {0, 1}) {
-    Pass pass{"node_update",
-              update_defines(force_only),
-              {buffer_arg(node_u_), buffer_arg(node_w_), buffer_arg(offset_id), buffer_arg(index_id), buffer_arg(corner_),
-               buffer_arg(node_load_), buffer_arg(node_force_), buffer_arg(params_), int_arg(model_.list_base)},
-              Shape::lanes,
-              nodes,
-              "list nodes",
-              nodes,
-              16 * entries + 64 + (needs_load() ? 16 : 0),
-              3 * entries + 21};
+    Pass pass{
+        "node_update",
+        update_defines(force_only),
+        {buffer_arg(node_u_), buffer_arg(node_w_), buffer_arg(offset_id), buffer_arg(index_id), buffer_arg(corner_),
+         buffer_arg(node_load_), buffer_arg(node_force_), buffer_arg(force_only ? params_ : now_), int_arg(model_.list_base)},
+        Shape::lanes,
+        nodes,
+        "list nodes",
+        nodes,
+        16 * entries + 64 + (needs_load() ? 16 : 0),
+        3 * entries + 21};
     (force_only ? program_.force : program_.step).push_back(std::move(pass));
   }
 }
@@ -137,9 +164,10 @@ void ProgramBuilder::add_constraints() {
   std::vector<std::int32_t> node, axes, curve;
   std::vector<double> target;
   for (const Constraint& c : model_.constraints) {
-    if (c.holds()) continue;  // no inverse mass: the update leaves it where it is
+    const std::int32_t straight = c.axes & ~c.turned;
+    if (c.holds() || straight == 0) continue;  // held: no inverse mass, so the update leaves it where it is
     node.push_back(c.slot);
-    axes.push_back(c.axes);
+    axes.push_back(straight);
     curve.insert(curve.end(), c.curve.begin(), c.curve.end());
     target.insert(target.end(), {c.target[0], c.target[1], c.target[2], 0.0});
   }
@@ -166,6 +194,44 @@ void ProgramBuilder::add_constraints() {
        static_cast<std::int64_t>(real_count),
        60,
        9});
+}
+
+void ProgramBuilder::add_rotations() {
+  std::vector<std::int32_t> node, axes, curve;
+  std::vector<double> cosine, sine;
+  for (const Constraint& c : model_.constraints) {
+    if (c.holds() || c.turned == 0) continue;
+    node.push_back(c.slot);
+    axes.push_back(c.turned);
+    curve.insert(curve.end(), c.curve.begin(), c.curve.end());
+    cosine.insert(cosine.end(), {c.target[0], c.target[1], c.target[2], 0.0});
+    sine.insert(sine.end(), {c.sine[0], c.sine[1], c.sine[2], 0.0});
+  }
+  if (node.empty()) return;
+  const std::size_t real_count = node.size(), count = (node.size() + 63) / 64 * 64;  // as in add_constraints
+  node.resize(count, node.back());
+  axes.resize(count, 0);
+  curve.resize(3 * count, 0);
+  cosine.resize(4 * count, 0.0);
+  sine.resize(4 * count, 0.0);
+  const auto node_id = add(make_ints("rotated_node", BufferRole::constant, "[rotated]", std::move(node)));
+  const auto axes_id = add(make_ints("rotated_axes", BufferRole::constant, "[rotated]", std::move(axes)));
+  const auto curve_id = add(make_ints("rotated_curve", BufferRole::constant, "[rotated][3]", std::move(curve)));
+  const auto cosine_id = add(make_reals("rotated_cosine", BufferType::real4, count, BufferRole::constant, "[rotated]", "m",
+                                        "model", std::move(cosine)));
+  const auto sine_id = add(
+      make_reals("rotated_sine", BufferType::real4, count, BufferRole::constant, "[rotated]", "m", "model", std::move(sine)));
+  program_.step.push_back(
+      {"node_rotate",
+       {{"TEXTBOOK", textbook()}},
+       {buffer_arg(node_u_), buffer_arg(node_w_), buffer_arg(node_id), buffer_arg(axes_id), buffer_arg(curve_id),
+        buffer_arg(cosine_id), buffer_arg(sine_id), buffer_arg(curves_), int_arg(curve_count()), step_arg()},
+       Shape::items,
+       static_cast<std::int64_t>(count),
+       "rotated nodes",
+       static_cast<std::int64_t>(real_count),
+       76,
+       27});
 }
 
 void ProgramBuilder::add_status() {

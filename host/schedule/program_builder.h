@@ -61,9 +61,11 @@ class ProgramBuilder {
  private:
   /// Defined in build_program.cpp: what all batches share.
   void add_shared_buffers();
+  void add_gravity();
   void add_updates();
   void add_list_update();
   void add_constraints();
+  void add_rotations();
   void add_status();
   [[nodiscard]] BufferId kept_by(const std::string& name) const;
   [[nodiscard]] std::vector<std::pair<std::string, int>> update_defines(int force_only) const;
@@ -110,8 +112,8 @@ class ProgramBuilder {
   std::vector<std::pair<std::int32_t, std::int32_t>> brick_corners_;  ///< needs layout_; found once, it goes over all hexahedra
   Program program_;
   BufferId node_u_ = -1, node_w_ = -1, node_force_ = -1, node_load_ = -1, corner_ = -1, fault_ = -1, summary_ = -1,
-           fastest_ = -1, params_ = -1, curves_ = -1, surface_x_ = -1, pressure_ = -1, brick_neighbor_ = -1, brick_rows_ = -1,
-           brick_fill_ = -1, brick_force_ = -1, flsm_alpha_ = -1;
+           fastest_ = -1, params_ = -1, now_ = -1, curves_ = -1, surface_x_ = -1, pressure_ = -1, brick_neighbor_ = -1,
+           brick_rows_ = -1, brick_fill_ = -1, brick_force_ = -1, flsm_alpha_ = -1;
   int laws_ = 0;  ///< batches that have their law
 };
 

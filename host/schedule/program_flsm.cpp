@@ -219,7 +219,7 @@ void ProgramBuilder::add_flsm(std::size_t index) {
         add(make_reals("flsm_alpha", BufferType::real, model_.flsm.size(), BufferRole::control, "[batches]", "1", "host"));
   }
   const SharedBuffers shared{buffer_arg(node_u_), buffer_arg(node_w_),     buffer_arg(node_load_),
-                             buffer_arg(params_), buffer_arg(flsm_alpha_), buffer_arg(fault_)};
+                             buffer_arg(now_),    buffer_arg(flsm_alpha_), buffer_arg(fault_)};
   FlsmPasses(model_, index, shared, program_).add(needs_load(), layout_.flsm[index].fault_base, model_.slots);
 }
 

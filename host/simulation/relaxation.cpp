@@ -33,13 +33,14 @@ Sums sum(const RunContext& run, const std::vector<double>& u, const std::vector<
   const Model& model = run.model();
   const RelaxationState& last = run.state.relaxation;
   const double time = run.state.clock.time() - last.time;
+  const Vec3d gravity = run.scene.gravity_at(run.state.clock.time());
   Sums out;
   for (std::size_t s = 0; s < model.mass.size(); ++s) {
     const double m = model.mass[s];
     if (!(m > 0)) continue;
     for (std::size_t c = 0; c < 3; ++c) {
       const std::size_t t = 4 * s + c;
-      const double weight = m * run.scene.gravity[c];
+      const double weight = m * gravity[c];
       if (!run.loaded.free()[3 * s + c]) {
         out.reaction += force[t] * force[t];
         continue;

@@ -32,15 +32,15 @@ void add_matching(const Model& model, const Scene& scene, double dt, std::vector
                       "of its material; \"stiffness\": {{\"young\": {:.6g}}} would make both alike",
                       name, modulus, ratio, material.moduli.young()));
     }
-    const double g = vec::norm(scene.gravity);
-    if (g == 0) continue;
+    const double g = vec::norm(scene.gravity), most = g * scene.gravity_curve.largest();
+    if (most == 0) continue;
     double low = HUGE_VAL, high = -HUGE_VAL;  // along gravity
     for (const Vec3d& x : model.bodies[index].rest) {
       const double at = vec::dot(x, scene.gravity) / g;
       low = std::min(low, at);
       high = std::max(high, at);
     }
-    const double strain = material.density * g * (high - low) / modulus;
+    const double strain = material.density * most * (high - low) / modulus;
     if (strain > kMostWeight) {
       remarks.push_back(
           fmt::format("body '{}': its weight strains its shape matching (modulus {:.3g} Pa) by about {:.2g}; above {} it "

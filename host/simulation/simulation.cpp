@@ -58,9 +58,7 @@ void Simulation::start(std::shared_ptr<const Model> model, const SimulationOptio
   settings_.batch_steps = options.batch_steps;
   load(std::move(model));
   for (const Curve& curve : loaded_.model().curves) {
-    double end = curve.start + curve.duration;
-    if (!curve.table.empty()) end = std::max(end, curve.table.back()[0]);
-    settings_.curves_end = std::max(settings_.curves_end, end);
+    settings_.curves_end = std::max(settings_.curves_end, curve.end());
   }
   step_.start(options.dt > 0 ? options.dt : scene_.dt, options.stable_step);
   edits_.start();
@@ -78,12 +76,13 @@ void Simulation::set_initial_increment() {
   const Model& m = loaded_.model();
   const std::vector<double> force = run_.forces_now();
   std::vector<double> w(4 * static_cast<std::size_t>(m.slots));
+  const Vec3d gravity = scene_.gravity_at(time());
   const double sign = scene_.integrator == Integrator::textbook ? -1 : 1;  // the textbook form keeps u_(-1) instead
   for (std::size_t s = 0; s < m.mass.size(); ++s) {
     const double h = substeps_of(m, s) * state_.clock.dt;
     for (std::size_t c = 0; c < 3; ++c) {
       if (!loaded_.free()[3 * s + c]) continue;
-      const double a = force[4 * s + c] / m.mass[s] + scene_.gravity[c] - m.damping[s] * m.velocity[s][c];
+      const double a = force[4 * s + c] / m.mass[s] + gravity[c] - m.damping[s] * m.velocity[s][c];
       w[4 * s + c] = sign * (h * m.velocity[s][c] - 0.5 * h * h * a);
     }
     w[4 * s + 3] = run_.decay(m, s);

@@ -63,7 +63,7 @@ std::uint64_t model_hash(const Scene& scene, const RunSettings& settings, const 
   hash.add(program);
   hash.add(surface);
   for (const Curve& c : model.curves) {
-    const double numbers[3]{static_cast<double>(c.kind), c.start, c.duration};
+    const double numbers[5]{static_cast<double>(c.kind), c.start, c.duration, static_cast<double>(c.of), c.angle};
     hash.add(numbers, sizeof numbers);
     hash.add(c.table);
   }

@@ -15,6 +15,8 @@ namespace {
 /// Value of a load curve after everything has happened.
 double final_value(const Curve& curve) { return curve.value(HUGE_VAL); }
 
+constexpr double kHalfTurn = 180;  ///< [degrees] from where the way is no longer told by its end
+
 class FromModel {
  public:
   FromModel(const Scene& scene, const Model& model, std::size_t body)
@@ -98,13 +100,13 @@ class FromModel {
   }
 
   void loads() {
+    const Vec3d gravity = scene_.gravity_at(HUGE_VAL);
     for (const Constraint& c : model_.constraints) {
       const std::int32_t node = node_of_[c.slot];
       if (node < 0) continue;
       for (int axis = 0; axis < 3; ++axis) {
         if ((c.axes >> axis & 1) != 0) {
-          const double displacement = c.target[axis] * final_value(model_.curves[c.curve[axis]]);
-          out_.prescribed.push_back({node, axis, displacement, set_of(node, axis)});
+          out_.prescribed.push_back({node, axis, final_displacement(c, axis), set_of(node, axis)});
         }
       }
     }
@@ -113,11 +115,26 @@ class FromModel {
         out_.forces.push_back({node_of_[f.slot], vec::mul(f.force, final_value(model_.curves[f.curve]))});
     }
     if (quadratic_) {
-      out_.gravity = scene_.gravity;
-    } else if (vec::norm(scene_.gravity) > 0) {
+      out_.gravity = gravity;
+    } else if (vec::norm(gravity) > 0) {
       for (std::size_t n = 0; n < body_.slot.size(); ++n)
-        out_.forces.push_back({static_cast<std::int32_t>(n), vec::mul(scene_.gravity, model_.mass[body_.slot[n]])});
+        out_.forces.push_back({static_cast<std::int32_t>(n), vec::mul(gravity, model_.mass[body_.slot[n]])});
     }
+  }
+
+  [[nodiscard]] double final_displacement(const Constraint& c, int axis) const {
+    const Curve& curve = model_.curves[c.curve[axis]];
+    const double displacement = c.target[axis] * final_value(curve);
+    if ((c.turned >> axis & 1) == 0) return displacement;
+    const double angle = std::fabs(curve.angle * curve.factor(HUGE_VAL));
+    if (angle >= kHalfTurn) {
+      throw Error(
+          ErrorCode::bad_input,
+          fmt::format("body '{}': a rotation ends at {:.6g} degrees; the static solver moves nodes straight to where they "
+                      "end, so that only angles below {:g} degrees are allowed. \"relaxation\" follows any rotation",
+                      body_.name, angle, kHalfTurn));
+    }
+    return displacement + c.sine[axis] * final_value(model_.curves[c.curve[axis] + 1]);
   }
 
   /// The entry that holds a component: the last of `fixed`, then of `prescribed`, that names it.
@@ -125,7 +142,7 @@ class FromModel {
     const Body& body = scene_.bodies[number_];
     const auto names = [&](const Selection& where) { return where.contains(body_.rest[node], node); };
     for (std::size_t i = body.prescribed.size(); i-- > 0;) {
-      if (body.prescribed[i].displacement[axis] && names(body.prescribed[i].where))
+      if (body.prescribed[i].moves(axis) && names(body.prescribed[i].where))
         return static_cast<std::int32_t>(body.fixed.size() + i);
     }
     for (std::size_t i = body.fixed.size(); i-- > 0;) {

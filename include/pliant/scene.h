@@ -12,11 +12,10 @@
 #include <vector>
 
 #include "pliant/export.h"
+#include "pliant/scene_conditions.h"
 
 namespace pliant {
 
-/// x, y, z.
-using Vec3d = std::array<double, 3>;
 /// Three indices, counter-clockwise from outside.
 using Triangle = std::array<std::int32_t, 3>;
 
@@ -28,43 +27,6 @@ struct SurfaceSpec {
 
 /// The surface of a box: 8 vertices, 12 triangles. Corners in [m].
 PLIANT_API SurfaceSpec box_surface(const Vec3d& lower, const Vec3d& upper);
-
-/// A set of nodes chosen by rest position [m] or by number. For pressures the centres of surface triangles are chosen, for
-/// inclusions the centres of elements.
-struct RegionSpec {
-  /// How it chooses.
-  enum class Kind {
-    all,     ///< everything
-    box,     ///< between a and b
-    sphere,  ///< within radius of a
-    plane,   ///< on the side of the plane through a to which b points
-    nodes,   ///< by number
-  };
-  Kind kind = Kind::all;            ///< decides which of the others count
-  Vec3d a{};                        ///< box: lower corner; sphere: centre; plane: a point
-  Vec3d b{};                        ///< box: upper corner; plane: normal, the side it points to is chosen
-  double radius = 0;                ///< sphere [m]
-  std::vector<std::int64_t> nodes;  ///< numbers in the body
-
-  /// Everything.
-  static RegionSpec all() { return {}; }
-  /// Between two corners [m], bounds included.
-  static RegionSpec box(const Vec3d& lower, const Vec3d& upper) { return {Kind::box, lower, upper, 0, {}}; }
-  /// Within a radius [m] of a point [m].
-  static RegionSpec sphere(const Vec3d& centre, double radius) { return {Kind::sphere, centre, {}, radius, {}}; }
-  /// The side of a plane to which its normal points.
-  static RegionSpec plane(const Vec3d& point, const Vec3d& normal) { return {Kind::plane, point, normal, 0, {}}; }
-  /// Nodes by their numbers in the body.
-  static RegionSpec of_nodes(std::vector<std::int64_t> numbers) { return {Kind::nodes, {}, {}, 0, std::move(numbers)}; }
-};
-
-/// A factor over time, for loads and prescribed motion.
-struct CurveSpec {
-  std::string kind = "constant";             ///< constant, ramp, smooth or table
-  double start = 0;                          ///< [s]
-  double duration = 1;                       ///< [s], ramp and smooth: from 0 to 1 within it
-  std::vector<std::array<double, 2>> table;  ///< table: (time [s], factor), times ascending
-};
 
 /// An isotropic hyperelastic material. The laws and their parameters are listed in docs/scene.md.
 struct MaterialSpec {
@@ -83,33 +45,6 @@ struct MaterialSpec {
 struct InclusionSpec {
   RegionSpec where;       ///< which elements
   MaterialSpec material;  ///< of these elements
-};
-
-/// Nodes that stay where they are, in the axes named.
-struct FixedSpec {
-  RegionSpec where;          ///< which nodes
-  std::string axes = "xyz";  ///< one to three letters of xyz
-};
-
-/// Nodes that move as told.
-struct PrescribedSpec {
-  RegionSpec where;                                   ///< which nodes
-  std::array<std::optional<double>, 3> displacement;  ///< [m]; an absent component stays free
-  CurveSpec curve;                                    ///< the factor over time
-};
-
-/// A force [N] shared equally by the chosen nodes.
-struct ForceSpec {
-  RegionSpec where;  ///< which nodes
-  Vec3d force{};     ///< total [N] at factor 1
-  CurveSpec curve;   ///< the factor over time
-};
-
-/// Follower pressure [Pa] along the inward normal of the deformed surface.
-struct PressureSpec {
-  RegionSpec where;     ///< which triangles of the surface
-  double pressure = 0;  ///< [Pa] at factor 1
-  CurveSpec curve;      ///< the factor over time
 };
 
 /// How the nodes of a body move: finite elements (tled), shape matching (flsm), or both (hybrid), as docs/scene.md describes.
@@ -150,6 +85,7 @@ struct BodySpec {
   std::vector<PressureSpec> pressures;     ///< follower loads
   Vec3d velocity{};                        ///< initial [m/s]
   Vec3d angular_velocity{};                ///< initial, about the centre of mass [rad/s]
+  std::vector<InitialSpec> initial;        ///< fields of velocity and displacement at the start, added to these
 };
 
 /// A segment on a prescribed path; it cuts while it moves.
@@ -169,7 +105,8 @@ struct RelaxationSpec {
 /// Everything that a World is made of.
 struct SceneSpec {
   std::string name = "scene";                    ///< for people
-  Vec3d gravity{};                               ///< [m/s^2]
+  Vec3d gravity{};                               ///< [m/s^2] at factor 1
+  CurveSpec gravity_curve;                       ///< the factor over time
   double dt = 0;                                 ///< [s]; 0: automatic
   double safety = 0.9;                           ///< share of the stable step that an automatic step takes, in (0, 1]
   std::string integrator = "increment";          ///< increment or textbook

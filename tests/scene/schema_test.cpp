@@ -53,12 +53,15 @@ TEST(Schema, HasTheWordsOfTheLoader) {
       {"element", {"/$defs/body/properties/element"}},
       {"integrator", {"/properties/integrator"}},
       {"inverted", {"/properties/inverted"}},
-      {"curve", {"/$defs/prescribed/properties/curve", "/$defs/force/properties/curve", "/$defs/pressure/properties/curve"}},
+      {"curve",
+       {"/$defs/gravity/properties/curve", "/$defs/prescribed/properties/curve", "/$defs/force/properties/curve",
+        "/$defs/pressure/properties/curve"}},
       {"model", {"/$defs/model/properties/type"}},
       {"goals", {"/$defs/model/properties/goals"}},
       {"coupling", {"/$defs/model/properties/coupling"}},
       {"follow", {"/$defs/model/properties/follow"}},
-      {"solver", {"/$defs/solver/properties/type"}}};
+      {"solver", {"/$defs/solver/properties/type"}},
+      {"quantity", {"/$defs/probe/properties/quantities/items"}}};
   ASSERT_EQ(pointers.size(), scene_words().size());
   for (const auto& [kind, list] : pointers) {
     for (const std::string& pointer : list) {

@@ -20,6 +20,7 @@ SceneSpec everything() {
   SceneSpec s;
   s.name = "everything";
   s.gravity = {0, -9.81, 0};
+  s.gravity_curve = {"smooth", 0.1, 0.3, {}};
   s.dt = 1e-4;
   s.safety = 0.8;
   s.inverted = "stop";
@@ -44,6 +45,13 @@ SceneSpec everything() {
   a.inclusions = {{RegionSpec::sphere({0, 0, 0}, 0.1), {}}};
   a.fixed = {{RegionSpec::plane({0, 0, 0}, {0, -1, 0}), "xz"}};
   a.prescribed = {{RegionSpec::of_nodes({7, 3}), {0.1, std::nullopt, 0}, {"smooth", 0.1, 2, {}}}};
+  PrescribedSpec turn;
+  turn.where = RegionSpec::inside("tumour.obj");
+  turn.rotate = RotationSpec{{0, 1, 0}, {0, 0, 0.1}, 90};
+  turn.axes = "xz";
+  a.prescribed.push_back(turn);
+  a.initial = {{RegionSpec::all(), FieldSpec{{1, 2, 3}, {{{0, 1, 0}, {0, 0, 0}, {0, 0, 0}}}, {0, 0, 1}},
+                FieldSpec{{0, 0, 0.1}, {}, {}}}};
   a.forces = {{RegionSpec::box({0, 0, 0}, {1, 1, 1}), {0, 0, 1}, {"table", 0, 1, {{0, 0}, {1, 2}}}}};
   a.pressures = {{RegionSpec::all(), 100, {}}};
   a.model.type = "hybrid";
@@ -64,7 +72,8 @@ SceneSpec everything() {
 }
 
 const char* const file =
-    R"({"format": "pliant-scene/1", "name": "everything", "gravity": [0, -9.81, 0], "dt": 1e-4, "safety": 0.8,
+    R"({"format": "pliant-scene/1", "name": "everything", "dt": 1e-4,
+        "gravity": {"acceleration": [0, -9.81, 0], "curve": "smooth", "start": 0.1, "duration": 0.3}, "safety": 0.8,
         "inverted": "stop", "least_fill": 0.1, "least_step": 0.2, "break_stretch": 3,
   "tool": {"path": [[0, 0, 0.1, 0], [1, 0.1, 0.1, 0]]},
   "blades": [{"path": [[0, 0, -0.1, 0, 0, 0.1, 0], [1, 0.2, -0.1, 0, 0.2, 0.1, 0]], "start": 0.1}],
@@ -72,7 +81,10 @@ const char* const file =
     "material": {"law": "yeoh", "c10": 500, "c20": 20, "c30": 3, "kappa": 50000, "hourglass": 0.5, "damping": 4},
     "inclusions": [{"sphere": [[0, 0, 0], 0.1], "material": {"young": 3000, "poisson": 0.45}}],
     "fixed": [{"plane": [[0, 0, 0], [0, -1, 0]], "axes": "xz"}],
-    "prescribed": [{"nodes": [7, 3], "displacement": [0.1, null, 0], "curve": "smooth", "start": 0.1, "duration": 2}],
+    "prescribed": [{"nodes": [7, 3], "displacement": [0.1, null, 0], "curve": "smooth", "start": 0.1, "duration": 2},
+      {"surface": "tumour.obj", "rotate": {"axis": [0, 1, 0], "about": [0, 0, 0.1], "angle": 90}, "axes": "xz"}],
+    "initial": [{"all": true, "velocity": {"offset": [1, 2, 3], "linear": [[0, 1, 0], [0, 0, 0], [0, 0, 0]], "about": [0, 0, 1]},
+      "displacement": [0, 0, 0.1]}],
     "forces": [{"box": [[0, 0, 0], [1, 1, 1]], "force": [0, 0, 1], "table": [[0, 0], [1, 2]]}],
     "pressures": [{"all": true, "pressure": 100}],
     "model": {"type": "hybrid", "ratio": 0.4, "seed": [0, 0, 0.1], "follow": "tool", "substeps": 4, "goals": "extrapolated",
@@ -130,7 +142,9 @@ struct Case {
 const double kNan = std::numeric_limits<double>::quiet_NaN();
 
 const std::vector<Case> of_scenes{
-    {[](SceneSpec& s) { s.gravity[1] = kNan; }, "scene: /gravity/1: got nan, expected a number"},
+    {[](SceneSpec& s) { s.gravity[1] = kNan; }, "scene: /gravity/acceleration/1: got nan, expected a number"},
+    {[](SceneSpec& s) { s.gravity_curve = {}, s.gravity[1] = kNan; }, "scene: /gravity/1: got nan, expected a number"},
+    {[](SceneSpec& s) { s.gravity_curve.duration = 0; }, "scene: /gravity/duration: got 0, expected a number > 0"},
     {[](SceneSpec& s) { s.dt = -1; }, "scene: /dt: got -1, expected \"auto\" or a time step > 0"},
     {[](SceneSpec& s) { s.safety = 1.5; }, "scene: /safety: got 1.5, expected a number with 0 < safety <= 1"},
     {[](SceneSpec& s) { s.integrator = "verlet"; }, "scene: /integrator: got \"verlet\", expected one of increment, textbook"},

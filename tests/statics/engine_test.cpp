@@ -10,7 +10,9 @@ using physics::Discretization;
 
 Scene loaded(Discretization cut, Law law) {
   Scene scene;
-  scene.gravity = {0, -4, 0};
+  scene.gravity = {0, -8, 0};
+  scene.gravity_curve.kind = Curve::Kind::table;
+  scene.gravity_curve.table = {{0, 0}, {0.05, 1}, {0.1, 0.5}};  // both count what is left in the end
   Body body = physics::box_body({{4, 2, 2}, 0.05, 0.2, 5}, cut, physics::material_young(law, 10000, 0.4));
   body.fixed.push_back({physics::face(0, 0)});
   Prescribed pull;

@@ -1,0 +1,31 @@
+// Twin of kernels/node_rotate.cl.
+#include <cmath>
+
+#include "registry.h"
+
+namespace pliant::ref {
+
+template <class Scalar, bool Textbook>
+void node_rotate(Range range, Scalar* node_u, Scalar* node_w, const std::int32_t* rotated_node,
+                 const std::int32_t* rotated_axes, const std::int32_t* rotated_curve, const Scalar* rotated_cosine,
+                 const Scalar* rotated_sine, const Scalar* curve_value, std::int32_t curves, std::int32_t step) {
+  for (std::int64_t i = range.begin; i < range.end; ++i) {
+    Scalar* u = node_u + std::int64_t{4} * rotated_node[i];
+    Scalar* w = node_w + std::int64_t{4} * rotated_node[i];
+    for (int c = 0; c < 3; ++c) {
+      if ((rotated_axes[i] >> c & 1) == 0) continue;
+      const Scalar p = rotated_cosine[4 * i + c], q = rotated_sine[4 * i + c];
+      const Scalar* now = curve_value + std::int64_t{step} * curves + rotated_curve[3 * i + c];
+      const Scalar* next = now + curves;
+      u[c] = std::fma(p, next[0], q * next[1]);
+      w[c] = Textbook ? std::fma(p, now[0], q * now[1]) : std::fma(p, next[0] - now[0], q * (next[1] - now[1]));
+    }
+  }
+}
+
+void register_node_rotate(Registry& registry) {
+  registry.add_specialised<2>("node_rotate", {"TEXTBOOK"},
+                              [](auto scalar, auto textbook) { return node_rotate<decltype(scalar), textbook() != 0>; });
+}
+
+}  // namespace pliant::ref

@@ -1,0 +1,39 @@
+// A surface from a file whose inside is a selection.
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "geometry/vec3.h"
+
+namespace pliant {
+
+class SurfaceDistance;
+
+/// Opened when it is first asked; from then on any thread may ask.
+class ClosedSurface {
+ public:
+  /// `scale`, `translate`: those of the body, whose coordinates the file shares. `pointer`: of the entry, for messages.
+  ClosedSurface(std::filesystem::path file, double scale, const Vec3d& translate, std::string pointer);
+  ~ClosedSurface();
+  ClosedSurface(const ClosedSurface&) = delete;
+  ClosedSurface& operator=(const ClosedSurface&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& file() const { return file_; }
+  /// Whether a place [m] is inside or on it, to 1e-9 of its size. Throws Error where the file is no closed surface.
+  [[nodiscard]] bool contains(const Vec3d& x) const;
+
+ private:
+  void read() const;
+
+  std::filesystem::path file_;
+  double scale_;
+  Vec3d translate_;
+  std::string pointer_;
+  mutable std::once_flag once_;
+  mutable std::unique_ptr<const SurfaceDistance> distance_;
+  mutable double slack_ = 0;  ///< [m]
+};
+
+}  // namespace pliant

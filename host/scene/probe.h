@@ -1,0 +1,36 @@
+// What a run writes down over time: the keys "probes" and "probe_every" of a scene.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/selection.h"
+
+namespace pliant {
+
+/// Of a point: all but the reaction. Of chosen nodes: all but the stress; position, displacement and velocity are their means.
+enum class Quantity {
+  position,      ///< [m]
+  displacement,  ///< [m]
+  velocity,      ///< [m/s]
+  stress,        ///< Cauchy stress of the material at the point [Pa]
+  reaction,      ///< force that fixes or moves the nodes, summed [N]
+};
+
+struct SceneProbe {
+  std::string name;
+  std::optional<Vec3d> point;        ///< at rest [m]; absent: see `where`
+  Selection where;                   ///< nodes of `body`
+  std::string body;                  ///< its name; of a point empty: the one that holds it
+  std::vector<Quantity> quantities;  ///< in the order in which they are written
+  std::string pointer;               ///< for messages: "/probes/0", "--probe tip"
+};
+
+struct SceneProbes {
+  std::vector<SceneProbe> list;
+  std::int64_t every_steps = 0;  ///< 0: see every_seconds
+  double every_seconds = 0;      ///< [s]; 0 too: with every frame
+};
+
+}  // namespace pliant

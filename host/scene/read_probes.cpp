@@ -1,0 +1,109 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scene/parts.h"
+#include "scene/probe.h"
+
+namespace pliant {
+
+namespace {
+
+std::string read_probe_name(const Reader& probe) {
+  const char* const expected = "a name of 1 to 100 characters without slashes, commas, quotation marks or control characters";
+  const Reader field = probe.at("name", expected);
+  const std::string name = field.text(expected);
+  const bool fits = name.size() <= 100 && name[0] != '.' && std::none_of(name.begin(), name.end(), [](char c) {
+                      const auto code = static_cast<unsigned char>(c);
+                      return code < 32 || code == 127 || c == '/' || c == '\\' || c == ',' || c == '"';
+                    });
+  if (!fits) field.fail(expected);  // files and columns are named after probes
+  return name;
+}
+
+/// The body whose nodes a probe is to look at.
+const Body& read_whose(const Reader& probe, const Scene& scene) {
+  if (!probe.has("body")) {
+    if (scene.bodies.size() == 1) return scene.bodies[0];
+    probe.fail("no \"body\"", "the name of a body, because the scene has several");
+  }
+  const Reader field = probe.at("body");
+  std::vector<std::string> names;
+  for (const Body& body : scene.bodies) {
+    if (field.json() == body.name) return body;
+    names.push_back(body.name);
+  }
+  field.fail_word(names);
+}
+
+std::vector<Quantity> read_quantities(const Reader& probe, bool point) {
+  if (!probe.has("quantities")) return {Quantity::position, Quantity::displacement, Quantity::velocity};
+  std::vector<Quantity> list;
+  for (const Reader& entry : probe.at("quantities").items("a list of at least one quantity", 1)) {
+    const Quantity q = entry.word(quantity_words());
+    if (point && q == Quantity::reaction) entry.fail("no reaction of a point: a selection of nodes (box, plane, ...) has one");
+    if (!point && q == Quantity::stress) entry.fail("no stress of a selection: a \"point\" has one");
+    if (std::find(list.begin(), list.end(), q) != list.end()) entry.fail("every quantity at most once");
+    list.push_back(q);
+  }
+  return list;
+}
+
+SceneProbe read_probe(const Reader& probe, const Scene& scene) {
+  probe.expect_object("probe");
+  SceneProbe out;
+  out.pointer = probe.pointer();
+  out.name = read_probe_name(probe);
+  const bool point = probe.has("point");
+  out.quantities = read_quantities(probe, point);
+  if (point) {
+    for (const char* key : {"box", "sphere", "plane", "surface", "nodes", "all", "body"}) {
+      if (probe.has(key)) probe.at(key).fail(fmt::format("no \"{}\" beside a \"point\"", key));
+    }
+    out.point = probe.at("point").vec3();
+    return out;
+  }
+  const Body& body = read_whose(probe, scene);
+  out.body = body.name;
+  out.where = read_selection(probe, NodeLists::allowed, {scene.file.parent_path(), body.scale, body.translate});
+  const bool reacts = std::find(out.quantities.begin(), out.quantities.end(), Quantity::reaction) != out.quantities.end();
+  if (reacts && body.model.type != ModelType::tled) {
+    probe.fail(fmt::format("a reaction of body \"{}\", whose model is {}", body.name, to_string(body.model.type)),
+               "a body of finite elements (tled): shape matching knows no forces");
+  }
+  return out;
+}
+
+void read_every(const Reader& field, SceneProbes& probes) {
+  if (!field.json().is_object()) {
+    probes.every_seconds = field.number("a time in seconds of at least 1e-9, or {\"steps\": N}");
+    if (!(probes.every_seconds >= 1e-9)) field.fail("a time in seconds of at least 1e-9, or {\"steps\": N}");
+    return;
+  }
+  field.expect_object("probe_every");
+  probes.every_steps = field.at("steps", "the number of steps between two rows").integer(1, 1'000'000'000'000);
+}
+
+}  // namespace
+
+std::shared_ptr<const SceneProbes> read_probes(const Reader& top, const Scene& scene) {
+  if (!top.has("probes")) {
+    if (top.has("probe_every")) top.at("probe_every").fail("\"probes\" beside it");
+    return nullptr;
+  }
+  const Reader field = top.at("probes");
+  if (scene.solver.enabled) field.fail("none beside \"solver\": {\"type\": \"static\"}: there are no steps");
+  SceneProbes probes;
+  for (const Reader& entry : field.items("a list of objects")) {
+    probes.list.push_back(read_probe(entry, scene));
+    for (std::size_t i = 0; i + 1 < probes.list.size(); ++i) {
+      if (probes.list[i].name != probes.list.back().name) continue;
+      entry.fail(fmt::format("the name \"{}\", which {} has already", probes.list[i].name, probes.list[i].pointer),
+                 "a different name for every probe");
+    }
+  }
+  if (top.has("probe_every")) read_every(top.at("probe_every"), probes);
+  return std::make_shared<const SceneProbes>(std::move(probes));
+}
+
+}  // namespace pliant
