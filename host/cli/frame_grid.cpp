@@ -28,6 +28,12 @@ FrameGrid FrameGrid::of_seconds(double seconds) {
   return grid;
 }
 
+FrameGrid FrameGrid::of_steps(std::int64_t steps) {
+  FrameGrid grid;
+  grid.steps_ = steps;
+  return grid;
+}
+
 FrameGrid FrameGrid::parse(const std::string& every) {
   FrameGrid grid;
   const char *first = every.data(), *last = first + every.size();

@@ -14,6 +14,7 @@ class FrameGrid {
   /// From "100" (steps), "16ms" or "0.016s" (simulated time; also us). Throws Error that says what is allowed.
   static FrameGrid parse(const std::string& every);
   static FrameGrid of_seconds(double seconds);
+  static FrameGrid of_steps(std::int64_t steps);
 
   /// The present state has its frame: the next is due at the next multiple after it.
   void start(const Simulation& simulation);

@@ -1,7 +1,9 @@
 #include "cli/probes.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -12,7 +14,10 @@
 #include "geometry/triangle_tree.h"
 #include "geometry/vec.h"
 #include "io/atomic_file.h"
+#include "material/response.h"
+#include "model/boundary_conditions.h"
 #include "pliant/error.h"
+#include "simulation/reactions.h"
 
 namespace pliant::cli {
 namespace {
@@ -20,6 +25,9 @@ namespace {
 constexpr double kOnFace = 1e-9;  ///< of an element's size: a point on its face is in it
 
 using Weights = std::array<double, 8>;
+
+/// Of a cell in the order of VTK.
+constexpr int kCorner[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
 
 /// Barycentric coordinates, and the distance to the tetrahedron: 0 inside.
 std::pair<Weights, double> in_tet(const std::array<Vec3d, 4>& x, const Vec3d& p) {
@@ -50,7 +58,6 @@ std::pair<Weights, double> in_cell(const Vec3d& low, const Vec3d& high, const Ve
     if (share[a] < -kOnFace) away[a] = low[a] - p[a];
     if (share[a] > 1 + kOnFace) away[a] = p[a] - high[a];
   }
-  constexpr int kCorner[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
   for (std::size_t c = 0; c < 8; ++c) {
     w[c] = 1;
     for (std::size_t a = 0; a < 3; ++a) w[c] *= kCorner[c][a] == 1 ? share[a] : 1 - share[a];
@@ -78,9 +85,77 @@ Vec3d interpolate(std::span<const std::int32_t> nodes, const Weights& weights, c
   return out;
 }
 
+/// Deformation gradient less the identity, in the tetrahedron, or at these weights in a cell of a lattice.
+Eigen::Matrix3d gradient(const ModelBody& body, std::size_t e, const Weights& weights, const std::vector<Vec3d>& u) {
+  const auto nodes = corners(body, e);
+  const auto column = [](const Vec3d& x) { return Eigen::Vector3d(x[0], x[1], x[2]); };
+  Eigen::Matrix3d rest = Eigen::Matrix3d::Zero(), moved = Eigen::Matrix3d::Zero();  // tangents along the element's coordinates
+  for (int a = 0; a < 3; ++a) {
+    for (std::size_t c = 0; c < nodes.size(); ++c) {
+      double slope = c == 0 ? -1 : static_cast<int>(c) == a + 1 ? 1 : 0;
+      if (nodes.size() == 8) {
+        // A corner's share along the other two coordinates: its weight and that of the corner beyond the edge.
+        std::size_t other = 0;
+        for (std::size_t k = 0; k < 8; ++k) {
+          bool edge = kCorner[k][a] != kCorner[c][a];
+          for (int b = 0; b < 3; ++b) edge = edge && (b == a || kCorner[k][b] == kCorner[c][b]);
+          if (edge) other = k;
+        }
+        slope = (kCorner[c][a] == 1 ? 1 : -1) * (weights[c] + weights[other]);
+      }
+      rest.col(a) += slope * column(body.rest[static_cast<std::size_t>(nodes[c])]);
+      moved.col(a) += slope * column(u[static_cast<std::size_t>(nodes[c])]);
+    }
+  }
+  return moved * rest.inverse();
+}
+
+/// The material of an element as the scene gives it.
+const Material& material_of(const Body& scene, const ModelBody& body, std::size_t e) {
+  Vec3d middle{};
+  const auto nodes = corners(body, e);
+  for (const std::int32_t n : nodes)
+    middle = vec::add(middle, vec::mul(body.rest[static_cast<std::size_t>(n)], 1.0 / static_cast<double>(nodes.size())));
+  const Material* found = &scene.material;
+  for (const Inclusion& inclusion : scene.inclusions) {
+    if (inclusion.where.contains(middle, static_cast<std::int64_t>(e))) found = &inclusion.material;
+  }
+  return *found;
+}
+
+bool asks(const SceneProbe& probe, Quantity quantity) {
+  return std::find(probe.quantities.begin(), probe.quantities.end(), quantity) != probe.quantities.end();
+}
+
+/// The names of a quantity's columns, with units.
+const char* header(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::position:
+      return ",x [m],y [m],z [m]";
+    case Quantity::displacement:
+      return ",ux [m],uy [m],uz [m]";
+    case Quantity::velocity:
+      return ",vx [m/s],vy [m/s],vz [m/s]";
+    case Quantity::stress:
+      return ",sxx [Pa],syy [Pa],szz [Pa],sxy [Pa],syz [Pa],szx [Pa]";
+    case Quantity::reaction:
+      return ",rx [N],ry [N],rz [N]";
+  }
+  return "";
+}
+
+std::string columns(const ProbeState& state, Quantity quantity) {
+  if (quantity == Quantity::stress) return fmt::format(",{:.9g}", fmt::join(*state.stress, ","));
+  const std::optional<Vec3d>& value = quantity == Quantity::position       ? state.position
+                                      : quantity == Quantity::displacement ? state.displacement
+                                      : quantity == Quantity::velocity     ? state.velocity
+                                                                           : state.reaction;
+  return fmt::format(",{:.9g}", fmt::join(*value, ","));
+}
+
 }  // namespace
 
-ProbePoint parse_probe(const std::string& text) {
+SceneProbe parse_probe(const std::string& text) {
   const auto refuse = [&](const char* what) {
     throw Error(
         ErrorCode::bad_input,
@@ -88,43 +163,60 @@ ProbePoint parse_probe(const std::string& text) {
   };
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) refuse("there is no name");
-  ProbePoint point{text.substr(0, equals), {}};
+  SceneProbe point;
+  point.name = text.substr(0, equals);
+  point.pointer = "--probe " + point.name;
+  point.quantities = {Quantity::position, Quantity::displacement, Quantity::velocity};
+  Vec3d rest{};
   if (point.name.find_first_of(",\"\n\r") != std::string::npos) refuse("a name has no comma, quotation mark or line break");
   const char *at = text.data() + equals + 1, *end = text.data() + text.size();
   for (std::size_t a = 0; a < 3; ++a) {
-    const auto read = std::from_chars(at, end, point.rest[a]);
-    if (read.ec != std::errc() || !std::isfinite(point.rest[a])) refuse("three finite numbers are needed");
+    const auto read = std::from_chars(at, end, rest[a]);
+    if (read.ec != std::errc() || !std::isfinite(rest[a])) refuse("three finite numbers are needed");
     at = read.ptr;
     if (a < 2 && (at == end || *at++ != ',')) refuse("three finite numbers are needed");
   }
   if (at != end) refuse("three finite numbers are needed");
+  point.point = rest;
   return point;
 }
 
-Probes::Probes(std::vector<ProbePoint> points, const Model& uncut) {
-  for (ProbePoint& point : points) {
+Probes::Probes(std::vector<SceneProbe> probes, const Model& uncut) {
+  for (const SceneProbe& probe : probes) {
     for (const Place& other : places_) {
-      if (other.point.name == point.name)
-        throw Error(ErrorCode::bad_input, fmt::format("--probe: two are named \"{}\"; names must differ", point.name));
-    }
-    Place place{point, 0, 0, {}};
-    double nearest = std::numeric_limits<double>::infinity();
-    for (std::size_t b = 0; b < uncut.bodies.size() && nearest > 0; ++b) {
-      const ModelBody& body = uncut.bodies[b];
-      for (std::size_t e = 0; e < static_cast<std::size_t>(body.elements()) && nearest > 0; ++e) {
-        const auto [weights, distance] = in_element(body, e, point.rest);
-        if (distance >= nearest) continue;
-        nearest = distance;
-        place.body = b, place.element = e, place.weights = weights;
+      if (other.probe.name == probe.name) {
+        throw Error(ErrorCode::bad_input, fmt::format("{} and {}: two are named \"{}\"; names must differ", other.probe.pointer,
+                                                      probe.pointer, probe.name));
       }
     }
-    if (nearest > 0) {
-      const std::string body = std::isfinite(nearest) ? uncut.bodies[place.body].name : "none";
-      throw Error(ErrorCode::bad_input,
-                  fmt::format("--probe {}: [{}, {}, {}] m is in no body at rest; the nearest, '{}', is {:.4g} m away",
-                              point.name, point.rest[0], point.rest[1], point.rest[2], body, nearest));
+    Place place{probe};
+    if (probe.point) {
+      find(place, uncut);
+    } else {
+      while (uncut.bodies.at(place.body).name != probe.body) ++place.body;
+      (void)select_nodes(probe.where, uncut.bodies[place.body], Virtual::with_anchors);  // refuses what chooses nothing
     }
-    places_.push_back(place);
+    places_.push_back(std::move(place));
+  }
+}
+
+void Probes::find(Place& place, const Model& uncut) {
+  const Vec3d& point = *place.probe.point;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t b = 0; b < uncut.bodies.size() && nearest > 0; ++b) {
+    const ModelBody& body = uncut.bodies[b];
+    for (std::size_t e = 0; e < static_cast<std::size_t>(body.elements()) && nearest > 0; ++e) {
+      const auto [weights, distance] = in_element(body, e, point);
+      if (distance >= nearest) continue;
+      nearest = distance;
+      place.body = b, place.element = e, place.weights = weights;
+    }
+  }
+  if (nearest > 0) {
+    const std::string body = std::isfinite(nearest) ? uncut.bodies[place.body].name : "none";
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{}: [{}, {}, {}] m is in no body at rest; the nearest, '{}', is {:.4g} m away",
+                            place.probe.pointer, point[0], point[1], point[2], body, nearest));
   }
 }
 
@@ -136,11 +228,52 @@ std::size_t Probes::element_now(const Simulation& simulation, const Place& place
   const std::size_t parts = static_cast<std::size_t>(body.elements()) / topology->elements().nodes.size();
   const auto cell = static_cast<std::int32_t>(place.element / parts);
   if (!topology->divided(cell)) return place.element;
-  const std::int32_t copy = topology->element_of(cell, topology->label_at(cell, place.point.rest));
+  const std::int32_t copy = topology->element_of(cell, topology->label_at(cell, *place.probe.point));
   return copy < 0 ? place.element : parts * static_cast<std::size_t>(copy) + place.element % parts;
 }
 
-std::vector<ProbeState> Probes::states(const Simulation& simulation) const {
+ProbeState Probes::at_point(const Simulation& simulation, const Place& place, const std::vector<Vec3d>& u,
+                            const std::vector<Vec3d>& v) {
+  const ModelBody& body = simulation.model().bodies[place.body];
+  const std::size_t element = element_now(simulation, place);
+  const auto nodes = corners(body, element);
+  ProbeState state;
+  state.displacement = interpolate(nodes, place.weights, u);
+  state.velocity = interpolate(nodes, place.weights, v);
+  state.position = vec::add(*place.probe.point, *state.displacement);
+  if (asks(place.probe, Quantity::stress)) {
+    Material material = material_of(simulation.scene().bodies[place.body], body, element);
+    material.low = simulation.model().recovers ? low_volume : 0;
+    const auto s = cauchy_stress(material, gradient(body, element, place.weights, u));
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    state.stress = {none, none, none, none, none, none};
+    if (s) state.stress = {(*s)(0, 0), (*s)(1, 1), (*s)(2, 2), (*s)(0, 1), (*s)(1, 2), (*s)(2, 0)};
+  }
+  return state;
+}
+
+ProbeState Probes::of_nodes(Simulation& simulation, const Place& place, const std::vector<Vec3d>& u,
+                            const std::vector<Vec3d>& v) {
+  const ModelBody& body = simulation.model().bodies[place.body];
+  const std::vector<std::int32_t> nodes = select_nodes(place.probe.where, body, Virtual::with_anchors);
+  const auto mean = [&](const std::vector<Vec3d>& values) {
+    Vec3d sum{};
+    for (const std::int32_t n : nodes) sum = vec::add(sum, values[static_cast<std::size_t>(n)]);
+    return vec::mul(sum, 1 / static_cast<double>(nodes.size()));
+  };
+  ProbeState state;
+  state.displacement = mean(u);
+  state.velocity = mean(v);
+  state.position = vec::add(mean(body.rest), *state.displacement);
+  if (asks(place.probe, Quantity::reaction)) {
+    const std::vector<Vec3d> r = reactions(simulation, place.body);
+    state.reaction = Vec3d{};
+    for (const std::int32_t n : nodes) state.reaction = vec::add(*state.reaction, r[static_cast<std::size_t>(n)]);
+  }
+  return state;
+}
+
+std::vector<ProbeState> Probes::states(Simulation& simulation) const {
   std::vector<ProbeState> states(places_.size());
   for (std::size_t b = 0; b < simulation.model().bodies.size(); ++b) {
     if (std::none_of(places_.begin(), places_.end(), [&](const Place& p) { return p.body == b; })) continue;
@@ -148,28 +281,41 @@ std::vector<ProbeState> Probes::states(const Simulation& simulation) const {
     for (std::size_t i = 0; i < places_.size(); ++i) {
       const Place& place = places_[i];
       if (place.body != b) continue;
-      const auto nodes = corners(simulation.model().bodies[b], element_now(simulation, place));
-      states[i].displacement = interpolate(nodes, place.weights, u);
-      states[i].velocity = interpolate(nodes, place.weights, v);
-      states[i].position = vec::add(place.point.rest, states[i].displacement);
+      states[i] = place.probe.point ? at_point(simulation, place, u, v) : of_nodes(simulation, place, u, v);
     }
   }
   return states;
 }
 
-void Probes::write(const Simulation& simulation, const std::filesystem::path& file) {
+void Probes::write(Simulation& simulation, const std::filesystem::path& file) {
   if (empty() || simulation.step() == last_step_) return;
   last_step_ = simulation.step();
   if (table_.empty()) table_ = "time,step,probe,x,y,z,ux,uy,uz,vx,vy,vz\n";
   const std::vector<ProbeState> now = states(simulation);
   for (std::size_t i = 0; i < now.size(); ++i) {
-    table_ += fmt::format("{:.9g},{},{}", simulation.time(), simulation.step(), places_[i].point.name);
-    for (const Vec3d& value : {now[i].position, now[i].displacement, now[i].velocity}) {
-      table_ += fmt::format(",{:.9g},{:.9g},{:.9g}", value[0], value[1], value[2]);
-    }
+    table_ += fmt::format("{:.9g},{},{}", simulation.time(), simulation.step(), places_[i].probe.name);
+    for (const Quantity q : places_[i].probe.quantities) table_ += columns(now[i], q);
     table_ += '\n';
   }
   write_file(file, table_);
+}
+
+void Probes::write_each(Simulation& simulation, const std::filesystem::path& folder, const std::string& stem) {
+  if (empty() || simulation.step() == last_step_) return;
+  last_step_ = simulation.step();
+  const std::vector<ProbeState> now = states(simulation);
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    Place& place = places_[i];
+    if (place.table.empty()) {
+      place.table = "time [s],step";
+      for (const Quantity q : place.probe.quantities) place.table += header(q);
+      place.table += '\n';
+    }
+    place.table += fmt::format("{:.9g},{}", simulation.time(), simulation.step());
+    for (const Quantity q : place.probe.quantities) place.table += columns(now[i], q);
+    place.table += '\n';
+    write_file(folder / fmt::format("{}_{}.csv", stem, place.probe.name), place.table);
+  }
 }
 
 }  // namespace pliant::cli

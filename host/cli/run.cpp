@@ -72,25 +72,30 @@ class Run {
     if (scene.solver.enabled) return solve(scene);
     open(std::move(scene));
     watch_interrupt();
-    FrameGrid grid = write_first_frame();
+    std::vector<DueOutput> due{{write_first_frame(), [&] { write_frame(); }}};
+    if (const SceneProbes* probes = simulation_->scene().probes.get(); frames_ && probes != nullptr && own_pace(*probes)) {
+      write_scene_probes();
+      due.push_back(
+          {probes->every_steps > 0 ? FrameGrid::of_steps(probes->every_steps) : FrameGrid::of_seconds(probes->every_seconds),
+           [&] { write_scene_probes(); }});
+    }
     if (o_.profile) simulation_->backend().profile(true);
     RunLoop loop(*simulation_, end());
     RunProgress progress(o_.common, *simulation_, loop);
     const Stopwatch since_start;
     double saved = 0;
-    result_ = loop.run(
-        grid, [&] { write_frame(); },
-        [&](const RunResult& done) {
-          progress.show(done);
-          if (!o_.checkpoint_every || since_start.seconds() - saved < *o_.checkpoint_every) return;
-          save_on_the_way();
-          saved = since_start.seconds();
-        });
+    result_ = loop.run(due, [&](const RunResult& done) {
+      progress.show(done);
+      if (!o_.checkpoint_every || since_start.seconds() - saved < *o_.checkpoint_every) return;
+      save_on_the_way();
+      saved = since_start.seconds();
+    });
     progress.missed(blades_without_contact(*simulation_, false));
     progress.clear();
     if (!result_.diverged.empty()) return diverged();
     if (frames_) {
       write_frame();
+      write_scene_probes();
       frames_->finish();
     }
     if (!o_.checkpoint.empty()) write_checkpoint(o_.checkpoint, checkpoint());
@@ -129,9 +134,10 @@ class Run {
     if (!o_.out.empty()) frames_.emplace(o_.out, stem_, parse_formats(o_.formats), o_.picture.options());
     std::string reason;
     const auto model = std::make_shared<const Model>(checked_model(scene, o_.common, warnings_));
-    std::vector<ProbePoint> points;
+    std::vector<SceneProbe> points;
     for (const std::string& probe : o_.probes) points.push_back(parse_probe(probe));
     probes_ = Probes(std::move(points), *model);
+    if (scene.probes != nullptr) scene_probes_ = Probes(scene.probes->list, *model);
     auto backend = open_backend(o_.backend, &reason, model->nodes());
     o_.common.note("backend " + reason);
     if (!backend->info().bit_exact) o_.common.note("tolerance mode: " + backend->info().tolerance_reason);
@@ -178,7 +184,12 @@ class Run {
   void write_frame() {
     frames_->write(*simulation_);
     probes_.write(*simulation_, frames_->folder() / (stem_ + "_probes.csv"));
+    if (const SceneProbes* probes = simulation_->scene().probes.get(); probes != nullptr && !own_pace(*probes))
+      write_scene_probes();
   }
+
+  static bool own_pace(const SceneProbes& probes) { return probes.every_steps > 0 || probes.every_seconds > 0; }
+  void write_scene_probes() { scene_probes_.write_each(*simulation_, frames_->folder(), stem_); }
 
   /// A disk that is full for a while does not end a run; the checkpoint before stays.
   void save_on_the_way() {
@@ -203,15 +214,15 @@ class Run {
   }
 
   void report() {
-    report_run({o_.common, stem_, *simulation_, result_, probes_, warnings_, frames_ ? &*frames_ : nullptr, first_time_,
-                o_.hash, o_.deep_hash, o_.profile});
+    report_run({o_.common, stem_, *simulation_, result_, probes_, scene_probes_, warnings_, frames_ ? &*frames_ : nullptr,
+                first_time_, o_.hash, o_.deep_hash, o_.profile});
   }
 
   const Options& o_;
   const std::string stem_;
   std::optional<Simulation> simulation_;
   std::optional<FrameWriter> frames_;
-  Probes probes_;
+  Probes probes_, scene_probes_;
   RunResult result_;
   std::vector<std::string> warnings_;  // about surfaces
   double first_time_ = 0;

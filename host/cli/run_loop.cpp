@@ -32,9 +32,13 @@ std::int64_t RunLoop::remaining() const {
   return std::max<std::int64_t>(0, steps);
 }
 
-/// One batch that goes beyond neither the next frame nor the end. Returns its steps.
-std::int32_t RunLoop::batch(const FrameGrid& grid) {
-  const auto wanted = [&] { return std::max<std::int64_t>(1, std::min(remaining(), grid.steps_left(simulation_))); };
+/// One batch that goes beyond neither the next output nor the end. Returns its steps.
+std::int32_t RunLoop::batch(const std::vector<DueOutput>& due) {
+  const auto wanted = [&] {
+    std::int64_t steps = remaining();
+    for (const DueOutput& d : due) steps = std::min(steps, d.grid.steps_left(simulation_));
+    return std::max<std::int64_t>(1, steps);
+  };
   std::int32_t n = simulation_.next_batch(wanted());
   simulation_.begin_batch(n);
   // Only now the length of its steps is known: they may have grown, and fewer lead to the same time.
@@ -44,15 +48,14 @@ std::int32_t RunLoop::batch(const FrameGrid& grid) {
   return n;
 }
 
-RunResult RunLoop::run(FrameGrid& grid, const std::function<void()>& frame,
-                       const std::function<void(const RunResult&)>& after_batch) {
+RunResult RunLoop::run(std::vector<DueOutput>& due, const std::function<void(const RunResult&)>& after_batch) {
   RunResult result;
   std::vector<double> batch_ms;
   const std::int64_t first = simulation_.step();
-  grid.start(simulation_);
+  for (DueOutput& d : due) d.grid.start(simulation_);
   while (!simulation_.at_equilibrium() && !result.interrupted && remaining() > 0) {
     const Stopwatch clock;
-    const std::int32_t n = batch(grid);
+    const std::int32_t n = batch(due);
     const double seconds = clock.seconds();
     result.seconds += seconds;
     batch_ms.push_back(1e3 * seconds / n);
@@ -67,7 +70,9 @@ RunResult RunLoop::run(FrameGrid& grid, const std::function<void()>& frame,
     result.longest_dt = std::max(dt, result.longest_dt);
     result.interrupted = interrupted();
     after_batch(result);
-    if (grid.take(simulation_)) frame();
+    for (DueOutput& d : due) {
+      if (d.grid.take(simulation_)) d.write();
+    }
   }
   result.ms_per_step = median(std::move(batch_ms));
   return result;

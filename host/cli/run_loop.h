@@ -5,11 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "cli/frame_grid.h"
 #include "simulation/simulation.h"
 
 namespace pliant::cli {
-
-class FrameGrid;
 
 inline constexpr double kStepSlack = 1e-6;  ///< of a step: covers the rounding of time / dt at a multiple of the step
 inline constexpr std::int64_t kMostSteps = 1'000'000'000'000'000;
@@ -33,18 +32,24 @@ struct RunResult {
   bool interrupted = false;
 };
 
+/// What is to be written, and when.
+struct DueOutput {
+  FrameGrid grid;
+  std::function<void()> write;
+};
+
 class RunLoop {
  public:
   RunLoop(Simulation& simulation, const RunEnd& end) : simulation_(simulation), end_(end) {}
   /// Steps still to do at the present size of the step.
   [[nodiscard]] std::int64_t remaining() const;
   [[nodiscard]] const RunEnd& end() const { return end_; }
-  /// Run to the end; calls `frame` where `grid` says so and `after_batch` with what was done so far after every batch. After a
-  /// divergence the simulation holds the last good state.
-  RunResult run(FrameGrid& grid, const std::function<void()>& frame, const std::function<void(const RunResult&)>& after_batch);
+  /// Run to the end; does what is due where its grid says so, and calls `after_batch` with what was done so far after every
+  /// batch. After a divergence the simulation holds the last good state.
+  RunResult run(std::vector<DueOutput>& due, const std::function<void(const RunResult&)>& after_batch);
 
  private:
-  std::int32_t batch(const FrameGrid& grid);
+  std::int32_t batch(const std::vector<DueOutput>& due);
 
   Simulation& simulation_;
   RunEnd end_;

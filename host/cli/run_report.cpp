@@ -2,11 +2,13 @@
 #include "cli/run_report.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <nlohmann/json.hpp>
 
 #include "cli/run_events.h"
 #include "program/hash.h"
+#include "scene/keys.h"
 
 namespace pliant::cli {
 namespace {
@@ -36,7 +38,11 @@ class Report {
     add_inversions(json);
     if (!result_.diverged.empty()) json["diverged_step"] = result_.diverged_step;
     print_summary();
-    if (!r_.probes.empty()) json["probes"] = probes();
+    if (!r_.probes.empty() || !r_.scene_probes.empty()) {
+      json["probes"] = Json::array();
+      add_probes(r_.probes, json["probes"]);
+      add_probes(r_.scene_probes, json["probes"]);
+    }
     if (r_.profile) json["profile"] = profile();
     if (r_.hash && out_.quiet && out_.json != "-") std::puts(hash.c_str());
     out_.print("hash " + hash);
@@ -90,21 +96,31 @@ class Report {
     }
   }
 
-  [[nodiscard]] Json probes() const {
-    Json rows = Json::array();
-    const std::vector<ProbeState> now = r_.probes.states(s_);
+  void add_probes(const Probes& probes, Json& rows) const {
+    const std::vector<ProbeState> now = probes.states(s_);
     for (std::size_t i = 0; i < now.size(); ++i) {
-      const ProbePoint& point = r_.probes.point(i);
-      rows.push_back({{"name", point.name},
-                      {"body", s_.model().bodies[r_.probes.body(i)].name},
-                      {"rest", point.rest},
-                      {"position", now[i].position},
-                      {"displacement", now[i].displacement},
-                      {"velocity", now[i].velocity}});
-      out_.print(fmt::format("probe {}: displacement [{:.6g}, {:.6g}, {:.6g}] m", point.name, now[i].displacement[0],
-                             now[i].displacement[1], now[i].displacement[2]));
+      const SceneProbe& probe = probes.probe(i);
+      const ProbeState& state = now[i];
+      Json row{{"name", probe.name}, {"body", s_.model().bodies[probes.body(i)].name}};
+      if (probe.point) row["rest"] = *probe.point;
+      std::string text;
+      for (const Quantity q : probe.quantities) {
+        const std::string& word = word_of(quantity_words(), q);
+        if (q == Quantity::stress) {
+          row[word] = *state.stress;
+          text += fmt::format(", stress [{:.6g}] Pa", fmt::join(*state.stress, ", "));
+        } else {
+          row[word] = q == Quantity::position       ? *state.position
+                      : q == Quantity::displacement ? *state.displacement
+                      : q == Quantity::velocity     ? *state.velocity
+                                                    : *state.reaction;
+        }
+        if (q == Quantity::displacement) text += fmt::format(", displacement [{:.6g}] m", fmt::join(*state.displacement, ", "));
+        if (q == Quantity::reaction) text += fmt::format(", reaction [{:.6g}] N", fmt::join(*state.reaction, ", "));
+      }
+      rows.push_back(std::move(row));
+      if (!text.empty()) out_.print(fmt::format("probe {}:{}", probe.name, text.substr(1)));
     }
-    return rows;
   }
 
   void add_mass(Json& json) const {
@@ -190,7 +206,7 @@ class Report {
   }
 
   const RunReport& r_;
-  const Simulation& s_;
+  Simulation& s_;
   const Common& out_;
   const RunResult& result_;
   const RunEvents events_;

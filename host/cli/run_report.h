@@ -13,9 +13,10 @@ namespace pliant::cli {
 struct RunReport {
   const Common& common;
   const std::string& stem;  ///< of the scene
-  const Simulation& simulation;
+  Simulation& simulation;
   const RunResult& result;
-  const Probes& probes;
+  const Probes& probes;                      ///< of the command line
+  const Probes& scene_probes;                ///< of the scene
   const std::vector<std::string>& warnings;  ///< about surfaces
   const FrameWriter* frames = nullptr;       ///< nullptr: none were written
   double first_time = 0;                     ///< when this run began, on the scene's clock [s]

@@ -1,5 +1,6 @@
 """pliant run --probe: a material point and where it goes."""
 import csv
+import json
 
 import harness
 GRAVITY = 9.81
@@ -75,6 +76,96 @@ class Probe(harness.CliTest):
             self.refused(*run, text, words=[f"--probe is \"{text}\"", "NAME=x,y,z"])
         self.assertFalse((self.folder / "out").exists() and self.names("out"))
         self.refused("run", harness.SCENES / "beam_static.json", "--probe", "a=0,0,0", words=["--probe", "static"])
+
+
+class SceneProbes(harness.CliTest):
+    """The probes of a scene: tables of their own, reactions and stresses."""
+
+    def of(self, scene, *arguments):
+        run = self.json("run", scene, "--backend", "cpu:double", *arguments)
+        return {p["name"]: p for p in run["probes"]}, run
+
+    def near(self, found, expected, delta):
+        self.assertEqual(len(found), len(expected))
+        for a, b in zip(found, expected):
+            self.assertAlmostEqual(a, b, delta=delta)
+
+    def test_reactions_at_rest_carry_the_weight(self):
+        """Once gravity, which comes slowly, has its final value; in lattices, their tetrahedra, and full cells."""
+        for element in ("hex8", "tet4", "hex8full"):
+            scene = self.scene(body={"element": element, "prescribed": []}, relaxation={"tolerance": 1e-7},
+                               gravity={"acceleration": [3, -9.81, 0], "curve": "smooth", "duration": 0.05},
+                               probes=[{"name": "floor", "all": True, "quantities": ["reaction"]},
+                                       {"name": "middle", "box": [[-1, -0.001, -1], [1, 0.04, 1]], "quantities": ["reaction"]}])
+            probes, run = self.of(scene)
+            self.assertTrue(run["converged"])
+            self.near(probes["floor"]["reaction"], [-3 * run["mass"], GRAVITY * run["mass"], 0], 1e-4 * GRAVITY * run["mass"])
+            self.assertEqual(probes["middle"]["reaction"], [0, 0, 0])  # nothing holds these nodes
+            self.assertEqual(list(probes["floor"]), ["name", "body", "reaction"])
+
+    def test_reactions_are_those_of_the_static_solver(self):
+        body = {"element": "tet4"}
+        push = {"name": "push", "plane": [[0, 0.049, 0], [0, 1, 0]], "quantities": ["reaction"]}
+        hold = {"name": "hold", "plane": [[0, -0.049, 0], [0, -1, 0]], "quantities": ["reaction"]}
+        relaxed, _ = self.of(self.scene(body=body, relaxation={"tolerance": 1e-7}, probes=[push, hold]))
+        static = json.loads(self.pliant("run", self.scene(body=body, solver={"type": "static"}), "--json", "-").stdout)["bodies"][0]["reactions"]
+        by_entry = {r["at"]: r for r in static}
+        for name, entry in (("hold", "/bodies/0/fixed/0"), ("push", "/bodies/0/prescribed/0")):
+            self.near(relaxed[name]["reaction"], by_entry[entry]["force"], 2e-4)
+
+    def test_what_turns_a_body_has_its_inertia(self):
+        """All nodes of a cube circle about an axis at a constant rate: what moves them is m w^2 r, inwards, and what its damping takes."""
+        turn = {"all": True, "rotate": {"axis": [0, 0, 1], "about": [-0.3, 0, 0], "angle": 360}, "curve": "ramp", "duration": 0.5}
+        scene = self.scene(body={"fixed": [], "prescribed": [turn]}, gravity=[0, 0, 0], dt=0.0005,
+                           probes=[{"name": "all", "all": True, "quantities": ["position", "velocity", "reaction"]}])
+        probes, run = self.of(scene, "--seconds", 0.125)
+        rate, m = 2 * 3.14159265358979 / 0.5, run["mass"]
+        self.near(probes["all"]["position"], [-0.3, 0.3, 0], 1e-9)
+        self.near(probes["all"]["velocity"], [-0.3 * rate, 0, 0], 2e-2)  # of the step before
+        damping = 5 * m * 0.3 * rate  # of the cube's material, against the way
+        self.near(probes["all"]["reaction"], [-damping, -m * rate ** 2 * 0.3, 0], 1e-3 * m * rate ** 2 * 0.3)
+
+    def test_stress_of_a_confined_block(self):
+        """Uniform, so that it has a closed form; and its reaction is that stress on the face."""
+        young, poisson, stretch = 3000, 0.4, 0.9
+        mu, lame = young / (2 * (1 + poisson)), young * poisson / ((1 + poisson) * (1 - 2 * poisson))
+        axial, side = mu * (stretch - 1 / stretch) + lame * (stretch - 1), lame * (stretch - 1)
+        for element in ("hex8", "tet4"):
+            scene = self.scene(body={"element": element, "fixed": [{"all": True, "axes": "xz"}, {"plane": [[0, -0.049, 0], [0, -1, 0]]}]},
+                               gravity=[0, 0, 0], relaxation={"tolerance": 1e-8},
+                               probes=[{"name": "p", "point": [0.013, 0.007, -0.021], "quantities": ["stress", "position"]},
+                                       {"name": "top", "plane": [[0, 0.049, 0], [0, 1, 0]], "quantities": ["reaction"]}])
+            probes, _ = self.of(scene)
+            self.near(probes["p"]["stress"], [side, axial, side, 0, 0, 0], 2e-3 * abs(axial))
+            self.assertAlmostEqual(probes["top"]["reaction"][1], axial * 0.01, delta=2e-3 * abs(axial * 0.01))
+            self.near(probes["p"]["position"], [0.013, -0.05 + 0.057 * stretch, -0.021], 1e-6)
+
+    def test_tables(self):
+        """A file for each probe with units in its header, at a pace of its own, which changes nothing."""
+        probes = [{"name": "tip", "point": [0.01, 0.04, 0.01]},
+                  {"name": "clamp", "plane": [[0, -0.049, 0], [0, -1, 0]], "quantities": ["reaction"]}]
+        _, run = self.of(self.scene(dt=0.002, probes=probes, probe_every={"steps": 4}), "--steps", 10, "--every", 5, "--out", "a")
+        for name, columns in (("tip", "x [m],y [m],z [m],ux [m],uy [m],uz [m],vx [m/s],vy [m/s],vz [m/s]"), ("clamp", "rx [N],ry [N],rz [N]")):
+            with open(self.folder / "a" / f"scene_{name}.csv", newline="") as file:
+                rows = list(csv.reader(file))
+            self.assertEqual(",".join(rows[0]), "time [s],step," + columns)
+            self.assertEqual([int(r[1]) for r in rows[1:]], [0, 4, 8, 10])
+        last = {p["name"]: p for p in run["probes"]}["clamp"]["reaction"]
+        self.near([float(v) for v in rows[-1][2:]], last, 1e-7)
+        self.of(self.scene(dt=0.002, probes=probes, probe_every=0.01), "--steps", 10, "--out", "b")
+        with open(self.folder / "b" / "scene_tip.csv", newline="") as file:
+            self.assertEqual([int(r["step"]) for r in csv.DictReader(file)], [0, 5, 10])
+        self.of(self.scene(dt=0.002, probes=probes), "--steps", 10, "--every", 5, "--out", "c")
+        with open(self.folder / "c" / "scene_tip.csv", newline="") as file:
+            self.assertEqual([int(r["step"]) for r in csv.DictReader(file)], [0, 5, 10])
+        plain = self.json("run", self.scene(dt=0.002), "--backend", "cpu:double", "--steps", 10)
+        self.assertEqual(plain["deep_hash"], run["deep_hash"])
+
+    def test_refused(self):
+        for keys, text in (({"probes": [{"name": "p", "point": [1, 0, 0]}]}, "/probes/0: [1, 0, 0] m is in no body at rest"),
+                           ({"probes": [{"name": "p", "sphere": [[1, 0, 0], 0.1]}]}, "/probes/0: no node in this set"),
+                           ({"probes": [{"name": "p", "all": True}], "solver": {"type": "static"}}, "/probes: got")):
+            self.refused("run", self.scene(**keys), "--backend", "cpu", words=[text])
 
 
 if __name__ == "__main__":
