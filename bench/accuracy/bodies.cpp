@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <random>
 
@@ -10,6 +11,7 @@
 #include "geometry/mesh.h"
 #include "io/obj.h"
 #include "model/body_mesh.h"
+#include "simulation/coupling.h"
 
 namespace pliant::bench::accuracy {
 namespace {
@@ -138,7 +140,8 @@ void add_tractions(const Problem& p, const statics::Mesh& mesh, double depth, co
   }
 }
 
-void choose_method(const Case& c, double spacing, double damping, double bound, Built& built) {
+/// `longest`: the longest step of shape matching as stiff as the problem's material [s].
+void choose_method(const Case& c, const std::function<double()>& longest, double spacing, double bound, Built& built) {
   const Problem& p = *c.problem;
   const Method& m = *c.method;
   DeformationModel& model = built.scene.bodies[0].model;
@@ -146,29 +149,26 @@ void choose_method(const Case& c, double spacing, double damping, double bound, 
   model.pointer = "/bodies/0/model";
   if (m.type == ModelType::tled) return;
   model.width = m.width;
-  // E = k rho d^2 alpha / b with b = h^2 / (1 + c h / 2) <= h^2: the largest step that reaches E is this or a little more.
-  const double k = m.width * (m.width + 1) / 3.0;
-  const double largest = spacing * std::sqrt(k * kDensity / p.young);
+  model.young = p.young;
   if (m.type == ModelType::hybrid) {
-    model.young = p.young;
+    // E = k rho d^2 alpha / b with b = h^2 / (1 + c h / 2) <= h^2.
+    const double k = m.width * (m.width + 1) / 3.0, largest = spacing * std::sqrt(k * kDensity / p.young);
     model.ratio = m.ratio;
     model.seed = p.seed;
     model.substeps = std::clamp(static_cast<int>(0.75 * largest / bound), 1, 16);
     return;
   }
-  const double frame = 1.0 / 60;
+  const double frame = 1.0 / 60, largest = longest();
   if (c.step == "1/60") {
     built.scene.dt = frame;
     model.alpha = 1;
     // As soft as the lattice is at this step, so that it settles as fast as it can.
-    if (largest > frame) {
-      model.young = p.young;
-    } else {
-      built.scene.bodies[0].material.damping = damping * largest / frame;
+    if (largest <= frame) {
+      model.young = 0;
+      built.scene.bodies[0].material.damping *= largest / frame;
     }
     return;
   }
-  model.young = p.young;
   built.scene.dt = std::min(std::stod(c.step) * largest, frame);
 }
 
@@ -225,7 +225,12 @@ Built build(const Case& c, const fs::path& scenes) {
   built.scene.bodies.push_back(body);
   if (c.method->type == ModelType::tled || c.method->type == ModelType::hybrid) built.scene.safety = std::stod(c.step);
   const double wave = std::sqrt((body.material.moduli.lambda + 2 * body.material.moduli.mu) / kDensity);
-  choose_method(c, built.spacing, body.material.damping, built.spacing / wave, built);
+  const auto longest = [&] {
+    Scene scene = built.scene;
+    scene.dt = 0;
+    return longest_step(build_model(scene, solids), scene);
+  };
+  choose_method(c, longest, built.spacing, built.spacing / wave, built);
   Model model = build_model(built.scene, std::move(solids));
   merge_curves(model);
   built.model = std::make_shared<const Model>(std::move(model));

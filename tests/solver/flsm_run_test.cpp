@@ -20,7 +20,10 @@ Body busy_bar(ModelType type, ElementKind element = ElementKind::hex8) {
   const Box box{{7, 4, 3}, 0.01};
   Body body = matched_box(box, type, 0.035, element);
   body.material.damping = 2;
-  body.fixed = {{face(2, 0), {true, true, true}}};
+  Selection near = face(2, 0), far = near;
+  near.b[0] = 0.069;  // where the pull moves nodes they are held across it
+  far.a[0] = 0.069;
+  body.fixed = {{near, {true, true, true}}, {far, {false, true, true}}};
   body.prescribed = {pull(0, 0.07, 0.004, smooth(0.05))};
   body.forces.push_back({face(1, 0.04), {0, 0.02, 0.01}, smooth(0.03)});
   body.angular_velocity = {1, 2, -1};
