@@ -231,7 +231,7 @@ Built build(const Case& c, const fs::path& scenes) {
     return longest_step(build_model(scene, solids), scene);
   };
   choose_method(c, longest, built.spacing, built.spacing / wave, built);
-  Model model = build_model(built.scene, std::move(solids));
+  Model model = build_model(built.scene, solids);
   merge_curves(model);
   built.model = std::make_shared<const Model>(std::move(model));
   return built;

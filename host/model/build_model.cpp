@@ -87,8 +87,8 @@ std::vector<std::int32_t> element_order(const std::vector<std::array<std::int32_
   return order;
 }
 
-/// What a thin element holds less than what it is as stiff as, it gets as inertia: however thin, it keeps its shape and vibrates
-/// like any other. `full`: mass of a full one [kg].
+/// What a thin element holds less than what it is as stiff as, it gets as inertia: however thin, it keeps its shape and
+/// vibrates like any other. `full`: mass of a full one [kg].
 template <std::size_t N>
 void add_inertia(Model& model, const std::array<std::int32_t, N>& slots, double fill, double stiff, double full) {
   if (model.added.empty() || stiff <= fill) return;
