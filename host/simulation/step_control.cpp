@@ -19,8 +19,8 @@ namespace {
 constexpr std::int64_t kAdaptEvery = 256;
 constexpr std::int64_t kFirstAdapts[] = {64, 128};
 constexpr int kAdaptIterations = 20;
-/// A diverged batch is tried again with a smaller automatic step until that is this share of what the estimate allows.
-constexpr double kLeastBackoff = 0.1;
+/// A batch that diverged or burst is tried again with a smaller automatic step, until that is this share of what is allowed.
+constexpr double kLeastBackoff = 0.02;
 constexpr double kBackoff = 0.7;
 constexpr double kMostBallast = 0.01;  ///< of the mass
 constexpr double kMostGrowth = 2;      ///< of the step from one look to the next
