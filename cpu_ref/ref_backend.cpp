@@ -160,11 +160,11 @@ class RefBackend final : public Backend {
   /// A few indices, or bricks, are not worth a second thread.
   static bool splits(const Prepared& p) { return p.count >= (p.shape == Shape::bricks ? 4 : 1024); }
 
-  /// The share of one thread: contiguous, and for `lanes` made of whole sixteens.
-  static Range share(const Prepared& p, int thread, int threads) {
+  /// One piece of as many as there are threads: contiguous, and for `lanes` made of whole sixteens.
+  static Range share(const Prepared& p, int piece, int pieces) {
     const std::int64_t unit = p.shape == Shape::lanes ? 16 : 1;
     const std::int64_t units = p.count / unit;
-    return {units * thread / threads * unit, units * (thread + 1) / threads * unit};
+    return {units * piece / pieces * unit, units * (piece + 1) / pieces * unit};
   }
 
   static void fill(const Buffer& buffer, Storage& s) {
@@ -240,51 +240,27 @@ class RefBackend final : public Backend {
   }
 
   void run_list(std::int32_t first, std::int32_t count) {
-    const bool parallel = std::any_of(list_.begin(), list_.end(), [](const Prepared* p) { return splits(*p); });
-    if (profiling_) {
-      run_profiled(first, count);
-    } else if (parallel && pool_.threads() > 1) {
-      pool_.run([&](int thread) { run_share(thread, first, count); });
-    } else {
-      const DefaultFloatEnvironment environment;
-      for (std::int32_t step = first; step < first + count; ++step) {
-        for (const Prepared* p : list_) p->execute({0, p->count}, step);
-      }
-    }
-  }
-
-  /// One thread's part of a batch. The threads meet between two passes unless both run on the caller alone.
-  void run_share(int thread, std::int32_t first, std::int32_t count) {
-    const int threads = pool_.threads();
-    bool spread = false;  // whether other threads may still be at work on the previous pass
+    const DefaultFloatEnvironment environment;
     for (std::int32_t step = first; step < first + count; ++step) {
-      for (const Prepared* p : list_) {
-        const bool split = splits(*p);
-        if (split || spread) pool_.barrier().arrive_and_wait();
-        spread = split;
-        if (split) {
-          p->execute(share(*p, thread, threads), step);
-        } else if (thread == 0) {
-          p->execute({0, p->count}, step);
-        }
-      }
-    }
-  }
-
-  void run_profiled(std::int32_t first, std::int32_t count) {
-    pool_.run([&](int thread) {
-      for (std::int32_t step = first; step < first + count; ++step) {
-        for (Prepared* p : list_) {
+      for (Prepared* p : list_) {
+        if (profiling_) {
           const auto start = Clock::now();
-          const bool split = splits(*p);
-          if (split || thread == 0) p->execute(split ? share(*p, thread, pool_.threads()) : Range{0, p->count}, step);
-          pool_.barrier().arrive_and_wait();
-          if (thread != 0) continue;
+          execute(*p, step);
           p->seconds += std::chrono::duration<double>(Clock::now() - start).count();
           ++p->launches;
+        } else {
+          execute(*p, step);
         }
       }
-    });
+    }
+  }
+
+  void execute(const Prepared& p, std::int32_t step) {
+    if (splits(p)) {
+      pool_.run([&](int piece) { p.execute(share(p, piece, pool_.threads()), step); });
+    } else {
+      p.execute({0, p.count}, step);
+    }
   }
 
   const Buffer& row(BufferId id) const { return table_.row(id); }

@@ -13,6 +13,14 @@
 namespace pliant::ref {
 namespace {
 
+using namespace std::chrono_literals;
+
+/// A wait shorter than this is noise, and so is one shorter than the caller's own work in the same pass.
+constexpr auto kLateAtLeast = 200us;
+/// After a late piece the caller works alone for this many times the wait, twice as long each time that it happens again soon.
+constexpr int kAloneTimes = 8;
+constexpr auto kAloneAtMost = 2s;
+
 void relax() {
 #if defined(__x86_64__)
   _mm_pause();
@@ -21,13 +29,16 @@ void relax() {
 #endif
 }
 
-/// Waits until `value` is no longer `old`: some 20 us of spinning, about the price of being woken, then sleep.
-void wait_change(const std::atomic<std::uint32_t>& value, std::uint32_t old) {
+/// Waits until ready(value): some 20 us of spinning, about the price of being woken, then sleep.
+template <class T, class Ready>
+void wait_until(const std::atomic<T>& value, const Ready& ready) {
   for (int i = 0; i < 500; ++i) {
-    if (value.load(std::memory_order_acquire) != old) return;
+    if (ready(value.load(std::memory_order_acquire))) return;
     relax();
   }
-  while (value.load(std::memory_order_acquire) == old) value.wait(old, std::memory_order_acquire);
+  for (T seen = value.load(std::memory_order_acquire); !ready(seen); seen = value.load(std::memory_order_acquire)) {
+    value.wait(seen, std::memory_order_acquire);
+  }
 }
 
 int available_threads() {
@@ -40,52 +51,62 @@ int available_threads() {
 
 }  // namespace
 
-void Barrier::arrive_and_wait() {
-  const std::uint32_t phase = phase_.load(std::memory_order_acquire);
-  if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 == threads_) {
-    arrived_.store(0, std::memory_order_relaxed);
-    phase_.store(phase + 1, std::memory_order_release);
-    phase_.notify_all();
-  } else {
-    wait_change(phase_, phase);
-  }
-}
-
 ThreadPool::ThreadPool(int threads)
-    : threads_(threads > 0 ? threads : available_threads()), barrier_(threads_), finished_(threads_) {
+    : threads_(threads > 0 ? threads : available_threads()),
+      tickets_(std::make_unique<Ticket[]>(static_cast<std::size_t>(threads_))) {
   for (int t = 1; t < threads_; ++t) workers_.emplace_back([this, t] { serve(t); });
 }
 
 ThreadPool::~ThreadPool() {
   stop_.store(true, std::memory_order_relaxed);
-  job_.fetch_add(1, std::memory_order_release);
-  job_.notify_all();
+  pass_.fetch_add(1, std::memory_order_release);
+  pass_.notify_all();
   for (std::thread& worker : workers_) worker.join();
 }
 
-void ThreadPool::run(const std::function<void(int)>& work) {
-  const DefaultFloatEnvironment environment;
-  if (threads_ == 1) {
-    work(0);
-    return;
+void ThreadPool::share(Call call, const void* work) {
+  const auto start = Clock::now();
+  call_ = call;
+  work_ = work;
+  done_.store(0, std::memory_order_relaxed);
+  const std::uint32_t pass = pass_.fetch_add(1, std::memory_order_release) + 1;
+  pass_.notify_all();
+  work_through(pass, 0);
+  const auto all = [this](int done) { return done == threads_; };
+  if (all(done_.load(std::memory_order_acquire))) return;
+  const auto ready = Clock::now();
+  wait_until(done_, all);
+  note_wait(ready - start, Clock::now() - ready);
+}
+
+void ThreadPool::work_through(std::uint32_t pass, int first) {
+  for (int k = 0; k < threads_; ++k) {
+    const int i = (first + k) % threads_;
+    // A thread that comes late, to a pass that has ended, finds every ticket taken in that pass or a later one.
+    std::uint32_t before = pass - 1;
+    if (!tickets_[static_cast<std::size_t>(i)].pass.compare_exchange_strong(before, pass, std::memory_order_acq_rel)) continue;
+    call_(work_, i);
+    if (done_.fetch_add(1, std::memory_order_acq_rel) + 1 == threads_) done_.notify_all();
   }
-  work_ = &work;
-  job_.fetch_add(1, std::memory_order_release);
-  job_.notify_all();
-  work(0);
-  finished_.arrive_and_wait();
 }
 
 void ThreadPool::serve(int thread) {
   const DefaultFloatEnvironment environment;
   std::uint32_t seen = 0;
   while (true) {
-    wait_change(job_, seen);
-    ++seen;
+    wait_until(pass_, [seen](std::uint32_t pass) { return pass != seen; });
     if (stop_.load(std::memory_order_relaxed)) return;
-    (*work_)(thread);
-    finished_.arrive_and_wait();
+    seen = pass_.load(std::memory_order_acquire);
+    work_through(seen, thread);
   }
+}
+
+void ThreadPool::note_wait(Clock::duration own, Clock::duration waited) {
+  if (waited < std::max<Clock::duration>(kLateAtLeast, own)) return;
+  const auto now = Clock::now();
+  const bool again = now - alone_until_ < 2 * alone_;
+  alone_ = std::min<Clock::duration>(again ? 2 * alone_ : kAloneTimes * waited, kAloneAtMost);
+  alone_until_ = now + alone_;
 }
 
 }  // namespace pliant::ref
