@@ -68,7 +68,7 @@ CutReport TopologyEdits::run_blades(const std::vector<BladeMove>& moves, std::sp
   CutReport report;
   const Stopwatch clock;
   std::vector<CutEdges> edges(run_.scene.bodies.size());
-  std::vector<double> u = run_.loaded.u();
+  std::vector<double> u = run_.u();
   std::map<std::string, std::map<std::int32_t, BladeTrace>> traces;
   std::vector<std::string> met = run_.state.blades.met;
   for (std::size_t b = 0; b < edges.size(); ++b) {

@@ -62,6 +62,8 @@ void ModelSwap::run(const Scene& scene, std::vector<NodeOrigins> origins, const 
     restore();
     throw;
   }
+  run_.state.offset = std::move(offset_);
+  run_.place_surface();
   upload_coupling(run_);
   run_.state.ballast = std::move(ballast_);
   run_.state.kept.reset();  // copies of the old model's buffers
@@ -113,6 +115,8 @@ void ModelSwap::load_surface() {
 }
 
 void ModelSwap::carry_motion() {
+  const std::vector<double>& before = run_.state.offset;
+  if (!before.empty()) offset_.assign(3 * static_cast<std::size_t>(model_->slots), 0.0);
   for (std::size_t b = 0; b < v_.size(); ++b) {
     const NodeOrigins& origins = origins_[b];
     const std::vector<std::int32_t>&slots = model_->bodies[b].slot, &old_slots = old_model_->bodies[b].slot;
@@ -127,6 +131,7 @@ void ModelSwap::carry_motion() {
       const auto slot = static_cast<std::size_t>(slots[n]);
       const double* moved = &old_u_[4 * static_cast<std::size_t>(old_slots[origins.of(n)])];
       const double step = substeps_of(*model_, slot) * run_.state.clock.dt;
+      if (!before.empty()) std::copy_n(&before[3 * static_cast<std::size_t>(old_slots[origins.of(n)])], 3, &offset_[3 * slot]);
       for (std::size_t c = 0; c < 3; ++c) {
         new_u_[4 * slot + c] = moved[c];
         new_w_[4 * slot + c] = step * velocity[n][c];
@@ -140,6 +145,7 @@ void ModelSwap::carry_motion() {
     std::fill_n(new_u_.begin() + at, 3, 0.0);
     std::fill_n(new_w_.begin() + at, 3, 0.0);
   }
+  for (std::size_t i = 0; i < offset_.size(); ++i) new_u_[i / 3 * 4 + i % 3] -= offset_[i];
   for (std::size_t slot = 0; slot < model_->mass.size(); ++slot) new_w_[4 * slot + 3] = run_.decay(*model_, slot);
 }
 
@@ -147,8 +153,9 @@ void ModelSwap::restore() {
   Program program = build_program(*old_model_, {run_.scene.integrator, run_.settings.batch_steps});
   Program surface = surface_program(old_model_->surface, program);
   run_.loaded.load(old_model_, std::move(program), std::move(surface));
-  run_.loaded.write_u(old_u_);
+  run_.write_u(old_u_);
   run_.loaded.write_w(old_w_);
+  run_.place_surface();
   upload_coupling(run_);
   if (!run_.state.forces.empty()) loads_.upload();
   run_.state.kept.reset();  // its copies are gone

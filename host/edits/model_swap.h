@@ -28,7 +28,7 @@ struct NodeOrigins {
 /// Every node keeps its displacement, and its momentum goes where its mass goes. Construct, edit the bodies, and run() once.
 class ModelSwap {
  public:
-  /// `u`: what node_u holds. Adds its times to `report`.
+  /// `u`: RunContext::u(). Adds its times to `report`.
   ModelSwap(RunContext& run, HostLoads& loads, EditedBodies& bodies, std::vector<double> u, CutReport& report);
   /// `scene`: with its operational regions as they are to be. The bodies' surfaces may still be in the making until `ready`
   /// returns, which may throw. Throws with the old model back in place.
@@ -56,9 +56,9 @@ class ModelSwap {
   std::vector<NodeOrigins> origins_;
   std::shared_ptr<Model> model_;
   std::vector<NodeInertia> ballast_;
-  bool kept_ = false;                        ///< the surface of the old model is in the new one
-  const SurfaceChanges* changes_ = nullptr;  ///< where it differs from what was kept
-  std::vector<double> new_u_, new_w_;
+  bool kept_ = false;                           ///< the surface of the old model is in the new one
+  const SurfaceChanges* changes_ = nullptr;     ///< where it differs from what was kept
+  std::vector<double> new_u_, new_w_, offset_;  ///< offset_: RunState::offset of the new model
 };
 
 }  // namespace pliant

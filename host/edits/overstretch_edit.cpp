@@ -25,7 +25,7 @@ void TopologyEdits::open_overstretched() {
   const double limit = run_.scene.break_stretch;
   if (!(limit > 0) || (run_.scene.blades.empty() && run_.state.cuts.empty())) return;
   EditedBodies& all = bodies();
-  std::vector<double> u = run_.loaded.u();
+  std::vector<double> u = run_.u();
   std::vector<CutEdges> edges(all.size());
   CutReport report;
   for (std::size_t b = 0; b < all.size(); ++b) {

@@ -35,7 +35,7 @@ void TopologyEdits::move_regions() {
   if (run_.phase() != 0) return;
   const RunState& state = run_.state;
   const Vec3d tool = state.tool.value_or(run_.scene.tool.position(state.clock.time()));
-  std::vector<double> u = run_.loaded.u();
+  std::vector<double> u = run_.u();
   std::vector<Vec3d> seeds;
   bool moved = false;
   for (std::size_t b = 0; b < bodies_of_scene.size(); ++b) {

@@ -9,7 +9,7 @@ namespace pliant {
 void TopologyEdits::make_tears() {
   if (!run_.settings.tears || !run_.begins_after(run_.state.clock.step, kTearSteps)) return;
   EditedBodies& all = bodies();
-  const std::vector<double> u = run_.loaded.u();
+  const std::vector<double> u = run_.u();
   std::vector<std::vector<TetFace>> faces(all.size());
   bool any = false;
   for (std::size_t b = 0; b < faces.size(); ++b) {

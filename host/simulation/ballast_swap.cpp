@@ -20,6 +20,7 @@ void load_with_state(RunContext& run, std::shared_ptr<const Model> model, const 
   Program surface = surface_program(model->surface, program);
   run.loaded.load(std::move(model), std::move(program), std::move(surface));
   write_buffers(snapshot, run.loaded);
+  run.place_surface();
 }
 
 }  // namespace

@@ -36,6 +36,7 @@ class LoadedModel {
   [[nodiscard]] BufferId surface_x() const;
   [[nodiscard]] Backend& backend() const { return *backend_; }
 
+  /// node_u and node_w as they are; displacements: RunContext::u().
   [[nodiscard]] std::vector<double> u() const { return backend_->read_reals(ids_.u); }
   [[nodiscard]] std::vector<double> w() const { return backend_->read_reals(ids_.w); }
   void write_u(const std::vector<double>& u) { backend_->write_reals(ids_.u, u); }
@@ -56,7 +57,7 @@ class LoadedModel {
 
   /// [slots][3] whether the component moves freely.
   [[nodiscard]] const std::vector<char>& free() const { return free_; }
-  /// Present positions of a body's nodes [m]; `u`: what node_u holds.
+  /// Present positions of a body's nodes [m]; `u`: displacements, in texels.
   [[nodiscard]] std::vector<Vec3d> positions(const std::vector<double>& u, std::size_t body) const;
   /// The first three numbers of each of a body's texels, times `factor`.
   [[nodiscard]] std::vector<Vec3d> pick(const std::vector<double>& texels, std::size_t body, double factor) const;

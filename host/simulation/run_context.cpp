@@ -40,6 +40,29 @@ std::vector<Vec3d> RunContext::velocities(const std::vector<double>& w, std::siz
   return v;
 }
 
+std::vector<double> RunContext::u() const {
+  std::vector<double> u = loaded.u();
+  for (std::size_t i = 0; i < state.offset.size(); ++i) u[i / 3 * 4 + i % 3] += state.offset[i];
+  return u;
+}
+
+void RunContext::write_u(std::vector<double> u) const {
+  for (std::size_t i = 0; i < state.offset.size(); ++i) u[i / 3 * 4 + i % 3] -= state.offset[i];
+  loaded.write_u(u);
+}
+
+void RunContext::place_surface() const {
+  const ModelSurface& s = model().surface;
+  if (state.offset.empty() || s.rest.empty()) return;
+  const BufferId id = loaded.surface_x() - 3;  // schedule/surface_program.cpp
+  std::vector<double> rest = backend().read_reals(id);
+  for (std::size_t v = 0; v < s.rest.size(); ++v) {
+    const auto node = static_cast<std::size_t>(s.nodes[v][0]);  // the others belong to the same piece
+    for (std::size_t c = 0; c < 3; ++c) rest[4 * v + c] = s.rest[v][c] + state.offset[3 * node + c];
+  }
+  backend().write_reals(id, rest);
+}
+
 void RunContext::upload_params() const {
   const Vec3d& g = scene.gravity;
   loaded.write_params({state.clock.dt, g[0], g[1], g[2], settings.increment_floor, settings.displacement_grid,

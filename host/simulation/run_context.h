@@ -47,6 +47,13 @@ struct RunContext {
   /// Velocities (u_n - u_(n-1)) / h of a body's nodes [m/s] from what node_w holds.
   [[nodiscard]] std::vector<Vec3d> velocities(const std::vector<double>& w, std::size_t body) const;
 
+  /// node_u with what RunState::offset holds: displacements [m], and in the fourth number what node_u has there.
+  [[nodiscard]] std::vector<double> u() const;
+  /// The reverse: write node_u.
+  void write_u(std::vector<double> u) const;
+  /// Let the embedded surface begin where RunState::offset says. To be called when that changes, and when a model was loaded.
+  void place_surface() const;
+
   void upload_params() const;
   /// The curves at the next `steps` steps.
   void upload_curves(std::int32_t steps) const;

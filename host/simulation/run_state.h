@@ -96,6 +96,7 @@ struct RunState {
   BladeState blades;
   PendingEdits pending;
   std::vector<HostForce> forces;
+  std::vector<double> offset;         ///< [slots][3] of the displacement, what node_u leaves out (drift.h) [m]; empty: nothing
   std::vector<NodeInertia> ballast;   ///< what elements got so that they stand the step (model/ballast.h)
   std::optional<Vec3d> tool;          ///< where the host put the tool [m]; nothing: on its path
   std::int64_t opened = 0;            ///< edges that parted because they were stretched too far
@@ -164,7 +165,8 @@ template <class V>
 void visit(V& v, RunState& s) {
   v("clock", s.clock), v("limit", s.limit), v("relaxation", s.relaxation), v("kept", s.kept), v("cuts", s.cuts);
   v("tears", s.tears), v("seeds", s.seeds), v("blades", s.blades), v("pending", s.pending), v("forces", s.forces);
-  v("ballast", s.ballast), v("tool", s.tool), v("opened", s.opened), v("topology_version", s.topology_version);
+  v("offset", s.offset), v("ballast", s.ballast), v("tool", s.tool), v("opened", s.opened),
+      v("topology_version", s.topology_version);
 }
 
 /// Its bytes, the same on every machine: names, then values of eight little-endian bytes.

@@ -105,6 +105,7 @@ void Simulation::begin_batch(std::int32_t steps) {
   const bool on_grid = step_.on_grid(step());
   if (on_grid) edits_.update();
   step_.adapt_when_due();
+  if (on_grid) drift_.follow();
   if (on_grid || !state_.kept) keep_state();
   run_.upload_params();
   run_.upload_curves(steps);
@@ -304,12 +305,14 @@ void Simulation::restore(const Snapshot& snapshot) {
     loaded_.load(std::move(model), std::move(program), std::move(surface));
     write_buffers(snapshot, loaded_);
     state_ = next;
+    run_.place_surface();
     upload_coupling(run_);  // the automatic beta belongs to the step
     if (!state_.forces.empty()) loads_.upload();
   } catch (...) {
     load(old_model);
     write_buffers(before, loaded_);
     state_ = before.state;
+    run_.place_surface();
     upload_coupling(run_);
     if (!state_.forces.empty()) loads_.upload();
     throw;

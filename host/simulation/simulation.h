@@ -9,6 +9,7 @@
 
 #include "edits/topology_edits.h"
 #include "simulation/divergence.h"
+#include "simulation/drift.h"
 #include "simulation/host_loads.h"
 #include "simulation/snapshot.h"
 #include "simulation/step_control.h"
@@ -55,7 +56,7 @@ class Simulation {
   double estimate_stable_dt(int iterations = 48) { return step_.estimate(iterations); }
 
   /// Displacements of a body's nodes in the order of its mesh or lattice [m].
-  [[nodiscard]] std::vector<Vec3d> displacements(std::size_t body) const { return loaded_.pick(loaded_.u(), body, 1); }
+  [[nodiscard]] std::vector<Vec3d> displacements(std::size_t body) const { return loaded_.pick(run_.u(), body, 1); }
   /// Backward-difference velocities (u_n - u_(n-1)) / h [m/s].
   [[nodiscard]] std::vector<Vec3d> velocities(std::size_t body) const;
   /// R - F of the present configuration, without gravity [N]; at fixed nodes minus the reaction.
@@ -131,6 +132,7 @@ class Simulation {
   LoadedModel loaded_;
   RunContext run_{scene_, settings_, loaded_, state_};
   StepControl step_{run_};
+  Drift drift_{run_};
   HostLoads loads_{run_};
   TopologyEdits edits_{run_, step_, loads_};
   Inversions inversions_;

@@ -154,6 +154,9 @@ void check_state(const RunState& state, const Model& model, const Scene& scene) 
     need(f.body < model.bodies.size() && f.node >= 0 && vec::finite(f.force), "a force of the host");
   }
   need(!state.tool || vec::finite(*state.tool), "the tool is not finite");
+  need((state.offset.empty() || state.offset.size() == 3 * static_cast<std::size_t>(model.slots)) &&
+           std::all_of(state.offset.begin(), state.offset.end(), [](double o) { return std::isfinite(o); }),
+       "how far loose pieces have flown");
   need(state.topology_version >= 0, "its number of edits");
 }
 

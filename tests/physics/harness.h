@@ -279,7 +279,10 @@ inline std::vector<Vec3d> texels(const std::vector<double>& reals) {
   return out;
 }
 inline std::vector<Vec3d> read_texels(const Simulation& sim, const char* buffer) {
-  return texels(sim.backend().read_reals(sim.program().find(buffer)));
+  std::vector<Vec3d> out = texels(sim.backend().read_reals(sim.program().find(buffer)));
+  const std::vector<double>& offset = sim.state().offset;  // what node_u leaves out of the displacement
+  for (std::size_t i = 0; i < offset.size() && std::string(buffer) == "node_u"; ++i) out[i / 3][i % 3] += offset[i];
+  return out;
 }
 /// Write the three components of every slot that is a node.
 inline void write_texels(Simulation& sim, const char* buffer, const std::vector<Vec3d>& values) {

@@ -1,0 +1,100 @@
+#include "simulation/drift.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <span>
+
+#include "model/each_hex.h"
+
+namespace pliant {
+namespace {
+
+/// Disjoint sets of slots, each named by its lowest.
+class Sets {
+ public:
+  explicit Sets(std::int32_t count) : parent_(static_cast<std::size_t>(count)) { std::iota(parent_.begin(), parent_.end(), 0); }
+  std::int32_t find(std::int32_t s) {
+    while (at(s) != s) s = at(s) = at(at(s));
+    return s;
+  }
+  void unite(std::span<const std::int32_t> slots) {
+    for (const std::int32_t s : slots) {
+      const std::int32_t a = find(slots.front()), b = find(s);
+      at(std::max(a, b)) = std::min(a, b);
+    }
+  }
+
+ private:
+  std::int32_t& at(std::int32_t s) { return parent_[static_cast<std::size_t>(s)]; }
+  std::vector<std::int32_t> parent_;
+};
+
+}  // namespace
+
+void Drift::find_loose_pieces() {
+  model_ = run_.loaded.shared_model();
+  loose_.clear();
+  const Model& m = *model_;
+  Sets sets(m.slots);
+  for (const TetBatch& batch : m.tets) {
+    for (const auto& nodes : batch.nodes) sets.unite(nodes);
+  }
+  for_each_hex(m, [&](const HexView& hex) { sets.unite(hex.slots); });
+  for (const FlsmBatch& batch : m.flsm) sets.unite(m.bodies[static_cast<std::size_t>(batch.body)].slot);
+  std::vector<char> held(static_cast<std::size_t>(m.slots), false);
+  for (const Constraint& c : m.constraints) held[static_cast<std::size_t>(sets.find(c.slot))] = true;
+  std::vector<std::int32_t> piece_of(static_cast<std::size_t>(m.slots), -1);
+  for (std::int32_t s = 0; s < static_cast<std::int32_t>(m.mass.size()); ++s) {
+    const auto set = static_cast<std::size_t>(sets.find(s));
+    if (!(m.mass[static_cast<std::size_t>(s)] > 0) || held[set]) continue;
+    if (piece_of[set] < 0) {
+      piece_of[set] = static_cast<std::int32_t>(loose_.size());
+      loose_.emplace_back();
+    }
+    loose_[static_cast<std::size_t>(piece_of[set])].slots.push_back(s);
+  }
+  for (Piece& piece : loose_) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      double low = std::numeric_limits<double>::max(), high = -low;
+      for (const std::int32_t s : piece.slots) {
+        low = std::min(low, m.rest[static_cast<std::size_t>(s)][c]);
+        high = std::max(high, m.rest[static_cast<std::size_t>(s)][c]);
+      }
+      piece.size = std::max(piece.size, high - low);
+    }
+  }
+  std::erase_if(loose_, [](const Piece& piece) { return !(piece.size > 0); });
+}
+
+void Drift::follow() {
+  // The textbook form and relaxation keep earlier displacements elsewhere.
+  if (run_.scene.integrator != Integrator::increment || run_.scene.relaxation.enabled) return;
+  if (model_ != run_.loaded.shared_model()) find_loose_pieces();
+  if (loose_.empty()) return;
+  std::vector<double> u = run_.loaded.u();
+  std::vector<double>& offset = run_.state.offset;
+  bool moved = false;
+  for (const Piece& piece : loose_) {
+    const double unit = std::ldexp(1.0, std::ilogb(piece.size) - 4);
+    for (std::size_t c = 0; c < 3; ++c) {
+      double mean = 0;
+      for (const std::int32_t s : piece.slots) mean += u[4 * static_cast<std::size_t>(s) + c];
+      mean /= static_cast<double>(piece.slots.size());
+      if (!(std::abs(mean) > piece.size)) continue;  // nor if it is not a number
+      const double flown = unit * std::round(mean / unit);
+      if (offset.empty()) offset.resize(3 * static_cast<std::size_t>(run_.model().slots));
+      for (const std::int32_t s : piece.slots) {
+        u[4 * static_cast<std::size_t>(s) + c] -= flown;
+        offset[3 * static_cast<std::size_t>(s) + c] += flown;
+      }
+      moved = true;
+    }
+  }
+  if (!moved) return;
+  run_.loaded.write_u(u);
+  run_.place_surface();
+}
+
+}  // namespace pliant
