@@ -42,8 +42,21 @@ Mat3<Scalar> corotated_stress(const Mat3<Scalar>& h, const Mat3<Scalar>& d, Scal
   const auto [xx, yy, zz, xy, xz, yz] = s;
   const Scalar half = Scalar(0.5), eighth = Scalar(0.125), one = Scalar(1);
   const Mat3<Scalar> q = times_symmetric(Mat3<Scalar>{xx, xy, xz, xy, yy, yz, xz, yz, zz}, s);
-  const auto diagonal = [&](Scalar square, Scalar own) { return std::fma(eighth, square, std::fma(-half, own, one)); };
-  const auto beside = [&](Scalar square, Scalar own) { return std::fma(eighth, square, -half * own); };
+  // At large strain the cubic and quartic terms of the energy shrink by k and k^2.
+  const auto sum = [](const Mat3<Scalar>& a, Scalar b00, Scalar b11, Scalar b22, Scalar b01, Scalar b02, Scalar b12) {
+    const Scalar outside = std::fma(a.m12, b12, std::fma(a.m02, b02, a.m01 * b01));
+    return std::fma(Scalar(2), outside, std::fma(a.m22, b22, std::fma(a.m11, b11, a.m00 * b00)));
+  };
+  const Scalar most = Scalar(PLIANT_FLSM_STRAIN), tr2 = (q.m00 + q.m11) + q.m22, tr3 = sum(q, xx, yy, zz, xy, xz, yz);
+  const Scalar tr4 = sum(q, q.m00, q.m11, q.m22, q.m01, q.m02, q.m12);
+  const Scalar y = tr2 > most ? most / tr2 : one, k = y * (Scalar(2) - y);
+  const Scalar own = std::fma(((Scalar(4) * (y - one)) * (y * y)) / most,
+                              std::fma(k * Scalar(0.0625), tr4, -(Scalar(1) / Scalar(6)) * tr3), one);
+  const Scalar linear = -half * k, quadratic = eighth * (k * k);
+  const auto diagonal = [&](Scalar square, Scalar strain) {
+    return std::fma(quadratic, square, std::fma(linear, strain, own));
+  };
+  const auto beside = [&](Scalar square, Scalar strain) { return std::fma(quadratic, square, linear * strain); };
   const Mat3<Scalar> factor{diagonal(q.m00, xx), beside(q.m01, xy), beside(q.m02, xz), beside(q.m10, xy),  diagonal(q.m11, yy),
                             beside(q.m12, yz),   beside(q.m20, xz), beside(q.m21, yz), diagonal(q.m22, zz)};
   const Mat3<Scalar> f = times_symmetric(factor, s);

@@ -30,19 +30,29 @@ static inline mat3 times_symmetric(mat3 a, real xx, real yy, real zz, real xy, r
   return p;
 }
 
-// P of the deformation H with the rotation I + D: R (shear (s - s^2 / 2 + s^3 / 8) + bulk tr s), s = R^T (H - D), which is symmetric.
+// P of the deformation H with the rotation I + D: R (shear (s - s^2 / 2 + s^3 / 8) + bulk tr s), s = R^T (H - D), which is symmetric; softer at
+// large s (host/model/flsm_elastic.cpp).
 static inline mat3 corotated_stress(mat3 h, mat3 d, real shear, real bulk) {
   const mat3 r = {h.m00 - d.m00, h.m01 - d.m01, h.m02 - d.m02, h.m10 - d.m10, h.m11 - d.m11, h.m12 - d.m12, h.m20 - d.m20, h.m21 - d.m21, h.m22 - d.m22};
   const real xx = fma(d.m20, r.m20, fma(d.m10, r.m10, fma(d.m00, r.m00, r.m00))), xy = fma(d.m20, r.m21, fma(d.m10, r.m11, fma(d.m00, r.m01, r.m01)));
   const real xz = fma(d.m20, r.m22, fma(d.m10, r.m12, fma(d.m00, r.m02, r.m02))), yy = fma(d.m21, r.m21, fma(d.m11, r.m11, fma(d.m01, r.m01, r.m11)));
   const real yz = fma(d.m21, r.m22, fma(d.m11, r.m12, fma(d.m01, r.m02, r.m12))), zz = fma(d.m22, r.m22, fma(d.m12, r.m12, fma(d.m02, r.m02, r.m22)));
   const mat3 s = {xx, xy, xz, xy, yy, yz, xz, yz, zz};
-  // 1 - s / 2 + s^2 / 8, times s.
-  const real second = 0.5f, eighth = 0.125f, one = 1.0f;
+  const real second = 0.5f, eighth = 0.125f, one = 1.0f, two = 2.0f, four = 4.0f, sixth = 1.0f / 6.0f, sixteenth = 0.0625f;
   const mat3 square = times_symmetric(s, xx, yy, zz, xy, xz, yz);
-  const mat3 factor = {fma(eighth, square.m00, fma(-second, xx, one)), fma(eighth, square.m01, -second * xy), fma(eighth, square.m02, -second * xz),
-                       fma(eighth, square.m10, -second * xy), fma(eighth, square.m11, fma(-second, yy, one)), fma(eighth, square.m12, -second * yz),
-                       fma(eighth, square.m20, -second * xz), fma(eighth, square.m21, -second * yz), fma(eighth, square.m22, fma(-second, zz, one))};
+  // Beyond |s|^2 = most the terms of s^3 and s^4 in psi shrink by k and k^2, k = y (2 - y), y = most / |s|^2.
+  const real most = PLIANT_FLSM_STRAIN;
+  const real tr2 = (square.m00 + square.m11) + square.m22;
+  const real tr3 = fma(two, fma(square.m12, yz, fma(square.m02, xz, square.m01 * xy)), fma(square.m22, zz, fma(square.m11, yy, square.m00 * xx)));
+  const real tr4 = fma(two, fma(square.m12, square.m12, fma(square.m02, square.m02, square.m01 * square.m01)),
+                       fma(square.m22, square.m22, fma(square.m11, square.m11, square.m00 * square.m00)));
+  const real y = tr2 > most ? most / tr2 : one, k = y * (two - y);
+  const real own = fma(((four * (y - one)) * (y * y)) / most, fma(k * sixteenth, tr4, -sixth * tr3), one);
+  const real linear = -second * k, quadratic = eighth * (k * k);
+  // own - k s / 2 + k^2 s^2 / 8, times s.
+  const mat3 factor = {fma(quadratic, square.m00, fma(linear, xx, own)), fma(quadratic, square.m01, linear * xy), fma(quadratic, square.m02, linear * xz),
+                       fma(quadratic, square.m10, linear * xy), fma(quadratic, square.m11, fma(linear, yy, own)), fma(quadratic, square.m12, linear * yz),
+                       fma(quadratic, square.m20, linear * xz), fma(quadratic, square.m21, linear * yz), fma(quadratic, square.m22, fma(linear, zz, own))};
   const mat3 f = times_symmetric(factor, xx, yy, zz, xy, xz, yz);
   const real p = bulk * ((xx + yy) + zz);
   const real fxx = fma(shear, f.m00, p), fyy = fma(shear, f.m11, p), fzz = fma(shear, f.m22, p), fxy = shear * f.m01, fxz = shear * f.m02, fyz = shear * f.m12;

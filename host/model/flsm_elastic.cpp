@@ -8,7 +8,10 @@
 //   V = beta sum_r [sum_i p_i |x_i - c - F o_i|^2 / 2 + s_r psi(F)],   F = R U, e = U - I,
 //   psi(F) = tr(e^2 / 2 - e^3 / 6 + e^4 / 32) / (1 + nu) + nu / (2 (1 + nu) (1 - 2 nu)) (tr e)^2,
 // with s_r the second moment of a whole window that holds the material of the region. The first term is that of U - U^-1 for
-// small e, so that it stiffens in compression like neo-Hookean tissue, and is convex and finite for every e. The gradient pulls
+// small e, so that it stiffens in compression like neo-Hookean tissue, and is convex and finite for every e. A quartic stiffens
+// without end in fragments that a cut or a tear has left with few nodes, more than any step stands: beyond e : e = s =
+// PLIANT_FLSM_STRAIN its cubic term is multiplied by k and its quartic one by k^2, k = y (2 - y) with y = s / (e : e), so that
+// psi grows like e^2. The gradient pulls
 // node i towards c + (F - s_r P(F) A^-1) o_i, P = d psi / d F, which is again an affine transformation: kernels/flsm_region.cl.
 #include <Eigen/Dense>
 #include <algorithm>

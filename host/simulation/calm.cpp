@@ -75,6 +75,16 @@ Calmed calm(RunContext& run, double share) {
     for (std::size_t e = 0; e < batch.nodes.size(); ++e) calm.element(batch.nodes[e], rest_volume(batch.gradients[e]));
   }
   for_each_hex(run.model(), [&](const HexView& hex) { calm.element(hex.slots, rest_volume(hex)); });
+  for (const FlsmBatch& batch : run.model().flsm) {
+    for (std::size_t i = 0; i < batch.slot.size(); ++i) {
+      for (const int side : {1, 3, 5}) {  // the next node along x, y and z
+        const std::int32_t n = batch.link[i][side];
+        if (n < 0 || static_cast<std::size_t>(n) >= batch.slot.size()) continue;
+        const std::int32_t pair[] = {batch.slot[i], batch.slot[static_cast<std::size_t>(n)]};
+        calm.element(pair, std::pow(batch.spacing, 3));
+      }
+    }
+  }
   if (calm.done.elements > 0) calm.write();
   return calm.done;
 }
