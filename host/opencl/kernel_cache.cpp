@@ -64,7 +64,7 @@ std::string resolve_includes(const Files& files, const std::string& file) {
   return text;
 }
 
-KernelCache::KernelCache(cl::Context context, cl::Device device, Files files, std::string device_name)
+KernelCache::KernelCache(std::shared_ptr<SharedContext> context, cl::Device device, Files files, std::string device_name)
     : context_(std::move(context)),
       device_(std::move(device)),
       files_(std::move(files)),
@@ -84,9 +84,13 @@ cl::Kernel KernelCache::make(const std::string& stem, const std::vector<std::pai
 }
 
 cl::Program KernelCache::build(const std::string& stem, const std::string& options) {
-  cl::Program program(context_, resolve_includes(files_, stem + ".cl"));
+  const std::string source = resolve_includes(files_, stem + ".cl");
   try {
-    program.build({device_}, options.c_str());
+    return context_->program(source, options, [&] {
+      cl::Program program(context_->context(), source);
+      program.build({device_}, options.c_str());
+      return program;
+    });
   } catch (const cl::BuildError& error) {
     std::string log;
     for (const auto& [device, text] : error.getBuildLog()) log += text;
@@ -98,7 +102,6 @@ cl::Program KernelCache::build(const std::string& stem, const std::string& optio
     throw translate(error, ErrorCode::bad_input,
                     fmt::format("building kernel \"{}\" (options {}) on {}", stem, options, device_name_));
   }
-  return program;
 }
 
 }  // namespace pliant::opencl

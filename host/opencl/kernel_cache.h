@@ -1,11 +1,13 @@
-// Builds kernels, each distinct (stem, defines, lanes) once.
+// Builds kernels, each distinct (stem, defines, lanes) once; what another backend of the process has built is taken from there.
 #pragma once
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "opencl/opencl.h"
+#include "opencl/shared_context.h"
 
 namespace pliant::opencl {
 
@@ -18,7 +20,7 @@ std::string resolve_includes(const Files& files, const std::string& file);
 class KernelCache {
  public:
   /// `files` is kernels/ and whatever a test adds; `device_name` is for messages.
-  KernelCache(cl::Context context, cl::Device device, Files files, std::string device_name);
+  KernelCache(std::shared_ptr<SharedContext> context, cl::Device device, Files files, std::string device_name);
 
   /// A new kernel object (arguments unset) of the program <stem>.cl. Throws Error with device, kernel, defines and the
   /// compiler's log.
@@ -26,7 +28,7 @@ class KernelCache {
 
  private:
   cl::Program build(const std::string& stem, const std::string& options);
-  cl::Context context_;
+  std::shared_ptr<SharedContext> context_;
   cl::Device device_;
   Files files_;
   std::string device_name_, common_options_;

@@ -4,6 +4,8 @@
 
 #include <map>
 
+#include "opencl/shared_context.h"
+
 namespace pliant::opencl {
 
 std::string error_name(cl_int code) {
@@ -61,6 +63,7 @@ std::string error_name(cl_int code) {
 }
 
 Error translate(const cl::Error& error, ErrorCode code, const std::string& where) {
+  forget_contexts();
   return {code, fmt::format("{} failed with {} ({}): {}", error.what(), error_name(error.err()), error.err(), where)};
 }
 

@@ -15,6 +15,7 @@
 #include "opencl/kernel_text.h"
 #include "opencl/launch.h"
 #include "opencl/opencl.h"
+#include "opencl/shared_context.h"
 
 namespace pliant {
 namespace {
@@ -33,9 +34,10 @@ class OpenclBackend final : public Backend {
       : info_(std::move(info)),
         where_(fmt::format("{} ({})", info_.name, info_.device)),
         device_(device),
-        context_(device),
+        shared_(opencl::context_of(device)),
+        context_(shared_->context()),
         queue_(context_, device, cl_command_queue_properties{0}),
-        kernels_(context_, device, all_files(options), where_),
+        kernels_(shared_, device, all_files(options), where_),
         local_size_(options.local_size) {
     info_.compiles = true;
     if (options.lanes != 0) info_.lanes = options.lanes;
@@ -336,6 +338,7 @@ class OpenclBackend final : public Backend {
   BackendInfo info_;
   const std::string where_;
   cl::Device device_;
+  std::shared_ptr<opencl::SharedContext> shared_;
   cl::Context context_;
   cl::CommandQueue queue_;
   opencl::KernelCache kernels_;

@@ -27,6 +27,9 @@ bool opencl_is_built_in();
 /// What a user should know about the devices that were found: that PoCL's cache of kernels cannot be written. Empty: nothing.
 std::string opencl_remark();
 
+/// How many kernels this process has built for OpenCL devices. On a processor a backend takes what another one has built.
+std::int64_t opencl_programs_built();
+
 /// Every device of every platform, in the order in which opencl:N counts them. With `probe` each is opened and probed; a device
 /// that cannot be opened has the reason in tolerance_reason. Empty when there is no platform or no loader; never throws.
 std::vector<BackendInfo> list_opencl_devices(bool probe = true);

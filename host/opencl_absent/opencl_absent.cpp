@@ -10,6 +10,8 @@ bool opencl_is_built_in() { return false; }
 
 std::string opencl_remark() { return {}; }
 
+std::int64_t opencl_programs_built() { return 0; }
+
 std::vector<BackendInfo> list_opencl_devices(bool) { return {}; }
 
 std::unique_ptr<Backend> make_opencl_backend(int index, const OpenclOptions&) {

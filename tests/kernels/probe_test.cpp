@@ -102,5 +102,16 @@ TEST_F(ProbeOnOpencl, CatchesAFusedMultiplyAdd) {
   EXPECT_EQ(backend->info().tolerance_reason.rfind("a * b + c (probe, lanes)", 0), 0u) << backend->info().tolerance_reason;
 }
 
+// Building costs a run of Clang's preprocessor even where PoCL has the kernel in its cache on disk.
+TEST(SharedContext, ASecondBackendOnAProcessorBuildsNothingAnew) {
+  if (!test::has_opencl()) GTEST_SKIP() << "there is no OpenCL device";
+  const auto first = make_opencl_backend(0);
+  if (first->info().kind != "cpu") GTEST_SKIP() << "only backends on a processor share what they build";
+  const std::int64_t built = opencl_programs_built();
+  EXPECT_GT(built, 0);
+  const auto second = make_opencl_backend(0);
+  EXPECT_EQ(opencl_programs_built(), built);
+}
+
 }  // namespace
 }  // namespace pliant
