@@ -1,5 +1,6 @@
 // pliant info: what a scene holds and costs. Runs nothing but the Lanczos iteration of the stable step, on the cpu backend.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -8,7 +9,11 @@
 #include "backends/backends.h"
 #include "cli/checked_model.h"
 #include "cli/cli.h"
+#include "cli/mesh_regions.h"
+#include "cli/probes.h"
+#include "model/boundary_conditions.h"
 #include "pliant/error.h"
+#include "scene/keys.h"
 #include "schedule/build_program.h"
 #include "schedule/surface_program.h"
 #include "simulation/coupling.h"
@@ -72,6 +77,7 @@ class Info {
     line(fmt::format("{}: {}", scene_stem(options_.scene), scene_.name));
     line(fmt::format("nodes {}, elements {}, slots {}", model_.nodes(), model_.elements(), model_.slots));
     bodies();
+    probes();
     stable_step(iterated_dt, dt, not_iterated);
     memory(program);
     passes(program);
@@ -84,7 +90,8 @@ class Info {
 
   void bodies() {
     double mass = 0;
-    for (const ModelBody& b : model_.bodies) {
+    for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
+      const ModelBody& b = model_.bodies[i];
       mass += b.mass;
       json_["bodies"].push_back({{"name", b.name},
                                  {"element", pliant::to_string(b.element)},
@@ -103,9 +110,33 @@ class Info {
       const double excess = b.surface_volume > 0 ? 100 * (b.volume / b.surface_volume - 1) : 0;
       line(fmt::format("  mass {:.6g} kg, volume {:.6g} m^3, inside its surface {:.6g} m^3 ({:+.2f} %)", b.mass, b.volume,
                        b.surface_volume, excess));
+      const Json regions = tell_mesh_regions(scene_.bodies[i], options_.common);
+      if (!regions.is_null()) json_["bodies"].back()["regions"] = regions;
     }
     surface_checks();
     json_["mass"] = mass;
+  }
+
+  /// What a run will write down. A selection tells how many nodes it has.
+  void probes() {
+    json_["probes"] = Json::array();
+    if (scene_.probes == nullptr) return;
+    const Probes found(scene_.probes->list, model_);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const SceneProbe& probe = found.probe(i);
+      const ModelBody& body = model_.bodies[found.body(i)];
+      std::vector<std::string> words;
+      for (const Quantity q : probe.quantities) words.push_back(word_of(quantity_words(), q));
+      Json row{{"name", probe.name}, {"body", body.name}, {"quantities", words}};
+      if (probe.point) row["point"] = *probe.point;
+      const std::size_t nodes = probe.point ? 0 : select_nodes(probe.where, body, Virtual::with_anchors).size();
+      if (!probe.point) row["nodes"] = nodes;
+      json_["probes"].push_back(std::move(row));
+      line(fmt::format(
+          "probe {}: {} of {} of body {}", probe.name, fmt::join(words, ", "),
+          probe.point ? fmt::format("the point [{}] m", fmt::join(*probe.point, ", ")) : fmt::format("{} nodes", nodes),
+          body.name));
+    }
   }
 
   void surface_checks() {

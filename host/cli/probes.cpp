@@ -17,6 +17,8 @@
 #include "material/response.h"
 #include "model/boundary_conditions.h"
 #include "pliant/error.h"
+#include "simulation/applied_loads.h"
+#include "simulation/energy.h"
 #include "simulation/reactions.h"
 
 namespace pliant::cli {
@@ -140,15 +142,21 @@ const char* header(Quantity quantity) {
       return ",sxx [Pa],syy [Pa],szz [Pa],sxy [Pa],syz [Pa],szx [Pa]";
     case Quantity::reaction:
       return ",rx [N],ry [N],rz [N]";
+    case Quantity::force:
+      return ",fx [N],fy [N],fz [N]";
+    case Quantity::energy:
+      return ",kinetic [J],strain [J]";
   }
   return "";
 }
 
 std::string columns(const ProbeState& state, Quantity quantity) {
   if (quantity == Quantity::stress) return fmt::format(",{:.9g}", fmt::join(*state.stress, ","));
+  if (quantity == Quantity::energy) return fmt::format(",{:.9g},{:.9g}", state.energy->kinetic, state.energy->strain);
   const std::optional<Vec3d>& value = quantity == Quantity::position       ? state.position
                                       : quantity == Quantity::displacement ? state.displacement
                                       : quantity == Quantity::velocity     ? state.velocity
+                                      : quantity == Quantity::force        ? state.force
                                                                            : state.reaction;
   return fmt::format(",{:.9g}", fmt::join(*value, ","));
 }
@@ -256,19 +264,32 @@ ProbeState Probes::of_nodes(Simulation& simulation, const Place& place, const st
                             const std::vector<Vec3d>& v) {
   const ModelBody& body = simulation.model().bodies[place.body];
   const std::vector<std::int32_t> nodes = select_nodes(place.probe.where, body, Virtual::with_anchors);
+  const auto sum = [&](const std::vector<Vec3d>& values) {
+    Vec3d total{};
+    for (const std::int32_t n : nodes) total = vec::add(total, values[static_cast<std::size_t>(n)]);
+    return total;
+  };
   const auto mean = [&](const std::vector<Vec3d>& values) {
-    Vec3d sum{};
-    for (const std::int32_t n : nodes) sum = vec::add(sum, values[static_cast<std::size_t>(n)]);
-    return vec::mul(sum, 1 / static_cast<double>(nodes.size()));
+    return vec::mul(sum(values), 1 / static_cast<double>(nodes.size()));
   };
   ProbeState state;
   state.displacement = mean(u);
   state.velocity = mean(v);
   state.position = vec::add(mean(body.rest), *state.displacement);
-  if (asks(place.probe, Quantity::reaction)) {
-    const std::vector<Vec3d> r = reactions(simulation, place.body);
-    state.reaction = Vec3d{};
-    for (const std::int32_t n : nodes) state.reaction = vec::add(*state.reaction, r[static_cast<std::size_t>(n)]);
+  if (asks(place.probe, Quantity::reaction)) state.reaction = sum(reactions(simulation, place.body));
+  if (asks(place.probe, Quantity::force)) state.force = sum(applied_loads(simulation, place.body));
+  if (asks(place.probe, Quantity::energy)) {
+    const Model& model = simulation.model();
+    std::vector<Vec3d> u_of(static_cast<std::size_t>(model.slots)), v_of(u_of.size());
+    std::vector<char> chosen(u_of.size(), 0);
+    for (const std::int32_t n : nodes) {
+      const auto slot = static_cast<std::size_t>(body.slot[static_cast<std::size_t>(n)]);
+      chosen[slot] = 1;
+      u_of[slot] = u[static_cast<std::size_t>(n)];
+      v_of[slot] = v[static_cast<std::size_t>(n)];
+    }
+    const Energies e = energies_among(model, u_of, v_of, chosen);
+    state.energy = ProbeState::Energy{e.kinetic, e.strain + e.hourglass};
   }
   return state;
 }

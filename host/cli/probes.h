@@ -16,8 +16,12 @@ SceneProbe parse_probe(const std::string& text);
 
 /// What a probe says now: what it was asked for.
 struct ProbeState {
-  std::optional<Vec3d> position, displacement, velocity, reaction;  ///< [m], [m], [m/s], [N]
-  std::optional<std::array<double, 6>> stress;                      ///< xx, yy, zz, xy, yz, zx [Pa]
+  std::optional<Vec3d> position, displacement, velocity, reaction, force;  ///< [m], [m], [m/s], [N], [N]
+  struct Energy {
+    double kinetic = 0, strain = 0;  ///< [J]
+  };
+  std::optional<Energy> energy;
+  std::optional<std::array<double, 6>> stress;  ///< xx, yy, zz, xy, yz, zx [Pa]
 };
 
 class Probes {

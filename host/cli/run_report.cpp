@@ -109,13 +109,18 @@ class Report {
         if (q == Quantity::stress) {
           row[word] = *state.stress;
           text += fmt::format(", stress [{:.6g}] Pa", fmt::join(*state.stress, ", "));
+        } else if (q == Quantity::energy) {
+          row[word] = {{"kinetic", state.energy->kinetic}, {"strain", state.energy->strain}};
+          text += fmt::format(", energy {:.6g} J kinetic, {:.6g} J of strain", state.energy->kinetic, state.energy->strain);
         } else {
           row[word] = q == Quantity::position       ? *state.position
                       : q == Quantity::displacement ? *state.displacement
                       : q == Quantity::velocity     ? *state.velocity
+                      : q == Quantity::force        ? *state.force
                                                     : *state.reaction;
         }
         if (q == Quantity::displacement) text += fmt::format(", displacement [{:.6g}] m", fmt::join(*state.displacement, ", "));
+        if (q == Quantity::force) text += fmt::format(", force [{:.6g}] N", fmt::join(*state.force, ", "));
         if (q == Quantity::reaction) text += fmt::format(", reaction [{:.6g}] N", fmt::join(*state.reaction, ", "));
       }
       rows.push_back(std::move(row));

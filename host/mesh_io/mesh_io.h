@@ -7,6 +7,7 @@
 
 namespace pliant {
 
+struct MeshTags;
 struct SurfaceReport;
 
 /// Read a surface (OBJ, STL, PLY, 3DS, glTF/glb and whatever else assimp reads). Polygons are triangulated, equal positions
@@ -21,7 +22,8 @@ TriangleMesh clean_surface(const TriangleMesh& surface, const std::string& name,
 
 /// Read a volume mesh: Gmsh .msh (versions 1, 2 and 4, text; 2 and 4 also binary), VTK legacy, VTU, TetGen (.node/.ele).
 /// Unused vertices are dropped; tetrahedra of negative volume are an error that names the element unless all are negative
-/// (then the file's orientation convention is swapped).
-VolumeMesh read_volume(const std::filesystem::path& file, double scale = 1, const Vec3d& translate = {});
+/// (then the file's orientation convention is swapped). `tags`: what the file says of its cells besides (mesh_tags.h).
+VolumeMesh read_volume(const std::filesystem::path& file, double scale = 1, const Vec3d& translate = {},
+                       MeshTags* tags = nullptr);
 
 }  // namespace pliant

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <numeric>
 #include <system_error>
+#include <tuple>
 
 #include "mesh_io/mesh_io.h"
+#include "mesh_io/mesh_tags.h"
 #include "mesh_io/read_volume_parts.h"
 #include "pliant/error.h"
 
@@ -16,13 +18,13 @@ namespace fs = std::filesystem;
 using volume_file::RawMesh;
 namespace {
 
-RawMesh read_any(const fs::path& file) {
+RawMesh read_any(const fs::path& file, bool tagged) {
   std::string ext = file.extension().string();
   std::transform(ext.begin(), ext.end(), ext.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (ext == ".node" || ext == ".ele") {
     fs::path base = file;
     const std::string node = volume_file::load(base.replace_extension(".node"));
-    return volume_file::read_tetgen(base, node, volume_file::load(base.replace_extension(".ele")));
+    return volume_file::read_tetgen(base, node, volume_file::load(base.replace_extension(".ele")), tagged);
   }
   if (ext != ".msh" && ext != ".vtk" && ext != ".vtu") {
     throw Error(
@@ -31,9 +33,9 @@ RawMesh read_any(const fs::path& file) {
                     file.string(), ext));
   }
   const std::string data = volume_file::load(file);
-  return ext == ".msh"   ? volume_file::read_gmsh(file, data)
-         : ext == ".vtk" ? volume_file::read_vtk(file, data)
-                         : volume_file::read_vtu(file, data);
+  return ext == ".msh"   ? volume_file::read_gmsh(file, data, tagged)
+         : ext == ".vtk" ? volume_file::read_vtk(file, data, tagged)
+                         : volume_file::read_vtu(file, data, tagged);
 }
 
 void check_vertices(const RawMesh& raw, const fs::path& file) {
@@ -149,27 +151,35 @@ void check_folds(const RawMesh& raw, const fs::path& file) {
 }
 
 /// Drop cells that occur again with the same corners: Gmsh writes an element once for each physical group it belongs to.
+/// Returns which of the kept cells each one is.
 template <std::size_t N>
-void drop_repeated(std::vector<std::array<std::int32_t, N>>& cells, std::vector<std::int64_t>& numbers) {
+std::vector<std::int32_t> drop_repeated(std::vector<std::array<std::int32_t, N>>& cells, std::vector<std::int64_t>& numbers) {
   std::vector<std::pair<std::array<std::int32_t, N>, std::size_t>> keys(cells.size());
   for (std::size_t i = 0; i < cells.size(); ++i) {
     keys[i] = {cells[i], i};
     std::sort(keys[i].first.begin(), keys[i].first.end());
   }
   std::sort(keys.begin(), keys.end());
-  std::vector<bool> repeated(cells.size(), false);
-  for (std::size_t i = 1; i < keys.size(); ++i) repeated[keys[i].second] = keys[i].first == keys[i - 1].first;
+  std::vector<std::size_t> first(cells.size());
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const bool repeated = i > 0 && keys[i].first == keys[i - 1].first;
+    first[keys[i].second] = repeated ? first[keys[i - 1].second] : keys[i].second;
+  }
+  std::vector<std::int32_t> place(cells.size());
   std::size_t kept = 0;
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    if (repeated[i]) continue;
+    place[i] = first[i] == i ? static_cast<std::int32_t>(kept) : place[first[i]];  // the first of equal ones comes first
+    if (first[i] != i) continue;
     cells[kept] = cells[i];
     numbers[kept++] = numbers[i];
   }
   cells.resize(kept);
   numbers.resize(kept);
+  return place;
 }
 
-VolumeMesh compact(RawMesh&& raw, double scale, const Vec3d& translate) {
+/// `faces` follow the new numbers of vertices; a face with one that is in no element is -1 throughout.
+VolumeMesh compact(RawMesh& raw, double scale, const Vec3d& translate) {
   VolumeMesh out;
   std::vector<std::int32_t> index(raw.points.size(), -1);
   const auto mark = [&](auto& cells) {
@@ -192,25 +202,61 @@ VolumeMesh compact(RawMesh&& raw, double scale, const Vec3d& translate) {
   };
   renumber(raw.tets);
   renumber(raw.hexes);
+  for (auto& face : raw.faces) {
+    const bool on = std::all_of(face.begin(), face.end(), [&](std::int32_t i) { return i < 0 || index[i] >= 0; });
+    for (std::int32_t& i : face) i = on && i >= 0 ? index[i] : -1;
+  }
   out.tets = std::move(raw.tets);
   out.hexes = std::move(raw.hexes);
   return out;
 }
 
+/// From cells of the file to elements and faces of the mesh. `tet`, `hex`: what drop_repeated said.
+MeshTags tags_of(RawMesh& raw, const std::vector<std::int32_t>& tet, const std::vector<std::int32_t>& hex, std::size_t tets) {
+  struct Place {
+    int dimension = 0;  ///< 0: neither an element nor a face on one
+    std::int32_t at = 0;
+  };
+  std::vector<Place> place(static_cast<std::size_t>(raw.cells));
+  for (std::size_t i = 0; i < tet.size(); ++i) place[raw.tet_cell[i]] = {3, tet[i]};
+  for (std::size_t i = 0; i < hex.size(); ++i) place[raw.hex_cell[i]] = {3, static_cast<std::int32_t>(tets) + hex[i]};
+  for (std::size_t i = 0; i < raw.faces.size(); ++i) {
+    if (raw.faces[i][0] >= 0) place[raw.face_cell[i]] = {2, static_cast<std::int32_t>(i)};
+  }
+  MeshTags out;
+  out.faces = std::move(raw.faces);
+  out.names = std::move(raw.names);
+  for (const RawMesh::Array& array : raw.arrays) {
+    MeshTags::Array& to = out.arrays.emplace_back(MeshTags::Array{array.name, {}});
+    for (std::size_t i = 0; i < array.cell.size(); ++i) {
+      const Place& p = place[static_cast<std::size_t>(array.cell[i])];
+      if (p.dimension != 0) to.tags.push_back({p.dimension, p.at, array.value[i]});
+    }
+    const auto key = [](const MeshTags::Tag& t) { return std::make_tuple(-t.dimension, t.place, t.number); };
+    std::sort(to.tags.begin(), to.tags.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
+    const auto same = [&](const auto& a, const auto& b) { return key(a) == key(b); };
+    to.tags.erase(std::unique(to.tags.begin(), to.tags.end(), same), to.tags.end());
+    if (to.tags.empty()) out.arrays.pop_back();
+  }
+  return out;
+}
+
 }  // namespace
 
-VolumeMesh read_volume(const fs::path& file, double scale, const Vec3d& translate) {
+VolumeMesh read_volume(const fs::path& file, double scale, const Vec3d& translate, MeshTags* tags) {
   if (!(scale > 0) || !std::isfinite(scale))
     throw Error(ErrorCode::bad_input, fmt::format("mesh '{}': scale {} must be positive", file.string(), scale));
-  RawMesh raw = read_any(file);
+  RawMesh raw = read_any(file, tags != nullptr);
   check_vertices(raw, file);
   check_cells(raw, file);
-  drop_repeated(raw.tets, raw.tet_numbers);
-  drop_repeated(raw.hexes, raw.hex_numbers);
+  const std::vector<std::int32_t> tet = drop_repeated(raw.tets, raw.tet_numbers);
+  const std::vector<std::int32_t> hex = drop_repeated(raw.hexes, raw.hex_numbers);
   orient(raw, raw.tets, raw.tet_numbers, "tetrahedron", file);
   orient(raw, raw.hexes, raw.hex_numbers, "hexahedron", file);
   check_folds(raw, file);
-  return compact(std::move(raw), scale, translate);
+  VolumeMesh mesh = compact(raw, scale, translate);
+  if (tags != nullptr) *tags = tags_of(raw, tet, hex, mesh.tets.size());
+  return mesh;
 }
 
 }  // namespace pliant

@@ -1,7 +1,11 @@
 // Gmsh .msh versions 1 and 2; version 4 is in read_volume_gmsh4.cpp.
 #include <fmt/format.h>
 
+#include <array>
+#include <cstdlib>
+#include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mesh_io/read_volume_parts.h"
@@ -28,6 +32,19 @@ void read_nodes_text(Cursor& at, RawMesh& mesh, NodeNumbers& numbers) {
   }
 }
 
+/// The tags of the cell that was added last. Zero is no physical group; a minus says that the file has the cell turned round.
+void add_tags(RawMesh& mesh, std::int64_t physical, std::int64_t geometrical) {
+  if (!mesh.tagged) return;
+  const auto add = [&](const char* array, std::int64_t tag) {
+    if (tag == 0 || tag == std::numeric_limits<std::int64_t>::min()) return;
+    RawMesh::Array& to = array_named(mesh, array);
+    to.cell.push_back(mesh.cells - 1);
+    to.value.push_back(std::abs(tag));
+  };
+  add(kPhysical, physical);
+  add(kGeometrical, geometrical);
+}
+
 /// Version 1: number type physical elementary count nodes. Version 2: number type tag-count tags nodes.
 void read_elements_text(Cursor& at, int version, RawMesh& mesh, const NodeNumbers& numbers) {
   const std::int64_t n = at.count("the number of elements", 6);
@@ -38,18 +55,24 @@ void read_elements_text(Cursor& at, int version, RawMesh& mesh, const NodeNumber
     const CellType* type = gmsh_cell(type_number);
     if (type == nullptr) at.fail(fmt::format("element {} has type {}, which is not known", number, type_number));
     std::int64_t count = type->nodes;
+    std::array<std::int64_t, 2> of{};  // physical and elementary
     if (version == 1) {
-      at.integer("a physical region");
-      at.integer("an elementary region");
+      of[0] = at.integer("a physical region");
+      of[1] = at.integer("an elementary region");
       count = at.count("the number of nodes of an element", 1);
       if (count != type->nodes)
         at.fail(fmt::format("element {} has {} nodes; its type {} has {}", number, count, type_number, type->nodes));
     } else {
-      for (std::int64_t tags = at.count("the number of tags", 1); tags > 0; --tags) at.integer("a tag");
+      const std::int64_t tags = at.count("the number of tags", 1);
+      for (std::int64_t k = 0; k < tags; ++k) {
+        const std::int64_t tag = at.integer("a tag");
+        if (k < 2) of[static_cast<std::size_t>(k)] = tag;
+      }
     }
     nodes.clear();
     for (std::int64_t k = 0; k < count; ++k) nodes.push_back(node_of(numbers, at.integer("a node of an element"), number, at));
     add_cell(mesh, *type, number, nodes, at);
+    add_tags(mesh, of[0], of[1]);
   }
 }
 
@@ -85,12 +108,17 @@ void read_elements_binary(Cursor& at, RawMesh& mesh, const NodeNumbers& numbers)
     at.check_count(block, "the number of elements of a block", 4 * static_cast<std::size_t>(1 + tags + type->nodes));
     for (std::int64_t i = 0; i < block; ++i) {
       const auto number = at.raw<std::int32_t>("an element number");
-      at.skip(4 * static_cast<std::size_t>(tags), "a tag");
+      std::array<std::int64_t, 2> of{};
+      for (std::int64_t k = 0; k < tags; ++k) {
+        const auto tag = at.raw<std::int32_t>("a tag");
+        if (k < 2) of[static_cast<std::size_t>(k)] = tag;
+      }
       nodes.clear();
       for (int k = 0; k < type->nodes; ++k) {
         nodes.push_back(node_of(numbers, at.raw<std::int32_t>("a node of an element"), number, at));
       }
       add_cell(mesh, *type, number, nodes, at);
+      add_tags(mesh, of[0], of[1]);
     }
     done += block;
   }
@@ -134,8 +162,11 @@ void leave(Cursor& at, std::string_view name) {
   at.seek(at.position() + found + end.size());
 }
 
+using CellEntities = std::vector<std::pair<int, std::int64_t>>;
+
 /// True if the section was one that holds the mesh.
-bool read_section(Cursor& at, std::string_view name, const Format& format, RawMesh& mesh, NodeNumbers& numbers) {
+bool read_section(Cursor& at, std::string_view name, const Format& format, RawMesh& mesh, NodeNumbers& numbers,
+                  CellEntities& cell_entities) {
   const bool nodes = name == "$Nodes" || name == "$NOD";
   if (!nodes && name != "$Elements" && name != "$ELM") return false;
   if (format.version == 0) at.fail(fmt::format("{} before $MeshFormat", name));
@@ -146,7 +177,7 @@ bool read_section(Cursor& at, std::string_view name, const Format& format, RawMe
     if (nodes) {
       read_gmsh4_nodes(at, format.version == 41, format.binary, mesh, numbers);
     } else {
-      read_gmsh4_elements(at, format.version == 41, format.binary, mesh, numbers);
+      read_gmsh4_elements(at, format.version == 41, format.binary, mesh, numbers, cell_entities);
     }
     at.binary(false);
   } else if (format.binary) {
@@ -160,13 +191,47 @@ bool read_section(Cursor& at, std::string_view name, const Format& format, RawMe
   return true;
 }
 
+/// The groups of each cell's entity, whichever section came first.
+void add_entity_tags(const CellEntities& cells, const GmshEntities& entities, RawMesh& mesh) {
+  if (cells.empty()) return;
+  for (const char* name : {kPhysical, kGeometrical}) {
+    RawMesh::Array array{name, {}, {}};
+    const auto add = [&](std::size_t cell, std::int64_t tag) {
+      array.cell.push_back(static_cast<std::int64_t>(cell));
+      array.value.push_back(tag);
+    };
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+      if (name == kGeometrical) {
+        add(c, cells[c].second);
+      } else if (const auto groups = entities.find(cells[c]); groups != entities.end()) {
+        for (const std::int64_t tag : groups->second) add(c, tag);
+      }
+    }
+    if (!array.cell.empty()) mesh.arrays.push_back(std::move(array));
+  }
+}
+
+/// The sections that only tags need; `leave` ends them.
+void read_tag_section(Cursor& at, std::string_view name, const Format& format, RawMesh& mesh, GmshEntities& entities) {
+  at.section(std::string(name));
+  if (name == "$PhysicalNames") read_gmsh_names(at, mesh);
+  if (name != "$Entities" || format.version < 40) return;
+  if (format.binary) at.line();
+  at.binary(format.binary);
+  entities = read_gmsh4_entities(at, format.version == 41, format.binary);
+  at.binary(false);
+}
+
 }  // namespace
 
-RawMesh read_gmsh(const std::filesystem::path& file, std::string_view data) {
+RawMesh read_gmsh(const std::filesystem::path& file, std::string_view data, bool tagged) {
   Cursor at(file, data);
   RawMesh mesh;
+  mesh.tagged = tagged;
   NodeNumbers numbers;
   Format format;
+  GmshEntities entities;
+  CellEntities cell_entities;
   bool nodes = false;
   bool elements = false;
   while (!at.at_end()) {
@@ -177,15 +242,17 @@ RawMesh read_gmsh(const std::filesystem::path& file, std::string_view data) {
       leave(at, name);
     } else {
       if (name == "$NOD") format.version = 1;
-      if (read_section(at, name, format, mesh, numbers)) {
+      if (read_section(at, name, format, mesh, numbers, cell_entities)) {
         (name == "$Nodes" || name == "$NOD" ? nodes : elements) = true;
       } else {
+        if (tagged) read_tag_section(at, name, format, mesh, entities);
         leave(at, name);
       }
     }
   }
   if (!nodes) at.fail("the file has no section with nodes ($Nodes or $NOD)");
   if (!elements) at.fail("the file has no section with elements ($Elements or $ELM)");
+  add_entity_tags(cell_entities, entities, mesh);
   return mesh;
 }
 

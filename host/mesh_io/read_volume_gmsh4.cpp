@@ -2,6 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <limits>
 
 #include "mesh_io/read_volume_parts.h"
 
@@ -27,6 +30,7 @@ class Numbers {
 
 struct Block {
   std::int64_t dimension = 0;
+  std::int64_t entity = 0;
   std::int64_t type = 0;  ///< parametric flag of nodes, element type of elements
   std::int64_t count = 0;
 };
@@ -37,6 +41,7 @@ Block read_block(Numbers& in, bool v41, const char* type, std::size_t bytes, std
   const std::int64_t second = in.small("the entity of a block");
   Block b;
   b.dimension = v41 ? first : second;
+  b.entity = v41 ? second : first;
   b.type = in.small(type);
   b.count = in.count("the number of entries of a block", bytes, text_bytes);
   return b;
@@ -49,7 +54,46 @@ Vec3d read_point(Numbers& in, std::int64_t parameters) {
   return x;
 }
 
+/// One entity of $Entities; its physical groups are added where it has cells that count.
+void read_entity(Numbers& in, bool v41, int dimension, GmshEntities& out) {
+  const std::int64_t tag = in.small("an entity's tag");
+  for (int k = 0; k < (v41 && dimension == 0 ? 3 : 6); ++k) in.real("a bound of an entity");
+  for (std::int64_t groups = in.count("the number of physical groups", 4, 2); groups > 0; --groups) {
+    const std::int64_t group = in.small("a physical group");
+    if (group == 0 || group == std::numeric_limits<std::int64_t>::min()) continue;
+    if (dimension >= 2) out[{dimension, tag}].push_back(std::abs(group));
+  }
+  if (dimension == 0) return;
+  for (std::int64_t bounds = in.count("the number of bounding entities", 4, 2); bounds > 0; --bounds)
+    in.small("a bounding entity");
+}
+
 }  // namespace
+
+GmshEntities read_gmsh4_entities(Cursor& at, bool v41, bool binary) {
+  Numbers in(at, binary);
+  std::array<std::int64_t, 4> counts{};
+  for (std::int64_t& n : counts) n = in.count("the number of entities", 20, 2);
+  GmshEntities out;
+  for (std::size_t dimension = 0; dimension < 4; ++dimension) {
+    for (std::int64_t i = 0; i < counts[dimension]; ++i) read_entity(in, v41, static_cast<int>(dimension), out);
+  }
+  return out;
+}
+
+void read_gmsh_names(Cursor& at, RawMesh& mesh) {
+  const std::int64_t n = at.count("the number of physical names", 5);
+  for (std::int64_t i = 0; i < n; ++i) {
+    const std::int64_t dimension = at.integer("the dimension of a physical group");
+    const std::int64_t number = at.integer("the number of a physical group");
+    const std::string_view rest = at.line();
+    const std::size_t open = rest.find('"'), close = rest.rfind('"');
+    if (open == std::string_view::npos || close == open)
+      at.fail(fmt::format("physical group {} of dimension {} has no name in quotation marks", number, dimension));
+    if (dimension == 2 || dimension == 3)
+      mesh.names[{static_cast<int>(dimension), number}] = rest.substr(open + 1, close - open - 1);
+  }
+}
 
 void read_gmsh4_nodes(Cursor& at, bool v41, bool binary, RawMesh& mesh, NodeNumbers& numbers) {
   Numbers in(at, binary);
@@ -81,7 +125,8 @@ void read_gmsh4_nodes(Cursor& at, bool v41, bool binary, RawMesh& mesh, NodeNumb
   if (found != total) at.fail(fmt::format("the blocks hold {} nodes, the section announces {}", found, total));
 }
 
-void read_gmsh4_elements(Cursor& at, bool v41, bool binary, RawMesh& mesh, const NodeNumbers& numbers) {
+void read_gmsh4_elements(Cursor& at, bool v41, bool binary, RawMesh& mesh, const NodeNumbers& numbers,
+                         std::vector<std::pair<int, std::int64_t>>& entities) {
   Numbers in(at, binary);
   const std::int64_t blocks = in.count("the number of element blocks", 20, 7);
   const std::int64_t total = in.count("the number of elements", 8, 3);
@@ -103,6 +148,7 @@ void read_gmsh4_elements(Cursor& at, bool v41, bool binary, RawMesh& mesh, const
         nodes.push_back(node_of(numbers, node, number, at));
       }
       add_cell(mesh, *type, number, nodes, at);
+      if (mesh.tagged) entities.emplace_back(static_cast<int>(block.dimension), block.entity);
     }
     found += block.count;
   }

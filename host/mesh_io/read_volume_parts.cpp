@@ -16,37 +16,37 @@ using Row = std::pair<int, CellType>;
 // Gmsh reference manual, "MSH file format", element types.
 constexpr Row kGmsh[] = {
     {1, {"lines", flat, 2}},
-    {2, {"triangles", flat, 3}},
-    {3, {"quadrangles", flat, 4}},
+    {2, {"triangles", triangle, 3}},
+    {3, {"quadrangles", quad, 4}},
     {4, {"tetrahedra", tet, 4}},
     {5, {"hexahedra", hex, 8}},
     {6, {"prisms", unsupported, 6}},
     {7, {"pyramids", unsupported, 5}},
     {8, {"lines", flat, 3}},
-    {9, {"triangles", flat, 6}},
-    {10, {"quadrangles", flat, 9}},
+    {9, {"triangles", triangle, 6}},
+    {10, {"quadrangles", quad, 9}},
     {11, {"tetrahedra", tet, 10}},
     {12, {"hexahedra", hex, 27}},
     {13, {"prisms", unsupported, 18}},
     {14, {"pyramids", unsupported, 14}},
     {15, {"points", flat, 1}},
-    {16, {"quadrangles", flat, 8}},
+    {16, {"quadrangles", quad, 8}},
     {17, {"hexahedra", hex, 20}},
     {18, {"prisms", unsupported, 15}},
     {19, {"pyramids", unsupported, 13}},
-    {20, {"triangles", flat, 9}},
-    {21, {"triangles", flat, 10}},
-    {22, {"triangles", flat, 12}},
-    {23, {"triangles", flat, 15}},
-    {24, {"triangles", flat, 15}},
-    {25, {"triangles", flat, 21}},
+    {20, {"triangles", triangle, 9}},
+    {21, {"triangles", triangle, 10}},
+    {22, {"triangles", triangle, 12}},
+    {23, {"triangles", triangle, 15}},
+    {24, {"triangles", triangle, 15}},
+    {25, {"triangles", triangle, 21}},
     {26, {"lines", flat, 4}},
     {27, {"lines", flat, 5}},
     {28, {"lines", flat, 6}},
     {29, {"tetrahedra", tet, 20}},
     {30, {"tetrahedra", tet, 35}},
     {31, {"tetrahedra", tet, 56}},
-    {36, {"quadrangles", flat, 16}},
+    {36, {"quadrangles", quad, 16}},
     {92, {"hexahedra", hex, 64}},
     {93, {"hexahedra", hex, 125}},
 };
@@ -57,11 +57,11 @@ constexpr Row kVtk[] = {
     {2, {"vertices", flat, 0}},
     {3, {"lines", flat, 2}},
     {4, {"lines", flat, 0}},
-    {5, {"triangles", flat, 3}},
+    {5, {"triangles", triangle, 3}},
     {6, {"triangle strips", flat, 0}},
     {7, {"polygons", flat, 0}},
-    {8, {"pixels", flat, 4}},
-    {9, {"quads", flat, 4}},
+    {8, {"pixels", pixel, 4}},
+    {9, {"quads", quad, 4}},
     {10, {"tetrahedra", tet, 4}},
     {11, {"voxels", voxel, 8}},
     {12, {"hexahedra", hex, 8}},
@@ -70,19 +70,19 @@ constexpr Row kVtk[] = {
     {15, {"pentagonal prisms", unsupported, 10}},
     {16, {"hexagonal prisms", unsupported, 12}},
     {21, {"lines", flat, 3}},
-    {22, {"triangles", flat, 6}},
-    {23, {"quads", flat, 8}},
+    {22, {"triangles", triangle, 6}},
+    {23, {"quads", quad, 8}},
     {24, {"tetrahedra", tet, 10}},
     {25, {"hexahedra", hex, 20}},
     {26, {"wedges", unsupported, 15}},
     {27, {"pyramids", unsupported, 13}},
-    {28, {"quads", flat, 9}},
+    {28, {"quads", quad, 9}},
     {29, {"hexahedra", hex, 27}},
-    {30, {"quads", flat, 6}},
+    {30, {"quads", quad, 6}},
     {31, {"wedges", unsupported, 12}},
     {32, {"wedges", unsupported, 18}},
     {33, {"hexahedra", hex, 24}},
-    {34, {"triangles", flat, 7}},
+    {34, {"triangles", triangle, 7}},
     {35, {"lines", flat, 4}},
     {36, {"polygons", flat, 0}},
     {37, {"pyramids", unsupported, 19}},
@@ -123,14 +123,51 @@ std::array<std::int32_t, N> corners(std::span<const std::int32_t> nodes, const c
 const CellType* gmsh_cell(std::int64_t type) { return find(kGmsh, type); }
 const CellType* vtk_cell(std::int64_t type) { return find(kVtk, type); }
 
+RawMesh::Array& array_named(RawMesh& mesh, const std::string& name) {
+  const auto it =
+      std::find_if(mesh.arrays.begin(), mesh.arrays.end(), [&](const RawMesh::Array& array) { return array.name == name; });
+  if (it != mesh.arrays.end()) return *it;
+  mesh.arrays.push_back({name, {}, {}});
+  return mesh.arrays.back();
+}
+
+void add_cell_values(RawMesh& mesh, const std::string& name, std::int64_t first_cell, std::span<const std::int64_t> values) {
+  RawMesh::Array& array = array_named(mesh, name);
+  for (std::size_t i = 0; i < values.size(); ++i) array.cell.push_back(first_cell + static_cast<std::int64_t>(i));
+  array.value.insert(array.value.end(), values.begin(), values.end());
+}
+
+void add_cell_values(RawMesh& mesh, const std::string& name, std::int64_t first_cell, std::span<const double> values) {
+  constexpr double most = 9007199254740992.0;  // 2^53: larger ones have lost their units
+  std::vector<std::int64_t> whole;
+  for (const double v : values) {
+    if (!(std::fabs(v) <= most) || v != std::floor(v)) return;
+    whole.push_back(static_cast<std::int64_t>(v));
+  }
+  add_cell_values(mesh, name, first_cell, whole);
+}
+
 void add_cell(RawMesh& mesh, const CellType& type, std::int64_t number, std::span<const std::int32_t> nodes, const Cursor& at) {
+  const std::int64_t cell = mesh.cells++;
   switch (type.kind) {
+    case triangle:
+    case quad:
+    case pixel:
+      if (mesh.tagged) {
+        std::array<std::int32_t, 4> c{nodes[0], nodes[1], nodes[2], -1};
+        if (type.kind != triangle) c[3] = nodes[3];
+        if (type.kind == pixel) std::swap(c[2], c[3]);
+        mesh.faces.push_back(c);
+        mesh.face_cell.push_back(cell);
+      }
+      [[fallthrough]];
     case flat:
       ++mesh.others[type.name];
       return;
     case tet:
       mesh.tets.push_back(corners<4>(nodes, type.name, number, at));
       mesh.tet_numbers.push_back(number);
+      if (mesh.tagged) mesh.tet_cell.push_back(cell);
       return;
     case hex:
     case voxel: {
@@ -141,6 +178,7 @@ void add_cell(RawMesh& mesh, const CellType& type, std::int64_t number, std::spa
       }
       mesh.hexes.push_back(c);
       mesh.hex_numbers.push_back(number);
+      if (mesh.tagged) mesh.hex_cell.push_back(cell);
       return;
     }
     case unsupported:

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "geometry/mesh.h"
@@ -16,7 +17,10 @@
 namespace pliant::volume_file {
 
 enum class CellKind {
-  flat,         ///< points, lines, faces: not needed
+  flat,         ///< points, lines, strips, polygons: not needed
+  triangle,     ///< needed for its tags alone: the first three nodes are the corners
+  quad,         ///< the same with four
+  pixel,        ///< VTK's rectangle with x running fastest
   tet,          ///< the first four nodes are the corners
   hex,          ///< the first eight nodes are the corners, VTK order
   voxel,        ///< VTK's box with x running fastest
@@ -43,6 +47,19 @@ struct RawMesh {
   std::vector<std::int64_t> hex_numbers;
   std::map<std::string, std::int64_t> others;  ///< cells that were passed over, by name
 
+  /// What follows is kept if `tagged`: each cell's place among all cells of the file, and what arrays say of them.
+  bool tagged = false;
+  std::int64_t cells = 0;                          ///< of all kinds, so far
+  std::vector<std::int64_t> tet_cell, hex_cell;    ///< beside tets and hexes
+  std::vector<std::array<std::int32_t, 4>> faces;  ///< triangles and quadrangles; the last of a triangle is -1
+  std::vector<std::int64_t> face_cell;
+  struct Array {
+    std::string name;
+    std::vector<std::int64_t> cell, value;  ///< a cell may occur several times, or not at all
+  };
+  std::vector<Array> arrays;
+  std::map<std::pair<int, std::int64_t>, std::string> names;  ///< of a dimension (2, 3) and a number of the first array
+
   [[nodiscard]] std::int64_t point_number(std::size_t i) const {
     return point_numbers.empty() ? static_cast<std::int64_t>(i) : point_numbers[i];
   }
@@ -64,6 +81,13 @@ class NodeNumbers {
   std::unordered_map<std::int64_t, std::int32_t> map_;
 };
 
+/// The array of this name, new if there is none.
+RawMesh::Array& array_named(RawMesh& mesh, const std::string& name);
+/// Values of all cells from `first_cell` on, in their order.
+void add_cell_values(RawMesh& mesh, const std::string& name, std::int64_t first_cell, std::span<const std::int64_t> values);
+/// The same from real numbers. An array with one that is not whole holds no tags and is left out.
+void add_cell_values(RawMesh& mesh, const std::string& name, std::int64_t first_cell, std::span<const double> values);
+
 /// Add a cell whose nodes are already indices into the points. Throws through `at` for an unsupported volume cell.
 void add_cell(RawMesh& mesh, const CellType& type, std::int64_t number, std::span<const std::int32_t> nodes, const Cursor& at);
 
@@ -72,15 +96,34 @@ void add_cell(RawMesh& mesh, const CellType& type, std::int64_t number, std::spa
 void append_vtk_cells(RawMesh& mesh, std::span<const std::int64_t> offsets, std::span<const std::int64_t> nodes,
                       std::span<const std::int64_t> types, std::int64_t first_cell, std::int64_t first_point, const Cursor& at);
 
-RawMesh read_gmsh(const std::filesystem::path& file, std::string_view data);
-RawMesh read_vtk(const std::filesystem::path& file, std::string_view data);
-RawMesh read_vtu(const std::filesystem::path& file, std::string_view data);
+/// `tagged`: with what the file says of its cells besides their nodes.
+RawMesh read_gmsh(const std::filesystem::path& file, std::string_view data, bool tagged = false);
+RawMesh read_vtk(const std::filesystem::path& file, std::string_view data, bool tagged = false);
+RawMesh read_vtu(const std::filesystem::path& file, std::string_view data, bool tagged = false);
 /// `node` and `ele` are the contents of the two files, whose names differ in the extension.
-RawMesh read_tetgen(const std::filesystem::path& base, std::string_view node, std::string_view ele);
+RawMesh read_tetgen(const std::filesystem::path& base, std::string_view node, std::string_view ele, bool tagged = false);
+
+/// The arrays of Gmsh files: tags of physical groups, and of the geometry's own parts.
+inline constexpr const char* kPhysical = "gmsh:physical";
+inline constexpr const char* kGeometrical = "gmsh:geometrical";
+/// $PhysicalNames, called by read_gmsh; `at` stands behind the word.
+void read_gmsh_names(Cursor& at, RawMesh& mesh);
+/// The physical groups of the entities of Gmsh 4.0 and 4.1, by dimension (2, 3) and tag.
+using GmshEntities = std::map<std::pair<int, std::int64_t>, std::vector<std::int64_t>>;
+GmshEntities read_gmsh4_entities(Cursor& at, bool v41, bool binary);
+
+/// VTK legacy files, called by read_vtk: bytes per value in a binary file, 0 for a type that is not read.
+std::size_t vtk_type_size(const std::string& type);
+std::string lower_word(std::string_view word);
+/// The rest of the file from POINT_DATA or CELL_DATA on; `at` stands behind that word, which `cells` tells. Whole numbers of
+/// cells are kept.
+void read_vtk_attributes(Cursor& at, bool binary, bool cells, RawMesh& mesh);
 
 /// Gmsh 4.0 and 4.1, called by read_gmsh; `at` stands behind $Nodes or $Elements.
 void read_gmsh4_nodes(Cursor& at, bool v41, bool binary, RawMesh& mesh, NodeNumbers& numbers);
-void read_gmsh4_elements(Cursor& at, bool v41, bool binary, RawMesh& mesh, const NodeNumbers& numbers);
+/// `entities` of each cell of the mesh from then on are appended: its dimension and tag.
+void read_gmsh4_elements(Cursor& at, bool v41, bool binary, RawMesh& mesh, const NodeNumbers& numbers,
+                         std::vector<std::pair<int, std::int64_t>>& entities);
 
 /// Add one point of a format with explicit numbers; duplicates and non-finite coordinates are errors.
 void add_point(RawMesh& mesh, NodeNumbers& numbers, std::int64_t number, const Vec3d& x, const Cursor& at);

@@ -5,8 +5,9 @@
 
 namespace pliant::volume_file {
 
-RawMesh read_tetgen(const std::filesystem::path& base, std::string_view node, std::string_view ele) {
+RawMesh read_tetgen(const std::filesystem::path& base, std::string_view node, std::string_view ele, bool tagged) {
   RawMesh mesh;
+  mesh.tagged = tagged;
   NodeNumbers numbers;
   std::filesystem::path file = base;
   Cursor at(file.replace_extension(".node"), node);
@@ -32,14 +33,19 @@ RawMesh read_tetgen(const std::filesystem::path& base, std::string_view node, st
   const std::int64_t attributes = in.count("the number of attributes", 1);
   const CellType type{"tetrahedra", CellKind::tet, static_cast<int>(corners)};
   std::vector<std::int32_t> nodes;
+  std::vector<double> regions;  // TetGen's switch -A makes the first attribute the number of a region
   for (std::int64_t i = 0; i < cells; ++i) {
     const std::int64_t number = in.integer("a tetrahedron's number");
     nodes.clear();
     for (std::int64_t k = 0; k < corners; ++k)
       nodes.push_back(node_of(numbers, in.integer("a node of a tetrahedron"), number, in));
     add_cell(mesh, type, number, nodes, in);
-    for (std::int64_t k = 0; k < attributes; ++k) in.real("an attribute");
+    for (std::int64_t k = 0; k < attributes; ++k) {
+      const double value = in.real("an attribute");
+      if (k == 0 && tagged) regions.push_back(value);
+    }
   }
+  if (!regions.empty()) add_cell_values(mesh, "region", 0, regions);
   return mesh;
 }
 

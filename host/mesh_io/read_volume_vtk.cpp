@@ -10,26 +10,9 @@
 namespace pliant::volume_file {
 namespace {
 
-std::string lower(std::string_view word) {
-  std::string out(word.substr(0, 40));
-  std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return out;
-}
-
-/// Bytes per value in a binary file; 0 for a type that is not read.
-std::size_t type_size(const std::string& type) {
-  if (type == "char" || type == "unsigned_char" || type == "vtktypeint8" || type == "vtktypeuint8") return 1;
-  if (type == "short" || type == "unsigned_short" || type == "vtktypeint16" || type == "vtktypeuint16") return 2;
-  if (type == "int" || type == "unsigned_int" || type == "float" || type == "vtkidtype") return 4;
-  if (type == "vtktypeint32" || type == "vtktypeuint32") return 4;
-  if (type == "long" || type == "unsigned_long" || type == "double" || type == "vtktypeint64" || type == "vtktypeuint64")
-    return 8;
-  return 0;
-}
-
 class Legacy {
  public:
-  Legacy(const std::filesystem::path& file, std::string_view data) : at_(file, data) {}
+  Legacy(const std::filesystem::path& file, std::string_view data, bool tagged) : at_(file, data) { mesh_.tagged = tagged; }
   RawMesh read();
 
  private:
@@ -58,13 +41,13 @@ class Legacy {
 void Legacy::head() {
   if (at_.line().substr(0, 5) != "# vtk") at_.fail("the first line must start with '# vtk DataFile'");
   at_.line();
-  const std::string mode = lower(at_.token("ASCII or BINARY"));
+  const std::string mode = lower_word(at_.token("ASCII or BINARY"));
   if (mode != "ascii" && mode != "binary") at_.fail(fmt::format("expected ASCII or BINARY, found '{}'", mode));
   binary_ = mode == "binary";
   // Legacy binary data are big-endian.
   at_.swap(std::endian::native == std::endian::little);
-  if (lower(at_.token("DATASET")) != "dataset") at_.fail("expected DATASET");
-  const std::string kind = lower(at_.token("the kind of data set"));
+  if (lower_word(at_.token("DATASET")) != "dataset") at_.fail("expected DATASET");
+  const std::string kind = lower_word(at_.token("the kind of data set"));
   if (kind != "unstructured_grid")
     at_.fail(fmt::format("data set '{}' holds no volume cells; allowed is UNSTRUCTURED_GRID", kind));
 }
@@ -77,7 +60,7 @@ void Legacy::begin_values(const char* section) {
 }
 
 std::vector<std::int64_t> Legacy::integers(std::int64_t n, const std::string& type, const char* what) {
-  const std::size_t size = type_size(type);
+  const std::size_t size = vtk_type_size(type);
   if ((size != 4 && size != 8) || type == "float" || type == "double")
     at_.fail(fmt::format("{} of type '{}' cannot be read", what, type));
   begin_values(what);
@@ -92,11 +75,11 @@ std::vector<std::int64_t> Legacy::integers(std::int64_t n, const std::string& ty
 
 void Legacy::points() {
   const std::int64_t n = at_.count("the number of points", 5);
-  const std::string type = lower(at_.token("the type of the points"));
+  const std::string type = lower_word(at_.token("the type of the points"));
   if (type != "float" && type != "double") at_.fail(fmt::format("points of type '{}'; allowed are float and double", type));
   if (n > std::numeric_limits<std::int32_t>::max()) at_.fail("more than 2147483647 points");
   begin_values("POINTS");
-  if (binary_) at_.check_count(n, "the number of points", 3 * type_size(type));
+  if (binary_) at_.check_count(n, "the number of points", 3 * vtk_type_size(type));
   mesh_.points.resize(static_cast<std::size_t>(n));
   for (Vec3d& x : mesh_.points) {
     for (double& v : x) {
@@ -115,9 +98,9 @@ void Legacy::cells() {
   at_.line();
   if (at_.rest().substr(0, 7) == "OFFSETS") {
     at_.token("OFFSETS");
-    offsets_ = integers(first, lower(at_.token("a type")), "cell offsets");
+    offsets_ = integers(first, lower_word(at_.token("a type")), "cell offsets");
     if (at_.token("CONNECTIVITY") != "CONNECTIVITY") at_.fail("expected CONNECTIVITY");
-    nodes_ = integers(second, lower(at_.token("a type")), "cell connectivity");
+    nodes_ = integers(second, lower_word(at_.token("a type")), "cell connectivity");
   } else {
     // integers() skips the rest of the line, which is gone already.
     at_.seek(at_.position() - 1);
@@ -152,8 +135,8 @@ void Legacy::field() {
     at_.token("an array's name");
     const std::int64_t components = at_.count("the number of components", 1);
     const std::int64_t tuples = at_.count("the number of tuples", 1);
-    const std::string type = lower(at_.token("an array's type"));
-    const std::size_t size = type_size(type);
+    const std::string type = lower_word(at_.token("an array's type"));
+    const std::size_t size = vtk_type_size(type);
     if (size == 0) at_.fail(fmt::format("field array of type '{}' cannot be read", type));
     begin_values("FIELD");
     if (components > 0 && static_cast<std::uint64_t>(tuples) > at_.remaining() / static_cast<std::uint64_t>(components)) {
@@ -188,7 +171,7 @@ void Legacy::build() {
 RawMesh Legacy::read() {
   head();
   while (!at_.at_end()) {
-    const std::string key = lower(at_.token("a keyword"));
+    const std::string key = lower_word(at_.token("a keyword"));
     if (key == "points") {
       points();
     } else if (key == "cells") {
@@ -200,7 +183,9 @@ RawMesh Legacy::read() {
     } else if (key == "metadata") {
       metadata();
     } else if (key == "point_data" || key == "cell_data") {
-      break;  // attributes follow the geometry
+      build();  // attributes follow the geometry
+      if (mesh_.tagged) read_vtk_attributes(at_, binary_, key == "cell_data", mesh_);
+      return std::move(mesh_);
     } else {
       at_.fail(fmt::format("expected POINTS, CELLS, CELL_TYPES, FIELD, POINT_DATA or CELL_DATA, found '{}'", key));
     }
@@ -239,6 +224,8 @@ void append_vtk_cells(RawMesh& mesh, std::span<const std::int64_t> offsets, std:
   }
 }
 
-RawMesh read_vtk(const std::filesystem::path& file, std::string_view data) { return Legacy(file, data).read(); }
+RawMesh read_vtk(const std::filesystem::path& file, std::string_view data, bool tagged) {
+  return Legacy(file, data, tagged).read();
+}
 
 }  // namespace pliant::volume_file

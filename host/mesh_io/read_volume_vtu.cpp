@@ -58,6 +58,26 @@ std::vector<T> read_array(const pugi::xml_node& node, const std::string& where, 
   return vtu_values<T>(array_text(node), e, at);
 }
 
+/// Whole numbers of cells, one each; other arrays are no tags.
+void read_cell_data(const pugi::xml_node& node, const std::string& name, std::int64_t first_cell, std::size_t cells,
+                    const VtuEncoding& e, RawMesh& mesh, Cursor& at) {
+  for (const pugi::xml_node& array : node.child("CellData").children("DataArray")) {
+    const std::string array_name = array.attribute("Name").value();
+    if (array_name.empty() || array.attribute("NumberOfComponents").as_int(1) > 1) continue;
+    const std::string where = fmt::format("{}/CellData/{}", name, shown(array_name));
+    const auto keep = [&](const auto& values) {
+      if (values.size() != cells) at.fail(fmt::format("{} values for {} cells", values.size(), cells));
+      add_cell_values(mesh, array_name, first_cell, values);
+    };
+    const std::string type = array.attribute("type").value();
+    if (type == "Float32" || type == "Float64") {
+      keep(read_array<double>(array, where, e, at));
+    } else if (type.find("Int") != std::string::npos) {
+      keep(read_array<std::int64_t>(array, where, e, at));
+    }
+  }
+}
+
 struct Piece {
   std::int64_t cells = 0;  ///< of the pieces before
   std::size_t index = 0;
@@ -88,12 +108,13 @@ void read_piece(const pugi::xml_node& node, const VtuEncoding& e, Piece& piece, 
   offsets.insert(offsets.begin(), 0);
   at.section(name + "/Cells");
   append_vtk_cells(mesh, offsets, nodes, types, piece.cells, first_point, at);
+  if (mesh.tagged) read_cell_data(node, name, piece.cells, types.size(), e, mesh, at);
   piece.cells += static_cast<std::int64_t>(types.size());
 }
 
 }  // namespace
 
-RawMesh read_vtu(const std::filesystem::path& file, std::string_view data) {
+RawMesh read_vtu(const std::filesystem::path& file, std::string_view data, bool tagged) {
   Cursor at(file, data);
   at.section("VTKFile");
   at.section_only();
@@ -109,6 +130,7 @@ RawMesh read_vtu(const std::filesystem::path& file, std::string_view data) {
   if (!root) at.fail("the file has no VTKFile element");
   read_encoding(root, s.encoding, at);
   RawMesh mesh;
+  mesh.tagged = tagged;
   Piece piece;
   for (const pugi::xml_node& node : root.child("UnstructuredGrid").children("Piece"))
     read_piece(node, s.encoding, piece, mesh, at);

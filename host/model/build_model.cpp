@@ -51,6 +51,17 @@ std::vector<int> materials_of(const Body& body, const BodyElements& solid) {
   return material;
 }
 
+/// work(), whose messages get the name of the scene's file.
+template <class Work>
+auto told_with_file(const Scene& scene, Work work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    if (scene.file.empty()) throw;
+    throw Error(error.code(), fmt::format("{}: {}", scene.file.string(), error.what()));
+  }
+}
+
 const Material& material_of(const Body& body, int index) {
   return index == 0 ? body.material : body.inclusions[index - 1].material;
 }
@@ -276,7 +287,7 @@ void place_bodies(const Scene& scene, std::span<const BodyMesh* const> solids, c
       draft.own = static_cast<const BodyElements&>(*solids[b]);
       repartition(body, *draft.own);
     }
-    draft.material = materials_of(body, draft.solid());
+    draft.material = told_with_file(scene, [&] { return materials_of(body, draft.solid()); });
     draft.stiff = stiff_fills(draft.solid(), model.least_fill);
     draft.in_brick.assign(draft.material.size(), false);
     draft.slot.assign(draft.solid().nodes.size(), -1);
@@ -359,7 +370,7 @@ Model build_elements(const Scene& scene, std::span<const BodyMesh* const> solids
     add_totals(body, draft, model.bodies[i]);
     for (const std::int32_t s : model.bodies[i].slot) model.bodies[i].added_mass += model.mass[s] - model.own_mass(s);
     set_velocity(body, model.bodies[i], model);
-    add_initial(body, model.bodies[i], model);
+    told_with_file(scene, [&] { add_initial(body, model.bodies[i], model); });
   }
   for (FlsmBatch& batch : model.flsm) {
     weigh(batch, model.mass);

@@ -16,7 +16,7 @@ List operator+(List a, const List& b) {
 }
 
 std::map<std::string, List> make_keys() {
-  const List points{"box", "sphere", "plane", "surface", "all"};
+  const List points{"box", "sphere", "plane", "surface", "region", "data", "dimension", "all"};
   const List selection = points + List{"nodes"};
   const List curve{"curve", "start", "duration", "table"};
   return {
@@ -188,7 +188,9 @@ const Words<Quantity>& quantity_words() {
                                      {"displacement", Quantity::displacement, "from where it was at rest"},
                                      {"velocity", Quantity::velocity, "of the material"},
                                      {"stress", Quantity::stress, "Cauchy stress at a point"},
-                                     {"reaction", Quantity::reaction, "force that fixes or moves nodes, summed"}};
+                                     {"reaction", Quantity::reaction, "force that fixes or moves nodes, summed"},
+                                     {"force", Quantity::force, "applied loads on nodes, summed"},
+                                     {"energy", Quantity::energy, "kinetic, and of the strain"}};
   return words;
 }
 

@@ -2,24 +2,24 @@
 #pragma once
 #include <filesystem>
 
+#include "scene/mesh_region.h"
 #include "scene/probe.h"
 #include "scene/reader.h"
 
 namespace pliant {
 
-/// Whether a selection may list nodes: loads and boundary conditions act on nodes, inclusions on element centroids and
-/// pressures on triangle centroids, which have no node index.
-enum class NodeLists { allowed, refused };
-
 /// A whole scene. Throws Error as parse_scene does.
 Scene read_document(const nlohmann::json& document, const std::filesystem::path& file);
-/// What paths and surfaces of a selection are relative to.
+/// What paths and surfaces of a selection are relative to, and the mesh that its regions are parts of; null: a lattice's.
 struct SelectionFrame {
   std::filesystem::path folder{};
   double scale = 1;
   Vec3d translate{};
+  std::shared_ptr<const TaggedMesh> mesh{};
 };
-Selection read_selection(const Reader& entry, NodeLists lists, const SelectionFrame& frame);
+SelectionFrame frame_of(const Body& body, const std::filesystem::path& folder);
+/// Only of nodes there may be lists: neither elements nor triangles have numbers that a scene could know.
+Selection read_selection(const Reader& entry, Selected of, const SelectionFrame& frame);
 /// The entries of `prescribed` and `initial`.
 Prescribed read_prescribed(const Reader& entry, const SelectionFrame& frame);
 Initial read_initial(const Reader& entry, const SelectionFrame& frame);

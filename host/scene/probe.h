@@ -9,13 +9,16 @@
 
 namespace pliant {
 
-/// Of a point: all but the reaction. Of chosen nodes: all but the stress; position, displacement and velocity are their means.
+/// Of a point: position, displacement, velocity, stress. Of chosen nodes: all but the stress; position, displacement and
+/// velocity are their means.
 enum class Quantity {
   position,      ///< [m]
   displacement,  ///< [m]
   velocity,      ///< [m/s]
   stress,        ///< Cauchy stress of the material at the point [Pa]
   reaction,      ///< force that fixes or moves the nodes, summed [N]
+  force,         ///< applied loads on the nodes, summed (simulation/applied_loads.h) [N]
+  energy,        ///< kinetic of the nodes, strain of the elements between them [J]
 };
 
 struct SceneProbe {

@@ -80,18 +80,18 @@ void read_entries(const Reader& body, const char* key, const char* kind, std::ve
 }
 
 Fixed read_fixed(const Reader& entry, const SelectionFrame& frame) {
-  Fixed fixed{read_selection(entry, NodeLists::allowed, frame)};
+  Fixed fixed{read_selection(entry, Selected::nodes, frame)};
   if (entry.has("axes")) fixed.axes = read_axes(entry.at("axes"));
   return fixed;
 }
 
 Force read_force(const Reader& entry, const SelectionFrame& frame) {
-  return {read_selection(entry, NodeLists::allowed, frame), entry.at("force", "the total force [x, y, z] in newton").vec3(),
+  return {read_selection(entry, Selected::nodes, frame), entry.at("force", "the total force [x, y, z] in newton").vec3(),
           read_curve(entry)};
 }
 
 Pressure read_pressure(const Reader& entry, const SelectionFrame& frame) {
-  return {read_selection(entry, NodeLists::refused, frame), entry.at("pressure", "the pressure in pascal").number(),
+  return {read_selection(entry, Selected::triangles, frame), entry.at("pressure", "the pressure in pascal").number(),
           read_curve(entry)};
 }
 
@@ -110,10 +110,10 @@ Body read_body(const Reader& body, const fs::path& folder, std::size_t index) {
   b.material = read_material(material);
   if (b.model.matched) b.model.young = b.material.moduli.young();
   check_pressure_law(material, b, b.material);
-  const SelectionFrame frame{folder, b.scale, b.translate};
+  const SelectionFrame frame = frame_of(b, folder);
   read_entries(body, "inclusions", "inclusion", b.inclusions, [&](const Reader& entry) {
     const Reader other = entry.at("material", "the material of the inclusion");
-    Inclusion inclusion{read_selection(entry, NodeLists::refused, frame), read_material(other)};
+    Inclusion inclusion{read_selection(entry, Selected::elements, frame), read_material(other)};
     check_pressure_law(other, b, inclusion.material);
     return inclusion;
   });

@@ -44,7 +44,7 @@ Selection read_region(const Reader& region) {
   if (region.has("box") == region.has("sphere")) {
     region.fail(region.has("box") ? "both \"box\" and \"sphere\"" : "neither \"box\" nor \"sphere\"", "exactly one of them");
   }
-  return read_selection(region, NodeLists::refused, {});
+  return read_selection(region, Selected::elements, {});
 }
 
 double read_beta(const Reader& beta) {

@@ -74,7 +74,7 @@ std::array<bool, 3> read_axes(const Reader& field) {
 }
 
 Prescribed read_prescribed(const Reader& entry, const SelectionFrame& frame) {
-  Prescribed prescribed{read_selection(entry, NodeLists::allowed, frame), {}, read_curve(entry)};
+  Prescribed prescribed{read_selection(entry, Selected::nodes, frame), {}, read_curve(entry)};
   if (entry.has("rotate") == entry.has("displacement")) {
     entry.fail(entry.has("rotate") ? "both \"displacement\" and \"rotate\"" : "neither \"displacement\" nor \"rotate\"",
                "exactly one of them");
@@ -90,7 +90,7 @@ Prescribed read_prescribed(const Reader& entry, const SelectionFrame& frame) {
 }
 
 Initial read_initial(const Reader& entry, const SelectionFrame& frame) {
-  Initial initial{read_selection(entry, NodeLists::allowed, frame), {}, {}};
+  Initial initial{read_selection(entry, Selected::nodes, frame), {}, {}};
   if (!entry.has("velocity") && !entry.has("displacement"))
     entry.fail("neither \"velocity\" nor \"displacement\"", "one of them, or both");
   if (entry.has("velocity")) initial.velocity = read_field(entry.at("velocity"));

@@ -41,7 +41,8 @@ std::vector<Quantity> read_quantities(const Reader& probe, bool point) {
   std::vector<Quantity> list;
   for (const Reader& entry : probe.at("quantities").items("a list of at least one quantity", 1)) {
     const Quantity q = entry.word(quantity_words());
-    if (point && q == Quantity::reaction) entry.fail("no reaction of a point: a selection of nodes (box, plane, ...) has one");
+    if (point && (q == Quantity::reaction || q == Quantity::force || q == Quantity::energy))
+      entry.fail(fmt::format("no {} of a point: a selection of nodes (box, plane, ...) has one", word_of(quantity_words(), q)));
     if (!point && q == Quantity::stress) entry.fail("no stress of a selection: a \"point\" has one");
     if (std::find(list.begin(), list.end(), q) != list.end()) entry.fail("every quantity at most once");
     list.push_back(q);
@@ -57,7 +58,7 @@ SceneProbe read_probe(const Reader& probe, const Scene& scene) {
   const bool point = probe.has("point");
   out.quantities = read_quantities(probe, point);
   if (point) {
-    for (const char* key : {"box", "sphere", "plane", "surface", "nodes", "all", "body"}) {
+    for (const char* key : {"box", "sphere", "plane", "surface", "region", "data", "dimension", "nodes", "all", "body"}) {
       if (probe.has(key)) probe.at(key).fail(fmt::format("no \"{}\" beside a \"point\"", key));
     }
     out.point = probe.at("point").vec3();
@@ -65,11 +66,12 @@ SceneProbe read_probe(const Reader& probe, const Scene& scene) {
   }
   const Body& body = read_whose(probe, scene);
   out.body = body.name;
-  out.where = read_selection(probe, NodeLists::allowed, {scene.file.parent_path(), body.scale, body.translate});
-  const bool reacts = std::find(out.quantities.begin(), out.quantities.end(), Quantity::reaction) != out.quantities.end();
-  if (reacts && body.model.type != ModelType::tled) {
-    probe.fail(fmt::format("a reaction of body \"{}\", whose model is {}", body.name, to_string(body.model.type)),
-               "a body of finite elements (tled): shape matching knows no forces");
+  out.where = read_selection(probe, Selected::nodes, frame_of(body, scene.file.parent_path()));
+  for (const Quantity q : out.quantities) {
+    if ((q != Quantity::reaction && q != Quantity::energy) || body.model.type == ModelType::tled) continue;
+    probe.fail(fmt::format("{} {} of body \"{}\", whose model is {}", q == Quantity::reaction ? "a" : "an",
+                           word_of(quantity_words(), q), body.name, to_string(body.model.type)),
+               "a body of finite elements (tled): shape matching knows no forces and no energy");
   }
   return out;
 }

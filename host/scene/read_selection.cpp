@@ -64,6 +64,26 @@ Selection read_nodes(const Reader& nodes) {
   return s;
 }
 
+RegionName read_region_name(const Reader& entry, const SelectionFrame& frame) {
+  const Reader region = entry.at("region");
+  if (frame.mesh == nullptr) {
+    region.fail(
+        "no region in a body that is a surface filled with a lattice: only the files of volume meshes have them (give a "
+        "closed \"surface\" around the part instead)");
+  }
+  RegionName name;
+  if (region.json().is_string()) {
+    name.name = region.text("the name of a physical group");
+  } else {
+    constexpr std::int64_t most = 9007199254740992;  // 2^53
+    if (!region.json().is_number_integer()) region.fail("a tag of the mesh file, or the name of one");
+    name.number = region.integer(-most, most);
+  }
+  if (entry.has("data")) name.data = entry.at("data").text("the name of an array of the mesh file");
+  if (entry.has("dimension")) name.dimension = static_cast<int>(entry.at("dimension").integer(2, 3));
+  return name;
+}
+
 void read_times(const Reader& entry, Curve& curve) {
   if (entry.has("start")) curve.start = entry.at("start").number();
   const bool timed = curve.kind == Curve::Kind::ramp || curve.kind == Curve::Kind::smooth;
@@ -92,15 +112,23 @@ void read_table(const Reader& entry, Curve& curve) {
 
 }  // namespace
 
-Selection read_selection(const Reader& entry, NodeLists lists, const SelectionFrame& frame) {
-  const bool with_nodes = lists == NodeLists::allowed;
+SelectionFrame frame_of(const Body& body, const std::filesystem::path& folder) {
+  SelectionFrame frame{folder, body.scale, body.translate};
+  if (!body.mesh.empty()) frame.mesh = std::make_shared<const TaggedMesh>(body.mesh, body.scale, body.translate);
+  return frame;
+}
+
+Selection read_selection(const Reader& entry, Selected of, const SelectionFrame& frame) {
   const std::string expected =
-      std::string("exactly one of box, sphere, plane, surface, ") + (with_nodes ? "nodes, all" : "all");
+      std::string("exactly one of box, sphere, plane, surface, region, ") + (of == Selected::nodes ? "nodes, all" : "all");
   std::vector<std::string> given;
-  for (const char* key : {"box", "sphere", "plane", "surface", "nodes", "all"}) {
+  for (const char* key : {"box", "sphere", "plane", "surface", "region", "nodes", "all"}) {
     if (entry.has(key)) given.emplace_back(key);
   }
   if (given.size() != 1) entry.fail(given.empty() ? "no selection" : listed(given), expected);
+  for (const char* key : {"data", "dimension"}) {
+    if (entry.has(key) && given[0] != "region") entry.at(key).fail(fmt::format("no \"{}\" beside \"{}\"", key, given[0]));
+  }
 
   const std::string& key = given.front();
   const Reader value = entry.at(key);
@@ -114,6 +142,10 @@ Selection read_selection(const Reader& entry, NodeLists lists, const SelectionFr
     s.kind = Selection::Kind::surface;
     s.surface = std::make_shared<const ClosedSurface>(file.is_absolute() ? file : frame.folder / file, frame.scale,
                                                       frame.translate, value.pointer());
+  }
+  if (key == "region") {
+    s.kind = Selection::Kind::region;
+    s.region = std::make_shared<const MeshRegion>(frame.mesh, read_region_name(entry, frame), of, value.pointer());
   }
   if (key == "all" && !value.boolean()) value.fail("true (or another selection)");
   s.pointer = entry.pointer();

@@ -21,8 +21,9 @@ Enum word(const Words<Enum>& words, const std::string& text, const std::string& 
   return Reader(value, kName, pointer).word(words);
 }
 
-/// `body`: whose scale and translate a surface shares; null: there is none.
-Selection selection(const RegionSpec& r, const std::string& pointer, const BodySpec* body) {
+/// `body`: whose scale and translate a surface shares, and whose mesh has the regions; null: there is none.
+Selection selection(const RegionSpec& r, const std::string& pointer, const BodySpec* body,
+                    const std::shared_ptr<const TaggedMesh>& mesh = nullptr, Selected of = Selected::nodes) {
   Selection s;
   switch (r.kind) {
     case RegionSpec::Kind::all:
@@ -44,6 +45,11 @@ Selection selection(const RegionSpec& r, const std::string& pointer, const BodyS
       s.kind = Selection::Kind::surface;
       s.surface = std::make_shared<const ClosedSurface>(r.surface_file, body != nullptr ? body->scale : 1,
                                                         body != nullptr ? body->translate : Vec3d{}, pointer + "/surface");
+      break;
+    case RegionSpec::Kind::region:
+      s.kind = Selection::Kind::region;
+      s.region = std::make_shared<const MeshRegion>(
+          mesh, RegionName{r.region_name, r.region_number, r.region_data, r.region_dimension}, of, pointer + "/region");
       break;
   }
   s.pointer = pointer;
@@ -120,26 +126,31 @@ AffineField field(const std::optional<FieldSpec>& f) {
 }
 
 void add_conditions(const BodySpec& spec, Body& b) {
-  convert(b.inclusions, spec.inclusions, b.pointer + "/inclusions", [&spec](const InclusionSpec& s, const std::string& at) {
-    return Inclusion{selection(s.where, at, &spec), material(s.material, at + "/material")};
+  const std::shared_ptr<const TaggedMesh> mesh = frame_of(b, {}).mesh;
+  const auto selected = [&](const RegionSpec& where, const std::string& at, Selected of = Selected::nodes) {
+    return selection(where, at, &spec, mesh, of);
+  };
+  convert(b.inclusions, spec.inclusions, b.pointer + "/inclusions", [&selected](const InclusionSpec& s, const std::string& at) {
+    return Inclusion{selected(s.where, at, Selected::elements), material(s.material, at + "/material")};
   });
-  convert(b.fixed, spec.fixed, b.pointer + "/fixed", [&spec](const FixedSpec& s, const std::string& at) {
-    return Fixed{selection(s.where, at, &spec), axes(s.axes, at + "/axes")};
+  convert(b.fixed, spec.fixed, b.pointer + "/fixed", [&selected](const FixedSpec& s, const std::string& at) {
+    return Fixed{selected(s.where, at), axes(s.axes, at + "/axes")};
   });
-  convert(b.prescribed, spec.prescribed, b.pointer + "/prescribed", [&spec](const PrescribedSpec& s, const std::string& at) {
-    Prescribed out{selection(s.where, at, &spec), s.displacement, curve(s.curve, at)};
-    if (s.rotate) out.rotate = Rotation{s.rotate->axis, s.rotate->about, s.rotate->angle};
-    if (s.rotate) out.axes = axes(s.axes, at + "/axes");
-    return out;
+  convert(b.prescribed, spec.prescribed, b.pointer + "/prescribed",
+          [&selected](const PrescribedSpec& s, const std::string& at) {
+            Prescribed out{selected(s.where, at), s.displacement, curve(s.curve, at)};
+            if (s.rotate) out.rotate = Rotation{s.rotate->axis, s.rotate->about, s.rotate->angle};
+            if (s.rotate) out.axes = axes(s.axes, at + "/axes");
+            return out;
+          });
+  convert(b.initial, spec.initial, b.pointer + "/initial", [&selected](const InitialSpec& s, const std::string& at) {
+    return Initial{selected(s.where, at), field(s.velocity), field(s.displacement)};
   });
-  convert(b.initial, spec.initial, b.pointer + "/initial", [&spec](const InitialSpec& s, const std::string& at) {
-    return Initial{selection(s.where, at, &spec), field(s.velocity), field(s.displacement)};
+  convert(b.forces, spec.forces, b.pointer + "/forces", [&selected](const ForceSpec& s, const std::string& at) {
+    return Force{selected(s.where, at), s.force, curve(s.curve, at)};
   });
-  convert(b.forces, spec.forces, b.pointer + "/forces", [&spec](const ForceSpec& s, const std::string& at) {
-    return Force{selection(s.where, at, &spec), s.force, curve(s.curve, at)};
-  });
-  convert(b.pressures, spec.pressures, b.pointer + "/pressures", [&spec](const PressureSpec& s, const std::string& at) {
-    return Pressure{selection(s.where, at, &spec), s.pressure, curve(s.curve, at)};
+  convert(b.pressures, spec.pressures, b.pointer + "/pressures", [&selected](const PressureSpec& s, const std::string& at) {
+    return Pressure{selected(s.where, at, Selected::triangles), s.pressure, curve(s.curve, at)};
   });
 }
 

@@ -4,6 +4,7 @@
 
 #include "scene/closed_surface.h"
 #include "scene/keys.h"
+#include "scene/mesh_region.h"
 #include "scene/scene.h"
 
 namespace pliant {
@@ -46,6 +47,8 @@ bool Selection::contains(const Vec3d& x, std::int64_t index) const {
       return std::binary_search(nodes.begin(), nodes.end(), index);
     case Kind::surface:
       return surface != nullptr && surface->contains(x);
+    case Kind::region:
+      return region != nullptr && region->contains(x, index);
   }
   return false;
 }

@@ -36,6 +36,13 @@ Json selection_json(const Selection& s, const fs::path& scene_file) {
       return {{"nodes", s.nodes}};
     case Selection::Kind::surface:
       return {{"surface", path_json(s.surface->file(), scene_file)}};
+    case Selection::Kind::region: {
+      const RegionName& name = s.region->name();
+      Json entry{{"region", name.name.empty() ? Json(name.number) : Json(name.name)}};
+      if (!name.data.empty()) entry["data"] = name.data;
+      if (name.dimension != 0) entry["dimension"] = name.dimension;
+      return entry;
+    }
   }
   return Json::object();
 }

@@ -1,6 +1,7 @@
 #include "simulation/energy.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -26,12 +27,14 @@ double density(const Matrix3d& h, const Material& m) {
 
 class Sum {
  public:
-  explicit Sum(const std::vector<Vec3d>& u) : u_(u) {}
+  /// `chosen`: slots between which elements count; null: all.
+  Sum(const std::vector<Vec3d>& u, const std::vector<char>* chosen) : u_(u), chosen_(chosen) {}
 
   void tets(const TetBatch& batch) {
     std::map<std::int32_t, std::array<double, 2>> nodal;  // a quarter of the volumes, rest and deformed
     for (std::size_t e = 0; e < batch.nodes.size(); ++e) {
       const auto& nodes = batch.nodes[e];
+      if (!counts(nodes)) continue;
       Matrix3d h = Matrix3d::Zero();
       for (int a = 0; a < 3; ++a) {
         const Eigen::Map<const Vector3d> gradient(batch.gradients[e].data() + 3 * a);
@@ -55,6 +58,7 @@ class Sum {
   }
 
   void hex(const HexView& view) {
+    if (!counts(view.slots)) return;
     if (!view.full) {
       point(view.slots, view.record.data(), view.fill * hex8_volume(view.record), view.material);
       out.hourglass += view.fill * hourglass_energy(view.record, gather(view.slots));
@@ -67,6 +71,11 @@ class Sum {
   Energies out;
 
  private:
+  template <std::size_t N>
+  [[nodiscard]] bool counts(const std::array<std::int32_t, N>& nodes) const {
+    return chosen_ == nullptr ||
+           std::all_of(nodes.begin(), nodes.end(), [&](std::int32_t slot) { return (*chosen_)[slot] != 0; });
+  }
   [[nodiscard]] Vector3d displacement(std::int32_t slot) const { return vector_of(u_[slot]); }
 
   [[nodiscard]] Displacements8 gather(const std::array<std::int32_t, 8>& nodes) const {
@@ -82,15 +91,29 @@ class Sum {
   }
 
   const std::vector<Vec3d>& u_;
+  const std::vector<char>* chosen_;
 };
+
+Energies internal(const Model& model, const std::vector<Vec3d>& u, const std::vector<char>* chosen) {
+  Sum sum(u, chosen);
+  for (const TetBatch& batch : model.tets) sum.tets(batch);
+  for_each_hex(model, [&](const HexView& view) { sum.hex(view); });
+  return sum.out;
+}
 
 }  // namespace
 
+Energies energies_among(const Model& model, const std::vector<Vec3d>& u, const std::vector<Vec3d>& v,
+                        const std::vector<char>& chosen) {
+  Energies out = internal(model, u, &chosen);
+  for (std::size_t s = 0; s < model.mass.size(); ++s) {
+    if (chosen[s] != 0) out.kinetic += model.mass[s] / 2 * vector_of(v[s]).squaredNorm();
+  }
+  return out;
+}
+
 Energies energies(const Model& model, const std::vector<Vec3d>& u, const std::vector<Vec3d>& v, const DeadLoads& loads) {
-  Sum sum(u);
-  for (const TetBatch& batch : model.tets) sum.tets(batch);
-  for_each_hex(model, [&](const HexView& view) { sum.hex(view); });
-  Energies out = sum.out;
+  Energies out = internal(model, u, nullptr);
   const Vector3d gravity = vector_of(loads.gravity);
   for (std::size_t s = 0; s < model.mass.size(); ++s) {
     if (!(model.mass[s] > 0)) continue;

@@ -26,6 +26,11 @@ struct DeadLoads {
 /// tet4anp takes the term in (J - 1)^2 at the nodes, with J averaged over the volumes of a node's elements of one batch.
 Energies energies(const Model& model, const std::vector<Vec3d>& u, const std::vector<Vec3d>& v, const DeadLoads& loads = {});
 
+/// Kinetic energy of these slots and strain and hourglass energy of the elements all of whose nodes are among them; no external
+/// one. `chosen`: [Model::slots].
+Energies energies_among(const Model& model, const std::vector<Vec3d>& u, const std::vector<Vec3d>& v,
+                        const std::vector<char>& chosen);
+
 struct Momenta {
   double mass = 0;  ///< [kg]
   Vec3d centre{};   ///< centre of mass [m]

@@ -11,17 +11,18 @@ namespace pliant {
 
 /// x, y, z.
 using Vec3d = std::array<double, 3>;
-/// A set of nodes chosen by rest position [m] or by number. For pressures the centres of surface triangles are chosen, for
-/// inclusions the centres of elements.
+/// A set of nodes chosen by rest position [m], by number, or by a tag of the mesh file. For pressures the centres of surface
+/// triangles are chosen, for inclusions the centres of elements.
 struct RegionSpec {
   /// How it chooses.
   enum class Kind {
-    all,     ///< everything
-    box,     ///< between a and b
-    sphere,  ///< within radius of a
-    plane,   ///< on the side of the plane through a to which b points
-    nodes,   ///< by number
-    surface  ///< inside a closed surface from a file
+    all,      ///< everything
+    box,      ///< between a and b
+    sphere,   ///< within radius of a
+    plane,    ///< on the side of the plane through a to which b points
+    nodes,    ///< by number
+    surface,  ///< inside a closed surface from a file
+    region    ///< by a tag of the body's mesh file
   };
   Kind kind = Kind::all;            ///< decides which of the others count
   Vec3d a{};                        ///< box: lower corner; sphere: centre; plane: a point
@@ -29,6 +30,11 @@ struct RegionSpec {
   double radius = 0;                ///< sphere [m]
   std::vector<std::int64_t> nodes;  ///< numbers in the body
   std::string surface_file = {};    ///< surface: OBJ, STL, PLY, ...; the body's scale and translate apply to it
+
+  std::string region_name = {};    ///< region: its name (a physical group of Gmsh); empty: region_number counts
+  std::int64_t region_number = 0;  ///< region: the tag itself
+  std::string region_data = {};    ///< region: the array of the file that holds the tags; empty: the usual one (docs/scene.md)
+  int region_dimension = 0;        ///< region: 2 for tagged faces, 3 for tagged elements, 0 for whichever has the tag
 
   /// Everything.
   static RegionSpec all() { return {}; }
@@ -42,6 +48,18 @@ struct RegionSpec {
   static RegionSpec of_nodes(std::vector<std::int64_t> numbers) { return {Kind::nodes, {}, {}, 0, std::move(numbers)}; }
   /// The inside of a closed surface.
   static RegionSpec inside(std::string file) { return {Kind::surface, {}, {}, 0, {}, std::move(file)}; }
+  /// The elements or faces to which the body's mesh file gives a number.
+  static RegionSpec tagged(std::int64_t number) {
+    RegionSpec r{Kind::region, {}, {}, 0, {}};
+    r.region_number = number;
+    return r;
+  }
+  /// The elements or faces to which the body's mesh file gives a name.
+  static RegionSpec tagged(std::string name) {
+    RegionSpec r{Kind::region, {}, {}, 0, {}};
+    r.region_name = std::move(name);
+    return r;
+  }
 };
 
 /// A factor over time, for loads and prescribed motion.

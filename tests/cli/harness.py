@@ -81,7 +81,7 @@ class CliTest(unittest.TestCase):
         return messages[0]
 
     def scene(self, name="scene", body=None, **keys):
-        """A soft cube of 125 cells that is pressed from above, as a file; `keys` and `body` replace parts of it."""
+        """A soft cube of 125 cells that is pressed from above, as a file; `keys` and `body` replace parts of it, None leaves one out."""
         cube = {
             "name": "cube",
             "surface": str(SCENES / "meshes" / "cube.obj"),
@@ -94,7 +94,7 @@ class CliTest(unittest.TestCase):
             ],
         }
         cube.update(body or {})
-        scene = {"format": "pliant-scene/1", "gravity": [0, -9.81, 0], "duration": 0.3, "bodies": [cube]}
+        scene = {"format": "pliant-scene/1", "gravity": [0, -9.81, 0], "duration": 0.3, "bodies": [{key: value for key, value in cube.items() if value is not None}]}
         scene.update(keys)
         file = self.folder / f"{name}.json"
         file.write_text(json.dumps(scene))

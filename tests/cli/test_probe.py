@@ -1,6 +1,7 @@
 """pliant run --probe: a material point and where it goes."""
 import csv
 import json
+import math
 
 import harness
 GRAVITY = 9.81
@@ -112,6 +113,59 @@ class SceneProbes(harness.CliTest):
         by_entry = {r["at"]: r for r in static}
         for name, entry in (("hold", "/bodies/0/fixed/0"), ("push", "/bodies/0/prescribed/0")):
             self.near(relaxed[name]["reaction"], by_entry[entry]["force"], 2e-4)
+
+    def test_force_is_the_weight_and_the_loads(self):
+        """Of every element, with inertia that has no weight (blades), of half of the loads' ramp; and at rest minus the reaction."""
+        push = {"forces": [{"plane": [[0, 0.049, 0], [0, 1, 0]], "force": [0.5, 0, 0.25], "curve": "ramp", "duration": 0.02}]}
+        force = {"name": "all", "all": True, "quantities": ["force"]}
+        blade = {"name": "b", "path": [[1, 0.013, 0.08, -0.1, 0.013, 0.08, 0.1], [2, 0.013, -0.08, -0.1, 0.013, -0.08, 0.1]]}
+        ball = {"surface": str(harness.SCENES / "meshes" / "apple.obj"), "lattice": {"nodes": 600}, "prescribed": [], "fixed": []}
+        for body, keys in (({"element": "hex8"}, {}), ({"element": "tet4"}, {}), ({"element": "hex8full"}, {}), (ball, {}),
+                           (ball, {"blades": [blade]})):
+            probes, run = self.of(self.scene(body={"prescribed": [], **body}, dt=1e-5, probes=[force], **keys), "--steps", 3)
+            self.near([f / (GRAVITY * run["mass"]) for f in probes["all"]["force"]], [0, -1, 0], 1e-6)
+        self.assertGreater(run["added_mass"], 1e-6 * run["mass"])  # of the last, which cells that a blade may cut have
+        probes, run = self.of(self.scene(body={"prescribed": [], **push}, dt=1e-4, probes=[force]), "--steps", 100)
+        self.near(probes["all"]["force"], [0.25, -GRAVITY * run["mass"], 0.125], 1e-6)
+        low = {"name": "low", "box": [[-1, -0.051, -1], [1, -0.029, 1]], "quantities": ["force", "position"]}  # two of six planes of nodes
+        probes, run = self.of(self.scene(body={"prescribed": []}, dt=1e-4, probes=[low]), "--steps", 2)
+        self.near(probes["low"]["force"], [0, -GRAVITY * run["mass"] * 1.5 / 5, 0], 1e-6)
+        press = {"pressures": [{"plane": [[0, 0.0499, 0], [0, 1, 0]], "pressure": 100}]}
+        held = {"name": "held", "plane": [[0, -0.049, 0], [0, -1, 0]], "quantities": ["reaction"]}
+        probes, run = self.of(self.scene(body={"prescribed": [], **push, **press}, relaxation={"tolerance": 1e-8}, probes=[force, held]))
+        self.near([a + b for a, b in zip(probes["all"]["force"], probes["held"]["reaction"])], [0, 0, 0], 1e-4)
+        self.assertGreater(-probes["all"]["force"][1], GRAVITY * run["mass"] + 0.9)
+
+    def test_energy(self):
+        """Kinetic of a falling body, elastic of one that is stretched evenly, of all of it and of three of its five layers."""
+        energy = [{"name": "all", "all": True, "quantities": ["energy"]},
+                  {"name": "part", "box": [[-1, -0.051, -1], [1, 0.011, 1]], "quantities": ["energy", "velocity"]}]
+        free = {"prescribed": [], "fixed": [], "material": {"young": 3000, "poisson": 0.4}}
+        probes, run = self.of(self.scene(body=free, dt=1e-4, probes=energy), "--steps", 400)
+        speed = probes["part"]["velocity"][1]
+        self.assertAlmostEqual(probes["all"]["energy"]["kinetic"] / (run["mass"] * speed ** 2 / 2), 1, delta=1e-9)
+        self.assertAlmostEqual(probes["part"]["energy"]["kinetic"] / (0.7 * run["mass"] * speed ** 2 / 2), 1, delta=1e-6)  # 3.5 of 5
+        self.assertLess(abs(probes["all"]["energy"]["strain"]), 1e-12)
+        mu, lame, stretch = 3000 / 2.8, 3000 * 0.4 / (1.4 * 0.2), 1.2
+        density = mu / 2 * (stretch ** 2 - 1) - mu * math.log(stretch) + lame / 2 * (stretch - 1) ** 2
+        pulled = [{"all": True, "displacement": {"linear": [[0, 0, 0], [0, stretch - 1, 0], [0, 0, 0]]}}]
+        for element in ("hex8", "tet4", "tet4anp", "hex8full"):
+            scene = self.scene(body={**free, "element": element, "initial": pulled}, gravity=[0, 0, 0], dt=1e-7, probes=energy)
+            self.of(scene, "--steps", 1, "--out", element)
+            for name, share in (("all", 1), ("part", 0.6)):
+                with open(self.folder / element / f"scene_{name}.csv", newline="") as file:
+                    row = next(csv.DictReader(file))
+                self.assertEqual(row["step"], "0")
+                self.assertLess(float(row["kinetic [J]"]), 1e-10)  # of half a step
+                self.assertAlmostEqual(float(row["strain [J]"]) / (share * 1e-3 * density), 1, delta=1e-6)
+
+    def test_of_nodes_of_finite_elements_alone(self):
+        for quantity in ("reaction", "energy"):
+            probe = {"name": "p", "all": True, "quantities": [quantity]}
+            self.refused("run", self.scene(body={"model": {"type": "flsm"}}, probes=[probe]), words=["/probes/0", quantity, "flsm"])
+        for quantity in ("reaction", "force", "energy"):
+            self.refused("run", self.scene(probes=[{"name": "p", "point": [0, 0, 0], "quantities": [quantity]}]),
+                         words=[f"/probes/0/quantities/0: got \"{quantity}\", expected no {quantity} of a point"])
 
     def test_what_turns_a_body_has_its_inertia(self):
         """All nodes of a cube circle about an axis at a constant rate: what moves them is m w^2 r, inwards, and what its damping takes."""

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "mesh_io/mesh_io.h"
+#include "mesh_io/mesh_tags.h"
 #include "pliant/error.h"
 
 namespace {
@@ -64,6 +65,17 @@ void check_volume(const fs::path& file) {
   check_mesh(mesh.vertices, mesh.hexes);
   check(!mesh.tets.empty() || !mesh.hexes.empty());
   check_mesh(mesh.vertices, pliant::boundary_triangles(mesh));
+  // Its tags may be damaged although the mesh is not.
+  pliant::MeshTags tags;
+  const std::size_t elements = mesh.tets.size() + mesh.hexes.size();
+  check(pliant::read_volume(file, 1, {}, &tags).vertices.size() == mesh.vertices.size());
+  for (const auto& face : tags.faces) {
+    for (const std::int32_t node : face) check(node >= -1 && node < static_cast<std::int32_t>(mesh.vertices.size()));
+  }
+  for (const pliant::MeshTags::Array& array : tags.arrays) {
+    for (const pliant::MeshTags::Tag& tag : array.tags)
+      check(tag.place >= 0 && static_cast<std::size_t>(tag.place) < (tag.dimension == 3 ? elements : tags.faces.size()));
+  }
 }
 
 /// TetGen splits a mesh over two files: the text up to the first line "---" is the .node file, the rest the .ele file.

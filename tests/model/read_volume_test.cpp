@@ -175,10 +175,10 @@ TEST(ReadVolume, ErrorsSayWhere) {
   const auto msh = [&](const std::string& text) { return folder.write("a.msh", text); };
   const std::string good = testing::gmsh2_text();
   // Line 7 announces the section, 8 the number of nodes, 9 to 22 hold them.
-  expect_error(msh(replaced(good, "2 0 0 0\n", "2 0 zero 0\n")), {"a.msh:11:", "coordinate", "zero"});
-  expect_error(msh(replaced(good, "3 4 2 1 1 10 11 12 13", "3 4 2 1 1 10 11 12 99")), {"element 3", "node 99"});
+  expect_error(msh(replaced(good, "2 0 0 0\n", "2 0 zero 0\n")), {"a.msh:12:", "coordinate", "zero"});
+  expect_error(msh(replaced(good, "3 4 2 5 2 10 11 12 13", "3 4 2 5 2 10 11 12 99")), {"element 3", "node 99"});
   expect_error(msh(replaced(good, "2 0 0 0\n", "2 0 nan 0\n")), {"vertex 2", "nan"});
-  expect_error(msh(replaced(good, "\n14\n", "\n1400000000000\n")), {"a.msh:9:", "1400000000000", "cannot fit"});
+  expect_error(msh(replaced(good, "\n14\n", "\n1400000000000\n")), {"a.msh:10:", "1400000000000", "cannot fit"});
   expect_error(msh(replaced(good, "\n14\n", "\n-3\n")), {"-3"});
   expect_error(msh(replaced(good, "2.2 0 8", "3.5 0 8")), {"3.5", "4.1"});
   expect_error(msh(replaced(good, "\n2 0 0 0\n", "\n1 0 0 0\n")), {"node 1 appears twice"});
@@ -226,13 +226,13 @@ TEST(ReadVolume, NamesWhatItFoundInsteadOfCells) {
 TEST(ReadVolume, OrientationOfTetrahedra) {
   const TempFolder folder;
   const std::string good = testing::gmsh2_text();
-  const std::string one = replaced(good, "4 4 2 1 1 11 14 12 13", "4 4 2 1 1 14 11 12 13");
+  const std::string one = replaced(good, "4 4 2 5 2 11 14 12 13", "4 4 2 5 2 14 11 12 13");
   expect_error(folder.write("a.msh", one), {"tetrahedron 4", "inverted", "-2.14583", "1 of 2"});
-  const auto both = folder.write("a.msh", replaced(one, "3 4 2 1 1 10 11 12 13", "3 4 2 1 1 11 10 12 13"));
+  const auto both = folder.write("a.msh", replaced(one, "3 4 2 5 2 10 11 12 13", "3 4 2 5 2 11 10 12 13"));
   const VolumeMesh flipped = read_volume(both);
   for (const auto& t : flipped.tets) EXPECT_GT(tet_volume(flipped, t), 0);
   EXPECT_NEAR(total_volume(flipped), total_volume(read_volume(folder.write("b.msh", good))), 1e-14);
-  expect_error(folder.write("a.msh", replaced(good, "3 4 2 1 1 10 11 12 13", "3 4 2 1 1 10 11 12 12")),
+  expect_error(folder.write("a.msh", replaced(good, "3 4 2 5 2 10 11 12 13", "3 4 2 5 2 10 11 12 12")),
                {"tetrahedron 3", "no volume"});
 }
 

@@ -20,9 +20,13 @@ struct TestCell {
   int vtk;
   int gmsh;
   std::vector<int> nodes;
+  int tag;  ///< of a material
+  int entity;
 };
-inline const std::vector<TestCell> kCells{
-    {12, 5, {1, 2, 3, 4, 5, 6, 7, 8}}, {5, 2, {9, 10, 11}}, {10, 4, {9, 10, 11, 12}}, {10, 4, {10, 13, 11, 12}}};
+inline const std::vector<TestCell> kCells{{12, 5, {1, 2, 3, 4, 5, 6, 7, 8}, 3, 1},
+                                          {5, 2, {9, 10, 11}, 7, 1},
+                                          {10, 4, {9, 10, 11, 12}, 5, 2},
+                                          {10, 4, {10, 13, 11, 12}, 5, 2}};
 
 /// Appends values in either byte order.
 class Bytes {
@@ -54,7 +58,7 @@ inline std::string gmsh1() {
     s << 10 * i + 7 << " " << kPoints[i][0] << " " << kPoints[i][1] << " " << kPoints[i][2] << "\n";
   s << "$ENDNOD\n$ELM\n" << kCells.size() << "\n";
   for (std::size_t i = 0; i < kCells.size(); ++i) {
-    s << i + 1 << " " << kCells[i].gmsh << " 1 1 " << kCells[i].nodes.size();
+    s << i + 1 << " " << kCells[i].gmsh << " " << kCells[i].tag << " " << kCells[i].entity << " " << kCells[i].nodes.size();
     for (const int n : kCells[i].nodes) s << " " << 10 * n + 7;
     s << "\n";
   }
@@ -64,13 +68,13 @@ inline std::string gmsh1() {
 
 inline std::string gmsh2_text() {
   std::ostringstream s;
-  s << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n3 1 \"body\"\n$EndPhysicalNames\n$Nodes\n"
+  s << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n3 5 \"a tumour\"\n2 7 \"skin\"\n$EndPhysicalNames\n$Nodes\n"
     << kPoints.size() << "\n";
   for (std::size_t i = 0; i < kPoints.size(); ++i)
     s << i + 1 << " " << kPoints[i][0] << " " << kPoints[i][1] << " " << kPoints[i][2] << "\n";
   s << "$EndNodes\n$Elements\n" << kCells.size() << "\n";
   for (std::size_t i = 0; i < kCells.size(); ++i) {
-    s << i + 1 << " " << kCells[i].gmsh << " 2 1 1";
+    s << i + 1 << " " << kCells[i].gmsh << " 2 " << kCells[i].tag << " " << kCells[i].entity;
     for (const int n : kCells[i].nodes) s << " " << n + 1;
     s << "\n";
   }
@@ -91,17 +95,27 @@ inline std::string gmsh2_binary(bool big) {
   for (std::size_t i = 0; i < kCells.size(); ++i) {
     // The last two cells are of one kind and share a block.
     if (i != 3) b.put<std::int32_t>(kCells[i].gmsh).put<std::int32_t>(i == 2 ? 2 : 1).put<std::int32_t>(2);
-    b.put(static_cast<std::int32_t>(i + 1)).put<std::int32_t>(1).put<std::int32_t>(1);
+    b.put(static_cast<std::int32_t>(i + 1)).put<std::int32_t>(kCells[i].tag).put<std::int32_t>(kCells[i].entity);
     for (const int n : kCells[i].nodes) b.put<std::int32_t>(n + 1);
   }
   b.text("\n$EndElements\n");
   return b.str();
 }
 
+/// A point, a curve, a face and two volumes with their groups; -7: the group has the face turned round.
+inline std::string gmsh4_entities(bool v41) {
+  const std::string box = " 0 0 0 1 1 1 ";
+  return "$Entities\n1 1 1 2\n1" + (v41 ? std::string(" 0 0 0 ") : box) + "1 4\n1" + box + "1 9 1 1\n1" + box + "1 -7 1 1\n1" +
+         box + "1 3 1 1\n2" + box + "1 5 0\n$EndEntities\n";
+}
+
 inline std::string gmsh4_text(bool v41) {
   std::ostringstream s;
   const std::size_t n = kPoints.size();
-  s << "$MeshFormat\n" << (v41 ? "4.1" : "4") << " 0 8\n$EndMeshFormat\n$Entities\n0 0 0 0\n$EndEntities\n$Nodes\n2 " << n;
+  s << "$MeshFormat\n"
+    << (v41 ? "4.1" : "4") << " 0 8\n$EndMeshFormat\n"
+    << "$PhysicalNames\n2\n3 5 \"a tumour\"\n2 7 \"skin\"\n$EndPhysicalNames\n"
+    << gmsh4_entities(v41) << "$Nodes\n2 " << n;
   s << (v41 ? " 1 " + std::to_string(n) : "") << "\n";
   // The first block lies on a surface and carries two parametric coordinates.
   for (int block = 0; block < 2; ++block) {
@@ -117,7 +131,9 @@ inline std::string gmsh4_text(bool v41) {
   s << "$EndNodes\n$Elements\n3 " << kCells.size() << (v41 ? " 1 " + std::to_string(kCells.size()) : "") << "\n";
   for (std::size_t i = 0; i < kCells.size(); ++i) {
     const int dim = kCells[i].gmsh == 2 ? 2 : 3;
-    if (i != 3) s << (v41 ? dim : 1) << " " << (v41 ? 1 : dim) << " " << kCells[i].gmsh << " " << (i == 2 ? 2 : 1) << "\n";
+    if (i != 3)
+      s << (v41 ? dim : kCells[i].entity) << " " << (v41 ? kCells[i].entity : dim) << " " << kCells[i].gmsh << " "
+        << (i == 2 ? 2 : 1) << "\n";
     s << i + 1;
     for (const int k : kCells[i].nodes) s << " " << k + 1;
     s << "\n";
@@ -129,7 +145,14 @@ inline std::string gmsh4_text(bool v41) {
 inline std::string gmsh4_binary(bool v41) {
   Bytes b;
   const auto n = static_cast<std::uint64_t>(kPoints.size());
-  b.text(v41 ? "$MeshFormat\n4.1 1 8\n" : "$MeshFormat\n4 1 8\n").put<std::int32_t>(1).text("\n$EndMeshFormat\n$Nodes\n");
+  b.text(v41 ? "$MeshFormat\n4.1 1 8\n" : "$MeshFormat\n4 1 8\n").put<std::int32_t>(1).text("\n$EndMeshFormat\n$Entities\n");
+  for (const std::uint64_t count : {0, 0, 1, 2}) b.put(count);
+  for (const auto& [entity, group] : {std::pair{1, -7}, {1, 3}, {2, 5}}) {
+    b.put<std::int32_t>(entity);
+    for (int k = 0; k < 6; ++k) b.put(0.5 * k);
+    b.put<std::uint64_t>(1).put<std::int32_t>(group).put<std::uint64_t>(1).put<std::int32_t>(1);
+  }
+  b.text("\n$EndEntities\n$Nodes\n");
   b.put<std::uint64_t>(1).put(n);
   if (v41) b.put<std::uint64_t>(1).put(n);
   b.put<std::int32_t>(v41 ? 3 : 1).put<std::int32_t>(v41 ? 1 : 3).put<std::int32_t>(0).put(n);
@@ -144,8 +167,8 @@ inline std::string gmsh4_binary(bool v41) {
   for (std::size_t i = 0; i < kCells.size(); ++i) {
     const int dim = kCells[i].gmsh == 2 ? 2 : 3;
     if (i != 3)
-      b.put<std::int32_t>(v41 ? dim : 1)
-          .put<std::int32_t>(v41 ? 1 : dim)
+      b.put<std::int32_t>(v41 ? dim : kCells[i].entity)
+          .put<std::int32_t>(v41 ? kCells[i].entity : dim)
           .put<std::int32_t>(kCells[i].gmsh)
           .put<std::uint64_t>(i == 2 ? 2 : 1);
     tag(i + 1);
@@ -170,7 +193,8 @@ inline std::vector<std::int64_t> offsets(bool first) {
   return out;
 }
 
-inline std::string vtk_legacy(bool binary, bool newer) {
+/// `tagged`: with attributes of every kind, of which "MaterialIds" are the tags.
+inline std::string vtk_legacy(bool binary, bool newer, bool tagged = false) {
   Bytes b(true);
   const auto value = [&](auto v) {
     if (binary) {
@@ -202,8 +226,26 @@ inline std::string vtk_legacy(bool binary, bool newer) {
   }
   b.text("\nCELL_TYPES " + std::to_string(kCells.size()) + "\n");
   for (const auto& c : kCells) value(static_cast<std::int32_t>(c.vtk));
+  if (tagged) {
+    b.text("\nPOINT_DATA " + std::to_string(kPoints.size()) + "\nVECTORS v double\n");
+    for (std::size_t i = 0; i < 3 * kPoints.size(); ++i) value(0.5);
+    b.text("\nSCALARS MaterialIds int\nLOOKUP_TABLE default\n");  // of points: no tags
+    for (std::size_t i = 0; i < kPoints.size(); ++i) value(std::int32_t{9});
+  }
   b.text("\nCELL_DATA 4\nSCALARS a float\nLOOKUP_TABLE default\n");
-  for (int i = 0; i < 4; ++i) value(1.0f);
+  for (int i = 0; i < 4; ++i) value(tagged ? 1.5f : 1.0f);
+  if (tagged) {
+    b.text("\nTENSORS t float\n");
+    for (int i = 0; i < 36; ++i) value(0.25f);
+    b.text("\nSCALARS MaterialIds int 1\nLOOKUP_TABLE default\n");
+    for (const auto& c : kCells) value(static_cast<std::int32_t>(c.tag));
+    b.text("\nFIELD FieldData 3\npair 2 4 unsigned_char\n");
+    for (int i = 0; i < 8; ++i) value(static_cast<std::uint8_t>(7));
+    b.text("\npart%20of 1 4 double\n");
+    for (const auto& c : kCells) value(static_cast<double>(c.entity));
+    b.text("\nMETADATA\nINFORMATION 0\n\nid 1 4 vtktypeint64\n");
+    for (int i = 0; i < 4; ++i) value(std::int64_t{100} + i);
+  }
   b.text("\n");
   return b.str();
 }
@@ -267,7 +309,8 @@ inline std::string vtu_block(const std::string& data, const VtuVariant& v) {
   return raw ? head.str() + packed : base64(head.str()) + base64(packed);
 }
 
-inline std::string vtu(const VtuVariant& v) {
+/// `tagged`: with data of cells, of which "MaterialIds" are the tags.
+inline std::string vtu(const VtuVariant& v, bool tagged = false) {
   using Where = VtuVariant::Where;
   std::string appended;
   std::ostringstream s;
@@ -301,7 +344,17 @@ inline std::string vtu(const VtuVariant& v) {
   std::vector<int> types;
   for (const auto& c : kCells) types.push_back(c.vtk);
   array("UInt8", "types", types, std::uint8_t{});
-  s << "</Cells>\n</Piece>\n</UnstructuredGrid>\n";
+  s << "</Cells>\n";
+  if (tagged) {
+    std::vector<int> tags, entities;
+    for (const auto& c : kCells) tags.push_back(c.tag), entities.push_back(c.entity);
+    s << "<CellData>\n";
+    array("Float32", "a", std::vector<double>{1.5, 1.5, 1.5, 1.5}, float{});
+    array("Int32", "MaterialIds", tags, std::int32_t{});
+    array("Float64", "part of", entities, double{});
+    s << "</CellData>\n";
+  }
+  s << "</Piece>\n</UnstructuredGrid>\n";
   if (!appended.empty())
     s << "<AppendedData encoding=\"" << (v.where == Where::raw ? "raw" : "base64") << "\">\n_" << appended
       << "\n</AppendedData>\n";
@@ -336,8 +389,8 @@ struct VolumeFile {
   std::string content;
 };
 
-/// Every format that holds its mesh in one file.
-inline std::vector<VolumeFile> volume_files() {
+/// Every format that holds its mesh in one file. `tagged`: with cell data in those of VTK; those of Gmsh always have tags.
+inline std::vector<VolumeFile> volume_files(bool tagged = false) {
   using Where = VtuVariant::Where;
   std::vector<VolumeFile> out{{"gmsh1", ".msh", gmsh1()},
                               {"gmsh2_text", ".msh", gmsh2_text()},
@@ -347,11 +400,11 @@ inline std::vector<VolumeFile> volume_files() {
                               {"gmsh41_text", ".msh", gmsh4_text(true)},
                               {"gmsh40_binary", ".msh", gmsh4_binary(false)},
                               {"gmsh41_binary", ".msh", gmsh4_binary(true)},
-                              {"vtk_text", ".vtk", vtk_legacy(false, false)},
-                              {"vtk_binary", ".vtk", vtk_legacy(true, false)},
-                              {"vtk5_text", ".vtk", vtk_legacy(false, true)},
-                              {"vtk5_binary", ".vtk", vtk_legacy(true, true)},
-                              {"vtu_ascii", ".vtu", vtu({})}};
+                              {"vtk_text", ".vtk", vtk_legacy(false, false, tagged)},
+                              {"vtk_binary", ".vtk", vtk_legacy(true, false, tagged)},
+                              {"vtk5_text", ".vtk", vtk_legacy(false, true, tagged)},
+                              {"vtk5_binary", ".vtk", vtk_legacy(true, true, tagged)},
+                              {"vtu_ascii", ".vtu", vtu({}, tagged)}};
   const std::array<std::pair<const char*, Where>, 3> places{
       {{"inline", Where::inline64}, {"raw", Where::raw}, {"base64", Where::appended64}}};
   for (const auto& [name, where] : places) {
@@ -359,7 +412,7 @@ inline std::vector<VolumeFile> volume_files() {
       const VtuVariant v{where, (bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0};
       out.push_back(
           {std::string("vtu_") + name + (v.wide ? "_64" : "_32") + (v.compressed ? "_zlib" : "") + (v.big ? "_big" : ""),
-           ".vtu", vtu(v)});
+           ".vtu", vtu(v, tagged)});
     }
   }
   return out;

@@ -1,5 +1,6 @@
 // Momenta of a free spinning body, energy without damping, free fall, decay by damping, prescribed motion and loads.
 #include "physics/harness.h"
+#include "simulation/applied_loads.h"
 
 namespace pliant::physics {
 namespace {
@@ -270,7 +271,10 @@ TEST_P(Conservation, TotalOfLoads) {
       scene.dt = 1e-4;
       auto sim = simulate(scene, GetParam());
       write_texels(*sim, "node_u", displaced(sim->model(), [&](const Vector3d& x) { return Vector3d(h * x); }));
-      return total(forces(*sim));  // the internal forces cancel
+      const Vector3d sum = total(forces(*sim));  // the internal forces cancel
+      // What probes call the force is made by other code, in double.
+      check(name + " applied loads", (total(applied_loads(*sim, 0)) - sum).norm() / 10, bound(1e-5, 1e-12));
+      return sum;
     };
     Body body = plain_body;
     Force force;
@@ -291,6 +295,53 @@ TEST_P(Conservation, TotalOfLoads) {
     const Matrix3d f = Matrix3d::Identity() + h;
     const Vector3d exact = -500 * 0.01 * f.determinant() * f.inverse().transpose() * Vector3d(1, 0, 0);
     check(name + " follower pressure on a deformed face", (loads_at(body) - exact).norm() / exact.norm(), bound(1e-5, read));
+  }
+}
+
+TEST_P(Conservation, WeightAndHandsAreApplied) {
+  Scene scene;
+  scene.bodies = {box_body({{3, 2, 2}, 0.05, 0.2, 6}, all_cuts()[0], material_young(Law::neo_hookean, 3000, 0.45))};
+  scene.bodies.push_back(scene.bodies[0]);
+  scene.bodies[1].name = "other";
+  scene.gravity = {1, -9, 0.5};
+  scene.gravity_curve.kind = Curve::Kind::ramp;
+  scene.gravity_curve.duration = 0.01;
+  scene.dt = 1e-4;
+  scene.interactive = true;
+  auto sim = simulate(scene, GetParam());
+  sim->advance(50);
+  sim->set_forces({{1, 3, {0.1, 0.2, -0.3}}});
+  const double weight = 0.5 * sim->model().bodies[0].mass;
+  for (std::size_t b = 0; b < 2; ++b) {
+    const Vector3d hand = b == 0 ? Vector3d(0, 0, 0) : Vector3d(0.1, 0.2, -0.3);
+    const Vector3d exact = weight * Vector3d(1, -9, 0.5) + hand;
+    check("applied loads", (total(applied_loads(*sim, b)) - exact).norm() / exact.norm(), 1e-12);
+  }
+}
+
+/// Of part of a body: what an energy is of a cut-out of the same mesh; of all of it: the body's.
+TEST_P(Conservation, EnergyAmongNodes) {
+  const Matrix3d h = (Matrix3d() << 0.2, 0.1, 0, -0.1, 0.1, 0.3, 0.1, 0, -0.2).finished();
+  for (const Discretization cut : all_cuts()) {
+    Scene scene;
+    scene.bodies = {box_body({{4, 2, 2}, 0.05, 0, 4}, cut, material_young(Law::neo_hookean, 3000, 0.45))};
+    auto sim = simulate(scene, GetParam());
+    const Model& m = sim->model();
+    const auto u = displaced(m, [&](const Vector3d& x) { return Vector3d(h * x); });
+    const auto v = displaced(m, [&](const Vector3d& x) { return Vector3d(x[1], 1, -2 * x[0]); });
+    const Energies whole = energies(m, u, v), all = energies_among(m, u, v, std::vector<char>(u.size(), 1));
+    const std::string name = name_of(cut);
+    check(name + " strain energy of all", std::abs(all.strain / whole.strain - 1), 1e-14);
+    check(name + " kinetic energy of all", std::abs(all.kinetic / whole.kinetic - 1), 1e-14);
+    check(name + " hourglass energy of all", std::abs(all.hourglass - whole.hourglass), 1e-16);
+    std::vector<char> some(u.size(), 0);
+    for (std::size_t s = 0; s < some.size(); ++s) some[s] = m.rest[s][0] < 0.151 ? 1 : 0;
+    const Energies part = energies_among(m, u, v, some);
+    // Uniform strain: three of four layers of cells. The nodes in the three hold more mass than their cells.
+    check(name + " strain energy of three quarters", std::abs(part.strain / whole.strain - 0.75), 1e-6);
+    EXPECT_GT(part.kinetic, 0.1 * whole.kinetic);
+    EXPECT_LT(part.kinetic, 0.99 * whole.kinetic);
+    EXPECT_EQ(energies_among(m, u, v, std::vector<char>(u.size(), 0)).total(), 0);
   }
 }
 

@@ -129,7 +129,7 @@ const std::vector<Case> materials{
 const std::vector<Case> entries{
     {"/bodies/0/fixed", "{}", "/bodies/0/fixed: got {}, expected a list of objects"},
     {"/bodies/0/fixed/0", "{}",
-     "/bodies/0/fixed/0: got no selection, expected exactly one of box, sphere, plane, surface, nodes, all"},
+     "/bodies/0/fixed/0: got no selection, expected exactly one of box, sphere, plane, surface, region, nodes, all"},
     {"/bodies/0/fixed/0/nodes", "[1]", "/bodies/0/fixed/0: got nodes, all, expected exactly one of box"},
     {"/bodies/0/fixed/0/all", "false", "/bodies/0/fixed/0/all: got false, expected true"},
     {"/bodies/0/fixed/0/axes", "\"xw\"", "/bodies/0/fixed/0/axes: got \"xw\", expected one to three different letters"},
@@ -168,6 +168,12 @@ const std::vector<Case> entries{
     {"/bodies/0/initial", R"([{"all": true, "displacement": {"linear": [[-1.5, 0, 0], [0, 0, 0], [0, 0, 0]]}}])",
      "/bodies/0/initial/0/displacement: got a field with det(I + linear) = -0.5, expected one above 0"},
     {"/bodies/0/fixed/0", R"({"surface": ""})", "/bodies/0/fixed/0/surface: got \"\", expected the path of a closed surface"},
+    {"/bodies/0/fixed/0", R"({"region": 3})",
+     "/bodies/0/fixed/0/region: got 3, expected no region in a body that is a surface filled with a lattice"},
+    {"/bodies/0/fixed/0", R"({"all": true, "data": "x"})",
+     "/bodies/0/fixed/0/data: got \"x\", expected no \"data\" beside \"all\""},
+    {"/probes", R"([{"name": "p", "point": [0, 0, 0], "region": 3}])",
+     "/probes/0/region: got 3, expected no \"region\" beside a"},
     {"/probes", R"([{"point": [0, 0, 0]}])", "/probes/0: got no \"name\", expected a name of 1 to 100"},
     {"/probes", R"([{"name": "a/b", "point": [0, 0, 0]}])", "/probes/0/name: got \"a/b\", expected a name of 1 to 100"},
     {"/probes", R"([{"name": "p"}])", "/probes/0: got no selection, expected exactly one of box"},
@@ -241,6 +247,30 @@ TEST(Mistakes, ALatticeBesideAMesh) {
   scene["bodies"][0]["mesh"] = "a.msh";
   EXPECT_NE(message(scene.dump()).find("/bodies/0/lattice: got an object with 1 key, expected no lattice beside a volume mesh"),
             std::string::npos);
+}
+
+TEST(Mistakes, RegionsOfAMesh) {
+  Json scene = Json::parse(good);
+  scene["bodies"][0].erase("surface");
+  scene["bodies"][0].erase("lattice");
+  scene["bodies"][0]["mesh"] = "a.msh";
+  scene["bodies"][0]["element"] = "tet4";
+  scene["bodies"][0].erase("model");
+  const auto with = [&](const char* selection) {
+    scene["bodies"][0]["fixed"] = Json::array({Json::parse(selection)});
+    return message(scene.dump());
+  };
+  EXPECT_EQ(with(R"({"region": 3, "data": "part", "dimension": 2})"), "");
+  EXPECT_EQ(with(R"({"region": "tumour"})"), "");
+  const std::vector<std::array<const char*, 2>> wrong{
+      {R"({"region": 1.5})", "/region: got 1.5, expected a tag of the mesh file"},
+      {R"({"region": true})", "/region: got true, expected a tag of the mesh file"},
+      {R"({"region": ""})", "/region: got \"\", expected the name of a physical"},
+      {R"({"region": 3, "dimension": 1})", "/dimension: got 1, expected a whole number from 2"},
+      {R"({"region": 3, "data": 4})", "/data: got 4, expected the name of an array"},
+      {R"({"region": 1e300})", "/region: got 1e+300, expected a tag of the mesh file"}};
+  for (const auto& [selection, text] : wrong)
+    EXPECT_NE(with(selection).find(std::string("dir/s.json: /bodies/0/fixed/0") + text), std::string::npos) << with(selection);
 }
 
 TEST(Mistakes, TwoBodiesOfOneName) {

@@ -101,6 +101,33 @@ TEST(Spec, IsTheSceneOfTheFileWithTheSameContent) {
   EXPECT_EQ(scene.bodies[1].surface_in_memory->vertices.size(), 4U);
 }
 
+TEST(Spec, RegionsOfAMeshAreThoseOfTheFile) {
+  SceneSpec spec;
+  spec.name = "scene";
+  BodySpec& b = spec.bodies.emplace_back();
+  b.name = "organ";
+  b.volume_file = "organ.msh";
+  b.element = "tet4";
+  b.inclusions = {{RegionSpec::tagged("tumour"), {}}};
+  b.fixed = {{RegionSpec::tagged(-3)}};
+  b.pressures = {{RegionSpec::tagged(7), 100, {}}};
+  b.pressures[0].where.region_data = "part";
+  b.pressures[0].where.region_dimension = 2;
+  const Scene scene = scene_of(spec);
+  const Scene same =
+      parse_scene(R"({"format": "pliant-scene/1", "name": "scene", "bodies": [{"name": "organ", "mesh": "organ.msh", "element": "tet4",
+    "material": {"young": 3000, "poisson": 0.45},
+    "inclusions": [{"region": "tumour", "material": {"young": 3000, "poisson": 0.45}}], "fixed": [{"region": -3}],
+    "pressures": [{"region": 7, "data": "part", "dimension": 2, "pressure": 100}]}]})",
+                  "");
+  EXPECT_EQ(scene_to_json(scene), scene_to_json(same));
+  EXPECT_NE(scene_to_json(same).find("\"data\": \"part\""), std::string::npos);
+  spec.bodies[0].volume_file = "";
+  spec.bodies[0].surface_file = "a.obj";
+  spec.bodies[0].lattice_spacing = 0.1;
+  EXPECT_NE(test::error_of([&] { scene_of(spec); }).find("/region: got"), std::string::npos);
+}
+
 TEST(Spec, TakesEveryLawByItsParameters) {
   for (const Law law : all_laws()) {
     const Material wanted = make_material(law, Moduli::from_bulk(1000, 50000));
