@@ -9,6 +9,9 @@
 namespace pliant {
 namespace {
 
+/// Whole tissue, none of whose corners belongs to a cell with a cut edge, parts at this many times the limit: it hangs by no
+/// thread, and a soft organ stretches far under its own weight before anything touches it.
+constexpr double kWhole = 4;
 /// Copies take a while to spring back after the edge between them has parted: only those that are stretched this much further
 /// have not been freed by it.
 constexpr double kFar = 2;
@@ -41,8 +44,15 @@ MeshEdges::MeshEdges(const CutMesh& mesh) {
 
 CutEdges MeshEdges::longer(const CutTopology& body, std::span<const Vec3d> x, double times) const {
   CutEdges out;
+  std::vector<char> at_cut(body.mesh().rest.size(), false);
+  for (const auto& [cell, cut] : body.cells()) {
+    for (int a = 0; a < body.mesh().shape->corners; ++a) at_cut[static_cast<std::size_t>(body.mesh().cells[cell][a])] = true;
+  }
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
-    if (!is_long(x[pairs_[i][0]], x[pairs_[i][1]], times * times * squared_[i])) continue;
+    const auto& [a, b] = pairs_[i];
+    if (!is_long(x[a], x[b], times * times * squared_[i])) continue;
+    const bool whole = !at_cut[static_cast<std::size_t>(a)] && !at_cut[static_cast<std::size_t>(b)];
+    if (whole && !is_long(x[a], x[b], kWhole * kWhole * times * times * squared_[i])) continue;
     if (!body.edges().contains(pairs_[i])) part(body, pairs_[i], out);
   }
   free_corners(body, x, kFar * times, out);

@@ -11,9 +11,10 @@ class MeshEdges {
  public:
   explicit MeshEdges(const CutMesh& mesh);
   /// What is to be cut because it is longer than `times` its length at rest, in the middle of its edges: of a tetrahedron the
-  /// long edge, of a lattice cell with one all that lead to the other side; and where an edge of a divided cell's copy is four
-  /// times as long as that, all edges of the cell at the copy's real corners: what hangs there comes off. `x` [m] are present
-  /// positions of the nodes of `body`, which has this mesh. An edge with an end that is not finite is left alone.
+  /// long edge, of a lattice cell with one all that lead to the other side; four times as long where no cell at its ends has a
+  /// cut edge; and where an edge of a divided cell's copy is twice as long, all edges of the cell at the copy's real corners:
+  /// what hangs there comes off. `x` [m] are present positions of the nodes of `body`, which has this mesh. An edge with an end
+  /// that is not finite is left alone.
   [[nodiscard]] CutEdges longer(const CutTopology& body, std::span<const Vec3d> x, double times) const;
 
  private:
