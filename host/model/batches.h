@@ -60,6 +60,7 @@ struct FlsmBatch {
   std::vector<std::int32_t> slot;                  ///< [own + interface]
   std::vector<std::array<std::int32_t, 3>> index;  ///< [own + interface] grid point
   std::vector<std::array<std::int32_t, 6>> link;   ///< [own + interface + fillers] -x, +x, -y, +y, -z, +z, -1: none
+  std::vector<Branch> branches;                    ///< where the parts that links join hang together besides
   FlsmRegions regions;
   std::vector<double> weight;             ///< [own + interface] node mass over the number of regions that hold it [kg]
   std::vector<double> matter;             ///< [own + interface] share of the node's mass in cells of shape matching

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "geometry/disjoint_sets.h"
 #include "layout.h"
 #include "pliant/error.h"
 
@@ -30,28 +31,45 @@ std::vector<std::int32_t> nodes_in_order(const BodyElements& solid, NodeKind kin
   return nodes;
 }
 
-/// The edges of the shape-matching cells. `number` is the number in the batch of each node of the body. A node has one link in
-/// each direction: where the lattice branches (one node, two copies of its neighbour), the first cell's edge is the link.
-void link_nodes(const BodyElements& solid, const std::vector<std::int32_t>& number, FlsmBatch& batch) {
-  batch.link.assign(batch.slot.size(), {-1, -1, -1, -1, -1, -1});
+/// work(low, high, axis) for the edges of the shape-matching cells. `number` is the number in the batch of each node of the
+/// body.
+template <class Work>
+void for_each_edge(const BodyElements& solid, const std::vector<std::int32_t>& number, const Work& work) {
   for (const Cell& cell : solid.matching_cells) {
     for (int a = 0; a < 8; ++a) {
       for (int axis = 0; axis < 3; ++axis) {
-        if (a >> axis & 1) continue;
-        const std::int32_t low = number[cell.nodes[a]], high = number[cell.nodes[a | 1 << axis]];
-        std::int32_t &up = batch.link[low][2 * axis + 1], &down = batch.link[high][2 * axis];
-        if (up >= 0 || down >= 0) continue;
-        up = high;
-        down = low;
+        if ((a >> axis & 1) == 0) work(number[cell.nodes[a]], number[cell.nodes[a | 1 << axis]], axis);
       }
     }
   }
 }
 
+/// A node has one link in each direction: where the lattice branches (one node, two copies of its neighbour), the first cell's
+/// edge is the link. What then hangs on nothing, a copy with a corner of a cell to itself, would fall out of its body: a branch
+/// holds it.
+void link_nodes(const BodyElements& solid, const std::vector<std::int32_t>& number, FlsmBatch& batch) {
+  batch.link.assign(batch.slot.size(), {-1, -1, -1, -1, -1, -1});
+  DisjointSets linked(batch.slot.size());
+  for_each_edge(solid, number, [&](std::int32_t low, std::int32_t high, int axis) {
+    std::int32_t &up = batch.link[low][2 * axis + 1], &down = batch.link[high][2 * axis];
+    if (up >= 0 || down >= 0) return;
+    up = high;
+    down = low;
+    linked.join(low, high);
+  });
+  for_each_edge(solid, number, [&](std::int32_t low, std::int32_t high, int axis) {
+    if (linked.find(low) == linked.find(high)) return;
+    batch.branches.push_back({low, high, axis});
+    linked.join(low, high);
+  });
+}
+
 /// A batch of the same body with the same nodes and links, before fillers.
 const FlsmBatch* same_links(const FlsmBatch& batch, const Model& previous) {
   for (const FlsmBatch& other : previous.flsm) {
-    if (other.body != batch.body || other.settings.width != batch.settings.width || other.index != batch.index) continue;
+    if (other.body != batch.body || other.settings.width != batch.settings.width || other.index != batch.index ||
+        other.branches != batch.branches)
+      continue;
     const auto nodes = static_cast<std::int32_t>(batch.slot.size());
     for (std::int32_t n = 0; n < nodes; ++n) {
       for (int d = 0; d < 6; ++d) {
@@ -163,7 +181,7 @@ FlsmBatch place_matching_nodes(const BodyElements& solid, const Body& body, std:
 
 void find_batch_regions(FlsmBatch& batch) {
   const std::size_t nodes = batch.slot.size();
-  LinkedLattice lattice{batch.index, std::move(batch.link)};
+  LinkedLattice lattice{batch.index, std::move(batch.link), batch.branches};
   lattice.link.resize(nodes);
   for (auto& links : lattice.link) {
     for (std::int32_t& n : links) {

@@ -115,6 +115,10 @@ class RegionSearch {
       step_[2 * a + 1] = step;
     }
     centre_ = step_[1] * (width + 1) + step_[3] * (width + 1) + step_[5] * (width + 1);
+    for (const Branch& b : lattice.branches) {
+      branch_.emplace(b.low, std::pair{2 * b.axis + 1, b.high});
+      branch_.emplace(b.high, std::pair{2 * b.axis, b.low});
+    }
   }
 
   // Find the region of `centre`, append the nodes that the ordered sums miss or reach in vain to `missing` and return its size.
@@ -175,18 +179,25 @@ class RegionSearch {
     for (int d = 0; d < 6; ++d) {
       const std::int32_t position = here.position + step_[d], there = at_[position];
       if (there == kOutside || (there >= 0 && !shared_points_ && found_[there].reached)) continue;
-      const std::int32_t n = links[d];
-      if (n < 0 || n >= lattice_.nodes()) continue;
-      std::int32_t f = there;
-      while (f >= 0 && found_[f].node != n) f = found_[f].next;
-      if (f < 0) {
-        f = static_cast<std::int32_t>(found_.size());
-        visit(n, position);
-      }
-      if (found_[f].reached) continue;
-      found_[f].reached = true;
-      reached_.push_back(f);
+      if (links[d] >= 0 && links[d] < lattice_.nodes()) reach(links[d], position);
     }
+    const auto [first, last] = branch_.equal_range(here.node);
+    for (auto b = first; b != last; ++b) {
+      const auto& [d, n] = b->second;
+      if (at_[here.position + step_[d]] != kOutside) reach(n, here.position + step_[d]);
+    }
+  }
+
+  void reach(std::int32_t node, std::int32_t position) {
+    std::int32_t f = at_[position];
+    while (f >= 0 && found_[f].node != node) f = found_[f].next;
+    if (f < 0) {
+      f = static_cast<std::int32_t>(found_.size());
+      visit(node, position);
+    }
+    if (found_[f].reached) return;
+    found_[f].reached = true;
+    reached_.push_back(f);
   }
 
   const LinkedLattice& lattice_;
@@ -194,6 +205,7 @@ class RegionSearch {
   const bool shared_points_;
   std::array<std::int32_t, 6> step_{};  // from a position to the next along each link
   std::int32_t centre_ = 0;
+  std::multimap<std::int32_t, std::pair<int, std::int32_t>> branch_;  // of a node: direction and other end
   std::vector<std::int32_t> at_;            // per position: the node found last, as an index into found_
   std::vector<std::array<int, 3>> offset_;  // per position
   std::vector<Found> found_;

@@ -6,11 +6,19 @@
 
 namespace pliant {
 
+/// Nodes `low` and `high`, next to each other along `axis`, that hang together although links in this direction lead elsewhere:
+/// a node has one link to each side, and may have two copies of its neighbour there.
+struct Branch {
+  std::int32_t low = 0, high = 0, axis = 0;
+  bool operator==(const Branch&) const = default;
+};
+
 /// Nodes on a grid with links along its axes. Several nodes may share a grid point (copies at a cut or where parts of the body
 /// pass near each other).
 struct LinkedLattice {
   std::vector<std::array<std::int32_t, 3>> index;  ///< grid point of each node
   std::vector<std::array<std::int32_t, 6>> link;   ///< neighbour at -x, +x, -y, +y, -z, +z, or -1; symmetric
+  std::vector<Branch> branches;                    ///< paths of the sums do not follow them, regions do
   /// Fillers come last: empty grid points that paths of the ordered sums may cross. They belong to no region and have none.
   std::int32_t fillers = 0;
   [[nodiscard]] std::int32_t nodes() const { return static_cast<std::int32_t>(index.size()) - fillers; }

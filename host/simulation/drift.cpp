@@ -3,33 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <span>
 
+#include "geometry/disjoint_sets.h"
 #include "model/each_hex.h"
 
 namespace pliant {
 namespace {
 
-/// Disjoint sets of slots, each named by its lowest.
-class Sets {
- public:
-  explicit Sets(std::int32_t count) : parent_(static_cast<std::size_t>(count)) { std::iota(parent_.begin(), parent_.end(), 0); }
-  std::int32_t find(std::int32_t s) {
-    while (at(s) != s) s = at(s) = at(at(s));
-    return s;
-  }
-  void unite(std::span<const std::int32_t> slots) {
-    for (const std::int32_t s : slots) {
-      const std::int32_t a = find(slots.front()), b = find(s);
-      at(std::max(a, b)) = std::min(a, b);
-    }
-  }
-
- private:
-  std::int32_t& at(std::int32_t s) { return parent_[static_cast<std::size_t>(s)]; }
-  std::vector<std::int32_t> parent_;
-};
+void join(DisjointSets& sets, std::span<const std::int32_t> slots) {
+  for (const std::int32_t s : slots) sets.join(slots.front(), s);
+}
 
 }  // namespace
 
@@ -37,12 +21,12 @@ void Drift::find_loose_pieces() {
   model_ = run_.loaded.shared_model();
   loose_.clear();
   const Model& m = *model_;
-  Sets sets(m.slots);
+  DisjointSets sets(static_cast<std::size_t>(m.slots));
   for (const TetBatch& batch : m.tets) {
-    for (const auto& nodes : batch.nodes) sets.unite(nodes);
+    for (const auto& nodes : batch.nodes) join(sets, nodes);
   }
-  for_each_hex(m, [&](const HexView& hex) { sets.unite(hex.slots); });
-  for (const FlsmBatch& batch : m.flsm) sets.unite(m.bodies[static_cast<std::size_t>(batch.body)].slot);
+  for_each_hex(m, [&](const HexView& hex) { join(sets, hex.slots); });
+  for (const FlsmBatch& batch : m.flsm) join(sets, m.bodies[static_cast<std::size_t>(batch.body)].slot);
   std::vector<char> held(static_cast<std::size_t>(m.slots), false);
   for (const Constraint& c : m.constraints) held[static_cast<std::size_t>(sets.find(c.slot))] = true;
   std::vector<std::int32_t> piece_of(static_cast<std::size_t>(m.slots), -1);

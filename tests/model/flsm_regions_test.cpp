@@ -91,6 +91,29 @@ TEST_P(Regions, OfAUDoNotLeapOverTheGap) {
 
 TEST_P(Regions, OfABallWithACut) { EXPECT_GT(check(cut_ball(), GetParam()), 0); }
 
+TEST_P(Regions, FollowBranches) {
+  LinkedLattice lattice = cut_ball();
+  const LinkedLattice whole = ball(6);
+  int cut = 0;
+  for (std::int32_t n = 0; n < lattice.nodes(); ++n) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::int32_t other = whole.link[n][2 * axis + 1];
+      if (other >= 0 && lattice.link[n][2 * axis + 1] < 0 && cut++ % 3 == 0) lattice.branches.push_back({n, other, axis});
+    }
+  }
+  EXPECT_GT(lattice.branches.size(), 5U);
+  EXPECT_GT(check(lattice, GetParam()), check(cut_ball(), GetParam()));
+  LinkedLattice sheets = two_sheets();  // where grid points are shared, too: the first sheet beside the second
+  for (std::int32_t n = 0; n < 7 * 8 * 5; ++n) {
+    for (std::int32_t m = 0; m < 7 * 8 * 5; ++m) {
+      const Index &a = sheets.index[n], &b = sheets.index[m];
+      if (a[0] == 2 && b == Index{3, a[1], a[2]} && sheets.link[n][1] != m) sheets.branches.push_back({n, m, 0});
+    }
+  }
+  EXPECT_EQ(sheets.branches.size(), 20U);
+  check(sheets, GetParam());
+}
+
 TEST_P(Regions, OfABallWithLinksMissingAtRandom) {
   EXPECT_GT(check(torn_ball(0.01), GetParam()), 0);
   EXPECT_GT(check(torn_ball(0.3), GetParam()), 0);

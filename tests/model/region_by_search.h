@@ -18,7 +18,11 @@ inline std::vector<RegionEntry> region_by_search(const LinkedLattice& lattice, s
   while (!front.empty()) {
     const std::int32_t i = *front.begin();
     front.erase(front.begin());
-    for (const std::int32_t n : lattice.link[i]) {
+    std::vector<std::int32_t> next(lattice.link[i].begin(), lattice.link[i].end());
+    for (const Branch& b : lattice.branches) {
+      if (b.low == i || b.high == i) next.push_back(b.low == i ? b.high : b.low);
+    }
+    for (const std::int32_t n : next) {
       if (n < 0 || region.contains(n)) continue;
       std::array<std::int32_t, 3> offset{};
       for (int a = 0; a < 3; ++a) offset[a] = lattice.index[n][a] - lattice.index[centre][a];

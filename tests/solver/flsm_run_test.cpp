@@ -327,5 +327,24 @@ TEST(FlsmRun, TheAdmissibleBetaIsStable) {
   EXPECT_LT(largest(sim.velocities(0)), 3 * start) << "beta = " << scene.bodies[0].model.beta;
 }
 
+/// In this lattice one grid point holds two nodes, and all links to its neighbours belong to the other one.
+TEST(FlsmRun, NoNodeFallsOutWhereTheLatticeBranches) {
+  const Scene scene =
+      parse_scene(R"({"format": "pliant-scene/1", "dt": 0.002, "gravity": [0, -9.81, 0], "bodies": [{"name": "kidney",
+      "surface": "meshes/kidney.obj", "lattice": {"nodes": 3000}, "element": "hex8",
+      "material": {"young": 3000, "poisson": 0.3, "density": 1000}, "model": {"type": "flsm", "alpha": 1, "width": 2},
+      "fixed": [{"plane": [[0, 0, 0], [0, -1, 0]]}]}]})",
+                  test::source_dir() + "/scenes/kidney_flsm.json");
+  Simulation s(scene, open_backend("cpu"));
+  const FlsmBatch& batch = s.model().flsm[0];
+  const auto lone = std::count(batch.link.begin(), batch.link.begin() + static_cast<std::ptrdiff_t>(batch.slot.size()),
+                               std::array<std::int32_t, 6>{-1, -1, -1, -1, -1, -1});
+  EXPECT_GT(lone, 0);
+  EXPECT_EQ(batch.branches.size(), static_cast<std::size_t>(lone));
+  EXPECT_EQ(*std::min_element(batch.regions.size.begin(), batch.regions.size.end()) > 1, true);
+  while (s.time() < 0.3) s.advance(1);
+  EXPECT_LT(largest(s.displacements(0)), 0.1) << "free fall is 0.44 m";
+}
+
 }  // namespace
 }  // namespace pliant::physics

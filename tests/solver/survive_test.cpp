@@ -233,16 +233,17 @@ TEST(Overstretched, PartsSoonerBesideACut) {
 }
 
 /// A hybrid that is too soft for its weight tears into fragments of a few cells. Those of shape matching stretch without end if
-/// their law stiffens without end, and nothing takes fast motion out of them: node displacements of 1e27 m within 0.43 s.
+/// their law stiffens without end, and nothing takes fast motion out of them: node displacements of 1e34 m within 0.5 s.
 TEST(SoftHybrid, FallsApartAndGoesOn) {
-  const Scene scene = parse_scene(R"({"format": "pliant-scene/1", "gravity": [0, -9.81, 0], "bodies": [{"name": "liver",
-      "surface": "meshes/liver.obj", "lattice": {"nodes": 1200}, "element": "hex8",
+  const Scene scene =
+      parse_scene(R"({"format": "pliant-scene/1", "break_stretch": 1.8, "gravity": [0, -9.81, 0], "bodies": [{"name": "liver",
+      "surface": "meshes/liver.obj", "lattice": {"nodes": 700}, "element": "hex8",
       "material": {"law": "neo-hookean", "young": 2500, "poisson": 0.45, "density": 1050},
       "model": {"type": "hybrid", "ratio": 0.4, "seed": [0, 0, 0], "width": 1},
       "fixed": [{"plane": [[-0.09, 0, 0], [-1, 0, 0]]}],
       "prescribed": [{"plane": [[0.09, 0, 0], [1, 0, 0]], "displacement": [0.1, 0, 0], "curve": "smooth", "duration": 0.5}]}],
     "blades": [{"name": "k", "path": [[0.4, 0.01, -0.2, 0.2, 0.01, 0.2, 0.2], [0.9, 0.02, -0.2, -0.2, 0.02, 0.2, -0.2]]}]})",
-                                  test::source_dir() + "/scenes/soft_hybrid.json");
+                  test::source_dir() + "/scenes/soft_hybrid.json");
   Simulation s(scene, open_backend("cpu"));
   while (s.time() < 0.5 && !s.divergence()) s.advance(16);
   EXPECT_FALSE(s.divergence()) << s.divergence()->message();
