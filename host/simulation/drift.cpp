@@ -1,5 +1,7 @@
 #include "simulation/drift.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -59,7 +61,7 @@ void Drift::follow() {
   if (loose_.empty()) return;
   std::vector<double> u = run_.loaded.u();
   std::vector<double>& offset = run_.state.offset;
-  bool moved = false;
+  const std::vector<double> before = offset;
   for (const Piece& piece : loose_) {
     const double unit = std::ldexp(1.0, std::ilogb(piece.size) - 4);
     for (std::size_t c = 0; c < 3; ++c) {
@@ -73,12 +75,28 @@ void Drift::follow() {
         u[4 * static_cast<std::size_t>(s) + c] -= flown;
         offset[3 * static_cast<std::size_t>(s) + c] += flown;
       }
-      moved = true;
     }
   }
-  if (!moved) return;
+  if (offset == before) return;
   run_.loaded.write_u(u);
+  move_references(before);
   run_.place_surface();
+}
+
+void Drift::move_references(const std::vector<double>& before) {
+  const std::vector<FlsmBatch>& batches = run_.model().flsm;
+  for (std::size_t i = 0; i < batches.size(); ++i) {
+    const BufferId id = run_.loaded.program().find(fmt::format("flsm_reference/{}", i));
+    if (id < 0) continue;
+    std::vector<double> reference = run_.backend().read_reals(id);
+    const std::size_t first = 3 * static_cast<std::size_t>(batches[i].slot.front());
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double flown = run_.state.offset[first + c] - (before.empty() ? 0 : before[first + c]);
+      reference[c] -= flown;
+      reference[4 + c] -= flown;
+    }
+    run_.backend().write_reals(id, reference);
+  }
 }
 
 }  // namespace pliant

@@ -25,6 +25,8 @@ class Drift {
     double size = 0;  ///< [m] longest side of its box at rest
   };
   void find_loose_pieces();
+  /// Shape matching remembers the displacement that its last goals were relative to. `before`: RunState::offset until now.
+  void move_references(const std::vector<double>& before);
 
   RunContext& run_;
   std::shared_ptr<const Model> model_;  ///< whose pieces these are

@@ -28,6 +28,25 @@ inline void put(Reals& values, std::size_t at, const Vector3d& v) {
   for (std::size_t c = 0; c < 3; ++c) values[at + c] = v[static_cast<Eigen::Index>(c)];
 }
 
+/// The part of psi(e) that goes with shear (host/model/flsm_elastic.cpp).
+inline double energy_of(const Matrix3d& e) {
+  const Matrix3d e2 = e * e;
+  const double y = std::min(1.0, PLIANT_FLSM_STRAIN / e2.trace()), k = y * (2 - y);
+  return e2.trace() / 2 - k * (e2 * e).trace() / 6 + k * k * (e2 * e2).trace() / 32;
+}
+
+inline Matrix3d slope_of(const Matrix3d& e) {
+  Matrix3d slope;
+  for (int k = 0; k < 9; ++k) {
+    const double d = 1e-4 * (1 + e.norm());
+    Matrix3d by = Matrix3d::Zero();
+    by(k / 3, k % 3) += 0.5, by(k % 3, k / 3) += 0.5;  // both of an off-diagonal pair
+    const auto at = [&](double t) { return energy_of(e + t * d * by); };
+    slope(k / 3, k % 3) = (8 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12 * d);
+  }
+  return slope;
+}
+
 /// Nodes of a box of the grid, a share `holes` of them missing. A region holds the nodes inside its window; where there are
 /// holes, some of them by no path along x, y and z, and some that are on such a path it does not hold: any relation will do for
 /// the kernels.
@@ -297,6 +316,37 @@ inline void expect_near(const Vector3d& expected, const Reals& values, std::size
                         const std::string& what) {
   EXPECT_LE((vector_at(values, at) - expected).norm(), tolerance)
       << what << ": expected " << expected.transpose() << ", received " << vector_at(values, at).transpose();
+}
+
+/// Mass, centroids at rest and now, and the moments of the nodes that a region holds.
+struct RegionSums {
+  double mass = 0;
+  Vector3d rest = Vector3d::Zero(), now = Vector3d::Zero();
+  Matrix3d moved = Matrix3d::Zero(), at_rest = Matrix3d::Zero();
+};
+
+inline RegionSums sums_of(const FlsmLattice& lattice, int i) {
+  RegionSums s;
+  for (const bool centred : {false, true}) {
+    lattice.for_window(true, true, true, [&](const Offset& o) {
+      if (!lattice.holds(i, o)) return;
+      const int node = lattice.at(i, o);
+      const double m = lattice.mass(node);
+      const Vector3d rest = lattice.rest(node), x = rest + lattice.u(node);
+      if (!centred) {
+        s.mass += m;
+        s.rest += m * rest;
+        s.now += m * x;
+        return;
+      }
+      s.moved += m * (x - s.now) * (rest - s.rest).transpose();
+      s.at_rest += m * (rest - s.rest) * (rest - s.rest).transpose();
+    });
+    if (centred) break;
+    s.rest /= s.mass;
+    s.now /= s.mass;
+  }
+  return s;
 }
 
 }  // namespace pliant::kernel_test

