@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/run_events.h"
+#include "cutting/topology/mesh_edges.h"
 #include "program/hash.h"
 #include "scene/keys.h"
 
@@ -91,8 +92,10 @@ class Report {
     json["blades_without_contact"] = blades_without_contact(s_, false);
     json["opened_edges"] = s_.state().opened;
     if (s_.state().opened > 0) {
-      out_.note(fmt::format("{} edges were stretched beyond {:.3g} times their length and parted (\"break_stretch\")",
-                            s_.state().opened, s_.scene().break_stretch));
+      out_.note(fmt::format(
+          "{} edges parted: they were stretched beyond {:.3g} times their length beside a cut, or {:.3g} times elsewhere "
+          "(\"break_stretch\"); a material far too soft for its weight does that, too: look at the units of the scene",
+          s_.state().opened, s_.scene().break_stretch, kWholeStretch * s_.scene().break_stretch));
     }
   }
 

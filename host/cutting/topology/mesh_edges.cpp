@@ -9,9 +9,6 @@
 namespace pliant {
 namespace {
 
-/// Whole tissue, none of whose corners belongs to a cell with a cut edge, parts at this many times the limit: it hangs by no
-/// thread, and a soft organ stretches far under its own weight before anything touches it.
-constexpr double kWhole = 4;
 /// Copies take a while to spring back after the edge between them has parted: only those that are stretched this much further
 /// have not been freed by it.
 constexpr double kFar = 2;
@@ -52,7 +49,7 @@ CutEdges MeshEdges::longer(const CutTopology& body, std::span<const Vec3d> x, do
     const auto& [a, b] = pairs_[i];
     if (!is_long(x[a], x[b], times * times * squared_[i])) continue;
     const bool whole = !at_cut[static_cast<std::size_t>(a)] && !at_cut[static_cast<std::size_t>(b)];
-    if (whole && !is_long(x[a], x[b], kWhole * kWhole * times * times * squared_[i])) continue;
+    if (whole && !is_long(x[a], x[b], kWholeStretch * kWholeStretch * times * times * squared_[i])) continue;
     if (!body.edges().contains(pairs_[i])) part(body, pairs_[i], out);
   }
   free_corners(body, x, kFar * times, out);

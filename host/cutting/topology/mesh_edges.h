@@ -7,6 +7,10 @@
 
 namespace pliant {
 
+/// Whole tissue, none of whose corners belongs to a cell with a cut edge, parts at this many times the limit: it hangs by no
+/// thread, and a soft organ stretches far under its own weight before anything touches it.
+inline constexpr double kWholeStretch = 4;
+
 class MeshEdges {
  public:
   explicit MeshEdges(const CutMesh& mesh);
