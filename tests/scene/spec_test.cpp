@@ -114,12 +114,12 @@ TEST(Spec, RegionsOfAMeshAreThoseOfTheFile) {
   b.pressures[0].where.region_data = "part";
   b.pressures[0].where.region_dimension = 2;
   const Scene scene = scene_of(spec);
-  const Scene same =
-      parse_scene(R"({"format": "pliant-scene/1", "name": "scene", "bodies": [{"name": "organ", "mesh": "organ.msh", "element": "tet4",
+  const Scene same = parse_scene(
+      R"({"format": "pliant-scene/1", "name": "scene", "bodies": [{"name": "organ", "mesh": "organ.msh", "element": "tet4",
     "material": {"young": 3000, "poisson": 0.45},
     "inclusions": [{"region": "tumour", "material": {"young": 3000, "poisson": 0.45}}], "fixed": [{"region": -3}],
     "pressures": [{"region": 7, "data": "part", "dimension": 2, "pressure": 100}]}]})",
-                  "");
+      "");
   EXPECT_EQ(scene_to_json(scene), scene_to_json(same));
   EXPECT_NE(scene_to_json(same).find("\"data\": \"part\""), std::string::npos);
   spec.bodies[0].volume_file = "";
