@@ -113,6 +113,36 @@ TEST(CutMoving, tissue_pulled_across_a_resting_blade_is_cut) {
   EXPECT_EQ(body.pieces(), 2);
 }
 
+/// A box that is pulled to 1.4 times its length and springs open as it is cut: batches in between are made again with a smaller
+/// step, and the blade goes on from where it stood.
+TEST(CutMoving, a_stretched_block_that_springs_open_falls_into_two_pieces) {
+  for (const ElementKind element : {ElementKind::hex8, ElementKind::tet4}) {
+    Body body = box_body("box", {0.1, 0.1, 0.1}, element);
+    body.lattice.spacing = 0.0125;
+    body.material.set_moduli(Law::neo_hookean, Moduli::from_young(5000, 0.45));
+    body.material.damping = 10;
+    Fixed held;
+    held.where = {Selection::Kind::plane, {0, 0, 0.02}, {0, 0, -1}, 0, {}, ""};
+    body.fixed.push_back(held);
+    Prescribed pull;
+    pull.where = {Selection::Kind::plane, {0, 0, 0.08}, {0, 0, 1}, 0, {}, ""};
+    pull.displacement = {0.0, 0.0, 0.04};
+    pull.curve.kind = Curve::Kind::smooth;
+    pull.curve.duration = 0.5;
+    body.prescribed.push_back(pull);
+    Scene scene = scene_with(body);
+    const double lean = element == ElementKind::hex8 ? 0.002 : 0.0214, z = element == ElementKind::hex8 ? 0.0681 : 0.0733;
+    scene.blades.push_back(
+        blade("b", {{0.6, -0.1, 0.25, z - lean, 0.2, 0.25, z + lean}, {1.1, -0.1, -0.15, z - lean, 0.2, -0.15, z + lean}}));
+    Simulation s(scene, open_backend("cpu"));
+    while (s.time() < 1.2) {
+      s.advance(64);
+      ASSERT_FALSE(s.divergence()) << s.divergence()->message();
+    }
+    EXPECT_EQ(pieces_of(s), 2) << static_cast<int>(element);
+  }
+}
+
 TEST(CutMoving, a_blade_may_stop_leave_return_and_cross_an_older_cut) {
   const auto mesh = box_mesh(4, 4, 4);
   CutTopology body(mesh);
