@@ -1,16 +1,18 @@
-// The Model of a scene, with what its surfaces have that a user should know.
+// The Model of a scene, with what its surfaces and figures have that a user should know.
 #pragma once
 #include <string>
 #include <vector>
 
 #include "cli/cli.h"
 #include "model/surface_check.h"
+#include "model/unit_remarks.h"
 
 namespace pliant::cli {
 
 /// Sentences of all bodies, told as remarks.
-inline std::vector<std::string> tell(const std::vector<SurfaceCheck>& checks, const Common& common) {
-  std::vector<std::string> warnings;
+inline std::vector<std::string> tell(const std::vector<SurfaceCheck>& checks, const Model& model, const Scene& scene,
+                                     const Common& common) {
+  std::vector<std::string> warnings = unit_remarks(model, scene);
   for (const SurfaceCheck& check : checks) {
     for (const std::string& warning : check.warnings) warnings.push_back("body '" + check.body + "': " + warning);
   }
@@ -21,7 +23,7 @@ inline std::vector<std::string> tell(const std::vector<SurfaceCheck>& checks, co
 inline Model checked_model(const Scene& scene, const Common& common, std::vector<std::string>& warnings) {
   std::vector<SurfaceCheck> checks;
   Model model = build_model(scene, checks);
-  warnings = tell(checks, common);
+  warnings = tell(checks, model, scene, common);
   return model;
 }
 

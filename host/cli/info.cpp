@@ -11,6 +11,7 @@
 #include "cli/cli.h"
 #include "cli/mesh_regions.h"
 #include "cli/probes.h"
+#include "geometry/vec.h"
 #include "model/boundary_conditions.h"
 #include "pliant/error.h"
 #include "scene/keys.h"
@@ -64,6 +65,13 @@ double per(std::uint64_t bytes, std::int64_t count) {
   return count > 0 ? static_cast<double>(bytes) / static_cast<double>(count) : 0;
 }
 
+/// Of a body's elements at rest, along the axes [m].
+Vec3d size_of(const ModelBody& body) {
+  vec::Box box;
+  for (const Vec3d& x : body.rest) box.extend(x);
+  return vec::sub(box.upper, box.lower);
+}
+
 class Info {
  public:
   Info(const Options& options, const Scene& scene, const Model& model, const std::vector<SurfaceCheck>& surfaces)
@@ -98,6 +106,7 @@ class Info {
                                  {"nodes", b.slot.size()},
                                  {"elements", b.elements()},
                                  {"spacing", b.spacing},
+                                 {"size", size_of(b)},
                                  {"mass", b.mass},
                                  {"volume", b.volume},
                                  {"surface_volume", b.surface_volume},
@@ -108,6 +117,7 @@ class Info {
                        b.triangles));
       if (b.matching_nodes + b.interface_nodes > 0) matching(b);
       const double excess = b.surface_volume > 0 ? 100 * (b.volume / b.surface_volume - 1) : 0;
+      line(fmt::format("  {:.4g} m large", fmt::join(size_of(b), " x ")));
       line(fmt::format("  mass {:.6g} kg, volume {:.6g} m^3, inside its surface {:.6g} m^3 ({:+.2f} %)", b.mass, b.volume,
                        b.surface_volume, excess));
       const Json regions = tell_mesh_regions(scene_.bodies[i], options_.common);
@@ -140,7 +150,7 @@ class Info {
   }
 
   void surface_checks() {
-    json_["warnings"] = tell(surfaces_, options_.common);
+    json_["warnings"] = tell(surfaces_, model_, scene_, options_.common);
     for (const SurfaceCheck& check : surfaces_) {
       const SurfaceReport& r = check.report;
       for (Json& body : json_["bodies"]) {

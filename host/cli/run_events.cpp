@@ -26,6 +26,10 @@ std::int64_t pieces(const ModelBody& body) {
   return static_cast<std::int64_t>(roots.size());
 }
 
+bool over(const Blade& blade, double now, double dt) {
+  return now >= std::min(blade.end, blade.path.back()[0]) - kStepSlack * dt;
+}
+
 }  // namespace
 
 RunEvents run_events(const Simulation& simulation) {
@@ -43,16 +47,36 @@ RunEvents run_events(const Simulation& simulation) {
   return events;
 }
 
+double first_time(const Blade& blade) { return std::max(blade.start, blade.path.front()[0]); }
+
 std::vector<std::string> blades_without_contact(const Simulation& simulation, bool certain) {
   const BladeState& state = simulation.state().blades;
   const double now = certain ? state.seen.value_or(0) : simulation.time();
   std::vector<std::string> names;
   for (const Blade& blade : simulation.scene().blades) {
-    const double end = std::min(blade.end, blade.path.back()[0]);
-    const bool over = now >= end - kStepSlack * simulation.dt();
-    if (over && std::find(state.met.begin(), state.met.end(), blade.name) == state.met.end()) names.push_back(blade.name);
+    if (over(blade, now, simulation.dt()) && std::find(state.met.begin(), state.met.end(), blade.name) == state.met.end())
+      names.push_back(blade.name);
   }
   return names;
+}
+
+std::vector<std::string> blades_without_effect(const Simulation& simulation) {
+  const RunState& state = simulation.state();
+  if (std::any_of(state.cuts.begin(), state.cuts.end(), [](const CutRecord& cut) { return !cut.edges.empty(); })) return {};
+  std::vector<std::string> names;
+  for (const Blade& blade : simulation.scene().blades) {
+    const bool met = std::find(state.blades.met.begin(), state.blades.met.end(), blade.name) != state.blades.met.end();
+    if (met && over(blade, simulation.time(), simulation.dt())) names.push_back(blade.name);
+  }
+  return names;
+}
+
+std::vector<const Blade*> blades_to_come(const Simulation& simulation) {
+  std::vector<const Blade*> blades;
+  for (const Blade& blade : simulation.scene().blades) {
+    if (simulation.time() < first_time(blade)) blades.push_back(&blade);
+  }
+  return blades;
 }
 
 }  // namespace pliant::cli

@@ -18,8 +18,14 @@ struct RunEvents {
 
 RunEvents run_events(const Simulation& simulation);
 
+/// When a blade begins to cut [s].
+double first_time(const Blade& blade);
 /// Names of blades of the scene that have come to the end of their path and met no body. `certain`: only those that have been
 /// followed to the end, which a blade is not while steps of its last batch are still to come.
 std::vector<std::string> blades_without_contact(const Simulation& simulation, bool certain);
+/// Names of blades whose path is over and led through tissue, in a run in which nothing has been divided.
+std::vector<std::string> blades_without_effect(const Simulation& simulation);
+/// Blades of the scene whose path or `start` is still to come.
+std::vector<const Blade*> blades_to_come(const Simulation& simulation);
 
 }  // namespace pliant::cli

@@ -90,6 +90,18 @@ class Report {
     json["broken_faces"] = events_.broken_faces;
     json["pieces"] = events_.pieces;
     json["blades_without_contact"] = blades_without_contact(s_, false);
+    json["blades_to_come"] = Json::array();
+    for (const Blade* blade : blades_to_come(s_)) {
+      json["blades_to_come"].push_back(blade->name);
+      out_.note(fmt::format("blade '{}' has not cut yet: it begins at {:.4g} s, and the run ended at {:.4g} s", blade->name,
+                            first_time(*blade), s_.time()));
+    }
+    for (const std::string& name : blades_without_effect(s_)) {
+      out_.note(
+          fmt::format("blade '{}' met tissue and divided no edge of an element: its way through it is too short for "
+                      "elements of this size",
+                      name));
+    }
     json["opened_edges"] = s_.state().opened;
     if (s_.state().opened > 0) {
       out_.note(fmt::format(

@@ -54,9 +54,11 @@ void StepControl::start(double wanted, bool estimate_always) {
     if (wanted > 0) check_beta(run_, wanted, stable.elements);
   }
   if (!(dt > 0) || !std::isfinite(dt)) {
-    throw Error(ErrorCode::bad_input,
-                fmt::format("no stable step could be found (estimate {} s): nothing in the scene can move freely",
-                            run_.state.limit.stable_dt));
+    throw Error(
+        ErrorCode::bad_input,
+        fmt::format("{}: no stable step could be found (estimate {} s): \"fixed\" and \"prescribed\" hold every node of "
+                    "every body, and nothing is left that could move; choose smaller regions there",
+                    run_.scene.name, run_.state.limit.stable_dt));
   }
   run_.state.limit.dt_ceiling = dt;
 }

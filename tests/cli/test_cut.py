@@ -56,15 +56,23 @@ class Cut(CliTest):
         run = self.json("run", scene, "--backend", "cpu", "--seconds", 0.08)
         # Across a layer of 25 cells: 36 edges of the lattice, 60 diagonals of faces, 25 of cells.
         self.assertEqual((run["cut_edges"], run["pieces"], run["broken_faces"]), (121, 2, 0))
-        self.assertEqual(run["blades_without_contact"], ["astray"])
+        self.assertEqual((run["blades_without_contact"], run["blades_to_come"]), (["astray"], ["late"]))
         done = self.pliant("run", scene, "--backend", "cpu", "--seconds", 0.08)
         self.assertEqual(done.stderr.count("met nothing"), 1)
         self.assertIn("blade 'astray' met nothing", done.stderr)
+        self.assertIn("blade 'late' has not cut yet: it begins at 1 s", done.stderr)
+        self.assertNotIn("divided no edge", done.stderr)
         self.assertIn(", 121 edges cut, 2 pieces\n", done.stdout)
         # A blade that has left the body before the run is resumed has met it all the same.
         self.pliant("run", scene, "--backend", "cpu", "--seconds", 0.06, "--checkpoint", "c.pckpt")
         resumed = self.json("run", scene, "--backend", "cpu", "--seconds", 0.02, "--resume", "c.pckpt")
         self.assertEqual((resumed["cut_edges"], resumed["blades_without_contact"]), (121, ["astray"]))
+
+    def test_a_cut_too_short_for_the_elements(self):
+        shallow = {"name": "scratch", "path": [[0, 0.013, 0.045, 0.001, 0.013, 0.045, 0.002], [0.01, 0.013, 0.044, 0.001, 0.013, 0.044, 0.002]]}
+        scene = self.scene(body={"prescribed": []}, gravity=[0, 0, 0], blades=[shallow])
+        done = self.pliant("run", scene, "--backend", "cpu", "--seconds", 0.02)
+        self.assertIn("blade 'scratch' met tissue and divided no edge of an element", done.stderr)
 
     def test_tears_are_counted(self):
         """Each broken face is two triangles of the surface."""

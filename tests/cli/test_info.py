@@ -36,6 +36,24 @@ class Info(harness.CliTest):
         self.assertEqual(places, sorted(places))
         self.assertIn("node_u", text)
 
+    def test_figures_in_other_units_are_told(self):
+        def warnings(material=None, gravity=0.0, **body):
+            material = {"young": 3000, "poisson": 0.4, "density": 1000, **(material or {})}
+            return self.json("info", self.scene(body={"material": material, **body}, gravity=[0, gravity, 0]))["warnings"]
+
+        self.assertEqual(warnings(gravity=-9.81), [])
+        for given, words in (({"material": {"young": 5}}, ["modulus is 5 Pa", "5 kPa are 5000"]),
+                             ({"material": {"density": 1}}, ["density is 1 kg/m^3", "1 g/cm^3 is 1000"]),
+                             ({"scale": 1000, "lattice": {"spacing": 20}}, ["100 x 100 x 100 m large", "millimetres"]),
+                             ({"gravity": -9810}, ["weight of a column", "327 times its Young's modulus"]),
+                             ({"prescribed": [{"plane": [[0, 0.049, 0], [0, 1, 0]], "displacement": [0, -20, 0]}]},
+                              ["entry 0 of \"prescribed\"", "20 m, 200 times the body's size of 0.1 m"])):
+            said = warnings(**given)
+            self.assertEqual(len(said), 1, said)
+            for word in words:
+                self.assertIn(word, said[0])
+        self.assertEqual(self.json("info", self.scene())["bodies"][0]["size"], [0.1, 0.1, 0.1])
+
     def test_partition_of_a_hybrid(self):
         # The lower two of five layers of cells are operational: 2 layers of 36 nodes, 1 of interface, 3 of shape matching.
         model = {"type": "hybrid", "width": 1, "region": {"box": [[-1, -1, -1], [1, -0.01, 1]]}}

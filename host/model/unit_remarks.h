@@ -1,0 +1,15 @@
+// Hints at lengths in millimetres, moduli in kilopascals and densities in grams per cubic centimetre: everything is SI.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "model/model.h"
+
+namespace pliant {
+
+/// A sentence for each figure of a scene that no tissue has: bodies larger than 10 m, moduli below 50 Pa, densities outside
+/// 100 to 25000 kg/m^3, finite elements that their own weight would crush, displacements of several times the body's size.
+/// Empty: nothing.
+[[nodiscard]] std::vector<std::string> unit_remarks(const Model& model, const Scene& scene);
+
+}  // namespace pliant
