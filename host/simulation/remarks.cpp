@@ -52,11 +52,11 @@ void add_matching(const Model& model, const Scene& scene, double dt, std::vector
     }
     const double strain = material.density * most * (high - low) / modulus;
     if (strain > kMostWeight) {
-      remarks.push_back(
-          fmt::format("body '{}': its weight strains its shape matching (modulus {:.3g} Pa) by about {:.2g}; above {} it "
-                      "sags further than the material would (by a tenth to a half at 0.3), and may buckle. Stiffer shape "
-                      "matching, or finite elements (\"type\": \"tled\"), carry it",
-                      name, modulus, strain, kMostWeight));
+      remarks.push_back(fmt::format(
+          "body '{}': its weight strains its shape matching (modulus {:.3g} Pa) by about {:.2g}; above {} it "
+          "sags otherwise than the material would (mostly further, by a tenth to a half at 0.3), and may buckle. Stiffer shape "
+          "matching, or finite elements (\"type\": \"tled\"), carry it",
+          name, modulus, strain, kMostWeight));
     }
   }
 }
