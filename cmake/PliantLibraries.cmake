@@ -37,6 +37,9 @@ endfunction()
 # pliant_with_embree(ROOM STEM): of STEM_embree.cpp and STEM_no_embree.cpp the room gets one, and ROOM_absent is the other.
 function(pliant_with_embree room stem)
   set(with ${CMAKE_SOURCE_DIR}/${stem}_embree.cpp)
+  # Members of the library by themselves, so that the linker can leave one out: tests/variants.cmake.
+  set_source_files_properties(${CMAKE_SOURCE_DIR}/${stem}_embree.cpp ${CMAKE_SOURCE_DIR}/${stem}_no_embree.cpp
+                              PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   set(without ${CMAKE_SOURCE_DIR}/${stem}_no_embree.cpp)
   get_target_property(sources ${room} SOURCES)
   list(REMOVE_ITEM sources ${with} ${without})
@@ -68,7 +71,7 @@ set_target_properties(pliant_ref PROPERTIES DISABLE_PRECOMPILE_HEADERS ON)
 # Options of a source file come last on the command line, after the -ffp-contract=off that everybody gets.
 separate_arguments(twin_flags UNIX_COMMAND "${PLIANT_TWIN_FLAGS}")
 file(GLOB ref_sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/cpu_ref/*.cpp)
-set_source_files_properties(${ref_sources} PROPERTIES COMPILE_OPTIONS "${twin_flags}")
+set_source_files_properties(${ref_sources} PROPERTIES COMPILE_OPTIONS "${twin_flags}" SKIP_UNITY_BUILD_INCLUSION ON)
 
 # The OpenCL backend, or what says that there is none: the same functions, so that nothing else asks which of the two was built.
 include(EmbedKernels)
@@ -130,6 +133,7 @@ pliant_room(pliant_plan host/plan pliant_simulation pliant_backends pliant_stati
 file(GLOB_RECURSE bench_sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/bench/*.cpp)
 list(FILTER bench_sources EXCLUDE REGEX "/bench/api/")
 add_library(pliant_bench STATIC ${bench_sources})
+pliant_unity_folders(pliant_bench)  # each folder is a namespace of its own
 target_link_libraries(pliant_bench PUBLIC pliant_io pliant_backends pliant_statics pliant_cutting_methods)
 target_include_directories(pliant_bench PUBLIC ${CMAKE_SOURCE_DIR})  # "bench/kernels/kernels.h"
 target_precompile_headers(pliant_bench REUSE_FROM pliant_command_headers)

@@ -6,10 +6,10 @@
 namespace pliant::bench::accuracy {
 namespace {
 
-struct Moduli {
+struct ExactModuli {
   double mu = 0, lambda = 0;
 };
-Moduli moduli(const Problem& p) {
+ExactModuli moduli(const Problem& p) {
   return {p.young / (2 * (1 + p.poisson)), p.young * p.poisson / ((1 + p.poisson) * (1 - 2 * p.poisson))};
 }
 

@@ -12,7 +12,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kEdge = 0.01, kYoung = 3000;
 constexpr Vec3d kCube{kEdge, kEdge, kEdge};
 
 /// E H^2 / (alpha rho d^2) of a pull: the variance of a window of 2 w + 1 nodes.

@@ -12,8 +12,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kYoung = 3000;
-
 /// A cantilever ten times as long as thick, `layers` cells through the thickness and one wide, at nu = 0.
 Specimen cantilever(int layers, double hourglass) {
   const double thickness = 0.02, edge = thickness / layers;

@@ -11,9 +11,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kYoung = 3000;
-constexpr double kEdge = 0.01;
-
 Box bar(Method method) { return {{method == Method::hybrid ? 6 : 3, 2, 2}, {kEdge, kEdge, kEdge}}; }
 
 /// Steps in which noise of a thousandth of an edge grows to an edge when the step is `share` of the limit: the highest mode

@@ -11,8 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kYoung = 3000, kPoisson = 0.3;
-constexpr double kEdge = 0.01;
+constexpr double kPoisson = 0.3;
 constexpr std::array<int, 3> kCells{4, 2, 2};
 constexpr double kLength = kCells[0] * kEdge, kSide = kCells[1] * kEdge;
 

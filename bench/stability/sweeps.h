@@ -10,6 +10,9 @@
 
 namespace pliant::bench::stability {
 
+inline constexpr double kYoung = 3000;  ///< of the specimens [Pa]
+inline constexpr double kEdge = 0.01;   ///< of their cells [m]
+
 /// A number of a row, or null.
 using Number = std::optional<double>;
 

@@ -21,7 +21,7 @@
 namespace pliant::cli {
 namespace {
 
-struct Options {
+struct BenchArguments {
   Common common;
   bench::KernelsOptions kernels;
   bench::DeformationOptions deformation;
@@ -47,7 +47,7 @@ void write_folder(const std::filesystem::path& out, const std::string& stem, con
 
 /// What every benchmark does around its measurements.
 template <class Wanted>
-int measure(Options& options, const std::string& stem, Wanted& wanted, nlohmann::json (*bench)(const Wanted&),
+int measure(BenchArguments& options, const std::string& stem, Wanted& wanted, nlohmann::json (*bench)(const Wanted&),
             std::string (*table)(const nlohmann::json&)) {
   if (!options.out.empty()) make_folder(options.out);
   Progress progress(!options.common.quiet);
@@ -67,7 +67,7 @@ int measure(Options& options, const std::string& stem, Wanted& wanted, nlohmann:
   return 0;
 }
 
-int kernels(Options& options) {
+int kernels(BenchArguments& options) {
   options.common.check();
   for (const std::int64_t size : options.kernels.sizes) {
     if (size < 1 || size > 100'000'000)
@@ -76,19 +76,19 @@ int kernels(Options& options) {
   return measure(options, "kernels", options.kernels, bench::bench_kernels, bench::kernels_table);
 }
 
-int deformation(Options& options) {
+int deformation(BenchArguments& options) {
   options.common.check();
   return measure(options, "deformation", options.deformation, bench::bench_deformation, bench::deformation_table);
 }
 
-int stability(Options& options) {
+int stability(BenchArguments& options) {
   options.common.check();
   // Sweeps that an earlier call finished are taken from the folder.
   if (!options.out.empty()) options.stability.keep = options.out / "stability-sweeps";
   return measure(options, "stability", options.stability, bench::bench_stability, bench::stability_table);
 }
 
-void add_stability(CLI::App& app, const std::shared_ptr<Options>& options) {
+void add_stability(CLI::App& app, const std::shared_ptr<BenchArguments>& options) {
   CLI::App* sub = app.add_subcommand("stability", "Sweeps to the failure of every method: the limit predicted and measured");
   bench::StabilityOptions& s = options->stability;
   options->common.add_to(*sub);
@@ -98,14 +98,14 @@ void add_stability(CLI::App& app, const std::shared_ptr<Options>& options) {
                   "folder for stability.json and stability.csv; finished sweeps kept there are not repeated");
 }
 
-int accuracy(Options& options) {
+int accuracy(BenchArguments& options) {
   options.common.check();
   options.accuracy.out = options.out;  // finished points are kept there
   options.accuracy.note = [&](const std::string& text) { options.common.note(text); };
   return measure(options, "accuracy", options.accuracy, bench::bench_accuracy, bench::accuracy_table);
 }
 
-void add_accuracy(CLI::App& app, const std::shared_ptr<Options>& options) {
+void add_accuracy(CLI::App& app, const std::shared_ptr<BenchArguments>& options) {
   CLI::App* sub =
       app.add_subcommand("accuracy", "Speed against error of every method, on exact answers and converged references");
   bench::AccuracyOptions& a = options->accuracy;
@@ -121,7 +121,7 @@ void add_accuracy(CLI::App& app, const std::shared_ptr<Options>& options) {
                   "folder for accuracy.json and accuracy.csv; finished points kept there are not measured again");
 }
 
-void add_deformation(CLI::App& app, const std::shared_ptr<Options>& options) {
+void add_deformation(CLI::App& app, const std::shared_ptr<BenchArguments>& options) {
   CLI::App* sub = app.add_subcommand(
       "deformation", "Hybrid bodies beside finite elements and shape matching alone, the published times, growth and error");
   bench::DeformationOptions& d = options->deformation;
@@ -137,7 +137,7 @@ void add_deformation(CLI::App& app, const std::shared_ptr<Options>& options) {
   sub->add_option("--out", options->out, "folder for deformation.json and deformation.csv");
 }
 
-int cutting(Options& options) {
+int cutting(BenchArguments& options) {
   options.common.check();
   if (!options.out.empty() && render::Renderer::available()) {
     options.cutting.picture = [&](const std::string& name, Simulation& simulation) {
@@ -150,7 +150,7 @@ int cutting(Options& options) {
   return measure(options, "cutting", options.cutting, bench::bench_cutting, bench::cutting_table);
 }
 
-void add_cutting(CLI::App& app, const std::shared_ptr<Options>& options) {
+void add_cutting(CLI::App& app, const std::shared_ptr<BenchArguments>& options) {
   CLI::App* sub = app.add_subcommand(
       "cutting", "What a cut costs and leaves behind: virtual nodes beside removal, decomposition, separation");
   bench::CuttingOptions& c = options->cutting;
@@ -163,13 +163,13 @@ void add_cutting(CLI::App& app, const std::shared_ptr<Options>& options) {
   sub->add_option("--out", options->out, "folder for cutting.json, cutting.csv and the pictures");
 }
 
-int survival(Options& options) {
+int survival(BenchArguments& options) {
   options.common.check();
   options.survival.out = options.out;  // finished scenes are kept there
   return measure(options, "survival", options.survival, bench::bench_survival, bench::survival_table);
 }
 
-void add_survival(CLI::App& app, const std::shared_ptr<Options>& options) {
+void add_survival(CLI::App& app, const std::shared_ptr<BenchArguments>& options) {
   CLI::App* sub =
       app.add_subcommand("survival", "Random scenes of the kind that strangers write: pulled, pushed, cut, torn, to their end");
   bench::SurvivalOptions& s = options->survival;
@@ -187,7 +187,7 @@ void add_survival(CLI::App& app, const std::shared_ptr<Options>& options) {
 }  // namespace
 
 std::function<int()> setup_bench(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<BenchArguments>();
   app.require_subcommand(1);
   CLI::App* sub =
       app.add_subcommand("kernels", "Every pass of a step: ns, bytes and flops per element, share of the machine's limit");

@@ -14,7 +14,7 @@
 namespace pliant::cli {
 namespace {
 
-struct Options {
+struct CompareArguments {
   Common common;
   std::string scene;
   std::vector<std::string> backends;
@@ -36,7 +36,7 @@ Json to_json(const BackendInfo& info) {
       {"name", info.name}, {"device", info.device}, {"bit_exact", info.bit_exact}, {"tolerance_reason", info.tolerance_reason}};
 }
 
-void check(const Options& options) {
+void check(const CompareArguments& options) {
   options.common.check();
   check_steps("--steps", options.steps);
   if (options.every != "pass" && options.every != "step") {
@@ -52,7 +52,7 @@ void check(const Options& options) {
   }
 }
 
-std::unique_ptr<Backend> open(const Options& options, std::size_t which) {
+std::unique_ptr<Backend> open(const CompareArguments& options, std::size_t which) {
   if (!options.backends.empty()) return open_backend(options.backends[which]);
   if (which == 1) return open_backend("cpu");
   try {
@@ -64,7 +64,7 @@ std::unique_ptr<Backend> open(const Options& options, std::size_t which) {
   }
 }
 
-void report(const Options& options, const ComparisonResult& result, const BackendInfo& a, const BackendInfo& b) {
+void report(const CompareArguments& options, const ComparisonResult& result, const BackendInfo& a, const BackendInfo& b) {
   const Common& common = options.common;
   for (const BackendInfo* info : {&a, &b}) {
     if (info->bit_exact) continue;
@@ -77,7 +77,7 @@ void report(const Options& options, const ComparisonResult& result, const Backen
   if (result.at_equilibrium) common.print("both reached equilibrium");
 }
 
-int compare_command(const Options& options) {
+int compare_command(const CompareArguments& options) {
   check(options);
   const Scene scene = load_scene(options.scene);
   auto backend_a = open(options, 0), backend_b = open(options, 1);
@@ -115,7 +115,7 @@ int compare_command(const Options& options) {
 }  // namespace
 
 std::function<int()> setup_compare(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CompareArguments>();
   app.add_option("scene", options->scene, "Scene file")->required();
   app.add_option("--steps", options->steps, "Steps to compare")->capture_default_str();
   app.add_option("--backends", options->backends, "Two backends; default: the first OpenCL device and cpu")

@@ -17,7 +17,7 @@ std::string verdict(const BackendInfo& info) {
   return fmt::format("tolerance ({})", info.tolerance_reason.empty() ? "not probed" : info.tolerance_reason);
 }
 
-nlohmann::ordered_json to_json(const BackendInfo& info) {
+nlohmann::ordered_json device_json(const BackendInfo& info) {
   return {{"name", info.name},
           {"device", info.device},
           {"kind", info.kind},
@@ -36,7 +36,7 @@ int devices(const Common& common) {
   common.check();
   nlohmann::ordered_json json{{"backends", nlohmann::ordered_json::array()}};
   for (const BackendInfo& info : list_backends()) {
-    json["backends"].push_back(to_json(info));
+    json["backends"].push_back(device_json(info));
     common.print(fmt::format("{:<12} {}", info.name, info.device.empty() ? "cannot be opened" : info.device));
     common.print(fmt::format("{:12} {}", "", verdict(info)));
     std::string properties = info.kind;

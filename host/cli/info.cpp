@@ -25,7 +25,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct InfoArguments {
   Common common;
   std::string scene;
   bool buffers = false;
@@ -74,7 +74,7 @@ Vec3d size_of(const ModelBody& body) {
 
 class Info {
  public:
-  Info(const Options& options, const Scene& scene, const Model& model, const std::vector<SurfaceCheck>& surfaces)
+  Info(const InfoArguments& options, const Scene& scene, const Model& model, const std::vector<SurfaceCheck>& surfaces)
       : options_(options), scene_(scene), model_(model), surfaces_(surfaces) {}
 
   void print_all(const Program& program, double iterated_dt, double dt, const std::string& not_iterated) {
@@ -263,14 +263,14 @@ class Info {
     }
   }
 
-  const Options& options_;
+  const InfoArguments& options_;
   const Scene& scene_;
   const Model& model_;
   const std::vector<SurfaceCheck>& surfaces_;
   Json json_;
 };
 
-int info(const Options& options) {
+int info(const InfoArguments& options) {
   options.common.check();
   const Scene scene = load_scene(options.scene);
   std::vector<SurfaceCheck> surfaces;
@@ -295,7 +295,7 @@ int info(const Options& options) {
 }  // namespace
 
 std::function<int()> setup_info(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<InfoArguments>();
   app.add_option("scene", options->scene, "Scene file")->required();
   app.add_flag("--buffers", options->buffers, "List every buffer: name, type, role, bytes, shape, unit, producer");
   options->common.add_to(app);

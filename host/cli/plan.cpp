@@ -15,7 +15,7 @@
 namespace pliant::cli {
 namespace {
 
-struct Options {
+struct PlanArguments {
   Common common;
   PlanOptions plan;
   std::string scene, out, tolerance = "2%", budget = "4ms";
@@ -32,7 +32,7 @@ double quantity(const std::string& option, const std::string& text, const std::v
   throw Error(ErrorCode::bad_input, fmt::format("{} is \"{}\"; expected {}", option, text, expected));
 }
 
-int plan(Options& o) {
+int plan(PlanArguments& o) {
   o.common.check();
   o.plan.tolerance = quantity("--tolerance", o.tolerance, {{"%", 0.01}, {"", 1}}, "a share such as 2% or 0.02");
   if (!(o.plan.tolerance < 1))
@@ -66,7 +66,7 @@ int plan(Options& o) {
 }  // namespace
 
 std::function<int()> setup_plan(CLI::App& app) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<PlanArguments>();
   app.add_option("scene", o->scene, "Scene file")->required();
   app.add_option("--tolerance", o->tolerance, "Relative L2 error of the surface at rest")->capture_default_str();
   app.add_option("--budget", o->budget, "Computing time per frame")->capture_default_str();

@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct RunArguments {
   Common common;
   std::string scene, backend = "auto", out, checkpoint, resume;
   std::vector<std::string> formats{"vtu"}, probes;
@@ -36,7 +36,7 @@ struct Options {
   bool hash = false, deep_hash = false, profile = false;
 };
 
-void check(const Options& o) {
+void check(const RunArguments& o) {
   if (o.steps) check_steps("--steps", *o.steps);
   if (o.seconds && !(*o.seconds >= 0 && std::isfinite(*o.seconds))) {
     throw Error(ErrorCode::bad_input, fmt::format("--seconds is {}; expected 0 or more", *o.seconds));
@@ -64,7 +64,7 @@ void check(const Options& o) {
 
 class Run {
  public:
-  explicit Run(const Options& options) : o_(options), stem_(scene_stem(options.scene)) {}
+  explicit Run(const RunArguments& options) : o_(options), stem_(scene_stem(options.scene)) {}
 
   int operator()() {
     check(o_);
@@ -218,7 +218,7 @@ class Run {
                 first_time_, o_.hash, o_.deep_hash, o_.profile});
   }
 
-  const Options& o_;
+  const RunArguments& o_;
   const std::string stem_;
   std::optional<Simulation> simulation_;
   std::optional<FrameWriter> frames_;
@@ -231,7 +231,7 @@ class Run {
 }  // namespace
 
 std::function<int()> setup_run(CLI::App& app) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<RunArguments>();
   app.add_option("scene", o->scene, "Scene file")->required();
   app.add_option("--backend", o->backend, "auto, cpu, cpu:double, cpu:check, opencl or opencl:N")->capture_default_str();
   auto* steps = app.add_option("--steps", o->steps, "Steps of this run; default: to the scene's duration, or to equilibrium");

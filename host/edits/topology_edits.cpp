@@ -13,7 +13,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kFrame = 1.0 / 60;  ///< the scene's blades move at least so often [s]
+constexpr double kLongestBatch = 1.0 / 60;  ///< the scene's blades move at least so often [s]
 
 void check_blade(const Blade& blade) {
   const auto fail = [&](const std::string& what) {
@@ -64,7 +64,7 @@ void TopologyEdits::start() {
   if (!scene.blades.empty()) {
     for (const Blade& blade : scene.blades) check_blade(blade);
     prepare_cuts();
-    const double steps = kFrame / run_.state.clock.dt;
+    const double steps = kLongestBatch / run_.state.clock.dt;
     run_.settings.blade_steps =
         steps < 1 ? 1 : static_cast<std::int64_t>(std::min(steps, static_cast<double>(run_.settings.batch_steps)));
   }

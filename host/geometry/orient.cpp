@@ -42,7 +42,7 @@ struct Shell {
   }
 };
 
-std::vector<HalfEdge> sorted_edges(const TriangleMesh& mesh) {
+std::vector<HalfEdge> sorted_half_edges(const TriangleMesh& mesh) {
   std::vector<HalfEdge> edges;
   edges.reserve(3 * mesh.triangles.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -108,7 +108,7 @@ std::vector<std::array<std::size_t, 2>> wedges(const TriangleMesh& mesh, const s
 
 // Neighbours over edges that exactly two triangles share, or evenly many that run it equally often both ways.
 std::vector<std::array<Link, 3>> neighbours(const TriangleMesh& mesh) {
-  const std::vector<HalfEdge> edges = sorted_edges(mesh);
+  const std::vector<HalfEdge> edges = sorted_half_edges(mesh);
   std::vector<std::array<Link, 3>> links(mesh.triangles.size());
   std::vector<int> used(mesh.triangles.size(), 0);
   const auto link = [&](const HalfEdge& x, const HalfEdge& y) {
@@ -171,7 +171,7 @@ std::vector<Shell> flood(TriangleMesh& mesh, OrientationReport& report, std::vec
 }
 
 std::vector<std::array<std::int32_t, 2>> rim_of(const TriangleMesh& mesh) {
-  const std::vector<HalfEdge> edges = sorted_edges(mesh);
+  const std::vector<HalfEdge> edges = sorted_half_edges(mesh);
   std::vector<std::array<std::int32_t, 2>> rim;
   for (std::size_t i = 0; i < edges.size();) {
     std::size_t end = i;

@@ -11,7 +11,7 @@ namespace {
 using Index = std::array<std::int32_t, 3>;
 
 // A fragment of at most this many cells that lost touch with its shell is an artefact of sampling, not a limb.
-constexpr std::int32_t kSmall = 8;
+constexpr std::int32_t kSmallFragment = 8;
 
 std::uint16_t dilate(std::uint16_t face) {
   const unsigned f = face;
@@ -165,14 +165,14 @@ std::vector<char> Contacts::mend() {
   for (const auto& [a, b] : near) tied[root[a]] = tied[root[b]] = 1;
   for (const auto& [a, b] : beside) {
     const std::int32_t fragment = loose[root[a]] != 0 ? root[a] : root[b];
-    if (tied[fragment] == 0 && cells[fragment] <= kSmall) near.emplace_back(a, b);
+    if (tied[fragment] == 0 && cells[fragment] <= kSmallFragment) near.emplace_back(a, b);
   }
   hinge(root, loose, near);
   for (const auto& [a, b] : near) tied[root[a]] = tied[root[b]] = 1;
   ties_.insert(ties_.end(), near.begin(), near.end());
   std::sort(ties_.begin(), ties_.end());
   for (std::size_t p = 0; p < root.size(); ++p) {
-    drop[p] = static_cast<char>(loose[root[p]] != 0 && tied[root[p]] == 0 && cells[root[p]] <= kSmall);
+    drop[p] = static_cast<char>(loose[root[p]] != 0 && tied[root[p]] == 0 && cells[root[p]] <= kSmallFragment);
   }
   return drop;
 }

@@ -27,7 +27,7 @@ namespace pliant {
 namespace {
 
 // A triangle whose height is below this share of its longest edge has no direction worth keeping.
-constexpr double kFlat = 1e-10;
+constexpr double kFlatArea = 1e-10;
 
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& what) {
   throw Error(ErrorCode::bad_input, fmt::format("surface mesh '{}': {}", file.string(), what));
@@ -81,7 +81,7 @@ struct Welder {
   void triangle(const std::array<Vec3d, 3>& p) {
     const Vec3d a = vec::sub(p[1], p[0]), b = vec::sub(p[2], p[0]), c = vec::sub(p[2], p[1]);
     const double longest2 = std::max({vec::dot(a, a), vec::dot(b, b), vec::dot(c, c)});
-    if (!(vec::norm(vec::cross(a, b)) > kFlat * longest2)) {
+    if (!(vec::norm(vec::cross(a, b)) > kFlatArea * longest2)) {
       if (degenerate++ == 0) degenerate_at = p[0];
       return;
     }
@@ -89,7 +89,7 @@ struct Welder {
   }
 };
 
-struct Reader {
+struct FormatReader {
   const std::filesystem::path& file;
   double scale;
   Vec3d translate;
@@ -255,7 +255,7 @@ TriangleMesh read_surface(const std::filesystem::path& file, double scale, const
     fail(file, fmt::format("scale is {}; a finite number other than 0 is needed", scale));
   const std::string extension = lower_extension(file);
   if (is_gltf(extension)) screen_gltf(file);
-  Reader reader{file, scale, translate};
+  FormatReader reader{file, scale, translate};
   if (extension == ".obj") {
     std::vector<Vec3d> points = obj_points(file);
     for (Vec3d& p : points) p = reader.place(kIdentity, p, 0);
@@ -282,7 +282,7 @@ TriangleMesh clean_surface(const TriangleMesh& surface, const std::string& name,
       if (v < 0 || v >= count) fail(shown, fmt::format("triangle {} names vertex {}, but there are {}", t, v, count));
     }
   }
-  Reader used{shown, scale, translate}, reader = used;
+  FormatReader used{shown, scale, translate}, reader = used;
   used.mesh(surface);
   // Vertices keep their order, so those of a clean surface keep their numbers.
   for (const Vec3d& v : surface.vertices) {

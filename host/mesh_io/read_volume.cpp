@@ -101,7 +101,7 @@ double size_of(const RawMesh& raw, const std::array<std::int32_t, 8>& c) {
 }
 
 /// Below this share of the cube of its longest edge a volume is rounding error.
-constexpr double kFlat = 1e-13;
+constexpr double kFlatVolume = 1e-13;
 
 void flip(std::array<std::int32_t, 4>& c) { std::swap(c[2], c[3]); }
 void flip(std::array<std::int32_t, 8>& c) { std::swap_ranges(c.begin(), c.begin() + 4, c.begin() + 4); }
@@ -115,7 +115,7 @@ void orient(RawMesh& raw, std::vector<std::array<std::int32_t, N>>& cells, const
   double first_size = 0;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const double v = size_of(raw, cells[i]);
-    if (!(std::abs(v) > kFlat * longest_cubed(raw, cells[i])) || !std::isfinite(v)) {
+    if (!(std::abs(v) > kFlatVolume * longest_cubed(raw, cells[i])) || !std::isfinite(v)) {
       throw Error(ErrorCode::bad_input,
                   fmt::format("{}: {} {} has no volume ({:.6g} in the file's units)", file.string(), name, numbers[i], v));
     }

@@ -22,7 +22,7 @@ int base64_value(char c) {
   return c == '+' ? 62 : c == '/' ? 63 : -1;
 }
 
-bool blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+bool vtu_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
 /// The first bytes of a source that is raw or base64. Groups of four are decoded one by one, so that a header which was encoded
 /// on its own, with padding, and the data behind it read as one stream.
@@ -38,7 +38,7 @@ std::string first_bytes(std::string_view source, bool raw, std::uint64_t wanted,
     int padding = 0;
     while (i < source.size() && digits + padding < 4) {
       const char c = source[i++];
-      if (blank(c)) continue;
+      if (vtu_blank(c)) continue;
       const int value = base64_value(c);
       if (c == '=' && digits >= 2) {
         ++padding;
@@ -97,7 +97,7 @@ std::string inflate(std::string_view source, bool raw, const VtuEncoding& e, con
   const std::size_t head_text = raw ? head.size() : (head.size() + 2) / 3 * 4;
   if (!raw) {
     // White space around the data would shift the groups.
-    while (!source.empty() && blank(source.front())) source.remove_prefix(1);
+    while (!source.empty() && vtu_blank(source.front())) source.remove_prefix(1);
   }
   if (head_text > source.size()) at.fail("the data end in the block header");
   const std::string data = first_bytes(source.substr(head_text), raw, packed, at);
@@ -153,11 +153,11 @@ std::vector<T> text_values(std::string_view text, const Cursor& at) {
   const char* p = text.data();
   const char* const end = p + text.size();
   while (true) {
-    while (p != end && blank(*p)) ++p;
+    while (p != end && vtu_blank(*p)) ++p;
     if (p == end) return out;
     T value{};
     const auto [next, code] = std::from_chars(*p == '+' ? p + 1 : p, end, value);
-    if (code != std::errc{} || (next != end && !blank(*next))) at.fail(fmt::format("value {} is not a number", out.size()));
+    if (code != std::errc{} || (next != end && !vtu_blank(*next))) at.fail(fmt::format("value {} is not a number", out.size()));
     out.push_back(value);
     p = next;
   }

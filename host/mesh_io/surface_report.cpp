@@ -10,7 +10,7 @@ namespace pliant {
 namespace {
 
 // A closed surface with less volume, in units of its area to the power of 3/2, is a sheet of which both sides coincide.
-constexpr double kFlat = 1e-9;
+constexpr double kFlatTriangle = 1e-9;
 // Between the lattice's volume and that inside the surface.
 constexpr double kDisagree = 0.05;
 
@@ -52,7 +52,7 @@ void require_inside(const SurfaceReport& r) {
   if (r.hole_area() > kLargestHole * (r.area - r.sheet_area)) {
     fail(r, fmt::format("has no inside to fill: {}; up to {:.0f} % are closed; {}", holes(r), 100 * kLargestHole, mend));
   }
-  if (!(r.volume > kFlat * std::pow(r.area, 1.5))) {
+  if (!(r.volume > kFlatTriangle * std::pow(r.area, 1.5))) {
     fail(r, fmt::format("has no inside to fill: its {:.3g} m^2 enclose {:.3g} m^3; {}", r.area, r.volume, mend));
   }
 }

@@ -30,7 +30,7 @@ cl::Program SharedContext::program(const std::string& text, const std::string& o
   const auto key = std::make_pair(text, options);
   {
     const std::lock_guard lock(mutex_);
-    if (const auto found = programs_.find(key); found != programs_.end()) return found->second;
+    if (const auto known = programs_.find(key); known != programs_.end()) return known->second;
   }
   cl::Program made = build();  // without the lock: it takes long, and two threads that build the same do no harm
   ++builds;

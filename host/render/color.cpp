@@ -42,11 +42,11 @@ Vec3f compute(float t) {
   return {clamped(c.x), clamped(c.y), clamped(c.z)};
 }
 
-constexpr int kSteps = 256;
+constexpr int kShades = 256;
 
-std::array<Vec3f, kSteps + 1> make_table() {
-  std::array<Vec3f, kSteps + 1> table;
-  for (int i = 0; i <= kSteps; ++i) table[i] = compute(static_cast<float>(i) / kSteps);
+std::array<Vec3f, kShades + 1> make_table() {
+  std::array<Vec3f, kShades + 1> table;
+  for (int i = 0; i <= kShades; ++i) table[i] = compute(static_cast<float>(i) / kShades);
   return table;
 }
 
@@ -57,10 +57,10 @@ Vec3f srgb_of(Vec3f c) { return {encode(clamped(c.x)), encode(clamped(c.y)), enc
 Vec3f tone(Vec3f c) { return {bend(c.x), bend(c.y), bend(c.z)}; }
 
 Vec3f map_color(float value) {
-  static const std::array<Vec3f, kSteps + 1> table = make_table();
+  static const std::array<Vec3f, kShades + 1> table = make_table();
   if (std::isnan(value)) return {0.2F, 0.2F, 0.2F};
-  const float place = clamped(value) * kSteps;
-  const int i = std::min(static_cast<int>(place), kSteps - 1);
+  const float place = clamped(value) * kShades;
+  const int i = std::min(static_cast<int>(place), kShades - 1);
   return mix(table[i], table[i + 1], place - static_cast<float>(i));
 }
 

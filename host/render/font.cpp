@@ -117,7 +117,7 @@ void add_signs(Table& t) {
   add(t, '%', 0.70F, {{{0.08F, 0}, {0.62F, 1}}, arc(0.14F, 0.8F, 0.14F, 0.2F, 0, 360), arc(0.56F, 0.2F, 0.14F, 0.2F, 0, 360)});
 }
 
-Table make_table() {
+Table make_glyphs() {
   Table t;
   add_digits(t);
   add_round_letters(t);
@@ -130,7 +130,7 @@ Table make_table() {
 }  // namespace
 
 const Glyph& glyph(char c) {
-  static const Table table = make_table();
+  static const Table table = make_glyphs();
   static const Glyph blank{};
   const auto found = table.find(c);
   return found == table.end() ? blank : found->second;

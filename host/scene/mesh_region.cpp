@@ -39,39 +39,6 @@ Vec3d middle(const std::vector<Vec3d>& vertices, std::span<const std::int32_t> o
   return sum;
 }
 
-/// Places on a grid of cells so small that hardly two share one.
-class Places {
- public:
-  Places() = default;
-  explicit Places(double slack) : slack_(slack), edge_(1e3 * slack) {}
-  void add(const Vec3d& x) { at_[key(x, {0, 0, 0})].push_back(x); }
-  [[nodiscard]] bool has(const Vec3d& x) const {
-    for (int corner = 0; corner < 8; ++corner) {
-      const auto shift = [&](int axis) { return (corner >> axis & 1) == 0 ? -slack_ : slack_; };
-      const auto cell = at_.find(key(x, {shift(0), shift(1), shift(2)}));
-      if (cell == at_.end()) continue;
-      for (const Vec3d& y : cell->second) {
-        if (vec::norm(vec::sub(x, y)) <= slack_) return true;
-      }
-    }
-    return false;
-  }
-
- private:
-  [[nodiscard]] std::uint64_t key(const Vec3d& x, const Vec3d& shift) const {
-    std::uint64_t h = 0;
-    for (int a = 0; a < 3; ++a) {
-      const double cell = std::floor((x[a] + shift[a]) / edge_);
-      if (!(std::fabs(cell) < 1e18)) return 0;
-      h = (h ^ static_cast<std::uint64_t>(static_cast<std::int64_t>(cell))) * 0x9e3779b97f4a7c15U;
-    }
-    return h;
-  }
-
-  double slack_ = 0, edge_ = 1;
-  std::unordered_map<std::uint64_t, std::vector<Vec3d>> at_;
-};
-
 }  // namespace
 
 std::vector<std::int32_t> TaggedMesh::Content::corners(std::size_t element) const {
@@ -101,6 +68,39 @@ const TaggedMesh::Content& TaggedMesh::content() const {
 
 /// Of each node, element or triangle of the mesh its place and whether it belongs to the region.
 struct MeshRegion::Members {
+  /// Places on a grid of cells so small that hardly two share one.
+  class Places {
+   public:
+    Places() = default;
+    explicit Places(double slack) : slack_(slack), edge_(1e3 * slack) {}
+    void add(const Vec3d& x) { at_[key(x, {0, 0, 0})].push_back(x); }
+    [[nodiscard]] bool has(const Vec3d& x) const {
+      for (int corner = 0; corner < 8; ++corner) {
+        const auto shift = [&](int axis) { return (corner >> axis & 1) == 0 ? -slack_ : slack_; };
+        const auto cell = at_.find(key(x, {shift(0), shift(1), shift(2)}));
+        if (cell == at_.end()) continue;
+        for (const Vec3d& y : cell->second) {
+          if (vec::norm(vec::sub(x, y)) <= slack_) return true;
+        }
+      }
+      return false;
+    }
+
+   private:
+    [[nodiscard]] std::uint64_t key(const Vec3d& x, const Vec3d& shift) const {
+      std::uint64_t h = 0;
+      for (int a = 0; a < 3; ++a) {
+        const double cell = std::floor((x[a] + shift[a]) / edge_);
+        if (!(std::fabs(cell) < 1e18)) return 0;
+        h = (h ^ static_cast<std::uint64_t>(static_cast<std::int64_t>(cell))) * 0x9e3779b97f4a7c15U;
+      }
+      return h;
+    }
+
+    double slack_ = 0, edge_ = 1;
+    std::unordered_map<std::uint64_t, std::vector<Vec3d>> at_;
+  };
+
   std::vector<Vec3d> place;
   std::vector<char> chosen;
   double slack = 0;
@@ -225,7 +225,7 @@ void MeshRegion::find() const {
     }
   }
   members->slack = content.slack;
-  members->places = Places(content.slack);
+  members->places = Members::Places(content.slack);
   for (std::size_t i = 0; i < members->place.size(); ++i) {
     if (members->chosen[i] != 0) members->places.add(members->place[i]);
   }

@@ -12,7 +12,7 @@ namespace pliant {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
 std::string path_json(const fs::path& path, const fs::path& scene_file) {
@@ -22,32 +22,32 @@ std::string path_json(const fs::path& path, const fs::path& scene_file) {
   return relative.empty() ? fs::absolute(path).string() : relative.string();
 }
 
-Json selection_json(const Selection& s, const fs::path& scene_file) {
+OrderedJson selection_json(const Selection& s, const fs::path& scene_file) {
   switch (s.kind) {
     case Selection::Kind::all:
       return {{"all", true}};
     case Selection::Kind::box:
-      return {{"box", Json::array({s.a, s.b})}};
+      return {{"box", OrderedJson::array({s.a, s.b})}};
     case Selection::Kind::sphere:
-      return {{"sphere", Json::array({s.a, s.radius})}};
+      return {{"sphere", OrderedJson::array({s.a, s.radius})}};
     case Selection::Kind::plane:
-      return {{"plane", Json::array({s.a, s.b})}};
+      return {{"plane", OrderedJson::array({s.a, s.b})}};
     case Selection::Kind::nodes:
       return {{"nodes", s.nodes}};
     case Selection::Kind::surface:
       return {{"surface", path_json(s.surface->file(), scene_file)}};
     case Selection::Kind::region: {
       const RegionName& name = s.region->name();
-      Json entry{{"region", name.name.empty() ? Json(name.number) : Json(name.name)}};
+      OrderedJson entry{{"region", name.name.empty() ? OrderedJson(name.number) : OrderedJson(name.name)}};
       if (!name.data.empty()) entry["data"] = name.data;
       if (name.dimension != 0) entry["dimension"] = name.dimension;
       return entry;
     }
   }
-  return Json::object();
+  return OrderedJson::object();
 }
 
-void add_curve(Json& entry, const Curve& curve) {
+void add_curve(OrderedJson& entry, const Curve& curve) {
   entry["curve"] = word_of(curve_words(), curve.kind);
   if (curve.kind == Curve::Kind::table) {
     entry["table"] = curve.table;
@@ -57,16 +57,16 @@ void add_curve(Json& entry, const Curve& curve) {
   if (curve.kind != Curve::Kind::constant) entry["duration"] = curve.duration;
 }
 
-Json gravity_json(const Scene& scene) {
+OrderedJson gravity_json(const Scene& scene) {
   if (scene.gravity_curve.kind == Curve::Kind::constant && scene.gravity_curve.start == 0) return scene.gravity;
-  Json gravity{{"acceleration", scene.gravity}};
+  OrderedJson gravity{{"acceleration", scene.gravity}};
   add_curve(gravity, scene.gravity_curve);
   return gravity;
 }
 
-Json material_json(const Material& m) {
+OrderedJson material_json(const Material& m) {
   const LawInfo& law = law_info(m.law);
-  Json material{{"law", law.word}};
+  OrderedJson material{{"law", law.word}};
   if (!law.takes_moduli) {
     for (std::size_t i = 0; i < law.parameters.size(); ++i) material[law.parameters[i].name] = m.parameters.at(i);
   } else {
@@ -89,8 +89,8 @@ Json material_json(const Material& m) {
   return material;
 }
 
-Json model_json(const DeformationModel& m) {
-  Json model{{"type", to_string(m.type)}};
+OrderedJson model_json(const DeformationModel& m) {
+  OrderedJson model{{"type", to_string(m.type)}};
   if (m.type == ModelType::hybrid) {
     if (m.region) {
       model["region"] = selection_json(*m.region, {});
@@ -99,7 +99,7 @@ Json model_json(const DeformationModel& m) {
       if (m.seed) model["seed"] = *m.seed;
       if (m.follow) model["follow"] = word_of(follow_words(), m.follow);
     }
-    model["beta"] = m.beta != 0 ? Json(m.beta) : Json("auto");
+    model["beta"] = m.beta != 0 ? OrderedJson(m.beta) : OrderedJson("auto");
     model["substeps"] = m.substeps;
     model["goals"] = word_of(goals_words(), m.extrapolate);
     model["coupling"] = word_of(coupling_words(), m.conservative);
@@ -125,57 +125,57 @@ std::string axes_text(const std::array<bool, 3>& axes) {
   return text;
 }
 
-Json field_json(const AffineField& field) {
+OrderedJson field_json(const AffineField& field) {
   if (field.linear == std::array<Vec3d, 3>{} && field.about == Vec3d{}) return field.offset;
   return {{"linear", field.linear}, {"about", field.about}, {"offset", field.offset}};
 }
 
-void add_conditions(Json& body, const Body& b, const fs::path& file) {
+void add_conditions(OrderedJson& body, const Body& b, const fs::path& file) {
   for (const Inclusion& inclusion : b.inclusions) {
-    Json entry = selection_json(inclusion.where, file);
+    OrderedJson entry = selection_json(inclusion.where, file);
     entry["material"] = material_json(inclusion.material);
     body["inclusions"].push_back(entry);
   }
   for (const Fixed& fixed : b.fixed) {
-    Json entry = selection_json(fixed.where, file);
+    OrderedJson entry = selection_json(fixed.where, file);
     entry["axes"] = axes_text(fixed.axes);
     body["fixed"].push_back(entry);
   }
   for (const Prescribed& prescribed : b.prescribed) {
-    Json entry = selection_json(prescribed.where, file);
+    OrderedJson entry = selection_json(prescribed.where, file);
     if (prescribed.rotate) {
       const Rotation& r = *prescribed.rotate;
       entry["rotate"] = {{"axis", r.axis}, {"about", r.about}, {"angle", r.angle}};
       entry["axes"] = axes_text(prescribed.axes);
     } else {
       for (const std::optional<double>& d : prescribed.displacement)
-        entry["displacement"].push_back(d ? Json(*d) : Json(nullptr));
+        entry["displacement"].push_back(d ? OrderedJson(*d) : OrderedJson(nullptr));
     }
     add_curve(entry, prescribed.curve);
     body["prescribed"].push_back(entry);
   }
   for (const Initial& initial : b.initial) {
-    Json entry = selection_json(initial.where, file);
+    OrderedJson entry = selection_json(initial.where, file);
     entry["velocity"] = field_json(initial.velocity);
     entry["displacement"] = field_json(initial.displacement);
     body["initial"].push_back(entry);
   }
   for (const Force& force : b.forces) {
-    Json entry = selection_json(force.where, file);
+    OrderedJson entry = selection_json(force.where, file);
     entry["force"] = force.total;
     add_curve(entry, force.curve);
     body["forces"].push_back(entry);
   }
   for (const Pressure& pressure : b.pressures) {
-    Json entry = selection_json(pressure.where, file);
+    OrderedJson entry = selection_json(pressure.where, file);
     entry["pressure"] = pressure.pressure;
     add_curve(entry, pressure.curve);
     body["pressures"].push_back(entry);
   }
 }
 
-Json body_json(const Body& b, const fs::path& scene_file) {
-  Json body{{"name", b.name}};
+OrderedJson body_json(const Body& b, const fs::path& scene_file) {
+  OrderedJson body{{"name", b.name}};
   if (b.mesh.empty()) {
     body["surface"] = path_json(b.surface, scene_file);
   } else {
@@ -184,7 +184,8 @@ Json body_json(const Body& b, const fs::path& scene_file) {
   body["scale"] = b.scale;
   body["translate"] = b.translate;
   if (b.mesh.empty()) {
-    body["lattice"] = b.lattice.spacing != 0 ? Json{{"spacing", b.lattice.spacing}} : Json{{"nodes", b.lattice.nodes}};
+    body["lattice"] =
+        b.lattice.spacing != 0 ? OrderedJson{{"spacing", b.lattice.spacing}} : OrderedJson{{"nodes", b.lattice.nodes}};
   }
   body["element"] = to_string(b.element);
   body["material"] = material_json(b.material);
@@ -195,15 +196,15 @@ Json body_json(const Body& b, const fs::path& scene_file) {
   return body;
 }
 
-Json blade_json(const Blade& b) {
-  Json blade{{"name", b.name}, {"path", b.path}};
+OrderedJson blade_json(const Blade& b) {
+  OrderedJson blade{{"name", b.name}, {"path", b.path}};
   if (std::isfinite(b.start)) blade["start"] = b.start;
   if (std::isfinite(b.end)) blade["end"] = b.end;
   return blade;
 }
 
-Json view_json(const SceneView& v) {
-  Json view = Json::object();
+OrderedJson view_json(const SceneView& v) {
+  OrderedJson view = OrderedJson::object();
   if (v.eye) view["eye"] = *v.eye;
   if (v.target) view["target"] = *v.target;
   if (v.up) view["up"] = *v.up;
@@ -211,11 +212,11 @@ Json view_json(const SceneView& v) {
   return view;
 }
 
-void add_probes(Json& top, const Scene& scene) {
+void add_probes(OrderedJson& top, const Scene& scene) {
   if (scene.probes == nullptr) return;
-  top["probes"] = Json::array();
+  top["probes"] = OrderedJson::array();
   for (const SceneProbe& p : scene.probes->list) {
-    Json probe = p.point ? Json{{"point", *p.point}} : selection_json(p.where, scene.file);
+    OrderedJson probe = p.point ? OrderedJson{{"point", *p.point}} : selection_json(p.where, scene.file);
     if (!p.point) probe["body"] = p.body;
     probe["name"] = p.name;
     for (const Quantity q : p.quantities) probe["quantities"].push_back(word_of(quantity_words(), q));
@@ -226,11 +227,11 @@ void add_probes(Json& top, const Scene& scene) {
 }
 
 // Nothing is left out because of its value, or validate() would not see it: 0 alone means "auto".
-Json document_of(const Scene& scene) {
-  Json top{{"format", "pliant-scene/1"}};
+OrderedJson document_of(const Scene& scene) {
+  OrderedJson top{{"format", "pliant-scene/1"}};
   if (!scene.name.empty()) top["name"] = scene.name;
   top["gravity"] = gravity_json(scene);
-  top["dt"] = scene.dt != 0 ? Json(scene.dt) : Json("auto");
+  top["dt"] = scene.dt != 0 ? OrderedJson(scene.dt) : OrderedJson("auto");
   top["safety"] = scene.safety;
   top["duration"] = scene.duration;
   top["integrator"] = word_of(integrator_words(), scene.integrator);
@@ -246,13 +247,13 @@ Json document_of(const Scene& scene) {
   if (scene.solver.enabled) {
     const StaticSolver& s = scene.solver;
     top["solver"] = {{"type", "static"}, {"linear", s.linear}, {"tolerance", s.tolerance}, {"order", s.quadratic ? 2 : 1}};
-    top["solver"]["load_steps"] = s.load_steps != 0 ? Json(s.load_steps) : Json("auto");
+    top["solver"]["load_steps"] = s.load_steps != 0 ? OrderedJson(s.load_steps) : OrderedJson("auto");
   }
   if (!scene.tool.path.empty()) top["tool"] = {{"path", scene.tool.path}};
   for (const Blade& b : scene.blades) top["blades"].push_back(blade_json(b));
-  if (const Json view = view_json(scene.view); !view.empty()) top["view"] = view;
+  if (const OrderedJson view = view_json(scene.view); !view.empty()) top["view"] = view;
   add_probes(top, scene);
-  top["bodies"] = Json::array();
+  top["bodies"] = OrderedJson::array();
   for (const Body& b : scene.bodies) top["bodies"].push_back(body_json(b, scene.file));
   return top;
 }
@@ -260,7 +261,7 @@ Json document_of(const Scene& scene) {
 }  // namespace
 
 std::string scene_to_json(const Scene& scene) {
-  return document_of(scene).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return document_of(scene).dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
 }
 
 void validate(const Scene& scene) { (void)read_document(document_of(scene), scene.file); }

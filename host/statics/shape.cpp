@@ -6,7 +6,7 @@ namespace pliant::statics {
 namespace {
 
 /// Corners of the edges whose middles are nodes 4..9.
-constexpr int kEdges[6][2]{{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
+constexpr int kEdgeCorners[6][2]{{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
 
 Eigen::Vector4d barycentric(const Vector3d& l) { return {1 - l.sum(), l[0], l[1], l[2]}; }
 
@@ -30,7 +30,7 @@ void add_corner_points(std::vector<LocalPoint>& rule, double a, double weight) {
 
 /// All permutations of (1/2 - a, 1/2 - a, a, a).
 void add_edge_points(std::vector<LocalPoint>& rule, double a, double weight) {
-  for (const auto& edge : kEdges) {
+  for (const auto& edge : kEdgeCorners) {
     Eigen::Vector4d l = Eigen::Vector4d::Constant(a);
     l[edge[0]] = l[edge[1]] = 0.5 - a;
     rule.push_back({l.tail<3>(), weight / 6});
@@ -91,7 +91,7 @@ ShapeValues shape_values(Element element, const Vector3d& local) {
     return n;
   }
   for (int a = 0; a < 4; ++a) n[a] = l[a] * (2 * l[a] - 1);
-  for (int e = 0; e < 6; ++e) n[4 + e] = 4 * l[kEdges[e][0]] * l[kEdges[e][1]];
+  for (int e = 0; e < 6; ++e) n[4 + e] = 4 * l[kEdgeCorners[e][0]] * l[kEdgeCorners[e][1]];
   return n;
 }
 
@@ -117,7 +117,7 @@ Gradients shape_gradients(Element element, const Vector3d& local) {
   const Eigen::Vector4d l = barycentric(local);
   for (int a = 0; a < 4; ++a) g.col(a) = (4 * l[a] - 1) * b.col(a);
   for (int e = 0; e < 6; ++e) {
-    const int i = kEdges[e][0], j = kEdges[e][1];
+    const int i = kEdgeCorners[e][0], j = kEdgeCorners[e][1];
     g.col(4 + e) = 4 * (l[i] * b.col(j) + l[j] * b.col(i));
   }
   return g;

@@ -7,7 +7,7 @@
 #include "api/scenes.h"
 #include "pliant/pliant.h"
 
-namespace pliant {
+namespace pliant::cut_test {
 namespace {
 
 using namespace test;
@@ -307,4 +307,4 @@ TEST(ApiCut, the_same_from_c) {
 }
 
 }  // namespace
-}  // namespace pliant
+}  // namespace pliant::cut_test

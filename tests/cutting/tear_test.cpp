@@ -10,7 +10,7 @@
 #include "support/temp_folder.h"
 #include "tearing/torn_body.h"
 
-namespace pliant {
+namespace pliant::tear_test {
 namespace {
 
 using namespace cut_test;
@@ -214,4 +214,4 @@ TEST_F(Tear, what_cannot_tear_is_refused) {
 }
 
 }  // namespace
-}  // namespace pliant
+}  // namespace pliant::tear_test

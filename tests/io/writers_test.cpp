@@ -10,7 +10,7 @@
 #include "pliant/error.h"
 #include "support/temp_folder.h"
 
-namespace pliant {
+namespace pliant::writers_test {
 namespace {
 
 using test::bytes_of;
@@ -137,4 +137,4 @@ TEST(WriteObj, IsReadBack) {
 }
 
 }  // namespace
-}  // namespace pliant
+}  // namespace pliant::writers_test

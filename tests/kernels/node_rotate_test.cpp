@@ -1,7 +1,7 @@
 // node_rotate: kernel and twin give the same bits; in double, the displacement is that of the rotation.
 #include "random_data.h"
 
-namespace pliant::kernel_test {
+namespace pliant::kernel_test::rotate_test {
 namespace {
 
 class NodeRotate : public TwinTest {};
@@ -47,4 +47,4 @@ TEST(NodeRotateOracle, MovesOnACircle) {
 }
 
 }  // namespace
-}  // namespace pliant::kernel_test
+}  // namespace pliant::kernel_test::rotate_test

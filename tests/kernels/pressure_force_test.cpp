@@ -1,7 +1,7 @@
 // pressure_force: kernel and twin give the same bits; in double, it is -p times the area vector.
 #include "random_data.h"
 
-namespace pliant::kernel_test {
+namespace pliant::kernel_test::pressure_test {
 namespace {
 
 class PressureForce : public TwinTest {};
@@ -38,4 +38,4 @@ TEST(PressureForceOracle, IsPressureTimesAreaAgainstTheNormal) {
 }
 
 }  // namespace
-}  // namespace pliant::kernel_test
+}  // namespace pliant::kernel_test::pressure_test

@@ -2,7 +2,7 @@
 #include "layout.h"
 #include "random_data.h"
 
-namespace pliant::kernel_test {
+namespace pliant::kernel_test::surface_test {
 namespace {
 
 class SurfacePosition : public TwinTest {};
@@ -49,4 +49,4 @@ TEST(SurfacePositionOracle, AddsTheWeightedDisplacement) {
 }
 
 }  // namespace
-}  // namespace pliant::kernel_test
+}  // namespace pliant::kernel_test::surface_test

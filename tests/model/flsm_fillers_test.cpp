@@ -84,7 +84,7 @@ void expect_the_same_sets(const LinkedLattice& before, const LinkedLattice& afte
     for (const RegionEntry& e : region_by_search(before, r, regions.width)) expected.insert(e.other);
     EXPECT_EQ(held, expected) << "region " << r;
     EXPECT_EQ(regions.size[r], static_cast<std::int32_t>(expected.size())) << "region " << r;
-    if (testing::Test::HasFailure()) return;  // one region is enough to read
+    if (::testing::Test::HasFailure()) return;  // one region is enough to read
   }
 }
 
@@ -104,8 +104,8 @@ void expect_transpose(const FlsmRegions& regions) {
   }
 }
 
-class Fillers : public testing::TestWithParam<int> {};
-INSTANTIATE_TEST_SUITE_P(Widths, Fillers, testing::Values(1, 2, 3, 4));
+class Fillers : public ::testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Widths, Fillers, ::testing::Values(1, 2, 3, 4));
 
 TEST_P(Fillers, StandOnEmptyGridPointsAndLeaveTheNodesAsTheyWere) {
   std::int64_t fillers = 0;

@@ -44,22 +44,22 @@ std::int64_t check(const LinkedLattice& lattice, int width) {
                                           regions.missing.begin() + regions.missing_offset[r + 1]);
     EXPECT_EQ(listed, expected) << "region " << r;
     EXPECT_EQ(regions.size[r], static_cast<std::int32_t>(region.size())) << "region " << r;
-    if (testing::Test::HasFailure()) return 0;  // one region is enough to read
+    if (::testing::Test::HasFailure()) return 0;  // one region is enough to read
   }
   EXPECT_EQ(regions.holders, holders);
   for (std::int32_t n = 0; n < nodes; ++n) {
     const std::vector<RegionEntry> listed(regions.missing_of.begin() + regions.missing_of_offset[n],
                                           regions.missing_of.begin() + regions.missing_of_offset[n + 1]);
     EXPECT_EQ(listed, transpose[n]) << "node " << n;
-    if (testing::Test::HasFailure()) return 0;
+    if (::testing::Test::HasFailure()) return 0;
   }
   EXPECT_EQ(regions.missing_offset.back(), static_cast<std::int32_t>(regions.missing.size()));
   EXPECT_EQ(regions.missing_of.size(), regions.missing.size());
   return static_cast<std::int64_t>(regions.missing.size());
 }
 
-class Regions : public testing::TestWithParam<int> {};
-INSTANTIATE_TEST_SUITE_P(Widths, Regions, testing::Values(1, 2, 3, 4));
+class Regions : public ::testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Widths, Regions, ::testing::Values(1, 2, 3, 4));
 
 TEST_P(Regions, OfABoxAreItsOrderedSums) {
   EXPECT_EQ(check(shape({11, 9, 7}, [](int, int, int) { return true; }), GetParam()), 0);

@@ -284,7 +284,7 @@ TEST(Lattice, ErrorsSayWhatIsWrong) {
     return test::error_of([&] { build_lattice(cube, spec, most); });
   };
   const auto mentions = [](const std::string& message, const std::string& words) {
-    return message.find(words) != std::string::npos ? testing::AssertionSuccess() : testing::AssertionFailure() << message;
+    return message.find(words) != std::string::npos ? ::testing::AssertionSuccess() : ::testing::AssertionFailure() << message;
   };
   EXPECT_TRUE(mentions(error({-0.01, 0}, 1000), "spacing is -0.01 m; a positive number is needed"));
   EXPECT_TRUE(mentions(error({0, 0}, 1000), "spacing is 0 m"));

@@ -136,9 +136,10 @@ std::string bar() {
 RegionName named(const char* name, int dimension = 0) { return {name, 0, "", dimension}; }
 RegionName numbered(std::int64_t number, int dimension = 0, const char* data = "") { return {"", number, data, dimension}; }
 
-class Regions : public ::testing::Test {
+class TaggedRegions : public ::testing::Test {
  protected:
-  Regions() : file_(folder_.write("bar.msh", bar())), mesh_(std::make_shared<const TaggedMesh>(file_, 2, Vec3d{0, 0, 1})) {}
+  TaggedRegions()
+      : file_(folder_.write("bar.msh", bar())), mesh_(std::make_shared<const TaggedMesh>(file_, 2, Vec3d{0, 0, 1})) {}
   [[nodiscard]] MeshRegion region(const RegionName& name, Selected of) const { return {mesh_, name, of, "/here/region"}; }
   /// The places [m] of the body along x where the region holds a node.
   [[nodiscard]] std::vector<double> planes(const RegionName& name) const {
@@ -167,7 +168,7 @@ class Regions : public ::testing::Test {
   std::shared_ptr<const TaggedMesh> mesh_;
 };
 
-TEST_F(Regions, OfNodesAreThoseOfTheirCells) {
+TEST_F(TaggedRegions, OfNodesAreThoseOfTheirCells) {
   EXPECT_EQ(planes(named("tumour")), (std::vector<double>{4, 6, 8}));
   EXPECT_EQ(planes(numbered(2, 3)), (std::vector<double>{4, 6, 8}));
   EXPECT_EQ(planes(numbered(1)), (std::vector<double>{0, 2, 4}));
@@ -177,7 +178,7 @@ TEST_F(Regions, OfNodesAreThoseOfTheirCells) {
   EXPECT_EQ(planes(numbered(1, 3, "gmsh:geometrical")), (std::vector<double>{0, 2, 4, 6, 8}));
 }
 
-TEST_F(Regions, AreFoundByPlaceWhereNumbersDoNotHold) {
+TEST_F(TaggedRegions, AreFoundByPlaceWhereNumbersDoNotHold) {
   const MeshRegion nodes = region(named("tumour"), Selected::nodes);
   EXPECT_TRUE(nodes.contains({8, 2, 3}, 4711));
   EXPECT_TRUE(nodes.contains({8, 2, 3 + 1e-9}, 0));
@@ -185,7 +186,7 @@ TEST_F(Regions, AreFoundByPlaceWhereNumbersDoNotHold) {
   EXPECT_FALSE(nodes.contains({8, 2, 3 + 1e-6}, 4711));
 }
 
-TEST_F(Regions, OfElementsAndTriangles) {
+TEST_F(TaggedRegions, OfElementsAndTriangles) {
   const VolumeMesh mesh = read_volume(file_, 2, {0, 0, 1});
   ASSERT_EQ(mesh.tets.size(), 24u);
   const MeshRegion elements = region(numbered(2), Selected::elements);
@@ -216,7 +217,7 @@ TEST_F(Regions, OfElementsAndTriangles) {
   EXPECT_EQ(on_tumour, 2 + 2 * 8);
 }
 
-TEST_F(Regions, ThatAreNotThereAreRefusedWithThoseThatAre) {
+TEST_F(TaggedRegions, ThatAreNotThereAreRefusedWithThoseThatAre) {
   const std::string all =
       "expected one of 1 (12 elements), 2 \"tumour\" (12 elements), 8 \"both\" (6 elements), 2 \"end\" (2 faces)";
   for (const RegionName& name : {numbered(3), named("liver"), named("tumour", 2)}) {
@@ -233,7 +234,7 @@ TEST_F(Regions, ThatAreNotThereAreRefusedWithThoseThatAre) {
   EXPECT_NE(array.find("\"gmsh:physical\", \"gmsh:geometrical\", expected an array \"part\""), std::string::npos) << array;
 }
 
-TEST_F(Regions, OfAFileWithoutTags) {
+TEST_F(TaggedRegions, OfAFileWithoutTags) {
   const auto file = folder_.write("m.vtk", testing::vtk_legacy(false, false));
   const MeshRegion r(std::make_shared<const TaggedMesh>(file, 1, Vec3d{}), numbered(1), Selected::nodes, "/here/region");
   try {

@@ -12,7 +12,7 @@
 namespace pliant {
 namespace {
 
-class ReadPly : public testing::Test {
+class ReadPly : public ::testing::Test {
  protected:
   std::filesystem::path write(const std::string& bytes) { return folder_.write("t.ply", bytes); }
   static TriangleMesh read(const std::string& bytes) { return read_ply("t.ply", bytes); }

@@ -7,7 +7,7 @@
 namespace pliant {
 namespace {
 
-class ReadSurface : public testing::Test {
+class ReadSurface : public ::testing::Test {
  protected:
   std::filesystem::path write(const std::string& name, const std::string& text) { return folder_.write(name, text); }
   static std::string error(const std::filesystem::path& file) {

@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-class ScreenGltf : public testing::Test {
+class ScreenGltf : public ::testing::Test {
  protected:
   std::string error_of_bytes(const std::string& name, const std::string& bytes) {
     const auto file = folder_.write(name, bytes);

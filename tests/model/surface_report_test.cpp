@@ -67,8 +67,8 @@ Checked checked(const TriangleMesh& raw, double spacing = 0.1) {
   return out;
 }
 
-testing::AssertionResult has(const std::string& text, const std::string& words) {
-  return text.find(words) != std::string::npos ? testing::AssertionSuccess() : testing::AssertionFailure() << text;
+::testing::AssertionResult has(const std::string& text, const std::string& words) {
+  return text.find(words) != std::string::npos ? ::testing::AssertionSuccess() : ::testing::AssertionFailure() << text;
 }
 
 TriangleMesh welded(const TriangleMesh& mesh) { return clean_surface(mesh, "m"); }

@@ -3,7 +3,7 @@
 
 #include "physics/harness.h"
 
-namespace pliant::physics {
+namespace pliant::physics::hourglass_test {
 namespace {
 
 constexpr double kYoung = 3000;
@@ -177,4 +177,4 @@ TEST(Hourglass, BoundsItsStiffness) {
 }
 
 }  // namespace
-}  // namespace pliant::physics
+}  // namespace pliant::physics::hourglass_test

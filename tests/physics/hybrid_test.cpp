@@ -1,7 +1,7 @@
 // Hybrids: rest, free motion with its momenta and energy, and what the interface reflects.
 #include "physics/flsm_harness.h"
 
-namespace pliant::physics {
+namespace pliant::physics::hybrid_test {
 namespace {
 
 class Hybrid : public OnBackend {};
@@ -179,4 +179,4 @@ TEST_P(Hybrid, InterfaceReflectsLeastAtTheAutomaticBeta) {
 INSTANTIATE_TEST_SUITE_P(On, Hybrid, ::testing::Values("cpu", "cpu:double"), backend_label);
 
 }  // namespace
-}  // namespace pliant::physics
+}  // namespace pliant::physics::hybrid_test

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-const char* const good = R"({"format": "pliant-scene/1", "bodies": [
+const char* const kGoodScene = R"({"format": "pliant-scene/1", "bodies": [
   {"name": "a", "surface": "a.obj", "lattice": {"spacing": 0.1}, "material": {"young": 3000, "poisson": 0.45},
    "inclusions": [{"all": true, "material": {"young": 3000, "poisson": 0.45}}],
    "fixed": [{"all": true}],
@@ -29,7 +29,7 @@ std::string message(const std::string& text) {
 
 /// The message after one member of the good scene is replaced; "" as value removes it.
 std::string patched(const std::string& pointer, const std::string& value) {
-  Json scene = Json::parse(good);
+  Json scene = Json::parse(kGoodScene);
   const Json::json_pointer place(pointer);
   if (value.empty()) {
     scene.at(place.parent_pointer()).erase(place.back());
@@ -213,7 +213,7 @@ TEST(Mistakes, InValuesAreNamed) { expect_named(values); }
 TEST(Mistakes, InMaterialsAreNamed) { expect_named(materials); }
 TEST(Mistakes, InEntriesAreNamed) { expect_named(entries); }
 
-TEST(Mistakes, TheUnpatchedSceneLoads) { EXPECT_EQ(message(good), ""); }
+TEST(Mistakes, TheUnpatchedSceneLoads) { EXPECT_EQ(message(kGoodScene), ""); }
 
 TEST(Mistakes, UnknownKeysSuggestTheNearest) {
   EXPECT_NE(patched("/bodies/0/materail", "1").find("/bodies/0: got the unknown key \"materail\", expected one of"),
@@ -226,7 +226,7 @@ TEST(Mistakes, UnknownKeysSuggestTheNearest) {
 }
 
 TEST(Mistakes, AveragedPressureNeedsAVolumetricLaw) {
-  Json scene = Json::parse(good);
+  Json scene = Json::parse(kGoodScene);
   scene["bodies"][0]["element"] = "tet4anp";
   EXPECT_EQ(message(scene.dump()), "");
   scene["bodies"][0]["inclusions"][0]["material"]["law"] = "saint-venant-kirchhoff";
@@ -242,7 +242,7 @@ TEST(Mistakes, AveragedPressureNeedsAVolumetricLaw) {
 }
 
 TEST(Mistakes, ALatticeBesideAMesh) {
-  Json scene = Json::parse(good);
+  Json scene = Json::parse(kGoodScene);
   scene["bodies"][0].erase("surface");
   scene["bodies"][0]["mesh"] = "a.msh";
   EXPECT_NE(message(scene.dump()).find("/bodies/0/lattice: got an object with 1 key, expected no lattice beside a volume mesh"),
@@ -250,7 +250,7 @@ TEST(Mistakes, ALatticeBesideAMesh) {
 }
 
 TEST(Mistakes, RegionsOfAMesh) {
-  Json scene = Json::parse(good);
+  Json scene = Json::parse(kGoodScene);
   scene["bodies"][0].erase("surface");
   scene["bodies"][0].erase("lattice");
   scene["bodies"][0]["mesh"] = "a.msh";
@@ -274,7 +274,7 @@ TEST(Mistakes, RegionsOfAMesh) {
 }
 
 TEST(Mistakes, TwoBodiesOfOneName) {
-  Json scene = Json::parse(good);
+  Json scene = Json::parse(kGoodScene);
   scene["bodies"].push_back(scene["bodies"][0]);
   EXPECT_EQ(message(scene.dump()),
             "dir/s.json: /bodies/1: got the name \"a\", which /bodies/0 has already, expected a different name for every body");

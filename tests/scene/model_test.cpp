@@ -9,7 +9,7 @@
 #include "support/error_of.h"
 #include "support/source_dir.h"
 
-namespace pliant {
+namespace pliant::model_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -360,4 +360,4 @@ TEST(Tool, MistakesAreNamed) {
 }
 
 }  // namespace
-}  // namespace pliant
+}  // namespace pliant::model_test

@@ -12,7 +12,7 @@
 #include "scene/keys.h"
 #include "support/error_of.h"
 
-namespace pliant {
+namespace pliant::spec_test {
 namespace {
 
 /// Two bodies with one of everything.
@@ -244,4 +244,4 @@ TEST(Spec, MistakesAreNamedAsInAFile) {
 }
 
 }  // namespace
-}  // namespace pliant
+}  // namespace pliant::spec_test

@@ -11,7 +11,7 @@
 #include "scene/keys.h"
 #include "support/source_dir.h"
 
-namespace pliant {
+namespace pliant::tables_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -202,4 +202,4 @@ TEST(Tables, ScenesDocumentNamesEveryKeyAndWord) {
 }
 
 }  // namespace
-}  // namespace pliant
+}  // namespace pliant::tables_test

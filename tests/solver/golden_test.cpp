@@ -10,7 +10,7 @@
 #include "solver/scenes.h"
 #include "support/source_dir.h"
 
-namespace pliant {
+namespace pliant::golden_test {
 namespace {
 
 constexpr std::int64_t kSteps = 200;
@@ -48,4 +48,4 @@ std::string label(const ::testing::TestParamInfo<const char*>& backend) {
 INSTANTIATE_TEST_SUITE_P(On, Golden, ::testing::Values("cpu", "opencl:0"), label);
 
 }  // namespace
-}  // namespace pliant
+}  // namespace pliant::golden_test

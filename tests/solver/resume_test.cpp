@@ -10,7 +10,7 @@
 #include "support/error_of.h"
 #include "support/temp_folder.h"
 
-namespace pliant {
+namespace pliant::resume_test {
 namespace {
 
 using testing::pressed_cube;
@@ -161,4 +161,4 @@ TEST(ResumeRefuses, NothingAfterADivergenceButTheLastGoodState) {
 }
 
 }  // namespace
-}  // namespace pliant
+}  // namespace pliant::resume_test

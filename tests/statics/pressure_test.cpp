@@ -4,7 +4,7 @@
 #include "problems.h"
 #include "support/error_of.h"
 
-namespace pliant::statics_test {
+namespace pliant::statics_test::pressure_test {
 namespace {
 
 using Eigen::Matrix3d;
@@ -245,4 +245,4 @@ TEST(Reactions, AddUpOverEveryNodeThatASetHolds) {
 }
 
 }  // namespace
-}  // namespace pliant::statics_test
+}  // namespace pliant::statics_test::pressure_test

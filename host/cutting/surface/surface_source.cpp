@@ -13,7 +13,7 @@ namespace {
 
 // Triangles this close to a cell, as a share of the spacing, count as meeting it: more than snapping and rounding can move
 // anything.
-constexpr double kMargin = 1e-6;
+constexpr double kSourceMargin = 1e-6;
 
 using HalfEdges = std::unordered_map<std::uint64_t, std::vector<std::array<std::int32_t, 2>>>;  // {triangle, side}
 
@@ -166,11 +166,11 @@ void SurfaceSource::sort_into_cells() {
         return static_cast<std::int32_t>(
             std::clamp(std::floor((x - grid_.origin[a]) / h + margin), -1.0, static_cast<double>(grid_.size[a])));
       };
-      low[a] = index(std::min({p[a], q[a], r[a]}), -kMargin);
-      high[a] = index(std::max({p[a], q[a], r[a]}), kMargin);
+      low[a] = index(std::min({p[a], q[a], r[a]}), -kSourceMargin);
+      high[a] = index(std::max({p[a], q[a], r[a]}), kSourceMargin);
     }
     const Vec3d n = vec::cross(vec::sub(q, p), vec::sub(r, p));
-    const double reach = (0.5 + 2 * kMargin) * h * (std::abs(n[0]) + std::abs(n[1]) + std::abs(n[2]));
+    const double reach = (0.5 + 2 * kSourceMargin) * h * (std::abs(n[0]) + std::abs(n[1]) + std::abs(n[2]));
     const bool many = low != high;
     for (std::int32_t k = low[2]; k <= high[2]; ++k) {
       for (std::int32_t j = low[1]; j <= high[1]; ++j) {

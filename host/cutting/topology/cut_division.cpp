@@ -46,7 +46,7 @@ const std::array<SamplePlace, 64>& sample_places() {
   return places;
 }
 
-std::array<double, 4> barycentric(const std::array<Vec3d, 4>& x, const Vec3d& p) {
+std::array<double, 4> barycentric_weights(const std::array<Vec3d, 4>& x, const Vec3d& p) {
   const Vec3d a = vec::sub(x[1], x[0]), b = vec::sub(x[2], x[0]), c = vec::sub(x[3], x[0]), r = vec::sub(p, x[0]);
   const double volume = vec::dot(a, vec::cross(b, c));
   const double wa = vec::dot(r, vec::cross(b, c)) / volume, wb = vec::dot(a, vec::cross(r, c)) / volume,
@@ -172,7 +172,7 @@ int CutTopology::label_at(std::int32_t cell, const Vec3d& x) const {
   for (std::size_t t = 0; t < mesh_->shape->tets.size(); ++t) {
     std::array<Vec3d, 4> corner;
     for (int a = 0; a < 4; ++a) corner[a] = mesh_->rest[mesh_->cells[cell][mesh_->shape->tets[t][a]]];
-    const std::array<double, 4> w = barycentric(corner, x);
+    const std::array<double, 4> w = barycentric_weights(corner, x);
     const double least = *std::min_element(w.begin(), w.end());
     if (least <= depth) continue;
     depth = least;
