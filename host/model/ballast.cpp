@@ -7,6 +7,7 @@
 #include "material/response.h"
 #include "model/boundary_conditions.h"
 #include "model/each_hex.h"
+#include "model/eigenvalues.h"
 #include "model/hourglass.h"
 
 namespace pliant {
@@ -27,9 +28,8 @@ double point_stiffness(const Eigen::Matrix<double, N, 3>& b, const Eigen::Matrix
   if (!respond(material, u * b, true, response)) return 0;
   const Matrix9d tangent = 0.5 * (response.tangent + response.tangent.transpose());
   const Matrix3d gram = b.transpose() * b;
-  Eigen::SelfAdjointEigenSolver<Matrix9d> modulus(tangent, Eigen::EigenvaluesOnly);
   Eigen::SelfAdjointEigenSolver<Matrix3d> size(gram, Eigen::EigenvaluesOnly);
-  return weight * std::max(0.0, modulus.eigenvalues()[8]) * size.eigenvalues()[2];
+  return weight * std::max(0.0, largest_eigenvalue(tangent)) * size.eigenvalues()[2];
 }
 
 Vector3d displacement(const std::vector<double>& u, std::int32_t slot) {

@@ -54,14 +54,14 @@ std::array<GaussPoint, 8> gauss_points(const Corners& x, const std::string& what
   return points;
 }
 
-double largest_eigenvalue(const Matrix3d& a) {
+double largest_of_three(const Matrix3d& a) {
   return Eigen::SelfAdjointEigenSolver<Matrix3d>(a, Eigen::EigenvaluesOnly).eigenvalues()[2];
 }
 
 /// lambda tr A + 2 mu lambda_max(A) with A = sum_a grad N_a grad N_a^T [Pa/m^2].
 double modulus_bound(const Eigen::Matrix<double, Eigen::Dynamic, 3>& gradients, const Material& m) {
   const Matrix3d a = gradients.transpose() * gradients;
-  return std::max(m.moduli.lambda, 0.0) * a.trace() + 2 * m.moduli.mu * largest_eigenvalue(a);
+  return std::max(m.moduli.lambda, 0.0) * a.trace() + 2 * m.moduli.mu * largest_of_three(a);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "layout.h"
+#include "model/eigenvalues.h"
 
 namespace pliant {
 namespace {
@@ -62,11 +63,6 @@ Matrix3d turned(const Matrix3d& axes, const Matrix3d& h) {
   Matrix3d g = axes + h * axes;
   for (int i = 0; i < 3; ++i) g.col(i) *= 2 / (1 + g.col(i).squaredNorm());
   return g;
-}
-
-template <int N>
-double largest(const Eigen::Matrix<double, N, N>& a) {
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, N, N>>(a, Eigen::EigenvaluesOnly).eigenvalues()[N - 1];
 }
 
 /// The smallest eigenvalue of bending and twisting: of what couples D_i with D_j, and of the three shears.
@@ -134,7 +130,7 @@ double hourglass_energy(const std::vector<double>& record, const Displacements8&
 
 double hourglass_bound(const std::vector<double>& record, const Displacements8& u) {
   const Modes gamma = hourglass_vectors(record);
-  const double gram = largest<4>(gamma * gamma.transpose());
+  const double gram = largest_eigenvalue(gamma.lazyProduct(gamma.transpose()).eval());
   if (is_cube(record)) return record[57] * gram;
   const Shape shape(record);
   const Corners8 b = gradients(record);
@@ -149,8 +145,7 @@ double hourglass_bound(const std::vector<double>& record, const Displacements8& 
       for (int c = 0; c < 8; ++c) slope.block<1, 3>(at(i, a), 3 * c) = (gamma(a, c) * g.col(i) + share[c] * turn).transpose();
     }
   }
-  const Moduli12 root = Eigen::SelfAdjointEigenSolver<Moduli12>(shape.moduli).operatorSqrt();
-  return shape.all * gram + largest<12>(root * slope * slope.transpose() * root);
+  return shape.all * gram + largest_eigenvalue(shape.moduli, slope);
 }
 
 }  // namespace pliant
