@@ -8,7 +8,7 @@ function(pliant_variant variant folder shards)
   add_executable(${name} EXCLUDE_FROM_ALL ${ARGN})
   target_link_libraries(${name} PRIVATE test_${folder}_objects pliant_test_source)
   pliant_link_variant(${name} ${variant})
-  pliant_shards(${folder}_${variant} ${name} variant_${variant} ${shards})
+  pliant_shards(${folder}_${variant} ${folder} ${name} variant_${variant} ${shards})
 endfunction()
 
 function(pliant_link_variant name variant)
