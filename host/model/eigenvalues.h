@@ -1,5 +1,5 @@
-// Eigenvalues of symmetric matrices of sizes 4 to 24, all by one solver: Eigen's own is compiled anew, for seconds, for each size
-// that the compiler knows.
+// Eigenvalues of symmetric matrices of sizes 4 to 12, all by one solver: Eigen's own is compiled anew, for seconds, for each of
+// the sizes that the compiler knows.
 #pragma once
 #include <Eigen/Core>
 
