@@ -94,8 +94,8 @@ CutReport TopologyEdits::run_blades(const std::vector<BladeMove>& moves, std::sp
   report.search = clock.seconds();
   if (report.edges > 0) make_cut(std::move(edges), std::move(u), report);
   for (const BladeMove& move : moves) {
-    if (!move.to.empty())
-      run_.state.blades.traces.erase(move.key);  // one that rests (a batch is made again) stays where it was
+    // One that rests, as where a batch is made again, stays where it was.
+    if (!move.to.empty()) run_.state.blades.traces.erase(move.key);
   }
   run_.state.blades.traces.merge(traces);
   run_.state.blades.met = std::move(met);
