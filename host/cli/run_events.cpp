@@ -1,5 +1,7 @@
 #include "cli/run_events.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <set>
@@ -26,6 +28,8 @@ std::int64_t pieces(const ModelBody& body) {
   return static_cast<std::int64_t>(roots.size());
 }
 
+constexpr double kFarAway = 20;  ///< in sizes of a body
+
 bool over(const Blade& blade, double now, double dt) {
   return now >= std::min(blade.end, blade.path.back()[0]) - kStepSlack * dt;
 }
@@ -45,6 +49,25 @@ RunEvents run_events(const Simulation& simulation) {
       events.max_displacement = std::max(events.max_displacement, vec::norm(u));
   }
   return events;
+}
+
+std::vector<std::string> parts_far_away(const Simulation& simulation) {
+  std::vector<std::string> sentences;
+  for (std::size_t b = 0; b < simulation.model().bodies.size(); ++b) {
+    const ModelBody& body = simulation.model().bodies[b];
+    vec::Box box;
+    for (const Vec3d& x : body.rest) box.extend(x);
+    const double size = vec::norm(vec::sub(box.upper, box.lower));
+    double farthest = 0;
+    for (const Vec3d& u : simulation.displacements(b)) farthest = std::max(farthest, vec::norm(u));
+    if (farthest <= kFarAway * size) continue;
+    sentences.push_back(
+        fmt::format("body '{}': some of it is {:.3g} m from its place at rest, {:.3g} times its size: nothing holds that part, "
+                    "and gravity or a "
+                    "force drives it on (what comes off keeps its share of a force)",
+                    body.name, farthest, farthest / size));
+  }
+  return sentences;
 }
 
 double first_time(const Blade& blade) { return std::max(blade.start, blade.path.front()[0]); }

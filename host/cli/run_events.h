@@ -18,6 +18,8 @@ struct RunEvents {
 
 RunEvents run_events(const Simulation& simulation);
 
+/// A sentence for each body of which a part has flown further than twenty times its size.
+std::vector<std::string> parts_far_away(const Simulation& simulation);
 /// When a blade begins to cut [s].
 double first_time(const Blade& blade);
 /// Names of blades of the scene that have come to the end of their path and met no body. `certain`: only those that have been

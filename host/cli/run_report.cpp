@@ -102,6 +102,7 @@ class Report {
                       "elements of this size",
                       name));
     }
+    for (const std::string& sentence : parts_far_away(s_)) out_.note(sentence);
     json["opened_edges"] = s_.state().opened;
     if (s_.state().opened > 0) {
       out_.note(fmt::format(

@@ -68,6 +68,13 @@ class Cut(CliTest):
         resumed = self.json("run", scene, "--backend", "cpu", "--seconds", 0.02, "--resume", "c.pckpt")
         self.assertEqual((resumed["cut_edges"], resumed["blades_without_contact"]), (121, ["astray"]))
 
+    def test_what_flies_away_is_told(self):
+        falling = self.scene(body={"prescribed": [], "fixed": []}, gravity=[0, -200, 0])
+        for seconds, told in ((0.1, 0), (0.3, 1)):
+            done = self.pliant("run", falling, "--backend", "cpu", "--seconds", seconds)
+            self.assertEqual(done.stderr.count("nothing holds that part"), told, done.stderr)
+        self.assertRegex(done.stderr, r"some of it is 5\.\d* m from its place at rest, 3\d\.?\d* times its size")
+
     def test_a_cut_too_short_for_the_elements(self):
         shallow = {"name": "scratch", "path": [[0, 0.013, 0.045, 0.001, 0.013, 0.045, 0.002], [0.01, 0.013, 0.044, 0.001, 0.013, 0.044, 0.002]]}
         scene = self.scene(body={"prescribed": []}, gravity=[0, 0, 0], blades=[shallow])
