@@ -6,9 +6,13 @@
 #include "mesh_io/mesh_tags.h"
 
 namespace pliant::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+}  // namespace
 
 nlohmann::ordered_json tell_mesh_regions(const Body& body, const Common& common) {
-  using Json = nlohmann::ordered_json;
   if (body.mesh.empty()) return nullptr;
   constexpr std::size_t most = 1000;
   MeshTags tags;
