@@ -103,6 +103,13 @@ class Report {
                       name));
     }
     for (const std::string& sentence : parts_far_away(s_)) out_.note(sentence);
+    json["most_substeps"] = s_.state().most_substeps;
+    if (s_.state().most_substeps > 0) {
+      out_.note(
+          fmt::format("the pull of shape matching, several steps at once, drove finite elements apart; hybrids went on with at "
+                      "most {} substeps",
+                      s_.state().most_substeps));
+    }
     json["opened_edges"] = s_.state().opened;
     if (s_.state().opened > 0) {
       out_.note(fmt::format(

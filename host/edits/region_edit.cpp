@@ -1,7 +1,8 @@
-// The operational region that follows the tool: the model is partitioned anew around it, and every node keeps its position and
-// momentum.
+// Edits that change how a body is modelled and leave its elements alone: the operational region that follows the tool, and
+// hybrids that go on with fewer substeps. Every node keeps its position and momentum.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "edits/model_swap.h"
 #include "edits/topology_edits.h"
@@ -52,13 +53,38 @@ void TopologyEdits::move_regions() {
     seeds.push_back(seed);
   }
   if (!moved) return;
-  CutReport report;
-  RunState next;
-  next.seeds = seeds;
-  ModelSwap swap(run_, loads_, bodies(), std::move(u), report);
-  swap.run(scene_at(next), std::vector<NodeOrigins>(bodies_of_scene.size()), [] {});
-  run_.state.seeds = std::move(seeds);
+  std::vector<Vec3d> before = std::exchange(run_.state.seeds, std::move(seeds));
+  try {
+    swap_partition(std::move(u));
+  } catch (...) {
+    run_.state.seeds = std::move(before);
+    throw;
+  }
   step_.adapt();
+}
+
+/// Held goals pull at the finite elements once in n substeps, n times as hard: where elements have become stiffer than the last
+/// look at the step knew, that is a resonance, which a shorter step does not leave before it is a thousandth
+/// (docs/stability.md).
+bool TopologyEdits::fewer_substeps() {
+  const std::vector<FlsmBatch>& batches = run_.model().flsm;
+  const bool many = std::any_of(batches.begin(), batches.end(),
+                                [](const FlsmBatch& b) { return b.interface > 0 && b.settings.substeps > kSafeSubsteps; });
+  if (!many || run_.phase() != 0 || run_.scene.integrator != Integrator::increment) return false;
+  const std::int32_t before = std::exchange(run_.state.most_substeps, kSafeSubsteps);
+  try {
+    swap_partition(run_.u());
+  } catch (...) {
+    run_.state.most_substeps = before;
+    throw;
+  }
+  return true;
+}
+
+void TopologyEdits::swap_partition(std::vector<double> u) {
+  CutReport report;
+  ModelSwap swap(run_, loads_, bodies(), std::move(u), report);
+  swap.run(scene_at(run_.state), std::vector<NodeOrigins>(run_.scene.bodies.size()), [] {});
 }
 
 }  // namespace pliant

@@ -123,6 +123,15 @@ Scene TopologyEdits::scene_at(const RunState& state) const {
   for (std::size_t b = 0; b < scene.bodies.size() && !state.seeds.empty(); ++b) {
     if (scene.bodies[b].model.follow) scene.bodies[b].model.seed = state.seeds[b];
   }
+  for (Body& body : scene.bodies) {
+    DeformationModel& m = body.model;
+    if (state.most_substeps == 0 || m.type != ModelType::hybrid || m.substeps <= state.most_substeps) continue;
+    const double ratio = static_cast<double>(state.most_substeps) / m.substeps;
+    // The same stiffness, and the same damping over time, at the shorter step.
+    m.alpha *= ratio * ratio;
+    m.damping = 1 - std::pow(1 - m.damping, ratio);
+    m.substeps = state.most_substeps;
+  }
   return scene;
 }
 
@@ -133,7 +142,7 @@ std::unique_ptr<EditedBodies> TopologyEdits::bodies_at(const RunState& state) co
   };
   if (!state.seeds.empty() && (state.seeds.size() != scene.bodies.size() || !follows(scene))) refuse("its moved regions");
   const auto edited = [](const RunState& s) {
-    return !s.cuts.empty() || !s.tears.empty() || !s.seeds.empty() || !s.blades.traces.empty();
+    return !s.cuts.empty() || !s.tears.empty() || !s.seeds.empty() || s.most_substeps != 0 || !s.blades.traces.empty();
   };
   if (!edited(state) && !edited(run_.state)) return nullptr;
   auto all = std::make_unique<EditedBodies>(scene);

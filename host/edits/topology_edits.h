@@ -24,6 +24,9 @@ class TopologyEdits {
   /// Before a batch that begins on the grid: move the scene's blades, part what is stretched too far, break faces, let regions
   /// follow the tool.
   void update();
+  /// Go on with at most kSafeSubsteps substeps in all hybrids; false if none has more. To be called in a state that was kept.
+  /// Throws, with all as it was, what Backend::load throws.
+  [[nodiscard]] bool fewer_substeps();
 
   /// Described at Simulation's functions of the same names.
   CutReport cut(std::span<const SweepTriangle> triangles);
@@ -32,7 +35,7 @@ class TopologyEdits {
   void prepare_cuts();
   [[nodiscard]] const CutTopology* cut_topology(std::size_t body) const;
 
-  /// The scene with its operational regions where a state has them.
+  /// The scene with its operational regions where a state has them, and with the substeps that it goes on with.
   [[nodiscard]] Scene scene_at(const RunState& state) const;
   /// Bodies as the edits of a state make them; nullptr if neither it nor the present state has any. Throws Error (bad_input)
   /// for a state that does not belong to this scene. Changes nothing.
@@ -55,6 +58,8 @@ class TopologyEdits {
   void make_tears();
   void open_overstretched();
   void move_regions();
+  /// The model of scene_at(state) with the bodies as they are.
+  void swap_partition(std::vector<double> u);
 
   RunContext& run_;
   StepControl& step_;

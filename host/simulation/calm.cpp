@@ -36,10 +36,10 @@ class Calm {
       const auto s = static_cast<std::size_t>(n);
       if (moves(s)) most = std::max(most, (increment(s) - mean).norm());
     }
-    const double allowed = share_ * std::cbrt(volume);
+    const double edge = std::cbrt(volume), allowed = share_ * edge;
+    done.fastest = std::max(done.fastest, most / edge);
     if (!(most > allowed)) return;
     ++done.elements;
-    done.fastest = std::max(done.fastest, share_ * most / allowed);
     for (const std::int32_t n : slots) {
       const auto s = static_cast<std::size_t>(n);
       if (moves(s)) increment(s) = mean + allowed / most * (increment(s) - mean);

@@ -11,7 +11,7 @@ namespace pliant {
 /// stays, kinetic energy only falls.
 struct Calmed {
   std::int64_t elements = 0;
-  double fastest = 0;  ///< largest such motion before, in edges per step; 0 if there was none above `share`
+  double fastest = 0;  ///< largest motion of an element's nodes against each other before, in edges per step
 };
 Calmed calm(RunContext& run, double share);
 

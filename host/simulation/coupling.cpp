@@ -43,11 +43,16 @@ double longest_step(const FlsmBatch& batch, double damping) {
   return (quarter + std::sqrt(quarter * quarter + b)) / m.substeps;
 }
 
-/// The alpha of a batch at the step `dt` of the scene [s], for the damping rate of its material [1/s]: as it stands in the
-/// scene, or from "stiffness". It falls with the step: what a start allows, every smaller step allows. Throws Error above 1.
-double alpha_for(const FlsmBatch& batch, double dt, double damping) {
+/// The alpha of a batch at the step `dt` of the scene [s], for the damping rate of its material [1/s]: that of the scene
+/// belongs to the first step, that of a "stiffness" to any. It falls with the step: what a start allows, every smaller step
+/// allows. Throws Error above 1.
+double alpha_for(const FlsmBatch& batch, double dt, double first_dt, double damping) {
   const DeformationModel& m = batch.settings;
-  if (m.young <= 0) return m.alpha;
+  if (m.young <= 0) {
+    // Per step, it would stiffen a body whose step is shortened, and that would shorten the step.
+    return dt < first_dt ? m.alpha * (step_square(m.substeps * dt, damping) / step_square(m.substeps * first_dt, damping))
+                         : m.alpha;
+  }
   const double b = step_square(m.substeps * dt, damping);
   const double largest = largest_alpha(batch), most = largest * stiffness_unit(batch) / b;
   if (m.young > 1.00001 * most && !m.matched) {  // the message's digits are allowed
@@ -231,7 +236,7 @@ void check_beta(const RunContext& run, double dt, double elements_dt) {
 }
 
 double matching_modulus(const FlsmBatch& batch, double dt, double damping) {
-  return alpha_for(batch, dt, damping) * stiffness_unit(batch) / step_square(batch.settings.substeps * dt, damping);
+  return alpha_for(batch, dt, 0, damping) * stiffness_unit(batch) / step_square(batch.settings.substeps * dt, damping);
 }
 
 void upload_coupling(const RunContext& run) {
@@ -243,7 +248,7 @@ void upload_coupling(const RunContext& run) {
     const FlsmBatch& b = model.flsm[i];
     const double dt = run.state.clock.dt, h = b.settings.substeps * dt;
     const double damping = run.scene.bodies[static_cast<std::size_t>(b.body)].material.damping;
-    alpha.push_back(alpha_for(b, dt, damping));
+    alpha.push_back(alpha_for(b, dt, run.settings.first_dt, damping));
     if (b.interface == 0) continue;
     const BufferId id = program.find(fmt::format("flsm_beta/{}", i));
     std::vector<double> beta(program.at(id).count, 0.0);

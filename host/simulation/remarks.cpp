@@ -16,9 +16,6 @@ constexpr double kFarApart = 2;
 /// Strain by its own weight that shape matching still carries like a material (docs/flsm_stiffness.md).
 constexpr double kMostWeight = 0.1;
 
-/// Substeps with which torn hybrids came to their end that 4 and 8 drove apart (docs/stability.md).
-constexpr int kSafeSubsteps = 2;
-
 /// From this taper or skewness on (distortion) hex8 elements bend more than 10 % too little, where a part is few elements
 /// thick.
 constexpr double kTapered = 0.25, kSkew = 0.7;
@@ -34,13 +31,6 @@ void add_matching(const Model& model, const Scene& scene, double dt, std::vector
           fmt::format("body '{}': at this step its shape matching behaves like a modulus of {:.3g} Pa, {:.3g} times that "
                       "of its material; \"stiffness\": {{\"young\": {:.6g}}} would make both alike",
                       name, modulus, ratio, material.moduli.young()));
-    }
-    if (b.interface > 0 && b.settings.substeps > kSafeSubsteps && !scene.blades.empty()) {
-      remarks.push_back(fmt::format(
-          "body '{}': it is to be cut, and its shape matching pulls at the finite elements once in {} steps. Where tissue "
-          "springs open, falls into pieces or is pressed flat, pulls of more than {} steps at once can resonate with it "
-          "and create energy; \"substeps\": 1 or 2 do not",
-          name, b.settings.substeps, kSafeSubsteps));
     }
     const double g = vec::norm(scene.gravity), most = g * scene.gravity_curve.largest();
     if (most == 0) continue;

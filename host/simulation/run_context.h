@@ -14,12 +14,15 @@ struct RunSettings {
   std::int32_t batch_steps = 64;  ///< most steps between two reads of the fault flag
   bool automatic = false;         ///< the step is Pliant's to choose
   bool tears = false;             ///< a material of the scene has a toughness
+  double first_dt = 0;            ///< the step that a run begins with [s]
   std::int64_t blade_steps = 0;   ///< steps between two updates of the scene's blades; 0: it has none
   double curves_end = 0;          ///< from here on all loads are constant [s]
   double increment_floor = 0;     ///< increments below this are none [m]
   double displacement_grid = 0;   ///< displacements below this are rounded to multiples of 2^-22 of it [m], a power of two
 };
 
+/// Substeps with which torn hybrids came to their end that 2 to 8 drove apart (docs/stability.md).
+inline constexpr std::int32_t kSafeSubsteps = 1;
 inline constexpr std::int64_t kTearSteps = 16;   ///< steps between two looks for faces that break
 inline constexpr std::int64_t kRelaxEvery = 32;  ///< steps between two changes of dynamic relaxation
 

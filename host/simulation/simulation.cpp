@@ -158,11 +158,16 @@ void Simulation::look_for_fault(std::int64_t batch_start) {
       fastest = calmed.fastest;
     }
     if (fastest > kBurst && step_.can_retry() && retry_from_kept()) return;
-    if (largest <= kFastIncrement && (inverted == 0 || !inverted_now())) return;
+    // Pieces that fly as they are deform no faster for it.
+    if (fastest <= kFastIncrement && (inverted == 0 || !inverted_now())) return;
     const std::optional<StepControl::Outgrown> outgrown = step_.outgrown();
     if (!outgrown) return;
     return_to_kept();
-    step_.shorten(*outgrown);
+    if (edits_.fewer_substeps()) {
+      loaded_.clear_faults();
+    } else {
+      step_.shorten(*outgrown);
+    }
     inversions_.calmed += calm(run_, kFastest * fast_share() * state_.limit.dt_backoff).elements;
     return;
   }
@@ -178,10 +183,14 @@ void Simulation::look_for_fault(std::int64_t batch_start) {
                            step()};
 }
 
-/// The batch that led here is not to be trusted: the kept state again, and a smaller step if there is one.
+/// The batch that led here is not to be trusted: the kept state again, and fewer substeps or a smaller step if there are any.
 bool Simulation::retry_from_kept() {
   return_to_kept();
-  if (!step_.retry_smaller()) return false;
+  if (edits_.fewer_substeps()) {
+    loaded_.clear_faults();
+  } else if (!step_.retry_smaller()) {
+    return false;
+  }
   inversions_.calmed += calm(run_, kFastest * fast_share() * state_.limit.dt_backoff).elements;
   return true;
 }

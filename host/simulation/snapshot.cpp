@@ -158,6 +158,7 @@ void check_state(const RunState& state, const Model& model, const Scene& scene) 
            std::all_of(state.offset.begin(), state.offset.end(), [](double o) { return std::isfinite(o); }),
        "how far loose pieces have flown");
   need(state.topology_version >= 0, "its number of edits");
+  need(state.most_substeps == 0 || state.most_substeps == kSafeSubsteps, "its substeps of shape matching");
 }
 
 void check_ballast(const RunState& state, const Model& model) {

@@ -60,7 +60,7 @@ void StepControl::start(double wanted, bool estimate_always) {
                     "every body, and nothing is left that could move; choose smaller regions there",
                     run_.scene.name, run_.state.limit.stable_dt));
   }
-  run_.state.limit.dt_ceiling = dt;
+  run_.state.limit.dt_ceiling = run_.settings.first_dt = dt;
 }
 
 double StepControl::estimate(int iterations) {

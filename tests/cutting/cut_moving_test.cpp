@@ -121,15 +121,8 @@ TEST(CutMoving, a_stretched_block_that_springs_open_falls_into_two_pieces) {
     body.lattice.spacing = 0.0125;
     body.material.set_moduli(Law::neo_hookean, Moduli::from_young(5000, 0.45));
     body.material.damping = 10;
-    Fixed held;
-    held.where = {Selection::Kind::plane, {0, 0, 0.02}, {0, 0, -1}, 0, {}, ""};
-    body.fixed.push_back(held);
-    Prescribed pull;
-    pull.where = {Selection::Kind::plane, {0, 0, 0.08}, {0, 0, 1}, 0, {}, ""};
-    pull.displacement = {0.0, 0.0, 0.04};
-    pull.curve.kind = Curve::Kind::smooth;
-    pull.curve.duration = 0.5;
-    body.prescribed.push_back(pull);
+    hold(body, {0, 0, 0.02}, {0, 0, -1});
+    pull(body, {0, 0, 0.08}, {0, 0, 1}, {0, 0, 0.04}, 0.5);
     Scene scene = scene_with(body);
     const double lean = element == ElementKind::hex8 ? 0.002 : 0.0214, z = element == ElementKind::hex8 ? 0.0681 : 0.0733;
     scene.blades.push_back(

@@ -1,5 +1,6 @@
 // Scenes to cut: boxes in memory, and what to measure of a simulation.
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -34,6 +35,23 @@ inline Body box_body(const std::string& name, const Vec3d& size, ElementKind ele
   body.pointer = "/bodies/0";
   body.model.pointer = "/bodies/0/model";
   return body;
+}
+
+/// Held beyond a plane, in the direction of its normal.
+inline void hold(Body& body, const Vec3d& point, const Vec3d& normal) {
+  Fixed fixed;
+  fixed.where = {Selection::Kind::plane, point, normal, 0, {}, ""};
+  body.fixed.push_back(fixed);
+}
+
+/// Moved there along a smooth curve.
+inline void pull(Body& body, const Vec3d& point, const Vec3d& normal, const Vec3d& displacement, double duration) {
+  Prescribed moved;
+  moved.where = {Selection::Kind::plane, point, normal, 0, {}, ""};
+  std::copy(displacement.begin(), displacement.end(), moved.displacement.begin());
+  moved.curve.kind = Curve::Kind::smooth;
+  moved.curve.duration = duration;
+  body.prescribed.push_back(moved);
 }
 
 inline Scene scene_with(Body body) {

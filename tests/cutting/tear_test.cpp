@@ -42,15 +42,8 @@ Scene bar_scene(const std::filesystem::path& file, double toughness) {
   Inclusion weak{{Selection::Kind::box, {0.02, -1, -1}, {0.03, 1, 1}, 0, {}, ""}, body.material};
   weak.material.toughness = toughness;
   body.inclusions.push_back(weak);
-  Fixed fixed;
-  fixed.where = {Selection::Kind::plane, {0, 0, 0}, {-1, 0, 0}, 0, {}, ""};
-  body.fixed.push_back(fixed);
-  Prescribed pull;
-  pull.where = {Selection::Kind::plane, {0.06, 0, 0}, {1, 0, 0}, 0, {}, ""};
-  pull.displacement = {0.06, 0.0, 0.0};
-  pull.curve.kind = Curve::Kind::smooth;
-  pull.curve.duration = 0.3;
-  body.prescribed.push_back(pull);
+  hold(body, {0, 0, 0}, {-1, 0, 0});
+  pull(body, {0.06, 0, 0}, {1, 0, 0}, {0.06, 0, 0}, 0.3);
   return scene_with(body);
 }
 

@@ -1,0 +1,120 @@
+// Hybrids whose shape matching pulls at the finite elements once in several steps, and go on with one where that drives them
+// apart.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "cutting/cut_scenes.h"
+#include "edits/topology_edits.h"
+#include "schedule/build_program.h"
+#include "schedule/surface_program.h"
+#include "simulation/coupling.h"
+
+namespace pliant {
+namespace {
+
+using namespace cut_test;
+
+/// A soft bar, undamped, that is sheared by two thirds of its length and cut through under that load.
+Scene sheared_bar(bool extrapolate) {
+  Body body = box_body("bar", {0.15, 0.05, 0.05});
+  body.material.set_moduli(Law::neo_hookean, Moduli::from_young(1500, 0.4));
+  body.model.type = ModelType::hybrid;
+  body.model.substeps = 8;
+  body.model.extrapolate = extrapolate;
+  body.model.young = 1500;
+  body.model.matched = true;
+  hold(body, {0.005, 0, 0}, {-1, 0, 0});
+  pull(body, {0.145, 0, 0}, {1, 0, 0}, {0, 0.1, 0}, 0.2);
+  Scene scene = scene_with(body);
+  scene.blades.push_back(blade("knife", {{0.1, 0.07, -0.1, -0.2, 0.07, -0.1, 0.2}, {0.3, 0.07, 0.2, -0.2, 0.07, 0.2, 0.2}}));
+  return scene;
+}
+
+double farthest(const Simulation& s) {
+  double most = 0;
+  for (const Vec3d& u : s.displacements(0)) most = std::max(most, vec::norm(u));
+  return most;
+}
+
+TEST(Substeps, a_hybrid_that_they_drive_apart_goes_on_with_one) {
+  for (const bool extrapolate : {false, true}) {
+    Simulation s(sheared_bar(extrapolate), open_backend("cpu"));
+    EXPECT_EQ(s.model().flsm.at(0).settings.substeps, 8);
+    while (s.time() < 0.6 && s.step() < 5000) {  // about 1000; with 8 substeps 30000, and crumbs a kilometre away
+      s.advance(64);
+      ASSERT_FALSE(s.divergence()) << s.divergence()->message();
+    }
+    EXPECT_GT(s.time(), 0.6);
+    EXPECT_LT(farthest(s), 2);
+    EXPECT_EQ(s.state().most_substeps, 1);
+    EXPECT_EQ(s.model().flsm.at(0).settings.substeps, 1);
+  }
+}
+
+TEST(Substeps, a_run_resumes_with_those_that_it_went_on_with) {
+  Simulation whole(sheared_bar(false), open_backend("cpu"));
+  while (whole.state().most_substeps == 0 && whole.step() < 10000) whole.advance(32);
+  ASSERT_EQ(whole.state().most_substeps, 1);
+  const Snapshot there = whole.snapshot();
+  Simulation resumed(sheared_bar(false), open_backend("cpu"));
+  resumed.restore(there);
+  EXPECT_EQ(resumed.deep_hash(), whole.deep_hash());
+  whole.advance(200);
+  resumed.advance(200);
+  EXPECT_EQ(resumed.deep_hash(), whole.deep_hash());
+  Simulation fresh(sheared_bar(false), open_backend("cpu"));
+  const Snapshot start = fresh.snapshot();
+  whole.restore(start);  // and back
+  EXPECT_EQ(whole.model().flsm.at(0).settings.substeps, 8);
+  EXPECT_EQ(whole.deep_hash(), fresh.deep_hash());
+}
+
+/// Positions, velocities and the stiffness of shape matching are as before.
+TEST(Substeps, nothing_moves_when_they_become_fewer) {
+  Scene scene = sheared_bar(false);
+  scene.bodies[0].model.young = 0;
+  scene.bodies[0].model.alpha = 0.8;
+  scene.bodies[0].model.damping = 0.1;
+  LoadedModel loaded(open_backend("cpu:double"));
+  const auto model = std::make_shared<const Model>(build_model(scene));
+  RunSettings settings;
+  Program program = build_program(*model, {scene.integrator, settings.batch_steps});
+  Program surface = surface_program(model->surface, program);
+  loaded.load(model, std::move(program), std::move(surface));
+  RunState state;
+  state.clock.dt = 1e-3;
+  RunContext run{scene, settings, loaded, state};
+  StepControl step(run);
+  HostLoads loads(run);
+  TopologyEdits edits(run, step, loads);
+  std::vector<double> u = loaded.u(), w = loaded.w();
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    if (i % 4 == 3 || !loaded.free()[i / 4 * 3 + i % 4]) continue;
+    u[i] = 1e-3 * std::sin(static_cast<double>(i));
+    w[i] = 1e-4 * std::cos(static_cast<double>(i));
+  }
+  loaded.write_u(u);
+  loaded.write_w(w);
+  upload_coupling(run);
+  const auto velocities = run.velocities(w, 0);
+  const double modulus = matching_modulus(loaded.model().flsm[0], state.clock.dt, 0);
+  ASSERT_TRUE(edits.fewer_substeps());
+  EXPECT_EQ(loaded.model().flsm[0].settings.substeps, 1);
+  const auto now = run.velocities(loaded.w(), 0);
+  const auto moved = loaded.pick(loaded.u(), 0, 1), before = loaded.pick(u, 0, 1);
+  double fastest = 0;
+  for (std::size_t n = 0; n < now.size(); ++n) {
+    fastest = std::max(fastest, vec::norm(now[n]));
+    EXPECT_LT(vec::norm(vec::sub(now[n], velocities[n])), 1e-12) << n;
+    EXPECT_LT(vec::norm(vec::sub(moved[n], before[n])), 1e-15) << n;
+  }
+  EXPECT_GT(fastest, 0.02);
+  EXPECT_NEAR(matching_modulus(loaded.model().flsm[0], state.clock.dt, 0) / modulus, 1, 1e-12);
+  EXPECT_NEAR(std::pow(1 - loaded.model().flsm[0].settings.damping, 8), 0.9, 1e-12);
+  EXPECT_FALSE(edits.fewer_substeps()) << "there is one already";
+}
+
+}  // namespace
+}  // namespace pliant
