@@ -118,6 +118,14 @@ json run_one(std::int64_t number, const SurvivalOptions& options) {
   return row;
 }
 
+bool creates_energy(const json& row) {
+  return row.contains("energy_created") && row["energy_created"].is_number() && row["energy_created"] > kEnergy;
+}
+
+bool ends_well(const json& row) {
+  return row["outcome"] == "ended" && row["least_dt"].get<double>() >= kShortStep && !creates_energy(row);
+}
+
 /// Finished scenes: a line each, so that an interrupted call loses at most one.
 class Kept {
  public:
@@ -152,7 +160,7 @@ json summary_of(const json& rows) {
     short_steps += row.value("least_dt", 1.0) < kShortStep;
     inverted += row.value("inverted", 0) > 0;
     left_inverted += row.value("inverted_now", 0) > 0;
-    created += row.contains("energy_created") && row["energy_created"].is_number() && row["energy_created"] > kEnergy;
+    created += creates_energy(row);
   }
   return {{"scenes", rows.size()},
           {"ended", outcomes["ended"]},
@@ -190,8 +198,7 @@ json bench_survival(const SurvivalOptions& asked) {
     rows.push_back(run_one(number, options));
     kept.add(rows.back());
     const json& row = rows.back();
-    if (!options.out.empty() && row["outcome"] == "ended" && row["least_dt"].get<double>() >= kShortStep)
-      std::filesystem::remove(file);
+    if (!options.out.empty() && ends_well(row)) std::filesystem::remove(file);
   }
   return {{"machine", machine_facts()}, {"backend", options.backend}, {"summary", summary_of(rows)}, {"rows", rows}};
 }

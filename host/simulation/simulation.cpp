@@ -25,8 +25,9 @@ constexpr double kFastIncrement = 0.1;
 /// Largest increment of an element's nodes against each other, as a share of its edge. Steps below half the first take less:
 /// the limit is then that of the first step, a velocity of about half that of sound.
 constexpr double kFastest = 0.25;
-/// An element whose nodes move so many edges against each other in one step has burst, even if its numbers are finite still.
-constexpr double kBurst = 2;
+/// An element whose nodes move so many edges against each other in one step, twice what a batch begins with at most, has burst,
+/// even if its numbers are finite still.
+constexpr double kBurst = 0.5;
 
 std::string Divergence::message() const {
   return fmt::format(
@@ -157,7 +158,7 @@ void Simulation::look_for_fault(std::int64_t batch_start) {
       inversions_.calmed += calmed.elements;
       fastest = calmed.fastest;
     }
-    if (fastest > kBurst && step_.can_retry() && retry_from_kept()) return;
+    if (fastest > kBurst && step_.can_retry() && step_.above_floor() && retry_from_kept()) return;
     // Pieces that fly as they are deform no faster for it.
     if (fastest <= kFastIncrement && (inverted == 0 || !inverted_now())) return;
     const std::optional<StepControl::Outgrown> outgrown = step_.outgrown();

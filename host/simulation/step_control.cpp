@@ -22,10 +22,11 @@ constexpr int kAdaptIterations = 20;
 /// A batch that diverged or burst is tried again with a smaller automatic step, until that is this share of what is allowed.
 constexpr double kLeastBackoff = 0.02;
 constexpr double kBackoff = 0.7;
-constexpr double kMostBallast = 0.01;  ///< of the mass
-constexpr double kMostGrowth = 2;      ///< of the step from one look to the next
-constexpr double kClearlyLess = 0.8;   ///< the estimate by kAdaptIterations steps is up to a tenth too low
-constexpr double kFrame = 1.0 / 60;    ///< automatic step of a scene without finite elements [s]
+constexpr double kMostBallast = 0.01;     ///< of the mass
+constexpr double kMostGrowth = 2;         ///< of the step from one look to the next
+constexpr double kMostShortening = 0.35;  ///< of the step of a batch that is made again
+constexpr double kClearlyLess = 0.8;      ///< the estimate by kAdaptIterations steps is up to a tenth too low
+constexpr double kFrame = 1.0 / 60;       ///< automatic step of a scene without finite elements [s]
 
 double total(const std::vector<NodeInertia>& ballast) {
   double sum = 0;
@@ -169,12 +170,16 @@ std::optional<StepControl::Outgrown> StepControl::outgrown() {
   // What the state stands, without the distrust that shortens the step as well: both would shrink alike for ever.
   if (now.dt / run_.state.limit.dt_backoff >= dt) return {};
   // By a tenth at least: a batch that is made again for a thousandth is made again a hundred times.
-  if (dt > least) return Outgrown{std::max({std::min(now.dt, 0.9 * dt), 0.35 * dt, least}), {}};
+  const auto shorter = [&](double lowest) {
+    return Outgrown{std::max({std::min(now.dt, 0.9 * dt), kMostShortening * dt, lowest}), {}};
+  };
+  if (dt > least) return shorter(least);
   // Below the shortest step only a state that is lost leads: elements that are let go on are driven back by their laws.
   if (kBackoff * run_.state.limit.dt_backoff < kLeastBackoff) return {};
   std::vector<NodeInertia> ballast = ballast_for(dt, now.stiffness);
-  if (too_much(ballast) || total(ballast) <= total(run_.state.ballast)) return {};
-  return Outgrown{0, std::move(ballast)};
+  if (!too_much(ballast) && total(ballast) > total(run_.state.ballast)) return Outgrown{0, std::move(ballast)};
+  const double lowest = kLeastBackoff * run_.state.limit.dt_ceiling;
+  return dt > lowest ? std::optional(shorter(lowest)) : std::nullopt;
 }
 
 void StepControl::shorten(const Outgrown& found) {
@@ -197,7 +202,10 @@ bool StepControl::retry_smaller() {
   backoff *= kBackoff;
   run_.state.limit.hold = run_.state.clock.step + kAdaptEvery;
   run_.loaded.clear_faults();
-  change(std::min(kBackoff * run_.state.clock.dt, backoff * run_.scene.safety * estimate(kAdaptIterations)));
+  const double dt = run_.state.clock.dt, least = least_step();
+  const double next = std::min(kBackoff * dt, backoff * run_.scene.safety * estimate(kAdaptIterations));
+  // Not at once below the floor, nor far: one element that is lost would take the step of all.
+  change(std::max(next, dt > least ? least : kMostShortening * dt));
   return true;
 }
 

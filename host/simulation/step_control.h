@@ -41,6 +41,7 @@ class StepControl {
   /// user's, or when smaller steps have not helped.
   [[nodiscard]] bool retry_smaller();
   [[nodiscard]] bool can_retry() const;
+  [[nodiscard]] bool above_floor() const { return run_.state.clock.dt > least_step(); }
 
  private:
   [[nodiscard]] bool adapts_at(std::int64_t step) const;

@@ -192,6 +192,67 @@ TEST(Calm, KeepsMomentumAndBringsFastMotionDown) {
   }
 }
 
+/// The largest increment of a node against another, in edges of a cell of 1 cm.
+double relative_motion(const Loaded& l) {
+  const std::vector<double> w = l.loaded.w();
+  double most = 0;
+  for (const std::int32_t a : l.run.model().bodies[0].slot) {
+    for (const std::int32_t b : l.run.model().bodies[0].slot) {
+      Vec3d d;
+      for (std::size_t c = 0; c < 3; ++c)
+        d[c] = w[4 * static_cast<std::size_t>(a) + c] - w[4 * static_cast<std::size_t>(b) + c];
+      most = std::max(most, vec::norm(d) / 0.01);
+    }
+  }
+  return most;
+}
+
+TEST(Calm, AnElementThatIsAloneKeepsAFifth) {
+  Loaded l(scene_with(box_body("crumb", {0.01, 0.01, 0.01})));
+  ASSERT_EQ(l.run.model().elements(), 1);
+  stir(l, 2e-3);
+  const Vec3d before = momentum(l);
+  ASSERT_GT(relative_motion(l), 0.3);
+  const Calmed found = calm(l.run, 0.25);
+  EXPECT_EQ(found.elements, 1);
+  EXPECT_GT(found.fastest, 0.1);
+  EXPECT_LT(relative_motion(l), 0.1001);  // 0.05 from the mean
+  EXPECT_GT(relative_motion(l), 0.05);
+  for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(momentum(l)[c], before[c], 1e-12 * std::abs(before[c]) + 1e-13);
+  Loaded two(scene_with(box_body("box", {0.02, 0.01, 0.01})));
+  stir(two, 2e-3);
+  EXPECT_EQ(calm(two.run, 0.25).elements, 0) << "what hangs together keeps such motion";
+}
+
+TEST(Calm, LooksAtMotionAgainstHeldNodes) {
+  Loaded l(held(scene_with(box_body("box", {0.02, 0.01, 0.01}))));
+  std::vector<double> w = l.loaded.w();
+  for (std::size_t s = 0; s < l.run.model().mass.size(); ++s) {
+    if (l.loaded.free()[3 * s]) w[4 * s] = 5e-3;  // all alike, away from those
+  }
+  l.loaded.write_w(w);
+  EXPECT_GT(calm(l.run, 0.25).elements, 0);
+  const auto& body = l.run.model().bodies[0];
+  for (std::size_t n = 0; n < body.slot.size(); ++n) {
+    const double x = body.rest[n][0], moved = l.loaded.w()[4 * static_cast<std::size_t>(body.slot[n])];
+    if (x < 0.005) EXPECT_EQ(moved, 0);
+    if (x > 0.005 && x < 0.015) EXPECT_NEAR(moved, 2.5e-3, 1e-12);
+  }
+}
+
+/// Half an edge in every step, and no element deforms: nobody looks for another step.
+TEST(Calm, PiecesThatFlyAreLeftAlone) {
+  Scene scene = scene_with(box_body("box", {0.03, 0.02, 0.02}));
+  const double dt = Simulation(scene, open_backend("cpu")).dt();
+  scene.bodies[0].velocity = {0.005 / dt, 0, 0};
+  Simulation s(scene, open_backend("cpu"));
+  const double stable = s.stable_dt();
+  s.advance(32);
+  s.advance(31);
+  EXPECT_EQ(s.stable_dt(), stable);
+  EXPECT_EQ(s.dt(), dt);
+}
+
 /// A box of 4 cm that is pulled by 20 cm, and a blade that stays far away.
 Scene pulled(double break_stretch, bool with_blade = true, double by = 0.2) {
   Scene scene = held(scene_with(box_body("box", {0.04, 0.02, 0.02})));
