@@ -138,11 +138,11 @@ void ModelSwap::carry_motion() {
       }
     }
   }
-  // A cut may leave a moving virtual node with held anchors only: it would go on as it moved, for nothing moves a held node.
+  // A cut may leave a moving virtual node with held anchors only: it would go on as it moved, for nothing moves a held node. It
+  // rests where it is: taken back to its place it would stretch what hangs on it, and create energy.
   for (const Constraint& held : model_->constraints) {
     const auto at = static_cast<std::ptrdiff_t>(4) * held.slot;
     if (!held.holds()) continue;
-    std::fill_n(new_u_.begin() + at, 3, 0.0);
     std::fill_n(new_w_.begin() + at, 3, 0.0);
   }
   for (std::size_t i = 0; i < offset_.size(); ++i) new_u_[i / 3 * 4 + i % 3] -= offset_[i];
