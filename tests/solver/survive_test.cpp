@@ -235,8 +235,8 @@ TEST(Calm, LooksAtMotionAgainstHeldNodes) {
   const auto& body = l.run.model().bodies[0];
   for (std::size_t n = 0; n < body.slot.size(); ++n) {
     const double x = body.rest[n][0], moved = l.loaded.w()[4 * static_cast<std::size_t>(body.slot[n])];
-    if (x < 0.005) EXPECT_EQ(moved, 0);
-    if (x > 0.005 && x < 0.015) EXPECT_NEAR(moved, 2.5e-3, 1e-12);
+    if (x > 0.015) continue;  // its element moves less than what is allowed
+    EXPECT_NEAR(moved, x < 0.005 ? 0 : 2.5e-3, 1e-12);
   }
 }
 
