@@ -7,6 +7,7 @@
 #include "edits/model_swap.h"
 #include "edits/topology_edits.h"
 #include "geometry/vec.h"
+#include "pliant/error.h"
 
 namespace pliant {
 namespace {
@@ -70,7 +71,7 @@ bool TopologyEdits::fewer_substeps() {
   const std::vector<FlsmBatch>& batches = run_.model().flsm;
   const bool many = std::any_of(batches.begin(), batches.end(),
                                 [](const FlsmBatch& b) { return b.interface > 0 && b.settings.substeps > kSafeSubsteps; });
-  if (!many || run_.phase() != 0 || run_.scene.integrator != Integrator::increment) return false;
+  if (!many || run_.phase() != 0 || !run_.settings.automatic || !bodies_as_loaded()) return false;
   const std::int32_t before = std::exchange(run_.state.most_substeps, kSafeSubsteps);
   try {
     swap_partition(run_.u());
@@ -79,6 +80,18 @@ bool TopologyEdits::fewer_substeps() {
     throw;
   }
   return true;
+}
+
+bool TopologyEdits::bodies_as_loaded() {
+  try {
+    const EditedBodies& all = bodies();
+    for (std::size_t b = 0; b < all.size(); ++b) {
+      if (all.solid(b).nodes.size() != run_.model().bodies[b].rest.size()) return false;
+    }
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 void TopologyEdits::swap_partition(std::vector<double> u) {

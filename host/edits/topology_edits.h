@@ -24,7 +24,8 @@ class TopologyEdits {
   /// Before a batch that begins on the grid: move the scene's blades, part what is stretched too far, break faces, let regions
   /// follow the tool.
   void update();
-  /// Go on with at most kSafeSubsteps substeps in all hybrids; false if none has more. To be called in a state that was kept.
+  /// Go on with at most kSafeSubsteps substeps in all hybrids; false if none has more, if the step is the user's, or if a mesh
+  /// file has gone. To be called in a state that was kept.
   /// Throws, with all as it was, what Backend::load throws.
   [[nodiscard]] bool fewer_substeps();
 
@@ -58,6 +59,8 @@ class TopologyEdits {
   void make_tears();
   void open_overstretched();
   void move_regions();
+  /// Whether the bodies' files, which are read when somebody edits a body for the first time, are still there and as they were.
+  [[nodiscard]] bool bodies_as_loaded();
   /// The model of scene_at(state) with the bodies as they are.
   void swap_partition(std::vector<double> u);
 

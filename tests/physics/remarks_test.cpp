@@ -1,7 +1,5 @@
 // What is said of a scene before its first step.
-#include <algorithm>
 
-#include "cutting/cut_scenes.h"
 #include "physics/harness.h"
 #include "simulation/simulation.h"
 
@@ -22,29 +20,6 @@ std::vector<std::string> remarks(ElementKind element, const std::function<Vec3d(
   Scene scene;
   scene.bodies.push_back(std::move(body));
   return Simulation(scene, open_backend("cpu")).remarks();
-}
-
-TEST(Remarks, ManySubstepsOfAHybridThatIsCut) {
-  Body body;
-  body.name = "bar";
-  body.surface_in_memory = cut_test::box_surface({0.08, 0.02, 0.02});
-  body.surface = "bar.obj";
-  body.lattice.spacing = 0.01;
-  body.material = material_young(Law::neo_hookean, 3000, 0.3);
-  body.model.type = ModelType::hybrid;
-  body.model.ratio = 0.5;
-  body.pointer = "/bodies/0", body.model.pointer = "/bodies/0/model";
-  const auto said = [&](int substeps, bool cut) {
-    Scene scene;
-    scene.bodies = {body};
-    scene.bodies[0].model.substeps = substeps;
-    if (cut) scene.blades.push_back(cut_test::blade("knife", {{1, 0.04, 1, -1, 0.04, 1, 1}, {2, 0.04, -1, -1, 0.04, -1, 1}}));
-    const std::vector<std::string> all = Simulation(scene, open_backend("cpu")).remarks();
-    return std::count_if(all.begin(), all.end(), [](const std::string& r) { return r.find("resonate") != std::string::npos; });
-  };
-  EXPECT_EQ(said(4, true), 1);
-  EXPECT_EQ(said(2, true), 0);
-  EXPECT_EQ(said(4, false), 0);
 }
 
 TEST(Remarks, HexahedraFarFromBricks) {

@@ -84,6 +84,7 @@ TEST(Substeps, nothing_moves_when_they_become_fewer) {
   LoadedModel loaded(open_backend("cpu:double"));
   const auto model = std::make_shared<const Model>(build_model(scene));
   RunSettings settings;
+  settings.automatic = true;
   Program program = build_program(*model, {scene.integrator, settings.batch_steps});
   Program surface = surface_program(model->surface, program);
   loaded.load(model, std::move(program), std::move(surface));
@@ -118,6 +119,15 @@ TEST(Substeps, nothing_moves_when_they_become_fewer) {
   EXPECT_NEAR(matching_modulus(loaded.model().flsm[0], state.clock.dt, 0) / modulus, 1, 1e-12);
   EXPECT_NEAR(std::pow(1 - loaded.model().flsm[0].settings.damping, 8), 0.9, 1e-12);
   EXPECT_FALSE(edits.fewer_substeps()) << "there is one already";
+}
+
+TEST(Substeps, stay_where_the_step_is_given) {
+  Scene scene = sheared_bar(true);
+  Simulation automatic(scene, open_backend("cpu"));
+  scene.dt = automatic.dt();
+  Simulation given(scene, open_backend("cpu"));
+  given.advance(5000);
+  EXPECT_EQ(given.model().flsm.at(0).settings.substeps, 8);
 }
 
 }  // namespace
