@@ -1,15 +1,19 @@
 // Hybrids whose shape matching pulls at the finite elements once in several steps, and go on with one where that drives them
 // apart.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
+#include <string>
 
 #include "cutting/cut_scenes.h"
 #include "edits/topology_edits.h"
 #include "schedule/build_program.h"
 #include "schedule/surface_program.h"
 #include "simulation/coupling.h"
+#include "support/temp_folder.h"
 
 namespace pliant {
 namespace {
@@ -29,6 +33,14 @@ Scene sheared_bar(bool extrapolate) {
   pull(body, {0.145, 0, 0}, {1, 0, 0}, {0, 0.1, 0}, 0.2);
   Scene scene = scene_with(body);
   scene.blades.push_back(blade("knife", {{0.1, 0.07, -0.1, -0.2, 0.07, -0.1, 0.2}, {0.3, 0.07, 0.2, -0.2, 0.07, 0.2, 0.2}}));
+  return scene;
+}
+
+/// Nothing else here makes a model anew.
+Scene pressed_bar() {
+  Scene scene = sheared_bar(true);
+  scene.blades.clear();
+  scene.bodies[0].prescribed[0].displacement = {-0.11, 0.03, 0};
   return scene;
 }
 
@@ -54,10 +66,7 @@ TEST(Substeps, a_hybrid_that_they_drive_apart_goes_on_with_one) {
 }
 
 TEST(Substeps, a_run_resumes_with_those_that_it_went_on_with) {
-  Scene pressed = sheared_bar(true);  // nothing else that makes a model anew
-  pressed.blades.clear();
-  pressed.bodies[0].prescribed[0].displacement = {-0.11, 0.03, 0};
-  for (const Scene& scene : {sheared_bar(false), pressed}) {
+  for (const Scene& scene : {sheared_bar(false), pressed_bar()}) {
     Simulation whole(scene, open_backend("cpu"));
     while (whole.state().most_substeps == 0 && whole.step() < 10000) whole.advance(32);
     ASSERT_EQ(whole.state().most_substeps, 1);
@@ -119,6 +128,25 @@ TEST(Substeps, nothing_moves_when_they_become_fewer) {
   EXPECT_NEAR(matching_modulus(loaded.model().flsm[0], state.clock.dt, 0) / modulus, 1, 1e-12);
   EXPECT_NEAR(std::pow(1 - loaded.model().flsm[0].settings.damping, 8), 0.9, 1e-12);
   EXPECT_FALSE(edits.fewer_substeps()) << "there is one already";
+}
+
+TEST(Substeps, stay_where_a_mesh_file_has_gone) {
+  Simulation first(pressed_bar(), open_backend("cpu"));
+  while (first.state().most_substeps == 0 && first.step() < 10000) first.advance(32);
+  const test::TempFolder folder;
+  Scene scene = pressed_bar();
+  const TriangleMesh& box = *scene.bodies[0].surface_in_memory;
+  std::string text;
+  for (const Vec3d& v : box.vertices) text += fmt::format("v {} {} {}\n", v[0], v[1], v[2]);
+  for (const auto& t : box.triangles) text += fmt::format("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
+  const std::filesystem::path file = folder.write("bar.obj", text);
+  scene.bodies[0].surface = file;
+  scene.bodies[0].surface_in_memory = nullptr;
+  Simulation s(scene, open_backend("cpu"));
+  std::filesystem::remove(file);
+  EXPECT_NO_THROW(s.advance(first.step() + 64));
+  EXPECT_FALSE(s.divergence());
+  EXPECT_EQ(s.state().most_substeps, 0);
 }
 
 TEST(Substeps, stay_where_the_step_is_given) {
