@@ -106,8 +106,8 @@ class Report {
     json["most_substeps"] = s_.state().most_substeps;
     if (s_.state().most_substeps > 0) {
       out_.note(
-          fmt::format("the pull of shape matching, several steps at once, drove finite elements apart; hybrids went on with at "
-                      "most {} substeps",
+          fmt::format("the pull of shape matching, several steps at once, drove finite elements apart; hybrids went on with "
+                      "\"substeps\": {}",
                       s_.state().most_substeps));
     }
     json["opened_edges"] = s_.state().opened;
