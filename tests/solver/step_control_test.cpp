@@ -1,4 +1,6 @@
 // Changes of the step and of the damping of dynamic relaxation while a run goes on.
+#include "simulation/step_control.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +9,8 @@
 #include <memory>
 
 #include "cutting/cut_scenes.h"
+#include "simulation/coupling.h"
+#include "solver/loaded.h"
 #include "solver/scenes.h"
 
 namespace pliant {
@@ -120,6 +124,23 @@ TEST(Relaxation, EndsInFloatWhereItEndsInDouble) {
               static_cast<long long>(rounded->step()), most / largest);
   EXPECT_LE(most / largest, 1e-4);
   EXPECT_LE(rounded->step(), 2 * exact->step());
+}
+
+/// However little a burst state stands: above the floor no further than to it, and below by a third at least.
+TEST(StepRetries, StopAtTheFloorBeforeTheyGoBelow) {
+  Loaded l(scene_with(box_body("box", {0.03, 0.02, 0.02})));
+  StepControl step(l.run);
+  step.start(0, true);
+  const double first = l.state.clock.dt, floor = l.scene.least_step * first;
+  l.state.clock.dt = 1.2 * floor;
+  l.state.limit.dt_backoff = 0.04;  // of what it stands at rest: far below
+  ASSERT_TRUE(step.above_floor());
+  ASSERT_TRUE(step.retry_smaller());
+  EXPECT_DOUBLE_EQ(l.state.clock.dt, floor);
+  EXPECT_FALSE(step.above_floor());
+  l.state.limit.dt_backoff = 0.03;
+  ASSERT_TRUE(step.retry_smaller());
+  EXPECT_DOUBLE_EQ(l.state.clock.dt, 0.35 * floor);
 }
 
 }  // namespace

@@ -10,9 +10,8 @@
 
 #include "cutting/cut_scenes.h"
 #include "edits/topology_edits.h"
-#include "schedule/build_program.h"
-#include "schedule/surface_program.h"
 #include "simulation/coupling.h"
+#include "solver/loaded.h"
 #include "support/temp_folder.h"
 
 namespace pliant {
@@ -90,33 +89,26 @@ TEST(Substeps, nothing_moves_when_they_become_fewer) {
   scene.bodies[0].model.young = 0;
   scene.bodies[0].model.alpha = 0.8;
   scene.bodies[0].model.damping = 0.1;
-  LoadedModel loaded(open_backend("cpu:double"));
-  const auto model = std::make_shared<const Model>(build_model(scene));
-  RunSettings settings;
-  settings.automatic = true;
-  Program program = build_program(*model, {scene.integrator, settings.batch_steps});
-  Program surface = surface_program(model->surface, program);
-  loaded.load(model, std::move(program), std::move(surface));
-  RunState state;
-  state.clock.dt = 1e-3;
-  RunContext run{scene, settings, loaded, state};
-  StepControl step(run);
-  HostLoads loads(run);
-  TopologyEdits edits(run, step, loads);
+  Loaded l(scene);
+  l.settings.automatic = true;
+  const LoadedModel& loaded = l.loaded;
+  StepControl step(l.run);
+  HostLoads loads(l.run);
+  TopologyEdits edits(l.run, step, loads);
   std::vector<double> u = loaded.u(), w = loaded.w();
   for (std::size_t i = 0; i < u.size(); ++i) {
     if (i % 4 == 3 || !loaded.free()[i / 4 * 3 + i % 4]) continue;
     u[i] = 1e-3 * std::sin(static_cast<double>(i));
     w[i] = 1e-4 * std::cos(static_cast<double>(i));
   }
-  loaded.write_u(u);
-  loaded.write_w(w);
-  upload_coupling(run);
-  const auto velocities = run.velocities(w, 0);
-  const double modulus = matching_modulus(loaded.model().flsm[0], state.clock.dt, 0);
+  l.loaded.write_u(u);
+  l.loaded.write_w(w);
+  upload_coupling(l.run);
+  const auto velocities = l.run.velocities(w, 0);
+  const double modulus = matching_modulus(loaded.model().flsm[0], l.state.clock.dt, 0);
   ASSERT_TRUE(edits.fewer_substeps());
   EXPECT_EQ(loaded.model().flsm[0].settings.substeps, 1);
-  const auto now = run.velocities(loaded.w(), 0);
+  const auto now = l.run.velocities(loaded.w(), 0);
   const auto moved = loaded.pick(loaded.u(), 0, 1), before = loaded.pick(u, 0, 1);
   double fastest = 0;
   for (std::size_t n = 0; n < now.size(); ++n) {
@@ -125,7 +117,7 @@ TEST(Substeps, nothing_moves_when_they_become_fewer) {
     EXPECT_LT(vec::norm(vec::sub(moved[n], before[n])), 1e-15) << n;
   }
   EXPECT_GT(fastest, 0.02);
-  EXPECT_NEAR(matching_modulus(loaded.model().flsm[0], state.clock.dt, 0) / modulus, 1, 1e-12);
+  EXPECT_NEAR(matching_modulus(loaded.model().flsm[0], l.state.clock.dt, 0) / modulus, 1, 1e-12);
   EXPECT_NEAR(std::pow(1 - loaded.model().flsm[0].settings.damping, 8), 0.9, 1e-12);
   EXPECT_FALSE(edits.fewer_substeps()) << "there is one already";
 }

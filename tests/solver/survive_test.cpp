@@ -11,11 +11,10 @@
 #include "model/each_hex.h"
 #include "model/least_fill.h"
 #include "pliant/error.h"
-#include "schedule/build_program.h"
-#include "schedule/surface_program.h"
 #include "simulation/ballast_swap.h"
 #include "simulation/calm.h"
 #include "simulation/energy.h"
+#include "solver/loaded.h"
 #include "solver/scenes.h"
 #include "support/error_of.h"
 
@@ -23,22 +22,6 @@ namespace pliant {
 namespace {
 
 using namespace cut_test;
-
-/// A scene, loaded, without a Simulation around it.
-struct Loaded {
-  explicit Loaded(Scene of) : scene(std::move(of)), loaded(open_backend("cpu:double")) {
-    const auto model = std::make_shared<const Model>(build_model(scene));
-    Program program = build_program(*model, {scene.integrator, settings.batch_steps});
-    Program surface = surface_program(model->surface, program);
-    loaded.load(model, std::move(program), std::move(surface));
-    state.clock.dt = 1e-3;
-  }
-  Scene scene;
-  RunSettings settings;
-  LoadedModel loaded;
-  RunState state;
-  RunContext run{scene, settings, loaded, state};
-};
 
 Vec3d momentum(const Loaded& l) {
   Vec3d sum{};
