@@ -7,8 +7,8 @@
 namespace pliant {
 
 /// Where the nodes of an element move against each other by more than `share` of its edge in one step, faster than its own
-/// waves could carry, that relative motion is brought down to this, as by a plastic impact: the momentum of its free nodes
-/// stays, kinetic energy only falls. Where nodes of the element are held, it is the motion against those, and an element that
+/// waves could carry, that relative motion is brought down to this, as by a plastic impact: momentum stays, kinetic energy only
+/// falls. Where nodes of the element are held, it is the motion against those, and they take momentum up. An element that
 /// shares no node with another keeps a fifth of it.
 struct Calmed {
   std::int64_t elements = 0;

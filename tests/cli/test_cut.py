@@ -75,6 +75,16 @@ class Cut(CliTest):
             self.assertEqual(done.stderr.count("nothing holds that part"), told, done.stderr)
         self.assertRegex(done.stderr, r"some of it is 5\.\d* m from its place at rest, 3\d\.?\d* times its size")
 
+    def test_fewer_substeps_are_told(self):
+        hybrid = {"material": {"young": 1000, "poisson": 0.4, "density": 1000},
+                  "model": {"type": "hybrid", "substeps": 8, "goals": "extrapolated"},
+                  "prescribed": [{"plane": [[0, 0.049, 0], [0, 1, 0]], "displacement": [0.03, -0.07, 0], "curve": "smooth", "duration": 0.2}]}
+        pressed = self.scene(body=hybrid, gravity=[0, 0, 0])
+        result = self.json("run", pressed, "--backend", "cpu", "--seconds", 0.3)
+        self.assertEqual(result["most_substeps"], 1)
+        self.assertIn('hybrids went on with "substeps": 1', self.pliant("run", pressed, "--backend", "cpu", "--seconds", 0.3).stderr)
+        self.assertEqual(self.json("run", pressed, "--backend", "cpu", "--seconds", 0.01)["most_substeps"], 0)
+
     def test_a_cut_too_short_for_the_elements(self):
         shallow = {"name": "scratch", "path": [[0, 0.013, 0.045, 0.001, 0.013, 0.045, 0.002], [0.01, 0.013, 0.044, 0.001, 0.013, 0.044, 0.002]]}
         scene = self.scene(body={"prescribed": []}, gravity=[0, 0, 0], blades=[shallow])
