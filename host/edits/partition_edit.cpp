@@ -1,12 +1,16 @@
 // Edits that change how a body is modelled and leave its elements alone: the operational region that follows the tool, and
 // hybrids that go on with fewer substeps. Every node keeps its position and momentum.
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "edits/model_swap.h"
 #include "edits/topology_edits.h"
 #include "geometry/vec.h"
+#include "model/partition.h"
 #include "pliant/error.h"
 
 namespace pliant {
@@ -28,7 +32,64 @@ Vec3d nearest_at_rest(const ModelBody& body, const std::vector<Vec3d>& u, const 
   return body.rest[best];
 }
 
+/// Shape matching and finite elements have different forces for the same large strain, and the first even folds: a cell that
+/// changed its model then would let energy go, or get some. Below this stretch, and above its inverse, they are near enough.
+constexpr double kMostStretch = 1.5;
+constexpr std::int64_t kWaitSteps = 256;  ///< after which such a cell is looked at again
+
+/// Whether a cell is deformed too far to change its model. corners: of a cube, x fastest; u by node.
+bool strained(const std::array<std::int32_t, 8>& corners, const std::vector<Vec3d>& rest, const std::vector<Vec3d>& u) {
+  using Corners = Eigen::Matrix<double, 3, 8>;
+  Corners at_rest, now;
+  for (int a = 0; a < 8; ++a) {
+    const auto n = static_cast<std::size_t>(corners[a]);
+    at_rest.col(a) = Eigen::Map<const Eigen::Vector3d>(rest[n].data());
+    now.col(a) = at_rest.col(a) + Eigen::Map<const Eigen::Vector3d>(u[n].data());
+  }
+  Eigen::Matrix3d edges, rest_edges;
+  for (int axis = 0; axis < 3; ++axis) {
+    edges.col(axis).setZero();
+    rest_edges.col(axis).setZero();
+    for (int a = 0; a < 8; ++a) {
+      const double sign = (a >> axis & 1) != 0 ? 1 : -1;
+      edges.col(axis) += sign * now.col(a);
+      rest_edges.col(axis) += sign * at_rest.col(a);
+    }
+  }
+  if (!(edges.determinant() > rest_edges.determinant() / kMostStretch)) return true;
+  for (int a = 0; a < 8; ++a) {
+    for (int b = a + 1; b < 8; ++b) {
+      const double stretch = (now.col(a) - now.col(b)).norm() / (at_rest.col(a) - at_rest.col(b)).norm();
+      if (!(stretch < kMostStretch && stretch > 1 / kMostStretch)) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
+
+MovedRegion TopologyEdits::region_at(std::size_t b, const Vec3d& seed, const std::vector<Vec3d>& u) {
+  MovedRegion region{seed, {}, false};
+  const BodyMesh& solid = bodies().solid(b);
+  const auto chosen = [&](const Body& body) { return partition_lattice(body, *solid.lattice).operational; };
+  Body next = run_.scene.bodies[b];
+  next.model.seed = seed;
+  std::vector<char> operational = chosen(next);
+  const std::vector<char> before = chosen(scene_at(run_.state).bodies[b]);
+  const std::size_t elements = solid.copy_of.empty() ? before.size() : solid.copy_of.size();
+  for (std::size_t e = 0; e < elements; ++e) {
+    const std::size_t c = solid.copy_of.empty() ? e : static_cast<std::size_t>(solid.copy_of[e]);
+    if (operational[c] == before[c]) continue;
+    const std::array<std::int32_t, 8> corners = solid.tets.empty() ? solid.hexes[e] : cell_corners(&solid.tets[6 * e]);
+    if (!strained(corners, run_.model().bodies[b].rest, u)) continue;
+    operational[c] = before[c];
+    region.waits = true;
+  }
+  for (std::size_t c = 0; c < operational.size(); ++c) {
+    if (operational[c] != 0) region.cells.push_back(static_cast<std::int32_t>(c));
+  }
+  return region;
+}
 
 /// A region moves when the material under the tool is more than a cell from its seed, and only between steps of shape matching.
 void TopologyEdits::move_regions() {
@@ -38,27 +99,29 @@ void TopologyEdits::move_regions() {
   const RunState& state = run_.state;
   const Vec3d tool = state.tool.value_or(run_.scene.tool.position(state.clock.time()));
   std::vector<double> u = run_.u();
-  std::vector<Vec3d> seeds;
+  const bool first = state.regions.empty();
+  std::vector<MovedRegion> regions = state.regions;
+  regions.resize(bodies_of_scene.size());
   bool moved = false;
   for (std::size_t b = 0; b < bodies_of_scene.size(); ++b) {
     const DeformationModel& model = bodies_of_scene[b].model;
-    const bool known = !state.seeds.empty() || model.seed;
-    Vec3d seed = !state.seeds.empty() ? state.seeds[b] : model.seed.value_or(Vec3d{});
-    if (model.follow) {
-      const Vec3d now = nearest_at_rest(run_.model().bodies[b], run_.loaded.pick(u, b, 1), tool);
-      if (!known || distance(now, seed) > run_.model().bodies[b].spacing) {
-        seed = now;
-        moved = true;
-      }
-    }
-    seeds.push_back(seed);
+    if (!model.follow) continue;
+    const std::vector<Vec3d> of_body = run_.loaded.pick(u, b, 1);
+    const Vec3d now = nearest_at_rest(run_.model().bodies[b], of_body, tool);
+    const std::optional<Vec3d> seed = first ? model.seed : regions[b].seed;
+    const bool moves = !seed || distance(now, *seed) > run_.model().bodies[b].spacing;
+    const bool again = regions[b].waits && run_.begins_after(state.clock.step, kWaitSteps);
+    if (!first && !moves && !again) continue;
+    MovedRegion next = region_at(b, moves ? now : *seed, of_body);
+    moved = moved || moves || (!first && next.cells != regions[b].cells);
+    regions[b] = std::move(next);
   }
   if (!moved) return;
-  std::vector<Vec3d> before = std::exchange(run_.state.seeds, std::move(seeds));
+  std::vector<MovedRegion> before = std::exchange(run_.state.regions, std::move(regions));
   try {
     swap_partition(std::move(u));
   } catch (...) {
-    run_.state.seeds = std::move(before);
+    run_.state.regions = std::move(before);
     throw;
   }
   step_.adapt();

@@ -120,8 +120,8 @@ const CutTopology* TopologyEdits::cut_topology(std::size_t body) const {
 Scene TopologyEdits::scene_at(const RunState& state) const {
   Scene scene = run_.scene;
   scene.cuttable = scene.cuttable || !state.cuts.empty();
-  for (std::size_t b = 0; b < scene.bodies.size() && !state.seeds.empty(); ++b) {
-    if (scene.bodies[b].model.follow) scene.bodies[b].model.seed = state.seeds[b];
+  for (std::size_t b = 0; b < scene.bodies.size() && !state.regions.empty(); ++b) {
+    if (scene.bodies[b].model.follow) scene.bodies[b].model.cells = state.regions[b].cells;
   }
   for (Body& body : scene.bodies) {
     DeformationModel& m = body.model;
@@ -140,14 +140,20 @@ std::unique_ptr<EditedBodies> TopologyEdits::bodies_at(const RunState& state) co
   const auto refuse = [](const char* what) {
     throw Error(ErrorCode::bad_input, fmt::format("{} do not belong to this scene, or are damaged", what));
   };
-  if (!state.seeds.empty() && (state.seeds.size() != scene.bodies.size() || !follows(scene))) refuse("its moved regions");
+  if (!state.regions.empty() && (state.regions.size() != scene.bodies.size() || !follows(scene))) refuse("its moved regions");
   const auto edited = [](const RunState& s) {
-    return !s.cuts.empty() || !s.tears.empty() || !s.seeds.empty() || s.most_substeps != 0 || !s.blades.traces.empty();
+    return !s.cuts.empty() || !s.tears.empty() || !s.regions.empty() || s.most_substeps != 0 || !s.blades.traces.empty();
   };
   if (!edited(state) && !edited(run_.state)) return nullptr;
   auto all = std::make_unique<EditedBodies>(scene);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {  // what is prepared stays so
     if (cut_topology(b) != nullptr) static_cast<void>(all->cut(b));
+  }
+  for (std::size_t b = 0; b < state.regions.size(); ++b) {
+    const std::vector<std::int32_t>& cells = state.regions[b].cells;
+    const auto last = static_cast<std::int64_t>(all->uncut(b).lattice == nullptr ? 0 : all->uncut(b).lattice->cells.size());
+    const bool ordered = std::adjacent_find(cells.begin(), cells.end(), std::greater_equal<>()) == cells.end();
+    if (!ordered || (!cells.empty() && (cells.front() < 0 || cells.back() >= last))) refuse("its moved regions");
   }
   all->replay(state);
   for (const auto& [key, traces] : state.blades.traces) {

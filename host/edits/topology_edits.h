@@ -59,6 +59,9 @@ class TopologyEdits {
   void make_tears();
   void open_overstretched();
   void move_regions();
+  /// A region of a body that grows from `seed`, but for cells that are deformed too far to change their model (u: [nodes] of
+  /// the body).
+  [[nodiscard]] MovedRegion region_at(std::size_t body, const Vec3d& seed, const std::vector<Vec3d>& u);
   /// Whether the bodies' files, which are read when somebody edits a body for the first time, are still there and as they were.
   [[nodiscard]] bool bodies_as_loaded();
   /// The model of scene_at(state) with the bodies as they are.

@@ -212,7 +212,9 @@ Partition partition_lattice(const Body& body, const Lattice& lattice) {
       throw Error(ErrorCode::bad_input, fmt::format("{}/ratio is {:g}; allowed is 0 to 1", model.pointer, model.ratio));
     }
     const CellFaces faces(lattice);
-    if (model.region) {
+    if (model.cells) {
+      for (const std::int32_t c : *model.cells) partition.operational[static_cast<std::size_t>(c)] = 1;
+    } else if (model.region) {
       choose_inside(model, lattice, partition.operational);
     } else {
       grow(model, lattice, faces, partition.operational);

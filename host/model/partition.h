@@ -22,8 +22,8 @@ struct Partition {
 /// share a face with it, until (operational + interface nodes) / nodes is as near to the ratio as it gets; it is connected.
 /// Ratio 0 gives none, 1 all, and any other at least one cell; growth never leaves the face-connected piece that holds the
 /// seed. Cells left over that would leave an isolated piece (a face-connected group of shape-matching cells without a node of
-/// kind `matching`) become operational too. Throws Error (pointer, value, what is allowed) when a region holds no cell, or the
-/// seed is further from the body than its own size.
+/// kind `matching`) become operational too. DeformationModel::cells, where given, are operational instead. Throws Error
+/// (pointer, value, what is allowed) when a region holds no cell, or the seed is further from the body than its own size.
 Partition partition_lattice(const Body& body, const Lattice& lattice);
 
 }  // namespace pliant

@@ -81,7 +81,8 @@ struct DeformationModel {
   bool conservative = true;  ///< "coupling": "conservative" gives the reaction of the interface back, "one-sided" does not
   bool cut = true;           ///< "cut": false: a blade passes through the shape-matching part without effect
   bool follow = false;       ///< "follow": "tool": the operational region moves with the scene's tool
-  std::string pointer;       ///< JSON pointer ("/bodies/0/model")
+  std::optional<std::vector<std::int32_t>> cells;  ///< set in code: the operational cells, once a region has moved
+  std::string pointer;                             ///< JSON pointer ("/bodies/0/model")
 };
 
 struct Body {

@@ -85,6 +85,14 @@ struct HostForce {
   Vec3d force{};
 };
 
+/// An operational region that has moved.
+struct MovedRegion {
+  Vec3d seed{};                     ///< [m]
+  std::vector<std::int32_t> cells;  ///< of the uncut lattice, in order
+  bool waits = false;               ///< some of them were deformed too far to change their model
+  bool operator==(const MovedRegion&) const = default;
+};
+
 struct RunState {
   Clock clock;
   StepLimit limit;
@@ -92,8 +100,8 @@ struct RunState {
   std::optional<KeptState> kept;
   std::vector<CutRecord> cuts;  ///< in the order in which they were made
   std::vector<TearRecord> tears;
-  std::vector<Vec3d> seeds;        ///< [bodies] of the operational regions, once one has moved; empty: as in the scene
-  std::int32_t most_substeps = 0;  ///< of hybrids, since more of them burst; 0: as in the scene
+  std::vector<MovedRegion> regions;  ///< [bodies], once one has moved; empty: as in the scene
+  std::int32_t most_substeps = 0;    ///< of hybrids, since more of them burst; 0: as in the scene
   BladeState blades;
   PendingEdits pending;
   std::vector<HostForce> forces;
@@ -163,10 +171,14 @@ void visit(V& v, NodeInertia& s) {
   v("slot", s.slot), v("inertia", s.inertia);
 }
 template <class V>
+void visit(V& v, MovedRegion& s) {
+  v("seed", s.seed), v("cells", s.cells), v("waits", s.waits);
+}
+template <class V>
 void visit(V& v, RunState& s) {
   v("clock", s.clock), v("limit", s.limit), v("relaxation", s.relaxation), v("kept", s.kept), v("cuts", s.cuts);
-  v("tears", s.tears), v("seeds", s.seeds), v("most_substeps", s.most_substeps), v("blades", s.blades), v("pending", s.pending),
-      v("forces", s.forces);
+  v("tears", s.tears), v("regions", s.regions), v("most_substeps", s.most_substeps), v("blades", s.blades),
+      v("pending", s.pending), v("forces", s.forces);
   v("offset", s.offset), v("ballast", s.ballast), v("tool", s.tool), v("opened", s.opened),
       v("topology_version", s.topology_version);
 }

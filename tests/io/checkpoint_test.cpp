@@ -30,7 +30,7 @@ Checkpoint sample() {
   s.state.kept = KeptState{{1, 2, 3, 4}, 5};
   s.state.cuts = {{1, {{{2, 3}, 0.25}, {{2, 4}, 0.5}}}};
   s.state.tears = {{0, 17, 5}};
-  s.state.seeds = {{1, 2, 3}};
+  s.state.regions = {{{1, 2, 3}, {4, 7}}};
   s.state.blades.seen = 0.25;
   s.state.blades.met = {"knife", "host/saw"};
   s.state.blades.placed["scalpel"] = {Vec3d{1, 2, 3}, Vec3d{4, 5, 6}};

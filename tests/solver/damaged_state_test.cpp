@@ -90,7 +90,7 @@ TEST(DamagedState, what_is_refused_is_named) {
   has(refusal([](RunState& s) { s.cuts[0].edges[{0, 1000000}] = 0.5; }), "edge");
   has(refusal([](RunState& s) { s.cuts.clear(); }), "");
   has(refusal([](RunState& s) { s.tears.push_back({0, 0, 1}); }), "tears");
-  has(refusal([](RunState& s) { s.seeds = {{0, 0, 0}}; }), "regions");
+  has(refusal([](RunState& s) { s.regions = {{{0, 0, 0}, {}}}; }), "regions");
   has(refusal([](RunState& s) { s.blades.traces.begin()->second.begin()->second.points[0].carried.cell = 1 << 30; }), "traces");
   has(refusal([](RunState& s) {
         TracePoint& point = s.blades.traces.begin()->second.begin()->second.points[0];

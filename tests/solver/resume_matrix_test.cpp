@@ -59,7 +59,7 @@ std::string name_of(const ::testing::TestParamInfo<Case>& info) {
 
 /// What an event changes.
 auto signature(const Simulation& s) {
-  return std::tuple(s.topology_version(), s.dt(), s.state().seeds, s.state().limit.dt_backoff, s.state().cuts.size());
+  return std::tuple(s.topology_version(), s.dt(), s.state().regions, s.state().limit.dt_backoff, s.state().cuts.size());
 }
 
 class ResumeMatrix : public ::testing::TestWithParam<Case> {
