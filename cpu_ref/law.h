@@ -3,7 +3,9 @@
 //   Scalar low                                                      below this J the law is continued (inversion.h)
 //   Name(const Scalar* law_parameters)                              the parameters [Pa], or what the host makes of them
 //   Scalar pressure(Scalar j)                                       dU/dJ [Pa] of the volumetric part at j = J - 1
-//   Mat3<Scalar> stress(deformation, scale, pressure)               `scale` (a volume) times the first Piola-Kirchhoff stress
+//   Mat3<Scalar> stress(deformation, scale, pressure, low)          `scale` (a volume) times the first Piola-Kirchhoff stress;
+//                                                                   low: is_low(law, deformation), or std::false_type if it
+//                                                                   is known not to be
 #pragma once
 #include "laws.h"
 #include "twin_laws.h"
@@ -34,6 +36,12 @@ inline std::int32_t fault_of(const LawType& law, const Deformation<Scalar>& d) {
   const bool finite = std::fabs(jacobian) < infinity;
   if (jacobian > Scalar(0) && finite) return no_fault;
   return finite && (LawType::invertible || law.low > Scalar(0)) ? inverted : lost;
+}
+
+/// Below what volume the law goes on with polynomials of it.
+template <class LawType, class Scalar>
+inline bool is_low(const LawType& law, const Deformation<Scalar>& d) {
+  return Scalar(1) + d.j < law.low;
 }
 
 }  // namespace pliant::ref

@@ -15,8 +15,9 @@ struct IsochoricNeoHookean {
       : low(law_parameters[0]), mu(law_parameters[1]), kappa(law_parameters[2]) {}
   [[nodiscard]] Scalar pressure(Scalar j) const { return kappa * j; }
 
-  [[nodiscard, gnu::always_inline]] inline Mat3<Scalar> stress(const Deformation<Scalar>& d, Scalar scale,
-                                                               Scalar pressure) const {
+  template <class Low>
+  [[nodiscard, gnu::always_inline]] inline Mat3<Scalar> stress(const Deformation<Scalar>& d, Scalar scale, Scalar pressure,
+                                                               Low is_low) const {
     const Scalar jacobian = Scalar(1) + d.j;
     const Scalar root = inverse_cube_root(jacobian);
     const Scalar hh = squared_norm(d.h);
@@ -25,7 +26,6 @@ struct IsochoricNeoHookean {
     const Scalar one_minus_s = excess * third;
     const Scalar s = std::fma(-excess, third, Scalar(1));
     const Scalar low_d = low_distance(d.j), squared = root * root, low_power = low_first(low_d);
-    const bool is_low = jacobian < low;
     const Scalar power = mu * (is_low ? low_power : squared), m = scale * power;
     const Scalar p = scale * pressure;
     const Scalar low_difference = std::fma(scale * mu, low_first_slope(low_d) * (Scalar(3) + std::fma(Scalar(2), d.t, hh)), -p);

@@ -15,8 +15,9 @@ struct MooneyRivlin {
       : low(law_parameters[0]), first(law_parameters[1]), second(law_parameters[2]), kappa(law_parameters[3]) {}
   [[nodiscard]] Scalar pressure(Scalar j) const { return kappa * j; }
 
-  [[nodiscard, gnu::always_inline]] inline Mat3<Scalar> stress(const Deformation<Scalar>& d, Scalar scale,
-                                                               Scalar pressure) const {
+  template <class Low>
+  [[nodiscard, gnu::always_inline]] inline Mat3<Scalar> stress(const Deformation<Scalar>& d, Scalar scale, Scalar pressure,
+                                                               Low is_low) const {
     constexpr Scalar one = 1, two = 2, four = 4;
     const Sym3<Scalar> e = green_strain(d.h);
     const Scalar jacobian = one + d.j;
@@ -30,7 +31,6 @@ struct MooneyRivlin {
     const Scalar i2 = std::fma(four, (e.m00 + e.m11) + e.m22, z);  // I2 - 3
     const Scalar w = (two * third) * i2;
 
-    const bool is_low = jacobian < low;
     const Scalar low_d = low_distance(d.j), low_a = low_first(low_d), low_b = low_second(low_d), fourth = squared * squared;
     const Scalar a = scale * (first * (is_low ? low_a : squared));
     const Scalar b = scale * (second * (is_low ? low_b : fourth)), twice_b = two * b;

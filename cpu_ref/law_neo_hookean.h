@@ -14,10 +14,10 @@ struct NeoHookean {
       : low(law_parameters[0]), mu(law_parameters[1]), lambda(law_parameters[2]) {}
   [[nodiscard]] Scalar pressure(Scalar j) const { return lambda * j; }
 
-  [[nodiscard, gnu::always_inline]] inline Mat3<Scalar> stress(const Deformation<Scalar>& d, Scalar scale,
-                                                               Scalar pressure) const {
+  template <class Low>
+  [[nodiscard, gnu::always_inline]] inline Mat3<Scalar> stress(const Deformation<Scalar>& d, Scalar scale, Scalar pressure,
+                                                               Low is_low) const {
     const Scalar jacobian = Scalar(1) + d.j;
-    const bool is_low = jacobian < low;
     const Scalar low_ratio = mu * low_inverse(low_distance(d.j)), high_ratio = mu / jacobian;
     const Scalar ratio = is_low ? low_ratio : high_ratio;
     const Scalar s = scale * ratio;

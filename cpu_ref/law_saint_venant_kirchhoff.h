@@ -13,8 +13,9 @@ struct SaintVenantKirchhoff {
       : low(law_parameters[0]), mu(law_parameters[1]), lambda(law_parameters[2]) {}
   [[nodiscard]] Scalar pressure(Scalar) const { return 0; }
 
-  [[nodiscard, gnu::always_inline]] inline Mat3<Scalar> stress(const Deformation<Scalar>& d, Scalar scale,
-                                                               Scalar /*pressure*/) const {
+  template <class Low>
+  [[nodiscard, gnu::always_inline]] inline Mat3<Scalar> stress(const Deformation<Scalar>& d, Scalar scale, Scalar /*pressure*/,
+                                                               Low is_low) const {
     const Sym3<Scalar> e = green_strain(d.h);
     const Scalar m = scale * mu;
     const Scalar two_m = Scalar(2) * m;
@@ -26,7 +27,7 @@ struct SaintVenantKirchhoff {
     const Scalar one = Scalar(1) + d.t;
     const auto barrier = [&](Scalar cofactor, Scalar pij) {
       const Scalar more = std::fma(y, cofactor, pij);
-      return below > Scalar(0) ? more : pij;
+      return is_low ? more : pij;
     };
     return {barrier((one - d.h.m00) + d.c.m00, p.m00), barrier(d.c.m01 - d.h.m10, p.m01),
             barrier(d.c.m02 - d.h.m20, p.m02),         barrier(d.c.m10 - d.h.m01, p.m10),

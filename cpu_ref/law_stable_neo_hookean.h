@@ -14,8 +14,9 @@ struct StableNeoHookean {
       : low(law_parameters[0]), mu(law_parameters[1]), lambda(law_parameters[2]) {}
   [[nodiscard]] Scalar pressure(Scalar j) const { return lambda * j; }
 
-  [[nodiscard, gnu::always_inline]] inline Mat3<Scalar> stress(const Deformation<Scalar>& d, Scalar scale,
-                                                               Scalar pressure) const {
+  template <class Low>
+  [[nodiscard, gnu::always_inline]] inline Mat3<Scalar> stress(const Deformation<Scalar>& d, Scalar scale, Scalar pressure,
+                                                               Low /*is_low*/) const {
     const Scalar e = std::fma(Scalar(2), d.t, squared_norm(d.h));
     const Scalar ratio = e / std::fma(Scalar(3), e, Scalar(12));
     const Scalar m = scale * mu;

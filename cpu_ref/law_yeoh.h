@@ -19,8 +19,9 @@ struct Yeoh {
         kappa(law_parameters[4]) {}
   [[nodiscard]] Scalar pressure(Scalar j) const { return kappa * j; }
 
-  [[nodiscard, gnu::always_inline]] inline Mat3<Scalar> stress(const Deformation<Scalar>& d, Scalar scale,
-                                                               Scalar pressure) const {
+  template <class Low>
+  [[nodiscard, gnu::always_inline]] inline Mat3<Scalar> stress(const Deformation<Scalar>& d, Scalar scale, Scalar pressure,
+                                                               Low is_low) const {
     const Scalar jacobian = Scalar(1) + d.j;
     const Scalar root = inverse_cube_root(jacobian), squared = root * root;
     const Scalar hh = squared_norm(d.h);
@@ -28,7 +29,6 @@ struct Yeoh {
     const Scalar excess = std::fma(Scalar(3), d.q, d.t) - hh;
     const Scalar s = std::fma(-excess, inverse, Scalar(1));
     const Scalar low_d = low_distance(d.j), low_power = low_first(low_d);
-    const bool is_low = jacobian < low;
     const Scalar power = is_low ? low_power : squared, i1 = Scalar(3) + std::fma(Scalar(2), d.t, hh);
     const Scalar x = std::fma(power, i1, Scalar(-3));
     const Scalar slope = std::fma(x, std::fma(third, x, second), first);

@@ -77,7 +77,7 @@ std::int32_t cell_forces(const Face<Scalar>& below, const Face<Scalar>& above, S
   const auto scaled = [&](Scalar m) { return std::fma(own, m, Scalar(0)); };
   const Deformation<Scalar> d = deformation_of<Scalar>({scaled(mx.x), scaled(my.x), scaled(mz.x), scaled(mx.y), scaled(my.y),
                                                         scaled(mz.y), scaled(mx.z), scaled(my.z), scaled(mz.z)});
-  const Mat3<Scalar> p = law.stress(d, fill * volume, law.pressure(d.j));
+  const Mat3<Scalar> p = law.stress(d, fill * volume, law.pressure(d.j), is_low(law, d));
   const Scalar k = fill * stiffness;
   const Vec3<Scalar> qx{p.m00, p.m10, p.m20}, qy{p.m01, p.m11, p.m21}, qz{p.m02, p.m12, p.m22}, qxy = k * mxy;
   upper = {qz, fma(k, mxz, qx), fma(k, myz, qy), fma(k, mxyz, qxy)};

@@ -56,7 +56,7 @@ void tled_hex8_force(Range range, const Scalar* node_u, const std::int32_t* hex_
     const Deformation<Scalar> d = deformation_of(h);
     const Scalar fill = hex_fill[e];
     mark_fault(fill > Scalar(0) ? fault_of(law, d) : no_fault, step, fault[fault_base + e]);
-    Mat3<Scalar> p = law.stress(d, fill * data[volume], law.pressure(d.j));
+    Mat3<Scalar> p = law.stress(d, fill * data[volume], law.pressure(d.j), is_low(law, d));
     Corners<Scalar> f;
     if constexpr (!Uniform) f = hourglass_of_shape(u, data, fill, h, p);
     for (std::size_t a = 0; a < 8; ++a) {

@@ -22,7 +22,7 @@ void tled_hex8full_force(Range range, const Scalar* node_u, const std::int32_t* 
       const std::int64_t gradients = 25 * point, weight = gradients + 24;
       const Deformation<Scalar> d = deformation_of(hex8_gradient(u, data, gradients));
       kind = std::max(kind, fill > Scalar(0) ? fault_of(law, d) : no_fault);
-      const Mat3<Scalar> p = law.stress(d, fill * data[weight], law.pressure(d.j));
+      const Mat3<Scalar> p = law.stress(d, fill * data[weight], law.pressure(d.j), is_low(law, d));
       for (std::size_t a = 0; a < 8; ++a) {
         const auto b = gradients + 3 * static_cast<std::int64_t>(a);
         const Scalar bx = data[b], by = data[b + 1], bz = data[b + 2];

@@ -24,11 +24,11 @@ void tled_tet4_force(Range range, const Scalar* node_u, const std::int32_t* tet_
     }
     Scalar f[PLIANT_TET_FORCE_PLANES][PLIANT_TILE];  // local, for no other array can overlap it
     std::int32_t fault_kind[PLIANT_TILE];
-    for (int e = 0; e < PLIANT_TILE; ++e) {
+    const auto element = [&](int e, auto low) {
       const Tet4<Scalar> t = tet4_load(u, data, e);
       const Deformation<Scalar> d = deformation_of(t.h);
       fault_kind[e] = fault_of(law, d);
-      const Mat3<Scalar> p = law.stress(d, t.volume, Averaged ? mean_pressure[e] : law.pressure(d.j));
+      const Mat3<Scalar> p = law.stress(d, t.volume, Averaged ? mean_pressure[e] : law.pressure(d.j), low(d));
       f[3][e] = dot3(p.m00, t.b1x, p.m01, t.b1y, p.m02, t.b1z);
       f[4][e] = dot3(p.m10, t.b1x, p.m11, t.b1y, p.m12, t.b1z);
       f[5][e] = dot3(p.m20, t.b1x, p.m21, t.b1y, p.m22, t.b1z);
@@ -41,7 +41,13 @@ void tled_tet4_force(Range range, const Scalar* node_u, const std::int32_t* tet_
       f[0][e] = -((f[3][e] + f[6][e]) + f[9][e]);
       f[1][e] = -((f[4][e] + f[7][e]) + f[10][e]);
       f[2][e] = -((f[5][e] + f[8][e]) + f[11][e]);
-    }
+      return is_low(law, d);
+    };
+    // Few tiles hold an element below law.low: they are made again.
+    std::int32_t low = 0;
+    for (int e = 0; e < PLIANT_TILE; ++e)
+      low |= static_cast<std::int32_t>(element(e, [](const auto&) { return std::false_type{}; }));
+    for (int e = 0; low != 0 && e < PLIANT_TILE; ++e) element(e, [&](const auto& d) { return is_low(law, d); });
     std::copy(&f[0][0], &f[0][0] + PLIANT_TET_FORCE_PLANES * PLIANT_TILE,
               corner_force + corner_base + PLIANT_TET_FORCE_PLANES * tile);
     for (int e = 0; e < PLIANT_TILE; ++e) mark_fault(fault_kind[e], step, fault[fault_base + tile + e]);

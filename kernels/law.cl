@@ -4,8 +4,8 @@
 //   LAW_INVERTIBLE                                       1: the law is finite for J <= 0 as it is
 //   law law_load(__global const float* law_parameters)   the same for all elements of a batch: loaded once, before any loop
 //   real law_pressure(law m, real j)                     dU/dJ [Pa] of the volumetric part U(J) at j = J - 1; 0 if it has none
-//   mat3 law_stress(deformation d, real scale, law m, real pressure)
-// The last is the first Piola-Kirchhoff stress P = F S times `scale` (a volume); `pressure` is law_pressure or its nodal average.
+//   mat3 law_stress(deformation d, real scale, law m, real pressure, integer low)
+// low: J < m.low. The last is the first Piola-Kirchhoff stress P = F S times `scale` (a volume); `pressure` is law_pressure or its nodal average.
 #include "deformation.cl"
 #include "inversion.cl"
 #include "laws.cl"
@@ -23,4 +23,18 @@ static inline integer fault_of(deformation d, law m) {
   const integer goes_on = finite && (real)(m.low) > 0.0f;
 #endif
   return positive && finite ? none : goes_on ? inverted : lost;
+}
+
+// law_stress of the elements that exist, and `kind`, what is wrong with them. Elements below m.low and faults are rare: one branch
+// spares the others what they need, and is the same for all sixteen of a group nearly always.
+static inline mat3 stress_of(deformation d, real scale, law m, real pressure, integer exists, integer* kind) {
+  const real jacobian = 1.0f + d.j;
+  const integer none = NO_FAULT, usual = jacobian >= (m.low > FLT_MIN ? m.low : FLT_MIN) && jacobian < INFINITY;
+  mat3 p = law_stress(d, scale, m, pressure, none);
+  *kind = none;
+  if (ANY(!usual)) {  // what does not exist is not deformed
+    *kind = exists ? fault_of(d, m) : none;
+    p = law_stress(d, scale, m, pressure, jacobian < m.low);
+  }
+  return p;
 }

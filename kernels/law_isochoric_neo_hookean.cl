@@ -13,7 +13,7 @@ static inline law law_load(__global const float* law_parameters) {
 }
 static inline real law_pressure(law m, real j) { return m.kappa * j; }
 
-static inline mat3 law_stress(deformation d, real scale, law m, real pressure) {
+static inline mat3 law_stress(deformation d, real scale, law m, real pressure, integer low) {
   const real jacobian = 1.0f + d.j;
   const real root = inverse_cube_root(jacobian);
   const real hh = squared_norm(d.h);
@@ -22,7 +22,6 @@ static inline mat3 law_stress(deformation d, real scale, law m, real pressure) {
   const real one_minus_s = excess * third;
   const real s = fma(-excess, third, 1.0f);
   const real low_d = low_distance(d.j);
-  const integer low = jacobian < m.low;
   const real power = m.mu * (low ? low_first(low_d) : root * root), g = scale * power;
   const real p = scale * pressure;
   const real difference =

@@ -14,7 +14,7 @@ static inline law law_load(__global const float* law_parameters) {
 }
 static inline real law_pressure(law m, real j) { return m.kappa * j; }
 
-static inline mat3 law_stress(deformation d, real scale, law m, real pressure) {
+static inline mat3 law_stress(deformation d, real scale, law m, real pressure, integer low) {
   const sym3 e = green_strain(d.h);  // G / 2 on the diagonal, G beside it
   const real jacobian = 1.0f + d.j;
   const real root = inverse_cube_root(jacobian), squared = root * root;
@@ -27,7 +27,6 @@ static inline mat3 law_stress(deformation d, real scale, law m, real pressure) {
   const real i2 = fma(4.0f, (e.m00 + e.m11) + e.m22, z);  // I2 - 3
   const real w = (2.0f * third) * i2;
 
-  const integer low = jacobian < m.low;
   const real low_d = low_distance(d.j);
   const real a = scale * (m.first * (low ? low_first(low_d) : squared));
   const real b = scale * (m.second * (low ? low_second(low_d) : squared * squared)), twice_b = 2.0f * b;

@@ -15,7 +15,7 @@ static inline real law_pressure(law m, real j) {
   return none;
 }
 
-static inline mat3 law_stress(deformation d, real scale, law m, real pressure) {
+static inline mat3 law_stress(deformation d, real scale, law m, real pressure, integer low) {
   const sym3 e = green_strain(d.h);
   const real mu = scale * m.mu;
   const real two_mu = 2.0f * mu;
@@ -23,8 +23,6 @@ static inline mat3 law_stress(deformation d, real scale, law m, real pressure) {
   const sym3 s = {fma(two_mu, e.m00, l), fma(two_mu, e.m11, l), fma(two_mu, e.m22, l), mu * e.m01, mu * e.m02, mu * e.m12};
   const mat3 p = times_gradient(d.h, s);
   const real below = 4.0f * (m.low - (1.0f + d.j));
-  const integer low = below > 0.0f;
-  if (!ANY(low)) return p;
   const real y = -((scale * fma(2.0f, m.mu, m.lambda)) * (below * below));
   const real one = 1.0f + d.t;
 #define BARRIER(ij, cofactor) r.ij = low ? fma(y, cofactor, p.ij) : p.ij

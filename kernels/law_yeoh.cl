@@ -12,7 +12,7 @@ static inline law law_load(__global const float* law_parameters) {
 }
 static inline real law_pressure(law m, real j) { return m.kappa * j; }
 
-static inline mat3 law_stress(deformation d, real scale, law m, real pressure) {
+static inline mat3 law_stress(deformation d, real scale, law m, real pressure, integer low) {
   const real jacobian = 1.0f + d.j;
   const real root = inverse_cube_root(jacobian), squared = root * root;
   const real hh = squared_norm(d.h);
@@ -20,7 +20,6 @@ static inline mat3 law_stress(deformation d, real scale, law m, real pressure) {
   const real excess = fma(3.0f, d.q, d.t) - hh;  // 3 J (1 - s)
   const real s = fma(-excess, third, 1.0f);
   const real low_d = low_distance(d.j);
-  const integer low = jacobian < m.low;
   const real power = low ? low_first(low_d) : squared, i1 = 3.0f + fma(2.0f, d.t, hh);
   const real x = fma(power, i1, -3.0f);
   const real slope = fma(x, fma(m.third, x, m.second), m.first);

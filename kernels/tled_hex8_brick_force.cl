@@ -87,7 +87,7 @@ static inline void write_plane(const face* forces, __global float* out, int plan
 
 __kernel void tled_hex8_brick_force(__global const float* node_u, __global const int* brick_neighbor,
                                     __global const int* brick_rows, __global const float* brick_fill, __global float* brick_force,
-                                    __global int* fault, __global const float* law_parameters, float gradient, float volume,
+                                    __global int* fault, __global const float* restrict law_parameters, float gradient, float volume,
                                     float stiffness, int first_brick, int fault_base, int step) {
 #if LANES == 16
   const int brick = first_brick + (int)get_global_id(0), lane = 0;
@@ -144,10 +144,9 @@ __kernel void tled_hex8_brick_force(__global const float* node_u, __global const
           const mat3 h = {fma(g, mx.x, none), fma(g, my.x, none), fma(g, mz.x, none), fma(g, mx.y, none), fma(g, my.y, none),
                           fma(g, mz.y, none), fma(g, mx.z, none), fma(g, my.z, none), fma(g, mz.z, none)};
           const deformation d = deformation_of(h);
-          const integer sound = NO_FAULT;
-          const integer kind = full ? fault_of(d, m) : sound;
+          integer kind;
+          const mat3 p = stress_of(d, fill * volume, m, law_pressure(m, d.j), full, &kind);
           MARK_FAULT(kind, step, fault, fault_base + brick * PLIANT_BRICK_NODES + cell)
-          const mat3 p = law_stress(d, fill * volume, m, law_pressure(m, d.j));
           const real k = fill * stiffness;
           const vec3 qx = {p.m00, p.m10, p.m20}, qy = {p.m01, p.m11, p.m21}, qz = {p.m02, p.m12, p.m22};
           const vec3 qxy = times(k, mxy);

@@ -20,7 +20,7 @@
 
 __kernel void tled_hex8_force(__global const float* node_u, __global const int* hex_nodes, __global const float* hex_data,
                               __global const float* hex_fill, __global float* corner_force, __global int* fault,
-                              __global const float* law_parameters, int corner_base, int fault_base, int step) {
+                              __global const float* restrict law_parameters, int corner_base, int fault_base, int step) {
   const int e = FIRST_INDEX;
   __global const int* nodes = hex_nodes + TILE_BASE(e, 8);
 #if !UNIFORM
@@ -53,11 +53,10 @@ __kernel void tled_hex8_force(__global const float* node_u, __global const int* 
   }
   const deformation d = deformation_of(h);
   const real fill = LOAD(hex_fill, e);
-  const integer none = NO_FAULT;
-  const integer kind = fill > 0.0f ? fault_of(d, m) : none;
+  integer kind;
+  mat3 p = stress_of(d, fill * DATA(VOLUME), m, law_pressure(m, d.j), fill > 0.0f, &kind);
   MARK_FAULT(kind, step, fault, fault_base + e)
 #if UNIFORM
-  const mat3 p = law_stress(d, fill * DATA(VOLUME), m, law_pressure(m, d.j));
   const real k = fill * DATA(57);
   real qx[4], qy[4], qz[4];
   for (int i = 0; i < 4; ++i) {
@@ -73,7 +72,6 @@ __kernel void tled_hex8_force(__global const float* node_u, __global const int* 
     qz[i] = k * qz[i];
   }
 #else
-  mat3 p = law_stress(d, fill * DATA(VOLUME), m, law_pressure(m, d.j));
   const modes qx = modes_of(x), qy = modes_of(y), qz = modes_of(z);
   vec3 q[4] = {{qx.xy, qy.xy, qz.xy}, {qx.xz, qy.xz, qz.xz}, {qx.yz, qy.yz, qz.yz}, {qx.xyz, qy.xyz, qz.xyz}};
   p = hourglass(q, h, p, fill, data);

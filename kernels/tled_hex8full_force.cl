@@ -14,7 +14,7 @@
 
 __kernel void tled_hex8full_force(__global const float* node_u, __global const int* hex_nodes, __global const float* hex_data,
                                   __global const float* hex_fill, __global float* corner_force, __global int* fault,
-                                  __global const float* law_parameters, int corner_base, int fault_base, int step) {
+                                  __global const float* restrict law_parameters, int corner_base, int fault_base, int step) {
   const int e = FIRST_INDEX;
   const law m = law_load(law_parameters);
   __global const int* nodes = hex_nodes + TILE_BASE(e, 8);
@@ -47,9 +47,9 @@ __kernel void tled_hex8full_force(__global const float* node_u, __global const i
       h.m22 = fma(z[a], bz, h.m22);
     }
     const deformation d = deformation_of(h);
-    const integer found = fill > 0.0f ? fault_of(d, m) : none;
+    integer found;
+    const mat3 p = stress_of(d, fill * DATA(25 * g + 24), m, law_pressure(m, d.j), fill > 0.0f, &found);
     kind = found > kind ? found : kind;
-    const mat3 p = law_stress(d, fill * DATA(25 * g + 24), m, law_pressure(m, d.j));
     for (int a = 0; a < 8; ++a) {
       const RECORD_TYPE bx = DATA(25 * g + 3 * a), by = DATA(25 * g + 3 * a + 1), bz = DATA(25 * g + 3 * a + 2);
       fx[a] = fma(p.m02, bz, fma(p.m01, by, fma(p.m00, bx, fx[a])));

@@ -10,22 +10,24 @@
 
 __kernel void tled_tet4_force(__global const float* node_u, __global const int* tet_nodes, __global const float* tet_data,
                               __global const float* anp_pressure, __global float* corner_force, __global int* fault,
-                              __global const float* law_parameters, int corner_base, int fault_base, int step) {
+                              __global const float* restrict law_parameters, int corner_base, int fault_base, int step) {
   const int e = FIRST_INDEX;
   const law m = law_load(law_parameters);
   __global const int* nodes = tet_nodes + TILE_BASE(e, 4);
   __global const float* data = tet_data + TILE_BASE(e, PLIANT_TET_DATA_PLANES);
-  const tet4 t = tet4_load(node_u, nodes, data);
-  const deformation d = deformation_of(t.h);
-  const integer kind = fault_of(d, m);
-  MARK_FAULT(kind, step, fault, fault_base + e)
 #if AVERAGED
   const real pressure = 0.25f * ((gather(anp_pressure, nodes) + gather(anp_pressure, nodes + PLIANT_TILE)) +
                                  (gather(anp_pressure, nodes + 2 * PLIANT_TILE) + gather(anp_pressure, nodes + 3 * PLIANT_TILE)));
-#else
+#endif
+  const tet4 t = tet4_load(node_u, nodes, data);
+  const deformation d = deformation_of(t.h);
+#if !AVERAGED
   const real pressure = law_pressure(m, d.j);
 #endif
-  const mat3 p = law_stress(d, DATA(9), m, pressure);
+  const integer all = -1;
+  integer kind;
+  const mat3 p = stress_of(d, DATA(9), m, pressure, all, &kind);
+  MARK_FAULT(kind, step, fault, fault_base + e)
   const real f1x = fma(p.m02, t.b1z, fma(p.m01, t.b1y, p.m00 * t.b1x));
   const real f1y = fma(p.m12, t.b1z, fma(p.m11, t.b1y, p.m10 * t.b1x));
   const real f1z = fma(p.m22, t.b1z, fma(p.m21, t.b1y, p.m20 * t.b1x));
