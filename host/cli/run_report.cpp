@@ -172,7 +172,11 @@ class Report {
     json["inverted"] = {{"batches", inverted.batches}, {"most", inverted.most}, {"now", inverted.last}};
     json["calmed_elements"] = inverted.calmed;
     if (inverted.calmed > 0) {
-      out_.note(fmt::format("in {} elements, counted batch by batch, motion faster than sound was taken out", inverted.calmed));
+      out_.note(
+          fmt::format("in {} elements, counted batch by batch, nodes came to move against each other by more than a quarter of "
+                      "an edge in a "
+                      "step; what exceeded that was taken out",
+                      inverted.calmed));
     }
     if (inverted.batches == 0) return;
     json["inverted"]["first"] = {

@@ -120,13 +120,6 @@ void ModelSwap::carry_motion() {
   for (std::size_t b = 0; b < v_.size(); ++b) {
     const NodeOrigins& origins = origins_[b];
     const std::vector<std::int32_t>&slots = model_->bodies[b].slot, &old_slots = old_model_->bodies[b].slot;
-    std::vector<Vec3d> velocity(slots.size());
-    for (std::size_t n = 0; n < velocity.size(); ++n) velocity[n] = v_[b][origins.of(n)];
-    for (const FluxMass& f : origins.flux) {
-      // own_mass is a difference: of a node with nearly nothing, mostly rounding.
-      const double share = std::min(1.0, f.mass / model_->own_mass(static_cast<std::size_t>(slots[f.node])));
-      for (std::size_t c = 0; c < 3; ++c) velocity[f.node][c] += share * (v_[b][f.from][c] - v_[b][origins.of(f.node)][c]);
-    }
     for (std::size_t n = 0; n < slots.size(); ++n) {
       const auto slot = static_cast<std::size_t>(slots[n]);
       const double* moved = &old_u_[4 * static_cast<std::size_t>(old_slots[origins.of(n)])];
@@ -134,7 +127,7 @@ void ModelSwap::carry_motion() {
       if (!before.empty()) std::copy_n(&before[3 * static_cast<std::size_t>(old_slots[origins.of(n)])], 3, &offset_[3 * slot]);
       for (std::size_t c = 0; c < 3; ++c) {
         new_u_[4 * slot + c] = moved[c];
-        new_w_[4 * slot + c] = step * velocity[n][c];
+        new_w_[4 * slot + c] = step * v_[b][origins.of(n)][c];
       }
     }
   }

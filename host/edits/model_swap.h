@@ -12,16 +12,9 @@
 
 namespace pliant {
 
-/// Mass that a node takes over from another one than its own origin [kg].
-struct FluxMass {
-  std::int32_t node, from;
-  double mass;
-};
-
 /// Where the nodes of an edited body come from.
 struct NodeOrigins {
   std::vector<std::int32_t> from;  ///< node of the body before the edit; empty: the edit left it alone
-  std::vector<FluxMass> flux;
   [[nodiscard]] std::size_t of(std::size_t node) const { return from.empty() ? node : static_cast<std::size_t>(from[node]); }
 };
 

@@ -76,9 +76,6 @@ Model build_elements(const Scene& scene, std::span<const BodyMesh* const> solids
 /// The next one. With `changes`, the model has the surface from before an edit of its only body already, and only these differ.
 void add_surfaces(std::span<const BodyMesh* const> solids, Model& model, const SurfaceChanges* changes = nullptr);
 
-/// Density of each element [kg/m^3].
-std::vector<double> densities(const Body& body, const BodyElements& solid);
-
 /// The corners of a lattice cell from its six tetrahedra (kKuhnTets), which follow each other.
 std::array<std::int32_t, 8> cell_corners(const std::array<std::int32_t, 4>* tets);
 

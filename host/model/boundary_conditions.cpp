@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "model/flsm.h"
@@ -175,12 +176,19 @@ void load(const Body& body, const ModelBody& placed, Model& model) {
   for (const Force& force : body.forces) {
     const std::int32_t curve = add_curve(model, force.curve);
     const auto nodes = select_nodes(force.where, placed, Virtual::never);
-    // In a lattice by mass, so that a node of nearly empty cells gets nearly nothing, and a face what a traction would give.
+    // In a lattice by mass, so that a node of nearly empty cells gets nearly nothing, and a face what a traction would give. In
+    // a volume mesh every place gets as much, and the nodes that a tear made of one share it by mass: nobody else's changes.
     const bool by_mass = placed.spacing > 0;
     double whole = 0;
-    for (const std::int32_t n : nodes) whole += by_mass ? model.own_mass(placed.slot[n]) : 1;
+    std::map<Vec3d, double> mass_at;
     for (const std::int32_t n : nodes) {
-      const double share = (by_mass ? model.own_mass(placed.slot[n]) : 1) / whole;
+      const double mass = model.own_mass(placed.slot[n]);
+      whole += mass;
+      if (!by_mass) mass_at[placed.rest[n]] += mass;
+    }
+    for (const std::int32_t n : nodes) {
+      const double mass = model.own_mass(placed.slot[n]);
+      const double share = by_mass ? mass / whole : mass / mass_at[placed.rest[n]] / static_cast<double>(mass_at.size());
       model.forces.push_back({placed.slot[n], {force.total[0] * share, force.total[1] * share, force.total[2] * share}, curve});
     }
   }

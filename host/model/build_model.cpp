@@ -326,12 +326,6 @@ std::int64_t Model::elements() const {
   return n;
 }
 
-std::vector<double> densities(const Body& body, const BodyElements& solid) {
-  std::vector<double> density;
-  for (const int m : materials_of(body, solid)) density.push_back(material_of(body, m).density);
-  return density;
-}
-
 Model build_model(const Scene& scene) { return build_model(scene, make_body_meshes(scene)); }
 
 Model build_model(const Scene& scene, const std::vector<BodyMesh>& solids) {

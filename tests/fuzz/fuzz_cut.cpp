@@ -102,11 +102,6 @@ void check_edit(const CutEdit& edit, const CutElements& before, const CutElement
     require(n >= 0 && n < static_cast<std::int32_t>(before.origin.size()), "a stale origin");
   for (const std::int32_t i : edit.element_from)
     require(i >= 0 && i < static_cast<std::int32_t>(before.nodes.size()), "a stale element");
-  for (const FillFlux& f : edit.flux) {
-    require(f.fill > 0 && f.element >= 0 && f.element < static_cast<std::int32_t>(now.nodes.size()), "a flux from nowhere");
-    for (const std::int32_t n : f.from_nodes)
-      require(n >= 0 && n < static_cast<std::int32_t>(before.origin.size()), "a flux from a stale node");
-  }
 }
 
 double volume(const CutSurface& surface) {

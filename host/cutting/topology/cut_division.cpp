@@ -65,6 +65,9 @@ void raise_to_floor(std::array<double, 8>& share) {
   for (double& s : share) s /= sum;
 }
 
+/// Of a copy, what each of those that it is divided into takes at least.
+constexpr double kLeastPart = 1e-3;
+
 }  // namespace
 
 TetDivision CutTopology::division(std::int32_t cell, const CellCut& cut, int tet) const {
@@ -85,6 +88,21 @@ TetDivision CutTopology::division(std::int32_t cell, const CellCut& cut, int tet
 }
 
 /// Share the material of a cell out among its components.
+void CutTopology::inherit(const CellCut& before, CellCut& cut) const {
+  if (before.components < 2) return;
+  std::array<int, 8> parent{};
+  for (int a = mesh_->shape->corners - 1; a >= 0; --a) parent[cut.label[a]] = before.label[a];
+  std::array<double, 8> whole{}, sum{};
+  for (int k = 0; k < cut.components; ++k) whole[parent[k]] += cut.share[k];
+  for (int k = 0; k < cut.components; ++k) {
+    if (cut.share[k] > 0) cut.share[k] = std::max(cut.share[k] / whole[parent[k]], kLeastPart);
+    sum[parent[k]] += cut.share[k];
+  }
+  for (int k = 0; k < cut.components; ++k) {
+    if (cut.share[k] > 0) cut.share[k] *= before.share[parent[k]] / sum[parent[k]];
+  }
+}
+
 void CutTopology::share(std::int32_t cell, CellCut& cut) const {
   cut.share.fill(0);
   if (cut.components == 1) {

@@ -115,35 +115,6 @@ void CutTopology::number_nodes(const OldCuts& old, const std::vector<std::array<
   }
 }
 
-/// Cutting a cell again moves the points at which it is divided, so that copies gain or lose a little fill beside what their
-/// parts share out.
-void CutTopology::add_flux(std::int32_t cell, const CellCut& before, const std::vector<std::array<std::int32_t, 8>>& old_copies,
-                           CutEdit& edit) const {
-  const CellCut& now = cells_.at(cell);
-  if (before.components < 2) return;
-  std::array<double, 8> children{}, gain{}, loss{};
-  std::array<int, 8> parent{};
-  for (int a = mesh_->shape->corners - 1; a >= 0; --a) parent[now.label[a]] = before.label[a];
-  for (int k = 0; k < now.components; ++k) children[parent[k]] += now.share[k];
-  for (int j = 0; j < before.components; ++j) loss[j] = std::max(0.0, before.share[j] - children[j]);
-  for (int k = 0; k < now.components; ++k) {
-    const double excess = children[parent[k]] - before.share[parent[k]];
-    if (excess > 0) gain[k] = excess * now.share[k] / children[parent[k]];
-  }
-  for (int k = 0, j = 0; k < now.components && j < before.components;) {
-    const double part = std::min(gain[k], loss[j]);
-    const std::int32_t from = before.element[j];
-    const auto cells = static_cast<std::int32_t>(mesh_->cells.size());
-    if (part > 0) {
-      edit.flux.push_back(
-          {now.element[k], from, part * mesh_->fill[cell], from < cells ? elements_.nodes[from] : old_copies[from - cells]});
-    }
-    gain[k] -= part;
-    loss[j] -= part;
-    (gain[k] <= loss[j] ? k : j) += 1;
-  }
-}
-
 std::int32_t CutTopology::pieces(std::vector<std::int32_t>* piece_of) const {
   DisjointSets sets(elements_.origin.size());
   for (const auto& nodes : elements_.nodes) {

@@ -113,6 +113,7 @@ CutEdit CutTopology::cut(const CutEdges& edges, const std::function<void(const s
     CellCut& cell = cells_.at(c);
     label(cell);
     share(c, cell);
+    inherit(old.at(c), cell);
     split |= cell.components > 1;
   }
   if (!split) return edit;
@@ -120,7 +121,6 @@ CutEdit CutTopology::cut(const CutEdges& edges, const std::function<void(const s
   const auto copies = elements_.nodes.begin() + static_cast<std::ptrdiff_t>(mesh_->cells.size());
   const std::vector<std::array<std::int32_t, 8>> old_copies(copies, elements_.nodes.end());
   number_elements(old, edit);
-  for (const auto& [c, before] : old) add_flux(c, before, old_copies, edit);
   number_nodes(old, old_copies, edit);
   return edit;
 }

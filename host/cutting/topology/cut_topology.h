@@ -42,7 +42,8 @@ struct CellCut {
   int components = 1;                  ///< 1: not completely cut yet, the cell is whole
   /// The copy of each component; -1: the component holds no material and has none. One of them keeps the cell's own number.
   std::array<std::int32_t, 8> element{-1, -1, -1, -1, -1, -1, -1, -1};
-  std::array<double, 8> share{};  ///< of the cell's material; 0 without a copy
+  std::array<double, 8>
+      share{};  ///< of the cell's material; 0 without a copy. What a component is divided into adds up to its own
 };
 
 /// Elements 0 .. cells - 1 are the cells, those cut completely being the copies of their first component with material; the
@@ -56,21 +57,11 @@ struct CutElements {
   std::vector<std::int32_t> origin;  ///< [nodes] node of the uncut body at the same place; of the first ones themselves
 };
 
-/// Fill that changed hands between the copies of one cell because it was cut again: what `element` has now, and `from` had
-/// before.
-struct FillFlux {
-  std::int32_t element = 0;                  ///< element now
-  std::int32_t from = 0;                     ///< element before
-  double fill = 0;                           ///< > 0
-  std::array<std::int32_t, 8> from_nodes{};  ///< of `from`, before
-};
-
 /// What an edit did. An edit that changed no element has empty lists.
 struct CutEdit {
   std::vector<std::int32_t> cells;         ///< cells whose CellCut changed, ascending
   std::vector<std::int32_t> node_from;     ///< [nodes now] the node before
   std::vector<std::int32_t> element_from;  ///< [elements now] the element before
-  std::vector<FillFlux> flux;              ///< by cell
   [[nodiscard]] bool changed_elements() const { return !node_from.empty(); }
 };
 
@@ -142,9 +133,10 @@ class CutTopology {
   void label(CellCut& cell) const;
   [[nodiscard]] TetDivision division(std::int32_t cell, const CellCut& cut, int tet) const;
   void share(std::int32_t cell, CellCut& cut) const;
+  /// What a component becomes keeps its share, whatever crossings came to light since: copies are deformed differently, and
+  /// what changed hands would gain or lose energy and momentum.
+  void inherit(const CellCut& before, CellCut& cut) const;
   void number_elements(const OldCuts& old, CutEdit& edit);
-  void add_flux(std::int32_t cell, const CellCut& before, const std::vector<std::array<std::int32_t, 8>>& old_copies,
-                CutEdit& edit) const;
   [[nodiscard]] std::vector<NodeClass> classes_at(std::int32_t node) const;
   void number_nodes(const OldCuts& old, const std::vector<std::array<std::int32_t, 8>>& old_nodes, CutEdit& edit);
 
