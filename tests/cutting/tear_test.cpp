@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "cutting/cut_bodies.h"
 #include "cutting/cut_scenes.h"
 #include "io/save.h"
@@ -141,6 +143,31 @@ TEST_F(Tear, integrity_lowers_what_it_bears) {
   Simulation s(scene, open_backend("cpu"));
   while (s.time() < 0.35) s.advance(64);
   EXPECT_GT(s.topology_version(), 0);
+}
+
+/// What a node that tears gives to the others would do work on them.
+TEST_F(Tear, loads_stay_where_they_were) {
+  Scene scene = bar_scene(file, 1500);
+  Force force;
+  force.where = {Selection::Kind::box, {-1, -1, -1}, {1, 1, 1}, 0, {}, ""};
+  force.total = {0, 0, 1e-3};
+  scene.bodies[0].forces.push_back(force);
+  Simulation s(scene, open_backend("cpu"));
+  const auto by_place = [&] {
+    std::map<Vec3d, double> sum;
+    std::vector<double> of_slot(static_cast<std::size_t>(s.model().slots));
+    for (const NodeForce& f : s.model().forces) of_slot[static_cast<std::size_t>(f.slot)] += f.force[2];
+    const ModelBody& body = s.model().bodies[0];
+    for (std::size_t n = 0; n < body.rest.size(); ++n) sum[body.rest[n]] += of_slot[static_cast<std::size_t>(body.slot[n])];
+    return sum;
+  };
+  const std::map<Vec3d, double> before = by_place();
+  while (s.time() < 0.4 && !s.divergence()) s.advance(16);
+  ASSERT_FALSE(s.divergence());
+  EXPECT_GT(s.topology_version(), 0);
+  const std::map<Vec3d, double> after = by_place();
+  ASSERT_EQ(after.size(), before.size());
+  for (const auto& [place, sum] : before) EXPECT_NEAR(after.at(place) / sum, 1, 1e-12);
 }
 
 TEST_F(Tear, momentum_is_kept_where_it_tears) {
