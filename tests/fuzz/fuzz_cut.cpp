@@ -102,6 +102,10 @@ void check_edit(const CutEdit& edit, const CutElements& before, const CutElement
     require(n >= 0 && n < static_cast<std::int32_t>(before.origin.size()), "a stale origin");
   for (const std::int32_t i : edit.element_from)
     require(i >= 0 && i < static_cast<std::int32_t>(before.nodes.size()), "a stale element");
+  std::vector<double> inherited(before.nodes.size(), 0.0);
+  for (std::size_t i = 0; i < now.nodes.size(); ++i) inherited[edit.element_from[i]] += now.fill[i];
+  for (std::size_t i = 0; i < inherited.size(); ++i)
+    require(std::abs(inherited[i] - before.fill[i]) < 1e-12, "fill that changed hands");
 }
 
 double volume(const CutSurface& surface) {
@@ -188,7 +192,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   CutTopology fresh(tets ? base.tets : base.cells);
   fresh.cut(body.edges());
-  require(fresh.elements().nodes == body.elements().nodes && fresh.elements().fill == body.elements().fill,
+  require(fresh.elements().nodes == body.elements().nodes && fresh.elements().cell == body.elements().cell,
           "the history of the cuts shows");
   return 0;
 }
