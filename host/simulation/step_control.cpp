@@ -103,7 +103,9 @@ void StepControl::adapt() {
   const double dt = run_.state.clock.dt, ceiling = limit.dt_ceiling;
   const bool may_grow = run_.state.clock.step >= limit.hold;
   if (may_grow) run_.state.limit.dt_backoff = std::min(1.0, limit.dt_backoff / kBackoff);
-  const double next = std::min({ceiling, now.dt, kMostGrowth * dt});
+  // A state that asks for less than this has elements that are lost; they are calmed, which a step that follows them prevents.
+  const double lowest = std::min(dt, kLeastBackoff * ceiling);
+  const double next = std::max(lowest, std::min({ceiling, now.dt, kMostGrowth * dt}));
   if (next < dt || (may_grow && (next > 1.1 * dt || (next == ceiling && dt < ceiling)))) change(next);
 }
 

@@ -143,5 +143,25 @@ TEST(StepRetries, StopAtTheFloorBeforeTheyGoBelow) {
   EXPECT_DOUBLE_EQ(l.state.clock.dt, 0.35 * floor);
 }
 
+/// What asks for less is lost, and is calmed instead.
+TEST(StepRetries, NoEstimateTakesTheStepBelowAFiftieth) {
+  Loaded l(scene_with(box_body("box", {0.03, 0.02, 0.02})));
+  StepControl step(l.run);
+  step.start(0, true);
+  const double first = l.state.clock.dt;
+  const Model& model = l.loaded.model();
+  std::vector<double> u(4 * static_cast<std::size_t>(model.slots));
+  for (std::size_t s = 0; s < model.rest.size(); ++s) {
+    for (std::size_t c = 0; c < 3; ++c) u[4 * s + c] = 1000 * model.rest[s][c];
+  }
+  l.run.write_u(u);
+  step.adapt();
+  EXPECT_LT(l.state.limit.stable_dt, 1e-4 * first);
+  EXPECT_DOUBLE_EQ(l.state.clock.dt, 0.02 * first);
+  l.state.clock.dt = 0.001 * first;  // after retries of a batch that was lost
+  step.adapt();
+  EXPECT_DOUBLE_EQ(l.state.clock.dt, 0.001 * first);
+}
+
 }  // namespace
 }  // namespace pliant
