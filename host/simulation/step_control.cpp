@@ -21,6 +21,7 @@ constexpr std::int64_t kFirstAdapts[] = {64, 128};
 constexpr int kAdaptIterations = 20;
 /// A batch that diverged or burst is tried again with a smaller automatic step, until that is this share of what is allowed.
 constexpr double kLeastBackoff = 0.02;
+constexpr double kLeastShare = 1e-3;  ///< of the ceiling, to which an estimate may take an automatic step
 constexpr double kBackoff = 0.7;
 constexpr double kMostBallast = 0.01;     ///< of the mass
 constexpr double kMostGrowth = 2;         ///< of the step from one look to the next
@@ -104,7 +105,7 @@ void StepControl::adapt() {
   const bool may_grow = run_.state.clock.step >= limit.hold;
   if (may_grow) run_.state.limit.dt_backoff = std::min(1.0, limit.dt_backoff / kBackoff);
   // A state that asks for less than this has elements that are lost; they are calmed, which a step that follows them prevents.
-  const double lowest = std::min(dt, kLeastBackoff * ceiling);
+  const double lowest = std::min(dt, kLeastShare * ceiling);
   const double next = std::max(lowest, std::min({ceiling, now.dt, kMostGrowth * dt}));
   if (next < dt || (may_grow && (next > 1.1 * dt || (next == ceiling && dt < ceiling)))) change(next);
 }

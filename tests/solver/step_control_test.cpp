@@ -144,7 +144,7 @@ TEST(StepRetries, StopAtTheFloorBeforeTheyGoBelow) {
 }
 
 /// What asks for less is lost, and is calmed instead.
-TEST(StepRetries, NoEstimateTakesTheStepBelowAFiftieth) {
+TEST(StepRetries, NoEstimateTakesTheStepBelowAThousandth) {
   Loaded l(scene_with(box_body("box", {0.03, 0.02, 0.02})));
   StepControl step(l.run);
   step.start(0, true);
@@ -157,10 +157,10 @@ TEST(StepRetries, NoEstimateTakesTheStepBelowAFiftieth) {
   l.run.write_u(u);
   step.adapt();
   EXPECT_LT(l.state.limit.stable_dt, 1e-4 * first);
-  EXPECT_DOUBLE_EQ(l.state.clock.dt, 0.02 * first);
-  l.state.clock.dt = 0.001 * first;  // after retries of a batch that was lost
+  EXPECT_DOUBLE_EQ(l.state.clock.dt, 1e-3 * first);
+  l.state.clock.dt = 2e-4 * first;  // after retries of a batch that was lost
   step.adapt();
-  EXPECT_DOUBLE_EQ(l.state.clock.dt, 0.001 * first);
+  EXPECT_DOUBLE_EQ(l.state.clock.dt, 2e-4 * first);
 }
 
 }  // namespace
