@@ -38,7 +38,7 @@ inline std::int32_t fault_of(const LawType& law, const Deformation<Scalar>& d) {
   return finite && (LawType::invertible || law.low > Scalar(0)) ? inverted : lost;
 }
 
-/// Below what volume the law goes on with polynomials of it.
+/// Whether J is so low that the law goes on with polynomials of it.
 template <class LawType, class Scalar>
 inline bool is_low(const LawType& law, const Deformation<Scalar>& d) {
   return Scalar(1) + d.j < law.low;

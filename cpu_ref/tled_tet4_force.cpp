@@ -1,5 +1,6 @@
 // Twin of kernels/tled_tet4_force.cl.
 #include <algorithm>
+#include <type_traits>
 
 #include "law.h"
 #include "registry.h"

@@ -5,7 +5,8 @@
 //   law law_load(__global const float* law_parameters)   the same for all elements of a batch: loaded once, before any loop
 //   real law_pressure(law m, real j)                     dU/dJ [Pa] of the volumetric part U(J) at j = J - 1; 0 if it has none
 //   mat3 law_stress(deformation d, real scale, law m, real pressure, integer low)
-// low: J < m.low. The last is the first Piola-Kirchhoff stress P = F S times `scale` (a volume); `pressure` is law_pressure or its nodal average.
+// low: J < m.low. The last is the first Piola-Kirchhoff stress P = F S times `scale` (a volume); `pressure` is law_pressure or its
+// nodal average.
 #include "deformation.cl"
 #include "inversion.cl"
 #include "laws.cl"

@@ -2,6 +2,7 @@
 // hybrids that go on with fewer substeps. Every node keeps its position and momentum.
 #include <Eigen/Dense>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -37,29 +38,20 @@ Vec3d nearest_at_rest(const ModelBody& body, const std::vector<Vec3d>& u, const 
 constexpr double kMostStretch = 1.5;
 constexpr std::int64_t kWaitSteps = 256;  ///< after which such a cell is looked at again
 
-/// Whether a cell is deformed too far to change its model. corners: of a cube, x fastest; u by node.
-bool strained(const std::array<std::int32_t, 8>& corners, const std::vector<Vec3d>& rest, const std::vector<Vec3d>& u) {
-  using Corners = Eigen::Matrix<double, 3, 8>;
-  Corners at_rest, now;
+/// Whether a cell is deformed too far to change its model. corners: x fastest; u by node.
+bool strained(const std::array<std::int32_t, 8>& corners, double spacing, const std::vector<Vec3d>& u) {
+  Eigen::Matrix<double, 3, 8> x;
+  Eigen::Matrix<double, 8, 3> sides;
   for (int a = 0; a < 8; ++a) {
-    const auto n = static_cast<std::size_t>(corners[a]);
-    at_rest.col(a) = Eigen::Map<const Eigen::Vector3d>(rest[n].data());
-    now.col(a) = at_rest.col(a) + Eigen::Map<const Eigen::Vector3d>(u[n].data());
+    const Eigen::RowVector3d at(a & 1, a >> 1 & 1, a >> 2 & 1);
+    x.col(a) = spacing * at.transpose() + Eigen::Map<const Eigen::Vector3d>(u[static_cast<std::size_t>(corners[a])].data());
+    sides.row(a) = (2 * at.array() - 1) / 4;
   }
-  Eigen::Matrix3d edges, rest_edges;
-  for (int axis = 0; axis < 3; ++axis) {
-    edges.col(axis).setZero();
-    rest_edges.col(axis).setZero();
-    for (int a = 0; a < 8; ++a) {
-      const double sign = (a >> axis & 1) != 0 ? 1 : -1;
-      edges.col(axis) += sign * now.col(a);
-      rest_edges.col(axis) += sign * at_rest.col(a);
-    }
-  }
-  if (!(edges.determinant() > rest_edges.determinant() / kMostStretch)) return true;
+  const double volume = (x * sides).determinant() / std::pow(spacing, 3);  // of the mean edges
+  if (!(volume > 1 / kMostStretch)) return true;
   for (int a = 0; a < 8; ++a) {
     for (int b = a + 1; b < 8; ++b) {
-      const double stretch = (now.col(a) - now.col(b)).norm() / (at_rest.col(a) - at_rest.col(b)).norm();
+      const double stretch = (x.col(a) - x.col(b)).norm() / (spacing * std::sqrt(std::popcount(static_cast<unsigned>(a ^ b))));
       if (!(stretch < kMostStretch && stretch > 1 / kMostStretch)) return true;
     }
   }
@@ -81,7 +73,7 @@ MovedRegion TopologyEdits::region_at(std::size_t b, const Vec3d& seed, const std
     const std::size_t c = solid.copy_of.empty() ? e : static_cast<std::size_t>(solid.copy_of[e]);
     if (operational[c] == before[c]) continue;
     const std::array<std::int32_t, 8> corners = solid.tets.empty() ? solid.hexes[e] : cell_corners(&solid.tets[6 * e]);
-    if (!strained(corners, run_.model().bodies[b].rest, u)) continue;
+    if (!strained(corners, run_.model().bodies[b].spacing, u)) continue;
     operational[c] = before[c];
     region.waits = true;
   }
@@ -100,23 +92,24 @@ void TopologyEdits::move_regions() {
   const Vec3d tool = state.tool.value_or(run_.scene.tool.position(state.clock.time()));
   std::vector<double> u = run_.u();
   const bool first = state.regions.empty();
-  std::vector<MovedRegion> regions = state.regions;
-  regions.resize(bodies_of_scene.size());
+  std::vector<std::pair<std::size_t, MovedRegion>> found;
   bool moved = false;
   for (std::size_t b = 0; b < bodies_of_scene.size(); ++b) {
     const DeformationModel& model = bodies_of_scene[b].model;
     if (!model.follow) continue;
     const std::vector<Vec3d> of_body = run_.loaded.pick(u, b, 1);
     const Vec3d now = nearest_at_rest(run_.model().bodies[b], of_body, tool);
-    const std::optional<Vec3d> seed = first ? model.seed : regions[b].seed;
+    const std::optional<Vec3d> seed = first ? model.seed : state.regions[b].seed;
     const bool moves = !seed || distance(now, *seed) > run_.model().bodies[b].spacing;
-    const bool again = regions[b].waits && run_.begins_after(state.clock.step, kWaitSteps);
+    const bool again = !first && state.regions[b].waits && run_.begins_after(state.clock.step, kWaitSteps);
     if (!first && !moves && !again) continue;
-    MovedRegion next = region_at(b, moves ? now : *seed, of_body);
-    moved = moved || moves || (!first && next.cells != regions[b].cells);
-    regions[b] = std::move(next);
+    found.emplace_back(b, region_at(b, moves ? now : *seed, of_body));
+    moved = moved || moves || (!first && found.back().second.cells != state.regions[b].cells);
   }
   if (!moved) return;
+  std::vector<MovedRegion> regions = state.regions;
+  regions.resize(bodies_of_scene.size());
+  for (auto& [b, region] : found) regions[b] = std::move(region);
   std::vector<MovedRegion> before = std::exchange(run_.state.regions, std::move(regions));
   try {
     swap_partition(std::move(u));

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "edits/model_swap.h"
 #include "pliant/error.h"

@@ -42,8 +42,8 @@ struct CellCut {
   int components = 1;                  ///< 1: not completely cut yet, the cell is whole
   /// The copy of each component; -1: the component holds no material and has none. One of them keeps the cell's own number.
   std::array<std::int32_t, 8> element{-1, -1, -1, -1, -1, -1, -1, -1};
-  std::array<double, 8>
-      share{};  ///< of the cell's material; 0 without a copy. What a component is divided into adds up to its own
+  /// Of the cell's material, 0 without a copy. What a component is divided into later adds up to its own.
+  std::array<double, 8> share{};
 };
 
 /// Elements 0 .. cells - 1 are the cells, those cut completely being the copies of their first component with material; the
