@@ -15,8 +15,8 @@ namespace {
 /// A cube of edge `size` as an OBJ file that goes when this object goes.
 class BoxFile {
  public:
-  explicit BoxFile(double size) {
-    path_ = std::filesystem::temp_directory_path() / fmt::format("pliant-block-{:08x}.obj", std::random_device{}());
+  explicit BoxFile(double size)
+      : path_(std::filesystem::temp_directory_path() / fmt::format("pliant-block-{:08x}.obj", std::random_device{}())) {
     std::ofstream out(path_);
     for (int a = 0; a < 8; ++a) out << fmt::format("v {} {} {}\n", size * (a & 1), size * (a >> 1 & 1), size * (a >> 2 & 1));
     for (const char* face : {"1 3 4 2", "5 6 8 7", "1 2 6 5", "3 7 8 4", "1 5 7 3", "2 4 8 6"}) out << "f " << face << '\n';

@@ -11,14 +11,12 @@
 namespace pliant::render {
 
 struct RayScene::Embree {
-  RTCDevice device = nullptr;
+  RTCDevice device = rtcNewDevice("threads=1,set_affinity=0");  // one thread: the hierarchy is then the same in every run
   RTCScene scene = nullptr;
   RTCGeometry geometry = nullptr;
   void* vertices = nullptr;
 
   Embree() {
-    // One thread builds: the hierarchy is then the same in every run.
-    device = rtcNewDevice("threads=1,set_affinity=0");
     if (device == nullptr)
       throw Error(ErrorCode::bad_input,
                   fmt::format("Embree could not start (error {})", static_cast<int>(rtcGetDeviceError(nullptr))));

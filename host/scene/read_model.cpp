@@ -126,9 +126,8 @@ void check_models(const Reader& top, const Scene& scene) {
     if (scene.integrator != Integrator::increment) {
       top.at("integrator").fail(fmt::format("increment, because {} has the type {}", m.pointer, to_string(m.type)));
     }
-    if (scene.relaxation.enabled) {
-      top.at("relaxation")
-          .fail(fmt::format("false, because {} has the type {} (relaxation is for tled only)", m.pointer, to_string(m.type)));
+    if (m.follow && scene.relaxation.enabled) {
+      top.at("relaxation").fail(fmt::format("false, because {}/follow moves the region as time goes on", m.pointer));
     }
     if (m.follow && scene.tool.path.empty()) {
       bodies[i].at("model").at("follow").fail(

@@ -248,7 +248,9 @@ void upload_coupling(const RunContext& run) {
     const FlsmBatch& b = model.flsm[i];
     const double dt = run.state.clock.dt, h = b.settings.substeps * dt;
     const double damping = run.scene.bodies[static_cast<std::size_t>(b.body)].material.damping;
-    alpha.push_back(alpha_for(b, dt, run.settings.first_dt, damping));
+    const double at_rest = alpha_for(b, dt, run.settings.first_dt, damping);
+    // Dynamic relaxation damps more, which shortens b; the pull towards the goals, alpha m / b, stays what it is.
+    alpha.push_back(at_rest * (step_square(h, damping + run.state.relaxation.damping) / step_square(h, damping)));
     if (b.interface == 0) continue;
     const BufferId id = program.find(fmt::format("flsm_beta/{}", i));
     std::vector<double> beta(program.at(id).count, 0.0);
@@ -256,7 +258,7 @@ void upload_coupling(const RunContext& run) {
     for (std::int32_t k = 0; k < b.interface; ++k) {
       const double own = model.mass[static_cast<std::size_t>(b.slot[b.own + k])];
       // With a stiffness as the own nodes feel it, alpha m / b, whatever the damping: both ends of a spring pull alike at rest.
-      const double automatic = b.settings.young > 0 ? alpha.back() / step_square(h, damping) : alpha.back() / (h * h);
+      const double automatic = b.settings.young > 0 ? at_rest / step_square(h, damping) : at_rest / (h * h);
       const auto node = static_cast<std::size_t>(b.own + k);
       const double pulled = b.settings.young > 0 ? b.weight[node] * b.regions.holders[node] : own;
       const double mean = b.settings.beta > 0 ? b.settings.beta * (own / masses[k]) : automatic * pulled;

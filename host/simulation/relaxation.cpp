@@ -4,11 +4,15 @@
 #include <cmath>
 #include <limits>
 
+#include "simulation/coupling.h"
+
 namespace pliant {
 namespace {
 
-constexpr double kExcited = 4;    ///< times the fast motion that rounding is expected to excite, in energy
-constexpr double kStandsOut = 3;  ///< elastic work of a change over that of the fast motion, for the change to be trusted
+constexpr double kExcited = 4;      ///< times the fast motion that rounding is expected to excite, in energy
+constexpr double kStandsOut = 3;    ///< elastic work of a change over that of the fast motion, for the change to be trusted
+constexpr double kInterval = 0.25;  ///< with shape matching: least time constants of the damping between two changes
+constexpr double kLittle = 100;     ///< times the tolerance: forces of fast motion that may be that of rounding
 constexpr double kSettled = 10;  ///< time constants of the damping without such a change after which nothing is left to resolve
 
 /// Sums over the free components of what has happened since the last change of the damping.
@@ -26,6 +30,10 @@ std::vector<double> velocities(const RunContext& run, const std::vector<double>&
   std::vector<double> v = run.loaded.w();
   const bool textbook = run.scene.integrator == Integrator::textbook;  // which keeps the displacement before
   for (std::size_t i = 0; i < v.size(); ++i) v[i] = (textbook ? u[i] - v[i] : v[i]) / run.state.clock.dt;
+  for (const FlsmBatch& b : run.model().flsm) {
+    const auto first = static_cast<std::size_t>(b.first_slot), slots = static_cast<std::size_t>(b.slots);
+    for (std::size_t i = 4 * first; i < 4 * (first + slots); ++i) v[i] /= b.settings.substeps;
+  }
   return v;
 }
 
@@ -74,26 +82,41 @@ bool only_rounding(const RunContext& run, const Sums& sums, double c) {
   return c > 0 && sums.fast * c * h * h * h <= kExcited * eps * eps * sums.size;
 }
 
-}  // namespace
+/// The largest damping rate of the materials [1/s].
+double material_damping(const RunContext& run) {
+  return *std::max_element(run.model().damping.begin(), run.model().damping.end());
+}
+
+void remember(RunContext& run, const std::vector<double>& u, const std::vector<double>& force, const std::vector<double>& v) {
+  RelaxationState& last = run.state.relaxation;
+  last.u = u;
+  last.force = force;
+  last.v = v;
+  last.time = run.state.clock.time();
+}
+
+/// Damp modes of angular frequency `omega` [1/s] critically, none more than a step allows.
+void damp(RunContext& run, double omega) {
+  run.state.relaxation.damping = std::max(0.0, 2 * omega - material_damping(run));
+  run.upload_decay();
+  upload_coupling(run);
+}
 
 // A body in float never rests: rounding of u shakes its highest modes, whose forces hide those of the lowest. Such motion has
 // as much elastic as kinetic energy, so that it adds four times `fast` to -du . df (two ends, and half of the variance in a
 // mean of two), and its momentum enters a mean force by 1 / time only.
-void relax(RunContext& run) {
-  const Model& model = run.model();
+void relax_elements(RunContext& run) {
   RelaxationState& last = run.state.relaxation;
   const std::vector<double> u = run.loaded.u();
   const std::vector<double> force = run.forces_now();
   const std::vector<double> v = velocities(run, u);
   const bool first = last.u.empty();
-  const double material = *std::max_element(model.damping.begin(), model.damping.end());
-  const double c = material + last.damping, now = run.state.clock.time();
+  const double c = material_damping(run) + last.damping, now = run.state.clock.time();
   Sums sums = sum(run, u, force, v);
   const double scale = std::sqrt(std::max(sums.external, sums.reaction));
   last.residual = scale > 0 ? std::sqrt(sums.residual) / scale : (sums.residual > 0 ? 1 : 0);
   bool settled = false, hidden = false;
-  // Nodes of shape matching have no force that could be told from rounding: nothing is taken for rest there.
-  if (!first && model.flsm.empty() && only_rounding(run, sums, c)) {
+  if (!first && only_rounding(run, sums, c)) {
     const double noise = 4 * sums.fast, x = c * (now - last.time) / 2;
     sums.stiffness -= noise;
     hidden = std::abs(sums.stiffness) <= kStandsOut * noise;
@@ -106,14 +129,69 @@ void relax(RunContext& run) {
   }
   last.equilibrium = now >= run.settings.curves_end && (settled || last.residual <= run.scene.relaxation.tolerance);
   if (hidden) return;
-  if (sums.stiffness > 0 && sums.inertia > 0) {
-    last.damping = std::max(0.0, 2 * std::sqrt(sums.stiffness / sums.inertia) - material);
-    run.upload_decay();
+  if (sums.stiffness > 0 && sums.inertia > 0) damp(run, std::sqrt(sums.stiffness / sums.inertia));
+  remember(run, u, force, v);
+}
+
+/// Shape matching has no force that could be told from rounding. What its nodes and the elements' feel is known from their
+/// momentum all the same: the mean of all forces since the last change is m (dv + c du) / time, in which motion of velocity w
+/// that is faster than that time leaves 2 m w / time at most. -du . df and du . M du are those of two such means and of the
+/// mean positions that belong to them.
+void relax_by_momentum(RunContext& run) {
+  RelaxationState& last = run.state.relaxation;
+  const Model& model = run.model();
+  const double now = run.state.clock.time(), time = now - last.time;
+  const double x = (material_damping(run) + last.damping) * time / 2;
+  if (!last.before.empty() && x > 0 && x < kInterval) return;
+  const std::vector<double> u = run.loaded.u(), v = velocities(run, u), force = run.forces_now();
+  if (last.u.empty()) return remember(run, u, std::vector<double>(u.size()), v);
+  const Sums sums = sum(run, u, force, v);
+  std::vector<double> mean(u.size());
+  double stiffness = 0, inertia = 0, change = 0, noise = 0, carried = 0;
+  for (std::size_t s = 0; s < model.mass.size(); ++s) {
+    const double m = model.mass[s];
+    if (!(m > 0)) continue;
+    for (std::size_t t = 4 * s; t < 4 * s + 3; ++t) {
+      carried += force[t] * force[t];  // at rest the load of a node that the other model's nodes or a support carry
+      if (!run.loaded.free()[3 * s + t - 4 * s]) continue;
+      const double du = u[t] - last.u[t], fast = (v[t] + last.v[t]) / 2 - du / time;
+      mean[t] = m * (v[t] - last.v[t] + (model.damping[s] + last.damping) * du) / time;
+      if (last.before.empty()) continue;
+      const double shift = (u[t] - last.before[t]) / 2, df = mean[t] - last.force[t];
+      stiffness -= shift * df;
+      inertia += m * shift * shift;
+      change += df * df / m;
+      noise += 8 * m * fast * fast / (time * time);  // of both means
+    }
   }
-  last.u = u;
-  last.force = force;
-  last.v = v;
-  last.time = now;
+  last.largest = std::max(last.largest, std::sqrt(sums.mean));
+  const double loads = std::sqrt(std::max(sums.external, carried)), scale = loads > 0 ? loads : last.largest;
+  const double slow = std::sqrt(std::max(0.0, sums.mean - sums.mean_noise)), fast = std::sqrt(sums.mean_noise);
+  // Of a mode that is damped critically less is left at the end than on average; more than one time constant is not relied on.
+  const double left = std::min(x, 1.0) / std::expm1(std::min(x, 1.0));
+  last.residual = scale > 0 ? std::max(x > 0 ? slow * left : slow, fast) / scale : 0;
+  const double tolerance = run.scene.relaxation.tolerance;
+  last.equilibrium = last.time >= run.settings.curves_end && x >= kInterval && last.residual <= tolerance;
+  if (!last.before.empty() && change <= kStandsOut * noise) {
+    // Where little moves, it may be rounding, and a longer time tells what is slow. What moves fast is to be damped.
+    if (x > 0 && (x < 1 || (fast <= kLittle * tolerance * scale && x < kSettled))) return;
+    damp(run, std::max(last.damping, 2 / time));
+  } else if (stiffness > 0 && inertia > 0) {
+    damp(run, std::sqrt(stiffness / inertia));
+  } else if (!last.before.empty() && !(last.damping > 0)) {
+    damp(run, 2 / time);
+  }
+  last.before = last.u;
+  remember(run, u, mean, v);
+}
+
+}  // namespace
+
+void relax(RunContext& run) {
+  if (run.model().flsm.empty())
+    relax_elements(run);
+  else
+    relax_by_momentum(run);
 }
 
 }  // namespace pliant

@@ -39,6 +39,8 @@ struct RelaxationState {
   double residual = 0;              ///< |R - F| over the largest of external and reaction force
   double time = 0;                  ///< of the last change [s]
   std::vector<double> u, force, v;  ///< node_u, node_force and velocities [m/s] at the last change; empty: there was none
+  std::vector<double> before;       ///< with shape matching: node_u at the change before, and `force` is the mean since then
+  double largest = 0;               ///< with shape matching: of such means over all nodes [N]
 };
 
 /// The good state that last_u and last_w hold.
@@ -124,7 +126,7 @@ void visit(V& v, StepLimit& s) {
 template <class V>
 void visit(V& v, RelaxationState& s) {
   v("damping", s.damping), v("equilibrium", s.equilibrium), v("residual", s.residual), v("u", s.u), v("force", s.force);
-  v("time", s.time), v("v", s.v);
+  v("time", s.time), v("v", s.v), v("before", s.before), v("largest", s.largest);
 }
 template <class V>
 void visit(V& v, KeptState& s) {

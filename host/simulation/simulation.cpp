@@ -116,7 +116,7 @@ void Simulation::end_batch(std::int32_t steps) {
   const std::int64_t start = step();
   state_.clock.step += steps;
   look_for_fault(start);
-  if (!divergence_ && scene_.relaxation.enabled && step() % kRelaxEvery == 0) relax(run_);
+  if (!divergence_ && scene_.relaxation.enabled && run_.begins_after(step(), kRelaxEvery)) relax(run_);
   ballast_.nodes = static_cast<std::int64_t>(state_.ballast.size());
   ballast_.mass = 0;
   for (const NodeInertia& b : state_.ballast) ballast_.mass += b.inertia;

@@ -73,7 +73,7 @@ bool StepControl::on_grid(std::int64_t step) const {
   const RunSettings& s = run_.settings;
   return run_.begins_after(step, s.batch_steps) || adapts_at(step) ||
          (s.blade_steps > 0 && run_.begins_after(step, s.blade_steps)) || (s.tears && run_.begins_after(step, kTearSteps)) ||
-         (run_.scene.relaxation.enabled && step % kRelaxEvery == 0);
+         (run_.scene.relaxation.enabled && run_.begins_after(step, kRelaxEvery));
 }
 
 std::int32_t StepControl::next_batch(std::int64_t wanted) const {

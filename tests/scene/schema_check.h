@@ -87,6 +87,7 @@ class SchemaCheck {
     if (word == "const") return value == rule;
     if (word == "enum") return std::find(rule.begin(), rule.end(), value) != rule.end();
     if (word == "oneOf") return count_fits(rule, value) == 1;
+    if (word == "allOf") return count_fits(rule, value) == static_cast<std::ptrdiff_t>(rule.size());
     if (word == "anyOf") return count_fits(rule, value) > 0;
     if (word == "not") return !fits(rule, value);
     if (word == "if") return !fits(rule, value) || fits(schema.at("then"), value);

@@ -55,6 +55,16 @@ TEST_P(Resume, Relaxation) {
   expect_same_bits(pressed_cube(0.01, R"("relaxation": {"tolerance": 1e-6, "max_steps": 1000},)"), 37, 63);
 }
 
+TEST_P(Resume, RelaxationOfAHybrid) {
+  Scene scene = pressed_cube(0.01, R"("relaxation": {"tolerance": 1e-6, "max_steps": 1000},)");
+  scene.bodies[0].model.type = ModelType::hybrid;
+  scene.bodies[0].model.ratio = 0.5;
+  scene.bodies[0].model.young = 3000;
+  scene.bodies[0].model.substeps = 3;
+  expect_same_bits(scene, 37, 163);
+  expect_same_bits(scene, 132, 68);
+}
+
 TEST_P(Resume, AutomaticStepAcrossItsRenewal) {
   const Scene scene = pressed_cube(-0.01, "", 30000, "neo-hookean", 1);
   Simulation probe = make(scene);
