@@ -53,7 +53,7 @@ vec::Box box_of(const std::filesystem::path& file, bool tets) {
 
 class RandomScene {
  public:
-  RandomScene(std::int64_t number, const std::filesystem::path& scenes) : dice_(number), number_(number) {
+  RandomScene(std::int64_t number, const std::filesystem::path& scenes) : dice_(number), late_(~number), number_(number) {
     shape_ = kShapes[dice_.below(std::size(kShapes))];
     file_ = std::filesystem::absolute(scenes / "meshes" / shape_.file);
     box_ = box_of(file_, shape_.tets);
@@ -76,6 +76,7 @@ class RandomScene {
     if (weight) scene["gravity"] = vec::mul(dice_.chance(0.6) ? Vec3d{0, -1, 0} : dice_.direction(), 9.81);
     const std::size_t load = dice_.below(weight ? 4 : 3);
     if (load < 2) move(body);
+    if (load < 2 && late_.chance(0.3)) twist(body);
     if (load == 2) push(body);
     const bool cuts = !tears && body["model"]["type"] != "flsm" && dice_.chance(0.5);
     if (cuts) scene["blades"] = blades();
@@ -104,9 +105,16 @@ class RandomScene {
     } else if (kind < 9) {
       const Vec3d seed = at({dice_.uniform(0.2, 0.8), dice_.uniform(0.2, 0.8), dice_.uniform(0.2, 0.8)});
       body["model"] = {{"type", "hybrid"}, {"seed", seed}, {"ratio", dice_.uniform(0.2, 0.8)}};
+      if (late_.chance(0.5)) subcycle(body["model"]);
     } else {
       body["model"] = {{"type", "flsm"}};
     }
+  }
+
+  void subcycle(Json& model) {
+    model["width"] = 1 + late_.below(3);
+    model["substeps"] = 1 + late_.below(8);
+    if (late_.chance(0.5)) model["goals"] = "extrapolated";
   }
 
   void material(Json& body, bool tears) {
@@ -158,6 +166,15 @@ class RandomScene {
                                        {"duration", dice_.uniform(0.3, 1.5)}}});
   }
 
+  /// The far end is turned about the axis instead, by up to a whole turn.
+  void twist(Json& body) {
+    Vec3d axis{};
+    axis[axis_] = late_.chance(0.5) ? 1 : -1;
+    Json& far = body["prescribed"][0];
+    far.erase("displacement");
+    far["rotate"] = {{"axis", axis}, {"about", at({0.5, 0.5, 0.5})}, {"angle", late_.uniform(20, 360)}};
+  }
+
   /// A force of up to what doubles the length of a bar of that size.
   void push(Json& body) {
     const double area = size_[0] * size_[1] * size_[2] / extent_;
@@ -191,6 +208,7 @@ class RandomScene {
   }
 
   Dice dice_;
+  Dice late_;  ///< for what came later, so that the rest of a scene stays what it was
   std::int64_t number_;
   Shape shape_{};
   std::filesystem::path file_;

@@ -49,6 +49,11 @@ std::int64_t pieces_of(const Simulation& s) {
   return pieces;
 }
 
+const char* load_of(const Body& body) {
+  if (!body.prescribed.empty()) return body.prescribed[0].rotate ? "twisted" : "moved";
+  return body.forces.empty() ? "none" : "force";
+}
+
 json describe(const Scene& scene) {
   const Body& body = scene.bodies[0];
   return {{"body", body.name},
@@ -61,9 +66,9 @@ json describe(const Scene& scene) {
           {"gravity", vec::norm(scene.gravity)},
           {"blades", scene.blades.size()},
           {"tears", body.material.toughness > 0},
-          {"load", !body.prescribed.empty() ? "moved"
-                   : !body.forces.empty()   ? "force"
-                                            : "none"}};
+          {"width", body.model.width},
+          {"substeps", body.model.substeps},
+          {"load", load_of(body)}};
 }
 
 /// One scene to its end.
@@ -100,6 +105,7 @@ json run_one(std::int64_t number, const SurvivalOptions& options) {
     row["first_dt"] = first;
     row["least_dt"] = least / first;
     row["last_dt"] = s.dt() / first;
+    row["mean_dt"] = s.time() / static_cast<double>(std::max<std::int64_t>(1, s.step())) / first;
     row["inverted"] = s.inversions().most;
     row["inverted_now"] = s.inversions().last;
     row["added_mass"] = added / mass;
@@ -154,10 +160,11 @@ class Kept {
 
 json summary_of(const json& rows) {
   std::map<std::string, int> outcomes;
-  int short_steps = 0, inverted = 0, left_inverted = 0, created = 0;
+  int short_steps = 0, slow = 0, inverted = 0, left_inverted = 0, created = 0;
   for (const json& row : rows) {
     ++outcomes[row["outcome"].get<std::string>()];
     short_steps += row.value("least_dt", 1.0) < kShortStep;
+    slow += row.value("mean_dt", 1.0) < kShortStep;
     inverted += row.value("inverted", 0) > 0;
     left_inverted += row.value("inverted_now", 0) > 0;
     created += creates_energy(row);
@@ -168,6 +175,7 @@ json summary_of(const json& rows) {
           {"not_finite", outcomes["not finite"]},
           {"refused", outcomes["refused"]},
           {"least_dt_below_a_tenth", short_steps},
+          {"mean_dt_below_a_tenth", slow},
           {"inverted", inverted},
           {"left_inverted", left_inverted},
           {"energy_created_above_a_hundredth", created}};
@@ -208,8 +216,9 @@ std::string survival_table(const json& result) {
   std::string text =
       fmt::format("{} of {} scenes ended well; {} diverged, {} were not finite, {} were refused\n", s["ended"].get<int>(),
                   s["scenes"].get<int>(), s["diverged"].get<int>(), s["not_finite"].get<int>(), s["refused"].get<int>());
-  text += fmt::format("{} took a step below a tenth of the first, {} had inverted elements, {} at the end\n",
-                      s["least_dt_below_a_tenth"].get<int>(), s["inverted"].get<int>(), s["left_inverted"].get<int>());
+  text += fmt::format("{} took a step below a tenth of the first, {} on average; {} had inverted elements, {} at the end\n",
+                      s["least_dt_below_a_tenth"].get<int>(), s["mean_dt_below_a_tenth"].get<int>(), s["inverted"].get<int>(),
+                      s["left_inverted"].get<int>());
   text += fmt::format("{} gained more than a hundredth of their energy while all loads were constant\n",
                       s["energy_created_above_a_hundredth"].get<int>());
   for (const json& row : result["rows"]) {
