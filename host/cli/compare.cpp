@@ -52,15 +52,17 @@ void check(const CompareArguments& options) {
   }
 }
 
-std::unique_ptr<Backend> open(const CompareArguments& options, std::size_t which) {
+/// The OpenCL device that `run` takes for a scene of so many nodes, or the first that there is, and the twin.
+std::unique_ptr<Backend> open(const CompareArguments& options, std::size_t which, std::int64_t nodes) {
   if (!options.backends.empty()) return open_backend(options.backends[which]);
   if (which == 1) return open_backend("cpu");
+  auto chosen = open_backend("auto", nullptr, nodes);
+  if (chosen->info().kind != "reference") return chosen;
   try {
     return open_backend("opencl:0");
   } catch (const Error& error) {
-    throw Error(
-        ErrorCode::bad_input,
-        fmt::format("compare takes the first OpenCL device and cpu unless --backends A,B names others: {}", error.what()));
+    throw Error(ErrorCode::bad_input,
+                fmt::format("compare takes an OpenCL device and cpu unless --backends A,B names others: {}", error.what()));
   }
 }
 
@@ -80,8 +82,8 @@ void report(const CompareArguments& options, const ComparisonResult& result, con
 int compare_command(const CompareArguments& options) {
   check(options);
   const Scene scene = load_scene(options.scene);
-  auto backend_a = open(options, 0), backend_b = open(options, 1);
   const auto model = std::make_shared<const Model>(build_model(scene));
+  auto backend_a = open(options, 0, model->nodes()), backend_b = open(options, 1, model->nodes());
   Simulation a(scene, model, std::move(backend_a));
   Simulation b(scene, model, std::move(backend_b));
 
@@ -118,7 +120,7 @@ std::function<int()> setup_compare(CLI::App& app) {
   auto options = std::make_shared<CompareArguments>();
   app.add_option("scene", options->scene, "Scene file")->required();
   app.add_option("--steps", options->steps, "Steps to compare")->capture_default_str();
-  app.add_option("--backends", options->backends, "Two backends; default: the first OpenCL device and cpu")
+  app.add_option("--backends", options->backends, "Two backends; default: the OpenCL device that run takes, and cpu")
       ->delimiter(',')
       ->type_name("A,B");
   app.add_option("--every", options->every, "Compare after every pass, or only after every step")

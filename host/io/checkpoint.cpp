@@ -10,14 +10,14 @@
 #include "pliant/error.h"
 #include "program/hash.h"
 
-// Layout: "PLIANTCK", u32 version, u32 zero, u64 length of the whole file, then u64 model hash, string name, string real type,
-// string run state (run_state.h), u64 buffers {string, u64 n, n bytes}, u64 hash of all before. A string is a u64 length and
-// its bytes.
+// Layout: "PLIANTCK", u32 version, u32 zero, u64 length of the whole file, then u64 parts {string, u64 hash}, string name,
+// string real type, string run state (run_state.h), u64 buffers {string, u64 n, n bytes}, u64 hash of all before. A string is a
+// u64 length and its bytes.
 namespace pliant {
 namespace {
 
 constexpr std::string_view kMagic = "PLIANTCK";
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 constexpr std::size_t kHead = 24;
 constexpr std::size_t kTail = 8;
 
@@ -137,7 +137,11 @@ void write_checkpoint(const std::filesystem::path& file, const Checkpoint& check
   put(out, kVersion, 4);
   put(out, 0, 4);
   put(out, 0);
-  put(out, s.model_hash);
+  put(out, static_cast<std::uint64_t>(s.made_of.size()));
+  for (const ModelPart& part : s.made_of) {
+    put(out, part.name);
+    put(out, part.hash);
+  }
   put(out, checkpoint.scene_name);
   put(out, s.real_type);
   put(out, write_state(s.state));
@@ -159,7 +163,10 @@ Checkpoint read_checkpoint(const std::filesystem::path& file) {
   Reader in(file, std::string_view(data).substr(0, data.size() - kTail));
   Checkpoint c;
   Snapshot& s = c.snapshot;
-  s.model_hash = in.number("the model hash");
+  for (std::size_t parts = in.count(16, "parts of the model"); parts > 0; --parts) {
+    const std::string name(in.bytes("bytes of a part's name"));
+    s.made_of.push_back({name, in.number("the hash of a part")});
+  }
   c.scene_name = in.bytes("bytes of scene name");
   s.real_type = in.bytes("bytes of real type");
   if (s.real_type != "float" && s.real_type != "double") {

@@ -276,7 +276,7 @@ std::uint64_t Simulation::hash() const {
 }
 
 std::uint64_t Simulation::model_hash() const {
-  return pliant::model_hash(scene_, settings_, model(), program(), loaded_.surface());
+  return hash_of(parts_of(scene_, settings_, model(), program(), loaded_.surface()));
 }
 
 void Simulation::restore(const Snapshot& snapshot) {
@@ -299,13 +299,11 @@ void Simulation::restore(const Snapshot& snapshot) {
   }
   Program program = build_program(*model, {scene_.integrator, settings_.batch_steps});
   Program surface = pliant::surface_program(model->surface, program);
-  const std::uint64_t hash = pliant::model_hash(scene_, settings_, *model, program, surface);
-  if (hash != snapshot.model_hash) {
-    throw Error(
-        ErrorCode::bad_input,
-        fmt::format("a state of model {} cannot resume model {}: the scene, its meshes, the step given or the settings of "
-                    "the solver are not the same",
-                    hash_text(snapshot.model_hash), hash_text(hash)));
+  const std::string other = differing(snapshot.made_of, parts_of(scene_, settings_, *model, program, surface));
+  if (!other.empty()) {
+    throw Error(ErrorCode::bad_input, fmt::format("a state goes on in the scene and with the step that it was taken from; "
+                                                  "not the same: {}",
+                                                  other));
   }
   check_state(next, *model, scene_);
   check_buffers(snapshot, program);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -14,7 +15,10 @@ namespace {
 
 class Hash {
  public:
+  Hash() = default;
+  explicit Hash(std::uint64_t start) : value(start) {}
   void add(const void* data, std::size_t bytes) { value = hash_bytes(data, bytes, value); }
+  void add(double number) { add(&number, sizeof number); }
   void add(const std::string& text) { add(text.data(), text.size()); }
   template <class T>
   void add(const std::vector<T>& values) {
@@ -57,47 +61,79 @@ const NamedBytes* find(const Snapshot& snapshot, const std::string& name) {
 
 }  // namespace
 
-std::uint64_t model_hash(const Scene& scene, const RunSettings& settings, const Model& model, const Program& program,
-                         const Program& surface) {
-  Hash hash;
-  hash.add(program);
-  hash.add(surface);
-  for (const Curve& c : model.curves) {
-    const double numbers[5]{static_cast<double>(c.kind), c.start, c.duration, static_cast<double>(c.of), c.angle};
-    hash.add(numbers, sizeof numbers);
-    hash.add(c.table);
-  }
-  const double relaxed = scene.relaxation.enabled ? 1 : 0;
-  const double numbers[]{scene.gravity[0],
-                         scene.gravity[1],
-                         scene.gravity[2],
-                         scene.dt,
-                         scene.safety,
-                         relaxed,
-                         static_cast<double>(settings.batch_steps),
-                         static_cast<double>(settings.automatic),
-                         static_cast<double>(settings.tears),
-                         static_cast<double>(settings.blade_steps),
-                         settings.curves_end,
-                         settings.increment_floor,
-                         settings.displacement_grid};
-  hash.add(numbers, sizeof numbers);
-  for (const Blade& blade : scene.blades) {
-    const double when[2]{blade.start, blade.end};
-    hash.add(blade.name);
-    hash.add(when, sizeof when);
-    hash.add(blade.path);
-  }
-  hash.add(scene.tool.path);
+std::vector<ModelPart> parts_of(const Scene& scene, const RunSettings& settings, const Model& model, const Program& program,
+                                const Program& surface) {
+  std::vector<ModelPart> parts;
+  const auto part = [&](const char* name) { parts.emplace_back().name = name; };
+  const auto add = [&](const auto&... values) {
+    Hash hash{parts.back().hash};
+    (hash.add(values), ...);
+    parts.back().hash = hash.value;
+  };
+  const auto add_curve = [&](const Curve& c) {
+    add(static_cast<double>(c.kind), c.start, c.duration, static_cast<double>(c.of), c.angle, c.table);
+  };
+  part("curves");
+  for (const Curve& c : model.curves) add_curve(c);
+  part("gravity");
+  for (const double g : scene.gravity) add(g);
+  add_curve(scene.gravity_curve);
+  part("dt");
+  add(scene.dt, settings.automatic ? 0.0 : settings.first_dt);
+  part("safety");
+  add(scene.safety);
+  part("integrator");
+  add(static_cast<double>(scene.integrator));
+  part("relaxation");
+  add(static_cast<double>(scene.relaxation.enabled));
+  if (scene.relaxation.enabled) add(scene.relaxation.tolerance);
+  part("inverted");
+  add(static_cast<double>(scene.inverted));
+  part("least_step");
+  add(scene.least_step);
+  part("break_stretch");
+  add(scene.break_stretch, static_cast<double>(scene.cuttable));
+  part("blades");
+  for (const Blade& blade : scene.blades) add(blade.name, blade.start, blade.end, blade.path);
+  part("tool");
+  add(scene.tool.path);
+  part("what the solver derives from the scene");
+  add(static_cast<double>(settings.batch_steps), static_cast<double>(settings.tears), static_cast<double>(settings.blade_steps),
+      settings.curves_end, settings.increment_floor, settings.displacement_grid);
+  // Last, because some of the others shape the passes as well.
+  part("bodies (their meshes, materials, models, what holds and loads them)");
+  add(program, surface);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    if (!scene.bodies[b].model.cut) hash.add(&b, sizeof b);
+    if (!scene.bodies[b].model.cut) add(static_cast<double>(b));
+  }
+  return parts;
+}
+
+std::uint64_t hash_of(const std::vector<ModelPart>& parts) {
+  Hash hash;
+  for (const ModelPart& part : parts) {
+    hash.add(part.name);
+    hash.add(&part.hash, sizeof part.hash);
   }
   return hash.value;
 }
 
+std::string differing(const std::vector<ModelPart>& a, const std::vector<ModelPart>& b) {
+  std::string names;
+  for (const auto& [from, to] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
+    for (const ModelPart& part : *from) {
+      const auto same_name = [&](const ModelPart& other) { return other.name == part.name; };
+      const auto other = std::find_if(to->begin(), to->end(), same_name);
+      const bool once = from == &a || other == to->end();
+      if (once && (other == to->end() || other->hash != part.hash)) names += (names.empty() ? "" : ", ") + part.name;
+    }
+  }
+  return names;
+}
+
 Snapshot take_snapshot(const RunContext& run) {
   const Program& program = run.loaded.program();
-  Snapshot snapshot{model_hash(run.scene, run.settings, run.model(), program, run.loaded.surface()),
+  Snapshot snapshot{parts_of(run.scene, run.settings, run.model(), program, run.loaded.surface()),
                     run.backend().info().real_bytes == 8 ? "double" : "float",
                     run.state,
                     {}};
@@ -110,7 +146,8 @@ Snapshot take_snapshot(const RunContext& run) {
 
 std::uint64_t deep_hash(const Snapshot& snapshot) {
   Hash hash;
-  hash.add(&snapshot.model_hash, sizeof snapshot.model_hash);
+  const std::uint64_t made_of = hash_of(snapshot.made_of);
+  hash.add(&made_of, sizeof made_of);
   hash.add(write_state(snapshot.state));
   for (const NamedBytes& buffer : snapshot.buffers) {
     hash.add(buffer.name);

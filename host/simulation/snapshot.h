@@ -15,16 +15,30 @@ struct NamedBytes {
   bool operator==(const NamedBytes&) const = default;
 };
 
+/// What a simulation was made of, in parts that a user knows by their names: {name, hash}.
+struct ModelPart {
+  std::string name;
+  std::uint64_t hash = 0;
+  bool operator==(const ModelPart&) const = default;
+};
+
 struct Snapshot {
-  std::uint64_t model_hash = 0;  ///< of everything that shapes the Program; a snapshot is taken up only by the same one
-  std::string real_type;         ///< "float" or "double"
+  std::vector<ModelPart> made_of;  ///< a snapshot is taken up only by what was made of the same
+  std::string real_type;           ///< "float" or "double"
   RunState state;
   std::vector<NamedBytes> buffers;  ///< those of the role `state`, in the order of the table
 };
 
-/// Hash over a model as the backend sees it, the scene's solver settings and what follows from the options.
-std::uint64_t model_hash(const Scene& scene, const RunSettings& settings, const Model& model, const Program& program,
-                         const Program& surface);
+/// The model as the backend sees it, the scene's settings of the solver and what follows from the options: all that decides
+/// how a state goes on.
+std::vector<ModelPart> parts_of(const Scene& scene, const RunSettings& settings, const Model& model, const Program& program,
+                                const Program& surface);
+
+/// One hash of all parts.
+[[nodiscard]] std::uint64_t hash_of(const std::vector<ModelPart>& parts);
+
+/// The names of the parts that are not the same in both, such as "gravity, blades".
+[[nodiscard]] std::string differing(const std::vector<ModelPart>& a, const std::vector<ModelPart>& b);
 
 [[nodiscard]] Snapshot take_snapshot(const RunContext& run);
 

@@ -8,11 +8,18 @@ class Compare(harness.CliTest):
             self.skipTest("opencl:0 is in tolerance mode")
         for name in ("bunny", "liver", "beam", "beam_tet", "beam_anp", "inclusion", "two_bodies"):
             with self.subTest(scene=name):
-                result = self.json("compare", harness.SCENES / f"{name}.json", "--steps", 20)
+                result = self.json("compare", harness.SCENES / f"{name}.json", "--steps", 20, "--backends", "opencl:0,cpu")
                 self.assertTrue(result["identical"], result["first_difference"])
                 self.assertIsNone(result["first_difference"])
                 self.assertEqual(result["steps"], 20)
                 self.assertEqual([b["name"] for b in result["backends"]], ["opencl:0", "cpu"])
+
+    def test_the_device_that_run_takes(self):
+        chosen = self.json("run", self.scene(), "--steps", 1)["backend"]
+        if chosen == "cpu":
+            self.skipTest("there is no bit-exact OpenCL device")
+        result = self.json("compare", self.scene(), "--steps", 2)
+        self.assertEqual([b["name"] for b in result["backends"]], [chosen, "cpu"])
 
     def test_every_step_looks_less_often(self):
         by_pass = self.json("compare", self.scene(), "--backends", "cpu,cpu", "--steps", 20)

@@ -23,7 +23,7 @@ Checkpoint sample() {
   Checkpoint c;
   c.scene_name = "liver";
   Snapshot& s = c.snapshot;
-  s.model_hash = 0x0123456789abcdefULL;
+  s.made_of = {{"gravity", 0x0123456789abcdefULL}, {"", 0}};
   s.real_type = "float";
   s.state.clock = {-5'000'000'000, 7, 0.1, std::numeric_limits<double>::denorm_min()};
   s.state.relaxation.u = {1.5, -0.0, std::numeric_limits<double>::infinity(), std::bit_cast<double>(0x7ff8000000000123ULL)};
@@ -65,7 +65,7 @@ TEST(Checkpoint, KeepsEveryBit) {
   write_checkpoint(folder.path() / "c", c);
   const Checkpoint r = read_checkpoint(folder.path() / "c");
   EXPECT_EQ(r.scene_name, c.scene_name);
-  EXPECT_EQ(r.snapshot.model_hash, c.snapshot.model_hash);
+  EXPECT_EQ(r.snapshot.made_of, c.snapshot.made_of);
   EXPECT_EQ(r.snapshot.real_type, c.snapshot.real_type);
   EXPECT_EQ(r.snapshot.buffers, c.snapshot.buffers);
   EXPECT_EQ(write_state(r.snapshot.state), write_state(c.snapshot.state));
@@ -122,9 +122,9 @@ TEST(Checkpoint, AlteredContentWithARightHashNeverCrashes) {
   }
   EXPECT_GT(errors, 100);
   std::string bad = bytes;
-  bad.replace(32, 8, std::string(7, '\xff') + "\x7f");  // the length of the scene's name
+  bad.replace(32, 8, std::string(7, '\xff') + "\x7f");  // the length of the first part's name
   const std::string message = error_of(store(folder, sealed(bad)));
-  EXPECT_TRUE(contains(message, "9223372036854775807") && contains(message, "scene name")) << message;
+  EXPECT_TRUE(contains(message, "9223372036854775807") && contains(message, "part's name")) << message;
 }
 
 TEST(Checkpoint, SaysWhatTheFileIs) {
