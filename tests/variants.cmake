@@ -66,6 +66,8 @@ if(OpenCL_FOUND AND embree_FOUND)
   pliant_variant(bare model 2 ${no_embree})
   pliant_variant(bare cutting 4 ${no_opencl} ${no_embree})
   pliant_variant(bare solver 2 ${no_opencl} ${no_embree})
+  # The two that take most of the time run the same objects over the same scenes on the twins as in test_solver.
+  set_property(TEST solver_bare.1of2 solver_bare.2of2 APPEND PROPERTY ENVIRONMENT "GTEST_FILTER=-Scenes/ResumeMatrix.*:CheckScenes.*")
   pliant_variant(bare api 2 ${no_opencl} ${no_embree})
   pliant_variant(bare render 1 ${no_embree} $<TARGET_OBJECTS:pliant_render_absent>)
   add_executable(pliant_cli_bare EXCLUDE_FROM_ALL ${no_opencl} ${no_embree} $<TARGET_OBJECTS:pliant_render_absent>)
