@@ -14,6 +14,7 @@
 #include "geometry/stopwatch.h"
 #include "geometry/vec.h"
 #include "io/atomic_file.h"
+#include "model/pieces.h"
 #include "pliant/error.h"
 #include "simulation/simulation.h"
 
@@ -43,9 +44,7 @@ double largest_displacement(const Simulation& s) {
 
 std::int64_t pieces_of(const Simulation& s) {
   std::int64_t pieces = 0;
-  for (std::size_t b = 0; b < s.model().bodies.size(); ++b) {
-    pieces += s.cut_topology(b) != nullptr ? s.cut_topology(b)->pieces() : 1;
-  }
+  for (const ModelBody& body : s.model().bodies) pieces += pieces_of(body);
   return pieces;
 }
 

@@ -8,6 +8,7 @@
 #include "api/world_call.h"
 #include "cutting/topology/cut_topology.h"
 #include "geometry/vec.h"
+#include "model/pieces.h"
 
 namespace pliant {
 namespace {
@@ -135,8 +136,7 @@ void World::lift_blade(const std::string& blade) {
 
 std::int64_t World::pieces(std::size_t body) const {
   const api::Call call(impl_);
-  const CutTopology* topology = impl_->simulation->cut_topology(api::check_body(*impl_, body));
-  return topology == nullptr ? 1 : topology->pieces();
+  return pieces_of(impl_->simulation->model().bodies[api::check_body(*impl_, body)]);
 }
 
 }  // namespace pliant

@@ -9,6 +9,7 @@
 #include "io/obj.h"
 #include "io/png.h"
 #include "layout.h"
+#include "model/pieces.h"
 #include "pliant/error.h"
 
 namespace pliant::cli {
@@ -57,17 +58,17 @@ ElementCuts element_cuts(const Simulation& simulation, std::size_t body) {
   const ModelBody& b = simulation.model().bodies[body];
   ElementCuts out{std::vector<float>(static_cast<std::size_t>(b.elements())),
                   std::vector<float>(static_cast<std::size_t>(b.elements()))};
+  std::vector<std::int32_t> piece;
+  static_cast<void>(pieces_of(b, &piece));
+  for (std::size_t e = 0; e < piece.size(); ++e) out.piece[e] = static_cast<float>(piece[e]);
   const CutTopology* topology = simulation.cut_topology(body);
   if (topology == nullptr) return out;
   const CutElements& elements = topology->elements();
-  std::vector<std::int32_t> piece;
-  static_cast<void>(topology->pieces(&piece));
   // A cell of a lattice may stand for six tetrahedra.
   const std::size_t parts = std::max<std::size_t>(1, out.cut.size() / elements.nodes.size());
   for (std::size_t e = 0; e < out.cut.size(); ++e) {
     const auto cell = topology->cells().find(elements.cell[e / parts]);
     out.cut[e] = cell != topology->cells().end() && cell->second.components > 1 ? 1.0F : 0.0F;
-    out.piece[e] = static_cast<float>(piece[e / parts]);
   }
   return out;
 }

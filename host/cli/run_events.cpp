@@ -4,29 +4,13 @@
 
 #include <algorithm>
 #include <bit>
-#include <set>
 
 #include "cli/run_loop.h"
-#include "geometry/disjoint_sets.h"
 #include "geometry/vec.h"
+#include "model/pieces.h"
 
 namespace pliant::cli {
 namespace {
-
-std::int64_t pieces(const ModelBody& body) {
-  DisjointSets sets(body.rest.size());
-  const auto join = [&](const auto& elements) {
-    for (const auto& nodes : elements) {
-      for (std::size_t a = 1; a < nodes.size(); ++a) sets.join(nodes[0], nodes[a]);
-    }
-  };
-  join(body.tets);
-  join(body.hexes);
-  std::set<std::int64_t> roots;
-  for (const auto& nodes : body.tets) roots.insert(sets.find(nodes[0]));
-  for (const auto& nodes : body.hexes) roots.insert(sets.find(nodes[0]));
-  return static_cast<std::int64_t>(roots.size());
-}
 
 constexpr double kFarAway = 20;  ///< in sizes of a body
 
@@ -44,7 +28,7 @@ RunEvents run_events(const Simulation& simulation) {
   for (const TearRecord& tear : state.tears) events.broken_faces += std::popcount(static_cast<unsigned>(tear.faces));
   events.broken_faces /= 2;  // each is a face of two tetrahedra
   for (std::size_t b = 0; b < simulation.model().bodies.size(); ++b) {
-    events.pieces += pieces(simulation.model().bodies[b]);
+    events.pieces += pieces_of(simulation.model().bodies[b]);
     for (const Vec3d& u : simulation.displacements(b))
       events.max_displacement = std::max(events.max_displacement, vec::norm(u));
   }
@@ -62,9 +46,8 @@ std::vector<std::string> parts_far_away(const Simulation& simulation) {
     for (const Vec3d& u : simulation.displacements(b)) farthest = std::max(farthest, vec::norm(u));
     if (farthest <= kFarAway * size) continue;
     sentences.push_back(
-        fmt::format("body '{}': some of it is {:.3g} m from its place at rest, {:.3g} times its size: nothing holds that part, "
-                    "and gravity or a "
-                    "force drives it on (what comes off keeps its share of a force)",
+        fmt::format("body '{}': some of it is {:.3g} m from its place at rest, {:.3g} times its size: nothing holds that part "
+                    "(what comes off keeps its velocity and its share of a force)",
                     body.name, farthest, farthest / size));
   }
   return sentences;

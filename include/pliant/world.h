@@ -170,8 +170,8 @@ class PLIANT_API World {
   /// Take it out of the tissue: the next move_blade puts it somewhere else without a cut. Throws Error (usage) if there is no
   /// such blade.
   void lift_blade(const std::string& blade);
-  /// Into how many pieces a body has come apart: sets of elements that share nodes; 1 if no blade has touched it. Waits for the
-  /// worker. Throws Error (usage) if there is no such body.
+  /// Into how many pieces a body has come apart, by cuts and tears or from the start: sets of elements that share nodes. Waits
+  /// for the worker. Throws Error (usage) if there is no such body.
   [[nodiscard]] std::int64_t pieces(std::size_t body) const;
 
   /// Write a checkpoint; `pliant run --resume` reads it too. Cuts and the places of blades are part of it. Grabs and

@@ -98,6 +98,9 @@ class Cut(CliTest):
         self.assertGreater(run["broken_faces"], 50)
         self.assertEqual(2 * run["broken_faces"], sum(vtu(last)["cut"]))
         self.assertEqual((run["cut_edges"], run["max_displacement"] >= 0.024 - 1e-6), (0, True))
+        volume = sorted(set((self.folder / "out").glob("*.vtu")) - set((self.folder / "out").glob("*_surface_*.vtu")))[-1]
+        self.assertGreater(run["pieces"], 1)
+        self.assertEqual(set(vtu(volume)["piece"]), set(range(run["pieces"])))
 
     def test_files_without_blades_have_no_arrays_of_cuts(self):
         self.pliant("run", self.scene(), "--steps", 2, "--out", "out")
