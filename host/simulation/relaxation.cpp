@@ -95,7 +95,7 @@ void remember(RunContext& run, const std::vector<double>& u, const std::vector<d
   last.time = run.state.clock.time();
 }
 
-/// Damp modes of angular frequency `omega` [1/s] critically, none more than a step allows.
+/// Damp modes of angular frequency `omega` [1/s] critically.
 void damp(RunContext& run, double omega) {
   run.state.relaxation.damping = std::max(0.0, 2 * omega - material_damping(run));
   run.upload_decay();

@@ -40,7 +40,7 @@ TEST_P(Trial, HasEveryKernelOfTheFirstCut) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, Trial, ::testing::Values("liver", "liver_hybrid"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& tested) { return std::string(tested.param); });
 
 }  // namespace
 }  // namespace pliant
