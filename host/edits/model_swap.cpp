@@ -66,8 +66,10 @@ void ModelSwap::run(const Scene& scene, std::vector<NodeOrigins> origins, const 
   run_.place_surface();
   upload_coupling(run_);
   run_.state.ballast = std::move(ballast_);
-  run_.state.kept.reset();                              // copies of the old model's buffers
-  RelaxationState& relaxation = run_.state.relaxation;  // and what it remembers is that of the old slots
+  run_.state.kept.reset();  // copies of the old model's buffers
+
+  // What dynamic relaxation remembers is that of the old slots.
+  RelaxationState& relaxation = run_.state.relaxation;
   for (std::vector<double>* values : {&relaxation.u, &relaxation.force, &relaxation.v, &relaxation.before}) values->clear();
   if (!run_.state.forces.empty()) loads_.upload();
   report_.upload += clock_.lap();
