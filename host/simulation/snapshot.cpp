@@ -118,15 +118,10 @@ std::uint64_t hash_of(const std::vector<ModelPart>& parts) {
   return hash.value;
 }
 
-std::string differing(const std::vector<ModelPart>& a, const std::vector<ModelPart>& b) {
+std::string differing(const std::vector<ModelPart>& taken, const std::vector<ModelPart>& own) {
   std::string names;
-  for (const auto& [from, to] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
-    for (const ModelPart& part : *from) {
-      const auto same_name = [&](const ModelPart& other) { return other.name == part.name; };
-      const auto other = std::find_if(to->begin(), to->end(), same_name);
-      const bool once = from == &a || other == to->end();
-      if (once && (other == to->end() || other->hash != part.hash)) names += (names.empty() ? "" : ", ") + part.name;
-    }
+  for (const ModelPart& part : own) {
+    if (std::find(taken.begin(), taken.end(), part) == taken.end()) names += (names.empty() ? "" : ", ") + part.name;
   }
   return names;
 }

@@ -37,8 +37,8 @@ std::vector<ModelPart> parts_of(const Scene& scene, const RunSettings& settings,
 /// One hash of all parts.
 [[nodiscard]] std::uint64_t hash_of(const std::vector<ModelPart>& parts);
 
-/// The names of the parts that are not the same in both, such as "gravity, blades".
-[[nodiscard]] std::string differing(const std::vector<ModelPart>& a, const std::vector<ModelPart>& b);
+/// The names of one's own parts that a snapshot was not taken with, such as "gravity, blades".
+[[nodiscard]] std::string differing(const std::vector<ModelPart>& taken, const std::vector<ModelPart>& own);
 
 [[nodiscard]] Snapshot take_snapshot(const RunContext& run);
 
