@@ -70,7 +70,8 @@ void ModelSwap::run(const Scene& scene, std::vector<NodeOrigins> origins, const 
 
   // What dynamic relaxation remembers is that of the old slots.
   RelaxationState& relaxation = run_.state.relaxation;
-  for (std::vector<double>* values : {&relaxation.u, &relaxation.force, &relaxation.v, &relaxation.before}) values->clear();
+  for (std::vector<double>* values : {&relaxation.u, &relaxation.force, &relaxation.v, &relaxation.middle, &relaxation.steady})
+    values->clear();
   if (!run_.state.forces.empty()) loads_.upload();
   report_.upload += clock_.lap();
 }

@@ -110,7 +110,7 @@ struct Body {
 /// Dynamic relaxation: adaptive damping towards static equilibrium.
 struct Relaxation {
   bool enabled = false;
-  double tolerance = 1e-4;  ///< stop at |R - F| <= tolerance * |largest of R, F|
+  double tolerance = 1e-5;  ///< stop at |R - F| <= tolerance * |largest of R, F|
   std::int64_t max_steps = 100000;
 };
 

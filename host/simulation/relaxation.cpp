@@ -26,6 +26,12 @@ struct Sums {
   double size = 0;                                  ///< u . M u [kg m^2]
 };
 
+/// What moves faster than the time since the last change [m/s]: the mean of both velocities less that of the time.
+double fast_velocity(const RelaxationState& last, const std::vector<double>& u, const std::vector<double>& v, double time,
+                     std::size_t t) {
+  return (v[t] + last.v[t]) / 2 - (u[t] - last.u[t]) / time - (last.steady.empty() ? 0 : last.steady[t]);
+}
+
 std::vector<double> velocities(const RunContext& run, const std::vector<double>& u) {
   std::vector<double> v = run.loaded.w();
   const bool textbook = run.scene.integrator == Integrator::textbook;  // which keeps the displacement before
@@ -60,7 +66,7 @@ Sums sum(const RunContext& run, const std::vector<double>& u, const std::vector<
       const double du = u[t] - last.u[t];
       out.stiffness -= du * (force[t] - last.force[t]);
       out.inertia += m * du * du;
-      const double fast = (v[t] + last.v[t]) / 2 - du / time;
+      const double fast = fast_velocity(last, u, v, time, t);
       out.fast += m * fast * fast;
       const double mean = m * (v[t] - last.v[t] + (model.damping[s] + last.damping) * du) / time;
       out.mean += mean * mean;
@@ -133,6 +139,14 @@ void relax_elements(RunContext& run) {
   remember(run, u, force, v);
 }
 
+/// Whether nodes move in the rhythm of shape matching: it pulls them once in `substeps` steps, between which the elements and
+/// the springs to held goals take them back. At rest they have the same velocity after each of these steps, which the damping
+/// decides.
+bool has_rhythm(const Model& model) {
+  return std::any_of(model.flsm.begin(), model.flsm.end(),
+                     [](const FlsmBatch& b) { return b.interface > 0 && b.settings.substeps > 1; });
+}
+
 /// Shape matching has no force that could be told from rounding. What its nodes and the elements' feel is known from their
 /// momentum all the same: the mean of all forces since the last change is m (dv + c du) / time, in which motion of velocity w
 /// that is faster than that time leaves 2 m w / time at most. -du . df and du . M du are those of two such means and of the
@@ -142,11 +156,17 @@ void relax_by_momentum(RunContext& run) {
   const Model& model = run.model();
   const double now = run.state.clock.time(), time = now - last.time;
   const double x = (material_damping(run) + last.damping) * time / 2;
-  if (!last.before.empty() && x > 0 && x < kInterval) return;
+  const bool rhythm = has_rhythm(model), first = last.middle.empty();
+  if (!first && !last.v.empty() && x > 0 && x < kInterval) return;
   const std::vector<double> u = run.loaded.u(), v = velocities(run, u), force = run.forces_now();
-  if (last.u.empty()) return remember(run, u, std::vector<double>(u.size()), v);
+  if (last.v.empty()) return remember(run, u, last.force.empty() ? std::vector<double>(u.size()) : last.force, v);
+  if (rhythm && last.steady.empty()) {
+    last.steady.resize(u.size());
+    for (std::size_t t = 0; t < u.size(); ++t) last.steady[t] = (v[t] + last.v[t]) / 2 - (u[t] - last.u[t]) / time;
+    return;
+  }
   const Sums sums = sum(run, u, force, v);
-  std::vector<double> mean(u.size());
+  std::vector<double> mean(u.size()), middle(u.size());
   double stiffness = 0, inertia = 0, change = 0, noise = 0, carried = 0;
   for (std::size_t s = 0; s < model.mass.size(); ++s) {
     const double m = model.mass[s];
@@ -154,10 +174,11 @@ void relax_by_momentum(RunContext& run) {
     for (std::size_t t = 4 * s; t < 4 * s + 3; ++t) {
       carried += force[t] * force[t];  // at rest the load of a node that the other model's nodes or a support carry
       if (!run.loaded.free()[3 * s + t - 4 * s]) continue;
-      const double du = u[t] - last.u[t], fast = (v[t] + last.v[t]) / 2 - du / time;
+      const double du = u[t] - last.u[t], fast = fast_velocity(last, u, v, time, t);
       mean[t] = m * (v[t] - last.v[t] + (model.damping[s] + last.damping) * du) / time;
-      if (last.before.empty()) continue;
-      const double shift = (u[t] - last.before[t]) / 2, df = mean[t] - last.force[t];
+      middle[t] = (u[t] + last.u[t]) / 2;
+      if (first) continue;
+      const double shift = middle[t] - last.middle[t], df = mean[t] - last.force[t];
       stiffness -= shift * df;
       inertia += m * shift * shift;
       change += df * df / m;
@@ -172,17 +193,23 @@ void relax_by_momentum(RunContext& run) {
   last.residual = scale > 0 ? std::max(x > 0 ? slow * left : slow, fast) / scale : 0;
   const double tolerance = run.scene.relaxation.tolerance;
   last.equilibrium = last.time >= run.settings.curves_end && x >= kInterval && last.residual <= tolerance;
-  if (!last.before.empty() && change <= kStandsOut * noise) {
+  double omega = 0;
+  if (!first && change <= kStandsOut * noise) {
     // Where little moves, it may be rounding, and a longer time tells what is slow. What moves fast is to be damped.
     if (x > 0 && (x < 1 || (fast <= kLittle * tolerance * scale && x < kSettled))) return;
-    damp(run, std::max(last.damping, 2 / time));
+    omega = std::max(last.damping, 2 / time);
   } else if (stiffness > 0 && inertia > 0) {
-    damp(run, std::sqrt(stiffness / inertia));
-  } else if (!last.before.empty() && !(last.damping > 0)) {
-    damp(run, 2 / time);
+    omega = std::sqrt(stiffness / inertia);
+  } else if (!first && !(last.damping > 0)) {
+    omega = 2 / time;
   }
-  last.before = last.u;
+  last.middle = middle;
   remember(run, u, mean, v);
+  if (!(omega > 0)) return;
+  damp(run, omega);
+  if (!rhythm) return;
+  last.v.clear();
+  last.steady.clear();
 }
 
 }  // namespace

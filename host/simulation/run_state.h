@@ -39,7 +39,8 @@ struct RelaxationState {
   double residual = 0;              ///< |R - F| over the largest of external and reaction force
   double time = 0;                  ///< of the last change [s]
   std::vector<double> u, force, v;  ///< node_u, node_force and velocities [m/s] at the last change; empty: there was none
-  std::vector<double> before;       ///< with shape matching: node_u at the change before, and `force` is the mean since then
+  std::vector<double> middle;       ///< with shape matching: node_u halfway through the time that `force` is the mean of
+  std::vector<double> steady;       ///< with shape matching: velocities in the rhythm of its steps, see relaxation.cpp [m/s]
   double largest = 0;               ///< with shape matching: of such means over all nodes [N]
 };
 
@@ -126,7 +127,7 @@ void visit(V& v, StepLimit& s) {
 template <class V>
 void visit(V& v, RelaxationState& s) {
   v("damping", s.damping), v("equilibrium", s.equilibrium), v("residual", s.residual), v("u", s.u), v("force", s.force);
-  v("time", s.time), v("v", s.v), v("before", s.before), v("largest", s.largest);
+  v("time", s.time), v("v", s.v), v("middle", s.middle), v("steady", s.steady), v("largest", s.largest);
 }
 template <class V>
 void visit(V& v, KeptState& s) {

@@ -98,7 +98,7 @@ struct BladeSpec {
 
 /// Adaptive damping towards static equilibrium.
 struct RelaxationSpec {
-  double tolerance = 1e-4;          ///< done at |R - F| <= tolerance * |largest of R, F|
+  double tolerance = 1e-5;          ///< done at |R - F| <= tolerance * |largest of R, F|
   std::int64_t max_steps = 100000;  ///< give up after so many steps
 };
 
