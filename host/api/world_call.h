@@ -11,7 +11,9 @@ class Call {
     if (in_use_.exchange(true)) {
       throw Error(ErrorCode::state, "two threads use the same World at once; give each its own, or let them take turns");
     }
-    if (wait) impl->wait_until_idle();
+    if (!wait) return;
+    impl->wait_until_idle();
+    impl->beside = false;
   }
   ~Call() { in_use_.store(false); }
   Call(const Call&) = delete;

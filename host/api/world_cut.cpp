@@ -20,10 +20,18 @@ void check_finite(const Vec3d& p, const char* what) {
 
 }  // namespace
 
-/// What Simulation refuses is the caller's; everything else is the device's.
-CutReport World::Impl::cut_now(const CutCall& call) {
+/// One cut: along triangles, or by all that blades have moved. What Simulation refuses is the caller's; everything else is the
+/// device's.
+CutReport World::Impl::cut_now(std::span<const api::CutRequest> requests) {
   try {
-    const CutReport done = call(*simulation);
+    CutReport done;
+    std::vector<BladePose> poses;
+    for (const api::CutRequest& r : requests) {
+      if (!r.lifted.empty()) simulation->lift_blade(r.lifted);
+      if (!r.triangles.empty()) done = simulation->cut(r.triangles);
+      poses.insert(poses.end(), r.pose.begin(), r.pose.end());
+    }
+    if (!poses.empty()) done = simulation->move_blades(poses);
     if (!done.changed) return done;
     tools->follow(simulation->shared_model());
     const std::lock_guard lock(mutex);
@@ -35,16 +43,20 @@ CutReport World::Impl::cut_now(const CutCall& call) {
   }
 }
 
+/// What blades have moved between two batches is one cut: cuts that take longer than a frame would pile up.
 void World::Impl::cut_pending() {
-  std::vector<CutCall> calls;
+  std::vector<api::CutRequest> requests;
   {
     const std::lock_guard lock(mutex);
-    calls.swap(pending_cuts);
+    requests.swap(pending_cuts);
   }
   std::exception_ptr refused;  // the others are done all the same
-  for (const CutCall& call : calls) {
+  const auto moves = [&](std::size_t r) { return !requests[r].pose.empty(); };
+  for (std::size_t first = 0, last = 0; first < requests.size(); first = last) {
+    last = first + 1;
+    while (moves(first) && last < requests.size() && moves(last) && requests[last].lifted.empty()) ++last;
     try {
-      cut_now(call);
+      cut_now(std::span(requests).subspan(first, last - first));
     } catch (const api::CutRefused&) {
       if (refused == nullptr) refused = std::current_exception();
     }
@@ -52,21 +64,25 @@ void World::Impl::cut_pending() {
   if (refused != nullptr) std::rethrow_exception(refused);
 }
 
-CutResult World::Impl::cut(CutCall call) {
+CutResult World::Impl::cut(api::CutRequest request) {
+  CutResult result;
   {
     const std::lock_guard lock(mutex);
-    if (job) {
-      pending_cuts.push_back(std::move(call));
-      CutResult result;
-      result.pending = true;
-      return result;
-    }
+    result.pending = job != nullptr;
+    if (job) pending_cuts.push_back(std::move(request));
   }
+  if (result.pending) return result;
   throw_failure();
   check_can_step();
+  if (beside) {
+    const std::lock_guard lock(mutex);
+    pending_cuts.push_back(std::move(request));
+    result.pending = true;
+    return result;
+  }
   try {
     cut_pending();
-    const CutReport done = cut_now(call);
+    const CutReport done = cut_now({&request, 1});
     publish_clock();
     return {false, done.changed, done.edges, done.seconds()};
   } catch (const api::CutRefused& refused) {
@@ -98,7 +114,7 @@ CutResult World::cut(const std::vector<std::array<Vec3d, 3>>& triangles) {
   for (const auto& t : triangles) {
     for (const Vec3d& p : t) check_finite(p, "cut");
   }
-  return impl_->cut([triangles](Simulation& s) { return s.cut(triangles); });
+  return impl_->cut({triangles, {}, {}});
 }
 
 CutResult World::move_blade(const std::string& blade, const Vec3d& a, const Vec3d& b) {
@@ -113,10 +129,7 @@ CutResult World::move_blade(const std::string& blade, const Vec3d& a, const Vec3
   // Every stroke has a name of its own, so that nothing of an older one is left.
   const auto [key, fresh] = impl_->blade_key.try_emplace(blade);
   if (fresh) key->second = fmt::format("{}#{}", blade, impl_->strokes++);
-  return impl_->cut([name = key->second, fresh = fresh, a, b](Simulation& s) {
-    if (fresh) s.lift_blade(name);
-    return s.move_blade(name, {a, b});
-  });
+  return impl_->cut({{}, {{key->second, {a, b}}}, fresh ? key->second : std::string()});
 }
 
 void World::lift_blade(const std::string& blade) {
@@ -128,10 +141,7 @@ void World::lift_blade(const std::string& blade) {
   const std::string name = key->second;
   impl_->blade_key.erase(key);
   const std::lock_guard lock(impl_->mutex);
-  impl_->pending_cuts.push_back([name](Simulation& s) {
-    s.lift_blade(name);
-    return CutReport{};
-  });
+  impl_->pending_cuts.push_back({{}, {}, name});
 }
 
 std::int64_t World::pieces(std::size_t body) const {

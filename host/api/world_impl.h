@@ -7,8 +7,10 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "api/frame_pool.h"
 #include "api/tools.h"
@@ -29,6 +31,17 @@ struct CutRefused : Error {
 
 /// Opens a backend for a scene of so many nodes; `reason` receives the reason.
 using OpenBackend = std::function<std::unique_ptr<Backend>(std::string* reason, std::int64_t nodes)>;
+
+namespace api {
+
+/// A cut that was asked for: along triangles, by a move of a blade, or one that a blade is lifted from.
+struct CutRequest {
+  std::vector<SweepTriangle> triangles;
+  std::vector<BladePose> pose;  ///< at most one
+  std::string lifted;           ///< no cut; before what else there is
+};
+
+}  // namespace api
 
 /// One thread at a time steps the simulation: the caller's in step(), the worker in advance_async(). `mutex` protects what both
 /// touch.
@@ -51,9 +64,8 @@ struct World::Impl {
   void check_can_step() const;
 
   // world_cut.cpp
-  using CutCall = std::function<CutReport(Simulation&)>;
-  CutResult cut(CutCall call);
-  CutReport cut_now(const CutCall& call);
+  CutResult cut(api::CutRequest request);
+  CutReport cut_now(std::span<const api::CutRequest> requests);
   void cut_pending();
   [[nodiscard]] api::SurfaceVertex vertex_of(std::int32_t vertex) const;
 
@@ -85,9 +97,10 @@ struct World::Impl {
   std::condition_variable changed;
   std::thread worker;
   bool stop = false;
-  std::function<void()> job;          ///< asked of the worker; empty: nothing
-  std::vector<CutCall> pending_cuts;  ///< asked for while the worker was busy
-  bool cut_since_read = false;        ///< `newest` does not show the last cut
+  std::function<void()> job;                  ///< asked of the worker; empty: nothing
+  std::vector<api::CutRequest> pending_cuts;  ///< for the worker's next batch
+  bool beside = false;                        ///< the caller's: steps were asked of the worker, and nobody has waited since
+  bool cut_since_read = false;                ///< `newest` does not show the last cut
   std::exception_ptr failure;
   StepReport report;  ///< of the last work
   double stable_dt = 0;

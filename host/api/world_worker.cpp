@@ -1,7 +1,22 @@
 // The thread of a World that steps while its caller draws.
+#include <pthread.h>
+#include <sched.h>
+
 #include "api/world_impl.h"
 
 namespace pliant {
+namespace {
+
+/// Who wakes this thread goes on first: where every core is busy, it would take the core of the caller for milliseconds. Not
+/// vital, so a refusal is no error.
+void let_the_waker_go_on() {
+#ifdef SCHED_BATCH
+  const sched_param none{};
+  static_cast<void>(pthread_setschedparam(pthread_self(), SCHED_BATCH, &none));
+#endif
+}
+
+}  // namespace
 
 World::Impl::~Impl() {
   {
@@ -24,6 +39,7 @@ bool World::Impl::start_job(std::function<void()> work) {
     const std::lock_guard lock(mutex);
     job = std::move(work);
   }
+  beside = true;
   changed.notify_all();
   return true;
 }
@@ -44,6 +60,7 @@ void World::Impl::throw_failure() {
 }
 
 void World::Impl::serve() {
+  let_the_waker_go_on();
   while (true) {
     std::function<void()> work;
     {

@@ -148,11 +148,18 @@ CutReport TopologyEdits::move_blades(std::span<const BladePose> poses) {
                 fmt::format("blade '{}': got a segment from [{}] m to [{}] m; allowed are two different finite points", blade,
                             fmt::join(segment[0], ", "), fmt::join(segment[1], ", ")));
   }
-  auto& placed = run_.state.blades.placed;
+  auto placed = run_.state.blades.placed;
   std::vector<BladeMove> moves;
   for (const auto& [blade, segment] : poses) {
-    const auto before = placed.find(blade);
-    if (before != placed.end()) moves.push_back({"host/" + blade, before->second, {segment}});
+    const std::string key = "host/" + blade;
+    const auto [before, fresh] = placed.try_emplace(blade, segment);
+    if (fresh) continue;
+    const auto move = std::find_if(moves.begin(), moves.end(), [&](const BladeMove& m) { return m.key == key; });
+    if (move == moves.end())
+      moves.push_back({key, before->second, {segment}});
+    else
+      move->to.push_back(segment);
+    before->second = segment;
   }
   CutReport report;
   if (!moves.empty() && run_.phase() == 0) {
@@ -162,7 +169,7 @@ CutReport TopologyEdits::move_blades(std::span<const BladePose> poses) {
     auto& pending = run_.state.pending.moves;
     pending.insert(pending.end(), moves.begin(), moves.end());
   }
-  for (const auto& [blade, segment] : poses) placed[blade] = segment;
+  run_.state.blades.placed = std::move(placed);
   return report;
 }
 

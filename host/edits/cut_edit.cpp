@@ -14,6 +14,7 @@ void TopologyEdits::make_cut(std::vector<CutEdges> edges, std::vector<double> u,
   Stopwatch clock;
   EditedBodies& all = bodies();
   std::vector<CutEdit> edits(edges.size());
+  std::vector<char> changed;
   std::size_t done = 0;
   try {
     for (; done < edges.size(); ++done) {
@@ -38,6 +39,7 @@ void TopologyEdits::make_cut(std::vector<CutEdges> edges, std::vector<double> u,
       Scene scene = scene_at(run_.state);
       scene.cuttable = true;
       swap.run(scene, std::move(origins), [&] { get_soon(surfaces); });
+      changed = swap.changed_nodes();
     }
   } catch (...) {
     for (std::size_t b = 0; b < std::min(done + 1, edges.size()); ++b) {
@@ -51,7 +53,7 @@ void TopologyEdits::make_cut(std::vector<CutEdges> edges, std::vector<double> u,
   if (!report.changed) return;
   ++run_.state.topology_version;
   if (all.size() == 1) all.surface_copy.make(run_.loaded.shared_model(), all.helper);
-  step_.limit_after_edit();
+  step_.limit_after_edit(changed);
 }
 
 }  // namespace pliant

@@ -76,6 +76,18 @@ void ModelSwap::run(const Scene& scene, std::vector<NodeOrigins> origins, const 
   report_.upload += clock_.lap();
 }
 
+std::vector<char> ModelSwap::changed_nodes() const {
+  std::vector<char> changed(model_->mass.size());
+  for (std::size_t b = 0; b < origins_.size(); ++b) {
+    const std::vector<std::int32_t>&slots = model_->bodies[b].slot, &old_slots = old_model_->bodies[b].slot;
+    for (std::size_t n = 0; n < slots.size(); ++n) {
+      const auto slot = static_cast<std::size_t>(slots[n]), old = static_cast<std::size_t>(old_slots[origins_[b].of(n)]);
+      changed[slot] = static_cast<char>(model_->mass[slot] != old_model_->mass[old]);
+    }
+  }
+  return changed;
+}
+
 std::vector<NodeInertia> ModelSwap::carried_ballast() const {
   std::vector<NodeInertia> out;
   if (old_model_->ballast.empty()) return out;

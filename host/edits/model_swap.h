@@ -26,6 +26,8 @@ class ModelSwap {
   /// `scene`: with its operational regions as they are to be. The bodies' surfaces may still be in the making until `ready`
   /// returns, which may throw. Throws with the old model back in place.
   void run(const Scene& scene, std::vector<NodeOrigins> origins, const std::function<void()>& ready);
+  /// After run(): which nodes have another mass than the ones they come from, so that their elements are others. [slots]
+  [[nodiscard]] std::vector<char> changed_nodes() const;
 
  private:
   [[nodiscard]] bool keeps_surface() const;

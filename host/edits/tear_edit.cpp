@@ -18,6 +18,7 @@ void TopologyEdits::make_tears() {
   }
   if (!any) return;
   CutReport report;
+  std::vector<char> changed;
   try {
     ModelSwap swap(run_, loads_, all, u, report);
     std::vector<NodeOrigins> origins(all.size());
@@ -25,6 +26,7 @@ void TopologyEdits::make_tears() {
       if (!faces[b].empty()) origins[b].from = all.torn(b)->tear(faces[b]);
     }
     swap.run(scene_at(run_.state), std::move(origins), [] {});
+    changed = swap.changed_nodes();
   } catch (...) {
     for (std::size_t b = 0; b < all.size(); ++b) {
       if (!faces[b].empty()) all.rebuild(b, run_.state);
@@ -39,7 +41,7 @@ void TopologyEdits::make_tears() {
     }
   }
   ++run_.state.topology_version;
-  step_.limit_after_edit();
+  step_.limit_after_edit(changed);
 }
 
 }  // namespace pliant

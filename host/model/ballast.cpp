@@ -23,20 +23,21 @@ constexpr double kTooMuch = 2;    ///< times that again is given back
 /// w lambda_max(C) lambda_max(sum_a grad N_a grad N_a^T).
 template <int N>
 double point_stiffness(const Eigen::Matrix<double, N, 3>& b, const Eigen::Matrix<double, 3, N>& u, double weight,
-                       const Material& material) {
+                       const Material& material, bool quick) {
   Response response;
   if (!respond(material, u * b, true, response)) return 0;
   const Matrix9d tangent = 0.5 * (response.tangent + response.tangent.transpose());
   const Matrix3d gram = b.transpose() * b;
   Eigen::SelfAdjointEigenSolver<Matrix3d> size(gram, Eigen::EigenvaluesOnly);
-  return weight * std::max(0.0, largest_eigenvalue(tangent)) * size.eigenvalues()[2];
+  const double largest = quick ? tangent.norm() : largest_eigenvalue(tangent);
+  return weight * std::max(0.0, largest) * size.eigenvalues()[2];
 }
 
 Vector3d displacement(const std::vector<double>& u, std::int32_t slot) {
   return Eigen::Map<const Vector3d>(u.data() + 4 * static_cast<std::size_t>(slot));
 }
 
-double hex_stiffness(const HexView& view, const std::vector<double>& u) {
+double hex_stiffness(const HexView& view, const std::vector<double>& u, bool quick) {
   Eigen::Matrix<double, 3, 8> moved;
   for (int a = 0; a < 8; ++a) moved.col(a) = displacement(u, view.slots[a]);
   const auto gradients = [&](int at) -> Eigen::Matrix<double, 8, 3> {
@@ -45,15 +46,15 @@ double hex_stiffness(const HexView& view, const std::vector<double>& u) {
   double sum = 0;
   if (view.full) {
     for (int g = 0; g < 8; ++g) {
-      sum += point_stiffness<8>(gradients(25 * g), moved, view.fill * view.record[25 * g + 24], view.material);
+      sum += point_stiffness<8>(gradients(25 * g), moved, view.fill * view.record[25 * g + 24], view.material, quick);
     }
     return sum;
   }
-  return point_stiffness<8>(gradients(0), moved, view.fill * hex8_volume(view.record), view.material) +
+  return point_stiffness<8>(gradients(0), moved, view.fill * hex8_volume(view.record), view.material, quick) +
          view.fill * hourglass_bound(view.record, moved);
 }
 
-double tet_stiffness(const TetBatch& batch, std::size_t e, const std::vector<double>& u) {
+double tet_stiffness(const TetBatch& batch, std::size_t e, const std::vector<double>& u, bool quick) {
   Eigen::Matrix<double, 4, 3> b;
   b.row(0).setZero();
   Eigen::Matrix<double, 3, 4> moved;
@@ -63,7 +64,7 @@ double tet_stiffness(const TetBatch& batch, std::size_t e, const std::vector<dou
     b.row(a) = Eigen::Map<const Eigen::RowVector3d>(batch.gradients[e].data() + 3 * (a - 1));
     b.row(0) -= b.row(a);
   }
-  return point_stiffness<4>(b, moved, batch.volume[e], batch.material);
+  return point_stiffness<4>(b, moved, batch.volume[e], batch.material, quick);
 }
 
 }  // namespace
@@ -83,15 +84,21 @@ void set_ballast(const Scene& scene, Model& model, std::span<const NodeInertia> 
   add_boundary_conditions(scene, model);
 }
 
-std::vector<double> nodal_stiffness(const Model& model, const std::vector<double>& u) {
+std::vector<double> nodal_stiffness(const Model& model, const std::vector<double>& u, const std::vector<char>& wanted,
+                                    bool quick) {
   std::vector<double> sum(model.mass.size());
-  const auto add = [&](const auto& slots, double stiffness) {
-    for (const std::int32_t s : slots) sum[s] += stiffness;
+  const auto asked = [&](std::int32_t slot) { return wanted.empty() || wanted[slot] != 0; };
+  const auto add = [&](const auto& slots, const auto& stiffness_of) {
+    if (std::none_of(slots.begin(), slots.end(), asked)) return;
+    const double stiffness = stiffness_of();
+    for (const std::int32_t s : slots) {
+      if (asked(s)) sum[s] += stiffness;
+    }
   };
   for (const TetBatch& batch : model.tets) {
-    for (std::size_t e = 0; e < batch.nodes.size(); ++e) add(batch.nodes[e], tet_stiffness(batch, e, u));
+    for (std::size_t e = 0; e < batch.nodes.size(); ++e) add(batch.nodes[e], [&] { return tet_stiffness(batch, e, u, quick); });
   }
-  for_each_hex(model, [&](const HexView& view) { add(view.slots, hex_stiffness(view, u)); });
+  for_each_hex(model, [&](const HexView& view) { add(view.slots, [&] { return hex_stiffness(view, u, quick); }); });
   return sum;
 }
 

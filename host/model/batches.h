@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "model/flsm_regions.h"
@@ -62,6 +63,9 @@ struct FlsmBatch {
   std::vector<std::array<std::int32_t, 6>> link;   ///< [own + interface + fillers] -x, +x, -y, +y, -z, +z, -1: none
   std::vector<Branch> branches;                    ///< where the parts that links join hang together besides
   FlsmRegions regions;
+  /// Of a batch that an edit has made, for the next edit: the regions without fillers, and the grid points of the fillers.
+  std::shared_ptr<const FlsmRegions> bare;
+  std::vector<std::array<std::int32_t, 3>> filler_index;
   std::vector<double> weight;             ///< [own + interface] node mass over the number of regions that hold it [kg]
   std::vector<double> matter;             ///< [own + interface] share of the node's mass in cells of shape matching
   std::vector<RegionElasticity> elastic;  ///< [own + interface] with settings.young > 0, else empty

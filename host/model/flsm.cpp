@@ -64,22 +64,17 @@ void link_nodes(const BodyElements& solid, const std::vector<std::int32_t>& numb
   });
 }
 
-/// A batch of the same body with the same nodes and links, before fillers.
-const FlsmBatch* same_links(const FlsmBatch& batch, const Model& previous) {
-  for (const FlsmBatch& other : previous.flsm) {
-    if (other.body != batch.body || other.settings.width != batch.settings.width || other.index != batch.index ||
-        other.branches != batch.branches)
-      continue;
-    const auto nodes = static_cast<std::int32_t>(batch.slot.size());
-    for (std::int32_t n = 0; n < nodes; ++n) {
-      for (int d = 0; d < 6; ++d) {
-        const std::int32_t link = other.link[n][d];
-        if ((link < nodes ? link : -1) != batch.link[n][d]) return nullptr;
-      }
+/// Whether a batch has the same nodes and links, before fillers.
+bool same_links(const FlsmBatch& batch, const FlsmBatch& other) {
+  if (other.index != batch.index || other.branches != batch.branches) return false;
+  const auto nodes = static_cast<std::int32_t>(batch.slot.size());
+  for (std::int32_t n = 0; n < nodes; ++n) {
+    for (int d = 0; d < 6; ++d) {
+      const std::int32_t link = other.link[n][d];
+      if ((link < nodes ? link : -1) != batch.link[n][d]) return false;
     }
-    return &other;
   }
-  return nullptr;
+  return true;
 }
 
 void require_width(const Body& body, const FlsmBatch& batch) {
@@ -137,6 +132,33 @@ std::vector<RestMoments> along(int axis, const FlsmBatch& batch, const std::vect
   return out;
 }
 
+LinkedLattice bare_lattice(const FlsmBatch& batch) {
+  LinkedLattice lattice{batch.index, batch.link, batch.branches};
+  const auto nodes = static_cast<std::int32_t>(batch.index.size());
+  lattice.link.resize(batch.index.size());
+  for (auto& links : lattice.link) {
+    for (std::int32_t& n : links) {
+      if (n >= nodes) n = -1;
+    }
+  }
+  return lattice;
+}
+
+LinkedLattice filled_lattice(const FlsmBatch& batch) {
+  LinkedLattice lattice{batch.index, batch.link, batch.branches, batch.fillers};
+  lattice.index.insert(lattice.index.end(), batch.filler_index.begin(), batch.filler_index.end());
+  return lattice;
+}
+
+/// The batch of the same body and width in the model before.
+const FlsmBatch* batch_before(const FlsmBatch& batch, const Model* previous) {
+  if (previous == nullptr) return nullptr;
+  const auto found = std::find_if(previous->flsm.begin(), previous->flsm.end(), [&](const FlsmBatch& other) {
+    return other.body == batch.body && other.settings.width == batch.settings.width;
+  });
+  return found == previous->flsm.end() ? nullptr : &*found;
+}
+
 }  // namespace
 
 FlsmBatch place_matching_nodes(const BodyElements& solid, const Body& body, std::int32_t number,
@@ -168,30 +190,40 @@ FlsmBatch place_matching_nodes(const BodyElements& solid, const Body& body, std:
   batch.poisson = std::clamp(body.material.moduli.poisson(), 0.0, kMostPoisson);
   link_nodes(solid, in_batch, batch);
   require_width(body, batch);
-  const FlsmBatch* same = previous != nullptr ? same_links(batch, *previous) : nullptr;
-  if (same != nullptr) {
-    batch.link = same->link;
-    batch.fillers = same->fillers;
-    batch.regions = same->regions;
+  const FlsmBatch* before = batch_before(batch, previous);
+  if (before != nullptr && same_links(batch, *before)) {
+    batch.link = before->link;
+    batch.fillers = before->fillers;
+    batch.filler_index = before->filler_index;
+    batch.regions = before->regions;
+    batch.bare = before->bare;
   } else {
-    find_batch_regions(batch);
+    find_batch_regions(batch, before);
   }
   return batch;
 }
 
-void find_batch_regions(FlsmBatch& batch) {
-  const std::size_t nodes = batch.slot.size();
-  LinkedLattice lattice{batch.index, std::move(batch.link), batch.branches};
-  lattice.link.resize(nodes);
-  for (auto& links : lattice.link) {
-    for (std::int32_t& n : links) {
-      if (n >= static_cast<std::int32_t>(nodes)) n = -1;
-    }
+void find_batch_regions(FlsmBatch& batch, const FlsmBatch* before) {
+  const int width = batch.settings.width;
+  LinkedLattice lattice = bare_lattice(batch);
+  FlsmRegions bare;
+  if (before != nullptr && before->bare != nullptr) {
+    const LinkedLattice known = bare_lattice(*before);
+    const KnownRegions of_bare{known, *before->bare};
+    bare = find_regions(lattice, width, &of_bare);
+    add_fillers(lattice, bare);
+    const LinkedLattice filled = filled_lattice(*before);
+    const KnownRegions of_filled{filled, before->regions};
+    batch.regions = find_regions(lattice, width, &of_filled);
+  } else {
+    bare = find_regions(lattice, width);
+    add_fillers(lattice, bare);
+    batch.regions = find_regions(lattice, width);
   }
-  add_fillers(lattice, find_regions(lattice, batch.settings.width));
-  batch.regions = find_regions(lattice, batch.settings.width);
   batch.fillers = lattice.fillers;
+  batch.filler_index.assign(lattice.index.end() - lattice.fillers, lattice.index.end());
   batch.link = std::move(lattice.link);
+  if (before != nullptr) batch.bare = std::make_shared<const FlsmRegions>(std::move(bare));
 }
 
 void weigh(FlsmBatch& batch, const std::vector<double>& mass) {

@@ -17,7 +17,7 @@ FlsmBatch place_matching_nodes(const BodyElements& solid, const Body& body, std:
 
 /// Find the regions of a batch from the links among its nodes, and fillers for them; those it had before go. Called again after
 /// links were cut; weigh() has to follow.
-void find_batch_regions(FlsmBatch& batch);
+void find_batch_regions(FlsmBatch& batch, const FlsmBatch* before = nullptr);
 
 /// Weights of the region sums, once the masses are lumped: m / holders, so that the mean of the goals keeps the momentum.
 void weigh(FlsmBatch& batch, const std::vector<double>& mass);

@@ -15,7 +15,7 @@ namespace pliant {
 namespace {
 
 constexpr int kMostWidth = 5;
-constexpr std::int64_t kBlock = 2048;  // nodes that a thread takes at a time
+constexpr std::int64_t kBlock = 512;  // nodes that a thread takes at a time
 
 // Call work(first, last) for blocks of [0, count).
 template <class Work>
@@ -212,13 +212,31 @@ class RegionSearch {
   std::vector<std::int32_t> reached_;  // the nodes of the region, as indices into found_
 };
 
+// What is missing in a region that was known, by the numbers that nodes have now.
+std::int32_t take_over(const FlsmRegions& known, std::int32_t region, const std::vector<std::int32_t>& now,
+                       std::vector<RegionEntry>& missing) {
+  const auto begin = static_cast<std::ptrdiff_t>(missing.size());
+  for (std::int32_t m = known.missing_offset[region]; m < known.missing_offset[region + 1]; ++m) {
+    RegionEntry entry = known.missing[m];
+    entry.other = now[entry.other];
+    missing.push_back(entry);
+  }
+  const auto ascends = [](const auto& a, const auto& b) { return a.other < b.other; };
+  if (!std::is_sorted(missing.begin() + begin, missing.end(), ascends)) {
+    std::sort(missing.begin() + begin, missing.end(), ascends);
+  }
+  return known.size[region];
+}
+
 // Fill size, missing_offset and missing. `sums` are the ordered sums with x first.
 void find_missing(const LinkedLattice& lattice, const std::vector<std::uint32_t>& sums, bool shared_points,
-                  FlsmRegions& regions) {
+                  const KnownRegions* before, FlsmRegions& regions) {
   const std::int64_t nodes = lattice.nodes();
   const std::uint32_t edge = 2 * regions.width + 1, whole = edge * edge * edge;
   std::vector<std::vector<RegionEntry>> found((nodes + kBlock - 1) / kBlock);
   std::vector<std::int64_t> counts(nodes + 1, 0);
+  LatticeMatch match;
+  if (before != nullptr) match = match_lattices(lattice, before->lattice, regions.width);
   for_blocks(nodes, [&](std::int64_t first, std::int64_t last) {
     RegionSearch search(lattice, regions.width, shared_points);
     auto& list = found[first / kBlock];
@@ -228,9 +246,11 @@ void find_missing(const LinkedLattice& lattice, const std::vector<std::uint32_t>
         regions.size[i] = static_cast<std::int32_t>(whole);
         continue;
       }
-      const std::size_t before = list.size();
-      regions.size[i] = search.run(static_cast<std::int32_t>(i), sums[i] & kCount, list);
-      counts[i + 1] = static_cast<std::int64_t>(list.size() - before);
+      const std::size_t so_far = list.size();
+      regions.size[i] = before != nullptr && match.same[i] != 0
+                            ? take_over(before->regions, match.before[i], match.now, list)
+                            : search.run(static_cast<std::int32_t>(i), sums[i] & kCount, list);
+      counts[i + 1] = static_cast<std::int64_t>(list.size() - so_far);
     }
   });
   std::partial_sum(counts.begin(), counts.end(), counts.begin());
@@ -267,7 +287,7 @@ void transpose(FlsmRegions& regions) {
 
 }  // namespace
 
-FlsmRegions find_regions(const LinkedLattice& lattice, int width) {
+FlsmRegions find_regions(const LinkedLattice& lattice, int width, const KnownRegions* before) {
   check_width(width);
   check_links(lattice);
   const auto nodes = static_cast<std::size_t>(lattice.nodes());
@@ -276,7 +296,7 @@ FlsmRegions find_regions(const LinkedLattice& lattice, int width) {
   regions.size.resize(nodes);
   auto ones = ones_and_flags(lattice);
   const bool shared_points = std::any_of(ones.begin(), ones.end(), [](std::uint32_t one) { return one != 1; });
-  find_missing(lattice, ordered_sums(lattice, ones, width, {0, 1, 2}), shared_points, regions);
+  find_missing(lattice, ordered_sums(lattice, ones, width, {0, 1, 2}), shared_points, before, regions);
   transpose(regions);
   // From a node back to the centres whose paths z, y, x reach it: the same links in reverse.
   const auto back = ordered_sums(lattice, ones, width, {2, 1, 0});

@@ -49,7 +49,22 @@ struct FlsmRegions {
 /// at 3.
 void add_fillers(LinkedLattice& lattice, const FlsmRegions& regions);
 
-/// Find all regions; linear in the nodes. `width` is 1 to 5. All lists are over nodes, without fillers.
-FlsmRegions find_regions(const LinkedLattice& lattice, int width);
+/// A lattice whose regions are known.
+struct KnownRegions {
+  const LinkedLattice& lattice;
+  const FlsmRegions& regions;
+};
+
+/// Find all regions; linear in the nodes. `width` is 1 to 5. All lists are over nodes, without fillers. `before`: a lattice
+/// that differs in places, as before a cut, whose regions are taken over where they are the same; nullptr: none.
+FlsmRegions find_regions(const LinkedLattice& lattice, int width, const KnownRegions* before = nullptr);
+
+/// Which nodes of two lattices stand for each other: `now` [nodes and fillers of the one before], `before` [nodes and fillers
+/// of the one now], -1: none. `same` [nodes now]: all within `width` of the node, links among it, is as it was.
+struct LatticeMatch {
+  std::vector<std::int32_t> now, before;
+  std::vector<char> same;
+};
+LatticeMatch match_lattices(const LinkedLattice& now, const LinkedLattice& before, int width);
 
 }  // namespace pliant

@@ -115,23 +115,24 @@ double StepControl::least_step() const {
   return run_.scene.least_step * limit.dt_ceiling;
 }
 
+/// What of a stable step is taken.
+double StepControl::share() const { return run_.state.limit.dt_backoff * run_.scene.safety; }
+
 StepControl::Allowed StepControl::allowed() {
   StepLimit& limit = run_.state.limit;
-  const double share = limit.dt_backoff * run_.scene.safety;
-  Allowed out{share * estimate(kAdaptIterations), {}};
+  Allowed out{share() * estimate(kAdaptIterations), {}};
   if (out.dt >= run_.state.clock.dt) return out;
   // The estimate takes differences of forces, which far from the place at rest are mostly rounding. The bound by elements is
   // coarser, but in double, and certain.
   out.stiffness = nodal_stiffness(run_.model(), run_.loaded.u());
   const double bound = stiffness_bound(run_.model(), out.stiffness);
   if (bound > 0) limit.stable_dt = std::max(limit.stable_dt, coupled_step(run_.model(), bound));
-  out.dt = share * limit.stable_dt;
+  out.dt = share() * limit.stable_dt;
   return out;
 }
 
 std::vector<NodeInertia> StepControl::ballast_for(double dt, const std::vector<double>& stiffness) const {
-  const double share = run_.state.limit.dt_backoff * run_.scene.safety;
-  return wanted_ballast(run_.model(), stiffness, elements_step(run_.model(), dt / share));
+  return wanted_ballast(run_.model(), stiffness, elements_step(run_.model(), dt / share()));
 }
 
 bool StepControl::too_much(const std::vector<NodeInertia>& ballast) const {
@@ -154,14 +155,22 @@ double StepControl::balance(double wanted, const std::vector<double>& stiffness)
   return dt;
 }
 
-void StepControl::limit_after_edit() {
+void StepControl::limit_after_edit(const std::vector<char>& changed) {
   if (!run_.settings.automatic) return;
   double& ceiling = run_.state.limit.dt_ceiling;
   if (run_.model().element_bound > 0)
     ceiling = std::min(ceiling, run_.scene.safety * coupled_step(run_.model(), run_.model().element_bound));
   if (run_.state.clock.dt > ceiling) change(ceiling);
-  // New elements are as stretched as those they come from, on nodes of less mass. At rest the bound above is certain, and the
-  // estimate may lie below it.
+  // New elements are as stretched as those they come from, on nodes of less mass. At rest the bound above is certain; elements
+  // that are deformed have one that costs less than the estimate, and only theirs may have changed: but an interface with
+  // shape matching feels what all of it allows.
+  const bool local = run_.model().flsm.empty();
+  const std::vector<double> u = run_.loaded.u();
+  for (const bool quick : {true, false}) {
+    const std::vector<double> stiffness = nodal_stiffness(run_.model(), u, local ? changed : std::vector<char>(), quick);
+    const double bound = stiffness_bound(run_.model(), stiffness);
+    if (bound > 0 && share() * coupled_step(run_.model(), bound) >= kClearlyLess * run_.state.clock.dt) return;
+  }
   const double next = std::max(allowed().dt, least_step());
   if (next < kClearlyLess * run_.state.clock.dt) change(next);
 }

@@ -27,8 +27,9 @@ class StepControl {
   void adapt();
   /// adapt() where an automatic step is looked at again.
   void adapt_when_due();
-  /// An edit has made elements of others: no step beyond what they stand, at rest and as they are deformed now.
-  void limit_after_edit();
+  /// An edit has made elements of others: no step beyond what they stand, at rest and as they are deformed now. `changed`
+  /// [slots]: whose elements or mass are others.
+  void limit_after_edit(const std::vector<char>& changed);
   /// Elements are inverted, or nodes fast: what to do instead if an automatic step is longer than this state stands, so that
   /// the batch that led here is not to be trusted. `shorten` is then called in the kept state.
   struct Outgrown {
@@ -45,6 +46,7 @@ class StepControl {
 
  private:
   [[nodiscard]] bool adapts_at(std::int64_t step) const;
+  [[nodiscard]] double share() const;
   /// The shortest automatic step [s].
   [[nodiscard]] double least_step() const;
   /// What an automatic step may be in the present configuration [s], `stiffness` (model/ballast.h) if it had to be looked at

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <thread>
 
 #include "api/scenes.h"
 #include "pliant/pliant.h"
@@ -145,6 +146,34 @@ TEST(ApiCut, the_worker_cuts_before_its_next_batch) {
   EXPECT_TRUE(behind.poll());
   expect_closed(*behind.frame());
   EXPECT_TRUE(behind.hash() == between.hash() || behind.hash() == before.hash());
+}
+
+TEST(ApiCut, who_steps_beside_the_worker_waits_for_no_cut) {
+  World world(held_block(), on("cpu")), alone(held_block(), on("cpu"));
+  for (World* w : {&world, &alone}) w->move_blade("b", {0.041, 0.2, -1}, {0.041, 0.2, 1});
+  ASSERT_TRUE(world.step_async(64));
+  while (world.busy()) std::this_thread::yield();
+  const std::uint64_t version = world.frame()->topology_version;
+  for (const double y : {0.06, 0.03, -0.2}) {
+    const CutResult result = world.move_blade("b", {0.041, y, -1}, {0.041, y, 1});
+    EXPECT_TRUE(result.pending);
+    EXPECT_FALSE(result.changed);
+  }
+  EXPECT_EQ(world.frame()->topology_version, version) << "the worker has had no batch yet";
+  ASSERT_TRUE(world.step_async(64));
+  EXPECT_FALSE(world.wait().diverged);
+  EXPECT_EQ(world.pieces(0), 2);
+  EXPECT_EQ(world.frame()->topology_version, version + 1) << "what a blade moves between two batches is one cut";
+  expect_closed(*world.frame());
+  alone.step(64);
+  EXPECT_TRUE(alone.move_blade("b", {0.041, -0.2, -1}, {0.041, -0.2, 1}).changed);
+  alone.step(64);
+  const auto u = world.displacements(0), expected = alone.displacements(0);
+  ASSERT_EQ(u.size(), expected.size()) << "the same cut, whoever makes it";
+  for (std::size_t n = 0; n < u.size(); ++n) {
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(u[n][c], expected[n][c], 3e-4);  // tissue carries the places of a blade
+  }
+  EXPECT_TRUE(world.cut(wall(0.021)).changed) << "after wait() the caller makes it";
 }
 
 TEST(ApiCut, grabs_and_pushes_hold_on_through_cuts) {

@@ -162,6 +162,76 @@ TEST(FlsmRegions, AreTheSameInEveryRun) {
   }
 }
 
+void expect_equal(const FlsmRegions& a, const FlsmRegions& b) {
+  EXPECT_EQ(a.size, b.size);
+  EXPECT_EQ(a.holders, b.holders);
+  EXPECT_EQ(a.missing_offset, b.missing_offset);
+  EXPECT_EQ(a.missing, b.missing);
+  EXPECT_EQ(a.missing_of_offset, b.missing_of_offset);
+  EXPECT_EQ(a.missing_of, b.missing_of);
+}
+
+/// A node gets a copy that takes over its links along x: what a cut does. The copy is the last node, or with `first` the first.
+LinkedLattice with_copy(const LinkedLattice& lattice, std::int32_t node, bool first) {
+  LinkedLattice out = lattice;
+  const std::int32_t up = lattice.link[node][1];
+  unlink(out, node, 1);
+  out.index.push_back(lattice.index[node]);
+  out.link.push_back({-1, -1, -1, -1, -1, -1});
+  const auto copy = static_cast<std::int32_t>(out.index.size()) - 1;
+  join(out, copy, up, 0);
+  if (!first) return out;
+  const auto moved = [&](std::int32_t n) { return n < 0 ? n : (n + 1) % (copy + 1); };
+  std::rotate(out.index.rbegin(), out.index.rbegin() + 1, out.index.rend());
+  std::rotate(out.link.rbegin(), out.link.rbegin() + 1, out.link.rend());
+  for (auto& links : out.link) {
+    for (std::int32_t& n : links) n = moved(n);
+  }
+  return out;
+}
+
+/// Regions that are taken over from a lattice before a cut are those that would have been found, with fillers and without.
+TEST(FlsmRegions, AreTakenOverFromALatticeThatDiffersInPlaces) {
+  const LinkedLattice whole = ball(7), cut = with_copy(whole, 500, false), shifted = with_copy(whole, 500, true);
+  LinkedLattice branched = shifted;
+  branched.branches.push_back({0, 900, 0});
+  branched.branches[0].high = branched.link[branched.link[0][1]][1];
+  branched.branches[0].low = branched.link[branched.branches[0].high][0];
+  const std::vector<std::pair<LinkedLattice, LinkedLattice>> pairs{{whole, cut},
+                                                                   {cut, whole},
+                                                                   {whole, shifted},
+                                                                   {shifted, with_copy(shifted, 900, true)},
+                                                                   {branched, shifted},
+                                                                   {shifted, branched},
+                                                                   {torn_ball(0.01), ball(6)},
+                                                                   {ball(6), ball(7)},
+                                                                   {two_sheets(), shuffled(two_sheets())}};
+  for (const int width : {1, 2, 3}) {
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+      SCOPED_TRACE("pair " + std::to_string(p) + ", width " + std::to_string(width));
+      const auto& [before, now] = pairs[p];
+      const FlsmRegions known = find_regions(before, width), fresh = find_regions(now, width);
+      const KnownRegions bare{before, known};
+      expect_equal(find_regions(now, width, &bare), fresh);
+      LinkedLattice filled_before = before, filled_now = now;
+      add_fillers(filled_before, known);
+      add_fillers(filled_now, fresh);
+      const FlsmRegions filled = find_regions(filled_before, width);
+      const KnownRegions with_fillers{filled_before, filled};
+      expect_equal(find_regions(filled_now, width, &with_fillers), find_regions(filled_now, width));
+      const auto same = match_lattices(now, before, width).same;
+      const auto kept = std::count(same.begin(), same.end(), 1);
+      if (p < 4) {
+        EXPECT_GT(kept, 0.5 * static_cast<double>(same.size()));
+      }
+      if (p < 6) {
+        EXPECT_LT(kept, static_cast<std::ptrdiff_t>(same.size()));
+      }
+      if (HasFailure()) return;
+    }
+  }
+}
+
 TEST(FlsmRegions, RefuseOtherWidths) {
   const LinkedLattice lattice = ball(2);
   for (const int width : {-1, 0, 6}) {

@@ -118,6 +118,14 @@ TEST(Ballast, TheBoundIsBelowTheStableStepAndNotFarBelow) {
       SCOPED_TRACE(fmt::format("{} {}: bound {:.4g} s, stable step {:.4g} s", to_string(element), pull, bound, stable));
       EXPECT_LT(bound, 1.05 * stable);  // the estimate errs on the safe side
       EXPECT_GT(bound, 0.4 * stable);
+      const double quick = stiffness_bound(s.model(), nodal_stiffness(s.model(), u, {}, true));
+      EXPECT_LE(quick, bound);
+      EXPECT_GT(quick, 0.8 * bound);
+      // Of some nodes alone: what all of their elements add up to.
+      std::vector<char> wanted(s.model().mass.size());
+      for (std::size_t n = 0; n < wanted.size(); n += 3) wanted[n] = 1;
+      const std::vector<double> all = nodal_stiffness(s.model(), u), some = nodal_stiffness(s.model(), u, wanted);
+      for (std::size_t n = 0; n < wanted.size(); ++n) EXPECT_EQ(some[n], wanted[n] != 0 ? all[n] : 0);
     }
   }
 }
