@@ -1,13 +1,18 @@
 // What the embedding API costs over the bare schedule: the same steps through Simulation's batches and through World, in turns.
-// Usage: bench_api SCENE [BACKEND]
+// With --calls: how long a renderer waits in its calls while it cuts.
+// Usage: bench_api SCENE [BACKEND] [--calls [FRAMES]]
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "api/world_impl.h"
 #include "backends/backends.h"
+#include "calls.h"
 
 namespace {
 
@@ -83,12 +88,18 @@ int run(const std::string& scene, const std::string& backend) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 2) {
-    fmt::print(stderr, "usage: bench_api SCENE [BACKEND]\n");
+  std::vector<std::string> words(argv + 1, argv + argc);
+  const auto option = std::find(words.begin(), words.end(), "--calls");
+  const bool calls = option != words.end();
+  const int frames = calls && option + 1 != words.end() ? std::atoi((option + 1)->c_str()) : 1000;
+  words.erase(option, words.end());
+  if (words.empty() || words.size() > 2 || frames < 1) {
+    fmt::print(stderr, "usage: bench_api SCENE [BACKEND] [--calls [FRAMES]]\n");
     return 2;
   }
+  const std::string backend = words.size() > 1 ? words[1] : "auto";
   try {
-    return run(argv[1], argc > 2 ? argv[2] : "auto");
+    return calls ? pliant::bench_api::measure_calls(words[0], backend, frames) : run(words[0], backend);
   } catch (const pliant::Error& error) {
     fmt::print(stderr, "bench_api: {}\n", error.what());
     return 2;

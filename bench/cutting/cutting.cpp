@@ -75,6 +75,7 @@ json cutting_row(const std::string& part, const std::string& scene, const std::s
           {"ms_surface", ms([](const CutTimes& t) { return t.surface; })},
           {"ms_model", ms([](const CutTimes& t) { return t.model; })},
           {"ms_upload", ms([](const CutTimes& t) { return t.upload; })},
+          {"ms_step", ms([](const CutTimes& t) { return t.step; })},
           {"mass_error", (after.mass - before.mass) / before.mass},
           {"volume_error", (after.volume - before.volume) / before.volume},
           {"dt_before", before.dt},

@@ -125,7 +125,7 @@ void virtual_nodes(const CuttingRun& run, const Comparison& c) {
   std::vector<CutTimes> times;
   for (const auto& sweep : c.cuts) {
     const CutReport report = simulation->cut(sweep);
-    times.push_back({report.search, report.topology, report.surface, report.model, report.upload});
+    times.push_back({report.search, report.topology, report.surface, report.model, report.upload, report.step});
   }
   json row = cutting_row("methods", c.name, "virtual nodes", "tet4", static_cast<std::int64_t>(c.cuts.size()), before,
                          figures_of(simulation->model()), times);

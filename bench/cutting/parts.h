@@ -38,8 +38,8 @@ BodyFigures figures_of(const Model& model);
 
 /// Stages of one cut [s].
 struct CutTimes {
-  double search = 0, topology = 0, surface = 0, model = 0, upload = 0;
-  [[nodiscard]] double total() const { return search + topology + surface + model + upload; }
+  double search = 0, topology = 0, surface = 0, model = 0, upload = 0, step = 0;
+  [[nodiscard]] double total() const { return search + topology + surface + model + upload + step; }
 };
 
 /// The members that every row has; `times` of cuts that changed something (empty: null).

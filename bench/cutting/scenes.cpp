@@ -27,7 +27,8 @@ void move_blades(Simulation& simulation, const std::vector<Blade>& blades, doubl
   simulation.move_blades(begin);  // puts them there
   const CutReport report = simulation.move_blades(places);
   frames.push_back(1e3 * report.seconds());
-  if (report.changed) changed.push_back({report.search, report.topology, report.surface, report.model, report.upload});
+  if (report.changed)
+    changed.push_back({report.search, report.topology, report.surface, report.model, report.upload, report.step});
 }
 
 void measure(const CuttingRun& run, const std::string& name) {
@@ -35,6 +36,7 @@ void measure(const CuttingRun& run, const std::string& name) {
   Scene scene = load_scene(run.options.scenes / (name + ".json"));
   const std::vector<Blade> blades = std::move(scene.blades);
   scene.blades.clear();
+  scene.cuttable = true;
   scene.name = name;
   double end = 0;
   for (const Blade& blade : blades) end = std::max(end, std::min(blade.end, blade.path.back()[0]));
@@ -45,7 +47,7 @@ void measure(const CuttingRun& run, const std::string& name) {
     }
   }
   const auto model = std::make_shared<const Model>(build_model(scene));
-  scene.dt = scene.safety * model->element_bound;
+  if (run.options.quick) scene.dt = scene.safety * model->element_bound;
   const BodyFigures before = figures_of(*model);
   const auto start = [&] {
     return Simulation(scene, model, open_backend(run.options.backend, nullptr, model->nodes()), {0, 64, false});

@@ -18,17 +18,17 @@ std::string ratio(const json& row) {
 }
 
 std::string costs_table(const json& rows, const char* part) {
-  std::string text =
-      fmt::format("{:<22} {:<14} {:<8} {:>5} {:>9} {:>8} {:>8} {:>8} {:>8} {:>8} {:>9} {:>9} {:>8} {:>7} {:>16} {:>9} {:>9}\n",
-                  "scene", "method", "element", "cuts", "ms/cut", "search", "topology", "surface", "model", "upload", "mass",
-                  "volume", "dt ratio", "closed", "elements", "step", "after");
+  std::string text = fmt::format(
+      "{:<22} {:<14} {:<8} {:>5} {:>9} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>9} {:>9} {:>8} {:>7} {:>16} {:>9} {:>9}\n",
+      "scene", "method", "element", "cuts", "ms/cut", "search", "topology", "surface", "model", "upload", "look", "mass",
+      "volume", "dt ratio", "closed", "elements", "step", "after");
   for (const json& r : rows) {
     if (r["part"] != part) continue;
     text += fmt::format(
-        "{:<22} {:<14} {:<8} {:>5} {:>9} {:>8} {:>8} {:>8} {:>8} {:>8} {:>9} {:>9} {:>8} {:>7} {:>16} {:>9} {:>9}\n",
+        "{:<22} {:<14} {:<8} {:>5} {:>9} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>9} {:>9} {:>8} {:>7} {:>16} {:>9} {:>9}\n",
         words(r, "scene"), words(r, "method"), words(r, "element"), r["cuts"].get<std::int64_t>(), number(r, "ms_per_cut", 2),
         number(r, "ms_search", 2), number(r, "ms_topology", 2), number(r, "ms_surface", 2), number(r, "ms_model", 2),
-        number(r, "ms_upload", 2), power(r, "mass_error"), power(r, "volume_error"), ratio(r),
+        number(r, "ms_upload", 2), number(r, "ms_step", 2), power(r, "mass_error"), power(r, "volume_error"), ratio(r),
         r["closed"].get<bool>() ? "yes" : "no", counts(r, "elements_before", "elements_after"),
         number(r, "ms_per_step_before", 3), number(r, "ms_per_step_after", 3));
   }

@@ -10,7 +10,7 @@ import report_charts as charts
 import report_page as page
 
 METHODS = ["virtual nodes", "removal", "decomposition", "separation"]
-STAGES = [("ms_search", "collision"), ("ms_topology", "topology"), ("ms_surface", "surface"), ("ms_model", "model"), ("ms_upload", "upload")]
+STAGES = [("ms_search", "collision"), ("ms_topology", "topology"), ("ms_surface", "surface"), ("ms_model", "model"), ("ms_upload", "upload"), ("ms_step", "look at the step")]
 FRAME_LIMIT = 2.0  # ms per frame that cutting may take
 
 
@@ -40,7 +40,7 @@ def split_chart(rows, folder, stem, name_of):
     for i, row in enumerate(rows):
         left = 0
         for k, (key, _) in enumerate(STAGES):
-            value = row[key] or 0
+            value = row.get(key) or 0
             axes.barh(i, value, left=left, height=0.62, color=charts.COLOURS[k])
             left += value
         axes.text(left, i, f' {charts.number(row["ms_per_cut"] or 0, 2)}', va="center", fontsize=7.5)

@@ -53,7 +53,9 @@ void TopologyEdits::make_cut(std::vector<CutEdges> edges, std::vector<double> u,
   if (!report.changed) return;
   ++run_.state.topology_version;
   if (all.size() == 1) all.surface_copy.make(run_.loaded.shared_model(), all.helper);
+  clock.lap();
   step_.limit_after_edit(changed);
+  report.step += clock.lap();
 }
 
 }  // namespace pliant
