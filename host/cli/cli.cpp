@@ -121,7 +121,10 @@ std::string scene_stem(const std::filesystem::path& scene) {
   return stem.empty() ? "scene" : stem;
 }
 
-Progress::Progress(bool wanted) : on_(wanted && ::isatty(STDERR_FILENO) == 1) {}
+constexpr std::chrono::seconds kSpoken{15};  ///< between two lines of progress that nobody watches
+
+Progress::Progress(bool wanted)
+    : on_(wanted), terminal_(::isatty(STDERR_FILENO) == 1), last_(std::chrono::steady_clock::now()) {}
 
 void Progress::show(std::int64_t done, std::int64_t total, const std::string& text) {
   const double share = total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 0;
@@ -131,11 +134,17 @@ void Progress::show(std::int64_t done, std::int64_t total, const std::string& te
 void Progress::show(double share, const std::string& text) {
   if (!on_) return;
   const auto now = std::chrono::steady_clock::now();
+  share = std::clamp(share, 0.0, 1.0);
+  if (!terminal_) {
+    if (now - last_ < kSpoken) return;
+    last_ = now;
+    tell(fmt::format("{:.0f} %  {}", 100 * share, text));
+    return;
+  }
   if (drawn_ && now - last_ < std::chrono::milliseconds(100)) return;
   last_ = now;
   drawn_ = true;
   constexpr int kWidth = 30;
-  share = std::clamp(share, 0.0, 1.0);
   const int filled = static_cast<int>(share * kWidth);
   put(stderr, fmt::format("\r[{}{}] {:3.0f} %  {}\033[K", std::string(static_cast<std::size_t>(filled), '#'),
                           std::string(static_cast<std::size_t>(kWidth - filled), '.'), 100 * share, text));

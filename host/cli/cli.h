@@ -74,7 +74,7 @@ std::string usage_message(const CLI::App& app, const CLI::ParseError& error);
 /// The scene's file without folder and extension: the stem of everything a run writes.
 std::string scene_stem(const std::filesystem::path& scene);
 
-/// One line on standard error that is drawn again and again; only on a terminal.
+/// One line on standard error that is drawn again and again on a terminal, and elsewhere a line every quarter of a minute.
 class Progress {
  public:
   explicit Progress(bool wanted);
@@ -87,7 +87,7 @@ class Progress {
   void clear();
 
  private:
-  bool on_ = false;
+  bool on_ = false, terminal_ = false;
   bool drawn_ = false;
   std::chrono::steady_clock::time_point last_{};
 };

@@ -49,7 +49,9 @@ int plan(PlanArguments& o) {
   const Scene scene = load_scene(o.scene);
   Progress progress(!o.common.quiet);
   std::int64_t done = 0;
-  o.plan.progress = [&](const std::string& what) { progress.show(done++, 24, what); };
+  std::string part;
+  o.plan.progress = [&](const std::string& what) { progress.show(done++, 24, part = what); };
+  o.plan.detail = [&](const std::string& how_far) { progress.show(done, 24, fmt::format("{}: {}", part, how_far)); };
   Plan result = plan_scene(scene, o.plan);
   progress.clear();
   o.common.print(result.text);

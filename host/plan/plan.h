@@ -14,11 +14,12 @@ struct PlanOptions {
   double budget = 4;        ///< [ms] of computing per frame
   double frame = 1.0 / 60;  ///< [s] simulated per frame
   std::string backend = "auto";
-  std::int64_t least_nodes = 300;        ///< of the coarsest lattice tried
-  std::int64_t most_nodes = 10000;       ///< of the finest
-  std::int64_t reference_nodes = 12000;  ///< of the reference lattice (hex8full, static solver)
-  double reference_seconds = 60;         ///< that finer references may take
-  std::function<void(const std::string&)> progress;
+  std::int64_t least_nodes = 300;                    ///< of the coarsest lattice tried
+  std::int64_t most_nodes = 10000;                   ///< of the finest
+  std::int64_t reference_nodes = 12000;              ///< of the reference lattice (hex8full, static solver)
+  double reference_seconds = 60;                     ///< that finer references may take
+  std::function<void(const std::string&)> progress;  ///< a part begins
+  std::function<void(const std::string&)> detail;    ///< how far it is
 };
 
 struct Plan {

@@ -53,12 +53,25 @@ struct AtRest {
   std::int64_t nodes = 0;
 };
 
-AtRest solve(const Scene& scene, const Size& size, std::int64_t nodes) {
+/// Before the first reference is given up: times the seconds that finer ones may take, and at least so many.
+constexpr double kPatience = 5, kLeastPatience = 120;
+
+AtRest solve(const Scene& scene, const Size& size, std::int64_t nodes, const PlanOptions& options, const Stopwatch& start) {
   const Scene fine = configured(scene, size, ElementKind::hex8full, nodes);
   const Model model = build_model(fine);
   const statics::Problem problem = statics::problem_of(fine, model, 0);
   statics::Settings settings;
   settings.tolerance = 1e-7;
+  settings.progress = [&](double load, int iteration, double) {
+    if (options.detail) options.detail(fmt::format("{:.0f} % of the load, iteration {}", 100 * load, iteration));
+    if (start.seconds() < std::max(kLeastPatience, kPatience * options.reference_seconds)) return;
+    throw Error(
+        ErrorCode::bad_input,
+        fmt::format(
+            "the reference of {} nodes has taken {:.0f} s and stands at {:.0f} % of the load: a body that buckles takes "
+            "many small steps; expected smaller loads, or a coarser reference (--reference)",
+            problem.mesh.nodes.size(), start.seconds(), 100 * load));
+  };
   const statics::Solution s = statics::solve(problem, settings);
   if (!s.converged)
     throw Error(ErrorCode::bad_input,
@@ -137,7 +150,7 @@ Reference make_reference(const Scene& scene, const Size& size, const PlanOptions
     std::vector<AtRest> answers;
     // Spacings that are no multiples of each other, so that the rims of what is held fall differently between the nodes.
     for (const double share : {1.0, 0.8, 0.64}) {
-      answers.push_back(solve(scene, size, std::llround(share * static_cast<double>(nodes))));
+      answers.push_back(solve(scene, size, std::llround(share * static_cast<double>(nodes)), options, start));
     }
     out.u.assign(answers[0].u.size(), Vec3d{});
     for (const AtRest& a : answers) {

@@ -55,6 +55,15 @@ Vec3f Camera::direction(float x, float y, float aspect) const {
   return unit(axes.world({(x - shift) * aspect * half_height, y * half_height, -1}), -axes.z);
 }
 
+bool Camera::sees(Vec3f p, float aspect) const {
+  const Vec3f from_eye = p - eye;
+  const float away = -dot(from_eye, axes.z);
+  if (!(away > 0)) return false;
+  const float x = dot(from_eye, axes.x) / (away * half_height * aspect) + shift,
+              y = dot(from_eye, axes.y) / (away * half_height);
+  return std::fabs(x) <= 1 && std::fabs(y) <= 1;
+}
+
 Camera fit_camera(const SceneView& view, std::span<const float> points, Vec3f up, const Framing& frame) {
   Camera camera;
   camera.up = view.up ? unit(vec(*view.up), up) : up;

@@ -16,6 +16,8 @@ struct Camera {
 
   /// Unit direction through a point of the picture: x, y in [-1, 1], right and up; aspect = width / height.
   [[nodiscard]] Vec3f direction(float x, float y, float aspect) const;
+  /// Whether a point [m] lies within the picture.
+  [[nodiscard]] bool sees(Vec3f p, float aspect) const;
 };
 
 struct Framing {

@@ -54,22 +54,60 @@ BodyDisplacements displacements(const Simulation& simulation) {
 Pictures::Pictures(const PictureOptions& options) : o_(options), renderer_(options.threads) {}
 
 void Pictures::aim(Simulation& simulation, const std::vector<float>& positions) {
+  const SceneView& view = simulation.scene().view;
   const Vec3f up = vertical(simulation.scene());
+  const auto fit = [&](const std::vector<float>& points) {
+    Framing framing;
+    framing.aspect = aspect();
+    if (o_.bar && o_.color != ColorBy::none && o_.color != ColorBy::model) framing.right = kBarShare;
+    camera_ = fit_camera(view, points, up, framing);
+  };
   if (!camera_) {
     // What is held or moved is known beforehand; the rest stays near.
     const Model& model = simulation.model();
-    std::vector<float> points = positions;
     for (const Constraint& c : model.constraints)
-      append(points, vec::add(model.rest[static_cast<std::size_t>(c.slot)], c.target));
-    Framing framing;
-    framing.aspect = static_cast<float>(o_.width) / static_cast<float>(o_.height);
-    if (o_.bar && o_.color != ColorBy::none && o_.color != ColorBy::model) framing.right = kBarShare;
-    camera_ = fit_camera(simulation.scene().view, points, up, framing);
+      append(held_, vec::add(model.rest[static_cast<std::size_t>(c.slot)], c.target));
+    std::vector<float> points = positions;
+    points.insert(points.end(), held_.begin(), held_.end());
+    for (std::size_t i = 0; i + 2 < points.size(); i += 3) start_.extend(Vec3d{points[i], points[i + 1], points[i + 2]});
+    fit(points);
     ground_ = HUGE_VALF;
+  } else if (!view.eye) {
+    const std::vector<float> near = surroundings(positions);
+    const std::vector<float>& seen = near.empty() ? positions : near;
+    if (!in_picture(seen)) {
+      std::vector<float> points = seen;
+      if (!near.empty()) points.insert(points.end(), held_.begin(), held_.end());
+      fit(points);
+    }
   }
+  const bool first = ground_ == HUGE_VALF;
   for (std::size_t i = 0; i + 2 < positions.size(); i += 3) {
     ground_ = std::min(ground_, dot(camera_->up, {positions[i], positions[i + 1], positions[i + 2]}));
   }
+  if (first) first_ground_ = ground_;
+  has_ground_ = view.ground && first_ground_ - ground_ <= static_cast<float>(vec::norm(vec::sub(start_.upper, start_.lower)));
+}
+
+float Pictures::aspect() const { return static_cast<float>(o_.width) / static_cast<float>(o_.height); }
+
+/// The vertices in the surroundings of the first picture: a piece that falls for ever would make all others small.
+std::vector<float> Pictures::surroundings(const std::vector<float>& positions) const {
+  const double size = vec::norm(vec::sub(start_.upper, start_.lower));
+  std::vector<float> near;
+  for (std::size_t i = 0; i + 2 < positions.size(); i += 3) {
+    if (start_.distance2({positions[i], positions[i + 1], positions[i + 2]}) > size * size) continue;
+    near.insert(near.end(), positions.begin() + static_cast<std::ptrdiff_t>(i),
+                positions.begin() + static_cast<std::ptrdiff_t>(i) + 3);
+  }
+  return near;
+}
+
+bool Pictures::in_picture(const std::vector<float>& points) const {
+  for (std::size_t i = 0; i + 2 < points.size(); i += 3) {
+    if (!camera_->sees({points[i], points[i + 1], points[i + 2]}, aspect())) return false;
+  }
+  return true;
 }
 
 void Pictures::color(Simulation& simulation, Surface& surface) {
@@ -133,6 +171,7 @@ Image Pictures::draw(Simulation& simulation) {
   options.width = o_.width;
   options.height = o_.height;
   options.samples = o_.samples;
+  options.ground = has_ground_;
   options.ground_height = ground_;
   if (!values_.empty()) {
     const double factor = scaled_unit(quantity_of(o_.color).unit, o_.range ? o_.range->second : largest_).factor;

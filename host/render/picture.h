@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/vec.h"
 #include "render/annotations.h"
 #include "render/fields.h"
 #include "render/renderer.h"
@@ -38,20 +39,28 @@ class Pictures {
   explicit Pictures(const PictureOptions& options);
 
   /// The present state. The camera and the colours' range stay as the first picture needed them; the range grows when values
-  /// do, and the ground sinks when the body does. Throws Error when the scene has no surface.
+  /// do. A camera that the scene does not place moves back when the bodies would leave the picture, and follows when all have
+  /// left their surroundings; the ground sinks with them by their first size at most. Throws Error when the scene has no
+  /// surface.
   Image draw(Simulation& simulation);
 
   [[nodiscard]] const RenderTimes& times() const { return renderer_.times(); }
 
  private:
   void aim(Simulation& simulation, const std::vector<float>& positions);
+  [[nodiscard]] float aspect() const;
+  [[nodiscard]] std::vector<float> surroundings(const std::vector<float>& positions) const;
+  [[nodiscard]] bool in_picture(const std::vector<float>& points) const;
   void color(Simulation& simulation, Surface& surface);
   void annotate(Image& image) const;
 
   PictureOptions o_;
   Renderer renderer_;
   std::optional<Camera> camera_;
-  float ground_ = 0;
+  std::vector<float> held_;  ///< [3 * n] places that are known beforehand [m]
+  vec::Box start_;           ///< of the first picture, with those
+  bool has_ground_ = true;
+  float ground_ = 0, first_ground_ = 0;
   double largest_ = 0;  ///< value so far
   Ticks ticks_;
   SurfaceCopy surface_;

@@ -21,6 +21,7 @@ bool RayScene::update(const Surface& surface) {
   if (rebuild) {
     build(surface);
     smooth_ = SmoothNormals(positions_, surface.triangles, surface.cut);
+    find_seams();
     topology_ = surface.topology;
     vertices_ = vertices();
     corners_ = surface.triangles.size();
@@ -56,6 +57,26 @@ void RayScene::check() const {
   require(s.kinds.empty() || s.kinds.size() == 3 * vertices, "three kinds per vertex");
   for (const std::int32_t v : s.triangles) {
     require(v >= 0 && static_cast<std::size_t>(v) < vertices, "a triangle names a vertex that is not there");
+  }
+}
+
+void RayScene::find_seams() {
+  seams_.clear();
+  const std::span<const std::int32_t> t = surface_.triangles;
+  const auto is_cut = [&](std::size_t corner) { return surface_.cut[corner / 3] != 0; };
+  const auto edge = [&](std::size_t corner) {  // opposite it
+    const std::size_t first = corner / 3 * 3;
+    return std::minmax({t[first + (corner + 1) % 3], t[first + (corner + 2) % 3]});
+  };
+  std::vector<std::pair<std::int32_t, std::int32_t>> of_cuts;
+  for (std::size_t c = 0; c < t.size() && !surface_.cut.empty(); ++c) {
+    if (is_cut(c)) of_cuts.push_back(edge(c));
+  }
+  if (of_cuts.empty()) return;
+  std::sort(of_cuts.begin(), of_cuts.end());
+  seams_.resize(t.size());
+  for (std::size_t c = 0; c < t.size(); ++c) {
+    seams_[c] = static_cast<char>(!is_cut(c) && std::binary_search(of_cuts.begin(), of_cuts.end(), edge(c)));
   }
 }
 

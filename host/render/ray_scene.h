@@ -33,6 +33,8 @@ class RayScene {
   [[nodiscard]] const Surface& surface() const { return surface_; }
   [[nodiscard]] const SmoothNormals& smooth() const { return smooth_; }
   [[nodiscard]] const std::vector<Vec3f>& normals() const { return normals_; }
+  /// Whether the edge opposite a corner of a triangle of the skin belongs to the face of a cut too.
+  [[nodiscard]] bool seam(std::size_t corner) const { return !seams_.empty() && seams_[corner] != 0; }
   [[nodiscard]] std::size_t vertices() const { return positions_.size() / 3; }
   [[nodiscard]] Vec3f vertex(std::int32_t i) const {
     const float* p = positions_.data() + 3 * static_cast<std::size_t>(i);
@@ -52,6 +54,7 @@ class RayScene {
   void check() const;
   void pack();
   void measure();
+  void find_seams();
   std::unique_ptr<Embree> embree_;
   Surface surface_;
   std::vector<float> positions_;  ///< [3 * vertices]
@@ -60,6 +63,7 @@ class RayScene {
   bool built_ = false;
   SmoothNormals smooth_;
   std::vector<Vec3f> normals_;
+  std::vector<char> seams_;  ///< [3 * triangles]; empty: nothing is cut
   float size_ = 1;
 };
 

@@ -33,6 +33,8 @@ Vec3f tint(std::int32_t body) {
   return linear_of(kTints[static_cast<std::size_t>(std::max(body, 0)) % kTints.size()]);
 }
 
+constexpr float kSeam = 0.8F;  ///< of the line along a cut on either side [pixels]
+
 class Tracer {
  public:
   Tracer(const RayScene& scene, const Camera& camera, const RenderOptions& options)
@@ -157,6 +159,21 @@ class Tracer {
     return m;
   }
 
+  /// Within a line along the rim of a cut, so wide that it is seen at any distance: closed cuts are not seen otherwise.
+  [[nodiscard]] bool on_seam(const Hit& hit) const {
+    const std::size_t first = 3 * static_cast<std::size_t>(hit.triangle);
+    const std::array<float, 3> w{1 - hit.u - hit.v, hit.u, hit.v};
+    const float width = kSeam * hit.distance * 2 * camera_.half_height / static_cast<float>(o_.height);
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (!scene_.seam(first + i)) continue;
+      const auto corner = [&](std::size_t k) { return scene_.vertex(scene_.surface().triangles[first + (i + k) % 3]); };
+      const Vec3f along = corner(2) - corner(1);
+      const float height = length(cross(along, corner(0) - corner(1))) / std::max(length(along), 1e-30F);
+      if (w[i] * height < width) return true;
+    }
+    return false;
+  }
+
   struct Place {
     Vec3f point, normal, face;
   };
@@ -194,7 +211,8 @@ class Tracer {
     const Surface& s = scene_.surface();
     const bool is_cut = !s.cut.empty() && s.cut[static_cast<std::size_t>(hit.triangle)] != 0;
     const Place at = place_of(d, hit);
-    const Material m = material_of(hit, is_cut);
+    Material m = material_of(hit, is_cut);
+    if (!is_cut && on_seam(hit)) m.albedo = linear_of({0.20F, 0.05F, 0.05F});
     Radiance r;
     r.shows = is_cut ? Shows::cut : Shows::outside;
     r.albedo = m.albedo;

@@ -36,7 +36,7 @@ std::map<std::string, List> make_keys() {
       {"gravity", List{"acceleration"} + curve},
       {"tool", {"path"}},
       {"blade", {"name", "path", "start", "end"}},
-      {"view", {"eye", "target", "up", "field_of_view"}},
+      {"view", {"eye", "target", "up", "field_of_view", "ground"}},
       {"relaxation", {"tolerance", "max_steps"}},
       {"solver", {"type", "linear", "load_steps", "tolerance", "order"}},
       {"inclusion", points + List{"material"}},

@@ -20,6 +20,7 @@ SceneView read_view(const Reader& view) {
     v.field_of_view = angle.number();
     if (!(v.field_of_view >= 1 && v.field_of_view <= 120)) angle.fail("1 to 120 degrees");
   }
+  if (view.has("ground")) v.ground = view.at("ground").boolean();
   return v;
 }
 

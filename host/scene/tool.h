@@ -34,6 +34,7 @@ struct SceneView {
   std::optional<Vec3d> target;  ///< what is in the middle [m]; absent: the middle of the scene
   std::optional<Vec3d> up;      ///< absent: against gravity, or y
   double field_of_view = 30;    ///< vertical [degrees], in [1, 120]
+  bool ground = true;           ///< draw a ground plane below the bodies; it holds nothing
 };
 
 }  // namespace pliant

@@ -209,6 +209,7 @@ OrderedJson view_json(const SceneView& v) {
   if (v.target) view["target"] = *v.target;
   if (v.up) view["up"] = *v.up;
   if (v.field_of_view != SceneView{}.field_of_view) view["field_of_view"] = v.field_of_view;
+  if (!v.ground) view["ground"] = false;
   return view;
 }
 

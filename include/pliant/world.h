@@ -69,12 +69,11 @@ struct GrabOptions {
   double max_force = 0;  ///< the pull never exceeds this [N]; 0: a quarter of Young's modulus on the handful's area
 };
 
-/// Names a grab of one World; 0 is none.
-using GrabId = std::uint64_t;
+using GrabId = std::uint64_t;  ///< names a grab of one World; 0 is none
 
 /// What a cut did.
 struct CutResult {
-  bool pending = false;    ///< it is done at the start of the worker's next batch of steps, and nothing else is known
+  bool pending = false;    ///< the worker's next batch of steps begins with it, and nothing else is known
   bool changed = false;    ///< elements were divided; the next frame shows it if the surface is another one
   std::int64_t edges = 0;  ///< edges between nodes that were cut now
   double seconds = 0;      ///< what it took [s]
@@ -158,11 +157,10 @@ class PLIANT_API World {
   void move_tool(const Vec3d& position);
 
   /// Cuts. They need no WorldOptions::interactive. A volume mesh of hexahedra and a scene with relaxation or the textbook
-  /// integrator cannot be cut: Error (input), with nothing changed. Whoever steps with step_async() or advance_async() does
-  /// not wait for cuts either: the worker makes them before its next batch, moves of blades together (CutResult::pending),
-  /// until wait() or another call has waited for it. What it refuses is thrown by the next call that tells what the worker met.
-  /// Where shape matching has substeps, a cut waits for the next batch that begins with one of its steps. Throw Error: usage
-  /// (numbers that are not finite), diverged, device.
+  /// integrator cannot be cut: Error (input), with nothing changed. After step_async() and advance_async() the worker makes
+  /// them before its next batch, moves of a blade together (CutResult::pending), until wait() or another call has waited for
+  /// it; what it refuses is thrown by the next call that tells what it met. Where shape matching has substeps, a cut waits for
+  /// the next batch that begins with one of its steps. Throw Error: usage (numbers that are not finite), diverged, device.
   ///
   /// Cut all bodies where these triangles [m] cross them now. A triangle without area cuts nothing.
   CutResult cut(const std::vector<std::array<Vec3d, 3>>& triangles);

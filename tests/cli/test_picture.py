@@ -86,13 +86,15 @@ class Picture(CliTest):
         if not self.has_pictures():
             self.skipTest("a build without Embree")
         pictures = []
-        for i, view in enumerate([{}, {"eye": [0, 0.3, 0.5]}, {"up": [1, 0, 0]}, {"field_of_view": 60, "eye": [0, 0.3, 0.5]}]):
+        for i, view in enumerate([{}, {"eye": [0, 0.3, 0.5]}, {"up": [1, 0, 0]}, {"field_of_view": 60, "eye": [0, 0.3, 0.5]},
+                                  {"ground": False}]):
             self.pliant("run", self.scene(view=view), "--steps", 0, "--out", f"v{i}", "--format", "png", "--size", "48x48", "--samples", 1)
             pictures.append(png(self.folder / f"v{i}" / self.names(f"v{i}")[0])[2])
-        self.assertEqual(len(set(pictures)), 4)
+        self.assertEqual(len(set(pictures)), 5)
         self.refused("info", self.scene(view={"eye": [1, 2]}), words=["/view/eye"])
         self.refused("info", self.scene(view={"up": [0, 0, 0]}), words=["/view/up", "not all zero"])
         self.refused("info", self.scene(view={"field_of_view": 0}), words=["/view/field_of_view", "1 to 120"])
+        self.refused("info", self.scene(view={"ground": 0}), words=["/view/ground", "true or false"])
         self.refused("info", self.scene(view={"eye": [1, 1, 1], "target": [1, 1, 1]}), words=["/view/eye", "other than the target"])
 
     def test_words(self):
