@@ -175,6 +175,7 @@ py::dict info(const pliant::World& world) {
   d["vertices"] = i.vertices;
   d["triangles"] = i.triangles;
   d["bodies"] = bodies;
+  d["remarks"] = i.remarks;
   return d;
 }
 

@@ -69,7 +69,7 @@ if(OpenCL_FOUND AND embree_FOUND)
   # The two that take most of the time run the same objects over the same scenes on the twins as in test_solver.
   set_property(TEST solver_bare.1of2 solver_bare.2of2 APPEND PROPERTY ENVIRONMENT "GTEST_FILTER=-Scenes/ResumeMatrix.*:CheckScenes.*")
   pliant_variant(bare api 2 ${no_opencl} ${no_embree})
-  pliant_variant(bare render 1 ${no_embree} $<TARGET_OBJECTS:pliant_render_absent>)
+  pliant_variant(bare render 1 ${no_opencl} ${no_embree} $<TARGET_OBJECTS:pliant_render_absent>)
   add_executable(pliant_cli_bare EXCLUDE_FROM_ALL ${no_opencl} ${no_embree} $<TARGET_OBJECTS:pliant_render_absent>)
   target_link_libraries(pliant_cli_bare PRIVATE pliant_cli_objects)
   set_target_properties(pliant_cli_bare PROPERTIES OUTPUT_NAME pliant_bare)

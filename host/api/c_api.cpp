@@ -44,6 +44,13 @@ void give_text(const std::string& text, char* out, std::size_t size) {
   out[length] = 0;
 }
 
+/// One per line; `needed` receives the bytes that all take.
+void give_lines(const std::vector<std::string>& lines, char* out, std::size_t size, std::size_t* needed) {
+  const std::string text = fmt::format("{}", fmt::join(lines, "\n"));
+  give_text(text, out, size);
+  if (needed != nullptr) *needed = text.size() + 1;
+}
+
 template <class T>
 void give(const T& value, T* out) {
   need(out, "out");
@@ -157,12 +164,7 @@ const char* pliant_status_name(pliant_status status) {
 }
 
 pliant_status pliant_backend_names(char* text, size_t size, size_t* needed) {
-  return guarded([&] {
-    need(text, "text");
-    const std::string names = fmt::format("{}", fmt::join(pliant::backend_names(), "\n"));
-    give_text(names, text, size);
-    if (needed != nullptr) *needed = names.size() + 1;
-  });
+  return guarded([&] { give_lines(pliant::backend_names(), text, size, needed); });
 }
 
 pliant_status pliant_world_open(const char* scene_file, const pliant_options* options, pliant_world* out) {
@@ -196,6 +198,10 @@ pliant_status pliant_world_info(pliant_world world, pliant_info* out) {
     const pliant::WorldInfo& i = w.world.info();
     give_struct({0, i.bodies.size(), i.vertices, i.triangles, i.nodes, i.elements, i.bit_exact ? 1 : 0, 0}, out);
   });
+}
+
+pliant_status pliant_world_remarks(pliant_world world, char* text, size_t size, size_t* needed) {
+  return on(world, [&](CWorld& w) { give_lines(w.world.info().remarks, text, size, needed); });
 }
 
 pliant_status pliant_world_backend(pliant_world world, char* text, size_t size) {

@@ -78,9 +78,9 @@ struct World::Impl {
   const WorldOptions options;
   const Scene scene;  ///< as of the start
   const OpenBackend open_backend;
+  WorldInfo info;
   std::shared_ptr<const Model> model;  ///< as of the start
   std::shared_ptr<Simulation> simulation;
-  WorldInfo info;
   std::unique_ptr<api::Tools> tools;
   std::string lost;         ///< message of the device's loss; empty: it works
   double seconds_left = 0;  ///< asked of advance() and not yet a whole step; of the thread that steps

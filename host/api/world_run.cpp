@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "api/world_impl.h"
+#include "model/unit_remarks.h"
 
 namespace pliant {
 namespace {
@@ -20,9 +21,12 @@ ErrorCode code_of_model(const Scene& scene, const Error& error) {
   return error.code();
 }
 
-std::shared_ptr<const Model> model_of(const Scene& scene) {
+std::shared_ptr<const Model> model_of(const Scene& scene, std::vector<std::string>& remarks) {
   try {
-    return std::make_shared<const Model>(build_model(scene));
+    std::vector<SurfaceCheck> checks;
+    auto model = std::make_shared<const Model>(build_model(scene, checks));
+    remarks = model_remarks(checks, *model, scene);
+    return model;
   } catch (const Error& error) {
     throw Error(code_of_model(scene, error), error.what());
   }
@@ -51,7 +55,8 @@ IndexRange within(const IndexRange& range, std::size_t count) {
 }
 
 WorldInfo info_of(const Model& model, const BackendInfo& backend, std::string reason) {
-  WorldInfo info{backend.name, backend.device, std::move(reason), backend.bit_exact, model.nodes(), model.elements(), 0, 0, {}};
+  WorldInfo info{
+      backend.name, backend.device, std::move(reason), backend.bit_exact, model.nodes(), model.elements(), 0, 0, {}, {}};
   info.vertices = model.surface.rest.size();
   info.triangles = model.surface.triangles.size();
   for (const ModelBody& b : model.bodies) {
@@ -68,10 +73,13 @@ WorldInfo info_of(const Model& model, const BackendInfo& backend, std::string re
 }  // namespace
 
 World::Impl::Impl(Scene scene_, OpenBackend open, const WorldOptions& options_)
-    : options(options_), scene(std::move(scene_)), open_backend(std::move(open)), model(model_of(scene)) {
+    : options(options_), scene(std::move(scene_)), open_backend(std::move(open)), model(model_of(scene, info.remarks)) {
   std::string reason;
   simulation = make_simulation(&reason);
+  std::vector<std::string> remarks = std::move(info.remarks);
+  for (std::string& remark : simulation->remarks()) remarks.push_back(std::move(remark));
   info = info_of(*model, simulation->backend().info(), reason);
+  info.remarks = std::move(remarks);
   tools = std::make_unique<api::Tools>(model, scene);
   topology = topology_of(model, 1);
   seen_model = model;

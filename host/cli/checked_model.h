@@ -12,10 +12,7 @@ namespace pliant::cli {
 /// Sentences of all bodies, told as remarks.
 inline std::vector<std::string> tell(const std::vector<SurfaceCheck>& checks, const Model& model, const Scene& scene,
                                      const Common& common) {
-  std::vector<std::string> warnings = unit_remarks(model, scene);
-  for (const SurfaceCheck& check : checks) {
-    for (const std::string& warning : check.warnings) warnings.push_back("body '" + check.body + "': " + warning);
-  }
+  std::vector<std::string> warnings = model_remarks(checks, model, scene);
   for (const std::string& warning : warnings) common.note(warning);
   return warnings;
 }

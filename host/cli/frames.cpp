@@ -179,6 +179,28 @@ VtuMesh surface_frame(Simulation& simulation) {
   return mesh;
 }
 
+namespace {
+
+/// Files such as bunny_00000100.vtu and bunny_surface_00000100.obj.
+std::size_t frames_in(const std::filesystem::path& folder, const std::string& stem, const std::set<OutputFormat>& formats) {
+  std::size_t count = 0;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    std::string name = entry.path().stem().string();
+    const std::string kind = entry.path().extension().string();
+    if (name.rfind(stem + "_", 0) != 0) continue;
+    name.erase(0, stem.size() + 1);
+    if (name.rfind("surface_", 0) == 0) name.erase(0, 8);
+    const bool number = name.size() >= 8 && std::all_of(name.begin(), name.end(), [](char c) { return c >= '0' && c <= '9'; });
+    const bool written =
+        std::any_of(formats.begin(), formats.end(), [&](OutputFormat f) { return kind == "." + word_of(format_words(), f); });
+    count += number && written ? 1 : 0;
+  }
+  return count;
+}
+
+}  // namespace
+
 FrameWriter::FrameWriter(std::filesystem::path folder, std::string stem, std::set<OutputFormat> formats,
                          const render::PictureOptions& pictures)
     : folder_(std::move(folder)),
@@ -194,6 +216,7 @@ FrameWriter::FrameWriter(std::filesystem::path folder, std::string stem, std::se
     throw Error(ErrorCode::bad_input, fmt::format("--out: {} is a file, expected a folder", folder_.string()));
   check_writable(folder_ / (stem_ + ".pvd"));
   lock_.emplace(folder_);
+  older_ = frames_in(folder_, stem_, formats_);
   if (formats_.count(OutputFormat::png) != 0) pictures_.emplace(pictures);
 }
 

@@ -46,6 +46,8 @@ class FrameWriter {
   /// What can only be written at the end: bunny.glb, all frames in one animation.
   void finish();
   [[nodiscard]] std::size_t frames() const { return frames_; }
+  /// Files of frames of this stem and these formats that were there before.
+  [[nodiscard]] std::size_t older() const { return older_; }
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
 
  private:
@@ -58,7 +60,7 @@ class FrameWriter {
   SurfaceAnimation animation_;
   render::FrameSplitter splitter_;
   std::optional<std::int64_t> last_step_;
-  std::size_t frames_ = 0;
+  std::size_t frames_ = 0, older_ = 0;
 };
 
 }  // namespace pliant::cli

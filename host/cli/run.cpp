@@ -148,6 +148,12 @@ class Run {
                                  simulation_->dt(), simulation_->dt() / simulation_->stable_dt(), simulation_->stable_dt()));
     }
     for (const std::string& remark : simulation_->remarks()) o_.common.note(remark);
+    if (frames_ && frames_->older() > 0 && !saved) {
+      o_.common.note(fmt::format(
+          "--out: the folder {} holds {} files of an earlier run of {}; those of steps that this run does not write "
+          "stay beside the new ones",
+          o_.out, frames_->older(), stem_));
+    }
     first_time_ = simulation_->time();
   }
 

@@ -14,8 +14,8 @@ struct BladePose {
   std::array<Vec3d, 2> segment{};  ///< [m]
 };
 
-/// What an edit of the topology did, and the time it took [s]. `surface` is what the model waited for its surface, `step` the look
-/// at what an automatic step may be after it.
+/// What an edit of the topology did, and the time it took [s]. `surface` is what the model waited for its surface, `step` the
+/// look at what an automatic step may be after it.
 struct CutReport {
   std::int64_t edges = 0;  ///< newly cut
   bool changed = false;    ///< whether elements were split

@@ -77,4 +77,12 @@ std::vector<std::string> unit_remarks(const Model& model, const Scene& scene) {
   return remarks;
 }
 
+std::vector<std::string> model_remarks(const std::vector<SurfaceCheck>& checks, const Model& model, const Scene& scene) {
+  std::vector<std::string> remarks = unit_remarks(model, scene);
+  for (const SurfaceCheck& check : checks) {
+    for (const std::string& warning : check.warnings) remarks.push_back("body '" + check.body + "': " + warning);
+  }
+  return remarks;
+}
+
 }  // namespace pliant

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "model/model.h"
+#include "model/surface_check.h"
 
 namespace pliant {
 
@@ -11,5 +12,9 @@ namespace pliant {
 /// 100 to 25000 kg/m^3, finite elements that their own weight would crush, displacements of several times the body's size.
 /// Empty: nothing.
 [[nodiscard]] std::vector<std::string> unit_remarks(const Model& model, const Scene& scene);
+
+/// These, and the sentences about the surfaces of all bodies.
+[[nodiscard]] std::vector<std::string> model_remarks(const std::vector<SurfaceCheck>& checks, const Model& model,
+                                                     const Scene& scene);
 
 }  // namespace pliant

@@ -166,9 +166,10 @@ void check_state(const RunState& state, const Model& model, const Scene& scene) 
   const RelaxationState& r = state.relaxation;
   need(std::isfinite(r.damping) && (!state.kept || std::isfinite(state.kept->damping)), "its damping is not finite");
   const std::size_t texels = 4 * static_cast<std::size_t>(model.slots);
-  need(r.u.size() == r.force.size() && (r.u.size() == r.v.size() || r.v.empty()) && std::isfinite(r.time) &&
-           (r.u.empty() || r.u.size() == texels) && (r.middle.empty() || r.middle.size() == r.u.size()) &&
-           (r.steady.empty() || r.steady.size() == r.u.size()) && std::isfinite(r.largest),
+  need(r.u.size() == r.force.size() && (r.u.size() == r.v.size() || (r.v.empty() && !model.flsm.empty())) &&
+           std::isfinite(r.time) && (r.u.empty() || r.u.size() == texels) &&
+           (r.middle.empty() || r.middle.size() == r.u.size()) && (r.steady.empty() || r.steady.size() == r.u.size()) &&
+           std::isfinite(r.largest),
        "what relaxation remembers");
   need(scene.relaxation.enabled || (!r.equilibrium && r.u.empty()), "it relaxes, and the scene does not");
   for (const SweepTriangle& t : state.pending.triangles) {

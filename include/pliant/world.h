@@ -39,15 +39,16 @@ struct BodyInfo {
 
 /// What does not change while a World runs.
 struct WorldInfo {
-  std::string backend;           ///< "opencl:0"
-  std::string device;            ///< the processor's own name
-  std::string reason;            ///< why this backend
-  bool bit_exact = false;        ///< the device passed the start-up probe
-  std::int64_t nodes = 0;        ///< of all bodies
-  std::int64_t elements = 0;     ///< of all bodies
-  std::size_t vertices = 0;      ///< of the surface, as of the start
-  std::size_t triangles = 0;     ///< likewise
-  std::vector<BodyInfo> bodies;  ///< in the order of the scene
+  std::string backend;               ///< "opencl:0"
+  std::string device;                ///< the processor's own name
+  std::string reason;                ///< why this backend
+  bool bit_exact = false;            ///< the device passed the start-up probe
+  std::int64_t nodes = 0;            ///< of all bodies
+  std::int64_t elements = 0;         ///< of all bodies
+  std::size_t vertices = 0;          ///< of the surface, as of the start
+  std::size_t triangles = 0;         ///< likewise
+  std::vector<BodyInfo> bodies;      ///< in the order of the scene
+  std::vector<std::string> remarks;  ///< sentences that `pliant run` prints: holes, units, stiffness; empty: nothing to say
 };
 
 /// What a call of step did. A divergence is reported here and not thrown; the World then holds the last good state, and
@@ -136,8 +137,7 @@ class PLIANT_API World {
   [[nodiscard]] std::vector<Vec3d> velocities(std::size_t body) const;      ///< [m/s]
   [[nodiscard]] std::vector<Vec3d> rest_positions(std::size_t body) const;  ///< [m]
 
-  /// Hash over the state: equal for equal bits.
-  [[nodiscard]] std::uint64_t hash() const;
+  [[nodiscard]] std::uint64_t hash() const;  ///< over the state: equal for equal bits
 
   /// Tools. They need WorldOptions::interactive, otherwise they throw Error (state); a vertex or grab that does not exist is
   /// usage. They take effect at the next batch of steps and do not wait. Vertices are those of the frame handed out last.

@@ -74,6 +74,9 @@ TEST_F(CApi, ComputesWhatTheCppApiComputes) {
   char small[4];
   ASSERT_EQ(pliant_world_backend(world, small, sizeof small), PLIANT_OK);
   EXPECT_STREQ(small, "cpu");
+  std::size_t needed = 0;
+  ASSERT_EQ(pliant_world_remarks(world, text, sizeof text, &needed), PLIANT_OK);
+  EXPECT_EQ(needed, 1U) << text;
 }
 
 TEST_F(CApi, StepsAsynchronouslyAndPullsAtTheSurface) {

@@ -110,6 +110,20 @@ TEST(World, TakesEveryLawFromCodeAndText) {
   }
 }
 
+TEST(World, TellsWhatAUserShouldKnowOfTheScene) {
+  EXPECT_TRUE(World(block(), on("cpu")).info().remarks.empty());
+  SceneSpec scene = block();
+  auto& triangles = scene.bodies[0].surface.triangles;
+  triangles.push_back(triangles[0]);     // doubled
+  scene.bodies[0].material.density = 1;  // as of grams per cubic centimetre
+  const std::vector<std::string> remarks = World(scene, on("cpu")).info().remarks;
+  const auto tells = [&](const char* word) {
+    return std::any_of(remarks.begin(), remarks.end(), [&](const std::string& r) { return r.find(word) != std::string::npos; });
+  };
+  EXPECT_TRUE(tells("body 'block': ")) << "of its surface";
+  EXPECT_TRUE(tells("kg/m^3")) << "of its density";
+}
+
 TEST(World, FramesStayAsTheyAreAndOutliveTheWorld) {
   FramePtr first, later;
   std::vector<Vec4f> copy;

@@ -72,6 +72,14 @@ class Files(harness.CliTest):
         plain = self.json("run", scene, "--backend", "cpu", "--seconds", 0.6)
         self.assertEqual((run["deep_hash"], run["step"]), (plain["deep_hash"], plain["step"]))
 
+    def test_files_of_an_earlier_run_are_told(self):
+        scene = self.scene(dt=0.002)
+        run = ("run", scene, "--backend", "cpu", "--out", "out", "--every", 10, "--format", "obj")
+        self.assertNotIn("earlier run", self.pliant(*run, "--steps", 20, "--checkpoint", "half.pckpt").stderr)
+        self.assertNotIn("earlier run", self.pliant(*run, "--steps", 20, "--resume", "half.pckpt").stderr)
+        self.assertIn("holds 5 files of an earlier run of scene", self.pliant(*run, "--steps", 10).stderr)
+        self.assertNotIn("earlier run", self.pliant(*run[:-1], "vtu", "--steps", 10).stderr, "no frames of this kind")
+
     def test_frames_do_not_change_a_bit(self):
         plain = self.json("run", self.scene(dt=0.002), "--backend", "cpu", "--steps", 25)
         self.assertEqual(self.run_frames("--steps", 25, "--every", 3)["hash"], plain["hash"])
