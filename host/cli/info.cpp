@@ -190,7 +190,9 @@ class Info {
                             {"iteration", iterated_dt > 0 ? Json(iterated_dt) : Json(nullptr)},
                             {"dt", step > 0 ? Json(step) : Json(nullptr)},
                             {"automatic", scene_.dt <= 0}};
-    line(fmt::format("stable step: element bound {:.6g} s ({})", model_.element_bound, model_.bound_element));
+    line(model_.element_bound > 0
+             ? fmt::format("stable step: element bound {:.6g} s ({})", model_.element_bound, model_.bound_element)
+             : "stable step: no finite element limits it");
     line(iterated_dt > 0 ? fmt::format("  Lanczos iteration {:.6g} s, {:.3g} times the bound", iterated_dt,
                                        iterated_dt / model_.element_bound)
                          : "  Lanczos iteration: " + not_iterated);

@@ -191,7 +191,7 @@ class Report {
     const BackendInfo& info = s_.backend().info();
     out_.print(fmt::format("{}: {} nodes, {} elements on {} ({}), {}", r_.stem, s_.model().nodes(), s_.model().elements(),
                            info.name, info.device, info.bit_exact ? "bit-exact" : "tolerance"));
-    out_.print(steps_text());
+    out_.print((result_.interrupted ? "interrupted after " : "") + steps_text());
     if (relaxes()) {
       out_.print(fmt::format("{}: residual {:.3g}, tolerance {:.3g}",
                              s_.at_equilibrium() ? "at equilibrium" : "not at equilibrium", s_.residual(),

@@ -53,7 +53,7 @@ void read_geometry(const Reader& body, const fs::path& folder, Body& b) {
                  "exactly one of them");
   }
   if (lattice.has("spacing")) b.lattice.spacing = lattice.at("spacing").positive();
-  if (lattice.has("nodes")) b.lattice.nodes = lattice.at("nodes").integer(8, 1'000'000'000);
+  if (lattice.has("nodes")) b.lattice.nodes = lattice.at("nodes").integer(8, 100'000'000);
 }
 
 void read_element(const Reader& body, Body& b) {

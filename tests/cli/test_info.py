@@ -73,6 +73,7 @@ class Info(harness.CliTest):
             said = self.pliant("info", self.scene(**keys)).stdout
             for other in ("automatic: 0.9 of it, ", "as cuts ask", "as shape matching asks", "one frame"):
                 self.assertEqual(other in said, other in text, said)
+            self.assertEqual("stable step: no finite element limits it" in said, "body" in keys, said)
 
     def cube(self, low, high, first=1):
         """The lines of an OBJ file: a box of twelve triangles."""

@@ -106,11 +106,13 @@ class Run(harness.CliTest):
                     (self.folder / name).unlink()
 
     def test_nohup_stays_ignored(self):
-        process = self.start("--json", "r.json", preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
+        process = self.start("--json", "r.json", stdout=subprocess.PIPE, preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
         process.send_signal(signal.SIGHUP)
         time.sleep(0.3)
         self.assertIsNone(process.poll())
         process.send_signal(signal.SIGTERM)
+        self.assertIn(b"interrupted after ", process.stdout.read())
+        process.stdout.close()
         self.assertEqual(process.wait(60), 130)
 
     def test_two_runs_into_one_folder(self):
