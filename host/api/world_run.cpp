@@ -128,6 +128,7 @@ void World::Impl::publish_clock() {
 StepReport World::Impl::run(std::int64_t steps) {
   const std::int64_t first = simulation->step();
   try {
+    if (steps == 0) cut_pending();  // who stops stepping still sees cuts that are made beside the caller
     while (simulation->step() - first < steps && !simulation->divergence() && !simulation->at_equilibrium()) {
       cut_pending();
       const std::int64_t left = std::min<std::int64_t>(steps - (simulation->step() - first), tools->apply(*simulation));

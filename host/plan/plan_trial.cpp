@@ -149,8 +149,13 @@ Reference make_reference(const Scene& scene, const Size& size, const PlanOptions
     const Stopwatch began;
     std::vector<AtRest> answers;
     // Spacings that are no multiples of each other, so that the rims of what is held fall differently between the nodes.
-    for (const double share : {1.0, 0.8, 0.64}) {
-      answers.push_back(solve(scene, size, std::llround(share * static_cast<double>(nodes)), options, start));
+    try {
+      for (const double share : {1.0, 0.8, 0.64}) {
+        answers.push_back(solve(scene, size, std::llround(share * static_cast<double>(nodes)), options, start));
+      }
+    } catch (const Error&) {
+      if (out.nodes == 0) throw;
+      break;  // a finer reference is not found: the one there is stands, with its uncertainty
     }
     out.u.assign(answers[0].u.size(), Vec3d{});
     for (const AtRest& a : answers) {

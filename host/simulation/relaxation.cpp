@@ -26,7 +26,8 @@ struct Sums {
   double size = 0;                                  ///< u . M u [kg m^2]
 };
 
-/// What moves faster than the time since the last change [m/s]: the mean of both velocities less that of the time.
+/// What moves faster than the time since the last change [m/s]: the mean of both velocities less that of the time, and less the
+/// rhythm of shape matching (has_rhythm).
 double fast_velocity(const RelaxationState& last, const std::vector<double>& u, const std::vector<double>& v, double time,
                      std::size_t t) {
   return (v[t] + last.v[t]) / 2 - (u[t] - last.u[t]) / time - (last.steady.empty() ? 0 : last.steady[t]);

@@ -174,6 +174,12 @@ TEST(ApiCut, who_steps_beside_the_worker_waits_for_no_cut) {
     for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(u[n][c], expected[n][c], 3e-4);  // tissue carries the places of a blade
   }
   EXPECT_TRUE(world.cut(wall(0.021)).changed) << "after wait() the caller makes it";
+  ASSERT_TRUE(world.step_async(1));
+  while (world.busy()) std::this_thread::yield();
+  EXPECT_TRUE(world.cut(wall(0.031)).pending);
+  ASSERT_TRUE(world.step_async(0)) << "who stops stepping still sees it";
+  world.wait();
+  EXPECT_EQ(world.frame()->topology_version, version + 3);
 }
 
 TEST(ApiCut, grabs_and_pushes_hold_on_through_cuts) {
