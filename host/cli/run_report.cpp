@@ -113,7 +113,8 @@ class Report {
     json["opened_edges"] = s_.state().opened;
     if (s_.state().opened > 0) {
       out_.note(fmt::format(
-          "{} edges parted: they were stretched beyond {:.3g} times their length beside a cut, or {:.3g} times elsewhere "
+          "{} edges parted: they were stretched beyond {:.3g} times their length beside a cut or tear, or {:.3g} times "
+          "elsewhere "
           "(\"break_stretch\"); a material far too soft for its weight does that, too: look at the units of the scene",
           s_.state().opened, s_.scene().break_stretch, kWholeStretch * s_.scene().break_stretch));
     }

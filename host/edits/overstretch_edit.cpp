@@ -1,5 +1,5 @@
 // Tissue that is stretched further than any tissue holds parts there, where blades cut: what hangs together by a thread
-// would otherwise stiffen until it takes the step with it.
+// would otherwise stiffen until it takes the step with it. What tears has the same limit (tearing/torn_body.h).
 #include <limits>
 #include <utility>
 #include <vector>

@@ -1,6 +1,9 @@
-// Tearing: bodies of tetrahedra come apart along faces where their stress breaks them, between two batches of a run. Every node
-// keeps the displacement and velocity of the one it comes from: masses of copies add up to that of their node, so momentum is
-// kept.
+// Tearing: bodies of tetrahedra come apart along faces where their stress or a stretched edge breaks them, between two batches
+// of a run. Every node keeps the displacement and velocity of the one it comes from: masses of copies add up to that of their
+// node, so momentum is kept.
+#include <utility>
+#include <vector>
+
 #include "edits/model_swap.h"
 #include "edits/topology_edits.h"
 
@@ -12,8 +15,12 @@ void TopologyEdits::make_tears() {
   const std::vector<double> u = run_.u();
   std::vector<std::vector<TetFace>> faces(all.size());
   bool any = false;
+  std::int64_t edges = 0;
   for (std::size_t b = 0; b < faces.size(); ++b) {
-    if (all.torn(b) != nullptr) faces[b] = all.torn(b)->breaking_faces(run_.loaded.positions(u, b));
+    if (all.torn(b) == nullptr) continue;
+    TornBody::Breaks found = all.torn(b)->breaking_faces(run_.loaded.positions(u, b), run_.scene.break_stretch);
+    faces[b] = std::move(found.faces);
+    edges += found.edges;
     any = any || !faces[b].empty();
   }
   if (!any) return;
@@ -40,6 +47,7 @@ void TopologyEdits::make_tears() {
       if (bits != 0) run_.state.tears.push_back({static_cast<std::int32_t>(b), static_cast<std::int32_t>(t), bits});
     }
   }
+  run_.state.opened += edges;
   ++run_.state.topology_version;
   step_.limit_after_edit(changed);
 }

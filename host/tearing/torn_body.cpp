@@ -1,10 +1,13 @@
 #include "tearing/torn_body.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
+#include <span>
 
 #include "cutting/topology/cut_cell.h"
+#include "cutting/topology/mesh_edges.h"
 #include "geometry/vec.h"
 
 namespace pliant {
@@ -12,6 +15,10 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+Vector3d column(const Vec3d& v) { return {v[0], v[1], v[2]}; }
 
 std::array<Vec3d, 4> corners(const std::vector<Vec3d>& x, const std::array<std::int32_t, 4>& tet) {
   return {x[tet[0]], x[tet[1]], x[tet[2]], x[tet[3]]};
@@ -49,71 +56,136 @@ TornBody::TornBody(std::shared_ptr<const BodyMesh> whole, std::vector<Material> 
 /// The largest principal stress that a tetrahedron bears [Pa].
 double TornBody::strength(std::int32_t tet) const {
   const Material& m = material_[tet];
-  return m.toughness > 0 ? m.toughness * m.integrity : std::numeric_limits<double>::infinity();
+  return m.toughness > 0 ? m.toughness * m.integrity : kInfinite;
 }
 
-std::vector<TornBody::Peak> TornBody::peaks(const std::vector<Vec3d>& x) const {
-  struct Sum {
-    Matrix3d stress = Matrix3d::Zero();
-    double volume = 0, strength = std::numeric_limits<double>::infinity();
-  };
-  std::vector<Sum> at(x.size());
+std::vector<TornBody::NodeStress> TornBody::node_stresses(const std::vector<Vec3d>& x) const {
+  std::vector<NodeStress> at(x.size());
+  for (NodeStress& node : at) node.strength = kInfinite;
   for (std::size_t t = 0; t < torn_.tets.size(); ++t) {
     const auto rest = corners(torn_.nodes, torn_.tets[t]);
     const auto stress = tet_stress(rest, corners(x, torn_.tets[t]), material_[t]);
     if (!stress) continue;
     const double volume = tet_geometry(rest).volume;
     for (const std::int32_t n : torn_.tets[t]) {
-      at[n].stress += volume * *stress;
+      at[n].mean += volume * *stress;
       at[n].volume += volume;
       at[n].strength = std::min(at[n].strength, strength(static_cast<std::int32_t>(t)));
     }
   }
+  for (NodeStress& node : at) {
+    if (node.volume > 0) node.mean /= node.volume;
+  }
+  return at;
+}
+
+std::vector<TornBody::Peak> TornBody::peaks(const std::vector<NodeStress>& at) {
   std::vector<Peak> all;
   for (std::size_t n = 0; n < at.size(); ++n) {
-    if (!(at[n].volume > 0) || !(at[n].strength < std::numeric_limits<double>::infinity())) continue;
-    const Matrix3d mean = at[n].stress / at[n].volume;
-    const double largest = cutting_stress(mean, {});
+    if (!(at[n].volume > 0) || !(at[n].strength < kInfinite)) continue;
+    const double largest = cutting_stress(at[n].mean, {});
     if (!(largest >= at[n].strength)) continue;
-    Eigen::SelfAdjointEigenSolver<Matrix3d> solver(mean);
+    Eigen::SelfAdjointEigenSolver<Matrix3d> solver(at[n].mean);
     all.push_back({largest / at[n].strength, static_cast<std::int32_t>(n), solver.eigenvectors().col(2), largest});
   }
   std::stable_sort(all.begin(), all.end(), [](const Peak& a, const Peak& b) { return a.excess > b.excess; });
   return all;
 }
 
-std::vector<TetFace> TornBody::breaking_faces(const std::vector<Vec3d>& x) const {
-  const std::vector<Peak> found = peaks(x);
+std::vector<TornBody::LongEdge> TornBody::long_edges(const std::vector<Vec3d>& x, double stretch) const {
+  std::vector<LongEdge> all;
+  if (!(stretch > 0)) return all;
+  std::vector<char> at_tear(x.size(), 0);
+  for (std::size_t t = 0; t < broken_.size(); ++t) {
+    for (std::size_t f = 0; f < 4; ++f) {
+      if (!(broken_[t] >> f & 1)) continue;
+      for (const int k : kTetFaces[f]) at_tear[torn_.tets[t][k]] = 1;
+    }
+  }
+  for (const auto& tet : torn_.tets) {
+    for (const auto& [i, j] : kTetEdges) {
+      const std::int32_t a = std::min(tet[i], tet[j]), b = std::max(tet[i], tet[j]);
+      const double limit = at_tear[a] != 0 || at_tear[b] != 0 ? stretch : kWholeStretch * stretch;
+      const Vec3d now = vec::sub(x[a], x[b]), rest = vec::sub(torn_.nodes[a], torn_.nodes[b]);
+      const double squared = vec::dot(now, now) / vec::dot(rest, rest);
+      if (squared > limit * limit && squared < kInfinite) all.push_back({std::sqrt(squared), {a, b}});
+    }
+  }
+  std::sort(all.begin(), all.end(),
+            [](const LongEdge& a, const LongEdge& b) { return a.excess != b.excess ? a.excess > b.excess : a.ends < b.ends; });
+  const auto same = [](const LongEdge& a, const LongEdge& b) { return a.ends == b.ends; };
+  all.erase(std::unique(all.begin(), all.end(), same), all.end());
+  return all;
+}
+
+std::vector<TetFace> TornBody::faces_on(const Plane& plane, const std::vector<Vec3d>& x, const Around& around) const {
+  const auto in_front = [&](std::int32_t t) {
+    Vec3d middle{};
+    for (const Vec3d& p : corners(x, torn_.tets[t])) middle = vec::add(middle, vec::mul(p, 0.25));
+    if (std::find(torn_.tets[t].begin(), torn_.tets[t].end(), plane.beyond) != torn_.tets[t].end()) return true;
+    return plane.normal.dot(column(vec::sub(middle, x[plane.node]))) > 0;
+  };
   std::vector<TetFace> faces;
-  if (found.empty()) return faces;
-  std::vector<std::vector<std::int32_t>> around(x.size());
+  for (const std::int32_t t : around[plane.node]) {
+    if (!in_front(t)) continue;
+    for (std::size_t f = 0; f < 4; ++f) {
+      const std::int32_t other = neighbors_[t][f].tet;
+      if (torn_.tets[t][f] == plane.node || other < 0 || (broken_[t] >> f & 1) || in_front(other)) continue;
+      if (plane.stress >= std::min(strength(t), strength(other))) faces.push_back({t, static_cast<std::int8_t>(f)});
+    }
+  }
+  return faces;
+}
+
+std::vector<TetFace> TornBody::parting_faces(const LongEdge& edge, double stretch, const std::vector<Vec3d>& x,
+                                             const std::vector<NodeStress>& at, const Around& around) const {
+  std::array<std::vector<TetFace>, 2> faces;
+  std::array<double, 2> stress{};
+  for (std::size_t end = 0; end < 2; ++end) {
+    const std::int32_t node = edge.ends[end], beyond = edge.ends[1 - end];
+    const Vector3d along = column(vec::sub(x[beyond], x[node])).normalized();
+    faces[end] = faces_on({node, beyond, along, kInfinite}, x, around);
+    stress[end] = along.dot(at[node].mean * along);
+  }
+  if (faces[0].empty() != faces[1].empty()) {
+    if (!(edge.excess > kFreedStretch * stretch)) return {};
+    return faces[0].empty() ? faces[1] : faces[0];
+  }
+  return stress[1] > stress[0] ? faces[1] : faces[0];
+}
+
+TornBody::Breaks TornBody::breaking_faces(const std::vector<Vec3d>& x, double stretch) const {
+  const std::vector<NodeStress> stresses = node_stresses(x);
+  const std::vector<Peak> found = peaks(stresses);
+  const std::vector<LongEdge> edges = long_edges(x, stretch);
+  Breaks breaks;
+  if (found.empty() && edges.empty()) return breaks;
+  Around around(x.size());
   for (std::size_t t = 0; t < torn_.tets.size(); ++t) {
     for (const std::int32_t n : torn_.tets[t]) around[n].push_back(static_cast<std::int32_t>(t));
   }
   std::vector<char> waits(x.size(), 0);
-  for (const Peak& peak : found) {
-    if (waits[peak.node] != 0) continue;
-    const auto in_front = [&](std::int32_t t) {
-      Vec3d middle{};
-      for (const Vec3d& p : corners(x, torn_.tets[t])) middle = vec::add(middle, vec::mul(p, 0.25));
-      const Vec3d d = vec::sub(middle, x[peak.node]);
-      return peak.normal.dot(Vector3d(d[0], d[1], d[2])) > 0;
-    };
-    const std::size_t before = faces.size();
-    for (const std::int32_t t : around[peak.node]) {
-      if (!in_front(t)) continue;
-      for (std::size_t f = 0; f < 4; ++f) {
-        const std::int32_t other = neighbors_[t][f].tet;
-        if (torn_.tets[t][f] == peak.node || other < 0 || (broken_[t] >> f & 1) || in_front(other)) continue;
-        if (peak.stress >= std::min(strength(t), strength(other))) faces.push_back({t, static_cast<std::int8_t>(f)});
+  const auto take = [&](const std::vector<TetFace>& faces, std::span<const std::int32_t> nodes) {
+    breaks.faces.insert(breaks.faces.end(), faces.begin(), faces.end());
+    for (const std::int32_t node : nodes) {
+      for (const std::int32_t t : around[node]) {
+        for (const std::int32_t n : torn_.tets[t]) waits[n] = 1;
       }
     }
-    if (faces.size() == before) continue;
-    for (const std::int32_t t : around[peak.node]) {
-      for (const std::int32_t n : torn_.tets[t]) waits[n] = 1;
-    }
+  };
+  for (const LongEdge& edge : edges) {
+    if (waits[edge.ends[0]] != 0 || waits[edge.ends[1]] != 0) continue;
+    const std::vector<TetFace> faces = parting_faces(edge, stretch, x, stresses, around);
+    if (faces.empty()) continue;
+    take(faces, edge.ends);
+    ++breaks.edges;
   }
-  return faces;
+  for (const Peak& peak : found) {
+    if (waits[peak.node] != 0) continue;
+    const std::vector<TetFace> faces = faces_on({peak.node, -1, peak.normal, peak.stress}, x, around);
+    if (!faces.empty()) take(faces, {&peak.node, 1});
+  }
+  return breaks;
 }
 
 std::vector<std::int32_t> TornBody::tear(const std::vector<TetFace>& faces) {

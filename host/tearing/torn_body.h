@@ -1,5 +1,8 @@
-// A body of tetrahedra that tears along its faces where its stress breaks it, without a blade: the physical criterion alone.
+// A body of tetrahedra that tears along its faces where its stress breaks it, without a blade: the physical criterion, and a
+// limit of what an edge may be stretched.
 #pragma once
+#include <Eigen/Dense>
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -16,12 +19,21 @@ class TornBody {
   /// `whole` is a volume mesh of tetrahedra; `material` of each, of which those without toughness do not tear.
   TornBody(std::shared_ptr<const BodyMesh> whole, std::vector<Material> material);
 
+  struct Breaks {
+    std::vector<TetFace> faces;
+    std::int64_t edges = 0;  ///< that were stretched too far and part with these faces
+  };
   /// Faces that break with the nodes of solid() at `x` [m]. At a node the mean stress of its tetrahedra, weighted by volume, is
   /// looked at. Where its cutting stress reaches the least toughness there, the node's tetrahedra are divided by the plane
   /// across the largest principal stress, and the faces at the node between both sides break whose toughness (the lesser of
   /// both sides') is reached. Nodes are taken by how far they are beyond their toughness; those that share a tetrahedron with
   /// one that has just been taken wait for the next look.
-  [[nodiscard]] std::vector<TetFace> breaking_faces(const std::vector<Vec3d>& x) const;
+  ///
+  /// Before that, edges part that are longer than `stretch` times their length at rest (0: none do) and have an end on a broken
+  /// face, and others at kWholeStretch times that, whatever the toughness: the tetrahedra of one end are divided by the plane
+  /// across the edge, and all faces between both sides break. It is the end with the larger mean stress along the edge. An edge
+  /// that has nothing behind one of its ends is free to spring back there; it parts at its other end at kFreedStretch times.
+  [[nodiscard]] Breaks breaking_faces(const std::vector<Vec3d>& x, double stretch = 0) const;
 
   /// Break faces. Returns, for each node now, the node before.
   std::vector<std::int32_t> tear(const std::vector<TetFace>& faces);
@@ -33,14 +45,37 @@ class TornBody {
   [[nodiscard]] const std::vector<std::uint8_t>& broken() const { return broken_; }
 
  private:
+  /// The mean of the tetrahedra of a node.
+  struct NodeStress {
+    Eigen::Matrix3d mean = Eigen::Matrix3d::Zero();  ///< [Pa]
+    double volume = 0;                               ///< 0: all are inverted or not finite [m^3]
+    double strength = 0;                             ///< the least of them [Pa]
+  };
   struct Peak {
     double excess;  ///< cutting stress over toughness
     std::int32_t node;
     Eigen::Vector3d normal;
     double stress;  ///< largest principal [Pa]
   };
+  struct LongEdge {
+    double excess;  ///< length over that at rest
+    std::array<std::int32_t, 2> ends;
+  };
+  /// The faces at a node that break on a plane through it. A tetrahedron that has the node `beyond` is on its side.
+  struct Plane {
+    std::int32_t node, beyond;
+    Eigen::Vector3d normal;
+    double stress;  ///< infinite: whatever the toughness [Pa]
+  };
+  using Around = std::vector<std::vector<std::int32_t>>;  ///< tetrahedra of each node
+
   [[nodiscard]] double strength(std::int32_t tet) const;
-  [[nodiscard]] std::vector<Peak> peaks(const std::vector<Vec3d>& x) const;
+  [[nodiscard]] std::vector<NodeStress> node_stresses(const std::vector<Vec3d>& x) const;
+  [[nodiscard]] static std::vector<Peak> peaks(const std::vector<NodeStress>& at);
+  [[nodiscard]] std::vector<LongEdge> long_edges(const std::vector<Vec3d>& x, double stretch) const;
+  [[nodiscard]] std::vector<TetFace> faces_on(const Plane& plane, const std::vector<Vec3d>& x, const Around& around) const;
+  [[nodiscard]] std::vector<TetFace> parting_faces(const LongEdge& edge, double stretch, const std::vector<Vec3d>& x,
+                                                   const std::vector<NodeStress>& at, const Around& around) const;
   void make_surface();
 
   std::shared_ptr<const BodyMesh> whole_;

@@ -113,7 +113,7 @@ struct SceneSpec {
   std::string inverted = "recover";              ///< elements with J <= 0: recover or stop
   double least_fill = 0.05;                      ///< of a cell where blades cut, as a share of a full cell's mass, 0 to 1
   double least_step = 0.1;                       ///< floor of an automatic step, as a share of the first, 0 (none) to 1
-  double break_stretch = 4;                      ///< of an edge, beyond which it parts in a scene that is cut; 0: none does
+  double break_stretch = 4;                      ///< of an edge, beyond which it parts in a scene that is cut or tears; 0: none
   std::optional<RelaxationSpec> relaxation;      ///< absent: none
   std::vector<BladeSpec> blades;                 ///< blades that cut what they sweep over
   std::vector<std::array<double, 4>> tool_path;  ///< (time [s], x, y, z [m]): what a following operational region follows

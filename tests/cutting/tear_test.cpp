@@ -137,6 +137,51 @@ TEST_F(Tear, every_corner_comes_from_the_node_it_had) {
       8);
 }
 
+/// The slice from 2 to 3 cm is stretched five times, and what is left and right of it by so much.
+std::vector<Vec3d> stretched_slice(const BodyMesh& solid, double left, double right) {
+  std::vector<Vec3d> x = solid.nodes;
+  for (Vec3d& p : x) p[0] = p[0] < 0.021 ? 0.02 + left * (p[0] - 0.02) : 0.07 + right * (p[0] - 0.03);
+  return x;
+}
+
+/// There are faces, and each has a corner at that x.
+void expect_faces_at(const BodyMesh& solid, const std::vector<TetFace>& faces, double place) {
+  EXPECT_FALSE(faces.empty());
+  for (const TetFace& face : faces) {
+    std::size_t at = 0;
+    for (const int k : kTetFaces[face.face]) at += std::fabs(solid.nodes[solid.tets[face.tet][k]][0] - place) < 1e-9 ? 1 : 0;
+    EXPECT_GT(at, 0) << "tetrahedron " << face.tet << " face " << int{face.face};
+  }
+}
+
+TEST_F(Tear, a_stretched_edge_parts_at_the_end_that_is_pulled_more) {
+  const Scene scene = bar_scene(file, 1500);
+  const auto whole = std::make_shared<const BodyMesh>(make_body_mesh(scene.bodies[0]));
+  const TornBody body(whole, std::vector<Material>(whole->tets.size(), scene.bodies[0].material));
+  EXPECT_TRUE(body.breaking_faces(stretched_slice(*whole, 1, 1)).faces.empty());
+  EXPECT_TRUE(body.breaking_faces(stretched_slice(*whole, 1, 1), 1.3).faces.empty()) << "whole tissue stands four times that";
+  for (const bool left : {true, false}) {
+    const auto found = body.breaking_faces(stretched_slice(*whole, left ? 4 : 0.5, left ? 0.5 : 4), 1.2);
+    EXPECT_GT(found.edges, 0);
+    expect_faces_at(*whole, found.faces, left ? 0.02 : 0.03);
+  }
+}
+
+TEST_F(Tear, an_edge_that_is_free_at_one_end_parts_at_the_other_at_twice_the_stretch) {
+  const Scene scene = bar_scene(file, 1500);
+  const auto whole = std::make_shared<const BodyMesh>(make_body_mesh(scene.bodies[0]));
+  TornBody body(whole, std::vector<Material>(whole->tets.size(), scene.bodies[0].material));
+  body.tear(faces_in_plane(*whole, 0, 0.02));
+  const std::vector<Vec3d> x = stretched_slice(body.solid(), 1, 1);
+  EXPECT_TRUE(body.breaking_faces(x, 3).faces.empty()) << "it has time to spring back";
+  const auto found = body.breaking_faces(x, 2.4);
+  expect_faces_at(body.solid(), found.faces, 0.03);
+  // The long edges no longer hold to what is behind them: a node of each has become two.
+  const std::size_t nodes = body.solid().nodes.size();
+  body.tear(found.faces);
+  EXPECT_GE(body.solid().nodes.size(), nodes + static_cast<std::size_t>(found.edges));
+}
+
 TEST_F(Tear, integrity_lowers_what_it_bears) {
   Scene scene = bar_scene(file, 6000);
   scene.bodies[0].inclusions[0].material.integrity = 0.25;
@@ -207,6 +252,74 @@ TEST_F(Tear, a_resumed_run_and_the_other_backend_have_the_same_bits) {
   Simulation device(scene, open_backend("opencl:0"), options);
   device.advance(whole.step());
   EXPECT_EQ(whole.hash(), device.hash());
+}
+
+/// A bar whose stress breaks nothing, pulled by so much [m].
+Scene tough_bar(const std::filesystem::path& file, double break_stretch, double by) {
+  Scene scene = bar_scene(file, 1e9);
+  scene.bodies[0].prescribed[0].displacement = {by, 0, 0};
+  scene.break_stretch = break_stretch;
+  return scene;
+}
+
+TEST_F(Tear, what_is_stretched_too_far_parts_whatever_its_toughness) {
+  Simulation s(tough_bar(file, 1.2, 0.4), open_backend("cpu"));
+  const double mass = mass_of(s);
+  while (s.time() < 0.4 && !s.divergence()) s.advance(16);
+  ASSERT_FALSE(s.divergence()) << s.divergence()->message();
+  EXPECT_GT(s.state().opened, 0);
+  EXPECT_FALSE(s.state().tears.empty());
+  EXPECT_GE(pieces_of(s), 2);
+  EXPECT_NEAR(mass_of(s) / mass, 1, 1e-12);
+  EXPECT_EQ(singular_edges(s.model().surface.triangles), 0);
+  // Whole tissue stands four times the limit: 1.2 does not open what is stretched 2.7 times.
+  for (const Scene& scene : {tough_bar(file, 0, 0.4), tough_bar(file, 1.2, 0.1)}) {
+    Simulation other(scene, open_backend("cpu"));
+    while (other.time() < 0.4 && !other.divergence()) other.advance(16);
+    EXPECT_EQ(other.state().opened, 0);
+    EXPECT_EQ(other.topology_version(), 0);
+  }
+}
+
+/// Half of the slice is weak and tears; the other half is then stretched beside that tear.
+Scene notched_bar(const std::filesystem::path& file, double break_stretch) {
+  Scene scene = bar_scene(file, 1500);
+  scene.bodies[0].inclusions[0].where.b = {0.03, 1, 0.01};
+  scene.break_stretch = break_stretch;
+  return scene;
+}
+
+TEST_F(Tear, beside_a_tear_it_parts_sooner) {
+  for (const double limit : {0.0, 2.0}) {
+    Simulation s(notched_bar(file, limit), open_backend("cpu"));
+    while (s.time() < 0.4 && !s.divergence()) s.advance(16);
+    ASSERT_FALSE(s.divergence()) << s.divergence()->message();
+    EXPECT_GT(s.topology_version(), 0);
+    EXPECT_EQ(s.state().opened > 0, limit > 0);
+    EXPECT_EQ(pieces_of(s), limit > 0 ? 2 : 1) << s.state().opened << " edges parted";
+  }
+}
+
+TEST_F(Tear, stretched_edges_part_alike_after_a_checkpoint_and_on_the_other_backend) {
+  const Scene scene = notched_bar(file, 2);
+  SimulationOptions options;
+  options.dt = 4e-4;
+  Simulation whole(scene, open_backend("cpu"), options);
+  while (whole.state().opened == 0 && whole.step() < 2000) whole.advance(16);
+  ASSERT_GT(whole.state().opened, 0);
+  whole.advance(5);
+  const Checkpoint saved = take_checkpoint(whole);
+  whole.advance(200);
+  Simulation resumed(scene, open_backend("cpu"), options);
+  restore_checkpoint(resumed, saved, "saved");
+  resumed.advance(200);
+  EXPECT_EQ(whole.hash(), resumed.hash());
+  EXPECT_EQ(write_state(whole.state()), write_state(resumed.state()));
+  if (!testing::has_opencl()) return;
+  Simulation device(scene, open_backend("opencl:0"), options);
+  device.advance(whole.step());
+  EXPECT_EQ(whole.hash(), device.hash());
+  EXPECT_EQ(write_state(whole.state()), write_state(device.state()));
 }
 
 TEST_F(Tear, what_cannot_tear_is_refused) {

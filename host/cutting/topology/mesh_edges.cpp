@@ -9,10 +9,6 @@
 namespace pliant {
 namespace {
 
-/// Copies take a while to spring back after the edge between them has parted: only those that are stretched this much further
-/// have not been freed by it.
-constexpr double kFar = 2;
-
 bool is_long(const Vec3d& a, const Vec3d& b, double squared) {
   const Vec3d d = vec::sub(a, b);
   const double now = vec::dot(d, d);
@@ -52,7 +48,7 @@ CutEdges MeshEdges::longer(const CutTopology& body, std::span<const Vec3d> x, do
     if (whole && !is_long(x[a], x[b], kWholeStretch * kWholeStretch * times * times * squared_[i])) continue;
     if (!body.edges().contains(pairs_[i])) part(body, pairs_[i], out);
   }
-  free_corners(body, x, kFar * times, out);
+  free_corners(body, x, kFreedStretch * times, out);
   return out;
 }
 

@@ -11,6 +11,10 @@ namespace pliant {
 /// thread, and a soft organ stretches far under its own weight before anything touches it.
 inline constexpr double kWholeStretch = 4;
 
+/// What a cut or tear has just freed takes a while to spring back: only what is stretched this many times further has not been
+/// freed by it.
+inline constexpr double kFreedStretch = 2;
+
 class MeshEdges {
  public:
   explicit MeshEdges(const CutMesh& mesh);
