@@ -207,6 +207,22 @@ py::tuple frame_since(pliant::World& w, const std::shared_ptr<pliant::Frame>& se
                         range(change.dirty_triangles));
 }
 
+/// By name: the numbers of each quantity.
+py::dict probes(const pliant::World& w) {
+  std::vector<pliant::ProbeValue> values;
+  {
+    const py::gil_scoped_release release;
+    values = w.probes();
+  }
+  py::dict d;
+  for (const pliant::ProbeValue& v : values) {
+    const py::str name(v.probe);
+    if (!d.contains(name)) d[name] = py::dict();
+    d[name][py::str(v.quantity)] = py::array_t<double>(static_cast<py::ssize_t>(v.numbers.size()), v.numbers.data());
+  }
+  return d;
+}
+
 void bind_world(py::module_& m) {
   using pliant::World;
   using Free = py::call_guard<py::gil_scoped_release>;
@@ -238,6 +254,7 @@ void bind_world(py::module_& m) {
           "velocities", [](const World& w, std::size_t body) { return copy(w.velocities(body)); }, py::arg("body") = 0)
       .def(
           "rest_positions", [](const World& w, std::size_t body) { return copy(w.rest_positions(body)); }, py::arg("body") = 0)
+      .def("probes", &probes, "a dict of the scene's probes: of each a dict of its quantities, arrays of numbers")
       .def("hash", &World::hash)
       .def(
           "grab",

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <vector>
 
 #include "pliant/world.h"
 
@@ -12,8 +13,9 @@ namespace pliant::api {
 struct CWorld {
   explicit CWorld(World w) : world(std::move(w)) {}
   World world;
-  std::mutex mutex;                        ///< protects `seen` from callers who forget to take turns
+  std::mutex mutex;                        ///< protects the others from callers who forget to take turns
   std::map<std::uint64_t, FramePtr> seen;  ///< the last frame of each consumer, which its pointers point to
+  std::vector<ProbeValue> probes;          ///< what pointers of probes point to
 };
 
 /// The only state that all users of the C API share: which handles are alive.

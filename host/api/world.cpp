@@ -11,6 +11,7 @@
 #include "backends/backends.h"
 #include "io/save.h"
 #include "pliant/version.h"
+#include "scene/keys.h"
 #include "scene/spec.h"
 
 #define PLIANT_TEXT_OF(x) #x
@@ -193,6 +194,19 @@ std::vector<Vec3d> World::velocities(std::size_t body) const {
 std::vector<Vec3d> World::rest_positions(std::size_t body) const {
   const Call call(impl_);
   return impl_->simulation->model().bodies[check_body(*impl_, body)].rest;
+}
+
+std::vector<ProbeValue> World::probes() const {
+  const Call call(impl_);
+  check_device(*impl_);
+  const std::vector<ProbeState> states = impl_->probes.states(*impl_->simulation);
+  std::vector<ProbeValue> values;
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    const SceneProbe& probe = impl_->probes.probe(i);
+    for (const Quantity q : probe.quantities)
+      values.push_back({probe.name, word_of(quantity_words(), q), states[i].numbers(q)});
+  }
+  return values;
 }
 
 std::uint64_t World::hash() const {

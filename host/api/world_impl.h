@@ -15,6 +15,7 @@
 #include "api/frame_pool.h"
 #include "api/tools.h"
 #include "pliant/world.h"
+#include "simulation/probing.h"
 #include "simulation/simulation.h"
 
 namespace pliant {
@@ -80,6 +81,7 @@ struct World::Impl {
   const OpenBackend open_backend;
   WorldInfo info;
   std::shared_ptr<const Model> model;  ///< as of the start
+  PlacedProbes probes;
   std::shared_ptr<Simulation> simulation;
   std::unique_ptr<api::Tools> tools;
   std::string lost;         ///< message of the device's loss; empty: it works

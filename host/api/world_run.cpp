@@ -74,6 +74,7 @@ WorldInfo info_of(const Model& model, const BackendInfo& backend, std::string re
 
 World::Impl::Impl(Scene scene_, OpenBackend open, const WorldOptions& options_)
     : options(options_), scene(std::move(scene_)), open_backend(std::move(open)), model(model_of(scene, info.remarks)) {
+  if (scene.probes != nullptr) probes = PlacedProbes(scene.probes->list, *model);
   std::string reason;
   simulation = make_simulation(&reason);
   std::vector<std::string> remarks = std::move(info.remarks);

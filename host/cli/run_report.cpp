@@ -114,8 +114,8 @@ class Report {
     if (s_.state().opened > 0) {
       out_.note(fmt::format(
           "{} edges parted: they were stretched beyond {:.3g} times their length beside a cut or tear, or {:.3g} times "
-          "elsewhere "
-          "(\"break_stretch\"); a material far too soft for its weight does that, too: look at the units of the scene",
+          "elsewhere (\"break_stretch\"); a material far too soft for its weight does that, too: look at the units of the "
+          "scene",
           s_.state().opened, s_.scene().break_stretch, kWholeStretch * s_.scene().break_stretch));
     }
   }
@@ -137,11 +137,7 @@ class Report {
           row[word] = {{"kinetic", state.energy->kinetic}, {"strain", state.energy->strain}};
           text += fmt::format(", energy {:.6g} J kinetic, {:.6g} J of strain", state.energy->kinetic, state.energy->strain);
         } else {
-          row[word] = q == Quantity::position       ? *state.position
-                      : q == Quantity::displacement ? *state.displacement
-                      : q == Quantity::velocity     ? *state.velocity
-                      : q == Quantity::force        ? *state.force
-                                                    : *state.reaction;
+          row[word] = state.numbers(q);
         }
         if (q == Quantity::displacement) text += fmt::format(", displacement [{:.6g}] m", fmt::join(*state.displacement, ", "));
         if (q == Quantity::force) text += fmt::format(", force [{:.6g}] N", fmt::join(*state.force, ", "));

@@ -84,6 +84,9 @@ PLIANT_API pliant_status pliant_world_displacements(pliant_world world, size_t b
 PLIANT_API pliant_status pliant_world_velocities(pliant_world world, size_t body, double* out, size_t count);
 /** [m], likewise. */
 PLIANT_API pliant_status pliant_world_rest_positions(pliant_world world, size_t body, double* out, size_t count);
+/** What the scene's probes say of the present state: the first `count` of their quantities. `*needed` (may be null) is how many
+ * there are; the same at all times. `out` may be null where `count` is 0. */
+PLIANT_API pliant_status pliant_world_probes(pliant_world world, pliant_probe_value* out, size_t count, size_t* needed);
 /** Equal for equal bits of the state. */
 PLIANT_API pliant_status pliant_world_hash(pliant_world world, uint64_t* out);
 

@@ -134,6 +134,18 @@ typedef struct pliant_cut {
 #define PLIANT_CUT_INIT \
   { sizeof(pliant_cut), 0, 0, 0, 0.0 }
 
+/** One quantity of a probe: see pliant::ProbeValue. The pointers hold until the next pliant_world_probes or
+ * pliant_world_destroy of the same world. */
+typedef struct pliant_probe_value {
+  size_t size;           /**< PLIANT_PROBE_VALUE_INIT; the same in all of an array */
+  const char* probe;     /**< its name in the scene */
+  const char* quantity;  /**< position, displacement, velocity, stress, reaction, force or energy */
+  const double* numbers; /**< shape [number_count] */
+  size_t number_count;   /**< 3, of a stress 6, of an energy 2 */
+} pliant_probe_value;
+#define PLIANT_PROBE_VALUE_INIT \
+  { sizeof(pliant_probe_value), NULL, NULL, NULL, 0 }
+
 #ifdef __cplusplus
 }
 #endif

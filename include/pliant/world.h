@@ -14,6 +14,7 @@
 #include "pliant/error.h"
 #include "pliant/export.h"
 #include "pliant/frame.h"
+#include "pliant/probe.h"
 #include "pliant/scene.h"
 
 namespace pliant {
@@ -93,12 +94,9 @@ class PLIANT_API World {
                      const std::vector<SurfaceSpec>& surfaces = {});
   World(World&&) noexcept;             ///< leaves the other one empty
   World& operator=(World&&) noexcept;  ///< likewise
+  ~World();                            ///< stops the worker after the batch it is at
 
-  /// Stops the worker after the batch it is at.
-  ~World();
-
-  /// Holds as long as the World.
-  [[nodiscard]] const WorldInfo& info() const;
+  [[nodiscard]] const WorldInfo& info() const;     ///< holds as long as the World
   [[nodiscard]] double time() const;               ///< [s], of the newest state
   [[nodiscard]] std::int64_t step_number() const;  ///< steps since the start
   [[nodiscard]] double dt() const;                 ///< [s], of the next step
@@ -137,6 +135,8 @@ class PLIANT_API World {
   [[nodiscard]] std::vector<Vec3d> velocities(std::size_t body) const;      ///< [m/s]
   [[nodiscard]] std::vector<Vec3d> rest_positions(std::size_t body) const;  ///< [m]
 
+  /// What the scene's probes say of the present state, probe by probe, their quantities in the scene's order. Changes nothing.
+  [[nodiscard]] std::vector<ProbeValue> probes() const;
   [[nodiscard]] std::uint64_t hash() const;  ///< over the state: equal for equal bits
 
   /// Tools. They need WorldOptions::interactive, otherwise they throw Error (state); a vertex or grab that does not exist is

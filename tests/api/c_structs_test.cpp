@@ -34,6 +34,7 @@ class CStructs : public ::testing::Test {
   pliant_status open(const pliant_options* with, const pliant_surface* surfaces, std::size_t count, char used = '0') {
     std::string text = R"({"format": "pliant-scene/1", "gravity": [0, -9.81, 0], "bodies": [{"name": "a",
       "surface": "memory:0", "lattice": {"spacing": 0.05}, "material": {"young": 3000, "poisson": 0.45}}]})";
+    text.insert(text.size() - 1, R"(, "probes": [{"name": "p", "point": [0.05, 0.05, 0.05]}])");
     text[text.find("memory:") + 7] = used;
     pliant_world_destroy(world);
     return pliant_world_parse(text.c_str(), nullptr, surfaces, count, with, &world);
@@ -58,6 +59,7 @@ TEST(CStructSizes, AreThoseOfTheFirstVersion) {
   EXPECT_EQ(api::CStruct<pliant_report>::first_size, 56U);
   EXPECT_EQ(api::CStruct<pliant_frame>::first_size, 136U);
   EXPECT_EQ(api::CStruct<pliant_cut>::first_size, 32U);
+  EXPECT_EQ(api::CStruct<pliant_probe_value>::first_size, 40U);
 }
 
 /// Every call that fills in a struct refuses sizes that no version has, and does nothing.
@@ -98,6 +100,8 @@ TEST_F(CStructs, WhatIsFilledInFitsTheCaller) {
   expect_checked<pliant_frame>(PLIANT_FRAME_INIT, [&](pliant_frame* f) { return pliant_world_frame(world, f); });
   expect_checked<pliant_frame>(PLIANT_FRAME_INIT, [&](pliant_frame* f) { return pliant_world_frame_since(world, 1, f); });
   expect_checked<pliant_cut>(PLIANT_CUT_INIT, [&](pliant_cut* c) { return pliant_world_cut(world, triangle, 1, c); });
+  expect_checked<pliant_probe_value>(PLIANT_PROBE_VALUE_INIT,
+                                     [&](pliant_probe_value* v) { return pliant_world_probes(world, v, 1, nullptr); });
   expect_checked<pliant_cut>(PLIANT_CUT_INIT, [&](pliant_cut* c) { return pliant_world_move_blade(world, "b", a, b, c); });
 }
 

@@ -17,6 +17,9 @@ MISSING = {
     ("C", "WorldInfo.backend"): "in the text of pliant_world_backend",
     ("C", "WorldInfo.device"): "in the text of pliant_world_backend",
     ("C", "WorldInfo.remarks"): "in the text of pliant_world_remarks",
+    ("Python", "ProbeValue.probe"): "a key of what World.probes() returns",
+    ("Python", "ProbeValue.quantity"): "a key of what World.probes() has for a probe",
+    ("Python", "ProbeValue.numbers"): "an array of World.probes()",
     ("C", "WorldInfo.reason"): "for people, who see it in `pliant devices`",
     ("Python", "World::open"): "World(file)",
     ("Python", "World::parse"): "World(dict, surfaces, folder)",
@@ -38,7 +41,8 @@ BEYOND = {
     ("C", "World::cut_faces"): "a copy with zeros where there is no cut",
 }
 PYTHON_NAMES = {"backends": "backend_names", "__version__": "version", "World::__init__": "World::World"}
-STRUCTS = {"WorldOptions": "options", "StepReport": "report", "CutResult": "cut", "WorldInfo": "info", "BodyInfo": "body", "Frame": "frame"}
+STRUCTS = {"WorldOptions": "options", "StepReport": "report", "CutResult": "cut", "WorldInfo": "info", "BodyInfo": "body", "Frame": "frame",
+           "ProbeValue": "probe_value"}
 
 
 def code_of(path):
@@ -64,7 +68,7 @@ def cpp():
     world = code_of("include/pliant/world.h")
     found = {f"World::{n}" for n in re.findall(r"(?<![\w~:])(\w+)\([^;]*?\)\s*(?:const)?\s*(?:noexcept)?;",
                                                block(world, "class PLIANT_API World").split("private:")[0])}
-    headers = world + code_of("include/pliant/scene.h") + code_of("include/pliant/frame.h")
+    headers = world + code_of("include/pliant/scene.h") + code_of("include/pliant/frame.h") + code_of("include/pliant/probe.h")
     found |= set(re.findall(r"^PLIANT_API .*?(\w+)\(", headers, re.M))
     for name in STRUCTS:
         found |= {f"{name}.{m}" for m in members(block(headers, f"struct {name} "))}

@@ -185,6 +185,24 @@ def test_push_a_node():
     assert not np.array_equal(world.displacements(), block(interactive=True).displacements())
 
 
+def test_probes():
+    scene = {"format": "pliant-scene/1", "gravity": [0, -9.81, 0], "bodies": [{
+        "name": "block", "surface": "memory:0", "lattice": {"spacing": 0.02}, "material": {"young": 3000, "poisson": 0.45}}],
+        "probes": [{"name": "a", "point": [0.05, 0.02, 0.03], "quantities": ["stress", "displacement"]},
+                   {"name": "b", "all": True, "quantities": ["energy", "velocity"]}]}
+    world = pliant.World(scene, [(VERTICES, TRIANGLES)], backend="cpu")
+    world.step(50)
+    now = world.probes()
+    assert {name: list(quantities) for name, quantities in now.items()} == {"a": ["stress", "displacement"], "b": ["energy", "velocity"]}
+    assert now["a"]["stress"].shape == (6,) and now["b"]["energy"].shape == (2,)
+    assert np.allclose(now["b"]["velocity"], [0, -9.81 * world.time, 0], rtol=0.05, atol=1e-6), "it falls"
+    assert np.allclose(now["b"]["velocity"], world.velocities().mean(axis=0), rtol=1e-12, atol=1e-15)
+    assert np.array_equal(world.probes()["a"]["displacement"], now["a"]["displacement"])
+    assert block().probes() == {}
+    scene["probes"][0]["point"] = [5, 0, 0]
+    assert error_of(lambda: pliant.World(scene, [(VERTICES, TRIANGLES)], backend="cpu")).code == 2
+
+
 def test_tools():
     world = block(interactive=True)
     hand = world.grab(7, radius=0.03)
