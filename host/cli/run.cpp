@@ -136,7 +136,7 @@ class Run {
     const auto model = std::make_shared<const Model>(checked_model(scene, o_.common, warnings_));
     std::vector<SceneProbe> points;
     for (const std::string& probe : o_.probes) points.push_back(parse_probe(probe));
-    probes_ = Probes(std::move(points), *model);
+    probes_ = Probes(points, *model);
     if (scene.probes != nullptr) scene_probes_ = Probes(scene.probes->list, *model);
     auto backend = open_backend(o_.backend, &reason, model->nodes());
     o_.common.note("backend " + reason);

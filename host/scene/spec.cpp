@@ -187,6 +187,24 @@ Body body(const BodySpec& spec, const std::string& pointer, std::size_t& surface
   return b;
 }
 
+SceneProbe probe(const ProbeSpec& spec, const std::string& pointer, const SceneSpec& all, const std::vector<Body>& bodies) {
+  SceneProbe out;
+  out.name = spec.name;
+  out.pointer = pointer;
+  convert(out.quantities, spec.quantities, pointer + "/quantities",
+          [](const std::string& text, const std::string& at) { return word(quantity_words(), text, at); });
+  if (spec.quantities.empty()) out.quantities = {Quantity::position, Quantity::displacement, Quantity::velocity};
+  out.point = spec.point;
+  if (out.point) return out;
+  out.body = spec.body.empty() && bodies.size() == 1 ? bodies[0].name : spec.body;
+  // A name that no body has is refused by validate().
+  std::size_t b = 0;
+  while (b < bodies.size() && bodies[b].name != out.body) ++b;
+  const bool known = b < bodies.size();
+  out.where = selection(spec.where, pointer, known ? &all.bodies[b] : nullptr, known ? frame_of(bodies[b], {}).mesh : nullptr);
+  return out;
+}
+
 }  // namespace
 
 Scene scene_of(const SceneSpec& spec) {
@@ -215,6 +233,10 @@ Scene scene_of(const SceneSpec& spec) {
   std::size_t surfaces = 0;
   convert(scene.bodies, spec.bodies, "/bodies",
           [&](const BodySpec& s, const std::string& at) { return body(s, at, surfaces); });
+  SceneProbes probes;
+  convert(probes.list, spec.probes, "/probes",
+          [&](const ProbeSpec& s, const std::string& at) { return probe(s, at, spec, scene.bodies); });
+  if (!probes.list.empty()) scene.probes = std::make_shared<const SceneProbes>(std::move(probes));
   validate(scene);
   return scene;
 }

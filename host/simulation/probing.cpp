@@ -154,7 +154,7 @@ std::vector<double> ProbeState::numbers(Quantity quantity) const {
   return {};
 }
 
-PlacedProbes::PlacedProbes(std::vector<SceneProbe> probes, const Model& uncut) {
+PlacedProbes::PlacedProbes(const std::vector<SceneProbe>& probes, const Model& uncut) {
   for (const SceneProbe& probe : probes) {
     for (const Place& other : places_) {
       if (other.probe.name == probe.name) {

@@ -30,7 +30,7 @@ class PlacedProbes {
   /// Finds the element at rest that holds each point, in the order of bodies and elements. `uncut`: the model as the scene
   /// gives it. Throws Error for two of one name, for a point in no element, with the distance to the nearest one, and for a
   /// selection without nodes.
-  PlacedProbes(std::vector<SceneProbe> probes, const Model& uncut);
+  PlacedProbes(const std::vector<SceneProbe>& probes, const Model& uncut);
 
   [[nodiscard]] bool empty() const { return places_.empty(); }
   [[nodiscard]] std::size_t size() const { return places_.size(); }

@@ -118,6 +118,7 @@ struct SceneSpec {
   std::vector<BladeSpec> blades;                 ///< blades that cut what they sweep over
   std::vector<std::array<double, 4>> tool_path;  ///< (time [s], x, y, z [m]): what a following operational region follows
   std::vector<BodySpec> bodies;                  ///< at least one
+  std::vector<ProbeSpec> probes;                 ///< what World::probes() tells
 };
 
 }  // namespace pliant

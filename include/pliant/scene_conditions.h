@@ -1,4 +1,4 @@
-// What holds, moves and loads a body in a scene in code (scene.h): selections, curves, and the entries that use them.
+// What holds, moves, loads and measures a body in a scene in code (scene.h): selections, curves, and the entries that use them.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -118,6 +118,15 @@ struct PressureSpec {
   RegionSpec where;     ///< which triangles of the surface
   double pressure = 0;  ///< [Pa] at factor 1
   CurveSpec curve;      ///< the factor over time
+};
+
+/// What World::probes() tells of a point, or of chosen nodes.
+struct ProbeSpec {
+  std::string name;                     ///< different for every probe
+  std::optional<Vec3d> point;           ///< at rest [m]; absent: the nodes of `where`
+  RegionSpec where;                     ///< which nodes of `body`; not beside a point
+  std::string body;                     ///< its name; empty: the only one; not beside a point
+  std::vector<std::string> quantities;  ///< ProbeValue::quantity, in the order wanted; empty: position, displacement, velocity
 };
 
 }  // namespace pliant

@@ -79,6 +79,21 @@ TEST(Probes, SayWhatTheNodesSay) {
   EXPECT_GT(find(now, "all", "energy")[1], 0);
 }
 
+TEST(Probes, OfASceneInCodeAreThoseOfTheText) {
+  SceneSpec spec = test::block(0);
+  ProbeSpec corner, all;
+  corner.name = "corner";
+  corner.point = Vec3d{0.1, 0.08, 0.06};
+  all.name = "all";
+  all.quantities = {"energy", "force", "velocity"};
+  spec.probes = {corner, all};
+  World code(spec, on("cpu")), text = block_with(kProbes);
+  code.step(60);
+  text.step(60);
+  for (const ProbeValue& v : code.probes()) EXPECT_EQ(v.numbers, find(text.probes(), v.probe, v.quantity)) << v.probe;
+  EXPECT_EQ(code.probes().size(), 6U);
+}
+
 TEST(Probes, AreOfTheNewestStateAndChangeNothing) {
   World asked = block_with(kProbes), plain = block_with("");
   for (int k = 0; k < 4; ++k) {

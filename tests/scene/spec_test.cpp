@@ -15,6 +15,17 @@
 namespace pliant::spec_test {
 namespace {
 
+std::vector<ProbeSpec> two_probes() {
+  ProbeSpec point, nodes;
+  point.name = "tip";
+  point.point = Vec3d{0, 0, 0.1};
+  nodes.name = "held";
+  nodes.where = RegionSpec::plane({0, 0, 0}, {0, -1, 0});
+  nodes.body = "b";
+  nodes.quantities = {"reaction", "force"};
+  return {point, nodes};
+}
+
 /// Two bodies with one of everything.
 SceneSpec everything() {
   SceneSpec s;
@@ -68,6 +79,7 @@ SceneSpec everything() {
   b.surface.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
   b.velocity = {1, 0, 0};
   s.bodies = {a, b};
+  s.probes = two_probes();
   return s;
 }
 
@@ -90,7 +102,9 @@ const char* const file =
     "model": {"type": "hybrid", "ratio": 0.4, "seed": [0, 0, 0.1], "follow": "tool", "substeps": 4, "goals": "extrapolated",
       "coupling": "one-sided", "cut": false}},
    {"name": "b", "surface": "memory:0", "lattice": {"nodes": 2000}, "material": {"young": 3000, "poisson": 0.45},
-    "velocity": [1, 0, 0]}]})";
+    "velocity": [1, 0, 0]}],
+  "probes": [{"name": "tip", "point": [0, 0, 0.1]},
+    {"name": "held", "body": "b", "plane": [[0, 0, 0], [0, -1, 0]], "quantities": ["reaction", "force"]}]})";
 
 TEST(Spec, IsTheSceneOfTheFileWithTheSameContent) {
   const Scene scene = scene_of(everything());
@@ -230,6 +244,14 @@ const std::vector<Case> of_materials_and_entries{
     {[](SceneSpec& s) { s.bodies[0].model.beta = -1; }, "scene: /bodies/0/model/beta: got -1, expected \"auto\" or"},
     {[](SceneSpec& s) { s.bodies[0].model.goals = "hold"; }, "scene: /bodies/0/model/goals: got \"hold\", expected one of"},
     {[](SceneSpec& s) { s.bodies[0].model.region = RegionSpec::all(); }, "scene: /bodies/0/model/region: got"},
+    {[](SceneSpec& s) { s.probes[0].name = "held"; }, "scene: /probes/1: got the name \"held\", which /probes/0 has already"},
+    {[](SceneSpec& s) { s.probes[0].quantities = {"heat"}; }, "scene: /probes/0/quantities/0: got \"heat\", expected one of"},
+    {[](SceneSpec& s) { s.probes[0].quantities = {"force"}; }, "scene: /probes/0/quantities/0: got \"force\", expected no"},
+    {[](SceneSpec& s) { s.probes[0].point->at(1) = kNan; }, "scene: /probes/0/point/1: got nan, expected a number"},
+    {[](SceneSpec& s) { s.probes[1].body = "c"; }, "scene: /probes/1/body: got \"c\", expected one of a, b"},
+    {[](SceneSpec& s) { s.probes[1].body = ""; }, "scene: /probes/1/body: got \"\", expected one of a, b"},
+    {[](SceneSpec& s) { s.probes[1].where.b = {}; }, "scene: /probes/1/plane/1: got"},
+    {[](SceneSpec& s) { s.probes[1].body = "a"; }, "scene: /probes/1: got a reaction of body \"a\", whose model is hybrid"},
 };
 
 TEST(Spec, MistakesAreNamedAsInAFile) {
