@@ -12,6 +12,10 @@
 // clang-format off
 #define PLIANT_TWINS(ROW) \
   ROW(probe) \
+  ROW(contact_near) \
+  ROW(contact_press) \
+  ROW(contact_settle) \
+  ROW(contact_apply) \
   ROW(tled_tet4_force) \
   ROW(tled_tet4_dilation) \
   ROW(anp_node_pressure) \

@@ -16,6 +16,7 @@
 #include "cli/run_progress.h"
 #include "cli/run_report.h"
 #include "cli/run_static.h"
+#include "cli/tool_report.h"
 #include "geometry/stopwatch.h"
 #include "io/save.h"
 #include "pliant/error.h"
@@ -192,10 +193,15 @@ class Run {
     probes_.write(*simulation_, frames_->folder() / (stem_ + "_probes.csv"));
     if (const SceneProbes* probes = simulation_->scene().probes.get(); probes != nullptr && !own_pace(*probes))
       write_scene_probes();
+    write_tools();
   }
 
   static bool own_pace(const SceneProbes& probes) { return probes.every_steps > 0 || probes.every_seconds > 0; }
-  void write_scene_probes() { scene_probes_.write_each(*simulation_, frames_->folder(), stem_); }
+  void write_scene_probes() {
+    scene_probes_.write_each(*simulation_, frames_->folder(), stem_);
+    write_tools();
+  }
+  void write_tools() { tools_.write(*simulation_, frames_->folder() / (stem_ + "_tools.csv")); }
 
   /// A disk that is full for a while does not end a run; the checkpoint before stays.
   void save_on_the_way() {
@@ -229,6 +235,7 @@ class Run {
   std::optional<Simulation> simulation_;
   std::optional<FrameWriter> frames_;
   Probes probes_, scene_probes_;
+  ToolTable tools_;
   RunResult result_;
   std::vector<std::string> warnings_;  // about surfaces
   double first_time_ = 0;

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/run_events.h"
+#include "cli/tool_report.h"
 #include "cutting/topology/mesh_edges.h"
 #include "program/hash.h"
 #include "scene/keys.h"
@@ -37,8 +38,10 @@ class Report {
     add_events(json);
     add_mass(json);
     add_inversions(json);
+    add_tools(s_, json);
     if (!result_.diverged.empty()) json["diverged_step"] = result_.diverged_step;
     print_summary();
+    for (std::size_t t = 0; t < s_.scene().tools.size(); ++t) out_.print(tool_line(s_, t));
     if (!r_.probes.empty() || !r_.scene_probes.empty()) {
       json["probes"] = Json::array();
       add_probes(r_.probes, json["probes"]);

@@ -240,7 +240,7 @@ void reserve_forces(Model& model) {
 }  // namespace
 
 bool needs_surface(const Scene& scene) {
-  return scene.interactive ||
+  return scene.interactive || !scene.tools.empty() ||
          std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& b) { return !b.pressures.empty(); });
 }
 
@@ -262,6 +262,7 @@ void add_boundary_conditions(const Scene& scene, Model& model) {
   model.constraints = std::move(constraints).by_slot();
   for (FlsmBatch& batch : model.flsm) make_elastic(batch, model);  // which has to know what is held
   weigh_added_inertia(scene, model);
+  add_contact(scene, model);
   if (scene.interactive) reserve_forces(model);
   std::stable_sort(model.forces.begin(), model.forces.end(),
                    [](const NodeForce& a, const NodeForce& b) { return a.slot < b.slot; });

@@ -336,6 +336,7 @@ Model build_model(const Scene& scene, const std::vector<BodyMesh>& solids) {
 
 Model build_elements(const Scene& scene, std::span<const BodyMesh* const> solids, const Model* previous) {
   Model model;
+  if (previous != nullptr) model.tools = previous->tools;
   model.recovers = scene.inverted == Inverted::recover;
   std::vector<NodeNumbering> drafts;
   const bool thin_cells = scene.least_fill > 0 && (scene.cuttable || !scene.blades.empty());

@@ -5,11 +5,13 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "geometry/mesh.h"
 #include "model/batches.h"
+#include "model/contact.h"
 #include "model/partition.h"
 #include "scene/scene.h"
 
@@ -124,14 +126,17 @@ struct Model {
   std::vector<FlsmBatch> flsm;
   ModelSurface surface;
   std::vector<Curve> curves;
-  std::int32_t gravity_curve = 0;           ///< of gravity; 0: constant
-  std::vector<Constraint> constraints;      ///< one per constrained node, ascending slots
-  std::vector<NodeForce> forces;            ///< ascending slots
-  std::vector<TrianglePressure> pressures;  ///< ascending triangles
-  double element_bound = 0;                 ///< 2 / max element frequency [s], safe for small strain
-  std::string bound_element;                ///< the element that gives it
-  double shortest = 0;                      ///< cube root of the smallest element's volume [m]
-  double least_fill = 0;                    ///< of a cell, as a share of a full one's mass
+  std::int32_t gravity_curve = 0;                ///< of gravity; 0: constant
+  std::vector<Constraint> constraints;           ///< one per constrained node, ascending slots
+  std::vector<NodeForce> forces;                 ///< ascending slots
+  std::vector<TrianglePressure> pressures;       ///< ascending triangles
+  std::shared_ptr<const ToolForms> tools;        ///< shapes of Scene::tools; null: it has none
+  std::shared_ptr<const ContactPoints> contact;  ///< what they can touch; null without tools
+  std::vector<ContactLaw> contact_laws;          ///< one per tool
+  double element_bound = 0;                      ///< 2 / max element frequency [s], safe for small strain
+  std::string bound_element;                     ///< the element that gives it
+  double shortest = 0;                           ///< cube root of the smallest element's volume [m]
+  double least_fill = 0;                         ///< of a cell, as a share of a full one's mass
   /// Mass without added inertia [kg].
   [[nodiscard]] double own_mass(std::size_t slot) const { return mass[slot] - (added.empty() ? 0 : added[slot]); }
   [[nodiscard]] std::int64_t nodes() const;  ///< real nodes

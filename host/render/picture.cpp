@@ -159,6 +159,22 @@ Surface SurfaceCopy::view() const {
   return s;
 }
 
+/// Their triangles come last; they have no values, and the camera does not look for them.
+void Pictures::add_tools(const Simulation& simulation, Surface& surface) {
+  const std::size_t triangles = surface_.triangles.size() / 3;
+  tools_.append(simulation, surface_.positions, surface_.triangles);
+  const std::size_t all = surface_.triangles.size() / 3, vertices = surface_.positions.size() / 3;
+  if (all == triangles) return;
+  surface_.body.resize(all, kToolBody);
+  if (!surface_.cut.empty()) surface_.cut.resize(all, 0);
+  if (!surface.values.empty()) values_.resize(vertices, 0);
+  if (!surface.kinds.empty()) kinds_.resize(3 * vertices, 0);
+  const bool valued = !surface.values.empty(), kinds = !surface.kinds.empty();
+  surface = surface_.view();
+  if (valued) surface.values = values_;
+  if (kinds) surface.kinds = kinds_;
+}
+
 Image Pictures::draw(Simulation& simulation) {
   surface_.read(simulation);
   if (surface_.triangles.empty())
@@ -166,6 +182,7 @@ Image Pictures::draw(Simulation& simulation) {
   Surface surface = surface_.view();
   aim(simulation, surface_.positions);
   color(simulation, surface);
+  add_tools(simulation, surface);
   renderer_.update(surface);
   RenderOptions options;
   options.width = o_.width;

@@ -9,6 +9,7 @@
 #include "render/annotations.h"
 #include "render/fields.h"
 #include "render/renderer.h"
+#include "render/tool_surface.h"
 #include "simulation/simulation.h"
 
 namespace pliant::render {
@@ -52,6 +53,7 @@ class Pictures {
   [[nodiscard]] std::vector<float> surroundings(const std::vector<float>& positions) const;
   [[nodiscard]] bool in_picture(const std::vector<float>& points) const;
   void color(Simulation& simulation, Surface& surface);
+  void add_tools(const Simulation& simulation, Surface& surface);
   void annotate(Image& image) const;
 
   PictureOptions o_;
@@ -64,6 +66,7 @@ class Pictures {
   double largest_ = 0;  ///< value so far
   Ticks ticks_;
   SurfaceCopy surface_;
+  ToolSurfaces tools_;
   std::vector<float> values_, kinds_;
 };
 

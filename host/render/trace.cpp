@@ -135,6 +135,11 @@ class Tracer {
     const std::array<float, 3> w{1 - hit.u - hit.v, hit.u, hit.v};
     Material m;
     m.albedo = tint(s.body.empty() ? 0 : s.body[static_cast<std::size_t>(hit.triangle)]);
+    if (!s.body.empty() && s.body[static_cast<std::size_t>(hit.triangle)] < 0) {  // a tool: steel
+      m.albedo = linear_of({0.60F, 0.64F, 0.70F});
+      m.roughness = 0.25F;
+      return m;
+    }
     if (is_cut) {
       // Flesh inside is lighter and wetter than the skin outside.
       m.albedo = mix(m.albedo, linear_of({0.93F, 0.66F, 0.60F}), 0.75F);

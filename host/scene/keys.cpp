@@ -20,9 +20,9 @@ std::map<std::string, List> make_keys() {
   const List selection = points + List{"nodes"};
   const List curve{"curve", "start", "duration", "table"};
   return {
-      {"scene",
-       {"format", "name", "break_stretch", "gravity", "dt", "safety", "duration", "integrator", "inverted", "least_fill",
-        "least_step", "relaxation", "solver", "tool", "blades", "view", "probes", "probe_every", "bodies"}},
+      {"scene", {"format",     "name",     "break_stretch", "gravity",    "dt",          "safety", "duration",
+                 "integrator", "inverted", "least_fill",    "least_step", "relaxation",  "solver", "tool",
+                 "tools",      "blades",   "view",          "probes",     "probe_every", "bodies"}},
       {"body",
        {"name", "surface", "mesh", "scale", "translate", "lattice", "element", "material", "model", "inclusions", "fixed",
         "prescribed", "forces", "pressures", "velocity", "angular_velocity", "initial"}},
@@ -35,6 +35,9 @@ std::map<std::string, List> make_keys() {
       {"stiffness", {"young"}},
       {"gravity", List{"acceleration"} + curve},
       {"tool", {"path"}},
+      {"contact_tool", {"name", "shape", "scale", "path", "friction", "contact"}},
+      {"shape", words_only(tool_shape_words())},
+      {"contact", {"stiffness", "exponent", "alpha"}},
       {"blade", {"name", "path", "start", "end"}},
       {"view", {"eye", "target", "up", "field_of_view", "ground"}},
       {"relaxation", {"tolerance", "max_steps"}},
@@ -153,6 +156,15 @@ const Words<Integrator>& integrator_words() {
 const Words<Inverted>& inverted_words() {
   static const Words<Inverted> words{{"recover", Inverted::recover, "goes on and is driven back; counted"},
                                      {"stop", Inverted::stop, "ends the run, as a divergence"}};
+  return words;
+}
+
+const Words<ToolShape>& tool_shape_words() {
+  static const Words<ToolShape> words{{"sphere", ToolShape::sphere, "about the origin"},
+                                      {"capsule", ToolShape::capsule, "a segment with a radius"},
+                                      {"box", ToolShape::box, "about the origin"},
+                                      {"half_space", ToolShape::half_space, "all below a plane"},
+                                      {"mesh", ToolShape::mesh, "what a closed surface encloses"}};
   return words;
 }
 

@@ -13,7 +13,8 @@
 namespace pliant {
 
 /// The allowed keys by kind of object: "scene" (the file itself), "body", "lattice", "material", "model", "region",
-/// "stiffness", "gravity", "tool", "view", "relaxation", "inclusion", "fixed", "prescribed", "rotation", "initial", "field",
+/// "stiffness", "gravity", "tool", "contact_tool",
+/// "shape", "contact", "view", "relaxation", "inclusion", "fixed", "prescribed", "rotation", "initial", "field",
 /// "probe", "force", "pressure". The same words name the definitions in scenes/schema.json.
 const std::map<std::string, std::vector<std::string>>& scene_keys();
 
@@ -46,6 +47,8 @@ std::vector<ElementKind> all_elements();
 const Words<Curve::Kind>& curve_words();
 const Words<Integrator>& integrator_words();
 const Words<Inverted>& inverted_words();
+/// The shapes of tools, which are keys.
+const Words<ToolShape>& tool_shape_words();
 const Words<bool>& solver_words();
 const Words<ModelType>& model_words();
 /// The flags of DeformationModel that a scene file writes as words: extrapolate, conservative, follow.

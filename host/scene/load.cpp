@@ -165,6 +165,7 @@ Scene read_document(const nlohmann::json& document, const fs::path& file) {
   read_relaxation(top, scene.relaxation);
   read_solver(top, scene);
   if (top.has("tool")) scene.tool = read_tool(top.at("tool"));
+  if (top.has("tools")) scene.tools = read_tools(top.at("tools"), file.parent_path());
   if (top.has("blades")) scene.blades = read_blades(top.at("blades"));
   if (top.has("view")) scene.view = read_view(top.at("view"));
   read_bodies(top, file.parent_path(), scene);
@@ -172,6 +173,7 @@ Scene read_document(const nlohmann::json& document, const fs::path& file) {
   check_initial(top, scene);
   check_models(top, scene);
   check_blades(top, scene);
+  check_tools(top, scene);
   check_tearing(top, scene);
   return scene;
 }

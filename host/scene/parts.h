@@ -31,6 +31,10 @@ DeformationModel read_model(const Reader& model, bool lattice);
 Tool read_tool(const Reader& tool);
 std::vector<Blade> read_blades(const Reader& blades);
 SceneView read_view(const Reader& view);
+/// At most so many: a point of a surface keeps a bit for each that is near.
+inline constexpr std::size_t most_tools = 30;
+std::vector<ContactTool> read_tools(const Reader& tools, const std::filesystem::path& folder);
+void check_tools(const Reader& top, const Scene& scene);
 /// After the bodies. Null without probes.
 std::shared_ptr<const SceneProbes> read_probes(const Reader& top, const Scene& scene);
 /// Models against the keys of the scene: its integrator, its relaxation and its tool.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "material/material.h"
+#include "scene/contact_tool.h"
 #include "scene/curve.h"
 #include "scene/lattice_spec.h"
 #include "scene/motion.h"
@@ -141,6 +142,7 @@ struct Scene {
   Relaxation relaxation;
   StaticSolver solver;
   Tool tool;
+  std::vector<ContactTool> tools;
   std::vector<Blade> blades;
   SceneView view;
   std::shared_ptr<const SceneProbes> probes;  ///< what `run` writes down over time (scene/probe.h); null: nothing

@@ -203,6 +203,34 @@ OrderedJson blade_json(const Blade& b) {
   return blade;
 }
 
+OrderedJson tool_json(const ContactTool& t, const std::filesystem::path& scene_file) {
+  OrderedJson tool{{"name", t.name}};
+  OrderedJson& shape = tool["shape"];
+  const std::string& word = word_of(tool_shape_words(), t.shape);
+  switch (t.shape) {
+    case ToolShape::sphere:
+      shape[word] = t.radius;
+      break;
+    case ToolShape::capsule:
+      shape[word] = {t.first, t.second, t.radius};
+      break;
+    case ToolShape::box:
+      shape[word] = t.size;
+      break;
+    case ToolShape::half_space:
+      shape[word] = {t.first, t.second};
+      break;
+    case ToolShape::mesh:
+      shape[word] = path_json(t.mesh, scene_file);
+      tool["scale"] = t.scale;
+      break;
+  }
+  if (!t.path.empty()) tool["path"] = t.path;
+  tool["friction"] = t.friction;
+  if (t.stiffness != 0) tool["contact"] = {{"stiffness", t.stiffness}, {"exponent", t.exponent}, {"alpha", t.alpha}};
+  return tool;
+}
+
 OrderedJson view_json(const SceneView& v) {
   OrderedJson view = OrderedJson::object();
   if (v.eye) view["eye"] = *v.eye;
@@ -251,6 +279,7 @@ OrderedJson document_of(const Scene& scene) {
     top["solver"]["load_steps"] = s.load_steps != 0 ? OrderedJson(s.load_steps) : OrderedJson("auto");
   }
   if (!scene.tool.path.empty()) top["tool"] = {{"path", scene.tool.path}};
+  for (const ContactTool& t : scene.tools) top["tools"].push_back(tool_json(t, scene.file));
   for (const Blade& b : scene.blades) top["blades"].push_back(blade_json(b));
   if (const OrderedJson view = view_json(scene.view); !view.empty()) top["view"] = view;
   add_probes(top, scene);

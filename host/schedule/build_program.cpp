@@ -24,6 +24,7 @@ Program ProgramBuilder::build() {
   add_updates();
   add_constraints();
   add_rotations();
+  add_contact();
   add_status();
   for (Buffer& buffer : program_.buffers) {
     if (buffer.name.starts_with("last_")) buffer.copy_of = kept_by(buffer.name.substr(5));

@@ -84,6 +84,13 @@ class ProgramBuilder {
   /// Defined in program_flsm.cpp: shape matching of one body, and the force on its interface.
   void add_flsm(std::size_t index);
 
+  /// Defined in program_contact.cpp: tools that touch the surface, after everything else that moves nodes.
+  void add_contact();
+  void add_contact_points();
+  void add_tools();
+  void add_contact_gather();
+  void add_contact_passes();
+
   /// Defined in program_loads.cpp: the external forces, and the embedded surface where a pressure acts on it.
   void add_surface();
   void add_pressure_passes();

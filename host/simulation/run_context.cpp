@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "schedule/program_layout.h"
+
 namespace pliant {
 
 std::int32_t substeps_of(const Model& model, std::size_t slot) {
@@ -54,11 +56,25 @@ void RunContext::write_u(std::vector<double> u) const {
 void RunContext::place_surface() const {
   const ModelSurface& s = model().surface;
   if (state.offset.empty() || s.rest.empty()) return;
+  place_contact();
   const BufferId id = loaded.surface_x() - 3;  // schedule/surface_program.cpp
   std::vector<double> rest = backend().read_reals(id);
   for (std::size_t v = 0; v < s.rest.size(); ++v) {
     const auto node = static_cast<std::size_t>(s.nodes[v][0]);  // the others belong to the same piece
     for (std::size_t c = 0; c < 3; ++c) rest[4 * v + c] = s.rest[v][c] + state.offset[3 * node + c];
+  }
+  backend().write_reals(id, rest);
+}
+
+void RunContext::place_contact() const {
+  if (model().contact == nullptr || model().contact->size() == 0) return;
+  const ContactPoints& points = *model().contact;
+  const BufferId id = loaded.program().find("contact_rest");
+  std::vector<double> rest = backend().read_reals(id);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto node = static_cast<std::size_t>(points.nodes[i][0]);
+    for (std::size_t c = 0; c < 3; ++c)
+      rest[tile_base(i, 4) + c * PLIANT_TILE] = points.rest[i][c] + state.offset[3 * node + c];
   }
   backend().write_reals(id, rest);
 }

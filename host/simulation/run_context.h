@@ -54,8 +54,11 @@ struct RunContext {
   [[nodiscard]] std::vector<double> u() const;
   /// The reverse: write node_u.
   void write_u(std::vector<double> u) const;
-  /// Let the embedded surface begin where RunState::offset says. To be called when that changes, and when a model was loaded.
+  /// Let the embedded surface and the points of contact begin where RunState::offset says. To be called when that changes, and
+  /// when a model was loaded.
   void place_surface() const;
+  /// The same for what tools can touch; place_surface() calls it.
+  void place_contact() const;
 
   void upload_params() const;
   /// The curves at the next `steps` steps.

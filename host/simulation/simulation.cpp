@@ -63,6 +63,7 @@ void Simulation::start(std::shared_ptr<const Model> model, const SimulationOptio
   }
   step_.start(options.dt > 0 ? options.dt : scene_.dt, options.stable_step);
   edits_.start();
+  contact_.start();
   if (backend().info().real_bytes == 4) {  // the double oracle needs neither floor nor grid
     // Squares and cubes of what is left stay normal numbers.
     settings_.increment_floor = 1e-12 * loaded_.model().shortest;
@@ -110,12 +111,14 @@ void Simulation::begin_batch(std::int32_t steps) {
   if (on_grid || !state_.kept) keep_state();
   run_.upload_params();
   run_.upload_curves(steps);
+  contact_.begin_batch(steps);
 }
 
 void Simulation::end_batch(std::int32_t steps) {
   const std::int64_t start = step();
   state_.clock.step += steps;
   look_for_fault(start);
+  if (step() == start + steps) contact_.end_batch(steps);
   if (!divergence_ && scene_.relaxation.enabled && run_.begins_after(step(), kRelaxEvery)) relax(run_);
   ballast_.nodes = static_cast<std::int64_t>(state_.ballast.size());
   ballast_.mass = 0;

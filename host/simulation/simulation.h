@@ -13,6 +13,7 @@
 #include "simulation/host_loads.h"
 #include "simulation/snapshot.h"
 #include "simulation/step_control.h"
+#include "simulation/tool_contact.h"
 
 namespace pliant {
 
@@ -43,6 +44,8 @@ class Simulation {
   [[nodiscard]] const std::optional<Divergence>& divergence() const { return divergence_; }
   [[nodiscard]] const Inversions& inversions() const { return inversions_; }
   [[nodiscard]] const BallastReport& ballast() const { return ballast_; }
+  /// What the scene's tools have felt.
+  [[nodiscard]] const ToolContact& contact() const { return contact_; }
   [[nodiscard]] bool at_equilibrium() const { return state_.relaxation.equilibrium; }
   /// |R - F| over the largest of external and reaction force, as of the last change of dynamic relaxation.
   [[nodiscard]] double residual() const { return state_.relaxation.residual; }
@@ -134,6 +137,7 @@ class Simulation {
   StepControl step_{run_};
   Drift drift_{run_};
   HostLoads loads_{run_};
+  ToolContact contact_{run_};
   TopologyEdits edits_{run_, step_, loads_};
   Inversions inversions_;
   BallastReport ballast_;

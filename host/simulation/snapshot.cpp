@@ -97,6 +97,8 @@ std::vector<ModelPart> parts_of(const Scene& scene, const RunSettings& settings,
   for (const Blade& blade : scene.blades) add(blade.name, blade.start, blade.end, blade.path);
   part("tool");
   add(scene.tool.path);
+  part("tools");
+  for (const ContactTool& tool : scene.tools) add(tool.name, tool.path);
   part("what the solver derives from the scene");
   add(static_cast<double>(settings.batch_steps), static_cast<double>(settings.tears), static_cast<double>(settings.blade_steps),
       settings.curves_end, settings.increment_floor, settings.displacement_grid);

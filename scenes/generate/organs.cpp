@@ -197,7 +197,7 @@ TriangleMesh make_cylinder(double radius, double length) {
 
 }  // namespace
 
-std::vector<std::string> shape_names() { return {"apple", "liver", "kidney", "beam", "cube", "cylinder"}; }
+std::vector<std::string> shape_names() { return {"apple", "liver", "kidney", "beam", "cube", "block", "cylinder"}; }
 
 TriangleMesh make_shape(const std::string& name) {
   if (name == "apple") return make_organ({apple, {0.08, 0, 0.08}, 0.0022});
@@ -205,9 +205,10 @@ TriangleMesh make_shape(const std::string& name) {
   if (name == "kidney") return make_organ({kidney, {0.06, 0.11, 0.05}, 0.0022});
   if (name == "beam") return make_box({0.1, 0.02, 0.02}, 0.005);
   if (name == "cube") return make_box({0.1, 0.1, 0.1}, 0.01);
+  if (name == "block") return make_box({0.12, 0.04, 0.08}, 0.004);
   if (name == "cylinder") return make_cylinder(0.02, 0.1);
   throw Error(ErrorCode::bad_input,
-              fmt::format("no shape is called '{}'; known: apple, liver, kidney, beam, cube, cylinder", name));
+              fmt::format("no shape is called '{}'; known: apple, liver, kidney, beam, cube, block, cylinder", name));
 }
 
 void write_obj_text(const TriangleMesh& mesh, const std::string& comment, const std::string& path) {

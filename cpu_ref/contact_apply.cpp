@@ -1,0 +1,50 @@
+// Twin of kernels/contact_apply.cl.
+#include <cmath>
+
+#include "layout.h"
+#include "registry.h"
+
+namespace pliant::ref {
+
+template <class Scalar>
+void contact_apply(Range range, Scalar* node_u, Scalar* node_w, const std::int32_t* contact_slot,
+                   const std::int32_t* contact_free, const std::int32_t* contact_tiles_offset,
+                   const std::int32_t* contact_tiles, const std::int32_t* contact_gather_offset,
+                   const std::int32_t* contact_gather, const std::int32_t* contact_gather_units,
+                   const std::int32_t* contact_near, const std::int32_t* contact_force, const Scalar* contact_rest,
+                   Scalar* contact_node_sum, const Scalar* contact_params, const Scalar* step_params) {
+  constexpr std::int64_t area_plane = std::int64_t{3} * PLIANT_TILE;
+  const Scalar h = step_params[0], half_hh = (Scalar(0.5) * h) * h, quantum = contact_params[2];
+  for (std::int64_t i = range.begin; i < range.end; ++i) {
+    const std::int64_t tile = i / PLIANT_TILE;
+    std::int32_t near = 0;
+    for (std::int64_t k = contact_tiles_offset[tile]; k < contact_tiles_offset[tile + 1]; ++k)
+      near |= contact_near[contact_tiles[k]];
+    if (near == 0) continue;
+    std::int64_t sum[3] = {};
+    Scalar area = 0;
+    for (std::int64_t k = contact_gather_offset[tile]; k < contact_gather_offset[tile + 1]; ++k) {
+      const std::int64_t entry = k * PLIANT_TILE + i % PLIANT_TILE, at = contact_gather[entry];
+      const std::int64_t units = contact_gather_units[entry];
+      if (units == 0 || contact_near[at / (4 * PLIANT_TILE)] == 0 || contact_force[at + area_plane] == 0) continue;
+      for (std::int64_t c = 0; c < 3; ++c) sum[c] += contact_force[at + c * PLIANT_TILE] * units;
+      area = std::fma(static_cast<Scalar>(units) * Scalar(1.0 / 4096), contact_rest[at + area_plane], area);
+    }
+    const std::int64_t slot = contact_slot[i];
+    const std::int32_t free = contact_free[i];
+    Scalar *u = node_u + 4 * slot, *w = node_w + 4 * slot, *out = contact_node_sum + 4 * slot;
+    for (int c = 0; c < 3; ++c) out[c] = static_cast<Scalar>(sum[c]) * quantum;
+    out[3] = area;
+    if (free == 0) continue;
+    const Scalar bm = std::fma(half_hh, w[3], half_hh) * u[3];
+    for (int c = 0; c < 3; ++c) {
+      if ((free >> c & 1) == 0) continue;
+      u[c] = std::fma(bm, out[c], u[c]);
+      w[c] = std::fma(bm, out[c], w[c]);
+    }
+  }
+}
+
+void register_contact_apply(Registry& registry) { registry.add("contact_apply", contact_apply<float>, contact_apply<double>); }
+
+}  // namespace pliant::ref

@@ -1,0 +1,35 @@
+// Twin of kernels/contact_near.cl.
+#include "contact_point.h"
+#include "registry.h"
+
+namespace pliant::ref {
+
+template <class Scalar>
+void contact_near(Range range, const Scalar* node_u, const Scalar* node_w, const Scalar* contact_rest,
+                  const std::int32_t* contact_node, const Scalar* contact_weight, std::int32_t* contact_near,
+                  Scalar* contact_anchor, const std::int32_t* tool_kind, const Scalar* tool_data, const Scalar* tool_grid,
+                  const Scalar* tool_pose, const Scalar* contact_params, std::int32_t tools, std::int32_t step) {
+  using namespace contact;
+  const Points<Scalar> points{node_u, node_w, contact_rest, contact_node, contact_weight};
+  const Tools<Scalar> all{tool_kind, tool_data, tool_grid, tool_pose, tools, step};
+  const Scalar margin = contact_params[5], ahead = Scalar(2) * contact_params[6];
+  for (std::int64_t tile = range.begin; tile < range.end; ++tile) {
+    std::int32_t near = 0;
+    for (std::int64_t i = tile * PLIANT_TILE; i < (tile + 1) * PLIANT_TILE; ++i) {
+      const Place<Scalar> p = points.at(i);
+      for (std::int32_t t = 0; t < tools; ++t) {
+        const Meeting<Scalar> m = all.meet(t, p);
+        if (m.distance < std::fma(ahead, std::sqrt(dot(m.slip, m.slip)), margin)) near |= 1 << t;
+      }
+    }
+    if (near == 0 && contact_near[tile] != 0) {
+      const std::int64_t base = tile * 4 * PLIANT_TILE;
+      for (std::int64_t k = base; k < base + std::int64_t{4} * PLIANT_TILE; ++k) contact_anchor[k] = 0;
+    }
+    contact_near[tile] = near;
+  }
+}
+
+void register_contact_near(Registry& registry) { registry.add("contact_near", contact_near<float>, contact_near<double>); }
+
+}  // namespace pliant::ref

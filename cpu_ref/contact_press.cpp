@@ -1,0 +1,99 @@
+// Twin of kernels/contact_press.cl.
+#include "contact_sum.h"
+#include "registry.h"
+
+namespace pliant::ref {
+namespace {
+
+using namespace contact;
+
+/// The force on a point along the normal.
+template <class Scalar>
+Scalar normal_force(const Meeting<Scalar>& m, const Scalar* law, Scalar area, Scalar stiffness, Scalar h) {
+  const Scalar depth = -m.distance, opening = dot(m.slip, m.normal), before = depth + opening;
+  Scalar push = 0;
+  if (law[12] > Scalar(0) && before > Scalar(0)) {
+    const Scalar spring = (area * law[12]) * (law[16] > Scalar(0) ? before * std::sqrt(before) : before);
+    const Scalar damped = spring * std::fma(law[13], -opening / h, Scalar(1));
+    const Scalar most = Scalar(0.5) * (stiffness * before);
+    push = damped > Scalar(0) ? (damped < most ? damped : most) : Scalar(0);
+  }
+  const Scalar rest = stiffness > Scalar(0) ? depth - push / stiffness - law[15] : Scalar(0);
+  return rest > Scalar(0) ? std::fma(stiffness, rest, push) : push;
+}
+
+/// What pulls a point back to where it stuck, at most `most`.
+template <class Scalar>
+Vec<Scalar> with_friction(const Meeting<Scalar>& m, const Scalar* next, const PointNumbers<Scalar>& anchor, Scalar stiffness,
+                          Scalar most, const Vec<Scalar>& f) {
+  const Vec<Scalar> slip = turned(next, difference(m.inside, {anchor[0], anchor[1], anchor[2]}));
+  const Vec<Scalar> side = scaled_sum(-dot(slip, m.normal), m.normal, slip);
+  const Scalar length = std::sqrt(dot(side, side));
+  const Scalar factor = stiffness * length > most ? most / length : stiffness;
+  return scaled_sum(-factor, side, f);
+}
+
+}  // namespace
+
+template <class Scalar>
+void contact_press(Range range, const Scalar* node_u, const Scalar* node_w, const Scalar* contact_rest,
+                   const std::int32_t* contact_node, const Scalar* contact_weight, const Scalar* contact_share,
+                   const std::int32_t* contact_near, Scalar* contact_anchor, std::int32_t* contact_force,
+                   std::int32_t* tool_sum, const std::int32_t* tool_kind, const Scalar* tool_data, const Scalar* tool_grid,
+                   const Scalar* tool_pose, const Scalar* contact_params, const Scalar* step_params, std::int32_t tools,
+                   std::int32_t step) {
+  const Points<Scalar> points{node_u, node_w, contact_rest, contact_node, contact_weight};
+  const Tools<Scalar> all{tool_kind, tool_data, tool_grid, tool_pose, tools, step};
+  const ToolSum<Scalar> sums{tool_sum, contact_params, all};
+  const Scalar h = step_params[0], half_hh = (Scalar(0.5) * h) * h;
+  for (std::int64_t i = range.begin; i < range.end; ++i) {
+    const std::int32_t near = contact_near[i / PLIANT_TILE];
+    if (near == 0) continue;
+    const Place<Scalar> p = points.at(i);
+    const Scalar area = points.area(i);  // none: it fills the tile up
+    std::int32_t touching = 0, count = 0;
+    for (std::int32_t t = 0; t < tools && area > Scalar(0); ++t) {
+      if ((near >> t & 1) == 0 || !(all.meet(t, p).distance < Scalar(0))) continue;
+      touching |= 1 << t;
+      ++count;
+    }
+    const PointNumbers<Scalar> anchor = numbers_of(contact_anchor, i);
+    const PointNumbers<std::int32_t> force = numbers_of(contact_force, i);
+    const std::int32_t held = static_cast<std::int32_t>(anchor[3]) - 1;
+    if (held >= 0 && (touching >> held & 1) == 0) anchor[3] = 0;
+    Quanta sum{};
+    Scalar w = 0;
+    for (std::int64_t a = 0, base = tile_base(i, 8); a < 8 && touching != 0; ++a) {
+      const std::int64_t texel = std::int64_t{4} * contact_node[base + a * PLIANT_TILE];
+      const Scalar b = std::fma(half_hh, node_w[texel + 3], half_hh);
+      w = std::fma(contact_share[base + a * PLIANT_TILE], b * node_u[texel + 3], w);
+    }
+    const Scalar stiffness = w > Scalar(0) ? area / (w * static_cast<Scalar>(count)) : Scalar(0);
+    for (std::int32_t t = 0; t < tools; ++t) {
+      if ((touching >> t & 1) == 0) continue;
+      const Meeting<Scalar> m = all.meet(t, p);
+      const Scalar* law = all.law(t);
+      const Scalar push = normal_force(m, law, area, stiffness, h);
+      Vec<Scalar> f = times(m.normal, push);
+      if (law[14] > Scalar(0)) {
+        const auto own = static_cast<Scalar>(t + 1);
+        if (anchor[3] == Scalar(0)) {
+          const Vec<Scalar> stuck = turned_back(all.now(t), difference(difference(p.now, p.moved), origin_of(all.now(t))));
+          for (std::size_t k = 0; k < 3; ++k) anchor[static_cast<std::int64_t>(k)] = stuck[k];
+          anchor[3] = own;
+        }
+        if (anchor[3] == own) f = with_friction(m, all.next(t), anchor, stiffness, law[14] * push, f);
+      }
+      const Quanta q = quanta(f, contact_params[1]);
+      sums.force(t, p.now, q);
+      sums.touch(t, area, -m.distance + dot(m.slip, m.normal));
+      for (std::size_t k = 0; k < 3; ++k) sum[k] += q[k];
+    }
+    for (std::size_t k = 0; k < 3; ++k) force[static_cast<std::int64_t>(k)] = sum[k];
+    force[3] = touching;
+  }
+}
+
+void register_contact_press(Registry& registry) { registry.add("contact_press", contact_press<float>, contact_press<double>); }
+
+}  // namespace pliant::ref

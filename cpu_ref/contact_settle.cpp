@@ -1,0 +1,92 @@
+// Twin of kernels/contact_settle.cl.
+#include "contact_sum.h"
+#include "registry.h"
+
+namespace pliant::ref {
+namespace {
+
+using namespace contact;
+
+/// Friction of both parts together, towards the anchor; where it slips, the anchor follows.
+template <class Scalar>
+Vec<Scalar> with_friction(const Meeting<Scalar>& m, const Scalar* next, const PointNumbers<Scalar>& anchor, Scalar stiffness,
+                          Scalar friction, const Vec<Scalar>& f) {
+  const Vec<Scalar> slip = turned(next, difference(m.inside, {anchor[0], anchor[1], anchor[2]}));
+  const Scalar along = dot(slip, m.normal), across = dot(f, m.normal);
+  const Vec<Scalar> side = scaled_sum(-along, m.normal, slip);
+  const Vec<Scalar> pull = scaled_sum(-stiffness, side, scaled_sum(-across, m.normal, f));
+  const Scalar length = std::sqrt(dot(pull, pull)), most = across > Scalar(0) ? friction * across : Scalar(0);
+  if (length > most) {
+    const Scalar size = std::sqrt(dot(side, side)), hold = stiffness > Scalar(0) ? most / stiffness : Scalar(0);
+    const Scalar kept = size > hold ? hold / size : Scalar(1);
+    const Vec<Scalar> back = turned_back(next, scaled_sum(-kept, side, times(m.normal, -along)));
+    for (std::size_t k = 0; k < 3; ++k) anchor[static_cast<std::int64_t>(k)] = m.inside[k] + back[k];
+  }
+  return scaled_sum(length > most ? most / length : Scalar(1), pull, times(m.normal, across));
+}
+
+}  // namespace
+
+template <class Scalar>
+void contact_settle(Range range, const Scalar* node_u, const Scalar* node_w, const Scalar* contact_rest,
+                    const std::int32_t* contact_node, const Scalar* contact_weight, const Scalar* contact_share,
+                    const std::int32_t* contact_near, Scalar* contact_anchor, std::int32_t* contact_force,
+                    std::int32_t* contact_change, const Scalar* contact_node_sum, std::int32_t* tool_sum,
+                    const std::int32_t* tool_kind, const Scalar* tool_data, const Scalar* tool_grid, const Scalar* tool_pose,
+                    const Scalar* contact_params, const Scalar* step_params, std::int32_t tools, std::int32_t step) {
+  const Points<Scalar> points{node_u, node_w, contact_rest, contact_node, contact_weight};
+  const Tools<Scalar> all{tool_kind, tool_data, tool_grid, tool_pose, tools, step};
+  const ToolSum<Scalar> sums{tool_sum, contact_params, all};
+  const Scalar h = step_params[0], half_hh = (Scalar(0.5) * h) * h, quantum = contact_params[0], inverse = contact_params[1];
+  for (std::int64_t i = range.begin; i < range.end; ++i) {
+    if (contact_near[i / PLIANT_TILE] == 0) continue;
+    const PointNumbers<Scalar> anchor = numbers_of(contact_anchor, i);
+    const PointNumbers<std::int32_t> force = numbers_of(contact_force, i), change = numbers_of(contact_change, i);
+    const std::int32_t touching = force[3];
+    Quanta sum{};
+    if (touching != 0) {
+      const Place<Scalar> p = points.at(i);
+      Scalar w = 0, whole = 0, moving = 0;
+      for (std::int64_t a = 0, base = tile_base(i, 8); a < 8; ++a) {
+        const std::int64_t at = base + a * PLIANT_TILE, texel = std::int64_t{4} * contact_node[at];
+        const Scalar b = std::fma(half_hh, node_w[texel + 3], half_hh);
+        const Scalar own = contact_weight[at] * contact_node_sum[texel + 3];
+        const Scalar free = contact_share[at] > Scalar(0) ? own : Scalar(0);
+        w = std::fma(free, b * node_u[texel + 3], w);
+        whole = whole + own;
+        moving = moving + free;
+      }
+      w = moving > Scalar(0) ? w * (whole / moving) : Scalar(0);
+      std::int32_t count = 0;
+      for (std::int32_t t = 0; t < tools; ++t) count += touching >> t & 1;
+      const Scalar area = points.area(i);
+      const Scalar stiffness = w > Scalar(0) ? area / (w * static_cast<Scalar>(count)) : Scalar(0);
+      for (std::int32_t t = 0; t < tools; ++t) {
+        if ((touching >> t & 1) == 0) continue;
+        const Meeting<Scalar> m = all.meet(t, p);
+        const Scalar* law = all.law(t);
+        const Scalar rest = -m.distance - law[15], push = rest > Scalar(0) ? stiffness * rest : Scalar(0);
+        Vec<Scalar> f = times(m.normal, push);
+        Quanta before{};
+        if (count == 1) {
+          before = {force[0], force[1], force[2]};
+          for (std::size_t k = 0; k < 3; ++k) f[k] += static_cast<Scalar>(before[k]) * quantum;
+          if (anchor[3] == static_cast<Scalar>(t + 1)) f = with_friction(m, all.next(t), anchor, stiffness, law[14], f);
+        }
+        Quanta q = quanta(f, inverse);
+        for (std::size_t k = 0; k < 3; ++k) q[k] -= before[k];
+        sums.force(t, p.now, q);
+        for (std::size_t k = 0; k < 3; ++k) sum[k] += q[k];
+      }
+      for (std::size_t k = 0; k < 3; ++k) force[static_cast<std::int64_t>(k)] += sum[k];
+    }
+    for (std::size_t k = 0; k < 3; ++k) change[static_cast<std::int64_t>(k)] = sum[k];
+    change[3] = touching;
+  }
+}
+
+void register_contact_settle(Registry& registry) {
+  registry.add("contact_settle", contact_settle<float>, contact_settle<double>);
+}
+
+}  // namespace pliant::ref

@@ -1,0 +1,64 @@
+#include "cli/tool_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "geometry/vec.h"
+#include "io/atomic_file.h"
+
+namespace pliant::cli {
+
+void add_tools(const Simulation& simulation, nlohmann::ordered_json& json) {
+  const Scene& scene = simulation.scene();
+  if (scene.tools.empty()) return;
+  json["tools"] = nlohmann::ordered_json::array();
+  std::int64_t points = 0;
+  double deepest = 0;
+  for (std::size_t t = 0; t < scene.tools.size(); ++t) {
+    const ToolHistory& h = simulation.contact().history()[t];
+    json["tools"].push_back({{"name", scene.tools[t].name},
+                             {"force", h.now.force},
+                             {"torque", h.now.torque},
+                             {"area", h.now.area},
+                             {"points", h.now.points},
+                             {"max_force", h.max_force},
+                             {"max_penetration", h.max_depth},
+                             {"steps_in_contact", h.touched}});
+    points += h.now.points;
+    deepest = std::max(deepest, h.max_depth);
+  }
+  const ContactPoints* all = simulation.model().contact.get();
+  json["contact"] = {{"points", all == nullptr ? 0 : all->size()},
+                     {"touching", points},
+                     {"max_penetration", deepest},
+                     {"penetration_in_cells", all == nullptr ? 0.0 : deepest / all->spacing}};
+}
+
+std::string tool_line(const Simulation& simulation, std::size_t tool) {
+  const ToolHistory& h = simulation.contact().history()[tool];
+  return fmt::format("tool {}: force [{:.4g}] N, at most {:.4g} N; touches {:.3g} m^2, at most {:.3g} m deep",
+                     simulation.scene().tools[tool].name, fmt::join(h.now.force, ", "), h.max_force, h.now.area, h.max_depth);
+}
+
+void ToolTable::write(const Simulation& simulation, const std::filesystem::path& file) {
+  const Scene& scene = simulation.scene();
+  if (scene.tools.empty() || simulation.step() == last_step_) return;
+  last_step_ = simulation.step();
+  if (table_.empty()) {
+    table_ =
+        "time [s],step,tool,x [m],y [m],z [m],fx [N],fy [N],fz [N],tx [N m],ty [N m],tz [N m],area [m^2],penetration "
+        "[m],points\n";
+  }
+  for (std::size_t t = 0; t < scene.tools.size(); ++t) {
+    const ToolLoad& now = simulation.contact().history()[t].now;
+    const Pose at = simulation.contact().pose(t, simulation.time());
+    table_ += fmt::format("{:.9g},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{}\n", simulation.time(), simulation.step(),
+                          scene.tools[t].name, fmt::join(at.position, ","), fmt::join(now.force, ","),
+                          fmt::join(now.torque, ","), now.area, now.depth, now.points);
+  }
+  write_file(file, table_);
+}
+
+}  // namespace pliant::cli

@@ -1,0 +1,27 @@
+// What a run tells about its tools: at its end, and over time.
+#pragma once
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "simulation/simulation.h"
+
+namespace pliant::cli {
+
+/// The members "tools" and "contact" of docs/schema/run.json; nothing without tools.
+void add_tools(const Simulation& simulation, nlohmann::ordered_json& json);
+/// A line per tool for people.
+std::string tool_line(const Simulation& simulation, std::size_t tool);
+
+/// A table of the forces on all tools, a row per tool and time.
+class ToolTable {
+ public:
+  /// Add rows and replace the file, which is always complete. Nothing without tools, or when no step was done since.
+  void write(const Simulation& simulation, const std::filesystem::path& file);
+
+ private:
+  std::string table_;
+  std::int64_t last_step_ = -1;
+};
+
+}  // namespace pliant::cli

@@ -1,0 +1,64 @@
+// What takes part in contact: points on the surfaces of the bodies, and the shapes of the tools.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "geometry/mesh.h"
+#include "scene/contact_tool.h"
+
+namespace pliant {
+
+struct Model;
+struct Scene;
+
+/// Embedding weights of contact points are multiples of 1 / contact_weight_unit that sum to exactly one: forces in fixed point
+/// are shared among the nodes without a remainder.
+inline constexpr std::int32_t contact_weight_unit = 4096;
+
+/// Points on the surface, about half a cell apart (three per face of a volume mesh), however fine the surface's triangles are.
+struct ContactPoints {
+  std::vector<Vec3d> rest;                           ///< [m]
+  std::vector<std::array<std::int32_t, 8>> nodes;    ///< slots; unused ones repeat the first with weight 0
+  std::vector<std::array<std::int32_t, 8>> weights;  ///< in units of 1 / contact_weight_unit, not negative
+  std::vector<double> area;                          ///< of the surface that it stands for, at rest [m^2]
+  std::vector<std::int32_t> body;
+  double spacing = 0;  ///< of the coarsest body's cells, or the mean edge of its surface [m]
+  [[nodiscard]] std::size_t size() const { return rest.size(); }
+};
+
+/// A shape as the kernels know it (kernels/contact_shape.cl).
+struct ToolForm {
+  ToolShape shape = ToolShape::sphere;
+  double radius = 0;                   ///< [m]
+  Vec3d first{}, second{};             ///< [m]; of a half space `second` is the unit normal; of a box `second` is half its size
+  Vec3d origin{};                      ///< of the grid of signed distances [m]
+  double spacing = 0;                  ///< of this grid [m]
+  std::array<std::int32_t, 3> size{};  ///< nodes of this grid
+  std::vector<double> distance;        ///< [nodes] signed distance, x fastest [m]
+  double reach = 0;                    ///< farthest point from the tool's origin [m]; of a half space 0
+  TriangleMesh surface;                ///< of a mesh, for pictures
+};
+
+using ToolForms = std::vector<ToolForm>;
+
+/// How a tool pushes (ContactTool).
+struct ContactLaw {
+  double stiffness = 0, exponent = 1, alpha = 0, friction = 0;
+  double core = 0;  ///< depth from which the tool is hard [m]
+};
+
+/// Throws Error (bad_input) for a mesh that cannot be read or is not closed.
+ToolForm tool_form(const ContactTool& tool);
+
+/// Signed distance of a point in the tool's frame, as the kernels have it but in double [m].
+double tool_distance(const ToolForm& form, const Vec3d& y);
+
+/// Points of all bodies on the model's surface.
+ContactPoints contact_points(const Model& model);
+
+/// Fill Model::contact and, if it has none yet, Model::tools. Nothing without tools.
+void add_contact(const Scene& scene, Model& model);
+
+}  // namespace pliant

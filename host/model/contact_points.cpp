@@ -1,0 +1,356 @@
+// Points on the surface that take part in contact: samples of the triangles, gathered into half cells.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <tuple>
+
+#include "geometry/vec.h"
+#include "model/body_mesh.h"
+#include "model/contact.h"
+#include "model/model.h"
+
+namespace pliant {
+namespace {
+
+using Slots = std::array<std::int32_t, 8>;
+using Index = std::array<std::int64_t, 3>;
+
+/// Triangles are divided until no edge is longer than this share of a cell.
+constexpr double kSample = 0.25;
+
+/// Depth of a soft shell, as a share of a cell.
+constexpr double kShell = 0.25;
+
+/// A sample lies in the cell that is so far below the surface, as a share of a cell: the surface may lie between two.
+constexpr double kInside = 1e-3;
+
+Vec3d between(const std::array<Vec3d, 3>& x, const Vec3d& weight) {
+  Vec3d sum{};
+  for (std::size_t c = 0; c < 3; ++c) sum = vec::add(sum, vec::mul(x[c], weight[c]));
+  return sum;
+}
+
+/// Weights in whole units that sum to one.
+std::array<std::int32_t, 8> whole(const std::array<double, 8>& weights) {
+  std::array<std::int32_t, 8> out{};
+  std::int32_t sum = 0;
+  std::size_t largest = 0;
+  for (std::size_t a = 0; a < 8; ++a) {
+    out[a] = static_cast<std::int32_t>(std::lround(weights[a] * contact_weight_unit));
+    sum += out[a];
+    if (out[a] > out[largest]) largest = a;
+  }
+  out[largest] += contact_weight_unit - sum;
+  return out;
+}
+
+/// Nodes without a weight repeat the first that has one.
+void add_point(ContactPoints& points, const Vec3d& x, Slots nodes, const std::array<double, 8>& weights, double area,
+               std::int32_t body) {
+  const std::array<std::int32_t, 8> units = whole(weights);
+  const auto used = std::find_if(units.begin(), units.end(), [](std::int32_t w) { return w != 0; });
+  for (std::size_t a = 0; a < 8; ++a) {
+    if (units[a] == 0) nodes[a] = nodes[static_cast<std::size_t>(used - units.begin())];
+  }
+  points.rest.push_back(x);
+  points.nodes.push_back(nodes);
+  points.weights.push_back(units);
+  points.area.push_back(area);
+  points.body.push_back(body);
+}
+
+/// The body of a lattice: every triangle is divided into samples, and those of one half of a cell (in x, y and z) that look the
+/// same way become one point.
+class LatticeSampler {
+ public:
+  LatticeSampler(const Model& model, std::int32_t body) : model_(model), b_(model.bodies[body]), body_(body), d_(b_.spacing) {}
+
+  void sample(ContactPoints& points) {
+    for (std::int32_t t = b_.first_triangle; t < b_.first_triangle + b_.triangles; ++t) divide(t);
+    std::sort(samples_.begin(), samples_.end(), [](const Sample& x, const Sample& y) {
+      return std::tie(x.side, x.half, x.nodes, x.order) < std::tie(y.side, y.half, y.nodes, y.order);
+    });
+    for (std::size_t first = 0; first < samples_.size();) {
+      std::size_t last = first + 1;
+      while (last < samples_.size() && samples_[last].side == samples_[first].side &&
+             samples_[last].half == samples_[first].half && samples_[last].nodes == samples_[first].nodes)
+        ++last;
+      gather(first, last, points);
+      first = last;
+    }
+  }
+
+ private:
+  struct Sample {
+    Slots nodes{};
+    Vec3d local{};  ///< place in its cell, in [0, 1]
+    int half = 0, side = 0;
+    std::int64_t order = 0;
+    Vec3d x{};
+    double area = 0;
+  };
+  /// A cell that a vertex is embedded in.
+  struct Place {
+    Slots nodes{};
+    Vec3d corner{};  ///< its low corner [m]
+  };
+
+  [[nodiscard]] Place place_of(std::int32_t vertex) const {
+    const ModelSurface& s = model_.surface;
+    Place place{s.nodes[vertex], s.rest[vertex]};
+    for (std::size_t a = 0; a < 8; ++a) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        if ((a >> c & 1) != 0) place.corner[c] -= s.weights[vertex][a] * d_;
+      }
+    }
+    return place;
+  }
+
+  void divide(std::int32_t t) {
+    const auto& triangle = model_.surface.triangles[t];
+    std::array<Vec3d, 3> x{};
+    for (std::size_t c = 0; c < 3; ++c) x[c] = model_.surface.rest[triangle[c]];
+    double longest = 0;
+    for (std::size_t c = 0; c < 3; ++c) longest = std::max(longest, vec::norm(vec::sub(x[c], x[(c + 1) % 3])));
+    const Vec3d normal = vec::cross(vec::sub(x[1], x[0]), vec::sub(x[2], x[0]));
+    const double area = vec::norm(normal) / 2;
+    if (!(area > 0)) return;
+    const int n = std::max(1, static_cast<int>(std::ceil(longest / (kSample * d_))));
+    std::array<Place, 3> places;
+    for (std::size_t c = 0; c < 3; ++c) places[c] = place_of(triangle[c]);
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < 2 * (n - i) - 1; ++j) {  // small triangles of row i, every other one turned round
+        const double up = j % 2 == 0 ? 1.0 / 3 : 2.0 / 3;
+        const double a = (i + up) / n, b = (j / 2 + up) / n;
+        add(between(x, {1 - a - b, a, b}), places, normal, area / (static_cast<double>(n) * n));
+      }
+    }
+  }
+
+  void add(const Vec3d& x, const std::array<Place, 3>& places, const Vec3d& normal, double area) {
+    Sample s;
+    s.x = x;
+    s.area = area;
+    s.order = static_cast<std::int64_t>(samples_.size());
+    const Place place = choose(vec::add(x, vec::mul(normal, -kInside * d_ / vec::norm(normal))), places);
+    s.nodes = place.nodes;
+    for (std::size_t c = 0; c < 3; ++c) {
+      s.local[c] = std::clamp((x[c] - place.corner[c]) / d_, 0.0, 1.0);
+      if (s.local[c] >= 0.5) s.half |= 1 << c;
+      if (std::abs(normal[c]) > std::abs(normal[static_cast<std::size_t>(s.side / 2)])) s.side = static_cast<int>(2 * c);
+    }
+    if (normal[static_cast<std::size_t>(s.side / 2)] < 0) ++s.side;
+    samples_.push_back(s);
+  }
+
+  [[nodiscard]] double outside(const Vec3d& x, const Place& place) const {
+    double most = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double local = (x[c] - place.corner[c]) / d_;
+      most = std::max({most, -local, local - 1});
+    }
+    return most;
+  }
+
+  /// The cell of a corner that holds the sample; of a coarse triangle the copy of the sample's own cell that shares most nodes
+  /// with the corners' cells.
+  [[nodiscard]] Place choose(const Vec3d& x, const std::array<Place, 3>& places) {
+    std::size_t nearest = 0;
+    for (std::size_t c = 1; c < 3; ++c) {
+      if (outside(x, places[c]) < outside(x, places[nearest])) nearest = c;
+    }
+    if (outside(x, places[nearest]) < 1e-6) return places[nearest];
+    if (cells_.empty()) list_cells();
+    const auto found = cells_.find(index_of(vec::sub(x, {d_ / 2, d_ / 2, d_ / 2})));
+    if (found == cells_.end()) return places[nearest];
+    int most = -1;
+    Place best;
+    for (const Place& copy : found->second) {
+      int shared = 0;
+      for (const Place& place : places) {
+        for (const std::int32_t n : copy.nodes)
+          shared += std::find(place.nodes.begin(), place.nodes.end(), n) != place.nodes.end();
+      }
+      if (shared > most) {
+        most = shared;
+        best = copy;
+      }
+    }
+    return best;
+  }
+
+  /// By the place of the low corner.
+  [[nodiscard]] Index index_of(const Vec3d& corner) const {
+    Index index{};
+    for (std::size_t c = 0; c < 3; ++c) index[c] = std::llround((corner[c] - b_.rest[0][c]) / d_);
+    return index;
+  }
+
+  void list_cells() {
+    const auto add_cell = [&](const Slots& local) {
+      Place place;
+      for (std::size_t a = 0; a < 8; ++a) place.nodes[a] = b_.slot[local[a]];
+      place.corner = b_.rest[local[0]];
+      cells_[index_of(place.corner)].push_back(place);
+    };
+    for (const auto& hex : b_.hexes) {
+      Slots bits{};
+      for (std::size_t a = 0; a < 8; ++a) bits[a] = hex[static_cast<std::size_t>(kVtkFromBits[a])];
+      add_cell(bits);
+    }
+    for (std::size_t e = 0; e + 5 < b_.tets.size(); e += 6) add_cell(cell_corners(&b_.tets[e]));
+  }
+
+  /// The sample nearest to the middle of its group stands for all.
+  void gather(std::size_t first, std::size_t last, ContactPoints& points) const {
+    Vec3d middle{};
+    double area = 0;
+    for (std::size_t i = first; i < last; ++i) {
+      middle = vec::add(middle, vec::mul(samples_[i].x, samples_[i].area));
+      area += samples_[i].area;
+    }
+    middle = vec::mul(middle, 1 / area);
+    std::size_t best = first;
+    const auto distance = [&](std::size_t i) { return vec::norm(vec::sub(samples_[i].x, middle)); };
+    for (std::size_t i = first; i < last; ++i) {
+      if (distance(i) < distance(best)) best = i;
+    }
+    const Sample& s = samples_[best];
+    std::array<double, 8> weights{};
+    for (std::size_t a = 0; a < 8; ++a) {
+      weights[a] = 1;
+      for (std::size_t c = 0; c < 3; ++c) weights[a] *= (a >> c & 1) != 0 ? s.local[c] : 1 - s.local[c];
+    }
+    add_point(points, s.x, s.nodes, weights, area, body_);
+  }
+
+  const Model& model_;
+  const ModelBody& b_;
+  std::int32_t body_;
+  double d_;
+  std::vector<Sample> samples_;
+  std::map<Index, std::vector<Place>> cells_;
+};
+
+/// The body of a volume mesh: three points per face, one for a face that is small. Returns the mean edge of its surface.
+double sample_faces(const Model& model, std::int32_t body, ContactPoints& points) {
+  const ModelSurface& s = model.surface;
+  const ModelBody& b = model.bodies[body];
+  double edges = 0;
+  const auto corners = [&](std::int32_t t) {
+    std::array<Vec3d, 3> x{};
+    for (std::size_t c = 0; c < 3; ++c) x[c] = s.rest[s.triangles[t][c]];
+    return x;
+  };
+  const auto longest_of = [](const std::array<Vec3d, 3>& x) {
+    double longest = 0;
+    for (std::size_t c = 0; c < 3; ++c) longest = std::max(longest, vec::norm(vec::sub(x[c], x[(c + 1) % 3])));
+    return longest;
+  };
+  for (std::int32_t t = b.first_triangle; t < b.first_triangle + b.triangles; ++t) edges += longest_of(corners(t));
+  const double mean = b.triangles > 0 ? edges / b.triangles : 0;
+  for (std::int32_t t = b.first_triangle; t < b.first_triangle + b.triangles; ++t) {
+    const std::array<Vec3d, 3> x = corners(t);
+    const double area = vec::norm(vec::cross(vec::sub(x[1], x[0]), vec::sub(x[2], x[0]))) / 2;
+    if (!(area > 0)) continue;
+    const int count = longest_of(x) > mean / 2 ? 3 : 1;
+    for (int k = 0; k < count; ++k) {
+      Vec3d at{1.0 / 3, 1.0 / 3, 1.0 / 3};
+      if (count == 3) {
+        at = {1.0 / 6, 1.0 / 6, 1.0 / 6};
+        at[static_cast<std::size_t>(k)] = 2.0 / 3;
+      }
+      // Its corners lie in one tetrahedron, or on nodes: few nodes have a weight.
+      std::map<std::int32_t, double> shares;
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::int32_t v = s.triangles[t][c];
+        for (std::size_t a = 0; a < 8; ++a) {
+          if (s.weights[v][a] != 0) shares[s.nodes[v][a]] += at[c] * s.weights[v][a];
+        }
+      }
+      std::vector<std::pair<double, std::int32_t>> largest;
+      for (const auto& [node, share] : shares) largest.emplace_back(-share, node);
+      std::sort(largest.begin(), largest.end());
+      largest.resize(std::min<std::size_t>(largest.size(), 8));
+      const double sum =
+          std::accumulate(largest.begin(), largest.end(), 0.0, [](double q, const auto& l) { return q - l.first; });
+      Slots nodes{};
+      std::array<double, 8> weights{};
+      for (std::size_t a = 0; a < largest.size(); ++a) {
+        nodes[a] = largest[a].second;
+        weights[a] = -largest[a].first / sum;
+      }
+      add_point(points, between(x, at), nodes, weights, area / count, body);
+    }
+  }
+  return mean;
+}
+
+/// Place along a curve that fills space, of points in a box of 1024^3.
+std::uint64_t morton(const Vec3d& x, const vec::Box& box) {
+  double longest = 0;
+  for (std::size_t a = 0; a < 3; ++a) longest = std::max(longest, box.upper[a] - box.lower[a]);
+  std::uint64_t code = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto cell = static_cast<std::uint64_t>(longest > 0 ? (x[a] - box.lower[a]) / longest * 1023 : 0);
+    for (std::size_t bit = 0; bit < 10; ++bit) code |= (cell >> bit & 1) << (3 * bit + a);
+  }
+  return code;
+}
+
+template <class T>
+void reorder(std::vector<T>& values, const std::vector<std::size_t>& order) {
+  std::vector<T> sorted;
+  sorted.reserve(values.size());
+  for (const std::size_t i : order) sorted.push_back(values[i]);
+  values = std::move(sorted);
+}
+
+}  // namespace
+
+ContactPoints contact_points(const Model& model) {
+  ContactPoints points;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const auto body = static_cast<std::int32_t>(b);
+    double spacing = model.bodies[b].spacing;
+    if (spacing > 0) {
+      LatticeSampler(model, body).sample(points);
+    } else {
+      spacing = sample_faces(model, body, points);
+    }
+    points.spacing = std::max(points.spacing, spacing);
+  }
+  vec::Box box;
+  for (const Vec3d& x : points.rest) box.extend(x);
+  std::vector<std::uint64_t> code(points.size());
+  for (std::size_t i = 0; i < code.size(); ++i) code[i] = morton(points.rest[i], box);
+  std::vector<std::size_t> order(points.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t k) {
+    return std::tie(points.body[i], code[i]) < std::tie(points.body[k], code[k]);
+  });
+  reorder(points.rest, order);
+  reorder(points.nodes, order);
+  reorder(points.weights, order);
+  reorder(points.area, order);
+  reorder(points.body, order);
+  return points;
+}
+
+void add_contact(const Scene& scene, Model& model) {
+  if (scene.tools.empty()) return;
+  if (model.tools == nullptr) {
+    auto forms = std::make_shared<ToolForms>();
+    for (const ContactTool& tool : scene.tools) forms->push_back(tool_form(tool));
+    model.tools = forms;
+  }
+  model.contact_laws.clear();
+  for (const ContactTool& tool : scene.tools)
+    model.contact_laws.push_back({tool.stiffness, tool.exponent, tool.alpha, tool.friction, 0});
+  model.contact = std::make_shared<const ContactPoints>(contact_points(model));
+  // A shell with a law of its own is that law as far as a quarter of a cell; what is "auto" is hard at once.
+  for (ContactLaw& law : model.contact_laws) law.core = law.stiffness > 0 ? kShell * model.contact->spacing : 0;
+}
+
+}  // namespace pliant

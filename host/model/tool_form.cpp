@@ -1,0 +1,139 @@
+// Shapes of tools, and the signed distance that a mesh is turned into.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/distance.h"
+#include "geometry/parallel.h"
+#include "geometry/vec.h"
+#include "mesh_io/mesh_io.h"
+#include "model/contact.h"
+#include "pliant/error.h"
+
+namespace pliant {
+namespace {
+
+/// Cells of the grid along the longest side of a mesh; it reaches two cells beyond the mesh.
+constexpr double kGridCells = 64;
+constexpr std::int32_t kBeyond = 2;
+
+void fill_grid(const SurfaceDistance& surface, ToolForm& form) {
+  vec::Box box;
+  for (const Vec3d& v : surface.mesh().vertices) box.extend(v);
+  double longest = 0;
+  for (std::size_t a = 0; a < 3; ++a) longest = std::max(longest, box.upper[a] - box.lower[a]);
+  form.spacing = longest / kGridCells;
+  std::int64_t count = 1;
+  for (std::size_t a = 0; a < 3; ++a) {
+    form.origin[a] = box.lower[a] - kBeyond * form.spacing;
+    form.size[a] = static_cast<std::int32_t>(std::ceil((box.upper[a] - box.lower[a]) / form.spacing)) + 2 * kBeyond + 1;
+    count *= form.size[a];
+  }
+  form.distance.resize(static_cast<std::size_t>(count));
+  const std::int64_t row = form.size[0];
+  parallel_for(count / row, [&](std::int64_t r) {
+    const Vec3d start{form.origin[0], form.origin[1] + static_cast<double>(r % form.size[1]) * form.spacing,
+                      form.origin[2] + static_cast<double>(r / form.size[1]) * form.spacing};
+    for (std::int64_t i = 0; i < row; ++i) {
+      form.distance[static_cast<std::size_t>(r * row + i)] =
+          surface.signed_distance({start[0] + static_cast<double>(i) * form.spacing, start[1], start[2]});
+    }
+  });
+}
+
+void load_mesh(const ContactTool& tool, ToolForm& form) {
+  TriangleMesh mesh = read_surface(tool.mesh);
+  for (Vec3d& v : mesh.vertices) v = vec::mul(v, tool.scale);
+  const SurfaceDistance surface(std::move(mesh));
+  if (!surface.orientation().closed()) {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{}: tool '{}': the surface {} has {} open edges, expected a closed surface", tool.pointer,
+                            tool.name, tool.mesh.string(), surface.orientation().rim.size()));
+  }
+  for (const Vec3d& v : surface.mesh().vertices) form.reach = std::max(form.reach, vec::norm(v));
+  fill_grid(surface, form);
+  form.surface = surface.mesh();
+}
+
+double grid_distance(const ToolForm& form, const Vec3d& y) {
+  std::array<std::int32_t, 3> cell{};
+  Vec3d s{}, beyond{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double x = (y[a] - form.origin[a]) / form.spacing, most = form.size[a] - 1.0;
+    const double inside = std::clamp(x, 0.0, most);
+    cell[a] = std::min(static_cast<std::int32_t>(inside), form.size[a] - 2);
+    s[a] = inside - cell[a];
+    beyond[a] = (x - inside) * form.spacing;
+  }
+  double sum = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    double weight = 1;
+    std::int64_t at = 0, stride = 1;
+    for (int a = 0; a < 3; ++a) {
+      const int up = corner >> a & 1;
+      weight *= up != 0 ? s[a] : 1 - s[a];
+      at += (cell[a] + up) * stride;
+      stride *= form.size[a];
+    }
+    sum += weight * form.distance[static_cast<std::size_t>(at)];
+  }
+  return beyond == Vec3d{} ? sum : vec::norm(beyond) + kBeyond * form.spacing;
+}
+
+}  // namespace
+
+ToolForm tool_form(const ContactTool& tool) {
+  ToolForm form;
+  form.shape = tool.shape;
+  form.radius = tool.radius;
+  form.first = tool.first;
+  form.second = tool.second;
+  switch (tool.shape) {
+    case ToolShape::sphere:
+      form.reach = tool.radius;
+      break;
+    case ToolShape::capsule:
+      form.reach = std::max(vec::norm(tool.first), vec::norm(tool.second)) + tool.radius;
+      break;
+    case ToolShape::box:
+      form.second = vec::mul(tool.size, 0.5);
+      form.reach = vec::norm(form.second);
+      break;
+    case ToolShape::half_space:
+      form.second = vec::mul(tool.second, 1 / vec::norm(tool.second));
+      break;
+    case ToolShape::mesh:
+      load_mesh(tool, form);
+      break;
+  }
+  return form;
+}
+
+double tool_distance(const ToolForm& form, const Vec3d& y) {
+  switch (form.shape) {
+    case ToolShape::sphere:
+      return vec::norm(y) - form.radius;
+    case ToolShape::capsule: {
+      const Vec3d d = vec::sub(form.second, form.first), from = vec::sub(y, form.first);
+      const double t = std::clamp(vec::dot(from, d) / vec::dot(d, d), 0.0, 1.0);
+      return vec::norm(vec::sub(from, vec::mul(d, t))) - form.radius;
+    }
+    case ToolShape::box: {
+      Vec3d q{}, out{};
+      for (std::size_t a = 0; a < 3; ++a) {
+        q[a] = std::abs(y[a]) - form.second[a];
+        out[a] = std::max(q[a], 0.0);
+      }
+      const double most = std::max({q[0], q[1], q[2]});
+      return most > 0 ? vec::norm(out) : most;
+    }
+    case ToolShape::half_space:
+      return vec::dot(vec::sub(y, form.first), form.second);
+    case ToolShape::mesh:
+      break;
+  }
+  return grid_distance(form, y);
+}
+
+}  // namespace pliant

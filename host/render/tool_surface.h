@@ -1,0 +1,29 @@
+// Triangles of the tools of a scene, for pictures.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "geometry/mesh.h"
+#include "model/contact.h"
+#include "simulation/simulation.h"
+
+namespace pliant::render {
+
+/// The body number of triangles that belong to tools.
+inline constexpr std::int32_t kToolBody = -1;
+
+/// A shape in its own frame, outward; nothing of a half space.
+TriangleMesh tool_surface(const ToolForm& form);
+
+/// All tools where they are now. Shapes are made once.
+class ToolSurfaces {
+ public:
+  /// Appends vertices (x, y, z) and triangles behind those that are there.
+  void append(const Simulation& simulation, std::vector<float>& positions, std::vector<std::int32_t>& triangles);
+
+ private:
+  std::vector<TriangleMesh> shapes_;
+};
+
+}  // namespace pliant::render

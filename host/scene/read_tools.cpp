@@ -1,0 +1,149 @@
+// The key "tools" of a scene.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "geometry/vec.h"
+#include "scene/parts.h"
+
+namespace pliant {
+namespace {
+
+using Row = std::array<double, 8>;
+
+Row read_row(const Reader& row, const std::vector<Row>& before) {
+  const char* const expected =
+      "a row [time, x, y, z] or [time, x, y, z, qx, qy, qz, qw] in seconds and metres with a unit quaternion";
+  const std::vector<Reader> parts = row.items(expected);
+  if (parts.size() != 4 && parts.size() != 8) row.fail(expected);
+  Row out{0, 0, 0, 0, 0, 0, 0, 1};
+  for (std::size_t i = 0; i < parts.size(); ++i) out[i] = parts[i].number();
+  if (!before.empty() && !(out[0] > before.back()[0]))
+    parts[0].fail(fmt::format("a time after the previous row's {}", before.back()[0]));
+  const double norm = std::sqrt(out[4] * out[4] + out[5] * out[5] + out[6] * out[6] + out[7] * out[7]);
+  if (!(std::abs(norm - 1) <= 1e-3))
+    row.fail(fmt::format("a quaternion of length {:.6g}", norm), "a unit quaternion qx, qy, qz, qw (within 1e-3)");
+  for (std::size_t i = 4; i < 8; ++i) out[i] /= norm;
+  return out;
+}
+
+void read_capsule(const Reader& capsule, ContactTool& tool) {
+  const char* const expected = "[[x, y, z], [x, y, z], radius] in metres, two different ends";
+  const std::vector<Reader> parts = capsule.items(expected);
+  if (parts.size() != 3) capsule.fail(expected);
+  tool.first = parts[0].vec3();
+  tool.second = parts[1].vec3();
+  if (tool.first == tool.second) capsule.fail(expected);
+  tool.radius = parts[2].positive();
+}
+
+void read_half_space(const Reader& half_space, ContactTool& tool) {
+  const char* const expected = "[[x, y, z], [nx, ny, nz]]: a point in metres and the outward normal, not zero";
+  const std::vector<Reader> parts = half_space.items(expected);
+  if (parts.size() != 2) half_space.fail(expected);
+  tool.first = parts[0].vec3();
+  tool.second = parts[1].vec3();
+  if (!(vec::norm(tool.second) >= 1e-30)) half_space.fail(expected);
+}
+
+void read_shape(const Reader& shape, ContactTool& tool) {
+  shape.expect_object("shape");
+  if (shape.json().size() != 1) shape.fail("one of the keys " + alternatives(scene_keys().at("shape")));
+  for (const Word<ToolShape>& word : tool_shape_words()) {
+    if (!shape.has(word.word)) continue;
+    const Reader value = shape.at(word.word);
+    tool.shape = word.value;
+    switch (word.value) {
+      case ToolShape::sphere:
+        tool.radius = value.positive();
+        break;
+      case ToolShape::capsule:
+        read_capsule(value, tool);
+        break;
+      case ToolShape::box:
+        tool.size = value.vec3("three edges [x, y, z] in metres, each > 0");
+        for (const double edge : tool.size) {
+          if (!(edge >= 1e-30)) value.fail("three edges [x, y, z] in metres, each > 0");
+        }
+        break;
+      case ToolShape::half_space:
+        read_half_space(value, tool);
+        break;
+      case ToolShape::mesh:
+        tool.mesh = value.text("the file of a closed surface");
+        break;
+    }
+  }
+}
+
+void read_contact(const Reader& contact, ContactTool& tool) {
+  contact.expect_object("contact");
+  if (contact.has("stiffness")) {
+    const Reader stiffness = contact.at("stiffness");
+    if (stiffness.json() != "auto") {
+      const char* const expected = "\"auto\" or a stiffness per area > 0 in Pa/m^exponent";
+      tool.stiffness = stiffness.number(expected);
+      if (!(tool.stiffness >= 1e-30)) stiffness.fail(expected);
+    }
+  }
+  for (const char* key : {"exponent", "alpha"}) {
+    if (contact.has(key) && tool.stiffness == 0) contact.at(key).fail("this key only beside a stiffness that is a number");
+  }
+  if (contact.has("exponent")) {
+    const Reader exponent = contact.at("exponent");
+    tool.exponent = exponent.number();
+    if (tool.exponent != 1 && tool.exponent != 1.5) exponent.fail("1 or 1.5");
+  }
+  if (contact.has("alpha")) tool.alpha = contact.at("alpha").non_negative();
+}
+
+ContactTool read_contact_tool(const Reader& entry, std::size_t index, const std::filesystem::path& folder) {
+  entry.expect_object("contact_tool");
+  ContactTool tool;
+  tool.pointer = entry.pointer();
+  tool.name = entry.has("name") ? entry.at("name").text("a text that is not empty") : fmt::format("tool{}", index);
+  read_shape(entry.at("shape", "an object with one of the keys " + alternatives(scene_keys().at("shape"))), tool);
+  if (entry.has("scale")) {
+    if (tool.shape != ToolShape::mesh) entry.at("scale").fail("this key only beside a shape that is a mesh");
+    tool.scale = entry.at("scale").positive();
+  }
+  if (!tool.mesh.empty() && tool.mesh.is_relative()) tool.mesh = folder / tool.mesh;
+  if (entry.has("path")) {
+    for (const Reader& row : entry.at("path").items("a list of at least one row [time, x, y, z, qx, qy, qz, qw]", 1))
+      tool.path.push_back(read_row(row, tool.path));
+  }
+  if (entry.has("friction")) tool.friction = entry.at("friction").non_negative();
+  if (entry.has("contact")) read_contact(entry.at("contact"), tool);
+  return tool;
+}
+
+}  // namespace
+
+std::vector<ContactTool> read_tools(const Reader& tools, const std::filesystem::path& folder) {
+  std::vector<ContactTool> all;
+  for (const Reader& entry : tools.items("a list of tools")) {
+    if (all.size() == most_tools)
+      tools.fail(fmt::format("{} tools", tools.json().size()), fmt::format("at most {}", most_tools));
+    all.push_back(read_contact_tool(entry, all.size(), folder));
+    for (std::size_t i = 0; i + 1 < all.size(); ++i) {
+      if (all[i].name != all.back().name) continue;
+      entry.fail(fmt::format("the name \"{}\", which {} has already", all[i].name, all[i].pointer),
+                 "a different name for every tool");
+    }
+  }
+  return all;
+}
+
+void check_tools(const Reader& top, const Scene& scene) {
+  if (scene.tools.empty()) return;
+  if (scene.integrator != Integrator::increment) top.at("integrator").fail("increment, because the scene has tools");
+  if (scene.solver.enabled)
+    top.at("solver").fail("\"dynamic\", because the scene has tools (contact is not solved statically)");
+  const std::vector<Reader> bodies = top.at("bodies").items("a list of bodies");
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    if (scene.bodies[i].model.substeps > 1)
+      bodies[i].at("model").at("substeps").fail("1, because the scene has tools, which touch shape matching in every step");
+  }
+}
+
+}  // namespace pliant

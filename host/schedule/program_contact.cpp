@@ -1,0 +1,209 @@
+// Buffers and passes of contact with tools.
+#include <algorithm>
+#include <map>
+
+#include "schedule/contact_data.h"
+#include "schedule/program_builder.h"
+
+namespace pliant {
+namespace {
+
+/// Numbers per tool in tool_data, tool_kind and a row of tool_pose (kernels/contact_shape.cl, contact_point.cl).
+constexpr std::size_t kToolNumbers = 20, kToolIntegers = 8, kPoseNumbers = 12;
+
+std::vector<double> numbers_of(const ToolForm& form, const ContactLaw& law) {
+  std::vector<double> n{form.radius};
+  for (const Vec3d& v : {form.first, form.second, form.origin}) n.insert(n.end(), v.begin(), v.end());
+  n.push_back(form.spacing > 0 ? 1 / form.spacing : 0);
+  n.push_back(form.spacing);
+  n.insert(n.end(), {law.stiffness, 1.5 * law.alpha, law.friction, law.core, law.exponent == 1.5 ? 1.0 : 0.0});
+  n.resize(kToolNumbers, 0.0);
+  return n;
+}
+
+}  // namespace
+
+void ProgramBuilder::add_contact() {
+  if (model_.contact == nullptr || model_.contact->size() == 0) return;
+  add_contact_points();
+  add_tools();
+  add_contact_gather();
+  add_contact_passes();
+}
+
+void ProgramBuilder::add_contact_points() {
+  const ContactPoints& points = *model_.contact;
+  const std::size_t count = padded(points.size()), tiles = count / PLIANT_TILE;
+  std::vector<double> rest(4 * count, 0.0), weight(8 * count, 0.0), share(8 * count, 0.0);
+  std::vector<std::int32_t> node(8 * count, points.nodes[0][0]);
+  std::vector<char> held(static_cast<std::size_t>(model_.slots), 0);
+  for (const Constraint& c : model_.constraints) held[static_cast<std::size_t>(c.slot)] = static_cast<char>(c.axes == 7);
+  std::vector<double> area(static_cast<std::size_t>(model_.slots), 0.0);  // of all points at a node, times their weights
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t a = 0; a < 8; ++a)
+      area[static_cast<std::size_t>(points.nodes[i][a])] += points.area[i] * points.weights[i][a] / contact_weight_unit;
+  }
+  for (std::size_t i = 0; i < count; ++i) {  // what fills the last tile has the last point's place, and no area
+    const std::size_t from = std::min(i, points.size() - 1);
+    for (std::size_t c = 0; c < 3; ++c) rest[tile_base(i, 4) + c * PLIANT_TILE] = points.rest[from][c];
+    if (i >= points.size()) continue;
+    rest[tile_base(i, 4) + std::size_t{3} * PLIANT_TILE] = points.area[i];
+    double whole = 0, moving = 0;
+    for (std::size_t a = 0; a < 8; ++a) {
+      const std::size_t at = tile_base(i, 8) + a * PLIANT_TILE;
+      const auto slot = static_cast<std::size_t>(points.nodes[i][a]);
+      node[at] = points.nodes[i][a];
+      weight[at] = double(points.weights[i][a]) / contact_weight_unit;
+      whole += weight[at] * area[slot];
+      if (held[slot] != 0) continue;
+      share[at] = weight[at] * area[slot];
+      moving += share[at];
+    }
+    for (std::size_t a = 0; a < 8 && moving > 0; ++a) share[tile_base(i, 8) + a * PLIANT_TILE] *= whole / moving;
+  }
+  const auto constant = [&](const char* name, std::size_t planes, const char* shape, const char* unit,
+                            std::vector<double> values) {
+    add(make_reals(name, BufferType::real, planes * count, BufferRole::constant, shape, unit, "model", std::move(values)));
+  };
+  constant("contact_rest", 4, "[tiles][4][16]", "m, m, m, m^2", std::move(rest));
+  add(make_ints("contact_node", BufferRole::constant, "[tiles][8][16]", std::move(node)));
+  constant("contact_weight", 8, "[tiles][8][16]", "1", std::move(weight));
+  constant("contact_share", 8, "[tiles][8][16]", "m^2", std::move(share));
+  const auto all = static_cast<std::int32_t>((std::int64_t{1} << model_.tools->size()) - 1);
+  for (const char* name : {"contact_near", "last_contact_near"}) {
+    add(make_ints(name, BufferRole::state, "[tiles]", std::vector<std::int32_t>(tiles, all), 0, "contact_near"));
+  }
+  for (const char* name : {"contact_anchor", "last_contact_anchor"}) {
+    add(make_reals(name, BufferType::real, 4 * count, BufferRole::state, "[tiles][4][16]", "m, m, m, 1",
+                   "contact_press, contact_settle"));
+  }
+  add(make_ints("contact_force", BufferRole::scratch, "[tiles][4][16]", {}, 4 * count, "contact_press, contact_settle"));
+  add(make_ints("contact_change", BufferRole::scratch, "[tiles][4][16]", {}, 4 * count, "contact_settle"));
+  add(make_reals("contact_node_sum", BufferType::real4, static_cast<std::size_t>(model_.slots) + 1, BufferRole::scratch,
+                 "[slots + 1]", "N, N, N, m^2", "contact_apply"));
+}
+
+void ProgramBuilder::add_tools() {
+  const std::size_t tools = model_.tools->size();
+  std::vector<double> data, grid;
+  std::vector<std::int32_t> kind;
+  for (std::size_t t = 0; t < tools; ++t) {
+    const ToolForm& form = (*model_.tools)[t];
+    const std::vector<double> numbers = numbers_of(form, model_.contact_laws[t]);
+    data.insert(data.end(), numbers.begin(), numbers.end());
+    kind.insert(kind.end(), {static_cast<std::int32_t>(form.shape), static_cast<std::int32_t>(grid.size()), form.size[0],
+                             form.size[1], form.size[2]});
+    kind.resize((t + 1) * kToolIntegers, 0);
+    grid.insert(grid.end(), form.distance.begin(), form.distance.end());
+  }
+  if (grid.empty()) grid.push_back(0);
+  add(make_ints("tool_kind", BufferRole::constant, "[tools][8]", std::move(kind)));
+  const std::size_t numbers = data.size(), values = grid.size();
+  add(make_reals("tool_data", BufferType::real, numbers, BufferRole::constant, "[tools][20]", "see contact_shape.cl", "model",
+                 std::move(data)));
+  add(make_reals("tool_grid", BufferType::real, values, BufferRole::constant, "[grid nodes]", "m", "model", std::move(grid)));
+  const auto rows = static_cast<std::size_t>(options_.batch_steps);
+  add(make_reals("tool_pose", BufferType::real, (rows + 1) * tools * kPoseNumbers, BufferRole::control,
+                 "[steps + 1][tools][12]", "1 (9), m (3)", "host"));
+  add(make_ints("tool_sum", BufferRole::scratch, "[steps][tools][16]", {}, rows * tools * contact_sum_numbers,
+                "contact_press, contact_settle"));
+  program_.buffers.back().carried = Carried::all;  // until the host clears it
+  add(make_reals("contact_params", BufferType::real, 8, BufferRole::control, "[8]", "see contact_near.cl", "host"));
+}
+
+/// The points at each node, and the tiles of points at each tile of nodes.
+void ProgramBuilder::add_contact_gather() {
+  const ContactPoints& points = *model_.contact;
+  std::map<std::int32_t, std::vector<std::pair<std::int32_t, std::int32_t>>> at_node;  // position of the point, units
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t a = 0; a < 8; ++a) {
+      if (points.weights[i][a] > 0)
+        at_node[points.nodes[i][a]].emplace_back(static_cast<std::int32_t>(tile_base(i, 4)), points.weights[i][a]);
+    }
+  }
+  std::map<std::int32_t, std::int32_t> axes;
+  for (const Constraint& c : model_.constraints) axes[c.slot] = c.axes;
+  std::vector<std::int32_t> slot, free;
+  std::vector<std::vector<std::int32_t>> position, units;
+  for (const auto& [s, entries] : at_node) {
+    slot.push_back(s);
+    const auto found = axes.find(s);
+    free.push_back(found == axes.end() ? 7 : 7 & ~found->second);
+    auto& p = position.emplace_back();
+    auto& u = units.emplace_back();
+    for (const auto& [at, unit] : entries) {
+      p.push_back(at);
+      u.push_back(unit);
+    }
+  }
+  const std::size_t count = padded(slot.size());
+  slot.resize(count, model_.slots);
+  free.resize(count, 0);
+  position.resize(count);
+  units.resize(count);
+  std::vector<std::int32_t> offset{0}, tiles;
+  for (std::size_t first = 0; first < count; first += PLIANT_TILE) {
+    const std::size_t before = tiles.size();
+    for (std::size_t n = first; n < first + PLIANT_TILE; ++n) {
+      for (const std::int32_t at : position[n]) tiles.push_back(at / (4 * PLIANT_TILE));
+    }
+    std::sort(tiles.begin() + static_cast<std::ptrdiff_t>(before), tiles.end());
+    tiles.erase(std::unique(tiles.begin() + static_cast<std::ptrdiff_t>(before), tiles.end()), tiles.end());
+    offset.push_back(static_cast<std::int32_t>(tiles.size()));
+  }
+  GatherList where = pack_rows(position, 0), share = pack_rows(units, 0);
+  add(make_ints("contact_slot", BufferRole::constant, "[contact nodes]", std::move(slot)));
+  add(make_ints("contact_free", BufferRole::constant, "[contact nodes]", std::move(free)));
+  add(make_ints("contact_tiles_offset", BufferRole::constant, "[tiles + 1]", std::move(offset)));
+  add(make_ints("contact_tiles", BufferRole::constant, "[entries]", std::move(tiles)));
+  add(make_ints("contact_gather_offset", BufferRole::constant, "[tiles + 1]", std::move(where.offset)));
+  add(make_ints("contact_gather", BufferRole::constant, "[rows][16]", std::move(where.index)));
+  add(make_ints("contact_gather_units", BufferRole::constant, "[rows][16]", std::move(share.index)));
+}
+
+void ProgramBuilder::add_contact_passes() {
+  const auto points = static_cast<std::int64_t>(padded(model_.contact->size()));
+  const auto nodes = static_cast<std::int64_t>(program_.at(program_.find("contact_slot")).count);
+  const auto tools = static_cast<std::int32_t>(model_.tools->size());
+  const auto arg = [&](const char* name) { return buffer_arg(program_.find(name)); };
+  const auto args = [&](std::initializer_list<const char*> names) {
+    std::vector<Arg> list;
+    for (const char* name : names) list.push_back(arg(name));
+    return list;
+  };
+  const auto with_step = [&](std::vector<Arg> list) {
+    list.push_back(int_arg(tools));
+    list.push_back(step_arg());
+    return list;
+  };
+  // Counted as idle: a word per tile. What is near costs more (docs/contact.md).
+  const auto pass = [&](const char* kernel, std::vector<Arg> list, Shape shape, std::int64_t count, const char* label) {
+    program_.step.push_back({kernel, {}, std::move(list), shape, count, label, count, 0.25, 0});
+  };
+  pass("contact_near",
+       with_step(args({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_near", "contact_anchor",
+                       "tool_kind", "tool_data", "tool_grid", "tool_pose", "contact_params"})),
+       Shape::items, points / PLIANT_TILE, "near tools");
+  program_.step.back().every = contact_look_every;
+  const auto apply = [&](const char* force) {
+    pass("contact_apply",
+         args({"node_u", "node_w", "contact_slot", "contact_free", "contact_tiles_offset", "contact_tiles",
+               "contact_gather_offset", "contact_gather", "contact_gather_units", "contact_near", force, "contact_rest",
+               "contact_node_sum", "contact_params", "step_params"}),
+         Shape::lanes, nodes, "contact nodes");
+  };
+  pass("contact_press",
+       with_step(args({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_share", "contact_near",
+                       "contact_anchor", "contact_force", "tool_sum", "tool_kind", "tool_data", "tool_grid", "tool_pose",
+                       "contact_params", "step_params"})),
+       Shape::lanes, points, "contact points");
+  apply("contact_force");
+  pass("contact_settle",
+       with_step(args({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_share", "contact_near",
+                       "contact_anchor", "contact_force", "contact_change", "contact_node_sum", "tool_sum", "tool_kind",
+                       "tool_data", "tool_grid", "tool_pose", "contact_params", "step_params"})),
+       Shape::lanes, points, "contact points");
+  apply("contact_change");
+}
+
+}  // namespace pliant

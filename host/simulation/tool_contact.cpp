@@ -1,0 +1,139 @@
+#include "simulation/tool_contact.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "geometry/vec.h"
+#include "pliant/error.h"
+#include "schedule/contact_data.h"
+
+namespace pliant {
+namespace {
+
+/// A point is looked after when it is nearer than this share of a cell, beside what it moves until the next look.
+constexpr double kMargin = 0.25;
+/// Depth inside a tool at the start that is pushed out, as a share of a cell; more is refused.
+constexpr double kStartDepth = 0.25;
+/// Quanta of force are this share of what moves the heaviest node one cell in a step.
+constexpr int kForceBits = 26;
+constexpr int kAreaBits = 26;
+
+double power_of_two(double x) { return std::ldexp(1.0, static_cast<int>(std::ceil(std::log2(x)))); }
+
+/// Two numbers that add_quanta made of a sum.
+double joined(const std::int32_t* at) { return 32768.0 * at[0] + at[1]; }
+
+}  // namespace
+
+bool ToolContact::active() const { return run_.model().contact != nullptr && run_.model().contact->size() > 0; }
+
+Pose ToolContact::pose(std::size_t tool, double time) const { return run_.scene.tools[tool].at(time); }
+
+void ToolContact::start() {
+  history_.assign(run_.scene.tools.size(), {});
+  if (!active()) return;
+  const Model& model = run_.model();
+  const ContactPoints& points = *model.contact;
+  for (std::size_t t = 0; t < run_.scene.tools.size(); ++t) {
+    const ContactTool& tool = run_.scene.tools[t];
+    const Pose at = pose(t, run_.state.clock.time());
+    const std::array<Vec3d, 3> r = rotation_matrix(at.turn);
+    double deepest = 0;
+    std::size_t where = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      Vec3d x = points.rest[i];
+      for (std::size_t a = 0; a < 8 && !model.displacement.empty(); ++a)
+        x = vec::add(x, vec::mul(model.displacement[points.nodes[i][a]], double(points.weights[i][a]) / contact_weight_unit));
+      const Vec3d d = vec::sub(x, at.position);
+      Vec3d y{};
+      for (std::size_t c = 0; c < 3; ++c) y[c] = r[0][c] * d[0] + r[1][c] * d[1] + r[2][c] * d[2];
+      const double depth = -tool_distance((*model.tools)[t], y);
+      if (depth > deepest) {
+        deepest = depth;
+        where = i;
+      }
+    }
+    if (deepest <= kStartDepth * points.spacing) continue;
+    throw Error(
+        ErrorCode::bad_input,
+        fmt::format("{}: tool '{}' begins inside body '{}', {:.3g} m deep at [{:.4g}, {:.4g}, {:.4g}]; expected at most "
+                    "{:.3g} m (a quarter of a cell), which contact pushes out",
+                    tool.pointer, tool.name, model.bodies[points.body[where]].name, deepest, points.rest[where][0],
+                    points.rest[where][1], points.rest[where][2], kStartDepth * points.spacing));
+  }
+}
+
+/// Powers of two, so that nothing is rounded but the quanta.
+ToolContact::Units ToolContact::units() const {
+  const Model& model = run_.model();
+  const double h = run_.state.clock.dt;
+  double heaviest = 0, area = 0, longest = 0;
+  for (const auto& nodes : model.contact->nodes) {
+    for (const std::int32_t n : nodes) heaviest = std::max(heaviest, model.mass[n]);
+  }
+  for (const double a : model.contact->area) area += a;
+  vec::Box box;
+  for (const Vec3d& x : model.contact->rest) box.extend(x);
+  longest = vec::norm(vec::sub(box.upper, box.lower));
+  for (const ToolForm& form : *model.tools) longest = std::max(longest, form.reach);
+  Units u;
+  u.force = power_of_two(heaviest * model.contact->spacing / (h * h)) * std::ldexp(1.0, -kForceBits);
+  u.torque = u.force * power_of_two(longest);
+  u.area = power_of_two(area) * std::ldexp(1.0, -kAreaBits);
+  return u;
+}
+
+void ToolContact::begin_batch(std::int32_t steps) {
+  if (!active()) return;
+  const std::size_t tools = run_.scene.tools.size(), rows = static_cast<std::size_t>(run_.settings.batch_steps) + 1;
+  std::vector<double> poses;
+  poses.reserve(rows * tools * 12);
+  for (std::size_t row = 0; row < rows; ++row) {
+    const double t =
+        run_.state.clock.time_at(run_.state.clock.step + std::min<std::int64_t>(static_cast<std::int64_t>(row), steps));
+    for (std::size_t tool = 0; tool < tools; ++tool) {
+      const Pose at = pose(tool, t);
+      for (const Vec3d& r : rotation_matrix(at.turn)) poses.insert(poses.end(), r.begin(), r.end());
+      poses.insert(poses.end(), at.position.begin(), at.position.end());
+    }
+  }
+  const Program& program = run_.loaded.program();
+  Backend& backend = run_.backend();
+  backend.write_reals(program.find("tool_pose"), poses);
+  const Units u = units();
+  backend.write_reals(program.find("contact_params"),
+                      {u.force, 1 / u.force, u.force / contact_weight_unit, 1 / u.torque, 1 / u.area,
+                       kMargin * run_.model().contact->spacing, double(contact_look_every), 0});
+  const BufferId sums = program.find("tool_sum");
+  backend.write_ints(sums, std::vector<std::int32_t>(program.at(sums).count, 0));
+}
+
+void ToolContact::end_batch(std::int32_t steps) {
+  if (!active() || steps <= 0) return;
+  const std::vector<std::int32_t> sums = run_.backend().read_ints(run_.loaded.program().find("tool_sum"));
+  const Units u = units();
+  const std::size_t tools = history_.size();
+  for (std::size_t t = 0; t < tools; ++t) {
+    ToolHistory& h = history_[t];
+    h.now = {};
+    for (std::int32_t step = 0; step < steps; ++step) {
+      const std::int32_t* s = &sums[(static_cast<std::size_t>(step) * tools + t) * contact_sum_numbers];
+      if (s[15] == 0) continue;
+      ++h.touched;
+      for (std::size_t c = 0; c < 3; ++c) {
+        h.now.force[c] += joined(s + 2 * c) * u.force / steps;
+        h.now.torque[c] += joined(s + 6 + 2 * c) * u.torque / steps;
+      }
+      h.now.area = joined(s + 12) * u.area;
+      h.now.points = s[15];
+      h.now.depth = static_cast<double>(std::bit_cast<float>(s[14]));
+      h.max_depth = std::max(h.max_depth, h.now.depth);
+    }
+    h.max_force = std::max(h.max_force, vec::norm(h.now.force));
+  }
+}
+
+}  // namespace pliant

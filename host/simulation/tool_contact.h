@@ -1,0 +1,56 @@
+// Contact of a running simulation with its tools: poses and fixed-point units go to the device, forces come back.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "simulation/run_context.h"
+
+namespace pliant {
+
+/// What a tool feels: of one step, or the mean over the steps since somebody asked.
+struct ToolLoad {
+  Vec3d force{};     ///< on the tool [N]
+  Vec3d torque{};    ///< about its origin [N m]
+  double area = 0;   ///< of the tissue that touches it, at rest [m^2]
+  double depth = 0;  ///< deepest point inside the tool, after contact [m]
+  std::int64_t points = 0;
+};
+
+/// What became of a tool over a run.
+struct ToolHistory {
+  ToolLoad now;              ///< mean of the last batch
+  double max_force = 0;      ///< of a batch's mean [N]
+  double max_depth = 0;      ///< [m]
+  double work = 0;           ///< done on the tissue by the tool [J]
+  std::int64_t touched = 0;  ///< steps with contact
+};
+
+class ToolContact {
+ public:
+  explicit ToolContact(RunContext& run) : run_(run) {}
+
+  /// Throws Error (bad_input) for a tool that begins inside a body, deeper than a quarter of a cell.
+  void start();
+  /// Poses for the next `steps` steps, units, and sums of zero. Nothing without tools.
+  void begin_batch(std::int32_t steps);
+  /// Read what the batch's tools felt. `steps`: how many were done.
+  void end_batch(std::int32_t steps);
+
+  /// One per tool of the scene.
+  [[nodiscard]] const std::vector<ToolHistory>& history() const { return history_; }
+  /// Where a tool is at a time [s].
+  [[nodiscard]] Pose pose(std::size_t tool, double time) const;
+
+ private:
+  struct Units {
+    double force = 0, torque = 0, area = 0;
+  };
+  [[nodiscard]] bool active() const;
+  [[nodiscard]] Units units() const;
+
+  RunContext& run_;
+  std::vector<ToolHistory> history_;
+};
+
+}  // namespace pliant

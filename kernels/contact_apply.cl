@@ -1,0 +1,56 @@
+// Take forces of contact points over to the nodes that move them, at once: u and w change by b c f / m. Forces are whole quanta and weights
+// whole units, so that the sum over the nodes is that over the points to the last bit, in any order.
+// contact_slot: [nodes] slots; contact_free: [nodes] bit mask of the components that move freely; contact_tiles_offset, contact_tiles:
+// tiles of points at each tile of nodes; contact_gather_offset: [tiles + 1] rows; contact_gather: [rows][16] positions in
+// contact_force; contact_gather_units: [rows][16] weights in units. contact_node_sum: [slots] (force (3) [N], sum of weights times
+// areas of the points that touch [m^2]).
+#include "arith.cl"
+
+__kernel void contact_apply(__global float* node_u, __global float* node_w, __global const int* contact_slot,
+                            __global const int* contact_free, __global const int* contact_tiles_offset,
+                            __global const int* contact_tiles, __global const int* contact_gather_offset,
+                            __global const int* contact_gather, __global const int* contact_gather_units,
+                            __global const int* contact_near, __global const int* contact_force,
+                            __global const float* contact_rest, __global float* contact_node_sum,
+                            __global const float* contact_params, __global const float* step_params) {
+  const int first = FIRST_INDEX, tile = first / PLIANT_TILE;
+  int near = 0;
+  for (int k = contact_tiles_offset[tile]; k < contact_tiles_offset[tile + 1]; ++k) near |= contact_near[contact_tiles[k]];
+  if (near == 0) return;
+  const float h = step_params[0], half_hh = (0.5f * h) * h, quantum = contact_params[2];
+  for (int i = first; i < first + LANES; ++i) {
+    long x = 0, y = 0, z = 0;
+    float area = 0.0f;
+    for (int k = contact_gather_offset[tile]; k < contact_gather_offset[tile + 1]; ++k) {
+      const int entry = k * PLIANT_TILE + i % PLIANT_TILE, units = contact_gather_units[entry], at = contact_gather[entry];
+      if (units == 0 || contact_near[at / (4 * PLIANT_TILE)] == 0 || contact_force[at + 3 * PLIANT_TILE] == 0) continue;
+      x += (long)contact_force[at] * units;
+      y += (long)contact_force[at + PLIANT_TILE] * units;
+      z += (long)contact_force[at + 2 * PLIANT_TILE] * units;
+      area = fma((float)units * (1.0f / 4096.0f), contact_rest[at + 3 * PLIANT_TILE], area);
+    }
+    const int slot = contact_slot[i], free = contact_free[i];
+    const float fx = (float)x * quantum, fy = (float)y * quantum, fz = (float)z * quantum;
+    __global float* u = node_u + 4 * slot;
+    __global float* w = node_w + 4 * slot;
+    __global float* sum = contact_node_sum + 4 * slot;
+    sum[0] = fx;
+    sum[1] = fy;
+    sum[2] = fz;
+    sum[3] = area;
+    if (free == 0) continue;
+    const float bm = fma(half_hh, w[3], half_hh) * u[3];
+    if (free & 1) {
+      u[0] = fma(bm, fx, u[0]);
+      w[0] = fma(bm, fx, w[0]);
+    }
+    if (free & 2) {
+      u[1] = fma(bm, fy, u[1]);
+      w[1] = fma(bm, fy, w[1]);
+    }
+    if (free & 4) {
+      u[2] = fma(bm, fz, u[2]);
+      w[2] = fma(bm, fz, w[2]);
+    }
+  }
+}

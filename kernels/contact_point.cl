@@ -1,0 +1,65 @@
+// Contact points: where they are, how they move, and how they meet a tool. Numbers per point stand in tiles of 16.
+// contact_rest: (place at rest (3) [m], area [m^2]); contact_node: 8 slots; contact_weight: 8 weights that sum to one.
+// tool_pose: [steps + 1][tools] rows of the rotation (9), place of the origin (3) [m]; the row of the present time is `step`.
+#define POSE_NUMBERS 12
+#define POINT_BASE(i, planes) TILE_BASE(i, planes)
+#define QUANTUM_LIMIT 67108864.0f  // so that thirty of them fit an integer
+
+typedef struct {
+  float4 now;   // place after the trial step [m]
+  float4 moved; // increment of this step [m]
+} contact_place;
+
+static inline contact_place place_of_point(__global const float* node_u, __global const float* node_w, __global const float* contact_rest,
+                                           __global const int* contact_node, __global const float* contact_weight, int i) {
+  __global const int* node = contact_node + POINT_BASE(i, 8);
+  __global const float* weight = contact_weight + POINT_BASE(i, 8);
+  float4 u = 0.0f, w = 0.0f;
+  for (int a = 0; a < 8; ++a) {
+    const float4 c = weight[a * PLIANT_TILE];
+    u = fma(c, vload4(node[a * PLIANT_TILE], node_u), u);
+    w = fma(c, vload4(node[a * PLIANT_TILE], node_w), w);
+  }
+  __global const float* rest = contact_rest + POINT_BASE(i, 4);
+  contact_place out;
+  out.now = (float4)(rest[0] + u.x, rest[PLIANT_TILE] + u.y, rest[2 * PLIANT_TILE] + u.z, 0.0f);
+  out.moved = w;
+  return out;
+}
+
+// R v of a pose, and its transpose.
+static inline float4 turned(__global const float* r, float4 v) {
+  return (float4)(dot3(r[0], v.x, r[1], v.y, r[2], v.z), dot3(r[3], v.x, r[4], v.y, r[5], v.z), dot3(r[6], v.x, r[7], v.y, r[8], v.z), 0.0f);
+}
+static inline float4 turned_back(__global const float* r, float4 v) {
+  return (float4)(dot3(r[0], v.x, r[3], v.y, r[6], v.z), dot3(r[1], v.x, r[4], v.y, r[7], v.z), dot3(r[2], v.x, r[5], v.y, r[8], v.z), 0.0f);
+}
+static inline float4 origin_of(__global const float* pose) { return (float4)(pose[9], pose[10], pose[11], 0.0f); }
+
+static inline float dot_xyz(float4 a, float4 b) { return dot3(a.x, b.x, a.y, b.y, a.z, b.z); }
+
+typedef struct {
+  float distance;  // to the tool's surface, negative inside [m]
+  float4 normal;   // outward, in space
+  float4 slip;     // increment of the point against the tool's [m]
+  float4 inside;   // the point in the tool's frame [m]
+} meeting;
+
+static inline meeting meet(__global const int* tool_kind, __global const float* tool_data, __global const float* tool_grid,
+                           __global const float* tool_pose, int tools, int step, int t, contact_place p) {
+  __global const float* now = tool_pose + POSE_NUMBERS * (step * tools + t);
+  __global const float* next = now + POSE_NUMBERS * tools;
+  meeting m;
+  m.inside = turned_back(next, p.now - origin_of(next));
+  const float4 found = tool_distance(tool_kind + TOOL_INTEGERS * t, tool_data + TOOL_NUMBERS * t, tool_grid, m.inside);
+  m.distance = found.w;
+  m.normal = turned(next, found);
+  m.slip = p.moved - (p.now - (turned(now, m.inside) + origin_of(now)));
+  return m;
+}
+
+// Of a force in quanta; nothing of what is no number.
+static inline int quanta(float value) {
+  const float inside = value > QUANTUM_LIMIT ? QUANTUM_LIMIT : value < -QUANTUM_LIMIT ? -QUANTUM_LIMIT : value;
+  return inside == inside ? (int)rint(inside) : 0;
+}

@@ -1,0 +1,97 @@
+// Forces of tools on contact points, first part. The trial step is done; x is the point after it, d its depth, s its slip.
+//   Soft shell (Hunt and Crossley 1975), explicit: f = A lambda d0^n (1 + 3/2 alpha v) >= 0, d0 and v the depth at the start of the step
+//   and its rate, at most half of what would take d0 back in one step.
+//   Core: what is left of d beyond the shell is taken back: f = A rest / W, W = b sum_j c_j s_j / m_j, s_j the area of all points at
+//   node j times their weights. W bounds the sum over a row of the compliance matrix (Gershgorin), so that points that share nodes
+//   never overshoot together.
+//   Friction: towards the anchor, where the point stuck first, f = min(mu f_n, A |x - anchor| / W).
+// contact_share: 8 planes c_j s_j [m^2], 0 at nodes that are held, whose part the others have: a point that hangs on held nodes is as
+// hard as any other, not as hard as what holds it; contact_anchor: (place in the tool's frame (3) [m], tool + 1);
+// contact_force: (force (3) [quanta], tools that touch, a bit each).
+#include "arith.cl"
+#include "contact_shape.cl"
+#include "contact_point.cl"
+#include "contact_sum.cl"
+
+__kernel void contact_press(__global const float* node_u, __global const float* node_w, __global const float* contact_rest,
+                            __global const int* contact_node, __global const float* contact_weight,
+                            __global const float* contact_share, __global const int* contact_near, __global float* contact_anchor,
+                            __global int* contact_force, __global int* tool_sum, __global const int* tool_kind,
+                            __global const float* tool_data, __global const float* tool_grid, __global const float* tool_pose,
+                            __global const float* contact_params, __global const float* step_params, int tools, int step) {
+  const int first = FIRST_INDEX;
+  const int near = contact_near[first / PLIANT_TILE];
+  if (near == 0) return;
+  const float h = step_params[0], half_hh = (0.5f * h) * h;
+  for (int i = first; i < first + LANES; ++i) {
+    const contact_place p = place_of_point(node_u, node_w, contact_rest, contact_node, contact_weight, i);
+    const float area = contact_rest[POINT_BASE(i, 4) + 3 * PLIANT_TILE];  // none: it fills the tile up
+    int touching = 0, count = 0;
+    for (int t = 0; t < tools; ++t) {
+      if (!(near >> t & 1) || !(area > 0.0f)) continue;
+      if (meet(tool_kind, tool_data, tool_grid, tool_pose, tools, step, t, p).distance < 0.0f) {
+        touching |= 1 << t;
+        ++count;
+      }
+    }
+    __global float* anchor = contact_anchor + POINT_BASE(i, 4);
+    __global int* force = contact_force + POINT_BASE(i, 4);
+    const int held = (int)anchor[3 * PLIANT_TILE] - 1;
+    if (held >= 0 && !(touching >> held & 1)) anchor[3 * PLIANT_TILE] = 0.0f;
+    int4 sum = 0;
+    float w = 0.0f;
+    if (touching != 0) {
+      __global const int* node = contact_node + POINT_BASE(i, 8);
+      __global const float* share = contact_share + POINT_BASE(i, 8);
+      for (int a = 0; a < 8; ++a) {
+        const float b = fma(half_hh, node_w[4 * node[a * PLIANT_TILE] + 3], half_hh);
+        w = fma(share[a * PLIANT_TILE], b * node_u[4 * node[a * PLIANT_TILE] + 3], w);
+      }
+    }
+    const float stiffness = w > 0.0f ? area / (w * (float)count) : 0.0f;
+    for (int t = 0; t < tools; ++t) {
+      if (!(touching >> t & 1)) continue;
+      const meeting m = meet(tool_kind, tool_data, tool_grid, tool_pose, tools, step, t, p);
+      __global const float* data = tool_data + TOOL_NUMBERS * t;
+      const float depth = -m.distance, opening = dot_xyz(m.slip, m.normal), before = depth + opening;
+      float push = 0.0f;
+      if (data[12] > 0.0f && before > 0.0f) {
+        const float spring = (area * data[12]) * (data[16] > 0.0f ? before * sqrt(before) : before);
+        const float damped = spring * fma(data[13], -opening / h, 1.0f);
+        const float most = 0.5f * (stiffness * before);
+        push = damped > 0.0f ? (damped < most ? damped : most) : 0.0f;
+      }
+      const float rest = stiffness > 0.0f ? depth - push / stiffness - data[15] : 0.0f;
+      push = rest > 0.0f ? fma(stiffness, rest, push) : push;
+      float4 f = m.normal * push;
+      if (data[14] > 0.0f) {
+        __global const float* now = tool_pose + POSE_NUMBERS * (step * tools + t);
+        if (anchor[3 * PLIANT_TILE] == 0.0f) {
+          const float4 stuck = turned_back(now, (p.now - p.moved) - origin_of(now));
+          anchor[0] = stuck.x;
+          anchor[PLIANT_TILE] = stuck.y;
+          anchor[2 * PLIANT_TILE] = stuck.z;
+          anchor[3 * PLIANT_TILE] = (float)(t + 1);
+        }
+        if (anchor[3 * PLIANT_TILE] == (float)(t + 1)) {
+          const float4 stuck = (float4)(anchor[0], anchor[PLIANT_TILE], anchor[2 * PLIANT_TILE], 0.0f);
+          const float4 slip = turned(now + POSE_NUMBERS * tools, m.inside - stuck);
+          const float along = dot_xyz(slip, m.normal);
+          const float4 side = fma((float4)(-along), m.normal, slip);
+          const float length = sqrt(dot_xyz(side, side)), most = data[14] * push, pull = stiffness * length;
+          const float factor = pull > most ? most / length : stiffness;
+          f = fma((float4)(-factor), side, f);
+        }
+      }
+      const float inverse = contact_params[1];
+      const int4 q = (int4)(quanta(f.x * inverse), quanta(f.y * inverse), quanta(f.z * inverse), 0);
+      add_to_tool(tool_sum, tool_pose, contact_params, tools, step, t, p.now, q);
+      add_touch(tool_sum, contact_params, tools, step, t, area, before);
+      sum += q;
+    }
+    force[0] = sum.x;
+    force[PLIANT_TILE] = sum.y;
+    force[2 * PLIANT_TILE] = sum.z;
+    force[3 * PLIANT_TILE] = touching;
+  }
+}

@@ -1,0 +1,92 @@
+// Forces of tools on contact points, second part: contact_press again from where contact_apply has put the nodes, with the compliance
+// W of the points that do touch (contact_node_sum), so that what one part left the other takes back, whether one point touches
+// or all. Friction is that of both parts together; where it slips, the anchor follows. contact_change: the added force [quanta].
+#include "arith.cl"
+#include "contact_shape.cl"
+#include "contact_point.cl"
+#include "contact_sum.cl"
+
+__kernel void contact_settle(__global const float* node_u, __global const float* node_w, __global const float* contact_rest,
+                             __global const int* contact_node, __global const float* contact_weight,
+                             __global const float* contact_share, __global const int* contact_near, __global float* contact_anchor,
+                             __global int* contact_force, __global int* contact_change, __global const float* contact_node_sum,
+                             __global int* tool_sum, __global const int* tool_kind, __global const float* tool_data,
+                             __global const float* tool_grid, __global const float* tool_pose, __global const float* contact_params,
+                             __global const float* step_params, int tools, int step) {
+  const int first = FIRST_INDEX;
+  if (contact_near[first / PLIANT_TILE] == 0) return;
+  const float h = step_params[0], half_hh = (0.5f * h) * h;
+  for (int i = first; i < first + LANES; ++i) {
+    __global float* anchor = contact_anchor + POINT_BASE(i, 4);
+    __global int* force = contact_force + POINT_BASE(i, 4);
+    __global int* change = contact_change + POINT_BASE(i, 4);
+    const int touching = force[3 * PLIANT_TILE];
+    int4 sum = 0;
+    if (touching != 0) {
+      const contact_place p = place_of_point(node_u, node_w, contact_rest, contact_node, contact_weight, i);
+      __global const int* node = contact_node + POINT_BASE(i, 8);
+      __global const float* weight = contact_weight + POINT_BASE(i, 8);
+      __global const float* share = contact_share + POINT_BASE(i, 8);
+      float w = 0.0f, all = 0.0f, moving = 0.0f;
+      for (int a = 0; a < 8; ++a) {
+        const int n = node[a * PLIANT_TILE];
+        const float b = fma(half_hh, node_w[4 * n + 3], half_hh);
+        const float own = weight[a * PLIANT_TILE] * contact_node_sum[4 * n + 3];
+        const float free = share[a * PLIANT_TILE] > 0.0f ? own : 0.0f;
+        w = fma(free, b * node_u[4 * n + 3], w);
+        all += own;
+        moving += free;
+      }
+      w = moving > 0.0f ? w * (all / moving) : 0.0f;  // held nodes count as if they moved like the others (contact_press)
+      int count = 0;
+      for (int t = 0; t < tools; ++t) count += touching >> t & 1;
+      const float area = contact_rest[POINT_BASE(i, 4) + 3 * PLIANT_TILE];
+      const float stiffness = w > 0.0f ? area / (w * (float)count) : 0.0f;
+      for (int t = 0; t < tools; ++t) {
+        if (!(touching >> t & 1)) continue;
+        const meeting m = meet(tool_kind, tool_data, tool_grid, tool_pose, tools, step, t, p);
+        __global const float* data = tool_data + TOOL_NUMBERS * t;
+        const float rest = -m.distance - data[15];
+        const float push = rest > 0.0f ? stiffness * rest : 0.0f;
+        const float inverse = contact_params[1], quantum = contact_params[0];
+        float4 f = m.normal * push;
+        int4 before = 0;
+        if (count == 1) {
+          before = (int4)(force[0], force[PLIANT_TILE], force[2 * PLIANT_TILE], 0);
+          f += (float4)((float)before.x * quantum, (float)before.y * quantum, (float)before.z * quantum, 0.0f);
+        }
+        if (count == 1 && anchor[3 * PLIANT_TILE] == (float)(t + 1)) {
+          const float4 stuck = (float4)(anchor[0], anchor[PLIANT_TILE], anchor[2 * PLIANT_TILE], 0.0f);
+          __global const float* next = tool_pose + POSE_NUMBERS * ((step + 1) * tools + t);
+          const float4 slip = turned(next, m.inside - stuck);
+          const float along = dot_xyz(slip, m.normal);
+          const float4 side = fma((float4)(-along), m.normal, slip);
+          const float across = dot_xyz(f, m.normal);
+          const float4 pull = fma((float4)(-stiffness), side, fma((float4)(-across), m.normal, f));
+          const float length = sqrt(dot_xyz(pull, pull)), most = across > 0.0f ? data[14] * across : 0.0f;
+          const float share_of = length > most ? most / length : 1.0f;
+          f = fma((float4)(share_of), pull, m.normal * across);
+          if (length > most) {
+            // It slips: the anchor comes as near as the friction that is left can hold.
+            const float size = sqrt(dot_xyz(side, side)), hold = stiffness > 0.0f ? most / stiffness : 0.0f;
+            const float kept = size > hold ? hold / size : 1.0f;
+            const float4 back = turned_back(next, fma((float4)(-kept), side, (float4)(-along) * m.normal));
+            anchor[0] = m.inside.x + back.x;
+            anchor[PLIANT_TILE] = m.inside.y + back.y;
+            anchor[2 * PLIANT_TILE] = m.inside.z + back.z;
+          }
+        }
+        const int4 q = (int4)(quanta(f.x * inverse), quanta(f.y * inverse), quanta(f.z * inverse), 0) - before;
+        add_to_tool(tool_sum, tool_pose, contact_params, tools, step, t, p.now, q);
+        sum += q;
+      }
+      force[0] += sum.x;
+      force[PLIANT_TILE] += sum.y;
+      force[2 * PLIANT_TILE] += sum.z;
+    }
+    change[0] = sum.x;
+    change[PLIANT_TILE] = sum.y;
+    change[2 * PLIANT_TILE] = sum.z;
+    change[3 * PLIANT_TILE] = touching;
+  }
+}

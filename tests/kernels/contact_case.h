@@ -1,0 +1,233 @@
+// Random contact: points on nodes of a made-up body, tools of every shape among them.
+#pragma once
+#include <array>
+#include <cmath>
+
+#include "random_data.h"
+
+namespace pliant::kernel_test {
+
+/// Everything that the passes of contact read. The numbers are of a body of about 1 m whose nodes weigh about 1 kg.
+struct ContactData {
+  static constexpr std::size_t tools = 5, rows = test_step + 2;
+  std::size_t points = 64, slots = 96;
+  Reals node_u, node_w, rest, weight, share, anchor, node_sum, data, grid, pose, params, step_params;
+  Ints node, near, force, change, sum, kind;
+  Ints slot, free, tiles_offset, tiles, gather_offset, gather, units;
+
+  static std::size_t base(std::size_t i, std::size_t planes) { return i / 16 * planes * 16 + i % 16; }
+
+  explicit ContactData(std::uint32_t seed, Data kind_of_data = Data::large) {
+    Random random(seed);
+    node_u = random.reals(4 * (slots + 1), kind_of_data, 0.02);
+    node_w = random.reals(4 * (slots + 1), kind_of_data, 1e-3);
+    for (std::size_t s = 0; s < slots; ++s) {
+      node_u[4 * s + 3] = random.uniform(0.5, 2);
+      node_w[4 * s + 3] = random.uniform(0.9, 1);
+    }
+    make_points(random);
+    make_tools(random);
+    make_gather();
+  }
+
+ private:
+  void make_points(Random& random) {
+    rest.resize(4 * points);
+    weight.resize(8 * points);
+    share.resize(8 * points);
+    node.resize(8 * points);
+    anchor.assign(4 * points, 0.0);
+    for (std::size_t i = 0; i < points; ++i) {
+      for (std::size_t c = 0; c < 3; ++c) rest[base(i, 4) + 16 * c] = random.uniform(-0.6, 0.6);
+      rest[base(i, 4) + 48] = random.chance(0.1) ? 0 : random.uniform(0.001, 0.01);
+      const Ints own = random.distinct(8, slots);
+      std::array<int, 8> parts{};
+      for (int k = 0; k < 4096; k += 64) parts[static_cast<std::size_t>(random.integer(0, 7))] += 64;
+      for (std::size_t a = 0; a < 8; ++a) {
+        node[base(i, 8) + 16 * a] = own[a];
+        weight[base(i, 8) + 16 * a] = parts[a] / 4096.0;
+        share[base(i, 8) + 16 * a] = random.chance(0.1) ? 0 : parts[a] / 4096.0 * random.uniform(0.01, 0.05);
+      }
+      if (random.chance(0.5)) {
+        for (std::size_t c = 0; c < 3; ++c) anchor[base(i, 4) + 16 * c] = random.uniform(-0.1, 0.1);
+        anchor[base(i, 4) + 48] = random.integer(1, static_cast<int>(tools));
+      }
+    }
+    near = random.ints(points / 16, 0, 31);
+    near[0] = 31;
+    force = random.ints(4 * points, -1000000, 1000000);
+    change = force;
+    for (std::size_t i = 0; i < points; ++i) force[base(i, 4) + 48] = change[base(i, 4) + 48] = random.integer(0, 31);
+    node_sum = random.positive(4 * (slots + 1), 0.001, 0.05);
+  }
+
+  void make_tools(Random& random) {
+    grid = random.reals(6 * 5 * 4, Data::large, 0.2);
+    for (std::size_t t = 0; t < tools; ++t) {
+      kind.insert(kind.end(), {static_cast<std::int32_t>(t), 0, 6, 5, 4, 0, 0, 0});
+      Reals d{random.uniform(0.2, 0.5)};
+      for (int k = 0; k < 3; ++k) d.push_back(random.uniform(-0.3, 0));
+      if (t == 3) {
+        d.insert(d.end(), {0.6, 0, 0.8});
+      } else {
+        for (int k = 0; k < 3; ++k) d.push_back(random.uniform(0.1, 0.4));
+      }
+      d.insert(d.end(), {-0.5, -0.4, -0.3, 5, 0.2});
+      d.insert(d.end(), {t % 2 == 0 ? 0.0 : 1e4, 0.3, t == 0 ? 0.0 : 0.4, t % 2 == 0 ? 0.0 : 0.01, t == 3 ? 1.0 : 0.0});
+      d.resize(20, 0.0);
+      data.insert(data.end(), d.begin(), d.end());
+    }
+    sum.assign(rows * tools * 16, 0);
+    for (std::size_t row = 0; row < rows; ++row) {
+      for (std::size_t t = 0; t < tools; ++t) {
+        const double angle = 0.1 * static_cast<double>(row) + static_cast<double>(t), c = std::cos(angle), s = std::sin(angle);
+        pose.insert(pose.end(), {c, -s, 0, s, c, 0, 0, 0, 1});
+        for (int k = 0; k < 3; ++k) pose.push_back(0.001 * static_cast<double>(row) + random.uniform(-1e-4, 1e-4));
+      }
+    }
+    const double unit = std::ldexp(1.0, -10);
+    params = {unit, 1 / unit, unit / 4096, 1 / (2 * unit), std::ldexp(1.0, 20), 0.05, 16, 0};
+    step_params = {1e-3, 0, 0, -9.81, 0, 0, 0, 0};
+  }
+
+  /// The nodes in order; a last tile is filled up with a slot that is none.
+  void make_gather() {
+    std::vector<std::vector<std::array<std::int32_t, 2>>> at(slots + 16);
+    for (std::size_t i = 0; i < points; ++i) {
+      for (std::size_t a = 0; a < 8; ++a) {
+        const int parts = static_cast<int>(weight[base(i, 8) + 16 * a] * 4096);
+        if (parts > 0) at[static_cast<std::size_t>(node[base(i, 8) + 16 * a])].push_back({static_cast<int>(base(i, 4)), parts});
+      }
+    }
+    tiles_offset = gather_offset = {0};
+    for (std::size_t first = 0; first < at.size(); first += 16) {
+      std::size_t most = 0;
+      for (std::size_t n = first; n < first + 16; ++n) {
+        slot.push_back(static_cast<std::int32_t>(std::min(n, slots)));
+        free.push_back(n < slots ? static_cast<std::int32_t>(n % 8) : 0);
+        most = std::max(most, at[n].size());
+      }
+      for (std::size_t row = 0; row < most; ++row) {
+        for (std::size_t n = first; n < first + 16; ++n) {
+          gather.push_back(row < at[n].size() ? at[n][row][0] : 0);
+          units.push_back(row < at[n].size() ? at[n][row][1] : 0);
+        }
+      }
+      for (std::int32_t tile = 0; tile < static_cast<std::int32_t>(points / 16); ++tile) tiles.push_back(tile);
+      tiles_offset.push_back(static_cast<std::int32_t>(tiles.size()));
+      gather_offset.push_back(gather_offset.back() + static_cast<std::int32_t>(most));
+    }
+  }
+};
+
+inline KernelCase& add_tools(KernelCase& test, const ContactData& d) {
+  return test.ints("tool_kind", d.kind)
+      .reals("tool_data", d.data)
+      .reals("tool_grid", d.grid)
+      .reals("tool_pose", d.pose)
+      .reals("contact_params", d.params);
+}
+
+inline KernelCase& add_points(KernelCase& test, const ContactData& d) {
+  return test.reals("node_u", d.node_u)
+      .reals("node_w", d.node_w)
+      .reals("contact_rest", d.rest)
+      .ints("contact_node", d.node)
+      .reals("contact_weight", d.weight);
+}
+
+inline KernelCase near_case(const ContactData& d) {
+  KernelCase test("contact_near", {}, Shape::items, d.points / 16);
+  add_points(test, d).ints("contact_near", d.near).reals("contact_anchor", d.anchor);
+  add_tools(test, d).integer(static_cast<int>(ContactData::tools)).step();
+  return test;
+}
+
+inline KernelCase press_case(const ContactData& d) {
+  KernelCase test("contact_press", {}, Shape::lanes, d.points);
+  add_points(test, d)
+      .reals("contact_share", d.share)
+      .ints("contact_near", d.near)
+      .reals("contact_anchor", d.anchor)
+      .ints("contact_force", d.force)
+      .ints("tool_sum", d.sum);
+  add_tools(test, d).reals("step_params", d.step_params).integer(static_cast<int>(ContactData::tools)).step();
+  return test;
+}
+
+inline KernelCase settle_case(const ContactData& d) {
+  KernelCase test("contact_settle", {}, Shape::lanes, d.points);
+  add_points(test, d)
+      .reals("contact_share", d.share)
+      .ints("contact_near", d.near)
+      .reals("contact_anchor", d.anchor)
+      .ints("contact_force", d.force)
+      .ints("contact_change", d.change)
+      .reals("contact_node_sum", d.node_sum)
+      .ints("tool_sum", d.sum);
+  add_tools(test, d).reals("step_params", d.step_params).integer(static_cast<int>(ContactData::tools)).step();
+  return test;
+}
+
+inline KernelCase apply_case(const ContactData& d) {
+  KernelCase test("contact_apply", {}, Shape::lanes, d.slot.size());
+  test.reals("node_u", d.node_u)
+      .reals("node_w", d.node_w)
+      .ints("contact_slot", d.slot)
+      .ints("contact_free", d.free)
+      .ints("contact_tiles_offset", d.tiles_offset)
+      .ints("contact_tiles", d.tiles)
+      .ints("contact_gather_offset", d.gather_offset)
+      .ints("contact_gather", d.gather)
+      .ints("contact_gather_units", d.units)
+      .ints("contact_near", d.near)
+      .ints("contact_force", d.force)
+      .reals("contact_rest", d.rest)
+      .reals("contact_node_sum", d.node_sum)
+      .reals("contact_params", d.params)
+      .reals("step_params", d.step_params);
+  return test;
+}
+
+/// Integers after the pass, in double.
+inline Reals ints_in_double(const KernelCase& test, const std::string& name) {
+  RefOptions options;
+  options.double_precision = true;
+  options.threads = 1;
+  const auto backend = make_ref_backend(options);
+  backend->load(test.program());
+  backend->run(test.pass(), test_step);
+  backend->finish();
+  const Ints values = backend->read_ints(test.program().find(name));
+  return {values.begin(), values.end()};
+}
+
+/// Bodies of every kind of numbers.
+template <class Compare>
+void for_contact_data(std::uint32_t seed, Compare compare) {
+  for (std::uint32_t i = 0; i < 12; ++i) {
+    const Data data = all_data[i % std::size(all_data)];
+    compare(ContactData(seed + i, data), std::string(name_of(data)) + ", seed " + std::to_string(seed + i));
+  }
+}
+
+/// Of tool_sum: the force on all tools in the step of the test, in quanta.
+inline double on_tools(const Reals& sums, std::size_t component) {
+  double sum = 0;
+  for (std::size_t t = 0; t < ContactData::tools; ++t) {
+    const std::size_t at = 16 * (test_step * ContactData::tools + t) + 2 * component;
+    sum += 32768 * sums[at] + sums[at + 1];
+  }
+  return sum;
+}
+
+/// Of contact_force: the force on all points that are near a tool.
+inline double on_points(const ContactData& d, const Reals& force, std::size_t component) {
+  double sum = 0;
+  for (std::size_t i = 0; i < d.points; ++i) {
+    if (d.near[i / 16] != 0) sum += force[ContactData::base(i, 4) + 16 * component];
+  }
+  return sum;
+}
+
+}  // namespace pliant::kernel_test

@@ -1,0 +1,99 @@
+// contact_press: kernel and twin give the same bits; in double, points inside a tool touch, and what points get, tools give.
+#include <Eigen/Dense>
+
+#include "contact_case.h"
+
+namespace pliant::kernel_test {
+namespace {
+
+using Eigen::Vector3d;
+
+class ContactPress : public TwinTest {};
+
+TEST_F(ContactPress, TwinGivesTheSameBits) {
+  for_contact_data(200, [&](const ContactData& d, const std::string& label) { expect_same_bits(press_case(d), label); });
+}
+
+/// Signed distance by the book; of the grid by its eight weights.
+double distance_of(const ContactData& d, std::size_t t, const Vector3d& y) {
+  const double* n = &d.data[20 * t];
+  const Vector3d first(n[1], n[2], n[3]), second(n[4], n[5], n[6]), origin(n[7], n[8], n[9]);
+  if (t == 0) return y.norm() - n[0];
+  if (t == 1) {
+    double nearest = 1e9;
+    for (int k = 0; k <= 100000; ++k) nearest = std::min(nearest, (y - first - 1e-5 * k * (second - first)).norm());
+    return nearest - n[0];
+  }
+  if (t == 2) {
+    const Vector3d q = y.cwiseAbs() - second;
+    return q.maxCoeff() < 0 ? q.maxCoeff() : q.cwiseMax(0).norm();
+  }
+  if (t == 3) return (y - first).dot(second);
+  const int size[3] = {6, 5, 4};
+  const Vector3d g = (y - origin) / n[11];
+  double sum = 0;
+  for (int k = 0; k < 3; ++k) {
+    if (g[k] < 0 || g[k] > size[k] - 1) return 1;
+  }
+  for (int z = 0; z < 4; ++z) {
+    for (int v = 0; v < 5; ++v) {
+      for (int x = 0; x < 6; ++x) {
+        const Vector3d away = (g - Vector3d(x, v, z)).cwiseAbs();
+        if (away.maxCoeff() < 1)
+          sum += (1 - away[0]) * (1 - away[1]) * (1 - away[2]) * d.grid[static_cast<std::size_t>((z * 5 + v) * 6 + x)];
+      }
+    }
+  }
+  return sum;
+}
+
+/// Points that contact_press finds inside a tool are those inside by the book.
+TEST(ContactPressOracle, TouchesWhatIsInside) {
+  int inside = 0, outside = 0;
+  for (std::uint32_t seed = 0; seed < 4; ++seed) {
+    ContactData d(300 + seed);
+    std::fill(d.near.begin(), d.near.end(), 31);
+    const Reals force = ints_in_double(press_case(d), "contact_force");
+    for (std::size_t i = 0; i < d.points; ++i) {
+      const std::size_t at = ContactData::base(i, 4);
+      Vector3d x;
+      for (std::size_t c = 0; c < 3; ++c) {
+        x[static_cast<int>(c)] = d.rest[at + 16 * c];
+        for (std::size_t a = 0; a < 8; ++a) {
+          const std::size_t entry = ContactData::base(i, 8) + 16 * a;
+          x[static_cast<int>(c)] += d.weight[entry] * d.node_u[4 * static_cast<std::size_t>(d.node[entry]) + c];
+        }
+      }
+      for (std::size_t t = 0; t < ContactData::tools; ++t) {
+        const double* pose = &d.pose[12 * ((test_step + 1) * ContactData::tools + t)];
+        Vector3d y = Vector3d::Zero();
+        for (int c = 0; c < 3; ++c) {
+          for (int k = 0; k < 3; ++k) y[c] += pose[3 * k + c] * (x[k] - pose[9 + k]);
+        }
+        const double distance = distance_of(d, t, y);
+        if (std::abs(distance) < 1e-5) continue;  // the case is rounded to float
+        const bool touches = (static_cast<int>(force[at + 48]) >> t & 1) != 0;
+        EXPECT_EQ(touches, distance < 0 && d.rest[at + 48] > 0) << "tool " << t << ", point " << i << ", " << distance;
+        (touches ? inside : outside) += 1;
+      }
+    }
+  }
+  EXPECT_GT(inside, 100);
+  EXPECT_GT(outside, 100);
+}
+
+/// What points get, tools give, to the last quantum.
+TEST(ContactPressOracle, ActionIsReactionInFixedPoint) {
+  for (std::uint32_t seed = 0; seed < 6; ++seed) {
+    const ContactData d(500 + seed);
+    const KernelCase test = press_case(d);
+    const Reals force = ints_in_double(test, "contact_force"), sums = ints_in_double(test, "tool_sum");
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_EQ(on_points(d, force, c), -on_tools(sums, c));
+      EXPECT_NE(on_points(d, force, c), 0);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace pliant::kernel_test

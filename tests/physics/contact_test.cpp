@@ -1,0 +1,256 @@
+// Contact with tools: restitution, weight, friction, impulse, work, against closed forms; shapes against each other.
+#include "physics/harness.h"
+#include "support/error_of.h"
+
+namespace pliant::physics {
+namespace {
+
+class ContactPhysics : public OnBackend {};
+
+ContactTool wall(double friction = 0) {
+  ContactTool tool;
+  tool.name = "wall";
+  tool.shape = ToolShape::half_space;
+  tool.second = {0, 0, 1};
+  tool.friction = friction;
+  return tool;
+}
+
+Scene scene_of(Body body, ContactTool tool) {
+  Scene scene;
+  scene.bodies = {std::move(body)};
+  scene.tools = {std::move(tool)};
+  return scene;
+}
+
+Vector3d momentum(const Simulation& sim) {
+  Vector3d p = Vector3d::Zero();
+  const std::vector<Vec3d> v = sim.velocities(0);
+  for (std::size_t n = 0; n < v.size(); ++n) {
+    p += sim.model().mass[static_cast<std::size_t>(sim.model().bodies[0].slot[n])] * eigen(v[n]);
+  }
+  return p;
+}
+
+double mass(const Simulation& sim) { return sim.model().bodies[0].mass; }
+
+/// Advance to a time, and sum the impulse on the tool.
+Vector3d impulse_until(Simulation& sim, double time, std::size_t tool = 0) {
+  Vector3d sum = Vector3d::Zero();
+  while (sim.time() < time) {
+    const double before = sim.time();
+    sim.advance(sim.next_batch(16));
+    sum += (sim.time() - before) * eigen(sim.contact().history()[tool].now.force);
+  }
+  return sum;
+}
+
+/// A free mass on a wall: v + v' = (1/c) ln((1 + c v) / (1 - c v')), c = 3 alpha / 2, whatever the exponent (Hunt and Crossley
+/// 1975).
+TEST_P(ContactPhysics, RestitutionOfHuntAndCrossley) {
+  const double edge = 0.05, stiffness = 7.9e5;
+  for (const double exponent : {1.0, 1.5}) {
+    for (const double alpha : {0.1, 0.5, 2.0}) {
+      for (const double v : {0.1, 0.3, 1.0}) {
+        Body body = box_body({{1, 1, 1}, edge}, Discretization::hex8_bricks, material_young(Law::neo_hookean, 1e6, 0));
+        body.translate = {0, 0, 1e-3};
+        body.velocity = {0, 0, -v};
+        ContactTool tool = wall();
+        tool.exponent = exponent;
+        tool.alpha = alpha;
+        tool.stiffness = exponent == 1 ? stiffness : stiffness / std::sqrt(8e-3 * v);
+        Scene scene = scene_of(body, tool);
+        scene.dt = 2e-4;
+        auto sim = simulate(scene, GetParam());
+        sim->advance(static_cast<std::int64_t>((0.1 + 1e-3 / v) / scene.dt));
+        const double c = 1.5 * alpha;
+        const double exact = root(0, std::min(v, (1 - 1e-12) / c),
+                                  [&](double out) { return v + out - std::log((1 + c * v) / (1 - c * out)) / c; });
+        check_relative("n " + std::to_string(exponent) + ", alpha " + std::to_string(alpha) + ", v " + std::to_string(v),
+                       momentum(*sim)[2] / mass(*sim), exact, 0.01);
+      }
+    }
+  }
+}
+
+/// A body at rest on a wall presses it with its weight, on every element; the wall's impulse is the change of momentum.
+TEST_P(ContactPhysics, WeightAndImpulse) {
+  for (const Discretization cut : all_cuts()) {
+    Material m = material_young(Law::neo_hookean, 2e4, 0.3);
+    Body body = box_body({{3, 3, 3}, 0.02}, cut, m);
+    body.translate = {0, 0, 2e-3};
+    body.velocity = {0.05, 0, -0.2};
+    Scene scene = scene_of(body, wall());
+    scene.gravity = {0, 0, -9.81};
+    auto sim = simulate(scene, GetParam());
+    sim->advance(1);
+    const Vector3d start = momentum(*sim);
+    const double from = sim->time();
+    const Vector3d on_wall = impulse_until(*sim, 0.3);
+    const double weight = mass(*sim) * 9.81;
+    const Vector3d change = momentum(*sim) - start;
+    const double whole = weight * (sim->time() - from);
+    check(std::string(name_of(cut)) + ": impulse of the wall, over that of gravity",
+          (change + Vector3d(0, 0, whole) + on_wall).norm() / whole, bound(1e-4, 1e-5));
+    body.material.damping = 60;
+    scene.bodies = {body};
+    sim = simulate(scene, GetParam());
+    impulse_until(*sim, 1);
+    const ToolLoad& now = sim->contact().history()[0].now;
+    check_relative(std::string(name_of(cut)) + ": weight", -now.force[2], weight, bound(1e-4, 1e-5));
+    check_relative("  touched area", now.area, 0.0036, 1e-3);
+    check("  depth, in cells", now.depth / 0.02, 0.01);
+  }
+}
+
+/// Below the angle of friction a body stays where it is; above it slides with g (sin - mu cos).
+TEST_P(ContactPhysics, FrictionSticksWithoutCreepAndSlides) {
+  const double slope = std::atan(0.4);
+  for (const Discretization cut : {Discretization::hex8_bricks, Discretization::tet4}) {
+    Material m = material_young(Law::neo_hookean, 2e4, 0.4);
+    m.damping = 20;
+    Scene scene = scene_of(box_body({{4, 4, 4}, 0.0125}, cut, m), wall(0.5));
+    scene.gravity = {9.81 * std::sin(slope), 0, -9.81 * std::cos(slope)};
+    auto stuck = simulate(scene, GetParam());
+    impulse_until(*stuck, 2);
+    const std::vector<Vec3d> before = stuck->displacements(0);
+    impulse_until(*stuck, 4);
+    const std::vector<Vec3d> after = stuck->displacements(0);
+    double creep = 0;
+    for (std::size_t n = 0; n < after.size(); ++n) creep = std::max(creep, (eigen(after[n]) - eigen(before[n])).norm());
+    check(std::string(name_of(cut)) + ": creep in 2 s, in cells", creep / 0.0125, 1e-6);
+    const Vec3d& force = stuck->contact().history()[0].now.force;
+    check_relative("  friction over pressure", -force[0] / force[2], 0.4, 1e-4);
+
+    scene.bodies[0].material.damping = 0;
+    scene.tools[0].friction = 0.2;
+    auto sliding = simulate(scene, GetParam());
+    impulse_until(*sliding, 1);
+    const double v = momentum(*sliding)[0] / mass(*sliding), from = sliding->time();
+    const Vector3d impulse = impulse_until(*sliding, 2);
+    const double gained = (momentum(*sliding)[0] / mass(*sliding) - v) / (sliding->time() - from);
+    check_relative("  acceleration", gained, 9.81 * (std::sin(slope) - 0.2 * std::cos(slope)), 0.02);
+    check_relative("  friction over pressure, sliding", -impulse[0] / impulse[2], 0.2, 1e-3);
+  }
+}
+
+double pressed(const ContactTool& tool, const char* backend, Vector3d* torque = nullptr) {
+  Material m = material_young(Law::neo_hookean, 1e4, 0.4);
+  m.damping = 60;
+  Body body = box_body({{8, 8, 4}, 0.01}, Discretization::hex8_bricks, m);
+  body.fixed = {{face(2, 0)}};
+  auto sim = simulate(scene_of(body, tool), backend);
+  impulse_until(*sim, 0.6);
+  if (torque != nullptr) *torque = eigen(sim->contact().history()[0].now.torque);
+  return eigen(sim->contact().history()[0].now.force).norm();
+}
+
+/// Shapes that are the same press the same: a sphere and a capsule as short as nothing, a box and a half space.
+TEST_P(ContactPhysics, ShapesAgree) {
+  ContactTool ball;
+  ball.name = "ball";
+  ball.radius = 0.02;
+  ball.path = {{0, 0.04, 0.04, 0.0605, 0, 0, 0, 1}, {0.3, 0.04, 0.04, 0.055, 0, 0, 0, 1}};
+  ContactTool capsule = ball;
+  capsule.shape = ToolShape::capsule;
+  capsule.second = {1e-7, 0, 0};
+  const double force = pressed(ball, GetParam());
+  EXPECT_GT(force, 0.1);
+  check_relative("capsule as sphere", pressed(capsule, GetParam()), force, 1e-3);
+  ContactTool box = ball;
+  box.shape = ToolShape::box;
+  box.size = {0.5, 0.5, 0.02};
+  box.path = {{0, 0.04, 0.04, 0.0505, 0, 0, 0, 1}, {0.3, 0.04, 0.04, 0.045, 0, 0, 0, 1}};
+  ContactTool plane = box;
+  plane.shape = ToolShape::half_space;
+  plane.first = {0, 0, -0.01};
+  plane.second = {0, 0, -1};
+  const double flat = pressed(box, GetParam());
+  check_relative("box as half space", pressed(plane, GetParam()), flat, 1e-4);
+  // The same face of the box, turned upside down about x, and the torque of a force beside the origin.
+  for (auto& row : box.path) row = {row[0], row[1], row[2] + 0.01, row[3], 1, 0, 0, 0};
+  Vector3d torque;
+  box.path[0][2] -= 0.01;
+  box.path[1][2] -= 0.01;
+  check_relative("turned box", pressed(box, GetParam(), &torque), flat, 1e-4);
+}
+
+/// A force beside the tool's origin turns it.
+TEST_P(ContactPhysics, TorqueIsAboutTheOrigin) {
+  ContactTool ball;
+  ball.name = "ball";
+  ball.shape = ToolShape::capsule;
+  ball.radius = 0.02;
+  ball.first = {0.1, 0, 0};
+  ball.second = {0.1, 0, 0.05};
+  ball.path = {{0, -0.06, 0.04, 0.0605, 0, 0, 0, 1}, {0.3, -0.06, 0.04, 0.055, 0, 0, 0, 1}};
+  Vector3d torque;
+  const double force = pressed(ball, GetParam(), &torque);
+  check_relative("torque about y", torque[1], -0.1 * force, 5e-3);
+}
+
+/// A tool pressed into tissue where it is held: points that hang mostly on held nodes are no harder than others.
+TEST_P(ContactPhysics, BesideHeldNodesForcesStayOrdinary) {
+  ContactTool ball;
+  ball.name = "ball";
+  ball.radius = 0.02;
+  ball.path = {{0, -0.0205, 0.04, 0.013, 0, 0, 0, 1}, {0.3, -0.015, 0.04, 0.013, 0, 0, 0, 1}};
+  const double force = pressed(ball, GetParam());
+  EXPECT_GT(force, 0.1);
+  EXPECT_LT(force, 20);
+}
+
+/// A body that flies at a wall, a cell in twenty steps, is stopped at it.
+TEST_P(ContactPhysics, AFastToolIsMetInTime) {
+  Body body = box_body({{3, 3, 3}, 0.02}, Discretization::hex8_bricks, material_young(Law::neo_hookean, 2e4, 0.3));
+  body.fixed = {{face(2, 0)}};
+  ContactTool plate = wall();
+  plate.second = {0, 0, -1};
+  plate.path = {{0, 0, 0, 0.11, 0, 0, 0, 1}, {0.06, 0, 0, 0.05, 0, 0, 0, 1}};
+  Scene scene = scene_of(body, plate);
+  auto sim = simulate(scene, GetParam());
+  impulse_until(*sim, 0.06);
+  check("deepest, in cells", sim->contact().history()[0].max_depth / 0.02, 0.15);
+  EXPECT_GT(sim->contact().history()[0].touched, 5);
+}
+
+TEST(ContactSetUp, RefusesAToolInsideABody) {
+  ContactTool ball;
+  ball.name = "ball";
+  ball.radius = 0.02;
+  ball.pointer = "/tools/0";
+  ball.path = {{0, 0.02, 0.02, 0.04, 0, 0, 0, 1}};
+  const Scene scene =
+      scene_of(box_body({{4, 4, 4}, 0.01}, Discretization::hex8_bricks, material_young(Law::neo_hookean, 1e4, 0.4)), ball);
+  const std::string message = test::error_of([&] { (void)simulate(scene, "cpu"); });
+  EXPECT_NE(message.find("/tools/0: tool 'ball' begins inside body 'hex8 bricks', 0.01"), std::string::npos) << message;
+}
+
+/// Points stand for the area of the surface, however fine its triangles are.
+TEST(ContactSetUp, PointsFollowTheCellsNotTheTriangles) {
+  const Material m = material_young(Law::neo_hookean, 1e4, 0.4);
+  const auto points = [&](const std::filesystem::path& surface) {
+    Body body = box_body({{4, 4, 4}, 0.01}, Discretization::hex8_bricks, m);
+    body.surface = surface;
+    return *build_model(scene_of(body, wall())).contact;
+  };
+  const ContactPoints coarse = points(save(box_surface({{1, 1, 1}, 0.04}))),
+                      fine = points(save(box_surface({{16, 16, 16}, 0.0025})));
+  EXPECT_EQ(coarse.size(), 6u * 64);
+  EXPECT_EQ(fine.size(), coarse.size());
+  for (const ContactPoints& p : {coarse, fine}) {
+    double area = 0;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      area += p.area[i];
+      std::int32_t sum = 0;
+      for (const std::int32_t w : p.weights[i]) sum += w;
+      EXPECT_EQ(sum, contact_weight_unit);
+    }
+    EXPECT_NEAR(area, 6 * 0.04 * 0.04, 1e-8);  // the file has six digits
+  }
+}
+
+PLIANT_ON_BACKENDS(ContactPhysics);
+
+}  // namespace
+}  // namespace pliant::physics
