@@ -223,6 +223,25 @@ py::dict probes(const pliant::World& w) {
   return d;
 }
 
+/// By name: where each tool is, and what it feels.
+py::dict tool_forces(const pliant::World& w) {
+  const auto array = [](const auto& numbers) {
+    return py::array_t<double>(static_cast<py::ssize_t>(numbers.size()), numbers.data());
+  };
+  py::dict d;
+  for (const pliant::ToolForce& f : w.tool_forces()) {
+    py::dict tool;
+    tool["position"] = array(f.position);
+    tool["turn"] = array(f.turn);
+    tool["force"] = array(f.force);
+    tool["torque"] = array(f.torque);
+    tool["area"] = f.area;
+    tool["penetration"] = f.penetration;
+    d[py::str(f.name)] = tool;
+  }
+  return d;
+}
+
 void bind_world(py::module_& m) {
   using pliant::World;
   using Free = py::call_guard<py::gil_scoped_release>;
@@ -268,6 +287,9 @@ void bind_world(py::module_& m) {
       .def("push_node", &World::push_node, py::arg("body"), py::arg("node"), py::arg("force"))
       .def("clear_tools", &World::clear_tools)
       .def("move_tool", &World::move_tool, py::arg("position"))
+      .def("drive_tool", &World::drive_tool, py::arg("name"), py::arg("position"),
+           py::arg("turn") = std::array<double, 4>{0, 0, 0, 1}, py::arg("seconds") = 1.0 / 60)
+      .def("tool_forces", &tool_forces, "a dict of the scene's tools: of each a dict of its pose and what it feels")
       .def("cut", &cut, py::arg("triangles"), "triangles: shape [triangles, 3, 3] [m]; a dict with the fields of CutResult")
       .def(
           "move_blade",

@@ -4,6 +4,8 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "pliant/world.h"
@@ -15,6 +17,7 @@ struct CWorld {
   World world;
   std::mutex mutex;                        ///< protects the others from callers who forget to take turns
   std::map<std::uint64_t, FramePtr> seen;  ///< the last frame of each consumer, which its pointers point to
+  std::set<std::string> tool_names;        ///< what names of tools point to
   std::vector<ProbeValue> probes;          ///< what pointers of probes point to
 };
 

@@ -1,4 +1,4 @@
-// The probes of the C API.
+// What the C API tells of probes and tools.
 #include <algorithm>
 #include <utility>
 #include <vector>
@@ -12,19 +12,20 @@ using pliant::Error;
 using pliant::ErrorCode;
 
 /// Element i of an array of the caller's structs, which may be longer than this library's.
-pliant_probe_value* probe_value(pliant_probe_value* first, std::size_t i) {
-  return reinterpret_cast<pliant_probe_value*>(reinterpret_cast<char*>(first) + i * first->size);
+template <class T>
+T* element(T* first, std::size_t i) {
+  return reinterpret_cast<T*>(reinterpret_cast<char*>(first) + i * first->size);
 }
 
-void check_probe_values(pliant_probe_value* first, std::size_t count) {
+template <class T>
+void check_array(T* first, std::size_t count, const char* name) {
   if (count == 0) return;
   need(first, "out");
   check_struct(first);
   for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t size = probe_value(first, i)->size;
+    const std::size_t size = element(first, i)->size;
     if (size == first->size) continue;
-    throw Error(ErrorCode::usage,
-                fmt::format("pliant_probe_value::size is {} in out[{}] and {} in the first", size, i, first->size));
+    throw Error(ErrorCode::usage, fmt::format("{}::size is {} in out[{}] and {} in the first", name, size, i, first->size));
   }
 }
 
@@ -32,7 +33,7 @@ void check_probe_values(pliant_probe_value* first, std::size_t count) {
 
 pliant_status pliant_world_probes(pliant_world world, pliant_probe_value* out, size_t count, size_t* needed) {
   return on(world, [&](CWorld& w) {
-    check_probe_values(out, count);
+    check_array(out, count, "pliant_probe_value");
     std::vector<pliant::ProbeValue> now = w.world.probes();
     const std::lock_guard lock(w.mutex);
     w.probes = std::move(now);
@@ -40,7 +41,27 @@ pliant_status pliant_world_probes(pliant_world world, pliant_probe_value* out, s
     for (std::size_t i = 0; i < std::min(count, w.probes.size()); ++i) {
       const pliant::ProbeValue& v = w.probes[i];
       give_struct<pliant_probe_value>({0, v.probe.c_str(), v.quantity.c_str(), v.numbers.data(), v.numbers.size()},
-                                      probe_value(out, i));
+                                      element(out, i));
+    }
+  });
+}
+
+pliant_status pliant_world_tool_forces(pliant_world world, pliant_tool_force* out, size_t count, size_t* needed) {
+  return on(world, [&](CWorld& w) {
+    check_array(out, count, "pliant_tool_force");
+    const std::vector<pliant::ToolForce> now = w.world.tool_forces();
+    const std::lock_guard lock(w.mutex);
+    if (needed != nullptr) *needed = now.size();
+    for (std::size_t i = 0; i < std::min(count, now.size()); ++i) {
+      pliant_tool_force force{};
+      force.name = w.tool_names.insert(now[i].name).first->c_str();
+      std::copy(now[i].position.begin(), now[i].position.end(), force.position);
+      std::copy(now[i].turn.begin(), now[i].turn.end(), force.turn);
+      std::copy(now[i].force.begin(), now[i].force.end(), force.force);
+      std::copy(now[i].torque.begin(), now[i].torque.end(), force.torque);
+      force.area = now[i].area;
+      force.penetration = now[i].penetration;
+      give_struct<pliant_tool_force>(force, element(out, i));
     }
   });
 }

@@ -33,6 +33,14 @@ pliant_status pliant_world_push(pliant_world world, int32_t vertex, const double
 pliant_status pliant_world_push_node(pliant_world world, size_t body, int64_t node, const double force[3]) {
   return on(world, [&](CWorld& w) { w.world.push_node(body, node, vector_of(force, "force")); });
 }
+pliant_status pliant_world_drive_tool(pliant_world world, const char* name, const double position[3], const double turn[4],
+                                      double seconds) {
+  return on(world, [&](CWorld& w) {
+    need(name, "name");
+    need(turn, "turn");
+    w.world.drive_tool(name, vector_of(position, "position"), {turn[0], turn[1], turn[2], turn[3]}, seconds);
+  });
+}
 pliant_status pliant_world_move_tool(pliant_world world, const double position[3]) {
   return on(world, [&](CWorld& w) { w.world.move_tool(vector_of(position, "position")); });
 }

@@ -116,6 +116,7 @@ void World::Impl::check_can_step() const {
 }
 
 void World::Impl::publish_clock() {
+  tools->note(*simulation);
   const std::lock_guard lock(mutex);
   report.step = simulation->step();
   report.time = simulation->time();
@@ -134,6 +135,7 @@ StepReport World::Impl::run(std::int64_t steps) {
       cut_pending();
       const std::int64_t left = std::min<std::int64_t>(steps - (simulation->step() - first), tools->apply(*simulation));
       simulation->advance(simulation->next_batch(left));
+      tools->note(*simulation);
       const std::lock_guard lock(mutex);
       if (stop) break;
     }

@@ -85,6 +85,7 @@ class Info {
     line(fmt::format("{}: {}", scene_stem(options_.scene), scene_.name));
     line(fmt::format("nodes {}, elements {}, slots {}", model_.nodes(), model_.elements(), model_.slots));
     bodies();
+    held();
     probes();
     stable_step(iterated_dt, dt, not_iterated);
     memory(program);
@@ -125,6 +126,20 @@ class Info {
     }
     surface_checks();
     json_["mass"] = mass;
+  }
+
+  /// How many nodes each entry of `fixed` and `prescribed` has: what is held by too few swings.
+  void held() {
+    json_["held"] = Json::array();
+    for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
+      const auto tell = [&](const Selection& where, const char* what) {
+        const std::size_t nodes = select_nodes(where, model_.bodies[b], Virtual::with_anchors).size();
+        json_["held"].push_back({{"entry", where.pointer}, {"body", model_.bodies[b].name}, {"nodes", nodes}});
+        line(fmt::format("{} ({}): {} nodes of body {}", what, where.pointer, nodes, model_.bodies[b].name));
+      };
+      for (const Fixed& f : scene_.bodies[b].fixed) tell(f.where, "fixed");
+      for (const Prescribed& p : scene_.bodies[b].prescribed) tell(p.where, "prescribed");
+    }
   }
 
   /// What a run will write down. A selection tells how many nodes it has.

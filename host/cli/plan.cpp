@@ -47,6 +47,10 @@ int plan(PlanArguments& o) {
   nodes("--reference", o.plan.reference_nodes);
   if (!o.out.empty()) check_writable(o.out);
   const Scene scene = load_scene(o.scene);
+  if (!scene.blades.empty() || !scene.tools.empty()) {
+    o.common.note(
+        "blades and tools of the scene are left out: a plan is made for its loads at rest, without cuts and without contact");
+  }
   Progress progress(!o.common.quiet);
   std::int64_t done = 0;
   std::string part;

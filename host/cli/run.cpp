@@ -227,7 +227,7 @@ class Run {
 
   void report() {
     report_run({o_.common, stem_, *simulation_, result_, probes_, scene_probes_, warnings_, frames_ ? &*frames_ : nullptr,
-                first_time_, o_.hash, o_.deep_hash, o_.profile});
+                o_.checkpoint, first_time_, o_.hash, o_.deep_hash, o_.profile});
   }
 
   const RunArguments& o_;

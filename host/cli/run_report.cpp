@@ -48,6 +48,7 @@ class Report {
       add_probes(r_.scene_probes, json["probes"]);
     }
     if (r_.profile) json["profile"] = profile();
+    json["remarks"] = notes_;
     if (r_.hash && out_.quiet && out_.json != "-") std::puts(hash.c_str());
     out_.print("hash " + hash);
     if (r_.deep_hash) out_.print("deep hash " + deep_hash);
@@ -55,6 +56,11 @@ class Report {
   }
 
  private:
+  /// A sentence for people, which the JSON has too.
+  void note(const std::string& sentence) const {
+    notes_.push_back(sentence);
+    out_.note(sentence);
+  }
   [[nodiscard]] bool relaxes() const { return s_.scene().relaxation.enabled; }
   [[nodiscard]] double simulated() const { return s_.time() - r_.first_time; }
 
@@ -96,26 +102,26 @@ class Report {
     json["blades_to_come"] = Json::array();
     for (const Blade* blade : blades_to_come(s_)) {
       json["blades_to_come"].push_back(blade->name);
-      out_.note(fmt::format("blade '{}' has not cut yet: it begins at {:.4g} s, and the run ended at {:.4g} s", blade->name,
-                            first_time(*blade), s_.time()));
+      note(fmt::format("blade '{}' has not cut yet: it begins at {:.4g} s, and the run ended at {:.4g} s", blade->name,
+                       first_time(*blade), s_.time()));
     }
     for (const std::string& name : blades_without_effect(s_)) {
-      out_.note(
+      note(
           fmt::format("blade '{}' met tissue and divided no edge of an element: its way through it is too short for "
-                      "elements of this size",
+                      "elements of this size, or the tissue had moved away from most of its path",
                       name));
     }
-    for (const std::string& sentence : parts_far_away(s_)) out_.note(sentence);
+    for (const std::string& sentence : parts_far_away(s_)) note(sentence);
     json["most_substeps"] = s_.state().most_substeps;
     if (s_.state().most_substeps > 0) {
-      out_.note(
+      note(
           fmt::format("the pull of shape matching, several steps at once, drove finite elements apart; hybrids went on with "
                       "\"substeps\": {}",
                       s_.state().most_substeps));
     }
     json["opened_edges"] = s_.state().opened;
     if (s_.state().opened > 0) {
-      out_.note(fmt::format(
+      note(fmt::format(
           "{} edges parted: they were stretched beyond {:.3g} times their length beside a cut or tear, or {:.3g} times "
           "elsewhere (\"break_stretch\"); a material far too soft for its weight does that, too: look at the units of the "
           "scene",
@@ -160,7 +166,7 @@ class Report {
     const BallastReport& ballast = s_.ballast();
     json["ballast"] = {{"nodes", ballast.nodes}, {"mass", ballast.mass}, {"most", ballast.most}};
     if (ballast.most > 0) {
-      out_.note(fmt::format(
+      note(fmt::format(
           "elements that asked for less than {:.3g} of the first step got inertia instead: at most {:.3g} of the mass, {:.3g} "
           "on {} nodes at the end",
           s_.scene().least_step, ballast.most / mass, ballast.mass / mass, ballast.nodes));
@@ -172,7 +178,7 @@ class Report {
     json["inverted"] = {{"batches", inverted.batches}, {"most", inverted.most}, {"now", inverted.last}};
     json["calmed_elements"] = inverted.calmed;
     if (inverted.calmed > 0) {
-      out_.note(
+      note(
           fmt::format("in {} elements, counted batch by batch, nodes came to move against each other by more than a quarter of "
                       "an edge in a "
                       "step; what exceeded that was taken out",
@@ -181,7 +187,7 @@ class Report {
     if (inverted.batches == 0) return;
     json["inverted"]["first"] = {
         {"step", inverted.first_step}, {"time", inverted.first_time}, {"body", inverted.body}, {"element", inverted.element}};
-    out_.note(
+    note(
         fmt::format("up to {} elements at a time were turned inside out and driven back, first in step {} (t = {:.4g} s), "
                     "element {} of body '{}'; {} in the last steps",
                     inverted.most, inverted.first_step, inverted.first_time, inverted.element, inverted.body, inverted.last));
@@ -192,6 +198,7 @@ class Report {
     out_.print(fmt::format("{}: {} nodes, {} elements on {} ({}), {}", r_.stem, s_.model().nodes(), s_.model().elements(),
                            info.name, info.device, info.bit_exact ? "bit-exact" : "tolerance"));
     out_.print((result_.interrupted ? "interrupted after " : "") + steps_text());
+    if (result_.interrupted && !r_.checkpoint.empty()) out_.print(fmt::format("go on with --resume {}", r_.checkpoint));
     if (relaxes()) {
       out_.print(fmt::format("{}: residual {:.3g}, tolerance {:.3g}",
                              s_.at_equilibrium() ? "at equilibrium" : "not at equilibrium", s_.residual(),
@@ -237,6 +244,7 @@ class Report {
     return rows;
   }
 
+  mutable std::vector<std::string> notes_;
   const RunReport& r_;
   Simulation& s_;
   const Common& out_;

@@ -19,6 +19,7 @@ struct RunReport {
   const Probes& scene_probes;                ///< of the scene
   const std::vector<std::string>& warnings;  ///< about surfaces
   const FrameWriter* frames = nullptr;       ///< nullptr: none were written
+  const std::string& checkpoint;             ///< file that holds the end; empty: none
   double first_time = 0;                     ///< when this run began, on the scene's clock [s]
   bool hash = false, deep_hash = false, profile = false;
 };

@@ -116,7 +116,14 @@ void spread_to_copies(BodyElements& solid) {
 
 std::vector<BodyMesh> make_body_meshes(const Scene& scene) {
   std::vector<BodyMesh> solids;
-  for (const Body& body : scene.bodies) solids.push_back(make_body_mesh(body));
+  for (const Body& body : scene.bodies) {
+    try {
+      solids.push_back(make_body_mesh(body));
+    } catch (const Error& error) {
+      if (scene.file.empty() || body.pointer.empty()) throw;
+      throw Error(error.code(), fmt::format("{}: {}: {}", scene.file.string(), body.pointer, error.what()));
+    }
+  }
   return solids;
 }
 

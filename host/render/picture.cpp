@@ -37,6 +37,21 @@ double nearly_largest(std::vector<float> values, double share) {
   return *place;
 }
 
+/// Values that rounding alone makes: a bar does not begin below them.
+double least_of(const Simulation& simulation, ColorBy color) {
+  double young = 0, size = 0;
+  for (const Body& body : simulation.scene().bodies) young = std::max(young, body.material.moduli.young());
+  for (const ModelBody& body : simulation.model().bodies) {
+    vec::Box box;
+    for (const Vec3d& x : body.rest) box.extend(x);
+    size = std::max(size, vec::norm(vec::sub(box.upper, box.lower)));
+  }
+  constexpr double kStrain = 1e-4;
+  return color == ColorBy::displacement ? kStrain * size
+         : color == ColorBy::energy     ? young * kStrain * kStrain
+                                        : young * kStrain;
+}
+
 Vec3f vertical(const Scene& scene) {
   const Vec3d& g = scene.gravity;
   if (vec::norm(g) == 0) return {0, 1, 0};
@@ -120,6 +135,7 @@ void Pictures::color(Simulation& simulation, Surface& surface) {
   }
   values_ = vertex_values(simulation.scene(), model, displacements(simulation), o_.color);
   surface.values = values_;
+  largest_ = std::max(largest_, least_of(simulation, o_.color));
   largest_ = std::max(largest_, nearly_largest(values_, o_.color == ColorBy::displacement ? 1 : 0.99));
   const ScaledUnit unit = scaled_unit(quantity_of(o_.color).unit, o_.range ? o_.range->second : largest_);
   ticks_ = o_.range ? ticks_within(o_.range->first * unit.factor, o_.range->second * unit.factor)

@@ -23,8 +23,7 @@ namespace {
 
 using Quaternion = std::array<double, 4>;
 
-/// Along the shorter arc at constant speed (Shoemake 1985).
-Quaternion between(const Quaternion& a, Quaternion b, double s) {
+Quaternion turned_between(const Quaternion& a, Quaternion b, double s) {
   double cosine = 0, norm = 0;
   for (std::size_t i = 0; i < 4; ++i) cosine += a[i] * b[i];
   if (cosine < 0) {
@@ -47,6 +46,16 @@ Pose pose_of(const std::array<double, 8>& row) { return {{row[1], row[2], row[3]
 
 }  // namespace
 
+bool good_pose(const Pose& pose) {
+  double norm = 0;
+  for (const double c : pose.turn) norm += c * c;
+  return vec::finite(pose.position) && std::abs(std::sqrt(norm) - 1) <= 1e-3;
+}
+
+Pose between(const Pose& from, const Pose& to, double s) {
+  return {vec::add(vec::mul(from.position, 1 - s), vec::mul(to.position, s)), turned_between(from.turn, to.turn, s)};
+}
+
 Pose ContactTool::at(double time) const {
   if (path.empty()) return {};
   const auto after = std::upper_bound(path.begin(), path.end(), time, [](double t, const auto& row) { return t < row[0]; });
@@ -55,7 +64,7 @@ Pose ContactTool::at(double time) const {
   if (after == path.end()) return left;
   const Pose right = pose_of(*after);
   const double s = (time - (*(after - 1))[0]) / ((*after)[0] - (*(after - 1))[0]);
-  return {vec::add(vec::mul(left.position, 1 - s), vec::mul(right.position, s)), between(left.turn, right.turn, s)};
+  return between(left, right, s);
 }
 
 }  // namespace pliant

@@ -20,6 +20,10 @@ struct Pose {
 
 /// Rows of the rotation matrix of a unit quaternion.
 std::array<Vec3d, 3> rotation_matrix(const std::array<double, 4>& turn);
+/// Whether it is finite, with a quaternion whose length is 1 within 1e-3.
+bool good_pose(const Pose& pose);
+/// From one pose to another, s in [0, 1]: along a line, and turning along the shorter arc at constant speed (Shoemake 1985).
+Pose between(const Pose& from, const Pose& to, double s);
 /// R(turn) y + position.
 Vec3d place(const Pose& pose, const Vec3d& y);
 

@@ -205,6 +205,25 @@ SceneProbe probe(const ProbeSpec& spec, const std::string& pointer, const SceneS
   return out;
 }
 
+ContactTool tool(const ToolSpec& spec, const std::string& pointer, std::size_t index) {
+  ContactTool t;
+  t.pointer = pointer;
+  t.name = spec.name.empty() ? fmt::format("tool{}", index) : spec.name;
+  t.shape = word(tool_shape_words(), spec.shape, pointer + "/shape");
+  t.radius = spec.radius;
+  t.first = spec.first;
+  t.second = spec.second;
+  t.size = spec.size;
+  t.mesh = spec.mesh;
+  t.scale = spec.scale;
+  t.path = spec.path;
+  t.friction = spec.friction;
+  t.stiffness = spec.stiffness;
+  t.exponent = spec.exponent;
+  t.alpha = spec.alpha;
+  return t;
+}
+
 }  // namespace
 
 Scene scene_of(const SceneSpec& spec) {
@@ -230,6 +249,8 @@ Scene scene_of(const SceneSpec& spec) {
     b.pointer = at;
     return b;
   });
+  convert(scene.tools, spec.tools, "/tools",
+          [&](const ToolSpec& s, const std::string& at) { return tool(s, at, scene.tools.size()); });
   std::size_t surfaces = 0;
   convert(scene.bodies, spec.bodies, "/bodies",
           [&](const BodySpec& s, const std::string& at) { return body(s, at, surfaces); });

@@ -222,12 +222,14 @@ OrderedJson tool_json(const ContactTool& t, const std::filesystem::path& scene_f
       break;
     case ToolShape::mesh:
       shape[word] = path_json(t.mesh, scene_file);
-      tool["scale"] = t.scale;
       break;
   }
   if (!t.path.empty()) tool["path"] = t.path;
   tool["friction"] = t.friction;
-  if (t.stiffness != 0) tool["contact"] = {{"stiffness", t.stiffness}, {"exponent", t.exponent}, {"alpha", t.alpha}};
+  if (t.shape == ToolShape::mesh || t.scale != 1) tool["scale"] = t.scale;
+  if (t.stiffness != 0) tool["contact"]["stiffness"] = t.stiffness;
+  if (t.stiffness != 0 || t.exponent != 1) tool["contact"]["exponent"] = t.exponent;
+  if (t.stiffness != 0 || t.alpha != 0) tool["contact"]["alpha"] = t.alpha;
   return tool;
 }
 

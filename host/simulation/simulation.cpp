@@ -108,7 +108,7 @@ void Simulation::begin_batch(std::int32_t steps) {
   if (on_grid) edits_.update();
   step_.adapt_when_due();
   if (on_grid) drift_.follow();
-  if (on_grid || !state_.kept) keep_state();
+  if (!state_.kept || (on_grid && worth_keeping())) keep_state();
   run_.upload_params();
   run_.upload_curves(steps);
   contact_.begin_batch(steps);
@@ -124,6 +124,13 @@ void Simulation::end_batch(std::int32_t steps) {
   ballast_.mass = 0;
   for (const NodeInertia& b : state_.ballast) ballast_.mass += b.inertia;
   ballast_.most = std::max(ballast_.most, ballast_.mass);
+}
+
+/// With a step that the user gave a run may burst long before a number ends: what flies apart is no state to go back to.
+bool Simulation::worth_keeping() {
+  if (settings_.automatic || scene_.integrator != Integrator::increment) return true;
+  backend().run(program().status, 0, 1);
+  return loaded_.largest_increment() <= kBurst * model().shortest;
 }
 
 void Simulation::keep_state() {

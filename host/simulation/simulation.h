@@ -89,6 +89,8 @@ class Simulation {
 
   /// Forces that the host puts on nodes from now on: HostLoads::set.
   void set_forces(std::vector<HostForce> forces) { loads_.set(std::move(forces)); }
+  /// ToolContact::drive, between two batches.
+  void drive_tool(const std::string& name, const Pose& to, double seconds) { contact_.drive(name, to, seconds); }
   /// Put the scene's tool at a point [m] from now on.
   void set_tool(const Vec3d& position) { state_.tool = position; }
 
@@ -120,6 +122,7 @@ class Simulation {
   void start(std::shared_ptr<const Model> model, const SimulationOptions& options);
   void load(std::shared_ptr<const Model> model);
   void set_initial_increment();
+  [[nodiscard]] bool worth_keeping();
   void keep_state();
   void look_for_fault(std::int64_t batch_start);
   void return_to_kept();

@@ -190,6 +190,12 @@ void check_state(const RunState& state, const Model& model, const Scene& scene) 
     need(f.body < model.bodies.size() && f.node >= 0 && vec::finite(f.force), "a force of the host");
   }
   need(!state.tool || vec::finite(*state.tool), "the tool is not finite");
+  for (const auto& [name, drive] : state.driven) {
+    const bool known =
+        std::any_of(scene.tools.begin(), scene.tools.end(), [&](const ContactTool& t) { return t.name == name; });
+    const bool poses = good_pose(drive.from) && good_pose(drive.to);
+    need(known && poses && std::isfinite(drive.start) && drive.end >= drive.start && std::isfinite(drive.end), "a driven tool");
+  }
   need((state.offset.empty() || state.offset.size() == 3 * static_cast<std::size_t>(model.slots)) &&
            std::all_of(state.offset.begin(), state.offset.end(), [](double o) { return std::isfinite(o); }),
        "how far loose pieces have flown");

@@ -28,9 +28,43 @@ double joined(const std::int32_t* at) { return 32768.0 * at[0] + at[1]; }
 
 }  // namespace
 
+std::size_t check_drive(const Scene& scene, const std::string& name, const Pose& to, double seconds) {
+  std::size_t tool = 0;
+  while (tool < scene.tools.size() && scene.tools[tool].name != name) ++tool;
+  if (tool == scene.tools.size()) throw Error(ErrorCode::usage, fmt::format("the scene has no tool \"{}\"", name));
+  if (!good_pose(to)) {
+    throw Error(ErrorCode::usage,
+                fmt::format("tool \"{}\": the pose needs finite numbers and a unit quaternion x, y, z, w", name));
+  }
+  if (!(seconds > 0 && seconds < 1e30)) {
+    throw Error(ErrorCode::usage, fmt::format("tool \"{}\": {} seconds on the way, expected a number > 0", name, seconds));
+  }
+  return tool;
+}
+
 bool ToolContact::active() const { return run_.model().contact != nullptr && run_.model().contact->size() > 0; }
 
-Pose ToolContact::pose(std::size_t tool, double time) const { return run_.scene.tools[tool].at(time); }
+Pose ToolContact::pose(std::size_t tool, double time) const {
+  const ContactTool& own = run_.scene.tools[tool];
+  const auto driven = run_.state.driven.find(own.name);
+  if (driven == run_.state.driven.end()) return own.at(time);
+  const ToolDrive& d = driven->second;
+  if (time >= d.end) return d.to;
+  return between(d.from, d.to, std::clamp((time - d.start) / (d.end - d.start), 0.0, 1.0));
+}
+
+void ToolContact::drive(const std::string& name, const Pose& to, double seconds) {
+  const std::size_t tool = check_drive(run_.scene, name, to, seconds);
+  const double now = run_.state.clock.time();
+  const ToolDrive drive{pose(tool, now), to, now, now + seconds};
+  run_.state.driven[name] = drive;
+  if (!active()) return;
+  // It may meet anything before the next look for what is near.
+  const BufferId near = run_.loaded.program().find("contact_near");
+  std::vector<std::int32_t> bits = run_.backend().read_ints(near);
+  for (std::int32_t& b : bits) b |= std::int32_t{1} << tool;
+  run_.backend().write_ints(near, bits);
+}
 
 void ToolContact::start() {
   history_.assign(run_.scene.tools.size(), {});

@@ -26,6 +26,9 @@ struct ToolHistory {
   std::int64_t touched = 0;  ///< steps with contact
 };
 
+/// The number of a tool that is to be driven. Throws Error (usage) for a name that no tool has, or a pose or time that is none.
+std::size_t check_drive(const Scene& scene, const std::string& name, const Pose& to, double seconds);
+
 class ToolContact {
  public:
   explicit ToolContact(RunContext& run) : run_(run) {}
@@ -39,6 +42,8 @@ class ToolContact {
 
   /// One per tool of the scene.
   [[nodiscard]] const std::vector<ToolHistory>& history() const { return history_; }
+  /// Drive a tool from where it is now to a pose, which it has after `seconds`. Throws what check_drive() throws.
+  void drive(const std::string& name, const Pose& to, double seconds);
   /// Where a tool is at a time [s].
   [[nodiscard]] Pose pose(std::size_t tool, double time) const;
 

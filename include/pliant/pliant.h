@@ -102,6 +102,12 @@ PLIANT_API pliant_status pliant_world_push_node(pliant_world world, size_t body,
 PLIANT_API pliant_status pliant_world_clear_tools(pliant_world world);
 /** The scene's tool, which a following operational region follows, stays at this point [m] from now on. */
 PLIANT_API pliant_status pliant_world_move_tool(pliant_world world, const double position[3]);
+/** A tool of the scene's `tools` goes to this place [m] and turn (unit quaternion x, y, z, w), gets there after `seconds`, and
+ * stays; its path is over. */
+PLIANT_API pliant_status pliant_world_drive_tool(pliant_world world, const char* name, const double position[3],
+                                                 const double turn[4], double seconds);
+/** What the scene's tools feel: the first `count` of them, `*needed` (may be null) is how many there are. Does not wait. */
+PLIANT_API pliant_status pliant_world_tool_forces(pliant_world world, pliant_tool_force* out, size_t count, size_t* needed);
 
 /** Cut all bodies where triangles [m], shape [triangle_count][3][3], cross them now. `out` may be null. */
 PLIANT_API pliant_status pliant_world_cut(pliant_world world, const double* triangles, size_t triangle_count, pliant_cut* out);

@@ -13,6 +13,7 @@
 
 #include "pliant/export.h"
 #include "pliant/scene_conditions.h"
+#include "pliant/tool.h"
 
 namespace pliant {
 
@@ -116,6 +117,7 @@ struct SceneSpec {
   double break_stretch = 4;                      ///< of an edge, beyond which it parts in a scene that is cut or tears; 0: none
   std::optional<RelaxationSpec> relaxation;      ///< absent: none
   std::vector<BladeSpec> blades;                 ///< blades that cut what they sweep over
+  std::vector<ToolSpec> tools;                   ///< rigid tools that touch the bodies
   std::vector<std::array<double, 4>> tool_path;  ///< (time [s], x, y, z [m]): what a following operational region follows
   std::vector<BodySpec> bodies;                  ///< at least one
   std::vector<ProbeSpec> probes;                 ///< what World::probes() tells

@@ -146,6 +146,20 @@ typedef struct pliant_probe_value {
 #define PLIANT_PROBE_VALUE_INIT \
   { sizeof(pliant_probe_value), NULL, NULL, NULL, 0 }
 
+/** A tool of the scene: see pliant::ToolForce. The name holds as long as the world. */
+typedef struct pliant_tool_force {
+  size_t size;        /**< PLIANT_TOOL_FORCE_INIT; the same in all of an array */
+  const char* name;   /**< as in the scene */
+  double position[3]; /**< of its origin [m] */
+  double turn[4];     /**< unit quaternion x, y, z, w */
+  double force[3];    /**< on the tool [N] */
+  double torque[3];   /**< about its origin [N m] */
+  double area;        /**< of the tissue that touches it, at rest [m^2] */
+  double penetration; /**< of the deepest point [m] */
+} pliant_tool_force;
+#define PLIANT_TOOL_FORCE_INIT \
+  { sizeof(pliant_tool_force), NULL, {0}, {0}, {0}, {0}, 0, 0 }
+
 #ifdef __cplusplus
 }
 #endif

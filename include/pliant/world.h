@@ -151,10 +151,12 @@ class PLIANT_API World {
   void push(std::int32_t vertex, const Vec3d& force);
   /// A force [N] on a node of a body, likewise. The node must belong to a cell of the surface.
   void push_node(std::size_t body, std::int64_t node, const Vec3d& force);
-  /// No grabs and no pushes any more.
-  void clear_tools();
-  /// The scene's tool, which a following operational region follows, stays at this point [m] from now on.
-  void move_tool(const Vec3d& position);
+  /// A tool of SceneSpec::tools goes from where it is to this place [m] and turn (unit quaternion x, y, z, w), gets there after
+  /// `seconds`, and stays; its path is over. Needs no WorldOptions::interactive. Throws Error (usage): no such tool, no pose.
+  void drive_tool(const std::string& name, const Vec3d& position, const std::array<double, 4>& turn, double seconds = 1.0 / 60);
+  void clear_tools();                     ///< no grabs and no pushes any more
+  void move_tool(const Vec3d& position);  ///< the point [m] that a following operational region follows from now on
+  [[nodiscard]] std::vector<ToolForce> tool_forces() const;  ///< of all tools; does not wait
 
   /// Cuts. They need no WorldOptions::interactive. A volume mesh of hexahedra and a scene with relaxation or the textbook
   /// integrator cannot be cut: Error (input), with nothing changed. After step_async() and advance_async() the worker makes
@@ -167,8 +169,7 @@ class PLIANT_API World {
   /// Move a blade of any name to the segment from `a` to `b` [m], which must differ (usage); it cuts what it sweeps over since
   /// its last place, measured from where the tissue has moved that place. Its first call only puts it there.
   CutResult move_blade(const std::string& blade, const Vec3d& a, const Vec3d& b);
-  /// Take it out of the tissue: the next move_blade puts it somewhere else without a cut. Throws Error (usage) if there is no
-  /// such blade.
+  /// Take it out of the tissue: the next move_blade puts it elsewhere without a cut. Throws Error (usage): no such blade.
   void lift_blade(const std::string& blade);
   /// Into how many pieces a body has come apart, by cuts and tears or from the start: sets of elements that share nodes. Waits
   /// for the worker. Throws Error (usage) if there is no such body.
@@ -177,8 +178,7 @@ class PLIANT_API World {
   /// Write a checkpoint; `pliant run --resume` reads it too. Cuts and the places of blades are part of it. Grabs and
   /// pushes belong to a World: after load() they are those of the one that loads. Throws Error: io.
   void save(const std::string& file) const;
-  /// Go to the state of a checkpoint of the same scene. Blades are lifted: the next move_blade puts them somewhere without a
-  /// cut. Throws Error: io, input (it belongs to another scene).
+  /// Go to the state of a checkpoint of the same scene. Blades are lifted. Throws Error: io, input (of another scene).
   void load(const std::string& file);
   /// Back to the start, without cuts, also after a divergence or the loss of the device (the backend is opened anew). Tools are
   /// cleared and blades lifted.

@@ -34,7 +34,9 @@ class CStructs : public ::testing::Test {
   pliant_status open(const pliant_options* with, const pliant_surface* surfaces, std::size_t count, char used = '0') {
     std::string text = R"({"format": "pliant-scene/1", "gravity": [0, -9.81, 0], "bodies": [{"name": "a",
       "surface": "memory:0", "lattice": {"spacing": 0.05}, "material": {"young": 3000, "poisson": 0.45}}]})";
-    text.insert(text.size() - 1, R"(, "probes": [{"name": "p", "point": [0.05, 0.05, 0.05]}])");
+    text.insert(
+        text.size() - 1,
+        R"(, "probes": [{"name": "p", "point": [0.05, 0.05, 0.05]}], "tools": [{"shape": {"sphere": 0.01}, "path": [[0, 1, 1, 1]]}])");
     text[text.find("memory:") + 7] = used;
     pliant_world_destroy(world);
     return pliant_world_parse(text.c_str(), nullptr, surfaces, count, with, &world);
@@ -60,6 +62,7 @@ TEST(CStructSizes, AreThoseOfTheFirstVersion) {
   EXPECT_EQ(api::CStruct<pliant_frame>::first_size, 136U);
   EXPECT_EQ(api::CStruct<pliant_cut>::first_size, 32U);
   EXPECT_EQ(api::CStruct<pliant_probe_value>::first_size, 40U);
+  EXPECT_EQ(api::CStruct<pliant_tool_force>::first_size, 136U);
 }
 
 /// Every call that fills in a struct refuses sizes that no version has, and does nothing.
@@ -102,6 +105,8 @@ TEST_F(CStructs, WhatIsFilledInFitsTheCaller) {
   expect_checked<pliant_cut>(PLIANT_CUT_INIT, [&](pliant_cut* c) { return pliant_world_cut(world, triangle, 1, c); });
   expect_checked<pliant_probe_value>(PLIANT_PROBE_VALUE_INIT,
                                      [&](pliant_probe_value* v) { return pliant_world_probes(world, v, 1, nullptr); });
+  expect_checked<pliant_tool_force>(PLIANT_TOOL_FORCE_INIT,
+                                    [&](pliant_tool_force* f) { return pliant_world_tool_forces(world, f, 1, nullptr); });
   expect_checked<pliant_cut>(PLIANT_CUT_INIT, [&](pliant_cut* c) { return pliant_world_move_blade(world, "b", a, b, c); });
 }
 

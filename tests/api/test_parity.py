@@ -17,6 +17,7 @@ MISSING = {
     ("C", "WorldInfo.backend"): "in the text of pliant_world_backend",
     ("C", "WorldInfo.device"): "in the text of pliant_world_backend",
     ("C", "WorldInfo.remarks"): "in the text of pliant_world_remarks",
+    ("Python", "ToolForce.name"): "a key of what World.tool_forces() returns",
     ("Python", "ProbeValue.probe"): "a key of what World.probes() returns",
     ("Python", "ProbeValue.quantity"): "a key of what World.probes() has for a probe",
     ("Python", "ProbeValue.numbers"): "an array of World.probes()",
@@ -42,7 +43,7 @@ BEYOND = {
 }
 PYTHON_NAMES = {"backends": "backend_names", "__version__": "version", "World::__init__": "World::World"}
 STRUCTS = {"WorldOptions": "options", "StepReport": "report", "CutResult": "cut", "WorldInfo": "info", "BodyInfo": "body", "Frame": "frame",
-           "ProbeValue": "probe_value"}
+           "ProbeValue": "probe_value", "ToolForce": "tool_force"}
 
 
 def code_of(path):
@@ -61,14 +62,14 @@ def block(text, begin):
 
 
 def members(text):
-    return set(re.findall(r"(\w+)(?:\s*=[^;]*)?;", text))
+    return set(re.findall(r"(\w+)(?:\[\d+\]|\{[^;]*\}|\s*=[^;]*)?;", text))
 
 
 def cpp():
     world = code_of("include/pliant/world.h")
     found = {f"World::{n}" for n in re.findall(r"(?<![\w~:])(\w+)\([^;]*?\)\s*(?:const)?\s*(?:noexcept)?;",
                                                block(world, "class PLIANT_API World").split("private:")[0])}
-    headers = world + code_of("include/pliant/scene.h") + code_of("include/pliant/frame.h") + code_of("include/pliant/probe.h")
+    headers = world + code_of("include/pliant/scene.h") + code_of("include/pliant/frame.h") + code_of("include/pliant/probe.h") + code_of("include/pliant/tool.h")
     found |= set(re.findall(r"^PLIANT_API .*?(\w+)\(", headers, re.M))
     for name in STRUCTS:
         found |= {f"{name}.{m}" for m in members(block(headers, f"struct {name} "))}
@@ -99,7 +100,8 @@ def python():
     found |= {f"WorldOptions.{n}" for n in re.findall(r'py::arg\("(\w+)"\)', constructor)} - {f"WorldOptions.{n}" for n in ("scene", "surfaces", "folder")}
     for name, function in {"StepReport": "bind_report", "Frame": "bind_frame"}.items():
         found |= {f"{name}.{n}" for n in re.findall(define, block(text, f"void {function}("))}
-    for name, variable, function in (("WorldInfo", "d", "info"), ("BodyInfo", "body", "info"), ("CutResult", "d", "result")):
+    for name, variable, function in (("WorldInfo", "d", "info"), ("BodyInfo", "body", "info"), ("CutResult", "d", "result"),
+                                     ("ToolForce", "tool", "tool_forces")):
         found |= {f"{name}.{n}" for n in re.findall(rf'\b{variable}\["(\w+)"\] =', block(text, f"py::dict {function}("))}
     return {PYTHON_NAMES.get(n, n) for n in found}
 
@@ -137,7 +139,7 @@ def main():
         print(f"{language}: {len(found & reference)} of {len(reference)} calls and members of C++, {len(found - reference)} of its own")
     held = module()
     if held is not None:
-        said = {n for n in python() if not n.startswith(("WorldOptions.", "WorldInfo.", "BodyInfo.", "CutResult."))}
+        said = {n for n in python() if not n.startswith(("WorldOptions.", "WorldInfo.", "BodyInfo.", "CutResult.", "ToolForce."))}
         wrong += [f"the module and its source differ in {n}" for n in sorted(held ^ said)]
     print("the Python module " + ("is not there: only its source was read" if held is None else "holds what its source says"))
     if wrong:

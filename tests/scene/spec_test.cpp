@@ -115,6 +115,36 @@ TEST(Spec, IsTheSceneOfTheFileWithTheSameContent) {
   EXPECT_EQ(scene.bodies[1].surface_in_memory->vertices.size(), 4U);
 }
 
+TEST(Spec, ToolsAreThoseOfTheFile) {
+  SceneSpec s;
+  s.name = "scene";
+  s.bodies.emplace_back().surface_file = "a.obj";
+  s.bodies[0].name = "a";
+  ToolSpec rod;
+  rod.shape = "capsule";
+  rod.radius = 0.02;
+  rod.path = {{0, 0, 0, 1, 0, 0, 0, 1}};
+  rod.friction = 0.3;
+  rod.stiffness = 1e6;
+  rod.alpha = 0.5;
+  ToolSpec hand;
+  hand.name = "hand";
+  hand.shape = "mesh";
+  hand.mesh = "hand.obj";
+  hand.scale = 0.001;
+  s.tools = {rod, hand};
+  const char* const text = R"({"format": "pliant-scene/1", "name": "scene",
+  "tools": [{"shape": {"capsule": [[0, 0, 0], [0, 0.1, 0], 0.02]}, "path": [[0, 0, 0, 1]], "friction": 0.3,
+    "contact": {"stiffness": 1e6, "alpha": 0.5}}, {"name": "hand", "shape": {"mesh": "hand.obj"}, "scale": 0.001}],
+  "bodies": [{"name": "a", "surface": "a.obj", "lattice": {"nodes": 2000}, "material": {"young": 3000, "poisson": 0.45}}]})";
+  EXPECT_EQ(scene_to_json(scene_of(s)), scene_to_json(parse_scene(text, "")));
+  s.tools[0].shape = "cone";
+  EXPECT_NE(test::error_of([&] { (void)scene_of(s); }).find("/tools/0/shape: got \"cone\""), std::string::npos);
+  s.tools[0].shape = "sphere";
+  s.tools[0].stiffness = 0;
+  EXPECT_NE(test::error_of([&] { (void)scene_of(s); }).find("/tools/0/contact/alpha: got 0.5"), std::string::npos);
+}
+
 TEST(Spec, RegionsOfAMeshAreThoseOfTheFile) {
   SceneSpec spec;
   spec.name = "scene";
