@@ -63,7 +63,7 @@ struct Tools {
   std::int32_t count, step;
 
   [[nodiscard]] const Scalar* law(std::int32_t t) const { return data + tool_numbers * t; }
-  [[nodiscard]] const Scalar* now(std::int32_t t) const { return pose + pose_numbers * (std::int64_t{step} * count + t); }
+  [[nodiscard]] const Scalar* now(std::int32_t t) const { return &pose[pose_numbers * (std::int64_t{step} * count + t)]; }
   [[nodiscard]] const Scalar* next(std::int32_t t) const { return now(t) + pose_numbers * count; }
   [[nodiscard]] Meeting<Scalar> meet(std::int32_t t, const Place<Scalar>& p) const {
     Meeting<Scalar> m;

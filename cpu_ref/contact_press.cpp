@@ -24,8 +24,8 @@ Scalar normal_force(const Meeting<Scalar>& m, const Scalar* law, Scalar area, Sc
 
 /// What pulls a point back to where it stuck, at most `most`.
 template <class Scalar>
-Vec<Scalar> with_friction(const Meeting<Scalar>& m, const Scalar* next, const PointNumbers<Scalar>& anchor, Scalar stiffness,
-                          Scalar most, const Vec<Scalar>& f) {
+Vec<Scalar> press_friction(const Meeting<Scalar>& m, const Scalar* next, const PointNumbers<Scalar>& anchor, Scalar stiffness,
+                           Scalar most, const Vec<Scalar>& f) {
   const Vec<Scalar> slip = turned(next, difference(m.inside, {anchor[0], anchor[1], anchor[2]}));
   const Vec<Scalar> side = scaled_sum(-dot(slip, m.normal), m.normal, slip);
   const Scalar length = std::sqrt(dot(side, side));
@@ -82,7 +82,7 @@ void contact_press(Range range, const Scalar* node_u, const Scalar* node_w, cons
           for (std::size_t k = 0; k < 3; ++k) anchor[static_cast<std::int64_t>(k)] = stuck[k];
           anchor[3] = own;
         }
-        if (anchor[3] == own) f = with_friction(m, all.next(t), anchor, stiffness, law[14] * push, f);
+        if (anchor[3] == own) f = press_friction(m, all.next(t), anchor, stiffness, law[14] * push, f);
       }
       const Quanta q = quanta(f, contact_params[1]);
       sums.force(t, p.now, q);

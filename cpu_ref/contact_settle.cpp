@@ -9,8 +9,8 @@ using namespace contact;
 
 /// Friction of both parts together, towards the anchor; where it slips, the anchor follows.
 template <class Scalar>
-Vec<Scalar> with_friction(const Meeting<Scalar>& m, const Scalar* next, const PointNumbers<Scalar>& anchor, Scalar stiffness,
-                          Scalar friction, const Vec<Scalar>& f) {
+Vec<Scalar> settle_friction(const Meeting<Scalar>& m, const Scalar* next, const PointNumbers<Scalar>& anchor, Scalar stiffness,
+                            Scalar friction, const Vec<Scalar>& f) {
   const Vec<Scalar> slip = turned(next, difference(m.inside, {anchor[0], anchor[1], anchor[2]}));
   const Scalar along = dot(slip, m.normal), across = dot(f, m.normal);
   const Vec<Scalar> side = scaled_sum(-along, m.normal, slip);
@@ -71,7 +71,7 @@ void contact_settle(Range range, const Scalar* node_u, const Scalar* node_w, con
         if (count == 1) {
           before = {force[0], force[1], force[2]};
           for (std::size_t k = 0; k < 3; ++k) f[k] += static_cast<Scalar>(before[k]) * quantum;
-          if (anchor[3] == static_cast<Scalar>(t + 1)) f = with_friction(m, all.next(t), anchor, stiffness, law[14], f);
+          if (anchor[3] == static_cast<Scalar>(t + 1)) f = settle_friction(m, all.next(t), anchor, stiffness, law[14], f);
         }
         Quanta q = quanta(f, inverse);
         for (std::size_t k = 0; k < 3; ++k) q[k] -= before[k];

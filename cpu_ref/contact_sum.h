@@ -31,7 +31,7 @@ struct ToolSum {
   const Tools<Scalar>& tools;
 
   [[nodiscard]] std::int32_t* of(std::int32_t t) const {
-    return sum + sum_numbers * (std::int64_t{tools.step} * tools.count + t);
+    return &sum[sum_numbers * (std::int64_t{tools.step} * tools.count + t)];
   }
   void force(std::int32_t t, const Vec<Scalar>& p, const Quanta& q) const {
     const Vec<Scalar> arm = difference(p, origin_of(tools.next(t)));

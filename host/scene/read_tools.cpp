@@ -9,14 +9,14 @@
 namespace pliant {
 namespace {
 
-using Row = std::array<double, 8>;
+using PoseRow = std::array<double, 8>;
 
-Row read_row(const Reader& row, const std::vector<Row>& before) {
+PoseRow read_pose(const Reader& row, const std::vector<PoseRow>& before) {
   const char* const expected =
       "a row [time, x, y, z] or [time, x, y, z, qx, qy, qz, qw] in seconds and metres with a unit quaternion";
   const std::vector<Reader> parts = row.items(expected);
   if (parts.size() != 4 && parts.size() != 8) row.fail(expected);
-  Row out{0, 0, 0, 0, 0, 0, 0, 1};
+  PoseRow out{0, 0, 0, 0, 0, 0, 0, 1};
   for (std::size_t i = 0; i < parts.size(); ++i) out[i] = parts[i].number();
   if (!before.empty() && !(out[0] > before.back()[0]))
     parts[0].fail(fmt::format("a time after the previous row's {}", before.back()[0]));
@@ -110,7 +110,7 @@ ContactTool read_contact_tool(const Reader& entry, std::size_t index, const std:
   if (!tool.mesh.empty() && tool.mesh.is_relative()) tool.mesh = folder / tool.mesh;
   if (entry.has("path")) {
     for (const Reader& row : entry.at("path").items("a list of at least one row [time, x, y, z, qx, qy, qz, qw]", 1))
-      tool.path.push_back(read_row(row, tool.path));
+      tool.path.push_back(read_pose(row, tool.path));
   }
   if (entry.has("friction")) tool.friction = entry.at("friction").non_negative();
   if (entry.has("contact")) read_contact(entry.at("contact"), tool);
@@ -137,6 +137,8 @@ std::vector<ContactTool> read_tools(const Reader& tools, const std::filesystem::
 void check_tools(const Reader& top, const Scene& scene) {
   if (scene.tools.empty()) return;
   if (scene.integrator != Integrator::increment) top.at("integrator").fail("increment, because the scene has tools");
+  if (scene.relaxation.enabled)
+    top.at("relaxation").fail("false, because the scene has tools (their forces are not part of its residual)");
   if (scene.solver.enabled)
     top.at("solver").fail("\"dynamic\", because the scene has tools (contact is not solved statically)");
   const std::vector<Reader> bodies = top.at("bodies").items("a list of bodies");

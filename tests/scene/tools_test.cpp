@@ -78,6 +78,7 @@ TEST(Tools, BadOnesAreRefused) {
   EXPECT_NE(error(one, R"(, "integrator": "textbook")").find("/integrator: got \"textbook\", expected increment"),
             std::string::npos);
   EXPECT_NE(error(one, R"(, "solver": {"type": "static"})").find("/solver: "), std::string::npos);
+  EXPECT_NE(error(one, R"(, "relaxation": true)").find("/relaxation: got true, expected false"), std::string::npos);
   std::string many = "[";
   for (int i = 0; i < 31; ++i) many += (i > 0 ? ", {" : "{") + ball + "}";
   EXPECT_NE(error(many + "]").find("/tools: got 31 tools, expected at most 30"), std::string::npos);
