@@ -13,6 +13,8 @@ constexpr double kReach = 8;      ///< beyond it a point of a blade does not go 
 constexpr double kLongest =
     4;  ///< longest side of a triangle at rest, in edges: longer ones lead from one part of a body to another
 constexpr int kMostRows = 1024;
+/// Points of all rows of one move, far more than a blade of any body has: a damaged checkpoint could ask for millions.
+constexpr double kMostPoints = 1 << 18;
 constexpr int kRangeSamples = 64;
 constexpr std::size_t kFarNodes = 256;
 constexpr std::int64_t kMostPlaces =
@@ -157,7 +159,8 @@ void BladeSweep::move(BladeTrace& front, const BladeSegment& to) {
   double longest = 0;
   for (std::size_t i = 0; i < from.size(); ++i) longest = std::max(longest, vec::norm(vec::sub(until[i], from[i])));
   const double wanted = std::ceil(longest * (finish - begin) / (kSpacing * edge_));
-  const int rows = wanted < kMostRows ? std::max(1, static_cast<int>(wanted)) : kMostRows;
+  const double most = std::clamp(kMostPoints / static_cast<double>(from.size()), 1.0, double{kMostRows});
+  const int rows = std::max(1, static_cast<int>(wanted < most ? wanted : most));
   Row before;
   if (begin > 0) {
     std::vector<Vec3d> points;
