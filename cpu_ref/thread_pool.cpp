@@ -95,8 +95,9 @@ void ThreadPool::serve(int thread) {
   std::uint32_t seen = 0;
   while (true) {
     wait_until(pass_, [seen](std::uint32_t pass) { return pass != seen; });
-    if (stop_.load(std::memory_order_relaxed)) return;
+    // The pass first: who sees the one that the destructor counts sees its stop too, and takes no piece of it.
     seen = pass_.load(std::memory_order_acquire);
+    if (stop_.load(std::memory_order_relaxed)) return;
     work_through(seen, thread);
   }
 }

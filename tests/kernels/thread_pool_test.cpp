@@ -38,6 +38,17 @@ TEST_P(EachCount, DoesEveryPieceOnceAndOnePassAfterAnother) {
   EXPECT_TRUE(n == 1 || others > 0);
 }
 
+TEST(ThreadPool, EndsWhileItsThreadsAreComing) {
+  // A few short passes and the end: threads wake for a pass and meet the end on their way. A thread that took the end for a
+  // pass would call a piece that is gone, and then wait for ever.
+  for (int pools = 0; pools < 4000; ++pools) {
+    ThreadPool pool(2 + pools % 15);
+    std::atomic<int> pieces = 0;
+    for (int pass = 0; pass <= pools % 3; ++pass) pool.run([&](int) { ++pieces; });
+    ASSERT_EQ(pieces, (1 + pools % 3) * pool.threads());
+  }
+}
+
 TEST(ThreadPool, WorksAloneForAWhileAfterAPieceThatCameLate) {
   ThreadPool pool(2);
   const auto caller = std::this_thread::get_id();
