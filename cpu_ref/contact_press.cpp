@@ -39,12 +39,11 @@ template <class Scalar>
 void contact_press(Range range, const Scalar* node_u, const Scalar* node_w, const Scalar* contact_rest,
                    const std::int32_t* contact_node, const Scalar* contact_weight, const Scalar* contact_share,
                    const std::int32_t* contact_near, Scalar* contact_anchor, std::int32_t* contact_force,
-                   std::int32_t* tool_sum, const std::int32_t* tool_kind, const Scalar* tool_data, const Scalar* tool_grid,
-                   const Scalar* tool_pose, const Scalar* contact_params, const Scalar* step_params, std::int32_t tools,
-                   std::int32_t step) {
+                   std::int32_t* contact_tool_force, const std::int32_t* tool_kind, const Scalar* tool_data,
+                   const Scalar* tool_grid, const Scalar* tool_pose, const Scalar* contact_params, const Scalar* step_params,
+                   std::int32_t point_count, std::int32_t tools, std::int32_t step) {
   const Points<Scalar> points{node_u, node_w, contact_rest, contact_node, contact_weight};
   const Tools<Scalar> all{tool_kind, tool_data, tool_grid, tool_pose, tools, step};
-  const ToolSum<Scalar> sums{tool_sum, contact_params, all};
   const Scalar h = step_params[0], half_hh = (Scalar(0.5) * h) * h;
   for (std::int64_t i = range.begin; i < range.end; ++i) {
     const std::int32_t near = contact_near[i / PLIANT_TILE];
@@ -70,7 +69,10 @@ void contact_press(Range range, const Scalar* node_u, const Scalar* node_w, cons
     }
     const Scalar stiffness = w > Scalar(0) ? area / (w * static_cast<Scalar>(count)) : Scalar(0);
     for (std::int32_t t = 0; t < tools; ++t) {
-      if ((touching >> t & 1) == 0) continue;
+      if ((near >> t & 1) == 0) continue;
+      const PointNumbers<std::int32_t> on_tool = tool_force_of(contact_tool_force, point_count, t, i);
+      on_tool[7] = touching >> t & 1;
+      if (on_tool[7] == 0) continue;
       const Meeting<Scalar> m = all.meet(t, p);
       const Scalar* law = all.law(t);
       const Scalar push = normal_force(m, law, area, stiffness, h);
@@ -85,8 +87,8 @@ void contact_press(Range range, const Scalar* node_u, const Scalar* node_w, cons
         if (anchor[3] == own) f = press_friction(m, all.next(t), anchor, stiffness, law[14] * push, f);
       }
       const Quanta q = quanta(f, contact_params[1]);
-      sums.force(t, p.now, q);
-      sums.touch(t, area, -m.distance + dot(m.slip, m.normal));
+      begin_touch(on_tool, -m.distance + dot(m.slip, m.normal));
+      add_to_tool(on_tool, all.next(t), contact_params, p.now, q);
       for (std::size_t k = 0; k < 3; ++k) sum[k] += q[k];
     }
     for (std::size_t k = 0; k < 3; ++k) force[static_cast<std::int64_t>(k)] = sum[k];

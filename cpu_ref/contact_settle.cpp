@@ -31,12 +31,12 @@ template <class Scalar>
 void contact_settle(Range range, const Scalar* node_u, const Scalar* node_w, const Scalar* contact_rest,
                     const std::int32_t* contact_node, const Scalar* contact_weight, const Scalar* contact_share,
                     const std::int32_t* contact_near, Scalar* contact_anchor, std::int32_t* contact_force,
-                    std::int32_t* contact_change, const Scalar* contact_node_sum, std::int32_t* tool_sum,
+                    std::int32_t* contact_change, const Scalar* contact_node_sum, std::int32_t* contact_tool_force,
                     const std::int32_t* tool_kind, const Scalar* tool_data, const Scalar* tool_grid, const Scalar* tool_pose,
-                    const Scalar* contact_params, const Scalar* step_params, std::int32_t tools, std::int32_t step) {
+                    const Scalar* contact_params, const Scalar* step_params, std::int32_t point_count, std::int32_t tools,
+                    std::int32_t step) {
   const Points<Scalar> points{node_u, node_w, contact_rest, contact_node, contact_weight};
   const Tools<Scalar> all{tool_kind, tool_data, tool_grid, tool_pose, tools, step};
-  const ToolSum<Scalar> sums{tool_sum, contact_params, all};
   const Scalar h = step_params[0], half_hh = (Scalar(0.5) * h) * h, quantum = contact_params[0], inverse = contact_params[1];
   for (std::int64_t i = range.begin; i < range.end; ++i) {
     if (contact_near[i / PLIANT_TILE] == 0) continue;
@@ -75,7 +75,7 @@ void contact_settle(Range range, const Scalar* node_u, const Scalar* node_w, con
         }
         Quanta q = quanta(f, inverse);
         for (std::size_t k = 0; k < 3; ++k) q[k] -= before[k];
-        sums.force(t, p.now, q);
+        add_to_tool(tool_force_of(contact_tool_force, point_count, t, i), all.next(t), contact_params, p.now, q);
         for (std::size_t k = 0; k < 3; ++k) sum[k] += q[k];
       }
       for (std::size_t k = 0; k < 3; ++k) force[static_cast<std::int64_t>(k)] += sum[k];

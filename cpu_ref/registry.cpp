@@ -15,6 +15,7 @@
   ROW(contact_near) \
   ROW(contact_press) \
   ROW(contact_settle) \
+  ROW(contact_tool_sum) \
   ROW(contact_apply) \
   ROW(tled_tet4_force) \
   ROW(tled_tet4_dilation) \

@@ -16,9 +16,9 @@
 __kernel void contact_press(__global const float* node_u, __global const float* node_w, __global const float* contact_rest,
                             __global const int* contact_node, __global const float* contact_weight,
                             __global const float* contact_share, __global const int* contact_near, __global float* contact_anchor,
-                            __global int* contact_force, __global int* tool_sum, __global const int* tool_kind,
+                            __global int* contact_force, __global int* contact_tool_force, __global const int* tool_kind,
                             __global const float* tool_data, __global const float* tool_grid, __global const float* tool_pose,
-                            __global const float* contact_params, __global const float* step_params, int tools, int step) {
+                            __global const float* contact_params, __global const float* step_params, int point_count, int tools, int step) {
   const int first = FIRST_INDEX;
   const int near = contact_near[first / PLIANT_TILE];
   if (near == 0) return;
@@ -50,6 +50,9 @@ __kernel void contact_press(__global const float* node_u, __global const float* 
     }
     const float stiffness = w > 0.0f ? area / (w * (float)count) : 0.0f;
     for (int t = 0; t < tools; ++t) {
+      if (!(near >> t & 1)) continue;
+      __global int* on_tool = tool_force_of(contact_tool_force, point_count, t, i);
+      on_tool[7 * PLIANT_TILE] = touching >> t & 1;
       if (!(touching >> t & 1)) continue;
       const meeting m = meet(tool_kind, tool_data, tool_grid, tool_pose, tools, step, t, p);
       __global const float* data = tool_data + TOOL_NUMBERS * t;
@@ -85,8 +88,9 @@ __kernel void contact_press(__global const float* node_u, __global const float* 
       }
       const float inverse = contact_params[1];
       const int4 q = (int4)(quanta(f.x * inverse), quanta(f.y * inverse), quanta(f.z * inverse), 0);
-      add_to_tool(tool_sum, tool_pose, contact_params, tools, step, t, p.now, q);
-      add_touch(tool_sum, contact_params, tools, step, t, area, before);
+      for (int c = 0; c < 6; ++c) on_tool[c * PLIANT_TILE] = 0;
+      add_to_tool(on_tool, tool_pose + POSE_NUMBERS * ((step + 1) * tools + t), contact_params, p.now, q);
+      on_tool[6 * PLIANT_TILE] = as_int(before > 0.0f ? before : 0.0f);
       sum += q;
     }
     force[0] = sum.x;

@@ -10,9 +10,9 @@ __kernel void contact_settle(__global const float* node_u, __global const float*
                              __global const int* contact_node, __global const float* contact_weight,
                              __global const float* contact_share, __global const int* contact_near, __global float* contact_anchor,
                              __global int* contact_force, __global int* contact_change, __global const float* contact_node_sum,
-                             __global int* tool_sum, __global const int* tool_kind, __global const float* tool_data,
+                             __global int* contact_tool_force, __global const int* tool_kind, __global const float* tool_data,
                              __global const float* tool_grid, __global const float* tool_pose, __global const float* contact_params,
-                             __global const float* step_params, int tools, int step) {
+                             __global const float* step_params, int point_count, int tools, int step) {
   const int first = FIRST_INDEX;
   if (contact_near[first / PLIANT_TILE] == 0) return;
   const float h = step_params[0], half_hh = (0.5f * h) * h;
@@ -77,7 +77,7 @@ __kernel void contact_settle(__global const float* node_u, __global const float*
           }
         }
         const int4 q = (int4)(quanta(f.x * inverse), quanta(f.y * inverse), quanta(f.z * inverse), 0) - before;
-        add_to_tool(tool_sum, tool_pose, contact_params, tools, step, t, p.now, q);
+        add_to_tool(tool_force_of(contact_tool_force, point_count, t, i), tool_pose + POSE_NUMBERS * ((step + 1) * tools + t), contact_params, p.now, q);
         sum += q;
       }
       force[0] += sum.x;

@@ -78,6 +78,8 @@ void ProgramBuilder::add_contact_points() {
                    "contact_press, contact_settle"));
   }
   add(make_ints("contact_force", BufferRole::scratch, "[tiles][4][16]", {}, 4 * count, "contact_press, contact_settle"));
+  add(make_ints("contact_tool_force", BufferRole::scratch, "[tools][tiles][8][16]", {}, 8 * count * model_.tools->size(),
+                "contact_press, contact_settle"));
   add(make_ints("contact_change", BufferRole::scratch, "[tiles][4][16]", {}, 4 * count, "contact_settle"));
   add(make_reals("contact_node_sum", BufferType::real4, static_cast<std::size_t>(model_.slots) + 1, BufferRole::scratch,
                  "[slots + 1]", "N, N, N, m^2", "contact_apply"));
@@ -105,9 +107,9 @@ void ProgramBuilder::add_tools() {
   const auto rows = static_cast<std::size_t>(options_.batch_steps);
   add(make_reals("tool_pose", BufferType::real, (rows + 1) * tools * kPoseNumbers, BufferRole::control,
                  "[steps + 1][tools][12]", "1 (9), m (3)", "host"));
-  add(make_ints("tool_sum", BufferRole::scratch, "[steps][tools][16]", {}, rows * tools * contact_sum_numbers,
-                "contact_press, contact_settle"));
-  program_.buffers.back().carried = Carried::all;  // until the host clears it
+  add(make_ints("tool_sum", BufferRole::scratch, "[steps][tools][16][16]", {},
+                rows * tools * contact_sum_parts * contact_sum_numbers, "contact_tool_sum"));
+  program_.buffers.back().carried = Carried::all;  // a row per step of the batch, until the host reads it
   add(make_reals("contact_params", BufferType::real, 8, BufferRole::control, "[8]", "see contact_near.cl", "host"));
 }
 
@@ -171,6 +173,10 @@ void ProgramBuilder::add_contact_passes() {
     for (const char* name : names) list.push_back(arg(name));
     return list;
   };
+  const auto with_points = [&](std::vector<Arg> list) {
+    list.push_back(int_arg(static_cast<std::int32_t>(points)));
+    return list;
+  };
   const auto with_step = [&](std::vector<Arg> list) {
     list.push_back(int_arg(tools));
     list.push_back(step_arg());
@@ -193,16 +199,20 @@ void ProgramBuilder::add_contact_passes() {
          Shape::lanes, nodes, "contact nodes");
   };
   pass("contact_press",
-       with_step(args({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_share", "contact_near",
-                       "contact_anchor", "contact_force", "tool_sum", "tool_kind", "tool_data", "tool_grid", "tool_pose",
-                       "contact_params", "step_params"})),
+       with_step(with_points(args({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_share",
+                                   "contact_near", "contact_anchor", "contact_force", "contact_tool_force", "tool_kind",
+                                   "tool_data", "tool_grid", "tool_pose", "contact_params", "step_params"}))),
        Shape::lanes, points, "contact points");
   apply("contact_force");
   pass("contact_settle",
-       with_step(args({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_share", "contact_near",
-                       "contact_anchor", "contact_force", "contact_change", "contact_node_sum", "tool_sum", "tool_kind",
-                       "tool_data", "tool_grid", "tool_pose", "contact_params", "step_params"})),
+       with_step(with_points(
+           args({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_share", "contact_near",
+                 "contact_anchor", "contact_force", "contact_change", "contact_node_sum", "contact_tool_force", "tool_kind",
+                 "tool_data", "tool_grid", "tool_pose", "contact_params", "step_params"}))),
        Shape::lanes, points, "contact points");
+  pass("contact_tool_sum",
+       with_step(with_points(args({"contact_tool_force", "contact_rest", "contact_near", "tool_sum", "contact_params"}))),
+       Shape::items, tools * static_cast<std::int64_t>(contact_sum_parts), "parts of tools");
   apply("contact_change");
 }
 

@@ -23,8 +23,22 @@ constexpr int kAreaBits = 26;
 
 double power_of_two(double x) { return std::ldexp(1.0, static_cast<int>(std::ceil(std::log2(x)))); }
 
-/// Two numbers that add_quanta made of a sum.
-double joined(const std::int32_t* at) { return 32768.0 * at[0] + at[1]; }
+/// Of a step and a tool: force, torque and area in quanta, largest depth [m].
+struct StepSum {
+  std::array<double, 7> quanta{};
+  double depth = 0;
+  std::int64_t points = 0;
+};
+
+StepSum sum_of_parts(const std::int32_t* part) {
+  StepSum sum;
+  for (std::size_t p = 0; p < contact_sum_parts; ++p, part += contact_sum_numbers) {
+    for (std::size_t c = 0; c < 7; ++c) sum.quanta[c] += 32768.0 * part[2 * c] + part[2 * c + 1];  // exact below 2^53
+    sum.depth = std::max(sum.depth, static_cast<double>(std::bit_cast<float>(part[14])));
+    sum.points += part[15];
+  }
+  return sum;
+}
 
 }  // namespace
 
@@ -141,8 +155,6 @@ void ToolContact::begin_batch(std::int32_t steps) {
   backend.write_reals(program.find("contact_params"),
                       {u.force, 1 / u.force, u.force / contact_weight_unit, 1 / u.torque, 1 / u.area,
                        kMargin * run_.model().contact->spacing, double(contact_look_every), 0});
-  const BufferId sums = program.find("tool_sum");
-  backend.write_ints(sums, std::vector<std::int32_t>(program.at(sums).count, 0));
 }
 
 void ToolContact::end_batch(std::int32_t steps) {
@@ -154,16 +166,17 @@ void ToolContact::end_batch(std::int32_t steps) {
     ToolHistory& h = history_[t];
     h.now = {};
     for (std::int32_t step = 0; step < steps; ++step) {
-      const std::int32_t* s = &sums[(static_cast<std::size_t>(step) * tools + t) * contact_sum_numbers];
-      if (s[15] == 0) continue;
+      const StepSum sum =
+          sum_of_parts(&sums[(static_cast<std::size_t>(step) * tools + t) * contact_sum_parts * contact_sum_numbers]);
+      if (sum.points == 0) continue;
       ++h.touched;
       for (std::size_t c = 0; c < 3; ++c) {
-        h.now.force[c] += joined(s + 2 * c) * u.force / steps;
-        h.now.torque[c] += joined(s + 6 + 2 * c) * u.torque / steps;
+        h.now.force[c] += sum.quanta[c] * u.force / steps;
+        h.now.torque[c] += sum.quanta[3 + c] * u.torque / steps;
       }
-      h.now.area = joined(s + 12) * u.area;
-      h.now.points = s[15];
-      h.now.depth = static_cast<double>(std::bit_cast<float>(s[14]));
+      h.now.area = sum.quanta[6] * u.area;
+      h.now.points = sum.points;
+      h.now.depth = sum.depth;
       h.max_depth = std::max(h.max_depth, h.now.depth);
     }
     h.max_force = std::max(h.max_force, vec::norm(h.now.force));

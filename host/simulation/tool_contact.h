@@ -35,7 +35,7 @@ class ToolContact {
 
   /// Throws Error (bad_input) for a tool that begins inside a body, deeper than a quarter of a cell.
   void start();
-  /// Poses for the next `steps` steps, units, and sums of zero. Nothing without tools.
+  /// Poses for the next `steps` steps, and units. Nothing without tools.
   void begin_batch(std::int32_t steps);
   /// Read what the batch's tools felt. `steps`: how many were done.
   void end_batch(std::int32_t steps);

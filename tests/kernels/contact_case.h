@@ -1,6 +1,7 @@
 // Random contact: points on nodes of a made-up body, tools of every shape among them.
 #pragma once
 #include <array>
+#include <bit>
 #include <cmath>
 
 #include "random_data.h"
@@ -10,14 +11,14 @@ namespace pliant::kernel_test {
 /// Everything that the passes of contact read. The numbers are of a body of about 1 m whose nodes weigh about 1 kg.
 struct ContactData {
   static constexpr std::size_t tools = 5, rows = test_step + 2;
-  std::size_t points = 64, slots = 96;
+  std::size_t points, slots = 96;
   Reals node_u, node_w, rest, weight, share, anchor, node_sum, data, grid, pose, params, step_params;
-  Ints node, near, force, change, sum, kind;
+  Ints node, near, force, change, tool_force, sum, kind;
   Ints slot, free, tiles_offset, tiles, gather_offset, gather, units;
 
   static std::size_t base(std::size_t i, std::size_t planes) { return i / 16 * planes * 16 + i % 16; }
 
-  explicit ContactData(std::uint32_t seed, Data kind_of_data = Data::large) {
+  explicit ContactData(std::uint32_t seed, Data kind_of_data = Data::large, std::size_t count = 64) : points(count) {
     Random random(seed);
     node_u = random.reals(4 * (slots + 1), kind_of_data, 0.02);
     node_w = random.reals(4 * (slots + 1), kind_of_data, 1e-3);
@@ -58,6 +59,14 @@ struct ContactData {
     force = random.ints(4 * points, -1000000, 1000000);
     change = force;
     for (std::size_t i = 0; i < points; ++i) force[base(i, 4) + 48] = change[base(i, 4) + 48] = random.integer(0, 31);
+    tool_force = random.ints(8 * points * tools, -2000000, 2000000);
+    for (std::size_t t = 0; t < tools; ++t) {
+      for (std::size_t i = 0; i < points; ++i) {
+        const std::size_t at = 8 * points * t + base(i, 8);
+        tool_force[at + 96] = std::bit_cast<std::int32_t>(static_cast<float>(random.uniform(0, 0.01)));
+        tool_force[at + 112] = force[base(i, 4) + 48] >> t & 1;
+      }
+    }
     node_sum = random.positive(4 * (slots + 1), 0.001, 0.05);
   }
 
@@ -77,7 +86,7 @@ struct ContactData {
       d.resize(20, 0.0);
       data.insert(data.end(), d.begin(), d.end());
     }
-    sum.assign(rows * tools * 16, 0);
+    sum.assign(rows * tools * 16 * 16, 7);  // what was there does not stay
     for (std::size_t row = 0; row < rows; ++row) {
       for (std::size_t t = 0; t < tools; ++t) {
         const double angle = 0.1 * static_cast<double>(row) + static_cast<double>(t), c = std::cos(angle), s = std::sin(angle);
@@ -143,29 +152,45 @@ inline KernelCase near_case(const ContactData& d) {
   return test;
 }
 
-inline KernelCase press_case(const ContactData& d) {
-  KernelCase test("contact_press", {}, Shape::lanes, d.points);
-  add_points(test, d)
+/// What press and settle begin with.
+inline KernelCase& add_touching(KernelCase& test, const ContactData& d) {
+  return add_points(test, d)
       .reals("contact_share", d.share)
       .ints("contact_near", d.near)
       .reals("contact_anchor", d.anchor)
-      .ints("contact_force", d.force)
-      .ints("tool_sum", d.sum);
-  add_tools(test, d).reals("step_params", d.step_params).integer(static_cast<int>(ContactData::tools)).step();
+      .ints("contact_force", d.force);
+}
+
+/// What press, settle and tool_sum end with.
+inline KernelCase& add_counts(KernelCase& test, const ContactData& d) {
+  return test.integer(static_cast<int>(d.points)).integer(static_cast<int>(ContactData::tools)).step();
+}
+
+inline KernelCase press_case(const ContactData& d) {
+  KernelCase test("contact_press", {}, Shape::lanes, d.points);
+  add_touching(test, d).ints("contact_tool_force", d.tool_force);
+  add_counts(add_tools(test, d).reals("step_params", d.step_params), d);
   return test;
 }
 
 inline KernelCase settle_case(const ContactData& d) {
   KernelCase test("contact_settle", {}, Shape::lanes, d.points);
-  add_points(test, d)
-      .reals("contact_share", d.share)
-      .ints("contact_near", d.near)
-      .reals("contact_anchor", d.anchor)
-      .ints("contact_force", d.force)
+  add_touching(test, d)
       .ints("contact_change", d.change)
       .reals("contact_node_sum", d.node_sum)
-      .ints("tool_sum", d.sum);
-  add_tools(test, d).reals("step_params", d.step_params).integer(static_cast<int>(ContactData::tools)).step();
+      .ints("contact_tool_force", d.tool_force);
+  add_counts(add_tools(test, d).reals("step_params", d.step_params), d);
+  return test;
+}
+
+inline KernelCase tool_sum_case(const ContactData& d) {
+  KernelCase test("contact_tool_sum", {}, Shape::items, ContactData::tools * 16);
+  test.ints("contact_tool_force", d.tool_force)
+      .reals("contact_rest", d.rest)
+      .ints("contact_near", d.near)
+      .ints("tool_sum", d.sum)
+      .reals("contact_params", d.params);
+  add_counts(test, d);
   return test;
 }
 
@@ -211,23 +236,32 @@ void for_contact_data(std::uint32_t seed, Compare compare) {
   }
 }
 
-/// Of tool_sum: the force on all tools in the step of the test, in quanta.
-inline double on_tools(const Reals& sums, std::size_t component) {
+/// Of contact_tool_force: a component of a tool's sum over what touches it, in quanta.
+inline double on_tool(const ContactData& d, const Reals& tool_force, std::size_t tool, std::size_t component) {
   double sum = 0;
-  for (std::size_t t = 0; t < ContactData::tools; ++t) {
-    const std::size_t at = 16 * (test_step * ContactData::tools + t) + 2 * component;
-    sum += 32768 * sums[at] + sums[at + 1];
+  for (std::size_t i = 0; i < d.points; ++i) {
+    const std::size_t at = 8 * d.points * tool + ContactData::base(i, 8);
+    if ((d.near[i / 16] >> tool & 1) != 0 && tool_force[at + 112] != 0) sum += tool_force[at + 16 * component];
   }
   return sum;
 }
 
-/// Of contact_force: the force on all points that are near a tool.
-inline double on_points(const ContactData& d, const Reals& force, std::size_t component) {
-  double sum = 0;
-  for (std::size_t i = 0; i < d.points; ++i) {
-    if (d.near[i / 16] != 0) sum += force[ContactData::base(i, 4) + 16 * component];
+/// What points get in `force`, tools give, to the last quantum. Points whose `touching` is about a tool that is not near have
+/// none.
+inline void expect_action_is_reaction(const ContactData& d, const KernelCase& test, const char* name,
+                                      const Reals& tools_before) {
+  const Reals force = ints_in_double(test, name), tool_force = ints_in_double(test, "contact_tool_force");
+  for (std::size_t c = 0; c < 3; ++c) {
+    double points = 0, tools = 0;
+    for (std::size_t i = 0; i < d.points; ++i) {
+      if (d.near[i / 16] != 0) points += force[ContactData::base(i, 4) + 16 * c];
+    }
+    for (std::size_t t = 0; t < ContactData::tools; ++t) {
+      tools += on_tool(d, tool_force, t, c) - (tools_before.empty() ? 0 : on_tool(d, tools_before, t, c));
+    }
+    EXPECT_EQ(points, -tools);
+    EXPECT_NE(points, 0);
   }
-  return sum;
 }
 
 }  // namespace pliant::kernel_test

@@ -47,6 +47,19 @@ double distance_of(const ContactData& d, std::size_t t, const Vector3d& y) {
   return sum;
 }
 
+/// After the trial step.
+Vector3d place_of(const ContactData& d, std::size_t i) {
+  Vector3d x;
+  for (std::size_t c = 0; c < 3; ++c) {
+    x[static_cast<int>(c)] = d.rest[ContactData::base(i, 4) + 16 * c];
+    for (std::size_t a = 0; a < 8; ++a) {
+      const std::size_t entry = ContactData::base(i, 8) + 16 * a;
+      x[static_cast<int>(c)] += d.weight[entry] * d.node_u[4 * static_cast<std::size_t>(d.node[entry]) + c];
+    }
+  }
+  return x;
+}
+
 /// Points that contact_press finds inside a tool are those inside by the book.
 TEST(ContactPressOracle, TouchesWhatIsInside) {
   int inside = 0, outside = 0;
@@ -56,14 +69,7 @@ TEST(ContactPressOracle, TouchesWhatIsInside) {
     const Reals force = ints_in_double(press_case(d), "contact_force");
     for (std::size_t i = 0; i < d.points; ++i) {
       const std::size_t at = ContactData::base(i, 4);
-      Vector3d x;
-      for (std::size_t c = 0; c < 3; ++c) {
-        x[static_cast<int>(c)] = d.rest[at + 16 * c];
-        for (std::size_t a = 0; a < 8; ++a) {
-          const std::size_t entry = ContactData::base(i, 8) + 16 * a;
-          x[static_cast<int>(c)] += d.weight[entry] * d.node_u[4 * static_cast<std::size_t>(d.node[entry]) + c];
-        }
-      }
+      const Vector3d x = place_of(d, i);
       for (std::size_t t = 0; t < ContactData::tools; ++t) {
         const double* pose = &d.pose[12 * ((test_step + 1) * ContactData::tools + t)];
         Vector3d y = Vector3d::Zero();
@@ -82,17 +88,32 @@ TEST(ContactPressOracle, TouchesWhatIsInside) {
   EXPECT_GT(outside, 100);
 }
 
-/// What points get, tools give, to the last quantum.
 TEST(ContactPressOracle, ActionIsReactionInFixedPoint) {
   for (std::uint32_t seed = 0; seed < 6; ++seed) {
     const ContactData d(500 + seed);
-    const KernelCase test = press_case(d);
-    const Reals force = ints_in_double(test, "contact_force"), sums = ints_in_double(test, "tool_sum");
-    for (std::size_t c = 0; c < 3; ++c) {
-      EXPECT_EQ(on_points(d, force, c), -on_tools(sums, c));
-      EXPECT_NE(on_points(d, force, c), 0);
+    expect_action_is_reaction(d, press_case(d), "contact_force", {});
+  }
+}
+
+/// Without friction a sphere pushes along the line from its centre, however it is turned, and nothing else does.
+TEST(ContactPressOracle, ASphereWithoutFrictionPushesAwayFromItsCentre) {
+  int pushed = 0;
+  for (std::uint32_t seed = 0; seed < 4; ++seed) {
+    ContactData d(700 + seed);
+    std::fill(d.near.begin(), d.near.end(), 1);  // tool 0
+    const Reals force = ints_in_double(press_case(d), "contact_force");
+    const double* pose = &d.pose[12 * (test_step + 1) * ContactData::tools];
+    for (std::size_t i = 0; i < d.points; ++i) {
+      const std::size_t at = ContactData::base(i, 4);
+      const Vector3d f(force[at], force[at + 16], force[at + 32]),
+          away = place_of(d, i) - Vector3d(pose[9], pose[10], pose[11]);
+      if (force[at + 48] == 0 || f.norm() < 1e4) continue;  // rounded to whole quanta
+      if (f.cwiseAbs().maxCoeff() == 67108864.0) continue;  // the most that a point gets
+      EXPECT_GT(f.normalized().dot(away.normalized()), 1 - 1e-6) << "point " << i;
+      ++pushed;
     }
   }
+  EXPECT_GT(pushed, 20);
 }
 
 }  // namespace

@@ -1,0 +1,38 @@
+// Sums over the contact points of what each tool gets (contact_sum.cl), a part of the tiles per work item. tool_sum:
+// [steps][tools][PARTS][16] force and torque about the tool's origin and area (each component as two integers, multiples of 2^15 and
+// the rest), largest depth at the start of the step [m] as bits, points that touch.
+#include "arith.cl"
+#include "contact_shape.cl"
+#include "contact_point.cl"
+#include "contact_sum.cl"
+
+#define PARTS 16
+#define SUM_NUMBERS 16
+
+__kernel void contact_tool_sum(__global const int* contact_tool_force, __global const float* contact_rest,
+                               __global const int* contact_near, __global int* tool_sum, __global const float* contact_params,
+                               int point_count, int tools, int step) {
+  const int item = (int)get_global_id(0);
+  const int t = item / PARTS, tiles = point_count / PLIANT_TILE;
+  long sum[7] = {0, 0, 0, 0, 0, 0, 0};
+  int deepest = 0, count = 0;
+  for (int tile = item % PARTS; tile < tiles; tile += PARTS) {
+    if (!(contact_near[tile] >> t & 1)) continue;
+    for (int i = tile * PLIANT_TILE; i < (tile + 1) * PLIANT_TILE; ++i) {
+      __global const int* force = contact_tool_force + TOOL_FORCE_NUMBERS * point_count * t + POINT_BASE(i, TOOL_FORCE_NUMBERS);
+      if (force[7 * PLIANT_TILE] == 0) continue;
+      for (int c = 0; c < 6; ++c) sum[c] += force[c * PLIANT_TILE];
+      sum[6] += quanta(contact_rest[POINT_BASE(i, 4) + 3 * PLIANT_TILE] * contact_params[4]);
+      const int depth = force[6 * PLIANT_TILE];  // bits of numbers >= 0 have the order of the numbers
+      deepest = depth > deepest ? depth : deepest;
+      ++count;
+    }
+  }
+  __global int* out = tool_sum + SUM_NUMBERS * (step * tools * PARTS + item);
+  for (int c = 0; c < 7; ++c) {
+    out[2 * c] = (int)(sum[c] >> 15);
+    out[2 * c + 1] = (int)(sum[c] & 32767);
+  }
+  out[14] = deepest;
+  out[15] = count;
+}
