@@ -42,6 +42,21 @@ std::string tool_line(const Simulation& simulation, std::size_t tool) {
                      simulation.scene().tools[tool].name, fmt::join(h.now.force, ", "), h.max_force, h.now.area, h.max_depth);
 }
 
+std::vector<std::string> tool_remarks(const Simulation& simulation) {
+  std::vector<std::string> remarks;
+  const ContactPoints* points = simulation.model().contact.get();
+  for (std::size_t t = 0; t < simulation.scene().tools.size() && points != nullptr; ++t) {
+    const double cells = simulation.contact().history()[t].max_depth / points->spacing;
+    if (cells <= 0.5) continue;
+    remarks.push_back(fmt::format(
+        "tool '{}' went {:.2g} cells deep into tissue: nodes that are fixed or prescribed do not give way to it, an "
+        "edge thinner than half a cell passes between contact points, and a tool that moves a cell in a few steps "
+        "is met late",
+        simulation.scene().tools[t].name, cells));
+  }
+  return remarks;
+}
+
 void ToolTable::write(const Simulation& simulation, const std::filesystem::path& file) {
   const Scene& scene = simulation.scene();
   if (scene.tools.empty() || simulation.step() == last_step_) return;

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "simulation/simulation.h"
 
@@ -12,6 +13,9 @@ namespace pliant::cli {
 void add_tools(const Simulation& simulation, nlohmann::ordered_json& json);
 /// A line per tool for people.
 std::string tool_line(const Simulation& simulation, std::size_t tool);
+
+/// A sentence for each tool that went deeper than half a cell into tissue.
+[[nodiscard]] std::vector<std::string> tool_remarks(const Simulation& simulation);
 
 /// A table of the forces on all tools, a row per tool and time.
 class ToolTable {

@@ -1,5 +1,7 @@
 // The parts of a scene file below the top level. Internal to the scene room.
 #pragma once
+#include <fmt/format.h>
+
 #include <filesystem>
 
 #include "scene/mesh_region.h"
@@ -29,6 +31,15 @@ Material read_material(const Reader& material);
 /// `lattice`: whether the body is a surface filled with a lattice, which shape matching needs.
 DeformationModel read_model(const Reader& model, bool lattice);
 Tool read_tool(const Reader& tool);
+/// The last entry of a list has a name of its own.
+template <class Named>
+void check_last_name(const Reader& entry, const std::vector<Named>& all, const char* kind) {
+  for (std::size_t i = 0; i + 1 < all.size(); ++i) {
+    if (all[i].name != all.back().name) continue;
+    entry.fail(fmt::format("the name \"{}\", which {} has already", all[i].name, all[i].pointer),
+               fmt::format("a different name for every {}", kind));
+  }
+}
 std::vector<Blade> read_blades(const Reader& blades);
 SceneView read_view(const Reader& view);
 /// At most so many: a point of a surface keeps a bit for each that is near.

@@ -47,11 +47,7 @@ std::vector<Blade> read_blades(const Reader& blades) {
   std::vector<Blade> all;
   for (const Reader& entry : blades.items(expected)) {
     all.push_back(read_blade(entry, all.size()));
-    for (std::size_t i = 0; i + 1 < all.size(); ++i) {
-      if (all[i].name != all.back().name) continue;
-      entry.fail(fmt::format("the name \"{}\", which {} has already", all[i].name, all[i].pointer),
-                 "a different name for every blade");
-    }
+    check_last_name(entry, all, "blade");
   }
   return all;
 }

@@ -98,11 +98,7 @@ std::shared_ptr<const SceneProbes> read_probes(const Reader& top, const Scene& s
   SceneProbes probes;
   for (const Reader& entry : field.items("a list of objects")) {
     probes.list.push_back(read_probe(entry, scene));
-    for (std::size_t i = 0; i + 1 < probes.list.size(); ++i) {
-      if (probes.list[i].name != probes.list.back().name) continue;
-      entry.fail(fmt::format("the name \"{}\", which {} has already", probes.list[i].name, probes.list[i].pointer),
-                 "a different name for every probe");
-    }
+    check_last_name(entry, probes.list, "probe");
   }
   if (top.has("probe_every")) read_every(top.at("probe_every"), probes);
   return std::make_shared<const SceneProbes>(std::move(probes));

@@ -125,11 +125,7 @@ std::vector<ContactTool> read_tools(const Reader& tools, const std::filesystem::
     if (all.size() == most_tools)
       tools.fail(fmt::format("{} tools", tools.json().size()), fmt::format("at most {}", most_tools));
     all.push_back(read_contact_tool(entry, all.size(), folder));
-    for (std::size_t i = 0; i + 1 < all.size(); ++i) {
-      if (all[i].name != all.back().name) continue;
-      entry.fail(fmt::format("the name \"{}\", which {} has already", all[i].name, all[i].pointer),
-                 "a different name for every tool");
-    }
+    check_last_name(entry, all, "tool");
   }
   return all;
 }

@@ -151,7 +151,8 @@ void ToolContact::begin_batch(std::int32_t steps) {
   const Program& program = run_.loaded.program();
   Backend& backend = run_.backend();
   backend.write_reals(program.find("tool_pose"), poses);
-  const Units u = units();
+  units_ = units();
+  const Units& u = units_;
   backend.write_reals(program.find("contact_params"),
                       {u.force, 1 / u.force, u.force / contact_weight_unit, 1 / u.torque, 1 / u.area,
                        kMargin * run_.model().contact->spacing, double(contact_look_every), 0});
@@ -160,7 +161,6 @@ void ToolContact::begin_batch(std::int32_t steps) {
 void ToolContact::end_batch(std::int32_t steps) {
   if (!active() || steps <= 0) return;
   const std::vector<std::int32_t> sums = run_.backend().read_ints(run_.loaded.program().find("tool_sum"));
-  const Units u = units();
   const std::size_t tools = history_.size();
   for (std::size_t t = 0; t < tools; ++t) {
     ToolHistory& h = history_[t];
@@ -171,10 +171,10 @@ void ToolContact::end_batch(std::int32_t steps) {
       if (sum.points == 0) continue;
       ++h.touched;
       for (std::size_t c = 0; c < 3; ++c) {
-        h.now.force[c] += sum.quanta[c] * u.force / steps;
-        h.now.torque[c] += sum.quanta[3 + c] * u.torque / steps;
+        h.now.force[c] += sum.quanta[c] * units_.force / steps;
+        h.now.torque[c] += sum.quanta[3 + c] * units_.torque / steps;
       }
-      h.now.area = sum.quanta[6] * u.area;
+      h.now.area = sum.quanta[6] * units_.area;
       h.now.points = sum.points;
       h.now.depth = sum.depth;
       h.max_depth = std::max(h.max_depth, h.now.depth);

@@ -56,6 +56,7 @@ class ToolContact {
 
   RunContext& run_;
   std::vector<ToolHistory> history_;
+  Units units_;  ///< of the present batch
 };
 
 }  // namespace pliant

@@ -134,6 +134,30 @@ TEST_P(ContactPhysics, FrictionSticksWithoutCreepAndSlides) {
   }
 }
 
+double centre(const Simulation& sim, std::size_t axis) {
+  double sum = 0;
+  const std::vector<Vec3d> u = sim.displacements(0);
+  for (std::size_t n = 0; n < u.size(); ++n) {
+    sum += sim.model().mass[static_cast<std::size_t>(sim.model().bodies[0].slot[n])] * u[n][axis];
+  }
+  return sum / mass(sim);
+}
+
+/// A body thrown along a table slides v^2 / (2 mu g) and stays there: the places where it sticks have come with it.
+TEST_P(ContactPhysics, ASlidingBodyStopsAndStays) {
+  const double v = 0.3, friction = 0.3;
+  Body body = box_body({{4, 4, 4}, 0.0125}, Discretization::hex8_bricks, material_young(Law::neo_hookean, 1e6, 0.3));
+  body.velocity = {v, 0, 0};
+  Scene scene = scene_of(body, wall(friction));
+  scene.gravity = {0, 0, -9.81};
+  auto sim = simulate(scene, GetParam());
+  impulse_until(*sim, 0.4);
+  const double way = centre(*sim, 0);
+  check_relative("way until it stops", way, v * v / (2 * friction * 9.81), 0.02);
+  impulse_until(*sim, 1);
+  check("moved after that, over the way", std::abs(centre(*sim, 0) - way) / way, 1e-3);
+}
+
 double pressed(const ContactTool& tool, const char* backend, Vector3d* torque = nullptr) {
   Material m = material_young(Law::neo_hookean, 1e4, 0.4);
   m.damping = 60;
