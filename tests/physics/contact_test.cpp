@@ -199,6 +199,43 @@ TEST_P(ContactPhysics, ShapesAgree) {
   check_relative("turned box", pressed(box, GetParam(), &torque), flat, 1e-4);
 }
 
+/// A rigid sphere (radius r) on a layer (thickness h) bonded to the ground, without friction: Hertz times the correction of
+/// Dimitriadis et al. (2002) in chi = sqrt(r depth) / h, without its fourth power, which is 1e-5 here.
+double bonded_layer(double r, double h, double young, double poisson, double depth) {
+  const double pi = 3.14159265358979323846, chi = std::sqrt(r * depth) / h;
+  const double a = -(1.2876 - 1.4678 * poisson + 1.3442 * poisson * poisson) / (1 - poisson);
+  const double b = (0.6387 - 1.0277 * poisson + 1.5164 * poisson * poisson) / (1 - poisson);
+  const double layer =
+      1 - 2 * a / pi * chi + std::pow(2 * a / pi * chi, 2) - 8 * std::pow(chi / pi, 3) * (a * a * a + 4 * pi * pi / 15 * b);
+  return 4.0 / 3 * young / (1 - poisson * poisson) * std::sqrt(r) * std::pow(depth, 1.5) * layer;
+}
+
+/// A quarter of the block, with two planes of symmetry; two and three cells per radius of the contact.
+TEST_P(ContactPhysics, SphereOnALayerConvergesToHertz) {
+  const double radius = 0.05, height = 0.1, depth = 0.002;
+  const double exact = bonded_layer(radius, height, 1e4, 0.3, depth);
+  double coarse = 0;
+  for (const int cells : {20, 30}) {
+    Material m = material_young(Law::neo_hookean, 1e4, 0.3);
+    m.damping = 40;
+    Body body = box_body({{cells, cells, cells}, height / cells}, Discretization::hex8_bricks, m);
+    body.fixed = {{face(2, 0)}, roller(0), roller(1)};
+    ContactTool ball;
+    ball.name = "ball";
+    ball.radius = radius;
+    ball.path = {{0, 0, 0, height + radius, 0, 0, 0, 1}, {0.2, 0, 0, height + radius - depth, 0, 0, 0, 1}};
+    auto sim = simulate(scene_of(body, ball), GetParam());
+    impulse_until(*sim, 0.5);
+    const double force = 4 * sim->contact().history()[0].now.force[2];
+    check_relative(std::to_string(cells) + " cells in the height", force, exact, cells == 20 ? 0.07 : 0.03);
+    if (cells == 20) {
+      coarse = std::abs(force - exact);
+    } else {
+      EXPECT_LT(std::abs(force - exact), 0.6 * coarse);
+    }
+  }
+}
+
 /// A force beside the tool's origin turns it.
 TEST_P(ContactPhysics, TorqueIsAboutTheOrigin) {
   ContactTool ball;
