@@ -246,8 +246,8 @@ inline double on_tool(const ContactData& d, const Reals& tool_force, std::size_t
   return sum;
 }
 
-/// What points get in `force`, tools give, to the last quantum. Points whose `touching` is about a tool that is not near have
-/// none.
+/// What points get in the buffer `name`, tools give, to the last quantum; `tools_before`: contact_tool_force before the pass,
+/// if the pass adds to it.
 inline void expect_action_is_reaction(const ContactData& d, const KernelCase& test, const char* name,
                                       const Reals& tools_before) {
   const Reals force = ints_in_double(test, name), tool_force = ints_in_double(test, "contact_tool_force");

@@ -23,14 +23,16 @@ Scene scene_of(Body body, ContactTool tool) {
   return scene;
 }
 
-Vector3d momentum(const Simulation& sim) {
-  Vector3d p = Vector3d::Zero();
-  const std::vector<Vec3d> v = sim.velocities(0);
-  for (std::size_t n = 0; n < v.size(); ++n) {
-    p += sim.model().mass[static_cast<std::size_t>(sim.model().bodies[0].slot[n])] * eigen(v[n]);
+/// Over the nodes of body 0.
+Vector3d times_mass(const Simulation& sim, const std::vector<Vec3d>& values) {
+  Vector3d sum = Vector3d::Zero();
+  for (std::size_t n = 0; n < values.size(); ++n) {
+    sum += sim.model().mass[static_cast<std::size_t>(sim.model().bodies[0].slot[n])] * eigen(values[n]);
   }
-  return p;
+  return sum;
 }
+
+Vector3d momentum(const Simulation& sim) { return times_mass(sim, sim.velocities(0)); }
 
 double mass(const Simulation& sim) { return sim.model().bodies[0].mass; }
 
@@ -134,15 +136,6 @@ TEST_P(ContactPhysics, FrictionSticksWithoutCreepAndSlides) {
   }
 }
 
-double centre(const Simulation& sim, std::size_t axis) {
-  double sum = 0;
-  const std::vector<Vec3d> u = sim.displacements(0);
-  for (std::size_t n = 0; n < u.size(); ++n) {
-    sum += sim.model().mass[static_cast<std::size_t>(sim.model().bodies[0].slot[n])] * u[n][axis];
-  }
-  return sum / mass(sim);
-}
-
 /// A body thrown along a table slides v^2 / (2 mu g) and stays there: the places where it sticks have come with it.
 TEST_P(ContactPhysics, ASlidingBodyStopsAndStays) {
   const double v = 0.3, friction = 0.3;
@@ -152,10 +145,11 @@ TEST_P(ContactPhysics, ASlidingBodyStopsAndStays) {
   scene.gravity = {0, 0, -9.81};
   auto sim = simulate(scene, GetParam());
   impulse_until(*sim, 0.4);
-  const double way = centre(*sim, 0);
+  const auto moved = [&] { return times_mass(*sim, sim->displacements(0))[0] / mass(*sim); };
+  const double way = moved();
   check_relative("way until it stops", way, v * v / (2 * friction * 9.81), 0.02);
   impulse_until(*sim, 1);
-  check("moved after that, over the way", std::abs(centre(*sim, 0) - way) / way, 1e-3);
+  check("moved after that, over the way", std::abs(moved() - way) / way, 1e-3);
 }
 
 double pressed(const ContactTool& tool, const char* backend, Vector3d* torque = nullptr) {
