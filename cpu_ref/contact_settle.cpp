@@ -50,7 +50,7 @@ void contact_settle(Range range, const Scalar* node_u, const Scalar* node_w, con
       for (std::int64_t a = 0, base = tile_base(i, 8); a < 8; ++a) {
         const std::int64_t at = base + a * PLIANT_TILE, texel = std::int64_t{4} * contact_node[at];
         const Scalar b = std::fma(half_hh, node_w[texel + 3], half_hh);
-        const Scalar own = contact_weight[at] * contact_node_sum[texel + 3];
+        const Scalar c = contact_weight[at], own = c > Scalar(0) ? c * contact_node_sum[texel + 3] : Scalar(0);
         const Scalar free = contact_share[at] > Scalar(0) ? own : Scalar(0);
         w = std::fma(free, b * node_u[texel + 3], w);
         whole = whole + own;

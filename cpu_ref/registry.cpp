@@ -17,6 +17,13 @@
   ROW(contact_settle) \
   ROW(contact_tool_sum) \
   ROW(contact_apply) \
+  ROW(touch_box) \
+  ROW(touch_tree) \
+  ROW(touch_pair) \
+  ROW(touch_share) \
+  ROW(touch_place) \
+  ROW(touch_press) \
+  ROW(touch_settle) \
   ROW(tled_tet4_force) \
   ROW(tled_tet4_dilation) \
   ROW(anp_node_pressure) \

@@ -31,7 +31,7 @@ __kernel void contact_settle(__global const float* node_u, __global const float*
       for (int a = 0; a < 8; ++a) {
         const int n = node[a * PLIANT_TILE];
         const float b = fma(half_hh, node_w[4 * n + 3], half_hh);
-        const float own = weight[a * PLIANT_TILE] * contact_node_sum[4 * n + 3];
+        const float c = weight[a * PLIANT_TILE], own = c > 0.0f ? c * contact_node_sum[4 * n + 3] : 0.0f;
         const float free = share[a * PLIANT_TILE] > 0.0f ? own : 0.0f;
         w = fma(free, b * node_u[4 * n + 3], w);
         all += own;

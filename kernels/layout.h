@@ -31,6 +31,18 @@
 
 #define PLIANT_FAULT_SUMMARY 4  // numbers that each of 256 work-items of fault_reduce leaves
 
+// Tissue that touches tissue (touch_point.cl): partners per contact point; planes per partner: area [m^2], depth at rest [m], where
+// it stuck in the frame of the lower point (3) [m], whether it did; planes of a point's place, of its surface at rest, of the forces
+// of its partners (3 and whether it pushed); numbers per box and per node of the tree of boxes; the bit of contact_near.
+#define PLIANT_TOUCH_SLOTS 16
+#define PLIANT_TOUCH_PAIR 6
+#define PLIANT_TOUCH_PLACE 16
+#define PLIANT_TOUCH_SURFACE 24
+#define PLIANT_TOUCH_FORCE 4
+#define PLIANT_TOUCH_BOX 19
+#define PLIANT_TOUCH_TREE 4
+#define PLIANT_TOUCH_BIT 1073741824
+
 // Shape matching: numbers per region record (four blocks of four), planes of a region's data at rest per tile.
 #define PLIANT_FLSM_RECORD 16
 #define PLIANT_FLSM_REST_PLANES 10    // 1 / sum m, centroid (3) [cells], second moment (6)

@@ -12,7 +12,7 @@ namespace pliant::cli {
 
 void add_tools(const Simulation& simulation, nlohmann::ordered_json& json) {
   const Scene& scene = simulation.scene();
-  if (scene.tools.empty()) return;
+  if (scene.tools.empty() && !scene.contact) return;
   json["tools"] = nlohmann::ordered_json::array();
   std::int64_t points = 0;
   double deepest = 0;
@@ -29,6 +29,9 @@ void add_tools(const Simulation& simulation, nlohmann::ordered_json& json) {
     points += h.now.points;
     deepest = std::max(deepest, h.max_depth);
   }
+  const TouchHistory& tissue = simulation.contact().tissue();
+  points += tissue.points;
+  deepest = std::max(deepest, tissue.max_depth);
   const ContactPoints* all = simulation.model().contact.get();
   json["contact"] = {{"points", all == nullptr ? 0 : all->size()},
                      {"touching", points},

@@ -20,10 +20,12 @@ inline constexpr std::int32_t contact_weight_unit = 4096;
 /// Points on the surface, about half a cell apart (three per face of a volume mesh), however fine the surface's triangles are.
 struct ContactPoints {
   std::vector<Vec3d> rest;                           ///< [m]
-  std::vector<std::array<std::int32_t, 8>> nodes;    ///< slots; unused ones repeat the first with weight 0
+  std::vector<std::array<std::int32_t, 8>> nodes;    ///< slots; unused ones repeat one that has a weight, with weight 0
   std::vector<std::array<std::int32_t, 8>> weights;  ///< in units of 1 / contact_weight_unit, not negative
   std::vector<double> area;                          ///< of the surface that it stands for, at rest [m^2]
   std::vector<std::int32_t> body;
+  std::vector<Vec3d> normal;  ///< outward, at rest, of unit length
+  std::vector<double> apart;  ///< how far from each other points around it are [m]
   double spacing = 0;  ///< of the coarsest body's cells, or the mean edge of its surface [m]
   [[nodiscard]] std::size_t size() const { return rest.size(); }
 };
@@ -58,7 +60,14 @@ double tool_distance(const ToolForm& form, const Vec3d& y);
 /// Points of all bodies on the model's surface.
 ContactPoints contact_points(const Model& model);
 
-/// Fill Model::contact and, if it has none yet, Model::tools. Nothing without tools.
+/// A contact point's deformed tangents are F t1 = t1 + sum_a first_a u_a and F t2; t1, t2 and the normal at rest are orthonormal.
+struct ContactTangents {
+  Vec3d t1{}, t2{};
+  std::array<double, 8> first{}, second{};  ///< [1/m]
+};
+ContactTangents contact_tangents(const ContactPoints& points, std::size_t point, const std::vector<Vec3d>& rest);
+
+/// Fill Model::contact and, if it has none yet, Model::tools. Nothing where nothing touches anything.
 void add_contact(const Scene& scene, Model& model);
 
 }  // namespace pliant

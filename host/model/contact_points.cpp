@@ -45,19 +45,15 @@ std::array<std::int32_t, 8> whole(const std::array<double, 8>& weights) {
   return out;
 }
 
-/// Nodes without a weight repeat the first that has one.
-void add_point(ContactPoints& points, const Vec3d& x, Slots nodes, const std::array<double, 8>& weights, double area,
-               std::int32_t body) {
-  const std::array<std::int32_t, 8> units = whole(weights);
-  const auto used = std::find_if(units.begin(), units.end(), [](std::int32_t w) { return w != 0; });
-  for (std::size_t a = 0; a < 8; ++a) {
-    if (units[a] == 0) nodes[a] = nodes[static_cast<std::size_t>(used - units.begin())];
-  }
+void add_point(ContactPoints& points, const Vec3d& x, const Slots& nodes, const std::array<double, 8>& weights, double area,
+               std::int32_t body, const Vec3d& normal, double apart) {
   points.rest.push_back(x);
   points.nodes.push_back(nodes);
-  points.weights.push_back(units);
+  points.weights.push_back(whole(weights));
   points.area.push_back(area);
   points.body.push_back(body);
+  points.normal.push_back(vec::mul(normal, 1 / vec::norm(normal)));
+  points.apart.push_back(apart);
 }
 
 /// The body of a lattice: every triangle is divided into samples, and those of one half of a cell (in x, y and z) that look the
@@ -87,7 +83,7 @@ class LatticeSampler {
     Vec3d local{};  ///< place in its cell, in [0, 1]
     int half = 0, side = 0;
     std::int64_t order = 0;
-    Vec3d x{};
+    Vec3d x{}, normal{};  ///< normal of unit length
     double area = 0;
   };
   /// A cell that a vertex is embedded in.
@@ -131,6 +127,7 @@ class LatticeSampler {
   void add(const Vec3d& x, const std::array<Place, 3>& places, const Vec3d& normal, double area) {
     Sample s;
     s.x = x;
+    s.normal = vec::mul(normal, 1 / vec::norm(normal));
     s.area = area;
     s.order = static_cast<std::int64_t>(samples_.size());
     const Place place = choose(vec::add(x, vec::mul(normal, -kInside * d_ / vec::norm(normal))), places);
@@ -204,9 +201,10 @@ class LatticeSampler {
 
   /// The sample nearest to the middle of its group stands for all.
   void gather(std::size_t first, std::size_t last, ContactPoints& points) const {
-    Vec3d middle{};
+    Vec3d middle{}, normal{};
     double area = 0;
     for (std::size_t i = first; i < last; ++i) {
+      normal = vec::add(normal, vec::mul(samples_[i].normal, samples_[i].area));
       middle = vec::add(middle, vec::mul(samples_[i].x, samples_[i].area));
       area += samples_[i].area;
     }
@@ -222,7 +220,7 @@ class LatticeSampler {
       weights[a] = 1;
       for (std::size_t c = 0; c < 3; ++c) weights[a] *= (a >> c & 1) != 0 ? s.local[c] : 1 - s.local[c];
     }
-    add_point(points, s.x, s.nodes, weights, area, body_);
+    add_point(points, s.x, s.nodes, weights, area, body_, normal, d_ / 2);
   }
 
   const Model& model_;
@@ -252,7 +250,8 @@ double sample_faces(const Model& model, std::int32_t body, ContactPoints& points
   const double mean = b.triangles > 0 ? edges / b.triangles : 0;
   for (std::int32_t t = b.first_triangle; t < b.first_triangle + b.triangles; ++t) {
     const std::array<Vec3d, 3> x = corners(t);
-    const double area = vec::norm(vec::cross(vec::sub(x[1], x[0]), vec::sub(x[2], x[0]))) / 2;
+    const Vec3d normal = vec::cross(vec::sub(x[1], x[0]), vec::sub(x[2], x[0]));
+    const double area = vec::norm(normal) / 2;
     if (!(area > 0)) continue;
     const int count = longest_of(x) > mean / 2 ? 3 : 1;
     for (int k = 0; k < count; ++k) {
@@ -275,13 +274,14 @@ double sample_faces(const Model& model, std::int32_t body, ContactPoints& points
       largest.resize(std::min<std::size_t>(largest.size(), 8));
       const double sum =
           std::accumulate(largest.begin(), largest.end(), 0.0, [](double q, const auto& l) { return q - l.first; });
-      Slots nodes{};
+      Slots nodes;
+      nodes.fill(largest.front().second);
       std::array<double, 8> weights{};
       for (std::size_t a = 0; a < largest.size(); ++a) {
         nodes[a] = largest[a].second;
         weights[a] = -largest[a].first / sum;
       }
-      add_point(points, between(x, at), nodes, weights, area / count, body);
+      add_point(points, between(x, at), nodes, weights, area / count, body, normal, std::sqrt(area / count));
     }
   }
   return mean;
@@ -335,11 +335,13 @@ ContactPoints contact_points(const Model& model) {
   reorder(points.weights, order);
   reorder(points.area, order);
   reorder(points.body, order);
+  reorder(points.normal, order);
+  reorder(points.apart, order);
   return points;
 }
 
 void add_contact(const Scene& scene, Model& model) {
-  if (scene.tools.empty()) return;
+  if (scene.tools.empty() && !scene.contact) return;
   if (model.tools == nullptr) {
     auto forms = std::make_shared<ToolForms>();
     for (const ContactTool& tool : scene.tools) forms->push_back(tool_form(tool));
@@ -348,6 +350,7 @@ void add_contact(const Scene& scene, Model& model) {
   model.contact_laws.clear();
   for (const ContactTool& tool : scene.tools)
     model.contact_laws.push_back({tool.stiffness, tool.exponent, tool.alpha, tool.friction, 0});
+  model.tissue_contact = scene.contact;
   model.contact = std::make_shared<const ContactPoints>(contact_points(model));
   // A shell with a law of its own is that law as far as a quarter of a cell; what is "auto" is hard at once.
   for (ContactLaw& law : model.contact_laws) law.core = law.stiffness > 0 ? kShell * model.contact->spacing : 0;

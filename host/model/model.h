@@ -131,7 +131,8 @@ struct Model {
   std::vector<NodeForce> forces;                 ///< ascending slots
   std::vector<TrianglePressure> pressures;       ///< ascending triangles
   std::shared_ptr<const ToolForms> tools;        ///< shapes of Scene::tools; null: it has none
-  std::shared_ptr<const ContactPoints> contact;  ///< what they can touch; null without tools
+  std::shared_ptr<const ContactPoints> contact;  ///< of the surfaces; null where nothing touches anything
+  std::optional<TissueContact> tissue_contact;   ///< whether bodies touch each other and themselves
   std::vector<ContactLaw> contact_laws;          ///< one per tool
   double element_bound = 0;                      ///< 2 / max element frequency [s], safe for small strain
   std::string bound_element;                     ///< the element that gives it

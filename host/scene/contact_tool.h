@@ -48,4 +48,9 @@ struct ContactTool {
   [[nodiscard]] Pose at(double time) const;
 };
 
+/// Bodies touch each other and themselves, and so do the faces of a cut.
+struct TissueContact {
+  double friction = 0;  ///< Coulomb's coefficient
+};
+
 }  // namespace pliant

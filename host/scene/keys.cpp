@@ -22,7 +22,7 @@ std::map<std::string, List> make_keys() {
   return {
       {"scene", {"format",     "name",     "break_stretch", "gravity",    "dt",          "safety", "duration",
                  "integrator", "inverted", "least_fill",    "least_step", "relaxation",  "solver", "tool",
-                 "tools",      "blades",   "view",          "probes",     "probe_every", "bodies"}},
+                 "tools",      "contact",  "blades",        "view",       "probes",      "probe_every", "bodies"}},
       {"body",
        {"name", "surface", "mesh", "scale", "translate", "lattice", "element", "material", "model", "inclusions", "fixed",
         "prescribed", "forces", "pressures", "velocity", "angular_velocity", "initial"}},
@@ -38,6 +38,7 @@ std::map<std::string, List> make_keys() {
       {"contact_tool", {"name", "shape", "scale", "path", "friction", "contact"}},
       {"shape", words_only(tool_shape_words())},
       {"contact", {"stiffness", "exponent", "alpha"}},
+      {"tissue_contact", {"friction"}},
       {"blade", {"name", "path", "start", "end"}},
       {"view", {"eye", "target", "up", "field_of_view", "ground"}},
       {"relaxation", {"tolerance", "max_steps"}},

@@ -166,6 +166,7 @@ Scene read_document(const nlohmann::json& document, const fs::path& file) {
   read_solver(top, scene);
   if (top.has("tool")) scene.tool = read_tool(top.at("tool"));
   if (top.has("tools")) scene.tools = read_tools(top.at("tools"), file.parent_path());
+  if (top.has("contact")) scene.contact = read_tissue_contact(top.at("contact"));
   if (top.has("blades")) scene.blades = read_blades(top.at("blades"));
   if (top.has("view")) scene.view = read_view(top.at("view"));
   read_bodies(top, file.parent_path(), scene);

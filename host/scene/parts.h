@@ -44,6 +44,7 @@ std::vector<Blade> read_blades(const Reader& blades);
 SceneView read_view(const Reader& view);
 /// At most so many: a point of a surface keeps a bit for each that is near.
 inline constexpr std::size_t most_tools = 30;
+std::optional<TissueContact> read_tissue_contact(const Reader& contact);
 std::vector<ContactTool> read_tools(const Reader& tools, const std::filesystem::path& folder);
 void check_tools(const Reader& top, const Scene& scene);
 /// After the bodies. Null without probes.

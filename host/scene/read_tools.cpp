@@ -119,6 +119,15 @@ ContactTool read_contact_tool(const Reader& entry, std::size_t index, const std:
 
 }  // namespace
 
+std::optional<TissueContact> read_tissue_contact(const Reader& contact) {
+  if (contact.json() == false) return {};
+  TissueContact out;
+  if (contact.json() == true) return out;
+  contact.expect_object("tissue_contact");
+  if (contact.has("friction")) out.friction = contact.at("friction").non_negative();
+  return out;
+}
+
 std::vector<ContactTool> read_tools(const Reader& tools, const std::filesystem::path& folder) {
   std::vector<ContactTool> all;
   for (const Reader& entry : tools.items("a list of tools")) {
@@ -131,16 +140,17 @@ std::vector<ContactTool> read_tools(const Reader& tools, const std::filesystem::
 }
 
 void check_tools(const Reader& top, const Scene& scene) {
-  if (scene.tools.empty()) return;
-  if (scene.integrator != Integrator::increment) top.at("integrator").fail("increment, because the scene has tools");
+  if (scene.tools.empty() && !scene.contact) return;
+  const std::string has = scene.tools.empty() ? "contact" : "tools";
+  if (scene.integrator != Integrator::increment) top.at("integrator").fail("increment, because the scene has " + has);
   if (scene.relaxation.enabled)
-    top.at("relaxation").fail("false, because the scene has tools (their forces are not part of its residual)");
+    top.at("relaxation").fail("false, because the scene has " + has + " (whose forces are not part of its residual)");
   if (scene.solver.enabled)
-    top.at("solver").fail("\"dynamic\", because the scene has tools (contact is not solved statically)");
+    top.at("solver").fail("\"dynamic\", because the scene has " + has + " (contact is not solved statically)");
   const std::vector<Reader> bodies = top.at("bodies").items("a list of bodies");
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     if (scene.bodies[i].model.substeps > 1)
-      bodies[i].at("model").at("substeps").fail("1, because the scene has tools, which touch shape matching in every step");
+      bodies[i].at("model").at("substeps").fail("1, because the scene has " + has + ", which acts on shape matching in every step");
   }
 }
 

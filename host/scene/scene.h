@@ -143,6 +143,7 @@ struct Scene {
   StaticSolver solver;
   Tool tool;
   std::vector<ContactTool> tools;
+  std::optional<TissueContact> contact;  ///< of tissue with tissue; none: it passes through itself
   std::vector<Blade> blades;
   SceneView view;
   std::shared_ptr<const SceneProbes> probes;  ///< what `run` writes down over time (scene/probe.h); null: nothing

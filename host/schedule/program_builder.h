@@ -90,6 +90,12 @@ class ProgramBuilder {
   void add_tools();
   void add_contact_gather();
   void add_contact_passes();
+  [[nodiscard]] std::vector<Arg> named(std::initializer_list<const char*> buffers) const;
+
+  /// Defined in program_touch.cpp: tissue that touches tissue.
+  void add_touch();
+  void add_touch_look();
+  void add_touch_pass(const char* kernel);
 
   /// Defined in program_loads.cpp: the external forces, and the embedded surface where a pressure acts on it.
   void add_surface();

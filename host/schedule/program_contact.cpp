@@ -1,4 +1,4 @@
-// Buffers and passes of contact with tools.
+// Buffers of contact points and tools, and the passes of contact.
 #include <algorithm>
 #include <map>
 
@@ -26,7 +26,8 @@ std::vector<double> numbers_of(const ToolForm& form, const ContactLaw& law) {
 void ProgramBuilder::add_contact() {
   if (model_.contact == nullptr || model_.contact->size() == 0) return;
   add_contact_points();
-  add_tools();
+  if (!model_.tools->empty()) add_tools();
+  if (model_.tissue_contact) add_touch();
   add_contact_gather();
   add_contact_passes();
 }
@@ -73,20 +74,21 @@ void ProgramBuilder::add_contact_points() {
   for (const char* name : {"contact_near", "last_contact_near"}) {
     add(make_ints(name, BufferRole::state, "[tiles]", std::vector<std::int32_t>(tiles, all), 0, "contact_near"));
   }
-  for (const char* name : {"contact_anchor", "last_contact_anchor"}) {
-    add(make_reals(name, BufferType::real, 4 * count, BufferRole::state, "[tiles][4][16]", "m, m, m, 1",
-                   "contact_press, contact_settle"));
-  }
   add(make_ints("contact_force", BufferRole::scratch, "[tiles][4][16]", {}, 4 * count, "contact_press, contact_settle"));
-  add(make_ints("contact_tool_force", BufferRole::scratch, "[tools][tiles][8][16]", {}, 8 * count * model_.tools->size(),
-                "contact_press, contact_settle"));
-  add(make_ints("contact_change", BufferRole::scratch, "[tiles][4][16]", {}, 4 * count, "contact_settle"));
+  add(make_ints("contact_change", BufferRole::scratch, "[tiles][4][16]", {}, 4 * count, "contact_settle, touch_press"));
+  add(make_reals("contact_params", BufferType::real, 8, BufferRole::control, "[8]", "see contact_near.cl", "host"));
   add(make_reals("contact_node_sum", BufferType::real4, static_cast<std::size_t>(model_.slots) + 1, BufferRole::scratch,
                  "[slots + 1]", "N, N, N, m^2", "contact_apply"));
 }
 
 void ProgramBuilder::add_tools() {
-  const std::size_t tools = model_.tools->size();
+  const std::size_t tools = model_.tools->size(), count = static_cast<std::size_t>(padded(model_.contact->size()));
+  for (const char* name : {"contact_anchor", "last_contact_anchor"}) {
+    add(make_reals(name, BufferType::real, 4 * count, BufferRole::state, "[tiles][4][16]", "m, m, m, 1",
+                   "contact_press, contact_settle"));
+  }
+  add(make_ints("contact_tool_force", BufferRole::scratch, "[tools][tiles][8][16]", {}, 8 * count * tools,
+                "contact_press, contact_settle"));
   std::vector<double> data, grid;
   std::vector<std::int32_t> kind;
   for (std::size_t t = 0; t < tools; ++t) {
@@ -110,7 +112,6 @@ void ProgramBuilder::add_tools() {
   add(make_ints("tool_sum", BufferRole::scratch, "[steps][tools][16][16]", {},
                 rows * tools * contact_sum_parts * contact_sum_numbers, "contact_tool_sum"));
   program_.buffers.back().carried = Carried::all;  // a row per step of the batch, until the host reads it
-  add(make_reals("contact_params", BufferType::real, 8, BufferRole::control, "[8]", "see contact_near.cl", "host"));
 }
 
 /// The points at each node, and the tiles of points at each tile of nodes.
@@ -163,16 +164,17 @@ void ProgramBuilder::add_contact_gather() {
   add(make_ints("contact_gather_units", BufferRole::constant, "[rows][16]", std::move(share.index)));
 }
 
+std::vector<Arg> ProgramBuilder::named(std::initializer_list<const char*> buffers) const {
+  std::vector<Arg> list;
+  for (const char* name : buffers) list.push_back(buffer_arg(program_.find(name)));
+  return list;
+}
+
 void ProgramBuilder::add_contact_passes() {
   const auto points = static_cast<std::int64_t>(padded(model_.contact->size()));
   const auto nodes = static_cast<std::int64_t>(program_.at(program_.find("contact_slot")).count);
   const auto tools = static_cast<std::int32_t>(model_.tools->size());
-  const auto arg = [&](const char* name) { return buffer_arg(program_.find(name)); };
-  const auto args = [&](std::initializer_list<const char*> names) {
-    std::vector<Arg> list;
-    for (const char* name : names) list.push_back(arg(name));
-    return list;
-  };
+  const bool tissue = model_.tissue_contact.has_value();
   const auto with_points = [&](std::vector<Arg> list) {
     list.push_back(int_arg(static_cast<std::int32_t>(points)));
     return list;
@@ -186,33 +188,42 @@ void ProgramBuilder::add_contact_passes() {
   const auto pass = [&](const char* kernel, std::vector<Arg> list, Shape shape, std::int64_t count, const char* label) {
     program_.step.push_back({kernel, {}, std::move(list), shape, count, label, count, 0.25, 0});
   };
-  pass("contact_near",
-       with_step(args({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_near", "contact_anchor",
-                       "tool_kind", "tool_data", "tool_grid", "tool_pose", "contact_params"})),
-       Shape::items, points / PLIANT_TILE, "near tools");
-  program_.step.back().every = contact_look_every;
   const auto apply = [&](const char* force) {
     pass("contact_apply",
-         args({"node_u", "node_w", "contact_slot", "contact_free", "contact_tiles_offset", "contact_tiles",
-               "contact_gather_offset", "contact_gather", "contact_gather_units", "contact_near", force, "contact_rest",
-               "contact_node_sum", "contact_params", "step_params"}),
+         named({"node_u", "node_w", "contact_slot", "contact_free", "contact_tiles_offset", "contact_tiles",
+                "contact_gather_offset", "contact_gather", "contact_gather_units", "contact_near", force, "contact_rest",
+                "contact_node_sum", "contact_params", "step_params"}),
          Shape::lanes, nodes, "contact nodes");
   };
-  pass("contact_press",
-       with_step(with_points(args({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_share",
-                                   "contact_near", "contact_anchor", "contact_force", "contact_tool_force", "tool_kind",
-                                   "tool_data", "tool_grid", "tool_pose", "contact_params", "step_params"}))),
-       Shape::lanes, points, "contact points");
-  apply("contact_force");
-  pass("contact_settle",
-       with_step(with_points(
-           args({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_share", "contact_near",
-                 "contact_anchor", "contact_force", "contact_change", "contact_node_sum", "contact_tool_force", "tool_kind",
-                 "tool_data", "tool_grid", "tool_pose", "contact_params", "step_params"}))),
-       Shape::lanes, points, "contact points");
-  pass("contact_tool_sum",
-       with_step(with_points(args({"contact_tool_force", "contact_rest", "contact_near", "tool_sum", "contact_params"}))),
-       Shape::items, tools * static_cast<std::int64_t>(contact_sum_parts), "parts of tools");
+  if (tools > 0) {
+    pass("contact_near",
+         with_step(named({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_near", "contact_anchor",
+                          "tool_kind", "tool_data", "tool_grid", "tool_pose", "contact_params"})),
+         Shape::items, points / PLIANT_TILE, "near tools");
+    program_.step.back().every = contact_look_every;
+  }
+  if (tissue) add_touch_look();
+  if (tools > 0) {
+    pass("contact_press",
+         with_step(with_points(named({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_share",
+                                      "contact_near", "contact_anchor", "contact_force", "contact_tool_force", "tool_kind",
+                                      "tool_data", "tool_grid", "tool_pose", "contact_params", "step_params"}))),
+         Shape::lanes, points, "contact points");
+  }
+  if (tissue) add_touch_pass("touch_press");
+  apply(tissue ? "contact_change" : "contact_force");
+  if (tools > 0) {
+    pass("contact_settle",
+         with_step(with_points(
+             named({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_share", "contact_near",
+                    "contact_anchor", "contact_force", "contact_change", "contact_node_sum", "contact_tool_force", "tool_kind",
+                    "tool_data", "tool_grid", "tool_pose", "contact_params", "step_params"}))),
+         Shape::lanes, points, "contact points");
+    pass("contact_tool_sum",
+         with_step(with_points(named({"contact_tool_force", "contact_rest", "contact_near", "tool_sum", "contact_params"}))),
+         Shape::items, tools * static_cast<std::int64_t>(contact_sum_parts), "parts of tools");
+  }
+  if (tissue) add_touch_pass("touch_settle");
   apply("contact_change");
 }
 

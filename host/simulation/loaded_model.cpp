@@ -20,6 +20,7 @@ void LoadedModel::update(std::shared_ptr<const Model> model, Program program) {
   const Program loaded = std::exchange(program_, std::move(program));
   backend_->update(loaded, program_);
   look_up();
+  updated_ = true;
 }
 
 void LoadedModel::reset_initial_state(std::vector<double> u, std::vector<double> w) {
@@ -90,6 +91,7 @@ void LoadedModel::keep_state() {
 void LoadedModel::return_to_kept_state() {
   for (const auto& [live, copy] : kept_) backend_->copy(copy, live);
   backend_->finish();
+  updated_ = true;
 }
 
 std::vector<Vec3d> LoadedModel::positions(const std::vector<double>& u, std::size_t body) const {

@@ -51,6 +51,9 @@ class LoadedModel {
   /// The largest component of node_w when Program::status ran last.
   [[nodiscard]] double largest_increment() const;
 
+  /// Whether the model is another one, or has gone back to the kept state, since somebody asked.
+  [[nodiscard]] bool take_updated() { return std::exchange(updated_, false); }
+
   /// Copy the state aside, or back.
   void keep_state();
   void return_to_kept_state();
@@ -76,6 +79,7 @@ class LoadedModel {
   Ids ids_;
   std::vector<std::pair<BufferId, BufferId>> kept_;  ///< state buffers and their copies at the last good step
   std::vector<char> free_;
+  bool updated_ = false;
 };
 
 }  // namespace pliant

@@ -82,6 +82,7 @@ void ToolContact::drive(const std::string& name, const Pose& to, double seconds)
 
 void ToolContact::start() {
   history_.assign(run_.scene.tools.size(), {});
+  touch_ = {};
   if (!active()) return;
   const Model& model = run_.model();
   const ContactPoints& points = *model.contact;
@@ -150,16 +151,40 @@ void ToolContact::begin_batch(std::int32_t steps) {
   }
   const Program& program = run_.loaded.program();
   Backend& backend = run_.backend();
-  backend.write_reals(program.find("tool_pose"), poses);
+  if (tools > 0) backend.write_reals(program.find("tool_pose"), poses);
   units_ = units();
   const Units& u = units_;
   backend.write_reals(program.find("contact_params"),
                       {u.force, 1 / u.force, u.force / contact_weight_unit, 1 / u.torque, 1 / u.area,
-                       kMargin * run_.model().contact->spacing, double(contact_look_every), 0});
+                       kMargin * run_.model().contact->spacing, double(contact_look_every),
+                       run_.scene.contact ? run_.scene.contact->friction : 0});
+  if (run_.loaded.take_updated() && run_.state.clock.step % contact_look_every != 0) look();
+}
+
+/// What a cut or a tear has sampled anew has no partners yet.
+void ToolContact::look() {
+  for (const Pass& pass : run_.loaded.program().step) {
+    if (pass.kernel.starts_with("touch_") && pass.every == contact_look_every) run_.backend().run(pass, 0);
+  }
+}
+
+/// touch_depth has gathered the depths of a batch; the next one begins with none.
+void ToolContact::read_touch() {
+  const BufferId id = run_.loaded.program().find("touch_depth");
+  const std::vector<double> depth = run_.backend().read_reals(id);
+  touch_.points = 0;
+  for (const double d : depth) {
+    if (!(d > 0)) continue;
+    ++touch_.points;
+    touch_.max_depth = std::max(touch_.max_depth, d);
+  }
+  if (touch_.points > 0) run_.backend().write_reals(id, std::vector<double>(depth.size(), 0.0));
 }
 
 void ToolContact::end_batch(std::int32_t steps) {
   if (!active() || steps <= 0) return;
+  if (run_.scene.contact) read_touch();
+  if (history_.empty()) return;
   const std::vector<std::int32_t> sums = run_.backend().read_ints(run_.loaded.program().find("tool_sum"));
   const std::size_t tools = history_.size();
   for (std::size_t t = 0; t < tools; ++t) {

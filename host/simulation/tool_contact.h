@@ -29,6 +29,12 @@ struct ToolHistory {
 /// The number of a tool that is to be driven. Throws Error (usage) for a name that no tool has, or a pose or time that is none.
 std::size_t check_drive(const Scene& scene, const std::string& name, const Pose& to, double seconds);
 
+/// What became of the contact of tissue with tissue over a run.
+struct TouchHistory {
+  std::int64_t points = 0;  ///< points that touched in the last batch
+  double max_depth = 0;     ///< deepest pair, after contact [m]
+};
+
 class ToolContact {
  public:
   explicit ToolContact(RunContext& run) : run_(run) {}
@@ -42,6 +48,7 @@ class ToolContact {
 
   /// One per tool of the scene.
   [[nodiscard]] const std::vector<ToolHistory>& history() const { return history_; }
+  [[nodiscard]] const TouchHistory& tissue() const { return touch_; }
   /// Drive a tool from where it is now to a pose, which it has after `seconds`. Throws what check_drive() throws.
   void drive(const std::string& name, const Pose& to, double seconds);
   /// Where a tool is at a time [s].
@@ -54,8 +61,12 @@ class ToolContact {
   [[nodiscard]] bool active() const;
   [[nodiscard]] Units units() const;
 
+  void look();
+  void read_touch();
+
   RunContext& run_;
   std::vector<ToolHistory> history_;
+  TouchHistory touch_;
   Units units_;  ///< of the present batch
 };
 

@@ -1,0 +1,44 @@
+// Twin of kernels/touch_place.cl.
+#include "registry.h"
+#include "touch_point.h"
+
+namespace pliant::ref {
+
+template <class Scalar>
+void touch_place(Range range, const Scalar* node_u, const Scalar* node_w, const Scalar* contact_rest,
+                 const std::int32_t* contact_node, const Scalar* contact_weight, const Scalar* contact_share,
+                 const std::int32_t* contact_near, const Scalar* contact_node_sum, const Scalar* touch_surface,
+                 Scalar* touch_place, const Scalar* step_params, std::int32_t again) {
+  using namespace touch;
+  const contact::Points<Scalar> points{node_u, node_w, contact_rest, contact_node, contact_weight};
+  const Scalar h = step_params[0], half_hh = (Scalar(0.5) * h) * h;
+  for (std::int64_t i = range.begin; i < range.end; ++i) {
+    if ((contact_near[i / PLIANT_TILE] & PLIANT_TOUCH_BIT) == 0) continue;
+    const std::int64_t base = tile_base(i, PLIANT_TOUCH_PLACE);
+    const contact::Place<Scalar> p = points.at(i);
+    set_three(touch_place, base, 0, p.now);
+    set_three(touch_place, base, 3, p.moved);
+    if (again == 0) {
+      const auto [normal, tangent] = frame_of(points, touch_surface, i);
+      set_three(touch_place, base, 6, normal);
+      set_three(touch_place, base, 9, tangent);
+    }
+    Scalar w = 0, whole = 0, moving = 0;
+    for (std::int64_t a = 0, first = tile_base(i, 8); a < 8; ++a) {
+      const std::int64_t at = first + a * PLIANT_TILE, texel = std::int64_t{4} * contact_node[at];
+      const Scalar b = std::fma(half_hh, node_w[texel + 3], half_hh), share = contact_share[at];
+      const Scalar c = contact_weight[at];
+      const Scalar own = again == 0 ? share : c > Scalar(0) ? c * contact_node_sum[texel + 3] : Scalar(0);
+      const Scalar free = share > Scalar(0) ? own : Scalar(0);
+      w = std::fma(free, b * node_u[texel + 3], w);
+      whole = whole + own;
+      moving = moving + free;
+    }
+    if (again != 0) w = moving > Scalar(0) ? w * (whole / moving) : Scalar(0);
+    touch_place[base + std::int64_t{12} * PLIANT_TILE] = w;
+  }
+}
+
+void register_touch_place(Registry& registry) { registry.add("touch_place", touch_place<float>, touch_place<double>); }
+
+}  // namespace pliant::ref

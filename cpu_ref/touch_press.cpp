@@ -1,0 +1,66 @@
+// Twin of kernels/touch_press.cl.
+#include "registry.h"
+#include "touch_point.h"
+
+namespace pliant::ref {
+
+template <class Scalar>
+void touch_press(Range range, const Scalar* touch_place, const std::int32_t* contact_near, const std::int32_t* contact_force,
+                 std::int32_t* contact_change, const std::int32_t* touch_partner, Scalar* touch_pair, std::int32_t* touch_force,
+                 Scalar* touch_depth, const Scalar* contact_params) {
+  using namespace touch;
+  const Scalar inverse = contact_params[1], friction = contact_params[7];
+  for (std::int64_t i = range.begin; i < range.end; ++i) {
+    const std::int32_t near = contact_near[i / PLIANT_TILE];
+    if (near == 0) continue;
+    const auto force = contact::numbers_of(contact_force, i);
+    const auto change = contact::numbers_of(contact_change, i);
+    Quanta sum{};
+    std::int32_t touching = 0;
+    if ((near & ~PLIANT_TOUCH_BIT) != 0) {  // what tools did
+      sum = {force[0], force[1], force[2]};
+      touching = force[3];
+    }
+    for (std::int64_t s = 0; s < PLIANT_TOUCH_SLOTS && (near & PLIANT_TOUCH_BIT) != 0; ++s) {
+      const std::int64_t j = touch_partner[tile_base(i, PLIANT_TOUCH_SLOTS) + s * PLIANT_TILE] - 1;
+      Scalar* numbers = pair_numbers(touch_pair, i, s);
+      std::int32_t* own = pair_force(touch_force, i, s);
+      own[std::int64_t{3} * PLIANT_TILE] = 0;
+      if (j < 0 || !(numbers[0] > Scalar(0))) continue;
+      const Place<Scalar> lower = place_of(touch_place, i < j ? i : j), upper = place_of(touch_place, i < j ? j : i);
+      const Pair<Scalar> p = pair_of(lower, upper);
+      const Scalar depth = numbers[PLIANT_TILE] - p.gap, w = lower.yielding + upper.yielding;
+      Scalar* anchor = numbers + std::int64_t{2} * PLIANT_TILE;
+      if (!(depth > Scalar(0)) || !(w > Scalar(0))) {
+        anchor[std::int64_t{3} * PLIANT_TILE] = 0;
+        continue;
+      }
+      const Vec<Scalar> moved = difference(lower.moved, upper.moved);
+      const Scalar stiffness = numbers[0] / w, push = stiffness * depth, before = depth + dot(moved, p.normal);
+      Vec<Scalar> f = times(p.normal, push);
+      if (friction > Scalar(0)) {
+        if (anchor[std::int64_t{3} * PLIANT_TILE] == Scalar(0)) {
+          set_three(anchor, 0, 0, into_frame(lower, difference(p.apart, moved)));
+          anchor[std::int64_t{3} * PLIANT_TILE] = 1;
+        }
+        const Vec<Scalar> side = slip_of(lower, p, three(anchor, 0, 0));
+        const Scalar length = std::sqrt(dot(side, side)), most = friction * push;
+        f = scaled_sum(stiffness * length > most ? -(most / length) : -stiffness, side, f);
+      }
+      Quanta q = contact::quanta(f, inverse);
+      if (i > j) q = {-q[0], -q[1], -q[2]};
+      set_three(own, 0, 0, q);
+      own[std::int64_t{3} * PLIANT_TILE] = 1;
+      for (std::size_t c = 0; c < 3; ++c) sum[c] += q[c];
+      touching |= PLIANT_TOUCH_BIT;
+      Scalar& deepest = touch_depth[i];
+      deepest = before > deepest ? before : deepest;
+    }
+    for (std::size_t c = 0; c < 3; ++c) change[static_cast<std::int64_t>(c)] = sum[c];
+    change[3] = touching;
+  }
+}
+
+void register_touch_press(Registry& registry) { registry.add("touch_press", touch_press<float>, touch_press<double>); }
+
+}  // namespace pliant::ref

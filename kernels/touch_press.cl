@@ -1,0 +1,69 @@
+// Forces of tissue on tissue, first part, after the trial step. The depth d of a pair of area a is taken back by
+//   f = a d / (W_i + W_j),
+// which bounds a row of the compliance matrix of all pairs (Gershgorin; contact_press): no number of pairs overshoots, and no stiffness
+// limits the step. Friction draws a pair to where it stuck in the frame of its lower point, by at most mu f.
+// contact_change: the force (3) [quanta] with that of tools (contact_force), what touches; touch_force: [tiles][16 slots][4][16] that of
+// each pair (3) [quanta], whether it pushes; touch_depth: [points] largest depth at the start of a step since the host looked [m].
+#include "arith.cl"
+#include "contact_shape.cl"
+#include "contact_point.cl"
+#include "touch_point.cl"
+
+__kernel void touch_press(__global const float* touch_place, __global const int* contact_near, __global const int* contact_force,
+                          __global int* contact_change, __global const int* touch_partner, __global float* touch_pair,
+                          __global int* touch_force, __global float* touch_depth, __global const float* contact_params) {
+  const int first = FIRST_INDEX;
+  const int near = contact_near[first / PLIANT_TILE];
+  if (near == 0) return;
+  const float inverse = contact_params[1], friction = contact_params[7];
+  for (int i = first; i < first + LANES; ++i) {
+    __global const int* force = contact_force + POINT_BASE(i, 4);
+    __global int* change = contact_change + POINT_BASE(i, 4);
+    int4 sum = 0;
+    int touching = 0;
+    if ((near & ~PLIANT_TOUCH_BIT) != 0) {  // what tools did
+      sum = (int4)(force[0], force[PLIANT_TILE], force[2 * PLIANT_TILE], 0);
+      touching = force[3 * PLIANT_TILE];
+    }
+    for (int s = 0; s < TOUCH_SLOTS && (near & PLIANT_TOUCH_BIT) != 0; ++s) {
+      const int j = touch_partner[POINT_BASE(i, TOUCH_SLOTS) + s * PLIANT_TILE] - 1;
+      __global float* numbers = touch_pair + pair_base(i, s);
+      __global int* own = touch_force + pair_force_base(i, s);
+      own[3 * PLIANT_TILE] = 0;
+      if (j < 0 || !(numbers[0] > 0.0f)) continue;
+      const touch_state lower = state_of(touch_place, i < j ? i : j), upper = state_of(touch_place, i < j ? j : i);
+      const touch_meeting m = meeting_of(lower, upper);
+      const float depth = numbers[PLIANT_TILE] - m.gap, w = lower.yielding + upper.yielding;
+      __global float* anchor = numbers + 2 * PLIANT_TILE;
+      if (!(depth > 0.0f) || !(w > 0.0f)) {
+        anchor[3 * PLIANT_TILE] = 0.0f;
+        continue;
+      }
+      const float4 moved = lower.moved - upper.moved;
+      const float stiffness = numbers[0] / w, push = stiffness * depth, before = depth + dot_xyz(moved, m.normal);
+      float4 f = m.normal * push;
+      if (friction > 0.0f) {
+        if (anchor[3 * PLIANT_TILE] == 0.0f) {
+          set_three(anchor, into_frame(lower, m.apart - moved));
+          anchor[3 * PLIANT_TILE] = 1.0f;
+        }
+        const float4 side = slip_of(lower, m, three(anchor));
+        const float length = sqrt(dot_xyz(side, side)), most = friction * push;
+        f = fma((float4)(stiffness * length > most ? -(most / length) : -stiffness), side, f);
+      }
+      int4 q = (int4)(quanta(f.x * inverse), quanta(f.y * inverse), quanta(f.z * inverse), 0);
+      if (i > j) q = -q;
+      own[0] = q.x;
+      own[PLIANT_TILE] = q.y;
+      own[2 * PLIANT_TILE] = q.z;
+      own[3 * PLIANT_TILE] = 1;
+      sum += q;
+      touching |= PLIANT_TOUCH_BIT;
+      touch_depth[i] = before > touch_depth[i] ? before : touch_depth[i];
+    }
+    change[0] = sum.x;
+    change[PLIANT_TILE] = sum.y;
+    change[2 * PLIANT_TILE] = sum.z;
+    change[3 * PLIANT_TILE] = touching;
+  }
+}
