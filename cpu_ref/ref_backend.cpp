@@ -153,12 +153,18 @@ class RefBackend final : public Backend {
   struct Prepared : ref::PreparedTwin<Scalar> {
     Shape shape = Shape::lanes;
     std::int64_t count = 0;
+    bool uneven = false;
     double seconds = 0;
     std::int64_t launches = 0;
   };
 
   /// A few indices, or bricks, are not worth a second thread.
-  static bool splits(const Prepared& p) { return p.count >= (p.shape == Shape::bricks ? 4 : 1024); }
+  static bool splits(const Prepared& p) {
+    return p.count >= (p.shape == Shape::bricks ? 4 : p.uneven && p.shape == Shape::items ? 64 : 1024);
+  }
+
+  /// An uneven pass is dealt out in so many portions per thread.
+  static constexpr int kPortions = 16;
 
   /// One piece of as many as there are threads: contiguous, and for `lanes` made of whole sixteens.
   static Range share(const Prepared& p, int piece, int pieces) {
@@ -231,7 +237,7 @@ class RefBackend final : public Backend {
       Storage& s = storage(id);
       return s.ints.empty() ? ArgValue<Scalar>{s.reals.data()} : ArgValue<Scalar>{nullptr, s.ints.data()};
     };
-    return {ref::prepare_twin<Scalar>(registry_, pass, table_.size(), values_of), pass.shape, pass.count};
+    return {ref::prepare_twin<Scalar>(registry_, pass, table_.size(), values_of), pass.shape, pass.count, pass.uneven};
   }
 
   Prepared& prepared(const Pass& pass) {
@@ -257,7 +263,10 @@ class RefBackend final : public Backend {
 
   void execute(const Prepared& p, std::int32_t step) {
     if (splits(p)) {
-      pool_.run([&](int piece) { p.execute(share(p, piece, pool_.threads()), step); });
+      const int portions = p.uneven ? kPortions : 1, pieces = pool_.threads();
+      pool_.run([&](int piece) {
+        for (int k = 0; k < portions; ++k) p.execute(share(p, k * pieces + piece, portions * pieces), step);
+      });
     } else {
       p.execute({0, p.count}, step);
     }

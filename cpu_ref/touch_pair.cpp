@@ -11,7 +11,7 @@ constexpr std::int64_t kSlots = PLIANT_TOUCH_SLOTS, kFound = 64;
 
 template <class Scalar>
 bool may_meet(const Scalar* a, const Scalar* b, Scalar margin, Scalar ahead) {
-  const Scalar spacing = a[18] > b[18] ? a[18] : b[18], reach = std::fma(Scalar(1.5), spacing, margin);
+  const Scalar spacing = a[18] > b[18] ? a[18] : b[18], reach = std::fma(radius<Scalar>, spacing, margin);
   Scalar facing = 0;
   for (std::size_t c = 0; c < 3; ++c) {
     const Scalar above = b[2 * c] - a[2 * c + 1], rising = a[2 * c + 7] - b[2 * c + 6];
@@ -23,7 +23,19 @@ bool may_meet(const Scalar* a, const Scalar* b, Scalar margin, Scalar ahead) {
     const Scalar l = ll < lh ? ll : lh, m = hl < hh ? hl : hh;
     facing = facing + (l < m ? l : m);
   }
-  return facing < Scalar(-0.1);
+  return facing < Scalar(-0.5);
+}
+
+/// No point of box b is a partner of the point of box a that is farther from it than this.
+template <class Scalar>
+Scalar farthest(const Scalar* a, const Scalar* b, Scalar margin, Scalar ahead) {
+  const Scalar spacing = a[18] > b[18] ? a[18] : b[18];
+  Scalar way = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Scalar rising = a[2 * c + 7] - b[2 * c + 6], falling = b[2 * c + 7] - a[2 * c + 6];
+    way = way + (rising > falling ? rising : falling);
+  }
+  return std::fma(radius<Scalar> + Scalar(2), spacing, std::fma(ahead, way, margin));
 }
 
 /// What the look knows, the same for all points.
@@ -53,12 +65,12 @@ struct Look {
   /// The weight of a pair, 0: none; and its depth at rest.
   [[nodiscard]] Scalar weigh(std::int64_t lower, std::int64_t upper, bool known, Scalar& offset) const {
     const Place<Scalar> a = place_of(touch_place, lower), b = place_of(touch_place, upper);
-    const Scalar facing = -dot(a.normal, b.normal);
-    if (!(facing > Scalar(0.1))) return 0;
+    const Scalar facing = std::fma(Scalar(-2), dot(a.normal, b.normal), Scalar(-1));
+    if (!(facing > Scalar(0))) return 0;
     const Scalar one = spacing(lower), two = spacing(upper), large = one > two ? one : two;
     const Pair<Scalar> p = pair_of(a, b);
     const Vec<Scalar> side = scaled_sum(-p.gap, p.normal, p.apart);
-    const Scalar radius = Scalar(1.5) * large, part = dot(side, side) / (radius * radius);
+    const Scalar r = radius<Scalar> * large, part = dot(side, side) / (r * r);
     if (!(part < Scalar(1))) return 0;
     const Scalar closing = -dot(difference(a.moved, b.moved), p.normal);
     if (!(p.gap < std::fma(ahead, closing > Scalar(0) ? closing : Scalar(0), margin))) return 0;
@@ -68,7 +80,8 @@ struct Look {
       if (same_nodes(lower, upper)) return 0;
       const Vec<Scalar> away = difference(three(touch_rest, tile_base(lower, 4), 0), three(touch_rest, tile_base(upper, 4), 0));
       const Vec<Scalar> na = rest_normal(lower), nb = rest_normal(upper);
-      if (dot(away, away) < (Scalar(16) * large) * large && dot(na, nb) < Scalar(0)) {
+      if (dot(away, away) < (Scalar(16) * large) * large) {
+        if (!(dot(na, nb) < Scalar(-0.5))) return 0;
         const Scalar gap = dot(away, unit(difference(nb, na)));
         if (gap < Scalar(-0.2) * large) return 0;
         offset = gap < Scalar(0) ? gap : Scalar(0);
@@ -136,7 +149,10 @@ void touch_pair(Range range, const Scalar* touch_place, const Scalar* touch_box,
         }
         ++k;
         if (node[3] - node[2] != 1) continue;
+        const Scalar far = farthest(point_box, touch_box + std::int64_t{PLIANT_TOUCH_BOX} * node[0], margin, ahead);
         for (std::int64_t j = std::int64_t{node[2]} * PLIANT_TILE; j < std::int64_t{node[3]} * PLIANT_TILE; ++j) {
+          const Vec<Scalar> away = difference(three(touch_place, tile_base(j, PLIANT_TOUCH_PLACE), 0), p.x);
+          if (!(dot(away, away) < far * far)) continue;
           if (j == i || !(look.spacing(j) > Scalar(0))) continue;
           const auto name = static_cast<std::int32_t>(j + 1);
           std::int64_t before = 0;

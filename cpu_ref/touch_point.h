@@ -11,6 +11,10 @@ using contact::scaled_sum;
 using contact::times;
 using contact::Vec;
 
+/// Of a pair, in spacings of the points.
+template <class Scalar>
+inline constexpr Scalar radius = Scalar(1.2);
+
 /// Three planes of a tiled array from `plane` on.
 template <class T>
 inline auto three(const T* numbers, std::int64_t base, std::int64_t plane) {
@@ -82,8 +86,7 @@ inline Vec<Scalar> into_frame(const Place<Scalar>& lower, const Vec<Scalar>& v) 
 }
 template <class Scalar>
 inline Vec<Scalar> out_of_frame(const Place<Scalar>& lower, const Vec<Scalar>& v) {
-  return scaled_sum(v[0], lower.tangent,
-                    scaled_sum(v[1], cross(lower.normal, lower.tangent), times(lower.normal, v[2])));
+  return scaled_sum(v[0], lower.tangent, scaled_sum(v[1], cross(lower.normal, lower.tangent), times(lower.normal, v[2])));
 }
 
 /// Slip of a pair against where it stuck, along the surface.

@@ -23,10 +23,11 @@ void touch_press(Range range, const Scalar* touch_place, const std::int32_t* con
     }
     for (std::int64_t s = 0; s < PLIANT_TOUCH_SLOTS && (near & PLIANT_TOUCH_BIT) != 0; ++s) {
       const std::int64_t j = touch_partner[tile_base(i, PLIANT_TOUCH_SLOTS) + s * PLIANT_TILE] - 1;
+      if (j < 0) break;
       Scalar* numbers = pair_numbers(touch_pair, i, s);
       std::int32_t* own = pair_force(touch_force, i, s);
       own[std::int64_t{3} * PLIANT_TILE] = 0;
-      if (j < 0 || !(numbers[0] > Scalar(0))) continue;
+      if (!(numbers[0] > Scalar(0))) continue;
       const Place<Scalar> lower = place_of(touch_place, i < j ? i : j), upper = place_of(touch_place, i < j ? j : i);
       const Pair<Scalar> p = pair_of(lower, upper);
       const Scalar depth = numbers[PLIANT_TILE] - p.gap, w = lower.yielding + upper.yielding;

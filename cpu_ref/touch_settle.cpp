@@ -10,8 +10,8 @@ using namespace touch;
 /// `f`: the normal force so far and what friction there was. Returns it with the friction that it may have, and lets where the
 /// pair stuck follow where it slips.
 template <class Scalar>
-Vec<Scalar> settle_friction(const Place<Scalar>& lower, const Pair<Scalar>& p, Scalar* anchor, Scalar stiffness, Scalar friction,
-                            const Vec<Scalar>& f) {
+Vec<Scalar> settle_friction(const Place<Scalar>& lower, const Pair<Scalar>& p, Scalar* anchor, Scalar stiffness,
+                            Scalar friction, const Vec<Scalar>& f) {
   const Vec<Scalar> side = slip_of(lower, p, three(anchor, 0, 0));
   const Scalar across = dot(f, p.normal);
   const Vec<Scalar> pull = scaled_sum(-stiffness, side, scaled_sum(-across, p.normal, f));
@@ -39,10 +39,11 @@ void touch_settle(Range range, const Scalar* touch_place, const std::int32_t* co
     if ((near & ~PLIANT_TOUCH_BIT) != 0) sum = {change[0], change[1], change[2]};  // what tools did
     std::int32_t touching = change[3];
     for (std::int64_t s = 0; s < PLIANT_TOUCH_SLOTS && (near & PLIANT_TOUCH_BIT) != 0; ++s) {
+      const std::int64_t j = touch_partner[tile_base(i, PLIANT_TOUCH_SLOTS) + s * PLIANT_TILE] - 1;
+      if (j < 0) break;
       const std::int32_t* own = pair_force(touch_force, i, s);
       if (own[std::int64_t{3} * PLIANT_TILE] == 0) continue;
       touching |= PLIANT_TOUCH_BIT;
-      const std::int64_t j = touch_partner[tile_base(i, PLIANT_TOUCH_SLOTS) + s * PLIANT_TILE] - 1;
       Scalar* numbers = pair_numbers(touch_pair, i, s);
       const Place<Scalar> lower = place_of(touch_place, i < j ? i : j), upper = place_of(touch_place, i < j ? j : i);
       const Pair<Scalar> p = pair_of(lower, upper);
@@ -51,8 +52,7 @@ void touch_settle(Range range, const Scalar* touch_place, const std::int32_t* co
       const Quanta before = three(own, 0, 0);
       Vec<Scalar> f = times(p.normal, rest > Scalar(0) ? stiffness * rest : Scalar(0));
       for (std::size_t c = 0; c < 3; ++c) f[c] += static_cast<Scalar>(i < j ? before[c] : -before[c]) * quantum;
-      if (friction > Scalar(0))
-        f = settle_friction(lower, p, numbers + std::int64_t{2} * PLIANT_TILE, stiffness, friction, f);
+      if (friction > Scalar(0)) f = settle_friction(lower, p, numbers + std::int64_t{2} * PLIANT_TILE, stiffness, friction, f);
       Quanta q = contact::quanta(f, inverse);
       if (i > j) q = {-q[0], -q[1], -q[2]};
       for (std::size_t c = 0; c < 3; ++c) sum[c] += q[c] - before[c];

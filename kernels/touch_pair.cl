@@ -1,10 +1,10 @@
 // Every few steps: the partners of each contact point until the next look. A pair of points pushes when
-//   - their normals face each other, and their tangential distance s is less than r = 1.5 spacings,
+//   - their normals face each other within 60 degrees, and their tangential distance s is less than r = 1.2 spacings,
 //   - their gap is less than the margin and twice what it loses at its present speed, and they are not deeper than one spacing (two,
 //     when they were partners before): deeper is the other side of the part,
-//   - in one body: they hang on different nodes, and at rest they were not the two sides of a thin part. What lay on each other at
-//     rest, like the faces of a cut, starts there.
-// Its weight is (1 - s^2 / r^2)^2 times how straight they face; touch_weight: [tiles][17][16] weights, then the sum of weights times areas of
+//   - in one body: they hang on different nodes, and at rest they were far from each other, or face to face; not two places beside each
+//     other, and not the two sides of a thin part. What lay on each other at rest, like the faces of a cut, starts there.
+// Its weight is (1 - s^2 / r^2)^2 times 2 cos - 1 of the angle between the normal and the other one turned round; touch_weight: [tiles][17][16] weights, then the sum of weights times areas of
 // the partners [m^2]. The tree of boxes (touch_tree) is the same for all looks, so that the order of partners is. Of more
 // partners than there is room for the weakest give way. contact_params: margin [m] and steps between two looks at 5 and 6.
 #include "arith.cl"
@@ -16,7 +16,7 @@
 
 // Whether points of two boxes can be partners before the next look.
 static inline int may_meet(const float* a, __global const float* b, float margin, float ahead) {
-  const float spacing = a[18] > b[18] ? a[18] : b[18], reach = fma(1.5f, spacing, margin);
+  const float spacing = a[18] > b[18] ? a[18] : b[18], reach = fma(TOUCH_RADIUS, spacing, margin);
   float facing = 0.0f;
   for (int c = 0; c < 3; ++c) {
     const float above = b[2 * c] - a[2 * c + 1], rising = a[2 * c + 7] - b[2 * c + 6];
@@ -28,7 +28,7 @@ static inline int may_meet(const float* a, __global const float* b, float margin
     const float l = ll < lh ? ll : lh, m = hl < hh ? hl : hh;
     facing = facing + (l < m ? l : m);
   }
-  return facing < -0.1f;
+  return facing < -0.5f;
 }
 
 // 1: two points of one part that never touch; 0: they may, offset: their depth at rest [m].
@@ -45,25 +45,37 @@ static inline int one_part(__global const float* touch_surface, __global const f
   __global const float* two = touch_surface + POINT_BASE(upper, PLIANT_TOUCH_SURFACE);
   const float4 na = cross3(three(one + 16 * PLIANT_TILE), three(one + 19 * PLIANT_TILE));
   const float4 nb = cross3(three(two + 16 * PLIANT_TILE), three(two + 19 * PLIANT_TILE));
-  if (!(dot_xyz(away, away) < (16.0f * large) * large) || !(dot_xyz(na, nb) < 0.0f)) return 0;
+  if (!(dot_xyz(away, away) < (16.0f * large) * large)) return 0;
+  if (!(dot_xyz(na, nb) < -0.5f)) return 1;
   const float gap = dot_xyz(away, unit(nb - na));
   if (gap < -0.2f * large) return 1;
   *offset = gap < 0.0f ? gap : 0.0f;
   return 0;
 }
 
+// No point of box b is a partner of the point of box a that is farther from it than this.
+static inline float farthest(const float* a, __global const float* b, float margin, float ahead) {
+  const float spacing = a[18] > b[18] ? a[18] : b[18];
+  float way = 0.0f;
+  for (int c = 0; c < 3; ++c) {
+    const float rising = a[2 * c + 7] - b[2 * c + 6], falling = b[2 * c + 7] - a[2 * c + 6];
+    way = way + (rising > falling ? rising : falling);
+  }
+  return fma(TOUCH_RADIUS + 2.0f, spacing, fma(ahead, way, margin));
+}
+
 static inline float weight_of(__global const float* touch_place, __global const float* touch_surface, __global const float* touch_rest,
                               __global const int* contact_node, int lower, int upper, int known, float margin, float ahead,
                               float* offset) {
   const touch_state a = state_of(touch_place, lower), b = state_of(touch_place, upper);
-  const float facing = -dot_xyz(a.normal, b.normal);
-  if (!(facing > 0.1f)) return 0.0f;
+  const float facing = fma(-2.0f, dot_xyz(a.normal, b.normal), -1.0f);
+  if (!(facing > 0.0f)) return 0.0f;
   const float one = touch_surface[POINT_BASE(lower, PLIANT_TOUCH_SURFACE) + 22 * PLIANT_TILE];
   const float two = touch_surface[POINT_BASE(upper, PLIANT_TOUCH_SURFACE) + 22 * PLIANT_TILE];
   const float large = one > two ? one : two;
   const touch_meeting m = meeting_of(a, b);
   const float4 side = fma((float4)(-m.gap), m.normal, m.apart);
-  const float radius = 1.5f * large, part = dot_xyz(side, side) / (radius * radius);
+  const float radius = TOUCH_RADIUS * large, part = dot_xyz(side, side) / (radius * radius);
   if (!(part < 1.0f)) return 0.0f;
   const float closing = -dot_xyz(a.moved - b.moved, m.normal);
   if (!(m.gap < fma(ahead, closing > 0.0f ? closing : 0.0f, margin))) return 0.0f;
@@ -123,7 +135,11 @@ __kernel void touch_pair(__global const float* touch_place, __global const float
       }
       ++k;
       if (node[3] - node[2] != 1) continue;
+      const float far = farthest(box, touch_box + PLIANT_TOUCH_BOX * node[0], margin, ahead);
       for (int j = node[2] * PLIANT_TILE; j < node[3] * PLIANT_TILE; ++j) {
+        __global const float* x = touch_place + POINT_BASE(j, PLIANT_TOUCH_PLACE);
+        const float dx = x[0] - box[0], dy = x[PLIANT_TILE] - box[2], dz = x[2 * PLIANT_TILE] - box[4];
+        if (!(dot3(dx, dx, dy, dy, dz, dz) < far * far)) continue;
         if (j == i || !(touch_surface[POINT_BASE(j, PLIANT_TOUCH_SURFACE) + 22 * PLIANT_TILE] > 0.0f)) continue;
         int before = 0;
         while (before < TOUCH_SLOTS && old[before] != j + 1) ++before;

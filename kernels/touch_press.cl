@@ -27,10 +27,11 @@ __kernel void touch_press(__global const float* touch_place, __global const int*
     }
     for (int s = 0; s < TOUCH_SLOTS && (near & PLIANT_TOUCH_BIT) != 0; ++s) {
       const int j = touch_partner[POINT_BASE(i, TOUCH_SLOTS) + s * PLIANT_TILE] - 1;
+      if (j < 0) break;  // they stand at the front
       __global float* numbers = touch_pair + pair_base(i, s);
       __global int* own = touch_force + pair_force_base(i, s);
       own[3 * PLIANT_TILE] = 0;
-      if (j < 0 || !(numbers[0] > 0.0f)) continue;
+      if (!(numbers[0] > 0.0f)) continue;
       const touch_state lower = state_of(touch_place, i < j ? i : j), upper = state_of(touch_place, i < j ? j : i);
       const touch_meeting m = meeting_of(lower, upper);
       const float depth = numbers[PLIANT_TILE] - m.gap, w = lower.yielding + upper.yielding;

@@ -19,10 +19,11 @@ __kernel void touch_settle(__global const float* touch_place, __global const int
     if ((near & ~PLIANT_TOUCH_BIT) != 0) sum = (int4)(change[0], change[PLIANT_TILE], change[2 * PLIANT_TILE], 0);
     int touching = change[3 * PLIANT_TILE];
     for (int s = 0; s < TOUCH_SLOTS && (near & PLIANT_TOUCH_BIT) != 0; ++s) {
+      const int j = touch_partner[POINT_BASE(i, TOUCH_SLOTS) + s * PLIANT_TILE] - 1;
+      if (j < 0) break;
       __global const int* own = touch_force + pair_force_base(i, s);
       if (own[3 * PLIANT_TILE] == 0) continue;
       touching |= PLIANT_TOUCH_BIT;
-      const int j = touch_partner[POINT_BASE(i, TOUCH_SLOTS) + s * PLIANT_TILE] - 1;
       __global float* numbers = touch_pair + pair_base(i, s);
       const touch_state lower = state_of(touch_place, i < j ? i : j), upper = state_of(touch_place, i < j ? j : i);
       const touch_meeting m = meeting_of(lower, upper);

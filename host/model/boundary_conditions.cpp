@@ -240,7 +240,7 @@ void reserve_forces(Model& model) {
 }  // namespace
 
 bool needs_surface(const Scene& scene) {
-  return scene.interactive || !scene.tools.empty() ||
+  return scene.interactive || !scene.tools.empty() || scene.contact.has_value() ||
          std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& b) { return !b.pressures.empty(); });
 }
 

@@ -19,11 +19,23 @@ using Index = std::array<std::int64_t, 3>;
 /// Triangles are divided until no edge is longer than this share of a cell.
 constexpr double kSample = 0.25;
 
+/// Least area of a point, as a share of a face of a cell.
+constexpr double kLeastArea = 1e-6;
+
 /// Depth of a soft shell, as a share of a cell.
 constexpr double kShell = 0.25;
 
 /// A sample lies in the cell that is so far below the surface, as a share of a cell: the surface may lie between two.
 constexpr double kInside = 1e-3;
+
+/// The axis that a normal is nearest to, and its sign: 0 to 5.
+int side_of(const Vec3d& normal) {
+  std::size_t axis = 0;
+  for (std::size_t c = 1; c < 3; ++c) {
+    if (std::abs(normal[c]) > std::abs(normal[axis])) axis = c;
+  }
+  return static_cast<int>(2 * axis) + (normal[axis] < 0 ? 1 : 0);
+}
 
 Vec3d between(const std::array<Vec3d, 3>& x, const Vec3d& weight) {
   Vec3d sum{};
@@ -135,9 +147,8 @@ class LatticeSampler {
     for (std::size_t c = 0; c < 3; ++c) {
       s.local[c] = std::clamp((x[c] - place.corner[c]) / d_, 0.0, 1.0);
       if (s.local[c] >= 0.5) s.half |= 1 << c;
-      if (std::abs(normal[c]) > std::abs(normal[static_cast<std::size_t>(s.side / 2)])) s.side = static_cast<int>(2 * c);
     }
-    if (normal[static_cast<std::size_t>(s.side / 2)] < 0) ++s.side;
+    s.side = side_of(normal);
     samples_.push_back(s);
   }
 
@@ -208,6 +219,7 @@ class LatticeSampler {
       middle = vec::add(middle, vec::mul(samples_[i].x, samples_[i].area));
       area += samples_[i].area;
     }
+    if (area < kLeastArea * d_ * d_) return;  // a splinter, whose normal says nothing
     middle = vec::mul(middle, 1 / area);
     std::size_t best = first;
     const auto distance = [&](std::size_t i) { return vec::norm(vec::sub(samples_[i].x, middle)); };
@@ -325,10 +337,13 @@ ContactPoints contact_points(const Model& model) {
   for (const Vec3d& x : points.rest) box.extend(x);
   std::vector<std::uint64_t> code(points.size());
   for (std::size_t i = 0; i < code.size(); ++i) code[i] = morton(points.rest[i], box);
+  // Points of a tile look the same way, so that the two faces of a cut stand in different ones.
+  std::vector<int> side(points.size());
+  for (std::size_t i = 0; i < side.size(); ++i) side[i] = side_of(points.normal[i]);
   std::vector<std::size_t> order(points.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t k) {
-    return std::tie(points.body[i], code[i]) < std::tie(points.body[k], code[k]);
+    return std::tie(points.body[i], side[i], code[i]) < std::tie(points.body[k], side[k], code[k]);
   });
   reorder(points.rest, order);
   reorder(points.nodes, order);

@@ -37,7 +37,9 @@ bool cube_gradients(const std::array<Vec3d, 8>& x, const std::array<std::int32_t
 
 /// Of the linear field that is nearest to the nodes' values in the mean square; only along the directions that they span.
 Gradients linear_gradients(const std::array<Vec3d, 8>& x, const std::array<std::int32_t, 8>& nodes) {
-  const auto first_of = [&](std::size_t a) { return std::find(nodes.begin(), nodes.begin() + a, nodes[a]) == nodes.begin() + a; };
+  const auto first_of = [&](std::size_t a) {
+    return std::find(nodes.begin(), nodes.begin() + a, nodes[a]) == nodes.begin() + a;
+  };
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   int count = 0;
   for (std::size_t a = 0; a < 8; ++a) {
@@ -77,8 +79,8 @@ ContactTangents contact_tangents(const ContactPoints& points, std::size_t point,
   if (!cube_gradients(x, points.weights[point], gradient)) gradient = linear_gradients(x, nodes);
   const Vec3d& n = points.normal[point];
   ContactTangents t;
-  const std::size_t away = std::abs(n[0]) < std::abs(n[1]) ? (std::abs(n[0]) < std::abs(n[2]) ? 0 : 2)
-                                                           : (std::abs(n[1]) < std::abs(n[2]) ? 1 : 2);
+  const std::size_t away =
+      std::abs(n[0]) < std::abs(n[1]) ? (std::abs(n[0]) < std::abs(n[2]) ? 0 : 2) : (std::abs(n[1]) < std::abs(n[2]) ? 1 : 2);
   Vec3d axis{};
   axis[away] = 1;
   t.t1 = vec::cross(axis, n);

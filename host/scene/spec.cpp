@@ -251,6 +251,7 @@ Scene scene_of(const SceneSpec& spec) {
   });
   convert(scene.tools, spec.tools, "/tools",
           [&](const ToolSpec& s, const std::string& at) { return tool(s, at, scene.tools.size()); });
+  if (spec.contact) scene.contact = TissueContact{spec.contact->friction};
   std::size_t surfaces = 0;
   convert(scene.bodies, spec.bodies, "/bodies",
           [&](const BodySpec& s, const std::string& at) { return body(s, at, surfaces); });

@@ -187,6 +187,7 @@ void ProgramBuilder::add_contact_passes() {
   // Counted as idle: a word per tile. What is near costs more (docs/contact.md).
   const auto pass = [&](const char* kernel, std::vector<Arg> list, Shape shape, std::int64_t count, const char* label) {
     program_.step.push_back({kernel, {}, std::move(list), shape, count, label, count, 0.25, 0});
+    program_.step.back().uneven = true;
   };
   const auto apply = [&](const char* force) {
     pass("contact_apply",

@@ -118,6 +118,7 @@ struct SceneSpec {
   std::optional<RelaxationSpec> relaxation;      ///< absent: none
   std::vector<BladeSpec> blades;                 ///< blades that cut what they sweep over
   std::vector<ToolSpec> tools;                   ///< rigid tools that touch the bodies
+  std::optional<ContactSpec> contact;            ///< absent: tissue passes through itself
   std::vector<std::array<double, 4>> tool_path;  ///< (time [s], x, y, z [m]): what a following operational region follows
   std::vector<BodySpec> bodies;                  ///< at least one
   std::vector<ProbeSpec> probes;                 ///< what World::probes() tells

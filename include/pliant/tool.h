@@ -27,6 +27,11 @@ struct ToolSpec {
   double alpha = 0;                         ///< slope of the coefficient of restitution, beside a stiffness [s/m]
 };
 
+/// Bodies touch each other and themselves, and so do the faces of a cut (docs/contact.md).
+struct ContactSpec {
+  double friction = 0;  ///< Coulomb's coefficient
+};
+
 /// Where a tool is, and what it feels: the mean of the newest batch of steps.
 struct ToolForce {
   std::string name;                        ///< as in the scene

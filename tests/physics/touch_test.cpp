@@ -1,0 +1,184 @@
+// Tissue against tissue: momentum, energy, weight, friction, one block for two, a fold, the faces of a cut.
+#include "physics/harness.h"
+#include "simulation/reactions.h"
+
+namespace pliant::physics {
+namespace {
+
+class TouchPhysics : public OnBackend {};
+
+Vector3d sum_over(const Simulation& sim, std::size_t body, const std::vector<Vec3d>& values) {
+  Vector3d sum = Vector3d::Zero();
+  for (std::size_t n = 0; n < values.size(); ++n)
+    sum += sim.model().mass[static_cast<std::size_t>(sim.model().bodies[body].slot[n])] * eigen(values[n]);
+  return sum;
+}
+Vector3d velocity_of(const Simulation& sim, std::size_t body) {
+  return sum_over(sim, body, sim.velocities(body)) / sim.model().bodies[body].mass;
+}
+
+Momenta momenta_of(Simulation& sim) {
+  auto w = read_texels(sim, "node_w");
+  for (Vec3d& x : w) x = plain(eigen(x) / sim.dt());
+  return momenta(sim.model(), read_texels(sim, "node_u"), w);
+}
+
+double energy_of(Simulation& sim) {
+  auto w = read_texels(sim, "node_w");
+  for (Vec3d& x : w) x = plain(eigen(x) / sim.dt());
+  return energies(sim.model(), read_texels(sim, "node_u"), w).total();
+}
+
+ContactTool table(double friction) {
+  ContactTool tool;
+  tool.name = "table";
+  tool.shape = ToolShape::half_space;
+  tool.second = {0, 0, 1};
+  tool.friction = friction;
+  return tool;
+}
+
+/// Two bodies of different elements meet askew in free space: what one loses the other gets, and no energy comes from nowhere.
+TEST_P(TouchPhysics, ACollisionKeepsMomentumAndMakesNoEnergy) {
+  for (const Discretization cut : all_cuts()) {
+    for (const double friction : {0.0, 0.5}) {
+      Scene scene;
+      Body one = box_body({{4, 4, 4}, 0.0125}, cut, material_young(Law::neo_hookean, 2e4, 0.4));
+      Body two = box_body({{5, 4, 4}, 0.01}, Discretization::hex8_bricks, material_young(Law::neo_hookean, 5e4, 0.3));
+      two.name = "two";
+      two.translate = {0.055, 0.013, 0.007};
+      one.velocity = {0.5, 0.02, 0};
+      two.velocity = {-0.5, 0, 0.05};
+      scene.bodies = {one, two};
+      scene.contact = TissueContact{friction};
+      scene.dt = 1e-4;
+      auto sim = simulate(scene, GetParam());
+      const Momenta before = momenta_of(*sim);
+      const double energy = energy_of(*sim);
+      const double closing = velocity_of(*sim, 0)[0] - velocity_of(*sim, 1)[0];
+      double most = 0;
+      for (int i = 0; i < 100; ++i) {
+        sim->advance(10);
+        most = std::max(most, energy_of(*sim) / energy - 1);
+      }
+      const Momenta after = momenta_of(*sim);
+      const std::string name = std::string(name_of(cut)) + ", friction " + std::to_string(friction).substr(0, 3);
+      const double scale = 0.5 * sim->model().bodies[0].mass;
+      check(name + ": linear momentum, over that of one", (eigen(after.linear) - eigen(before.linear)).norm() / scale,
+            bound(2e-5, 1e-12));
+      const auto spin = [](const Momenta& m) { return Vector3d(eigen(m.angular) - eigen(m.centre).cross(eigen(m.linear))); };
+      check("  angular momentum, over that of one at a cell", (spin(after) - spin(before)).norm() / (scale * 0.0125), 0.15);
+      check("  energy made, over all", most, 1e-3);
+      EXPECT_LT(velocity_of(*sim, 0)[0] - velocity_of(*sim, 1)[0], 0.2 * closing) << name;
+    }
+  }
+}
+
+/// Three cubes that do not lie straight on each other come to rest and stay; the table holds the weight of all.
+TEST_P(TouchPhysics, AStackStands) {
+  for (const Discretization cut : {Discretization::hex8_bricks, Discretization::tet4}) {
+    Scene scene;
+    Material m = material_young(Law::neo_hookean, 1e5, 0.4);
+    m.damping = 20;
+    for (int k = 0; k < 3; ++k) {
+      Body cube = box_body({{4, 4, 4}, 0.0125}, cut, m);
+      cube.name = "cube" + std::to_string(k);
+      cube.translate = {0.003 * k, 0.002 * k, 0.0505 * k + 5e-4};
+      scene.bodies.push_back(cube);
+    }
+    scene.gravity = {0, 0, -9.81};
+    scene.contact = TissueContact{0.5};
+    scene.tools = {table(0.5)};
+    auto sim = simulate(scene, GetParam());
+    while (sim->time() < 1.5) sim->advance(sim->next_batch(64));
+    const std::vector<Vec3d> before = sim->displacements(2);
+    while (sim->time() < 2.5) sim->advance(sim->next_batch(64));
+    const std::vector<Vec3d> after = sim->displacements(2);
+    double creep = 0;
+    for (std::size_t n = 0; n < after.size(); ++n) creep = std::max(creep, (eigen(after[n]) - eigen(before[n])).norm());
+    const std::string name = name_of(cut);
+    check(name + ": creep of the highest in 1 s, in cells", creep / 0.0125, bound(1e-4, 1e-5));
+    double mass = 0;
+    for (const ModelBody& b : sim->model().bodies) mass += b.mass;
+    check_relative("  force on the table", -sim->contact().history()[0].now.force[2], 9.81 * mass, 1e-3);
+    check("  deepest pair, in cells", sim->contact().tissue().max_depth / 0.0125, 0.05);
+    EXPECT_GT(sim->contact().tissue().points, 150);
+  }
+}
+
+/// A cube on a slope of tissue that does not move slides with g (sin - mu cos), or stays.
+TEST_P(TouchPhysics, FrictionSticksAndSlides) {
+  const double slope = std::atan(0.4);
+  for (const double friction : {0.2, 0.5}) {
+    Scene scene;
+    Body bed = box_body({{12, 4, 1}, 0.02}, Discretization::hex8_bricks, material_young(Law::neo_hookean, 1e5, 0.3));
+    bed.name = "bed";
+    bed.fixed = {{face(2, 0)}, {face(2, 0.02)}};
+    Material m = material_young(Law::neo_hookean, 5e4, 0.3);
+    m.damping = friction > 0.4 ? 20 : 0;
+    Body cube = box_body({{4, 4, 4}, 0.0125}, Discretization::hex8_bricks, m);
+    cube.translate = {0.005, 0.0151, 0.0201};
+    scene.bodies = {bed, cube};
+    scene.contact = TissueContact{friction};
+    scene.gravity = {9.81 * std::sin(slope), 0, -9.81 * std::cos(slope)};
+    auto sim = simulate(scene, GetParam());
+    const auto until = [&](double time) {
+      while (sim->time() < time) sim->advance(sim->next_batch(16));
+    };
+    until(friction > 0.4 ? 1 : 0.1);
+    const double from = sim->time(), v = velocity_of(*sim, 1)[0];
+    const std::vector<Vec3d> before = sim->displacements(1);
+    until(friction > 0.4 ? 2 : 0.3);
+    if (friction < 0.4) {
+      check_relative("acceleration", (velocity_of(*sim, 1)[0] - v) / (sim->time() - from),
+                     9.81 * (std::sin(slope) - friction * std::cos(slope)), 0.03);
+      continue;
+    }
+    const std::vector<Vec3d> after = sim->displacements(1);
+    double creep = 0;
+    for (std::size_t n = 0; n < after.size(); ++n) creep = std::max(creep, (eigen(after[n]) - eigen(before[n])).norm());
+    check("creep in 1 s, in cells", creep / 0.0125, bound(1e-4, 1e-5));
+  }
+}
+
+/// Two blocks that lie on each other are pressed as one block of both.
+TEST_P(TouchPhysics, TwoBlocksPressLikeOne) {
+  for (const Discretization cut : all_cuts()) {
+    Material m = material_young(Law::neo_hookean, 1e4, 0.4);
+    m.damping = 30;
+    const double edge = 0.0125;
+    const auto reaction = [&](bool two) {
+      Scene scene;
+      Body low = box_body({{4, 4, two ? 4 : 8}, edge}, cut, m);
+      low.name = "low";
+      low.fixed = {{face(2, 0)}};
+      Body high = box_body({{4, 4, 4}, edge}, cut, m);
+      high.translate = {0, 0, 4 * edge};
+      scene.bodies = {low};
+      if (two) scene.bodies.push_back(high);
+      Prescribed down;
+      down.where = face(2, 8 * edge);
+      down.displacement = {0.0, 0.0, -0.01};
+      down.curve.kind = Curve::Kind::smooth;
+      down.curve.duration = 0.6;
+      scene.bodies.back().prescribed = {down};
+      if (two) scene.contact = TissueContact{1};
+      auto sim = simulate(scene, GetParam());
+      while (sim->time() < 1.2) sim->advance(sim->next_batch(64));
+      double sum = 0;
+      const std::vector<Vec3d> forces = reactions(*sim, 0);
+      for (std::size_t n = 0; n < forces.size(); ++n) {
+        if (sim->model().bodies[0].rest[n][2] < 1e-6) sum += forces[n][2];
+      }
+      if (two) check("  deepest pair, in cells", sim->contact().tissue().max_depth / edge, 0.06);
+      return sum;
+    };
+    const double one = reaction(false);
+    check_relative(std::string(name_of(cut)) + ": force of two blocks against one", reaction(true), one, 0.02);
+  }
+}
+
+PLIANT_ON_BACKENDS(TouchPhysics);
+
+}  // namespace
+}  // namespace pliant::physics
