@@ -22,11 +22,10 @@ void touch_box(Range range, const Scalar* node_u, const Scalar* node_w, const Sc
     for (std::int64_t i = tile * PLIANT_TILE; i < (tile + 1) * PLIANT_TILE; ++i) {
       const contact::Place<Scalar> p = points.at(i);
       const auto [normal, tangent] = frame_of(points, touch_surface, i);
-      const std::int64_t base = tile_base(i, PLIANT_TOUCH_PLACE);
-      set_three(touch_place, base, 0, p.now);
-      set_three(touch_place, base, 3, p.moved);
-      set_three(touch_place, base, 6, normal);
-      set_three(touch_place, base, 9, tangent);
+      set_row(touch_place, i, 0, p.now);
+      set_row(touch_place, i, 1, p.moved);
+      set_row(touch_place, i, 2, normal);
+      set_row(touch_place, i, 3, tangent);
       const Scalar spacing = touch_surface[tile_base(i, PLIANT_TOUCH_SURFACE) + std::int64_t{22} * PLIANT_TILE];
       if (!(spacing > Scalar(0))) continue;
       box[18] = box[18] < spacing ? spacing : box[18];

@@ -14,14 +14,13 @@ void touch_place(Range range, const Scalar* node_u, const Scalar* node_w, const 
   const Scalar h = step_params[0], half_hh = (Scalar(0.5) * h) * h;
   for (std::int64_t i = range.begin; i < range.end; ++i) {
     if ((contact_near[i / PLIANT_TILE] & PLIANT_TOUCH_BIT) == 0) continue;
-    const std::int64_t base = tile_base(i, PLIANT_TOUCH_PLACE);
     const contact::Place<Scalar> p = points.at(i);
-    set_three(touch_place, base, 0, p.now);
-    set_three(touch_place, base, 3, p.moved);
+    set_row(touch_place, i, 0, p.now);
+    set_row(touch_place, i, 1, p.moved);
     if (again == 0) {
       const auto [normal, tangent] = frame_of(points, touch_surface, i);
-      set_three(touch_place, base, 6, normal);
-      set_three(touch_place, base, 9, tangent);
+      set_row(touch_place, i, 2, normal);
+      set_row(touch_place, i, 3, tangent);
     }
     Scalar w = 0, whole = 0, moving = 0;
     for (std::int64_t a = 0, first = tile_base(i, 8); a < 8; ++a) {
@@ -35,7 +34,7 @@ void touch_place(Range range, const Scalar* node_u, const Scalar* node_w, const 
       moving = moving + free;
     }
     if (again != 0) w = moving > Scalar(0) ? w * (whole / moving) : Scalar(0);
-    touch_place[base + std::int64_t{12} * PLIANT_TILE] = w;
+    touch_place[i * PLIANT_TOUCH_PLACE + 3] = w;
   }
 }
 

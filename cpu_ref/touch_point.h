@@ -44,9 +44,8 @@ struct Place {
 
 template <class Scalar>
 inline Place<Scalar> place_of(const Scalar* touch_place, std::int64_t i) {
-  const std::int64_t base = tile_base(i, PLIANT_TOUCH_PLACE);
-  return {three(touch_place, base, 0), three(touch_place, base, 3), three(touch_place, base, 6), three(touch_place, base, 9),
-          touch_place[base + std::int64_t{12} * PLIANT_TILE]};
+  const Scalar* p = touch_place + i * PLIANT_TOUCH_PLACE;
+  return {{p[0], p[1], p[2]}, {p[4], p[5], p[6]}, {p[8], p[9], p[10]}, {p[12], p[13], p[14]}, p[3]};
 }
 
 /// The deformed normal and first tangent of a point.
@@ -63,12 +62,24 @@ inline std::array<Vec<Scalar>, 2> frame_of(const contact::Points<Scalar>& points
   return {unit(cross(first, second)), unit(first)};
 }
 
+/// Number `row` of a point's place: 0 place, 1 increment, 2 normal, 3 tangent.
+template <class Scalar>
+inline void set_row(Scalar* touch_place, std::int64_t i, std::int64_t row, const Vec<Scalar>& v) {
+  for (std::size_t c = 0; c < 3; ++c) touch_place[i * PLIANT_TOUCH_PLACE + 4 * row + static_cast<std::int64_t>(c)] = v[c];
+  if (row > 0) touch_place[i * PLIANT_TOUCH_PLACE + 4 * row + 3] = 0;
+}
+
 /// Two points that may push each other; `lower` has the lower index.
 template <class Scalar>
 struct Pair {
   Vec<Scalar> apart{}, normal{};  ///< lower minus upper; what pushes the lower one
   Scalar gap = 0;
 };
+
+template <class Scalar>
+inline bool may_push(const Place<Scalar>& lower, const Place<Scalar>& upper) {
+  return dot(difference(lower.x, upper.x), difference(upper.normal, lower.normal)) < Scalar(0);
+}
 
 template <class Scalar>
 inline Pair<Scalar> pair_of(const Place<Scalar>& lower, const Place<Scalar>& upper) {

@@ -29,10 +29,15 @@ void touch_press(Range range, const Scalar* touch_place, const std::int32_t* con
       own[std::int64_t{3} * PLIANT_TILE] = 0;
       if (!(numbers[0] > Scalar(0))) continue;
       const Place<Scalar> lower = place_of(touch_place, i < j ? i : j), upper = place_of(touch_place, i < j ? j : i);
-      const Pair<Scalar> p = pair_of(lower, upper);
-      const Scalar depth = numbers[PLIANT_TILE] - p.gap, w = lower.yielding + upper.yielding;
+      const Scalar w = lower.yielding + upper.yielding;
       Scalar* anchor = numbers + std::int64_t{2} * PLIANT_TILE;
-      if (!(depth > Scalar(0)) || !(w > Scalar(0))) {
+      if (!may_push(lower, upper) || !(w > Scalar(0))) {
+        anchor[std::int64_t{3} * PLIANT_TILE] = 0;
+        continue;
+      }
+      const Pair<Scalar> p = pair_of(lower, upper);
+      const Scalar depth = numbers[PLIANT_TILE] - p.gap;
+      if (!(depth > Scalar(0))) {
         anchor[std::int64_t{3} * PLIANT_TILE] = 0;
         continue;
       }

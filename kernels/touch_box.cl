@@ -21,7 +21,7 @@ __kernel void touch_box(__global const float* node_u, __global const float* node
     if (!(spacing > 0.0f)) continue;
     largest = largest < spacing ? spacing : largest;
     for (int k = 0; k < 9; ++k) {
-      const float v = touch_place[POINT_BASE(i, PLIANT_TOUCH_PLACE) + k * PLIANT_TILE];
+      const float v = touch_place[PLIANT_TOUCH_PLACE * i + k + k / 3];
       low[k] = v < low[k] ? v : low[k];
       high[k] = v > high[k] ? v : high[k];
     }

@@ -28,6 +28,6 @@ __kernel void touch_place(__global const float* node_u, __global const float* no
       moving = moving + free;
     }
     if (again != 0) w = moving > 0.0f ? w * (whole / moving) : 0.0f;
-    touch_place[POINT_BASE(i, PLIANT_TOUCH_PLACE) + 12 * PLIANT_TILE] = w;
+    touch_place[PLIANT_TOUCH_PLACE * i + 3] = w;
   }
 }

@@ -6,7 +6,8 @@
 //   Normals follow the deformed surface: n ~ F t1 x F t2, t1 and t2 the tangents at rest.
 // touch_surface: [tiles][24][16] weights of F t1 (8) and F t2 (8) [1/m], t1 (3), t2 (3), spacing of the points around [m].
 // touch_rest: [tiles][4][16] place at rest without what loose pieces have flown (3) [m], body.
-// touch_place: [tiles][16][16] place (3), increment (3) [m], normal (3), F t1 / |F t1| (3), W [m/(N/m^2)] (contact_press).
+// touch_place: [points][16] (place [m], W [m/(N/m^2)] of contact_press), (increment [m], 0), (normal, 0), (F t1 / |F t1|, 0): a row per
+// point, because partners read it in no order.
 // touch_partner: [tiles][16 slots][16] other point + 1, 0: none; touch_pair: [tiles][16 slots][6][16] (kernels/layout.h).
 #define TOUCH_SLOTS PLIANT_TOUCH_SLOTS
 #define TOUCH_RADIUS 1.2f  // of a pair, in spacings; a point is at most 0.71 from the next on a grid
@@ -29,24 +30,27 @@ typedef struct {
 } touch_state;
 
 static inline touch_state state_of(__global const float* touch_place, int i) {
-  __global const float* at = touch_place + POINT_BASE(i, PLIANT_TOUCH_PLACE);
+  __global const float* at = touch_place + PLIANT_TOUCH_PLACE * i;
   touch_state s;
-  s.x = three(at);
-  s.moved = three(at + 3 * PLIANT_TILE);
-  s.normal = three(at + 6 * PLIANT_TILE);
-  s.tangent = three(at + 9 * PLIANT_TILE);
-  s.yielding = at[12 * PLIANT_TILE];
+  s.x = vload4(0, at);
+  s.yielding = s.x.w;
+  s.x.w = 0.0f;
+  s.moved = vload4(1, at);
+  s.normal = vload4(2, at);
+  s.tangent = vload4(3, at);
   return s;
 }
 
-// Place, increment and, unless `again`, the frame of a point.
+// Place, increment and, unless `again`, the frame of a point. W is left to others.
 static inline void write_place(__global const float* node_u, __global const float* node_w, __global const float* contact_rest,
                                __global const int* contact_node, __global const float* contact_weight,
                                __global const float* touch_surface, __global float* touch_place, int i, int again) {
   const contact_place p = place_of_point(node_u, node_w, contact_rest, contact_node, contact_weight, i);
-  __global float* at = touch_place + POINT_BASE(i, PLIANT_TOUCH_PLACE);
-  set_three(at, p.now);
-  set_three(at + 3 * PLIANT_TILE, p.moved);
+  __global float* at = touch_place + PLIANT_TOUCH_PLACE * i;
+  at[0] = p.now.x;
+  at[1] = p.now.y;
+  at[2] = p.now.z;
+  vstore4((float4)(p.moved.x, p.moved.y, p.moved.z, 0.0f), 1, at);
   if (again != 0) return;
   __global const float* own = touch_surface + POINT_BASE(i, PLIANT_TOUCH_SURFACE);
   __global const int* node = contact_node + POINT_BASE(i, 8);
@@ -56,14 +60,19 @@ static inline void write_place(__global const float* node_u, __global const floa
     first = fma((float4)(own[a * PLIANT_TILE]), u, first);
     second = fma((float4)(own[(8 + a) * PLIANT_TILE]), u, second);
   }
-  set_three(at + 6 * PLIANT_TILE, unit(cross3(first, second)));
-  set_three(at + 9 * PLIANT_TILE, unit(first));
+  vstore4(unit(cross3(first, second)), 2, at);
+  vstore4(unit(first), 3, at);
 }
 
 typedef struct {
   float4 apart, normal;  // lower minus upper; what pushes the lower one
   float gap;
 } touch_meeting;
+
+// Whether the second lies behind the first: of two points in front of each other nothing else need be computed.
+static inline int may_push(touch_state lower, touch_state upper) {
+  return dot_xyz(lower.x - upper.x, upper.normal - lower.normal) < 0.0f;
+}
 
 static inline touch_meeting meeting_of(touch_state lower, touch_state upper) {
   touch_meeting m;

@@ -33,10 +33,15 @@ __kernel void touch_press(__global const float* touch_place, __global const int*
       own[3 * PLIANT_TILE] = 0;
       if (!(numbers[0] > 0.0f)) continue;
       const touch_state lower = state_of(touch_place, i < j ? i : j), upper = state_of(touch_place, i < j ? j : i);
-      const touch_meeting m = meeting_of(lower, upper);
-      const float depth = numbers[PLIANT_TILE] - m.gap, w = lower.yielding + upper.yielding;
+      const float w = lower.yielding + upper.yielding;
       __global float* anchor = numbers + 2 * PLIANT_TILE;
-      if (!(depth > 0.0f) || !(w > 0.0f)) {
+      if (!may_push(lower, upper) || !(w > 0.0f)) {
+        anchor[3 * PLIANT_TILE] = 0.0f;
+        continue;
+      }
+      const touch_meeting m = meeting_of(lower, upper);
+      const float depth = numbers[PLIANT_TILE] - m.gap;
+      if (!(depth > 0.0f)) {
         anchor[3 * PLIANT_TILE] = 0.0f;
         continue;
       }

@@ -73,7 +73,7 @@ void ProgramBuilder::add_touch() {
   }
   for (const char* name : {"touch_depth", "last_touch_depth"})
     reals(name, 1, BufferRole::state, "[points]", "m", "touch_press");
-  reals("touch_place", PLIANT_TOUCH_PLACE, BufferRole::scratch, "[tiles][16][16]", "see touch_point.cl", "touch_place");
+  reals("touch_place", PLIANT_TOUCH_PLACE, BufferRole::scratch, "[points][16]", "see touch_point.cl", "touch_place");
   program_.buffers.back().carried = Carried::all;  // of points that are near nothing: that of the last look
   reals("touch_weight", PLIANT_TOUCH_SLOTS + 1, BufferRole::scratch, "[tiles][17][16]", "1 (16), m^2", "touch_pair");
   program_.buffers.back().carried = Carried::all;

@@ -29,7 +29,7 @@ TEST(TouchBoxOracle, PlacesNormalsAndBoxes) {
     }
     EXPECT_LT((d.x(i) - x).norm(), 1e-6);
     EXPECT_LT((d.normal(i) - one.cross(two).normalized()).norm(), 1e-5);
-    EXPECT_LT((d.three(d.place, i, PLIANT_TOUCH_PLACE, 9) - one.normalized()).norm(), 1e-5);
+    EXPECT_LT((d.row(i, 3) - one.normalized()).norm(), 1e-5);
   }
   d.make_boxes();
   for (std::size_t k = 0; k < PLIANT_TOUCH_BOX * (d.points / 16); ++k) EXPECT_NEAR(box[k], d.box[k], 1e-7) << k;

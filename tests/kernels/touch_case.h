@@ -23,9 +23,14 @@ struct TouchData : ContactData {
     const std::size_t at = base(i, planes) + 16 * plane;
     return {values[at], values[at + 16], values[at + 32]};
   }
-  [[nodiscard]] Eigen::Vector3d x(std::size_t i) const { return three(place, i, PLIANT_TOUCH_PLACE, 0); }
-  [[nodiscard]] Eigen::Vector3d moved(std::size_t i) const { return three(place, i, PLIANT_TOUCH_PLACE, 3); }
-  [[nodiscard]] Eigen::Vector3d normal(std::size_t i) const { return three(place, i, PLIANT_TOUCH_PLACE, 6); }
+  /// Of touch_place: 0 place, 1 increment, 2 normal, 3 tangent.
+  [[nodiscard]] Eigen::Vector3d row(std::size_t i, std::size_t number) const {
+    return Eigen::Vector3d(&place[16 * i + 4 * number]);
+  }
+  [[nodiscard]] double& yielding(std::size_t i) { return place[16 * i + 3]; }
+  [[nodiscard]] Eigen::Vector3d x(std::size_t i) const { return row(i, 0); }
+  [[nodiscard]] Eigen::Vector3d moved(std::size_t i) const { return row(i, 1); }
+  [[nodiscard]] Eigen::Vector3d normal(std::size_t i) const { return row(i, 2); }
   [[nodiscard]] double spacing(std::size_t i) const { return surface[base(i, PLIANT_TOUCH_SURFACE) + 352]; }
   [[nodiscard]] double area(std::size_t i) const { return rest[base(i, 4) + 48]; }
 
@@ -55,7 +60,7 @@ struct TouchData : ContactData {
         if (!(spacing(i) > 0)) continue;
         out[18] = std::max(out[18], spacing(i));
         for (std::size_t k = 0; k < 9; ++k) {
-          const double v = place[base(i, PLIANT_TOUCH_PLACE) + 16 * k];
+          const double v = place[16 * i + k + k / 3];
           out[2 * k] = std::min(out[2 * k], v);
           out[2 * k + 1] = std::max(out[2 * k + 1], v);
         }
@@ -78,15 +83,15 @@ struct TouchData : ContactData {
       if (i % 3 != 0) start = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
       for (std::size_t c = 0; c < 3; ++c) {
         const auto k = static_cast<int>(c);
-        place[base(i, 16) + 16 * c] = numbers == Data::large ? at[k] : random.draw(numbers, 0.2);
-        place[base(i, 16) + 16 * (3 + c)] = random.draw(numbers, 1e-3);
-        place[base(i, 16) + 16 * (6 + c)] = n[k];
-        place[base(i, 16) + 16 * (9 + c)] = t[k];
+        place[16 * i + c] = numbers == Data::large ? at[k] : random.draw(numbers, 0.2);
+        place[16 * i + 4 + c] = random.draw(numbers, 1e-3);
+        place[16 * i + 8 + c] = n[k];
+        place[16 * i + 12 + c] = t[k];
         surface[base(i, PLIANT_TOUCH_SURFACE) + 16 * (16 + c)] = t[k];
         surface[base(i, PLIANT_TOUCH_SURFACE) + 16 * (19 + c)] = n.cross(t)[k];
         touch_rest[base(i, 4) + 16 * c] = start[k];
       }
-      place[base(i, 16) + 192] = random.chance(0.1) ? 0 : random.uniform(1e-6, 1e-5);
+      yielding(i) = random.chance(0.1) ? 0 : random.uniform(1e-6, 1e-5);
       surface[base(i, PLIANT_TOUCH_SURFACE) + 352] = rest[base(i, 4) + 48] > 0 ? random.uniform(0.03, 0.06) : 0;
       touch_rest[base(i, 4) + 48] = random.integer(0, 1);
       if (random.chance(0.2)) {

@@ -115,9 +115,9 @@ TEST(TouchPairOracle, TheWeakestGiveWay) {
   for (std::size_t i = 0; i < 32; ++i) {
     const bool high = i >= 16 || i == 0;
     for (std::size_t c = 0; c < 3; ++c) {
-      d.place[ContactData::base(i, 16) + 16 * (6 + c)] = c == 2 ? (high ? -1 : 1) : 0;
-      d.place[ContactData::base(i, 16) + 16 * c] = c == 0 ? 0.001 * static_cast<double>(i) : c == 2 ? (high ? 0.001 : 0) : 0;
-      d.place[ContactData::base(i, 16) + 16 * (3 + c)] = 0;
+      d.place[16 * i + 8 + c] = c == 2 ? (high ? -1 : 1) : 0;
+      d.place[16 * i + c] = c == 0 ? 0.001 * static_cast<double>(i) : c == 2 ? (high ? 0.001 : 0) : 0;
+      d.place[16 * i + 4 + c] = 0;
     }
     d.rest[ContactData::base(i, 4) + 48] = 1e-3;
     d.surface[ContactData::base(i, PLIANT_TOUCH_SURFACE) + 352] = 0.03;

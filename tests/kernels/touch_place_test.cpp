@@ -36,11 +36,9 @@ TEST(TouchPlaceOracle, YieldsWithTheMassesAround) {
         held += moving < whole;
         yielding *= moving > 0 ? whole / moving : 0;
       }
-      EXPECT_NEAR(place[ContactData::base(i, 16) + 192], yielding, 1e-5 * yielding) << i;
+      EXPECT_NEAR(place[16 * i + 3], yielding, 1e-5 * yielding) << i;
       const bool frame_stays = again != 0;
-      EXPECT_EQ(place[ContactData::base(i, 16) + 96] ==
-                    static_cast<double>(static_cast<float>(d.place[ContactData::base(i, 16) + 96])),
-                frame_stays);
+      EXPECT_EQ(place[16 * i + 8] == static_cast<double>(static_cast<float>(d.place[16 * i + 8])), frame_stays);
     }
     if (again != 0) {
       EXPECT_GT(held, 10);

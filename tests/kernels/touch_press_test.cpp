@@ -69,7 +69,7 @@ TEST(TouchPressOracle, DepthIsTakenBackAlongTheNormal) {
         if (name == 0 || area == 0) continue;
         const auto j = static_cast<std::size_t>(name) - 1, lower = std::min(i, j), upper = std::max(i, j);
         const Vector3d n = (d.normal(upper) - d.normal(lower)).normalized();
-        const double w = d.place[ContactData::base(i, 16) + 192] + d.place[ContactData::base(j, 16) + 192];
+        const double w = d.place[16 * i + 3] + d.place[16 * j + 3];
         const double depth = d.pair[TouchData::pair_at(i, s) + 16] - (d.x(lower) - d.x(upper)).dot(n);
         if (std::abs(depth) < 1e-6) continue;
         const std::size_t at = TouchData::force_at(i, s);

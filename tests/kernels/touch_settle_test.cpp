@@ -48,7 +48,7 @@ TEST(TouchSettleOracle, FrictionKeepsWithinItsCone) {
       for (std::size_t k = 0; k < 3; ++k)
         d.pair_force[TouchData::force_at(own, 0) + 16 * k] = own == i ? before[k] : -before[k];
       d.pair_force[TouchData::force_at(own, 0) + 48] = 1;
-      d.place[ContactData::base(own, 16) + 192] = 5e-6;
+      d.yielding(own) = 5e-6;
     }
     const KernelCase test = touch_settle_case(d);
     const Reals change = ints_in_double(test, "contact_change"), pair = run_in_double(test, "touch_pair");
@@ -61,7 +61,7 @@ TEST(TouchSettleOracle, FrictionKeepsWithinItsCone) {
     EXPECT_NEAR(got.dot(n), across, 1e-3 * std::abs(across) + 0.01);
     const double side = (got - got.dot(n) * n).norm(), most = friction * std::max(0.0, across);
     EXPECT_LE(side, most * 1.001 + 0.01);
-    const Vector3d t = d.three(d.place, i, 16, 9), b = d.normal(i).cross(t);
+    const Vector3d t = d.row(i, 3), b = d.normal(i).cross(t);
     const Vector3d stuck = numbers[2] * t + numbers[3] * b + numbers[4] * d.normal(i);
     const Vector3d slip = d.x(i) - d.x(j) - stuck, along = slip - slip.dot(n) * n;
     const Vector3d wanted = had - had.dot(n) * n - stiffness * along;
