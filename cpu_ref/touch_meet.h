@@ -57,6 +57,21 @@ struct Look {
     return static_cast<std::int32_t>(touch_rest[tile_base(i, 4) + std::int64_t{3} * PLIANT_TILE]);
   }
 
+  /// Whether two points are of one part, and never touch; otherwise their depth at rest.
+  [[nodiscard]] bool one_part(std::int64_t lower, std::int64_t upper, Scalar large, Scalar& offset) const {
+    offset = 0;
+    const bool one_body = body(lower) == body(upper);
+    if (one_body && same_nodes(lower, upper)) return true;
+    const Vec<Scalar> away = difference(three(touch_rest, tile_base(lower, 4), 0), three(touch_rest, tile_base(upper, 4), 0));
+    const Vec<Scalar> na = rest_normal(lower), nb = rest_normal(upper);
+    if (!(dot(away, away) < (Scalar(16) * large) * large)) return false;
+    if (!(dot(na, nb) < Scalar(-0.5))) return one_body;
+    const Scalar gap = dot(away, unit(difference(nb, na)));
+    if (one_body && gap < Scalar(-0.2) * large) return true;
+    offset = gap < Scalar(0) ? gap : Scalar(0);
+    return false;
+  }
+
   /// The weight of a pair, 0: none; and its depth at rest.
   [[nodiscard]] Scalar weigh(std::int64_t lower, std::int64_t upper, bool known, Scalar& offset) const {
     const Place<Scalar> a = place_of(touch_place, lower), b = place_of(touch_place, upper);
@@ -70,18 +85,7 @@ struct Look {
     const Scalar closing = -dot(difference(a.moved, b.moved), p.normal);
     if (!(p.gap < std::fma(ahead, closing > Scalar(0) ? closing : Scalar(0), margin))) return 0;
     if (!(p.gap > (known ? Scalar(-2) * large : -large))) return 0;
-    offset = 0;
-    if (body(lower) == body(upper)) {
-      if (same_nodes(lower, upper)) return 0;
-      const Vec<Scalar> away = difference(three(touch_rest, tile_base(lower, 4), 0), three(touch_rest, tile_base(upper, 4), 0));
-      const Vec<Scalar> na = rest_normal(lower), nb = rest_normal(upper);
-      if (dot(away, away) < (Scalar(16) * large) * large) {
-        if (!(dot(na, nb) < Scalar(-0.5))) return 0;
-        const Scalar gap = dot(away, unit(difference(nb, na)));
-        if (gap < Scalar(-0.2) * large) return 0;
-        offset = gap < Scalar(0) ? gap : Scalar(0);
-      }
-    }
+    if (one_part(lower, upper, large, offset)) return 0;
     const Scalar rest = Scalar(1) - part;
     return (rest * rest) * facing;
   }

@@ -4,11 +4,29 @@
 
 namespace pliant::ref {
 
+namespace {
+
+using namespace touch;
+
+/// What draws a pair back to where it stuck, at most `most`; where it sticks from now on, if it has not.
+template <class Scalar>
+Vec<Scalar> press_friction(const Place<Scalar>& lower, const Pair<Scalar>& p, Scalar* anchor, Scalar stiffness, Scalar most,
+                           const Vec<Scalar>& moved, const Vec<Scalar>& f) {
+  if (anchor[std::int64_t{3} * PLIANT_TILE] == Scalar(0)) {
+    set_three(anchor, 0, 0, into_frame(lower, difference(p.apart, moved)));
+    anchor[std::int64_t{3} * PLIANT_TILE] = 1;
+  }
+  const Vec<Scalar> side = slip_of(lower, p, three(anchor, 0, 0));
+  const Scalar length = std::sqrt(dot(side, side));
+  return scaled_sum(stiffness * length > most ? -(most / length) : -stiffness, side, f);
+}
+
+}  // namespace
+
 template <class Scalar>
 void touch_press(Range range, const Scalar* touch_place, const std::int32_t* contact_near, const std::int32_t* contact_force,
                  std::int32_t* contact_change, const std::int32_t* touch_partner, Scalar* touch_pair, std::int32_t* touch_force,
                  Scalar* touch_depth, const Scalar* contact_params) {
-  using namespace touch;
   const Scalar inverse = contact_params[1], friction = contact_params[7];
   for (std::int64_t i = range.begin; i < range.end; ++i) {
     const std::int32_t near = contact_near[i / PLIANT_TILE];
@@ -44,15 +62,7 @@ void touch_press(Range range, const Scalar* touch_place, const std::int32_t* con
       const Vec<Scalar> moved = difference(lower.moved, upper.moved);
       const Scalar stiffness = numbers[0] / w, push = stiffness * depth, before = depth + dot(moved, p.normal);
       Vec<Scalar> f = times(p.normal, push);
-      if (friction > Scalar(0)) {
-        if (anchor[std::int64_t{3} * PLIANT_TILE] == Scalar(0)) {
-          set_three(anchor, 0, 0, into_frame(lower, difference(p.apart, moved)));
-          anchor[std::int64_t{3} * PLIANT_TILE] = 1;
-        }
-        const Vec<Scalar> side = slip_of(lower, p, three(anchor, 0, 0));
-        const Scalar length = std::sqrt(dot(side, side)), most = friction * push;
-        f = scaled_sum(stiffness * length > most ? -(most / length) : -stiffness, side, f);
-      }
+      if (friction > Scalar(0)) f = press_friction(lower, p, anchor, stiffness, friction * push, moved, f);
       Quanta q = contact::quanta(f, inverse);
       if (i > j) q = {-q[0], -q[1], -q[2]};
       set_three(own, 0, 0, q);

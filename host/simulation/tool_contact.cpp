@@ -9,6 +9,7 @@
 #include "geometry/vec.h"
 #include "pliant/error.h"
 #include "schedule/contact_data.h"
+#include "simulation/body_overlap.h"
 
 namespace pliant {
 namespace {
@@ -86,6 +87,7 @@ void ToolContact::start() {
   if (!active()) return;
   const Model& model = run_.model();
   const ContactPoints& points = *model.contact;
+  if (run_.scene.contact) refuse_overlap(model, kStartDepth * points.spacing);
   for (std::size_t t = 0; t < run_.scene.tools.size(); ++t) {
     const ContactTool& tool = run_.scene.tools[t];
     const Pose at = pose(t, run_.state.clock.time());

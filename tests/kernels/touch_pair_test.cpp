@@ -37,11 +37,12 @@ double weight(const TouchData& d, std::size_t i, std::size_t j, double& offset, 
   offset = 0;
   if (facing <= 0 || s >= 1 || gap >= d.params[5] + 32 * closing) return 0;
   if (gap <= (known(d, i, j) ? -2 * large : -large)) return 0;
-  if (d.touch_rest[ContactData::base(i, 4) + 48] == d.touch_rest[ContactData::base(j, 4) + 48]) {
-    bool same = true;
-    for (std::size_t a = 0; a < 8; ++a)
-      same = same && d.node[ContactData::base(i, 8) + 16 * a] == d.node[ContactData::base(j, 8) + 16 * a];
-    if (same) return 0;
+  const bool one_body = d.touch_rest[ContactData::base(i, 4) + 48] == d.touch_rest[ContactData::base(j, 4) + 48];
+  bool same = true;
+  for (std::size_t a = 0; a < 8; ++a)
+    same = same && d.node[ContactData::base(i, 8) + 16 * a] == d.node[ContactData::base(j, 8) + 16 * a];
+  if (one_body && same) return 0;
+  {
     const Vector3d away = d.three(d.touch_rest, i, 4, 0) - d.three(d.touch_rest, j, 4, 0);
     const auto rest_normal = [&](std::size_t p) {
       return Vector3d(d.three(d.surface, p, PLIANT_TOUCH_SURFACE, 16).cross(d.three(d.surface, p, PLIANT_TOUCH_SURFACE, 19)));
@@ -49,11 +50,14 @@ double weight(const TouchData& d, std::size_t i, std::size_t j, double& offset, 
     near_zero(away.norm() - 4 * large, large);
     if (away.norm() < 4 * large) {
       near_zero(rest_normal(i).dot(rest_normal(j)) + 0.5, 1);
-      if (rest_normal(i).dot(rest_normal(j)) >= -0.5) return 0;
       const double rest = away.dot((rest_normal(j) - rest_normal(i)).normalized());
       near_zero(rest + 0.2 * large, large);
-      if (rest < -0.2 * large) return 0;
-      offset = std::min(0.0, rest);
+      if (rest_normal(i).dot(rest_normal(j)) >= -0.5) {
+        if (one_body) return 0;
+      } else {
+        if (one_body && rest < -0.2 * large) return 0;
+        offset = std::min(0.0, rest);
+      }
     }
   }
   return (1 - s * s) * (1 - s * s) * facing;
