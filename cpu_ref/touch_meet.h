@@ -73,7 +73,7 @@ struct Look {
   }
 
   /// The weight of a pair, 0: none; and its depth at rest.
-  [[nodiscard]] Scalar weigh(std::int64_t lower, std::int64_t upper, bool known, Scalar& offset) const {
+  [[nodiscard]] Scalar weigh(std::int64_t lower, std::int64_t upper, bool known, Scalar before, Scalar& offset) const {
     const Place<Scalar> a = place_of(touch_place, lower), b = place_of(touch_place, upper);
     const Scalar facing = std::fma(Scalar(-2), dot(a.normal, b.normal), Scalar(-1));
     if (!(facing > Scalar(0))) return 0;
@@ -86,6 +86,8 @@ struct Look {
     if (!(p.gap < std::fma(ahead, closing > Scalar(0) ? closing : Scalar(0), margin))) return 0;
     if (!(p.gap > (known ? Scalar(-2) * large : -large))) return 0;
     if (one_part(lower, upper, large, offset)) return 0;
+    const Scalar start = known ? std::fma(Scalar(0.04), large, before) : p.gap;
+    offset = start < offset ? start : offset;
     const Scalar rest = Scalar(1) - part;
     return (rest * rest) * facing;
   }

@@ -23,7 +23,7 @@ class Partners {
         pair_(touch_pair) {
     for (std::int64_t s = 0; s < kSlots; ++s) {
       old_[s] = partner_[s * PLIANT_TILE];
-      for (std::int64_t c = 0; c < 4; ++c) kept_[s][c] = pair_numbers(pair_, i_, s)[(2 + c) * PLIANT_TILE];
+      for (std::int64_t c = 0; c < PLIANT_TOUCH_PAIR; ++c) kept_[s][c] = pair_numbers(pair_, i_, s)[c * PLIANT_TILE];
       partner_[s * PLIANT_TILE] = 0;
       weight_[s * PLIANT_TILE] = 0;
     }
@@ -34,8 +34,9 @@ class Partners {
     const auto name = static_cast<std::int32_t>(j + 1);
     std::int64_t before = 0;
     while (before < kSlots && old_[before] != name) ++before;
+    const bool known = before < kSlots && kept_[before][0] > Scalar(0);
     Scalar offset = 0;
-    const Scalar w = look.weigh(std::min(i_, j), std::max(i_, j), before < kSlots, offset);
+    const Scalar w = look.weigh(std::min(i_, j), std::max(i_, j), known, known ? kept_[before][1] : Scalar(0), offset);
     if (!(w > Scalar(0))) return;
     std::int64_t slot = filled_;
     if (filled_ == kSlots) {
@@ -51,7 +52,7 @@ class Partners {
     weight_[slot * PLIANT_TILE] = w;
     Scalar* numbers = pair_numbers(pair_, i_, slot);
     numbers[PLIANT_TILE] = offset;
-    for (std::int64_t c = 0; c < 4; ++c) numbers[(2 + c) * PLIANT_TILE] = before < kSlots ? kept_[before][c] : Scalar(0);
+    for (std::int64_t c = 2; c < PLIANT_TOUCH_PAIR; ++c) numbers[c * PLIANT_TILE] = known ? kept_[before][c] : Scalar(0);
   }
 
   /// Whether there are any.
@@ -70,7 +71,7 @@ class Partners {
   std::int32_t* partner_;
   Scalar *weight_, *pair_;
   std::int32_t old_[kSlots];
-  Scalar kept_[kSlots][4];
+  Scalar kept_[kSlots][PLIANT_TOUCH_PAIR];
 };
 
 /// The boxes of all tiles and groups.

@@ -60,7 +60,7 @@ void touch_press(Range range, const Scalar* touch_place, const std::int32_t* con
         continue;
       }
       const Vec<Scalar> moved = difference(lower.moved, upper.moved);
-      const Scalar stiffness = numbers[0] / w, push = stiffness * depth, before = depth + dot(moved, p.normal);
+      const Scalar stiffness = numbers[0] / w, push = stiffness * depth, before = dot(moved, p.normal) - p.gap;
       Vec<Scalar> f = times(p.normal, push);
       if (friction > Scalar(0)) f = press_friction(lower, p, anchor, stiffness, friction * push, moved, f);
       Quanta q = contact::quanta(f, inverse);

@@ -43,12 +43,12 @@ __kernel void touch_pair(__global const float* touch_place, __global const float
   int any = 0;
   for (int i = tile * PLIANT_TILE; i < (tile + 1) * PLIANT_TILE; ++i) {
     int old[TOUCH_SLOTS];
-    float kept[TOUCH_SLOTS][4];
+    float kept[TOUCH_SLOTS][PLIANT_TOUCH_PAIR];
     __global int* partner = touch_partner + POINT_BASE(i, TOUCH_SLOTS);
     __global float* weight = touch_weight + POINT_BASE(i, TOUCH_SLOTS + 1);
     for (int s = 0; s < TOUCH_SLOTS; ++s) {
       old[s] = partner[s * PLIANT_TILE];
-      for (int c = 0; c < 4; ++c) kept[s][c] = touch_pair[pair_base(i, s) + (2 + c) * PLIANT_TILE];
+      for (int c = 0; c < PLIANT_TOUCH_PAIR; ++c) kept[s][c] = touch_pair[pair_base(i, s) + c * PLIANT_TILE];
       partner[s * PLIANT_TILE] = 0;
       weight[s * PLIANT_TILE] = 0.0f;
     }
@@ -74,9 +74,10 @@ __kernel void touch_pair(__global const float* touch_place, __global const float
         if (j == i || !(touch_surface[POINT_BASE(j, PLIANT_TOUCH_SURFACE) + 22 * PLIANT_TILE] > 0.0f)) continue;
         int before = 0;
         while (before < TOUCH_SLOTS && old[before] != j + 1) ++before;
+        const int known = before < TOUCH_SLOTS && kept[before < TOUCH_SLOTS ? before : 0][0] > 0.0f;  // to both
         float offset;
         const float w = weight_of(touch_place, touch_surface, touch_rest, contact_node, i < j ? i : j, i < j ? j : i,
-                                  before < TOUCH_SLOTS, margin, ahead, &offset);
+                                  known, known ? kept[before][1] : 0.0f, margin, ahead, &offset);
         if (!(w > 0.0f)) continue;
         int slot = filled;
         if (filled == TOUCH_SLOTS) {
@@ -90,7 +91,7 @@ __kernel void touch_pair(__global const float* touch_place, __global const float
         weight[slot * PLIANT_TILE] = w;
         __global float* numbers = touch_pair + pair_base(i, slot);
         numbers[PLIANT_TILE] = offset;
-        for (int c = 0; c < 4; ++c) numbers[(2 + c) * PLIANT_TILE] = before < TOUCH_SLOTS ? kept[before][c] : 0.0f;
+        for (int c = 2; c < PLIANT_TOUCH_PAIR; ++c) numbers[c * PLIANT_TILE] = known ? kept[before][c] : 0.0f;
       }
     }
     float sum = 0.0f;

@@ -3,7 +3,8 @@
 // which bounds a row of the compliance matrix of all pairs (Gershgorin; contact_press): no number of pairs overshoots, and no stiffness
 // limits the step. Friction draws a pair to where it stuck in the frame of its lower point, by at most mu f.
 // contact_change: the force (3) [quanta] with that of tools (contact_force), what touches; touch_force: [tiles][16 slots][4][16] that of
-// each pair (3) [quanta], whether it pushes; touch_depth: [points] largest depth at the start of a step since the host looked [m].
+// each pair (3) [quanta], whether it pushes; touch_depth: [points] how deep a point lay at the most inside the other at
+// the start of a step since the host looked, where it eased into the pair or not [m].
 #include "arith.cl"
 #include "contact_shape.cl"
 #include "contact_point.cl"
@@ -46,7 +47,7 @@ __kernel void touch_press(__global const float* touch_place, __global const int*
         continue;
       }
       const float4 moved = lower.moved - upper.moved;
-      const float stiffness = numbers[0] / w, push = stiffness * depth, before = depth + dot_xyz(moved, m.normal);
+      const float stiffness = numbers[0] / w, push = stiffness * depth, before = dot_xyz(moved, m.normal) - m.gap;
       float4 f = m.normal * push;
       if (friction > 0.0f) {
         if (anchor[3 * PLIANT_TILE] == 0.0f) {

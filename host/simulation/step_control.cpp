@@ -23,11 +23,12 @@ constexpr int kAdaptIterations = 20;
 constexpr double kLeastBackoff = 0.02;
 constexpr double kLeastShare = 1e-3;  ///< of the ceiling, to which an estimate may take an automatic step
 constexpr double kBackoff = 0.7;
-constexpr double kMostBallast = 0.01;     ///< of the mass
-constexpr double kMostGrowth = 2;         ///< of the step from one look to the next
-constexpr double kMostShortening = 0.35;  ///< of the step of a batch that is made again
-constexpr double kClearlyLess = 0.8;      ///< the estimate by kAdaptIterations steps is up to a tenth too low
-constexpr double kFrame = 1.0 / 60;       ///< automatic step of a scene without finite elements [s]
+constexpr double kMostBallast = 0.01;        ///< of the mass
+constexpr double kMostGrowth = 2;            ///< of the step from one look to the next
+constexpr double kMostShortening = 0.35;     ///< of the step of a batch that is made again
+constexpr double kClearlyLess = 0.8;         ///< the estimate by kAdaptIterations steps is up to a tenth too low
+constexpr double kFrame = 1.0 / 60;          ///< automatic step of a scene without finite elements [s]
+constexpr double kTouchFrame = kFrame / 16;  ///< of one whose tissue touches tissue, so that each frame looks for what is near
 
 double total(const std::vector<NodeInertia>& ballast) {
   double sum = 0;
@@ -43,7 +44,7 @@ void StepControl::start(double wanted, bool estimate_always) {
   double& dt = run_.state.clock.dt;
   run_.settings.automatic = wanted <= 0 && run_.scene.integrator == Integrator::increment && has_elements(model);
   if (!has_elements(model)) {
-    dt = wanted > 0 ? wanted : std::min(kFrame, longest);
+    dt = wanted > 0 ? wanted : std::min(run_.scene.contact ? kTouchFrame : kFrame, longest);
   } else {
     StableStep stable;
     if (wanted <= 0 || estimate_always) stable = estimate_stable_step(run_, 48);

@@ -79,7 +79,7 @@ TEST(TouchPressOracle, DepthIsTakenBackAlongTheNormal) {
                   pushes && (friction > 0 || d.pair[TouchData::pair_at(i, s) + 80] != 0));
         (pushes ? pushed : apart) += 1;
         if (!pushes) continue;
-        deepest[i] = std::max(deepest[i], depth + (d.moved(lower) - d.moved(upper)).dot(n));
+        deepest[i] = std::max(deepest[i], (d.moved(lower) - d.moved(upper)).dot(n) - (d.x(lower) - d.x(upper)).dot(n));
         const Vector3d f = (i < j ? 1 : -1) * d.params[0] * Vector3d(force[at], force[at + 16], force[at + 32]);
         const double push = area * depth / w;
         if (push > 5e4) continue;  // the most that a pair gets
