@@ -60,14 +60,14 @@ struct Look {
   /// Whether two points are of one part, and never touch; otherwise their depth at rest.
   [[nodiscard]] bool one_part(std::int64_t lower, std::int64_t upper, Scalar large, Scalar& offset) const {
     offset = 0;
-    const bool one_body = body(lower) == body(upper);
-    if (one_body && same_nodes(lower, upper)) return true;
+    if (body(lower) != body(upper)) return false;
+    if (same_nodes(lower, upper)) return true;
     const Vec<Scalar> away = difference(three(touch_rest, tile_base(lower, 4), 0), three(touch_rest, tile_base(upper, 4), 0));
     const Vec<Scalar> na = rest_normal(lower), nb = rest_normal(upper);
     if (!(dot(away, away) < (Scalar(16) * large) * large)) return false;
-    if (!(dot(na, nb) < Scalar(-0.5))) return one_body;
+    if (!(dot(na, nb) < Scalar(-0.5))) return true;
     const Scalar gap = dot(away, unit(difference(nb, na)));
-    if (one_body && gap < Scalar(-0.2) * large) return true;
+    if (gap < Scalar(-0.2) * large) return true;
     offset = gap < Scalar(0) ? gap : Scalar(0);
     return false;
   }

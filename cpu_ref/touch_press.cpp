@@ -35,6 +35,7 @@ void touch_press(Range range, const Scalar* touch_place, const std::int32_t* con
     const auto change = contact::numbers_of(contact_change, i);
     Quanta sum{};
     std::int32_t touching = 0;
+    Scalar pressed = 0, inside = 0;
     if ((near & ~PLIANT_TOUCH_BIT) != 0) {  // what tools did
       sum = {force[0], force[1], force[2]};
       touching = force[3];
@@ -69,9 +70,11 @@ void touch_press(Range range, const Scalar* touch_place, const std::int32_t* con
       own[std::int64_t{3} * PLIANT_TILE] = 1;
       for (std::size_t c = 0; c < 3; ++c) sum[c] += q[c];
       touching |= PLIANT_TOUCH_BIT;
-      Scalar& deepest = touch_depth[i];
-      deepest = before > deepest ? before : deepest;
+      pressed = pressed + numbers[0];
+      inside = std::fma(numbers[0], before, inside);
     }
+    const Scalar mean = pressed > Scalar(0) ? inside / pressed : Scalar(0);
+    touch_depth[i] = mean > touch_depth[i] ? mean : touch_depth[i];
     for (std::size_t c = 0; c < 3; ++c) change[static_cast<std::int64_t>(c)] = sum[c];
     change[3] = touching;
   }

@@ -20,20 +20,20 @@ static inline int may_meet(const float* a, __global const float* b, float margin
 static inline int one_part(__global const float* touch_surface, __global const float* touch_rest, __global const int* contact_node, int lower,
                            int upper, float large, float* offset) {
   *offset = 0.0f;
-  const int one_body = (int)touch_rest[POINT_BASE(lower, 4) + 3 * PLIANT_TILE] == (int)touch_rest[POINT_BASE(upper, 4) + 3 * PLIANT_TILE];
+  if ((int)touch_rest[POINT_BASE(lower, 4) + 3 * PLIANT_TILE] != (int)touch_rest[POINT_BASE(upper, 4) + 3 * PLIANT_TILE]) return 0;
   int other = 0;
   for (int a = 0; a < 8; ++a)
     other |= contact_node[POINT_BASE(lower, 8) + a * PLIANT_TILE] ^ contact_node[POINT_BASE(upper, 8) + a * PLIANT_TILE];
-  if (one_body && other == 0) return 1;
+  if (other == 0) return 1;
   const float4 away = three(touch_rest + POINT_BASE(lower, 4)) - three(touch_rest + POINT_BASE(upper, 4));
   __global const float* one = touch_surface + POINT_BASE(lower, PLIANT_TOUCH_SURFACE);
   __global const float* two = touch_surface + POINT_BASE(upper, PLIANT_TOUCH_SURFACE);
   const float4 na = cross3(three(one + 16 * PLIANT_TILE), three(one + 19 * PLIANT_TILE));
   const float4 nb = cross3(three(two + 16 * PLIANT_TILE), three(two + 19 * PLIANT_TILE));
   if (!(dot_xyz(away, away) < (16.0f * large) * large)) return 0;
-  if (!(dot_xyz(na, nb) < -0.5f)) return one_body;
+  if (!(dot_xyz(na, nb) < -0.5f)) return 1;
   const float gap = dot_xyz(away, unit(nb - na));
-  if (one_body && gap < -0.2f * large) return 1;
+  if (gap < -0.2f * large) return 1;
   *offset = gap < 0.0f ? gap : 0.0f;
   return 0;
 }

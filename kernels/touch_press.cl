@@ -3,8 +3,8 @@
 // which bounds a row of the compliance matrix of all pairs (Gershgorin; contact_press): no number of pairs overshoots, and no stiffness
 // limits the step. Friction draws a pair to where it stuck in the frame of its lower point, by at most mu f.
 // contact_change: the force (3) [quanta] with that of tools (contact_force), what touches; touch_force: [tiles][16 slots][4][16] that of
-// each pair (3) [quanta], whether it pushes; touch_depth: [points] how deep a point lay at the most inside the other at
-// the start of a step since the host looked, where it eased into the pair or not [m].
+// each pair (3) [quanta], whether it pushes; touch_depth: [points] how deep a point lay at the most inside its partners,
+// the mean by area, at the start of a step since the host looked [m].
 #include "arith.cl"
 #include "contact_shape.cl"
 #include "contact_point.cl"
@@ -22,6 +22,7 @@ __kernel void touch_press(__global const float* touch_place, __global const int*
     __global int* change = contact_change + POINT_BASE(i, 4);
     int4 sum = 0;
     int touching = 0;
+    float pressed = 0.0f, inside = 0.0f;
     if ((near & ~PLIANT_TOUCH_BIT) != 0) {  // what tools did
       sum = (int4)(force[0], force[PLIANT_TILE], force[2 * PLIANT_TILE], 0);
       touching = force[3 * PLIANT_TILE];
@@ -66,8 +67,11 @@ __kernel void touch_press(__global const float* touch_place, __global const int*
       own[3 * PLIANT_TILE] = 1;
       sum += q;
       touching |= PLIANT_TOUCH_BIT;
-      touch_depth[i] = before > touch_depth[i] ? before : touch_depth[i];
+      pressed = pressed + numbers[0];
+      inside = fma(numbers[0], before, inside);
     }
+    const float mean = pressed > 0.0f ? inside / pressed : 0.0f;
+    touch_depth[i] = mean > touch_depth[i] ? mean : touch_depth[i];
     change[0] = sum.x;
     change[PLIANT_TILE] = sum.y;
     change[2 * PLIANT_TILE] = sum.z;

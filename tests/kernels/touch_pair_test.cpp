@@ -44,7 +44,7 @@ double weight(const TouchData& d, std::size_t i, std::size_t j, double& offset, 
   for (std::size_t a = 0; a < 8; ++a)
     same = same && d.node[ContactData::base(i, 8) + 16 * a] == d.node[ContactData::base(j, 8) + 16 * a];
   if (one_body && same) return 0;
-  {
+  if (one_body) {
     const Vector3d away = d.three(d.touch_rest, i, 4, 0) - d.three(d.touch_rest, j, 4, 0);
     const auto rest_normal = [&](std::size_t p) {
       return Vector3d(d.three(d.surface, p, PLIANT_TOUCH_SURFACE, 16).cross(d.three(d.surface, p, PLIANT_TOUCH_SURFACE, 19)));
@@ -54,12 +54,8 @@ double weight(const TouchData& d, std::size_t i, std::size_t j, double& offset, 
       near_zero(rest_normal(i).dot(rest_normal(j)) + 0.5, 1);
       const double rest = away.dot((rest_normal(j) - rest_normal(i)).normalized());
       near_zero(rest + 0.2 * large, large);
-      if (rest_normal(i).dot(rest_normal(j)) >= -0.5) {
-        if (one_body) return 0;
-      } else {
-        if (one_body && rest < -0.2 * large) return 0;
-        offset = std::min(0.0, rest);
-      }
+      if (rest_normal(i).dot(rest_normal(j)) >= -0.5 || rest < -0.2 * large) return 0;
+      offset = std::min(0.0, rest);
     }
   }
   const double* before = known(d, i, j);

@@ -63,6 +63,7 @@ TEST(TouchPressOracle, DepthIsTakenBackAlongTheNormal) {
                 pair = run_in_double(test, "touch_pair");
     std::vector<double> deepest(d.depth);
     for (std::size_t i = 0; i < d.points; ++i) {
+      double pressed = 0, inside = 0;
       for (std::size_t s = 0; s < 16; ++s) {
         const int name = d.partner[ContactData::base(i, 16) + 16 * s];
         const double area = d.pair[TouchData::pair_at(i, s)];
@@ -79,7 +80,8 @@ TEST(TouchPressOracle, DepthIsTakenBackAlongTheNormal) {
                   pushes && (friction > 0 || d.pair[TouchData::pair_at(i, s) + 80] != 0));
         (pushes ? pushed : apart) += 1;
         if (!pushes) continue;
-        deepest[i] = std::max(deepest[i], (d.moved(lower) - d.moved(upper)).dot(n) - (d.x(lower) - d.x(upper)).dot(n));
+        pressed += area;
+        inside += area * ((d.moved(lower) - d.moved(upper)).dot(n) - (d.x(lower) - d.x(upper)).dot(n));
         const Vector3d f = (i < j ? 1 : -1) * d.params[0] * Vector3d(force[at], force[at + 16], force[at + 32]);
         const double push = area * depth / w;
         if (push > 5e4) continue;  // the most that a pair gets
@@ -88,6 +90,7 @@ TEST(TouchPressOracle, DepthIsTakenBackAlongTheNormal) {
         EXPECT_LE(side, friction * push * (1 + 1e-4) + 2 * d.params[0]);
         rubbed += side > 0.5 * friction * push && friction > 0;
       }
+      if (pressed > 0) deepest[i] = std::max(deepest[i], inside / pressed);
     }
     for (std::size_t i = 0; i < d.points; ++i) EXPECT_NEAR(depths[i], deepest[i], 1e-6);
   }

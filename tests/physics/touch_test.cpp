@@ -1,6 +1,8 @@
 // Tissue against tissue: momentum, energy, weight, friction, one block for two, a fold, the faces of a cut.
+#include "model/pieces.h"
 #include "physics/harness.h"
 #include "simulation/reactions.h"
+#include "support/error_of.h"
 
 namespace pliant::physics {
 namespace {
@@ -102,7 +104,7 @@ TEST_P(TouchPhysics, AStackStands) {
     for (const ModelBody& b : sim->model().bodies) mass += b.mass;
     check_relative("  force on the table", -sim->contact().history()[0].now.force[2], 9.81 * mass, 1e-3);
     check("  deepest pair, in cells", sim->contact().tissue().max_depth / 0.0125, 0.05);
-    EXPECT_GT(sim->contact().tissue().points, 150);
+    EXPECT_GT(sim->contact().tissue().points, 100);
   }
 }
 
@@ -125,10 +127,10 @@ TEST_P(TouchPhysics, FrictionSticksAndSlides) {
     const auto until = [&](double time) {
       while (sim->time() < time) sim->advance(sim->next_batch(16));
     };
-    until(friction > 0.4 ? 1 : 0.1);
+    until(friction > 0.4 ? 1.5 : 0.1);
     const double from = sim->time(), v = velocity_of(*sim, 1)[0];
     const std::vector<Vec3d> before = sim->displacements(1);
-    until(friction > 0.4 ? 2 : 0.3);
+    until(friction > 0.4 ? 2.5 : 0.3);
     if (friction < 0.4) {
       check_relative("acceleration", (velocity_of(*sim, 1)[0] - v) / (sim->time() - from),
                      9.81 * (std::sin(slope) - friction * std::cos(slope)), 0.03);
@@ -176,6 +178,75 @@ TEST_P(TouchPhysics, TwoBlocksPressLikeOne) {
     const double one = reaction(false);
     check_relative(std::string(name_of(cut)) + ": force of two blocks against one", reaction(true), one, 0.02);
   }
+}
+
+/// A block that is cut through and pressed holds like one that is not: the faces of the cut start where they touch.
+TEST_P(TouchPhysics, TheFacesOfACutHold) {
+  for (const Discretization cut : {Discretization::hex8_bricks, Discretization::tet4, Discretization::hex8full_lattice}) {
+    const double edge = 0.0125;
+    const auto run = [&](bool cuts) {
+      Scene scene;
+      Material m = material_young(Law::neo_hookean, 1e4, 0.4);
+      m.damping = 30;
+      Body block = box_body({{4, 4, 8}, edge}, cut, m);
+      block.fixed = {{face(2, 0)}};
+      Prescribed down;
+      down.where = face(2, 8 * edge);
+      down.displacement = {0.0, 0.0, -0.01};
+      down.curve.kind = Curve::Kind::smooth;
+      down.curve.start = 0.25;
+      down.curve.duration = 0.5;
+      block.prescribed = {down};
+      scene.bodies = {block};
+      if (cuts) {
+        Blade blade;
+        blade.name = "knife";
+        blade.path = {{{0.01, -0.01, -0.01, 0.047, -0.01, 0.06, 0.047}}, {{0.2, 0.06, -0.01, 0.055, 0.06, 0.06, 0.055}}};
+        scene.blades = {blade};
+        scene.contact = TissueContact{1};
+      }
+      auto sim = simulate(scene, GetParam());
+      while (sim->time() < 1.2) sim->advance(sim->next_batch(64));
+      if (cuts) {
+        EXPECT_EQ(pieces_of(sim->model().bodies[0]), 2);
+        check("  deepest pair, in cells", sim->contact().tissue().max_depth / edge, 0.06);
+      }
+      double sum = 0;
+      const std::vector<Vec3d> forces = reactions(*sim, 0);
+      for (std::size_t n = 0; n < forces.size(); ++n) {
+        if (sim->model().bodies[0].rest[n][2] < 1e-6) sum += forces[n][2];
+      }
+      return sum;
+    };
+    const double whole = run(false);
+    check_relative(std::string(name_of(cut)) + ": force of a block that is cut", run(true), whole, 0.03);
+  }
+}
+
+/// Bodies that begin a little inside each other part slowly; deeper, they are refused.
+TEST_P(TouchPhysics, BodiesThatBeginInsideEachOther) {
+  const auto scene_of = [](double depth) {
+    Scene scene;
+    Body one = box_body({{4, 4, 4}, 0.0125}, Discretization::hex8_bricks, material_young(Law::neo_hookean, 2e4, 0.4));
+    Body two = one;
+    one.name = "one";
+    two.name = "two";
+    two.translate = {0, 0, 0.05 - depth};
+    scene.bodies = {one, two};
+    scene.contact = TissueContact{};
+    return scene;
+  };
+  auto sim = simulate(scene_of(0.003), GetParam());
+  double fastest = 0;
+  while (sim->time() < 0.3) {
+    sim->advance(sim->next_batch(16));
+    fastest = std::max(fastest, velocity_of(*sim, 1).norm());
+  }
+  std::printf("  they part at %.3g m/s at the most\n", fastest);
+  EXPECT_LT(fastest, 0.02);
+  EXPECT_GT(fastest, 0);
+  const std::string message = test::error_of([&] { (void)simulate(scene_of(0.01), GetParam()); });
+  EXPECT_NE(message.find("/contact: body 'two' begins inside body 'one', 0.0"), std::string::npos) << message;
 }
 
 PLIANT_ON_BACKENDS(TouchPhysics);

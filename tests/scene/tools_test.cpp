@@ -84,6 +84,30 @@ TEST(Tools, BadOnesAreRefused) {
   EXPECT_NE(error(many + "]").find("/tools: got 31 tools, expected at most 30"), std::string::npos);
 }
 
+TEST(TissueContact, IsReadAndWrittenAgain) {
+  const auto scene = [](const std::string& contact) {
+    return parse_scene(R"({"format": "pliant-scene/1", )" + contact +
+                           R"("bodies": [{"surface": "cube.obj", "lattice": {"nodes": 500},
+        "material": {"law": "neo-hookean", "young": 1e4, "poisson": 0.3, "density": 1000}}]})",
+                       "scene.json");
+  };
+  EXPECT_FALSE(scene("").contact);
+  EXPECT_FALSE(scene(R"("contact": false, )").contact);
+  EXPECT_EQ(scene(R"("contact": true, )").contact->friction, 0);
+  const Scene read = scene(R"("contact": {"friction": 0.3}, )");
+  EXPECT_EQ(read.contact->friction, 0.3);
+  EXPECT_EQ(parse_scene(scene_to_json(read), read.file).contact->friction, 0.3);
+  for (const auto& [text, message] :
+       {std::pair{R"("contact": {"friction": -1}, )", "/contact/friction: got -1"},
+        std::pair{R"("contact": {"fiction": 1}, )", "the unknown key \"fiction\""},
+        std::pair{R"("contact": 3, )", "/contact: got 3"},
+        std::pair{R"("contact": true, "integrator": "textbook", )", "expected increment, because the scene has contact"},
+        std::pair{R"("contact": true, "relaxation": true, )", "because the scene has contact"}}) {
+    EXPECT_NE(test::error_of([&, t = text] { (void)scene(t); }).find(message), std::string::npos)
+        << test::error_of([&, t = text] { (void)scene(t); });
+  }
+}
+
 TEST(Tools, PosesLieBetweenTheRowsOfThePath) {
   ContactTool tool;
   EXPECT_EQ(tool.at(3), Pose{});
