@@ -42,6 +42,7 @@ class Report {
     if (!result_.diverged.empty()) json["diverged_step"] = result_.diverged_step;
     print_summary();
     for (std::size_t t = 0; t < s_.scene().tools.size(); ++t) out_.print(tool_line(s_, t));
+    if (s_.scene().contact && s_.model().contact != nullptr) out_.print(tissue_line(s_));
     for (const std::string& remark : tool_remarks(s_)) note(remark);
     if (!r_.probes.empty() || !r_.scene_probes.empty()) {
       json["probes"] = Json::array();

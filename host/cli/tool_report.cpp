@@ -45,9 +45,21 @@ std::string tool_line(const Simulation& simulation, std::size_t tool) {
                      simulation.scene().tools[tool].name, fmt::join(h.now.force, ", "), h.max_force, h.now.area, h.max_depth);
 }
 
+std::string tissue_line(const Simulation& simulation) {
+  const TouchHistory& tissue = simulation.contact().tissue();
+  return fmt::format("tissue: {} of {} contact points touch other tissue, at most {:.3g} m deep", tissue.points,
+                     simulation.model().contact->size(), tissue.max_depth);
+}
+
 std::vector<std::string> tool_remarks(const Simulation& simulation) {
   std::vector<std::string> remarks;
   const ContactPoints* points = simulation.model().contact.get();
+  if (points != nullptr && simulation.contact().tissue().max_depth > 0.5 * points->spacing) {
+    remarks.push_back(fmt::format(
+        "tissue went {:.2g} cells deep into other tissue: sharp edges and parts thinner than a cell meet late, and held nodes "
+        "do not give way; smaller cells help",
+        simulation.contact().tissue().max_depth / points->spacing));
+  }
   for (std::size_t t = 0; t < simulation.scene().tools.size() && points != nullptr; ++t) {
     const double cells = simulation.contact().history()[t].max_depth / points->spacing;
     if (cells <= 0.5) continue;

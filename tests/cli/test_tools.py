@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Tools through the command: what a run says of their forces, in its text, its JSON and its table."""
 import csv
+import json
 
 from harness import CliTest, main
 
@@ -39,6 +40,24 @@ class Tools(CliTest):
         told = [remark for remark in run["remarks"] if "cells deep into tissue" in remark]
         self.assertEqual(len(told), 1)
         self.assertIn("tool 'probe' went ", told[0])
+
+    def test_tissue_on_tissue(self):
+        # The same cube twice, one above the other.
+        with open(self.folder / self.scene(body={"prescribed": [], "name": "low"}, contact={"friction": 0.3}, duration=0.5)) as file:
+            scene = json.load(file)
+        high = dict(scene["bodies"][0], name="high", fixed=[], translate=[0, 0.101, 0])
+        scene["bodies"].append(high)
+        scene["gravity"] = [0, -9.81, 0]
+        (self.folder / "two.json").write_text(json.dumps(scene))
+        run = self.json("run", "two.json", "--backend", "cpu")
+        self.assertEqual(run["tools"], [])
+        self.assertGreater(run["contact"]["touching"], 20)
+        self.assertLess(run["contact"]["penetration_in_cells"], 0.1)
+        self.assertIn("contact points touch other tissue", self.pliant("run", "two.json", "--backend", "cpu").stdout)
+        scene["bodies"][1]["translate"] = [0, 0.05, 0]
+        (self.folder / "two.json").write_text(json.dumps(scene))
+        refused = self.pliant("run", "two.json", "--backend", "cpu", expect=2)
+        self.assertIn("/contact: body 'high' begins inside body 'low'", refused.stderr)
 
 
 if __name__ == "__main__":

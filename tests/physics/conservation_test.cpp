@@ -18,12 +18,6 @@ Energies central_energies(Simulation& sim, const DeadLoads& loads = {}, const Ve
   return energies(sim.model(), u, v, loads);
 }
 
-Momenta momenta_of(Simulation& sim) {
-  auto w = read_texels(sim, "node_w");
-  for (Vec3d& x : w) x = plain(eigen(x) / sim.dt());
-  return momenta(sim.model(), read_texels(sim, "node_u"), w);
-}
-
 TEST_P(Conservation, FreeSpinningBody) {
   const Box box{{4, 2, 2}, 0.05, 0.2, 4};
   for (const Discretization cut : all_cuts()) {

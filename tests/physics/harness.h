@@ -284,6 +284,13 @@ inline std::vector<Vec3d> read_texels(const Simulation& sim, const char* buffer)
   for (std::size_t i = 0; i < offset.size() && std::string(buffer) == "node_u"; ++i) out[i / 3][i % 3] += offset[i];
   return out;
 }
+
+/// With the velocities of the last step.
+inline Momenta momenta_of(Simulation& sim) {
+  auto w = read_texels(sim, "node_w");
+  for (Vec3d& x : w) x = plain(eigen(x) / sim.dt());
+  return momenta(sim.model(), read_texels(sim, "node_u"), w);
+}
 /// Write the three components of every slot that is a node.
 inline void write_texels(Simulation& sim, const char* buffer, const std::vector<Vec3d>& values) {
   const BufferId id = sim.program().find(buffer);

@@ -19,12 +19,6 @@ Vector3d velocity_of(const Simulation& sim, std::size_t body) {
   return sum_over(sim, body, sim.velocities(body)) / sim.model().bodies[body].mass;
 }
 
-Momenta momenta_of(Simulation& sim) {
-  auto w = read_texels(sim, "node_w");
-  for (Vec3d& x : w) x = plain(eigen(x) / sim.dt());
-  return momenta(sim.model(), read_texels(sim, "node_u"), w);
-}
-
 double energy_of(Simulation& sim) {
   auto w = read_texels(sim, "node_w");
   for (Vec3d& x : w) x = plain(eigen(x) / sim.dt());
