@@ -31,9 +31,10 @@
 
 #define PLIANT_FAULT_SUMMARY 4  // numbers that each of 256 work-items of fault_reduce leaves
 
-// Tissue that touches tissue (touch_point.cl): partners per contact point; planes per partner: area [m^2], depth at rest [m], where
-// it stuck in the frame of the lower point (3) [m], whether it did; planes of a point's place, of its surface at rest, of the forces
-// of its partners (3 and whether it pushed); numbers per box and per node of the tree of boxes; the bit of contact_near.
+// Tissue that touches tissue (touch_point.cl): partners per contact point; planes per partner: area [m^2], gap at which it
+// begins to push [m], where it stuck in the frame of the lower point (3) [m], whether it did; planes of a point's place, of its
+// surface at rest, of the forces of its partners (3 and whether it pushed); numbers per box and per node of the tree of boxes;
+// the bit of contact_near.
 #define PLIANT_TOUCH_SLOTS 16
 #define PLIANT_TOUCH_PAIR 6
 #define PLIANT_TOUCH_PLACE 16

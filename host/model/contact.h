@@ -26,7 +26,7 @@ struct ContactPoints {
   std::vector<std::int32_t> body;
   std::vector<Vec3d> normal;  ///< outward, at rest, of unit length
   std::vector<double> apart;  ///< how far from each other points around it are [m]
-  double spacing = 0;  ///< of the coarsest body's cells, or the mean edge of its surface [m]
+  double spacing = 0;         ///< of the coarsest body's cells, or the mean edge of its surface [m]
   [[nodiscard]] std::size_t size() const { return rest.size(); }
 };
 
@@ -60,7 +60,8 @@ double tool_distance(const ToolForm& form, const Vec3d& y);
 /// Points of all bodies on the model's surface.
 ContactPoints contact_points(const Model& model);
 
-/// A contact point's deformed tangents are F t1 = t1 + sum_a first_a u_a and F t2; t1, t2 and the normal at rest are orthonormal.
+/// A contact point's deformed tangents are F t1 = t1 + sum_a first_a u_a and F t2; t1, t2 and the normal at rest are
+/// orthonormal.
 struct ContactTangents {
   Vec3d t1{}, t2{};
   std::array<double, 8> first{}, second{};  ///< [1/m]

@@ -40,7 +40,7 @@ struct Pass {
   double bytes_per_element = 0;  ///< counted traffic, each datum once
   double flops_per_element = 0;  ///< counted operations; an fma counts two
   std::int32_t every = 1;        ///< runs in the steps of the whole run that are multiples of this (subcycling)
-  bool uneven = false;     ///< a few indices take most of the time, and stand together
+  bool uneven = false;           ///< a few indices take most of the time, and stand together
   [[nodiscard]] bool runs_in(std::int64_t step) const { return step % every == 0; }
 };
 

@@ -20,9 +20,9 @@ std::map<std::string, List> make_keys() {
   const List selection = points + List{"nodes"};
   const List curve{"curve", "start", "duration", "table"};
   return {
-      {"scene", {"format",     "name",     "break_stretch", "gravity",    "dt",          "safety", "duration",
-                 "integrator", "inverted", "least_fill",    "least_step", "relaxation",  "solver", "tool",
-                 "tools",      "contact",  "blades",        "view",       "probes",      "probe_every", "bodies"}},
+      {"scene", {"format",     "name",     "break_stretch", "gravity",    "dt",         "safety",      "duration",
+                 "integrator", "inverted", "least_fill",    "least_step", "relaxation", "solver",      "tool",
+                 "tools",      "contact",  "blades",        "view",       "probes",     "probe_every", "bodies"}},
       {"body",
        {"name", "surface", "mesh", "scale", "translate", "lattice", "element", "material", "model", "inclusions", "fixed",
         "prescribed", "forces", "pressures", "velocity", "angular_velocity", "initial"}},

@@ -150,7 +150,10 @@ void check_tools(const Reader& top, const Scene& scene) {
   const std::vector<Reader> bodies = top.at("bodies").items("a list of bodies");
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     if (scene.bodies[i].model.substeps > 1)
-      bodies[i].at("model").at("substeps").fail("1, because the scene has " + has + ", which acts on shape matching in every step");
+      bodies[i]
+          .at("model")
+          .at("substeps")
+          .fail("1, because the scene has " + has + ", which acts on shape matching in every step");
   }
 }
 

@@ -198,8 +198,8 @@ void ProgramBuilder::add_contact_passes() {
   };
   if (tools > 0) {
     pass("contact_near",
-         with_step(named({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_near", "contact_anchor",
-                          "tool_kind", "tool_data", "tool_grid", "tool_pose", "contact_params"})),
+         with_step(named({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_near",
+                          "contact_anchor", "tool_kind", "tool_data", "tool_grid", "tool_pose", "contact_params"})),
          Shape::items, points / PLIANT_TILE, "near tools");
     program_.step.back().every = contact_look_every;
   }

@@ -156,10 +156,10 @@ void ToolContact::begin_batch(std::int32_t steps) {
   if (tools > 0) backend.write_reals(program.find("tool_pose"), poses);
   units_ = units();
   const Units& u = units_;
-  backend.write_reals(program.find("contact_params"),
-                      {u.force, 1 / u.force, u.force / contact_weight_unit, 1 / u.torque, 1 / u.area,
-                       kMargin * run_.model().contact->spacing, double(contact_look_every),
-                       run_.scene.contact ? run_.scene.contact->friction : 0});
+  backend.write_reals(
+      program.find("contact_params"),
+      {u.force, 1 / u.force, u.force / contact_weight_unit, 1 / u.torque, 1 / u.area, kMargin * run_.model().contact->spacing,
+       double(contact_look_every), run_.scene.contact ? run_.scene.contact->friction : 0});
   if (run_.loaded.take_updated() && run_.state.clock.step % contact_look_every != 0) look();
 }
 

@@ -256,4 +256,17 @@ inline TouchData tissue_alone(std::uint32_t seed) {
   return d;
 }
 
+/// The forces of all pairs on all points cancel, to the last quantum.
+inline void expect_no_force_on_the_whole(const TouchData& d, const KernelCase& test) {
+  const Reals change = ints_in_double(test, "contact_change");
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double size = 0;
+  for (std::size_t i = 0; i < d.points; ++i) {
+    sum += d.three(change, i, 4, 0);
+    size += d.three(change, i, 4, 0).norm();
+  }
+  EXPECT_EQ(sum.norm(), 0);
+  EXPECT_GT(size, 1e4);
+}
+
 }  // namespace pliant::kernel_test
