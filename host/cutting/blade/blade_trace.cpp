@@ -208,7 +208,8 @@ void BladeSweep::triangle(const Vertex* a, const Vertex* b, const Vertex* c) {
   if (rest[0] == rest[1] || rest[1] == rest[2] || rest[2] == rest[0]) return;
   const Vec3d u = vec::sub(rest[1], rest[0]), v = vec::sub(rest[2], rest[0]), w = vec::sub(rest[2], rest[1]);
   const double limit = kLongest * kLongest * edge_ * edge_;
-  if (vec::dot(u, u) > limit || vec::dot(v, v) > limit || vec::dot(w, w) > limit) return;
+  // Written so that what is no number, as a damaged checkpoint may hold, is left out as well.
+  if (!(vec::dot(u, u) <= limit && vec::dot(v, v) <= limit && vec::dot(w, w) <= limit)) return;
   const double size =
       std::max({vec::norm(vec::sub(b->now, a->now)), vec::norm(vec::sub(c->now, a->now)), vec::norm(vec::sub(c->now, b->now))});
   const Vec3d normal = vec::cross(u, v);
