@@ -5,8 +5,8 @@
 //   - in one body: they hang on different nodes, and at rest they were far from each other, or face to face; not two places beside each
 //     other, and not the two sides of a thin part.
 // What lay on each other at rest, like the faces of a cut, starts there.
-// Its weight is (1 - s^2 / r^2)^2 times 2 cos - 1 of the angle between the normal and the other one turned round; touch_weight: [tiles][17][16] weights, then the sum of weights times areas of
-// the partners [m^2]. The tree of boxes (touch_tree) is the same for all looks, so that the order of partners is. Of more
+// Its weight is (1 - s^2 / r^2)^2 times 2 cos - 1 of the angle between the normal and the other one turned round; touch_weight:
+// [tiles][17][16] weights, then the sum of weights times areas of the partners [m^2]. The tree of boxes (touch_tree) is the same for all looks, so that the order of partners is. Of more
 // partners than there is room for the weakest give way. contact_params: margin [m] and steps between two looks at 5 and 6.
 #include "arith.cl"
 #include "contact_shape.cl"
