@@ -5,7 +5,7 @@
 
 namespace pliant::ref::contact {
 
-inline constexpr std::int64_t pose_numbers = 12;
+inline constexpr std::int64_t pose_numbers = 14;
 
 template <class Scalar>
 struct Place {
@@ -68,10 +68,13 @@ struct Tools {
   [[nodiscard]] Meeting<Scalar> meet(std::int32_t t, const Place<Scalar>& p) const {
     Meeting<Scalar> m;
     m.inside = turned_back(next(t), difference(p.now, origin_of(next(t))));
-    const Surface<Scalar> found = tool_distance(kind + tool_integers * t, law(t), grid, m.inside);
+    const std::int32_t* own = kind + tool_integers * t;
+    const Surface<Scalar> found = tool_distance(own, law(t), grid, next(t) + 12, m.inside);
     m.distance = found.distance;
     m.normal = turned(next(t), found.normal);
     m.slip = difference(p.moved, difference(p.now, sum_of(turned(now(t), m.inside), origin_of(now(t)))));
+    if (own[5] > 1)
+      m.slip = scaled_sum(found.distance - tool_distance(own, law(t), grid, now(t) + 12, m.inside).distance, m.normal, m.slip);
     return m;
   }
 };

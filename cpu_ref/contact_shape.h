@@ -49,7 +49,7 @@ inline Vec<Scalar> normalised(const Vec<Scalar>& v, Scalar length) {
 }
 
 template <class Scalar>
-Surface<Scalar> grid_distance(const std::int32_t* kind, const Scalar* data, const Scalar* tool_grid, const Vec<Scalar>& y) {
+Surface<Scalar> grid_distance(const std::int32_t* kind, const Scalar* data, const Scalar* grid, const Vec<Scalar>& y) {
   const std::int32_t* size = kind + 2;
   const Scalar spacing = data[11];
   Vec<Scalar> beyond{}, t{};
@@ -65,7 +65,7 @@ Surface<Scalar> grid_distance(const std::int32_t* kind, const Scalar* data, cons
   const Scalar beyond2 = dot(beyond, beyond);
   if (beyond2 > Scalar(0)) return {{0, 0, 1}, std::fma(Scalar(2), spacing, std::sqrt(beyond2) * spacing)};
   const std::int64_t row = size[0], plane = row * size[1];
-  const Scalar* v = tool_grid + kind[1] + cell[2] * plane + cell[1] * row + cell[0];
+  const Scalar* v = grid + cell[2] * plane + cell[1] * row + cell[0];
   const auto at = [&](int i, int j, int k) { return v[i + j * row + k * plane]; };
   Scalar edge[2][2], slope[2][2];
   for (int k = 0; k < 2; ++k) {
@@ -98,12 +98,29 @@ Surface<Scalar> box_distance(const Scalar* half, const Vec<Scalar>& y) {
   return {normalised(p, length), distance};
 }
 
+/// Two frames of a sequence, mixed.
 template <class Scalar>
-Surface<Scalar> tool_distance(const std::int32_t* kind, const Scalar* data, const Scalar* tool_grid, const Vec<Scalar>& y) {
+Surface<Scalar> mesh_distance(const std::int32_t* kind, const Scalar* data, const Scalar* tool_grid, const Scalar* moment,
+                              const Vec<Scalar>& y) {
+  const Scalar* grid = tool_grid + kind[1];
+  if (kind[5] < 2) return grid_distance(kind, data, grid, y);
+  const std::int64_t nodes = std::int64_t{kind[2]} * kind[3] * kind[4];
+  grid += static_cast<std::int64_t>(moment[0]) * nodes;
+  const Surface<Scalar> now = grid_distance(kind, data, grid, y);
+  if (!(moment[1] > Scalar(0))) return now;
+  const Surface<Scalar> after = grid_distance(kind, data, grid + nodes, y);
+  Vec<Scalar> n{};
+  for (std::size_t a = 0; a < 3; ++a) n[a] = mixed(now.normal[a], after.normal[a], moment[1]);
+  return {normalised(n, std::sqrt(dot(n, n))), mixed(now.distance, after.distance, moment[1])};
+}
+
+template <class Scalar>
+Surface<Scalar> tool_distance(const std::int32_t* kind, const Scalar* data, const Scalar* tool_grid, const Scalar* moment,
+                              const Vec<Scalar>& y) {
   const Vec<Scalar> first{data[1], data[2], data[3]}, second{data[4], data[5], data[6]};
   if (kind[0] == 2) return box_distance(data + 4, y);
   if (kind[0] == 3) return {second, dot(difference(y, first), second)};
-  if (kind[0] == 4) return grid_distance(kind, data, tool_grid, y);
+  if (kind[0] == 4) return mesh_distance(kind, data, tool_grid, moment, y);
   Vec<Scalar> from = y;
   if (kind[0] == 1) {
     const Vec<Scalar> axis = difference(second, first);

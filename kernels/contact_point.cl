@@ -1,7 +1,8 @@
 // Contact points: where they are, how they move, and how they meet a tool. Numbers per point stand in tiles of 16.
 // contact_rest: (place at rest (3) [m], area [m^2]); contact_node: 8 slots; contact_weight: 8 weights that sum to one.
-// tool_pose: [steps + 1][tools] rows of the rotation (9), place of the origin (3) [m]; the row of the present time is `step`.
-#define POSE_NUMBERS 12
+// tool_pose: [steps + 1][tools] rows of the rotation (9), place of the origin (3) [m], frame of a sequence and share of the next; the row of
+// the present time is `step`.
+#define POSE_NUMBERS 14
 #define POINT_BASE(i, planes) TILE_BASE(i, planes)
 #define QUANTUM_LIMIT 67108864.0f  // so that thirty of them fit an integer
 
@@ -51,10 +52,14 @@ static inline meeting meet(__global const int* tool_kind, __global const float* 
   __global const float* next = now + POSE_NUMBERS * tools;
   meeting m;
   m.inside = turned_back(next, p.now - origin_of(next));
-  const float4 found = tool_distance(tool_kind + TOOL_INTEGERS * t, tool_data + TOOL_NUMBERS * t, tool_grid, m.inside);
+  __global const int* kind = tool_kind + TOOL_INTEGERS * t;
+  __global const float* data = tool_data + TOOL_NUMBERS * t;
+  const float4 found = tool_distance(kind, data, tool_grid, next + 12, m.inside);
   m.distance = found.w;
   m.normal = turned(next, found);
   m.slip = p.moved - (p.now - (turned(now, m.inside) + origin_of(now)));
+  // The surface of a sequence moves in its frame, too.
+  if (kind[5] > 1) m.slip = fma((float4)(found.w - tool_distance(kind, data, tool_grid, now + 12, m.inside).w), m.normal, m.slip);
   return m;
 }
 

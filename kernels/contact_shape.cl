@@ -1,5 +1,6 @@
 // Signed distance of a point to a tool's shape and the outward normal, in the tool's frame.
-// tool_kind: per tool (shape in the order of host/scene/contact_tool.h, first value of its grid, nodes of the grid in x, y, z);
+// tool_kind: per tool (shape in the order of host/scene/contact_tool.h, first value of its grid, nodes of the grid in x, y, z, frames of a
+// sequence, which has a grid each and is mixed of two: moment is the number of the first and the share of the second);
 // tool_data: per tool radius, first point (3), second point, normal or half size (3), origin of the grid (3) [m], 1 / its spacing,
 // its spacing, then the law of contact: lambda [Pa/m^n], 3/2 alpha [s/m], friction, core [m], whether n is 3/2.
 // tool_grid: signed distances [m], x fastest.
@@ -14,8 +15,7 @@ static inline float4 normalised(float x, float y, float z, float length) {
   return length > 0.0f ? (float4)(x / length, y / length, z / length, 0.0f) : (float4)(0.0f, 0.0f, 1.0f, 0.0f);
 }
 
-static inline float4 grid_distance(__global const int* kind, __global const float* data, __global const float* tool_grid, float4 y) {
-  __global const float* grid = tool_grid + kind[1];
+static inline float4 grid_distance(__global const int* kind, __global const float* data, __global const float* grid, float4 y) {
   const int nx = kind[2], ny = kind[3], nz = kind[4];
   const float inverse = data[10], spacing = data[11];
   const float gx = (y.x - data[7]) * inverse, gy = (y.y - data[8]) * inverse, gz = (y.z - data[9]) * inverse;
@@ -41,8 +41,25 @@ static inline float4 grid_distance(__global const int* kind, __global const floa
   return out;
 }
 
+static inline float4 mesh_distance(__global const int* kind, __global const float* data, __global const float* tool_grid,
+                                   __global const float* moment, float4 y) {
+  __global const float* grid = tool_grid + kind[1];
+  if (kind[5] < 2) return grid_distance(kind, data, grid, y);
+  const int nodes = (kind[2] * kind[3]) * kind[4];
+  grid += (int)moment[0] * nodes;
+  const float share = moment[1];
+  const float4 now = grid_distance(kind, data, grid, y);
+  if (!(share > 0.0f)) return now;
+  const float4 after = grid_distance(kind, data, grid + nodes, y);
+  const float nx = mixed(now.x, after.x, share), ny = mixed(now.y, after.y, share), nz = mixed(now.z, after.z, share);
+  float4 out = normalised(nx, ny, nz, sqrt(dot3(nx, nx, ny, ny, nz, nz)));
+  out.w = mixed(now.w, after.w, share);
+  return out;
+}
+
 // (normal, distance) of the point y.
-static inline float4 tool_distance(__global const int* kind, __global const float* data, __global const float* tool_grid, float4 y) {
+static inline float4 tool_distance(__global const int* kind, __global const float* data, __global const float* tool_grid,
+                                   __global const float* moment, float4 y) {
   float4 out;
   if (kind[0] == 0 || kind[0] == 1) {
     float x = y.x, v = y.y, z = y.z;
@@ -78,5 +95,5 @@ static inline float4 tool_distance(__global const int* kind, __global const floa
   }
   if (kind[0] == 3)
     return (float4)(data[4], data[5], data[6], dot3(y.x - data[1], data[4], y.y - data[2], data[5], y.z - data[3], data[6]));
-  return grid_distance(kind, data, tool_grid, y);
+  return mesh_distance(kind, data, tool_grid, moment, y);
 }

@@ -30,6 +30,12 @@ struct ContactPoints {
   [[nodiscard]] std::size_t size() const { return rest.size(); }
 };
 
+/// A mesh of a sequence. Its own frame follows the rigid part of what the sequence does (tool_sequence.cpp).
+struct ToolFrame {
+  Pose pose;             ///< of its own frame in the tool's
+  TriangleMesh surface;  ///< in its own frame
+};
+
 /// A shape as the kernels know it (kernels/contact_shape.cl).
 struct ToolForm {
   ToolShape shape = ToolShape::sphere;
@@ -41,7 +47,17 @@ struct ToolForm {
   std::vector<double> distance;        ///< [nodes] signed distance, x fastest [m]
   double reach = 0;                    ///< farthest point from the tool's origin [m]; of a half space 0
   TriangleMesh surface;                ///< of a mesh, for pictures
+  double frames_per_second = 0;        ///< of a sequence
+  std::vector<ToolFrame> frames;       ///< of a sequence; `distance` has [frames][nodes]
 };
+
+/// Where a shape stands in its tool's frame at a time: a sequence is mixed of two frames, the second with this share.
+struct ToolMoment {
+  Pose pose;
+  std::int32_t frame = 0;
+  double share = 0;
+};
+ToolMoment tool_moment(const ToolForm& form, double time);
 
 using ToolForms = std::vector<ToolForm>;
 
@@ -54,8 +70,8 @@ struct ContactLaw {
 /// Throws Error (bad_input) for a mesh that cannot be read or is not closed.
 ToolForm tool_form(const ContactTool& tool);
 
-/// Signed distance of a point in the tool's frame, as the kernels have it but in double [m].
-double tool_distance(const ToolForm& form, const Vec3d& y);
+/// Signed distance of a point in the tool's frame (of a sequence in its frame's own), as the kernels have it but in double [m].
+double tool_distance(const ToolForm& form, const Vec3d& y, const ToolMoment& moment = {});
 
 /// Points of all bodies on the model's surface.
 ContactPoints contact_points(const Model& model);

@@ -9,54 +9,27 @@
 #include "geometry/vec.h"
 #include "mesh_io/mesh_io.h"
 #include "model/contact.h"
+#include "model/tool_sequence.h"
 #include "pliant/error.h"
 
 namespace pliant {
 namespace {
 
-/// Cells of the grid along the longest side of a mesh; it reaches two cells beyond the mesh.
-constexpr double kGridCells = 64;
-constexpr std::int32_t kBeyond = 2;
-
-void fill_grid(const SurfaceDistance& surface, ToolForm& form) {
-  vec::Box box;
-  for (const Vec3d& v : surface.mesh().vertices) box.extend(v);
-  double longest = 0;
-  for (std::size_t a = 0; a < 3; ++a) longest = std::max(longest, box.upper[a] - box.lower[a]);
-  form.spacing = longest / kGridCells;
-  std::int64_t count = 1;
-  for (std::size_t a = 0; a < 3; ++a) {
-    form.origin[a] = box.lower[a] - kBeyond * form.spacing;
-    form.size[a] = static_cast<std::int32_t>(std::ceil((box.upper[a] - box.lower[a]) / form.spacing)) + 2 * kBeyond + 1;
-    count *= form.size[a];
-  }
-  form.distance.resize(static_cast<std::size_t>(count));
-  const std::int64_t row = form.size[0];
-  parallel_for(count / row, [&](std::int64_t r) {
-    const Vec3d start{form.origin[0], form.origin[1] + static_cast<double>(r % form.size[1]) * form.spacing,
-                      form.origin[2] + static_cast<double>(r / form.size[1]) * form.spacing};
-    for (std::int64_t i = 0; i < row; ++i) {
-      form.distance[static_cast<std::size_t>(r * row + i)] =
-          surface.signed_distance({start[0] + static_cast<double>(i) * form.spacing, start[1], start[2]});
-    }
-  });
-}
-
 void load_mesh(const ContactTool& tool, ToolForm& form) {
-  TriangleMesh mesh = read_surface(tool.mesh);
-  for (Vec3d& v : mesh.vertices) v = vec::mul(v, tool.scale);
-  const SurfaceDistance surface(std::move(mesh));
-  if (!surface.orientation().closed()) {
-    throw Error(ErrorCode::bad_input,
-                fmt::format("{}: tool '{}': the surface {} has {} open edges, expected a closed surface", tool.pointer,
-                            tool.name, tool.mesh.string(), surface.orientation().rim.size()));
+  const SurfaceDistance surface(read_tool_mesh(tool, tool.mesh));
+  check_closed(tool, tool.mesh, surface);
+  vec::Box box;
+  for (const Vec3d& v : surface.mesh().vertices) {
+    box.extend(v);
+    form.reach = std::max(form.reach, vec::norm(v));
   }
-  for (const Vec3d& v : surface.mesh().vertices) form.reach = std::max(form.reach, vec::norm(v));
-  fill_grid(surface, form);
+  lay_grid(box, form);
+  append_distances(surface, form);
   form.surface = surface.mesh();
 }
 
-double grid_distance(const ToolForm& form, const Vec3d& y) {
+double grid_distance(const ToolForm& form, const Vec3d& y, std::int32_t frame) {
+  const std::int64_t first = std::int64_t{frame} * form.size[0] * form.size[1] * form.size[2];
   std::array<std::int32_t, 3> cell{};
   Vec3d s{}, beyond{};
   for (std::size_t a = 0; a < 3; ++a) {
@@ -69,7 +42,7 @@ double grid_distance(const ToolForm& form, const Vec3d& y) {
   double sum = 0;
   for (int corner = 0; corner < 8; ++corner) {
     double weight = 1;
-    std::int64_t at = 0, stride = 1;
+    std::int64_t at = first, stride = 1;
     for (int a = 0; a < 3; ++a) {
       const int up = corner >> a & 1;
       weight *= up != 0 ? s[a] : 1 - s[a];
@@ -78,7 +51,7 @@ double grid_distance(const ToolForm& form, const Vec3d& y) {
     }
     sum += weight * form.distance[static_cast<std::size_t>(at)];
   }
-  return beyond == Vec3d{} ? sum : vec::norm(beyond) + kBeyond * form.spacing;
+  return beyond == Vec3d{} ? sum : vec::norm(beyond) + kToolGridBeyond * form.spacing;
 }
 
 }  // namespace
@@ -106,11 +79,14 @@ ToolForm tool_form(const ContactTool& tool) {
     case ToolShape::mesh:
       load_mesh(tool, form);
       break;
+    case ToolShape::sequence:
+      load_sequence(tool, form);
+      break;
   }
   return form;
 }
 
-double tool_distance(const ToolForm& form, const Vec3d& y) {
+double tool_distance(const ToolForm& form, const Vec3d& y, const ToolMoment& moment) {
   switch (form.shape) {
     case ToolShape::sphere:
       return vec::norm(y) - form.radius;
@@ -131,9 +107,11 @@ double tool_distance(const ToolForm& form, const Vec3d& y) {
     case ToolShape::half_space:
       return vec::dot(vec::sub(y, form.first), form.second);
     case ToolShape::mesh:
+    case ToolShape::sequence:
       break;
   }
-  return grid_distance(form, y);
+  const double here = grid_distance(form, y, moment.frame);
+  return moment.share > 0 ? (1 - moment.share) * here + moment.share * grid_distance(form, y, moment.frame + 1) : here;
 }
 
 }  // namespace pliant

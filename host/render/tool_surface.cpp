@@ -70,6 +70,7 @@ TriangleMesh tool_surface(const ToolForm& form) {
     case ToolShape::mesh:
       return form.surface;
     case ToolShape::half_space:
+    case ToolShape::sequence:
       break;
   }
   return {};
@@ -80,12 +81,17 @@ void ToolSurfaces::append(const Simulation& simulation, std::vector<float>& posi
   if (model.tools == nullptr) return;
   for (std::size_t t = shapes_.size(); t < model.tools->size(); ++t) shapes_.push_back(tool_surface((*model.tools)[t]));
   for (std::size_t t = 0; t < shapes_.size(); ++t) {
-    const Pose pose = simulation.contact().pose(t, simulation.time());
+    const ToolForm& form = (*model.tools)[t];
+    const ToolMoment moment = tool_moment(form, simulation.time());
+    const Pose pose = compose(simulation.contact().pose(t, simulation.time()), moment.pose);
+    const TriangleMesh& shape =
+        form.frames.empty() ? shapes_[t]
+                            : form.frames[static_cast<std::size_t>(moment.frame + (moment.share < 0.5 ? 0 : 1))].surface;
     const auto first = static_cast<std::int32_t>(positions.size() / 3);
-    for (const Vec3d& y : shapes_[t].vertices) {
+    for (const Vec3d& y : shape.vertices) {
       for (const double x : place(pose, y)) positions.push_back(static_cast<float>(x));
     }
-    for (const auto& corners : shapes_[t].triangles) {
+    for (const auto& corners : shape.triangles) {
       for (const std::int32_t v : corners) triangles.push_back(first + v);
     }
   }

@@ -19,6 +19,20 @@ Vec3d place(const Pose& pose, const Vec3d& y) {
   return {vec::dot(r[0], y) + pose.position[0], vec::dot(r[1], y) + pose.position[1], vec::dot(r[2], y) + pose.position[2]};
 }
 
+Vec3d place_back(const Pose& pose, const Vec3d& x) {
+  const std::array<Vec3d, 3> r = rotation_matrix(pose.turn);
+  const Vec3d d = vec::sub(x, pose.position);
+  return vec::add(vec::add(vec::mul(r[0], d[0]), vec::mul(r[1], d[1])), vec::mul(r[2], d[2]));
+}
+
+Pose compose(const Pose& outer, const Pose& inner) {
+  const auto& [ax, ay, az, aw] = outer.turn;
+  const auto& [bx, by, bz, bw] = inner.turn;
+  return {place(outer, inner.position),
+          {aw * bx + ax * bw + ay * bz - az * by, aw * by - ax * bz + ay * bw + az * bx, aw * bz + ax * by - ay * bx + az * bw,
+           aw * bw - ax * bx - ay * by - az * bz}};
+}
+
 namespace {
 
 using Quaternion = std::array<double, 4>;

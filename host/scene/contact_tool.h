@@ -9,7 +9,7 @@
 
 namespace pliant {
 
-enum class ToolShape { sphere, capsule, box, half_space, mesh };
+enum class ToolShape { sphere, capsule, box, half_space, mesh, sequence };
 
 /// A rigid placement: x = R(turn) y + position.
 struct Pose {
@@ -26,16 +26,21 @@ bool good_pose(const Pose& pose);
 Pose between(const Pose& from, const Pose& to, double s);
 /// R(turn) y + position.
 Vec3d place(const Pose& pose, const Vec3d& y);
+/// R(turn)^T (x - position).
+Vec3d place_back(const Pose& pose, const Vec3d& x);
+/// Placed by `inner` first and by `outer` then.
+Pose compose(const Pose& outer, const Pose& inner);
 
 /// A rigid body on a prescribed path that pushes what it meets and is not pushed itself. Shapes stand in the tool's own frame.
 struct ContactTool {
   std::string name;
   ToolShape shape = ToolShape::sphere;
-  double radius = 0;           ///< of a sphere about the origin, or of a capsule [m]
-  Vec3d first{}, second{};     ///< ends of a capsule [m]; a point of a half space [m] and its outward normal, of any length
-  Vec3d size{};                ///< edges of a box about the origin [m]
-  std::filesystem::path mesh;  ///< a closed surface
-  double scale = 1;            ///< of the mesh's coordinates
+  double radius = 0;              ///< of a sphere about the origin, or of a capsule [m]
+  Vec3d first{}, second{};        ///< ends of a capsule [m]; a point of a half space [m] and its outward normal, of any length
+  Vec3d size{};                   ///< edges of a box about the origin [m]
+  std::filesystem::path mesh;     ///< a closed surface, or the folder of a sequence of them
+  double scale = 1;               ///< of the mesh's coordinates
+  double frames_per_second = 30;  ///< of a sequence, whose first mesh stands at time 0 [1/s]
   /// (time [s], position [m], turn x, y, z, w); times ascending, linear in between, held outside; empty: it stands at the
   /// origin.
   std::vector<std::array<double, 8>> path;

@@ -35,7 +35,7 @@ std::map<std::string, List> make_keys() {
       {"stiffness", {"young"}},
       {"gravity", List{"acceleration"} + curve},
       {"tool", {"path"}},
-      {"contact_tool", {"name", "shape", "scale", "path", "friction", "contact"}},
+      {"contact_tool", {"name", "shape", "scale", "frames_per_second", "path", "friction", "contact"}},
       {"shape", words_only(tool_shape_words())},
       {"contact", {"stiffness", "exponent", "alpha"}},
       {"tissue_contact", {"friction"}},
@@ -165,7 +165,8 @@ const Words<ToolShape>& tool_shape_words() {
                                       {"capsule", ToolShape::capsule, "a segment with a radius"},
                                       {"box", ToolShape::box, "about the origin"},
                                       {"half_space", ToolShape::half_space, "all below a plane"},
-                                      {"mesh", ToolShape::mesh, "what a closed surface encloses"}};
+                                      {"mesh", ToolShape::mesh, "what a closed surface encloses"},
+                                      {"sequence", ToolShape::sequence, "a closed surface per frame"}};
   return words;
 }
 

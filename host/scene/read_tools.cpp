@@ -72,6 +72,9 @@ void read_shape(const Reader& shape, ContactTool& tool) {
       case ToolShape::mesh:
         tool.mesh = value.text("the file of a closed surface");
         break;
+      case ToolShape::sequence:
+        tool.mesh = value.text("a folder with a closed surface per frame");
+        break;
     }
   }
 }
@@ -104,8 +107,13 @@ ContactTool read_contact_tool(const Reader& entry, std::size_t index, const std:
   tool.name = entry.has("name") ? entry.at("name").text("a text that is not empty") : fmt::format("tool{}", index);
   read_shape(entry.at("shape", "an object with one of the keys " + alternatives(scene_keys().at("shape"))), tool);
   if (entry.has("scale")) {
-    if (tool.shape != ToolShape::mesh) entry.at("scale").fail("this key only beside a shape that is a mesh");
+    if (tool.mesh.empty()) entry.at("scale").fail("this key only beside a shape that is a mesh or a sequence");
     tool.scale = entry.at("scale").positive();
+  }
+  if (entry.has("frames_per_second")) {
+    const Reader rate = entry.at("frames_per_second");
+    if (tool.shape != ToolShape::sequence) rate.fail("this key only beside a shape that is a sequence");
+    tool.frames_per_second = rate.positive();
   }
   if (!tool.mesh.empty() && tool.mesh.is_relative()) tool.mesh = folder / tool.mesh;
   if (entry.has("path")) {

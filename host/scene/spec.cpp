@@ -216,6 +216,7 @@ ContactTool tool(const ToolSpec& spec, const std::string& pointer, std::size_t i
   t.size = spec.size;
   t.mesh = spec.mesh;
   t.scale = spec.scale;
+  t.frames_per_second = spec.frames_per_second;
   t.path = spec.path;
   t.friction = spec.friction;
   t.stiffness = spec.stiffness;

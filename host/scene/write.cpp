@@ -221,12 +221,15 @@ OrderedJson tool_json(const ContactTool& t, const std::filesystem::path& scene_f
       shape[word] = {t.first, t.second};
       break;
     case ToolShape::mesh:
+    case ToolShape::sequence:
       shape[word] = path_json(t.mesh, scene_file);
       break;
   }
   if (!t.path.empty()) tool["path"] = t.path;
   tool["friction"] = t.friction;
-  if (t.shape == ToolShape::mesh || t.scale != 1) tool["scale"] = t.scale;
+  if (!t.mesh.empty() || t.scale != 1) tool["scale"] = t.scale;
+  if (t.shape == ToolShape::sequence || t.frames_per_second != ContactTool{}.frames_per_second)
+    tool["frames_per_second"] = t.frames_per_second;
   if (t.stiffness != 0) tool["contact"]["stiffness"] = t.stiffness;
   if (t.stiffness != 0 || t.exponent != 1) tool["contact"]["exponent"] = t.exponent;
   if (t.stiffness != 0 || t.alpha != 0) tool["contact"]["alpha"] = t.alpha;

@@ -9,7 +9,7 @@ namespace pliant {
 namespace {
 
 /// Numbers per tool in tool_data, tool_kind and a row of tool_pose (kernels/contact_shape.cl, contact_point.cl).
-constexpr std::size_t kToolNumbers = 20, kToolIntegers = 8, kPoseNumbers = 12;
+constexpr std::size_t kToolNumbers = 20, kToolIntegers = 8;
 
 std::vector<double> numbers_of(const ToolForm& form, const ContactLaw& law) {
   std::vector<double> n{form.radius};
@@ -95,8 +95,9 @@ void ProgramBuilder::add_tools() {
     const ToolForm& form = (*model_.tools)[t];
     const std::vector<double> numbers = numbers_of(form, model_.contact_laws[t]);
     data.insert(data.end(), numbers.begin(), numbers.end());
-    kind.insert(kind.end(), {static_cast<std::int32_t>(form.shape), static_cast<std::int32_t>(grid.size()), form.size[0],
-                             form.size[1], form.size[2]});
+    const ToolShape shape = form.shape == ToolShape::sequence ? ToolShape::mesh : form.shape;
+    kind.insert(kind.end(), {static_cast<std::int32_t>(shape), static_cast<std::int32_t>(grid.size()), form.size[0],
+                             form.size[1], form.size[2], static_cast<std::int32_t>(form.frames.size())});
     kind.resize((t + 1) * kToolIntegers, 0);
     grid.insert(grid.end(), form.distance.begin(), form.distance.end());
   }
@@ -107,8 +108,8 @@ void ProgramBuilder::add_tools() {
                  std::move(data)));
   add(make_reals("tool_grid", BufferType::real, values, BufferRole::constant, "[grid nodes]", "m", "model", std::move(grid)));
   const auto rows = static_cast<std::size_t>(options_.batch_steps);
-  add(make_reals("tool_pose", BufferType::real, (rows + 1) * tools * kPoseNumbers, BufferRole::control,
-                 "[steps + 1][tools][12]", "1 (9), m (3)", "host"));
+  add(make_reals("tool_pose", BufferType::real, (rows + 1) * tools * contact_pose_numbers, BufferRole::control,
+                 "[steps + 1][tools][14]", "1 (9), m (3), 1 (2)", "host"));
   add(make_ints("tool_sum", BufferRole::scratch, "[steps][tools][16][16]", {},
                 rows * tools * contact_sum_parts * contact_sum_numbers, "contact_tool_sum"));
   program_.buffers.back().carried = Carried::all;  // a row per step of the batch, until the host reads it

@@ -90,18 +90,15 @@ void ToolContact::start() {
   if (run_.scene.contact) refuse_overlap(model, kStartDepth * points.spacing);
   for (std::size_t t = 0; t < run_.scene.tools.size(); ++t) {
     const ContactTool& tool = run_.scene.tools[t];
-    const Pose at = pose(t, run_.state.clock.time());
-    const std::array<Vec3d, 3> r = rotation_matrix(at.turn);
+    const ToolMoment moment = tool_moment((*model.tools)[t], run_.state.clock.time());
+    const Pose at = compose(pose(t, run_.state.clock.time()), moment.pose);
     double deepest = 0;
     std::size_t where = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
       Vec3d x = points.rest[i];
       for (std::size_t a = 0; a < 8 && !model.displacement.empty(); ++a)
         x = vec::add(x, vec::mul(model.displacement[points.nodes[i][a]], double(points.weights[i][a]) / contact_weight_unit));
-      const Vec3d d = vec::sub(x, at.position);
-      Vec3d y{};
-      for (std::size_t c = 0; c < 3; ++c) y[c] = r[0][c] * d[0] + r[1][c] * d[1] + r[2][c] * d[2];
-      const double depth = -tool_distance((*model.tools)[t], y);
+      const double depth = -tool_distance((*model.tools)[t], place_back(at, x), moment);
       if (depth > deepest) {
         deepest = depth;
         where = i;
@@ -141,14 +138,18 @@ void ToolContact::begin_batch(std::int32_t steps) {
   if (!active()) return;
   const std::size_t tools = run_.scene.tools.size(), rows = static_cast<std::size_t>(run_.settings.batch_steps) + 1;
   std::vector<double> poses;
-  poses.reserve(rows * tools * 12);
+  poses.reserve(rows * tools * contact_pose_numbers);
+  arms_.assign(rows * tools, {});
   for (std::size_t row = 0; row < rows; ++row) {
     const double t =
         run_.state.clock.time_at(run_.state.clock.step + std::min<std::int64_t>(static_cast<std::int64_t>(row), steps));
     for (std::size_t tool = 0; tool < tools; ++tool) {
-      const Pose at = pose(tool, t);
+      const ToolMoment moment = tool_moment((*run_.model().tools)[tool], t);
+      const Pose whole = pose(tool, t), at = compose(whole, moment.pose);
       for (const Vec3d& r : rotation_matrix(at.turn)) poses.insert(poses.end(), r.begin(), r.end());
       poses.insert(poses.end(), at.position.begin(), at.position.end());
+      poses.insert(poses.end(), {double(moment.frame), moment.share});
+      arms_[row * tools + tool] = vec::sub(at.position, whole.position);
     }
   }
   const Program& program = run_.loaded.program();
@@ -197,9 +198,15 @@ void ToolContact::end_batch(std::int32_t steps) {
           sum_of_parts(&sums[(static_cast<std::size_t>(step) * tools + t) * contact_sum_parts * contact_sum_numbers]);
       if (sum.points == 0) continue;
       ++h.touched;
+      Vec3d force{}, torque{};
       for (std::size_t c = 0; c < 3; ++c) {
-        h.now.force[c] += sum.quanta[c] * units_.force / steps;
-        h.now.torque[c] += sum.quanta[3 + c] * units_.torque / steps;
+        force[c] = sum.quanta[c] * units_.force;
+        torque[c] = sum.quanta[3 + c] * units_.torque;
+      }
+      torque = vec::add(torque, vec::cross(arms_[(static_cast<std::size_t>(step) + 1) * tools + t], force));
+      for (std::size_t c = 0; c < 3; ++c) {
+        h.now.force[c] += force[c] / steps;
+        h.now.torque[c] += torque[c] / steps;
       }
       h.now.area = sum.quanta[6] * units_.area;
       h.now.points = sum.points;

@@ -67,7 +67,8 @@ class ToolContact {
   RunContext& run_;
   std::vector<ToolHistory> history_;
   TouchHistory touch_;
-  Units units_;  ///< of the present batch
+  Units units_;              ///< of the present batch
+  std::vector<Vec3d> arms_;  ///< [steps + 1][tools] from a tool's origin to that of a sequence's frame [m]
 };
 
 }  // namespace pliant

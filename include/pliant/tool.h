@@ -12,13 +12,14 @@ namespace pliant {
 /// A rigid tool on a prescribed path, or one that stands still. Of the shapes only what belongs to `shape` counts.
 struct ToolSpec {
   std::string name;                         ///< different for every tool; empty: tool0, tool1, ...
-  std::string shape = "sphere";             ///< sphere, capsule, box, half_space or mesh, in the tool's own frame
+  std::string shape = "sphere";             ///< sphere, capsule, box, half_space, mesh or sequence, in the tool's own frame
   double radius = 0.01;                     ///< of a sphere about the origin, or of a capsule [m]
   Vec3d first{};                            ///< an end of a capsule, or a point of a half space [m]
   Vec3d second{0, 0.1, 0};                  ///< the other end of a capsule [m], or the outward normal of a half space
   Vec3d size{0.1, 0.1, 0.1};                ///< edges of a box about the origin [m]
-  std::string mesh;                         ///< file of a closed surface
+  std::string mesh;                         ///< file of a closed surface, or the folder of a sequence of them
   double scale = 1;                         ///< of the mesh's coordinates
+  double frames_per_second = 30;            ///< of a sequence; the first mesh stands at time 0 [1/s]
   std::vector<std::array<double, 8>> path;  ///< (time [s], origin [m], unit quaternion x, y, z, w), times ascending; empty: it
                                             ///< stands at the origin
   double friction = 0;                      ///< Coulomb's coefficient

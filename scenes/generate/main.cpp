@@ -1,7 +1,9 @@
 // Writes the meshes that the shipped scenes use: generate_meshes FOLDER
 #include <cstdio>
+#include <filesystem>
 
 #include "pliant/error.h"
+#include "scenes/generate/hand.h"
 #include "scenes/generate/organs.h"
 
 int main(int argc, char** argv) {
@@ -16,6 +18,13 @@ int main(int argc, char** argv) {
                              std::string(argv[1]) + "/" + name + ".obj");
       std::printf("%s: %zu vertices, %zu triangles, %.6g m^3\n", name.c_str(), mesh.vertices.size(), mesh.triangles.size(),
                   pliant::signed_volume(mesh));
+    }
+    const std::string folder = std::string(argv[1]) + "/hand";
+    std::filesystem::create_directories(folder);
+    for (int frame = 0; frame < pliant::hand_frames; ++frame) {
+      const pliant::TriangleMesh mesh = pliant::make_hand(frame);
+      pliant::write_obj_text(mesh, "hand, metres; written by generate_meshes", folder + "/" + std::to_string(frame) + ".obj");
+      std::printf("hand %d: %zu triangles\n", frame, mesh.triangles.size());
     }
   } catch (const pliant::Error& e) {
     std::fprintf(stderr, "%s\n", e.what());

@@ -10,7 +10,7 @@ namespace pliant::kernel_test {
 
 /// Everything that the passes of contact read. The numbers are of a body of about 1 m whose nodes weigh about 1 kg.
 struct ContactData {
-  static constexpr std::size_t tools = 5, rows = test_step + 2;
+  static constexpr std::size_t tools = 5, rows = test_step + 2, frames = 3, pose_numbers = 14;
   std::size_t points, slots = 96;
   Reals node_u, node_w, rest, weight, share, anchor, node_sum, data, grid, pose, params, step_params;
   Ints node, near, force, change, tool_force, sum, kind;
@@ -71,9 +71,11 @@ struct ContactData {
   }
 
   void make_tools(Random& random) {
-    grid = random.reals(6 * 5 * 4, Data::large, 0.2);
+    grid = random.reals(frames * 6 * 5 * 4, Data::large, 0.2);
     for (std::size_t t = 0; t < tools; ++t) {
-      kind.insert(kind.end(), {static_cast<std::int32_t>(t), 0, 6, 5, 4, 0, 0, 0});
+      // The last tool is a mesh, or a sequence.
+      const std::int32_t of_sequence = t == 4 && random.chance(0.5) ? static_cast<std::int32_t>(frames) : 0;
+      kind.insert(kind.end(), {static_cast<std::int32_t>(t), 0, 6, 5, 4, of_sequence, 0, 0});
       Reals d{random.uniform(0.2, 0.5)};
       for (int k = 0; k < 3; ++k) d.push_back(random.uniform(-0.3, 0));
       if (t == 3) {
@@ -92,6 +94,8 @@ struct ContactData {
         const double angle = 0.1 * static_cast<double>(row) + static_cast<double>(t), c = std::cos(angle), s = std::sin(angle);
         pose.insert(pose.end(), {c, -s, 0, s, c, 0, 0, 0, 1});
         for (int k = 0; k < 3; ++k) pose.push_back(0.001 * static_cast<double>(row) + random.uniform(-1e-4, 1e-4));
+        pose.push_back(static_cast<double>(row % (frames - 1)));
+        pose.push_back(random.chance(0.3) ? 0 : random.uniform(0, 1));
       }
     }
     const double unit = std::ldexp(1.0, -10);

@@ -29,6 +29,8 @@ double distance_of(const ContactData& d, std::size_t t, const Vector3d& y) {
     return q.maxCoeff() < 0 ? q.maxCoeff() : q.cwiseMax(0).norm();
   }
   if (t == 3) return (y - first).dot(second);
+  const double* moment = &d.pose[ContactData::pose_numbers * ((test_step + 1) * ContactData::tools + t) + 12];
+  const bool sequence = d.kind[8 * t + 5] > 1;
   const int size[3] = {6, 5, 4};
   const Vector3d g = (y - origin) / n[11];
   double sum = 0;
@@ -39,8 +41,10 @@ double distance_of(const ContactData& d, std::size_t t, const Vector3d& y) {
     for (int v = 0; v < 5; ++v) {
       for (int x = 0; x < 6; ++x) {
         const Vector3d away = (g - Vector3d(x, v, z)).cwiseAbs();
-        if (away.maxCoeff() < 1)
-          sum += (1 - away[0]) * (1 - away[1]) * (1 - away[2]) * d.grid[static_cast<std::size_t>((z * 5 + v) * 6 + x)];
+        if (away.maxCoeff() >= 1) continue;
+        const auto at = static_cast<std::size_t>((z * 5 + v) * 6 + x), frame = at + 120 * static_cast<std::size_t>(moment[0]);
+        const double value = sequence ? (1 - moment[1]) * d.grid[frame] + moment[1] * d.grid[frame + 120] : d.grid[at];
+        sum += (1 - away[0]) * (1 - away[1]) * (1 - away[2]) * value;
       }
     }
   }
@@ -71,7 +75,7 @@ TEST(ContactPressOracle, TouchesWhatIsInside) {
       const std::size_t at = ContactData::base(i, 4);
       const Vector3d x = place_of(d, i);
       for (std::size_t t = 0; t < ContactData::tools; ++t) {
-        const double* pose = &d.pose[12 * ((test_step + 1) * ContactData::tools + t)];
+        const double* pose = &d.pose[ContactData::pose_numbers * ((test_step + 1) * ContactData::tools + t)];
         Vector3d y = Vector3d::Zero();
         for (int c = 0; c < 3; ++c) {
           for (int k = 0; k < 3; ++k) y[c] += pose[3 * k + c] * (x[k] - pose[9 + k]);
@@ -102,7 +106,7 @@ TEST(ContactPressOracle, ASphereWithoutFrictionPushesAwayFromItsCentre) {
     ContactData d(700 + seed);
     std::fill(d.near.begin(), d.near.end(), 1);  // tool 0
     const Reals force = ints_in_double(press_case(d), "contact_force");
-    const double* pose = &d.pose[12 * (test_step + 1) * ContactData::tools];
+    const double* pose = &d.pose[ContactData::pose_numbers * (test_step + 1) * ContactData::tools];
     for (std::size_t i = 0; i < d.points; ++i) {
       const std::size_t at = ContactData::base(i, 4);
       const Vector3d f(force[at], force[at + 16], force[at + 32]),

@@ -23,9 +23,10 @@ TEST(Tools, EveryShapeIsReadAndWrittenAgain) {
      "friction": 0.3, "contact": {"stiffness": 1e6, "exponent": 1.5, "alpha": 0.5}},
     {"shape": {"box": [0.1, 0.2, 0.3]}, "contact": {"stiffness": "auto"}},
     {"shape": {"half_space": [[0, -0.1, 0], [0, 2, 0]]}},
-    {"shape": {"mesh": "hand.obj"}, "scale": 0.001}])");
+    {"shape": {"mesh": "hand.obj"}, "scale": 0.001},
+    {"shape": {"sequence": "meshes/hand"}, "scale": 0.01, "frames_per_second": 25}])");
   const Scene scene = parse_scene(text, "scenes/x.json");
-  ASSERT_EQ(scene.tools.size(), 5u);
+  ASSERT_EQ(scene.tools.size(), 6u);
   EXPECT_EQ(scene.tools[0].name, "tool0");
   EXPECT_EQ(scene.tools[0].radius, 0.01);
   EXPECT_EQ(scene.tools[1].pointer, "/tools/1");
@@ -37,6 +38,8 @@ TEST(Tools, EveryShapeIsReadAndWrittenAgain) {
   EXPECT_EQ(scene.tools[3].second, (Vec3d{0, 2, 0}));
   EXPECT_EQ(scene.tools[4].mesh, "scenes/hand.obj");
   EXPECT_EQ(scene.tools[4].scale, 0.001);
+  EXPECT_EQ(scene.tools[5].mesh, "scenes/meshes/hand");
+  EXPECT_EQ(scene.tools[5].frames_per_second, 25);
   const std::string written = scene_to_json(scene);
   EXPECT_EQ(scene_to_json(parse_scene(written, "scenes/x.json")), written);
 }
@@ -47,8 +50,11 @@ TEST(Tools, BadOnesAreRefused) {
   };
   const std::string ball = R"("shape": {"sphere": 0.01})";
   const std::pair<std::string, std::string> cases[] = {
-      {"[{}]", "/tools/0: got no \"shape\", expected an object with one of the keys sphere, capsule, box, half_space or mesh"},
-      {R"([{"shape": {}}])", "/tools/0/shape: got {}, expected one of the keys sphere, capsule, box, half_space or mesh"},
+      {"[{}]",
+       "/tools/0: got no \"shape\", expected an object with one of the keys sphere, capsule, box, half_space, mesh or "
+       "sequence"},
+      {R"([{"shape": {}}])",
+       "/tools/0/shape: got {}, expected one of the keys sphere, capsule, box, half_space, mesh or sequence"},
       {R"([{"shape": {"sphere": 0.1, "box": [1, 1, 1]}}])", "expected one of the keys sphere"},
       {R"([{"shape": {"spere": 0.1}}])", "did you mean \"sphere\"?"},
       {R"([{"shape": {"sphere": 0}}])", "/tools/0/shape/sphere: got 0, expected a number > 0"},
@@ -67,6 +73,10 @@ TEST(Tools, BadOnesAreRefused) {
        "/tools/0/contact/exponent: got 2, expected 1 or 1.5"},
       {"[{" + ball + R"(, "contact": {"stiffness": 0}}])", "/tools/0/contact/stiffness: got 0, expected \"auto\" or"},
       {"[{" + ball + R"(, "scale": 2}])", "/tools/0/scale: got 2, expected this key only beside a shape that is a mesh"},
+      {"[{" + ball + R"(, "frames_per_second": 25}])",
+       "/tools/0/frames_per_second: got 25, expected this key only beside a shape"},
+      {R"([{"shape": {"sequence": "hand"}, "frames_per_second": 0}])",
+       "/tools/0/frames_per_second: got 0, expected a number > 0"},
       {R"([{"name": "a", )" + ball + R"(}, {"name": "a", )" + ball + "}]",
        "/tools/1: got the name \"a\", which /tools/0 has already, expected a different name for every tool"},
   };
