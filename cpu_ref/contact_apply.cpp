@@ -6,12 +6,13 @@
 
 namespace pliant::ref {
 
-template <class Scalar>
+template <class Scalar, int MOMENT>
 void contact_apply(Range range, Scalar* node_u, Scalar* node_w, const std::int32_t* contact_slot,
                    const std::int32_t* contact_free, const std::int32_t* contact_tiles_offset,
                    const std::int32_t* contact_tiles, const std::int32_t* contact_gather_offset,
                    const std::int32_t* contact_gather, const std::int32_t* contact_gather_units,
-                   const std::int32_t* contact_near, const std::int32_t* contact_force, const Scalar* contact_rest,
+                   const std::int32_t* contact_gather_turns, const std::int32_t* contact_near,
+                   const std::int32_t* contact_force, const std::int32_t* touch_moment, const Scalar* contact_rest,
                    Scalar* contact_node_sum, const Scalar* contact_params, const Scalar* step_params) {
   constexpr std::int64_t area_plane = std::int64_t{3} * PLIANT_TILE;
   const Scalar h = step_params[0], half_hh = (Scalar(0.5) * h) * h, quantum = contact_params[2];
@@ -26,8 +27,17 @@ void contact_apply(Range range, Scalar* node_u, Scalar* node_w, const std::int32
     for (std::int64_t k = contact_gather_offset[tile]; k < contact_gather_offset[tile + 1]; ++k) {
       const std::int64_t entry = k * PLIANT_TILE + i % PLIANT_TILE, at = contact_gather[entry];
       const std::int64_t units = contact_gather_units[entry];
-      if (units == 0 || contact_near[at / (4 * PLIANT_TILE)] == 0 || contact_force[at + area_plane] == 0) continue;
+      if ((units == 0 && MOMENT == 0) || contact_near[at / (4 * PLIANT_TILE)] == 0 || contact_force[at + area_plane] == 0)
+        continue;
       for (std::int64_t c = 0; c < 3; ++c) sum[c] += contact_force[at + c * PLIANT_TILE] * units;
+      if (MOMENT != 0 && (contact_near[at / (4 * PLIANT_TILE)] & PLIANT_TOUCH_BIT) != 0) {
+        const std::int32_t* moment =
+            touch_moment + at / (4 * PLIANT_TILE) * (PLIANT_TOUCH_MOMENT * PLIANT_TILE) + at % PLIANT_TILE;
+        for (std::int64_t along = 0; along < 2; ++along) {
+          const std::int64_t turns = contact_gather_turns[(2 * k + along) * PLIANT_TILE + i % PLIANT_TILE];
+          for (std::int64_t c = 0; c < 3; ++c) sum[c] += moment[(3 * along + c) * PLIANT_TILE] * turns;
+        }
+      }
       area = std::fma(static_cast<Scalar>(units) * Scalar(1.0 / 4096), contact_rest[at + area_plane], area);
     }
     const std::int64_t slot = contact_slot[i];
@@ -45,6 +55,9 @@ void contact_apply(Range range, Scalar* node_u, Scalar* node_w, const std::int32
   }
 }
 
-void register_contact_apply(Registry& registry) { registry.add("contact_apply", contact_apply<float>, contact_apply<double>); }
+void register_contact_apply(Registry& registry) {
+  registry.add_specialised<2>("contact_apply", {"MOMENT"},
+                              [](auto scalar, auto moment) { return contact_apply<decltype(scalar), moment>; });
+}
 
 }  // namespace pliant::ref

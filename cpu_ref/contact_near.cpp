@@ -7,8 +7,9 @@ namespace pliant::ref {
 template <class Scalar>
 void contact_near(Range range, const Scalar* node_u, const Scalar* node_w, const Scalar* contact_rest,
                   const std::int32_t* contact_node, const Scalar* contact_weight, std::int32_t* contact_near,
-                  Scalar* contact_anchor, const std::int32_t* tool_kind, const Scalar* tool_data, const Scalar* tool_grid,
-                  const Scalar* tool_pose, const Scalar* contact_params, std::int32_t tools, std::int32_t step) {
+                  Scalar* contact_yield, Scalar* contact_anchor, const std::int32_t* tool_kind, const Scalar* tool_data,
+                  const Scalar* tool_grid, const Scalar* tool_pose, const Scalar* contact_params, std::int32_t tools,
+                  std::int32_t step) {
   using namespace contact;
   const Points<Scalar> points{node_u, node_w, contact_rest, contact_node, contact_weight};
   const Tools<Scalar> all{tool_kind, tool_data, tool_grid, tool_pose, tools, step};
@@ -25,6 +26,7 @@ void contact_near(Range range, const Scalar* node_u, const Scalar* node_w, const
     if (near == 0 && contact_near[tile] != 0) {
       const std::int64_t base = tile * 4 * PLIANT_TILE;
       for (std::int64_t k = base; k < base + std::int64_t{4} * PLIANT_TILE; ++k) contact_anchor[k] = 0;
+      for (std::int64_t k = tile * PLIANT_TILE; k < (tile + 1) * PLIANT_TILE; ++k) contact_yield[k] = 0;
     }
     contact_near[tile] = near;
   }

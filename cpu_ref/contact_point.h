@@ -49,10 +49,21 @@ inline Vec<Scalar> origin_of(const Scalar* pose) {
   return {pose[9], pose[10], pose[11]};
 }
 
+/// Share of the margin within which a point may touch in the next step: more for one that could before, so that the set of
+/// these points comes to rest.
+template <class Scalar>
+inline Scalar ready_share(Scalar yield) {
+  return yield > Scalar(0) ? Scalar(0.24) : Scalar(0.08);
+}
+
 template <class Scalar>
 struct Meeting {
-  Scalar distance = 0;
+  Scalar distance = 0, opening = 0;
   Vec<Scalar> normal{}, slip{}, inside{};
+  /// Whether the point may touch the tool in the next step.
+  [[nodiscard]] bool may_touch_next(Scalar margin, Scalar share) const {
+    return distance < std::fma(share, margin, opening < Scalar(0) ? -opening : Scalar(0));
+  }
 };
 
 /// The tools of a step.
@@ -67,14 +78,16 @@ struct Tools {
   [[nodiscard]] const Scalar* next(std::int32_t t) const { return now(t) + pose_numbers * count; }
   [[nodiscard]] Meeting<Scalar> meet(std::int32_t t, const Place<Scalar>& p) const {
     Meeting<Scalar> m;
-    m.inside = turned_back(next(t), difference(p.now, origin_of(next(t))));
     const std::int32_t* own = kind + tool_integers * t;
-    const Surface<Scalar> found = tool_distance(own, law(t), grid, next(t) + 12, m.inside);
-    m.distance = found.distance;
+    const Vec<Scalar> start = turned_back(now(t), difference(difference(p.now, p.moved), origin_of(now(t))));
+    m.inside = turned_back(next(t), difference(p.now, origin_of(next(t))));
+    const Surface<Scalar> found = tool_distance(own, law(t), grid, next(t) + 12, start);
+    const Vec<Scalar> way = difference(m.inside, start);
+    m.opening = dot(found.normal, way);
+    m.distance = found.distance + m.opening;
     m.normal = turned(next(t), found.normal);
-    m.slip = difference(p.moved, difference(p.now, sum_of(turned(now(t), m.inside), origin_of(now(t)))));
-    if (own[5] > 1)
-      m.slip = scaled_sum(found.distance - tool_distance(own, law(t), grid, now(t) + 12, m.inside).distance, m.normal, m.slip);
+    m.slip = turned(now(t), way);
+    if (own[5] > 1) m.opening = m.opening + (found.distance - tool_distance(own, law(t), grid, now(t) + 12, start).distance);
     return m;
   }
 };

@@ -10,7 +10,7 @@ using namespace contact;
 /// The force on a point along the normal.
 template <class Scalar>
 Scalar normal_force(const Meeting<Scalar>& m, const Scalar* law, Scalar area, Scalar stiffness, Scalar h) {
-  const Scalar depth = -m.distance, opening = dot(m.slip, m.normal), before = depth + opening;
+  const Scalar depth = -m.distance, opening = m.opening, before = depth + opening;
   Scalar push = 0;
   if (law[12] > Scalar(0) && before > Scalar(0)) {
     const Scalar spring = (area * law[12]) * (law[16] > Scalar(0) ? before * std::sqrt(before) : before);
@@ -33,12 +33,25 @@ Vec<Scalar> press_friction(const Meeting<Scalar>& m, const Scalar* next, const P
   return scaled_sum(-factor, side, f);
 }
 
+/// W where nothing is known of the points that touch: that of all points around.
+template <class Scalar>
+Scalar yield_of_all(const Scalar* node_u, const Scalar* node_w, const std::int32_t* contact_node, const Scalar* contact_share,
+                    std::int64_t i, Scalar half_hh) {
+  Scalar w = 0;
+  for (std::int64_t a = 0, base = tile_base(i, 8); a < 8; ++a) {
+    const std::int64_t texel = std::int64_t{4} * contact_node[base + a * PLIANT_TILE];
+    const Scalar b = std::fma(half_hh, node_w[texel + 3], half_hh);
+    w = std::fma(contact_share[base + a * PLIANT_TILE], b * node_u[texel + 3], w);
+  }
+  return w;
+}
+
 }  // namespace
 
 template <class Scalar>
 void contact_press(Range range, const Scalar* node_u, const Scalar* node_w, const Scalar* contact_rest,
                    const std::int32_t* contact_node, const Scalar* contact_weight, const Scalar* contact_share,
-                   const std::int32_t* contact_near, Scalar* contact_anchor, std::int32_t* contact_force,
+                   const std::int32_t* contact_near, Scalar* contact_yield, Scalar* contact_anchor, std::int32_t* contact_force,
                    std::int32_t* contact_tool_force, const std::int32_t* tool_kind, const Scalar* tool_data,
                    const Scalar* tool_grid, const Scalar* tool_pose, const Scalar* contact_params, const Scalar* step_params,
                    std::int32_t point_count, std::int32_t tools, std::int32_t step) {
@@ -50,9 +63,13 @@ void contact_press(Range range, const Scalar* node_u, const Scalar* node_w, cons
     if (near == 0) continue;
     const Place<Scalar> p = points.at(i);
     const Scalar area = points.area(i);  // none: it fills the tile up
-    std::int32_t touching = 0, count = 0;
+    std::int32_t touching = 0, count = 0, ready = 0;
+    const Scalar within = ready_share(contact_yield[i]);
     for (std::int32_t t = 0; t < tools && area > Scalar(0); ++t) {
-      if ((near >> t & 1) == 0 || !(all.meet(t, p).distance < Scalar(0))) continue;
+      if ((near >> t & 1) == 0) continue;
+      const Meeting<Scalar> m = all.meet(t, p);
+      if (m.may_touch_next(contact_params[5], within)) ready = PLIANT_READY_BIT;
+      if (!(m.distance < Scalar(0))) continue;
       touching |= 1 << t;
       ++count;
     }
@@ -61,12 +78,9 @@ void contact_press(Range range, const Scalar* node_u, const Scalar* node_w, cons
     const std::int32_t held = static_cast<std::int32_t>(anchor[3]) - 1;
     if (held >= 0 && (touching >> held & 1) == 0) anchor[3] = 0;
     Quanta sum{};
-    Scalar w = 0;
-    for (std::int64_t a = 0, base = tile_base(i, 8); a < 8 && touching != 0; ++a) {
-      const std::int64_t texel = std::int64_t{4} * contact_node[base + a * PLIANT_TILE];
-      const Scalar b = std::fma(half_hh, node_w[texel + 3], half_hh);
-      w = std::fma(contact_share[base + a * PLIANT_TILE], b * node_u[texel + 3], w);
-    }
+    Scalar w = contact_yield[i];
+    if (touching != 0 && !(w > Scalar(0)))
+      contact_yield[i] = w = yield_of_all(node_u, node_w, contact_node, contact_share, i, half_hh);
     const Scalar stiffness = w > Scalar(0) ? area / (w * static_cast<Scalar>(count)) : Scalar(0);
     for (std::int32_t t = 0; t < tools; ++t) {
       if ((near >> t & 1) == 0) continue;
@@ -87,12 +101,12 @@ void contact_press(Range range, const Scalar* node_u, const Scalar* node_w, cons
         if (anchor[3] == own) f = press_friction(m, all.next(t), anchor, stiffness, law[14] * push, f);
       }
       const Quanta q = quanta(f, contact_params[1]);
-      begin_touch(on_tool, -m.distance + dot(m.slip, m.normal));
+      begin_touch(on_tool, m.opening - m.distance);
       add_to_tool(on_tool, all.next(t), contact_params, p.now, q);
       for (std::size_t k = 0; k < 3; ++k) sum[k] += q[k];
     }
     for (std::size_t k = 0; k < 3; ++k) force[static_cast<std::int64_t>(k)] = sum[k];
-    force[3] = touching;
+    force[3] = touching | ready;
   }
 }
 

@@ -30,11 +30,11 @@ Vec<Scalar> settle_friction(const Meeting<Scalar>& m, const Scalar* next, const 
 template <class Scalar>
 void contact_settle(Range range, const Scalar* node_u, const Scalar* node_w, const Scalar* contact_rest,
                     const std::int32_t* contact_node, const Scalar* contact_weight, const Scalar* contact_share,
-                    const std::int32_t* contact_near, Scalar* contact_anchor, std::int32_t* contact_force,
-                    std::int32_t* contact_change, const Scalar* contact_node_sum, std::int32_t* contact_tool_force,
-                    const std::int32_t* tool_kind, const Scalar* tool_data, const Scalar* tool_grid, const Scalar* tool_pose,
-                    const Scalar* contact_params, const Scalar* step_params, std::int32_t point_count, std::int32_t tools,
-                    std::int32_t step) {
+                    const std::int32_t* contact_near, Scalar* contact_yield, Scalar* contact_anchor,
+                    std::int32_t* contact_force, std::int32_t* contact_change, const Scalar* contact_node_sum,
+                    std::int32_t* contact_tool_force, const std::int32_t* tool_kind, const Scalar* tool_data,
+                    const Scalar* tool_grid, const Scalar* tool_pose, const Scalar* contact_params, const Scalar* step_params,
+                    std::int32_t point_count, std::int32_t tools, std::int32_t step) {
   const Points<Scalar> points{node_u, node_w, contact_rest, contact_node, contact_weight};
   const Tools<Scalar> all{tool_kind, tool_data, tool_grid, tool_pose, tools, step};
   const Scalar h = step_params[0], half_hh = (Scalar(0.5) * h) * h, quantum = contact_params[0], inverse = contact_params[1];
@@ -56,11 +56,12 @@ void contact_settle(Range range, const Scalar* node_u, const Scalar* node_w, con
         whole = whole + own;
         moving = moving + free;
       }
-      w = moving > Scalar(0) ? w * (whole / moving) : Scalar(0);
+      const Scalar known = contact_yield[i];
+      contact_yield[i] = moving > Scalar(0) ? w * (whole / moving) : Scalar(0);
       std::int32_t count = 0;
       for (std::int32_t t = 0; t < tools; ++t) count += touching >> t & 1;
       const Scalar area = points.area(i);
-      const Scalar stiffness = w > Scalar(0) ? area / (w * static_cast<Scalar>(count)) : Scalar(0);
+      const Scalar stiffness = known > Scalar(0) ? area / (known * static_cast<Scalar>(count)) : Scalar(0);
       for (std::int32_t t = 0; t < tools; ++t) {
         if ((touching >> t & 1) == 0) continue;
         const Meeting<Scalar> m = all.meet(t, p);
@@ -79,6 +80,8 @@ void contact_settle(Range range, const Scalar* node_u, const Scalar* node_w, con
         for (std::size_t k = 0; k < 3; ++k) sum[k] += q[k];
       }
       for (std::size_t k = 0; k < 3; ++k) force[static_cast<std::int64_t>(k)] += sum[k];
+    } else {
+      contact_yield[i] = 0;
     }
     for (std::size_t k = 0; k < 3; ++k) change[static_cast<std::int64_t>(k)] = sum[k];
     change[3] = touching;

@@ -21,16 +21,15 @@ void touch_box(Range range, const Scalar* node_u, const Scalar* node_w, const Sc
     box[18] = 0;
     for (std::int64_t i = tile * PLIANT_TILE; i < (tile + 1) * PLIANT_TILE; ++i) {
       const contact::Place<Scalar> p = points.at(i);
-      const auto [normal, tangent] = frame_of(points, touch_surface, i);
-      set_row(touch_place, i, 0, p.now);
-      set_row(touch_place, i, 1, p.moved);
-      set_row(touch_place, i, 2, normal);
-      set_row(touch_place, i, 3, tangent);
+      Place<Scalar> place{p.now, p.moved};
+      set_frame(points, touch_surface, i, place);
+      place.tilt = tilt_of(points, touch_surface, i, place);
+      write_place(touch_place, i, place);
       const Scalar spacing = touch_surface[tile_base(i, PLIANT_TOUCH_SURFACE) + std::int64_t{22} * PLIANT_TILE];
       if (!(spacing > Scalar(0))) continue;
       box[18] = box[18] < spacing ? spacing : box[18];
       for (std::size_t k = 0; k < 9; ++k) {
-        const Scalar v = k < 3 ? p.now[k] : k < 6 ? p.moved[k - 3] : normal[k - 6];
+        const Scalar v = k < 3 ? p.now[k] : k < 6 ? p.moved[k - 3] : place.normal[k - 6];
         box[2 * k] = v < box[2 * k] ? v : box[2 * k];
         box[2 * k + 1] = v > box[2 * k + 1] ? v : box[2 * k + 1];
       }

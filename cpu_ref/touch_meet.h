@@ -79,7 +79,7 @@ struct Look {
     if (!(facing > Scalar(0))) return 0;
     const Scalar one = spacing(lower), two = spacing(upper), large = one > two ? one : two;
     const Pair<Scalar> p = pair_of(a, b);
-    const Vec<Scalar> side = scaled_sum(-p.gap, p.normal, p.apart);
+    const Vec<Scalar> side = scaled_sum(-dot(p.apart, p.normal), p.normal, p.apart);
     const Scalar r = radius<Scalar> * large, part = dot(side, side) / (r * r);
     if (!(part < Scalar(1))) return 0;
     const Scalar closing = -dot(difference(a.moved, b.moved), p.normal);

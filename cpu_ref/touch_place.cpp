@@ -7,21 +7,20 @@ namespace pliant::ref {
 template <class Scalar>
 void touch_place(Range range, const Scalar* node_u, const Scalar* node_w, const Scalar* contact_rest,
                  const std::int32_t* contact_node, const Scalar* contact_weight, const Scalar* contact_share,
-                 const std::int32_t* contact_near, const Scalar* contact_node_sum, const Scalar* touch_surface,
-                 Scalar* touch_place, const Scalar* step_params, std::int32_t again) {
+                 const std::int32_t* contact_near, Scalar* contact_yield, const std::int32_t* contact_change,
+                 const Scalar* contact_node_sum, const Scalar* touch_surface, Scalar* touch_place, const Scalar* step_params,
+                 std::int32_t again) {
   using namespace touch;
   const contact::Points<Scalar> points{node_u, node_w, contact_rest, contact_node, contact_weight};
   const Scalar h = step_params[0], half_hh = (Scalar(0.5) * h) * h;
   for (std::int64_t i = range.begin; i < range.end; ++i) {
     if ((contact_near[i / PLIANT_TILE] & PLIANT_TOUCH_BIT) == 0) continue;
     const contact::Place<Scalar> p = points.at(i);
-    set_row(touch_place, i, 0, p.now);
-    set_row(touch_place, i, 1, p.moved);
-    if (again == 0) {
-      const auto [normal, tangent] = frame_of(points, touch_surface, i);
-      set_row(touch_place, i, 2, normal);
-      set_row(touch_place, i, 3, tangent);
-    }
+    Place<Scalar> place = place_of(touch_place, i);
+    place.x = p.now;
+    place.moved = p.moved;
+    if (again == 0) set_frame(points, touch_surface, i, place);
+    place.tilt = tilt_of(points, touch_surface, i, place);
     Scalar w = 0, whole = 0, moving = 0;
     for (std::int64_t a = 0, first = tile_base(i, 8); a < 8; ++a) {
       const std::int64_t at = first + a * PLIANT_TILE, texel = std::int64_t{4} * contact_node[at];
@@ -33,8 +32,13 @@ void touch_place(Range range, const Scalar* node_u, const Scalar* node_w, const 
       whole = whole + own;
       moving = moving + free;
     }
-    if (again != 0) w = moving > Scalar(0) ? w * (whole / moving) : Scalar(0);
-    touch_place[i * PLIANT_TOUCH_PLACE + 3] = w;
+    if (again != 0) {
+      const bool counted = contact::numbers_of(contact_change, i)[3] != 0;
+      contact_yield[i] = counted && moving > Scalar(0) ? w * (whole / moving) : Scalar(0);
+    } else {
+      place.yielding = contact_yield[i] > Scalar(0) ? contact_yield[i] : w;
+    }
+    write_place(touch_place, i, place);
   }
 }
 

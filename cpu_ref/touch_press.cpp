@@ -24,9 +24,10 @@ Vec<Scalar> press_friction(const Place<Scalar>& lower, const Pair<Scalar>& p, Sc
 }  // namespace
 
 template <class Scalar>
-void touch_press(Range range, const Scalar* touch_place, const std::int32_t* contact_near, const std::int32_t* contact_force,
-                 std::int32_t* contact_change, const std::int32_t* touch_partner, Scalar* touch_pair, std::int32_t* touch_force,
-                 Scalar* touch_depth, const Scalar* contact_params) {
+void touch_press(Range range, const Scalar* touch_place, const std::int32_t* contact_near, const Scalar* contact_yield,
+                 const std::int32_t* contact_force, std::int32_t* contact_change, const std::int32_t* touch_partner,
+                 Scalar* touch_pair, std::int32_t* touch_force, std::int32_t* touch_moment, Scalar* touch_depth,
+                 const Scalar* contact_params) {
   const Scalar inverse = contact_params[1], friction = contact_params[7];
   for (std::int64_t i = range.begin; i < range.end; ++i) {
     const std::int32_t near = contact_near[i / PLIANT_TILE];
@@ -35,7 +36,10 @@ void touch_press(Range range, const Scalar* touch_place, const std::int32_t* con
     const auto change = contact::numbers_of(contact_change, i);
     Quanta sum{};
     std::int32_t touching = 0;
+    const Scalar far = Scalar(0.48) * contact_params[5];
+    const Scalar within = (Scalar(2) * contact::ready_share(contact_yield[i])) * contact_params[5];
     Scalar pressed = 0, inside = 0;
+    std::array<Scalar, 2> turn{};
     if ((near & ~PLIANT_TOUCH_BIT) != 0) {  // what tools did
       sum = {force[0], force[1], force[2]};
       touching = force[3];
@@ -49,21 +53,21 @@ void touch_press(Range range, const Scalar* touch_place, const std::int32_t* con
       if (!(numbers[0] > Scalar(0))) continue;
       const Place<Scalar> lower = place_of(touch_place, i < j ? i : j), upper = place_of(touch_place, i < j ? j : i);
       const Scalar w = lower.yielding + upper.yielding;
-      Scalar* anchor = numbers + std::int64_t{2} * PLIANT_TILE;
-      if (!may_push(lower, upper) || !(w > Scalar(0))) {
-        anchor[std::int64_t{3} * PLIANT_TILE] = 0;
-        continue;
-      }
-      const Pair<Scalar> p = pair_of(lower, upper);
-      const Scalar depth = numbers[PLIANT_TILE] - p.gap;
-      if (!(depth > Scalar(0))) {
-        anchor[std::int64_t{3} * PLIANT_TILE] = 0;
-        continue;
-      }
+      Scalar *anchor = numbers + std::int64_t{2} * PLIANT_TILE, *stuck = anchor + std::int64_t{3} * PLIANT_TILE;
       const Vec<Scalar> moved = difference(lower.moved, upper.moved);
+      const Scalar front = front_of(lower, upper, moved);
+      if (front < within) touching |= PLIANT_READY_BIT;
+      const bool meets = front < far && w > Scalar(0);
+      const Pair<Scalar> p = meets ? pair_of(lower, upper) : Pair<Scalar>{};
+      const Scalar depth = numbers[PLIANT_TILE] - p.gap;
+      if (!meets || !(depth > Scalar(0))) {
+        *stuck = 0;
+        continue;
+      }
       const Scalar stiffness = numbers[0] / w, push = stiffness * depth, before = dot(moved, p.normal) - p.gap;
       Vec<Scalar> f = times(p.normal, push);
       if (friction > Scalar(0)) f = press_friction(lower, p, anchor, stiffness, friction * push, moved, f);
+      add_turns(i < j ? lower : upper, i < j, p, push, turn);
       Quanta q = contact::quanta(f, inverse);
       if (i > j) q = {-q[0], -q[1], -q[2]};
       set_three(own, 0, 0, q);
@@ -77,6 +81,7 @@ void touch_press(Range range, const Scalar* touch_place, const std::int32_t* con
     touch_depth[i] = mean > touch_depth[i] ? mean : touch_depth[i];
     for (std::size_t c = 0; c < 3; ++c) change[static_cast<std::int64_t>(c)] = sum[c];
     change[3] = touching;
+    if ((near & PLIANT_TOUCH_BIT) != 0) set_moment(touch_moment, i, touch_place, turn, inverse);
   }
 }
 

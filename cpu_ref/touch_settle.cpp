@@ -29,13 +29,14 @@ Vec<Scalar> settle_friction(const Place<Scalar>& lower, const Pair<Scalar>& p, S
 template <class Scalar>
 void touch_settle(Range range, const Scalar* touch_place, const std::int32_t* contact_near, std::int32_t* contact_change,
                   const std::int32_t* touch_partner, Scalar* touch_pair, const std::int32_t* touch_force,
-                  const Scalar* contact_params) {
+                  std::int32_t* touch_moment, const Scalar* contact_params) {
   const Scalar quantum = contact_params[0], inverse = contact_params[1], friction = contact_params[7];
   for (std::int64_t i = range.begin; i < range.end; ++i) {
     const std::int32_t near = contact_near[i / PLIANT_TILE];
     if (near == 0) continue;
     const auto change = contact::numbers_of(contact_change, i);
     Quanta sum{};
+    std::array<Scalar, 2> turn{};
     if ((near & ~PLIANT_TOUCH_BIT) != 0) sum = {change[0], change[1], change[2]};  // what tools did
     std::int32_t touching = change[3];
     for (std::int64_t s = 0; s < PLIANT_TOUCH_SLOTS && (near & PLIANT_TOUCH_BIT) != 0; ++s) {
@@ -50,15 +51,18 @@ void touch_settle(Range range, const Scalar* touch_place, const std::int32_t* co
       const Scalar rest = numbers[PLIANT_TILE] - p.gap, w = lower.yielding + upper.yielding;
       const Scalar stiffness = w > Scalar(0) ? numbers[0] / w : Scalar(0);
       const Quanta before = three(own, 0, 0);
-      Vec<Scalar> f = times(p.normal, rest > Scalar(0) ? stiffness * rest : Scalar(0));
-      for (std::size_t c = 0; c < 3; ++c) f[c] += static_cast<Scalar>(i < j ? before[c] : -before[c]) * quantum;
+      Vec<Scalar> had{};
+      for (std::size_t c = 0; c < 3; ++c) had[c] = static_cast<Scalar>(i < j ? before[c] : -before[c]) * quantum;
+      Vec<Scalar> f = contact::sum_of(times(p.normal, rest > Scalar(0) ? stiffness * rest : Scalar(0)), had);
       if (friction > Scalar(0)) f = settle_friction(lower, p, numbers + std::int64_t{2} * PLIANT_TILE, stiffness, friction, f);
+      add_turns(i < j ? lower : upper, i < j, p, dot(difference(f, had), p.normal), turn);
       Quanta q = contact::quanta(f, inverse);
       if (i > j) q = {-q[0], -q[1], -q[2]};
       for (std::size_t c = 0; c < 3; ++c) sum[c] += q[c] - before[c];
     }
     for (std::size_t c = 0; c < 3; ++c) change[static_cast<std::int64_t>(c)] = sum[c];
     change[3] = touching;
+    if ((near & PLIANT_TOUCH_BIT) != 0) set_moment(touch_moment, i, touch_place, turn, inverse);
   }
 }
 

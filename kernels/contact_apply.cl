@@ -2,7 +2,8 @@
 // whole units, so that the sum over the nodes is that over the points to the last bit, in any order.
 // contact_slot: [nodes] slots; contact_free: [nodes] bit mask of the components that move freely; contact_tiles_offset, contact_tiles:
 // tiles of points at each tile of nodes; contact_gather_offset: [tiles + 1] rows; contact_gather: [rows][16] positions in
-// contact_force; contact_gather_units: [rows][16] weights in units. contact_node_sum: [slots] (force (3) [N], sum of weights times
+// contact_force; contact_gather_units: [rows][16] weights in units; with MOMENT contact_gather_turns: [rows][2][16] gradients along both
+// tangents in units, which sum to zero over a point's nodes, for touch_moment (touch_point.cl). contact_node_sum: [slots] (force (3) [N], sum of weights times
 // areas of the points that touch [m^2]).
 #include "arith.cl"
 
@@ -10,7 +11,8 @@ __kernel void contact_apply(__global float* node_u, __global float* node_w, __gl
                             __global const int* contact_free, __global const int* contact_tiles_offset,
                             __global const int* contact_tiles, __global const int* contact_gather_offset,
                             __global const int* contact_gather, __global const int* contact_gather_units,
-                            __global const int* contact_near, __global const int* contact_force,
+                            __global const int* contact_gather_turns, __global const int* contact_near,
+                            __global const int* contact_force, __global const int* touch_moment,
                             __global const float* contact_rest, __global float* contact_node_sum,
                             __global const float* contact_params, __global const float* step_params) {
   const int first = FIRST_INDEX, tile = first / PLIANT_TILE;
@@ -23,10 +25,20 @@ __kernel void contact_apply(__global float* node_u, __global float* node_w, __gl
     float area = 0.0f;
     for (int k = contact_gather_offset[tile]; k < contact_gather_offset[tile + 1]; ++k) {
       const int entry = k * PLIANT_TILE + i % PLIANT_TILE, units = contact_gather_units[entry], at = contact_gather[entry];
-      if (units == 0 || contact_near[at / (4 * PLIANT_TILE)] == 0 || contact_force[at + 3 * PLIANT_TILE] == 0) continue;
+      if ((units == 0 && MOMENT == 0) || contact_near[at / (4 * PLIANT_TILE)] == 0 || contact_force[at + 3 * PLIANT_TILE] == 0) continue;
       x += (long)contact_force[at] * units;
       y += (long)contact_force[at + PLIANT_TILE] * units;
       z += (long)contact_force[at + 2 * PLIANT_TILE] * units;
+#if MOMENT
+      if ((contact_near[at / (4 * PLIANT_TILE)] & PLIANT_TOUCH_BIT) != 0) {
+        __global const int* moment = touch_moment + at / (4 * PLIANT_TILE) * (PLIANT_TOUCH_MOMENT * PLIANT_TILE) + at % PLIANT_TILE;
+        const int first_turn = contact_gather_turns[2 * k * PLIANT_TILE + i % PLIANT_TILE];
+        const int second_turn = contact_gather_turns[(2 * k + 1) * PLIANT_TILE + i % PLIANT_TILE];
+        x += (long)moment[0] * first_turn + (long)moment[3 * PLIANT_TILE] * second_turn;
+        y += (long)moment[PLIANT_TILE] * first_turn + (long)moment[4 * PLIANT_TILE] * second_turn;
+        z += (long)moment[2 * PLIANT_TILE] * first_turn + (long)moment[5 * PLIANT_TILE] * second_turn;
+      }
+#endif
       area = fma((float)units * (1.0f / 4096.0f), contact_rest[at + 3 * PLIANT_TILE], area);
     }
     const int slot = contact_slot[i], free = contact_free[i];

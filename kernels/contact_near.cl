@@ -8,7 +8,7 @@
 
 __kernel void contact_near(__global const float* node_u, __global const float* node_w, __global const float* contact_rest,
                            __global const int* contact_node, __global const float* contact_weight, __global int* contact_near,
-                           __global float* contact_anchor, __global const int* tool_kind, __global const float* tool_data,
+                           __global float* contact_yield, __global float* contact_anchor, __global const int* tool_kind, __global const float* tool_data,
                            __global const float* tool_grid, __global const float* tool_pose, __global const float* contact_params, int tools, int step) {
   const int tile = (int)get_global_id(0);
   const float margin = contact_params[5], ahead = 2.0f * contact_params[6];
@@ -24,6 +24,7 @@ __kernel void contact_near(__global const float* node_u, __global const float* n
   if (near == 0 && contact_near[tile] != 0) {
     const int base = tile * 4 * PLIANT_TILE;
     for (int k = base; k < base + 4 * PLIANT_TILE; ++k) contact_anchor[k] = 0.0f;
+    for (int i = tile * PLIANT_TILE; i < (tile + 1) * PLIANT_TILE; ++i) contact_yield[i] = 0.0f;
   }
   contact_near[tile] = near;
 }

@@ -39,8 +39,11 @@ static inline float4 origin_of(__global const float* pose) { return (float4)(pos
 
 static inline float dot_xyz(float4 a, float4 b) { return dot3(a.x, b.x, a.y, b.y, a.z, b.z); }
 
+// A point meets the plane that touches the tool where the point was nearest to it at the start of the step: with the normal of the trial
+// step, a curved tool would drive what slides on it (docs/contact.md).
 typedef struct {
-  float distance;  // to the tool's surface, negative inside [m]
+  float distance;  // to this plane, negative behind it [m]
+  float opening;   // how much farther from it the point is than at the start of the step [m]
   float4 normal;   // outward, in space
   float4 slip;     // increment of the point against the tool's [m]
   float4 inside;   // the point in the tool's frame [m]
@@ -51,16 +54,26 @@ static inline meeting meet(__global const int* tool_kind, __global const float* 
   __global const float* now = tool_pose + POSE_NUMBERS * (step * tools + t);
   __global const float* next = now + POSE_NUMBERS * tools;
   meeting m;
+  const float4 start = turned_back(now, (p.now - p.moved) - origin_of(now));
   m.inside = turned_back(next, p.now - origin_of(next));
   __global const int* kind = tool_kind + TOOL_INTEGERS * t;
   __global const float* data = tool_data + TOOL_NUMBERS * t;
-  const float4 found = tool_distance(kind, data, tool_grid, next + 12, m.inside);
-  m.distance = found.w;
+  const float4 found = tool_distance(kind, data, tool_grid, next + 12, start), way = m.inside - start;
+  m.opening = dot_xyz(found, way);
+  m.distance = found.w + m.opening;
   m.normal = turned(next, found);
-  m.slip = p.moved - (p.now - (turned(now, m.inside) + origin_of(now)));
+  m.slip = turned(now, way);
   // The surface of a sequence moves in its frame, too.
-  if (kind[5] > 1) m.slip = fma((float4)(found.w - tool_distance(kind, data, tool_grid, now + 12, m.inside).w), m.normal, m.slip);
+  if (kind[5] > 1) m.opening = m.opening + (found.w - tool_distance(kind, data, tool_grid, now + 12, start).w);
   return m;
+}
+
+// Share of the margin within which a point may touch in the next step: more for one that could before, so that the set of these points
+// comes to rest.
+static inline float ready_share(float yield) { return yield > 0.0f ? 0.24f : 0.08f; }
+
+static inline int may_touch_next(meeting m, float margin, float share) {
+  return m.distance < fma(share, margin, m.opening < 0.0f ? -m.opening : 0.0f);
 }
 
 // Of a force in quanta; nothing of what is no number.

@@ -15,8 +15,8 @@
 
 __kernel void contact_press(__global const float* node_u, __global const float* node_w, __global const float* contact_rest,
                             __global const int* contact_node, __global const float* contact_weight,
-                            __global const float* contact_share, __global const int* contact_near, __global float* contact_anchor,
-                            __global int* contact_force, __global int* contact_tool_force, __global const int* tool_kind,
+                            __global const float* contact_share, __global const int* contact_near, __global float* contact_yield,
+                            __global float* contact_anchor, __global int* contact_force, __global int* contact_tool_force, __global const int* tool_kind,
                             __global const float* tool_data, __global const float* tool_grid, __global const float* tool_pose,
                             __global const float* contact_params, __global const float* step_params, int point_count, int tools, int step) {
   const int first = FIRST_INDEX;
@@ -26,10 +26,13 @@ __kernel void contact_press(__global const float* node_u, __global const float* 
   for (int i = first; i < first + LANES; ++i) {
     const contact_place p = place_of_point(node_u, node_w, contact_rest, contact_node, contact_weight, i);
     const float area = contact_rest[POINT_BASE(i, 4) + 3 * PLIANT_TILE];  // none: it fills the tile up
-    int touching = 0, count = 0;
+    int touching = 0, count = 0, ready = 0;
+    const float within = ready_share(contact_yield[i]);
     for (int t = 0; t < tools; ++t) {
       if (!(near >> t & 1) || !(area > 0.0f)) continue;
-      if (meet(tool_kind, tool_data, tool_grid, tool_pose, tools, step, t, p).distance < 0.0f) {
+      const meeting m = meet(tool_kind, tool_data, tool_grid, tool_pose, tools, step, t, p);
+      if (may_touch_next(m, contact_params[5], within)) ready = PLIANT_READY_BIT;
+      if (m.distance < 0.0f) {
         touching |= 1 << t;
         ++count;
       }
@@ -39,14 +42,16 @@ __kernel void contact_press(__global const float* node_u, __global const float* 
     const int held = (int)anchor[3 * PLIANT_TILE] - 1;
     if (held >= 0 && !(touching >> held & 1)) anchor[3 * PLIANT_TILE] = 0.0f;
     int4 sum = 0;
-    float w = 0.0f;
-    if (touching != 0) {
+    float w = contact_yield[i];
+    if (touching != 0 && !(w > 0.0f)) {  // nothing is known of the points that touch
       __global const int* node = contact_node + POINT_BASE(i, 8);
       __global const float* share = contact_share + POINT_BASE(i, 8);
+      w = 0.0f;
       for (int a = 0; a < 8; ++a) {
         const float b = fma(half_hh, node_w[4 * node[a * PLIANT_TILE] + 3], half_hh);
         w = fma(share[a * PLIANT_TILE], b * node_u[4 * node[a * PLIANT_TILE] + 3], w);
       }
+      contact_yield[i] = w;
     }
     const float stiffness = w > 0.0f ? area / (w * (float)count) : 0.0f;
     for (int t = 0; t < tools; ++t) {
@@ -56,7 +61,7 @@ __kernel void contact_press(__global const float* node_u, __global const float* 
       if (!(touching >> t & 1)) continue;
       const meeting m = meet(tool_kind, tool_data, tool_grid, tool_pose, tools, step, t, p);
       __global const float* data = tool_data + TOOL_NUMBERS * t;
-      const float depth = -m.distance, opening = dot_xyz(m.slip, m.normal), before = depth + opening;
+      const float depth = -m.distance, opening = m.opening, before = depth + opening;
       float push = 0.0f;
       if (data[12] > 0.0f && before > 0.0f) {
         const float spring = (area * data[12]) * (data[16] > 0.0f ? before * sqrt(before) : before);
@@ -96,6 +101,6 @@ __kernel void contact_press(__global const float* node_u, __global const float* 
     force[0] = sum.x;
     force[PLIANT_TILE] = sum.y;
     force[2 * PLIANT_TILE] = sum.z;
-    force[3 * PLIANT_TILE] = touching;
+    force[3 * PLIANT_TILE] = touching | ready;
   }
 }

@@ -8,8 +8,8 @@
 
 __kernel void contact_settle(__global const float* node_u, __global const float* node_w, __global const float* contact_rest,
                              __global const int* contact_node, __global const float* contact_weight,
-                             __global const float* contact_share, __global const int* contact_near, __global float* contact_anchor,
-                             __global int* contact_force, __global int* contact_change, __global const float* contact_node_sum,
+                             __global const float* contact_share, __global const int* contact_near, __global float* contact_yield,
+                             __global float* contact_anchor, __global int* contact_force, __global int* contact_change, __global const float* contact_node_sum,
                              __global int* contact_tool_force, __global const int* tool_kind, __global const float* tool_data,
                              __global const float* tool_grid, __global const float* tool_pose, __global const float* contact_params,
                              __global const float* step_params, int point_count, int tools, int step) {
@@ -37,11 +37,12 @@ __kernel void contact_settle(__global const float* node_u, __global const float*
         all += own;
         moving += free;
       }
-      w = moving > 0.0f ? w * (all / moving) : 0.0f;  // held nodes count as if they moved like the others (contact_press)
+      const float known = contact_yield[i];
+      contact_yield[i] = moving > 0.0f ? w * (all / moving) : 0.0f;  // held nodes count as if they moved (contact_press)
       int count = 0;
       for (int t = 0; t < tools; ++t) count += touching >> t & 1;
       const float area = contact_rest[POINT_BASE(i, 4) + 3 * PLIANT_TILE];
-      const float stiffness = w > 0.0f ? area / (w * (float)count) : 0.0f;
+      const float stiffness = known > 0.0f ? area / (known * (float)count) : 0.0f;
       for (int t = 0; t < tools; ++t) {
         if (!(touching >> t & 1)) continue;
         const meeting m = meet(tool_kind, tool_data, tool_grid, tool_pose, tools, step, t, p);
@@ -83,6 +84,8 @@ __kernel void contact_settle(__global const float* node_u, __global const float*
       force[0] += sum.x;
       force[PLIANT_TILE] += sum.y;
       force[2 * PLIANT_TILE] += sum.z;
+    } else {
+      contact_yield[i] = 0.0f;
     }
     change[0] = sum.x;
     change[PLIANT_TILE] = sum.y;

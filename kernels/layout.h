@@ -37,12 +37,14 @@
 // the bit of contact_near.
 #define PLIANT_TOUCH_SLOTS 16
 #define PLIANT_TOUCH_PAIR 6
-#define PLIANT_TOUCH_PLACE 16
+#define PLIANT_TOUCH_PLACE 20
 #define PLIANT_TOUCH_SURFACE 24
 #define PLIANT_TOUCH_FORCE 4
+#define PLIANT_TOUCH_MOMENT 6  // of a point: what turns its first and its second tangent (3 each) [quanta]
 #define PLIANT_TOUCH_BOX 19
 #define PLIANT_TOUCH_TREE 4
 #define PLIANT_TOUCH_BIT 1073741824
+#define PLIANT_READY_BIT 536870912  // of what a point touches: it may touch something in the next step
 
 // Shape matching: numbers per region record (four blocks of four), planes of a region's data at rest per tile.
 #define PLIANT_FLSM_RECORD 16

@@ -4,6 +4,7 @@
 #include "contact_shape.cl"
 #include "contact_point.cl"
 #include "touch_point.cl"
+#include "touch_frame.cl"
 
 __kernel void touch_box(__global const float* node_u, __global const float* node_w, __global const float* contact_rest,
                         __global const int* contact_node, __global const float* contact_weight,
@@ -16,7 +17,14 @@ __kernel void touch_box(__global const float* node_u, __global const float* node
     high[k] = -1e30f;
   }
   for (int i = tile * PLIANT_TILE; i < (tile + 1) * PLIANT_TILE; ++i) {
-    write_place(node_u, node_w, contact_rest, contact_node, contact_weight, touch_surface, touch_place, i, 0);
+    const contact_place p = place_of_point(node_u, node_w, contact_rest, contact_node, contact_weight, i);
+    touch_state place;
+    place.x = p.now;
+    place.moved = (float4)(p.moved.xyz, 0.0f);
+    place.yielding = 0.0f;
+    set_frame(node_u, node_w, contact_node, touch_surface, i, &place);
+    place.tilt = tilt_of(node_w, contact_node, touch_surface, i, place);
+    write_state(touch_place, i, place);
     const float spacing = touch_surface[POINT_BASE(i, PLIANT_TOUCH_SURFACE) + 22 * PLIANT_TILE];
     if (!(spacing > 0.0f)) continue;
     largest = largest < spacing ? spacing : largest;

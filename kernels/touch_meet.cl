@@ -61,7 +61,7 @@ static inline float weight_of(__global const float* touch_place, __global const 
   const float two = touch_surface[POINT_BASE(upper, PLIANT_TOUCH_SURFACE) + 22 * PLIANT_TILE];
   const float large = one > two ? one : two;
   const touch_meeting m = meeting_of(a, b);
-  const float4 side = fma((float4)(-m.gap), m.normal, m.apart);
+  const float4 side = fma((float4)(-dot_xyz(m.apart, m.normal)), m.normal, m.apart);
   const float radius = TOUCH_RADIUS * large, part = dot_xyz(side, side) / (radius * radius);
   if (!(part < 1.0f)) return 0.0f;
   const float closing = -dot_xyz(a.moved - b.moved, m.normal);

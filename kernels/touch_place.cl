@@ -4,17 +4,24 @@
 #include "contact_shape.cl"
 #include "contact_point.cl"
 #include "touch_point.cl"
+#include "touch_frame.cl"
 
 __kernel void touch_place(__global const float* node_u, __global const float* node_w, __global const float* contact_rest,
                           __global const int* contact_node, __global const float* contact_weight,
                           __global const float* contact_share, __global const int* contact_near,
+                          __global float* contact_yield, __global const int* contact_change,
                           __global const float* contact_node_sum, __global const float* touch_surface, __global float* touch_place,
                           __global const float* step_params, int again) {
   const int first = FIRST_INDEX;
   if ((contact_near[first / PLIANT_TILE] & PLIANT_TOUCH_BIT) == 0) return;
   const float h = step_params[0], half_hh = (0.5f * h) * h;
   for (int i = first; i < first + LANES; ++i) {
-    write_place(node_u, node_w, contact_rest, contact_node, contact_weight, touch_surface, touch_place, i, again);
+    const contact_place p = place_of_point(node_u, node_w, contact_rest, contact_node, contact_weight, i);
+    touch_state place = state_of(touch_place, i);
+    place.x = p.now;
+    place.moved = (float4)(p.moved.xyz, 0.0f);
+    if (again == 0) set_frame(node_u, node_w, contact_node, touch_surface, i, &place);
+    place.tilt = tilt_of(node_w, contact_node, touch_surface, i, place);
     __global const int* node = contact_node + POINT_BASE(i, 8);
     float w = 0.0f, whole = 0.0f, moving = 0.0f;
     for (int a = 0; a < 8; ++a) {
@@ -27,7 +34,12 @@ __kernel void touch_place(__global const float* node_u, __global const float* no
       whole = whole + own;
       moving = moving + free;
     }
-    if (again != 0) w = moving > 0.0f ? w * (whole / moving) : 0.0f;
-    touch_place[PLIANT_TOUCH_PLACE * i + 3] = w;
+    if (again != 0) {
+      const int counted = contact_change[POINT_BASE(i, 4) + 3 * PLIANT_TILE] != 0;
+      contact_yield[i] = counted && moving > 0.0f ? w * (whole / moving) : 0.0f;
+    } else {
+      place.yielding = contact_yield[i] > 0.0f ? contact_yield[i] : w;
+    }
+    write_state(touch_place, i, place);
   }
 }

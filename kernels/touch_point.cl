@@ -6,8 +6,11 @@
 //   Normals follow the deformed surface: n ~ F t1 x F t2, t1 and t2 the tangents at rest.
 // touch_surface: [tiles][24][16] weights of F t1 (8) and F t2 (8) [1/m], t1 (3), t2 (3), spacing of the points around [m].
 // touch_rest: [tiles][4][16] place at rest without what loose pieces have flown (3) [m], body.
-// touch_place: [points][16] (place [m], W [m/(N/m^2)] of contact_press), (increment [m], 0), (normal, 0), (F t1 / |F t1|, 0): a row per
-// point, because partners read it in no order.
+//   The gap also follows the turn of the normals: a pair pushes its points apart, and turns their tangents so that its push has no moment
+//   (touch_moment). What pushes is then the gradient of an energy; without that, a frictionless contact feeds motion for ever.
+//   Normals, tangents and arms are those of the start of the step (contact_point.cl says why).
+// touch_place: [points][20] (place [m], W [m/(N/m^2)] of contact_press), (increment [m], 1 / |F t1|), (normal, skew of F t2), (F t1 / |F t1|,
+// 1 / height of F t2), (turn of the normal in the step, 1 / spacing): a row per point, because partners read it in no order.
 // touch_partner: [tiles][16 slots][16] other point + 1, 0: none; touch_pair: [tiles][16 slots][6][16] (kernels/layout.h).
 #define TOUCH_SLOTS PLIANT_TOUCH_SLOTS
 #define TOUCH_EASE 0.04f   // of an offset, in spacings per look
@@ -26,61 +29,72 @@ static inline float4 cross3(float4 a, float4 b) {
 static inline float4 unit(float4 v) { return normalised(v.x, v.y, v.z, sqrt(dot_xyz(v, v))); }
 
 typedef struct {
-  float4 x, moved, normal, tangent;
-  float yielding;
+  float4 x, moved, normal, tangent, tilt;  // tilt: how far the normal turns in the step
+  float yielding, density;                 // density: of points, 1 / the spacing around it [1/m]
+  float short_first, skew, short_height;   // of the tangents: 1 / |F t1|, skew of F t2, 1 / its height over F t1
 } touch_state;
 
 static inline touch_state state_of(__global const float* touch_place, int i) {
   __global const float* at = touch_place + PLIANT_TOUCH_PLACE * i;
   touch_state s;
   s.x = vload4(0, at);
-  s.yielding = s.x.w;
-  s.x.w = 0.0f;
   s.moved = vload4(1, at);
   s.normal = vload4(2, at);
   s.tangent = vload4(3, at);
+  s.tilt = vload4(4, at);
+  s.yielding = s.x.w;
+  s.short_first = s.moved.w;
+  s.skew = s.normal.w;
+  s.short_height = s.tangent.w;
+  s.density = s.tilt.w;
+  s.x.w = s.moved.w = s.normal.w = s.tangent.w = s.tilt.w = 0.0f;
   return s;
-}
-
-// Place, increment and, unless `again`, the frame of a point. W is left to others.
-static inline void write_place(__global const float* node_u, __global const float* node_w, __global const float* contact_rest,
-                               __global const int* contact_node, __global const float* contact_weight,
-                               __global const float* touch_surface, __global float* touch_place, int i, int again) {
-  const contact_place p = place_of_point(node_u, node_w, contact_rest, contact_node, contact_weight, i);
-  __global float* at = touch_place + PLIANT_TOUCH_PLACE * i;
-  at[0] = p.now.x;
-  at[1] = p.now.y;
-  at[2] = p.now.z;
-  vstore4((float4)(p.moved.x, p.moved.y, p.moved.z, 0.0f), 1, at);
-  if (again != 0) return;
-  __global const float* own = touch_surface + POINT_BASE(i, PLIANT_TOUCH_SURFACE);
-  __global const int* node = contact_node + POINT_BASE(i, 8);
-  float4 first = three(own + 16 * PLIANT_TILE), second = three(own + 19 * PLIANT_TILE);
-  for (int a = 0; a < 8; ++a) {
-    const float4 u = vload4(node[a * PLIANT_TILE], node_u);
-    first = fma((float4)(own[a * PLIANT_TILE]), u, first);
-    second = fma((float4)(own[(8 + a) * PLIANT_TILE]), u, second);
-  }
-  vstore4(unit(cross3(first, second)), 2, at);
-  vstore4(unit(first), 3, at);
 }
 
 typedef struct {
   float4 apart, normal;  // lower minus upper; what pushes the lower one
+  float4 arm;            // how the gap follows the upper normal, and against it the lower one [m]
   float gap;
 } touch_meeting;
 
-// Whether the second lies behind the first: of two points in front of each other nothing else need be computed.
-static inline int may_push(touch_state lower, touch_state upper) {
-  return dot_xyz(lower.x - upper.x, upper.normal - lower.normal) < 0.0f;
+// How far the second lies in front of the first after the next step, at most, twice because facing normals differ by two.
+static inline float front_of(touch_state lower, touch_state upper, float4 moved) {
+  const float4 facing = upper.normal - lower.normal;
+  const float closing = -dot_xyz(moved, facing);
+  return dot_xyz(lower.x - upper.x, facing) - (closing > 0.0f ? closing : 0.0f);
 }
 
 static inline touch_meeting meeting_of(touch_state lower, touch_state upper) {
   touch_meeting m;
   m.apart = lower.x - upper.x;
-  m.normal = unit(upper.normal - lower.normal);
-  m.gap = dot_xyz(m.apart, m.normal);
+  const float4 facing = upper.normal - lower.normal;
+  const float length = sqrt(dot_xyz(facing, facing));
+  m.normal = normalised(facing.x, facing.y, facing.z, length);
+  const float4 start = m.apart - (lower.moved - upper.moved);
+  m.arm = fma((float4)(-dot_xyz(start, m.normal)), m.normal, start) * (1.0f / length);
+  m.gap = dot_xyz(m.apart, m.normal) + dot_xyz(m.arm, upper.tilt - lower.tilt);
   return m;
+}
+
+// Add what the push of a pair does to the tangents of one of its points: the forces that belong to n . F' t_k [N m].
+static inline void add_turns(touch_state own, int is_lower, touch_meeting m, float push, float* first, float* second) {
+  const float across = dot_xyz(m.arm, cross3(own.normal, own.tangent)), f = is_lower ? push : -push;
+  *first = fma(f, fma(-own.skew, across, dot_xyz(m.arm, own.tangent)) * own.short_first, *first);
+  *second = fma(f, across * own.short_height, *second);
+}
+
+// Their sums in quanta, as forces along the normal over the spacing.
+static inline void set_moment(__global int* touch_moment, int i, __global const float* touch_place, float first, float second,
+                              float inverse) {
+  const touch_state own = state_of(touch_place, i);
+  __global int* moment = touch_moment + POINT_BASE(i, PLIANT_TOUCH_MOMENT);
+  const float4 one = own.normal * (first * own.density), two = own.normal * (second * own.density);
+  moment[0] = quanta(one.x * inverse);
+  moment[PLIANT_TILE] = quanta(one.y * inverse);
+  moment[2 * PLIANT_TILE] = quanta(one.z * inverse);
+  moment[3 * PLIANT_TILE] = quanta(two.x * inverse);
+  moment[4 * PLIANT_TILE] = quanta(two.y * inverse);
+  moment[5 * PLIANT_TILE] = quanta(two.z * inverse);
 }
 
 // The frame that moves with the lower point.

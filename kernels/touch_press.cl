@@ -10,9 +10,10 @@
 #include "contact_point.cl"
 #include "touch_point.cl"
 
-__kernel void touch_press(__global const float* touch_place, __global const int* contact_near, __global const int* contact_force,
+__kernel void touch_press(__global const float* touch_place, __global const int* contact_near, __global const float* contact_yield,
+                          __global const int* contact_force,
                           __global int* contact_change, __global const int* touch_partner, __global float* touch_pair,
-                          __global int* touch_force, __global float* touch_depth, __global const float* contact_params) {
+                          __global int* touch_force, __global int* touch_moment, __global float* touch_depth, __global const float* contact_params) {
   const int first = FIRST_INDEX;
   const int near = contact_near[first / PLIANT_TILE];
   if (near == 0) return;
@@ -22,7 +23,8 @@ __kernel void touch_press(__global const float* touch_place, __global const int*
     __global int* change = contact_change + POINT_BASE(i, 4);
     int4 sum = 0;
     int touching = 0;
-    float pressed = 0.0f, inside = 0.0f;
+    const float far = 0.48f * contact_params[5], within = (2.0f * ready_share(contact_yield[i])) * contact_params[5];
+    float pressed = 0.0f, inside = 0.0f, first_turn = 0.0f, second_turn = 0.0f;
     if ((near & ~PLIANT_TOUCH_BIT) != 0) {  // what tools did
       sum = (int4)(force[0], force[PLIANT_TILE], force[2 * PLIANT_TILE], 0);
       touching = force[3 * PLIANT_TILE];
@@ -37,7 +39,10 @@ __kernel void touch_press(__global const float* touch_place, __global const int*
       const touch_state lower = state_of(touch_place, i < j ? i : j), upper = state_of(touch_place, i < j ? j : i);
       const float w = lower.yielding + upper.yielding;
       __global float* anchor = numbers + 2 * PLIANT_TILE;
-      if (!may_push(lower, upper) || !(w > 0.0f)) {
+      const float4 moved = lower.moved - upper.moved;
+      const float front = front_of(lower, upper, moved);
+      if (front < within) touching |= PLIANT_READY_BIT;
+      if (!(front < far) || !(w > 0.0f)) {
         anchor[3 * PLIANT_TILE] = 0.0f;
         continue;
       }
@@ -47,7 +52,6 @@ __kernel void touch_press(__global const float* touch_place, __global const int*
         anchor[3 * PLIANT_TILE] = 0.0f;
         continue;
       }
-      const float4 moved = lower.moved - upper.moved;
       const float stiffness = numbers[0] / w, push = stiffness * depth, before = dot_xyz(moved, m.normal) - m.gap;
       float4 f = m.normal * push;
       if (friction > 0.0f) {
@@ -59,6 +63,7 @@ __kernel void touch_press(__global const float* touch_place, __global const int*
         const float length = sqrt(dot_xyz(side, side)), most = friction * push;
         f = fma((float4)(stiffness * length > most ? -(most / length) : -stiffness), side, f);
       }
+      add_turns(i < j ? lower : upper, i < j, m, push, &first_turn, &second_turn);
       int4 q = (int4)(quanta(f.x * inverse), quanta(f.y * inverse), quanta(f.z * inverse), 0);
       if (i > j) q = -q;
       own[0] = q.x;
@@ -76,5 +81,6 @@ __kernel void touch_press(__global const float* touch_place, __global const int*
     change[PLIANT_TILE] = sum.y;
     change[2 * PLIANT_TILE] = sum.z;
     change[3 * PLIANT_TILE] = touching;
+    if ((near & PLIANT_TOUCH_BIT) != 0) set_moment(touch_moment, i, touch_place, first_turn, second_turn, inverse);
   }
 }

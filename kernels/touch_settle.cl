@@ -8,7 +8,7 @@
 
 __kernel void touch_settle(__global const float* touch_place, __global const int* contact_near, __global int* contact_change,
                            __global const int* touch_partner, __global float* touch_pair, __global const int* touch_force,
-                           __global const float* contact_params) {
+                           __global int* touch_moment, __global const float* contact_params) {
   const int first = FIRST_INDEX;
   const int near = contact_near[first / PLIANT_TILE];
   if (near == 0) return;
@@ -16,6 +16,7 @@ __kernel void touch_settle(__global const float* touch_place, __global const int
   for (int i = first; i < first + LANES; ++i) {
     __global int* change = contact_change + POINT_BASE(i, 4);
     int4 sum = 0;
+    float first_turn = 0.0f, second_turn = 0.0f;
     if ((near & ~PLIANT_TOUCH_BIT) != 0) sum = (int4)(change[0], change[PLIANT_TILE], change[2 * PLIANT_TILE], 0);
     int touching = change[3 * PLIANT_TILE];
     for (int s = 0; s < TOUCH_SLOTS && (near & PLIANT_TOUCH_BIT) != 0; ++s) {
@@ -32,7 +33,8 @@ __kernel void touch_settle(__global const float* touch_place, __global const int
       const int4 before = (int4)(own[0], own[PLIANT_TILE], own[2 * PLIANT_TILE], 0);
       const int4 had = i < j ? before : -before;
       float4 f = m.normal * (rest > 0.0f ? stiffness * rest : 0.0f);
-      f += (float4)((float)had.x * quantum, (float)had.y * quantum, (float)had.z * quantum, 0.0f);
+      const float4 push_before = (float4)((float)had.x * quantum, (float)had.y * quantum, (float)had.z * quantum, 0.0f);
+      f += push_before;
       if (friction > 0.0f) {
         __global float* anchor = numbers + 2 * PLIANT_TILE;
         const float4 side = slip_of(lower, m, three(anchor));
@@ -46,6 +48,7 @@ __kernel void touch_settle(__global const float* touch_place, __global const int
         }
         f = fma((float4)(length > most ? most / length : 1.0f), pull, m.normal * across);
       }
+      add_turns(i < j ? lower : upper, i < j, m, dot_xyz(f - push_before, m.normal), &first_turn, &second_turn);
       int4 q = (int4)(quanta(f.x * inverse), quanta(f.y * inverse), quanta(f.z * inverse), 0);
       if (i > j) q = -q;
       sum += q - before;
@@ -54,5 +57,6 @@ __kernel void touch_settle(__global const float* touch_place, __global const int
     change[PLIANT_TILE] = sum.y;
     change[2 * PLIANT_TILE] = sum.z;
     change[3 * PLIANT_TILE] = touching;
+    if ((near & PLIANT_TOUCH_BIT) != 0) set_moment(touch_moment, i, touch_place, first_turn, second_turn, inverse);
   }
 }

@@ -80,7 +80,8 @@ ContactPoints contact_points(const Model& model);
 /// orthonormal.
 struct ContactTangents {
   Vec3d t1{}, t2{};
-  std::array<double, 8> first{}, second{};  ///< [1/m]
+  std::array<std::array<std::int32_t, 8>, 2> units{};  ///< of 1 / (contact_weight_unit * spacing); they sum to zero
+  std::array<double, 8> first{}, second{};             ///< the same [1/m]
 };
 ContactTangents contact_tangents(const ContactPoints& points, std::size_t point, const std::vector<Vec3d>& rest);
 

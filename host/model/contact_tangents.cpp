@@ -69,6 +69,20 @@ Gradients linear_gradients(const std::array<Vec3d, 8>& x, const std::array<std::
   return out;
 }
 
+/// Components of gradients in whole units that sum to zero, so that what turns a point pushes no body.
+std::array<std::int32_t, 8> whole(const Gradients& gradient, const Vec3d& along, double unit) {
+  std::array<std::int32_t, 8> out{};
+  std::int32_t sum = 0;
+  std::size_t largest = 0;
+  for (std::size_t a = 0; a < 8; ++a) {
+    out[a] = static_cast<std::int32_t>(std::lround(vec::dot(gradient[a], along) / unit));
+    sum += out[a];
+    if (std::abs(out[a]) > std::abs(out[largest])) largest = a;
+  }
+  out[largest] -= sum;
+  return out;
+}
+
 }  // namespace
 
 ContactTangents contact_tangents(const ContactPoints& points, std::size_t point, const std::vector<Vec3d>& rest) {
@@ -86,9 +100,10 @@ ContactTangents contact_tangents(const ContactPoints& points, std::size_t point,
   t.t1 = vec::cross(axis, n);
   t.t1 = vec::mul(t.t1, 1 / vec::norm(t.t1));
   t.t2 = vec::cross(n, t.t1);
-  for (std::size_t a = 0; a < 8; ++a) {
-    t.first[a] = vec::dot(gradient[a], t.t1);
-    t.second[a] = vec::dot(gradient[a], t.t2);
+  const double spacing = points.apart[point], unit = 1 / (contact_weight_unit * spacing);
+  for (std::size_t k = 0; k < 2; ++k) {
+    t.units[k] = whole(gradient, k == 0 ? t.t1 : t.t2, unit);
+    for (std::size_t a = 0; a < 8; ++a) (k == 0 ? t.first : t.second)[a] = t.units[k][a] * unit;
   }
   return t;
 }

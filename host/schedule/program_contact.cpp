@@ -74,6 +74,9 @@ void ProgramBuilder::add_contact_points() {
   for (const char* name : {"contact_near", "last_contact_near"}) {
     add(make_ints(name, BufferRole::state, "[tiles]", std::vector<std::int32_t>(tiles, all), 0, "contact_near"));
   }
+  for (const char* name : {"contact_yield", "last_contact_yield"}) {
+    add(make_reals(name, BufferType::real, count, BufferRole::state, "[points]", "m^3/N", "contact_settle, touch_place"));
+  }
   add(make_ints("contact_force", BufferRole::scratch, "[tiles][4][16]", {}, 4 * count, "contact_press, contact_settle"));
   add(make_ints("contact_change", BufferRole::scratch, "[tiles][4][16]", {}, 4 * count, "contact_settle, touch_press"));
   add(make_reals("contact_params", BufferType::real, 8, BufferRole::control, "[8]", "see contact_near.cl", "host"));
@@ -115,54 +118,86 @@ void ProgramBuilder::add_tools() {
   program_.buffers.back().carried = Carried::all;  // a row per step of the batch, until the host reads it
 }
 
-/// The points at each node, and the tiles of points at each tile of nodes.
-void ProgramBuilder::add_contact_gather() {
-  const ContactPoints& points = *model_.contact;
-  std::map<std::int32_t, std::vector<std::pair<std::int32_t, std::int32_t>>> at_node;  // position of the point, units
+namespace {
+
+/// A point at a node: its position in contact_force, its weight there and its gradients along both tangents, in units.
+struct PointAtNode {
+  std::int32_t at = 0, units = 0;
+  std::array<std::int32_t, 2> turns{};
+};
+
+std::map<std::int32_t, std::vector<PointAtNode>> points_at_nodes(const Model& model) {
+  const ContactPoints& points = *model.contact;
+  std::map<std::int32_t, std::vector<PointAtNode>> at_node;
   for (std::size_t i = 0; i < points.size(); ++i) {
+    std::array<std::array<std::int32_t, 8>, 2> turns{};
+    if (model.tissue_contact) turns = contact_tangents(points, i, model.rest).units;
     for (std::size_t a = 0; a < 8; ++a) {
-      if (points.weights[i][a] > 0)
-        at_node[points.nodes[i][a]].emplace_back(static_cast<std::int32_t>(tile_base(i, 4)), points.weights[i][a]);
+      const PointAtNode entry{static_cast<std::int32_t>(tile_base(i, 4)), points.weights[i][a], {turns[0][a], turns[1][a]}};
+      if (entry.units > 0 || entry.turns[0] != 0 || entry.turns[1] != 0) at_node[points.nodes[i][a]].push_back(entry);
     }
   }
+  return at_node;
+}
+
+/// One number of each entry, in rows.
+template <class Number>
+GatherList rows_of(const std::vector<std::vector<PointAtNode>>& entries, Number number) {
+  std::vector<std::vector<std::int32_t>> values(entries.size());
+  for (std::size_t n = 0; n < entries.size(); ++n) {
+    for (const PointAtNode& entry : entries[n]) values[n].push_back(number(entry));
+  }
+  return pack_rows(values, 0);
+}
+
+}  // namespace
+
+/// The points at each node, and the tiles of points at each tile of nodes.
+void ProgramBuilder::add_contact_gather() {
   std::map<std::int32_t, std::int32_t> axes;
   for (const Constraint& c : model_.constraints) axes[c.slot] = c.axes;
   std::vector<std::int32_t> slot, free;
-  std::vector<std::vector<std::int32_t>> position, units;
-  for (const auto& [s, entries] : at_node) {
+  std::vector<std::vector<PointAtNode>> entries;
+  for (auto& [s, own] : points_at_nodes(model_)) {
     slot.push_back(s);
     const auto found = axes.find(s);
     free.push_back(found == axes.end() ? 7 : 7 & ~found->second);
-    auto& p = position.emplace_back();
-    auto& u = units.emplace_back();
-    for (const auto& [at, unit] : entries) {
-      p.push_back(at);
-      u.push_back(unit);
-    }
+    entries.push_back(std::move(own));
   }
   const std::size_t count = padded(slot.size());
   slot.resize(count, model_.slots);
   free.resize(count, 0);
-  position.resize(count);
-  units.resize(count);
+  entries.resize(count);
   std::vector<std::int32_t> offset{0}, tiles;
-  for (std::size_t first = 0; first < count; first += PLIANT_TILE) {
+  for (std::size_t begin = 0; begin < count; begin += PLIANT_TILE) {
     const std::size_t before = tiles.size();
-    for (std::size_t n = first; n < first + PLIANT_TILE; ++n) {
-      for (const std::int32_t at : position[n]) tiles.push_back(at / (4 * PLIANT_TILE));
+    for (std::size_t n = begin; n < begin + PLIANT_TILE; ++n) {
+      for (const PointAtNode& entry : entries[n]) tiles.push_back(entry.at / (4 * PLIANT_TILE));
     }
     std::sort(tiles.begin() + static_cast<std::ptrdiff_t>(before), tiles.end());
     tiles.erase(std::unique(tiles.begin() + static_cast<std::ptrdiff_t>(before), tiles.end()), tiles.end());
     offset.push_back(static_cast<std::int32_t>(tiles.size()));
   }
-  GatherList where = pack_rows(position, 0), share = pack_rows(units, 0);
+  GatherList where = rows_of(entries, [](const PointAtNode& p) { return p.at; });
   add(make_ints("contact_slot", BufferRole::constant, "[contact nodes]", std::move(slot)));
   add(make_ints("contact_free", BufferRole::constant, "[contact nodes]", std::move(free)));
   add(make_ints("contact_tiles_offset", BufferRole::constant, "[tiles + 1]", std::move(offset)));
   add(make_ints("contact_tiles", BufferRole::constant, "[entries]", std::move(tiles)));
   add(make_ints("contact_gather_offset", BufferRole::constant, "[tiles + 1]", std::move(where.offset)));
   add(make_ints("contact_gather", BufferRole::constant, "[rows][16]", std::move(where.index)));
-  add(make_ints("contact_gather_units", BufferRole::constant, "[rows][16]", std::move(share.index)));
+  add(make_ints("contact_gather_units", BufferRole::constant, "[rows][16]",
+                rows_of(entries, [](const PointAtNode& p) { return p.units; }).index));
+  if (!model_.tissue_contact) return;
+  const GatherList first = rows_of(entries, [](const PointAtNode& p) { return p.turns[0]; });
+  const GatherList second = rows_of(entries, [](const PointAtNode& p) { return p.turns[1]; });
+  std::vector<std::int32_t> turns;
+  for (std::size_t row = 0; row < first.index.size(); row += PLIANT_TILE) {
+    for (const GatherList* list : {&first, &second}) {
+      const auto begin = list->index.begin() + static_cast<std::ptrdiff_t>(row);
+      turns.insert(turns.end(), begin, begin + PLIANT_TILE);
+    }
+  }
+  add(make_ints("contact_gather_turns", BufferRole::constant, "[rows][2][16]", std::move(turns)));
 }
 
 std::vector<Arg> ProgramBuilder::named(std::initializer_list<const char*> buffers) const {
@@ -193,13 +228,15 @@ void ProgramBuilder::add_contact_passes() {
   const auto apply = [&](const char* force) {
     pass("contact_apply",
          named({"node_u", "node_w", "contact_slot", "contact_free", "contact_tiles_offset", "contact_tiles",
-                "contact_gather_offset", "contact_gather", "contact_gather_units", "contact_near", force, "contact_rest",
-                "contact_node_sum", "contact_params", "step_params"}),
+                "contact_gather_offset", "contact_gather", "contact_gather_units",
+                tissue ? "contact_gather_turns" : "contact_gather_units", "contact_near", force,
+                tissue ? "touch_moment" : force, "contact_rest", "contact_node_sum", "contact_params", "step_params"}),
          Shape::lanes, nodes, "contact nodes");
+    program_.step.back().defines = {{"MOMENT", tissue ? 1 : 0}};
   };
   if (tools > 0) {
     pass("contact_near",
-         with_step(named({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_near",
+         with_step(named({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_near", "contact_yield",
                           "contact_anchor", "tool_kind", "tool_data", "tool_grid", "tool_pose", "contact_params"})),
          Shape::items, points / PLIANT_TILE, "near tools");
     program_.step.back().every = contact_look_every;
@@ -208,18 +245,18 @@ void ProgramBuilder::add_contact_passes() {
   if (tools > 0) {
     pass("contact_press",
          with_step(with_points(named({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_share",
-                                      "contact_near", "contact_anchor", "contact_force", "contact_tool_force", "tool_kind",
-                                      "tool_data", "tool_grid", "tool_pose", "contact_params", "step_params"}))),
+                                      "contact_near", "contact_yield", "contact_anchor", "contact_force", "contact_tool_force",
+                                      "tool_kind", "tool_data", "tool_grid", "tool_pose", "contact_params", "step_params"}))),
          Shape::lanes, points, "contact points");
   }
   if (tissue) add_touch_pass("touch_press");
   apply(tissue ? "contact_change" : "contact_force");
   if (tools > 0) {
     pass("contact_settle",
-         with_step(with_points(
-             named({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_share", "contact_near",
-                    "contact_anchor", "contact_force", "contact_change", "contact_node_sum", "contact_tool_force", "tool_kind",
-                    "tool_data", "tool_grid", "tool_pose", "contact_params", "step_params"}))),
+         with_step(with_points(named({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_share",
+                                      "contact_near", "contact_yield", "contact_anchor", "contact_force", "contact_change",
+                                      "contact_node_sum", "contact_tool_force", "tool_kind", "tool_data", "tool_grid",
+                                      "tool_pose", "contact_params", "step_params"}))),
          Shape::lanes, points, "contact points");
     pass("contact_tool_sum",
          with_step(with_points(named({"contact_tool_force", "contact_rest", "contact_near", "tool_sum", "contact_params"}))),

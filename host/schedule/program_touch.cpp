@@ -73,7 +73,7 @@ void ProgramBuilder::add_touch() {
   }
   for (const char* name : {"touch_depth", "last_touch_depth"})
     reals(name, 1, BufferRole::state, "[points]", "m", "touch_press");
-  reals("touch_place", PLIANT_TOUCH_PLACE, BufferRole::scratch, "[points][16]", "see touch_point.cl", "touch_place");
+  reals("touch_place", PLIANT_TOUCH_PLACE, BufferRole::scratch, "[points][20]", "see touch_point.cl", "touch_place");
   program_.buffers.back().carried = Carried::all;  // of points that are near nothing: that of the last look
   reals("touch_weight", PLIANT_TOUCH_SLOTS + 1, BufferRole::scratch, "[tiles][17][16]", "1 (16), m^2", "touch_pair");
   program_.buffers.back().carried = Carried::all;
@@ -82,6 +82,9 @@ void ProgramBuilder::add_touch() {
   program_.buffers.back().carried = Carried::all;
   add(make_ints("touch_force", BufferRole::scratch, "[tiles][16 slots][4][16]", {},
                 PLIANT_TOUCH_SLOTS * PLIANT_TOUCH_FORCE * count, "touch_press"));
+  program_.buffers.back().carried = Carried::all;
+  add(make_ints("touch_moment", BufferRole::scratch, "[tiles][6][16]", {}, PLIANT_TOUCH_MOMENT * count,
+                "touch_press, touch_settle"));
   program_.buffers.back().carried = Carried::all;
 }
 
@@ -111,13 +114,15 @@ void ProgramBuilder::add_touch_look() {
 
 void ProgramBuilder::add_touch_pass(const char* kernel) {
   const auto points = static_cast<std::int64_t>(padded(model_.contact->size()));
-  std::vector<Arg> list = std::string(kernel) == "touch_press"
-                              ? named({"touch_place", "contact_near", "contact_force", "contact_change", "touch_partner",
-                                       "touch_pair", "touch_force", "touch_depth", "contact_params"})
-                              : named({"touch_place", "contact_near", "contact_change", "touch_partner", "touch_pair",
-                                       "touch_force", "contact_params"});
-  std::vector<Arg> place = named({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_share",
-                                  "contact_near", "contact_node_sum", "touch_surface", "touch_place", "step_params"});
+  std::vector<Arg> list =
+      std::string(kernel) == "touch_press"
+          ? named({"touch_place", "contact_near", "contact_yield", "contact_force", "contact_change", "touch_partner",
+                   "touch_pair", "touch_force", "touch_moment", "touch_depth", "contact_params"})
+          : named({"touch_place", "contact_near", "contact_change", "touch_partner", "touch_pair", "touch_force",
+                   "touch_moment", "contact_params"});
+  std::vector<Arg> place =
+      named({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_share", "contact_near",
+             "contact_yield", "contact_change", "contact_node_sum", "touch_surface", "touch_place", "step_params"});
   place.push_back(int_arg(std::string(kernel) == "touch_press" ? 0 : 1));
   program_.step.push_back({"touch_place", {}, std::move(place), Shape::lanes, points, "near points", points, 0.25, 0});
   program_.step.back().uneven = true;

@@ -234,6 +234,12 @@ void StepControl::change(double dt) {
   clock = {clock.step, clock.step, clock.time(), dt};
   for (std::size_t s = 0; s < run_.model().mass.size(); ++s) w[4 * s + 3] = run_.decay(run_.model(), s);
   run_.loaded.write_w(w);
+  // What contact points yield to a force in one step goes with its square.
+  if (const BufferId id = run_.loaded.program().find("contact_yield"); id >= 0) {
+    std::vector<double> yield = run_.backend().read_reals(id);
+    for (double& y : yield) y *= ratio * ratio;
+    run_.backend().write_reals(id, yield);
+  }
   upload_coupling(run_);
 }
 

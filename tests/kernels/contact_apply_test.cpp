@@ -7,31 +7,36 @@ namespace {
 class ContactApply : public TwinTest {};
 
 TEST_F(ContactApply, TwinGivesTheSameBits) {
-  for_contact_data(400, [&](const ContactData& d, const std::string& label) { expect_same_bits(apply_case(d), label); });
+  for_contact_data(400, [&](const ContactData& d, const std::string& label) {
+    expect_same_bits(apply_case(d), label);
+    expect_same_bits(apply_case(d, 1), label + ", with moments");
+  });
 }
 
 /// The nodes get what the points have: in quanta, whatever the weights.
 TEST(ContactApplyOracle, NodesGetTheWholeForce) {
-  ContactData d(700);
-  d.near = {1, 0, 3, 4};
-  const KernelCase test = apply_case(d);
-  const Reals sum = run_in_double(test, "contact_node_sum"), u = run_in_double(test, "node_u"),
-              w = run_in_double(test, "node_w");
-  for (std::size_t c = 0; c < 3; ++c) {
-    double nodes = 0, points = 0;
-    for (std::size_t s = 0; s < d.slots; ++s) {
-      nodes += sum[4 * s + c] / d.params[2];
-      const double b = 1e-6 * (1 + test.program().buffers[1].reals[4 * s + 3]) / 2;
-      const double moved =
-          (static_cast<int>(s % 8) >> c & 1) != 0 ? b * sum[4 * s + c] * test.program().buffers[0].reals[4 * s + 3] : 0;
-      EXPECT_NEAR(u[4 * s + c] - test.program().buffers[0].reals[4 * s + c], moved, 1e-6 * std::abs(moved) + 1e-12);
-      EXPECT_NEAR(w[4 * s + c] - test.program().buffers[1].reals[4 * s + c], moved, 1e-6 * std::abs(moved) + 1e-12);
+  for (const int moment : {0, 1}) {
+    ContactData d(700);
+    d.near = {PLIANT_TOUCH_BIT | 1, 0, PLIANT_TOUCH_BIT | 3, 4};
+    const KernelCase test = apply_case(d, moment);
+    const Reals sum = run_in_double(test, "contact_node_sum"), u = run_in_double(test, "node_u"),
+                w = run_in_double(test, "node_w");
+    for (std::size_t c = 0; c < 3; ++c) {
+      double nodes = 0, points = 0;
+      for (std::size_t s = 0; s < d.slots; ++s) {
+        nodes += sum[4 * s + c] / d.params[2];
+        const double b = 1e-6 * (1 + test.program().buffers[1].reals[4 * s + 3]) / 2;
+        const double moved =
+            (static_cast<int>(s % 8) >> c & 1) != 0 ? b * sum[4 * s + c] * test.program().buffers[0].reals[4 * s + 3] : 0;
+        EXPECT_NEAR(u[4 * s + c] - test.program().buffers[0].reals[4 * s + c], moved, 1e-6 * std::abs(moved) + 1e-12);
+        EXPECT_NEAR(w[4 * s + c] - test.program().buffers[1].reals[4 * s + c], moved, 1e-6 * std::abs(moved) + 1e-12);
+      }
+      for (std::size_t i = 0; i < d.points; ++i) {
+        const std::size_t at = ContactData::base(i, 4);
+        if (d.near[i / 16] != 0 && d.force[at + 48] != 0) points += 4096.0 * d.force[at + 16 * c];
+      }
+      EXPECT_EQ(nodes, points);
     }
-    for (std::size_t i = 0; i < d.points; ++i) {
-      const std::size_t at = ContactData::base(i, 4);
-      if (d.near[i / 16] != 0 && d.force[at + 48] != 0) points += 4096.0 * d.force[at + 16 * c];
-    }
-    EXPECT_EQ(nodes, points);
   }
 }
 

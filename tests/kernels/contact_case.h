@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "layout.h"
 #include "random_data.h"
 
 namespace pliant::kernel_test {
@@ -12,9 +13,9 @@ namespace pliant::kernel_test {
 struct ContactData {
   static constexpr std::size_t tools = 5, rows = test_step + 2, frames = 3, pose_numbers = 14;
   std::size_t points, slots = 96;
-  Reals node_u, node_w, rest, weight, share, anchor, node_sum, data, grid, pose, params, step_params;
+  Reals node_u, node_w, rest, weight, share, yield, anchor, node_sum, data, grid, pose, params, step_params;
   Ints node, near, force, change, tool_force, sum, kind;
-  Ints slot, free, tiles_offset, tiles, gather_offset, gather, units;
+  Ints slot, free, tiles_offset, tiles, gather_offset, gather, units, turns, moment;
 
   static std::size_t base(std::size_t i, std::size_t planes) { return i / 16 * planes * 16 + i % 16; }
 
@@ -32,6 +33,8 @@ struct ContactData {
   }
 
  private:
+  Ints turn;  // [points][2][8] units of the gradients along both tangents
+
   void make_points(Random& random) {
     rest.resize(4 * points);
     weight.resize(8 * points);
@@ -54,11 +57,16 @@ struct ContactData {
         anchor[base(i, 4) + 48] = random.integer(1, static_cast<int>(tools));
       }
     }
+    yield.resize(points);
+    for (double& y : yield) y = random.chance(0.5) ? 0 : random.uniform(1e-6, 1e-5);
     near = random.ints(points / 16, 0, 31);
     near[0] = 31;
     force = random.ints(4 * points, -1000000, 1000000);
     change = force;
-    for (std::size_t i = 0; i < points; ++i) force[base(i, 4) + 48] = change[base(i, 4) + 48] = random.integer(0, 31);
+    for (std::size_t i = 0; i < points; ++i) {
+      const int ready = random.chance(0.5) ? PLIANT_READY_BIT : 0;
+      force[base(i, 4) + 48] = change[base(i, 4) + 48] = random.integer(0, 31) | ready;
+    }
     tool_force = random.ints(8 * points * tools, -2000000, 2000000);
     for (std::size_t t = 0; t < tools; ++t) {
       for (std::size_t i = 0; i < points; ++i) {
@@ -68,6 +76,16 @@ struct ContactData {
       }
     }
     node_sum = random.positive(4 * (slots + 1), 0.001, 0.05);
+    moment = random.ints(PLIANT_TOUCH_MOMENT * points, -1000000, 1000000);
+    turn.resize(16 * points);
+    for (std::size_t i = 0; i < points; ++i) {
+      for (std::size_t k = 0; k < 16; k += 8) {  // they sum to zero
+        for (std::size_t a = 1; a < 8; ++a) {
+          turn[16 * i + k + a] = random.integer(-3000, 3000);
+          turn[16 * i + k] -= turn[16 * i + k + a];
+        }
+      }
+    }
   }
 
   void make_tools(Random& random) {
@@ -105,11 +123,12 @@ struct ContactData {
 
   /// The nodes in order; a last tile is filled up with a slot that is none.
   void make_gather() {
-    std::vector<std::vector<std::array<std::int32_t, 2>>> at(slots + 16);
+    std::vector<std::vector<std::array<std::int32_t, 4>>> at(slots + 16);
     for (std::size_t i = 0; i < points; ++i) {
       for (std::size_t a = 0; a < 8; ++a) {
         const int parts = static_cast<int>(weight[base(i, 8) + 16 * a] * 4096);
-        if (parts > 0) at[static_cast<std::size_t>(node[base(i, 8) + 16 * a])].push_back({static_cast<int>(base(i, 4)), parts});
+        at[static_cast<std::size_t>(node[base(i, 8) + 16 * a])].push_back(
+            {static_cast<int>(base(i, 4)), parts, turn[16 * i + a], turn[16 * i + 8 + a]});
       }
     }
     tiles_offset = gather_offset = {0};
@@ -124,6 +143,9 @@ struct ContactData {
         for (std::size_t n = first; n < first + 16; ++n) {
           gather.push_back(row < at[n].size() ? at[n][row][0] : 0);
           units.push_back(row < at[n].size() ? at[n][row][1] : 0);
+        }
+        for (std::size_t k = 2; k < 4; ++k) {
+          for (std::size_t n = first; n < first + 16; ++n) turns.push_back(row < at[n].size() ? at[n][row][k] : 0);
         }
       }
       for (std::int32_t tile = 0; tile < static_cast<std::int32_t>(points / 16); ++tile) tiles.push_back(tile);
@@ -151,7 +173,7 @@ inline KernelCase& add_points(KernelCase& test, const ContactData& d) {
 
 inline KernelCase near_case(const ContactData& d) {
   KernelCase test("contact_near", {}, Shape::items, d.points / 16);
-  add_points(test, d).ints("contact_near", d.near).reals("contact_anchor", d.anchor);
+  add_points(test, d).ints("contact_near", d.near).reals("contact_yield", d.yield).reals("contact_anchor", d.anchor);
   add_tools(test, d).integer(static_cast<int>(ContactData::tools)).step();
   return test;
 }
@@ -161,6 +183,7 @@ inline KernelCase& add_touching(KernelCase& test, const ContactData& d) {
   return add_points(test, d)
       .reals("contact_share", d.share)
       .ints("contact_near", d.near)
+      .reals("contact_yield", d.yield)
       .reals("contact_anchor", d.anchor)
       .ints("contact_force", d.force);
 }
@@ -198,8 +221,9 @@ inline KernelCase tool_sum_case(const ContactData& d) {
   return test;
 }
 
-inline KernelCase apply_case(const ContactData& d) {
-  KernelCase test("contact_apply", {}, Shape::lanes, d.slot.size());
+/// `moment`: with what turns the tangents of points that touch tissue.
+inline KernelCase apply_case(const ContactData& d, int moment = 0) {
+  KernelCase test("contact_apply", {{"MOMENT", moment}}, Shape::lanes, d.slot.size());
   test.reals("node_u", d.node_u)
       .reals("node_w", d.node_w)
       .ints("contact_slot", d.slot)
@@ -209,8 +233,10 @@ inline KernelCase apply_case(const ContactData& d) {
       .ints("contact_gather_offset", d.gather_offset)
       .ints("contact_gather", d.gather)
       .ints("contact_gather_units", d.units)
+      .ints("contact_gather_turns", d.turns)
       .ints("contact_near", d.near)
       .ints("contact_force", d.force)
+      .ints("touch_moment", d.moment)
       .reals("contact_rest", d.rest)
       .reals("contact_node_sum", d.node_sum)
       .reals("contact_params", d.params)

@@ -15,15 +15,15 @@ TEST(TouchBoxOracle, PlacesNormalsAndBoxes) {
   TouchData d(1100);
   const KernelCase test = touch_box_case(d);
   const Reals box = run_in_double(test, "touch_box");
-  const auto& u = test.program().buffers[0].reals;
+  const auto &u = test.program().buffers[0].reals, &w = test.program().buffers[1].reals;
   d.place = run_in_double(test, "touch_place");
   for (std::size_t i = 0; i < d.points; ++i) {
     Eigen::Vector3d x = d.three(d.rest, i, 4, 0), one = d.three(d.surface, i, PLIANT_TOUCH_SURFACE, 16),
                     two = d.three(d.surface, i, PLIANT_TOUCH_SURFACE, 19);
     for (std::size_t a = 0; a < 8; ++a) {
-      const double* node = &u[4 * static_cast<std::size_t>(d.node[ContactData::base(i, 8) + 16 * a])];
-      const Eigen::Vector3d moved(node[0], node[1], node[2]);
-      x += d.weight[ContactData::base(i, 8) + 16 * a] * moved;
+      const auto node = 4 * static_cast<std::size_t>(d.node[ContactData::base(i, 8) + 16 * a]);
+      x += d.weight[ContactData::base(i, 8) + 16 * a] * Eigen::Vector3d(&u[node]);
+      const Eigen::Vector3d moved = Eigen::Vector3d(&u[node]) - Eigen::Vector3d(&w[node]);  // at the start of the step
       one += d.surface[ContactData::base(i, PLIANT_TOUCH_SURFACE) + 16 * a] * moved;
       two += d.surface[ContactData::base(i, PLIANT_TOUCH_SURFACE) + 16 * (8 + a)] * moved;
     }

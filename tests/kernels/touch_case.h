@@ -23,14 +23,30 @@ struct TouchData : ContactData {
     const std::size_t at = base(i, planes) + 16 * plane;
     return {values[at], values[at + 16], values[at + 32]};
   }
-  /// Of touch_place: 0 place, 1 increment, 2 normal, 3 tangent.
+  /// Of touch_place: 0 place, 1 increment, 2 normal, 3 tangent, 4 turn of the normal.
   [[nodiscard]] Eigen::Vector3d row(std::size_t i, std::size_t number) const {
-    return Eigen::Vector3d(&place[16 * i + 4 * number]);
+    return Eigen::Vector3d(&place[PLIANT_TOUCH_PLACE * i + 4 * number]);
   }
-  [[nodiscard]] double& yielding(std::size_t i) { return place[16 * i + 3]; }
+  [[nodiscard]] double& yielding(std::size_t i) { return place[PLIANT_TOUCH_PLACE * i + 3]; }
   [[nodiscard]] Eigen::Vector3d x(std::size_t i) const { return row(i, 0); }
   [[nodiscard]] Eigen::Vector3d moved(std::size_t i) const { return row(i, 1); }
   [[nodiscard]] Eigen::Vector3d normal(std::size_t i) const { return row(i, 2); }
+  /// How the gap of two points follows the upper normal: their distance along the surface at the start of the step, over the
+  /// length of the difference of their normals.
+  [[nodiscard]] Eigen::Vector3d arm(std::size_t lower, std::size_t upper) const {
+    const Eigen::Vector3d facing = normal(upper) - normal(lower), n = facing.normalized();
+    const Eigen::Vector3d start = x(lower) - moved(lower) - x(upper) + moved(upper);
+    return (start - start.dot(n) * n) / facing.norm();
+  }
+  [[nodiscard]] double gap(std::size_t lower, std::size_t upper) const {
+    return (x(lower) - x(upper)).dot((normal(upper) - normal(lower)).normalized()) +
+           arm(lower, upper).dot(row(upper, 4) - row(lower, 4));
+  }
+  /// How far two points are in front of each other after the next step, times the length of the difference of their normals.
+  [[nodiscard]] double front(std::size_t lower, std::size_t upper) const {
+    const Eigen::Vector3d facing = normal(upper) - normal(lower);
+    return (x(lower) - x(upper)).dot(facing) - std::max(0.0, -(moved(lower) - moved(upper)).dot(facing));
+  }
   [[nodiscard]] double spacing(std::size_t i) const { return surface[base(i, PLIANT_TOUCH_SURFACE) + 352]; }
   [[nodiscard]] double area(std::size_t i) const { return rest[base(i, 4) + 48]; }
 
@@ -60,7 +76,7 @@ struct TouchData : ContactData {
         if (!(spacing(i) > 0)) continue;
         out[18] = std::max(out[18], spacing(i));
         for (std::size_t k = 0; k < 9; ++k) {
-          const double v = place[16 * i + k + k / 3];
+          const double v = place[PLIANT_TOUCH_PLACE * i + k + k / 3];
           out[2 * k] = std::min(out[2 * k], v);
           out[2 * k + 1] = std::max(out[2 * k + 1], v);
         }
@@ -83,16 +99,20 @@ struct TouchData : ContactData {
       if (i % 3 != 0) start = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
       for (std::size_t c = 0; c < 3; ++c) {
         const auto k = static_cast<int>(c);
-        place[16 * i + c] = numbers == Data::large ? at[k] : random.draw(numbers, 0.2);
-        place[16 * i + 4 + c] = random.draw(numbers, 1e-3);
-        place[16 * i + 8 + c] = n[k];
-        place[16 * i + 12 + c] = t[k];
+        double* own = &place[PLIANT_TOUCH_PLACE * i];
+        own[c] = numbers == Data::large ? at[k] : random.draw(numbers, 0.2);
+        own[4 + c] = random.draw(numbers, 1e-3);
+        own[8 + c] = n[k];
+        own[12 + c] = t[k];
+        own[16 + c] = random.draw(numbers, 1e-2);
+        own[7 + 4 * c] = c == 1 ? random.uniform(-0.3, 0.3) : random.uniform(0.8, 1.2);
         surface[base(i, PLIANT_TOUCH_SURFACE) + 16 * (16 + c)] = t[k];
         surface[base(i, PLIANT_TOUCH_SURFACE) + 16 * (19 + c)] = n.cross(t)[k];
         touch_rest[base(i, 4) + 16 * c] = start[k];
       }
       yielding(i) = random.chance(0.1) ? 0 : random.uniform(1e-6, 1e-5);
       surface[base(i, PLIANT_TOUCH_SURFACE) + 352] = rest[base(i, 4) + 48] > 0 ? random.uniform(0.03, 0.06) : 0;
+      place[PLIANT_TOUCH_PLACE * i + 19] = spacing(i) > 0 ? 1 / spacing(i) : 0;
       touch_rest[base(i, 4) + 48] = random.integer(0, 1);
       if (random.chance(0.2)) {
         for (std::size_t a = 0; a < 8; ++a) node[base(i, 8) + 16 * a] = static_cast<std::int32_t>(a);
@@ -206,6 +226,8 @@ inline KernelCase touch_place_case(const TouchData& d, int again) {
   add_points(test, d)
       .reals("contact_share", d.share)
       .ints("contact_near", d.near)
+      .reals("contact_yield", d.yield)
+      .ints("contact_change", d.change)
       .reals("contact_node_sum", d.node_sum)
       .reals("touch_surface", d.surface)
       .reals("touch_place", d.place)
@@ -218,11 +240,13 @@ inline KernelCase touch_press_case(const TouchData& d) {
   KernelCase test("touch_press", {}, Shape::lanes, d.points);
   test.reals("touch_place", d.place)
       .ints("contact_near", d.near)
+      .reals("contact_yield", d.yield)
       .ints("contact_force", d.force)
       .ints("contact_change", d.change)
       .ints("touch_partner", d.partner)
       .reals("touch_pair", d.pair)
       .ints("touch_force", d.pair_force)
+      .ints("touch_moment", d.moment)
       .reals("touch_depth", d.depth)
       .reals("contact_params", d.params);
   return test;
@@ -236,6 +260,7 @@ inline KernelCase touch_settle_case(const TouchData& d) {
       .ints("touch_partner", d.partner)
       .reals("touch_pair", d.pair)
       .ints("touch_force", d.pair_force)
+      .ints("touch_moment", d.moment)
       .reals("contact_params", d.params);
   return test;
 }

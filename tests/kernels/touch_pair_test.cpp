@@ -29,7 +29,7 @@ double weight(const TouchData& d, std::size_t i, std::size_t j, double& offset, 
   const auto near_zero = [&](double v, double scale) { close = close || std::abs(v) < 1e-5 * scale; };
   const double large = std::max(d.spacing(i), d.spacing(j)), facing = -2 * d.normal(i).dot(d.normal(j)) - 1;
   const Vector3d apart = d.x(i) - d.x(j), n = (d.normal(j) - d.normal(i)).normalized();
-  const double gap = apart.dot(n), s = (apart - gap * n).norm() / (1.2 * large);
+  const double gap = d.gap(i, j), s = (apart - apart.dot(n) * n).norm() / (1.2 * large);
   const double closing = std::max(0.0, -(d.moved(i) - d.moved(j)).dot(n));
   near_zero(facing, 1);
   near_zero(1 - s, 1);
@@ -120,9 +120,9 @@ TEST(TouchPairOracle, TheWeakestGiveWay) {
   for (std::size_t i = 0; i < 32; ++i) {
     const bool high = i >= 16 || i == 0;
     for (std::size_t c = 0; c < 3; ++c) {
-      d.place[16 * i + 8 + c] = c == 2 ? (high ? -1 : 1) : 0;
-      d.place[16 * i + c] = c == 0 ? 0.001 * static_cast<double>(i) : c == 2 ? (high ? 0.001 : 0) : 0;
-      d.place[16 * i + 4 + c] = 0;
+      d.place[PLIANT_TOUCH_PLACE * i + 8 + c] = c == 2 ? (high ? -1 : 1) : 0;
+      d.place[PLIANT_TOUCH_PLACE * i + c] = c == 0 ? 0.001 * static_cast<double>(i) : c == 2 ? (high ? 0.001 : 0) : 0;
+      d.place[PLIANT_TOUCH_PLACE * i + 4 + c] = 0;
     }
     d.rest[ContactData::base(i, 4) + 48] = 1e-3;
     d.surface[ContactData::base(i, PLIANT_TOUCH_SURFACE) + 352] = 0.03;

@@ -45,7 +45,7 @@ TEST(TouchSettleOracle, FrictionKeepsWithinItsCone) {
     const KernelCase test = touch_settle_case(d);
     const Reals change = ints_in_double(test, "contact_change"), pair = run_in_double(test, "touch_pair");
     const Vector3d n = (d.normal(j) - d.normal(i)).normalized();
-    const double stiffness = 1e-3 / 1e-5, rest = std::max(0.0, -(d.x(i) - d.x(j)).dot(n));
+    const double stiffness = 1e-3 / 1e-5, rest = std::max(0.0, -d.gap(i, j));
     const Vector3d had = d.params[0] * Vector3d(before[0], before[1], before[2]);
     const Vector3d got = had + d.params[0] * Vector3d(change[ContactData::base(i, 4)], change[ContactData::base(i, 4) + 16],
                                                       change[ContactData::base(i, 4) + 32]);

@@ -1,0 +1,53 @@
+// Tissue that touches tissue: the frame of a point's surface at the start of the step, and how far it turns in the step (touch_point.cl).
+static inline void write_state(__global float* touch_place, int i, touch_state s) {
+  __global float* at = touch_place + PLIANT_TOUCH_PLACE * i;
+  vstore4((float4)(s.x.xyz, s.yielding), 0, at);
+  vstore4((float4)(s.moved.xyz, s.short_first), 1, at);
+  vstore4((float4)(s.normal.xyz, s.skew), 2, at);
+  vstore4((float4)(s.tangent.xyz, s.short_height), 3, at);
+  vstore4((float4)(s.tilt.xyz, s.density), 4, at);
+}
+
+// F t1 and F t2 of an increment or a displacement.
+static inline void along_tangents(__global const float* values, __global const int* contact_node, __global const float* touch_surface, int i,
+                                  float4* first, float4* second) {
+  __global const float* own = touch_surface + POINT_BASE(i, PLIANT_TOUCH_SURFACE);
+  __global const int* node = contact_node + POINT_BASE(i, 8);
+  *first = *second = 0.0f;
+  for (int a = 0; a < 8; ++a) {
+    const float4 v = vload4(node[a * PLIANT_TILE], values);
+    *first = fma((float4)(own[a * PLIANT_TILE]), v, *first);
+    *second = fma((float4)(own[(8 + a) * PLIANT_TILE]), v, *second);
+  }
+  first->w = second->w = 0.0f;
+}
+
+// The frame of a point at the start of the step.
+static inline void set_frame(__global const float* node_u, __global const float* node_w, __global const int* contact_node,
+                             __global const float* touch_surface, int i, touch_state* s) {
+  __global const float* own = touch_surface + POINT_BASE(i, PLIANT_TOUCH_SURFACE);
+  float4 now_first, now_second, moved_first, moved_second;
+  along_tangents(node_u, contact_node, touch_surface, i, &now_first, &now_second);
+  along_tangents(node_w, contact_node, touch_surface, i, &moved_first, &moved_second);
+  const float4 first = (three(own + 16 * PLIANT_TILE) + now_first) - moved_first;
+  const float4 second = (three(own + 19 * PLIANT_TILE) + now_second) - moved_second;
+  s->normal = unit(cross3(first, second));
+  const float length = sqrt(dot_xyz(first, first));
+  s->tangent = normalised(first.x, first.y, first.z, length);
+  const float height = dot_xyz(second, cross3(s->normal, s->tangent));
+  s->short_first = length > 0.1f ? 1.0f / length : 10.0f;
+  s->short_height = height > 0.1f ? 1.0f / height : 10.0f;
+  s->skew = dot_xyz(second, s->tangent) * s->short_height;
+  const float spacing = own[22 * PLIANT_TILE];
+  s->density = spacing > 0.0f ? 1.0f / spacing : 0.0f;
+}
+
+// The normal turns by -(n . F' t_k) a^k, a^k the dual vectors of the tangents.
+static inline float4 tilt_of(__global const float* node_w, __global const int* contact_node, __global const float* touch_surface, int i,
+                             touch_state s) {
+  float4 first, second;
+  along_tangents(node_w, contact_node, touch_surface, i, &first, &second);
+  const float one = dot_xyz(s.normal, first) * s.short_first, two = dot_xyz(s.normal, second);
+  const float across = fma(two, s.short_height, -(one * s.skew));
+  return (float4)(0.0f) - fma((float4)(one), s.tangent, cross3(s.normal, s.tangent) * across);  // no zero with a sign
+}
