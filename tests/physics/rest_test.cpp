@@ -1,0 +1,121 @@
+// Contact that rests: what a still tool or other tissue presses keeps its energy where nothing damps, and comes to rest where
+// something does, at the automatic step.
+#include "physics/harness.h"
+
+namespace pliant::physics {
+namespace {
+
+class RestPhysics : public OnBackend {};
+
+/// Kinetic energy over that of strain.
+double motion(const Simulation& sim) {
+  std::vector<std::vector<Vec3d>> u, v;
+  for (std::size_t b = 0; b < sim.model().bodies.size(); ++b) {
+    u.push_back(sim.displacements(b));
+    v.push_back(sim.velocities(b));
+  }
+  const Energies e = energies(sim.model(), by_slot(sim.model(), u), by_slot(sim.model(), v));
+  return e.kinetic / (e.strain + e.hourglass);
+}
+
+void until(Simulation& sim, double time) {
+  while (sim.time() < time) sim.advance(sim.next_batch(64));
+}
+
+/// Largest motion of a span of time.
+double most_motion(Simulation& sim, double from, double to) {
+  until(sim, from);
+  double most = 0;
+  while (sim.time() < to) {
+    sim.advance(sim.next_batch(64));
+    most = std::max(most, motion(sim));
+  }
+  return most;
+}
+
+/// Its origin starts at `x` and goes down.
+ContactTool pressed(ContactTool tool, const Vec3d& x, double depth) {
+  tool.name = "tool";
+  tool.path = {{0, x[0], x[1], x[2], 0, 0, 0, 1}, {0.3, x[0], x[1], x[2] - depth, 0, 0, 0, 1}};
+  return tool;
+}
+
+Body held_block(const Box& box, Discretization cut, double damping) {
+  Material m = material_young(Law::neo_hookean, 8000, 0.45);
+  m.damping = damping;
+  Body body = box_body(box, cut, m);
+  body.fixed = {{face(2, 0)}};
+  return body;
+}
+
+/// One cell under a ball that stands still: without friction and damping nothing may grow. The ball's normal at the place of
+/// the trial step would feed each oscillation by f h / (2 m R) per second.
+TEST_P(RestPhysics, OneCellUnderABall) {
+  for (const Discretization cut : {Discretization::hex8_bricks, Discretization::tet4}) {
+    Scene scene;
+    scene.bodies = {held_block({{1, 1, 1}, 0.01}, cut, 0)};
+    ContactTool ball;
+    ball.radius = 0.01;
+    scene.tools = {pressed(ball, {0.006, 0.0055, 0.0205}, 0.004)};
+    auto sim = simulate(scene, GetParam());
+    const double early = most_motion(*sim, 0.3, 0.8), late = most_motion(*sim, 4, 4.5);
+    check(std::string(name_of(cut)) + ": growth of the motion in 4 s", std::max(0.0, late / early - 1), 0.2);
+  }
+}
+
+/// The rod, the block and the step that once shook for ever, on every element; and the force at a tenth of the step.
+TEST_P(RestPhysics, ARodOnASlab) {
+  for (const Discretization cut : all_cuts()) {
+    Scene scene;
+    scene.bodies = {held_block({{10, 8, 4}, 0.006}, cut, 8)};
+    ContactTool rod;
+    rod.shape = ToolShape::capsule;
+    rod.radius = 0.006;
+    rod.first = {0.0313, -0.05, 0};
+    rod.second = {0.0313, 0.1, 0.003};
+    scene.tools = {pressed(rod, {0, 0, 0.031}, 0.0065)};
+    auto sim = simulate(scene, GetParam());
+    until(*sim, 2.3);
+    check(std::string(name_of(cut)) + ": motion after 2 s", motion(*sim), 1e-6);
+    EXPECT_GE(sim->dt(), 0.8 * scene.safety * sim->stable_dt()) << name_of(cut);
+    if (!in_double() || cut != Discretization::hex8full_lattice) continue;
+    const double force = sim->contact().history()[0].now.force[2];
+    scene.dt = 0.1 * sim->dt();
+    auto fine = simulate(scene, GetParam());
+    until(*fine, 1.5);
+    check_relative("  force against that of a tenth of the step", force, fine->contact().history()[0].now.force[2], 0.015);
+  }
+}
+
+/// A cube whose edge comes first is pressed into a block, both without friction: what pushes a pair must be the gradient of an
+/// energy. Without the turn of its tangents both shake harder and harder.
+TEST_P(RestPhysics, TissueInTissue) {
+  Scene scene;
+  Body low = held_block({{8, 8, 4}, 0.006}, Discretization::hex8_bricks, 3);
+  low.name = "low";
+  TriangleMesh cube = box_surface({{4, 4, 4}, 0.006});
+  const Matrix3d turn = (Eigen::AngleAxisd(0.3, Vector3d::UnitX()) * Eigen::AngleAxisd(0.4, Vector3d::UnitY())).matrix();
+  for (Vec3d& x : cube.vertices) x = plain(turn * eigen(x) + Vector3d(0.009, 0.018, 0.0365));
+  Body high = low;
+  high.name = "high";
+  high.surface = save(cube);
+  high.fixed.clear();
+  Prescribed p;
+  p.where.kind = Selection::Kind::box;
+  p.where.a = {-1, -1, 0.049};
+  p.where.b = {1, 1, 1};
+  p.displacement = {0, 0, -0.013};
+  p.curve = smooth(0.3);
+  high.prescribed = {p};
+  scene.bodies = {low, high};
+  scene.contact = TissueContact{0};
+  auto sim = simulate(scene, GetParam());
+  until(*sim, 4);
+  EXPECT_GT(sim->contact().tissue().points, 20);
+  check("motion", motion(*sim), 1e-5);
+}
+
+PLIANT_ON_BACKENDS(RestPhysics);
+
+}  // namespace
+}  // namespace pliant::physics
