@@ -44,15 +44,24 @@ class RunLoop {
   /// Steps still to do at the present size of the step.
   [[nodiscard]] std::int64_t remaining() const;
   [[nodiscard]] const RunEnd& end() const { return end_; }
-  /// Run to the end; does what is due where its grid says so, and calls `after_batch` with what was done so far after every
-  /// batch. After a divergence the simulation holds the last good state.
+  /// Run to the end; does what is due at the start and where its grid says so, and calls `after_batch` with what was done so
+  /// far after every batch. A state is written when it is settled: what a batch did that is then made again is never seen.
+  /// After a divergence the simulation holds the last good state.
   RunResult run(std::vector<DueOutput>& due, const std::function<void(const RunResult&)>& after_batch);
 
  private:
-  std::int32_t batch(const std::vector<DueOutput>& due);
+  /// A state that waits for its outputs, by their places in the list of what is due.
+  struct Held {
+    Moment moment;
+    std::vector<std::size_t> outputs;
+  };
+  bool batch(const std::vector<DueOutput>& due, std::int32_t& steps);
+  void put_out(std::vector<DueOutput>& due, const std::vector<std::size_t>& outputs);
+  void release(std::vector<DueOutput>& due);
 
   Simulation& simulation_;
   RunEnd end_;
+  std::vector<Held> held_;
 };
 
 }  // namespace pliant::cli

@@ -136,6 +136,8 @@ bool Simulation::worth_keeping() {
 void Simulation::keep_state() {
   loaded_.keep_state();
   state_.kept = KeptState{state_.clock, state_.relaxation.damping};
+  contact_.keep();
+  kept_inversions_ = inversions_;
 }
 
 void Simulation::look_for_fault(std::int64_t batch_start) {
@@ -212,6 +214,27 @@ void Simulation::return_to_kept() {
   loaded_.return_to_kept_state();
   state_.clock = state_.kept->clock;
   state_.relaxation.damping = state_.kept->damping;
+  contact_.return_to_kept();
+  inversions_ = kept_inversions_;
+}
+
+Moment Simulation::moment() const { return {state_.clock, loaded_.state_bytes(), contact_.felt()}; }
+
+void Simulation::look_at(const Moment& moment, const std::function<void()>& look) {
+  const Moment present = this->moment();
+  const auto go = [&](const Moment& to) {
+    state_.clock = to.clock;
+    loaded_.write_state_bytes(to.buffers);
+    contact_.set_felt(to.felt);
+  };
+  go(moment);
+  try {
+    look();
+  } catch (...) {
+    go(present);
+    throw;
+  }
+  go(present);
 }
 
 bool Simulation::inverted_now() {
@@ -337,6 +360,8 @@ void Simulation::restore(const Snapshot& snapshot) {
   }
   edits_.take_up(std::move(bodies));
   divergence_.reset();
+  contact_.keep();
+  kept_inversions_ = inversions_;
 }
 
 }  // namespace pliant
