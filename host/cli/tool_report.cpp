@@ -9,6 +9,17 @@
 #include "io/atomic_file.h"
 
 namespace pliant::cli {
+namespace {
+
+/// A field of a table: in quotation marks, its own doubled, where it would be more than one (RFC 4180).
+std::string csv_text(const std::string& text) {
+  if (text.find_first_of(",\"") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
+  return out + '"';
+}
+
+}  // namespace
 
 void add_tools(const Simulation& simulation, nlohmann::ordered_json& json) {
   const Scene& scene = simulation.scene();
@@ -85,7 +96,7 @@ void ToolTable::write(const Simulation& simulation, const std::filesystem::path&
     const ToolLoad& now = simulation.contact().history()[t].now;
     const Pose at = simulation.contact().pose(t, simulation.time());
     table_ += fmt::format("{:.9g},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{}\n", simulation.time(), simulation.step(),
-                          scene.tools[t].name, fmt::join(at.position, ","), fmt::join(now.force, ","),
+                          csv_text(scene.tools[t].name), fmt::join(at.position, ","), fmt::join(now.force, ","),
                           fmt::join(now.torque, ","), now.area, now.depth, now.points);
   }
   write_file(file, table_);

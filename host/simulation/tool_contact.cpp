@@ -104,13 +104,20 @@ void ToolContact::start() {
         where = i;
       }
     }
+    std::size_t body = deepest > 0 ? static_cast<std::size_t>(points.body[where]) : 0;
+    Vec3d place = points.rest[where];
+    if (const auto inside = tool_inside(model, (*model.tools)[t], moment, at); inside && inside->depth > deepest) {
+      deepest = inside->depth;
+      body = inside->body;
+      place = inside->point;
+    }
     if (deepest <= kStartDepth * points.spacing) continue;
     throw Error(
         ErrorCode::bad_input,
         fmt::format("{}: tool '{}' begins inside body '{}', {:.3g} m deep at [{:.4g}, {:.4g}, {:.4g}]; expected at most "
                     "{:.3g} m (a quarter of a cell), which contact pushes out",
-                    tool.pointer, tool.name, model.bodies[points.body[where]].name, deepest, points.rest[where][0],
-                    points.rest[where][1], points.rest[where][2], kStartDepth * points.spacing));
+                    tool.pointer, tool.name, model.bodies[body].name, deepest, place[0], place[1], place[2],
+                    kStartDepth * points.spacing));
   }
 }
 
