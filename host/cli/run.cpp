@@ -75,7 +75,7 @@ class Run {
     watch_interrupt();
     std::vector<DueOutput> due = outputs();
     if (o_.profile) simulation_->backend().profile(true);
-    RunLoop loop(*simulation_, end());
+    RunLoop loop(*simulation_, end(), o_.profile);
     RunProgress progress(o_.common, *simulation_, loop);
     const Stopwatch since_start;
     double saved = 0;

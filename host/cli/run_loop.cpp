@@ -69,6 +69,36 @@ void RunLoop::release(std::vector<DueOutput>& due) {
   held_.clear();
 }
 
+void RunLoop::put_out_due(std::vector<DueOutput>& due) {
+  std::vector<std::size_t> now;
+  for (std::size_t d = 0; d < due.size(); ++d) {
+    if (due[d].grid.take(simulation_)) now.push_back(d);
+  }
+  put_out(due, now);
+}
+
+/// What became of a batch. `stayed`: it was not taken back.
+void RunLoop::look(RunResult& result, std::int64_t first, bool stayed, std::vector<DueOutput>& due) {
+  result.steps = std::max<std::int64_t>(0, simulation_.step() - first);
+  if (!stayed) {
+    held_.clear();
+    for (DueOutput& d : due) d.grid.start(simulation_);
+  }
+  if (const auto& divergence = simulation_.divergence()) {
+    result.diverged = divergence->message();
+    result.diverged_step = divergence->step;
+  }
+}
+
+/// Whether the last state is one: what comes after it may show that it is to be made again, with smaller steps.
+bool RunLoop::ends_here(RunResult& result, std::int64_t first, std::vector<DueOutput>& due) {
+  if (profile_) simulation_.backend().profile(false);
+  const bool stays = simulation_.confirm();
+  if (profile_) simulation_.backend().profile(true);
+  look(result, first, stays, due);
+  return stays;
+}
+
 RunResult RunLoop::run(std::vector<DueOutput>& due, const std::function<void(const RunResult&)>& after_batch) {
   RunResult result;
   std::vector<double> batch_ms;
@@ -77,34 +107,24 @@ RunResult RunLoop::run(std::vector<DueOutput>& due, const std::function<void(con
   std::iota(now.begin(), now.end(), std::size_t{0});
   for (DueOutput& d : due) d.grid.start(simulation_);
   put_out(due, now);
-  while (!simulation_.at_equilibrium() && !result.interrupted && remaining() > 0) {
-    const Stopwatch clock;
-    std::int32_t n = 0;
-    const bool stayed = batch(due, n);
-    const double seconds = clock.seconds();
-    result.seconds += seconds;
-    batch_ms.push_back(1e3 * seconds / n);
-    result.steps = std::max<std::int64_t>(0, simulation_.step() - first);  // a batch that is made again takes steps back
-    if (!stayed) held_.clear();
-    if (const auto& divergence = simulation_.divergence()) {
-      result.diverged = divergence->message();
-      result.diverged_step = divergence->step;
-      break;
+  do {
+    while (!simulation_.at_equilibrium() && !result.interrupted && result.diverged.empty() && remaining() > 0) {
+      const Stopwatch clock;
+      std::int32_t n = 0;
+      const bool stayed = batch(due, n);
+      const double seconds = clock.seconds();
+      result.seconds += seconds;
+      batch_ms.push_back(1e3 * seconds / n);
+      look(result, first, stayed, due);
+      if (!result.diverged.empty()) break;
+      const double dt = simulation_.dt();
+      result.shortest_dt = batch_ms.size() == 1 ? dt : std::min(dt, result.shortest_dt);
+      result.longest_dt = std::max(dt, result.longest_dt);
+      result.interrupted = interrupted();
+      after_batch(result);
+      if (stayed) put_out_due(due);
     }
-    const double dt = simulation_.dt();
-    result.shortest_dt = batch_ms.size() == 1 ? dt : std::min(dt, result.shortest_dt);
-    result.longest_dt = std::max(dt, result.longest_dt);
-    result.interrupted = interrupted();
-    after_batch(result);
-    now.clear();
-    for (std::size_t d = 0; d < due.size() && stayed; ++d) {
-      if (due[d].grid.take(simulation_)) now.push_back(d);
-    }
-    for (DueOutput& d : due) {
-      if (!stayed) d.grid.start(simulation_);
-    }
-    put_out(due, now);
-  }
+  } while (result.diverged.empty() && !result.interrupted && !ends_here(result, first, due));
   if (result.diverged.empty()) release(due);  // nothing comes that could take it back
   result.ms_per_step = median(std::move(batch_ms));
   return result;

@@ -40,7 +40,9 @@ struct DueOutput {
 
 class RunLoop {
  public:
-  RunLoop(Simulation& simulation, const RunEnd& end) : simulation_(simulation), end_(end) {}
+  /// `profile`: passes are timed, but for those of confirm(), which do not belong to the run.
+  RunLoop(Simulation& simulation, const RunEnd& end, bool profile = false)
+      : simulation_(simulation), end_(end), profile_(profile) {}
   /// Steps still to do at the present size of the step.
   [[nodiscard]] std::int64_t remaining() const;
   [[nodiscard]] const RunEnd& end() const { return end_; }
@@ -57,10 +59,14 @@ class RunLoop {
   };
   bool batch(const std::vector<DueOutput>& due, std::int32_t& steps);
   void put_out(std::vector<DueOutput>& due, const std::vector<std::size_t>& outputs);
+  void put_out_due(std::vector<DueOutput>& due);
   void release(std::vector<DueOutput>& due);
+  void look(RunResult& result, std::int64_t first, bool stayed, std::vector<DueOutput>& due);
+  bool ends_here(RunResult& result, std::int64_t first, std::vector<DueOutput>& due);
 
   Simulation& simulation_;
   RunEnd end_;
+  bool profile_;
   std::vector<Held> held_;
 };
 

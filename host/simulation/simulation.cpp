@@ -218,25 +218,6 @@ void Simulation::return_to_kept() {
   inversions_ = kept_inversions_;
 }
 
-Moment Simulation::moment() const { return {state_.clock, loaded_.state_bytes(), contact_.felt()}; }
-
-void Simulation::look_at(const Moment& moment, const std::function<void()>& look) {
-  const Moment present = this->moment();
-  const auto go = [&](const Moment& to) {
-    state_.clock = to.clock;
-    loaded_.write_state_bytes(to.buffers);
-    contact_.set_felt(to.felt);
-  };
-  go(moment);
-  try {
-    look();
-  } catch (...) {
-    go(present);
-    throw;
-  }
-  go(present);
-}
-
 bool Simulation::inverted_now() {
   backend().run(program().force, 0, 1);
   backend().run(program().status, 0, 1);

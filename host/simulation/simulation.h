@@ -55,6 +55,9 @@ class Simulation {
   /// Whether the present state stays what it is. Batches that end between two looks at an automatic step may be made again from
   /// the state before them that was kept: until then their states are not to leave as results (moment()).
   [[nodiscard]] bool settled() const { return !settings_.automatic || step_.on_grid(step()); }
+  /// For the last state of a run: goes on to where it is settled, and comes back if nothing takes it back. False: the run went
+  /// back, to a state before it.
+  bool confirm();
   /// The present state, to be looked at when it is settled.
   [[nodiscard]] Moment moment() const;
   /// Call `look` with the simulation in a state of before, of the same model, then go back to the present one.
