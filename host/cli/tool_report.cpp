@@ -62,27 +62,6 @@ std::string tissue_line(const Simulation& simulation) {
                      simulation.model().contact->size(), tissue.max_depth);
 }
 
-std::vector<std::string> tool_remarks(const Simulation& simulation) {
-  std::vector<std::string> remarks;
-  const ContactPoints* points = simulation.model().contact.get();
-  if (points != nullptr && simulation.contact().tissue().max_depth > 0.5 * points->spacing) {
-    remarks.push_back(fmt::format(
-        "tissue went {:.2g} cells deep into other tissue: sharp edges and parts thinner than a cell meet late, and held nodes "
-        "do not give way; smaller cells help",
-        simulation.contact().tissue().max_depth / points->spacing));
-  }
-  for (std::size_t t = 0; t < simulation.scene().tools.size() && points != nullptr; ++t) {
-    const double cells = simulation.contact().history()[t].max_depth / points->spacing;
-    if (cells <= 0.5) continue;
-    remarks.push_back(fmt::format(
-        "tool '{}' went {:.2g} cells deep into tissue: nodes that are fixed or prescribed do not give way to it, an "
-        "edge thinner than half a cell passes between contact points, and a tool that moves a cell in a few steps "
-        "is met late",
-        simulation.scene().tools[t].name, cells));
-  }
-  return remarks;
-}
-
 void ToolTable::write(const Simulation& simulation, const std::filesystem::path& file) {
   const Scene& scene = simulation.scene();
   if (scene.tools.empty() || simulation.step() == last_step_) return;

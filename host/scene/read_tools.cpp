@@ -163,8 +163,6 @@ void check_tools(const Reader& top, const Scene& scene) {
   if (scene.tools.empty() && !scene.contact) return;
   const std::string has = scene.tools.empty() ? "contact" : "tools";
   if (scene.integrator != Integrator::increment) top.at("integrator").fail("increment, because the scene has " + has);
-  if (scene.relaxation.enabled)
-    top.at("relaxation").fail("false, because the scene has " + has + " (whose forces are not part of its residual)");
   if (scene.solver.enabled)
     top.at("solver").fail("\"dynamic\", because the scene has " + has + " (contact is not solved statically)");
   const std::vector<Reader> bodies = top.at("bodies").items("a list of bodies");

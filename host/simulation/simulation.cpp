@@ -61,6 +61,10 @@ void Simulation::start(std::shared_ptr<const Model> model, const SimulationOptio
   for (const Curve& curve : loaded_.model().curves) {
     settings_.curves_end = std::max(settings_.curves_end, curve.end());
   }
+  for (const ContactTool& tool : scene_.tools) {
+    if (scene_.relaxation.enabled && !tool.path.empty())
+      settings_.curves_end = std::max(settings_.curves_end, tool.path.back()[0]);
+  }
   step_.start(options.dt > 0 ? options.dt : scene_.dt, options.stable_step);
   edits_.start();
   contact_.start();

@@ -73,6 +73,7 @@ void ToolContact::drive(const std::string& name, const Pose& to, double seconds)
   const double now = run_.state.clock.time();
   const ToolDrive drive{pose(tool, now), to, now, now + seconds};
   run_.state.driven[name] = drive;
+  run_.state.relaxation.equilibrium = false;  // it begins anew
   if (!active()) return;
   // It may meet anything before the next look for what is near.
   const BufferId near = run_.loaded.program().find("contact_near");
