@@ -136,7 +136,7 @@ class Tools(CliTest):
 
     def test_a_tool_that_begins_wholly_inside_is_refused(self):
         for shape, depth in (({"sphere": 0.01}, "0.06"), ({"box": [0.02, 0.02, 0.02]}, "0.05"),
-                             ({"capsule": [[0, -0.01, 0], [0, 0.01, 0], 0.005]}, "0.055"), ({"mesh": str(SCENES / "meshes" / "cube.obj")}, "0.05")):
+                             ({"capsule": [[0, -0.01, 0], [0, 0.01, 0], 0.005]}, "0.055"), ({"mesh": str(SCENES / "meshes" / "cube.obj")}, "0.045")):
             tool = {"name": "t", "shape": shape}
             if "mesh" in shape:
                 tool["scale"] = 0.1
