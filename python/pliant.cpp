@@ -274,6 +274,7 @@ void bind_world(py::module_& m) {
       .def(
           "rest_positions", [](const World& w, std::size_t body) { return copy(w.rest_positions(body)); }, py::arg("body") = 0)
       .def("probes", &probes, "a dict of the scene's probes: of each a dict of its quantities, arrays of numbers")
+      .def("remarks", &World::remarks, Free(), "a list of sentences: WorldInfo's, and what has happened since the start")
       .def("hash", &World::hash)
       .def(
           "grab",

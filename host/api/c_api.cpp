@@ -201,7 +201,7 @@ pliant_status pliant_world_info(pliant_world world, pliant_info* out) {
 }
 
 pliant_status pliant_world_remarks(pliant_world world, char* text, size_t size, size_t* needed) {
-  return on(world, [&](CWorld& w) { give_lines(w.world.info().remarks, text, size, needed); });
+  return on(world, [&](CWorld& w) { give_lines(w.world.remarks(), text, size, needed); });
 }
 
 pliant_status pliant_world_backend(pliant_world world, char* text, size_t size) {

@@ -13,6 +13,7 @@
 #include "pliant/version.h"
 #include "scene/keys.h"
 #include "scene/spec.h"
+#include "simulation/run_remarks.h"
 
 #define PLIANT_TEXT_OF(x) #x
 #define PLIANT_TEXT(x) PLIANT_TEXT_OF(x)
@@ -207,6 +208,14 @@ std::vector<ProbeValue> World::probes() const {
       values.push_back({probe.name, word_of(quantity_words(), q), states[i].numbers(q)});
   }
   return values;
+}
+
+std::vector<std::string> World::remarks() const {
+  const Call call(impl_);
+  check_device(*impl_);
+  std::vector<std::string> remarks = impl_->info.remarks;
+  for (std::string& remark : run_remarks(*impl_->simulation)) remarks.push_back(std::move(remark));
+  return remarks;
 }
 
 std::uint64_t World::hash() const {

@@ -130,6 +130,7 @@ void World::Impl::publish_clock() {
 StepReport World::Impl::run(std::int64_t steps) {
   const std::int64_t first = simulation->step();
   try {
+    if (simulation->at_equilibrium()) static_cast<void>(tools->apply(*simulation));  // a tool that is driven ends it
     if (steps == 0) cut_pending();  // who stops stepping still sees cuts that are made beside the caller
     while (simulation->step() - first < steps && !simulation->divergence() && !simulation->at_equilibrium()) {
       cut_pending();

@@ -73,21 +73,16 @@ class Run {
     if (scene.solver.enabled) return solve(scene);
     open(std::move(scene));
     watch_interrupt();
-    std::vector<DueOutput> due{{write_first_frame(), [&] { write_frame(); }}};
-    if (const SceneProbes* probes = simulation_->scene().probes.get(); frames_ && probes != nullptr && own_pace(*probes)) {
-      write_scene_probes();
-      due.push_back(
-          {probes->every_steps > 0 ? FrameGrid::of_steps(probes->every_steps) : FrameGrid::of_seconds(probes->every_seconds),
-           [&] { write_scene_probes(); }});
-    }
+    std::vector<DueOutput> due = outputs();
     if (o_.profile) simulation_->backend().profile(true);
-    RunLoop loop(*simulation_, end());
+    RunLoop loop(*simulation_, end(), o_.profile);
     RunProgress progress(o_.common, *simulation_, loop);
     const Stopwatch since_start;
     double saved = 0;
     result_ = loop.run(due, [&](const RunResult& done) {
       progress.show(done);
       if (!o_.checkpoint_every || since_start.seconds() - saved < *o_.checkpoint_every) return;
+      if (!simulation_->settled()) return;  // frames before it may not be written yet
       save_on_the_way();
       saved = since_start.seconds();
     });
@@ -181,11 +176,18 @@ class Run {
     return end;
   }
 
-  /// Returns when the next ones are due.
-  FrameGrid write_first_frame() {
+  /// What is written into the folder, and when; the first of all at once.
+  std::vector<DueOutput> outputs() {
     if (!frames_) return {};
-    write_frame();
-    return o_.every ? FrameGrid::parse(*o_.every) : FrameGrid::of_seconds(1.0 / 60);  // a viewer then plays in real time
+    // Frames of a sixtieth of a second: a viewer then plays in real time.
+    std::vector<DueOutput> due{
+        {o_.every ? FrameGrid::parse(*o_.every) : FrameGrid::of_seconds(1.0 / 60), [&] { write_frame(); }}};
+    if (const SceneProbes* probes = simulation_->scene().probes.get(); probes != nullptr && own_pace(*probes)) {
+      due.push_back(
+          {probes->every_steps > 0 ? FrameGrid::of_steps(probes->every_steps) : FrameGrid::of_seconds(probes->every_seconds),
+           [&] { write_scene_probes(); }});
+    }
+    return due;
   }
 
   void write_frame() {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "cli/cli.h"
 #include "cli/frame_grid.h"
@@ -32,48 +33,99 @@ std::int64_t RunLoop::remaining() const {
   return std::max<std::int64_t>(0, steps);
 }
 
-/// One batch that goes beyond neither the next output nor the end. Returns its steps.
-std::int32_t RunLoop::batch(const std::vector<DueOutput>& due) {
+/// One batch that goes beyond neither the next output nor the end. False: the run has gone back to a state before it.
+bool RunLoop::batch(const std::vector<DueOutput>& due, std::int32_t& steps) {
   const auto wanted = [&] {
-    std::int64_t steps = remaining();
-    for (const DueOutput& d : due) steps = std::min(steps, d.grid.steps_left(simulation_));
-    return std::max<std::int64_t>(1, steps);
+    std::int64_t left = remaining();
+    for (const DueOutput& d : due) left = std::min(left, d.grid.steps_left(simulation_));
+    return std::max<std::int64_t>(1, left);
   };
-  std::int32_t n = simulation_.next_batch(wanted());
-  simulation_.begin_batch(n);
+  steps = simulation_.next_batch(wanted());
+  simulation_.begin_batch(steps);
   // Only now the length of its steps is known: they may have grown, and fewer lead to the same time.
-  n = static_cast<std::int32_t>(std::min<std::int64_t>(n, wanted()));
-  simulation_.backend().run(simulation_.program().step, 0, n, simulation_.step());
-  simulation_.end_batch(n);
-  return n;
+  steps = static_cast<std::int32_t>(std::min<std::int64_t>(steps, wanted()));
+  const std::int64_t end = simulation_.step() + steps;
+  simulation_.backend().run(simulation_.program().step, 0, steps, simulation_.step());
+  simulation_.end_batch(steps);
+  return simulation_.step() == end;
+}
+
+void RunLoop::put_out(std::vector<DueOutput>& due, const std::vector<std::size_t>& outputs) {
+  if (simulation_.settled()) {
+    release(due);
+    for (const std::size_t d : outputs) due[d].write();
+  } else if (!outputs.empty()) {
+    held_.push_back({simulation_.moment(), outputs});
+  }
+}
+
+/// Write what was held, in its order.
+void RunLoop::release(std::vector<DueOutput>& due) {
+  for (const Held& held : held_) {
+    simulation_.look_at(held.moment, [&] {
+      for (const std::size_t d : held.outputs) due[d].write();
+    });
+  }
+  held_.clear();
+}
+
+void RunLoop::put_out_due(std::vector<DueOutput>& due) {
+  std::vector<std::size_t> now;
+  for (std::size_t d = 0; d < due.size(); ++d) {
+    if (due[d].grid.take(simulation_)) now.push_back(d);
+  }
+  put_out(due, now);
+}
+
+/// What became of a batch. `stayed`: it was not taken back.
+void RunLoop::look(RunResult& result, std::int64_t first, bool stayed, std::vector<DueOutput>& due) {
+  result.steps = std::max<std::int64_t>(0, simulation_.step() - first);
+  if (!stayed) {
+    held_.clear();
+    for (DueOutput& d : due) d.grid.start(simulation_);
+  }
+  if (const auto& divergence = simulation_.divergence()) {
+    result.diverged = divergence->message();
+    result.diverged_step = divergence->step;
+  }
+}
+
+/// Whether the last state is one: what comes after it may show that it is to be made again, with smaller steps.
+bool RunLoop::ends_here(RunResult& result, std::int64_t first, std::vector<DueOutput>& due) {
+  if (profile_) simulation_.backend().profile(false);
+  const bool stays = simulation_.confirm();
+  if (profile_) simulation_.backend().profile(true);
+  look(result, first, stays, due);
+  return stays;
 }
 
 RunResult RunLoop::run(std::vector<DueOutput>& due, const std::function<void(const RunResult&)>& after_batch) {
   RunResult result;
   std::vector<double> batch_ms;
   const std::int64_t first = simulation_.step();
+  std::vector<std::size_t> now(due.size());
+  std::iota(now.begin(), now.end(), std::size_t{0});
   for (DueOutput& d : due) d.grid.start(simulation_);
-  while (!simulation_.at_equilibrium() && !result.interrupted && remaining() > 0) {
-    const Stopwatch clock;
-    const std::int32_t n = batch(due);
-    const double seconds = clock.seconds();
-    result.seconds += seconds;
-    batch_ms.push_back(1e3 * seconds / n);
-    result.steps = std::max<std::int64_t>(0, simulation_.step() - first);  // a batch that is made again takes steps back
-    if (const auto& divergence = simulation_.divergence()) {
-      result.diverged = divergence->message();
-      result.diverged_step = divergence->step;
-      break;
+  put_out(due, now);
+  do {
+    while (!simulation_.at_equilibrium() && !result.interrupted && result.diverged.empty() && remaining() > 0) {
+      const Stopwatch clock;
+      std::int32_t n = 0;
+      const bool stayed = batch(due, n);
+      const double seconds = clock.seconds();
+      result.seconds += seconds;
+      batch_ms.push_back(1e3 * seconds / n);
+      look(result, first, stayed, due);
+      if (!result.diverged.empty()) break;
+      const double dt = simulation_.dt();
+      result.shortest_dt = batch_ms.size() == 1 ? dt : std::min(dt, result.shortest_dt);
+      result.longest_dt = std::max(dt, result.longest_dt);
+      result.interrupted = interrupted();
+      after_batch(result);
+      if (stayed) put_out_due(due);
     }
-    const double dt = simulation_.dt();
-    result.shortest_dt = batch_ms.size() == 1 ? dt : std::min(dt, result.shortest_dt);
-    result.longest_dt = std::max(dt, result.longest_dt);
-    result.interrupted = interrupted();
-    after_batch(result);
-    for (DueOutput& d : due) {
-      if (d.grid.take(simulation_)) d.write();
-    }
-  }
+  } while (result.diverged.empty() && !result.interrupted && !ends_here(result, first, due));
+  if (result.diverged.empty()) release(due);  // nothing comes that could take it back
   result.ms_per_step = median(std::move(batch_ms));
   return result;
 }

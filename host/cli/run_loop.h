@@ -40,19 +40,34 @@ struct DueOutput {
 
 class RunLoop {
  public:
-  RunLoop(Simulation& simulation, const RunEnd& end) : simulation_(simulation), end_(end) {}
+  /// `profile`: passes are timed, but for those of confirm(), which do not belong to the run.
+  RunLoop(Simulation& simulation, const RunEnd& end, bool profile = false)
+      : simulation_(simulation), end_(end), profile_(profile) {}
   /// Steps still to do at the present size of the step.
   [[nodiscard]] std::int64_t remaining() const;
   [[nodiscard]] const RunEnd& end() const { return end_; }
-  /// Run to the end; does what is due where its grid says so, and calls `after_batch` with what was done so far after every
-  /// batch. After a divergence the simulation holds the last good state.
+  /// Run to the end; does what is due at the start and where its grid says so, and calls `after_batch` with what was done so
+  /// far after every batch. A state is written when it is settled: what a batch did that is then made again is never seen.
+  /// After a divergence the simulation holds the last good state.
   RunResult run(std::vector<DueOutput>& due, const std::function<void(const RunResult&)>& after_batch);
 
  private:
-  std::int32_t batch(const std::vector<DueOutput>& due);
+  /// A state that waits for its outputs, by their places in the list of what is due.
+  struct Held {
+    Moment moment;
+    std::vector<std::size_t> outputs;
+  };
+  bool batch(const std::vector<DueOutput>& due, std::int32_t& steps);
+  void put_out(std::vector<DueOutput>& due, const std::vector<std::size_t>& outputs);
+  void put_out_due(std::vector<DueOutput>& due);
+  void release(std::vector<DueOutput>& due);
+  void look(RunResult& result, std::int64_t first, bool stayed, std::vector<DueOutput>& due);
+  bool ends_here(RunResult& result, std::int64_t first, std::vector<DueOutput>& due);
 
   Simulation& simulation_;
   RunEnd end_;
+  bool profile_;
+  std::vector<Held> held_;
 };
 
 }  // namespace pliant::cli

@@ -8,9 +8,9 @@
 
 #include "cli/run_events.h"
 #include "cli/tool_report.h"
-#include "cutting/topology/mesh_edges.h"
 #include "program/hash.h"
 #include "scene/keys.h"
+#include "simulation/run_remarks.h"
 
 namespace pliant::cli {
 namespace {
@@ -43,7 +43,7 @@ class Report {
     print_summary();
     for (std::size_t t = 0; t < s_.scene().tools.size(); ++t) out_.print(tool_line(s_, t));
     if (s_.scene().contact && s_.model().contact != nullptr) out_.print(tissue_line(s_));
-    for (const std::string& remark : tool_remarks(s_)) note(remark);
+    for (const std::string& remark : run_remarks(s_)) note(remark);
     if (!r_.probes.empty() || !r_.scene_probes.empty()) {
       json["probes"] = Json::array();
       add_probes(r_.probes, json["probes"]);
@@ -115,20 +115,7 @@ class Report {
     }
     for (const std::string& sentence : parts_far_away(s_)) note(sentence);
     json["most_substeps"] = s_.state().most_substeps;
-    if (s_.state().most_substeps > 0) {
-      note(
-          fmt::format("the pull of shape matching, several steps at once, drove finite elements apart; hybrids went on with "
-                      "\"substeps\": {}",
-                      s_.state().most_substeps));
-    }
     json["opened_edges"] = s_.state().opened;
-    if (s_.state().opened > 0) {
-      note(fmt::format(
-          "{} edges parted: they were stretched beyond {:.3g} times their length beside a cut or tear, or {:.3g} times "
-          "elsewhere (\"break_stretch\"); a material far too soft for its weight does that, too: look at the units of the "
-          "scene",
-          s_.state().opened, s_.scene().break_stretch, kWholeStretch * s_.scene().break_stretch));
-    }
   }
 
   void add_probes(const Probes& probes, Json& rows) const {
@@ -167,32 +154,15 @@ class Report {
     json["added_mass"] = added;
     const BallastReport& ballast = s_.ballast();
     json["ballast"] = {{"nodes", ballast.nodes}, {"mass", ballast.mass}, {"most", ballast.most}};
-    if (ballast.most > 0) {
-      note(fmt::format(
-          "elements that asked for less than {:.3g} of the first step got inertia instead: at most {:.3g} of the mass, {:.3g} "
-          "on {} nodes at the end",
-          s_.scene().least_step, ballast.most / mass, ballast.mass / mass, ballast.nodes));
-    }
   }
 
   void add_inversions(Json& json) const {
     const Inversions& inverted = s_.inversions();
     json["inverted"] = {{"batches", inverted.batches}, {"most", inverted.most}, {"now", inverted.last}};
     json["calmed_elements"] = inverted.calmed;
-    if (inverted.calmed > 0) {
-      note(
-          fmt::format("in {} elements, counted batch by batch, nodes came to move against each other by more than a quarter of "
-                      "an edge in a "
-                      "step; what exceeded that was taken out",
-                      inverted.calmed));
-    }
     if (inverted.batches == 0) return;
     json["inverted"]["first"] = {
         {"step", inverted.first_step}, {"time", inverted.first_time}, {"body", inverted.body}, {"element", inverted.element}};
-    note(
-        fmt::format("up to {} elements at a time were turned inside out and driven back, first in step {} (t = {:.4g} s), "
-                    "element {} of body '{}'; {} in the last steps",
-                    inverted.most, inverted.first_step, inverted.first_time, inverted.element, inverted.body, inverted.last));
   }
 
   void print_summary() const {

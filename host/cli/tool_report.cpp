@@ -9,6 +9,17 @@
 #include "io/atomic_file.h"
 
 namespace pliant::cli {
+namespace {
+
+/// A field of a table: in quotation marks, its own doubled, where it would be more than one (RFC 4180).
+std::string csv_text(const std::string& text) {
+  if (text.find_first_of(",\"") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
+  return out + '"';
+}
+
+}  // namespace
 
 void add_tools(const Simulation& simulation, nlohmann::ordered_json& json) {
   const Scene& scene = simulation.scene();
@@ -51,27 +62,6 @@ std::string tissue_line(const Simulation& simulation) {
                      simulation.model().contact->size(), tissue.max_depth);
 }
 
-std::vector<std::string> tool_remarks(const Simulation& simulation) {
-  std::vector<std::string> remarks;
-  const ContactPoints* points = simulation.model().contact.get();
-  if (points != nullptr && simulation.contact().tissue().max_depth > 0.5 * points->spacing) {
-    remarks.push_back(fmt::format(
-        "tissue went {:.2g} cells deep into other tissue: sharp edges and parts thinner than a cell meet late, and held nodes "
-        "do not give way; smaller cells help",
-        simulation.contact().tissue().max_depth / points->spacing));
-  }
-  for (std::size_t t = 0; t < simulation.scene().tools.size() && points != nullptr; ++t) {
-    const double cells = simulation.contact().history()[t].max_depth / points->spacing;
-    if (cells <= 0.5) continue;
-    remarks.push_back(fmt::format(
-        "tool '{}' went {:.2g} cells deep into tissue: nodes that are fixed or prescribed do not give way to it, an "
-        "edge thinner than half a cell passes between contact points, and a tool that moves a cell in a few steps "
-        "is met late",
-        simulation.scene().tools[t].name, cells));
-  }
-  return remarks;
-}
-
 void ToolTable::write(const Simulation& simulation, const std::filesystem::path& file) {
   const Scene& scene = simulation.scene();
   if (scene.tools.empty() || simulation.step() == last_step_) return;
@@ -85,7 +75,7 @@ void ToolTable::write(const Simulation& simulation, const std::filesystem::path&
     const ToolLoad& now = simulation.contact().history()[t].now;
     const Pose at = simulation.contact().pose(t, simulation.time());
     table_ += fmt::format("{:.9g},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{}\n", simulation.time(), simulation.step(),
-                          scene.tools[t].name, fmt::join(at.position, ","), fmt::join(now.force, ","),
+                          csv_text(scene.tools[t].name), fmt::join(at.position, ","), fmt::join(now.force, ","),
                           fmt::join(now.torque, ","), now.area, now.depth, now.points);
   }
   write_file(file, table_);

@@ -16,8 +16,6 @@ std::string tool_line(const Simulation& simulation, std::size_t tool);
 
 /// How much tissue touches tissue, of a scene with `contact`.
 std::string tissue_line(const Simulation& simulation);
-/// A sentence for each tool that went deeper than half a cell into tissue, and one for tissue.
-[[nodiscard]] std::vector<std::string> tool_remarks(const Simulation& simulation);
 
 /// A table of the forces on all tools, a row per tool and time.
 class ToolTable {

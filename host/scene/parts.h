@@ -40,6 +40,8 @@ void check_last_name(const Reader& entry, const std::vector<Named>& all, const c
                fmt::format("a different name for every {}", kind));
   }
 }
+/// A name that stands in tables and messages: of a tool or a blade.
+std::string read_plain_name(const Reader& field);
 std::vector<Blade> read_blades(const Reader& blades);
 SceneView read_view(const Reader& view);
 /// At most so many: a point of a surface keeps a bit for each that is near.

@@ -29,7 +29,7 @@ Blade read_blade(const Reader& blade, std::size_t index) {
   blade.expect_object("blade");
   Blade b;
   b.pointer = blade.pointer();
-  b.name = blade.has("name") ? blade.at("name").text("a text that is not empty") : fmt::format("blade{}", index);
+  b.name = blade.has("name") ? read_plain_name(blade.at("name")) : fmt::format("blade{}", index);
   const char* const expected = "a list of at least two rows [time, x, y, z, x, y, z]";
   for (const Reader& row : blade.at("path", expected).items(expected, 2)) b.path.push_back(read_row(row, b.path));
   if (blade.has("start")) b.start = blade.at("start").number();

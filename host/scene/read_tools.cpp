@@ -1,6 +1,7 @@
 // The key "tools" of a scene.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "geometry/vec.h"
@@ -104,7 +105,7 @@ ContactTool read_contact_tool(const Reader& entry, std::size_t index, const std:
   entry.expect_object("contact_tool");
   ContactTool tool;
   tool.pointer = entry.pointer();
-  tool.name = entry.has("name") ? entry.at("name").text("a text that is not empty") : fmt::format("tool{}", index);
+  tool.name = entry.has("name") ? read_plain_name(entry.at("name")) : fmt::format("tool{}", index);
   read_shape(entry.at("shape", "an object with one of the keys " + alternatives(scene_keys().at("shape"))), tool);
   if (entry.has("scale")) {
     if (tool.mesh.empty()) entry.at("scale").fail("this key only beside a shape that is a mesh or a sequence");
@@ -126,6 +127,17 @@ ContactTool read_contact_tool(const Reader& entry, std::size_t index, const std:
 }
 
 }  // namespace
+
+std::string read_plain_name(const Reader& field) {
+  const char* const expected = "a name of 1 to 100 characters without control characters such as a line break";
+  std::string name = field.text(expected);
+  const bool fits = name.size() <= 100 && std::none_of(name.begin(), name.end(), [](char c) {
+                      const auto code = static_cast<unsigned char>(c);
+                      return code < 32 || code == 127;
+                    });
+  if (!fits) field.fail(expected);  // tables and messages have it in a line
+  return name;
+}
 
 std::optional<TissueContact> read_tissue_contact(const Reader& contact) {
   if (contact.json() == false) return {};
@@ -151,8 +163,6 @@ void check_tools(const Reader& top, const Scene& scene) {
   if (scene.tools.empty() && !scene.contact) return;
   const std::string has = scene.tools.empty() ? "contact" : "tools";
   if (scene.integrator != Integrator::increment) top.at("integrator").fail("increment, because the scene has " + has);
-  if (scene.relaxation.enabled)
-    top.at("relaxation").fail("false, because the scene has " + has + " (whose forces are not part of its residual)");
   if (scene.solver.enabled)
     top.at("solver").fail("\"dynamic\", because the scene has " + has + " (contact is not solved statically)");
   const std::vector<Reader> bodies = top.at("bodies").items("a list of bodies");

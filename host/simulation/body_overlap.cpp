@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <memory>
+#include <utility>
 
 #include "geometry/distance.h"
 #include "geometry/vec.h"
@@ -10,6 +14,9 @@
 
 namespace pliant {
 namespace {
+
+/// Share of a body's surface on that of another one from which both are taken for the same thing, placed twice.
+constexpr double kSamePlace = 0.75;
 
 Vec3d start_of(const Model& model, std::size_t point) {
   const ContactPoints& points = *model.contact;
@@ -37,36 +44,129 @@ TriangleMesh surface_at_start(const Model& model, std::size_t body) {
   return mesh;
 }
 
+/// Of a body against another: how deep the deepest of its points lies, and how much of its surface lies on the other's.
+struct Overlap {
+  double deepest = 0;     ///< [m]
+  std::size_t where = 0;  ///< this point
+  double same = 0;        ///< area nearer than `allowed` to surface that faces the same way [m^2]
+};
+
+void add_point(const ContactPoints& points, const SurfaceDistance& surface, const Vec3d& x, std::size_t i, double allowed,
+               Overlap& found) {
+  const ClosestPoint near = surface.closest(x);
+  const auto& triangle = surface.mesh().triangles[static_cast<std::size_t>(near.triangle)];
+  std::array<Vec3d, 3> corner;
+  for (std::size_t a = 0; a < 3; ++a) corner[a] = surface.mesh().vertices[static_cast<std::size_t>(triangle[a])];
+  const Vec3d normal = vec::cross(vec::sub(corner[1], corner[0]), vec::sub(corner[2], corner[0]));
+  if (near.distance <= allowed && vec::dot(normal, points.normal[i]) > 0.5 * vec::norm(normal)) found.same += points.area[i];
+  if (near.distance <= found.deepest || !surface.inside(x)) return;
+  found.deepest = near.distance;
+  found.where = i;
+}
+
+/// Points in the material or on the surface of a tool, in the frame of its shape; none of a half space. [m]
+std::vector<Vec3d> points_of(const ToolForm& form, const ToolMoment& moment, double spacing) {
+  switch (form.shape) {
+    case ToolShape::sphere:
+      return {Vec3d{}};
+    case ToolShape::capsule: {
+      std::vector<Vec3d> points;
+      const Vec3d along = vec::sub(form.second, form.first);
+      const double parts = std::min(1000.0, std::ceil(2 * vec::norm(along) / spacing));
+      for (double k = 0; k <= parts; ++k) points.push_back(vec::add(form.first, vec::mul(along, k / parts)));
+      return points;
+    }
+    case ToolShape::box: {
+      std::vector<Vec3d> points;
+      Vec3d parts{};
+      for (std::size_t a = 0; a < 3; ++a) parts[a] = std::clamp(std::ceil(4 * form.second[a] / spacing), 1.0, 20.0);
+      Vec3d k{};
+      for (k[0] = 0; k[0] <= parts[0]; ++k[0]) {
+        for (k[1] = 0; k[1] <= parts[1]; ++k[1]) {
+          for (k[2] = 0; k[2] <= parts[2]; ++k[2]) {
+            Vec3d x{};
+            for (std::size_t a = 0; a < 3; ++a) x[a] = form.second[a] * (2 * k[a] / parts[a] - 1);
+            points.push_back(x);
+          }
+        }
+      }
+      return points;
+    }
+    case ToolShape::half_space:
+      return {};
+    case ToolShape::mesh:
+      return form.surface.vertices;
+    case ToolShape::sequence:
+      return form.frames[static_cast<std::size_t>(moment.frame)].surface.vertices;
+  }
+  return {};
+}
+
 }  // namespace
 
 void refuse_overlap(const Model& model, double allowed) {
   const ContactPoints& points = *model.contact;
   std::vector<vec::Box> boxes(model.bodies.size());
+  std::vector<double> area(model.bodies.size());
   std::vector<Vec3d> x(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     x[i] = start_of(model, i);
     boxes[static_cast<std::size_t>(points.body[i])].extend(x[i]);
+    area[static_cast<std::size_t>(points.body[i])] += points.area[i];
   }
   for (std::size_t b = 0; b < boxes.size(); ++b) {
     std::unique_ptr<SurfaceDistance> surface;
-    double deepest = 0;
-    std::size_t where = 0;
+    std::vector<Overlap> of(boxes.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
-      if (static_cast<std::size_t>(points.body[i]) == b || boxes[b].distance2(x[i]) > 0) continue;
+      const auto body = static_cast<std::size_t>(points.body[i]);
+      if (body == b || boxes[b].distance2(x[i]) > allowed * allowed) continue;
       if (surface == nullptr) surface = std::make_unique<SurfaceDistance>(surface_at_start(model, b));
-      const double depth = -surface->signed_distance(x[i]);
-      if (depth <= deepest) continue;
-      deepest = depth;
-      where = i;
+      add_point(points, *surface, x[i], i, allowed, of[body]);
     }
-    if (deepest <= allowed) continue;
-    throw Error(
-        ErrorCode::bad_input,
-        fmt::format("/contact: body '{}' begins inside body '{}', {:.3g} m deep at [{:.4g}, {:.4g}, {:.4g}]; expected at most "
-                    "{:.3g} m (a quarter of a cell): bodies that touch need room",
-                    model.bodies[static_cast<std::size_t>(points.body[where])].name, model.bodies[b].name, deepest, x[where][0],
-                    x[where][1], x[where][2], allowed));
+    for (std::size_t a = 0; a < of.size(); ++a) {
+      const std::string &name = model.bodies[a].name, &other = model.bodies[b].name;
+      if (of[a].deepest > allowed) {
+        const Vec3d& at = x[of[a].where];
+        throw Error(ErrorCode::bad_input,
+                    fmt::format("/contact: body '{}' begins inside body '{}', {:.3g} m deep at [{:.4g}, {:.4g}, {:.4g}]; "
+                                "expected at most {:.3g} m (a quarter of a cell): bodies that touch need room",
+                                name, other, of[a].deepest, at[0], at[1], at[2], allowed));
+      }
+      if (of[a].same > kSamePlace * area[a]) {
+        throw Error(ErrorCode::bad_input,
+                    fmt::format("/contact: body '{}' begins in the same place as body '{}': {:.0f} % of its surface is nearer "
+                                "than {:.3g} m (a quarter of a cell) to surface of the other that faces the same way; expected "
+                                "bodies beside each other, or the scene without contact",
+                                name, other, 100 * of[a].same / area[a], allowed));
+      }
+    }
   }
+}
+
+std::optional<ToolInside> tool_inside(const Model& model, const ToolForm& form, const ToolMoment& moment, const Pose& at) {
+  const double spacing = model.contact->spacing;
+  std::vector<Vec3d> points = points_of(form, moment, spacing);
+  for (Vec3d& x : points) x = place(at, x);
+  const bool round = form.shape == ToolShape::sphere || form.shape == ToolShape::capsule;
+  std::optional<ToolInside> deepest;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    if (model.bodies[b].triangles == 0) continue;
+    TriangleMesh mesh = surface_at_start(model, b);
+    vec::Box box;
+    for (const auto& triangle : mesh.triangles) {
+      for (const auto v : triangle) box.extend(mesh.vertices[static_cast<std::size_t>(v)]);
+    }
+    std::unique_ptr<SurfaceDistance> surface;
+    for (const Vec3d& x : points) {
+      if (box.distance2(x) > 0) continue;
+      if (surface == nullptr) surface = std::make_unique<SurfaceDistance>(std::move(mesh));
+      const double distance = surface->signed_distance(x);
+      if (distance >= 0) continue;
+      const double depth = (round ? form.radius : 0) - distance;
+      if (!deepest || depth > deepest->depth) deepest = ToolInside{b, depth, x};
+    }
+  }
+  return deepest;
 }
 
 }  // namespace pliant

@@ -1,8 +1,19 @@
 #include "simulation/loaded_model.h"
 
 #include <algorithm>
+#include <cstring>
 
 namespace pliant {
+namespace {
+
+template <class T>
+std::vector<T> values_of(const std::vector<std::uint8_t>& bytes) {
+  std::vector<T> values(bytes.size() / sizeof(T));
+  if (!values.empty()) std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
+  return values;
+}
+
+}  // namespace
 
 void LoadedModel::load(std::shared_ptr<const Model> model, Program program, Program surface) {
   backend_->finish();
@@ -92,6 +103,27 @@ void LoadedModel::return_to_kept_state() {
   for (const auto& [live, copy] : kept_) backend_->copy(copy, live);
   backend_->finish();
   updated_ = true;
+}
+
+std::vector<std::vector<std::uint8_t>> LoadedModel::state_bytes() const {
+  std::vector<std::vector<std::uint8_t>> bytes;
+  for (const auto& kept : kept_) bytes.push_back(backend_->read_bytes(kept.first));
+  return bytes;
+}
+
+void LoadedModel::write_state_bytes(const std::vector<std::vector<std::uint8_t>>& bytes) {
+  for (std::size_t i = 0; i < kept_.size(); ++i) write_bytes(kept_[i].first, bytes[i]);
+}
+
+void LoadedModel::write_bytes(BufferId id, const std::vector<std::uint8_t>& bytes) {
+  if (program_.at(id).is_int()) {
+    backend_->write_ints(id, values_of<std::int32_t>(bytes));
+  } else if (backend_->info().real_bytes == 8) {
+    backend_->write_reals(id, values_of<double>(bytes));
+  } else {
+    const std::vector<float> values = values_of<float>(bytes);
+    backend_->write_reals(id, {values.begin(), values.end()});
+  }
 }
 
 std::vector<Vec3d> LoadedModel::positions(const std::vector<double>& u, std::size_t body) const {

@@ -1,5 +1,6 @@
 // The model that runs: its Program on the backend, the embedded surface beside it, and where the host finds things in both.
 #pragma once
+#include <cstdint>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -57,6 +58,12 @@ class LoadedModel {
   /// Copy the state aside, or back.
   void keep_state();
   void return_to_kept_state();
+
+  /// The bytes of the buffers that keep_state() copies, and the reverse.
+  [[nodiscard]] std::vector<std::vector<std::uint8_t>> state_bytes() const;
+  void write_state_bytes(const std::vector<std::vector<std::uint8_t>>& bytes);
+  /// As Backend::read_bytes gave them, of a buffer of program().
+  void write_bytes(BufferId id, const std::vector<std::uint8_t>& bytes);
 
   /// [slots][3] whether the component moves freely.
   [[nodiscard]] const std::vector<char>& free() const { return free_; }

@@ -89,6 +89,13 @@ bool only_rounding(const RunContext& run, const Sums& sums, double c) {
   return c > 0 && sums.fast * c * h * h * h <= kExcited * eps * eps * sums.size;
 }
 
+/// When loads and tools have come to where they stay [s].
+double loads_end(const RunContext& run) {
+  double end = run.settings.curves_end;
+  for (const auto& driven : run.state.driven) end = std::max(end, driven.second.end);
+  return end;
+}
+
 /// The largest damping rate of the materials [1/s].
 double material_damping(const RunContext& run) {
   return *std::max_element(run.model().damping.begin(), run.model().damping.end());
@@ -127,14 +134,14 @@ void relax_elements(RunContext& run) {
     const double noise = 4 * sums.fast, x = c * (now - last.time) / 2;
     sums.stiffness -= noise;
     hidden = std::abs(sums.stiffness) <= kStandsOut * noise;
-    if (scale > 0 && last.time >= run.settings.curves_end) {
+    if (scale > 0 && last.time >= loads_end(run)) {
       // A mode that is damped critically decays as exp(-c t / 2): its force at the end from the mean.
       const double end = std::sqrt(std::max(0.0, sums.mean - sums.mean_noise)) * x / std::expm1(x);
       last.residual = std::min(last.residual, std::max(end, std::sqrt(sums.mean_noise)) / scale);
       settled = hidden && x >= kSettled;
     }
   }
-  last.equilibrium = now >= run.settings.curves_end && (settled || last.residual <= run.scene.relaxation.tolerance);
+  last.equilibrium = now >= loads_end(run) && (settled || last.residual <= run.scene.relaxation.tolerance);
   if (hidden) return;
   if (sums.stiffness > 0 && sums.inertia > 0) damp(run, std::sqrt(sums.stiffness / sums.inertia));
   remember(run, u, force, v);
@@ -193,7 +200,7 @@ void relax_by_momentum(RunContext& run) {
   const double left = std::min(x, 1.0) / std::expm1(std::min(x, 1.0));
   last.residual = scale > 0 ? std::max(x > 0 ? slow * left : slow, fast) / scale : 0;
   const double tolerance = run.scene.relaxation.tolerance;
-  last.equilibrium = last.time >= run.settings.curves_end && x >= kInterval && last.residual <= tolerance;
+  last.equilibrium = last.time >= loads_end(run) && x >= kInterval && last.residual <= tolerance;
   double omega = 0;
   if (!first && change <= kStandsOut * noise) {
     // Where little moves, it may be rounding, and a longer time tells what is slow. What moves fast is to be damped.
@@ -216,7 +223,8 @@ void relax_by_momentum(RunContext& run) {
 }  // namespace
 
 void relax(RunContext& run) {
-  if (run.model().flsm.empty())
+  // What pushes in contact is no part of the force that elements and loads give.
+  if (run.model().flsm.empty() && run.model().contact == nullptr)
     relax_elements(run);
   else
     relax_by_momentum(run);

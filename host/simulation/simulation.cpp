@@ -61,6 +61,10 @@ void Simulation::start(std::shared_ptr<const Model> model, const SimulationOptio
   for (const Curve& curve : loaded_.model().curves) {
     settings_.curves_end = std::max(settings_.curves_end, curve.end());
   }
+  for (const ContactTool& tool : scene_.tools) {
+    if (scene_.relaxation.enabled && !tool.path.empty())
+      settings_.curves_end = std::max(settings_.curves_end, tool.path.back()[0]);
+  }
   step_.start(options.dt > 0 ? options.dt : scene_.dt, options.stable_step);
   edits_.start();
   contact_.start();
@@ -136,6 +140,8 @@ bool Simulation::worth_keeping() {
 void Simulation::keep_state() {
   loaded_.keep_state();
   state_.kept = KeptState{state_.clock, state_.relaxation.damping};
+  contact_.keep();
+  kept_inversions_ = inversions_;
 }
 
 void Simulation::look_for_fault(std::int64_t batch_start) {
@@ -212,6 +218,8 @@ void Simulation::return_to_kept() {
   loaded_.return_to_kept_state();
   state_.clock = state_.kept->clock;
   state_.relaxation.damping = state_.kept->damping;
+  contact_.return_to_kept();
+  inversions_ = kept_inversions_;
 }
 
 bool Simulation::inverted_now() {
@@ -337,6 +345,8 @@ void Simulation::restore(const Snapshot& snapshot) {
   }
   edits_.take_up(std::move(bodies));
   divergence_.reset();
+  contact_.keep();
+  kept_inversions_ = inversions_;
 }
 
 }  // namespace pliant

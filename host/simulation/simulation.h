@@ -1,6 +1,7 @@
 // A scene on a backend: advance it, look at it, save and restore it.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -11,6 +12,7 @@
 #include "simulation/divergence.h"
 #include "simulation/drift.h"
 #include "simulation/host_loads.h"
+#include "simulation/moment.h"
 #include "simulation/snapshot.h"
 #include "simulation/step_control.h"
 #include "simulation/tool_contact.h"
@@ -49,6 +51,17 @@ class Simulation {
   [[nodiscard]] bool at_equilibrium() const { return state_.relaxation.equilibrium; }
   /// |R - F| over the largest of external and reaction force, as of the last change of dynamic relaxation.
   [[nodiscard]] double residual() const { return state_.relaxation.residual; }
+
+  /// Whether the present state stays what it is. Batches that end between two looks at an automatic step may be made again from
+  /// the state before them that was kept: until then their states are not to leave as results (moment()).
+  [[nodiscard]] bool settled() const { return !settings_.automatic || step_.on_grid(step()); }
+  /// For the last state of a run: goes on to where it is settled, and comes back if nothing takes it back. False: the run went
+  /// back, to a state before it.
+  bool confirm();
+  /// The present state, to be looked at when it is settled.
+  [[nodiscard]] Moment moment() const;
+  /// Call `look` with the simulation in a state of before, of the same model, then go back to the present one.
+  void look_at(const Moment& moment, const std::function<void()>& look);
 
   [[nodiscard]] std::int64_t step() const { return state_.clock.step; }
   [[nodiscard]] double time() const { return state_.clock.time(); }
@@ -142,7 +155,7 @@ class Simulation {
   HostLoads loads_{run_};
   ToolContact contact_{run_};
   TopologyEdits edits_{run_, step_, loads_};
-  Inversions inversions_;
+  Inversions inversions_, kept_inversions_;  ///< as of the kept state
   BallastReport ballast_;
   std::optional<Divergence> divergence_;  ///< a run that has diverged has no next step
 };

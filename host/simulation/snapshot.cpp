@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "geometry/vec.h"
 #include "pliant/error.h"
@@ -44,13 +43,6 @@ class Hash {
   }
   std::uint64_t value = 0;
 };
-
-template <class T>
-std::vector<T> values_of(const std::vector<std::uint8_t>& bytes) {
-  std::vector<T> values(bytes.size() / sizeof(T));
-  if (!values.empty()) std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
-  return values;
-}
 
 const NamedBytes* find(const Snapshot& snapshot, const std::string& name) {
   for (const NamedBytes& named : snapshot.buffers) {
@@ -231,16 +223,7 @@ void write_buffers(const Snapshot& snapshot, LoadedModel& loaded) {
   for (std::size_t i = 0; i < program.buffers.size(); ++i) {
     const Buffer& buffer = program.buffers[i];
     if (buffer.role != BufferRole::state) continue;
-    const std::vector<std::uint8_t>& bytes = find(snapshot, buffer.name)->bytes;
-    const auto id = static_cast<BufferId>(i);
-    if (buffer.is_int()) {
-      loaded.backend().write_ints(id, values_of<std::int32_t>(bytes));
-    } else if (snapshot.real_type == "double") {
-      loaded.backend().write_reals(id, values_of<double>(bytes));
-    } else {
-      const std::vector<float> values = values_of<float>(bytes);
-      loaded.backend().write_reals(id, {values.begin(), values.end()});
-    }
+    loaded.write_bytes(static_cast<BufferId>(i), find(snapshot, buffer.name)->bytes);
   }
 }
 

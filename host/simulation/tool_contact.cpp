@@ -73,6 +73,7 @@ void ToolContact::drive(const std::string& name, const Pose& to, double seconds)
   const double now = run_.state.clock.time();
   const ToolDrive drive{pose(tool, now), to, now, now + seconds};
   run_.state.driven[name] = drive;
+  run_.state.relaxation.equilibrium = false;  // it begins anew
   if (!active()) return;
   // It may meet anything before the next look for what is near.
   const BufferId near = run_.loaded.program().find("contact_near");
@@ -82,8 +83,8 @@ void ToolContact::drive(const std::string& name, const Pose& to, double seconds)
 }
 
 void ToolContact::start() {
-  history_.assign(run_.scene.tools.size(), {});
-  touch_ = {};
+  felt_ = {std::vector<ToolHistory>(run_.scene.tools.size()), {}};
+  keep();
   if (!active()) return;
   const Model& model = run_.model();
   const ContactPoints& points = *model.contact;
@@ -104,13 +105,20 @@ void ToolContact::start() {
         where = i;
       }
     }
+    std::size_t body = deepest > 0 ? static_cast<std::size_t>(points.body[where]) : 0;
+    Vec3d place = points.rest[where];
+    if (const auto inside = tool_inside(model, (*model.tools)[t], moment, at); inside && inside->depth > deepest) {
+      deepest = inside->depth;
+      body = inside->body;
+      place = inside->point;
+    }
     if (deepest <= kStartDepth * points.spacing) continue;
     throw Error(
         ErrorCode::bad_input,
         fmt::format("{}: tool '{}' begins inside body '{}', {:.3g} m deep at [{:.4g}, {:.4g}, {:.4g}]; expected at most "
                     "{:.3g} m (a quarter of a cell), which contact pushes out",
-                    tool.pointer, tool.name, model.bodies[points.body[where]].name, deepest, points.rest[where][0],
-                    points.rest[where][1], points.rest[where][2], kStartDepth * points.spacing));
+                    tool.pointer, tool.name, model.bodies[body].name, deepest, place[0], place[1], place[2],
+                    kStartDepth * points.spacing));
   }
 }
 
@@ -175,23 +183,23 @@ void ToolContact::look() {
 void ToolContact::read_touch() {
   const BufferId id = run_.loaded.program().find("touch_depth");
   const std::vector<double> depth = run_.backend().read_reals(id);
-  touch_.points = 0;
+  felt_.tissue.points = 0;
   for (const double d : depth) {
     if (!(d > 0)) continue;
-    ++touch_.points;
-    touch_.max_depth = std::max(touch_.max_depth, d);
+    ++felt_.tissue.points;
+    felt_.tissue.max_depth = std::max(felt_.tissue.max_depth, d);
   }
-  if (touch_.points > 0) run_.backend().write_reals(id, std::vector<double>(depth.size(), 0.0));
+  if (felt_.tissue.points > 0) run_.backend().write_reals(id, std::vector<double>(depth.size(), 0.0));
 }
 
 void ToolContact::end_batch(std::int32_t steps) {
   if (!active() || steps <= 0) return;
   if (run_.scene.contact) read_touch();
-  if (history_.empty()) return;
+  if (felt_.tools.empty()) return;
   const std::vector<std::int32_t> sums = run_.backend().read_ints(run_.loaded.program().find("tool_sum"));
-  const std::size_t tools = history_.size();
+  const std::size_t tools = felt_.tools.size();
   for (std::size_t t = 0; t < tools; ++t) {
-    ToolHistory& h = history_[t];
+    ToolHistory& h = felt_.tools[t];
     h.now = {};
     for (std::int32_t step = 0; step < steps; ++step) {
       const StepSum sum =

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "simulation/run_context.h"
@@ -35,6 +36,12 @@ struct TouchHistory {
   double max_depth = 0;     ///< deepest pair, after contact [m]
 };
 
+/// Both.
+struct Felt {
+  std::vector<ToolHistory> tools;  ///< of the scene
+  TouchHistory tissue;
+};
+
 class ToolContact {
  public:
   explicit ToolContact(RunContext& run) : run_(run) {}
@@ -46,9 +53,15 @@ class ToolContact {
   /// Read what the batch's tools felt. `steps`: how many were done.
   void end_batch(std::int32_t steps);
 
+  /// What was felt so far, set aside with the state of the run, and back: a batch that is made again has told nothing.
+  void keep() { kept_ = felt_; }
+  void return_to_kept() { felt_ = kept_; }
+
   /// One per tool of the scene.
-  [[nodiscard]] const std::vector<ToolHistory>& history() const { return history_; }
-  [[nodiscard]] const TouchHistory& tissue() const { return touch_; }
+  [[nodiscard]] const std::vector<ToolHistory>& history() const { return felt_.tools; }
+  [[nodiscard]] const TouchHistory& tissue() const { return felt_.tissue; }
+  [[nodiscard]] const Felt& felt() const { return felt_; }
+  void set_felt(Felt felt) { felt_ = std::move(felt); }
   /// Drive a tool from where it is now to a pose, which it has after `seconds`. Throws what check_drive() throws.
   void drive(const std::string& name, const Pose& to, double seconds);
   /// Where a tool is at a time [s].
@@ -65,8 +78,7 @@ class ToolContact {
   void read_touch();
 
   RunContext& run_;
-  std::vector<ToolHistory> history_;
-  TouchHistory touch_;
+  Felt felt_, kept_;
   Units units_;              ///< of the present batch
   std::vector<Vec3d> arms_;  ///< [steps + 1][tools] from a tool's origin to that of a sequence's frame [m]
 };

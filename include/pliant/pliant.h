@@ -40,7 +40,7 @@ PLIANT_API pliant_status pliant_world_destroy(pliant_world world);
 PLIANT_API pliant_status pliant_world_info(pliant_world world, pliant_info* out);
 /** Name and device of the backend into `text`, cut to `size` bytes with the closing 0. */
 PLIANT_API pliant_status pliant_world_backend(pliant_world world, char* text, size_t size);
-/** WorldInfo::remarks of C++, one sentence per line, as pliant_backend_names gives its names. */
+/** World::remarks of C++, one sentence per line, as pliant_backend_names gives its names. */
 PLIANT_API pliant_status pliant_world_remarks(pliant_world world, char* text, size_t size, size_t* needed);
 PLIANT_API pliant_status pliant_world_body(pliant_world world, size_t body, pliant_body* out);
 PLIANT_API pliant_status pliant_world_body_nodes(pliant_world world, size_t body, int64_t* out);

@@ -137,11 +137,11 @@ class PLIANT_API World {
 
   /// What the scene's probes say of the present state, probe by probe, their quantities in the scene's order. Changes nothing.
   [[nodiscard]] std::vector<ProbeValue> probes() const;
-  [[nodiscard]] std::uint64_t hash() const;  ///< over the state: equal for equal bits
+  [[nodiscard]] std::vector<std::string> remarks() const;  ///< WorldInfo::remarks, and what `pliant run` would say by now
+  [[nodiscard]] std::uint64_t hash() const;                ///< over the state: equal for equal bits
 
   /// Tools. They need WorldOptions::interactive, otherwise they throw Error (state); a vertex or grab that does not exist is
   /// usage. They take effect at the next batch of steps and do not wait. Vertices are those of the frame handed out last.
-  ///
   /// Hold the surface at a vertex and pull it to a point that begins where the vertex is now.
   GrabId grab(std::int32_t vertex, const GrabOptions& options = {});
   void move_grab(GrabId grab, const Vec3d& target);  ///< [m]

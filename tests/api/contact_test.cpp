@@ -1,7 +1,11 @@
 // Tools that touch, through the API: driven by hand, felt without waiting, in checkpoints.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
 
 #include "pliant/pliant.h"
 #include "pliant/world.h"
@@ -33,6 +37,49 @@ ErrorCode code_of(const std::function<void()>& call) {
     return error.code();
   }
   return ErrorCode::internal;
+}
+
+TEST(ApiContact, AWorldTellsWhatHappensWhileItRuns) {
+  World world(probe_over_block(), {.backend = "cpu"});
+  const auto told = [&](const std::string& words) {
+    const std::vector<std::string> remarks = world.remarks();
+    return std::any_of(remarks.begin(), remarks.end(),
+                       [&](const std::string& r) { return r.find(words) != std::string::npos; });
+  };
+  EXPECT_EQ(world.remarks(), world.info().remarks);
+  world.advance(0.02);
+  EXPECT_TRUE(told("tool 'probe' has touched nothing until t = 0.0"));
+  world.drive_tool("probe", {0, 0, 0.006}, {0, 0, 0, 1}, 0.2);
+  world.advance(0.3);
+  EXPECT_FALSE(told("tool 'probe' has touched nothing"));
+  world.reset();
+  world.step(1);
+  EXPECT_TRUE(told("tool 'probe' has touched nothing"));
+}
+
+TEST(ApiContact, NamesAndPlacesAreCheckedAsInAFile) {
+  SceneSpec scene = probe_over_block();
+  scene.tools[0].name = "pro\nbe";
+  EXPECT_EQ(code_of([&] { World(scene, {.backend = "cpu"}); }), ErrorCode::bad_input);
+  scene = probe_over_block();
+  scene.tools[0].path = {{0, 0, 0, -0.02, 0, 0, 0, 1}};
+  EXPECT_EQ(code_of([&] { World(scene, {.backend = "cpu"}); }), ErrorCode::bad_input);
+}
+
+TEST(ApiContact, AToolDrivenAfterEquilibriumIsFollowedToTheNext) {
+  SceneSpec scene = probe_over_block();
+  scene.relaxation = RelaxationSpec{};
+  World world(scene, {.backend = "cpu"});
+  world.drive_tool("probe", {0, 0, 0.008}, {0, 0, 0, 1}, 0.05);
+  while (!world.step(1000).at_equilibrium) {
+  }
+  const double first = world.tool_forces()[0].force[2];
+  EXPECT_GT(first, 0.01);
+  world.drive_tool("probe", {0, 0, 0.006}, {0, 0, 0, 1}, 0.05);
+  const StepReport report = world.step(100000);
+  EXPECT_TRUE(report.at_equilibrium);
+  EXPECT_GT(report.done, 10);
+  EXPECT_GT(world.tool_forces()[0].force[2], 1.5 * first);
 }
 
 TEST(ApiContact, AToolIsDrivenByHandAndFelt) {

@@ -32,7 +32,6 @@ BEYOND = {
     ("C", "status_name"): "C has no exceptions",
     ("C", "World::destroy"): "C has no destructors",
     ("C", "World::backend"): "WorldInfo::backend and device as one text",
-    ("C", "World::remarks"): "WorldInfo::remarks as one text",
     ("C", "World::body"): "an element of WorldInfo::bodies",
     ("C", "World::body_nodes"): "BodyInfo::nodes",
     ("C", "World::forget_consumer"): "for C the library holds the frames that others hold themselves",

@@ -3,7 +3,7 @@
 import csv
 import json
 
-from harness import CliTest, main
+from harness import SCENES, CliTest, main
 
 
 def ball(name, z, far=0.2):
@@ -32,6 +32,80 @@ class Tools(CliTest):
         done = self.pliant("run", scene, "--backend", "cpu")
         self.assertIn("tool table: force [", done.stdout)
 
+    def thrown(self, **keys):
+        """The cube thrown on a table faster than its step stands, so that batches are made again."""
+        table = {"name": "table", "shape": {"half_space": [[0, -0.055, 0], [0, 1, 0]]}}
+        body = {"prescribed": [], "fixed": [], "velocity": [0, -3, 0]}
+        probe = {"name": "all", "all": True, "quantities": ["energy"]}
+        return self.scene(body=body, tools=[table], gravity=[0, 0, 0], duration=0.06, probes=[probe], **keys)
+
+    def test_what_was_taken_back_is_seen_nowhere(self):
+        scene = self.thrown()
+        run = self.json("run", scene, "--backend", "cpu", "--out", "out", "--every", "1")
+        with open(self.folder / "out" / "scene_all.csv") as file:
+            rows = list(csv.DictReader(file))
+        steps = [int(row["step"]) for row in rows]
+        self.assertEqual(steps, list(range(run["steps"] + 1)))
+        times = [float(row["time [s]"]) for row in rows]
+        self.assertEqual(times, sorted(set(times)))
+        energies = [float(row["kinetic [J]"]) + float(row["strain [J]"]) for row in rows]
+        # It pushed a few elements through themselves, and the first step of a batch is made anew from a calmed state.
+        self.assertLess(max(energies), 1.01 * energies[0])
+        self.assertLess(sum(run["probes"][0]["energy"].values()), 1.01 * energies[0])
+        self.assertEqual(len([name for name in self.names("out") if name.startswith("scene_0")]), len(steps))
+        # Each batch was a step: what the run says of all of them is what the table holds.
+        with open(self.folder / "out" / "scene_tools.csv") as file:
+            table = list(csv.DictReader(file))
+        force = [sum(float(row[f"f{axis} [N]"]) ** 2 for axis in "xyz") ** 0.5 for row in table]
+        self.assertAlmostEqual(run["tools"][0]["max_force"] / max(force), 1, places=6)
+        self.assertAlmostEqual(run["tools"][0]["max_penetration"] / max(float(row["penetration [m]"]) for row in table), 1, places=6)
+
+    def test_the_end_of_a_run_is_on_the_way_of_a_longer_one(self):
+        scene = self.thrown()
+        whole = self.json("run", scene, "--backend", "cpu", "--steps", "80", "--out", "out", "--every", "1")
+        self.json("run", scene, "--backend", "cpu", "--steps", "12", "--checkpoint", "c.pckpt", "--out", "short", "--every", "1")
+        ends = (self.folder / "out" / "scene_00000012.vtu", self.folder / "short" / "scene_00000012.vtu")
+        self.assertEqual(ends[0].read_bytes(), ends[1].read_bytes())
+        rest = self.json("run", scene, "--backend", "cpu", "--steps", "68", "--resume", "c.pckpt")
+        self.assertEqual(rest["deep_hash"], whole["deep_hash"])
+
+    def test_names_in_tables(self):
+        scene = self.scene(tools=[ball('a "tool", far', 0.2)], duration=0.02)
+        self.json("run", scene, "--backend", "cpu", "--out", "out")
+        with open(self.folder / "out" / "scene_tools.csv") as file:
+            self.assertEqual({row["tool"] for row in csv.DictReader(file)}, {'a "tool", far'})
+
+    def test_silence_is_told(self):
+        thin = {"name": "needle", "shape": {"capsule": [[0, 0, 0], [0, 0.1, 0], 0.004]}, "path": [[0, 0, 0.06, 0]]}
+        scene = self.scene(tools=[ball("far", 0.2), thin], duration=0.02)
+        remarks = self.json("run", scene, "--backend", "cpu")["remarks"]
+        self.assertEqual(len([r for r in remarks if "tool 'far' has touched nothing until" in r]), 1)
+        self.assertEqual(len([r for r in remarks if "tool 'needle' is 0.008 m thin, and points of contact are 0.01 m apart" in r]), 1)
+        self.assertIn("tool 'far' has touched nothing", self.pliant("run", scene, "--backend", "cpu").stderr)
+
+    def pressed(self, damping, **keys):
+        """A sphere that is pressed 10 mm into the cube, whose foot is held, in a tenth of a second."""
+        body = {"prescribed": [], "material": {"young": 3000, "poisson": 0.4, "density": 1000, "damping": damping}}
+        return self.scene(body=body, tools=[dict(ball("probe", 0.06, 0.071), friction=0)], gravity=[0, 0, 0], **keys)
+
+    def test_damping_in_the_force_of_a_tool_is_told(self):
+        def told(*run):
+            return [r for r in self.json("run", *run, "--backend", "cpu")["remarks"] if "\"damping\" takes most" in r]
+
+        self.assertEqual(len(told(self.pressed(100, duration=0.1))), 1)
+        self.assertEqual(told(self.pressed(0, duration=0.1)), [])
+        self.assertEqual(told(self.pressed(100, duration=2)), [])
+
+    def test_relaxation_finds_the_force_of_a_slow_press(self):
+        for tissue in (False, True):
+            keys = {"contact": {"friction": 0}} if tissue else {}
+            slow = self.json("run", self.pressed(40, duration=3, **keys), "--backend", "cpu")
+            rest = self.json("run", self.pressed(0, relaxation={"tolerance": 1e-4}, **keys), "--backend", "cpu")
+            self.assertTrue(rest["converged"])
+            self.assertLess(rest["steps"], slow["steps"])
+            for axis in (1, 2):
+                self.assertAlmostEqual(rest["tools"][0]["force"][axis], slow["tools"][0]["force"][axis], delta=0.005 * slow["tools"][0]["max_force"])
+
     def test_a_tool_deep_in_held_tissue_is_told(self):
         # The side that it meets is held: nothing gives way.
         held = self.scene(body={"prescribed": [], "fixed": [{"plane": [[0, 0, 0.01], [0, 0, 1]]}]}, tools=[ball("probe", 0.05)], duration=0.15)
@@ -54,10 +128,20 @@ class Tools(CliTest):
         self.assertGreater(run["contact"]["touching"], 20)
         self.assertLess(run["contact"]["penetration_in_cells"], 0.1)
         self.assertIn("contact points touch other tissue", self.pliant("run", "two.json", "--backend", "cpu").stdout)
-        scene["bodies"][1]["translate"] = [0, 0.05, 0]
-        (self.folder / "two.json").write_text(json.dumps(scene))
-        refused = self.pliant("run", "two.json", "--backend", "cpu", expect=2)
-        self.assertIn("/contact: body 'high' begins inside body 'low'", refused.stderr)
+        for up, message in ((0.05, "body 'high' begins inside body 'low'"), (0.002, "body 'high' begins in the same place as body 'low'")):
+            scene["bodies"][1]["translate"] = [0.002, up, 0.002]
+            (self.folder / "two.json").write_text(json.dumps(scene))
+            refused = self.pliant("run", "two.json", "--backend", "cpu", expect=2)
+            self.assertIn("/contact: " + message, refused.stderr)
+
+    def test_a_tool_that_begins_wholly_inside_is_refused(self):
+        for shape, depth in (({"sphere": 0.01}, "0.06"), ({"box": [0.02, 0.02, 0.02]}, "0.05"),
+                             ({"capsule": [[0, -0.01, 0], [0, 0.01, 0], 0.005]}, "0.055"), ({"mesh": str(SCENES / "meshes" / "cube.obj")}, "0.045")):
+            tool = {"name": "t", "shape": shape}
+            if "mesh" in shape:
+                tool["scale"] = 0.1
+            refused = self.pliant("run", self.scene(tools=[tool], duration=0.01), "--backend", "cpu", expect=2)
+            self.assertIn(f"/tools/0: tool 't' begins inside body 'cube', {depth} m deep", refused.stderr)
 
 
 if __name__ == "__main__":

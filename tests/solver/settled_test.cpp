@@ -1,0 +1,75 @@
+// States that may leave a run as results: settled ones, moments that wait, and the look ahead at the end.
+#include <gtest/gtest.h>
+
+#include "backends/backends.h"
+#include "simulation/simulation.h"
+#include "support/source_dir.h"
+
+namespace pliant {
+namespace {
+
+/// A cube that is thrown on a table faster than its first step stands.
+Scene thrown() {
+  return parse_scene(R"({"format": "pliant-scene/1", "gravity": [0, 0, 0], "duration": 0.1, "bodies": [{"name": "cube",
+    "surface": "meshes/cube.obj", "lattice": {"spacing": 0.02}, "velocity": [0, -3, 0],
+    "material": {"young": 3000, "poisson": 0.4, "density": 1000, "damping": 5}}],
+    "tools": [{"name": "table", "shape": {"half_space": [[0, -0.055, 0], [0, 1, 0]]}}]})",
+                     test::source_dir() + "/scenes/thrown.json");
+}
+
+TEST(Settled, ABatchThatIsMadeAgainHasToldNothing) {
+  Simulation simulation(thrown(), open_backend("cpu"));
+  EXPECT_TRUE(simulation.settled());
+  simulation.advance(12);
+  EXPECT_FALSE(simulation.settled());
+  const double before = simulation.contact().history()[0].max_force;
+  ASSERT_GT(before, 50) << "the steps are too long, and the table throws the cube";
+  EXPECT_FALSE(simulation.confirm());
+  EXPECT_EQ(simulation.step(), 0);
+  EXPECT_EQ(simulation.contact().history()[0].max_force, 0);
+  EXPECT_EQ(simulation.contact().history()[0].touched, 0);
+  EXPECT_EQ(simulation.inversions().batches, 0);
+  do {
+    simulation.advance(12 - simulation.step());
+  } while (!simulation.confirm());
+  EXPECT_EQ(simulation.step(), 12);
+  EXPECT_LT(simulation.contact().history()[0].max_force, before);
+}
+
+TEST(Settled, LookingAheadLeavesNoTrace) {
+  Simulation looks(thrown(), open_backend("cpu")), goes(thrown(), open_backend("cpu"));
+  looks.advance(12);
+  while (!looks.confirm()) looks.advance(12 - looks.step());
+  goes.advance(64);
+  while (goes.step() < 76) goes.advance(76 - goes.step());
+  const std::uint64_t there = looks.hash();
+  const double force = looks.contact().history()[0].max_force;
+  EXPECT_TRUE(looks.confirm());
+  EXPECT_EQ(looks.hash(), there);
+  EXPECT_EQ(looks.contact().history()[0].max_force, force);
+  while (looks.step() < 76) looks.advance(76 - looks.step());
+  EXPECT_EQ(looks.deep_hash(), goes.deep_hash());
+}
+
+TEST(Settled, AMomentIsLookedAtAndLeft) {
+  Simulation simulation(thrown(), open_backend("cpu"));
+  while (simulation.step() < 70) simulation.advance(70 - simulation.step());
+  const Moment moment = simulation.moment();
+  const std::uint64_t then = simulation.hash();
+  const double time = simulation.time();
+  const Vec3d force = simulation.contact().history()[0].now.force;
+  simulation.advance(20);
+  const std::uint64_t deep = simulation.deep_hash();
+  simulation.look_at(moment, [&] {
+    EXPECT_EQ(simulation.hash(), then);
+    EXPECT_EQ(simulation.time(), time);
+    EXPECT_EQ(simulation.contact().history()[0].now.force, force);
+    (void)simulation.residual_forces(0);
+  });
+  EXPECT_EQ(simulation.deep_hash(), deep);
+  EXPECT_THROW(simulation.look_at(moment, [] { throw 1; }), int);
+  EXPECT_EQ(simulation.deep_hash(), deep);
+}
+
+}  // namespace
+}  // namespace pliant
