@@ -166,6 +166,7 @@ class CheckBackend final : public Backend {
   [[nodiscard]] std::string list_name(const std::vector<Pass>& passes, std::int64_t step) const {
     const auto& [own, extension] = table_.parts();
     if (own != nullptr && &passes == &own->force) return "the list of the forces";
+    if (own != nullptr && &passes == &own->look) return "the list of the look";
     if (own != nullptr && &passes == &own->status) return "the list of the status";
     if (extension != nullptr && &passes == &extension->step) return "the list of the surface";
     return fmt::format("step {}", step + 1);
@@ -180,6 +181,7 @@ class CheckBackend final : public Backend {
       if (!b.writable()) continue;
       for (int world = 0; world < kWorlds; ++world) before_[i][static_cast<std::size_t>(world)] = b.image(world);
     }
+    p.count = pass.indices();
     const auto start = Clock::now();
     p.execute(0, step);
     if (profiling_) {

@@ -3,25 +3,22 @@
 
 #include "layout.h"
 #include "registry.h"
+#include "tile.h"
 
 namespace pliant::ref {
 
 template <class Scalar, int MOMENT>
 void contact_apply(Range range, Scalar* node_u, Scalar* node_w, const std::int32_t* contact_slot,
-                   const std::int32_t* contact_free, const std::int32_t* contact_tiles_offset,
-                   const std::int32_t* contact_tiles, const std::int32_t* contact_gather_offset,
-                   const std::int32_t* contact_gather, const std::int32_t* contact_gather_units,
-                   const std::int32_t* contact_gather_turns, const std::int32_t* contact_near,
-                   const std::int32_t* contact_force, const std::int32_t* touch_moment, const Scalar* contact_rest,
-                   Scalar* contact_node_sum, const Scalar* contact_params, const Scalar* step_params) {
+                   const std::int32_t* contact_free, const std::int32_t* contact_node_list,
+                   const std::int32_t* contact_gather_offset, const std::int32_t* contact_gather,
+                   const std::int32_t* contact_gather_units, const std::int32_t* contact_gather_turns,
+                   const std::int32_t* contact_near, const std::int32_t* contact_force, const std::int32_t* touch_moment,
+                   const Scalar* contact_rest, Scalar* contact_node_sum, const Scalar* contact_params,
+                   const Scalar* step_params) {
   constexpr std::int64_t area_plane = std::int64_t{3} * PLIANT_TILE;
   const Scalar h = step_params[0], half_hh = (Scalar(0.5) * h) * h, quantum = contact_params[2];
-  for (std::int64_t i = range.begin; i < range.end; ++i) {
-    const std::int64_t tile = i / PLIANT_TILE;
-    std::int32_t near = 0;
-    for (std::int64_t k = contact_tiles_offset[tile]; k < contact_tiles_offset[tile + 1]; ++k)
-      near |= contact_near[contact_tiles[k]];
-    if (near == 0) continue;
+  for (std::int64_t n = range.begin; n < range.end; ++n) {
+    const std::int64_t i = listed(contact_node_list, n), tile = i / PLIANT_TILE;
     std::int64_t sum[3] = {};
     Scalar area = 0;
     for (std::int64_t k = contact_gather_offset[tile]; k < contact_gather_offset[tile + 1]; ++k) {

@@ -7,28 +7,33 @@ namespace pliant::ref {
 template <class Scalar>
 void contact_near(Range range, const Scalar* node_u, const Scalar* node_w, const Scalar* contact_rest,
                   const std::int32_t* contact_node, const Scalar* contact_weight, std::int32_t* contact_near,
-                  Scalar* contact_yield, Scalar* contact_anchor, const std::int32_t* tool_kind, const Scalar* tool_data,
-                  const Scalar* tool_grid, const Scalar* tool_pose, const Scalar* contact_params, std::int32_t tools,
-                  std::int32_t step) {
+                  Scalar* contact_gap, Scalar* contact_yield, Scalar* contact_anchor, const std::int32_t* tool_kind,
+                  const Scalar* tool_data, const Scalar* tool_grid, const Scalar* tool_pose, const Scalar* contact_params,
+                  std::int32_t tools, std::int32_t step) {
   using namespace contact;
   const Points<Scalar> points{node_u, node_w, contact_rest, contact_node, contact_weight};
   const Tools<Scalar> all{tool_kind, tool_data, tool_grid, tool_pose, tools, step};
   const Scalar margin = contact_params[5], ahead = Scalar(2) * contact_params[6];
   for (std::int64_t tile = range.begin; tile < range.end; ++tile) {
     std::int32_t near = 0;
-    for (std::int64_t i = tile * PLIANT_TILE; i < (tile + 1) * PLIANT_TILE; ++i) {
-      const Place<Scalar> p = points.at(i);
-      for (std::int32_t t = 0; t < tools; ++t) {
-        const Meeting<Scalar> m = all.meet(t, p);
-        if (m.distance < std::fma(ahead, std::sqrt(dot(m.slip, m.slip)), margin)) near |= 1 << t;
+    for (std::int32_t t = 0; t < tools; ++t) {
+      Scalar least = Scalar(1e30);
+      for (std::int64_t i = tile * PLIANT_TILE; i < (tile + 1) * PLIANT_TILE; ++i) {
+        const Meeting<Scalar> m = all.meet(t, points.at(i));
+        const Scalar gap = std::fma(-ahead, std::sqrt(dot(m.slip, m.slip)), m.distance);
+        least = gap < least ? gap : least;
       }
+      if (least < margin) near |= 1 << t;
+      contact_gap[tile * tools + t] = least;
     }
-    if (near == 0 && contact_near[tile] != 0) {
+    const std::int32_t before = contact_near[tile];
+    if (near == 0 && (before & ~PLIANT_TOUCH_BIT) != 0) {
       const std::int64_t base = tile * 4 * PLIANT_TILE;
       for (std::int64_t k = base; k < base + std::int64_t{4} * PLIANT_TILE; ++k) contact_anchor[k] = 0;
-      for (std::int64_t k = tile * PLIANT_TILE; k < (tile + 1) * PLIANT_TILE; ++k) contact_yield[k] = 0;
+      for (std::int64_t i = tile * PLIANT_TILE; i < (tile + 1) * PLIANT_TILE && (before & PLIANT_TOUCH_BIT) == 0; ++i)
+        contact_yield[i] = 0;
     }
-    contact_near[tile] = near;
+    contact_near[tile] = near | (before & PLIANT_TOUCH_BIT);
   }
 }
 

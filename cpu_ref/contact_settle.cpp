@@ -30,15 +30,16 @@ Vec<Scalar> settle_friction(const Meeting<Scalar>& m, const Scalar* next, const 
 template <class Scalar>
 void contact_settle(Range range, const Scalar* node_u, const Scalar* node_w, const Scalar* contact_rest,
                     const std::int32_t* contact_node, const Scalar* contact_weight, const Scalar* contact_share,
-                    const std::int32_t* contact_near, Scalar* contact_yield, Scalar* contact_anchor,
-                    std::int32_t* contact_force, std::int32_t* contact_change, const Scalar* contact_node_sum,
-                    std::int32_t* contact_tool_force, const std::int32_t* tool_kind, const Scalar* tool_data,
-                    const Scalar* tool_grid, const Scalar* tool_pose, const Scalar* contact_params, const Scalar* step_params,
-                    std::int32_t point_count, std::int32_t tools, std::int32_t step) {
+                    const std::int32_t* contact_list, const std::int32_t* contact_near, Scalar* contact_yield,
+                    Scalar* contact_anchor, std::int32_t* contact_force, std::int32_t* contact_change,
+                    const Scalar* contact_node_sum, std::int32_t* contact_tool_force, const std::int32_t* tool_kind,
+                    const Scalar* tool_data, const Scalar* tool_grid, const Scalar* tool_pose, const Scalar* contact_params,
+                    const Scalar* step_params, std::int32_t point_count, std::int32_t tools, std::int32_t step) {
   const Points<Scalar> points{node_u, node_w, contact_rest, contact_node, contact_weight};
   const Tools<Scalar> all{tool_kind, tool_data, tool_grid, tool_pose, tools, step};
   const Scalar h = step_params[0], half_hh = (Scalar(0.5) * h) * h, quantum = contact_params[0], inverse = contact_params[1];
-  for (std::int64_t i = range.begin; i < range.end; ++i) {
+  for (std::int64_t entry = range.begin; entry < range.end; ++entry) {
+    const std::int64_t i = listed(contact_list, entry);
     if (contact_near[i / PLIANT_TILE] == 0) continue;
     const PointNumbers<Scalar> anchor = numbers_of(contact_anchor, i);
     const PointNumbers<std::int32_t> force = numbers_of(contact_force, i), change = numbers_of(contact_change, i);

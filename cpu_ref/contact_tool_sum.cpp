@@ -6,15 +6,16 @@ namespace pliant::ref {
 
 template <class Scalar>
 void contact_tool_sum(Range range, const std::int32_t* contact_tool_force, const Scalar* contact_rest,
-                      const std::int32_t* contact_near, std::int32_t* tool_sum, const Scalar* contact_params,
-                      std::int32_t point_count, std::int32_t tools, std::int32_t step) {
+                      const std::int32_t* contact_list, const std::int32_t* contact_near, std::int32_t* tool_sum,
+                      const Scalar* contact_params, std::int32_t point_count, std::int32_t tools, std::int32_t step) {
   using namespace contact;
   constexpr std::int64_t parts = 16, numbers = 16;
   for (std::int64_t item = range.begin; item < range.end; ++item) {
     const auto t = static_cast<std::int32_t>(item / parts);
     std::array<std::int64_t, 7> sum{};
     std::int32_t deepest = 0, count = 0;
-    for (std::int64_t tile = item % parts; tile < point_count / PLIANT_TILE; tile += parts) {
+    for (std::int64_t k = item % parts; contact_list[k] >= 0; k += parts) {
+      const std::int64_t tile = contact_list[k];
       if ((contact_near[tile] >> t & 1) == 0) continue;
       for (std::int64_t i = tile * PLIANT_TILE; i < (tile + 1) * PLIANT_TILE; ++i) {
         const PointNumbers<const std::int32_t> force = tool_force_of(contact_tool_force, point_count, t, i);

@@ -81,14 +81,15 @@ class RefBackend final : public Backend {
       while (end < first + count && same(end)) ++end;
       list_.clear();
       for (const Pass& pass : passes) {
-        if (pass.runs_in(origin + step)) list_.push_back(&prepared(pass));
+        if (pass.runs_in(origin + step) && pass.indices() > 0) list_.push_back({&prepared(pass), pass.indices()});
       }
       run_list(step, end - step);
       step = end;
     }
   }
   void run(const Pass& pass, std::int32_t step_in_batch) override {
-    list_ = {&prepared(pass)};
+    list_.clear();
+    if (pass.indices() > 0) list_.push_back({&prepared(pass), pass.indices()});
     run_list(step_in_batch, 1);
   }
   void finish() override {}
@@ -152,24 +153,23 @@ class RefBackend final : public Backend {
   };
   struct Prepared : ref::PreparedTwin<Scalar> {
     Shape shape = Shape::lanes;
-    std::int64_t count = 0;
     bool uneven = false;
     double seconds = 0;
     std::int64_t launches = 0;
   };
 
   /// A few indices, or bricks, are not worth a second thread.
-  static bool splits(const Prepared& p) {
-    return p.count >= (p.shape == Shape::bricks ? 4 : p.uneven && p.shape == Shape::items ? 64 : 1024);
+  static bool splits(const Prepared& p, std::int64_t count) {
+    return count >= (p.shape == Shape::bricks ? 4 : p.uneven ? (p.shape == Shape::items ? 64 : 256) : 1024);
   }
 
   /// An uneven pass is dealt out in so many portions per thread.
   static constexpr int kPortions = 16;
 
   /// One piece of as many as there are threads: contiguous, and for `lanes` made of whole sixteens.
-  static Range share(const Prepared& p, int piece, int pieces) {
+  static Range share(const Prepared& p, std::int64_t count, int piece, int pieces) {
     const std::int64_t unit = p.shape == Shape::lanes ? 16 : 1;
-    const std::int64_t units = p.count / unit;
+    const std::int64_t units = count / unit;
     return {units * piece / pieces * unit, units * (piece + 1) / pieces * unit};
   }
 
@@ -237,7 +237,7 @@ class RefBackend final : public Backend {
       Storage& s = storage(id);
       return s.ints.empty() ? ArgValue<Scalar>{s.reals.data()} : ArgValue<Scalar>{nullptr, s.ints.data()};
     };
-    return {ref::prepare_twin<Scalar>(registry_, pass, table_.size(), values_of), pass.shape, pass.count, pass.uneven};
+    return {ref::prepare_twin<Scalar>(registry_, pass, table_.size(), values_of), pass.shape, pass.uneven};
   }
 
   Prepared& prepared(const Pass& pass) {
@@ -248,27 +248,27 @@ class RefBackend final : public Backend {
   void run_list(std::int32_t first, std::int32_t count) {
     const DefaultFloatEnvironment environment;
     for (std::int32_t step = first; step < first + count; ++step) {
-      for (Prepared* p : list_) {
+      for (const auto& [p, indices] : list_) {
         if (profiling_) {
           const auto start = Clock::now();
-          execute(*p, step);
+          execute(*p, indices, step);
           p->seconds += std::chrono::duration<double>(Clock::now() - start).count();
           ++p->launches;
         } else {
-          execute(*p, step);
+          execute(*p, indices, step);
         }
       }
     }
   }
 
-  void execute(const Prepared& p, std::int32_t step) {
-    if (splits(p)) {
+  void execute(const Prepared& p, std::int64_t count, std::int32_t step) {
+    if (splits(p, count)) {
       const int portions = p.uneven ? kPortions : 1, pieces = pool_.threads();
       pool_.run([&](int piece) {
-        for (int k = 0; k < portions; ++k) p.execute(share(p, k * pieces + piece, portions * pieces), step);
+        for (int k = 0; k < portions; ++k) p.execute(share(p, count, k * pieces + piece, portions * pieces), step);
       });
     } else {
-      p.execute({0, p.count}, step);
+      p.execute({0, count}, step);
     }
   }
 
@@ -290,7 +290,12 @@ class RefBackend final : public Backend {
   BufferTable table_;
   std::vector<Storage> storage_, extension_;
   PassTable<Prepared> passes_, extension_passes_;
-  std::vector<Prepared*> list_;
+  /// A pass, and how many of its indices run.
+  struct Listed {
+    Prepared* pass;
+    std::int64_t indices;
+  };
+  std::vector<Listed> list_;
   bool profiling_ = false;
 };
 

@@ -17,4 +17,9 @@ inline void mark_fault(std::int32_t kind, std::int32_t step, std::int32_t& fault
   if (kind == 1 && fault == 0) fault = -step - 1;
 }
 
+/// Index k of a pass over a list of tiles (Pass::active).
+inline std::int64_t listed(const std::int32_t* list, std::int64_t k) {
+  return std::int64_t{list[k / PLIANT_TILE]} * PLIANT_TILE + k % PLIANT_TILE;
+}
+
 }  // namespace pliant::ref

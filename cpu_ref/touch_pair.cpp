@@ -121,7 +121,7 @@ template <class Scalar>
 void touch_pair(Range range, const Scalar* touch_place, const Scalar* touch_box, const std::int32_t* touch_node,
                 const Scalar* touch_surface, const Scalar* touch_rest, const Scalar* contact_rest,
                 const std::int32_t* contact_node, std::int32_t* touch_partner, Scalar* touch_pair, Scalar* touch_weight,
-                std::int32_t* contact_near, const Scalar* contact_params, std::int32_t node_count) {
+                std::int32_t* contact_near, Scalar* contact_yield, const Scalar* contact_params, std::int32_t node_count) {
   const Scalar margin = contact_params[5], ahead = Scalar(2) * contact_params[6];
   const Look<Scalar> look{touch_place, touch_surface, touch_rest, contact_node, margin, ahead};
   const Boxes<Scalar> boxes{touch_box, touch_node, node_count, margin, ahead};
@@ -152,7 +152,10 @@ void touch_pair(Range range, const Scalar* touch_place, const Scalar* touch_box,
       }
       if (partners.finish(contact_rest)) any = PLIANT_TOUCH_BIT;
     }
-    contact_near[tile] = (contact_near[tile] & ~PLIANT_TOUCH_BIT) | any;
+    const std::int32_t before = contact_near[tile], near = (before & ~PLIANT_TOUCH_BIT) | any;
+    for (std::int64_t i = tile * PLIANT_TILE; i < (tile + 1) * PLIANT_TILE && near == 0 && before != 0; ++i)
+      contact_yield[i] = 0;
+    contact_near[tile] = near;
   }
 }
 

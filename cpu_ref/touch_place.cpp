@@ -7,13 +7,14 @@ namespace pliant::ref {
 template <class Scalar>
 void touch_place(Range range, const Scalar* node_u, const Scalar* node_w, const Scalar* contact_rest,
                  const std::int32_t* contact_node, const Scalar* contact_weight, const Scalar* contact_share,
-                 const std::int32_t* contact_near, Scalar* contact_yield, const std::int32_t* contact_change,
-                 const Scalar* contact_node_sum, const Scalar* touch_surface, Scalar* touch_place, const Scalar* step_params,
-                 std::int32_t again) {
+                 const std::int32_t* contact_list, const std::int32_t* contact_near, Scalar* contact_yield,
+                 const std::int32_t* contact_change, const Scalar* contact_node_sum, const Scalar* touch_surface,
+                 Scalar* touch_place, const Scalar* step_params, std::int32_t again) {
   using namespace touch;
   const contact::Points<Scalar> points{node_u, node_w, contact_rest, contact_node, contact_weight};
   const Scalar h = step_params[0], half_hh = (Scalar(0.5) * h) * h;
-  for (std::int64_t i = range.begin; i < range.end; ++i) {
+  for (std::int64_t entry = range.begin; entry < range.end; ++entry) {
+    const std::int64_t i = listed(contact_list, entry);
     if ((contact_near[i / PLIANT_TILE] & PLIANT_TOUCH_BIT) == 0) continue;
     const contact::Place<Scalar> p = points.at(i);
     Place<Scalar> place = place_of(touch_place, i);

@@ -27,11 +27,12 @@ Vec<Scalar> settle_friction(const Place<Scalar>& lower, const Pair<Scalar>& p, S
 }  // namespace
 
 template <class Scalar>
-void touch_settle(Range range, const Scalar* touch_place, const std::int32_t* contact_near, std::int32_t* contact_change,
-                  const std::int32_t* touch_partner, Scalar* touch_pair, const std::int32_t* touch_force,
-                  std::int32_t* touch_moment, const Scalar* contact_params) {
+void touch_settle(Range range, const Scalar* touch_place, const std::int32_t* contact_list, const std::int32_t* contact_near,
+                  std::int32_t* contact_change, const std::int32_t* touch_partner, Scalar* touch_pair,
+                  const std::int32_t* touch_force, std::int32_t* touch_moment, const Scalar* contact_params) {
   const Scalar quantum = contact_params[0], inverse = contact_params[1], friction = contact_params[7];
-  for (std::int64_t i = range.begin; i < range.end; ++i) {
+  for (std::int64_t entry = range.begin; entry < range.end; ++entry) {
+    const std::int64_t i = listed(contact_list, entry);
     const std::int32_t near = contact_near[i / PLIANT_TILE];
     if (near == 0) continue;
     const auto change = contact::numbers_of(contact_change, i);

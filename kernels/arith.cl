@@ -23,8 +23,10 @@ typedef int integer;
 #define AS_REAL(i) as_float(i)
 #endif
 
-// First element (or node) of this work-item, and where it stands in plane 0 of a tiled array.
+// First element (or node) of this work-item, and where it stands in plane 0 of a tiled array; of a pass over a list of tiles (Pass::active),
+// where an entry < 0 is none.
 #define FIRST_INDEX ((int)get_global_id(0) * LANES)
+#define FIRST_LISTED(list) ((list)[FIRST_INDEX / PLIANT_TILE] * PLIANT_TILE + FIRST_INDEX % PLIANT_TILE)
 #define TILE_BASE(e, planes) (((e) / PLIANT_TILE) * ((planes)*PLIANT_TILE) + (e) % PLIANT_TILE)
 
 // Mark elements with the step of their first fault (counted from 1), negative while they are only INVERTED (law.cl).

@@ -1,24 +1,22 @@
 // Take forces of contact points over to the nodes that move them, at once: u and w change by b c f / m. Forces are whole quanta and weights
 // whole units, so that the sum over the nodes is that over the points to the last bit, in any order.
-// contact_slot: [nodes] slots; contact_free: [nodes] bit mask of the components that move freely; contact_tiles_offset, contact_tiles:
-// tiles of points at each tile of nodes; contact_gather_offset: [tiles + 1] rows; contact_gather: [rows][16] positions in
+// contact_slot: [nodes] slots; contact_free: [nodes] bit mask of the components that move freely; contact_node_list: tiles of nodes at which
+// points are near something; contact_gather_offset: [tiles + 1] rows; contact_gather: [rows][16] positions in
 // contact_force; contact_gather_units: [rows][16] weights in units; with MOMENT contact_gather_turns: [rows][2][16] gradients along both
 // tangents in units, which sum to zero over a point's nodes, for touch_moment (touch_point.cl). contact_node_sum: [slots] (force (3) [N], sum of weights times
 // areas of the points that touch [m^2]).
 #include "arith.cl"
 
 __kernel void contact_apply(__global float* node_u, __global float* node_w, __global const int* contact_slot,
-                            __global const int* contact_free, __global const int* contact_tiles_offset,
-                            __global const int* contact_tiles, __global const int* contact_gather_offset,
+                            __global const int* contact_free, __global const int* contact_node_list,
+                            __global const int* contact_gather_offset,
                             __global const int* contact_gather, __global const int* contact_gather_units,
                             __global const int* contact_gather_turns, __global const int* contact_near,
                             __global const int* contact_force, __global const int* touch_moment,
                             __global const float* contact_rest, __global float* contact_node_sum,
                             __global const float* contact_params, __global const float* step_params) {
-  const int first = FIRST_INDEX, tile = first / PLIANT_TILE;
-  int near = 0;
-  for (int k = contact_tiles_offset[tile]; k < contact_tiles_offset[tile + 1]; ++k) near |= contact_near[contact_tiles[k]];
-  if (near == 0) return;
+  const int first = FIRST_LISTED(contact_node_list), tile = first / PLIANT_TILE;
+  if (first < 0) return;
   const float h = step_params[0], half_hh = (0.5f * h) * h, quantum = contact_params[2];
   for (int i = first; i < first + LANES; ++i) {
     long x = 0, y = 0, z = 0;

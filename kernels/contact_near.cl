@@ -1,30 +1,36 @@
-// Every few steps: which tools a tile of contact points may touch before the next look, contact_near: [tiles] a bit per tool. A point is
+// Now and then: which tools a tile of contact points may touch before the next look, contact_near: [tiles] a bit per tool. A point is
 // near when its distance is less than a margin plus twice the way that it would go against the tool at its present speed.
+// contact_gap: [tiles][tools] the least of these distances without that way [m]: how far what is not near may move until the next look.
 // contact_params: quantum of force [N], its inverse, per unit of weight, inverse quanta of torque [1/(N m)] and area [1/m^2], margin [m],
-// steps between two looks. What is near no more loses its anchor.
+// steps between two looks. What is near no more loses its anchor, and what it knew of the points that touch.
 #include "arith.cl"
 #include "contact_shape.cl"
 #include "contact_point.cl"
 
 __kernel void contact_near(__global const float* node_u, __global const float* node_w, __global const float* contact_rest,
                            __global const int* contact_node, __global const float* contact_weight, __global int* contact_near,
-                           __global float* contact_yield, __global float* contact_anchor, __global const int* tool_kind, __global const float* tool_data,
+                           __global float* contact_gap, __global float* contact_yield,
+                           __global float* contact_anchor, __global const int* tool_kind, __global const float* tool_data,
                            __global const float* tool_grid, __global const float* tool_pose, __global const float* contact_params, int tools, int step) {
   const int tile = (int)get_global_id(0);
   const float margin = contact_params[5], ahead = 2.0f * contact_params[6];
   int near = 0;
-  for (int i = tile * PLIANT_TILE; i < (tile + 1) * PLIANT_TILE; ++i) {
-    const contact_place p = place_of_point(node_u, node_w, contact_rest, contact_node, contact_weight, i);
-    for (int t = 0; t < tools; ++t) {
+  for (int t = 0; t < tools; ++t) {
+    float least = 1e30f;
+    for (int i = tile * PLIANT_TILE; i < (tile + 1) * PLIANT_TILE; ++i) {
+      const contact_place p = place_of_point(node_u, node_w, contact_rest, contact_node, contact_weight, i);
       const meeting m = meet(tool_kind, tool_data, tool_grid, tool_pose, tools, step, t, p);
-      const float reach = fma(ahead, sqrt(dot_xyz(m.slip, m.slip)), margin);
-      if (m.distance < reach) near |= 1 << t;
+      const float gap = fma(-ahead, sqrt(dot_xyz(m.slip, m.slip)), m.distance);
+      least = gap < least ? gap : least;
     }
+    if (least < margin) near |= 1 << t;
+    contact_gap[tile * tools + t] = least;
   }
-  if (near == 0 && contact_near[tile] != 0) {
+  const int before = contact_near[tile];
+  if (near == 0 && (before & ~PLIANT_TOUCH_BIT) != 0) {
     const int base = tile * 4 * PLIANT_TILE;
     for (int k = base; k < base + 4 * PLIANT_TILE; ++k) contact_anchor[k] = 0.0f;
-    for (int i = tile * PLIANT_TILE; i < (tile + 1) * PLIANT_TILE; ++i) contact_yield[i] = 0.0f;
+    for (int i = tile * PLIANT_TILE; i < (tile + 1) * PLIANT_TILE && (before & PLIANT_TOUCH_BIT) == 0; ++i) contact_yield[i] = 0.0f;
   }
-  contact_near[tile] = near;
+  contact_near[tile] = near | (before & PLIANT_TOUCH_BIT);
 }

@@ -15,11 +15,12 @@
 
 __kernel void contact_press(__global const float* node_u, __global const float* node_w, __global const float* contact_rest,
                             __global const int* contact_node, __global const float* contact_weight,
-                            __global const float* contact_share, __global const int* contact_near, __global float* contact_yield,
+                            __global const float* contact_share, __global const int* contact_list, __global const int* contact_near, __global float* contact_yield,
                             __global float* contact_anchor, __global int* contact_force, __global int* contact_tool_force, __global const int* tool_kind,
                             __global const float* tool_data, __global const float* tool_grid, __global const float* tool_pose,
                             __global const float* contact_params, __global const float* step_params, int point_count, int tools, int step) {
-  const int first = FIRST_INDEX;
+  const int first = FIRST_LISTED(contact_list);
+  if (first < 0) return;
   const int near = contact_near[first / PLIANT_TILE];
   if (near == 0) return;
   const float h = step_params[0], half_hh = (0.5f * h) * h;

@@ -8,12 +8,13 @@
 
 __kernel void contact_settle(__global const float* node_u, __global const float* node_w, __global const float* contact_rest,
                              __global const int* contact_node, __global const float* contact_weight,
-                             __global const float* contact_share, __global const int* contact_near, __global float* contact_yield,
+                             __global const float* contact_share, __global const int* contact_list, __global const int* contact_near, __global float* contact_yield,
                              __global float* contact_anchor, __global int* contact_force, __global int* contact_change, __global const float* contact_node_sum,
                              __global int* contact_tool_force, __global const int* tool_kind, __global const float* tool_data,
                              __global const float* tool_grid, __global const float* tool_pose, __global const float* contact_params,
                              __global const float* step_params, int point_count, int tools, int step) {
-  const int first = FIRST_INDEX;
+  const int first = FIRST_LISTED(contact_list);
+  if (first < 0) return;
   if (contact_near[first / PLIANT_TILE] == 0) return;
   const float h = step_params[0], half_hh = (0.5f * h) * h;
   for (int i = first; i < first + LANES; ++i) {

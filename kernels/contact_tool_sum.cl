@@ -10,13 +10,14 @@
 #define SUM_NUMBERS 16
 
 __kernel void contact_tool_sum(__global const int* contact_tool_force, __global const float* contact_rest,
-                               __global const int* contact_near, __global int* tool_sum, __global const float* contact_params,
+                               __global const int* contact_list, __global const int* contact_near, __global int* tool_sum, __global const float* contact_params,
                                int point_count, int tools, int step) {
   const int item = (int)get_global_id(0);
-  const int t = item / PARTS, tiles = point_count / PLIANT_TILE;
+  const int t = item / PARTS;
   long sum[7] = {0, 0, 0, 0, 0, 0, 0};
   int deepest = 0, count = 0;
-  for (int tile = item % PARTS; tile < tiles; tile += PARTS) {
+  for (int k = item % PARTS; contact_list[k] >= 0; k += PARTS) {  // it ends with as many entries that are none
+    const int tile = contact_list[k];
     if (!(contact_near[tile] >> t & 1)) continue;
     for (int i = tile * PLIANT_TILE; i < (tile + 1) * PLIANT_TILE; ++i) {
       __global const int* force = contact_tool_force + TOOL_FORCE_NUMBERS * point_count * t + POINT_BASE(i, TOOL_FORCE_NUMBERS);

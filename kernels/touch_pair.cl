@@ -19,7 +19,7 @@
 __kernel void touch_pair(__global const float* touch_place, __global const float* touch_box, __global const int* touch_node,
                          __global const float* touch_surface, __global const float* touch_rest, __global const float* contact_rest,
                          __global const int* contact_node, __global int* touch_partner, __global float* touch_pair,
-                         __global float* touch_weight, __global int* contact_near, __global const float* contact_params,
+                         __global float* touch_weight, __global int* contact_near, __global float* contact_yield, __global const float* contact_params,
                          int node_count) {
   const int tile = (int)get_global_id(0);
   const float margin = contact_params[5], ahead = 2.0f * contact_params[6];
@@ -102,5 +102,7 @@ __kernel void touch_pair(__global const float* touch_place, __global const float
     weight[TOUCH_SLOTS * PLIANT_TILE] = sum;
     if (filled > 0) any = PLIANT_TOUCH_BIT;
   }
-  contact_near[tile] = (contact_near[tile] & ~PLIANT_TOUCH_BIT) | any;
+  const int before = contact_near[tile], near = (before & ~PLIANT_TOUCH_BIT) | any;
+  for (int i = tile * PLIANT_TILE; i < (tile + 1) * PLIANT_TILE && near == 0 && before != 0; ++i) contact_yield[i] = 0.0f;
+  contact_near[tile] = near;
 }

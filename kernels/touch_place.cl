@@ -8,11 +8,12 @@
 
 __kernel void touch_place(__global const float* node_u, __global const float* node_w, __global const float* contact_rest,
                           __global const int* contact_node, __global const float* contact_weight,
-                          __global const float* contact_share, __global const int* contact_near,
+                          __global const float* contact_share, __global const int* contact_list, __global const int* contact_near,
                           __global float* contact_yield, __global const int* contact_change,
                           __global const float* contact_node_sum, __global const float* touch_surface, __global float* touch_place,
                           __global const float* step_params, int again) {
-  const int first = FIRST_INDEX;
+  const int first = FIRST_LISTED(contact_list);
+  if (first < 0) return;
   if ((contact_near[first / PLIANT_TILE] & PLIANT_TOUCH_BIT) == 0) return;
   const float h = step_params[0], half_hh = (0.5f * h) * h;
   for (int i = first; i < first + LANES; ++i) {

@@ -10,11 +10,12 @@
 #include "contact_point.cl"
 #include "touch_point.cl"
 
-__kernel void touch_press(__global const float* touch_place, __global const int* contact_near, __global const float* contact_yield,
+__kernel void touch_press(__global const float* touch_place, __global const int* contact_list, __global const int* contact_near, __global const float* contact_yield,
                           __global const int* contact_force,
                           __global int* contact_change, __global const int* touch_partner, __global float* touch_pair,
                           __global int* touch_force, __global int* touch_moment, __global float* touch_depth, __global const float* contact_params) {
-  const int first = FIRST_INDEX;
+  const int first = FIRST_LISTED(contact_list);
+  if (first < 0) return;
   const int near = contact_near[first / PLIANT_TILE];
   if (near == 0) return;
   const float inverse = contact_params[1], friction = contact_params[7];

@@ -6,10 +6,11 @@
 #include "contact_point.cl"
 #include "touch_point.cl"
 
-__kernel void touch_settle(__global const float* touch_place, __global const int* contact_near, __global int* contact_change,
+__kernel void touch_settle(__global const float* touch_place, __global const int* contact_list, __global const int* contact_near, __global int* contact_change,
                            __global const int* touch_partner, __global float* touch_pair, __global const int* touch_force,
                            __global int* touch_moment, __global const float* contact_params) {
-  const int first = FIRST_INDEX;
+  const int first = FIRST_LISTED(contact_list);
+  if (first < 0) return;
   const int near = contact_near[first / PLIANT_TILE];
   if (near == 0) return;
   const float quantum = contact_params[0], inverse = contact_params[1], friction = contact_params[7];

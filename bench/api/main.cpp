@@ -28,7 +28,7 @@ void schedule(Simulation& s, std::int64_t steps) {
   while (s.step() < end) {
     const std::int32_t n = s.next_batch(end - s.step());
     s.begin_batch(n);
-    s.backend().run(s.program().step, 0, n, s.step());
+    s.run_steps(0, n);
     s.end_batch(n);
   }
 }

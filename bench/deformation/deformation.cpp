@@ -101,7 +101,7 @@ json time_each_pass(Simulation& simulation, bool quick) {
   const std::int32_t steps = quick ? 4 : 64;
   backend.profile(true);
   backend.take_profile();
-  backend.run(simulation.program().step, 0, steps, simulation.step());
+  simulation.run_steps(0, steps);
   json passes = json::array();
   for (const PassTime& t : backend.take_profile()) {
     passes.push_back({{"kernel", t.kernel},

@@ -45,7 +45,7 @@ bool RunLoop::batch(const std::vector<DueOutput>& due, std::int32_t& steps) {
   // Only now the length of its steps is known: they may have grown, and fewer lead to the same time.
   steps = static_cast<std::int32_t>(std::min<std::int64_t>(steps, wanted()));
   const std::int64_t end = simulation_.step() + steps;
-  simulation_.backend().run(simulation_.program().step, 0, steps, simulation_.step());
+  simulation_.run_steps(0, steps);
   simulation_.end_batch(steps);
   return simulation_.step() == end;
 }

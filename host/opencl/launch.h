@@ -27,4 +27,7 @@ struct LaunchRules {
 /// global offset), so such kernels ask for get_global_id and for nothing else; `bricks` passes with one lane have groups of 16.
 std::vector<Launch> plan_launches(const Pass& pass, const LaunchRules& rules);
 
+/// The enqueue of a pass over a list of `indices` (Pass::active); a last group reaches beyond them, where lists hold -1.
+Launch plan_listed(std::int64_t indices, const LaunchRules& rules);
+
 }  // namespace pliant::opencl

@@ -87,7 +87,7 @@ class OpenclBackend final : public Backend {
   }
 
   void compile(const Program& program) override {
-    for (const auto* passes : {&program.step, &program.force, &program.status}) {
+    for (const auto* passes : {&program.step, &program.look, &program.force, &program.status}) {
       for (const Pass& pass : *passes) kernels_.make(pass.kernel, pass.defines, pass.shape == Shape::items ? 1 : info_.lanes);
     }
   }
@@ -97,13 +97,13 @@ class OpenclBackend final : public Backend {
     for (const Pass& pass : passes) list_.push_back(&prepared(pass));
     for (std::int32_t step = first; step < first + count; ++step) {
       for (std::size_t p = 0; p < list_.size(); ++p) {
-        if (passes[p].runs_in(origin + step)) enqueue(*list_[p], step);
+        if (passes[p].runs_in(origin + step)) enqueue(passes[p], *list_[p], step);
       }
     }
     flush();
   }
   void run(const Pass& pass, std::int32_t step_in_batch) override {
-    enqueue(prepared(pass), step_in_batch);
+    enqueue(pass, prepared(pass), step_in_batch);
     flush();
   }
   void finish() override {
@@ -260,7 +260,8 @@ class OpenclBackend final : public Backend {
         }
       }
       const std::size_t largest = p.kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device_);
-      p.launches_of_one_run = opencl::plan_launches(pass, {info_.lanes, local_size_, largest, info_.kind == "cpu"});
+      rules_ = {info_.lanes, local_size_, largest, info_.kind == "cpu"};
+      p.launches_of_one_run = opencl::plan_launches(pass, rules_);
     });
     return p;
   }
@@ -270,10 +271,14 @@ class OpenclBackend final : public Backend {
     return table.get(pass, [this](const Pass& p) { return prepare(p); });
   }
 
-  void enqueue(Prepared& p, cl_int step) {
+  void enqueue(const Pass& pass, Prepared& p, cl_int step) {
+    const std::int64_t indices = pass.indices();
+    if (indices == 0) return;
     guarded(ErrorCode::internal, p.where, [&] {
       for (const cl_uint i : p.step_args) p.kernel.setArg(i, step);
-      for (const opencl::Launch& launch : p.launches_of_one_run) {
+      const bool listed = pass.active != nullptr && pass.shape != Shape::items;
+      const auto some = listed ? std::vector{opencl::plan_listed(indices, rules_)} : std::vector<opencl::Launch>();
+      for (const opencl::Launch& launch : listed ? some : p.launches_of_one_run) {
         cl::Event* event = nullptr;
         if (profiling_) {
           events_.push_back({&p, {}});
@@ -343,6 +348,7 @@ class OpenclBackend final : public Backend {
   cl::CommandQueue queue_;
   opencl::KernelCache kernels_;
   const int local_size_;
+  opencl::LaunchRules rules_{};
   BufferTable table_;
   std::vector<opencl::DeviceMemory> memory_, extension_;
   std::multimap<KernelKey, cl::Kernel> spare_kernels_;

@@ -1,7 +1,9 @@
 // A Program is a Model ready to run: the buffer table and the Schedule, the ordered passes of one step. It is built once and is
 // the same object for every backend.
 #pragma once
+#include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 #include <variant>
@@ -41,6 +43,12 @@ struct Pass {
   double flops_per_element = 0;  ///< counted operations; an fma counts two
   std::int32_t every = 1;        ///< runs in the steps of the whole run that are multiples of this (subcycling)
   bool uneven = false;           ///< a few indices take most of the time, and stand together
+  /// If set, only the first so many of `count` indices run, as the host decides between steps; the kernel finds in a list which
+  /// they are, and passes over entries < 0. Of `items`, all or none.
+  std::shared_ptr<const std::int64_t> active = nullptr;
+  [[nodiscard]] std::int64_t indices() const {
+    return active == nullptr ? count : shape == Shape::items ? (*active > 0 ? count : 0) : std::min(*active, count);
+  }
   [[nodiscard]] bool runs_in(std::int64_t step) const { return step % every == 0; }
 };
 
@@ -50,8 +58,11 @@ struct Program {
   BufferId first = 0;
   std::vector<Buffer> buffers;
   std::vector<Pass> step;    ///< one time step; of an extension: all that it does
+  std::vector<Pass> look;    ///< now and then, when the host asks for it: what is near what, for the passes that follow
   std::vector<Pass> force;   ///< R - F of the present configuration into node_force, without advancing
   std::vector<Pass> status;  ///< once per batch: first fault of the batch into fault_summary
+  /// What Pass::active counts: contact points, and nodes that they move, of tiles that are near something.
+  std::shared_ptr<std::int64_t> near_points, near_nodes;
   [[nodiscard]] BufferId find(const std::string& name) const;  ///< -1 if absent
   BufferId add(Buffer buffer);                                 ///< returns its id
   [[nodiscard]] Buffer& at(BufferId id) { return buffers.at(static_cast<std::size_t>(id - first)); }

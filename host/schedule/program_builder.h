@@ -90,6 +90,7 @@ class ProgramBuilder {
   void add_tools();
   void add_contact_gather();
   void add_contact_passes();
+  void add_contact_look();
   [[nodiscard]] std::vector<Arg> named(std::initializer_list<const char*> buffers) const;
 
   /// Defined in program_touch.cpp: tissue that touches tissue.

@@ -77,6 +77,9 @@ void ProgramBuilder::add_contact_points() {
   for (const char* name : {"contact_yield", "last_contact_yield"}) {
     add(make_reals(name, BufferType::real, count, BufferRole::state, "[points]", "m^3/N", "contact_settle, touch_place"));
   }
+  // Filled by the host after a look; they end with entries that are none.
+  add(make_ints("contact_list", BufferRole::control, "[tiles + 16]", std::vector<std::int32_t>(tiles + contact_list_end, -1), 0,
+                "host"));
   add(make_ints("contact_force", BufferRole::scratch, "[tiles][4][16]", {}, 4 * count, "contact_press, contact_settle"));
   add(make_ints("contact_change", BufferRole::scratch, "[tiles][4][16]", {}, 4 * count, "contact_settle, touch_press"));
   add(make_reals("contact_params", BufferType::real, 8, BufferRole::control, "[8]", "see contact_near.cl", "host"));
@@ -90,6 +93,9 @@ void ProgramBuilder::add_tools() {
     add(make_reals(name, BufferType::real, 4 * count, BufferRole::state, "[tiles][4][16]", "m, m, m, 1",
                    "contact_press, contact_settle"));
   }
+  add(make_reals("contact_gap", BufferType::real, count / PLIANT_TILE * tools, BufferRole::scratch, "[tiles][tools]", "m",
+                 "contact_near"));
+  program_.buffers.back().carried = Carried::all;
   add(make_ints("contact_tool_force", BufferRole::scratch, "[tools][tiles][8][16]", {}, 8 * count * tools,
                 "contact_press, contact_settle"));
   std::vector<double> data, grid;
@@ -181,6 +187,8 @@ void ProgramBuilder::add_contact_gather() {
   GatherList where = rows_of(entries, [](const PointAtNode& p) { return p.at; });
   add(make_ints("contact_slot", BufferRole::constant, "[contact nodes]", std::move(slot)));
   add(make_ints("contact_free", BufferRole::constant, "[contact nodes]", std::move(free)));
+  add(make_ints("contact_node_list", BufferRole::control, "[tiles + 16]",
+                std::vector<std::int32_t>(count / PLIANT_TILE + contact_list_end, -1), 0, "host"));
   add(make_ints("contact_tiles_offset", BufferRole::constant, "[tiles + 1]", std::move(offset)));
   add(make_ints("contact_tiles", BufferRole::constant, "[entries]", std::move(tiles)));
   add(make_ints("contact_gather_offset", BufferRole::constant, "[tiles + 1]", std::move(where.offset)));
@@ -206,64 +214,74 @@ std::vector<Arg> ProgramBuilder::named(std::initializer_list<const char*> buffer
   return list;
 }
 
+/// The passes of every step, over what the look has listed as near.
 void ProgramBuilder::add_contact_passes() {
   const auto points = static_cast<std::int64_t>(padded(model_.contact->size()));
   const auto nodes = static_cast<std::int64_t>(program_.at(program_.find("contact_slot")).count);
   const auto tools = static_cast<std::int32_t>(model_.tools->size());
   const bool tissue = model_.tissue_contact.has_value();
-  const auto with_points = [&](std::vector<Arg> list) {
-    list.push_back(int_arg(static_cast<std::int32_t>(points)));
-    return list;
-  };
+  program_.near_points = std::make_shared<std::int64_t>(0);
+  program_.near_nodes = std::make_shared<std::int64_t>(0);
   const auto with_step = [&](std::vector<Arg> list) {
+    list.push_back(int_arg(static_cast<std::int32_t>(points)));
     list.push_back(int_arg(tools));
     list.push_back(step_arg());
     return list;
   };
-  // Counted as idle: a word per tile. What is near costs more (docs/contact.md).
+  // Counted as idle: what is near costs (docs/contact.md).
   const auto pass = [&](const char* kernel, std::vector<Arg> list, Shape shape, std::int64_t count, const char* label) {
-    program_.step.push_back({kernel, {}, std::move(list), shape, count, label, count, 0.25, 0});
+    program_.step.push_back({kernel, {}, std::move(list), shape, count, label, count, 0, 0});
     program_.step.back().uneven = true;
+    program_.step.back().active = kernel == std::string("contact_apply") ? program_.near_nodes : program_.near_points;
   };
   const auto apply = [&](const char* force) {
     pass("contact_apply",
-         named({"node_u", "node_w", "contact_slot", "contact_free", "contact_tiles_offset", "contact_tiles",
-                "contact_gather_offset", "contact_gather", "contact_gather_units",
-                tissue ? "contact_gather_turns" : "contact_gather_units", "contact_near", force,
-                tissue ? "touch_moment" : force, "contact_rest", "contact_node_sum", "contact_params", "step_params"}),
+         named({"node_u", "node_w", "contact_slot", "contact_free", "contact_node_list", "contact_gather_offset",
+                "contact_gather", "contact_gather_units", tissue ? "contact_gather_turns" : "contact_gather_units",
+                "contact_near", force, tissue ? "touch_moment" : force, "contact_rest", "contact_node_sum", "contact_params",
+                "step_params"}),
          Shape::lanes, nodes, "contact nodes");
     program_.step.back().defines = {{"MOMENT", tissue ? 1 : 0}};
   };
-  if (tools > 0) {
-    pass("contact_near",
-         with_step(named({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_near", "contact_yield",
-                          "contact_anchor", "tool_kind", "tool_data", "tool_grid", "tool_pose", "contact_params"})),
-         Shape::items, points / PLIANT_TILE, "near tools");
-    program_.step.back().every = contact_look_every;
-  }
-  if (tissue) add_touch_look();
+  add_contact_look();
   if (tools > 0) {
     pass("contact_press",
-         with_step(with_points(named({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_share",
-                                      "contact_near", "contact_yield", "contact_anchor", "contact_force", "contact_tool_force",
-                                      "tool_kind", "tool_data", "tool_grid", "tool_pose", "contact_params", "step_params"}))),
+         with_step(named({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_share", "contact_list",
+                          "contact_near", "contact_yield", "contact_anchor", "contact_force", "contact_tool_force", "tool_kind",
+                          "tool_data", "tool_grid", "tool_pose", "contact_params", "step_params"})),
          Shape::lanes, points, "contact points");
   }
   if (tissue) add_touch_pass("touch_press");
   apply(tissue ? "contact_change" : "contact_force");
   if (tools > 0) {
     pass("contact_settle",
-         with_step(with_points(named({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_share",
-                                      "contact_near", "contact_yield", "contact_anchor", "contact_force", "contact_change",
-                                      "contact_node_sum", "contact_tool_force", "tool_kind", "tool_data", "tool_grid",
-                                      "tool_pose", "contact_params", "step_params"}))),
+         with_step(named({"node_u",        "node_w",         "contact_rest",     "contact_node",       "contact_weight",
+                          "contact_share", "contact_list",   "contact_near",     "contact_yield",      "contact_anchor",
+                          "contact_force", "contact_change", "contact_node_sum", "contact_tool_force", "tool_kind",
+                          "tool_data",     "tool_grid",      "tool_pose",        "contact_params",     "step_params"})),
          Shape::lanes, points, "contact points");
     pass("contact_tool_sum",
-         with_step(with_points(named({"contact_tool_force", "contact_rest", "contact_near", "tool_sum", "contact_params"}))),
+         with_step(named({"contact_tool_force", "contact_rest", "contact_list", "contact_near", "tool_sum", "contact_params"})),
          Shape::items, tools * static_cast<std::int64_t>(contact_sum_parts), "parts of tools");
   }
   if (tissue) add_touch_pass("touch_settle");
   apply("contact_change");
+}
+
+/// What is near tools, and which tissue is near other tissue.
+void ProgramBuilder::add_contact_look() {
+  const auto tools = static_cast<std::int32_t>(model_.tools->size());
+  if (tools > 0) {
+    const std::int64_t tiles = padded(model_.contact->size()) / PLIANT_TILE;
+    std::vector<Arg> list =
+        named({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_near", "contact_gap",
+               "contact_yield", "contact_anchor", "tool_kind", "tool_data", "tool_grid", "tool_pose", "contact_params"});
+    list.push_back(int_arg(tools));
+    list.push_back(step_arg());
+    program_.look.push_back({"contact_near", {}, std::move(list), Shape::items, tiles, "near tools", tiles, 16 * 200.0, 0});
+    program_.look.back().uneven = true;
+  }
+  if (model_.tissue_contact) add_touch_look();
 }
 
 }  // namespace pliant

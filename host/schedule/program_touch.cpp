@@ -94,9 +94,8 @@ void ProgramBuilder::add_touch_look() {
   const auto nodes = static_cast<std::int64_t>(program_.at(program_.find("touch_node")).count) / PLIANT_TOUCH_TREE;
   const auto pass = [&](const char* kernel, std::vector<Arg> list, Shape shape, std::int64_t count, const char* label,
                         double bytes) {
-    program_.step.push_back({kernel, {}, std::move(list), shape, count, label, count, bytes, 0});
-    program_.step.back().every = contact_look_every;
-    program_.step.back().uneven = true;
+    program_.look.push_back({kernel, {}, std::move(list), shape, count, label, count, bytes, 0});
+    program_.look.back().uneven = true;
   };
   pass("touch_box",
        named(
@@ -105,7 +104,7 @@ void ProgramBuilder::add_touch_look() {
   pass("touch_tree", named({"touch_node", "touch_box"}), Shape::items, nodes, "boxes of tiles", 100);
   std::vector<Arg> pair =
       named({"touch_place", "touch_box", "touch_node", "touch_surface", "touch_rest", "contact_rest", "contact_node",
-             "touch_partner", "touch_pair", "touch_weight", "contact_near", "contact_params"});
+             "touch_partner", "touch_pair", "touch_weight", "contact_near", "contact_yield", "contact_params"});
   pair.push_back(int_arg(static_cast<std::int32_t>(nodes)));
   pass("touch_pair", std::move(pair), Shape::items, tiles, "partners", 16 * 200.0);
   pass("touch_share", named({"contact_rest", "contact_near", "touch_partner", "touch_weight", "touch_pair"}), Shape::lanes,
@@ -114,20 +113,23 @@ void ProgramBuilder::add_touch_look() {
 
 void ProgramBuilder::add_touch_pass(const char* kernel) {
   const auto points = static_cast<std::int64_t>(padded(model_.contact->size()));
+  const bool first = std::string(kernel) == "touch_press";
   std::vector<Arg> list =
-      std::string(kernel) == "touch_press"
-          ? named({"touch_place", "contact_near", "contact_yield", "contact_force", "contact_change", "touch_partner",
-                   "touch_pair", "touch_force", "touch_moment", "touch_depth", "contact_params"})
-          : named({"touch_place", "contact_near", "contact_change", "touch_partner", "touch_pair", "touch_force",
-                   "touch_moment", "contact_params"});
-  std::vector<Arg> place =
-      named({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_share", "contact_near",
-             "contact_yield", "contact_change", "contact_node_sum", "touch_surface", "touch_place", "step_params"});
-  place.push_back(int_arg(std::string(kernel) == "touch_press" ? 0 : 1));
-  program_.step.push_back({"touch_place", {}, std::move(place), Shape::lanes, points, "near points", points, 0.25, 0});
-  program_.step.back().uneven = true;
-  program_.step.push_back({kernel, {}, std::move(list), Shape::lanes, points, "pairs", points, 0.25, 0});
-  program_.step.back().uneven = true;
+      first ? named({"touch_place", "contact_list", "contact_near", "contact_yield", "contact_force", "contact_change",
+                     "touch_partner", "touch_pair", "touch_force", "touch_moment", "touch_depth", "contact_params"})
+            : named({"touch_place", "contact_list", "contact_near", "contact_change", "touch_partner", "touch_pair",
+                     "touch_force", "touch_moment", "contact_params"});
+  std::vector<Arg> place = named({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_share",
+                                  "contact_list", "contact_near", "contact_yield", "contact_change", "contact_node_sum",
+                                  "touch_surface", "touch_place", "step_params"});
+  place.push_back(int_arg(first ? 0 : 1));
+  const auto pass = [&](const char* name, std::vector<Arg> args, const char* label) {
+    program_.step.push_back({name, {}, std::move(args), Shape::lanes, points, label, points, 0, 0});
+    program_.step.back().uneven = true;
+    program_.step.back().active = program_.near_points;
+  };
+  pass("touch_place", std::move(place), "near points");
+  pass(kernel, std::move(list), "pairs");
 }
 
 }  // namespace pliant

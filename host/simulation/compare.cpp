@@ -89,6 +89,7 @@ class Lockstep {
   }
 
   bool step_by_pass(std::int64_t first, std::int32_t i) {
+    for (Simulation* s : {&a_, &b_}) s->before_step(i);
     const auto& passes_a = a_.program().step;
     const auto& passes_b = b_.program().step;
     for (std::size_t p = 0; p < passes_a.size(); ++p) {
@@ -103,8 +104,8 @@ class Lockstep {
   }
 
   bool whole_step(std::int64_t first, std::int32_t i) {
-    a_.backend().run(a_.program().step, i, 1, first);
-    b_.backend().run(b_.program().step, i, 1, first);
+    a_.run_steps(i, 1);
+    b_.run_steps(i, 1);
     return look({first + i + 1, -1, "step", "after the whole step"}, false);
   }
 

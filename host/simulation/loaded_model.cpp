@@ -24,6 +24,7 @@ void LoadedModel::load(std::shared_ptr<const Model> model, Program program, Prog
   backend_->extend(nullptr, surface_);
   count_surface();
   look_up();
+  note_change();
 }
 
 void LoadedModel::update(std::shared_ptr<const Model> model, Program program) {
@@ -31,6 +32,7 @@ void LoadedModel::update(std::shared_ptr<const Model> model, Program program) {
   const Program loaded = std::exchange(program_, std::move(program));
   backend_->update(loaded, program_);
   look_up();
+  note_change();
   updated_ = true;
 }
 
@@ -102,6 +104,7 @@ void LoadedModel::keep_state() {
 void LoadedModel::return_to_kept_state() {
   for (const auto& [live, copy] : kept_) backend_->copy(copy, live);
   backend_->finish();
+  note_change();
   updated_ = true;
 }
 
@@ -116,6 +119,7 @@ void LoadedModel::write_state_bytes(const std::vector<std::vector<std::uint8_t>>
 }
 
 void LoadedModel::write_bytes(BufferId id, const std::vector<std::uint8_t>& bytes) {
+  note_change();
   if (program_.at(id).is_int()) {
     backend_->write_ints(id, values_of<std::int32_t>(bytes));
   } else if (backend_->info().real_bytes == 8) {

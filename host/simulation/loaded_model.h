@@ -54,6 +54,9 @@ class LoadedModel {
 
   /// Whether the model is another one, or has gone back to the kept state, since somebody asked.
   [[nodiscard]] bool take_updated() { return std::exchange(updated_, false); }
+  /// Grows with whatever may have put other values into state buffers than steps do.
+  [[nodiscard]] std::int64_t changes() const { return changes_; }
+  void note_change() { ++changes_; }
 
   /// Copy the state aside, or back.
   void keep_state();
@@ -87,6 +90,7 @@ class LoadedModel {
   std::vector<std::pair<BufferId, BufferId>> kept_;  ///< state buffers and their copies at the last good step
   std::vector<char> free_;
   bool updated_ = false;
+  std::int64_t changes_ = 0;
 };
 
 }  // namespace pliant

@@ -32,7 +32,7 @@ bool Simulation::confirm() {
     const std::int32_t n = next_batch(settings_.batch_steps);
     const std::int64_t end = step() + n;
     begin_batch(n);
-    backend().run(program().step, 0, n, step());
+    run_steps(0, n);
     end_batch(n);
     if (step() != end) return false;
   }

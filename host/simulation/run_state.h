@@ -28,8 +28,9 @@ struct RunState {
   std::vector<NodeInertia> ballast;  ///< what elements got so that they stand the step (model/ballast.h)
   std::optional<Vec3d> tool;         ///< where the host put the tool [m]; nothing: on its path
   std::map<std::string, ToolDrive> driven;  ///< tools of the scene that the host has driven off their paths
-  std::int64_t opened = 0;                  ///< edges that parted because they were stretched too far
-  std::int64_t topology_version = 0;        ///< edits that changed elements
+  ContactLook look;
+  std::int64_t opened = 0;            ///< edges that parted because they were stretched too far
+  std::int64_t topology_version = 0;  ///< edits that changed elements
 };
 
 // The visitor, as that of the parts: v(name, member) for every member, in this order.
@@ -38,8 +39,8 @@ void visit(V& v, RunState& s) {
   v("clock", s.clock), v("limit", s.limit), v("relaxation", s.relaxation), v("kept", s.kept), v("cuts", s.cuts);
   v("tears", s.tears), v("regions", s.regions), v("most_substeps", s.most_substeps), v("blades", s.blades),
       v("pending", s.pending), v("forces", s.forces);
-  v("offset", s.offset), v("ballast", s.ballast), v("tool", s.tool), v("driven", s.driven), v("opened", s.opened),
-      v("topology_version", s.topology_version);
+  v("offset", s.offset), v("ballast", s.ballast), v("tool", s.tool), v("driven", s.driven), v("look", s.look),
+      v("opened", s.opened), v("topology_version", s.topology_version);
 }
 
 /// Its bytes, the same on every machine: names, then values of eight little-endian bytes.

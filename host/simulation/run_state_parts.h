@@ -94,6 +94,13 @@ struct MovedRegion {
   bool operator==(const MovedRegion&) const = default;
 };
 
+/// When it was last asked what is near what in contact, and how far things may move until it must be asked again.
+struct ContactLook {
+  std::int64_t step = -1;  ///< of the last look; -1: one is due
+  std::vector<double> room,
+      travel;  ///< per tool, then of tissue: how far it may come nearer, and has since the look, at most [m]
+};
+
 /// A tool that the host drives from one pose to another, at constant speed.
 struct ToolDrive {
   Pose from{}, to{};
@@ -113,6 +120,10 @@ template <class V>
 void visit(V& v, RelaxationState& s) {
   v("damping", s.damping), v("equilibrium", s.equilibrium), v("residual", s.residual), v("u", s.u), v("force", s.force);
   v("time", s.time), v("v", s.v), v("middle", s.middle), v("steady", s.steady), v("largest", s.largest);
+}
+template <class V>
+void visit(V& v, ContactLook& s) {
+  v("step", s.step), v("room", s.room), v("travel", s.travel);
 }
 template <class V>
 void visit(V& v, KeptState& s) {

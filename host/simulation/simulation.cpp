@@ -101,10 +101,18 @@ std::int64_t Simulation::advance(std::int64_t steps) {
   while (step() - first < steps && !divergence_ && !at_equilibrium()) {
     const std::int32_t n = next_batch(steps - (step() - first));
     begin_batch(n);
-    backend().run(program().step, 0, n, step());
+    run_steps(0, n);
     end_batch(n);
   }
   return step() - first;
+}
+
+void Simulation::run_steps(std::int32_t first, std::int32_t count) {
+  for (std::int32_t k = first; k < first + count;) {
+    const std::int32_t n = contact_.before_step(k, first + count - k);
+    backend().run(program().step, k, n, step());
+    k += n;
+  }
 }
 
 void Simulation::begin_batch(std::int32_t steps) {
@@ -216,6 +224,7 @@ double Simulation::fast_share() const { return std::min(1.0, 2 * dt() / state_.l
 
 void Simulation::return_to_kept() {
   loaded_.return_to_kept_state();
+  state_.look.step = -1;
   state_.clock = state_.kept->clock;
   state_.relaxation.damping = state_.kept->damping;
   contact_.return_to_kept();

@@ -42,6 +42,10 @@ class Simulation {
   [[nodiscard]] std::int32_t next_batch(std::int64_t wanted) const { return step_.next_batch(wanted); }
   void begin_batch(std::int32_t steps);
   void end_batch(std::int32_t steps);
+  /// The steps of a batch in between: `count` from step `first` of the batch on.
+  void run_steps(std::int32_t first, std::int32_t count);
+  /// What the host does before a step of the batch whose passes are run one by one.
+  void before_step(std::int32_t step_in_batch) { contact_.before_step(step_in_batch, 1); }
 
   [[nodiscard]] const std::optional<Divergence>& divergence() const { return divergence_; }
   [[nodiscard]] const Inversions& inversions() const { return inversions_; }

@@ -14,8 +14,6 @@
 namespace pliant {
 namespace {
 
-/// A point is looked after when it is nearer than this share of a cell, beside what it moves until the next look.
-constexpr double kMargin = 0.25;
 /// Depth inside a tool at the start that is pushed out, as a share of a cell; more is refused.
 constexpr double kStartDepth = 0.25;
 /// Quanta of force are this share of what moves the heaviest node one cell in a step.
@@ -75,11 +73,7 @@ void ToolContact::drive(const std::string& name, const Pose& to, double seconds)
   run_.state.driven[name] = drive;
   run_.state.relaxation.equilibrium = false;  // it begins anew
   if (!active()) return;
-  // It may meet anything before the next look for what is near.
-  const BufferId near = run_.loaded.program().find("contact_near");
-  std::vector<std::int32_t> bits = run_.backend().read_ints(near);
-  for (std::int32_t& b : bits) b |= std::int32_t{1} << tool;
-  run_.backend().write_ints(near, bits);
+  lists_.forget();
 }
 
 void ToolContact::start() {
@@ -165,25 +159,38 @@ void ToolContact::begin_batch(std::int32_t steps) {
   if (tools > 0) backend.write_reals(program.find("tool_pose"), poses);
   units_ = units();
   const Units& u = units_;
-  backend.write_reals(
-      program.find("contact_params"),
-      {u.force, 1 / u.force, u.force / contact_weight_unit, 1 / u.torque, 1 / u.area, kMargin * run_.model().contact->spacing,
-       double(contact_look_every), run_.scene.contact ? run_.scene.contact->friction : 0});
-  if (run_.loaded.take_updated() && run_.state.clock.step % contact_look_every != 0) look();
+  backend.write_reals(program.find("contact_params"), {u.force, 1 / u.force, u.force / contact_weight_unit, 1 / u.torque,
+                                                       1 / u.area, contact_margin(run_.model()), double(contact_look_every),
+                                                       run_.scene.contact ? run_.scene.contact->friction : 0});
+  summed_.assign(static_cast<std::size_t>(steps), 0);
 }
 
-/// What a cut or a tear has sampled anew has no partners yet.
-void ToolContact::look() {
-  for (const Pass& pass : run_.loaded.program().step) {
-    if (pass.kernel.starts_with("touch_") && pass.every == contact_look_every) run_.backend().run(pass, 0);
+std::int32_t ToolContact::before_step(std::int32_t step_in_batch, std::int32_t steps) {
+  if (!active()) return steps;
+  lists_.update(step_in_batch, [this](std::size_t tool, double from, double to) { return motion(tool, from, to); });
+  const std::int64_t step = run_.state.clock.step + step_in_batch;
+  const auto n = std::min(steps, static_cast<std::int32_t>(contact_look_every - step % contact_look_every));
+  if (*run_.loaded.program().near_points > 0) {
+    for (std::int32_t k = 0; k < n; ++k) summed_.at(static_cast<std::size_t>(step_in_batch + k)) = 1;
   }
+  return n;
+}
+
+double ToolContact::motion(std::size_t tool, double from, double to) const {
+  const ToolForm& form = (*run_.model().tools)[tool];
+  if (form.frames.size() > 1) return 1e30;  // its surface moves in its frame
+  const Pose a = pose(tool, from), b = pose(tool, to);
+  const std::array<Vec3d, 3> ra = rotation_matrix(a.turn), rb = rotation_matrix(b.turn);
+  double turn = 0;  // |R_b - R_a|, the largest change of a unit vector, at most
+  for (std::size_t r = 0; r < 3; ++r) turn += vec::dot(vec::sub(rb[r], ra[r]), vec::sub(rb[r], ra[r]));
+  const double reach = form.shape == ToolShape::half_space ? 1e3 * contact_margin(run_.model()) : form.reach;
+  return vec::norm(vec::sub(b.position, a.position)) + std::sqrt(turn) * reach;
 }
 
 /// touch_depth has gathered the depths of a batch; the next one begins with none.
 void ToolContact::read_touch() {
   const BufferId id = run_.loaded.program().find("touch_depth");
   const std::vector<double> depth = run_.backend().read_reals(id);
-  felt_.tissue.points = 0;
   for (const double d : depth) {
     if (!(d > 0)) continue;
     ++felt_.tissue.points;
@@ -194,14 +201,19 @@ void ToolContact::read_touch() {
 
 void ToolContact::end_batch(std::int32_t steps) {
   if (!active() || steps <= 0) return;
-  if (run_.scene.contact) read_touch();
+  const bool ran = std::count(summed_.begin(), summed_.end(), 1) > 0;
+  felt_.tissue.points = 0;
+  if (run_.scene.contact && ran) read_touch();
   if (felt_.tools.empty()) return;
+  for (ToolHistory& h : felt_.tools) h.now = {};
+  if (!ran) return;
   const std::vector<std::int32_t> sums = run_.backend().read_ints(run_.loaded.program().find("tool_sum"));
   const std::size_t tools = felt_.tools.size();
   for (std::size_t t = 0; t < tools; ++t) {
     ToolHistory& h = felt_.tools[t];
     h.now = {};
     for (std::int32_t step = 0; step < steps; ++step) {
+      if (summed_[static_cast<std::size_t>(step)] == 0) continue;  // nothing was near
       const StepSum sum =
           sum_of_parts(&sums[(static_cast<std::size_t>(step) * tools + t) * contact_sum_parts * contact_sum_numbers]);
       if (sum.points == 0) continue;

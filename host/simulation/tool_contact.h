@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "simulation/contact_lists.h"
 #include "simulation/run_context.h"
 
 namespace pliant {
@@ -44,12 +45,14 @@ struct Felt {
 
 class ToolContact {
  public:
-  explicit ToolContact(RunContext& run) : run_(run) {}
+  explicit ToolContact(RunContext& run) : run_(run), lists_(run) {}
 
   /// Throws Error (bad_input) for a tool that begins inside a body, deeper than a quarter of a cell.
   void start();
   /// Poses for the next `steps` steps, and units. Nothing without tools.
   void begin_batch(std::int32_t steps);
+  /// What is near, before a step of the batch. Returns how many of the next `steps` may run until it must be asked again.
+  std::int32_t before_step(std::int32_t step_in_batch, std::int32_t steps);
   /// Read what the batch's tools felt. `steps`: how many were done.
   void end_batch(std::int32_t steps);
 
@@ -74,13 +77,16 @@ class ToolContact {
   [[nodiscard]] bool active() const;
   [[nodiscard]] Units units() const;
 
-  void look();
   void read_touch();
+  /// How far any point of a tool moves between two times, at most [m].
+  [[nodiscard]] double motion(std::size_t tool, double from, double to) const;
 
   RunContext& run_;
+  ContactLists lists_;
   Felt felt_, kept_;
-  Units units_;              ///< of the present batch
-  std::vector<Vec3d> arms_;  ///< [steps + 1][tools] from a tool's origin to that of a sequence's frame [m]
+  Units units_;               ///< of the present batch
+  std::vector<char> summed_;  ///< per step of the batch: the passes of contact ran
+  std::vector<Vec3d> arms_;   ///< [steps + 1][tools] from a tool's origin to that of a sequence's frame [m]
 };
 
 }  // namespace pliant

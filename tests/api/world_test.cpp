@@ -19,7 +19,7 @@ void run_schedule(Simulation& simulation, std::int64_t steps) {
   while (simulation.step() < steps) {
     const std::int32_t n = simulation.next_batch(steps - simulation.step());
     simulation.begin_batch(n);
-    simulation.backend().run(simulation.program().step, 0, n, simulation.step());
+    simulation.run_steps(0, n);
     simulation.end_batch(n);
   }
 }

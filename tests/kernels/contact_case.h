@@ -15,7 +15,8 @@ struct ContactData {
   std::size_t points, slots = 96;
   Reals node_u, node_w, rest, weight, share, yield, anchor, node_sum, data, grid, pose, params, step_params;
   Ints node, near, force, change, tool_force, sum, kind;
-  Ints slot, free, tiles_offset, tiles, gather_offset, gather, units, turns, moment;
+  Reals gap;
+  Ints node_list, slot, free, gather_offset, gather, units, turns, moment;
 
   static std::size_t base(std::size_t i, std::size_t planes) { return i / 16 * planes * 16 + i % 16; }
 
@@ -61,6 +62,7 @@ struct ContactData {
     for (double& y : yield) y = random.chance(0.5) ? 0 : random.uniform(1e-6, 1e-5);
     near = random.ints(points / 16, 0, 31);
     near[0] = 31;
+    gap.assign(points / 16 * tools, 0.0);
     force = random.ints(4 * points, -1000000, 1000000);
     change = force;
     for (std::size_t i = 0; i < points; ++i) {
@@ -131,7 +133,7 @@ struct ContactData {
             {static_cast<int>(base(i, 4)), parts, turn[16 * i + a], turn[16 * i + 8 + a]});
       }
     }
-    tiles_offset = gather_offset = {0};
+    gather_offset = {0};
     for (std::size_t first = 0; first < at.size(); first += 16) {
       std::size_t most = 0;
       for (std::size_t n = first; n < first + 16; ++n) {
@@ -148,12 +150,21 @@ struct ContactData {
           for (std::size_t n = first; n < first + 16; ++n) turns.push_back(row < at[n].size() ? at[n][row][k] : 0);
         }
       }
-      for (std::int32_t tile = 0; tile < static_cast<std::int32_t>(points / 16); ++tile) tiles.push_back(tile);
-      tiles_offset.push_back(static_cast<std::int32_t>(tiles.size()));
+      node_list.push_back(static_cast<std::int32_t>(first / 16));
       gather_offset.push_back(gather_offset.back() + static_cast<std::int32_t>(most));
     }
   }
 };
+
+/// The tiles that are near something, as the host lists them, and entries that are none up to the number of all tiles and more.
+inline Ints listed(const ContactData& d) {
+  Ints list;
+  for (std::size_t tile = 0; tile < d.near.size(); ++tile) {
+    if (d.near[tile] != 0) list.push_back(static_cast<std::int32_t>(tile));
+  }
+  list.resize(d.near.size() + 16, -1);
+  return list;
+}
 
 inline KernelCase& add_tools(KernelCase& test, const ContactData& d) {
   return test.ints("tool_kind", d.kind)
@@ -173,7 +184,11 @@ inline KernelCase& add_points(KernelCase& test, const ContactData& d) {
 
 inline KernelCase near_case(const ContactData& d) {
   KernelCase test("contact_near", {}, Shape::items, d.points / 16);
-  add_points(test, d).ints("contact_near", d.near).reals("contact_yield", d.yield).reals("contact_anchor", d.anchor);
+  add_points(test, d)
+      .ints("contact_near", d.near)
+      .reals("contact_gap", d.gap)
+      .reals("contact_yield", d.yield)
+      .reals("contact_anchor", d.anchor);
   add_tools(test, d).integer(static_cast<int>(ContactData::tools)).step();
   return test;
 }
@@ -182,6 +197,7 @@ inline KernelCase near_case(const ContactData& d) {
 inline KernelCase& add_touching(KernelCase& test, const ContactData& d) {
   return add_points(test, d)
       .reals("contact_share", d.share)
+      .ints("contact_list", listed(d))
       .ints("contact_near", d.near)
       .reals("contact_yield", d.yield)
       .reals("contact_anchor", d.anchor)
@@ -214,6 +230,7 @@ inline KernelCase tool_sum_case(const ContactData& d) {
   KernelCase test("contact_tool_sum", {}, Shape::items, ContactData::tools * 16);
   test.ints("contact_tool_force", d.tool_force)
       .reals("contact_rest", d.rest)
+      .ints("contact_list", listed(d))
       .ints("contact_near", d.near)
       .ints("tool_sum", d.sum)
       .reals("contact_params", d.params);
@@ -228,8 +245,7 @@ inline KernelCase apply_case(const ContactData& d, int moment = 0) {
       .reals("node_w", d.node_w)
       .ints("contact_slot", d.slot)
       .ints("contact_free", d.free)
-      .ints("contact_tiles_offset", d.tiles_offset)
-      .ints("contact_tiles", d.tiles)
+      .ints("contact_node_list", d.node_list)
       .ints("contact_gather_offset", d.gather_offset)
       .ints("contact_gather", d.gather)
       .ints("contact_gather_units", d.units)

@@ -206,6 +206,7 @@ inline KernelCase touch_pair_case(const TouchData& d) {
       .reals("touch_pair", d.pair)
       .reals("touch_weight", d.weights)
       .ints("contact_near", d.near)
+      .reals("contact_yield", d.yield)
       .reals("contact_params", d.params)
       .integer(static_cast<std::int32_t>(d.tree.size() / PLIANT_TOUCH_TREE));
   return test;
@@ -225,6 +226,7 @@ inline KernelCase touch_place_case(const TouchData& d, int again) {
   KernelCase test("touch_place", {}, Shape::lanes, d.points);
   add_points(test, d)
       .reals("contact_share", d.share)
+      .ints("contact_list", listed(d))
       .ints("contact_near", d.near)
       .reals("contact_yield", d.yield)
       .ints("contact_change", d.change)
@@ -239,6 +241,7 @@ inline KernelCase touch_place_case(const TouchData& d, int again) {
 inline KernelCase touch_press_case(const TouchData& d) {
   KernelCase test("touch_press", {}, Shape::lanes, d.points);
   test.reals("touch_place", d.place)
+      .ints("contact_list", listed(d))
       .ints("contact_near", d.near)
       .reals("contact_yield", d.yield)
       .ints("contact_force", d.force)
@@ -255,6 +258,7 @@ inline KernelCase touch_press_case(const TouchData& d) {
 inline KernelCase touch_settle_case(const TouchData& d) {
   KernelCase test("touch_settle", {}, Shape::lanes, d.points);
   test.reals("touch_place", d.place)
+      .ints("contact_list", listed(d))
       .ints("contact_near", d.near)
       .ints("contact_change", d.change)
       .ints("touch_partner", d.partner)
