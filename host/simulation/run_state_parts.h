@@ -94,10 +94,19 @@ struct MovedRegion {
   bool operator==(const MovedRegion&) const = default;
 };
 
-/// A tool that the host drives from one pose to another, at constant speed.
+/// A tool that the host drives from one pose to another, at constant speed; at once if `end` is `start`.
 struct ToolDrive {
   Pose from{}, to{};
   double start = 0, end = 0;  ///< [s]
+};
+
+/// What the host has made of the scene's tools. Nothing by itself: the tools are those of the scene.
+struct ToolChanges {
+  std::vector<ContactTool> added;    ///< in the order in which they came
+  std::vector<std::string> removed;  ///< tools of the scene that are no more, ascending
+  std::vector<std::string> parked;   ///< tools that are known and touch nothing, ascending
+  [[nodiscard]] bool empty() const { return added.empty() && removed.empty() && parked.empty(); }
+  bool operator==(const ToolChanges&) const = default;
 };
 
 // The visitor: v(name, member) for every member, in this order.
@@ -169,6 +178,17 @@ void visit(V& v, Pose& s) {
 template <class V>
 void visit(V& v, ToolDrive& s) {
   v("from", s.from), v("to", s.to), v("start", s.start), v("end", s.end);
+}
+
+template <class V>
+void visit(V& v, ContactTool& s) {
+  v("name", s.name), v("shape", s.shape), v("radius", s.radius), v("first", s.first), v("second", s.second), v("size", s.size);
+  v("mesh", s.mesh), v("scale", s.scale), v("frames_per_second", s.frames_per_second), v("path", s.path);
+  v("friction", s.friction), v("stiffness", s.stiffness), v("exponent", s.exponent), v("alpha", s.alpha);
+}
+template <class V>
+void visit(V& v, ToolChanges& s) {
+  v("added", s.added), v("removed", s.removed), v("parked", s.parked);
 }
 
 }  // namespace pliant

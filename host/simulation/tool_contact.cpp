@@ -5,19 +5,20 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include "geometry/vec.h"
 #include "pliant/error.h"
 #include "schedule/contact_data.h"
 #include "simulation/body_overlap.h"
+#include "simulation/present_tissue.h"
+#include "simulation/tool_changes.h"
 
 namespace pliant {
 namespace {
 
 /// A point is looked after when it is nearer than this share of a cell, beside what it moves until the next look.
 constexpr double kMargin = 0.25;
-/// Depth inside a tool at the start that is pushed out, as a share of a cell; more is refused.
-constexpr double kStartDepth = 0.25;
 /// Quanta of force are this share of what moves the heaviest node one cell in a step.
 constexpr int kForceBits = 26;
 constexpr int kAreaBits = 26;
@@ -43,36 +44,26 @@ StepSum sum_of_parts(const std::int32_t* part) {
 
 }  // namespace
 
-std::size_t check_drive(const Scene& scene, const std::string& name, const Pose& to, double seconds) {
-  std::size_t tool = 0;
-  while (tool < scene.tools.size() && scene.tools[tool].name != name) ++tool;
-  if (tool == scene.tools.size()) throw Error(ErrorCode::usage, fmt::format("the scene has no tool \"{}\"", name));
-  if (!good_pose(to)) {
-    throw Error(ErrorCode::usage,
-                fmt::format("tool \"{}\": the pose needs finite numbers and a unit quaternion x, y, z, w", name));
-  }
-  if (!(seconds > 0 && seconds < 1e30)) {
-    throw Error(ErrorCode::usage, fmt::format("tool \"{}\": {} seconds on the way, expected a number > 0", name, seconds));
-  }
-  return tool;
+void check_pose(const std::string& name, const Pose& pose) {
+  if (good_pose(pose)) return;
+  throw Error(ErrorCode::usage,
+              fmt::format("tool \"{}\": the pose needs finite numbers and a unit quaternion x, y, z, w", name));
+}
+
+void check_drive(const std::string& name, const Pose& to, double seconds) {
+  check_pose(name, to);
+  if (seconds > 0 && seconds < 1e30) return;
+  throw Error(ErrorCode::usage, fmt::format("tool \"{}\": {} seconds on the way, expected a number > 0", name, seconds));
 }
 
 bool ToolContact::active() const { return run_.model().contact != nullptr && run_.model().contact->size() > 0; }
 
-Pose ToolContact::pose(std::size_t tool, double time) const {
-  const ContactTool& own = run_.scene.tools[tool];
-  const auto driven = run_.state.driven.find(own.name);
-  if (driven == run_.state.driven.end()) return own.at(time);
-  const ToolDrive& d = driven->second;
-  if (time >= d.end) return d.to;
-  return between(d.from, d.to, std::clamp((time - d.start) / (d.end - d.start), 0.0, 1.0));
-}
+Pose ToolContact::pose(std::size_t tool, double time) const { return tool_pose(tools_[tool], run_.state, time); }
 
-void ToolContact::drive(const std::string& name, const Pose& to, double seconds) {
-  const std::size_t tool = check_drive(run_.scene, name, to, seconds);
+void ToolContact::drive(std::size_t tool, const Pose& to, double seconds) {
   const double now = run_.state.clock.time();
-  const ToolDrive drive{pose(tool, now), to, now, now + seconds};
-  run_.state.driven[name] = drive;
+  const ToolDrive drive{seconds > 0 ? pose(tool, now) : to, to, now, now + seconds};
+  run_.state.driven[tools_[tool].name] = drive;
   if (!active()) return;
   // It may meet anything before the next look for what is near.
   const BufferId near = run_.loaded.program().find("contact_near");
@@ -81,36 +72,31 @@ void ToolContact::drive(const std::string& name, const Pose& to, double seconds)
   run_.backend().write_ints(near, bits);
 }
 
+void ToolContact::follow() {
+  const std::vector<ContactTool> before = std::exchange(tools_, present_tools(run_.scene, run_.state.tools));
+  const std::vector<ToolHistory> felt = std::exchange(history_, std::vector<ToolHistory>(tools_.size()));
+  for (std::size_t t = 0; t < tools_.size(); ++t) {
+    const auto same = std::find(before.begin(), before.end(), tools_[t]);
+    if (same != before.end()) history_[t] = felt[static_cast<std::size_t>(same - before.begin())];
+  }
+}
+
 void ToolContact::start() {
-  history_.assign(run_.scene.tools.size(), {});
+  tools_ = run_.scene.tools;
+  history_.assign(tools_.size(), {});
   touch_ = {};
   if (!active()) return;
   const Model& model = run_.model();
-  const ContactPoints& points = *model.contact;
-  if (run_.scene.contact) refuse_overlap(model, kStartDepth * points.spacing);
-  for (std::size_t t = 0; t < run_.scene.tools.size(); ++t) {
-    const ContactTool& tool = run_.scene.tools[t];
-    const ToolMoment moment = tool_moment((*model.tools)[t], run_.state.clock.time());
-    const Pose at = compose(pose(t, run_.state.clock.time()), moment.pose);
-    double deepest = 0;
-    std::size_t where = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      Vec3d x = points.rest[i];
-      for (std::size_t a = 0; a < 8 && !model.displacement.empty(); ++a)
-        x = vec::add(x, vec::mul(model.displacement[points.nodes[i][a]], double(points.weights[i][a]) / contact_weight_unit));
-      const double depth = -tool_distance((*model.tools)[t], place_back(at, x), moment);
-      if (depth > deepest) {
-        deepest = depth;
-        where = i;
-      }
+  if (run_.scene.contact) refuse_overlap(model, tool_start_depth * model.contact->spacing);
+  if (tools_.empty()) return;
+  const PresentTissue tissue(model, run_.u());
+  for (std::size_t t = 0; t < tools_.size(); ++t) {
+    const double now = run_.state.clock.time();
+    try {
+      tissue.refuse_inside(tools_[t].name, (*model.tools)[t], pose(t, now), now);
+    } catch (const Error& error) {
+      throw Error(error.code(), fmt::format("{}: {}", tools_[t].pointer, error.what()));
     }
-    if (deepest <= kStartDepth * points.spacing) continue;
-    throw Error(
-        ErrorCode::bad_input,
-        fmt::format("{}: tool '{}' begins inside body '{}', {:.3g} m deep at [{:.4g}, {:.4g}, {:.4g}]; expected at most "
-                    "{:.3g} m (a quarter of a cell), which contact pushes out",
-                    tool.pointer, tool.name, model.bodies[points.body[where]].name, deepest, points.rest[where][0],
-                    points.rest[where][1], points.rest[where][2], kStartDepth * points.spacing));
   }
 }
 
@@ -136,7 +122,7 @@ ToolContact::Units ToolContact::units() const {
 
 void ToolContact::begin_batch(std::int32_t steps) {
   if (!active()) return;
-  const std::size_t tools = run_.scene.tools.size(), rows = static_cast<std::size_t>(run_.settings.batch_steps) + 1;
+  const std::size_t tools = tools_.size(), rows = static_cast<std::size_t>(run_.settings.batch_steps) + 1;
   std::vector<double> poses;
   poses.reserve(rows * tools * contact_pose_numbers);
   arms_.assign(rows * tools, {});
