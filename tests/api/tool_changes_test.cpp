@@ -128,6 +128,22 @@ TEST(ToolChanges, FrictionOfToolsThatStayGoesOn) {
   EXPECT_EQ(force_of(alone, "b").force, force_of(world, "b").force);
 }
 
+TEST(ToolChanges, AToolThatIsPlacedElsewhereLetsGo) {
+  ToolSpec tool = ball("a", {0, 0, 0.0105});
+  tool.friction = 0.8;
+  World world(block_with({tool}), on("cpu"));
+  world.drive_tool("a", {0, 0, 0.008}, {0, 0, 0, 1}, 0.1);
+  world.advance(0.5);
+  world.place_tool("a", {0.003, 0, 0.008});
+  world.advance(0.5);
+  const Vec3d placed = force_of(world, "a").force;
+  EXPECT_GT(placed[2], 0.05);
+  EXPECT_LT(std::abs(placed[0]), 0.1 * placed[2]) << "it still holds what it touched before";
+  world.drive_tool("a", {0.006, 0, 0.008}, {0, 0, 0, 1}, 0.1);
+  world.advance(0.5);
+  EXPECT_LT(force_of(world, "a").force[0], -0.2 * placed[2]) << "one that is drawn does not";
+}
+
 TEST(ToolChanges, WhatIsInsideOrInTheWayIsRefusedAndNothingChanges) {
   World world(block_with({ball("a", {0, 0, 0.02})}), on("cpu"));
   world.step(20);
@@ -240,6 +256,52 @@ TEST(ToolChanges, AreReadFromAnotherThreadWhileTheWorkerMakesThem) {
   world.wait();
   world.step(1);
   EXPECT_EQ(world.tool_forces().size(), 4u);
+}
+
+TEST(ToolChanges, InC) {
+  const char* const text = R"({"format": "pliant-scene/1", "bodies": [{"name": "a", "surface": "memory:0",
+    "lattice": {"spacing": 0.02}, "material": {"young": 3000, "poisson": 0.45, "damping": 60},
+    "fixed": [{"box": [[-1, -1, -0.001], [1, 1, 0.001]]}]}]})";
+  const SurfaceSpec box = box_surface({0, 0, 0}, {0.04, 0.04, 0.04});
+  pliant_surface surface = PLIANT_SURFACE_INIT;
+  surface.vertices = box.vertices[0].data();
+  surface.vertex_count = box.vertices.size();
+  surface.triangles = box.triangles[0].data();
+  surface.triangle_count = box.triangles.size();
+  pliant_options options = PLIANT_OPTIONS_INIT;
+  options.backend = "cpu";
+  pliant_world world{};
+  ASSERT_EQ(pliant_world_parse(text, nullptr, &surface, 1, &options, &world), PLIANT_OK) << pliant_last_error();
+  const char* const plate = R"({"shape": {"half_space": [[0, 0, 0], [0, 0, -1]]}, "path": [[0, 0, 0, 0.05]]})";
+  char name[16] = "";
+  EXPECT_EQ(pliant_world_parse_tool(world, nullptr, nullptr, name, sizeof name), PLIANT_USAGE);
+  EXPECT_EQ(pliant_world_parse_tool(world, plate, nullptr, nullptr, 16), PLIANT_USAGE);
+  EXPECT_EQ(pliant_world_parse_tool(world, "{", nullptr, name, sizeof name), PLIANT_INPUT);
+  ASSERT_EQ(pliant_world_parse_tool(world, plate, nullptr, name, sizeof name), PLIANT_OK) << pliant_last_error();
+  EXPECT_STREQ(name, "tool0");
+  char three[3] = "";
+  ASSERT_EQ(pliant_world_parse_tool(world, plate, nullptr, three, sizeof three), PLIANT_OK);
+  EXPECT_STREQ(three, "to");
+  ASSERT_EQ(pliant_world_remove_tool(world, "tool1"), PLIANT_OK) << pliant_last_error();
+  EXPECT_EQ(pliant_world_remove_tool(world, "tool1"), PLIANT_USAGE);
+  EXPECT_EQ(pliant_world_park_tool(world, nullptr), PLIANT_USAGE);
+  ASSERT_EQ(pliant_world_park_tool(world, "tool0"), PLIANT_OK);
+  pliant_tool_force force = PLIANT_TOOL_FORCE_INIT;
+  std::size_t needed = 0;
+  ASSERT_EQ(pliant_world_tool_forces(world, &force, 1, &needed), PLIANT_OK);
+  EXPECT_EQ(needed, 1U);
+  EXPECT_EQ(force.parked, 1);
+  ASSERT_EQ(pliant_world_unpark_tool(world, "tool0"), PLIANT_OK);
+  const double inside[3] = {0, 0, 0.02}, touching[3] = {0, 0, 0.038}, turn[4] = {0, 0, 0, 1};
+  EXPECT_EQ(pliant_world_place_tool(world, "tool0", inside, turn), PLIANT_INPUT);
+  EXPECT_EQ(pliant_world_place_tool(world, "tool0", nullptr, turn), PLIANT_USAGE);
+  EXPECT_EQ(pliant_world_place_tool(world, "tool0", touching, nullptr), PLIANT_USAGE);
+  ASSERT_EQ(pliant_world_place_tool(world, "tool0", touching, turn), PLIANT_OK) << pliant_last_error();
+  ASSERT_EQ(pliant_world_step(world, 300, nullptr), PLIANT_OK);
+  ASSERT_EQ(pliant_world_tool_forces(world, &force, 1, &needed), PLIANT_OK);
+  EXPECT_EQ(force.parked, 0);
+  EXPECT_GT(force.force[2], 0.1);
+  EXPECT_EQ(pliant_world_destroy(world), PLIANT_OK);
 }
 
 TEST(ToolChanges, MisuseIsRefused) {
