@@ -56,6 +56,7 @@ bool has(const std::string& text, const std::string& part) { return text.find(pa
 TEST(ToolChanges, AnAddedToolIsAToolOfTheScene) {
   World with(block_with({ball("probe", {0, 0, 0.0105})}), on("cpu")), added(bare_block(), on("cpu"));
   EXPECT_EQ(added.tool_forces().size(), 0u);
+  for (World* w : {&with, &added}) w->step(37);
   EXPECT_EQ(added.add_tool(ball("probe", {0, 0, 0.0105})), "probe");
   EXPECT_EQ(force_of(added, "probe").position, (Vec3d{0, 0, 0.0105}));
   for (World* w : {&with, &added}) {
