@@ -99,6 +99,13 @@ std::unique_ptr<pliant::World> make_world(const py::object& scene, const std::ve
   return std::make_unique<pliant::World>(pliant::World::open(file, o));
 }
 
+/// The name that it got.
+std::string add_tool(pliant::World& w, const py::dict& tool, const std::string& folder) {
+  const auto text = py::module_::import("json").attr("dumps")(tool).cast<std::string>();
+  const py::gil_scoped_release release;
+  return w.parse_tool(text, folder);
+}
+
 void bind_frame(py::module_& m) {
   using pliant::Frame;
   py::class_<Frame, std::shared_ptr<Frame>>(m, "Frame", "The surface at one step. Arrays are views: they keep the frame alive.")
@@ -237,15 +244,45 @@ py::dict tool_forces(const pliant::World& w) {
     tool["torque"] = array(f.torque);
     tool["area"] = f.area;
     tool["penetration"] = f.penetration;
+    tool["parked"] = f.parked;
     d[py::str(f.name)] = tool;
   }
   return d;
 }
 
+void bind_tools(py::class_<pliant::World>& world) {
+  using pliant::World;
+  using Free = py::call_guard<py::gil_scoped_release>;
+  world
+      .def(
+          "grab",
+          [](World& w, std::int32_t vertex, double radius, double stiffness, double max_force) {
+            return w.grab(vertex, {radius, stiffness, max_force});
+          },
+          py::arg("vertex"), py::arg("radius") = 0.0, py::arg("stiffness") = 0.0, py::arg("max_force") = 0.0)
+      .def("move_grab", &World::move_grab, py::arg("grab"), py::arg("target"))
+      .def("release", &World::release, py::arg("grab"))
+      .def("push", &World::push, py::arg("vertex"), py::arg("force"))
+      .def("push_node", &World::push_node, py::arg("body"), py::arg("node"), py::arg("force"))
+      .def("clear_tools", &World::clear_tools)
+      .def("move_tool", &World::move_tool, py::arg("position"))
+      .def("add_tool", &add_tool, py::arg("tool"), py::arg("folder") = "",
+           "tool: a dict with the keys of an entry of `tools` of a scene file; its name")
+      .def("remove_tool", &World::remove_tool, py::arg("name"), Free())
+      .def("park_tool", &World::park_tool, py::arg("name"), Free())
+      .def("unpark_tool", &World::unpark_tool, py::arg("name"), Free())
+      .def("place_tool", &World::place_tool, py::arg("name"), py::arg("position"),
+           py::arg("turn") = std::array<double, 4>{0, 0, 0, 1}, Free())
+      .def("drive_tool", &World::drive_tool, py::arg("name"), py::arg("position"),
+           py::arg("turn") = std::array<double, 4>{0, 0, 0, 1}, py::arg("seconds") = 1.0 / 60, Free())
+      .def("tool_forces", &tool_forces, "a dict of the tools: of each a dict of its pose and what it feels");
+}
+
 void bind_world(py::module_& m) {
   using pliant::World;
   using Free = py::call_guard<py::gil_scoped_release>;
-  py::class_<World>(m, "World", "A scene on a backend: see docs/embedding.md. One thread at a time.")
+  py::class_<World> world(m, "World", "A scene on a backend: see docs/embedding.md. One thread at a time.");
+  world
       .def(py::init(&make_world), py::arg("scene"), py::arg("surfaces") = std::vector<std::pair<Vertices, py::object>>{},
            py::arg("folder") = "", py::arg("backend") = "auto", py::arg("dt") = 0.0, py::arg("normals") = true,
            py::arg("interactive") = false, py::arg("cutting") = false,
@@ -276,21 +313,6 @@ void bind_world(py::module_& m) {
       .def("probes", &probes, "a dict of the scene's probes: of each a dict of its quantities, arrays of numbers")
       .def("remarks", &World::remarks, Free(), "a list of sentences: WorldInfo's, and what has happened since the start")
       .def("hash", &World::hash)
-      .def(
-          "grab",
-          [](World& w, std::int32_t vertex, double radius, double stiffness, double max_force) {
-            return w.grab(vertex, {radius, stiffness, max_force});
-          },
-          py::arg("vertex"), py::arg("radius") = 0.0, py::arg("stiffness") = 0.0, py::arg("max_force") = 0.0)
-      .def("move_grab", &World::move_grab, py::arg("grab"), py::arg("target"))
-      .def("release", &World::release, py::arg("grab"))
-      .def("push", &World::push, py::arg("vertex"), py::arg("force"))
-      .def("push_node", &World::push_node, py::arg("body"), py::arg("node"), py::arg("force"))
-      .def("clear_tools", &World::clear_tools)
-      .def("move_tool", &World::move_tool, py::arg("position"))
-      .def("drive_tool", &World::drive_tool, py::arg("name"), py::arg("position"),
-           py::arg("turn") = std::array<double, 4>{0, 0, 0, 1}, py::arg("seconds") = 1.0 / 60)
-      .def("tool_forces", &tool_forces, "a dict of the scene's tools: of each a dict of its pose and what it feels")
       .def("cut", &cut, py::arg("triangles"), "triangles: shape [triangles, 3, 3] [m]; a dict with the fields of CutResult")
       .def(
           "move_blade",
@@ -301,6 +323,7 @@ void bind_world(py::module_& m) {
       .def("save", &World::save, py::arg("file"), Free())
       .def("load", &World::load, py::arg("file"), Free())
       .def("reset", &World::reset, Free());
+  bind_tools(world);
 }
 
 /// Names and types of a function's parameters without `self`, as its text says them: "steps: int = 1, ...".

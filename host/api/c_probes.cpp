@@ -61,6 +61,7 @@ pliant_status pliant_world_tool_forces(pliant_world world, pliant_tool_force* ou
       std::copy(now[i].torque.begin(), now[i].torque.end(), force.torque);
       force.area = now[i].area;
       force.penetration = now[i].penetration;
+      force.parked = now[i].parked ? 1 : 0;
       give_struct<pliant_tool_force>(force, element(out, i));
     }
   });

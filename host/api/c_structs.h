@@ -33,7 +33,7 @@ PLIANT_C_STRUCT(pliant_report, message);
 PLIANT_C_STRUCT(pliant_frame, body_triangles);
 PLIANT_C_STRUCT(pliant_cut, seconds);
 PLIANT_C_STRUCT(pliant_probe_value, number_count);
-PLIANT_C_STRUCT(pliant_tool_force, penetration);
+PLIANT_C_STRUCT(pliant_tool_force, reserved);
 #undef PLIANT_C_STRUCT
 
 /// Throws Error (usage) for a size that no version has.

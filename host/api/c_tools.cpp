@@ -41,6 +41,39 @@ pliant_status pliant_world_drive_tool(pliant_world world, const char* name, cons
     w.world.drive_tool(name, vector_of(position, "position"), {turn[0], turn[1], turn[2], turn[3]}, seconds);
   });
 }
+pliant_status pliant_world_parse_tool(pliant_world world, const char* tool_text, const char* folder, char* name, size_t size) {
+  return on(world, [&](CWorld& w) {
+    need(tool_text, "tool_text");
+    if (size > 0) need(name, "name");
+    const std::string given = w.world.parse_tool(tool_text, folder == nullptr ? "" : folder);
+    if (size > 0) name[given.copy(name, size - 1)] = 0;
+  });
+}
+pliant_status pliant_world_remove_tool(pliant_world world, const char* name) {
+  return on(world, [&](CWorld& w) {
+    need(name, "name");
+    w.world.remove_tool(name);
+  });
+}
+pliant_status pliant_world_park_tool(pliant_world world, const char* name) {
+  return on(world, [&](CWorld& w) {
+    need(name, "name");
+    w.world.park_tool(name);
+  });
+}
+pliant_status pliant_world_unpark_tool(pliant_world world, const char* name) {
+  return on(world, [&](CWorld& w) {
+    need(name, "name");
+    w.world.unpark_tool(name);
+  });
+}
+pliant_status pliant_world_place_tool(pliant_world world, const char* name, const double position[3], const double turn[4]) {
+  return on(world, [&](CWorld& w) {
+    need(name, "name");
+    need(turn, "turn");
+    w.world.place_tool(name, vector_of(position, "position"), {turn[0], turn[1], turn[2], turn[3]});
+  });
+}
 pliant_status pliant_world_move_tool(pliant_world world, const double position[3]) {
   return on(world, [&](CWorld& w) { w.world.move_tool(vector_of(position, "position")); });
 }

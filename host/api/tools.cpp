@@ -27,7 +27,7 @@ double edge_of(const ModelBody& body) {
 
 }  // namespace
 
-Tools::Tools(std::shared_ptr<const Model> model, const Scene& scene) : scene_(scene) {
+Tools::Tools(std::shared_ptr<const Model> model, const Scene& scene) {
   for (const Body& b : scene.bodies) materials_.push_back(b.material);
   set_model(std::move(model));
 }
@@ -173,36 +173,12 @@ void Tools::move_tool(const Vec3d& position) {
   tool_ = position;
 }
 
-void Tools::drive_tool(const std::string& name, const Pose& to, double seconds) {
-  (void)check_drive(scene_, name, to, seconds);
-  const std::lock_guard lock(mutex_);
-  drives_[name] = {to, seconds};
-}
-
-std::vector<ToolForce> Tools::forces() {
-  const std::lock_guard lock(mutex_);
-  return forces_;
-}
-
-void Tools::note(const Simulation& simulation) {
-  std::vector<ToolForce> forces;
-  const std::vector<ToolHistory>& felt = simulation.contact().history();
-  for (std::size_t t = 0; t < felt.size(); ++t) {
-    const Pose at = simulation.contact().pose(t, simulation.time());
-    const ToolLoad& now = felt[t].now;
-    forces.push_back({simulation.scene().tools[t].name, at.position, at.turn, now.force, now.torque, now.area, now.depth});
-  }
-  const std::lock_guard lock(mutex_);
-  forces_ = std::move(forces);
-}
-
 void Tools::clear() {
   const std::lock_guard lock(mutex_);
   grabs_.clear();
   pushes_.clear();
   node_pushes_.clear();
   tool_.reset();
-  drives_.clear();
   changed_ = true;
 }
 
@@ -238,8 +214,6 @@ std::int32_t Tools::apply(Simulation& simulation) {
     const std::lock_guard lock(mutex_);
     if (tool_) simulation.set_tool(*tool_);
     tool_.reset();
-    for (const auto& [name, drive] : drives_) simulation.drive_tool(name, drive.to, drive.seconds);
-    drives_.clear();
     if (grabs_.empty() && !changed_) return kAnySteps;
     changed_ = false;
     grabs = grabs_;

@@ -1,4 +1,4 @@
-// What a user does to the surface between two batches: grabs on springs, pushes, and the place of the scene's tool.
+// What a user does to the surface between two batches: grabs on springs, pushes, and the place that operational regions follow.
 #pragma once
 #include <compare>
 #include <map>
@@ -30,7 +30,6 @@ struct SurfaceVertex {
 /// longer than it takes to copy a few numbers.
 class Tools {
  public:
-  /// The scene must outlive the tools.
   Tools(std::shared_ptr<const Model> model, const Scene& scene);
 
   /// The simulation has another model now: a cut divided cells, or an operational region moved. What holds on to the surface
@@ -43,16 +42,12 @@ class Tools {
   void push(const SurfaceVertex& vertex, const Vec3d& force);
   void push_node(std::size_t body, std::int64_t node, const Vec3d& force);
   void move_tool(const Vec3d& position);
-  void drive_tool(const std::string& name, const Pose& to, double seconds);
-  [[nodiscard]] std::vector<ToolForce> forces();
   void clear();
   /// The simulation is another one: its forces are these tools' to set.
   void renew();
 
   /// Bring the simulation's forces up to date, at the start of a batch; how many steps the batch may have.
   std::int32_t apply(Simulation& simulation);
-  /// What the scene's tools have felt, for whoever asks.
-  void note(const Simulation& simulation);
 
  private:
   /// A grab, as the caller sees it.
@@ -79,7 +74,6 @@ class Tools {
   void hold(Grab& grab) const;
   Vec3d pull(const Grab& grab, Pull& state, const Vec3d& position, double time, double period) const;
 
-  const Scene& scene_;
   std::vector<Material> materials_;
   std::mutex mutex_;
   std::shared_ptr<const Model> model_;                         ///< the one that the simulation runs
@@ -89,12 +83,6 @@ class Tools {
   std::map<SurfaceVertex, Vec3d> pushes_;
   std::map<std::pair<std::size_t, std::int64_t>, Vec3d> node_pushes_;
   std::optional<Vec3d> tool_;
-  struct Drive {
-    Pose to;
-    double seconds = 0;
-  };
-  std::map<std::string, Drive> drives_;  ///< to be passed on
-  std::vector<ToolForce> forces_;
   bool changed_ = false;
   std::map<GrabId, Pull> pulls_;  ///< of the stepping thread alone
 };

@@ -258,21 +258,12 @@ void World::clear_tools() {
   const Call call(impl_, false);
   check_interactive(*impl_);
   impl_->tools->clear();
+  impl_->rigid_tools.drop_drives();
 }
 
 void World::move_tool(const Vec3d& position) {
   const Call call(impl_, false);
   impl_->tools->move_tool(position);
-}
-
-void World::drive_tool(const std::string& name, const Vec3d& position, const std::array<double, 4>& turn, double seconds) {
-  const Call call(impl_, false);
-  impl_->tools->drive_tool(name, {position, turn}, seconds);
-}
-
-std::vector<ToolForce> World::tool_forces() const {
-  const Call call(impl_, false);
-  return impl_->tools->forces();
 }
 
 void World::save(const std::string& file) const {

@@ -39,7 +39,7 @@ CutReport World::Impl::cut_now(std::span<const api::CutRequest> requests) {
     return done;
   } catch (const Error& error) {
     if (error.code() == ErrorCode::internal || error.code() == ErrorCode::device) throw;
-    throw api::CutRefused(error);
+    throw api::Refused(error);
   }
 }
 
@@ -57,7 +57,7 @@ void World::Impl::cut_pending() {
     while (moves(first) && last < requests.size() && moves(last) && requests[last].lifted.empty()) ++last;
     try {
       cut_now(std::span(requests).subspan(first, last - first));
-    } catch (const api::CutRefused&) {
+    } catch (const api::Refused&) {
       if (refused == nullptr) refused = std::current_exception();
     }
   }
@@ -85,7 +85,7 @@ CutResult World::Impl::cut(api::CutRequest request) {
     const CutReport done = cut_now({&request, 1});
     publish_clock();
     return {false, done.changed, done.edges, done.seconds()};
-  } catch (const api::CutRefused& refused) {
+  } catch (const api::Refused& refused) {
     throw Error(refused.code(), refused.what());
   } catch (const std::exception& error) {
     const Error failure_now = as_device_error(error);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "api/frame_pool.h"
+#include "api/rigid_tools.h"
 #include "api/tools.h"
 #include "pliant/world.h"
 #include "simulation/probing.h"
@@ -22,10 +23,10 @@ namespace pliant {
 
 namespace api {
 
-/// A cut that could not be made; the simulation is as it was before.
-struct CutRefused : Error {
+/// A cut that could not be made, or a tool that could not be put somewhere; the simulation is as it was before.
+struct Refused : Error {
   using Error::Error;
-  explicit CutRefused(const Error& error) : Error(error) {}
+  explicit Refused(const Error& error) : Error(error) {}
 };
 
 }  // namespace api
@@ -70,6 +71,14 @@ struct World::Impl {
   void cut_pending();
   [[nodiscard]] api::SurfaceVertex vertex_of(std::int32_t vertex) const;
 
+  // world_tools.cpp
+  /// What is asked of the rigid tools is refused where the World cannot go on, unless the worker is at it.
+  void check_can_change_tools();
+  /// Do it now, unless there is a worker that will.
+  void settle_tools();
+  void change_tools_now();
+  std::string add_tool(ContactTool tool);
+
   // world_worker.cpp
   bool start_job(std::function<void()> work);
   void wait_until_idle();
@@ -84,6 +93,7 @@ struct World::Impl {
   PlacedProbes probes;
   std::shared_ptr<Simulation> simulation;
   std::unique_ptr<api::Tools> tools;
+  api::RigidTools rigid_tools;
   std::string lost;         ///< message of the device's loss; empty: it works
   double seconds_left = 0;  ///< asked of advance() and not yet a whole step; of the thread that steps
   std::atomic<bool> in_use{false};

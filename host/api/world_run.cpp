@@ -84,6 +84,7 @@ World::Impl::Impl(Scene scene_, OpenBackend open, const WorldOptions& options_)
   tools = std::make_unique<api::Tools>(model, scene);
   topology = topology_of(model, 1);
   seen_model = model;
+  rigid_tools.renew(*simulation);
   publish_clock();
   read_frame();
 }
@@ -116,7 +117,7 @@ void World::Impl::check_can_step() const {
 }
 
 void World::Impl::publish_clock() {
-  tools->note(*simulation);
+  rigid_tools.note(*simulation);
   const std::lock_guard lock(mutex);
   report.step = simulation->step();
   report.time = simulation->time();
@@ -131,16 +132,20 @@ StepReport World::Impl::run(std::int64_t steps) {
   const std::int64_t first = simulation->step();
   try {
     if (simulation->at_equilibrium()) static_cast<void>(tools->apply(*simulation));  // a tool that is driven ends it
-    if (steps == 0) cut_pending();  // who stops stepping still sees cuts that are made beside the caller
+    if (steps == 0) {  // who stops stepping still sees cuts that are made beside the caller, and tools
+      cut_pending();
+      change_tools_now();
+    }
     while (simulation->step() - first < steps && !simulation->divergence() && !simulation->at_equilibrium()) {
       cut_pending();
+      change_tools_now();
       const std::int64_t left = std::min<std::int64_t>(steps - (simulation->step() - first), tools->apply(*simulation));
       simulation->advance(simulation->next_batch(left));
-      tools->note(*simulation);
+      rigid_tools.note(*simulation);
       const std::lock_guard lock(mutex);
       if (stop) break;
     }
-  } catch (const api::CutRefused& refused) {
+  } catch (const api::Refused& refused) {
     publish_clock();
     throw Error(refused.code(), refused.what());
   } catch (const std::exception& error) {
@@ -267,6 +272,7 @@ FramePtr World::Impl::hand_out(bool to_poll) {
 void World::Impl::restart(std::shared_ptr<Simulation> fresh) {
   simulation = std::move(fresh);
   tools->renew();
+  rigid_tools.renew(*simulation);
   lost.clear();
   seconds_left = 0;
   blade_key.clear();

@@ -41,7 +41,7 @@ class Report {
     add_tools(s_, json);
     if (!result_.diverged.empty()) json["diverged_step"] = result_.diverged_step;
     print_summary();
-    for (std::size_t t = 0; t < s_.scene().tools.size(); ++t) out_.print(tool_line(s_, t));
+    for (std::size_t t = 0; t < s_.contact().tools().size(); ++t) out_.print(tool_line(s_, t));
     if (s_.scene().contact && s_.model().contact != nullptr) out_.print(tissue_line(s_));
     for (const std::string& remark : run_remarks(s_)) note(remark);
     if (!r_.probes.empty() || !r_.scene_probes.empty()) {

@@ -23,13 +23,14 @@ std::string csv_text(const std::string& text) {
 
 void add_tools(const Simulation& simulation, nlohmann::ordered_json& json) {
   const Scene& scene = simulation.scene();
-  if (scene.tools.empty() && !scene.contact) return;
+  const std::vector<ContactTool>& tools = simulation.contact().tools();
+  if (tools.empty() && !scene.contact) return;
   json["tools"] = nlohmann::ordered_json::array();
   std::int64_t points = 0;
   double deepest = 0;
-  for (std::size_t t = 0; t < scene.tools.size(); ++t) {
+  for (std::size_t t = 0; t < tools.size(); ++t) {
     const ToolHistory& h = simulation.contact().history()[t];
-    json["tools"].push_back({{"name", scene.tools[t].name},
+    json["tools"].push_back({{"name", tools[t].name},
                              {"force", h.now.force},
                              {"torque", h.now.torque},
                              {"area", h.now.area},
@@ -53,7 +54,8 @@ void add_tools(const Simulation& simulation, nlohmann::ordered_json& json) {
 std::string tool_line(const Simulation& simulation, std::size_t tool) {
   const ToolHistory& h = simulation.contact().history()[tool];
   return fmt::format("tool {}: force [{:.4g}] N, at most {:.4g} N; touches {:.3g} m^2, at most {:.3g} m deep",
-                     simulation.scene().tools[tool].name, fmt::join(h.now.force, ", "), h.max_force, h.now.area, h.max_depth);
+                     simulation.contact().tools()[tool].name, fmt::join(h.now.force, ", "), h.max_force, h.now.area,
+                     h.max_depth);
 }
 
 std::string tissue_line(const Simulation& simulation) {
@@ -63,19 +65,19 @@ std::string tissue_line(const Simulation& simulation) {
 }
 
 void ToolTable::write(const Simulation& simulation, const std::filesystem::path& file) {
-  const Scene& scene = simulation.scene();
-  if (scene.tools.empty() || simulation.step() == last_step_) return;
+  const std::vector<ContactTool>& tools = simulation.contact().tools();
+  if (tools.empty() || simulation.step() == last_step_) return;
   last_step_ = simulation.step();
   if (table_.empty()) {
     table_ =
         "time [s],step,tool,x [m],y [m],z [m],fx [N],fy [N],fz [N],tx [N m],ty [N m],tz [N m],area [m^2],penetration "
         "[m],points\n";
   }
-  for (std::size_t t = 0; t < scene.tools.size(); ++t) {
+  for (std::size_t t = 0; t < tools.size(); ++t) {
     const ToolLoad& now = simulation.contact().history()[t].now;
     const Pose at = simulation.contact().pose(t, simulation.time());
     table_ += fmt::format("{:.9g},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{}\n", simulation.time(), simulation.step(),
-                          csv_text(scene.tools[t].name), fmt::join(at.position, ","), fmt::join(now.force, ","),
+                          csv_text(tools[t].name), fmt::join(at.position, ","), fmt::join(now.force, ","),
                           fmt::join(now.torque, ","), now.area, now.depth, now.points);
   }
   write_file(file, table_);

@@ -118,7 +118,7 @@ void ModelSwap::load_steps(const Scene& scene) {
   u.reals.swap(new_u_);
   w.reals.swap(new_w_);
   run_.loaded.update(model_, std::move(program));
-  run_.state.look.step = -1;  // what is sampled anew has no partners yet
+  run_.state.look.tools = run_.state.look.tissue = -1;  // what is sampled anew has no partners yet
   run_.loaded.reset_initial_state(std::move(new_u_), std::move(new_w_));
   report_.upload += clock_.lap();
 }

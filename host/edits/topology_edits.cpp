@@ -10,6 +10,7 @@
 #include "edits/model_swap.h"
 #include "pliant/error.h"
 #include "schedule/build_program.h"
+#include "simulation/tool_changes.h"
 
 namespace pliant {
 namespace {
@@ -121,6 +122,7 @@ const CutTopology* TopologyEdits::cut_topology(std::size_t body) const {
 Scene TopologyEdits::scene_at(const RunState& state) const {
   Scene scene = run_.scene;
   scene.cuttable = scene.cuttable || !state.cuts.empty();
+  if (!state.tools.empty()) scene.tools = present_tools(run_.scene, state.tools);
   for (std::size_t b = 0; b < scene.bodies.size() && !state.regions.empty(); ++b) {
     if (scene.bodies[b].model.follow) scene.bodies[b].model.cells = state.regions[b].cells;
   }

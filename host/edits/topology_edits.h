@@ -36,7 +36,8 @@ class TopologyEdits {
   void prepare_cuts();
   [[nodiscard]] const CutTopology* cut_topology(std::size_t body) const;
 
-  /// The scene with its operational regions where a state has them, and with the substeps that it goes on with.
+  /// The scene with its operational regions where a state has them, with the substeps that it goes on with, and with its tools
+  /// but for those that are parked.
   [[nodiscard]] Scene scene_at(const RunState& state) const;
   /// Bodies as the edits of a state make them; nullptr if neither it nor the present state has any. Throws Error (bad_input)
   /// for a state that does not belong to this scene. Changes nothing.

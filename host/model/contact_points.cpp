@@ -366,7 +366,7 @@ void add_contact(const Scene& scene, Model& model) {
   for (const ContactTool& tool : scene.tools)
     model.contact_laws.push_back({tool.stiffness, tool.exponent, tool.alpha, tool.friction, 0});
   model.tissue_contact = scene.contact;
-  model.contact = std::make_shared<const ContactPoints>(contact_points(model));
+  if (model.contact == nullptr) model.contact = std::make_shared<const ContactPoints>(contact_points(model));
   // A shell with a law of its own is that law as far as a quarter of a cell; what is "auto" is hard at once.
   for (ContactLaw& law : model.contact_laws) law.core = law.stiffness > 0 ? kShell * model.contact->spacing : 0;
 }

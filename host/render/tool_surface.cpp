@@ -79,6 +79,8 @@ TriangleMesh tool_surface(const ToolForm& form) {
 void ToolSurfaces::append(const Simulation& simulation, std::vector<float>& positions, std::vector<std::int32_t>& triangles) {
   const Model& model = simulation.model();
   if (model.tools == nullptr) return;
+  if (made_of_ != model.tools) shapes_.clear();
+  made_of_ = model.tools;
   for (std::size_t t = shapes_.size(); t < model.tools->size(); ++t) shapes_.push_back(tool_surface((*model.tools)[t]));
   for (std::size_t t = 0; t < shapes_.size(); ++t) {
     const ToolForm& form = (*model.tools)[t];

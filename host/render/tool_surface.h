@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "geometry/mesh.h"
@@ -23,6 +24,7 @@ class ToolSurfaces {
   void append(const Simulation& simulation, std::vector<float>& positions, std::vector<std::int32_t>& triangles);
 
  private:
+  std::shared_ptr<const ToolForms> made_of_;
   std::vector<TriangleMesh> shapes_;
 };
 

@@ -51,6 +51,7 @@ struct ContactTool {
   double alpha = 0;     ///< slope of the coefficient of restitution [s/m]: e = 1 - alpha v for small speeds v
   std::string pointer;  ///< JSON pointer ("/tools/0")
   [[nodiscard]] Pose at(double time) const;
+  bool operator==(const ContactTool&) const = default;
 };
 
 /// Bodies touch each other and themselves, and so do the faces of a cut.

@@ -7,6 +7,7 @@
 #include "scene/mesh_region.h"
 #include "scene/probe.h"
 #include "scene/reader.h"
+#include "scene/tool_entry.h"
 
 namespace pliant {
 
@@ -44,9 +45,13 @@ void check_last_name(const Reader& entry, const std::vector<Named>& all, const c
 std::string read_plain_name(const Reader& field);
 std::vector<Blade> read_blades(const Reader& blades);
 SceneView read_view(const Reader& view);
-/// At most so many: a point of a surface keeps a bit for each that is near.
-inline constexpr std::size_t most_tools = 30;
 std::optional<TissueContact> read_tissue_contact(const Reader& contact);
+/// An entry of `tools`; `name`: what it is called if it does not say so.
+ContactTool read_contact_tool(const Reader& entry, const std::string& name, const std::filesystem::path& folder);
+/// The reverse, with paths relative to the scene's folder (write.cpp).
+nlohmann::ordered_json tool_json(const ContactTool& tool, const std::filesystem::path& scene_file);
+/// Nothing but its shape's word is checked; `pointer` names the place of that (spec.cpp).
+ContactTool contact_tool(const ToolSpec& spec, const std::string& shape_pointer, const std::string& name);
 std::vector<ContactTool> read_tools(const Reader& tools, const std::filesystem::path& folder);
 void check_tools(const Reader& top, const Scene& scene);
 /// After the bodies. Null without probes.

@@ -101,11 +101,13 @@ void read_contact(const Reader& contact, ContactTool& tool) {
   if (contact.has("alpha")) tool.alpha = contact.at("alpha").non_negative();
 }
 
-ContactTool read_contact_tool(const Reader& entry, std::size_t index, const std::filesystem::path& folder) {
+}  // namespace
+
+ContactTool read_contact_tool(const Reader& entry, const std::string& name, const std::filesystem::path& folder) {
   entry.expect_object("contact_tool");
   ContactTool tool;
   tool.pointer = entry.pointer();
-  tool.name = entry.has("name") ? read_plain_name(entry.at("name")) : fmt::format("tool{}", index);
+  tool.name = entry.has("name") ? read_plain_name(entry.at("name")) : name;
   read_shape(entry.at("shape", "an object with one of the keys " + alternatives(scene_keys().at("shape"))), tool);
   if (entry.has("scale")) {
     if (tool.mesh.empty()) entry.at("scale").fail("this key only beside a shape that is a mesh or a sequence");
@@ -125,8 +127,6 @@ ContactTool read_contact_tool(const Reader& entry, std::size_t index, const std:
   if (entry.has("contact")) read_contact(entry.at("contact"), tool);
   return tool;
 }
-
-}  // namespace
 
 std::string read_plain_name(const Reader& field) {
   const char* const expected = "a name of 1 to 100 characters without control characters such as a line break";
@@ -153,7 +153,7 @@ std::vector<ContactTool> read_tools(const Reader& tools, const std::filesystem::
   for (const Reader& entry : tools.items("a list of tools")) {
     if (all.size() == most_tools)
       tools.fail(fmt::format("{} tools", tools.json().size()), fmt::format("at most {}", most_tools));
-    all.push_back(read_contact_tool(entry, all.size(), folder));
+    all.push_back(read_contact_tool(entry, fmt::format("tool{}", all.size()), folder));
     check_last_name(entry, all, "tool");
   }
   return all;

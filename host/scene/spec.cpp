@@ -205,11 +205,12 @@ SceneProbe probe(const ProbeSpec& spec, const std::string& pointer, const SceneS
   return out;
 }
 
-ContactTool tool(const ToolSpec& spec, const std::string& pointer, std::size_t index) {
+}  // namespace
+
+ContactTool contact_tool(const ToolSpec& spec, const std::string& shape_pointer, const std::string& name) {
   ContactTool t;
-  t.pointer = pointer;
-  t.name = spec.name.empty() ? fmt::format("tool{}", index) : spec.name;
-  t.shape = word(tool_shape_words(), spec.shape, pointer + "/shape");
+  t.name = spec.name.empty() ? name : spec.name;
+  t.shape = word(tool_shape_words(), spec.shape, shape_pointer);
   t.radius = spec.radius;
   t.first = spec.first;
   t.second = spec.second;
@@ -224,8 +225,6 @@ ContactTool tool(const ToolSpec& spec, const std::string& pointer, std::size_t i
   t.alpha = spec.alpha;
   return t;
 }
-
-}  // namespace
 
 Scene scene_of(const SceneSpec& spec) {
   Scene scene;
@@ -250,8 +249,11 @@ Scene scene_of(const SceneSpec& spec) {
     b.pointer = at;
     return b;
   });
-  convert(scene.tools, spec.tools, "/tools",
-          [&](const ToolSpec& s, const std::string& at) { return tool(s, at, scene.tools.size()); });
+  convert(scene.tools, spec.tools, "/tools", [&](const ToolSpec& s, const std::string& at) {
+    ContactTool tool = contact_tool(s, at + "/shape", fmt::format("tool{}", scene.tools.size()));
+    tool.pointer = at;
+    return tool;
+  });
   if (spec.contact) scene.contact = TissueContact{spec.contact->friction};
   std::size_t surfaces = 0;
   convert(scene.bodies, spec.bodies, "/bodies",

@@ -203,39 +203,6 @@ OrderedJson blade_json(const Blade& b) {
   return blade;
 }
 
-OrderedJson tool_json(const ContactTool& t, const std::filesystem::path& scene_file) {
-  OrderedJson tool{{"name", t.name}};
-  OrderedJson& shape = tool["shape"];
-  const std::string& word = word_of(tool_shape_words(), t.shape);
-  switch (t.shape) {
-    case ToolShape::sphere:
-      shape[word] = t.radius;
-      break;
-    case ToolShape::capsule:
-      shape[word] = {t.first, t.second, t.radius};
-      break;
-    case ToolShape::box:
-      shape[word] = t.size;
-      break;
-    case ToolShape::half_space:
-      shape[word] = {t.first, t.second};
-      break;
-    case ToolShape::mesh:
-    case ToolShape::sequence:
-      shape[word] = path_json(t.mesh, scene_file);
-      break;
-  }
-  if (!t.path.empty()) tool["path"] = t.path;
-  tool["friction"] = t.friction;
-  if (!t.mesh.empty() || t.scale != 1) tool["scale"] = t.scale;
-  if (t.shape == ToolShape::sequence || t.frames_per_second != ContactTool{}.frames_per_second)
-    tool["frames_per_second"] = t.frames_per_second;
-  if (t.stiffness != 0) tool["contact"]["stiffness"] = t.stiffness;
-  if (t.stiffness != 0 || t.exponent != 1) tool["contact"]["exponent"] = t.exponent;
-  if (t.stiffness != 0 || t.alpha != 0) tool["contact"]["alpha"] = t.alpha;
-  return tool;
-}
-
 OrderedJson view_json(const SceneView& v) {
   OrderedJson view = OrderedJson::object();
   if (v.eye) view["eye"] = *v.eye;
@@ -295,6 +262,39 @@ OrderedJson document_of(const Scene& scene) {
 }
 
 }  // namespace
+
+OrderedJson tool_json(const ContactTool& t, const std::filesystem::path& scene_file) {
+  OrderedJson tool{{"name", t.name}};
+  OrderedJson& shape = tool["shape"];
+  const std::string& word = word_of(tool_shape_words(), t.shape);
+  switch (t.shape) {
+    case ToolShape::sphere:
+      shape[word] = t.radius;
+      break;
+    case ToolShape::capsule:
+      shape[word] = {t.first, t.second, t.radius};
+      break;
+    case ToolShape::box:
+      shape[word] = t.size;
+      break;
+    case ToolShape::half_space:
+      shape[word] = {t.first, t.second};
+      break;
+    case ToolShape::mesh:
+    case ToolShape::sequence:
+      shape[word] = path_json(t.mesh, scene_file);
+      break;
+  }
+  if (!t.path.empty()) tool["path"] = t.path;
+  tool["friction"] = t.friction;
+  if (!t.mesh.empty() || t.scale != 1) tool["scale"] = t.scale;
+  if (t.shape == ToolShape::sequence || t.frames_per_second != ContactTool{}.frames_per_second)
+    tool["frames_per_second"] = t.frames_per_second;
+  if (t.stiffness != 0) tool["contact"]["stiffness"] = t.stiffness;
+  if (t.stiffness != 0 || t.exponent != 1) tool["contact"]["exponent"] = t.exponent;
+  if (t.stiffness != 0 || t.alpha != 0) tool["contact"]["alpha"] = t.alpha;
+  return tool;
+}
 
 std::string scene_to_json(const Scene& scene) {
   return document_of(scene).dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";

@@ -27,12 +27,21 @@ double contact_margin(const Model& model) { return kMargin * model.contact->spac
 void ContactLists::update(std::int32_t step_in_batch, const Motion& motion) {
   const std::int64_t step = run_.state.clock.step + step_in_batch;
   if (run_.loaded.take_updated()) forget();
-  if (run_.state.look.step < 0 || (step % contact_look_every == 0 && due(step, motion))) {
-    look(step_in_batch, step);
+  const bool tools = !run_.model().tools->empty(), tissue = run_.scene.contact.has_value();
+  ContactLook& last = run_.state.look;
+  Due due{tools && last.tools < 0, tissue && last.tissue < 0};
+  if (step % contact_look_every == 0 && ((tools && !due.tools) || (tissue && !due.tissue))) {
+    const Due moved = due_after_motion(step, motion);
+    due = {tools && (due.tools || moved.tools), tissue && (due.tissue || moved.tissue)};
+  }
+  if (due.tools || due.tissue) {
+    look(due, step_in_batch, step);
   } else if (loaded_ != run_.loaded.changes()) {
-    list();
+    list(run_.backend().read_ints(run_.loaded.program().find("contact_near")));
   }
 }
+
+void ContactLists::forget() { run_.state.look.tools = run_.state.look.tissue = -1; }
 
 double ContactLists::largest_increment() {
   for (const Pass& pass : run_.loaded.program().status) {
@@ -41,57 +50,58 @@ double ContactLists::largest_increment() {
   return run_.loaded.largest_increment();
 }
 
-bool ContactLists::due(std::int64_t step, const Motion& motion) {
+ContactLists::Due ContactLists::due_after_motion(std::int64_t step, const Motion& motion) {
   ContactLook& look = run_.state.look;
-  const std::int64_t since = step - look.step;
-  if (since <= 0) return false;
-  const double now = run_.state.clock.time_at(step), h = run_.state.clock.dt;
+  const double now = run_.state.clock.time_at(step), ahead = contact_look_every * run_.state.clock.dt;
+  // What has moved since the last question, and what may move until the next.
   const double nodes = kFaster * contact_look_every * largest_increment();
-  bool any = run_.scene.contact && since >= kPairSteps;
-  for (std::size_t k = 0; k < look.room.size(); ++k) {
-    const bool tool = k + 1 < look.room.size() || !run_.scene.contact;
-    // What has moved since the last question, and what may move until the next.
-    const double before = tool ? motion(k, now - contact_look_every * h, now) : nodes;
-    const double after = tool ? motion(k, now, now + contact_look_every * h) : nodes;
-    look.travel[k] += nodes + before;
-    any = any || !(look.travel[k] + nodes + after < look.room[k]);
+  Due due;
+  for (std::size_t t = 0; t < look.room.size() && look.tools >= 0 && look.tools < step; ++t) {
+    look.travel[t] += nodes + motion(t, now - ahead, now);
+    due.tools = due.tools || !(look.travel[t] + nodes + motion(t, now, now + ahead) < look.room[t]);
   }
-  return any;
+  if (run_.scene.contact && look.tissue >= 0 && look.tissue < step) {
+    look.tissue_travel += nodes;
+    due.tissue = step - look.tissue >= kPairSteps || !(look.tissue_travel + nodes < kPairTravel * contact_margin(run_.model()));
+  }
+  return due;
 }
 
-void ContactLists::look(std::int32_t step_in_batch, std::int64_t step) {
-  for (const Pass& pass : run_.loaded.program().look) run_.backend().run(pass, step_in_batch);
-  run_.state.look.step = step;
-  list();
-  const BufferId near = run_.loaded.program().find("contact_near");
-  measure_room(run_.backend().read_ints(near));
+void ContactLists::look(const Due& due, std::int32_t step_in_batch, std::int64_t step) {
+  for (const Pass& pass : run_.loaded.program().look) {
+    if (pass.kernel == "contact_near" ? due.tools : due.tissue) run_.backend().run(pass, step_in_batch);
+  }
+  const std::vector<std::int32_t> near = run_.backend().read_ints(run_.loaded.program().find("contact_near"));
+  list(near);
+  if (due.tools) {
+    run_.state.look.tools = step;
+    measure_room(near);
+  }
+  if (due.tissue) {
+    run_.state.look.tissue = step;
+    run_.state.look.tissue_travel = 0;
+  }
 }
 
 void ContactLists::measure_room(const std::vector<std::int32_t>& near) {
-  const Program& program = run_.loaded.program();
   const std::size_t tools = run_.model().tools->size();
   const double margin = contact_margin(run_.model());
   std::vector<double> room(tools, 1e30);
-  if (tools > 0) {
-    const std::vector<double> gap = run_.backend().read_reals(program.find("contact_gap"));
-    for (std::size_t tile = 0; tile < near.size(); ++tile) {
-      for (std::size_t t = 0; t < tools; ++t) {
-        if ((near[tile] >> t & 1) == 0) room[t] = std::min(room[t], gap[tile * tools + t]);
-      }
+  const std::vector<double> gap = run_.backend().read_reals(run_.loaded.program().find("contact_gap"));
+  for (std::size_t tile = 0; tile < near.size(); ++tile) {
+    for (std::size_t t = 0; t < tools; ++t) {
+      if ((near[tile] >> t & 1) == 0) room[t] = std::min(room[t], gap[tile * tools + t]);
     }
   }
-  // Where all is near, it is asked again after a few cells, so that the lists become shorter again.
-  for (double& r : room) r = std::min(r, 1e29) - kReserve * margin;
-  for (double& r : room) r = r > 1e28 ? 4 * margin : r;
-  if (run_.scene.contact) room.push_back(kPairTravel * margin);
+  // Where all is near, it is asked again after a cell, so that the lists become shorter again.
+  for (double& r : room) r = r > 1e28 ? 4 * margin : r - kReserve * margin;
   run_.state.look.room = std::move(room);
-  run_.state.look.travel.assign(run_.state.look.room.size(), 0);
+  run_.state.look.travel.assign(tools, 0);
 }
 
-void ContactLists::list() {
+void ContactLists::list(const std::vector<std::int32_t>& near) {
   const Program& program = run_.loaded.program();
   Backend& backend = run_.backend();
-  const std::vector<std::int32_t> near = backend.read_ints(program.find("contact_near"));
   std::vector<std::int32_t> points, nodes;
   for (std::size_t tile = 0; tile < near.size(); ++tile) {
     if (near[tile] != 0) points.push_back(static_cast<std::int32_t>(tile));

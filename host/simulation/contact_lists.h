@@ -23,13 +23,17 @@ class ContactLists {
   /// Before a step of the current batch: look where a look is due, and list what is near where the lists do not hold any more.
   void update(std::int32_t step_in_batch, const Motion& motion);
   /// A tool may be anywhere: look before the next step.
-  void forget() { run_.state.look.step = -1; }
+  void forget();
 
  private:
-  [[nodiscard]] bool due(std::int64_t step, const Motion& motion);
+  /// Which looks are due.
+  struct Due {
+    bool tools = false, tissue = false;
+  };
+  [[nodiscard]] Due due_after_motion(std::int64_t step, const Motion& motion);
   [[nodiscard]] double largest_increment();
-  void look(std::int32_t step_in_batch, std::int64_t step);
-  void list();
+  void look(const Due& due, std::int32_t step_in_batch, std::int64_t step);
+  void list(const std::vector<std::int32_t>& near);
   void measure_room(const std::vector<std::int32_t>& near);
 
   RunContext& run_;

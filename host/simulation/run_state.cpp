@@ -5,6 +5,7 @@
 
 #include <bit>
 #include <concepts>
+#include <filesystem>
 #include <limits>
 #include <type_traits>
 
@@ -20,6 +21,10 @@ class StateWriter {
     put(std::string(name));
     put(value);
   }
+  template <class T>
+  void last(const char* name, const T& value) {
+    if (!value.empty()) (*this)(name, value);
+  }
   std::string bytes;
 
  private:
@@ -28,6 +33,8 @@ class StateWriter {
   }
   void put(std::integral auto value) { word(static_cast<std::uint64_t>(static_cast<std::int64_t>(value))); }
   void put(double value) { word(std::bit_cast<std::uint64_t>(value)); }
+  void put(ToolShape shape) { word(static_cast<std::uint64_t>(shape)); }
+  void put(const std::filesystem::path& path) { put(path.string()); }
   void put(const std::string& text) {
     put(text.size());
     bytes += text;
@@ -75,6 +82,11 @@ class StateReader {
     name_ = name;
     get(value);
   }
+  template <class T>
+  void last(const char* name, T& value) {
+    value = {};
+    if (at_ < bytes_.size()) (*this)(name, value);
+  }
   void end() const {
     if (at_ != bytes_.size()) {
       throw Error(ErrorCode::bad_input,
@@ -112,6 +124,16 @@ class StateReader {
     value = wide == 1;
   }
   void get(double& value) { value = std::bit_cast<double>(word()); }
+  void get(ToolShape& shape) {
+    const std::uint64_t wide = word();
+    if (wide > static_cast<std::uint64_t>(ToolShape::sequence)) fail("is no shape");
+    shape = static_cast<ToolShape>(wide);
+  }
+  void get(std::filesystem::path& path) {
+    std::string text;
+    get(text);
+    path = text;
+  }
   void get(std::string& text) {
     const std::size_t size = count(1);
     text = bytes_.substr(at_, size);

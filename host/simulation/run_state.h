@@ -27,13 +27,15 @@ struct RunState {
   std::vector<double> offset;        ///< [slots][3] of the displacement, what node_u leaves out (drift.h) [m]; empty: nothing
   std::vector<NodeInertia> ballast;  ///< what elements got so that they stand the step (model/ballast.h)
   std::optional<Vec3d> tool;         ///< where the host put the tool [m]; nothing: on its path
-  std::map<std::string, ToolDrive> driven;  ///< tools of the scene that the host has driven off their paths
+  std::map<std::string, ToolDrive> driven;  ///< tools that the host has driven off their paths
   ContactLook look;
   std::int64_t opened = 0;            ///< edges that parted because they were stretched too far
   std::int64_t topology_version = 0;  ///< edits that changed elements
+  ToolChanges tools;                  ///< tools that the host added, removed or parked
 };
 
-// The visitor, as that of the parts: v(name, member) for every member, in this order.
+// The visitor, as that of the parts: v(name, member) for every member, in this order. v.last() has nothing to say where there
+// is nothing.
 template <class V>
 void visit(V& v, RunState& s) {
   v("clock", s.clock), v("limit", s.limit), v("relaxation", s.relaxation), v("kept", s.kept), v("cuts", s.cuts);
@@ -41,6 +43,7 @@ void visit(V& v, RunState& s) {
       v("pending", s.pending), v("forces", s.forces);
   v("offset", s.offset), v("ballast", s.ballast), v("tool", s.tool), v("driven", s.driven), v("look", s.look),
       v("opened", s.opened), v("topology_version", s.topology_version);
+  v.last("tools", s.tools);
 }
 
 /// Its bytes, the same on every machine: names, then values of eight little-endian bytes.

@@ -96,15 +96,25 @@ struct MovedRegion {
 
 /// When it was last asked what is near what in contact, and how far things may move until it must be asked again.
 struct ContactLook {
-  std::int64_t step = -1;  ///< of the last look; -1: one is due
-  std::vector<double> room,
-      travel;  ///< per tool, then of tissue: how far it may come nearer, and has since the look, at most [m]
+  std::int64_t tools = -1, tissue = -1;  ///< steps of the last looks; -1: one is due
+  std::vector<double> room;              ///< per tool: how far it may come nearer until the next look [m]
+  std::vector<double> travel;            ///< how far it has since the last one, at most [m]
+  double tissue_travel = 0;              ///< the same of tissue [m]
 };
 
-/// A tool that the host drives from one pose to another, at constant speed.
+/// A tool that the host drives from one pose to another, at constant speed; at once if `end` is `start`.
 struct ToolDrive {
   Pose from{}, to{};
   double start = 0, end = 0;  ///< [s]
+};
+
+/// What the host has made of the scene's tools. Nothing by itself: the tools are those of the scene.
+struct ToolChanges {
+  std::vector<ContactTool> added;    ///< in the order in which they came
+  std::vector<std::string> removed;  ///< tools of the scene that are no more, ascending
+  std::vector<std::string> parked;   ///< tools that are known and touch nothing, ascending
+  [[nodiscard]] bool empty() const { return added.empty() && removed.empty() && parked.empty(); }
+  bool operator==(const ToolChanges&) const = default;
 };
 
 // The visitor: v(name, member) for every member, in this order.
@@ -123,7 +133,8 @@ void visit(V& v, RelaxationState& s) {
 }
 template <class V>
 void visit(V& v, ContactLook& s) {
-  v("step", s.step), v("room", s.room), v("travel", s.travel);
+  v("tools", s.tools), v("tissue", s.tissue), v("room", s.room), v("travel", s.travel);
+  v("tissue_travel", s.tissue_travel);
 }
 template <class V>
 void visit(V& v, KeptState& s) {
@@ -180,6 +191,17 @@ void visit(V& v, Pose& s) {
 template <class V>
 void visit(V& v, ToolDrive& s) {
   v("from", s.from), v("to", s.to), v("start", s.start), v("end", s.end);
+}
+
+template <class V>
+void visit(V& v, ContactTool& s) {
+  v("name", s.name), v("shape", s.shape), v("radius", s.radius), v("first", s.first), v("second", s.second), v("size", s.size);
+  v("mesh", s.mesh), v("scale", s.scale), v("frames_per_second", s.frames_per_second), v("path", s.path);
+  v("friction", s.friction), v("stiffness", s.stiffness), v("exponent", s.exponent), v("alpha", s.alpha);
+}
+template <class V>
+void visit(V& v, ToolChanges& s) {
+  v("added", s.added), v("removed", s.removed), v("parked", s.parked);
 }
 
 }  // namespace pliant

@@ -17,6 +17,7 @@
 #include "simulation/coupling.h"
 #include "simulation/relaxation.h"
 #include "simulation/remarks.h"
+#include "simulation/tool_changes.h"
 
 namespace pliant {
 
@@ -224,7 +225,7 @@ double Simulation::fast_share() const { return std::min(1.0, 2 * dt() / state_.l
 
 void Simulation::return_to_kept() {
   loaded_.return_to_kept_state();
-  state_.look.step = -1;
+  state_.look.tools = state_.look.tissue = -1;
   state_.clock = state_.kept->clock;
   state_.relaxation.damping = state_.kept->damping;
   contact_.return_to_kept();
@@ -314,10 +315,15 @@ void Simulation::restore(const Snapshot& snapshot) {
                                                   snapshot.real_type, backend().info().name, real));
   }
   // Everything is made and checked aside.
+  check_tool_changes(scene_, next.tools);
   std::unique_ptr<EditedBodies> bodies = edits_.bodies_at(next);
   std::shared_ptr<const Model> model = loaded_.shared_model();
   const Scene scene = edits_.scene_at(next);
-  if (bodies != nullptr) model = std::make_shared<const Model>(build_model(scene, bodies->solids()));
+  if (bodies != nullptr) {
+    model = std::make_shared<const Model>(build_model(scene, bodies->solids()));
+  } else if (scene.tools != contact_.tools()) {
+    model = model_with_tools(scene_, *model, contact_.tools(), scene.tools);
+  }
   check_ballast(next, *model);
   if (!next.ballast.empty() || !model->ballast.empty()) {
     const auto heavier = std::make_shared<Model>(*model);
@@ -343,6 +349,7 @@ void Simulation::restore(const Snapshot& snapshot) {
     run_.place_surface();
     upload_coupling(run_);  // the automatic beta belongs to the step
     if (!state_.forces.empty()) loads_.upload();
+    contact_.follow();
   } catch (...) {
     load(old_model);
     write_buffers(before, loaded_);

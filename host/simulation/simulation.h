@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "edits/tool_edits.h"
 #include "edits/topology_edits.h"
 #include "simulation/divergence.h"
 #include "simulation/drift.h"
@@ -50,7 +51,7 @@ class Simulation {
   [[nodiscard]] const std::optional<Divergence>& divergence() const { return divergence_; }
   [[nodiscard]] const Inversions& inversions() const { return inversions_; }
   [[nodiscard]] const BallastReport& ballast() const { return ballast_; }
-  /// What the scene's tools have felt.
+  /// What the tools have felt.
   [[nodiscard]] const ToolContact& contact() const { return contact_; }
   [[nodiscard]] bool at_equilibrium() const { return state_.relaxation.equilibrium; }
   /// |R - F| over the largest of external and reaction force, as of the last change of dynamic relaxation.
@@ -106,8 +107,8 @@ class Simulation {
 
   /// Forces that the host puts on nodes from now on: HostLoads::set.
   void set_forces(std::vector<HostForce> forces) { loads_.set(std::move(forces)); }
-  /// ToolContact::drive, between two batches.
-  void drive_tool(const std::string& name, const Pose& to, double seconds) { contact_.drive(name, to, seconds); }
+  /// Add, remove, park, place and drive tools, between two batches.
+  [[nodiscard]] ToolEdits& tools() { return tools_; }
   /// Put the scene's tool at a point [m] from now on.
   void set_tool(const Vec3d& position) { state_.tool = position; }
 
@@ -159,6 +160,7 @@ class Simulation {
   HostLoads loads_{run_};
   ToolContact contact_{run_};
   TopologyEdits edits_{run_, step_, loads_};
+  ToolEdits tools_{run_, contact_};
   Inversions inversions_, kept_inversions_;  ///< as of the kept state
   BallastReport ballast_;
   std::optional<Divergence> divergence_;  ///< a run that has diverged has no next step

@@ -8,6 +8,7 @@
 #include "geometry/vec.h"
 #include "pliant/error.h"
 #include "program/hash.h"
+#include "simulation/tool_changes.h"
 
 namespace pliant {
 namespace {
@@ -182,10 +183,10 @@ void check_state(const RunState& state, const Model& model, const Scene& scene) 
     need(f.body < model.bodies.size() && f.node >= 0 && vec::finite(f.force), "a force of the host");
   }
   need(!state.tool || vec::finite(*state.tool), "the tool is not finite");
+  const std::vector<ContactTool> tools = known_tools(scene, state.tools);
   for (const auto& driven : state.driven) {
     const ToolDrive& drive = driven.second;
-    const bool known =
-        std::any_of(scene.tools.begin(), scene.tools.end(), [&](const ContactTool& t) { return t.name == driven.first; });
+    const bool known = std::any_of(tools.begin(), tools.end(), [&](const ContactTool& t) { return t.name == driven.first; });
     const bool poses = good_pose(drive.from) && good_pose(drive.to);
     need(known && poses && std::isfinite(drive.start) && drive.end >= drive.start && std::isfinite(drive.end), "a driven tool");
   }

@@ -5,17 +5,18 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include "geometry/vec.h"
 #include "pliant/error.h"
 #include "schedule/contact_data.h"
 #include "simulation/body_overlap.h"
+#include "simulation/present_tissue.h"
+#include "simulation/tool_changes.h"
 
 namespace pliant {
 namespace {
 
-/// Depth inside a tool at the start that is pushed out, as a share of a cell; more is refused.
-constexpr double kStartDepth = 0.25;
 /// Quanta of force are this share of what moves the heaviest node one cell in a step.
 constexpr int kForceBits = 26;
 constexpr int kAreaBits = 26;
@@ -41,78 +42,57 @@ StepSum sum_of_parts(const std::int32_t* part) {
 
 }  // namespace
 
-std::size_t check_drive(const Scene& scene, const std::string& name, const Pose& to, double seconds) {
-  std::size_t tool = 0;
-  while (tool < scene.tools.size() && scene.tools[tool].name != name) ++tool;
-  if (tool == scene.tools.size()) throw Error(ErrorCode::usage, fmt::format("the scene has no tool \"{}\"", name));
-  if (!good_pose(to)) {
-    throw Error(ErrorCode::usage,
-                fmt::format("tool \"{}\": the pose needs finite numbers and a unit quaternion x, y, z, w", name));
-  }
-  if (!(seconds > 0 && seconds < 1e30)) {
-    throw Error(ErrorCode::usage, fmt::format("tool \"{}\": {} seconds on the way, expected a number > 0", name, seconds));
-  }
-  return tool;
+void check_pose(const std::string& name, const Pose& pose) {
+  if (good_pose(pose)) return;
+  throw Error(ErrorCode::usage,
+              fmt::format("tool \"{}\": the pose needs finite numbers and a unit quaternion x, y, z, w", name));
+}
+
+void check_drive(const std::string& name, const Pose& to, double seconds) {
+  check_pose(name, to);
+  if (seconds > 0 && seconds < 1e30) return;
+  throw Error(ErrorCode::usage, fmt::format("tool \"{}\": {} seconds on the way, expected a number > 0", name, seconds));
 }
 
 bool ToolContact::active() const { return run_.model().contact != nullptr && run_.model().contact->size() > 0; }
 
-Pose ToolContact::pose(std::size_t tool, double time) const {
-  const ContactTool& own = run_.scene.tools[tool];
-  const auto driven = run_.state.driven.find(own.name);
-  if (driven == run_.state.driven.end()) return own.at(time);
-  const ToolDrive& d = driven->second;
-  if (time >= d.end) return d.to;
-  return between(d.from, d.to, std::clamp((time - d.start) / (d.end - d.start), 0.0, 1.0));
-}
+Pose ToolContact::pose(std::size_t tool, double time) const { return tool_pose(tools_[tool], run_.state, time); }
 
-void ToolContact::drive(const std::string& name, const Pose& to, double seconds) {
-  const std::size_t tool = check_drive(run_.scene, name, to, seconds);
+void ToolContact::drive(std::size_t tool, const Pose& to, double seconds) {
   const double now = run_.state.clock.time();
-  const ToolDrive drive{pose(tool, now), to, now, now + seconds};
-  run_.state.driven[name] = drive;
+  const ToolDrive drive{seconds > 0 ? pose(tool, now) : to, to, now, now + seconds};
+  run_.state.driven[tools_[tool].name] = drive;
   run_.state.relaxation.equilibrium = false;  // it begins anew
   if (!active()) return;
-  lists_.forget();
+  run_.state.look.tools = -1;  // it may meet anything
+}
+
+void ToolContact::follow() {
+  const std::vector<ContactTool> before = std::exchange(tools_, present_tools(run_.scene, run_.state.tools));
+  const std::vector<ToolHistory> felt = std::exchange(felt_.tools, std::vector<ToolHistory>(tools_.size()));
+  for (std::size_t t = 0; t < tools_.size(); ++t) {
+    const auto same = std::find(before.begin(), before.end(), tools_[t]);
+    if (same != before.end()) felt_.tools[t] = felt[static_cast<std::size_t>(same - before.begin())];
+  }
+  keep();
 }
 
 void ToolContact::start() {
-  felt_ = {std::vector<ToolHistory>(run_.scene.tools.size()), {}};
+  tools_ = run_.scene.tools;
+  felt_ = {std::vector<ToolHistory>(tools_.size()), {}};
   keep();
   if (!active()) return;
   const Model& model = run_.model();
-  const ContactPoints& points = *model.contact;
-  if (run_.scene.contact) refuse_overlap(model, kStartDepth * points.spacing);
-  for (std::size_t t = 0; t < run_.scene.tools.size(); ++t) {
-    const ContactTool& tool = run_.scene.tools[t];
-    const ToolMoment moment = tool_moment((*model.tools)[t], run_.state.clock.time());
-    const Pose at = compose(pose(t, run_.state.clock.time()), moment.pose);
-    double deepest = 0;
-    std::size_t where = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      Vec3d x = points.rest[i];
-      for (std::size_t a = 0; a < 8 && !model.displacement.empty(); ++a)
-        x = vec::add(x, vec::mul(model.displacement[points.nodes[i][a]], double(points.weights[i][a]) / contact_weight_unit));
-      const double depth = -tool_distance((*model.tools)[t], place_back(at, x), moment);
-      if (depth > deepest) {
-        deepest = depth;
-        where = i;
-      }
+  if (run_.scene.contact) refuse_overlap(model, tool_start_depth * model.contact->spacing);
+  if (tools_.empty()) return;
+  const PresentTissue tissue(model, run_.u());
+  for (std::size_t t = 0; t < tools_.size(); ++t) {
+    const double now = run_.state.clock.time();
+    try {
+      tissue.refuse_inside(tools_[t].name, (*model.tools)[t], pose(t, now), now);
+    } catch (const Error& error) {
+      throw Error(error.code(), fmt::format("{}: {}", tools_[t].pointer, error.what()));
     }
-    std::size_t body = deepest > 0 ? static_cast<std::size_t>(points.body[where]) : 0;
-    Vec3d place = points.rest[where];
-    if (const auto inside = tool_inside(model, (*model.tools)[t], moment, at); inside && inside->depth > deepest) {
-      deepest = inside->depth;
-      body = inside->body;
-      place = inside->point;
-    }
-    if (deepest <= kStartDepth * points.spacing) continue;
-    throw Error(
-        ErrorCode::bad_input,
-        fmt::format("{}: tool '{}' begins inside body '{}', {:.3g} m deep at [{:.4g}, {:.4g}, {:.4g}]; expected at most "
-                    "{:.3g} m (a quarter of a cell), which contact pushes out",
-                    tool.pointer, tool.name, model.bodies[body].name, deepest, place[0], place[1], place[2],
-                    kStartDepth * points.spacing));
   }
 }
 
@@ -138,7 +118,7 @@ ToolContact::Units ToolContact::units() const {
 
 void ToolContact::begin_batch(std::int32_t steps) {
   if (!active()) return;
-  const std::size_t tools = run_.scene.tools.size(), rows = static_cast<std::size_t>(run_.settings.batch_steps) + 1;
+  const std::size_t tools = tools_.size(), rows = static_cast<std::size_t>(run_.settings.batch_steps) + 1;
   std::vector<double> poses;
   poses.reserve(rows * tools * contact_pose_numbers);
   arms_.assign(rows * tools, {});

@@ -28,8 +28,10 @@ struct ToolHistory {
   std::int64_t touched = 0;  ///< steps with contact
 };
 
-/// The number of a tool that is to be driven. Throws Error (usage) for a name that no tool has, or a pose or time that is none.
-std::size_t check_drive(const Scene& scene, const std::string& name, const Pose& to, double seconds);
+/// Throws Error (usage) for a pose that is none.
+void check_pose(const std::string& name, const Pose& pose);
+/// Throws Error (usage) for a pose or a time that is none.
+void check_drive(const std::string& name, const Pose& to, double seconds);
 
 /// What became of the contact of tissue with tissue over a run.
 struct TouchHistory {
@@ -60,14 +62,18 @@ class ToolContact {
   void keep() { kept_ = felt_; }
   void return_to_kept() { felt_ = kept_; }
 
-  /// One per tool of the scene.
+  /// The tools of the model: those of the scene, but for what the host added, removed or parked.
+  [[nodiscard]] const std::vector<ContactTool>& tools() const { return tools_; }
+  /// One per tool of the model.
   [[nodiscard]] const std::vector<ToolHistory>& history() const { return felt_.tools; }
   [[nodiscard]] const TouchHistory& tissue() const { return felt_.tissue; }
   [[nodiscard]] const Felt& felt() const { return felt_; }
   void set_felt(Felt felt) { felt_ = std::move(felt); }
-  /// Drive a tool from where it is now to a pose, which it has after `seconds`. Throws what check_drive() throws.
-  void drive(const std::string& name, const Pose& to, double seconds);
-  /// Where a tool is at a time [s].
+  /// The model has the tools of the run state now. What tools have felt goes on with them.
+  void follow();
+  /// Drive a tool of the model from where it is now to a pose, which it has after `seconds`; at once if that is 0.
+  void drive(std::size_t tool, const Pose& to, double seconds);
+  /// Where a tool of the model is at a time [s].
   [[nodiscard]] Pose pose(std::size_t tool, double time) const;
 
  private:
@@ -83,6 +89,7 @@ class ToolContact {
 
   RunContext& run_;
   ContactLists lists_;
+  std::vector<ContactTool> tools_;
   Felt felt_, kept_;
   Units units_;               ///< of the present batch
   std::vector<char> summed_;  ///< per step of the batch: the passes of contact ran

@@ -102,11 +102,21 @@ PLIANT_API pliant_status pliant_world_push_node(pliant_world world, size_t body,
 PLIANT_API pliant_status pliant_world_clear_tools(pliant_world world);
 /** The scene's tool, which a following operational region follows, stays at this point [m] from now on. */
 PLIANT_API pliant_status pliant_world_move_tool(pliant_world world, const double position[3]);
-/** A tool of the scene's `tools` goes to this place [m] and turn (unit quaternion x, y, z, w), gets there after `seconds`, and
- * stays; its path is over. */
+/** Rigid tools: see pliant::World. An entry of `tools` of a scene file as text becomes a tool; relative files start from
+ * `folder` (null: the working folder). Its name into `name` (may be null), cut to `size` bytes with the closing 0. */
+PLIANT_API pliant_status pliant_world_parse_tool(pliant_world world, const char* tool_text, const char* folder, char* name,
+                                                 size_t size);
+PLIANT_API pliant_status pliant_world_remove_tool(pliant_world world, const char* name);
+/** It stays known and touches nothing, until it is unparked, placed or driven. */
+PLIANT_API pliant_status pliant_world_park_tool(pliant_world world, const char* name);
+PLIANT_API pliant_status pliant_world_unpark_tool(pliant_world world, const char* name);
+/** A tool is at this place [m] and turn (unit quaternion x, y, z, w) at once, and stays; its path is over. */
+PLIANT_API pliant_status pliant_world_place_tool(pliant_world world, const char* name, const double position[3],
+                                                 const double turn[4]);
+/** A tool goes to this place and turn, gets there after `seconds`, and stays; its path is over. */
 PLIANT_API pliant_status pliant_world_drive_tool(pliant_world world, const char* name, const double position[3],
                                                  const double turn[4], double seconds);
-/** What the scene's tools feel: the first `count` of them, `*needed` (may be null) is how many there are. Does not wait. */
+/** What the tools feel: the first `count` of them, `*needed` (may be null) is how many there are. Does not wait. */
 PLIANT_API pliant_status pliant_world_tool_forces(pliant_world world, pliant_tool_force* out, size_t count, size_t* needed);
 
 /** Cut all bodies where triangles [m], shape [triangle_count][3][3], cross them now. `out` may be null. */

@@ -35,13 +35,14 @@ struct ContactSpec {
 
 /// Where a tool is, and what it feels: the mean of the newest batch of steps.
 struct ToolForce {
-  std::string name;                        ///< as in the scene
+  std::string name;                        ///< as in the scene, or as it was added
   Vec3d position{};                        ///< of its origin [m]
   std::array<double, 4> turn{0, 0, 0, 1};  ///< unit quaternion x, y, z, w
   Vec3d force{};                           ///< on the tool [N]
   Vec3d torque{};                          ///< about its origin [N m]
   double area = 0;                         ///< of the tissue that touches it, at rest [m^2]
   double penetration = 0;                  ///< of the deepest point [m]
+  bool parked = false;                     ///< it touches nothing (World::park_tool)
 };
 
 }  // namespace pliant

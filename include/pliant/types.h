@@ -146,7 +146,7 @@ typedef struct pliant_probe_value {
 #define PLIANT_PROBE_VALUE_INIT \
   { sizeof(pliant_probe_value), NULL, NULL, NULL, 0 }
 
-/** A tool of the scene: see pliant::ToolForce. The name holds as long as the world. */
+/** A rigid tool: see pliant::ToolForce. The name holds as long as the world. */
 typedef struct pliant_tool_force {
   size_t size;        /**< PLIANT_TOOL_FORCE_INIT; the same in all of an array */
   const char* name;   /**< as in the scene */
@@ -156,9 +156,11 @@ typedef struct pliant_tool_force {
   double torque[3];   /**< about its origin [N m] */
   double area;        /**< of the tissue that touches it, at rest [m^2] */
   double penetration; /**< of the deepest point [m] */
+  int parked;         /**< 1: it touches nothing */
+  int reserved;       /**< 0 */
 } pliant_tool_force;
 #define PLIANT_TOOL_FORCE_INIT \
-  { sizeof(pliant_tool_force), NULL, {0}, {0}, {0}, {0}, 0, 0 }
+  { sizeof(pliant_tool_force), NULL, {0}, {0}, {0}, {0}, 0, 0, 0, 0 }
 
 #ifdef __cplusplus
 }

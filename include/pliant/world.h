@@ -16,70 +16,9 @@
 #include "pliant/frame.h"
 #include "pliant/probe.h"
 #include "pliant/scene.h"
+#include "pliant/world_types.h"
 
 namespace pliant {
-
-/// How a World runs its scene.
-struct WorldOptions {
-  std::string backend = "auto";  ///< auto, cpu, cpu:double, cpu:check, opencl or opencl:N
-  double dt = 0;                 ///< [s]; 0: what the scene says
-  bool normals = true;           ///< frames have vertex normals
-  bool interactive = false;      ///< reserve forces on all nodes of the surface, which the tools below need
-  bool cutting = false;          ///< prepare for cuts at the start, so that the first one does not take longer than others
-};
-
-/// One body of a World.
-struct BodyInfo {
-  std::string name;           ///< as in the scene
-  std::int64_t nodes = 0;     ///< of its mesh or lattice
-  std::int64_t elements = 0;  ///< cells or elements of the mesh
-  double mass = 0;            ///< [kg]
-  IndexRange vertices;        ///< its part of a Frame, as of the start
-  IndexRange triangles;       ///< likewise
-};
-
-/// What does not change while a World runs.
-struct WorldInfo {
-  std::string backend;               ///< "opencl:0"
-  std::string device;                ///< the processor's own name
-  std::string reason;                ///< why this backend
-  bool bit_exact = false;            ///< the device passed the start-up probe
-  std::int64_t nodes = 0;            ///< of all bodies
-  std::int64_t elements = 0;         ///< of all bodies
-  std::size_t vertices = 0;          ///< of the surface, as of the start
-  std::size_t triangles = 0;         ///< likewise
-  std::vector<BodyInfo> bodies;      ///< in the order of the scene
-  std::vector<std::string> remarks;  ///< sentences that `pliant run` prints: holes, units, stiffness; empty: nothing to say
-};
-
-/// What a call of step did. A divergence is reported here and not thrown; the World then holds the last good state, and
-/// stepping it again is an Error (diverged).
-struct StepReport {
-  std::int64_t done = 0;        ///< steps done by this call
-  std::int64_t step = 0;        ///< steps since the start
-  double time = 0;              ///< [s]
-  double dt = 0;                ///< [s], of the step to come
-  bool diverged = false;        ///< `message` says where
-  bool at_equilibrium = false;  ///< dynamic relaxation has converged: there is nothing more to do
-  std::string message;          ///< of the divergence: step, body, element, dt against the stable step
-};
-
-/// A handful of the surface on a spring.
-struct GrabOptions {
-  double radius = 0;     ///< nodes within this distance of the vertex at rest are held too [m]; the vertex's own cell always is
-  double stiffness = 0;  ///< of the spring [N/m]; 0: of the order of the tissue's own
-  double max_force = 0;  ///< the pull never exceeds this [N]; 0: a quarter of Young's modulus on the handful's area
-};
-
-using GrabId = std::uint64_t;  ///< names a grab of one World; 0 is none
-
-/// What a cut did.
-struct CutResult {
-  bool pending = false;    ///< the worker's next batch of steps begins with it, and nothing else is known
-  bool changed = false;    ///< elements were divided; the next frame shows it if the surface is another one
-  std::int64_t edges = 0;  ///< edges between nodes that were cut now
-  double seconds = 0;      ///< what it took [s]
-};
 
 /// A scene on a backend.
 class PLIANT_API World {
@@ -151,11 +90,30 @@ class PLIANT_API World {
   void push(std::int32_t vertex, const Vec3d& force);
   /// A force [N] on a node of a body, likewise. The node must belong to a cell of the surface.
   void push_node(std::size_t body, std::int64_t node, const Vec3d& force);
-  /// A tool of SceneSpec::tools goes from where it is to this place [m] and turn (unit quaternion x, y, z, w), gets there after
-  /// `seconds`, and stays; its path is over. Needs no WorldOptions::interactive. Throws Error (usage): no such tool, no pose.
-  void drive_tool(const std::string& name, const Vec3d& position, const std::array<double, 4>& turn, double seconds = 1.0 / 60);
   void clear_tools();                     ///< no grabs and no pushes any more
   void move_tool(const Vec3d& position);  ///< the point [m] that a following operational region follows from now on
+
+  /// Rigid tools that touch (docs/contact.md): those of SceneSpec::tools, and those that are added here. They need no
+  /// WorldOptions::interactive. After step_async() and advance_async() the worker makes these changes before its next batch,
+  /// until wait() or another call has waited for it; what it refuses is thrown by the next call that tells what it met. Tools
+  /// are part of checkpoints. Throw Error, with nothing changed: usage (a name that no tool has or another one has already, a
+  /// pose that is none), input (a shape or number that is none, a tool that would begin deeper than a quarter of a cell inside
+  /// a body), io (a mesh), and but for drive_tool() diverged, device and what the worker met.
+  ///
+  /// Add a tool where its path has it now, at most 30 that are not parked. Gives its name: "tool0", "tool1", ... if it has
+  /// none. A mesh is read here, and again by load(); relative files start from the working folder.
+  std::string add_tool(const ToolSpec& tool);
+  /// The same for a text, an entry of `tools` of a scene file (docs/scene.md); relative files start from `folder`.
+  std::string parse_tool(const std::string& text, const std::string& folder = "");
+  void remove_tool(const std::string& name);  ///< its name may be used again
+  /// Keep a tool that touches nothing and costs nothing, until unpark_tool(), place_tool() or drive_tool().
+  void park_tool(const std::string& name);
+  void unpark_tool(const std::string& name);  ///< where it is, or where its path has it now
+  /// Put a tool at a place [m] and turn (unit quaternion x, y, z, w) at once, where it stays; its path is over.
+  void place_tool(const std::string& name, const Vec3d& position, const std::array<double, 4>& turn = {0, 0, 0, 1});
+  /// A tool goes from where it is to this place and turn, gets there after `seconds`, and stays; its path is over. More than
+  /// 100 cells per second are refused (input) where tissue is in the way.
+  void drive_tool(const std::string& name, const Vec3d& position, const std::array<double, 4>& turn, double seconds = 1.0 / 60);
   [[nodiscard]] std::vector<ToolForce> tool_forces() const;  ///< of all tools; does not wait
 
   /// Cuts. They need no WorldOptions::interactive. A volume mesh of hexahedra and a scene with relaxation or the textbook

@@ -13,6 +13,7 @@ SOURCE = Path(os.environ.get("PLIANT_SOURCE", Path(__file__).resolve().parents[2
 # What C++ has, and why C or Python has not.
 MISSING = {
     ("C", "World::World"): "SceneSpec is a struct of C++; pliant_world_parse takes a scene as text with surfaces in memory",
+    ("C", "World::add_tool"): "ToolSpec is a struct of C++; pliant_world_parse_tool takes a tool as text",
     ("C", "box_surface"): "a helper for small programs; eight vertices are written down as quickly",
     ("C", "WorldInfo.backend"): "in the text of pliant_world_backend",
     ("C", "WorldInfo.device"): "in the text of pliant_world_backend",
@@ -24,6 +25,7 @@ MISSING = {
     ("C", "WorldInfo.reason"): "for people, who see it in `pliant devices`",
     ("Python", "World::open"): "World(file)",
     ("Python", "World::parse"): "World(dict, surfaces, folder)",
+    ("Python", "World::parse_tool"): "add_tool(dict, folder)",
     ("Python", "box_surface"): "a helper for small programs; eight vertices are written down as quickly",
 }
 # What C or Python has, and why C++ has not.
@@ -68,7 +70,7 @@ def cpp():
     world = code_of("include/pliant/world.h")
     found = {f"World::{n}" for n in re.findall(r"(?<![\w~:])(\w+)\([^;]*?\)\s*(?:const)?\s*(?:noexcept)?;",
                                                block(world, "class PLIANT_API World").split("private:")[0])}
-    headers = world + code_of("include/pliant/scene.h") + code_of("include/pliant/frame.h") + code_of("include/pliant/probe.h") + code_of("include/pliant/tool.h")
+    headers = world + code_of("include/pliant/scene.h") + code_of("include/pliant/frame.h") + code_of("include/pliant/probe.h") + code_of("include/pliant/tool.h") + code_of("include/pliant/world_types.h")
     found |= set(re.findall(r"^PLIANT_API .*?(\w+)\(", headers, re.M))
     for name in STRUCTS:
         found |= {f"{name}.{m}" for m in members(block(headers, f"struct {name} "))}
@@ -92,7 +94,7 @@ def c():
 def python():
     text = code_of("python/pliant.cpp")
     define = r'\.def(?:_readonly|_property_readonly)?\(\s*"(\w+)"'
-    world, module = block(text, "void bind_world("), block(text, "PYBIND11_MODULE(")
+    world, module = block(text, "void bind_world(") + block(text, "void bind_tools("), block(text, "PYBIND11_MODULE(")
     found = {f"World::{n}" for n in re.findall(define, world)} | {"World::__init__"}
     found |= set(re.findall(r'm\.def\("(\w+)"', module)) | set(re.findall(r'm\.attr\("(\w+)"\) =', module))
     constructor = world[world.index("py::init"):world.index(".def_property_readonly")]

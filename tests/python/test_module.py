@@ -212,6 +212,27 @@ def test_tools():
     world.release(hand)
 
 
+def test_rigid_tools():
+    world = block()
+    assert world.tool_forces() == {}
+    ball = {"name": "ball", "shape": {"sphere": 0.02}, "path": [[0, 0.05, 0.101, 0.03]], "friction": 0.2}
+    assert world.add_tool(ball) == "ball"
+    assert error_of(lambda: world.add_tool(ball)).code == 5
+    assert error_of(lambda: world.add_tool({"shape": {"cone": 1}})).code == 2
+    world.drive_tool("ball", [0.05, 0.095, 0.03], seconds=0.1)
+    world.advance(0.3)
+    assert world.tool_forces()["ball"]["force"][1] > 0.01 and world.tool_forces()["ball"]["parked"] is False
+    world.park_tool("ball")
+    assert world.tool_forces()["ball"]["parked"] is True
+    assert "begins inside body 'block'" in str(error_of(lambda: world.place_tool("ball", [0.05, 0.04, 0.03])))
+    world.place_tool("ball", [0.05, 0.2, 0.03])
+    world.park_tool("ball")
+    world.unpark_tool("ball")
+    assert np.array_equal(world.tool_forces()["ball"]["position"], [0.05, 0.2, 0.03])
+    world.remove_tool("ball")
+    assert world.tool_forces() == {} and error_of(lambda: world.remove_tool("ball")).code == 5
+
+
 def test_cuts():
     world = block()
     before = world.frame()

@@ -1,0 +1,158 @@
+#include "api/rigid_tools.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+#include "pliant/error.h"
+#include "simulation/tool_changes.h"
+
+namespace pliant::api {
+
+bool RigidTools::knows(const std::string& name) const {
+  bool known = names_.contains(name);
+  for (const std::vector<Request>* list : {&doing_, &asked_}) {
+    for (const Request& r : *list) {
+      if (r.name == name && (r.what == What::add || r.what == What::remove)) known = r.what == What::add;
+    }
+  }
+  return known;
+}
+
+void RigidTools::check_known(const std::string& name) const {
+  if (knows(name)) return;
+  std::string all;
+  for (const std::string& other : names_) all += (all.empty() ? "\"" : ", \"") + other + "\"";
+  throw Error(ErrorCode::usage,
+              fmt::format("there is no tool \"{}\"; {}", name, all.empty() ? "there are none" : "there are " + all));
+}
+
+std::string RigidTools::add(ContactTool tool) {
+  auto form = std::make_shared<const ToolForm>(tool_form(tool));
+  const std::lock_guard lock(mutex_);
+  for (int i = 0; tool.name.empty(); ++i) {
+    if (!knows(fmt::format("tool{}", i))) tool.name = fmt::format("tool{}", i);
+  }
+  if (knows(tool.name)) {
+    throw Error(ErrorCode::usage,
+                fmt::format("there is a tool \"{}\" already, expected a different name for every tool", tool.name));
+  }
+  const std::string name = tool.name;
+  asked_.push_back({What::add, name, std::move(tool), std::move(form), {}, 0});
+  return name;
+}
+
+/// Of drives of one tool that are not done yet the last one counts.
+void RigidTools::ask(Request request) {
+  const std::lock_guard lock(mutex_);
+  check_known(request.name);
+  const auto last = std::find_if(asked_.rbegin(), asked_.rend(), [&](const Request& r) { return r.name == request.name; });
+  if (request.what == What::drive && last != asked_.rend() && last->what == What::drive) {
+    *last = std::move(request);
+  } else {
+    asked_.push_back(std::move(request));
+  }
+}
+
+void RigidTools::remove(const std::string& name) { ask({What::remove, name, {}, nullptr, {}, 0}); }
+void RigidTools::park(const std::string& name) { ask({What::park, name, {}, nullptr, {}, 0}); }
+void RigidTools::unpark(const std::string& name) { ask({What::unpark, name, {}, nullptr, {}, 0}); }
+
+void RigidTools::place(const std::string& name, const Pose& at) {
+  check_pose(name, at);
+  ask({What::place, name, {}, nullptr, at, 0});
+}
+
+void RigidTools::drive(const std::string& name, const Pose& to, double seconds) {
+  check_drive(name, to, seconds);
+  ask({What::drive, name, {}, nullptr, to, seconds});
+}
+
+void RigidTools::drop_drives() {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(asked_, [](const Request& r) { return r.what == What::drive; });
+}
+
+std::vector<ToolForce> RigidTools::forces() {
+  const std::lock_guard lock(mutex_);
+  return forces_;
+}
+
+void RigidTools::make(Simulation& simulation, const Request& request) {
+  ToolEdits& tools = simulation.tools();
+  switch (request.what) {
+    case What::add:
+      return tools.add(request.tool, *request.form);
+    case What::remove:
+      return tools.remove(request.name);
+    case What::park:
+      return tools.park(request.name);
+    case What::unpark:
+      return tools.unpark(request.name);
+    case What::place:
+      return tools.place(request.name, request.to);
+    case What::drive:
+      return tools.drive(request.name, request.to, request.seconds);
+  }
+}
+
+void RigidTools::apply(Simulation& simulation) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (asked_.empty()) return;
+    doing_ = std::exchange(asked_, {});
+  }
+  std::exception_ptr refused;
+  for (const Request& request : doing_) {
+    try {
+      make(simulation, request);
+    } catch (const Error& error) {
+      if (error.code() == ErrorCode::internal || error.code() == ErrorCode::device) throw;
+      if (refused == nullptr) refused = std::current_exception();
+    }
+  }
+  settle(simulation);
+  note(simulation);
+  if (refused != nullptr) std::rethrow_exception(refused);
+}
+
+void RigidTools::settle(const Simulation& simulation) {
+  const std::lock_guard lock(mutex_);
+  names_.clear();
+  for (const ContactTool& tool : known_tools(simulation.scene(), simulation.state().tools)) names_.insert(tool.name);
+  doing_.clear();
+}
+
+void RigidTools::note(const Simulation& simulation) {
+  std::vector<ToolForce> forces;
+  const RunState& state = simulation.state();
+  const ToolContact& contact = simulation.contact();
+  std::size_t present = 0;
+  for (const ContactTool& tool : known_tools(simulation.scene(), state.tools)) {
+    const Pose at = tool_pose(tool, state, simulation.time());
+    ToolForce force{tool.name, at.position, at.turn, {}, {}, 0, 0, is_parked(state.tools, tool.name)};
+    if (!force.parked) {
+      const ToolLoad& now = contact.history()[present++].now;
+      force.force = now.force;
+      force.torque = now.torque;
+      force.area = now.area;
+      force.penetration = now.depth;
+    }
+    forces.push_back(std::move(force));
+  }
+  const std::lock_guard lock(mutex_);
+  forces_ = std::move(forces);
+}
+
+void RigidTools::renew(const Simulation& simulation) {
+  {
+    const std::lock_guard lock(mutex_);
+    asked_.clear();
+  }
+  settle(simulation);
+  note(simulation);
+}
+
+}  // namespace pliant::api

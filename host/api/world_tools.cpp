@@ -1,0 +1,103 @@
+// Rigid tools of a World: where the caller steps they change at once, beside a worker before its next batch.
+#include "api/world_call.h"
+#include "scene/tool_entry.h"
+
+namespace pliant {
+namespace {
+
+using api::Call;
+
+}  // namespace
+
+void World::Impl::change_tools_now() {
+  try {
+    rigid_tools.apply(*simulation);
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::internal || error.code() == ErrorCode::device) throw;
+    throw api::Refused(error);
+  }
+}
+
+void World::Impl::check_can_change_tools() {
+  {
+    const std::lock_guard lock(mutex);
+    if (job) return;
+  }
+  throw_failure();
+  check_can_step();
+}
+
+std::string World::Impl::add_tool(ContactTool tool) {
+  check_takes_tools(scene);
+  check_can_change_tools();
+  const std::string name = rigid_tools.add(std::move(tool));
+  settle_tools();
+  return name;
+}
+
+void World::Impl::settle_tools() {
+  {
+    const std::lock_guard lock(mutex);
+    if (job || beside || report.diverged || !lost.empty()) return;
+  }
+  try {
+    change_tools_now();
+  } catch (const api::Refused& refused) {
+    throw Error(refused.code(), refused.what());
+  } catch (const std::exception& error) {
+    const Error failure_now = as_device_error(error);
+    lost = failure_now.what();
+    throw failure_now;
+  }
+}
+
+std::string World::add_tool(const ToolSpec& tool) {
+  const Call call(impl_, false);
+  return impl_->add_tool(tool_of(tool));
+}
+
+std::string World::parse_tool(const std::string& text, const std::string& folder) {
+  const Call call(impl_, false);
+  return impl_->add_tool(pliant::parse_tool(text, folder));
+}
+
+void World::remove_tool(const std::string& name) {
+  const Call call(impl_, false);
+  impl_->check_can_change_tools();
+  impl_->rigid_tools.remove(name);
+  impl_->settle_tools();
+}
+
+void World::park_tool(const std::string& name) {
+  const Call call(impl_, false);
+  impl_->check_can_change_tools();
+  impl_->rigid_tools.park(name);
+  impl_->settle_tools();
+}
+
+void World::unpark_tool(const std::string& name) {
+  const Call call(impl_, false);
+  impl_->check_can_change_tools();
+  impl_->rigid_tools.unpark(name);
+  impl_->settle_tools();
+}
+
+void World::place_tool(const std::string& name, const Vec3d& position, const std::array<double, 4>& turn) {
+  const Call call(impl_, false);
+  impl_->check_can_change_tools();
+  impl_->rigid_tools.place(name, {position, turn});
+  impl_->settle_tools();
+}
+
+void World::drive_tool(const std::string& name, const Vec3d& position, const std::array<double, 4>& turn, double seconds) {
+  const Call call(impl_, false);
+  impl_->rigid_tools.drive(name, {position, turn}, seconds);
+  impl_->settle_tools();
+}
+
+std::vector<ToolForce> World::tool_forces() const {
+  const Call call(impl_, false);
+  return impl_->rigid_tools.forces();
+}
+
+}  // namespace pliant

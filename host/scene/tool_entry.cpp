@@ -1,0 +1,48 @@
+#include "scene/tool_entry.h"
+
+#include <fmt/format.h>
+
+#include "pliant/error.h"
+#include "scene/json_text.h"
+#include "scene/parts.h"
+
+namespace pliant {
+namespace {
+
+std::string shown_name(const std::string& name) { return name.empty() ? "tool" : fmt::format("tool \"{}\"", name); }
+
+}  // namespace
+
+ContactTool parse_tool(const std::string& text, const std::filesystem::path& folder) {
+  const std::string shown = "tool";
+  const nlohmann::json document = parse_json(text, shown);
+  return read_contact_tool(Reader(document, shown, ""), "", folder);
+}
+
+ContactTool tool_of(const ToolSpec& spec) {
+  ContactTool tool = contact_tool(spec, "/shape", "");
+  tool.pointer.clear();
+  check_tool(tool);
+  return tool;
+}
+
+void check_tool(const ContactTool& tool) {
+  const std::string shown = shown_name(tool.name);
+  nlohmann::json entry = tool_json(tool, {});
+  if (tool.name.empty()) entry.erase("name");
+  (void)read_contact_tool(Reader(entry, shown, ""), "", {});
+}
+
+void check_takes_tools(const Scene& scene) {
+  const auto refuse = [](const std::string& has) {
+    throw Error(ErrorCode::bad_input, fmt::format("a scene with {} takes no tools (docs/scene.md, tools)", has));
+  };
+  if (scene.integrator != Integrator::increment) refuse("\"integrator\": \"textbook\"");
+  if (scene.relaxation.enabled) refuse("relaxation");
+  if (scene.solver.enabled) refuse("a static solver");
+  for (const Body& body : scene.bodies) {
+    if (body.model.substeps > 1) refuse(fmt::format("substeps of shape matching (body \"{}\")", body.name));
+  }
+}
+
+}  // namespace pliant
