@@ -10,12 +10,12 @@
 #include "backends/backends.h"
 #include "bench/common/shipped_scenes.h"
 #include "bench/kernels/kernels.h"
-#include "bench/survival/energy_watch.h"
 #include "geometry/stopwatch.h"
 #include "geometry/vec.h"
 #include "io/atomic_file.h"
 #include "model/pieces.h"
 #include "pliant/error.h"
+#include "simulation/energy_watch.h"
 #include "simulation/simulation.h"
 
 namespace pliant::bench {

@@ -135,6 +135,7 @@ bool Simulation::worth_keeping() {
 
 void Simulation::keep_state() {
   loaded_.keep_state();
+  contact_.keep();
   state_.kept = KeptState{state_.clock, state_.relaxation.damping};
 }
 
@@ -210,6 +211,7 @@ double Simulation::fast_share() const { return std::min(1.0, 2 * dt() / state_.l
 
 void Simulation::return_to_kept() {
   loaded_.return_to_kept_state();
+  contact_.return_to_kept();
   state_.clock = state_.kept->clock;
   state_.relaxation.damping = state_.kept->damping;
 }

@@ -22,7 +22,7 @@ struct ToolHistory {
   ToolLoad now;              ///< mean of the last batch
   double max_force = 0;      ///< of a batch's mean [N]
   double max_depth = 0;      ///< [m]
-  double work = 0;           ///< done on the tissue by the tool [J]
+  double work = 0;           ///< done on the tissue by its rigid motion since the simulation was made [J]
   std::int64_t touched = 0;  ///< steps with contact
 };
 
@@ -45,6 +45,9 @@ class ToolContact {
   void begin_batch(std::int32_t steps);
   /// Read what the batch's tools felt. `steps`: how many were done.
   void end_batch(std::int32_t steps);
+  /// What was felt belongs to a state: with the kept one it is kept, and comes back.
+  void keep() { kept_ = history_; }
+  void return_to_kept() { history_ = kept_; }
 
   /// One per tool of the scene.
   [[nodiscard]] const std::vector<ToolHistory>& history() const { return history_; }
@@ -61,14 +64,19 @@ class ToolContact {
   [[nodiscard]] bool active() const;
   [[nodiscard]] Units units() const;
 
+  /// Done on the tissue in a step of the batch by the force, and by the torque about the origin of a sequence's frame [J].
+  [[nodiscard]] double work(std::size_t tool, std::int32_t step, const Vec3d& force, const Vec3d& torque) const;
   void look();
   void read_touch();
 
   RunContext& run_;
-  std::vector<ToolHistory> history_;
+  std::vector<ToolHistory> history_, kept_;
   TouchHistory touch_;
   Units units_;              ///< of the present batch
   std::vector<Vec3d> arms_;  ///< [steps + 1][tools] from a tool's origin to that of a sequence's frame [m]
+  std::vector<Pose> last_;   ///< [tools] one step before `last_step_`: driven tools do not know their past
+  std::int64_t last_step_ = -1;
+  std::vector<Pose> poses_;  ///< [steps + 2][tools], of a sequence's frame, from the step before the batch on
 };
 
 }  // namespace pliant
