@@ -68,7 +68,7 @@ Scene stack(const Kind& kind) {
   Scene scene = scene_of(kind);
   scene.gravity = {0, 0, -9.81};
   for (int k = 0; k < 3; ++k)
-    scene.bodies.push_back(block_of(fmt::format("cube{}", k), {6, 6, 6}, {0.002 * k, 0.0013 * k, 0.0302 * k}, kind, 30000));
+    scene.bodies.push_back(block_of(fmt::format("cube{}", k), {6, 6, 6}, {0.002 * k, 0.0013 * k, 0.03002 * k}, kind, 30000));
   scene.bodies[0].fixed = {{face(2, 0)}};
   return scene;
 }
@@ -120,7 +120,8 @@ void measure_tissue(PartRun& run) {
     measure(run, "block on block", kind, blocks(kind));
     if (run.options.quick) return;
     measure(run, "ball on block", kind, ball(kind));
-    measure(run, "three cubes", kind, stack(kind));
+    // Without friction they slide off each other, as they should.
+    if (kind.friction > 0) measure(run, "three cubes", kind, stack(kind));
   };
   measure(run, "fold on itself", {ElementKind::hex8, 2, 0}, fold({ElementKind::hex8, 2, 0}));
   all({ElementKind::hex8, 2, 0});
