@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
+#include "bench/common/dice.h"
 #include "bench/survival/survival.h"
 #include "geometry/mesh.h"
 #include "geometry/vec.h"
@@ -15,26 +15,6 @@ namespace pliant::bench {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// The distributions of the standard library differ from one library to the next.
-class Dice {
- public:
-  explicit Dice(std::int64_t seed) : engine_(static_cast<std::uint64_t>(seed) * 0x9E3779B97F4A7C15u + 1) { engine_.discard(8); }
-  double uniform(double low, double high) { return low + (high - low) * std::ldexp(static_cast<double>(engine_() >> 11), -53); }
-  double logarithmic(double low, double high) { return std::exp(uniform(std::log(low), std::log(high))); }
-  bool chance(double share) { return uniform(0, 1) < share; }
-  std::size_t below(std::size_t n) { return std::min(n - 1, static_cast<std::size_t>(uniform(0, static_cast<double>(n)))); }
-  Vec3d direction() {
-    for (;;) {
-      const Vec3d v{uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
-      const double length = vec::norm(v);
-      if (length > 0.1 && length < 1) return vec::mul(v, 1 / length);
-    }
-  }
-
- private:
-  std::mt19937_64 engine_;
-};
 
 struct Shape {
   const char* file;
@@ -53,7 +33,8 @@ vec::Box box_of(const std::filesystem::path& file, bool tets) {
 
 class RandomScene {
  public:
-  RandomScene(std::int64_t number, const std::filesystem::path& scenes) : dice_(number), late_(~number), number_(number) {
+  RandomScene(std::int64_t number, const std::filesystem::path& scenes)
+      : dice_(number), late_(~number), touch_(number ^ 0x5bd1e995), number_(number) {
     shape_ = kShapes[dice_.below(std::size(kShapes))];
     file_ = std::filesystem::absolute(scenes / "meshes" / shape_.file);
     box_ = box_of(file_, shape_.tets);
@@ -80,7 +61,13 @@ class RandomScene {
     if (load == 2) push(body);
     const bool cuts = !tears && body["model"]["type"] != "flsm" && dice_.chance(0.5);
     if (cuts) scene["blades"] = blades();
-    scene["bodies"] = Json::array({std::move(body)});
+    const bool has_tools = touch_.chance(0.5), touches = touch_.chance(0.4);
+    if (has_tools || touches) {
+      for (const char* key : {"substeps", "goals"}) body["model"].erase(key);  // refused
+    }
+    scene["bodies"] = Json::array({body});
+    if (touches) touch(scene);
+    if (has_tools) scene["tools"] = tools();
     return scene;
   }
 
@@ -207,13 +194,89 @@ class RandomScene {
     return list;
   }
 
+  /// Spheres, capsules, boxes and half spaces that stand beside the body or come towards it, up to two fifths of its size deep,
+  /// and perhaps leave again.
+  Json tools() {
+    Json list = Json::array();
+    const std::size_t count = 1 + touch_.below(3);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec3d way = touch_.direction();  // from the tool to the body
+      double reach = 0;
+      Json tool{{"name", fmt::format("tool{}", i)}, {"shape", shape(way, reach)}};
+      const Vec3d target = at({touch_.uniform(0.3, 0.7), touch_.uniform(0.3, 0.7), touch_.uniform(0.3, 0.7)});
+      // Where no point of the box is within reach.
+      double behind = 0;
+      for (int corner = 0; corner < 8; ++corner) {
+        const Vec3d x = at({double(corner & 1), double(corner >> 1 & 1), double(corner >> 2 & 1)});
+        for (const Vec3d& y : {x, vec::add(x, second_)}) behind = std::max(behind, -vec::dot(vec::sub(y, target), way));
+      }
+      const Vec3d start = vec::sub(target, vec::mul(way, behind + reach + 1e-3 * extent_));
+      const double begin = touch_.uniform(0, 0.5), end = begin + touch_.logarithmic(0.1, 1.5);
+      const Vec3d deep = vec::add(start, vec::mul(way, touch_.uniform(0.05, 0.4) * extent_));
+      const auto row = [](double time, const Vec3d& x) { return Json::array({time, x[0], x[1], x[2]}); };
+      tool["path"] = Json::array({row(begin, start)});
+      if (touch_.chance(0.75)) tool["path"].push_back(row(end, deep));
+      if (tool["path"].size() > 1 && touch_.chance(0.4)) tool["path"].push_back(row(end + touch_.uniform(0.1, 0.5), start));
+      if (touch_.chance(0.6)) tool["friction"] = touch_.uniform(0, 0.8);
+      if (touch_.chance(0.2)) tool["contact"] = {{"stiffness", touch_.logarithmic(1e4, 1e7)}, {"alpha", touch_.uniform(0, 1)}};
+      list.push_back(std::move(tool));
+    }
+    return list;
+  }
+
+  /// About its origin; `reach`: the farthest point along its way.
+  Json shape(const Vec3d& way, double& reach) {
+    const double size = touch_.logarithmic(0.02, 0.5) * extent_;
+    switch (touch_.below(4)) {
+      case 0:
+        reach = size;
+        return {{"sphere", size}};
+      case 1: {
+        const Vec3d half = vec::mul(touch_.direction(), touch_.uniform(0.2, 1) * extent_);
+        reach = 0.5 * size + vec::norm(half);
+        return {{"capsule", {vec::mul(half, -1), half, 0.5 * size}}};
+      }
+      case 2: {
+        const Vec3d edges{size, touch_.uniform(0.05, 1) * extent_, touch_.uniform(0.05, 1) * extent_};
+        reach = 0.5 * vec::norm(edges);
+        return {{"box", edges}};
+      }
+      default:
+        return {{"half_space", {Vec3d{}, way}}};
+    }
+  }
+
+  /// Tissue touches tissue: itself, or another such body that falls or flies towards the first.
+  void touch(Json& scene) {
+    scene["contact"] = {{"friction", touch_.chance(0.5) ? 0 : touch_.uniform(0, 0.8)}};
+    if (touch_.chance(0.4)) return;
+    Json second = scene["bodies"][0];
+    for (const char* key : {"fixed", "prescribed", "forces"}) second.erase(key);
+    second["name"] = second["name"].get<std::string>() + "2";
+    Vec3d from = touch_.direction();
+    if (scene.contains("gravity")) from = vec::mul(scene["gravity"].get<Vec3d>(), -1 / 9.81);
+    std::size_t axis = 0;
+    for (std::size_t c = 1; c < 3; ++c) {
+      if (std::abs(from[c]) > std::abs(from[axis])) axis = c;
+    }
+    Vec3d& offset = second_;
+    offset[axis] = std::copysign(1.01 * size_[axis], from[axis]);
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (c != axis) offset[c] = touch_.uniform(-0.3, 0.3) * size_[c];
+    }
+    second["translate"] = offset;
+    second["velocity"] = vec::mul(offset, -touch_.logarithmic(0.1, 2) / vec::norm(offset));
+    scene["bodies"].push_back(std::move(second));
+  }
+
   Dice dice_;
-  Dice late_;  ///< for what came later, so that the rest of a scene stays what it was
+  Dice late_, touch_;  ///< for what came later, so that the rest of a scene stays what it was
   std::int64_t number_;
   Shape shape_{};
   std::filesystem::path file_;
   vec::Box box_;
   Vec3d size_{};
+  Vec3d second_{};  ///< from the first body to the second; 0: there is none
   std::size_t axis_ = 0;
   double extent_ = 0, young_ = 0;
   bool upper_ = false;

@@ -10,12 +10,12 @@
 #include "backends/backends.h"
 #include "bench/common/shipped_scenes.h"
 #include "bench/kernels/kernels.h"
-#include "bench/survival/energy_watch.h"
 #include "geometry/stopwatch.h"
 #include "geometry/vec.h"
 #include "io/atomic_file.h"
 #include "model/pieces.h"
 #include "pliant/error.h"
+#include "simulation/energy_watch.h"
 #include "simulation/simulation.h"
 
 namespace pliant::bench {
@@ -67,7 +67,10 @@ json describe(const Scene& scene) {
           {"tears", body.material.toughness > 0},
           {"width", body.model.width},
           {"substeps", body.model.substeps},
-          {"load", load_of(body)}};
+          {"load", load_of(body)},
+          {"tools", scene.tools.size()},
+          {"contact", scene.contact.has_value()},
+          {"bodies", scene.bodies.size()}};
 }
 
 /// One scene to its end.
@@ -218,9 +221,16 @@ std::string survival_table(const json& result) {
   text += fmt::format("{} took a step below a tenth of the first, {} on average; {} had inverted elements, {} at the end\n",
                       s["least_dt_below_a_tenth"].get<int>(), s["mean_dt_below_a_tenth"].get<int>(), s["inverted"].get<int>(),
                       s["left_inverted"].get<int>());
-  text += fmt::format("{} gained more than a hundredth of their energy while all loads were constant\n",
-                      s["energy_created_above_a_hundredth"].get<int>());
+  text +=
+      fmt::format("{} gained more than a hundredth of their energy beyond the work of tools while all loads were constant\n",
+                  s["energy_created_above_a_hundredth"].get<int>());
   for (const json& row : result["rows"]) {
+    if (creates_energy(row)) {
+      text += fmt::format("  {:>4} {} {} {}, {} bodies, {} tools{}: gained {:.2g} of its energy\n",
+                          row["number"].get<std::int64_t>(), row["body"].get<std::string>(), row["element"].get<std::string>(),
+                          row["model"].get<std::string>(), row.value("bodies", 1), row.value("tools", 0),
+                          row.value("contact", false) ? ", contact" : "", row["energy_created"].get<double>());
+    }
     if (row["outcome"] == "ended") continue;
     text += fmt::format("  {:>4} {} {} {} {}: {}\n", row["number"].get<std::int64_t>(), row["body"].get<std::string>(),
                         row["element"].get<std::string>(), row["model"].get<std::string>(), row["outcome"].get<std::string>(),

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/accuracy/accuracy.h"
+#include "bench/contact/contact.h"
 #include "bench/cutting/cutting.h"
 #include "bench/deformation/deformation.h"
 #include "bench/kernels/kernels.h"
@@ -29,6 +30,7 @@ struct BenchArguments {
   bench::AccuracyOptions accuracy;
   bench::CuttingOptions cutting;
   bench::SurvivalOptions survival;
+  bench::ContactOptions contact;
   std::filesystem::path out;
 };
 
@@ -184,6 +186,25 @@ void add_survival(CLI::App& app, const std::shared_ptr<BenchArguments>& options)
                   "are not run again");
 }
 
+int contact(BenchArguments& options) {
+  options.common.check();
+  return measure(options, "contact", options.contact, bench::bench_contact, bench::contact_table);
+}
+
+void add_contact(CLI::App& app, const std::shared_ptr<BenchArguments>& options) {
+  CLI::App* sub = app.add_subcommand("contact", "Whether contact rests, feels, keeps what is to be kept, and what it costs");
+  bench::ContactOptions& c = options->contact;
+  options->common.add_to(*sub);
+  sub->add_option("--parts", c.parts, "rest, tissue, strokes, figures, costs")->delimiter(',');
+  sub->add_option("--backend", c.backend, "of all parts but costs, default: cpu");
+  sub->add_option("--backends", c.backends, "of part costs, default: cpu and the first OpenCL device")->delimiter(',');
+  sub->add_option("--sizes", c.sizes, "nodes in part costs, default: 3000,30000,300000")->delimiter(',');
+  sub->add_option("--tools", c.tools, "tools in part rest, default: 200");
+  sub->add_option("--strokes", c.strokes, "strokes of part strokes, default: 10000");
+  sub->add_flag("--quick", c.quick, "few of everything, small bodies: below 20 s");
+  sub->add_option("--out", options->out, "folder for contact.json and contact.csv");
+}
+
 }  // namespace
 
 std::function<int()> setup_bench(CLI::App& app) {
@@ -202,11 +223,13 @@ std::function<int()> setup_bench(CLI::App& app) {
   add_accuracy(app, options);
   add_cutting(app, options);
   add_survival(app, options);
+  add_contact(app, options);
   return [options, &app] {
     if (app.got_subcommand("kernels")) return kernels(*options);
     if (app.got_subcommand("accuracy")) return accuracy(*options);
     if (app.got_subcommand("survival")) return survival(*options);
     if (app.got_subcommand("cutting")) return cutting(*options);
+    if (app.got_subcommand("contact")) return contact(*options);
     return app.got_subcommand("stability") ? stability(*options) : deformation(*options);
   };
 }

@@ -7,6 +7,7 @@
 #include "backends/backends.h"
 #include "cli/checked_model.h"
 #include "cli/cli.h"
+#include "cli/energy_report.h"
 #include "cli/frame_grid.h"
 #include "cli/frames.h"
 #include "cli/picture_words.h"
@@ -76,11 +77,13 @@ class Run {
     std::vector<DueOutput> due = outputs();
     if (o_.profile) simulation_->backend().profile(true);
     RunLoop loop(*simulation_, end(), o_.profile);
+    energy_.emplace(*simulation_, loop);
     RunProgress progress(o_.common, *simulation_, loop);
     const Stopwatch since_start;
     double saved = 0;
     result_ = loop.run(due, [&](const RunResult& done) {
       progress.show(done);
+      energy_->look();
       if (!o_.checkpoint_every || since_start.seconds() - saved < *o_.checkpoint_every) return;
       if (!simulation_->settled()) return;  // frames before it may not be written yet
       save_on_the_way();
@@ -228,8 +231,8 @@ class Run {
   }
 
   void report() {
-    report_run({o_.common, stem_, *simulation_, result_, probes_, scene_probes_, warnings_, frames_ ? &*frames_ : nullptr,
-                o_.checkpoint, first_time_, o_.hash, o_.deep_hash, o_.profile});
+    report_run({o_.common, stem_, *simulation_, result_, probes_, scene_probes_, *energy_, warnings_,
+                frames_ ? &*frames_ : nullptr, o_.checkpoint, first_time_, o_.hash, o_.deep_hash, o_.profile});
   }
 
   const RunArguments& o_;
@@ -238,6 +241,7 @@ class Run {
   std::optional<FrameWriter> frames_;
   Probes probes_, scene_probes_;
   ToolTable tools_;
+  std::optional<EnergyReport> energy_;
   RunResult result_;
   std::vector<std::string> warnings_;  // about surfaces
   double first_time_ = 0;

@@ -39,11 +39,13 @@ class Report {
     add_mass(json);
     add_inversions(json);
     add_tools(s_, json);
+    if (const auto created = r_.energy.created()) json["contact"]["energy_created"] = *created;
     if (!result_.diverged.empty()) json["diverged_step"] = result_.diverged_step;
     print_summary();
     for (std::size_t t = 0; t < s_.contact().tools().size(); ++t) out_.print(tool_line(s_, t));
     if (s_.scene().contact && s_.model().contact != nullptr) out_.print(tissue_line(s_));
     for (const std::string& remark : run_remarks(s_)) note(remark);
+    if (const auto remark = r_.energy.remark()) note(*remark);
     if (!r_.probes.empty() || !r_.scene_probes.empty()) {
       json["probes"] = Json::array();
       add_probes(r_.probes, json["probes"]);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "cli/cli.h"
+#include "cli/energy_report.h"
 #include "cli/frames.h"
 #include "cli/probes.h"
 #include "cli/run_loop.h"
@@ -15,8 +16,9 @@ struct RunReport {
   const std::string& stem;  ///< of the scene
   Simulation& simulation;
   const RunResult& result;
-  const Probes& probes;                      ///< of the command line
-  const Probes& scene_probes;                ///< of the scene
+  const Probes& probes;        ///< of the command line
+  const Probes& scene_probes;  ///< of the scene
+  const EnergyReport& energy;
   const std::vector<std::string>& warnings;  ///< about surfaces
   const FrameWriter* frames = nullptr;       ///< nullptr: none were written
   const std::string& checkpoint;             ///< file that holds the end; empty: none

@@ -37,6 +37,7 @@ void add_tools(const Simulation& simulation, nlohmann::ordered_json& json) {
                              {"points", h.now.points},
                              {"max_force", h.max_force},
                              {"max_penetration", h.max_depth},
+                             {"work", h.work},
                              {"steps_in_contact", h.touched}});
     points += h.now.points;
     deepest = std::max(deepest, h.max_depth);
@@ -53,9 +54,9 @@ void add_tools(const Simulation& simulation, nlohmann::ordered_json& json) {
 
 std::string tool_line(const Simulation& simulation, std::size_t tool) {
   const ToolHistory& h = simulation.contact().history()[tool];
-  return fmt::format("tool {}: force [{:.4g}] N, at most {:.4g} N; touches {:.3g} m^2, at most {:.3g} m deep",
+  return fmt::format("tool {}: force [{:.4g}] N, at most {:.4g} N; touches {:.3g} m^2, at most {:.3g} m deep; did {:.4g} J",
                      simulation.contact().tools()[tool].name, fmt::join(h.now.force, ", "), h.max_force, h.now.area,
-                     h.max_depth);
+                     h.max_depth, h.work);
 }
 
 std::string tissue_line(const Simulation& simulation) {
@@ -71,14 +72,15 @@ void ToolTable::write(const Simulation& simulation, const std::filesystem::path&
   if (table_.empty()) {
     table_ =
         "time [s],step,tool,x [m],y [m],z [m],fx [N],fy [N],fz [N],tx [N m],ty [N m],tz [N m],area [m^2],penetration "
-        "[m],points\n";
+        "[m],points,work [J]\n";
   }
   for (std::size_t t = 0; t < tools.size(); ++t) {
-    const ToolLoad& now = simulation.contact().history()[t].now;
+    const ToolHistory& history = simulation.contact().history()[t];
+    const ToolLoad& now = history.now;
     const Pose at = simulation.contact().pose(t, simulation.time());
-    table_ += fmt::format("{:.9g},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{}\n", simulation.time(), simulation.step(),
+    table_ += fmt::format("{:.9g},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{},{:.9g}\n", simulation.time(), simulation.step(),
                           csv_text(tools[t].name), fmt::join(at.position, ","), fmt::join(now.force, ","),
-                          fmt::join(now.torque, ","), now.area, now.depth, now.points);
+                          fmt::join(now.torque, ","), now.area, now.depth, now.points, history.work);
   }
   write_file(file, table_);
 }

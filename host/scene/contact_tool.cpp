@@ -70,6 +70,14 @@ Pose between(const Pose& from, const Pose& to, double s) {
   return {vec::add(vec::mul(from.position, 1 - s), vec::mul(to.position, s)), turned_between(from.turn, to.turn, s)};
 }
 
+Vec3d turn_between(const Pose& from, const Pose& to) {
+  const auto& [x, y, z, w] = from.turn;
+  const Quaternion q = compose({{}, to.turn}, {{}, {-x, -y, -z, w}}).turn;
+  const Vec3d axis{q[0], q[1], q[2]};
+  const double sine = vec::norm(axis), angle = 2 * std::atan2(sine, std::abs(q[3]));
+  return sine > 0 ? vec::mul(axis, std::copysign(angle, q[3]) / sine) : Vec3d{};
+}
+
 Pose ContactTool::at(double time) const {
   if (path.empty()) return {};
   const auto after = std::upper_bound(path.begin(), path.end(), time, [](double t, const auto& row) { return t < row[0]; });

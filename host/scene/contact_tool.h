@@ -28,6 +28,8 @@ Pose between(const Pose& from, const Pose& to, double s);
 Vec3d place(const Pose& pose, const Vec3d& y);
 /// R(turn)^T (x - position).
 Vec3d place_back(const Pose& pose, const Vec3d& x);
+/// The rotation that turns one pose into another, the shorter way: its axis times its angle [rad].
+Vec3d turn_between(const Pose& from, const Pose& to);
 /// Placed by `inner` first and by `outer` then.
 Pose compose(const Pose& outer, const Pose& inner);
 

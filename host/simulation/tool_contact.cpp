@@ -75,6 +75,7 @@ void ToolContact::follow() {
     if (same != before.end()) felt_.tools[t] = felt[static_cast<std::size_t>(same - before.begin())];
   }
   keep();
+  last_step_ = -1;
 }
 
 void ToolContact::start() {
@@ -122,6 +123,12 @@ void ToolContact::begin_batch(std::int32_t steps) {
   std::vector<double> poses;
   poses.reserve(rows * tools * contact_pose_numbers);
   arms_.assign(rows * tools, {});
+  poses_.clear();
+  if (last_step_ == run_.state.clock.step) poses_ = last_;
+  for (std::size_t tool = poses_.size(); tool < tools; ++tool) {
+    const double before = run_.state.clock.time() - run_.state.clock.dt;
+    poses_.push_back(compose(pose(tool, before), tool_moment((*run_.model().tools)[tool], before).pose));
+  }
   for (std::size_t row = 0; row < rows; ++row) {
     const double t =
         run_.state.clock.time_at(run_.state.clock.step + std::min<std::int64_t>(static_cast<std::int64_t>(row), steps));
@@ -132,6 +139,7 @@ void ToolContact::begin_batch(std::int32_t steps) {
       poses.insert(poses.end(), at.position.begin(), at.position.end());
       poses.insert(poses.end(), {double(moment.frame), moment.share});
       arms_[row * tools + tool] = vec::sub(at.position, whole.position);
+      poses_.push_back(at);
     }
   }
   const Program& program = run_.loaded.program();
@@ -179,6 +187,13 @@ void ToolContact::read_touch() {
   if (felt_.tissue.points > 0) run_.backend().write_reals(id, std::vector<double>(depth.size(), 0.0));
 }
 
+/// A force acts from the middle of the step before to that of the next one (central differences).
+double ToolContact::work(std::size_t tool, std::int32_t step, const Vec3d& force, const Vec3d& torque) const {
+  const std::size_t before = static_cast<std::size_t>(step) * tools_.size() + tool;
+  const Pose &from = poses_[before], &to = poses_[before + 2 * tools_.size()];
+  return -0.5 * (vec::dot(force, vec::sub(to.position, from.position)) + vec::dot(torque, turn_between(from, to)));
+}
+
 void ToolContact::end_batch(std::int32_t steps) {
   if (!active() || steps <= 0) return;
   const bool ran = std::count(summed_.begin(), summed_.end(), 1) > 0;
@@ -188,7 +203,10 @@ void ToolContact::end_batch(std::int32_t steps) {
   for (ToolHistory& h : felt_.tools) h.now = {};
   if (!ran) return;
   const std::vector<std::int32_t> sums = run_.backend().read_ints(run_.loaded.program().find("tool_sum"));
-  const std::size_t tools = felt_.tools.size();
+  const std::size_t tools = tools_.size();
+  last_.assign(poses_.begin() + steps * static_cast<std::ptrdiff_t>(tools),
+               poses_.begin() + (steps + 1) * static_cast<std::ptrdiff_t>(tools));
+  last_step_ = run_.state.clock.step;
   for (std::size_t t = 0; t < tools; ++t) {
     ToolHistory& h = felt_.tools[t];
     h.now = {};
@@ -203,6 +221,7 @@ void ToolContact::end_batch(std::int32_t steps) {
         force[c] = sum.quanta[c] * units_.force;
         torque[c] = sum.quanta[3 + c] * units_.torque;
       }
+      h.work += work(t, step, force, torque);
       torque = vec::add(torque, vec::cross(arms_[(static_cast<std::size_t>(step) + 1) * tools + t], force));
       for (std::size_t c = 0; c < 3; ++c) {
         h.now.force[c] += force[c] / steps;

@@ -24,7 +24,7 @@ struct ToolHistory {
   ToolLoad now;              ///< mean of the last batch
   double max_force = 0;      ///< of a batch's mean [N]
   double max_depth = 0;      ///< [m]
-  double work = 0;           ///< done on the tissue by the tool [J]
+  double work = 0;           ///< done on the tissue by its rigid motion since the simulation was made [J]
   std::int64_t touched = 0;  ///< steps with contact
 };
 
@@ -83,6 +83,8 @@ class ToolContact {
   [[nodiscard]] bool active() const;
   [[nodiscard]] Units units() const;
 
+  /// Done on the tissue in a step of the batch by the force, and by the torque about the origin of a sequence's frame [J].
+  [[nodiscard]] double work(std::size_t tool, std::int32_t step, const Vec3d& force, const Vec3d& torque) const;
   void read_touch();
   /// How far any point of a tool moves between two times, at most [m].
   [[nodiscard]] double motion(std::size_t tool, double from, double to) const;
@@ -94,6 +96,9 @@ class ToolContact {
   Units units_;               ///< of the present batch
   std::vector<char> summed_;  ///< per step of the batch: the passes of contact ran
   std::vector<Vec3d> arms_;   ///< [steps + 1][tools] from a tool's origin to that of a sequence's frame [m]
+  std::vector<Pose> last_;    ///< [tools] one step before `last_step_`: driven tools do not know their past
+  std::int64_t last_step_ = -1;
+  std::vector<Pose> poses_;  ///< [steps + 2][tools], of a sequence's frame, from the step before the batch on
 };
 
 }  // namespace pliant

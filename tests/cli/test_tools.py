@@ -29,8 +29,15 @@ class Tools(CliTest):
         self.assertEqual({row["tool"] for row in rows}, set(by_name))
         last = [row for row in rows if row["tool"] == "table"][-1]
         self.assertAlmostEqual(float(last["fy [N]"]), by_name["table"]["force"][1], places=6)
+        self.assertEqual(float(last["work [J]"]), 0, "the table stands")
+        pushed = [float(row["work [J]"]) for row in rows if row["tool"] == "probe"]
+        self.assertAlmostEqual(pushed[-1], by_name["probe"]["work"], places=9)
+        self.assertTrue(0 < by_name["probe"]["work"] < by_name["probe"]["max_force"] * 0.035)
+        self.assertLess(run["contact"]["energy_created"], 0.01)
+        self.assertFalse([remark for remark in run["remarks"] if "energy" in remark])
         done = self.pliant("run", scene, "--backend", "cpu")
         self.assertIn("tool table: force [", done.stdout)
+        self.assertIn("; did 0 J", done.stdout)
 
     def thrown(self, **keys):
         """The cube thrown on a table faster than its step stands, so that batches are made again."""

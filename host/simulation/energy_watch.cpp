@@ -1,4 +1,4 @@
-#include "bench/survival/energy_watch.h"
+#include "simulation/energy_watch.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "simulation/energy.h"
 #include "simulation/run_context.h"
 
-namespace pliant::bench {
+namespace pliant {
 namespace {
 
 /// m v_(n-1/2).v_(n+1/2) / 2: with it the energy of an undamped linear body is constant under central differences, to rounding
@@ -63,9 +63,12 @@ void EnergyWatch::look(Simulation& s) {
   Energies now = energies(m, by_slot(m, u), velocity, {s.scene().gravity_at(s.time()), s.time()});
   now.kinetic = kinetic(s, velocity);
   if (!std::isfinite(now.total())) return;
-  highest_ = std::max(highest_, now.kinetic + now.strain + now.hourglass);
-  if (!least_ || now.total() < *least_) least_ = now.total();
-  created_ = std::max(created_, now.total() - *least_);
+  double work = 0;
+  for (const ToolHistory& tool : s.contact().history()) work += tool.work;
+  const double left = now.total() - work;
+  highest_ = std::max({highest_, now.kinetic + now.strain + now.hourglass, std::abs(work)});
+  if (!least_ || left < *least_) least_ = left;
+  created_ = std::max(created_, left - *least_);
 }
 
 std::optional<double> EnergyWatch::created() const {
@@ -73,4 +76,4 @@ std::optional<double> EnergyWatch::created() const {
   return highest_ > 0 ? created_ / highest_ : 0;
 }
 
-}  // namespace pliant::bench
+}  // namespace pliant

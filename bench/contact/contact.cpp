@@ -1,0 +1,142 @@
+#include "bench/contact/contact.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bench/contact/parts.h"
+#include "bench/kernels/kernels.h"
+#include "geometry/stopwatch.h"
+#include "pliant/error.h"
+
+namespace pliant::bench {
+namespace contact {
+
+using nlohmann::json;
+
+const std::vector<Part>& parts() {
+  static const std::vector<Part> all{
+      {"rest", "Does tissue rest under a tool that stands still, and how deep is the tool in it?", measure_rest},
+      {"tissue", "Does tissue rest on tissue?", measure_tissue},
+      {"strokes", "Which strokes are not felt?", measure_strokes},
+      {"figures", "Are the figures of docs/contact.md still right?", measure_figures},
+      {"costs", "What is the step with contact over the step without?", measure_costs},
+  };
+  return all;
+}
+
+/// JSON knows no infinity.
+json finite_or_null(double value) { return std::isfinite(value) ? json(value) : json(); }
+
+void PartRun::add(const std::string& test, const std::string& scene, json value, json expected, json error, json bound,
+                  const std::string& message) {
+  json ok;
+  if (!bound.is_null()) ok = error.is_number() && error.get<double>() <= bound.get<double>();
+  if (!message.empty()) ok = false;
+  rows_.push_back({{"part", name_},
+                   {"test", test},
+                   {"scene", scene},
+                   {"value", std::move(value)},
+                   {"expected", std::move(expected)},
+                   {"error", std::move(error)},
+                   {"bound", std::move(bound)},
+                   {"ok", std::move(ok)},
+                   {"message", message}});
+}
+
+void PartRun::at_most(const std::string& test, const std::string& scene, double value, double bound) {
+  add(test, scene, finite_or_null(value), 0.0, finite_or_null(std::abs(value)), bound);
+}
+
+void PartRun::close_to(const std::string& test, const std::string& scene, double value, double expected, double bound) {
+  add(test, scene, finite_or_null(value), finite_or_null(expected), finite_or_null(std::abs(value / expected - 1)), bound);
+}
+
+void PartRun::at_least(const std::string& test, const std::string& scene, double value, double expected, double bound) {
+  add(test, scene, finite_or_null(value), expected, finite_or_null(std::max(0.0, 1 - value / expected)), bound);
+}
+
+void PartRun::told(const std::string& test, const std::string& scene, double value) {
+  add(test, scene, finite_or_null(value), {}, {}, {});
+}
+
+void PartRun::failed(const std::string& test, const std::string& scene, const std::string& why) {
+  add(test, scene, {}, {}, {}, {}, why);
+}
+
+}  // namespace contact
+
+namespace {
+
+using contact::Part;
+using contact::PartRun;
+using nlohmann::json;
+
+std::vector<const Part*> chosen(const std::vector<std::string>& names) {
+  std::vector<std::string> known;
+  for (const Part& part : contact::parts()) known.emplace_back(part.name);
+  for (const std::string& name : names) {
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw Error(ErrorCode::bad_input, fmt::format("--parts: got \"{}\", expected {}", name, fmt::join(known, ", ")));
+  }
+  std::vector<const Part*> out;
+  for (const Part& part : contact::parts()) {
+    if (names.empty() || std::find(names.begin(), names.end(), part.name) != names.end()) out.push_back(&part);
+  }
+  return out;
+}
+
+ContactOptions checked(const ContactOptions& asked) {
+  ContactOptions o = asked;
+  for (const auto& [count, option] : {std::pair{o.tools, "--tools"}, {o.strokes, "--strokes"}}) {
+    if (count < 1 || count > 10'000'000)
+      throw Error(ErrorCode::bad_input, fmt::format("{}: got {}, expected 1 to 10000000", option, count));
+  }
+  for (const std::int64_t size : o.sizes) {
+    if (size < 1000 || size > 10'000'000)
+      throw Error(ErrorCode::bad_input, fmt::format("--sizes: got {}, expected 1000 to 10000000 nodes", size));
+  }
+  if (o.quick) {
+    o.tools = std::min<std::int64_t>(o.tools, 6);
+    o.strokes = std::min<std::int64_t>(o.strokes, 24);
+    o.sizes = {3000};
+  }
+  return o;
+}
+
+json summary_of(const json& rows) {
+  int asked = 0, good = 0;
+  for (const json& row : rows) {
+    asked += row["ok"].is_boolean();
+    good += row["ok"] == true;
+  }
+  return {{"rows", rows.size()}, {"asked", asked}, {"ok", good}};
+}
+
+}  // namespace
+
+json bench_contact(const ContactOptions& asked) {
+  const ContactOptions options = checked(asked);
+  const std::vector<const Part*> wanted = chosen(options.parts);
+  json result{{"machine", machine_facts()},
+              {"quick", options.quick},
+              {"backend", options.backend},
+              {"parts", json::array()},
+              {"rows", json::array()}};
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    const Stopwatch clock;
+    PartRun run(wanted[i]->name, options, [&](double done, const std::string& what) {
+      if (options.progress) options.progress((static_cast<double>(i) + done) / static_cast<double>(wanted.size()), what);
+    });
+    wanted[i]->measure(run);
+    result["parts"].push_back({{"name", wanted[i]->name}, {"question", wanted[i]->question}, {"seconds", clock.seconds()}});
+    for (const json& row : run.rows()) result["rows"].push_back(row);
+  }
+  result["summary"] = summary_of(result["rows"]);
+  if (options.progress) options.progress(1, "done");
+  return result;
+}
+
+}  // namespace pliant::bench

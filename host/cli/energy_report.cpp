@@ -1,0 +1,56 @@
+#include "cli/energy_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace pliant::cli {
+namespace {
+
+constexpr double kCreated = 0.01;
+constexpr std::int64_t kLooks = 32;  ///< a look costs as much as some ten steps
+
+bool is_accounted(const Scene& scene) {
+  const bool held = std::all_of(scene.bodies.begin(), scene.bodies.end(),
+                                [](const Body& body) { return body.pressures.empty() && body.material.toughness == 0; });
+  // A sequence also changes its shape.
+  const bool rigid = std::none_of(scene.tools.begin(), scene.tools.end(),
+                                  [](const ContactTool& tool) { return tool.shape == ToolShape::sequence; });
+  return held && rigid && (!scene.tools.empty() || scene.contact) && scene.blades.empty() && !scene.relaxation.enabled;
+}
+
+}  // namespace
+
+EnergyReport::EnergyReport(Simulation& simulation, const RunLoop& loop)
+    : simulation_(simulation),
+      loop_(loop),
+      watch_(simulation.scene()),
+      accounted_(is_accounted(simulation.scene())),
+      every_(std::max<std::int64_t>(1, loop.remaining() / kLooks)),
+      next_(loop.remaining()) {
+  look();
+}
+
+void EnergyReport::look() {
+  if (!accounted_ || simulation_.topology_version() > 0) return;
+  const std::int64_t left = loop_.remaining();
+  if (left > next_) return;
+  next_ = std::max<std::int64_t>(0, left - every_);
+  watch_.look(simulation_);
+}
+
+std::optional<double> EnergyReport::created() const {
+  if (!accounted_ || simulation_.topology_version() > 0) return {};
+  return watch_.created();
+}
+
+std::optional<std::string> EnergyReport::remark() const {
+  const std::optional<double> share = created();
+  if (!share || *share <= kCreated) return {};
+  return fmt::format(
+      "energy came from nowhere: {:.2g} times the largest energy of the run more than tools, loads and gravity "
+      "put in; tissue that trembles under a tool does that: look at a run with a shorter step",
+      *share);
+}
+
+}  // namespace pliant::cli
