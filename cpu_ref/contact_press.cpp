@@ -97,7 +97,7 @@ void contact_press(Range range, const Scalar* node_u, const Scalar* node_w, cons
         const auto own = static_cast<Scalar>(t + 1);
         if (anchor[3] == Scalar(0)) {
           const Vec<Scalar> stuck = turned_back(all.now(t), difference(difference(p.now, p.moved), origin_of(all.now(t))));
-          for (std::size_t k = 0; k < 3; ++k) anchor[static_cast<std::int64_t>(k)] = stuck[k];
+          set_three(anchor, stuck);
           anchor[3] = own;
         }
         if (anchor[3] == own) f = press_friction(m, all.next(t), anchor, stiffness, law[14] * push, f);
@@ -107,7 +107,7 @@ void contact_press(Range range, const Scalar* node_u, const Scalar* node_w, cons
       add_to_tool(on_tool, all.next(t), contact_params, p.now, q);
       for (std::size_t k = 0; k < 3; ++k) sum[k] += q[k];
     }
-    for (std::size_t k = 0; k < 3; ++k) force[static_cast<std::int64_t>(k)] = sum[k];
+    set_three(force, sum);
     force[3] = touching | ready;
   }
 }

@@ -15,6 +15,12 @@ inline Quanta quanta(const Vec<Scalar>& force, Scalar inverse) {
   return {quanta(force[0] * inverse), quanta(force[1] * inverse), quanta(force[2] * inverse)};
 }
 
+/// The first three numbers of a point.
+template <class T, class Three>
+inline void set_three(const PointNumbers<T>& numbers, const Three& v) {
+  for (std::size_t k = 0; k < 3; ++k) numbers[static_cast<std::int64_t>(k)] = v[k];
+}
+
 /// What tool t gets of point i.
 template <class Int>
 inline PointNumbers<Int> tool_force_of(Int* contact_tool_force, std::int32_t points, std::int32_t t, std::int64_t i) {

@@ -28,7 +28,7 @@ void touch_press(Range range, const Scalar* touch_place, const std::int32_t* con
                  const Scalar* contact_yield, const std::int32_t* contact_force, std::int32_t* contact_change,
                  const std::int32_t* touch_partner, Scalar* touch_pair, std::int32_t* touch_force, std::int32_t* touch_moment,
                  Scalar* touch_depth, const Scalar* contact_params) {
-  const Scalar inverse = contact_params[1], friction = contact_params[7];
+  const Scalar inverse = contact_params[1], friction = contact_params[7], far = Scalar(0.48) * contact_params[5];
   for (std::int64_t entry = range.begin; entry < range.end; ++entry) {
     const std::int64_t i = listed(contact_list, entry);
     const std::int32_t near = contact_near[i / PLIANT_TILE];
@@ -37,7 +37,6 @@ void touch_press(Range range, const Scalar* touch_place, const std::int32_t* con
     const auto change = contact::numbers_of(contact_change, i);
     Quanta sum{};
     std::int32_t touching = 0;
-    const Scalar far = Scalar(0.48) * contact_params[5];
     const Scalar within = (Scalar(2) * contact::ready_share(contact_yield[i])) * contact_params[5];
     Scalar pressed = 0, inside = 0;
     std::array<Scalar, 2> turn{};
@@ -80,7 +79,7 @@ void touch_press(Range range, const Scalar* touch_place, const std::int32_t* con
     }
     const Scalar mean = pressed > Scalar(0) ? inside / pressed : Scalar(0);
     touch_depth[i] = mean > touch_depth[i] ? mean : touch_depth[i];
-    for (std::size_t c = 0; c < 3; ++c) change[static_cast<std::int64_t>(c)] = sum[c];
+    contact::set_three(change, sum);
     change[3] = touching;
     if ((near & PLIANT_TOUCH_BIT) != 0) set_moment(touch_moment, i, touch_place, turn, inverse);
   }

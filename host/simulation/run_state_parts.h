@@ -9,6 +9,7 @@
 
 #include "cutting/blade/blade_trace.h"
 #include "model/model.h"
+#include "simulation/contact_look.h"
 
 namespace pliant {
 
@@ -94,14 +95,6 @@ struct MovedRegion {
   bool operator==(const MovedRegion&) const = default;
 };
 
-/// When it was last asked what is near what in contact, and how far things may move until it must be asked again.
-struct ContactLook {
-  std::int64_t tools = -1, tissue = -1;  ///< steps of the last looks; -1: one is due
-  std::vector<double> room;              ///< per tool: how far it may come nearer until the next look [m]
-  std::vector<double> travel;            ///< how far it has since the last one, at most [m]
-  double tissue_travel = 0;              ///< the same of tissue [m]
-};
-
 /// A tool that the host drives from one pose to another, at constant speed; at once if `end` is `start`.
 struct ToolDrive {
   Pose from{}, to{};
@@ -130,11 +123,6 @@ template <class V>
 void visit(V& v, RelaxationState& s) {
   v("damping", s.damping), v("equilibrium", s.equilibrium), v("residual", s.residual), v("u", s.u), v("force", s.force);
   v("time", s.time), v("v", s.v), v("middle", s.middle), v("steady", s.steady), v("largest", s.largest);
-}
-template <class V>
-void visit(V& v, ContactLook& s) {
-  v("tools", s.tools), v("tissue", s.tissue), v("room", s.room), v("travel", s.travel);
-  v("tissue_travel", s.tissue_travel);
 }
 template <class V>
 void visit(V& v, KeptState& s) {
