@@ -62,11 +62,9 @@ void contact_press(Range range, const Scalar* node_u, const Scalar* node_w, cons
   for (std::int64_t entry = range.begin; entry < range.end; ++entry) {
     const std::int64_t i = listed(contact_list, entry);
     const std::int32_t near = contact_near[i / PLIANT_TILE];
-    if (near == 0) continue;
     const Place<Scalar> p = points.at(i);
-    const Scalar area = points.area(i);  // none: it fills the tile up
+    const Scalar area = points.area(i), within = ready_share(contact_yield[i]);  // no area: it fills the tile up
     std::int32_t touching = 0, count = 0, ready = 0;
-    const Scalar within = ready_share(contact_yield[i]);
     for (std::int32_t t = 0; t < tools && area > Scalar(0); ++t) {
       if ((near >> t & 1) == 0) continue;
       const Meeting<Scalar> m = all.meet(t, p);
