@@ -15,6 +15,17 @@
 namespace pliant {
 namespace {
 
+/// Twice the volume over the area: of a plate its thickness, of a long rod its radius [m].
+double thickness_of(const TriangleMesh& mesh) {
+  double volume = 0, area = 0;
+  for (const auto& t : mesh.triangles) {
+    const Vec3d &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    volume += vec::dot(a, vec::cross(b, c)) / 6;
+    area += vec::norm(vec::cross(vec::sub(b, a), vec::sub(c, a))) / 2;
+  }
+  return area > 0 ? 2 * std::abs(volume) / area : 1e30;
+}
+
 void load_mesh(const ContactTool& tool, ToolForm& form) {
   const SurfaceDistance surface(read_tool_mesh(tool, tool.mesh));
   check_closed(tool, tool.mesh, surface);
@@ -23,7 +34,7 @@ void load_mesh(const ContactTool& tool, ToolForm& form) {
     box.extend(v);
     form.reach = std::max(form.reach, vec::norm(v));
   }
-  lay_grid(box, form);
+  lay_grid(box, thickness_of(surface.mesh()), form);
   append_distances(surface, form);
   form.surface = surface.mesh();
 }

@@ -17,6 +17,8 @@ namespace {
 
 /// Cells of the grid along the longest side of a mesh.
 constexpr double kGridCells = 64;
+/// Of a grid of one mesh, however thin its parts are.
+constexpr double kMostNodes = 4194304;
 /// Values of all grids of a sequence: 600 MB on the device.
 constexpr std::int64_t kMostValues = 150'000'000;
 /// Points of a mesh that take part in its registration, and its iterations.
@@ -179,10 +181,16 @@ void check_closed(const ContactTool& tool, const std::filesystem::path& file, co
                                                 tool.pointer, tool.name, file.string(), surface.orientation().rim.size()));
 }
 
-void lay_grid(const vec::Box& box, ToolForm& form) {
+void lay_grid(const vec::Box& box, double thickness, ToolForm& form) {
   double longest = 0;
   for (std::size_t a = 0; a < 3; ++a) longest = std::max(longest, box.upper[a] - box.lower[a]);
-  form.spacing = longest / kGridCells;
+  const auto nodes = [&](double spacing) {
+    double count = 1;
+    for (std::size_t a = 0; a < 3; ++a) count *= std::ceil((box.upper[a] - box.lower[a]) / spacing) + 2 * kToolGridBeyond + 1;
+    return count;
+  };
+  form.spacing = std::min(longest / kGridCells, thickness / 2);
+  while (nodes(form.spacing) > kMostNodes) form.spacing *= 1.1;
   for (std::size_t a = 0; a < 3; ++a) {
     form.origin[a] = box.lower[a] - kToolGridBeyond * form.spacing;
     form.size[a] = static_cast<std::int32_t>(std::ceil((box.upper[a] - box.lower[a]) / form.spacing)) + 2 * kToolGridBeyond + 1;
@@ -269,7 +277,7 @@ void load_sequence(const ContactTool& tool, ToolForm& form) {
     surfaces.push_back(std::make_unique<SurfaceDistance>(mesh));
     form.frames.push_back({pose, surfaces.back()->mesh()});
   }
-  lay_grid(box, form);
+  lay_grid(box, 1e30, form);
   const std::int64_t nodes = std::int64_t{form.size[0]} * form.size[1] * form.size[2];
   const auto frames = static_cast<std::int64_t>(surfaces.size());
   if (nodes * frames > kMostValues) {

@@ -16,8 +16,9 @@ inline constexpr std::int32_t kToolGridBeyond = 2;
 TriangleMesh read_tool_mesh(const ContactTool& tool, const std::filesystem::path& file);
 /// Throws Error (bad_input) for a surface with a rim.
 void check_closed(const ContactTool& tool, const std::filesystem::path& file, const SurfaceDistance& surface);
-/// Place and size of a grid around a box.
-void lay_grid(const vec::Box& box, ToolForm& form);
+/// Place and size of a grid around a box, with at least two cells across a part as thick as `thickness` [m] if a grid of
+/// 2^22 nodes has them.
+void lay_grid(const vec::Box& box, double thickness, ToolForm& form);
 /// Signed distances at all nodes of the grid, behind those that are there.
 void append_distances(const SurfaceDistance& surface, ToolForm& form);
 

@@ -194,6 +194,47 @@ TEST_P(ContactPhysics, ShapesAgree) {
   check_relative("turned box", pressed(box, GetParam(), &torque), flat, 1e-4);
 }
 
+/// A plate as a mesh, much thinner than a 64th of its length, is there: it presses like the half space, and so does a rod like
+/// the capsule.
+TEST_P(ContactPhysics, ThinMeshesPress) {
+  ContactTool plate;
+  plate.name = "plate";
+  plate.shape = ToolShape::mesh;
+  TriangleMesh mesh = box_surface({{1, 1, 1}, 1});
+  for (Vec3d& x : mesh.vertices) x = {0.6 * (x[0] - 0.5), 0.6 * (x[1] - 0.5), 0.004 * x[2]};
+  plate.mesh = save(mesh);
+  plate.path = {{0, 0.04, 0.04, 0.0405, 0, 0, 0, 1}, {0.3, 0.04, 0.04, 0.035, 0, 0, 0, 1}};
+  ContactTool plane = plate;
+  plane.shape = ToolShape::half_space;
+  plane.second = {0, 0, -1};
+  const double flat = pressed(plane, GetParam());
+  EXPECT_GT(flat, 0.1);
+  check_relative("thin plate as half space", pressed(plate, GetParam()), flat, 0.01);
+  ContactTool rod = plane;
+  rod.shape = ToolShape::capsule;
+  rod.radius = 0.004;
+  rod.first = {-0.2, 0, 0};
+  rod.second = {0.2, 0, 0};
+  rod.path = {{0, 0.04, 0.041, 0.0445, 0, 0, 0, 1}, {0.3, 0.04, 0.041, 0.041, 0, 0, 0, 1}};
+  ContactTool tube = rod;
+  tube.shape = ToolShape::mesh;
+  TriangleMesh round;
+  const int around = 48;
+  for (int k = 0; k < around; ++k) {
+    const double a = 2 * 3.14159265358979323846 * k / around;
+    for (const double x : {-0.2, 0.2}) round.vertices.push_back({x, 0.004 * std::cos(a), 0.004 * std::sin(a)});
+    const std::int32_t i = 2 * k, j = 2 * ((k + 1) % around);
+    round.triangles.push_back({i, i + 1, j + 1});
+    round.triangles.push_back({i, j + 1, j});
+    round.triangles.push_back({i, j, 2 * around});
+    round.triangles.push_back({i + 1, 2 * around + 1, j + 1});
+  }
+  round.vertices.push_back({-0.2, 0, 0});
+  round.vertices.push_back({0.2, 0, 0});
+  tube.mesh = save(round);
+  check_relative("rod as a mesh", pressed(tube, GetParam()), pressed(rod, GetParam()), 0.1);
+}
+
 /// A rigid sphere (radius r) on a layer (thickness h) bonded to the ground, without friction: Hertz times the correction of
 /// Dimitriadis et al. (2002) in chi = sqrt(r depth) / h, without its fourth power, which is 1e-5 here.
 double bonded_layer(double r, double h, double young, double poisson, double depth) {
