@@ -13,7 +13,7 @@
 namespace pliant::bench::contact {
 namespace {
 
-constexpr double kCell = 0.005;  // [m]
+constexpr double kCostCell = 0.005;  // [m]
 
 struct Variant {
   const char* words;  ///< nullptr: without contact
@@ -24,10 +24,10 @@ struct Variant {
 
 Scene block(std::int64_t nodes) {
   const int n = std::max(2, static_cast<int>(std::lround(std::cbrt(static_cast<double>(nodes)))) - 1);
-  const double half = 0.5 * n * kCell;
+  const double half = 0.5 * n * kCostCell;
   Scene scene;
-  scene.bodies = {
-      body_of("block", cells_surface({n, n, n}, kCell, {-half, -half, 0}), kCell, ElementKind::hex8, tissue(8000, 0.45, 10))};
+  scene.bodies = {body_of("block", cells_surface({n, n, n}, kCostCell, {-half, -half, 0}), kCostCell, ElementKind::hex8,
+                          tissue(8000, 0.45, 10))};
   scene.bodies[0].fixed = {{face(2, 0)}};
   return scene;
 }
@@ -37,7 +37,7 @@ ContactTool rod(double reach, double height) {
   ContactTool tool;
   tool.name = "rod";
   tool.shape = ToolShape::capsule;
-  tool.radius = 2 * kCell;
+  tool.radius = 2 * kCostCell;
   tool.first = {-reach, 0, 0};
   tool.second = {reach, 0, 0};
   tool.path = {{0, 0, 0, height, 0, 0, 0, 1}};
@@ -66,10 +66,10 @@ double median(std::vector<double> values) {
 void measure(PartRun& run, const std::string& backend, std::int64_t nodes) {
   const Scene alone = block(nodes);
   const auto n = static_cast<double>(std::lround(std::cbrt(static_cast<double>(nodes))) - 1);
-  const double top = n * kCell, reach = 0.6 * top;
+  const double top = n * kCostCell, reach = 0.6 * top;
   Scene far = alone, rests = alone, tissue_on = alone;
   far.tools = {rod(reach, top + 0.3)};
-  rests.tools = {rod(reach, top + 2 * kCell - 0.2 * kCell)};
+  rests.tools = {rod(reach, top + 2 * kCostCell - 0.2 * kCostCell)};
   tissue_on.contact = TissueContact{};
   Variant all[] = {{nullptr, false, simulate(alone, backend)},
                    {"a tool that stands far away", false, simulate(far, backend)},

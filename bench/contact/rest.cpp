@@ -12,7 +12,7 @@
 namespace pliant::bench::contact {
 namespace {
 
-constexpr double kCell = 0.006;                            // [m]
+constexpr double kRestCell = 0.006;                        // [m]
 constexpr int kFine = 4;                                   // squares of the surface along a cell
 constexpr double kPress = 0.5, kHold = 2, kWindow = 0.25;  // [s]
 constexpr double kPressure = 0.2;                          // over E, up to which depth is asked
@@ -33,14 +33,14 @@ Pressed draw(std::int64_t number, bool quick) {
   p.young = dice.logarithmic(3e3, 30e3);
   p.damping = dice.chance(0.15) ? 0 : dice.logarithmic(0.5, 5);
   const double poisson = dice.uniform(0.3, 0.47), friction = dice.chance(0.4) ? 0 : dice.uniform(0, 0.5);
-  const DrawnTool drawn = draw_blunt(dice, kCell);
-  const double depth = dice.chance(0.4) ? dice.uniform(0.05, 0.2) : dice.uniform(0.2, 1), aside = 0.15 * cells[0] * kCell;
-  const Vec3d lower{-0.5 * cells[0] * kCell, -0.5 * cells[1] * kCell, 0};
+  const DrawnTool drawn = draw_blunt(dice, kRestCell);
+  const double depth = dice.chance(0.4) ? dice.uniform(0.05, 0.2) : dice.uniform(0.2, 1), aside = 0.15 * cells[0] * kRestCell;
+  const Vec3d lower{-0.5 * cells[0] * kRestCell, -0.5 * cells[1] * kRestCell, 0};
   p.scene.bodies = {
-      body_of("block", cells_surface(cells, kCell, lower, kFine), kCell, element, tissue(p.young, poisson, p.damping))};
+      body_of("block", cells_surface(cells, kRestCell, lower, kFine), kRestCell, element, tissue(p.young, poisson, p.damping))};
   p.scene.bodies[0].fixed = {{face(2, 0)}};
-  const Vec3d at{dice.uniform(-aside, aside), dice.uniform(-aside, aside), cells[2] * kCell - drawn.low};
-  ContactTool tool = moved(drawn, 0, vec::add(at, {0, 0, 0.05 * kCell}), kPress, vec::add(at, {0, 0, -depth * kCell}));
+  const Vec3d at{dice.uniform(-aside, aside), dice.uniform(-aside, aside), cells[2] * kRestCell - drawn.low};
+  ContactTool tool = moved(drawn, 0, vec::add(at, {0, 0, 0.05 * kRestCell}), kPress, vec::add(at, {0, 0, -depth * kRestCell}));
   tool.friction = friction;
   p.scene.tools = {tool};
   p.words = fmt::format("{}: {}, {:.2f} deep, {}, E {:.0f}, nu {:.2f}, damping {:.2g}, friction {:.2f}", number, drawn.words,
@@ -89,8 +89,8 @@ Depths depths(Simulation& s) {
   Depths d;
   for (const Vec3d& x : s.surface_positions()) {
     const double distance = tool_distance((*s.model().tools)[0], place_back(pose, x));
-    if (distance < 0.05 * kCell) d.area += kCell * kCell / (kFine * kFine);
-    if (distance < 0.25 * kCell) near.push_back(std::max(0.0, -distance) / kCell);
+    if (distance < 0.05 * kRestCell) d.area += kRestCell * kRestCell / (kFine * kFine);
+    if (distance < 0.25 * kRestCell) near.push_back(std::max(0.0, -distance) / kRestCell);
   }
   if (near.empty()) return d;
   std::sort(near.begin(), near.end());

@@ -13,10 +13,10 @@
 namespace pliant::bench::contact {
 namespace {
 
-constexpr double kCell = 0.006;  // [m]
+constexpr double kStrokeCell = 0.006;  // [m]
 constexpr std::array<int, 3> kCells{10, 10, 5};
-constexpr double kTop = kCells[2] * kCell, kSide = 0.5 * kCells[0] * kCell;  // [m]
-constexpr double kPi = 3.14159265358979323846;
+constexpr double kTop = kCells[2] * kStrokeCell, kSide = 0.5 * kCells[0] * kStrokeCell;  // [m]
+constexpr double kStrokePi = 3.14159265358979323846;
 constexpr double kFast = 0.5;  // [m/s]
 
 struct Stroke {
@@ -29,28 +29,28 @@ Stroke draw(std::int64_t number) {
   Dice dice(number);
   Stroke p;
   const bool thin = dice.chance(0.5), across = dice.chance(0.5);
-  DrawnTool drawn = thin ? draw_thin(dice) : draw_blunt(dice, kCell);
+  DrawnTool drawn = thin ? draw_thin(dice) : draw_blunt(dice, kStrokeCell);
   p.speed = dice.logarithmic(0.05, 5);
   const ElementKind element = kElements[static_cast<std::size_t>(number) % kElements.size()];
   const double young = dice.logarithmic(3e3, 30e3), friction = dice.chance(0.4) ? 0 : dice.uniform(0, 0.5);
-  p.scene.bodies = {body_of("block", cells_surface(kCells, kCell, {-kSide, -kSide, 0}), kCell, element,
+  p.scene.bodies = {body_of("block", cells_surface(kCells, kStrokeCell, {-kSide, -kSide, 0}), kStrokeCell, element,
                             tissue(young, dice.uniform(0.3, 0.47), dice.logarithmic(2, 20)))};
   p.scene.bodies[0].fixed = {{face(2, 0)}};
-  const double turn = dice.uniform(0, 2 * kPi);
+  const double turn = dice.uniform(0, 2 * kStrokePi);
   const Vec3d way{std::cos(turn), std::sin(turn), 0};
   Vec3d from, to;
   double depth = 0;
   if (across) {
-    depth = dice.uniform(0.5, 2) * kCell;
+    depth = dice.uniform(0.5, 2) * kStrokeCell;
     const double beside = dice.uniform(-0.5, 0.5) * kSide, far = 1.5 * kSide + drawn.aside;
     const Vec3d middle{-way[1] * beside, way[0] * beside, kTop - drawn.low - depth};
     from = vec::sub(middle, vec::mul(way, far));
     to = vec::add(middle, vec::mul(way, far));
   } else {
-    depth = dice.uniform(1.5, 3) * kCell;
+    depth = dice.uniform(1.5, 3) * kStrokeCell;
     const Vec3d at{dice.uniform(-0.5, 0.5) * kSide, dice.uniform(-0.5, 0.5) * kSide, kTop - drawn.low};
     const double slope = std::tan(dice.uniform(0, 0.5));
-    from = vec::add(at, vec::add({0, 0, kCell}, vec::mul(way, -slope * kCell)));
+    from = vec::add(at, vec::add({0, 0, kStrokeCell}, vec::mul(way, -slope * kStrokeCell)));
     to = vec::add(at, vec::add({0, 0, -depth}, vec::mul(way, slope * depth)));
   }
   p.duration = vec::norm(vec::sub(to, from)) / p.speed;
@@ -59,7 +59,7 @@ Stroke draw(std::int64_t number) {
   p.scene.tools = {tool};
   p.kind = fmt::format("{} strokes of {} tools", p.speed < kFast ? "slow" : "fast", thin ? "thin" : "blunt");
   p.words = fmt::format("{}: {}, {:.2f} cells {}, {:.2f} m/s, {}, E {:.0f}, friction {:.2f}", number, drawn.words,
-                        depth / kCell, across ? "deep across" : "into", p.speed, to_string(element), young, friction);
+                        depth / kStrokeCell, across ? "deep across" : "into", p.speed, to_string(element), young, friction);
   return p;
 }
 
@@ -100,7 +100,7 @@ double depth_of(Simulation& s, const std::vector<Vec3d>& samples) {
     const double distance = tree.closest(x).distance;
     if (distance > deepest && std::abs(tree.winding(x)) > 0.5) deepest = distance;
   }
-  return deepest / kCell;
+  return deepest / kStrokeCell;
 }
 
 struct Felt {
@@ -112,7 +112,7 @@ Felt go(const Stroke& p, const std::string& backend) {
   const auto s = simulate(p.scene, backend);
   const std::vector<Vec3d> samples = samples_of(p.scene.tools[0]);
   const double end = p.duration + 0.02;
-  const auto batch = std::clamp<std::int64_t>(std::llround(0.25 * kCell / (p.speed * s->dt())), 1, 16);
+  const auto batch = std::clamp<std::int64_t>(std::llround(0.25 * kStrokeCell / (p.speed * s->dt())), 1, 16);
   Felt felt;
   std::int64_t touched = 0;
   until(

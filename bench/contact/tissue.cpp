@@ -11,9 +11,9 @@
 namespace pliant::bench::contact {
 namespace {
 
-constexpr double kCell = 0.005;                                    // [m]
-constexpr double kLoad = 0.6, kHold = 2, kWindow = 0.25;           // [s]
-constexpr double kResting = 1e-6, kBeats = 1.25, kDeepest = 0.25;  // as in part rest; [cells]
+constexpr double kTissueCell = 0.005;                                          // [m]
+constexpr double kLoad = 0.6, kTissueHold = 2, kTissueWindow = 0.25;           // [s]
+constexpr double kTissueResting = 1e-6, kTissueBeats = 1.25, kDeepest = 0.25;  // as in part rest; [cells]
 
 struct Kind {
   ElementKind element;
@@ -28,7 +28,7 @@ Scene scene_of(const Kind& kind) {
 
 Body block_of(const std::string& name, const std::array<int, 3>& cells, const Vec3d& lower, const Kind& kind,
               double young = 8000) {
-  return body_of(name, cells_surface(cells, kCell, lower), kCell, kind.element, tissue(young, 0.45, kind.damping));
+  return body_of(name, cells_surface(cells, kTissueCell, lower), kTissueCell, kind.element, tissue(young, 0.45, kind.damping));
 }
 
 Prescribed down(const Selection& where, double by) {
@@ -56,8 +56,8 @@ Scene ball(const Kind& kind) {
   Scene scene = scene_of(kind);
   Body low = block_of("low", {12, 12, 6}, {-0.03, -0.03, 0}, kind);
   low.fixed = {{face(2, 0)}};
-  Body ball =
-      body_of("ball", ball_surface(0.02, {0.001, 0.0007, 0.0505}, 12), kCell, kind.element, tissue(8000, 0.45, kind.damping));
+  Body ball = body_of("ball", ball_surface(0.02, {0.001, 0.0007, 0.0505}, 12), kTissueCell, kind.element,
+                      tissue(8000, 0.45, kind.damping));
   ball.prescribed = {down(beyond(2, 0.056, true), 0.012)};
   scene.bodies = {low, ball};
   return scene;
@@ -76,8 +76,9 @@ Scene stack(const Kind& kind) {
 /// A body like a C lying on its back whose upper arm is pressed on the lower one.
 Scene fold(const Kind& kind) {
   Scene scene = scene_of(kind);
-  Body body = body_of("fold", cells_surface({12, 4, 7}, kCell, {0, 0, 0}, 1, [](int i, int, int k) { return i < 3 || k != 3; }),
-                      kCell, kind.element, tissue(8000, 0.45, kind.damping));
+  Body body =
+      body_of("fold", cells_surface({12, 4, 7}, kTissueCell, {0, 0, 0}, 1, [](int i, int, int k) { return i < 3 || k != 3; }),
+              kTissueCell, kind.element, tissue(8000, 0.45, kind.damping));
   body.fixed = {{face(2, 0)}};
   Prescribed press = down(face(2, 0.035), 0.009);
   press.where.a[0] = 0.0449;
@@ -90,13 +91,13 @@ void measure(PartRun& run, const std::string& name, const Kind& kind, const Scen
   const std::string words =
       fmt::format("{}, {}, damping {}, friction {}", name, to_string(kind.element), kind.damping, kind.friction);
   run.show(0.5, words);
-  const double end = kLoad + kHold;
+  const double end = kLoad + kTissueHold;
   try {
     const auto s = simulate(scene, run.options.backend);
     double early = 0, late = 0, early_time = 0, late_time = 0, elastic = 0;
     until(*s, end, [&](double took) {
-      const bool first = s->time() > kLoad && s->time() <= kLoad + kWindow;
-      if (!first && s->time() <= end - kWindow) return;
+      const bool first = s->time() > kLoad && s->time() <= kLoad + kTissueWindow;
+      if (!first && s->time() <= end - kTissueWindow) return;
       const Energy now = energy_of(*s);
       (first ? early : late) += took * now.kinetic;
       (first ? early_time : late_time) += took;
@@ -105,8 +106,8 @@ void measure(PartRun& run, const std::string& name, const Kind& kind, const Scen
     early /= early_time * elastic;
     late /= late_time * elastic;
     run.at_most("kinetic over strain energy at rest", words, late,
-                std::max(kResting, kBeats * early * std::exp(-kind.damping * (kHold - kWindow))));
-    run.at_most("deepest pair [cells]", words, s->contact().tissue().max_depth / kCell, kDeepest);
+                std::max(kTissueResting, kTissueBeats * early * std::exp(-kind.damping * (kTissueHold - kTissueWindow))));
+    run.at_most("deepest pair [cells]", words, s->contact().tissue().max_depth / kTissueCell, kDeepest);
     run.at_least("points that touch", words, static_cast<double>(s->contact().tissue().points), 20, 0);
   } catch (const Error& error) {
     run.failed("kinetic over strain energy at rest", words, error.what());
