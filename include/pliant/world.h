@@ -105,10 +105,12 @@ class PLIANT_API World {
   std::string add_tool(const ToolSpec& tool);
   /// The same for a text, an entry of `tools` of a scene file (docs/scene.md); relative files start from `folder`.
   std::string parse_tool(const std::string& text, const std::string& folder = "");
-  void remove_tool(const std::string& name);  ///< its name may be used again
+  /// Remove a tool; its name may be used again.
+  void remove_tool(const std::string& name);
   /// Keep a tool that touches nothing and costs nothing, until unpark_tool(), place_tool() or drive_tool().
   void park_tool(const std::string& name);
-  void unpark_tool(const std::string& name);  ///< where it is, or where its path has it now
+  /// Let a parked tool touch again where it is, or where its path has it now.
+  void unpark_tool(const std::string& name);
   /// Put a tool at a place [m] and turn (unit quaternion x, y, z, w) at once, where it stays; its path is over.
   void place_tool(const std::string& name, const Vec3d& position, const std::array<double, 4>& turn = {0, 0, 0, 1});
   /// A tool goes from where it is to this place and turn, gets there after `seconds`, and stays; its path is over. More than
