@@ -141,19 +141,18 @@ inline Pair<Scalar> pair_of(const Place<Scalar>& lower, const Place<Scalar>& upp
   return p;
 }
 
-/// Add what the push of a pair does to the tangents of one of its points: the force that belongs to n . F' t_k [N m].
+/// The force on one point of a pair, in quanta; `f` is that on the lower one.
 template <class Scalar>
-inline void add_turns(const Place<Scalar>& own, bool is_lower, const Pair<Scalar>& p, Scalar push, std::array<Scalar, 2>& sum) {
-  const std::array<Scalar, 2> along = dual_of(own, p.arm);
-  const Scalar f = is_lower ? push : -push;
-  for (std::size_t k = 0; k < 2; ++k) sum[k] = std::fma(f, along[k], sum[k]);
+inline Quanta quanta_of(const Vec<Scalar>& f, Scalar inverse, bool is_lower) {
+  const Quanta q = contact::quanta(f, inverse);
+  return is_lower ? q : Quanta{-q[0], -q[1], -q[2]};
 }
 
-/// Their sums in quanta, as forces along the normal over the spacing.
+/// What pushes do to the tangents of a point, in quanta; `lever`: the sum of arms times pushes (touch_point.cl).
 template <class Scalar>
-inline void set_moment(std::int32_t* touch_moment, std::int64_t i, const Scalar* touch_place, const std::array<Scalar, 2>& turn,
+inline void set_moment(std::int32_t* touch_moment, std::int64_t i, const Place<Scalar>& own, const Vec<Scalar>& lever,
                        Scalar inverse) {
-  const Place<Scalar> own = place_of(touch_place, i);
+  const std::array<Scalar, 2> turn = dual_of(own, lever);
   for (std::size_t k = 0; k < 2; ++k) {
     const Quanta q = contact::quanta(times(own.normal, turn[k] * own.density), inverse);
     set_three(touch_moment, tile_base(i, PLIANT_TOUCH_MOMENT), static_cast<std::int64_t>(3 * k), q);

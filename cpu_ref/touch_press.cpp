@@ -39,7 +39,8 @@ void touch_press(Range range, const Scalar* touch_place, const std::int32_t* con
     std::int32_t touching = 0;
     const Scalar within = (Scalar(2) * contact::ready_share(contact_yield[i])) * contact_params[5];
     Scalar pressed = 0, inside = 0;
-    std::array<Scalar, 2> turn{};
+    Vec<Scalar> lever{};
+    const Place<Scalar> mine = place_of(touch_place, i);
     if ((near & ~PLIANT_TOUCH_BIT) != 0) {  // what tools did
       sum = {force[0], force[1], force[2]};
       touching = force[3];
@@ -51,11 +52,11 @@ void touch_press(Range range, const Scalar* touch_place, const std::int32_t* con
       std::int32_t* own = pair_force(touch_force, i, s);
       own[std::int64_t{3} * PLIANT_TILE] = 0;
       if (!(numbers[0] > Scalar(0))) continue;
-      const Place<Scalar> lower = place_of(touch_place, i < j ? i : j), upper = place_of(touch_place, i < j ? j : i);
-      const Scalar w = lower.yielding + upper.yielding;
+      const Place<Scalar> other = place_of(touch_place, j);
+      const Place<Scalar>&lower = i < j ? mine : other, &upper = i < j ? other : mine;
       Scalar *anchor = numbers + std::int64_t{2} * PLIANT_TILE, *stuck = anchor + std::int64_t{3} * PLIANT_TILE;
       const Vec<Scalar> moved = difference(lower.moved, upper.moved);
-      const Scalar front = front_of(lower, upper, moved);
+      const Scalar front = front_of(lower, upper, moved), w = lower.yielding + upper.yielding;
       if (front < within) touching |= PLIANT_READY_BIT;
       const bool meets = front < far && w > Scalar(0);
       const Pair<Scalar> p = meets ? pair_of(lower, upper) : Pair<Scalar>{};
@@ -67,9 +68,8 @@ void touch_press(Range range, const Scalar* touch_place, const std::int32_t* con
       const Scalar stiffness = numbers[0] / w, push = stiffness * depth, before = dot(moved, p.normal) - p.gap;
       Vec<Scalar> f = times(p.normal, push);
       if (friction > Scalar(0)) f = press_friction(lower, p, anchor, stiffness, friction * push, moved, f);
-      add_turns(i < j ? lower : upper, i < j, p, push, turn);
-      Quanta q = contact::quanta(f, inverse);
-      if (i > j) q = {-q[0], -q[1], -q[2]};
+      lever = scaled_sum(i < j ? push : -push, p.arm, lever);
+      const Quanta q = quanta_of(f, inverse, i < j);
       set_three(own, 0, 0, q);
       own[std::int64_t{3} * PLIANT_TILE] = 1;
       for (std::size_t c = 0; c < 3; ++c) sum[c] += q[c];
@@ -81,7 +81,7 @@ void touch_press(Range range, const Scalar* touch_place, const std::int32_t* con
     touch_depth[i] = mean > touch_depth[i] ? mean : touch_depth[i];
     contact::set_three(change, sum);
     change[3] = touching;
-    if ((near & PLIANT_TOUCH_BIT) != 0) set_moment(touch_moment, i, touch_place, turn, inverse);
+    if ((near & PLIANT_TOUCH_BIT) != 0) set_moment(touch_moment, i, mine, lever, inverse);
   }
 }
 

@@ -37,7 +37,8 @@ void touch_settle(Range range, const Scalar* touch_place, const std::int32_t* co
     if (near == 0) continue;
     const auto change = contact::numbers_of(contact_change, i);
     Quanta sum{};
-    std::array<Scalar, 2> turn{};
+    Vec<Scalar> lever{};
+    const Place<Scalar> mine = place_of(touch_place, i);
     if ((near & ~PLIANT_TOUCH_BIT) != 0) sum = {change[0], change[1], change[2]};  // what tools did
     std::int32_t touching = change[3];
     for (std::int64_t s = 0; s < PLIANT_TOUCH_SLOTS && (near & PLIANT_TOUCH_BIT) != 0; ++s) {
@@ -47,7 +48,8 @@ void touch_settle(Range range, const Scalar* touch_place, const std::int32_t* co
       if (own[std::int64_t{3} * PLIANT_TILE] == 0) continue;
       touching |= PLIANT_TOUCH_BIT;
       Scalar* numbers = pair_numbers(touch_pair, i, s);
-      const Place<Scalar> lower = place_of(touch_place, i < j ? i : j), upper = place_of(touch_place, i < j ? j : i);
+      const Place<Scalar> other = place_of(touch_place, j);
+      const Place<Scalar>&lower = i < j ? mine : other, &upper = i < j ? other : mine;
       const Pair<Scalar> p = pair_of(lower, upper);
       const Scalar rest = numbers[PLIANT_TILE] - p.gap, w = lower.yielding + upper.yielding;
       const Scalar stiffness = w > Scalar(0) ? numbers[0] / w : Scalar(0);
@@ -56,14 +58,14 @@ void touch_settle(Range range, const Scalar* touch_place, const std::int32_t* co
       for (std::size_t c = 0; c < 3; ++c) had[c] = static_cast<Scalar>(i < j ? before[c] : -before[c]) * quantum;
       Vec<Scalar> f = contact::sum_of(times(p.normal, rest > Scalar(0) ? stiffness * rest : Scalar(0)), had);
       if (friction > Scalar(0)) f = settle_friction(lower, p, numbers + std::int64_t{2} * PLIANT_TILE, stiffness, friction, f);
-      add_turns(i < j ? lower : upper, i < j, p, dot(difference(f, had), p.normal), turn);
-      Quanta q = contact::quanta(f, inverse);
-      if (i > j) q = {-q[0], -q[1], -q[2]};
+      const Scalar added = dot(difference(f, had), p.normal);
+      lever = scaled_sum(i < j ? added : -added, p.arm, lever);
+      const Quanta q = quanta_of(f, inverse, i < j);
       for (std::size_t c = 0; c < 3; ++c) sum[c] += q[c] - before[c];
     }
     for (std::size_t c = 0; c < 3; ++c) change[static_cast<std::int64_t>(c)] = sum[c];
     change[3] = touching;
-    if ((near & PLIANT_TOUCH_BIT) != 0) set_moment(touch_moment, i, touch_place, turn, inverse);
+    if ((near & PLIANT_TOUCH_BIT) != 0) set_moment(touch_moment, i, mine, lever, inverse);
   }
 }
 

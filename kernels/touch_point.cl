@@ -76,17 +76,11 @@ static inline touch_meeting meeting_of(touch_state lower, touch_state upper) {
   return m;
 }
 
-// Add what the push of a pair does to the tangents of one of its points: the forces that belong to n . F' t_k [N m].
-static inline void add_turns(touch_state own, int is_lower, touch_meeting m, float push, float* first, float* second) {
-  const float across = dot_xyz(m.arm, cross3(own.normal, own.tangent)), f = is_lower ? push : -push;
-  *first = fma(f, fma(-own.skew, across, dot_xyz(m.arm, own.tangent)) * own.short_first, *first);
-  *second = fma(f, across * own.short_height, *second);
-}
-
-// Their sums in quanta, as forces along the normal over the spacing.
-static inline void set_moment(__global int* touch_moment, int i, __global const float* touch_place, float first, float second,
-                              float inverse) {
-  const touch_state own = state_of(touch_place, i);
+// What pushes do to the tangents of a point: the forces that belong to n . F' t_k, along the normal over the spacing, in quanta. `lever`: the sum
+// of its pairs' arms times their pushes, negative where it is the upper point [N m].
+static inline void set_moment(__global int* touch_moment, int i, touch_state own, float4 lever, float inverse) {
+  const float across = dot_xyz(lever, cross3(own.normal, own.tangent));
+  const float first = fma(-own.skew, across, dot_xyz(lever, own.tangent)) * own.short_first, second = across * own.short_height;
   __global int* moment = touch_moment + POINT_BASE(i, PLIANT_TOUCH_MOMENT);
   const float4 one = own.normal * (first * own.density), two = own.normal * (second * own.density);
   moment[0] = quanta(one.x * inverse);

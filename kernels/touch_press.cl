@@ -25,7 +25,9 @@ __kernel void touch_press(__global const float* touch_place, __global const int*
     int4 sum = 0;
     int touching = 0;
     const float far = 0.48f * contact_params[5], within = (2.0f * ready_share(contact_yield[i])) * contact_params[5];
-    float pressed = 0.0f, inside = 0.0f, first_turn = 0.0f, second_turn = 0.0f;
+    float pressed = 0.0f, inside = 0.0f;
+    float4 lever = 0.0f;
+    const touch_state mine = state_of(touch_place, i);
     if ((near & ~PLIANT_TOUCH_BIT) != 0) {  // what tools did
       sum = (int4)(force[0], force[PLIANT_TILE], force[2 * PLIANT_TILE], 0);
       touching = force[3 * PLIANT_TILE];
@@ -37,7 +39,7 @@ __kernel void touch_press(__global const float* touch_place, __global const int*
       __global int* own = touch_force + pair_force_base(i, s);
       own[3 * PLIANT_TILE] = 0;
       if (!(numbers[0] > 0.0f)) continue;
-      const touch_state lower = state_of(touch_place, i < j ? i : j), upper = state_of(touch_place, i < j ? j : i);
+      const touch_state other = state_of(touch_place, j), lower = i < j ? mine : other, upper = i < j ? other : mine;
       const float w = lower.yielding + upper.yielding;
       __global float* anchor = numbers + 2 * PLIANT_TILE;
       const float4 moved = lower.moved - upper.moved;
@@ -64,7 +66,7 @@ __kernel void touch_press(__global const float* touch_place, __global const int*
         const float length = sqrt(dot_xyz(side, side)), most = friction * push;
         f = fma((float4)(stiffness * length > most ? -(most / length) : -stiffness), side, f);
       }
-      add_turns(i < j ? lower : upper, i < j, m, push, &first_turn, &second_turn);
+      lever = fma((float4)(i < j ? push : -push), m.arm, lever);
       int4 q = (int4)(quanta(f.x * inverse), quanta(f.y * inverse), quanta(f.z * inverse), 0);
       if (i > j) q = -q;
       own[0] = q.x;
@@ -82,6 +84,6 @@ __kernel void touch_press(__global const float* touch_place, __global const int*
     change[PLIANT_TILE] = sum.y;
     change[2 * PLIANT_TILE] = sum.z;
     change[3 * PLIANT_TILE] = touching;
-    if ((near & PLIANT_TOUCH_BIT) != 0) set_moment(touch_moment, i, touch_place, first_turn, second_turn, inverse);
+    if ((near & PLIANT_TOUCH_BIT) != 0) set_moment(touch_moment, i, mine, lever, inverse);
   }
 }

@@ -17,7 +17,8 @@ __kernel void touch_settle(__global const float* touch_place, __global const int
   for (int i = first; i < first + LANES; ++i) {
     __global int* change = contact_change + POINT_BASE(i, 4);
     int4 sum = 0;
-    float first_turn = 0.0f, second_turn = 0.0f;
+    float4 lever = 0.0f;
+    const touch_state mine = state_of(touch_place, i);
     if ((near & ~PLIANT_TOUCH_BIT) != 0) sum = (int4)(change[0], change[PLIANT_TILE], change[2 * PLIANT_TILE], 0);
     int touching = change[3 * PLIANT_TILE];
     for (int s = 0; s < TOUCH_SLOTS && (near & PLIANT_TOUCH_BIT) != 0; ++s) {
@@ -27,7 +28,7 @@ __kernel void touch_settle(__global const float* touch_place, __global const int
       if (own[3 * PLIANT_TILE] == 0) continue;
       touching |= PLIANT_TOUCH_BIT;
       __global float* numbers = touch_pair + pair_base(i, s);
-      const touch_state lower = state_of(touch_place, i < j ? i : j), upper = state_of(touch_place, i < j ? j : i);
+      const touch_state other = state_of(touch_place, j), lower = i < j ? mine : other, upper = i < j ? other : mine;
       const touch_meeting m = meeting_of(lower, upper);
       const float rest = numbers[PLIANT_TILE] - m.gap, w = lower.yielding + upper.yielding;
       const float stiffness = w > 0.0f ? numbers[0] / w : 0.0f;
@@ -49,7 +50,8 @@ __kernel void touch_settle(__global const float* touch_place, __global const int
         }
         f = fma((float4)(length > most ? most / length : 1.0f), pull, m.normal * across);
       }
-      add_turns(i < j ? lower : upper, i < j, m, dot_xyz(f - push_before, m.normal), &first_turn, &second_turn);
+      const float added = dot_xyz(f - push_before, m.normal);
+      lever = fma((float4)(i < j ? added : -added), m.arm, lever);
       int4 q = (int4)(quanta(f.x * inverse), quanta(f.y * inverse), quanta(f.z * inverse), 0);
       if (i > j) q = -q;
       sum += q - before;
@@ -58,6 +60,6 @@ __kernel void touch_settle(__global const float* touch_place, __global const int
     change[PLIANT_TILE] = sum.y;
     change[2 * PLIANT_TILE] = sum.z;
     change[3 * PLIANT_TILE] = touching;
-    if ((near & PLIANT_TOUCH_BIT) != 0) set_moment(touch_moment, i, touch_place, first_turn, second_turn, inverse);
+    if ((near & PLIANT_TOUCH_BIT) != 0) set_moment(touch_moment, i, mine, lever, inverse);
   }
 }
