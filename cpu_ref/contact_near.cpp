@@ -16,16 +16,17 @@ void contact_near(Range range, const Scalar* node_u, const Scalar* node_w, const
   const Scalar margin = contact_params[5], ahead = Scalar(2) * contact_params[6];
   for (std::int64_t tile = range.begin; tile < range.end; ++tile) {
     std::int32_t near = 0;
-    for (std::int32_t t = 0; t < tools; ++t) {
-      Scalar least = Scalar(1e30);
-      for (std::int64_t i = tile * PLIANT_TILE; i < (tile + 1) * PLIANT_TILE; ++i) {
-        const Meeting<Scalar> m = all.meet(t, points.at(i));
+    Scalar* least = contact_gap + tile * tools;
+    for (std::int32_t t = 0; t < tools; ++t) least[t] = Scalar(1e30);
+    for (std::int64_t i = tile * PLIANT_TILE; i < (tile + 1) * PLIANT_TILE; ++i) {
+      const Place<Scalar> p = points.at(i);
+      for (std::int32_t t = 0; t < tools; ++t) {
+        const Meeting<Scalar> m = all.meet(t, p);
         const Scalar gap = std::fma(-ahead, std::sqrt(dot(m.slip, m.slip)), m.distance);
-        least = gap < least ? gap : least;
+        least[t] = gap < least[t] ? gap : least[t];
       }
-      if (least < margin) near |= 1 << t;
-      contact_gap[tile * tools + t] = least;
     }
+    for (std::int32_t t = 0; t < tools; ++t) near |= least[t] < margin ? 1 << t : 0;
     const std::int32_t before = contact_near[tile];
     if (near == 0 && (before & ~PLIANT_TOUCH_BIT) != 0) {
       const std::int64_t base = tile * 4 * PLIANT_TILE;

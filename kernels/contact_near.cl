@@ -15,17 +15,17 @@ __kernel void contact_near(__global const float* node_u, __global const float* n
   const int tile = (int)get_global_id(0);
   const float margin = contact_params[5], ahead = 2.0f * contact_params[6];
   int near = 0;
-  for (int t = 0; t < tools; ++t) {
-    float least = 1e30f;
-    for (int i = tile * PLIANT_TILE; i < (tile + 1) * PLIANT_TILE; ++i) {
-      const contact_place p = place_of_point(node_u, node_w, contact_rest, contact_node, contact_weight, i);
+  __global float* least = contact_gap + tile * tools;
+  for (int t = 0; t < tools; ++t) least[t] = 1e30f;
+  for (int i = tile * PLIANT_TILE; i < (tile + 1) * PLIANT_TILE; ++i) {
+    const contact_place p = place_of_point(node_u, node_w, contact_rest, contact_node, contact_weight, i);
+    for (int t = 0; t < tools; ++t) {
       const meeting m = meet(tool_kind, tool_data, tool_grid, tool_pose, tools, step, t, p);
       const float gap = fma(-ahead, sqrt(dot_xyz(m.slip, m.slip)), m.distance);
-      least = gap < least ? gap : least;
+      least[t] = gap < least[t] ? gap : least[t];
     }
-    if (least < margin) near |= 1 << t;
-    contact_gap[tile * tools + t] = least;
   }
+  for (int t = 0; t < tools; ++t) near |= least[t] < margin ? 1 << t : 0;
   const int before = contact_near[tile];
   if (near == 0 && (before & ~PLIANT_TOUCH_BIT) != 0) {
     const int base = tile * 4 * PLIANT_TILE;

@@ -64,44 +64,6 @@ void add_point(const ContactPoints& points, const SurfaceDistance& surface, cons
   found.where = i;
 }
 
-/// Points in the material or on the surface of a tool, in the frame of its shape; none of a half space. [m]
-std::vector<Vec3d> points_of(const ToolForm& form, const ToolMoment& moment, double spacing) {
-  switch (form.shape) {
-    case ToolShape::sphere:
-      return {Vec3d{}};
-    case ToolShape::capsule: {
-      std::vector<Vec3d> points;
-      const Vec3d along = vec::sub(form.second, form.first);
-      const double parts = std::min(1000.0, std::ceil(2 * vec::norm(along) / spacing));
-      for (double k = 0; k <= parts; ++k) points.push_back(vec::add(form.first, vec::mul(along, k / parts)));
-      return points;
-    }
-    case ToolShape::box: {
-      std::vector<Vec3d> points;
-      Vec3d parts{};
-      for (std::size_t a = 0; a < 3; ++a) parts[a] = std::clamp(std::ceil(4 * form.second[a] / spacing), 1.0, 20.0);
-      Vec3d k{};
-      for (k[0] = 0; k[0] <= parts[0]; ++k[0]) {
-        for (k[1] = 0; k[1] <= parts[1]; ++k[1]) {
-          for (k[2] = 0; k[2] <= parts[2]; ++k[2]) {
-            Vec3d x{};
-            for (std::size_t a = 0; a < 3; ++a) x[a] = form.second[a] * (2 * k[a] / parts[a] - 1);
-            points.push_back(x);
-          }
-        }
-      }
-      return points;
-    }
-    case ToolShape::half_space:
-      return {};
-    case ToolShape::mesh:
-      return form.surface.vertices;
-    case ToolShape::sequence:
-      return form.frames[static_cast<std::size_t>(moment.frame)].surface.vertices;
-  }
-  return {};
-}
-
 }  // namespace
 
 void refuse_overlap(const Model& model, double allowed) {
@@ -141,32 +103,6 @@ void refuse_overlap(const Model& model, double allowed) {
       }
     }
   }
-}
-
-std::optional<ToolInside> tool_inside(const Model& model, const ToolForm& form, const ToolMoment& moment, const Pose& at) {
-  const double spacing = model.contact->spacing;
-  std::vector<Vec3d> points = points_of(form, moment, spacing);
-  for (Vec3d& x : points) x = place(at, x);
-  const bool round = form.shape == ToolShape::sphere || form.shape == ToolShape::capsule;
-  std::optional<ToolInside> deepest;
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    if (model.bodies[b].triangles == 0) continue;
-    TriangleMesh mesh = surface_at_start(model, b);
-    vec::Box box;
-    for (const auto& triangle : mesh.triangles) {
-      for (const auto v : triangle) box.extend(mesh.vertices[static_cast<std::size_t>(v)]);
-    }
-    std::unique_ptr<SurfaceDistance> surface;
-    for (const Vec3d& x : points) {
-      if (box.distance2(x) > 0) continue;
-      if (surface == nullptr) surface = std::make_unique<SurfaceDistance>(std::move(mesh));
-      const double distance = surface->signed_distance(x);
-      if (distance >= 0) continue;
-      const double depth = (round ? form.radius : 0) - distance;
-      if (!deepest || depth > deepest->depth) deepest = ToolInside{b, depth, x};
-    }
-  }
-  return deepest;
 }
 
 }  // namespace pliant

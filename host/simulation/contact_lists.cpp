@@ -26,7 +26,6 @@ double contact_margin(const Model& model) { return kMargin * model.contact->spac
 
 void ContactLists::update(std::int32_t step_in_batch, const Motion& motion) {
   const std::int64_t step = run_.state.clock.step + step_in_batch;
-  if (run_.loaded.take_updated()) forget();
   const bool tools = !run_.model().tools->empty(), tissue = run_.scene.contact.has_value();
   ContactLook& last = run_.state.look;
   Due due{tools && last.tools < 0, tissue && last.tissue < 0};
@@ -40,8 +39,6 @@ void ContactLists::update(std::int32_t step_in_batch, const Motion& motion) {
     list(run_.backend().read_ints(run_.loaded.program().find("contact_near")));
   }
 }
-
-void ContactLists::forget() { run_.state.look.tools = run_.state.look.tissue = -1; }
 
 double ContactLists::largest_increment() {
   for (const Pass& pass : run_.loaded.program().status) {

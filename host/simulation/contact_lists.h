@@ -22,8 +22,6 @@ class ContactLists {
 
   /// Before a step of the current batch: look where a look is due, and list what is near where the lists do not hold any more.
   void update(std::int32_t step_in_batch, const Motion& motion);
-  /// A tool may be anywhere: look before the next step.
-  void forget();
 
  private:
   /// Which looks are due.

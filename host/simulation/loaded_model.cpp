@@ -33,7 +33,6 @@ void LoadedModel::update(std::shared_ptr<const Model> model, Program program) {
   backend_->update(loaded, program_);
   look_up();
   note_change();
-  updated_ = true;
 }
 
 void LoadedModel::reset_initial_state(std::vector<double> u, std::vector<double> w) {
@@ -105,7 +104,6 @@ void LoadedModel::return_to_kept_state() {
   for (const auto& [live, copy] : kept_) backend_->copy(copy, live);
   backend_->finish();
   note_change();
-  updated_ = true;
 }
 
 std::vector<std::vector<std::uint8_t>> LoadedModel::state_bytes() const {

@@ -52,8 +52,6 @@ class LoadedModel {
   /// The largest component of node_w when Program::status ran last.
   [[nodiscard]] double largest_increment() const;
 
-  /// Whether the model is another one, or has gone back to the kept state, since somebody asked.
-  [[nodiscard]] bool take_updated() { return std::exchange(updated_, false); }
   /// Grows with whatever may have put other values into state buffers than steps do.
   [[nodiscard]] std::int64_t changes() const { return changes_; }
   void note_change() { ++changes_; }
@@ -89,7 +87,6 @@ class LoadedModel {
   Ids ids_;
   std::vector<std::pair<BufferId, BufferId>> kept_;  ///< state buffers and their copies at the last good step
   std::vector<char> free_;
-  bool updated_ = false;
   std::int64_t changes_ = 0;
 };
 

@@ -89,7 +89,6 @@ void settle(RunContext& run) {
 void load_tools(RunContext& run, const std::shared_ptr<const Model>& model, const std::vector<ContactTool>& before,
                 const std::vector<ContactTool>& next) {
   const std::shared_ptr<const Model> old = run.loaded.shared_model();
-  const bool updated = run.loaded.take_updated();
   const Snapshot snapshot = take_snapshot(run);
   try {
     Program program = build_program(*model, {run.scene.integrator, run.settings.batch_steps});
@@ -105,9 +104,8 @@ void load_tools(RunContext& run, const std::shared_ptr<const Model>& model, cons
     throw;
   }
   settle(run);
-  run.state.look.tools = -1;
-  run.state.kept.reset();                         // copies of the old program's buffers
-  if (!updated) (void)run.loaded.take_updated();  // tissue keeps its partners
+  run.state.look.tools = -1;  // tissue keeps its partners
+  run.state.kept.reset();     // copies of the old program's buffers
 }
 
 void let_go(RunContext& run, std::size_t tool) {
