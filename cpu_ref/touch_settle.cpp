@@ -55,11 +55,11 @@ void touch_settle(Range range, const Scalar* touch_place, const std::int32_t* co
       const Scalar stiffness = w > Scalar(0) ? numbers[0] / w : Scalar(0);
       const Quanta before = three(own, 0, 0);
       Vec<Scalar> had{};
-      for (std::size_t c = 0; c < 3; ++c) had[c] = static_cast<Scalar>(i < j ? before[c] : -before[c]) * quantum;
-      Vec<Scalar> f = contact::sum_of(times(p.normal, rest > Scalar(0) ? stiffness * rest : Scalar(0)), had);
+      for (std::size_t c = 0; c < 3; ++c) had[c] = static_cast<Scalar>(i < j ? before[c] : -before[c]);
+      const Scalar push = rest > Scalar(0) ? stiffness * rest : Scalar(0);
+      Vec<Scalar> f = scaled_sum(quantum, had, times(p.normal, push));
       if (friction > Scalar(0)) f = settle_friction(lower, p, numbers + std::int64_t{2} * PLIANT_TILE, stiffness, friction, f);
-      const Scalar added = dot(difference(f, had), p.normal);
-      lever = scaled_sum(i < j ? added : -added, p.arm, lever);
+      lever = scaled_sum(i < j ? push : -push, p.arm, lever);
       const Quanta q = quanta_of(f, inverse, i < j);
       for (std::size_t c = 0; c < 3; ++c) sum[c] += q[c] - before[c];
     }

@@ -34,9 +34,8 @@ __kernel void touch_settle(__global const float* touch_place, __global const int
       const float stiffness = w > 0.0f ? numbers[0] / w : 0.0f;
       const int4 before = (int4)(own[0], own[PLIANT_TILE], own[2 * PLIANT_TILE], 0);
       const int4 had = i < j ? before : -before;
-      float4 f = m.normal * (rest > 0.0f ? stiffness * rest : 0.0f);
-      const float4 push_before = (float4)((float)had.x * quantum, (float)had.y * quantum, (float)had.z * quantum, 0.0f);
-      f += push_before;
+      const float push = rest > 0.0f ? stiffness * rest : 0.0f;
+      float4 f = fma((float4)((float)had.x, (float)had.y, (float)had.z, 0.0f), (float4)(quantum), m.normal * push);
       if (friction > 0.0f) {
         __global float* anchor = numbers + 2 * PLIANT_TILE;
         const float4 side = slip_of(lower, m, three(anchor));
@@ -50,8 +49,7 @@ __kernel void touch_settle(__global const float* touch_place, __global const int
         }
         f = fma((float4)(length > most ? most / length : 1.0f), pull, m.normal * across);
       }
-      const float added = dot_xyz(f - push_before, m.normal);
-      lever = fma((float4)(i < j ? added : -added), m.arm, lever);
+      lever = fma((float4)(i < j ? push : -push), m.arm, lever);
       int4 q = (int4)(quanta(f.x * inverse), quanta(f.y * inverse), quanta(f.z * inverse), 0);
       if (i > j) q = -q;
       sum += q - before;
