@@ -1,18 +1,19 @@
 // Twin of kernels/contact_near.cl.
-#include "contact_point.h"
+#include "contact_edge.h"
 #include "registry.h"
 
 namespace pliant::ref {
 
-template <class Scalar>
+template <class Scalar, int EDGES>
 void contact_near(Range range, const Scalar* node_u, const Scalar* node_w, const Scalar* contact_rest,
                   const std::int32_t* contact_node, const Scalar* contact_weight, std::int32_t* contact_near,
                   Scalar* contact_gap, Scalar* contact_yield, Scalar* contact_anchor, const std::int32_t* tool_kind,
-                  const Scalar* tool_data, const Scalar* tool_grid, const Scalar* tool_pose, const Scalar* contact_params,
-                  std::int32_t tools, std::int32_t step) {
+                  const Scalar* tool_data, const Scalar* tool_grid, const Scalar* tool_pose, const Scalar* touch_surface,
+                  const Scalar* contact_params, std::int32_t tools, std::int32_t step) {
   using namespace contact;
   const Points<Scalar> points{node_u, node_w, contact_rest, contact_node, contact_weight};
-  const Tools<Scalar> all{tool_kind, tool_data, tool_grid, tool_pose, tools, step};
+  const EdgedTools<Scalar, EDGES> all{
+      {tool_kind, tool_data, tool_grid, tool_pose, tools, step}, nullptr, {points, touch_surface, nullptr}};
   const Scalar margin = contact_params[5], ahead = Scalar(2) * contact_params[6];
   for (std::int64_t tile = range.begin; tile < range.end; ++tile) {
     std::int32_t near = 0;
@@ -22,7 +23,8 @@ void contact_near(Range range, const Scalar* node_u, const Scalar* node_w, const
       const Place<Scalar> p = points.at(i);
       for (std::int32_t t = 0; t < tools; ++t) {
         const Meeting<Scalar> m = all.meet(t, p);
-        const Scalar gap = std::fma(-ahead, std::sqrt(dot(m.slip, m.slip)), m.distance);
+        const Scalar reach = all.has_edges(t) ? EdgeNumbers<Scalar>::stretch * all.patches.reach(i) : Scalar(0);
+        const Scalar gap = std::fma(-ahead, std::sqrt(dot(m.slip, m.slip)), m.distance) - reach;
         least[t] = gap < least[t] ? gap : least[t];
       }
     }
@@ -38,6 +40,9 @@ void contact_near(Range range, const Scalar* node_u, const Scalar* node_w, const
   }
 }
 
-void register_contact_near(Registry& registry) { registry.add("contact_near", contact_near<float>, contact_near<double>); }
+void register_contact_near(Registry& registry) {
+  registry.add_specialised<2>("contact_near", {"EDGES"},
+                              [](auto scalar, auto edges) { return contact_near<decltype(scalar), edges>; });
+}
 
 }  // namespace pliant::ref

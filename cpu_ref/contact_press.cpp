@@ -1,5 +1,5 @@
 // Twin of kernels/contact_press.cl.
-#include "contact_sum.h"
+#include "contact_edge.h"
 #include "registry.h"
 
 namespace pliant::ref {
@@ -46,48 +46,72 @@ Scalar yield_of_all(const Scalar* node_u, const Scalar* node_w, const std::int32
   return w;
 }
 
+/// What a point touches, a bit per tool, and whether it may touch something in the next step.
+struct Reached {
+  std::int32_t touching = 0, count = 0, ready = 0;
+};
+
+template <class Scalar, int EDGES>
+Reached reach(const EdgedTools<Scalar, EDGES>& all, const Corners<Scalar, EDGES>& corners, const Scalar* contact_weight,
+              std::int64_t i, const Place<Scalar>& p, std::int32_t near, Scalar margin, Scalar within) {
+  Reached out;
+  bool weighed = false;
+  for (std::int32_t t = 0; t < all.count; ++t) {
+    if ((near >> t & 1) == 0) continue;
+    const PatchMeeting<Scalar> met = all.meet_patch(t, i, p);
+    const bool soon = met.m.may_touch_next(margin, within);
+    if (soon) out.ready = PLIANT_READY_BIT;
+    if (EDGES != 0 && (!weighed || (met.edged && soon))) corners.write_weights(contact_weight, i, met);
+    weighed = true;
+    if (!(met.m.distance < Scalar(0))) continue;
+    out.touching |= 1 << t;
+    ++out.count;
+  }
+  return out;
+}
+
 }  // namespace
 
-template <class Scalar>
+template <class Scalar, int EDGES>
 void contact_press(Range range, const Scalar* node_u, const Scalar* node_w, const Scalar* contact_rest,
                    const std::int32_t* contact_node, const Scalar* contact_weight, const Scalar* contact_share,
                    const std::int32_t* contact_list, const std::int32_t* contact_near, Scalar* contact_yield,
                    Scalar* contact_anchor, std::int32_t* contact_force, std::int32_t* contact_tool_force,
-                   const std::int32_t* tool_kind, const Scalar* tool_data, const Scalar* tool_grid, const Scalar* tool_pose,
-                   const Scalar* contact_params, const Scalar* step_params, std::int32_t point_count, std::int32_t tools,
-                   std::int32_t step) {
+                   const std::int32_t* tool_kind, const Scalar* tool_data, const Scalar* tool_grid, const Scalar* tool_edge,
+                   const Scalar* tool_pose, const Scalar* touch_surface, const Scalar* contact_patch,
+                   Scalar* contact_corner_weight, std::int32_t* contact_corner_force, const Scalar* contact_params,
+                   const Scalar* step_params, std::int32_t point_count, std::int32_t tools, std::int32_t step) {
   const Points<Scalar> points{node_u, node_w, contact_rest, contact_node, contact_weight};
-  const Tools<Scalar> all{tool_kind, tool_data, tool_grid, tool_pose, tools, step};
+  const EdgedTools<Scalar, EDGES> all{
+      {tool_kind, tool_data, tool_grid, tool_pose, tools, step}, tool_edge, {points, touch_surface, contact_patch}};
+  const Corners<Scalar, EDGES> corners{contact_corner_force, contact_corner_weight};
   const Scalar h = step_params[0], half_hh = (Scalar(0.5) * h) * h;
   for (std::int64_t entry = range.begin; entry < range.end; ++entry) {
     const std::int64_t i = listed(contact_list, entry);
     const std::int32_t near = contact_near[i / PLIANT_TILE];
     const Place<Scalar> p = points.at(i);
     const Scalar area = points.area(i), within = ready_share(contact_yield[i]);  // no area: it fills the tile up
-    std::int32_t touching = 0, count = 0, ready = 0;
-    for (std::int32_t t = 0; t < tools && area > Scalar(0); ++t) {
-      if ((near >> t & 1) == 0) continue;
-      const Meeting<Scalar> m = all.meet(t, p);
-      if (m.may_touch_next(contact_params[5], within)) ready = PLIANT_READY_BIT;
-      if (!(m.distance < Scalar(0))) continue;
-      touching |= 1 << t;
-      ++count;
-    }
+    const Reached reached =
+        area > Scalar(0) ? reach(all, corners, contact_weight, i, p, near, contact_params[5], within) : Reached{};
+    const std::int32_t touching = reached.touching, count = reached.count;
     const PointNumbers<Scalar> anchor = numbers_of(contact_anchor, i);
     const PointNumbers<std::int32_t> force = numbers_of(contact_force, i);
     const std::int32_t held = static_cast<std::int32_t>(anchor[3]) - 1;
     if (held >= 0 && (touching >> held & 1) == 0) anchor[3] = 0;
     Quanta sum{};
+    corners.clear(i);
     Scalar w = contact_yield[i];
     if (touching != 0 && !(w > Scalar(0)))
       contact_yield[i] = w = yield_of_all(node_u, node_w, contact_node, contact_share, i, half_hh);
-    const Scalar stiffness = w > Scalar(0) ? area / (w * static_cast<Scalar>(count)) : Scalar(0);
+    const Scalar whole = w > Scalar(0) ? area / (w * static_cast<Scalar>(count)) : Scalar(0);
     for (std::int32_t t = 0; t < tools; ++t) {
       if ((near >> t & 1) == 0) continue;
       const PointNumbers<std::int32_t> on_tool = tool_force_of(contact_tool_force, point_count, t, i);
       on_tool[7] = touching >> t & 1;
       if (on_tool[7] == 0) continue;
-      const Meeting<Scalar> m = all.meet(t, p);
+      const PatchMeeting<Scalar> met = all.meet_patch(t, i, p);
+      const Meeting<Scalar>& m = met.m;
+      const Scalar stiffness = (whole * met.share) * met.ease;
       const Scalar* law = all.law(t);
       const Scalar push = normal_force(m, law, area, stiffness, h);
       Vec<Scalar> f = times(m.normal, push);
@@ -102,14 +126,17 @@ void contact_press(Range range, const Scalar* node_u, const Scalar* node_w, cons
       }
       const Quanta q = quanta(f, contact_params[1]);
       begin_touch(on_tool, m.opening - m.distance);
-      add_to_tool(on_tool, all.next(t), contact_params, p.now, q);
-      for (std::size_t k = 0; k < 3; ++k) sum[k] += q[k];
+      add_to_tool(on_tool, all.next(t), contact_params, met.at.now, q);
+      corners.add(i, met, q, sum);
     }
     set_three(force, sum);
-    force[3] = touching | ready;
+    force[3] = touching | reached.ready;
   }
 }
 
-void register_contact_press(Registry& registry) { registry.add("contact_press", contact_press<float>, contact_press<double>); }
+void register_contact_press(Registry& registry) {
+  registry.add_specialised<2>("contact_press", {"EDGES"},
+                              [](auto scalar, auto edges) { return contact_press<decltype(scalar), edges>; });
+}
 
 }  // namespace pliant::ref

@@ -3,7 +3,8 @@
 // contact_slot: [nodes] slots; contact_free: [nodes] bit mask of the components that move freely; contact_node_list: tiles of nodes at which
 // points are near something; contact_gather_offset: [tiles + 1] rows; contact_gather: [rows][16] positions in
 // contact_force; contact_gather_units: [rows][16] weights in units; with MOMENT contact_gather_turns: [rows][2][16] gradients along both
-// tangents in units, which sum to zero over a point's nodes, for touch_moment (touch_point.cl). contact_node_sum: [slots] (force (3) [N], sum of weights times
+// tangents in units, which sum to zero over a point's nodes, for touch_moment (touch_point.cl). With EDGES
+// contact_gather_corner: [rows][16] which of its nodes this is to the point, -1: none, for contact_corner_force (contact_edge.cl). contact_node_sum: [slots] (force (3) [N], sum of weights times
 // areas of the points that touch [m^2]).
 #include "arith.cl"
 
@@ -13,6 +14,8 @@ __kernel void contact_apply(__global float* node_u, __global float* node_w, __gl
                             __global const int* contact_gather, __global const int* contact_gather_units,
                             __global const int* contact_gather_turns, __global const int* contact_near,
                             __global const int* contact_force, __global const int* touch_moment,
+                            __global const int* contact_gather_corner, __global const int* contact_corner_force,
+                            __global const float* contact_corner_weight,
                             __global const float* contact_rest, __global float* contact_node_sum,
                             __global const float* contact_params, __global const float* step_params) {
   const int first = FIRST_LISTED(contact_node_list), tile = first / PLIANT_TILE;
@@ -23,7 +26,7 @@ __kernel void contact_apply(__global float* node_u, __global float* node_w, __gl
     float area = 0.0f;
     for (int k = contact_gather_offset[tile]; k < contact_gather_offset[tile + 1]; ++k) {
       const int entry = k * PLIANT_TILE + i % PLIANT_TILE, units = contact_gather_units[entry], at = contact_gather[entry];
-      if ((units == 0 && MOMENT == 0) || contact_near[at / (4 * PLIANT_TILE)] == 0 || contact_force[at + 3 * PLIANT_TILE] == 0) continue;
+      if ((units == 0 && MOMENT == 0 && EDGES == 0) || contact_near[at / (4 * PLIANT_TILE)] == 0 || contact_force[at + 3 * PLIANT_TILE] == 0) continue;
       x += (long)contact_force[at] * units;
       y += (long)contact_force[at + PLIANT_TILE] * units;
       z += (long)contact_force[at + 2 * PLIANT_TILE] * units;
@@ -37,7 +40,20 @@ __kernel void contact_apply(__global float* node_u, __global float* node_w, __gl
         z += (long)moment[2 * PLIANT_TILE] * first_turn + (long)moment[5 * PLIANT_TILE] * second_turn;
       }
 #endif
-      area = fma((float)units * (1.0f / 4096.0f), contact_rest[at + 3 * PLIANT_TILE], area);
+      float weight = (float)units * (1.0f / 4096.0f);
+#if EDGES
+      const int corner = contact_gather_corner[entry];
+      if (corner >= 0 && (contact_near[at / (4 * PLIANT_TILE)] & ~PLIANT_TOUCH_BIT) != 0) {
+        const int point = at / (4 * PLIANT_TILE), lane = at % PLIANT_TILE;
+        __global const int* part = contact_corner_force + point * (24 * PLIANT_TILE) + 3 * corner * PLIANT_TILE + lane;
+        __global const float* weights = contact_corner_weight + point * (9 * PLIANT_TILE) + lane;
+        x += (long)part[0] * 4096;
+        y += (long)part[PLIANT_TILE] * 4096;
+        z += (long)part[2 * PLIANT_TILE] * 4096;
+        weight = fabs(weights[corner * PLIANT_TILE]) * weights[8 * PLIANT_TILE];
+      }
+#endif
+      area = fma(weight, contact_rest[at + 3 * PLIANT_TILE], area);
     }
     const int slot = contact_slot[i], free = contact_free[i];
     const float fx = (float)x * quantum, fy = (float)y * quantum, fz = (float)z * quantum;

@@ -6,12 +6,16 @@
 #include "arith.cl"
 #include "contact_shape.cl"
 #include "contact_point.cl"
+#include "touch_point.cl"
+#include "contact_patch.cl"
+#include "contact_edge.cl"
 
 __kernel void contact_near(__global const float* node_u, __global const float* node_w, __global const float* contact_rest,
                            __global const int* contact_node, __global const float* contact_weight, __global int* contact_near,
                            __global float* contact_gap, __global float* contact_yield,
                            __global float* contact_anchor, __global const int* tool_kind, __global const float* tool_data,
-                           __global const float* tool_grid, __global const float* tool_pose, __global const float* contact_params, int tools, int step) {
+                           __global const float* tool_grid, __global const float* tool_pose, __global const float* touch_surface,
+                           __global const float* contact_params, int tools, int step) {
   const int tile = (int)get_global_id(0);
   const float margin = contact_params[5], ahead = 2.0f * contact_params[6];
   int near = 0;
@@ -21,7 +25,8 @@ __kernel void contact_near(__global const float* node_u, __global const float* n
     const contact_place p = place_of_point(node_u, node_w, contact_rest, contact_node, contact_weight, i);
     for (int t = 0; t < tools; ++t) {
       const meeting m = meet(tool_kind, tool_data, tool_grid, tool_pose, tools, step, t, p);
-      const float gap = fma(-ahead, sqrt(dot_xyz(m.slip, m.slip)), m.distance);
+      const float reach = has_edges(tool_kind, t) ? EDGE_STRETCH * touch_surface[POINT_BASE(i, PLIANT_TOUCH_SURFACE) + 23 * PLIANT_TILE] : 0.0f;
+      const float gap = fma(-ahead, sqrt(dot_xyz(m.slip, m.slip)), m.distance) - reach;
       least[t] = gap < least[t] ? gap : least[t];
     }
   }

@@ -12,12 +12,17 @@
 #include "contact_shape.cl"
 #include "contact_point.cl"
 #include "contact_sum.cl"
+#include "touch_point.cl"
+#include "contact_patch.cl"
+#include "contact_edge.cl"
 
 __kernel void contact_press(__global const float* node_u, __global const float* node_w, __global const float* contact_rest,
                             __global const int* contact_node, __global const float* contact_weight,
                             __global const float* contact_share, __global const int* contact_list, __global const int* contact_near, __global float* contact_yield,
                             __global float* contact_anchor, __global int* contact_force, __global int* contact_tool_force, __global const int* tool_kind,
-                            __global const float* tool_data, __global const float* tool_grid, __global const float* tool_pose,
+                            __global const float* tool_data, __global const float* tool_grid, __global const float* tool_edge,
+                            __global const float* tool_pose, __global const float* touch_surface, __global const float* contact_patch,
+                            __global float* contact_corner_weight, __global int* contact_corner_force,
                             __global const float* contact_params, __global const float* step_params, int point_count, int tools, int step) {
   const int first = FIRST_LISTED(contact_list);
   if (first < 0) return;
@@ -27,12 +32,17 @@ __kernel void contact_press(__global const float* node_u, __global const float* 
   for (int i = first; i < first + LANES; ++i) {
     const contact_place p = place_of_point(node_u, node_w, contact_rest, contact_node, contact_weight, i);
     const float area = contact_rest[POINT_BASE(i, 4) + 3 * PLIANT_TILE];  // none: it fills the tile up
-    int touching = 0, count = 0, ready = 0;
+    int touching = 0, count = 0, ready = 0, weighed = 0;
     const float within = ready_share(contact_yield[i]);
     for (int t = 0; t < tools; ++t) {
       if (!(near >> t & 1) || !(area > 0.0f)) continue;
-      const meeting m = meet(tool_kind, tool_data, tool_grid, tool_pose, tools, step, t, p);
-      if (may_touch_next(m, contact_params[5], within)) ready = PLIANT_READY_BIT;
+      const patch_meeting met = meet_patch(node_u, node_w, contact_rest, contact_node, contact_weight, tool_kind, tool_data, tool_grid,
+                                           tool_edge, tool_pose, touch_surface, contact_patch, tools, step, t, i, p);
+      const meeting m = met.m;
+      const int soon = may_touch_next(m, contact_params[5], within);
+      if (soon) ready = PLIANT_READY_BIT;
+      if (EDGES && (!weighed || (met.edged && soon))) write_weights(contact_corner_weight, contact_weight, i, met);
+      weighed = 1;
       if (m.distance < 0.0f) {
         touching |= 1 << t;
         ++count;
@@ -54,13 +64,17 @@ __kernel void contact_press(__global const float* node_u, __global const float* 
       }
       contact_yield[i] = w;
     }
-    const float stiffness = w > 0.0f ? area / (w * (float)count) : 0.0f;
+    const float whole = w > 0.0f ? area / (w * (float)count) : 0.0f;
+    if (EDGES) clear_corners(contact_corner_force, i);
     for (int t = 0; t < tools; ++t) {
       if (!(near >> t & 1)) continue;
       __global int* on_tool = tool_force_of(contact_tool_force, point_count, t, i);
       on_tool[7 * PLIANT_TILE] = touching >> t & 1;
       if (!(touching >> t & 1)) continue;
-      const meeting m = meet(tool_kind, tool_data, tool_grid, tool_pose, tools, step, t, p);
+      const patch_meeting met = meet_patch(node_u, node_w, contact_rest, contact_node, contact_weight, tool_kind, tool_data, tool_grid,
+                                           tool_edge, tool_pose, touch_surface, contact_patch, tools, step, t, i, p);
+      const meeting m = met.m;
+      const float stiffness = (whole * met.share) * met.ease;
       __global const float* data = tool_data + TOOL_NUMBERS * t;
       const float depth = -m.distance, opening = m.opening, before = depth + opening;
       float push = 0.0f;
@@ -95,9 +109,13 @@ __kernel void contact_press(__global const float* node_u, __global const float* 
       const float inverse = contact_params[1];
       const int4 q = (int4)(quanta(f.x * inverse), quanta(f.y * inverse), quanta(f.z * inverse), 0);
       for (int c = 0; c < 6; ++c) on_tool[c * PLIANT_TILE] = 0;
-      add_to_tool(on_tool, tool_pose + POSE_NUMBERS * ((step + 1) * tools + t), contact_params, p.now, q);
+      add_to_tool(on_tool, tool_pose + POSE_NUMBERS * ((step + 1) * tools + t), contact_params, met.at.now, q);
       on_tool[6 * PLIANT_TILE] = as_int(before > 0.0f ? before : 0.0f);
-      sum += q;
+      if (EDGES && met.edged) {
+        add_to_corners(contact_corner_force, i, met, q);
+      } else {
+        sum += q;
+      }
     }
     force[0] = sum.x;
     force[PLIANT_TILE] = sum.y;

@@ -5,13 +5,18 @@
 #include "contact_shape.cl"
 #include "contact_point.cl"
 #include "contact_sum.cl"
+#include "touch_point.cl"
+#include "contact_patch.cl"
+#include "contact_edge.cl"
 
 __kernel void contact_settle(__global const float* node_u, __global const float* node_w, __global const float* contact_rest,
                              __global const int* contact_node, __global const float* contact_weight,
                              __global const float* contact_share, __global const int* contact_list, __global const int* contact_near, __global float* contact_yield,
                              __global float* contact_anchor, __global int* contact_force, __global int* contact_change, __global const float* contact_node_sum,
                              __global int* contact_tool_force, __global const int* tool_kind, __global const float* tool_data,
-                             __global const float* tool_grid, __global const float* tool_pose, __global const float* contact_params,
+                             __global const float* tool_grid, __global const float* tool_edge, __global const float* tool_pose,
+                             __global const float* touch_surface, __global const float* contact_patch,
+                             __global const float* contact_corner_weight, __global int* contact_corner_force, __global const float* contact_params,
                              __global const float* step_params, int point_count, int tools, int step) {
   const int first = FIRST_LISTED(contact_list);
   if (first < 0) return;
@@ -23,16 +28,19 @@ __kernel void contact_settle(__global const float* node_u, __global const float*
     __global int* change = contact_change + POINT_BASE(i, 4);
     const int touching = force[3 * PLIANT_TILE];
     int4 sum = 0;
+    if (EDGES) clear_corners(contact_corner_force, i);
     if (touching != 0) {
       const contact_place p = place_of_point(node_u, node_w, contact_rest, contact_node, contact_weight, i);
       __global const int* node = contact_node + POINT_BASE(i, 8);
       __global const float* weight = contact_weight + POINT_BASE(i, 8);
       __global const float* share = contact_share + POINT_BASE(i, 8);
+      const int by_tools = (contact_near[first / PLIANT_TILE] & ~PLIANT_TOUCH_BIT) != 0;
       float w = 0.0f, all = 0.0f, moving = 0.0f;
       for (int a = 0; a < 8; ++a) {
         const int n = node[a * PLIANT_TILE];
         const float b = fma(half_hh, node_w[4 * n + 3], half_hh);
-        const float c = weight[a * PLIANT_TILE], own = c > 0.0f ? c * contact_node_sum[4 * n + 3] : 0.0f;
+        const float c = EDGES && by_tools ? contact_corner_weight[POINT_BASE(i, 9) + a * PLIANT_TILE] : weight[a * PLIANT_TILE];
+        const float own = c > 0.0f ? c * contact_node_sum[4 * n + 3] : 0.0f;
         const float free = share[a * PLIANT_TILE] > 0.0f ? own : 0.0f;
         w = fma(free, b * node_u[4 * n + 3], w);
         all += own;
@@ -43,10 +51,14 @@ __kernel void contact_settle(__global const float* node_u, __global const float*
       int count = 0;
       for (int t = 0; t < tools; ++t) count += touching >> t & 1;
       const float area = contact_rest[POINT_BASE(i, 4) + 3 * PLIANT_TILE];
-      const float stiffness = known > 0.0f ? area / (known * (float)count) : 0.0f;
+      const float whole = known > 0.0f ? area / (known * (float)count) : 0.0f;
       for (int t = 0; t < tools; ++t) {
         if (!(touching >> t & 1)) continue;
-        const meeting m = meet(tool_kind, tool_data, tool_grid, tool_pose, tools, step, t, p);
+        const patch_meeting met = meet_patch(node_u, node_w, contact_rest, contact_node, contact_weight, tool_kind, tool_data, tool_grid,
+                                           tool_edge, tool_pose, touch_surface, contact_patch, tools, step, t, i, p);
+        const meeting m = met.m;
+        const float stiffness = (whole * met.share) * met.ease;
+        __global int* on_tool = tool_force_of(contact_tool_force, point_count, t, i);
         __global const float* data = tool_data + TOOL_NUMBERS * t;
         const float rest = -m.distance - data[15];
         const float push = rest > 0.0f ? stiffness * rest : 0.0f;
@@ -54,7 +66,7 @@ __kernel void contact_settle(__global const float* node_u, __global const float*
         float4 f = m.normal * push;
         int4 before = 0;
         if (count == 1) {
-          before = (int4)(force[0], force[PLIANT_TILE], force[2 * PLIANT_TILE], 0);
+          before = (int4)(-on_tool[0], -on_tool[PLIANT_TILE], -on_tool[2 * PLIANT_TILE], 0);
           f += (float4)((float)before.x * quantum, (float)before.y * quantum, (float)before.z * quantum, 0.0f);
         }
         if (count == 1 && anchor[3 * PLIANT_TILE] == (float)(t + 1)) {
@@ -79,8 +91,12 @@ __kernel void contact_settle(__global const float* node_u, __global const float*
           }
         }
         const int4 q = (int4)(quanta(f.x * inverse), quanta(f.y * inverse), quanta(f.z * inverse), 0) - before;
-        add_to_tool(tool_force_of(contact_tool_force, point_count, t, i), tool_pose + POSE_NUMBERS * ((step + 1) * tools + t), contact_params, p.now, q);
-        sum += q;
+        add_to_tool(on_tool, tool_pose + POSE_NUMBERS * ((step + 1) * tools + t), contact_params, met.at.now, q);
+        if (EDGES && met.edged) {
+          add_to_corners(contact_corner_force, i, met, q);
+        } else {
+          sum += q;
+        }
       }
       force[0] += sum.x;
       force[PLIANT_TILE] += sum.y;

@@ -41,6 +41,7 @@
 #define PLIANT_TOUCH_SURFACE 24
 #define PLIANT_TOUCH_FORCE 4
 #define PLIANT_TOUCH_MOMENT 6  // of a point: what turns its first and its second tangent (3 each) [quanta]
+#define PLIANT_PATCH 34        // of a point: what bounds its patch (24) and how it moves (10)
 #define PLIANT_TOUCH_BOX 19
 #define PLIANT_TOUCH_TREE 4
 #define PLIANT_TOUCH_BIT 1073741824

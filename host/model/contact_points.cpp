@@ -3,11 +3,13 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 #include <tuple>
 
 #include "geometry/vec.h"
 #include "model/body_mesh.h"
 #include "model/contact.h"
+#include "model/contact_samples.h"
 #include "model/model.h"
 
 namespace pliant {
@@ -37,37 +39,6 @@ int side_of(const Vec3d& normal) {
   return static_cast<int>(2 * axis) + (normal[axis] < 0 ? 1 : 0);
 }
 
-Vec3d between(const std::array<Vec3d, 3>& x, const Vec3d& weight) {
-  Vec3d sum{};
-  for (std::size_t c = 0; c < 3; ++c) sum = vec::add(sum, vec::mul(x[c], weight[c]));
-  return sum;
-}
-
-/// Weights in whole units that sum to one.
-std::array<std::int32_t, 8> whole(const std::array<double, 8>& weights) {
-  std::array<std::int32_t, 8> out{};
-  std::int32_t sum = 0;
-  std::size_t largest = 0;
-  for (std::size_t a = 0; a < 8; ++a) {
-    out[a] = static_cast<std::int32_t>(std::lround(weights[a] * contact_weight_unit));
-    sum += out[a];
-    if (out[a] > out[largest]) largest = a;
-  }
-  out[largest] += contact_weight_unit - sum;
-  return out;
-}
-
-void add_point(ContactPoints& points, const Vec3d& x, const Slots& nodes, const std::array<double, 8>& weights, double area,
-               std::int32_t body, const Vec3d& normal, double apart) {
-  points.rest.push_back(x);
-  points.nodes.push_back(nodes);
-  points.weights.push_back(whole(weights));
-  points.area.push_back(area);
-  points.body.push_back(body);
-  points.normal.push_back(vec::mul(normal, 1 / vec::norm(normal)));
-  points.apart.push_back(apart);
-}
-
 /// The body of a lattice: every triangle is divided into samples, and those of one half of a cell (in x, y and z) that look the
 /// same way become one point.
 class LatticeSampler {
@@ -79,6 +50,7 @@ class LatticeSampler {
     std::sort(samples_.begin(), samples_.end(), [](const Sample& x, const Sample& y) {
       return std::tie(x.side, x.half, x.nodes, x.order) < std::tie(y.side, y.half, y.nodes, y.order);
     });
+    for (const Sample& s : samples_) halves_.insert({half_cell(s), s.side});
     for (std::size_t first = 0; first < samples_.size();) {
       std::size_t last = first + 1;
       while (last < samples_.size() && samples_[last].side == samples_[first].side &&
@@ -210,6 +182,29 @@ class LatticeSampler {
     for (std::size_t e = 0; e + 5 < b_.tets.size(); e += 6) add_cell(cell_corners(&b_.tets[e]));
   }
 
+  /// The half of a cell that a sample lies in.
+  [[nodiscard]] Index half_cell(const Sample& s) const {
+    Index index{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double corner = s.x[c] - s.local[c] * d_;
+      index[c] = 2 * std::llround((corner - b_.rest[0][c]) / d_) + (s.half >> c & 1);
+    }
+    return index;
+  }
+
+  /// Whether a neighbour's surface looks the same way, also where it rises or falls by half a cell.
+  [[nodiscard]] bool goes_on(const Sample& s, std::size_t axis, int way) const {
+    Index next = half_cell(s);
+    next[axis] += way;
+    const auto up = static_cast<std::size_t>(s.side / 2);
+    for (const int rise : {0, 1, -1}) {
+      Index at = next;
+      at[up] += rise;
+      if (halves_.count({at, s.side}) != 0) return true;
+    }
+    return false;
+  }
+
   /// The sample nearest to the middle of its group stands for all.
   void gather(std::size_t first, std::size_t last, ContactPoints& points) const {
     Vec3d middle{}, normal{};
@@ -232,7 +227,17 @@ class LatticeSampler {
       weights[a] = 1;
       for (std::size_t c = 0; c < 3; ++c) weights[a] *= (a >> c & 1) != 0 ? s.local[c] : 1 - s.local[c];
     }
-    add_point(points, s.x, s.nodes, weights, area, body_, normal, d_ / 2);
+    PatchSides sides{};
+    for (std::size_t c = 0; c < 3; ++c) {  // of its half of the cell
+      const double low = (s.half >> c & 1) != 0 ? 0.5 : 0;
+      for (const int way : {1, -1}) {
+        PatchSide& side = sides[2 * c + (way > 0 ? 0 : 1)];
+        side.normal[c] = way;
+        side.distance = (way > 0 ? low + 0.5 - s.local[c] : s.local[c] - low) * d_;
+        side.goes_on = goes_on(s, c, way);
+      }
+    }
+    add_contact_point(points, s.x, s.nodes, weights, area, body_, normal, d_ / 2, sides);
   }
 
   const Model& model_;
@@ -241,63 +246,8 @@ class LatticeSampler {
   double d_;
   std::vector<Sample> samples_;
   std::map<Index, std::vector<Place>> cells_;
+  std::set<std::pair<Index, int>> halves_;
 };
-
-/// The body of a volume mesh: three points per face, one for a face that is small. Returns the mean edge of its surface.
-double sample_faces(const Model& model, std::int32_t body, ContactPoints& points) {
-  const ModelSurface& s = model.surface;
-  const ModelBody& b = model.bodies[body];
-  double edges = 0;
-  const auto corners = [&](std::int32_t t) {
-    std::array<Vec3d, 3> x{};
-    for (std::size_t c = 0; c < 3; ++c) x[c] = s.rest[s.triangles[t][c]];
-    return x;
-  };
-  const auto longest_of = [](const std::array<Vec3d, 3>& x) {
-    double longest = 0;
-    for (std::size_t c = 0; c < 3; ++c) longest = std::max(longest, vec::norm(vec::sub(x[c], x[(c + 1) % 3])));
-    return longest;
-  };
-  for (std::int32_t t = b.first_triangle; t < b.first_triangle + b.triangles; ++t) edges += longest_of(corners(t));
-  const double mean = b.triangles > 0 ? edges / b.triangles : 0;
-  for (std::int32_t t = b.first_triangle; t < b.first_triangle + b.triangles; ++t) {
-    const std::array<Vec3d, 3> x = corners(t);
-    const Vec3d normal = vec::cross(vec::sub(x[1], x[0]), vec::sub(x[2], x[0]));
-    const double area = vec::norm(normal) / 2;
-    if (!(area > 0)) continue;
-    const int count = longest_of(x) > mean / 2 ? 3 : 1;
-    for (int k = 0; k < count; ++k) {
-      Vec3d at{1.0 / 3, 1.0 / 3, 1.0 / 3};
-      if (count == 3) {
-        at = {1.0 / 6, 1.0 / 6, 1.0 / 6};
-        at[static_cast<std::size_t>(k)] = 2.0 / 3;
-      }
-      // Its corners lie in one tetrahedron, or on nodes: few nodes have a weight.
-      std::map<std::int32_t, double> shares;
-      for (std::size_t c = 0; c < 3; ++c) {
-        const std::int32_t v = s.triangles[t][c];
-        for (std::size_t a = 0; a < 8; ++a) {
-          if (s.weights[v][a] != 0) shares[s.nodes[v][a]] += at[c] * s.weights[v][a];
-        }
-      }
-      std::vector<std::pair<double, std::int32_t>> largest;
-      for (const auto& [node, share] : shares) largest.emplace_back(-share, node);
-      std::sort(largest.begin(), largest.end());
-      largest.resize(std::min<std::size_t>(largest.size(), 8));
-      const double sum =
-          std::accumulate(largest.begin(), largest.end(), 0.0, [](double q, const auto& l) { return q - l.first; });
-      Slots nodes;
-      nodes.fill(largest.front().second);
-      std::array<double, 8> weights{};
-      for (std::size_t a = 0; a < largest.size(); ++a) {
-        nodes[a] = largest[a].second;
-        weights[a] = -largest[a].first / sum;
-      }
-      add_point(points, between(x, at), nodes, weights, area / count, body, normal, std::sqrt(area / count));
-    }
-  }
-  return mean;
-}
 
 /// Place along a curve that fills space, of points in a box of 1024^3.
 std::uint64_t morton(const Vec3d& x, const vec::Box& box) {
@@ -352,6 +302,7 @@ ContactPoints contact_points(const Model& model) {
   reorder(points.body, order);
   reorder(points.normal, order);
   reorder(points.apart, order);
+  reorder(points.sides, order);
   return points;
 }
 

@@ -4,10 +4,16 @@
 #include <cmath>
 
 #include "geometry/vec.h"
+#include "layout.h"
 #include "model/contact.h"
 
 namespace pliant {
 namespace {
+
+constexpr double kAlongSurface = 0.1;
+/// How far a patch goes beyond its sides, in distances between points: its share of a force falls to nothing there.
+constexpr double kBeyond = 0.8, kAtBorder = 0.06;
+constexpr double kNoSide = 1e6;  // [m]
 
 using Gradients = std::array<Vec3d, 8>;
 
@@ -106,6 +112,30 @@ ContactTangents contact_tangents(const ContactPoints& points, std::size_t point,
     for (std::size_t a = 0; a < 8; ++a) (k == 0 ? t.first : t.second)[a] = t.units[k][a] * unit;
   }
   return t;
+}
+
+std::vector<double> contact_patch(const ContactPoints& points, std::size_t point, const std::vector<Vec3d>& rest) {
+  const ContactTangents t = contact_tangents(points, point, rest);
+  std::vector<double> out;
+  for (const PatchSide& side : points.sides[point]) {
+    const double p = vec::dot(side.normal, t.t1), q = vec::dot(side.normal, t.t2), size = std::hypot(p, q);
+    // A side that lies along the surface bounds nothing.
+    const bool bounds = size > kAlongSurface;
+    out.insert(out.end(), {bounds ? p / size : 0, bounds ? q / size : 0, bounds ? side.distance / size : kNoSide,
+                           (side.goes_on ? kBeyond : kAtBorder) * points.apart[point]});
+  }
+  std::array<Vec3d, 8> x{};
+  for (std::size_t a = 0; a < 8; ++a) x[a] = rest[static_cast<std::size_t>(points.nodes[point][a])];
+  Gradients gradient{};
+  if (!cube_gradients(x, points.weights[point], gradient)) {
+    out.resize(PLIANT_PATCH, 0.0);
+    return out;
+  }
+  const double d = x[1][0] - x[0][0];
+  for (std::size_t c = 0; c < 3; ++c) out.push_back((points.rest[point][c] - x[0][c]) / d);
+  for (const Vec3d& along : {t.t1, t.t2}) out.insert(out.end(), {along[0] / d, along[1] / d, along[2] / d});
+  out.push_back(1);
+  return out;
 }
 
 }  // namespace pliant

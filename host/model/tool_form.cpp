@@ -34,7 +34,8 @@ void load_mesh(const ContactTool& tool, ToolForm& form) {
     box.extend(v);
     form.reach = std::max(form.reach, vec::norm(v));
   }
-  lay_grid(box, thickness_of(surface.mesh()), form);
+  form.thickness = thickness_of(surface.mesh());
+  lay_grid(box, form.thickness, form);
   append_distances(surface, form);
   form.surface = surface.mesh();
 }
@@ -70,6 +71,7 @@ double grid_distance(const ToolForm& form, const Vec3d& y, std::int32_t frame) {
 ToolForm tool_form(const ContactTool& tool) {
   ToolForm form;
   form.shape = tool.shape;
+  form.edges = tool.edges;
   form.radius = tool.radius;
   form.first = tool.first;
   form.second = tool.second;

@@ -51,6 +51,7 @@ struct ContactTool {
       0;                ///< lambda of Hunt and Crossley (1975) per area [Pa/m^exponent]; 0: "auto", as stiff as the step allows
   double exponent = 1;  ///< 1 or 1.5
   double alpha = 0;     ///< slope of the coefficient of restitution [s/m]: e = 1 - alpha v for small speeds v
+  bool edges = false;   ///< a sphere, capsule, box or mesh that passes between points of contact is met along its edges
   std::string pointer;  ///< JSON pointer ("/tools/0")
   [[nodiscard]] Pose at(double time) const;
   bool operator==(const ContactTool&) const = default;

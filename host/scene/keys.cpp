@@ -35,7 +35,7 @@ std::map<std::string, List> make_keys() {
       {"stiffness", {"young"}},
       {"gravity", List{"acceleration"} + curve},
       {"tool", {"path"}},
-      {"contact_tool", {"name", "shape", "scale", "frames_per_second", "path", "friction", "contact"}},
+      {"contact_tool", {"name", "shape", "scale", "frames_per_second", "path", "friction", "contact", "edges"}},
       {"shape", words_only(tool_shape_words())},
       {"contact", {"stiffness", "exponent", "alpha"}},
       {"tissue_contact", {"friction"}},

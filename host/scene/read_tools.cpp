@@ -125,6 +125,11 @@ ContactTool read_contact_tool(const Reader& entry, const std::string& name, cons
   }
   if (entry.has("friction")) tool.friction = entry.at("friction").non_negative();
   if (entry.has("contact")) read_contact(entry.at("contact"), tool);
+  if (entry.has("edges")) {
+    tool.edges = entry.at("edges").boolean();
+    if (tool.edges && (tool.shape == ToolShape::half_space || tool.shape == ToolShape::sequence))
+      entry.at("edges").fail("this key only beside a shape that is a sphere, capsule, box or mesh");
+  }
   return tool;
 }
 

@@ -223,6 +223,7 @@ ContactTool contact_tool(const ToolSpec& spec, const std::string& shape_pointer,
   t.stiffness = spec.stiffness;
   t.exponent = spec.exponent;
   t.alpha = spec.alpha;
+  t.edges = spec.edges;
   return t;
 }
 

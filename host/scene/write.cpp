@@ -293,6 +293,7 @@ OrderedJson tool_json(const ContactTool& t, const std::filesystem::path& scene_f
   if (t.stiffness != 0) tool["contact"]["stiffness"] = t.stiffness;
   if (t.stiffness != 0 || t.exponent != 1) tool["contact"]["exponent"] = t.exponent;
   if (t.stiffness != 0 || t.alpha != 0) tool["contact"]["alpha"] = t.alpha;
+  if (t.edges) tool["edges"] = true;
   return tool;
 }
 

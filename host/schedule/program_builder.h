@@ -90,10 +90,13 @@ class ProgramBuilder {
   void add_tools();
   void add_contact_gather();
   void add_contact_passes();
+  [[nodiscard]] std::vector<Arg> tool_pass_args(const std::string& kernel) const;
   void add_contact_look();
   [[nodiscard]] std::vector<Arg> named(std::initializer_list<const char*> buffers) const;
 
   /// Defined in program_touch.cpp: tissue that touches tissue.
+  void add_contact_surface();
+  void add_contact_patches();
   void add_touch();
   void add_touch_look();
   void add_touch_pass(const char* kernel);
@@ -128,6 +131,9 @@ class ProgramBuilder {
   BufferId node_u_ = -1, node_w_ = -1, node_force_ = -1, node_load_ = -1, corner_ = -1, fault_ = -1, summary_ = -1,
            fastest_ = -1, params_ = -1, now_ = -1, curves_ = -1, surface_x_ = -1, pressure_ = -1, brick_neighbor_ = -1,
            brick_rows_ = -1, brick_fill_ = -1, brick_force_ = -1, flsm_alpha_ = -1;
+  std::int32_t edged_tools_ = 0;  ///< a bit per tool that has edges (kernels/contact_edge.cl)
+  /// A buffer that only tools with edges have, or one in its place that no kernel reads.
+  [[nodiscard]] const char* of_edges(const char* buffer, const char* other) const { return edged_tools_ != 0 ? buffer : other; }
   int laws_ = 0;  ///< batches that have their law
 };
 

@@ -8,8 +8,10 @@
 namespace pliant {
 namespace {
 
-/// Numbers per tool in tool_data, tool_kind and a row of tool_pose (kernels/contact_shape.cl, contact_point.cl).
-constexpr std::size_t kToolNumbers = 20, kToolIntegers = 8;
+/// Numbers per tool in tool_data (kernels/contact_shape.cl).
+constexpr std::size_t kToolNumbers = 20;
+/// Numbers per edge point in tool_edge (kernels/contact_edge.cl).
+constexpr std::size_t kEdgeNumbers = 4;
 
 std::vector<double> numbers_of(const ToolForm& form, const ContactLaw& law) {
   std::vector<double> n{form.radius};
@@ -27,6 +29,8 @@ void ProgramBuilder::add_contact() {
   if (model_.contact == nullptr || model_.contact->size() == 0) return;
   add_contact_points();
   if (!model_.tools->empty()) add_tools();
+  if (model_.tissue_contact || edged_tools_ != 0) add_contact_surface();
+  if (edged_tools_ != 0) add_contact_patches();
   if (model_.tissue_contact) add_touch();
   add_contact_gather();
   add_contact_passes();
@@ -98,7 +102,7 @@ void ProgramBuilder::add_tools() {
   program_.buffers.back().carried = Carried::all;
   add(make_ints("contact_tool_force", BufferRole::scratch, "[tools][tiles][8][16]", {}, 8 * count * tools,
                 "contact_press, contact_settle"));
-  std::vector<double> data, grid;
+  std::vector<double> data, grid, edge;
   std::vector<std::int32_t> kind;
   for (std::size_t t = 0; t < tools; ++t) {
     const ToolForm& form = (*model_.tools)[t];
@@ -107,15 +111,20 @@ void ProgramBuilder::add_tools() {
     const ToolShape shape = form.shape == ToolShape::sequence ? ToolShape::mesh : form.shape;
     kind.insert(kind.end(), {static_cast<std::int32_t>(shape), static_cast<std::int32_t>(grid.size()), form.size[0],
                              form.size[1], form.size[2], static_cast<std::int32_t>(form.frames.size())});
-    kind.resize((t + 1) * kToolIntegers, 0);
+    const std::vector<EdgePoint> edges = edge_points(form, *model_.contact);
+    kind.insert(kind.end(), {static_cast<std::int32_t>(edge.size() / kEdgeNumbers), static_cast<std::int32_t>(edges.size())});
+    for (const EdgePoint& e : edges) edge.insert(edge.end(), {e.place[0], e.place[1], e.place[2], e.radius});
+    if (!edges.empty()) edged_tools_ |= 1 << t;
     grid.insert(grid.end(), form.distance.begin(), form.distance.end());
   }
   if (grid.empty()) grid.push_back(0);
+  if (edge.empty()) edge.resize(kEdgeNumbers, 0.0);
   add(make_ints("tool_kind", BufferRole::constant, "[tools][8]", std::move(kind)));
-  const std::size_t numbers = data.size(), values = grid.size();
+  const std::size_t numbers = data.size(), values = grid.size(), ends = edge.size();
   add(make_reals("tool_data", BufferType::real, numbers, BufferRole::constant, "[tools][20]", "see contact_shape.cl", "model",
                  std::move(data)));
   add(make_reals("tool_grid", BufferType::real, values, BufferRole::constant, "[grid nodes]", "m", "model", std::move(grid)));
+  add(make_reals("tool_edge", BufferType::real, ends, BufferRole::constant, "[edge points][4]", "m", "model", std::move(edge)));
   const auto rows = static_cast<std::size_t>(options_.batch_steps);
   add(make_reals("tool_pose", BufferType::real, (rows + 1) * tools * contact_pose_numbers, BufferRole::control,
                  "[steps + 1][tools][14]", "1 (9), m (3), 1 (2)", "host"));
@@ -126,21 +135,25 @@ void ProgramBuilder::add_tools() {
 
 namespace {
 
-/// A point at a node: its position in contact_force, its weight there and its gradients along both tangents, in units.
+/// A point at a node: its position in contact_force, its weight there and its gradients along both tangents, in units, and
+/// which of the point's nodes this is.
 struct PointAtNode {
-  std::int32_t at = 0, units = 0;
+  std::int32_t at = 0, units = 0, corner = 0;
   std::array<std::int32_t, 2> turns{};
 };
 
-std::map<std::int32_t, std::vector<PointAtNode>> points_at_nodes(const Model& model) {
+std::map<std::int32_t, std::vector<PointAtNode>> points_at_nodes(const Model& model, bool edged) {
   const ContactPoints& points = *model.contact;
   std::map<std::int32_t, std::vector<PointAtNode>> at_node;
   for (std::size_t i = 0; i < points.size(); ++i) {
     std::array<std::array<std::int32_t, 8>, 2> turns{};
     if (model.tissue_contact) turns = contact_tangents(points, i, model.rest).units;
     for (std::size_t a = 0; a < 8; ++a) {
-      const PointAtNode entry{static_cast<std::int32_t>(tile_base(i, 4)), points.weights[i][a], {turns[0][a], turns[1][a]}};
-      if (entry.units > 0 || entry.turns[0] != 0 || entry.turns[1] != 0) at_node[points.nodes[i][a]].push_back(entry);
+      const PointAtNode entry{static_cast<std::int32_t>(tile_base(i, 4)),
+                              points.weights[i][a],
+                              static_cast<std::int32_t>(a),
+                              {turns[0][a], turns[1][a]}};
+      if (edged || entry.units > 0 || entry.turns[0] != 0 || entry.turns[1] != 0) at_node[points.nodes[i][a]].push_back(entry);
     }
   }
   return at_node;
@@ -148,12 +161,12 @@ std::map<std::int32_t, std::vector<PointAtNode>> points_at_nodes(const Model& mo
 
 /// One number of each entry, in rows.
 template <class Number>
-GatherList rows_of(const std::vector<std::vector<PointAtNode>>& entries, Number number) {
+GatherList rows_of(const std::vector<std::vector<PointAtNode>>& entries, Number number, std::int32_t none = 0) {
   std::vector<std::vector<std::int32_t>> values(entries.size());
   for (std::size_t n = 0; n < entries.size(); ++n) {
     for (const PointAtNode& entry : entries[n]) values[n].push_back(number(entry));
   }
-  return pack_rows(values, 0);
+  return pack_rows(values, none);
 }
 
 }  // namespace
@@ -164,7 +177,7 @@ void ProgramBuilder::add_contact_gather() {
   for (const Constraint& c : model_.constraints) axes[c.slot] = c.axes;
   std::vector<std::int32_t> slot, free;
   std::vector<std::vector<PointAtNode>> entries;
-  for (auto& [s, own] : points_at_nodes(model_)) {
+  for (auto& [s, own] : points_at_nodes(model_, edged_tools_ != 0)) {
     slot.push_back(s);
     const auto found = axes.find(s);
     free.push_back(found == axes.end() ? 7 : 7 & ~found->second);
@@ -195,6 +208,12 @@ void ProgramBuilder::add_contact_gather() {
   add(make_ints("contact_gather", BufferRole::constant, "[rows][16]", std::move(where.index)));
   add(make_ints("contact_gather_units", BufferRole::constant, "[rows][16]",
                 rows_of(entries, [](const PointAtNode& p) { return p.units; }).index));
+  if (edged_tools_ != 0) {
+    add(make_ints("contact_gather_corner", BufferRole::constant, "[rows][16]",
+                  rows_of(
+                      entries, [](const PointAtNode& p) { return p.corner; }, -1)
+                      .index));
+  }
   if (!model_.tissue_contact) return;
   const GatherList first = rows_of(entries, [](const PointAtNode& p) { return p.turns[0]; });
   const GatherList second = rows_of(entries, [](const PointAtNode& p) { return p.turns[1]; });
@@ -211,6 +230,22 @@ void ProgramBuilder::add_contact_gather() {
 std::vector<Arg> ProgramBuilder::named(std::initializer_list<const char*> buffers) const {
   std::vector<Arg> list;
   for (const char* name : buffers) list.push_back(buffer_arg(program_.find(name)));
+  return list;
+}
+
+/// What contact_press and contact_settle read and write.
+std::vector<Arg> ProgramBuilder::tool_pass_args(const std::string& kernel) const {
+  std::vector<Arg> list = named({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_share",
+                                 "contact_list", "contact_near", "contact_yield", "contact_anchor", "contact_force"});
+  const bool settle = kernel == "contact_settle";
+  const std::vector<Arg> results = settle ? named({"contact_change", "contact_node_sum"}) : std::vector<Arg>{};
+  const std::vector<Arg> tools = named(
+      {"contact_tool_force", "tool_kind", "tool_data", "tool_grid", "tool_edge", "tool_pose",
+       of_edges("touch_surface", "contact_weight"), of_edges("contact_patch", "contact_weight"),
+       of_edges("contact_corner_weight", "contact_node_sum"),
+       of_edges("contact_corner_force", settle ? "contact_tool_force" : "contact_change"), "contact_params", "step_params"});
+  list.insert(list.end(), results.begin(), results.end());
+  list.insert(list.end(), tools.begin(), tools.end());
   return list;
 }
 
@@ -238,28 +273,23 @@ void ProgramBuilder::add_contact_passes() {
     pass("contact_apply",
          named({"node_u", "node_w", "contact_slot", "contact_free", "contact_node_list", "contact_gather_offset",
                 "contact_gather", "contact_gather_units", tissue ? "contact_gather_turns" : "contact_gather_units",
-                "contact_near", force, tissue ? "touch_moment" : force, "contact_rest", "contact_node_sum", "contact_params",
+                "contact_near", force, tissue ? "touch_moment" : force,
+                of_edges("contact_gather_corner", "contact_gather_units"), of_edges("contact_corner_force", force),
+                of_edges("contact_corner_weight", "contact_rest"), "contact_rest", "contact_node_sum", "contact_params",
                 "step_params"}),
          Shape::lanes, nodes, "contact nodes");
-    program_.step.back().defines = {{"MOMENT", tissue ? 1 : 0}};
+    program_.step.back().defines = {{"MOMENT", tissue ? 1 : 0}, {"EDGES", edged_tools_ != 0 ? 1 : 0}};
   };
   add_contact_look();
-  if (tools > 0) {
-    pass("contact_press",
-         with_step(named({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_share", "contact_list",
-                          "contact_near", "contact_yield", "contact_anchor", "contact_force", "contact_tool_force", "tool_kind",
-                          "tool_data", "tool_grid", "tool_pose", "contact_params", "step_params"})),
-         Shape::lanes, points, "contact points");
-  }
+  const auto of_tools = [&](const char* kernel) {
+    pass(kernel, with_step(tool_pass_args(kernel)), Shape::lanes, points, "contact points");
+    program_.step.back().defines = {{"EDGES", edged_tools_ != 0 ? 1 : 0}};
+  };
+  if (tools > 0) of_tools("contact_press");
   if (tissue) add_touch_pass("touch_press");
   apply(tissue ? "contact_change" : "contact_force");
   if (tools > 0) {
-    pass("contact_settle",
-         with_step(named({"node_u",        "node_w",         "contact_rest",     "contact_node",       "contact_weight",
-                          "contact_share", "contact_list",   "contact_near",     "contact_yield",      "contact_anchor",
-                          "contact_force", "contact_change", "contact_node_sum", "contact_tool_force", "tool_kind",
-                          "tool_data",     "tool_grid",      "tool_pose",        "contact_params",     "step_params"})),
-         Shape::lanes, points, "contact points");
+    of_tools("contact_settle");
     pass("contact_tool_sum",
          with_step(named({"contact_tool_force", "contact_rest", "contact_list", "contact_near", "tool_sum", "contact_params"})),
          Shape::items, tools * static_cast<std::int64_t>(contact_sum_parts), "parts of tools");
@@ -273,13 +303,14 @@ void ProgramBuilder::add_contact_look() {
   const auto tools = static_cast<std::int32_t>(model_.tools->size());
   if (tools > 0) {
     const std::int64_t tiles = padded(model_.contact->size()) / PLIANT_TILE;
-    std::vector<Arg> list =
-        named({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_near", "contact_gap",
-               "contact_yield", "contact_anchor", "tool_kind", "tool_data", "tool_grid", "tool_pose", "contact_params"});
+    std::vector<Arg> list = named({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_near",
+                                   "contact_gap", "contact_yield", "contact_anchor", "tool_kind", "tool_data", "tool_grid",
+                                   "tool_pose", of_edges("touch_surface", "contact_weight"), "contact_params"});
     list.push_back(int_arg(tools));
     list.push_back(step_arg());
     program_.look.push_back({"contact_near", {}, std::move(list), Shape::items, tiles, "near tools", tiles, 16 * 200.0, 0});
     program_.look.back().uneven = true;
+    program_.look.back().defines = {{"EDGES", edged_tools_ != 0 ? 1 : 0}};
   }
   if (model_.tissue_contact) add_touch_look();
 }

@@ -35,10 +35,11 @@ std::vector<std::int32_t> tree_over(std::size_t tiles) {
 
 }  // namespace
 
-void ProgramBuilder::add_touch() {
+/// How the surface at points follows the nodes.
+void ProgramBuilder::add_contact_surface() {
   const ContactPoints& points = *model_.contact;
-  const auto count = static_cast<std::size_t>(padded(points.size())), tiles = count / PLIANT_TILE;
-  std::vector<double> surface(PLIANT_TOUCH_SURFACE * count, 0.0), rest(4 * count, 0.0);
+  const auto count = static_cast<std::size_t>(padded(points.size()));
+  std::vector<double> surface(PLIANT_TOUCH_SURFACE * count, 0.0);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const ContactTangents t = contact_tangents(points, i, model_.rest);
     double* own = &surface[tile_base(i, PLIANT_TOUCH_SURFACE)];
@@ -49,9 +50,39 @@ void ProgramBuilder::add_touch() {
     for (std::size_t c = 0; c < 3; ++c) {
       own[(16 + c) * PLIANT_TILE] = t.t1[c];
       own[(19 + c) * PLIANT_TILE] = t.t2[c];
-      rest[tile_base(i, 4) + c * PLIANT_TILE] = points.rest[i][c];
     }
     own[std::size_t{22} * PLIANT_TILE] = points.apart[i];
+    own[std::size_t{23} * PLIANT_TILE] = points.reach(i);
+  }
+  add(make_reals("touch_surface", BufferType::real, PLIANT_TOUCH_SURFACE * count, BufferRole::constant, "[tiles][24][16]",
+                 "see touch_point.cl", "model", std::move(surface)));
+}
+
+/// The patches that edges of tools meet, and what these do to their nodes.
+void ProgramBuilder::add_contact_patches() {
+  const ContactPoints& points = *model_.contact;
+  const auto count = static_cast<std::size_t>(padded(points.size()));
+  std::vector<double> patch(PLIANT_PATCH * count, 0.0);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::vector<double> own = contact_patch(points, i, model_.rest);
+    for (std::size_t k = 0; k < own.size(); ++k) patch[tile_base(i, PLIANT_PATCH) + k * PLIANT_TILE] = own[k];
+  }
+  add(make_reals("contact_patch", BufferType::real, PLIANT_PATCH * count, BufferRole::constant, "[tiles][34][16]",
+                 "see contact_edge.cl", "model", std::move(patch)));
+  add(make_reals("contact_corner_weight", BufferType::real, 9 * count, BufferRole::scratch, "[tiles][9][16]", "1",
+                 "contact_press"));
+  program_.buffers.back().carried = Carried::all;
+  add(make_ints("contact_corner_force", BufferRole::scratch, "[tiles][8][3][16]", {}, 24 * count,
+                "contact_press, contact_settle"));
+  program_.buffers.back().carried = Carried::all;
+}
+
+void ProgramBuilder::add_touch() {
+  const ContactPoints& points = *model_.contact;
+  const auto count = static_cast<std::size_t>(padded(points.size())), tiles = count / PLIANT_TILE;
+  std::vector<double> rest(4 * count, 0.0);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t c = 0; c < 3; ++c) rest[tile_base(i, 4) + c * PLIANT_TILE] = points.rest[i][c];
     rest[tile_base(i, 4) + std::size_t{3} * PLIANT_TILE] = points.body[i];
   }
   std::vector<std::int32_t> tree = tree_over(tiles);
@@ -60,8 +91,6 @@ void ProgramBuilder::add_touch() {
                          const char* producer, std::vector<double> values = {}) {
     add(make_reals(name, BufferType::real, planes * count, role, shape, unit, producer, std::move(values)));
   };
-  reals("touch_surface", PLIANT_TOUCH_SURFACE, BufferRole::constant, "[tiles][24][16]", "see touch_point.cl", "model",
-        std::move(surface));
   reals("touch_rest", 4, BufferRole::constant, "[tiles][4][16]", "m, m, m, 1", "model", std::move(rest));
   add(make_ints("touch_node", BufferRole::constant, "[tree][4]", std::move(tree)));
   for (const char* name : {"touch_partner", "last_touch_partner"}) {

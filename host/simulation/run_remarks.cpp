@@ -91,10 +91,10 @@ void add_tool(const Simulation& s, std::size_t tool, Sentences& out) {
   const ToolHistory& h = s.contact().history()[tool];
   const double spacing = s.model().contact->spacing, cells = h.max_depth / spacing;
   const double thick = thickness((*s.model().tools)[tool]);
-  if (thick < kThin * spacing) {
+  if (thick < kThin * spacing && edge_points((*s.model().tools)[tool], *s.model().contact).empty()) {
     out.push_back(fmt::format(
         "tool '{}' is {:.3g} m thin, and points of contact are {:.3g} m apart (half a cell): it passes between them, and its "
-        "force means little; smaller cells would feel it",
+        "force means little; smaller cells would feel it, and \"edges\": true does (docs/contact.md, Thin tools)",
         name, thick, 0.5 * spacing));
   }
   if (cells > kDeep) {

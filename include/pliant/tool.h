@@ -26,6 +26,7 @@ struct ToolSpec {
   double stiffness = 0;                     ///< per area [Pa/m^exponent]; 0: "auto", hard at once
   double exponent = 1;                      ///< 1 or 1.5, beside a stiffness
   double alpha = 0;                         ///< slope of the coefficient of restitution, beside a stiffness [s/m]
+  bool edges = false;                       ///< where it is thinner than half a cell: met along its edges (docs/contact.md)
 };
 
 /// Bodies touch each other and themselves, and so do the faces of a cut (docs/contact.md).

@@ -12,12 +12,14 @@ namespace pliant::kernel_test {
 
 /// Everything that the passes of contact read. The numbers are of a body of about 1 m whose nodes weigh about 1 kg.
 struct ContactData {
-  static constexpr std::size_t tools = 5, rows = test_step + 2, frames = 3, pose_numbers = 14;
+  static constexpr std::size_t tools = 5, rows = test_step + 2, frames = 3, pose_numbers = 14, edges = 24;
   std::size_t points, slots = 96;
   Reals node_u, node_w, rest, weight, share, yield, anchor, node_sum, data, grid, pose, params, step_params;
   Ints node, near, force, change, tool_force, sum, kind;
   Reals gap;
   Ints node_list, slot, free, gather_offset, gather, units, turns, moment;
+  Reals edge, surface, patch, corner_weight;
+  Ints corner_force, corner;
 
   static std::size_t base(std::size_t i, std::size_t planes) { return i / 16 * planes * 16 + i % 16; }
 
@@ -32,6 +34,7 @@ struct ContactData {
     make_points(random);
     make_tools(random);
     make_gather();
+    make_patches(random);
   }
 
  private:
@@ -91,12 +94,46 @@ struct ContactData {
     }
   }
 
+  /// Patches about as large as the points are apart; half of them move as in a cell.
+  void make_patches(Random& random) {
+    surface = random.reals(PLIANT_TOUCH_SURFACE * points, Data::large, 3);
+    patch.assign(PLIANT_PATCH * points, 0.0);
+    corner_weight = random.positive(9 * points, 0.01, 1);
+    corner_force = random.ints(24 * points, -1000000, 1000000);
+    for (std::size_t i = 0; i < points; ++i) {
+      const double angle = random.uniform(0, 6), c = std::cos(angle), s = std::sin(angle);
+      const Reals tangents{c, s, 0, -s, c, 0}, along{3 * c, 3 * s, 0, -3 * s, 3 * c, 0};
+      for (std::size_t k = 0; k < 6; ++k) surface[base(i, PLIANT_TOUCH_SURFACE) + 16 * (16 + k)] = tangents[k];
+      surface[base(i, PLIANT_TOUCH_SURFACE) + 16 * 22] = random.uniform(0.2, 0.5);
+      surface[base(i, PLIANT_TOUCH_SURFACE) + 16 * 23] = random.uniform(0.1, 0.3);
+      double* own = &patch[base(i, PLIANT_PATCH)];
+      for (std::size_t k = 0; k < 6; ++k) {
+        const double way = static_cast<double>(k) + random.uniform(-0.2, 0.2);
+        own[16 * (4 * k)] = std::cos(way);
+        own[16 * (4 * k + 1)] = std::sin(way);
+        own[16 * (4 * k + 2)] = random.uniform(0.1, 0.3);
+        own[16 * (4 * k + 3)] = random.uniform(0.02, 0.2);
+      }
+      for (std::size_t k = 0; k < 3; ++k) own[16 * (24 + k)] = random.uniform(0, 1);
+      for (std::size_t k = 0; k < 6; ++k) own[16 * (27 + k)] = along[k];
+      own[16 * 33] = random.chance(0.5) ? 1 : 0;
+    }
+    for (std::size_t e = 0; e < edges; ++e) {
+      for (int k = 0; k < 3; ++k) edge.push_back(random.uniform(-0.5, 0.5));
+      edge.push_back(random.uniform(0, 0.1));
+    }
+  }
+
   void make_tools(Random& random) {
     grid = random.reals(frames * 6 * 5 * 4, Data::large, 0.2);
     for (std::size_t t = 0; t < tools; ++t) {
       // The last tool is a mesh, or a sequence.
       const std::int32_t of_sequence = t == 4 && random.chance(0.5) ? static_cast<std::int32_t>(frames) : 0;
       kind.insert(kind.end(), {static_cast<std::int32_t>(t), 0, 6, 5, 4, of_sequence, 0, 0});
+      if (t != 3 && of_sequence == 0) {
+        kind[8 * t + 6] = static_cast<std::int32_t>(4 * t);
+        kind[8 * t + 7] = t == 1 ? 0 : static_cast<std::int32_t>(4 + t);
+      }
       Reals d{random.uniform(0.2, 0.5)};
       for (int k = 0; k < 3; ++k) d.push_back(random.uniform(-0.3, 0));
       if (t == 3) {
@@ -126,12 +163,12 @@ struct ContactData {
 
   /// The nodes in order; a last tile is filled up with a slot that is none.
   void make_gather() {
-    std::vector<std::vector<std::array<std::int32_t, 4>>> at(slots + 16);
+    std::vector<std::vector<std::array<std::int32_t, 5>>> at(slots + 16);
     for (std::size_t i = 0; i < points; ++i) {
       for (std::size_t a = 0; a < 8; ++a) {
         const int parts = static_cast<int>(weight[base(i, 8) + 16 * a] * 4096);
         at[static_cast<std::size_t>(node[base(i, 8) + 16 * a])].push_back(
-            {static_cast<int>(base(i, 4)), parts, turn[16 * i + a], turn[16 * i + 8 + a]});
+            {static_cast<int>(base(i, 4)), parts, turn[16 * i + a], turn[16 * i + 8 + a], static_cast<int>(a)});
       }
     }
     gather_offset = {0};
@@ -146,6 +183,7 @@ struct ContactData {
         for (std::size_t n = first; n < first + 16; ++n) {
           gather.push_back(row < at[n].size() ? at[n][row][0] : 0);
           units.push_back(row < at[n].size() ? at[n][row][1] : 0);
+          corner.push_back(row < at[n].size() ? at[n][row][4] : -1);
         }
         for (std::size_t k = 2; k < 4; ++k) {
           for (std::size_t n = first; n < first + 16; ++n) turns.push_back(row < at[n].size() ? at[n][row][k] : 0);
@@ -176,7 +214,12 @@ inline KernelCase& add_tools(KernelCase& test, const ContactData& d) {
   return test.ints("tool_kind", d.kind)
       .reals("tool_data", d.data)
       .reals("tool_grid", d.grid)
+      .reals("tool_edge", d.edge)
       .reals("tool_pose", d.pose)
+      .reals("touch_surface", d.surface)
+      .reals("contact_patch", d.patch)
+      .reals("contact_corner_weight", d.corner_weight)
+      .ints("contact_corner_force", d.corner_force)
       .reals("contact_params", d.params);
 }
 
@@ -188,14 +231,22 @@ inline KernelCase& add_points(KernelCase& test, const ContactData& d) {
       .reals("contact_weight", d.weight);
 }
 
-inline KernelCase near_case(const ContactData& d) {
-  KernelCase test("contact_near", {}, Shape::items, d.points / 16);
+/// `edges`: 1 where some tools are met along their edges.
+inline KernelCase near_case(const ContactData& d, int edges = 0) {
+  KernelCase test("contact_near", {{"EDGES", edges}}, Shape::items, d.points / 16);
   add_points(test, d)
       .ints("contact_near", d.near)
       .reals("contact_gap", d.gap)
       .reals("contact_yield", d.yield)
       .reals("contact_anchor", d.anchor);
-  add_tools(test, d).integer(static_cast<int>(ContactData::tools)).step();
+  test.ints("tool_kind", d.kind)
+      .reals("tool_data", d.data)
+      .reals("tool_grid", d.grid)
+      .reals("tool_pose", d.pose)
+      .reals("touch_surface", d.surface)
+      .reals("contact_params", d.params)
+      .integer(static_cast<int>(ContactData::tools))
+      .step();
   return test;
 }
 
@@ -215,15 +266,15 @@ inline KernelCase& add_counts(KernelCase& test, const ContactData& d) {
   return test.integer(static_cast<int>(d.points)).integer(static_cast<int>(ContactData::tools)).step();
 }
 
-inline KernelCase press_case(const ContactData& d) {
-  KernelCase test("contact_press", {}, Shape::lanes, near_points(d));
+inline KernelCase press_case(const ContactData& d, int edges = 0) {
+  KernelCase test("contact_press", {{"EDGES", edges}}, Shape::lanes, near_points(d));
   add_touching(test, d).ints("contact_tool_force", d.tool_force);
   add_counts(add_tools(test, d).reals("step_params", d.step_params), d);
   return test;
 }
 
-inline KernelCase settle_case(const ContactData& d) {
-  KernelCase test("contact_settle", {}, Shape::lanes, near_points(d));
+inline KernelCase settle_case(const ContactData& d, int edges = 0) {
+  KernelCase test("contact_settle", {{"EDGES", edges}}, Shape::lanes, near_points(d));
   add_touching(test, d)
       .ints("contact_change", d.change)
       .reals("contact_node_sum", d.node_sum)
@@ -245,8 +296,8 @@ inline KernelCase tool_sum_case(const ContactData& d) {
 }
 
 /// `moment`: with what turns the tangents of points that touch tissue.
-inline KernelCase apply_case(const ContactData& d, int moment = 0) {
-  KernelCase test("contact_apply", {{"MOMENT", moment}}, Shape::lanes, d.slot.size());
+inline KernelCase apply_case(const ContactData& d, int moment = 0, int edges = 0) {
+  KernelCase test("contact_apply", {{"MOMENT", moment}, {"EDGES", edges}}, Shape::lanes, d.slot.size());
   test.reals("node_u", d.node_u)
       .reals("node_w", d.node_w)
       .ints("contact_slot", d.slot)
@@ -259,6 +310,9 @@ inline KernelCase apply_case(const ContactData& d, int moment = 0) {
       .ints("contact_near", d.near)
       .ints("contact_force", d.force)
       .ints("touch_moment", d.moment)
+      .ints("contact_gather_corner", d.corner)
+      .ints("contact_corner_force", d.corner_force)
+      .reals("contact_corner_weight", d.corner_weight)
       .reals("contact_rest", d.rest)
       .reals("contact_node_sum", d.node_sum)
       .reals("contact_params", d.params)
@@ -298,15 +352,18 @@ inline double on_tool(const ContactData& d, const Reals& tool_force, std::size_t
   return sum;
 }
 
-/// What points get in the buffer `name`, tools give, to the last quantum; `tools_before`: contact_tool_force before the pass,
-/// if the pass adds to it.
-inline void expect_action_is_reaction(const ContactData& d, const KernelCase& test, const char* name,
-                                      const Reals& tools_before) {
+/// What points get in the buffer `name`, and with `edges` their nodes, tools give, to the last quantum; `tools_before`:
+/// contact_tool_force before the pass, if the pass adds to it.
+inline void expect_action_is_reaction(const ContactData& d, const KernelCase& test, const char* name, const Reals& tools_before,
+                                      int edges = 0) {
+  const Reals corners = ints_in_double(test, "contact_corner_force");
   const Reals force = ints_in_double(test, name), tool_force = ints_in_double(test, "contact_tool_force");
   for (std::size_t c = 0; c < 3; ++c) {
     double points = 0, tools = 0;
     for (std::size_t i = 0; i < d.points; ++i) {
-      if (d.near[i / 16] != 0) points += force[ContactData::base(i, 4) + 16 * c];
+      if (d.near[i / 16] == 0) continue;
+      points += force[ContactData::base(i, 4) + 16 * c];
+      for (std::size_t a = 0; a < 8 && edges != 0; ++a) points += corners[ContactData::base(i, 24) + 16 * (3 * a + c)];
     }
     for (std::size_t t = 0; t < ContactData::tools; ++t) {
       tools += on_tool(d, tool_force, t, c) - (tools_before.empty() ? 0 : on_tool(d, tools_before, t, c));

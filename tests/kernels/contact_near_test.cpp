@@ -7,7 +7,10 @@ namespace {
 class ContactNear : public TwinTest {};
 
 TEST_F(ContactNear, TwinGivesTheSameBits) {
-  for_contact_data(100, [&](const ContactData& d, const std::string& label) { expect_same_bits(near_case(d), label); });
+  for_contact_data(100, [&](const ContactData& d, const std::string& label) {
+    expect_same_bits(near_case(d), label);
+    expect_same_bits(near_case(d, 1), label + ", with edges");
+  });
 }
 
 /// A look keeps what is within reach, and forgets the anchors of the rest.

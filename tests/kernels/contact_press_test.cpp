@@ -11,7 +11,10 @@ using Eigen::Vector3d;
 class ContactPress : public TwinTest {};
 
 TEST_F(ContactPress, TwinGivesTheSameBits) {
-  for_contact_data(200, [&](const ContactData& d, const std::string& label) { expect_same_bits(press_case(d), label); });
+  for_contact_data(200, [&](const ContactData& d, const std::string& label) {
+    expect_same_bits(press_case(d), label);
+    expect_same_bits(press_case(d, 1), label + ", with edges");
+  });
 }
 
 /// Signed distance by the book; of the grid by its eight weights.
@@ -109,6 +112,7 @@ TEST(ContactPressOracle, ActionIsReactionInFixedPoint) {
   for (std::uint32_t seed = 0; seed < 6; ++seed) {
     const ContactData d(500 + seed);
     expect_action_is_reaction(d, press_case(d), "contact_force", {});
+    expect_action_is_reaction(d, press_case(d, 1), "contact_force", {}, 1);
   }
 }
 

@@ -7,7 +7,10 @@ namespace {
 class ContactSettle : public TwinTest {};
 
 TEST_F(ContactSettle, TwinGivesTheSameBits) {
-  for_contact_data(300, [&](const ContactData& d, const std::string& label) { expect_same_bits(settle_case(d), label); });
+  for_contact_data(300, [&](const ContactData& d, const std::string& label) {
+    expect_same_bits(settle_case(d), label);
+    expect_same_bits(settle_case(d, 1), label + ", with edges");
+  });
 }
 
 TEST(ContactSettleOracle, ActionIsReactionInFixedPoint) {
@@ -18,6 +21,7 @@ TEST(ContactSettleOracle, ActionIsReactionInFixedPoint) {
       touching &= d.near[i / 16];
     }
     expect_action_is_reaction(d, settle_case(d), "contact_change", {d.tool_force.begin(), d.tool_force.end()});
+    expect_action_is_reaction(d, settle_case(d, 1), "contact_change", {d.tool_force.begin(), d.tool_force.end()}, 1);
   }
 }
 

@@ -63,6 +63,37 @@ TEST_P(RestPhysics, OneCellUnderABall) {
   }
 }
 
+/// Tools thinner than half a cell, with edges: pressed between points of contact they have a force, in place and at rest.
+TEST_P(RestPhysics, ThinToolsWithEdgesAreMet) {
+  ContactTool ball, needle;
+  ball.radius = 0.001;
+  needle.shape = ToolShape::capsule;
+  needle.radius = 0.0005;
+  needle.second = {0.01, 0.003, 0.03};
+  const std::array<std::pair<ContactTool, Vec3d>, 2> tools{
+      {{ball, {0.0263, 0.0241, 0.0212}}, {needle, {0.0263, 0.0241, 0.0207}}}};
+  const std::array<const char*, 2> names{"ball", "needle"};
+  for (const Discretization cut : {Discretization::hex8_bricks, Discretization::tet4}) {
+    for (std::size_t k = 0; k < tools.size(); ++k) {
+      const std::string label = std::string(names[k]) + ", " + name_of(cut) + ": ";
+      Vec3d force[2];
+      double motion_at_end = 1;
+      for (const bool edges : {false, true}) {
+        Scene scene;
+        scene.bodies = {held_block({{10, 10, 4}, 0.005}, cut, 20)};
+        scene.tools = {pressed(tools[k].first, tools[k].second, 0.0025)};
+        scene.tools[0].edges = edges;
+        auto sim = simulate(scene, GetParam());
+        motion_at_end = most_motion(*sim, 1.5, 1.6);
+        force[edges ? 1 : 0] = sim->contact().history()[0].now.force;
+      }
+      EXPECT_GT(force[1][2], 0.05) << label;
+      EXPECT_GT(force[1][2], 2 * force[0][2]) << label;
+      check(label + "motion at rest", motion_at_end, 1e-6);
+    }
+  }
+}
+
 /// The rod, the block and the step that once shook for ever, on every element; and the force at a tenth of the step.
 TEST_P(RestPhysics, ARodOnASlab) {
   for (const Discretization cut : all_cuts()) {
