@@ -74,6 +74,7 @@ Embedding embedding_of(const ModelSurface& s, std::int32_t t, const Vec3d& at) {
     }
   }
   std::vector<std::pair<double, std::int32_t>> largest;
+  largest.reserve(shares.size());
   for (const auto& [node, share] : shares) largest.emplace_back(-share, node);
   std::sort(largest.begin(), largest.end());
   largest.resize(std::min<std::size_t>(largest.size(), 8));
