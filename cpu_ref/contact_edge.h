@@ -9,6 +9,7 @@ struct EdgeNumbers {
   static constexpr auto ease = Scalar(0.5), loose = Scalar(1.5), inside = Scalar(1), narrow = Scalar(0.5), close = Scalar(0.1),
                         alike = Scalar(0.7), stretch = Scalar(3), far = Scalar(1e30);
 };
+
 /// Whether a point lies over a face of a box, the one that looks most against it.
 template <class Scalar>
 inline bool on_box_face(const Scalar* data, const Vec<Scalar>& normal, const Vec<Scalar>& y, Scalar spacing,
@@ -47,10 +48,11 @@ inline EdgeGap<Scalar> nearest_edge(const Scalar* edge, std::int32_t count, cons
   return found;
 }
 
-template <class Scalar>
+template <class Scalar, int EDGES>
 struct PatchMeeting {
   Meeting<Scalar> m;
-  PatchPlace<Scalar> at;
+  Vec<Scalar> place{};                              ///< where the force acts, after the trial step
+  std::array<Scalar, EDGES != 0 ? 8 : 0> weight{};  ///< of the nodes there
   Scalar share = 1, ease = 1;
   bool edged = false;
 };
@@ -63,39 +65,41 @@ struct EdgedTools : Tools<Scalar> {
 
   [[nodiscard]] bool has_edges(std::int32_t t) const { return EDGES != 0 && this->kind[tool_integers * t + 7] > 0; }
 
-  [[nodiscard]] PatchMeeting<Scalar> meet_patch(std::int32_t t, std::int64_t i, const Place<Scalar>& x) const {
-    using Numbers = EdgeNumbers<Scalar>;
-    PatchMeeting<Scalar> out;
-    out.m = this->meet(t, x);
-    out.at.now = x.now;
+  [[nodiscard]] PatchMeeting<Scalar, EDGES> meet_patch(std::int32_t t, std::int64_t i, const Place<Scalar>& x) const {
+    PatchMeeting<Scalar, EDGES> out{this->meet(t, x), x.now};
     if (!has_edges(t)) return out;
+    if constexpr (EDGES != 0) meet_parts(t, i, out);
+    return out;
+  }
+
+ private:
+  /// An edge, or a face of a box or a mesh that lies on the patch.
+  void meet_parts(std::int32_t t, std::int64_t i, PatchMeeting<Scalar, EDGES>& out) const {
+    using Numbers = EdgeNumbers<Scalar>;
     const std::int32_t* own = this->kind + tool_integers * t;
     const Scalar *now = this->now(t), *next = this->next(t), spacing = patches.spacing(i);
     const PatchPlane<Scalar> plane = plane_of(patches.at(i, Scalar(0), Scalar(0)), now);
     const Vec<Scalar> outward = difference(Vec<Scalar>{}, plane.normal);
     const bool mesh = own[0] == 4;
-    if (mesh && out.m.distance - out.m.opening < Scalar(0) && dot(out.m.normal, turned(next, outward)) > Numbers::alike)
-      return out;
+    if (mesh && out.m.distance - out.m.opening < Scalar(0) && dot(out.m.normal, turned(next, outward)) > Numbers::alike) return;
     Surface<Scalar> face;
     const bool on_face = own[0] == 2 && on_box_face(this->law(t), plane.normal, plane.y, spacing, face) &&
                          face.distance > -Numbers::inside * spacing && dot(face.normal, outward) > Numbers::alike;
     if (!(on_face && face.distance < Numbers::close * spacing)) {
-      if (meet_edge(t, i, plane, out) || mesh) return out;
+      if (meet_edge(t, i, plane, out) || mesh) return;
     }
     if (on_face) {
       out.m.opening = dot(face.normal, difference(out.m.inside, plane.y));
       out.m.distance = face.distance + out.m.opening;
       out.m.normal = turned(next, face.normal);
-      return out;
+      return;
     }
     out.m.distance = Numbers::far;
     out.m.opening = 0;
-    return out;
   }
 
- private:
   /// `base`: the plane at the point. False if no edge lies over the patch.
-  bool meet_edge(std::int32_t t, std::int64_t i, const PatchPlane<Scalar>& base, PatchMeeting<Scalar>& out) const {
+  bool meet_edge(std::int32_t t, std::int64_t i, const PatchPlane<Scalar>& base, PatchMeeting<Scalar, EDGES>& out) const {
     using Numbers = EdgeNumbers<Scalar>;
     const std::int32_t* own = this->kind + tool_integers * t;
     const Scalar *now = this->now(t), *next = this->next(t), *region = patches.region(i), spacing = patches.spacing(i);
@@ -106,11 +110,13 @@ struct EdgedTools : Tools<Scalar> {
     if (!found.found()) return false;
     found = nearest(plane_of(patches.at(i, found.a, found.b), now), Scalar(1), found.a, found.b);
     if (!found.found()) return false;
-    out.at = patches.at(i, found.a, found.b);
-    const PatchPlane<Scalar> plane = plane_of(out.at, now);
+    const PatchPlace<Scalar> at = patches.at(i, found.a, found.b);
+    const PatchPlane<Scalar> plane = plane_of(at, now);
+    out.place = at.now;
+    out.weight = at.weight;
     const Vec<Scalar> toward = difference(Vec<Scalar>{}, plane.normal);
     const Scalar depth = dot(toward, difference(found.at, plane.y)) + found.radius;
-    out.m.opening = dot(toward, difference(turned_back(next, difference(out.at.now, origin_of(next))), plane.y));
+    out.m.opening = dot(toward, difference(turned_back(next, difference(out.place, origin_of(next))), plane.y));
     out.m.distance = out.m.opening - depth;
     out.m.normal = turned(next, toward);
     const Scalar beyond = beyond_region(region, found.a, found.b);
@@ -127,11 +133,11 @@ struct Corners {
   std::int32_t* force;
   Scalar* weight;
 
-  void write_weights(const Scalar* contact_weight, std::int64_t i, const PatchMeeting<Scalar>& met) const {
+  void write_weights(const Scalar* contact_weight, std::int64_t i, const PatchMeeting<Scalar, EDGES>& met) const {
     Scalar* out = weight + tile_base(i, 9);
     for (std::int64_t k = 0; k < 8; ++k) {
       const Scalar at_point = contact_weight[tile_base(i, 8) + k * PLIANT_TILE];
-      out[k * PLIANT_TILE] = met.edged ? met.at.weight[static_cast<std::size_t>(k)] : at_point;
+      out[k * PLIANT_TILE] = met.edged ? met.weight[static_cast<std::size_t>(k)] : at_point;
     }
     out[std::int64_t{8} * PLIANT_TILE] = met.share;
   }
@@ -140,11 +146,17 @@ struct Corners {
     for (std::int64_t k = 0; k < 24; ++k) force[tile_base(i, 24) + k * PLIANT_TILE] = 0;
   }
   /// The force that acts at the point itself goes to `sum`.
-  void add(std::int64_t i, const PatchMeeting<Scalar>& met, const Quanta& f, Quanta& sum) const {
-    if (EDGES == 0 || !met.edged) {
+  void add(std::int64_t i, const PatchMeeting<Scalar, EDGES>& met, const Quanta& f, Quanta& sum) const {
+    if (!met.edged) {
       sum = sum_of(sum, f);
-      return;
+    } else if constexpr (EDGES != 0) {
+      share_out(i, met, f);
     }
+  }
+
+ private:
+  /// The whole force in parts: what rounding leaves goes to the node with the largest weight.
+  void share_out(std::int64_t i, const PatchMeeting<Scalar, EDGES>& met, const Quanta& f) const {
     std::int32_t* out = force + tile_base(i, 24);
     Quanta left = f;
     std::size_t largest = 0;
@@ -153,10 +165,10 @@ struct Corners {
       left = difference(left, part);
     };
     for (std::size_t k = 0; k < 8; ++k) {
-      const Scalar w = met.at.weight[k];
+      const Scalar w = met.weight[k];
       give(k, {quanta(w * static_cast<Scalar>(f[0])), quanta(w * static_cast<Scalar>(f[1])),
                quanta(w * static_cast<Scalar>(f[2]))});
-      largest = w > met.at.weight[largest] ? k : largest;
+      largest = w > met.weight[largest] ? k : largest;
     }
     give(largest, Quanta(left));
   }

@@ -52,17 +52,20 @@ struct Reached {
 };
 
 template <class Scalar, int EDGES>
-Reached reach(const EdgedTools<Scalar, EDGES>& all, const Corners<Scalar, EDGES>& corners, const Scalar* contact_weight,
-              std::int64_t i, const Place<Scalar>& p, std::int32_t near, Scalar margin, Scalar within) {
+Reached reach(const EdgedTools<Scalar, EDGES>& all, [[maybe_unused]] const Corners<Scalar, EDGES>& corners,
+              [[maybe_unused]] const Scalar* contact_weight, std::int64_t i, const Place<Scalar>& p, std::int32_t near,
+              Scalar margin, Scalar within) {
   Reached out;
-  bool weighed = false;
+  [[maybe_unused]] bool weighed = false;
   for (std::int32_t t = 0; t < all.count; ++t) {
     if ((near >> t & 1) == 0) continue;
-    const PatchMeeting<Scalar> met = all.meet_patch(t, i, p);
+    const PatchMeeting<Scalar, EDGES> met = all.meet_patch(t, i, p);
     const bool soon = met.m.may_touch_next(margin, within);
     if (soon) out.ready = PLIANT_READY_BIT;
-    if (EDGES != 0 && (!weighed || (met.edged && soon))) corners.write_weights(contact_weight, i, met);
-    weighed = true;
+    if constexpr (EDGES != 0) {
+      if (!weighed || (met.edged && soon)) corners.write_weights(contact_weight, i, met);
+      weighed = true;
+    }
     if (!(met.m.distance < Scalar(0))) continue;
     out.touching |= 1 << t;
     ++out.count;
@@ -109,7 +112,7 @@ void contact_press(Range range, const Scalar* node_u, const Scalar* node_w, cons
       const PointNumbers<std::int32_t> on_tool = tool_force_of(contact_tool_force, point_count, t, i);
       on_tool[7] = touching >> t & 1;
       if (on_tool[7] == 0) continue;
-      const PatchMeeting<Scalar> met = all.meet_patch(t, i, p);
+      const PatchMeeting<Scalar, EDGES> met = all.meet_patch(t, i, p);
       const Meeting<Scalar>& m = met.m;
       const Scalar stiffness = (whole * met.share) * met.ease;
       const Scalar* law = all.law(t);
@@ -126,7 +129,7 @@ void contact_press(Range range, const Scalar* node_u, const Scalar* node_w, cons
       }
       const Quanta q = quanta(f, contact_params[1]);
       begin_touch(on_tool, m.opening - m.distance);
-      add_to_tool(on_tool, all.next(t), contact_params, met.at.now, q);
+      add_to_tool(on_tool, all.next(t), contact_params, met.place, q);
       corners.add(i, met, q, sum);
     }
     set_three(force, sum);

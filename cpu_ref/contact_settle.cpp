@@ -79,7 +79,7 @@ void contact_settle(Range range, const Scalar* node_u, const Scalar* node_w, con
       const Scalar whole = known > Scalar(0) ? area / (known * static_cast<Scalar>(count)) : Scalar(0);
       for (std::int32_t t = 0; t < tools; ++t) {
         if ((touching >> t & 1) == 0) continue;
-        const PatchMeeting<Scalar> met = all.meet_patch(t, i, p);
+        const PatchMeeting<Scalar, EDGES> met = all.meet_patch(t, i, p);
         const Meeting<Scalar>& m = met.m;
         const Scalar stiffness = (whole * met.share) * met.ease;
         const PointNumbers<std::int32_t> on_tool = tool_force_of(contact_tool_force, point_count, t, i);
@@ -94,7 +94,7 @@ void contact_settle(Range range, const Scalar* node_u, const Scalar* node_w, con
         }
         Quanta q = quanta(f, inverse);
         for (std::size_t k = 0; k < 3; ++k) q[k] -= before[k];
-        add_to_tool(on_tool, all.next(t), contact_params, met.at.now, q);
+        add_to_tool(on_tool, all.next(t), contact_params, met.place, q);
         corners.add(i, met, q, sum);
       }
       for (std::size_t k = 0; k < 3; ++k) force[static_cast<std::int64_t>(k)] += sum[k];

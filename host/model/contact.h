@@ -31,10 +31,11 @@ struct ContactPoints {
   std::vector<std::array<std::int32_t, 8>> weights;  ///< in units of 1 / contact_weight_unit, not negative
   std::vector<double> area;                          ///< of the surface that it stands for, at rest [m^2]
   std::vector<std::int32_t> body;
-  std::vector<Vec3d> normal;                    ///< outward, at rest, of unit length
-  std::vector<std::array<PatchSide, 6>> sides;  ///< of the part of the surface that it stands for
-  std::vector<double> apart;                    ///< how far from each other points around it are [m]
-  double spacing = 0;                           ///< of the coarsest body's cells, or the mean edge of its surface [m]
+  std::vector<Vec3d> normal;  ///< outward, at rest, of unit length
+  std::vector<std::array<PatchSide, 6>>
+      sides;                  ///< of the part of the surface that it stands for; empty where no tool has edges
+  std::vector<double> apart;  ///< how far from each other points around it are [m]
+  double spacing = 0;         ///< of the coarsest body's cells, or the mean edge of its surface [m]
   /// How far the patch of surface around a point goes, so that patches leave no gap [m].
   [[nodiscard]] double reach(std::size_t i) const;
   [[nodiscard]] std::size_t size() const { return rest.size(); }
@@ -95,8 +96,8 @@ std::vector<EdgePoint> edge_points(const ToolForm& form, const ContactPoints& po
 /// Signed distance of a point in the tool's frame (of a sequence in its frame's own), as the kernels have it but in double [m].
 double tool_distance(const ToolForm& form, const Vec3d& y, const ToolMoment& moment = {});
 
-/// Points of all bodies on the model's surface.
-ContactPoints contact_points(const Model& model);
+/// Points of all bodies on the model's surface; `patches`: with their sides, which edges of tools need.
+ContactPoints contact_points(const Model& model, bool patches);
 
 /// A contact point's deformed tangents are F t1 = t1 + sum_a first_a u_a and F t2; t1, t2 and the normal at rest are
 /// orthonormal.

@@ -91,9 +91,11 @@ Embedding embedding_of(const ModelSurface& s, std::int32_t t, const Vec3d& at) {
 /// The surface of a body.
 class Faces {
  public:
-  Faces(const Model& model, std::int32_t body) : s_(model.surface), b_(model.bodies[body]), body_(body) {
+  Faces(const Model& model, std::int32_t body, bool patches)
+      : s_(model.surface), b_(model.bodies[body]), body_(body), patches_(patches) {
     for (std::int32_t t = b_.first_triangle; t < b_.first_triangle + b_.triangles; ++t) {
       mean_ += longest_of(corners(t));
+      if (!patches_) continue;
       const Vec3d normal = normal_of(corners(t));
       const double size = vec::norm(normal);
       for (std::size_t c = 0; c < 3 && size > 0; ++c)
@@ -137,14 +139,15 @@ class Faces {
         at[static_cast<std::size_t>(k)] = 2.0 / 3;
       }
       const Embedding e = embedding_of(s_, t, at);
-      add_contact_point(points, between(x, at), e.nodes, e.weights, area / count, body_, normal, std::sqrt(area / count),
-                        sides_of(x, at, goes_on(t, normal)));
+      add_contact_point(points, between(x, at), e.nodes, e.weights, area / count, body_, normal, std::sqrt(area / count));
+      if (patches_) points.sides.push_back(sides_of(x, at, goes_on(t, normal)));
     }
   }
 
   const ModelSurface& s_;
   const ModelBody& b_;
   std::int32_t body_;
+  bool patches_;
   double mean_ = 0;                                                 ///< of the longest edges of its triangles [m]
   std::map<std::pair<std::int32_t, std::int32_t>, Vec3d> normals_;  ///< of triangles, by their sides
 };
@@ -158,8 +161,8 @@ Vec3d between(const std::array<Vec3d, 3>& x, const Vec3d& weight) {
 }
 
 void add_contact_point(ContactPoints& points, const Vec3d& x, const std::array<std::int32_t, 8>& nodes,
-                       const std::array<double, 8>& weights, double area, std::int32_t body, const Vec3d& normal, double apart,
-                       const PatchSides& sides) {
+                       const std::array<double, 8>& weights, double area, std::int32_t body, const Vec3d& normal,
+                       double apart) {
   points.rest.push_back(x);
   points.nodes.push_back(nodes);
   points.weights.push_back(whole(weights));
@@ -167,9 +170,10 @@ void add_contact_point(ContactPoints& points, const Vec3d& x, const std::array<s
   points.body.push_back(body);
   points.normal.push_back(vec::mul(normal, 1 / vec::norm(normal)));
   points.apart.push_back(apart);
-  points.sides.push_back(sides);
 }
 
-double sample_faces(const Model& model, std::int32_t body, ContactPoints& points) { return Faces(model, body).sample(points); }
+double sample_faces(const Model& model, std::int32_t body, bool patches, ContactPoints& points) {
+  return Faces(model, body, patches).sample(points);
+}
 
 }  // namespace pliant

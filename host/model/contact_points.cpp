@@ -43,14 +43,15 @@ int side_of(const Vec3d& normal) {
 /// same way become one point.
 class LatticeSampler {
  public:
-  LatticeSampler(const Model& model, std::int32_t body) : model_(model), b_(model.bodies[body]), body_(body), d_(b_.spacing) {}
+  LatticeSampler(const Model& model, std::int32_t body, bool patches)
+      : model_(model), b_(model.bodies[body]), body_(body), d_(b_.spacing), patches_(patches) {}
 
   void sample(ContactPoints& points) {
     for (std::int32_t t = b_.first_triangle; t < b_.first_triangle + b_.triangles; ++t) divide(t);
     std::sort(samples_.begin(), samples_.end(), [](const Sample& x, const Sample& y) {
       return std::tie(x.side, x.half, x.nodes, x.order) < std::tie(y.side, y.half, y.nodes, y.order);
     });
-    for (const Sample& s : samples_) halves_.insert({half_cell(s), s.side});
+    for (std::size_t i = 0; i < samples_.size() && patches_; ++i) halves_.insert({half_cell(samples_[i]), samples_[i].side});
     for (std::size_t first = 0; first < samples_.size();) {
       std::size_t last = first + 1;
       while (last < samples_.size() && samples_[last].side == samples_[first].side &&
@@ -182,6 +183,21 @@ class LatticeSampler {
     for (std::size_t e = 0; e + 5 < b_.tets.size(); e += 6) add_cell(cell_corners(&b_.tets[e]));
   }
 
+  /// Of its half of a cell.
+  [[nodiscard]] PatchSides sides_of(const Sample& s) const {
+    PatchSides sides{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double low = (s.half >> c & 1) != 0 ? 0.5 : 0;
+      for (const int way : {1, -1}) {
+        PatchSide& side = sides[2 * c + (way > 0 ? 0 : 1)];
+        side.normal[c] = way;
+        side.distance = (way > 0 ? low + 0.5 - s.local[c] : s.local[c] - low) * d_;
+        side.goes_on = goes_on(s, c, way);
+      }
+    }
+    return sides;
+  }
+
   /// The half of a cell that a sample lies in.
   [[nodiscard]] Index half_cell(const Sample& s) const {
     Index index{};
@@ -227,23 +243,15 @@ class LatticeSampler {
       weights[a] = 1;
       for (std::size_t c = 0; c < 3; ++c) weights[a] *= (a >> c & 1) != 0 ? s.local[c] : 1 - s.local[c];
     }
-    PatchSides sides{};
-    for (std::size_t c = 0; c < 3; ++c) {  // of its half of the cell
-      const double low = (s.half >> c & 1) != 0 ? 0.5 : 0;
-      for (const int way : {1, -1}) {
-        PatchSide& side = sides[2 * c + (way > 0 ? 0 : 1)];
-        side.normal[c] = way;
-        side.distance = (way > 0 ? low + 0.5 - s.local[c] : s.local[c] - low) * d_;
-        side.goes_on = goes_on(s, c, way);
-      }
-    }
-    add_contact_point(points, s.x, s.nodes, weights, area, body_, normal, d_ / 2, sides);
+    add_contact_point(points, s.x, s.nodes, weights, area, body_, normal, d_ / 2);
+    if (patches_) points.sides.push_back(sides_of(s));
   }
 
   const Model& model_;
   const ModelBody& b_;
   std::int32_t body_;
   double d_;
+  bool patches_;
   std::vector<Sample> samples_;
   std::map<Index, std::vector<Place>> cells_;
   std::set<std::pair<Index, int>> halves_;
@@ -271,15 +279,15 @@ void reorder(std::vector<T>& values, const std::vector<std::size_t>& order) {
 
 }  // namespace
 
-ContactPoints contact_points(const Model& model) {
+ContactPoints contact_points(const Model& model, bool patches) {
   ContactPoints points;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const auto body = static_cast<std::int32_t>(b);
     double spacing = model.bodies[b].spacing;
     if (spacing > 0) {
-      LatticeSampler(model, body).sample(points);
+      LatticeSampler(model, body, patches).sample(points);
     } else {
-      spacing = sample_faces(model, body, points);
+      spacing = sample_faces(model, body, patches, points);
     }
     points.spacing = std::max(points.spacing, spacing);
   }
@@ -302,7 +310,7 @@ ContactPoints contact_points(const Model& model) {
   reorder(points.body, order);
   reorder(points.normal, order);
   reorder(points.apart, order);
-  reorder(points.sides, order);
+  if (patches) reorder(points.sides, order);
   return points;
 }
 
@@ -317,7 +325,9 @@ void add_contact(const Scene& scene, Model& model) {
   for (const ContactTool& tool : scene.tools)
     model.contact_laws.push_back({tool.stiffness, tool.exponent, tool.alpha, tool.friction, 0});
   model.tissue_contact = scene.contact;
-  if (model.contact == nullptr) model.contact = std::make_shared<const ContactPoints>(contact_points(model));
+  const bool patches = std::any_of(scene.tools.begin(), scene.tools.end(), [](const ContactTool& t) { return t.edges; });
+  if (model.contact == nullptr || (patches && model.contact->sides.empty()))
+    model.contact = std::make_shared<const ContactPoints>(contact_points(model, patches));
   // A shell with a law of its own is that law as far as a quarter of a cell; what is "auto" is hard at once.
   for (ContactLaw& law : model.contact_laws) law.core = law.stiffness > 0 ? kShell * model.contact->spacing : 0;
 }
