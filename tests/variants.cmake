@@ -1,6 +1,6 @@
 # The same tests linked with something else in one place: the twins compiled with other flags or by another compiler, and a Pliant
 # without OpenCL and Embree. Objects on the command line of the linker win over members of a library, so that the variant of a room
-# takes the room's place; test_variant.sh looks whether it did. Built and run with ./dev test (ctest -C Whole -L variant).
+# takes the room's place; tests/meta/variant.sh looks whether it did. Built and run with ./dev test (ctest -C Whole -L variant).
 
 # pliant_variant(VARIANT FOLDER OBJECTS...): test_FOLDER_VARIANT
 function(pliant_variant variant folder shards)

@@ -1,4 +1,4 @@
-// The parts of `pliant bench accuracy`. A problem is one row of the table in accuracy_problems.cpp; nothing else knows its
+// The parts of `pliant bench accuracy`. A problem is one row of the table in problems.cpp; nothing else knows its
 // name.
 #pragma once
 #include <array>

@@ -65,21 +65,21 @@ struct Sweep {
 /// In the order of the report.
 const std::vector<Sweep>& sweeps();
 
-// stability_step.cpp
+// step.cpp
 void sweep_step(SweepRun& run);      ///< limit of the step by element, aspect ratio, Poisson's ratio
 void sweep_share(SweepRun& run);     ///< steps until the engine stops, by dt over the stable step
 void sweep_poisson(SweepRun& run);   ///< static equilibrium at nu to 0.4999
 void sweep_contrast(SweepRun& run);  ///< two materials in a body
 void sweep_bodies(SweepRun& run);    ///< two bodies in a scene
 void sweep_sliver(SweepRun& run);    ///< cells of little fill
-// stability_strain.cpp
+// strain.cpp
 void sweep_stretch(SweepRun& run);    ///< slow stretch and compression
 void sweep_inversion(SweepRun& run);  ///< return from a bad start
 void sweep_load(SweepRun& run);       ///< loads and motions switched on at once
-// stability_rest.cpp
+// rest.cpp
 void sweep_hourglass(SweepRun& run);  ///< share of the hourglass energy in bending
 void sweep_rest(SweepRun& run);       ///< a million steps of a body at rest
-// stability_matching.cpp
+// matching.cpp
 void sweep_matching(SweepRun& run);    ///< alpha, step and half-width: stiffness, overshoot, jitter
 void sweep_alpha(SweepRun& run);       ///< alpha beyond what a scene may ask
 void sweep_beta(SweepRun& run);        ///< stiffness of the interface

@@ -20,6 +20,8 @@ import sys
 import time
 from pathlib import Path
 
+import anchor
+
 FOLDER = Path(__file__).resolve().parent
 ROOT = FOLDER.parents[1]
 WORK = ROOT / "build" / "mutate"
@@ -38,11 +40,14 @@ class Mutation:
     """NN_name.mutation: `key: text` lines (title, why, build, test; build and test may repeat), then blocks
 
     file: path
+    in: function
     <<<
-    text that stands exactly once in this file
+    tokens that stand exactly once in the functions of this name, however they are spaced (anchor.py)
     ===
-    what replaces it
+    what replaces them
     >>>
+
+    Without `in` they stand exactly once in the file.
     """
 
     def __init__(self, path):
@@ -51,7 +56,7 @@ class Mutation:
         self.number = int(path.stem.split("_")[0])
         self.text = path.read_text()
         self.title, self.why, self.build, self.tests, self.blocks = "", "", [], [], []
-        lines, file, at = self.text.split("\n"), None, 0
+        lines, file, function, at = self.text.split("\n"), None, "", 0
         while at < len(lines):
             line = lines[at]
             at += 1
@@ -65,13 +70,15 @@ class Mutation:
                     raise Bad(f"{path.name}: a block has no '===' or no '>>>'") from None
                 if file is None:
                     raise Bad(f"{path.name}: a block before any 'file:'")
-                self.blocks.append((file, "\n".join(lines[at:middle]), "\n".join(lines[middle + 1 : end])))
+                self.blocks.append((file, function, "\n".join(lines[at:middle]), "\n".join(lines[middle + 1 : end])))
                 at = end + 1
                 continue
             key, _, value = line.partition(":")
             value = value.strip()
             if key == "file":
-                file = value
+                file, function = value, ""
+            elif key == "in":
+                function = value
             elif key == "title":
                 self.title = value
             elif key == "why":
@@ -91,20 +98,16 @@ class Mutation:
         return hashlib.sha256(self.text.encode()).hexdigest()[:16]
 
     def changed_files(self, tree):
-        """{path: (text before, text after)}; throws Bad where the text that is replaced is not there exactly once."""
-        files = {}
-        for name, old, new in self.blocks:
-            path = tree / name
-            if not path.is_file():
-                raise Bad(f"{name} is not there")
-            before, now = files.get(name, (None, None))
-            if before is None:
-                before = now = path.read_text()
-            found = now.count(old)
-            if found != 1:
-                raise Bad(f"{name} holds the old text {found} times, expected once: {old.strip().splitlines()[0]}")
-            files[name] = (before, now.replace(old, new))
-        return files
+        """{path: (text before, text after)}; throws Bad where a pattern is not there exactly once."""
+        changed = {}
+        for name, function, old, new in self.blocks:
+            try:
+                name, start, end = anchor.find(tree, changed, name, function, old)
+            except LookupError as missing:
+                raise Bad(str(missing)) from None
+            before, now = changed.get(name) or [(tree / name).read_text()] * 2
+            changed[name] = (before, now[:start] + new + now[end:])
+        return changed
 
 
 def load_all():
