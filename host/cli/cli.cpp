@@ -58,6 +58,11 @@ void Common::note(const std::string& text) const {
   if (!quiet) tell(text);
 }
 
+void Common::remark(const std::string& text) const {
+  remarks->push_back(text);
+  note(text);
+}
+
 void Common::write(const nlohmann::ordered_json& object) const {
   if (json.empty()) return;
   // Names of files may hold any bytes; JSON may not.

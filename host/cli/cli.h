@@ -39,6 +39,7 @@ inline constexpr int kInterrupted = 130;  ///< exit code after SIGINT (as shells
 struct Common {
   std::string json;  ///< file, "-" for standard output, or empty
   bool quiet = false;
+  std::shared_ptr<std::vector<std::string>> remarks = std::make_shared<std::vector<std::string>>();  ///< so far
 
   void add_to(CLI::App& app);
   /// Refuses a JSON file that cannot be written, and a closed standard output that something goes to, before the work.
@@ -48,6 +49,8 @@ struct Common {
   void print(const std::string& text) const;
   /// Remarks that are no result: standard error, nowhere with --quiet.
   void note(const std::string& text) const;
+  /// A note that belongs to the result: `remarks` of the JSON object has it too.
+  void remark(const std::string& text) const;
   /// One object, to where --json says; nothing without it.
   void write(const nlohmann::ordered_json& object) const;
 };

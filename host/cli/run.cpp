@@ -139,16 +139,16 @@ class Run {
     if (scene.probes != nullptr) scene_probes_ = Probes(scene.probes->list, *model);
     auto backend = open_backend(o_.backend, &reason, model->nodes());
     o_.common.note("backend " + reason);
-    if (!backend->info().bit_exact) o_.common.note("tolerance mode: " + backend->info().tolerance_reason);
+    if (!backend->info().bit_exact) o_.common.remark("tolerance mode: " + backend->info().tolerance_reason);
     simulation_.emplace(std::move(scene), model, std::move(backend));
     if (saved) resume(*saved);
     if (simulation_->stable_dt() > 0 && simulation_->dt() > simulation_->stable_dt()) {
-      o_.common.note(fmt::format("dt = {:.6g} s is {:.3g} times the stable step {:.6g} s: expect the simulation to diverge",
-                                 simulation_->dt(), simulation_->dt() / simulation_->stable_dt(), simulation_->stable_dt()));
+      o_.common.remark(fmt::format("dt = {:.6g} s is {:.3g} times the stable step {:.6g} s: expect the simulation to diverge",
+                                   simulation_->dt(), simulation_->dt() / simulation_->stable_dt(), simulation_->stable_dt()));
     }
-    for (const std::string& remark : simulation_->remarks()) o_.common.note(remark);
+    for (const std::string& remark : simulation_->remarks()) o_.common.remark(remark);
     if (frames_ && frames_->older() > 0 && !saved) {
-      o_.common.note(fmt::format(
+      o_.common.remark(fmt::format(
           "--out: the folder {} holds {} files of an earlier run of {}; those of steps that this run does not write "
           "stay beside the new ones",
           o_.out, frames_->older(), stem_));
@@ -160,7 +160,7 @@ class Run {
     restore_checkpoint(*simulation_, saved, o_.resume);
     o_.common.note(
         fmt::format("resumed at step {} (t = {:.6g} s) from {}", simulation_->step(), simulation_->time(), o_.resume));
-    if (converged()) o_.common.note("the checkpoint is at equilibrium: nothing is left to do");
+    if (converged()) o_.common.remark("the checkpoint is at equilibrium: nothing is left to do");
   }
 
   [[nodiscard]] bool relaxes() const { return simulation_->scene().relaxation.enabled; }

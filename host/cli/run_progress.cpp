@@ -67,17 +67,17 @@ void RunProgress::warn_of_no_end(double left) {
   } else {
     change = "larger or softer elements allow a longer step (pliant info SCENE names what limits it)";
   }
-  common_.note(fmt::format("this run needs about {} more: {:.3g} steps of dt = {:.3g} s at {:.3g} ms each; {}",
-                           duration_text(left), static_cast<double>(loop_.remaining()), dt,
-                           1e3 * left / static_cast<double>(loop_.remaining()),
-                           change + (loop_.end().time ? ", or simulate less time" : ", or ask for fewer steps")));
+  common_.remark(fmt::format("this run needs about {} more: {:.3g} steps of dt = {:.3g} s at {:.3g} ms each; {}",
+                             duration_text(left), static_cast<double>(loop_.remaining()), dt,
+                             1e3 * left / static_cast<double>(loop_.remaining()),
+                             change + (loop_.end().time ? ", or simulate less time" : ", or ask for fewer steps")));
 }
 
 void RunProgress::missed(const std::vector<std::string>& blades) {
   for (const std::string& name : blades) {
     if (!missed_.insert(name).second) continue;
     bar_.clear();
-    common_.note(
+    common_.remark(
         fmt::format("blade '{}' met nothing on its whole path; look at its \"path\", \"start\" and \"end\", and at where "
                     "the bodies are then",
                     name));

@@ -44,15 +44,15 @@ class Report {
     print_summary();
     for (std::size_t t = 0; t < s_.contact().tools().size(); ++t) out_.print(tool_line(s_, t));
     if (s_.scene().contact && s_.model().contact != nullptr) out_.print(tissue_line(s_));
-    for (const std::string& remark : run_remarks(s_)) note(remark);
-    if (const auto remark = r_.energy.remark()) note(*remark);
+    for (const std::string& remark : run_remarks(s_)) out_.remark(remark);
+    if (const auto remark = r_.energy.remark()) out_.remark(*remark);
     if (!r_.probes.empty() || !r_.scene_probes.empty()) {
       json["probes"] = Json::array();
       add_probes(r_.probes, json["probes"]);
       add_probes(r_.scene_probes, json["probes"]);
     }
     if (r_.profile) json["profile"] = profile();
-    json["remarks"] = notes_;
+    json["remarks"] = *out_.remarks;
     if (r_.hash && out_.quiet && out_.json != "-") std::puts(hash.c_str());
     out_.print("hash " + hash);
     if (r_.deep_hash) out_.print("deep hash " + deep_hash);
@@ -60,11 +60,6 @@ class Report {
   }
 
  private:
-  /// A sentence for people, which the JSON has too.
-  void note(const std::string& sentence) const {
-    notes_.push_back(sentence);
-    out_.note(sentence);
-  }
   [[nodiscard]] bool relaxes() const { return s_.scene().relaxation.enabled; }
   [[nodiscard]] double simulated() const { return s_.time() - r_.first_time; }
 
@@ -106,16 +101,16 @@ class Report {
     json["blades_to_come"] = Json::array();
     for (const Blade* blade : blades_to_come(s_)) {
       json["blades_to_come"].push_back(blade->name);
-      note(fmt::format("blade '{}' has not cut yet: it begins at {:.4g} s, and the run ended at {:.4g} s", blade->name,
-                       first_time(*blade), s_.time()));
+      out_.remark(fmt::format("blade '{}' has not cut yet: it begins at {:.4g} s, and the run ended at {:.4g} s", blade->name,
+                              first_time(*blade), s_.time()));
     }
     for (const std::string& name : blades_without_effect(s_)) {
-      note(
+      out_.remark(
           fmt::format("blade '{}' met tissue and divided no edge of an element: its way through it is too short for "
                       "elements of this size, or the tissue had moved away from most of its path",
                       name));
     }
-    for (const std::string& sentence : parts_far_away(s_)) note(sentence);
+    for (const std::string& sentence : parts_far_away(s_)) out_.remark(sentence);
     json["most_substeps"] = s_.state().most_substeps;
     json["opened_edges"] = s_.state().opened;
   }
@@ -218,7 +213,6 @@ class Report {
     return rows;
   }
 
-  mutable std::vector<std::string> notes_;
   const RunReport& r_;
   Simulation& s_;
   const Common& out_;

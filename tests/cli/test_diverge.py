@@ -34,6 +34,11 @@ class Diverge(harness.CliTest):
             if isinstance(value, float):
                 self.assertTrue(math.isfinite(value))
 
+    def test_shipped_scenes_that_fail_do(self):
+        report = self.json("run", harness.SCENES / "diverge.json", "--backend", "cpu", expect=4)
+        self.assertEqual(len([r for r in report["remarks"] if "times the stable step" in r]), 1)
+        self.assertIn("diverged in step", self.pliant("run", harness.SCENES / "invert.json", "--backend", "cpu", expect=4).stderr)
+
     def test_backends_diverge_alike(self):
         self.opencl()
         scene = harness.SCENES / "diverge.json"

@@ -147,6 +147,14 @@ allow_room plan 'backends|mesh_io|simulation|schedule|backend|program|statics|mo
 allow 'cpu_ref knows only backend and program' '^<|^"(pliant/|(layout|laws)\.h|cpu_ref/|[a-z0-9_]+\.h|(backend|program)/)' cpu_ref/*.h cpu_ref/*.cpp
 forbid 'the command asks host/backends for a backend' '"(host/)?opencl/' host/cli/*.h host/cli/*.cpp
 
+# --- bits ------------------------------------------------------------------------------------------------------------------------
+# Whoever writes other golden hashes comes past the section that says why.
+if [ -f tests/golden/hashes.json ]; then
+  digest=$(sha256sum tests/golden/hashes.json | cut -c1-16)
+  grep -qs "$digest" CHANGELOG.md ||
+    report "tests/golden/hashes.json: its sha256 ($digest...) is not the one under \"Bits\" in CHANGELOG.md: say there what changed, and why"
+fi
+
 # --- kernels and twins -----------------------------------------------------------------------------------------------------------
 for file in kernels/*.cl; do
   stem=$(basename "$file" .cl)

@@ -26,6 +26,9 @@ printf 'host/io/folded.cpp fold 70 it was long\n' >tests/meta/function_exception
   yes '  a += b;' | head -n 60 || true
   printf '  return a;\n}\nint brief() { return 1; }\nstruct Kept {\n  int x = 0;\n};\n}  // namespace pliant\n'
 } >host/io/endless.cpp
+mkdir tests/golden
+printf '{}\n' >tests/golden/hashes.json
+printf '### Bits\n\nsha256 0123456789abcdef\n' >CHANGELOG.md
 printf 'frobnicate\n' >tests/meta/banned_words.txt
 printf '// Frobnicate the nodes.\n' >host/io/words.cpp
 git init -q . && git add host/io/words.cpp
@@ -57,5 +60,6 @@ expect '^kernels/turn\.cl: holds no kernel of its own name'
 expect '^kernels/turn\.cl: no twin'
 expect '^kernels/turn\.cl: no row'
 expect '^kernels/turn\.cl: named by no test'
+expect '^tests/golden/hashes\.json: its sha256 \(ca3d163bab055381'
 expect '^kernels/arith\.cl: must turn contraction off'
 [ "$missing" = 0 ] || { printf '%s\n' "$found"; exit 1; }

@@ -1,5 +1,5 @@
 // How a blade cuts a body that moves. Its path is followed at rest: points of the blade, at most half an edge apart, are mapped
-// to where the material at that place was at rest (rest_map.h), and what they sweep there is tested against edges that never
+// to where the material at that place was at rest (inverse_map.h), and what they sweep there is tested against edges that never
 // move. The line where the blade stood last is kept at rest; the next sweep begins with these very points. So successive sweeps
 // join exactly, no bridge is left between them however the body deforms, and tissue that is pulled across a resting blade is
 // cut, too.

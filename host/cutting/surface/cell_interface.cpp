@@ -91,6 +91,14 @@ class Builder {
     out_.faces.push_back({{p, q, r}, cell_.label[a], cell_.label[b], static_cast<std::int8_t>(tet_)});
   }
 
+  /// Between three cut points. The later ones are numbered first: numbers decide the order of the surface and so bits, and the
+  /// order in which a compiler evaluates arguments must not.
+  void emit_edges(const std::array<std::array<int, 2>, 3>& cut, int a, int b) {
+    std::array<std::int8_t, 3> p{};
+    for (const std::size_t i : {2, 1, 0}) p[i] = edge(cut[i][0], cut[i][1]);
+    emit(p[0], p[1], p[2], a, b);
+  }
+
   void two_parts(const std::array<int, 4>& v, const std::array<int, 4>& side) {
     std::array<std::array<int, 4>, 2> part{};
     std::array<int, 2> count{};
@@ -101,9 +109,9 @@ class Builder {
       emit(p, q, r, a[0], b[1]);
       emit(p, r, s, a[1], b[0]);
     } else if (count[0] == 1) {
-      emit(edge(a[0], b[0]), edge(a[0], b[1]), edge(a[0], b[2]), a[0], b[0]);
+      emit_edges({{{a[0], b[0]}, {a[0], b[1]}, {a[0], b[2]}}}, a[0], b[0]);
     } else {
-      emit(edge(a[0], b[0]), edge(a[1], b[0]), edge(a[2], b[0]), a[0], b[0]);
+      emit_edges({{{a[0], b[0]}, {a[1], b[0]}, {a[2], b[0]}}}, a[0], b[0]);
     }
   }
 
@@ -123,12 +131,16 @@ class Builder {
       if (cuts(w[0], w[1], w[2]) == 3) {
         for (int i = 0; i < 3; ++i) {
           const int a = w[i], b = w[(i + 1) % 3];
-          if (apart(a, b)) emit(edge(a, b), face(w), centre, a, b);
+          if (!apart(a, b)) continue;
+          const std::int8_t middle = face(w);
+          emit(edge(a, b), middle, centre, a, b);
         }
       } else {
         for (int i = 0; i < 3; ++i) {  // one corner against two
           const int a = w[i], b = w[(i + 1) % 3], c = w[(i + 2) % 3];
-          if (apart(a, b) && apart(a, c) && !apart(b, c)) emit(edge(a, b), edge(a, c), centre, a, b);
+          if (!apart(a, b) || !apart(a, c) || apart(b, c)) continue;
+          const std::int8_t further = edge(a, c);
+          emit(edge(a, b), further, centre, a, b);
         }
       }
     }
