@@ -4,6 +4,8 @@
 #include <cctype>
 #include <numeric>
 
+#include "scene/described_keys.h"
+
 namespace pliant {
 
 namespace {
@@ -15,19 +17,29 @@ List operator+(List a, const List& b) {
   return a;
 }
 
+/// Those that `describe` describes of a T.
+template <class T, class Describe>
+List described(const Describe& describe) {
+  List names;
+  const T object{};
+  describe(ListKeys{names}, object);
+  return names;
+}
+#define PLIANT_DESCRIBED(type, what) described<type>([](auto v, const auto& object) { describe_##what(v, object); })
+
 std::map<std::string, List> make_keys() {
   const List points{"box", "sphere", "plane", "surface", "region", "data", "dimension", "all"};
   const List selection = points + List{"nodes"};
   const List curve{"curve", "start", "duration", "table"};
   return {
-      {"scene", {"format",     "name",     "break_stretch", "gravity",    "dt",         "safety",      "duration",
-                 "integrator", "inverted", "least_fill",    "least_step", "relaxation", "solver",      "tool",
-                 "tools",      "contact",  "blades",        "view",       "probes",     "probe_every", "bodies"}},
+      {"scene", PLIANT_DESCRIBED(Scene, scene) + PLIANT_DESCRIBED(Scene, run) +
+                    List{"format", "name", "gravity", "relaxation", "solver", "tool", "tools", "contact", "blades", "view",
+                         "probes", "probe_every", "bodies"}},
       {"body",
        {"name", "surface", "mesh", "scale", "translate", "lattice", "element", "material", "model", "inclusions", "fixed",
         "prescribed", "forces", "pressures", "velocity", "angular_velocity", "initial"}},
       {"lattice", {"spacing", "nodes"}},
-      {"material", List{"law"} + elastic_keys() + List{"density", "damping", "hourglass", "toughness", "integrity"}},
+      {"material", List{"law"} + elastic_keys() + PLIANT_DESCRIBED(Material, material) + PLIANT_DESCRIBED(Material, tearing)},
       {"model",
        {"type", "ratio", "seed", "region", "beta", "width", "alpha", "stiffness", "damping", "substeps", "goals", "coupling",
         "follow", "cut"}},
@@ -35,14 +47,15 @@ std::map<std::string, List> make_keys() {
       {"stiffness", {"young"}},
       {"gravity", List{"acceleration"} + curve},
       {"tool", {"path"}},
-      {"contact_tool", {"name", "shape", "scale", "frames_per_second", "path", "friction", "contact", "edges"}},
+      {"contact_tool", List{"name", "shape", "path", "contact"} + PLIANT_DESCRIBED(ContactTool, tool) +
+                           PLIANT_DESCRIBED(ContactTool, mesh_tool) + PLIANT_DESCRIBED(ContactTool, sequence_tool)},
       {"shape", words_only(tool_shape_words())},
       {"contact", {"stiffness", "exponent", "alpha"}},
-      {"tissue_contact", {"friction"}},
+      {"tissue_contact", PLIANT_DESCRIBED(TissueContact, tissue_contact)},
       {"blade", {"name", "path", "start", "end"}},
       {"view", {"eye", "target", "up", "field_of_view", "ground"}},
-      {"relaxation", {"tolerance", "max_steps"}},
-      {"solver", {"type", "linear", "load_steps", "tolerance", "order"}},
+      {"relaxation", PLIANT_DESCRIBED(Relaxation, relaxation)},
+      {"solver", List{"type", "order"} + PLIANT_DESCRIBED(StaticSolver, solver)},
       {"inclusion", points + List{"material"}},
       {"fixed", selection + List{"axes"}},
       {"prescribed", selection + List{"displacement", "rotate", "axes"} + curve},

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "pliant/error.h"
+#include "scene/described_keys.h"
 #include "scene/json_text.h"
 #include "scene/parts.h"
 
@@ -55,15 +56,6 @@ void read_gravity(const Reader& top, Scene& scene) {
   scene.gravity_curve = read_curve(field);
 }
 
-void read_dt(const Reader& top, Scene& scene) {
-  if (!top.has("dt")) return;
-  const Reader dt = top.at("dt");
-  if (dt.json() == "auto") return;
-  const char* const expected = "\"auto\" or a time step > 0 in seconds";
-  scene.dt = dt.number(expected);
-  if (!(scene.dt >= 1e-30)) dt.fail(expected);
-}
-
 void read_relaxation(const Reader& top, Relaxation& relaxation) {
   if (!top.has("relaxation")) return;
   const Reader field = top.at("relaxation");
@@ -74,12 +66,7 @@ void read_relaxation(const Reader& top, Relaxation& relaxation) {
   if (!field.json().is_object()) field.fail("true, false or an object with the keys tolerance, max_steps");
   field.expect_object("relaxation");
   relaxation.enabled = true;
-  if (field.has("tolerance")) {
-    const Reader tolerance = field.at("tolerance");
-    relaxation.tolerance = tolerance.positive();
-    if (!(relaxation.tolerance < 1)) tolerance.fail("a number with 0 < tolerance < 1");
-  }
-  if (field.has("max_steps")) relaxation.max_steps = field.at("max_steps").integer(1, 1'000'000'000'000);
+  describe_relaxation(ReadKeys{field}, relaxation);
 }
 
 void read_solver(const Reader& top, Scene& scene) {
@@ -91,16 +78,7 @@ void read_solver(const Reader& top, Scene& scene) {
   for (const char* key : {"linear", "load_steps", "tolerance", "order"}) {
     if (!solver.enabled && field.has(key)) field.at(key).fail("this key only beside \"type\": \"static\"");
   }
-  if (field.has("linear")) solver.linear = field.at("linear").boolean();
-  if (field.has("load_steps")) {
-    const Reader steps = field.at("load_steps");
-    if (steps.json() != "auto") solver.load_steps = static_cast<int>(steps.integer(1, 1'000'000));
-  }
-  if (field.has("tolerance")) {
-    const Reader tolerance = field.at("tolerance");
-    solver.tolerance = tolerance.positive();
-    if (!(solver.tolerance < 1)) tolerance.fail("a number with 0 < tolerance < 1");
-  }
+  describe_solver(ReadKeys{field}, solver);
   if (field.has("order")) solver.quadratic = field.at("order").integer(1, 2) == 2;
 }
 
@@ -138,30 +116,8 @@ Scene read_document(const nlohmann::json& document, const fs::path& file) {
   scene.file = file;
   scene.name = top.has("name") ? top.at("name").text("a text that is not empty") : file.stem().string();
   read_gravity(top, scene);
-  read_dt(top, scene);
-  if (top.has("safety")) {
-    const Reader safety = top.at("safety");
-    scene.safety = safety.positive();
-    if (!(scene.safety <= 1)) safety.fail("a number with 0 < safety <= 1");
-  }
-  if (top.has("duration")) scene.duration = top.at("duration").positive();
-  if (top.has("integrator")) scene.integrator = top.at("integrator").word(integrator_words());
-  if (top.has("inverted")) scene.inverted = top.at("inverted").word(inverted_words());
-  if (top.has("least_fill")) {
-    const Reader least = top.at("least_fill");
-    scene.least_fill = least.number();
-    if (!(scene.least_fill >= 0 && scene.least_fill <= 1)) least.fail("a number with 0 <= least_fill <= 1");
-  }
-  if (top.has("break_stretch")) {
-    const Reader stretch = top.at("break_stretch");
-    scene.break_stretch = stretch.number();
-    if (scene.break_stretch != 0 && !(scene.break_stretch > 1)) stretch.fail("a number above 1, or 0");
-  }
-  if (top.has("least_step")) {
-    const Reader least = top.at("least_step");
-    scene.least_step = least.number();
-    if (!(scene.least_step >= 0 && scene.least_step <= 1)) least.fail("a number with 0 <= least_step <= 1");
-  }
+  describe_scene(ReadKeys{top}, scene);
+  describe_run(ReadKeys{top}, scene);
   read_relaxation(top, scene.relaxation);
   read_solver(top, scene);
   if (top.has("tool")) scene.tool = read_tool(top.at("tool"));

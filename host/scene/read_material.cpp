@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "scene/described_keys.h"
 #include "scene/parts.h"
 
 namespace pliant {
@@ -90,16 +91,9 @@ Material read_material(const Reader& material) {
   material.expect_object("material");
   Material m;
   read_elasticity(material, m);
-  if (material.has("density")) m.density = material.at("density").positive();
-  if (material.has("damping")) m.damping = material.at("damping").non_negative();
-  if (material.has("hourglass")) m.hourglass = material.at("hourglass").non_negative();
-  if (material.has("toughness")) m.toughness = material.at("toughness").positive();
-  if (material.has("integrity")) {
-    const Reader integrity = material.at("integrity");
-    m.integrity = integrity.positive();
-    if (m.toughness == 0) integrity.fail("no integrity without a toughness");
-    if (!(m.integrity <= 1)) integrity.fail("a number with 0 < integrity <= 1");
-  }
+  describe_material(ReadKeys{material}, m);
+  describe_tearing(ReadKeys{material}, m);
+  if (material.has("integrity") && m.toughness == 0) material.at("integrity").fail("no integrity without a toughness");
   return m;
 }
 

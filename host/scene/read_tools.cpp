@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "geometry/vec.h"
+#include "scene/described_keys.h"
 #include "scene/parts.h"
 
 namespace pliant {
@@ -111,25 +112,22 @@ ContactTool read_contact_tool(const Reader& entry, const std::string& name, cons
   read_shape(entry.at("shape", "an object with one of the keys " + alternatives(scene_keys().at("shape"))), tool);
   if (entry.has("scale")) {
     if (tool.mesh.empty()) entry.at("scale").fail("this key only beside a shape that is a mesh or a sequence");
-    tool.scale = entry.at("scale").positive();
+    describe_mesh_tool(ReadKeys{entry}, tool);
   }
   if (entry.has("frames_per_second")) {
     const Reader rate = entry.at("frames_per_second");
     if (tool.shape != ToolShape::sequence) rate.fail("this key only beside a shape that is a sequence");
-    tool.frames_per_second = rate.positive();
+    describe_sequence_tool(ReadKeys{entry}, tool);
   }
   if (!tool.mesh.empty() && tool.mesh.is_relative()) tool.mesh = folder / tool.mesh;
   if (entry.has("path")) {
     for (const Reader& row : entry.at("path").items("a list of at least one row [time, x, y, z, qx, qy, qz, qw]", 1))
       tool.path.push_back(read_pose(row, tool.path));
   }
-  if (entry.has("friction")) tool.friction = entry.at("friction").non_negative();
+  describe_tool(ReadKeys{entry}, tool);
   if (entry.has("contact")) read_contact(entry.at("contact"), tool);
-  if (entry.has("edges")) {
-    tool.edges = entry.at("edges").boolean();
-    if (tool.edges && (tool.shape == ToolShape::half_space || tool.shape == ToolShape::sequence))
-      entry.at("edges").fail("this key only beside a shape that is a sphere, capsule, box or mesh");
-  }
+  if (tool.edges && (tool.shape == ToolShape::half_space || tool.shape == ToolShape::sequence))
+    entry.at("edges").fail("this key only beside a shape that is a sphere, capsule, box or mesh");
   return tool;
 }
 
@@ -149,7 +147,7 @@ std::optional<TissueContact> read_tissue_contact(const Reader& contact) {
   TissueContact out;
   if (contact.json() == true) return out;
   contact.expect_object("tissue_contact");
-  if (contact.has("friction")) out.friction = contact.at("friction").non_negative();
+  describe_tissue_contact(ReadKeys{contact}, out);
   return out;
 }
 

@@ -7,6 +7,7 @@
 #include "geometry/mesh.h"
 #include "pliant/error.h"
 #include "scene/closed_surface.h"
+#include "scene/described_keys.h"
 #include "scene/parts.h"
 
 namespace pliant {
@@ -216,14 +217,14 @@ ContactTool contact_tool(const ToolSpec& spec, const std::string& shape_pointer,
   t.second = spec.second;
   t.size = spec.size;
   t.mesh = spec.mesh;
-  t.scale = spec.scale;
-  t.frames_per_second = spec.frames_per_second;
+  const CopyKeys copy{kName, ""};
+  describe_tool(copy, t, spec);
+  describe_mesh_tool(copy, t, spec);
+  describe_sequence_tool(copy, t, spec);
   t.path = spec.path;
-  t.friction = spec.friction;
   t.stiffness = spec.stiffness;
   t.exponent = spec.exponent;
   t.alpha = spec.alpha;
-  t.edges = spec.edges;
   return t;
 }
 
@@ -232,14 +233,10 @@ Scene scene_of(const SceneSpec& spec) {
   scene.name = spec.name;
   scene.gravity = spec.gravity;
   scene.gravity_curve = curve(spec.gravity_curve, "/gravity");
-  scene.dt = spec.dt;
-  scene.safety = spec.safety;
-  scene.integrator = word(integrator_words(), spec.integrator, "/integrator");
-  scene.least_fill = spec.least_fill;
-  scene.least_step = spec.least_step;
-  scene.break_stretch = spec.break_stretch;
-  scene.inverted = word(inverted_words(), spec.inverted, "/inverted");
-  if (spec.relaxation) scene.relaxation = {true, spec.relaxation->tolerance, spec.relaxation->max_steps};
+  const CopyKeys copy{kName, ""};
+  describe_scene(copy, scene, spec);
+  scene.relaxation.enabled = spec.relaxation.has_value();
+  if (spec.relaxation) describe_relaxation(copy, scene.relaxation, *spec.relaxation);
   scene.tool.path = spec.tool_path;
   convert(scene.blades, spec.blades, "/blades", [&](const BladeSpec& s, const std::string& at) {
     Blade b;
@@ -255,7 +252,7 @@ Scene scene_of(const SceneSpec& spec) {
     tool.pointer = at;
     return tool;
   });
-  if (spec.contact) scene.contact = TissueContact{spec.contact->friction};
+  if (spec.contact) describe_tissue_contact(copy, scene.contact.emplace(), *spec.contact);
   std::size_t surfaces = 0;
   convert(scene.bodies, spec.bodies, "/bodies",
           [&](const BodySpec& s, const std::string& at) { return body(s, at, surfaces); });

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scene/closed_surface.h"
+#include "scene/described_keys.h"
 #include "scene/keys.h"
 #include "scene/parts.h"
 #include "scene/probe.h"
@@ -79,13 +80,8 @@ OrderedJson material_json(const Material& m) {
       material["kappa"] = e.kappa;
     }
   }
-  material["density"] = m.density;
-  material["damping"] = m.damping;
-  material["hourglass"] = m.hourglass;
-  if (m.toughness != 0) {
-    material["toughness"] = m.toughness;
-    material["integrity"] = m.integrity;
-  }
+  describe_material(WriteKeys{material}, m);
+  if (m.toughness != 0) describe_tearing(WriteKeys{material}, m);
   return material;
 }
 
@@ -232,27 +228,20 @@ OrderedJson document_of(const Scene& scene) {
   OrderedJson top{{"format", "pliant-scene/1"}};
   if (!scene.name.empty()) top["name"] = scene.name;
   top["gravity"] = gravity_json(scene);
-  top["dt"] = scene.dt != 0 ? OrderedJson(scene.dt) : OrderedJson("auto");
-  top["safety"] = scene.safety;
-  top["duration"] = scene.duration;
-  top["integrator"] = word_of(integrator_words(), scene.integrator);
-  top["least_fill"] = scene.least_fill;
-  top["least_step"] = scene.least_step;
-  top["break_stretch"] = scene.break_stretch;
-  top["inverted"] = word_of(inverted_words(), scene.inverted);
+  describe_scene(WriteKeys{top}, scene);
+  describe_run(WriteKeys{top}, scene);
   if (scene.relaxation.enabled) {
-    top["relaxation"] = {{"tolerance", scene.relaxation.tolerance}, {"max_steps", scene.relaxation.max_steps}};
+    describe_relaxation(WriteKeys{top["relaxation"]}, scene.relaxation);
   } else {
     top["relaxation"] = false;
   }
   if (scene.solver.enabled) {
-    const StaticSolver& s = scene.solver;
-    top["solver"] = {{"type", "static"}, {"linear", s.linear}, {"tolerance", s.tolerance}, {"order", s.quadratic ? 2 : 1}};
-    top["solver"]["load_steps"] = s.load_steps != 0 ? OrderedJson(s.load_steps) : OrderedJson("auto");
+    top["solver"] = {{"type", "static"}, {"order", scene.solver.quadratic ? 2 : 1}};
+    describe_solver(WriteKeys{top["solver"]}, scene.solver);
   }
   if (!scene.tool.path.empty()) top["tool"] = {{"path", scene.tool.path}};
   for (const ContactTool& t : scene.tools) top["tools"].push_back(tool_json(t, scene.file));
-  if (scene.contact) top["contact"] = {{"friction", scene.contact->friction}};
+  if (scene.contact) describe_tissue_contact(WriteKeys{top["contact"]}, *scene.contact);
   for (const Blade& b : scene.blades) top["blades"].push_back(blade_json(b));
   if (const OrderedJson view = view_json(scene.view); !view.empty()) top["view"] = view;
   add_probes(top, scene);
@@ -286,14 +275,13 @@ OrderedJson tool_json(const ContactTool& t, const std::filesystem::path& scene_f
       break;
   }
   if (!t.path.empty()) tool["path"] = t.path;
-  tool["friction"] = t.friction;
-  if (!t.mesh.empty() || t.scale != 1) tool["scale"] = t.scale;
+  describe_tool(WriteKeys{tool}, t);
+  if (!t.mesh.empty() || t.scale != 1) describe_mesh_tool(WriteKeys{tool}, t);
   if (t.shape == ToolShape::sequence || t.frames_per_second != ContactTool{}.frames_per_second)
-    tool["frames_per_second"] = t.frames_per_second;
+    describe_sequence_tool(WriteKeys{tool}, t);
   if (t.stiffness != 0) tool["contact"]["stiffness"] = t.stiffness;
   if (t.stiffness != 0 || t.exponent != 1) tool["contact"]["exponent"] = t.exponent;
   if (t.stiffness != 0 || t.alpha != 0) tool["contact"]["alpha"] = t.alpha;
-  if (t.edges) tool["edges"] = true;
   return tool;
 }
 

@@ -216,7 +216,7 @@ const std::vector<Case> of_scenes{
     {[](SceneSpec& s) { s.gravity[1] = kNan; }, "scene: /gravity/acceleration/1: got nan, expected a number"},
     {[](SceneSpec& s) { s.gravity_curve = {}, s.gravity[1] = kNan; }, "scene: /gravity/1: got nan, expected a number"},
     {[](SceneSpec& s) { s.gravity_curve.duration = 0; }, "scene: /gravity/duration: got 0, expected a number > 0"},
-    {[](SceneSpec& s) { s.dt = -1; }, "scene: /dt: got -1, expected \"auto\" or a time step > 0"},
+    {[](SceneSpec& s) { s.dt = -1; }, "scene: /dt: got -1, expected \"auto\" or a number > 0"},
     {[](SceneSpec& s) { s.safety = 1.5; }, "scene: /safety: got 1.5, expected a number with 0 < safety <= 1"},
     {[](SceneSpec& s) { s.integrator = "verlet"; }, "scene: /integrator: got \"verlet\", expected one of increment, textbook"},
     {[](SceneSpec& s) { s.integrator = "textbook"; }, "scene: /integrator: got \"textbook\", expected increment, because"},

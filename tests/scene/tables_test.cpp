@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "scene/keys.h"
+#include "scene/described_keys.h"
 #include "support/source_dir.h"
 
 namespace pliant::tables_test {
@@ -122,11 +122,55 @@ void set_laws(Json& material) {
   material["oneOf"] = ways;
 }
 
+/// The definition of each described key, in the place where the schema has it.
+struct SchemaKeys {
+  Json& properties;
+
+  template <class Number>
+  void operator()(const Key& key, const Number& standard) const {
+    Json entry{{"description", std::string(key.about) + (key.unit[0] != 0 ? " [" + std::string(key.unit) + "]" : "")}};
+    Json number{{"type", std::is_same_v<Number, bool> ? "boolean" : std::is_integral_v<Number> ? "integer" : "number"}};
+    const Range& r = key.range;
+    const auto bound = [](double x) { return std::is_integral_v<Number> ? Json(static_cast<std::int64_t>(x)) : Json(x); };
+    if (!std::is_same_v<Number, bool>) {
+      // No larger number than 1e30 is read, and no positive one below 1e-30.
+      if (r.above && r.least == 0) {
+        number["minimum"] = 1e-30;
+      } else {
+        number[r.above ? "exclusiveMinimum" : "minimum"] = bound(r.least);
+      }
+      number[r.below ? "exclusiveMaximum" : "maximum"] = bound(r.most);
+    }
+    if (key.also) {
+      entry["oneOf"] = {{{"const", key.word != nullptr ? Json(key.word) : bound(*key.also)}}, number};
+    } else {
+      entry.update(number);
+    }
+    if (!key.optional)
+      entry["default"] = key.word != nullptr && static_cast<double>(standard) == *key.also ? Json(key.word) : Json(standard);
+    properties[key.name] = entry;
+  }
+  template <class Enum>
+  void operator()(const Key& key, const Words<Enum>& words, const Enum& standard) const {
+    properties[key.name] = {{"description", key.about}, {"enum", words_only(words)}, {"default", word_of(words, standard)}};
+  }
+};
+
 TEST(Tables, SchemaHasTheLawsAndTheWordsOfTheCode) {
   Json schema = Json::parse(file_text("scenes/schema.json"));
+  Json& parts = schema["$defs"];
+  describe_scene(SchemaKeys{schema["properties"]}, Scene());
+  describe_run(SchemaKeys{schema["properties"]}, Scene());
+  describe_relaxation(SchemaKeys{parts["relaxation"]["properties"]}, Relaxation());
+  describe_solver(SchemaKeys{parts["solver"]["properties"]}, StaticSolver());
+  describe_material(SchemaKeys{parts["material"]["properties"]}, Material());
+  describe_tearing(SchemaKeys{parts["material"]["properties"]}, Material());
+  describe_tissue_contact(SchemaKeys{parts["tissue_contact"]["properties"]}, TissueContact());
+  describe_tool(SchemaKeys{parts["contact_tool"]["properties"]}, ContactTool());
+  describe_mesh_tool(SchemaKeys{parts["contact_tool"]["properties"]}, ContactTool());
+  describe_sequence_tool(SchemaKeys{parts["contact_tool"]["properties"]}, ContactTool());
   set_laws(schema["$defs"]["material"]);
   schema["$defs"]["body"]["properties"]["element"]["enum"] = words_only(element_words());
-  schema["properties"]["integrator"]["enum"] = words_only(integrator_words());
   expect_file("scenes/schema.json", pretty(schema) + "\n");
 }
 
@@ -181,8 +225,63 @@ void replace_part(std::string& text, const std::string& what, const std::string&
   text = text.substr(0, from + begin.size()) + part + text.substr(to);
 }
 
+/// The row of each described key, in the table behind an anchor.
+struct DocumentRows {
+  std::string& text;
+  const char* anchor;
+
+  template <class Number>
+  void operator()(const Key& key, const Number& standard) const {
+    std::string allowed;
+    if constexpr (!std::is_same_v<Number, bool>) {
+      allowed = (std::is_integral_v<Number> ? "whole number " : "") + range_text(key, std::is_integral_v<Number>);
+      if (key.also)
+        allowed = (key.word != nullptr ? code(Json(key.word).dump()) : short_text(Json(*key.also))) + ", or " + allowed;
+      allowed += "; ";
+    }
+    const bool as_word = key.word != nullptr && static_cast<double>(standard) == *key.also;
+    std::string value = as_word ? code(Json(key.word).dump()) : short_text(Json(standard));
+    if (key.optional) value = "none";
+    set(key, value, allowed + key.note);
+  }
+  template <class Enum>
+  void operator()(const Key& key, const Words<Enum>& words, const Enum& standard) const {
+    std::string allowed;
+    for (const Word<Enum>& w : words) allowed += (allowed.empty() ? "" : ", ") + code(Json(w.word).dump());
+    set(key, code(Json(word_of(words, standard)).dump()), allowed + "; " + key.note);
+  }
+
+ private:
+  static std::string short_text(const Json& value) {
+    if (!value.is_number_float()) return value.is_boolean() ? code(value.dump()) : value.dump();
+    std::ostringstream out;
+    out << value.get<double>();
+    return out.str();
+  }
+  void set(const Key& key, const std::string& standard, const std::string& allowed) const {
+    const std::string first = "| " + code(key.name) + " |";
+    const std::size_t from = text.find("\n" + first, text.find(anchor));
+    ASSERT_NE(from, std::string::npos) << anchor << ' ' << key.name;
+    const std::size_t end = text.find('\n', from + 1);
+    const std::string example = code(Json(key.name).dump() + ": " + key.example);
+    text.replace(
+        from + 1, end - from - 1,
+        first + " " + key.unit + (key.unit[0] != 0 ? " " : "") + "| " + standard + " | " + allowed + " | " + example + " |");
+  }
+};
+
 TEST(Tables, ScenesDocumentHasTheLawsAndElementsOfTheCode) {
   std::string text = file_text("docs/scene.md");
+  const DocumentRows top{text, "## Top level"}, material{text, "\n## Material\n"}, tool{text, "`tools`, at most 30"};
+  describe_scene(top, Scene());
+  describe_run(top, Scene());
+  describe_relaxation(DocumentRows{text, "`relaxation` (dynamic relaxation"}, Relaxation());
+  describe_solver(DocumentRows{text, "`solver` (what"}, StaticSolver());
+  describe_material(material, Material());
+  describe_tearing(material, Material());
+  describe_tool(tool, ContactTool());
+  describe_mesh_tool(tool, ContactTool());
+  describe_sequence_tool(tool, ContactTool());
   replace_part(text, "elements", element_table());
   replace_part(text, "laws", law_tables());
   expect_file("docs/scene.md", text);
