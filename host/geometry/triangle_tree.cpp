@@ -165,6 +165,9 @@ TriangleTree::Far TriangleTree::far_field(std::int32_t first, std::int32_t count
   return far;
 }
 
+/// By so much, relatively, a box may seem to be further away than what is in it.
+constexpr double kRounding = 1e-12;
+
 ClosestPoint TriangleTree::closest(const Vec3d& p) const {
   ClosestPoint best;
   double best2 = HUGE_VAL;
@@ -173,7 +176,7 @@ ClosestPoint TriangleTree::closest(const Vec3d& p) const {
   stack[top++] = {nodes_[0].box.distance2(p), 0};
   while (top > 0) {
     const auto [bound, id] = stack[--top];
-    if (bound > best2) continue;
+    if (bound > best2 * (1 + kRounding)) continue;
     const Node& node = nodes_[id];
     if (node.count == 0) {
       std::pair<double, std::int32_t> left{nodes_[id + 1].box.distance2(p), id + 1};
@@ -186,15 +189,13 @@ ClosestPoint TriangleTree::closest(const Vec3d& p) const {
     for (std::int32_t i = node.first; i < node.first + node.count; ++i) {
       const Vec3d q = closest_on_triangle(p, triangles_[i].a, triangles_[i].b, triangles_[i].c);
       const Vec3d d = sub(q, p);
-      const double d2 = dot(d, d);
-      if (d2 < best2 || (d2 == best2 && order_[i] < best.triangle)) {
+      const double d2 = dot(d, d), distance = std::sqrt(d2);  // ties are those of the distance, as with Embree
+      if (distance < best.distance || (distance == best.distance && order_[i] < best.triangle)) {
         best2 = d2;
-        best.triangle = order_[i];
-        best.point = q;
+        best = {distance, order_[i], q};
       }
     }
   }
-  best.distance = std::sqrt(best2);
   return best;
 }
 
