@@ -1,6 +1,7 @@
 // The keys of a scene file that are one number, flag or word, each described once. The loader, the keys that it knows, the
-// writer, scenes/schema.json, the tables of docs/scene.md and the structs of include/pliant follow from it (described_keys.h,
-// tests/scene/tables_test.cpp). A key of this kind is a member of its struct, a line here, its use and its test.
+// writer, scenes/schema.json, the tables of docs/scene.md and the copy from the structs of include/pliant follow from it
+// (described_keys.h, tests/scene/tables_test.cpp). A key of this kind is a member of its struct, a line here, its use and its
+// test.
 #pragma once
 #include <optional>
 
@@ -117,7 +118,7 @@ void describe_relaxation(V&& v, S&&... s) {
   v(Key{.name = "max_steps",
         .range = from_to(1, 1e12),
         .unit = "steps",
-        .about = "Give up after this many steps",
+        .about = "Give up after so many",
         .note = "then the run gives up",
         .example = "20000"},
     s.max_steps...);

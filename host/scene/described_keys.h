@@ -57,10 +57,9 @@ struct WriteKeys {
   }
 };
 
-/// From the struct of the public API. Nothing is checked but words.
+/// From the struct of the public API, at the top level. Nothing is checked but words.
 struct CopyKeys {
   const std::string& file;  ///< for messages
-  std::string pointer;
 
   template <class To, class From>
   void operator()(const Key& /*key*/, To& to, const From& from) const {
@@ -69,7 +68,7 @@ struct CopyKeys {
   template <class Enum>
   void operator()(const Key& key, const Words<Enum>& words, Enum& to, const std::string& from) const {
     const nlohmann::json value = from;
-    to = Reader(value, file, pointer + "/" + key.name).word(words);
+    to = Reader(value, file, std::string("/") + key.name).word(words);
   }
 };
 

@@ -46,8 +46,9 @@ void describe_tearing(V&& v, S&&... s) {
     s.integrity...);
 }
 
+/// Of a tool, and of tissue on tissue.
 template <class V, class... S>
-void describe_tissue_contact(V&& v, S&&... s) {
+void describe_friction(V&& v, S&&... s) {
   v(Key{.name = "friction",
         .range = at_least(0),
         .about = "Coulomb's coefficient",
@@ -59,12 +60,7 @@ void describe_tissue_contact(V&& v, S&&... s) {
 /// What every tool has.
 template <class V, class... S>
 void describe_tool(V&& v, S&&... s) {
-  v(Key{.name = "friction",
-        .range = at_least(0),
-        .about = "Coulomb's coefficient",
-        .note = "Coulomb's coefficient",
-        .example = "0.3"},
-    s.friction...);
+  describe_friction(v, s...);
   v(Key{.name = "edges",
         .about = "A sphere, capsule, box or mesh that is thinner than half a cell is met along its edges; experimental",
         .note = "`true` beside a sphere, capsule, box or mesh: where it is thinner than half a cell it is met along its edges "

@@ -51,7 +51,7 @@ std::map<std::string, List> make_keys() {
                            PLIANT_DESCRIBED(ContactTool, mesh_tool) + PLIANT_DESCRIBED(ContactTool, sequence_tool)},
       {"shape", words_only(tool_shape_words())},
       {"contact", {"stiffness", "exponent", "alpha"}},
-      {"tissue_contact", PLIANT_DESCRIBED(TissueContact, tissue_contact)},
+      {"tissue_contact", PLIANT_DESCRIBED(TissueContact, friction)},
       {"blade", {"name", "path", "start", "end"}},
       {"view", {"eye", "target", "up", "field_of_view", "ground"}},
       {"relaxation", PLIANT_DESCRIBED(Relaxation, relaxation)},

@@ -147,7 +147,7 @@ std::optional<TissueContact> read_tissue_contact(const Reader& contact) {
   TissueContact out;
   if (contact.json() == true) return out;
   contact.expect_object("tissue_contact");
-  describe_tissue_contact(ReadKeys{contact}, out);
+  describe_friction(ReadKeys{contact}, out);
   return out;
 }
 

@@ -217,7 +217,7 @@ ContactTool contact_tool(const ToolSpec& spec, const std::string& shape_pointer,
   t.second = spec.second;
   t.size = spec.size;
   t.mesh = spec.mesh;
-  const CopyKeys copy{kName, ""};
+  const CopyKeys copy{kName};
   describe_tool(copy, t, spec);
   describe_mesh_tool(copy, t, spec);
   describe_sequence_tool(copy, t, spec);
@@ -233,7 +233,7 @@ Scene scene_of(const SceneSpec& spec) {
   scene.name = spec.name;
   scene.gravity = spec.gravity;
   scene.gravity_curve = curve(spec.gravity_curve, "/gravity");
-  const CopyKeys copy{kName, ""};
+  const CopyKeys copy{kName};
   describe_scene(copy, scene, spec);
   scene.relaxation.enabled = spec.relaxation.has_value();
   if (spec.relaxation) describe_relaxation(copy, scene.relaxation, *spec.relaxation);
@@ -252,7 +252,7 @@ Scene scene_of(const SceneSpec& spec) {
     tool.pointer = at;
     return tool;
   });
-  if (spec.contact) describe_tissue_contact(copy, scene.contact.emplace(), *spec.contact);
+  if (spec.contact) describe_friction(copy, scene.contact.emplace(), *spec.contact);
   std::size_t surfaces = 0;
   convert(scene.bodies, spec.bodies, "/bodies",
           [&](const BodySpec& s, const std::string& at) { return body(s, at, surfaces); });

@@ -241,7 +241,7 @@ OrderedJson document_of(const Scene& scene) {
   }
   if (!scene.tool.path.empty()) top["tool"] = {{"path", scene.tool.path}};
   for (const ContactTool& t : scene.tools) top["tools"].push_back(tool_json(t, scene.file));
-  if (scene.contact) describe_tissue_contact(WriteKeys{top["contact"]}, *scene.contact);
+  if (scene.contact) describe_friction(WriteKeys{top["contact"]}, *scene.contact);
   for (const Blade& b : scene.blades) top["blades"].push_back(blade_json(b));
   if (const OrderedJson view = view_json(scene.view); !view.empty()) top["view"] = view;
   add_probes(top, scene);

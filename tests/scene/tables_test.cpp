@@ -165,7 +165,7 @@ TEST(Tables, SchemaHasTheLawsAndTheWordsOfTheCode) {
   describe_solver(SchemaKeys{parts["solver"]["properties"]}, StaticSolver());
   describe_material(SchemaKeys{parts["material"]["properties"]}, Material());
   describe_tearing(SchemaKeys{parts["material"]["properties"]}, Material());
-  describe_tissue_contact(SchemaKeys{parts["tissue_contact"]["properties"]}, TissueContact());
+  describe_friction(SchemaKeys{parts["tissue_contact"]["properties"]}, TissueContact());
   describe_tool(SchemaKeys{parts["contact_tool"]["properties"]}, ContactTool());
   describe_mesh_tool(SchemaKeys{parts["contact_tool"]["properties"]}, ContactTool());
   describe_sequence_tool(SchemaKeys{parts["contact_tool"]["properties"]}, ContactTool());
