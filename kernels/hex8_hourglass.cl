@@ -8,7 +8,7 @@
 //
 // W = k/2 sum_a |q_a|^2 + sum_ia D_i' p_ia^2 / 2 (a third of it for xyz) + N_ij p_i p_j + shears^2 / 2: in each direction of the
 // element the energy of a plate in plane stress, bent about both axes and twisted. The shears that bending causes in a trilinear field
-// and the volume change are left out, so that nothing locks (Belytschko and Bindeman 1993 assume such strains). host/model/hourglass.h
+// and the volume change are left out, so that nothing locks (Belytschko and Bindeman 1993 assume such strains). host/elements/hourglass.h
 // gives the numbers and where they come from. The force is the exact derivative of W, of g_i by F too.
 //
 // Planes of the record: m_a [4][3] from 24 on, e_i [3][3] from 36 on, D' [3] 45, N (xy, xz, yz) 48, A [3] 51, k 54.

@@ -8,7 +8,7 @@
 #include "cutting/topology/cut_topology.h"
 #include "io/obj.h"
 #include "io/png.h"
-#include "layout.h"
+#include "model/each_element.h"
 #include "model/pieces.h"
 #include "pliant/error.h"
 
@@ -23,24 +23,9 @@ void append(std::vector<float>& values, const Vec3d& v) {
 std::vector<std::vector<float>> fills(const Model& model) {
   std::vector<std::vector<float>> fill;
   for (const ModelBody& b : model.bodies) fill.emplace_back(static_cast<std::size_t>(b.elements()), 1.0F);
-  const auto set = [&](std::int32_t body, std::int64_t element, double value) {
-    fill[static_cast<std::size_t>(body)][static_cast<std::size_t>(element)] = static_cast<float>(value);
-  };
-  for (std::size_t i = 0; i < model.brick_cell.size(); ++i) {
-    if (model.brick_cell[i] >= 0) set(model.brick_body[i / PLIANT_BRICK_NODES], model.brick_cell[i], model.brick_fill[i]);
-  }
-  for (const HexBatch& batch : model.hexes) {
-    for (std::size_t e = 0; e < batch.id.size(); ++e) set(batch.body, batch.id[e], batch.fill[e]);
-  }
-  for (const TetBatch& batch : model.tets) {
-    const ModelBody& body = model.bodies[static_cast<std::size_t>(batch.body)];
-    for (std::size_t e = 0; e < batch.id.size(); ++e) {
-      std::array<Vec3d, 4> x;
-      for (std::size_t a = 0; a < 4; ++a)
-        x[a] = body.rest[static_cast<std::size_t>(body.tets[static_cast<std::size_t>(batch.id[e])][a])];
-      set(batch.body, batch.id[e], batch.volume[e] / tet_geometry(x).volume);
-    }
-  }
+  for_each_element(model, [&](const ElementView& e) {
+    fill[static_cast<std::size_t>(e.body)][static_cast<std::size_t>(e.id)] = static_cast<float>(e.share);
+  });
   return fill;
 }
 

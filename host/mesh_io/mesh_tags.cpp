@@ -43,6 +43,11 @@ const MeshTags::Array* MeshTags::find(const std::string& name) const {
   return nullptr;
 }
 
+const MeshTags::Values* MeshTags::values_of(const std::string& name) const {
+  const auto found = std::find_if(values.begin(), values.end(), [&](const Values& v) { return v.name == name; });
+  return found == values.end() ? nullptr : &*found;
+}
+
 std::vector<MeshTags::Region> MeshTags::regions(const Array& array) const {
   std::map<std::pair<int, std::int64_t>, std::int64_t> cells;  // by -dimension, so that elements come first
   for (const Tag& tag : array.tags) ++cells[{-tag.dimension, tag.number}];

@@ -32,10 +32,18 @@ struct MeshTags {
   std::vector<std::array<std::int32_t, 4>>
       faces;  ///< triangles and quadrangles of the file, over the mesh's vertices; -1: none
   std::vector<Array> arrays;
+  /// A number of each element.
+  struct Values {
+    std::string name;        ///< as in the file; of a .msh file that of $ElementData
+    std::vector<double> of;  ///< tetrahedra first, then hexahedra; NaN where the file has none
+  };
+  std::vector<Values> values;                                 ///< scalars alone
   std::map<std::pair<int, std::int64_t>, std::string> names;  ///< by dimension and number of "gmsh:physical"
 
   /// The array of this name; null if there is none. An empty name stands for the first of usual_arrays() that the file has.
   [[nodiscard]] const Array* find(const std::string& name) const;
+  /// The values of this name; null if there are none.
+  [[nodiscard]] const Values* values_of(const std::string& name) const;
   /// Elements first, by number.
   [[nodiscard]] std::vector<Region> regions(const Array& array) const;
 

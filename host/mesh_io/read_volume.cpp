@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <system_error>
 #include <tuple>
@@ -212,7 +213,8 @@ VolumeMesh compact(RawMesh& raw, double scale, const Vec3d& translate) {
 }
 
 /// From cells of the file to elements and faces of the mesh. `tet`, `hex`: what drop_repeated said.
-MeshTags tags_of(RawMesh& raw, const std::vector<std::int32_t>& tet, const std::vector<std::int32_t>& hex, std::size_t tets) {
+MeshTags tags_of(RawMesh& raw, const std::vector<std::int32_t>& tet, const std::vector<std::int32_t>& hex, std::size_t tets,
+                 std::size_t elements) {
   struct Place {
     int dimension = 0;  ///< 0: neither an element nor a face on one
     std::int32_t at = 0;
@@ -238,6 +240,17 @@ MeshTags tags_of(RawMesh& raw, const std::vector<std::int32_t>& tet, const std::
     to.tags.erase(std::unique(to.tags.begin(), to.tags.end(), same), to.tags.end());
     if (to.tags.empty()) out.arrays.pop_back();
   }
+  for (const RawMesh::Values& array : raw.values) {
+    MeshTags::Values to{array.name, std::vector<double>(elements, std::numeric_limits<double>::quiet_NaN())};
+    bool any = false;
+    for (std::size_t i = 0; i < array.cell.size(); ++i) {
+      const Place& p = place[static_cast<std::size_t>(array.cell[i])];
+      if (p.dimension != 3) continue;
+      to.of[static_cast<std::size_t>(p.at)] = array.value[i];
+      any = true;
+    }
+    if (any) out.values.push_back(std::move(to));
+  }
   return out;
 }
 
@@ -255,7 +268,7 @@ VolumeMesh read_volume(const fs::path& file, double scale, const Vec3d& translat
   orient(raw, raw.hexes, raw.hex_numbers, "hexahedron", file);
   check_folds(raw, file);
   VolumeMesh mesh = compact(raw, scale, translate);
-  if (tags != nullptr) *tags = tags_of(raw, tet, hex, mesh.tets.size());
+  if (tags != nullptr) *tags = tags_of(raw, tet, hex, mesh.tets.size(), mesh.tets.size() + mesh.hexes.size());
   return mesh;
 }
 

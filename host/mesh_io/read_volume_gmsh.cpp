@@ -212,9 +212,11 @@ void add_entity_tags(const CellEntities& cells, const GmshEntities& entities, Ra
 }
 
 /// The sections that only tags need; `leave` ends them.
-void read_tag_section(Cursor& at, std::string_view name, const Format& format, RawMesh& mesh, GmshEntities& entities) {
+void read_tag_section(Cursor& at, std::string_view name, const Format& format, RawMesh& mesh, GmshEntities& entities,
+                      std::vector<GmshValues>& values) {
   at.section(std::string(name));
   if (name == "$PhysicalNames") read_gmsh_names(at, mesh);
+  if (name == "$ElementData") read_gmsh_element_data(at, format.binary, values);
   if (name != "$Entities" || format.version < 40) return;
   if (format.binary) at.line();
   at.binary(format.binary);
@@ -232,6 +234,7 @@ RawMesh read_gmsh(const std::filesystem::path& file, std::string_view data, bool
   Format format;
   GmshEntities entities;
   CellEntities cell_entities;
+  std::vector<GmshValues> values;
   bool nodes = false;
   bool elements = false;
   while (!at.at_end()) {
@@ -245,7 +248,7 @@ RawMesh read_gmsh(const std::filesystem::path& file, std::string_view data, bool
       if (read_section(at, name, format, mesh, numbers, cell_entities)) {
         (name == "$Nodes" || name == "$NOD" ? nodes : elements) = true;
       } else {
-        if (tagged) read_tag_section(at, name, format, mesh, entities);
+        if (tagged) read_tag_section(at, name, format, mesh, entities, values);
         leave(at, name);
       }
     }
@@ -253,6 +256,7 @@ RawMesh read_gmsh(const std::filesystem::path& file, std::string_view data, bool
   if (!nodes) at.fail("the file has no section with nodes ($Nodes or $NOD)");
   if (!elements) at.fail("the file has no section with elements ($Elements or $ELM)");
   add_entity_tags(cell_entities, entities, mesh);
+  add_gmsh_values(values, mesh);
   return mesh;
 }
 

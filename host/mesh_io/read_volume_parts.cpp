@@ -131,20 +131,42 @@ RawMesh::Array& array_named(RawMesh& mesh, const std::string& name) {
   return mesh.arrays.back();
 }
 
-void add_cell_values(RawMesh& mesh, const std::string& name, std::int64_t first_cell, std::span<const std::int64_t> values) {
+namespace {
+
+/// As tags, which are whole.
+void add_tags(RawMesh& mesh, const std::string& name, std::int64_t first_cell, std::span<const std::int64_t> values) {
   RawMesh::Array& array = array_named(mesh, name);
   for (std::size_t i = 0; i < values.size(); ++i) array.cell.push_back(first_cell + static_cast<std::int64_t>(i));
   array.value.insert(array.value.end(), values.begin(), values.end());
 }
 
+/// As values of a field.
+template <class T>
+void add_values(RawMesh& mesh, const std::string& name, std::int64_t first_cell, std::span<const T> values) {
+  auto array = std::find_if(mesh.values.begin(), mesh.values.end(), [&](const RawMesh::Values& v) { return v.name == name; });
+  if (array == mesh.values.end()) array = mesh.values.insert(array, {name, {}, {}});
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    array->cell.push_back(first_cell + static_cast<std::int64_t>(i));
+    array->value.push_back(static_cast<double>(values[i]));
+  }
+}
+
+}  // namespace
+
+void add_cell_values(RawMesh& mesh, const std::string& name, std::int64_t first_cell, std::span<const std::int64_t> values) {
+  add_tags(mesh, name, first_cell, values);
+  add_values(mesh, name, first_cell, values);
+}
+
 void add_cell_values(RawMesh& mesh, const std::string& name, std::int64_t first_cell, std::span<const double> values) {
+  add_values(mesh, name, first_cell, values);
   constexpr double most = 9007199254740992.0;  // 2^53: larger ones have lost their units
   std::vector<std::int64_t> whole;
   for (const double v : values) {
     if (!(std::fabs(v) <= most) || v != std::floor(v)) return;
     whole.push_back(static_cast<std::int64_t>(v));
   }
-  add_cell_values(mesh, name, first_cell, whole);
+  add_tags(mesh, name, first_cell, whole);
 }
 
 void add_cell(RawMesh& mesh, const CellType& type, std::int64_t number, std::span<const std::int32_t> nodes, const Cursor& at) {

@@ -58,6 +58,12 @@ struct RawMesh {
     std::vector<std::int64_t> cell, value;  ///< a cell may occur several times, or not at all
   };
   std::vector<Array> arrays;
+  struct Values {
+    std::string name;
+    std::vector<std::int64_t> cell;
+    std::vector<double> value;
+  };
+  std::vector<Values> values;
   std::map<std::pair<int, std::int64_t>, std::string> names;  ///< of a dimension (2, 3) and a number of the first array
 
   [[nodiscard]] std::int64_t point_number(std::size_t i) const {
@@ -85,7 +91,7 @@ class NodeNumbers {
 RawMesh::Array& array_named(RawMesh& mesh, const std::string& name);
 /// Values of all cells from `first_cell` on, in their order.
 void add_cell_values(RawMesh& mesh, const std::string& name, std::int64_t first_cell, std::span<const std::int64_t> values);
-/// The same from real numbers. An array with one that is not whole holds no tags and is left out.
+/// The same from real numbers. An array with one that is not whole holds no tags, and values alone.
 void add_cell_values(RawMesh& mesh, const std::string& name, std::int64_t first_cell, std::span<const double> values);
 
 /// Add a cell whose nodes are already indices into the points. Throws through `at` for an unsupported volume cell.
@@ -124,6 +130,17 @@ void read_gmsh4_nodes(Cursor& at, bool v41, bool binary, RawMesh& mesh, NodeNumb
 /// `entities` of each cell of the mesh from then on are appended: its dimension and tag.
 void read_gmsh4_elements(Cursor& at, bool v41, bool binary, RawMesh& mesh, const NodeNumbers& numbers,
                          std::vector<std::pair<int, std::int64_t>>& entities);
+
+/// $ElementData, called by read_gmsh: a number per element, in the file's own numbers of elements.
+struct GmshValues {
+  std::string name;
+  std::vector<std::int64_t> element;
+  std::vector<double> value;
+};
+/// `at` stands behind the word. The first of several time steps is kept; vectors and tensors are not.
+void read_gmsh_element_data(Cursor& at, bool binary, std::vector<GmshValues>& out);
+/// Once all elements are known.
+void add_gmsh_values(const std::vector<GmshValues>& all, RawMesh& mesh);
 
 /// Add one point of a format with explicit numbers; duplicates and non-finite coordinates are errors.
 void add_point(RawMesh& mesh, NodeNumbers& numbers, std::int64_t number, const Vec3d& x, const Cursor& at);

@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "elements/eigenvalues.h"
 #include "material/response.h"
 #include "model/boundary_conditions.h"
-#include "model/each_hex.h"
-#include "model/eigenvalues.h"
-#include "model/hourglass.h"
+#include "model/each_element.h"
 
 namespace pliant {
 namespace {
@@ -37,34 +36,13 @@ Vector3d displacement(const std::vector<double>& u, std::int32_t slot) {
   return Eigen::Map<const Vector3d>(u.data() + 4 * static_cast<std::size_t>(slot));
 }
 
-double hex_stiffness(const HexView& view, const std::vector<double>& u, bool quick) {
-  Eigen::Matrix<double, 3, 8> moved;
-  for (int a = 0; a < 8; ++a) moved.col(a) = displacement(u, view.slots[a]);
-  const auto gradients = [&](int at) -> Eigen::Matrix<double, 8, 3> {
-    return Eigen::Map<const Eigen::Matrix<double, 8, 3, Eigen::RowMajor>>(view.record.data() + at);
-  };
+double element_stiffness(const ElementView& e, const std::vector<double>& u, bool quick) {
+  const auto moved = [&](std::int32_t slot) { return displacement(u, slot); };
   double sum = 0;
-  if (view.full) {
-    for (int g = 0; g < 8; ++g) {
-      sum += point_stiffness<8>(gradients(25 * g), moved, view.fill * view.record[25 * g + 24], view.material, quick);
-    }
-    return sum;
-  }
-  return point_stiffness<8>(gradients(0), moved, view.fill * hex8_volume(view.record), view.material, quick) +
-         view.fill * hourglass_bound(view.record, moved);
-}
-
-double tet_stiffness(const TetBatch& batch, std::size_t e, const std::vector<double>& u, bool quick) {
-  Eigen::Matrix<double, 4, 3> b;
-  b.row(0).setZero();
-  Eigen::Matrix<double, 3, 4> moved;
-  for (int a = 0; a < 4; ++a) {
-    moved.col(a) = displacement(u, batch.nodes[e][a]);
-    if (a == 0) continue;
-    b.row(a) = Eigen::Map<const Eigen::RowVector3d>(batch.gradients[e].data() + 3 * (a - 1));
-    b.row(0) -= b.row(a);
-  }
-  return point_stiffness<4>(b, moved, batch.volume[e], batch.material, quick);
+  for_each_point(e, moved, [&](const auto& gradients, double weight, const auto& corners) {
+    sum += point_stiffness(gradients, corners, weight, e.material, quick);
+  });
+  return sum + hourglass_bound(e, moved);
 }
 
 }  // namespace
@@ -88,17 +66,13 @@ std::vector<double> nodal_stiffness(const Model& model, const std::vector<double
                                     bool quick) {
   std::vector<double> sum(model.mass.size());
   const auto asked = [&](std::int32_t slot) { return wanted.empty() || wanted[slot] != 0; };
-  const auto add = [&](const auto& slots, const auto& stiffness_of) {
-    if (std::none_of(slots.begin(), slots.end(), asked)) return;
-    const double stiffness = stiffness_of();
-    for (const std::int32_t s : slots) {
+  for_each_element(model, [&](const ElementView& e) {
+    if (std::none_of(e.slots.begin(), e.slots.end(), asked)) return;
+    const double stiffness = element_stiffness(e, u, quick);
+    for (const std::int32_t s : e.slots) {
       if (asked(s)) sum[s] += stiffness;
     }
-  };
-  for (const TetBatch& batch : model.tets) {
-    for (std::size_t e = 0; e < batch.nodes.size(); ++e) add(batch.nodes[e], [&] { return tet_stiffness(batch, e, u, quick); });
-  }
-  for_each_hex(model, [&](const HexView& view) { add(view.slots, [&] { return hex_stiffness(view, u, quick); }); });
+  });
   return sum;
 }
 

@@ -3,34 +3,35 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
+#include "elements/element.h"
 #include "model/flsm_regions.h"
 #include "scene/scene.h"
 
 namespace pliant {
 
-/// Tetrahedra of one material. `nodes` are slots; `volume` [m^3] counts the fill of the lattice cell they were cut from.
-struct TetBatch {
+/// Elements of one kind, one body and one material outside the bricks.
+struct ElementBatch {
+  ElementKind kind = ElementKind::hex8;
   Material material;
   std::int32_t body = 0;
-  bool averaged = false;  ///< tet4anp
-  std::vector<std::array<std::int32_t, 4>> nodes;
-  std::vector<std::array<double, 9>> gradients;  ///< grad N_1..3, rows [1/m]
-  std::vector<double> volume;
-  std::vector<std::int64_t> id;  ///< the element's number in its body, for messages
-};
-
-/// Hexahedra of one material outside the bricks; corner a of a record is at bits (x, y, z) = (a & 1, a >> 1 & 1, a >> 2 & 1).
-struct HexBatch {
-  Material material;
-  std::int32_t body = 0;
-  bool full = false;     ///< hex8full: 2 x 2 x 2 points
-  bool uniform = false;  ///< all elements are cubes of the same edge: one record
-  std::vector<std::array<std::int32_t, 8>> nodes;
-  std::vector<std::vector<double>> records;  ///< element data as in kernels/layout.h; one if uniform
-  std::vector<double> fill;
-  std::vector<std::int64_t> id;
+  bool uniform = false;             ///< all are cubes of the same edge: one record
+  std::vector<std::int32_t> nodes;  ///< [elements][corners] slots
+  std::vector<double> records;      ///< [elements or 1][numbers of a record] (elements/element.h)
+  std::vector<double> share;        ///< [elements] of a full one's stiffness
+  std::vector<std::int64_t> id;     ///< [elements] number in its body
+  [[nodiscard]] std::size_t size() const { return id.size(); }
+  [[nodiscard]] const ElementInfo& info() const { return element_info(kind); }
+  [[nodiscard]] std::span<const std::int32_t> nodes_of(std::size_t e) const {
+    const auto corners = static_cast<std::size_t>(info().corners);
+    return {nodes.data() + corners * e, corners};
+  }
+  [[nodiscard]] std::span<const double> record_of(std::size_t e) const {
+    const std::size_t numbers = uniform ? records.size() : static_cast<std::size_t>(info().record);
+    return {records.data() + (uniform ? 0 : numbers * e), numbers};
+  }
 };
 
 /// A run of bricks that share one material and spacing.
@@ -39,6 +40,8 @@ struct BrickBatch {
   std::int32_t body = 0;  ///< of the first brick, for labels
   double spacing = 0;     ///< [m]
   std::int32_t first = 0, count = 0;
+  static constexpr ElementKind kind = ElementKind::hex8;
+  [[nodiscard]] std::vector<double> record() const;  ///< of each of its cells
 };
 
 /// What a region resists a strain with, where shape matching has the stiffness of a material (model/flsm_elastic.cpp).

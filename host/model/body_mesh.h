@@ -34,6 +34,10 @@ struct BodyElements {
   std::vector<Cell> matching_cells;              ///< the cells left to shape matching
   double spacing = 0;                            ///< [m]
   std::shared_ptr<const NodeOrder> uncut_order;  ///< of the uncut body, if it was found already; the body may be cut
+  [[nodiscard]] std::size_t size() const { return tets.size() + hexes.size(); }
+  [[nodiscard]] std::span<const std::int32_t> corners(std::size_t e) const {
+    return tets.empty() ? std::span<const std::int32_t>(hexes[e]) : tets[e];
+  }
   /// Whether element e is a finite element.
   [[nodiscard]] bool operational(std::size_t e) const {
     return partition.operational.empty() || partition.operational[tets.empty() ? e : e / 6] != 0;
@@ -78,9 +82,6 @@ void add_surfaces(std::span<const BodyMesh* const> solids, Model& model, const S
 
 /// The corners of a lattice cell from its six tetrahedra (kKuhnTets), which follow each other.
 std::array<std::int32_t, 8> cell_corners(const std::array<std::int32_t, 4>* tets);
-
-/// VTK's corner order of a hexahedron from bit order, and back: the same permutation both ways.
-inline constexpr std::array<int, 8> kVtkFromBits{0, 1, 3, 2, 4, 5, 7, 6};
 
 /// All nodes in Cuthill-McKee order: breadth first over the elements from a node at the far end of each connected part.
 std::vector<std::int32_t> sweep_order(const BodyElements& solid);

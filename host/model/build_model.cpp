@@ -5,13 +5,13 @@
 #include <cmath>
 #include <numeric>
 
+#include "elements/elements.h"
 #include "geometry/vec.h"
 #include "layout.h"
 #include "model/body_mesh.h"
 #include "model/boundary_conditions.h"
 #include "model/bricks.h"
 #include "model/flsm.h"
-#include "model/hourglass.h"
 #include "model/least_fill.h"
 #include "model/model.h"
 #include "model/node_numbering.h"
@@ -20,22 +20,21 @@
 namespace pliant {
 namespace {
 
-Vec3d centroid(const BodyElements& solid, const std::int32_t* corners, int count) {
+Vec3d centroid(const BodyElements& solid, std::span<const std::int32_t> corners) {
   Vec3d sum{};
-  for (int a = 0; a < count; ++a) {
-    for (int c = 0; c < 3; ++c) sum[c] += solid.nodes[corners[a]][c] / count;
+  for (const std::int32_t n : corners) {
+    for (int c = 0; c < 3; ++c) sum[c] += solid.nodes[n][c] / static_cast<double>(corners.size());
   }
   return sum;
 }
 
 /// Index of the material of each element: 0 for the body's own, i + 1 for inclusion i; the last match wins.
 std::vector<int> materials_of(const Body& body, const BodyElements& solid) {
-  const bool tets = !solid.tets.empty();
-  const std::size_t count = tets ? solid.tets.size() : solid.hexes.size();
+  const std::size_t count = solid.size();
   std::vector<int> material(count, 0);
   std::vector<char> hit(body.inclusions.size(), false);
   for (std::size_t e = 0; e < count && !body.inclusions.empty(); ++e) {
-    const Vec3d x = tets ? centroid(solid, solid.tets[e].data(), 4) : centroid(solid, solid.hexes[e].data(), 8);
+    const Vec3d x = centroid(solid, solid.corners(e));
     for (std::size_t i = 0; i < body.inclusions.size(); ++i) {
       if (body.inclusions[i].where.contains(x, static_cast<std::int64_t>(e))) {
         material[e] = static_cast<int>(i) + 1;
@@ -84,125 +83,103 @@ void note_bound(Model& model, double frequency, double volume, const std::string
 }
 
 /// Elements by their lowest slot, of `slots`: what a sweep over them touches lies close together.
-template <std::size_t N>
-std::vector<std::int32_t> element_order(const std::vector<std::array<std::int32_t, N>>& elements, const NodeNumbering& draft,
-                                        std::int32_t slots) {
-  std::vector<std::int32_t> order(elements.size()), lowest(elements.size()), next(static_cast<std::size_t>(slots) + 1, 0);
-  for (std::size_t e = 0; e < elements.size(); ++e) {
-    lowest[e] = draft.slot[elements[e][0]];
-    for (const std::int32_t n : elements[e]) lowest[e] = std::min(lowest[e], draft.slot[n]);
+std::vector<std::int32_t> element_order(const NodeNumbering& draft, std::int32_t slots) {
+  const BodyElements& solid = draft.solid();
+  std::vector<std::int32_t> order(solid.size()), lowest(solid.size()), next(static_cast<std::size_t>(slots) + 1, 0);
+  for (std::size_t e = 0; e < solid.size(); ++e) {
+    lowest[e] = draft.slot[solid.corners(e)[0]];
+    for (const std::int32_t n : solid.corners(e)) lowest[e] = std::min(lowest[e], draft.slot[n]);
     ++next[lowest[e] + 1];
   }
   std::partial_sum(next.begin(), next.end(), next.begin());
-  for (std::size_t e = 0; e < elements.size(); ++e) order[next[lowest[e]]++] = static_cast<std::int32_t>(e);
+  for (std::size_t e = 0; e < solid.size(); ++e) order[next[lowest[e]]++] = static_cast<std::int32_t>(e);
   return order;
 }
 
 /// What a thin element holds less than what it is as stiff as, it gets as inertia: however thin, it keeps its shape and
 /// vibrates like any other. `full`: mass of a full one [kg].
-template <std::size_t N>
-void add_inertia(Model& model, const std::array<std::int32_t, N>& slots, double fill, double stiff, double full) {
+void add_inertia(Model& model, std::span<const std::int32_t> slots, double fill, double stiff, double full) {
   if (model.added.empty() || stiff <= fill) return;
-  const double more = (stiff - fill) * full / static_cast<double>(N);
+  const double more = (stiff - fill) * full / static_cast<double>(slots.size());
   for (const std::int32_t n : slots) {
     model.mass[n] += more;
     model.added[n] += more;
   }
 }
 
-void add_tets(const Body& body, std::int32_t b, const NodeNumbering& draft, Model& model) {
-  const std::vector<std::int32_t> order = element_order(draft.solid().tets, draft, model.slots);
-  for (std::size_t m = 0; m <= body.inclusions.size(); ++m) {
-    TetBatch batch;
-    batch.material = material_for(model, body, static_cast<int>(m));
-    batch.body = b;
-    batch.averaged = body.element == ElementKind::tet4anp;
-    for (const std::int32_t e : order) {
-      if (draft.material[e] != static_cast<int>(m)) continue;
-      std::array<Vec3d, 4> x;
-      std::array<std::int32_t, 4> slots{};
-      for (int a = 0; a < 4; ++a) {
-        x[a] = draft.solid().nodes[draft.solid().tets[e][a]];
-        slots[a] = draft.slot[draft.solid().tets[e][a]];
+/// The lists of one body, one material each, and the masses of all its elements.
+class ElementLists {
+ public:
+  ElementLists(const Body& body, std::int32_t b, NodeNumbering& draft, Model& model)
+      : body_(body), info_(element_info(body.element)), b_(b), draft_(draft), model_(model) {}
+
+  void add() {
+    draft_.volume.resize(draft_.solid().size());
+    const std::vector<std::int32_t> order = element_order(draft_, model_.slots);
+    for (std::size_t m = 0; m <= body_.inclusions.size(); ++m) {
+      batch_ = {};
+      batch_.kind = body_.element;
+      batch_.material = material_for(model_, body_, static_cast<int>(m));
+      batch_.body = b_;
+      batch_.uniform = draft_.solid().spacing > 0 && info_.corners == 8;
+      if (batch_.uniform) add_cube();
+      for (const std::int32_t e : order) {
+        if (draft_.material[e] == static_cast<int>(m)) add(static_cast<std::size_t>(e));
       }
-      const TetGeometry geometry = tet_geometry(x);
-      const double mass = batch.material.density * geometry.volume * draft.solid().fill[e];
-      for (const std::int32_t n : slots) model.mass[n] += mass / 4;
-      add_inertia(model, slots, draft.solid().fill[e], draft.stiff[e], batch.material.density * geometry.volume);
-      if (!draft.solid().operational(static_cast<std::size_t>(e))) continue;
-      batch.nodes.push_back(slots);
-      batch.gradients.push_back(geometry.gradients);
-      batch.volume.push_back(geometry.volume * draft.stiff[e]);
-      batch.id.push_back(e);
-      note_bound(model, tet_frequency(geometry, batch.material), geometry.volume,
-                 fmt::format("{}: tetrahedron {}", body.name, e));
+      if (batch_.size() > 0) model_.batches.push_back(std::move(batch_));
     }
-    if (!batch.nodes.empty()) model.tets.push_back(std::move(batch));
   }
-}
 
-std::vector<double> hex_record(const HexBatch& batch, const std::array<Vec3d, 8>& x, const std::string& what) {
-  return batch.full ? hex8full_record(x, what) : hex8_record(x, batch.material, what);
-}
-
-double hex_frequency(const HexBatch& batch, const std::vector<double>& record) {
-  return batch.full ? hex8full_frequency(record, batch.material) : hex8_frequency(record, batch.material);
-}
-
-/// The sum of the weights of a hex8full record.
-double gauss_volume(const std::vector<double>& record) {
-  double volume = 0;
-  for (int p = 0; p < 8; ++p) volume += record[25 * p + 24];
-  return volume;
-}
-
-double hex_volume(const HexBatch& batch, const std::vector<double>& record) {
-  return batch.full ? gauss_volume(record) : hex8_volume(record);
-}
-
-void add_hexes(const Body& body, std::int32_t b, const NodeNumbering& draft, Model& model) {
-  const BodyElements& solid = draft.solid();
-  const std::vector<std::int32_t> order = element_order(solid.hexes, draft, model.slots);
-  for (std::size_t m = 0; m <= body.inclusions.size(); ++m) {
-    HexBatch batch;
-    batch.material = material_for(model, body, static_cast<int>(m));
-    batch.body = b;
-    batch.full = body.element == ElementKind::hex8full;
-    batch.uniform = solid.spacing > 0;
-    const auto describe = [&](std::size_t e) { return fmt::format("{}: hexahedron {}", body.name, e); };
-    // A lattice's record is that of an exact cube, whatever the rounding of its corners.
-    const double d = solid.spacing;
-    if (batch.uniform) {
-      std::array<Vec3d, 8> cube;
-      for (int a = 0; a < 8; ++a) cube[a] = {d * (a & 1), d * (a >> 1 & 1), d * (a >> 2 & 1)};
-      const std::string what = fmt::format("{}: lattice cell", body.name);
-      batch.records.push_back(batch.full ? hex8full_record(cube, what) : hex8_cube_record(d, batch.material, what));
-      if (model.bodies[b].operational_elements > 0)
-        note_bound(model, hex_frequency(batch, batch.records[0]), d * d * d, fmt::format("{}: every lattice cell", body.name));
-    }
-    for (const std::int32_t i : order) {
-      const auto e = static_cast<std::size_t>(i);
-      if (draft.material[e] != static_cast<int>(m)) continue;
-      std::array<std::int32_t, 8> slots{};
-      for (int a = 0; a < 8; ++a) slots[a] = draft.slot[solid.hexes[e][a]];
-      double volume = d * d * d;
-      if (!batch.uniform) {
-        std::array<Vec3d, 8> x;
-        for (int a = 0; a < 8; ++a) x[a] = solid.nodes[solid.hexes[e][a]];
-        batch.records.push_back(hex_record(batch, x, describe(e)));
-        volume = hex_volume(batch, batch.records.back());
-        note_bound(model, hex_frequency(batch, batch.records.back()), volume, describe(e));
-      }
-      for (const std::int32_t n : slots) model.mass[n] += batch.material.density * volume * solid.fill[e] / 8;
-      add_inertia(model, slots, solid.fill[e], draft.stiff[e], batch.material.density * volume);
-      if (draft.in_brick[e] || !solid.operational(e)) continue;
-      batch.nodes.push_back(slots);
-      batch.fill.push_back(draft.stiff[e]);
-      batch.id.push_back(static_cast<std::int64_t>(e));
-    }
-    if (!batch.nodes.empty()) model.hexes.push_back(std::move(batch));
+ private:
+  /// The record of all cells of a lattice.
+  void add_cube() {
+    const double d = draft_.solid().spacing;
+    batch_.records = with_element(batch_.kind, [&](auto e) {
+      return decltype(e)::cube_record(d, batch_.material, fmt::format("{}: lattice cell", body_.name));
+    });
+    if (model_.bodies[b_].operational_elements > 0)
+      note_bound(model_, element_frequency(batch_.kind, batch_.records, batch_.material), d * d * d,
+                 fmt::format("{}: every lattice cell", body_.name));
   }
-}
+
+  void add(std::size_t e) {
+    const BodyElements& solid = draft_.solid();
+    std::array<Vec3d, 8> x;
+    std::array<std::int32_t, 8> all_slots{};
+    const auto corners = solid.corners(e);
+    for (std::size_t a = 0; a < corners.size(); ++a) {
+      x[a] = solid.nodes[corners[a]];
+      all_slots[a] = draft_.slot[corners[a]];
+    }
+    const std::span<const std::int32_t> slots(all_slots.data(), corners.size());
+    const bool finite = solid.operational(e);
+    double& volume = draft_.volume[e];
+    std::vector<double> record;
+    if (batch_.uniform) {
+      volume = solid.spacing * solid.spacing * solid.spacing;
+    } else {
+      const std::string what = fmt::format("{}: {} {}", body_.name, info_.cell, e);
+      record = element_record(batch_.kind, std::span(x.data(), corners.size()), batch_.material, what);
+      volume = element_volume(batch_.kind, record);
+      if (finite) note_bound(model_, element_frequency(batch_.kind, record, batch_.material), volume, what);
+    }
+    const double full = batch_.material.density * volume, mass = full * solid.fill[e];
+    for (const std::int32_t n : slots) model_.mass[n] += mass / static_cast<double>(slots.size());
+    add_inertia(model_, slots, solid.fill[e], draft_.stiff[e], full);
+    if (draft_.in_brick[e] || !finite) return;
+    batch_.nodes.insert(batch_.nodes.end(), slots.begin(), slots.end());
+    if (!batch_.uniform) batch_.records.insert(batch_.records.end(), record.begin(), record.end());
+    batch_.share.push_back(draft_.stiff[e]);
+    batch_.id.push_back(static_cast<std::int64_t>(e));
+  }
+
+  const Body& body_;
+  const ElementInfo& info_;
+  std::int32_t b_;
+  NodeNumbering& draft_;
+  Model& model_;
+  ElementBatch batch_;
+};
 
 void fill_body(const Body& body, NodeNumbering& draft, ModelBody& out) {
   out.name = body.name;
@@ -261,19 +238,9 @@ void add_initial(const Body& body, const ModelBody& placed, Model& model) {
 
 void add_totals(const Body& body, const NodeNumbering& draft, ModelBody& out) {
   const BodyElements& solid = draft.solid();
-  for (std::size_t e = 0; e < draft.material.size(); ++e) {
-    double volume = solid.spacing * solid.spacing * solid.spacing;
-    if (!solid.tets.empty()) {
-      std::array<Vec3d, 4> x;
-      for (int a = 0; a < 4; ++a) x[a] = solid.nodes[solid.tets[e][a]];
-      volume = tet_geometry(x).volume;
-    } else if (solid.spacing == 0) {
-      std::array<Vec3d, 8> x;
-      for (int a = 0; a < 8; ++a) x[a] = solid.nodes[solid.hexes[e][a]];
-      volume = gauss_volume(hex8full_record(x, body.name));
-    }
-    out.volume += volume * solid.fill[e];
-    out.mass += material_of(body, draft.material[e]).density * volume * solid.fill[e];
+  for (std::size_t e = 0; e < solid.size(); ++e) {
+    out.volume += draft.volume[e] * solid.fill[e];
+    out.mass += material_of(body, draft.material[e]).density * draft.volume[e] * solid.fill[e];
   }
 }
 
@@ -291,7 +258,7 @@ void place_bodies(const Scene& scene, std::span<const BodyMesh* const> solids, c
     draft.stiff = stiff_fills(draft.solid(), model.least_fill);
     draft.in_brick.assign(draft.material.size(), false);
     draft.slot.assign(draft.solid().nodes.size(), -1);
-    if (!draft.solid().cells.empty() && body.element == ElementKind::hex8) {
+    if (!draft.solid().cells.empty() && element_info(body.element).bricks) {
       for (std::size_t e = 0; e < draft.in_brick.size(); ++e)
         draft.in_brick[e] = draft.material[e] == 0 && draft.solid().operational(e);
       const std::int32_t first = model.bricks;
@@ -349,7 +316,6 @@ Model build_elements(const Scene& scene, std::span<const BodyMesh* const> solids
   model.velocity.resize(model.slots);
   model.bodies.resize(scene.bodies.size());
   for (std::size_t i = 0; i < drafts.size(); ++i) {
-    const auto b = static_cast<std::int32_t>(i);
     const Body& body = scene.bodies[i];
     NodeNumbering& draft = drafts[i];
     fill_body(body, draft, model.bodies[i]);
@@ -357,11 +323,7 @@ Model build_elements(const Scene& scene, std::span<const BodyMesh* const> solids
       model.rest[draft.slot[n]] = draft.solid().nodes[n];
       model.damping[draft.slot[n]] = body.material.damping;
     }
-    if (!draft.solid().tets.empty()) {
-      add_tets(body, b, draft, model);
-    } else {
-      add_hexes(body, b, draft, model);
-    }
+    ElementLists(body, static_cast<std::int32_t>(i), draft, model).add();
     add_totals(body, draft, model.bodies[i]);
     for (const std::int32_t s : model.bodies[i].slot) model.bodies[i].added_mass += model.mass[s] - model.own_mass(s);
     set_velocity(body, model.bodies[i], model);

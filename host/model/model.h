@@ -116,12 +116,11 @@ struct Model {
   std::vector<double> mass;   ///< [slots] lumped [kg], what accelerates; 0: no node
   std::vector<double>
       added;  ///< [slots] share of `mass` that is inertia without weight (Scene::least_fill, ballast); empty: none
-  std::vector<Ballast> ballast;     ///< counted in `mass` and `added` (ballast.h), ascending slots
-  std::vector<double> damping;      ///< [slots] c [1/s]
-  std::vector<Vec3d> velocity;      ///< [slots] initial [m/s]
-  std::vector<Vec3d> displacement;  ///< [slots] initial [m]; empty: none
-  std::vector<TetBatch> tets;
-  std::vector<HexBatch> hexes;
+  std::vector<Ballast> ballast;       ///< counted in `mass` and `added` (ballast.h), ascending slots
+  std::vector<double> damping;        ///< [slots] c [1/s]
+  std::vector<Vec3d> velocity;        ///< [slots] initial [m/s]
+  std::vector<Vec3d> displacement;    ///< [slots] initial [m]; empty: none
+  std::vector<ElementBatch> batches;  ///< of elements outside the bricks
   std::vector<BrickBatch> brick_batches;
   std::vector<FlsmBatch> flsm;
   ModelSurface surface;
@@ -147,28 +146,5 @@ struct Model {
 /// Load the meshes of a scene, fill them, number, and precompute. Throws Error for bad input (no node in a boundary set, an
 /// inverted element, ...).
 Model build_model(const Scene& scene);
-
-/// Gradients of the linear tetrahedron's shape functions 1..3 and its signed volume.
-struct TetGeometry {
-  std::array<double, 9> gradients{};
-  double volume = 0;
-};
-TetGeometry tet_geometry(const std::array<Vec3d, 4>& x);
-
-/// Records of kernels/layout.h for a hexahedron whose corners come in bit order, or for a cube of this edge [m]. Throws Error
-/// (`what` names the element) when the Jacobian is not positive at the points used.
-std::vector<double> hex8_record(const std::array<Vec3d, 8>& x, const Material& material, const std::string& what);
-std::vector<double> hex8_cube_record(double edge, const Material& material, const std::string& what);
-std::vector<double> hex8full_record(const std::array<Vec3d, 8>& x, const std::string& what);
-
-/// Upper bounds of an element's highest angular frequency [rad/s] at rest with lumped mass (independent of fill). With
-/// A = sum_a grad N_a grad N_a^T the stiffness per volume is at most lambda tr A + 2 mu lambda_max(A).
-double tet_frequency(const TetGeometry& tet, const Material& material);
-double hex8_frequency(const std::vector<double>& record, const Material& material);
-double hex8full_frequency(const std::vector<double>& record, const Material& material);
-
-/// Hourglass stiffness k [N/m] of a cube of edge d: E d / 48 times the material's factor, which makes one layer of elements
-/// bend as a beam of modulus E at nu = 0. Lattices have it; hourglass.h has that of other hexahedra.
-double hourglass_stiffness(const Material& material, double volume);
 
 }  // namespace pliant

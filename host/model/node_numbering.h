@@ -15,6 +15,7 @@ struct NodeNumbering {
   std::vector<int> material;
   std::vector<double> stiff;  ///< stiff_fills()
   std::vector<char> in_brick;
+  std::vector<double> volume;  ///< [elements] of full ones [m^3]
   std::vector<std::int32_t> slot;
 };
 

@@ -141,16 +141,13 @@ const Words<Law>& law_words() {
 }
 
 const Words<ElementKind>& element_words() {
-  static const Words<ElementKind> words{
-      {"tet4", ElementKind::tet4, "linear tetrahedron"},
-      {"tet4anp", ElementKind::tet4anp,
-       "the same with averaged nodal pressure, which does not lock when nearly incompressible"},
-      {"hex8", ElementKind::hex8, "hexahedron with one Gauss point and hourglass control"},
-      {"hex8full", ElementKind::hex8full, "hexahedron with 2x2x2 points"}};
+  static const Words<ElementKind> words = [] {
+    Words<ElementKind> list;
+    for (const ElementKind kind : all_elements()) list.push_back({to_string(kind), kind, element_info(kind).what});
+    return list;
+  }();
   return words;
 }
-
-std::vector<ElementKind> all_elements() { return values_of(element_words()); }
 
 const Words<Curve::Kind>& curve_words() {
   static const Words<Curve::Kind> words{{"constant", Curve::Kind::constant, "1 from the start on"},

@@ -43,7 +43,6 @@ using Words = std::vector<Word<Enum>>;
 
 const Words<Law>& law_words();
 const Words<ElementKind>& element_words();
-std::vector<ElementKind> all_elements();
 const Words<Curve::Kind>& curve_words();
 const Words<Integrator>& integrator_words();
 const Words<Inverted>& inverted_words();

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "elements/element.h"
 #include "material/material.h"
 #include "scene/contact_tool.h"
 #include "scene/curve.h"
@@ -21,11 +22,6 @@ namespace pliant {
 
 struct SceneProbes;
 struct TriangleMesh;
-
-enum class ElementKind { tet4, tet4anp, hex8, hex8full };
-
-/// Names as they stand in a scene file ("neo-hookean", "hex8", ...).
-const char* to_string(ElementKind element);
 
 /// A part of a body with another material (a stiff inclusion). Later entries win where they overlap.
 struct Inclusion {

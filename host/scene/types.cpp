@@ -9,7 +9,6 @@
 
 namespace pliant {
 
-const char* to_string(ElementKind element) { return word_of(element_words(), element).c_str(); }
 const char* to_string(ModelType type) { return word_of(model_words(), type).c_str(); }
 
 namespace {

@@ -15,8 +15,7 @@ Program ProgramBuilder::build() {
   add_surface();
   add_pressure_passes();
   for (std::size_t b = 0; b < model_.brick_batches.size(); ++b) add_bricks(model_.brick_batches[b]);
-  for (std::size_t b = 0; b < model_.tets.size(); ++b) add_tets(b);
-  for (std::size_t b = 0; b < model_.hexes.size(); ++b) add_hexes(b);
+  for (std::size_t b = 0; b < model_.batches.size(); ++b) add_batch(b);
   add_loads();
   program_.force = program_.step;
   add_gravity();
@@ -129,18 +128,16 @@ void ProgramBuilder::add_updates() {
 void ProgramBuilder::add_list_update() {
   const std::int32_t nodes = model_.list_end - model_.list_base;
   std::vector<std::vector<std::int32_t>> corners(nodes);
-  const auto collect = [&](const auto& batches, const std::vector<BatchOffsets>& places, int planes) {
-    for (std::size_t b = 0; b < batches.size(); ++b) {
-      for (std::size_t e = 0; e < batches[b].nodes.size(); ++e) {
-        for (std::size_t a = 0; a < batches[b].nodes[e].size(); ++a) {
-          const std::int32_t node = batches[b].nodes[e][a] - model_.list_base;
-          if (node >= 0) corners[node].push_back(corner_position(places[b], e, static_cast<int>(a), planes));
-        }
+  for (std::size_t b = 0; b < model_.batches.size(); ++b) {
+    const ElementBatch& batch = model_.batches[b];
+    for (std::size_t e = 0; e < batch.size(); ++e) {
+      const auto slots = batch.nodes_of(e);
+      for (std::size_t a = 0; a < slots.size(); ++a) {
+        const std::int32_t node = slots[a] - model_.list_base;
+        if (node >= 0) corners[node].push_back(corner_position(layout_.batches[b], e, static_cast<int>(a), batch.info().force));
       }
     }
-  };
-  collect(model_.tets, layout_.tets, PLIANT_TET_FORCE_PLANES);
-  collect(model_.hexes, layout_.hexes, PLIANT_HEX_FORCE_PLANES);
+  }
   GatherList list = pack_rows(corners, layout_.corner_numbers);
   const double entries = double(list.index.size()) / nodes;
   const auto offset_id = add(make_ints("gather_offset", BufferRole::constant, "[tiles + 1]", std::move(list.offset)));

@@ -75,11 +75,14 @@ class ProgramBuilder {
   /// them as planes per element, as other element data.
   BufferId add_law(const Material& material);
   void add_bricks(const BrickBatch& b);
-  void add_tets(std::size_t index);
+  /// Elements in lists: nodes, records and, where the record does not hold them, shares; `count` in whole tiles.
+  void add_batch(std::size_t index);
+  [[nodiscard]] std::string buffer_name(std::size_t index, const std::string& what) const;
+  BufferId add_element_nodes(std::size_t index, std::size_t count);
+  BufferId add_element_data(std::size_t index, std::size_t count);
   /// The two passes before the force of tet4anp; returns the buffer of nodal pressures.
   BufferId add_averaging(std::size_t index, BufferId nodes_id, BufferId data_id, BufferId law_id, std::size_t count,
                          const std::string& label);
-  void add_hexes(std::size_t index);
 
   /// Defined in program_flsm.cpp: shape matching of one body, and the force on its interface.
   void add_flsm(std::size_t index);
@@ -108,12 +111,12 @@ class ProgramBuilder {
   void emit_loads(const std::vector<std::int32_t>& slots, std::vector<std::int32_t> offset, std::vector<double> force,
                   std::vector<std::int32_t> curve, std::vector<std::int32_t> triangle, std::vector<double> weight,
                   std::vector<std::int32_t> corner);
-  /// (slot, position in corner_force) of list hexahedra that touch brick nodes, in ascending order.
+  /// (slot, position in corner_force) of list elements that touch brick nodes, in ascending order.
   [[nodiscard]] std::vector<std::pair<std::int32_t, std::int32_t>> brick_corners() const;
 
   BufferId add(Buffer buffer) { return program_.add(std::move(buffer)); }
   [[nodiscard]] bool has_list_nodes() const { return model_.list_end > model_.list_base; }
-  [[nodiscard]] bool has_list_elements() const { return !model_.tets.empty() || !model_.hexes.empty(); }
+  [[nodiscard]] bool has_list_elements() const { return !model_.batches.empty(); }
   [[nodiscard]] bool needs_load() const {
     return !model_.forces.empty() || !model_.pressures.empty() || !brick_corners_.empty() || has_interface();
   }

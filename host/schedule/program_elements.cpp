@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "elements/elements.h"
 #include "schedule/kernel_cost.h"
 #include "schedule/program_builder.h"
 
@@ -45,57 +46,98 @@ void ProgramBuilder::add_bricks(const BrickBatch& b) {
        brick_force_flops(b.material.law)});
 }
 
-void ProgramBuilder::add_tets(std::size_t index) {
-  const TetBatch& b = model_.tets[index];
-  const auto count = static_cast<std::size_t>(padded(b.nodes.size()));
-  std::vector<std::int32_t> nodes(4 * count, model_.list_base);
-  std::vector<double> data(PLIANT_TET_DATA_PLANES * count, 0.0);
-  for (std::size_t e = 0; e < b.nodes.size(); ++e) {
-    for (int a = 0; a < 4; ++a) nodes[tile_base(e, 4) + a * PLIANT_TILE] = b.nodes[e][a];
-    for (int k = 0; k < 9; ++k) data[tile_base(e, PLIANT_TET_DATA_PLANES) + k * PLIANT_TILE] = b.gradients[e][k];
-    data[tile_base(e, PLIANT_TET_DATA_PLANES) + 9 * PLIANT_TILE] = b.volume[e];
+/// "tet_nodes/2": of the third batch whose buffers are named alike.
+std::string ProgramBuilder::buffer_name(std::size_t index, const std::string& what) const {
+  const auto family = [&](const ElementBatch& b) { return std::string_view(b.info().buffers); };
+  const auto like = [&](const ElementBatch& b) { return family(b) == family(model_.batches[index]); };
+  const auto number = std::count_if(model_.batches.begin(), model_.batches.begin() + static_cast<std::ptrdiff_t>(index), like);
+  return fmt::format("{}/{}", what, number);
+}
+
+BufferId ProgramBuilder::add_element_nodes(std::size_t index, std::size_t count) {
+  const ElementBatch& b = model_.batches[index];
+  const auto corners = static_cast<std::size_t>(b.info().corners);
+  // What fills up the last tile reads a slot of a list.
+  std::vector<std::int32_t> nodes(corners * count, corners == 4 ? model_.list_base : 0);
+  for (std::size_t e = 0; e < b.size(); ++e) {
+    for (std::size_t a = 0; a < corners; ++a) nodes[tile_base(e, corners) + a * PLIANT_TILE] = b.nodes_of(e)[a];
   }
-  const auto nodes_id =
-      add(make_ints(fmt::format("tet_nodes/{}", index), BufferRole::constant, "[tiles][4][16]", std::move(nodes)));
-  const auto data_id = add(make_reals(fmt::format("tet_data/{}", index), BufferType::real, PLIANT_TET_DATA_PLANES * count,
-                                      BufferRole::constant, "[tiles][10][16]", "1/m, m^3", "model", std::move(data)));
-  const std::string label =
-      fmt::format("{}: {} {}", model_.bodies[b.body].name, b.averaged ? "tet4anp" : "tet4", to_string(b.material.law));
-  const double texels = 16.0 * (model_.list_end - model_.list_base) / double(b.nodes.size());
-  BufferId pressure = node_u_;  // not read
+  return add(make_ints(buffer_name(index, fmt::format("{}_nodes", b.info().buffers)), BufferRole::constant,
+                       fmt::format("[tiles][{}][16]", corners), std::move(nodes)));
+}
+
+BufferId ProgramBuilder::add_element_data(std::size_t index, std::size_t count) {
+  const ElementBatch& b = model_.batches[index];
+  const auto planes = static_cast<std::size_t>(b.info().record);
+  std::vector<double> data;
+  if (b.uniform) {
+    data.assign(b.records.begin(), b.records.end());
+  } else {
+    data.assign(planes * count, 0.0);
+    for (std::size_t e = 0; e < b.size(); ++e) {
+      const auto record = b.record_of(e);
+      for (std::size_t k = 0; k < planes; ++k) data[tile_base(e, planes) + k * PLIANT_TILE] = record[k];
+      if (b.info().weighted >= 0) data[tile_base(e, planes) + b.info().weighted * PLIANT_TILE] *= b.share[e];
+    }
+  }
+  const std::size_t numbers = data.size();
+  return add(make_reals(buffer_name(index, fmt::format("{}_data", b.info().buffers)), BufferType::real, numbers,
+                        BufferRole::constant, b.uniform ? "[record]" : fmt::format("[tiles][{}][16]", planes),
+                        "1/m, m, m^3, N/m", "model", std::move(data)));
+}
+
+void ProgramBuilder::add_batch(std::size_t index) {
+  const ElementBatch& b = model_.batches[index];
+  const ElementInfo& info = b.info();
+  const auto count = static_cast<std::size_t>(padded(b.size()));
+  const std::string label = fmt::format("{}: {} {}", model_.bodies[b.body].name, info.word, to_string(b.material.law));
+  const BufferId nodes_id = add_element_nodes(index, count), data_id = add_element_data(index, count);
+  BufferId beside = node_u_;  // the fourth argument: shares, or nodal pressures, or what is not read
+  std::vector<std::pair<std::string, int>> defines{{"LAW", static_cast<int>(b.material.law)}};
+  if (info.weighted < 0) {
+    std::vector<double> share(count, 0.0);
+    std::copy(b.share.begin(), b.share.end(), share.begin());
+    beside = add(make_reals(buffer_name(index, fmt::format("{}_fill", b.info().buffers)), BufferType::real, count,
+                            BufferRole::constant, "[elements]", "1", "model", std::move(share)));
+    defines.emplace_back("UNIFORM", b.uniform ? 1 : 0);
+  } else {
+    defines.emplace_back("AVERAGED", info.averaged ? 1 : 0);
+  }
   const BufferId law_id = add_law(b.material);
-  if (b.averaged) pressure = add_averaging(index, nodes_id, data_id, law_id, count, label);
-  const BatchOffsets& place = layout_.tets[index];
+  if (info.averaged) beside = add_averaging(index, nodes_id, data_id, law_id, count, label);
+  const BatchOffsets& place = layout_.batches[index];
+  const ElementCost cost = element_cost(b.kind, law_flops(b.material.law), b.uniform);
+  const double texels = 16.0 * (model_.list_end - model_.list_base) / double(b.size());
   program_.step.push_back(
-      {"tled_tet4_force",
-       {{"LAW", static_cast<int>(b.material.law)}, {"AVERAGED", b.averaged ? 1 : 0}},
-       {buffer_arg(node_u_), buffer_arg(nodes_id), buffer_arg(data_id), buffer_arg(pressure), buffer_arg(corner_),
+      {info.kernel,
+       std::move(defines),
+       {buffer_arg(node_u_), buffer_arg(nodes_id), buffer_arg(data_id), buffer_arg(beside), buffer_arg(corner_),
         buffer_arg(fault_), buffer_arg(law_id), int_arg(place.corner_base), int_arg(place.fault_base), step_arg()},
        Shape::lanes,
        static_cast<std::int64_t>(count),
        label,
-       static_cast<std::int64_t>(b.nodes.size()),
-       tet_force_bytes(b.averaged) + texels * (b.averaged ? 1.25 : 1),
-       tet_force_flops(b.material.law)});
+       static_cast<std::int64_t>(b.size()),
+       cost.bytes + cost.texels * texels,
+       cost.flops});
 }
 
 BufferId ProgramBuilder::add_averaging(std::size_t index, BufferId nodes_id, BufferId data_id, BufferId law_id,
                                        std::size_t count, const std::string& label) {
-  const TetBatch& b = model_.tets[index];
+  const ElementBatch& b = model_.batches[index];
   const std::int32_t nodes = model_.list_end - model_.list_base;
   std::vector<std::vector<std::int32_t>> elements(nodes);
   std::vector<double> volume(nodes, 0.0), dilation(count + PLIANT_TILE, 0.0);
   std::fill(dilation.end() - PLIANT_TILE, dilation.end(), -0.0);
-  for (std::size_t e = 0; e < b.nodes.size(); ++e) {
-    for (const std::int32_t n : b.nodes[e]) {
+  for (std::size_t e = 0; e < b.size(); ++e) {
+    for (const std::int32_t n : b.nodes_of(e)) {
       elements[n - model_.list_base].push_back(static_cast<std::int32_t>(e));
-      volume[n - model_.list_base] += b.volume[e];
+      volume[n - model_.list_base] += element_volume(b.kind, b.record_of(e)) * b.share[e];
     }
   }
   for (double& v : volume) v = v > 0 ? 1 / v : 0;
   GatherList list = pack_rows(elements, static_cast<std::int32_t>(count));
   const double rows = double(list.index.size());
-  const auto name = [&](const char* stem) { return fmt::format("{}/{}", stem, index); };
+  const auto name = [&](const char* stem) { return buffer_name(index, stem); };
   const auto dilation_id = add(make_reals(name("anp_dilation"), BufferType::real, count + PLIANT_TILE, BufferRole::scratch,
                                           "[elements + 16]", "m^3", "tled_tet4_dilation", std::move(dilation)));
   program_.buffers[dilation_id].fixed = PLIANT_TILE;  // what anp_index points to where a node has fewer elements than others
@@ -105,7 +147,7 @@ BufferId ProgramBuilder::add_averaging(std::size_t index, BufferId nodes_id, Buf
                                         "[list nodes]", "1/m^3", "model", std::move(volume)));
   const auto pressure_id = add(make_reals(name("anp_pressure"), BufferType::real, model_.slots, BufferRole::scratch, "[slots]",
                                           "Pa", "anp_node_pressure"));
-  const auto elements_count = static_cast<std::int64_t>(b.nodes.size());
+  const auto elements_count = static_cast<std::int64_t>(b.size());
   program_.step.push_back({"tled_tet4_dilation",
                            {},
                            {buffer_arg(node_u_), buffer_arg(nodes_id), buffer_arg(data_id), buffer_arg(dilation_id)},
@@ -126,47 +168,6 @@ BufferId ProgramBuilder::add_averaging(std::size_t index, BufferId nodes_id, Buf
                            (8 * rows + 8.0 * nodes) / nodes,
                            rows / nodes + 2});
   return pressure_id;
-}
-
-void ProgramBuilder::add_hexes(std::size_t index) {
-  const HexBatch& b = model_.hexes[index];
-  const auto count = static_cast<std::size_t>(padded(b.nodes.size()));
-  const std::size_t planes = b.full ? PLIANT_HEXFULL_DATA_PLANES : PLIANT_HEX_DATA_PLANES;
-  std::vector<std::int32_t> nodes(8 * count, 0);
-  std::vector<double> fill(count, 0.0), data;
-  for (std::size_t e = 0; e < b.nodes.size(); ++e) {
-    for (int a = 0; a < 8; ++a) nodes[tile_base(e, 8) + a * PLIANT_TILE] = b.nodes[e][a];
-    fill[e] = b.fill[e];
-  }
-  if (b.uniform) {
-    data = b.records[0];
-  } else {
-    data.assign(planes * count, 0.0);
-    for (std::size_t e = 0; e < b.nodes.size(); ++e) {
-      for (std::size_t k = 0; k < planes; ++k) data[tile_base(e, planes) + k * PLIANT_TILE] = b.records[e][k];
-    }
-  }
-  const auto nodes_id =
-      add(make_ints(fmt::format("hex_nodes/{}", index), BufferRole::constant, "[tiles][8][16]", std::move(nodes)));
-  const std::size_t numbers = data.size();
-  const auto data_id =
-      add(make_reals(fmt::format("hex_data/{}", index), BufferType::real, numbers, BufferRole::constant,
-                     b.uniform ? "[record]" : "[tiles][record][16]", "1/m, m, m^3, N/m", "model", std::move(data)));
-  const auto fill_id = add(make_reals(fmt::format("hex_fill/{}", index), BufferType::real, count, BufferRole::constant,
-                                      "[elements]", "1", "model", std::move(fill)));
-  const BufferId law_id = add_law(b.material);
-  const BatchOffsets& place = layout_.hexes[index];
-  program_.step.push_back(
-      {b.full ? "tled_hex8full_force" : "tled_hex8_force",
-       {{"LAW", static_cast<int>(b.material.law)}, {"UNIFORM", b.uniform ? 1 : 0}},
-       {buffer_arg(node_u_), buffer_arg(nodes_id), buffer_arg(data_id), buffer_arg(fill_id), buffer_arg(corner_),
-        buffer_arg(fault_), buffer_arg(law_id), int_arg(place.corner_base), int_arg(place.fault_base), step_arg()},
-       Shape::lanes,
-       static_cast<std::int64_t>(count),
-       fmt::format("{}: {} {}", model_.bodies[b.body].name, b.full ? "hex8full" : "hex8", to_string(b.material.law)),
-       static_cast<std::int64_t>(b.nodes.size()),
-       hex_force_bytes(b.full, b.uniform) + 16,
-       hex_force_flops(b.material.law, b.full, b.uniform)});
 }
 
 }  // namespace pliant

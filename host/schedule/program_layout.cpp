@@ -27,8 +27,7 @@ ProgramLayout lay_out(const Model& model) {
     }
     return here;
   };
-  for (const TetBatch& b : model.tets) layout.tets.push_back(place(b.nodes.size(), PLIANT_TET_FORCE_PLANES));
-  for (const HexBatch& b : model.hexes) layout.hexes.push_back(place(b.nodes.size(), PLIANT_HEX_FORCE_PLANES));
+  for (const ElementBatch& b : model.batches) layout.batches.push_back(place(b.size(), b.info().force));
   for (const FlsmBatch& b : model.flsm) layout.flsm.push_back(place(static_cast<std::size_t>(b.slots), 0));
   layout.corner_numbers = static_cast<std::int32_t>(corner);
   layout.faults = static_cast<std::int32_t>(fault);
@@ -41,15 +40,11 @@ FaultLocation find_fault(const Model& model, std::int32_t index) {
   }
   const ProgramLayout layout = lay_out(model);
   FaultLocation found;
-  const auto look = [&](const auto& batches, const std::vector<BatchOffsets>& places) {
-    for (std::size_t b = 0; b < batches.size(); ++b) {
-      const std::int32_t local = index - places[b].fault_base;
-      if (local >= 0 && local < static_cast<std::int32_t>(batches[b].id.size()))
-        found = {batches[b].body, batches[b].id[local]};
-    }
-  };
-  look(model.tets, layout.tets);
-  look(model.hexes, layout.hexes);
+  for (std::size_t b = 0; b < model.batches.size(); ++b) {
+    const std::int32_t local = index - layout.batches[b].fault_base;
+    if (local >= 0 && local < static_cast<std::int32_t>(model.batches[b].size()))
+      found = {model.batches[b].body, model.batches[b].id[local]};
+  }
   for (std::size_t b = 0; b < model.flsm.size(); ++b) {
     const std::int32_t local = index - layout.flsm[b].fault_base;
     if (local < 0 || local >= model.flsm[b].own) continue;

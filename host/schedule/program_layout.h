@@ -25,13 +25,12 @@ struct BatchOffsets {
 };
 
 struct ProgramLayout {
-  std::vector<BatchOffsets> tets, hexes, flsm;
-  std::int32_t corner_numbers = 0;  ///< all corner forces; a further row of -0 stands behind them
+  std::vector<BatchOffsets> batches, flsm;  ///< of Model::batches and Model::flsm
+  std::int32_t corner_numbers = 0;          ///< all corner forces; a further row of -0 stands behind them
   std::int32_t faults = 0;
 };
 
-/// Bricks come first in `fault` (256 entries each), then tetrahedra, then hexahedra, then nodes of shape matching, batch by
-/// batch.
+/// Bricks come first in `fault` (256 entries each), then the lists of elements, then nodes of shape matching, batch by batch.
 ProgramLayout lay_out(const Model& model);
 
 }  // namespace pliant

@@ -52,11 +52,11 @@ std::vector<std::pair<std::int32_t, std::int32_t>> ProgramBuilder::brick_corners
   // Sorted by counting: a cut body has thousands of them, few at each slot.
   std::vector<std::int32_t> next(static_cast<std::size_t>(model_.list_base) + 1, 0);
   const auto for_corners = [&](auto&& visit) {
-    for (std::size_t b = 0; b < model_.hexes.size(); ++b) {
-      for (std::size_t e = 0; e < model_.hexes[b].nodes.size(); ++e) {
-        for (int a = 0; a < 8; ++a) {
-          const std::int32_t slot = model_.hexes[b].nodes[e][static_cast<std::size_t>(a)];
-          if (slot < model_.list_base) visit(slot, b, e, a);
+    for (std::size_t b = 0; b < model_.batches.size(); ++b) {
+      for (std::size_t e = 0; e < model_.batches[b].size(); ++e) {
+        const auto slots = model_.batches[b].nodes_of(e);
+        for (std::size_t a = 0; a < slots.size(); ++a) {
+          if (slots[a] < model_.list_base) visit(slots[a], b, e, static_cast<int>(a));
         }
       }
     }
@@ -65,7 +65,7 @@ std::vector<std::pair<std::int32_t, std::int32_t>> ProgramBuilder::brick_corners
   std::partial_sum(next.begin(), next.end(), next.begin());
   std::vector<std::pair<std::int32_t, std::int32_t>> found(static_cast<std::size_t>(next.back()));
   for_corners([&](std::int32_t slot, std::size_t b, std::size_t e, int a) {
-    found[next[slot]++] = {slot, corner_position(layout_.hexes[b], e, a, PLIANT_HEX_FORCE_PLANES)};
+    found[next[slot]++] = {slot, corner_position(layout_.batches[b], e, a, model_.batches[b].info().force)};
   });
   for (std::size_t i = 1; i < found.size(); ++i) {
     for (std::size_t k = i; k > 0 && found[k] < found[k - 1]; --k) std::swap(found[k], found[k - 1]);

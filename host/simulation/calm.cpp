@@ -6,8 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "model/each_hex.h"
-#include "model/hourglass.h"
+#include "model/each_element.h"
 
 namespace pliant {
 namespace {
@@ -19,13 +18,9 @@ constexpr double kLone = 0.2;
 class Calm {
  public:
   Calm(RunContext& run, double share) : run_(run), share_(share), w_(run.loaded.w()), elements_(run.model().mass.size()) {
-    const auto count = [&](std::span<const std::int32_t> slots) {
-      for (const std::int32_t s : slots) elements_[s] = std::min(elements_[s] + 1, 2);
-    };
-    for (const TetBatch& batch : run.model().tets) {
-      for (const auto& nodes : batch.nodes) count(nodes);
-    }
-    for_each_hex(run.model(), [&](const HexView& hex) { count(hex.slots); });
+    for_each_element(run.model(), [&](const ElementView& e) {
+      for (const std::int32_t s : e.slots) elements_[s] = std::min(elements_[s] + 1, 2);
+    });
   }
 
   void element(std::span<const std::int32_t> slots, double volume) {
@@ -80,25 +75,11 @@ class Calm {
   std::vector<int> elements_;  ///< [slots]: 0, 1, 2 for more
 };
 
-double rest_volume(const HexView& hex) {
-  if (!hex.full) return hex8_volume(hex.record);
-  double volume = 0;
-  for (int g = 0; g < 8; ++g) volume += hex.record[25 * g + 24];
-  return volume;
-}
-
-double rest_volume(const std::array<double, 9>& gradients) {
-  return 1 / (6 * std::abs(Eigen::Map<const Eigen::Matrix3d>(gradients.data()).determinant()));
-}
-
 }  // namespace
 
 Calmed calm(RunContext& run, double share) {
   Calm calm(run, share);
-  for (const TetBatch& batch : run.model().tets) {
-    for (std::size_t e = 0; e < batch.nodes.size(); ++e) calm.element(batch.nodes[e], rest_volume(batch.gradients[e]));
-  }
-  for_each_hex(run.model(), [&](const HexView& hex) { calm.element(hex.slots, rest_volume(hex)); });
+  for_each_element(run.model(), [&](const ElementView& e) { calm.element(e.slots, e.volume()); });
   for (const FlsmBatch& batch : run.model().flsm) {
     for (std::size_t i = 0; i < batch.slot.size(); ++i) {
       for (const int side : {1, 3, 5}) {  // the next node along x, y and z

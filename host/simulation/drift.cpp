@@ -8,7 +8,7 @@
 #include <span>
 
 #include "geometry/disjoint_sets.h"
-#include "model/each_hex.h"
+#include "model/each_element.h"
 
 namespace pliant {
 namespace {
@@ -24,10 +24,7 @@ void Drift::find_loose_pieces() {
   loose_.clear();
   const Model& m = *model_;
   DisjointSets sets(static_cast<std::size_t>(m.slots));
-  for (const TetBatch& batch : m.tets) {
-    for (const auto& nodes : batch.nodes) join(sets, nodes);
-  }
-  for_each_hex(m, [&](const HexView& hex) { join(sets, hex.slots); });
+  for_each_element(m, [&](const ElementView& e) { join(sets, e.slots); });
   for (const FlsmBatch& batch : m.flsm) join(sets, m.bodies[static_cast<std::size_t>(batch.body)].slot);
   std::vector<char> held(static_cast<std::size_t>(m.slots), false);
   for (const Constraint& c : m.constraints) held[static_cast<std::size_t>(sets.find(c.slot))] = true;

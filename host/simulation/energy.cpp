@@ -6,16 +6,13 @@
 #include <map>
 
 #include "material/response.h"
-#include "model/each_hex.h"
-#include "model/hourglass.h"
+#include "model/each_element.h"
 
 namespace pliant {
 namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-using Gradients8 = Eigen::Matrix<double, 8, 3>;
-using RowMajor8 = Eigen::Matrix<double, 8, 3, Eigen::RowMajor>;
 
 Vector3d vector_of(const Vec3d& a) { return {a[0], a[1], a[2]}; }
 Vec3d array_of(const Vector3d& a) { return {a[0], a[1], a[2]}; }
@@ -25,80 +22,38 @@ double density(const Matrix3d& h, const Material& m) {
   return energy_without_volume(m, h) + volume_modulus(m) / 2 * dilation * dilation;
 }
 
-class Sum {
- public:
-  /// `chosen`: slots between which elements count; null: all.
-  Sum(const std::vector<Vec3d>& u, const std::vector<char>* chosen) : u_(u), chosen_(chosen) {}
-
-  void tets(const TetBatch& batch) {
-    std::map<std::int32_t, std::array<double, 2>> nodal;  // a quarter of the volumes, rest and deformed
-    for (std::size_t e = 0; e < batch.nodes.size(); ++e) {
-      const auto& nodes = batch.nodes[e];
-      if (!counts(nodes)) continue;
-      Matrix3d h = Matrix3d::Zero();
-      for (int a = 0; a < 3; ++a) {
-        const Eigen::Map<const Vector3d> gradient(batch.gradients[e].data() + 3 * a);
-        h += (displacement(nodes[a + 1]) - displacement(nodes[0])) * gradient.transpose();
-      }
-      const double volume = batch.volume[e];
-      if (!batch.averaged) {
-        out.strain += volume * density(h, batch.material);
-        continue;
-      }
-      out.strain += volume * energy_without_volume(batch.material, h);
-      for (const std::int32_t n : nodes) {
-        nodal[n][0] += volume / 4;
-        nodal[n][1] += volume / 4 * (1 + Kinematics(h).j);
-      }
-    }
-    for (const auto& [node, volume] : nodal) {
-      const double dilation = volume[1] / volume[0] - 1;
-      out.strain += volume[0] * volume_modulus(batch.material) / 2 * dilation * dilation;
-    }
-  }
-
-  void hex(const HexView& view) {
-    if (!counts(view.slots)) return;
-    if (!view.full) {
-      point(view.slots, view.record.data(), view.fill * hex8_volume(view.record), view.material);
-      out.hourglass += view.fill * hourglass_energy(view.record, gather(view.slots));
-      return;
-    }
-    for (int g = 0; g < 8; ++g)
-      point(view.slots, view.record.data() + 25 * g, view.fill * view.record[25 * g + 24], view.material);
-  }
-
-  Energies out;
-
- private:
-  template <std::size_t N>
-  [[nodiscard]] bool counts(const std::array<std::int32_t, N>& nodes) const {
-    return chosen_ == nullptr ||
-           std::all_of(nodes.begin(), nodes.end(), [&](std::int32_t slot) { return (*chosen_)[slot] != 0; });
-  }
-  [[nodiscard]] Vector3d displacement(std::int32_t slot) const { return vector_of(u_[slot]); }
-
-  [[nodiscard]] Displacements8 gather(const std::array<std::int32_t, 8>& nodes) const {
-    Displacements8 u;
-    for (int a = 0; a < 8; ++a) u.col(a) = displacement(nodes[a]);
-    return u;
-  }
-
-  void point(const std::array<std::int32_t, 8>& nodes, const double* gradients, double weight, const Material& material) {
-    const Gradients8 b = Eigen::Map<const RowMajor8>(gradients);
-    const Matrix3d h = gather(nodes) * b;
-    out.strain += weight * density(h, material);
-  }
-
-  const std::vector<Vec3d>& u_;
-  const std::vector<char>* chosen_;
-};
-
+/// Of all elements, or of those between the slots `chosen`.
 Energies internal(const Model& model, const std::vector<Vec3d>& u, const std::vector<char>* chosen) {
-  Sum sum(u, chosen);
-  for (const TetBatch& batch : model.tets) sum.tets(batch);
-  for_each_hex(model, [&](const HexView& view) { sum.hex(view); });
-  return sum.out;
+  struct Shares {
+    double rest = 0, deformed = 0;  ///< of the volumes of the elements at a node
+  };
+  std::map<std::pair<const Material*, std::int32_t>, Shares> nodal;  // of a batch and a slot
+  Energies out;
+  const auto displacement = [&](std::int32_t slot) { return vector_of(u[slot]); };
+  for_each_element(model, [&](const ElementView& e) {
+    const auto counts = [&](std::int32_t slot) { return chosen == nullptr || (*chosen)[slot] != 0; };
+    if (!std::all_of(e.slots.begin(), e.slots.end(), counts)) return;
+    for_each_point(e, displacement, [&](const auto& gradients, double weight, const auto& corners) {
+      const Matrix3d h = corners * gradients;
+      if (!element_info(e.kind).averaged) {
+        out.strain += weight * density(h, e.material);
+        return;
+      }
+      out.strain += weight * energy_without_volume(e.material, h);
+      const double share = weight / static_cast<double>(e.slots.size());
+      for (const std::int32_t n : e.slots) {
+        Shares& at = nodal[{&e.material, n}];
+        at.rest += share;
+        at.deformed += share * (1 + Kinematics(h).j);
+      }
+    });
+    out.hourglass += hourglass_energy(e, displacement);
+  });
+  for (const auto& [at, volume] : nodal) {
+    const double dilation = volume.deformed / volume.rest - 1;
+    out.strain += volume.rest * volume_modulus(*at.first) / 2 * dilation * dilation;
+  }
+  return out;
 }
 
 }  // namespace

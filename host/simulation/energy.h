@@ -10,7 +10,7 @@ namespace pliant {
 struct Energies {
   double kinetic = 0;    ///< sum m v.v / 2 [J]
   double strain = 0;     ///< elements without their hourglass part [J]
-  double hourglass = 0;  ///< of the hourglass modes of hex8 (model/hourglass.h) [J]
+  double hourglass = 0;  ///< of the hourglass modes of hex8 (elements/hourglass.h) [J]
   double external = 0;   ///< potential of gravity and of node forces, -R.u [J]; a follower pressure has none
   [[nodiscard]] double total() const { return kinetic + strain + hourglass + external; }
 };

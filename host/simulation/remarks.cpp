@@ -57,7 +57,7 @@ struct Distortion {
   double skew = 0;   ///< largest cosine between its axes
 };
 
-Distortion distortion(const Model& model, const std::array<std::int32_t, 8>& slots) {
+Distortion distortion(const Model& model, std::span<const std::int32_t> slots) {
   const auto sum = [&](std::size_t mode) {  // of the corners, with the product of the signs that `mode` names
     Vec3d v{};
     for (std::size_t a = 0; a < 8; ++a) {
@@ -84,11 +84,11 @@ void add_distorted(const Model& model, std::vector<std::string>& remarks) {
     Distortion worst;
   };
   std::vector<Found> found(model.bodies.size());
-  for (const HexBatch& batch : model.hexes) {
-    if (batch.full || batch.uniform) continue;
+  for (const ElementBatch& batch : model.batches) {
+    if (!batch.info().hourglass || batch.uniform) continue;
     Found& body = found[static_cast<std::size_t>(batch.body)];
-    for (const auto& slots : batch.nodes) {
-      const Distortion d = distortion(model, slots);
+    for (std::size_t e = 0; e < batch.size(); ++e) {
+      const Distortion d = distortion(model, batch.nodes_of(e));
       body.worst = {std::max(body.worst.taper, d.taper), std::max(body.worst.skew, d.skew)};
       body.distorted += d.taper > kTapered || d.skew > kSkew;
       ++body.all;

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "layout.h"
 #include "model/body_mesh.h"
+#include "model/each_element.h"
 #include "pliant/error.h"
 #include "statics/shape.h"
 
@@ -27,10 +27,10 @@ class FromModel {
       throw Error(ErrorCode::bad_input, fmt::format("body '{}': the model is {}, the static solver takes tled only", body_.name,
                                                     pliant::to_string(scene_.bodies[number_].model.type)));
     }
-    if (body_.element == ElementKind::tet4anp && !quadratic) {
+    if (!element_info(body_.element).statics && !quadratic) {
       throw Error(ErrorCode::bad_input,
-                  fmt::format("body '{}': the static solver has no tet4anp; take tet4 or hex8full, or quadratic tetrahedra",
-                              body_.name));
+                  fmt::format("body '{}': the static solver has no {}; take tet4 or hex8full, or quadratic tetrahedra",
+                              body_.name, pliant::to_string(body_.element)));
     }
     out_.mesh.element = body_.tets.empty() ? Element::hex8full : Element::tet4;
     quadratic_ = quadratic && out_.mesh.element == Element::tet4;
@@ -55,44 +55,20 @@ class FromModel {
     }
   }
 
-  void set_element(std::int64_t id, std::int32_t material, double fill) {
-    out_.mesh.material[id] = material;
-    out_.mesh.fill[id] = fill;
-  }
-
   void materials() {
     out_.mesh.material.assign(body_.elements(), 0);
     out_.mesh.fill.assign(body_.elements(), 0);
-    const auto add = [&](const Material& m) {
-      out_.materials.push_back(m);
-      out_.materials.back().low = 0;  // equilibrium of an inverted element is no answer
-      return static_cast<std::int32_t>(out_.materials.size()) - 1;
-    };
-    for (const TetBatch& batch : model_.tets) {
-      if (batch.body != number_) continue;
-      const std::int32_t m = add(batch.material);
-      for (std::size_t i = 0; i < batch.id.size(); ++i) {
-        std::array<Vec3d, 4> x;
-        for (int a = 0; a < 4; ++a) x[a] = body_.rest[body_.tets[batch.id[i]][a]];
-        set_element(batch.id[i], m, batch.volume[i] / tet_geometry(x).volume);
+    const Material* last = nullptr;
+    for_each_element(model_, [&](const ElementView& e) {
+      if (e.body != number_) return;
+      if (&e.material != last) {
+        last = &e.material;
+        out_.materials.push_back(e.material);
+        out_.materials.back().low = 0;  // equilibrium of an inverted element is no answer
       }
-    }
-    for (const HexBatch& batch : model_.hexes) {
-      if (batch.body != number_) continue;
-      const std::int32_t m = add(batch.material);
-      for (std::size_t i = 0; i < batch.id.size(); ++i) set_element(batch.id[i], m, batch.fill[i]);
-    }
-    for (const BrickBatch& batch : model_.brick_batches) {
-      std::int32_t m = -1;
-      for (std::int32_t b = batch.first; b < batch.first + batch.count; ++b) {
-        if (model_.brick_body[b] != number_) continue;
-        if (m < 0) m = add(batch.material);
-        for (std::int32_t c = 0; c < PLIANT_BRICK_NODES; ++c) {
-          const std::size_t cell = static_cast<std::size_t>(b) * PLIANT_BRICK_NODES + c;
-          if (model_.brick_cell[cell] >= 0) set_element(model_.brick_cell[cell], m, model_.brick_fill[cell]);
-        }
-      }
-    }
+      out_.mesh.material[e.id] = static_cast<std::int32_t>(out_.materials.size()) - 1;
+      out_.mesh.fill[e.id] = e.share;
+    });
     for (std::size_t e = 0; e < out_.mesh.fill.size(); ++e) {
       if (!(out_.mesh.fill[e] > 0))
         throw Error(ErrorCode::internal, fmt::format("body '{}': element {} is in no batch of the model", body_.name, e));

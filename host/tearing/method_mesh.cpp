@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "cutting/topology/cut_cell.h"
+#include "elements/elements.h"
 #include "geometry/disjoint_sets.h"
 #include "geometry/vec.h"
 #include "tearing/method.h"
@@ -120,11 +121,15 @@ double mean_edge(const ElementMesh& mesh) {
 
 double element_bound(const ElementMesh& mesh, const Material& material) {
   double highest = 0;
-  for (const auto& tet : mesh.tets) highest = std::max(highest, tet_frequency(tet_geometry(corners_of(mesh, tet)), material));
+  const auto ask = [&](ElementKind kind, std::span<const Vec3d> x) {
+    const std::vector<double> record = element_record(kind, x, material, "an element to cut");
+    highest = std::max(highest, element_frequency(kind, record, material));
+  };
+  for (const auto& tet : mesh.tets) ask(ElementKind::tet4, corners_of(mesh, tet));
   for (const auto& hex : mesh.hexes) {
     std::array<Vec3d, 8> x;
     for (int a = 0; a < 8; ++a) x[a] = mesh.nodes[hex[a]];
-    highest = std::max(highest, hex8_frequency(hex8_record(x, material, "an element to cut"), material));
+    ask(ElementKind::hex8, x);
   }
   return highest > 0 ? 2 / highest : 0;
 }

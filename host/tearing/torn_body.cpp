@@ -8,6 +8,7 @@
 
 #include "cutting/topology/cut_cell.h"
 #include "cutting/topology/mesh_edges.h"
+#include "elements/element_tet4.h"
 #include "geometry/vec.h"
 
 namespace pliant {
@@ -66,7 +67,7 @@ std::vector<TornBody::NodeStress> TornBody::node_stresses(const std::vector<Vec3
     const auto rest = corners(torn_.nodes, torn_.tets[t]);
     const auto stress = tet_stress(rest, corners(x, torn_.tets[t]), material_[t]);
     if (!stress) continue;
-    const double volume = tet_geometry(rest).volume;
+    const double volume = Tet4::volume(Tet4::record(rest, material_[t], ""));
     for (const std::int32_t n : torn_.tets[t]) {
       at[n].mean += volume * *stress;
       at[n].volume += volume;

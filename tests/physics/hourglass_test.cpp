@@ -1,5 +1,5 @@
 // The hourglass control of one-point hexahedra that are no cubes: exact in bending, indifferent to rotation, and stable.
-#include "model/hourglass.h"
+#include "elements/elements.h"
 
 #include "physics/harness.h"
 
@@ -11,7 +11,7 @@ constexpr double kYoung = 3000;
 std::vector<double> brick_record(const Vector3d& size, const Matrix3d& turn, double poisson) {
   std::array<Vec3d, 8> x;
   for (int c = 0; c < 8; ++c) x[c] = plain(turn * Vector3d(size[0] * (c & 1), size[1] * (c >> 1 & 1), size[2] * (c >> 2 & 1)));
-  return hex8_record(x, material_young(Law::neo_hookean, kYoung, poisson), "brick");
+  return Hex8::record(x, material_young(Law::neo_hookean, kYoung, poisson), "brick");
 }
 
 /// Displacements of the corners of such a brick by a field in its own axes about its middle.

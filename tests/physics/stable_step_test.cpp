@@ -123,8 +123,8 @@ TEST_P(StableStep, IndependentOfFill) {
       auto sim = simulate(scene, GetParam());
       dt[sliver] = sim->stable_dt();
       for (const double f : sim->model().brick_fill) fill[sliver] = f > 0 ? std::min(fill[sliver], f) : fill[sliver];
-      for (const HexBatch& b : sim->model().hexes) {
-        for (const double f : b.fill) fill[sliver] = std::min(fill[sliver], f);
+      for (const ElementBatch& b : sim->model().batches) {
+        for (const double f : b.share) fill[sliver] = std::min(fill[sliver], f);
       }
     }
     std::printf("  %-20s smallest fill %.3g and %.3g, stable step %.6g and %.6g s\n", name_of(cut), fill[0], fill[1], dt[0],

@@ -8,7 +8,7 @@
 #include "cutting/cut_scenes.h"
 #include "geometry/vec.h"
 #include "model/ballast.h"
-#include "model/each_hex.h"
+#include "model/each_element.h"
 #include "model/least_fill.h"
 #include "pliant/error.h"
 #include "simulation/ballast_swap.h"
@@ -313,9 +313,9 @@ TEST(ThinCells, AreAsStiffAndAsInertAsATwentiethOfAFullOneAndAsHeavyAsTheyAre) {
   s.cut(wall(0.0101));  // leaves a hundredth of a cell on one side
   ASSERT_EQ(s.cut_topology(0)->pieces(), 2);
   std::size_t thin = 0;
-  for_each_hex(s.model(), [&](const HexView& hex) {
-    EXPECT_GE(hex.fill, scene.least_fill);
-    thin += hex.fill == scene.least_fill ? 1 : 0;
+  for_each_element(s.model(), [&](const ElementView& e) {
+    EXPECT_GE(e.share, scene.least_fill);
+    thin += e.share == scene.least_fill ? 1 : 0;
   });
   EXPECT_GE(thin, 4);
   EXPECT_NEAR(mass_of(s), mass, 1e-14);

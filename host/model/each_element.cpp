@@ -1,4 +1,4 @@
-#include "model/each_hex.h"
+#include "model/each_element.h"
 
 namespace pliant {
 
@@ -14,8 +14,6 @@ std::array<std::int32_t, 8> brick_cell_corners(const Model& model, std::int32_t 
   return corners;
 }
 
-std::vector<double> brick_record(const BrickBatch& batch) {
-  return hex8_cube_record(batch.spacing, batch.material, "lattice cell");
-}
+std::vector<double> BrickBatch::record() const { return Hex8::cube_record(spacing, material, "lattice cell"); }
 
 }  // namespace pliant

@@ -12,15 +12,17 @@
 // k = half the smallest eigenvalue of all this goes to the modes as they are, whatever happens to the axes: D_i' = D_i - k, and
 // so on, which at rest changes nothing. So no mode is without stiffness where an element is crushed.
 #pragma once
-#include <Eigen/Dense>
+#include <Eigen/Core>
+#include <span>
 #include <vector>
 
-#include "scene/scene.h"
+#include "elements/hexahedron.h"
 
 namespace pliant {
 
-using Corners8 = Eigen::Matrix<double, 8, 3>;        ///< a row for each corner, in bit order
-using Displacements8 = Eigen::Matrix<double, 3, 8>;  ///< a column for each corner [m]
+/// Hourglass stiffness k [N/m] of a cube of edge d: E d / 48 times the material's factor, which makes one layer of elements
+/// bend as a beam of modulus E at nu = 0. Lattices have it.
+double hourglass_stiffness(const Material& material, double volume);
 
 /// The signs of the four modes at the corners, rows xy, xz, yz, xyz.
 Eigen::Matrix<double, 4, 8> hourglass_signs();
@@ -32,11 +34,11 @@ std::vector<double> hourglass_numbers(const Corners8& x, const Corners8& mean, d
 
 /// Of a record of either kind (kernels/layout.h): volume at rest [m^3], hourglass energy [J] at the displacements u, and an
 /// upper bound of its largest stiffness there [N/m], that of changing axes left out. All without fill.
-double hex8_volume(const std::vector<double>& record);
-double hourglass_energy(const std::vector<double>& record, const Displacements8& u);
-double hourglass_bound(const std::vector<double>& record, const Displacements8& u);
+double hex8_volume(std::span<const double> record);
+double hourglass_energy(std::span<const double> record, const Displacements8& u);
+double hourglass_bound(std::span<const double> record, const Displacements8& u);
 
 /// gamma, rows [4][8]: q = gamma u. 0 for every linear field.
-Eigen::Matrix<double, 4, 8> hourglass_vectors(const std::vector<double>& record);
+Eigen::Matrix<double, 4, 8> hourglass_vectors(std::span<const double> record);
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-#include "model/eigenvalues.h"
+#include "elements/eigenvalues.h"
 
 #include <Eigen/Eigenvalues>
 

@@ -1,11 +1,12 @@
-#include "model/hourglass.h"
+#include "elements/hourglass.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "elements/eigenvalues.h"
 #include "layout.h"
-#include "model/eigenvalues.h"
 
 namespace pliant {
 namespace {
@@ -21,7 +22,7 @@ constexpr int at(int axis, int mode) { return 4 * axis + mode; }
 
 /// What the record of a hexahedron that is no cube says, and W(p) = p . moduli p / 2.
 struct Shape {
-  explicit Shape(const std::vector<double>& record)
+  explicit Shape(std::span<const double> record)
       : axes(Eigen::Map<const Matrix3d>(record.data() + 36)), normal(record.data() + 45), twist(record.data() + 51) {
     const auto couple = [&](int i, int a, int j, int b, double n) {
       moduli(at(i, a), at(j, b)) = moduli(at(j, b), at(i, a)) = n;
@@ -52,9 +53,9 @@ struct Shape {
   Moduli12 moduli;
 };
 
-bool is_cube(const std::vector<double>& record) { return record.size() == PLIANT_HEX_CUBE_RECORD; }
+bool is_cube(std::span<const double> record) { return record.size() == PLIANT_HEX_CUBE_RECORD; }
 
-Corners8 gradients(const std::vector<double>& record) {
+Corners8 gradients(std::span<const double> record) {
   return Eigen::Map<const Eigen::Matrix<double, 8, 3, Eigen::RowMajor>>(record.data());
 }
 
@@ -78,6 +79,10 @@ double least_stiffness(const Vector3d& d, double poisson, const Vector3d& a) {
 }
 
 }  // namespace
+
+double hourglass_stiffness(const Material& material, double volume) {
+  return material.hourglass * material.moduli.young() * std::cbrt(volume) / 48;
+}
 
 Modes hourglass_signs() {
   Modes h;
@@ -111,15 +116,15 @@ std::vector<double> hourglass_numbers(const Corners8& x, const Corners8& mean, d
   return out;
 }
 
-double hex8_volume(const std::vector<double>& record) { return record[is_cube(record) ? 56 : 55]; }
+double hex8_volume(std::span<const double> record) { return record[is_cube(record) ? 56 : 55]; }
 
-Modes hourglass_vectors(const std::vector<double>& record) {
+Modes hourglass_vectors(std::span<const double> record) {
   if (is_cube(record)) return Eigen::Map<const Eigen::Matrix<double, 4, 8, Eigen::RowMajor>>(record.data() + 24);
   const Eigen::Map<const Eigen::Matrix<double, 3, 4>> moments(record.data() + 24);
   return hourglass_signs() - moments.transpose() * gradients(record).transpose();
 }
 
-double hourglass_energy(const std::vector<double>& record, const Displacements8& u) {
+double hourglass_energy(std::span<const double> record, const Displacements8& u) {
   const Eigen::Matrix<double, 3, 4> q = u * hourglass_vectors(record).transpose();
   if (is_cube(record)) return record[57] / 2 * q.squaredNorm();
   const Shape shape(record);
@@ -128,7 +133,7 @@ double hourglass_energy(const std::vector<double>& record, const Displacements8&
   return shape.all / 2 * q.squaredNorm() + p.dot(shape.moduli * p) / 2;
 }
 
-double hourglass_bound(const std::vector<double>& record, const Displacements8& u) {
+double hourglass_bound(std::span<const double> record, const Displacements8& u) {
   const Modes gamma = hourglass_vectors(record);
   const double gram = largest_eigenvalue(gamma.lazyProduct(gamma.transpose()).eval());
   if (is_cube(record)) return record[57] * gram;
