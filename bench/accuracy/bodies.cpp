@@ -133,7 +133,7 @@ void add_tractions(const Problem& p, const statics::Mesh& mesh, double depth, co
       Force entry;
       entry.where.kind = Selection::Kind::nodes;
       entry.where.nodes = {node};
-      entry.total = vec::mul(force, t.width * depth / area);
+      entry.force = vec::mul(force, t.width * depth / area);
       entry.curve = curve;
       body.forces.push_back(entry);
     }

@@ -149,7 +149,7 @@ Specimen unit_load(Method method, bool traction) {
   if (traction) {
     Force force;
     force.where = face(0, kLength);
-    force.total = {1, 0, 0};
+    force.force = {1, 0, 0};
     body.forces = {force};
   } else {
     Prescribed end;

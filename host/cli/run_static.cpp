@@ -33,7 +33,7 @@ void check(const Scene& scene, const StaticRun& run) {
   for (const Body& body : scene.bodies) {
     if (body.model.type != ModelType::tled)
       refuse(body.model.pointer + "/type", fmt::format("\"{}\"", to_string(body.model.type)));
-    if (body.element == ElementKind::tet4anp && !scene.solver.quadratic) {
+    if (body.element == ElementKind::tet4anp && scene.solver.order != 2) {
       throw Error(
           ErrorCode::bad_input,
           fmt::format("{}: {}/element: got \"tet4anp\", expected tet4, hex8 or hex8full, or tet4anp beside the solver's "
@@ -97,7 +97,7 @@ class Static {
  private:
   statics::Problem problem(std::size_t b) const {
     try {
-      return statics::problem_of(scene_, model_, b, scene_.solver.quadratic);
+      return statics::problem_of(scene_, model_, b, scene_.solver.order == 2);
     } catch (const Error& error) {
       throw Error(error.code(), fmt::format("{}: {}", scene_.file.string(), error.what()));
     }

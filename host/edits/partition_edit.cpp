@@ -86,7 +86,7 @@ MovedRegion TopologyEdits::region_at(std::size_t b, const Vec3d& seed, const std
 /// A region moves when the material under the tool is more than a cell from its seed, and only between steps of shape matching.
 void TopologyEdits::move_regions() {
   const auto& bodies_of_scene = run_.scene.bodies;
-  if (std::none_of(bodies_of_scene.begin(), bodies_of_scene.end(), [](const Body& b) { return b.model.follow; })) return;
+  if (std::none_of(bodies_of_scene.begin(), bodies_of_scene.end(), [](const Body& b) { return b.model.follow_tool; })) return;
   if (run_.phase() != 0) return;
   const RunState& state = run_.state;
   const Vec3d tool = state.tool.value_or(run_.scene.tool.position(state.clock.time()));
@@ -96,7 +96,7 @@ void TopologyEdits::move_regions() {
   bool moved = false;
   for (std::size_t b = 0; b < bodies_of_scene.size(); ++b) {
     const DeformationModel& model = bodies_of_scene[b].model;
-    if (!model.follow) continue;
+    if (!model.follow_tool) continue;
     const std::vector<Vec3d> of_body = run_.loaded.pick(u, b, 1);
     const Vec3d now = nearest_at_rest(run_.model().bodies[b], of_body, tool);
     const std::optional<Vec3d> seed = first ? model.seed : state.regions[b].seed;

@@ -189,7 +189,7 @@ void load(const Body& body, const ModelBody& placed, Model& model) {
     for (const std::int32_t n : nodes) {
       const double mass = model.own_mass(placed.slot[n]);
       const double share = by_mass ? mass / whole : mass / mass_at[placed.rest[n]] / static_cast<double>(mass_at.size());
-      model.forces.push_back({placed.slot[n], {force.total[0] * share, force.total[1] * share, force.total[2] * share}, curve});
+      model.forces.push_back({placed.slot[n], {force.force[0] * share, force.force[1] * share, force.force[2] * share}, curve});
     }
   }
   for (const Pressure& pressure : body.pressures) {

@@ -1,8 +1,9 @@
-// The keys of a scene file that are one number, flag or word, each described once. The loader, the keys that it knows, the
-// writer, scenes/schema.json, the tables of docs/scene.md and the copy from the structs of include/pliant follow from it
-// (described_keys.h, tests/scene/tables_test.cpp). A key of this kind is a member of its struct, a line here, its use and its
-// test.
+// The keys of a scene file that are one value, each described once: a number, a flag, a word, three numbers. The loader, the
+// keys that it knows, the writer, scenes/schema.json, the tables of docs/scene.md and the way from the structs of
+// include/pliant follow from it (described_keys.h, write.cpp, tests/scene/tables_test.cpp). A key of this kind is a member of
+// its struct, a line here or in described_parts.h, its use and its test.
 #pragma once
+#include <limits>
 #include <optional>
 
 #include "scene/keys.h"
@@ -14,7 +15,28 @@ namespace pliant {
 struct Range {
   double least = -1e30, most = 1e30;
   bool above = false, below = false;  ///< whether the bounds themselves are not allowed
+  std::optional<double> also{};       ///< allowed though it is outside
+  const char* word = nullptr;         ///< how the file writes `also`
+  std::optional<double> absent{};     ///< in the struct: a key that is not there; of a flag 0 or 1
+
+  [[nodiscard]] constexpr Range or_number(double x) const {
+    Range r = *this;
+    r.also = x;
+    return r;
+  }
+  /// The struct has 0 for it.
+  [[nodiscard]] constexpr Range or_word(const char* text) const {
+    Range r = or_number(0);
+    r.word = text;
+    return r;
+  }
+  [[nodiscard]] constexpr Range absent_at(double x) const {
+    Range r = *this;
+    r.absent = x;
+    return r;
+  }
 };
+constexpr Range any{};
 constexpr Range above(double least) { return {least, 1e30, true, false}; }
 constexpr Range at_least(double least) { return {least, 1e30, false, false}; }
 constexpr Range from_to(double least, double most) { return {least, most, false, false}; }
@@ -23,128 +45,98 @@ constexpr Range between(double least, double most) { return {least, most, true, 
 
 struct Key {
   const char* name;
-  Range range{};
-  std::optional<double> also{};  ///< allowed though it is outside of the range
-  const char* word = nullptr;    ///< how the file writes `also`
-  bool optional = false;         ///< 0 in the struct is a key that is not there
-  const char* unit = "";
-  const char* about = "";    ///< for scenes/schema.json
-  const char* note = "";     ///< for docs/scene.md, behind what is allowed
-  const char* example = "";  ///< a value
+  Range range;
+  const char* unit;
+  const char* example;             ///< a value
+  const char* about;               ///< for scenes/schema.json
+  const char* note = nullptr;      ///< for docs/scene.md, behind what is allowed; null: `about`
+  const char* standard = nullptr;  ///< for docs/scene.md, where it is no value of the struct
+  bool required = false;
 };
+constexpr Key required(Key key) {
+  key.required = true;
+  return key;
+}
 
-// Each calls v(key, members...) for a number or a flag and v(key, words, members...) for an enumerator: one member of each of
-// the objects, which are a Scene and, where there is one, the struct that code fills in (SceneSpec).
+// Each calls v(member, key) or, for what a file writes as a word, v(member, words, key). The object is a part of a Scene, or
+// the struct of include/pliant that becomes one, whose words are text and whose members may be optional.
 
-template <class V, class... S>
-void describe_scene(V&& v, S&&... s) {
-  v(Key{.name = "dt",
-        .range = above(0),
-        .also = 0.0,
-        .word = "auto",
-        .unit = "s",
-        .about = "Time step, or auto: safety times the stable step",
-        .note = "a number is used as it is",
-        .example = "1e-4"},
-    s.dt...);
-  v(Key{.name = "safety",
-        .range = above_to(0, 1),
-        .about = "Share of the stable step that an automatic step takes",
-        .note = "an automatic step is this share of the stable one",
-        .example = "0.8"},
-    s.safety...);
-  v(Key{.name = "integrator",
-        .about = "Form of the central difference update",
-        .note = "`\"textbook\"` loses small increments in float; for comparison",
-        .example = "\"textbook\""},
-    integrator_words(), s.integrator...);
-  v(Key{.name = "inverted",
-        .about = "What becomes of an element whose J = det F is not positive",
-        .note =
-            "what becomes of an element whose J = det F is not positive: it goes on and is driven back, or the run ends (see "
-            "[troubleshooting](troubleshooting.md))",
-        .example = "\"stop\""},
-    inverted_words(), s.inverted...);
-  v(Key{.name = "break_stretch",
-        .range = above(1),
-        .also = 0.0,
-        .about = "Edges longer than this times their length at rest part, in scenes that are cut or tear; 0: none does",
-        .note =
-            "in a scene that is cut, an edge beside a cut that is longer than this times its length at rest parts in its "
-            "middle, and elsewhere at four times this; in a body with a `toughness`, beside a tear likewise, along faces at "
-            "one of its ends; 0: none does",
-        .example = "0"},
-    s.break_stretch...);
-  v(Key{.name = "least_step",
-        .range = from_to(0, 1),
-        .about = "Floor of an automatic step, as a share of the first. Elements that ask for less get inertia without weight "
-                 "instead, which is reported; 0: no floor",
-        .note = "floor of an automatic step, as a share of the first: elements that ask for less get inertia (no weight) "
-                "instead, which `run` reports; 0: no floor",
-        .example = "0"},
-    s.least_step...);
-  v(Key{.name = "least_fill",
-        .range = from_to(0, 1),
-        .about =
-            "Where blades cut: a cell or a copy of one is at least as stiff and as inert as this share of a full cell. What "
-            "is added has no weight",
-        .note = "where blades cut, a cell or a copy of one is at least as stiff and as inert as this share of a full cell "
-                "(copies of one cell share its stiffness; of a cell thinner than that, in equal parts at least); inertia that "
-                "is added has no weight",
-        .example = "0"},
-    s.least_fill...);
+template <class V, class S>
+void describe_scene(V&& v, S&& s) {
+  v(s.dt, {"dt", above(0).or_word("auto"), "s", "1e-4", "Time step, or auto: safety times the stable step",
+           "a number is used as it is"});
+  v(s.safety, {"safety", above_to(0, 1), "", "0.8", "Share of the stable step that an automatic step takes",
+               "an automatic step is this share of the stable one"});
+  v(s.integrator, integrator_words(),
+    {"integrator", any, "", "\"textbook\"", "Form of the central difference update",
+     "`\"textbook\"` loses small increments in float; for comparison"});
+  v(s.inverted, inverted_words(),
+    {"inverted", any, "", "\"stop\"", "What becomes of an element whose J = det F is not positive",
+     "what becomes of an element whose J = det F is not positive: it goes on and is driven back, or the run ends (see "
+     "[troubleshooting](troubleshooting.md))"});
+  v(s.break_stretch, {"break_stretch", above(1).or_number(0), "", "0",
+                      "Edges longer than this times their length at rest part, in scenes that are cut or tear; 0: none does",
+                      "in a scene that is cut, an edge beside a cut that is longer than this times its length at rest parts in "
+                      "its middle, and elsewhere at four times this; in a body with a `toughness`, beside a tear likewise, "
+                      "along faces at one of its ends; 0: none does"});
+  v(s.least_step, {"least_step", from_to(0, 1), "", "0",
+                   "Floor of an automatic step, as a share of the first. Elements that ask for less get inertia without weight "
+                   "instead, which is reported; 0: no floor",
+                   "floor of an automatic step, as a share of the first: elements that ask for less get inertia (no weight) "
+                   "instead, which `run` reports; 0: no floor"});
+  v(s.least_fill,
+    {"least_fill", from_to(0, 1), "", "0",
+     "Where blades cut: a cell or a copy of one is at least as stiff and as inert as this share of a full cell. What is added "
+     "has no weight",
+     "where blades cut, a cell or a copy of one is at least as stiff and as inert as this share of a full cell (copies of one "
+     "cell share its stiffness; of a cell thinner than that, in equal parts at least); inertia that is added has no weight"});
 }
 
 /// Of a run, which code gives by what it calls.
-template <class V, class... S>
-void describe_run(V&& v, S&&... s) {
-  v(Key{.name = "duration",
-        .range = above(0),
-        .unit = "s",
-        .about = "Simulated time of a run without --steps or --seconds",
-        .note = "simulated by `run` without `--steps` or `--seconds`",
-        .example = "2.5"},
-    s.duration...);
+template <class V, class S>
+void describe_run(V&& v, S&& s) {
+  v(s.duration, {"duration", above(0), "s", "2.5", "Simulated time of a run without --steps or --seconds",
+                 "simulated by `run` without `--steps` or `--seconds`"});
 }
 
-template <class V, class... S>
-void describe_relaxation(V&& v, S&&... s) {
-  v(Key{.name = "tolerance",
-        .range = between(0, 1),
-        .about = "Stop at |R - F| <= tolerance times the larger of |R|, |F|",
-        .note = "done when abs(R - F) <= tolerance times the larger of abs(R), abs(F)",
-        .example = "1e-6"},
-    s.tolerance...);
-  v(Key{.name = "max_steps",
-        .range = from_to(1, 1e12),
-        .unit = "steps",
-        .about = "Give up after so many",
-        .note = "then the run gives up",
-        .example = "20000"},
-    s.max_steps...);
+template <class V, class S>
+void describe_relaxation(V&& v, S&& s) {
+  v(s.tolerance, {"tolerance", between(0, 1), "", "1e-6", "Stop at |R - F| <= tolerance times the larger of |R|, |F|",
+                  "done when abs(R - F) <= tolerance times the larger of abs(R), abs(F)"});
+  v(s.max_steps, {"max_steps", from_to(1, 1e12), "steps", "20000", "Give up after so many", "then the run gives up"});
 }
 
-template <class V, class... S>
-void describe_solver(V&& v, S&&... s) {
-  v(Key{.name = "linear",
-        .about = "Small displacements",
-        .note = "`true`: one linear solve, displacements are small by assumption",
-        .example = "true"},
-    s.linear...);
-  v(Key{.name = "load_steps",
-        .range = from_to(1, 1e6),
-        .also = 0.0,
-        .word = "auto",
-        .about = "In how many steps loads grow",
-        .note = "`\"auto\"`: one, halved where Newton's method fails",
-        .example = "10"},
-    s.load_steps...);
-  v(Key{.name = "tolerance",
-        .range = between(0, 1),
-        .about = "Converged at |R - F| <= tolerance times the larger of |R|, |F|",
-        .note = "converged when abs(R - F) <= tolerance times the larger of abs(R), abs(F)",
-        .example = "1e-10"},
-    s.tolerance...);
+template <class V, class S>
+void describe_solver(V&& v, S&& s) {
+  v(s.linear,
+    {"linear", any, "", "true", "Small displacements", "`true`: one linear solve, displacements are small by assumption"});
+  v(s.load_steps, {"load_steps", from_to(1, 1e6).or_word("auto"), "", "10", "In how many steps loads grow",
+                   "`\"auto\"`: one, halved where Newton's method fails"});
+  v(s.tolerance, {"tolerance", between(0, 1), "", "1e-10", "Converged at |R - F| <= tolerance times the larger of |R|, |F|",
+                  "converged when abs(R - F) <= tolerance times the larger of abs(R), abs(F)"});
+  v(s.order, {"order", from_to(1, 2), "", "2", "2: quadratic tetrahedra",
+              "2 gives tetrahedra a node in the middle of every edge (tet10)"});
+}
+
+template <class V, class S>
+void describe_blade(V&& v, S&& s) {
+  constexpr double kAlways = std::numeric_limits<double>::infinity();
+  v(s.start, {"start", any.absent_at(-kAlways), "s", "0.1", "It does not cut before",
+              "it cuts from then on, while its path lasts", "first time of the path"});
+  v(s.end, {"end", any.absent_at(kAlways), "s", "0.4", "It does not cut after", "it cuts until then, while its path lasts",
+            "last time of the path"});
+}
+
+template <class V, class S>
+void describe_view(V&& v, S&& s) {
+  v(s.eye, {"eye", any, "m", "[0.2, 0.3, 0.6]", "Position of the camera", "not the target",
+            "so far from the target that the scene fills the picture"});
+  v(s.target, {"target", any, "m", "[0, 0.05, 0]", "What is in the middle of the picture", nullptr, "the middle of the scene"});
+  v(s.up, {"up", any, "", "[0, 0, 1]", "Vertical direction, not zero; default: against gravity, or y", "not all zero",
+           "against gravity, or y"});
+  v(s.field_of_view, {"field_of_view", from_to(1, 120).absent_at(30), "degrees", "20", "Vertical"});
+  v(s.ground, {"ground", any.absent_at(1), "", "false", "Draw a ground plane below the bodies; it holds nothing",
+               "a plane below the bodies, which holds nothing"});
 }
 
 }  // namespace pliant

@@ -1,9 +1,6 @@
 // What the loader and the writer do with described keys (described.h).
 #pragma once
-#include <fmt/format.h>
-
 #include <concepts>
-#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -14,6 +11,8 @@
 
 namespace pliant {
 
+/// Whether a number is one that the file may have.
+bool within(double x, const Range& range);
 /// "0 <= least_fill <= 1", "> 0", ">= 0", "> 1", empty for any; whole numbers: "from 1 to 64".
 std::string range_text(const Key& key, bool whole);
 /// What a message expects.
@@ -25,60 +24,73 @@ double read_number(const Reader& field, const Key& key, bool whole);
 struct ReadKeys {
   const Reader& object;
 
-  template <class Number>
-  void operator()(const Key& key, Number& member) const {
-    if (!object.has(key.name)) return;
-    const Reader field = object.at(key.name);
-    if constexpr (std::same_as<Number, bool>) {
-      member = field.boolean();
-    } else {
-      member = static_cast<Number>(read_number(field, key, std::integral<Number>));
-    }
+  template <class Member>
+  void operator()(Member& member, const Key& key) const {
+    if (key.required || object.has(key.name)) read(object.at(key.name, about(key)), key, member);
   }
   template <class Enum>
-  void operator()(const Key& key, const Words<Enum>& words, Enum& member) const {
+  void operator()(Enum& member, const Words<Enum>& words, const Key& key) const {
     if (object.has(key.name)) member = object.at(key.name).word(words);
+  }
+
+ private:
+  static std::string about(const Key& key);
+  static void read(const Reader& field, const Key& /*key*/, bool& member) { member = field.boolean(); }
+  static void read(const Reader& field, const Key& /*key*/, Vec3d& member) { member = field.vec3(); }
+  template <class Number>
+  static void read(const Reader& field, const Key& key, Number& member) {
+    member = static_cast<Number>(read_number(field, key, std::integral<Number>));
+  }
+  template <class T>
+  static void read(const Reader& field, const Key& key, std::optional<T>& member) {
+    read(field, key, member.emplace());
   }
 };
 
-/// Writes all keys; what stands for a word as that word.
+/// The word of an enumerator; what is a word already.
+template <class Enum>
+const std::string& text_of(const Words<Enum>& words, const Enum& value) {
+  return word_of(words, value);
+}
+template <class Enum>
+const std::string& text_of(const Words<Enum>& /*words*/, const std::string& text) {
+  return text;
+}
+
+/// Writes all keys but those that an object has not; what stands for a word as that word.
 struct WriteKeys {
   nlohmann::ordered_json& object;
 
-  template <class Number>
-  void operator()(const Key& key, const Number& member) const {
-    if (key.optional && member == Number{}) return;
-    const bool as_word = key.word != nullptr && static_cast<double>(member) == key.also;
-    object[key.name] = as_word ? nlohmann::ordered_json(key.word) : nlohmann::ordered_json(member);
+  template <class Member>
+  void operator()(const Member& member, const Key& key) const {
+    if constexpr (std::is_arithmetic_v<Member>) {
+      const auto number = static_cast<double>(member);
+      if (key.range.absent && number == *key.range.absent) return;
+      if (key.range.word != nullptr && number == *key.range.also) {
+        object[key.name] = key.range.word;
+        return;
+      }
+    }
+    object[key.name] = member;
   }
-  template <class Enum>
-  void operator()(const Key& key, const Words<Enum>& words, const Enum& member) const {
-    object[key.name] = word_of(words, member);
+  template <class T>
+  void operator()(const std::optional<T>& member, const Key& key) const {
+    if (member) (*this)(*member, key);
   }
-};
-
-/// From the struct of the public API, at the top level. Nothing is checked but words.
-struct CopyKeys {
-  const std::string& file;  ///< for messages
-
-  template <class To, class From>
-  void operator()(const Key& /*key*/, To& to, const From& from) const {
-    to = from;
-  }
-  template <class Enum>
-  void operator()(const Key& key, const Words<Enum>& words, Enum& to, const std::string& from) const {
-    const nlohmann::json value = from;
-    to = Reader(value, file, std::string("/") + key.name).word(words);
+  template <class Enum, class Member>
+  void operator()(const Member& member, const Words<Enum>& words, const Key& key) const {
+    if constexpr (std::same_as<Member, bool>) {
+      if (key.range.absent && member == (*key.range.absent != 0)) return;
+    }
+    object[key.name] = text_of(words, member);
   }
 };
 
 /// Names.
 struct ListKeys {
   std::vector<std::string>& names;
-  template <class... Rest>
-  void operator()(const Key& key, Rest&&... /*members*/) const {
-    names.emplace_back(key.name);
-  }
+  void operator()(const auto& /*member*/, const Key& key) const { names.emplace_back(key.name); }
+  void operator()(const auto& /*member*/, const auto& /*words*/, const Key& key) const { names.emplace_back(key.name); }
 };
 
 }  // namespace pliant

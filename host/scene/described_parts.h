@@ -1,95 +1,149 @@
-// The described keys of materials, contact and tools (described.h).
+// The described keys of bodies, their materials and their models, and of tools (described.h).
 #pragma once
 #include "scene/described.h"
 
 namespace pliant {
 
-template <class V, class... S>
-void describe_material(V&& v, S&&... s) {
-  v(Key{.name = "density",
-        .range = above(0),
-        .unit = "kg/m^3",
-        .about = "Density at rest",
-        .note = "at rest",
-        .example = "1060"},
-    s.density...);
-  v(Key{.name = "damping",
-        .range = at_least(0),
-        .unit = "1/s",
-        .about = "Mass-proportional damping rate",
-        .note = "mass-proportional rate c in M u'' + c M u' = R - F",
-        .example = "5"},
-    s.damping...);
-  v(Key{.name = "hourglass",
-        .range = at_least(0),
-        .about = "Factor on the hourglass stiffness of hex8",
-        .note = "factor on the hourglass stiffness of `hex8`",
-        .example = "0.5"},
-    s.hourglass...);
+template <class V, class S>
+void describe_lattice(V&& v, S&& s) {
+  v(s.spacing, {"spacing", above(0).absent_at(0), "m", "0.008", "Edge of a cell"});
+  v(s.nodes, {"nodes", from_to(8, 1e8).absent_at(0), "", "2886", "Wanted number of nodes",
+              "the spacing is chosen to give about this many, or the nearest number found"});
 }
 
-template <class V, class... S>
-void describe_tearing(V&& v, S&&... s) {
-  v(Key{.name = "toughness",
-        .range = above(0),
-        .optional = true,
-        .unit = "Pa",
-        .about = "Principal stress at which the material tears; without it, it does not",
-        .note = "largest principal stress that it bears before it tears; none: it does not tear",
-        .example = "9000"},
-    s.toughness...);
-  v(Key{.name = "integrity",
-        .range = above_to(0, 1),
-        .about = "Share of the toughness that is left",
-        .note = "share of the toughness that is left; only beside `toughness`",
-        .example = "0.7"},
-    s.integrity...);
+template <class V, class S>
+void describe_body(V&& v, S&& s) {
+  v(s.scale, {"scale", above(0), "", "0.001", "Factor on the coordinates of the file"});
+  v(s.translate, {"translate", any, "m", "[0, 0.1, 0]", "Shift after scaling"});
+  v(s.element, element_words(),
+    {"element", any, "", "\"hex8full\"", "hex8 by default with a surface, tet4 with a mesh", "what the body is made of",
+     "`hex8` with a surface, `tet4` with a mesh"});
+  v(s.velocity, {"velocity", any, "m/s", "[0.1, 0, 0]", "Initial velocity", "at the start"});
+  v(s.angular_velocity, {"angular_velocity", any, "rad/s", "[0, 0, 6]", "Initial angular velocity about the centre of mass",
+                         "at the start, about the centre of mass"});
+}
+
+template <class V, class S>
+void describe_material(V&& v, S&& s) {
+  v(s.density, {"density", above(0), "kg/m^3", "1060", "Density at rest", "at rest"});
+  v(s.damping, {"damping", at_least(0), "1/s", "5", "Mass-proportional damping rate",
+                "mass-proportional rate c in M u'' + c M u' = R - F"});
+  v(s.hourglass, {"hourglass", at_least(0), "", "0.5", "Factor on the hourglass stiffness of hex8",
+                  "factor on the hourglass stiffness of `hex8`"});
+}
+
+template <class V, class S>
+void describe_tearing(V&& v, S&& s) {
+  v(s.toughness,
+    {"toughness", above(0).absent_at(0), "Pa", "9000", "Principal stress at which the material tears; without it, it does not",
+     "largest principal stress that it bears before it tears; none: it does not tear"});
+  v(s.integrity, {"integrity", above_to(0, 1).absent_at(1), "", "0.7", "Share of the toughness that is left",
+                  "share of the toughness that is left; only beside `toughness`"});
 }
 
 /// Of a tool, and of tissue on tissue.
-template <class V, class... S>
-void describe_friction(V&& v, S&&... s) {
-  v(Key{.name = "friction",
-        .range = at_least(0),
-        .about = "Coulomb's coefficient",
-        .note = "Coulomb's coefficient",
-        .example = "0.3"},
-    s.friction...);
+template <class V, class S>
+void describe_friction(V&& v, S&& s) {
+  v(s.friction, {"friction", at_least(0), "", "0.3", "Coulomb's coefficient", "Coulomb's coefficient"});
+}
+
+/// The law of Hunt and Crossley.
+template <class V, class S>
+void describe_contact_law(V&& v, S&& s) {
+  v(s.stiffness,
+    {"stiffness", above(0).or_word("auto").absent_at(0), "Pa/m^exponent", "1e6", "Per area; \"auto\": hard at once",
+     "`\"auto\"`: hard at once, without a number from you; a number is lambda of the law of Hunt and Crossley, per area, to a "
+     "depth of a quarter of a cell, from where it is hard"});
+  v(s.exponent, {"exponent", from_to(1, 1).or_number(1.5).absent_at(1), "", "1.5", "Beside a stiffness that is a number"});
+  v(s.alpha, {"alpha", at_least(0).absent_at(0), "s/m", "0.5", "Slope of the coefficient of restitution",
+              "beside a stiffness that is a number; for small speeds v the coefficient of restitution is 1 - alpha v"});
 }
 
 /// What every tool has.
-template <class V, class... S>
-void describe_tool(V&& v, S&&... s) {
-  describe_friction(v, s...);
-  v(Key{.name = "edges",
-        .about = "A sphere, capsule, box or mesh that is thinner than half a cell is met along its edges; experimental",
-        .note = "`true` beside a sphere, capsule, box or mesh: where it is thinner than half a cell it is met along its edges "
-                "instead of passing between points of contact; experimental ([contact](contact.md#thin-tools))",
-        .example = "true"},
-    s.edges...);
+template <class V, class S>
+void describe_tool(V&& v, S&& s) {
+  describe_friction(v, s);
+  v(s.edges, {"edges", any, "", "true",
+              "A sphere, capsule, box or mesh that is thinner than half a cell is met along its edges; experimental",
+              "`true` beside a sphere, capsule, box or mesh: where it is thinner than half a cell it is met along its edges "
+              "instead of passing between points of contact; experimental ([contact](contact.md#thin-tools))"});
+  v(s.scale, {"scale", above(0).absent_at(1), "", "0.001", "Applied to the coordinates of a mesh or a sequence",
+              "of the coordinates of a mesh or a sequence"});
+  v(s.frames_per_second, {"frames_per_second", above(0).absent_at(30), "1/s", "25",
+                          "Of a sequence; the first mesh stands at time 0, the last one stays",
+                          "of a sequence, whose first mesh stands at time 0 and whose last one stays"});
 }
 
-/// Of a tool that is a mesh or a sequence of meshes.
-template <class V, class... S>
-void describe_mesh_tool(V&& v, S&&... s) {
-  v(Key{.name = "scale",
-        .range = above(0),
-        .about = "Applied to the coordinates of a mesh or a sequence",
-        .note = "of the coordinates of a mesh or a sequence",
-        .example = "0.001"},
-    s.scale...);
+/// Of a hybrid without a region: which nodes are operational.
+template <class V, class S>
+void describe_growth(V&& v, S&& s) {
+  v(s.ratio, {"ratio", from_to(0, 1), "", "0.4", "hybrid: share of the nodes in the operational region",
+              "share of the nodes in the operational region"});
+  v(s.seed, {"seed", any, "m", "[0.05, 0.02, 0]",
+             "hybrid: where the operational region grows from; the first surface vertex by default",
+             "where the operational region grows from", "first vertex of the surface"});
+  v(s.follow_tool, follow_words(),
+    {"follow", any.absent_at(0), "", "\"tool\"", "hybrid: the operational region moves with the tool of the scene",
+     "the operational region moves with the `tool` of the scene; cells that are stretched beyond 1.5 times, or as far "
+     "compressed, keep their model until they are not"});
 }
 
-/// Of a tool that is a sequence of meshes.
-template <class V, class... S>
-void describe_sequence_tool(V&& v, S&&... s) {
-  v(Key{.name = "frames_per_second",
-        .range = above(0),
-        .unit = "1/s",
-        .about = "Of a sequence; the first mesh stands at time 0, the last one stays",
-        .note = "of a sequence, whose first mesh stands at time 0 and whose last one stays",
-        .example = "25"},
-    s.frames_per_second...);
+// The structs of a Scene have flags for two words of those of include/pliant.
+template <class M>
+auto& goals_of(M& model) {
+  if constexpr (requires { model.goals; })
+    return model.goals;
+  else
+    return model.extrapolate;
+}
+template <class M>
+auto& coupling_of(M& model) {
+  if constexpr (requires { model.coupling; })
+    return model.coupling;
+  else
+    return model.conservative;
+}
+
+/// Of a hybrid.
+template <class V, class S>
+void describe_interface(V&& v, S&& s) {
+  v(s.beta, {"beta", above(0).or_word("auto"), "N/m", "20", "hybrid: stiffness of the interface",
+             "stiffness of the interface; `\"auto\"`: alpha m / dt^2 of each node"});
+  v(s.substeps, {"substeps", from_to(1, 64), "", "4", "hybrid: steps of tled per step of flsm",
+                 "steps of TLED per step of FLSM; a run goes on with 1 where more drive the elements apart "
+                 "([stability.md](stability.md))"});
+  v(goals_of(s), goals_words(),
+    {"goals", any, "", "\"extrapolated\"", "hybrid: goals between the steps of flsm",
+     "`held`: the interface is pulled in the first substep (keeps momentum); `extrapolated`: in all of them (allows larger "
+     "steps)"});
+  v(coupling_of(s), coupling_words(),
+    {"coupling", any, "", "\"one-sided\"", "hybrid: whether the force of the interface has a reaction on the regions",
+     "`conservative`: the reaction of the interface goes back to the regions"});
+}
+
+/// Of a hybrid and of shape matching alone.
+template <class V, class S>
+void describe_regions(V&& v, S&& s) {
+  v(s.width, {"width", from_to(1, 5), "cells", "3", "Half-width of the shape matching regions", "half-width of the regions"});
+  v(s.damping,
+    {"damping", from_to(0, 1), "", "0.1", "Damping of each shape matching region per step", "of each region per step"});
+  v(s.cut, {"cut", any, "", "false", "hybrid, flsm: whether blades cut the shape-matching part",
+            "`false`: blades pass through the shape-matching part without effect"});
+}
+
+template <class V, class S>
+void describe_alpha(V&& v, S&& s) {
+  v(s.alpha, {"alpha", above_to(0, 1), "", "0.8",
+              "Share of the way to its goal that a node takes per step. Without it and without stiffness: 0.5 for flsm; for a "
+              "hybrid what gives shape matching the stiffness of the material",
+              "share of the way to its goal that a node takes per step, as long as the step is the first one; shorter steps "
+              "take less, and are as stiff",
+              "as `stiffness` of the material (hybrid), 0.5 (flsm)"});
+}
+
+template <class V, class S>
+void describe_stiffness(V&& v, S&& s) {
+  v(s.young, required({"young", above(0), "Pa", "3000", "Effective Young's modulus of shape matching"}));
 }
 
 }  // namespace pliant

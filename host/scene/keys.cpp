@@ -35,27 +35,24 @@ std::map<std::string, List> make_keys() {
       {"scene", PLIANT_DESCRIBED(Scene, scene) + PLIANT_DESCRIBED(Scene, run) +
                     List{"format", "name", "gravity", "relaxation", "solver", "tool", "tools", "contact", "blades", "view",
                          "probes", "probe_every", "bodies"}},
-      {"body",
-       {"name", "surface", "mesh", "scale", "translate", "lattice", "element", "material", "model", "inclusions", "fixed",
-        "prescribed", "forces", "pressures", "velocity", "angular_velocity", "initial"}},
-      {"lattice", {"spacing", "nodes"}},
+      {"body", List{"name", "surface", "mesh", "lattice", "material", "model", "inclusions", "fixed", "prescribed", "forces",
+                    "pressures", "initial"} +
+                   PLIANT_DESCRIBED(Body, body)},
+      {"lattice", PLIANT_DESCRIBED(LatticeSpec, lattice)},
       {"material", List{"law"} + elastic_keys() + PLIANT_DESCRIBED(Material, material) + PLIANT_DESCRIBED(Material, tearing)},
-      {"model",
-       {"type", "ratio", "seed", "region", "beta", "width", "alpha", "stiffness", "damping", "substeps", "goals", "coupling",
-        "follow", "cut"}},
+      {"model", List{"type"} + hybrid_keys() + matching_keys()},
       {"region", {"box", "sphere"}},
-      {"stiffness", {"young"}},
+      {"stiffness", PLIANT_DESCRIBED(DeformationModel, stiffness)},
       {"gravity", List{"acceleration"} + curve},
       {"tool", {"path"}},
-      {"contact_tool", List{"name", "shape", "path", "contact"} + PLIANT_DESCRIBED(ContactTool, tool) +
-                           PLIANT_DESCRIBED(ContactTool, mesh_tool) + PLIANT_DESCRIBED(ContactTool, sequence_tool)},
+      {"contact_tool", List{"name", "shape", "path", "contact"} + PLIANT_DESCRIBED(ContactTool, tool)},
       {"shape", words_only(tool_shape_words())},
-      {"contact", {"stiffness", "exponent", "alpha"}},
+      {"contact", PLIANT_DESCRIBED(ContactTool, contact_law)},
       {"tissue_contact", PLIANT_DESCRIBED(TissueContact, friction)},
-      {"blade", {"name", "path", "start", "end"}},
-      {"view", {"eye", "target", "up", "field_of_view", "ground"}},
+      {"blade", List{"name", "path"} + PLIANT_DESCRIBED(Blade, blade)},
+      {"view", PLIANT_DESCRIBED(SceneView, view)},
       {"relaxation", PLIANT_DESCRIBED(Relaxation, relaxation)},
-      {"solver", List{"type", "order"} + PLIANT_DESCRIBED(StaticSolver, solver)},
+      {"solver", List{"type"} + PLIANT_DESCRIBED(StaticSolver, solver)},
       {"inclusion", points + List{"material"}},
       {"fixed", selection + List{"axes"}},
       {"prescribed", selection + List{"displacement", "rotate", "axes"} + curve},
@@ -105,6 +102,14 @@ List elastic_keys() {
     }
   }
   return keys;
+}
+
+List growth_keys() { return PLIANT_DESCRIBED(DeformationModel, growth); }
+
+List hybrid_keys() { return growth_keys() + List{"region"} + PLIANT_DESCRIBED(DeformationModel, interface); }
+
+List matching_keys() {
+  return PLIANT_DESCRIBED(DeformationModel, regions) + PLIANT_DESCRIBED(DeformationModel, alpha) + List{"stiffness"};
 }
 
 std::string laws_with(bool LawInfo::*property) {

@@ -23,6 +23,10 @@ const std::map<std::string, std::vector<std::string>>& scene_keys();
 std::vector<std::string> moduli_keys();
 std::vector<std::string> elastic_keys(const LawInfo& law);
 std::vector<std::string> elastic_keys();
+/// What a hybrid model has alone, of these how its operational region grows, and what it shares with shape matching alone.
+std::vector<std::string> hybrid_keys();
+std::vector<std::string> growth_keys();
+std::vector<std::string> matching_keys();
 
 /// The laws with a property, as "a, b or c".
 std::string laws_with(bool LawInfo::*property);

@@ -75,11 +75,10 @@ void read_solver(const Reader& top, Scene& scene) {
   field.expect_object("solver");
   StaticSolver& solver = scene.solver;
   solver.enabled = field.at("type", "\"type\": \"static\" or \"dynamic\"").word(solver_words());
-  for (const char* key : {"linear", "load_steps", "tolerance", "order"}) {
-    if (!solver.enabled && field.has(key)) field.at(key).fail("this key only beside \"type\": \"static\"");
+  for (const auto& [key, value] : field.json().items()) {
+    if (!solver.enabled && key != "type") field.at(key).fail("this key only beside \"type\": \"static\"");
   }
   describe_solver(ReadKeys{field}, solver);
-  if (field.has("order")) solver.quadratic = field.at("order").integer(1, 2) == 2;
 }
 
 void read_bodies(const Reader& top, const fs::path& folder, Scene& scene) {

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "pliant/scene.h"
 #include "scene/mesh_region.h"
 #include "scene/probe.h"
 #include "scene/reader.h"
@@ -13,6 +14,9 @@ namespace pliant {
 
 /// A whole scene. Throws Error as parse_scene does.
 Scene read_document(const nlohmann::json& document, const std::filesystem::path& file);
+/// The document of a scene in code. Of a body with a surface in memory it names no file that exists (write.cpp).
+nlohmann::ordered_json document_of(const SceneSpec& spec);
+inline bool in_memory(const BodySpec& body) { return !body.surface.vertices.empty() || !body.surface.triangles.empty(); }
 /// What paths and surfaces of a selection are relative to, and the mesh that its regions are parts of; null: a lattice's.
 struct SelectionFrame {
   std::filesystem::path folder{};
@@ -50,8 +54,7 @@ std::optional<TissueContact> read_tissue_contact(const Reader& contact);
 ContactTool read_contact_tool(const Reader& entry, const std::string& name, const std::filesystem::path& folder);
 /// The reverse, with paths relative to the scene's folder (write.cpp).
 nlohmann::ordered_json tool_json(const ContactTool& tool, const std::filesystem::path& scene_file);
-/// Nothing but its shape's word is checked; `pointer` names the place of that (spec.cpp).
-ContactTool contact_tool(const ToolSpec& spec, const std::string& shape_pointer, const std::string& name);
+nlohmann::ordered_json tool_json(const ToolSpec& tool, const std::filesystem::path& scene_file);
 std::vector<ContactTool> read_tools(const Reader& tools, const std::filesystem::path& folder);
 void check_tools(const Reader& top, const Scene& scene);
 /// After the bodies. Null without probes.

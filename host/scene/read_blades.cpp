@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "scene/described_keys.h"
 #include "scene/parts.h"
 
 namespace pliant {
@@ -32,11 +33,8 @@ Blade read_blade(const Reader& blade, std::size_t index) {
   b.name = blade.has("name") ? read_plain_name(blade.at("name")) : fmt::format("blade{}", index);
   const char* const expected = "a list of at least two rows [time, x, y, z, x, y, z]";
   for (const Reader& row : blade.at("path", expected).items(expected, 2)) b.path.push_back(read_row(row, b.path));
-  if (blade.has("start")) b.start = blade.at("start").number();
-  if (blade.has("end")) {
-    b.end = blade.at("end").number();
-    if (!(b.end > b.start)) blade.at("end").fail(fmt::format("a time after the start {}", b.start));
-  }
+  describe_blade(ReadKeys{blade}, b);
+  if (!(b.end > b.start)) blade.at("end").fail(fmt::format("a time after the start {}", b.start));
   return b;
 }
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "scene/json_text.h"
+#include "scene/described_keys.h"
 #include "scene/parts.h"
 
 namespace pliant {
@@ -39,9 +39,6 @@ void read_geometry(const Reader& body, const fs::path& folder, Body& b) {
   }
   if (surface) b.surface = read_path(body.at("surface"), folder);
   if (mesh) b.mesh = read_path(body.at("mesh"), folder);
-  if (body.has("scale")) b.scale = body.at("scale").positive();
-  if (body.has("translate")) b.translate = body.at("translate").vec3();
-
   if (mesh) {
     if (body.has("lattice")) body.at("lattice").fail("no lattice beside a volume mesh (which has elements of its own)");
     return;
@@ -52,14 +49,7 @@ void read_geometry(const Reader& body, const fs::path& folder, Body& b) {
     lattice.fail(lattice.has("nodes") ? "both \"spacing\" and \"nodes\"" : "neither \"spacing\" nor \"nodes\"",
                  "exactly one of them");
   }
-  if (lattice.has("spacing")) b.lattice.spacing = lattice.at("spacing").positive();
-  if (lattice.has("nodes")) b.lattice.nodes = lattice.at("nodes").integer(8, 100'000'000);
-}
-
-void read_element(const Reader& body, Body& b) {
-  // A volume mesh is of tetrahedra more often than not; one of hexahedra has to say so.
-  b.element = b.mesh.empty() ? ElementKind::hex8 : ElementKind::tet4;
-  if (body.has("element")) b.element = body.at("element").word(element_words());
+  describe_lattice(ReadKeys{lattice}, b.lattice);
 }
 
 /// The averaged nodal pressure replaces the volumetric part of the stress, so that part must depend on J alone.
@@ -103,7 +93,9 @@ Body read_body(const Reader& body, const fs::path& folder, std::size_t index) {
   b.pointer = body.pointer();
   b.name = read_name(body, index);
   read_geometry(body, folder, b);
-  read_element(body, b);
+  // A volume mesh is of tetrahedra more often than not; one of hexahedra has to say so.
+  b.element = b.mesh.empty() ? ElementKind::hex8 : ElementKind::tet4;
+  describe_body(ReadKeys{body}, b);
   if (body.has("model")) b.model = read_model(body.at("model"), b.mesh.empty());
 
   const Reader material = body.at("material", "a material such as {\"young\": 3000, \"poisson\": 0.45, \"density\": 1060}");
@@ -123,8 +115,6 @@ Body read_body(const Reader& body, const fs::path& folder, std::size_t index) {
   read_entries(body, "forces", "force", b.forces, in(read_force));
   read_entries(body, "pressures", "pressure", b.pressures, in(read_pressure));
   read_entries(body, "initial", "initial", b.initial, in(read_initial));
-  if (body.has("velocity")) b.velocity = body.at("velocity").vec3();
-  if (body.has("angular_velocity")) b.angular_velocity = body.at("angular_velocity").vec3();
   return b;
 }
 

@@ -1,42 +1,29 @@
 // The key "model" of a body and the key "tool" of a scene.
 #include <fmt/format.h>
 
-#include <array>
-
+#include "scene/described_keys.h"
 #include "scene/parts.h"
 
 namespace pliant {
 
 namespace {
 
-constexpr std::array hybrid_keys{"ratio", "seed", "region", "beta", "substeps", "goals", "coupling", "follow"};
-constexpr std::array region_keys{"width", "alpha", "stiffness", "damping", "cut"};
-
-template <class Keys>
-void refuse(const Reader& model, const Keys& keys, ModelType type, const char* needed) {
-  for (const char* key : keys) {
+void refuse(const Reader& model, const std::vector<std::string>& keys, ModelType type, const char* needed) {
+  for (const std::string& key : keys) {
     if (!model.has(key)) continue;
     model.at(key).fail(fmt::format("no \"{}\" beside the type {} (it needs the type {})", key, to_string(type), needed));
   }
 }
 
-void refuse_both(const Reader& model, const char* a, const char* b, const char* expected) {
+void refuse_both(const Reader& model, const std::string& a, const std::string& b, const char* expected) {
   if (model.has(a) && model.has(b)) model.fail(fmt::format("both \"{}\" and \"{}\"", a, b), expected);
 }
 
 void refuse_senseless(const Reader& model, ModelType type) {
-  if (type != ModelType::hybrid) refuse(model, hybrid_keys, type, "hybrid");
-  if (type == ModelType::tled) refuse(model, region_keys, type, "hybrid or flsm");
-  for (const char* key : {"ratio", "seed", "follow"}) {
-    refuse_both(model, "region", key, "either a region, or ratio, seed and follow");
-  }
+  if (type != ModelType::hybrid) refuse(model, hybrid_keys(), type, "hybrid");
+  if (type == ModelType::tled) refuse(model, matching_keys(), type, "hybrid or flsm");
+  for (const std::string& key : growth_keys()) refuse_both(model, "region", key, "either a region, or ratio, seed and follow");
   refuse_both(model, "alpha", "stiffness", "at most one: a stiffness chooses alpha");
-}
-
-double share(const Reader& field, const char* expected) {
-  const double x = field.number(expected);
-  if (!(x >= 0 && x <= 1)) field.fail(expected);
-  return x;
 }
 
 Selection read_region(const Reader& region) {
@@ -45,43 +32,6 @@ Selection read_region(const Reader& region) {
     region.fail(region.has("box") ? "both \"box\" and \"sphere\"" : "neither \"box\" nor \"sphere\"", "exactly one of them");
   }
   return read_selection(region, Selected::elements, {});
-}
-
-double read_beta(const Reader& beta) {
-  if (beta.json() == "auto") return 0;
-  const char* const expected = "\"auto\" or a stiffness > 0 in newton per metre";
-  const double x = beta.number(expected);
-  if (!(x >= 1e-30)) beta.fail(expected);
-  return x;
-}
-
-void read_shape_matching(const Reader& model, DeformationModel& m) {
-  if (model.has("width")) m.width = static_cast<int>(model.at("width").integer(1, 5));
-  if (model.has("alpha")) {
-    const Reader alpha = model.at("alpha");
-    const char* const expected = "a number with 0 < alpha <= 1";
-    m.alpha = alpha.number(expected);
-    if (!(m.alpha >= 1e-30 && m.alpha <= 1)) alpha.fail(expected);
-  }
-  if (model.has("stiffness")) {
-    const Reader stiffness = model.at("stiffness");
-    stiffness.expect_object("stiffness");
-    m.young = stiffness.at("young", "Young's modulus in pascal").positive();
-  }
-  m.matched = m.type == ModelType::hybrid && !model.has("alpha") && !model.has("stiffness");
-  if (model.has("cut")) m.cut = model.at("cut").boolean();
-  if (model.has("damping")) m.damping = share(model.at("damping"), "a number with 0 <= damping <= 1");
-}
-
-void read_partition(const Reader& model, DeformationModel& m) {
-  if (model.has("ratio")) m.ratio = share(model.at("ratio"), "a number with 0 <= ratio <= 1");
-  if (model.has("seed")) m.seed = model.at("seed").vec3();
-  if (model.has("region")) m.region = read_region(model.at("region"));
-  if (model.has("beta")) m.beta = read_beta(model.at("beta"));
-  if (model.has("substeps")) m.substeps = static_cast<int>(model.at("substeps").integer(1, 64));
-  if (model.has("goals")) m.extrapolate = model.at("goals").word(goals_words());
-  if (model.has("coupling")) m.conservative = model.at("coupling").word(coupling_words());
-  if (model.has("follow")) m.follow = model.at("follow").word(follow_words());
 }
 
 }  // namespace
@@ -96,8 +46,17 @@ DeformationModel read_model(const Reader& model, bool lattice) {
     type.fail("tled beside a volume mesh (shape matching needs a lattice: give a \"surface\" instead of the \"mesh\")");
   }
   refuse_senseless(model, m.type);
-  read_shape_matching(model, m);
-  read_partition(model, m);
+  describe_growth(ReadKeys{model}, m);
+  describe_interface(ReadKeys{model}, m);
+  describe_regions(ReadKeys{model}, m);
+  describe_alpha(ReadKeys{model}, m);
+  if (model.has("region")) m.region = read_region(model.at("region"));
+  if (model.has("stiffness")) {
+    const Reader stiffness = model.at("stiffness");
+    stiffness.expect_object("stiffness");
+    describe_stiffness(ReadKeys{stiffness}, m);
+  }
+  m.matched = m.type == ModelType::hybrid && !model.has("alpha") && !model.has("stiffness");
   return m;
 }
 
@@ -126,10 +85,10 @@ void check_models(const Reader& top, const Scene& scene) {
     if (scene.integrator != Integrator::increment) {
       top.at("integrator").fail(fmt::format("increment, because {} has the type {}", m.pointer, to_string(m.type)));
     }
-    if (m.follow && scene.relaxation.enabled) {
+    if (m.follow_tool && scene.relaxation.enabled) {
       top.at("relaxation").fail(fmt::format("false, because {}/follow moves the region as time goes on", m.pointer));
     }
-    if (m.follow && scene.tool.path.empty()) {
+    if (m.follow_tool && scene.tool.path.empty()) {
       bodies[i].at("model").at("follow").fail(
           "the scene's key \"tool\" to follow, such as \"tool\": {\"path\": [[0, 0, 0.1, 0]]}");
     }

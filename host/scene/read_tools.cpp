@@ -81,25 +81,16 @@ void read_shape(const Reader& shape, ContactTool& tool) {
   }
 }
 
+void refuse_key(const Reader& object, const char* key, bool refused, const char* beside) {
+  if (refused && object.has(key)) object.at(key).fail(fmt::format("this key only beside {}", beside));
+}
+
 void read_contact(const Reader& contact, ContactTool& tool) {
   contact.expect_object("contact");
-  if (contact.has("stiffness")) {
-    const Reader stiffness = contact.at("stiffness");
-    if (stiffness.json() != "auto") {
-      const char* const expected = "\"auto\" or a stiffness per area > 0 in Pa/m^exponent";
-      tool.stiffness = stiffness.number(expected);
-      if (!(tool.stiffness >= 1e-30)) stiffness.fail(expected);
-    }
-  }
+  describe_contact_law(ReadKeys{contact}, tool);
   for (const char* key : {"exponent", "alpha"}) {
-    if (contact.has(key) && tool.stiffness == 0) contact.at(key).fail("this key only beside a stiffness that is a number");
+    refuse_key(contact, key, tool.stiffness == 0, "a stiffness that is a number");
   }
-  if (contact.has("exponent")) {
-    const Reader exponent = contact.at("exponent");
-    tool.exponent = exponent.number();
-    if (tool.exponent != 1 && tool.exponent != 1.5) exponent.fail("1 or 1.5");
-  }
-  if (contact.has("alpha")) tool.alpha = contact.at("alpha").non_negative();
 }
 
 }  // namespace
@@ -110,15 +101,8 @@ ContactTool read_contact_tool(const Reader& entry, const std::string& name, cons
   tool.pointer = entry.pointer();
   tool.name = entry.has("name") ? read_plain_name(entry.at("name")) : name;
   read_shape(entry.at("shape", "an object with one of the keys " + alternatives(scene_keys().at("shape"))), tool);
-  if (entry.has("scale")) {
-    if (tool.mesh.empty()) entry.at("scale").fail("this key only beside a shape that is a mesh or a sequence");
-    describe_mesh_tool(ReadKeys{entry}, tool);
-  }
-  if (entry.has("frames_per_second")) {
-    const Reader rate = entry.at("frames_per_second");
-    if (tool.shape != ToolShape::sequence) rate.fail("this key only beside a shape that is a sequence");
-    describe_sequence_tool(ReadKeys{entry}, tool);
-  }
+  refuse_key(entry, "scale", tool.mesh.empty(), "a shape that is a mesh or a sequence");
+  refuse_key(entry, "frames_per_second", tool.shape != ToolShape::sequence, "a shape that is a sequence");
   if (!tool.mesh.empty() && tool.mesh.is_relative()) tool.mesh = folder / tool.mesh;
   if (entry.has("path")) {
     for (const Reader& row : entry.at("path").items("a list of at least one row [time, x, y, z, qx, qy, qz, qw]", 1))
@@ -126,8 +110,8 @@ ContactTool read_contact_tool(const Reader& entry, const std::string& name, cons
   }
   describe_tool(ReadKeys{entry}, tool);
   if (entry.has("contact")) read_contact(entry.at("contact"), tool);
-  if (tool.edges && (tool.shape == ToolShape::half_space || tool.shape == ToolShape::sequence))
-    entry.at("edges").fail("this key only beside a shape that is a sphere, capsule, box or mesh");
+  refuse_key(entry, "edges", tool.edges && (tool.shape == ToolShape::half_space || tool.shape == ToolShape::sequence),
+             "a shape that is a sphere, capsule, box or mesh");
   return tool;
 }
 

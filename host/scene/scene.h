@@ -46,7 +46,7 @@ struct Prescribed {
 /// A force shared by the chosen nodes: of a lattice in proportion to their mass, of a mesh equally.
 struct Force {
   Selection where;
-  Vec3d total{};  ///< [N]
+  Vec3d force{};  ///< in total [N]
   Curve curve;
 };
 
@@ -77,7 +77,7 @@ struct DeformationModel {
   bool extrapolate = false;         ///< "goals": "extrapolated" instead of "held" between steps of FLSM
   bool conservative = true;  ///< "coupling": "conservative" gives the reaction of the interface back, "one-sided" does not
   bool cut = true;           ///< "cut": false: a blade passes through the shape-matching part without effect
-  bool follow = false;       ///< "follow": "tool": the operational region moves with the scene's tool
+  bool follow_tool = false;  ///< "follow": "tool": the operational region moves with the scene's tool
   std::optional<std::vector<std::int32_t>> cells;  ///< set in code: the operational cells, once a region has moved
   std::string pointer;                             ///< JSON pointer ("/bodies/0/model")
 };
@@ -119,7 +119,7 @@ struct StaticSolver {
   bool linear = false;      ///< small displacements
   int load_steps = 0;       ///< 0: "auto"
   double tolerance = 1e-8;  ///< |R - F| <= tolerance * largest of |R|, |F|
-  bool quadratic = false;   ///< "order": 2: tetrahedra get a node in the middle of every edge
+  int order = 1;            ///< 2: tetrahedra get a node in the middle of every edge
 };
 
 /// What becomes of an element whose J is not positive: it goes on and comes back, or the run ends.

@@ -5,10 +5,6 @@
 
 namespace pliant {
 
-/// What load_scene checks of a file, of a scene made in code: the reader reads what the writer writes of it, so that both doors
-/// have one set of rules and of messages. Throws Error.
-void validate(const Scene& scene);
-
 /// Throws Error (input) as load_scene does; places are named as in a scene file. Surfaces in memory get the names "memory:0",
 /// "memory:1", ... in the order of the bodies.
 Scene scene_of(const SceneSpec& spec);

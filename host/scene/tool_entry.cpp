@@ -11,6 +11,13 @@ namespace {
 
 std::string shown_name(const std::string& name) { return name.empty() ? "tool" : fmt::format("tool \"{}\"", name); }
 
+template <class T>
+ContactTool written_and_read(const T& tool) {
+  const std::string shown = shown_name(tool.name);
+  const nlohmann::json entry = tool_json(tool, {});
+  return read_contact_tool(Reader(entry, shown, ""), "", {});
+}
+
 }  // namespace
 
 ContactTool parse_tool(const std::string& text, const std::filesystem::path& folder) {
@@ -19,19 +26,9 @@ ContactTool parse_tool(const std::string& text, const std::filesystem::path& fol
   return read_contact_tool(Reader(document, shown, ""), "", folder);
 }
 
-ContactTool tool_of(const ToolSpec& spec) {
-  ContactTool tool = contact_tool(spec, "/shape", "");
-  tool.pointer.clear();
-  check_tool(tool);
-  return tool;
-}
+ContactTool tool_of(const ToolSpec& spec) { return written_and_read(spec); }
 
-void check_tool(const ContactTool& tool) {
-  const std::string shown = shown_name(tool.name);
-  nlohmann::json entry = tool_json(tool, {});
-  if (tool.name.empty()) entry.erase("name");
-  (void)read_contact_tool(Reader(entry, shown, ""), "", {});
-}
+void check_tool(const ContactTool& tool) { (void)written_and_read(tool); }
 
 void check_takes_tools(const Scene& scene) {
   const auto refuse = [](const std::string& has) {

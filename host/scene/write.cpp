@@ -1,4 +1,5 @@
-// A scene back into its file format.
+// A scene, or the struct of the public API that describes one, as the JSON of a scene file. Words of the latter stand as they
+// are: the reader refuses those that it does not know.
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -7,7 +8,6 @@
 #include "scene/keys.h"
 #include "scene/parts.h"
 #include "scene/probe.h"
-#include "scene/spec.h"
 
 namespace pliant {
 
@@ -23,22 +23,29 @@ std::string path_json(const fs::path& path, const fs::path& scene_file) {
   return relative.empty() ? fs::absolute(path).string() : relative.string();
 }
 
-OrderedJson selection_json(const Selection& s, const fs::path& scene_file) {
+fs::path surface_of(const Selection& s) { return s.surface->file(); }
+fs::path surface_of(const RegionSpec& r) { return r.surface_file; }
+RegionName region_of(const Selection& s) { return s.region->name(); }
+RegionName region_of(const RegionSpec& r) { return {r.region_name, r.region_number, r.region_data, r.region_dimension}; }
+
+template <class Where>
+OrderedJson selection_json(const Where& s, const fs::path& scene_file) {
+  using Kind = typename Where::Kind;
   switch (s.kind) {
-    case Selection::Kind::all:
+    case Kind::all:
       return {{"all", true}};
-    case Selection::Kind::box:
+    case Kind::box:
       return {{"box", OrderedJson::array({s.a, s.b})}};
-    case Selection::Kind::sphere:
+    case Kind::sphere:
       return {{"sphere", OrderedJson::array({s.a, s.radius})}};
-    case Selection::Kind::plane:
+    case Kind::plane:
       return {{"plane", OrderedJson::array({s.a, s.b})}};
-    case Selection::Kind::nodes:
+    case Kind::nodes:
       return {{"nodes", s.nodes}};
-    case Selection::Kind::surface:
-      return {{"surface", path_json(s.surface->file(), scene_file)}};
-    case Selection::Kind::region: {
-      const RegionName& name = s.region->name();
+    case Kind::surface:
+      return {{"surface", path_json(surface_of(s), scene_file)}};
+    case Kind::region: {
+      const RegionName name = region_of(s);
       OrderedJson entry{{"region", name.name.empty() ? OrderedJson(name.number) : OrderedJson(name.name)}};
       if (!name.data.empty()) entry["data"] = name.data;
       if (name.dimension != 0) entry["dimension"] = name.dimension;
@@ -48,71 +55,92 @@ OrderedJson selection_json(const Selection& s, const fs::path& scene_file) {
   return OrderedJson::object();
 }
 
-void add_curve(OrderedJson& entry, const Curve& curve) {
-  entry["curve"] = word_of(curve_words(), curve.kind);
-  if (curve.kind == Curve::Kind::table) {
+template <class C>
+void add_curve(OrderedJson& entry, const C& curve) {
+  const std::string& kind = text_of(curve_words(), curve.kind);
+  entry["curve"] = kind;
+  if (kind == "table") {
     entry["table"] = curve.table;
     return;
   }
   entry["start"] = curve.start;
-  if (curve.kind != Curve::Kind::constant) entry["duration"] = curve.duration;
+  if (kind != "constant") entry["duration"] = curve.duration;
 }
 
-OrderedJson gravity_json(const Scene& scene) {
-  if (scene.gravity_curve.kind == Curve::Kind::constant && scene.gravity_curve.start == 0) return scene.gravity;
+template <class S>
+OrderedJson gravity_json(const S& scene) {
+  if (text_of(curve_words(), scene.gravity_curve.kind) == "constant" && scene.gravity_curve.start == 0) return scene.gravity;
   OrderedJson gravity{{"acceleration", scene.gravity}};
   add_curve(gravity, scene.gravity_curve);
   return gravity;
 }
 
-OrderedJson material_json(const Material& m) {
+OrderedJson elastic_json(const Material& m) {
   const LawInfo& law = law_info(m.law);
   OrderedJson material{{"law", law.word}};
   if (!law.takes_moduli) {
     for (std::size_t i = 0; i < law.parameters.size(); ++i) material[law.parameters[i].name] = m.parameters.at(i);
-  } else {
-    const Moduli& e = m.moduli;
-    material["mu"] = e.mu;
-    // The pair from which the loader computes the same three moduli to the last bit.
-    if (e.lambda + 2 * e.mu / 3 == e.kappa) {
-      material["lambda"] = e.lambda;
-    } else {
-      material["kappa"] = e.kappa;
-    }
+    return material;
   }
-  describe_material(WriteKeys{material}, m);
-  if (m.toughness != 0) describe_tearing(WriteKeys{material}, m);
+  const Moduli& e = m.moduli;
+  material["mu"] = e.mu;
+  // The pair from which the loader computes the same three moduli to the last bit.
+  if (e.lambda + 2 * e.mu / 3 == e.kappa) {
+    material["lambda"] = e.lambda;
+  } else {
+    material["kappa"] = e.kappa;
+  }
   return material;
 }
 
-OrderedJson model_json(const DeformationModel& m) {
-  OrderedJson model{{"type", to_string(m.type)}};
-  if (m.type == ModelType::hybrid) {
+OrderedJson elastic_json(const MaterialSpec& m) {
+  OrderedJson material{{"law", m.law}};
+  if (m.parameters.empty()) material.update({{"young", m.young}, {"poisson", m.poisson}});
+  material.update(m.parameters);
+  return material;
+}
+
+template <class M>
+OrderedJson material_json(const M& m) {
+  OrderedJson material = elastic_json(m);
+  describe_material(WriteKeys{material}, m);
+  describe_tearing(WriteKeys{material}, m);
+  return material;
+}
+
+// Which of the two chooses alpha; of a matched model neither.
+void add_matching(OrderedJson& model, const DeformationModel& m) {
+  if (m.matched) return;
+  if (m.young != 0) {
+    describe_stiffness(WriteKeys{model["stiffness"]}, m);
+  } else {
+    describe_alpha(WriteKeys{model}, m);
+  }
+}
+void add_matching(OrderedJson& model, const ModelSpec& m) {
+  describe_alpha(WriteKeys{model}, m);
+  if (m.young) describe_stiffness(WriteKeys{model["stiffness"]}, m);
+}
+
+template <class M>
+OrderedJson model_json(const M& m) {
+  const std::string& type = text_of(model_words(), m.type);
+  OrderedJson model{{"type", type}};
+  if (type == to_string(ModelType::hybrid)) {
     if (m.region) {
       model["region"] = selection_json(*m.region, {});
+      if (m.follow_tool) model["follow"] = word_of(follow_words(), true);  // refused
     } else {
-      model["ratio"] = m.ratio;
-      if (m.seed) model["seed"] = *m.seed;
-      if (m.follow) model["follow"] = word_of(follow_words(), m.follow);
+      describe_growth(WriteKeys{model}, m);
     }
-    model["beta"] = m.beta != 0 ? OrderedJson(m.beta) : OrderedJson("auto");
-    model["substeps"] = m.substeps;
-    model["goals"] = word_of(goals_words(), m.extrapolate);
-    model["coupling"] = word_of(coupling_words(), m.conservative);
+    describe_interface(WriteKeys{model}, m);
   }
-  model["width"] = m.width;
-  if (m.matched) {
-    // What a reader does without either.
-  } else if (m.young != 0) {
-    model["stiffness"] = {{"young", m.young}};
-  } else {
-    model["alpha"] = m.alpha;
-  }
-  model["damping"] = m.damping;
-  model["cut"] = m.cut;
+  describe_regions(WriteKeys{model}, m);
+  add_matching(model, m);
   return model;
 }
 
+std::string axes_text(const std::string& axes) { return axes; }
 std::string axes_text(const std::array<bool, 3>& axes) {
   std::string text;
   for (int c = 0; c < 3; ++c) {
@@ -121,114 +149,157 @@ std::string axes_text(const std::array<bool, 3>& axes) {
   return text;
 }
 
-OrderedJson field_json(const AffineField& field) {
+template <class F>
+OrderedJson field_json(const F& field) {
   if (field.linear == std::array<Vec3d, 3>{} && field.about == Vec3d{}) return field.offset;
   return {{"linear", field.linear}, {"about", field.about}, {"offset", field.offset}};
 }
+template <class F>
+OrderedJson field_json(const std::optional<F>& field) {
+  return field_json(field.value_or(F{}));
+}
 
-void add_conditions(OrderedJson& body, const Body& b, const fs::path& file) {
-  for (const Inclusion& inclusion : b.inclusions) {
-    OrderedJson entry = selection_json(inclusion.where, file);
-    entry["material"] = material_json(inclusion.material);
-    body["inclusions"].push_back(entry);
+template <class P>
+void add_motion(OrderedJson& entry, const P& prescribed) {
+  if (prescribed.rotate) {
+    const auto& r = *prescribed.rotate;
+    entry["rotate"] = {{"axis", r.axis}, {"about", r.about}, {"angle", r.angle}};
+    entry["axes"] = axes_text(prescribed.axes);
+  } else {
+    for (const std::optional<double>& d : prescribed.displacement)
+      entry["displacement"].push_back(d ? OrderedJson(*d) : OrderedJson(nullptr));
   }
-  for (const Fixed& fixed : b.fixed) {
-    OrderedJson entry = selection_json(fixed.where, file);
-    entry["axes"] = axes_text(fixed.axes);
-    body["fixed"].push_back(entry);
-  }
-  for (const Prescribed& prescribed : b.prescribed) {
-    OrderedJson entry = selection_json(prescribed.where, file);
-    if (prescribed.rotate) {
-      const Rotation& r = *prescribed.rotate;
-      entry["rotate"] = {{"axis", r.axis}, {"about", r.about}, {"angle", r.angle}};
-      entry["axes"] = axes_text(prescribed.axes);
-    } else {
-      for (const std::optional<double>& d : prescribed.displacement)
-        entry["displacement"].push_back(d ? OrderedJson(*d) : OrderedJson(nullptr));
-    }
-    add_curve(entry, prescribed.curve);
-    body["prescribed"].push_back(entry);
-  }
-  for (const Initial& initial : b.initial) {
-    OrderedJson entry = selection_json(initial.where, file);
-    entry["velocity"] = field_json(initial.velocity);
-    entry["displacement"] = field_json(initial.displacement);
-    body["initial"].push_back(entry);
-  }
-  for (const Force& force : b.forces) {
-    OrderedJson entry = selection_json(force.where, file);
-    entry["force"] = force.total;
-    add_curve(entry, force.curve);
-    body["forces"].push_back(entry);
-  }
-  for (const Pressure& pressure : b.pressures) {
-    OrderedJson entry = selection_json(pressure.where, file);
-    entry["pressure"] = pressure.pressure;
-    add_curve(entry, pressure.curve);
-    body["pressures"].push_back(entry);
+  add_curve(entry, prescribed.curve);
+}
+
+/// The entries of a list, each with its selection and what `add` adds.
+template <class Entry, class Add>
+void add_entries(OrderedJson& body, const char* key, const std::vector<Entry>& list, const fs::path& file, const Add& add) {
+  for (const Entry& e : list) {
+    OrderedJson entry = selection_json(e.where, file);
+    add(entry, e);
+    body[key].push_back(entry);
   }
 }
 
-OrderedJson body_json(const Body& b, const fs::path& scene_file) {
+template <class B>
+void add_conditions(OrderedJson& body, const B& b, const fs::path& file) {
+  add_entries(body, "inclusions", b.inclusions, file,
+              [](OrderedJson& entry, const auto& e) { entry["material"] = material_json(e.material); });
+  add_entries(body, "fixed", b.fixed, file, [](OrderedJson& entry, const auto& e) { entry["axes"] = axes_text(e.axes); });
+  add_entries(body, "prescribed", b.prescribed, file, [](OrderedJson& entry, const auto& e) { add_motion(entry, e); });
+  add_entries(body, "initial", b.initial, file, [](OrderedJson& entry, const auto& e) {
+    entry["velocity"] = field_json(e.velocity);
+    entry["displacement"] = field_json(e.displacement);
+  });
+  add_entries(body, "forces", b.forces, file, [](OrderedJson& entry, const auto& e) {
+    entry["force"] = e.force;
+    add_curve(entry, e.curve);
+  });
+  add_entries(body, "pressures", b.pressures, file, [](OrderedJson& entry, const auto& e) {
+    entry["pressure"] = e.pressure;
+    add_curve(entry, e.curve);
+  });
+}
+
+fs::path surface_of(const Body& b) { return b.surface; }
+fs::path surface_of(const BodySpec& b) { return in_memory(b) ? "memory" : b.surface_file; }
+fs::path mesh_of(const Body& b) { return b.mesh; }
+fs::path mesh_of(const BodySpec& b) { return b.volume_file; }
+LatticeSpec lattice_of(const Body& b) { return b.lattice; }
+LatticeSpec lattice_of(const BodySpec& b) { return {b.lattice_spacing, b.lattice_spacing == 0 ? b.lattice_nodes : 0}; }
+
+template <class B>
+OrderedJson body_json(const B& b, const fs::path& file) {
   OrderedJson body{{"name", b.name}};
-  if (b.mesh.empty()) {
-    body["surface"] = path_json(b.surface, scene_file);
+  if (const fs::path mesh = mesh_of(b); !mesh.empty()) {
+    body["mesh"] = path_json(mesh, file);
   } else {
-    body["mesh"] = path_json(b.mesh, scene_file);
+    body["surface"] = path_json(surface_of(b), file);
+    body["lattice"] = OrderedJson::object();
+    describe_lattice(WriteKeys{body["lattice"]}, lattice_of(b));
   }
-  body["scale"] = b.scale;
-  body["translate"] = b.translate;
-  if (b.mesh.empty()) {
-    body["lattice"] =
-        b.lattice.spacing != 0 ? OrderedJson{{"spacing", b.lattice.spacing}} : OrderedJson{{"nodes", b.lattice.nodes}};
-  }
-  body["element"] = to_string(b.element);
+  describe_body(WriteKeys{body}, b);
   body["material"] = material_json(b.material);
-  if (b.model.type != ModelType::tled) body["model"] = model_json(b.model);
-  add_conditions(body, b, scene_file);
-  body["velocity"] = b.velocity;
-  body["angular_velocity"] = b.angular_velocity;
+  if (text_of(model_words(), b.model.type) != to_string(ModelType::tled)) body["model"] = model_json(b.model);
+  add_conditions(body, b, file);
   return body;
 }
 
-OrderedJson blade_json(const Blade& b) {
-  OrderedJson blade{{"name", b.name}, {"path", b.path}};
-  if (std::isfinite(b.start)) blade["start"] = b.start;
-  if (std::isfinite(b.end)) blade["end"] = b.end;
+template <class T>
+OrderedJson shape_json(ToolShape shape, const T& t, const fs::path& file) {
+  switch (shape) {
+    case ToolShape::sphere:
+      return t.radius;
+    case ToolShape::capsule:
+      return OrderedJson::array({t.first, t.second, t.radius});
+    case ToolShape::box:
+      return t.size;
+    case ToolShape::half_space:
+      return OrderedJson::array({t.first, t.second});
+    case ToolShape::mesh:
+    case ToolShape::sequence:
+      break;
+  }
+  return path_json(t.mesh, file);
+}
+
+template <class T>
+OrderedJson any_tool_json(const T& t, const fs::path& file) {
+  OrderedJson tool = OrderedJson::object();
+  if (!t.name.empty()) tool["name"] = t.name;
+  const std::string& shape = text_of(tool_shape_words(), t.shape);
+  tool["shape"] = shape;  // refused, unless it is one of these words
+  for (const Word<ToolShape>& w : tool_shape_words()) {
+    if (w.word == shape) tool["shape"] = {{shape, shape_json(w.value, t, file)}};
+  }
+  if (!t.path.empty()) tool["path"] = t.path;
+  describe_tool(WriteKeys{tool}, t);
+  OrderedJson contact = OrderedJson::object();
+  describe_contact_law(WriteKeys{contact}, t);
+  if (!contact.empty()) tool["contact"] = contact;
+  return tool;
+}
+
+template <class B>
+OrderedJson blade_json(const B& b) {
+  OrderedJson blade = OrderedJson::object();
+  if (!b.name.empty()) blade["name"] = b.name;
+  blade["path"] = b.path;
+  describe_blade(WriteKeys{blade}, b);
   return blade;
 }
 
-OrderedJson view_json(const SceneView& v) {
-  OrderedJson view = OrderedJson::object();
-  if (v.eye) view["eye"] = *v.eye;
-  if (v.target) view["target"] = *v.target;
-  if (v.up) view["up"] = *v.up;
-  if (v.field_of_view != SceneView{}.field_of_view) view["field_of_view"] = v.field_of_view;
-  if (!v.ground) view["ground"] = false;
-  return view;
+template <class P>
+OrderedJson probe_json(const P& p, const fs::path& file) {
+  OrderedJson probe = p.point ? OrderedJson{{"point", *p.point}} : selection_json(p.where, file);
+  if (!p.point && !p.body.empty()) probe["body"] = p.body;
+  probe["name"] = p.name;
+  for (const auto& q : p.quantities) probe["quantities"].push_back(text_of(quantity_words(), q));
+  return probe;
 }
 
-void add_probes(OrderedJson& top, const Scene& scene) {
-  if (scene.probes == nullptr) return;
-  top["probes"] = OrderedJson::array();
-  for (const SceneProbe& p : scene.probes->list) {
-    OrderedJson probe = p.point ? OrderedJson{{"point", *p.point}} : selection_json(p.where, scene.file);
-    if (!p.point) probe["body"] = p.body;
-    probe["name"] = p.name;
-    for (const Quantity q : p.quantities) probe["quantities"].push_back(word_of(quantity_words(), q));
-    top["probes"].push_back(probe);
-  }
-  if (scene.probes->every_steps > 0) top["probe_every"] = {{"steps", scene.probes->every_steps}};
-  if (scene.probes->every_seconds > 0) top["probe_every"] = scene.probes->every_seconds;
-}
+const std::vector<std::array<double, 4>>& tool_path(const Scene& scene) { return scene.tool.path; }
+const std::vector<std::array<double, 4>>& tool_path(const SceneSpec& scene) { return scene.tool_path; }
 
-// Nothing is left out because of its value, or validate() would not see it: 0 alone means "auto".
-OrderedJson document_of(const Scene& scene) {
+/// What both have but their probes.
+template <class S>
+OrderedJson top_json(const S& scene, const fs::path& file) {
   OrderedJson top{{"format", "pliant-scene/1"}};
   if (!scene.name.empty()) top["name"] = scene.name;
   top["gravity"] = gravity_json(scene);
   describe_scene(WriteKeys{top}, scene);
+  if (!tool_path(scene).empty()) top["tool"] = {{"path", tool_path(scene)}};
+  for (const auto& t : scene.tools) top["tools"].push_back(tool_json(t, file));
+  if (scene.contact) describe_friction(WriteKeys{top["contact"]}, *scene.contact);
+  for (const auto& b : scene.blades) top["blades"].push_back(blade_json(b));
+  top["bodies"] = OrderedJson::array();
+  for (const auto& b : scene.bodies) top["bodies"].push_back(body_json(b, file));
+  return top;
+}
+
+OrderedJson document_of(const Scene& scene) {
+  OrderedJson top = top_json(scene, scene.file);
   describe_run(WriteKeys{top}, scene);
   if (scene.relaxation.enabled) {
     describe_relaxation(WriteKeys{top["relaxation"]}, scene.relaxation);
@@ -236,59 +307,34 @@ OrderedJson document_of(const Scene& scene) {
     top["relaxation"] = false;
   }
   if (scene.solver.enabled) {
-    top["solver"] = {{"type", "static"}, {"order", scene.solver.quadratic ? 2 : 1}};
+    top["solver"] = {{"type", "static"}};
     describe_solver(WriteKeys{top["solver"]}, scene.solver);
   }
-  if (!scene.tool.path.empty()) top["tool"] = {{"path", scene.tool.path}};
-  for (const ContactTool& t : scene.tools) top["tools"].push_back(tool_json(t, scene.file));
-  if (scene.contact) describe_friction(WriteKeys{top["contact"]}, *scene.contact);
-  for (const Blade& b : scene.blades) top["blades"].push_back(blade_json(b));
-  if (const OrderedJson view = view_json(scene.view); !view.empty()) top["view"] = view;
-  add_probes(top, scene);
-  top["bodies"] = OrderedJson::array();
-  for (const Body& b : scene.bodies) top["bodies"].push_back(body_json(b, scene.file));
+  OrderedJson view = OrderedJson::object();
+  describe_view(WriteKeys{view}, scene.view);
+  if (!view.empty()) top["view"] = view;
+  if (scene.probes == nullptr) return top;
+  top["probes"] = OrderedJson::array();
+  for (const SceneProbe& p : scene.probes->list) top["probes"].push_back(probe_json(p, scene.file));
+  if (scene.probes->every_steps > 0) top["probe_every"] = {{"steps", scene.probes->every_steps}};
+  if (scene.probes->every_seconds > 0) top["probe_every"] = scene.probes->every_seconds;
   return top;
 }
 
 }  // namespace
 
-OrderedJson tool_json(const ContactTool& t, const std::filesystem::path& scene_file) {
-  OrderedJson tool{{"name", t.name}};
-  OrderedJson& shape = tool["shape"];
-  const std::string& word = word_of(tool_shape_words(), t.shape);
-  switch (t.shape) {
-    case ToolShape::sphere:
-      shape[word] = t.radius;
-      break;
-    case ToolShape::capsule:
-      shape[word] = {t.first, t.second, t.radius};
-      break;
-    case ToolShape::box:
-      shape[word] = t.size;
-      break;
-    case ToolShape::half_space:
-      shape[word] = {t.first, t.second};
-      break;
-    case ToolShape::mesh:
-    case ToolShape::sequence:
-      shape[word] = path_json(t.mesh, scene_file);
-      break;
-  }
-  if (!t.path.empty()) tool["path"] = t.path;
-  describe_tool(WriteKeys{tool}, t);
-  if (!t.mesh.empty() || t.scale != 1) describe_mesh_tool(WriteKeys{tool}, t);
-  if (t.shape == ToolShape::sequence || t.frames_per_second != ContactTool{}.frames_per_second)
-    describe_sequence_tool(WriteKeys{tool}, t);
-  if (t.stiffness != 0) tool["contact"]["stiffness"] = t.stiffness;
-  if (t.stiffness != 0 || t.exponent != 1) tool["contact"]["exponent"] = t.exponent;
-  if (t.stiffness != 0 || t.alpha != 0) tool["contact"]["alpha"] = t.alpha;
-  return tool;
+OrderedJson document_of(const SceneSpec& spec) {
+  OrderedJson top = top_json(spec, {});
+  if (spec.relaxation) describe_relaxation(WriteKeys{top["relaxation"]}, *spec.relaxation);
+  for (const ProbeSpec& p : spec.probes) top["probes"].push_back(probe_json(p, {}));
+  return top;
 }
+
+OrderedJson tool_json(const ContactTool& tool, const fs::path& scene_file) { return any_tool_json(tool, scene_file); }
+OrderedJson tool_json(const ToolSpec& tool, const fs::path& scene_file) { return any_tool_json(tool, scene_file); }
 
 std::string scene_to_json(const Scene& scene) {
   return document_of(scene).dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
 }
-
-void validate(const Scene& scene) { (void)read_document(document_of(scene), scene.file); }
 
 }  // namespace pliant

@@ -195,7 +195,7 @@ TEST_F(Tear, loads_stay_where_they_were) {
   Scene scene = bar_scene(file, 1500);
   Force force;
   force.where = {Selection::Kind::box, {-1, -1, -1}, {1, 1, 1}, 0, {}, ""};
-  force.total = {0, 0, 1e-3};
+  force.force = {0, 0, 1e-3};
   scene.bodies[0].forces.push_back(force);
   Simulation s(scene, open_backend("cpu"));
   const auto by_place = [&] {

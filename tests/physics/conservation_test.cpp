@@ -89,7 +89,7 @@ TEST_P(Conservation, EnergyOfAVibratingBody) {
     body.fixed.push_back({face(0, 0), {true, true, true}});
     Force force;
     force.where = face(0, 0.2);
-    force.total = {0, 0.05, 0.02};
+    force.force = {0, 0.05, 0.02};
     body.forces.push_back(force);
     scene.bodies = {body};
     scene.gravity = {0, -1, 0};
@@ -273,7 +273,7 @@ TEST_P(Conservation, TotalOfLoads) {
     Body body = plain_body;
     Force force;
     force.where = face(0, 0.15);
-    force.total = {1, -2, 3};
+    force.force = {1, -2, 3};
     body.forces = {force};
     check(name + " total of a force on a face", (loads_at(body) - Vector3d(1, -2, 3)).norm() / std::sqrt(14.0),
           bound(1e-5, 1e-12));

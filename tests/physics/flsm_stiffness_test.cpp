@@ -71,7 +71,7 @@ std::array<double, 2> compliance(const Bar& bar) {
     Force share;
     share.where.kind = Selection::Kind::nodes;
     share.where.nodes = {n};
-    share.total = {force / static_cast<double>(ends.size()), 0, 0};
+    share.force = {force / static_cast<double>(ends.size()), 0, 0};
     scene.bodies[0].forces.push_back(share);
   }
   auto sim = simulate(scene, "cpu");

@@ -13,7 +13,7 @@ std::vector<Vec3d> run(const char* backend, Discretization cut, Integrator integ
   body.fixed.push_back({face(0, 0), {true, true, true}});
   Force force;
   force.where = face(0, 0.1);
-  force.total = {0.2, -0.1, 0.05};
+  force.force = {0.2, -0.1, 0.05};
   force.curve = smooth(0.6);
   body.forces = {force};
   scene.bodies = {body};

@@ -16,7 +16,7 @@ Scene pressed(Discretization cut, Law law, Inverted inverted) {
   Force push;
   push.where = face(0, edge);
   // Where the law has a barrier at J = 0, its continuation is as stiff.
-  push.total = {(law_info(law).invertible ? -1.5 : -15) * (m.moduli.lambda + 2 * m.moduli.mu) * edge * edge, 0, 0};
+  push.force = {(law_info(law).invertible ? -1.5 : -15) * (m.moduli.lambda + 2 * m.moduli.mu) * edge * edge, 0, 0};
   push.curve.kind = Curve::Kind::table;
   push.curve.table = {{0, 0}, {0.05, 1}, {0.3, 1}, {0.35, 0}};
   body.forces = {push};

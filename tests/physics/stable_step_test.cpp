@@ -152,7 +152,7 @@ TEST_P(StableStep, RelaxationAgainstLinearStatics) {
     Scene scene = clamped(cut, 0.3);
     Force force;
     force.where = face(0, 0.06);
-    force.total = {1e-6, -2e-6, 1e-6};  // strains of a hundred-thousandth: linear
+    force.force = {1e-6, -2e-6, 1e-6};  // strains of a hundred-thousandth: linear
     scene.bodies[0].forces = {force};
     const Linear linear = linearise(scene);  // differences: the constant load drops out
     scene.relaxation.enabled = true;

@@ -94,7 +94,7 @@ double tip_drop(const char* backend, const Beam& beam, double load) {
   body.fixed.push_back({face(0, 0), {true, true, true}});
   Force tip;
   tip.where = face(0, 1, 1e-5);
-  tip.total = {0, -force, 0};
+  tip.force = {0, -force, 0};
   tip.curve = smooth(2 / omega);
   body.forces.push_back(tip);
   Scene scene;

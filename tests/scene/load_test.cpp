@@ -98,7 +98,7 @@ TEST(Load, ConditionsArrive) {
   EXPECT_EQ(p.curve.kind, Curve::Kind::smooth);
   EXPECT_EQ(p.curve.start, 0.5);
   EXPECT_EQ(p.curve.duration, 0.25);
-  EXPECT_EQ(b.forces.at(0).total, (Vec3d{1, 2, 3}));
+  EXPECT_EQ(b.forces.at(0).force, (Vec3d{1, 2, 3}));
   EXPECT_EQ(b.forces[0].curve.kind, Curve::Kind::table);
   EXPECT_EQ(b.forces[0].curve.table.size(), 2U);
   EXPECT_EQ(b.pressures.at(0).pressure, -200);

@@ -67,7 +67,7 @@ TEST(Model, EveryKeyArrives) {
   EXPECT_EQ(m.substeps, 4);
   EXPECT_TRUE(m.extrapolate);
   EXPECT_FALSE(m.conservative);
-  EXPECT_TRUE(m.follow);
+  EXPECT_TRUE(m.follow_tool);
   EXPECT_EQ(m.pointer, "/bodies/0/model");
 }
 
@@ -111,7 +111,7 @@ TEST(Model, Defaults) {
     EXPECT_EQ(m.substeps, 1);
     EXPECT_FALSE(m.extrapolate);
     EXPECT_TRUE(m.conservative);
-    EXPECT_FALSE(m.follow);
+    EXPECT_FALSE(m.follow_tool);
   }
   const Scene none = parse_scene(patched("{}", R"({"model": null})"), "dir/s.json");
   EXPECT_EQ(none.bodies[0].model.type, ModelType::tled);
@@ -166,7 +166,7 @@ TEST(Model, RoundTripKeepsEverything) {
     EXPECT_EQ(n.substeps, m.substeps);
     EXPECT_EQ(n.extrapolate, m.extrapolate);
     EXPECT_EQ(n.conservative, m.conservative);
-    EXPECT_EQ(n.follow, m.follow);
+    EXPECT_EQ(n.follow_tool, m.follow_tool);
     EXPECT_EQ(n.pointer, m.pointer);
     EXPECT_EQ(b.tool.path, a.tool.path);
     EXPECT_EQ(schema().findings(Json::parse(written)), std::vector<std::string>()) << written;
@@ -192,7 +192,8 @@ void expect_refused(const std::string& text, const std::string& expected) {
 
 TEST(Model, ValuesOutOfRangeAreNamed) {
   const std::vector<Case> cases{
-      {R"("hybrid")", R"(/bodies/0/model: got "hybrid", expected an object with the keys type, ratio, seed, region, beta)"},
+      {R"("hybrid")",
+       R"(/bodies/0/model: got "hybrid", expected an object with the keys type, ratio, seed, follow, region, beta)"},
       {R"({})", R"(/bodies/0/model: got no "type", expected a model type: tled, hybrid, flsm)"},
       {R"({"type": "hybird"})",
        R"(/bodies/0/model/type: got "hybird", expected one of tled, hybrid, flsm (did you mean "hybrid"?))"},
@@ -209,10 +210,9 @@ TEST(Model, ValuesOutOfRangeAreNamed) {
        "/bodies/0/model/region/sphere/1: got -1, expected a number > 0"},
       {R"({"type": "hybrid", "region": {"all": true}})",
        R"(/bodies/0/model/region: got the unknown key "all", expected one of box, sphere)"},
-      {R"({"type": "hybrid", "beta": 0})",
-       R"(/bodies/0/model/beta: got 0, expected "auto" or a stiffness > 0 in newton per metre)"},
-      {R"({"type": "hybrid", "beta": -3})", R"(/bodies/0/model/beta: got -3, expected "auto" or a stiffness > 0)"},
-      {R"({"type": "hybrid", "beta": "stiff"})", R"(/bodies/0/model/beta: got "stiff", expected "auto" or a stiffness > 0)"},
+      {R"({"type": "hybrid", "beta": 0})", R"(/bodies/0/model/beta: got 0, expected "auto" or a number > 0 [N/m])"},
+      {R"({"type": "hybrid", "beta": -3})", R"(/bodies/0/model/beta: got -3, expected "auto" or a number > 0 [N/m])"},
+      {R"({"type": "hybrid", "beta": "stiff"})", R"(/bodies/0/model/beta: got "stiff", expected "auto" or a number > 0 [N/m])"},
       {R"({"type": "flsm", "width": 0})", "/bodies/0/model/width: got 0, expected a whole number from 1 to 5"},
       {R"({"type": "flsm", "width": 6})", "/bodies/0/model/width: got 6, expected a whole number from 1 to 5"},
       {R"({"type": "flsm", "width": 1.5})", "/bodies/0/model/width: got 1.5, expected a whole number from 1 to 5"},
@@ -220,7 +220,7 @@ TEST(Model, ValuesOutOfRangeAreNamed) {
       {R"({"type": "flsm", "alpha": 1.5})", "/bodies/0/model/alpha: got 1.5, expected a number with 0 < alpha <= 1"},
       {R"({"type": "flsm", "stiffness": 3000})", "/bodies/0/model/stiffness: got 3000, expected an object with the keys young"},
       {R"({"type": "flsm", "stiffness": {}})",
-       R"(/bodies/0/model/stiffness: got no "young", expected Young's modulus in pascal)"},
+       R"(/bodies/0/model/stiffness: got no "young", expected effective Young's modulus of shape matching [Pa])"},
       {R"({"type": "flsm", "stiffness": {"young": 0}})", "/bodies/0/model/stiffness/young: got 0, expected a number > 0"},
       {R"({"type": "flsm", "damping": -0.1})", "/bodies/0/model/damping: got -0.1, expected a number with 0 <= damping <= 1"},
       {R"({"type": "flsm", "damping": 2})", "/bodies/0/model/damping: got 2, expected a number with 0 <= damping <= 1"},
@@ -237,8 +237,8 @@ TEST(Model, ValuesOutOfRangeAreNamed) {
 
 TEST(Model, UnknownKeysSuggestTheNearest) {
   expect_refused(with_model(R"({"type": "hybrid", "ration": 0.4})"),
-                 R"(/bodies/0/model: got the unknown key "ration", expected one of type, ratio, seed, region, beta, width, )"
-                 R"(alpha, stiffness, damping, substeps, goals, coupling, follow, cut (did you mean "ratio"?))");
+                 R"(/bodies/0/model: got the unknown key "ration", expected one of type, ratio, seed, follow, region, )"
+                 R"(beta, substeps, goals, coupling, width, damping, cut, alpha, stiffness (did you mean "ratio"?))");
   expect_refused(with_model(R"({"type": "flsm", "stiffness": {"yuong": 1}})"),
                  R"(/bodies/0/model/stiffness: got the unknown key "yuong", expected one of young (did you mean "young"?))");
   expect_refused(patched(R"({"tool": {"paths": []}})"),

@@ -273,13 +273,20 @@ const std::vector<Case> of_materials_and_entries{
     {[](SceneSpec& s) { s.bodies[0].model.width = 9; }, "scene: /bodies/0/model/width: got 9, expected a whole number from 1"},
     {[](SceneSpec& s) { s.bodies[0].model.beta = -1; }, "scene: /bodies/0/model/beta: got -1, expected \"auto\" or"},
     {[](SceneSpec& s) { s.bodies[0].model.goals = "hold"; }, "scene: /bodies/0/model/goals: got \"hold\", expected one of"},
-    {[](SceneSpec& s) { s.bodies[0].model.region = RegionSpec::all(); }, "scene: /bodies/0/model/region: got"},
+    {[](SceneSpec& s) { s.bodies[0].model.follow_tool = false, s.bodies[0].model.region = RegionSpec::all(); },
+     "scene: /bodies/0/model/region: got the unknown key \"all\", expected one of box, sphere"},
+    {[](SceneSpec& s) {
+       s.bodies[0].model.region = RegionSpec::sphere({0, 0, 0}, 1);
+     },
+     "scene: /bodies/0/model: got both \"region\" and \"follow\""},
+    {[](SceneSpec& s) { s.bodies[0].model.alpha = 0.5, s.bodies[0].model.young = 3000; },
+     "scene: /bodies/0/model: got both \"alpha\" and \"stiffness\""},
     {[](SceneSpec& s) { s.probes[0].name = "held"; }, "scene: /probes/1: got the name \"held\", which /probes/0 has already"},
     {[](SceneSpec& s) { s.probes[0].quantities = {"heat"}; }, "scene: /probes/0/quantities/0: got \"heat\", expected one of"},
     {[](SceneSpec& s) { s.probes[0].quantities = {"force"}; }, "scene: /probes/0/quantities/0: got \"force\", expected no"},
     {[](SceneSpec& s) { s.probes[0].point->at(1) = kNan; }, "scene: /probes/0/point/1: got nan, expected a number"},
     {[](SceneSpec& s) { s.probes[1].body = "c"; }, "scene: /probes/1/body: got \"c\", expected one of a, b"},
-    {[](SceneSpec& s) { s.probes[1].body = ""; }, "scene: /probes/1/body: got \"\", expected one of a, b"},
+    {[](SceneSpec& s) { s.probes[1].body = ""; }, "scene: /probes/1: got no \"body\", expected the name of a body"},
     {[](SceneSpec& s) { s.probes[1].where.b = {}; }, "scene: /probes/1/plane/1: got"},
     {[](SceneSpec& s) { s.probes[1].body = "a"; }, "scene: /probes/1: got a reaction of body \"a\", whose model is hybrid"},
 };

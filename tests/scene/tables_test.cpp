@@ -122,13 +122,51 @@ void set_laws(Json& material) {
   material["oneOf"] = ways;
 }
 
+/// Whether a key has a default, which is what the struct has: not where that stands for one that is not there.
+template <class Member>
+bool has_default(const Key& key, const Member& standard) {
+  if (key.required || key.standard != nullptr) return false;
+  if constexpr (std::is_arithmetic_v<Member>) {
+    const auto x = static_cast<double>(standard);
+    if (!key.range.absent || std::is_same_v<Member, bool>) return true;
+    EXPECT_EQ(x, *key.range.absent) << key.name << ": what is not written is what a reader does without it";
+    return within(x, key.range) || x == key.range.also;
+  }
+  return std::is_same_v<Member, Vec3d>;
+}
+
 /// The definition of each described key, in the place where the schema has it.
 struct SchemaKeys {
   Json& properties;
 
+  template <class Member>
+  void operator()(const Member& standard, const Key& key) const {
+    Json entry{{"description", key.about + (key.unit[0] != 0 ? " [" + std::string(key.unit) + "]" : "")}};
+    if constexpr (std::is_arithmetic_v<Member>) {
+      add_number(entry, key, standard);
+    } else {
+      entry["$ref"] = "#/$defs/vec3";
+    }
+    if (has_default(key, standard)) entry["default"] = value_of(key, standard);
+    properties[key.name] = entry;
+  }
+  template <class Enum>
+  void operator()(const Enum& standard, const Words<Enum>& words, const Key& key) const {
+    properties[key.name] = {{"description", key.about}, {"enum", words_only(words)}};
+    if (key.standard == nullptr && !key.range.absent) properties[key.name]["default"] = word_of(words, standard);
+  }
+
+ private:
+  template <class Member>
+  static Json value_of(const Key& key, const Member& standard) {
+    if constexpr (std::is_arithmetic_v<Member>) {
+      if (key.range.word != nullptr && static_cast<double>(standard) == *key.range.also) return key.range.word;
+      return standard;
+    }
+    return {0, 0, 0};
+  }
   template <class Number>
-  void operator()(const Key& key, const Number& standard) const {
-    Json entry{{"description", std::string(key.about) + (key.unit[0] != 0 ? " [" + std::string(key.unit) + "]" : "")}};
+  static void add_number(Json& entry, const Key& key, const Number& /*standard*/) {
     Json number{{"type", std::is_same_v<Number, bool> ? "boolean" : std::is_integral_v<Number> ? "integer" : "number"}};
     const Range& r = key.range;
     const auto bound = [](double x) { return std::is_integral_v<Number> ? Json(static_cast<std::int64_t>(x)) : Json(x); };
@@ -141,36 +179,38 @@ struct SchemaKeys {
       }
       number[r.below ? "exclusiveMaximum" : "maximum"] = bound(r.most);
     }
-    if (key.also) {
-      entry["oneOf"] = {{{"const", key.word != nullptr ? Json(key.word) : bound(*key.also)}}, number};
+    if (r.also && r.least == r.most) {
+      entry["enum"] = {bound(r.least), bound(*r.also)};
+    } else if (r.also) {
+      entry["oneOf"] = {{{"const", r.word != nullptr ? Json(r.word) : bound(*r.also)}}, number};
     } else {
       entry.update(number);
     }
-    if (!key.optional)
-      entry["default"] = key.word != nullptr && static_cast<double>(standard) == *key.also ? Json(key.word) : Json(standard);
-    properties[key.name] = entry;
-  }
-  template <class Enum>
-  void operator()(const Key& key, const Words<Enum>& words, const Enum& standard) const {
-    properties[key.name] = {{"description", key.about}, {"enum", words_only(words)}, {"default", word_of(words, standard)}};
   }
 };
 
 TEST(Tables, SchemaHasTheLawsAndTheWordsOfTheCode) {
   Json schema = Json::parse(file_text("scenes/schema.json"));
-  Json& parts = schema["$defs"];
+  const auto keys = [&schema](const char* part) { return SchemaKeys{schema["$defs"][part]["properties"]}; };
   describe_scene(SchemaKeys{schema["properties"]}, Scene());
   describe_run(SchemaKeys{schema["properties"]}, Scene());
-  describe_relaxation(SchemaKeys{parts["relaxation"]["properties"]}, Relaxation());
-  describe_solver(SchemaKeys{parts["solver"]["properties"]}, StaticSolver());
-  describe_material(SchemaKeys{parts["material"]["properties"]}, Material());
-  describe_tearing(SchemaKeys{parts["material"]["properties"]}, Material());
-  describe_friction(SchemaKeys{parts["tissue_contact"]["properties"]}, TissueContact());
-  describe_tool(SchemaKeys{parts["contact_tool"]["properties"]}, ContactTool());
-  describe_mesh_tool(SchemaKeys{parts["contact_tool"]["properties"]}, ContactTool());
-  describe_sequence_tool(SchemaKeys{parts["contact_tool"]["properties"]}, ContactTool());
+  describe_relaxation(keys("relaxation"), Relaxation());
+  describe_solver(keys("solver"), StaticSolver());
+  describe_view(keys("view"), SceneView());
+  describe_blade(keys("blade"), Blade());
+  describe_body(keys("body"), Body());
+  describe_lattice(keys("lattice"), LatticeSpec());
+  describe_material(keys("material"), Material());
+  describe_tearing(keys("material"), Material());
+  describe_friction(keys("tissue_contact"), TissueContact());
+  describe_tool(keys("contact_tool"), ContactTool());
+  describe_contact_law(keys("contact"), ContactTool());
+  describe_growth(keys("model"), DeformationModel());
+  describe_interface(keys("model"), DeformationModel());
+  describe_regions(keys("model"), DeformationModel());
+  describe_alpha(keys("model"), DeformationModel());
+  describe_stiffness(keys("stiffness"), DeformationModel());
   set_laws(schema["$defs"]["material"]);
-  schema["$defs"]["body"]["properties"]["element"]["enum"] = words_only(element_words());
   expect_file("scenes/schema.json", pretty(schema) + "\n");
 }
 
@@ -229,59 +269,81 @@ void replace_part(std::string& text, const std::string& what, const std::string&
 struct DocumentRows {
   std::string& text;
   const char* anchor;
+  const char* before = "";  ///< what stands in columns before the key
+  const char* after = "";   ///< and between it and its unit
 
-  template <class Number>
-  void operator()(const Key& key, const Number& standard) const {
-    std::string allowed;
-    if constexpr (!std::is_same_v<Number, bool>) {
-      allowed = (std::is_integral_v<Number> ? "whole number " : "") + range_text(key, std::is_integral_v<Number>);
-      if (key.also)
-        allowed = (key.word != nullptr ? code(Json(key.word).dump()) : short_text(Json(*key.also))) + ", or " + allowed;
-      allowed += "; ";
+  template <class Member>
+  void operator()(const Member& standard, const Key& key) const {
+    std::string allowed, value = has_default(key, standard) ? "" : key.required ? "required" : "none";
+    if constexpr (std::is_same_v<Member, bool>) {
+      value = code(Json(standard).dump());
+    } else if constexpr (std::is_arithmetic_v<Member>) {
+      const Range& r = key.range;
+      allowed = range_text(key, std::is_integral_v<Member>);
+      if (std::is_integral_v<Member>) allowed = "whole number " + allowed;
+      if (allowed.empty()) allowed = "a number";
+      if (r.also && r.least == r.most) {
+        allowed += " or " + short_text(*r.also);
+      } else if (r.also) {
+        allowed = (r.word != nullptr ? code(Json(r.word).dump()) : short_text(*r.also)) + ", or " + allowed;
+      }
+      const bool as_word = r.word != nullptr && static_cast<double>(standard) == *r.also;
+      if (value.empty()) value = as_word ? code(Json(r.word).dump()) : short_text(static_cast<double>(standard));
+    } else {
+      allowed = "three numbers";
+      if (value.empty()) value = code("[0, 0, 0]");
     }
-    const bool as_word = key.word != nullptr && static_cast<double>(standard) == *key.also;
-    std::string value = as_word ? code(Json(key.word).dump()) : short_text(Json(standard));
-    if (key.optional) value = "none";
-    set(key, value, allowed + key.note);
+    set(key, value, allowed);
   }
   template <class Enum>
-  void operator()(const Key& key, const Words<Enum>& words, const Enum& standard) const {
+  void operator()(const Enum& standard, const Words<Enum>& words, const Key& key) const {
     std::string allowed;
     for (const Word<Enum>& w : words) allowed += (allowed.empty() ? "" : ", ") + code(Json(w.word).dump());
-    set(key, code(Json(word_of(words, standard)).dump()), allowed + "; " + key.note);
+    set(key, key.range.absent ? "none" : code(Json(word_of(words, standard)).dump()), allowed);
   }
 
  private:
-  static std::string short_text(const Json& value) {
-    if (!value.is_number_float()) return value.is_boolean() ? code(value.dump()) : value.dump();
+  static std::string short_text(double value) {
     std::ostringstream out;
-    out << value.get<double>();
+    out << value;
     return out.str();
   }
-  void set(const Key& key, const std::string& standard, const std::string& allowed) const {
-    const std::string first = "| " + code(key.name) + " |";
+  void set(const Key& key, std::string standard, std::string allowed) const {
+    const std::string first = before + ("| " + code(key.name)) + " |" + after;
     const std::size_t from = text.find("\n" + first, text.find(anchor));
     ASSERT_NE(from, std::string::npos) << anchor << ' ' << key.name;
     const std::size_t end = text.find('\n', from + 1);
+    std::string note = key.note != nullptr ? key.note : key.about;
+    if (key.note == nullptr) note[0] = static_cast<char>(std::tolower(note[0]));
+    if (key.standard != nullptr) standard = key.standard;
+    if (!allowed.empty()) allowed += "; ";
     const std::string example = code(Json(key.name).dump() + ": " + key.example);
-    text.replace(
-        from + 1, end - from - 1,
-        first + " " + key.unit + (key.unit[0] != 0 ? " " : "") + "| " + standard + " | " + allowed + " | " + example + " |");
+    text.replace(from + 1, end - from - 1,
+                 first + " " + key.unit + (key.unit[0] != 0 ? " " : "") + "| " + standard + " | " + allowed + note + " | " +
+                     example + " |");
   }
 };
 
 TEST(Tables, ScenesDocumentHasTheLawsAndElementsOfTheCode) {
   std::string text = file_text("docs/scene.md");
-  const DocumentRows top{text, "## Top level"}, material{text, "\n## Material\n"}, tool{text, "`tools`, at most 30"};
+  const DocumentRows top{text, "## Top level"}, body{text, "\n## Body\n"}, material{text, "\n## Material\n"},
+      hybrid{text, "\n## Model\n", "", " hybrid |"}, matching{text, "\n## Model\n", "", " hybrid, flsm |"};
   describe_scene(top, Scene());
   describe_run(top, Scene());
   describe_relaxation(DocumentRows{text, "`relaxation` (dynamic relaxation"}, Relaxation());
   describe_solver(DocumentRows{text, "`solver` (what"}, StaticSolver());
+  describe_view(DocumentRows{text, "`view`, for pictures"}, SceneView());
+  describe_blade(DocumentRows{text, "\n`blades`, each"}, Blade());
+  describe_body(body, Body());
+  describe_lattice(DocumentRows{text, "`lattice`, exactly"}, LatticeSpec());
   describe_material(material, Material());
   describe_tearing(material, Material());
-  describe_tool(tool, ContactTool());
-  describe_mesh_tool(tool, ContactTool());
-  describe_sequence_tool(tool, ContactTool());
+  describe_tool(DocumentRows{text, "`tools`, at most 30"}, ContactTool());
+  describe_contact_law(DocumentRows{text, "\n`contact`:"}, ContactTool());
+  describe_growth(hybrid, DeformationModel());
+  describe_interface(hybrid, DeformationModel());
+  describe_regions(matching, DeformationModel());
+  describe_alpha(matching, DeformationModel());
   replace_part(text, "elements", element_table());
   replace_part(text, "laws", law_tables());
   expect_file("docs/scene.md", text);

@@ -32,7 +32,7 @@ Scene loaded(Discretization cut, Law law) {
   body.pressures.push_back(squeeze);
   Force push;
   push.where = physics::face(2, 0.1);
-  push.total = {0, 0.05, 0};
+  push.force = {0, 0.05, 0};
   body.forces.push_back(push);
   scene.bodies.push_back(body);
   scene.relaxation.enabled = true;
