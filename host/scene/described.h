@@ -48,8 +48,7 @@ struct Key {
   Range range;
   const char* unit;
   const char* example;             ///< a value
-  const char* about;               ///< for scenes/schema.json
-  const char* note = nullptr;      ///< for docs/scene.md, behind what is allowed; null: `about`
+  const char* about;               ///< behind what is allowed; a code span or a link is text without its marks in the schema
   const char* standard = nullptr;  ///< for docs/scene.md, where it is no value of the struct
   bool required = false;
 };
@@ -63,31 +62,26 @@ constexpr Key required(Key key) {
 
 template <class V, class S>
 void describe_scene(V&& v, S&& s) {
-  v(s.dt, {"dt", above(0).or_word("auto"), "s", "1e-4", "Time step, or auto: safety times the stable step",
-           "a number is used as it is"});
-  v(s.safety, {"safety", above_to(0, 1), "", "0.8", "Share of the stable step that an automatic step takes",
-               "an automatic step is this share of the stable one"});
+  v(s.dt,
+    {"dt", above(0).or_word("auto"), "s", "1e-4", "time step, used as it is; `\"auto\"`: `safety` times the stable step"});
+  v(s.safety, {"safety", above_to(0, 1), "", "0.8", "an automatic step is this share of the stable one"});
   v(s.integrator, integrator_words(),
-    {"integrator", any, "", "\"textbook\"", "Form of the central difference update",
-     "`\"textbook\"` loses small increments in float; for comparison"});
+    {"integrator", any, "", "\"textbook\"",
+     "form of the central difference update; `\"textbook\"` loses small increments in float; for comparison"});
   v(s.inverted, inverted_words(),
-    {"inverted", any, "", "\"stop\"", "What becomes of an element whose J = det F is not positive",
+    {"inverted", any, "", "\"stop\"",
      "what becomes of an element whose J = det F is not positive: it goes on and is driven back, or the run ends (see "
      "[troubleshooting](troubleshooting.md))"});
-  v(s.break_stretch, {"break_stretch", above(1).or_number(0), "", "0",
-                      "Edges longer than this times their length at rest part, in scenes that are cut or tear; 0: none does",
-                      "in a scene that is cut, an edge beside a cut that is longer than this times its length at rest parts in "
-                      "its middle, and elsewhere at four times this; in a body with a `toughness`, beside a tear likewise, "
-                      "along faces at one of its ends; 0: none does"});
+  v(s.break_stretch,
+    {"break_stretch", above(1).or_number(0), "", "0",
+     "in a scene that is cut, an edge beside a cut that is longer than this times its length at rest parts in its middle, and "
+     "elsewhere at four times this; in a body with a `toughness`, beside a tear likewise, along faces at one of its ends; 0: "
+     "none does"});
   v(s.least_step, {"least_step", from_to(0, 1), "", "0",
-                   "Floor of an automatic step, as a share of the first. Elements that ask for less get inertia without weight "
-                   "instead, which is reported; 0: no floor",
                    "floor of an automatic step, as a share of the first: elements that ask for less get inertia (no weight) "
                    "instead, which `run` reports; 0: no floor"});
   v(s.least_fill,
     {"least_fill", from_to(0, 1), "", "0",
-     "Where blades cut: a cell or a copy of one is at least as stiff and as inert as this share of a full cell. What is added "
-     "has no weight",
      "where blades cut, a cell or a copy of one is at least as stiff and as inert as this share of a full cell (copies of one "
      "cell share its stiffness; of a cell thinner than that, in equal parts at least); inertia that is added has no weight"});
 }
@@ -95,48 +89,44 @@ void describe_scene(V&& v, S&& s) {
 /// Of a run, which code gives by what it calls.
 template <class V, class S>
 void describe_run(V&& v, S&& s) {
-  v(s.duration, {"duration", above(0), "s", "2.5", "Simulated time of a run without --steps or --seconds",
-                 "simulated by `run` without `--steps` or `--seconds`"});
+  v(s.duration, {"duration", above(0), "s", "2.5", "time that `run` simulates without `--steps` or `--seconds`"});
 }
 
 template <class V, class S>
 void describe_relaxation(V&& v, S&& s) {
-  v(s.tolerance, {"tolerance", between(0, 1), "", "1e-6", "Stop at |R - F| <= tolerance times the larger of |R|, |F|",
-                  "done when abs(R - F) <= tolerance times the larger of abs(R), abs(F)"});
-  v(s.max_steps, {"max_steps", from_to(1, 1e12), "steps", "20000", "Give up after so many", "then the run gives up"});
+  v(s.tolerance,
+    {"tolerance", between(0, 1), "", "1e-6", "done when abs(R - F) <= tolerance times the larger of abs(R), abs(F)"});
+  v(s.max_steps, {"max_steps", from_to(1, 1e12), "steps", "20000", "after so many the run gives up"});
 }
 
 template <class V, class S>
 void describe_solver(V&& v, S&& s) {
-  v(s.linear,
-    {"linear", any, "", "true", "Small displacements", "`true`: one linear solve, displacements are small by assumption"});
-  v(s.load_steps, {"load_steps", from_to(1, 1e6).or_word("auto"), "", "10", "In how many steps loads grow",
-                   "`\"auto\"`: one, halved where Newton's method fails"});
-  v(s.tolerance, {"tolerance", between(0, 1), "", "1e-10", "Converged at |R - F| <= tolerance times the larger of |R|, |F|",
-                  "converged when abs(R - F) <= tolerance times the larger of abs(R), abs(F)"});
-  v(s.order, {"order", from_to(1, 2), "", "2", "2: quadratic tetrahedra",
-              "2 gives tetrahedra a node in the middle of every edge (tet10)"});
+  v(s.enabled, solver_words(),
+    required({"type", any, "", "\"static\"", "steps in time, or equilibrium under the final values of all curves"}));
+  v(s.linear, {"linear", any, "", "true", "small displacements by assumption, one linear solve"});
+  v(s.load_steps, {"load_steps", from_to(1, 1e6).or_word("auto"), "", "10",
+                   "in how many steps loads grow; `\"auto\"`: one, halved where Newton's method fails"});
+  v(s.tolerance,
+    {"tolerance", between(0, 1), "", "1e-10", "converged when abs(R - F) <= tolerance times the larger of abs(R), abs(F)"});
+  v(s.order, {"order", from_to(1, 2), "", "2", "2 gives tetrahedra a node in the middle of every edge (tet10)"});
 }
 
 template <class V, class S>
 void describe_blade(V&& v, S&& s) {
   constexpr double kAlways = std::numeric_limits<double>::infinity();
-  v(s.start, {"start", any.absent_at(-kAlways), "s", "0.1", "It does not cut before",
-              "it cuts from then on, while its path lasts", "first time of the path"});
-  v(s.end, {"end", any.absent_at(kAlways), "s", "0.4", "It does not cut after", "it cuts until then, while its path lasts",
-            "last time of the path"});
+  v(s.start,
+    {"start", any.absent_at(-kAlways), "s", "0.1", "it cuts from then on, while its path lasts", "first time of the path"});
+  v(s.end, {"end", any.absent_at(kAlways), "s", "0.4", "it cuts until then, while its path lasts", "last time of the path"});
 }
 
 template <class V, class S>
 void describe_view(V&& v, S&& s) {
-  v(s.eye, {"eye", any, "m", "[0.2, 0.3, 0.6]", "Position of the camera", "not the target",
+  v(s.eye, {"eye", any, "m", "[0.2, 0.3, 0.6]", "place of the camera, not the target",
             "so far from the target that the scene fills the picture"});
-  v(s.target, {"target", any, "m", "[0, 0.05, 0]", "What is in the middle of the picture", nullptr, "the middle of the scene"});
-  v(s.up, {"up", any, "", "[0, 0, 1]", "Vertical direction, not zero; default: against gravity, or y", "not all zero",
-           "against gravity, or y"});
-  v(s.field_of_view, {"field_of_view", from_to(1, 120).absent_at(30), "degrees", "20", "Vertical"});
-  v(s.ground, {"ground", any.absent_at(1), "", "false", "Draw a ground plane below the bodies; it holds nothing",
-               "a plane below the bodies, which holds nothing"});
+  v(s.target, {"target", any, "m", "[0, 0.05, 0]", "what is in the middle of the picture", "the middle of the scene"});
+  v(s.up, {"up", any, "", "[0, 0, 1]", "vertical direction, not zero", "against gravity, or y"});
+  v(s.field_of_view, {"field_of_view", from_to(1, 120).absent_at(30), "degrees", "20", "vertical"});
+  v(s.ground, {"ground", any.absent_at(1), "", "false", "a plane below the bodies, which holds nothing"});
 }
 
 }  // namespace pliant

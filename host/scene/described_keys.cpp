@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cctype>
 #include <cmath>
 
 namespace pliant {
@@ -55,9 +54,29 @@ double read_number(const Reader& field, const Key& key, bool whole) {
   return x;
 }
 
-std::string ReadKeys::about(const Key& key) {
-  std::string text = key.about + unit_text(key);
-  text[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(text[0])));
+std::string ReadKeys::missing(const Key& key) { return key.about + unit_text(key); }
+
+void ReadKeys::read(const Reader& field, const Key& /*key*/, std::array<Vec3d, 3>& member) {
+  const char* const expected = "three rows of three numbers";
+  const std::vector<Reader> rows = field.items(expected);
+  if (rows.size() != 3) field.fail(expected);
+  member = {rows[0].vec3(expected), rows[1].vec3(expected), rows[2].vec3(expected)};
+}
+
+void ReadKeys::read(const Reader& field, const Key& /*key*/, std::array<bool, 3>& axes) {
+  const char* const expected = "one to three different letters of xyz, such as \"xz\"";
+  axes = {false, false, false};
+  for (const char c : field.text(expected)) {
+    if (c < 'x' || c > 'z' || axes[c - 'x']) field.fail(expected);
+    axes[c - 'x'] = true;
+  }
+}
+
+std::string axes_text(const std::array<bool, 3>& axes) {
+  std::string text;
+  for (int c = 0; c < 3; ++c) {
+    if (axes[c]) text += "xyz"[c];
+  }
   return text;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scene/described.h"
+#include "scene/described_entries.h"
 #include "scene/described_parts.h"
 #include "scene/reader.h"
 
@@ -26,17 +27,19 @@ struct ReadKeys {
 
   template <class Member>
   void operator()(Member& member, const Key& key) const {
-    if (key.required || object.has(key.name)) read(object.at(key.name, about(key)), key, member);
+    if (key.required || object.has(key.name)) read(object.at(key.name, missing(key)), key, member);
   }
   template <class Enum>
   void operator()(Enum& member, const Words<Enum>& words, const Key& key) const {
-    if (object.has(key.name)) member = object.at(key.name).word(words);
+    if (key.required || object.has(key.name)) member = object.at(key.name, "one of " + listed(words_only(words))).word(words);
   }
 
  private:
-  static std::string about(const Key& key);
+  static std::string missing(const Key& key);
   static void read(const Reader& field, const Key& /*key*/, bool& member) { member = field.boolean(); }
   static void read(const Reader& field, const Key& /*key*/, Vec3d& member) { member = field.vec3(); }
+  static void read(const Reader& field, const Key& /*key*/, std::array<Vec3d, 3>& member);
+  static void read(const Reader& field, const Key& /*key*/, std::array<bool, 3>& axes);
   template <class Number>
   static void read(const Reader& field, const Key& key, Number& member) {
     member = static_cast<Number>(read_number(field, key, std::integral<Number>));
@@ -57,6 +60,9 @@ const std::string& text_of(const Words<Enum>& /*words*/, const std::string& text
   return text;
 }
 
+/// Axes as a file writes them: "xz".
+std::string axes_text(const std::array<bool, 3>& axes);
+
 /// Writes all keys but those that an object has not; what stands for a word as that word.
 struct WriteKeys {
   nlohmann::ordered_json& object;
@@ -71,7 +77,11 @@ struct WriteKeys {
         return;
       }
     }
-    object[key.name] = member;
+    if constexpr (std::same_as<Member, std::array<bool, 3>>) {
+      object[key.name] = axes_text(member);
+    } else {
+      object[key.name] = member;
+    }
   }
   template <class T>
   void operator()(const std::optional<T>& member, const Key& key) const {

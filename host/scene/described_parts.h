@@ -6,89 +6,96 @@ namespace pliant {
 
 template <class V, class S>
 void describe_lattice(V&& v, S&& s) {
-  v(s.spacing, {"spacing", above(0).absent_at(0), "m", "0.008", "Edge of a cell"});
-  v(s.nodes, {"nodes", from_to(8, 1e8).absent_at(0), "", "2886", "Wanted number of nodes",
-              "the spacing is chosen to give about this many, or the nearest number found"});
+  v(s.spacing, {"spacing", above(0).absent_at(0), "m", "0.008", "edge of a cell"});
+  v(s.nodes, {"nodes", from_to(8, 1e8).absent_at(0), "", "2886",
+              "wanted number: the spacing is chosen to give about this many, or the nearest number found"});
 }
 
 template <class V, class S>
 void describe_body(V&& v, S&& s) {
-  v(s.scale, {"scale", above(0), "", "0.001", "Factor on the coordinates of the file"});
-  v(s.translate, {"translate", any, "m", "[0, 0.1, 0]", "Shift after scaling"});
+  v(s.scale, {"scale", above(0), "", "0.001", "factor on the coordinates of the file"});
+  v(s.translate, {"translate", any, "m", "[0, 0.1, 0]", "shift after scaling"});
   v(s.element, element_words(),
-    {"element", any, "", "\"hex8full\"", "hex8 by default with a surface, tet4 with a mesh", "what the body is made of",
-     "`hex8` with a surface, `tet4` with a mesh"});
-  v(s.velocity, {"velocity", any, "m/s", "[0.1, 0, 0]", "Initial velocity", "at the start"});
-  v(s.angular_velocity, {"angular_velocity", any, "rad/s", "[0, 0, 6]", "Initial angular velocity about the centre of mass",
-                         "at the start, about the centre of mass"});
+    {"element", any, "", "\"hex8full\"", "what the body is made of", "`hex8` with a surface, `tet4` with a mesh"});
+  v(s.velocity, {"velocity", any, "m/s", "[0.1, 0, 0]", "velocity at the start"});
+  v(s.angular_velocity,
+    {"angular_velocity", any, "rad/s", "[0, 0, 6]", "angular velocity at the start, about the centre of mass"});
+}
+
+/// What determines the moduli: one of three pairs.
+struct ElasticConstants {
+  std::optional<double> young{}, poisson{}, lambda{}, mu{}, kappa{};
+};
+template <class V, class S>
+void describe_elastic(V&& v, S&& s) {
+  v(s.young, {"young", above(0), "Pa", "3000", "Young's modulus, with `poisson`"});
+  v(s.poisson, {"poisson", between(-1, 0.5), "", "0.45", "Poisson's ratio, with `young`"});
+  v(s.lambda, {"lambda", any, "Pa", "9310", "above -2 mu / 3: first Lame constant, with `mu`"});
+  v(s.mu, {"mu", above(0), "Pa", "1034", "shear modulus, with `lambda` or `kappa`"});
+  v(s.kappa, {"kappa", above(0), "Pa", "50000", "bulk modulus, with `mu`"});
 }
 
 template <class V, class S>
 void describe_material(V&& v, S&& s) {
-  v(s.density, {"density", above(0), "kg/m^3", "1060", "Density at rest", "at rest"});
-  v(s.damping, {"damping", at_least(0), "1/s", "5", "Mass-proportional damping rate",
-                "mass-proportional rate c in M u'' + c M u' = R - F"});
-  v(s.hourglass, {"hourglass", at_least(0), "", "0.5", "Factor on the hourglass stiffness of hex8",
-                  "factor on the hourglass stiffness of `hex8`"});
-}
-
-template <class V, class S>
-void describe_tearing(V&& v, S&& s) {
-  v(s.toughness,
-    {"toughness", above(0).absent_at(0), "Pa", "9000", "Principal stress at which the material tears; without it, it does not",
-     "largest principal stress that it bears before it tears; none: it does not tear"});
-  v(s.integrity, {"integrity", above_to(0, 1).absent_at(1), "", "0.7", "Share of the toughness that is left",
-                  "share of the toughness that is left; only beside `toughness`"});
+  v(s.density, {"density", above(0), "kg/m^3", "1060", "density at rest"});
+  v(s.damping, {"damping", at_least(0), "1/s", "5", "mass-proportional rate c in M u'' + c M u' = R - F"});
+  v(s.hourglass, {"hourglass", at_least(0), "", "0.5", "factor on the hourglass stiffness of `hex8`"});
+  v(s.toughness, {"toughness", above(0).absent_at(0), "Pa", "9000",
+                  "largest principal stress that it bears before it tears; none: it does not tear"});
+  v(s.integrity,
+    {"integrity", above_to(0, 1).absent_at(1), "", "0.7", "share of the toughness that is left; only beside `toughness`"});
 }
 
 /// Of a tool, and of tissue on tissue.
 template <class V, class S>
 void describe_friction(V&& v, S&& s) {
-  v(s.friction, {"friction", at_least(0), "", "0.3", "Coulomb's coefficient", "Coulomb's coefficient"});
+  v(s.friction, {"friction", at_least(0), "", "0.3", "Coulomb's coefficient"});
 }
 
 /// The law of Hunt and Crossley.
 template <class V, class S>
 void describe_contact_law(V&& v, S&& s) {
   v(s.stiffness,
-    {"stiffness", above(0).or_word("auto").absent_at(0), "Pa/m^exponent", "1e6", "Per area; \"auto\": hard at once",
-     "`\"auto\"`: hard at once, without a number from you; a number is lambda of the law of Hunt and Crossley, per area, to a "
-     "depth of a quarter of a cell, from where it is hard"});
-  v(s.exponent, {"exponent", from_to(1, 1).or_number(1.5).absent_at(1), "", "1.5", "Beside a stiffness that is a number"});
-  v(s.alpha, {"alpha", at_least(0).absent_at(0), "s/m", "0.5", "Slope of the coefficient of restitution",
-              "beside a stiffness that is a number; for small speeds v the coefficient of restitution is 1 - alpha v"});
+    {"stiffness", above(0).or_word("auto").absent_at(0), "Pa/m^exponent", "1e6",
+     "`\"auto\"`: hard at once, without a number from you; a number is lambda of the law of Hunt and Crossley, per "
+     "area, to a depth of a quarter of a cell, from where it is hard"});
+  v(s.exponent, {"exponent", from_to(1, 1).or_number(1.5).absent_at(1), "", "1.5",
+                 "power of the depth, beside a stiffness that is a number"});
+  v(s.alpha,
+    {"alpha", at_least(0).absent_at(0), "s/m", "0.5",
+     "slope of the coefficient of restitution, which is 1 - alpha v at small speeds v; beside a stiffness that is a number"});
 }
 
-/// What every tool has.
 template <class V, class S>
 void describe_tool(V&& v, S&& s) {
   describe_friction(v, s);
   v(s.edges, {"edges", any, "", "true",
-              "A sphere, capsule, box or mesh that is thinner than half a cell is met along its edges; experimental",
               "`true` beside a sphere, capsule, box or mesh: where it is thinner than half a cell it is met along its edges "
               "instead of passing between points of contact; experimental ([contact](contact.md#thin-tools))"});
-  v(s.scale, {"scale", above(0).absent_at(1), "", "0.001", "Applied to the coordinates of a mesh or a sequence",
-              "of the coordinates of a mesh or a sequence"});
+  v(s.scale, {"scale", above(0).absent_at(1), "", "0.001", "factor on the coordinates of a mesh or a sequence"});
   v(s.frames_per_second, {"frames_per_second", above(0).absent_at(30), "1/s", "25",
-                          "Of a sequence; the first mesh stands at time 0, the last one stays",
-                          "of a sequence, whose first mesh stands at time 0 and whose last one stays"});
+                          "rate of a sequence, whose first mesh stands at time 0 and whose last one stays"});
+}
+
+template <class V, class S>
+void describe_type(V&& v, S&& s) {
+  v(s.type, model_words(),
+    required(
+        {"type", any, "", "\"hybrid\"", "which nodes follow finite elements: all, those of the operational region, or none"}));
 }
 
 /// Of a hybrid without a region: which nodes are operational.
 template <class V, class S>
 void describe_growth(V&& v, S&& s) {
-  v(s.ratio, {"ratio", from_to(0, 1), "", "0.4", "hybrid: share of the nodes in the operational region",
-              "share of the nodes in the operational region"});
-  v(s.seed, {"seed", any, "m", "[0.05, 0.02, 0]",
-             "hybrid: where the operational region grows from; the first surface vertex by default",
-             "where the operational region grows from", "first vertex of the surface"});
+  v(s.ratio, {"ratio", from_to(0, 1), "", "0.4", "share of the nodes in the operational region"});
+  v(s.seed, {"seed", any, "m", "[0.05, 0.02, 0]", "where the operational region grows from", "first vertex of the surface"});
   v(s.follow_tool, follow_words(),
-    {"follow", any.absent_at(0), "", "\"tool\"", "hybrid: the operational region moves with the tool of the scene",
+    {"follow", any.absent_at(0), "", "\"tool\"",
      "the operational region moves with the `tool` of the scene; cells that are stretched beyond 1.5 times, or as far "
      "compressed, keep their model until they are not"});
 }
 
-// The structs of a Scene have flags for two words of those of include/pliant.
+// The struct of a Scene has flags for two words of that of include/pliant.
 template <class M>
 auto& goals_of(M& model) {
   if constexpr (requires { model.goals; })
@@ -107,35 +114,30 @@ auto& coupling_of(M& model) {
 /// Of a hybrid.
 template <class V, class S>
 void describe_interface(V&& v, S&& s) {
-  v(s.beta, {"beta", above(0).or_word("auto"), "N/m", "20", "hybrid: stiffness of the interface",
-             "stiffness of the interface; `\"auto\"`: alpha m / dt^2 of each node"});
-  v(s.substeps, {"substeps", from_to(1, 64), "", "4", "hybrid: steps of tled per step of flsm",
+  v(s.beta,
+    {"beta", above(0).or_word("auto"), "N/m", "20", "stiffness of the interface; `\"auto\"`: alpha m / dt^2 of each node"});
+  v(s.substeps, {"substeps", from_to(1, 64), "", "4",
                  "steps of TLED per step of FLSM; a run goes on with 1 where more drive the elements apart "
                  "([stability.md](stability.md))"});
   v(goals_of(s), goals_words(),
-    {"goals", any, "", "\"extrapolated\"", "hybrid: goals between the steps of flsm",
+    {"goals", any, "", "\"extrapolated\"",
      "`held`: the interface is pulled in the first substep (keeps momentum); `extrapolated`: in all of them (allows larger "
      "steps)"});
   v(coupling_of(s), coupling_words(),
-    {"coupling", any, "", "\"one-sided\"", "hybrid: whether the force of the interface has a reaction on the regions",
-     "`conservative`: the reaction of the interface goes back to the regions"});
+    {"coupling", any, "", "\"one-sided\"", "`conservative`: the reaction of the interface goes back to the regions"});
 }
 
 /// Of a hybrid and of shape matching alone.
 template <class V, class S>
 void describe_regions(V&& v, S&& s) {
-  v(s.width, {"width", from_to(1, 5), "cells", "3", "Half-width of the shape matching regions", "half-width of the regions"});
-  v(s.damping,
-    {"damping", from_to(0, 1), "", "0.1", "Damping of each shape matching region per step", "of each region per step"});
-  v(s.cut, {"cut", any, "", "false", "hybrid, flsm: whether blades cut the shape-matching part",
-            "`false`: blades pass through the shape-matching part without effect"});
+  v(s.width, {"width", from_to(1, 5), "cells", "3", "half-width of the regions of shape matching"});
+  v(s.damping, {"damping", from_to(0, 1), "", "0.1", "damping of each region per step"});
+  v(s.cut, {"cut", any, "", "false", "`false`: blades pass through the shape-matching part without effect"});
 }
 
 template <class V, class S>
 void describe_alpha(V&& v, S&& s) {
   v(s.alpha, {"alpha", above_to(0, 1), "", "0.8",
-              "Share of the way to its goal that a node takes per step. Without it and without stiffness: 0.5 for flsm; for a "
-              "hybrid what gives shape matching the stiffness of the material",
               "share of the way to its goal that a node takes per step, as long as the step is the first one; shorter steps "
               "take less, and are as stiff",
               "as `stiffness` of the material (hybrid), 0.5 (flsm)"});
@@ -143,7 +145,7 @@ void describe_alpha(V&& v, S&& s) {
 
 template <class V, class S>
 void describe_stiffness(V&& v, S&& s) {
-  v(s.young, required({"young", above(0), "Pa", "3000", "Effective Young's modulus of shape matching"}));
+  v(s.young, required({"young", above(0), "Pa", "3000", "effective Young's modulus of shape matching"}));
 }
 
 }  // namespace pliant

@@ -30,7 +30,7 @@ List described(const Describe& describe) {
 std::map<std::string, List> make_keys() {
   const List points{"box", "sphere", "plane", "surface", "region", "data", "dimension", "all"};
   const List selection = points + List{"nodes"};
-  const List curve{"curve", "start", "duration", "table"};
+  const List curve = PLIANT_DESCRIBED(Curve, curve) + List{"table"};
   return {
       {"scene", PLIANT_DESCRIBED(Scene, scene) + PLIANT_DESCRIBED(Scene, run) +
                     List{"format", "name", "gravity", "relaxation", "solver", "tool", "tools", "contact", "blades", "view",
@@ -39,11 +39,11 @@ std::map<std::string, List> make_keys() {
                     "pressures", "initial"} +
                    PLIANT_DESCRIBED(Body, body)},
       {"lattice", PLIANT_DESCRIBED(LatticeSpec, lattice)},
-      {"material", List{"law"} + elastic_keys() + PLIANT_DESCRIBED(Material, material) + PLIANT_DESCRIBED(Material, tearing)},
-      {"model", List{"type"} + hybrid_keys() + matching_keys()},
+      {"material", List{"law"} + elastic_keys() + PLIANT_DESCRIBED(Material, material)},
+      {"model", PLIANT_DESCRIBED(DeformationModel, type) + hybrid_keys() + matching_keys()},
       {"region", {"box", "sphere"}},
       {"stiffness", PLIANT_DESCRIBED(DeformationModel, stiffness)},
-      {"gravity", List{"acceleration"} + curve},
+      {"gravity", PLIANT_DESCRIBED(Scene, gravity) + curve},
       {"tool", {"path"}},
       {"contact_tool", List{"name", "shape", "path", "contact"} + PLIANT_DESCRIBED(ContactTool, tool)},
       {"shape", words_only(tool_shape_words())},
@@ -52,17 +52,17 @@ std::map<std::string, List> make_keys() {
       {"blade", List{"name", "path"} + PLIANT_DESCRIBED(Blade, blade)},
       {"view", PLIANT_DESCRIBED(SceneView, view)},
       {"relaxation", PLIANT_DESCRIBED(Relaxation, relaxation)},
-      {"solver", List{"type"} + PLIANT_DESCRIBED(StaticSolver, solver)},
+      {"solver", PLIANT_DESCRIBED(StaticSolver, solver)},
       {"inclusion", points + List{"material"}},
-      {"fixed", selection + List{"axes"}},
-      {"prescribed", selection + List{"displacement", "rotate", "axes"} + curve},
-      {"probe", selection + List{"name", "point", "body", "quantities"}},
-      {"probe_every", {"steps"}},
-      {"rotation", {"axis", "about", "angle"}},
+      {"fixed", selection + PLIANT_DESCRIBED(Fixed, axes)},
+      {"prescribed", selection + List{"displacement", "rotate"} + PLIANT_DESCRIBED(Prescribed, axes) + curve},
+      {"probe", selection + List{"name", "body", "quantities"} + PLIANT_DESCRIBED(SceneProbe, place)},
+      {"probe_every", PLIANT_DESCRIBED(SceneProbes, pace)},
+      {"rotation", PLIANT_DESCRIBED(Rotation, rotation)},
       {"initial", selection + List{"velocity", "displacement"}},
-      {"field", {"offset", "linear", "about"}},
-      {"force", selection + List{"force"} + curve},
-      {"pressure", points + List{"pressure"} + curve},
+      {"field", PLIANT_DESCRIBED(AffineField, field)},
+      {"force", selection + PLIANT_DESCRIBED(Force, force) + curve},
+      {"pressure", points + PLIANT_DESCRIBED(Pressure, pressure) + curve},
   };
 }
 
@@ -85,7 +85,7 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-List moduli_keys() { return {"young", "poisson", "lambda", "mu", "kappa"}; }
+List moduli_keys() { return PLIANT_DESCRIBED(ElasticConstants, elastic); }
 
 List elastic_keys(const LawInfo& law) {
   if (law.takes_moduli) return moduli_keys();
@@ -123,17 +123,6 @@ std::string laws_with(bool LawInfo::*property) {
 const std::map<std::string, List>& scene_keys() {
   static const std::map<std::string, List> keys = make_keys();
   return keys;
-}
-
-const std::map<std::string, List>& scene_words() {
-  static const std::map<std::string, List> words{
-      {"law", words_only(law_words())},           {"element", words_only(element_words())},
-      {"curve", words_only(curve_words())},       {"integrator", words_only(integrator_words())},
-      {"inverted", words_only(inverted_words())}, {"model", words_only(model_words())},
-      {"goals", words_only(goals_words())},       {"coupling", words_only(coupling_words())},
-      {"follow", words_only(follow_words())},     {"solver", words_only(solver_words())},
-      {"quantity", words_only(quantity_words())}};
-  return words;
 }
 
 const Words<Law>& law_words() {

@@ -12,10 +12,8 @@
 
 namespace pliant {
 
-/// The allowed keys by kind of object: "scene" (the file itself), "body", "lattice", "material", "model", "region",
-/// "stiffness", "gravity", "tool", "contact_tool",
-/// "shape", "contact", "view", "relaxation", "inclusion", "fixed", "prescribed", "rotation", "initial", "field",
-/// "probe", "force", "pressure". The same words name the definitions in scenes/schema.json.
+/// The allowed keys by kind of object: "scene" (the file itself), "body", "material", ... The same words name the definitions
+/// in scenes/schema.json.
 const std::map<std::string, std::vector<std::string>>& scene_keys();
 
 /// What a law can be given by: the moduli (young, poisson, lambda, mu, kappa), or its own parameters; those of all laws, each
@@ -30,10 +28,6 @@ std::vector<std::string> matching_keys();
 
 /// The laws with a property, as "a, b or c".
 std::string laws_with(bool LawInfo::*property);
-
-/// The allowed words by kind: "law", "element", "curve", "integrator", "inverted", "model", "goals", "coupling", "follow",
-/// "solver", "quantity".
-const std::map<std::string, std::vector<std::string>>& scene_words();
 
 /// A word of a scene file or of an option, the enumerator that it names, and what that is, for people.
 template <class Enum>

@@ -52,7 +52,7 @@ void read_gravity(const Reader& top, Scene& scene) {
   }
   if (!field.json().is_object()) field.fail("three numbers [x, y, z], or an object with acceleration and a curve");
   field.expect_object("gravity");
-  scene.gravity = field.at("acceleration", "the acceleration [x, y, z] at factor 1").vec3();
+  describe_gravity(ReadKeys{field}, scene);
   scene.gravity_curve = read_curve(field);
 }
 
@@ -74,11 +74,10 @@ void read_solver(const Reader& top, Scene& scene) {
   const Reader field = top.at("solver");
   field.expect_object("solver");
   StaticSolver& solver = scene.solver;
-  solver.enabled = field.at("type", "\"type\": \"static\" or \"dynamic\"").word(solver_words());
+  describe_solver(ReadKeys{field}, solver);
   for (const auto& [key, value] : field.json().items()) {
     if (!solver.enabled && key != "type") field.at(key).fail("this key only beside \"type\": \"static\"");
   }
-  describe_solver(ReadKeys{field}, solver);
 }
 
 void read_bodies(const Reader& top, const fs::path& folder, Scene& scene) {

@@ -27,10 +27,9 @@ struct SelectionFrame {
 SelectionFrame frame_of(const Body& body, const std::filesystem::path& folder);
 /// Only of nodes there may be lists: neither elements nor triangles have numbers that a scene could know.
 Selection read_selection(const Reader& entry, Selected of, const SelectionFrame& frame);
-/// The entries of `prescribed` and `initial`.
-Prescribed read_prescribed(const Reader& entry, const SelectionFrame& frame);
-Initial read_initial(const Reader& entry, const SelectionFrame& frame);
-std::array<bool, 3> read_axes(const Reader& field);
+/// What entries of `prescribed` and `initial` have beside their selection.
+void read_prescribed(const Reader& entry, Prescribed& prescribed);
+void read_initial(const Reader& entry, Initial& initial);
 Curve read_curve(const Reader& entry);
 Material read_material(const Reader& material);
 /// `lattice`: whether the body is a surface filled with a lattice, which shape matching needs.
@@ -45,8 +44,24 @@ void check_last_name(const Reader& entry, const std::vector<Named>& all, const c
                fmt::format("a different name for every {}", kind));
   }
 }
-/// A name that stands in tables and messages: of a tool or a blade.
-std::string read_plain_name(const Reader& field);
+/// A name of 1 to 100 characters without control characters and those that are `refused`, which messages call `what`.
+std::string read_name(const Reader& field, const std::string& what = "", const char* refused = "");
+/// Rows of N numbers, the first of which is the time and ascends; at least `least` rows.
+template <std::size_t N>
+std::vector<std::array<double, N>> read_rows(const Reader& list, const char* expected, const char* row_expected,
+                                             std::size_t least = 1) {
+  std::vector<std::array<double, N>> rows;
+  for (const Reader& row : list.items(expected, least)) {
+    const std::vector<Reader> parts = row.items(row_expected);
+    if (parts.size() != N) row.fail(row_expected);
+    std::array<double, N> out{};
+    for (std::size_t i = 0; i < N; ++i) out[i] = parts[i].number();
+    if (!rows.empty() && !(out[0] > rows.back()[0]))
+      parts[0].fail(fmt::format("a time after the previous row's {}", rows.back()[0]));
+    rows.push_back(out);
+  }
+  return rows;
+}
 std::vector<Blade> read_blades(const Reader& blades);
 SceneView read_view(const Reader& view);
 std::optional<TissueContact> read_tissue_contact(const Reader& contact);

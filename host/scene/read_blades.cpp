@@ -11,28 +11,19 @@ namespace {
 
 using Row = std::array<double, 7>;
 
-Row read_row(const Reader& row, const std::vector<Row>& before) {
-  const char* const expected = "a row [time, x, y, z, x, y, z] in seconds and metres: both ends of the blade";
-  const std::vector<Reader> parts = row.items(expected);
-  if (parts.size() != 7) row.fail(expected);
-  Row out{};
-  for (std::size_t i = 0; i < 7; ++i) out[i] = parts[i].number();
-  if (!before.empty() && !(out[0] > before.back()[0])) {
-    parts[0].fail(fmt::format("a time after the previous row's {}", before.back()[0]));
-  }
-  if (std::equal(out.begin() + 1, out.begin() + 4, out.begin() + 4)) {
-    row.fail("two different ends (a blade has a length)");
-  }
-  return out;
-}
-
 Blade read_blade(const Reader& blade, std::size_t index) {
   blade.expect_object("blade");
   Blade b;
   b.pointer = blade.pointer();
-  b.name = blade.has("name") ? read_plain_name(blade.at("name")) : fmt::format("blade{}", index);
+  b.name = blade.has("name") ? read_name(blade.at("name")) : fmt::format("blade{}", index);
   const char* const expected = "a list of at least two rows [time, x, y, z, x, y, z]";
-  for (const Reader& row : blade.at("path", expected).items(expected, 2)) b.path.push_back(read_row(row, b.path));
+  const Reader path = blade.at("path", expected);
+  b.path = read_rows<7>(path, expected, "a row [time, x, y, z, x, y, z] in seconds and metres: both ends of the blade", 2);
+  for (std::size_t i = 0; i < b.path.size(); ++i) {
+    const Row& r = b.path[i];
+    if (std::equal(r.begin() + 1, r.begin() + 4, r.begin() + 4))
+      path.items(expected)[i].fail("two different ends (a blade has a length)");
+  }
   describe_blade(ReadKeys{blade}, b);
   if (!(b.end > b.start)) blade.at("end").fail(fmt::format("a time after the start {}", b.start));
   return b;

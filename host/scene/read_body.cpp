@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "scene/described_keys.h"
 #include "scene/parts.h"
 
@@ -10,20 +8,6 @@ namespace pliant {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string read_name(const Reader& body, std::size_t index) {
-  if (!body.has("name")) return fmt::format("body{}", index);
-  const Reader field = body.at("name");
-  const char* const expected = "a name of 1 to 100 characters without slashes or control characters";
-  const std::string name = field.text(expected);
-  // Output files and messages are named after bodies.
-  const bool fits = name.size() <= 100 && name != "." && name != ".." && std::none_of(name.begin(), name.end(), [](char c) {
-                      const auto code = static_cast<unsigned char>(c);
-                      return code < 32 || code == 127 || c == '/' || c == '\\';
-                    });
-  if (!fits) field.fail(expected);
-  return name;
-}
 
 fs::path read_path(const Reader& field, const fs::path& folder) {
   const fs::path path = field.text("the path of a mesh file");
@@ -60,29 +44,33 @@ void check_pressure_law(const Reader& material, const Body& b, const Material& m
       laws_with(&LawInfo::volumetric) + ": the averaged nodal pressure needs a law whose volumetric part depends on J alone");
 }
 
+/// The entries of a list: a selection each, and what `read` reads.
 template <class Entry, class Read>
-void read_entries(const Reader& body, const char* key, const char* kind, std::vector<Entry>& list, Read read) {
+void read_entries(const Reader& body, const char* key, const char* kind, Selected of, const SelectionFrame& frame,
+                  std::vector<Entry>& list, const Read& read) {
   if (!body.has(key)) return;
   for (const Reader& entry : body.at(key).items("a list of objects")) {
     entry.expect_object(kind);
-    list.push_back(read(entry));
+    list.emplace_back().where = read_selection(entry, of, frame);
+    read(entry, list.back());
   }
 }
 
-Fixed read_fixed(const Reader& entry, const SelectionFrame& frame) {
-  Fixed fixed{read_selection(entry, Selected::nodes, frame)};
-  if (entry.has("axes")) fixed.axes = read_axes(entry.at("axes"));
-  return fixed;
-}
-
-Force read_force(const Reader& entry, const SelectionFrame& frame) {
-  return {read_selection(entry, Selected::nodes, frame), entry.at("force", "the total force [x, y, z] in newton").vec3(),
-          read_curve(entry)};
-}
-
-Pressure read_pressure(const Reader& entry, const SelectionFrame& frame) {
-  return {read_selection(entry, Selected::triangles, frame), entry.at("pressure", "the pressure in pascal").number(),
-          read_curve(entry)};
+void read_conditions(const Reader& body, Body& b, const SelectionFrame& frame) {
+  const auto of_nodes = [&](const char* key, const char* kind, auto& list, const auto& read) {
+    read_entries(body, key, kind, Selected::nodes, frame, list, read);
+  };
+  of_nodes("fixed", "fixed", b.fixed, [](const Reader& entry, Fixed& out) { describe_axes(ReadKeys{entry}, out); });
+  of_nodes("prescribed", "prescribed", b.prescribed, read_prescribed);
+  of_nodes("forces", "force", b.forces, [](const Reader& entry, Force& out) {
+    describe_force(ReadKeys{entry}, out);
+    out.curve = read_curve(entry);
+  });
+  read_entries(body, "pressures", "pressure", Selected::triangles, frame, b.pressures, [](const Reader& entry, Pressure& out) {
+    describe_pressure(ReadKeys{entry}, out);
+    out.curve = read_curve(entry);
+  });
+  of_nodes("initial", "initial", b.initial, read_initial);
 }
 
 }  // namespace
@@ -91,7 +79,9 @@ Body read_body(const Reader& body, const fs::path& folder, std::size_t index) {
   body.expect_object("body");
   Body b;
   b.pointer = body.pointer();
-  b.name = read_name(body, index);
+  // Output files and messages are named after bodies.
+  b.name = body.has("name") ? read_name(body.at("name"), "slashes", "/\\") : fmt::format("body{}", index);
+  if (b.name == "." || b.name == "..") body.at("name").fail("a name that is no folder");
   read_geometry(body, folder, b);
   // A volume mesh is of tetrahedra more often than not; one of hexahedra has to say so.
   b.element = b.mesh.empty() ? ElementKind::hex8 : ElementKind::tet4;
@@ -103,18 +93,13 @@ Body read_body(const Reader& body, const fs::path& folder, std::size_t index) {
   if (b.model.matched) b.model.young = b.material.moduli.young();
   check_pressure_law(material, b, b.material);
   const SelectionFrame frame = frame_of(b, folder);
-  read_entries(body, "inclusions", "inclusion", b.inclusions, [&](const Reader& entry) {
-    const Reader other = entry.at("material", "the material of the inclusion");
-    Inclusion inclusion{read_selection(entry, Selected::elements, frame), read_material(other)};
-    check_pressure_law(other, b, inclusion.material);
-    return inclusion;
-  });
-  const auto in = [&frame](auto read) { return [&frame, read](const Reader& entry) { return read(entry, frame); }; };
-  read_entries(body, "fixed", "fixed", b.fixed, in(read_fixed));
-  read_entries(body, "prescribed", "prescribed", b.prescribed, in(read_prescribed));
-  read_entries(body, "forces", "force", b.forces, in(read_force));
-  read_entries(body, "pressures", "pressure", b.pressures, in(read_pressure));
-  read_entries(body, "initial", "initial", b.initial, in(read_initial));
+  read_entries(body, "inclusions", "inclusion", Selected::elements, frame, b.inclusions,
+               [&b](const Reader& entry, Inclusion& out) {
+                 const Reader other = entry.at("material", "the material of the inclusion");
+                 out.material = read_material(other);
+                 check_pressure_law(other, b, out.material);
+               });
+  read_conditions(body, b, frame);
   return b;
 }
 

@@ -11,40 +11,21 @@ namespace {
 
 const char* const pairs = "exactly one of the pairs young + poisson, lambda + mu, mu + kappa";
 
-/// "young, mu": the moduli that are there.
-std::vector<std::string> given_moduli(const Reader& material) {
+Moduli read_moduli(const Reader& material) {
+  ElasticConstants e;
+  describe_elastic(ReadKeys{material}, e);
   std::vector<std::string> given;
   for (const std::string& key : moduli_keys()) {
     if (material.has(key)) given.push_back(key);
   }
-  return given;
-}
-
-Moduli from_young(const Reader& material) {
-  const double young = material.at("young").positive();
-  const Reader field = material.at("poisson");
-  const double poisson = field.number("a number with -1 < poisson < 0.5");
-  if (!(poisson > -1 && poisson < 0.5)) field.fail("a number with -1 < poisson < 0.5");
-  return Moduli::from_young(young, poisson);
-}
-
-Moduli from_lame(const Reader& material) {
-  const double mu = material.at("mu").positive();
-  const Reader field = material.at("lambda");
-  const Moduli m = Moduli::from_lame(field.number(), mu);
-  if (!(m.kappa > 0)) field.fail(fmt::format("a number > -2 mu / 3 = {}, so that the bulk modulus is positive", -2 * m.mu / 3));
+  if (given.size() == 2 && e.young && e.poisson) return Moduli::from_young(*e.young, *e.poisson);
+  if (given.size() == 2 && e.mu && e.kappa) return Moduli::from_bulk(*e.mu, *e.kappa);
+  if (given.size() != 2 || !e.mu || !e.lambda)
+    material.fail(given.empty() ? "no elastic constants" : "the elastic constants " + listed(given), pairs);
+  const Moduli m = Moduli::from_lame(*e.lambda, *e.mu);
+  if (!(m.kappa > 0))
+    material.at("lambda").fail(fmt::format("a number > -2 mu / 3 = {}, so that the bulk modulus is positive", -2 * m.mu / 3));
   return m;
-}
-
-Moduli read_moduli(const Reader& material) {
-  const std::vector<std::string> given = given_moduli(material);
-  if (given == std::vector<std::string>{"young", "poisson"}) return from_young(material);
-  if (given == std::vector<std::string>{"lambda", "mu"}) return from_lame(material);
-  if (given == std::vector<std::string>{"mu", "kappa"}) {
-    const double mu = material.at("mu").positive();
-    return Moduli::from_bulk(mu, material.at("kappa").positive());
-  }
-  material.fail(given.empty() ? "no elastic constants" : "the elastic constants " + listed(given), pairs);
 }
 
 std::vector<double> read_parameters(const Reader& material, const LawInfo& law) {
@@ -92,7 +73,6 @@ Material read_material(const Reader& material) {
   Material m;
   read_elasticity(material, m);
   describe_material(ReadKeys{material}, m);
-  describe_tearing(ReadKeys{material}, m);
   if (material.has("integrity") && m.toughness == 0) material.at("integrity").fail("no integrity without a toughness");
   return m;
 }

@@ -40,10 +40,10 @@ DeformationModel read_model(const Reader& model, bool lattice) {
   model.expect_object("model");
   DeformationModel m;
   m.pointer = model.pointer();
-  const Reader type = model.at("type", "a model type: " + listed(scene_words().at("model")));
-  m.type = type.word(model_words());
+  describe_type(ReadKeys{model}, m);
   if (!lattice && m.type != ModelType::tled) {
-    type.fail("tled beside a volume mesh (shape matching needs a lattice: give a \"surface\" instead of the \"mesh\")");
+    model.at("type").fail(
+        "tled beside a volume mesh (shape matching needs a lattice: give a \"surface\" instead of the \"mesh\")");
   }
   refuse_senseless(model, m.type);
   describe_growth(ReadKeys{model}, m);
@@ -64,16 +64,7 @@ Tool read_tool(const Reader& tool) {
   tool.expect_object("tool");
   Tool t;
   const char* const expected = "a list of at least one row [time, x, y, z]";
-  for (const Reader& row : tool.at("path", expected).items(expected, 1)) {
-    const char* const row_expected = "a row [time, x, y, z] in seconds and metres";
-    const std::vector<Reader> parts = row.items(row_expected);
-    if (parts.size() != 4) row.fail(row_expected);
-    const double time = parts[0].number();
-    if (!t.path.empty() && !(time > t.path.back()[0])) {
-      parts[0].fail(fmt::format("a time after the previous row's {}", t.path.back()[0]));
-    }
-    t.path.push_back({time, parts[1].number(), parts[2].number(), parts[3].number()});
-  }
+  t.path = read_rows<4>(tool.at("path", expected), expected, "a row [time, x, y, z] in seconds and metres");
   return t;
 }
 

@@ -1,25 +1,23 @@
 // Prescribed motion, and motion at the start.
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "scene/described_keys.h"
 #include "scene/parts.h"
 
 namespace pliant {
 
 namespace {
 
-Vec3d read_direction(const Reader& field) {
-  const Vec3d v = field.vec3();
-  const double largest = std::max({v[0], v[1], v[2], -v[0], -v[1], -v[2]});
-  if (!(largest >= 1e-15 && largest <= 1e15)) field.fail("a direction that is not zero, of a length from 1e-15 to 1e15");
-  return v;
-}
-
 Rotation read_rotation(const Reader& rotation) {
   rotation.expect_object("rotation");
   Rotation r;
-  r.axis = read_direction(rotation.at("axis", "the direction of the axis [x, y, z]"));
-  if (rotation.has("about")) r.about = rotation.at("about").vec3();
-  r.angle = rotation.at("angle", "the angle at factor 1 in degrees").number();
+  describe_rotation(ReadKeys{rotation}, r);
+  const auto& [x, y, z] = r.axis;
+  const double largest = std::max({x, y, z, -x, -y, -z});
+  if (!(largest >= 1e-15 && largest <= 1e15))
+    rotation.at("axis").fail("a direction that is not zero, of a length from 1e-15 to 1e15");
   return r;
 }
 
@@ -34,13 +32,6 @@ void read_displacement(const Reader& field, Prescribed& prescribed) {
   if (!d[0] && !d[1] && !d[2]) field.fail("at least one component that is not null");
 }
 
-std::array<Vec3d, 3> read_matrix(const Reader& field) {
-  const char* const expected = "three rows of three numbers";
-  const std::vector<Reader> rows = field.items(expected);
-  if (rows.size() != 3) field.fail(expected);
-  return {rows[0].vec3(expected), rows[1].vec3(expected), rows[2].vec3(expected)};
-}
-
 AffineField read_field(const Reader& field) {
   AffineField out;
   if (field.json().is_array()) {
@@ -49,9 +40,7 @@ AffineField read_field(const Reader& field) {
   }
   if (!field.json().is_object()) field.fail("three numbers [x, y, z], or an object with linear, about, offset");
   field.expect_object("field");
-  out.linear = read_matrix(field.at("linear", "the matrix of the field, three rows of three numbers"));
-  if (field.has("about")) out.about = field.at("about").vec3();
-  if (field.has("offset")) out.offset = field.at("offset").vec3();
+  describe_field(ReadKeys{field}, out);
   return out;
 }
 
@@ -63,34 +52,22 @@ double volume_ratio(const std::array<Vec3d, 3>& h) {
 
 }  // namespace
 
-std::array<bool, 3> read_axes(const Reader& field) {
-  const char* const expected = "one to three different letters of xyz, such as \"xz\"";
-  std::array<bool, 3> axes{false, false, false};
-  for (const char c : field.text(expected)) {
-    if (c < 'x' || c > 'z' || axes[c - 'x']) field.fail(expected);
-    axes[c - 'x'] = true;
-  }
-  return axes;
-}
-
-Prescribed read_prescribed(const Reader& entry, const SelectionFrame& frame) {
-  Prescribed prescribed{read_selection(entry, Selected::nodes, frame), {}, read_curve(entry)};
+void read_prescribed(const Reader& entry, Prescribed& prescribed) {
+  prescribed.curve = read_curve(entry);
   if (entry.has("rotate") == entry.has("displacement")) {
     entry.fail(entry.has("rotate") ? "both \"displacement\" and \"rotate\"" : "neither \"displacement\" nor \"rotate\"",
                "exactly one of them");
   }
   if (entry.has("rotate")) {
     prescribed.rotate = read_rotation(entry.at("rotate"));
-    if (entry.has("axes")) prescribed.axes = read_axes(entry.at("axes"));
-    return prescribed;
+    describe_axes(ReadKeys{entry}, prescribed);
+    return;
   }
   if (entry.has("axes")) entry.at("axes").fail("no axes beside a displacement (null leaves a component of it free)");
   read_displacement(entry.at("displacement"), prescribed);
-  return prescribed;
 }
 
-Initial read_initial(const Reader& entry, const SelectionFrame& frame) {
-  Initial initial{read_selection(entry, Selected::nodes, frame), {}, {}};
+void read_initial(const Reader& entry, Initial& initial) {
   if (!entry.has("velocity") && !entry.has("displacement"))
     entry.fail("neither \"velocity\" nor \"displacement\"", "one of them, or both");
   if (entry.has("velocity")) initial.velocity = read_field(entry.at("velocity"));
@@ -103,7 +80,6 @@ Initial read_initial(const Reader& entry, const SelectionFrame& frame) {
                  "one above 0: otherwise it turns the material inside out");
     }
   }
-  return initial;
 }
 
 }  // namespace pliant

@@ -2,24 +2,13 @@
 
 #include <algorithm>
 
+#include "scene/described_keys.h"
 #include "scene/parts.h"
 #include "scene/probe.h"
 
 namespace pliant {
 
 namespace {
-
-std::string read_probe_name(const Reader& probe) {
-  const char* const expected = "a name of 1 to 100 characters without slashes, commas, quotation marks or control characters";
-  const Reader field = probe.at("name", expected);
-  const std::string name = field.text(expected);
-  const bool fits = name.size() <= 100 && name[0] != '.' && std::none_of(name.begin(), name.end(), [](char c) {
-                      const auto code = static_cast<unsigned char>(c);
-                      return code < 32 || code == 127 || c == '/' || c == '\\' || c == ',' || c == '"';
-                    });
-  if (!fits) field.fail(expected);  // files and columns are named after probes
-  return name;
-}
 
 /// The body whose nodes a probe is to look at.
 const Body& read_whose(const Reader& probe, const Scene& scene) {
@@ -54,14 +43,17 @@ SceneProbe read_probe(const Reader& probe, const Scene& scene) {
   probe.expect_object("probe");
   SceneProbe out;
   out.pointer = probe.pointer();
-  out.name = read_probe_name(probe);
+  // Files and columns are named after probes.
+  const Reader name = probe.at("name", "a name of 1 to 100 characters");
+  out.name = read_name(name, "slashes, commas, quotation marks", "/\\,\"");
+  if (out.name[0] == '.') name.fail("a name without a dot at its beginning");
   const bool point = probe.has("point");
   out.quantities = read_quantities(probe, point);
   if (point) {
     for (const char* key : {"box", "sphere", "plane", "surface", "region", "data", "dimension", "nodes", "all", "body"}) {
       if (probe.has(key)) probe.at(key).fail(fmt::format("no \"{}\" beside a \"point\"", key));
     }
-    out.point = probe.at("point").vec3();
+    describe_place(ReadKeys{probe}, out);
     return out;
   }
   const Body& body = read_whose(probe, scene);
@@ -83,7 +75,7 @@ void read_every(const Reader& field, SceneProbes& probes) {
     return;
   }
   field.expect_object("probe_every");
-  probes.every_steps = field.at("steps", "the number of steps between two rows").integer(1, 1'000'000'000'000);
+  describe_pace(ReadKeys{field}, probes);
 }
 
 }  // namespace

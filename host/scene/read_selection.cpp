@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "scene/closed_surface.h"
+#include "scene/described_keys.h"
 #include "scene/parts.h"
 
 namespace pliant {
@@ -84,32 +85,6 @@ RegionName read_region_name(const Reader& entry, const SelectionFrame& frame) {
   return name;
 }
 
-void read_times(const Reader& entry, Curve& curve) {
-  if (entry.has("start")) curve.start = entry.at("start").number();
-  const bool timed = curve.kind == Curve::Kind::ramp || curve.kind == Curve::Kind::smooth;
-  if (timed) {
-    curve.duration = entry.at("duration", "the duration of the curve in seconds").positive();
-  } else if (entry.has("duration")) {
-    entry.at("duration").fail("no duration beside a constant curve (set \"curve\" to ramp or smooth)");
-  }
-}
-
-void read_table(const Reader& entry, Curve& curve) {
-  for (const char* key : {"start", "duration"}) {
-    if (entry.has(key)) entry.at(key).fail(fmt::format("no {} beside a table (the table has its own times)", key));
-  }
-  const char* const row_expected = "a row [time, factor]";
-  for (const Reader& row : entry.at("table", "the rows of the table curve").items("a list of rows [time, factor]", 1)) {
-    const std::vector<Reader> parts = row.items(row_expected);
-    if (parts.size() != 2) row.fail(row_expected);
-    const double time = parts[0].number();
-    if (!curve.table.empty() && !(time > curve.table.back()[0])) {
-      parts[0].fail(fmt::format("a time after the previous row's {}", curve.table.back()[0]));
-    }
-    curve.table.push_back({time, parts[1].number()});
-  }
-}
-
 }  // namespace
 
 SelectionFrame frame_of(const Body& body, const std::filesystem::path& folder) {
@@ -154,17 +129,20 @@ Selection read_selection(const Reader& entry, Selected of, const SelectionFrame&
 
 Curve read_curve(const Reader& entry) {
   Curve curve;
-  if (entry.has("curve")) {
-    const Reader word = entry.at("curve");
-    curve.kind = word.word(curve_words());
-    if (entry.has("table") && curve.kind != Curve::Kind::table) word.fail("table, because the entry has a \"table\"");
-  } else if (entry.has("table")) {
-    curve.kind = Curve::Kind::table;
-  }
+  const bool table = entry.has("table");
+  if (table) curve.kind = Curve::Kind::table;
+  describe_curve(ReadKeys{entry}, curve);
+  if (table && curve.kind != Curve::Kind::table) entry.at("curve").fail("table, because the entry has a \"table\"");
   if (curve.kind == Curve::Kind::table) {
-    read_table(entry, curve);
-  } else {
-    read_times(entry, curve);
+    for (const char* key : {"start", "duration"}) {
+      if (entry.has(key)) entry.at(key).fail(fmt::format("no {} beside a table (the table has its own times)", key));
+    }
+    curve.table =
+        read_rows<2>(entry.at("table", "the rows of the table curve"), "a list of rows [time, factor]", "a row [time, factor]");
+  } else if (curve.kind == Curve::Kind::constant && entry.has("duration")) {
+    entry.at("duration").fail("no duration beside a constant curve (set \"curve\" to ramp or smooth)");
+  } else if (curve.kind != Curve::Kind::constant) {
+    (void)entry.at("duration", "the duration of the curve in seconds");
   }
   return curve;
 }

@@ -99,7 +99,7 @@ ContactTool read_contact_tool(const Reader& entry, const std::string& name, cons
   entry.expect_object("contact_tool");
   ContactTool tool;
   tool.pointer = entry.pointer();
-  tool.name = entry.has("name") ? read_plain_name(entry.at("name")) : name;
+  tool.name = entry.has("name") ? read_name(entry.at("name")) : name;
   read_shape(entry.at("shape", "an object with one of the keys " + alternatives(scene_keys().at("shape"))), tool);
   refuse_key(entry, "scale", tool.mesh.empty(), "a shape that is a mesh or a sequence");
   refuse_key(entry, "frames_per_second", tool.shape != ToolShape::sequence, "a shape that is a sequence");
@@ -113,17 +113,6 @@ ContactTool read_contact_tool(const Reader& entry, const std::string& name, cons
   refuse_key(entry, "edges", tool.edges && (tool.shape == ToolShape::half_space || tool.shape == ToolShape::sequence),
              "a shape that is a sphere, capsule, box or mesh");
   return tool;
-}
-
-std::string read_plain_name(const Reader& field) {
-  const char* const expected = "a name of 1 to 100 characters without control characters such as a line break";
-  std::string name = field.text(expected);
-  const bool fits = name.size() <= 100 && std::none_of(name.begin(), name.end(), [](char c) {
-                      const auto code = static_cast<unsigned char>(c);
-                      return code < 32 || code == 127;
-                    });
-  if (!fits) field.fail(expected);  // tables and messages have it in a line
-  return name;
 }
 
 std::optional<TissueContact> read_tissue_contact(const Reader& contact) {

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "pliant/error.h"
 #include "scene/json_text.h"
+#include "scene/parts.h"
 
 namespace pliant {
 
@@ -113,6 +115,15 @@ Vec3d Reader::vec3(const std::string& expected) const {
 
 void Reader::fail_word(const std::vector<std::string>& allowed) const {
   fail(with_hint("one of " + listed(allowed), value_.is_string() ? nearest(value_.get<std::string>(), allowed) : ""));
+}
+
+std::string read_name(const Reader& field, const std::string& what, const char* refused) {
+  const std::string expected = "a name of 1 to 100 characters without " + (what.empty() ? "" : what + " or ") +
+                               "control characters such as a line break";
+  std::string name = field.text(expected);
+  const bool control = std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < 32 || c == 127; });
+  if (control || name.size() > 100 || name.find_first_of(refused) != std::string::npos) field.fail(expected);
+  return name;
 }
 
 }  // namespace pliant

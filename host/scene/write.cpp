@@ -70,7 +70,8 @@ void add_curve(OrderedJson& entry, const C& curve) {
 template <class S>
 OrderedJson gravity_json(const S& scene) {
   if (text_of(curve_words(), scene.gravity_curve.kind) == "constant" && scene.gravity_curve.start == 0) return scene.gravity;
-  OrderedJson gravity{{"acceleration", scene.gravity}};
+  OrderedJson gravity;
+  describe_gravity(WriteKeys{gravity}, scene);
   add_curve(gravity, scene.gravity_curve);
   return gravity;
 }
@@ -104,7 +105,6 @@ template <class M>
 OrderedJson material_json(const M& m) {
   OrderedJson material = elastic_json(m);
   describe_material(WriteKeys{material}, m);
-  describe_tearing(WriteKeys{material}, m);
   return material;
 }
 
@@ -124,9 +124,9 @@ void add_matching(OrderedJson& model, const ModelSpec& m) {
 
 template <class M>
 OrderedJson model_json(const M& m) {
-  const std::string& type = text_of(model_words(), m.type);
-  OrderedJson model{{"type", type}};
-  if (type == to_string(ModelType::hybrid)) {
+  OrderedJson model;
+  describe_type(WriteKeys{model}, m);
+  if (model["type"] == to_string(ModelType::hybrid)) {
     if (m.region) {
       model["region"] = selection_json(*m.region, {});
       if (m.follow_tool) model["follow"] = word_of(follow_words(), true);  // refused
@@ -140,19 +140,12 @@ OrderedJson model_json(const M& m) {
   return model;
 }
 
-std::string axes_text(const std::string& axes) { return axes; }
-std::string axes_text(const std::array<bool, 3>& axes) {
-  std::string text;
-  for (int c = 0; c < 3; ++c) {
-    if (axes[c]) text += "xyz"[c];
-  }
-  return text;
-}
-
 template <class F>
 OrderedJson field_json(const F& field) {
   if (field.linear == std::array<Vec3d, 3>{} && field.about == Vec3d{}) return field.offset;
-  return {{"linear", field.linear}, {"about", field.about}, {"offset", field.offset}};
+  OrderedJson entry;
+  describe_field(WriteKeys{entry}, field);
+  return entry;
 }
 template <class F>
 OrderedJson field_json(const std::optional<F>& field) {
@@ -162,9 +155,8 @@ OrderedJson field_json(const std::optional<F>& field) {
 template <class P>
 void add_motion(OrderedJson& entry, const P& prescribed) {
   if (prescribed.rotate) {
-    const auto& r = *prescribed.rotate;
-    entry["rotate"] = {{"axis", r.axis}, {"about", r.about}, {"angle", r.angle}};
-    entry["axes"] = axes_text(prescribed.axes);
+    describe_rotation(WriteKeys{entry["rotate"]}, *prescribed.rotate);
+    describe_axes(WriteKeys{entry}, prescribed);
   } else {
     for (const std::optional<double>& d : prescribed.displacement)
       entry["displacement"].push_back(d ? OrderedJson(*d) : OrderedJson(nullptr));
@@ -186,18 +178,18 @@ template <class B>
 void add_conditions(OrderedJson& body, const B& b, const fs::path& file) {
   add_entries(body, "inclusions", b.inclusions, file,
               [](OrderedJson& entry, const auto& e) { entry["material"] = material_json(e.material); });
-  add_entries(body, "fixed", b.fixed, file, [](OrderedJson& entry, const auto& e) { entry["axes"] = axes_text(e.axes); });
+  add_entries(body, "fixed", b.fixed, file, [](OrderedJson& entry, const auto& e) { describe_axes(WriteKeys{entry}, e); });
   add_entries(body, "prescribed", b.prescribed, file, [](OrderedJson& entry, const auto& e) { add_motion(entry, e); });
   add_entries(body, "initial", b.initial, file, [](OrderedJson& entry, const auto& e) {
     entry["velocity"] = field_json(e.velocity);
     entry["displacement"] = field_json(e.displacement);
   });
   add_entries(body, "forces", b.forces, file, [](OrderedJson& entry, const auto& e) {
-    entry["force"] = e.force;
+    describe_force(WriteKeys{entry}, e);
     add_curve(entry, e.curve);
   });
   add_entries(body, "pressures", b.pressures, file, [](OrderedJson& entry, const auto& e) {
-    entry["pressure"] = e.pressure;
+    describe_pressure(WriteKeys{entry}, e);
     add_curve(entry, e.curve);
   });
 }
@@ -272,7 +264,8 @@ OrderedJson blade_json(const B& b) {
 
 template <class P>
 OrderedJson probe_json(const P& p, const fs::path& file) {
-  OrderedJson probe = p.point ? OrderedJson{{"point", *p.point}} : selection_json(p.where, file);
+  OrderedJson probe = p.point ? OrderedJson::object() : selection_json(p.where, file);
+  describe_place(WriteKeys{probe}, p);
   if (!p.point && !p.body.empty()) probe["body"] = p.body;
   probe["name"] = p.name;
   for (const auto& q : p.quantities) probe["quantities"].push_back(text_of(quantity_words(), q));
@@ -306,17 +299,14 @@ OrderedJson document_of(const Scene& scene) {
   } else {
     top["relaxation"] = false;
   }
-  if (scene.solver.enabled) {
-    top["solver"] = {{"type", "static"}};
-    describe_solver(WriteKeys{top["solver"]}, scene.solver);
-  }
+  if (scene.solver.enabled) describe_solver(WriteKeys{top["solver"]}, scene.solver);
   OrderedJson view = OrderedJson::object();
   describe_view(WriteKeys{view}, scene.view);
   if (!view.empty()) top["view"] = view;
   if (scene.probes == nullptr) return top;
   top["probes"] = OrderedJson::array();
   for (const SceneProbe& p : scene.probes->list) top["probes"].push_back(probe_json(p, scene.file));
-  if (scene.probes->every_steps > 0) top["probe_every"] = {{"steps", scene.probes->every_steps}};
+  if (scene.probes->every_steps > 0) describe_pace(WriteKeys{top["probe_every"]}, *scene.probes);
   if (scene.probes->every_seconds > 0) top["probe_every"] = scene.probes->every_seconds;
   return top;
 }

@@ -194,7 +194,7 @@ TEST(Model, ValuesOutOfRangeAreNamed) {
   const std::vector<Case> cases{
       {R"("hybrid")",
        R"(/bodies/0/model: got "hybrid", expected an object with the keys type, ratio, seed, follow, region, beta)"},
-      {R"({})", R"(/bodies/0/model: got no "type", expected a model type: tled, hybrid, flsm)"},
+      {R"({})", R"(/bodies/0/model: got no "type", expected one of tled, hybrid, flsm)"},
       {R"({"type": "hybird"})",
        R"(/bodies/0/model/type: got "hybird", expected one of tled, hybrid, flsm (did you mean "hybrid"?))"},
       {R"({"type": "hybrid", "ratio": 1.01})", "/bodies/0/model/ratio: got 1.01, expected a number with 0 <= ratio <= 1"},

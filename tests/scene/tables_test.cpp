@@ -8,13 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "scene/described_keys.h"
+#include "scene/described_tables.h"
 #include "support/source_dir.h"
 
 namespace pliant::tables_test {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string file_text(const std::string& name) {
   std::ifstream stream(std::filesystem::path(test::source_dir()) / name);
@@ -122,101 +120,45 @@ void set_laws(Json& material) {
   material["oneOf"] = ways;
 }
 
-/// Whether a key has a default, which is what the struct has: not where that stands for one that is not there.
-template <class Member>
-bool has_default(const Key& key, const Member& standard) {
-  if (key.required || key.standard != nullptr) return false;
-  if constexpr (std::is_arithmetic_v<Member>) {
-    const auto x = static_cast<double>(standard);
-    if (!key.range.absent || std::is_same_v<Member, bool>) return true;
-    EXPECT_EQ(x, *key.range.absent) << key.name << ": what is not written is what a reader does without it";
-    return within(x, key.range) || x == key.range.also;
-  }
-  return std::is_same_v<Member, Vec3d>;
-}
-
-/// The definition of each described key, in the place where the schema has it.
-struct SchemaKeys {
-  Json& properties;
-
-  template <class Member>
-  void operator()(const Member& standard, const Key& key) const {
-    Json entry{{"description", key.about + (key.unit[0] != 0 ? " [" + std::string(key.unit) + "]" : "")}};
-    if constexpr (std::is_arithmetic_v<Member>) {
-      add_number(entry, key, standard);
-    } else {
-      entry["$ref"] = "#/$defs/vec3";
-    }
-    if (has_default(key, standard)) entry["default"] = value_of(key, standard);
-    properties[key.name] = entry;
-  }
-  template <class Enum>
-  void operator()(const Enum& standard, const Words<Enum>& words, const Key& key) const {
-    properties[key.name] = {{"description", key.about}, {"enum", words_only(words)}};
-    if (key.standard == nullptr && !key.range.absent) properties[key.name]["default"] = word_of(words, standard);
-  }
-
- private:
-  template <class Member>
-  static Json value_of(const Key& key, const Member& standard) {
-    if constexpr (std::is_arithmetic_v<Member>) {
-      if (key.range.word != nullptr && static_cast<double>(standard) == *key.range.also) return key.range.word;
-      return standard;
-    }
-    return {0, 0, 0};
-  }
-  template <class Number>
-  static void add_number(Json& entry, const Key& key, const Number& /*standard*/) {
-    Json number{{"type", std::is_same_v<Number, bool> ? "boolean" : std::is_integral_v<Number> ? "integer" : "number"}};
-    const Range& r = key.range;
-    const auto bound = [](double x) { return std::is_integral_v<Number> ? Json(static_cast<std::int64_t>(x)) : Json(x); };
-    if (!std::is_same_v<Number, bool>) {
-      // No larger number than 1e30 is read, and no positive one below 1e-30.
-      if (r.above && r.least == 0) {
-        number["minimum"] = 1e-30;
-      } else {
-        number[r.above ? "exclusiveMinimum" : "minimum"] = bound(r.least);
-      }
-      number[r.below ? "exclusiveMaximum" : "maximum"] = bound(r.most);
-    }
-    if (r.also && r.least == r.most) {
-      entry["enum"] = {bound(r.least), bound(*r.also)};
-    } else if (r.also) {
-      entry["oneOf"] = {{{"const", r.word != nullptr ? Json(r.word) : bound(*r.also)}}, number};
-    } else {
-      entry.update(number);
-    }
-  }
-};
-
 TEST(Tables, SchemaHasTheLawsAndTheWordsOfTheCode) {
   Json schema = Json::parse(file_text("scenes/schema.json"));
-  const auto keys = [&schema](const char* part) { return SchemaKeys{schema["$defs"][part]["properties"]}; };
+  const auto keys = [&schema](const char* part, const char* of = "") {
+    return SchemaKeys{schema["$defs"][part]["properties"], of};
+  };
   describe_scene(SchemaKeys{schema["properties"]}, Scene());
   describe_run(SchemaKeys{schema["properties"]}, Scene());
   describe_relaxation(keys("relaxation"), Relaxation());
   describe_solver(keys("solver"), StaticSolver());
   describe_view(keys("view"), SceneView());
   describe_blade(keys("blade"), Blade());
+  describe_gravity(keys("gravity"), Scene());
+  for (const char* part : {"gravity", "prescribed", "force", "pressure"}) describe_curve(keys(part), Curve());
+  describe_axes(keys("fixed"), Fixed());
+  describe_axes(keys("prescribed"), Prescribed());
+  describe_rotation(keys("rotation"), Rotation());
+  describe_field(keys("field"), AffineField());
+  describe_force(keys("force"), Force());
+  describe_pressure(keys("pressure"), Pressure());
+  describe_place(keys("probe"), SceneProbe());
+  describe_pace(keys("probe_every"), SceneProbes());
   describe_body(keys("body"), Body());
   describe_lattice(keys("lattice"), LatticeSpec());
+  describe_elastic(keys("material"), ElasticConstants());
   describe_material(keys("material"), Material());
-  describe_tearing(keys("material"), Material());
   describe_friction(keys("tissue_contact"), TissueContact());
   describe_tool(keys("contact_tool"), ContactTool());
   describe_contact_law(keys("contact"), ContactTool());
-  describe_growth(keys("model"), DeformationModel());
-  describe_interface(keys("model"), DeformationModel());
-  describe_regions(keys("model"), DeformationModel());
-  describe_alpha(keys("model"), DeformationModel());
+  describe_type(keys("model"), DeformationModel());
+  describe_growth(keys("model", "hybrid: "), DeformationModel());
+  describe_interface(keys("model", "hybrid: "), DeformationModel());
+  describe_regions(keys("model", "hybrid, flsm: "), DeformationModel());
+  describe_alpha(keys("model", "hybrid, flsm: "), DeformationModel());
   describe_stiffness(keys("stiffness"), DeformationModel());
   set_laws(schema["$defs"]["material"]);
   expect_file("scenes/schema.json", pretty(schema) + "\n");
 }
 
 // --- docs/scene.md ---
-
-std::string code(const std::string& word) { return "`" + word + "`"; }
 
 std::string allowed(const ParameterInfo& p) {
   if (p.lower == least_modulus) return "> 0";
@@ -265,67 +207,9 @@ void replace_part(std::string& text, const std::string& what, const std::string&
   text = text.substr(0, from + begin.size()) + part + text.substr(to);
 }
 
-/// The row of each described key, in the table behind an anchor.
-struct DocumentRows {
-  std::string& text;
-  const char* anchor;
-  const char* before = "";  ///< what stands in columns before the key
-  const char* after = "";   ///< and between it and its unit
-
-  template <class Member>
-  void operator()(const Member& standard, const Key& key) const {
-    std::string allowed, value = has_default(key, standard) ? "" : key.required ? "required" : "none";
-    if constexpr (std::is_same_v<Member, bool>) {
-      value = code(Json(standard).dump());
-    } else if constexpr (std::is_arithmetic_v<Member>) {
-      const Range& r = key.range;
-      allowed = range_text(key, std::is_integral_v<Member>);
-      if (std::is_integral_v<Member>) allowed = "whole number " + allowed;
-      if (allowed.empty()) allowed = "a number";
-      if (r.also && r.least == r.most) {
-        allowed += " or " + short_text(*r.also);
-      } else if (r.also) {
-        allowed = (r.word != nullptr ? code(Json(r.word).dump()) : short_text(*r.also)) + ", or " + allowed;
-      }
-      const bool as_word = r.word != nullptr && static_cast<double>(standard) == *r.also;
-      if (value.empty()) value = as_word ? code(Json(r.word).dump()) : short_text(static_cast<double>(standard));
-    } else {
-      allowed = "three numbers";
-      if (value.empty()) value = code("[0, 0, 0]");
-    }
-    set(key, value, allowed);
-  }
-  template <class Enum>
-  void operator()(const Enum& standard, const Words<Enum>& words, const Key& key) const {
-    std::string allowed;
-    for (const Word<Enum>& w : words) allowed += (allowed.empty() ? "" : ", ") + code(Json(w.word).dump());
-    set(key, key.range.absent ? "none" : code(Json(word_of(words, standard)).dump()), allowed);
-  }
-
- private:
-  static std::string short_text(double value) {
-    std::ostringstream out;
-    out << value;
-    return out.str();
-  }
-  void set(const Key& key, std::string standard, std::string allowed) const {
-    const std::string first = before + ("| " + code(key.name)) + " |" + after;
-    const std::size_t from = text.find("\n" + first, text.find(anchor));
-    ASSERT_NE(from, std::string::npos) << anchor << ' ' << key.name;
-    const std::size_t end = text.find('\n', from + 1);
-    std::string note = key.note != nullptr ? key.note : key.about;
-    if (key.note == nullptr) note[0] = static_cast<char>(std::tolower(note[0]));
-    if (key.standard != nullptr) standard = key.standard;
-    if (!allowed.empty()) allowed += "; ";
-    const std::string example = code(Json(key.name).dump() + ": " + key.example);
-    text.replace(from + 1, end - from - 1,
-                 first + " " + key.unit + (key.unit[0] != 0 ? " " : "") + "| " + standard + " | " + allowed + note + " | " +
-                     example + " |");
-  }
-};
-
 TEST(Tables, ScenesDocumentHasTheLawsAndElementsOfTheCode) {
   std::string text = file_text("docs/scene.md");
+  const char* const entries = "\n## Entries\n";
   const DocumentRows top{text, "## Top level"}, body{text, "\n## Body\n"}, material{text, "\n## Material\n"},
       hybrid{text, "\n## Model\n", "", " hybrid |"}, matching{text, "\n## Model\n", "", " hybrid, flsm |"};
   describe_scene(top, Scene());
@@ -334,12 +218,21 @@ TEST(Tables, ScenesDocumentHasTheLawsAndElementsOfTheCode) {
   describe_solver(DocumentRows{text, "`solver` (what"}, StaticSolver());
   describe_view(DocumentRows{text, "`view`, for pictures"}, SceneView());
   describe_blade(DocumentRows{text, "\n`blades`, each"}, Blade());
+  describe_rotation(DocumentRows{text, "\nA rotation moves"}, Rotation());
+  describe_field(DocumentRows{text, "\nThe fields of `initial`"}, AffineField());
+  describe_curve(DocumentRows{text, "\n## Curves\n"}, Curve());
+  describe_axes(DocumentRows{text, entries, "| `fixed` "}, Fixed());
+  describe_axes(DocumentRows{text, entries, "| `prescribed` "}, Prescribed());
+  describe_force(DocumentRows{text, entries, "| `forces` "}, Force());
+  describe_pressure(DocumentRows{text, entries, "| `pressures` "}, Pressure());
+  describe_place(DocumentRows{text, "\n`probes`, each"}, SceneProbe());
   describe_body(body, Body());
   describe_lattice(DocumentRows{text, "`lattice`, exactly"}, LatticeSpec());
+  describe_elastic(material, ElasticConstants());
   describe_material(material, Material());
-  describe_tearing(material, Material());
   describe_tool(DocumentRows{text, "`tools`, at most 30"}, ContactTool());
   describe_contact_law(DocumentRows{text, "\n`contact`:"}, ContactTool());
+  describe_type(DocumentRows{text, "\n## Model\n", "", " |"}, DeformationModel());
   describe_growth(hybrid, DeformationModel());
   describe_interface(hybrid, DeformationModel());
   describe_regions(matching, DeformationModel());
@@ -354,9 +247,7 @@ TEST(Tables, ScenesDocumentNamesEveryKeyAndWord) {
   const auto named = [&](const std::string& word) {
     return text.find("`" + word + "`") != std::string::npos || text.find("\"" + word + "\"") != std::string::npos;
   };
-  for (const auto& [kind, words] : scene_words()) {
-    for (const std::string& word : words) EXPECT_TRUE(named(word)) << kind << ' ' << word;
-  }
+  for (const std::string& word : words_only(quantity_words())) EXPECT_TRUE(named(word)) << word;
   for (const auto& [kind, keys] : scene_keys()) {
     for (const std::string& key : keys) EXPECT_TRUE(named(key)) << kind << ' ' << key;
   }
