@@ -35,7 +35,11 @@ class RandomScene {
  public:
   RandomScene(std::int64_t number, const std::filesystem::path& scenes)
       : dice_(number), late_(~number), touch_(number ^ 0x5bd1e995), number_(number) {
+    Dice varied(number ^ 0x2545f491);
     shape_ = kShapes[dice_.below(std::size(kShapes))];
+    // Half of the cubes of tetrahedra become a block with a modulus per element.
+    varied_ = std::string_view(shape_.file) == "cube_tet.vtu" && varied.chance(0.5);
+    if (varied_) shape_.file = "nodule_tet.vtu";
     file_ = std::filesystem::absolute(scenes / "meshes" / shape_.file);
     box_ = box_of(file_, shape_.tets);
     size_ = vec::sub(box_.upper, box_.lower);
@@ -106,6 +110,7 @@ class RandomScene {
 
   void material(Json& body, bool tears) {
     young_ = dice_.logarithmic(1e3, 300e3);
+    if (varied_) young_ = 4e3;  // of most of the block
     const double poisson = dice_.uniform(0.3, 0.49), damping = dice_.chance(0.3) ? 0 : dice_.logarithmic(0.5, 50);
     Law law = Law::neo_hookean;
     if (dice_.chance(0.5)) law = all_laws()[dice_.below(law_count)];
@@ -113,7 +118,7 @@ class RandomScene {
     const LawInfo& info = law_info(law);
     Json m{{"law", info.word}};
     if (info.takes_moduli) {
-      m["young"] = young_;
+      m["young"] = varied_ ? Json{{"field", "E"}} : Json(young_);
       m["poisson"] = poisson;
     } else {
       const Material made = make_material(law, Moduli::from_young(young_, poisson));
@@ -279,6 +284,7 @@ class RandomScene {
   Vec3d second_{};  ///< from the first body to the second; 0: there is none
   std::size_t axis_ = 0;
   double extent_ = 0, young_ = 0;
+  bool varied_ = false;  ///< a modulus per element
   bool upper_ = false;
 };
 

@@ -24,9 +24,26 @@ std::vector<std::vector<float>> fills(const Model& model) {
   std::vector<std::vector<float>> fill;
   for (const ModelBody& b : model.bodies) fill.emplace_back(static_cast<std::size_t>(b.elements()), 1.0F);
   for_each_element(model, [&](const ElementView& e) {
-    fill[static_cast<std::size_t>(e.body)][static_cast<std::size_t>(e.id)] = static_cast<float>(e.share);
+    fill[static_cast<std::size_t>(e.body)][static_cast<std::size_t>(e.id)] = static_cast<float>(e.share / e.modulus);
   });
   return fill;
+}
+
+/// Young's modulus of the elements, tetrahedra of all bodies first, as the cells of a file come; nothing without a field of it.
+std::vector<float> moduli(const Scene& scene, const Model& model) {
+  std::array<std::vector<float>, 2> of_kind;  // tetrahedra, hexahedra
+  bool varied = false;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const ModelBody& body = model.bodies[b];
+    varied = varied || !body.materials.modulus.empty();
+    for (std::size_t e = 0; e < static_cast<std::size_t>(body.elements()); ++e) {
+      const double young = material_of(scene.bodies[b], body.materials.index[e]).moduli.young();
+      of_kind[body.tets.empty() ? 1 : 0].push_back(static_cast<float>(young * body.materials.modulus_of(e)));
+    }
+  }
+  if (!varied) return {};
+  of_kind[0].insert(of_kind[0].end(), of_kind[1].begin(), of_kind[1].end());
+  return std::move(of_kind[0]);
 }
 
 /// A series has the same arrays in all its files.
@@ -134,6 +151,8 @@ VtuMesh volume_frame(const Simulation& simulation) {
   tet_fill.insert(tet_fill.end(), hex_fill.begin(), hex_fill.end());
   mesh.point_arrays = {std::move(displacement), std::move(velocity)};
   mesh.cell_arrays = {{"body", 1, std::move(tet_body)}, {"fill", 1, std::move(tet_fill)}};
+  if (auto young = moduli(simulation.scene(), model); !young.empty())
+    mesh.cell_arrays.push_back({"young", 1, std::move(young)});
   if (shows_cuts(simulation)) {
     tet_cut.insert(tet_cut.end(), hex_cut.begin(), hex_cut.end());
     tet_piece.insert(tet_piece.end(), hex_piece.begin(), hex_piece.end());

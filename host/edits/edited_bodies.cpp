@@ -110,17 +110,12 @@ bool tears(const Body& body) {
                                                     [](const Inclusion& i) { return i.material.toughness > 0; });
 }
 
-/// The material of each tetrahedron, as build_model gives it.
+/// The material of each element, as build_model gives it.
 std::vector<Material> materials_of(const Body& body, const BodyMesh& solid) {
-  std::vector<Material> material(solid.tets.size(), body.material);
-  for (std::size_t t = 0; t < solid.tets.size(); ++t) {
-    Vec3d middle{};
-    for (const std::int32_t n : solid.tets[t]) middle = vec::add(middle, vec::mul(solid.nodes[n], 0.25));
-    for (const Inclusion& inclusion : body.inclusions) {
-      if (inclusion.where.contains(middle, static_cast<std::int64_t>(t))) material[t] = inclusion.material;
-    }
-  }
-  return material;
+  const ElementMaterials materials = element_materials(body, solid);
+  std::vector<Material> out;
+  for (std::size_t e = 0; e < solid.size(); ++e) out.push_back(material_of(body, materials, e));
+  return out;
 }
 
 [[noreturn]] void refuse_edits(const char* kind) {

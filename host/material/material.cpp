@@ -37,6 +37,13 @@ void Material::set_parameters(Law new_law, std::vector<double> new_parameters) {
   moduli = with_law(*this, [](const auto& l) { return l.moduli(); });
 }
 
+Material Material::scaled(double factor) const {
+  Material out = *this;
+  for (double& p : out.parameters) p *= factor;
+  out.moduli = {factor * moduli.mu, factor * moduli.lambda, factor * moduli.kappa};
+  return out;
+}
+
 Material make_material(Law law, const Moduli& moduli, double density) {
   Material m;
   m.set_moduli(law, moduli);

@@ -1,7 +1,9 @@
 // Materials as plain data: the law, its parameters, and the moduli of linear elasticity that it has at small strain. What a law
 // is stands in law_STEM.h, a file per law of kernels/laws.h; what it answers to a deformation is asked through response.h.
 #pragma once
+#include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "laws.h"
@@ -52,21 +54,32 @@ const LawInfo& law_info(Law law);
 std::span<const Law, law_count> all_laws();
 inline const char* to_string(Law law) { return law_info(law).word; }
 
+/// Young's modulus of each element.
+struct YoungField {
+  std::string name;            ///< of the array in the file of the mesh
+  double poisson = 0;          ///< the same everywhere
+  std::vector<double> values;  ///< [elements] of the uncut mesh [Pa]
+  double largest = 0;          ///< of the values that are moduli [Pa]
+};
+
 /// A hyperelastic material. The law, its parameters and the moduli are set together.
 struct Material {
   Law law = Law::neo_hookean;
-  std::vector<double> parameters;  ///< of the law, in the order of LawInfo::parameters
-  Moduli moduli;                   ///< at small strain: the stable step, hourglass control, hints of stiffness
-  double density = 1000;           ///< [kg/m^3]
-  double damping = 0;              ///< mass-proportional damping rate c [1/s]: M u'' + c M u' = R - F
-  double hourglass = 1;            ///< factor on the hourglass stiffness of hex8 (1: exact bending of a bar at nu = 0)
-  double toughness = 0;            ///< K_I: principal stress at which it tears [Pa]; 0: it does not
-  double integrity = 1;            ///< zeta in (0, 1]: the share of the toughness that is left
-  double low = 0;                  ///< low_volume: below this J the law is continued (kinematics.h); 0: it ends at J = 0
+  std::vector<double> parameters;                 ///< of the law, in the order of LawInfo::parameters
+  Moduli moduli;                                  ///< at small strain: the stable step, hourglass control, hints of stiffness
+  std::shared_ptr<const YoungField> young_field;  ///< null: one modulus; else parameters and moduli are those of its largest
+  double density = 1000;                          ///< [kg/m^3]
+  double damping = 0;                             ///< mass-proportional damping rate c [1/s]: M u'' + c M u' = R - F
+  double hourglass = 1;  ///< factor on the hourglass stiffness of hex8 (1: exact bending of a bar at nu = 0)
+  double toughness = 0;  ///< K_I: principal stress at which it tears [Pa]; 0: it does not
+  double integrity = 1;  ///< zeta in (0, 1]: the share of the toughness that is left
+  double low = 0;        ///< low_volume: below this J the law is continued (kinematics.h); 0: it ends at J = 0
 
   /// The law with these moduli at small strain. Where they do not determine it, it is a typical one with them.
   void set_moduli(Law law, const Moduli& moduli);
   void set_parameters(Law law, std::vector<double> parameters);
+  /// So many times as stiff at every strain: all stresses of all laws are linear in their moduli.
+  [[nodiscard]] Material scaled(double factor) const;
 };
 
 Material make_material(Law law, const Moduli& moduli, double density = 1000);

@@ -20,7 +20,7 @@ struct ElementBatch {
   bool uniform = false;             ///< all are cubes of the same edge: one record
   std::vector<std::int32_t> nodes;  ///< [elements][corners] slots
   std::vector<double> records;      ///< [elements or 1][numbers of a record] (elements/element.h)
-  std::vector<double> share;        ///< [elements] of a full one's stiffness
+  std::vector<double> share;        ///< [elements] of a full one's stiffness, by fill and modulus
   std::vector<std::int64_t> id;     ///< [elements] number in its body
   [[nodiscard]] std::size_t size() const { return id.size(); }
   [[nodiscard]] const ElementInfo& info() const { return element_info(kind); }

@@ -11,6 +11,7 @@
 #include "model/body_mesh.h"
 #include "model/boundary_conditions.h"
 #include "model/bricks.h"
+#include "model/element_materials.h"
 #include "model/flsm.h"
 #include "model/least_fill.h"
 #include "model/model.h"
@@ -19,36 +20,6 @@
 
 namespace pliant {
 namespace {
-
-Vec3d centroid(const BodyElements& solid, std::span<const std::int32_t> corners) {
-  Vec3d sum{};
-  for (const std::int32_t n : corners) {
-    for (int c = 0; c < 3; ++c) sum[c] += solid.nodes[n][c] / static_cast<double>(corners.size());
-  }
-  return sum;
-}
-
-/// Index of the material of each element: 0 for the body's own, i + 1 for inclusion i; the last match wins.
-std::vector<int> materials_of(const Body& body, const BodyElements& solid) {
-  const std::size_t count = solid.size();
-  std::vector<int> material(count, 0);
-  std::vector<char> hit(body.inclusions.size(), false);
-  for (std::size_t e = 0; e < count && !body.inclusions.empty(); ++e) {
-    const Vec3d x = centroid(solid, solid.corners(e));
-    for (std::size_t i = 0; i < body.inclusions.size(); ++i) {
-      if (body.inclusions[i].where.contains(x, static_cast<std::int64_t>(e))) {
-        material[e] = static_cast<int>(i) + 1;
-        hit[i] = true;
-      }
-    }
-  }
-  for (std::size_t i = 0; i < hit.size(); ++i) {
-    if (!hit[i])
-      throw Error(ErrorCode::bad_input,
-                  fmt::format("{}: no element has its centre in this inclusion", body.inclusions[i].where.pointer));
-  }
-  return material;
-}
 
 /// work(), whose messages get the name of the scene's file.
 template <class Work>
@@ -59,10 +30,6 @@ auto told_with_file(const Scene& scene, Work work) {
     if (scene.file.empty()) throw;
     throw Error(error.code(), fmt::format("{}: {}", scene.file.string(), error.what()));
   }
-}
-
-const Material& material_of(const Body& body, int index) {
-  return index == 0 ? body.material : body.inclusions[index - 1].material;
 }
 
 /// A material as its elements have it.
@@ -124,7 +91,7 @@ class ElementLists {
       batch_.uniform = draft_.solid().spacing > 0 && info_.corners == 8;
       if (batch_.uniform) add_cube();
       for (const std::int32_t e : order) {
-        if (draft_.material[e] == static_cast<int>(m)) add(static_cast<std::size_t>(e));
+        if (draft_.materials.index[e] == static_cast<std::int32_t>(m)) add(static_cast<std::size_t>(e));
       }
       if (batch_.size() > 0) model_.batches.push_back(std::move(batch_));
     }
@@ -153,6 +120,7 @@ class ElementLists {
     }
     const std::span<const std::int32_t> slots(all_slots.data(), corners.size());
     const bool finite = solid.operational(e);
+    const double modulus = draft_.materials.modulus_of(e);
     double& volume = draft_.volume[e];
     std::vector<double> record;
     if (batch_.uniform) {
@@ -161,7 +129,8 @@ class ElementLists {
       const std::string what = fmt::format("{}: {} {}", body_.name, info_.cell, e);
       record = element_record(batch_.kind, std::span(x.data(), corners.size()), batch_.material, what);
       volume = element_volume(batch_.kind, record);
-      if (finite) note_bound(model_, element_frequency(batch_.kind, record, batch_.material), volume, what);
+      if (finite)
+        note_bound(model_, std::sqrt(modulus) * element_frequency(batch_.kind, record, batch_.material), volume, what);
     }
     const double full = batch_.material.density * volume, mass = full * solid.fill[e];
     for (const std::int32_t n : slots) model_.mass[n] += mass / static_cast<double>(slots.size());
@@ -169,7 +138,7 @@ class ElementLists {
     if (draft_.in_brick[e] || !finite) return;
     batch_.nodes.insert(batch_.nodes.end(), slots.begin(), slots.end());
     if (!batch_.uniform) batch_.records.insert(batch_.records.end(), record.begin(), record.end());
-    batch_.share.push_back(draft_.stiff[e]);
+    batch_.share.push_back(modulus * draft_.stiff[e]);
     batch_.id.push_back(static_cast<std::int64_t>(e));
   }
 
@@ -184,6 +153,7 @@ class ElementLists {
 void fill_body(const Body& body, NodeNumbering& draft, ModelBody& out) {
   out.name = body.name;
   out.element = body.element;
+  out.materials = draft.materials;
   out.slot = draft.slot;
   out.rest = draft.solid().nodes;
   out.tets = draft.solid().tets;
@@ -196,7 +166,7 @@ void fill_body(const Body& body, NodeNumbering& draft, ModelBody& out) {
   }
   out.spacing = draft.solid().spacing;
   out.surface_volume = draft.given->surface_volume;
-  for (std::size_t e = 0; e < draft.material.size(); ++e) out.operational_elements += draft.solid().operational(e);
+  for (std::size_t e = 0; e < draft.solid().size(); ++e) out.operational_elements += draft.solid().operational(e);
   const Partition& partition = draft.solid().partition;
   const auto nodes = static_cast<std::int64_t>(draft.solid().nodes.size());
   out.operational_nodes = partition.kind.empty() ? nodes : partition.operational_nodes;
@@ -240,7 +210,7 @@ void add_totals(const Body& body, const NodeNumbering& draft, ModelBody& out) {
   const BodyElements& solid = draft.solid();
   for (std::size_t e = 0; e < solid.size(); ++e) {
     out.volume += draft.volume[e] * solid.fill[e];
-    out.mass += material_of(body, draft.material[e]).density * draft.volume[e] * solid.fill[e];
+    out.mass += material_of(body, draft.materials.index[e]).density * draft.volume[e] * solid.fill[e];
   }
 }
 
@@ -254,13 +224,13 @@ void place_bodies(const Scene& scene, std::span<const BodyMesh* const> solids, c
       draft.own = static_cast<const BodyElements&>(*solids[b]);
       repartition(body, *draft.own);
     }
-    draft.material = told_with_file(scene, [&] { return materials_of(body, draft.solid()); });
+    draft.materials = told_with_file(scene, [&] { return element_materials(body, draft.solid()); });
     draft.stiff = stiff_fills(draft.solid(), model.least_fill);
-    draft.in_brick.assign(draft.material.size(), false);
+    draft.in_brick.assign(draft.solid().size(), false);
     draft.slot.assign(draft.solid().nodes.size(), -1);
     if (!draft.solid().cells.empty() && element_info(body.element).bricks) {
       for (std::size_t e = 0; e < draft.in_brick.size(); ++e)
-        draft.in_brick[e] = draft.material[e] == 0 && draft.solid().operational(e);
+        draft.in_brick[e] = draft.materials.index[e] == 0 && draft.solid().operational(e);
       const std::int32_t first = model.bricks;
       draft.slot = place_in_bricks(draft.solid(), draft.stiff, static_cast<std::int32_t>(b), draft.in_brick, model);
       if (model.bricks > first) {

@@ -19,7 +19,8 @@ struct ElementView {
   std::span<const std::int32_t> slots;
   const Material& material;
   std::span<const double> record;
-  double share;                                                                 ///< of a full one's stiffness
+  double share;    ///< of a full one's stiffness, by fill and modulus
+  double modulus;  ///< over that of the material
   [[nodiscard]] double volume() const { return element_volume(kind, record); }  ///< of a full one, at rest [m^3]
 };
 
@@ -31,8 +32,8 @@ template <class F>
 void for_each_element(const Model& model, const F& f) {
   for (const ElementBatch& batch : model.batches) {
     for (std::size_t e = 0; e < batch.size(); ++e) {
-      f(ElementView{batch.kind, batch.body, batch.id[e], batch.nodes_of(e), batch.material, batch.record_of(e),
-                    batch.share[e]});
+      f(ElementView{batch.kind, batch.body, batch.id[e], batch.nodes_of(e), batch.material, batch.record_of(e), batch.share[e],
+                    model.bodies[batch.body].materials.modulus_of(batch.id[e])});
     }
   }
   for (const BrickBatch& batch : model.brick_batches) {
@@ -42,7 +43,7 @@ void for_each_element(const Model& model, const F& f) {
       if (!(model.brick_fill[slot] > 0)) continue;
       const std::array<std::int32_t, 8> corners = brick_cell_corners(model, slot);
       f(ElementView{BrickBatch::kind, model.brick_body[slot / PLIANT_BRICK_NODES], model.brick_cell[slot], corners,
-                    batch.material, record, model.brick_fill[slot]});
+                    batch.material, record, model.brick_fill[slot], 1});
     }
   }
 }

@@ -12,6 +12,7 @@
 #include "geometry/mesh.h"
 #include "model/batches.h"
 #include "model/contact.h"
+#include "model/element_materials.h"
 #include "model/partition.h"
 #include "scene/scene.h"
 
@@ -44,6 +45,7 @@ struct VirtualNodes {
 struct ModelBody {
   std::string name;
   ElementKind element = ElementKind::hex8;
+  ElementMaterials materials;
   std::vector<std::int32_t> slot;                  ///< slot of each node of the body, in the order of its mesh or lattice
   std::vector<Vec3d> rest;                         ///< [m]
   std::vector<std::array<std::int32_t, 4>> tets;   ///< body-local nodes, for output

@@ -12,7 +12,7 @@ struct NodeNumbering {
   const BodyMesh* given = nullptr;
   std::optional<BodyElements> own;  ///< with a partition of its own
   [[nodiscard]] const BodyElements& solid() const { return own ? *own : *given; }
-  std::vector<int> material;
+  ElementMaterials materials;
   std::vector<double> stiff;  ///< stiff_fills()
   std::vector<char> in_brick;
   std::vector<double> volume;  ///< [elements] of full ones [m^3]

@@ -13,15 +13,6 @@ using Eigen::Vector3d;
 
 Vector3d vector_of(const Vec3d& v) { return {v[0], v[1], v[2]}; }
 
-/// The material that the scene gives an element with this centroid.
-const Material& material_at(const Body& body, const Vec3d& centroid, std::int64_t element) {
-  const Material* found = &body.material;
-  for (const Inclusion& inclusion : body.inclusions) {
-    if (inclusion.where.contains(centroid, element)) found = &inclusion.material;
-  }
-  return *found;
-}
-
 /// Signs of a hexahedron's corners in VTK order.
 constexpr int kCorner[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
                                {-1, -1, 1},  {1, -1, 1},  {1, 1, 1},  {-1, 1, 1}};
@@ -29,7 +20,6 @@ constexpr int kCorner[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1
 struct ElementState {
   Matrix3d f = Matrix3d::Identity();
   double volume = 0;
-  Vec3d centroid{};
 };
 
 /// dx/dX from the tangents of the rest and the deformed shape.
@@ -46,7 +36,6 @@ ElementState element_state(const std::array<std::int32_t, N>& nodes, const std::
   for (std::size_t a = 0; a < N; ++a) {
     const auto n = static_cast<std::size_t>(nodes[a]);
     const Vector3d x = vector_of(rest[n]), moved = x + vector_of(u[n]);
-    for (std::size_t c = 0; c < 3; ++c) e.centroid[c] += rest[n][c] / N;
     for (int c = 0; c < 3; ++c) {
       double slope = 0;  // of the node's shape function along the element's own coordinate c, at its centre
       if constexpr (N == 8) {
@@ -85,12 +74,15 @@ class NodeAverage {
 
 std::vector<double> node_values(const Body& scene_body, const ModelBody& body, const std::vector<Vec3d>& u, ColorBy by) {
   NodeAverage average(body.rest.size());
+  const bool varied = !body.materials.modulus.empty();
+  Material own;
   const auto add = [&](const auto& elements) {
     for (std::size_t e = 0; e < elements.size(); ++e) {
       const ElementState state = element_state(elements[e], body.rest, u);
       std::array<double, 9> f{};
       Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(f.data()) = state.f;
-      const Strain s = strain_of(f, material_at(scene_body, state.centroid, static_cast<std::int64_t>(e)));
+      if (varied) own = material_of(scene_body, body.materials, e);
+      const Strain s = strain_of(f, varied ? own : material_of(scene_body, body.materials.index[e]));
       average.add(elements[e], state.volume, by == ColorBy::energy ? s.energy : s.mises);
     }
   };

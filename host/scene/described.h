@@ -43,6 +43,12 @@ constexpr Range from_to(double least, double most) { return {least, most, false,
 constexpr Range above_to(double least, double most) { return {least, most, true, false}; }
 constexpr Range between(double least, double most) { return {least, most, true, true}; }
 
+/// A number that may be another one in each element: the file gives it, or {"field": the name of an array of the body's mesh}.
+struct PerElement {
+  double value = 0;
+  std::string field{};
+};
+
 struct Key {
   const char* name;
   Range range;

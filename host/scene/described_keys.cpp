@@ -72,6 +72,15 @@ void ReadKeys::read(const Reader& field, const Key& /*key*/, std::array<bool, 3>
   }
 }
 
+void ReadKeys::read(const Reader& field, const Key& key, PerElement& member) {
+  if (!field.json().is_object()) {
+    member.value = read_number(field, key, false);
+    return;
+  }
+  field.expect_object("element_field");
+  member.field = field.at("field", "the name of an array of the mesh").text("the name of an array of the mesh");
+}
+
 std::string axes_text(const std::array<bool, 3>& axes) {
   std::string text;
   for (int c = 0; c < 3; ++c) {

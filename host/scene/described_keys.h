@@ -40,6 +40,7 @@ struct ReadKeys {
   static void read(const Reader& field, const Key& /*key*/, Vec3d& member) { member = field.vec3(); }
   static void read(const Reader& field, const Key& /*key*/, std::array<Vec3d, 3>& member);
   static void read(const Reader& field, const Key& /*key*/, std::array<bool, 3>& axes);
+  static void read(const Reader& field, const Key& key, PerElement& member);
   template <class Number>
   static void read(const Reader& field, const Key& key, Number& member) {
     member = static_cast<Number>(read_number(field, key, std::integral<Number>));

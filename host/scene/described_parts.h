@@ -24,11 +24,13 @@ void describe_body(V&& v, S&& s) {
 
 /// What determines the moduli: one of three pairs.
 struct ElasticConstants {
-  std::optional<double> young{}, poisson{}, lambda{}, mu{}, kappa{};
+  std::optional<PerElement> young{};
+  std::optional<double> poisson{}, lambda{}, mu{}, kappa{};
 };
 template <class V, class S>
 void describe_elastic(V&& v, S&& s) {
-  v(s.young, {"young", above(0), "Pa", "3000", "Young's modulus, with `poisson`"});
+  v(s.young,
+    {"young", above(0), "Pa", "3000", "Young's modulus, with `poisson`; of each element its own from an array of the `mesh`"});
   v(s.poisson, {"poisson", between(-1, 0.5), "", "0.45", "Poisson's ratio, with `young`"});
   v(s.lambda, {"lambda", any, "Pa", "9310", "above -2 mu / 3: first Lame constant, with `mu`"});
   v(s.mu, {"mu", above(0), "Pa", "1034", "shear modulus, with `lambda` or `kappa`"});

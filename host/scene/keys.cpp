@@ -42,6 +42,7 @@ std::map<std::string, List> make_keys() {
       {"material", List{"law"} + elastic_keys() + PLIANT_DESCRIBED(Material, material)},
       {"model", PLIANT_DESCRIBED(DeformationModel, type) + hybrid_keys() + matching_keys()},
       {"region", {"box", "sphere"}},
+      {"element_field", {"field"}},
       {"stiffness", PLIANT_DESCRIBED(DeformationModel, stiffness)},
       {"gravity", PLIANT_DESCRIBED(Scene, gravity) + curve},
       {"tool", {"path"}},

@@ -66,6 +66,15 @@ const TaggedMesh::Content& TaggedMesh::content() const {
   return *content_;
 }
 
+const std::vector<double>& TaggedMesh::values(const std::string& name, const std::string& pointer) const {
+  const MeshTags& tags = content().tags;
+  if (const MeshTags::Values* found = tags.values_of(name)) return found->of;
+  std::string has;
+  for (const MeshTags::Values& v : tags.values) has += fmt::format("{}\"{}\"", has.empty() ? "" : ", ", v.name);
+  throw Error(ErrorCode::bad_input, fmt::format("{}: got \"{}\": {} has {}, expected an array with one number per element",
+                                                pointer, name, file_.string(), has.empty() ? "no numbers of elements" : has));
+}
+
 /// Of each node, element or triangle of the mesh its place and whether it belongs to the region.
 struct MeshRegion::Members {
   /// Places on a grid of cells so small that hardly two share one.

@@ -38,6 +38,9 @@ class TaggedMesh {
   /// Throws Error where the file cannot be read.
   [[nodiscard]] const Content& content() const;
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
+  /// The numbers of its elements under this name, tetrahedra first; throws Error, which begins with `pointer` and lists what
+  /// the file has, where there are none.
+  [[nodiscard]] const std::vector<double>& values(const std::string& name, const std::string& pointer) const;
 
  private:
   std::filesystem::path file_;

@@ -31,7 +31,8 @@ Selection read_selection(const Reader& entry, Selected of, const SelectionFrame&
 void read_prescribed(const Reader& entry, Prescribed& prescribed);
 void read_initial(const Reader& entry, Initial& initial);
 Curve read_curve(const Reader& entry);
-Material read_material(const Reader& material);
+/// `mesh`: that of the body, for fields; null: a lattice.
+Material read_material(const Reader& material, const TaggedMesh* mesh);
 /// `lattice`: whether the body is a surface filled with a lattice, which shape matching needs.
 DeformationModel read_model(const Reader& model, bool lattice);
 Tool read_tool(const Reader& tool);

@@ -89,14 +89,14 @@ Body read_body(const Reader& body, const fs::path& folder, std::size_t index) {
   if (body.has("model")) b.model = read_model(body.at("model"), b.mesh.empty());
 
   const Reader material = body.at("material", "a material such as {\"young\": 3000, \"poisson\": 0.45, \"density\": 1060}");
-  b.material = read_material(material);
+  const SelectionFrame frame = frame_of(b, folder);
+  b.material = read_material(material, frame.mesh.get());
   if (b.model.matched) b.model.young = b.material.moduli.young();
   check_pressure_law(material, b, b.material);
-  const SelectionFrame frame = frame_of(b, folder);
   read_entries(body, "inclusions", "inclusion", Selected::elements, frame, b.inclusions,
-               [&b](const Reader& entry, Inclusion& out) {
+               [&](const Reader& entry, Inclusion& out) {
                  const Reader other = entry.at("material", "the material of the inclusion");
-                 out.material = read_material(other);
+                 out.material = read_material(other, frame.mesh.get());
                  check_pressure_law(other, b, out.material);
                });
   read_conditions(body, b, frame);

@@ -11,14 +11,31 @@ namespace {
 
 const char* const pairs = "exactly one of the pairs young + poisson, lambda + mu, mu + kappa";
 
-Moduli read_moduli(const Reader& material) {
+/// The largest modulus is that of the material: what is said of it holds for all.
+std::shared_ptr<const YoungField> read_field(const Reader& young, const ElasticConstants& e, const TaggedMesh* mesh) {
+  if (mesh == nullptr) young.fail("a number: only the elements of a volume mesh (\"mesh\") have fields");
+  auto field = std::make_shared<YoungField>();
+  field->name = e.young->field;
+  field->poisson = *e.poisson;
+  field->values = mesh->values(field->name, young.pointer() + "/field");
+  for (const double v : field->values) {
+    if (v >= least_modulus && v <= most_modulus) field->largest = std::max(field->largest, v);
+  }
+  if (!(field->largest > 0)) young.fail(fmt::format("\"{}\" with moduli from 1e-30 to 1e30 Pa; it has none", field->name));
+  return field;
+}
+
+Moduli read_moduli(const Reader& material, const TaggedMesh* mesh, std::shared_ptr<const YoungField>& field) {
   ElasticConstants e;
   describe_elastic(ReadKeys{material}, e);
   std::vector<std::string> given;
   for (const std::string& key : moduli_keys()) {
     if (material.has(key)) given.push_back(key);
   }
-  if (given.size() == 2 && e.young && e.poisson) return Moduli::from_young(*e.young, *e.poisson);
+  if (given.size() == 2 && e.young && e.poisson) {
+    if (!e.young->field.empty()) field = read_field(material.at("young"), e, mesh);
+    return Moduli::from_young(field != nullptr ? field->largest : e.young->value, *e.poisson);
+  }
   if (given.size() == 2 && e.mu && e.kappa) return Moduli::from_bulk(*e.mu, *e.kappa);
   if (given.size() != 2 || !e.mu || !e.lambda)
     material.fail(given.empty() ? "no elastic constants" : "the elastic constants " + listed(given), pairs);
@@ -49,12 +66,12 @@ void refuse_foreign(const Reader& material, const LawInfo& law) {
   }
 }
 
-void read_elasticity(const Reader& material, Material& m) {
+void read_elasticity(const Reader& material, const TaggedMesh* mesh, Material& m) {
   const Law law = material.has("law") ? material.at("law").word(law_words()) : m.law;
   const LawInfo& info = law_info(law);
   refuse_foreign(material, info);
   if (info.takes_moduli) {
-    m.set_moduli(law, read_moduli(material));
+    m.set_moduli(law, read_moduli(material, mesh, m.young_field));
   } else {
     m.set_parameters(law, read_parameters(material, info));
   }
@@ -68,10 +85,10 @@ void read_elasticity(const Reader& material, Material& m) {
 
 }  // namespace
 
-Material read_material(const Reader& material) {
+Material read_material(const Reader& material, const TaggedMesh* mesh) {
   material.expect_object("material");
   Material m;
-  read_elasticity(material, m);
+  read_elasticity(material, mesh, m);
   describe_material(ReadKeys{material}, m);
   if (material.has("integrity") && m.toughness == 0) material.at("integrity").fail("no integrity without a toughness");
   return m;

@@ -83,6 +83,11 @@ OrderedJson elastic_json(const Material& m) {
     for (std::size_t i = 0; i < law.parameters.size(); ++i) material[law.parameters[i].name] = m.parameters.at(i);
     return material;
   }
+  if (m.young_field != nullptr) {
+    material["young"] = {{"field", m.young_field->name}};
+    material["poisson"] = m.young_field->poisson;
+    return material;
+  }
   const Moduli& e = m.moduli;
   material["mu"] = e.mu;
   // The pair from which the loader computes the same three moduli to the last bit.
@@ -96,7 +101,10 @@ OrderedJson elastic_json(const Material& m) {
 
 OrderedJson elastic_json(const MaterialSpec& m) {
   OrderedJson material{{"law", m.law}};
-  if (m.parameters.empty()) material.update({{"young", m.young}, {"poisson", m.poisson}});
+  if (m.parameters.empty()) {
+    const OrderedJson young = m.young_field.empty() ? OrderedJson(m.young) : OrderedJson{{"field", m.young_field}};
+    material.update({{"young", young}, {"poisson", m.poisson}});
+  }
   material.update(m.parameters);
   return material;
 }

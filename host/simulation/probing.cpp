@@ -110,19 +110,6 @@ Eigen::Matrix3d gradient(const ModelBody& body, std::size_t e, const Weights& we
   return moved * rest.inverse();
 }
 
-/// The material of an element as the scene gives it.
-const Material& material_of(const Body& scene, const ModelBody& body, std::size_t e) {
-  Vec3d middle{};
-  const auto nodes = corners(body, e);
-  for (const std::int32_t n : nodes)
-    middle = vec::add(middle, vec::mul(body.rest[static_cast<std::size_t>(n)], 1.0 / static_cast<double>(nodes.size())));
-  const Material* found = &scene.material;
-  for (const Inclusion& inclusion : scene.inclusions) {
-    if (inclusion.where.contains(middle, static_cast<std::int64_t>(e))) found = &inclusion.material;
-  }
-  return *found;
-}
-
 bool asks(const SceneProbe& probe, Quantity quantity) {
   return std::find(probe.quantities.begin(), probe.quantities.end(), quantity) != probe.quantities.end();
 }
@@ -215,7 +202,7 @@ ProbeState PlacedProbes::at_point(const Simulation& simulation, const Place& pla
   state.velocity = interpolate(nodes, place.weights, v);
   state.position = vec::add(*place.probe.point, *state.displacement);
   if (asks(place.probe, Quantity::stress)) {
-    Material material = material_of(simulation.scene().bodies[place.body], body, element);
+    Material material = material_of(simulation.scene().bodies[place.body], body.materials, element);
     material.low = simulation.model().recovers ? low_volume : 0;
     const auto s = cauchy_stress(material, gradient(body, element, place.weights, u));
     const double none = std::numeric_limits<double>::quiet_NaN();

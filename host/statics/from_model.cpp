@@ -61,13 +61,13 @@ class FromModel {
     const Material* last = nullptr;
     for_each_element(model_, [&](const ElementView& e) {
       if (e.body != number_) return;
-      if (&e.material != last) {
-        last = &e.material;
-        out_.materials.push_back(e.material);
+      if (&e.material != last || e.modulus != 1) {
+        last = e.modulus == 1 ? &e.material : nullptr;
+        out_.materials.push_back(e.modulus == 1 ? e.material : e.material.scaled(e.modulus));
         out_.materials.back().low = 0;  // equilibrium of an inverted element is no answer
       }
       out_.mesh.material[e.id] = static_cast<std::int32_t>(out_.materials.size()) - 1;
-      out_.mesh.fill[e.id] = e.share;
+      out_.mesh.fill[e.id] = e.share / e.modulus;
     });
     for (std::size_t e = 0; e < out_.mesh.fill.size(); ++e) {
       if (!(out_.mesh.fill[e] > 0))

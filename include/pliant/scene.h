@@ -33,6 +33,7 @@ PLIANT_API SurfaceSpec box_surface(const Vec3d& lower, const Vec3d& upper);
 struct MaterialSpec {
   std::string law = "neo-hookean";           ///< by its word
   double young = 3000;                       ///< Young's modulus at small strain [Pa]
+  std::string young_field;                   ///< instead: an array of the body's mesh with that of each element; empty: none
   double poisson = 0.45;                     ///< in (-1, 0.5)
   std::map<std::string, double> parameters;  ///< instead of both: by their keys, {{"mu", 1000}, {"kappa", 50000}}
   double density = 1000;                     ///< [kg/m^3]

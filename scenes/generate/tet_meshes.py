@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Writes the two small tetrahedral meshes beside the scenes: meshes/beam_tet.msh and meshes/cube_tet.vtu.
+"""Writes the small tetrahedral meshes beside the scenes: meshes/beam_tet.msh, meshes/cube_tet.vtu, and meshes/nodule_tet.vtu, whose
+elements have a modulus each.
 
 Each is a grid of boxes split into six tetrahedra along a diagonal (Kuhn's split, mirrored from box to box so that shared faces
 agree), with every vertex moved at random inside its face, edge or volume. The seed is fixed: running it again changes nothing.
@@ -72,8 +73,8 @@ def write_msh(path, vertices, tets):
     path.write_text("\n".join(lines))
 
 
-def write_vtu(path, vertices, tets):
-    """VTK XML with the numbers as text."""
+def write_vtu(path, vertices, tets, moduli=None):
+    """VTK XML with the numbers as text; `moduli` [Pa]: the array "E" of the elements."""
 
     def array(kind, name, components, rows):
         head = f'<DataArray type="{kind}" Name="{name}" NumberOfComponents="{components}" format="ascii">'
@@ -86,8 +87,18 @@ def write_vtu(path, vertices, tets):
     lines += array("Int32", "connectivity", 1, [" ".join(map(str, tet)) for tet in tets])
     lines += array("Int32", "offsets", 1, [" ".join(str(4 * n) for n in range(1, len(tets) + 1))])
     lines += array("UInt8", "types", 1, [" ".join(["10"] * len(tets))])
-    lines += ["</Cells>", "</Piece>", "</UnstructuredGrid>", "</VTKFile>", ""]
+    lines += ["</Cells>"]
+    if moduli:
+        lines += ["<CellData>", *array("Float64", "E", 1, [" ".join(f"{m:.6g}" for m in moduli)]), "</CellData>"]
+    lines += ["</Piece>", "</UnstructuredGrid>", "</VTKFile>", ""]
     path.write_text("\n".join(lines))
+
+
+def modulus(vertices, tet):
+    """Soft tissue of 4 kPa with a nodule that grows stiffer towards its middle, to 60 kPa."""
+    middle = [sum(vertices[n][k] for n in tet) / 4 for k in range(3)]
+    away = sum(((m - c) / r) ** 2 for m, c, r in zip(middle, (0.05, 0.015, 0.025), (0.012, 0.008, 0.012)))
+    return 4000 + 56000 * max(0.0, 1 - away) ** 0.5
 
 
 def main():
@@ -100,6 +111,10 @@ def main():
         vertices, tets = grid(size, cells, 0.2, 2024)
         check(name, size, vertices, tets)
         write(folder / name, vertices, tets)
+    size, name = (0.08, 0.025, 0.05), "nodule_tet.vtu"
+    vertices, tets = grid(size, (16, 5, 10), 0.2, 2026)
+    check(name, size, vertices, tets)
+    write_vtu(folder / name, vertices, tets, [modulus(vertices, tet) for tet in tets])
 
 
 if __name__ == "__main__":

@@ -24,6 +24,26 @@ def vtu(path):
     return arrays
 
 
+class Moduli(CliTest):
+    def test_frames_have_the_modulus_of_each_element(self):
+        scene = json.loads((SCENES / "palpate_nodule.json").read_text())
+        scene["bodies"][0]["mesh"] = str(SCENES / scene["bodies"][0]["mesh"])
+        scene["tools"] = []
+        scene["blades"] = [{"name": "knife", "path": [[0, -0.1, 0.03, -0.1, -0.1, 0.03, 0.1], [0.02, 0.2, 0.01, -0.1, 0.2, 0.01, 0.1]]}]
+        file = self.folder / "nodule.json"
+        file.write_text(json.dumps(scene))
+        self.pliant("run", file, "--backend", "cpu", "--seconds", 0.03, "--every", "10ms", "--out", self.folder / "out")
+        frames = sorted(set((self.folder / "out").glob("*.vtu")) - set((self.folder / "out").glob("*_surface_*.vtu")))
+        first, last = vtu(frames[0]), vtu(frames[-1])
+        text = (SCENES / "meshes/nodule_tet.vtu").read_text()
+        given = [float(x) for x in re.search(r'Name="E"[^>]*>([^<]*)<', text).group(1).split()]
+        for found, expected in zip(first["young"], given):
+            self.assertAlmostEqual(found / expected, 1, delta=1e-6)
+        self.assertEqual(set(first["fill"]), {1.0})
+        self.assertGreater(len(last["young"]), len(given))
+        self.assertLessEqual(set(last["young"]), set(first["young"]))
+
+
 class Cut(CliTest):
     def scene_with_blade(self, **keys):
         return self.scene(body={"prescribed": []}, gravity=[0, 0, 0], blades=[BLADE], **keys)

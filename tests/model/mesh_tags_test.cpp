@@ -40,6 +40,11 @@ TEST_P(TagsOfFormat, HasItsTags) {
   EXPECT_EQ(found(tags.find(gmsh ? "gmsh:geometrical" : "part of")), entities);
   EXPECT_EQ(tags.find("a"), nullptr) << "numbers that are not whole are no tags";
   EXPECT_EQ(tags.find("materialids"), nullptr) << "a name that is given has to be the array's";
+  if (GetParam().name != "gmsh1") {
+    ASSERT_NE(tags.values_of("a"), nullptr);
+    EXPECT_EQ(tags.values_of("a")->of, (std::vector<double>{2, 2.25, 1.5}));
+  }
+  EXPECT_EQ(tags.values_of("v"), nullptr) << "a vector";
   ASSERT_EQ(tags.faces.size(), 1u);
   for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(mesh.vertices.at(tags.faces[0][k]), testing::kPoints[9 + k]);
   EXPECT_EQ(tags.faces[0][3], -1);

@@ -51,6 +51,29 @@ class Bytes {
   bool swap_;
 };
 
+/// $ElementData of version 2 and 4: a vector, "a" = 1.5 + i / 4 of each cell i, and the same at a later time.
+inline std::string gmsh_values(bool binary, bool big = false) {
+  Bytes b(big);
+  for (int data = 0; data < 3; ++data) {
+    const int components = data == 0 ? 3 : 1;
+    b.text(std::string("$ElementData\n1\n") + (data == 0 ? "\"v\"" : "\"a\"") + "\n1\n0.0\n3\n" + (data == 2 ? "1" : "0") +
+           "\n" + std::to_string(components) + "\n" + std::to_string(kCells.size()) + "\n");
+    for (std::size_t i = 0; i < kCells.size(); ++i) {
+      const double value = (data == 2 ? 9 : 1.5) + 0.25 * static_cast<double>(i);
+      if (binary) {
+        b.put(static_cast<std::int32_t>(i + 1));
+        for (int c = 0; c < components; ++c) b.put(value);
+      } else {
+        b.text(std::to_string(i + 1));
+        for (int c = 0; c < components; ++c) b.text(" " + std::to_string(value));
+        b.text("\n");
+      }
+    }
+    b.text(binary ? "\n$EndElementData\n" : "$EndElementData\n");
+  }
+  return b.str();
+}
+
 inline std::string gmsh1() {
   std::ostringstream s;
   s << "$NOD\n" << kPoints.size() << "\n";
@@ -78,7 +101,7 @@ inline std::string gmsh2_text() {
     for (const int n : kCells[i].nodes) s << " " << n + 1;
     s << "\n";
   }
-  s << "$EndElements\n";
+  s << "$EndElements\n" << gmsh_values(false);
   return s.str();
 }
 
@@ -98,7 +121,7 @@ inline std::string gmsh2_binary(bool big) {
     b.put(static_cast<std::int32_t>(i + 1)).put<std::int32_t>(kCells[i].tag).put<std::int32_t>(kCells[i].entity);
     for (const int n : kCells[i].nodes) b.put<std::int32_t>(n + 1);
   }
-  b.text("\n$EndElements\n");
+  b.text("\n$EndElements\n" + gmsh_values(true, big));
   return b.str();
 }
 
@@ -138,7 +161,7 @@ inline std::string gmsh4_text(bool v41) {
     for (const int k : kCells[i].nodes) s << " " << k + 1;
     s << "\n";
   }
-  s << "$EndElements\n";
+  s << "$EndElements\n" << gmsh_values(false);
   return s.str();
 }
 
@@ -174,7 +197,7 @@ inline std::string gmsh4_binary(bool v41) {
     tag(i + 1);
     for (const int k : kCells[i].nodes) tag(static_cast<std::size_t>(k) + 1);
   }
-  b.text("\n$EndElements\n");
+  b.text("\n$EndElements\n" + gmsh_values(true));
   return b.str();
 }
 
@@ -233,7 +256,7 @@ inline std::string vtk_legacy(bool binary, bool newer, bool tagged = false) {
     for (std::size_t i = 0; i < kPoints.size(); ++i) value(std::int32_t{9});
   }
   b.text("\nCELL_DATA 4\nSCALARS a float\nLOOKUP_TABLE default\n");
-  for (int i = 0; i < 4; ++i) value(tagged ? 1.5f : 1.0f);
+  for (int i = 0; i < 4; ++i) value(tagged ? 1.5f + 0.25f * static_cast<float>(i) : 1.0f);
   if (tagged) {
     b.text("\nTENSORS t float\n");
     for (int i = 0; i < 36; ++i) value(0.25f);
@@ -349,7 +372,7 @@ inline std::string vtu(const VtuVariant& v, bool tagged = false) {
     std::vector<int> tags, entities;
     for (const auto& c : kCells) tags.push_back(c.tag), entities.push_back(c.entity);
     s << "<CellData>\n";
-    array("Float32", "a", std::vector<double>{1.5, 1.5, 1.5, 1.5}, float{});
+    array("Float32", "a", std::vector<double>{1.5, 1.75, 2, 2.25}, float{});
     array("Int32", "MaterialIds", tags, std::int32_t{});
     array("Float64", "part of", entities, double{});
     s << "</CellData>\n";

@@ -72,6 +72,11 @@ struct SchemaKeys {
     const char* const pattern = "^(x?y?z?|x?z?y?|y?x?z?|y?z?x?|z?x?y?|z?y?x?)$";
     entry.update({{"type", "string"}, {"pattern", pattern}, {"minLength", 1}, {"default", axes_text(standard)}});
   }
+  static void add_kind(Json& entry, const Key& key, const PerElement& /*standard*/) {
+    Json number;
+    add_kind(number, key, double{});
+    entry["oneOf"] = {number, {{"$ref", "#/$defs/element_field"}}};
+  }
   template <class T>
   static void add_kind(Json& entry, const Key& key, const std::optional<T>& /*standard*/) {
     add_kind(entry, key, T{});
@@ -128,6 +133,9 @@ struct DocumentRows {
   }
   static std::string allowed(const Key& /*key*/, const std::array<bool, 3>& /*standard*/) {
     return "one to three different letters of xyz";
+  }
+  static std::string allowed(const Key& key, const PerElement& /*standard*/) {
+    return allowed(key, double{}) + ", or `{\"field\": \"E\"}`";
   }
   template <class T>
   static std::string allowed(const Key& key, const std::optional<T>& /*standard*/) {

@@ -8,6 +8,7 @@
 #include "scene/keys.h"
 #include "scene/scene.h"
 #include "support/error_of.h"
+#include "support/source_dir.h"
 
 namespace pliant {
 namespace {
@@ -271,6 +272,31 @@ TEST(Mistakes, RegionsOfAMesh) {
       {R"({"region": 1e300})", "/region: got 1e+300, expected a tag of the mesh file"}};
   for (const auto& [selection, text] : wrong)
     EXPECT_NE(with(selection).find(std::string("dir/s.json: /bodies/0/fixed/0") + text), std::string::npos) << with(selection);
+}
+
+TEST(Mistakes, FieldsOfAMesh) {
+  EXPECT_NE(
+      patched("/bodies/0/material/young", R"({"field": "E"})").find("expected a number: only the elements of a volume mesh"),
+      std::string::npos);
+  Json scene = Json::parse(kGoodScene);
+  Json& body = scene["bodies"][0];
+  body.erase("surface"), body.erase("lattice"), body.erase("model");
+  body["mesh"] = test::source_dir() + "/scenes/meshes/nodule_tet.vtu";
+  body["element"] = "tet4";
+  const auto with = [&](const char* young) {
+    body["material"] = {{"young", Json::parse(young)}, {"poisson", 0.4}};
+    return message(scene.dump());
+  };
+  EXPECT_EQ(with(R"({"field": "E"})"), "");
+  const std::vector<std::array<const char*, 2>> wrong{
+      {R"({"field": "F"})", "/young/field: got \"F\": "},
+      {R"({"field": "F"})", "has \"E\", expected an array with one number per element"},
+      {R"({"field": 3})", "/young/field: got 3, expected the name of an array of the mesh"},
+      {R"({"feild": "E"})", "did you mean \"field\"?"},
+      {R"({})", "/young: got no \"field\", expected the name of an array of the mesh"}};
+  for (const auto& [young, text] : wrong) EXPECT_NE(with(young).find(text), std::string::npos) << with(young);
+  body["material"] = {{"law", "yeoh"}, {"young", {{"field", "E"}}}, {"poisson", 0.4}};
+  EXPECT_NE(message(scene.dump()).find("expected no \"young\" beside the law yeoh"), std::string::npos);
 }
 
 TEST(Mistakes, TwoBodiesOfOneName) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -11,6 +12,7 @@
 #include "geometry/mesh.h"
 #include "scene/keys.h"
 #include "support/error_of.h"
+#include "support/source_dir.h"
 
 namespace pliant::spec_test {
 namespace {
@@ -300,6 +302,21 @@ TEST(Spec, MistakesAreNamedAsInAFile) {
       EXPECT_EQ(message.substr(0, std::string(c.message).size()), c.message) << message;
     }
   }
+}
+
+TEST(Spec, TakesAModulusPerElement) {
+  BodySpec body;
+  body.volume_file = test::source_dir() + "/scenes/meshes/nodule_tet.vtu";
+  body.element = "tet4";
+  body.material.young_field = "E";
+  body.material.poisson = 0.4;
+  SceneSpec spec;
+  spec.bodies = {body};
+  const Material m = scene_of(spec).bodies[0].material;
+  ASSERT_NE(m.young_field, nullptr);
+  EXPECT_EQ(m.young_field->values.size(), 4800u);
+  EXPECT_EQ(m.young_field->largest, *std::max_element(m.young_field->values.begin(), m.young_field->values.end()));
+  EXPECT_NEAR(m.moduli.young(), m.young_field->largest, 1e-9 * m.young_field->largest);
 }
 
 }  // namespace
