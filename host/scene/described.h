@@ -1,7 +1,7 @@
 // The keys of a scene file that are one value, each described once: a number, a flag, a word, three numbers. The loader, the
 // keys that it knows, the writer, scenes/schema.json, the tables of docs/scene.md and the way from the structs of
 // include/pliant follow from it (described_keys.h, write.cpp, tests/scene/tables_test.cpp). A key of this kind is a member of
-// its struct, a line here or in described_parts.h, its use and its test.
+// its struct, a line here, in described_parts.h or in described_entries.h, its use and its test.
 #pragma once
 #include <limits>
 #include <optional>

@@ -43,9 +43,10 @@ void describe_field(V&& v, S&& s) {
 
 template <class V, class S>
 void describe_force(V&& v, S&& s) {
-  v(s.force, required({"force", any, "N", "[0, 0, 0.02]",
-                       "the total at factor 1, shared by the nodes: in a lattice by their mass, in a mesh equally; nodes that "
-                       "a tear made of one share its part by mass"}));
+  v(s.force,
+    required({"force", any, "N", "[0, 0, 0.02]",
+              "the total force at factor 1, shared by the nodes: in a lattice by their mass, in a mesh equally; nodes that "
+              "a tear made of one share its part by mass"}));
 }
 
 template <class V, class S>
@@ -62,7 +63,7 @@ void describe_place(V&& v, S&& s) {
 
 template <class V, class S>
 void describe_pace(V&& v, S&& s) {
-  v(s.every_steps, required({"steps", from_to(1, 1e12), "", "10", "steps between two rows"}));
+  v(s.every_steps, required({"steps", from_to(1, 1e12), "", "10", "number of steps between two rows"}));
 }
 
 }  // namespace pliant

@@ -50,11 +50,14 @@ double read_number(const Reader& field, const Key& key, bool whole) {
   }
   const double x = field.number(expected);
   if (r.also && r.word == nullptr && x == *r.also) return x;
-  if (!within(x, r)) field.fail(x > 0 && x < kSmallest ? "a number of at least 1e-30" : expected);
+  if (!within(x, r)) field.fail(r.above && r.least == 0 && x > 0 && x < kSmallest ? "a number of at least 1e-30" : expected);
   return x;
 }
 
-std::string ReadKeys::missing(const Key& key) { return key.about + unit_text(key); }
+std::string ReadKeys::missing(const Key& key) {
+  const std::string about = key.about;
+  return about.substr(0, about.find_first_of(",;:")) + unit_text(key);
+}
 
 void ReadKeys::read(const Reader& field, const Key& /*key*/, std::array<Vec3d, 3>& member) {
   const char* const expected = "three rows of three numbers";
