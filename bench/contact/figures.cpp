@@ -44,7 +44,7 @@ Vec3d velocity_of(const Simulation& s, std::size_t body) { return mean_over(s, b
 /// Until a time; returns the impulse on the first tool [N s].
 Vec3d impulse_until(Simulation& s, double time) {
   Vec3d sum{};
-  until(s, time, [&](double took) { sum = vec::add(sum, vec::mul(s.contact().history()[0].now.force, took)); });
+  until(s, time, [&](double took) { sum = vec::add(sum, vec::mul(s.report().tools[0].now.force, took)); });
   return sum;
 }
 
@@ -89,7 +89,7 @@ void weight(PartRun& run, ElementKind element) {
   scene.gravity = {0, 0, -kGravity};
   const auto s = simulate(scene, run.options.backend);
   until(*s, 1);
-  run.close_to("weight on a wall [N]", to_string(element), -s->contact().history()[0].now.force[2],
+  run.close_to("weight on a wall [N]", to_string(element), -s->report().tools[0].now.force[2],
                kGravity * s->model().bodies[0].mass, 1e-4);
 }
 
@@ -149,7 +149,7 @@ void hertz(PartRun& run, int cells, double bound) {
   const auto s = simulate(scene, run.options.backend);
   until(*s, 0.5);
   run.close_to("a sphere on a bonded layer [N]", fmt::format("{:.0f} cells per radius of the contact", cells / 10.0),
-               4 * s->contact().history()[0].now.force[2], bonded_layer(radius, height, 1e4, 0.3, depth), bound);
+               4 * s->report().tools[0].now.force[2], bonded_layer(radius, height, 1e4, 0.3, depth), bound);
 }
 
 /// Two bodies that meet askew in free space.

@@ -60,7 +60,7 @@ Held hold(Simulation& s, double end) {
   double early = 0, late = 0, last = 0;
   until(s, end, [&](double took) {
     if (s.time() > end - 0.5) {
-      for (std::size_t c = 0; c < 3; ++c) held.force[c] += took * s.contact().history()[0].now.force[c];
+      for (std::size_t c = 0; c < 3; ++c) held.force[c] += took * s.report().tools[0].now.force[c];
       last += took;
     }
     const bool first = s.time() > kPress && s.time() <= kPress + kWindow;

@@ -118,8 +118,8 @@ Felt go(const Stroke& p, const std::string& backend) {
   until(
       *s, end,
       [&](double) {
-        const bool feels = s->contact().history()[0].touched > touched;
-        touched = s->contact().history()[0].touched;
+        const bool feels = s->report().tools[0].touched > touched;
+        touched = s->report().tools[0].touched;
         const double depth = depth_of(*s, samples);
         felt.deepest = std::max(felt.deepest, depth);
         felt.unseen = felt.unseen || (!feels && depth > 1);

@@ -107,8 +107,8 @@ void measure(PartRun& run, const std::string& name, const Kind& kind, const Scen
     late /= late_time * elastic;
     run.at_most("kinetic over strain energy at rest", words, late,
                 std::max(kTissueResting, kTissueBeats * early * std::exp(-kind.damping * (kTissueHold - kTissueWindow))));
-    run.at_most("deepest pair [cells]", words, s->contact().tissue().max_depth / kTissueCell, kDeepest);
-    run.at_least("points that touch", words, static_cast<double>(s->contact().tissue().points), 20, 0);
+    run.at_most("deepest pair [cells]", words, s->report().tissue.max_depth / kTissueCell, kDeepest);
+    run.at_least("points that touch", words, static_cast<double>(s->report().tissue.points), 20, 0);
   } catch (const Error& error) {
     run.failed("kinetic over strain energy at rest", words, error.what());
   }

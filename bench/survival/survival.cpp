@@ -15,7 +15,6 @@
 #include "io/atomic_file.h"
 #include "model/pieces.h"
 #include "pliant/error.h"
-#include "simulation/energy_watch.h"
 #include "simulation/simulation.h"
 
 namespace pliant::bench {
@@ -84,14 +83,13 @@ json run_one(std::int64_t number, const SurvivalOptions& options) {
     row["nodes"] = s.model().nodes();
     const double first = s.dt(), end = options.quick ? kEnd / 4 : kEnd;
     double least = first;
-    EnergyWatch energy(scene);
     const Stopwatch clock;
     double watched = 0;
     while (s.time() < end && !s.divergence()) {
       s.advance(64);
       least = std::min(least, s.dt());
       const Stopwatch watching;
-      if (!s.divergence()) energy.look(s);
+      if (!s.divergence()) s.watch_energy();
       watched += watching.seconds();
     }
     const double wall = clock.seconds() - watched;
@@ -108,15 +106,15 @@ json run_one(std::int64_t number, const SurvivalOptions& options) {
     row["least_dt"] = least / first;
     row["last_dt"] = s.dt() / first;
     row["mean_dt"] = s.time() / static_cast<double>(std::max<std::int64_t>(1, s.step())) / first;
-    row["inverted"] = s.inversions().most;
-    row["inverted_now"] = s.inversions().last;
+    row["inverted"] = s.report().inversions.most;
+    row["inverted_now"] = s.report().inversions.last;
     row["added_mass"] = added / mass;
     row["opened"] = s.state().opened;
-    row["ballast"] = s.ballast().most / mass;
+    row["ballast"] = s.report().ballast.most / mass;
     row["largest"] = std::isfinite(largest) ? json(largest) : json();
     row["pieces"] = pieces_of(s);
     row["edits"] = s.topology_version();
-    const std::optional<double> created = energy.created();
+    const std::optional<double> created = s.report().energy.share();
     row["energy_created"] = created ? json(*created) : json();
     row["ms_per_frame"] = 1e3 * wall / (std::max(s.time(), first) * 60);
   } catch (const Error& error) {

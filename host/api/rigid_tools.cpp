@@ -128,13 +128,13 @@ void RigidTools::settle(const Simulation& simulation) {
 void RigidTools::note(const Simulation& simulation) {
   std::vector<ToolForce> forces;
   const RunState& state = simulation.state();
-  const ToolContact& contact = simulation.contact();
+  const std::vector<ToolHistory>& felt = simulation.report().tools;
   std::size_t present = 0;
   for (const ContactTool& tool : known_tools(simulation.scene(), state.tools)) {
     const Pose at = tool_pose(tool, state, simulation.time());
     ToolForce force{tool.name, at.position, at.turn, {}, {}, 0, 0, is_parked(state.tools, tool.name)};
     if (!force.parked) {
-      const ToolLoad& now = contact.history()[present++].now;
+      const ToolLoad& now = felt[present++].now;
       force.force = now.force;
       force.torque = now.torque;
       force.area = now.area;

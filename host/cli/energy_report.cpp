@@ -24,7 +24,6 @@ bool is_accounted(const Scene& scene) {
 EnergyReport::EnergyReport(Simulation& simulation, const RunLoop& loop)
     : simulation_(simulation),
       loop_(loop),
-      watch_(simulation.scene()),
       accounted_(is_accounted(simulation.scene())),
       every_(std::max<std::int64_t>(1, loop.remaining() / kLooks)),
       next_(loop.remaining()) {
@@ -36,12 +35,12 @@ void EnergyReport::look() {
   const std::int64_t left = loop_.remaining();
   if (left > next_) return;
   next_ = std::max<std::int64_t>(0, left - every_);
-  watch_.look(simulation_);
+  simulation_.watch_energy();
 }
 
 std::optional<double> EnergyReport::created() const {
   if (!accounted_ || simulation_.topology_version() > 0) return {};
-  return watch_.created();
+  return simulation_.report().energy.share();
 }
 
 std::optional<std::string> EnergyReport::remark() const {

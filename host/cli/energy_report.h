@@ -4,7 +4,7 @@
 #include <string>
 
 #include "cli/run_loop.h"
-#include "simulation/energy_watch.h"
+#include "simulation/simulation.h"
 
 namespace pliant::cli {
 
@@ -23,7 +23,6 @@ class EnergyReport {
  private:
   Simulation& simulation_;
   const RunLoop& loop_;
-  EnergyWatch watch_;
   bool accounted_ = false;
   std::int64_t every_ = 0, next_ = 0;  ///< [steps left]
 };

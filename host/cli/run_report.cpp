@@ -25,7 +25,7 @@ double total_mass(const Model& model) {
 
 class Report {
  public:
-  explicit Report(const RunReport& report)
+  explicit Report(const FinishedRun& report)
       : r_(report),
         s_(report.simulation),
         out_(report.common),
@@ -149,14 +149,15 @@ class Report {
     for (const ModelBody& body : s_.model().bodies) added += body.added_mass;
     json["mass"] = mass;
     json["added_mass"] = added;
-    const BallastReport& ballast = s_.ballast();
+    const BallastReport& ballast = s_.report().ballast;
     json["ballast"] = {{"nodes", ballast.nodes}, {"mass", ballast.mass}, {"most", ballast.most}};
   }
 
   void add_inversions(Json& json) const {
-    const Inversions& inverted = s_.inversions();
+    const Inversions& inverted = s_.report().inversions;
     json["inverted"] = {{"batches", inverted.batches}, {"most", inverted.most}, {"now", inverted.last}};
     json["calmed_elements"] = inverted.calmed;
+    json["batches_made_again"] = s_.report().made_again;
     if (inverted.batches == 0) return;
     json["inverted"]["first"] = {
         {"step", inverted.first_step}, {"time", inverted.first_time}, {"body", inverted.body}, {"element", inverted.element}};
@@ -213,7 +214,7 @@ class Report {
     return rows;
   }
 
-  const RunReport& r_;
+  const FinishedRun& r_;
   Simulation& s_;
   const Common& out_;
   const RunResult& result_;
@@ -222,6 +223,6 @@ class Report {
 
 }  // namespace
 
-void report_run(const RunReport& report) { Report{report}(); }
+void report_run(const FinishedRun& report) { Report{report}(); }
 
 }  // namespace pliant::cli

@@ -11,7 +11,7 @@
 
 namespace pliant::cli {
 
-struct RunReport {
+struct FinishedRun {
   const Common& common;
   const std::string& stem;  ///< of the scene
   Simulation& simulation;
@@ -27,6 +27,6 @@ struct RunReport {
 };
 
 /// Print what people read, remarks, and the JSON object (docs/schema/run.json).
-void report_run(const RunReport& report);
+void report_run(const FinishedRun& report);
 
 }  // namespace pliant::cli

@@ -29,7 +29,7 @@ void add_tools(const Simulation& simulation, nlohmann::ordered_json& json) {
   std::int64_t points = 0;
   double deepest = 0;
   for (std::size_t t = 0; t < tools.size(); ++t) {
-    const ToolHistory& h = simulation.contact().history()[t];
+    const ToolHistory& h = simulation.report().tools[t];
     json["tools"].push_back({{"name", tools[t].name},
                              {"force", h.now.force},
                              {"torque", h.now.torque},
@@ -42,7 +42,7 @@ void add_tools(const Simulation& simulation, nlohmann::ordered_json& json) {
     points += h.now.points;
     deepest = std::max(deepest, h.max_depth);
   }
-  const TouchHistory& tissue = simulation.contact().tissue();
+  const TouchHistory& tissue = simulation.report().tissue;
   points += tissue.points;
   deepest = std::max(deepest, tissue.max_depth);
   const ContactPoints* all = simulation.model().contact.get();
@@ -53,14 +53,14 @@ void add_tools(const Simulation& simulation, nlohmann::ordered_json& json) {
 }
 
 std::string tool_line(const Simulation& simulation, std::size_t tool) {
-  const ToolHistory& h = simulation.contact().history()[tool];
+  const ToolHistory& h = simulation.report().tools[tool];
   return fmt::format("tool {}: force [{:.4g}] N, at most {:.4g} N; touches {:.3g} m^2, at most {:.3g} m deep; did {:.4g} J",
                      simulation.contact().tools()[tool].name, fmt::join(h.now.force, ", "), h.max_force, h.now.area,
                      h.max_depth, h.work);
 }
 
 std::string tissue_line(const Simulation& simulation) {
-  const TouchHistory& tissue = simulation.contact().tissue();
+  const TouchHistory& tissue = simulation.report().tissue;
   return fmt::format("tissue: {} of {} contact points touch other tissue, at most {:.3g} m deep", tissue.points,
                      simulation.model().contact->size(), tissue.max_depth);
 }
@@ -75,7 +75,7 @@ void ToolTable::write(const Simulation& simulation, const std::filesystem::path&
         "[m],points,work [J]\n";
   }
   for (std::size_t t = 0; t < tools.size(); ++t) {
-    const ToolHistory& history = simulation.contact().history()[t];
+    const ToolHistory& history = simulation.report().tools[t];
     const ToolLoad& now = history.now;
     const Pose at = simulation.contact().pose(t, simulation.time());
     table_ += fmt::format("{:.9g},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{},{:.9g}\n", simulation.time(), simulation.step(),

@@ -13,6 +13,7 @@
 #include "geometry/vec.h"
 #include "model/partition.h"
 #include "pliant/error.h"
+#include "simulation/recovery/limits.h"
 
 namespace pliant {
 namespace {

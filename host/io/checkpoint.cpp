@@ -11,13 +11,13 @@
 #include "program/hash.h"
 
 // Layout: "PLIANTCK", u32 version, u32 zero, u64 length of the whole file, then u64 parts {string, u64 hash}, string name,
-// string real type, string run state (run_state.h), u64 buffers {string, u64 n, n bytes}, u64 hash of all before. A string is a
-// u64 length and its bytes.
+// string real type, string run state (run_state.h), string report (run_report.h), u64 buffers {string, u64 n, n bytes}, u64
+// hash of all before. A string is a u64 length and its bytes.
 namespace pliant {
 namespace {
 
 constexpr std::string_view kMagic = "PLIANTCK";
-constexpr std::uint32_t kVersion = 5;
+constexpr std::uint32_t kVersion = 6;
 constexpr std::size_t kHead = 24;
 constexpr std::size_t kTail = 8;
 
@@ -145,6 +145,7 @@ void write_checkpoint(const std::filesystem::path& file, const Checkpoint& check
   put(out, checkpoint.scene_name);
   put(out, s.real_type);
   put(out, write_state(s.state));
+  put(out, write_report(s.reports));
   put(out, static_cast<std::uint64_t>(s.buffers.size()));
   for (const NamedBytes& b : s.buffers) {
     put(out, b.name);
@@ -175,6 +176,7 @@ Checkpoint read_checkpoint(const std::filesystem::path& file) {
   }
   try {
     s.state = read_state(std::string(in.bytes("bytes of the run state")));
+    s.reports = read_report(std::string(in.bytes("bytes of the report")));
   } catch (const Error& error) {
     throw Error(error.code(), fmt::format("'{}' is damaged: {}", file.string(), error.what()));
   }

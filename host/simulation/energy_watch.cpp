@@ -1,5 +1,4 @@
-#include "simulation/energy_watch.h"
-
+// Energy that nothing put in.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -8,6 +7,7 @@
 #include "geometry/vec.h"
 #include "simulation/energy.h"
 #include "simulation/run_context.h"
+#include "simulation/simulation.h"
 
 namespace pliant {
 namespace {
@@ -49,31 +49,25 @@ double last_change(const Scene& scene) {
 
 }  // namespace
 
-EnergyWatch::EnergyWatch(const Scene& scene) : from_(last_change(scene)) {}
-
-void EnergyWatch::look(Simulation& s) {
-  const Model& m = s.model();
-  if (s.time() < from_ || s.inversions().last > 0 || !m.flsm.empty()) return;
+void Simulation::watch_energy() {
+  const Model& m = model();
+  if (time() < last_change(scene_) || report().inversions.last > 0 || !m.flsm.empty()) return;
   std::vector<std::vector<Vec3d>> u(m.bodies.size()), v(m.bodies.size());
   for (std::size_t b = 0; b < m.bodies.size(); ++b) {
-    u[b] = s.displacements(b);
-    v[b] = s.velocities(b);
+    u[b] = displacements(b);
+    v[b] = velocities(b);
   }
   const std::vector<Vec3d> velocity = by_slot(m, v);
-  Energies now = energies(m, by_slot(m, u), velocity, {s.scene().gravity_at(s.time()), s.time()});
-  now.kinetic = kinetic(s, velocity);
+  Energies now = energies(m, by_slot(m, u), velocity, {scene_.gravity_at(time()), time()});
+  now.kinetic = kinetic(*this, velocity);
   if (!std::isfinite(now.total())) return;
   double work = 0;
-  for (const ToolHistory& tool : s.contact().history()) work += tool.work;
+  for (const ToolHistory& tool : report().tools) work += tool.work;
   const double left = now.total() - work;
-  highest_ = std::max({highest_, now.kinetic + now.strain + now.hourglass, std::abs(work)});
-  if (!least_ || left < *least_) least_ = left;
-  created_ = std::max(created_, left - *least_);
-}
-
-std::optional<double> EnergyWatch::created() const {
-  if (!least_) return {};
-  return highest_ > 0 ? created_ / highest_ : 0;
+  EnergyHistory& seen = reports_.now.energy;
+  seen.highest = std::max({seen.highest, now.kinetic + now.strain + now.hourglass, std::abs(work)});
+  if (!seen.least || left < *seen.least) seen.least = left;
+  seen.created = std::max(seen.created, left - *seen.least);
 }
 
 }  // namespace pliant

@@ -3,14 +3,14 @@
 
 namespace pliant {
 
-Moment Simulation::moment() const { return {state_.clock, loaded_.state_bytes(), contact_.felt()}; }
+Moment Simulation::moment() const { return {state_.clock, loaded_.state_bytes(), reports_.now}; }
 
 void Simulation::look_at(const Moment& moment, const std::function<void()>& look) {
   const Moment present = this->moment();
   const auto go = [&](const Moment& to) {
     state_.clock = to.clock;
     loaded_.write_state_bytes(to.buffers);
-    contact_.set_felt(to.felt);
+    reports_.now = to.report;
   };
   go(moment);
   try {
@@ -25,9 +25,6 @@ void Simulation::look_at(const Moment& moment, const std::function<void()>& look
 bool Simulation::confirm() {
   if (settled() || divergence_) return !divergence_;
   const Snapshot present = snapshot();
-  const Felt felt = contact_.felt();
-  const Inversions inversions = inversions_;
-  const BallastReport ballast = ballast_;
   while (!settled()) {
     const std::int32_t n = next_batch(settings_.batch_steps);
     const std::int64_t end = step() + n;
@@ -38,9 +35,7 @@ bool Simulation::confirm() {
   }
   write_buffers(present, loaded_);
   state_ = present.state;
-  contact_.set_felt(felt);
-  inversions_ = inversions;
-  ballast_ = ballast;
+  reports_ = present.reports;
   return true;
 }
 

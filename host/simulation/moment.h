@@ -3,15 +3,14 @@
 #include <cstdint>
 #include <vector>
 
-#include "simulation/run_state_parts.h"
-#include "simulation/tool_contact.h"
+#include "simulation/run_report.h"
 
 namespace pliant {
 
 struct Moment {
   Clock clock;
   std::vector<std::vector<std::uint8_t>> buffers;  ///< LoadedModel::state_bytes()
-  Felt felt;
+  RunReport report;
 };
 
 }  // namespace pliant

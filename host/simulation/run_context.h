@@ -21,8 +21,6 @@ struct RunSettings {
   double displacement_grid = 0;   ///< displacements below this are rounded to multiples of 2^-22 of it [m], a power of two
 };
 
-/// Substeps with which torn hybrids came to their end that 2 to 8 drove apart (docs/stability.md).
-inline constexpr std::int32_t kSafeSubsteps = 1;
 inline constexpr std::int64_t kTearSteps = 16;   ///< steps between two looks for faces that break
 inline constexpr std::int64_t kRelaxEvery = 32;  ///< steps between two changes of dynamic relaxation
 

@@ -37,7 +37,7 @@ void add_opened(const Simulation& s, Sentences& out) {
 }
 
 void add_ballast(const Simulation& s, Sentences& out) {
-  const BallastReport& ballast = s.ballast();
+  const BallastReport& ballast = s.report().ballast;
   if (!(ballast.most > 0)) return;
   double mass = 0;
   for (const ModelBody& body : s.model().bodies) mass += body.mass;
@@ -48,7 +48,7 @@ void add_ballast(const Simulation& s, Sentences& out) {
 }
 
 void add_inversions(const Simulation& s, Sentences& out) {
-  const Inversions& inverted = s.inversions();
+  const Inversions& inverted = s.report().inversions;
   if (inverted.calmed > 0) {
     out.push_back(
         fmt::format("in {} elements, counted batch by batch, nodes came to move against each other by more than a quarter of "
@@ -88,7 +88,7 @@ double thickness(const ToolForm& form) {
 
 void add_tool(const Simulation& s, std::size_t tool, Sentences& out) {
   const std::string& name = s.scene().tools[tool].name;
-  const ToolHistory& h = s.contact().history()[tool];
+  const ToolHistory& h = s.report().tools[tool];
   const double spacing = s.model().contact->spacing, cells = h.max_depth / spacing;
   const double thick = thickness((*s.model().tools)[tool]);
   if (thick < kThin * spacing && edge_points((*s.model().tools)[tool], *s.model().contact).empty()) {
@@ -115,7 +115,7 @@ void add_tool(const Simulation& s, std::size_t tool, Sentences& out) {
 void add_damping(Simulation& s, Sentences& out) {
   if (s.scene().relaxation.enabled || !s.model().flsm.empty() || s.scene().integrator != Integrator::increment) return;
   Vec3d on_tools{}, held{}, damped{};
-  for (const ToolHistory& h : s.contact().history()) on_tools = vec::add(on_tools, h.now.force);
+  for (const ToolHistory& h : s.report().tools) on_tools = vec::add(on_tools, h.now.force);
   const double size = vec::norm(on_tools);
   if (!(size > 0)) return;
   bool holds = false;
@@ -141,7 +141,7 @@ void add_damping(Simulation& s, Sentences& out) {
 void add_contact(Simulation& s, Sentences& out) {
   const ContactPoints* points = s.model().contact.get();
   if (points == nullptr || points->size() == 0) return;
-  const double deepest = s.contact().tissue().max_depth / points->spacing;
+  const double deepest = s.report().tissue.max_depth / points->spacing;
   if (deepest > kDeep) {
     out.push_back(fmt::format(
         "tissue went {:.2g} cells deep into other tissue: sharp edges and parts thinner than a cell meet late, and held nodes "

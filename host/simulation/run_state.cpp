@@ -1,4 +1,5 @@
-// The bytes of a RunState: for each member its name, then its value. Numbers take eight bytes, lists begin with their length.
+// The bytes of a RunState and of RunReports: for each member its name, then its value. Numbers take eight bytes, lists begin
+// with their length.
 #include "simulation/run_state.h"
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include <type_traits>
 
 #include "pliant/error.h"
+#include "simulation/run_report.h"
 
 namespace pliant {
 namespace {
@@ -69,7 +71,7 @@ class StateWriter {
 
 class StateReader {
  public:
-  explicit StateReader(const std::string& bytes) : bytes_(bytes) {}
+  StateReader(const char* what, const std::string& bytes) : what_(what), bytes_(bytes) {}
   template <class T>
   void operator()(const char* name, T& value) {
     const std::size_t start = at_;
@@ -77,7 +79,7 @@ class StateReader {
     get(found);
     if (found != name) {
       throw Error(ErrorCode::bad_input,
-                  fmt::format("the run state is damaged: byte {} should begin its member \"{}\"", start, name));
+                  fmt::format("the {} is damaged: byte {} should begin its member \"{}\"", what_, start, name));
     }
     name_ = name;
     get(value);
@@ -90,13 +92,13 @@ class StateReader {
   void end() const {
     if (at_ != bytes_.size()) {
       throw Error(ErrorCode::bad_input,
-                  fmt::format("the run state is damaged: {} bytes too many at its end", bytes_.size() - at_));
+                  fmt::format("the {} is damaged: {} bytes too many at its end", what_, bytes_.size() - at_));
     }
   }
 
  private:
   [[noreturn]] void fail(const char* what) const {
-    throw Error(ErrorCode::bad_input, fmt::format("the run state is damaged: its member \"{}\" {} at byte {} of {}", name_,
+    throw Error(ErrorCode::bad_input, fmt::format("the {} is damaged: its member \"{}\" {} at byte {} of {}", what_, name_,
                                                   what, at_, bytes_.size()));
   }
   std::uint64_t word() {
@@ -170,25 +172,33 @@ class StateReader {
     visit(*this, value);
   }
 
+  const char* what_;
   const std::string& bytes_;
   std::size_t at_ = 0;
-  std::string name_ = "clock";
+  std::string name_;
 };
 
-}  // namespace
-
-std::string write_state(const RunState& state) {
+template <class T>
+std::string write(const T& all) {
   StateWriter writer;
-  visit(writer, const_cast<RunState&>(state));  // this visitor only reads
+  visit(writer, const_cast<T&>(all));  // this visitor only reads
   return std::move(writer.bytes);
 }
 
-RunState read_state(const std::string& bytes) {
-  RunState state;
-  StateReader reader(bytes);
-  visit(reader, state);
+template <class T>
+T read(const char* what, const std::string& bytes) {
+  T all;
+  StateReader reader(what, bytes);
+  visit(reader, all);
   reader.end();
-  return state;
+  return all;
 }
+
+}  // namespace
+
+std::string write_state(const RunState& state) { return write(state); }
+std::string write_report(const RunReports& reports) { return write(reports); }
+RunState read_state(const std::string& bytes) { return read<RunState>("run state", bytes); }
+RunReports read_report(const std::string& bytes) { return read<RunReports>("report", bytes); }
 
 }  // namespace pliant

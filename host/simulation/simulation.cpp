@@ -4,40 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
-#include "layout.h"
 #include "model/ballast.h"
 #include "pliant/error.h"
 #include "program/hash.h"
 #include "schedule/build_program.h"
 #include "schedule/surface_program.h"
-#include "simulation/calm.h"
 #include "simulation/coupling.h"
 #include "simulation/relaxation.h"
 #include "simulation/remarks.h"
 #include "simulation/tool_changes.h"
 
 namespace pliant {
-
-/// An increment of a step that calls for a look at its length, as a share of the shortest element.
-constexpr double kFastIncrement = 0.1;
-/// Largest increment of an element's nodes against each other, as a share of its edge. Steps below half the first take less:
-/// the limit is then that of the first step, a velocity of about half that of sound.
-constexpr double kFastest = 0.25;
-/// An element whose nodes move so many edges against each other in one step, twice what a batch begins with at most, has burst,
-/// even if its numbers are finite still.
-constexpr double kBurst = 0.5;
-
-std::string Divergence::message() const {
-  return fmt::format(
-      "the simulation diverged in step {} (t = {:.6g} s): {} {} of body '{}' is {}not finite; dt = {:.6g} s, "
-      "stable step "
-      "{:.6g} s ({:.3g} times); the state of step {} was kept",
-      step, time, node ? "node" : "element", element, body, node ? "" : "inverted or ", dt, stable_dt,
-      stable_dt > 0 ? dt / stable_dt : 0.0, last_good_step);
-}
 
 Simulation::Simulation(Scene scene, std::unique_ptr<Backend> backend, const SimulationOptions& options)
     : scene_(std::move(scene)), loaded_(std::move(backend)) {
@@ -121,7 +100,7 @@ void Simulation::begin_batch(std::int32_t steps) {
   if (on_grid) edits_.update();
   step_.adapt_when_due();
   if (on_grid) drift_.follow();
-  if (!state_.kept || (on_grid && worth_keeping())) keep_state();
+  recovery_.keep(on_grid);
   run_.upload_params();
   run_.upload_curves(steps);
   contact_.begin_batch(steps);
@@ -130,131 +109,13 @@ void Simulation::begin_batch(std::int32_t steps) {
 void Simulation::end_batch(std::int32_t steps) {
   const std::int64_t start = step();
   state_.clock.step += steps;
-  look_for_fault(start);
+  divergence_ = recovery_.look(start);
   if (step() == start + steps) contact_.end_batch(steps);
   if (!divergence_ && scene_.relaxation.enabled && run_.begins_after(step(), kRelaxEvery)) relax(run_);
-  ballast_.nodes = static_cast<std::int64_t>(state_.ballast.size());
-  ballast_.mass = 0;
-  for (const NodeInertia& b : state_.ballast) ballast_.mass += b.inertia;
-  ballast_.most = std::max(ballast_.most, ballast_.mass);
-}
-
-/// With a step that the user gave a run may burst long before a number ends: what flies apart is no state to go back to.
-bool Simulation::worth_keeping() {
-  if (settings_.automatic || scene_.integrator != Integrator::increment) return true;
-  backend().run(program().status, 0, 1);
-  return loaded_.largest_increment() <= kBurst * model().shortest;
-}
-
-void Simulation::keep_state() {
-  loaded_.keep_state();
-  state_.kept = KeptState{state_.clock, state_.relaxation.damping};
-  contact_.keep();
-  kept_inversions_ = inversions_;
-}
-
-void Simulation::look_for_fault(std::int64_t batch_start) {
-  // The steps looked at the states they started from; the last state is looked at here, before it can pass for a good one.
-  backend().run(program().force, static_cast<std::int32_t>(step() - batch_start), 1);
-  backend().run(program().status, 0, 1);
-  const std::vector<std::int32_t> summary = loaded_.faults();
-  std::int32_t fault = 0, element = 0, lowest = std::numeric_limits<std::int32_t>::max();
-  std::int64_t inverted = 0;
-  for (std::size_t i = 0; i < summary.size(); i += PLIANT_FAULT_SUMMARY) {
-    if (summary[i + 2] > 0) {
-      inverted += summary[i + 2];
-      lowest = std::min(lowest, summary[i + 3]);
-    }
-    if (summary[i] == 0) continue;
-    if (fault == 0 || summary[i] < fault || (summary[i] == fault && summary[i + 1] < element)) {
-      fault = summary[i];
-      element = summary[i + 1];
-    }
-  }
-  inversions_.last = 0;
-  if (fault == 0) {
-    if (inverted > 0) count_inversions(batch_start, inverted, lowest);
-    // Judged by the state alone, and only where states are kept: a run may be cut into pieces anywhere else.
-    if (!settings_.automatic || !state_.kept || !step_.on_grid(step())) return;
-    const double largest = loaded_.largest_increment() / model().shortest;
-    double fastest = 0;
-    if (largest > kFastIncrement * fast_share()) {
-      const Calmed calmed = calm(run_, kFastest * fast_share());
-      inversions_.calmed += calmed.elements;
-      fastest = calmed.fastest;
-    }
-    if (fastest > kBurst && step_.can_retry() && step_.above_floor() && retry_from_kept()) return;
-    // Pieces that fly as they are deform no faster for it.
-    if (fastest <= kFastIncrement && (inverted == 0 || !inverted_now())) return;
-    const std::optional<StepControl::Outgrown> outgrown = step_.outgrown();
-    if (!outgrown) return;
-    return_to_kept();
-    if (edits_.fewer_substeps()) {
-      loaded_.clear_faults();
-    } else {
-      step_.shorten(*outgrown);
-    }
-    inversions_.calmed += calm(run_, kFastest * fast_share() * state_.limit.dt_backoff).elements;
-    return;
-  }
-  if (retry_from_kept()) return;
-  const FaultLocation found = find_fault(model(), element);
-  divergence_ = Divergence{batch_start + fault,
-                           state_.clock.time_at(batch_start + fault - 1),
-                           found.body >= 0 ? model().bodies[static_cast<std::size_t>(found.body)].name : "?",
-                           found.element,
-                           found.node,
-                           dt(),
-                           stable_dt(),
-                           step()};
-}
-
-/// The batch that led here is not to be trusted: the kept state again, and fewer substeps or a smaller step if there are any.
-bool Simulation::retry_from_kept() {
-  return_to_kept();
-  if (edits_.fewer_substeps()) {
-    loaded_.clear_faults();
-  } else if (!step_.retry_smaller()) {
-    return false;
-  }
-  inversions_.calmed += calm(run_, kFastest * fast_share() * state_.limit.dt_backoff).elements;
-  return true;
-}
-
-double Simulation::fast_share() const { return std::min(1.0, 2 * dt() / state_.limit.dt_ceiling); }
-
-void Simulation::return_to_kept() {
-  loaded_.return_to_kept_state();
-  state_.look.tools = state_.look.tissue = -1;
-  state_.clock = state_.kept->clock;
-  state_.relaxation.damping = state_.kept->damping;
-  contact_.return_to_kept();
-  inversions_ = kept_inversions_;
-}
-
-bool Simulation::inverted_now() {
-  backend().run(program().force, 0, 1);
-  backend().run(program().status, 0, 1);
-  const std::vector<std::int32_t> summary = loaded_.faults();
-  loaded_.clear_faults();
-  for (std::size_t i = 0; i < summary.size(); i += PLIANT_FAULT_SUMMARY) {
-    if (summary[i + 2] > 0) return true;
-  }
-  return false;
-}
-
-void Simulation::count_inversions(std::int64_t batch_start, std::int64_t count, std::int32_t element) {
-  if (inversions_.batches == 0) {
-    const FaultLocation found = find_fault(model(), element);
-    inversions_.first_step = batch_start + 1;
-    inversions_.first_time = state_.clock.time_at(batch_start);
-    inversions_.body = found.body >= 0 ? model().bodies[static_cast<std::size_t>(found.body)].name : "?";
-    inversions_.element = found.element;
-  }
-  ++inversions_.batches;
-  inversions_.last = count;
-  inversions_.most = std::max(inversions_.most, count);
-  loaded_.clear_faults();
+  BallastReport& ballast = reports_.now.ballast;
+  ballast = {static_cast<std::int64_t>(state_.ballast.size()), 0, ballast.most};
+  for (const NodeInertia& b : state_.ballast) ballast.mass += b.inertia;
+  ballast.most = std::max(ballast.most, ballast.mass);
 }
 
 std::vector<Vec3d> Simulation::velocities(std::size_t body) const {
@@ -339,6 +200,7 @@ void Simulation::restore(const Snapshot& snapshot) {
                                                   other));
   }
   check_state(next, *model, scene_);
+  check_report(snapshot.reports, next, scene.tools.size());
   check_buffers(snapshot, program);
   const Snapshot before = this->snapshot();
   const std::shared_ptr<const Model> old_model = loaded_.shared_model();
@@ -350,10 +212,12 @@ void Simulation::restore(const Snapshot& snapshot) {
     upload_coupling(run_);  // the automatic beta belongs to the step
     if (!state_.forces.empty()) loads_.upload();
     contact_.follow();
+    reports_ = snapshot.reports;
   } catch (...) {
     load(old_model);
     write_buffers(before, loaded_);
     state_ = before.state;
+    reports_ = before.reports;
     run_.place_surface();
     upload_coupling(run_);
     if (!state_.forces.empty()) loads_.upload();
@@ -361,8 +225,6 @@ void Simulation::restore(const Snapshot& snapshot) {
   }
   edits_.take_up(std::move(bodies));
   divergence_.reset();
-  contact_.keep();
-  kept_inversions_ = inversions_;
 }
 
 }  // namespace pliant

@@ -10,10 +10,10 @@
 
 #include "edits/tool_edits.h"
 #include "edits/topology_edits.h"
-#include "simulation/divergence.h"
 #include "simulation/drift.h"
 #include "simulation/host_loads.h"
 #include "simulation/moment.h"
+#include "simulation/recovery/recovery.h"
 #include "simulation/snapshot.h"
 #include "simulation/step_control.h"
 #include "simulation/tool_contact.h"
@@ -49,9 +49,13 @@ class Simulation {
   void before_step(std::int32_t step_in_batch) { contact_.before_step(step_in_batch, 1); }
 
   [[nodiscard]] const std::optional<Divergence>& divergence() const { return divergence_; }
-  [[nodiscard]] const Inversions& inversions() const { return inversions_; }
-  [[nodiscard]] const BallastReport& ballast() const { return ballast_; }
-  /// What the tools have felt.
+  /// What became of the run so far.
+  [[nodiscard]] const RunReport& report() const { return reports_.now; }
+  /// Once all loads of a scene are constant, its energy (kinetic, of the elements, of gravity and of node forces) less the work
+  /// of its tools can only fall. Notes where it stands in RunReport::energy, to be called between two batches, the more often
+  /// the better. Follower pressures and forces of the host are not accounted for; shape matching has no energy, and states with
+  /// inverted elements are passed over: they swing too fast for what is kinetic between two steps to be known.
+  void watch_energy();
   [[nodiscard]] const ToolContact& contact() const { return contact_; }
   [[nodiscard]] bool at_equilibrium() const { return state_.relaxation.equilibrium; }
   /// |R - F| over the largest of external and reaction force, as of the last change of dynamic relaxation.
@@ -122,7 +126,7 @@ class Simulation {
   /// What a snapshot belongs to.
   [[nodiscard]] std::uint64_t model_hash() const;
 
-  [[nodiscard]] Snapshot snapshot() const { return take_snapshot(run_); }
+  [[nodiscard]] Snapshot snapshot() const { return take_snapshot(run_, reports_); }
   /// Go on from there. Throws Error, with nothing changed, for one of another scene, backend or size, or with edits that do not
   /// belong to the scene.
   void restore(const Snapshot& snapshot);
@@ -140,29 +144,20 @@ class Simulation {
   void start(std::shared_ptr<const Model> model, const SimulationOptions& options);
   void load(std::shared_ptr<const Model> model);
   void set_initial_increment();
-  [[nodiscard]] bool worth_keeping();
-  void keep_state();
-  void look_for_fault(std::int64_t batch_start);
-  void return_to_kept();
-  bool retry_from_kept();
-  /// The part of the limits of increments that a step of this length has.
-  [[nodiscard]] double fast_share() const;
-  [[nodiscard]] bool inverted_now();
-  void count_inversions(std::int64_t batch_start, std::int64_t count, std::int32_t element);
 
   const Scene scene_;
   RunSettings settings_;  ///< fixed when the constructor is done
   RunState state_;
+  RunReports reports_;
   LoadedModel loaded_;
   RunContext run_{scene_, settings_, loaded_, state_};
   StepControl step_{run_};
   Drift drift_{run_};
   HostLoads loads_{run_};
-  ToolContact contact_{run_};
+  ToolContact contact_{run_, reports_.now};
   TopologyEdits edits_{run_, step_, loads_};
   ToolEdits tools_{run_, contact_};
-  Inversions inversions_, kept_inversions_;  ///< as of the kept state
-  BallastReport ballast_;
+  Recovery recovery_{run_, step_, edits_, reports_};
   std::optional<Divergence> divergence_;  ///< a run that has diverged has no next step
 };
 

@@ -8,6 +8,7 @@
 #include "geometry/vec.h"
 #include "pliant/error.h"
 #include "program/hash.h"
+#include "simulation/recovery/limits.h"
 #include "simulation/tool_changes.h"
 
 namespace pliant {
@@ -121,11 +122,12 @@ std::string differing(const std::vector<ModelPart>& taken, const std::vector<Mod
   return names;
 }
 
-Snapshot take_snapshot(const RunContext& run) {
+Snapshot take_snapshot(const RunContext& run, const RunReports& reports) {
   const Program& program = run.loaded.program();
   Snapshot snapshot{parts_of(run.scene, run.settings, run.model(), program, run.loaded.surface()),
                     run.backend().info().real_bytes == 8 ? "double" : "float",
                     run.state,
+                    reports,
                     {}};
   for (std::size_t id = 0; id < program.buffers.size(); ++id) {
     if (program.buffers[id].role != BufferRole::state) continue;
@@ -195,6 +197,11 @@ void check_state(const RunState& state, const Model& model, const Scene& scene) 
        "how far loose pieces have flown");
   need(state.topology_version >= 0, "its number of edits");
   need(state.most_substeps == 0 || state.most_substeps == kSafeSubsteps, "its substeps of shape matching");
+}
+
+void check_report(const RunReports& reports, const RunState& state, std::size_t tools) {
+  if (reports.now.tools.size() == tools && (!state.kept || reports.kept.tools.size() == tools)) return;
+  throw Error(ErrorCode::bad_input, "its report is damaged: it is of other tools");
 }
 
 void check_ballast(const RunState& state, const Model& model) {

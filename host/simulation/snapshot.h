@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "simulation/run_context.h"
+#include "simulation/run_report.h"
 
 namespace pliant {
 
@@ -26,6 +27,7 @@ struct Snapshot {
   std::vector<ModelPart> made_of;  ///< a snapshot is taken up only by what was made of the same
   std::string real_type;           ///< "float" or "double"
   RunState state;
+  RunReports reports;               ///< what no step depends on
   std::vector<NamedBytes> buffers;  ///< those of the role `state`, in the order of the table
 };
 
@@ -40,14 +42,17 @@ std::vector<ModelPart> parts_of(const Scene& scene, const RunSettings& settings,
 /// The names of one's own parts that a snapshot was not taken with, such as "gravity, blades".
 [[nodiscard]] std::string differing(const std::vector<ModelPart>& taken, const std::vector<ModelPart>& own);
 
-[[nodiscard]] Snapshot take_snapshot(const RunContext& run);
+[[nodiscard]] Snapshot take_snapshot(const RunContext& run, const RunReports& reports = {});
 
-/// Hash over all of a snapshot: two runs with the same one go on alike.
+/// Hash over all of a snapshot but its reports: two runs with the same one go on alike.
 [[nodiscard]] std::uint64_t deep_hash(const Snapshot& snapshot);
 
 /// Throws Error (bad_input) for a state that came from elsewhere and holds numbers that no run of this model has: a step that
 /// is not positive, vectors of another length, forces on nodes that do not exist, points that are not finite.
 void check_state(const RunState& state, const Model& model, const Scene& scene);
+
+/// Throws Error (bad_input) for a report of other tools than those of the model.
+void check_report(const RunReports& reports, const RunState& state, std::size_t tools);
 
 /// Throws Error (bad_input) for ballast (RunState) that no node of this model can have.
 void check_ballast(const RunState& state, const Model& model);

@@ -10,6 +10,7 @@
 #include "pliant/error.h"
 #include "simulation/ballast_swap.h"
 #include "simulation/coupling.h"
+#include "simulation/recovery/limits.h"
 #include "simulation/stable_step.h"
 
 namespace pliant {
@@ -19,13 +20,7 @@ namespace {
 constexpr std::int64_t kAdaptEvery = 256;
 constexpr std::int64_t kFirstAdapts[] = {64, 128};
 constexpr int kAdaptIterations = 20;
-/// A batch that diverged or burst is tried again with a smaller automatic step, until that is this share of what is allowed.
-constexpr double kLeastBackoff = 0.02;
-constexpr double kLeastShare = 1e-3;  ///< of the ceiling, to which an estimate may take an automatic step
-constexpr double kBackoff = 0.7;
-constexpr double kMostBallast = 0.01;        ///< of the mass
 constexpr double kMostGrowth = 2;            ///< of the step from one look to the next
-constexpr double kMostShortening = 0.35;     ///< of the step of a batch that is made again
 constexpr double kClearlyLess = 0.8;         ///< the estimate by kAdaptIterations steps is up to a tenth too low
 constexpr double kFrame = 1.0 / 60;          ///< automatic step of a scene without finite elements [s]
 constexpr double kTouchFrame = kFrame / 16;  ///< of one whose tissue touches tissue, so that each frame looks for what is near
@@ -119,9 +114,11 @@ double StepControl::least_step() const {
 /// What of a stable step is taken.
 double StepControl::share() const { return run_.state.limit.dt_backoff * run_.scene.safety; }
 
+double StepControl::estimated() { return share() * estimate(kAdaptIterations); }
+
 StepControl::Allowed StepControl::allowed() {
   StepLimit& limit = run_.state.limit;
-  Allowed out{share() * estimate(kAdaptIterations), {}};
+  Allowed out{estimated(), {}};
   if (out.dt >= run_.state.clock.dt) return out;
   // The estimate takes differences of forces, which far from the place at rest are mostly rounding. The bound by elements is
   // coarser, but in double, and certain.
@@ -142,11 +139,17 @@ bool StepControl::too_much(const std::vector<NodeInertia>& ballast) const {
   return total(ballast) > kMostBallast * mass;
 }
 
+std::vector<NodeInertia> StepControl::more_ballast(double dt, const std::vector<double>& stiffness) const {
+  std::vector<NodeInertia> ballast = ballast_for(dt, stiffness);
+  if (too_much(ballast) || total(ballast) <= total(run_.state.ballast)) ballast.clear();
+  return ballast;
+}
+
 double StepControl::balance(double wanted, const std::vector<double>& stiffness) {
   double dt = std::max(wanted, least_step());
   std::vector<NodeInertia> ballast = ballast_for(dt, stiffness);
   while (dt > wanted && too_much(ballast)) {
-    dt = std::max(wanted, 0.8 * dt);
+    dt = std::max(wanted, kBallastStride * dt);
     ballast = ballast_for(dt, stiffness);
   }
   if (too_much(ballast)) ballast.clear();  // the bound that asks for it is far from what is measured
@@ -176,51 +179,7 @@ void StepControl::limit_after_edit(const std::vector<char>& changed) {
   if (next < kClearlyLess * run_.state.clock.dt) change(next);
 }
 
-std::optional<StepControl::Outgrown> StepControl::outgrown() {
-  if (!run_.settings.automatic) return {};
-  const double dt = run_.state.clock.dt, least = least_step();
-  const Allowed now = allowed();
-  // What the state stands, without the distrust that shortens the step as well: both would shrink alike for ever.
-  if (now.dt / run_.state.limit.dt_backoff >= dt) return {};
-  // By a tenth at least: a batch that is made again for a thousandth is made again a hundred times.
-  const auto shorter = [&](double lowest) {
-    return Outgrown{std::max({std::min(now.dt, 0.9 * dt), kMostShortening * dt, lowest}), {}};
-  };
-  if (dt > least) return shorter(least);
-  // Below the shortest step only a state that is lost leads: elements that are let go on are driven back by their laws.
-  if (kBackoff * run_.state.limit.dt_backoff < kLeastBackoff) return {};
-  std::vector<NodeInertia> ballast = ballast_for(dt, now.stiffness);
-  if (!too_much(ballast) && total(ballast) > total(run_.state.ballast)) return Outgrown{0, std::move(ballast)};
-  const double lowest = kLeastBackoff * run_.state.limit.dt_ceiling;
-  return dt > lowest ? std::optional(shorter(lowest)) : std::nullopt;
-}
-
-void StepControl::shorten(const Outgrown& found) {
-  run_.state.limit.hold = run_.state.clock.step + kAdaptEvery;
-  if (found.dt > 0) {
-    change(found.dt);
-    return;
-  }
-  load_ballast(run_, found.ballast);
-  run_.state.limit.dt_backoff *= kBackoff;  // so that this, too, ends
-}
-
-bool StepControl::can_retry() const {
-  return run_.settings.automatic && kBackoff * run_.state.limit.dt_backoff >= kLeastBackoff;
-}
-
-bool StepControl::retry_smaller() {
-  if (!can_retry()) return false;
-  double& backoff = run_.state.limit.dt_backoff;
-  backoff *= kBackoff;
-  run_.state.limit.hold = run_.state.clock.step + kAdaptEvery;
-  run_.loaded.clear_faults();
-  const double dt = run_.state.clock.dt, least = least_step();
-  const double next = std::min(kBackoff * dt, backoff * run_.scene.safety * estimate(kAdaptIterations));
-  // Not at once below the floor, nor far: one element that is lost would take the step of all.
-  change(std::max(next, dt > least ? least : kMostShortening * dt));
-  return true;
-}
+void StepControl::hold() { run_.state.limit.hold = run_.state.clock.step + kAdaptEvery; }
 
 /// Increments scale with the step, decay factors and shape matching follow it.
 void StepControl::change(double dt) {

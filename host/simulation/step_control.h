@@ -1,7 +1,6 @@
-// How long the next step is, where batches end, and what a failed batch is tried again with.
+// How long the next step is, and where batches end.
 #pragma once
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "simulation/run_context.h"
@@ -30,25 +29,8 @@ class StepControl {
   /// An edit has made elements of others: no step beyond what they stand, at rest and as they are deformed now. `changed`
   /// [slots]: whose elements or mass are others.
   void limit_after_edit(const std::vector<char>& changed);
-  /// Elements are inverted, or nodes fast: what to do instead if an automatic step is longer than this state stands, so that
-  /// the batch that led here is not to be trusted. `shorten` is then called in the kept state.
-  struct Outgrown {
-    double dt = 0;                     ///< the step to take [s]; 0: it is the shortest already
-    std::vector<NodeInertia> ballast;  ///< what the elements stand it with, then
-  };
-  [[nodiscard]] std::optional<Outgrown> outgrown();
-  void shorten(const Outgrown& found);
-  /// An automatic step may have been overtaken by a fast load: take what follows in smaller steps. False when the step is the
-  /// user's, or when smaller steps have not helped.
-  [[nodiscard]] bool retry_smaller();
-  [[nodiscard]] bool can_retry() const;
-  [[nodiscard]] bool above_floor() const { return run_.state.clock.dt > least_step(); }
 
- private:
-  [[nodiscard]] bool adapts_at(std::int64_t step) const;
-  [[nodiscard]] double share() const;
-  /// The shortest automatic step [s].
-  [[nodiscard]] double least_step() const;
+  // What recovery/ needs.
   /// What an automatic step may be in the present configuration [s], `stiffness` (model/ballast.h) if it had to be looked at
   /// element by element.
   struct Allowed {
@@ -56,13 +38,26 @@ class StepControl {
     std::vector<double> stiffness;
   };
   [[nodiscard]] Allowed allowed();
+  /// The same by the estimate alone [s].
+  [[nodiscard]] double estimated();
+  /// The ballast for a step, if it is more than there is and not more than a scene may be given; or none.
+  [[nodiscard]] std::vector<NodeInertia> more_ballast(double dt, const std::vector<double>& stiffness) const;
+  /// The shortest step that the scene wants [s].
+  [[nodiscard]] double least_step() const;
+  /// From now on, of the same motion.
+  void change(double dt);
+  /// It does not grow for a while.
+  void hold();
+
+ private:
+  [[nodiscard]] bool adapts_at(std::int64_t step) const;
+  [[nodiscard]] double share() const;
   /// Let the elements stand least_step() where they need less, and take back what they need no more; where that is too much of
   /// the mass, a step between `wanted` and that. Returns this step [s].
   double balance(double wanted, const std::vector<double>& stiffness);
   /// The ballast for a step, and whether it is more than a scene may be given.
   [[nodiscard]] std::vector<NodeInertia> ballast_for(double dt, const std::vector<double>& stiffness) const;
   [[nodiscard]] bool too_much(const std::vector<NodeInertia>& ballast) const;
-  void change(double dt);
   RunContext& run_;
 };
 

@@ -69,19 +69,16 @@ void ToolContact::drive(std::size_t tool, const Pose& to, double seconds) {
 
 void ToolContact::follow() {
   const std::vector<ContactTool> before = std::exchange(tools_, present_tools(run_.scene, run_.state.tools));
-  const std::vector<ToolHistory> felt = std::exchange(felt_.tools, std::vector<ToolHistory>(tools_.size()));
+  const std::vector<ToolHistory> felt = std::exchange(report_.tools, std::vector<ToolHistory>(tools_.size()));
   for (std::size_t t = 0; t < tools_.size(); ++t) {
     const auto same = std::find(before.begin(), before.end(), tools_[t]);
-    if (same != before.end()) felt_.tools[t] = felt[static_cast<std::size_t>(same - before.begin())];
+    if (same != before.end()) report_.tools[t] = felt[static_cast<std::size_t>(same - before.begin())];
   }
-  keep();
-  last_step_ = -1;
 }
 
 void ToolContact::start() {
   tools_ = run_.scene.tools;
-  felt_ = {std::vector<ToolHistory>(tools_.size()), {}};
-  keep();
+  report_.tools.resize(tools_.size());
   if (!active()) return;
   const Model& model = run_.model();
   if (run_.scene.contact) refuse_overlap(model, tool_start_depth * model.contact->spacing);
@@ -124,10 +121,12 @@ void ToolContact::begin_batch(std::int32_t steps) {
   poses.reserve(rows * tools * contact_pose_numbers);
   arms_.assign(rows * tools, {});
   poses_.clear();
-  if (last_step_ == run_.state.clock.step) poses_ = last_;
-  for (std::size_t tool = poses_.size(); tool < tools; ++tool) {
+  for (std::size_t tool = 0; tool < tools; ++tool) {
     const double before = run_.state.clock.time() - run_.state.clock.dt;
-    poses_.push_back(compose(pose(tool, before), tool_moment((*run_.model().tools)[tool], before).pose));
+    const ToolHistory& h = report_.tools[tool];
+    poses_.push_back(h.step == run_.state.clock.step
+                         ? h.before
+                         : compose(pose(tool, before), tool_moment((*run_.model().tools)[tool], before).pose));
   }
   for (std::size_t row = 0; row < rows; ++row) {
     const double t =
@@ -181,10 +180,10 @@ void ToolContact::read_touch() {
   const std::vector<double> depth = run_.backend().read_reals(id);
   for (const double d : depth) {
     if (!(d > 0)) continue;
-    ++felt_.tissue.points;
-    felt_.tissue.max_depth = std::max(felt_.tissue.max_depth, d);
+    ++report_.tissue.points;
+    report_.tissue.max_depth = std::max(report_.tissue.max_depth, d);
   }
-  if (felt_.tissue.points > 0) run_.backend().write_reals(id, std::vector<double>(depth.size(), 0.0));
+  if (report_.tissue.points > 0) run_.backend().write_reals(id, std::vector<double>(depth.size(), 0.0));
 }
 
 /// A force acts from the middle of the step before to that of the next one (central differences).
@@ -197,19 +196,18 @@ double ToolContact::work(std::size_t tool, std::int32_t step, const Vec3d& force
 void ToolContact::end_batch(std::int32_t steps) {
   if (!active() || steps <= 0) return;
   const bool ran = std::count(summed_.begin(), summed_.end(), 1) > 0;
-  felt_.tissue.points = 0;
+  report_.tissue.points = 0;
   if (run_.scene.contact && ran) read_touch();
-  if (felt_.tools.empty()) return;
-  for (ToolHistory& h : felt_.tools) h.now = {};
+  if (report_.tools.empty()) return;
+  for (ToolHistory& h : report_.tools) h.now = {};
   if (!ran) return;
   const std::vector<std::int32_t> sums = run_.backend().read_ints(run_.loaded.program().find("tool_sum"));
   const std::size_t tools = tools_.size();
-  last_.assign(poses_.begin() + steps * static_cast<std::ptrdiff_t>(tools),
-               poses_.begin() + (steps + 1) * static_cast<std::ptrdiff_t>(tools));
-  last_step_ = run_.state.clock.step;
   for (std::size_t t = 0; t < tools; ++t) {
-    ToolHistory& h = felt_.tools[t];
+    ToolHistory& h = report_.tools[t];
     h.now = {};
+    h.before = poses_[static_cast<std::size_t>(steps) * tools + t];
+    h.step = run_.state.clock.step;
     for (std::int32_t step = 0; step < steps; ++step) {
       if (summed_[static_cast<std::size_t>(step)] == 0) continue;  // nothing was near
       const StepSum sum =

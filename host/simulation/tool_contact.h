@@ -2,52 +2,22 @@
 #pragma once
 #include <cstdint>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "simulation/contact_lists.h"
 #include "simulation/run_context.h"
+#include "simulation/run_report.h"
 
 namespace pliant {
-
-/// What a tool feels: of one step, or the mean over the steps since somebody asked.
-struct ToolLoad {
-  Vec3d force{};     ///< on the tool [N]
-  Vec3d torque{};    ///< about its origin [N m]
-  double area = 0;   ///< of the tissue that touches it, at rest [m^2]
-  double depth = 0;  ///< deepest point inside the tool, after contact [m]
-  std::int64_t points = 0;
-};
-
-/// What became of a tool over a run.
-struct ToolHistory {
-  ToolLoad now;              ///< mean of the last batch
-  double max_force = 0;      ///< of a batch's mean [N]
-  double max_depth = 0;      ///< [m]
-  double work = 0;           ///< done on the tissue by its rigid motion since the simulation was made [J]
-  std::int64_t touched = 0;  ///< steps with contact
-};
 
 /// Throws Error (usage) for a pose that is none.
 void check_pose(const std::string& name, const Pose& pose);
 /// Throws Error (usage) for a pose or a time that is none.
 void check_drive(const std::string& name, const Pose& to, double seconds);
 
-/// What became of the contact of tissue with tissue over a run.
-struct TouchHistory {
-  std::int64_t points = 0;  ///< points that touched in the last batch
-  double max_depth = 0;     ///< deepest pair, after contact [m]
-};
-
-/// Both.
-struct Felt {
-  std::vector<ToolHistory> tools;  ///< of the scene
-  TouchHistory tissue;
-};
-
 class ToolContact {
  public:
-  explicit ToolContact(RunContext& run) : run_(run), lists_(run) {}
+  ToolContact(RunContext& run, RunReport& report) : run_(run), report_(report), lists_(run) {}
 
   /// Throws Error (bad_input) for a tool that begins inside a body, deeper than a quarter of a cell.
   void start();
@@ -58,17 +28,8 @@ class ToolContact {
   /// Read what the batch's tools felt. `steps`: how many were done.
   void end_batch(std::int32_t steps);
 
-  /// What was felt so far, set aside with the state of the run, and back: a batch that is made again has told nothing.
-  void keep() { kept_ = felt_; }
-  void return_to_kept() { felt_ = kept_; }
-
   /// The tools of the model: those of the scene, but for what the host added, removed or parked.
   [[nodiscard]] const std::vector<ContactTool>& tools() const { return tools_; }
-  /// One per tool of the model.
-  [[nodiscard]] const std::vector<ToolHistory>& history() const { return felt_.tools; }
-  [[nodiscard]] const TouchHistory& tissue() const { return felt_.tissue; }
-  [[nodiscard]] const Felt& felt() const { return felt_; }
-  void set_felt(Felt felt) { felt_ = std::move(felt); }
   /// The model has the tools of the run state now. What tools have felt goes on with them.
   void follow();
   /// Drive a tool of the model from where it is now to a pose, which it has after `seconds`; at once if that is 0.
@@ -90,15 +51,13 @@ class ToolContact {
   [[nodiscard]] double motion(std::size_t tool, double from, double to) const;
 
   RunContext& run_;
+  RunReport& report_;
   ContactLists lists_;
   std::vector<ContactTool> tools_;
-  Felt felt_, kept_;
   Units units_;               ///< of the present batch
   std::vector<char> summed_;  ///< per step of the batch: the passes of contact ran
   std::vector<Vec3d> arms_;   ///< [steps + 1][tools] from a tool's origin to that of a sequence's frame [m]
-  std::vector<Pose> last_;    ///< [tools] one step before `last_step_`: driven tools do not know their past
-  std::int64_t last_step_ = -1;
-  std::vector<Pose> poses_;  ///< [steps + 2][tools], of a sequence's frame, from the step before the batch on
+  std::vector<Pose> poses_;   ///< [steps + 2][tools], of a sequence's frame, from the step before the batch on
 };
 
 }  // namespace pliant

@@ -40,6 +40,9 @@ Checkpoint sample() {
   s.state.forces = {{0, 12, {1, 0, 0}}};
   s.state.tool = Vec3d{0, 0, 1};
   s.state.topology_version = 3;
+  s.reports.now.inversions = {1, 2, 3, 4, 0.5, 6, "liver", 7};
+  s.reports.now.tools = {{{{1, 2, 3}, {4, 5, 6}, 0.25, 0.5, 7}, 1, 2, 3, 4, {{0, 1, 0}}, 5}};
+  s.reports.now.energy = {1.0, 2, 3};
   s.buffers = {{"u", {1, 2, 3, 255, 0, 7, 8, 9, 10}}, {"", {}}, {"w", std::vector<std::uint8_t>(50, 17)}};
   return c;
 }
@@ -69,6 +72,7 @@ TEST(Checkpoint, KeepsEveryBit) {
   EXPECT_EQ(r.snapshot.real_type, c.snapshot.real_type);
   EXPECT_EQ(r.snapshot.buffers, c.snapshot.buffers);
   EXPECT_EQ(write_state(r.snapshot.state), write_state(c.snapshot.state));
+  EXPECT_EQ(write_report(r.snapshot.reports), write_report(c.snapshot.reports));
   EXPECT_EQ(r.snapshot.state.clock.step, c.snapshot.state.clock.step);
   ASSERT_EQ(r.snapshot.state.relaxation.u.size(), 4u);
   for (std::size_t i = 0; i < 4; ++i) {

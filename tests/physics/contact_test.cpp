@@ -1,6 +1,5 @@
 // Contact with tools: restitution, weight, friction, impulse, work, against closed forms; shapes against each other.
 #include "physics/harness.h"
-#include "simulation/energy_watch.h"
 #include "support/error_of.h"
 
 namespace pliant::physics {
@@ -43,7 +42,7 @@ Vector3d impulse_until(Simulation& sim, double time, std::size_t tool = 0) {
   while (sim.time() < time) {
     const double before = sim.time();
     sim.advance(sim.next_batch(16));
-    sum += (sim.time() - before) * eigen(sim.contact().history()[tool].now.force);
+    sum += (sim.time() - before) * eigen(sim.report().tools[tool].now.force);
   }
   return sum;
 }
@@ -99,7 +98,7 @@ TEST_P(ContactPhysics, WeightAndImpulse) {
     scene.bodies = {body};
     sim = simulate(scene, GetParam());
     impulse_until(*sim, 1);
-    const ToolLoad& now = sim->contact().history()[0].now;
+    const ToolLoad& now = sim->report().tools[0].now;
     check_relative(std::string(name_of(cut)) + ": weight", -now.force[2], weight, bound(1e-4, 1e-5));
     check_relative("  touched area", now.area, 0.0036, 1e-3);
     check("  depth, in cells", now.depth / 0.02, 0.01);
@@ -122,7 +121,7 @@ TEST_P(ContactPhysics, FrictionSticksWithoutCreepAndSlides) {
     double creep = 0;
     for (std::size_t n = 0; n < after.size(); ++n) creep = std::max(creep, (eigen(after[n]) - eigen(before[n])).norm());
     check(std::string(name_of(cut)) + ": creep in 2 s, in cells", creep / 0.0125, 1e-6);
-    const Vec3d& force = stuck->contact().history()[0].now.force;
+    const Vec3d& force = stuck->report().tools[0].now.force;
     check_relative("  friction over pressure", -force[0] / force[2], 0.4, 1e-4);
 
     scene.bodies[0].material.damping = 0;
@@ -160,8 +159,8 @@ double pressed(const ContactTool& tool, const char* backend, Vector3d* torque = 
   body.fixed = {{face(2, 0)}};
   auto sim = simulate(scene_of(body, tool), backend);
   impulse_until(*sim, 0.6);
-  if (torque != nullptr) *torque = eigen(sim->contact().history()[0].now.torque);
-  return eigen(sim->contact().history()[0].now.force).norm();
+  if (torque != nullptr) *torque = eigen(sim->report().tools[0].now.torque);
+  return eigen(sim->report().tools[0].now.force).norm();
 }
 
 /// Shapes that are the same press the same: a sphere and a capsule as short as nothing, a box and a half space.
@@ -262,7 +261,7 @@ TEST_P(ContactPhysics, SphereOnALayerConvergesToHertz) {
     ball.path = {{0, 0, 0, height + radius, 0, 0, 0, 1}, {0.2, 0, 0, height + radius - depth, 0, 0, 0, 1}};
     auto sim = simulate(scene_of(body, ball), GetParam());
     impulse_until(*sim, 0.5);
-    const double force = 4 * sim->contact().history()[0].now.force[2];
+    const double force = 4 * sim->report().tools[0].now.force[2];
     check_relative(std::to_string(cells) + " cells in the height", force, exact, cells == 20 ? 0.07 : 0.03);
     if (cells == 20) {
       coarse = std::abs(force - exact);
@@ -302,7 +301,6 @@ TEST_P(ContactPhysics, WorkIsEnergyAndWhatIsDamped) {
     Body body = box_body({{8, 8, 4}, 0.01}, Discretization::hex8full_lattice, m);
     body.fixed = {{face(2, 0)}};
     auto sim = simulate(scene_of(body, tool), GetParam());
-    EnergyWatch watch(sim->scene());
     double damped = 0;
     const auto energy = [&] {
       auto w = read_texels(*sim, "node_w");
@@ -313,20 +311,20 @@ TEST_P(ContactPhysics, WorkIsEnergyAndWhatIsDamped) {
       const double before = sim->time();
       sim->advance(sim->next_batch(4));
       damped += 2 * m.damping * energy().kinetic * (sim->time() - before);
-      watch.look(*sim);
+      sim->watch_energy();
     }
-    const double work = sim->contact().history()[0].work;
+    const double work = sim->report().tools[0].work;
     check_relative(std::string(tool.path[0][1] > 0 ? "pushed" : "turned") + ": work", work,
                    energy().strain + energy().kinetic + damped,
                    0.01);  // a plate that turns: 0.8 %, of the normals of the start
-    ASSERT_TRUE(watch.created());
-    check("  energy made, over the largest", *watch.created(), 1e-3);
+    ASSERT_TRUE(sim->report().energy.share());
+    check("  energy made, over the largest", *sim->report().energy.share(), 1e-3);
     // A push that nobody accounts for.
     auto w = read_texels(*sim, "node_w");
     for (Vec3d& x : w) x[0] += 0.05 * sim->dt();
     write_texels(*sim, "node_w", w);
-    watch.look(*sim);
-    EXPECT_GT(*watch.created(), 0.01);
+    sim->watch_energy();
+    EXPECT_GT(*sim->report().energy.share(), 0.01);
   }
 }
 
@@ -351,8 +349,8 @@ TEST_P(ContactPhysics, AFastToolIsMetInTime) {
   Scene scene = scene_of(body, plate);
   auto sim = simulate(scene, GetParam());
   impulse_until(*sim, 0.06);
-  check("deepest, in cells", sim->contact().history()[0].max_depth / 0.02, 0.15);
-  EXPECT_GT(sim->contact().history()[0].touched, 5);
+  check("deepest, in cells", sim->report().tools[0].max_depth / 0.02, 0.15);
+  EXPECT_GT(sim->report().tools[0].touched, 5);
 }
 
 TEST(ContactSetUp, RefusesAToolInsideABody) {

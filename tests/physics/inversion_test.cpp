@@ -57,11 +57,11 @@ TEST(Inversion, AnElementPressedThroughItselfComesBack) {
         }
         EXPECT_FALSE(sim->divergence());
         EXPECT_LT(least, 0);
-        EXPECT_GT(sim->inversions().batches, 0);
-        EXPECT_EQ(sim->inversions().last, 0);
+        EXPECT_GT(sim->report().inversions.batches, 0);
+        EXPECT_EQ(sim->report().inversions.last, 0);
         if (info.name != "cpu") continue;
         std::printf("  %s %s: least stretch %.3f, %lld elements inverted at a time\n", name_of(cut), to_string(law), least,
-                    static_cast<long long>(sim->inversions().most));
+                    static_cast<long long>(sim->report().inversions.most));
         EXPECT_NEAR(stretch(*sim), 1, 1e-5);
       }
       EXPECT_TRUE(hashes.size() < 2 || hashes[0] == hashes[1]);

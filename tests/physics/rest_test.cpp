@@ -85,7 +85,7 @@ TEST_P(RestPhysics, ThinToolsWithEdgesAreMet) {
         scene.tools[0].edges = edges;
         auto sim = simulate(scene, GetParam());
         motion_at_end = most_motion(*sim, 1.5, 1.6);
-        force[edges ? 1 : 0] = sim->contact().history()[0].now.force;
+        force[edges ? 1 : 0] = sim->report().tools[0].now.force;
       }
       EXPECT_GT(force[1][2], 0.05) << label;
       EXPECT_GT(force[1][2], 2 * force[0][2]) << label;
@@ -110,11 +110,11 @@ TEST_P(RestPhysics, ARodOnASlab) {
     check(std::string(name_of(cut)) + ": motion after 2 s", motion(*sim), 1e-6);
     EXPECT_GE(sim->dt(), 0.8 * scene.safety * sim->stable_dt()) << name_of(cut);
     if (!in_double() || cut != Discretization::hex8full_lattice) continue;
-    const double force = sim->contact().history()[0].now.force[2];
+    const double force = sim->report().tools[0].now.force[2];
     scene.dt = 0.1 * sim->dt();
     auto fine = simulate(scene, GetParam());
     until(*fine, 1.5);
-    check_relative("  force against that of a tenth of the step", force, fine->contact().history()[0].now.force[2], 0.015);
+    check_relative("  force against that of a tenth of the step", force, fine->report().tools[0].now.force[2], 0.015);
   }
 }
 
@@ -142,7 +142,7 @@ TEST_P(RestPhysics, TissueInTissue) {
   scene.contact = TissueContact{0};
   auto sim = simulate(scene, GetParam());
   until(*sim, 4);
-  EXPECT_GT(sim->contact().tissue().points, 20);
+  EXPECT_GT(sim->report().tissue.points, 20);
   check("motion", motion(*sim), 1e-5);
 }
 

@@ -91,7 +91,7 @@ std::vector<Felt> felt_at(const Scene& scene, const char* backend, const std::ve
     int steps = 0;
     for (; sim->time() < time; ++steps) {
       sim->advance(1);
-      const ToolLoad& now = sim->contact().history()[0].now;
+      const ToolLoad& now = sim->report().tools[0].now;
       sum.force += eigen(now.force);
       sum.torque += eigen(now.torque);
     }
@@ -177,7 +177,7 @@ TEST_P(SequencePhysics, ForcesAreSmoothBetweenFrames) {
   std::vector<double> force;
   while (sim->time() < 0.26) {
     sim->advance(1);
-    force.push_back(sim->contact().history()[0].now.force[2]);
+    force.push_back(sim->report().tools[0].now.force[2]);
   }
   const double largest = *std::max_element(force.begin(), force.end());
   double jump = 0;

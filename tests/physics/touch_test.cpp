@@ -96,9 +96,9 @@ TEST_P(TouchPhysics, AStackStands) {
     check(name + ": creep of the highest in 1 s, in cells", creep / 0.0125, bound(1e-4, 1e-5));
     double mass = 0;
     for (const ModelBody& b : sim->model().bodies) mass += b.mass;
-    check_relative("  force on the table", -sim->contact().history()[0].now.force[2], 9.81 * mass, 1e-3);
-    check("  deepest pair, in cells", sim->contact().tissue().max_depth / 0.0125, 0.05);
-    EXPECT_GT(sim->contact().tissue().points, 100);
+    check_relative("  force on the table", -sim->report().tools[0].now.force[2], 9.81 * mass, 1e-3);
+    check("  deepest pair, in cells", sim->report().tissue.max_depth / 0.0125, 0.05);
+    EXPECT_GT(sim->report().tissue.points, 100);
   }
 }
 
@@ -166,7 +166,7 @@ TEST_P(TouchPhysics, TwoBlocksPressLikeOne) {
       for (std::size_t n = 0; n < forces.size(); ++n) {
         if (sim->model().bodies[0].rest[n][2] < 1e-6) sum += forces[n][2];
       }
-      if (two) check("  deepest pair, in cells", sim->contact().tissue().max_depth / edge, 0.06);
+      if (two) check("  deepest pair, in cells", sim->report().tissue.max_depth / edge, 0.06);
       return sum;
     };
     const double one = reaction(false);
@@ -203,7 +203,7 @@ TEST_P(TouchPhysics, TheFacesOfACutHold) {
       while (sim->time() < 1.2) sim->advance(sim->next_batch(64));
       if (cuts) {
         EXPECT_EQ(pieces_of(sim->model().bodies[0]), 2);
-        check("  deepest pair, in cells", sim->contact().tissue().max_depth / edge, 0.06);
+        check("  deepest pair, in cells", sim->report().tissue.max_depth / edge, 0.06);
       }
       double sum = 0;
       const std::vector<Vec3d> forces = reactions(*sim, 0);

@@ -44,10 +44,10 @@ class SceneRun {
   void advance(std::int64_t to) {
     while (simulation_.step() < to) {
       if (simulation_.advance(simulation_.next_batch(to - simulation_.step())) == 0) return;
-      for (const ToolHistory& tool : simulation_.contact().history()) {
-        if (tool.touched > 0) touched_.insert(static_cast<std::size_t>(&tool - simulation_.contact().history().data()));
+      for (const ToolHistory& tool : simulation_.report().tools) {
+        if (tool.touched > 0) touched_.insert(static_cast<std::size_t>(&tool - simulation_.report().tools.data()));
       }
-      met_ = met_ || simulation_.contact().tissue().points > 0;
+      met_ = met_ || simulation_.report().tissue.points > 0;
     }
   }
 

@@ -89,7 +89,7 @@ TEST_P(Resume, AutomaticStepThatElementsOutgrew) {
   Simulation probe = make(scene);
   probe.advance(400);
   ASSERT_FALSE(probe.divergence());
-  ASSERT_GT(probe.inversions().batches, 0);
+  ASSERT_GT(probe.report().inversions.batches, 0);
   ASSERT_GT(probe.state().limit.hold, 0) << "the scene must be fast enough to overtake its step";
   for (const std::int64_t at : {17, 64, 100, 199, 333}) expect_same_bits(scene, at, 400 - at);
 }

@@ -99,7 +99,7 @@ TEST_P(ResumeTools, HasTheBitsOfAnUninterruptedRun) {
   Simulation whole(scene, open_backend(GetParam().backend));
   run_to(whole, 220);
   ASSERT_EQ(whole.contact().tools().back().name, "own");
-  EXPECT_GT(whole.contact().history().back().touched, 0) << "it touches nothing";
+  EXPECT_GT(whole.report().tools.back().touched, 0) << "it touches nothing";
   for (const std::int64_t at : {37, 41, 75, 101, 140, 150, 171, 199}) {
     SCOPED_TRACE(at);
     Simulation part(scene, open_backend(GetParam().backend));

@@ -22,18 +22,18 @@ TEST(Settled, ABatchThatIsMadeAgainHasToldNothing) {
   EXPECT_TRUE(simulation.settled());
   simulation.advance(12);
   EXPECT_FALSE(simulation.settled());
-  const double before = simulation.contact().history()[0].max_force;
+  const double before = simulation.report().tools[0].max_force;
   ASSERT_GT(before, 50) << "the steps are too long, and the table throws the cube";
   EXPECT_FALSE(simulation.confirm());
   EXPECT_EQ(simulation.step(), 0);
-  EXPECT_EQ(simulation.contact().history()[0].max_force, 0);
-  EXPECT_EQ(simulation.contact().history()[0].touched, 0);
-  EXPECT_EQ(simulation.inversions().batches, 0);
+  EXPECT_EQ(simulation.report().tools[0].max_force, 0);
+  EXPECT_EQ(simulation.report().tools[0].touched, 0);
+  EXPECT_EQ(simulation.report().inversions.batches, 0);
   do {
     simulation.advance(12 - simulation.step());
   } while (!simulation.confirm());
   EXPECT_EQ(simulation.step(), 12);
-  EXPECT_LT(simulation.contact().history()[0].max_force, before);
+  EXPECT_LT(simulation.report().tools[0].max_force, before);
 }
 
 TEST(Settled, LookingAheadLeavesNoTrace) {
@@ -43,10 +43,10 @@ TEST(Settled, LookingAheadLeavesNoTrace) {
   goes.advance(64);
   while (goes.step() < 76) goes.advance(76 - goes.step());
   const std::uint64_t there = looks.hash();
-  const double force = looks.contact().history()[0].max_force;
+  const double force = looks.report().tools[0].max_force;
   EXPECT_TRUE(looks.confirm());
   EXPECT_EQ(looks.hash(), there);
-  EXPECT_EQ(looks.contact().history()[0].max_force, force);
+  EXPECT_EQ(looks.report().tools[0].max_force, force);
   while (looks.step() < 76) looks.advance(76 - looks.step());
   EXPECT_EQ(looks.deep_hash(), goes.deep_hash());
 }
@@ -57,13 +57,13 @@ TEST(Settled, AMomentIsLookedAtAndLeft) {
   const Moment moment = simulation.moment();
   const std::uint64_t then = simulation.hash();
   const double time = simulation.time();
-  const Vec3d force = simulation.contact().history()[0].now.force;
+  const Vec3d force = simulation.report().tools[0].now.force;
   simulation.advance(20);
   const std::uint64_t deep = simulation.deep_hash();
   simulation.look_at(moment, [&] {
     EXPECT_EQ(simulation.hash(), then);
     EXPECT_EQ(simulation.time(), time);
-    EXPECT_EQ(simulation.contact().history()[0].now.force, force);
+    EXPECT_EQ(simulation.report().tools[0].now.force, force);
     (void)simulation.residual_forces(0);
   });
   EXPECT_EQ(simulation.deep_hash(), deep);

@@ -10,6 +10,7 @@
 
 #include "cutting/cut_scenes.h"
 #include "simulation/coupling.h"
+#include "simulation/recovery/recovery.h"
 #include "solver/loaded.h"
 #include "solver/scenes.h"
 
@@ -130,17 +131,22 @@ TEST(Relaxation, EndsInFloatWhereItEndsInDouble) {
 TEST(StepRetries, StopAtTheFloorBeforeTheyGoBelow) {
   Loaded l(scene_with(box_body("box", {0.03, 0.02, 0.02})));
   StepControl step(l.run);
+  HostLoads loads(l.run);
+  TopologyEdits edits(l.run, step, loads);
+  RunReports reports;
+  Recovery recovery(l.run, step, edits, reports);
+  Symptoms lost;
+  lost.lost_in = 1;
   step.start(0, true);
   const double first = l.state.clock.dt, floor = l.scene.least_step * first;
   l.state.clock.dt = 1.2 * floor;
   l.state.limit.dt_backoff = 0.04;  // of what it stands at rest: far below
-  ASSERT_TRUE(step.above_floor());
-  ASSERT_TRUE(step.retry_smaller());
+  ASSERT_TRUE(recovery.trust_less(lost));
   EXPECT_DOUBLE_EQ(l.state.clock.dt, floor);
-  EXPECT_FALSE(step.above_floor());
   l.state.limit.dt_backoff = 0.03;
-  ASSERT_TRUE(step.retry_smaller());
+  ASSERT_TRUE(recovery.trust_less(lost));
   EXPECT_DOUBLE_EQ(l.state.clock.dt, 0.35 * floor);
+  EXPECT_FALSE(recovery.trust_less(lost)) << "there is an end to it";
 }
 
 /// What asks for less is lost, and is calmed instead.

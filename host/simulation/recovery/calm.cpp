@@ -1,4 +1,4 @@
-#include "simulation/calm.h"
+#include "simulation/recovery/calm.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -7,13 +7,10 @@
 #include <vector>
 
 #include "model/each_element.h"
+#include "simulation/recovery/limits.h"
 
 namespace pliant {
 namespace {
-
-/// An element that shares no node with another, a crumb, vibrates alone, undamped perhaps, and nothing shows it: of what others
-/// may keep it keeps so much, which leaves it strains of a few percent, far from where laws stiffen.
-constexpr double kLone = 0.2;
 
 class Calm {
  public:
