@@ -49,8 +49,7 @@ double largest_omega2(const RunContext& run, const std::vector<double>& spring, 
   const int steps = static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(iterations), unknowns));
   std::vector<double> alpha, beta;  // the tridiagonal matrix
   for (int k = 0; k < steps && norm > 0 && std::isfinite(norm); ++k) {
-    double largest = 0;
-    const double unit = 1 / std::sqrt(norm);
+    double largest = 0, unit = 1 / std::sqrt(norm);
     for (double& x : v) {
       x *= unit;
       largest = std::max(largest, std::abs(x));
@@ -81,6 +80,7 @@ double largest_omega2(const RunContext& run, const std::vector<double>& spring, 
     if (!(beta.back() > 1e-6 * std::abs(projection))) break;  // the whole space is spanned
   }
   loaded.write_u(u);
+  loaded.clear_faults();  // of elements in states that the run was never in
   if (alpha.empty() || !std::isfinite(beta.back())) return 0;
   const auto size = static_cast<Eigen::Index>(alpha.size());
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;

@@ -149,6 +149,27 @@ TEST(StepRetries, StopAtTheFloorBeforeTheyGoBelow) {
   EXPECT_FALSE(recovery.trust_less(lost)) << "there is an end to it";
 }
 
+/// An estimate tries states that the run is never in: what their elements mark is nothing that happened.
+TEST(StepRetries, NoEstimateMarksElements) {
+  Scene scene = scene_with(box_body("box", {0.03, 0.02, 0.02}));
+  scene.bodies[0].material.set_moduli(Law::saint_venant_kirchhoff, Moduli::from_young(3000, 0.3));
+  scene.inverted = Inverted::stop;
+  Simulation estimates(scene, open_backend("cpu")), resumed(scene, open_backend("cpu"));
+  estimates.advance(1);
+  const BufferId id = estimates.program().find("node_u");
+  std::vector<double> u = estimates.backend().read_reals(id);
+  const Model& model = estimates.model();
+  for (std::size_t s = 0; s < model.rest.size(); ++s) u[4 * s + 1] = (1e-4 - 1) * model.rest[s][1];  // all but flat
+  estimates.backend().write_reals(id, u);
+  estimates.estimate_stable_dt();
+  resumed.restore(estimates.snapshot());
+  estimates.advance(1);
+  resumed.advance(1);
+  EXPECT_EQ(estimates.divergence().has_value(), resumed.divergence().has_value());
+  EXPECT_EQ(estimates.deep_hash(), resumed.deep_hash());
+  EXPECT_EQ(estimates.state().limit.dt_backoff, 1);
+}
+
 /// What asks for less is lost, and is calmed instead.
 TEST(StepRetries, NoEstimateTakesTheStepBelowAThousandth) {
   Loaded l(scene_with(box_body("box", {0.03, 0.02, 0.02})));
