@@ -42,7 +42,7 @@ inline constexpr double kBackoff = 0.7;
 /// CheckScenes.* ends one scene by it.
 inline constexpr double kLeastBackoff = 0.02;
 /// [share of the step] A batch is made again with a step that is shorter by this at least: for a thousandth less it would be
-/// made again a hundred times. Resume.AutomaticStepThatElementsOutgrew, FlsmRun.*.
+/// made again a hundred times. Resume.AutomaticStepThatElementsOutgrew, FlsmResume.AutomaticStepThatWasTriedAgain.
 inline constexpr double kLeastShortening = 0.9;
 /// [share of the step] And by this at most, however little one state stands: one element that is lost for a moment would make
 /// the whole scene slow. StepRetries.StopAtTheFloorBeforeTheyGoBelow.
