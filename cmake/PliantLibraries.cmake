@@ -94,9 +94,11 @@ pliant_room(pliant_backends host/backends pliant_ref ${opencl_room})
 pliant_room(pliant_geometry host/geometry fmt::fmt Eigen3::Eigen Threads::Threads)
 pliant_room(pliant_material host/material Eigen3::Eigen fmt::fmt)
 target_include_directories(pliant_material PRIVATE ${PLIANT_GENERATED})  # "material/host_laws.h"
+pliant_room(pliant_integrators host/integrators Eigen3::Eigen fmt::fmt)
+target_include_directories(pliant_integrators PRIVATE ${PLIANT_GENERATED})  # "integrators/host_integrators.h"
 pliant_with_embree(pliant_geometry host/geometry/distance)
 pliant_room(pliant_elements host/elements pliant_material pliant_geometry)
-pliant_room(pliant_scene host/scene pliant_elements pliant_mesh_io nlohmann_json::nlohmann_json)
+pliant_room(pliant_scene host/scene pliant_integrators pliant_elements pliant_mesh_io nlohmann_json::nlohmann_json)
 pliant_room(pliant_mesh_io host/mesh_io pliant_geometry nlohmann_json::nlohmann_json)
 target_link_libraries(pliant_mesh_io PRIVATE assimp::assimp pugixml::pugixml)
 if(ZLIB_FOUND)

@@ -1,9 +1,10 @@
 // Twin of kernels/node_prescribe.cl.
+#include "integrator.h"
 #include "registry.h"
 
 namespace pliant::ref {
 
-template <class Scalar, bool Textbook>
+template <class Scalar, int Number>
 void node_prescribe(Range range, Scalar* node_u, Scalar* node_w, const std::int32_t* prescribed_node,
                     const std::int32_t* prescribed_axes, const std::int32_t* prescribed_curve, const Scalar* prescribed_target,
                     const Scalar* curve_value, std::int32_t curves, std::int32_t step) {
@@ -17,14 +18,15 @@ void node_prescribe(Range range, Scalar* node_u, Scalar* node_w, const std::int3
       const Scalar target = prescribed_target[4 * i + c];
       const std::int32_t curve = prescribed_curve[3 * i + c];
       u[c] = target * next[curve];
-      w[c] = target * (Textbook ? now[curve] : next[curve] - now[curve]);
+      w[c] = target * StepForm<Number>::w_of(now[curve], next[curve]);
     }
   }
 }
 
 void register_node_prescribe(Registry& registry) {
-  registry.add_specialised<2>("node_prescribe", {"TEXTBOOK"},
-                              [](auto scalar, auto textbook) { return node_prescribe<decltype(scalar), textbook() != 0>; });
+  registry.add_specialised<integrator_count>("node_prescribe", {"INTEGRATOR"}, [](auto scalar, auto integrator) {
+    return node_prescribe<decltype(scalar), integrator()>;
+  });
 }
 
 }  // namespace pliant::ref

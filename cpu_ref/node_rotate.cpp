@@ -1,11 +1,12 @@
 // Twin of kernels/node_rotate.cl.
 #include <cmath>
 
+#include "integrator.h"
 #include "registry.h"
 
 namespace pliant::ref {
 
-template <class Scalar, bool Textbook>
+template <class Scalar, int Number>
 void node_rotate(Range range, Scalar* node_u, Scalar* node_w, const std::int32_t* rotated_node,
                  const std::int32_t* rotated_axes, const std::int32_t* rotated_curve, const Scalar* rotated_cosine,
                  const Scalar* rotated_sine, const Scalar* curve_value, std::int32_t curves, std::int32_t step) {
@@ -18,14 +19,15 @@ void node_rotate(Range range, Scalar* node_u, Scalar* node_w, const std::int32_t
       const Scalar* now = curve_value + std::int64_t{step} * curves + rotated_curve[3 * i + c];
       const Scalar* next = now + curves;
       u[c] = std::fma(p, next[0], q * next[1]);
-      w[c] = Textbook ? std::fma(p, now[0], q * now[1]) : std::fma(p, next[0] - now[0], q * (next[1] - now[1]));
+      const auto kept = [](Scalar from, Scalar to) { return StepForm<Number>::w_of(from, to); };
+      w[c] = std::fma(p, kept(now[0], next[0]), q * kept(now[1], next[1]));
     }
   }
 }
 
 void register_node_rotate(Registry& registry) {
-  registry.add_specialised<2>("node_rotate", {"TEXTBOOK"},
-                              [](auto scalar, auto textbook) { return node_rotate<decltype(scalar), textbook() != 0>; });
+  registry.add_specialised<integrator_count>(
+      "node_rotate", {"INTEGRATOR"}, [](auto scalar, auto integrator) { return node_rotate<decltype(scalar), integrator()>; });
 }
 
 }  // namespace pliant::ref

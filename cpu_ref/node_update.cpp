@@ -22,11 +22,12 @@ void node_update(Range range, Scalar* node_u, Scalar* node_w, const std::int32_t
 }
 
 void register_node_update(Registry& registry) {
-  registry.add_specialised<2, 2, 2>("node_update", {"HAS_LOAD", "FORCE_ONLY", "TEXTBOOK"},
-                                    [](auto scalar, auto has_load, auto force_only, auto textbook) {
-                                      constexpr UpdateKind kind{has_load() != 0, force_only() != 0, textbook() != 0};
-                                      return node_update<decltype(scalar), kind>;
-                                    });
+  registry.add_specialised<2, 2, integrator_count>(
+      "node_update", {"HAS_LOAD", "FORCE_ONLY", "INTEGRATOR"},
+      [](auto scalar, auto has_load, auto force_only, auto integrator) {
+        constexpr UpdateKind kind{has_load() != 0, force_only() != 0, integrator()};
+        return node_update<decltype(scalar), kind>;
+      });
 }
 
 }  // namespace pliant::ref

@@ -1,8 +1,9 @@
-// Prescribed components of displacement: u = target * curve(t + h), w = target * (curve(t + h) - curve(t)).
+// Prescribed components of displacement: u = target * curve(t + h), and in node_w what the integrator keeps of a motion from
+// target * curve(t) to there.
 // prescribed_node: [n]; prescribed_axes: [n] bit mask of x, y, z; prescribed_curve: [n][3] curve of each component;
 // prescribed_target: [n] texels [m]; curve_value: [steps of the batch + 1][curves] factors.
-// TEXTBOOK: node_w takes u_n instead of the increment.
 #include "arith.cl"
+#include "integrator.cl"
 
 __kernel void node_prescribe(__global float* node_u, __global float* node_w, __global const int* prescribed_node,
                              __global const int* prescribed_axes, __global const int* prescribed_curve,
@@ -15,11 +16,7 @@ __kernel void node_prescribe(__global float* node_u, __global float* node_w, __g
       const int curve = prescribed_curve[3 * i + c];
       const float now = curve_value[step * curves + curve], next = curve_value[(step + 1) * curves + curve];
       node_u[node + c] = target * next;
-#if TEXTBOOK
-      node_w[node + c] = target * now;
-#else
-      node_w[node + c] = target * (next - now);
-#endif
+      node_w[node + c] = target * W_OF(now, next);
     }
   }
 }

@@ -1,9 +1,9 @@
-// Prescribed components of displacement of nodes on circles about an axis: u = p (cos(angle) - 1) + q sin(angle) at t + h, and
-// w = its change over the step. The host gives the cosine less one and, as the next curve, the sine: there is none on the
-// device. rotated_node: [n]; rotated_axes: [n] bit mask of x, y, z; rotated_curve: [n][3] curve of each component;
-// rotated_cosine, rotated_sine: [n] texels p, q [m]; curve_value: [steps of the batch + 1][curves]. TEXTBOOK: node_w takes u_n
-// instead of the increment.
+// Prescribed components of displacement of nodes on circles about an axis: u = p (cos(angle) - 1) + q sin(angle) at t + h, and in
+// node_w what the integrator keeps of such a motion. The host gives the cosine less one and, as the next curve, the sine: there is
+// none on the device. rotated_node: [n]; rotated_axes: [n] bit mask of x, y, z; rotated_curve: [n][3] curve of each component;
+// rotated_cosine, rotated_sine: [n] texels p, q [m]; curve_value: [steps of the batch + 1][curves].
 #include "arith.cl"
+#include "integrator.cl"
 
 __kernel void node_rotate(__global float* node_u, __global float* node_w, __global const int* rotated_node,
                           __global const int* rotated_axes, __global const int* rotated_curve,
@@ -18,13 +18,8 @@ __kernel void node_rotate(__global float* node_u, __global float* node_w, __glob
       __global const float* next = now + curves;
       const float swing = q * next[1];
       node_u[node + c] = fma(p, next[0], swing);
-#if TEXTBOOK
-      const float before = q * now[1];
-      node_w[node + c] = fma(p, now[0], before);
-#else
-      const float change = q * (next[1] - now[1]);
-      node_w[node + c] = fma(p, next[0] - now[0], change);
-#endif
+      const float turned = q * W_OF(now[1], next[1]);
+      node_w[node + c] = fma(p, W_OF(now[0], next[0]), turned);
     }
   }
 }

@@ -1,14 +1,11 @@
-// Sum the corner forces at each node and advance it by central differences in increment form (Miller et al. 2007;
-// Hybrid Deformation Model, equation 14):
-//   w <- a w + b (R - F) / m + b g,  u <- u + w,  a = (1 - k) / (1 + k),  b = h^2 / (1 + k) = h^2 (1 + a) / 2,  k = c h / 2.
+// Sum the corner forces at each node and advance it by a step of the integrator (integrator.cl).
 // An increment below `still` is taken as none, and a displacement below `fine` is rounded to a multiple of 2^-22 fine (of 2^-23 fine it
 // is one anyway above), so that a strain is none or so large that its cube is a normal number: the far field of a wave decays over tens
 // of elements, and denormal numbers cost a processor a hundred times what others do. And a body at rest stays at rest.
-// node_u: [nodes] (u [m], 1/m [1/kg]); node_w: [nodes] (increment [m], decay a [1]).
+// node_u: [nodes] (u [m], 1/m [1/kg]); node_w: [nodes] (what the integrator keeps of the motion [m], its decay [1]).
 // gather_offset: [tiles + 1] rows; gather_index: [rows][16] positions in corner_force, ascending per node, padded with the position
 // of a -0 (adding -0 changes nothing). step_params: h [s], g [m/s^2] (3), still [m], fine [m].
 // FORCE_ONLY: write R - F to node_force (without gravity) and leave the node where it is. HAS_LOAD: R from node_load.
-// TEXTBOOK: node_w holds u_(n-1), and u_(n+1) = b/m (R - F) + b g + (1 + a) u_n - a u_(n-1) as equation 14 writes it.
 #include "arith.cl"
 #include "texels.cl"
 #include "integrate.cl"

@@ -62,7 +62,7 @@ bool follows(const Scene& scene) {
 
 void TopologyEdits::start() {
   const Scene& scene = run_.scene;
-  const bool moves_freely = scene.integrator == Integrator::increment && !scene.relaxation.enabled;
+  const bool moves_freely = integrator_info(scene.integrator).edits && !scene.relaxation.enabled;
   if (!scene.blades.empty()) {
     for (const Blade& blade : scene.blades) check_blade(blade);
     prepare_cuts();
@@ -72,9 +72,11 @@ void TopologyEdits::start() {
   }
   if (!EditedBodies::tears(scene)) return;
   if (!moves_freely || !scene.blades.empty()) {
-    throw Error(ErrorCode::bad_input,
-                "a scene with \"integrator\": \"textbook\", with relaxation or with blades cannot tear: no material may have a "
-                "toughness");
+    throw Error(
+        ErrorCode::bad_input,
+        fmt::format("a scene with another integrator than {}, with relaxation or with blades cannot tear: no material may "
+                    "have a toughness",
+                    integrators_with(&IntegratorInfo::edits)));
   }
   bodies_ = std::make_unique<EditedBodies>(scene);
   run_.settings.tears = true;
@@ -97,8 +99,12 @@ EditedBodies& TopologyEdits::cut_bodies() {
   if (run_.settings.tears || EditedBodies::tears(run_.scene)) {
     throw Error(ErrorCode::bad_input, "a scene with a material that tears (\"toughness\") cannot be cut");
   }
-  if (run_.scene.integrator != Integrator::increment || run_.scene.relaxation.enabled) {
-    throw Error(ErrorCode::bad_input, "a scene with \"integrator\": \"textbook\" or with relaxation cannot be cut");
+  const IntegratorInfo& integrator = integrator_info(run_.scene.integrator);
+  if (!integrator.edits || run_.scene.relaxation.enabled) {
+    const std::string has = integrator.edits ? "relaxation" : fmt::format("\"integrator\": \"{}\"", integrator.word);
+    throw Error(ErrorCode::bad_input,
+                fmt::format("a scene with {} cannot be cut, only with the integrator {} and no relaxation", has,
+                            integrators_with(&IntegratorInfo::edits)));
   }
   return bodies();
 }

@@ -112,7 +112,7 @@ class Planner {
   /// Hybrids on the lattice of the cheapest hex8 that meets the tolerance: fewer finite elements, and substeps where they pay.
   void try_hybrids() {
     const Trial* const base = cheapest("hex8");
-    if (base == nullptr || scene_.integrator != Integrator::increment) return;
+    if (base == nullptr || !integrator_info(scene_.integrator).matching) return;
     const std::int64_t nodes = base->wanted_nodes;
     struct Choice {
       double ratio;

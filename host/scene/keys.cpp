@@ -153,9 +153,11 @@ const Words<Curve::Kind>& curve_words() {
 }
 
 const Words<Integrator>& integrator_words() {
-  static const Words<Integrator> words{
-      {"increment", Integrator::increment, "central differences in the increment of the displacement"},
-      {"textbook", Integrator::textbook, "2 u_n - u_(n-1), which loses small increments in float; for comparison"}};
+  static const Words<Integrator> words = [] {
+    Words<Integrator> list;
+    for (const Integrator i : all_integrators()) list.push_back({integrator_info(i).word, i, integrator_info(i).what});
+    return list;
+  }();
   return words;
 }
 

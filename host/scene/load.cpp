@@ -104,6 +104,11 @@ void check_initial(const Reader& top, const Scene& scene) {
 
 }  // namespace
 
+void require_integrator(const Reader& top, const Scene& scene, bool IntegratorInfo::*property, const std::string& because) {
+  if (integrator_info(scene.integrator).*property) return;
+  top.at("integrator").fail(integrators_with(property) + ", because " + because);
+}
+
 Scene read_document(const nlohmann::json& document, const fs::path& file) {
   const std::string shown = name_of(file);
   const Reader top(document, shown, "");
@@ -117,6 +122,7 @@ Scene read_document(const nlohmann::json& document, const fs::path& file) {
   describe_scene(ReadKeys{top}, scene);
   describe_run(ReadKeys{top}, scene);
   read_relaxation(top, scene.relaxation);
+  if (scene.relaxation.enabled) require_integrator(top, scene, &IntegratorInfo::relaxation, "the scene has relaxation");
   read_solver(top, scene);
   if (top.has("tool")) scene.tool = read_tool(top.at("tool"));
   if (top.has("tools")) scene.tools = read_tools(top.at("tools"), file.parent_path());

@@ -75,6 +75,8 @@ std::vector<ContactTool> read_tools(const Reader& tools, const std::filesystem::
 void check_tools(const Reader& top, const Scene& scene);
 /// After the bodies. Null without probes.
 std::shared_ptr<const SceneProbes> read_probes(const Reader& top, const Scene& scene);
+/// Fails at the key "integrator" unless the scene's has a property, `because` of what else the scene holds.
+void require_integrator(const Reader& top, const Scene& scene, bool IntegratorInfo::*property, const std::string& because);
 /// Models against the keys of the scene: its integrator, its relaxation and its tool.
 void check_models(const Reader& top, const Scene& scene);
 void check_blades(const Reader& top, const Scene& scene);

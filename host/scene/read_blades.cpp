@@ -43,7 +43,7 @@ std::vector<Blade> read_blades(const Reader& blades) {
 
 void check_blades(const Reader& top, const Scene& scene) {
   if (scene.blades.empty()) return;
-  if (scene.integrator != Integrator::increment) top.at("integrator").fail("increment, because the scene has blades");
+  require_integrator(top, scene, &IntegratorInfo::edits, "the scene has blades");
   if (scene.relaxation.enabled) top.at("relaxation").fail("false, because the scene has blades");
   const std::vector<Reader> bodies = top.at("bodies").items("a list of bodies");
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {

@@ -73,9 +73,7 @@ void check_models(const Reader& top, const Scene& scene) {
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const DeformationModel& m = scene.bodies[i].model;
     if (m.type == ModelType::tled) continue;
-    if (scene.integrator != Integrator::increment) {
-      top.at("integrator").fail(fmt::format("increment, because {} has the type {}", m.pointer, to_string(m.type)));
-    }
+    require_integrator(top, scene, &IntegratorInfo::matching, fmt::format("{} has the type {}", m.pointer, to_string(m.type)));
     if (m.follow_tool && scene.relaxation.enabled) {
       top.at("relaxation").fail(fmt::format("false, because {}/follow moves the region as time goes on", m.pointer));
     }

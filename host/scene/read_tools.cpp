@@ -138,7 +138,7 @@ std::vector<ContactTool> read_tools(const Reader& tools, const std::filesystem::
 void check_tools(const Reader& top, const Scene& scene) {
   if (scene.tools.empty() && !scene.contact) return;
   const std::string has = scene.tools.empty() ? "contact" : "tools";
-  if (scene.integrator != Integrator::increment) top.at("integrator").fail("increment, because the scene has " + has);
+  require_integrator(top, scene, &IntegratorInfo::contact, "the scene has " + has);
   if (scene.solver.enabled)
     top.at("solver").fail("\"dynamic\", because the scene has " + has + " (contact is not solved statically)");
   const std::vector<Reader> bodies = top.at("bodies").items("a list of bodies");

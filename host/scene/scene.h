@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "elements/element.h"
+#include "integrators/integrator.h"
 #include "material/material.h"
 #include "scene/contact_tool.h"
 #include "scene/curve.h"
@@ -110,8 +111,6 @@ struct Relaxation {
   double tolerance = 1e-5;  ///< stop at |R - F| <= tolerance * |largest of R, F|
   std::int64_t max_steps = 100000;
 };
-
-enum class Integrator { increment, textbook };
 
 /// The key "solver": what `pliant run` does with the scene.
 struct StaticSolver {

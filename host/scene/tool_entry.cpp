@@ -34,7 +34,8 @@ void check_takes_tools(const Scene& scene) {
   const auto refuse = [](const std::string& has) {
     throw Error(ErrorCode::bad_input, fmt::format("a scene with {} takes no tools (docs/scene.md, tools)", has));
   };
-  if (scene.integrator != Integrator::increment) refuse("\"integrator\": \"textbook\"");
+  const IntegratorInfo& integrator = integrator_info(scene.integrator);
+  if (!integrator.contact) refuse(fmt::format("\"integrator\": \"{}\"", integrator.word));
   if (scene.relaxation.enabled) refuse("relaxation");
   if (scene.solver.enabled) refuse("a static solver");
   for (const Body& body : scene.bodies) {

@@ -101,7 +101,7 @@ void ProgramBuilder::add_gravity() {
 }
 
 std::vector<std::pair<std::string, int>> ProgramBuilder::update_defines(int force_only) const {
-  return {{"FORCE_ONLY", force_only}, {"HAS_LOAD", needs_load() ? 1 : 0}, {"TEXTBOOK", textbook()}};
+  return {{"FORCE_ONLY", force_only}, {"HAS_LOAD", needs_load() ? 1 : 0}, {"INTEGRATOR", integrator()}};
 }
 
 void ProgramBuilder::add_updates() {
@@ -183,7 +183,7 @@ void ProgramBuilder::add_constraints() {
                                         "m", "model", std::move(target)));
   program_.step.push_back(
       {"node_prescribe",
-       {{"TEXTBOOK", textbook()}},
+       {{"INTEGRATOR", integrator()}},
        {buffer_arg(node_u_), buffer_arg(node_w_), buffer_arg(node_id), buffer_arg(axes_id), buffer_arg(curve_id),
         buffer_arg(target_id), buffer_arg(curves_), int_arg(curve_count()), step_arg()},
        Shape::items,
@@ -221,7 +221,7 @@ void ProgramBuilder::add_rotations() {
       make_reals("rotated_sine", BufferType::real4, count, BufferRole::constant, "[rotated]", "m", "model", std::move(sine)));
   program_.step.push_back(
       {"node_rotate",
-       {{"TEXTBOOK", textbook()}},
+       {{"INTEGRATOR", integrator()}},
        {buffer_arg(node_u_), buffer_arg(node_w_), buffer_arg(node_id), buffer_arg(axes_id), buffer_arg(curve_id),
         buffer_arg(cosine_id), buffer_arg(sine_id), buffer_arg(curves_), int_arg(curve_count()), step_arg()},
        Shape::items,

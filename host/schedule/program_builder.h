@@ -123,7 +123,7 @@ class ProgramBuilder {
   [[nodiscard]] bool has_interface() const {
     return std::any_of(model_.flsm.begin(), model_.flsm.end(), [](const FlsmBatch& b) { return b.interface > 0; });
   }
-  [[nodiscard]] int textbook() const { return options_.integrator == Integrator::textbook ? 1 : 0; }
+  [[nodiscard]] int integrator() const { return static_cast<int>(options_.integrator); }
   [[nodiscard]] std::int32_t curve_count() const { return static_cast<std::int32_t>(model_.curves.size()); }
 
   const Model& model_;

@@ -52,8 +52,8 @@ void Drift::find_loose_pieces() {
 }
 
 void Drift::follow() {
-  // The textbook form and relaxation keep earlier displacements elsewhere.
-  if (run_.scene.integrator != Integrator::increment || run_.scene.relaxation.enabled) return;
+  // Earlier displacements would have to follow, those that the integrator keeps and those of relaxation.
+  if (!integrator_info(run_.scene.integrator).keeps_increment || run_.scene.relaxation.enabled) return;
   if (model_ != run_.loaded.shared_model()) find_loose_pieces();
   if (loose_.empty()) return;
   std::vector<double> u = run_.loaded.u();

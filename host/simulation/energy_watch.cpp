@@ -12,8 +12,7 @@
 namespace pliant {
 namespace {
 
-/// m v_(n-1/2).v_(n+1/2) / 2: with it the energy of an undamped linear body is constant under central differences, to rounding
-/// (Krenk 2006). The squares of one of the two swing by omega h.
+/// What the integrator says of it.
 double kinetic(Simulation& s, const std::vector<Vec3d>& before) {
   const Model& m = s.model();
   std::vector<std::vector<Vec3d>> by_body(m.bodies.size());
@@ -21,6 +20,7 @@ double kinetic(Simulation& s, const std::vector<Vec3d>& before) {
   const std::vector<Vec3d> force = by_slot(m, by_body);
   std::vector<std::int32_t> held(m.mass.size());
   for (const Constraint& c : m.constraints) held[static_cast<std::size_t>(c.slot)] = c.axes;
+  const auto square = integrator_info(s.scene().integrator).squared_velocity;
   double sum = 0;
   for (std::size_t slot = 0; slot < m.mass.size(); ++slot) {
     if (!(m.mass[slot] > 0)) continue;
@@ -28,7 +28,7 @@ double kinetic(Simulation& s, const std::vector<Vec3d>& before) {
     for (std::size_t c = 0; c < 3; ++c) {
       if ((held[slot] >> c & 1) != 0) continue;
       const double v = before[slot][c], a = force[slot][c] / m.mass[slot] + s.scene().gravity_at(s.time())[c];
-      sum += m.mass[slot] / 2 * v * ((1 - k) * v + h * a) / (1 + k);
+      sum += m.mass[slot] / 2 * square(v, a, h, k);
     }
   }
   return sum;

@@ -33,10 +33,9 @@ double fast_velocity(const RelaxationState& last, const std::vector<double>& u, 
   return (v[t] + last.v[t]) / 2 - (u[t] - last.u[t]) / time - (last.steady.empty() ? 0 : last.steady[t]);
 }
 
-std::vector<double> velocities(const RunContext& run, const std::vector<double>& u) {
-  std::vector<double> v = run.loaded.w();
-  const bool textbook = run.scene.integrator == Integrator::textbook;  // which keeps the displacement before
-  for (std::size_t i = 0; i < v.size(); ++i) v[i] = (textbook ? u[i] - v[i] : v[i]) / run.state.clock.dt;
+std::vector<double> velocities(const RunContext& run) {
+  std::vector<double> v = run.increments();
+  for (double& x : v) x /= run.state.clock.dt;
   for (const FlsmBatch& b : run.model().flsm) {
     const auto first = static_cast<std::size_t>(b.first_slot), slots = static_cast<std::size_t>(b.slots);
     for (std::size_t i = 4 * first; i < 4 * (first + slots); ++i) v[i] /= b.settings.substeps;
@@ -123,7 +122,7 @@ void relax_elements(RunContext& run) {
   RelaxationState& last = run.state.relaxation;
   const std::vector<double> u = run.loaded.u();
   const std::vector<double> force = run.forces_now();
-  const std::vector<double> v = velocities(run, u);
+  const std::vector<double> v = velocities(run);
   const bool first = last.u.empty();
   const double c = material_damping(run) + last.damping, now = run.state.clock.time();
   Sums sums = sum(run, u, force, v);
@@ -166,7 +165,7 @@ void relax_by_momentum(RunContext& run) {
   const double x = (material_damping(run) + last.damping) * time / 2;
   const bool rhythm = has_rhythm(model), first = last.middle.empty();
   if (!first && !last.v.empty() && x > 0 && x < kInterval) return;
-  const std::vector<double> u = run.loaded.u(), v = velocities(run, u), force = run.forces_now();
+  const std::vector<double> u = run.loaded.u(), v = velocities(run), force = run.forces_now();
   if (last.v.empty()) return remember(run, u, last.force.empty() ? std::vector<double>(u.size()) : last.force, v);
   if (rhythm && last.steady.empty()) {
     last.steady.resize(u.size());

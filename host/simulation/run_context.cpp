@@ -28,11 +28,20 @@ bool RunContext::begins_after(std::int64_t step, std::int64_t every) const {
 
 double RunContext::decay(const Model& of, std::size_t slot) const {
   const double k = 0.5 * substeps_of(of, slot) * state.clock.dt * (of.damping[slot] + state.relaxation.damping);
-  return (1 - k) / (1 + k);
+  return integrator_info(scene.integrator).decay(k);
 }
 
-std::vector<Vec3d> RunContext::velocities(const std::vector<double>& w, std::size_t body) const {
-  std::vector<Vec3d> v = loaded.pick(w, body, 1 / state.clock.dt);
+std::vector<double> RunContext::increments() const {
+  std::vector<double> w = loaded.w();
+  const IntegratorInfo& info = integrator_info(scene.integrator);
+  if (info.keeps_increment) return w;
+  const std::vector<double> u = loaded.u();
+  for (std::size_t i = 0; i < w.size(); ++i) w[i] = info.increment(u[i], w[i]);
+  return w;
+}
+
+std::vector<Vec3d> RunContext::velocities(const std::vector<double>& increments, std::size_t body) const {
+  std::vector<Vec3d> v = loaded.pick(increments, body, 1 / state.clock.dt);
   for (std::size_t n = 0; n < v.size() && !model().flsm.empty(); ++n) {
     const auto slot = static_cast<std::size_t>(model().bodies[body].slot[n]);
     for (std::size_t c = 0; c < 3; ++c) {

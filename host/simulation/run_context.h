@@ -42,11 +42,13 @@ struct RunContext {
   /// Whether all subcycles begin in this step, the first such step since a multiple of `every`.
   [[nodiscard]] bool begins_after(std::int64_t step, std::int64_t every) const;
 
-  /// a = (1 - k) / (1 + k) with k = c h / 2, c the damping rate of the material at a slot of `of` plus that of dynamic
-  /// relaxation.
+  /// What node_w holds of the damping (IntegratorInfo::decay) for k = c h / 2, c the damping rate of the material at a slot of
+  /// `of` plus that of dynamic relaxation.
   [[nodiscard]] double decay(const Model& of, std::size_t slot) const;
-  /// Velocities (u_n - u_(n-1)) / h of a body's nodes [m/s] from what node_w holds.
-  [[nodiscard]] std::vector<Vec3d> velocities(const std::vector<double>& w, std::size_t body) const;
+  /// h v of every node [m], in texels, v the velocity that the integrator says.
+  [[nodiscard]] std::vector<double> increments() const;
+  /// Velocities of a body's nodes [m/s] from increments().
+  [[nodiscard]] std::vector<Vec3d> velocities(const std::vector<double>& increments, std::size_t body) const;
 
   /// node_u with what RunState::offset holds: displacements [m], and in the fourth number what node_u has there.
   [[nodiscard]] std::vector<double> u() const;

@@ -113,7 +113,7 @@ void add_tool(const Simulation& s, std::size_t tool, Sentences& out) {
 /// Tools give what holds the bodies, but for the weight and other loads, the inertia, and what the damping of the materials
 /// takes from everything that moves: M a + c M v = (what holds) + (loads) - (force on tools).
 void add_damping(Simulation& s, Sentences& out) {
-  if (s.scene().relaxation.enabled || !s.model().flsm.empty() || s.scene().integrator != Integrator::increment) return;
+  if (s.scene().relaxation.enabled || !s.model().flsm.empty() || !integrator_info(s.scene().integrator).contact) return;
   Vec3d on_tools{}, held{}, damped{};
   for (const ToolHistory& h : s.report().tools) on_tools = vec::add(on_tools, h.now.force);
   const double size = vec::norm(on_tools);

@@ -54,22 +54,22 @@ void Simulation::start(std::shared_ptr<const Model> model, const SimulationOptio
     settings_.displacement_grid = std::ldexp(1.0, 22 + std::ilogb(settings_.increment_floor));
   }
   upload_coupling(run_);
-  set_initial_increment();
+  set_initial_motion();
 }
 
-/// w_0 = h v_0 - h^2/2 a_0, so that the first step is that of a parabola through the initial position and velocity.
-void Simulation::set_initial_increment() {
+void Simulation::set_initial_motion() {
   const Model& m = loaded_.model();
   const std::vector<double> force = run_.forces_now();
   std::vector<double> w(4 * static_cast<std::size_t>(m.slots));
   const Vec3d gravity = scene_.gravity_at(time());
-  const double sign = scene_.integrator == Integrator::textbook ? -1 : 1;  // the textbook form keeps u_(-1) instead
+  const auto first = integrator_info(scene_.integrator).first;
+  const std::vector<double> u = loaded_.u();
   for (std::size_t s = 0; s < m.mass.size(); ++s) {
     const double h = substeps_of(m, s) * state_.clock.dt;
     for (std::size_t c = 0; c < 3; ++c) {
       if (!loaded_.free()[3 * s + c]) continue;
       const double a = force[4 * s + c] / m.mass[s] + gravity[c] - m.damping[s] * m.velocity[s][c];
-      w[4 * s + c] = sign * (h * m.velocity[s][c] - 0.5 * h * h * a);
+      w[4 * s + c] = first({u[4 * s + c], m.velocity[s][c], a, h});
     }
     w[4 * s + 3] = run_.decay(m, s);
   }
@@ -118,13 +118,7 @@ void Simulation::end_batch(std::int32_t steps) {
   ballast.most = std::max(ballast.most, ballast.mass);
 }
 
-std::vector<Vec3d> Simulation::velocities(std::size_t body) const {
-  const std::vector<double> w = loaded_.w();
-  if (scene_.integrator == Integrator::increment) return run_.velocities(w, body);
-  std::vector<double> u = loaded_.u();  // of which w is the one before
-  for (std::size_t i = 0; i < u.size(); ++i) u[i] -= w[i];
-  return loaded_.pick(u, body, 1 / dt());
-}
+std::vector<Vec3d> Simulation::velocities(std::size_t body) const { return run_.velocities(run_.increments(), body); }
 
 std::vector<Vec3d> Simulation::surface_positions() {
   const Program& surface = loaded_.surface();

@@ -143,7 +143,7 @@ class Simulation {
  private:
   void start(std::shared_ptr<const Model> model, const SimulationOptions& options);
   void load(std::shared_ptr<const Model> model);
-  void set_initial_increment();
+  void set_initial_motion();
 
   const Scene scene_;
   RunSettings settings_;  ///< fixed when the constructor is done

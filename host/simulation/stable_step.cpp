@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "simulation/coupling.h"
 
@@ -26,6 +27,18 @@ double noise(std::size_t i) {
 double ritz_deficit(std::size_t unknowns, int steps) {
   const double k = steps - 1, logarithm = std::log(static_cast<double>(unknowns)) + 4 * std::log(k);
   return std::min(0.5, 0.103 * logarithm * logarithm / (k * k));
+}
+
+/// With the damping rates of the nodes that move.
+double stable_step(const RunContext& run, double omega2) {
+  const Model& model = run.model();
+  double least = std::numeric_limits<double>::max(), most = 0;
+  for (std::size_t s = 0; s < model.mass.size(); ++s) {
+    if (!(model.mass[s] > 0)) continue;
+    least = std::min(least, model.damping[s]);
+    most = std::max(most, model.damping[s]);
+  }
+  return integrator_info(run.scene.integrator).stable_step(omega2, least, most);
 }
 
 }  // namespace
@@ -95,7 +108,7 @@ StableStep estimate_stable_step(const RunContext& run, int iterations) {
   StableStep step;
   const double omega2 = largest_omega2(run, {}, iterations);
   if (!(omega2 > 0)) return step;
-  step.elements = 2 / std::sqrt(omega2);
+  step.elements = stable_step(run, omega2);
   step.coupled = coupled_step(run.model(), step.elements);
   const std::vector<double> spring = interface_springs(run.model(), step.coupled);
   if (!spring.empty()) {

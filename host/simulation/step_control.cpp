@@ -37,7 +37,7 @@ void StepControl::start(double wanted, bool estimate_always) {
   const Model& model = run_.model();
   const double longest = longest_step(model, run_.scene);
   double& dt = run_.state.clock.dt;
-  run_.settings.automatic = wanted <= 0 && run_.scene.integrator == Integrator::increment && has_elements(model);
+  run_.settings.automatic = wanted <= 0 && integrator_info(run_.scene.integrator).automatic && has_elements(model);
   if (!has_elements(model)) {
     dt = wanted > 0 ? wanted : std::min(run_.scene.contact ? kTouchFrame : kFrame, longest);
   } else {
@@ -184,7 +184,7 @@ void StepControl::hold() { run_.state.limit.hold = run_.state.clock.step + kAdap
 /// Increments scale with the step, decay factors and shape matching follow it.
 void StepControl::change(double dt) {
   Clock& clock = run_.state.clock;
-  if (run_.scene.integrator == Integrator::textbook) return;  // its previous position belongs to the old step
+  if (!integrator_info(run_.scene.integrator).automatic) return;
   const double ratio = dt / clock.dt;
   std::vector<double> w = run_.loaded.w();
   for (std::size_t i = 0; i < w.size(); ++i) {

@@ -1,4 +1,5 @@
 // node_prescribe: kernel and twin give the same bits; in double, the prescribed motion is target times curve.
+#include "integrators/integrator.h"
 #include "random_data.h"
 
 namespace pliant::kernel_test {
@@ -6,11 +7,11 @@ namespace {
 
 class NodePrescribe : public TwinTest {};
 
-KernelCase make_case(int textbook, std::size_t count, Data data, std::uint32_t seed) {
+KernelCase make_case(Integrator integrator, std::size_t count, Data data, std::uint32_t seed) {
   Random random(seed);
   const std::size_t nodes = count + 100;
   constexpr int curves = 3, rows = test_step + 2;
-  KernelCase test("node_prescribe", {{"TEXTBOOK", textbook}}, Shape::items, count);
+  KernelCase test("node_prescribe", {{"INTEGRATOR", static_cast<int>(integrator)}}, Shape::items, count);
   test.reals("node_u", random.reals(4 * nodes, data, 0.01))
       .reals("node_w", random.reals(4 * nodes, data, 0.01))
       .ints("prescribed_node", random.distinct(count, nodes))
@@ -25,16 +26,16 @@ KernelCase make_case(int textbook, std::size_t count, Data data, std::uint32_t s
 
 TEST_F(NodePrescribe, TwinGivesTheSameBits) {
   std::uint32_t seed = 800;
-  for (const int textbook : {0, 1}) {
+  for (const Integrator integrator : all_integrators()) {
     for (const std::size_t count : {1U, 37U, 1500U}) {
-      for (const Data data : all_data) expect_same_bits(make_case(textbook, count, data, seed++), name_of(data));
+      for (const Data data : all_data) expect_same_bits(make_case(integrator, count, data, seed++), name_of(data));
     }
   }
 }
 
 TEST(NodePrescribeOracle, FollowsTheCurve) {
-  for (const int textbook : {0, 1}) {
-    KernelCase test("node_prescribe", {{"TEXTBOOK", textbook}}, Shape::items, 1);
+  for (const Integrator integrator : all_integrators()) {
+    KernelCase test("node_prescribe", {{"INTEGRATOR", static_cast<int>(integrator)}}, Shape::items, 1);
     test.exact("node_u", {9, 9, 9, 9, 9, 9, 9, 9}).exact("node_w", {9, 9, 9, 9, 9, 9, 9, 9}).ints("prescribed_node", {1});
     test.ints("prescribed_axes", {1 + 4}).ints("prescribed_curve", {0, 0, 1}).exact("prescribed_target", {2, 3, 5, 0});
     test.exact("curve_value", {0, 0, 0, 0, 0.25, 0.5, 0.5, 1}).integer(2).step();  // rows 2 and 3 count

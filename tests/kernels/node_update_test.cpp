@@ -8,8 +8,8 @@ class NodeUpdate : public TwinTest {};
 
 TEST_F(NodeUpdate, TwinGivesTheSameBits) {
   std::uint32_t seed = 600;
-  for (int kind = 0; kind < 8; ++kind) {
-    const Defines defines = update_defines(kind & 1, kind >> 1 & 1, kind >> 2 & 1);
+  for (int kind = 0; kind < 4 * integrator_count; ++kind) {
+    const Defines defines = update_defines(kind & 1, kind >> 1 & 1, all_integrators()[static_cast<std::size_t>(kind / 4)]);
     for (const std::size_t nodes : {16U, 80U, 2064U}) {
       for (const Data data : all_data) expect_same_bits(node_update_case(defines, nodes, data, seed++), name_of(data));
     }
@@ -24,23 +24,23 @@ TEST(NodeUpdateOracle, IsCentralDifferencesWithDamping) {
   // m (u+ - 2 u + u-) / h^2 + m c (u+ - u-) / (2 h) = R - F + m g
   const double expected =
       ((load - force) / mass + gravity + (2 * u - before) / (h * h) + c * before / (2 * h)) / (1 / (h * h) + c / (2 * h));
-  for (const int textbook : {0, 1}) {
+  for (const Integrator form : {Integrator::increment, Integrator::textbook}) {
     Reals node_u(64, 0.0), node_w(64, 0.0), node_load(64, 0.0), corner_force(48, -0.0);
     node_u[1] = u;
     node_u[3] = 1 / mass;
-    node_w[1] = textbook != 0 ? before : u - before;
+    node_w[1] = form == Integrator::textbook ? before : u - before;
     node_w[3] = decay;
     node_load[1] = load;
     corner_force[16 + 5] = force;
     Ints index(16, 0);
     index[0] = 5;
-    KernelCase test("node_update", update_defines(1, 0, textbook), Shape::lanes, 16);
+    KernelCase test("node_update", update_defines(1, 0, form), Shape::lanes, 16);
     test.exact("node_u", node_u).exact("node_w", node_w).ints("gather_offset", {0, 1}).ints("gather_index", index);
     test.exact("corner_force", corner_force).exact("node_load", node_load).exact("node_force", Reals(64));
     test.exact("step_params", {h, 0, gravity, 0, 0, 0, 0, 0}).integer(0);
     const Reals after = run_in_double(test, "node_u"), w = run_in_double(test, "node_w");
     EXPECT_NEAR(after[1], expected, 1e-14 * std::fabs(expected));
-    EXPECT_NEAR(w[1], textbook != 0 ? u : expected - u, 1e-15);
+    EXPECT_NEAR(w[1], form == Integrator::textbook ? u : expected - u, 1e-15);
     EXPECT_EQ(after[3], 1 / mass);
     for (std::size_t i = 4; i < 64; ++i) EXPECT_EQ(after[i], 0) << "a slot without a node moved: " << i;
   }
@@ -54,7 +54,7 @@ TEST(NodeUpdateOracle, DropsIncrementsBelowTheFloor) {
     node_w[4 * i] = i == 0 ? 0.9e-9 : -1.1e-9;
     node_w[4 * i + 3] = 1;
   }
-  KernelCase test("node_update", update_defines(0, 0, 0), Shape::lanes, 16);
+  KernelCase test("node_update", update_defines(0, 0), Shape::lanes, 16);
   test.exact("node_u", node_u).exact("node_w", node_w).ints("gather_offset", {0, 0}).ints("gather_index", Ints(16, 0));
   test.exact("corner_force", Reals(48, -0.0)).exact("node_load", Reals(64)).exact("node_force", Reals(64));
   test.exact("step_params", {1e-3, 0, 0, 0, 1e-9, 0, 0, 0}).integer(0);
@@ -75,7 +75,7 @@ TEST(NodeUpdateOracle, RoundsSmallDisplacementsToTheGrid) {
   node_w[0] = 5.3 * grid;
   node_w[4] = -1000.6 * grid;
   node_w[8] = 1.25 * fine + 0.25 * grid;  // too large to be rounded
-  KernelCase test("node_update", update_defines(0, 0, 0), Shape::lanes, 16);
+  KernelCase test("node_update", update_defines(0, 0), Shape::lanes, 16);
   test.exact("node_u", node_u).exact("node_w", node_w).ints("gather_offset", {0, 0}).ints("gather_index", Ints(16, 0));
   test.exact("corner_force", Reals(48, -0.0)).exact("node_load", Reals(64)).exact("node_force", Reals(64));
   test.exact("step_params", {1e-3, 0, 0, 0, 0, fine, 0, 0}).integer(0);

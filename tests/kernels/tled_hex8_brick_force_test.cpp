@@ -56,7 +56,7 @@ Reals brick_forces(const Cells& cells, Law law, const Ints& rows = all_rows()) {
       .ints("fault", Ints(Grid::slots))
       .exact("law_parameters", law_data(law));
   force.exact(1 / (4 * edge)).exact(edge * edge / 4).exact(stiffness).integer(1).integer(0).step();
-  KernelCase update("brick_update", update_defines(0, 1, 0), Shape::lanes, Grid::slots);
+  KernelCase update("brick_update", update_defines(0, 1), Shape::lanes, Grid::slots);
   update.exact("node_u", cells.u).exact("node_w", Reals(4 * Grid::slots)).ints("brick_neighbor", Grid::neighbors());
   update.ints("brick_rows", rows);
   update.exact("brick_force", run_in_double(force, "brick_force")).exact("node_load", Reals(4));

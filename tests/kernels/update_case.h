@@ -1,5 +1,6 @@
 // Random launches of the two update kernels.
 #pragma once
+#include "integrators/integrator.h"
 #include "layout.h"
 #include "random_data.h"
 
@@ -52,8 +53,8 @@ inline Reals step_parameters(std::uint32_t seed) {
   return {1e-3, 0.1, -9.81, 0.25, seed % 2 != 0 ? 2e-5 : 0, seed % 3 != 0 ? 0.03125 : 0, 0, 0};
 }
 
-inline Defines update_defines(int has_load, int force_only, int textbook) {
-  return {{"HAS_LOAD", has_load}, {"FORCE_ONLY", force_only}, {"TEXTBOOK", textbook}};
+inline Defines update_defines(int has_load, int force_only, Integrator integrator = Integrator::increment) {
+  return {{"HAS_LOAD", has_load}, {"FORCE_ONLY", force_only}, {"INTEGRATOR", static_cast<int>(integrator)}};
 }
 
 /// Gather lists of 0 to 7 rows per tile; short nodes are padded with the position of a -0.

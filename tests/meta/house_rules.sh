@@ -121,16 +121,17 @@ forbid 'no Eigen in the twins' '[<"]Eigen/' cpu_ref/*.h cpu_ref/*.cpp
 forbid 'a .cl file is text, not a header' '\.cl[>"]$' host/**/*.h host/**/*.cpp include/**/*.h
 # Rooms, from the inside out: each knows those before it.
 allow_room() {  # ROOM INNER_ROOMS
-  allow "host/$1 knows only: $2" "^<|^\"(pliant/|(layout|laws)\.h|($1|$2)/)" host/"$1"/**/*.h host/"$1"/**/*.cpp
+  allow "host/$1 knows only: $2" "^<|^\"(pliant/|(layout|laws|integrators)\.h|($1|$2)/)" host/"$1"/**/*.h host/"$1"/**/*.cpp
 }
 allow_room program 'program'
 allow_room backend 'program'
 allow_room opencl 'backend|program'
 allow_room backends 'opencl|cpu_ref|backend|program'
 allow_room material 'material'
+allow_room integrators 'integrators'
 allow_room geometry 'geometry'
 allow_room elements 'material|geometry'
-allow_room scene 'mesh_io|elements|material|geometry'
+allow_room scene 'integrators|mesh_io|elements|material|geometry'
 allow_room mesh_io 'geometry'
 allow_room lattice 'scene|elements|material|geometry'
 allow_room model 'lattice|mesh_io|scene|elements|material|geometry'
@@ -145,7 +146,7 @@ allow_room io 'simulation|schedule|backend|program|model|lattice|scene|elements|
 allow_room render 'io|simulation|schedule|backend|program|tearing|cutting|model|lattice|scene|elements|material|geometry'
 allow_room api 'backends|cutting|io|simulation|schedule|backend|program|model|lattice|mesh_io|scene|elements|material|geometry'
 allow_room plan 'backends|mesh_io|simulation|schedule|backend|program|statics|model|lattice|scene|elements|material|geometry'
-allow 'cpu_ref knows only backend and program' '^<|^"(pliant/|(layout|laws)\.h|cpu_ref/|[a-z0-9_]+\.h|(backend|program)/)' cpu_ref/*.h cpu_ref/*.cpp
+allow 'cpu_ref knows only backend and program' '^<|^"(pliant/|(layout|laws|integrators)\.h|cpu_ref/|[a-z0-9_]+\.h|(backend|program)/)' cpu_ref/*.h cpu_ref/*.cpp
 forbid 'the command asks host/backends for a backend' '"(host/)?opencl/' host/cli/*.h host/cli/*.cpp
 
 # --- bits ------------------------------------------------------------------------------------------------------------------------

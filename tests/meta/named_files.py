@@ -14,7 +14,7 @@ NAME = re.compile(r"(?<![\w./*<$%-])((?:[\w.-]+/)*[\w-]+\.(?:cpp|h|cl|py|sh|cmak
 COMMENT = re.compile(r"(?://|(?:^|\s)#(?!\s*include))(.*)")
 READ = re.compile(r"\.(?:md|cpp|h|cl|py|sh|cmake)$|CMakeLists\.txt$|^dev$")
 # What the build writes, and examples of names.
-MADE = {"laws.cl", "twin_laws.h", "material/host_laws.h", "file.cpp"}
+MADE = {"laws.cl", "twin_laws.h", "material/host_laws.h", "integrators.cl", "twin_integrators.h", "integrators/host_integrators.h", "file.cpp"}
 
 
 def broken(root):

@@ -33,7 +33,7 @@ std::string Divergence::message() const {
 void Recovery::keep(bool on_grid) {
   const auto good = [&] {
     // With a step that the user gave a run may burst long before a number ends: what flies apart is no state to go back to.
-    if (run_.settings.automatic || run_.scene.integrator != Integrator::increment) return true;
+    if (run_.settings.automatic || !integrator_info(run_.scene.integrator).keeps_increment) return true;
     run_.backend().run(run_.loaded.program().status, 0, 1);
     return run_.loaded.largest_increment() <= kBurst * run_.model().shortest;
   };
