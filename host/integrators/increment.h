@@ -8,6 +8,7 @@ struct Increment {
   static constexpr IntegratorInfo info{.word = "increment",
                                        .what = "central differences in the increment of the displacement",
                                        .source = "Miller et al. 2007",
+                                       .order = 2,
                                        .first = first_increment,
                                        .increment = [](double /*u*/, double w) { return w; },
                                        .decay = central_decay,

@@ -21,6 +21,7 @@ struct IntegratorInfo {
   const char* word;  ///< its name in a scene file
   const char* what;  ///< in words, for people
   const char* source;
+  int order;  ///< of convergence, where the motion is smooth
 
   // What node_w holds: the first three numbers of a texel, and the decay in the fourth.
   double (*first)(const Start& s);          ///< at the start

@@ -9,6 +9,7 @@ struct Textbook {
   static constexpr IntegratorInfo info{.word = "textbook",
                                        .what = "2 u_n - u_(n-1), which loses small increments in float; for comparison",
                                        .source = "Hybrid Deformation Model, equation 14",
+                                       .order = 2,
                                        .first = [](const Start& s) { return s.u - first_increment(s); },
                                        .increment = [](double u, double w) { return u - w; },
                                        .decay = central_decay,

@@ -29,7 +29,8 @@ double ritz_deficit(std::size_t unknowns, int steps) {
   return std::min(0.5, 0.103 * logarithm * logarithm / (k * k));
 }
 
-/// With the damping rates of the nodes that move.
+}  // namespace
+
 double stable_step(const RunContext& run, double omega2) {
   const Model& model = run.model();
   double least = std::numeric_limits<double>::max(), most = 0;
@@ -40,8 +41,6 @@ double stable_step(const RunContext& run, double omega2) {
   }
   return integrator_info(run.scene.integrator).stable_step(omega2, least, most);
 }
-
-}  // namespace
 
 double largest_omega2(const RunContext& run, const std::vector<double>& spring, int iterations) {
   LoadedModel& loaded = run.loaded;

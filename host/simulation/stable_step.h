@@ -12,6 +12,10 @@ namespace pliant {
 /// force evaluation and are given: `spring` [1/s^2] per slot, empty: none. 0 if nothing moves freely.
 double largest_omega2(const RunContext& run, const std::vector<double>& spring, int iterations = 48);
 
+/// Longest stable step [s] of the elements for that, by the scene's integrator and the damping of the nodes that move; 0: none
+/// is.
+double stable_step(const RunContext& run, double omega2);
+
 struct StableStep {
   double elements = 0;  ///< of the elements alone [s]; 0: none
   double coupled = 0;   ///< with the interface of shape matching [s]; 0: none

@@ -41,6 +41,12 @@ void StepControl::start(double wanted, bool estimate_always) {
   if (!has_elements(model)) {
     dt = wanted > 0 ? wanted : std::min(run_.scene.contact ? kTouchFrame : kFrame, longest);
   } else {
+    if (wanted <= 0 && !(stable_step(run_, 1) > 0)) {
+      throw Error(ErrorCode::bad_input,
+                  fmt::format("{}: no step is stable with the integrator {} and a material without damping: "
+                              "give each a \"damping\", or the scene a \"dt\"",
+                              run_.scene.name, integrator_info(run_.scene.integrator).word));
+    }
     StableStep stable;
     if (wanted <= 0 || estimate_always) stable = estimate_stable_step(run_, 48);
     run_.state.limit.stable_dt = stable.coupled;

@@ -1,4 +1,5 @@
 // node_update: kernel and twin give the same bits; in double, a free oscillator follows its closed form.
+#include "integrator_oracle.h"
 #include "update_case.h"
 
 namespace pliant::kernel_test {
@@ -43,6 +44,37 @@ TEST(NodeUpdateOracle, IsCentralDifferencesWithDamping) {
     EXPECT_NEAR(w[1], form == Integrator::textbook ? u : expected - u, 1e-15);
     EXPECT_EQ(after[3], 1 / mass);
     for (std::size_t i = 4; i < 64; ++i) EXPECT_EQ(after[i], 0) << "a slot without a node moved: " << i;
+  }
+}
+
+/// One node with the force of a spring, in double: what node_u and node_w hold after a step from `at`.
+Phase stepped(Integrator integrator, Phase at, double omega2, double c, double h) {
+  const double mass = 0.02;
+  const IntegratorInfo& info = integrator_info(integrator);
+  Reals node_u(64, 0.0), node_w(64, 0.0), node_load(64, 0.0);
+  node_u[1] = at.u;
+  node_u[3] = 1 / mass;
+  node_w[1] = info.first({at.u, at.v, 0, h});
+  node_w[3] = info.decay(c * h / 2);
+  node_load[1] = -mass * omega2 * at.u;
+  KernelCase test("node_update", update_defines(1, 0, integrator), Shape::lanes, 16);
+  test.exact("node_u", node_u).exact("node_w", node_w).ints("gather_offset", {0, 0}).ints("gather_index", Ints(16, 0));
+  test.exact("corner_force", Reals(48, -0.0)).exact("node_load", node_load).exact("node_force", Reals(64));
+  test.exact("step_params", {h, 0, 0, 0, 0, 0, 0, 0}).integer(0);
+  const double u = run_in_double(test, "node_u")[1], w = run_in_double(test, "node_w")[1];
+  return {u, info.increment(u, w) / h};
+}
+
+TEST(NodeUpdateOracle, EveryIntegratorIsTheStepOfATextbook) {
+  for (const Integrator integrator : all_integrators()) {
+    Phase at{0.01, -0.3}, expected = at;
+    const double omega2 = 1600, c = 3, h = 1e-3;
+    for (int n = 0; n < 50; ++n) {
+      at = stepped(integrator, at, omega2, c, h);
+      expected = textbook_step(integrator, expected, omega2, c, h);
+      ASSERT_NEAR(at.u, expected.u, 1e-13) << integrator_info(integrator).word << " step " << n;
+      ASSERT_NEAR(at.v, expected.v, 1e-9) << integrator_info(integrator).word << " step " << n;
+    }
   }
 }
 

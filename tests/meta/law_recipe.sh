@@ -10,7 +10,7 @@ report() {
 }
 
 # What the recipe says: the paths in code quotes of its numbered lines.
-recipe=$(sed -n '/^## Adding a material law/,/^## Adding a kernel/p' ARCHITECTURE.md | grep -oE '^[1-8]\. `[^`]+`( and 7\. `[^`]+`)?' |
+recipe=$(sed -n '/^## Adding a material law/,/^## Adding an integrator/p' ARCHITECTURE.md | grep -oE '^[1-8]\. `[^`]+`( and 7\. `[^`]+`)?' |
   grep -oE '`[^`]+`' | tr -d '`' | sort)
 expected=$(printf '%s\n' kernels/laws.h host/material/law_STEM.h kernels/law_STEM.cl cpu_ref/law_STEM.h \
   tests/kernels/law_oracle.h scenes/schema.json docs/scene.md CHANGELOG.md | sort)
