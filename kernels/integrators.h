@@ -7,7 +7,8 @@
 // clang-format off
 #define PLIANT_INTEGRATORS(INTEGRATOR) \
   INTEGRATOR(increment, Increment) \
-  INTEGRATOR(textbook, Textbook)
+  INTEGRATOR(textbook, Textbook) \
+  INTEGRATOR(forward_euler, ForwardEuler)
 // clang-format on
 
 namespace pliant {

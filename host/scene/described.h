@@ -73,7 +73,8 @@ void describe_scene(V&& v, S&& s) {
   v(s.safety, {"safety", above_to(0, 1), "", "0.8", "an automatic step is this share of the stable one"});
   v(s.integrator, integrator_words(),
     {"integrator", any, "", "\"textbook\"",
-     "form of the central difference update; `\"textbook\"` loses small increments in float; for comparison"});
+     "central differences in two forms, of which `\"textbook\"` loses small increments in float, and explicit Euler "
+     "([stability](stability.md#integrators)), both for comparison"});
   v(s.inverted, inverted_words(),
     {"inverted", any, "", "\"stop\"",
      "what becomes of an element whose J = det F is not positive: it goes on and is driven back, or the run ends (see "

@@ -111,7 +111,7 @@ struct SceneSpec {
   CurveSpec gravity_curve;                       ///< the factor over time
   double dt = 0;                                 ///< [s]; 0: automatic
   double safety = 0.9;                           ///< share of the stable step that an automatic step takes, in (0, 1]
-  std::string integrator = "increment";          ///< increment or textbook
+  std::string integrator = "increment";          ///< increment, textbook or forward-euler
   std::string inverted = "recover";              ///< elements with J <= 0: recover or stop
   double least_fill = 0.05;                      ///< of a cell where blades cut, as a share of a full cell's mass, 0 to 1
   double least_step = 0.1;                       ///< floor of an automatic step, as a share of the first, 0 (none) to 1

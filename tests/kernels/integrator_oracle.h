@@ -18,6 +18,8 @@ inline Phase textbook_step(Integrator integrator, Phase at, double omega2, doubl
       const double next = ((1 - c * h / 2) * at.v - h * omega2 * at.u) / (1 + c * h / 2);
       return {at.u + h * next, next};
     }
+    case Integrator::forward_euler:
+      return {at.u + h * at.v, at.v + h * (-omega2 * at.u - c * at.v)};
   }
   return {};
 }

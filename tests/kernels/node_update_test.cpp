@@ -78,6 +78,20 @@ TEST(NodeUpdateOracle, EveryIntegratorIsTheStepOfATextbook) {
   }
 }
 
+/// Without damping the amplitude of an oscillator grows by |1 + i h omega| in every step (Hairer, Norsett and Wanner 1993).
+TEST(NodeUpdateOracle, ForwardEulerGrowsByItsAmplification) {
+  const double omega = 40;
+  for (const double h : {1e-4, 1e-3, 1e-2}) {
+    Phase at{0.01, 0.2};
+    for (int n = 0; n < 20; ++n) {
+      const Phase next = stepped(Integrator::forward_euler, at, omega * omega, 0, h);
+      const double ratio = std::hypot(omega * next.u, next.v) / std::hypot(omega * at.u, at.v);
+      EXPECT_NEAR(ratio, std::sqrt(1 + h * h * omega * omega), 2e-15);
+      at = next;
+    }
+  }
+}
+
 /// An increment below the floor is none, one above it stays as it is.
 TEST(NodeUpdateOracle, DropsIncrementsBelowTheFloor) {
   Reals node_u(64, 0.0), node_w(64, 0.0);

@@ -1,5 +1,6 @@
 // Every integrator of kernels/integrators.h in a whole simulation: one linear oscillator against its closed form.
 #include "physics/harness.h"
+#include "support/error_of.h"
 
 namespace pliant::physics {
 namespace {
@@ -59,6 +60,39 @@ TEST(EveryIntegrator, ConvergesAsItSays) {
       before = error;
     }
   }
+}
+
+/// What grows by a given factor per step in one oscillator does so in a simulation.
+TEST(EveryIntegrator, ForwardEulerGrowsByItsAmplification) {
+  const Oscillator o;
+  for (const double turn : {0.01, 0.1}) {  // h omega
+    const int steps = 100;
+    auto sim = simulate(o.scene(Integrator::forward_euler, turn / o.omega()), "cpu:double");
+    sim->advance(steps);
+    const double v = sim->velocities(0)[free_node(*sim)][0] / (kStretch * 0.1);
+    const double grown = std::hypot(displacement(*sim), v / o.omega());
+    check_relative("amplitude after 100 steps of h omega = " + std::to_string(turn), grown,
+                   std::pow(1 + turn * turn, steps / 2.0), 1e-6);
+  }
+}
+
+/// Damped, it has a stable step, c / omega^2, which an automatic one takes; undamped, it says that it has none.
+TEST(EveryIntegrator, ForwardEulerTakesTheStepOfItsDamping) {
+  Oscillator o;
+  Scene scene = o.scene(Integrator::forward_euler, 0);
+  const std::string refused = test::error_of([&] { (void)simulate(scene, "cpu"); });
+  EXPECT_NE(refused.find("no step is stable with the integrator forward-euler"), std::string::npos) << refused;
+  o.material.damping = 0.3 * o.omega();
+  scene = o.scene(Integrator::forward_euler, 0);
+  auto sim = simulate(scene, "cpu:double");
+  check_relative("stable step [s]", sim->stable_dt(), 0.3 / o.omega(), 1e-4);
+  EXPECT_EQ(sim->dt(), 0.9 * sim->stable_dt());
+  sim->advance(5000);
+  EXPECT_LT(std::abs(displacement(*sim)), 0.01);
+  scene.dt = 1.1 * 0.3 / o.omega();
+  auto grows = simulate(scene, "cpu:double");
+  grows->advance(5000);
+  EXPECT_GT(std::abs(displacement(*grows)), 100);
 }
 
 /// The last part of a step in every integrator: what it does with velocities at the start, gravity and a load.

@@ -301,11 +301,23 @@ TEST(Model, ShapeMatchingHasOneIntegrator) {
     const std::string because = ", because /bodies/0/model has the type " + type;
     expect_refused(with_model(model, R"({"integrator": "textbook"})"),
                    R"(/integrator: got "textbook", expected increment)" + because);
+    expect_refused(with_model(model, R"({"integrator": "forward-euler"})"),
+                   R"(/integrator: got "forward-euler", expected increment)" + because);
     EXPECT_EQ(message(with_model(model, R"({"integrator": "increment", "relaxation": true})")), "");
   }
   const std::string tled = with_model(R"({"type": "tled"})", R"({"integrator": "textbook", "relaxation": true})");
   EXPECT_EQ(message(tled), "");
   EXPECT_TRUE(schema().findings(Json::parse(tled)).empty());
+}
+
+TEST(Model, AnIntegratorIsRefusedWithThoseThatAreAllowed) {
+  const std::string tled = R"({"type": "tled"})";
+  EXPECT_EQ(message(with_model(tled, R"({"integrator": "forward-euler"})")), "");
+  expect_refused(with_model(tled, R"({"integrator": "forward-euler", "relaxation": true})"),
+                 R"(/integrator: got "forward-euler", expected increment or textbook, because the scene has relaxation)");
+  const std::string contact = message(with_model(tled, R"({"integrator": "forward-euler", "contact": true})"));
+  EXPECT_NE(contact.find(R"(got "forward-euler", expected increment, because the scene has contact)"), std::string::npos)
+      << contact;
 }
 
 TEST(Model, ARegionThatMovesIsNotRelaxed) {

@@ -1,0 +1,32 @@
+// Explicit Euler, Y <- Y + h f(Y) with Y = (u, v): node_w holds h v, of the same time as u. For comparison: an undamped
+// oscillator grows by sqrt(1 + h^2 omega^2) in every step, so that it needs damping and steps far below those of central
+// differences.
+#pragma once
+#include <algorithm>
+
+#include "integrators/integrator.h"
+
+namespace pliant::integrators {
+
+struct ForwardEuler {
+  static constexpr IntegratorInfo info{
+      .word = "forward-euler",
+      .what = "explicit Euler, which is stable with damping and short steps only; for comparison",
+      .source = "Hairer, Norsett and Wanner 1993",
+      .order = 1,
+      .first = [](const Start& s) { return s.h * s.v; },
+      .increment = [](double /*u*/, double w) { return w; },
+      .decay = [](double k) { return 1 - 2 * k; },
+      .squared_velocity = [](double v, double, double, double) { return v * v; },
+      // |1 + h l| <= 1 for l^2 + c l + omega^2 = 0: c / omega^2 where l is complex; where it is
+      // real, 2 / |l|, and |l| <= c.
+      .stable_step = [](double omega2, double least, double most) { return std::min(least / omega2, 2 / most); },
+      .keeps_increment = true,
+      .automatic = false,
+      .edits = true,
+      .contact = false,
+      .matching = false,
+      .relaxation = false};
+};
+
+}  // namespace pliant::integrators
