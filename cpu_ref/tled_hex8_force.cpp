@@ -3,6 +3,7 @@
 #include "hex8_hourglass.h"
 #include "law.h"
 #include "registry.h"
+#include "viscous.h"
 
 namespace pliant::ref {
 namespace {
@@ -43,11 +44,13 @@ Corners<Scalar> hourglass_of_shape(const Corners<Scalar>& u, const HexRecord<Sca
 
 }  // namespace
 
-template <class Scalar, int Number, bool Uniform>
+template <class Scalar, int Number, bool Uniform, bool Viscous>
 void tled_hex8_force(Range range, const Scalar* node_u, const std::int32_t* hex_nodes, const Scalar* hex_data,
                      const Scalar* hex_fill, Scalar* corner_force, std::int32_t* fault, const Scalar* law_parameters,
-                     std::int32_t corner_base, std::int32_t fault_base, std::int32_t step) {
+                     const Scalar* viscosity, const Scalar* node_w, const Scalar* step_params, std::int32_t corner_base,
+                     std::int32_t fault_base, std::int32_t step) {
   const MaterialLaw<Number, Scalar> law(law_parameters);
+  [[maybe_unused]] const Viscosity<Scalar> viscous(viscosity, step_params);
   constexpr int volume = Uniform ? 56 : 55;  // where it stands in the record
   for (std::int64_t e = range.begin; e < range.end; ++e) {
     const HexRecord<Scalar, Uniform> data(hex_data, e, PLIANT_HEX_DATA_PLANES);
@@ -57,6 +60,8 @@ void tled_hex8_force(Range range, const Scalar* node_u, const std::int32_t* hex_
     const Scalar fill = hex_fill[e];
     mark_fault(fill > Scalar(0) ? fault_of(law, d) : no_fault, step, fault[fault_base + e]);
     Mat3<Scalar> p = law.stress(d, fill * data[volume], law.pressure(d.j), is_low(law, d));
+    if constexpr (Viscous)
+      viscous.add(p, h, hex8_gradient(hex8_displacements(e, node_w, hex_nodes), data, 0), fill * data[volume]);
     Corners<Scalar> f;
     if constexpr (!Uniform) f = hourglass_of_shape(u, data, fill, h, p);
     for (std::size_t a = 0; a < 8; ++a) {
@@ -78,9 +83,10 @@ void tled_hex8_force(Range range, const Scalar* node_u, const std::int32_t* hex_
 }
 
 void register_tled_hex8_force(Registry& registry) {
-  registry.add_specialised<law_count, 2>("tled_hex8_force", {"LAW", "UNIFORM"}, [](auto scalar, auto law, auto uniform) {
-    return tled_hex8_force<decltype(scalar), law(), uniform() != 0>;
-  });
+  registry.add_specialised<law_count, 2, 2>("tled_hex8_force", {"LAW", "UNIFORM", "VISCOUS"},
+                                            [](auto scalar, auto law, auto uniform, auto viscous) {
+                                              return tled_hex8_force<decltype(scalar), law(), uniform() != 0, viscous() != 0>;
+                                            });
 }
 
 }  // namespace pliant::ref

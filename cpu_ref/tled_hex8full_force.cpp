@@ -4,17 +4,22 @@
 #include "hex8.h"
 #include "law.h"
 #include "registry.h"
+#include "viscous.h"
 
 namespace pliant::ref {
 
-template <class Scalar, int Number, bool Uniform>
+template <class Scalar, int Number, bool Uniform, bool Viscous>
 void tled_hex8full_force(Range range, const Scalar* node_u, const std::int32_t* hex_nodes, const Scalar* hex_data,
                          const Scalar* hex_fill, Scalar* corner_force, std::int32_t* fault, const Scalar* law_parameters,
-                         std::int32_t corner_base, std::int32_t fault_base, std::int32_t step) {
+                         const Scalar* viscosity, const Scalar* node_w, const Scalar* step_params, std::int32_t corner_base,
+                         std::int32_t fault_base, std::int32_t step) {
   const MaterialLaw<Number, Scalar> law(law_parameters);
+  [[maybe_unused]] const Viscosity<Scalar> viscous(viscosity, step_params);
   for (std::int64_t e = range.begin; e < range.end; ++e) {
     const HexRecord<Scalar, Uniform> data(hex_data, e, PLIANT_HEXFULL_DATA_PLANES);
     const Corners<Scalar> u = hex8_displacements(e, node_u, hex_nodes);
+    Corners<Scalar> w;
+    if constexpr (Viscous) w = hex8_displacements(e, node_w, hex_nodes);
     const Scalar fill = hex_fill[e];
     Corners<Scalar> f{};
     std::int32_t kind = no_fault;
@@ -22,7 +27,8 @@ void tled_hex8full_force(Range range, const Scalar* node_u, const std::int32_t* 
       const std::int64_t gradients = 25 * point, weight = gradients + 24;
       const Deformation<Scalar> d = deformation_of(hex8_gradient(u, data, gradients));
       kind = std::max(kind, fill > Scalar(0) ? fault_of(law, d) : no_fault);
-      const Mat3<Scalar> p = law.stress(d, fill * data[weight], law.pressure(d.j), is_low(law, d));
+      Mat3<Scalar> p = law.stress(d, fill * data[weight], law.pressure(d.j), is_low(law, d));
+      if constexpr (Viscous) viscous.add(p, d.h, hex8_gradient(w, data, gradients), fill * data[weight]);
       for (std::size_t a = 0; a < 8; ++a) {
         const auto b = gradients + 3 * static_cast<std::int64_t>(a);
         const Scalar bx = data[b], by = data[b + 1], bz = data[b + 2];
@@ -37,9 +43,10 @@ void tled_hex8full_force(Range range, const Scalar* node_u, const std::int32_t* 
 }
 
 void register_tled_hex8full_force(Registry& registry) {
-  registry.add_specialised<law_count, 2>("tled_hex8full_force", {"LAW", "UNIFORM"}, [](auto scalar, auto law, auto uniform) {
-    return tled_hex8full_force<decltype(scalar), law(), uniform() != 0>;
-  });
+  registry.add_specialised<law_count, 2, 2>(
+      "tled_hex8full_force", {"LAW", "UNIFORM", "VISCOUS"}, [](auto scalar, auto law, auto uniform, auto viscous) {
+        return tled_hex8full_force<decltype(scalar), law(), uniform() != 0, viscous() != 0>;
+      });
 }
 
 }  // namespace pliant::ref

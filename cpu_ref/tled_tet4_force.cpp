@@ -5,19 +5,24 @@
 #include "law.h"
 #include "registry.h"
 #include "tet4.h"
+#include "viscous.h"
 
 namespace pliant::ref {
 
-template <class Scalar, int Number, bool Averaged>
+template <class Scalar, int Number, bool Averaged, bool Viscous>
 void tled_tet4_force(Range range, const Scalar* node_u, const std::int32_t* tet_nodes, const Scalar* tet_data,
                      const Scalar* anp_pressure, Scalar* corner_force, std::int32_t* fault, const Scalar* law_parameters,
-                     std::int32_t corner_base, std::int32_t fault_base, std::int32_t step) {
+                     const Scalar* viscosity, const Scalar* node_w, const Scalar* step_params, std::int32_t corner_base,
+                     std::int32_t fault_base, std::int32_t step) {
   const MaterialLaw<Number, Scalar> law(law_parameters);
+  [[maybe_unused]] const Viscosity<Scalar> viscous(viscosity, step_params);
   for (std::int64_t tile = range.begin; tile < range.end; tile += PLIANT_TILE) {
     const std::int32_t* nodes = tet_nodes + 4 * tile;
     const Scalar* data = tet_data + PLIANT_TET_DATA_PLANES * tile;
     Tet4Corners<Scalar> u;
     tet4_gather(node_u, nodes, u);
+    Tet4Corners<Scalar> w;
+    if constexpr (Viscous) tet4_gather(node_w, nodes, w);
     Scalar mean_pressure[PLIANT_TILE];
     for (int e = 0; Averaged && e < PLIANT_TILE; ++e) {
       const auto pressure = [&](int corner) { return anp_pressure[nodes[corner * PLIANT_TILE + e]]; };
@@ -29,7 +34,8 @@ void tled_tet4_force(Range range, const Scalar* node_u, const std::int32_t* tet_
       const Tet4<Scalar> t = tet4_load(u, data, e);
       const Deformation<Scalar> d = deformation_of(t.h);
       fault_kind[e] = fault_of(law, d);
-      const Mat3<Scalar> p = law.stress(d, t.volume, Averaged ? mean_pressure[e] : law.pressure(d.j), low(d));
+      Mat3<Scalar> p = law.stress(d, t.volume, Averaged ? mean_pressure[e] : law.pressure(d.j), low(d));
+      if constexpr (Viscous) viscous.add(p, t.h, tet4_load(w, data, e).h, t.volume);
       f[3][e] = dot3(p.m00, t.b1x, p.m01, t.b1y, p.m02, t.b1z);
       f[4][e] = dot3(p.m10, t.b1x, p.m11, t.b1y, p.m12, t.b1z);
       f[5][e] = dot3(p.m20, t.b1x, p.m21, t.b1y, p.m22, t.b1z);
@@ -56,9 +62,10 @@ void tled_tet4_force(Range range, const Scalar* node_u, const std::int32_t* tet_
 }
 
 void register_tled_tet4_force(Registry& registry) {
-  registry.add_specialised<law_count, 2>("tled_tet4_force", {"LAW", "AVERAGED"}, [](auto scalar, auto law, auto averaged) {
-    return tled_tet4_force<decltype(scalar), law(), averaged() != 0>;
-  });
+  registry.add_specialised<law_count, 2, 2>("tled_tet4_force", {"LAW", "AVERAGED", "VISCOUS"},
+                                            [](auto scalar, auto law, auto averaged, auto viscous) {
+                                              return tled_tet4_force<decltype(scalar), law(), averaged() != 0, viscous() != 0>;
+                                            });
 }
 
 }  // namespace pliant::ref

@@ -3,10 +3,12 @@
 // That of a cube (UNIFORM) has one stiffness for all its modes; every other one follows its shape, hex8_hourglass.cl.
 // hex_nodes: [tiles][8][16]. hex_data: mean gradients b_a [8][3] [1/m], then, UNIFORM, for all elements: gamma [4 modes][8 corners] [1],
 // V [m^3], hourglass stiffness k [N/m] ([58]); else: 31 numbers of hex8_hourglass.cl, V [m^3] ([tiles][56][16]).
+// node_w: increments of the last step, read with VISCOUS (viscous.cl).
 // hex_fill: fill fraction per element (0 for padding). corner_force: [tiles][8 corners][3][16] from corner_base on [N].
 #include "arith.cl"
 #include "texels.cl"
 #include "law.cl"
+#include "viscous.cl"
 #if UNIFORM
 #define DATA(k) hex_data[k]
 #define RECORD_TYPE float
@@ -20,7 +22,8 @@
 
 __kernel void tled_hex8_force(__global const float* node_u, __global const int* hex_nodes, __global const float* hex_data,
                               __global const float* hex_fill, __global float* corner_force, __global int* fault,
-                              __global const float* restrict law_parameters, int corner_base, int fault_base, int step) {
+                              __global const float* restrict law_parameters, __global const float* viscosity,
+                              __global const float* node_w, __global const float* step_params, int corner_base, int fault_base, int step) {
   const int e = FIRST_INDEX;
   __global const int* nodes = hex_nodes + TILE_BASE(e, 8);
 #if !UNIFORM
@@ -55,6 +58,15 @@ __kernel void tled_hex8_force(__global const float* node_u, __global const int* 
   const real fill = LOAD(hex_fill, e);
   integer kind;
   mat3 p = stress_of(d, fill * DATA(VOLUME), m, law_pressure(m, d.j), fill > 0.0f, &kind);
+#if VISCOUS
+  mat3 w = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
+  for (int a = 0; a < 8; ++a) {
+    const texels t = texels_gather(node_w, nodes + a * PLIANT_TILE);
+    const RECORD_TYPE bx = DATA(3 * a), by = DATA(3 * a + 1), bz = DATA(3 * a + 2);
+    ADD_CORNER(w, texels_x(t), texels_y(t), texels_z(t), bx, by, bz)
+  }
+  p = add_viscous(p, h, w, fill * DATA(VOLUME), viscosity, step_params);
+#endif
   MARK_FAULT(kind, step, fault, fault_base + e)
 #if UNIFORM
   const real k = fill * DATA(57);

@@ -4,6 +4,7 @@
 #include "arith.cl"
 #include "texels.cl"
 #include "law.cl"
+#include "viscous.cl"
 #if UNIFORM
 #define DATA(k) hex_data[k]
 #define RECORD_TYPE float
@@ -14,7 +15,8 @@
 
 __kernel void tled_hex8full_force(__global const float* node_u, __global const int* hex_nodes, __global const float* hex_data,
                                   __global const float* hex_fill, __global float* corner_force, __global int* fault,
-                                  __global const float* restrict law_parameters, int corner_base, int fault_base, int step) {
+                                  __global const float* restrict law_parameters, __global const float* viscosity,
+                                  __global const float* node_w, __global const float* step_params, int corner_base, int fault_base, int step) {
   const int e = FIRST_INDEX;
   const law m = law_load(law_parameters);
   __global const int* nodes = hex_nodes + TILE_BASE(e, 8);
@@ -29,6 +31,15 @@ __kernel void tled_hex8full_force(__global const float* node_u, __global const i
     z[a] = texels_z(u);
     fx[a] = fy[a] = fz[a] = 0.0f;
   }
+#if VISCOUS
+  real wx[8], wy[8], wz[8];
+  for (int a = 0; a < 8; ++a) {
+    const texels t = texels_gather(node_w, nodes + a * PLIANT_TILE);
+    wx[a] = texels_x(t);
+    wy[a] = texels_y(t);
+    wz[a] = texels_z(t);
+  }
+#endif
   const real fill = LOAD(hex_fill, e);
   const integer none = NO_FAULT;
   integer kind = none;
@@ -48,8 +59,16 @@ __kernel void tled_hex8full_force(__global const float* node_u, __global const i
     }
     const deformation d = deformation_of(h);
     integer found;
-    const mat3 p = stress_of(d, fill * DATA(25 * g + 24), m, law_pressure(m, d.j), fill > 0.0f, &found);
+    mat3 p = stress_of(d, fill * DATA(25 * g + 24), m, law_pressure(m, d.j), fill > 0.0f, &found);
     kind = found > kind ? found : kind;
+#if VISCOUS
+    mat3 w = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
+    for (int a = 0; a < 8; ++a) {
+      const RECORD_TYPE bx = DATA(25 * g + 3 * a), by = DATA(25 * g + 3 * a + 1), bz = DATA(25 * g + 3 * a + 2);
+      ADD_CORNER(w, wx[a], wy[a], wz[a], bx, by, bz)
+    }
+    p = add_viscous(p, h, w, fill * DATA(25 * g + 24), viscosity, step_params);
+#endif
     for (int a = 0; a < 8; ++a) {
       const RECORD_TYPE bx = DATA(25 * g + 3 * a), by = DATA(25 * g + 3 * a + 1), bz = DATA(25 * g + 3 * a + 2);
       fx[a] = fma(p.m02, bz, fma(p.m01, by, fma(p.m00, bx, fx[a])));

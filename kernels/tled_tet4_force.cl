@@ -2,15 +2,18 @@
 // Hybrid Deformation Model, equations 10 to 13).
 // tet_nodes: [tiles][4][16] node indices. tet_data: [tiles][10][16] grad N_1..3 [1/m], V [m^3]; grad N_0 is minus their sum.
 // corner_force: [tiles][4 corners][3][16] from corner_base on [N]. fault: step of the first fault per element, from fault_base on.
+// node_w: increments of the last step, read with VISCOUS (viscous.cl).
 // AVERAGED: the volumetric stress is the mean of the four nodal pressures (tet4anp) instead of dU/dJ.
 #include "arith.cl"
 #include "texels.cl"
 #include "law.cl"
+#include "viscous.cl"
 #include "tet4.cl"
 
 __kernel void tled_tet4_force(__global const float* node_u, __global const int* tet_nodes, __global const float* tet_data,
                               __global const float* anp_pressure, __global float* corner_force, __global int* fault,
-                              __global const float* restrict law_parameters, int corner_base, int fault_base, int step) {
+                              __global const float* restrict law_parameters, __global const float* viscosity,
+                              __global const float* node_w, __global const float* step_params, int corner_base, int fault_base, int step) {
   const int e = FIRST_INDEX;
   const law m = law_load(law_parameters);
   __global const int* nodes = tet_nodes + TILE_BASE(e, 4);
@@ -26,7 +29,10 @@ __kernel void tled_tet4_force(__global const float* node_u, __global const int* 
 #endif
   const integer all = -1;
   integer kind;
-  const mat3 p = stress_of(d, DATA(9), m, pressure, all, &kind);
+  mat3 p = stress_of(d, DATA(9), m, pressure, all, &kind);
+#if VISCOUS
+  p = add_viscous(p, t.h, tet4_load(node_w, nodes, data).h, DATA(9), viscosity, step_params);
+#endif
   MARK_FAULT(kind, step, fault, fault_base + e)
   const real f1x = fma(p.m02, t.b1z, fma(p.m01, t.b1y, p.m00 * t.b1x));
   const real f1y = fma(p.m12, t.b1z, fma(p.m11, t.b1y, p.m10 * t.b1x));

@@ -1,6 +1,7 @@
 // Materials as plain data: the law, its parameters, and the moduli of linear elasticity that it has at small strain. What a law
 // is stands in law_STEM.h, a file per law of kernels/laws.h; what it answers to a deformation is asked through response.h.
 #pragma once
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <string>
@@ -69,11 +70,18 @@ struct Material {
   Moduli moduli;                                  ///< at small strain: the stable step, hourglass control, hints of stiffness
   std::shared_ptr<const YoungField> young_field;  ///< null: one modulus; else parameters and moduli are those of its largest
   double density = 1000;                          ///< [kg/m^3]
-  double damping = 0;                             ///< mass-proportional damping rate c [1/s]: M u'' + c M u' = R - F
-  double hourglass = 1;  ///< factor on the hourglass stiffness of hex8 (1: exact bending of a bar at nu = 0)
-  double toughness = 0;  ///< K_I: principal stress at which it tears [Pa]; 0: it does not
-  double integrity = 1;  ///< zeta in (0, 1]: the share of the toughness that is left
-  double low = 0;        ///< low_volume: below this J the law is continued (kinematics.h); 0: it ends at J = 0
+  double viscosity = 0;       ///< of shear, eta [Pa s]: Kelvin and Voigt's stress 2 eta dev(D) + zeta tr(D) I
+  double bulk_viscosity = 0;  ///< zeta [Pa s]; with a field both are those of the largest modulus
+  double damping = 0;         ///< mass-proportional damping rate c [1/s]: M u'' + c M u' = R - F
+  double hourglass = 1;       ///< factor on the hourglass stiffness of hex8 (1: exact bending of a bar at nu = 0)
+  double toughness = 0;       ///< K_I: principal stress at which it tears [Pa]; 0: it does not
+  double integrity = 1;       ///< zeta in (0, 1]: the share of the toughness that is left
+  double low = 0;             ///< low_volume: below this J the law is continued (kinematics.h); 0: it ends at J = 0
+
+  [[nodiscard]] bool viscous() const { return viscosity > 0 || bulk_viscosity > 0; }
+  /// Largest ratio of viscosity to modulus [s]: at small strain the viscous forces of a motion are at most so much times those
+  /// of the elements for it.
+  [[nodiscard]] double viscous_time() const { return std::max(viscosity / moduli.mu, bulk_viscosity / moduli.kappa); }
 
   /// The law with these moduli at small strain. Where they do not determine it, it is a typical one with them.
   void set_moduli(Law law, const Moduli& moduli);

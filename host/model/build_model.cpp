@@ -230,7 +230,7 @@ void place_bodies(const Scene& scene, std::span<const BodyMesh* const> solids, c
     draft.slot.assign(draft.solid().nodes.size(), -1);
     if (!draft.solid().cells.empty() && element_info(body.element).bricks) {
       for (std::size_t e = 0; e < draft.in_brick.size(); ++e)
-        draft.in_brick[e] = draft.materials.index[e] == 0 && draft.solid().operational(e);
+        draft.in_brick[e] = draft.materials.index[e] == 0 && draft.solid().operational(e) && !body.material.viscous();
       const std::int32_t first = model.bricks;
       draft.slot = place_in_bricks(draft.solid(), draft.stiff, static_cast<std::int32_t>(b), draft.in_brick, model);
       if (model.bricks > first) {

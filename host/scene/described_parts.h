@@ -41,6 +41,9 @@ template <class V, class S>
 void describe_material(V&& v, S&& s) {
   v(s.density, {"density", above(0), "kg/m^3", "1060", "density at rest"});
   v(s.damping, {"damping", at_least(0), "1/s", "5", "mass-proportional rate c in M u'' + c M u' = R - F"});
+  v(s.viscosity, {"viscosity", at_least(0), "Pa s", "20",
+                  "shear viscosity eta of a stress 2 eta dev(D) + zeta tr(D) I beside that of the law (see below)"});
+  v(s.bulk_viscosity, {"bulk_viscosity", at_least(0), "Pa s", "50", "its bulk viscosity zeta"});
   v(s.hourglass, {"hourglass", at_least(0), "", "0.5", "factor on the hourglass stiffness of `hex8`"});
   v(s.toughness, {"toughness", above(0).absent_at(0), "Pa", "9000",
                   "largest principal stress that it bears before it tears; none: it does not tear"});

@@ -133,6 +133,7 @@ Scene read_document(const nlohmann::json& document, const fs::path& file) {
   scene.probes = read_probes(top, scene);
   check_initial(top, scene);
   check_models(top, scene);
+  check_viscous(top, scene);
   check_blades(top, scene);
   check_tools(top, scene);
   check_tearing(top, scene);

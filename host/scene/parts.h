@@ -79,6 +79,8 @@ std::shared_ptr<const SceneProbes> read_probes(const Reader& top, const Scene& s
 void require_integrator(const Reader& top, const Scene& scene, bool IntegratorInfo::*property, const std::string& because);
 /// Models against the keys of the scene: its integrator, its relaxation and its tool.
 void check_models(const Reader& top, const Scene& scene);
+/// Materials with a viscosity against the integrator and the models.
+void check_viscous(const Reader& top, const Scene& scene);
 void check_blades(const Reader& top, const Scene& scene);
 /// Materials with a toughness against the rest of the scene.
 void check_tearing(const Reader& top, const Scene& scene);

@@ -68,6 +68,19 @@ Tool read_tool(const Reader& tool) {
   return t;
 }
 
+void check_viscous(const Reader& top, const Scene& scene) {
+  for (const Body& body : scene.bodies) {
+    bool viscous = body.material.viscous();
+    for (const Inclusion& inclusion : body.inclusions) viscous = viscous || inclusion.material.viscous();
+    if (!viscous) continue;
+    require_integrator(top, scene, &IntegratorInfo::keeps_increment, fmt::format("{} has a viscosity", body.pointer));
+    if (body.model.type == ModelType::tled) continue;
+    const std::vector<Reader> bodies = top.at("bodies").items("a list of bodies");
+    bodies[static_cast<std::size_t>(&body - scene.bodies.data())].at("model").at("type").fail(
+        fmt::format("tled, because {} has a viscosity, which is one of elements", body.pointer));
+  }
+}
+
 void check_models(const Reader& top, const Scene& scene) {
   const std::vector<Reader> bodies = top.at("bodies").items("a list of bodies");
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {

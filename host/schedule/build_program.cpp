@@ -10,6 +10,14 @@ namespace pliant {
 ProgramBuilder::ProgramBuilder(const Model& model, const ProgramOptions& options)
     : model_(model), options_(options), layout_(lay_out(model)), brick_corners_(brick_corners()) {}
 
+/// The same forces with no history and no velocity in them: what estimates, relaxation and probes ask for, whose displacements
+/// are no motion.
+static void evaluate_only(Pass& pass) {
+  for (auto& [name, number] : pass.defines) {
+    if (name == "VISCOUS") number = 0;
+  }
+}
+
 Program ProgramBuilder::build() {
   add_shared_buffers();
   add_surface();
@@ -18,6 +26,7 @@ Program ProgramBuilder::build() {
   for (std::size_t b = 0; b < model_.batches.size(); ++b) add_batch(b);
   add_loads();
   program_.force = program_.step;
+  for (Pass& pass : program_.force) evaluate_only(pass);
   add_gravity();
   for (std::size_t b = 0; b < model_.flsm.size(); ++b) add_flsm(b);
   add_updates();

@@ -74,6 +74,8 @@ class ProgramBuilder {
   /// The parameters of a batch's law, one constant buffer of any length. A law whose parameters vary within a batch would get
   /// them as planes per element, as other element data.
   BufferId add_law(const Material& material);
+  /// Of viscous.cl; a viscosity of zero gets another buffer in its place, which no kernel reads.
+  BufferId add_viscosity(const Material& material, BufferId other);
   void add_bricks(const BrickBatch& b);
   /// Elements in lists: nodes, records and, where the record does not hold them, shares; `count` in whole tiles.
   void add_batch(std::size_t index);

@@ -15,6 +15,12 @@ BufferId ProgramBuilder::add_law(const Material& material) {
                         "[parameters]", "Pa", "model", std::move(constants)));
 }
 
+BufferId ProgramBuilder::add_viscosity(const Material& material, BufferId other) {
+  if (!material.viscous()) return other;
+  return add(make_reals(fmt::format("viscosity/{}", laws_), BufferType::real, 2, BufferRole::constant, "[2]", "Pa s", "model",
+                        {2 * material.viscosity, material.bulk_viscosity - 2 * material.viscosity / 3}));
+}
+
 void ProgramBuilder::add_bricks(const BrickBatch& b) {
   if (brick_neighbor_ < 0) {
     const auto bricks = static_cast<std::size_t>(model_.bricks) + 1;
@@ -105,6 +111,8 @@ void ProgramBuilder::add_batch(std::size_t index) {
   }
   const BufferId law_id = add_law(b.material);
   if (info.averaged) beside = add_averaging(index, nodes_id, data_id, law_id, count, label);
+  const BufferId viscosity_id = add_viscosity(b.material, law_id);
+  defines.emplace_back("VISCOUS", b.material.viscous() ? 1 : 0);
   const BatchOffsets& place = layout_.batches[index];
   const ElementCost cost = element_cost(b.kind, law_flops(b.material.law), b.uniform);
   const double texels = 16.0 * (model_.list_end - model_.list_base) / double(b.size());
@@ -112,7 +120,8 @@ void ProgramBuilder::add_batch(std::size_t index) {
       {info.kernel,
        std::move(defines),
        {buffer_arg(node_u_), buffer_arg(nodes_id), buffer_arg(data_id), buffer_arg(beside), buffer_arg(corner_),
-        buffer_arg(fault_), buffer_arg(law_id), int_arg(place.corner_base), int_arg(place.fault_base), step_arg()},
+        buffer_arg(fault_), buffer_arg(law_id), buffer_arg(viscosity_id), buffer_arg(node_w_), buffer_arg(params_),
+        int_arg(place.corner_base), int_arg(place.fault_base), step_arg()},
        Shape::lanes,
        static_cast<std::int64_t>(count),
        label,

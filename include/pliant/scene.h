@@ -38,6 +38,8 @@ struct MaterialSpec {
   std::map<std::string, double> parameters;  ///< instead of both: by their keys, {{"mu", 1000}, {"kappa", 50000}}
   double density = 1000;                     ///< [kg/m^3]
   double damping = 0;                        ///< mass-proportional damping rate [1/s]
+  double viscosity = 0;                      ///< of shear [Pa s]
+  double bulk_viscosity = 0;                 ///< [Pa s]
   double hourglass = 1;                      ///< factor on the hourglass stiffness of hex8
   std::optional<double> toughness;           ///< stress at which it tears [Pa]; absent: it does not
   std::optional<double> integrity;           ///< share of the toughness that is left, in (0, 1]

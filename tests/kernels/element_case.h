@@ -32,27 +32,31 @@ inline Reals law_data(Law law, double low = low_volume) {
   return law_constants(m);
 }
 
-/// What the list kernels take last: corner forces from value 32 on, faults from 16 on, and the law.
-inline void results(KernelCase& test, Random& random, Law law, std::size_t force_planes, std::size_t elements,
+/// What the list kernels take last: corner forces from value 32 on, faults from 16 on, the law, and what is viscous.
+inline void results(KernelCase& test, Random& random, Law law, std::size_t force_planes, std::size_t elements, Reals node_w,
                     double low = low_volume) {
   test.reals("corner_force", random.reals(32 + force_planes * elements, Data::large, 1))
       .ints("fault", random.faults(elements + 16))
       .reals("law_parameters", law_data(law, low))
+      .reals("viscosity", {random.uniform(0, 200), random.uniform(-100, 200)})
+      .reals("node_w", std::move(node_w))
+      .reals("step_params", {1e-3, 0, 0, 0, 0, 0, 0, 0})
       .integer(32)
       .integer(16)
       .step();
 }
 
 inline KernelCase tet4_force_case(Law law, int averaged, ElementSizes size, Data data, std::uint32_t seed,
-                                  double low = low_volume) {
+                                  double low = low_volume, int viscous = 0) {
   Random random(seed);
   const Data constants = data_for_constants(data);
-  KernelCase test("tled_tet4_force", with_law(law, {{"AVERAGED", averaged}}), Shape::lanes, size.elements);
+  KernelCase test("tled_tet4_force", with_law(law, {{"AVERAGED", averaged}, {"VISCOUS", viscous}}), Shape::lanes,
+                  size.elements);
   test.reals("node_u", displacements(random, size.nodes, data))
       .ints("tet_nodes", random.ints(4 * size.elements, 0, static_cast<int>(size.nodes) - 1))
       .reals("tet_data", random.reals(PLIANT_TET_DATA_PLANES * size.elements, constants, 1 / edge))
       .reals("anp_pressure", random.reals(size.nodes, data, 5000));
-  results(test, random, law, PLIANT_TET_FORCE_PLANES, size.elements, low);
+  results(test, random, law, PLIANT_TET_FORCE_PLANES, size.elements, displacements(random, size.nodes, data), low);
   return test;
 }
 
@@ -68,9 +72,9 @@ inline KernelCase tet4_dilation_case(ElementSizes size, Data data, std::uint32_t
 
 /// `planes`: PLIANT_HEX_DATA_PLANES or PLIANT_HEXFULL_DATA_PLANES.
 inline KernelCase hex8_case(const std::string& stem, std::size_t planes, Law law, int uniform, ElementSizes size, Data data,
-                            std::uint32_t seed) {
+                            std::uint32_t seed, int viscous = 0) {
   Random random(seed);
-  KernelCase test(stem, with_law(law, {{"UNIFORM", uniform}}), Shape::lanes, size.elements);
+  KernelCase test(stem, with_law(law, {{"UNIFORM", uniform}, {"VISCOUS", viscous}}), Shape::lanes, size.elements);
   Reals fill = random.positive(size.elements, 0.01, 1);
   for (double& f : fill) f = random.chance(0.1) ? 0 : f;
   if (data == Data::bits) fill = random.reals(size.elements, data, 1);
@@ -78,7 +82,7 @@ inline KernelCase hex8_case(const std::string& stem, std::size_t planes, Law law
       .ints("hex_nodes", random.ints(8 * size.elements, 0, static_cast<int>(size.nodes) - 1))
       .reals("hex_data", random.reals(planes * (uniform != 0 ? 1 : size.elements), data_for_constants(data), 0.5 / edge))
       .reals("hex_fill", std::move(fill));
-  results(test, random, law, PLIANT_HEX_FORCE_PLANES, size.elements);
+  results(test, random, law, PLIANT_HEX_FORCE_PLANES, size.elements, displacements(random, size.nodes, data));
   return test;
 }
 

@@ -177,13 +177,15 @@ inline int low_points(const Hexahedra& h) {
 }
 
 /// Forces of each element from a launch in which its record serves all.
-inline std::vector<Shift> uniform_forces(const std::string& stem, Law law, const Tile& tile) {
+inline std::vector<Shift> uniform_forces(const std::string& stem, Law law, const Tile& tile, const Viscous* viscous = nullptr) {
   std::vector<Shift> forces(16, Shift(8));
   for (std::size_t e = 0; e < 16; ++e) {
-    KernelCase test(stem, with_law(law, {{"UNIFORM", 1}}), Shape::lanes, 16);
+    KernelCase test(stem, with_law(law, {{"UNIFORM", 1}, {"VISCOUS", viscous == nullptr ? 0 : 1}}), Shape::lanes, 16);
     test.exact("node_u", texels_of(tile.u)).ints("nodes", own_nodes(8)).exact("data", tile.record[e]).exact("fill", tile.fill);
     test.exact("corner_force", Reals(16 * 24)).ints("fault", Ints(16));
-    test.exact("law_parameters", law_constants(oracle_material(law))).integer(0).integer(0).step();
+    test.exact("law_parameters", law_constants(oracle_material(law)));
+    add_viscous(test, viscous);
+    test.integer(0).integer(0).step();
     const Reals out = run_in_double(test, "corner_force");
     for (std::size_t a = 0; a < 8; ++a) forces[e][a] = Vector3d(out[48 * a + e], out[48 * a + 16 + e], out[48 * a + 32 + e]);
   }

@@ -111,15 +111,32 @@ inline Reals planes_of(const std::vector<Reals>& records) {
   return planes;
 }
 
+/// A viscosity [Pa s], and what the corners did in the last step.
+struct Viscous {
+  double eta = 0, zeta = 0;
+  std::vector<Shift> w;
+  static constexpr double h = 2e-3;
+};
+
+/// The arguments of viscous.cl; null: nothing is viscous.
+inline void add_viscous(KernelCase& test, const Viscous* viscous) {
+  test.exact("viscosity", viscous == nullptr ? Reals(2) : Reals{2 * viscous->eta, viscous->zeta - 2 * viscous->eta / 3});
+  test.exact("node_w", viscous == nullptr ? Reals(4) : texels_of(viscous->w)).exact("step_params", Reals(8, Viscous::h));
+}
+
 /// Corner forces of the double twin, [element][corner].
-inline std::vector<Shift> element_forces(const std::string& stem, Law law, const Defines& others, const Tile& tile) {
+inline std::vector<Shift> element_forces(const std::string& stem, Law law, Defines others, const Tile& tile,
+                                         const Viscous* viscous = nullptr) {
+  others.emplace_back("VISCOUS", viscous == nullptr ? 0 : 1);
   const std::size_t corners = tile.u[0].size();
   const bool tet = corners == 4;
   KernelCase test(stem, with_law(law, others), Shape::lanes, 16);
   test.exact("node_u", texels_of(tile.u)).ints("nodes", own_nodes(corners)).exact("data", planes_of(tile.record));
   test.exact("pressure_or_fill", tet ? tile.node_pressure : tile.fill);
   test.exact("corner_force", Reals(16 * 3 * corners)).ints("fault", Ints(16));
-  test.exact("law_parameters", law_constants(oracle_material(law))).integer(0).integer(0).step();
+  test.exact("law_parameters", law_constants(oracle_material(law)));
+  add_viscous(test, viscous);
+  test.integer(0).integer(0).step();
   const Reals out = run_in_double(test, "corner_force");
   std::vector<Shift> forces(16, Shift(corners));
   for (std::size_t e = 0; e < 16; ++e) {

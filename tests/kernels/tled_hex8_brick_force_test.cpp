@@ -108,9 +108,10 @@ Reals element_forces(const Cells& cells, Law law) {
   for (std::size_t e = 0; e < fill.size(); ++e) {
     for (std::size_t a = 0; a < 8; ++a) nodes[place(e, 8, a)] = corners[e][a];
   }
-  KernelCase force("tled_hex8_force", with_law(law, {{"UNIFORM", 1}}), Shape::lanes, fill.size());
+  KernelCase force("tled_hex8_force", with_law(law, {{"UNIFORM", 1}, {"VISCOUS", 0}}), Shape::lanes, fill.size());
   force.exact("node_u", cells.u).ints("hex_nodes", nodes).exact("hex_data", record).exact("hex_fill", fill);
   force.exact("corner_force", Reals(24 * fill.size())).ints("fault", Ints(fill.size())).exact("law_parameters", law_data(law));
+  force.exact("viscosity", Reals(2)).exact("node_w", Reals(4)).exact("step_params", Reals(8, 1));
   force.integer(0).integer(0).step();
   const Reals corner_force = run_in_double(force, "corner_force");
   Reals result(4 * Grid::slots, 0.0);

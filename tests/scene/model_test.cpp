@@ -320,6 +320,27 @@ TEST(Model, AnIntegratorIsRefusedWithThoseThatAreAllowed) {
       << contact;
 }
 
+TEST(Model, ViscosityIsOfElementsAndOfIncrements) {
+  const auto viscous = [](const std::string& type, const std::string& top) {
+    Json scene = Json::parse(with_model("{\"type\": \"" + type + "\"}", top));
+    scene["bodies"][0]["material"]["viscosity"] = 5;
+    scene["bodies"][0]["material"]["bulk_viscosity"] = 7;
+    return scene.dump();
+  };
+  for (const std::string integrator : {"increment", "forward-euler"})
+    EXPECT_EQ(message(viscous("tled", R"({"integrator": ")" + integrator + "\"}")), "");
+  const std::string textbook = message(viscous("tled", R"({"integrator": "textbook"})")),
+                    hybrid = message(viscous("hybrid", "{}"));
+  EXPECT_NE(textbook.find(R"(got "textbook", expected increment or forward-euler, because /bodies/0 has a viscosity)"),
+            std::string::npos)
+      << textbook;
+  EXPECT_NE(hybrid.find(R"(/bodies/0/model/type: got "hybrid", expected tled, because /bodies/0 has a viscosity)"),
+            std::string::npos)
+      << hybrid;
+  const Material m = parse_scene(scene_to_json(parse_scene(viscous("tled", "{}"), "s")), "s").bodies[0].material;
+  EXPECT_EQ(m.viscosity + 10 * m.bulk_viscosity, 75);
+}
+
 TEST(Model, ARegionThatMovesIsNotRelaxed) {
   const std::string model = R"({"type": "hybrid", "follow": "tool"})", tool = R"("tool": {"path": [[0, 0, 0.1, 0]]})";
   expect_refused(with_model(model, "{" + tool + R"(, "relaxation": true})"),

@@ -1,4 +1,4 @@
-// Every integrator: the same bits on every backend, with a cut where it allows one, and nothing undefined
+// Every integrator, and viscous stress: the same bits on every backend, with a cut where it allows one, and nothing undefined
 // read.
 #include <gtest/gtest.h>
 
@@ -25,6 +25,14 @@ std::vector<NamedScene> runs() {
     const std::string word = std::string(R"("dt": 0.0005, "integrator": ")") + info.word + "\",";
     all.push_back({info.word, pressed_cube(0.01, word)});
     if (info.edits) all.push_back({std::string(info.word) + ", cut", pressed_cube(0.01, word + blade)});
+    const std::size_t plain = all.size();
+    for (std::size_t i = 0; i < plain && info.keeps_increment; ++i) {
+      if (all[i].scene.integrator != integrator) continue;
+      all.push_back(all[i]);
+      all.back().name += ", viscous";
+      all.back().scene.bodies[0].material.viscosity = 1;
+      all.back().scene.bodies[0].material.bulk_viscosity = 2;
+    }
   }
   for (NamedScene& run : all) run.scene.bodies[0].material.damping = 100;  // so that explicit Euler is stable
   return all;
