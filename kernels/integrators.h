@@ -1,7 +1,7 @@
-// The integrators: the one list of them. A row is the integrator's stem and the name of its types in C++. The stem names its files:
-// kernels/integrate_STEM.cl, its twin cpu_ref/integrate_STEM.h and host/integrators/STEM.h, which says what it stores and allows.
-// Its number, the define INTEGRATOR of a kernel, is its place here. cmake/PliantLists.cmake reads this file too, for what cannot be
-// said with a macro: the includes.
+// The integrators: the one list of them. A row is the integrator's stem and the name of its types in C++. The stem names its
+// files: kernels/integrate_STEM.cl, its twin cpu_ref/integrate_STEM.h and host/integrators/STEM.h, which says what it stores
+// and allows. Its number, the define INTEGRATOR of a kernel, is its place here. cmake/PliantLists.cmake reads this file too,
+// for what cannot be said with a macro: the includes.
 #pragma once
 
 // clang-format off

@@ -1,6 +1,5 @@
 // The hourglass control of one-point hexahedra that are no cubes: exact in bending, indifferent to rotation, and stable.
 #include "elements/elements.h"
-
 #include "physics/harness.h"
 
 namespace pliant::physics::hourglass_test {
