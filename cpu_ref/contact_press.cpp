@@ -27,7 +27,7 @@ template <class Scalar>
 Vec<Scalar> press_friction(const Meeting<Scalar>& m, const Scalar* next, const PointNumbers<Scalar>& anchor, Scalar stiffness,
                            Scalar most, const Vec<Scalar>& f) {
   const Vec<Scalar> slip = turned(next, difference(m.inside, {anchor[0], anchor[1], anchor[2]}));
-  const Vec<Scalar> side = scaled_sum(-dot(slip, m.normal), m.normal, slip);
+  const Vec<Scalar> side = scaled_sum(minus(dot(slip, m.normal)), m.normal, slip);
   const Scalar length = std::sqrt(dot(side, side));
   const Scalar factor = stiffness * length > most ? most / length : stiffness;
   return scaled_sum(-factor, side, f);

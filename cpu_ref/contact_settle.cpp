@@ -13,13 +13,13 @@ Vec<Scalar> settle_friction(const Meeting<Scalar>& m, const Scalar* next, const 
                             Scalar friction, const Vec<Scalar>& f) {
   const Vec<Scalar> slip = turned(next, difference(m.inside, {anchor[0], anchor[1], anchor[2]}));
   const Scalar along = dot(slip, m.normal), across = dot(f, m.normal);
-  const Vec<Scalar> side = scaled_sum(-along, m.normal, slip);
-  const Vec<Scalar> pull = scaled_sum(-stiffness, side, scaled_sum(-across, m.normal, f));
+  const Vec<Scalar> side = scaled_sum(minus(along), m.normal, slip);
+  const Vec<Scalar> pull = scaled_sum(-stiffness, side, scaled_sum(minus(across), m.normal, f));
   const Scalar length = std::sqrt(dot(pull, pull)), most = across > Scalar(0) ? friction * across : Scalar(0);
   if (length > most) {
     const Scalar size = std::sqrt(dot(side, side)), hold = stiffness > Scalar(0) ? most / stiffness : Scalar(0);
     const Scalar kept = size > hold ? hold / size : Scalar(1);
-    const Vec<Scalar> back = turned_back(next, scaled_sum(-kept, side, times(m.normal, -along)));
+    const Vec<Scalar> back = turned_back(next, scaled_sum(-kept, side, times(m.normal, minus(along))));
     for (std::size_t k = 0; k < 3; ++k) anchor[static_cast<std::int64_t>(k)] = m.inside[k] + back[k];
   }
   return scaled_sum(length > most ? most / length : Scalar(1), pull, times(m.normal, across));

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "minus.h"
+
 namespace pliant::ref::contact {
 
 inline constexpr std::int64_t tool_numbers = 20, tool_integers = 8;

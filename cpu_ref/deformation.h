@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "minus.h"
+
 namespace pliant::ref {
 
 template <class Scalar>

@@ -88,9 +88,9 @@ template <class Scalar>
   w = w * unit, x = x * unit, y = y * unit, z = z * unit;
   const Scalar two = Scalar(2) / std::fma(z, z, std::fma(y, y, std::fma(x, x, w * w)));
   const Scalar x2 = two * x, y2 = two * y, z2 = two * z;
-  return {-std::fma(y2, y, z2 * z),   std::fma(x2, y, -(z2 * w)), std::fma(x2, z, y2 * w),
-          std::fma(x2, y, z2 * w),    -std::fma(x2, x, z2 * z),   std::fma(y2, z, -(x2 * w)),
-          std::fma(x2, z, -(y2 * w)), std::fma(y2, z, x2 * w),    -std::fma(x2, x, y2 * y)};
+  return {minus(std::fma(y2, y, z2 * z)), std::fma(x2, y, -(z2 * w)),     std::fma(x2, z, y2 * w),
+          std::fma(x2, y, z2 * w),        minus(std::fma(x2, x, z2 * z)), std::fma(y2, z, -(x2 * w)),
+          std::fma(x2, z, -(y2 * w)),     std::fma(y2, z, x2 * w),        minus(std::fma(x2, x, y2 * y))};
 }
 
 }  // namespace pliant::ref

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "hex8.h"
+#include "minus.h"
 
 namespace pliant::ref {
 
@@ -112,12 +113,12 @@ inline void hourglass(std::array<Vec3<Scalar>, 4>& q, const Mat3<Scalar>& h, Mat
       sum = add_times(sum, w[i][a], q[a]);
       work = std::fma(w[i][a], p[i][a], work);
     }
-    add_outer(stress, add_times(scaled(scale[i], sum), -work, g[i]), e[i]);
+    add_outer(stress, add_times(scaled(scale[i], sum), minus(work), g[i]), e[i]);
   }
   for (std::size_t a = 0; a < 4; ++a) {
     q[a] = scaled(k, q[a]);
     for (std::size_t i = 0; i < 3; ++i) q[a] = add_times(q[a], w[i][a], g[i]);
-    add_outer(stress, {-q[a][0], -q[a][1], -q[a][2]}, m[a]);
+    add_outer(stress, {minus(q[a][0]), minus(q[a][1]), minus(q[a][2])}, m[a]);
   }
 }
 

@@ -27,7 +27,7 @@ struct MooneyRivlin {
     const Scalar excess = std::fma(Scalar(3), d.q, d.t) - hh;
     const Scalar s = std::fma(-excess, third, one);
     const Scalar diagonal = std::fma(e.m00, e.m11, std::fma(e.m11, e.m22, e.m00 * e.m22));
-    const Scalar z = std::fma(four, diagonal, -std::fma(e.m01, e.m01, std::fma(e.m02, e.m02, e.m12 * e.m12)));
+    const Scalar z = std::fma(four, diagonal, minus(std::fma(e.m01, e.m01, std::fma(e.m02, e.m02, e.m12 * e.m12))));
     const Scalar i2 = std::fma(four, (e.m00 + e.m11) + e.m22, z);  // I2 - 3
     const Scalar w = (two * third) * i2;
 

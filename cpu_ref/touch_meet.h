@@ -79,10 +79,10 @@ struct Look {
     if (!(facing > Scalar(0))) return 0;
     const Scalar one = spacing(lower), two = spacing(upper), large = one > two ? one : two;
     const Pair<Scalar> p = pair_of(a, b);
-    const Vec<Scalar> side = scaled_sum(-dot(p.apart, p.normal), p.normal, p.apart);
+    const Vec<Scalar> side = scaled_sum(minus(dot(p.apart, p.normal)), p.normal, p.apart);
     const Scalar r = radius<Scalar> * large, part = dot(side, side) / (r * r);
     if (!(part < Scalar(1))) return 0;
-    const Scalar closing = -dot(difference(a.moved, b.moved), p.normal);
+    const Scalar closing = minus(dot(difference(a.moved, b.moved), p.normal));
     if (!(p.gap < std::fma(ahead, closing > Scalar(0) ? closing : Scalar(0), margin))) return 0;
     if (!(p.gap > (known ? Scalar(-2) * large : -large))) return 0;
     if (one_part(lower, upper, large, offset)) return 0;

@@ -124,7 +124,7 @@ struct Pair {
 template <class Scalar>
 inline Scalar front_of(const Place<Scalar>& lower, const Place<Scalar>& upper, const Vec<Scalar>& moved) {
   const Vec<Scalar> facing = difference(upper.normal, lower.normal);
-  const Scalar closing = -dot(moved, facing);
+  const Scalar closing = minus(dot(moved, facing));
   return dot(difference(lower.x, upper.x), facing) - (closing > Scalar(0) ? closing : Scalar(0));
 }
 
@@ -136,7 +136,7 @@ inline Pair<Scalar> pair_of(const Place<Scalar>& lower, const Place<Scalar>& upp
   const Scalar length = std::sqrt(dot(facing, facing));
   p.normal = contact::normalised(facing, length);
   const Vec<Scalar> start = difference(p.apart, difference(lower.moved, upper.moved));
-  p.arm = times(scaled_sum(-dot(start, p.normal), p.normal, start), Scalar(1) / length);
+  p.arm = times(scaled_sum(minus(dot(start, p.normal)), p.normal, start), Scalar(1) / length);
   p.gap = dot(p.apart, p.normal) + dot(p.arm, difference(upper.tilt, lower.tilt));
   return p;
 }
@@ -173,7 +173,7 @@ inline Vec<Scalar> out_of_frame(const Place<Scalar>& lower, const Vec<Scalar>& v
 template <class Scalar>
 inline Vec<Scalar> slip_of(const Place<Scalar>& lower, const Pair<Scalar>& p, const Vec<Scalar>& stuck) {
   const Vec<Scalar> slip = difference(p.apart, out_of_frame(lower, stuck));
-  return scaled_sum(-dot(slip, p.normal), p.normal, slip);
+  return scaled_sum(minus(dot(slip, p.normal)), p.normal, slip);
 }
 
 /// Numbers of a partner: plane k of touch_pair.

@@ -14,7 +14,7 @@ Vec<Scalar> settle_friction(const Place<Scalar>& lower, const Pair<Scalar>& p, S
                             Scalar friction, const Vec<Scalar>& f) {
   const Vec<Scalar> side = slip_of(lower, p, three(anchor, 0, 0));
   const Scalar across = dot(f, p.normal);
-  const Vec<Scalar> pull = scaled_sum(-stiffness, side, scaled_sum(-across, p.normal, f));
+  const Vec<Scalar> pull = scaled_sum(-stiffness, side, scaled_sum(minus(across), p.normal, f));
   const Scalar length = std::sqrt(dot(pull, pull)), most = across > Scalar(0) ? friction * across : Scalar(0);
   if (length > most) {
     const Scalar size = std::sqrt(dot(side, side)), hold = stiffness > Scalar(0) ? most / stiffness : Scalar(0);
