@@ -61,11 +61,11 @@ PatchSides sides_of(const std::array<Vec3d, 3>& x, const Vec3d& at, const std::a
 }
 
 /// Nodes and weights of a place on a triangle. Its corners lie in one tetrahedron, or on nodes: few nodes have a weight.
-struct Embedding {
+struct SampleEmbedding {
   std::array<std::int32_t, 8> nodes{};
   std::array<double, 8> weights{};
 };
-Embedding embedding_of(const ModelSurface& s, std::int32_t t, const Vec3d& at) {
+SampleEmbedding embedding_of(const ModelSurface& s, std::int32_t t, const Vec3d& at) {
   std::map<std::int32_t, double> shares;
   for (std::size_t c = 0; c < 3; ++c) {
     const std::int32_t v = s.triangles[t][c];
@@ -79,7 +79,7 @@ Embedding embedding_of(const ModelSurface& s, std::int32_t t, const Vec3d& at) {
   std::sort(largest.begin(), largest.end());
   largest.resize(std::min<std::size_t>(largest.size(), 8));
   const double sum = std::accumulate(largest.begin(), largest.end(), 0.0, [](double q, const auto& l) { return q - l.first; });
-  Embedding out;
+  SampleEmbedding out;
   out.nodes.fill(largest.front().second);
   for (std::size_t a = 0; a < largest.size(); ++a) {
     out.nodes[a] = largest[a].second;
@@ -138,7 +138,7 @@ class Faces {
         at = {1.0 / 6, 1.0 / 6, 1.0 / 6};
         at[static_cast<std::size_t>(k)] = 2.0 / 3;
       }
-      const Embedding e = embedding_of(s_, t, at);
+      const SampleEmbedding e = embedding_of(s_, t, at);
       add_contact_point(points, between(x, at), e.nodes, e.weights, area / count, body_, normal, std::sqrt(area / count));
       if (patches_) points.sides.push_back(sides_of(x, at, goes_on(t, normal)));
     }

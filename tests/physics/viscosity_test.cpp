@@ -2,7 +2,7 @@
 // element.
 #include "physics/harness.h"
 
-namespace pliant::physics {
+namespace pliant::physics::viscosity_test {
 namespace {
 
 class Viscosity : public OnBackend {};
@@ -166,4 +166,4 @@ TEST_P(Viscosity, TheForceThatIsOnlyAskedForHasNone) {
 PLIANT_ON_BACKENDS(Viscosity);
 
 }  // namespace
-}  // namespace pliant::physics
+}  // namespace pliant::physics::viscosity_test

@@ -13,7 +13,7 @@ namespace pliant {
 namespace {
 
 /// A cube that is thrown on a table faster than its first step stands, and a ball that it never touches.
-Scene thrown() {
+Scene thrown_block() {
   return parse_scene(R"({"format": "pliant-scene/1", "gravity": [0, 0, 0], "duration": 0.1, "bodies": [{"name": "cube",
     "surface": "meshes/cube.obj", "lattice": {"spacing": 0.02}, "velocity": [0, -3, 0],
     "material": {"young": 3000, "poisson": 0.4, "density": 1000, "damping": 5}}],
@@ -38,7 +38,7 @@ void expect_the_same(Simulation& resumed, Simulation& whole) {
 TEST(RunReport, AResumedRunTellsWhatTheUninterruptedOneTells) {
   const test::TempFolder folder;
   const auto file = folder.path() / "state.pckpt";
-  const Scene pressed = testing::pressed_cube(0.12), table = thrown();
+  const Scene pressed = testing::pressed_cube(0.12), table = thrown_block();
   for (const Scene& scene : {pressed, table}) {
     Simulation used(scene, open_backend("cpu"));
     for (const std::int64_t at : {0, 17, 64, 100, 199, 333}) {
@@ -70,7 +70,7 @@ TEST(RunReport, AResumedRunTellsWhatTheUninterruptedOneTells) {
 }
 
 TEST(RunReport, DecidesNothing) {
-  Simulation source(thrown(), open_backend("cpu")), other(thrown(), open_backend("cpu"));
+  Simulation source(thrown_block(), open_backend("cpu")), other(thrown_block(), open_backend("cpu"));
   go_to(source, 100);
   Snapshot snapshot = source.snapshot();
   const std::uint64_t deep = deep_hash(snapshot);
