@@ -14,6 +14,7 @@
 #include "io/vtu.h"
 #include "pliant/error.h"
 #include "program/hash.h"
+#include "scene/keys.h"
 #include "statics/statics.h"
 
 namespace pliant::cli {
@@ -33,12 +34,12 @@ void check(const Scene& scene, const StaticRun& run) {
   for (const Body& body : scene.bodies) {
     if (body.model.type != ModelType::tled)
       refuse(body.model.pointer + "/type", fmt::format("\"{}\"", to_string(body.model.type)));
-    if (body.element == ElementKind::tet4anp && scene.solver.order != 2) {
+    if (!element_info(body.element).statics && scene.solver.order != 2) {
+      const std::string word = to_string(body.element);
       throw Error(
           ErrorCode::bad_input,
-          fmt::format("{}: {}/element: got \"tet4anp\", expected tet4, hex8 or hex8full, or tet4anp beside the solver's "
-                      "\"order\": 2",
-                      scene.file.string(), body.pointer));
+          fmt::format("{}: {}/element: got \"{}\", expected {}, or {} beside the solver's \"order\": 2", scene.file.string(),
+                      body.pointer, word, elements_with([](const ElementInfo& e) { return e.statics; }), word));
     }
   }
   for (const OutputFormat format : run.formats) {

@@ -51,7 +51,7 @@ struct ElementInfo {
   bool hourglass;  ///< hourglass control keeps the modes without strain
   bool bricks;     ///< cells of a lattice are kept in bricks (kernels/layout.h)
   bool statics;    ///< the static solver has it
-  bool tears;      ///< comes apart face by face
+  bool splits;     ///< a volume mesh of it can be cut, and tears face by face
 };
 
 /// Counted traffic [bytes] and operations (an fma is two) per element and step: each datum once, what a cache serves not at

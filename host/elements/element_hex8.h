@@ -21,7 +21,7 @@ struct Hex8 {
                                     .hourglass = true,
                                     .bricks = true,
                                     .statics = true,
-                                    .tears = false};
+                                    .splits = false};
 
   static std::vector<double> record(std::span<const Vec3d> x, const Material& material, const std::string& what);
   static std::vector<double> cube_record(double edge, const Material& material, const std::string& what);

@@ -21,7 +21,7 @@ struct Hex8Full {
                                     .hourglass = false,
                                     .bricks = false,
                                     .statics = true,
-                                    .tears = false};
+                                    .splits = false};
 
   static std::vector<double> record(std::span<const Vec3d> x, const Material&, const std::string& what);
   static std::vector<double> cube_record(double edge, const Material&, const std::string& what);

@@ -23,7 +23,7 @@ struct Tet4 {
                                     .hourglass = false,
                                     .bricks = false,
                                     .statics = true,
-                                    .tears = true};
+                                    .splits = true};
 
   /// Gradients of the shape functions 1 to 3, and the volume, which is negative of one that is inside out.
   static std::vector<double> record(std::span<const Vec3d> x, const Material&, const std::string&) {

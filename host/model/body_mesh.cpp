@@ -7,11 +7,12 @@
 #include "model/model.h"
 #include "model/surface_check.h"
 #include "pliant/error.h"
+#include "scene/keys.h"
 
 namespace pliant {
 namespace {
 
-bool takes_tets(ElementKind kind) { return kind == ElementKind::tet4 || kind == ElementKind::tet4anp; }
+bool takes_tets(ElementKind kind) { return element_info(kind).corners == 4; }
 
 void from_lattice(const Body& body, BodyMesh& solid, SurfaceReport& report) {
   const TriangleMesh mesh = body.surface_in_memory == nullptr ? read_surface(body.surface, body.scale, body.translate, &report)
@@ -58,10 +59,11 @@ void from_mesh(const Body& body, BodyMesh& solid) {
   const VolumeMesh mesh = read_volume(body.mesh, body.scale, body.translate);
   const bool tets = takes_tets(body.element);
   if (tets ? mesh.tets.empty() : mesh.hexes.empty()) {
+    const int corners = tets ? 8 : 4;  // of what the file has
     throw Error(ErrorCode::bad_input,
                 fmt::format("{}: element {} needs {} and the file has only {}; use {}", body.mesh.string(),
-                            to_string(body.element), tets ? "tetrahedra" : "hexahedra", tets ? "hexahedra" : "tetrahedra",
-                            tets ? "hex8 or hex8full" : "tet4 or tet4anp"));
+                            to_string(body.element), element_info(body.element).cells, tets ? "hexahedra" : "tetrahedra",
+                            elements_with([&](const ElementInfo& e) { return e.corners == corners; })));
   }
   if (!mesh.tets.empty() && !mesh.hexes.empty()) {
     throw Error(ErrorCode::bad_input, fmt::format("{}: the file mixes {} tetrahedra and {} hexahedra; a body takes one kind",

@@ -121,6 +121,14 @@ std::string laws_with(bool LawInfo::*property) {
   return alternatives(words);
 }
 
+std::string elements_with(const std::function<bool(const ElementInfo&)>& has) {
+  List words;
+  for (const ElementKind kind : all_elements()) {
+    if (has(element_info(kind))) words.emplace_back(to_string(kind));
+  }
+  return alternatives(words);
+}
+
 const std::map<std::string, List>& scene_keys() {
   static const std::map<std::string, List> keys = make_keys();
   return keys;

@@ -2,6 +2,7 @@
 // the writer and the check of scenes/schema.json all read these tables.
 #pragma once
 #include <array>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -28,6 +29,7 @@ std::vector<std::string> matching_keys();
 
 /// The laws with a property, as "a, b or c".
 std::string laws_with(bool LawInfo::*property);
+std::string elements_with(const std::function<bool(const ElementInfo&)>& has);
 
 /// A word of a scene file or of an option, the enumerator that it names, and what that is, for people.
 template <class Enum>

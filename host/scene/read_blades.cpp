@@ -48,9 +48,10 @@ void check_blades(const Reader& top, const Scene& scene) {
   const std::vector<Reader> bodies = top.at("bodies").items("a list of bodies");
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& b = scene.bodies[i];
-    const bool hexes = b.element == ElementKind::hex8 || b.element == ElementKind::hex8full;
-    if (b.mesh.empty() || !hexes) continue;
-    bodies[i].at("element").fail("tet4 or tet4anp, because the scene has blades (a mesh of hexahedra cannot be cut)");
+    const ElementInfo& info = element_info(b.element);
+    if (b.mesh.empty() || info.splits) continue;
+    bodies[i].at("element").fail(fmt::format("{}, because the scene has blades (a mesh of {} cannot be cut)",
+                                             elements_with([](const ElementInfo& e) { return e.splits; }), info.cells));
   }
 }
 

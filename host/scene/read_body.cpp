@@ -38,9 +38,9 @@ void read_geometry(const Reader& body, const fs::path& folder, Body& b) {
 
 /// The averaged nodal pressure replaces the volumetric part of the stress, so that part must depend on J alone.
 void check_pressure_law(const Reader& material, const Body& b, const Material& m) {
-  if (b.element != ElementKind::tet4anp || law_info(m.law).volumetric) return;
+  if (!element_info(b.element).averaged || law_info(m.law).volumetric) return;
   material.fail(
-      fmt::format("the law {} with the element tet4anp", to_string(m.law)),
+      fmt::format("the law {} with the element {}", to_string(m.law), to_string(b.element)),
       laws_with(&LawInfo::volumetric) + ": the averaged nodal pressure needs a law whose volumetric part depends on J alone");
 }
 

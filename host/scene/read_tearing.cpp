@@ -16,8 +16,8 @@ void check_tearing(const Reader& top, const Scene& scene) {
     for (const Reader& material : materials) {
       if (!material.has("toughness")) continue;
       const Reader field = material.at("toughness");
-      const bool tets = body.element == ElementKind::tet4 || body.element == ElementKind::tet4anp;
-      if (body.mesh.empty() || !tets) field.fail("no toughness here: only a volume mesh (\"mesh\") of tetrahedra tears");
+      const bool splits = element_info(body.element).splits;
+      if (body.mesh.empty() || !splits) field.fail("no toughness here: only a volume mesh (\"mesh\") of tetrahedra tears");
       require_integrator(top, scene, &IntegratorInfo::edits, "a material has a toughness");
       if (scene.relaxation.enabled) top.at("relaxation").fail("false, because a material has a toughness");
       if (!scene.blades.empty()) top.at("blades").fail("no blades, because a material has a toughness");

@@ -93,7 +93,7 @@ class Picture(CliTest):
         self.assertEqual(len(set(pictures)), 5)
         self.refused("info", self.scene(view={"eye": [1, 2]}), words=["/view/eye"])
         self.refused("info", self.scene(view={"up": [0, 0, 0]}), words=["/view/up", "not all zero"])
-        self.refused("info", self.scene(view={"field_of_view": 0}), words=["/view/field_of_view", "1 to 120"])
+        self.refused("info", self.scene(view={"field_of_view": 0}), words=["/view/field_of_view", "1 <= field_of_view <= 120"])
         self.refused("info", self.scene(view={"ground": 0}), words=["/view/ground", "true or false"])
         self.refused("info", self.scene(view={"eye": [1, 1, 1], "target": [1, 1, 1]}), words=["/view/eye", "other than the target"])
 

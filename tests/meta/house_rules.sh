@@ -149,6 +149,16 @@ allow_room plan 'backends|mesh_io|simulation|schedule|backend|program|statics|mo
 allow 'cpu_ref knows only backend and program' '^<|^"(pliant/|(layout|laws|integrators)\.h|cpu_ref/|[a-z0-9_]+\.h|(backend|program)/)' cpu_ref/*.h cpu_ref/*.cpp
 forbid 'the command asks host/backends for a backend' '"(host/)?opencl/' host/cli/*.h host/cli/*.cpp
 
+# --- elements --------------------------------------------------------------------------------------------------------------------
+# Who names a concrete element must change when one comes. Not counted: its own files, and files that read what others wrote. The number may
+# only fall; what is left is mostly statics, which has its own list, and comments.
+elements_named=23
+mapfile -t naming < <(git ls-files 'host/*' 'kernels/*' 'cpu_ref/*' 'include/*' | grep -E '\.(h|cpp|cl)$' |
+  grep -vE '^host/(elements|mesh_io|statics)/|/(tled_)?(tet4|hex8)' |
+  xargs grep -lE '\b(tet4|tet4anp|hex8|hex8full|Tet4|Tet4Anp|Hex8|Hex8Full)\b|ElementKind::')
+[ "${#naming[@]}" -le "$elements_named" ] ||
+  report "${#naming[@]} files name a concrete element, at most $elements_named may; ask element_info (host/elements/element.h): ${naming[*]}"
+
 # --- bits ------------------------------------------------------------------------------------------------------------------------
 # Whoever writes other golden hashes comes past the section that says why.
 if [ -f tests/golden/hashes.json ]; then
