@@ -24,8 +24,9 @@ inline void integrate(const Scalar (&f)[3], Scalar* node_u, Scalar* node_w, cons
   } else {
     Scalar* u = node_u + 4 * i;
     Scalar* w = node_w + 4 * i;
+    const Scalar inverse_mass = u[3], decay = w[3];  // read once: a compiler must take it that writing w may change u
     for (int c = 0; c < 3; ++c) {
-      StepForm<Kind.integrator>::advance(u[c], w[c], Drive<Scalar>{residual(c), u[3], step.gravity[c], w[3]}, step);
+      StepForm<Kind.integrator>::advance(u[c], w[c], Drive<Scalar>{residual(c), inverse_mass, step.gravity[c], decay}, step);
     }
   }
 }
