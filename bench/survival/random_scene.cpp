@@ -126,6 +126,12 @@ class RandomScene {
     }
     m["density"] = dice_.uniform(900, 1100);
     m["damping"] = damping;
+    // Viscosity is one of elements: a sixth of the bodies without shape matching have some, of up to a tenth of a second.
+    Dice viscous(number_ ^ 0x632be59b);
+    if (body["model"]["type"] == "tled" && viscous.chance(1.0 / 6)) {
+      m["viscosity"] = young_ * viscous.logarithmic(1e-5, 0.03);
+      if (viscous.chance(0.5)) m["bulk_viscosity"] = young_ * viscous.logarithmic(1e-5, 0.1);
+    }
     if (tears) m["toughness"] = young_ * dice_.uniform(0.1, 0.8);
     body["material"] = m;
   }
