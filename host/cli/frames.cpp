@@ -31,17 +31,16 @@ std::vector<std::vector<float>> fills(const Model& model) {
 
 /// Young's modulus of the elements, tetrahedra of all bodies first, as the cells of a file come; nothing without a field of it.
 std::vector<float> moduli(const Scene& scene, const Model& model) {
+  const auto varied = [](const ModelBody& b) { return !b.materials.modulus.empty(); };
+  if (std::none_of(model.bodies.begin(), model.bodies.end(), varied)) return {};
   std::array<std::vector<float>, 2> of_kind;  // tetrahedra, hexahedra
-  bool varied = false;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const ModelBody& body = model.bodies[b];
-    varied = varied || !body.materials.modulus.empty();
     for (std::size_t e = 0; e < static_cast<std::size_t>(body.elements()); ++e) {
       const double young = material_of(scene.bodies[b], body.materials.index[e]).moduli.young();
       of_kind[body.tets.empty() ? 1 : 0].push_back(static_cast<float>(young * body.materials.modulus_of(e)));
     }
   }
-  if (!varied) return {};
   of_kind[0].insert(of_kind[0].end(), of_kind[1].begin(), of_kind[1].end());
   return std::move(of_kind[0]);
 }

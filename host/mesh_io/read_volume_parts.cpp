@@ -123,13 +123,20 @@ std::array<std::int32_t, N> corners(std::span<const std::int32_t> nodes, const c
 const CellType* gmsh_cell(std::int64_t type) { return find(kGmsh, type); }
 const CellType* vtk_cell(std::int64_t type) { return find(kVtk, type); }
 
-RawMesh::Array& array_named(RawMesh& mesh, const std::string& name) {
-  const auto it =
-      std::find_if(mesh.arrays.begin(), mesh.arrays.end(), [&](const RawMesh::Array& array) { return array.name == name; });
-  if (it != mesh.arrays.end()) return *it;
-  mesh.arrays.push_back({name, {}, {}});
-  return mesh.arrays.back();
+namespace {
+
+/// The entry of this name, new if there is none.
+template <class List>
+auto& named(List& list, const std::string& name) {
+  const auto it = std::find_if(list.begin(), list.end(), [&](const auto& entry) { return entry.name == name; });
+  if (it != list.end()) return *it;
+  list.push_back({name, {}, {}});
+  return list.back();
 }
+
+}  // namespace
+
+RawMesh::Array& array_named(RawMesh& mesh, const std::string& name) { return named(mesh.arrays, name); }
 
 namespace {
 
@@ -143,11 +150,10 @@ void add_tags(RawMesh& mesh, const std::string& name, std::int64_t first_cell, s
 /// As values of a field.
 template <class T>
 void add_values(RawMesh& mesh, const std::string& name, std::int64_t first_cell, std::span<const T> values) {
-  auto array = std::find_if(mesh.values.begin(), mesh.values.end(), [&](const RawMesh::Values& v) { return v.name == name; });
-  if (array == mesh.values.end()) array = mesh.values.insert(array, {name, {}, {}});
+  RawMesh::Values& array = named(mesh.values, name);
   for (std::size_t i = 0; i < values.size(); ++i) {
-    array->cell.push_back(first_cell + static_cast<std::int64_t>(i));
-    array->value.push_back(static_cast<double>(values[i]));
+    array.cell.push_back(first_cell + static_cast<std::int64_t>(i));
+    array.value.push_back(static_cast<double>(values[i]));
   }
 }
 

@@ -111,13 +111,9 @@ class ElementLists {
 
   void add(std::size_t e) {
     const BodyElements& solid = draft_.solid();
-    std::array<Vec3d, 8> x;
     std::array<std::int32_t, 8> all_slots{};
     const auto corners = solid.corners(e);
-    for (std::size_t a = 0; a < corners.size(); ++a) {
-      x[a] = solid.nodes[corners[a]];
-      all_slots[a] = draft_.slot[corners[a]];
-    }
+    for (std::size_t a = 0; a < corners.size(); ++a) all_slots[a] = draft_.slot[corners[a]];
     const std::span<const std::int32_t> slots(all_slots.data(), corners.size());
     const bool finite = solid.operational(e);
     const double modulus = draft_.materials.modulus_of(e);
@@ -126,6 +122,8 @@ class ElementLists {
     if (batch_.uniform) {
       volume = solid.spacing * solid.spacing * solid.spacing;
     } else {
+      std::array<Vec3d, 8> x;
+      for (std::size_t a = 0; a < corners.size(); ++a) x[a] = solid.nodes[corners[a]];
       const std::string what = fmt::format("{}: {} {}", body_.name, info_.cell, e);
       record = element_record(batch_.kind, std::span(x.data(), corners.size()), batch_.material, what);
       volume = element_volume(batch_.kind, record);

@@ -4,6 +4,7 @@
 #include "physics/harness.h"
 #include "simulation/probing.h"
 #include "statics/statics.h"
+#include "support/error_of.h"
 
 namespace pliant::physics::young_field_test {
 namespace {
@@ -160,6 +161,20 @@ TEST_P(YoungField, RestsWhereTheStaticSolverSays) {
 }
 
 PLIANT_ON_BACKENDS(YoungField);
+
+TEST(YoungFieldValues, ThatAreNoModuliAreRefused) {
+  for (const double wrong : {-1.0, 0.0, std::nan("")}) {
+    Scene scene;
+    scene.bodies = {box_body(bar(), Discretization::tet4, varied(Law::neo_hookean, make_mesh(bar(), true)))};
+    scene.bodies[0].pointer = "/bodies/0";
+    auto field = std::make_shared<pliant::YoungField>(*scene.bodies[0].material.young_field);
+    field->values[17] = wrong;
+    scene.bodies[0].material.young_field = field;
+    const std::string message = test::error_of([&] { build_model(scene); });
+    EXPECT_NE(message.find("/bodies/0/material/young: got "), std::string::npos) << message;
+    EXPECT_NE(message.find(" Pa of element 17 in the field \"E\", expected a modulus > 0"), std::string::npos) << message;
+  }
+}
 
 /// A copy of a cut element is as stiff as the element was, wherever the blade goes.
 TEST(YoungFieldCut, CopiesKeepTheModulusOfTheirElement) {

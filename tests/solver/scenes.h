@@ -28,6 +28,16 @@ inline Scene pressed_cube(double press, const std::string& extra = "", double yo
   return parse_scene(text, test::source_dir() + "/scenes/pressed_cube.json");
 }
 
+/// A cube that is thrown on a table faster than its first step stands; `more`: further tools, each after a comma.
+inline Scene thrown_cube(const std::string& more = "") {
+  return parse_scene(R"({"format": "pliant-scene/1", "gravity": [0, 0, 0], "duration": 0.1, "bodies": [{"name": "cube",
+    "surface": "meshes/cube.obj", "lattice": {"spacing": 0.02}, "velocity": [0, -3, 0],
+    "material": {"young": 3000, "poisson": 0.4, "density": 1000, "damping": 5}}],
+    "tools": [{"name": "table", "shape": {"half_space": [[0, -0.055, 0], [0, 1, 0]]}})" +
+                         more + "]}",
+                     test::source_dir() + "/scenes/thrown.json");
+}
+
 using test::has_opencl;
 
 }  // namespace pliant::testing

@@ -2,23 +2,13 @@
 #include <gtest/gtest.h>
 
 #include "backends/backends.h"
-#include "simulation/simulation.h"
-#include "support/source_dir.h"
+#include "solver/scenes.h"
 
 namespace pliant {
 namespace {
 
-/// A cube that is thrown on a table faster than its first step stands.
-Scene thrown() {
-  return parse_scene(R"({"format": "pliant-scene/1", "gravity": [0, 0, 0], "duration": 0.1, "bodies": [{"name": "cube",
-    "surface": "meshes/cube.obj", "lattice": {"spacing": 0.02}, "velocity": [0, -3, 0],
-    "material": {"young": 3000, "poisson": 0.4, "density": 1000, "damping": 5}}],
-    "tools": [{"name": "table", "shape": {"half_space": [[0, -0.055, 0], [0, 1, 0]]}}]})",
-                     test::source_dir() + "/scenes/thrown.json");
-}
-
 TEST(Settled, ABatchThatIsMadeAgainHasToldNothing) {
-  Simulation simulation(thrown(), open_backend("cpu"));
+  Simulation simulation(testing::thrown_cube(), open_backend("cpu"));
   EXPECT_TRUE(simulation.settled());
   simulation.advance(12);
   EXPECT_FALSE(simulation.settled());
@@ -37,7 +27,7 @@ TEST(Settled, ABatchThatIsMadeAgainHasToldNothing) {
 }
 
 TEST(Settled, LookingAheadLeavesNoTrace) {
-  Simulation looks(thrown(), open_backend("cpu")), goes(thrown(), open_backend("cpu"));
+  Simulation looks(testing::thrown_cube(), open_backend("cpu")), goes(testing::thrown_cube(), open_backend("cpu"));
   looks.advance(12);
   while (!looks.confirm()) looks.advance(12 - looks.step());
   goes.advance(64);
@@ -52,7 +42,7 @@ TEST(Settled, LookingAheadLeavesNoTrace) {
 }
 
 TEST(Settled, AMomentIsLookedAtAndLeft) {
-  Simulation simulation(thrown(), open_backend("cpu"));
+  Simulation simulation(testing::thrown_cube(), open_backend("cpu"));
   while (simulation.step() < 70) simulation.advance(70 - simulation.step());
   const Moment moment = simulation.moment();
   const std::uint64_t then = simulation.hash();

@@ -5,8 +5,7 @@
 
 namespace pliant {
 
-// --- motion: [edges of the element per step]; steps below half the first take less (Recovery::fast_share)
-// ----------------------
+// Motion: [edges of the element per step]; steps below half the first take less (Recovery::fast_share).
 
 /// The largest increment, in shortest elements, from which on nobody may assume that the step is short enough: elements are
 /// looked at one by one. More often costs a look per batch; Calm.PiecesThatFlyAreLeftAlone counts those of a body that only
@@ -24,15 +23,13 @@ inline constexpr double kBurst = 0.5;
 /// 987.
 inline constexpr double kLone = 0.2;
 
-// --- substeps of shape matching
-// ------------------------------------------------------------------------------------------------
+// Substeps of shape matching.
 
 /// [steps] With so many torn hybrids came to their end that 2 to 8 drove apart, whatever the step: Substeps.*,
 /// docs/stability.md.
 inline constexpr std::int32_t kSafeSubsteps = 1;
 
-// --- length of the step
-// --------------------------------------------------------------------------------------------------------
+// Length of the step.
 
 /// [share] What is left of an automatic step, and of the trust in its estimate, each time that a batch is lost or has burst;
 /// and by what trust comes back. Resume.AutomaticStepThatWasTriedAgain.
@@ -51,8 +48,7 @@ inline constexpr double kMostShortening = 0.35;
 /// is calmed. At a fiftieth sudden tractions diverged. StepRetries.NoEstimateTakesTheStepBelowAThousandth.
 inline constexpr double kLeastShare = 1e-3;
 
-// --- ballast
-// -------------------------------------------------------------------------------------------------------------------
+// Ballast.
 
 /// [share of the mass] More inertia changes what a scene does and helps little: 5 % lift 4 of 39 scenes of the survival bench
 /// above a tenth of their first step, 20 % make one of them thirty times slower (docs/stability.md).
