@@ -38,7 +38,7 @@ template <class Scalar>
 struct Look {
   const Scalar *touch_place, *touch_surface, *touch_rest;
   const std::int32_t* contact_node;
-  Scalar margin, ahead;
+  Scalar margin, ahead, ease;
 
   [[nodiscard]] Scalar spacing(std::int64_t i) const {
     return touch_surface[tile_base(i, PLIANT_TOUCH_SURFACE) + std::int64_t{22} * PLIANT_TILE];
@@ -86,7 +86,7 @@ struct Look {
     if (!(p.gap < std::fma(ahead, closing > Scalar(0) ? closing : Scalar(0), margin))) return 0;
     if (!(p.gap > (known ? Scalar(-2) * large : -large))) return 0;
     if (one_part(lower, upper, large, offset)) return 0;
-    const Scalar start = known ? std::fma(Scalar(0.04), large, before) : p.gap;
+    const Scalar start = known ? std::fma(ease, large, before) : p.gap;
     offset = start < offset ? start : offset;
     const Scalar rest = Scalar(1) - part;
     return (rest * rest) * facing;

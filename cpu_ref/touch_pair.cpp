@@ -123,7 +123,7 @@ void touch_pair(Range range, const Scalar* touch_place, const Scalar* touch_box,
                 const std::int32_t* contact_node, std::int32_t* touch_partner, Scalar* touch_pair, Scalar* touch_weight,
                 std::int32_t* contact_near, Scalar* contact_yield, const Scalar* contact_params, std::int32_t node_count) {
   const Scalar margin = contact_params[5], ahead = Scalar(2) * contact_params[6];
-  const Look<Scalar> look{touch_place, touch_surface, touch_rest, contact_node, margin, ahead};
+  const Look<Scalar> look{touch_place, touch_surface, touch_rest, contact_node, margin, ahead, contact_params[8]};
   const Boxes<Scalar> boxes{touch_box, touch_node, node_count, margin, ahead};
   for (std::int64_t tile = range.begin; tile < range.end; ++tile) {
     std::int32_t found[kFound];

@@ -50,10 +50,11 @@ static inline float farthest(const float* a, __global const float* b, float marg
 }
 
 // The weight of a pair, 0: none. A pair begins with the depth that it has, and eases out of it: what a point that slides over an edge meets
-// is there at once, and taken back in one step it would be thrown off. `before`: the offset of a pair that is known.
+// is there at once, and taken back in one step it would be thrown off. `before`: the offset of a pair that is known; `ease`: how far it goes back
+// in a look, in spacings.
 static inline float weight_of(__global const float* touch_place, __global const float* touch_surface, __global const float* touch_rest,
                               __global const int* contact_node, int lower, int upper, int known, float before, float margin,
-                              float ahead, float* offset) {
+                              float ahead, float ease, float* offset) {
   const touch_state a = state_of(touch_place, lower), b = state_of(touch_place, upper);
   const float facing = fma(-2.0f, dot_xyz(a.normal, b.normal), -1.0f);
   if (!(facing > 0.0f)) return 0.0f;
@@ -68,7 +69,7 @@ static inline float weight_of(__global const float* touch_place, __global const 
   if (!(m.gap < fma(ahead, closing > 0.0f ? closing : 0.0f, margin))) return 0.0f;
   if (!(m.gap > (known ? -2.0f * large : -large))) return 0.0f;
   if (one_part(touch_surface, touch_rest, contact_node, lower, upper, large, offset)) return 0.0f;
-  const float start = known ? fma(TOUCH_EASE, large, before) : m.gap;
+  const float start = known ? fma(ease, large, before) : m.gap;
   *offset = start < *offset ? start : *offset;
   const float rest = 1.0f - part;
   return (rest * rest) * facing;

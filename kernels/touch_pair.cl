@@ -7,7 +7,8 @@
 // What lay on each other at rest, like the faces of a cut, starts there.
 // Its weight is (1 - s^2 / r^2)^2 times 2 cos - 1 of the angle between the normal and the other one turned round; touch_weight:
 // [tiles][17][16] weights, then the sum of weights times areas of the partners [m^2]. The tree of boxes (touch_tree) is the same for all looks, so that the order of partners is. Of more
-// partners than there is room for the weakest give way. contact_params: margin [m] and steps between two looks at 5 and 6.
+// partners than there is room for the weakest give way. contact_params: margin [m], steps between two
+// looks at 5 and 6, ease of an offset at 8.
 #include "arith.cl"
 #include "contact_shape.cl"
 #include "contact_point.cl"
@@ -22,7 +23,7 @@ __kernel void touch_pair(__global const float* touch_place, __global const float
                          __global float* touch_weight, __global int* contact_near, __global float* contact_yield, __global const float* contact_params,
                          int node_count) {
   const int tile = (int)get_global_id(0);
-  const float margin = contact_params[5], ahead = 2.0f * contact_params[6];
+  const float margin = contact_params[5], ahead = 2.0f * contact_params[6], ease = contact_params[8];
   float box[PLIANT_TOUCH_BOX];
   for (int b = 0; b < PLIANT_TOUCH_BOX; ++b) box[b] = touch_box[tile * PLIANT_TOUCH_BOX + b];
   int found[FOUND];
@@ -77,7 +78,7 @@ __kernel void touch_pair(__global const float* touch_place, __global const float
         const int known = before < TOUCH_SLOTS && kept[before < TOUCH_SLOTS ? before : 0][0] > 0.0f;  // to both
         float offset;
         const float w = weight_of(touch_place, touch_surface, touch_rest, contact_node, i < j ? i : j, i < j ? j : i,
-                                  known, known ? kept[before][1] : 0.0f, margin, ahead, &offset);
+                                  known, known ? kept[before][1] : 0.0f, margin, ahead, ease, &offset);
         if (!(w > 0.0f)) continue;
         int slot = filled;
         if (filled == TOUCH_SLOTS) {

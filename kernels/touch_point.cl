@@ -13,7 +13,6 @@
 // 1 / height of F t2), (turn of the normal in the step, 1 / spacing): a row per point, because partners read it in no order.
 // touch_partner: [tiles][16 slots][16] other point + 1, 0: none; touch_pair: [tiles][16 slots][6][16] (kernels/layout.h).
 #define TOUCH_SLOTS PLIANT_TOUCH_SLOTS
-#define TOUCH_EASE 0.04f   // of an offset, in spacings per look
 #define TOUCH_RADIUS 1.2f  // of a pair, in spacings; a point is at most 0.71 from the next on a grid
 
 static inline float4 three(__global const float* at) { return (float4)(at[0], at[PLIANT_TILE], at[2 * PLIANT_TILE], 0.0f); }

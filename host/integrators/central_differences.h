@@ -16,7 +16,12 @@ inline double central_decay(double k) { return (1 - k) / (1 + k); }
 inline double central_square(double v, double a, double h, double k) { return v * ((1 - k) * v + h * a) / (1 + k); }
 
 /// 2 / omega, whatever the damping of the mass: w' = a w - b omega^2 u is stable for b omega^2 <= 2 (1 + a), and b = h^2 (1 +
-/// a) / 2.
-inline double central_step(double omega2, double /*least*/, double /*most*/) { return 2 / std::sqrt(omega2); }
+/// a) / 2. Viscous forces, at most t times the elastic ones, are those of the last step's velocity: h^2 omega^2 + 2 h t omega^2
+/// <= 4 (of w' = (1 - h t omega^2) w - h^2 omega^2 u, u' = u + w'), which is h = 2 / omega (sqrt(1 + xi^2) - xi) with xi = t
+/// omega / 2.
+inline double central_step(double central, const DampingRange& damping) {
+  const double time = damping.most_time;
+  return time > 0 ? central * central / (time + std::hypot(time, central)) : central;
+}
 
 }  // namespace pliant::integrators

@@ -18,9 +18,13 @@ struct ForwardEuler {
       .increment = [](double /*u*/, double w) { return w; },
       .decay = [](double k) { return 1 - 2 * k; },
       .squared_velocity = [](double v, double, double, double) { return v * v; },
-      // |1 + h l| <= 1 for l^2 + c l + omega^2 = 0: c / omega^2 where l is complex; where it is
-      // real, 2 / |l|, and |l| <= c.
-      .stable_step = [](double omega2, double least, double most) { return std::min(least / omega2, 2 / most); },
+      // |1 + h l| <= 1 for l^2 + d l + omega^2 = 0, d = c + t omega^2 with the viscous time t: d / omega^2 where l is complex;
+      // where it is real, 2 / |l|, and |l| <= d.
+      .stable_step =
+          [](double central, const DampingRange& d) {
+            const double omega2 = 4 / (central * central);
+            return std::min(d.least_rate / omega2 + d.least_time, 2 / (d.most_rate + d.most_time * omega2));
+          },
       .keeps_increment = true,
       .automatic = false,
       .edits = true,

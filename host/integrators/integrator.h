@@ -16,6 +16,12 @@ struct Start {
   double h;        ///< the step [s]
 };
 
+/// The damping of what moves in a model, from its least to its most.
+struct DampingRange {
+  double least_rate, most_rate;  ///< of the mass [1/s]
+  double least_time, most_time;  ///< of the stiffness: viscous over elastic force, Material::viscous_time [s]
+};
+
 /// What node_u and node_w mean. node_u holds the displacement u_n; h is the step, c the damping rate, k = c h / 2.
 struct IntegratorInfo {
   const char* word;  ///< its name in a scene file
@@ -29,9 +35,9 @@ struct IntegratorInfo {
   double (*decay)(double k);                ///< what the kernels get of the damping, per node
   /// v squared of the kinetic energy that belongs to u_n, from v, the acceleration a without damping, h and k. [m^2/s^2]
   double (*squared_velocity)(double v, double a, double h, double k);
-  /// Longest stable step [s] of undamped modes up to omega2 = omega^2 [1/s^2], whose mass has damping rates in [least, most]
-  /// [1/s].
-  double (*stable_step)(double omega2, double least, double most);
+  /// Longest stable step [s]; 0: none is. `central` = 2 / omega of the highest mode, the step that undamped central differences
+  /// stand.
+  double (*stable_step)(double central, const DampingRange& damping);
 
   // What may be done beside stepping.
   bool keeps_increment;  ///< `increment` is node_w as it is, whatever u; it scales with the step

@@ -86,7 +86,7 @@ void ProgramBuilder::add_contact_points() {
                 "host"));
   add(make_ints("contact_force", BufferRole::scratch, "[tiles][4][16]", {}, 4 * count, "contact_press, contact_settle"));
   add(make_ints("contact_change", BufferRole::scratch, "[tiles][4][16]", {}, 4 * count, "contact_settle, touch_press"));
-  add(make_reals("contact_params", BufferType::real, 8, BufferRole::control, "[8]", "see contact_near.cl", "host"));
+  add(make_reals("contact_params", BufferType::real, 9, BufferRole::control, "[9]", "see contact_near.cl", "host"));
   add(make_reals("contact_node_sum", BufferType::real4, static_cast<std::size_t>(model_.slots) + 1, BufferRole::scratch,
                  "[slots + 1]", "N, N, N, m^2", "contact_apply"));
 }

@@ -138,21 +138,6 @@ double held_step(const FlsmBatch& b, const Model& model, double elements) {
   return low;
 }
 
-/// The step h of elements alone whose viscous forces are at most `time` times the elastic ones of a motion: with those of the
-/// last step's velocity, a mode of omega is stable for h^2 omega^2 + 2 h time omega^2 <= 4 (of w' = (1 - h time omega^2) w -
-/// h^2 omega^2 u, u' = u + w'), which is h = 2 / omega (sqrt(1 + xi^2) - xi) with xi = time omega / 2.
-double viscous_step(double elements_alone, double time) {
-  if (!(time > 0)) return elements_alone;
-  return elements_alone * elements_alone / (time + std::hypot(time, elements_alone));
-}
-
-/// The largest Material::viscous_time of a model.
-double viscous_time(const Model& model) {
-  double time = 0;
-  for (const ElementBatch& batch : model.batches) time = std::max(time, batch.material.viscous_time());
-  return time;
-}
-
 }  // namespace
 
 bool has_elements(const Model& model) {
@@ -168,20 +153,9 @@ double longest_step(const Model& model, const Scene& scene) {
 }
 
 double coupled_step(const Model& model, double elements_alone) {
-  elements_alone = viscous_step(elements_alone, viscous_time(model));
   const InterfaceStiffness k = interface_stiffness(model);
   const double omega2 = 4 / (elements_alone * elements_alone) + k.fixed;
   return std::min(std::sqrt((4 - k.per_step) / omega2), held_goals_step(model, elements_alone));
-}
-
-double elements_step(const Model& model, double dt) {
-  double low = dt, high = 2 * dt;
-  for (int i = 0; i < 60 && coupled_step(model, high) < dt; ++i) high *= 2;  // no elements are stiff enough for some springs
-  for (int i = 0; i < 40; ++i) {
-    const double middle = 0.5 * (low + high);
-    (coupled_step(model, middle) < dt ? low : high) = middle;
-  }
-  return high;
 }
 
 double held_goals_step(const Model& model, double elements_alone) {

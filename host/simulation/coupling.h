@@ -17,9 +17,6 @@ namespace pliant {
 /// h^2 (omega^2 + alpha / (n h)^2) <= 4. Held goals pull n times as hard in one substep of n, and resonate.
 [[nodiscard]] double coupled_step(const Model& model, double elements_alone);
 
-/// The stable step that the elements alone need for coupled_step() to be `dt` [s].
-[[nodiscard]] double elements_step(const Model& model, double dt);
-
 /// The longest step that held goals stand [s]; infinite without any.
 [[nodiscard]] double held_goals_step(const Model& model, double elements_alone);
 

@@ -31,15 +31,32 @@ double ritz_deficit(std::size_t unknowns, int steps) {
 
 }  // namespace
 
-double stable_step(const RunContext& run, double omega2) {
+double stable_step(const RunContext& run, double central) {
   const Model& model = run.model();
-  double least = std::numeric_limits<double>::max(), most = 0;
+  constexpr double kLarge = std::numeric_limits<double>::max();
+  DampingRange d{kLarge, 0, kLarge, 0};
   for (std::size_t s = 0; s < model.mass.size(); ++s) {
     if (!(model.mass[s] > 0)) continue;
-    least = std::min(least, model.damping[s]);
-    most = std::max(most, model.damping[s]);
+    d.least_rate = std::min(d.least_rate, model.damping[s]);
+    d.most_rate = std::max(d.most_rate, model.damping[s]);
   }
-  return integrator_info(run.scene.integrator).stable_step(omega2, least, most);
+  for (const ElementBatch& batch : model.batches) {
+    d.least_time = std::min(d.least_time, batch.material.viscous_time());
+    d.most_time = std::max(d.most_time, batch.material.viscous_time());
+  }
+  return integrator_info(run.scene.integrator).stable_step(central, d);
+}
+
+double bound_step(const RunContext& run, double central) { return coupled_step(run.model(), stable_step(run, central)); }
+
+double central_step_for(const RunContext& run, double dt) {
+  double low = dt, high = 2 * dt;
+  for (int i = 0; i < 60 && bound_step(run, high) < dt; ++i) high *= 2;  // no elements are stiff enough for some springs
+  for (int i = 0; i < 40; ++i) {
+    const double middle = 0.5 * (low + high);
+    (bound_step(run, middle) < dt ? low : high) = middle;
+  }
+  return high;
 }
 
 double largest_omega2(const RunContext& run, const std::vector<double>& spring, int iterations) {
@@ -107,13 +124,13 @@ StableStep estimate_stable_step(const RunContext& run, int iterations) {
   StableStep step;
   const double omega2 = largest_omega2(run, {}, iterations);
   if (!(omega2 > 0)) return step;
-  step.elements = stable_step(run, omega2);
+  step.elements = stable_step(run, 2 / std::sqrt(omega2));
   step.coupled = coupled_step(run.model(), step.elements);
   const std::vector<double> spring = interface_springs(run.model(), step.coupled);
   if (!spring.empty()) {
     // Springs soften as the step grows, so what the springs of a shorter step allow is allowed.
     const double coupled = largest_omega2(run, spring, iterations);
-    if (coupled > 0) step.coupled = std::max(step.coupled, 2 / std::sqrt(coupled));
+    if (coupled > 0) step.coupled = std::max(step.coupled, stable_step(run, 2 / std::sqrt(coupled)));
     step.coupled = std::min(step.coupled, held_goals_step(run.model(), step.elements));
   }
   return step;

@@ -12,9 +12,13 @@ namespace pliant {
 /// force evaluation and are given: `spring` [1/s^2] per slot, empty: none. 0 if nothing moves freely.
 double largest_omega2(const RunContext& run, const std::vector<double>& spring, int iterations = 48);
 
-/// Longest stable step [s] of the elements for that, by the scene's integrator and the damping of the nodes that move; 0: none
-/// is.
-double stable_step(const RunContext& run, double omega2);
+/// Longest stable step [s] of the elements, by the scene's integrator, the damping of the nodes that move and the viscosity; 0:
+/// none is. `central` = 2 / omega of their highest mode [s].
+double stable_step(const RunContext& run, double central);
+/// The same with the springs of the interface of shape matching: a bound without an iteration.
+double bound_step(const RunContext& run, double central);
+/// The 2 / omega that elements need for a bound_step() of `dt` [s].
+double central_step_for(const RunContext& run, double dt);
 
 struct StableStep {
   double elements = 0;  ///< of the elements alone [s]; 0: none

@@ -53,7 +53,7 @@ void StepControl::start(double wanted, bool estimate_always) {
     dt = wanted > 0 ? wanted : std::min(run_.scene.safety * stable.coupled, longest);
     // Every cut leaves elements that are stable at the element bound: each copy's mass and stiffness scale alike.
     if (wanted <= 0 && !run_.scene.blades.empty()) {
-      dt = std::min(dt, run_.scene.safety * coupled_step(model, model.element_bound));
+      dt = std::min(dt, run_.scene.safety * bound_step(run_, model.element_bound));
     }
     if (wanted > 0) check_beta(run_, wanted, stable.elements);
   }
@@ -130,13 +130,13 @@ StepControl::Allowed StepControl::allowed() {
   // coarser, but in double, and certain.
   out.stiffness = nodal_stiffness(run_.model(), run_.loaded.u());
   const double bound = stiffness_bound(run_.model(), out.stiffness);
-  if (bound > 0) limit.stable_dt = std::max(limit.stable_dt, coupled_step(run_.model(), bound));
+  if (bound > 0) limit.stable_dt = std::max(limit.stable_dt, bound_step(run_, bound));
   out.dt = share() * limit.stable_dt;
   return out;
 }
 
 std::vector<NodeInertia> StepControl::ballast_for(double dt, const std::vector<double>& stiffness) const {
-  return wanted_ballast(run_.model(), stiffness, elements_step(run_.model(), dt / share()));
+  return wanted_ballast(run_.model(), stiffness, central_step_for(run_, dt / share()));
 }
 
 bool StepControl::too_much(const std::vector<NodeInertia>& ballast) const {
@@ -169,7 +169,7 @@ void StepControl::limit_after_edit(const std::vector<char>& changed) {
   if (!run_.settings.automatic) return;
   double& ceiling = run_.state.limit.dt_ceiling;
   if (run_.model().element_bound > 0)
-    ceiling = std::min(ceiling, run_.scene.safety * coupled_step(run_.model(), run_.model().element_bound));
+    ceiling = std::min(ceiling, run_.scene.safety * bound_step(run_, run_.model().element_bound));
   if (run_.state.clock.dt > ceiling) change(ceiling);
   // New elements are as stretched as those they come from, on nodes of less mass. At rest the bound above is certain; elements
   // that are deformed have one that costs less than the estimate, and only theirs may have changed: but an interface with
@@ -179,7 +179,7 @@ void StepControl::limit_after_edit(const std::vector<char>& changed) {
   for (const bool quick : {true, false}) {
     const std::vector<double> stiffness = nodal_stiffness(run_.model(), u, local ? changed : std::vector<char>(), quick);
     const double bound = stiffness_bound(run_.model(), stiffness);
-    if (bound > 0 && share() * coupled_step(run_.model(), bound) >= kClearlyLess * run_.state.clock.dt) return;
+    if (bound > 0 && share() * bound_step(run_, bound) >= kClearlyLess * run_.state.clock.dt) return;
   }
   const double next = std::max(allowed().dt, least_step());
   if (next < kClearlyLess * run_.state.clock.dt) change(next);

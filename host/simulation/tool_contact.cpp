@@ -114,6 +114,15 @@ ToolContact::Units ToolContact::units() const {
   return u;
 }
 
+/// A pair gives its first depth back by kEase per search, and searches come after a number of steps. At steps far below the
+/// stable one that is a speed in m/s without limit, which threw the faces of a cut apart (touch_test.cpp,
+/// SmallStepsPartBodiesNoFaster): there the rate is the one of half the stable step.
+double ToolContact::touch_ease() const {
+  constexpr double kEase = 0.04;
+  const double stable = run_.state.limit.stable_dt;
+  return stable > 0 ? kEase * std::min(1.0, 2 * run_.state.clock.dt / stable) : kEase;
+}
+
 void ToolContact::begin_batch(std::int32_t steps) {
   if (!active()) return;
   const std::size_t tools = tools_.size(), rows = static_cast<std::size_t>(run_.settings.batch_steps) + 1;
@@ -148,7 +157,7 @@ void ToolContact::begin_batch(std::int32_t steps) {
   const Units& u = units_;
   backend.write_reals(program.find("contact_params"), {u.force, 1 / u.force, u.force / contact_weight_unit, 1 / u.torque,
                                                        1 / u.area, contact_margin(run_.model()), double(contact_look_every),
-                                                       run_.scene.contact ? run_.scene.contact->friction : 0});
+                                                       run_.scene.contact ? run_.scene.contact->friction : 0, touch_ease()});
   summed_.assign(static_cast<std::size_t>(steps), 0);
 }
 

@@ -43,6 +43,8 @@ class ToolContact {
   };
   [[nodiscard]] bool active() const;
   [[nodiscard]] Units units() const;
+  /// How far the offset of a pair goes back in a search for partners, in spacings.
+  [[nodiscard]] double touch_ease() const;
 
   /// Done on the tissue in a step of the batch by the force, and by the torque about the origin of a sequence's frame [J].
   [[nodiscard]] double work(std::size_t tool, std::int32_t step, const Vec3d& force, const Vec3d& torque) const;

@@ -157,7 +157,7 @@ struct ContactData {
       }
     }
     const double unit = std::ldexp(1.0, -10);
-    params = {unit, 1 / unit, unit / 4096, 1 / (2 * unit), std::ldexp(1.0, 20), 0.05, 16, 0};
+    params = {unit, 1 / unit, unit / 4096, 1 / (2 * unit), std::ldexp(1.0, 20), 0.05, 16, 0, 0};
     step_params = {1e-3, 0, 0, -9.81, 0, 0, 0, 0};
   }
 

@@ -56,6 +56,7 @@ struct TouchData : ContactData {
     Random random(seed + 5000);
     params[5] = 0.02;
     params[7] = seed % 3 == 0 ? 0 : 0.4;
+    params[8] = seed % 2 == 0 ? 0.04 : 0.002;
     make_points(random, numbers);
     make_tree();
     make_pairs(random);

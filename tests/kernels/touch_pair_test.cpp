@@ -59,7 +59,7 @@ double weight(const TouchData& d, std::size_t i, std::size_t j, double& offset, 
     }
   }
   const double* before = known(d, i, j);
-  offset = std::min(offset, before != nullptr ? before[16] + 0.04 * large : gap);
+  offset = std::min(offset, before != nullptr ? before[16] + d.params[8] * large : gap);
   return (1 - s * s) * (1 - s * s) * facing;
 }
 

@@ -70,6 +70,32 @@ TEST_P(TouchPhysics, ACollisionKeepsMomentumAndMakesNoEnergy) {
   }
 }
 
+/// Bodies that begin inside each other part as slowly at a small step as at half the stable one: the way is given back in time,
+/// not in steps.
+TEST_P(TouchPhysics, SmallStepsPartBodiesNoFaster) {
+  Scene scene;
+  Body one = box_body({{3, 3, 3}, 0.01}, Discretization::hex8_bricks, material_young(Law::neo_hookean, 1e4, 0.3));
+  Body two = one;
+  two.name = "two";
+  two.translate = {0.0002, 0.0003, 0.0285};
+  scene.bodies = {one, two};
+  scene.contact = TissueContact{};
+  const double stable = simulate(scene, GetParam())->stable_dt();
+  const auto fastest = [&](double share) {
+    scene.dt = stable * share;
+    auto sim = simulate(scene, GetParam());
+    double most = 0;
+    for (int k = 0; k < 20; ++k) {
+      sim->advance(static_cast<int>(16 / share));
+      most = std::max(most, velocity_of(*sim, 1)[2] - velocity_of(*sim, 0)[2]);
+    }
+    return most;
+  };
+  const double half = fastest(0.5), small = fastest(0.02);
+  EXPECT_GT(half, 0);
+  check("speed of parting at a fiftieth of the stable step, over that at half of it", small / half, 1.5);
+}
+
 /// Three cubes that do not lie straight on each other come to rest and stay; the table holds the weight of all.
 TEST_P(TouchPhysics, AStackStands) {
   for (const Discretization cut : {Discretization::hex8_bricks, Discretization::tet4}) {
