@@ -34,15 +34,7 @@ Program ProgramBuilder::build() {
   add_rotations();
   add_contact();
   add_status();
-  for (Buffer& buffer : program_.buffers) {
-    if (buffer.name.starts_with("last_")) buffer.copy_of = kept_by(buffer.name.substr(5));
-  }
   return std::move(program_);
-}
-
-/// The buffer that "last_NAME" keeps.
-BufferId ProgramBuilder::kept_by(const std::string& name) const {
-  return program_.find(name == "u" ? "node_u" : name == "w" ? "node_w" : name);
 }
 
 void ProgramBuilder::add_shared_buffers() {
@@ -80,8 +72,7 @@ void ProgramBuilder::add_shared_buffers() {
     program_.buffers[corner_].fixed = 3 * PLIANT_TILE;
   }
   // The state to go back to when an element fails.
-  add(make_reals("last_u", BufferType::real4, slots, BufferRole::state, "[slots]", "m, m, m, 1/kg", "host"));
-  add(make_reals("last_w", BufferType::real4, slots, BufferRole::state, "[slots]", "m, m, m, 1", "host"));
+  for (const BufferId state : {node_u_, node_w_}) add_last_good(program_, state);
   fault_ = add(make_ints("fault", BufferRole::scratch, "[elements]", {}, std::max(layout_.faults, 1), "element kernels"));
   program_.buffers[fault_].carried = Carried::all;  // the first step in which an element failed, until the host clears it
   summary_ = add(make_ints("fault_summary", BufferRole::scratch, "[256][4]", {}, 256 * PLIANT_FAULT_SUMMARY, "fault_reduce"));

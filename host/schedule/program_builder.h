@@ -24,6 +24,16 @@ inline Buffer make_ints(std::string name, BufferRole role, std::string shape, st
   return {std::move(name), BufferType::int32, n, role, std::move(shape), "1", std::move(producer), {}, std::move(ints)};
 }
 
+/// The state to go back to when an element fails: a buffer of the same shape that keeps the last good values of one.
+inline BufferId add_last_good(Program& program, BufferId of) {
+  const Buffer& live = program.at(of);
+  const std::size_t stem = live.name.starts_with("node_") ? 5 : 0;
+  Buffer copy{"last_" + live.name.substr(stem), live.type, live.count, BufferRole::state, live.shape, live.unit, "host"};
+  if (live.type == BufferType::int32) copy.ints = live.ints;
+  copy.copy_of = of;
+  return program.add(std::move(copy));
+}
+
 /// A gather list in rows of 16: for each tile of owners, as many rows as its fullest owner has entries, padded with `padding`.
 struct GatherList {
   std::vector<std::int32_t> offset{0};
@@ -67,7 +77,6 @@ class ProgramBuilder {
   void add_constraints();
   void add_rotations();
   void add_status();
-  [[nodiscard]] BufferId kept_by(const std::string& name) const;
   [[nodiscard]] std::vector<std::pair<std::string, int>> update_defines(int force_only) const;
 
   /// Defined in program_elements.cpp: internal forces, one call per batch.
@@ -117,6 +126,8 @@ class ProgramBuilder {
   [[nodiscard]] std::vector<std::pair<std::int32_t, std::int32_t>> brick_corners() const;
 
   BufferId add(Buffer buffer) { return program_.add(std::move(buffer)); }
+  /// State that a step backwards needs, too.
+  void add_state(Buffer buffer) { add_last_good(program_, add(std::move(buffer))); }
   [[nodiscard]] bool has_list_nodes() const { return model_.list_end > model_.list_base; }
   [[nodiscard]] bool has_list_elements() const { return !model_.batches.empty(); }
   [[nodiscard]] bool needs_load() const {

@@ -75,12 +75,9 @@ void ProgramBuilder::add_contact_points() {
   constant("contact_weight", 8, "[tiles][8][16]", "1", std::move(weight));
   constant("contact_share", 8, "[tiles][8][16]", "m^2", std::move(share));
   const auto all = static_cast<std::int32_t>((std::int64_t{1} << model_.tools->size()) - 1);
-  for (const char* name : {"contact_near", "last_contact_near"}) {
-    add(make_ints(name, BufferRole::state, "[tiles]", std::vector<std::int32_t>(tiles, all), 0, "contact_near"));
-  }
-  for (const char* name : {"contact_yield", "last_contact_yield"}) {
-    add(make_reals(name, BufferType::real, count, BufferRole::state, "[points]", "m^3/N", "contact_settle, touch_place"));
-  }
+  add_state(make_ints("contact_near", BufferRole::state, "[tiles]", std::vector<std::int32_t>(tiles, all), 0, "contact_near"));
+  add_state(make_reals("contact_yield", BufferType::real, count, BufferRole::state, "[points]", "m^3/N",
+                       "contact_settle, touch_place"));
   // Filled by the host after a look; they end with entries that are none.
   add(make_ints("contact_list", BufferRole::control, "[tiles + 16]", std::vector<std::int32_t>(tiles + contact_list_end, -1), 0,
                 "host"));
@@ -93,10 +90,8 @@ void ProgramBuilder::add_contact_points() {
 
 void ProgramBuilder::add_tools() {
   const std::size_t tools = model_.tools->size(), count = static_cast<std::size_t>(padded(model_.contact->size()));
-  for (const char* name : {"contact_anchor", "last_contact_anchor"}) {
-    add(make_reals(name, BufferType::real, 4 * count, BufferRole::state, "[tiles][4][16]", "m, m, m, 1",
-                   "contact_press, contact_settle"));
-  }
+  add_state(make_reals("contact_anchor", BufferType::real, 4 * count, BufferRole::state, "[tiles][4][16]", "m, m, m, 1",
+                       "contact_press, contact_settle"));
   add(make_reals("contact_gap", BufferType::real, count / PLIANT_TILE * tools, BufferRole::scratch, "[tiles][tools]", "m",
                  "contact_near"));
   program_.buffers.back().carried = Carried::all;

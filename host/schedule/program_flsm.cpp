@@ -157,8 +157,7 @@ class FlsmPasses {
     const int n = b_.settings.substeps;
     goals_ = reals("flsm_goals", 8 * shared, BufferRole::state, "[interface][2][4]", "m", "flsm_goal");
     if (n > 1) {  // held or extrapolated over several steps, so a part of the state to go back to
-      reals("last_flsm_reference", 8, BufferRole::state, "[2][4]", "m", "host");
-      reals("last_flsm_goals", 8 * shared, BufferRole::state, "[interface][2][4]", "m", "host");
+      for (const Arg& state : {reference_, goals_}) add_last_good(program_, std::get<0>(state));
     }
     beta_ = reals("flsm_beta", shared, BufferRole::control, "[interface]", "N/m", "host");
     const Arg base = int_arg(places_.interface_base);
