@@ -56,11 +56,11 @@ endfunction()
 
 # What runs: a Program, and the interface of what runs it. Neither knows where a Program comes from.
 pliant_room(pliant_program host/program fmt::fmt)
-pliant_room(pliant_backend host/backend pliant_program)
+pliant_room(pliant_backend host/backends/interface pliant_program)
 
 # The twins: their own flags, so that nothing a consumer sets can change a bit.
-pliant_room(pliant_ref cpu_ref pliant_backend Threads::Threads)
-target_include_directories(pliant_ref PUBLIC ${CMAKE_SOURCE_DIR})  # "cpu_ref/ref_backend.h"
+pliant_room(pliant_ref cpu_ref pliant_backend)
+target_include_directories(pliant_ref PUBLIC ${CMAKE_SOURCE_DIR})  # "cpu_ref/registry.h"
 target_include_directories(pliant_ref PRIVATE ${PLIANT_GENERATED})  # "twin_laws.h"
 set(ref_options -O3 -fno-math-errno -fno-trapping-math)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
@@ -70,15 +70,18 @@ target_compile_options(pliant_ref PRIVATE ${ref_options})
 set_target_properties(pliant_ref PROPERTIES DISABLE_PRECOMPILE_HEADERS ON)
 # Options of a source file come last on the command line, after the -ffp-contract=off that everybody gets.
 separate_arguments(twin_flags UNIX_COMMAND "${PLIANT_TWIN_FLAGS}")
-file(GLOB ref_sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/cpu_ref/*.cpp)
+file(GLOB_RECURSE ref_sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/cpu_ref/*.cpp)
 set_source_files_properties(${ref_sources} PROPERTIES COMPILE_OPTIONS "${twin_flags}" SKIP_UNITY_BUILD_INCLUSION ON)
+
+# The backends that run them.
+pliant_room(pliant_twins host/backends/twins pliant_ref Threads::Threads)
 
 # The OpenCL backend, or what says that there is none: the same functions, so that nothing else asks which of the two was built.
 include(EmbedKernels)
-pliant_room(pliant_opencl_absent host/opencl_absent pliant_backend)
+pliant_room(pliant_opencl_absent host/backends/opencl_absent pliant_backend)
 target_sources(pliant_opencl_absent PRIVATE ${PLIANT_KERNEL_TEXT})
 if(OpenCL_FOUND)
-  pliant_room(pliant_opencl host/opencl pliant_backend)
+  pliant_room(pliant_opencl host/backends/opencl pliant_backend)
   target_sources(pliant_opencl PRIVATE ${PLIANT_KERNEL_TEXT})
   target_link_libraries(pliant_opencl PRIVATE OpenCL::OpenCL)
   target_compile_definitions(pliant_opencl PRIVATE CL_TARGET_OPENCL_VERSION=120)
@@ -88,7 +91,7 @@ else()
 endif()
 
 # The choice of a backend by name: the only room that knows them all.
-pliant_room(pliant_backends host/backends pliant_ref ${opencl_room})
+pliant_room(pliant_backends host/backends/choice pliant_twins ${opencl_room})
 
 # What is simulated: from files to the Model.
 pliant_room(pliant_geometry host/geometry fmt::fmt Eigen3::Eigen Threads::Threads)
@@ -113,9 +116,7 @@ pliant_room(pliant_cutting_methods host/cutting_methods pliant_tearing)
 
 # The Model on a backend, step by step.
 pliant_room(pliant_schedule host/schedule pliant_model pliant_program)
-pliant_room(pliant_simulation "host/simulation" pliant_schedule pliant_backend pliant_tearing)
-file(GLOB edits CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/host/edits/*.cpp)
-target_sources(pliant_simulation PRIVATE ${edits})
+pliant_room(pliant_simulation host/simulation pliant_schedule pliant_backend pliant_tearing)
 
 pliant_room(pliant_statics host/statics pliant_model)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")  # the twins need these instructions too

@@ -12,8 +12,8 @@
 #include <map>
 #include <thread>
 
-#include "backend/timing.h"
-#include "backends/backends.h"
+#include "backends/choice/backends.h"
+#include "backends/interface/timing.h"
 #include "bench/kernels/block.h"
 #include "bench/kernels/machine_limits.h"
 #include "pliant/error.h"

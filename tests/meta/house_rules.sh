@@ -31,9 +31,9 @@ check_size() {  # LIMIT FILE...
   done
 }
 shopt -s globstar nullglob
-check_size 150 kernels/*.cl kernels/*.h
-check_size 400 host/**/*.cpp cpu_ref/*.cpp tests/**/*.cpp bench/**/*.cpp scenes/**/*.cpp examples/**/*.cpp
-check_size 200 include/**/*.h host/**/*.h cpu_ref/*.h
+check_size 150 kernels/**/*.cl kernels/**/*.h
+check_size 400 host/**/*.cpp cpu_ref/**/*.cpp tests/**/*.cpp bench/**/*.cpp scenes/**/*.cpp examples/**/*.cpp
+check_size 200 include/**/*.h host/**/*.h cpu_ref/**/*.h
 for file in "${!exception[@]}"; do
   [ -f "$file" ] || report "$file: is gone; remove its exception from tests/meta/size_exceptions.txt"
 done
@@ -68,7 +68,7 @@ done < <(awk '
     }
     start = 0
     open = 0
-  }' host/**/*.cpp cpu_ref/*.cpp bench/**/*.cpp scenes/**/*.cpp examples/**/*.cpp python/*.cpp tests/**/*.cpp /dev/null)
+  }' host/**/*.cpp cpu_ref/**/*.cpp bench/**/*.cpp scenes/**/*.cpp examples/**/*.cpp python/*.cpp tests/**/*.cpp /dev/null)
 for key in "${!long_function[@]}"; do
   [ -n "${long_seen[$key]:-}" ] || report "$key needs no exception any more: tests/meta/function_exceptions.txt"
 done
@@ -109,24 +109,25 @@ forbid() {
   done
 }
 cl='^[<"]CL/|opencl\.hpp|cl\.h[>"]$'
-allow 'kernels include kernels and layout.h only' '^"([a-z0-9_]+\.cl|layout\.h)"$' kernels/*.cl kernels/*.h
+allow 'kernels include kernels and layout.h only' '^"([a-z0-9_]+\.cl|layout\.h)"$' kernels/**/*.cl kernels/**/*.h
 allow 'the public API uses the standard library only' '^(<[a-z_0-9]+>|<std(def|int)\.h>|"pliant/[a-z_/]+\.h")$' include/**/*.h
 core=()
 for file in host/**/*.h host/**/*.cpp; do
-  [[ $file == host/opencl/* ]] || core+=("$file")
+  [[ $file == host/backends/opencl/* ]] || core+=("$file")
 done
-forbid 'only host/opencl includes OpenCL headers' "$cl" "${core[@]}" cpu_ref/*.h cpu_ref/*.cpp
-forbid 'the twins are independent of the OpenCL backend and of the kernels' '"(host/)?opencl/|\.cl[>"]$' cpu_ref/*.h cpu_ref/*.cpp
-forbid 'no Eigen in the twins' '[<"]Eigen/' cpu_ref/*.h cpu_ref/*.cpp
+forbid 'only host/backends/opencl includes OpenCL headers' "$cl" "${core[@]}" cpu_ref/**/*.h cpu_ref/**/*.cpp
+forbid 'the twins are independent of the OpenCL backend and of the kernels' '"backends/(opencl|twins|choice)/|\.cl[>"]$' cpu_ref/**/*.h cpu_ref/**/*.cpp
+forbid 'no Eigen in the twins' '[<"]Eigen/' cpu_ref/**/*.h cpu_ref/**/*.cpp
 forbid 'a .cl file is text, not a header' '\.cl[>"]$' host/**/*.h host/**/*.cpp include/**/*.h
 # Rooms, from the inside out: each knows those before it.
 allow_room() {  # ROOM INNER_ROOMS
   allow "host/$1 knows only: $2" "^<|^\"(pliant/|(layout|laws|integrators)\.h|($1|$2)/)" host/"$1"/**/*.h host/"$1"/**/*.cpp
 }
 allow_room program 'program'
-allow_room backend 'program'
-allow_room opencl 'backend|program'
-allow_room backends 'opencl|cpu_ref|backend|program'
+allow_room backends/interface 'program'
+allow_room backends/opencl 'backends/interface|program'
+allow_room backends/twins 'backends/interface|program|cpu_ref'
+allow_room backends/choice 'backends/opencl|backends/twins|cpu_ref|backends/interface|program'
 allow_room material 'material'
 allow_room integrators 'integrators'
 allow_room geometry 'geometry'
@@ -139,15 +140,14 @@ allow_room cutting 'model|lattice|mesh_io|scene|elements|material|geometry'
 allow_room tearing 'cutting|model|lattice|scene|elements|material|geometry'
 allow_room cutting_methods 'tearing|cutting|model|lattice|scene|elements|material|geometry'
 allow_room schedule 'program|model|lattice|scene|elements|material|geometry'
-allow_room simulation 'edits|schedule|backend|program|tearing|cutting|model|lattice|scene|elements|material|geometry'
-allow_room edits 'simulation|schedule|backend|program|tearing|cutting|model|lattice|scene|elements|material|geometry'
+allow_room simulation 'schedule|backends/interface|program|tearing|cutting|model|lattice|scene|elements|material|geometry'
 allow_room statics 'model|lattice|scene|elements|material|geometry'
-allow_room io 'simulation|schedule|backend|program|model|lattice|scene|elements|material|geometry'
-allow_room render 'io|simulation|schedule|backend|program|tearing|cutting|model|lattice|scene|elements|material|geometry'
-allow_room api 'backends|cutting|io|simulation|schedule|backend|program|model|lattice|mesh_io|scene|elements|material|geometry'
-allow_room plan 'backends|mesh_io|simulation|schedule|backend|program|statics|model|lattice|scene|elements|material|geometry'
-allow 'cpu_ref knows only backend and program' '^<|^"(pliant/|(layout|laws|integrators)\.h|cpu_ref/|[a-z0-9_]+\.h|(backend|program)/)' cpu_ref/*.h cpu_ref/*.cpp
-forbid 'the command asks host/backends for a backend' '"(host/)?opencl/' host/cli/*.h host/cli/*.cpp
+allow_room io 'simulation|schedule|backends/interface|program|model|lattice|scene|elements|material|geometry'
+allow_room render 'io|simulation|schedule|backends/interface|program|tearing|cutting|model|lattice|scene|elements|material|geometry'
+allow_room api 'backends/choice|cutting|io|simulation|schedule|backends/interface|program|model|lattice|mesh_io|scene|elements|material|geometry'
+allow_room plan 'backends/choice|mesh_io|simulation|schedule|backends/interface|program|statics|model|lattice|scene|elements|material|geometry'
+allow 'cpu_ref knows only backend and program' '^<|^"(pliant/|(layout|laws|integrators)\.h|cpu_ref/|[a-z0-9_]+\.h|(backends/interface|program)/)' cpu_ref/**/*.h cpu_ref/**/*.cpp
+forbid 'the command asks host/backends for a backend' '"backends/(opencl|twins)/' host/cli/*.h host/cli/*.cpp
 
 # --- elements --------------------------------------------------------------------------------------------------------------------
 # Who names a concrete element must change when one comes. Not counted: its own files, and files that read what others wrote. The number may
@@ -168,7 +168,7 @@ if [ -f tests/golden/hashes.json ]; then
 fi
 
 # --- kernels and twins -----------------------------------------------------------------------------------------------------------
-for file in kernels/*.cl; do
+for file in kernels/**/*.cl; do
   stem=$(basename "$file" .cl)
   # Comments may name what the code must not use.
   code=$(sed -E 's,//.*,,' "$file")
@@ -178,9 +178,10 @@ for file in kernels/*.cl; do
   first=$(includes "$file" | head -n 1)
   [ "$first" = '"arith.cl"' ] || report "$file: must include arith.cl first, which turns contraction off (first is ${first:-nothing})"
   grep -qE "__kernel[[:space:]]+.*\b$stem\b" <<<"$code" || report "$file: holds no kernel of its own name"
-  [ -f "cpu_ref/$stem.cpp" ] || report "$file: no twin cpu_ref/$stem.cpp"
+  twin=${file#kernels/}
+  [ -f "cpu_ref/${twin%.cl}.cpp" ] || report "$file: no twin cpu_ref/${twin%.cl}.cpp"
   grep -qE "ROW\($stem\)" cpu_ref/registry.cpp || report "$file: no row in cpu_ref/registry.cpp"
-  grep -qsE "\b$stem\b" tests/kernels/*_test.cpp || report "$file: named by no test in tests/kernels"
+  grep -qsE "\b$stem\b" tests/kernels/**/*_test.cpp || report "$file: named by no test in tests/kernels"
 done
 grep -q '#pragma OPENCL FP_CONTRACT OFF' kernels/arith.cl || report 'kernels/arith.cl: must turn contraction off'
 

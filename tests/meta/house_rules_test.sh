@@ -14,12 +14,12 @@ yes '// a long kernel' | head -n 151 >kernels/long.cl || true
 yes '// a long file' | head -n 401 >host/io/long.cpp || true
 yes '// a long header' | head -n 201 >host/io/long.h || true
 printf '#include <vector>\n' >host/io/short.cpp
-printf '#include <Eigen/Dense>\n#include "opencl/devices.h"\n#include "turn.cl"\n' >cpu_ref/arms.cpp
+printf '#include <Eigen/Dense>\n#include "backends/opencl/devices.h"\n#include "turn.cl"\n' >cpu_ref/arms.cpp
 printf '' >cpu_ref/registry.cpp
 printf '#include <fmt/format.h>\n' >include/pliant/api.h
 printf '#include "model/mesh.h"\n#include <CL/cl.h>\n' >host/scene/load.cpp
 printf '#include "turn.cl"\n' >host/model/text.cpp
-printf '#include "opencl/devices.h"\n' >host/cli/devices.cpp
+printf '#include "backends/opencl/devices.h"\n' >host/cli/devices.cpp
 printf 'host/io/folded.cpp fold 70 it was long\n' >tests/meta/function_exceptions.txt
 {
   printf 'namespace pliant {\nint endless(int a,\n            int b) {\n  const char* text = R"(\nvoid inner() {\n}\n)";\n'
@@ -49,10 +49,10 @@ expect '^kernels/texels\.cl includes .*scene\.h'
 expect '^include/pliant/api\.h includes <fmt/format\.h>'
 expect '^host/scene/load\.cpp includes <CL/cl\.h>'
 expect '^host/scene/load\.cpp includes "model/mesh\.h": host/scene knows only'
-expect '^host/cli/devices\.cpp includes "opencl/devices\.h"'
+expect '^host/cli/devices\.cpp includes "backends/opencl/devices\.h"'
 expect '^host/model/text\.cpp includes "turn\.cl": a \.cl file is text'
 expect '^cpu_ref/arms\.cpp includes <Eigen/Dense>'
-expect '^cpu_ref/arms\.cpp includes "opencl/devices\.h"'
+expect '^cpu_ref/arms\.cpp includes "backends/opencl/devices\.h"'
 expect '^cpu_ref/arms\.cpp includes "turn\.cl"'
 expect '^kernels/turn\.cl: forbidden on values .*dot'
 expect '^kernels/turn\.cl: must include arith\.cl first'
