@@ -264,8 +264,8 @@ void bind_tools(py::class_<pliant::World>& world) {
       .def("release", &World::release, py::arg("grab"))
       .def("push", &World::push, py::arg("vertex"), py::arg("force"))
       .def("push_node", &World::push_node, py::arg("body"), py::arg("node"), py::arg("force"))
-      .def("clear_tools", &World::clear_tools)
-      .def("move_tool", &World::move_tool, py::arg("position"))
+      .def("clear_handles", &World::clear_handles)
+      .def("move_focus", &World::move_focus, py::arg("position"))
       .def("add_tool", &add_tool, py::arg("tool"), py::arg("folder") = "",
            "tool: a dict with the keys of an entry of `tools` of a scene file; its name")
       .def("remove_tool", &World::remove_tool, py::arg("name"), Free())

@@ -1,4 +1,4 @@
-// Tools, cuts and checkpoints of the C API.
+// Handles, tools, cuts and checkpoints of the C API.
 #include <array>
 #include <vector>
 
@@ -74,11 +74,11 @@ pliant_status pliant_world_place_tool(pliant_world world, const char* name, cons
     w.world.place_tool(name, vector_of(position, "position"), {turn[0], turn[1], turn[2], turn[3]});
   });
 }
-pliant_status pliant_world_move_tool(pliant_world world, const double position[3]) {
-  return on(world, [&](CWorld& w) { w.world.move_tool(vector_of(position, "position")); });
+pliant_status pliant_world_move_focus(pliant_world world, const double position[3]) {
+  return on(world, [&](CWorld& w) { w.world.move_focus(vector_of(position, "position")); });
 }
-pliant_status pliant_world_clear_tools(pliant_world world) {
-  return on(world, [&](CWorld& w) { w.world.clear_tools(); });
+pliant_status pliant_world_clear_handles(pliant_world world) {
+  return on(world, [&](CWorld& w) { w.world.clear_handles(); });
 }
 
 pliant_status pliant_world_cut(pliant_world world, const double* triangles, size_t triangle_count, pliant_cut* out) {

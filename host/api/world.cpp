@@ -39,7 +39,8 @@ void check_device(const World::Impl& impl) {
 
 void check_interactive(const World::Impl& impl) {
   if (!impl.scene.interactive) {
-    throw Error(ErrorCode::state, "tools need forces reserved for them: create the World with WorldOptions::interactive");
+    throw Error(ErrorCode::state,
+                "grabs, pushes and the focus need forces reserved for them: create the World with WorldOptions::interactive");
   }
 }
 
@@ -227,43 +228,43 @@ std::uint64_t World::hash() const {
 GrabId World::grab(std::int32_t vertex, const GrabOptions& options) {
   const Call call(impl_, false);
   check_interactive(*impl_);
-  return impl_->tools->grab(impl_->vertex_of(vertex), options);
+  return impl_->handles->grab(impl_->vertex_of(vertex), options);
 }
 
 void World::move_grab(GrabId grab, const Vec3d& target) {
   const Call call(impl_, false);
   check_interactive(*impl_);
-  impl_->tools->move(grab, target);
+  impl_->handles->move(grab, target);
 }
 
 void World::release(GrabId grab) {
   const Call call(impl_, false);
   check_interactive(*impl_);
-  impl_->tools->release(grab);
+  impl_->handles->release(grab);
 }
 
 void World::push(std::int32_t vertex, const Vec3d& force) {
   const Call call(impl_, false);
   check_interactive(*impl_);
-  impl_->tools->push(impl_->vertex_of(vertex), force);
+  impl_->handles->push(impl_->vertex_of(vertex), force);
 }
 
 void World::push_node(std::size_t body, std::int64_t node, const Vec3d& force) {
   const Call call(impl_, false);
   check_interactive(*impl_);
-  impl_->tools->push_node(body, node, force);
+  impl_->handles->push_node(body, node, force);
 }
 
-void World::clear_tools() {
+void World::clear_handles() {
   const Call call(impl_, false);
   check_interactive(*impl_);
-  impl_->tools->clear();
+  impl_->handles->clear();
   impl_->rigid_tools.drop_drives();
 }
 
-void World::move_tool(const Vec3d& position) {
+void World::move_focus(const Vec3d& position) {
   const Call call(impl_, false);
-  impl_->tools->move_tool(position);
+  impl_->handles->move_focus(position);
 }
 
 void World::save(const std::string& file) const {
@@ -291,7 +292,7 @@ void World::load(const std::string& file) {
 void World::reset() {
   const Call call(impl_);
   auto fresh = impl_->make_simulation(nullptr);
-  impl_->tools->clear();
+  impl_->handles->clear();
   impl_->restart(std::move(fresh));
 }
 

@@ -33,7 +33,7 @@ CutReport World::Impl::cut_now(std::span<const api::CutRequest> requests) {
     }
     if (!poses.empty()) done = simulation->move_blades(poses);
     if (!done.changed) return done;
-    tools->follow(simulation->shared_model());
+    handles->follow(simulation->shared_model());
     const std::lock_guard lock(mutex);
     cut_since_read = true;
     return done;

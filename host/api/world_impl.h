@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "api/frame_pool.h"
+#include "api/surface_handles.h"
 #include "api/rigid_tools.h"
-#include "api/tools.h"
 #include "pliant/world.h"
 #include "simulation/measure/probing.h"
 #include "simulation/simulation.h"
@@ -92,7 +92,7 @@ struct World::Impl {
   std::shared_ptr<const Model> model;  ///< as of the start
   PlacedProbes probes;
   std::shared_ptr<Simulation> simulation;
-  std::unique_ptr<api::Tools> tools;
+  std::unique_ptr<api::SurfaceHandles> handles;
   api::RigidTools rigid_tools;
   std::string lost;         ///< message of the device's loss; empty: it works
   double seconds_left = 0;  ///< asked of advance() and not yet a whole step; of the thread that steps

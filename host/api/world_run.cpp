@@ -81,7 +81,7 @@ World::Impl::Impl(Scene scene_, OpenBackend open, const WorldOptions& options_)
   for (std::string& remark : simulation->remarks()) remarks.push_back(std::move(remark));
   info = info_of(*model, simulation->backend().info(), reason);
   info.remarks = std::move(remarks);
-  tools = std::make_unique<api::Tools>(model, scene);
+  handles = std::make_unique<api::SurfaceHandles>(model, scene);
   topology = topology_of(model, 1);
   seen_model = model;
   rigid_tools.renew(*simulation);
@@ -131,7 +131,7 @@ void World::Impl::publish_clock() {
 StepReport World::Impl::run(std::int64_t steps) {
   const std::int64_t first = simulation->step();
   try {
-    if (simulation->at_equilibrium()) static_cast<void>(tools->apply(*simulation));  // a tool that is driven ends it
+    if (simulation->at_equilibrium()) static_cast<void>(handles->apply(*simulation));  // a tool that is driven ends it
     if (steps == 0) {  // who stops stepping still sees cuts that are made beside the caller, and tools
       cut_pending();
       change_tools_now();
@@ -139,7 +139,7 @@ StepReport World::Impl::run(std::int64_t steps) {
     while (simulation->step() - first < steps && !simulation->divergence() && !simulation->at_equilibrium()) {
       cut_pending();
       change_tools_now();
-      const std::int64_t left = std::min<std::int64_t>(steps - (simulation->step() - first), tools->apply(*simulation));
+      const std::int64_t left = std::min<std::int64_t>(steps - (simulation->step() - first), handles->apply(*simulation));
       simulation->advance(simulation->next_batch(left));
       rigid_tools.note(*simulation);
       const std::lock_guard lock(mutex);
@@ -271,7 +271,7 @@ FramePtr World::Impl::hand_out(bool to_poll) {
 /// Go on with another simulation of the same scene.
 void World::Impl::restart(std::shared_ptr<Simulation> fresh) {
   simulation = std::move(fresh);
-  tools->renew();
+  handles->renew();
   rigid_tools.renew(*simulation);
   lost.clear();
   seconds_left = 0;

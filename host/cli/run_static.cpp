@@ -30,7 +30,7 @@ void check(const Scene& scene, const StaticRun& run) {
                 fmt::format("{}: {}: got {}, expected none of it beside a static solver", scene.file.string(), pointer, what));
   };
   if (scene.relaxation.enabled) refuse("/relaxation", "dynamic relaxation");
-  if (!scene.tool.path.empty()) refuse("/tool", "a tool");
+  if (!scene.focus.path.empty()) refuse("/focus", "a focus");
   for (const Body& body : scene.bodies) {
     if (body.model.type != ModelType::tled)
       refuse(body.model.pointer + "/type", fmt::format("\"{}\"", to_string(body.model.type)));

@@ -59,6 +59,11 @@ std::string ReadKeys::missing(const Key& key) {
   return about.substr(0, about.find_first_of(",;:")) + unit_text(key);
 }
 
+void ReadKeys::read(const Reader& field, const Key& /*key*/, std::string& member) {
+  member = field.text("a name");
+  if (member.empty()) field.fail("a name");
+}
+
 void ReadKeys::read(const Reader& field, const Key& /*key*/, std::array<Vec3d, 3>& member) {
   const char* const expected = "three rows of three numbers";
   const std::vector<Reader> rows = field.items(expected);

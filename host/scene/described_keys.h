@@ -36,6 +36,7 @@ struct ReadKeys {
 
  private:
   static std::string missing(const Key& key);
+  static void read(const Reader& field, const Key& key, std::string& member);
   static void read(const Reader& field, const Key& /*key*/, bool& member) { member = field.boolean(); }
   static void read(const Reader& field, const Key& /*key*/, Vec3d& member) { member = field.vec3(); }
   static void read(const Reader& field, const Key& /*key*/, std::array<Vec3d, 3>& member);
@@ -78,7 +79,9 @@ struct WriteKeys {
         return;
       }
     }
-    if constexpr (std::same_as<Member, std::array<bool, 3>>) {
+    if constexpr (std::same_as<Member, std::string>) {
+      if (!member.empty() || !key.range.absent) object[key.name] = member;
+    } else if constexpr (std::same_as<Member, std::array<bool, 3>>) {
       object[key.name] = axes_text(member);
     } else {
       object[key.name] = member;

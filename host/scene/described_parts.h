@@ -94,10 +94,10 @@ template <class V, class S>
 void describe_growth(V&& v, S&& s) {
   v(s.ratio, {"ratio", from_to(0, 1), "", "0.4", "share of the nodes in the operational region"});
   v(s.seed, {"seed", any, "m", "[0.05, 0.02, 0]", "where the operational region grows from", "first vertex of the surface"});
-  v(s.follow_tool, follow_words(),
-    {"follow", any.absent_at(0), "", "\"tool\"",
-     "the operational region moves with the `tool` of the scene; cells that are stretched beyond 1.5 times, or as far "
-     "compressed, keep their model until they are not"});
+  v(s.follow,
+    {"follow", any.absent_at(0), "", "\"scalpel\"",
+     "the operational region moves with what has this name: `\"focus\"`, a blade or a tool of the scene, or `\"host/NAME\"`, a "
+     "blade that a program moves; cells stretched or compressed beyond 1.5 times keep their model until they are not"});
 }
 
 // The struct of a Scene has flags for two words of that of include/pliant.

@@ -33,7 +33,7 @@ std::map<std::string, List> make_keys() {
   const List curve = PLIANT_DESCRIBED(Curve, curve) + List{"table"};
   return {
       {"scene", PLIANT_DESCRIBED(Scene, scene) + PLIANT_DESCRIBED(Scene, run) +
-                    List{"format", "name", "gravity", "relaxation", "solver", "tool", "tools", "contact", "blades", "view",
+                    List{"format", "name", "gravity", "relaxation", "solver", "focus", "tools", "contact", "blades", "view",
                          "probes", "probe_every", "bodies"}},
       {"body", List{"name", "surface", "mesh", "lattice", "material", "model", "inclusions", "fixed", "prescribed", "forces",
                     "pressures", "initial"} +
@@ -45,7 +45,7 @@ std::map<std::string, List> make_keys() {
       {"element_field", {"field"}},
       {"stiffness", PLIANT_DESCRIBED(DeformationModel, stiffness)},
       {"gravity", PLIANT_DESCRIBED(Scene, gravity) + curve},
-      {"tool", {"path"}},
+      {"focus", {"path"}},
       {"contact_tool", List{"name", "shape", "path", "contact"} + PLIANT_DESCRIBED(ContactTool, tool)},
       {"shape", words_only(tool_shape_words())},
       {"contact", PLIANT_DESCRIBED(ContactTool, contact_law)},
@@ -204,11 +204,6 @@ const Words<bool>& goals_words() {
 
 const Words<bool>& coupling_words() {
   static const Words<bool> words{{"conservative", true, "with the reaction of the interface"}, {"one-sided", false, "without"}};
-  return words;
-}
-
-const Words<bool>& follow_words() {
-  static const Words<bool> words{{"tool", true, "the tool of the scene"}};
   return words;
 }
 

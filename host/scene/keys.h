@@ -50,10 +50,9 @@ const Words<Inverted>& inverted_words();
 const Words<ToolShape>& tool_shape_words();
 const Words<bool>& solver_words();
 const Words<ModelType>& model_words();
-/// The flags of DeformationModel that a scene file writes as words: extrapolate, conservative, follow.
+/// The flags of DeformationModel that a scene file writes as words: extrapolate, conservative.
 const Words<bool>& goals_words();
 const Words<bool>& coupling_words();
-const Words<bool>& follow_words();
 const Words<Quantity>& quantity_words();
 
 template <class Enum>

@@ -124,7 +124,7 @@ Scene read_document(const nlohmann::json& document, const fs::path& file) {
   read_relaxation(top, scene.relaxation);
   if (scene.relaxation.enabled) require_integrator(top, scene, &IntegratorInfo::relaxation, "the scene has relaxation");
   read_solver(top, scene);
-  if (top.has("tool")) scene.tool = read_tool(top.at("tool"));
+  if (top.has("focus")) scene.focus = read_focus(top.at("focus"));
   if (top.has("tools")) scene.tools = read_tools(top.at("tools"), file.parent_path());
   if (top.has("contact")) scene.contact = read_tissue_contact(top.at("contact"));
   if (top.has("blades")) scene.blades = read_blades(top.at("blades"));

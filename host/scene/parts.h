@@ -35,7 +35,7 @@ Curve read_curve(const Reader& entry);
 Material read_material(const Reader& material, const TaggedMesh* mesh);
 /// `lattice`: whether the body is a surface filled with a lattice, which shape matching needs.
 DeformationModel read_model(const Reader& model, bool lattice);
-Tool read_tool(const Reader& tool);
+Focus read_focus(const Reader& focus);
 /// The last entry of a list has a name of its own.
 template <class Named>
 void check_last_name(const Reader& entry, const std::vector<Named>& all, const char* kind) {

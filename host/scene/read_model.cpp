@@ -1,4 +1,4 @@
-// The key "model" of a body and the key "tool" of a scene.
+// The key "model" of a body and the key "focus" of a scene.
 #include <fmt/format.h>
 
 #include "scene/described_keys.h"
@@ -60,12 +60,31 @@ DeformationModel read_model(const Reader& model, bool lattice) {
   return m;
 }
 
-Tool read_tool(const Reader& tool) {
-  tool.expect_object("tool");
-  Tool t;
+Focus read_focus(const Reader& focus) {
+  focus.expect_object("focus");
+  Focus f;
   const char* const expected = "a list of at least one row [time, x, y, z]";
-  t.path = read_rows<4>(tool.at("path", expected), expected, "a row [time, x, y, z] in seconds and metres");
-  return t;
+  f.path = read_rows<4>(focus.at("path", expected), expected, "a row [time, x, y, z] in seconds and metres");
+  return f;
+}
+
+/// Whether there is something of the name that "follow" gives.
+void check_follow(const Reader& follow, const Scene& scene, const std::string& name) {
+  if (name == kFocus) {
+    if (!scene.focus.path.empty()) return;
+    follow.fail("the scene's key \"focus\" to follow, such as \"focus\": {\"path\": [[0, 0, 0.1, 0]]}");
+  }
+  if (name.starts_with(kHostBlade) && name.size() > std::string_view(kHostBlade).size()) return;
+  std::vector<std::string> names{kFocus};
+  for (const Blade& blade : scene.blades) names.push_back(blade.name);
+  for (const ContactTool& tool : scene.tools) {
+    if (tool.name == name && tool.shape == ToolShape::half_space)
+      follow.fail("something that is in one place, which a half space is not");
+    names.push_back(tool.name);
+  }
+  if (std::find(names.begin(), names.end(), name) == names.end())
+    follow.fail(fmt::format("the name of what the region follows, one of {}, or {}NAME for a blade that a program moves",
+                            listed(names), kHostBlade));
 }
 
 void check_viscous(const Reader& top, const Scene& scene) {
@@ -87,13 +106,11 @@ void check_models(const Reader& top, const Scene& scene) {
     const DeformationModel& m = scene.bodies[i].model;
     if (m.type == ModelType::tled) continue;
     require_integrator(top, scene, &IntegratorInfo::matching, fmt::format("{} has the type {}", m.pointer, to_string(m.type)));
-    if (m.follow_tool && scene.relaxation.enabled) {
+    if (m.follow.empty()) continue;
+    if (scene.relaxation.enabled) {
       top.at("relaxation").fail(fmt::format("false, because {}/follow moves the region as time goes on", m.pointer));
     }
-    if (m.follow_tool && scene.tool.path.empty()) {
-      bodies[i].at("model").at("follow").fail(
-          "the scene's key \"tool\" to follow, such as \"tool\": {\"path\": [[0, 0, 0.1, 0]]}");
-    }
+    check_follow(bodies[i].at("model").at("follow"), scene, m.follow);
   }
 }
 

@@ -47,6 +47,7 @@ void Reader::expect_object(const std::string& kind) const {
     bool known = false;
     for (const std::string& word : allowed) known = known || word == key;
     if (!known) {
+      if (kind == "scene" && key == "tool") fail("the key \"tool\"", "\"focus\", which is its name since 0.2.0");
       const std::string quoted = shortened(nlohmann::json(key).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
       fail("the unknown key " + quoted, with_hint("one of " + listed(allowed), nearest(key, allowed)));
     }

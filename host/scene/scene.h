@@ -12,12 +12,12 @@
 #include "elements/element.h"
 #include "integrators/integrator.h"
 #include "material/material.h"
+#include "scene/blade.h"
 #include "scene/contact_tool.h"
 #include "scene/curve.h"
 #include "scene/lattice_spec.h"
 #include "scene/motion.h"
 #include "scene/selection.h"
-#include "scene/tool.h"
 
 namespace pliant {
 
@@ -78,7 +78,7 @@ struct DeformationModel {
   bool extrapolate = false;         ///< "goals": "extrapolated" instead of "held" between steps of FLSM
   bool conservative = true;  ///< "coupling": "conservative" gives the reaction of the interface back, "one-sided" does not
   bool cut = true;           ///< "cut": false: a blade passes through the shape-matching part without effect
-  bool follow_tool = false;  ///< "follow": "tool": the operational region moves with the scene's tool
+  std::string follow;  ///< the operational region moves with what has this name: kFocus, a blade or a tool; empty: it stays
   std::optional<std::vector<std::int32_t>> cells;  ///< set in code: the operational cells, once a region has moved
   std::string pointer;                             ///< JSON pointer ("/bodies/0/model")
 };
@@ -136,7 +136,7 @@ struct Scene {
   Inverted inverted = Inverted::recover;
   Relaxation relaxation;
   StaticSolver solver;
-  Tool tool;
+  Focus focus;
   std::vector<ContactTool> tools;
   std::optional<TissueContact> contact;  ///< of tissue with tissue; none: it passes through itself
   std::vector<Blade> blades;

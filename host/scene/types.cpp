@@ -111,7 +111,7 @@ Vec3d Scene::gravity_at(double time) const {
   return {factor * gravity[0], factor * gravity[1], factor * gravity[2]};
 }
 
-Vec3d Tool::position(double time) const {
+Vec3d Focus::position(double time) const {
   if (path.empty()) return {};
   const auto place = [](const std::array<double, 4>& row) { return Vec3d{row[1], row[2], row[3]}; };
   const auto after =

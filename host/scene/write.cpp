@@ -137,7 +137,7 @@ OrderedJson model_json(const M& m) {
   if (model["type"] == to_string(ModelType::hybrid)) {
     if (m.region) {
       model["region"] = selection_json(*m.region, {});
-      if (m.follow_tool) model["follow"] = word_of(follow_words(), true);  // refused
+      if (!m.follow.empty()) model["follow"] = m.follow;  // refused
     } else {
       describe_growth(WriteKeys{model}, m);
     }
@@ -280,8 +280,8 @@ OrderedJson probe_json(const P& p, const fs::path& file) {
   return probe;
 }
 
-const std::vector<std::array<double, 4>>& tool_path(const Scene& scene) { return scene.tool.path; }
-const std::vector<std::array<double, 4>>& tool_path(const SceneSpec& scene) { return scene.tool_path; }
+const std::vector<std::array<double, 4>>& focus_path(const Scene& scene) { return scene.focus.path; }
+const std::vector<std::array<double, 4>>& focus_path(const SceneSpec& scene) { return scene.focus_path; }
 
 /// What both have but their probes.
 template <class S>
@@ -290,7 +290,7 @@ OrderedJson top_json(const S& scene, const fs::path& file) {
   if (!scene.name.empty()) top["name"] = scene.name;
   top["gravity"] = gravity_json(scene);
   describe_scene(WriteKeys{top}, scene);
-  if (!tool_path(scene).empty()) top["tool"] = {{"path", tool_path(scene)}};
+  if (!focus_path(scene).empty()) top["focus"] = {{"path", focus_path(scene)}};
   for (const auto& t : scene.tools) top["tools"].push_back(tool_json(t, file));
   if (scene.contact) describe_friction(WriteKeys{top["contact"]}, *scene.contact);
   for (const auto& b : scene.blades) top["blades"].push_back(blade_json(b));

@@ -114,7 +114,7 @@ class Simulation {
   /// Add, remove, park, place and drive tools, between two batches.
   [[nodiscard]] ToolEdits& tools() { return tools_; }
   /// Put the scene's tool at a point [m] from now on.
-  void set_tool(const Vec3d& position) { state_.tool = position; }
+  void set_focus(const Vec3d& position) { state_.focus = position; }
 
   /// What a user should know before the first step (remarks.h).
   [[nodiscard]] std::vector<std::string> remarks() const;

@@ -99,9 +99,9 @@ PLIANT_API pliant_status pliant_world_release(pliant_world world, uint64_t grab)
 PLIANT_API pliant_status pliant_world_push(pliant_world world, int32_t vertex, const double force[3]);
 /** A force [N] on a node of a body, likewise. The node must belong to a cell of the surface. */
 PLIANT_API pliant_status pliant_world_push_node(pliant_world world, size_t body, int64_t node, const double force[3]);
-PLIANT_API pliant_status pliant_world_clear_tools(pliant_world world);
-/** The scene's tool, which a following operational region follows, stays at this point [m] from now on. */
-PLIANT_API pliant_status pliant_world_move_tool(pliant_world world, const double position[3]);
+PLIANT_API pliant_status pliant_world_clear_handles(pliant_world world);
+/** Put the focus, which operational regions can follow, at a point [m], where it stays. */
+PLIANT_API pliant_status pliant_world_move_focus(pliant_world world, const double position[3]);
 /** Rigid tools: see pliant::World. An entry of `tools` of a scene file as text becomes a tool; relative files start from
  * `folder` (null: the working folder). Its name into `name` (may be null), cut to `size` bytes with the closing 0. */
 PLIANT_API pliant_status pliant_world_parse_tool(pliant_world world, const char* tool_text, const char* folder, char* name,

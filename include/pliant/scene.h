@@ -53,12 +53,12 @@ struct InclusionSpec {
 
 /// How the nodes of a body move: finite elements (tled), shape matching (flsm), or both (hybrid), as docs/scene.md describes.
 struct ModelSpec {
-  std::string type = "tled";              ///< tled, hybrid or flsm
-  double ratio = 0.5;                     ///< hybrid: share of the nodes that finite elements move, in [0, 1]
-  std::optional<Vec3d> seed;              ///< hybrid: the operational region grows from here [m]
-  bool follow_tool = false;               ///< hybrid: the operational region follows the tool
-  std::optional<RegionSpec> region;       ///< hybrid: a box or a sphere, instead of ratio and seed: the operational region
-  std::string goals = "held";             ///< hybrid: held or extrapolated between the steps of shape matching
+  std::string type = "tled";         ///< tled, hybrid or flsm
+  double ratio = 0.5;                ///< hybrid: share of the nodes that finite elements move, in [0, 1]
+  std::optional<Vec3d> seed;         ///< hybrid: the operational region grows from here [m]
+  std::string follow;                ///< hybrid: what the operational region follows: "focus", a blade, a tool, "host/BLADE"
+  std::optional<RegionSpec> region;  ///< hybrid: a box or a sphere, instead of ratio and seed: the operational region
+  std::string goals = "held";        ///< hybrid: held or extrapolated between the steps of shape matching
   std::string coupling = "conservative";  ///< hybrid: conservative, or one-sided
   bool cut = true;                        ///< hybrid, flsm: whether blades cut the shape-matching part
   std::optional<double> beta;             ///< hybrid: stiffness of the interface [N/m]; absent or 0: automatic
@@ -108,23 +108,24 @@ struct RelaxationSpec {
 
 /// Everything that a World is made of.
 struct SceneSpec {
-  std::string name = "scene";                    ///< for people
-  Vec3d gravity{};                               ///< [m/s^2] at factor 1
-  CurveSpec gravity_curve;                       ///< the factor over time
-  double dt = 0;                                 ///< [s]; 0: automatic
-  double safety = 0.9;                           ///< share of the stable step that an automatic step takes, in (0, 1]
-  std::string integrator = "increment";          ///< increment, textbook or forward-euler
-  std::string inverted = "recover";              ///< elements with J <= 0: recover or stop
-  double least_fill = 0.05;                      ///< of a cell where blades cut, as a share of a full cell's mass, 0 to 1
-  double least_step = 0.1;                       ///< floor of an automatic step, as a share of the first, 0 (none) to 1
-  double break_stretch = 4;                      ///< of an edge, beyond which it parts in a scene that is cut or tears; 0: none
-  std::optional<RelaxationSpec> relaxation;      ///< absent: none
-  std::vector<BladeSpec> blades;                 ///< blades that cut what they sweep over
-  std::vector<ToolSpec> tools;                   ///< rigid tools that touch the bodies
-  std::optional<ContactSpec> contact;            ///< absent: tissue passes through itself
-  std::vector<std::array<double, 4>> tool_path;  ///< (time [s], x, y, z [m]): what a following operational region follows
-  std::vector<BodySpec> bodies;                  ///< at least one
-  std::vector<ProbeSpec> probes;                 ///< what World::probes() tells
+  std::string name = "scene";                ///< for people
+  Vec3d gravity{};                           ///< [m/s^2] at factor 1
+  CurveSpec gravity_curve;                   ///< the factor over time
+  double dt = 0;                             ///< [s]; 0: automatic
+  double safety = 0.9;                       ///< share of the stable step that an automatic step takes, in (0, 1]
+  std::string integrator = "increment";      ///< increment, textbook or forward-euler
+  std::string inverted = "recover";          ///< elements with J <= 0: recover or stop
+  double least_fill = 0.05;                  ///< of a cell where blades cut, as a share of a full cell's mass, 0 to 1
+  double least_step = 0.1;                   ///< floor of an automatic step, as a share of the first, 0 (none) to 1
+  double break_stretch = 4;                  ///< of an edge, beyond which it parts in a scene that is cut or tears; 0: none
+  std::optional<RelaxationSpec> relaxation;  ///< absent: none
+  std::vector<BladeSpec> blades;             ///< blades that cut what they sweep over
+  std::vector<ToolSpec> tools;               ///< rigid tools that touch the bodies
+  std::optional<ContactSpec> contact;        ///< absent: tissue passes through itself
+  std::vector<std::array<double, 4>>
+      focus_path;                 ///< (time [s], x, y, z [m]) of the focus, which operational regions can follow
+  std::vector<BodySpec> bodies;   ///< at least one
+  std::vector<ProbeSpec> probes;  ///< what World::probes() tells
 };
 
 }  // namespace pliant

@@ -79,9 +79,9 @@ class PLIANT_API World {
   [[nodiscard]] std::vector<std::string> remarks() const;  ///< WorldInfo::remarks, and what `pliant run` would say by now
   [[nodiscard]] std::uint64_t hash() const;                ///< over the state: equal for equal bits
 
-  /// Tools. They need WorldOptions::interactive, otherwise they throw Error (state); a vertex or grab that does not exist is
-  /// usage. They take effect at the next batch of steps and do not wait. Vertices are those of the frame handed out last.
-  /// Hold the surface at a vertex and pull it to a point that begins where the vertex is now.
+  /// Handles: grabs, pushes and the focus. They need WorldOptions::interactive, otherwise they throw Error (state); a vertex or
+  /// grab that does not exist is usage. They take effect at the next batch of steps and do not wait. Vertices are those of the
+  /// frame handed out last. Hold the surface at a vertex and pull it to a point that begins where the vertex is now.
   GrabId grab(std::int32_t vertex, const GrabOptions& options = {});
   void move_grab(GrabId grab, const Vec3d& target);  ///< [m]
   void release(GrabId grab);                         ///< let go
@@ -90,8 +90,11 @@ class PLIANT_API World {
   void push(std::int32_t vertex, const Vec3d& force);
   /// A force [N] on a node of a body, likewise. The node must belong to a cell of the surface.
   void push_node(std::size_t body, std::int64_t node, const Vec3d& force);
-  void clear_tools();                     ///< no grabs and no pushes any more
-  void move_tool(const Vec3d& position);  ///< the point [m] that a following operational region follows from now on
+  void clear_handles();  ///< remove all grabs and pushes
+  void move_focus(
+      const Vec3d& position);  ///< put the focus, which operational regions can follow, at a point [m], where it stays
+  [[deprecated("clear_handles()")]] void clear_tools() { clear_handles(); }
+  [[deprecated("move_focus()")]] void move_tool(const Vec3d& position) { move_focus(position); }
 
   /// Rigid tools that touch (docs/contact.md): those of SceneSpec::tools, and those that are added here. They need no
   /// WorldOptions::interactive. After step_async() and advance_async() the worker makes these changes before its next batch,

@@ -101,7 +101,7 @@ TEST_F(CApi, StepsAsynchronouslyAndPullsAtTheSurface) {
   EXPECT_GT(frame.positions[4 * 7], 0.1F);
   EXPECT_EQ(pliant_world_release(world, grab), PLIANT_OK);
   EXPECT_EQ(pliant_world_release(world, grab), PLIANT_USAGE);
-  EXPECT_EQ(pliant_world_clear_tools(world), PLIANT_OK);
+  EXPECT_EQ(pliant_world_clear_handles(world), PLIANT_OK);
   EXPECT_EQ(pliant_world_reset(world), PLIANT_OK);
   EXPECT_EQ(pliant_world_advance(world, 0.01, nullptr), PLIANT_OK);
 }
@@ -111,7 +111,7 @@ TEST_F(CApi, NumbersOfTheWorldAreThoseOfCpp) {
   const double force[3]{0.1, 0, 0}, tool[3]{0, 0, 0};
   const std::int64_t node = 5;  // a corner at the top would do; any node of the surface is as good
   ASSERT_EQ(pliant_world_push_node(world, 0, node, force), PLIANT_OK) << pliant_last_error();
-  ASSERT_EQ(pliant_world_move_tool(world, tool), PLIANT_OK);
+  ASSERT_EQ(pliant_world_move_focus(world, tool), PLIANT_OK);
   other.push_node(0, node, {0.1, 0, 0});
   other.step(100);
   ASSERT_EQ(pliant_world_step(world, 100, nullptr), PLIANT_OK);
@@ -242,7 +242,7 @@ std::vector<std::pair<const char*, pliant_status>> call_all(pliant_world w, bool
           {"velocities", pliant_world_velocities(w, 0, p(u.data()), 3000)},
           {"rest_positions", pliant_world_rest_positions(w, 0, p(u.data()), 3000)},
           {"push_node", pliant_world_push_node(w, 0, 0, p(point))},
-          {"move_tool", pliant_world_move_tool(w, p(point))},
+          {"move_focus", pliant_world_move_focus(w, p(point))},
           {"forget_consumer", pliant_world_forget_consumer(w, 77)},
           {"hash", pliant_world_hash(w, p(&number))},
           {"grab", pliant_world_grab(w, 0, 0, 0, 0, p(&number))},
@@ -259,7 +259,7 @@ std::vector<std::pair<const char*, pliant_status>> call_all(pliant_world w, bool
           {"advance", null ? PLIANT_USAGE : pliant_world_advance(w, 0, &report)},
           {"wait", null ? PLIANT_USAGE : pliant_world_wait(w, &report)},
           {"release", null ? PLIANT_USAGE : pliant_world_release(w, 0)},
-          {"clear_tools", null ? PLIANT_USAGE : pliant_world_clear_tools(w)},
+          {"clear_handles", null ? PLIANT_USAGE : pliant_world_clear_handles(w)},
           {"reset", null ? PLIANT_USAGE : pliant_world_reset(w)},
           {"destroy", null ? PLIANT_USAGE : pliant_world_destroy(w)}};
 }

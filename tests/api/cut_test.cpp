@@ -202,7 +202,7 @@ TEST(ApiCut, grabs_and_pushes_hold_on_through_cuts) {
   const float held = world.frame()->positions[static_cast<std::size_t>(corner)][0];
   EXPECT_GT(held, 0.1F) << "the loose end is still in the hand";
   world.release(hand);
-  world.clear_tools();
+  world.clear_handles();
   EXPECT_FALSE(world.step(100).diverged);
 }
 

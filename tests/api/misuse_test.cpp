@@ -51,7 +51,7 @@ TEST(Misuse, CallsThatMakeNoSense) {
   EXPECT_EQ(code_of([&] { world.advance(-1); }), ErrorCode::usage);
   EXPECT_EQ(code_of([&] { world.step_async(-1); }), ErrorCode::usage);
   EXPECT_EQ(code_of([&] { (void)world.displacements(1); }), ErrorCode::usage);
-  EXPECT_EQ(code_of([&] { world.move_tool({0, std::nan(""), 0}); }), ErrorCode::usage);
+  EXPECT_EQ(code_of([&] { world.move_focus({0, std::nan(""), 0}); }), ErrorCode::usage);
   WorldOptions options;
   options.dt = -1;
   EXPECT_EQ(code_of([&] { World(block(), options); }), ErrorCode::usage);

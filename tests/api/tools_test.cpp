@@ -67,7 +67,7 @@ TEST(Tools, APushIsThatForceOfTheScene) {
   }
   EXPECT_GT(largest, 1e-3);
   EXPECT_LT(worst, 5e-3 * largest);  // the first step of a load begins as a parabola, that of a push does not
-  pushed.clear_tools();
+  pushed.clear_handles();
   pushed.step(1);
 }
 
@@ -85,7 +85,7 @@ TEST(Tools, ALoadedWorldHasItsOwnTools) {
   with.step(64);
   EXPECT_EQ(with.hash(), world.hash());
   world.load(file);
-  world.clear_tools();
+  world.clear_handles();
   world.step(64);
   without.step(64);
   EXPECT_EQ(without.hash(), world.hash()) << "a force of the world that was saved goes on";

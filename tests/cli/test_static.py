@@ -81,7 +81,7 @@ class Static(harness.CliTest):
         self.refused("run", self.scene(**keys), "--steps", "3", words=["--steps", "static"])
         self.refused("run", self.scene(**keys), "--backend", "cpu", words=["--backend", "static"])
         self.refused("run", self.scene(relaxation=True, **keys), words=["/relaxation"])
-        self.refused("run", self.scene(tool={"path": [[0, 0, 0, 0]]}, **keys), words=["/tool"])
+        self.refused("run", self.scene(focus={"path": [[0, 0, 0, 0]]}, **keys), words=["/focus"])
         self.refused("run", self.scene(body={"model": {"type": "flsm"}}, **keys), words=["/bodies/0/model/type", "flsm"])
         self.refused("run", self.scene(body={"element": "tet4anp"}, **keys), words=["/bodies/0/element", "tet4anp", "order"])
         self.refused("run", self.scene(body={"fixed": [], "prescribed": []}, **keys), words=["rigid body"])

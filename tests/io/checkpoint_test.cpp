@@ -38,7 +38,7 @@ Checkpoint sample() {
   s.state.pending.triangles = {{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}}};
   s.state.pending.moves = {{"host/scalpel", {}, {{Vec3d{1, 1, 1}, Vec3d{2, 2, 2}}}}};
   s.state.forces = {{0, 12, {1, 0, 0}}};
-  s.state.tool = Vec3d{0, 0, 1};
+  s.state.focus = Vec3d{0, 0, 1};
   s.state.topology_version = 3;
   s.reports.now.inversions = {1, 2, 3, 4, 0.5, 6, "liver", 7};
   s.reports.now.tools = {{{{1, 2, 3}, {4, 5, 6}, 0.25, 0.5, 7}, 1, 2, 3, 4, {{0, 1, 0}}, 5}};

@@ -72,6 +72,9 @@ struct SchemaKeys {
     const char* const pattern = "^(x?y?z?|x?z?y?|y?x?z?|y?z?x?|z?x?y?|z?y?x?)$";
     entry.update({{"type", "string"}, {"pattern", pattern}, {"minLength", 1}, {"default", axes_text(standard)}});
   }
+  static void add_kind(Json& entry, const Key& /*key*/, const std::string& /*standard*/) {
+    entry.update({{"type", "string"}, {"minLength", 1}});
+  }
   static void add_kind(Json& entry, const Key& key, const PerElement& /*standard*/) {
     Json number;
     add_kind(number, key, double{});
@@ -134,6 +137,7 @@ struct DocumentRows {
   static std::string allowed(const Key& /*key*/, const std::array<bool, 3>& /*standard*/) {
     return "one to three different letters of xyz";
   }
+  static std::string allowed(const Key& /*key*/, const std::string& /*standard*/) { return "a name"; }
   static std::string allowed(const Key& key, const PerElement& /*standard*/) {
     return allowed(key, double{}) + ", or `{\"field\": \"E\"}`";
   }

@@ -40,7 +40,7 @@ SceneSpec everything() {
   s.least_fill = 0.1;
   s.least_step = 0.2;
   s.break_stretch = 3;
-  s.tool_path = {{0, 0, 0.1, 0}, {1, 0.1, 0.1, 0}};
+  s.focus_path = {{0, 0, 0.1, 0}, {1, 0.1, 0.1, 0}};
   BladeSpec blade;
   blade.path = {{0, 0, -0.1, 0, 0, 0.1, 0}, {1, 0.2, -0.1, 0, 0.2, 0.1, 0}};
   blade.start = 0.1;
@@ -70,7 +70,7 @@ SceneSpec everything() {
   a.model.type = "hybrid";
   a.model.ratio = 0.4;
   a.model.seed = Vec3d{0, 0, 0.1};
-  a.model.follow_tool = true;
+  a.model.follow = "focus";
   a.model.substeps = 4;
   a.model.goals = "extrapolated";
   a.model.coupling = "one-sided";
@@ -89,7 +89,7 @@ const char* const file =
     R"({"format": "pliant-scene/1", "name": "everything", "dt": 1e-4,
         "gravity": {"acceleration": [0, -9.81, 0], "curve": "smooth", "start": 0.1, "duration": 0.3}, "safety": 0.8,
         "inverted": "stop", "least_fill": 0.1, "least_step": 0.2, "break_stretch": 3,
-  "tool": {"path": [[0, 0, 0.1, 0], [1, 0.1, 0.1, 0]]},
+  "focus": {"path": [[0, 0, 0.1, 0], [1, 0.1, 0.1, 0]]},
   "blades": [{"path": [[0, 0, -0.1, 0, 0, 0.1, 0], [1, 0.2, -0.1, 0, 0.2, 0.1, 0]], "start": 0.1}],
   "bodies": [{"name": "a", "surface": "a.obj", "lattice": {"spacing": 0.01}, "scale": 2, "translate": [1, 2, 3],
     "material": {"law": "yeoh", "c10": 500, "c20": 20, "c30": 3, "kappa": 50000, "hourglass": 0.5, "damping": 4},
@@ -101,7 +101,7 @@ const char* const file =
       "displacement": [0, 0, 0.1]}],
     "forces": [{"box": [[0, 0, 0], [1, 1, 1]], "force": [0, 0, 1], "table": [[0, 0], [1, 2]]}],
     "pressures": [{"all": true, "pressure": 100}],
-    "model": {"type": "hybrid", "ratio": 0.4, "seed": [0, 0, 0.1], "follow": "tool", "substeps": 4, "goals": "extrapolated",
+    "model": {"type": "hybrid", "ratio": 0.4, "seed": [0, 0, 0.1], "follow": "focus", "substeps": 4, "goals": "extrapolated",
       "coupling": "one-sided", "cut": false}},
    {"name": "b", "surface": "memory:0", "lattice": {"nodes": 2000}, "material": {"young": 3000, "poisson": 0.45},
     "velocity": [1, 0, 0]}],
@@ -226,7 +226,7 @@ const std::vector<Case> of_scenes{
        s.relaxation = RelaxationSpec{2, 10};
      },
      "scene: /relaxation/tolerance: got 2, expected a number"},
-    {[](SceneSpec& s) { s.tool_path.pop_back(), s.tool_path.pop_back(); }, "scene: /bodies/0/model/follow: got \"tool\""},
+    {[](SceneSpec& s) { s.focus_path.pop_back(), s.focus_path.pop_back(); }, "scene: /bodies/0/model/follow: got \"focus\""},
     {[](SceneSpec& s) { s.blades[0].path.pop_back(); }, "scene: /blades/0/path: got"},
     {[](SceneSpec& s) { s.blades[0].end = 0; }, "scene: /blades/0/end: got 0, expected a time after the start 0.1"},
     {[](SceneSpec& s) { s.bodies.clear(); }, "scene: /bodies: got [], expected a list of at least one body"},
@@ -275,7 +275,7 @@ const std::vector<Case> of_materials_and_entries{
     {[](SceneSpec& s) { s.bodies[0].model.width = 9; }, "scene: /bodies/0/model/width: got 9, expected a whole number from 1"},
     {[](SceneSpec& s) { s.bodies[0].model.beta = -1; }, "scene: /bodies/0/model/beta: got -1, expected \"auto\" or"},
     {[](SceneSpec& s) { s.bodies[0].model.goals = "hold"; }, "scene: /bodies/0/model/goals: got \"hold\", expected one of"},
-    {[](SceneSpec& s) { s.bodies[0].model.follow_tool = false, s.bodies[0].model.region = RegionSpec::all(); },
+    {[](SceneSpec& s) { s.bodies[0].model.follow.clear(), s.bodies[0].model.region = RegionSpec::all(); },
      "scene: /bodies/0/model/region: got the unknown key \"all\", expected one of box, sphere"},
     {[](SceneSpec& s) {
        s.bodies[0].model.region = RegionSpec::sphere({0, 0, 0}, 1);

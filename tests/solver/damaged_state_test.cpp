@@ -105,7 +105,7 @@ TEST(DamagedState, what_is_refused_is_named) {
   has(refusal([](RunState& s) { s.relaxation.u = {1, 2, 3}; }), "relax");
   has(refusal([](RunState& s) { s.clock.dt = 0; }), "step");
   has(refusal([](RunState& s) { s.kept->clock.step = -1; }), "step");
-  has(refusal([](RunState& s) { (*s.tool)[0] = INFINITY; }), "tool");
+  has(refusal([](RunState& s) { (*s.focus)[0] = INFINITY; }), "focus");
   has(refusal([](RunState& s) { s.pending.moves[0].to[0][1][2] = NAN; }), "blade");
 }
 

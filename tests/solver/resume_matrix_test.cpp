@@ -79,7 +79,7 @@ class ResumeMatrix : public ::testing::TestWithParam<Case> {
   }
   bool edited() const {
     return !scene_.blades.empty() || EditedBodies::tears(scene_) ||
-           std::any_of(scene_.bodies.begin(), scene_.bodies.end(), [](const Body& b) { return b.model.follow_tool; });
+           std::any_of(scene_.bodies.begin(), scene_.bodies.end(), [](const Body& b) { return !b.model.follow.empty(); });
   }
 
   /// Steps to take checkpoints at: around each event, between events, and off the grid of batches.

@@ -151,7 +151,7 @@ TEST(ResumeRefuses, WhatItDoesNotBelongTo) {
       {"least_step", with(R"("least_step": 0)")},
       {"break_stretch", with(R"("break_stretch": 0)")},
       {"curves", pressed_cube(0.01, R"("dt": 0.002,)", 3000, "neo-hookean", 0.3)},
-      {"tool", with(R"("tool": {"path": [[0, 0, 0.1, 0]]})")},
+      {"focus", with(R"("focus": {"path": [[0, 0, 0.1, 0]]})")},
   };
   for (const Other& other : others) {
     Simulation simulation(other.scene, open_backend("cpu"));

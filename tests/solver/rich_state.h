@@ -33,7 +33,7 @@ inline std::unique_ptr<Simulation> rich_simulation(const Scene& scene) {
   const auto reserved = std::find_if(forces.begin(), forces.end(), [](const NodeForce& force) { return force.reserved; });
   const auto& slots = s->model().bodies[0].slot;
   s->set_forces({{0, std::find(slots.begin(), slots.end(), reserved->slot) - slots.begin(), {0, 1e-3, 0}}});
-  s->set_tool({0.1, 0.2, 0.3});
+  s->set_focus({0.1, 0.2, 0.3});
   while (s->step() % 3 == 0) s->advance(1);
   const BladePose first{"knife", {Vec3d{0.041, 0.05, -1}, Vec3d{0.041, 0.05, 1}}};
   const BladePose second{"knife", {Vec3d{0.041, 0.02, -1}, Vec3d{0.041, 0.02, 1}}};

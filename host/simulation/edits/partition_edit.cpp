@@ -1,16 +1,19 @@
-// Edits that change how a body is modelled and leave its elements alone: the operational region that follows the tool, and
+// Edits that change how a body is modelled and leave its elements alone: operational regions that follow something, and
 // hybrids that go on with fewer substeps. Every node keeps its position and momentum.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "geometry/vec.h"
 #include "model/matching/partition.h"
 #include "pliant/error.h"
+#include "simulation/contact/tool_changes.h"
 #include "simulation/edits/model_swap.h"
 #include "simulation/edits/topology_edits.h"
 #include "simulation/recovery/limits.h"
@@ -20,18 +23,74 @@ namespace {
 
 double distance(const Vec3d& a, const Vec3d& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
-/// The rest position of the node that is nearest to a point now.
-Vec3d nearest_at_rest(const ModelBody& body, const std::vector<Vec3d>& u, const Vec3d& point) {
+/// From a point to a segment [m].
+double distance(const Vec3d& x, const BladeSegment& s) {
+  const Vec3d along = vec::sub(s[1], s[0]);
+  const double square = vec::dot(along, along);
+  if (!(square > 0)) return distance(x, s[0]);
+  const double t = std::clamp(vec::dot(vec::sub(x, s[0]), along) / square, 0.0, 1.0);
+  return distance(x, vec::add(s[0], vec::mul(along, t)));
+}
+
+/// The node that is nearest to a point now.
+std::size_t nearest(const ModelBody& body, const std::vector<Vec3d>& u, const BladeSegment& place) {
   std::size_t best = 0;
   double least = -1;
   for (std::size_t n = 0; n < body.rest.size(); ++n) {
-    const Vec3d& x = body.rest[n];
-    const double d = distance(vec::add(x, u[n]), point);
+    const double d = distance(vec::add(body.rest[n], u[n]), place);
     if (least >= 0 && !(d < least)) continue;
     least = d;
     best = n;
   }
-  return body.rest[best];
+  return best;
+}
+
+/// The rest position of the material that is nearest to a segment now: many nodes are about as near to one that passes through,
+/// and the one in their middle does not jump along it when it moves.
+Vec3d nearest_at_rest(const ModelBody& body, const std::vector<Vec3d>& u, const BladeSegment& place) {
+  const std::size_t best = nearest(body, u, place);
+  if (place[0] == place[1]) return body.rest[best];
+  const double reach = distance(vec::add(body.rest[best], u[best]), place) + body.spacing;
+  Vec3d sum{};
+  double count = 0;
+  for (std::size_t n = 0; n < body.rest.size(); ++n) {
+    const Vec3d x = vec::add(body.rest[n], u[n]);
+    if (!(distance(x, place) <= reach)) continue;
+    sum = vec::add(sum, x);
+    ++count;
+  }
+  const Vec3d middle = vec::mul(sum, 1 / count);
+  return body.rest[nearest(body, u, {middle, middle})];
+}
+
+/// Where the named thing is now, as a segment or a point; nothing while it is nowhere.
+std::optional<BladeSegment> place_of(const RunContext& run, const std::string& name) {
+  const RunState& state = run.state;
+  const double now = state.clock.time();
+  if (name == kFocus) {
+    const Vec3d x = state.focus.value_or(run.scene.focus.position(now));
+    return BladeSegment{x, x};
+  }
+  if (name.starts_with(kHostBlade)) {
+    const auto found = state.blades.placed.find(name.substr(std::string_view(kHostBlade).size()));
+    if (found == state.blades.placed.end()) return {};
+    return found->second;
+  }
+  for (const Blade& blade : run.scene.blades) {
+    if (blade.name == name) return blade.at(now);
+  }
+  const std::vector<ContactTool> tools = present_tools(run.scene, state.tools);
+  for (std::size_t t = 0; t < tools.size(); ++t) {
+    if (tools[t].name != name) continue;
+    const Pose pose = tool_pose(tools[t], state, now);
+    const ToolForm& form = (*run.model().tools)[t];
+    if (form.shape == ToolShape::capsule) return BladeSegment{place(pose, form.first), place(pose, form.second)};
+    Vec3d middle{};  // of the box around a mesh
+    for (std::size_t c = 0; c < 3 && form.spacing > 0; ++c)
+      middle[c] = form.origin[c] + 0.5 * form.spacing * (form.size[c] - 1);
+    return BladeSegment{place(pose, middle), place(pose, middle)};
+  }
+  return {};
 }
 
 /// Shape matching and finite elements have different forces for the same large strain, and the first even folds: a cell that
@@ -84,23 +143,27 @@ MovedRegion TopologyEdits::region_at(std::size_t b, const Vec3d& seed, const std
   return region;
 }
 
-/// A region moves when the material under the tool is more than a cell from its seed, and only between steps of shape matching.
+/// A region moves when the material that is nearest to what it follows is more than a cell from its seed, and only between
+/// steps of shape matching.
 void TopologyEdits::move_regions() {
   const auto& bodies_of_scene = run_.scene.bodies;
-  if (std::none_of(bodies_of_scene.begin(), bodies_of_scene.end(), [](const Body& b) { return b.model.follow_tool; })) return;
+  if (std::none_of(bodies_of_scene.begin(), bodies_of_scene.end(), [](const Body& b) { return !b.model.follow.empty(); }))
+    return;
   if (run_.phase() != 0) return;
   const RunState& state = run_.state;
-  const Vec3d tool = state.tool.value_or(run_.scene.tool.position(state.clock.time()));
   std::vector<double> u = run_.u();
   const bool first = state.regions.empty();
   std::vector<std::pair<std::size_t, MovedRegion>> found;
   bool moved = false;
   for (std::size_t b = 0; b < bodies_of_scene.size(); ++b) {
     const DeformationModel& model = bodies_of_scene[b].model;
-    if (!model.follow_tool) continue;
+    if (model.follow.empty()) continue;
+    const std::optional<BladeSegment> place = place_of(run_, model.follow);
     const std::vector<Vec3d> of_body = run_.loaded.pick(u, b, 1);
-    const Vec3d now = nearest_at_rest(run_.model().bodies[b], of_body, tool);
     const std::optional<Vec3d> seed = first ? model.seed : state.regions[b].seed;
+    // Before it is anywhere, the region stays, or begins in the middle.
+    if (!place && (first || !seed)) continue;
+    const Vec3d now = place ? nearest_at_rest(run_.model().bodies[b], of_body, *place) : *seed;
     const bool moves = !seed || distance(now, *seed) > run_.model().bodies[b].spacing;
     const bool again = !first && state.regions[b].waits && run_.begins_after(state.clock.step, kWaitSteps);
     if (!first && !moves && !again) continue;

@@ -55,7 +55,7 @@ bool belongs(const BladeTrace& front, const CutMesh& mesh) {
 }
 
 bool follows(const Scene& scene) {
-  return std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& b) { return b.model.follow_tool; });
+  return std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& b) { return !b.model.follow.empty(); });
 }
 
 }  // namespace
@@ -130,7 +130,7 @@ Scene TopologyEdits::scene_at(const RunState& state) const {
   scene.cuttable = scene.cuttable || !state.cuts.empty();
   if (!state.tools.empty()) scene.tools = present_tools(run_.scene, state.tools);
   for (std::size_t b = 0; b < scene.bodies.size() && !state.regions.empty(); ++b) {
-    if (scene.bodies[b].model.follow_tool) scene.bodies[b].model.cells = state.regions[b].cells;
+    if (!scene.bodies[b].model.follow.empty()) scene.bodies[b].model.cells = state.regions[b].cells;
   }
   for (Body& body : scene.bodies) {
     DeformationModel& m = body.model;

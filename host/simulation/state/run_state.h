@@ -26,7 +26,8 @@ struct RunState {
   std::vector<HostForce> forces;
   std::vector<double> offset;        ///< [slots][3] of the displacement, what node_u leaves out (drift.h) [m]; empty: nothing
   std::vector<NodeInertia> ballast;  ///< what elements got so that they stand the step (model/nodes/ballast.h)
-  std::optional<Vec3d> tool;         ///< where the host put the tool [m]; nothing: on its path
+  std::optional<Vec3d>
+      focus;  ///< where the host put the focus [m]; nothing: on its path. "tool" in checkpoints and deep hashes
   std::map<std::string, ToolDrive> driven;  ///< tools that the host has driven off their paths
   ContactLook look;
   std::int64_t opened = 0;            ///< edges that parted because they were stretched too far
@@ -41,7 +42,7 @@ void visit(V& v, RunState& s) {
   v("clock", s.clock), v("limit", s.limit), v("relaxation", s.relaxation), v("kept", s.kept), v("cuts", s.cuts);
   v("tears", s.tears), v("regions", s.regions), v("most_substeps", s.most_substeps), v("blades", s.blades),
       v("pending", s.pending), v("forces", s.forces);
-  v("offset", s.offset), v("ballast", s.ballast), v("tool", s.tool), v("driven", s.driven), v("look", s.look),
+  v("offset", s.offset), v("ballast", s.ballast), v("tool", s.focus), v("driven", s.driven), v("look", s.look),
       v("opened", s.opened), v("topology_version", s.topology_version);
   v.last("tools", s.tools);
 }

@@ -91,8 +91,11 @@ std::vector<ModelPart> parts_of(const Scene& scene, const RunSettings& settings,
   add(scene.break_stretch, static_cast<double>(scene.cuttable));
   part("blades");
   for (const Blade& blade : scene.blades) add(blade.name, blade.start, blade.end, blade.path);
-  part("tool");
-  add(scene.tool.path);
+  part("focus");
+  add(scene.focus.path);
+  for (const Body& body : scene.bodies) {
+    if (!body.model.follow.empty() && body.model.follow != kFocus) add(body.model.follow);
+  }
   part("tools");
   for (const ContactTool& tool : scene.tools) add(tool.name, tool.path);
   part("what the solver derives from the scene");
@@ -110,7 +113,7 @@ std::vector<ModelPart> parts_of(const Scene& scene, const RunSettings& settings,
 std::uint64_t hash_of(const std::vector<ModelPart>& parts) {
   Hash hash;
   for (const ModelPart& part : parts) {
-    hash.add(part.name);
+    hash.add(part.name == "focus" ? std::string("tool") : part.name);  // as it was called first: hashes last longer than names
     hash.add(&part.hash, sizeof part.hash);
   }
   return hash.value;
@@ -186,7 +189,7 @@ void check_state(const RunState& state, const Model& model, const Scene& scene) 
   for (const HostForce& f : state.forces) {
     need(f.body < model.bodies.size() && f.node >= 0 && vec::finite(f.force), "a force of the host");
   }
-  need(!state.tool || vec::finite(*state.tool), "the tool is not finite");
+  need(!state.focus || vec::finite(*state.focus), "the focus is not finite");
   const std::vector<ContactTool> tools = known_tools(scene, state.tools);
   for (const auto& driven : state.driven) {
     const ToolDrive& drive = driven.second;

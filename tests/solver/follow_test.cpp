@@ -15,11 +15,11 @@ namespace {
 
 /// A free bar 0.2 m long that bends and turns while the tool goes along it.
 Scene followed_bar(int substeps) {
-  const std::string text = R"({"format": "pliant-scene/1", "tool": {"path": [[0, -0.08, 0, 0], [0.2, 0.08, 0, 0]]},
+  const std::string text = R"({"format": "pliant-scene/1", "focus": {"path": [[0, -0.08, 0, 0], [0.2, 0.08, 0, 0]]},
     "bodies": [{"name": "bar", "surface": "meshes/cylinder.obj", "lattice": {"spacing": 0.01}, "element": "hex8",
       "material": {"law": "neo-hookean", "young": 3000, "poisson": 0.4, "density": 1000},
       "velocity": [0.1, 0, 0], "angular_velocity": [0, 2, 1],
-      "model": {"type": "hybrid", "ratio": 0.3, "follow": "tool", "goals": "extrapolated", "substeps": )" +
+      "model": {"type": "hybrid", "ratio": 0.3, "follow": "focus", "goals": "extrapolated", "substeps": )" +
                            std::to_string(substeps) + R"(}}]})";
   return parse_scene(text, test::source_dir() + "/scenes/followed_bar.json");
 }
@@ -33,7 +33,7 @@ Vec3d momentum(const Simulation& sim) {
   return p;
 }
 
-TEST(FollowTool, NothingJumpsWhenTheRegionMoves) {
+TEST(Follow, NothingJumpsWhenTheRegionMoves) {
   for (const int substeps : {1, 2}) {
     Simulation sim(followed_bar(substeps), open_backend("cpu"));
     int moves = 0;
@@ -70,15 +70,15 @@ TEST(FollowTool, NothingJumpsWhenTheRegionMoves) {
 
 /// The region begins in the left end; the tool stands where the right one ends, which is stretched to twice its length.
 Scene stretched_bar() {
-  return parse_scene(R"({"format": "pliant-scene/1", "tool": {"path": [[0, 0.2, 0, 0]]},
+  return parse_scene(R"({"format": "pliant-scene/1", "focus": {"path": [[0, 0.2, 0, 0]]},
     "bodies": [{"name": "bar", "surface": "meshes/cylinder.obj", "lattice": {"spacing": 0.01}, "element": "hex8",
       "material": {"law": "neo-hookean", "young": 3000, "poisson": 0.4, "density": 1000, "damping": 30},
       "initial": [{"box": [[0, -1, -1], [1, 1, 1]], "displacement": {"linear": [[1, 0, 0], [0, 0, 0], [0, 0, 0]]}}],
-      "model": {"type": "hybrid", "ratio": 0.3, "seed": [-0.1, 0, 0], "follow": "tool"}}]})",
+      "model": {"type": "hybrid", "ratio": 0.3, "seed": [-0.1, 0, 0], "follow": "focus"}}]})",
                      test::source_dir() + "/scenes/stretched_bar.json");
 }
 
-TEST(FollowTool, CellsThatAreStretchedFarKeepTheirModelUntilTheyAreNot) {
+TEST(Follow, CellsThatAreStretchedFarKeepTheirModelUntilTheyAreNot) {
   Simulation sim(stretched_bar(), open_backend("cpu"));
   const auto share = [&] {
     const ModelBody& body = sim.model().bodies[0];
@@ -94,7 +94,7 @@ TEST(FollowTool, CellsThatAreStretchedFarKeepTheirModelUntilTheyAreNot) {
   EXPECT_NEAR(share(), 0.3, 0.02) << "nothing is stretched any more";
 }
 
-TEST(FollowTool, BothBackendsMoveItAlike) {
+TEST(Follow, BothBackendsMoveItAlike) {
   if (!has_opencl()) GTEST_SKIP() << "no OpenCL device";
   const Scene scene = followed_bar(2);
   Simulation a(scene, open_backend("cpu")), b(scene, a.shared_model(), open_backend("opencl:0"));
@@ -106,7 +106,7 @@ TEST(FollowTool, BothBackendsMoveItAlike) {
   EXPECT_NE(a.shared_model(), first) << "the region must have moved";
 }
 
-TEST(FollowTool, AResumedRunGivesTheSameBits) {
+TEST(Follow, AResumedRunGivesTheSameBits) {
   const test::TempFolder folder;
   const auto file = folder.path() / "bar.pckpt";
   Simulation whole(followed_bar(1), open_backend("cpu"));
@@ -118,6 +118,67 @@ TEST(FollowTool, AResumedRunGivesTheSameBits) {
   resumed.advance(150);
   EXPECT_EQ(resumed.hash(), whole.hash());
   EXPECT_EQ(resumed.step(), whole.step());
+}
+
+/// A bar that is cut by a blade, or pressed by a tool, that its region follows.
+Scene instrumented_bar(const std::string& follow, const std::string& instruments) {
+  return parse_scene(R"({"format": "pliant-scene/1", )" + instruments + R"(
+    "bodies": [{"name": "bar", "surface": "meshes/cylinder.obj", "lattice": {"spacing": 0.01}, "element": "hex8",
+      "material": {"law": "neo-hookean", "young": 3000, "poisson": 0.4, "density": 1000, "damping": 20},
+      "fixed": [{"plane": [[0, -0.045, 0], [0, -1, 0]]}, {"plane": [[0, 0.045, 0], [0, 1, 0]]}],
+      "model": {"type": "hybrid", "ratio": 0.3, "seed": [0, -0.04, 0], "follow": ")" +
+                         follow + R"("}}]})",
+                     test::source_dir() + "/scenes/instrumented_bar.json");
+}
+const char* const kScalpel = R"("blades": [{"name": "scalpel",
+  "path": [[0, 0.03, -0.04, -0.05, 0.03, -0.04, 0.05], [1.6, 0.005, 0.04, -0.05, 0.005, 0.04, 0.05]]}],)";
+const char* const kRod =
+    R"("contact": true, "tools": [{"name": "rod", "shape": {"capsule": [[0, 0, -0.05], [0, 0, 0.05], 0.005]},
+  "path": [[0, 0.03, -0.04, 0], [0.3, 0.022, -0.04, 0], [1.9, 0.022, 0.04, 0]]}],)";
+
+/// Where the finite elements are along the bar [m].
+double middle_of_region(const Simulation& sim) { return sim.state().regions.at(0).seed[1]; }
+
+TEST(Follow, TheRegionGoesWithABladeAToolAndABladeOfTheHost) {
+  Simulation cut(instrumented_bar("scalpel", kScalpel), open_backend("cpu"));
+  for (const double at : {0.8, 1.4}) {
+    while (cut.time() < at) cut.advance(cut.next_batch(64));
+    EXPECT_NEAR(middle_of_region(cut), -0.04 + 0.05 * cut.time(), 0.025);
+  }
+  EXPECT_FALSE(cut.state().cuts.empty());
+  Simulation pressed(instrumented_bar("rod", kRod), open_backend("cpu"));
+  while (pressed.time() < 1.5) pressed.advance(pressed.next_batch(64));
+  EXPECT_NEAR(middle_of_region(pressed), -0.04 + 0.05 * (pressed.time() - 0.3), 0.025);
+  Simulation host(instrumented_bar("host/knife", ""), open_backend("cpu"));
+  host.advance(host.next_batch(64));
+  EXPECT_TRUE(host.state().regions.empty()) << "there is no knife yet";
+  for (int k = 0; k <= 10; ++k) {
+    const double y = -0.04 + 0.008 * k;
+    host.move_blade("knife", {Vec3d{0.015, y, -0.05}, Vec3d{0.015, y, 0.05}});
+    for (int i = 0; i < 2; ++i) host.advance(host.next_batch(64));
+  }
+  EXPECT_NEAR(middle_of_region(host), 0.04, 0.02);
+}
+
+TEST(Follow, ACutThatTheRegionFollowsIsTheSameOnBothBackendsAndAfterAResume) {
+  for (const auto& [follow, instruments] : {std::pair("scalpel", kScalpel), std::pair("rod", kRod)}) {
+    const Scene scene = instrumented_bar(follow, instruments);
+    const test::TempFolder folder;
+    const auto file = folder.path() / "bar.pckpt";
+    Simulation whole(scene, open_backend("cpu"));
+    whole.advance(150);
+    write_checkpoint(file, take_checkpoint(whole));
+    whole.advance(150);
+    Simulation resumed(scene, open_backend("cpu"));
+    restore_checkpoint(resumed, read_checkpoint(file), file);
+    resumed.advance(150);
+    EXPECT_EQ(resumed.hash(), whole.hash()) << follow;
+    if (!has_opencl()) continue;
+    Simulation a(scene, open_backend("cpu")), b(scene, a.shared_model(), open_backend("opencl:0"));
+    CompareOptions options;
+    options.steps = 300;
+    EXPECT_TRUE(compare(a, b, options).identical) << follow;
+  }
 }
 
 }  // namespace

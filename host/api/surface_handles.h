@@ -1,4 +1,5 @@
-// What a user does to the surface between two batches: grabs on springs, pushes, and the place that operational regions follow.
+// What a user does to the surface between two batches: grabs on springs, pushes, and the focus that operational regions can
+// follow.
 #pragma once
 #include <compare>
 #include <map>
@@ -26,11 +27,11 @@ struct SurfaceVertex {
   auto operator<=>(const SurfaceVertex&) const = default;
 };
 
-/// The caller's thread changes the tools, the thread that steps reads them at the start of a batch; neither waits for the other
-/// longer than it takes to copy a few numbers.
-class Tools {
+/// The caller's thread changes the handles, the thread that steps reads them at the start of a batch; neither waits for the
+/// other longer than it takes to copy a few numbers.
+class SurfaceHandles {
  public:
-  Tools(std::shared_ptr<const Model> model, const Scene& scene);
+  SurfaceHandles(std::shared_ptr<const Model> model, const Scene& scene);
 
   /// The simulation has another model now: a cut divided cells, or an operational region moved. What holds on to the surface
   /// goes on with the nodes that move it there.
@@ -41,9 +42,9 @@ class Tools {
   void release(GrabId id);
   void push(const SurfaceVertex& vertex, const Vec3d& force);
   void push_node(std::size_t body, std::int64_t node, const Vec3d& force);
-  void move_tool(const Vec3d& position);
+  void move_focus(const Vec3d& position);
   void clear();
-  /// The simulation is another one: its forces are these tools' to set.
+  /// The simulation is another one: its forces are these handles' to set.
   void renew();
 
   /// Bring the simulation's forces up to date, at the start of a batch; how many steps the batch may have.
@@ -82,7 +83,7 @@ class Tools {
   std::map<GrabId, Grab> grabs_;
   std::map<SurfaceVertex, Vec3d> pushes_;
   std::map<std::pair<std::size_t, std::int64_t>, Vec3d> node_pushes_;
-  std::optional<Vec3d> tool_;
+  std::optional<Vec3d> focus_;
   bool changed_ = false;
   std::map<GrabId, Pull> pulls_;  ///< of the stepping thread alone
 };

@@ -1,4 +1,4 @@
-// What a scene has beside its bodies: tools, blades, and the place from which pictures are taken.
+// What a scene has apart from its bodies and rigid tools: blades, the focus, and the place from which pictures are taken.
 #pragma once
 #include <array>
 #include <limits>
@@ -10,8 +10,13 @@
 
 namespace pliant {
 
-/// A tool on a prescribed path: what a moving operational region follows.
-struct Tool {
+/// The name of the focus in "follow".
+inline constexpr const char* kFocus = "focus";
+/// What the name of a blade that a program moves begins with in "follow".
+inline constexpr const char* kHostBlade = "host/";
+
+/// A point on a prescribed path, which operational regions can follow.
+struct Focus {
   std::vector<std::array<double, 4>> path;  ///< (time [s], x, y, z [m]), times ascending, linear in between, held outside
   [[nodiscard]] Vec3d position(double time) const;
 };

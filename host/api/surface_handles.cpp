@@ -1,4 +1,4 @@
-#include "api/tools.h"
+#include "api/surface_handles.h"
 
 #include <fmt/format.h>
 
@@ -27,12 +27,12 @@ double edge_of(const ModelBody& body) {
 
 }  // namespace
 
-Tools::Tools(std::shared_ptr<const Model> model, const Scene& scene) {
+SurfaceHandles::SurfaceHandles(std::shared_ptr<const Model> model, const Scene& scene) {
   for (const Body& b : scene.bodies) materials_.push_back(b.material);
   set_model(std::move(model));
 }
 
-void Tools::set_model(std::shared_ptr<const Model> model) {
+void SurfaceHandles::set_model(std::shared_ptr<const Model> model) {
   model_ = std::move(model);
   node_of_.assign(static_cast<std::size_t>(model_->slots), {});
   for (std::size_t b = 0; b < model_->bodies.size(); ++b) {
@@ -43,7 +43,7 @@ void Tools::set_model(std::shared_ptr<const Model> model) {
   }
 }
 
-void Tools::follow(std::shared_ptr<const Model> model) {
+void SurfaceHandles::follow(std::shared_ptr<const Model> model) {
   const std::lock_guard lock(mutex_);
   if (model == model_) return;
   set_model(std::move(model));
@@ -57,16 +57,16 @@ void Tools::follow(std::shared_ptr<const Model> model) {
   changed_ = changed_ || !pushes_.empty() || !node_pushes_.empty();
 }
 
-bool Tools::has(const SurfaceVertex& vertex) const {
+bool SurfaceHandles::has(const SurfaceVertex& vertex) const {
   return vertex.body < model_->bodies.size() && vertex.local >= 0 && vertex.local < model_->bodies[vertex.body].vertices;
 }
 
-void Tools::check_vertex(const SurfaceVertex& vertex) const {
+void SurfaceHandles::check_vertex(const SurfaceVertex& vertex) const {
   if (has(vertex)) return;
   throw Error(ErrorCode::usage, fmt::format("there is no vertex {} of body {} any more", vertex.local, vertex.body));
 }
 
-std::vector<NodeShare> Tools::nodes_of(const SurfaceVertex& vertex) const {
+std::vector<NodeShare> SurfaceHandles::nodes_of(const SurfaceVertex& vertex) const {
   std::vector<NodeShare> nodes;
   const auto v = static_cast<std::size_t>(model_->bodies[vertex.body].first_vertex + vertex.local);
   for (std::size_t a = 0; a < 8; ++a) {
@@ -78,7 +78,7 @@ std::vector<NodeShare> Tools::nodes_of(const SurfaceVertex& vertex) const {
 }
 
 /// Find the nodes of a grab. Only those with a reserved force can be held: those that move the surface.
-void Tools::hold(Grab& g) const {
+void SurfaceHandles::hold(Grab& g) const {
   const std::size_t b = g.vertex.body;
   const ModelBody& body = model_->bodies[b];
   g.point = nodes_of(g.vertex);
@@ -103,7 +103,7 @@ void Tools::hold(Grab& g) const {
   g.max_force = g.options.max_force > 0 ? g.options.max_force : kStrain * young * r * r;
 }
 
-GrabId Tools::grab(const SurfaceVertex& vertex, const GrabOptions& options) {
+GrabId SurfaceHandles::grab(const SurfaceVertex& vertex, const GrabOptions& options) {
   if (!(options.radius >= 0 && options.stiffness >= 0 && options.max_force >= 0)) {
     throw Error(ErrorCode::usage, "radius, stiffness and max_force of a grab must be 0 or more");
   }
@@ -117,7 +117,7 @@ GrabId Tools::grab(const SurfaceVertex& vertex, const GrabOptions& options) {
   return last_id_;
 }
 
-void Tools::move(GrabId id, const Vec3d& target) {
+void SurfaceHandles::move(GrabId id, const Vec3d& target) {
   for (const double x : target) {
     if (!std::isfinite(x)) throw Error(ErrorCode::usage, fmt::format("the target of a grab has the coordinate {}", x));
   }
@@ -127,13 +127,13 @@ void Tools::move(GrabId id, const Vec3d& target) {
   found->second.target = target;
 }
 
-void Tools::release(GrabId id) {
+void SurfaceHandles::release(GrabId id) {
   const std::lock_guard lock(mutex_);
   if (grabs_.erase(id) == 0) throw Error(ErrorCode::usage, fmt::format("there is no grab {}", id));
   changed_ = true;
 }
 
-void Tools::push(const SurfaceVertex& vertex, const Vec3d& force) {
+void SurfaceHandles::push(const SurfaceVertex& vertex, const Vec3d& force) {
   for (const double x : force) {
     if (!std::isfinite(x)) {
       throw Error(ErrorCode::usage,
@@ -147,7 +147,7 @@ void Tools::push(const SurfaceVertex& vertex, const Vec3d& force) {
   changed_ = true;
 }
 
-void Tools::push_node(std::size_t body, std::int64_t node, const Vec3d& force) {
+void SurfaceHandles::push_node(std::size_t body, std::int64_t node, const Vec3d& force) {
   const std::lock_guard lock(mutex_);
   if (body >= model_->bodies.size() || node < 0 || node >= static_cast<std::int64_t>(model_->bodies[body].slot.size())) {
     throw Error(ErrorCode::usage, fmt::format("there is no node {} of body {}", node, body));
@@ -165,26 +165,26 @@ void Tools::push_node(std::size_t body, std::int64_t node, const Vec3d& force) {
   changed_ = true;
 }
 
-void Tools::move_tool(const Vec3d& position) {
+void SurfaceHandles::move_focus(const Vec3d& position) {
   for (const double x : position) {
     if (!std::isfinite(x)) throw Error(ErrorCode::usage, fmt::format("the position of the tool has the coordinate {}", x));
   }
   const std::lock_guard lock(mutex_);
-  tool_ = position;
+  focus_ = position;
 }
 
-void Tools::clear() {
+void SurfaceHandles::clear() {
   const std::lock_guard lock(mutex_);
   grabs_.clear();
   pushes_.clear();
   node_pushes_.clear();
-  tool_.reset();
+  focus_.reset();
   changed_ = true;
 }
 
 /// Spring and damper on the vertex, and a part that grows until the vertex is where it should be. `period` is the time until
 /// the next look [s]: the gains stay where an explicit step of a free patch is stable.
-Vec3d Tools::pull(const Grab& grab, Pull& state, const Vec3d& position, double time, double period) const {
+Vec3d SurfaceHandles::pull(const Grab& grab, Pull& state, const Vec3d& position, double time, double period) const {
   const double k = std::min(grab.stiffness, kFree * grab.mass / (period * period));
   const double c = std::min(2 * std::sqrt(k * grab.mass), kFree * grab.mass / period);
   const double elapsed = time - state.time;
@@ -201,19 +201,19 @@ Vec3d Tools::pull(const Grab& grab, Pull& state, const Vec3d& position, double t
   return limited(force, grab.max_force);
 }
 
-void Tools::renew() {
+void SurfaceHandles::renew() {
   const std::lock_guard lock(mutex_);
   changed_ = true;
 }
 
-std::int32_t Tools::apply(Simulation& simulation) {
+std::int32_t SurfaceHandles::apply(Simulation& simulation) {
   follow(simulation.shared_model());
   std::map<GrabId, Grab> grabs;
   std::vector<HostForce> forces;
   {
     const std::lock_guard lock(mutex_);
-    if (tool_) simulation.set_tool(*tool_);
-    tool_.reset();
+    if (focus_) simulation.set_focus(*focus_);
+    focus_.reset();
     if (grabs_.empty() && !changed_) return kAnySteps;
     changed_ = false;
     grabs = grabs_;
