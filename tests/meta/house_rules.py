@@ -144,13 +144,14 @@ def check_words(tree):
     words = [line for line in tree.lines(listed) if line and not line.startswith("#")]
     if not words:
         return
-    flags = re.I | re.A
-    any_word = re.compile("|".join(words), flags)
-    each_word = [(word, re.compile(rf"(?<!\w)(?:{word})(?!\w)", flags)) for word in words]
+    # Small letters in both: re.I takes six times as long.
+    small = [re.sub(r"\\.|[A-Z]+", lambda m: m[0] if m[0][0] == "\\" else m[0].lower(), word) for word in words]
+    any_word = re.compile("|".join(small), re.A)
+    each_word = [(word, re.compile(rf"(?<!\w)(?:{pattern})(?!\w)", re.A)) for word, pattern in zip(words, small)]
     for file in tree.tracked:
         if file == listed or file.startswith(META + "house_rules_test"):
             continue
-        text = tree.text(file)
+        text = tree.text(file).lower()
         if not any_word.search(text):
             continue
         for number, line in enumerate(text.split("\n"), 1):
