@@ -125,6 +125,15 @@ def count_case(case):
     return Counts(1, int(skipped), int(not passed and not skipped))
 
 
+MOST_LINES = 200  # of one failure, since a check in a loop may fail a thousand times
+
+
+def shortened(lines):
+    left_out = len(lines) - MOST_LINES
+    half = MOST_LINES // 2
+    return lines if left_out <= 0 else [*lines[:half], f"... {left_out} lines: the .log of this stage in build/log has them ...", *lines[-half:]]
+
+
 def only_failures(text):
     """The output of a test without what passed inside an executable of GoogleTest."""
     kept, case = [], None  # `case`: the lines of one that has not ended
@@ -136,11 +145,11 @@ def only_failures(text):
         elif case:
             case.append(line)
             if line.startswith("[  FAILED  ]"):
-                kept += case
+                kept += shortened(case)
                 case = None
         elif line and not re.match(r"\[(----------|==========|  PASSED  |  SKIPPED )\]", line):
             kept.append(line)
-    return kept + (case or [])  # it died in this case
+    return (kept if case or "[ RUN" in text else shortened(kept)) + shortened(case or [])  # it died in the last one
 
 
 def run_ctest(folder, log, arguments, environment):

@@ -32,7 +32,7 @@ node_test.cpp:7: Failure
 """
 WELL = "[==========] 3 tests from 2 test suites ran. (3 ms total)\n[  PASSED  ] 2 tests.\n[  SKIPPED ] 1 test, listed below:\n"
 GOOD = [("whole", "much\n" * 3000 + WELL, "exit 0"), ("script", "hidden\n", "exit 0"), ("left_out", "no device\n", "exit 77")]
-BAD = [("cases", GOOGLE_TEST.format(long="much\n" * 3000), "exit 1"), ("bad_script", "2 is not 3 <&> \033[31m\n", "exit 1"),
+BAD = [("cases", GOOGLE_TEST.format(long="much\n" * 3000), "exit 1"), ("bad_script", "2 is not 3 <&> \033[31m\n" + "more\n" * 1000, "exit 1"),
        ("dead", "[ RUN      ] Node.quiet\n[       OK ] Node.quiet (0 ms)\n[ RUN      ] Node.last\nits last words\n", "kill -SEGV $$")]
 BAD_OUTPUT = ["node_test.cpp:7: Failure", "[ RUN      ] Node.breaks", "2 is not 3 <&>", "its last words", "dead (SEGFAULT)", "gone (Not Run)",
               "--- cases", "--- bad_script"]
@@ -71,6 +71,7 @@ def main():
             check(line in text, f"not printed: {line}", text)
         for line in GOOD_OUTPUT:
             check(line not in text, f"printed: {line}", text)
+        check(text.count("more") < 300 and "lines: the .log of this stage" in text, text)
         well, counts, text = run_tests(folder, [])  # no test at all is a failure
         check(not well and counts == (0, 0, 0) and "No tests were found" in text, well, counts, text)
 
