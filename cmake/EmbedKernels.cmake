@@ -1,5 +1,5 @@
-# Turn kernels/*.cl and kernels/*.h into one C++ file of string literals, so that no path is needed at run time.
-file(GLOB kernel_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/kernels/*.cl ${CMAKE_SOURCE_DIR}/kernels/*.h)
+# Turn the files of kernels/ into one C++ file of string literals, so that no path is needed at run time.
+file(GLOB_RECURSE kernel_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/kernels/*.cl ${CMAKE_SOURCE_DIR}/kernels/*.h)
 list(APPEND kernel_files ${PLIANT_GENERATED}/kernels/laws.cl ${PLIANT_GENERATED}/kernels/integrators.cl)
 set(PLIANT_KERNEL_TEXT ${CMAKE_BINARY_DIR}/generated/kernel_text.cpp)
 add_custom_command(

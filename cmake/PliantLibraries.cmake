@@ -25,7 +25,7 @@ pliant_headers(pliant_command_headers pliant_flags fmt::fmt Eigen3::Eigen nlohma
 set(shareable POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
 set_target_properties(pliant_room_headers PROPERTIES ${shareable})
 
-# Of each library in rooms.txt: folders_LIBRARY and links_LIBRARY, other libraries. A name in brackets is not linked by its row.
+# Of each row in rooms.txt: folder_LIBRARY, and links_LIBRARY, the libraries of the rooms that it names outside brackets.
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/cmake/rooms.txt)
 file(STRINGS ${CMAKE_SOURCE_DIR}/cmake/rooms.txt rows REGEX "^[^#]")
 list(TRANSFORM rows REPLACE "[(][^)]*[)]" "")
@@ -36,21 +36,18 @@ endforeach()
 foreach(row IN LISTS rows)
   separate_arguments(inner UNIX_COMMAND "${row}")
   list(POP_FRONT inner library folder)
-  list(APPEND folders_${library} ${folder})
+  set(folder_${library} ${folder})
   foreach(room IN LISTS inner)
     if(NOT DEFINED library_${room})
       message(FATAL_ERROR "cmake/rooms.txt: ${folder} may include ${room}, which has no row")
-    elseif(NOT library_${room} STREQUAL library)
-      list(APPEND links_${library} ${library_${room}})
     endif()
+    list(APPEND links_${library} ${library_${room}})
   endforeach()
 endforeach()
 
-# pliant_room(LIBRARY LINKS...): the .cpp files of the library's folders in rooms.txt and of their shelves (subfolders). LINKS come from
-# outside.
+# pliant_room(LIBRARY LINKS...): the .cpp files of its folder in rooms.txt and of the shelves (subfolders) there. LINKS come from outside.
 function(pliant_room name)
-  list(TRANSFORM folders_${name} REPLACE "(.+)" "${CMAKE_SOURCE_DIR}/\\1/*.cpp" OUTPUT_VARIABLE patterns)
-  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${patterns})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${folder_${name}}/*.cpp)
   add_library(${name} STATIC ${sources})
   target_link_libraries(${name} PUBLIC pliant_flags ${links_${name}} ${ARGN})
   target_precompile_headers(${name} REUSE_FROM pliant_room_headers)
@@ -82,8 +79,8 @@ pliant_room(pliant_program fmt::fmt)
 pliant_room(pliant_backend)
 
 # The twins: their own flags, so that nothing a consumer sets can change a bit.
-pliant_room(pliant_ref Threads::Threads)
-target_include_directories(pliant_ref PUBLIC ${CMAKE_SOURCE_DIR})  # "cpu_ref/ref_backend.h"
+pliant_room(pliant_ref)
+target_include_directories(pliant_ref PUBLIC ${CMAKE_SOURCE_DIR})  # "cpu_ref/registry.h"
 target_include_directories(pliant_ref PRIVATE ${PLIANT_GENERATED})  # "twin_laws.h"
 set(ref_options -O3 -fno-math-errno -fno-trapping-math)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
@@ -95,6 +92,9 @@ set_target_properties(pliant_ref PROPERTIES DISABLE_PRECOMPILE_HEADERS ON)
 separate_arguments(twin_flags UNIX_COMMAND "${PLIANT_TWIN_FLAGS}")
 file(GLOB_RECURSE ref_sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/cpu_ref/*.cpp)
 set_source_files_properties(${ref_sources} PROPERTIES COMPILE_OPTIONS "${twin_flags}" SKIP_UNITY_BUILD_INCLUSION ON)
+
+# The backends that run them.
+pliant_room(pliant_twins Threads::Threads)
 
 # The OpenCL backend, or what says that there is none: the same functions, so that nothing else asks which of the two was built.
 include(EmbedKernels)
@@ -111,7 +111,7 @@ else()
 endif()
 
 # The choice of a backend by name: the only room that knows them all.
-pliant_room(pliant_backends pliant_ref ${opencl_room})
+pliant_room(pliant_backends pliant_twins ${opencl_room})
 
 # What is simulated: from files to the Model.
 pliant_room(pliant_geometry fmt::fmt Eigen3::Eigen Threads::Threads)

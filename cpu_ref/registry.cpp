@@ -1,11 +1,11 @@
-#include "registry.h"
+#include "cpu_ref/registry.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 
-#include "backend/pass_table.h"
+#include "backends/interface/pass_table.h"
 #include "pliant/error.h"
 
 // One row per kernel: each cpu_ref/<stem>.cpp ends with `void register_<stem>(Registry&)`, which names its instantiations.

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "twin.h"
+#include "cpu_ref/twin.h"
 
 namespace pliant::ref {
 

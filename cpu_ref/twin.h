@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "range.h"
+#include "cpu_ref/range.h"
 
 namespace pliant::ref {
 

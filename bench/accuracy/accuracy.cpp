@@ -9,7 +9,7 @@
 #include <fstream>
 #include <map>
 
-#include "backends/backends.h"
+#include "backends/choice/backends.h"
 #include "bench/accuracy/parts.h"
 #include "bench/kernels/kernels.h"
 #include "io/atomic_file.h"

@@ -10,8 +10,8 @@
 #include "bench/accuracy/parts.h"
 #include "geometry/mesh.h"
 #include "io/obj.h"
-#include "model/body_mesh.h"
-#include "simulation/coupling.h"
+#include "model/elements/body_mesh.h"
+#include "simulation/step/coupling.h"
 
 namespace pliant::bench::accuracy {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "backend/timing.h"
+#include "backends/interface/timing.h"
 #include "bench/accuracy/accuracy.h"
 #include "simulation/simulation.h"
 #include "statics/statics.h"

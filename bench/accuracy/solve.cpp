@@ -5,7 +5,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "backends/backends.h"
+#include "backends/choice/backends.h"
 #include "bench/accuracy/parts.h"
 #include "pliant/error.h"
 #include "program/hash.h"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "api/world_impl.h"
-#include "backends/backends.h"
+#include "backends/choice/backends.h"
 #include "calls.h"
 
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "backends/backends.h"
+#include "backends/choice/backends.h"
 #include "bench/contact/parts.h"
 #include "bench/contact/scenes.h"
 #include "geometry/stopwatch.h"

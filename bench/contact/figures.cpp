@@ -8,8 +8,8 @@
 #include "bench/contact/parts.h"
 #include "bench/contact/scenes.h"
 #include "pliant/error.h"
-#include "simulation/energy.h"
-#include "simulation/reactions.h"
+#include "simulation/measure/energy.h"
+#include "simulation/measure/reactions.h"
 
 namespace pliant::bench::contact {
 namespace {

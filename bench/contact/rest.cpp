@@ -6,7 +6,7 @@
 
 #include "bench/contact/parts.h"
 #include "bench/contact/scenes.h"
-#include "model/contact.h"
+#include "model/contact/contact.h"
 #include "pliant/error.h"
 
 namespace pliant::bench::contact {

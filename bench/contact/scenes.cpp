@@ -5,10 +5,10 @@
 #include <cmath>
 #include <map>
 
-#include "backends/backends.h"
+#include "backends/choice/backends.h"
 #include "geometry/stopwatch.h"
 #include "pliant/error.h"
-#include "simulation/energy.h"
+#include "simulation/measure/energy.h"
 
 namespace pliant::bench::contact {
 namespace {

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "backend/timing.h"
-#include "backends/backends.h"
+#include "backends/choice/backends.h"
+#include "backends/interface/timing.h"
 #include "bench/common/shipped_scenes.h"
 #include "bench/cutting/parts.h"
 #include "bench/deformation/parts.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "backends/backends.h"
+#include "backends/choice/backends.h"
 #include "bench/cutting/parts.h"
 #include "cutting_methods/sweep_probe.h"
 #include "geometry/disjoint_sets.h"

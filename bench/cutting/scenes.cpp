@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "backends/backends.h"
+#include "backends/choice/backends.h"
 #include "bench/cutting/parts.h"
 #include "bench/deformation/parts.h"
 

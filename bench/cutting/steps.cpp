@@ -4,8 +4,8 @@
 #include <cmath>
 #include <random>
 
+#include "backends/twins/ref_backend.h"
 #include "bench/cutting/parts.h"
-#include "cpu_ref/ref_backend.h"
 #include "geometry/vec.h"
 
 namespace pliant::bench {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "backends/backends.h"
+#include "backends/choice/backends.h"
 #include "bench/deformation/parts.h"
 
 namespace pliant::bench {

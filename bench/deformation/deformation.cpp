@@ -7,7 +7,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "backends/backends.h"
+#include "backends/choice/backends.h"
 #include "bench/common/shipped_scenes.h"
 #include "bench/deformation/parts.h"
 #include "bench/kernels/kernels.h"

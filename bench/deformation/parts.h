@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "backend/timing.h"
+#include "backends/interface/timing.h"
 #include "bench/deformation/deformation.h"
 #include "simulation/simulation.h"
 

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <random>
 
-#include "backends/backends.h"
+#include "backends/choice/backends.h"
 #include "bench/deformation/parts.h"
 #include "bench/kernels/machine_limits.h"
-#include "model/flsm.h"
+#include "model/matching/flsm.h"
 
 namespace pliant::bench {
 namespace {

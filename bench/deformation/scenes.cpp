@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "backends/backends.h"
+#include "backends/choice/backends.h"
 #include "bench/deformation/parts.h"
 
 namespace pliant::bench {

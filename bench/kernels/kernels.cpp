@@ -12,8 +12,8 @@
 #include <map>
 #include <thread>
 
-#include "backend/timing.h"
-#include "backends/backends.h"
+#include "backends/choice/backends.h"
+#include "backends/interface/timing.h"
 #include "bench/kernels/block.h"
 #include "bench/kernels/machine_limits.h"
 #include "pliant/error.h"
@@ -78,7 +78,7 @@ void measure(const KernelsOptions& options, const std::string& element, const st
   Backend& backend = simulation.backend();
   const std::int64_t elements = block.model->elements();
   // Until the first disturbance has crossed the block: ahead of it, strains of 1e-13 have denormal products
-  // (docs/decisions.md).
+  // (docs/decisions/numerics.md).
   simulation.advance(16 + static_cast<std::int64_t>(1.2 * std::cbrt(static_cast<double>(elements))));
   if (simulation.divergence()) throw Error(ErrorCode::diverged, simulation.divergence()->message());
   const std::string hash = fmt::format("{:016x}", simulation.hash());

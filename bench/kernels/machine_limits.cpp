@@ -1,6 +1,6 @@
 #include "bench/kernels/machine_limits.h"
 
-#include "backend/timing.h"
+#include "backends/interface/timing.h"
 
 namespace pliant::bench {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 #include <cstdint>
 
-#include "backend/backend.h"
+#include "backends/interface/backend.h"
 
 namespace pliant::bench {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "bench/stability/sweeps.h"
-#include "simulation/energy.h"
+#include "simulation/measure/energy.h"
 
 namespace pliant::bench::stability {
 namespace {

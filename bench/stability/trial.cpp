@@ -10,8 +10,8 @@
 #include <functional>
 #include <random>
 
-#include "cpu_ref/ref_backend.h"
-#include "model/body_mesh.h"
+#include "backends/twins/ref_backend.h"
+#include "model/elements/body_mesh.h"
 #include "pliant/error.h"
 
 namespace pliant::bench::stability {

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <map>
 
-#include "backends/backends.h"
+#include "backends/choice/backends.h"
 #include "bench/common/shipped_scenes.h"
 #include "bench/kernels/kernels.h"
 #include "geometry/stopwatch.h"

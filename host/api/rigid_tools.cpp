@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "pliant/error.h"
-#include "simulation/tool_changes.h"
+#include "simulation/contact/tool_changes.h"
 
 namespace pliant::api {
 

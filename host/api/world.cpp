@@ -8,12 +8,12 @@
 
 #include "api/surfaces.h"
 #include "api/world_call.h"
-#include "backends/backends.h"
+#include "backends/choice/backends.h"
 #include "io/save.h"
 #include "pliant/version.h"
 #include "scene/keys.h"
 #include "scene/spec.h"
-#include "simulation/run_remarks.h"
+#include "simulation/measure/run_remarks.h"
 
 #define PLIANT_TEXT_OF(x) #x
 #define PLIANT_TEXT(x) PLIANT_TEXT_OF(x)

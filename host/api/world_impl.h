@@ -16,7 +16,7 @@
 #include "api/rigid_tools.h"
 #include "api/tools.h"
 #include "pliant/world.h"
-#include "simulation/probing.h"
+#include "simulation/measure/probing.h"
 #include "simulation/simulation.h"
 
 namespace pliant {

@@ -1,5 +1,5 @@
 // pliant compare: two backends in lockstep.
-#include "simulation/compare.h"
+#include "simulation/state/compare.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "backends/backends.h"
+#include "backends/choice/backends.h"
 #include "cli/cli.h"
 #include "pliant/error.h"
 

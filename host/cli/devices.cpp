@@ -4,8 +4,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "backend/pass_table.h"
-#include "backends/backends.h"
+#include "backends/choice/backends.h"
+#include "backends/interface/pass_table.h"
 #include "cli/cli.h"
 
 namespace pliant::cli {

@@ -8,7 +8,7 @@
 #include "cutting/topology/cut_topology.h"
 #include "io/obj.h"
 #include "io/png.h"
-#include "model/each_element.h"
+#include "model/elements/each_element.h"
 #include "model/pieces.h"
 #include "pliant/error.h"
 

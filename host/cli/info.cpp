@@ -5,20 +5,20 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "backend/pass_table.h"
-#include "backends/backends.h"
+#include "backends/choice/backends.h"
+#include "backends/interface/pass_table.h"
 #include "cli/checked_model.h"
 #include "cli/cli.h"
 #include "cli/mesh_regions.h"
 #include "cli/probes.h"
 #include "geometry/vec.h"
-#include "model/boundary_conditions.h"
+#include "model/nodes/boundary_conditions.h"
 #include "pliant/error.h"
 #include "scene/keys.h"
 #include "schedule/build_program.h"
 #include "schedule/surface_program.h"
-#include "simulation/coupling.h"
 #include "simulation/simulation.h"
+#include "simulation/step/coupling.h"
 
 namespace pliant::cli {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "simulation/probing.h"
+#include "simulation/measure/probing.h"
 
 namespace pliant::cli {
 

@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 
-#include "backends/backends.h"
+#include "backends/choice/backends.h"
 #include "cli/checked_model.h"
 #include "cli/cli.h"
 #include "cli/energy_report.h"

@@ -10,7 +10,7 @@
 #include "cli/tool_report.h"
 #include "program/hash.h"
 #include "scene/keys.h"
-#include "simulation/run_remarks.h"
+#include "simulation/measure/run_remarks.h"
 
 namespace pliant::cli {
 namespace {

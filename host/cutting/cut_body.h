@@ -4,7 +4,7 @@
 
 #include "cutting/surface/cut_surface.h"
 #include "cutting/topology/cut_topology.h"
-#include "model/body_mesh.h"
+#include "model/elements/body_mesh.h"
 
 namespace pliant {
 

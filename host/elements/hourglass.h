@@ -1,8 +1,8 @@
 // Hourglass control of the hexahedron with one point: the numbers of its record, its energy and its stiffness, in double.
 //
 // A cube of a lattice has one stiffness for its twelve hourglass modes. The record of every other hexahedron
-// (kernels/hex8_hourglass.cl) has, for a brick with half-lengths l_i along e_i, volume V and the material's E, nu and G at
-// rest:
+// (kernels/elements/hex8_hourglass.cl) has, for a brick with half-lengths l_i along e_i, volume V and the material's E, nu and
+// G at rest:
 //   D_i = E / (1 - nu^2) V / (192 l_i^2), N_ij = nu sqrt(D_i D_j), A_i = sqrt(G V / 192) / l_i  [N/m], A [sqrt(N/m)].
 // A mode q_a = xy moves the corners by h_xy q / 8, hence e.g. strains e_x = y / l_y q_x / (8 l_x). Over the brick y / l_y has
 // the mean square 1/3: the energy of e_x and e_z, both linear in y, in plane stress is that of D and N. So is that of the shear

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "simulation/snapshot.h"
+#include "simulation/state/snapshot.h"
 
 namespace pliant {
 

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "geometry/mesh.h"
-#include "model/batches.h"
-#include "model/contact.h"
-#include "model/element_materials.h"
-#include "model/partition.h"
+#include "model/contact/contact.h"
+#include "model/elements/batches.h"
+#include "model/elements/element_materials.h"
+#include "model/matching/partition.h"
 #include "scene/scene.h"
 
 namespace pliant {

@@ -1,5 +1,5 @@
 // The surfaces of the bodies in the model: embedded in its slots, as a whole or where an edit changed them.
-#include "model/body_mesh.h"
+#include "model/elements/body_mesh.h"
 
 namespace pliant {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "mesh_io/surface_report.h"
-#include "model/body_mesh.h"
+#include "model/elements/body_mesh.h"
 
 namespace pliant {
 

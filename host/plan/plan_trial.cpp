@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "backend/timing.h"
-#include "backends/backends.h"
+#include "backends/choice/backends.h"
+#include "backends/interface/timing.h"
 #include "geometry/stopwatch.h"
 #include "geometry/vec.h"
 #include "mesh_io/mesh_io.h"

@@ -1,5 +1,5 @@
 // The table of named texel buffers. Allocation, hashing, comparison and what the checking backend fills with NaN
-// (cpu_ref/check_backend.h) are all driven by it.
+// (host/backends/twins/check_backend.h) are all driven by it.
 #pragma once
 #include <cstddef>
 #include <cstdint>

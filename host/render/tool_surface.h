@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "geometry/mesh.h"
-#include "model/contact.h"
+#include "model/contact/contact.h"
 #include "simulation/simulation.h"
 
 namespace pliant::render {

@@ -17,7 +17,7 @@ enum class Quantity {
   velocity,      ///< [m/s]
   stress,        ///< Cauchy stress of the material at the point [Pa]
   reaction,      ///< force that fixes or moves the nodes, summed [N]
-  force,         ///< applied loads on the nodes, summed (simulation/applied_loads.h) [N]
+  force,         ///< applied loads on the nodes, summed (simulation/step/applied_loads.h) [N]
   energy,        ///< kinetic of the nodes, strain of the elements between them [J]
 };
 

@@ -4,7 +4,7 @@
 
 namespace pliant {
 
-/// Invariants of H and the first Piola-Kirchhoff stress, counted from kernels/deformation.cl and kernels/law_*.cl.
+/// Invariants of H and the first Piola-Kirchhoff stress, counted from kernels/elements/deformation.cl and kernels/law_*.cl.
 inline double law_flops(Law law) {
   constexpr double invariants = 27 + 5 + 7 + 1;  // cofactor, det, sums, the test of J
   return invariants + law_info(law).flops;

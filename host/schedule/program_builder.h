@@ -28,7 +28,10 @@ inline Buffer make_ints(std::string name, BufferRole role, std::string shape, st
 inline BufferId add_last_good(Program& program, BufferId of) {
   const Buffer& live = program.at(of);
   const std::size_t stem = live.name.starts_with("node_") ? 5 : 0;
-  Buffer copy{"last_" + live.name.substr(stem), live.type, live.count, BufferRole::state, live.shape, live.unit, "host"};
+  Buffer copy;
+  copy.name = "last_" + live.name.substr(stem);
+  copy.type = live.type, copy.count = live.count, copy.role = BufferRole::state;
+  copy.shape = live.shape, copy.unit = live.unit, copy.producer = "host";
   if (live.type == BufferType::int32) copy.ints = live.ints;
   copy.copy_of = of;
   return program.add(std::move(copy));
@@ -147,7 +150,7 @@ class ProgramBuilder {
   BufferId node_u_ = -1, node_w_ = -1, node_force_ = -1, node_load_ = -1, corner_ = -1, fault_ = -1, summary_ = -1,
            fastest_ = -1, params_ = -1, now_ = -1, curves_ = -1, surface_x_ = -1, pressure_ = -1, brick_neighbor_ = -1,
            brick_rows_ = -1, brick_fill_ = -1, brick_force_ = -1, flsm_alpha_ = -1;
-  std::int32_t edged_tools_ = 0;  ///< a bit per tool that has edges (kernels/contact_edge.cl)
+  std::int32_t edged_tools_ = 0;  ///< a bit per tool that has edges (kernels/contact/contact_edge.cl)
   /// A buffer that only tools with edges have, or one in its place that no kernel reads.
   [[nodiscard]] const char* of_edges(const char* buffer, const char* other) const { return edged_tools_ != 0 ? buffer : other; }
   int laws_ = 0;  ///< batches that have their law

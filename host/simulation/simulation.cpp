@@ -6,15 +6,15 @@
 #include <cmath>
 #include <utility>
 
-#include "model/ballast.h"
+#include "model/nodes/ballast.h"
 #include "pliant/error.h"
 #include "program/hash.h"
 #include "schedule/build_program.h"
 #include "schedule/surface_program.h"
-#include "simulation/coupling.h"
-#include "simulation/relaxation.h"
-#include "simulation/remarks.h"
-#include "simulation/tool_changes.h"
+#include "simulation/contact/tool_changes.h"
+#include "simulation/measure/remarks.h"
+#include "simulation/step/coupling.h"
+#include "simulation/step/relaxation.h"
 
 namespace pliant {
 

@@ -8,15 +8,15 @@
 #include <string>
 #include <vector>
 
-#include "edits/tool_edits.h"
-#include "edits/topology_edits.h"
-#include "simulation/drift.h"
-#include "simulation/host_loads.h"
-#include "simulation/moment.h"
+#include "simulation/contact/tool_contact.h"
+#include "simulation/edits/tool_edits.h"
+#include "simulation/edits/topology_edits.h"
+#include "simulation/measure/drift.h"
 #include "simulation/recovery/recovery.h"
-#include "simulation/snapshot.h"
-#include "simulation/step_control.h"
-#include "simulation/tool_contact.h"
+#include "simulation/state/snapshot.h"
+#include "simulation/step/host_loads.h"
+#include "simulation/step/moment.h"
+#include "simulation/step/step_control.h"
 
 namespace pliant {
 

@@ -1,7 +1,7 @@
 // Sparse Cholesky factorisation of a symmetric matrix given by its lower triangle: multifrontal over a nested dissection
 // (George 1973; Duff and Reid 1983). The unknowns of a node stay together; the graph is halved by coordinates, and the
 // separator is the smallest set of nodes that covers the edges cut.
-// Why this is not a library, with measurements: docs/decisions.md.
+// Why this is not a library, with measurements: docs/decisions/scenes.md.
 #pragma once
 #include <vector>
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/body_mesh.h"
-#include "model/each_element.h"
+#include "model/elements/body_mesh.h"
+#include "model/elements/each_element.h"
 #include "pliant/error.h"
 #include "statics/shape.h"
 

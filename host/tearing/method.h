@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cutting/blade/blade.h"
-#include "model/body_mesh.h"
+#include "model/elements/body_mesh.h"
 #include "tearing/breaking.h"
 
 namespace pliant {

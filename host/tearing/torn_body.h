@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "model/body_mesh.h"
+#include "model/elements/body_mesh.h"
 #include "tearing/breaking.h"
 #include "tearing/method.h"
 

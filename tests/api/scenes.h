@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "api/world_impl.h"
-#include "backends/backends.h"
+#include "backends/choice/backends.h"
 #include "pliant/world.h"
 #include "support/forwarding_backend.h"
 

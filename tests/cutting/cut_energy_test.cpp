@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "cutting/cut_scenes.h"
-#include "simulation/energy.h"
+#include "simulation/measure/energy.h"
 
 namespace pliant::cut_test {
 namespace {

@@ -8,7 +8,7 @@
 #include "cutting/cut_scenes.h"
 #include "io/save.h"
 #include "pliant/error.h"
-#include "simulation/compare.h"
+#include "simulation/state/compare.h"
 #include "solver/scenes.h"
 #include "support/forwarding_backend.h"
 

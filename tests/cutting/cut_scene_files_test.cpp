@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <map>
 
-#include "backends/backends.h"
+#include "backends/choice/backends.h"
 #include "cutting/cut_bodies.h"
 #include "cutting/cut_scenes.h"
-#include "simulation/compare.h"
+#include "simulation/state/compare.h"
 #include "solver/scenes.h"
 #include "support/source_dir.h"
 

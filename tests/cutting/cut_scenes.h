@@ -4,7 +4,7 @@
 #include <cmath>
 #include <memory>
 
-#include "backends/backends.h"
+#include "backends/choice/backends.h"
 #include "geometry/mesh.h"
 #include "geometry/vec.h"
 #include "simulation/simulation.h"

@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "backend/backend.h"
-#include "cpu_ref/ref_backend.h"
-#include "opencl/opencl_backend.h"
+#include "backends/interface/backend.h"
+#include "backends/opencl/opencl_backend.h"
+#include "backends/twins/ref_backend.h"
 #include "program/program.h"
 #include "support/opencl.h"
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "kernel_case.h"
+#include "kernels/kernel_case.h"
 
 namespace pliant::kernel_test {
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <set>
 
-#include "kernels/law_oracle.h"
+#include "kernels/laws/law_oracle.h"
 #include "material/response.h"
 
 namespace pliant {

@@ -183,12 +183,12 @@ def check_includes(tree):
     allow(tree, "kernels include kernels and layout.h only", r'^"([a-z0-9_]+\.cl|layout\.h)"$', tree.under("kernels", ".cl", ".h"))
     allow(tree, "the public API uses the standard library only", r'^(<[a-z_0-9]+>|<std(def|int)\.h>|"pliant/[a-z_/]+\.h")$',
           tree.under("include", ".h"))
-    forbid(tree, "only host/opencl includes OpenCL headers", opencl_header,
-           [f for f in host if not f.startswith("host/opencl/")] + twins)
-    forbid(tree, "the twins are independent of the OpenCL backend and of the kernels", r'"(host/)?opencl/|\.cl[>"]$', twins)
+    forbid(tree, "only host/backends/opencl includes OpenCL headers", opencl_header,
+           [f for f in host if not f.startswith("host/backends/opencl/")] + twins)
+    forbid(tree, "the twins are independent of the backends and of the kernels", r'"(host/)?backends/(opencl|twins|choice)/|\.cl[>"]$', twins)
     forbid(tree, "no Eigen in the twins", r'[<"]Eigen/', twins)
     forbid(tree, "a .cl file is text, not a header", r'\.cl[>"]$', host + tree.under("include", ".h"))
-    forbid(tree, "the command asks host/backends for a backend", r'"(host/)?opencl/', tree.under("host/cli", ".h", ".cpp"))
+    forbid(tree, "the command asks host/backends for a backend", r'"(host/)?backends/(opencl|twins)/', tree.under("host/cli", ".h", ".cpp"))
 
 
 class Room:
@@ -210,9 +210,9 @@ def read_rooms(tree):
         for name in room.direct:
             if name not in rooms:
                 tree.report(f"{ROOMS}: {room.folder} may include {name}, which has no row")
-    folders = {f.split("/")[1] for f in tree.under("host", ".h", ".cpp")}
-    for name in sorted(folders - set(rooms)):
-        tree.report(f"host/{name}: has no row in {ROOMS}")
+    folders = tuple(f"{room.folder}/" for room in rooms.values())
+    for folder in sorted({os.path.dirname(f) for f in tree.under("host", ".h", ".cpp") if not f.startswith(folders)}):
+        tree.report(f"{folder}: has no row in {ROOMS}")
     return rooms
 
 
@@ -302,9 +302,9 @@ INEXACT = re.compile(r"\b(?:mad|dot|cross|length|normalize|distance|mix|min|max|
 
 
 def check_kernels(tree):
-    twins = {Path(f).name: f for f in tree.under("cpu_ref", ".cpp")}
+    registry = "cpu_ref/registry.cpp"
     tests = "\n".join(tree.text(f) for f in tree.under("tests/kernels", "_test.cpp"))
-    rows = set(re.findall(r"ROW\((\w+)\)", tree.text(twins.get("registry.cpp", ""))))
+    rows = set(re.findall(r"ROW\((\w+)\)", tree.text(registry)))
     tested = set(re.findall(r"\w+", tests))
     seen = {}
     for file in tree.under("kernels", ".cl"):
@@ -323,10 +323,11 @@ def check_kernels(tree):
             tree.report(f"{file}: must include arith.cl first, which turns contraction off (first is {first})")
         if not re.search(rf"__kernel\s+.*\b{stem}\b", code):
             tree.report(f"{file}: holds no kernel of its own name")
-        if f"{stem}.cpp" not in twins:
-            tree.report(f"{file}: no twin {stem}.cpp in cpu_ref")
+        twin = re.sub(r"^kernels/(.*)\.cl$", r"cpu_ref/\1.cpp", file)  # on the same shelf
+        if not tree.exists(twin):
+            tree.report(f"{file}: no twin {twin}")
         if stem not in rows:
-            tree.report(f"{file}: no row in {twins.get('registry.cpp', 'cpu_ref/registry.cpp')}")
+            tree.report(f"{file}: no row in {registry}")
         if stem not in tested:
             tree.report(f"{file}: named by no test in tests/kernels")
     arith = seen.get("arith", "kernels/arith.cl")
@@ -356,7 +357,7 @@ def check_documents(tree):
     listed = META + "long_lines.txt"
     exceptions = {row[0]: int(row[1]) for row in tree.rows(listed)}
     pages = ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md"]
-    pages += sorted(f"docs/{path.name}" for path in (tree.root / "docs").glob("*.md"))
+    pages += sorted(str(path.relative_to(tree.root)) for path in (tree.root / "docs").rglob("*.md"))
     for page in pages:
         found, allowed = list(long_lines(tree, page)), exceptions.get(page, 0)
         if len(found) > allowed:

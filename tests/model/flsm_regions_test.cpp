@@ -1,4 +1,4 @@
-#include "model/flsm_regions.h"
+#include "model/matching/flsm_regions.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "mesh_io/mesh_io.h"
-#include "model/body_mesh.h"
+#include "model/elements/body_mesh.h"
 #include "model/volume_files.h"
 #include "pliant/error.h"
 #include "scene/mesh_region.h"

@@ -1,4 +1,4 @@
-#include "model/partition.h"
+#include "model/matching/partition.h"
 
 #include <gtest/gtest.h>
 

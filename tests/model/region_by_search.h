@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-#include "model/flsm_regions.h"
+#include "model/matching/flsm_regions.h"
 
 namespace pliant {
 

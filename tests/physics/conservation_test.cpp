@@ -1,6 +1,6 @@
 // Momenta of a free spinning body, energy without damping, free fall, decay by damping, prescribed motion and loads.
 #include "physics/harness.h"
-#include "simulation/applied_loads.h"
+#include "simulation/step/applied_loads.h"
 
 namespace pliant::physics {
 namespace {

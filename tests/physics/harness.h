@@ -13,11 +13,11 @@
 #include <string>
 #include <vector>
 
-#include "backends/backends.h"
+#include "backends/choice/backends.h"
 #include "geometry/mesh.h"
 #include "io/obj.h"
-#include "kernels/law_oracle.h"
-#include "simulation/energy.h"
+#include "kernels/laws/law_oracle.h"
+#include "simulation/measure/energy.h"
 #include "simulation/simulation.h"
 #include "support/opencl.h"
 #include "support/temp_folder.h"

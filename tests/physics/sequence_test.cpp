@@ -2,7 +2,7 @@
 #include <numbers>
 #include <random>
 
-#include "model/tool_sequence.h"
+#include "model/contact/tool_sequence.h"
 #include "physics/harness.h"
 #include "support/error_of.h"
 

@@ -1,7 +1,7 @@
 // Tissue against tissue: momentum, energy, weight, friction, one block for two, a fold, the faces of a cut.
 #include "model/pieces.h"
 #include "physics/harness.h"
-#include "simulation/reactions.h"
+#include "simulation/measure/reactions.h"
 #include "support/error_of.h"
 
 namespace pliant::physics {

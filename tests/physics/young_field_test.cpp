@@ -1,8 +1,8 @@
 // A modulus per element: against the closed form of a confined bar, against inclusions and the static solver, through cuts.
-#include "model/body_mesh.h"
-#include "model/each_element.h"
+#include "model/elements/body_mesh.h"
+#include "model/elements/each_element.h"
 #include "physics/harness.h"
-#include "simulation/probing.h"
+#include "simulation/measure/probing.h"
 #include "statics/statics.h"
 #include "support/error_of.h"
 

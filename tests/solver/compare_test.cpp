@@ -1,5 +1,5 @@
 // Lockstep comparison: equal runs are equal, and one wrong bit is found where it was made.
-#include "simulation/compare.h"
+#include "simulation/state/compare.h"
 
 #include <gtest/gtest.h>
 

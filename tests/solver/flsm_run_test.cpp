@@ -6,7 +6,7 @@
 #include "io/save.h"
 #include "physics/flsm_harness.h"
 #include "pliant/error.h"
-#include "simulation/compare.h"
+#include "simulation/state/compare.h"
 #include "solver/scenes.h"
 #include "support/error_of.h"
 #include "support/source_dir.h"

@@ -5,7 +5,7 @@
 #include <iostream>
 
 #include "io/save.h"
-#include "simulation/compare.h"
+#include "simulation/state/compare.h"
 #include "solver/scenes.h"
 #include "support/source_dir.h"
 #include "support/temp_folder.h"

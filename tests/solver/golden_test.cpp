@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "edits/edited_bodies.h"
 #include "program/hash.h"
+#include "simulation/edits/edited_bodies.h"
 #include "solver/scenes.h"
 
 namespace pliant::golden_test {

@@ -3,10 +3,10 @@
 #include <memory>
 #include <utility>
 
-#include "backends/backends.h"
+#include "backends/choice/backends.h"
 #include "schedule/build_program.h"
 #include "schedule/surface_program.h"
-#include "simulation/run_context.h"
+#include "simulation/state/run_context.h"
 
 namespace pliant {
 

@@ -2,11 +2,11 @@
 // pass, and every work-group size, number of lanes and number of threads gives the same state.
 #include <gtest/gtest.h>
 
-#include "cpu_ref/ref_backend.h"
-#include "opencl/opencl_backend.h"
+#include "backends/opencl/opencl_backend.h"
+#include "backends/twins/ref_backend.h"
 #include "physics/harness.h"
 #include "program/hash.h"
-#include "simulation/compare.h"
+#include "simulation/state/compare.h"
 #include "solver/scenes.h"
 
 namespace pliant::physics {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "io/save.h"
-#include "model/contact.h"
+#include "model/contact/contact.h"
 #include "pliant/error.h"
 #include "scene/tool_entry.h"
 #include "solver/scenes.h"

@@ -1,10 +1,10 @@
 // What a run tells afterwards is the same if it was interrupted and went on from a checkpoint.
-#include "simulation/run_report.h"
+#include "simulation/state/run_report.h"
 
 #include <gtest/gtest.h>
 
 #include "io/save.h"
-#include "simulation/run_remarks.h"
+#include "simulation/measure/run_remarks.h"
 #include "solver/scenes.h"
 #include "support/error_of.h"
 #include "support/temp_folder.h"

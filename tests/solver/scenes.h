@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "backends/backends.h"
+#include "backends/choice/backends.h"
 #include "simulation/simulation.h"
 #include "support/opencl.h"
 #include "support/source_dir.h"

@@ -1,7 +1,7 @@
 // States that may leave a run as results: settled ones, moments that wait, and the look ahead at the end.
 #include <gtest/gtest.h>
 
-#include "backends/backends.h"
+#include "backends/choice/backends.h"
 #include "solver/scenes.h"
 
 namespace pliant {

@@ -1,5 +1,5 @@
 // Changes of the step and of the damping of dynamic relaxation while a run goes on.
-#include "simulation/step_control.h"
+#include "simulation/step/step_control.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <memory>
 
 #include "cutting/cut_scenes.h"
-#include "simulation/coupling.h"
 #include "simulation/recovery/recovery.h"
+#include "simulation/step/coupling.h"
 #include "solver/loaded.h"
 #include "solver/scenes.h"
 

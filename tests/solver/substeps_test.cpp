@@ -9,8 +9,8 @@
 #include <string>
 
 #include "cutting/cut_scenes.h"
-#include "edits/topology_edits.h"
-#include "simulation/coupling.h"
+#include "simulation/edits/topology_edits.h"
+#include "simulation/step/coupling.h"
 #include "solver/loaded.h"
 #include "support/temp_folder.h"
 

@@ -3,9 +3,9 @@
 
 #include <set>
 
-#include "backends/backends.h"
-#include "edits/edited_bodies.h"
+#include "backends/choice/backends.h"
 #include "schedule/build_program.h"
+#include "simulation/edits/edited_bodies.h"
 #include "simulation/simulation.h"
 #include "solver/scenes.h"
 

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "backend/backend.h"
+#include "backends/interface/backend.h"
 
 namespace pliant::test {
 

@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-#include "opencl/opencl_backend.h"
+#include "backends/opencl/opencl_backend.h"
 
 namespace pliant::test {
 

@@ -3,7 +3,7 @@
 // it is a function of the cut alone.
 #pragma once
 #include "cutting/topology/cut_topology.h"
-#include "model/body_mesh.h"
+#include "model/elements/body_mesh.h"
 
 namespace pliant {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "model/each_element.h"
+#include "model/elements/each_element.h"
 #include "simulation/recovery/limits.h"
 
 namespace pliant {

@@ -2,7 +2,7 @@
 #pragma once
 #include <cstdint>
 
-#include "simulation/run_context.h"
+#include "simulation/state/run_context.h"
 
 namespace pliant {
 

@@ -7,7 +7,7 @@
 
 #include "layout.h"
 #include "schedule/build_program.h"
-#include "simulation/ballast_swap.h"
+#include "simulation/recovery/ballast_swap.h"
 #include "simulation/recovery/calm.h"
 #include "simulation/recovery/limits.h"
 

@@ -4,10 +4,10 @@
 #include <optional>
 #include <vector>
 
-#include "edits/topology_edits.h"
+#include "simulation/edits/topology_edits.h"
 #include "simulation/recovery/divergence.h"
-#include "simulation/run_report.h"
-#include "simulation/step_control.h"
+#include "simulation/state/run_report.h"
+#include "simulation/step/step_control.h"
 
 namespace pliant {
 

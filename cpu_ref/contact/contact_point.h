@@ -1,0 +1,115 @@
+// Twin of kernels/contact/contact_point.cl, which says what is computed.
+#pragma once
+#include "cpu_ref/contact/contact_shape.h"
+#include "cpu_ref/tile.h"
+
+namespace pliant::ref::contact {
+
+inline constexpr std::int64_t pose_numbers = 14;
+
+template <class Scalar>
+struct Place {
+  Vec<Scalar> now{}, moved{};
+};
+
+/// The buffers that place a point.
+template <class Scalar>
+struct Points {
+  const Scalar *node_u, *node_w, *rest;
+  const std::int32_t* node;
+  const Scalar* weight;
+
+  [[nodiscard]] Place<Scalar> at(std::int64_t i) const {
+    const std::int64_t base = tile_base(i, 8), own = tile_base(i, 4);
+    Place<Scalar> p;
+    for (std::int64_t a = 0; a < 8; ++a) {
+      const Scalar c = weight[base + a * PLIANT_TILE];
+      const std::int64_t texel = std::int64_t{4} * node[base + a * PLIANT_TILE];
+      for (std::size_t k = 0; k < 3; ++k) {
+        p.now[k] = std::fma(c, node_u[texel + static_cast<std::int64_t>(k)], p.now[k]);
+        p.moved[k] = std::fma(c, node_w[texel + static_cast<std::int64_t>(k)], p.moved[k]);
+      }
+    }
+    for (std::size_t k = 0; k < 3; ++k) p.now[k] = rest[own + static_cast<std::int64_t>(k) * PLIANT_TILE] + p.now[k];
+    return p;
+  }
+  [[nodiscard]] Scalar area(std::int64_t i) const { return rest[tile_base(i, 4) + std::int64_t{3} * PLIANT_TILE]; }
+};
+
+template <class Scalar>
+inline Vec<Scalar> turned(const Scalar* r, const Vec<Scalar>& v) {
+  return {dot({r[0], r[1], r[2]}, v), dot({r[3], r[4], r[5]}, v), dot({r[6], r[7], r[8]}, v)};
+}
+template <class Scalar>
+inline Vec<Scalar> turned_back(const Scalar* r, const Vec<Scalar>& v) {
+  return {dot({r[0], r[3], r[6]}, v), dot({r[1], r[4], r[7]}, v), dot({r[2], r[5], r[8]}, v)};
+}
+template <class Scalar>
+inline Vec<Scalar> origin_of(const Scalar* pose) {
+  return {pose[9], pose[10], pose[11]};
+}
+
+/// Share of the margin within which a point may touch in the next step: more for one that could before, so that the set of
+/// these points comes to rest.
+template <class Scalar>
+inline Scalar ready_share(Scalar yield) {
+  return yield > Scalar(0) ? Scalar(0.24) : Scalar(0.08);
+}
+
+template <class Scalar>
+struct Meeting {
+  Scalar distance = 0, opening = 0;
+  Vec<Scalar> normal{}, slip{}, inside{};
+  /// Whether the point may touch the tool in the next step.
+  [[nodiscard]] bool may_touch_next(Scalar margin, Scalar share) const {
+    return distance < std::fma(share, margin, opening < Scalar(0) ? -opening : Scalar(0));
+  }
+};
+
+/// The tools of a step.
+template <class Scalar>
+struct Tools {
+  const std::int32_t* kind;
+  const Scalar *data, *grid, *pose;
+  std::int32_t count, step;
+
+  [[nodiscard]] const Scalar* law(std::int32_t t) const { return data + tool_numbers * t; }
+  [[nodiscard]] const Scalar* now(std::int32_t t) const { return &pose[pose_numbers * (std::int64_t{step} * count + t)]; }
+  [[nodiscard]] const Scalar* next(std::int32_t t) const { return now(t) + pose_numbers * count; }
+  [[nodiscard]] Meeting<Scalar> meet(std::int32_t t, const Place<Scalar>& p) const {
+    Meeting<Scalar> m;
+    const std::int32_t* own = kind + tool_integers * t;
+    const Vec<Scalar> start = turned_back(now(t), difference(difference(p.now, p.moved), origin_of(now(t))));
+    m.inside = turned_back(next(t), difference(p.now, origin_of(next(t))));
+    const Surface<Scalar> found = tool_distance(own, law(t), grid, next(t) + 12, start);
+    const Vec<Scalar> way = difference(m.inside, start);
+    m.opening = dot(found.normal, way);
+    m.distance = found.distance + m.opening;
+    m.normal = turned(next(t), found.normal);
+    m.slip = turned(now(t), way);
+    if (own[5] > 1) m.opening = m.opening + (found.distance - tool_distance(own, law(t), grid, now(t) + 12, start).distance);
+    return m;
+  }
+};
+
+inline constexpr double quantum_limit = 67108864.0;
+
+template <class Scalar>
+inline std::int32_t quanta(Scalar value) {
+  const auto limit = static_cast<Scalar>(quantum_limit);
+  const Scalar inside = value > limit ? limit : value < -limit ? -limit : value;
+  return std::isnan(inside) ? 0 : static_cast<std::int32_t>(std::rint(inside));
+}
+
+/// A point's four numbers in a tile.
+template <class T>
+struct PointNumbers {
+  T* base;
+  T& operator[](std::int64_t plane) const { return base[plane * PLIANT_TILE]; }
+};
+template <class T>
+inline PointNumbers<T> numbers_of(T* buffer, std::int64_t i) {
+  return {buffer + tile_base(i, 4)};
+}
+
+}  // namespace pliant::ref::contact

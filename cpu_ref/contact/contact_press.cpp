@@ -1,0 +1,145 @@
+// Twin of kernels/contact/contact_press.cl.
+#include "cpu_ref/contact/contact_edge.h"
+#include "cpu_ref/registry.h"
+
+namespace pliant::ref {
+namespace {
+
+using namespace contact;
+
+/// The force on a point along the normal.
+template <class Scalar>
+Scalar normal_force(const Meeting<Scalar>& m, const Scalar* law, Scalar area, Scalar stiffness, Scalar h) {
+  const Scalar depth = -m.distance, opening = m.opening, before = depth + opening;
+  Scalar push = 0;
+  if (law[12] > Scalar(0) && before > Scalar(0)) {
+    const Scalar spring = (area * law[12]) * (law[16] > Scalar(0) ? before * std::sqrt(before) : before);
+    const Scalar damped = spring * std::fma(law[13], -opening / h, Scalar(1));
+    const Scalar most = Scalar(0.5) * (stiffness * before);
+    push = damped > Scalar(0) ? (damped < most ? damped : most) : Scalar(0);
+  }
+  const Scalar rest = stiffness > Scalar(0) ? depth - push / stiffness - law[15] : Scalar(0);
+  return rest > Scalar(0) ? std::fma(stiffness, rest, push) : push;
+}
+
+/// What pulls a point back to where it stuck, at most `most`.
+template <class Scalar>
+Vec<Scalar> press_friction(const Meeting<Scalar>& m, const Scalar* next, const PointNumbers<Scalar>& anchor, Scalar stiffness,
+                           Scalar most, const Vec<Scalar>& f) {
+  const Vec<Scalar> slip = turned(next, difference(m.inside, {anchor[0], anchor[1], anchor[2]}));
+  const Vec<Scalar> side = scaled_sum(minus(dot(slip, m.normal)), m.normal, slip);
+  const Scalar length = std::sqrt(dot(side, side));
+  const Scalar factor = stiffness * length > most ? most / length : stiffness;
+  return scaled_sum(-factor, side, f);
+}
+
+/// W where nothing is known of the points that touch: that of all points around.
+template <class Scalar>
+Scalar yield_of_all(const Scalar* node_u, const Scalar* node_w, const std::int32_t* contact_node, const Scalar* contact_share,
+                    std::int64_t i, Scalar half_hh) {
+  Scalar w = 0;
+  for (std::int64_t a = 0, base = tile_base(i, 8); a < 8; ++a) {
+    const std::int64_t texel = std::int64_t{4} * contact_node[base + a * PLIANT_TILE];
+    const Scalar b = std::fma(half_hh, node_w[texel + 3], half_hh);
+    w = std::fma(contact_share[base + a * PLIANT_TILE], b * node_u[texel + 3], w);
+  }
+  return w;
+}
+
+/// What a point touches, a bit per tool, and whether it may touch something in the next step.
+struct Reached {
+  std::int32_t touching = 0, count = 0, ready = 0;
+};
+
+template <class Scalar, int EDGES>
+Reached reach(const EdgedTools<Scalar, EDGES>& all, [[maybe_unused]] const Corners<Scalar, EDGES>& corners,
+              [[maybe_unused]] const Scalar* contact_weight, std::int64_t i, const Place<Scalar>& p, std::int32_t near,
+              Scalar margin, Scalar within) {
+  Reached out;
+  [[maybe_unused]] bool weighed = false;
+  for (std::int32_t t = 0; t < all.count; ++t) {
+    if ((near >> t & 1) == 0) continue;
+    const PatchMeeting<Scalar, EDGES> met = all.meet_patch(t, i, p);
+    const bool soon = met.m.may_touch_next(margin, within);
+    if (soon) out.ready = PLIANT_READY_BIT;
+    if constexpr (EDGES != 0) {
+      if (!weighed || (met.edged && soon)) corners.write_weights(contact_weight, i, met);
+      weighed = true;
+    }
+    if (!(met.m.distance < Scalar(0))) continue;
+    out.touching |= 1 << t;
+    ++out.count;
+  }
+  return out;
+}
+
+}  // namespace
+
+template <class Scalar, int EDGES>
+void contact_press(Range range, const Scalar* node_u, const Scalar* node_w, const Scalar* contact_rest,
+                   const std::int32_t* contact_node, const Scalar* contact_weight, const Scalar* contact_share,
+                   const std::int32_t* contact_list, const std::int32_t* contact_near, Scalar* contact_yield,
+                   Scalar* contact_anchor, std::int32_t* contact_force, std::int32_t* contact_tool_force,
+                   const std::int32_t* tool_kind, const Scalar* tool_data, const Scalar* tool_grid, const Scalar* tool_edge,
+                   const Scalar* tool_pose, const Scalar* touch_surface, const Scalar* contact_patch,
+                   Scalar* contact_corner_weight, std::int32_t* contact_corner_force, const Scalar* contact_params,
+                   const Scalar* step_params, std::int32_t point_count, std::int32_t tools, std::int32_t step) {
+  const Points<Scalar> points{node_u, node_w, contact_rest, contact_node, contact_weight};
+  const EdgedTools<Scalar, EDGES> all{
+      {tool_kind, tool_data, tool_grid, tool_pose, tools, step}, tool_edge, {points, touch_surface, contact_patch}};
+  const Corners<Scalar, EDGES> corners{contact_corner_force, contact_corner_weight};
+  const Scalar h = step_params[0], half_hh = (Scalar(0.5) * h) * h;
+  for (std::int64_t entry = range.begin; entry < range.end; ++entry) {
+    const std::int64_t i = listed(contact_list, entry);
+    const std::int32_t near = contact_near[i / PLIANT_TILE];
+    const Place<Scalar> p = points.at(i);
+    const Scalar area = points.area(i), within = ready_share(contact_yield[i]);  // no area: it fills the tile up
+    const Reached reached =
+        area > Scalar(0) ? reach(all, corners, contact_weight, i, p, near, contact_params[5], within) : Reached{};
+    const std::int32_t touching = reached.touching, count = reached.count;
+    const PointNumbers<Scalar> anchor = numbers_of(contact_anchor, i);
+    const PointNumbers<std::int32_t> force = numbers_of(contact_force, i);
+    const std::int32_t held = static_cast<std::int32_t>(anchor[3]) - 1;
+    if (held >= 0 && (touching >> held & 1) == 0) anchor[3] = 0;
+    Quanta sum{};
+    corners.clear(i);
+    Scalar w = contact_yield[i];
+    if (touching != 0 && !(w > Scalar(0)))
+      contact_yield[i] = w = yield_of_all(node_u, node_w, contact_node, contact_share, i, half_hh);
+    const Scalar whole = w > Scalar(0) ? area / (w * static_cast<Scalar>(count)) : Scalar(0);
+    for (std::int32_t t = 0; t < tools; ++t) {
+      if ((near >> t & 1) == 0) continue;
+      const PointNumbers<std::int32_t> on_tool = tool_force_of(contact_tool_force, point_count, t, i);
+      on_tool[7] = touching >> t & 1;
+      if (on_tool[7] == 0) continue;
+      const PatchMeeting<Scalar, EDGES> met = all.meet_patch(t, i, p);
+      const Meeting<Scalar>& m = met.m;
+      const Scalar stiffness = (whole * met.share) * met.ease;
+      const Scalar* law = all.law(t);
+      const Scalar push = normal_force(m, law, area, stiffness, h);
+      Vec<Scalar> f = times(m.normal, push);
+      if (law[14] > Scalar(0)) {
+        const auto own = static_cast<Scalar>(t + 1);
+        if (anchor[3] == Scalar(0)) {
+          const Vec<Scalar> stuck = turned_back(all.now(t), difference(difference(p.now, p.moved), origin_of(all.now(t))));
+          set_three(anchor, stuck);
+          anchor[3] = own;
+        }
+        if (anchor[3] == own) f = press_friction(m, all.next(t), anchor, stiffness, law[14] * push, f);
+      }
+      const Quanta q = quanta(f, contact_params[1]);
+      begin_touch(on_tool, m.opening - m.distance);
+      add_to_tool(on_tool, all.next(t), contact_params, met.place, q);
+      corners.add(i, met, q, sum);
+    }
+    set_three(force, sum);
+    force[3] = touching | reached.ready;
+  }
+}
+
+void register_contact_press(Registry& registry) {
+  registry.add_specialised<2>("contact_press", {"EDGES"},
+                              [](auto scalar, auto edges) { return contact_press<decltype(scalar), edges>; });
+}
+
+}  // namespace pliant::ref

@@ -1,0 +1,114 @@
+// Twin of kernels/contact/contact_settle.cl.
+#include "cpu_ref/contact/contact_edge.h"
+#include "cpu_ref/registry.h"
+
+namespace pliant::ref {
+namespace {
+
+using namespace contact;
+
+/// Friction of both parts together, towards the anchor; where it slips, the anchor follows.
+template <class Scalar>
+Vec<Scalar> settle_friction(const Meeting<Scalar>& m, const Scalar* next, const PointNumbers<Scalar>& anchor, Scalar stiffness,
+                            Scalar friction, const Vec<Scalar>& f) {
+  const Vec<Scalar> slip = turned(next, difference(m.inside, {anchor[0], anchor[1], anchor[2]}));
+  const Scalar along = dot(slip, m.normal), across = dot(f, m.normal);
+  const Vec<Scalar> side = scaled_sum(minus(along), m.normal, slip);
+  const Vec<Scalar> pull = scaled_sum(-stiffness, side, scaled_sum(minus(across), m.normal, f));
+  const Scalar length = std::sqrt(dot(pull, pull)), most = across > Scalar(0) ? friction * across : Scalar(0);
+  if (length > most) {
+    const Scalar size = std::sqrt(dot(side, side)), hold = stiffness > Scalar(0) ? most / stiffness : Scalar(0);
+    const Scalar kept = size > hold ? hold / size : Scalar(1);
+    const Vec<Scalar> back = turned_back(next, scaled_sum(-kept, side, times(m.normal, minus(along))));
+    for (std::size_t k = 0; k < 3; ++k) anchor[static_cast<std::int64_t>(k)] = m.inside[k] + back[k];
+  }
+  return scaled_sum(length > most ? most / length : Scalar(1), pull, times(m.normal, across));
+}
+
+/// W of the points that touch or may touch; `weight`: of the nodes, at the place that a tool touches.
+template <class Scalar>
+Scalar yield_of_touching(const Points<Scalar>& points, const Scalar* contact_share, const Scalar* contact_node_sum,
+                         std::int64_t i, Scalar half_hh, const Scalar* weight) {
+  Scalar w = 0, whole = 0, moving = 0;
+  for (std::int64_t a = 0, base = tile_base(i, 8); a < 8; ++a) {
+    const std::int64_t at = base + a * PLIANT_TILE, texel = std::int64_t{4} * points.node[at];
+    const Scalar b = std::fma(half_hh, points.node_w[texel + 3], half_hh);
+    const Scalar c = weight[a * PLIANT_TILE], own = c > Scalar(0) ? c * contact_node_sum[texel + 3] : Scalar(0);
+    const Scalar free = contact_share[at] > Scalar(0) ? own : Scalar(0);
+    w = std::fma(free, b * points.node_u[texel + 3], w);
+    whole = whole + own;
+    moving = moving + free;
+  }
+  return moving > Scalar(0) ? w * (whole / moving) : Scalar(0);
+}
+
+}  // namespace
+
+template <class Scalar, int EDGES>
+void contact_settle(Range range, const Scalar* node_u, const Scalar* node_w, const Scalar* contact_rest,
+                    const std::int32_t* contact_node, const Scalar* contact_weight, const Scalar* contact_share,
+                    const std::int32_t* contact_list, const std::int32_t* contact_near, Scalar* contact_yield,
+                    Scalar* contact_anchor, std::int32_t* contact_force, std::int32_t* contact_change,
+                    const Scalar* contact_node_sum, std::int32_t* contact_tool_force, const std::int32_t* tool_kind,
+                    const Scalar* tool_data, const Scalar* tool_grid, const Scalar* tool_edge, const Scalar* tool_pose,
+                    const Scalar* touch_surface, const Scalar* contact_patch, Scalar* contact_corner_weight,
+                    std::int32_t* contact_corner_force, const Scalar* contact_params, const Scalar* step_params,
+                    std::int32_t point_count, std::int32_t tools, std::int32_t step) {
+  const Points<Scalar> points{node_u, node_w, contact_rest, contact_node, contact_weight};
+  const EdgedTools<Scalar, EDGES> all{
+      {tool_kind, tool_data, tool_grid, tool_pose, tools, step}, tool_edge, {points, touch_surface, contact_patch}};
+  const Corners<Scalar, EDGES> corners{contact_corner_force, contact_corner_weight};
+  const Scalar h = step_params[0], half_hh = (Scalar(0.5) * h) * h, quantum = contact_params[0], inverse = contact_params[1];
+  for (std::int64_t entry = range.begin; entry < range.end; ++entry) {
+    const std::int64_t i = listed(contact_list, entry);
+    if (contact_near[i / PLIANT_TILE] == 0) continue;
+    const PointNumbers<Scalar> anchor = numbers_of(contact_anchor, i);
+    const PointNumbers<std::int32_t> force = numbers_of(contact_force, i), change = numbers_of(contact_change, i);
+    const std::int32_t touching = force[3];
+    Quanta sum{};
+    corners.clear(i);
+    if (touching != 0) {
+      const Place<Scalar> p = points.at(i);
+      const Scalar known = contact_yield[i];
+      const bool at_corners = EDGES != 0 && (contact_near[i / PLIANT_TILE] & ~PLIANT_TOUCH_BIT) != 0;
+      const Scalar* weight = at_corners ? contact_corner_weight + tile_base(i, 9) : contact_weight + tile_base(i, 8);
+      contact_yield[i] = yield_of_touching(points, contact_share, contact_node_sum, i, half_hh, weight);
+      std::int32_t count = 0;
+      for (std::int32_t t = 0; t < tools; ++t) count += touching >> t & 1;
+      const Scalar area = points.area(i);
+      const Scalar whole = known > Scalar(0) ? area / (known * static_cast<Scalar>(count)) : Scalar(0);
+      for (std::int32_t t = 0; t < tools; ++t) {
+        if ((touching >> t & 1) == 0) continue;
+        const PatchMeeting<Scalar, EDGES> met = all.meet_patch(t, i, p);
+        const Meeting<Scalar>& m = met.m;
+        const Scalar stiffness = (whole * met.share) * met.ease;
+        const PointNumbers<std::int32_t> on_tool = tool_force_of(contact_tool_force, point_count, t, i);
+        const Scalar* law = all.law(t);
+        const Scalar rest = -m.distance - law[15], push = rest > Scalar(0) ? stiffness * rest : Scalar(0);
+        Vec<Scalar> f = times(m.normal, push);
+        Quanta before{};
+        if (count == 1) {
+          before = {-on_tool[0], -on_tool[1], -on_tool[2]};
+          for (std::size_t k = 0; k < 3; ++k) f[k] += static_cast<Scalar>(before[k]) * quantum;
+          if (anchor[3] == static_cast<Scalar>(t + 1)) f = settle_friction(m, all.next(t), anchor, stiffness, law[14], f);
+        }
+        Quanta q = quanta(f, inverse);
+        for (std::size_t k = 0; k < 3; ++k) q[k] -= before[k];
+        add_to_tool(on_tool, all.next(t), contact_params, met.place, q);
+        corners.add(i, met, q, sum);
+      }
+      for (std::size_t k = 0; k < 3; ++k) force[static_cast<std::int64_t>(k)] += sum[k];
+    } else {
+      contact_yield[i] = 0;
+    }
+    for (std::size_t k = 0; k < 3; ++k) change[static_cast<std::int64_t>(k)] = sum[k];
+    change[3] = touching;
+  }
+}
+
+void register_contact_settle(Registry& registry) {
+  registry.add_specialised<2>("contact_settle", {"EDGES"},
+                              [](auto scalar, auto edges) { return contact_settle<decltype(scalar), edges>; });
+}
+
+}  // namespace pliant::ref

@@ -1,0 +1,189 @@
+// Twin of kernels/contact/touch_point.cl, which says what is computed.
+#pragma once
+#include "cpu_ref/contact/contact_sum.h"
+
+namespace pliant::ref::touch {
+
+using contact::difference;
+using contact::dot;
+using contact::Quanta;
+using contact::scaled_sum;
+using contact::times;
+using contact::Vec;
+
+/// Of a pair, in spacings of the points.
+template <class Scalar>
+inline constexpr Scalar radius = Scalar(1.2);
+
+/// Three planes of a tiled array from `plane` on.
+template <class T>
+inline auto three(const T* numbers, std::int64_t base, std::int64_t plane) {
+  const T* at = numbers + base + plane * PLIANT_TILE;
+  return std::array<T, 3>{at[0], at[PLIANT_TILE], at[std::int64_t{2} * PLIANT_TILE]};
+}
+template <class T, class Three>
+inline void set_three(T* numbers, std::int64_t base, std::int64_t plane, const Three& v) {
+  for (std::size_t c = 0; c < 3; ++c) numbers[base + (plane + static_cast<std::int64_t>(c)) * PLIANT_TILE] = v[c];
+}
+
+template <class Scalar>
+inline Vec<Scalar> cross(const Vec<Scalar>& a, const Vec<Scalar>& b) {
+  return {std::fma(a[1], b[2], -(a[2] * b[1])), std::fma(a[2], b[0], -(a[0] * b[2])), std::fma(a[0], b[1], -(a[1] * b[0]))};
+}
+template <class Scalar>
+inline Vec<Scalar> unit(const Vec<Scalar>& v) {
+  return contact::normalised(v, std::sqrt(dot(v, v)));
+}
+
+/// Where a point is: a row of touch_place.
+template <class Scalar>
+struct Place {
+  Vec<Scalar> x{}, moved{}, normal{}, tangent{}, tilt{};
+  Scalar yielding = 0, density = 0;  ///< of points: 1 / the spacing around it [1/m]
+  std::array<Scalar, 3> dual{};      ///< of the tangents: 1 / |F t1|, skew, 1 / height of F t2 over F t1
+};
+
+template <class Scalar>
+inline Place<Scalar> place_of(const Scalar* touch_place, std::int64_t i) {
+  const Scalar* p = touch_place + i * PLIANT_TOUCH_PLACE;
+  return {
+      {p[0], p[1], p[2]},  {p[4], p[5], p[6]}, {p[8], p[9], p[10]}, {p[12], p[13], p[14]}, {p[16], p[17], p[18]}, p[3], p[19],
+      {p[7], p[11], p[15]}};
+}
+
+/// Sums over the nodes of a point, weighted by the gradients along both tangents.
+template <class Scalar>
+inline std::array<Vec<Scalar>, 2> along_tangents(const contact::Points<Scalar>& points, const Scalar* touch_surface,
+                                                 std::int64_t i, const Scalar* values) {
+  const std::int64_t own = tile_base(i, PLIANT_TOUCH_SURFACE), base = tile_base(i, 8);
+  std::array<Vec<Scalar>, 2> out{};
+  for (std::int64_t a = 0; a < 8; ++a) {
+    const Scalar* v = values + std::int64_t{4} * points.node[base + a * PLIANT_TILE];
+    const Vec<Scalar> value{v[0], v[1], v[2]};
+    out[0] = scaled_sum(touch_surface[own + a * PLIANT_TILE], value, out[0]);
+    out[1] = scaled_sum(touch_surface[own + (8 + a) * PLIANT_TILE], value, out[1]);
+  }
+  return out;
+}
+
+/// Components of v along the dual vectors of a point's tangents [1/m of v].
+template <class Scalar>
+inline std::array<Scalar, 2> dual_of(const Place<Scalar>& p, const Vec<Scalar>& v) {
+  const Scalar second = dot(v, cross(p.normal, p.tangent));
+  return {std::fma(-p.dual[1], second, dot(v, p.tangent)) * p.dual[0], second * p.dual[2]};
+}
+
+/// The frame of a point at the start of the step, and how far its normal turns in the step.
+template <class Scalar>
+inline void set_frame(const contact::Points<Scalar>& points, const Scalar* touch_surface, std::int64_t i, Place<Scalar>& p) {
+  const std::int64_t own = tile_base(i, PLIANT_TOUCH_SURFACE);
+  const auto now = along_tangents(points, touch_surface, i, points.node_u);
+  const auto moved = along_tangents(points, touch_surface, i, points.node_w);
+  const Vec<Scalar> first = difference(contact::sum_of(three(touch_surface, own, 16), now[0]), moved[0]);
+  const Vec<Scalar> second = difference(contact::sum_of(three(touch_surface, own, 19), now[1]), moved[1]);
+  p.normal = unit(cross(first, second));
+  const Scalar length = std::sqrt(dot(first, first));
+  p.tangent = contact::normalised(first, length);
+  const Scalar height = dot(second, cross(p.normal, p.tangent));
+  p.dual = {length > Scalar(0.1) ? Scalar(1) / length : Scalar(10), Scalar(0),
+            height > Scalar(0.1) ? Scalar(1) / height : Scalar(10)};
+  p.dual[1] = dot(second, p.tangent) * p.dual[2];
+  const Scalar spacing = touch_surface[own + std::int64_t{22} * PLIANT_TILE];
+  p.density = spacing > Scalar(0) ? Scalar(1) / spacing : Scalar(0);
+}
+
+/// The normal turns by -(n . F' t_k) a^k, a^k the dual vectors of the tangents.
+template <class Scalar>
+inline Vec<Scalar> tilt_of(const contact::Points<Scalar>& points, const Scalar* touch_surface, std::int64_t i,
+                           const Place<Scalar>& p) {
+  const auto moved = along_tangents(points, touch_surface, i, points.node_w);
+  const Scalar one = dot(p.normal, moved[0]) * p.dual[0], two = dot(p.normal, moved[1]);
+  const Scalar across = std::fma(two, p.dual[2], -(one * p.dual[1]));
+  return difference(Vec<Scalar>{}, scaled_sum(one, p.tangent, times(cross(p.normal, p.tangent), across)));
+}
+
+template <class Scalar>
+inline void write_place(Scalar* touch_place, std::int64_t i, const Place<Scalar>& p) {
+  Scalar* at = touch_place + i * PLIANT_TOUCH_PLACE;
+  const Vec<Scalar>* rows[] = {&p.x, &p.moved, &p.normal, &p.tangent, &p.tilt};
+  const Scalar last[] = {p.yielding, p.dual[0], p.dual[1], p.dual[2], p.density};
+  for (std::size_t r = 0; r < 5; ++r) {
+    for (std::size_t c = 0; c < 3; ++c) at[4 * r + c] = (*rows[r])[c];
+    at[4 * r + 3] = last[r];
+  }
+}
+
+/// Two points that may push each other; `lower` has the lower index.
+template <class Scalar>
+struct Pair {
+  Vec<Scalar> apart{}, normal{};  ///< lower minus upper; what pushes the lower one
+  Vec<Scalar> arm{};              ///< how the gap follows the upper normal, and against it the lower one [m]
+  Scalar gap = 0;
+};
+
+template <class Scalar>
+inline Scalar front_of(const Place<Scalar>& lower, const Place<Scalar>& upper, const Vec<Scalar>& moved) {
+  const Vec<Scalar> facing = difference(upper.normal, lower.normal);
+  const Scalar closing = minus(dot(moved, facing));
+  return dot(difference(lower.x, upper.x), facing) - (closing > Scalar(0) ? closing : Scalar(0));
+}
+
+template <class Scalar>
+inline Pair<Scalar> pair_of(const Place<Scalar>& lower, const Place<Scalar>& upper) {
+  Pair<Scalar> p;
+  p.apart = difference(lower.x, upper.x);
+  const Vec<Scalar> facing = difference(upper.normal, lower.normal);
+  const Scalar length = std::sqrt(dot(facing, facing));
+  p.normal = contact::normalised(facing, length);
+  const Vec<Scalar> start = difference(p.apart, difference(lower.moved, upper.moved));
+  p.arm = times(scaled_sum(minus(dot(start, p.normal)), p.normal, start), Scalar(1) / length);
+  p.gap = dot(p.apart, p.normal) + dot(p.arm, difference(upper.tilt, lower.tilt));
+  return p;
+}
+
+/// The force on one point of a pair, in quanta; `f` is that on the lower one.
+template <class Scalar>
+inline Quanta quanta_of(const Vec<Scalar>& f, Scalar inverse, bool is_lower) {
+  const Quanta q = contact::quanta(f, inverse);
+  return is_lower ? q : Quanta{-q[0], -q[1], -q[2]};
+}
+
+/// What pushes do to the tangents of a point, in quanta; `lever`: the sum of arms times pushes (touch_point.cl).
+template <class Scalar>
+inline void set_moment(std::int32_t* touch_moment, std::int64_t i, const Place<Scalar>& own, const Vec<Scalar>& lever,
+                       Scalar inverse) {
+  const std::array<Scalar, 2> turn = dual_of(own, lever);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Quanta q = contact::quanta(times(own.normal, turn[k] * own.density), inverse);
+    set_three(touch_moment, tile_base(i, PLIANT_TOUCH_MOMENT), static_cast<std::int64_t>(3 * k), q);
+  }
+}
+
+/// The frame that moves with the lower point: its rows, and back.
+template <class Scalar>
+inline Vec<Scalar> into_frame(const Place<Scalar>& lower, const Vec<Scalar>& v) {
+  return {dot(lower.tangent, v), dot(cross(lower.normal, lower.tangent), v), dot(lower.normal, v)};
+}
+template <class Scalar>
+inline Vec<Scalar> out_of_frame(const Place<Scalar>& lower, const Vec<Scalar>& v) {
+  return scaled_sum(v[0], lower.tangent, scaled_sum(v[1], cross(lower.normal, lower.tangent), times(lower.normal, v[2])));
+}
+
+/// Slip of a pair against where it stuck, along the surface.
+template <class Scalar>
+inline Vec<Scalar> slip_of(const Place<Scalar>& lower, const Pair<Scalar>& p, const Vec<Scalar>& stuck) {
+  const Vec<Scalar> slip = difference(p.apart, out_of_frame(lower, stuck));
+  return scaled_sum(minus(dot(slip, p.normal)), p.normal, slip);
+}
+
+/// Numbers of a partner: plane k of touch_pair.
+template <class T>
+inline T* pair_numbers(T* touch_pair, std::int64_t i, std::int64_t slot) {
+  return touch_pair + tile_base(i, PLIANT_TOUCH_SLOTS * PLIANT_TOUCH_PAIR) + slot * PLIANT_TOUCH_PAIR * PLIANT_TILE;
+}
+template <class T>
+inline T* pair_force(T* touch_force, std::int64_t i, std::int64_t slot) {
+  return touch_force + tile_base(i, PLIANT_TOUCH_SLOTS * PLIANT_TOUCH_FORCE) + slot * PLIANT_TOUCH_FORCE * PLIANT_TILE;
+}
+
+}  // namespace pliant::ref::touch

@@ -1,0 +1,160 @@
+// Twin of kernels/matching/flsm_region.cl.
+#include <array>
+
+#include "cpu_ref/matching/flsm.h"
+#include "cpu_ref/matching/flsm_rotation.h"
+#include "cpu_ref/registry.h"
+#include "cpu_ref/tile.h"
+
+namespace pliant::ref {
+namespace {
+
+/// Symmetric: xx yy zz xy xz yz.
+template <class Scalar>
+using Symmetric = std::array<Scalar, 6>;
+
+/// a m with the symmetric m.
+template <class Scalar>
+Mat3<Scalar> times_symmetric(const Mat3<Scalar>& a, const Symmetric<Scalar>& m) {
+  const auto [xx, yy, zz, xy, xz, yz] = m;
+  const auto sum = [](Scalar a0, Scalar b0, Scalar a1, Scalar b1, Scalar a2, Scalar b2) {
+    return std::fma(a2, b2, std::fma(a1, b1, a0 * b0));
+  };
+  return {sum(a.m00, xx, a.m01, xy, a.m02, xz), sum(a.m00, xy, a.m01, yy, a.m02, yz), sum(a.m00, xz, a.m01, yz, a.m02, zz),
+          sum(a.m10, xx, a.m11, xy, a.m12, xz), sum(a.m10, xy, a.m11, yy, a.m12, yz), sum(a.m10, xz, a.m11, yz, a.m12, zz),
+          sum(a.m20, xx, a.m21, xy, a.m22, xz), sum(a.m20, xy, a.m21, yy, a.m22, yz), sum(a.m20, xz, a.m21, yz, a.m22, zz)};
+}
+
+/// P of the deformation H with the rotation I + D.
+template <class Scalar>
+Mat3<Scalar> corotated_stress(const Mat3<Scalar>& h, const Mat3<Scalar>& d, Scalar shear, Scalar bulk) {
+  const Mat3<Scalar> r{h.m00 - d.m00, h.m01 - d.m01, h.m02 - d.m02, h.m10 - d.m10, h.m11 - d.m11,
+                       h.m12 - d.m12, h.m20 - d.m20, h.m21 - d.m21, h.m22 - d.m22};
+  const auto turned_back = [](Scalar d0, Scalar r0, Scalar d1, Scalar r1, Scalar d2, Scalar r2, Scalar own) {
+    return std::fma(d2, r2, std::fma(d1, r1, std::fma(d0, r0, own)));
+  };
+  const Symmetric<Scalar> s{turned_back(d.m00, r.m00, d.m10, r.m10, d.m20, r.m20, r.m00),
+                            turned_back(d.m01, r.m01, d.m11, r.m11, d.m21, r.m21, r.m11),
+                            turned_back(d.m02, r.m02, d.m12, r.m12, d.m22, r.m22, r.m22),
+                            turned_back(d.m00, r.m01, d.m10, r.m11, d.m20, r.m21, r.m01),
+                            turned_back(d.m00, r.m02, d.m10, r.m12, d.m20, r.m22, r.m02),
+                            turned_back(d.m01, r.m02, d.m11, r.m12, d.m21, r.m22, r.m12)};
+  const auto [xx, yy, zz, xy, xz, yz] = s;
+  const Scalar half = Scalar(0.5), eighth = Scalar(0.125), one = Scalar(1);
+  const Mat3<Scalar> q = times_symmetric(Mat3<Scalar>{xx, xy, xz, xy, yy, yz, xz, yz, zz}, s);
+  // At large strain the cubic and quartic terms of the energy shrink by k and k^2.
+  const auto sum = [](const Mat3<Scalar>& a, Scalar b00, Scalar b11, Scalar b22, Scalar b01, Scalar b02, Scalar b12) {
+    const Scalar outside = std::fma(a.m12, b12, std::fma(a.m02, b02, a.m01 * b01));
+    return std::fma(Scalar(2), outside, std::fma(a.m22, b22, std::fma(a.m11, b11, a.m00 * b00)));
+  };
+  const Scalar most = Scalar(PLIANT_FLSM_STRAIN), tr2 = (q.m00 + q.m11) + q.m22, tr3 = sum(q, xx, yy, zz, xy, xz, yz);
+  const Scalar tr4 = sum(q, q.m00, q.m11, q.m22, q.m01, q.m02, q.m12);
+  const Scalar y = tr2 > most ? most / tr2 : one, k = y * (Scalar(2) - y);
+  const Scalar own = std::fma(((Scalar(4) * (y - one)) * (y * y)) / most,
+                              std::fma(k * Scalar(0.0625), tr4, -(Scalar(1) / Scalar(6)) * tr3), one);
+  const Scalar linear = -half * k, quadratic = eighth * (k * k);
+  const auto diagonal = [&](Scalar square, Scalar strain) {
+    return std::fma(quadratic, square, std::fma(linear, strain, own));
+  };
+  const auto beside = [&](Scalar square, Scalar strain) { return std::fma(quadratic, square, linear * strain); };
+  const Mat3<Scalar> factor{diagonal(q.m00, xx), beside(q.m01, xy), beside(q.m02, xz), beside(q.m10, xy),  diagonal(q.m11, yy),
+                            beside(q.m12, yz),   beside(q.m20, xz), beside(q.m21, yz), diagonal(q.m22, zz)};
+  const Mat3<Scalar> f = times_symmetric(factor, s);
+  const Scalar p = bulk * ((xx + yy) + zz);
+  const Symmetric<Scalar> stress{std::fma(shear, f.m00, p),
+                                 std::fma(shear, f.m11, p),
+                                 std::fma(shear, f.m22, p),
+                                 shear * f.m01,
+                                 shear * f.m02,
+                                 shear * f.m12};
+  const Mat3<Scalar> t = times_symmetric(d, stress);
+  return {stress[0] + t.m00, stress[3] + t.m01, stress[4] + t.m02, stress[3] + t.m10, stress[1] + t.m11,
+          stress[5] + t.m12, stress[4] + t.m20, stress[5] + t.m21, stress[2] + t.m22};
+}
+
+/// The inverse of a region's moments, from its first plane.
+template <class Scalar>
+Symmetric<Scalar> inverse_of(const Scalar* plane) {
+  Symmetric<Scalar> m;
+  for (int p = 0; p < 6; ++p) m[p] = plane[p * PLIANT_TILE];
+  return m;
+}
+
+/// hd [component][axis] from a matrix; t follows the centroid with it.
+template <class Scalar>
+void store_record(const Scalar* rest, const Scalar (&field)[16][PLIANT_TILE], int l, const Scalar (&hd)[3][3], Scalar* record) {
+  for (int c = 0; c < 3; ++c) {
+    Scalar t = rest[l] * field[c][l];
+    for (int axis = 0; axis < 3; ++axis) t = std::fma(-hd[c][axis], rest[(axis + 1) * PLIANT_TILE + l], t);
+    record[c] = t;
+    for (int axis = 0; axis < 3; ++axis) record[4 * axis + 4 + c] = hd[c][axis];
+  }
+  for (int block = 0; block < 4; ++block) record[4 * block + 3] = Scalar(0);
+}
+
+}  // namespace
+
+template <class Scalar, int Width, int Elastic>
+void flsm_region(Range range, const Scalar* node_u, const Scalar* flsm_plates, const std::int32_t* flsm_link,
+                 const std::int32_t* missing_offset, const std::int32_t* missing, const Scalar* missing_factor,
+                 const Scalar* flsm_reference, const Scalar* flsm_rest, Scalar* flsm_regions, const Scalar* flsm_elastic,
+                 Scalar* flsm_pulls, Scalar spacing, Scalar shear, Scalar bulk) {
+  const Scalar origin[4] = {flsm_reference[0], flsm_reference[1], flsm_reference[2], flsm_reference[3]};
+  for (std::int64_t tile = range.begin; tile < range.end; tile += PLIANT_TILE) {
+    Scalar field[16][PLIANT_TILE];
+    for (int l = 0; l < PLIANT_TILE; ++l) {
+      Scalar s[16];
+      moments_of<Width>(node_u, flsm_plates, flsm_link, missing_offset, missing, missing_factor, origin, tile + l, s);
+      for (int k = 0; k < 16; ++k) field[k][l] = s[k];
+    }
+    const Scalar* rest = flsm_rest + PLIANT_FLSM_REST_PLANES * tile;
+    const Scalar* soft = Elastic == 1 ? flsm_elastic + PLIANT_FLSM_ELASTIC_PLANES * tile : nullptr;
+    Mat3<Scalar> deformation[PLIANT_TILE], rotation[PLIANT_TILE];
+    bool valid[PLIANT_TILE];
+    for (int l = 0; l < PLIANT_TILE; ++l) {
+      const auto at = [&](int plane) { return rest[plane * PLIANT_TILE + l]; };
+      const Scalar d[3] = {at(1), at(2), at(3)};
+      const auto added = [&](int c, int axis) { return std::fma(-field[c][l], d[axis], field[4 * axis + 4 + c][l]); };
+      Mat3<Scalar> e{added(0, 0), added(0, 1), added(0, 2), added(1, 0), added(1, 1),
+                     added(1, 2), added(2, 0), added(2, 1), added(2, 2)};
+      if constexpr (Elastic == 1) e = times_symmetric(e, inverse_of(soft + l));
+      const Scalar a[6] = {at(4), at(5), at(6), at(7), at(8), at(9)};
+      bool ok = false;
+      rotation[l] = rotation_of(a, e, (a[0] + a[1]) + a[2], ok);
+      deformation[l] = e;
+      valid[l] = ok;
+    }
+    for (int l = 0; l < PLIANT_TILE; ++l) {
+      Scalar* record = flsm_regions + PLIANT_FLSM_RECORD * (tile + l);
+      const Mat3<Scalar>& r = rotation[l];
+      Scalar hd[3][3] = {{spacing * r.m00, spacing * r.m01, spacing * r.m02},
+                         {spacing * r.m10, spacing * r.m11, spacing * r.m12},
+                         {spacing * r.m20, spacing * r.m21, spacing * r.m22}};
+      for (int c = 0; c < 3; ++c) {
+        for (int axis = 0; axis < 3; ++axis) {
+          if (!valid[l]) hd[c][axis] = record[4 * axis + 4 + c];
+        }
+      }
+      store_record(rest, field, l, hd, record);
+      if constexpr (Elastic == 1) {
+        const Scalar q = soft[6 * PLIANT_TILE + l], pull = q * spacing;
+        if (valid[l] && q > Scalar(0)) {
+          const Mat3<Scalar>& e = deformation[l];
+          const Mat3<Scalar> p = times_symmetric(corotated_stress(e, r, shear, bulk), inverse_of(soft + l));
+          const Scalar from[9] = {e.m00, e.m01, e.m02, e.m10, e.m11, e.m12, e.m20, e.m21, e.m22};
+          const Scalar by[9] = {p.m00, p.m01, p.m02, p.m10, p.m11, p.m12, p.m20, p.m21, p.m22};
+          for (int k = 0; k < 9; ++k) hd[k / 3][k % 3] = std::fma(-pull, by[k], spacing * from[k]);
+        }
+        store_record(rest, field, l, hd, flsm_pulls + PLIANT_FLSM_RECORD * (tile + l));
+      }
+    }
+  }
+}
+
+void register_flsm_region(Registry& registry) {
+  registry.add_specialised<flsm_widths, 2>("flsm_region", {"WIDTH", "ELASTIC"}, [](auto scalar, auto width, auto elastic) {
+    return flsm_region<decltype(scalar), width(), elastic()>;
+  });
+}
+
+}  // namespace pliant::ref

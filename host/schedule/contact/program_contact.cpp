@@ -1,0 +1,313 @@
+// Buffers of contact points and tools, and the passes of contact.
+#include <algorithm>
+#include <map>
+
+#include "schedule/contact/contact_data.h"
+#include "schedule/program_builder.h"
+
+namespace pliant {
+namespace {
+
+/// Numbers per tool in tool_data (kernels/contact/contact_shape.cl).
+constexpr std::size_t kToolNumbers = 20;
+/// Numbers per edge point in tool_edge (kernels/contact/contact_edge.cl).
+constexpr std::size_t kEdgeNumbers = 4;
+
+std::vector<double> numbers_of(const ToolForm& form, const ContactLaw& law) {
+  std::vector<double> n{form.radius};
+  for (const Vec3d& v : {form.first, form.second, form.origin}) n.insert(n.end(), v.begin(), v.end());
+  n.push_back(form.spacing > 0 ? 1 / form.spacing : 0);
+  n.push_back(form.spacing);
+  n.insert(n.end(), {law.stiffness, 1.5 * law.alpha, law.friction, law.core, law.exponent == 1.5 ? 1.0 : 0.0});
+  n.resize(kToolNumbers, 0.0);
+  return n;
+}
+
+}  // namespace
+
+void ProgramBuilder::add_contact() {
+  if (model_.contact == nullptr || model_.contact->size() == 0) return;
+  add_contact_points();
+  if (!model_.tools->empty()) add_tools();
+  if (model_.tissue_contact || edged_tools_ != 0) add_contact_surface();
+  if (edged_tools_ != 0) add_contact_patches();
+  if (model_.tissue_contact) add_touch();
+  add_contact_gather();
+  add_contact_passes();
+}
+
+void ProgramBuilder::add_contact_points() {
+  const ContactPoints& points = *model_.contact;
+  const std::size_t count = padded(points.size()), tiles = count / PLIANT_TILE;
+  std::vector<double> rest(4 * count, 0.0), weight(8 * count, 0.0), share(8 * count, 0.0);
+  std::vector<std::int32_t> node(8 * count, points.nodes[0][0]);
+  std::vector<char> held(static_cast<std::size_t>(model_.slots), 0);
+  for (const Constraint& c : model_.constraints) held[static_cast<std::size_t>(c.slot)] = static_cast<char>(c.axes == 7);
+  std::vector<double> area(static_cast<std::size_t>(model_.slots), 0.0);  // of all points at a node, times their weights
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t a = 0; a < 8; ++a)
+      area[static_cast<std::size_t>(points.nodes[i][a])] += points.area[i] * points.weights[i][a] / contact_weight_unit;
+  }
+  for (std::size_t i = 0; i < count; ++i) {  // what fills the last tile has the last point's place, and no area
+    const std::size_t from = std::min(i, points.size() - 1);
+    for (std::size_t c = 0; c < 3; ++c) rest[tile_base(i, 4) + c * PLIANT_TILE] = points.rest[from][c];
+    if (i >= points.size()) continue;
+    rest[tile_base(i, 4) + std::size_t{3} * PLIANT_TILE] = points.area[i];
+    double whole = 0, moving = 0;
+    for (std::size_t a = 0; a < 8; ++a) {
+      const std::size_t at = tile_base(i, 8) + a * PLIANT_TILE;
+      const auto slot = static_cast<std::size_t>(points.nodes[i][a]);
+      node[at] = points.nodes[i][a];
+      weight[at] = double(points.weights[i][a]) / contact_weight_unit;
+      whole += weight[at] * area[slot];
+      if (held[slot] != 0) continue;
+      share[at] = weight[at] * area[slot];
+      moving += share[at];
+    }
+    for (std::size_t a = 0; a < 8 && moving > 0; ++a) share[tile_base(i, 8) + a * PLIANT_TILE] *= whole / moving;
+  }
+  const auto constant = [&](const char* name, std::size_t planes, const char* shape, const char* unit,
+                            std::vector<double> values) {
+    add(make_reals(name, BufferType::real, planes * count, BufferRole::constant, shape, unit, "model", std::move(values)));
+  };
+  constant("contact_rest", 4, "[tiles][4][16]", "m, m, m, m^2", std::move(rest));
+  add(make_ints("contact_node", BufferRole::constant, "[tiles][8][16]", std::move(node)));
+  constant("contact_weight", 8, "[tiles][8][16]", "1", std::move(weight));
+  constant("contact_share", 8, "[tiles][8][16]", "m^2", std::move(share));
+  const auto all = static_cast<std::int32_t>((std::int64_t{1} << model_.tools->size()) - 1);
+  add_state(make_ints("contact_near", BufferRole::state, "[tiles]", std::vector<std::int32_t>(tiles, all), 0, "contact_near"));
+  add_state(make_reals("contact_yield", BufferType::real, count, BufferRole::state, "[points]", "m^3/N",
+                       "contact_settle, touch_place"));
+  // Filled by the host after a look; they end with entries that are none.
+  add(make_ints("contact_list", BufferRole::control, "[tiles + 16]", std::vector<std::int32_t>(tiles + contact_list_end, -1), 0,
+                "host"));
+  add(make_ints("contact_force", BufferRole::scratch, "[tiles][4][16]", {}, 4 * count, "contact_press, contact_settle"));
+  add(make_ints("contact_change", BufferRole::scratch, "[tiles][4][16]", {}, 4 * count, "contact_settle, touch_press"));
+  add(make_reals("contact_params", BufferType::real, 9, BufferRole::control, "[9]", "see contact_near.cl", "host"));
+  add(make_reals("contact_node_sum", BufferType::real4, static_cast<std::size_t>(model_.slots) + 1, BufferRole::scratch,
+                 "[slots + 1]", "N, N, N, m^2", "contact_apply"));
+}
+
+void ProgramBuilder::add_tools() {
+  const std::size_t tools = model_.tools->size(), count = static_cast<std::size_t>(padded(model_.contact->size()));
+  add_state(make_reals("contact_anchor", BufferType::real, 4 * count, BufferRole::state, "[tiles][4][16]", "m, m, m, 1",
+                       "contact_press, contact_settle"));
+  add(make_reals("contact_gap", BufferType::real, count / PLIANT_TILE * tools, BufferRole::scratch, "[tiles][tools]", "m",
+                 "contact_near"));
+  program_.buffers.back().carried = Carried::all;
+  add(make_ints("contact_tool_force", BufferRole::scratch, "[tools][tiles][8][16]", {}, 8 * count * tools,
+                "contact_press, contact_settle"));
+  std::vector<double> data, grid, edge;
+  std::vector<std::int32_t> kind;
+  for (std::size_t t = 0; t < tools; ++t) {
+    const ToolForm& form = (*model_.tools)[t];
+    const std::vector<double> numbers = numbers_of(form, model_.contact_laws[t]);
+    data.insert(data.end(), numbers.begin(), numbers.end());
+    const ToolShape shape = form.shape == ToolShape::sequence ? ToolShape::mesh : form.shape;
+    kind.insert(kind.end(), {static_cast<std::int32_t>(shape), static_cast<std::int32_t>(grid.size()), form.size[0],
+                             form.size[1], form.size[2], static_cast<std::int32_t>(form.frames.size())});
+    const std::vector<EdgePoint> edges = edge_points(form, *model_.contact);
+    kind.insert(kind.end(), {static_cast<std::int32_t>(edge.size() / kEdgeNumbers), static_cast<std::int32_t>(edges.size())});
+    for (const EdgePoint& e : edges) edge.insert(edge.end(), {e.place[0], e.place[1], e.place[2], e.radius});
+    if (!edges.empty()) edged_tools_ |= 1 << t;
+    grid.insert(grid.end(), form.distance.begin(), form.distance.end());
+  }
+  if (grid.empty()) grid.push_back(0);
+  if (edge.empty()) edge.resize(kEdgeNumbers, 0.0);
+  add(make_ints("tool_kind", BufferRole::constant, "[tools][8]", std::move(kind)));
+  const std::size_t numbers = data.size(), values = grid.size(), ends = edge.size();
+  add(make_reals("tool_data", BufferType::real, numbers, BufferRole::constant, "[tools][20]", "see contact_shape.cl", "model",
+                 std::move(data)));
+  add(make_reals("tool_grid", BufferType::real, values, BufferRole::constant, "[grid nodes]", "m", "model", std::move(grid)));
+  add(make_reals("tool_edge", BufferType::real, ends, BufferRole::constant, "[edge points][4]", "m", "model", std::move(edge)));
+  const auto rows = static_cast<std::size_t>(options_.batch_steps);
+  add(make_reals("tool_pose", BufferType::real, (rows + 1) * tools * contact_pose_numbers, BufferRole::control,
+                 "[steps + 1][tools][14]", "1 (9), m (3), 1 (2)", "host"));
+  add(make_ints("tool_sum", BufferRole::scratch, "[steps][tools][16][16]", {},
+                rows * tools * contact_sum_parts * contact_sum_numbers, "contact_tool_sum"));
+  program_.buffers.back().carried = Carried::all;  // a row per step of the batch, until the host reads it
+}
+
+namespace {
+
+/// A point at a node: its position in contact_force, its weight there and its gradients along both tangents, in units, and
+/// which of the point's nodes this is.
+struct PointAtNode {
+  std::int32_t at = 0, units = 0, corner = 0;
+  std::array<std::int32_t, 2> turns{};
+};
+
+std::map<std::int32_t, std::vector<PointAtNode>> points_at_nodes(const Model& model, bool edged) {
+  const ContactPoints& points = *model.contact;
+  std::map<std::int32_t, std::vector<PointAtNode>> at_node;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    std::array<std::array<std::int32_t, 8>, 2> turns{};
+    if (model.tissue_contact) turns = contact_tangents(points, i, model.rest).units;
+    for (std::size_t a = 0; a < 8; ++a) {
+      const PointAtNode entry{static_cast<std::int32_t>(tile_base(i, 4)),
+                              points.weights[i][a],
+                              static_cast<std::int32_t>(a),
+                              {turns[0][a], turns[1][a]}};
+      if (edged || entry.units > 0 || entry.turns[0] != 0 || entry.turns[1] != 0) at_node[points.nodes[i][a]].push_back(entry);
+    }
+  }
+  return at_node;
+}
+
+/// One number of each entry, in rows.
+template <class Number>
+GatherList rows_of(const std::vector<std::vector<PointAtNode>>& entries, Number number, std::int32_t none = 0) {
+  std::vector<std::vector<std::int32_t>> values(entries.size());
+  for (std::size_t n = 0; n < entries.size(); ++n) {
+    for (const PointAtNode& entry : entries[n]) values[n].push_back(number(entry));
+  }
+  return pack_rows(values, none);
+}
+
+}  // namespace
+
+/// The points at each node, and the tiles of points at each tile of nodes.
+void ProgramBuilder::add_contact_gather() {
+  std::map<std::int32_t, std::int32_t> axes;
+  for (const Constraint& c : model_.constraints) axes[c.slot] = c.axes;
+  std::vector<std::int32_t> slot, free;
+  std::vector<std::vector<PointAtNode>> entries;
+  for (auto& [s, own] : points_at_nodes(model_, edged_tools_ != 0)) {
+    slot.push_back(s);
+    const auto found = axes.find(s);
+    free.push_back(found == axes.end() ? 7 : 7 & ~found->second);
+    entries.push_back(std::move(own));
+  }
+  const std::size_t count = padded(slot.size());
+  slot.resize(count, model_.slots);
+  free.resize(count, 0);
+  entries.resize(count);
+  std::vector<std::int32_t> offset{0}, tiles;
+  for (std::size_t begin = 0; begin < count; begin += PLIANT_TILE) {
+    const std::size_t before = tiles.size();
+    for (std::size_t n = begin; n < begin + PLIANT_TILE; ++n) {
+      for (const PointAtNode& entry : entries[n]) tiles.push_back(entry.at / (4 * PLIANT_TILE));
+    }
+    std::sort(tiles.begin() + static_cast<std::ptrdiff_t>(before), tiles.end());
+    tiles.erase(std::unique(tiles.begin() + static_cast<std::ptrdiff_t>(before), tiles.end()), tiles.end());
+    offset.push_back(static_cast<std::int32_t>(tiles.size()));
+  }
+  GatherList where = rows_of(entries, [](const PointAtNode& p) { return p.at; });
+  add(make_ints("contact_slot", BufferRole::constant, "[contact nodes]", std::move(slot)));
+  add(make_ints("contact_free", BufferRole::constant, "[contact nodes]", std::move(free)));
+  add(make_ints("contact_node_list", BufferRole::control, "[tiles + 16]",
+                std::vector<std::int32_t>(count / PLIANT_TILE + contact_list_end, -1), 0, "host"));
+  add(make_ints("contact_tiles_offset", BufferRole::constant, "[tiles + 1]", std::move(offset)));
+  add(make_ints("contact_tiles", BufferRole::constant, "[entries]", std::move(tiles)));
+  add(make_ints("contact_gather_offset", BufferRole::constant, "[tiles + 1]", std::move(where.offset)));
+  add(make_ints("contact_gather", BufferRole::constant, "[rows][16]", std::move(where.index)));
+  add(make_ints("contact_gather_units", BufferRole::constant, "[rows][16]",
+                rows_of(entries, [](const PointAtNode& p) { return p.units; }).index));
+  if (edged_tools_ != 0) {
+    add(make_ints("contact_gather_corner", BufferRole::constant, "[rows][16]",
+                  rows_of(
+                      entries, [](const PointAtNode& p) { return p.corner; }, -1)
+                      .index));
+  }
+  if (!model_.tissue_contact) return;
+  const GatherList first = rows_of(entries, [](const PointAtNode& p) { return p.turns[0]; });
+  const GatherList second = rows_of(entries, [](const PointAtNode& p) { return p.turns[1]; });
+  std::vector<std::int32_t> turns;
+  for (std::size_t row = 0; row < first.index.size(); row += PLIANT_TILE) {
+    for (const GatherList* list : {&first, &second}) {
+      const auto begin = list->index.begin() + static_cast<std::ptrdiff_t>(row);
+      turns.insert(turns.end(), begin, begin + PLIANT_TILE);
+    }
+  }
+  add(make_ints("contact_gather_turns", BufferRole::constant, "[rows][2][16]", std::move(turns)));
+}
+
+std::vector<Arg> ProgramBuilder::named(std::initializer_list<const char*> buffers) const {
+  std::vector<Arg> list;
+  for (const char* name : buffers) list.push_back(buffer_arg(program_.find(name)));
+  return list;
+}
+
+/// What contact_press and contact_settle read and write.
+std::vector<Arg> ProgramBuilder::tool_pass_args(const std::string& kernel) const {
+  std::vector<Arg> list = named({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_share",
+                                 "contact_list", "contact_near", "contact_yield", "contact_anchor", "contact_force"});
+  const bool settle = kernel == "contact_settle";
+  const std::vector<Arg> results = settle ? named({"contact_change", "contact_node_sum"}) : std::vector<Arg>{};
+  const std::vector<Arg> tools = named(
+      {"contact_tool_force", "tool_kind", "tool_data", "tool_grid", "tool_edge", "tool_pose",
+       of_edges("touch_surface", "contact_weight"), of_edges("contact_patch", "contact_weight"),
+       of_edges("contact_corner_weight", "contact_node_sum"),
+       of_edges("contact_corner_force", settle ? "contact_tool_force" : "contact_change"), "contact_params", "step_params"});
+  list.insert(list.end(), results.begin(), results.end());
+  list.insert(list.end(), tools.begin(), tools.end());
+  return list;
+}
+
+/// The passes of every step, over what the look has listed as near.
+void ProgramBuilder::add_contact_passes() {
+  const auto points = static_cast<std::int64_t>(padded(model_.contact->size()));
+  const auto nodes = static_cast<std::int64_t>(program_.at(program_.find("contact_slot")).count);
+  const auto tools = static_cast<std::int32_t>(model_.tools->size());
+  const bool tissue = model_.tissue_contact.has_value();
+  program_.near_points = std::make_shared<std::int64_t>(0);
+  program_.near_nodes = std::make_shared<std::int64_t>(0);
+  const auto with_step = [&](std::vector<Arg> list) {
+    list.push_back(int_arg(static_cast<std::int32_t>(points)));
+    list.push_back(int_arg(tools));
+    list.push_back(step_arg());
+    return list;
+  };
+  // Counted as idle: what is near costs (docs/contact.md).
+  const auto pass = [&](const char* kernel, std::vector<Arg> list, Shape shape, std::int64_t count, const char* label) {
+    program_.step.push_back({kernel, {}, std::move(list), shape, count, label, count, 0, 0});
+    program_.step.back().uneven = true;
+    program_.step.back().active = kernel == std::string("contact_apply") ? program_.near_nodes : program_.near_points;
+  };
+  const auto apply = [&](const char* force) {
+    pass("contact_apply",
+         named({"node_u", "node_w", "contact_slot", "contact_free", "contact_node_list", "contact_gather_offset",
+                "contact_gather", "contact_gather_units", tissue ? "contact_gather_turns" : "contact_gather_units",
+                "contact_near", force, tissue ? "touch_moment" : force,
+                of_edges("contact_gather_corner", "contact_gather_units"), of_edges("contact_corner_force", force),
+                of_edges("contact_corner_weight", "contact_rest"), "contact_rest", "contact_node_sum", "contact_params",
+                "step_params"}),
+         Shape::lanes, nodes, "contact nodes");
+    program_.step.back().defines = {{"MOMENT", tissue ? 1 : 0}, {"EDGES", edged_tools_ != 0 ? 1 : 0}};
+  };
+  add_contact_look();
+  const auto of_tools = [&](const char* kernel) {
+    pass(kernel, with_step(tool_pass_args(kernel)), Shape::lanes, points, "contact points");
+    program_.step.back().defines = {{"EDGES", edged_tools_ != 0 ? 1 : 0}};
+  };
+  if (tools > 0) of_tools("contact_press");
+  if (tissue) add_touch_pass("touch_press");
+  apply(tissue ? "contact_change" : "contact_force");
+  if (tools > 0) {
+    of_tools("contact_settle");
+    pass("contact_tool_sum",
+         with_step(named({"contact_tool_force", "contact_rest", "contact_list", "contact_near", "tool_sum", "contact_params"})),
+         Shape::items, tools * static_cast<std::int64_t>(contact_sum_parts), "parts of tools");
+  }
+  if (tissue) add_touch_pass("touch_settle");
+  apply("contact_change");
+}
+
+/// What is near tools, and which tissue is near other tissue.
+void ProgramBuilder::add_contact_look() {
+  const auto tools = static_cast<std::int32_t>(model_.tools->size());
+  if (tools > 0) {
+    const std::int64_t tiles = padded(model_.contact->size()) / PLIANT_TILE;
+    std::vector<Arg> list = named({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_near",
+                                   "contact_gap", "contact_yield", "contact_anchor", "tool_kind", "tool_data", "tool_grid",
+                                   "tool_pose", of_edges("touch_surface", "contact_weight"), "contact_params"});
+    list.push_back(int_arg(tools));
+    list.push_back(step_arg());
+    program_.look.push_back({"contact_near", {}, std::move(list), Shape::items, tiles, "near tools", tiles, 16 * 200.0, 0});
+    program_.look.back().uneven = true;
+    program_.look.back().defines = {{"EDGES", edged_tools_ != 0 ? 1 : 0}};
+  }
+  if (model_.tissue_contact) add_touch_look();
+}
+
+}  // namespace pliant

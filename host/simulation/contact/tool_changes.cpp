@@ -1,0 +1,100 @@
+#include "simulation/contact/tool_changes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "model/contact/contact.h"
+#include "pliant/error.h"
+#include "scene/tool_entry.h"
+
+namespace pliant {
+namespace {
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+bool ascending(const std::vector<std::string>& names) {
+  return std::adjacent_find(names.begin(), names.end(), std::greater_equal<>()) == names.end();
+}
+
+}  // namespace
+
+std::vector<ContactTool> known_tools(const Scene& scene, const ToolChanges& changes) {
+  std::vector<ContactTool> tools;
+  for (const ContactTool& tool : scene.tools) {
+    if (!contains(changes.removed, tool.name)) tools.push_back(tool);
+  }
+  tools.insert(tools.end(), changes.added.begin(), changes.added.end());
+  return tools;
+}
+
+std::vector<ContactTool> present_tools(const Scene& scene, const ToolChanges& changes) {
+  std::vector<ContactTool> tools = known_tools(scene, changes);
+  std::erase_if(tools, [&](const ContactTool& tool) { return is_parked(changes, tool.name); });
+  return tools;
+}
+
+bool is_parked(const ToolChanges& changes, const std::string& name) { return contains(changes.parked, name); }
+
+void check_tool_changes(const Scene& scene, const ToolChanges& changes) {
+  if (changes.empty()) return;
+  const auto refuse = [](const std::string& what) {
+    throw Error(ErrorCode::bad_input, fmt::format("its tools do not belong to this scene, or are damaged: {}", what));
+  };
+  if (!changes.added.empty()) check_takes_tools(scene);
+  const auto of_scene = [&](const std::string& name) {
+    return std::any_of(scene.tools.begin(), scene.tools.end(), [&](const ContactTool& t) { return t.name == name; });
+  };
+  for (const ContactTool& tool : changes.added) check_tool(tool);
+  for (const std::string& name : changes.removed) {
+    if (!of_scene(name)) refuse(fmt::format("a tool \"{}\" that was removed", name));
+  }
+  std::set<std::string> names;
+  for (const ContactTool& tool : known_tools(scene, changes)) {
+    if (tool.name.empty() || !names.insert(tool.name).second) refuse(fmt::format("two tools \"{}\"", tool.name));
+  }
+  for (const std::string& name : changes.parked) {
+    if (!names.contains(name)) refuse(fmt::format("a tool \"{}\" that is parked", name));
+  }
+  if (!ascending(changes.removed) || !ascending(changes.parked)) refuse("names that are not in order");
+  const std::size_t present = names.size() - changes.parked.size();
+  if (present > most_tools) refuse(fmt::format("{} tools that are not parked, expected at most {}", present, most_tools));
+}
+
+Pose tool_pose(const ContactTool& tool, const RunState& state, double time) {
+  const auto driven = state.driven.find(tool.name);
+  if (driven == state.driven.end()) return tool.at(time);
+  const ToolDrive& d = driven->second;
+  if (time >= d.end) return d.to;
+  return between(d.from, d.to, std::clamp((time - d.start) / (d.end - d.start), 0.0, 1.0));
+}
+
+std::shared_ptr<Model> model_with_tools(const Scene& scene, const Model& model, const std::vector<ContactTool>& before,
+                                        const std::vector<ContactTool>& next, const std::vector<const ToolForm*>& known) {
+  auto forms = std::make_shared<ToolForms>();
+  for (std::size_t t = 0; t < next.size(); ++t) {
+    const auto same = std::find(before.begin(), before.end(), next[t]);
+    if (same != before.end()) {
+      forms->push_back((*model.tools)[static_cast<std::size_t>(same - before.begin())]);
+    } else {
+      forms->push_back(t < known.size() && known[t] != nullptr ? *known[t] : tool_form(next[t]));
+    }
+  }
+  auto out = std::make_shared<Model>(model);
+  out->tools = nullptr;
+  out->contact_laws.clear();
+  Scene with = scene;
+  with.tools = next;
+  if (next.empty() && !scene.contact) {
+    out->contact = nullptr;
+    return out;
+  }
+  out->tools = std::move(forms);
+  add_contact(with, *out);
+  return out;
+}
+
+}  // namespace pliant

@@ -1,0 +1,246 @@
+#include "simulation/contact/tool_contact.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "geometry/vec.h"
+#include "pliant/error.h"
+#include "schedule/contact/contact_data.h"
+#include "simulation/contact/body_overlap.h"
+#include "simulation/contact/present_tissue.h"
+#include "simulation/contact/tool_changes.h"
+
+namespace pliant {
+namespace {
+
+/// Quanta of force are this share of what moves the heaviest node one cell in a step.
+constexpr int kForceBits = 26;
+constexpr int kAreaBits = 26;
+
+double power_of_two(double x) { return std::ldexp(1.0, static_cast<int>(std::ceil(std::log2(x)))); }
+
+/// Of a step and a tool: force, torque and area in quanta, largest depth [m].
+struct StepSum {
+  std::array<double, 7> quanta{};
+  double depth = 0;
+  std::int64_t points = 0;
+};
+
+StepSum sum_of_parts(const std::int32_t* part) {
+  StepSum sum;
+  for (std::size_t p = 0; p < contact_sum_parts; ++p, part += contact_sum_numbers) {
+    for (std::size_t c = 0; c < 7; ++c) sum.quanta[c] += 32768.0 * part[2 * c] + part[2 * c + 1];  // exact below 2^53
+    sum.depth = std::max(sum.depth, static_cast<double>(std::bit_cast<float>(part[14])));
+    sum.points += part[15];
+  }
+  return sum;
+}
+
+}  // namespace
+
+void check_pose(const std::string& name, const Pose& pose) {
+  if (good_pose(pose)) return;
+  throw Error(ErrorCode::usage,
+              fmt::format("tool \"{}\": the pose needs finite numbers and a unit quaternion x, y, z, w", name));
+}
+
+void check_drive(const std::string& name, const Pose& to, double seconds) {
+  check_pose(name, to);
+  if (seconds > 0 && seconds < 1e30) return;
+  throw Error(ErrorCode::usage, fmt::format("tool \"{}\": {} seconds on the way, expected a number > 0", name, seconds));
+}
+
+bool ToolContact::active() const { return run_.model().contact != nullptr && run_.model().contact->size() > 0; }
+
+Pose ToolContact::pose(std::size_t tool, double time) const { return tool_pose(tools_[tool], run_.state, time); }
+
+void ToolContact::drive(std::size_t tool, const Pose& to, double seconds) {
+  const double now = run_.state.clock.time();
+  const ToolDrive drive{seconds > 0 ? pose(tool, now) : to, to, now, now + seconds};
+  run_.state.driven[tools_[tool].name] = drive;
+  run_.state.relaxation.equilibrium = false;  // it begins anew
+  if (!active()) return;
+  run_.state.look.tools = -1;  // it may meet anything
+}
+
+void ToolContact::follow() {
+  const std::vector<ContactTool> before = std::exchange(tools_, present_tools(run_.scene, run_.state.tools));
+  const std::vector<ToolHistory> felt = std::exchange(report_.tools, std::vector<ToolHistory>(tools_.size()));
+  for (std::size_t t = 0; t < tools_.size(); ++t) {
+    const auto same = std::find(before.begin(), before.end(), tools_[t]);
+    if (same != before.end()) report_.tools[t] = felt[static_cast<std::size_t>(same - before.begin())];
+  }
+}
+
+void ToolContact::start() {
+  tools_ = run_.scene.tools;
+  report_.tools.resize(tools_.size());
+  if (!active()) return;
+  const Model& model = run_.model();
+  if (run_.scene.contact) refuse_overlap(model, tool_start_depth * model.contact->spacing);
+  if (tools_.empty()) return;
+  const PresentTissue tissue(model, run_.u());
+  for (std::size_t t = 0; t < tools_.size(); ++t) {
+    const double now = run_.state.clock.time();
+    try {
+      tissue.refuse_inside(tools_[t].name, (*model.tools)[t], pose(t, now), now);
+    } catch (const Error& error) {
+      throw Error(error.code(), fmt::format("{}: {}", tools_[t].pointer, error.what()));
+    }
+  }
+}
+
+/// Powers of two, so that nothing is rounded but the quanta.
+ToolContact::Units ToolContact::units() const {
+  const Model& model = run_.model();
+  const double h = run_.state.clock.dt;
+  double heaviest = 0, area = 0, longest = 0;
+  for (const auto& nodes : model.contact->nodes) {
+    for (const std::int32_t n : nodes) heaviest = std::max(heaviest, model.mass[n]);
+  }
+  for (const double a : model.contact->area) area += a;
+  vec::Box box;
+  for (const Vec3d& x : model.contact->rest) box.extend(x);
+  longest = vec::norm(vec::sub(box.upper, box.lower));
+  for (const ToolForm& form : *model.tools) longest = std::max(longest, form.reach);
+  Units u;
+  u.force = power_of_two(heaviest * model.contact->spacing / (h * h)) * std::ldexp(1.0, -kForceBits);
+  u.torque = u.force * power_of_two(longest);
+  u.area = power_of_two(area) * std::ldexp(1.0, -kAreaBits);
+  return u;
+}
+
+/// A pair gives its first depth back by kEase per search, and searches come after a number of steps. At steps far below the
+/// stable one that is a speed in m/s without limit, which threw the faces of a cut apart (touch_test.cpp,
+/// SmallStepsPartBodiesNoFaster): there the rate is the one of half the stable step.
+double ToolContact::touch_ease() const {
+  constexpr double kEase = 0.04;
+  const double stable = run_.state.limit.stable_dt;
+  return stable > 0 ? kEase * std::min(1.0, 2 * run_.state.clock.dt / stable) : kEase;
+}
+
+void ToolContact::begin_batch(std::int32_t steps) {
+  if (!active()) return;
+  const std::size_t tools = tools_.size(), rows = static_cast<std::size_t>(run_.settings.batch_steps) + 1;
+  std::vector<double> poses;
+  poses.reserve(rows * tools * contact_pose_numbers);
+  arms_.assign(rows * tools, {});
+  poses_.clear();
+  for (std::size_t tool = 0; tool < tools; ++tool) {
+    const double before = run_.state.clock.time() - run_.state.clock.dt;
+    const ToolHistory& h = report_.tools[tool];
+    poses_.push_back(h.step == run_.state.clock.step
+                         ? h.before
+                         : compose(pose(tool, before), tool_moment((*run_.model().tools)[tool], before).pose));
+  }
+  for (std::size_t row = 0; row < rows; ++row) {
+    const double t =
+        run_.state.clock.time_at(run_.state.clock.step + std::min<std::int64_t>(static_cast<std::int64_t>(row), steps));
+    for (std::size_t tool = 0; tool < tools; ++tool) {
+      const ToolMoment moment = tool_moment((*run_.model().tools)[tool], t);
+      const Pose whole = pose(tool, t), at = compose(whole, moment.pose);
+      for (const Vec3d& r : rotation_matrix(at.turn)) poses.insert(poses.end(), r.begin(), r.end());
+      poses.insert(poses.end(), at.position.begin(), at.position.end());
+      poses.insert(poses.end(), {double(moment.frame), moment.share});
+      arms_[row * tools + tool] = vec::sub(at.position, whole.position);
+      poses_.push_back(at);
+    }
+  }
+  const Program& program = run_.loaded.program();
+  Backend& backend = run_.backend();
+  if (tools > 0) backend.write_reals(program.find("tool_pose"), poses);
+  units_ = units();
+  const Units& u = units_;
+  backend.write_reals(program.find("contact_params"), {u.force, 1 / u.force, u.force / contact_weight_unit, 1 / u.torque,
+                                                       1 / u.area, contact_margin(run_.model()), double(contact_look_every),
+                                                       run_.scene.contact ? run_.scene.contact->friction : 0, touch_ease()});
+  summed_.assign(static_cast<std::size_t>(steps), 0);
+}
+
+std::int32_t ToolContact::before_step(std::int32_t step_in_batch, std::int32_t steps) {
+  if (!active()) return steps;
+  lists_.update(step_in_batch, [this](std::size_t tool, double from, double to) { return motion(tool, from, to); });
+  const std::int64_t step = run_.state.clock.step + step_in_batch;
+  const auto n = std::min(steps, static_cast<std::int32_t>(contact_look_every - step % contact_look_every));
+  if (*run_.loaded.program().near_points > 0) {
+    for (std::int32_t k = 0; k < n; ++k) summed_.at(static_cast<std::size_t>(step_in_batch + k)) = 1;
+  }
+  return n;
+}
+
+double ToolContact::motion(std::size_t tool, double from, double to) const {
+  const ToolForm& form = (*run_.model().tools)[tool];
+  if (form.frames.size() > 1) return 1e30;  // its surface moves in its frame
+  const Pose a = pose(tool, from), b = pose(tool, to);
+  const std::array<Vec3d, 3> ra = rotation_matrix(a.turn), rb = rotation_matrix(b.turn);
+  double turn = 0;  // |R_b - R_a|, the largest change of a unit vector, at most
+  for (std::size_t r = 0; r < 3; ++r) turn += vec::dot(vec::sub(rb[r], ra[r]), vec::sub(rb[r], ra[r]));
+  const double reach = form.shape == ToolShape::half_space ? 1e3 * contact_margin(run_.model()) : form.reach;
+  return vec::norm(vec::sub(b.position, a.position)) + std::sqrt(turn) * reach;
+}
+
+/// touch_depth has gathered the depths of a batch; the next one begins with none.
+void ToolContact::read_touch() {
+  const BufferId id = run_.loaded.program().find("touch_depth");
+  const std::vector<double> depth = run_.backend().read_reals(id);
+  for (const double d : depth) {
+    if (!(d > 0)) continue;
+    ++report_.tissue.points;
+    report_.tissue.max_depth = std::max(report_.tissue.max_depth, d);
+  }
+  if (report_.tissue.points > 0) run_.backend().write_reals(id, std::vector<double>(depth.size(), 0.0));
+}
+
+/// A force acts from the middle of the step before to that of the next one (central differences).
+double ToolContact::work(std::size_t tool, std::int32_t step, const Vec3d& force, const Vec3d& torque) const {
+  const std::size_t before = static_cast<std::size_t>(step) * tools_.size() + tool;
+  const Pose &from = poses_[before], &to = poses_[before + 2 * tools_.size()];
+  return -0.5 * (vec::dot(force, vec::sub(to.position, from.position)) + vec::dot(torque, turn_between(from, to)));
+}
+
+void ToolContact::end_batch(std::int32_t steps) {
+  if (!active() || steps <= 0) return;
+  const bool ran = std::count(summed_.begin(), summed_.end(), 1) > 0;
+  report_.tissue.points = 0;
+  if (run_.scene.contact && ran) read_touch();
+  if (report_.tools.empty()) return;
+  for (ToolHistory& h : report_.tools) h.now = {};
+  if (!ran) return;
+  const std::vector<std::int32_t> sums = run_.backend().read_ints(run_.loaded.program().find("tool_sum"));
+  const std::size_t tools = tools_.size();
+  for (std::size_t t = 0; t < tools; ++t) {
+    ToolHistory& h = report_.tools[t];
+    h.now = {};
+    h.before = poses_[static_cast<std::size_t>(steps) * tools + t];
+    h.step = run_.state.clock.step;
+    for (std::int32_t step = 0; step < steps; ++step) {
+      if (summed_[static_cast<std::size_t>(step)] == 0) continue;  // nothing was near
+      const StepSum sum =
+          sum_of_parts(&sums[(static_cast<std::size_t>(step) * tools + t) * contact_sum_parts * contact_sum_numbers]);
+      if (sum.points == 0) continue;
+      ++h.touched;
+      Vec3d force{}, torque{};
+      for (std::size_t c = 0; c < 3; ++c) {
+        force[c] = sum.quanta[c] * units_.force;
+        torque[c] = sum.quanta[3 + c] * units_.torque;
+      }
+      h.work += work(t, step, force, torque);
+      torque = vec::add(torque, vec::cross(arms_[(static_cast<std::size_t>(step) + 1) * tools + t], force));
+      for (std::size_t c = 0; c < 3; ++c) {
+        h.now.force[c] += force[c] / steps;
+        h.now.torque[c] += torque[c] / steps;
+      }
+      h.now.area = sum.quanta[6] * units_.area;
+      h.now.points = sum.points;
+      h.now.depth = sum.depth;
+      h.max_depth = std::max(h.max_depth, h.now.depth);
+    }
+    h.max_force = std::max(h.max_force, vec::norm(h.now.force));
+  }
+}
+
+}  // namespace pliant

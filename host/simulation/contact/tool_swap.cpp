@@ -1,0 +1,122 @@
+#include "simulation/contact/tool_swap.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "schedule/build_program.h"
+#include "schedule/program_layout.h"
+#include "schedule/surface_program.h"
+#include "simulation/state/snapshot.h"
+#include "simulation/step/coupling.h"
+#include "simulation/step/host_loads.h"
+
+namespace pliant {
+namespace {
+
+constexpr std::size_t kAnchorNumbers = 4;  ///< the fourth: number of the tool + 1, or 0 (contact_press.cl)
+
+/// The new number of each tool of before; -1: it is gone.
+std::vector<int> new_numbers(const std::vector<ContactTool>& before, const std::vector<ContactTool>& next) {
+  std::vector<int> number;
+  for (const ContactTool& tool : before) {
+    const auto found = std::find(next.begin(), next.end(), tool);
+    number.push_back(found == next.end() ? -1 : static_cast<int>(found - next.begin()));
+  }
+  return number;
+}
+
+/// Tiles that were near a tool stay so; a new tool may be near any.
+void renumber_near(std::vector<std::int32_t>& near, const std::vector<int>& number, std::size_t tools) {
+  std::int32_t fresh = static_cast<std::int32_t>((std::int64_t{1} << tools) - 1);
+  for (const int n : number) {
+    if (n >= 0) fresh &= ~(std::int32_t{1} << n);
+  }
+  for (std::int32_t& bits : near) {
+    std::int32_t now = fresh | (bits & ~static_cast<std::int32_t>((std::int64_t{1} << number.size()) - 1));  // tissue's own
+    for (std::size_t t = 0; t < number.size(); ++t) {
+      if (number[t] >= 0 && (bits >> t & 1) != 0) now |= std::int32_t{1} << number[t];
+    }
+    bits = now;
+  }
+}
+
+/// to(tool) is the number that an anchor on that tool gets, or -1 for none.
+template <class To>
+void renumber_anchors(std::vector<double>& anchor, const To& to) {
+  const std::size_t points = anchor.size() / kAnchorNumbers;
+  for (std::size_t i = 0; i < points; ++i) {
+    double& held = anchor[tile_base(i, kAnchorNumbers) + 3 * PLIANT_TILE];
+    if (held == 0) continue;
+    const int now = to(static_cast<int>(held) - 1);
+    held = now + 1;
+  }
+}
+
+/// The buffers of the state go on in the next program, as far as both have them.
+void carry_state(const RunContext& run, Program& next, const std::vector<int>& number, std::size_t tools) {
+  const Program& loaded = run.loaded.program();
+  for (std::size_t id = 0; id < loaded.buffers.size(); ++id) {
+    const Buffer& from = loaded.buffers[id];
+    if (from.role != BufferRole::state || next.find(from.name) < 0) continue;
+    Buffer& to = next.at(next.find(from.name));
+    if (to.values() != from.values()) continue;
+    if (from.is_int()) {
+      to.ints = run.backend().read_ints(static_cast<BufferId>(id));
+      if (from.name.ends_with("contact_near")) renumber_near(to.ints, number, tools);
+    } else {
+      to.reals = run.backend().read_reals(static_cast<BufferId>(id));
+      if (from.name.ends_with("contact_anchor"))
+        renumber_anchors(to.reals, [&](int t) { return number[static_cast<std::size_t>(t)]; });
+    }
+  }
+}
+
+void load_with(RunContext& run, const Snapshot& snapshot, const std::shared_ptr<const Model>& model) {
+  Program program = build_program(*model, {run.scene.integrator, run.settings.batch_steps});
+  Program surface = surface_program(model->surface, program);
+  run.loaded.load(model, std::move(program), std::move(surface));
+  write_buffers(snapshot, run.loaded);
+}
+
+void settle(RunContext& run) {
+  run.place_surface();
+  upload_coupling(run);
+  if (!run.state.forces.empty()) HostLoads(run).upload();
+}
+
+}  // namespace
+
+void load_tools(RunContext& run, const std::shared_ptr<const Model>& model, const std::vector<ContactTool>& before,
+                const std::vector<ContactTool>& next) {
+  const std::shared_ptr<const Model> old = run.loaded.shared_model();
+  const Snapshot snapshot = take_snapshot(run);
+  try {
+    Program program = build_program(*model, {run.scene.integrator, run.settings.batch_steps});
+    std::vector<double> u = program.at(program.find("node_u")).reals, w = program.at(program.find("node_w")).reals;
+    carry_state(run, program, new_numbers(before, next), next.size());
+    Program surface = surface_program(model->surface, program);
+    run.loaded.update(model, std::move(program));
+    run.loaded.reset_initial_state(std::move(u), std::move(w));
+    run.loaded.update_surface(std::move(surface), false);
+  } catch (...) {
+    load_with(run, snapshot, old);
+    settle(run);
+    throw;
+  }
+  settle(run);
+  run.state.look.tools = -1;  // tissue keeps its partners
+  run.state.kept.reset();     // copies of the old program's buffers
+}
+
+void let_go(RunContext& run, std::size_t tool) {
+  const Program& program = run.loaded.program();
+  for (const char* name : {"contact_anchor", "last_contact_anchor"}) {
+    const BufferId id = program.find(name);
+    if (id < 0) continue;
+    std::vector<double> anchor = run.backend().read_reals(id);
+    renumber_anchors(anchor, [&](int t) { return t == static_cast<int>(tool) ? -1 : t; });
+    run.backend().write_reals(id, anchor);
+  }
+}
+
+}  // namespace pliant

@@ -1,0 +1,181 @@
+// When blades cut: those of the scene at the start of batches, those of the host when it says so.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "cutting/blade/blade_trace.h"
+#include "geometry/stopwatch.h"
+#include "geometry/vec.h"
+#include "pliant/error.h"
+#include "simulation/edits/topology_edits.h"
+
+namespace pliant {
+namespace {
+
+/// Where a blade goes from one time to another, along every row of its path in between. No places if it does not cut then.
+BladeMove move_of(const Blade& blade, double from, double to) {
+  BladeMove move{blade.name, {}, {}};
+  from = std::max({from, blade.start, blade.path.front()[0]});
+  to = std::min({to, blade.end, blade.path.back()[0]});
+  if (!(from < to)) return move;
+  move.from = blade.at(from);
+  for (const auto& row : blade.path) {
+    if (row[0] > from && row[0] < to) move.to.push_back(blade.at(row[0]));
+  }
+  move.to.push_back(blade.at(to));
+  return move;
+}
+
+/// Whether some of a blade stands where material is, and not merely near it.
+bool in_material(const BladeTrace& trace) {
+  return std::any_of(trace.points.begin(), trace.points.end(), [](const TracePoint& p) { return p.carried.cell >= 0; });
+}
+
+vec::Box box_of(const std::vector<Vec3d>& x) {
+  vec::Box box;
+  for (const Vec3d& p : x) box.extend(p);
+  return box;
+}
+
+}  // namespace
+
+void TopologyEdits::move_scene_blades() {
+  BladeState& blades = run_.state.blades;
+  const PendingEdits pending = std::exchange(run_.state.pending, {});
+  std::vector<BladeMove> moves = pending.moves;
+  if (!run_.scene.blades.empty()) {
+    const double now = run_.state.clock.time();
+    if (!blades.seen) blades.seen = now;
+    for (const Blade& blade : run_.scene.blades) moves.push_back(move_of(blade, *blades.seen, now));
+    if (now > *blades.seen) blades.seen = now;
+  }
+  if (!pending.triangles.empty() || !moves.empty()) run_blades(moves, pending.triangles);
+}
+
+const BladeTrace* TopologyEdits::front(const BladeMove& move, std::size_t body) const {
+  const auto blade = run_.state.blades.traces.find(move.key);
+  if (blade == run_.state.blades.traces.end()) return nullptr;
+  const auto found = blade->second.find(static_cast<std::int32_t>(body));
+  return found == blade->second.end() ? nullptr : &found->second;
+}
+
+/// Follow each blade to its new places, and cut.
+CutReport TopologyEdits::run_blades(const std::vector<BladeMove>& moves, std::span<const SweepTriangle> triangles) {
+  EditedBodies& all = cut_bodies();
+  CutReport report;
+  const Stopwatch clock;
+  std::vector<CutEdges> edges(run_.scene.bodies.size());
+  std::vector<double> u = run_.u();
+  std::map<std::string, std::map<std::int32_t, BladeTrace>> traces;
+  std::vector<std::string> met = run_.state.blades.met;
+  for (std::size_t b = 0; b < edges.size(); ++b) {
+    const std::vector<Vec3d> x = run_.loaded.positions(u, b);
+    if (!reached(b, x, moves, triangles)) continue;
+    BodyCut& body = all.cut(b);
+    edges[b] = crossed_edges(body.topology(), x, triangles);
+    BladeSweep sweep(body.topology(), x, body.rest_edges(), body.edge());
+    for (const BladeMove& move : moves) {
+      if (move.to.empty()) continue;
+      const BladeTrace* known = front(move, b);
+      BladeTrace trace = known != nullptr ? *known : BladeTrace{move.from, 0, {}};
+      const std::size_t before = sweep.crossed().size();
+      for (const BladeSegment& place : move.to) sweep.move(trace, place);
+      const bool meets = sweep.crossed().size() > before || in_material(trace);
+      if (meets && std::find(met.begin(), met.end(), move.key) == met.end()) met.push_back(move.key);
+      if (!trace.points.empty()) traces[move.key][static_cast<std::int32_t>(b)] = std::move(trace);
+    }
+    edges[b].insert(sweep.crossed().begin(), sweep.crossed().end());
+    body.keep_allowed(run_.scene.bodies[b], edges[b]);
+    report.edges += static_cast<std::int64_t>(edges[b].size());
+  }
+  report.search = clock.seconds();
+  if (report.edges > 0) make_cut(std::move(edges), std::move(u), report);
+  for (const BladeMove& move : moves) {
+    // One that rests, as where a batch is made again, stays where it was.
+    if (!move.to.empty()) run_.state.blades.traces.erase(move.key);
+  }
+  run_.state.blades.traces.merge(traces);
+  run_.state.blades.met = std::move(met);
+  return report;
+}
+
+/// Whether anything that cuts may come near a body.
+bool TopologyEdits::reached(std::size_t body, const std::vector<Vec3d>& x, const std::vector<BladeMove>& moves,
+                            std::span<const SweepTriangle> triangles) const {
+  vec::Box reach = box_of(x);
+  double size = 0;
+  for (int a = 0; a < 3; ++a) size = std::max(size, reach.upper[a] - reach.lower[a]);
+  for (int a = 0; a < 3; ++a) {
+    reach.lower[a] -= 0.25 * size;
+    reach.upper[a] += 0.25 * size;
+  }
+  for (const SweepTriangle& t : triangles) {
+    if (reach.overlaps(box_of({t[0], t[1], t[2]}))) return true;
+  }
+  for (const BladeMove& move : moves) {
+    if (move.to.empty()) continue;
+    if (front(move, body) != nullptr) return true;
+    vec::Box path = box_of({move.from[0], move.from[1]});
+    for (const BladeSegment& place : move.to) path.extend(box_of({place[0], place[1]}));
+    if (reach.overlaps(path)) return true;
+  }
+  return false;
+}
+
+CutReport TopologyEdits::cut(std::span<const SweepTriangle> triangles) {
+  for (const SweepTriangle& t : triangles) {
+    for (const Vec3d& p : t) {
+      if (!vec::finite(p)) {
+        throw Error(ErrorCode::bad_input,
+                    fmt::format("cut: got a triangle with the corner [{}] m; allowed are finite numbers", fmt::join(p, ", ")));
+      }
+    }
+  }
+  if (run_.phase() == 0) return run_blades({}, triangles);
+  cut_bodies();  // refuses a scene that has none
+  auto& pending = run_.state.pending.triangles;
+  pending.insert(pending.end(), triangles.begin(), triangles.end());
+  return {};
+}
+
+CutReport TopologyEdits::move_blades(std::span<const BladePose> poses) {
+  for (const auto& [blade, segment] : poses) {
+    if (vec::finite(segment[0]) && vec::finite(segment[1]) && segment[0] != segment[1]) continue;
+    throw Error(ErrorCode::bad_input,
+                fmt::format("blade '{}': got a segment from [{}] m to [{}] m; allowed are two different finite points", blade,
+                            fmt::join(segment[0], ", "), fmt::join(segment[1], ", ")));
+  }
+  auto placed = run_.state.blades.placed;
+  std::vector<BladeMove> moves;
+  for (const auto& [blade, segment] : poses) {
+    const std::string key = "host/" + blade;
+    const auto [before, fresh] = placed.try_emplace(blade, segment);
+    if (fresh) continue;
+    const auto move = std::find_if(moves.begin(), moves.end(), [&](const BladeMove& m) { return m.key == key; });
+    if (move == moves.end())
+      moves.push_back({key, before->second, {segment}});
+    else
+      move->to.push_back(segment);
+    before->second = segment;
+  }
+  CutReport report;
+  if (!moves.empty() && run_.phase() == 0) {
+    report = run_blades(moves, {});
+  } else if (!moves.empty()) {
+    cut_bodies();
+    auto& pending = run_.state.pending.moves;
+    pending.insert(pending.end(), moves.begin(), moves.end());
+  }
+  run_.state.blades.placed = std::move(placed);
+  return report;
+}
+
+void TopologyEdits::lift_blade(const std::string& blade) {
+  run_.state.blades.placed.erase(blade);
+  run_.state.blades.traces.erase("host/" + blade);
+}
+
+}  // namespace pliant

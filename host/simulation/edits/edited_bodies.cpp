@@ -1,0 +1,244 @@
+#include "simulation/edits/edited_bodies.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "geometry/vec.h"
+#include "model/matching/partition.h"
+#include "pliant/error.h"
+
+namespace pliant {
+
+BodyCut::BodyCut(const Body& body, std::shared_ptr<const BodyMesh> uncut)
+    : uncut_(std::move(uncut)), solid_(*uncut_), topology_(cut_mesh(*uncut_, body.name)), mesh_edges_(topology_.mesh()) {
+  make_surface();
+  const CutMesh& mesh = topology_.mesh();
+  std::size_t count = 0;
+  for (std::size_t c = 0; c < std::min<std::size_t>(mesh.cells.size(), 1000); ++c) {
+    for (const auto& [a, b] : mesh.shape->edges) {
+      edge_ += vec::norm(vec::sub(mesh.rest[mesh.cells[c][a]], mesh.rest[mesh.cells[c][b]]));
+      ++count;
+    }
+  }
+  edge_ /= static_cast<double>(std::max<std::size_t>(count, 1));
+  rest_edges_ = std::make_unique<RestEdges>(mesh, edge_);
+}
+
+void BodyCut::make_surface() {
+  if (uncut_->lattice != nullptr) {
+    surface_ = std::make_unique<CutSurface>(TriangleMesh{uncut_->surface, uncut_->triangles}, *uncut_->lattice);
+  }
+}
+
+void BodyCut::keep_allowed(const Body& body, CutEdges& edges) const {
+  if (body.model.cut || body.model.type == ModelType::tled || edges.empty()) return;
+  const Partition partition = partition_lattice(body, *uncut_->lattice);
+  std::erase_if(edges, [&](const auto& edge) {
+    for (const std::int32_t c : topology_.cells_at_edge(edge.first)) {
+      if (partition.operational[c] == 0) return true;
+    }
+    return false;
+  });
+}
+
+CutEdit BodyCut::cut(const CutEdges& edges, HelperThread& helper) {
+  return topology_.cut(edges, [&](const std::vector<std::int32_t>& cells) {
+    if (surface_ != nullptr) dividing_ = helper.run([this, cells] { surface_->update(topology_, cells); });
+  });
+}
+
+void BodyCut::update_surface() {
+  if (surface_ == nullptr) return update_body_surface(*uncut_, topology_, nullptr, solid_);
+  if (dividing_.valid()) dividing_.get();
+  patch_body_surface(*uncut_, topology_, *surface_, surface_->take_changes(), solid_);
+}
+
+void BodyCut::rebuild(std::span<const CutEdges* const> edits) {
+  if (dividing_.valid()) dividing_.wait();
+  dividing_ = {};
+  topology_.reset({});
+  solid_ = *uncut_;
+  make_surface();
+  for (const CutEdges* edges : edits) {
+    const CutEdit edit = topology_.cut(*edges);
+    if (surface_ != nullptr && edit.changed_elements()) surface_->update(topology_, edit.cells);
+  }
+  update_body_mesh(*uncut_, topology_, surface_.get(), solid_);
+  if (surface_ != nullptr) static_cast<void>(surface_->take_changes());
+}
+
+namespace {
+
+ModelSurface copy_of(const ModelSurface& from) {
+  ModelSurface out;
+  const auto copy = [](const auto& values, auto& to) {
+    to.reserve(values.size() + values.size() / 8);  // for what an edit adds
+    to = values;
+  };
+  copy(from.rest, out.rest);
+  copy(from.nodes, out.nodes);
+  copy(from.weights, out.weights);
+  copy(from.triangles, out.triangles);
+  copy(from.triangle_body, out.triangle_body);
+  copy(from.triangle_cut, out.triangle_cut);
+  return out;
+}
+
+}  // namespace
+
+void SurfaceCopy::make(const std::shared_ptr<const Model>& model, HelperThread& helper) {
+  if (made_.valid()) made_.wait();
+  model_ = model;
+  made_ = helper.run([this, model] { surface_ = copy_of(model->surface); });
+}
+
+ModelSurface SurfaceCopy::take(const Model& model) {
+  if (made_.valid()) made_.get();
+  const bool same = std::exchange(model_, nullptr).get() == &model;
+  return same ? std::exchange(surface_, {}) : copy_of(model.surface);
+}
+
+bool can_be_cut(const BodyMesh& solid) { return solid.lattice != nullptr || solid.hexes.empty(); }
+
+namespace {
+
+bool tears(const Body& body) {
+  return body.material.toughness > 0 || std::any_of(body.inclusions.begin(), body.inclusions.end(),
+                                                    [](const Inclusion& i) { return i.material.toughness > 0; });
+}
+
+/// The material of each element, as build_model gives it.
+std::vector<Material> materials_of(const Body& body, const BodyMesh& solid) {
+  const ElementMaterials materials = element_materials(body, solid);
+  std::vector<Material> out;
+  for (std::size_t e = 0; e < solid.size(); ++e) out.push_back(material_of(body, materials, e));
+  return out;
+}
+
+[[noreturn]] void refuse_edits(const char* kind) {
+  throw Error(ErrorCode::bad_input, fmt::format("the list of {} does not belong to this scene, or is damaged", kind));
+}
+
+}  // namespace
+
+bool EditedBodies::tears(const Scene& scene) {
+  return !scene.solver.enabled && std::any_of(scene.bodies.begin(), scene.bodies.end(), pliant::tears);
+}
+
+EditedBodies::EditedBodies(const Scene& scene) : scene_(scene), cuts_(scene.bodies.size()), torn_(scene.bodies.size()) {
+  const bool torn = tears(scene);
+  for (BodyMesh& solid : make_body_meshes(scene)) {
+    const std::size_t b = uncut_.size();
+    if (!torn) {
+      solid.wants_middles = !scene.bodies[b].pressures.empty();
+      solid.uncut_order = std::make_shared<const NodeOrder>(node_order(solid));
+    }
+    uncut_.push_back(std::make_shared<const BodyMesh>(std::move(solid)));
+    if (torn && pliant::tears(scene.bodies[b])) make_torn(b);
+  }
+}
+
+void EditedBodies::make_torn(std::size_t b) {
+  const Body& body = scene_.bodies[b];
+  if (!uncut_[b]->lattice_nodes.empty() || uncut_[b]->tets.empty()) {
+    throw Error(ErrorCode::bad_input,
+                "body '" + body.name + "' has a material with a toughness; only volume meshes of tetrahedra (\"mesh\") tear");
+  }
+  torn_[b] = std::make_unique<TornBody>(uncut_[b], materials_of(body, *uncut_[b]));
+}
+
+BodyCut& EditedBodies::cut(std::size_t b) {
+  if (cuts_[b] == nullptr) cuts_[b] = std::make_unique<BodyCut>(scene_.bodies[b], uncut_[b]);
+  return *cuts_[b];
+}
+
+const BodyMesh& EditedBodies::solid(std::size_t b) const {
+  if (cuts_[b] != nullptr) return cuts_[b]->solid();
+  return torn_[b] != nullptr ? torn_[b]->solid() : *uncut_[b];
+}
+
+std::vector<const BodyMesh*> EditedBodies::solids() const {
+  std::vector<const BodyMesh*> all;
+  for (std::size_t b = 0; b < size(); ++b) all.push_back(&solid(b));
+  return all;
+}
+
+void EditedBodies::replay(const RunState& state) {
+  for (const CutRecord& record : state.cuts) {
+    if (record.body < 0 || static_cast<std::size_t>(record.body) >= size()) refuse_edits("cuts");
+    BodyCut& body = cut(static_cast<std::size_t>(record.body));
+    if (body.cut(record.edges, helper).changed_elements()) body.update_surface();
+  }
+  for (const auto& body : cuts_) {
+    if (body != nullptr) body->update_elements();
+  }
+  replay_tears(state);
+}
+
+void EditedBodies::replay_tears(const RunState& state) {
+  std::vector<std::vector<TetFace>> faces(size());
+  for (const TearRecord& record : state.tears) {
+    const auto b = static_cast<std::size_t>(record.body);
+    const bool known = record.body >= 0 && b < size() && torn_[b] != nullptr && record.tet >= 0 &&
+                       static_cast<std::size_t>(record.tet) < torn_[b]->broken().size() && record.faces > 0 &&
+                       record.faces < 16;
+    if (!known) refuse_edits("tears");
+    for (int f = 0; f < 4; ++f) {
+      if (record.faces >> f & 1) faces[b].push_back({record.tet, static_cast<std::int8_t>(f)});
+    }
+  }
+  for (std::size_t b = 0; b < size(); ++b) {
+    if (!faces[b].empty()) torn_[b]->tear(faces[b]);
+  }
+}
+
+void EditedBodies::rebuild(std::size_t b, const RunState& state) {
+  if (cuts_[b] != nullptr) {
+    std::vector<const CutEdges*> edits;
+    for (const CutRecord& record : state.cuts) {
+      if (static_cast<std::size_t>(record.body) == b) edits.push_back(&record.edges);
+    }
+    cuts_[b]->rebuild(edits);
+  }
+  if (torn_[b] == nullptr) return;
+  make_torn(b);
+  RunState own;
+  std::copy_if(state.tears.begin(), state.tears.end(), std::back_inserter(own.tears),
+               [b](const TearRecord& record) { return static_cast<std::size_t>(record.body) == b; });
+  replay_tears(own);
+}
+
+namespace {
+
+/// Cells that stand for all in a trial, spread so that some of a hybrid's are finite elements: what a blade leaves of those
+/// needs passes that the rest does not.
+std::vector<std::size_t> trial_cells(std::size_t cells) {
+  constexpr std::size_t kParts = 16;
+  std::vector<std::size_t> chosen;
+  for (std::size_t i = 0; i <= kParts; ++i) chosen.push_back(i * (cells - 1) / kParts);
+  return chosen;
+}
+
+}  // namespace
+
+Model EditedBodies::trial_model() const {
+  std::vector<BodyMesh> solids;
+  for (std::size_t b = 0; b < size(); ++b) {
+    solids.push_back(*uncut_[b]);
+    if (!can_be_cut(*uncut_[b])) continue;
+    CutTopology topology(cut_mesh(*uncut_[b], scene_.bodies[b].name));
+    const CutMesh& mesh = topology.mesh();
+    CutEdges edges;
+    for (const std::size_t cell : trial_cells(mesh.cells.size())) {
+      for (const auto& [i, j] : mesh.shape->edges) edges[node_pair(mesh.cells[cell][i], mesh.cells[cell][j])] = 0.5;
+    }
+    topology.cut(edges);
+    update_body_elements(*uncut_[b], topology, solids.back());
+  }
+  return build_model(scene_, solids);
+}
+
+}  // namespace pliant

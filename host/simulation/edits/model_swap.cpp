@@ -1,0 +1,175 @@
+#include "simulation/edits/model_swap.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "model/nodes/ballast.h"
+#include "model/nodes/boundary_conditions.h"
+#include "schedule/build_program.h"
+#include "schedule/surface_program.h"
+#include "simulation/step/coupling.h"
+
+namespace pliant {
+ModelSwap::ModelSwap(RunContext& run, HostLoads& loads, EditedBodies& bodies, std::vector<double> u, CutReport& report)
+    : run_(run),
+      loads_(loads),
+      bodies_(bodies),
+      report_(report),
+      old_model_(run.loaded.shared_model()),
+      old_u_(std::move(u)),
+      old_w_(run.loaded.w()) {
+  for (std::size_t b = 0; b < bodies.size(); ++b) v_.push_back(run.velocities(old_w_, b));
+}
+
+/// Most of a surface stays as it is, if real nodes keep their slots.
+bool ModelSwap::keeps_surface() const {
+  if (bodies_.size() != 1 || bodies_.find_cut(0) == nullptr || bodies_.uncut(0).lattice == nullptr) return false;
+  const ModelBody &body = model_->bodies[0], &before = old_model_->bodies[0];
+  const std::int32_t first = before.virtual_nodes.first;
+  const auto real = static_cast<std::ptrdiff_t>(first < 0 ? before.slot.size() : static_cast<std::size_t>(first));
+  return !origins_[0].from.empty() && std::equal(before.slot.begin(), before.slot.begin() + real, body.slot.begin());
+}
+
+void ModelSwap::take_surfaces(const std::vector<const BodyMesh*>& solids, const std::function<void()>& ready) {
+  if (kept_) model_->surface = bodies_.surface_copy.take(*old_model_);
+  ready();
+  report_.surface += clock_.lap();
+  if (kept_) changes_ = &solids[0]->changes.value();  // every edit of a lattice lists them
+  add_surfaces(solids, *model_, changes_);
+}
+
+void ModelSwap::run(const Scene& scene, std::vector<NodeOrigins> origins, const std::function<void()>& ready) {
+  origins_ = std::move(origins);
+  const std::vector<const BodyMesh*> solids = bodies_.solids();
+  model_ = std::make_shared<Model>(build_elements(scene, solids, old_model_.get()));
+  ballast_ = carried_ballast();
+  kept_ = keeps_surface();
+  // A surface takes longest to make: it comes last unless loads ask for it.
+  const bool first = needs_surface(scene);
+  try {
+    if (first) {
+      report_.model += clock_.lap();
+      take_surfaces(solids, ready);
+    }
+    load_steps(scene);
+    if (!first) {
+      take_surfaces(solids, ready);
+      report_.model += clock_.lap();
+    }
+    load_surface();
+  } catch (...) {
+    restore();
+    throw;
+  }
+  run_.state.offset = std::move(offset_);
+  run_.place_surface();
+  upload_coupling(run_);
+  run_.state.ballast = std::move(ballast_);
+  run_.state.kept.reset();  // copies of the old model's buffers
+
+  // What dynamic relaxation remembers is that of the old slots.
+  RelaxationState& relaxation = run_.state.relaxation;
+  for (std::vector<double>* values : {&relaxation.u, &relaxation.force, &relaxation.v, &relaxation.middle, &relaxation.steady})
+    values->clear();
+  if (!run_.state.forces.empty()) loads_.upload();
+  report_.upload += clock_.lap();
+}
+
+std::vector<char> ModelSwap::changed_nodes() const {
+  std::vector<char> changed(model_->mass.size());
+  for (std::size_t b = 0; b < origins_.size(); ++b) {
+    const std::vector<std::int32_t>&slots = model_->bodies[b].slot, &old_slots = old_model_->bodies[b].slot;
+    for (std::size_t n = 0; n < slots.size(); ++n) {
+      const auto slot = static_cast<std::size_t>(slots[n]), old = static_cast<std::size_t>(old_slots[origins_[b].of(n)]);
+      changed[slot] = static_cast<char>(model_->mass[slot] != old_model_->mass[old]);
+    }
+  }
+  return changed;
+}
+
+std::vector<NodeInertia> ModelSwap::carried_ballast() const {
+  std::vector<NodeInertia> out;
+  if (old_model_->ballast.empty()) return out;
+  std::map<std::int32_t, const Ballast*> before;
+  for (const Ballast& b : old_model_->ballast) before[b.slot] = &b;
+  for (std::size_t b = 0; b < v_.size(); ++b) {
+    const std::vector<std::int32_t>&slots = model_->bodies[b].slot, &old_slots = old_model_->bodies[b].slot;
+    for (std::size_t n = 0; n < slots.size(); ++n) {
+      const auto found = before.find(old_slots[origins_[b].of(n)]);
+      if (found == before.end()) continue;
+      const Ballast& had = *found->second;
+      out.push_back({slots[n], had.inertia * model_->mass[static_cast<std::size_t>(slots[n])] / had.mass});
+    }
+  }
+  std::sort(out.begin(), out.end(), [](const NodeInertia& a, const NodeInertia& b) { return a.slot < b.slot; });
+  return out;
+}
+
+void ModelSwap::load_steps(const Scene& scene) {
+  set_ballast(scene, *model_, ballast_);
+  Program program = build_program(*model_, {scene.integrator, run_.settings.batch_steps});
+  Buffer &u = program.at(program.find("node_u")), &w = program.at(program.find("node_w"));
+  new_u_ = u.reals;
+  new_w_ = w.reals;
+  report_.model += clock_.lap();
+  carry_motion();
+  // The buffers of the state are sent once, as they go on, and begin as always for whoever asks for the program.
+  u.reals.swap(new_u_);
+  w.reals.swap(new_w_);
+  run_.loaded.update(model_, std::move(program));
+  run_.state.look.tools = run_.state.look.tissue = -1;  // what is sampled anew has no partners yet
+  run_.loaded.reset_initial_state(std::move(new_u_), std::move(new_w_));
+  report_.upload += clock_.lap();
+}
+
+void ModelSwap::load_surface() {
+  Program before = run_.loaded.take_surface();
+  Program surface = surface_program(model_->surface, run_.loaded.program(), &before, changes_);
+  const bool patched = std::any_of(surface.buffers.begin(), surface.buffers.end(),
+                                   [](const Buffer& buffer) { return buffer.changed.has_value(); });
+  run_.loaded.update_surface(std::move(surface), patched);
+  report_.upload += clock_.lap();
+}
+
+void ModelSwap::carry_motion() {
+  const std::vector<double>& before = run_.state.offset;
+  if (!before.empty()) offset_.assign(3 * static_cast<std::size_t>(model_->slots), 0.0);
+  for (std::size_t b = 0; b < v_.size(); ++b) {
+    const NodeOrigins& origins = origins_[b];
+    const std::vector<std::int32_t>&slots = model_->bodies[b].slot, &old_slots = old_model_->bodies[b].slot;
+    for (std::size_t n = 0; n < slots.size(); ++n) {
+      const auto slot = static_cast<std::size_t>(slots[n]);
+      const double* moved = &old_u_[4 * static_cast<std::size_t>(old_slots[origins.of(n)])];
+      const double step = substeps_of(*model_, slot) * run_.state.clock.dt;
+      if (!before.empty()) std::copy_n(&before[3 * static_cast<std::size_t>(old_slots[origins.of(n)])], 3, &offset_[3 * slot]);
+      for (std::size_t c = 0; c < 3; ++c) {
+        new_u_[4 * slot + c] = moved[c];
+        new_w_[4 * slot + c] = step * v_[b][origins.of(n)][c];
+      }
+    }
+  }
+  // A cut may leave a moving virtual node with held anchors only: it would go on as it moved, for nothing moves a held node. It
+  // rests where it is: taken back to its place it would stretch what hangs on it, and create energy.
+  for (const Constraint& held : model_->constraints) {
+    const auto at = static_cast<std::ptrdiff_t>(4) * held.slot;
+    if (!held.holds()) continue;
+    std::fill_n(new_w_.begin() + at, 3, 0.0);
+  }
+  for (std::size_t i = 0; i < offset_.size(); ++i) new_u_[i / 3 * 4 + i % 3] -= offset_[i];
+  for (std::size_t slot = 0; slot < model_->mass.size(); ++slot) new_w_[4 * slot + 3] = run_.decay(*model_, slot);
+}
+
+void ModelSwap::restore() {
+  Program program = build_program(*old_model_, {run_.scene.integrator, run_.settings.batch_steps});
+  Program surface = surface_program(old_model_->surface, program);
+  run_.loaded.load(old_model_, std::move(program), std::move(surface));
+  run_.write_u(old_u_);
+  run_.loaded.write_w(old_w_);
+  run_.place_surface();
+  upload_coupling(run_);
+  if (!run_.state.forces.empty()) loads_.upload();
+  run_.state.kept.reset();  // its copies are gone
+}
+
+}  // namespace pliant

@@ -1,0 +1,160 @@
+// Edits that change how a body is modelled and leave its elements alone: the operational region that follows the tool, and
+// hybrids that go on with fewer substeps. Every node keeps its position and momentum.
+#include <Eigen/Dense>
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "geometry/vec.h"
+#include "model/matching/partition.h"
+#include "pliant/error.h"
+#include "simulation/edits/model_swap.h"
+#include "simulation/edits/topology_edits.h"
+#include "simulation/recovery/limits.h"
+
+namespace pliant {
+namespace {
+
+double distance(const Vec3d& a, const Vec3d& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
+
+/// The rest position of the node that is nearest to a point now.
+Vec3d nearest_at_rest(const ModelBody& body, const std::vector<Vec3d>& u, const Vec3d& point) {
+  std::size_t best = 0;
+  double least = -1;
+  for (std::size_t n = 0; n < body.rest.size(); ++n) {
+    const Vec3d& x = body.rest[n];
+    const double d = distance(vec::add(x, u[n]), point);
+    if (least >= 0 && !(d < least)) continue;
+    least = d;
+    best = n;
+  }
+  return body.rest[best];
+}
+
+/// Shape matching and finite elements have different forces for the same large strain, and the first even folds: a cell that
+/// changed its model then would let energy go, or get some. Below this stretch, and above its inverse, they are near enough.
+constexpr double kMostStretch = 1.5;
+constexpr std::int64_t kWaitSteps = 256;  ///< after which such a cell is looked at again
+
+/// Whether a cell is deformed too far to change its model. corners: x fastest; u by node.
+bool strained(const std::array<std::int32_t, 8>& corners, double spacing, const std::vector<Vec3d>& u) {
+  Eigen::Matrix<double, 3, 8> x;
+  Eigen::Matrix<double, 8, 3> sides;
+  for (int a = 0; a < 8; ++a) {
+    const Eigen::RowVector3d at(a & 1, a >> 1 & 1, a >> 2 & 1);
+    x.col(a) = spacing * at.transpose() + Eigen::Map<const Eigen::Vector3d>(u[static_cast<std::size_t>(corners[a])].data());
+    sides.row(a) = (2 * at.array() - 1) / 4;
+  }
+  const double volume = (x * sides).determinant() / std::pow(spacing, 3);  // of the mean edges
+  if (!(volume > 1 / kMostStretch)) return true;
+  for (int a = 0; a < 8; ++a) {
+    for (int b = a + 1; b < 8; ++b) {
+      const double stretch = (x.col(a) - x.col(b)).norm() / (spacing * std::sqrt(std::popcount(static_cast<unsigned>(a ^ b))));
+      if (!(stretch < kMostStretch && stretch > 1 / kMostStretch)) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+MovedRegion TopologyEdits::region_at(std::size_t b, const Vec3d& seed, const std::vector<Vec3d>& u) {
+  MovedRegion region{seed, {}, false};
+  const BodyMesh& solid = bodies().solid(b);
+  const auto chosen = [&](const Body& body) { return partition_lattice(body, *solid.lattice).operational; };
+  Body next = run_.scene.bodies[b];
+  next.model.seed = seed;
+  std::vector<char> operational = chosen(next);
+  const std::vector<char> before = chosen(scene_at(run_.state).bodies[b]);
+  const std::size_t elements = solid.copy_of.empty() ? before.size() : solid.copy_of.size();
+  for (std::size_t e = 0; e < elements; ++e) {
+    const std::size_t c = solid.copy_of.empty() ? e : static_cast<std::size_t>(solid.copy_of[e]);
+    if (operational[c] == before[c]) continue;
+    const std::array<std::int32_t, 8> corners = solid.tets.empty() ? solid.hexes[e] : cell_corners(&solid.tets[6 * e]);
+    if (!strained(corners, run_.model().bodies[b].spacing, u)) continue;
+    operational[c] = before[c];
+    region.waits = true;
+  }
+  for (std::size_t c = 0; c < operational.size(); ++c) {
+    if (operational[c] != 0) region.cells.push_back(static_cast<std::int32_t>(c));
+  }
+  return region;
+}
+
+/// A region moves when the material under the tool is more than a cell from its seed, and only between steps of shape matching.
+void TopologyEdits::move_regions() {
+  const auto& bodies_of_scene = run_.scene.bodies;
+  if (std::none_of(bodies_of_scene.begin(), bodies_of_scene.end(), [](const Body& b) { return b.model.follow_tool; })) return;
+  if (run_.phase() != 0) return;
+  const RunState& state = run_.state;
+  const Vec3d tool = state.tool.value_or(run_.scene.tool.position(state.clock.time()));
+  std::vector<double> u = run_.u();
+  const bool first = state.regions.empty();
+  std::vector<std::pair<std::size_t, MovedRegion>> found;
+  bool moved = false;
+  for (std::size_t b = 0; b < bodies_of_scene.size(); ++b) {
+    const DeformationModel& model = bodies_of_scene[b].model;
+    if (!model.follow_tool) continue;
+    const std::vector<Vec3d> of_body = run_.loaded.pick(u, b, 1);
+    const Vec3d now = nearest_at_rest(run_.model().bodies[b], of_body, tool);
+    const std::optional<Vec3d> seed = first ? model.seed : state.regions[b].seed;
+    const bool moves = !seed || distance(now, *seed) > run_.model().bodies[b].spacing;
+    const bool again = !first && state.regions[b].waits && run_.begins_after(state.clock.step, kWaitSteps);
+    if (!first && !moves && !again) continue;
+    found.emplace_back(b, region_at(b, moves ? now : *seed, of_body));
+    moved = moved || moves || (!first && found.back().second.cells != state.regions[b].cells);
+  }
+  if (!moved) return;
+  std::vector<MovedRegion> regions = state.regions;
+  regions.resize(bodies_of_scene.size());
+  for (auto& [b, region] : found) regions[b] = std::move(region);
+  std::vector<MovedRegion> before = std::exchange(run_.state.regions, std::move(regions));
+  try {
+    swap_partition(std::move(u));
+  } catch (...) {
+    run_.state.regions = std::move(before);
+    throw;
+  }
+  step_.adapt();
+}
+
+/// Held goals pull at the finite elements once in n substeps, n times as hard: where elements have become stiffer than the last
+/// look at the step knew, that is a resonance, which a shorter step does not leave before it is a thousandth
+/// (docs/stability.md).
+bool TopologyEdits::fewer_substeps() {
+  const std::vector<FlsmBatch>& batches = run_.model().flsm;
+  const bool many = std::any_of(batches.begin(), batches.end(),
+                                [](const FlsmBatch& b) { return b.interface > 0 && b.settings.substeps > kSafeSubsteps; });
+  if (!many || run_.phase() != 0 || !run_.settings.automatic || !bodies_as_loaded()) return false;
+  const std::int32_t before = std::exchange(run_.state.most_substeps, kSafeSubsteps);
+  try {
+    swap_partition(run_.u());
+  } catch (...) {
+    run_.state.most_substeps = before;
+    throw;
+  }
+  return true;
+}
+
+bool TopologyEdits::bodies_as_loaded() {
+  try {
+    const EditedBodies& all = bodies();
+    for (std::size_t b = 0; b < all.size(); ++b) {
+      if (all.solid(b).nodes.size() != run_.model().bodies[b].rest.size()) return false;
+    }
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+void TopologyEdits::swap_partition(std::vector<double> u) {
+  CutReport report;
+  ModelSwap swap(run_, loads_, bodies(), std::move(u), report);
+  swap.run(scene_at(run_.state), std::vector<NodeOrigins>(run_.scene.bodies.size()), [] {});
+}
+
+}  // namespace pliant

@@ -1,0 +1,55 @@
+// Tearing: bodies of tetrahedra come apart along faces where their stress or a stretched edge breaks them, between two batches
+// of a run. Every node keeps the displacement and velocity of the one it comes from: masses of copies add up to that of their
+// node, so momentum is kept.
+#include <utility>
+#include <vector>
+
+#include "simulation/edits/model_swap.h"
+#include "simulation/edits/topology_edits.h"
+
+namespace pliant {
+
+void TopologyEdits::make_tears() {
+  if (!run_.settings.tears || !run_.begins_after(run_.state.clock.step, kTearSteps)) return;
+  EditedBodies& all = bodies();
+  const std::vector<double> u = run_.u();
+  std::vector<std::vector<TetFace>> faces(all.size());
+  bool any = false;
+  std::int64_t edges = 0;
+  for (std::size_t b = 0; b < faces.size(); ++b) {
+    if (all.torn(b) == nullptr) continue;
+    TornBody::Breaks found = all.torn(b)->breaking_faces(run_.loaded.positions(u, b), run_.scene.break_stretch);
+    faces[b] = std::move(found.faces);
+    edges += found.edges;
+    any = any || !faces[b].empty();
+  }
+  if (!any) return;
+  CutReport report;
+  std::vector<char> changed;
+  try {
+    ModelSwap swap(run_, loads_, all, u, report);
+    std::vector<NodeOrigins> origins(all.size());
+    for (std::size_t b = 0; b < all.size(); ++b) {
+      if (!faces[b].empty()) origins[b].from = all.torn(b)->tear(faces[b]);
+    }
+    swap.run(scene_at(run_.state), std::move(origins), [] {});
+    changed = swap.changed_nodes();
+  } catch (...) {
+    for (std::size_t b = 0; b < all.size(); ++b) {
+      if (!faces[b].empty()) all.rebuild(b, run_.state);
+    }
+    throw;
+  }
+  run_.state.tears.clear();
+  for (std::size_t b = 0; b < all.size(); ++b) {
+    for (std::size_t t = 0; all.torn(b) != nullptr && t < all.torn(b)->broken().size(); ++t) {
+      const int bits = all.torn(b)->broken()[t];
+      if (bits != 0) run_.state.tears.push_back({static_cast<std::int32_t>(b), static_cast<std::int32_t>(t), bits});
+    }
+  }
+  run_.state.opened += edges;
+  ++run_.state.topology_version;
+  step_.limit_after_edit(changed);
+}
+
+}  // namespace pliant

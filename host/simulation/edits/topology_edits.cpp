@@ -1,0 +1,187 @@
+#include "simulation/edits/topology_edits.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "pliant/error.h"
+#include "schedule/build_program.h"
+#include "simulation/contact/tool_changes.h"
+#include "simulation/edits/model_swap.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kLongestBatch = 1.0 / 60;  ///< the scene's blades move at least so often [s]
+
+void check_blade(const Blade& blade) {
+  const auto fail = [&](const std::string& what) {
+    throw Error(ErrorCode::bad_input, fmt::format("blade '{}': {}", blade.name, what));
+  };
+  if (blade.path.size() < 2) fail(fmt::format("got a path of {} rows; allowed are two or more", blade.path.size()));
+  for (std::size_t i = 0; i < blade.path.size(); ++i) {
+    const auto& row = blade.path[i];
+    const bool finite = std::all_of(row.begin(), row.end(), [](double v) { return std::isfinite(v); });
+    if (!finite) fail(fmt::format("got [{}] in row {} of the path; allowed are finite numbers", fmt::join(row, ", "), i));
+    if (Vec3d{row[1], row[2], row[3]} == Vec3d{row[4], row[5], row[6]}) {
+      fail(fmt::format("both ends are [{}] m in row {} of the path; allowed are two different points",
+                       fmt::join(row.begin() + 1, row.begin() + 4, ", "), i));
+    }
+    if (i > 0 && !(row[0] > blade.path[i - 1][0])) {
+      fail(fmt::format("got {} s after {} s in row {} of the path; allowed are ascending times", row[0], blade.path[i - 1][0],
+                       i));
+    }
+  }
+}
+
+/// Whether a blade's trace names places that this body has; it may have come with a checkpoint.
+bool belongs(const BladeTrace& front, const CutMesh& mesh) {
+  if (front.levels < 0 || front.levels > kMostLevels) return false;
+  std::int64_t place = -1;
+  for (const TracePoint& p : front.points) {
+    const bool carried = p.carried.cell >= 0;
+    if (p.place <= place || p.place > (std::int64_t{1} << front.levels) || p.place > front.points[0].place + (1 << 17) ||
+        p.node < -1 || p.node >= static_cast<std::int64_t>(mesh.rest.size()) || carried == (p.node >= 0) ||
+        p.carried.cell < -1 || p.carried.cell >= static_cast<std::int64_t>(mesh.cells.size()) || p.carried.tet < 0 ||
+        p.carried.tet >= static_cast<std::int64_t>(mesh.shape->tets.size())) {
+      return false;
+    }
+    place = p.place;
+  }
+  return true;
+}
+
+bool follows(const Scene& scene) {
+  return std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& b) { return b.model.follow_tool; });
+}
+
+}  // namespace
+
+void TopologyEdits::start() {
+  const Scene& scene = run_.scene;
+  const bool moves_freely = integrator_info(scene.integrator).edits && !scene.relaxation.enabled;
+  if (!scene.blades.empty()) {
+    for (const Blade& blade : scene.blades) check_blade(blade);
+    prepare_cuts();
+    const double steps = kLongestBatch / run_.state.clock.dt;
+    run_.settings.blade_steps =
+        steps < 1 ? 1 : static_cast<std::int64_t>(std::min(steps, static_cast<double>(run_.settings.batch_steps)));
+  }
+  if (!EditedBodies::tears(scene)) return;
+  if (!moves_freely || !scene.blades.empty()) {
+    throw Error(
+        ErrorCode::bad_input,
+        fmt::format("a scene with another integrator than {}, with relaxation or with blades cannot tear: no material may "
+                    "have a toughness",
+                    integrators_with(&IntegratorInfo::edits)));
+  }
+  bodies_ = std::make_unique<EditedBodies>(scene);
+  run_.settings.tears = true;
+}
+
+void TopologyEdits::update() {
+  move_scene_blades();
+  if (run_.phase() == 0) open_overstretched();
+  make_tears();
+  move_regions();
+}
+
+EditedBodies& TopologyEdits::bodies() {
+  if (bodies_ == nullptr) bodies_ = std::make_unique<EditedBodies>(run_.scene);
+  return *bodies_;
+}
+
+/// The bodies, of a scene that can be cut.
+EditedBodies& TopologyEdits::cut_bodies() {
+  if (run_.settings.tears || EditedBodies::tears(run_.scene)) {
+    throw Error(ErrorCode::bad_input, "a scene with a material that tears (\"toughness\") cannot be cut");
+  }
+  const IntegratorInfo& integrator = integrator_info(run_.scene.integrator);
+  if (!integrator.edits || run_.scene.relaxation.enabled) {
+    const std::string has = integrator.edits ? "relaxation" : fmt::format("\"integrator\": \"{}\"", integrator.word);
+    throw Error(ErrorCode::bad_input,
+                fmt::format("a scene with {} cannot be cut, only with the integrator {} and no relaxation", has,
+                            integrators_with(&IntegratorInfo::edits)));
+  }
+  return bodies();
+}
+
+void TopologyEdits::prepare_cuts() {
+  EditedBodies& all = cut_bodies();
+  if (run_.backend().info().compiles) {
+    run_.backend().compile(build_program(all.trial_model(), {run_.scene.integrator, run_.settings.batch_steps}));
+  }
+  for (std::size_t b = 0; b < all.size(); ++b) {
+    if (can_be_cut(all.uncut(b))) static_cast<void>(all.cut(b));
+  }
+  if (all.size() == 1) all.surface_copy.make(run_.loaded.shared_model(), all.helper);
+}
+
+const CutTopology* TopologyEdits::cut_topology(std::size_t body) const {
+  if (bodies_ == nullptr || body >= bodies_->size() || bodies_->find_cut(body) == nullptr) return nullptr;
+  return &bodies_->find_cut(body)->topology();
+}
+
+Scene TopologyEdits::scene_at(const RunState& state) const {
+  Scene scene = run_.scene;
+  scene.cuttable = scene.cuttable || !state.cuts.empty();
+  if (!state.tools.empty()) scene.tools = present_tools(run_.scene, state.tools);
+  for (std::size_t b = 0; b < scene.bodies.size() && !state.regions.empty(); ++b) {
+    if (scene.bodies[b].model.follow_tool) scene.bodies[b].model.cells = state.regions[b].cells;
+  }
+  for (Body& body : scene.bodies) {
+    DeformationModel& m = body.model;
+    if (state.most_substeps == 0 || m.type != ModelType::hybrid || m.substeps <= state.most_substeps) continue;
+    const double ratio = static_cast<double>(state.most_substeps) / m.substeps;
+    // The same stiffness, and the same damping over time, at the shorter step.
+    m.alpha *= ratio * ratio;
+    m.damping = 1 - std::pow(1 - m.damping, ratio);
+    m.substeps = state.most_substeps;
+  }
+  return scene;
+}
+
+std::unique_ptr<EditedBodies> TopologyEdits::bodies_at(const RunState& state) const {
+  const Scene& scene = run_.scene;
+  const auto refuse = [](const char* what) {
+    throw Error(ErrorCode::bad_input, fmt::format("{} do not belong to this scene, or are damaged", what));
+  };
+  if (!state.regions.empty() && (state.regions.size() != scene.bodies.size() || !follows(scene))) refuse("its moved regions");
+  const auto edited = [](const RunState& s) {
+    return !s.cuts.empty() || !s.tears.empty() || !s.regions.empty() || s.most_substeps != 0 || !s.blades.traces.empty();
+  };
+  if (!edited(state) && !edited(run_.state)) return nullptr;
+  auto all = std::make_unique<EditedBodies>(scene);
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {  // what is prepared stays so
+    if (cut_topology(b) != nullptr) static_cast<void>(all->cut(b));
+  }
+  for (std::size_t b = 0; b < state.regions.size(); ++b) {
+    const std::vector<std::int32_t>& cells = state.regions[b].cells;
+    const auto last = static_cast<std::int64_t>(all->uncut(b).lattice == nullptr ? 0 : all->uncut(b).lattice->cells.size());
+    const bool ordered = std::adjacent_find(cells.begin(), cells.end(), std::greater_equal<>()) == cells.end();
+    if (!ordered || (!cells.empty() && (cells.front() < 0 || cells.back() >= last))) refuse("its moved regions");
+  }
+  all->replay(state);
+  for (const auto& [key, traces] : state.blades.traces) {
+    for (const auto& [body, front] : traces) {
+      const bool known = body >= 0 && static_cast<std::size_t>(body) < all->size() &&
+                         can_be_cut(all->uncut(static_cast<std::size_t>(body))) &&
+                         belongs(front, all->cut(static_cast<std::size_t>(body)).topology().mesh());
+      if (!known) refuse("its traces of blades");
+    }
+  }
+  return all;
+}
+
+void TopologyEdits::take_up(std::unique_ptr<EditedBodies> bodies) {
+  if (bodies == nullptr) return;  // neither state had edits
+  bodies_ = std::move(bodies);
+  if (bodies_->size() == 1) {
+    bodies_->surface_copy.make(run_.loaded.shared_model(), bodies_->helper);
+  }
+}
+
+}  // namespace pliant

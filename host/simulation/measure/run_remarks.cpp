@@ -1,0 +1,167 @@
+#include "simulation/measure/run_remarks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "cutting/topology/mesh_edges.h"
+#include "geometry/vec.h"
+#include "simulation/measure/reactions.h"
+#include "simulation/step/applied_loads.h"
+
+namespace pliant {
+namespace {
+
+using Sentences = std::vector<std::string>;
+
+constexpr double kDeep = 0.5;     ///< cells in tissue
+constexpr double kThin = 0.7;     ///< cells: the diagonal between points of contact that are half a cell apart
+constexpr double kDamped = 0.03;  ///< share of the force of tools that damping may have without a word
+
+void add_substeps(const Simulation& s, Sentences& out) {
+  if (s.state().most_substeps == 0) return;
+  out.push_back(
+      fmt::format("the pull of shape matching, several steps at once, drove finite elements apart; hybrids went on with "
+                  "\"substeps\": {}",
+                  s.state().most_substeps));
+}
+
+void add_opened(const Simulation& s, Sentences& out) {
+  if (s.state().opened == 0) return;
+  out.push_back(fmt::format(
+      "{} edges parted: they were stretched beyond {:.3g} times their length beside a cut or tear, or {:.3g} times "
+      "elsewhere (\"break_stretch\"); a material far too soft for its weight does that, too: look at the units of the "
+      "scene",
+      s.state().opened, s.scene().break_stretch, kWholeStretch * s.scene().break_stretch));
+}
+
+void add_ballast(const Simulation& s, Sentences& out) {
+  const BallastReport& ballast = s.report().ballast;
+  if (!(ballast.most > 0)) return;
+  double mass = 0;
+  for (const ModelBody& body : s.model().bodies) mass += body.mass;
+  out.push_back(fmt::format(
+      "elements that asked for less than {:.3g} of the first step got inertia instead: at most {:.3g} of the mass, {:.3g} "
+      "on {} nodes at the end",
+      s.scene().least_step, ballast.most / mass, ballast.mass / mass, ballast.nodes));
+}
+
+void add_inversions(const Simulation& s, Sentences& out) {
+  const Inversions& inverted = s.report().inversions;
+  if (inverted.calmed > 0) {
+    out.push_back(
+        fmt::format("in {} elements, counted batch by batch, nodes came to move against each other by more than a quarter of "
+                    "an edge in a step; what exceeded that was taken out",
+                    inverted.calmed));
+  }
+  if (inverted.batches == 0) return;
+  out.push_back(
+      fmt::format("up to {} elements at a time were turned inside out and driven back, first in step {} (t = {:.4g} s), "
+                  "element {} of body '{}'; {} in the last steps",
+                  inverted.most, inverted.first_step, inverted.first_time, inverted.element, inverted.body, inverted.last));
+}
+
+/// The smallest measure of a shape [m]; of a half space infinite.
+double thickness(const ToolForm& form) {
+  switch (form.shape) {
+    case ToolShape::sphere:
+    case ToolShape::capsule:
+      return 2 * form.radius;
+    case ToolShape::box:
+      return 2 * std::min({form.second[0], form.second[1], form.second[2]});
+    case ToolShape::half_space:
+      break;
+    case ToolShape::mesh:
+    case ToolShape::sequence: {
+      vec::Box box;
+      for (const Vec3d& x : form.surface.vertices) box.extend(x);
+      for (const ToolFrame& frame : form.frames) {
+        for (const Vec3d& x : frame.surface.vertices) box.extend(x);
+      }
+      const Vec3d size = vec::sub(box.upper, box.lower);
+      return std::min({size[0], size[1], size[2]});
+    }
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+void add_tool(const Simulation& s, std::size_t tool, Sentences& out) {
+  const std::string& name = s.scene().tools[tool].name;
+  const ToolHistory& h = s.report().tools[tool];
+  const double spacing = s.model().contact->spacing, cells = h.max_depth / spacing;
+  const double thick = thickness((*s.model().tools)[tool]);
+  if (thick < kThin * spacing && edge_points((*s.model().tools)[tool], *s.model().contact).empty()) {
+    out.push_back(fmt::format(
+        "tool '{}' is {:.3g} m thin, and points of contact are {:.3g} m apart (half a cell): it passes between them, and its "
+        "force means little; smaller cells would feel it, and \"edges\": true does (docs/contact.md, Thin tools)",
+        name, thick, 0.5 * spacing));
+  }
+  if (cells > kDeep) {
+    out.push_back(fmt::format(
+        "tool '{}' went {:.2g} cells deep into tissue: nodes that are fixed or prescribed do not give way to it, an "
+        "edge thinner than half a cell passes between contact points, and a tool that moves a cell in a few steps "
+        "is met late",
+        name, cells));
+  }
+  if (h.touched == 0 && s.step() > 0) {
+    out.push_back(fmt::format(
+        "tool '{}' has touched nothing until t = {:.4g} s: look at its path, its size and the units of both", name, s.time()));
+  }
+}
+
+/// Tools give what holds the bodies, but for the weight and other loads, the inertia, and what the damping of the materials
+/// takes from everything that moves: M a + c M v = (what holds) + (loads) - (force on tools).
+void add_damping(Simulation& s, Sentences& out) {
+  if (s.scene().relaxation.enabled || !s.model().flsm.empty() || !integrator_info(s.scene().integrator).contact) return;
+  Vec3d on_tools{}, held{}, damped{};
+  for (const ToolHistory& h : s.report().tools) on_tools = vec::add(on_tools, h.now.force);
+  const double size = vec::norm(on_tools);
+  if (!(size > 0)) return;
+  bool holds = false;
+  for (std::size_t b = 0; b < s.model().bodies.size(); ++b) {
+    const auto loads = applied_loads(s, b), reaction = reactions(s, b), v = s.velocities(b);
+    const std::vector<std::int32_t>& slot = s.model().bodies[b].slot;
+    for (std::size_t n = 0; n < slot.size(); ++n) {
+      const auto i = static_cast<std::size_t>(slot[n]);
+      holds = holds || vec::norm(reaction[n]) > 0;
+      held = vec::add(held, vec::add(reaction[n], loads[n]));
+      damped = vec::add(damped, vec::mul(v[n], s.model().mass[i] * s.model().damping[i]));
+    }
+  }
+  const double apart = vec::norm(vec::sub(on_tools, held));
+  if (!holds || !(apart > kDamped * size) || !(vec::norm(damped) > 0.5 * apart)) return;
+  out.push_back(fmt::format(
+      "tools feel {:.3g} N, and what holds the bodies gives {:.3g} N less their loads: of the difference, {:.2g} % of the "
+      "force, \"damping\" takes most, which resists all motion as if the tissue stood in a thick liquid; slower tools, less "
+      "damping or \"relaxation\" give the force of the tissue alone (docs/contact.md, Force curves)",
+      size, vec::norm(held), 100 * apart / size));
+}
+
+void add_contact(Simulation& s, Sentences& out) {
+  const ContactPoints* points = s.model().contact.get();
+  if (points == nullptr || points->size() == 0) return;
+  const double deepest = s.report().tissue.max_depth / points->spacing;
+  if (deepest > kDeep) {
+    out.push_back(fmt::format(
+        "tissue went {:.2g} cells deep into other tissue: sharp edges and parts thinner than a cell meet late, and held nodes "
+        "do not give way; smaller cells help",
+        deepest));
+  }
+  for (std::size_t t = 0; t < s.scene().tools.size(); ++t) add_tool(s, t, out);
+  add_damping(s, out);
+}
+
+}  // namespace
+
+std::vector<std::string> run_remarks(Simulation& simulation) {
+  Sentences out;
+  add_substeps(simulation, out);
+  add_opened(simulation, out);
+  add_ballast(simulation, out);
+  add_inversions(simulation, out);
+  add_contact(simulation, out);
+  return out;
+}
+
+}  // namespace pliant

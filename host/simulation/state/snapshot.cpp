@@ -1,0 +1,240 @@
+#include "simulation/state/snapshot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/vec.h"
+#include "pliant/error.h"
+#include "program/hash.h"
+#include "simulation/contact/tool_changes.h"
+#include "simulation/recovery/limits.h"
+
+namespace pliant {
+namespace {
+
+class Hash {
+ public:
+  Hash() = default;
+  explicit Hash(std::uint64_t start) : value(start) {}
+  void add(const void* data, std::size_t bytes) { value = hash_bytes(data, bytes, value); }
+  void add(double number) { add(&number, sizeof number); }
+  void add(const std::string& text) { add(text.data(), text.size()); }
+  template <class T>
+  void add(const std::vector<T>& values) {
+    add(values.data(), values.size() * sizeof(T));
+  }
+  void add(const Program& program) {
+    for (const Buffer& b : program.buffers) {
+      if (b.role != BufferRole::constant && b.name != "node_u" && b.name != "node_w") continue;
+      add(b.name);
+      add(b.reals);
+      add(b.ints);
+    }
+    for (const Pass& p : program.step) {
+      add(p.kernel);
+      for (const auto& [name, number] : p.defines) {
+        if (name == "VISCOUS" && number == 0) continue;  // those of before had none
+        // Checkpoints know the integrator by the name that it had when there were two.
+        add(name == "INTEGRATOR" ? std::string("TEXTBOOK") : name);
+        add(&number, sizeof number);
+      }
+      for (const Arg& a : p.args) {
+        if (const double* real = std::get_if<double>(&a)) add(real, sizeof *real);
+      }
+    }
+  }
+  std::uint64_t value = 0;
+};
+
+const NamedBytes* find(const Snapshot& snapshot, const std::string& name) {
+  for (const NamedBytes& named : snapshot.buffers) {
+    if (named.name == name) return &named;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+std::vector<ModelPart> parts_of(const Scene& scene, const RunSettings& settings, const Model& model, const Program& program,
+                                const Program& surface) {
+  std::vector<ModelPart> parts;
+  const auto part = [&](const char* name) { parts.emplace_back().name = name; };
+  const auto add = [&](const auto&... values) {
+    Hash hash{parts.back().hash};
+    (hash.add(values), ...);
+    parts.back().hash = hash.value;
+  };
+  const auto add_curve = [&](const Curve& c) {
+    add(static_cast<double>(c.kind), c.start, c.duration, static_cast<double>(c.of), c.angle, c.table);
+  };
+  part("curves");
+  for (const Curve& c : model.curves) add_curve(c);
+  part("gravity");
+  for (const double g : scene.gravity) add(g);
+  add_curve(scene.gravity_curve);
+  part("dt");
+  add(scene.dt, settings.automatic ? 0.0 : settings.first_dt);
+  part("safety");
+  add(scene.safety);
+  part("integrator");
+  add(static_cast<double>(scene.integrator));
+  part("relaxation");
+  add(static_cast<double>(scene.relaxation.enabled));
+  if (scene.relaxation.enabled) add(scene.relaxation.tolerance);
+  part("inverted");
+  add(static_cast<double>(scene.inverted));
+  part("least_step");
+  add(scene.least_step);
+  part("break_stretch");
+  add(scene.break_stretch, static_cast<double>(scene.cuttable));
+  part("blades");
+  for (const Blade& blade : scene.blades) add(blade.name, blade.start, blade.end, blade.path);
+  part("tool");
+  add(scene.tool.path);
+  part("tools");
+  for (const ContactTool& tool : scene.tools) add(tool.name, tool.path);
+  part("what the solver derives from the scene");
+  add(static_cast<double>(settings.batch_steps), static_cast<double>(settings.tears), static_cast<double>(settings.blade_steps),
+      settings.curves_end, settings.increment_floor, settings.displacement_grid);
+  // Last, because some of the others shape the passes as well.
+  part("bodies (their meshes, materials, models, what holds and loads them)");
+  add(program, surface);
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    if (!scene.bodies[b].model.cut) add(static_cast<double>(b));
+  }
+  return parts;
+}
+
+std::uint64_t hash_of(const std::vector<ModelPart>& parts) {
+  Hash hash;
+  for (const ModelPart& part : parts) {
+    hash.add(part.name);
+    hash.add(&part.hash, sizeof part.hash);
+  }
+  return hash.value;
+}
+
+std::string differing(const std::vector<ModelPart>& taken, const std::vector<ModelPart>& own) {
+  std::string names;
+  for (const ModelPart& part : own) {
+    if (std::find(taken.begin(), taken.end(), part) == taken.end()) names += (names.empty() ? "" : ", ") + part.name;
+  }
+  return names;
+}
+
+Snapshot take_snapshot(const RunContext& run, const RunReports& reports) {
+  const Program& program = run.loaded.program();
+  Snapshot snapshot{parts_of(run.scene, run.settings, run.model(), program, run.loaded.surface()),
+                    run.backend().info().real_bytes == 8 ? "double" : "float",
+                    run.state,
+                    reports,
+                    {}};
+  for (std::size_t id = 0; id < program.buffers.size(); ++id) {
+    if (program.buffers[id].role != BufferRole::state) continue;
+    snapshot.buffers.push_back({program.buffers[id].name, run.backend().read_bytes(static_cast<BufferId>(id))});
+  }
+  return snapshot;
+}
+
+std::uint64_t deep_hash(const Snapshot& snapshot) {
+  Hash hash;
+  const std::uint64_t made_of = hash_of(snapshot.made_of);
+  hash.add(&made_of, sizeof made_of);
+  hash.add(write_state(snapshot.state));
+  for (const NamedBytes& buffer : snapshot.buffers) {
+    hash.add(buffer.name);
+    hash.add(buffer.bytes);
+  }
+  return hash.value;
+}
+
+void check_state(const RunState& state, const Model& model, const Scene& scene) {
+  const auto need = [](bool good, const char* what) {
+    if (!good) throw Error(ErrorCode::bad_input, fmt::format("its run state is damaged: {}", what));
+  };
+  const auto good_clock = [&](const Clock& c) {
+    need(c.dt > 0 && std::isfinite(c.dt) && std::isfinite(c.origin_time), "its step is no positive, finite number");
+    need(c.origin_step >= 0 && c.step >= c.origin_step && c.step < (std::int64_t{1} << 62), "its numbers of steps");
+  };
+  good_clock(state.clock);
+  if (state.kept) good_clock(state.kept->clock);
+  const StepLimit& limit = state.limit;
+  need(limit.stable_dt >= 0 && limit.dt_ceiling > 0 && limit.dt_backoff > 0 && limit.dt_backoff <= 1, "its limits of the step");
+  const RelaxationState& r = state.relaxation;
+  need(std::isfinite(r.damping) && (!state.kept || std::isfinite(state.kept->damping)), "its damping is not finite");
+  const std::size_t texels = 4 * static_cast<std::size_t>(model.slots);
+  need(r.u.size() == r.force.size() && (r.u.size() == r.v.size() || (r.v.empty() && !model.flsm.empty())) &&
+           std::isfinite(r.time) && (r.u.empty() || r.u.size() == texels) &&
+           (r.middle.empty() || r.middle.size() == r.u.size()) && (r.steady.empty() || r.steady.size() == r.u.size()) &&
+           std::isfinite(r.largest),
+       "what relaxation remembers");
+  need(scene.relaxation.enabled || (!r.equilibrium && r.u.empty()), "it relaxes, and the scene does not");
+  for (const SweepTriangle& t : state.pending.triangles) {
+    for (const Vec3d& p : t) need(vec::finite(p), "a pending triangle is not finite");
+  }
+  const auto good_segment = [&](const BladeSegment& s) {
+    need(vec::finite(s[0]) && vec::finite(s[1]), "a blade is not finite");
+  };
+  for (const BladeMove& move : state.pending.moves) {
+    good_segment(move.from);
+    for (const BladeSegment& s : move.to) good_segment(s);
+  }
+  for (const auto& [name, segment] : state.blades.placed) good_segment(segment);
+  need(!state.blades.seen || std::isfinite(*state.blades.seen), "the time of its blades");
+  for (const HostForce& f : state.forces) {
+    need(f.body < model.bodies.size() && f.node >= 0 && vec::finite(f.force), "a force of the host");
+  }
+  need(!state.tool || vec::finite(*state.tool), "the tool is not finite");
+  const std::vector<ContactTool> tools = known_tools(scene, state.tools);
+  for (const auto& driven : state.driven) {
+    const ToolDrive& drive = driven.second;
+    const bool known = std::any_of(tools.begin(), tools.end(), [&](const ContactTool& t) { return t.name == driven.first; });
+    const bool poses = good_pose(drive.from) && good_pose(drive.to);
+    need(known && poses && std::isfinite(drive.start) && drive.end >= drive.start && std::isfinite(drive.end), "a driven tool");
+  }
+  need((state.offset.empty() || state.offset.size() == 3 * static_cast<std::size_t>(model.slots)) &&
+           std::all_of(state.offset.begin(), state.offset.end(), [](double o) { return std::isfinite(o); }),
+       "how far loose pieces have flown");
+  need(state.topology_version >= 0, "its number of edits");
+  need(state.most_substeps == 0 || state.most_substeps == kSafeSubsteps, "its substeps of shape matching");
+}
+
+void check_report(const RunReports& reports, const RunState& state, std::size_t tools) {
+  if (reports.now.tools.size() == tools && (!state.kept || reports.kept.tools.size() == tools)) return;
+  throw Error(ErrorCode::bad_input, "its report is damaged: it is of other tools");
+}
+
+void check_ballast(const RunState& state, const Model& model) {
+  std::int32_t last = -1;
+  for (const NodeInertia& b : state.ballast) {
+    const bool good = b.slot > last && b.slot < model.slots && model.mass[static_cast<std::size_t>(b.slot)] > 0 &&
+                      b.inertia > 0 && std::isfinite(b.inertia);
+    if (!good) throw Error(ErrorCode::bad_input, "its run state is damaged: the inertia given to a node");
+    last = b.slot;
+  }
+}
+
+void check_buffers(const Snapshot& snapshot, const Program& program) {
+  for (const Buffer& buffer : program.buffers) {
+    if (buffer.role != BufferRole::state) continue;
+    const NamedBytes* match = find(snapshot, buffer.name);
+    const std::size_t expected = buffer.values() * (snapshot.real_type == "double" && !buffer.is_int() ? 8 : 4);
+    if (match == nullptr || match->bytes.size() != expected) {
+      throw Error(ErrorCode::bad_input, fmt::format("buffer {} has {} bytes, the scene needs {}", buffer.name,
+                                                    match == nullptr ? 0 : match->bytes.size(), expected));
+    }
+  }
+}
+
+void write_buffers(const Snapshot& snapshot, LoadedModel& loaded) {
+  const Program& program = loaded.program();
+  for (std::size_t i = 0; i < program.buffers.size(); ++i) {
+    const Buffer& buffer = program.buffers[i];
+    if (buffer.role != BufferRole::state) continue;
+    loaded.write_bytes(static_cast<BufferId>(i), find(snapshot, buffer.name)->bytes);
+  }
+}
+
+}  // namespace pliant

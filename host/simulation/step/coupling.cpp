@@ -1,0 +1,266 @@
+// Stiffness and stability of shape matching and of its interface with finite elements.
+#include "simulation/step/coupling.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "geometry/vec.h"
+#include "pliant/error.h"
+#include "simulation/step/stable_step.h"
+
+namespace pliant {
+namespace {
+
+/// How many times its beta the interface feels while it feels any: see flsm_interface in program_flsm.cpp.
+int pull_factor(const DeformationModel& m) { return m.extrapolate ? 1 : m.substeps; }
+
+/// Young's modulus of shape matching is E = c rho d^2 alpha / b, with b = H^2 / (1 + D H / 2) for the step H and the damping
+/// rate D [1/s]. c by half-width, minus one: the uniaxial pull of bars of any thickness, which is (w^2 + w) / 3, the variance
+/// of a window of 2 w + 1 nodes. Measured by bench/calibrate.py; bending is stiffer where regions are thicker than the body
+/// (docs/flsm_stiffness.md).
+constexpr double kPullStiffness[] = {2.0 / 3, 2, 4, 20.0 / 3, 10};
+
+/// E b / alpha [Pa s^2]: what a batch's stiffness is in proportion to.
+double stiffness_unit(const FlsmBatch& batch) {
+  return kPullStiffness[batch.settings.width - 1] * batch.density * batch.spacing * batch.spacing;
+}
+
+/// b of a step h [s^2]: the acceleration by an increment, with the damping rate D [1/s].
+double step_square(double h, double damping) { return h * h / (1 + 0.5 * damping * h); }
+
+/// The largest alpha that the nodes of shape matching stand with a margin: omega^2 H^2 = alpha times their highest, below 4.
+double largest_alpha(const FlsmBatch& batch) { return std::min(1.0, 3.8 / batch.stiffest); }
+
+/// The step of the scene at which alpha is that, the longest that "stiffness" allows [s].
+double longest_step(const FlsmBatch& batch, double damping) {
+  const DeformationModel& m = batch.settings;
+  if (m.young <= 0) return std::numeric_limits<double>::infinity();
+  const double b = largest_alpha(batch) * stiffness_unit(batch) / m.young, quarter = 0.25 * damping * b;
+  return (quarter + std::sqrt(quarter * quarter + b)) / m.substeps;
+}
+
+/// The alpha of a batch at the step `dt` of the scene [s], for the damping rate of its material [1/s]: that of the scene
+/// belongs to the first step, that of a "stiffness" to any. It falls with the step: what a start allows, every smaller step
+/// allows. Throws Error above 1.
+double alpha_for(const FlsmBatch& batch, double dt, double first_dt, double damping) {
+  const DeformationModel& m = batch.settings;
+  if (m.young <= 0) {
+    // Per step, it would stiffen a body whose step is shortened, and that would shorten the step.
+    return dt < first_dt ? m.alpha * (step_square(m.substeps * dt, damping) / step_square(m.substeps * first_dt, damping))
+                         : m.alpha;
+  }
+  const double b = step_square(m.substeps * dt, damping);
+  const double largest = largest_alpha(batch), most = largest * stiffness_unit(batch) / b;
+  if (m.young > 1.00001 * most && !m.matched) {  // the message's digits are allowed
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{}/stiffness/young: got {} Pa, which no alpha reaches with width {} at dt = {:.6g} s{}; allowed "
+                            "is at most {:.6g} Pa, "
+                            "or dt up to {:.6g} s",
+                            m.pointer, m.young, m.width, dt, m.substeps > 1 ? fmt::format(" and {} substeps", m.substeps) : "",
+                            most, longest_step(batch, damping)));
+  }
+  return std::min(largest, largest * (m.young / most));
+}
+
+/// The mass at the place of each interface node [kg]: its own, or that of all its copies where a cut has divided it. A given
+/// beta belongs to the place; the copies share it like their mass, or a cut would stiffen the lighter ones.
+std::vector<double> place_masses(const Model& model, const FlsmBatch& batch) {
+  const ModelBody& body = model.bodies[static_cast<std::size_t>(batch.body)];
+  std::map<Vec3d, double> sum;
+  for (std::size_t n = 0; n < body.rest.size(); ++n) sum[body.rest[n]] += model.mass[static_cast<std::size_t>(body.slot[n])];
+  std::map<std::int32_t, double> of_slot;
+  for (std::size_t n = 0; n < body.rest.size(); ++n) of_slot[body.slot[n]] = sum[body.rest[n]];
+  std::vector<double> masses;
+  for (std::int32_t i = batch.own; i < batch.own + batch.interface; ++i) masses.push_back(of_slot[batch.slot[i]]);
+  return masses;
+}
+
+double least_place_mass(const Model& model, const FlsmBatch& batch) {
+  const std::vector<double> masses = place_masses(model, batch);
+  return *std::min_element(masses.begin(), masses.end());
+}
+
+/// beta / m of the interface with an automatic beta and a "stiffness" [1/s^2].
+double spring_of(const FlsmBatch& b) { return b.settings.young / stiffness_unit(b); }
+
+/// What the interface feels at most while it feels any, over its beta: regions may be stiffer than the springs to their goals.
+double pull_bound(const FlsmBatch& b) { return pull_factor(b.settings) * b.stiffest_interface; }
+
+/// beta over mass that a batch adds to omega^2 of its interface nodes, as a multiple of 1 / dt^2 (automatic) and as a number
+/// [1/s^2] (given, or automatic with an alpha that falls with dt^2).
+struct InterfaceStiffness {
+  double per_step = 0, fixed = 0;
+};
+
+InterfaceStiffness interface_stiffness(const Model& model) {
+  InterfaceStiffness largest;
+  for (const FlsmBatch& b : model.flsm) {
+    if (b.interface == 0) continue;
+    if (b.settings.beta == 0 && b.settings.young > 0) {
+      largest.fixed = std::max(largest.fixed, pull_bound(b) * spring_of(b));
+      continue;
+    }
+    if (b.settings.beta == 0) {
+      largest.per_step =
+          std::max(largest.per_step, pull_bound(b) * b.settings.alpha / (b.settings.substeps * b.settings.substeps));
+      continue;
+    }
+    largest.fixed = std::max(largest.fixed, pull_bound(b) * b.settings.beta / least_place_mass(model, b));
+  }
+  return largest;
+}
+
+/// The largest alpha = beta H^2 / m that an interface with held goals stands, where h is the step and 2 / omega_max of the
+/// elements is `elements`. Held goals pull once in n steps, n times as hard: an impulse. Between two pulls a mode turns by n
+/// phi with sin(phi / 2) = h omega / 2; one period has the trace 2 cos(n phi) - (alpha / n) sin(n phi) / sin(phi), which stays
+/// above -2 while (alpha / n) tan(n phi / 2) <= 2 sin(phi). Just below n phi = pi every pull pushes a mode that has turned half
+/// a circle: the resonance of multiple time steps (Biesiadecki and Skeel 1993). For n = 1 this is h^2 omega^2 + alpha <= 4.
+double largest_held_alpha(int n, double h, double elements) {
+  const double phi = 2 * std::asin(std::min(1.0, h / elements));
+  return n * phi < M_PI ? 2 * n * std::sin(phi) / std::tan(0.5 * n * phi) : 0;
+}
+
+/// The longest step that a batch of held goals stands: what its pull takes grows with the step, what is left for it shrinks.
+double held_step(const FlsmBatch& b, const Model& model, double elements) {
+  const DeformationModel& m = b.settings;
+  double fixed = m.young > 0 ? spring_of(b) : 0;  // alpha = fixed H^2
+  if (m.beta > 0) fixed = m.beta / least_place_mass(model, b);
+  double low = 0, high = elements;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high), h = m.substeps * middle;
+    const double alpha = b.stiffest_interface * (fixed > 0 ? fixed * h * h : m.alpha);
+    (alpha <= largest_held_alpha(m.substeps, middle, elements) ? low : high) = middle;
+  }
+  return low;
+}
+
+}  // namespace
+
+bool has_elements(const Model& model) {
+  return std::any_of(model.bodies.begin(), model.bodies.end(), [](const ModelBody& b) { return b.operational_elements > 0; });
+}
+
+double longest_step(const Model& model, const Scene& scene) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const FlsmBatch& b : model.flsm) {
+    least = std::min(least, longest_step(b, scene.bodies[static_cast<std::size_t>(b.body)].material.damping));
+  }
+  return least;
+}
+
+double coupled_step(const Model& model, double elements_alone) {
+  const InterfaceStiffness k = interface_stiffness(model);
+  const double omega2 = 4 / (elements_alone * elements_alone) + k.fixed;
+  return std::min(std::sqrt((4 - k.per_step) / omega2), held_goals_step(model, elements_alone));
+}
+
+double held_goals_step(const Model& model, double elements_alone) {
+  double step = std::numeric_limits<double>::infinity();
+  for (const FlsmBatch& b : model.flsm) {
+    if (b.interface > 0 && b.settings.substeps > 1 && !b.settings.extrapolate)
+      step = std::min(step, held_step(b, model, elements_alone));
+  }
+  return step;
+}
+
+std::vector<double> interface_springs(const Model& model, double dt) {
+  std::vector<double> spring;
+  for (const FlsmBatch& b : model.flsm) {
+    if (b.interface == 0) continue;
+    spring.resize(model.mass.size(), 0.0);
+    const DeformationModel& m = b.settings;
+    const double h = m.substeps * dt, automatic = m.young > 0 ? spring_of(b) : m.alpha / (h * h);
+    const std::vector<double> masses = m.beta > 0 ? place_masses(model, b) : std::vector<double>();
+    for (std::int32_t k = 0; k < b.interface; ++k) {
+      spring[static_cast<std::size_t>(b.slot[b.own + k])] = pull_bound(b) * (m.beta > 0 ? m.beta / masses[k] : automatic);
+    }
+  }
+  return spring;
+}
+
+namespace {
+
+/// The largest beta of a batch that the step `dt` stands [N/m], between what a bound without an iteration allows and what is
+/// given, to 0.2 %.
+double largest_beta(const RunContext& run, const FlsmBatch& batch, double dt, double bound) {
+  const std::vector<double> given = interface_springs(run.model(), dt);
+  double low = bound, high = batch.settings.beta;
+  while (low > 0 && high > 1.002 * low) {
+    const double middle = std::sqrt(low * high);
+    std::vector<double> spring = given;
+    for (std::int32_t i = batch.own; i < batch.own + batch.interface; ++i) {
+      spring[static_cast<std::size_t>(batch.slot[i])] *= middle / batch.settings.beta;
+    }
+    (dt * dt * largest_omega2(run, spring) <= 4 ? low : high) = middle;
+  }
+  return low;
+}
+
+}  // namespace
+
+void check_beta(const RunContext& run, double dt, double elements_dt) {
+  const Model& model = run.model();
+  const double stable_dt = run.state.limit.stable_dt;
+  const InterfaceStiffness k = interface_stiffness(model);
+  if (k.fixed == 0 || stable_dt <= 0 || elements_dt <= 0 || dt <= stable_dt) return;
+  for (const FlsmBatch& b : model.flsm) {
+    if (b.settings.beta == 0 || b.interface == 0) continue;
+    const double mass = least_place_mass(model, b);
+    const double omega2 = 4 / (elements_dt * elements_dt);
+    double most = largest_beta(run, b, dt, mass * ((4 - k.per_step) / (dt * dt) - omega2) / pull_bound(b));
+    if (b.settings.substeps > 1 && !b.settings.extrapolate) {
+      const double h = b.settings.substeps * dt;
+      most = std::min(
+          most, mass * largest_held_alpha(b.settings.substeps, dt, 2 / std::sqrt(omega2)) / (h * h * b.stiffest_interface));
+    }
+    throw Error(
+        ErrorCode::bad_input,
+        fmt::format("{}/beta: got {} N/m, which is beyond stability at dt = {} s; allowed is at most {}, or dt up to {:.6g} s",
+                    b.settings.pointer, b.settings.beta, dt,
+                    most > 0 ? fmt::format("{:.6g} N/m", most) : "none (dt is too large for the elements already)", stable_dt));
+  }
+}
+
+double matching_modulus(const FlsmBatch& batch, double dt, double damping) {
+  return alpha_for(batch, dt, 0, damping) * stiffness_unit(batch) / step_square(batch.settings.substeps * dt, damping);
+}
+
+void upload_coupling(const RunContext& run) {
+  const Model& model = run.model();
+  if (model.flsm.empty()) return;
+  const Program& program = run.loaded.program();
+  std::vector<double> alpha;
+  for (std::size_t i = 0; i < model.flsm.size(); ++i) {
+    const FlsmBatch& b = model.flsm[i];
+    const double dt = run.state.clock.dt, h = b.settings.substeps * dt;
+    const double damping = run.scene.bodies[static_cast<std::size_t>(b.body)].material.damping;
+    const double at_rest = alpha_for(b, dt, run.settings.first_dt, damping);
+    // Dynamic relaxation damps more, which shortens b; the pull towards the goals, alpha m / b, stays what it is.
+    alpha.push_back(at_rest * (step_square(h, damping + run.state.relaxation.damping) / step_square(h, damping)));
+    if (b.interface == 0) continue;
+    const BufferId id = program.find(fmt::format("flsm_beta/{}", i));
+    std::vector<double> beta(program.at(id).count, 0.0);
+    const std::vector<double> masses = b.settings.beta > 0 ? place_masses(model, b) : std::vector<double>();
+    for (std::int32_t k = 0; k < b.interface; ++k) {
+      const double own = model.mass[static_cast<std::size_t>(b.slot[b.own + k])];
+      // With a stiffness as the own nodes feel it, alpha m / b, whatever the damping: both ends of a spring pull alike at rest.
+      const double automatic = b.settings.young > 0 ? at_rest / step_square(h, damping) : at_rest / (h * h);
+      const auto node = static_cast<std::size_t>(b.own + k);
+      const double pulled = b.settings.young > 0 ? b.weight[node] * b.regions.holders[node] : own;
+      const double mean = b.settings.beta > 0 ? b.settings.beta * (own / masses[k]) : automatic * pulled;
+      beta[k] = pull_factor(b.settings) * mean;
+    }
+    run.backend().write_reals(id, beta);
+    const BufferId mean = program.find(fmt::format("flsm_mean_beta/{}", i));
+    if (mean < 0) continue;
+    for (double& k : beta) k /= pull_factor(b.settings);
+    run.backend().write_reals(mean, beta);
+  }
+  run.backend().write_reals(program.find("flsm_alpha"), alpha);
+}
+
+}  // namespace pliant

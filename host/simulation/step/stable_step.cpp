@@ -1,0 +1,139 @@
+#include "simulation/step/stable_step.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "simulation/step/coupling.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kStrain = 3e-4;  ///< size of the probing displacement over the shortest element
+
+/// A start vector with a share of every mode, the same for every run.
+double noise(std::size_t i) {
+  std::uint64_t z = (i + 1) * 0x9E3779B97F4A7C15ULL;
+  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
+  z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
+  return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1;
+}
+
+/// How far below the largest eigenvalue the Ritz value of k Lanczos steps from a random start may lie, relative to it: 0.103
+/// (ln(n (k - 1)^4) / (k - 1))^2 on average, whatever the gaps of the spectrum (Kuczynski and Wozniakowski 1992, theorem 3.2).
+/// A plain power iteration needs the square of that number of steps: a mode of a few nodes at the rim of a large body hides
+/// from it.
+double ritz_deficit(std::size_t unknowns, int steps) {
+  const double k = steps - 1, logarithm = std::log(static_cast<double>(unknowns)) + 4 * std::log(k);
+  return std::min(0.5, 0.103 * logarithm * logarithm / (k * k));
+}
+
+}  // namespace
+
+double stable_step(const RunContext& run, double central) {
+  const Model& model = run.model();
+  constexpr double kLarge = std::numeric_limits<double>::max();
+  DampingRange d{kLarge, 0, kLarge, 0};
+  for (std::size_t s = 0; s < model.mass.size(); ++s) {
+    if (!(model.mass[s] > 0)) continue;
+    d.least_rate = std::min(d.least_rate, model.damping[s]);
+    d.most_rate = std::max(d.most_rate, model.damping[s]);
+  }
+  for (const ElementBatch& batch : model.batches) {
+    d.least_time = std::min(d.least_time, batch.material.viscous_time());
+    d.most_time = std::max(d.most_time, batch.material.viscous_time());
+  }
+  return integrator_info(run.scene.integrator).stable_step(central, d);
+}
+
+double bound_step(const RunContext& run, double central) { return coupled_step(run.model(), stable_step(run, central)); }
+
+double central_step_for(const RunContext& run, double dt) {
+  double low = dt, high = 2 * dt;
+  for (int i = 0; i < 60 && bound_step(run, high) < dt; ++i) high *= 2;  // no elements are stiff enough for some springs
+  for (int i = 0; i < 40; ++i) {
+    const double middle = 0.5 * (low + high);
+    (bound_step(run, middle) < dt ? low : high) = middle;
+  }
+  return high;
+}
+
+double largest_omega2(const RunContext& run, const std::vector<double>& spring, int iterations) {
+  LoadedModel& loaded = run.loaded;
+  const std::vector<double>& mass = run.model().mass;
+  const std::vector<char>& is_free = loaded.free();
+  const std::vector<double> u = loaded.u();
+  const std::vector<double> rest_force = run.forces_now();
+  const std::size_t n = is_free.size();
+  std::vector<double> v(n, 0), before(n, 0), probe = u;
+  double norm = 0;
+  std::size_t unknowns = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!is_free[i]) continue;
+    v[i] = noise(i);
+    norm += mass[i / 3] * v[i] * v[i];
+    ++unknowns;
+  }
+  const int steps = static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(iterations), unknowns));
+  std::vector<double> alpha, beta;  // the tridiagonal matrix
+  for (int k = 0; k < steps && norm > 0 && std::isfinite(norm); ++k) {
+    double largest = 0, unit = 1 / std::sqrt(norm);
+    for (double& x : v) {
+      x *= unit;
+      largest = std::max(largest, std::abs(x));
+    }
+    const double size = kStrain * run.model().shortest / largest;
+    for (std::size_t i = 0; i < n; ++i) probe[4 * (i / 3) + i % 3] = u[4 * (i / 3) + i % 3] + size * v[i];
+    loaded.write_u(probe);
+    run.backend().run(loaded.program().force, 0, 1);
+    const std::vector<double> force = loaded.force();
+    double projection = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!is_free[i]) continue;
+      projection += v[i] * (rest_force[4 * (i / 3) + i % 3] - force[4 * (i / 3) + i % 3]) / size;
+      if (!spring.empty()) projection += mass[i / 3] * spring[i / 3] * v[i] * v[i];
+    }
+    norm = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!is_free[i]) continue;
+      const std::size_t t = 4 * (i / 3) + i % 3;
+      const double own = projection - (spring.empty() ? 0 : spring[i / 3]);
+      const double next = (rest_force[t] - force[t]) / size / mass[i / 3] - own * v[i] - (k > 0 ? beta.back() * before[i] : 0);
+      before[i] = v[i];
+      v[i] = next;
+      norm += mass[i / 3] * next * next;
+    }
+    alpha.push_back(projection);
+    beta.push_back(std::sqrt(norm));
+    if (!(beta.back() > 1e-6 * std::abs(projection))) break;  // the whole space is spanned
+  }
+  loaded.write_u(u);
+  loaded.clear_faults();  // of elements in states that the run was never in
+  if (alpha.empty() || !std::isfinite(beta.back())) return 0;
+  const auto size = static_cast<Eigen::Index>(alpha.size());
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
+  solver.computeFromTridiagonal(Eigen::Map<Eigen::VectorXd>(alpha.data(), size),
+                                Eigen::Map<Eigen::VectorXd>(beta.data(), size - 1), Eigen::EigenvaluesOnly);
+  double omega2 = solver.eigenvalues()[size - 1];
+  if (static_cast<std::size_t>(size) < unknowns && size > 2) omega2 /= 1 - ritz_deficit(unknowns, static_cast<int>(size));
+  return omega2;
+}
+
+StableStep estimate_stable_step(const RunContext& run, int iterations) {
+  StableStep step;
+  const double omega2 = largest_omega2(run, {}, iterations);
+  if (!(omega2 > 0)) return step;
+  step.elements = stable_step(run, 2 / std::sqrt(omega2));
+  step.coupled = coupled_step(run.model(), step.elements);
+  const std::vector<double> spring = interface_springs(run.model(), step.coupled);
+  if (!spring.empty()) {
+    // Springs soften as the step grows, so what the springs of a shorter step allow is allowed.
+    const double coupled = largest_omega2(run, spring, iterations);
+    if (coupled > 0) step.coupled = std::max(step.coupled, stable_step(run, 2 / std::sqrt(coupled)));
+    step.coupled = std::min(step.coupled, held_goals_step(run.model(), step.elements));
+  }
+  return step;
+}
+
+}  // namespace pliant

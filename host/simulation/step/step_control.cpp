@@ -1,0 +1,211 @@
+#include "simulation/step/step_control.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "model/nodes/ballast.h"
+#include "pliant/error.h"
+#include "simulation/recovery/ballast_swap.h"
+#include "simulation/recovery/limits.h"
+#include "simulation/step/coupling.h"
+#include "simulation/step/stable_step.h"
+
+namespace pliant {
+namespace {
+
+/// An automatic step is looked at again every few hundred steps, and sooner after the start, when loads come on.
+constexpr std::int64_t kAdaptEvery = 256;
+constexpr std::int64_t kFirstAdapts[] = {64, 128};
+constexpr int kAdaptIterations = 20;
+constexpr double kMostGrowth = 2;            ///< of the step from one look to the next
+constexpr double kClearlyLess = 0.8;         ///< the estimate by kAdaptIterations steps is up to a tenth too low
+constexpr double kFrame = 1.0 / 60;          ///< automatic step of a scene without finite elements [s]
+constexpr double kTouchFrame = kFrame / 16;  ///< of one whose tissue touches tissue, so that each frame looks for what is near
+
+double total(const std::vector<NodeInertia>& ballast) {
+  double sum = 0;
+  for (const NodeInertia& b : ballast) sum += b.inertia;
+  return sum;
+}
+
+}  // namespace
+
+void StepControl::start(double wanted, bool estimate_always) {
+  const Model& model = run_.model();
+  const double longest = longest_step(model, run_.scene);
+  double& dt = run_.state.clock.dt;
+  run_.settings.automatic = wanted <= 0 && integrator_info(run_.scene.integrator).automatic && has_elements(model);
+  if (!has_elements(model)) {
+    dt = wanted > 0 ? wanted : std::min(run_.scene.contact ? kTouchFrame : kFrame, longest);
+  } else {
+    if (wanted <= 0 && !(stable_step(run_, 1) > 0)) {
+      throw Error(ErrorCode::bad_input,
+                  fmt::format("{}: no step is stable with the integrator {} and a material without damping: "
+                              "give each a \"damping\", or the scene a \"dt\"",
+                              run_.scene.name, integrator_info(run_.scene.integrator).word));
+    }
+    StableStep stable;
+    if (wanted <= 0 || estimate_always) stable = estimate_stable_step(run_, 48);
+    run_.state.limit.stable_dt = stable.coupled;
+    dt = wanted > 0 ? wanted : std::min(run_.scene.safety * stable.coupled, longest);
+    // Every cut leaves elements that are stable at the element bound: each copy's mass and stiffness scale alike.
+    if (wanted <= 0 && !run_.scene.blades.empty()) {
+      dt = std::min(dt, run_.scene.safety * bound_step(run_, model.element_bound));
+    }
+    if (wanted > 0) check_beta(run_, wanted, stable.elements);
+  }
+  if (!(dt > 0) || !std::isfinite(dt)) {
+    throw Error(
+        ErrorCode::bad_input,
+        fmt::format("{}: no stable step could be found (estimate {} s): \"fixed\" and \"prescribed\" hold every node of "
+                    "every body, and nothing is left that could move; choose smaller regions there",
+                    run_.scene.name, run_.state.limit.stable_dt));
+  }
+  run_.state.limit.dt_ceiling = run_.settings.first_dt = dt;
+}
+
+double StepControl::estimate(int iterations) {
+  return run_.state.limit.stable_dt = estimate_stable_step(run_, iterations).coupled;
+}
+
+bool StepControl::on_grid(std::int64_t step) const {
+  const RunSettings& s = run_.settings;
+  return run_.begins_after(step, s.batch_steps) || adapts_at(step) ||
+         (s.blade_steps > 0 && run_.begins_after(step, s.blade_steps)) || (s.tears && run_.begins_after(step, kTearSteps)) ||
+         (run_.scene.relaxation.enabled && run_.begins_after(step, kRelaxEvery));
+}
+
+std::int32_t StepControl::next_batch(std::int64_t wanted) const {
+  std::int64_t n = 1;
+  while (n < run_.settings.batch_steps && !on_grid(run_.state.clock.step + n)) ++n;
+  return static_cast<std::int32_t>(std::min(n, wanted));
+}
+
+bool StepControl::adapts_at(std::int64_t step) const {
+  if (!run_.settings.automatic || step == 0) return false;
+  const bool first = std::any_of(std::begin(kFirstAdapts), std::end(kFirstAdapts),
+                                 [&](std::int64_t k) { return step < 2 * k && run_.begins_after(step, k); });
+  return first || (step >= kAdaptEvery && run_.begins_after(step, kAdaptEvery));
+}
+
+void StepControl::adapt_when_due() {
+  if (adapts_at(run_.state.clock.step)) adapt();
+}
+
+void StepControl::adapt() {
+  if (!run_.settings.automatic) return;
+  const StepLimit& limit = run_.state.limit;
+  Allowed now = allowed();
+  if (now.dt < least_step() || !run_.state.ballast.empty()) {
+    if (now.stiffness.empty()) now.stiffness = nodal_stiffness(run_.model(), run_.loaded.u());
+    now.dt = balance(now.dt, now.stiffness);
+  }
+  const double dt = run_.state.clock.dt, ceiling = limit.dt_ceiling;
+  const bool may_grow = run_.state.clock.step >= limit.hold;
+  if (may_grow) run_.state.limit.dt_backoff = std::min(1.0, limit.dt_backoff / kBackoff);
+  // A state that asks for less than this has elements that are lost; they are calmed, which a step that follows them prevents.
+  const double lowest = std::min(dt, kLeastShare * ceiling);
+  const double next = std::max(lowest, std::min({ceiling, now.dt, kMostGrowth * dt}));
+  if (next < dt || (may_grow && (next > 1.1 * dt || (next == ceiling && dt < ceiling)))) change(next);
+}
+
+double StepControl::least_step() const {
+  const StepLimit& limit = run_.state.limit;
+  return run_.scene.least_step * limit.dt_ceiling;
+}
+
+/// What of a stable step is taken.
+double StepControl::share() const { return run_.state.limit.dt_backoff * run_.scene.safety; }
+
+double StepControl::estimated() { return share() * estimate(kAdaptIterations); }
+
+StepControl::Allowed StepControl::allowed() {
+  StepLimit& limit = run_.state.limit;
+  Allowed out{estimated(), {}};
+  if (out.dt >= run_.state.clock.dt) return out;
+  // The estimate takes differences of forces, which far from the place at rest are mostly rounding. The bound by elements is
+  // coarser, but in double, and certain.
+  out.stiffness = nodal_stiffness(run_.model(), run_.loaded.u());
+  const double bound = stiffness_bound(run_.model(), out.stiffness);
+  if (bound > 0) limit.stable_dt = std::max(limit.stable_dt, bound_step(run_, bound));
+  out.dt = share() * limit.stable_dt;
+  return out;
+}
+
+std::vector<NodeInertia> StepControl::ballast_for(double dt, const std::vector<double>& stiffness) const {
+  return wanted_ballast(run_.model(), stiffness, central_step_for(run_, dt / share()));
+}
+
+bool StepControl::too_much(const std::vector<NodeInertia>& ballast) const {
+  double mass = 0;
+  for (const ModelBody& body : run_.model().bodies) mass += body.mass;
+  return total(ballast) > kMostBallast * mass;
+}
+
+std::vector<NodeInertia> StepControl::more_ballast(double dt, const std::vector<double>& stiffness) const {
+  std::vector<NodeInertia> ballast = ballast_for(dt, stiffness);
+  if (too_much(ballast) || total(ballast) <= total(run_.state.ballast)) ballast.clear();
+  return ballast;
+}
+
+double StepControl::balance(double wanted, const std::vector<double>& stiffness) {
+  double dt = std::max(wanted, least_step());
+  std::vector<NodeInertia> ballast = ballast_for(dt, stiffness);
+  while (dt > wanted && too_much(ballast)) {
+    dt = std::max(wanted, kBallastStride * dt);
+    ballast = ballast_for(dt, stiffness);
+  }
+  if (too_much(ballast)) ballast.clear();  // the bound that asks for it is far from what is measured
+  const auto same = [](const NodeInertia& a, const NodeInertia& b) { return a.slot == b.slot && a.inertia == b.inertia; };
+  const std::vector<NodeInertia>& before = run_.state.ballast;
+  if (!std::equal(ballast.begin(), ballast.end(), before.begin(), before.end(), same)) load_ballast(run_, std::move(ballast));
+  return dt;
+}
+
+void StepControl::limit_after_edit(const std::vector<char>& changed) {
+  if (!run_.settings.automatic) return;
+  double& ceiling = run_.state.limit.dt_ceiling;
+  if (run_.model().element_bound > 0)
+    ceiling = std::min(ceiling, run_.scene.safety * bound_step(run_, run_.model().element_bound));
+  if (run_.state.clock.dt > ceiling) change(ceiling);
+  // New elements are as stretched as those they come from, on nodes of less mass. At rest the bound above is certain; elements
+  // that are deformed have one that costs less than the estimate, and only theirs may have changed: but an interface with
+  // shape matching feels what all of it allows.
+  const bool local = run_.model().flsm.empty();
+  const std::vector<double> u = run_.loaded.u();
+  for (const bool quick : {true, false}) {
+    const std::vector<double> stiffness = nodal_stiffness(run_.model(), u, local ? changed : std::vector<char>(), quick);
+    const double bound = stiffness_bound(run_.model(), stiffness);
+    if (bound > 0 && share() * bound_step(run_, bound) >= kClearlyLess * run_.state.clock.dt) return;
+  }
+  const double next = std::max(allowed().dt, least_step());
+  if (next < kClearlyLess * run_.state.clock.dt) change(next);
+}
+
+void StepControl::hold() { run_.state.limit.hold = run_.state.clock.step + kAdaptEvery; }
+
+/// Increments scale with the step, decay factors and shape matching follow it.
+void StepControl::change(double dt) {
+  Clock& clock = run_.state.clock;
+  if (!integrator_info(run_.scene.integrator).automatic) return;
+  const double ratio = dt / clock.dt;
+  std::vector<double> w = run_.loaded.w();
+  for (std::size_t i = 0; i < w.size(); ++i) {
+    if (i % 4 != 3) w[i] *= ratio;
+  }
+  clock = {clock.step, clock.step, clock.time(), dt};
+  for (std::size_t s = 0; s < run_.model().mass.size(); ++s) w[4 * s + 3] = run_.decay(run_.model(), s);
+  run_.loaded.write_w(w);
+  // What contact points yield to a force in one step goes with its square.
+  if (const BufferId id = run_.loaded.program().find("contact_yield"); id >= 0) {
+    std::vector<double> yield = run_.backend().read_reals(id);
+    for (double& y : yield) y *= ratio * ratio;
+    run_.backend().write_reals(id, yield);
+  }
+  upload_coupling(run_);
+}
+
+}  // namespace pliant
