@@ -1,4 +1,4 @@
-# One static library per room, from the inside out; who may include whom is what these lines allow.
+# One static library per room, from the inside out. Which room links which follows from rooms.txt; what they link from outside stands here.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
@@ -25,11 +25,31 @@ pliant_headers(pliant_command_headers pliant_flags fmt::fmt Eigen3::Eigen nlohma
 set(shareable POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
 set_target_properties(pliant_room_headers PROPERTIES ${shareable})
 
-# pliant_room(NAME FOLDER LINKS...): the .cpp files of the folder and of its shelves (subfolders).
-function(pliant_room name folder)
-  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${folder}/*.cpp)
+# Of each row in rooms.txt: folder_LIBRARY, and links_LIBRARY, the libraries of the rooms that it names outside brackets.
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/cmake/rooms.txt)
+file(STRINGS ${CMAKE_SOURCE_DIR}/cmake/rooms.txt rows REGEX "^[^#]")
+list(TRANSFORM rows REPLACE "[(][^)]*[)]" "")
+foreach(row IN LISTS rows)
+  string(REGEX MATCH "^([^ ]+) +(host/)?([^ ]+)" row_start "${row}")
+  set(library_${CMAKE_MATCH_3} ${CMAKE_MATCH_1})
+endforeach()
+foreach(row IN LISTS rows)
+  separate_arguments(inner UNIX_COMMAND "${row}")
+  list(POP_FRONT inner library folder)
+  set(folder_${library} ${folder})
+  foreach(room IN LISTS inner)
+    if(NOT DEFINED library_${room})
+      message(FATAL_ERROR "cmake/rooms.txt: ${folder} may include ${room}, which has no row")
+    endif()
+    list(APPEND links_${library} ${library_${room}})
+  endforeach()
+endforeach()
+
+# pliant_room(LIBRARY LINKS...): the .cpp files of its folder in rooms.txt and of the shelves (subfolders) there. LINKS come from outside.
+function(pliant_room name)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${folder_${name}}/*.cpp)
   add_library(${name} STATIC ${sources})
-  target_link_libraries(${name} PUBLIC pliant_flags ${ARGN})
+  target_link_libraries(${name} PUBLIC pliant_flags ${links_${name}} ${ARGN})
   target_precompile_headers(${name} REUSE_FROM pliant_room_headers)
   set_target_properties(${name} PROPERTIES ${shareable})
 endfunction()
@@ -55,11 +75,11 @@ function(pliant_with_embree room stem)
 endfunction()
 
 # What runs: a Program, and the interface of what runs it. Neither knows where a Program comes from.
-pliant_room(pliant_program host/program fmt::fmt)
-pliant_room(pliant_backend host/backends/interface pliant_program)
+pliant_room(pliant_program fmt::fmt)
+pliant_room(pliant_backend)
 
 # The twins: their own flags, so that nothing a consumer sets can change a bit.
-pliant_room(pliant_ref cpu_ref pliant_backend)
+pliant_room(pliant_ref)
 target_include_directories(pliant_ref PUBLIC ${CMAKE_SOURCE_DIR})  # "cpu_ref/registry.h"
 target_include_directories(pliant_ref PRIVATE ${PLIANT_GENERATED})  # "twin_laws.h"
 set(ref_options -O3 -fno-math-errno -fno-trapping-math)
@@ -74,14 +94,14 @@ file(GLOB_RECURSE ref_sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/cpu_ref/*.cp
 set_source_files_properties(${ref_sources} PROPERTIES COMPILE_OPTIONS "${twin_flags}" SKIP_UNITY_BUILD_INCLUSION ON)
 
 # The backends that run them.
-pliant_room(pliant_twins host/backends/twins pliant_ref Threads::Threads)
+pliant_room(pliant_twins Threads::Threads)
 
 # The OpenCL backend, or what says that there is none: the same functions, so that nothing else asks which of the two was built.
 include(EmbedKernels)
-pliant_room(pliant_opencl_absent host/backends/opencl_absent pliant_backend)
+pliant_room(pliant_opencl_absent)
 target_sources(pliant_opencl_absent PRIVATE ${PLIANT_KERNEL_TEXT})
 if(OpenCL_FOUND)
-  pliant_room(pliant_opencl host/backends/opencl pliant_backend)
+  pliant_room(pliant_opencl)
   target_sources(pliant_opencl PRIVATE ${PLIANT_KERNEL_TEXT})
   target_link_libraries(pliant_opencl PRIVATE OpenCL::OpenCL)
   target_compile_definitions(pliant_opencl PRIVATE CL_TARGET_OPENCL_VERSION=120)
@@ -91,60 +111,60 @@ else()
 endif()
 
 # The choice of a backend by name: the only room that knows them all.
-pliant_room(pliant_backends host/backends/choice pliant_twins ${opencl_room})
+pliant_room(pliant_backends pliant_twins ${opencl_room})
 
 # What is simulated: from files to the Model.
-pliant_room(pliant_geometry host/geometry fmt::fmt Eigen3::Eigen Threads::Threads)
-pliant_room(pliant_material host/material Eigen3::Eigen fmt::fmt)
+pliant_room(pliant_geometry fmt::fmt Eigen3::Eigen Threads::Threads)
+pliant_room(pliant_material Eigen3::Eigen fmt::fmt)
 target_include_directories(pliant_material PRIVATE ${PLIANT_GENERATED})  # "material/host_laws.h"
-pliant_room(pliant_integrators host/integrators Eigen3::Eigen fmt::fmt)
+pliant_room(pliant_integrators Eigen3::Eigen fmt::fmt)
 target_include_directories(pliant_integrators PRIVATE ${PLIANT_GENERATED})  # "integrators/host_integrators.h"
 pliant_with_embree(pliant_geometry host/geometry/distance)
-pliant_room(pliant_elements host/elements pliant_material pliant_geometry)
-pliant_room(pliant_scene host/scene pliant_integrators pliant_elements pliant_mesh_io nlohmann_json::nlohmann_json)
-pliant_room(pliant_mesh_io host/mesh_io pliant_geometry nlohmann_json::nlohmann_json)
+pliant_room(pliant_elements)
+pliant_room(pliant_scene nlohmann_json::nlohmann_json)
+pliant_room(pliant_mesh_io nlohmann_json::nlohmann_json)
 target_link_libraries(pliant_mesh_io PRIVATE assimp::assimp pugixml::pugixml)
 if(ZLIB_FOUND)
   target_link_libraries(pliant_mesh_io PRIVATE ZLIB::ZLIB)
   target_compile_definitions(pliant_mesh_io PRIVATE PLIANT_HAVE_ZLIB)
 endif()
-pliant_room(pliant_lattice host/lattice pliant_scene)
-pliant_room(pliant_model host/model pliant_lattice pliant_mesh_io)
-pliant_room(pliant_cutting host/cutting pliant_model)
-pliant_room(pliant_tearing host/tearing pliant_cutting)
-pliant_room(pliant_cutting_methods host/cutting_methods pliant_tearing)
+pliant_room(pliant_lattice)
+pliant_room(pliant_model)
+pliant_room(pliant_cutting)
+pliant_room(pliant_tearing)
+pliant_room(pliant_cutting_methods)
 
 # The Model on a backend, step by step.
-pliant_room(pliant_schedule host/schedule pliant_model pliant_program)
-pliant_room(pliant_simulation host/simulation pliant_schedule pliant_backend pliant_tearing)
+pliant_room(pliant_schedule)
+pliant_room(pliant_simulation)
 
-pliant_room(pliant_statics host/statics pliant_model)
+pliant_room(pliant_statics)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")  # the twins need these instructions too
   set_source_files_properties(host/statics/dense.cpp PROPERTIES COMPILE_OPTIONS "-mfma;-mavx2" SKIP_PRECOMPILE_HEADERS ON)
 endif()
 
-pliant_room(pliant_io host/io pliant_simulation)
+pliant_room(pliant_io)
 target_link_libraries(pliant_io PRIVATE pugixml::pugixml)
 
-pliant_room(pliant_render host/render pliant_io Threads::Threads)
+pliant_room(pliant_render Threads::Threads)
 pliant_with_embree(pliant_render host/render/ray_scene)
 
 # What include/pliant declares.
-pliant_room(pliant_api host/api pliant_io pliant_backends)
+pliant_room(pliant_api)
 
-pliant_room(pliant_plan host/plan pliant_simulation pliant_backends pliant_statics)
+pliant_room(pliant_plan)
 
 file(GLOB_RECURSE bench_sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/bench/*.cpp)
 list(FILTER bench_sources EXCLUDE REGEX "/bench/api/")
 add_library(pliant_bench STATIC ${bench_sources})
 pliant_unity_folders(pliant_bench)  # each folder is a namespace of its own
-target_link_libraries(pliant_bench PUBLIC pliant_io pliant_backends pliant_statics pliant_cutting_methods)
+target_link_libraries(pliant_bench PUBLIC ${links_pliant_bench})
 target_include_directories(pliant_bench PUBLIC ${CMAKE_SOURCE_DIR})  # "bench/kernels/kernels.h"
 target_precompile_headers(pliant_bench REUSE_FROM pliant_command_headers)
 
 file(GLOB cli_sources CONFIGURE_DEPENDS host/cli/*.cpp)
 add_library(pliant_cli_objects OBJECT ${cli_sources})
-target_link_libraries(pliant_cli_objects PUBLIC pliant_bench pliant_plan pliant_render CLI11::CLI11)
+target_link_libraries(pliant_cli_objects PUBLIC ${links_pliant_cli_objects} CLI11::CLI11)
 target_compile_definitions(pliant_cli_objects PRIVATE PLIANT_VERSION="${PROJECT_VERSION}")
 target_precompile_headers(pliant_cli_objects REUSE_FROM pliant_command_headers)
 add_executable(pliant_cli)
