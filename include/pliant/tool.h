@@ -34,7 +34,8 @@ struct ContactSpec {
   double friction = 0;  ///< Coulomb friction coefficient
 };
 
-/// Pose of a tool and the contact force on it, averaged over the newest batch of steps.
+/// Pose of a tool and the contact load on it in the newest batch of steps. Force and torque are means over the batch; area
+/// and penetration are those of its last step with contact.
 struct ToolForce {
   std::string name;                        ///< name in the scene, or as added
   Vec3d position{};                        ///< position of its origin [m]

@@ -146,7 +146,7 @@ typedef struct pliant_probe_value {
 #define PLIANT_PROBE_VALUE_INIT \
   { sizeof(pliant_probe_value), NULL, NULL, NULL, 0 }
 
-/** Pose of a rigid tool and the force on it, as pliant::ToolForce. The name is valid as long as the world. */
+/** Pose of a rigid tool and the load on it, as pliant::ToolForce. The name is valid as long as the world. */
 typedef struct pliant_tool_force {
   size_t size;        /**< PLIANT_TOOL_FORCE_INIT; the same in all elements of an array */
   const char* name;   /**< name in the scene, or as added */
