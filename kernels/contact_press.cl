@@ -31,7 +31,7 @@ __kernel void contact_press(__global const float* node_u, __global const float* 
   const float h = step_params[0], half_hh = (0.5f * h) * h;
   for (int i = first; i < first + LANES; ++i) {
     const contact_place p = place_of_point(node_u, node_w, contact_rest, contact_node, contact_weight, i);
-    const float area = contact_rest[POINT_BASE(i, 4) + 3 * PLIANT_TILE];  // none: it fills the tile up
+    const float area = contact_rest[POINT_BASE(i, 4) + 3 * PLIANT_TILE];  // 0 for padding
     int touching = 0, count = 0, ready = 0, weighed = 0;
     const float within = ready_share(contact_yield[i]);
     for (int t = 0; t < tools; ++t) {
@@ -54,7 +54,7 @@ __kernel void contact_press(__global const float* node_u, __global const float* 
     if (held >= 0 && !(touching >> held & 1)) anchor[3 * PLIANT_TILE] = 0.0f;
     int4 sum = 0;
     float w = contact_yield[i];
-    if (touching != 0 && !(w > 0.0f)) {  // nothing is known of the points that touch
+    if (touching != 0 && !(w > 0.0f)) {  // compliance from touching points is not known yet
       __global const int* node = contact_node + POINT_BASE(i, 8);
       __global const float* share = contact_share + POINT_BASE(i, 8);
       w = 0.0f;
