@@ -105,7 +105,7 @@ struct BladeSpec {
 
 /// Dynamic relaxation: adaptive damping towards static equilibrium.
 struct RelaxationSpec {
-  double tolerance = 1e-5;          ///< converged at |R - F| <= tolerance * max(|R|, |F|)
+  double tolerance = 1e-5;          ///< converged at |R - F| <= tolerance * larger of the external and reaction forces
   std::int64_t max_steps = 100000;  ///< maximum number of steps
 };
 
@@ -128,7 +128,7 @@ struct SceneSpec {
   std::optional<ContactSpec> contact;            ///< contact between tissue and tissue; absent: none
   std::vector<std::array<double, 4>> tool_path;  ///< (time [s], x, y, z [m]): path that following operational regions follow
   std::vector<BodySpec> bodies;                  ///< at least one
-  std::vector<ProbeSpec> probes;                 ///< nodes of `body`; not together with a point
+  std::vector<ProbeSpec> probes;                 ///< evaluated by World::probes()
 };
 
 }  // namespace pliant
