@@ -1,13 +1,12 @@
-// Forces of tools on contact points, first part. The trial step is done; x is the point after it, d its depth, s its slip.
-//   Soft shell (Hunt and Crossley 1975), explicit: f = A lambda d0^n (1 + 3/2 alpha v) >= 0, d0 and v the depth at the start of the step
-//   and its rate, at most half of what would take d0 back in one step.
-//   Core: what is left of d beyond the shell is taken back: f = A rest / W, W = b sum_j c_j s_j / m_j, s_j the area of all points at
-//   node j times their weights. W bounds the sum over a row of the compliance matrix (Gershgorin), so that points that share nodes
-//   never overshoot together.
+// Tool forces on contact points, first part, after the trial step; x is the point's position after it, d its depth, s its slip.
+//   Soft shell (Hunt and Crossley 1975), explicit: f = A lambda d0^n (1 + 3/2 alpha v) >= 0, with the depth d0 at the start of the step and
+//   its rate v, limited to half of the force that would remove d0 in one step.
+//   Core: the part of d beyond the shell is removed: f = A rest / W, W = b sum_j c_j s_j / m_j, with the sum s_j of the areas of all points
+//   at node j times their weights. W bounds a row sum of the compliance matrix (Gershgorin), so that points with common nodes never
+//   overshoot together.
 //   Friction: towards the anchor, where the point stuck first, f = min(mu f_n, A |x - anchor| / W).
-// contact_share: 8 planes c_j s_j [m^2], 0 at nodes that are held, whose part the others have: a point that hangs on held nodes is as
-// hard as any other, not as hard as what holds it; contact_anchor: (place in the tool's frame (3) [m], tool + 1);
-// contact_force: (force (3) [quanta], tools that touch, a bit each).
+// contact_share: 8 planes c_j s_j [m^2]; held nodes have 0, and their part is distributed to the others, so that a point with held nodes is as stiff
+// as any other; contact_anchor: (position in the tool's frame (3) [m], tool + 1); contact_force: (force (3) [quanta], one bit per touching tool).
 #include "arith.cl"
 #include "contact_shape.cl"
 #include "contact_point.cl"
