@@ -55,8 +55,7 @@ RegionData region_data(const FlsmBatch& b, const RegionLayout& places) {
   const auto with_region = static_cast<std::size_t>(places.nodes);
   data.slot.resize(count);
   for (std::int32_t r = 0; r < places.count; ++r) {
-    // Padding uses a slot without a node. Each padding entry of the interface has its own, because flsm_interface writes
-    // there.
+    // Padding uses a slot without a node, in the interface a separate one each, since flsm_interface writes to it.
     const std::int32_t last = places.interface_base + (r - places.interface_base) % PLIANT_TILE;
     data.slot[r] = b.first_slot + (r < places.interface_base ? r : r < places.nodes ? last : places.own);
   }
