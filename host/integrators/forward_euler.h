@@ -18,7 +18,7 @@ struct ForwardEuler {
       .increment = [](double /*u*/, double w) { return w; },
       .decay = [](double k) { return 1 - 2 * k; },
       .squared_velocity = [](double v, double, double, double) { return v * v; },
-      // 1 + h l| <= 1 for l^2 + d l + omega^2 = 0, d = c + t omega^2 with the viscous time t: h <= d / omega^2 for complex l;
+      // |1 + h l| <= 1 for l^2 + d l + omega^2 = 0, d = c + t omega^2 with the viscous time t: h <= d / omega^2 for complex l;
       // for real l h <= 2 / |l|, and |l| <= d.
       .stable_step =
           [](double central, const DampingRange& d) {

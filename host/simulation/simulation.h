@@ -61,7 +61,7 @@ class Simulation {
   void watch_energy();
   [[nodiscard]] const ToolContact& contact() const { return contact_; }
   [[nodiscard]] bool at_equilibrium() const { return state_.relaxation.equilibrium; }
-  /// R - F| over the larger of external and reaction force, at the last update of dynamic relaxation.
+  /// |R - F| over the larger of external and reaction force, at the last update of dynamic relaxation.
   [[nodiscard]] double residual() const { return state_.relaxation.residual; }
 
   /// Returns true if the current state is final. With an automatic step, a batch may be rolled back to the last kept state

@@ -85,8 +85,9 @@ class PLIANT_API World {
   [[nodiscard]] std::vector<std::string> remarks() const;  ///< WorldInfo::remarks, then remarks about the run so far
   [[nodiscard]] std::uint64_t hash() const;                ///< hash of the state; equal hashes mean equal bits
 
-  /// Interactive tools. They need WorldOptions::interactive, otherwise Error (state); an unknown vertex or grab is Error
-  /// (usage). They do not wait and take effect at the next batch of steps. Vertex numbers refer to the frame returned last.
+  /// Interactive tools. All but move_tool() need WorldOptions::interactive, otherwise Error (state); an unknown vertex or grab
+  /// is Error (usage). They do not wait and take effect at the next batch of steps. Vertex numbers refer to the frame returned
+  /// last.
   ///
   /// Attaches a spring between the surface around `vertex` and a target point, which is initially the vertex's current
   /// position. Returns an id for move_grab() and release().
@@ -128,7 +129,7 @@ class PLIANT_API World {
 
   /// Cuts. They need no WorldOptions::interactive. Hexahedral volume meshes and scenes with relaxation or the textbook
   /// integrator cannot be cut: Error (input), and nothing changes. After step_async() or advance_async(), the worker cuts
-  /// before its next batch (CutResult::pending) and combines all moves of a blade, until wait() or another waiting call
+  /// before its next batch (CutResult::pending), moves of blades together, until wait() or another waiting call
   /// returns; if it rejects a cut, the next call that reports the worker's errors throws. With substeps of shape matching, a
   /// cut waits for the next batch that begins with a shape-matching step. All throw Error: usage (non-finite numbers),
   /// diverged, device.
