@@ -1,4 +1,4 @@
-// The inverse cube root that isochoric laws need, without a library's (docs/determinism.md).
+// The inverse cube root for isochoric laws, without library functions (docs/determinism.md).
 #pragma once
 #include <bit>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 namespace pliant::ref {
 
-/// A first guess of x^(-1/3) for x > 0, within 4 %: a third of the exponent, taken on the bits.
+/// Initial guess of x^(-1/3) for x > 0, within 4 %: a third of the exponent, computed on the bits.
 inline float guess_inverse_cube_root(float x) {
   return std::bit_cast<float>(std::int32_t{0x54A2FA8C} - std::bit_cast<std::int32_t>(x) / 3);
 }

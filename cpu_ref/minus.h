@@ -1,4 +1,4 @@
-// The negative of what fma gives.
+// Negation of an fma result with the sign of zero preserved.
 #pragma once
 #include <bit>
 #include <cstdint>
@@ -6,8 +6,8 @@
 
 namespace pliant::ref {
 
-/// -x for an x that comes out of fma. g++ makes one instruction of -fma(a, b, c), which gives +0 where the sum is zero; that of
-/// a kernel is -0. So the sign is turned as a bit, which g++ leaves alone.
+/// Returns -x for the result x of an fma. g++ contracts -fma(a, b, c) to one instruction, which returns +0 for a zero sum
+/// where the kernel returns -0. Flipping the sign bit avoids this.
 template <class Scalar>
 inline Scalar minus(Scalar x) {
   using Bits = std::conditional_t<sizeof(Scalar) == 4, std::uint32_t, std::uint64_t>;

@@ -1,4 +1,4 @@
-// The share of a pass that one call of a twin works on.
+// The part of a pass that one call of a twin processes.
 #pragma once
 #include <cstdint>
 

@@ -1,4 +1,4 @@
-// Which function is the twin of which kernel.
+// Maps kernels to their twins.
 #pragma once
 #include <array>
 #include <functional>
@@ -14,7 +14,7 @@ namespace pliant::ref {
 
 using Defines = std::vector<std::pair<std::string, int>>;
 
-/// The two instantiations of a twin.
+/// The float and double instantiations of a twin.
 struct Twin {
   TwinFunction<float> of_float;
   TwinFunction<double> of_double;
@@ -22,7 +22,7 @@ struct Twin {
 
 class Registry {
  public:
-  /// A twin as a function of the pass's defines.
+  /// Returns the twin for the defines of a pass.
   using Factory = std::function<Twin(const Defines&)>;
 
   void add(const std::string& stem, Factory factory) { factories_[stem] = std::move(factory); }
@@ -56,7 +56,7 @@ class Registry {
   static void require_names(const std::string& stem, const Defines& defines, const std::vector<std::string>& names);
   static int require_value(const std::string& stem, const Defines& defines, const char* name, int count);
 
-  /// Turns the run-time values of the defines into compile-time ones, one define after the other.
+  /// Converts the run-time values of the defines to compile-time constants, one define after the other.
   template <int Count, int... Rest, class Select, class... Chosen>
   static Twin choose(const std::string& stem, const Defines& defines, const char* const* names, Select select,
                      Chosen... chosen) {

@@ -1,4 +1,4 @@
-// Where the twins find a number in a tiled array (kernels/layout.h), and how they mark a fault.
+// Access to tiled arrays (kernels/layout.h) and fault marks in the twins.
 #pragma once
 #include <cstdint>
 
@@ -6,18 +6,18 @@
 
 namespace pliant::ref {
 
-/// Where element e stands in plane 0 of an array of `planes` planes.
+/// Position of element e in plane 0 of an array of `planes` planes.
 constexpr std::int64_t tile_base(std::int64_t e, std::int64_t planes) {
   return e / PLIANT_TILE * planes * PLIANT_TILE + e % PLIANT_TILE;
 }
 
-/// Keep the step of the first fault, counted from 1, negative while the element is only inverted. kind: fault_of (law.h).
+/// Records the step of the first fault, counted from 1, negated while the element is only inverted. kind: fault_of (law.h).
 inline void mark_fault(std::int32_t kind, std::int32_t step, std::int32_t& fault) {
   if (kind > 1 && fault <= 0) fault = step + 1;
   if (kind == 1 && fault == 0) fault = -step - 1;
 }
 
-/// Index k of a pass over a list of tiles (Pass::active).
+/// Element at index k of a pass over a list of tiles (Pass::active).
 inline std::int64_t listed(const std::int32_t* list, std::int64_t k) {
   return std::int64_t{list[k / PLIANT_TILE]} * PLIANT_TILE + k % PLIANT_TILE;
 }

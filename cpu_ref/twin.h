@@ -1,4 +1,4 @@
-// A twin is a plain function whose parameters match the kernel's in order; this file calls it from a list of values.
+// A twin is a plain function with the kernel's parameters in order; this file calls it with a list of values.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace pliant::ref {
 
 enum class ParameterKind { reals, ints, real, integer };
 
-/// One argument of a pass; the member that counts follows from the parameter's kind.
+/// One argument of a pass; the parameter's type determines which member is used.
 template <class Scalar>
 struct ArgValue {
   Scalar* reals = nullptr;

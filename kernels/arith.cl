@@ -1,7 +1,7 @@
-// Arithmetic that gives the same bits everywhere: no contraction, one documented order, lanes as a macro.
+// Arithmetic with the same bits on every device: no contraction, a fixed order of operations, lanes as a macro.
 //
-// A kernel is written once over `real` and `integer`. LANES is 1 on a GPU (one element or node per work-item) and 16 on a CPU
-// (explicit vectors); it cannot change a result. Every product that feeds a sum is an explicit fma.
+// Kernels are written once over `real` and `integer`. LANES is 1 on a GPU (one element or node per work-item) and 16 on a CPU (explicit vectors); it
+// does not affect results. Every product that is added is an explicit fma.
 #pragma OPENCL FP_CONTRACT OFF
 #include "layout.h"
 
@@ -23,13 +23,13 @@ typedef int integer;
 #define AS_REAL(i) as_float(i)
 #endif
 
-// First element (or node) of this work-item, and where it stands in plane 0 of a tiled array; of a pass over a list of tiles (Pass::active),
-// where an entry < 0 is none.
+// FIRST_INDEX: first element (or node) of this work-item. FIRST_LISTED: the same for a pass over a list of tiles (Pass::active), negative for an
+// empty entry. TILE_BASE: position of element e in plane 0 of a tiled array.
 #define FIRST_INDEX ((int)get_global_id(0) * LANES)
 #define FIRST_LISTED(list) ((list)[FIRST_INDEX / PLIANT_TILE] * PLIANT_TILE + FIRST_INDEX % PLIANT_TILE)
 #define TILE_BASE(e, planes) (((e) / PLIANT_TILE) * ((planes)*PLIANT_TILE) + (e) % PLIANT_TILE)
 
-// Mark elements with the step of their first fault (counted from 1), negative while they are only INVERTED (law.cl).
+// Store the step of an element's first fault (counted from 1), negated while the element is only INVERTED (law.cl).
 #define FAULT_STEP(kind, step, seen) \
   ((kind) > 1 && (seen) <= 0 ? (integer)((step) + 1) : (kind) == 1 && (seen) == 0 ? (integer)(-(step)-1) : (seen))
 #if LANES == 16

@@ -1,7 +1,7 @@
-// The integrators: the one list of them. A row is the integrator's stem and the name of its types in C++. The stem names its
-// files: kernels/integrate_STEM.cl, its twin cpu_ref/integrate_STEM.h and host/integrators/STEM.h, which says what it stores
-// and allows. Its number, the define INTEGRATOR of a kernel, is its place here. cmake/PliantLists.cmake reads this file too,
-// for what cannot be said with a macro: the includes.
+// The list of integrators. A row is the integrator's stem and the name of its types in C++. The stem names its files:
+// kernels/integrate_STEM.cl, its twin cpu_ref/integrate_STEM.h and host/integrators/STEM.h with its properties. Its number,
+// the define INTEGRATOR of a kernel, is its position in the list. cmake/PliantLists.cmake also reads this file, to generate
+// the includes, which a macro cannot produce.
 #pragma once
 
 // clang-format off

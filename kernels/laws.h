@@ -1,7 +1,7 @@
-// The material laws: the one list of them. A row is the law's stem and the name of its types in C++. The stem names its files:
-// kernels/law_STEM.cl, its twin cpu_ref/law_STEM.h and host/material/law_STEM.h, which says what the law is. Its number, the
-// define LAW of a kernel, is its place here. cmake/PliantLists.cmake reads this file too, for what cannot be said with a macro:
-// the includes.
+// The list of material laws. A row is the law's stem and the name of its types in C++. The stem names its files:
+// kernels/law_STEM.cl, its twin cpu_ref/law_STEM.h and host/material/law_STEM.h with its properties. Its number, the define
+// LAW of a kernel, is its position in the list. cmake/PliantLists.cmake also reads this file, to generate the includes, which
+// a macro cannot produce.
 #pragma once
 
 // clang-format off

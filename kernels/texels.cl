@@ -1,7 +1,7 @@
-// Sixteen texels (float4) at a time, or one: contiguous load and store, and gather by index. Memory is always x y z w per texel.
+// Loads, stores and gathers of sixteen texels (float4), or of one. Memory is always x y z w per texel.
 #if LANES == 16
-// Two halves of eight texels; 128-bit lane g of a, b, c, d holds texel 4 g, 4 g + 1, 4 g + 2, 4 g + 3 of its half, so that a
-// field comes out by unpacking inside the lanes. (PoCL turns wider shuffles into two to three times as many instructions.)
+// Two halves of eight texels; 128-bit lane g of a, b, c, d holds texel 4 g, 4 g + 1, 4 g + 2, 4 g + 3 of its half, so that a field is obtained by
+// unpacking within the lanes. (PoCL compiles wider shuffles to two to three times as many instructions.)
 typedef struct {
   float8 a, b, c, d, e, f, g, h;
 } texels;

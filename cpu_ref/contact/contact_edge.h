@@ -1,4 +1,4 @@
-// Twin of kernels/contact/contact_edge.cl, which says what is computed.
+// Twin of kernels/contact/contact_edge.cl, which describes the computation.
 #pragma once
 #include "cpu_ref/contact/contact_patch.h"
 
@@ -10,7 +10,7 @@ struct EdgeNumbers {
                         alike = Scalar(0.7), stretch = Scalar(3), far = Scalar(1e30);
 };
 
-/// Whether a point lies over a face of a box, the one that looks most against it.
+/// Returns whether a point lies over the face of a box that faces it most directly.
 template <class Scalar>
 inline bool on_box_face(const Scalar* data, const Vec<Scalar>& normal, const Vec<Scalar>& y, Scalar spacing,
                         Surface<Scalar>& face) {
@@ -28,12 +28,12 @@ inline bool on_box_face(const Scalar* data, const Vec<Scalar>& normal, const Vec
 
 template <class Scalar>
 struct EdgeGap {
-  Vec<Scalar> at{};  ///< the edge point
+  Vec<Scalar> at{};  ///< position of the edge point
   Scalar radius = 0, gap = EdgeNumbers<Scalar>::far, a = 0, b = 0;
   [[nodiscard]] bool found() const { return gap < EdgeNumbers<Scalar>::far; }
 };
 
-/// The edge point with the least gap to the plane that touches a patch at (at_a, at_b).
+/// The edge point with the least gap to the tangent plane of a patch at (at_a, at_b).
 template <class Scalar>
 inline EdgeGap<Scalar> nearest_edge(const Scalar* edge, std::int32_t count, const PatchPlane<Scalar>& p, const Scalar* region,
                                     Scalar spacing, Scalar wide, Scalar at_a, Scalar at_b) {
@@ -51,13 +51,13 @@ inline EdgeGap<Scalar> nearest_edge(const Scalar* edge, std::int32_t count, cons
 template <class Scalar, int EDGES>
 struct PatchMeeting {
   Meeting<Scalar> m;
-  Vec<Scalar> place{};                              ///< where the force acts, after the trial step
-  std::array<Scalar, EDGES != 0 ? 8 : 0> weight{};  ///< of the nodes there
+  Vec<Scalar> place{};                              ///< place where the force acts, after the trial step
+  std::array<Scalar, EDGES != 0 ? 8 : 0> weight{};  ///< weights of the nodes there
   Scalar share = 1, ease = 1;
   bool edged = false;
 };
 
-/// The tools of a step, some of which have edges if EDGES is not 0.
+/// The tools of a step; with EDGES, some of them have edges.
 template <class Scalar, int EDGES>
 struct EdgedTools : Tools<Scalar> {
   const Scalar* edge;
@@ -73,7 +73,7 @@ struct EdgedTools : Tools<Scalar> {
   }
 
  private:
-  /// An edge, or a face of a box or a mesh that lies on the patch.
+  /// Contact with an edge, or with a face of a box or a mesh that lies on the patch.
   void meet_parts(std::int32_t t, std::int64_t i, PatchMeeting<Scalar, EDGES>& out) const {
     using Numbers = EdgeNumbers<Scalar>;
     const std::int32_t* own = this->kind + tool_integers * t;
@@ -98,7 +98,7 @@ struct EdgedTools : Tools<Scalar> {
     out.m.opening = 0;
   }
 
-  /// `base`: the plane at the point. False if no edge lies over the patch.
+  /// `base`: the tangent plane at the point. Returns false if no edge lies over the patch.
   bool meet_edge(std::int32_t t, std::int64_t i, const PatchPlane<Scalar>& base, PatchMeeting<Scalar, EDGES>& out) const {
     using Numbers = EdgeNumbers<Scalar>;
     const std::int32_t* own = this->kind + tool_integers * t;
@@ -127,7 +127,7 @@ struct EdgedTools : Tools<Scalar> {
   }
 };
 
-/// What edges do to the nodes of points, and the weights that W counts with.
+/// Forces of edges on the nodes of points, and the weights for the compliance W.
 template <class Scalar, int EDGES>
 struct Corners {
   std::int32_t* force;
@@ -145,7 +145,7 @@ struct Corners {
     if (EDGES == 0) return;
     for (std::int64_t k = 0; k < 24; ++k) force[tile_base(i, 24) + k * PLIANT_TILE] = 0;
   }
-  /// The force that acts at the point itself goes to `sum`.
+  /// Adds a force to `sum` if it acts at the point itself, otherwise to the nodes at the edge.
   void add(std::int64_t i, const PatchMeeting<Scalar, EDGES>& met, const Quanta& f, Quanta& sum) const {
     if (!met.edged) {
       sum = sum_of(sum, f);
@@ -155,7 +155,7 @@ struct Corners {
   }
 
  private:
-  /// The whole force in parts: what rounding leaves goes to the node with the largest weight.
+  /// Distributes a force over the nodes; the rounding remainder goes to the node with the largest weight.
   void share_out(std::int64_t i, const PatchMeeting<Scalar, EDGES>& met, const Quanta& f) const {
     std::int32_t* out = force + tile_base(i, 24);
     Quanta left = f;

@@ -1,4 +1,4 @@
-// Twin of kernels/contact/contact_patch.cl, which says what is computed.
+// Twin of kernels/contact/contact_patch.cl, which describes the computation.
 #pragma once
 #include "cpu_ref/contact/contact_sum.h"
 #include "cpu_ref/contact/touch_point.h"
@@ -14,7 +14,7 @@ struct PatchPlace {
   Vec<Scalar> now{}, moved{}, first{}, second{};
 };
 
-/// The tangent plane there, in a tool's frame.
+/// The tangent plane at a place, in a tool's frame.
 template <class Scalar>
 struct PatchPlane {
   Vec<Scalar> y{}, normal{};
@@ -90,7 +90,7 @@ struct Patches {
   }
 };
 
-/// How far (a, b) lies beyond a region, negative inside, as a share of what its patch goes beyond it.
+/// Distance of (a, b) from a region relative to the patch's margin; negative inside.
 template <class Scalar>
 inline Scalar beyond_region(const Scalar* sides, Scalar a, Scalar b) {
   Scalar most = -Scalar(1e30);

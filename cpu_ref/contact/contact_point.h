@@ -1,4 +1,4 @@
-// Twin of kernels/contact/contact_point.cl, which says what is computed.
+// Twin of kernels/contact/contact_point.cl, which describes the computation.
 #pragma once
 #include "cpu_ref/contact/contact_shape.h"
 #include "cpu_ref/tile.h"
@@ -12,7 +12,7 @@ struct Place {
   Vec<Scalar> now{}, moved{};
 };
 
-/// The buffers that place a point.
+/// The buffers that determine the position of a point.
 template <class Scalar>
 struct Points {
   const Scalar *node_u, *node_w, *rest;
@@ -49,8 +49,8 @@ inline Vec<Scalar> origin_of(const Scalar* pose) {
   return {pose[9], pose[10], pose[11]};
 }
 
-/// Share of the margin within which a point may touch in the next step: more for one that could before, so that the set of
-/// these points comes to rest.
+/// Fraction of the margin within which a point may touch in the next step. It is larger for points that were within it
+/// before, so that the set of these points does not flicker.
 template <class Scalar>
 inline Scalar ready_share(Scalar yield) {
   return yield > Scalar(0) ? Scalar(0.24) : Scalar(0.08);
@@ -60,7 +60,7 @@ template <class Scalar>
 struct Meeting {
   Scalar distance = 0, opening = 0;
   Vec<Scalar> normal{}, slip{}, inside{};
-  /// Whether the point may touch the tool in the next step.
+  /// Returns whether the point may touch the tool in the next step.
   [[nodiscard]] bool may_touch_next(Scalar margin, Scalar share) const {
     return distance < std::fma(share, margin, opening < Scalar(0) ? -opening : Scalar(0));
   }

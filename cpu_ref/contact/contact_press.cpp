@@ -7,7 +7,7 @@ namespace {
 
 using namespace contact;
 
-/// The force on a point along the normal.
+/// The normal force on a point.
 template <class Scalar>
 Scalar normal_force(const Meeting<Scalar>& m, const Scalar* law, Scalar area, Scalar stiffness, Scalar h) {
   const Scalar depth = -m.distance, opening = m.opening, before = depth + opening;
@@ -22,7 +22,7 @@ Scalar normal_force(const Meeting<Scalar>& m, const Scalar* law, Scalar area, Sc
   return rest > Scalar(0) ? std::fma(stiffness, rest, push) : push;
 }
 
-/// What pulls a point back to where it stuck, at most `most`.
+/// Friction towards the anchor, at most `most`.
 template <class Scalar>
 Vec<Scalar> press_friction(const Meeting<Scalar>& m, const Scalar* next, const PointNumbers<Scalar>& anchor, Scalar stiffness,
                            Scalar most, const Vec<Scalar>& f) {
@@ -33,7 +33,7 @@ Vec<Scalar> press_friction(const Meeting<Scalar>& m, const Scalar* next, const P
   return scaled_sum(-factor, side, f);
 }
 
-/// W where nothing is known of the points that touch: that of all points around.
+/// W if the touching points are not known yet: that of all points around.
 template <class Scalar>
 Scalar yield_of_all(const Scalar* node_u, const Scalar* node_w, const std::int32_t* contact_node, const Scalar* contact_share,
                     std::int64_t i, Scalar half_hh) {
@@ -46,7 +46,7 @@ Scalar yield_of_all(const Scalar* node_u, const Scalar* node_w, const std::int32
   return w;
 }
 
-/// What a point touches, a bit per tool, and whether it may touch something in the next step.
+/// The tools that a point touches, one bit each, and whether it may touch something in the next step.
 struct Reached {
   std::int32_t touching = 0, count = 0, ready = 0;
 };
@@ -93,7 +93,7 @@ void contact_press(Range range, const Scalar* node_u, const Scalar* node_w, cons
     const std::int64_t i = listed(contact_list, entry);
     const std::int32_t near = contact_near[i / PLIANT_TILE];
     const Place<Scalar> p = points.at(i);
-    const Scalar area = points.area(i), within = ready_share(contact_yield[i]);  // no area: it fills the tile up
+    const Scalar area = points.area(i), within = ready_share(contact_yield[i]);  // padding has no area
     const Reached reached =
         area > Scalar(0) ? reach(all, corners, contact_weight, i, p, near, contact_params[5], within) : Reached{};
     const std::int32_t touching = reached.touching, count = reached.count;

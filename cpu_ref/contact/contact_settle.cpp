@@ -7,7 +7,7 @@ namespace {
 
 using namespace contact;
 
-/// Friction of both parts together, towards the anchor; where it slips, the anchor follows.
+/// Friction of both parts together, towards the anchor; where the point slips, the anchor follows.
 template <class Scalar>
 Vec<Scalar> settle_friction(const Meeting<Scalar>& m, const Scalar* next, const PointNumbers<Scalar>& anchor, Scalar stiffness,
                             Scalar friction, const Vec<Scalar>& f) {
@@ -25,7 +25,7 @@ Vec<Scalar> settle_friction(const Meeting<Scalar>& m, const Scalar* next, const 
   return scaled_sum(length > most ? most / length : Scalar(1), pull, times(m.normal, across));
 }
 
-/// W of the points that touch or may touch; `weight`: of the nodes, at the place that a tool touches.
+/// W of the points that touch or may touch; `weight`: weights of the nodes at the place of contact.
 template <class Scalar>
 Scalar yield_of_touching(const Points<Scalar>& points, const Scalar* contact_share, const Scalar* contact_node_sum,
                          std::int64_t i, Scalar half_hh, const Scalar* weight) {

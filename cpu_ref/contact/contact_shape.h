@@ -1,4 +1,4 @@
-// Twin of kernels/contact/contact_shape.cl, which says what is computed.
+// Twin of kernels/contact/contact_shape.cl, which describes the computation.
 #pragma once
 #include <array>
 #include <cmath>
@@ -100,7 +100,7 @@ Surface<Scalar> box_distance(const Scalar* half, const Vec<Scalar>& y) {
   return {normalised(p, length), distance};
 }
 
-/// Two frames of a sequence, mixed.
+/// Interpolates two frames of a sequence.
 template <class Scalar>
 Surface<Scalar> mesh_distance(const std::int32_t* kind, const Scalar* data, const Scalar* tool_grid, const Scalar* moment,
                               const Vec<Scalar>& y) {

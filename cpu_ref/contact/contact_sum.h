@@ -1,4 +1,4 @@
-// Twin of kernels/contact/contact_sum.cl, which says what is computed.
+// Twin of kernels/contact/contact_sum.cl, which describes the computation.
 #pragma once
 #include <bit>
 
@@ -21,13 +21,13 @@ inline void set_three(const PointNumbers<T>& numbers, const Three& v) {
   for (std::size_t k = 0; k < 3; ++k) numbers[static_cast<std::int64_t>(k)] = v[k];
 }
 
-/// What tool t gets of point i.
+/// The force of point i on tool t.
 template <class Int>
 inline PointNumbers<Int> tool_force_of(Int* contact_tool_force, std::int32_t points, std::int32_t t, std::int64_t i) {
   return {contact_tool_force + tool_force_numbers * points * t + tile_base(i, tool_force_numbers)};
 }
 
-/// No force yet, at this depth.
+/// Starts with zero force at this depth.
 template <class Scalar>
 inline void begin_touch(const PointNumbers<std::int32_t>& on_tool, Scalar depth) {
   for (std::int64_t k = 0; k < 6; ++k) on_tool[k] = 0;

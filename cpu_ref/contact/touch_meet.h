@@ -1,4 +1,4 @@
-// Twin of kernels/contact/touch_meet.cl, which says what is computed.
+// Twin of kernels/contact/touch_meet.cl, which describes the computation.
 #pragma once
 #include "cpu_ref/contact/touch_point.h"
 
@@ -21,7 +21,7 @@ inline bool may_meet(const Scalar* a, const Scalar* b, Scalar margin, Scalar ahe
   return facing < Scalar(-0.5);
 }
 
-/// No point of box b is a partner of the point of box a that is farther from it than this.
+/// Upper bound of the distance between the point of box a and a partner in box b.
 template <class Scalar>
 inline Scalar farthest(const Scalar* a, const Scalar* b, Scalar margin, Scalar ahead) {
   const Scalar spacing = a[18] > b[18] ? a[18] : b[18];
@@ -33,7 +33,7 @@ inline Scalar farthest(const Scalar* a, const Scalar* b, Scalar margin, Scalar a
   return std::fma(radius<Scalar> + Scalar(2), spacing, std::fma(ahead, way, margin));
 }
 
-/// What the look knows, the same for all points.
+/// Parameters of the search, the same for all points.
 template <class Scalar>
 struct Look {
   const Scalar *touch_place, *touch_surface, *touch_rest;
@@ -57,7 +57,7 @@ struct Look {
     return static_cast<std::int32_t>(touch_rest[tile_base(i, 4) + std::int64_t{3} * PLIANT_TILE]);
   }
 
-  /// Whether two points are of one part, and never touch; otherwise their depth at rest.
+  /// Returns whether two points are in one part and never touch; otherwise stores their undeformed depth.
   [[nodiscard]] bool one_part(std::int64_t lower, std::int64_t upper, Scalar large, Scalar& offset) const {
     offset = 0;
     if (body(lower) != body(upper)) return false;
@@ -72,7 +72,7 @@ struct Look {
     return false;
   }
 
-  /// The weight of a pair, 0: none; and its depth at rest.
+  /// Returns the weight of a pair (0: no pair) and its offset.
   [[nodiscard]] Scalar weigh(std::int64_t lower, std::int64_t upper, bool known, Scalar before, Scalar& offset) const {
     const Place<Scalar> a = place_of(touch_place, lower), b = place_of(touch_place, upper);
     const Scalar facing = std::fma(Scalar(-2), dot(a.normal, b.normal), Scalar(-1));

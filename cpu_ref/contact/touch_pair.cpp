@@ -11,11 +11,11 @@ using namespace touch;
 
 constexpr std::int64_t kSlots = PLIANT_TOUCH_SLOTS, kFound = 64;
 
-/// The partners of a point, while they are found.
+/// Collects the partners of a point.
 template <class Scalar>
 class Partners {
  public:
-  /// Takes note of those that it had, and empties its places.
+  /// Saves the previous partners and clears the slots.
   Partners(std::int64_t i, std::int32_t* touch_partner, Scalar* touch_pair, Scalar* touch_weight)
       : i_(i),
         partner_(touch_partner + tile_base(i, kSlots)),
@@ -55,7 +55,7 @@ class Partners {
     for (std::int64_t c = 2; c < PLIANT_TOUCH_PAIR; ++c) numbers[c * PLIANT_TILE] = known ? kept_[before][c] : Scalar(0);
   }
 
-  /// Whether there are any.
+  /// Returns true if there are any.
   bool finish(const Scalar* contact_rest) {
     Scalar sum = 0;
     for (std::int64_t s = 0; s < filled_; ++s) {
@@ -86,7 +86,7 @@ struct Boxes {
   [[nodiscard]] const Scalar* of(const std::int32_t* n) const { return box + std::int64_t{PLIANT_TOUCH_BOX} * n[0]; }
   [[nodiscard]] bool meets(const Scalar* own, const std::int32_t* n) const { return may_meet(own, of(n), margin, ahead); }
 
-  /// The tiles that a tile's points may meet, of which the first kFound are listed; how many there are.
+  /// Returns the number of tiles that a tile's points may meet, and lists the first kFound of them.
   std::int32_t near(const Scalar* own, std::int32_t* found) const {
     std::int32_t number = 0;
     for (std::int32_t k = 0; k < count;) {

@@ -1,4 +1,4 @@
-// Twin of kernels/contact/touch_point.cl, which says what is computed.
+// Twin of kernels/contact/touch_point.cl, which describes the computation.
 #pragma once
 #include "cpu_ref/contact/contact_sum.h"
 
@@ -11,11 +11,11 @@ using contact::scaled_sum;
 using contact::times;
 using contact::Vec;
 
-/// Of a pair, in spacings of the points.
+/// Search radius of a pair, in spacings of the points.
 template <class Scalar>
 inline constexpr Scalar radius = Scalar(1.2);
 
-/// Three planes of a tiled array from `plane` on.
+/// Three consecutive planes of a tiled array, starting at `plane`.
 template <class T>
 inline auto three(const T* numbers, std::int64_t base, std::int64_t plane) {
   const T* at = numbers + base + plane * PLIANT_TILE;
@@ -35,11 +35,11 @@ inline Vec<Scalar> unit(const Vec<Scalar>& v) {
   return contact::normalised(v, std::sqrt(dot(v, v)));
 }
 
-/// Where a point is: a row of touch_place.
+/// State of a point: a row of touch_place.
 template <class Scalar>
 struct Place {
   Vec<Scalar> x{}, moved{}, normal{}, tangent{}, tilt{};
-  Scalar yielding = 0, density = 0;  ///< of points: 1 / the spacing around it [1/m]
+  Scalar yielding = 0, density = 0;  ///< compliance W, and density of points: 1 / spacing [1/m]
   std::array<Scalar, 3> dual{};      ///< of the tangents: 1 / |F t1|, skew, 1 / height of F t2 over F t1
 };
 
@@ -73,7 +73,7 @@ inline std::array<Scalar, 2> dual_of(const Place<Scalar>& p, const Vec<Scalar>& 
   return {std::fma(-p.dual[1], second, dot(v, p.tangent)) * p.dual[0], second * p.dual[2]};
 }
 
-/// The frame of a point at the start of the step, and how far its normal turns in the step.
+/// The frame of a point at the start of the step, and the change of its normal in the step.
 template <class Scalar>
 inline void set_frame(const contact::Points<Scalar>& points, const Scalar* touch_surface, std::int64_t i, Place<Scalar>& p) {
   const std::int64_t own = tile_base(i, PLIANT_TOUCH_SURFACE);
@@ -92,7 +92,7 @@ inline void set_frame(const contact::Points<Scalar>& points, const Scalar* touch
   p.density = spacing > Scalar(0) ? Scalar(1) / spacing : Scalar(0);
 }
 
-/// The normal turns by -(n . F' t_k) a^k, a^k the dual vectors of the tangents.
+/// The normal changes by -(n . F' t_k) a^k, with the dual vectors a^k of the tangents.
 template <class Scalar>
 inline Vec<Scalar> tilt_of(const contact::Points<Scalar>& points, const Scalar* touch_surface, std::int64_t i,
                            const Place<Scalar>& p) {
@@ -116,8 +116,8 @@ inline void write_place(Scalar* touch_place, std::int64_t i, const Place<Scalar>
 /// Two points that may push each other; `lower` has the lower index.
 template <class Scalar>
 struct Pair {
-  Vec<Scalar> apart{}, normal{};  ///< lower minus upper; what pushes the lower one
-  Vec<Scalar> arm{};              ///< how the gap follows the upper normal, and against it the lower one [m]
+  Vec<Scalar> apart{}, normal{};  ///< lower minus upper position; direction of the push on the lower point
+  Vec<Scalar> arm{};  ///< derivative of the gap with respect to the upper normal, and minus that for the lower normal [m]
   Scalar gap = 0;
 };
 
@@ -141,14 +141,14 @@ inline Pair<Scalar> pair_of(const Place<Scalar>& lower, const Place<Scalar>& upp
   return p;
 }
 
-/// The force on one point of a pair, in quanta; `f` is that on the lower one.
+/// The force on one point of a pair, in quanta; `f` acts on the lower one.
 template <class Scalar>
 inline Quanta quanta_of(const Vec<Scalar>& f, Scalar inverse, bool is_lower) {
   const Quanta q = contact::quanta(f, inverse);
   return is_lower ? q : Quanta{-q[0], -q[1], -q[2]};
 }
 
-/// What pushes do to the tangents of a point, in quanta; `lever`: the sum of arms times pushes (touch_point.cl).
+/// Effect of the pushes on the tangents of a point, in quanta; `lever`: the sum of arms times pushes (touch_point.cl).
 template <class Scalar>
 inline void set_moment(std::int32_t* touch_moment, std::int64_t i, const Place<Scalar>& own, const Vec<Scalar>& lever,
                        Scalar inverse) {
@@ -159,7 +159,7 @@ inline void set_moment(std::int32_t* touch_moment, std::int64_t i, const Place<S
   }
 }
 
-/// The frame that moves with the lower point: its rows, and back.
+/// Components of a vector in the frame that moves with the lower point, and the inverse.
 template <class Scalar>
 inline Vec<Scalar> into_frame(const Place<Scalar>& lower, const Vec<Scalar>& v) {
   return {dot(lower.tangent, v), dot(cross(lower.normal, lower.tangent), v), dot(lower.normal, v)};
@@ -169,14 +169,14 @@ inline Vec<Scalar> out_of_frame(const Place<Scalar>& lower, const Vec<Scalar>& v
   return scaled_sum(v[0], lower.tangent, scaled_sum(v[1], cross(lower.normal, lower.tangent), times(lower.normal, v[2])));
 }
 
-/// Slip of a pair against where it stuck, along the surface.
+/// Tangential slip of a pair relative to its anchor.
 template <class Scalar>
 inline Vec<Scalar> slip_of(const Place<Scalar>& lower, const Pair<Scalar>& p, const Vec<Scalar>& stuck) {
   const Vec<Scalar> slip = difference(p.apart, out_of_frame(lower, stuck));
   return scaled_sum(minus(dot(slip, p.normal)), p.normal, slip);
 }
 
-/// Numbers of a partner: plane k of touch_pair.
+/// Access to the data of a partner: plane k of touch_pair.
 template <class T>
 inline T* pair_numbers(T* touch_pair, std::int64_t i, std::int64_t slot) {
   return touch_pair + tile_base(i, PLIANT_TOUCH_SLOTS * PLIANT_TOUCH_PAIR) + slot * PLIANT_TOUCH_PAIR * PLIANT_TILE;

@@ -8,7 +8,7 @@ namespace {
 
 using namespace touch;
 
-/// What draws a pair back to where it stuck, at most `most`; where it sticks from now on, if it has not.
+/// Friction of a pair towards its anchor, at most `most`; sets the anchor if there is none.
 template <class Scalar>
 Vec<Scalar> press_friction(const Place<Scalar>& lower, const Pair<Scalar>& p, Scalar* anchor, Scalar stiffness, Scalar most,
                            const Vec<Scalar>& moved, const Vec<Scalar>& f) {
@@ -41,7 +41,7 @@ void touch_press(Range range, const Scalar* touch_place, const std::int32_t* con
     Scalar pressed = 0, inside = 0;
     Vec<Scalar> lever{};
     const Place<Scalar> mine = place_of(touch_place, i);
-    if ((near & ~PLIANT_TOUCH_BIT) != 0) {  // what tools did
+    if ((near & ~PLIANT_TOUCH_BIT) != 0) {  // the forces of tools
       sum = {force[0], force[1], force[2]};
       touching = force[3];
     }

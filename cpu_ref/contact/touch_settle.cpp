@@ -7,8 +7,8 @@ namespace {
 
 using namespace touch;
 
-/// `f`: the normal force so far and what friction there was. Returns it with the friction that it may have, and lets where the
-/// pair stuck follow where it slips.
+/// `f`: the normal force so far and the friction of the first part. Returns it with admissible friction, and moves the anchor
+/// where the pair slips.
 template <class Scalar>
 Vec<Scalar> settle_friction(const Place<Scalar>& lower, const Pair<Scalar>& p, Scalar* anchor, Scalar stiffness,
                             Scalar friction, const Vec<Scalar>& f) {
@@ -39,7 +39,7 @@ void touch_settle(Range range, const Scalar* touch_place, const std::int32_t* co
     Quanta sum{};
     Vec<Scalar> lever{};
     const Place<Scalar> mine = place_of(touch_place, i);
-    if ((near & ~PLIANT_TOUCH_BIT) != 0) sum = {change[0], change[1], change[2]};  // what tools did
+    if ((near & ~PLIANT_TOUCH_BIT) != 0) sum = {change[0], change[1], change[2]};  // the forces of tools
     std::int32_t touching = change[3];
     for (std::int64_t s = 0; s < PLIANT_TOUCH_SLOTS && (near & PLIANT_TOUCH_BIT) != 0; ++s) {
       const std::int64_t j = touch_partner[tile_base(i, PLIANT_TOUCH_SLOTS) + s * PLIANT_TILE] - 1;

@@ -8,7 +8,7 @@ template <class Scalar>
 void touch_tree(Range range, const std::int32_t* touch_node, Scalar* touch_box) {
   for (std::int64_t k = range.begin; k < range.end; ++k) {
     const std::int32_t* node = touch_node + k * PLIANT_TOUCH_TREE;
-    if (node[3] - node[2] == 1) continue;  // a tile: touch_box has been there
+    if (node[3] - node[2] == 1) continue;  // a tile: touch_box has computed its box
     Scalar* box = touch_box + std::int64_t{PLIANT_TOUCH_BOX} * node[0];
     for (std::int64_t b = 0; b < PLIANT_TOUCH_BOX; ++b) {
       const bool high = b % 2 == 1 || b == 18;

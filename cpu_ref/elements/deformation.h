@@ -1,5 +1,5 @@
-// The displacement gradient H = F - I and what the material laws need of it; the derivation is in
-// kernels/elements/deformation.cl.
+// The displacement gradient H = F - I and the quantities that the material laws use; kernels/elements/deformation.cl has the
+// derivation.
 #pragma once
 #include <cmath>
 #include <limits>
@@ -50,7 +50,7 @@ template <class Scalar>
 template <class Scalar>
 [[gnu::always_inline]] inline Deformation<Scalar> deformation_of(const Mat3<Scalar>& h) {
   Deformation<Scalar> d;
-  // One by one: gcc keeps a copied structure in memory, and then the loop around it does not become vector instructions.
+  // One by one: gcc keeps a copied structure in memory and then does not vectorize the surrounding loop.
   d.h.m00 = h.m00, d.h.m01 = h.m01, d.h.m02 = h.m02;
   d.h.m10 = h.m10, d.h.m11 = h.m11, d.h.m12 = h.m12;
   d.h.m20 = h.m20, d.h.m21 = h.m21, d.h.m22 = h.m22;

@@ -9,7 +9,7 @@ struct Sym3 {
   Scalar m00, m11, m22, m01, m02, m12;
 };
 
-/// The Green-Lagrange strain E = (H + H^T + H^T H) / 2 on the diagonal, 2 E beside it.
+/// The Green-Lagrange strain E = (H + H^T + H^T H) / 2 on the diagonal, 2 E off the diagonal.
 template <class Scalar>
 [[gnu::always_inline]] inline Sym3<Scalar> green_strain(const Mat3<Scalar>& h) {
   const Scalar half = Scalar(0.5);

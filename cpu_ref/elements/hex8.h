@@ -1,4 +1,4 @@
-// What the two 8-node hexahedra share: node displacements, the displacement gradient, the force of a stress on a corner.
+// Shared by the 8-node hexahedra: node displacements, the displacement gradient, the force of a stress on a corner.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -57,7 +57,7 @@ inline Mat3<Scalar> hex8_gradient(const Corners<Scalar>& u, const HexRecord<Scal
   return h;
 }
 
-/// Into planes 0..23 of this element: corner by corner, x, y, z.
+/// Stores a force in planes 0..23 of this element: corner by corner, x, y, z.
 template <class Scalar>
 inline void hex8_store(const Corners<Scalar>& f, std::int64_t e, Scalar* corner_force) {
   Scalar* out = corner_force + tile_base(e, PLIANT_HEX_FORCE_PLANES);

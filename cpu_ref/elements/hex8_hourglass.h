@@ -1,4 +1,4 @@
-// Twin of kernels/elements/hex8_hourglass.cl, which says what is computed.
+// Twin of kernels/elements/hex8_hourglass.cl, which describes the computation.
 #pragma once
 #include <array>
 

@@ -1,6 +1,6 @@
-// Displacement gradient of a linear tetrahedron: H = sum_a (u_a - u_0) (x) grad N_a, a = 1..3. The twins take a tile of sixteen
-// tetrahedra at a time: first what is scattered is collected, then every element is computed in a loop without branches or
-// scattered reads, which compilers turn into vector instructions.
+// Displacement gradient of a linear tetrahedron: H = sum_a (u_a - u_0) (x) grad N_a, a = 1..3. The twins process a tile of
+// sixteen tetrahedra at a time: first they gather the scattered data, then a loop without branches or gathers computes all
+// elements, which compilers can vectorize.
 #pragma once
 #include <cstdint>
 

@@ -1,5 +1,5 @@
 // Twin of kernels/elements/tled_hex8_brick_force.cl: a whole brick in plain arrays, one stage after the other. The kernel's
-// header gives the butterfly and the order of the sums; here every sum stands in the same order.
+// header describes the butterfly and the order of the sums; the sums here have the same order.
 #include <memory>
 
 #include "cpu_ref/laws/law.h"
@@ -32,13 +32,13 @@ Vec3<Scalar> fma(Scalar s, const Vec3<Scalar>& a, const Vec3<Scalar>& b) {
   return {std::fma(s, a.x, b.x), std::fma(s, a.y, b.y), std::fma(s, a.z, b.z)};
 }
 
-/// A face of a cell normal to z: sums (s) and differences (d) along x (first letter) and y (second letter).
+/// A cell face normal to z: sums (s) and differences (d) along x (first letter) and y (second letter).
 template <class Scalar>
 struct Face {
   Vec3<Scalar> ss, ds, sd, dd;
 };
 
-/// Displacements or forces of a brick on their way through the stages.
+/// Displacements or forces of a brick between the stages.
 template <class Scalar>
 struct Work {
   Vec3<Scalar> u[layers + 1][rows + 1][columns + 1];
@@ -46,7 +46,7 @@ struct Work {
   Face<Scalar> forces[layers + 1][rows][columns];
 };
 
-/// The brick's nodes and the first ones of its upper neighbours.
+/// Loads the brick's nodes and the first ones of its upper neighbours.
 template <class Scalar>
 void load_nodes(const Scalar* node_u, const std::int32_t* neighbor, Work<Scalar>& work) {
   for (int z = 0; z <= layers; ++z) {
@@ -85,13 +85,13 @@ std::int32_t cell_forces(const Face<Scalar>& below, const Face<Scalar>& above, S
   return fill > Scalar(0) ? fault_of(law, d) : no_fault;
 }
 
-/// Back along y and x for the rows of one plane of nodes.
+/// Inverse butterflies along y and x for the rows of one plane of nodes.
 template <class Scalar>
 void write_plane(const Face<Scalar> (&forces)[rows][columns], int plane, Scalar* brick_force) {
   for (int y = 0; y <= rows; ++y) {
     const int row = plane * (rows + 1) + y;
     Scalar* out = brick_force + 3 * row * columns;
-    Vec3<Scalar> left{Scalar(-0.0), Scalar(-0.0), Scalar(-0.0)};  // what the cell to the left gives
+    Vec3<Scalar> left{Scalar(-0.0), Scalar(-0.0), Scalar(-0.0)};  // force of the cell to the left
     for (int x = 0; x < columns; ++x) {
       Vec3<Scalar> s, d;
       if (y > 0) {
@@ -137,7 +137,7 @@ void tled_hex8_brick_force(Range range, const Scalar* node_u, const std::int32_t
         }
       }
     }
-    for (int z = 0; z < layers; ++z) {  // on each plane the cells below it come first
+    for (int z = 0; z < layers; ++z) {  // on each plane, the cells below it come first
       for (int y = 0; y < rows; ++y) {
         for (int x = 0; x < columns; ++x) {
           const std::int64_t cell = brick * PLIANT_BRICK_NODES + (z * rows + y) * columns + x;

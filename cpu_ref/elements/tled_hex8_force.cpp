@@ -8,11 +8,11 @@
 namespace pliant::ref {
 namespace {
 
-/// One stiffness for all modes, whose vectors the record holds.
+/// One stiffness for all modes, whose vectors are in the record.
 template <class Scalar>
 void add_hourglass_of_cube(const Corners<Scalar>& u, const HexRecord<Scalar, true>& data, Scalar k, Corners<Scalar>& f) {
   constexpr int gamma = 24;
-  for (int mode = 0; mode < 4; ++mode) {  // each corner takes the modes in ascending order
+  for (int mode = 0; mode < 4; ++mode) {  // each corner adds the modes in ascending order
     Scalar qx = 0, qy = 0, qz = 0;
     for (std::size_t a = 0; a < 8; ++a) {
       const Scalar g = data[gamma + 8 * mode + static_cast<std::int64_t>(a)];
@@ -30,7 +30,7 @@ void add_hourglass_of_cube(const Corners<Scalar>& u, const HexRecord<Scalar, tru
   }
 }
 
-/// Corner forces of the hourglass control; what it gives through the displacement gradient goes to the stress.
+/// Corner forces of the hourglass control; the part through the displacement gradient is added to the stress.
 template <class Scalar>
 Corners<Scalar> hourglass_of_shape(const Corners<Scalar>& u, const HexRecord<Scalar, false>& data, Scalar fill,
                                    const Mat3<Scalar>& h, Mat3<Scalar>& p) {
@@ -51,7 +51,7 @@ void tled_hex8_force(Range range, const Scalar* node_u, const std::int32_t* hex_
                      std::int32_t fault_base, std::int32_t step) {
   const MaterialLaw<Number, Scalar> law(law_parameters);
   [[maybe_unused]] const Viscosity<Scalar> viscous(viscosity, step_params);
-  constexpr int volume = Uniform ? 56 : 55;  // where it stands in the record
+  constexpr int volume = Uniform ? 56 : 55;  // index of the volume in the record
   for (std::int64_t e = range.begin; e < range.end; ++e) {
     const HexRecord<Scalar, Uniform> data(hex_data, e, PLIANT_HEX_DATA_PLANES);
     const Corners<Scalar> u = hex8_displacements(e, node_u, hex_nodes);

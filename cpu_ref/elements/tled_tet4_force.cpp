@@ -28,7 +28,7 @@ void tled_tet4_force(Range range, const Scalar* node_u, const std::int32_t* tet_
       const auto pressure = [&](int corner) { return anp_pressure[nodes[corner * PLIANT_TILE + e]]; };
       mean_pressure[e] = Scalar(0.25) * ((pressure(0) + pressure(1)) + (pressure(2) + pressure(3)));
     }
-    Scalar f[PLIANT_TET_FORCE_PLANES][PLIANT_TILE];  // local, for no other array can overlap it
+    Scalar f[PLIANT_TET_FORCE_PLANES][PLIANT_TILE];  // local, so that no other array can alias it
     std::int32_t fault_kind[PLIANT_TILE];
     const auto element = [&](int e, auto low) {
       const Tet4<Scalar> t = tet4_load(u, data, e);
@@ -50,7 +50,7 @@ void tled_tet4_force(Range range, const Scalar* node_u, const std::int32_t* tet_
       f[2][e] = -((f[5][e] + f[8][e]) + f[11][e]);
       return is_low(law, d);
     };
-    // Few tiles hold an element below law.low: they are made again.
+    // Few tiles contain an element below law.low; they are computed again.
     std::int32_t low = 0;
     for (int e = 0; e < PLIANT_TILE; ++e)
       low |= static_cast<std::int32_t>(element(e, [](const auto&) { return std::false_type{}; }));

@@ -4,17 +4,17 @@
 
 namespace pliant::ref {
 
-/// d = 4 J - 1 of J - 1.
+/// Returns d = 4 J - 1 for j = J - 1.
 template <class Scalar>
 inline Scalar low_distance(Scalar j) {
   return std::fma(Scalar(4), j, Scalar(3));
 }
-/// For 1 / J.
+/// Continuation of 1 / J.
 template <class Scalar>
 inline Scalar low_inverse(Scalar d) {
   return std::fma(Scalar(-4), d, Scalar(4));
 }
-/// f, for J^-2/3.
+/// f, the continuation of J^-2/3.
 template <class Scalar>
 inline Scalar low_first(Scalar d) {
   return Scalar(2.5198420997897464L) *
@@ -25,7 +25,7 @@ template <class Scalar>
 inline Scalar low_first_slope(Scalar d) {
   return Scalar(10.079368399158986L) * std::fma(Scalar(-0.5555555555555556L), d, Scalar(0.3333333333333333L));
 }
-/// h, for J^-4/3.
+/// h, the continuation of J^-4/3.
 template <class Scalar>
 inline Scalar low_second(Scalar d) {
   return Scalar(6.3496042078727974L) *

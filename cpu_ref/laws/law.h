@@ -23,12 +23,13 @@ struct LawOf;
 PLIANT_LAWS(PLIANT_TWIN)
 #undef PLIANT_TWIN
 
-/// The law whose number is the define LAW.
+/// The law selected by the define LAW.
 template <int Number, class Scalar>
 using MaterialLaw = typename LawOf<Number, Scalar>::type;
 
 constexpr std::int32_t no_fault = 0, inverted = 1, lost = 2;
-/// inverted: J <= 0, and the law goes on; lost: no stress, for J is not finite, or not positive where the law ends there.
+/// inverted: J <= 0, and the law is continued; lost: no stress, because J is not finite, or not positive where the law is
+/// undefined.
 template <class LawType, class Scalar>
 inline std::int32_t fault_of(const LawType& law, const Deformation<Scalar>& d) {
   constexpr Scalar infinity = std::numeric_limits<Scalar>::infinity();
@@ -38,7 +39,7 @@ inline std::int32_t fault_of(const LawType& law, const Deformation<Scalar>& d) {
   return finite && (LawType::invertible || law.low > Scalar(0)) ? inverted : lost;
 }
 
-/// Whether J is so low that the law goes on with polynomials of it.
+/// Returns true if J is so low that the law is continued by polynomials.
 template <class LawType, class Scalar>
 inline bool is_low(const LawType& law, const Deformation<Scalar>& d) {
   return Scalar(1) + d.j < law.low;

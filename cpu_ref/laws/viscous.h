@@ -1,4 +1,4 @@
-// Viscous stress beside that of the law; the formulas are in kernels/laws/viscous.cl.
+// Viscous stress in addition to that of the law; the formulas are in kernels/laws/viscous.cl.
 #pragma once
 #include <cmath>
 
@@ -17,7 +17,7 @@ struct Viscosity {
     volume = viscosity[1] * rate;
   }
 
-  /// p plus `scale` P_v; h: F_n - I, w: F_n - F_(n-1).
+  /// Adds `scale` P_v to p; h: F_n - I, w: F_n - F_(n-1).
   [[gnu::always_inline]] inline void add(Mat3<Scalar>& p, const Mat3<Scalar>& h, const Mat3<Scalar>& w, Scalar scale) const {
     const auto mean = [](Scalar of_h, Scalar of_w) { return std::fma(Scalar(-0.5), of_w, of_h); };
     const Scalar m00 = mean(h.m00, w.m00), m01 = mean(h.m01, w.m01), m02 = mean(h.m02, w.m02);

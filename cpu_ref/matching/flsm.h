@@ -1,4 +1,4 @@
-// What the twins of shape matching share: sums of blocks of numbers along the links of one axis.
+// Shared by the twins of shape matching: sums of blocks of numbers along the links of one axis.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -7,8 +7,8 @@
 
 namespace pliant::ref {
 
-/// Sums over the links of region i: all Numbers of the records (Stride apart), and o (above - below) of the block that begins
-/// at number Moment, or o (below - above) where Back.
+/// Sums over the links of region i: all Numbers of the records (Stride apart), and o (above - below) of the block that starts
+/// at number Moment, or o (below - above) with Back.
 template <int Width, int Numbers, int Stride, int Moment, bool Back, class Scalar>
 inline void sum_links(const Scalar* records, const std::int32_t* link, std::int64_t i, Scalar (&sum)[Numbers],
                       Scalar (&moment)[4]) {
@@ -27,7 +27,7 @@ inline void sum_links(const Scalar* records, const std::int32_t* link, std::int6
   }
 }
 
-/// Add one entry of a list of what the ordered sums miss: four factors times a record, or times one block (BlockStride 0).
+/// Adds one entry of a correction list: four factors times a record, or times one block (BlockStride 0).
 template <int BlockStride, class Scalar>
 inline void add_entry(const Scalar* factor, const Scalar* numbers, Scalar (&sum)[PLIANT_FLSM_RECORD]) {
   for (int block = 0; block < 4; ++block) {

@@ -13,7 +13,7 @@ namespace {
 template <class Scalar>
 using Symmetric = std::array<Scalar, 6>;
 
-/// a m with the symmetric m.
+/// a m for a symmetric m.
 template <class Scalar>
 Mat3<Scalar> times_symmetric(const Mat3<Scalar>& a, const Symmetric<Scalar>& m) {
   const auto [xx, yy, zz, xy, xz, yz] = m;
@@ -25,7 +25,7 @@ Mat3<Scalar> times_symmetric(const Mat3<Scalar>& a, const Symmetric<Scalar>& m) 
           sum(a.m20, xx, a.m21, xy, a.m22, xz), sum(a.m20, xy, a.m21, yy, a.m22, yz), sum(a.m20, xz, a.m21, yz, a.m22, zz)};
 }
 
-/// P of the deformation H with the rotation I + D.
+/// First Piola-Kirchhoff stress P of the deformation H with the rotation I + D.
 template <class Scalar>
 Mat3<Scalar> corotated_stress(const Mat3<Scalar>& h, const Mat3<Scalar>& d, Scalar shear, Scalar bulk) {
   const Mat3<Scalar> r{h.m00 - d.m00, h.m01 - d.m01, h.m02 - d.m02, h.m10 - d.m10, h.m11 - d.m11,

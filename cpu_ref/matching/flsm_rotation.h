@@ -1,4 +1,4 @@
-// The rotation of a region by Horn's quaternion; how and why is in kernels/matching/flsm_rotation.cl.
+// The rotation of a region by Horn's quaternion; kernels/matching/flsm_rotation.cl explains the method.
 #pragma once
 #include <bit>
 #include <cmath>
@@ -40,7 +40,7 @@ inline double scale_to_one(double x) {
   return std::bit_cast<double>(0x7fe0000000000000ULL - (std::bit_cast<std::uint64_t>(x) & 0x7ff0000000000000ULL));
 }
 
-/// Trace in [1, 2), entries on a grid of 2^-31 (in double of 2^-60).
+/// Scales the trace to [1, 2) and rounds entries to a grid of 2^-31 (in double 2^-60).
 template <class Scalar>
 [[gnu::always_inline]] inline Symmetric4<Scalar> normalised(const Symmetric4<Scalar>& n) {
   constexpr Scalar grid = Scalar(0.005859375);
@@ -50,7 +50,7 @@ template <class Scalar>
           on_grid(n.n12), on_grid(n.n13), on_grid(n.n22), on_grid(n.n23), on_grid(n.n33)};
 }
 
-/// R - I of the rotation R nearest to a + e (a: xx yy zz xy xz yz); see kernels/matching/flsm_rotation.cl.
+/// R - I for the rotation R closest to a + e (a: xx yy zz xy xz yz); see kernels/matching/flsm_rotation.cl.
 template <class Scalar>
 [[gnu::always_inline]] inline Mat3<Scalar> rotation_of(const Scalar (&a)[6], const Mat3<Scalar>& e, Scalar size, bool& ok) {
   const Scalar b00 = a[0] + e.m00, b01 = a[3] + e.m01, b02 = a[4] + e.m02;

@@ -7,7 +7,7 @@
 namespace pliant::ref {
 namespace {
 
-// In double only the pattern of the nearest float has a meaning.
+// In double, only the bits of the nearest float are meaningful.
 std::int32_t as_int(double x) { return std::bit_cast<std::int32_t>(static_cast<float>(x)); }
 float as_real(std::int32_t bits) { return std::bit_cast<float>(bits); }
 std::int32_t bit(bool condition, int n) { return condition ? 1 << n : 0; }

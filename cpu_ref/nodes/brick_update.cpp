@@ -15,8 +15,8 @@ void brick_update(Range range, Scalar* node_u, Scalar* node_w, const std::int32_
     if ((brick_rows[2 * (i / PLIANT_BRICK_NODES) + 1] >> (4 * z + y) & 1) == 0) continue;
     const std::int32_t* lower = brick_neighbor + i / PLIANT_BRICK_NODES * PLIANT_BRICK_NEIGHBORS + 8;
     Scalar f[3] = {Scalar(-0.0), Scalar(-0.0), Scalar(-0.0)};
-    // The bricks at 0, -x, -y, -xy, -z, -xz, -yz, -xyz, where this node lies on what they share. A brick's own nodes end at
-    // its planes y = 3 and z = 3 and at x = 15; what it gives to its upper neighbours stands behind those.
+    // The bricks at 0, -x, -y, -xy, -z, -xz, -yz, -xyz, if this node lies on the shared part. A brick's own nodes end at its
+    // planes y = 3 and z = 3 and at x = 15; its forces on the upper neighbours are stored after those.
     for (int side = 0; side < 8; ++side) {
       const bool from_x = (side & 1) != 0, from_y = (side & 2) != 0, from_z = (side & 4) != 0;
       if ((from_x && x > 0) || (from_y && y > 0) || (from_z && z > 0)) continue;

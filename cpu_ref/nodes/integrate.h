@@ -1,4 +1,4 @@
-// The last lines of every update: external loads and a step of the integrator.
+// Common end of every update: external loads and a step of the integrator.
 #pragma once
 #include <cstdint>
 
@@ -6,14 +6,14 @@
 
 namespace pliant::ref {
 
-/// What the defines of an update kernel choose.
+/// The defines of an update kernel.
 struct UpdateKind {
   bool has_load = false;    ///< R comes from node_load
-  bool force_only = false;  ///< write R - F to node_force and leave the node where it is
-  int integrator = 0;       ///< its place in integrators.h
+  bool force_only = false;  ///< write R - F to node_force and do not move the node
+  int integrator = 0;       ///< index in integrators.h
 };
 
-/// Advance node i under the summed element force f.
+/// Advances node i with the summed element force f.
 template <UpdateKind Kind, class Scalar>
 inline void integrate(const Scalar (&f)[3], Scalar* node_u, Scalar* node_w, const Scalar* node_load, Scalar* node_force,
                       const StepParameters<Scalar>& step, std::int64_t i) {
@@ -24,7 +24,7 @@ inline void integrate(const Scalar (&f)[3], Scalar* node_u, Scalar* node_w, cons
   } else {
     Scalar* u = node_u + 4 * i;
     Scalar* w = node_w + 4 * i;
-    const Scalar inverse_mass = u[3], decay = w[3];  // read once: a compiler must take it that writing w may change u
+    const Scalar inverse_mass = u[3], decay = w[3];  // read once: the compiler must assume that writing w may change u
     for (int c = 0; c < 3; ++c) {
       StepForm<Kind.integrator>::advance(u[c], w[c], Drive<Scalar>{residual(c), inverse_mass, step.gravity[c], decay}, step);
     }

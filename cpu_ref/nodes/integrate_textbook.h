@@ -1,4 +1,4 @@
-// Central differences as a textbook writes them; the formulas are in kernels/nodes/integrate_textbook.cl.
+// Central differences in textbook form; the formulas are in kernels/nodes/integrate_textbook.cl.
 #pragma once
 #include "cpu_ref/nodes/integrator.h"
 

@@ -8,7 +8,7 @@
 
 namespace pliant::ref {
 
-/// What all nodes of a pass share.
+/// Parameters shared by all nodes of a pass.
 template <class Scalar>
 struct StepParameters {
   Scalar h, half_hh, gravity[3], still, fine, anchor;
@@ -19,18 +19,17 @@ struct StepParameters {
         still(step_params[4]),
         fine(step_params[5]),
         anchor(Scalar(3) * step_params[5]) {}
-  /// None where it is too small.
+  /// Returns 0 for an increment below the floor.
   Scalar increment(Scalar w) const { return std::fabs(w) < still ? Scalar(0) : w; }
-  /// On the grid where it is small.
+  /// Rounds a small displacement to the grid.
   Scalar displacement(Scalar u) const { return std::fabs(u) < fine ? (u + anchor) - anchor : u; }
 };
 
-/// What moves a component: R - F [N], 1/m [1/kg], gravity [m/s^2] and the decay that the host gives its node
-/// (host/integrators).
+/// Input of a component's step: R - F [N], 1/m [1/kg], gravity [m/s^2] and the node's decay from the host (host/integrators).
 template <class Scalar>
 struct Drive {
   Scalar force, inverse_mass, gravity, decay;
-  /// `share` h^2 (R - F) / m and the same of gravity [m]. Slots without a node stay where they are.
+  /// `share` h^2 (R - F) / m and the same for gravity [m]. Slots without a node do not move.
   [[nodiscard]] Scalar push(Scalar share) const {
     const Scalar free = inverse_mass > Scalar(0) ? share : Scalar(0);
     return std::fma(share * inverse_mass, force, free * gravity);
@@ -54,7 +53,7 @@ struct IntegratorOf;
 PLIANT_INTEGRATORS(PLIANT_TWIN)
 #undef PLIANT_TWIN
 
-/// The integrator whose number is the define INTEGRATOR.
+/// The integrator selected by the define INTEGRATOR.
 template <int Number>
 using StepForm = typename IntegratorOf<Number>::type;
 

@@ -1,4 +1,4 @@
-// The C API over pliant::World: null pointers and sizes are checked here, everything else there.
+// The C API over pliant::World: null pointers and sizes are checked here, everything else by World.
 #include <fmt/ranges.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ void give_report(const pliant::StepReport& r, pliant_report* out) {
   give_struct({0, r.done, r.step, r.time, r.dt, r.diverged ? 1 : 0, r.at_equilibrium ? 1 : 0, message.c_str()}, out);
 }
 
-/// `text` into a buffer of `size` bytes, cut to fit with the closing 0.
+/// Copies `text` into a buffer of `size` bytes, truncated to fit including the closing 0.
 void give_text(const std::string& text, char* out, std::size_t size) {
   need(out, "text");
   if (size == 0) throw Error(ErrorCode::usage, "the buffer for the text has no room for its closing 0");
@@ -44,7 +44,7 @@ void give_text(const std::string& text, char* out, std::size_t size) {
   out[length] = 0;
 }
 
-/// One per line; `needed` receives the bytes that all take.
+/// Writes one line per entry; `needed` receives the number of bytes for all of them.
 void give_lines(const std::vector<std::string>& lines, char* out, std::size_t size, std::size_t* needed) {
   const std::string text = fmt::format("{}", fmt::join(lines, "\n"));
   give_text(text, out, size);
@@ -79,7 +79,7 @@ const pliant::BodyInfo& body_of(CWorld& w, std::size_t body) {
   throw Error(ErrorCode::usage, fmt::format("there is no body {}; the scene has {}", body, bodies.size()));
 }
 
-/// An array of the caller's structs, which may be longer than this library's.
+/// Converts an array of the caller's structs, which may be larger than this library's.
 std::vector<pliant::SurfaceSpec> surfaces_of(const pliant_surface* first, std::size_t count) {
   std::vector<pliant::SurfaceSpec> surfaces;
   if (count > 0) need(first, "surfaces");
@@ -94,14 +94,14 @@ std::vector<pliant::SurfaceSpec> surfaces_of(const pliant_surface* first, std::s
   return surfaces;
 }
 
-/// x, y, z of each texel.
+/// Copies x, y, z of each texel.
 void copy_texels(pliant::View<pliant::Vec4f> texels, float* out, std::size_t count, const char* what) {
   need(out, "out");
   check_count(count, 3 * texels.size(), what);
   for (const pliant::Vec4f& t : texels) out = std::copy_n(t.data(), 3, out);
 }
 
-/// x, y, z of each node.
+/// Copies x, y, z of each node.
 void copy_vectors(const std::vector<pliant::Vec3d>& vectors, double* out, std::size_t count, const char* what) {
   need(out, "out");
   check_count(count, 3 * vectors.size(), what);
@@ -131,7 +131,7 @@ void give_frame(const pliant::Frame& f, const pliant::IndexRange& vertices, cons
   give_struct(frame, out);
 }
 
-/// The newest frame, without taking it from anybody who polls.
+/// Returns the newest frame without affecting poll().
 pliant::FramePtr newest(CWorld& w) { return w.world.frame_since(nullptr).frame; }
 
 }  // namespace
@@ -282,7 +282,7 @@ pliant_status pliant_world_frame(pliant_world world, pliant_frame* out) {
     need(out, "out");
     check_struct(out);
     const pliant::FramePtr frame =
-        w.world.frame();  // the World holds it until the next call of frame(), which nobody else makes
+        w.world.frame();  // the World holds it until the next call of frame(), which only this function makes
     give_frame(*frame, frame->dirty_vertices, frame->dirty_triangles, out);
   });
 }

@@ -1,4 +1,4 @@
-// What every call of the C API begins with. Private to host/api.
+// Common start of every C API call. Private to host/api.
 #pragma once
 #include <fmt/format.h>
 
@@ -11,10 +11,10 @@
 
 namespace pliant::api {
 
-/// Of the calling thread.
+/// The last error message of the calling thread.
 inline thread_local std::string last_error;
 
-/// Runs `call` and turns what it throws into a status.
+/// Runs `call` and converts exceptions to a status.
 template <class Call>
 pliant_status guarded(Call&& call) noexcept {
   try {

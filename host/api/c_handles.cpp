@@ -25,7 +25,7 @@ std::shared_ptr<CWorld> Handles::find(std::uint64_t id) {
 }
 
 void Handles::remove(std::uint64_t id) {
-  std::shared_ptr<CWorld> last = find(id);  // destroyed outside of the lock, after whoever still works with it
+  std::shared_ptr<CWorld> last = find(id);  // destroyed outside of the lock, after concurrent users have released it
   const std::lock_guard lock(mutex_);
   alive_.erase(id);
 }

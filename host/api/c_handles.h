@@ -1,4 +1,4 @@
-// The worlds that C callers hold. Handles are looked up, never followed.
+// The worlds of C callers. Handles are looked up in a table and never dereferenced.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -15,18 +15,18 @@ namespace pliant::api {
 struct CWorld {
   explicit CWorld(World w) : world(std::move(w)) {}
   World world;
-  std::mutex mutex;                        ///< protects the others from callers who forget to take turns
-  std::map<std::uint64_t, FramePtr> seen;  ///< the last frame of each consumer, which its pointers point to
-  std::set<std::string> tool_names;        ///< what names of tools point to
-  std::vector<ProbeValue> probes;          ///< what pointers of probes point to
+  std::mutex mutex;                        ///< protects the following members against concurrent calls
+  std::map<std::uint64_t, FramePtr> seen;  ///< last frame of each consumer, which keeps its pointers valid
+  std::set<std::string> tool_names;        ///< storage of returned tool names
+  std::vector<ProbeValue> probes;          ///< storage of returned probe values
 };
 
-/// The only state that all users of the C API share: which handles are alive.
+/// The table of valid handles, the only state shared by all users of the C API.
 class Handles {
  public:
   static Handles& all();
   std::uint64_t add(std::shared_ptr<CWorld> world);
-  /// Throws Error: usage for no handle (0), state for one that is not alive (any more).
+  /// Throws Error: usage for handle 0, state for a handle that is not valid.
   std::shared_ptr<CWorld> find(std::uint64_t id);
   void remove(std::uint64_t id);
 

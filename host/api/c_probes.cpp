@@ -1,4 +1,4 @@
-// What the C API tells of probes and tools.
+// Probes and tool forces in the C API.
 #include <algorithm>
 #include <utility>
 #include <vector>
@@ -11,7 +11,7 @@ using namespace pliant::api;
 using pliant::Error;
 using pliant::ErrorCode;
 
-/// Element i of an array of the caller's structs, which may be longer than this library's.
+/// Element i of an array of the caller's structs, which may be larger than this library's.
 template <class T>
 T* element(T* first, std::size_t i) {
   return reinterpret_cast<T*>(reinterpret_cast<char*>(first) + i * first->size);

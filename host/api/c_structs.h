@@ -1,4 +1,4 @@
-// Structs of the C API that may be older or younger than this library: pliant/types.h states the contract.
+// Conversion of C API structs of other versions; pliant/types.h states the contract.
 #pragma once
 #include <fmt/format.h>
 
@@ -11,10 +11,10 @@
 
 namespace pliant::api {
 
-constexpr std::size_t kLargestStruct = 4096;  // beyond this `size` was never set
+constexpr std::size_t kLargestStruct = 4096;  // larger values indicate an uninitialized `size`
 
-/// Name and size in 0.2.0, the first version with sizes in its structs: up to the last member of that version, padded. A member
-/// that comes later begins behind that.
+/// Name and size in 0.2.0, the first version with sizes in its structs: up to the last member of that version, padded. Later
+/// members start after that.
 template <class T>
 struct CStruct;
 
@@ -36,7 +36,7 @@ PLIANT_C_STRUCT(pliant_probe_value, number_count);
 PLIANT_C_STRUCT(pliant_tool_force, reserved);
 #undef PLIANT_C_STRUCT
 
-/// Throws Error (usage) for a size that no version has.
+/// Throws Error (usage) for an invalid size.
 template <class T>
 void check_struct(const T* given) {
   if (given == nullptr || (given->size >= CStruct<T>::first_size && given->size <= kLargestStruct)) return;
@@ -45,8 +45,8 @@ void check_struct(const T* given) {
                           given->size, CStruct<T>::first_size, kLargestStruct, CStruct<T>::name));
 }
 
-/// What the caller says, and the defaults of what an older one cannot say. Throws Error (usage) for a size that no version has,
-/// and where a younger one asks for what this library does not know.
+/// Returns the caller's struct, with defaults for members that an older caller lacks. Throws Error (usage) for an invalid
+/// size, and if a newer caller sets a member that this library does not know.
 template <class T>
 T take_struct(const T& given, T defaults) {
   check_struct(&given);
@@ -62,7 +62,7 @@ T take_struct(const T& given, T defaults) {
   return defaults;
 }
 
-/// As much of `value` as the caller has room for; 0 in what a younger caller has beyond it. `out` was checked.
+/// Copies `value` up to the caller's size, and zeros members that only a newer caller knows. `out` must be checked.
 template <class T>
 void give_struct(T value, T* out) {
   if (out == nullptr) return;

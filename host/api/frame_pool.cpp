@@ -58,7 +58,7 @@ void vertex_normals(const std::vector<Vec4f>& positions, std::size_t count, View
   }
   for (std::size_t v = 0; v < count; ++v) {
     Vec4f& n = normals[v];
-    // Twice the area of small triangles is around 1e-6 m^2: its square is far from the smallest float only after scaling.
+    // Twice the area of small triangles is around 1e-6 m^2, so its square would underflow without scaling.
     const float largest = std::max({std::fabs(n[0]), std::fabs(n[1]), std::fabs(n[2])});
     if (!(largest > 0)) continue;
     const float x = n[0] / largest, y = n[1] / largest, z = n[2] / largest;
@@ -69,7 +69,7 @@ void vertex_normals(const std::vector<Vec4f>& positions, std::size_t count, View
 
 namespace {
 
-/// The first `both` elements are compared; what `now` has beyond them is new.
+/// Compares the elements that both have; further ones in `now` are new.
 template <class Same>
 IndexRange changed(std::size_t before, std::size_t now, const Same& same) {
   const std::size_t both = std::min(before, now);
@@ -90,8 +90,7 @@ IndexRange changed_vertices(const Frame& from, const Frame& to) {
 }
 
 IndexRange changed_triangles(const Frame& from, const Frame& to) {
-  if (from.triangles.data() == to.triangles.data() && from.cut_faces.data() == to.cut_faces.data())
-    return {};  // of one topology
+  if (from.triangles.data() == to.triangles.data() && from.cut_faces.data() == to.cut_faces.data()) return {};  // same topology
   const auto flag = [](const Frame& f, std::size_t t) { return f.cut_faces.empty() ? 0 : f.cut_faces[t]; };
   return changed(from.triangles.size(), to.triangles.size(),
                  [&](std::size_t t) { return from.triangles[t] == to.triangles[t] && flag(from, t) == flag(to, t); });

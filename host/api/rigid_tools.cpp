@@ -44,7 +44,7 @@ std::string RigidTools::add(ContactTool tool) {
   return name;
 }
 
-/// Of drives of one tool that are not done yet the last one counts.
+/// Of several pending drives of a tool only the last one is kept.
 void RigidTools::ask(Request request) {
   const std::lock_guard lock(mutex_);
   check_known(request.name);

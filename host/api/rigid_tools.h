@@ -1,4 +1,4 @@
-// The rigid tools of a World: what the caller wants of them, until the thread that steps has done it, and what they feel.
+// The rigid tools of a World: requests of the caller, executed by the stepping thread, and the forces on the tools.
 #pragma once
 #include <memory>
 #include <mutex>
@@ -11,30 +11,31 @@
 
 namespace pliant::api {
 
-/// The caller's thread asks, the thread that steps does it between two batches, in the order in which it was asked; neither
-/// waits for the other longer than it takes to copy a few numbers.
+/// The caller's thread queues requests; the stepping thread executes them in order between two batches. Neither blocks the
+/// other for longer than it takes to copy a few numbers.
 class RigidTools {
  public:
-  // The caller's. Names, numbers and files are checked here: Error (usage, input). What the tissue forbids is found later.
+  // For the caller's thread. These check names, numbers and files: Error (usage, input). Conflicts with tissue are found
+  // later.
 
-  /// Reads the tool's meshes. Its name, which is a new one if it has none.
+  /// Reads the tool's meshes. Returns its name, generated if it has none.
   std::string add(ContactTool tool);
   void remove(const std::string& name);
   void park(const std::string& name);
   void unpark(const std::string& name);
   void place(const std::string& name, const Pose& at);
   void drive(const std::string& name, const Pose& to, double seconds);
-  /// Drives that were not done yet are forgotten.
+  /// Discards drives that are not executed yet.
   void drop_drives();
   [[nodiscard]] std::vector<ToolForce> forces();
 
-  // The stepping thread's.
+  // For the stepping thread.
 
-  /// Do what was asked. Throws the first Error there was, when all is done that can be.
+  /// Executes the requests. All are attempted; then the first Error is rethrown.
   void apply(Simulation& simulation);
-  /// What the tools have felt, for whoever asks.
+  /// Stores the forces on the tools for forces().
   void note(const Simulation& simulation);
-  /// The simulation is another one: nothing is asked of it yet.
+  /// Call after the simulation was replaced: discards all requests.
   void renew(const Simulation& simulation);
 
  private:
@@ -48,7 +49,7 @@ class RigidTools {
     double seconds = 0;                    ///< drive
   };
 
-  // With the mutex held.
+  // Require the mutex.
   [[nodiscard]] bool knows(const std::string& name) const;
   void check_known(const std::string& name) const;
 
@@ -57,9 +58,9 @@ class RigidTools {
   void settle(const Simulation& simulation);
 
   std::mutex mutex_;
-  std::set<std::string> names_;  ///< of the simulation, as of the last look
-  std::vector<Request> doing_;   ///< on their way
-  std::vector<Request> asked_;   ///< after these
+  std::set<std::string> names_;  ///< tools of the simulation after the last apply()
+  std::vector<Request> doing_;   ///< being executed
+  std::vector<Request> asked_;   ///< queued after these
   std::vector<ToolForce> forces_;
 };
 

@@ -8,10 +8,10 @@
 namespace pliant::api {
 namespace {
 
-constexpr double kPeriod = 0.002;  ///< the springs of grabs are looked at this often [s]
-constexpr double kCatchUp = 0.1;   ///< time in which the pull takes up what the spring alone leaves [s]
-constexpr double kFree = 0.25;     ///< largest share of a free patch's momentum balance that one look may change
-constexpr double kStrain = 0.25;   ///< largest pull over Young's modulus and the handful's area
+constexpr double kPeriod = 0.002;  ///< update interval of the grab springs [s]
+constexpr double kCatchUp = 0.1;   ///< time in which the integral part removes the spring's remaining error [s]
+constexpr double kFree = 0.25;     ///< largest fraction of a free patch's momentum balance that one update may change
+constexpr double kStrain = 0.25;   ///< largest force over Young's modulus times the area of the patch
 constexpr std::int32_t kAnySteps = 1 << 20;
 
 Vec3d limited(const Vec3d& v, double most) {
@@ -47,7 +47,7 @@ void SurfaceHandles::follow(std::shared_ptr<const Model> model) {
   const std::lock_guard lock(mutex_);
   if (model == model_) return;
   set_model(std::move(model));
-  // Going back to a state before a cut takes vertices and nodes away.
+  // Restoring a state before a cut may remove vertices and nodes.
   std::erase_if(grabs_, [&](const auto& entry) { return !has(entry.second.vertex); });
   std::erase_if(pushes_, [&](const auto& entry) { return !has(entry.first); });
   std::erase_if(node_pushes_, [&](const auto& entry) {
@@ -77,7 +77,7 @@ std::vector<NodeShare> SurfaceHandles::nodes_of(const SurfaceVertex& vertex) con
   return nodes;
 }
 
-/// Find the nodes of a grab. Only those with a reserved force can be held: those that move the surface.
+/// Finds the nodes of a grab. Only nodes with a reserved force, which move the surface, can be held.
 void SurfaceHandles::hold(Grab& g) const {
   const std::size_t b = g.vertex.body;
   const ModelBody& body = model_->bodies[b];
@@ -97,7 +97,7 @@ void SurfaceHandles::hold(Grab& g) const {
     g.mass += mass;
   }
   for (NodeShare& p : g.patch) p.share /= g.mass;
-  // A disk of radius r on a half-space has the stiffness 2 E r / (1 - nu^2): half of it cannot overshoot at rest.
+  // A disk of radius r on a half-space has the stiffness 2 E r / (1 - nu^2); half of that cannot overshoot at rest.
   const double r = std::max(g.options.radius, edge_of(body)), young = materials_[b].moduli.young();
   g.stiffness = g.options.stiffness > 0 ? g.options.stiffness : young * r;
   g.max_force = g.options.max_force > 0 ? g.options.max_force : kStrain * young * r * r;
@@ -182,8 +182,8 @@ void SurfaceHandles::clear() {
   changed_ = true;
 }
 
-/// Spring and damper on the vertex, and a part that grows until the vertex is where it should be. `period` is the time until
-/// the next look [s]: the gains stay where an explicit step of a free patch is stable.
+/// Spring and damper at the vertex, and an integral part that grows until the vertex is at its target. `period`: time until
+/// the next update [s]; the gains are limited to the stability range of explicit steps of a free patch.
 Vec3d SurfaceHandles::pull(const Grab& grab, Pull& state, const Vec3d& position, double time, double period) const {
   const double k = std::min(grab.stiffness, kFree * grab.mass / (period * period));
   const double c = std::min(2 * std::sqrt(k * grab.mass), kFree * grab.mass / period);

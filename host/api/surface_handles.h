@@ -1,5 +1,4 @@
-// What a user does to the surface between two batches: grabs on springs, pushes, and the focus that operational regions can
-// follow.
+// Interactive tools: grabs, pushes, and the point that operational regions follow.
 #pragma once
 #include <compare>
 #include <map>
@@ -13,28 +12,28 @@
 
 namespace pliant::api {
 
-/// A node of a body and its share of something.
+/// A node of a body with a weight.
 struct NodeShare {
   std::size_t body = 0;
   std::int64_t node = 0;
   double share = 0;
 };
 
-/// A vertex by its number in its body, which cuts do not change.
+/// A vertex by its number within its body, which cuts do not change.
 struct SurfaceVertex {
   std::size_t body = 0;
   std::int32_t local = 0;
   auto operator<=>(const SurfaceVertex&) const = default;
 };
 
-/// The caller's thread changes the handles, the thread that steps reads them at the start of a batch; neither waits for the
-/// other longer than it takes to copy a few numbers.
+/// The caller's thread changes the handles; the stepping thread reads them at the start of a batch. Neither blocks the other
+/// for longer than it takes to copy a few numbers.
 class SurfaceHandles {
  public:
   SurfaceHandles(std::shared_ptr<const Model> model, const Scene& scene);
 
-  /// The simulation has another model now: a cut divided cells, or an operational region moved. What holds on to the surface
-  /// goes on with the nodes that move it there.
+  /// Call after the simulation's model changed by a cut or a moved operational region. Grabs and pushes continue on the nodes
+  /// that now move their part of the surface.
   void follow(std::shared_ptr<const Model> model);
 
   GrabId grab(const SurfaceVertex& vertex, const GrabOptions& options);
@@ -44,30 +43,30 @@ class SurfaceHandles {
   void push_node(std::size_t body, std::int64_t node, const Vec3d& force);
   void move_focus(const Vec3d& position);
   void clear();
-  /// The simulation is another one: its forces are these handles' to set.
+  /// Call after the simulation was replaced, so that its forces are set again.
   void renew();
 
-  /// Bring the simulation's forces up to date, at the start of a batch; how many steps the batch may have.
+  /// Updates the simulation's forces at the start of a batch. Returns the maximum number of steps of the batch.
   std::int32_t apply(Simulation& simulation);
 
  private:
-  /// A grab, as the caller sees it.
+  /// A grab as set by the caller.
   struct Grab {
     SurfaceVertex vertex;
     GrabOptions options;
-    std::optional<Vec3d> target;   ///< [m]; none yet: where the vertex is
+    std::optional<Vec3d> target;   ///< [m]; empty: not set yet, the vertex's current position
     std::vector<NodeShare> point;  ///< weights of the vertex
-    std::vector<NodeShare> patch;  ///< shares of the pull
+    std::vector<NodeShare> patch;  ///< distribution of the force
     Vec3d rest{};
     double mass = 0, stiffness = 0, max_force = 0;
   };
-  /// What the stepping thread remembers of it.
+  /// State of a grab in the stepping thread.
   struct Pull {
     Vec3d target{}, before{}, held{};
     double time = 0;
   };
 
-  // With the mutex held.
+  // Require the mutex.
   void set_model(std::shared_ptr<const Model> model);
   [[nodiscard]] bool has(const SurfaceVertex& vertex) const;
   void check_vertex(const SurfaceVertex& vertex) const;
@@ -77,7 +76,7 @@ class SurfaceHandles {
 
   std::vector<Material> materials_;
   std::mutex mutex_;
-  std::shared_ptr<const Model> model_;                         ///< the one that the simulation runs
+  std::shared_ptr<const Model> model_;                         ///< the model of the simulation
   std::vector<std::pair<std::size_t, std::int64_t>> node_of_;  ///< [slots] body, node
   GrabId last_id_ = 0;
   std::map<GrabId, Grab> grabs_;
@@ -85,7 +84,7 @@ class SurfaceHandles {
   std::map<std::pair<std::size_t, std::int64_t>, Vec3d> node_pushes_;
   std::optional<Vec3d> focus_;
   bool changed_ = false;
-  std::map<GrabId, Pull> pulls_;  ///< of the stepping thread alone
+  std::map<GrabId, Pull> pulls_;  ///< used only by the stepping thread
 };
 
 }  // namespace pliant::api

@@ -7,7 +7,7 @@
 
 namespace pliant::api {
 
-/// Bodies of a scene from text whose surface is "memory:N" get surfaces[N]. Throws Error (input) if there is none.
+/// Sets surfaces[N] for bodies of a scene from text whose surface is "memory:N". Throws Error (input) if there is none.
 void set_surfaces(Scene& scene, const std::vector<SurfaceSpec>& surfaces);
 
 }  // namespace pliant::api

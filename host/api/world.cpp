@@ -1,4 +1,4 @@
-// The public class: checks, waits where that is promised, and hands on.
+// The public class: checks arguments, waits where documented, and delegates.
 #include "pliant/world.h"
 
 #include <fmt/format.h>

@@ -1,10 +1,10 @@
-// What every call of a World begins with. Private to host/api.
+// Common start of every World call. Private to host/api.
 #pragma once
 #include "api/world_impl.h"
 
 namespace pliant::api {
 
-/// One call at a time; and, if wanted, only when the worker is idle.
+/// Guards a call against concurrent calls, and optionally waits until the worker is idle.
 class Call {
  public:
   explicit Call(const std::unique_ptr<World::Impl>& impl, bool wait = true) : in_use_(flag_of(impl)) {

@@ -1,4 +1,4 @@
-// Cuts of a World. They are made by the thread that steps, between two batches.
+// Cuts of a World, made by the stepping thread between two batches.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -20,8 +20,8 @@ void check_finite(const Vec3d& p, const char* what) {
 
 }  // namespace
 
-/// One cut: along triangles, or by all that blades have moved. What Simulation refuses is the caller's; everything else is the
-/// device's.
+/// Makes one cut: along triangles, or by all pending blade moves. Errors of Simulation are the caller's; all others are
+/// device errors.
 CutReport World::Impl::cut_now(std::span<const api::CutRequest> requests) {
   try {
     CutReport done;
@@ -43,14 +43,14 @@ CutReport World::Impl::cut_now(std::span<const api::CutRequest> requests) {
   }
 }
 
-/// What blades have moved between two batches is one cut: cuts that take longer than a frame would pile up.
+/// Combines all blade moves between two batches into one cut; otherwise cuts that take longer than a frame would accumulate.
 void World::Impl::cut_pending() {
   std::vector<api::CutRequest> requests;
   {
     const std::lock_guard lock(mutex);
     requests.swap(pending_cuts);
   }
-  std::exception_ptr refused;  // the others are done all the same
+  std::exception_ptr refused;  // the others are made nevertheless
   const auto moves = [&](std::size_t r) { return !requests[r].pose.empty(); };
   for (std::size_t first = 0, last = 0; first < requests.size(); first = last) {
     last = first + 1;
@@ -94,7 +94,7 @@ CutResult World::Impl::cut(api::CutRequest request) {
   }
 }
 
-/// The vertex of the frame that the user got last, by its body.
+/// Converts a vertex number of the frame that the user received last.
 api::SurfaceVertex World::Impl::vertex_of(std::int32_t vertex) const {
   std::shared_ptr<const api::Topology> seen;
   {
@@ -126,7 +126,7 @@ CutResult World::move_blade(const std::string& blade, const Vec3d& a, const Vec3
     throw Error(ErrorCode::usage, fmt::format("{}: got a segment from [{}] m to itself; allowed are two different points", what,
                                               fmt::join(a, ", ")));
   }
-  // Every stroke has a name of its own, so that nothing of an older one is left.
+  // Every stroke has a unique name, so that no data of an earlier stroke are reused.
   const auto [key, fresh] = impl_->blade_key.try_emplace(blade);
   if (fresh) key->second = fmt::format("{}#{}", blade, impl_->strokes++);
   return impl_->cut({{}, {{key->second, {a, b}}}, fresh ? key->second : std::string()});

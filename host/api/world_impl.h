@@ -1,4 +1,4 @@
-// The inside of a World. Private to host/api and its tests.
+// Implementation of World. Private to host/api and its tests.
 #pragma once
 #include <atomic>
 #include <condition_variable>
@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "api/frame_pool.h"
-#include "api/surface_handles.h"
 #include "api/rigid_tools.h"
+#include "api/surface_handles.h"
 #include "pliant/world.h"
 #include "simulation/measure/probing.h"
 #include "simulation/simulation.h"
@@ -23,7 +23,7 @@ namespace pliant {
 
 namespace api {
 
-/// A cut that could not be made, or a tool that could not be put somewhere; the simulation is as it was before.
+/// A rejected cut or tool change; the simulation is unchanged.
 struct Refused : Error {
   using Error::Error;
   explicit Refused(const Error& error) : Error(error) {}
@@ -31,22 +31,22 @@ struct Refused : Error {
 
 }  // namespace api
 
-/// Opens a backend for a scene of so many nodes; `reason` receives the reason.
+/// Opens a backend for a scene with this number of nodes; `reason` receives the reason for the choice.
 using OpenBackend = std::function<std::unique_ptr<Backend>(std::string* reason, std::int64_t nodes)>;
 
 namespace api {
 
-/// A cut that was asked for: along triangles, by a move of a blade, or one that a blade is lifted from.
+/// A requested cut: along triangles, by a move of a blade, or preceded by lifting a blade.
 struct CutRequest {
   std::vector<SweepTriangle> triangles;
   std::vector<BladePose> pose;  ///< at most one
-  std::string lifted;           ///< no cut; before what else there is
+  std::string lifted;           ///< blade to lift before the rest
 };
 
 }  // namespace api
 
-/// One thread at a time steps the simulation: the caller's in step(), the worker in advance_async(). `mutex` protects what both
-/// touch.
+/// One thread at a time steps the simulation: the caller's in step(), the worker in advance_async(). `mutex` protects the
+/// members that both use.
 struct World::Impl {
   Impl(Scene scene, OpenBackend open, const WorldOptions& options);
   ~Impl();
@@ -72,9 +72,9 @@ struct World::Impl {
   [[nodiscard]] api::SurfaceVertex vertex_of(std::int32_t vertex) const;
 
   // world_tools.cpp
-  /// What is asked of the rigid tools is refused where the World cannot go on, unless the worker is at it.
+  /// Throws if the World cannot continue, unless the worker is running (it reports errors itself).
   void check_can_change_tools();
-  /// Do it now, unless there is a worker that will.
+  /// Applies tool changes now, unless a worker will.
   void settle_tools();
   void change_tools_now();
   std::string add_tool(ContactTool tool);
@@ -86,48 +86,48 @@ struct World::Impl {
   void serve();
 
   const WorldOptions options;
-  const Scene scene;  ///< as of the start
+  const Scene scene;  ///< initial scene
   const OpenBackend open_backend;
   WorldInfo info;
-  std::shared_ptr<const Model> model;  ///< as of the start
+  std::shared_ptr<const Model> model;  ///< initial model
   PlacedProbes probes;
   std::shared_ptr<Simulation> simulation;
   std::unique_ptr<api::SurfaceHandles> handles;
   api::RigidTools rigid_tools;
-  std::string lost;         ///< message of the device's loss; empty: it works
-  double seconds_left = 0;  ///< asked of advance() and not yet a whole step; of the thread that steps
+  std::string lost;         ///< message of the device failure; empty: the device works
+  double seconds_left = 0;  ///< remainder of advance() below a whole step; used by the stepping thread
   std::atomic<bool> in_use{false};
-  std::int64_t strokes = 0;                      ///< blades put somewhere so far
-  std::map<std::string, std::string> blade_key;  ///< what the simulation calls the blades that are in use
+  std::int64_t strokes = 0;                      ///< number of blade strokes so far
+  std::map<std::string, std::string> blade_key;  ///< internal names of the blades in use
 
   std::shared_ptr<api::FramePool> pool = std::make_shared<api::FramePool>();
-  std::shared_ptr<const Model> seen_model;  ///< the simulation's, when the topology was looked at last
+  std::shared_ptr<const Model> seen_model;  ///< the simulation's model at the last topology check
   std::shared_ptr<const api::Topology> topology;
-  std::shared_ptr<api::FrameData> last_read;  ///< of the thread that steps
+  std::shared_ptr<api::FrameData> last_read;  ///< used by the stepping thread
 
   mutable std::mutex mutex;
   std::condition_variable changed;
   std::thread worker;
   bool stop = false;
-  std::function<void()> job;                  ///< asked of the worker; empty: nothing
-  std::vector<api::CutRequest> pending_cuts;  ///< for the worker's next batch
-  bool beside = false;                        ///< the caller's: steps were asked of the worker, and nobody has waited since
-  bool cut_since_read = false;                ///< `newest` does not show the last cut
+  std::function<void()> job;                  ///< work for the worker; empty: idle
+  std::vector<api::CutRequest> pending_cuts;  ///< made before the worker's next batch
+  bool beside = false;                        ///< used by the caller: asynchronous steps were started and not waited for
+  bool cut_since_read = false;                ///< `newest` does not include the last cut
   std::exception_ptr failure;
-  StepReport report;  ///< of the last work
+  StepReport report;  ///< of the last stepping call
   double stable_dt = 0;
-  std::shared_ptr<api::FrameData> newest;      ///< the last frame that was read
-  std::shared_ptr<api::FrameData> given;       ///< what frame() gave last
+  std::shared_ptr<api::FrameData> newest;      ///< the last frame read
+  std::shared_ptr<api::FrameData> given;       ///< the last frame returned by frame()
   IndexRange dirty_vertices, dirty_triangles;  ///< from `given` to `newest`
   std::shared_ptr<const api::Topology>
-      shown;  ///< of the frame that the user got last, by whichever call: what its vertices name
+      shown;  ///< topology of the last frame returned to the user, which vertex numbers refer to
 };
 
-/// What the rooms of Pliant and its tests may do with a World that its users may not.
+/// Access to a World for Pliant's own code and tests.
 struct WorldAccess {
-  /// A World on a backend of the caller's.
+  /// Creates a World on a given backend.
   static World make(Scene scene, OpenBackend open, const WorldOptions& options = {});
-  /// The simulation inside, once the worker is idle. It is replaced by reset() and load().
+  /// Returns the simulation, once the worker is idle. reset() and load() replace it.
   static Simulation& simulation(World& world);
 };
 

@@ -1,4 +1,4 @@
-// Stepping a World and reading its frames, on whichever thread does it.
+// Stepping a World and reading its frames, on either thread.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace pliant {
 namespace {
 
-/// A mesh file that does not exist is a matter of files; everything else of the scene is input.
+/// Missing mesh files are io errors; all other errors of a scene are input errors.
 ErrorCode code_of_model(const Scene& scene, const Error& error) {
   std::error_code ignored;
   for (const Body& b : scene.bodies) {
@@ -48,7 +48,7 @@ std::shared_ptr<const api::Topology> topology_of(std::shared_ptr<const Model> mo
   return topology;
 }
 
-/// What is left of a range in an array that may have become shorter.
+/// Clips a range to an array that may have become shorter.
 IndexRange within(const IndexRange& range, std::size_t count) {
   if (range.first >= count) return {};
   return {range.first, std::min(range.count, count - range.first)};
@@ -99,13 +99,13 @@ std::shared_ptr<Simulation> World::Impl::make_simulation(std::string* reason) {
   auto fresh = std::make_shared<Simulation>(scene, model, std::move(backend));
   try {
     if (options.cutting) fresh->prepare_cuts();
-  } catch (const Error& error) {  // of a scene that cannot be cut: the first real cut says so
+  } catch (const Error& error) {  // for a scene that cannot be cut, the first actual cut throws
     if (error.code() == ErrorCode::internal || error.code() == ErrorCode::device) throw;
   }
   return fresh;
 }
 
-/// What went wrong on the device while it worked. Scenes are checked before, so whatever a step throws is the device's.
+/// An error on the device during the run. Scenes are checked earlier, so any exception of a step is a device error.
 Error World::Impl::as_device_error(const std::exception& error) const {
   return {ErrorCode::device, fmt::format("the backend {} failed at step {}: {}", info.backend, report.step, error.what())};
 }
@@ -131,8 +131,8 @@ void World::Impl::publish_clock() {
 StepReport World::Impl::run(std::int64_t steps) {
   const std::int64_t first = simulation->step();
   try {
-    if (simulation->at_equilibrium()) static_cast<void>(handles->apply(*simulation));  // a tool that is driven ends it
-    if (steps == 0) {  // who stops stepping still sees cuts that are made beside the caller, and tools
+    if (simulation->at_equilibrium()) static_cast<void>(handles->apply(*simulation));  // driving a tool ends the equilibrium
+    if (steps == 0) {  // makes pending cuts and tool changes even without steps
       cut_pending();
       change_tools_now();
     }
@@ -155,17 +155,17 @@ StepReport World::Impl::run(std::int64_t steps) {
   }
   publish_clock();
   const std::lock_guard lock(mutex);
-  report.done = std::max<std::int64_t>(0, simulation->step() - first);  // a divergence may go back to before this call
+  report.done = std::max<std::int64_t>(0, simulation->step() - first);  // a rollback may go behind this call
   return report;
 }
 
-/// As many whole steps as fit, counted from where the calls before have left off.
+/// Performs the whole steps that fit, counted from where the previous calls ended.
 StepReport World::Impl::advance(double seconds) {
   const double end = simulation->time() + seconds_left + seconds;
   const std::int64_t first = simulation->step();
   try {
     run(0);
-    // An automatic step may change on the way, so what is left is looked at after every batch.
+    // An automatic step may change, so recompute the remaining steps after every batch.
     while (!simulation->divergence() && !simulation->at_equilibrium()) {
       const double fit = std::floor((end - simulation->time()) / simulation->dt() + 1e-6);
       if (fit < 1) break;
@@ -183,7 +183,7 @@ StepReport World::Impl::advance(double seconds) {
   return report;
 }
 
-/// A cut makes a new model with other vertices and triangles; an operational region that moves, one with the same.
+/// A cut makes a model with other vertices and triangles; a moved operational region makes one with the same.
 void World::Impl::follow_topology() {
   std::shared_ptr<const Model> now = simulation->shared_model();
   if (now == seen_model) return;
@@ -193,7 +193,7 @@ void World::Impl::follow_topology() {
     topology = topology_of(std::move(now), topology->version + 1);
 }
 
-/// Read the surface into a frame that nobody holds, and make it the newest.
+/// Reads the surface into an unused frame and makes it the newest.
 void World::Impl::read_frame(bool again) {
   follow_topology();
   if (!again && last_read != nullptr && last_read->frame.step == simulation->step() && last_read->topology == topology) return;
@@ -247,8 +247,8 @@ void World::Impl::read_frame(bool again) {
   newest = std::move(data);
 }
 
-/// While the worker is busy the frame of the steps before, otherwise that of the present state. Its topology is what the
-/// vertices of tools are numbered by from now on. `to_poll`: poll() and the frame's own dirty ranges count from here.
+/// Returns the last completed frame while the worker is busy, otherwise the current state. Its topology defines the vertex
+/// numbers for tools from now on. `to_poll`: restart poll() and the frame's own dirty ranges here.
 FramePtr World::Impl::hand_out(bool to_poll) {
   bool idle = false;
   {
@@ -268,7 +268,7 @@ FramePtr World::Impl::hand_out(bool to_poll) {
   return {newest, &newest->polled};
 }
 
-/// Go on with another simulation of the same scene.
+/// Continues with another simulation of the same scene.
 void World::Impl::restart(std::shared_ptr<Simulation> fresh) {
   simulation = std::move(fresh);
   handles->renew();

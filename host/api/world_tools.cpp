@@ -1,4 +1,4 @@
-// Rigid tools of a World: where the caller steps they change at once, beside a worker before its next batch.
+// Rigid tools of a World: changes take effect at once if the caller steps, otherwise before the worker's next batch.
 #include "api/world_call.h"
 #include "scene/tool_entry.h"
 

@@ -1,4 +1,4 @@
-// The thread of a World that steps while its caller draws.
+// The worker thread of a World, which steps while the caller draws.
 #include <pthread.h>
 #include <sched.h>
 
@@ -7,8 +7,8 @@
 namespace pliant {
 namespace {
 
-/// Who wakes this thread goes on first: where every core is busy, it would take the core of the caller for milliseconds. Not
-/// vital, so a refusal is no error.
+/// Lets the thread that wakes the worker continue first: if all cores are busy, the worker would take the caller's core for
+/// milliseconds. Optional, so failure is ignored.
 void let_the_waker_go_on() {
 #ifdef SCHED_BATCH
   const sched_param none{};
@@ -34,7 +34,7 @@ bool World::Impl::start_job(std::function<void()> work) {
   }
   throw_failure();
   check_can_step();
-  if (!worker.joinable()) worker = std::thread([this] { serve(); });  // may fail: no job is pending then
+  if (!worker.joinable()) worker = std::thread([this] { serve(); });  // may throw, with no job pending
   {
     const std::lock_guard lock(mutex);
     job = std::move(work);
@@ -49,7 +49,7 @@ void World::Impl::wait_until_idle() {
   changed.wait(lock, [this] { return !job; });
 }
 
-/// What the worker met is told once.
+/// Rethrows the worker's error once.
 void World::Impl::throw_failure() {
   std::exception_ptr met;
   {

@@ -1,4 +1,4 @@
-// The Model of a scene, with what its surfaces and figures have that a user should know.
+// The Model of a scene, with warnings about its surfaces and figures.
 #pragma once
 #include <string>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace pliant::cli {
 
-/// Sentences of all bodies, told as remarks.
+/// Warnings about all bodies, printed as remarks.
 inline std::vector<std::string> tell(const std::vector<SurfaceCheck>& checks, const Model& model, const Scene& scene,
                                      const Common& common) {
   std::vector<std::string> warnings = model_remarks(checks, model, scene);

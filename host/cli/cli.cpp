@@ -30,7 +30,7 @@ bool takes_output(int descriptor) {
   return flags >= 0 && (flags & O_ACCMODE) != O_RDONLY;
 }
 
-/// A stream that does not take it is looked at when the command ends.
+/// Write errors of a stream are checked when the command ends.
 void put(std::FILE* stream, const std::string& line) { (void)std::fwrite(line.data(), 1, line.size(), stream); }
 
 }  // namespace
@@ -126,7 +126,7 @@ std::string scene_stem(const std::filesystem::path& scene) {
   return stem.empty() ? "scene" : stem;
 }
 
-constexpr std::chrono::seconds kSpoken{15};  ///< between two lines of progress that nobody watches
+constexpr std::chrono::seconds kSpoken{15};  ///< interval of progress lines without a terminal
 
 Progress::Progress(bool wanted)
     : on_(wanted), terminal_(::isatty(STDERR_FILENO) == 1), last_(std::chrono::steady_clock::now()) {}

@@ -8,7 +8,7 @@ namespace pliant::cli {
 namespace {
 
 constexpr double kCreated = 0.01;
-constexpr std::int64_t kLooks = 32;  ///< a look costs as much as some ten steps
+constexpr std::int64_t kLooks = 32;  ///< number of checks in a run; a check costs as much as some ten steps
 
 bool is_accounted(const Scene& scene) {
   const bool held = std::all_of(scene.bodies.begin(), scene.bodies.end(),

@@ -1,4 +1,4 @@
-// Whether a run made energy out of nothing.
+// Checks whether a run created energy.
 #pragma once
 #include <optional>
 #include <string>
@@ -8,16 +8,16 @@
 
 namespace pliant::cli {
 
-/// Looks at the energy of a run with contact now and then. Nothing where work is done that nobody accounts for: by follower
-/// pressures, sequences, cuts, tears, edges that part, dynamic relaxation.
+/// Checks the energy of a run with contact periodically. Disabled if there is work that is not accounted for: by follower
+/// pressures, sequences, cuts, tears, split edges, dynamic relaxation.
 class EnergyReport {
  public:
   EnergyReport(Simulation& simulation, const RunLoop& loop);
-  /// After every batch.
+  /// Call after every batch.
   void look();
-  /// Share of the largest energy; nothing where it cannot be told.
+  /// Created energy as a fraction of the largest energy; empty if unknown.
   [[nodiscard]] std::optional<double> created() const;
-  /// A sentence where that is more than a hundredth.
+  /// Returns a sentence if that is more than a hundredth.
   [[nodiscard]] std::optional<std::string> remark() const;
 
  private:

@@ -1,4 +1,4 @@
-// When frames are due: every so many steps, or at the first step at or after each multiple of a simulated time.
+// Times of frames: every given number of steps, or the first step at or after each multiple of a simulated time.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -11,7 +11,7 @@ class FrameGrid {
  public:
   /// Never.
   FrameGrid() = default;
-  /// From "100" (steps), "16ms" or "0.016s" (simulated time; also us). Throws Error that says what is allowed.
+  /// Parses "100" (steps), "16ms" or "0.016s" (simulated time; also us). Throws Error with the allowed forms.
   static FrameGrid parse(const std::string& every);
   static FrameGrid of_seconds(double seconds);
   static FrameGrid of_steps(std::int64_t steps);

@@ -128,7 +128,7 @@ class Info {
     json_["mass"] = mass;
   }
 
-  /// How many nodes each entry of `fixed` and `prescribed` has: what is held by too few swings.
+  /// Number of nodes of each entry of `fixed` and `prescribed`: a body with too few fixed nodes swings.
   void held() {
     json_["held"] = Json::array();
     for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
@@ -142,7 +142,7 @@ class Info {
     }
   }
 
-  /// What a run will write down. A selection tells how many nodes it has.
+  /// The outputs of a run, with the number of nodes of each selection.
   void probes() {
     json_["probes"] = Json::array();
     if (scene_.probes == nullptr) return;
@@ -299,7 +299,7 @@ int info(const InfoArguments& options) {
     iterated_dt = simulation.stable_dt();
     dt = simulation.dt();
     if (!(iterated_dt > 0)) not_iterated = "no element moves freely";
-  } catch (const Error& error) {  // a scene too large for this machine, or with an error further on, may still be asked about
+  } catch (const Error& error) {  // info also works for a scene too large for this machine, or with an error in a later stage
     not_iterated = error.what();
   }
   Program program = build_program(*model, {scene.integrator, SimulationOptions{}.batch_steps});

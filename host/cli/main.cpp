@@ -74,7 +74,7 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit then fails a write, which names the file
   try {
     const int code = run(argc, argv);
-    // After SIGHUP the terminal is gone; what was asked for in files is there all the same.
+    // After SIGHUP the terminal is gone, but requested files are still written.
     const bool lost = std::fflush(stdout) != 0 || std::ferror(stdout) != 0;
     return lost && code != pliant::cli::kInterrupted ? fail(2, "standard output could not be written") : code;
   } catch (const Error& error) {

@@ -1,4 +1,4 @@
-// The tags of a body's mesh file, told by `pliant info`.
+// The tags of a body's mesh file, listed by `pliant info`.
 #pragma once
 #include <nlohmann/json.hpp>
 

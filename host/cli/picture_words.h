@@ -17,7 +17,7 @@ struct PictureWords {
   void add_to(CLI::App& app);
   /// The first of them that was given, "--size", or "".
   [[nodiscard]] std::string given() const;
-  /// What the words mean. Throws Error with what is allowed.
+  /// Parses the options. Throws Error with the allowed values.
   [[nodiscard]] render::PictureOptions options() const;
 };
 

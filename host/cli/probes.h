@@ -1,4 +1,4 @@
-// What a run follows over time: --probe NAME=x,y,z, and the probes of a scene.
+// Probes of a run: --probe NAME=x,y,z, and the probes of a scene.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace pliant::cli {
 
-/// From "NAME=x,y,z". Throws Error that says what is allowed.
+/// Parses "NAME=x,y,z". Throws Error with the allowed form.
 SceneProbe parse_probe(const std::string& text);
 
 /// Probes and the tables that they fill.

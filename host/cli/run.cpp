@@ -59,7 +59,7 @@ void check(const RunArguments& o) {
   if (!o.picture.given().empty() && formats.count(OutputFormat::png) == 0) {
     throw Error(ErrorCode::bad_input, fmt::format("{} is for pictures; it needs --format png", o.picture.given()));
   }
-  (void)o.picture.options();  // refuses words that mean nothing
+  (void)o.picture.options();  // throws for invalid words
   o.common.check(o.hash);
   if (!o.checkpoint.empty()) check_writable(o.checkpoint);
 }
@@ -179,7 +179,7 @@ class Run {
     return end;
   }
 
-  /// What is written into the folder, and when; the first of all at once.
+  /// Sets up the outputs and their times; the first are written at once.
   std::vector<DueOutput> outputs() {
     if (!frames_) return {};
     // Frames of a sixtieth of a second: a viewer then plays in real time.

@@ -33,7 +33,7 @@ std::int64_t RunLoop::remaining() const {
   return std::max<std::int64_t>(0, steps);
 }
 
-/// One batch that goes beyond neither the next output nor the end. False: the run has gone back to a state before it.
+/// Runs one batch, up to the next output or the end at most. Returns false if the run was rolled back to an earlier state.
 bool RunLoop::batch(const std::vector<DueOutput>& due, std::int32_t& steps) {
   const auto wanted = [&] {
     std::int64_t left = remaining();
@@ -59,7 +59,7 @@ void RunLoop::put_out(std::vector<DueOutput>& due, const std::vector<std::size_t
   }
 }
 
-/// Write what was held, in its order.
+/// Writes the delayed outputs in order.
 void RunLoop::release(std::vector<DueOutput>& due) {
   for (const Held& held : held_) {
     simulation_.look_at(held.moment, [&] {
@@ -77,7 +77,7 @@ void RunLoop::put_out_due(std::vector<DueOutput>& due) {
   put_out(due, now);
 }
 
-/// What became of a batch. `stayed`: it was not taken back.
+/// Processes the result of a batch. `stayed`: it was not rolled back.
 void RunLoop::look(RunResult& result, std::int64_t first, bool stayed, std::vector<DueOutput>& due) {
   result.steps = std::max<std::int64_t>(0, simulation_.step() - first);
   if (!stayed) {
@@ -90,7 +90,7 @@ void RunLoop::look(RunResult& result, std::int64_t first, bool stayed, std::vect
   }
 }
 
-/// Whether the last state is one: what comes after it may show that it is to be made again, with smaller steps.
+/// Returns whether the last state is final: later steps may cause a rollback behind it.
 bool RunLoop::ends_here(RunResult& result, std::int64_t first, std::vector<DueOutput>& due) {
   if (profile_) simulation_.backend().profile(false);
   const bool stays = simulation_.confirm();
@@ -125,7 +125,7 @@ RunResult RunLoop::run(std::vector<DueOutput>& due, const std::function<void(con
       if (stayed) put_out_due(due);
     }
   } while (result.diverged.empty() && !result.interrupted && !ends_here(result, first, due));
-  if (result.diverged.empty()) release(due);  // nothing comes that could take it back
+  if (result.diverged.empty()) release(due);  // no later step can cause a rollback
   result.ms_per_step = median(std::move(batch_ms));
   return result;
 }

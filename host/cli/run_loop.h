@@ -1,4 +1,4 @@
-// The time loop of `pliant run`: batches between frames, until the end that was asked for.
+// The time loop of `pliant run`: batches between frames, until the requested end.
 #pragma once
 #include <functional>
 #include <optional>
@@ -32,7 +32,7 @@ struct RunResult {
   bool interrupted = false;
 };
 
-/// What is to be written, and when.
+/// The outputs of a run and their times.
 struct DueOutput {
   FrameGrid grid;
   std::function<void()> write;
@@ -46,13 +46,13 @@ class RunLoop {
   /// Steps still to do at the present size of the step.
   [[nodiscard]] std::int64_t remaining() const;
   [[nodiscard]] const RunEnd& end() const { return end_; }
-  /// Run to the end; does what is due at the start and where its grid says so, and calls `after_batch` with what was done so
-  /// far after every batch. A state is written when it is settled: what a batch did that is then made again is never seen.
-  /// After a divergence the simulation holds the last good state.
+  /// Runs to the end. Writes outputs at the start and whenever their grid requires, and calls `after_batch` with the progress
+  /// after every batch. A state is written once it is settled, so batches that are rolled back are never output. After a
+  /// divergence the simulation holds the last good state.
   RunResult run(std::vector<DueOutput>& due, const std::function<void(const RunResult&)>& after_batch);
 
  private:
-  /// A state that waits for its outputs, by their places in the list of what is due.
+  /// A state that waits for output, with the indices of its outputs.
   struct Held {
     Moment moment;
     std::vector<std::size_t> outputs;

@@ -1,4 +1,4 @@
-// What a run says while it goes on: share done, simulated time, what is left, and what a user should know at once.
+// Progress output of a run: percentage, simulated time, remaining time, and urgent warnings.
 #pragma once
 #include <optional>
 #include <set>
@@ -19,7 +19,7 @@ class RunProgress {
   /// After every batch.
   void show(const RunResult& done);
   void clear() { bar_.clear(); }
-  /// Tell of blades that met nothing, each once.
+  /// Reports blades that met nothing, each once.
   void missed(const std::vector<std::string>& blades);
 
  private:

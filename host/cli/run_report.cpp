@@ -180,7 +180,7 @@ class Report {
     out_.print(events_text());
   }
 
-  /// A step that changed is told as a range: steps times the last one is not the time.
+  /// A step size that changed is printed as a range, since the last one times the number of steps is not the time.
   [[nodiscard]] std::string steps_text() const {
     const std::string share =
         s_.stable_dt() > 0 ? fmt::format(", {:.3g} of the stable {:.6g} s", s_.dt() / s_.stable_dt(), s_.stable_dt()) : "";

@@ -1,4 +1,4 @@
-// What a run reports at its end.
+// The report at the end of a run.
 #pragma once
 #include <string>
 #include <vector>
@@ -26,7 +26,7 @@ struct FinishedRun {
   bool hash = false, deep_hash = false, profile = false;
 };
 
-/// Print what people read, remarks, and the JSON object (docs/schema/run.json).
+/// Prints the summary, remarks, and the JSON object (docs/schema/run.json).
 void report_run(const FinishedRun& report);
 
 }  // namespace pliant::cli

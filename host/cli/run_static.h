@@ -1,4 +1,4 @@
-// `pliant run` of a scene that asks for static equilibrium.
+// `pliant run` for scenes with "solver": {"type": "static"}.
 #pragma once
 #include <set>
 #include <string>

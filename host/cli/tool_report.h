@@ -1,4 +1,4 @@
-// What a run tells about its tools: at its end, and over time.
+// Reports on the tools of a run: at its end, and over time.
 #pragma once
 #include <filesystem>
 #include <nlohmann/json.hpp>

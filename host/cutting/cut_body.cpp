@@ -205,7 +205,7 @@ void patch_body_surface(const BodyMesh& uncut, const CutTopology& cut, const Cut
   for (std::size_t v = 0; v < solid.surface_cell.size(); ++v) {
     const bool changed = next != changes.vertices.end() && static_cast<std::size_t>(*next) == v;
     if (changed) ++next;
-    // The nodes of divided cells are numbered anew by every edit.
+    // Every edit renumbers the nodes of divided cells.
     if (!changed && !cut.divided(solid.surface_cell[v])) continue;
     embed_vertex(surface.vertices()[v], cut, solid.surface_nodes[v]);
     changes.reembedded.push_back(static_cast<std::int32_t>(v));

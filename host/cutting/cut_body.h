@@ -1,4 +1,4 @@
-// A body and its cut: from the filled body to what can be cut, and back to a filled body with virtual nodes.
+// Converts a body to a cuttable mesh, and the cut mesh back to a body with virtual nodes.
 #pragma once
 #include <memory>
 
@@ -8,23 +8,23 @@
 
 namespace pliant {
 
-/// What a blade can cut of a filled body. Throws Error for a volume mesh of hexahedra: their faces have no diagonals in common.
-/// `name` is the body's, for messages.
+/// Returns the cuttable mesh of a body. Throws Error for a volume mesh of hexahedra, whose faces have no common diagonals.
+/// `name`: the body's name for messages.
 std::shared_ptr<const CutMesh> cut_mesh(const BodyMesh& solid, const std::string& name);
 
-/// The body with its cut elements, their fill and the virtual nodes, and with the split and capped surface if there is one.
-/// Without, vertices are embedded in the copy that holds their place at rest, and triangles stay as they are.
+/// Returns the body with its cut elements, their fill and the virtual nodes, and with the split and capped surface if given.
+/// Otherwise vertices are embedded in the copy that contains their rest position, and triangles do not change.
 BodyMesh cut_body_mesh(const BodyMesh& uncut, const CutTopology& cut, const CutSurface* surface = nullptr);
 
-/// The same where `solid` is what an earlier state of the same cut gave, or the uncut body: only elements that
-/// changed are written, and the whole surface.
+/// The same, updating `solid`, the result of an earlier state of the same cut or the uncut body: only changed elements are
+/// written, and the whole surface.
 void update_body_mesh(const BodyMesh& uncut, const CutTopology& cut, const CutSurface* surface, BodyMesh& solid);
 
-/// Its two halves, which may run beside each other.
+/// The two halves of it, which may run concurrently.
 void update_body_elements(const BodyMesh& uncut, const CutTopology& cut, BodyElements& solid);
 void update_body_surface(const BodyMesh& uncut, const CutTopology& cut, const CutSurface* surface, BodySurface& solid);
-/// The same from what `surface` changed since `solid` had all of it (CutSurface::take_changes); solid.changes says what that
-/// was.
+/// The same for the changes of `surface` since the last update of `solid` (CutSurface::take_changes), which are also stored
+/// in solid.changes.
 void patch_body_surface(const BodyMesh& uncut, const CutTopology& cut, const CutSurface& surface, SurfaceChanges changes,
                         BodySurface& solid);
 

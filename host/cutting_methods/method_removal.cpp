@@ -42,7 +42,7 @@ MethodResult remove_crossed(const ElementMesh& mesh, std::span<const SweepTriang
     }
     out.mesh.fill.push_back(mesh.fill[e]);
   }
-  // What hangs together at a point or an edge only is parted, like in the other methods.
+  // Separates elements that are connected only by a point or an edge, as the other methods do.
   std::vector<std::uint8_t> none(out.mesh.tets.size(), 0);
   out.node_from = part_at_faces(out.mesh.tets, mesh.nodes.size(), none, touched);
   for (std::size_t n = mesh.nodes.size(); n < out.node_from.size(); ++n) out.mesh.nodes.push_back(mesh.nodes[out.node_from[n]]);

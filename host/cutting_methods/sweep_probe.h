@@ -1,4 +1,4 @@
-// What a sweep touches: exact tests of segments and tetrahedra against its triangles, and the nearest point on it.
+// Exact tests of segments and tetrahedra against the triangles of a sweep, and the nearest point on it.
 #pragma once
 #include <array>
 #include <map>
@@ -13,17 +13,16 @@ namespace pliant {
 
 class SweepProbe {
  public:
-  /// All points asked about lie in `box` [m]; `edge` [m] is about the size of what is asked about. Throws Error for triangles
-  /// that are not finite.
+  /// All query points must be in `box` [m]; `edge` [m] is the typical size of queries. Throws Error for non-finite triangles.
   SweepProbe(vec::Box box, double edge, std::span<const SweepTriangle> sweep);
 
   /// A point with its number, 0 .. 2^61 - 1, the same for the same point.
   [[nodiscard]] ExactPoint point(const Vec3d& x, std::int64_t number) const { return frame_.snap(x, number); }
-  /// Whether a triangle lies between two points; `at`, if given, takes the share of the way to the first of them.
+  /// Returns whether a triangle separates two points; `at` (may be null) receives the fraction of the way to the first one.
   bool between(const ExactPoint& a, const Vec3d& xa, const ExactPoint& b, const Vec3d& xb, double* at = nullptr);
-  /// Whether a triangle touches a tetrahedron.
+  /// Returns whether a triangle touches a tetrahedron.
   bool touches(const std::array<ExactPoint, 4>& tet, const std::array<Vec3d, 4>& x);
-  /// The point of the sweep that is nearest to x, looked for within `reach` [m]; false if there is none.
+  /// Finds the point of the sweep nearest to x within `reach` [m]; returns false if there is none.
   bool nearest(const Vec3d& x, double reach, Vec3d& out);
   [[nodiscard]] bool empty() const { return corner_.empty(); }
 

@@ -1,14 +1,14 @@
-// Eigenvalues of symmetric matrices of sizes 4 to 12, all by one solver: Eigen's own is compiled anew, for seconds, for each of
-// the sizes that the compiler knows.
+// Eigenvalues of symmetric matrices of sizes 4 to 12 by one solver: Eigen's own would be instantiated for each fixed size,
+// which takes seconds to compile.
 #pragma once
 #include <Eigen/Core>
 
 namespace pliant {
 
-/// The largest eigenvalue of a symmetric matrix [n][n], whose lower triangle is read.
+/// Returns the largest eigenvalue of a symmetric matrix [n][n]; only the lower triangle is read.
 double largest_eigenvalue(const Eigen::Ref<const Eigen::MatrixXd>& a);
 
-/// The largest eigenvalue of S^T A S: A symmetric [n][n] and without negative eigenvalues, S [n][m].
+/// Returns the largest eigenvalue of S^T A S: A symmetric positive semidefinite [n][n], S [n][m].
 double largest_eigenvalue(const Eigen::Ref<const Eigen::MatrixXd>& a, const Eigen::Ref<const Eigen::MatrixXd>& s);
 
 }  // namespace pliant

@@ -1,16 +1,16 @@
-// The finite elements, a file each. What an element_STEM.h gives is a struct, named in PLIANT_ELEMENTS, with
+// The finite elements, one file each. Interface of element_STEM.h: a struct, named in PLIANT_ELEMENTS, with
 //   info                          the constant ElementInfo
-//   record(x, material, what)     the numbers that its kernel reads of an element with these corners [m]; throws Error, whose
-//                                 message begins with `what`, where the element is inside out
-//   cube_record(edge, ...)        the same of a cube of a lattice, exact whatever the rounding of its corners
-//   volume(record)                at rest [m^3]
-//   frequency(record, material)   an upper bound of its highest angular frequency [rad/s] at rest with lumped mass. With
+//   record(x, material, what)     the kernel data of an element with these corners [m]; throws Error, whose message begins with
+//                                 `what`, if the element is inverted
+//   cube_record(edge, ...)        the same for a cube of a lattice, independent of the rounding of its corners
+//   volume(record)                undeformed [m^3]
+//   frequency(record, material)   an upper bound of its highest undeformed angular frequency [rad/s] with lumped mass. With
 //                                 A = sum_a grad N_a grad N_a^T the stiffness per volume is at most
 //                                 lambda tr A + 2 mu lambda_max(A)
-//   for_each_point(record, f)     f(gradients [corners][3] [1/m], weight [m^3]) for each quadrature point
+//   for_each_point(record, f)     calls f(gradients [corners][3] [1/m], weight [m^3]) for each quadrature point
 //   cost(law, uniform)            ElementCost of its kernel; `law`: operations of the law at a point
-//   hourglass_energy(record, u)   [J], and hourglass_bound(record, u) of its stiffness [N/m]: what it has beside its points
-// Corners of hexahedra come in bit order: corner a at bits (x, y, z) = (a & 1, a >> 1 & 1, a >> 2 & 1).
+//   hourglass_energy(record, u)   [J], and hourglass_bound(record, u) of its stiffness [N/m]: contributions besides the points
+// Corners of hexahedra are in bit order: corner a at bits (x, y, z) = (a & 1, a >> 1 & 1, a >> 2 & 1).
 #pragma once
 #include <array>
 #include <cstdint>
@@ -35,30 +35,30 @@ enum class ElementKind { PLIANT_ELEMENTS(PLIANT_ELEMENT_KIND) };
 inline constexpr std::size_t element_count = 0 PLIANT_ELEMENTS(PLIANT_ELEMENT_ONE);
 #undef PLIANT_ELEMENT_ONE
 
-/// What the layers need to know of an element without looking at a single one.
+/// Properties of an element that other code needs without depending on the element.
 struct ElementInfo {
-  const char* word;     ///< its name in a scene file
-  const char* what;     ///< for people
-  const char* kernel;   ///< the force kernel of its lists
-  const char* buffers;  ///< what the names of its buffers begin with
-  const char* cell;     ///< what it is made of, for messages: "tetrahedron", "hexahedron"
-  const char* cells;    ///< the same for several
+  const char* word;     ///< name in a scene file
+  const char* what;     ///< description for users
+  const char* kernel;   ///< force kernel of its element lists
+  const char* buffers;  ///< prefix of its buffers' names
+  const char* cell;     ///< its shape, for messages: "tetrahedron", "hexahedron"
+  const char* cells;    ///< the plural
   int corners;          ///< 4 or 8
-  int record;           ///< numbers per element that the kernel reads
-  int weighted;   ///< of these, the one that the kernel finds times the share of a full element; -1: shares stand by themselves
-  int force;      ///< numbers of force per element that it leaves: three per corner
-  bool averaged;  ///< dilation is averaged over the elements at each node, which takes a law with a volumetric part
-  bool hourglass;  ///< hourglass control keeps the modes without strain
-  bool bricks;     ///< cells of a lattice are kept in bricks (kernels/layout.h)
-  bool statics;    ///< the static solver has it
-  bool splits;     ///< a volume mesh of it can be cut, and tears face by face
+  int record;           ///< numbers per element in the kernel data
+  int weighted;         ///< index of the number that is multiplied by the share of a full element; -1: shares are separate
+  int force;            ///< force numbers per element: three per corner
+  bool averaged;        ///< dilation is averaged over the elements at each node; requires a law with a volumetric part
+  bool hourglass;       ///< has hourglass control for the modes without strain
+  bool bricks;          ///< lattice cells are stored in bricks (kernels/layout.h)
+  bool statics;         ///< supported by the static solver
+  bool splits;          ///< volume meshes of it can be cut, and tear face by face
 };
 
-/// Counted traffic [bytes] and operations (an fma is two) per element and step: each datum once, what a cache serves not at
-/// all.
+/// Memory traffic [bytes] and operations (an fma is two) per element and step. Each datum counts once; cache hits do not
+/// count.
 struct ElementCost {
   double bytes = 0;
-  double texels = 0;  ///< how often the texel of each node is read
+  double texels = 0;  ///< number of reads of each node's texel
   double flops = 0;
 };
 
@@ -67,7 +67,7 @@ const ElementInfo& element_info(ElementKind kind);
 std::span<const ElementKind, element_count> all_elements();
 inline const char* to_string(ElementKind kind) { return element_info(kind).word; }
 
-/// VTK's corner order of a hexahedron from bit order, and back: the same permutation both ways.
+/// Permutation between VTK's corner order of a hexahedron and bit order; it is its own inverse.
 inline constexpr std::array<int, 8> kVtkFromBits{0, 1, 3, 2, 4, 5, 7, 6};
 
 }  // namespace pliant

@@ -34,10 +34,10 @@ struct Hex8 {
     f(b, hex8_volume(record));
   }
 
-  /// Indices 32, fill 4, corner forces 96, and the record where every element has its own.
+  /// Indices 32, fill 4, corner forces 96, and the record if each element has its own.
   static ElementCost cost(double law, bool uniform) {
     if (uniform) return {132 + 16, 0, 144 + law + 192 + 12 + 120 + 192};
-    // Modes and back 57 + 42 + 72, axes 3 * 28, p 60, dW/dp 61, slope by the axes 3 * 55, by the modes 4 * 39.
+    // Modes and inverse 57 + 42 + 72, axes 3 * 28, p 60, dW/dp 61, slope by the axes 3 * 55, by the modes 4 * 39.
     return {132 + 224 + 16, 0, 144 + law + 57 + 42 + 72 + 84 + 60 + 61 + 165 + 156 + 144};
   }
 

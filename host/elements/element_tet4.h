@@ -25,7 +25,7 @@ struct Tet4 {
                                     .statics = true,
                                     .splits = true};
 
-  /// Gradients of the shape functions 1 to 3, and the volume, which is negative of one that is inside out.
+  /// Gradients of the shape functions 1 to 3, and the volume, which is negative for an inverted element.
   static std::vector<double> record(std::span<const Vec3d> x, const Material&, const std::string&) {
     Eigen::Matrix3d edges;
     for (int a = 0; a < 3; ++a) {
@@ -36,7 +36,9 @@ struct Tet4 {
     out.push_back(edges.determinant() / 6);
     return out;
   }
-  static std::vector<double> cube_record(double, const Material&, const std::string&) { return {}; }  ///< six make a cube
+  static std::vector<double> cube_record(double, const Material&, const std::string&) {
+    return {};
+  }  ///< a cube is divided into six
 
   static double volume(std::span<const double> record) { return record[9]; }
 

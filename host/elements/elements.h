@@ -1,4 +1,4 @@
-// All elements: asks the one of a kind, whose type is known inside.
+// Dispatches from the kind of an element to its type.
 #pragma once
 #include <utility>
 
@@ -9,7 +9,7 @@
 
 namespace pliant {
 
-/// f(TYPE{}) for the element of this kind.
+/// Calls f(TYPE{}) with the element of this kind.
 template <class F>
 decltype(auto) with_element(ElementKind kind, const F& f) {
   switch (kind) {

@@ -158,7 +158,7 @@ Copies copies_of(const TriangleMesh& mesh) {
     out.first = out.first < 0 ? keys[i].triangle : std::min(out.first, keys[i].triangle);
   }
   if (out.found == 0) return out;
-  // Copies that hang together are judged together: how many odd edges would they mend, how many make?
+  // Connected copies are evaluated together: how many odd edges they would repair, and how many they would create.
   const std::vector<Edge> edges = sorted_edges(mesh);
   DisjointSets sets(mesh.triangles.size());
   for_pairs(edges, [&](std::size_t first, std::size_t last) {

@@ -1,4 +1,4 @@
-// What is wrong with a triangle surface from elsewhere: copies of triangles, holes, loose sheets, crossings.
+// Defects of triangle surfaces: duplicate triangles, holes, loose sheets, self-intersections.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -33,7 +33,7 @@ Copies copies_of(const TriangleMesh& mesh);
 inline constexpr double kLargestHole = 0.25;
 
 /// Per triangle, whether it belongs to a sheet: a shell that has no inside and without which the others are no more open.
-/// Empty: there is none.
+/// Empty if there are none.
 std::vector<char> sheets_of(const TriangleMesh& mesh, const OrientationReport& orientation);
 
 /// The same vertices without the marked triangles.
@@ -43,13 +43,13 @@ TriangleMesh without(const TriangleMesh& mesh, const std::vector<char>& drop);
 double area_of(const TriangleMesh& mesh, std::int64_t t);
 Vec3d centroid_of(const TriangleMesh& mesh, std::int64_t t);
 
-/// Pairs of triangles without a common vertex that pass through each other (touching and coplanar ones do not). The search ends
-/// after so much work, counted in candidates, that 100 000 triangles of a usual surface are looked at to the end.
+/// Counts pairs of triangles without a common vertex that intersect (touching and coplanar ones do not). The search stops
+/// after an amount of work, counted in candidates, that suffices for 100 000 triangles of a typical surface.
 struct Crossings {
   std::int64_t pairs = 0;
   std::int64_t between_shells = 0;  ///< of these: pairs of two shells
   Vec3d place{};                    ///< on one of the first pair [m]
-  double searched = 1;              ///< share of the triangles that were looked at
+  double searched = 1;              ///< fraction of the triangles that were tested
 };
 Crossings crossings_of(const TriangleMesh& mesh, const std::vector<std::int32_t>& shell, std::int64_t budget = 8'000'000);
 

@@ -13,8 +13,8 @@ enum class DistanceEngine { automatic, embree, own };
 
 class SurfaceDistance {
  public:
-  /// Copies the mesh and winds it outward (see orient_outward). Throws Error if it has no triangles, or if Embree is asked for
-  /// by name and absent.
+  /// Copies the mesh and orients it outward (see orient_outward). Throws Error if it has no triangles, or if Embree is
+  /// requested by name but absent.
   explicit SurfaceDistance(TriangleMesh mesh, DistanceEngine engine = DistanceEngine::automatic);
   SurfaceDistance(const SurfaceDistance&) = delete;
   SurfaceDistance& operator=(const SurfaceDistance&) = delete;

@@ -226,7 +226,7 @@ OrientationReport orient_outward(TriangleMesh& mesh) {
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return std::abs(shells[a].volume) > std::abs(shells[b].volume); });
-  // Larger shells first: when a shell is looked at, everything that can enclose it has been turned.
+  // Larger shells first, so that everything that can enclose a shell is oriented before it.
   std::vector<int> wanted(shells.size(), 1);
   for (std::size_t i = 0; i < order.size(); ++i) {
     Shell& inner = shells[order[i]];

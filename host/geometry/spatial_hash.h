@@ -12,10 +12,10 @@ namespace pliant {
 
 class SpatialHash {
  public:
-  /// `edge` [m] of a grid cell, positive: about the size of what is looked for. `buckets`: a power of two.
+  /// `edge` [m]: positive size of a grid cell, about the size of the queries. `buckets`: a power of two.
   explicit SpatialHash(double edge, std::size_t buckets = 1024) : edge_(edge), first_(buckets, -1) {}
 
-  /// Enter number `item`, 0 .. , once. Its box is kept.
+  /// Adds number `item`, 0 .. , once. Its box is stored.
   void insert(const vec::Box& box, std::int32_t item) {
     if (static_cast<std::size_t>(item) >= item_.size()) item_.resize(item + 1);
     item_[item] = {box, -1, 0};

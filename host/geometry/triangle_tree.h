@@ -56,8 +56,8 @@ class TriangleTree {
   };
   std::int32_t build(std::vector<Vec3d>& centroids, std::int32_t first, std::int32_t count);
   Far far_field(std::int32_t first, std::int32_t count, const vec::Box& box) const;
-  /// Looks below the nodes for which open(node) holds and calls visit(i) for their triangles in tree order i, until one
-  /// returns true; returns whether one did.
+  /// Visits the nodes for which open(node) holds and calls visit(i) for their triangles in tree order i, until one returns
+  /// true; returns whether one did.
   template <class Open, class Visit>
   bool descend(Open&& open, Visit&& visit) const;
 

@@ -1,5 +1,5 @@
-// Explicit Euler, Y <- Y + h f(Y) with Y = (u, v): node_w holds h v, of the same time as u. For comparison: an undamped
-// oscillator grows by sqrt(1 + h^2 omega^2) in every step, so that it needs damping and steps far below those of central
+// Explicit Euler, Y <- Y + h f(Y) with Y = (u, v): node_w holds h v at the time of u. For comparison: the amplitude of an
+// undamped oscillator grows by sqrt(1 + h^2 omega^2) per step, so it needs damping and much smaller steps than central
 // differences.
 #pragma once
 #include <algorithm>
@@ -18,8 +18,8 @@ struct ForwardEuler {
       .increment = [](double /*u*/, double w) { return w; },
       .decay = [](double k) { return 1 - 2 * k; },
       .squared_velocity = [](double v, double, double, double) { return v * v; },
-      // |1 + h l| <= 1 for l^2 + d l + omega^2 = 0, d = c + t omega^2 with the viscous time t: d / omega^2 where l is complex;
-      // where it is real, 2 / |l|, and |l| <= d.
+      // |1 + h l| <= 1 for l^2 + d l + omega^2 = 0, d = c + t omega^2 with the viscous time t: h <= d / omega^2 for complex l;
+      // for real l h <= 2 / |l|, and |l| <= d.
       .stable_step =
           [](double central, const DampingRange& d) {
             const double omega2 = 4 / (central * central);

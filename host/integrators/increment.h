@@ -1,4 +1,4 @@
-// Central differences in increment form: node_w holds u_n - u_(n-1), which loses no digit however small the step is.
+// Central differences in increment form: node_w holds u_n - u_(n-1), which keeps its precision for any step size.
 #pragma once
 #include "integrators/central_differences.h"
 

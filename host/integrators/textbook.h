@@ -1,5 +1,4 @@
-// Central differences as textbooks write them, 2 u_n - u_(n-1): node_w holds u_(n-1), which belongs to the step that led to
-// u_n.
+// Central differences in textbook form, 2 u_n - u_(n-1): node_w holds u_(n-1), which belongs to the previous step size.
 #pragma once
 #include "integrators/central_differences.h"
 

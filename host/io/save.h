@@ -1,4 +1,4 @@
-// A simulation into a checkpoint and back.
+// Saving a simulation to a checkpoint and restoring it.
 #pragma once
 #include <filesystem>
 
@@ -7,7 +7,7 @@
 
 namespace pliant {
 
-/// Everything from which a run goes on with the same bits: the state buffers and what the host carries between batches.
+/// Returns everything that a run needs to continue with the same bits: the state buffers and the host state between batches.
 Checkpoint take_checkpoint(const Simulation& simulation);
 
 /// Put a simulation of the same scene into that state. Throws Error, with nothing changed, when the checkpoint belongs to

@@ -18,8 +18,8 @@ struct VtuArray {
   std::vector<float> values;
 };
 
-/// What one .vtu file holds. Cells stand in the file as tetrahedra, quadratic tetrahedra, hexahedra, triangles; `cells` arrays
-/// follow that order.
+/// Content of a .vtu file. Its cells are in the order tetrahedra, quadratic tetrahedra, hexahedra, triangles; `cells` arrays
+/// use that order.
 struct VtuMesh {
   std::vector<Vec3d> points;  ///< [m]; written as Float32
   std::vector<std::array<std::int32_t, 4>> tets;

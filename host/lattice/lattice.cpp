@@ -20,7 +20,7 @@ constexpr int kLeastSteps = 8;         // of these, whatever they cost
 constexpr int kScan = 160;             // evaluations of the local search, for small lattices only
 constexpr std::int64_t kSmall = 20'000;
 constexpr std::int64_t kFarTooMany = 4;  // cells for each node that is wanted
-// Work (Parts::work) after which the search makes do with what it has, a few seconds of it.
+// Amount of work (Parts::work) after which the search accepts its best result; takes a few seconds.
 constexpr std::int64_t kEnough = 2'000'000;
 
 Lattice fill(const SurfaceDistance& surface, double spacing, std::int64_t max_cells, bool embed, std::int64_t* work = nullptr) {

@@ -272,7 +272,7 @@ void CellSampler::collect(const std::array<std::int32_t, 3>& index, std::vector<
       if (length_[0][s] + length_[1][s] + length_[2][s] > 0) left |= std::uint64_t{1} << s;
     }
   }
-  double stray = 0;  // material too thin for a sample, beside parts that have some: it joins the largest
+  double stray = 0;  // material too thin for a sample, in a cell whose other parts have samples: added to the largest part
   for (int s = 0; s < 64; ++s) stray += ((left >> s) & 1) == 0 ? length_[axis][s] / 16 : 0;
   while (left != 0) {
     const std::uint64_t mask = flood(left & (~left + 1), left, linked_);

@@ -47,7 +47,7 @@ class CellSampler {
 
   /// Append the parts of cell `index` to `parts`.
   void sample(const std::array<std::int32_t, 3>& index, std::vector<CellPart>& parts);
-  /// Winding numbers that were asked for, which is what cells cost.
+  /// Number of winding-number evaluations, which dominate the cost of cells.
   [[nodiscard]] std::int64_t work() const { return work_; }
 
  private:

@@ -58,7 +58,8 @@ class Embedder {
     gather(cell, probe, own);
     if (const std::int32_t seen = visible(probe, own); seen >= 0) return seen;
     for (std::int32_t p = first; p < last; ++p) {
-      if (parts_.list[p].thin) return own.front().part;  // its samples lie beside the material: sight says nothing
+      if (parts_.list[p].thin)
+        return own.front().part;  // its samples are not inside the material, so visibility is meaningless
     }
     for (int k = -1; k <= 1; ++k) {
       for (int j = -1; j <= 1; ++j) {

@@ -33,7 +33,7 @@ class Parts {
   void remove(const std::vector<char>& drop);
 
   std::vector<CellPart> list;
-  std::int64_t work = 0;  ///< cells, and winding numbers that were asked for: what they cost, the same on every machine
+  std::int64_t work = 0;  ///< number of cells and winding-number evaluations: a cost measure, the same on every machine
 
  private:
   void index_cells();
@@ -51,11 +51,11 @@ class Contacts {
       : parts_(parts), surface_(surface), grid_(grid) {}
   /// `a` and `b` are parts of cells that share a face; b's is the upper one along `axis`.
   [[nodiscard]] bool touch(std::int32_t a, std::int32_t b, int axis) const;
-  /// Were they joined by mend()? Ties across an edge join parts of cells that share no face.
+  /// Returns whether mend() joined them. Ties across an edge join parts of cells that share no face.
   [[nodiscard]] bool tied(std::int32_t a, std::int32_t b) const;
-  /// Join what sampling tore apart. Slivers that meet below the lowest sample of their common face are tied if they are
-  /// connected around an edge of that face and the edge runs through material. Small fragments of a shell whose bulk lies
-  /// elsewhere are tied to a face neighbour of the same shell; those that have none are marked in the result for removal.
+  /// Joins parts that sampling separated. Slivers that meet below the lowest sample of their common face are tied if they are
+  /// connected around an edge of that face and the edge runs through material. Small fragments of a shell whose main part is
+  /// elsewhere are tied to a face neighbour of the same shell; those without one are marked in the result for removal.
   std::vector<char> mend();
 
  private:

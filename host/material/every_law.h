@@ -1,4 +1,4 @@
-// From the enumerator of a law to its struct. Private to host/material.
+// Maps law enumerators to their structs. Private to host/material.
 #pragma once
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 
 namespace pliant {
 
-/// use(std::type_identity<laws::X>) for the law X.
+/// Calls use(std::type_identity<laws::X>) for the law X.
 template <class Use>
 decltype(auto) with_law(Law law, Use&& use) {
   switch (law) {
@@ -20,7 +20,7 @@ decltype(auto) with_law(Law law, Use&& use) {
   throw Error(ErrorCode::internal, fmt::format("law {} is not in kernels/laws.h", static_cast<int>(law)));
 }
 
-/// use(law) with the law of a material.
+/// Calls use(law) with the law of a material.
 template <class Use>
 decltype(auto) with_law(const Material& material, Use&& use) {
   return with_law(material.law, [&]<class Type>(std::type_identity<Type>) {

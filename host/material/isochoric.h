@@ -1,5 +1,5 @@
-// The first invariant of the isochoric part of C, I1* = J^-2/3 I1 (Flory 1961), with its derivatives, for laws that are
-// functions of it. Below k.low J^-2/3 is continued.
+// The first invariant of the isochoric part of C, I1* = J^-2/3 I1 (Flory 1961), and its derivatives, for laws that depend on
+// it. Below k.low J^-2/3 is continued.
 #pragma once
 #include <cmath>
 

@@ -1,5 +1,5 @@
-// What the laws are written in: F = I + H and its invariants in double, without cancellation at small strain, and the pieces of
-// their tangents. A tangent dP_ij/dF_kl stands at row 3 i + j, column 3 k + l.
+// Kinematic quantities of the laws: F = I + H and its invariants in double, without cancellation at small strain, and parts
+// of their tangents. A tangent component dP_ij/dF_kl is at row 3 i + j, column 3 k + l.
 #pragma once
 #include <Eigen/Dense>
 #include <cmath>
@@ -33,8 +33,8 @@ struct Kinematics {
   }
   /// |F|^2 - 3.
   [[nodiscard]] double stretch() const { return 2 * trace + norm2; }
-  /// Whether J is below `low`, where functions of J alone that are singular at 0 are continued by their polynomials of second
-  /// order about it, and the invariants of F^T F stay.
+  /// Returns whether J is below `low`, where functions of J alone that are singular at 0 are continued by their second-order
+  /// polynomials about `low`; the invariants of F^T F stay.
   [[nodiscard]] bool is_low() const { return 1 + j < low; }
   /// J^p, continued.
   [[nodiscard]] OfJ continued_power(double p) const {
@@ -43,7 +43,7 @@ struct Kinematics {
   /// ln J, continued.
   [[nodiscard]] OfJ continued_log() const { return continued({std::log(low), 1 / low, -1 / (low * low)}); }
 
-  /// F^-T; only where J is not zero.
+  /// F^-T; requires J != 0.
   [[nodiscard]] Matrix3d inverse_transposed() const { return cofactor / (1 + j); }
 
   static Matrix3d cofactor_of(const Matrix3d& m) {
@@ -76,7 +76,7 @@ inline void add_crossed(Matrix9d& out, double scale, const Eigen::Matrix3d& q) {
   }
 }
 
-/// out_ijkl += scale d(cof F)_ij / dF_kl. Each entry is a component of F, whatever J is.
+/// out_ijkl += scale d(cof F)_ij / dF_kl, which is linear in F for every J.
 inline void add_cofactor_slope(Matrix9d& out, double scale, const Eigen::Matrix3d& f) {
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {

@@ -1,7 +1,7 @@
 // Saint-Venant-Kirchhoff law: linear elasticity of the Green-Lagrange strain E = (F^T F - I) / 2.
 //   W = lambda/2 (tr E)^2 + mu E:E,   P = F (lambda tr(E) I + 2 mu E)
-// It is finite everywhere, but lets go of an element on its way through J = 0: below `low` it has 16/3 (lambda + 2 mu) (low -
-// J)^3 more.
+// It is finite for every F, but loses its resistance as J approaches 0: below `low` it has the additional term 16/3 (lambda +
+// 2 mu) (low - J)^3.
 #pragma once
 #include "material/law.h"
 

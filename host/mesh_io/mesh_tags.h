@@ -1,4 +1,4 @@
-// What a volume mesh file says of its cells besides their nodes: numbers, by which people tell tissues and faces apart.
+// Tags of the cells of a volume mesh file: numbers that identify tissues and faces.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -40,9 +40,9 @@ struct MeshTags {
   std::vector<Values> values;                                 ///< scalars alone
   std::map<std::pair<int, std::int64_t>, std::string> names;  ///< by dimension and number of "gmsh:physical"
 
-  /// The array of this name; null if there is none. An empty name stands for the first of usual_arrays() that the file has.
+  /// Returns the array of this name, or null. An empty name selects the first of usual_arrays() in the file.
   [[nodiscard]] const Array* find(const std::string& name) const;
-  /// The values of this name; null if there are none.
+  /// Returns the values of this name, or null.
   [[nodiscard]] const Values* values_of(const std::string& name) const;
   /// Elements first, by number.
   [[nodiscard]] std::vector<Region> regions(const Array& array) const;

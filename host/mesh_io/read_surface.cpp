@@ -1,5 +1,5 @@
-// Triangle surfaces: PLY by our own reader (assimp hangs or aborts on damaged ones), the rest through assimp. What assimp hands
-// over is checked here: it may throw, and it passes garbage numbers on.
+// Triangle surfaces: PLY by our own reader (assimp freezes or aborts on damaged files), the rest through assimp. The output
+// of assimp is checked here: it may throw, and it may return garbage numbers.
 #include <assimp/BaseImporter.h>
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/postprocess.h>
@@ -210,7 +210,7 @@ std::string lower_extension(const std::filesystem::path& file) {
   return extension;
 }
 
-/// A mesh may name further files (materials, buffers); to open a pipe among them would block for ever.
+/// A mesh may refer to further files (materials, buffers); opening a pipe among them would block forever.
 class RegularFiles : public Assimp::DefaultIOSystem {
  public:
   bool Exists(const char* name) const override {

@@ -1,4 +1,4 @@
-// What the readers of the volume formats share: cell types, the mesh as the file has it, and one function per format.
+// Shared by the readers of volume formats: cell types, the mesh as in the file, and one function per format.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -50,7 +50,7 @@ struct RawMesh {
   /// What follows is kept if `tagged`: each cell's place among all cells of the file, and what arrays say of them.
   bool tagged = false;
   std::int64_t cells = 0;                          ///< of all kinds, so far
-  std::vector<std::int64_t> tet_cell, hex_cell;    ///< beside tets and hexes
+  std::vector<std::int64_t> tet_cell, hex_cell;    ///< parallel to tets and hexes
   std::vector<std::array<std::int32_t, 4>> faces;  ///< triangles and quadrangles; the last of a triangle is -1
   std::vector<std::int64_t> face_cell;
   struct Array {
@@ -87,7 +87,7 @@ class NodeNumbers {
   std::unordered_map<std::int64_t, std::int32_t> map_;
 };
 
-/// The array of this name, new if there is none.
+/// Returns the array of this name, created if necessary.
 RawMesh::Array& array_named(RawMesh& mesh, const std::string& name);
 /// Values of all cells from `first_cell` on, in their order.
 void add_cell_values(RawMesh& mesh, const std::string& name, std::int64_t first_cell, std::span<const std::int64_t> values);
@@ -112,7 +112,7 @@ RawMesh read_tetgen(const std::filesystem::path& base, std::string_view node, st
 /// The arrays of Gmsh files: tags of physical groups, and of the geometry's own parts.
 inline constexpr const char* kPhysical = "gmsh:physical";
 inline constexpr const char* kGeometrical = "gmsh:geometrical";
-/// $PhysicalNames, called by read_gmsh; `at` stands behind the word.
+/// Reads $PhysicalNames, called by read_gmsh; `at` is after the word.
 void read_gmsh_names(Cursor& at, RawMesh& mesh);
 /// The physical groups of the entities of Gmsh 4.0 and 4.1, by dimension (2, 3) and tag.
 using GmshEntities = std::map<std::pair<int, std::int64_t>, std::vector<std::int64_t>>;
@@ -121,11 +121,11 @@ GmshEntities read_gmsh4_entities(Cursor& at, bool v41, bool binary);
 /// VTK legacy files, called by read_vtk: bytes per value in a binary file, 0 for a type that is not read.
 std::size_t vtk_type_size(const std::string& type);
 std::string lower_word(std::string_view word);
-/// The rest of the file from POINT_DATA or CELL_DATA on; `at` stands behind that word, which `cells` tells. Whole numbers of
-/// cells are kept.
+/// Reads the rest of the file from POINT_DATA or CELL_DATA on; `at` is after that word, `cells` selects which. Integers of
+/// cells are stored.
 void read_vtk_attributes(Cursor& at, bool binary, bool cells, RawMesh& mesh);
 
-/// Gmsh 4.0 and 4.1, called by read_gmsh; `at` stands behind $Nodes or $Elements.
+/// Gmsh 4.0 and 4.1, called by read_gmsh; `at` is after $Nodes or $Elements.
 void read_gmsh4_nodes(Cursor& at, bool v41, bool binary, RawMesh& mesh, NodeNumbers& numbers);
 /// `entities` of each cell of the mesh from then on are appended: its dimension and tag.
 void read_gmsh4_elements(Cursor& at, bool v41, bool binary, RawMesh& mesh, const NodeNumbers& numbers,
@@ -137,7 +137,7 @@ struct GmshValues {
   std::vector<std::int64_t> element;
   std::vector<double> value;
 };
-/// `at` stands behind the word. The first of several time steps is kept; vectors and tensors are not.
+/// `at` is after the word. The first of several time steps is stored; vectors and tensors are skipped.
 void read_gmsh_element_data(Cursor& at, bool binary, std::vector<GmshValues>& out);
 /// Once all elements are known.
 void add_gmsh_values(const std::vector<GmshValues>& all, RawMesh& mesh);

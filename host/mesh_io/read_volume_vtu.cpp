@@ -10,7 +10,7 @@
 namespace pliant::volume_file {
 namespace {
 
-/// The head as XML and the appended data beside it: raw data would not be well-formed.
+/// Separates the XML from the appended data, since raw data would not be well-formed.
 struct Split {
   std::string xml;
   VtuEncoding encoding;

@@ -88,7 +88,7 @@ std::string inflate(std::string_view source, bool raw, const VtuEncoding& e, con
       at.fail("the compressed blocks are longer than the data");
     packed += bytes;
   }
-  // zlib packs at most about 1032 to 1: a header that promises more is wrong, whatever it asks to allocate.
+  // zlib compresses at most about 1032 to 1: a header with a higher ratio is wrong, whatever size it claims.
   const std::uint64_t limit = 1100 * packed + 1024;
   if (size > limit || last > size || (blocks - 1) > limit / std::max<std::uint64_t>(size, 1))
     at.fail("the compressed blocks have impossible sizes");

@@ -1,4 +1,4 @@
-// What a surface from a file or from memory was before it was cleaned, and whether it bounds a body.
+// Defects of a surface from a file or from memory before it was repaired, and whether it encloses a body.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -12,13 +12,13 @@ namespace pliant {
 /// Places are in metres, and of the first that was found.
 struct SurfaceReport {
   std::string name;         ///< of the file
-  std::int64_t merged = 0;  ///< points that stood where another stood
+  std::int64_t merged = 0;  ///< points merged with another at the same position
   Vec3d merged_at{};
   std::int64_t degenerate = 0;  ///< triangles without area, dropped
   Vec3d degenerate_at{};
-  std::int64_t doubled = 0, doubled_dropped = 0;  ///< triangles where another one stands (geometry/defects.h: Copies)
+  std::int64_t doubled = 0, doubled_dropped = 0;  ///< triangles that coincide with another one (geometry/defects.h: Copies)
   Vec3d doubled_at{};
-  std::int64_t triangles = 0, flipped = 0;  ///< that are left, and of these, turned to be outward
+  std::int64_t triangles = 0, flipped = 0;  ///< remaining triangles, and those of them that were reversed to face outward
   Vec3d flipped_at{};
   std::int64_t sheet_triangles = 0;  ///< of sheets that bound nothing (sheets_of), which are left out of the filling
   Vec3d sheet_at{};

@@ -1,4 +1,4 @@
-// Scene -> Model: cut every body into elements, number the nodes, lump the masses, and resolve the boundary conditions.
+// Scene to Model: divides bodies into elements, numbers the nodes, lumps the masses, and resolves the boundary conditions.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@
 namespace pliant {
 namespace {
 
-/// work(), whose messages get the name of the scene's file.
+/// Calls work() and adds the name of the scene file to error messages.
 template <class Work>
 auto told_with_file(const Scene& scene, Work work) {
   try {
@@ -32,7 +32,7 @@ auto told_with_file(const Scene& scene, Work work) {
   }
 }
 
-/// A material as its elements have it.
+/// The material with a modulus as its elements have it.
 Material material_for(const Model& model, const Body& body, int index) {
   Material material = material_of(body, index);
   material.low = model.recovers ? low_volume : 0;
@@ -49,7 +49,7 @@ void note_bound(Model& model, double frequency, double volume, const std::string
   }
 }
 
-/// Elements by their lowest slot, of `slots`: what a sweep over them touches lies close together.
+/// Elements ordered by their lowest slot, so that a sweep over them accesses memory locally.
 std::vector<std::int32_t> element_order(const NodeNumbering& draft, std::int32_t slots) {
   const BodyElements& solid = draft.solid();
   std::vector<std::int32_t> order(solid.size()), lowest(solid.size()), next(static_cast<std::size_t>(slots) + 1, 0);
@@ -63,8 +63,8 @@ std::vector<std::int32_t> element_order(const NodeNumbering& draft, std::int32_t
   return order;
 }
 
-/// What a thin element holds less than what it is as stiff as, it gets as inertia: however thin, it keeps its shape and
-/// vibrates like any other. `full`: mass of a full one [kg].
+/// Adds inertia to a thin element up to its stiffness fraction, so that it vibrates like any other, however thin it is.
+/// `full`: mass of a full element [kg].
 void add_inertia(Model& model, std::span<const std::int32_t> slots, double fill, double stiff, double full) {
   if (model.added.empty() || stiff <= fill) return;
   const double more = (stiff - fill) * full / static_cast<double>(slots.size());
@@ -74,7 +74,7 @@ void add_inertia(Model& model, std::span<const std::int32_t> slots, double fill,
   }
 }
 
-/// The lists of one body, one material each, and the masses of all its elements.
+/// The element lists of one body, one per material, and the masses of all its elements.
 class ElementLists {
  public:
   ElementLists(const Body& body, std::int32_t b, NodeNumbering& draft, Model& model)
@@ -191,7 +191,7 @@ void set_velocity(const Body& body, const ModelBody& placed, Model& model) {
   }
 }
 
-/// Fields of motion at the start, beside the rigid one.
+/// Adds the initial fields of motion to the rigid motion.
 void add_initial(const Body& body, const ModelBody& placed, Model& model) {
   for (const Initial& initial : body.initial) {
     const bool moved = !initial.displacement.zero();

@@ -1,10 +1,10 @@
-// The surfaces of the bodies in the model: embedded in its slots, as a whole or where an edit changed them.
+// Puts the surfaces of the bodies into the model with slots as nodes, either all or the parts that an edit changed.
 #include "model/elements/body_mesh.h"
 
 namespace pliant {
 namespace {
 
-/// Where a body's part of the surface lies in that of the model.
+/// Sets the part of the model's surface that belongs to a body.
 void place_surface(const BodySurface& solid, std::int32_t first_vertex, std::int32_t first_triangle, ModelBody& body) {
   body.triangle_middle = solid.triangle_middle;
   body.first_vertex = first_vertex;
@@ -18,7 +18,7 @@ void embed_vertex(const BodySurface& solid, std::size_t v, const ModelBody& body
   for (std::size_t a = 0; a < 8; ++a) slots[a] = body.slot[solid.surface_nodes[v][a]];
 }
 
-/// The vertices of a body and its triangles, behind those of the bodies before it.
+/// Appends the vertices and triangles of a body.
 void embed_body(const BodySurface& solid, std::int32_t b, Model& model) {
   ModelSurface& surface = model.surface;
   ModelBody& body = model.bodies[b];

@@ -1,4 +1,4 @@
-// Into how many pieces a body has come apart.
+// Number of pieces of a body.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -7,8 +7,8 @@
 
 namespace pliant {
 
-/// Sets of elements that share nodes, by cuts, tears or because the body was made of several parts. `piece`, where it is
-/// given: [elements], the number of each element's set, in the order in which they are met.
+/// Returns the number of sets of elements that share nodes; there are several after cuts or tears, or if the body consists of
+/// several parts. `piece` (may be null): [elements], the index of each element's set, in order of first occurrence.
 [[nodiscard]] std::int64_t pieces_of(const ModelBody& body, std::vector<std::int32_t>* piece = nullptr);
 
 }  // namespace pliant

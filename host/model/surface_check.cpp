@@ -7,7 +7,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kNodesApart = 0.02;  // the search of build_lattice is content within it
+constexpr double kNodesApart = 0.02;  // tolerance of the search in build_lattice
 
 }  // namespace
 

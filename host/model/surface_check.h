@@ -1,4 +1,4 @@
-// What is wrong with the surfaces of a scene, found while its Model is built.
+// Defects of a scene's surfaces, found while its Model is built.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,19 +8,18 @@
 
 namespace pliant {
 
-/// Of one body that is a lattice in a surface.
+/// Result for a body that is a lattice in a surface.
 struct SurfaceCheck {
   std::string body;
   SurfaceReport report;
   Crossings crossings;
-  std::vector<std::string> warnings;  ///< sentences for the user; none for a sound surface
+  std::vector<std::string> warnings;  ///< sentences for the user; empty for a sound surface
 };
 
-/// make_body_mesh, and what its surface was; a body of a volume mesh leaves `report` as it is.
+/// make_body_mesh that also reports on the surface; for a volume mesh `report` is unchanged.
 BodyMesh make_body_mesh(const Body& body, SurfaceReport& report);
 
-/// build_model(scene), and a SurfaceCheck for each body that has a surface. Looks for triangles that pass through each other,
-/// too.
+/// build_model(scene) that also returns a SurfaceCheck for each body with a surface, including self-intersections.
 Model build_model(const Scene& scene, std::vector<SurfaceCheck>& checks);
 
 }  // namespace pliant

@@ -36,7 +36,7 @@ void add_weight(const std::string& where, const Body& body, const Scene& scene, 
   double column = 0;
   for (int a = 0; a < 3; ++a) column += std::abs(scene.gravity[a]) * (box.upper[a] - box.lower[a]);
   const double share = body.material.density * scene.gravity_curve.largest() * column / body.material.moduli.young();
-  if (body.material.moduli.young() < kSoftest || share <= kCrushed) return;  // told already, or fine
+  if (body.material.moduli.young() < kSoftest || share <= kCrushed) return;  // already reported, or plausible
   remarks.push_back(
       fmt::format("{}: the weight of a column as high as it is {:.3g} times its Young's modulus, which would crush it; look at "
                   "\"scale\", \"density\", \"young\" and \"gravity\" ({})",

@@ -1,4 +1,4 @@
-// Hints at lengths in millimetres, moduli in kilopascals and densities in grams per cubic centimetre: everything is SI.
+// Warnings about probable unit errors: millimetres, kilopascals or grams per cubic centimetre instead of SI.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,12 +8,11 @@
 
 namespace pliant {
 
-/// A sentence for each figure of a scene that no tissue has: bodies larger than 10 m, moduli below 50 Pa, densities outside
-/// 100 to 25000 kg/m^3, finite elements that their own weight would crush, displacements of several times the body's size.
-/// Empty: nothing.
+/// Returns a sentence for each implausible value: bodies larger than 10 m, moduli below 50 Pa, densities outside 100 to 25000
+/// kg/m^3, finite elements that their own weight would crush, displacements of several times the body's size. Empty: none.
 [[nodiscard]] std::vector<std::string> unit_remarks(const Model& model, const Scene& scene);
 
-/// These, and the sentences about the surfaces of all bodies.
+/// Returns these and the warnings about the surfaces of all bodies.
 [[nodiscard]] std::vector<std::string> model_remarks(const std::vector<SurfaceCheck>& checks, const Model& model,
                                                      const Scene& scene);
 

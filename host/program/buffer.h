@@ -1,5 +1,5 @@
-// The table of named texel buffers. Allocation, hashing, comparison and what the checking backend fills with NaN
-// (host/backends/twins/check_backend.h) are all driven by it.
+// The table of named buffers. It drives allocation, hashing, comparison, and the NaN filling of the checking backend
+// (host/backends/twins/check_backend.h).
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -15,19 +15,19 @@ enum class BufferType {
   int32,  ///< one 32-bit integer
 };
 
-/// What happens to a buffer during a run.
+/// Role of a buffer during a run.
 enum class BufferRole {
-  constant,  ///< part of the Model: never written by a kernel
+  constant,  ///< part of the Model: no kernel writes it
   state,     ///< carries the simulation from step to step: checkpointed, hashed, compared
   scratch,   ///< written and read within a step: compared, not checkpointed
   control,   ///< written by the host between batches (step parameters, curve values)
 };
 
-/// What scratch still holds when the next step begins. Anything else is of no use: passes write it before they read it.
+/// What a scratch buffer contains at the start of the next step. Other values must be written before they are read.
 enum class Carried {
-  nothing,    ///< all of it is written anew
+  nothing,    ///< everything is rewritten in each step
   unwritten,  ///< values that no pass ever writes keep their initial values
-  all,        ///< what passes wrote in the steps before counts
+  all,        ///< values written by passes of earlier steps are used
 };
 
 using BufferId = std::int32_t;
@@ -43,20 +43,21 @@ struct Buffer {
   BufferType type = BufferType::real;
   std::size_t count = 0;
   BufferRole role = BufferRole::scratch;
-  std::string shape;               ///< for people: "[nodes]", "[tiles][10][16]"
+  std::string shape;               ///< for display: "[nodes]", "[tiles][10][16]"
   std::string unit;                ///< "m", "N", "1"
-  std::string producer;            ///< the kernel that writes it, or "model" or "host"
-  std::vector<double> reals;       ///< initial values, rounded once to the backend's real type; missing ones are `padding`
-  std::vector<std::int32_t> ints;  ///< initial values; missing ones are zero
+  std::string producer;            ///< the kernel that writes it, "model" or "host"
+  std::vector<double> reals;       ///< initial values, rounded once to the backend's real type; the rest is `padding`
+  std::vector<std::int32_t> ints;  ///< initial values; the rest is 0
   double padding = 0;
-  /// Where the initial values differ from those that the program before had, if that is known; ascending. What lies beyond the
-  /// end of those need not be in it.
+  /// Ranges in which the initial values differ from those of the previous program, ascending; empty optional if unknown.
+  /// Values beyond the end of the previous buffer need not be listed.
   std::optional<std::vector<ValueRange>> changed = std::nullopt;
-  Carried carried = Carried::nothing;  ///< of scratch
-  std::size_t fixed = 0;               ///< of scratch: so many values at its end no pass writes; they keep their initial values
-  BufferId copy_of = -1;               ///< the state buffer whose last good values this one keeps
+  Carried carried = Carried::nothing;  ///< scratch only
+  std::size_t fixed =
+      0;  ///< scratch only: number of values at the end that no pass writes, so that they keep their initial values
+  BufferId copy_of = -1;  ///< the state buffer of which this one keeps the last good values
 
-  /// Numbers of four (or, in a double backend, eight) bytes.
+  /// Number of values of four (in a double backend eight) bytes.
   [[nodiscard]] std::size_t values() const { return type == BufferType::real4 ? 4 * count : count; }
   [[nodiscard]] bool is_int() const { return type == BufferType::int32; }
 };

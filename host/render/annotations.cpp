@@ -20,7 +20,7 @@ float distance(float px, float py, float x0, float y0, float x1, float y1) {
 std::string number_text(double value, double step) {
   const int digits = std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 6);
   std::string text = fmt::format("{:.{}f}", value + 0.0, digits);
-  // 2.5 beside 5.0: one digit for all; 250 beside 500 needs none.
+  // 2.5 next to 5.0: one digit for all; 250 next to 500: none.
   if (std::fabs(step * std::pow(10, digits) - std::round(step * std::pow(10, digits))) > 1e-6) {
     text = fmt::format("{:.{}f}", value, digits + 1);
   }

@@ -36,7 +36,7 @@ struct Ticks {
 };
 /// The smallest such range that holds low..high.
 Ticks nice_ticks(double low, double high);
-/// The ticks inside a range that somebody has chosen.
+/// Returns the ticks inside a user-given range.
 Ticks ticks_within(double low, double high);
 
 /// A unit with the prefix that keeps numbers short: 0.02 m -> factor 1000, "mm".

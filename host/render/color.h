@@ -14,8 +14,8 @@ Vec3f srgb_of(Vec3f linear);
 /// Up to 0.75 as it is, above bent smoothly towards 1: no channel clips.
 Vec3f tone(Vec3f linear);
 
-/// The colour of a value in [0, 1] (held outside), in linear light: from dark violet over teal to light yellow, with a
-/// lightness that grows linearly in OKLab (Ottosson 2020), so that equal steps of the value look equal. Not a number is grey.
+/// The colour of a value in [0, 1] (clamped), in linear light: from dark violet over teal to light yellow, with a lightness
+/// linear in OKLab (Ottosson 2020), so that equal steps of the value appear equal. NaN is grey.
 Vec3f map_color(float value);
 
 /// Colours of kinds: 0 finite elements, 1 interface, 2 shape matching (linear light).

@@ -25,7 +25,7 @@ void PixelSum::add(const Radiance& r) {
   Pixel& s = sum_;
   if (count_ == 0) s.shows = r.shows;
   if (s.shows != r.shows) s.shows = Shows::mixed;
-  s.color += tone(r.color());  // a bright highlight beside a dark edge must not outshine it
+  s.color += tone(r.color());  // tone-map before averaging, so that a bright highlight does not dominate an edge pixel
   s.albedo += r.albedo;
   s.key_light += r.key_light;
   s.key_gloss += r.key_gloss;

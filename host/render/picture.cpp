@@ -106,7 +106,7 @@ void Pictures::aim(Simulation& simulation, const std::vector<float>& positions) 
 
 float Pictures::aspect() const { return static_cast<float>(o_.width) / static_cast<float>(o_.height); }
 
-/// The vertices in the surroundings of the first picture: a piece that falls for ever would make all others small.
+/// Returns the vertices near the first picture's bodies: a piece in free fall would make all others small.
 std::vector<float> Pictures::surroundings(const std::vector<float>& positions) const {
   const double size = vec::norm(vec::sub(start_.upper, start_.lower));
   std::vector<float> near;
@@ -175,7 +175,7 @@ Surface SurfaceCopy::view() const {
   return s;
 }
 
-/// Their triangles come last; they have no values, and the camera does not look for them.
+/// Appends the triangles of the tools. They have no values, and the camera ignores them.
 void Pictures::add_tools(const Simulation& simulation, Surface& surface) {
   const std::size_t triangles = surface_.triangles.size() / 3;
   tools_.append(simulation, surface_.positions, surface_.triangles);

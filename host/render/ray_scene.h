@@ -1,4 +1,4 @@
-// The surface as Embree holds it, and what a ray finds there. Only ray_scene_embree.cpp knows Embree.
+// The surface in Embree, and ray queries. Only ray_scene_embree.cpp uses Embree.
 #pragma once
 #include <memory>
 #include <vector>
@@ -22,7 +22,7 @@ class RayScene {
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;
 
-  /// Returns whether the hierarchy was built anew.
+  /// Returns whether the hierarchy was rebuilt.
   bool update(const Surface& surface);
 
   /// The nearest triangle, or triangle = -1.

@@ -27,7 +27,7 @@ struct RenderOptions {
   int width = 1280, height = 720;
   int samples = 16;         ///< per pixel
   float low = 0, high = 1;  ///< values at the ends of the colour map
-  bool color_cuts = true;   ///< values and kinds colour the faces of cuts, too; otherwise those look like flesh
+  bool color_cuts = true;   ///< apply values and kinds to faces of cuts too; otherwise those have the colour of flesh
   bool ground = true;
   std::optional<float> ground_height;  ///< along the camera's up [m]; absent: the lowest vertex
 };
@@ -35,7 +35,7 @@ struct RenderOptions {
 /// Seconds of the last update and the last picture.
 struct RenderTimes {
   double refit = 0, trace = 0;
-  bool rebuilt = false;  ///< the last update built the hierarchy anew
+  bool rebuilt = false;  ///< true if the last update rebuilt the hierarchy
 };
 
 class Renderer {

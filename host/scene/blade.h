@@ -1,4 +1,4 @@
-// What a scene has apart from its bodies and rigid tools: blades, the focus, and the place from which pictures are taken.
+// Parts of a scene besides its bodies: the followed tool, blades, and the camera.
 #pragma once
 #include <array>
 #include <limits>
@@ -21,25 +21,25 @@ struct Focus {
   [[nodiscard]] Vec3d position(double time) const;
 };
 
-/// A blade on a prescribed path: a segment that cuts whatever it sweeps over.
+/// A blade on a prescribed path: a segment that cuts the surface it sweeps.
 struct Blade {
   std::string name;
   std::vector<std::array<double, 7>>
       path;  ///< (time [s], both ends [m]), at least two rows, times ascending, linear in between
-  double start = -std::numeric_limits<double>::infinity();  ///< it cuts from here [s], and not before its path begins
-  double end = std::numeric_limits<double>::infinity();     ///< ... to here [s], and not after its path ends
+  double start = -std::numeric_limits<double>::infinity();  ///< cutting starts here [s], but not before the path begins
+  double end = std::numeric_limits<double>::infinity();     ///< cutting ends here [s], but not after the path ends
   std::string pointer;                                      ///< JSON pointer ("/blades/0")
-  /// Both ends at a time [m]; held outside the path.
+  /// Returns both ends at a time [m]; constant outside the path.
   [[nodiscard]] std::array<Vec3d, 2> at(double time) const;
 };
 
-/// Where pictures are taken from. What is absent is found from the scene.
+/// Camera of pictures. Absent values are derived from the scene.
 struct SceneView {
-  std::optional<Vec3d> eye;     ///< [m]; absent: so far away that the scene fills the picture
-  std::optional<Vec3d> target;  ///< what is in the middle [m]; absent: the middle of the scene
+  std::optional<Vec3d> eye;     ///< [m]; absent: at a distance from which the scene fills the picture
+  std::optional<Vec3d> target;  ///< point in the centre of the picture [m]; absent: the centre of the scene
   std::optional<Vec3d> up;      ///< absent: against gravity, or y
   double field_of_view = 30;    ///< vertical [degrees], in [1, 120]
-  bool ground = true;           ///< draw a ground plane below the bodies; it holds nothing
+  bool ground = true;           ///< draw a ground plane below the bodies, for display only
 };
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-// A surface from a file whose inside is a selection.
+// A selection by the inside of a surface from a file.
 #pragma once
 #include <filesystem>
 #include <memory>
@@ -11,7 +11,7 @@ namespace pliant {
 
 class SurfaceDistance;
 
-/// Opened when it is first asked; from then on any thread may ask.
+/// Opened on first use, after which it is thread-safe.
 class ClosedSurface {
  public:
   /// `scale`, `translate`: those of the body, whose coordinates the file shares. `pointer`: of the entry, for messages.
@@ -21,7 +21,8 @@ class ClosedSurface {
   ClosedSurface& operator=(const ClosedSurface&) = delete;
 
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
-  /// Whether a place [m] is inside or on it, to 1e-9 of its size. Throws Error where the file is no closed surface.
+  /// Returns whether a point [m] is inside or on the surface, to 1e-9 of its size. Throws Error for a surface that is not
+  /// closed.
   [[nodiscard]] bool contains(const Vec3d& x) const;
 
  private:

@@ -1,4 +1,4 @@
-// When: a factor over time.
+// Time dependence: a factor over time.
 #pragma once
 #include <array>
 #include <vector>
@@ -8,8 +8,8 @@ namespace pliant {
 /// Time course of a load, of gravity or of a prescribed motion: a factor over time.
 struct Curve {
   enum class Kind { constant, ramp, smooth, table };
-  /// What of the factor counts: itself, or of a rotation by `angle` times the factor its cosine less one, or its sine. A scene
-  /// has factors only; the Model makes the others.
+  /// The function of the factor that is used: the factor f itself, or cos(angle f) - 1 or sin(angle f) for rotations. A scene
+  /// has only factors; the Model creates the others.
   enum class Of { factor, cosine_less_one, sine };
   Kind kind = Kind::constant;                ///< constant: 1 from the start
   double start = 0;                          ///< [s]
@@ -18,13 +18,13 @@ struct Curve {
   Of of = Of::factor;
   double angle = 0;  ///< [degrees]
   [[nodiscard]] double value(double time) const;
-  /// Of the factor, whatever of it counts.
+  /// The value of the factor, regardless of `of`.
   [[nodiscard]] double factor(double time) const;
-  /// Of the factor's magnitude over all times.
+  /// The largest magnitude of the factor over all times.
   [[nodiscard]] double largest() const;
   /// The last time at which it may change [s].
   [[nodiscard]] double end() const;
-  /// Whether the factor is 1 from the beginning on.
+  /// Returns whether the factor is 1 from the start.
   [[nodiscard]] bool always() const { return kind == Kind::constant && start <= 0; }
   friend bool operator==(const Curve&, const Curve&) = default;
 };

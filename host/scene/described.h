@@ -1,7 +1,7 @@
-// The keys of a scene file that are one value, each described once: a number, a flag, a word, three numbers. The loader, the
-// keys that it knows, the writer, scenes/schema.json, the tables of docs/scene.md and the way from the structs of
-// include/pliant follow from it (described_keys.h, write.cpp, tests/scene/tables_test.cpp). A key of this kind is a member of
-// its struct, a line here, in described_parts.h or in described_entries.h, its use and its test.
+// Keys of a scene file with a single value (a number, a flag, a word, three numbers), each described once. The loader, its
+// list of keys, the writer, scenes/schema.json, the tables of docs/scene.md and the conversion from the structs of
+// include/pliant derive from it (described_keys.h, write.cpp, tests/scene/tables_test.cpp). A key of this kind needs a member
+// of its struct, a line here, in described_parts.h or in described_entries.h, its use and its test.
 #pragma once
 #include <limits>
 #include <optional>
@@ -53,8 +53,8 @@ struct Key {
   const char* name;
   Range range;
   const char* unit;
-  const char* example;             ///< a value
-  const char* about;               ///< behind what is allowed; a code span or a link is text without its marks in the schema
+  const char* example;  ///< a value
+  const char* about;    ///< text after the allowed values; the schema has it without the marks of code spans and links
   const char* standard = nullptr;  ///< for docs/scene.md, where it is no value of the struct
   bool required = false;
 };
@@ -93,7 +93,7 @@ void describe_scene(V&& v, S&& s) {
      "cell share its stiffness; of a cell thinner than that, in equal parts at least); inertia that is added has no weight"});
 }
 
-/// Of a run, which code gives by what it calls.
+/// Settings of a run, which code passes in its calls.
 template <class V, class S>
 void describe_run(V&& v, S&& s) {
   v(s.duration, {"duration", above(0), "s", "2.5", "time that `run` simulates without `--steps` or `--seconds`"});

@@ -52,7 +52,7 @@ struct ReadKeys {
   }
 };
 
-/// The word of an enumerator; what is a word already.
+/// Returns the word of an enumerator; words are returned as they are.
 template <class Enum>
 const std::string& text_of(const Words<Enum>& words, const Enum& value) {
   return word_of(words, value);
@@ -65,7 +65,7 @@ const std::string& text_of(const Words<Enum>& /*words*/, const std::string& text
 /// Axes as a file writes them: "xz".
 std::string axes_text(const std::array<bool, 3>& axes);
 
-/// Writes all keys but those that an object has not; what stands for a word as that word.
+/// Writes all present keys; values that stand for a word are written as that word.
 struct WriteKeys {
   nlohmann::ordered_json& object;
 

@@ -113,7 +113,7 @@ class Builder final : public nlohmann::json_sax<Json> {
   const std::string& file_;
   Json root_;
   std::vector<Json*> stack_;       // open containers, outermost first; each is the last child of the one before
-  std::vector<std::string> keys_;  // beside stack_: the key being filled, if that container is an object
+  std::vector<std::string> keys_;  // parallel to stack_: the key being filled, if that container is an object
 };
 
 }  // namespace

@@ -13,7 +13,7 @@ inline constexpr std::size_t max_scene_depth = 64;
 /// (duplicate keys, nesting deeper than max_scene_depth).
 nlohmann::json parse_json(const std::string& text, const std::string& file);
 
-/// One reference token appended to a JSON pointer, escaped as RFC 6901 asks.
+/// Appends a reference token to a JSON pointer, escaped according to RFC 6901.
 std::string pointer_to(const std::string& pointer, const std::string& key);
 
 /// `text` cut to a length that fits in a message.

@@ -1,5 +1,5 @@
-// Which keys each object of a scene file may have, and which words stand for an enumerator. The loader, its messages,
-// the writer and the check of scenes/schema.json all read these tables.
+// The allowed keys of each object of a scene file, and the words for enumerators. The loader, its messages, the writer and
+// the check of scenes/schema.json use these tables.
 #pragma once
 #include <array>
 #include <functional>
@@ -22,7 +22,8 @@ const std::map<std::string, std::vector<std::string>>& scene_keys();
 std::vector<std::string> moduli_keys();
 std::vector<std::string> elastic_keys(const LawInfo& law);
 std::vector<std::string> elastic_keys();
-/// What a hybrid model has alone, of these how its operational region grows, and what it shares with shape matching alone.
+/// Keys of hybrid models only, those that determine how the operational region grows, and those shared with pure shape
+/// matching.
 std::vector<std::string> hybrid_keys();
 std::vector<std::string> growth_keys();
 std::vector<std::string> matching_keys();
@@ -31,7 +32,7 @@ std::vector<std::string> matching_keys();
 std::string laws_with(bool LawInfo::*property);
 std::string elements_with(const std::function<bool(const ElementInfo&)>& has);
 
-/// A word of a scene file or of an option, the enumerator that it names, and what that is, for people.
+/// A word of a scene file or an option, its enumerator, and a description for users.
 template <class Enum>
 struct Word {
   std::string word;
@@ -62,7 +63,7 @@ std::vector<std::string> words_only(const Words<Enum>& words) {
   return list;
 }
 
-/// The enumerators: what a loop over all elements, integrators, ... runs over.
+/// Lists of the enumerators, for loops over all elements, integrators, ...
 template <class Enum>
 std::vector<Enum> values_of(const Words<Enum>& words) {
   std::vector<Enum> list;

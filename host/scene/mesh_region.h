@@ -1,4 +1,4 @@
-// A selection by what the body's mesh file says of its cells: tags of materials, of tissues, of faces.
+// A selection by tags in the body's mesh file: materials, tissues, faces.
 #pragma once
 #include <filesystem>
 #include <memory>
@@ -25,7 +25,7 @@ struct RegionName {
   int dimension = 0;        ///< 2: faces, 3: elements, 0: whichever has the tag
 };
 
-/// The mesh of a body with its tags, for all selections of the body. Opened when it is first asked.
+/// A body's mesh with its tags, shared by all selections of the body. Opened on first use.
 class TaggedMesh {
  public:
   /// `scale`, `translate`: those of the body.
@@ -38,8 +38,8 @@ class TaggedMesh {
   /// Throws Error where the file cannot be read.
   [[nodiscard]] const Content& content() const;
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
-  /// The numbers of its elements under this name, tetrahedra first; throws Error, which begins with `pointer` and lists what
-  /// the file has, where there are none.
+  /// Returns the indices of its elements with this name, tetrahedra first. Throws Error, which begins with `pointer` and
+  /// lists the available names, if there are none.
   [[nodiscard]] const std::vector<double>& values(const std::string& name, const std::string& pointer) const;
 
  private:
@@ -59,10 +59,10 @@ class MeshRegion {
   MeshRegion& operator=(const MeshRegion&) = delete;
 
   [[nodiscard]] const RegionName& name() const { return name_; }
-  /// Whether the node, element or triangle of this number at this place [m], its own or its centroid, is one of the region. Of
-  /// an element region these are the nodes of its elements and their faces on the surface; of a face region the faces and
-  /// their nodes. Numbers that cuts have changed do not matter: what is elsewhere than the mesh has it is found by its place.
-  /// Any thread may ask. Throws Error where the mesh has no such region, with those that it has.
+  /// Returns whether the node, element or triangle with this number at this position [m] (its own or its centroid) is in the
+  /// region. For an element region these are the nodes of its elements and their faces on the surface; for a face region the
+  /// faces and their nodes. Entities that cuts have renumbered are found by position. Thread-safe. Throws Error if the mesh
+  /// has no such region, with the available ones.
   [[nodiscard]] bool contains(const Vec3d& x, std::int64_t index) const;
 
  private:

@@ -27,7 +27,7 @@ struct SelectionFrame {
 SelectionFrame frame_of(const Body& body, const std::filesystem::path& folder);
 /// Only of nodes there may be lists: neither elements nor triangles have numbers that a scene could know.
 Selection read_selection(const Reader& entry, Selected of, const SelectionFrame& frame);
-/// What entries of `prescribed` and `initial` have beside their selection.
+/// Parts of `prescribed` and `initial` entries besides their selection.
 void read_prescribed(const Reader& entry, Prescribed& prescribed);
 void read_initial(const Reader& entry, Initial& initial);
 Curve read_curve(const Reader& entry);
@@ -66,7 +66,7 @@ std::vector<std::array<double, N>> read_rows(const Reader& list, const char* exp
 std::vector<Blade> read_blades(const Reader& blades);
 SceneView read_view(const Reader& view);
 std::optional<TissueContact> read_tissue_contact(const Reader& contact);
-/// An entry of `tools`; `name`: what it is called if it does not say so.
+/// Reads an entry of `tools`; `name`: the default name.
 ContactTool read_contact_tool(const Reader& entry, const std::string& name, const std::filesystem::path& folder);
 /// The reverse, with paths relative to the scene's folder (write.cpp).
 nlohmann::ordered_json tool_json(const ContactTool& tool, const std::filesystem::path& scene_file);

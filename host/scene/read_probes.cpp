@@ -10,7 +10,7 @@ namespace pliant {
 
 namespace {
 
-/// The body whose nodes a probe is to look at.
+/// Returns the body whose nodes a probe uses.
 const Body& read_whose(const Reader& probe, const Scene& scene) {
   if (!probe.has("body")) {
     if (scene.bodies.size() == 1) return scene.bodies[0];

@@ -4,7 +4,7 @@
 namespace pliant {
 
 void check_tearing(const Reader& top, const Scene& scene) {
-  if (scene.solver.enabled) return;  // a static solution does not look at it
+  if (scene.solver.enabled) return;  // the static solver ignores it
   const std::vector<Reader> bodies = top.at("bodies").items("a list of bodies");
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& body = scene.bodies[i];

@@ -24,7 +24,7 @@ namespace pliant {
 struct SceneProbes;
 struct TriangleMesh;
 
-/// A part of a body with another material (a stiff inclusion). Later entries win where they overlap.
+/// A part of a body with a different material (e.g. a stiff inclusion). Where inclusions overlap, the last one applies.
 struct Inclusion {
   Selection where;  ///< applied to element centroids
   Material material;
@@ -39,47 +39,48 @@ struct Prescribed {
   Selection where;
   std::array<std::optional<double>, 3> displacement;  ///< [m]; an absent component (null in JSON) stays free
   Curve curve;
-  std::optional<Rotation> rotate{};            ///< instead of a displacement
-  std::array<bool, 3> axes{true, true, true};  ///< the components that the rotation prescribes
+  std::optional<Rotation> rotate{};            ///< instead of a displacement: rotation
+  std::array<bool, 3> axes{true, true, true};  ///< components that the rotation prescribes
   [[nodiscard]] bool moves(int axis) const { return rotate ? axes[axis] : displacement[axis].has_value(); }
 };
 
-/// A force shared by the chosen nodes: of a lattice in proportion to their mass, of a mesh equally.
+/// A force distributed over the selected nodes: in a lattice in proportion to their mass, in a mesh equally.
 struct Force {
   Selection where;
-  Vec3d force{};  ///< in total [N]
+  Vec3d force{};  ///< total force [N]
   Curve curve;
 };
 
-/// Follower pressure on the chosen part of the surface: acts along the inward normal of the deformed surface.
+/// Follower pressure on the selected part of the surface, along the inward normal of the deformed surface.
 struct Pressure {
   Selection where;      ///< applied to surface triangle centroids
   double pressure = 0;  ///< [Pa]
   Curve curve;
 };
 
-/// Which nodes of a body follow finite elements (TLED) and which follow fast lattice shape matching (FLSM).
+/// Division of a body's nodes into finite elements (TLED) and fast lattice shape matching (FLSM).
 enum class ModelType { tled, hybrid, flsm };
 const char* to_string(ModelType type);
 
 /// The key "model" of a body. FLSM: Rivers and James 2007; hybrid: Hybrid Deformation Model, eq. 1 to 9.
 struct DeformationModel {
   ModelType type = ModelType::tled;
-  double ratio = 0.5;         ///< hybrid: share of the body's nodes in the operational region, in [0, 1]
-  std::optional<Vec3d> seed;  ///< hybrid: the operational region grows from here [m]; absent: from the first surface vertex
-  std::optional<Selection> region;  ///< hybrid: operational are the cells with their centre in here, instead of ratio and seed
+  double ratio = 0.5;         ///< hybrid: fraction of the body's nodes in the operational region, in [0, 1]
+  std::optional<Vec3d> seed;  ///< hybrid: point from which the operational region grows [m]; absent: the first surface vertex
+  std::optional<Selection> region;  ///< hybrid: cells with their centre in it are operational, instead of ratio and seed
   double beta = 0;                  ///< stiffness of the interface [N/m]; 0: "auto", alpha m / H^2 of each node
   int width = 2;                    ///< half-width w of the regions in cells, 1 to 5
   double alpha = 0.5;               ///< in (0, 1]
-  double young = 0;                 ///< "stiffness": {"young": E} [Pa] chooses alpha instead; 0: alpha as it stands
-  bool matched = false;             ///< young is the material's, for nothing was said: as far as an alpha of 1 reaches
+  double young = 0;                 ///< "stiffness": {"young": E} [Pa] determines alpha; 0: alpha is used directly
+  bool matched = false;             ///< young is the material's by default; limited to what an alpha of 1 reaches
   double damping = 0;               ///< per-region damping, in [0, 1] per step
   int substeps = 1;                 ///< steps of TLED per step of FLSM, 1 to 64
   bool extrapolate = false;         ///< "goals": "extrapolated" instead of "held" between steps of FLSM
-  bool conservative = true;  ///< "coupling": "conservative" gives the reaction of the interface back, "one-sided" does not
-  bool cut = true;           ///< "cut": false: a blade passes through the shape-matching part without effect
-  std::string follow;  ///< the operational region moves with what has this name: kFocus, a blade or a tool; empty: it stays
-  std::optional<std::vector<std::int32_t>> cells;  ///< set in code: the operational cells, once a region has moved
+  bool conservative =
+      true;         ///< "coupling": "conservative" returns the reaction of the interface to the regions, "one-sided" does not
+  bool cut = true;  ///< "cut": false: blades do not affect the shape-matching part
+  std::string follow;  ///< name of what the operational region follows: kFocus, a blade or a tool; empty: it stays
+  std::optional<std::vector<std::int32_t>> cells;  ///< set in code: the operational cells, after a region has moved
   std::string pointer;                             ///< JSON pointer ("/bodies/0/model")
 };
 
@@ -108,11 +109,11 @@ struct Body {
 /// Dynamic relaxation: adaptive damping towards static equilibrium.
 struct Relaxation {
   bool enabled = false;
-  double tolerance = 1e-5;  ///< stop at |R - F| <= tolerance * |largest of R, F|
+  double tolerance = 1e-5;  ///< stop at |R - F| <= tolerance * larger of the external and reaction forces
   std::int64_t max_steps = 100000;
 };
 
-/// The key "solver": what `pliant run` does with the scene.
+/// The key "solver": dynamic or static solution by `pliant run`.
 struct StaticSolver {
   bool enabled = false;     ///< "type": "static" instead of "dynamic"
   bool linear = false;      ///< small displacements
@@ -121,7 +122,7 @@ struct StaticSolver {
   int order = 1;            ///< 2: tetrahedra get a node in the middle of every edge
 };
 
-/// What becomes of an element whose J is not positive: it goes on and comes back, or the run ends.
+/// Treatment of elements with J <= 0: continue and recover, or end the run.
 enum class Inverted { recover, stop };
 
 struct Scene {
@@ -130,7 +131,7 @@ struct Scene {
   Vec3d gravity{0, 0, 0};      ///< [m/s^2] at factor 1
   Curve gravity_curve;         ///< over time
   double dt = 0;               ///< [s]; 0 means automatic
-  double safety = 0.9;         ///< share of the stable step that an automatic step takes
+  double safety = 0.9;         ///< fraction of the stable step used by an automatic step
   double duration = 1;         ///< [s] simulated by `run` when neither --steps nor --seconds is given
   Integrator integrator = Integrator::increment;
   Inverted inverted = Inverted::recover;
@@ -138,22 +139,22 @@ struct Scene {
   StaticSolver solver;
   Focus focus;
   std::vector<ContactTool> tools;
-  std::optional<TissueContact> contact;  ///< of tissue with tissue; none: it passes through itself
+  std::optional<TissueContact> contact;  ///< contact of tissue with tissue; absent: none
   std::vector<Blade> blades;
   SceneView view;
-  std::shared_ptr<const SceneProbes> probes;  ///< what `run` writes down over time (scene/probe.h); null: nothing
-  double break_stretch = 4;                   ///< of an edge, beyond which it parts in a scene that is cut; 0: none does
-  double least_step = 0.1;                    ///< floor of an automatic step, as a share of the first; 0: none
-  double least_fill = 0.05;  ///< of a cell where blades cut, as a share of a full cell's mass; 0: what it holds
-  bool cuttable = false;     ///< set in code: something may be cut though there are no blades
-  bool interactive = false;  ///< set in code: the Model reserves a force on every node that moves a vertex of the surface
+  std::shared_ptr<const SceneProbes> probes;  ///< output of `run` over time (scene/probe.h); null: none
+  double break_stretch = 4;                   ///< stretch beyond which an edge at a cut parts; 0: never
+  double least_step = 0.1;                    ///< lower bound of an automatic step as a fraction of the first; 0: none
+  double least_fill = 0.05;  ///< minimum fill of a cell in cut scenes, as a fraction of a full cell's mass; 0: the actual fill
+  bool cuttable = false;     ///< set in code: prepare for cuts although there are no blades
+  bool interactive = false;  ///< set in code: reserve a force on every node that moves a surface vertex
   std::vector<Body> bodies;
   /// [m/s^2] at a time [s].
   [[nodiscard]] Vec3d gravity_at(double time) const;
 };
 
-/// Read and validate a scene file. Throws Error with the file, the JSON pointer, the value and what is allowed.
-/// Relative mesh paths become relative to the scene file. Meshes themselves are not opened.
+/// Reads and validates a scene file. Throws Error with the file, the JSON pointer, the value and the allowed values. Relative
+/// mesh paths become relative to the scene file. Mesh files are not opened.
 Scene load_scene(const std::filesystem::path& file);
 /// The same from text; `file` is used in messages and to resolve relative paths.
 Scene parse_scene(const std::string& text, const std::filesystem::path& file);

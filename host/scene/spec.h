@@ -1,4 +1,4 @@
-// From the scene in code that include/pliant declares to the Scene that everything else works with.
+// Converts the public SceneSpec to the internal Scene.
 #pragma once
 #include "pliant/scene.h"
 #include "scene/scene.h"

@@ -1,4 +1,4 @@
-// One tool by itself, as a host adds it to a scene that runs already.
+// A single tool that a host adds to a running scene.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace pliant {
 
-/// A point of a surface keeps a bit for each tool that is near.
+/// Limit because each contact point stores one bit per nearby tool.
 inline constexpr std::size_t most_tools = 30;
 
 /// The tool of a struct, checked as scene_of() checks those of a scene. A name may be missing. Throws Error (input).

@@ -10,8 +10,8 @@ namespace pliant {
 ProgramBuilder::ProgramBuilder(const Model& model, const ProgramOptions& options)
     : model_(model), options_(options), layout_(lay_out(model)), brick_corners_(brick_corners()) {}
 
-/// The same forces with no history and no velocity in them: what estimates, relaxation and probes ask for, whose displacements
-/// are no motion.
+/// Removes history and velocity from a force pass, for estimates, relaxation and probes, whose displacements are not part of
+/// a motion.
 static void evaluate_only(Pass& pass) {
   for (auto& [name, number] : pass.defines) {
     if (name == "VISCOUS") number = 0;
@@ -42,7 +42,7 @@ void ProgramBuilder::add_shared_buffers() {
   std::vector<double> u(4 * slots), w(4 * slots);
   for (std::size_t s = 0; s < slots; ++s) {
     u[4 * s + 3] = model_.mass[s] > 0 ? 1 / model_.mass[s] : 0;
-    w[4 * s + 3] = 1;  // the decay per step: the host writes it once the step is known
+    w[4 * s + 3] = 1;  // decay per step; the host writes it once the step is known
   }
   for (std::size_t s = 0; s < model_.displacement.size(); ++s) {
     for (std::size_t c = 0; c < 3; ++c) u[4 * s + c] = model_.displacement[s][c];
@@ -62,16 +62,16 @@ void ProgramBuilder::add_shared_buffers() {
   program_.buffers[node_force_].carried = Carried::unwritten;  // zero at slots without a node and at those of shape matching
   node_load_ = add(
       make_reals("node_load", BufferType::real4, needs_load() ? slots : 1, BufferRole::scratch, "[slots]", "N", "node_load"));
-  program_.buffers[node_load_].carried = Carried::unwritten;  // zero where nothing loads a node
+  program_.buffers[node_load_].carried = Carried::unwritten;  // zero for unloaded nodes
   if (has_list_elements()) {
     const std::size_t numbers = static_cast<std::size_t>(layout_.corner_numbers) + 3 * PLIANT_TILE;
     corner_ = add(make_reals("corner_force", BufferType::real, numbers, BufferRole::scratch, "[tiles][corners][3][16]", "N",
                              "element kernels"));
     program_.buffers[corner_].padding = -0.0;
-    // What the gather lists point to where a node has fewer corners than others.
+    // The gather lists of nodes with fewer corners than others are padded with these.
     program_.buffers[corner_].fixed = 3 * PLIANT_TILE;
   }
-  // The state to go back to when an element fails.
+  // Backups for rollback when an element fails.
   for (const BufferId state : {node_u_, node_w_}) add_last_good(program_, state);
   fault_ = add(make_ints("fault", BufferRole::scratch, "[elements]", {}, std::max(layout_.faults, 1), "element kernels"));
   program_.buffers[fault_].carried = Carried::all;  // the first step in which an element failed, until the host clears it
@@ -83,7 +83,7 @@ void ProgramBuilder::add_shared_buffers() {
                            "[steps + 1][curves]", "1", "host"));
 }
 
-/// What the updates of a step read: the host's parameters, or with a curve of gravity what it makes of them.
+/// Input of a step's updates: the host's parameters, or with a gravity curve the result of step_gravity.
 void ProgramBuilder::add_gravity() {
   now_ = params_;
   if (model_.gravity_curve == 0) return;
@@ -163,14 +163,14 @@ void ProgramBuilder::add_constraints() {
   std::vector<double> target;
   for (const Constraint& c : model_.constraints) {
     const std::int32_t straight = c.axes & ~c.turned;
-    if (c.holds() || straight == 0) continue;  // held: no inverse mass, so the update leaves it where it is
+    if (c.holds() || straight == 0) continue;  // held nodes have no inverse mass, so the update does not move them
     node.push_back(c.slot);
     axes.push_back(straight);
     curve.insert(curve.end(), c.curve.begin(), c.curve.end());
     target.insert(target.end(), {c.target[0], c.target[1], c.target[2], 0.0});
   }
   if (node.empty()) return;
-  // Whole work-groups: what fills them up holds no component.
+  // Whole work-groups: the padding prescribes no component.
   const std::size_t real_count = node.size(), count = (node.size() + 63) / 64 * 64;
   node.resize(count, node.back());
   axes.resize(count, 0);

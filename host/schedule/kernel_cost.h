@@ -1,4 +1,5 @@
-// Counted traffic [bytes] and operations (an fma is two) per element and step: each datum once, what a cache serves not at all.
+// Memory traffic [bytes] and operations (an fma is two) per element and step. Each datum counts once; cache hits do not
+// count.
 #pragma once
 #include "material/material.h"
 
@@ -10,7 +11,7 @@ inline double law_flops(Law law) {
   return invariants + law_info(law).flops;
 }
 
-/// Per slot of a brick: node texels 16 (425 of 256 are read, the rest from cache), fill 4, forces 1280 * 4 / 256 = 20.
+/// Per slot of a brick: node texels 16 (425 are read for 256 slots, the rest from cache), fill 4, forces 1280 * 4 / 256 = 20.
 inline double brick_force_bytes() { return 40; }
 inline double brick_force_flops(Law law) { return 75 + 42 + 18 + law_flops(law) + 15 + 24 + 60; }
 

@@ -1,4 +1,4 @@
-// How build_program works: the buffer table and the passes, topic by topic. Private to host/schedule.
+// The builder behind build_program: buffer table and passes by topic. Private to host/schedule.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -11,20 +11,20 @@
 
 namespace pliant {
 
-/// `count` elements of a real type; without `reals` they begin as zero.
+/// A buffer of `count` elements of a real type, initialized with `reals`, or zero without.
 inline Buffer make_reals(std::string name, BufferType type, std::size_t count, BufferRole role, std::string shape,
                          std::string unit, std::string producer, std::vector<double> reals = {}) {
   return {std::move(name), type, count, role, std::move(shape), std::move(unit), std::move(producer), std::move(reals), {}};
 }
 
-/// The length is that of `ints`, or `count` where there are none.
+/// A buffer of integers, with the length of `ints`, or `count` zeros if `ints` is empty.
 inline Buffer make_ints(std::string name, BufferRole role, std::string shape, std::vector<std::int32_t> ints,
                         std::size_t count = 0, std::string producer = "model") {
   const std::size_t n = ints.empty() ? count : ints.size();
   return {std::move(name), BufferType::int32, n, role, std::move(shape), "1", std::move(producer), {}, std::move(ints)};
 }
 
-/// The state to go back to when an element fails: a buffer of the same shape that keeps the last good values of one.
+/// Adds the backup of a state buffer, which keeps its last good values for rollback.
 inline BufferId add_last_good(Program& program, BufferId of) {
   const Buffer& live = program.at(of);
   const std::size_t stem = live.name.starts_with("node_") ? 5 : 0;
@@ -37,13 +37,13 @@ inline BufferId add_last_good(Program& program, BufferId of) {
   return program.add(std::move(copy));
 }
 
-/// A gather list in rows of 16: for each tile of owners, as many rows as its fullest owner has entries, padded with `padding`.
+/// A gather list in rows of 16: each tile of owners has as many rows as its longest list, padded with `padding`.
 struct GatherList {
   std::vector<std::int32_t> offset{0};
   std::vector<std::int32_t> index;
 };
 
-/// One list of entries per owner; the owners are whole tiles.
+/// Packs one list of entries per owner. The number of owners is a multiple of the tile size.
 inline GatherList pack_rows(const std::vector<std::vector<std::int32_t>>& entries, std::int32_t padding) {
   GatherList list;
   for (std::size_t tile = 0; tile < entries.size() / PLIANT_TILE; ++tile) {
@@ -64,7 +64,7 @@ inline std::int32_t corner_position(const BatchOffsets& place, std::size_t e, in
          3 * corner * PLIANT_TILE;
 }
 
-/// Builds one Program: construct, then build() once. The order of the calls in build() is the order of the buffers and passes.
+/// Builds one Program: construct it, then call build() once. The calls in build() determine the order of buffers and passes.
 class ProgramBuilder {
  public:
   /// Both must outlive the builder.
@@ -72,7 +72,7 @@ class ProgramBuilder {
   Program build();
 
  private:
-  /// Defined in build_program.cpp: what all batches share.
+  /// Defined in build_program.cpp: parts shared by all batches.
   void add_shared_buffers();
   void add_gravity();
   void add_updates();
@@ -83,25 +83,25 @@ class ProgramBuilder {
   [[nodiscard]] std::vector<std::pair<std::string, int>> update_defines(int force_only) const;
 
   /// Defined in program_elements.cpp: internal forces, one call per batch.
-  /// The parameters of a batch's law, one constant buffer of any length. A law whose parameters vary within a batch would get
-  /// them as planes per element, as other element data.
+  /// Adds the parameters of a batch's law, a constant buffer of any length. (A law with parameters that vary within a batch
+  /// would need planes per element, like other element data.)
   BufferId add_law(const Material& material);
-  /// Of viscous.cl; a viscosity of zero gets another buffer in its place, which no kernel reads.
+  /// Adds the buffer for viscous.cl; without viscosity returns `other`, which the kernel then does not read.
   BufferId add_viscosity(const Material& material, BufferId other);
   void add_bricks(const BrickBatch& b);
-  /// Elements in lists: nodes, records and, where the record does not hold them, shares; `count` in whole tiles.
+  /// Elements in lists: nodes, records and, unless part of the record, shares. `count` includes padding to whole tiles.
   void add_batch(std::size_t index);
   [[nodiscard]] std::string buffer_name(std::size_t index, const std::string& what) const;
   BufferId add_element_nodes(std::size_t index, std::size_t count);
   BufferId add_element_data(std::size_t index, std::size_t count);
-  /// The two passes before the force of tet4anp; returns the buffer of nodal pressures.
+  /// Adds the two passes before the force of tet4anp; returns the buffer of nodal pressures.
   BufferId add_averaging(std::size_t index, BufferId nodes_id, BufferId data_id, BufferId law_id, std::size_t count,
                          const std::string& label);
 
-  /// Defined in program_flsm.cpp: shape matching of one body, and the force on its interface.
+  /// Defined in program_flsm.cpp: shape matching of one body, and its interface force.
   void add_flsm(std::size_t index);
 
-  /// Defined in program_contact.cpp: tools that touch the surface, after everything else that moves nodes.
+  /// Defined in program_contact.cpp: contact with tools, after everything else that moves nodes.
   void add_contact();
   void add_contact_points();
   void add_tools();
@@ -111,25 +111,25 @@ class ProgramBuilder {
   void add_contact_look();
   [[nodiscard]] std::vector<Arg> named(std::initializer_list<const char*> buffers) const;
 
-  /// Defined in program_touch.cpp: tissue that touches tissue.
+  /// Defined in program_touch.cpp: contact of tissue with tissue.
   void add_contact_surface();
   void add_contact_patches();
   void add_touch();
   void add_touch_look();
   void add_touch_pass(const char* kernel);
 
-  /// Defined in program_loads.cpp: the external forces, and the embedded surface where a pressure acts on it.
+  /// Defined in program_loads.cpp: external forces, and the embedded surface if a pressure acts on it.
   void add_surface();
   void add_pressure_passes();
   void add_loads();
   void emit_loads(const std::vector<std::int32_t>& slots, std::vector<std::int32_t> offset, std::vector<double> force,
                   std::vector<std::int32_t> curve, std::vector<std::int32_t> triangle, std::vector<double> weight,
                   std::vector<std::int32_t> corner);
-  /// (slot, position in corner_force) of list elements that touch brick nodes, in ascending order.
+  /// (slot, position in corner_force) for the corners of list elements at brick nodes, ascending.
   [[nodiscard]] std::vector<std::pair<std::int32_t, std::int32_t>> brick_corners() const;
 
   BufferId add(Buffer buffer) { return program_.add(std::move(buffer)); }
-  /// State that a step backwards needs, too.
+  /// Adds a state buffer and its backup for rollback.
   void add_state(Buffer buffer) { add_last_good(program_, add(std::move(buffer))); }
   [[nodiscard]] bool has_list_nodes() const { return model_.list_end > model_.list_base; }
   [[nodiscard]] bool has_list_elements() const { return !model_.batches.empty(); }
@@ -145,15 +145,16 @@ class ProgramBuilder {
   const Model& model_;
   const ProgramOptions& options_;
   ProgramLayout layout_;
-  std::vector<std::pair<std::int32_t, std::int32_t>> brick_corners_;  ///< needs layout_; found once, it goes over all hexahedra
+  std::vector<std::pair<std::int32_t, std::int32_t>>
+      brick_corners_;  ///< requires layout_; computed once, since it visits all hexahedra
   Program program_;
   BufferId node_u_ = -1, node_w_ = -1, node_force_ = -1, node_load_ = -1, corner_ = -1, fault_ = -1, summary_ = -1,
            fastest_ = -1, params_ = -1, now_ = -1, curves_ = -1, surface_x_ = -1, pressure_ = -1, brick_neighbor_ = -1,
            brick_rows_ = -1, brick_fill_ = -1, brick_force_ = -1, flsm_alpha_ = -1;
-  std::int32_t edged_tools_ = 0;  ///< a bit per tool that has edges (kernels/contact/contact_edge.cl)
-  /// A buffer that only tools with edges have, or one in its place that no kernel reads.
+  std::int32_t edged_tools_ = 0;  ///< one bit per tool with edges (kernels/contact/contact_edge.cl)
+  /// Returns `buffer` if a tool has edges, otherwise `other` as a placeholder that no kernel reads.
   [[nodiscard]] const char* of_edges(const char* buffer, const char* other) const { return edged_tools_ != 0 ? buffer : other; }
-  int laws_ = 0;  ///< batches that have their law
+  int laws_ = 0;  ///< number of batches whose law was added
 };
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-// Offsets of the element batches inside the buffers that all batches share.
+// Offsets of the element batches in the shared buffers.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace pliant {
 
-/// Elements of a batch, rounded up to whole tiles.
+/// Rounds a number of elements up to whole tiles.
 inline std::int32_t padded(std::size_t count) {
   return static_cast<std::int32_t>((count + PLIANT_TILE - 1) / PLIANT_TILE * PLIANT_TILE);
 }
@@ -20,17 +20,17 @@ inline std::size_t tile_base(std::size_t e, std::size_t planes) {
 }
 
 struct BatchOffsets {
-  std::int32_t corner_base = 0;  ///< first number of its part of corner_force
-  std::int32_t fault_base = 0;   ///< first entry of its part of fault
+  std::int32_t corner_base = 0;  ///< first number of the batch in corner_force
+  std::int32_t fault_base = 0;   ///< first entry of the batch in fault
 };
 
 struct ProgramLayout {
   std::vector<BatchOffsets> batches, flsm;  ///< of Model::batches and Model::flsm
-  std::int32_t corner_numbers = 0;          ///< all corner forces; a further row of -0 stands behind them
+  std::int32_t corner_numbers = 0;          ///< size of all corner forces; a row of -0 follows them
   std::int32_t faults = 0;
 };
 
-/// Bricks come first in `fault` (256 entries each), then the lists of elements, then nodes of shape matching, batch by batch.
+/// In `fault`, bricks come first (256 entries each), then element lists, then nodes of shape matching, batch by batch.
 ProgramLayout lay_out(const Model& model);
 
 }  // namespace pliant

@@ -1,4 +1,5 @@
-// The Program that places the embedded surface: four buffers and one pass, beside the Program of the steps or inside it.
+// The Program of the embedded surface: four buffers and one pass, either separate from the Program of the steps or part of
+// it.
 #include "schedule/surface_program.h"
 
 #include <algorithm>
@@ -8,7 +9,7 @@
 namespace pliant {
 namespace {
 
-/// The values of the tiles in which vertices lie, `width` for each vertex.
+/// Ranges of the tiles that contain vertices, with `width` values per vertex.
 std::vector<ValueRange> tiles_of(const std::vector<std::int32_t>& vertices, std::size_t width) {
   std::vector<ValueRange> ranges;
   for (const std::int32_t v : vertices) {
@@ -24,7 +25,7 @@ std::vector<ValueRange> tiles_of(const std::vector<std::int32_t>& vertices, std:
 
 namespace {
 
-/// The first three of its buffers, in their order; surface_x is the fourth.
+/// The first three of its buffers in order; surface_x is the fourth.
 struct Rows {
   explicit Rows(Program& program)
       : rest(program.buffers[0]), node(program.buffers[1]), weight(program.buffers[2]), x(program.buffers[3]) {}
@@ -36,7 +37,7 @@ std::size_t width_of(const ModelSurface& s) {
   return single ? 1 : 8;
 }
 
-/// Write the listed vertices, or all.
+/// Writes the listed vertices, or all.
 void fill(const ModelSurface& s, std::size_t width, const SurfaceChanges* changes, Rows rows) {
   const std::size_t count = padded(s.rest.size());
   rows.rest.count = rows.x.count = count;
@@ -84,7 +85,7 @@ Program surface_program(const ModelSurface& s, const Program& steps, Program* be
   Program program;
   program.first = static_cast<BufferId>(steps.buffers.size());
   if (s.rest.empty()) return program;
-  if (const BufferId x = steps.find("surface_x"); x >= 0) {  // pressures have it in the step
+  if (const BufferId x = steps.find("surface_x"); x >= 0) {  // already part of the step for pressures
     program.step.push_back(surface_pass(s, width_of(s), steps, x - 3));
     return program;
   }

@@ -48,8 +48,8 @@ void Simulation::start(std::shared_ptr<const Model> model, const SimulationOptio
   step_.start(options.dt > 0 ? options.dt : scene_.dt, options.stable_step);
   edits_.start();
   contact_.start();
-  if (backend().info().real_bytes == 4) {  // the double oracle needs neither floor nor grid
-    // Squares and cubes of what is left stay normal numbers.
+  if (backend().info().real_bytes == 4) {  // the double reference needs neither floor nor grid
+    // Keeps squares and cubes of the remaining values normal numbers.
     settings_.increment_floor = 1e-12 * loaded_.model().shortest;
     settings_.displacement_grid = std::ldexp(1.0, 22 + std::ilogb(settings_.increment_floor));
   }
@@ -169,7 +169,7 @@ void Simulation::restore(const Snapshot& snapshot) {
     throw Error(ErrorCode::bad_input, fmt::format("a state in {} cannot resume on the backend {}, which computes in {}",
                                                   snapshot.real_type, backend().info().name, real));
   }
-  // Everything is made and checked aside.
+  // Build and check everything before changing this simulation.
   check_tool_changes(scene_, next.tools);
   std::unique_ptr<EditedBodies> bodies = edits_.bodies_at(next);
   std::shared_ptr<const Model> model = loaded_.shared_model();
@@ -203,7 +203,7 @@ void Simulation::restore(const Snapshot& snapshot) {
     write_buffers(snapshot, loaded_);
     state_ = next;
     run_.place_surface();
-    upload_coupling(run_);  // the automatic beta belongs to the step
+    upload_coupling(run_);  // an automatic beta depends on the step
     if (!state_.forces.empty()) loads_.upload();
     contact_.follow();
     reports_ = snapshot.reports;

@@ -15,7 +15,7 @@ namespace {
 /// Value of a load curve after everything has happened.
 double final_value(const Curve& curve) { return curve.value(HUGE_VAL); }
 
-constexpr double kHalfTurn = 180;  ///< [degrees] from where the way is no longer told by its end
+constexpr double kHalfTurn = 180;  ///< [degrees] rotation beyond which the end position no longer determines the path
 
 class FromModel {
  public:
@@ -191,7 +191,7 @@ class FromModel {
   const ModelBody& body_;
   bool quadratic_ = false;
   std::vector<std::int32_t> node_of_;
-  std::vector<std::vector<std::int64_t>> elements_at_;  ///< of each node; filled when it is asked for
+  std::vector<std::vector<std::int64_t>> elements_at_;  ///< of each node; filled on first use
   Problem out_;
 };
 

@@ -93,10 +93,10 @@ struct TetFace {
 /// The face across which another tetrahedron lies, for each tetrahedron and face; tet -1 on the boundary.
 std::vector<std::array<TetFace, 4>> tet_neighbors(const std::vector<std::array<std::int32_t, 4>>& tets);
 
-/// A mesh parted at faces: `mesh` with `cut` faces ([tets], bit f; both sides) opened. Where tetrahedra at a node hang together
-/// through no face there, each part gets a node of its own; where they hang together at an edge only, the faces that hold the
-/// smaller part at one end of the edge are cut as well, and `cut` says so afterwards. Nodes of no cut face (and not in
-/// `touched`) stay as they are. Returns node_from of the nodes now.
+/// Opens a mesh at faces: `mesh` with `cut` faces ([tets], bit f; both sides). Tetrahedra at a node that no uncut face
+/// connects there get separate nodes. If they are connected only by an edge, the faces of the smaller part at one end of the
+/// edge are cut as well and added to `cut`. Nodes without cut faces (and not in `touched`) do not change. Returns node_from
+/// of the current nodes.
 std::vector<std::int32_t> part_at_faces(std::vector<std::array<std::int32_t, 4>>& tets, std::size_t nodes,
                                         std::vector<std::uint8_t>& cut, std::span<const std::int32_t> touched = {});
 

@@ -1,4 +1,4 @@
-// Opening a mesh of tetrahedra at faces: which nodes become several, and what still hangs together at a point or an edge.
+// Opens a mesh of tetrahedra at faces: splits nodes, and separates parts that are connected only by a point or an edge.
 #include <algorithm>
 #include <map>
 #include <set>
@@ -58,7 +58,7 @@ class Parting {
     return touched;
   }
 
-  /// One node for each set of tetrahedra at a node that hang together through faces there.
+  /// Makes one node for each set of tetrahedra at a node that are connected by faces there.
   std::vector<std::int32_t> split() {
     tets_ = original_;
     std::vector<std::int32_t> from(nodes_);
@@ -89,7 +89,7 @@ class Parting {
     return from;
   }
 
-  /// Cut faces so that no edge holds two fans of tetrahedra together any more; false if there is none.
+  /// Cuts faces so that no edge connects two fans of tetrahedra; returns false if there is none.
   bool part_edges() {
     // Edges of the boundary near the cut, by the nodes as they are parted now, and how many triangles use each.
     std::map<std::array<std::int32_t, 2>, int> uses;

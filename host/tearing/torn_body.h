@@ -1,5 +1,4 @@
-// A body of tetrahedra that tears along its faces where its stress breaks it, without a blade: the physical criterion, and a
-// limit of what an edge may be stretched.
+// A body of tetrahedra that tears along its faces without a blade, by a stress criterion and a limit on the stretch of edges.
 #pragma once
 #include <Eigen/Dense>
 #include <array>
@@ -21,13 +20,13 @@ class TornBody {
 
   struct Breaks {
     std::vector<TetFace> faces;
-    std::int64_t edges = 0;  ///< that were stretched too far and part with these faces
+    std::int64_t edges = 0;  ///< number of overstretched edges that part with these faces
   };
-  /// Faces that break with the nodes of solid() at `x` [m]. At a node the mean stress of its tetrahedra, weighted by volume, is
-  /// looked at. Where its cutting stress reaches the least toughness there, the node's tetrahedra are divided by the plane
-  /// across the largest principal stress, and the faces at the node between both sides break whose toughness (the lesser of
-  /// both sides') is reached. Nodes are taken by how far they are beyond their toughness; those that share a tetrahedron with
-  /// one that has just been taken wait for the next look.
+  /// Returns the faces that break with the nodes of solid() at `x` [m]. The criterion uses the volume-weighted mean stress of
+  /// the tetrahedra at a node. If its cutting stress reaches the least toughness there, the node's tetrahedra are divided by
+  /// the plane normal to the largest principal stress, and faces at the node between both sides break if their toughness (the
+  /// lesser of both sides') is reached. Nodes are processed by decreasing excess over their toughness; nodes that share a
+  /// tetrahedron with a processed one wait for the next check.
   ///
   /// Before that, edges part that are longer than `stretch` times their length at rest (0: none do) and have an end on a broken
   /// face, and others at kWholeStretch times that, whatever the toughness: the tetrahedra of one end are divided by the plane

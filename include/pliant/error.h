@@ -1,4 +1,4 @@
-// The one exception type of Pliant.
+// The exception type of Pliant.
 #pragma once
 #include <stdexcept>
 #include <string>
@@ -7,28 +7,28 @@
 
 namespace pliant {
 
-/// What went wrong. The values 1 to 4 are exit codes of the `pliant` command; the same numbers are the status codes of the C
-/// API.
+/// The kind of an error. The values 1 to 4 are also the exit codes of the `pliant` command. The C API uses the same numbers
+/// as status codes.
 enum class ErrorCode : int {
-  internal = 1,       ///< a defect of Pliant itself
-  bad_input = 2,      ///< a file, scene, option or device that cannot be used as given
-  input = bad_input,  ///< the same by its shorter name
-  difference = 3,     ///< `compare` found two backends that differ
-  diverged = 4,       ///< the simulation left the range in which it means anything
-  usage = 5,   ///< a call that is wrong whatever the scene: a null pointer, an index out of range, a buffer of the wrong size
-  io = 6,      ///< a file that is missing, cannot be read or cannot be written
-  device = 7,  ///< the backend cannot be opened, or was lost while it worked
-  state = 8,   ///< a call that does not fit the present state: a destroyed world, two threads at once, forces where none were
-               ///< reserved
+  internal = 1,       ///< a bug in Pliant
+  bad_input = 2,      ///< an unusable file, scene, option or device
+  input = bad_input,  ///< short name of bad_input
+  difference = 3,     ///< `compare` found a difference between two backends
+  diverged = 4,       ///< the simulation diverged
+  usage = 5,          ///< an invalid call, whatever the scene: null pointer, index out of range, wrong buffer size
+  io = 6,             ///< a file that is missing, cannot be read or cannot be written
+  device = 7,         ///< the backend cannot be opened or failed during the run
+  state = 8,  ///< a call that is invalid in the current state: destroyed world, two threads at once, interactive tools without
+              ///< WorldOptions::interactive
 };
 
-/// Thrown while a scene is read, a model is built or a device is opened; a time step reports and does not throw.
-/// The message says what is wrong, where, what was received and what is allowed.
+/// Thrown while a scene is read, a model is built or a device is opened. A divergence during a step is reported in StepReport
+/// and not thrown. The message states what is wrong, where, the value received and the values allowed.
 class PLIANT_API Error : public std::runtime_error {
  public:
-  /// There is no default code: a defect of Pliant must not pass for the user's mistake.
+  /// There is deliberately no default code, so that a bug in Pliant is never reported as a user error.
   Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
-  /// What kind of error it is.
+  /// The kind of the error.
   [[nodiscard]] ErrorCode code() const noexcept { return code_; }
 
  private:

@@ -1,4 +1,4 @@
-/* What a shared library shows of itself: everything else is hidden. Also C. */
+/* Visibility of symbols in the shared library: only those marked PLIANT_API are exported. Valid C. */
 #ifndef PLIANT_EXPORT_H
 #define PLIANT_EXPORT_H
 

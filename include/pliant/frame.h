@@ -1,4 +1,4 @@
-// What a renderer gets: the surface of one moment, in memory that nobody writes any more.
+// The surface of all bodies at one step, for renderers, in immutable memory.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -10,21 +10,21 @@
 
 namespace pliant {
 
-/// A pointer and a length: an array that belongs to somebody else.
+/// A non-owning pointer and length.
 template <class T>
 class View {
  public:
-  /// Empty.
+  /// An empty view.
   View() = default;
-  /// `size` elements from `data` on.
+  /// A view of `size` elements starting at `data`. The caller keeps the memory alive.
   View(const T* data, std::size_t size) : data_(data), size_(size) {}
   [[nodiscard]] const T* data() const { return data_; }         ///< null if empty
-  [[nodiscard]] std::size_t size() const { return size_; }      ///< elements
-  [[nodiscard]] bool empty() const { return size_ == 0; }       ///< no element
-  [[nodiscard]] const T* begin() const { return data_; }        ///< for loops
-  [[nodiscard]] const T* end() const { return data_ + size_; }  ///< for loops
+  [[nodiscard]] std::size_t size() const { return size_; }      ///< number of elements
+  [[nodiscard]] bool empty() const { return size_ == 0; }       ///< true if there are no elements
+  [[nodiscard]] const T* begin() const { return data_; }        ///< for range-based for loops
+  [[nodiscard]] const T* end() const { return data_ + size_; }  ///< for range-based for loops
 
-  /// Not checked.
+  /// Element i; the index is not checked.
   const T& operator[](std::size_t i) const { return data_[i]; }
 
  private:
@@ -32,50 +32,51 @@ class View {
   std::size_t size_ = 0;
 };
 
-/// x, y, z and a w that is 0: 16 bytes, the stride that graphics and ray tracing interfaces like.
+/// x, y, z and w = 0: 16 bytes, a stride that graphics and ray-tracing APIs accept directly.
 using Vec4f = std::array<float, 4>;
 
-/// Indices first .. first + count - 1; count 0: none.
+/// The indices first .. first + count - 1. A count of 0 is the empty range.
 struct IndexRange {
-  std::size_t first = 0;  ///< the first one
-  std::size_t count = 0;  ///< how many
+  std::size_t first = 0;  ///< first index
+  std::size_t count = 0;  ///< number of indices
 };
 
-/// The surface of all bodies at one step. A frame does not change once it is there, and it stays as long as somebody holds it,
-/// also after its World is gone. Bodies follow one another.
+/// The surface of all bodies at one step. A frame is immutable and stays valid as long as a FramePtr to it exists, even after
+/// its World is destroyed. The arrays list the bodies one after another.
 ///
-/// A cut adds vertices and triangles at the end of its body's part and closes the body along the cut. Vertex k of a body is the
-/// same one in all frames, counted from the first of that body: what lies beside the cut keeps its vertices. Those that no
-/// triangle uses any more stay in the list.
+/// A cut appends vertices and triangles to its body's part and closes the body along the cut. Vertex k of a body, counted
+/// from the body's first vertex, is the same vertex in all frames; vertices away from the cut keep their numbers. Vertices
+/// that no triangle uses any more stay in the array.
 struct Frame {
-  std::int64_t step = 0;            ///< steps since the start
-  double time = 0;                  ///< [s]
-  View<Vec4f> positions;            ///< [m], shape [vertices]
-  View<Vec4f> normals;              ///< unit length, shape [vertices], of the skin where that meets a cut; empty if not wanted
-  View<Vec4f> rest;                 ///< positions at rest [m], shape [vertices]
-  View<Triangle> triangles;         ///< vertex numbers, shape [triangles]
-  View<std::uint8_t> cut_faces;     ///< 1: the triangle lies on a cut, shape [triangles]; empty: none does
-  View<IndexRange> body_vertices;   ///< part of each body, shape [bodies]
-  View<IndexRange> body_triangles;  ///< likewise
+  std::int64_t step = 0;     ///< steps since the start
+  double time = 0;           ///< [s]
+  View<Vec4f> positions;     ///< [m], shape [vertices]
+  View<Vec4f> normals;       ///< unit length, shape [vertices]; where the skin meets a cut, the skin's normal; empty without
+                             ///< WorldOptions::normals
+  View<Vec4f> rest;          ///< undeformed positions [m], shape [vertices]
+  View<Triangle> triangles;  ///< vertex numbers, shape [triangles]
+  View<std::uint8_t> cut_faces;     ///< 1 if the triangle lies on a cut, shape [triangles]; empty if there are none
+  View<IndexRange> body_vertices;   ///< vertices of each body, shape [bodies]
+  View<IndexRange> body_triangles;  ///< triangles of each body, shape [bodies]
   std::uint64_t topology_version =
-      0;  ///< changes when vertices or triangles are others than before; positions alone do not count
+      0;  ///< incremented whenever the vertex or triangle list changes; motion alone does not count
 
-  /// The vertices whose position or normal may differ from the one of the same number in the frame that World::frame() gave
-  /// before this one (frames that were never asked for count in). All of them in the first frame. Empty in
-  /// frames from World::frame_since(), which returns the ranges of each of several consumers beside the frame.
+  /// Vertices whose position or normal may differ from that of the same vertex in the previous frame returned by
+  /// World::frame(). Changes in frames that were never fetched are included. The first frame contains all vertices. Empty in
+  /// frames from World::frame_since(), which returns the ranges in FrameChange instead.
   IndexRange dirty_vertices;
-  /// The same for triangles and cut_faces: empty unless the topology changed.
+  /// The same for triangles and cut_faces; empty unless the topology changed.
   IndexRange dirty_triangles;
 };
 
-/// Keep it as long as you like.
+/// Shared ownership of a frame; may be kept indefinitely.
 using FramePtr = std::shared_ptr<const Frame>;
 
-/// The newest frame for one of several consumers, and what of it is new to that consumer.
+/// The newest frame for one of several consumers, and the ranges that are new to this consumer.
 struct FrameChange {
-  FramePtr frame;              ///< the one that was seen already if there is no newer one
-  IndexRange dirty_vertices;   ///< vertices whose position or normal differs from that of the same number in what was seen
-  IndexRange dirty_triangles;  ///< the same for triangles and cut_faces
+  FramePtr frame;              ///< the newest frame; `seen` itself if there is no newer one
+  IndexRange dirty_vertices;   ///< vertices whose position or normal differs from that of the same vertex in `seen`
+  IndexRange dirty_triangles;  ///< the same for triangles and cut_faces; empty unless the topology changed
 };
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-// Rigid tools that touch the bodies of a scene (docs/contact.md): what they are, and what they feel.
+// Rigid tools in contact with the bodies of a scene (docs/contact.md): their description and the forces on them.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -9,41 +9,42 @@
 
 namespace pliant {
 
-/// A rigid tool on a prescribed path, or one that stands still. Of the shapes only what belongs to `shape` counts.
+/// A rigid tool, at rest or on a prescribed path. Only the members that belong to `shape` are used.
 struct ToolSpec {
-  std::string name;                         ///< different for every tool; empty: tool0, tool1, ...
-  std::string shape = "sphere";             ///< sphere, capsule, box, half_space, mesh or sequence, in the tool's own frame
-  double radius = 0.01;                     ///< of a sphere about the origin, or of a capsule [m]
-  Vec3d first{};                            ///< an end of a capsule, or a point of a half space [m]
-  Vec3d second{0, 0.1, 0};                  ///< the other end of a capsule [m], or the outward normal of a half space
-  Vec3d size{0.1, 0.1, 0.1};                ///< edges of a box about the origin [m]
-  std::string mesh;                         ///< file of a closed surface, or the folder of a sequence of them
-  double scale = 1;                         ///< of the mesh's coordinates
-  double frames_per_second = 30;            ///< of a sequence; the first mesh stands at time 0 [1/s]
-  std::vector<std::array<double, 8>> path;  ///< (time [s], origin [m], unit quaternion x, y, z, w), times ascending; empty: it
-                                            ///< stands at the origin
-  double friction = 0;                      ///< Coulomb's coefficient
-  double stiffness = 0;                     ///< per area [Pa/m^exponent]; 0: "auto", hard at once
-  double exponent = 1;                      ///< 1 or 1.5, beside a stiffness
-  double alpha = 0;                         ///< slope of the coefficient of restitution, beside a stiffness [s/m]
-  bool edges = false;                       ///< where it is thinner than half a cell: met along its edges (docs/contact.md)
+  std::string name;               ///< unique; empty: tool0, tool1, ...
+  std::string shape = "sphere";   ///< sphere, capsule, box, half_space, mesh or sequence, in the tool's own frame
+  double radius = 0.01;           ///< radius of a sphere about the origin, or of a capsule [m]
+  Vec3d first{};                  ///< one end of a capsule, or a point on the plane of a half space [m]
+  Vec3d second{0, 0.1, 0};        ///< other end of a capsule [m], or outward normal of a half space
+  Vec3d size{0.1, 0.1, 0.1};      ///< edge lengths of a box about the origin [m]
+  std::string mesh;               ///< file of a closed surface, or for a sequence the folder of such files
+  double scale = 1;               ///< factor on the mesh coordinates
+  double frames_per_second = 30;  ///< rate of a sequence [1/s]; the first mesh is used at time 0
+  std::vector<std::array<double, 8>>
+      path;              ///< (time [s], origin [m], unit quaternion x, y, z, w), times ascending; empty: at rest at the origin
+  double friction = 0;   ///< Coulomb friction coefficient
+  double stiffness = 0;  ///< contact stiffness per area [Pa/m^exponent]; 0: "auto", rigid contact
+  double exponent = 1;   ///< 1 or 1.5; needs a stiffness
+  double alpha = 0;      ///< slope of the coefficient of restitution [s/m]; needs a stiffness
+  bool edges = false;    ///< contact along the tool's edges, for parts thinner than half a cell (docs/contact.md)
 };
 
-/// Bodies touch each other and themselves, and so do the faces of a cut (docs/contact.md).
+/// Contact between bodies, of bodies with themselves, and between the faces of a cut (docs/contact.md).
 struct ContactSpec {
-  double friction = 0;  ///< Coulomb's coefficient
+  double friction = 0;  ///< Coulomb friction coefficient
 };
 
-/// Where a tool is, and what it feels: the mean of the newest batch of steps.
+/// Pose of a tool and the contact load on it in the newest batch of steps. Force and torque are means over the batch; area
+/// and penetration are those of its last step with contact.
 struct ToolForce {
-  std::string name;                        ///< as in the scene, or as it was added
-  Vec3d position{};                        ///< of its origin [m]
-  std::array<double, 4> turn{0, 0, 0, 1};  ///< unit quaternion x, y, z, w
-  Vec3d force{};                           ///< on the tool [N]
-  Vec3d torque{};                          ///< about its origin [N m]
-  double area = 0;                         ///< of the tissue that touches it, at rest [m^2]
-  double penetration = 0;                  ///< of the deepest point [m]
-  bool parked = false;                     ///< it touches nothing (World::park_tool)
+  std::string name;                        ///< name in the scene, or as added
+  Vec3d position{};                        ///< position of its origin [m]
+  std::array<double, 4> turn{0, 0, 0, 1};  ///< orientation, unit quaternion x, y, z, w
+  Vec3d force{};                           ///< contact force on the tool [N]
+  Vec3d torque{};                          ///< contact torque about its origin [N m]
+  double area = 0;                         ///< undeformed area of the tissue in contact [m^2]
+  double penetration = 0;                  ///< greatest depth of a point inside the tool [m]
+  bool parked = false;                     ///< true if the tool is parked and has no contact (World::park_tool)
 };
 
 }  // namespace pliant

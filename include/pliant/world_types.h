@@ -1,4 +1,4 @@
-// What a World is told and what it tells: options, information, reports.
+// Options, information and reports of a World.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -8,66 +8,66 @@
 
 namespace pliant {
 
-/// How a World runs its scene.
+/// Options for running a scene.
 struct WorldOptions {
   std::string backend = "auto";  ///< auto, cpu, cpu:double, cpu:check, opencl or opencl:N
-  double dt = 0;                 ///< [s]; 0: what the scene says
-  bool normals = true;           ///< frames have vertex normals
-  bool interactive = false;      ///< reserve forces on all nodes of the surface, which the tools below need
-  bool cutting = false;          ///< prepare for cuts at the start, so that the first one does not take longer than others
+  double dt = 0;                 ///< time step [s]; 0: as in the scene
+  bool normals = true;           ///< compute vertex normals for frames
+  bool interactive = false;      ///< reserve forces on all surface nodes; required by grab(), push() and push_node()
+  bool cutting = false;          ///< prepare for cuts at the start, so that the first cut takes no longer than later ones
 };
 
 /// One body of a World.
 struct BodyInfo {
-  std::string name;           ///< as in the scene
-  std::int64_t nodes = 0;     ///< of its mesh or lattice
-  std::int64_t elements = 0;  ///< cells or elements of the mesh
+  std::string name;           ///< name in the scene
+  std::int64_t nodes = 0;     ///< number of nodes of its mesh or lattice
+  std::int64_t elements = 0;  ///< number of cells or mesh elements
   double mass = 0;            ///< [kg]
-  IndexRange vertices;        ///< its part of a Frame, as of the start
-  IndexRange triangles;       ///< likewise
+  IndexRange vertices;        ///< its vertices in a Frame, before any cut
+  IndexRange triangles;       ///< its triangles in a Frame, before any cut
 };
 
-/// What does not change while a World runs.
+/// Properties of a World that do not change while it runs.
 struct WorldInfo {
-  std::string backend;               ///< "opencl:0"
-  std::string device;                ///< the processor's own name
-  std::string reason;                ///< why this backend
-  bool bit_exact = false;            ///< the device passed the start-up probe
-  std::int64_t nodes = 0;            ///< of all bodies
-  std::int64_t elements = 0;         ///< of all bodies
-  std::size_t vertices = 0;          ///< of the surface, as of the start
-  std::size_t triangles = 0;         ///< likewise
-  std::vector<BodyInfo> bodies;      ///< in the order of the scene
-  std::vector<std::string> remarks;  ///< sentences that `pliant run` prints: holes, units, stiffness; empty: nothing to say
+  std::string backend;               ///< backend name, for example "opencl:0"
+  std::string device;                ///< name of the GPU or processor
+  std::string reason;                ///< why this backend was chosen
+  bool bit_exact = false;            ///< true if the device passed the start-up probe
+  std::int64_t nodes = 0;            ///< number of nodes of all bodies
+  std::int64_t elements = 0;         ///< number of elements of all bodies
+  std::size_t vertices = 0;          ///< number of surface vertices, before any cut
+  std::size_t triangles = 0;         ///< number of surface triangles, before any cut
+  std::vector<BodyInfo> bodies;      ///< in scene order
+  std::vector<std::string> remarks;  ///< the remarks that `pliant run` prints about holes, units and stiffness; empty: none
 };
 
-/// What a call of step did. A divergence is reported here and not thrown; the World then holds the last good state, and
-/// stepping it again is an Error (diverged).
+/// Result of a stepping call. A divergence is reported here and not thrown. The World then holds the last good state, and
+/// further stepping throws Error (diverged).
 struct StepReport {
-  std::int64_t done = 0;        ///< steps done by this call
-  std::int64_t step = 0;        ///< steps since the start
-  double time = 0;              ///< [s]
-  double dt = 0;                ///< [s], of the step to come
-  bool diverged = false;        ///< `message` says where
-  bool at_equilibrium = false;  ///< dynamic relaxation has converged: there is nothing more to do
-  std::string message;          ///< of the divergence: step, body, element, dt against the stable step
+  std::int64_t done = 0;        ///< number of steps performed by this call
+  std::int64_t step = 0;        ///< number of steps since the start
+  double time = 0;              ///< simulated time [s]
+  double dt = 0;                ///< size of the next step [s]
+  bool diverged = false;        ///< true if the simulation diverged; `message` says where
+  bool at_equilibrium = false;  ///< true if dynamic relaxation has converged; further steps do nothing
+  std::string message;          ///< describes the divergence: step, body, element, dt and the stable step
 };
 
-/// A handful of the surface on a spring.
+/// Parameters of a grab: a patch of nodes held by a spring.
 struct GrabOptions {
-  double radius = 0;     ///< nodes within this distance of the vertex at rest are held too [m]; the vertex's own cell always is
-  double stiffness = 0;  ///< of the spring [N/m]; 0: of the order of the tissue's own
-  double max_force = 0;  ///< the pull never exceeds this [N]; 0: a quarter of Young's modulus on the handful's area
+  double radius = 0;     ///< nodes within this rest distance of the vertex are held too [m]; the vertex's own cell always is
+  double stiffness = 0;  ///< spring stiffness [N/m]; 0: comparable to the tissue's own stiffness
+  double max_force = 0;  ///< upper bound of the force [N]; 0: a quarter of Young's modulus times the area of the patch
 };
 
-using GrabId = std::uint64_t;  ///< names a grab of one World; 0 is none
+using GrabId = std::uint64_t;  ///< identifies a grab within one World; 0: none
 
-/// What a cut did.
+/// Result of a cut.
 struct CutResult {
-  bool pending = false;    ///< the worker's next batch of steps begins with it, and nothing else is known
-  bool changed = false;    ///< elements were divided; the next frame shows it if the surface is another one
-  std::int64_t edges = 0;  ///< edges between nodes that were cut now
-  double seconds = 0;      ///< what it took [s]
+  bool pending = false;    ///< true if the worker will cut before its next batch of steps; the other members are then not set
+  bool changed = false;    ///< true if elements were split; the next frame differs only if the surface changed
+  std::int64_t edges = 0;  ///< number of edges between nodes cut by this call
+  double seconds = 0;      ///< duration [s]
 };
 
 }  // namespace pliant

@@ -1,11 +1,10 @@
-// Take forces of contact points over to the nodes that move them, at once: u and w change by b c f / m. Forces are whole quanta and weights
-// whole units, so that the sum over the nodes is that over the points to the last bit, in any order.
-// contact_slot: [nodes] slots; contact_free: [nodes] bit mask of the components that move freely; contact_node_list: tiles of nodes at which
-// points are near something; contact_gather_offset: [tiles + 1] rows; contact_gather: [rows][16] positions in
-// contact_force; contact_gather_units: [rows][16] weights in units; with MOMENT contact_gather_turns: [rows][2][16] gradients along both
-// tangents in units, which sum to zero over a point's nodes, for touch_moment (touch_point.cl). With EDGES
-// contact_gather_corner: [rows][16] which of its nodes this is to the point, -1: none, for contact_corner_force (contact_edge.cl). contact_node_sum: [slots] (force (3) [N], sum of weights times
-// areas of the points that touch [m^2]).
+// Applies the forces of contact points to their nodes immediately: u and w change by b c f / m. Forces are integer quanta and weights integer units,
+// so the sum over the nodes equals the sum over the points to the last bit, in any order. contact_slot: [nodes] slots; contact_free: [nodes] bit mask
+// of the free components; contact_node_list: tiles of nodes whose points are near something; contact_gather_offset: [tiles + 1] rows; contact_gather:
+// [rows][16] positions in contact_force; contact_gather_units: [rows][16] weights in units; with MOMENT contact_gather_turns: [rows][2][16] gradients
+// along both tangents in units, which sum to zero over a point's nodes, for touch_moment (touch_point.cl). With EDGES contact_gather_corner:
+// [rows][16] index of this node within the point, -1: none, for contact_corner_force (contact_edge.cl). contact_node_sum: [slots] (force (3) [N], sum
+// of weights times areas of the touching points [m^2]).
 #include "arith.cl"
 
 __kernel void contact_apply(__global float* node_u, __global float* node_w, __global const int* contact_slot,

@@ -1,20 +1,20 @@
-// Tools that are thin against the distance h between contact points: a needle, a blade, the rim of a plate. Contact points would pass beside
-// them, so the patch of surface around a contact point (contact_patch.cl) meets points on their edges: balls, tool_edge: [edge points][4] (place in the tool's
-// frame (3), radius) [m]; per tool tool_kind[6] is the first of them and tool_kind[7] their number.
-//   The edge point with the least gap along the patch's normal touches it, at the place that two steps of Newton's method with tangent planes find.
-//   Normal and place are those of the start of the step (contact_point.cl says why). The force acts at the place itself: nodes get its weights there.
-#define EDGE_EASE 0.5f     // of what would take a depth back at once
-#define EDGE_LOOSE 1.5f    // how much farther an edge point may lie from a patch for the first of the two steps
-#define EDGE_INSIDE 1.0f   // h: what lies deeper is on the other side of the tissue
-#define EDGE_NARROW 0.5f   // h: half the width of a face that is all edge
-#define EDGE_CLOSE 0.1f    // h: where a face of a box is nearer, no edge is looked for
-#define EDGE_ALIKE 0.7f    // cosine between the normals of a tool's face and a patch that it lies on
-#define EDGE_STRETCH 3.0f  // of a patch, counted on where near tools are looked for
+// Tools that are thin compared to the distance h between contact points: a needle, a blade, the rim of a plate. They would pass between contact
+// points. Instead, the surface patch around a contact point (contact_patch.cl) is tested against points on the tool's edges, which are balls.
+// tool_edge: [edge points][4] (position in the tool's frame (3), radius) [m]; per tool tool_kind[6] is its first edge point and tool_kind[7] their
+// number. The edge point with the least gap along the patch's normal is in contact, at the place found by two Newton steps with tangent planes.
+// Normal and place are those of the start of the step (see contact_point.cl). The force acts at this place, with the weights of the nodes there.
+#define EDGE_EASE 0.5f     // fraction of the force that would remove a depth at once
+#define EDGE_LOOSE 1.5f    // tolerance beyond the patch in the first Newton step
+#define EDGE_INSIDE 1.0f   // [h] deeper edge points belong to the other side of the tissue
+#define EDGE_NARROW 0.5f   // [h] faces of at most twice this width are treated as edges
+#define EDGE_CLOSE 0.1f    // [h] no edge search if a face of a box is nearer than this
+#define EDGE_ALIKE 0.7f    // minimum cosine between the normals of a tool face and the patch it lies on
+#define EDGE_STRETCH 3.0f  // assumed stretch of patches in the broad phase
 #define EDGE_FAR 1e30f
 
 static inline int has_edges(__global const int* tool_kind, int t) { return EDGES && tool_kind[TOOL_INTEGERS * t + 7] > 0; }
 
-// Whether a point lies over a face of a box, the one that looks most against it; not over one that is narrow against h, which is all edge.
+// Returns whether a point lies over the face of a box that faces it most directly. Faces narrow compared to h do not count: they are edges.
 static inline int on_box_face(__global const float* data, float4 normal, float4 y, float spacing, float4* face) {
   const float nx = fabs(normal.x), ny = fabs(normal.y), nz = fabs(normal.z), least = EDGE_NARROW * spacing;
   const int along_x = nx >= ny && nx >= nz, along_y = !along_x && ny >= nz;
@@ -27,11 +27,11 @@ static inline int on_box_face(__global const float* data, float4 normal, float4 
 }
 
 typedef struct {
-  float4 at;         // the edge point (3) and its radius
-  float gap, a, b;   // EDGE_FAR where none is over the patch
+  float4 at;         // position (3) and radius of the edge point
+  float gap, a, b;   // EDGE_FAR if none is over the patch
 } edge_gap;
 
-// The edge point with the least gap to the plane that touches a patch at (at_a, at_b), over the patch or `wide` times as far beyond its region.
+// The edge point with the least gap to the tangent plane of a patch at (at_a, at_b), within the patch or its margin scaled by `wide`.
 static inline edge_gap nearest_edge(__global const float* edge, int count, patch_plane p, __global const float* region, float spacing,
                                     float wide, float at_a, float at_b) {
   edge_gap found = {0.0f, EDGE_FAR, 0.0f, 0.0f};
@@ -50,13 +50,13 @@ static inline edge_gap nearest_edge(__global const float* edge, int count, patch
 }
 
 typedef struct {
-  meeting m;        // slip and place in the tool's frame are those of the point, the rest those of the place that meets the tool
+  meeting m;        // slip and inside are those of the contact point, the rest belongs to the place of contact
   patch_place at;   // where the force acts
-  float share, ease;  // of the point's area that counts, and of the force that would take the depth back
-  int edged;        // whether the force acts there, and not at the point
+  float share, ease;  // fraction of the point's area, and of the force that would remove the depth
+  int edged;        // whether the force acts at `at` instead of the contact point
 } patch_meeting;
 
-// How tool t meets point i at `x`, or the patch around it if the tool has edges.
+// Contact of tool t with point i at `x`, or with the patch around it if the tool has edges.
 static inline patch_meeting meet_patch(__global const float* node_u, __global const float* node_w, __global const float* contact_rest,
                                        __global const int* contact_node, __global const float* contact_weight, __global const int* tool_kind,
                                        __global const float* tool_data, __global const float* tool_grid, __global const float* tool_edge,
@@ -77,7 +77,7 @@ static inline patch_meeting meet_patch(__global const float* node_u, __global co
   patch_place at = place_on(node_u, node_w, contact_rest, contact_node, contact_weight, touch_surface, contact_patch, i, 0.0f, 0.0f);
   patch_plane plane = plane_of(at, now);
   const float4 outward = (float4)(0.0f) - plane.normal;
-  if (kind[0] == 4) {  // a mesh: as deep as it is at the point where its face lies on the patch
+  if (kind[0] == 4) {  // a mesh whose face lies on the patch: the depth of the point
     const float alike = dot_xyz(out.m.normal, turned(next, outward));
     if (out.m.distance - out.m.opening < 0.0f && alike > EDGE_ALIKE) return out;
   }
@@ -118,8 +118,8 @@ static inline patch_meeting meet_patch(__global const float* node_u, __global co
   return out;
 }
 
-// contact_corner_weight: [tiles][9][16] weights of the nodes of a point at the place where the last tool with edges touches its patch, or of
-// the point, and the share of its area that counts. contact_corner_force: [tiles][8][3][16] what edges do to these nodes [quanta].
+// contact_corner_weight: [tiles][9][16] weights of a point's nodes at the place where the last tool with edges touches its patch, or at the point
+// itself, and the fraction of its area. contact_corner_force: [tiles][8][3][16] forces of edges on these nodes [quanta].
 static inline void write_weights(__global float* contact_corner_weight, __global const float* contact_weight, int i, patch_meeting met) {
   __global float* out = contact_corner_weight + POINT_BASE(i, 9);
   for (int k = 0; k < 8; ++k) out[k * PLIANT_TILE] = met.edged ? met.at.weight[k] : contact_weight[POINT_BASE(i, 8) + k * PLIANT_TILE];
@@ -130,7 +130,7 @@ static inline void clear_corners(__global int* contact_corner_force, int i) {
   for (int k = 0; k < 24; ++k) contact_corner_force[POINT_BASE(i, 24) + k * PLIANT_TILE] = 0;
 }
 
-// The whole force in parts: what rounding leaves goes to the node with the largest weight.
+// Distributes a force over the nodes; the rounding remainder goes to the node with the largest weight.
 static inline void add_to_corners(__global int* contact_corner_force, int i, patch_meeting met, int4 force) {
   __global int* out = contact_corner_force + POINT_BASE(i, 24);
   int4 left = force;

@@ -1,8 +1,8 @@
-// Now and then: which tools a tile of contact points may touch before the next look, contact_near: [tiles] a bit per tool. A point is
-// near when its distance is less than a margin plus twice the way that it would go against the tool at its present speed.
-// contact_gap: [tiles][tools] the least of these distances without that way [m]: how far what is not near may move until the next look.
-// contact_params: quantum of force [N], its inverse, per unit of weight, inverse quanta of torque [1/(N m)] and area [1/m^2], margin [m],
-// steps between two looks. What is near no more loses its anchor, and what it knew of the points that touch.
+// Broad phase: which tools a tile of contact points may touch before the next search. contact_near: [tiles] one bit per tool. A point is near a tool
+// if their distance is less than a margin plus twice its relative motion until the next search at the present speed. contact_gap: [tiles][tools] the
+// least of these distances, reduced by that motion [m]. contact_params: quantum of force [N], its inverse, quantum per unit of weight, inverse quanta
+// of torque [1/(N m)] and area [1/m^2], margin [m], steps between two searches. Tiles that are no longer near a tool lose their friction anchors and
+// compliances.
 #include "arith.cl"
 #include "contact_shape.cl"
 #include "contact_point.cl"

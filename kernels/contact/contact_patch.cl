@@ -1,15 +1,15 @@
-// Patches of surface around contact points: of a lattice the face of half a cell, of a volume mesh a third of a triangle. In the material a place on
-// one is x + a t1 + b t2 of its contact point, and it moves as the nodes do, with trilinear or linear weights. contact_patch: [tiles][34][16] six
-// sides (p, q, r, m): p a + q b < r, and m farther the share of its area falls to nothing [m], so that an edge goes over from one patch to
-// the next without a jolt; then of a lattice the point's place in its cell (3), t1 and t2 (3 each) [1/m] in cells and 1, of a volume mesh
-// zeros; t1, t2 and the gradients of linear weights are those of touch_surface.
+// Surface patches around contact points: for a lattice the face of half a cell, for a volume mesh a third of a triangle. The undeformed place with
+// coordinates (a, b) is x + a t1 + b t2 of the contact point; it moves with the nodes by trilinear or linear weights. contact_patch: [tiles][34][16]
+// six sides (p, q, r, m): inside where p a + q b < r; over a further distance m the weight of the area falls to zero [m], so that an edge passes from
+// one patch to the next smoothly. Then, for a lattice: the point's position in its cell (3), t1 and t2 (3 each) [1/m] in cells, and 1; for a volume
+// mesh zeros. t1, t2 and the gradients of the linear weights are in touch_surface.
 #define PATCH_SIDES 6
 #define PATCH_FAR 1e30f
 
 // A place on a patch.
 typedef struct {
-  float weight[8];       // of its nodes
-  float4 now, moved;     // after the trial step, and the increment [m]
+  float weight[8];       // weights of the nodes
+  float4 now, moved;     // position after the trial step, and increment [m]
   float4 first, second;  // F t1, F t2 at the start of the step
 } patch_place;
 
@@ -55,7 +55,7 @@ static inline patch_place place_on(__global const float* node_u, __global const 
 // The tangent plane of a patch at a place, in a tool's frame.
 typedef struct {
   float4 y, normal, dual_first, dual_second;
-  int flat;  // whether there is one
+  int flat;  // false if the patch is degenerate
 } patch_plane;
 
 static inline patch_plane plane_of(patch_place p, __global const float* now) {
@@ -70,7 +70,7 @@ static inline patch_plane plane_of(patch_place p, __global const float* now) {
   return out;
 }
 
-// How far (a, b) lies beyond a region, negative inside, as a share of what its patch goes beyond it.
+// Distance of (a, b) from a region relative to the patch's margin m; negative inside.
 static inline float beyond_region(__global const float* sides, float a, float b) {
   float most = -PATCH_FAR;
   for (int k = 0; k < PATCH_SIDES; ++k, sides += 4 * PLIANT_TILE) {

@@ -1,13 +1,12 @@
-// Contact points: where they are, how they move, and how they meet a tool. Numbers per point stand in tiles of 16.
-// contact_rest: (place at rest (3) [m], area [m^2]); contact_node: 8 slots; contact_weight: 8 weights that sum to one.
-// tool_pose: [steps + 1][tools] rows of the rotation (9), place of the origin (3) [m], frame of a sequence and share of the next; the row of
-// the present time is `step`.
+// Contact points: position, motion and contact with a tool. Data per point are in tiles of 16. contact_rest: (undeformed position (3) [m], area
+// [m^2]); contact_node: 8 slots; contact_weight: 8 weights with sum one. tool_pose: [steps + 1][tools] rows of the rotation (9), position of the
+// origin (3) [m], frame of a sequence and weight of the next frame; row `step` is the current time.
 #define POSE_NUMBERS 14
 #define POINT_BASE(i, planes) TILE_BASE(i, planes)
-#define QUANTUM_LIMIT 67108864.0f  // so that thirty of them fit an integer
+#define QUANTUM_LIMIT 67108864.0f  // thirty of these fit into an integer
 
 typedef struct {
-  float4 now;   // place after the trial step [m]
+  float4 now;   // position after the trial step [m]
   float4 moved; // increment of this step [m]
 } contact_place;
 
@@ -39,13 +38,13 @@ static inline float4 origin_of(__global const float* pose) { return (float4)(pos
 
 static inline float dot_xyz(float4 a, float4 b) { return dot3(a.x, b.x, a.y, b.y, a.z, b.z); }
 
-// A point meets the plane that touches the tool where the point was nearest to it at the start of the step: with the normal of the trial
-// step, a curved tool would drive what slides on it (docs/contact.md).
+// Contact is with the tool's tangent plane at the point that was nearest at the start of the step. The normal of the trial step would accelerate a
+// point that slides on a curved tool (docs/contact.md).
 typedef struct {
-  float distance;  // to this plane, negative behind it [m]
-  float opening;   // how much farther from it the point is than at the start of the step [m]
-  float4 normal;   // outward, in space
-  float4 slip;     // increment of the point against the tool's [m]
+  float distance;  // signed distance to this plane, negative inside the tool [m]
+  float opening;   // change of this distance in the step [m]
+  float4 normal;   // outward, in world coordinates
+  float4 slip;     // increment of the point relative to the tool [m]
   float4 inside;   // the point in the tool's frame [m]
 } meeting;
 
@@ -63,20 +62,20 @@ static inline meeting meet(__global const int* tool_kind, __global const float* 
   m.distance = found.w + m.opening;
   m.normal = turned(next, found);
   m.slip = turned(now, way);
-  // The surface of a sequence moves in its frame, too.
+  // The surface of a sequence also moves within its frame.
   if (kind[5] > 1) m.opening = m.opening + (found.w - tool_distance(kind, data, tool_grid, now + 12, start).w);
   return m;
 }
 
-// Share of the margin within which a point may touch in the next step: more for one that could before, so that the set of these points
-// comes to rest.
+// Fraction of the margin within which a point may touch in the next step. It is larger for points that were within it before, so that the set of
+// these points does not flicker.
 static inline float ready_share(float yield) { return yield > 0.0f ? 0.24f : 0.08f; }
 
 static inline int may_touch_next(meeting m, float margin, float share) {
   return m.distance < fma(share, margin, m.opening < 0.0f ? -m.opening : 0.0f);
 }
 
-// Of a force in quanta; nothing of what is no number.
+// Rounds a force in quanta; NaN becomes 0.
 static inline int quanta(float value) {
   const float inside = value > QUANTUM_LIMIT ? QUANTUM_LIMIT : value < -QUANTUM_LIMIT ? -QUANTUM_LIMIT : value;
   return inside == inside ? (int)rint(inside) : 0;

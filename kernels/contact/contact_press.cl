@@ -1,13 +1,12 @@
-// Forces of tools on contact points, first part. The trial step is done; x is the point after it, d its depth, s its slip.
-//   Soft shell (Hunt and Crossley 1975), explicit: f = A lambda d0^n (1 + 3/2 alpha v) >= 0, d0 and v the depth at the start of the step
-//   and its rate, at most half of what would take d0 back in one step.
-//   Core: what is left of d beyond the shell is taken back: f = A rest / W, W = b sum_j c_j s_j / m_j, s_j the area of all points at
-//   node j times their weights. W bounds the sum over a row of the compliance matrix (Gershgorin), so that points that share nodes
-//   never overshoot together.
+// Tool forces on contact points, first part, after the trial step; x is the point's position after it, d its depth, s its slip.
+//   Soft shell (Hunt and Crossley 1975), explicit: f = A lambda d0^n (1 + 3/2 alpha v) >= 0, with the depth d0 at the start of the step and
+//   its rate v, limited to half of the force that would remove d0 in one step.
+//   Core: the part of d beyond the shell is removed: f = A rest / W, W = b sum_j c_j s_j / m_j, with the sum s_j of the areas of all points
+//   at node j times their weights. W bounds a row sum of the compliance matrix (Gershgorin), so that points with common nodes never
+//   overshoot together.
 //   Friction: towards the anchor, where the point stuck first, f = min(mu f_n, A |x - anchor| / W).
-// contact_share: 8 planes c_j s_j [m^2], 0 at nodes that are held, whose part the others have: a point that hangs on held nodes is as
-// hard as any other, not as hard as what holds it; contact_anchor: (place in the tool's frame (3) [m], tool + 1);
-// contact_force: (force (3) [quanta], tools that touch, a bit each).
+// contact_share: 8 planes c_j s_j [m^2]; held nodes have 0, and their part is distributed to the others, so that a point with held nodes is as stiff
+// as any other; contact_anchor: (position in the tool's frame (3) [m], tool + 1); contact_force: (force (3) [quanta], one bit per touching tool).
 #include "arith.cl"
 #include "contact_shape.cl"
 #include "contact_point.cl"
@@ -31,7 +30,7 @@ __kernel void contact_press(__global const float* node_u, __global const float* 
   const float h = step_params[0], half_hh = (0.5f * h) * h;
   for (int i = first; i < first + LANES; ++i) {
     const contact_place p = place_of_point(node_u, node_w, contact_rest, contact_node, contact_weight, i);
-    const float area = contact_rest[POINT_BASE(i, 4) + 3 * PLIANT_TILE];  // none: it fills the tile up
+    const float area = contact_rest[POINT_BASE(i, 4) + 3 * PLIANT_TILE];  // 0 for padding
     int touching = 0, count = 0, ready = 0, weighed = 0;
     const float within = ready_share(contact_yield[i]);
     for (int t = 0; t < tools; ++t) {
@@ -54,7 +53,7 @@ __kernel void contact_press(__global const float* node_u, __global const float* 
     if (held >= 0 && !(touching >> held & 1)) anchor[3 * PLIANT_TILE] = 0.0f;
     int4 sum = 0;
     float w = contact_yield[i];
-    if (touching != 0 && !(w > 0.0f)) {  // nothing is known of the points that touch
+    if (touching != 0 && !(w > 0.0f)) {  // compliance from touching points is not known yet
       __global const int* node = contact_node + POINT_BASE(i, 8);
       __global const float* share = contact_share + POINT_BASE(i, 8);
       w = 0.0f;

@@ -1,6 +1,6 @@
-// Forces of tools on contact points, second part: contact_press again from where contact_apply has put the nodes, with the compliance
-// W of the points that do touch (contact_node_sum), so that what one part left the other takes back, whether one point touches
-// or all. Friction is that of both parts together; where it slips, the anchor follows. contact_change: the added force [quanta].
+// Tool forces on contact points, second part: repeats contact_press at the node positions after contact_apply, with the compliance W of the points
+// that actually touch (contact_node_sum). So the penetration that the first part left is removed, whether one point touches or all. The friction
+// limit applies to the sum of both parts; where a point slips, its anchor follows. contact_change: the added force [quanta].
 #include "arith.cl"
 #include "contact_shape.cl"
 #include "contact_point.cl"
@@ -47,7 +47,7 @@ __kernel void contact_settle(__global const float* node_u, __global const float*
         moving += free;
       }
       const float known = contact_yield[i];
-      contact_yield[i] = moving > 0.0f ? w * (all / moving) : 0.0f;  // held nodes count as if they moved (contact_press)
+      contact_yield[i] = moving > 0.0f ? w * (all / moving) : 0.0f;  // held nodes count as free (contact_press)
       int count = 0;
       for (int t = 0; t < tools; ++t) count += touching >> t & 1;
       const float area = contact_rest[POINT_BASE(i, 4) + 3 * PLIANT_TILE];
@@ -81,7 +81,7 @@ __kernel void contact_settle(__global const float* node_u, __global const float*
           const float share_of = length > most ? most / length : 1.0f;
           f = fma((float4)(share_of), pull, m.normal * across);
           if (length > most) {
-            // It slips: the anchor comes as near as the friction that is left can hold.
+            // Slip: the anchor moves to the distance that the friction limit can hold.
             const float size = sqrt(dot_xyz(side, side)), hold = stiffness > 0.0f ? most / stiffness : 0.0f;
             const float kept = size > hold ? hold / size : 1.0f;
             const float4 back = turned_back(next, fma((float4)(-kept), side, (float4)(-along) * m.normal));

@@ -1,16 +1,15 @@
-// Signed distance of a point to a tool's shape and the outward normal, in the tool's frame.
-// tool_kind: per tool (shape in the order of host/scene/contact_tool.h, first value of its grid, nodes of the grid in x, y, z, frames of a
-// sequence, which has a grid each and is mixed of two: moment is the number of the first and the share of the second);
-// tool_data: per tool radius, first point (3), second point, normal or half size (3), origin of the grid (3) [m], 1 / its spacing,
-// its spacing, then the law of contact: lambda [Pa/m^n], 3/2 alpha [s/m], friction, core [m], whether n is 3/2.
-// tool_grid: signed distances [m], x fastest.
+// Signed distance from a point to a tool's shape and the outward normal, in the tool's frame. tool_kind: per tool (shape in the order of
+// host/scene/contact_tool.h, first value of its grid, grid nodes in x, y, z, number of frames of a sequence, which has a grid for each and
+// interpolates two: `moment` holds the number of the first and the weight of the second); tool_data: per tool radius, first point (3), second point,
+// normal or half size (3), origin of the grid (3) [m], 1 / grid spacing, grid spacing, then the contact law: lambda [Pa/m^n], 3/2 alpha [s/m],
+// friction, core [m], whether n is 3/2. tool_grid: signed distances [m], x fastest.
 #define TOOL_NUMBERS 20
 #define TOOL_INTEGERS 8
 
 static inline float dot3(float ax, float bx, float ay, float by, float az, float bz) { return fma(ax, bx, fma(ay, by, az * bz)); }
 static inline float mixed(float a, float b, float t) { return fma(t, b - a, a); }
 
-// v along n of this length; z where there is none.
+// (x, y, z) / length; the z axis if the length is 0.
 static inline float4 normalised(float x, float y, float z, float length) {
   return length > 0.0f ? (float4)(x / length, y / length, z / length, 0.0f) : (float4)(0.0f, 0.0f, 1.0f, 0.0f);
 }
@@ -57,7 +56,7 @@ static inline float4 mesh_distance(__global const int* kind, __global const floa
   return out;
 }
 
-// (normal, distance) of the point y.
+// Returns (normal, distance) at the point y.
 static inline float4 tool_distance(__global const int* kind, __global const float* data, __global const float* tool_grid,
                                    __global const float* moment, float4 y) {
   float4 out;
@@ -82,7 +81,7 @@ static inline float4 tool_distance(__global const int* kind, __global const floa
     float px = qx > 0.0f ? qx : 0.0f, py = qy > 0.0f ? qy : 0.0f, pz = qz > 0.0f ? qz : 0.0f;
     const float length = sqrt(dot3(px, px, py, py, pz, pz));
     float distance = length;
-    if (!(length > 0.0f)) {  // inside: out of the nearest face
+    if (!(length > 0.0f)) {  // inside: the nearest face
       const int in_x = qx >= qy && qx >= qz, in_y = !in_x && qy >= qz;
       distance = in_x ? qx : in_y ? qy : qz;
       px = in_x ? 1.0f : 0.0f;

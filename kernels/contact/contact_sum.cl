@@ -1,13 +1,13 @@
-// What each tool gets of each contact point, in quanta: contact_tool_force: [tools][tiles][8][16] force on the tool (3), torque about its
-// origin (3), depth at the start of the step [m] as bits, 1 where it touches. Written for the tools that are near the point's tile
-// (contact_near); contact_tool_sum adds them up, and no order can matter: they are integers.
+// Forces of each contact point on each tool, in quanta. contact_tool_force: [tools][tiles][8][16] force on the tool (3), torque about its origin (3),
+// depth at the start of the step [m] as bits, 1 if it touches. Written for the tools that are near the point's tile (contact_near); contact_tool_sum
+// adds them. They are integers, so the order does not matter.
 #define TOOL_FORCE_NUMBERS 8
 
 static inline __global int* tool_force_of(__global int* contact_tool_force, int point_count, int t, int i) {
   return contact_tool_force + TOOL_FORCE_NUMBERS * point_count * t + POINT_BASE(i, TOOL_FORCE_NUMBERS);
 }
 
-// The tool gets what the point does not: minus `force`, `quantum` [N] each, at the place p.
+// Adds the reaction to the tool: minus `force`, in units of `quantum` [N], at the place p.
 static inline void add_to_tool(__global int* on_tool, __global const float* next_pose, __global const float* contact_params, float4 p,
                                int4 force) {
   const float4 arm = p - origin_of(next_pose);

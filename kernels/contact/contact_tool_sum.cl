@@ -1,6 +1,6 @@
-// Sums over the contact points of what each tool gets (contact_sum.cl), a part of the tiles per work item. tool_sum:
-// [steps][tools][PARTS][16] force and torque about the tool's origin and area (each component as two integers, multiples of 2^15 and
-// the rest), largest depth at the start of the step [m] as bits, points that touch.
+// Sums the forces of the contact points on each tool (contact_sum.cl), each work-item over a part of the tiles. tool_sum: [steps][tools][PARTS][16]
+// force, torque about the tool's origin, and area (each component as two integers, the multiple of 2^15 and the remainder), largest depth at the
+// start of the step [m] as bits, number of touching points.
 #include "arith.cl"
 #include "contact_shape.cl"
 #include "contact_point.cl"
@@ -16,7 +16,7 @@ __kernel void contact_tool_sum(__global const int* contact_tool_force, __global 
   const int t = item / PARTS;
   long sum[7] = {0, 0, 0, 0, 0, 0, 0};
   int deepest = 0, count = 0;
-  for (int k = item % PARTS; contact_list[k] >= 0; k += PARTS) {  // it ends with as many entries that are none
+  for (int k = item % PARTS; contact_list[k] >= 0; k += PARTS) {  // the list ends with PARTS empty entries
     const int tile = contact_list[k];
     if (!(contact_near[tile] >> t & 1)) continue;
     for (int i = tile * PLIANT_TILE; i < (tile + 1) * PLIANT_TILE; ++i) {
@@ -24,7 +24,7 @@ __kernel void contact_tool_sum(__global const int* contact_tool_force, __global 
       if (force[7 * PLIANT_TILE] == 0) continue;
       for (int c = 0; c < 6; ++c) sum[c] += force[c * PLIANT_TILE];
       sum[6] += quanta(contact_rest[POINT_BASE(i, 4) + 3 * PLIANT_TILE] * contact_params[4]);
-      const int depth = force[6 * PLIANT_TILE];  // bits of numbers >= 0 have the order of the numbers
+      const int depth = force[6 * PLIANT_TILE];  // the bits of non-negative floats sort as the floats
       deepest = depth > deepest ? depth : deepest;
       ++count;
     }

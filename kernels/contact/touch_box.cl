@@ -1,5 +1,5 @@
-// Every few steps: where all contact points are, and boxes around those of a tile. touch_box: [tiles, then groups of tiles][19] lowest and
-// highest of place (3) [m], increment (3) [m] and normal (3), then the largest spacing [m].
+// At every search for pairs: positions of all contact points, and bounding boxes of tiles. touch_box: [tiles, then groups of tiles][19] lower and
+// upper bounds of position (3) [m], increment (3) [m] and normal (3), then the largest spacing [m].
 #include "arith.cl"
 #include "contact_shape.cl"
 #include "contact_point.cl"

@@ -1,4 +1,4 @@
-// Tissue that touches tissue: the frame of a point's surface at the start of the step, and how far it turns in the step (touch_point.cl).
+// Contact of tissue with tissue: the surface frame of a point at the start of the step, and its rotation in the step (touch_point.cl).
 static inline void write_state(__global float* touch_place, int i, touch_state s) {
   __global float* at = touch_place + PLIANT_TOUCH_PLACE * i;
   vstore4((float4)(s.x.xyz, s.yielding), 0, at);
@@ -8,7 +8,7 @@ static inline void write_state(__global float* touch_place, int i, touch_state s
   vstore4((float4)(s.tilt.xyz, s.density), 4, at);
 }
 
-// F t1 and F t2 of an increment or a displacement.
+// F t1 and F t2 for a field of increments or displacements.
 static inline void along_tangents(__global const float* values, __global const int* contact_node, __global const float* touch_surface, int i,
                                   float4* first, float4* second) {
   __global const float* own = touch_surface + POINT_BASE(i, PLIANT_TOUCH_SURFACE);
@@ -42,12 +42,12 @@ static inline void set_frame(__global const float* node_u, __global const float*
   s->density = spacing > 0.0f ? 1.0f / spacing : 0.0f;
 }
 
-// The normal turns by -(n . F' t_k) a^k, a^k the dual vectors of the tangents.
+// The normal changes by -(n . F' t_k) a^k, with the dual vectors a^k of the tangents.
 static inline float4 tilt_of(__global const float* node_w, __global const int* contact_node, __global const float* touch_surface, int i,
                              touch_state s) {
   float4 first, second;
   along_tangents(node_w, contact_node, touch_surface, i, &first, &second);
   const float one = dot_xyz(s.normal, first) * s.short_first, two = dot_xyz(s.normal, second);
   const float across = fma(two, s.short_height, -(one * s.skew));
-  return (float4)(0.0f) - fma((float4)(one), s.tangent, cross3(s.normal, s.tangent) * across);  // no zero with a sign
+  return (float4)(0.0f) - fma((float4)(one), s.tangent, cross3(s.normal, s.tangent) * across);  // avoids a negative zero
 }

@@ -1,5 +1,4 @@
-// Which contact points can be partners (touch_pair).
-// Whether points of two boxes can be partners before the next look.
+// Search for pairs of contact points (touch_pair). may_meet: whether points of two boxes can be partners before the next search.
 static inline int may_meet(const float* a, __global const float* b, float margin, float ahead) {
   const float spacing = a[18] > b[18] ? a[18] : b[18], reach = fma(TOUCH_RADIUS, spacing, margin);
   float facing = 0.0f;
@@ -16,7 +15,7 @@ static inline int may_meet(const float* a, __global const float* b, float margin
   return facing < -0.5f;
 }
 
-// 1: two points of one part that never touch; 0: they may, offset: their depth at rest [m].
+// Returns 1 for two points of one part that never touch. Otherwise returns 0 and in `offset` their undeformed depth [m].
 static inline int one_part(__global const float* touch_surface, __global const float* touch_rest, __global const int* contact_node, int lower,
                            int upper, float large, float* offset) {
   *offset = 0.0f;
@@ -38,7 +37,7 @@ static inline int one_part(__global const float* touch_surface, __global const f
   return 0;
 }
 
-// No point of box b is a partner of the point of box a that is farther from it than this.
+// Upper bound of the distance between the point of box a and a partner in box b.
 static inline float farthest(const float* a, __global const float* b, float margin, float ahead) {
   const float spacing = a[18] > b[18] ? a[18] : b[18];
   float way = 0.0f;
@@ -49,9 +48,9 @@ static inline float farthest(const float* a, __global const float* b, float marg
   return fma(TOUCH_RADIUS + 2.0f, spacing, fma(ahead, way, margin));
 }
 
-// The weight of a pair, 0: none. A pair begins with the depth that it has, and eases out of it: what a point that slides over an edge meets
-// is there at once, and taken back in one step it would be thrown off. `before`: the offset of a pair that is known; `ease`: how far it goes back
-// in a look, in spacings.
+// Returns the weight of a pair; 0: no pair. A new pair starts with its current depth as offset, which is then reduced gradually: a point that slides
+// over an edge is suddenly deep, and removing that depth in one step would throw it off. `before`: the offset of a known pair; `ease`: the reduction
+// per search, in spacings.
 static inline float weight_of(__global const float* touch_place, __global const float* touch_surface, __global const float* touch_rest,
                               __global const int* contact_node, int lower, int upper, int known, float before, float margin,
                               float ahead, float ease, float* offset) {

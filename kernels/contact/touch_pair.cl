@@ -1,14 +1,13 @@
-// Every few steps: the partners of each contact point until the next look. A pair of points pushes when
+// Every few steps: finds the partners of each contact point until the next search. A pair of points pushes if
 //   - their normals face each other within 60 degrees, and their tangential distance s is less than r = 1.2 spacings,
-//   - their gap is less than the margin and twice what it loses at its present speed, and they are not deeper than one spacing (two,
-//     when they were partners before): deeper is the other side of the part,
-//   - in one body: they hang on different nodes, and at rest they were far from each other, or face to face; not two places beside each
-//     other, and not the two sides of a thin part.
-// What lay on each other at rest, like the faces of a cut, starts there.
-// Its weight is (1 - s^2 / r^2)^2 times 2 cos - 1 of the angle between the normal and the other one turned round; touch_weight:
-// [tiles][17][16] weights, then the sum of weights times areas of the partners [m^2]. The tree of boxes (touch_tree) is the same for all looks, so that the order of partners is. Of more
-// partners than there is room for the weakest give way. contact_params: margin [m], steps between two
-// looks at 5 and 6, ease of an offset at 8.
+//   - their gap is less than the margin plus twice its decrease until the next search at the present speed, and they are at most one spacing deep (two
+//     if they were partners before), since deeper points belong to the other side of the part,
+//   - in the same body: they have different nodes, and undeformed they were far apart or face to face; neighbours and the two sides of a thin part
+//     are excluded.
+// Points that coincide undeformed, such as the faces of a cut, start at zero depth. The weight is (1 - s^2 / r^2)^2 times 2 cos - 1 of the angle
+// between the normal and the reversed other normal. touch_weight: [tiles][17][16] weights, then the sum of weights times areas of the partners [m^2].
+// The tree of boxes (touch_tree) is the same for all searches, and so is the order of partners. If there are more partners than slots, those with the
+// least weight are dropped. contact_params: margin [m] at 5, steps between two searches at 6, ease of an offset at 8.
 #include "arith.cl"
 #include "contact_shape.cl"
 #include "contact_point.cl"
@@ -75,7 +74,7 @@ __kernel void touch_pair(__global const float* touch_place, __global const float
         if (j == i || !(touch_surface[POINT_BASE(j, PLIANT_TOUCH_SURFACE) + 22 * PLIANT_TILE] > 0.0f)) continue;
         int before = 0;
         while (before < TOUCH_SLOTS && old[before] != j + 1) ++before;
-        const int known = before < TOUCH_SLOTS && kept[before < TOUCH_SLOTS ? before : 0][0] > 0.0f;  // to both
+        const int known = before < TOUCH_SLOTS && kept[before < TOUCH_SLOTS ? before : 0][0] > 0.0f;  // partners of each other before
         float offset;
         const float w = weight_of(touch_place, touch_surface, touch_rest, contact_node, i < j ? i : j, i < j ? j : i,
                                   known, known ? kept[before][1] : 0.0f, margin, ahead, ease, &offset);

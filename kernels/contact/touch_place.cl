@@ -1,5 +1,5 @@
-// Where contact points near others are after the trial step, and W, what their place yields when all points around push as hard
-// (contact_press). `again`: after the first part of the forces; frames stay, W is that of the points that touch (contact_settle).
+// Positions of contact points with partners after the trial step, and their compliance W if all points around push equally (contact_press). `again`:
+// after the first part of the forces; frames are kept, and W is that of the touching points (contact_settle).
 #include "arith.cl"
 #include "contact_shape.cl"
 #include "contact_point.cl"

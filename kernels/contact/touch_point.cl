@@ -1,19 +1,19 @@
-// Tissue that touches tissue: contact points (contact_point.cl) of both sides are patches of surface, in pairs. What a pair does is
-// computed by both of its points, in the same order of operations (`lower`: the point with the lower index), so that action is
-// reaction to the last bit and nobody writes but to himself.
-//   Pushed along normal = unit(n_upper - n_lower), the gap is g = (x_lower - x_upper) . normal. For two touching surfaces with curvatures k
-//   and tangential places s this is the gap between them at the mean place but for O(s^3): no polygon is felt.
-//   Normals follow the deformed surface: n ~ F t1 x F t2, t1 and t2 the tangents at rest.
-// touch_surface: [tiles][24][16] weights of F t1 (8) and F t2 (8) [1/m], t1 (3), t2 (3), spacing of the points around [m].
-// touch_rest: [tiles][4][16] place at rest without what loose pieces have flown (3) [m], body.
-//   The gap also follows the turn of the normals: a pair pushes its points apart, and turns their tangents so that its push has no moment
-//   (touch_moment). What pushes is then the gradient of an energy; without that, a frictionless contact feeds motion for ever.
-//   Normals, tangents and arms are those of the start of the step (contact_point.cl says why).
-// touch_place: [points][20] (place [m], W [m/(N/m^2)] of contact_press), (increment [m], 1 / |F t1|), (normal, skew of F t2), (F t1 / |F t1|,
-// 1 / height of F t2), (turn of the normal in the step, 1 / spacing): a row per point, because partners read it in no order.
+// Contact of tissue with tissue: contact points (contact_point.cl) of both sides represent surface patches and form pairs. Both points of a pair
+// compute its force in the same order of operations (`lower`: the point with the lower index). So action equals reaction to the last bit, and each
+// point writes only its own data.
+//   A pair is pushed along normal = unit(n_upper - n_lower); its gap is g = (x_lower - x_upper) . normal. For two touching surfaces with curvatures k
+//   and tangential positions s this is the gap between them at the mean position up to O(s^3), so the polygonal surface is not felt.
+//   Normals follow the deformed surface: n ~ F t1 x F t2 with the undeformed tangents t1 and t2.
+// touch_surface: [tiles][24][16] weights of F t1 (8) and F t2 (8) [1/m], t1 (3), t2 (3), spacing of the points around, extent of the patch [m].
+// touch_rest: [tiles][4][16] undeformed position shifted by RunState::offset (3) [m], body.
+//   The gap also depends on the rotation of the normals: a pair pushes its points apart and rotates their tangents so that the push has no moment
+//   (touch_moment). The push is then the gradient of an energy; without this, frictionless contact would add energy indefinitely.
+//   Normals, tangents and arms are those of the start of the step (see contact_point.cl).
+// touch_place: [points][20] (position [m], W [m/(N/m^2)] of contact_press), (increment [m], 1 / |F t1|), (normal, skew of F t2), (F t1 / |F t1|,
+// 1 / height of F t2), (change of the normal in the step, 1 / spacing): one row per point, because partners read it in random order.
 // touch_partner: [tiles][16 slots][16] other point + 1, 0: none; touch_pair: [tiles][16 slots][6][16] (kernels/layout.h).
 #define TOUCH_SLOTS PLIANT_TOUCH_SLOTS
-#define TOUCH_RADIUS 1.2f  // of a pair, in spacings; a point is at most 0.71 from the next on a grid
+#define TOUCH_RADIUS 1.2f  // search radius of a pair, in spacings; on a grid, the next point is at most 0.71 away
 
 static inline float4 three(__global const float* at) { return (float4)(at[0], at[PLIANT_TILE], at[2 * PLIANT_TILE], 0.0f); }
 static inline void set_three(__global float* at, float4 v) {
@@ -28,9 +28,9 @@ static inline float4 cross3(float4 a, float4 b) {
 static inline float4 unit(float4 v) { return normalised(v.x, v.y, v.z, sqrt(dot_xyz(v, v))); }
 
 typedef struct {
-  float4 x, moved, normal, tangent, tilt;  // tilt: how far the normal turns in the step
-  float yielding, density;                 // density: of points, 1 / the spacing around it [1/m]
-  float short_first, skew, short_height;   // of the tangents: 1 / |F t1|, skew of F t2, 1 / its height over F t1
+  float4 x, moved, normal, tangent, tilt;  // tilt: change of the normal in the step
+  float yielding, density;                 // compliance W, and density of points: 1 / spacing [1/m]
+  float short_first, skew, short_height;   // of the tangents: 1 / |F t1|, skew of F t2, 1 / height of F t2 over F t1
 } touch_state;
 
 static inline touch_state state_of(__global const float* touch_place, int i) {
@@ -51,12 +51,12 @@ static inline touch_state state_of(__global const float* touch_place, int i) {
 }
 
 typedef struct {
-  float4 apart, normal;  // lower minus upper; what pushes the lower one
-  float4 arm;            // how the gap follows the upper normal, and against it the lower one [m]
+  float4 apart, normal;  // lower minus upper position; direction of the push on the lower point
+  float4 arm;            // derivative of the gap with respect to the upper normal, and minus that for the lower normal [m]
   float gap;
 } touch_meeting;
 
-// How far the second lies in front of the first after the next step, at most, twice because facing normals differ by two.
+// Upper bound of the distance of the lower point in front of the upper one after the next step, times two because facing normals differ by two.
 static inline float front_of(touch_state lower, touch_state upper, float4 moved) {
   const float4 facing = upper.normal - lower.normal;
   const float closing = -dot_xyz(moved, facing);
@@ -75,8 +75,8 @@ static inline touch_meeting meeting_of(touch_state lower, touch_state upper) {
   return m;
 }
 
-// What pushes do to the tangents of a point: the forces that belong to n . F' t_k, along the normal over the spacing, in quanta. `lever`: the sum
-// of its pairs' arms times their pushes, negative where it is the upper point [N m].
+// Effect of the pushes on the tangents of a point: forces along the normal, divided by the spacing, conjugate to n . F' t_k, in quanta. `lever`: sum
+// of the arms of its pairs times their pushes, negated where it is the upper point [N m].
 static inline void set_moment(__global int* touch_moment, int i, touch_state own, float4 lever, float inverse) {
   const float across = dot_xyz(lever, cross3(own.normal, own.tangent));
   const float first = fma(-own.skew, across, dot_xyz(lever, own.tangent)) * own.short_first, second = across * own.short_height;
@@ -106,7 +106,7 @@ static inline int pair_force_base(int i, int slot) {
   return POINT_BASE(i, TOUCH_SLOTS * PLIANT_TOUCH_FORCE) + slot * PLIANT_TOUCH_FORCE * PLIANT_TILE;
 }
 
-// Slip of a pair against where it stuck, along the surface.
+// Tangential slip of a pair relative to its anchor.
 static inline float4 slip_of(touch_state lower, touch_meeting m, float4 stuck) {
   const float4 slip = m.apart - out_of_frame(lower, stuck);
   return fma((float4)(-dot_xyz(slip, m.normal)), m.normal, slip);

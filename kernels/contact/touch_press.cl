@@ -1,10 +1,10 @@
-// Forces of tissue on tissue, first part, after the trial step. The depth d of a pair of area a is taken back by
+// Forces of tissue on tissue, first part, after the trial step. The depth d of a pair of area a is removed by
 //   f = a d / (W_i + W_j),
-// which bounds a row of the compliance matrix of all pairs (Gershgorin; contact_press): no number of pairs overshoots, and no stiffness
-// limits the step. Friction draws a pair to where it stuck in the frame of its lower point, by at most mu f.
-// contact_change: the force (3) [quanta] with that of tools (contact_force), what touches; touch_force: [tiles][16 slots][4][16] that of
-// each pair (3) [quanta], whether it pushes; touch_depth: [points] how deep a point lay at the most inside its partners,
-// the mean by area, at the start of a step since the host looked [m].
+// which bounds a row of the compliance matrix of all pairs (Gershgorin; contact_press): any number of pairs is stable, and contact does not limit the
+// step. Friction pulls a pair towards its anchor in the frame of its lower point, with at most mu f. contact_change: the force (3) [quanta] including
+// that of tools (contact_force), and contact bits; touch_force: [tiles][16 slots][4][16] force of each pair (3) [quanta], whether it pushes;
+// touch_depth: [points] largest depth of a point inside its partners, averaged over their area, at the start of a step since the last read by the
+// host [m].
 #include "arith.cl"
 #include "contact_shape.cl"
 #include "contact_point.cl"
@@ -28,13 +28,13 @@ __kernel void touch_press(__global const float* touch_place, __global const int*
     float pressed = 0.0f, inside = 0.0f;
     float4 lever = 0.0f;
     const touch_state mine = state_of(touch_place, i);
-    if ((near & ~PLIANT_TOUCH_BIT) != 0) {  // what tools did
+    if ((near & ~PLIANT_TOUCH_BIT) != 0) {  // the forces of tools
       sum = (int4)(force[0], force[PLIANT_TILE], force[2 * PLIANT_TILE], 0);
       touching = force[3 * PLIANT_TILE];
     }
     for (int s = 0; s < TOUCH_SLOTS && (near & PLIANT_TOUCH_BIT) != 0; ++s) {
       const int j = touch_partner[POINT_BASE(i, TOUCH_SLOTS) + s * PLIANT_TILE] - 1;
-      if (j < 0) break;  // they stand at the front
+      if (j < 0) break;  // used slots come first
       __global float* numbers = touch_pair + pair_base(i, s);
       __global int* own = touch_force + pair_force_base(i, s);
       own[3 * PLIANT_TILE] = 0;

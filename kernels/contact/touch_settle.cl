@@ -1,6 +1,6 @@
-// Forces of tissue on tissue, second part: touch_press again from where contact_apply has put the nodes, for the pairs that push, with
-// the compliance of the points that touch. Friction is that of both parts together; where a pair slips, the place where it stuck follows.
-// contact_change: the added force [quanta] with that of tools (contact_settle), what touches.
+// Forces of tissue on tissue, second part: repeats touch_press for the pushing pairs at the node positions after contact_apply, with the compliance
+// of the touching points. The friction limit applies to the sum of both parts; where a pair slips, its anchor follows. contact_change: the added
+// force [quanta] including that of tools (contact_settle), and contact bits.
 #include "arith.cl"
 #include "contact_shape.cl"
 #include "contact_point.cl"

@@ -1,5 +1,5 @@
-// After a look (touch_pair): the area of each pair, A_i A_j w_ij / max(S_i, S_j), S_i = sum_j A_j w_ij, so that the pairs of a point have no
-// more than its own area. A pair is one when both points have each other; what is none forgets where it stuck.
+// After a search (touch_pair): the area of each pair, A_i A_j w_ij / max(S_i, S_j) with S_i = sum_j A_j w_ij, so that the pairs of a point share at
+// most its own area. A pair exists if both points have each other as partner; otherwise its anchor is cleared.
 #include "arith.cl"
 #include "contact_shape.cl"
 #include "contact_point.cl"

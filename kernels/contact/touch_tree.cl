@@ -1,5 +1,5 @@
-// Boxes around groups of tiles (touch_box). touch_node: [nodes][4] in depth-first order: its box, the next node that is not below it,
-// first tile, last tile + 1; a node of one tile is that tile.
+// Bounding boxes of groups of tiles (touch_box). touch_node: [nodes][4] in depth-first order: its box, the next node outside its subtree, first tile,
+// last tile + 1; a node with one tile uses the tile's box.
 #include "arith.cl"
 
 __kernel void touch_tree(__global const int* touch_node, __global float* touch_box) {

@@ -1,6 +1,6 @@
-// Second pass of tet4anp: nodal pressure p_n = dU/dJ at J - 1 = sum_e V_e (J_e - 1) / sum_e V_e over the batch's elements at the
-// node (averaged nodal pressure, Bonet and Burton 1998; Joldes, Wittek and Miller 2009).
-// anp_offset: [node tiles + 1] rows; anp_index: [rows][16] elements, ascending per node, padded with an element whose dilation is -0.
+// Second pass of tet4anp: averaged nodal pressure p_n = dU/dJ at J - 1 = sum_e V_e (J_e - 1) / sum_e V_e, summed over the batch's elements at the
+// node (Bonet and Burton 1998; Joldes, Wittek and Miller 2009). anp_offset: [node tiles + 1] rows; anp_index: [rows][16] elements, ascending per
+// node, padded with an element whose dilation is -0.
 #include "arith.cl"
 #include "texels.cl"
 #include "law.cl"

@@ -1,5 +1,5 @@
-// The displacement gradient H = F - I and what the material laws need of it. Everything is written in H, so that nothing is lost
-// at small strain: with C = cof H, t = tr H, q = tr C + det H
+// The displacement gradient H = F - I and the quantities that the material laws use. Formulas are written in H to avoid cancellation at small strain:
+// with C = cof H, t = tr H, q = tr C + det H
 //   J - 1 = t + q,   cof F = (1 + t) I - H^T + C,   J F - cof F = q I + J H + H^T - C.
 typedef struct {
   real m00, m01, m02, m10, m11, m12, m20, m21, m22;

@@ -3,7 +3,7 @@ typedef struct {
   real m00, m11, m22, m01, m02, m12;
 } sym3;
 
-// E on the diagonal, 2 E beside it.
+// E on the diagonal, 2 E off the diagonal.
 static inline sym3 green_strain(mat3 h) {
   sym3 e;
   e.m00 = fma(0.5f, fma(h.m20, h.m20, fma(h.m10, h.m10, h.m00 * h.m00)), h.m00);

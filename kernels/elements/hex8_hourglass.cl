@@ -1,15 +1,14 @@
-// Hourglass control of a hexahedron of any shape, by the strains that its hourglass modes would have in bending and in twisting.
+// Hourglass control of a general hexahedron, from the strains of its hourglass modes in bending and twisting.
 //
 // With h_a the products of two or three corner signs (a = xy, xz, yz, xyz), X the corners at rest, u their displacements and
 // m_a = sum_c h_a,c X_c [m], the hourglass displacements are q_a = sum_c h_a,c u_c - H m_a: 0 for every linear field (Flanagan and
-// Belytschko 1981, their gamma written out). Their components are taken along the element's axes e_i as the mean deformation
-// F = I + H turns them, G_i = F e_i, shortened or lengthened towards 1: g_i = 2 / (1 + |G_i|^2) G_i, p_ia = g_i . q_a. Whatever
-// turns with the body leaves p alone.
+// Belytschko 1981, their gamma written out). Their components are taken along the element's axes e_i as rotated by the mean deformation F = I + H:
+// G_i = F e_i, scaled towards length 1: g_i = 2 / (1 + |G_i|^2) G_i, p_ia = g_i . q_a. So p is invariant under rigid rotation.
 //
-// W = k/2 sum_a |q_a|^2 + sum_ia D_i' p_ia^2 / 2 (a third of it for xyz) + N_ij p_i p_j + shears^2 / 2: in each direction of the
-// element the energy of a plate in plane stress, bent about both axes and twisted. The shears that bending causes in a trilinear field
-// and the volume change are left out, so that nothing locks (Belytschko and Bindeman 1993 assume such strains). host/elements/hourglass.h
-// gives the numbers and where they come from. The force is the exact derivative of W, of g_i by F too.
+// W = k/2 sum_a |q_a|^2 + sum_ia D_i' p_ia^2 / 2 (a third of it for xyz) + N_ij p_i p_j + shears^2 / 2: in each direction of the element the energy
+// of a plate in plane stress, bent about both axes and twisted. The shear that bending causes in a trilinear field and the volume change are omitted
+// to avoid locking (Belytschko and Bindeman 1993 assume such strains). host/elements/hourglass.h derives the coefficients. The force is the exact
+// derivative of W, including that of g_i with respect to F.
 //
 // Planes of the record: m_a [4][3] from 24 on, e_i [3][3] from 36 on, D' [3] 45, N (xy, xz, yz) 48, A [3] 51, k 54.
 typedef struct {

@@ -4,9 +4,9 @@
 // butterfly replaces both products. With s_x, s_y, s_z = +-1 at the corners: m_x = sum_a s_x u_a, m_xy = sum_a s_x s_y u_a, ...;
 // H = [m_x m_y m_z] / (4 d); q_x = fill d^3 / (4 d) P e_x, q_xy = fill k m_xy, ...; f_a = s_x q_x + ... + s_x s_y s_z q_xyz.
 //
-// Order of the sums, part of the Model: along x first (sum and difference of a row and its right neighbour), then y, then z; back
-// in the transposed order, for each node plane the cells below before the cells above, for each row the lower y before the higher;
-// last, a node takes what the cell at its own x gives before what the cell to its left gives.
+// The order of the sums is part of the Model: first along x (sum and difference of a row and its right neighbour), then y, then z; back in the
+// transposed order. For each node plane the cells below precede the cells above, for each row the lower y precedes the higher; last, a node adds the
+// force of the cell at its own x before that of the cell to its left.
 //
 // brick_neighbor: [bricks][16]. brick_rows: [bricks][2], layout.h. brick_fill: [bricks][256], 0 where there is no cell. brick_force: [bricks][1280] (layout.h) [N].
 // gradient: 1 / (4 d) [1/m]; volume: d^3 / (4 d) [m^2]; stiffness: k [N/m]. fault: per cell slot from fault_base on.
@@ -20,8 +20,8 @@
 #define PUT_ROW(lo, hi, out, offset, lane) STORE((lo) + FROM_LEFT(hi), out, offset)
 #define PUT_LAST(v, p, i, lane) ((p)[i] = (v).sf)
 #else
-// One row of sixteen work-items takes a brick. A work-item reads its right neighbour's displacement itself, and passes its force to it
-// through the place in memory where the row's sum goes: PoCL 3.1 shares a __local array between work-groups that run at the same time.
+// With one lane, a row of sixteen work-items processes a brick. A work-item reads its right neighbour's displacement itself, and passes its force to
+// it through the memory of the row's sum, because PoCL 3.1 shares a __local array between work-groups that run at the same time.
 static inline void put_row(float lo, float hi, __global float* row, int lane) {
   row[lane] = hi;
   barrier(CLK_GLOBAL_MEM_FENCE);
@@ -53,12 +53,12 @@ static inline vec3 times_add(real s, vec3 a, vec3 b) {
   const vec3 r = {fma(s, a.x, b.x), fma(s, a.y, b.y), fma(s, a.z, b.z)};
   return r;
 }
-// A face of a cell normal to z after the butterflies along x and y: sums, differences along x, along y, along both.
+// A cell face normal to z after the butterflies along x and y: sums, differences along x, along y, along both.
 typedef struct {
   vec3 ss, ds, sd, dd;
 } face;
 
-// Back along y and x for one plane of nodes, and out.
+// Inverse butterflies along y and x for one plane of nodes, and output.
 static inline void write_plane(const face* forces, __global float* out, int plane, int lane) {
   for (int y = 0; y < 5; ++y) {
     vec3 s, d;
@@ -100,7 +100,7 @@ __kernel void tled_hex8_brick_force(__global const float* node_u, __global const
   const face no_force = {zero, zero, zero, zero};
   const int rows = brick_rows[2 * brick];
   const law m = law_load(law_parameters);
-  face below[4], pending[4];  // displacement butterflies of the plane below; forces of the cells below on the present plane
+  face below[4], pending[4];  // displacement butterflies of the plane below; forces of the cells below on the current plane
   for (int z = 0; z < 5; ++z) {
     face above[4];
     vec3 sum, difference;
@@ -127,7 +127,7 @@ __kernel void tled_hex8_brick_force(__global const float* node_u, __global const
       sum = s;
       difference = d;
     }
-    face forces[4];  // on the plane z - 1: from the cells below it, then from the cells above it
+    face forces[4];  // on the plane z - 1: of the cells below it, then of the cells above it
     for (int y = 0; y < 4; ++y) {
       if (z > 0) {
         face upper = no_force, lower = no_force;
@@ -139,7 +139,7 @@ __kernel void tled_hex8_brick_force(__global const float* node_u, __global const
           const vec3 mz = sub(above[y].ss, below[y].ss), mxz = sub(above[y].ds, below[y].ds);
           const vec3 myz = sub(above[y].sd, below[y].sd), mxyz = sub(above[y].dd, below[y].dd);
           const real none = 0.0f;
-          // In an fma: a bare product would be free to contract into the sums that follow.
+          // As an fma, because a plain product might be contracted into the following sums.
           const real g = full ? (real)(gradient) : none;
           const mat3 h = {fma(g, mx.x, none), fma(g, my.x, none), fma(g, mz.x, none), fma(g, mx.y, none), fma(g, my.y, none),
                           fma(g, mz.y, none), fma(g, mx.z, none), fma(g, my.z, none), fma(g, mz.z, none)};

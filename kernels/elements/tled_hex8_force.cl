@@ -1,6 +1,6 @@
 // Corner forces of 8-node hexahedra with one point and total Lagrangian hourglass control (Flanagan and Belytschko 1981; Joldes,
 // Wittek and Miller 2008): f_a = fill (V P b_a + k sum_i gamma_ia q_i) with q_i = sum_a gamma_ia u_a.
-// That of a cube (UNIFORM) has one stiffness for all its modes; every other one follows its shape, hex8_hourglass.cl.
+// A cube (UNIFORM) has one stiffness for all its modes; other shapes use hex8_hourglass.cl.
 // hex_nodes: [tiles][8][16]. hex_data: mean gradients b_a [8][3] [1/m], then, UNIFORM, for all elements: gamma [4 modes][8 corners] [1],
 // V [m^3], hourglass stiffness k [N/m] ([58]); else: 31 numbers of hex8_hourglass.cl, V [m^3] ([tiles][56][16]).
 // node_w: increments of the last step, read with VISCOUS (viscous.cl).
@@ -39,7 +39,7 @@ __kernel void tled_hex8_force(__global const float* node_u, __global const int* 
   }
   mat3 h = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
 #if !UNIFORM
-// Otherwise PoCL keeps the private arrays in memory, which takes half as long again. (No comment behind a pragma: it is then ignored.)
+// Without this, PoCL keeps the private arrays in memory, which takes 50 % longer. (No comment after a pragma: it would be ignored.)
 #pragma unroll
 #endif
   for (int a = 0; a < 8; ++a) {
@@ -87,7 +87,7 @@ __kernel void tled_hex8_force(__global const float* node_u, __global const int* 
   const modes qx = modes_of(x), qy = modes_of(y), qz = modes_of(z);
   vec3 q[4] = {{qx.xy, qy.xy, qz.xy}, {qx.xz, qy.xz, qz.xz}, {qx.yz, qy.yz, qz.yz}, {qx.xyz, qy.xyz, qz.xyz}};
   p = hourglass(q, h, p, fill, data);
-  modes_back((modes){q[0].x, q[1].x, q[2].x, q[3].x}, x);  // from here on forces
+  modes_back((modes){q[0].x, q[1].x, q[2].x, q[3].x}, x);  // forces from here on
   modes_back((modes){q[0].y, q[1].y, q[2].y, q[3].y}, y);
   modes_back((modes){q[0].z, q[1].z, q[2].z, q[3].z}, z);
 #endif

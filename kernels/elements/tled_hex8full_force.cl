@@ -1,6 +1,6 @@
 // Corner forces of 8-node hexahedra with 2 x 2 x 2 Gauss points: f_a = fill sum_g w_g P_g grad N_a(g).
 // hex_data, one record of 200 numbers: for each point g = 0..7, grad N_a [8 corners][3] [1/m] and then the weight w_g [m^3].
-// UNIFORM: one record for all elements, else [tiles][200][16]. Other arguments as in tled_hex8_force.
+// UNIFORM: one record for all elements, otherwise [tiles][200][16]. Other arguments as in tled_hex8_force.
 #include "arith.cl"
 #include "texels.cl"
 #include "law.cl"

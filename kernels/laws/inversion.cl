@@ -1,11 +1,11 @@
-// Continuation of laws that are singular at J = 0, below J = 1/4: what stands there as a function of J alone is replaced by its
-// polynomial of second order about 1/4, the invariants of F^T F stay. The stress is continuous with its derivative, finite for
-// every F, and drives an inverted element back. With d = 4 J - 1:
+// Continuation of laws that are singular at J = 0 below J = 1/4: functions of J alone are replaced by their second-order polynomial about 1/4, and
+// the invariants of F^T F stay. The stress and its derivative are continuous; it is finite for every F and drives an inverted element back. With d =
+// 4 J - 1:
 //   J^-1   ->  4 (1 - d)                          (from -ln J; neo-Hookean)
 //   J^-2/3 ->  f = f0 (1 - 2/3 d + 5/9 d^2)       f0 = (1/4)^-2/3
 //   J^-4/3 ->  h = h0 (1 - 4/3 d + 14/9 d^2)      h0 = (1/4)^-4/3
 #define LOW_VOLUME 0.25f
-static inline real low_distance(real j) { return fma(4.0f, j, 3.0f); }  // d of J - 1
+static inline real low_distance(real j) { return fma(4.0f, j, 3.0f); }  // d for j = J - 1
 static inline real low_inverse(real d) { return fma(-4.0f, d, 4.0f); }
 static inline real low_first(real d) { return 2.5198420997897464f * fma(d, fma(0.5555555555555556f, d, -0.6666666666666667f), 1.0f); }
 // -f' / 2

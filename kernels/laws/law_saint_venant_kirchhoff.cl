@@ -1,6 +1,6 @@
 // S = lambda tr(E) I + 2 mu E with the Green-Lagrange strain E = (H + H^T + H^T H) / 2;   P = S + H S.
-// No part of it depends on J alone. It is finite everywhere, but lets go of an element on its way through J = 0: below J = 1/4 (low)
-// W has c/3 (low - J)^3 more, c = 16 (lambda + 2 mu), which adds -c (low - J)^2 cof F.
+// No part of it depends on J alone. It is finite for every F, but loses its resistance as J approaches 0: below J = 1/4 (low) W has the additional
+// term c/3 (low - J)^3, c = 16 (lambda + 2 mu), which adds -c (low - J)^2 cof F.
 #include "green_strain.cl"
 #define LAW_INVERTIBLE 0
 typedef struct {

@@ -2,7 +2,7 @@
 // lambda + 5/6 mu, so that mu and lambda are those of linear elasticity; law_parameters: mu, lambda'.
 //   P = mu' (1 - 1 / (I1 + 1)) F - 3/4 mu' cof F + lambda' (J - 1) cof F
 //     = mu (F - cof F) + mu r F + lambda' (J - 1) cof F,  r = e / (3 (4 + e)),  e = I1 - 3 = 2 t + |H|^2
-// Nothing is divided by J: the law is finite for every F.
+// There is no division by J: the law is finite for every F.
 #define LAW_INVERTIBLE 1
 typedef struct {
   float low, mu, lambda;

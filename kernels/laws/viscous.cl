@@ -1,9 +1,9 @@
-// Viscous stress beside that of the law, Kelvin and Voigt's solid: S_v = 2 eta dev(D) + zeta tr(D) I, second Piola-Kirchhoff, where
-// D = (E_n - E_(n-1)) / h is the rate of Green's strain over the last step. With W = F_n - F_(n-1) and M = F_n - W / 2
+// Viscous stress in addition to that of the law, a Kelvin-Voigt solid: S_v = 2 eta dev(D) + zeta tr(D) I, second Piola-Kirchhoff, where D = (E_n -
+// E_(n-1)) / h is the rate of Green's strain over the last step. With W = F_n - F_(n-1) and M = F_n - W / 2
 //   E_n - E_(n-1) = sym(M^T W), exactly,   P_v = M S_v
-// so that no rigid motion of the step, however large, gives a force; the work on the step's motion, P_v : W = S_v : (E_n - E_(n-1)),
-// is never negative; and about places in the middle of the step the forces turn nothing, for M S_v M^T is symmetric (Simo and Tarnow 1992).
-// viscosity: 2 eta, zeta - 2 eta / 3 [Pa s]; step_params: h [s]. With VISCOUS; else nobody reads either, nor node_w.
+// So a rigid motion of the step, however large, causes no force; the work in the step, P_v : W = S_v : (E_n - E_(n-1)), is never negative; and the
+// forces have no moment about the mid-step positions, because M S_v M^T is symmetric (Simo and Tarnow 1992). viscosity: 2 eta, zeta - 2 eta / 3 [Pa
+// s]; step_params: h [s]. Without VISCOUS, these and node_w are not read.
 #if VISCOUS
 // h += a (x) b, of a corner.
 #define ADD_CORNER(h, ax, ay, az, bx, by, bz)                                                                \
@@ -11,7 +11,7 @@
   (h).m10 = fma(ay, bx, (h).m10), (h).m11 = fma(ay, by, (h).m11), (h).m12 = fma(ay, bz, (h).m12);            \
   (h).m20 = fma(az, bx, (h).m20), (h).m21 = fma(az, by, (h).m21), (h).m22 = fma(az, bz, (h).m22);
 
-// p plus `scale` P_v; h: F_n - I.
+// Adds `scale` P_v to p; h: F_n - I.
 static inline mat3 add_viscous(mat3 p, mat3 h, mat3 w, real scale, __global const float* viscosity, __global const float* step_params) {
   const float rate = 1.0f / step_params[0], shear = viscosity[0] * rate, half_shear = 0.5f * shear, volume = viscosity[1] * rate;
   const mat3 m = {fma(-0.5f, w.m00, h.m00), fma(-0.5f, w.m01, h.m01), fma(-0.5f, w.m02, h.m02),

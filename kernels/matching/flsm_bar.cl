@@ -1,12 +1,11 @@
-// Fast lattice shape matching, first of three passes from nodes to regions (Rivers and James 2007, section 4.2): sums along the x links
-// of a node, up to WIDTH links to both sides. With m the weights and o the number of links, sum m u and sum o m u.
-// Displacements instead of positions: far from the origin positions would lose the float. RELATIVE: less that of the first region's node,
-// or a body that has moved far would be drawn back or driven on by the rounding of its weights. flsm_reference: [2] texels, that
-// displacement and the one of the step of shape matching before.
+// Fast lattice shape matching, first of three passes from nodes to regions (Rivers and James 2007, section 4.2): sums along the x links of a node, up
+// to WIDTH links on each side: sum m u and sum o m u, with weights m and the number of links o. The sums use displacements, because float positions
+// far from the origin would lose precision. RELATIVE: displacements are relative to that of the first region's node; otherwise rounding of the
+// weights would accelerate a body that has moved far. flsm_reference: [2] texels, this displacement and that of the previous shape-matching step.
 //
-// A weight of 0 and links to itself mark the region that stands for absent ones. All FLSM numbers are in blocks of four (x, y, z and one
-// without meaning). node_u: [slots] texels. flsm_slot: [regions]. flsm_weight: [regions] m [kg]. flsm_link: [regions][2] at -x, +x.
-// flsm_bars: [regions][2] blocks: sum m u, sum o_x m u [kg m].
+// A weight of 0 and links to itself mark the region that replaces absent ones. All FLSM data are in blocks of four numbers (x, y, z and one unused).
+// node_u: [slots] texels. flsm_slot: [regions]. flsm_weight: [regions] m [kg]. flsm_link: [regions][2] at -x, +x. flsm_bars: [regions][2] blocks: sum
+// m u, sum o_x m u [kg m].
 #include "arith.cl"
 
 __kernel void flsm_bar(__global const float* node_u, __global const int* flsm_slot, __global const float* flsm_weight,

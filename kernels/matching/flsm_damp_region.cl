@@ -1,8 +1,8 @@
-// Per-region damping, third pass from nodes to regions (Rivers and James 2007, section 5.2): the rigid motion nearest to the increments w
-// of a region's nodes. flsm_plates holds their sums; in the frame of the region at rest, with R its rotation and r = X - C in cells,
+// Per-region damping, third pass from nodes to regions (Rivers and James 2007, section 5.2): the rigid motion closest to the increments w of a
+// region's nodes. flsm_plates holds their sums. In the undeformed frame of the region, with its rotation R and r = X - C in cells,
 //   v = sum m w / sum m,  spin = I^-1 sum m r x (R^T w),  w_rigid = v + R (spin x r).
-// Arguments as in flsm_region, but node_w for node_u. flsm_spin: [tiles][6][16] I^-1 (xx yy zz xy xz yz) [m]. inverse_spacing [1/m].
-// flsm_rates: [regions][4] blocks: w_rigid at the centre of the window, and what it gains per cell along x, y and z [m].
+// Arguments as in flsm_region, but node_w for node_u. flsm_spin: [tiles][6][16] I^-1 (xx yy zz xy xz yz) [m]. inverse_spacing [1/m]. flsm_rates:
+// [regions][4] blocks: w_rigid at the centre of the window, and its change per cell along x, y and z [m].
 #include "arith.cl"
 #include "texels.cl"
 #include "deformation.cl"
@@ -33,7 +33,7 @@ __kernel void flsm_damp_region(__global const float* node_w, __global const floa
   const mat3 r = {fma(texels_x(cx), scale, one),  fma(texels_x(cy), scale, none), fma(texels_x(cz), scale, none),
                   fma(texels_y(cx), scale, none), fma(texels_y(cy), scale, one),  fma(texels_y(cz), scale, none),
                   fma(texels_z(cx), scale, none), fma(texels_z(cy), scale, none), fma(texels_z(cz), scale, one)};
-  // Angular momentum in the frame at rest: the antisymmetric part of R^T B.
+  // Angular momentum in the undeformed frame: the antisymmetric part of R^T B.
   const real lx = dot3(r.m02, b.m01, r.m12, b.m11, r.m22, b.m21) - dot3(r.m01, b.m02, r.m11, b.m12, r.m21, b.m22);
   const real ly = dot3(r.m00, b.m02, r.m10, b.m12, r.m20, b.m22) - dot3(r.m02, b.m00, r.m12, b.m10, r.m22, b.m20);
   const real lz = dot3(r.m01, b.m00, r.m11, b.m10, r.m21, b.m20) - dot3(r.m00, b.m01, r.m10, b.m11, r.m20, b.m21);

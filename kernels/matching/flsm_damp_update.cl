@@ -1,8 +1,8 @@
-// Per-region damping of the increments: w <- w + damping (w_rigid - w), with w_rigid the mean over the regions that hold the node; or with
-// REACTION w <- w - w_rigid, for the w_rigid of flsm_excess. Both keep the momentum, and the angular momentum as far as the rotations of
-// the regions are those of their nodes.
-// flsm_bars: [regions][2] blocks of sums of flsm_rates; other arguments as in flsm_goal. Interface nodes, from region interface_base on,
-// take `substeps` steps for one of shape matching: their w is that much shorter. Nodes without inverse mass keep theirs.
+// Per-region damping of the increments: w <- w + damping (w_rigid - w), with w_rigid the mean over the regions that contain the node; or with
+// REACTION w <- w - w_rigid, with the w_rigid of flsm_excess. Both conserve momentum; angular momentum is conserved as far as the rotations of the
+// regions are those of their nodes. flsm_bars: [regions][2] blocks of sums of flsm_rates; other arguments as in flsm_goal. Interface nodes, from
+// region interface_base on, perform `substeps` steps per shape-matching step, so their w is shorter by this factor. Nodes without inverse mass are
+// not changed.
 #include "arith.cl"
 #include "texels.cl"
 #include "flsm_goal_sum.cl"

@@ -1,7 +1,6 @@
-// What an interface node takes of its springs beyond what keeps the momentum, as an increment: (beta H^2 / m - alpha) (g - x). With beta =
-// alpha m / H^2 the pull on all nodes of shape matching sums to nothing (sum m (g - x) = 0); flsm_damp_update with REACTION gives the
-// excess back to the nodes of the regions that made the goal.
-// node_u, flsm_slot, flsm_goals, flsm_beta as in flsm_interface; flsm_alpha: [batches]. flsm_excess: [slots] texels [m].
+// The part of the interface springs that does not conserve momentum, as an increment: (beta H^2 / m - alpha) (g - x). With beta = alpha m / H^2 the
+// pulls on all nodes of shape matching sum to zero (sum m (g - x) = 0). flsm_damp_update with REACTION returns the excess to the nodes of the regions
+// that define the goal. node_u, flsm_slot, flsm_goals, flsm_beta as in flsm_interface; flsm_alpha: [batches]. flsm_excess: [slots] texels [m].
 #include "arith.cl"
 
 __kernel void flsm_excess(__global const float* node_u, __global const int* flsm_slot, __global const float* flsm_reference, __global const float* flsm_goals,

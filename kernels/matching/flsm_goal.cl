@@ -1,7 +1,7 @@
-// Goals of the interface nodes: flsm_goals takes the mean displacement g - X over the regions that hold the node (Hybrid
-// Deformation Model, equation 6), and keeps the one before beside it, both less the first texel of flsm_reference.
-// flsm_inverse_holders: [regions] 1 / number of regions that hold the node. flsm_goals: [interface][2] blocks [m]. region_base: region
-// of the first interface node; the other buffers as in flsm_goal_sum.
+// Goals of the interface nodes: stores the mean displacement g - X over the regions that contain the node (Hybrid Deformation Model, equation 6) in
+// flsm_goals, together with the previous one; both are relative to the first texel of flsm_reference. flsm_inverse_holders: [regions] 1 / number of
+// regions that contain the node. flsm_goals: [interface][2] blocks [m]. region_base: region of the first interface node; other buffers as in
+// flsm_goal_sum.
 #include "arith.cl"
 #include "texels.cl"
 #include "flsm_goal_sum.cl"

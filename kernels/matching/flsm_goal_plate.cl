@@ -1,7 +1,6 @@
-// First of three passes back from regions to nodes, in the transposed order: sums of the regions along z links. A node o links above a
-// region's centre gets t + o h D e_z from it; the other columns of D wait for their axis.
-// flsm_regions: [regions][4] blocks. flsm_link: [regions][2] at -z, +z. flsm_plates: [regions][4] blocks: sum t, sum h D e_x,
-// sum h D e_y, 0 [m].
+// First of three passes from regions back to nodes, in the transposed order: sums of the regions along z links. A node o links above a region's
+// centre receives t + o h D e_z; the other columns of D are used in the passes of their axes. flsm_regions: [regions][4] blocks. flsm_link:
+// [regions][2] at -z, +z. flsm_plates: [regions][4] blocks: sum t, sum h D e_x, sum h D e_y, 0 [m].
 #include "arith.cl"
 
 __kernel void flsm_goal_plate(__global const float* flsm_regions, __global const int* flsm_link, __global float* flsm_plates) {

@@ -1,5 +1,5 @@
-// Last pass back from regions to nodes: the sum of T X - X over the regions that hold node i [m], along x links, then the regions that
-// reach it on no path x, y, z. missing_of_offset: [regions + 1]; missing_of: [entries] regions; missing_of_factor: [entries] blocks.
+// Last pass from regions back to nodes: the sum of T X - X over the regions that contain node i [m], along x links, plus the regions that no path x,
+// y, z reaches. missing_of_offset: [regions + 1]; missing_of: [entries] regions; missing_of_factor: [entries] blocks.
 #include "flsm_records.cl"
 
 static inline float4 goal_sum(__global const float* flsm_bars, __global const int* flsm_link, __global const float* flsm_regions,

@@ -1,7 +1,7 @@
-// The extra force on interface nodes, F' = beta (g - x) (Hybrid Deformation Model, equation 7), added to node_load.
-// With goals of a step of shape matching H = substeps h ago: held, or EXTRAPOLATED along g - (g before).
-// flsm_slot: [regions]; flsm_goals: [interface][2] blocks [m]; flsm_beta: [interface] [N/m]. step_params[6]: steps since the run began,
-// modulo a multiple of `substeps`, at the first step of the batch.
+// The spring force on interface nodes, F' = beta (g - x) (Hybrid Deformation Model, equation 7), added to node_load. Between two shape-matching
+// steps, H = substeps h apart, the goals are held, or EXTRAPOLATED along g - (previous g). flsm_slot: [regions]; flsm_goals: [interface][2] blocks
+// [m]; flsm_beta: [interface] [N/m]. step_params[6]: steps since the start of the run, modulo a multiple of `substeps`, at the first step of the
+// batch.
 #include "arith.cl"
 
 __kernel void flsm_interface(__global const float* node_u, __global float* node_load, __global const int* flsm_slot,

@@ -1,4 +1,4 @@
-// The moments of a region: sums of plates along z links and of what the ordered sums miss; see flsm_region.cl.
+// The moments of a region: sums of plates along z links plus the entries that the ordered sums miss; see flsm_region.cl.
 static inline float16 region_moments(__global const float* node_texels, __global const float* flsm_plates, __global const int* flsm_link,
                                      __global const int* missing_offset, __global const int* missing,
                                      __global const float* missing_factor, float4 origin, int i) {
@@ -23,7 +23,7 @@ static inline float16 region_moments(__global const float* node_texels, __global
   return sum + listed;
 }
 
-// sum m u (o - d)^T of one work-item's regions, and sum m u.
+// Returns sum m u (o - d)^T of a work-item's regions, and sum m u in ux, uy, uz.
 static inline mat3 central_moments(const float* moments, real dx, real dy, real dz, real* ux, real* uy, real* uz) {
   const texels s = records_block(moments, 0), sx = records_block(moments, 1), sy = records_block(moments, 2), sz = records_block(moments, 3);
   *ux = texels_x(s), *uy = texels_y(s), *uz = texels_z(s);

@@ -1,7 +1,7 @@
-// Records of shape matching: four blocks of four numbers per region (PLIANT_FLSM_RECORD), and their fields over lanes.
-// The lists of what the ordered sums miss hold a number (of a node's slot or of a region) and a block of factors per entry: s, s o_x,
-// s o_y, s o_z with o the offset of the node from the region's centre and s = 1, or -1 for what they reach in vain; times the node's weight
-// on the way to regions. Entries are summed by themselves, block by block.
+// Records of shape matching: four blocks of four numbers per region (PLIANT_FLSM_RECORD), and access to their fields over lanes. The correction lists
+// of the ordered sums hold per entry an index (of a node's slot or a region) and a block of factors s, s o_x, s o_y, s o_z with the offset o of the
+// node from the region's centre; s = 1 for a node that the sums miss, -1 for one that they include wrongly. On the way to regions the factors are
+// multiplied by the node's weight. Entries are summed separately, block by block.
 static inline float16 add_entry(__global const float* factors, int entry, float16 numbers, float16 sum) {
   const float4 f = vload4(entry, factors);
   return fma((float16)(f.xxxx, f.yyyy, f.zzzz, f.wwww), numbers, sum);

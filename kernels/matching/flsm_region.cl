@@ -1,17 +1,17 @@
-// Third pass from nodes to regions: sums of plates along z links and the nodes that no such path reaches; then the region's rigid
-// transformation T (Hybrid Deformation Model, equations 1 to 5; Rivers and James 2007).
+// Third pass from nodes to regions: sums of plates along z links and the nodes that no such path reaches; then the region's rigid transformation T
+// (Hybrid Deformation Model, equations 1 to 5; Rivers and James 2007).
 //
-// With weights m (in units that make the moments plain numbers), d the centroid at rest minus the centre of the window in cells, and o the
-// grid offset of a node from the centre: A = sum m (x - c) (X - C)^T = A_0 + sum m u o^T - (sum m u) d^T, R its rotation,
-// T X = X + t + h D o with D = R - I and t = sum m u / sum m - h D d.
-// flsm_plates: [regions][4] blocks. flsm_link: [regions][2] at -z, +z. missing_offset: [regions + 1]; missing: [entries] slots;
-// missing_factor: [entries] blocks. flsm_reference as in flsm_bar. flsm_rest: [tiles][10][16] 1 / sum m, d (3) [cells], A_0 (xx yy zz xy xz yz).
-// flsm_regions: [regions][4] blocks: t, h D e_x, h D e_y, h D e_z [m]; on entry those of the step before, kept where A vanishes.
+// With weights m (in units that make the moments plain numbers), d the undeformed centroid minus the centre of the window in cells, and o the grid
+// offset of a node from the centre: A = sum m (x - c) (X - C)^T = A_0 + sum m u o^T - (sum m u) d^T, R its rotation, T X = X + t + h D o with D = R -
+// I and t = sum m u / sum m - h D d. flsm_plates: [regions][4] blocks. flsm_link: [regions][2] at -z, +z. missing_offset: [regions + 1]; missing:
+// [entries] slots; missing_factor: [entries] blocks. flsm_reference as in flsm_bar. flsm_rest: [tiles][10][16] 1 / sum m, d (3) [cells], A_0 (xx yy
+// zz xy xz yz). flsm_regions: [regions][4] blocks: t, h D e_x, h D e_y, h D e_z [m]; contains the previous values on entry, which are kept where A
+// vanishes.
 //
-// ELASTIC: the region deforms like a material (host/model/matching/flsm_elastic.cpp). With H = F - I of its best affine fit D becomes
-//   H - q P M,  P = corotated_stress(H, D),  M the inverse of the moments, q the moment that the material stands for.
-// flsm_elastic: [tiles][7][16] M (xx yy zz xy xz yz), q. There flsm_rest has 1 for A_0; where q = 0 it has A_0, M is 1, and the region stays
-// rigid. flsm_pulls: [regions][4] blocks as in flsm_regions, which keep the rigid motion. Neither buffer is used without ELASTIC.
+// ELASTIC: the region deforms like a material (host/model/matching/flsm_elastic.cpp). With H = F - I of its best affine fit, D becomes
+//   H - q P M,  P = corotated_stress(H, D),  M the inverse of the moments, q the second moment of the material.
+// flsm_elastic: [tiles][7][16] M (xx yy zz xy xz yz), q. flsm_rest then holds the identity for A_0; where q = 0 it holds A_0, M is the identity, and
+// the region is rigid. flsm_pulls: [regions][4] blocks as flsm_regions, which keep the rigid motion. Neither buffer is used without ELASTIC.
 #include "arith.cl"
 #include "texels.cl"
 #include "deformation.cl"
@@ -22,7 +22,7 @@
 #define REST(plane) LOAD(rest, (plane)*PLIANT_TILE)
 #define SOFT(plane) LOAD(soft, (plane)*PLIANT_TILE)
 
-// a m with the symmetric m (xx yy zz xy xz yz).
+// a m for a symmetric m (xx yy zz xy xz yz).
 static inline mat3 times_symmetric(mat3 a, real xx, real yy, real zz, real xy, real xz, real yz) {
   const mat3 p = {fma(a.m02, xz, fma(a.m01, xy, a.m00 * xx)), fma(a.m02, yz, fma(a.m01, yy, a.m00 * xy)), fma(a.m02, zz, fma(a.m01, yz, a.m00 * xz)),
                   fma(a.m12, xz, fma(a.m11, xy, a.m10 * xx)), fma(a.m12, yz, fma(a.m11, yy, a.m10 * xy)), fma(a.m12, zz, fma(a.m11, yz, a.m10 * xz)),
@@ -30,8 +30,8 @@ static inline mat3 times_symmetric(mat3 a, real xx, real yy, real zz, real xy, r
   return p;
 }
 
-// P of the deformation H with the rotation I + D: R (shear (s - s^2 / 2 + s^3 / 8) + bulk tr s), s = R^T (H - D), which is symmetric; softer at
-// large s (host/model/matching/flsm_elastic.cpp).
+// First Piola-Kirchhoff stress P of the deformation H with the rotation I + D: R (shear (s - s^2 / 2 + s^3 / 8) + bulk tr s), with the symmetric s =
+// R^T (H - D); softer at large s (host/model/matching/flsm_elastic.cpp).
 static inline mat3 corotated_stress(mat3 h, mat3 d, real shear, real bulk) {
   const mat3 r = {h.m00 - d.m00, h.m01 - d.m01, h.m02 - d.m02, h.m10 - d.m10, h.m11 - d.m11, h.m12 - d.m12, h.m20 - d.m20, h.m21 - d.m21, h.m22 - d.m22};
   const real xx = fma(d.m20, r.m20, fma(d.m10, r.m10, fma(d.m00, r.m00, r.m00))), xy = fma(d.m20, r.m21, fma(d.m10, r.m11, fma(d.m00, r.m01, r.m01)));

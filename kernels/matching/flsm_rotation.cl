@@ -1,5 +1,5 @@
-// The rotation of a region: Horn's quaternion (1987), the eigenvector of the largest eigenvalue of a symmetric 4 x 4 matrix, by repeated
-// squaring. A proper rotation for planar, linear and inverted regions; no branch, no trigonometry, no start value.
+// The rotation of a region: Horn's quaternion (1987), the eigenvector of the largest eigenvalue of a symmetric 4 x 4 matrix, by repeated squaring. It
+// is a proper rotation also for planar, linear and inverted regions, without branches, trigonometry or an initial guess.
 typedef struct {
   real n00, n01, n02, n03, n11, n12, n13, n22, n23, n33;
 } symmetric4;
@@ -19,8 +19,8 @@ static inline symmetric4 squared(symmetric4 n) {
   return s;
 }
 
-// Trace in [1, 2) by a power of two, which a processor has sooner than a quotient, and entries on a grid of 2^-31: what is smaller would
-// become denormal within two squarings.
+// Scales the trace to [1, 2) by a power of two, which is faster than a division, and rounds entries to a grid of 2^-31: smaller values would become
+// denormal within two squarings.
 static inline symmetric4 normalised(symmetric4 n) {
   const real grid = 0.005859375f;  // 1.5 * 2^23 * 2^-31
   const real scale = AS_REAL(0x7f000000 - (AS_INTEGER((n.n00 + n.n11) + (n.n22 + n.n33)) & 0x7f800000));
@@ -38,9 +38,9 @@ static inline symmetric4 normalised(symmetric4 n) {
   return s;
 }
 
-// R - I of the rotation R nearest to a + e, where a is symmetric (the moment at rest) and e what the displacements add: antisymmetric
-// parts come from e alone, so that small rotations keep their digits. `size` is the trace of a; `ok` becomes false where a + e is nothing
-// beside it or not finite, and R is I there.
+// Returns R - I for the rotation R closest to a + e, with the symmetric undeformed moment a and the contribution e of the displacements.
+// Antisymmetric parts come from e alone, so small rotations keep their precision. `size`: trace of a. Sets `ok` to false and R = I if a + e is
+// negligible compared to it or not finite.
 static inline mat3 rotation_of(real axx, real ayy, real azz, real axy, real axz, real ayz, mat3 e, real size, integer* ok) {
   const real none = 0.0f, one = 1.0f;
   const mat3 b = {axx + e.m00, axy + e.m01, axz + e.m02, axy + e.m10, ayy + e.m11, ayz + e.m12, axz + e.m20, ayz + e.m21, azz + e.m22};
@@ -75,7 +75,7 @@ static inline mat3 rotation_of(real axx, real ayy, real azz, real axy, real axz,
   TAKE(n.n02, n.n12, n.n22, n.n23, n.n22)
   TAKE(n.n03, n.n13, n.n23, n.n33, n.n33)
 #undef TAKE
-  const real unit = one / largest;  // first, for the squares of a column may be too small
+  const real unit = one / largest;  // before squaring, since the squares of a column may underflow
   w = w * unit, x = x * unit, y = y * unit, z = z * unit;
   const real two = 2.0f / fma(z, z, fma(y, y, fma(x, x, w * w)));
   const real x2 = two * x, y2 = two * y, z2 = two * z;

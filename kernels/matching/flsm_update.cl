@@ -1,7 +1,7 @@
-// Advance the nodes that shape matching alone moves (Hybrid Deformation Model, equations 6, 8 and 9, in increments w = H v):
+// Advances the nodes that only shape matching moves (Hybrid Deformation Model, equations 6, 8 and 9, in increments w = H v):
 //   w <- a w + alpha (g - x) + b (R / m + g),  u <- u + w,  H = substeps h, a and b as in node_update for the step H.
-// flsm_alpha: [batches]. The slots of these nodes are consecutive from node_base on; region i belongs to node i. Arguments as in flsm_goal and node_update.
-// A node whose displacement stops being finite marks itself in `fault`. HAS_LOAD: R from node_load.
+// flsm_alpha: [batches]. The slots of these nodes are consecutive from node_base; region i belongs to node i. Arguments as in flsm_goal and
+// node_update. A node whose displacement is not finite is marked in `fault`. HAS_LOAD: R from node_load.
 #include "arith.cl"
 #include "texels.cl"
 #include "flsm_goal_sum.cl"

@@ -1,5 +1,5 @@
-// Once per batch: what the elements' marks say, among every 256th element. fault_summary: [256][4] step (0: none) and element of the
-// first fault, number of elements that were inverted, and the lowest of those. The earliest step wins, then the lowest element.
+// Once per batch: reduces the fault marks, each work-item over every 256th element. fault_summary: [256][4] step (0: none) and element of the first
+// fault, number of inverted elements, and the lowest of them. The earliest step comes first, then the lowest element.
 #include "arith.cl"
 
 __kernel void fault_reduce(__global const int* fault, __global int* fault_summary, int elements) {

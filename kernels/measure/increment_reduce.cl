@@ -1,5 +1,5 @@
-// Once per batch: the largest component of an increment among every 256th node. increment_summary: [256] [m]. What is no number is
-// left out: it is a fault of an element.
+// Once per batch: the largest component of an increment, each work-item over every 256th node. increment_summary: [256] [m]. NaN is skipped: it shows
+// up as a fault of an element.
 #include "arith.cl"
 
 __kernel void increment_reduce(__global const float* node_w, __global float* increment_summary, int texels) {

@@ -1,4 +1,4 @@
-// The arithmetic limit of a device: eight independent chains of 64 fma per index, 1024 operations.
+// Measures a device's arithmetic limit: eight independent chains of 64 fma per index, 1024 operations.
 #include "arith.cl"
 
 __kernel void limit_fma(__global float* a, float s) {

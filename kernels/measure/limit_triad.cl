@@ -1,4 +1,4 @@
-// The memory limit of a device: a <- b + s c over long arrays (McCalpin's triad), 12 bytes and 2 operations per number.
+// Measures a device's memory bandwidth: a <- b + s c over long arrays (McCalpin's triad), 12 bytes and 2 operations per number.
 #include "arith.cl"
 
 __kernel void limit_triad(__global float* a, __global const float* b, __global const float* c, float s) {

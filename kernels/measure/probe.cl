@@ -1,6 +1,5 @@
-// Known answers: every operation that docs/determinism.md allows, on inputs where devices are known to differ. The host compares the
-// results bit for bit before a device may call itself bit-exact (host/backends/interface/probe.cpp).
-// a, b, c, k: [count]. reals: [17][count], ints: [5][count].
+// Known-answer test: every operation that docs/determinism.md allows, on inputs for which devices are known to differ. A device counts as bit-exact
+// only if the host finds all results equal bit for bit (host/backends/interface/probe.cpp). a, b, c, k: [count]. reals: [17][count], ints: [5][count].
 #include "arith.cl"
 
 #if LANES == 16

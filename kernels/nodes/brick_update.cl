@@ -1,6 +1,5 @@
-// The same as node_update for the nodes of lattice bricks: a node adds what its own brick gives, then what the bricks at
-// -x, -y, -xy, -z, -xz, -yz, -xyz give, where it lies on the face, edge or corner they share. Arguments as in node_update and
-// tled_hex8_brick_force; brick nodes come first in node_u.
+// node_update for the nodes of lattice bricks. A node sums the forces of its own brick, then, if it lies on a shared face, edge or corner, those of
+// the bricks at -x, -y, -xy, -z, -xz, -yz, -xyz. Arguments as in node_update and tled_hex8_brick_force; brick nodes come first in node_u.
 #include "arith.cl"
 #include "texels.cl"
 #include "integrate.cl"

@@ -1,4 +1,4 @@
-// The last lines of every update kernel: external loads and a step of the integrator, see node_update.cl.
+// Common end of every update kernel: external loads and a step of the integrator, see node_update.cl.
 #include "integrator.cl"
 #if LANES == 16
 #define LOAD_QUAD(p) vload16(0, (p) + 4 * i)
@@ -11,7 +11,7 @@
 #define GRAVITY_QUAD (quad)(step_params[1], step_params[2], step_params[3], 0.0f)
 #endif
 
-// f: summed element forces (w is not used); i: first texel of the quad.
+// f: summed element forces (w is unused); i: first texel of the quad.
 static inline void integrate_quad(quad f, __global float* node_u, __global float* node_w, __global const float* node_load,
                            __global float* node_force, __global const float* step_params, int i) {
 #if HAS_LOAD

@@ -1,4 +1,4 @@
-// Explicit Euler, Y <- Y + h f(Y) with Y = (u, v): node_w holds h v, with which the node leaves u.
+// Explicit Euler, Y <- Y + h f(Y) with Y = (u, v). node_w holds h v, the velocity of the next displacement update.
 //   u <- u + w,  w <- a w + h^2 ((R - F) / m + g), all at the old u and w;  a = 1 - c h
 #define W_OF(now, next) ((next) - (now))
 

@@ -1,8 +1,8 @@
-// External load R of the nodes that have any: forces along their curves, then pressure of the surface triangles, then what the
-// elements outside the bricks take from a brick node. All in ascending order.
+// External load R of the loaded nodes: forces times their curves, then pressure of the surface triangles, then forces of elements outside the bricks
+// on brick nodes. All are summed in ascending order.
 // load_node: [n]; load_offset: [n + 1][3] first force, triangle and corner of each node; load_force: texels [N]; load_curve;
 // load_triangle, load_weight [1]; load_corner: positions in corner_force; pressure_force: [triangles] texels [N].
-// curve_value: [steps + 1][curves], the row of the present time is `step`.
+// curve_value: [steps + 1][curves], row `step` is the current time.
 #include "arith.cl"
 
 __kernel void node_load(__global float* node_load, __global const int* load_node, __global const int* load_offset,

@@ -1,5 +1,4 @@
-// Prescribed components of displacement: u = target * curve(t + h), and in node_w what the integrator keeps of a motion from
-// target * curve(t) to there.
+// Prescribed components of displacement: u = target * curve(t + h), and node_w as the integrator defines it for the motion from target * curve(t).
 // prescribed_node: [n]; prescribed_axes: [n] bit mask of x, y, z; prescribed_curve: [n][3] curve of each component;
 // prescribed_target: [n] texels [m]; curve_value: [steps of the batch + 1][curves] factors.
 #include "arith.cl"

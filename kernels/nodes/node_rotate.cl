@@ -1,7 +1,7 @@
-// Prescribed components of displacement of nodes on circles about an axis: u = p (cos(angle) - 1) + q sin(angle) at t + h, and in
-// node_w what the integrator keeps of such a motion. The host gives the cosine less one and, as the next curve, the sine: there is
-// none on the device. rotated_node: [n]; rotated_axes: [n] bit mask of x, y, z; rotated_curve: [n][3] curve of each component;
-// rotated_cosine, rotated_sine: [n] texels p, q [m]; curve_value: [steps of the batch + 1][curves].
+// Prescribed rotation about an axis: u = p (cos(angle) - 1) + q sin(angle) at t + h, and node_w as the integrator defines it for this motion. The
+// host provides cos - 1 and, as the next curve, the sine, since kernels may not use trigonometric functions. rotated_node: [n]; rotated_axes: [n] bit
+// mask of x, y, z; rotated_curve: [n][3] curve of each component; rotated_cosine, rotated_sine: [n] texels p, q [m]; curve_value: [steps of the batch
+// + 1][curves].
 #include "arith.cl"
 #include "integrator.cl"
 

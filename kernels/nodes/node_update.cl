@@ -1,11 +1,10 @@
-// Sum the corner forces at each node and advance it by a step of the integrator (integrator.cl).
-// An increment below `still` is taken as none, and a displacement below `fine` is rounded to a multiple of 2^-22 fine (of 2^-23 fine it
-// is one anyway above), so that a strain is none or so large that its cube is a normal number: the far field of a wave decays over tens
-// of elements, and denormal numbers cost a processor a hundred times what others do. And a body at rest stays at rest.
-// node_u: [nodes] (u [m], 1/m [1/kg]); node_w: [nodes] (what the integrator keeps of the motion [m], its decay [1]).
-// gather_offset: [tiles + 1] rows; gather_index: [rows][16] positions in corner_force, ascending per node, padded with the position
-// of a -0 (adding -0 changes nothing). step_params: h [s], g [m/s^2] (3), still [m], fine [m].
-// FORCE_ONLY: write R - F to node_force (without gravity) and leave the node where it is. HAS_LOAD: R from node_load.
+// Sums the corner forces at each node and advances it by a step of the integrator (integrator.cl). Increments below `still` become 0, and
+// displacements below `fine` are rounded to a multiple of 2^-22 fine (above, they are a multiple of 2^-23 fine anyway). So a strain is either 0 or
+// large enough that its cube is a normal number: the far field of a wave decays over tens of elements, and denormal numbers cost a processor a
+// hundred times more than others. It also keeps a body at rest. node_u: [nodes] (u [m], 1/m [1/kg]); node_w: [nodes] (motion as the integrator stores
+// it [m], its decay [1]). gather_offset: [tiles + 1] rows; gather_index: [rows][16] positions in corner_force, ascending per node, padded with the
+// position of a -0 (adding -0 changes nothing). step_params: h [s], g [m/s^2] (3), still [m], fine [m]. FORCE_ONLY: writes R - F to node_force
+// (without gravity) and does not move the node. HAS_LOAD: R from node_load.
 #include "arith.cl"
 #include "texels.cl"
 #include "integrate.cl"
@@ -16,7 +15,7 @@ __kernel void node_update(__global float* node_u, __global float* node_w, __glob
   const int i = FIRST_INDEX;
   const int first = gather_offset[i / PLIANT_TILE], last = gather_offset[i / PLIANT_TILE + 1];
 #if LANES == 16
-  // One lane after the other: three scalar additions per corner beat the sixteen insertions per component of a vector gather.
+  // Lane by lane: three scalar additions per corner are faster than the sixteen insertions per component of a vector gather.
   float sum[3][16];
   for (int l = 0; l < 16; ++l) {
     float x = -0.0f, y = -0.0f, z = -0.0f;

@@ -1,4 +1,4 @@
-// Follower pressure: the force on a deformed surface triangle, -p(t) (x1 - x0) x (x2 - x0) / 2 [N]; its corners share it in load_weight.
+// Follower pressure: the force on a deformed surface triangle, -p(t) (x1 - x0) x (x2 - x0) / 2 [N]; load_weight distributes it to its corners.
 // pressure_triangle: [n][3] surface vertices; pressure_value: [n] p [Pa]; pressure_curve: [n]; pressure_force: [n] texels.
 #include "arith.cl"
 

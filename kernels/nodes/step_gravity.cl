@@ -1,7 +1,6 @@
-// What the updates of this step take from step_params, with gravity times its curve at the step's beginning. Only scenes whose
-// gravity has a curve run it; the updates of others read step_params itself.
-// step_now, step_params: [8] time step [s], gravity [m/s^2], and what the host keeps behind it; curve_value: [steps +
-// 1][curves], the row of the present time is `step`; curve: which of the curves.
+// Copies step_params for the updates of this step, with gravity times its curve at the start of the step. Runs only in scenes whose gravity has a
+// curve; in others the updates read step_params directly. step_now, step_params: [8] time step [s], gravity [m/s^2], and further parameters of the
+// host; curve_value: [steps + 1][curves], row `step` is the current time; curve: index of gravity's curve.
 #include "arith.cl"
 
 __kernel void step_gravity(__global float* step_now, __global const float* step_params, __global const float* curve_value,

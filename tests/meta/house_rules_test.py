@@ -117,7 +117,7 @@ GOOD = {
     "cpu_ref/registry.cpp": "ROW(press)\n",
     "tests/kernels/contact/press_test.cpp": "TEST(press, bits)\n",
     "host/program/pass.h": "",
-    "host/backend/backend.h": '#include "program/pass.h"\n',
+    "host/backends/interface/backend.h": '#include "program/pass.h"\n',
 }
 
 

@@ -1,4 +1,4 @@
-// The choice of a backend by name. The only room that knows them all.
+// Opens backends by name. The only room that includes all of them.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -9,15 +9,15 @@
 
 namespace pliant {
 
-/// Every backend of this machine for work: "cpu", "cpu:double", "opencl:0", ... Each is opened and probed. Never throws; a
+/// Returns all backends of this machine: "cpu", "cpu:double", "opencl:0", ... Each is opened and probed. Never throws; a
 /// backend that cannot be opened has the reason in tolerance_reason.
 std::vector<BackendInfo> list_backends();
 
-/// `spec` is auto, cpu, cpu:double, cpu:check, opencl or opencl:N (opencl means opencl:0). auto takes a bit-exact GPU, else a
-/// bit-exact OpenCL device of another kind (a processor first), else cpu; `why`, if given, receives which one and why. On a
-/// processor a scene of few `nodes` (0: unknown) gets the device without threads, if there is one: launches would cost more
-/// than a second core gives. Throws Error for any other spec, and where the backend asked for does not exist: it says what is
-/// missing.
+/// Opens the backend `spec`: auto, cpu, cpu:double, cpu:check, opencl or opencl:N (opencl means opencl:0). auto selects a
+/// bit-exact GPU, otherwise another bit-exact OpenCL device (processors first), otherwise cpu; `why` (may be null) receives
+/// the choice and the reason. On a processor, scenes with few `nodes` (0: unknown) use a device without threads, if
+/// available, because launches would cost more than a second core gains. Throws Error for any other spec and for a missing
+/// backend, with what is missing.
 std::unique_ptr<Backend> open_backend(const std::string& spec, std::string* why = nullptr, std::int64_t nodes = 0);
 
 }  // namespace pliant

@@ -47,10 +47,10 @@ void round_reals(std::span<const double> values, double* out) { std::copy(values
 
 namespace {
 
-constexpr std::size_t kBlock = 32;  // values that are compared together
-constexpr std::size_t kGap = 1024;  // unchanged values that are sent rather than a range of its own
+constexpr std::size_t kBlock = 32;  // number of values compared together
+constexpr std::size_t kGap = 1024;  // unchanged values that are uploaded instead of starting a new range
 
-/// Whether values [first, last) are the same bits; those that are not given are the padding.
+/// Returns true if values [first, last) have the same bits; unspecified values are the padding.
 template <class T>
 bool same_values(const std::vector<T>& a, T a_padding, const std::vector<T>& b, T b_padding, std::size_t first,
                  std::size_t last) {

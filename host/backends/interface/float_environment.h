@@ -1,11 +1,11 @@
-// The arithmetic of the contract whatever the embedding program has set.
+// Sets the floating-point environment that the results depend on, regardless of the embedding program.
 #pragma once
 #include <cfenv>
 
 namespace pliant {
 
-/// Round to nearest, denormals kept, no traps, for as long as it lives. A program linked with -ffast-math, for example, starts
-/// with denormals flushed to zero, and its threads inherit that.
+/// While it lives: round to nearest, denormals kept, no traps. A program linked with -ffast-math, for example, starts with
+/// denormals flushed to zero, and its threads inherit that.
 class DefaultFloatEnvironment {
  public:
   DefaultFloatEnvironment() {

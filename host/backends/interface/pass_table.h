@@ -1,4 +1,4 @@
-// What both backends need around a Program: pass equality, a table of prepared passes, and the memory check.
+// Shared by the backends: pass equality, a table of prepared passes, and the memory check.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace pliant {
 
-/// The same launch: kernel, defines, arguments, shape, count and label agree.
+/// Returns true for the same launch: kernel, defines, arguments, shape, count and label agree.
 bool same_pass(const Pass& a, const Pass& b);
 
 /// "LAW=0 FORCE_ONLY=1", for messages.
@@ -20,14 +20,14 @@ std::string defines_text(const std::vector<std::pair<std::string, int>>& defines
 /// "1.50 GiB (1610612736 bytes)".
 std::string bytes_text(std::uint64_t bytes);
 
-/// The rows of the loaded program and of its extension, by id. Both programs stay where they are.
+/// The buffer tables of the loaded program and its extension, by id. Both programs must not move.
 class BufferTable {
  public:
   void load(const Program& program) { parts_ = {&program, nullptr}; }
   void extend(const Program& extension) { parts_[1] = &extension; }
   void drop_extension() { parts_[1] = nullptr; }
   [[nodiscard]] std::size_t size() const { return own() + (parts_[1] != nullptr ? parts_[1]->buffers.size() : 0); }
-  /// Buffers of the program itself.
+  /// Number of buffers of the program itself.
   [[nodiscard]] std::size_t own() const { return parts_[0] != nullptr ? parts_[0]->buffers.size() : 0; }
   [[nodiscard]] const Buffer& row(BufferId id) const {
     const auto i = static_cast<std::size_t>(id);
@@ -39,20 +39,20 @@ class BufferTable {
   std::array<const Program*, 2> parts_{};
 };
 
-/// Throws Error if an argument names none of the table's `buffers` buffers, if a size is impossible, or if `count` does not
-/// suit the shape.
+/// Throws Error if an argument is not one of the `buffers` buffers of the table, if a size is impossible, or if `count` does
+/// not fit the shape.
 void check_pass(const Pass& pass, std::size_t buffers);
 
-/// Throws Error if an extension was built for a program of another number of buffers than the loaded one.
+/// Throws Error if an extension was built for a program with a different number of buffers than the loaded one.
 void check_extension(const Program& extension, std::size_t buffers);
 
-/// Throws Error if a buffer is larger than `max_buffer` bytes or all together larger than `total` bytes: it says how much is
-/// needed, what there is, and which buffer is the largest. `real_bytes` is 4 or 8.
+/// Throws Error if a buffer is larger than `max_buffer` bytes or all together are larger than `total` bytes, with the memory
+/// needed and available and the largest buffer. `real_bytes`: 4 or 8.
 void check_memory(const BufferTable& table, std::size_t real_bytes, std::uint64_t max_buffer, std::uint64_t total,
                   const std::string& device);
 
-/// Every pass is prepared once. Those of the loaded program are found by their address, copies of them by value, and passes
-/// never seen before are prepared on demand.
+/// Caches prepared passes. Passes of the loaded program are found by address, copies of them by value; unknown passes are
+/// prepared on first use.
 template <class Prepared>
 class PassTable {
  public:
@@ -60,7 +60,7 @@ class PassTable {
     entries_.clear();
     by_address_.clear();
   }
-  /// Prepare all lists of a program with `make(pass)`, which returns a Prepared.
+  /// Prepares all lists of a program with `make(pass)`, which returns a Prepared.
   template <class Make>
   void load(const Program& program, Make&& make) {
     clear();
@@ -68,7 +68,7 @@ class PassTable {
       for (const Pass& pass : *list) by_address_.emplace(&pass, &by_value(pass, make));
     }
   }
-  /// Whether it is a pass of the loaded program itself.
+  /// Returns true if it is a pass of the loaded program itself.
   [[nodiscard]] bool holds(const Pass& pass) const {
     const auto found = by_address_.find(&pass);
     return found != by_address_.end() && same_pass(found->second->pass, pass);
@@ -79,7 +79,7 @@ class PassTable {
     if (found != by_address_.end() && same_pass(found->second->pass, pass)) return found->second->prepared;
     return by_value(pass, make).prepared;
   }
-  /// In the order in which they were prepared: visit(pass, prepared).
+  /// Calls visit(pass, prepared) in the order of preparation.
   template <class Visit>
   void for_each(Visit&& visit) {
     for (auto& entry : entries_) visit(entry->pass, entry->prepared);

@@ -40,7 +40,7 @@ struct Case {
   std::int32_t k = 0;
 };
 
-/// Every pair of values at which arithmetic changes its kind.
+/// All pairs of values at which the result of an operation changes its class.
 void add_special(std::vector<Case>& cases) {
   using limits = std::numeric_limits<float>;
   const float special[] = {0.0f, limits::denorm_min(), 1e-40f,        0x1.fffffcp-127f,   limits::min(),      0.5f, 1.0f, 1.5f,
@@ -53,7 +53,7 @@ void add_special(std::vector<Case>& cases) {
   }
 }
 
-/// Products whose rounding error is all that is left, and halfway cases that an fma through double rounds twice.
+/// Products that cancel to their rounding error, and halfway cases that an fma through double would round twice.
 void add_fma(std::vector<Case>& cases, std::mt19937& random) {
   std::uniform_real_distribution<float> mantissa(1.0f, 2.0f);
   for (int i = 0; i < 400; ++i) {
@@ -171,7 +171,7 @@ std::string describe(const std::string& operation, const Case& q, std::uint32_t 
   return fmt::format("{} ({}) with {} gives 0x{:08x} instead of 0x{:08x}", operation, pass.label, input_text(q), got, wanted);
 }
 
-/// The first difference of one pass, or nothing.
+/// Returns the first difference of one pass, or an empty text.
 std::string compare(const Pass& pass, Backend& backend) {
   const auto bytes = [&](std::size_t arg) { return backend.read_bytes(std::get<0>(pass.args[arg])); };
   const std::vector<std::uint8_t> real_bytes = bytes(4), int_bytes = bytes(5);

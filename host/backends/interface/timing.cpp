@@ -6,7 +6,7 @@
 namespace pliant {
 namespace {
 
-constexpr std::int32_t kLongest = 64;  // steps that a batch may hold: rows of curve_value
+constexpr std::int32_t kLongest = 64;  // maximum steps per batch: rows of curve_value
 
 double seconds_for(Backend& backend, const std::vector<Pass>& passes, std::int32_t runs) {
   const auto start = std::chrono::steady_clock::now();

@@ -1,4 +1,4 @@
-// Buffers on a device: made with their initial values, or brought from one program's values to the next's.
+// Device buffers: created with initial values, or updated from one program to the next.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -12,18 +12,18 @@ namespace pliant::opencl {
 
 struct DeviceMemory {
   cl::Buffer buffer;
-  std::size_t values = 0;  ///< there is room for
-  bool written = false;    ///< by the host, since its initial values
+  std::size_t values = 0;  ///< capacity
+  bool written = false;    ///< written by the host after its initial values
 };
 
-/// Transfers that the host does not wait for one by one: each wait costs as much as several of them.
+/// Batches transfers, because waiting for each one costs as much as several transfers.
 class Upload {
  public:
   explicit Upload(cl::CommandQueue& queue) : queue_(queue) {}
   Upload(const Upload&) = delete;
   Upload& operator=(const Upload&) = delete;
   ~Upload();
-  /// Initial values [first, last) of a buffer, which must stay as it is until finish().
+  /// Uploads initial values [first, last) of a buffer, which must not change until finish().
   void write(const Buffer& buffer, std::size_t first, std::size_t last, cl::Buffer& memory);
   void finish();
 
@@ -34,14 +34,14 @@ class Upload {
 
 DeviceMemory load_memory(const cl::Context& context, Upload& upload, const Buffer& buffer);
 
-/// The same table row in two programs; `before` is nullptr if the first has none.
+/// The same buffer in two programs; `before` is nullptr if the first one lacks it.
 struct BufferChange {
   const Buffer* before;
   const Buffer* next;
-  std::uint64_t most_bytes;  ///< of one allocation
+  std::uint64_t most_bytes;  ///< limit of one allocation
 };
 
-/// `memory` holds change.before. What it returns holds the initial values of change.next.
+/// `memory` contains change.before; the returned memory contains the initial values of change.next.
 DeviceMemory patch_memory(const cl::Context& context, Upload& upload, const BufferChange& change, DeviceMemory memory);
 
 }  // namespace pliant::opencl

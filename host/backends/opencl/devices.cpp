@@ -26,7 +26,8 @@ bool is_single_thread(const cl::Device& device) { return device.getInfo<CL_DEVIC
 }  // namespace
 
 std::vector<cl::Device> all_devices() {
-  // PoCL offers that device beside the one with a thread per core only when asked; what the user has set counts.
+  // PoCL lists the single-threaded device in addition to the one with a thread per core only on request; a value set by the
+  // user has priority.
   setenv("POCL_DEVICES", "pthread basic", 0);
   std::vector<cl::Device> devices;
   std::vector<cl::Platform> platforms;

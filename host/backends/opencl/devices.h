@@ -1,4 +1,4 @@
-// Which OpenCL devices there are.
+// Lists the OpenCL devices.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,13 +8,13 @@
 
 namespace pliant::opencl {
 
-/// All devices of all platforms; empty (never an exception) when there are none.
+/// Returns all devices of all platforms; empty (never an exception) if there are none.
 std::vector<cl::Device> all_devices();
 
-/// Everything but the probe's verdict. `index` is the N of opencl:N.
+/// Returns everything except the result of the probe. `index` is the N of opencl:N.
 BackendInfo describe_device(const cl::Device& device, int index);
 
-/// The build options that the contract asks of this device (docs/determinism.md).
+/// Returns the build options for bit-exact arithmetic on this device (docs/determinism.md).
 std::string build_options(const cl::Device& device);
 
 }  // namespace pliant::opencl

@@ -1,4 +1,4 @@
-// Builds kernels, each distinct (stem, defines, lanes) once; what another backend of the process has built is taken from there.
+// Builds each distinct kernel (stem, defines, lanes) once, and reuses programs built by other backends of the process.
 #pragma once
 #include <map>
 #include <memory>
@@ -13,17 +13,17 @@ namespace pliant::opencl {
 
 using Files = std::map<std::string, std::string>;
 
-/// The text of `file` with its #include "x" lines replaced from `files`. Every included text carries its own guard, so that it
-/// counts once also when it is included under a condition. Throws Error (internal) that names a missing file and who wants it.
+/// Returns the text of `file` with its #include "x" lines replaced from `files`. Each included text has its own guard, so
+/// that it counts once even if included conditionally. Throws Error (internal) with a missing file and the including one.
 std::string resolve_includes(const Files& files, const std::string& file);
 
 class KernelCache {
  public:
-  /// `files` is kernels/ and whatever a test adds; `device_name` is for messages.
+  /// `files`: kernels/ and additional files of tests; `device_name` is for messages.
   KernelCache(std::shared_ptr<SharedContext> context, cl::Device device, Files files, std::string device_name);
 
-  /// A new kernel object (arguments unset) of the program <stem>.cl. Throws Error with device, kernel, defines and the
-  /// compiler's log.
+  /// Returns a new kernel object (arguments unset) of the program <stem>.cl. Throws Error with device, kernel, defines and
+  /// the compiler's log.
   cl::Kernel make(const std::string& stem, const std::vector<std::pair<std::string, int>>& defines, int lanes);
 
  private:

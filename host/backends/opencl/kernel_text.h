@@ -1,4 +1,4 @@
-// The texts of kernels/, embedded at build time.
+// The sources of kernels/, embedded at build time.
 #pragma once
 #include <map>
 #include <string>

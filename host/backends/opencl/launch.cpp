@@ -43,7 +43,7 @@ std::vector<Launch> plan_launches(const Pass& pass, const LaunchRules& rules) {
 }
 
 Launch plan_listed(std::int64_t indices, const LaunchRules& rules) {
-  // Lists are as long as what is near and change from look to look: one local size, for which a kernel is compiled once.
+  // The length of lists changes with every search, so use a single local size, for which the kernel is compiled once.
   const std::size_t global = static_cast<std::size_t>(indices) / static_cast<std::size_t>(rules.lanes);
   const std::size_t local =
       rules.cpu ? static_cast<std::size_t>(16 / rules.lanes) : std::min<std::size_t>(64, rules.largest / 16 * 16);

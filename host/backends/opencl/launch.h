@@ -1,4 +1,4 @@
-// How the index space of a pass is cut into work-items and work-groups. No choice made here can change a result.
+// Splits the index space of a pass into work-items and work-groups. These choices do not affect results.
 #pragma once
 #include <cstddef>
 #include <vector>
@@ -17,17 +17,18 @@ struct Launch {
 };
 
 struct LaunchRules {
-  int lanes = 1;            ///< of `lanes` and `bricks` passes
+  int lanes = 1;            ///< for `lanes` and `bricks` passes
   int forced_local = 0;     ///< used where it divides the global size
-  std::size_t largest = 1;  ///< work-items that a group of this kernel may have
+  std::size_t largest = 1;  ///< maximum number of work-items per group of this kernel
   bool cpu = false;
 };
 
-/// The enqueues of one run of `pass`; none if its count is zero. A `lanes` or `items` pass may be cut in two (the second with a
-/// global offset), so such kernels ask for get_global_id and for nothing else; `bricks` passes with one lane have groups of 16.
+/// Returns the enqueues of one run of `pass`; none if its count is zero. A `lanes` or `items` pass may be split in two (the
+/// second with a global offset), so such kernels may use only get_global_id; `bricks` passes with one lane have groups of 16.
 std::vector<Launch> plan_launches(const Pass& pass, const LaunchRules& rules);
 
-/// The enqueue of a pass over a list of `indices` (Pass::active); a last group reaches beyond them, where lists hold -1.
+/// Returns the enqueue of a pass over a list of `indices` (Pass::active); the last group may extend beyond them, where lists
+/// hold -1.
 Launch plan_listed(std::int64_t indices, const LaunchRules& rules);
 
 }  // namespace pliant::opencl

@@ -22,7 +22,7 @@ std::string error_name(cl_int code);
 /// "clEnqueueWriteBuffer failed with CL_OUT_OF_RESOURCES (-5) on opencl:0 (...)".
 Error translate(const cl::Error& error, ErrorCode code, const std::string& where);
 
-/// Runs `call` and turns what OpenCL throws into Error; `where` names the device and what was being done.
+/// Runs `call` and converts OpenCL exceptions to Error; `where` names the device and the operation.
 template <class Call>
 auto guarded(ErrorCode code, const std::string& where, Call&& call) -> decltype(call()) {
   try {

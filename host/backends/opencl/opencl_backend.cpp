@@ -222,7 +222,7 @@ class OpenclBackend final : public Backend {
       guarded(ErrorCode::bad_input, place(buffer), [&] {
         if (same == nullptr) {
           memory[i] = opencl::load_memory(context_, upload, buffer);
-          if (before == nullptr) upload.finish();  // what does not fit is told with its name
+          if (before == nullptr) upload.finish();  // so that an allocation failure names the buffer
         } else {
           memory[i] = opencl::patch_memory(context_, upload, {same, &buffer, info_.max_buffer_bytes},
                                            old[static_cast<std::size_t>(same - before->buffers.data())]);

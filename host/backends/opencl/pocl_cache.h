@@ -1,14 +1,14 @@
-// The folder where PoCL keeps compiled kernels, which it cannot do without.
+// The folder in which PoCL stores compiled kernels, which it requires.
 #pragma once
 #include <string>
 
 namespace pliant::opencl {
 
-/// PoCL has no device, or one that cannot compile, where this folder cannot be written. Gives it a folder for this process
-/// alone then, removed at the end of the process. To be called before PoCL is asked for its devices; does its work once.
+/// If this folder is not writable, PoCL has no device or one that cannot compile. This then sets a private folder, removed at
+/// the end of the process. Call before PoCL's devices are listed; runs once.
 void ensure_pocl_cache();
 
-/// What ensure_pocl_cache found wrong, and what follows from it; empty: nothing, or it was not called.
+/// Returns what ensure_pocl_cache found and its consequence; empty: no problem, or not called.
 const std::string& pocl_cache_remark();
 
 }  // namespace pliant::opencl

@@ -1,9 +1,9 @@
-// What the backends of one process share on one device: the OpenCL context and the programs built in it.
+// OpenCL context and programs that the backends of a process share on one device.
 //
-// PoCL preprocesses a kernel with Clang whenever a program is built, also when its cache on disk has the compiled kernel: 50 to
-// 100 ms each, a second or more for a scene. Backends on a processor therefore share one context, which stays for the life of
-// the process and keeps its programs. On other devices a context holds memory of the device, and a fault of one may make it
-// useless: there each backend has its own.
+// PoCL preprocesses a kernel with Clang whenever a program is built, even if its disk cache has the compiled kernel: 50 to
+// 100 ms each, a second or more for a scene. Backends on a processor therefore share one context, which lives as long as the
+// process and keeps its programs. On other devices each backend has its own context, since a context holds device memory and
+// a fault may make it unusable.
 #pragma once
 #include <functional>
 #include <map>
@@ -21,8 +21,8 @@ class SharedContext {
   explicit SharedContext(const cl::Device& device) : context_(device) {}
   [[nodiscard]] const cl::Context& context() const { return context_; }
 
-  /// The program of this text and these options, made by `build` where there is none yet. From any thread; what `build` throws
-  /// is passed on, and nothing is kept.
+  /// Returns the program of this text and these options, built by `build` on first use. Thread-safe; exceptions of `build`
+  /// propagate and nothing is stored.
   cl::Program program(const std::string& text, const std::string& options, const std::function<cl::Program()>& build);
 
  private:
@@ -31,10 +31,10 @@ class SharedContext {
   std::map<std::pair<std::string, std::string>, cl::Program> programs_;  // by text and options
 };
 
-/// The context of this device: on a processor that of the backends before, elsewhere a new one.
+/// Returns the context of this device: on a processor the shared one, elsewhere a new one.
 std::shared_ptr<SharedContext> context_of(const cl::Device& device);
 
-/// Backends that are opened from now on get a new context. Called when OpenCL reports an error: it may have broken the old one.
+/// Makes later backends use a new context. Called after OpenCL errors, which may have broken the old one.
 void forget_contexts();
 
 }  // namespace pliant::opencl

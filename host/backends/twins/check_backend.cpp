@@ -24,7 +24,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kWorlds = CheckBuffer::kWorlds;
 
-/// A pass in both worlds, and the buffers among its arguments, each once.
+/// A pass in both worlds, and the distinct buffers among its arguments.
 struct Prepared {
   std::array<ref::PreparedTwin<float>, kWorlds> worlds;
   std::int64_t count = 0;
@@ -162,7 +162,7 @@ class CheckBackend final : public Backend {
     return p;
   }
 
-  /// Where a message says that a pass runs.
+  /// Name of the list that a pass belongs to, for messages.
   [[nodiscard]] std::string list_name(const std::vector<Pass>& passes, std::int64_t step) const {
     const auto& [own, extension] = table_.parts();
     if (own != nullptr && &passes == &own->force) return "the list of the forces";
@@ -213,7 +213,7 @@ class CheckBackend final : public Backend {
     fail(fmt::format("{} value {} of {}, {}", who, *index, b.name(),
                      b.writable() ? "which lies in its end that no pass writes" : "which only the host writes"));
   }
-  /// After all passes, which can have reached buffers that are none of their own.
+  /// Checked after all passes, which may have written to buffers other than their arguments.
   static void check_untouched(const CheckBuffer& b, const std::string& in) {
     const std::string who = "a pass in " + in + " that does not name it as an argument changed";
     check_bounds(b, who);
@@ -222,8 +222,8 @@ class CheckBackend final : public Backend {
     if (index) fail(fmt::format("{} value {} of {}", who, *index, b.name()));
   }
 
-  /// Which unwritten value the result depends on: the pass runs again in world 0, from what it found in world 1 and the first
-  /// few of the values in which the worlds differ as they were in world 0. The first one that counts is the one that was read.
+  /// Finds the unwritten value that the result depends on: repeats the pass in world 0 with the input of world 1, in which
+  /// the first few differing values are taken from world 0. Bisection yields the first one that affects the result.
   std::string blame(const Launch& launch, const Place& result) {
     const std::vector<BufferId>& ids = launch.prepared.buffers;
     std::vector<std::array<ref::WorldImage, kWorlds>> found(ids.size());
@@ -279,7 +279,7 @@ class CheckBackend final : public Backend {
     check_size(table_.row(id), values);
     return b;
   }
-  /// For the host, which must not ask for what nothing wrote either.
+  /// For reads by the host, which must not read unwritten values either.
   const CheckBuffer& written(BufferId id) {
     const CheckBuffer& b = buffer(id);
     if (const auto index = b.unwritten()) {
@@ -302,7 +302,7 @@ class CheckBackend final : public Backend {
   BufferTable table_;
   std::vector<CheckBuffer> buffers_, extension_;
   PassTable<Prepared> passes_, extension_passes_;
-  std::vector<std::array<ref::WorldImage, kWorlds>> before_;  ///< of a pass's buffers, what it found
+  std::vector<std::array<ref::WorldImage, kWorlds>> before_;  ///< contents of a pass's buffers before it ran
   bool profiling_ = false;
 };
 

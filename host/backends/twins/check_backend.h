@@ -1,11 +1,12 @@
-// The backend "cpu:check": the float twins on one thread, with the bits of "cpu", several times slower. It looks at what each
-// pass does to the buffers and names the pass that
-//   - reads a value of scratch that no pass of the step has written (Buffer::carried and Buffer::fixed say what else may be
-//     read), or a value outside a buffer: the pass runs in two worlds that differ in nothing but such values, so that whatever
-//     depends on one differs between them. Likewise, what the host reads must have been written;
-//   - writes outside a buffer: there are zones on both sides of each that nothing may write;
+// The backend "cpu:check": the float twins on one thread, with the same bits as "cpu", several times slower. It verifies the
+// effect of each pass on the buffers and names a pass that
+//   - reads a scratch value that no pass of the step has written (Buffer::carried and Buffer::fixed declare exceptions) or a
+//   value
+//     outside a buffer: the pass runs in two worlds that differ only in such values, so that everything that depends on one
+//     differs between them. Likewise, everything that the host reads must have been written;
+//   - writes outside a buffer: guard zones on both sides of each buffer must stay unchanged;
 //   - changes a constant or control buffer, or the fixed end of scratch.
-// What a pass reads without effect is not noticed, nor is an integer beyond a buffer's end that only ends an empty loop.
+// It does not detect reads without effect, nor an integer beyond a buffer's end that only ends an empty loop.
 #pragma once
 #include <memory>
 
@@ -22,8 +23,8 @@ struct CheckOptions {
   const ref::Registry* registry = nullptr;  ///< nullptr: the twins of kernels/. Must outlive the backend.
 };
 
-/// Its run() and read functions throw Error (internal) that names pass, step, buffer and value; the program must then be loaded
-/// again. Throws Error on a processor without hardware fma.
+/// Opens the backend. Its run() and read functions throw Error (internal) with pass, step, buffer and value; the program must
+/// then be loaded again. Throws Error on a processor without hardware fma.
 std::unique_ptr<Backend> make_check_backend(const CheckOptions& options = {});
 
 }  // namespace pliant

@@ -9,7 +9,7 @@
 namespace pliant::ref {
 namespace {
 
-constexpr std::ptrdiff_t kBlock = 64;  // values that are compared together
+constexpr std::ptrdiff_t kBlock = 64;  // number of values compared together
 
 void set_bits(unsigned char* values, std::ptrdiff_t i, std::uint32_t bits) { std::memcpy(values + 4 * i, &bits, 4); }
 
@@ -99,7 +99,7 @@ std::optional<std::ptrdiff_t> CheckBuffer::first_difference(const unsigned char*
 }
 
 std::optional<std::ptrdiff_t> CheckBuffer::written_outside() const {
-  // The values next to the buffer first: a pass that writes on and on begins there.
+  // Check the values next to the buffer first, where an overrun begins.
   for (std::ptrdiff_t k = 0; k < kZone; ++k) {
     if (!undefined(-1 - k)) return -1 - k;
     if (!undefined(values_ + k)) return values_ + k;

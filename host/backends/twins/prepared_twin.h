@@ -1,4 +1,4 @@
-// A pass made ready to run: its twin, and the arguments that stay the same from step to step.
+// A prepared pass: its twin and the arguments that do not change from step to step.
 #pragma once
 #include <fmt/format.h>
 
@@ -21,7 +21,7 @@ struct PreparedTwin {
   std::vector<ArgValue<Scalar>> args;
   std::vector<std::size_t> step_args;
 
-  /// Each thread has its own copy of the arguments only where they change from step to step.
+  /// Threads copy only the arguments that change from step to step.
   void execute(Range range, std::int32_t step) const {
     if (range.begin == range.end) return;
     if (step_args.empty()) {
@@ -34,8 +34,8 @@ struct PreparedTwin {
   }
 };
 
-/// `values_of(id)` is one of the program's `buffers` buffers as an argument: either its reals or its ints are set. Throws Error
-/// (internal) for a pass that does not suit its twin.
+/// `values_of(id)` returns one of the program's `buffers` buffers as an argument, with either reals or ints set. Throws Error
+/// (internal) for a pass that does not match its twin.
 template <class Scalar, class ValuesOf>
 PreparedTwin<Scalar> prepare_twin(const Registry& registry, const Pass& pass, std::size_t buffers, ValuesOf&& values_of) {
   check_pass(pass, buffers);

@@ -1,17 +1,17 @@
-// What the backends that run the twins say and ask of the processor.
+// Properties of the processor for the backends that run the twins.
 #pragma once
 #include <cstdint>
 #include <string>
 
 namespace pliant::ref {
 
-/// As the processor calls itself.
+/// The processor's name.
 std::string processor_name();
 
-/// Of the whole machine [bytes].
+/// Memory of the whole machine [bytes].
 std::uint64_t physical_memory();
 
-/// Throws Error on a processor without hardware fma, where every fma would be emulated two hundred times slower.
+/// Throws Error on a processor without hardware fma, where emulation is two hundred times slower.
 void require_fma();
 
 }  // namespace pliant::ref

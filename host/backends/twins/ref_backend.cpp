@@ -58,7 +58,7 @@ class RefBackend final : public Backend {
 
   void update(const Program& loaded, const Program& next) override {
     table_.load(next);
-    extension_passes_.clear();  // its arguments were buffers of the old program; its own stay for extend()
+    extension_passes_.clear();  // its arguments were buffers of the old program; its own buffers stay for extend()
     check_memory(table_, sizeof(Scalar), info_.max_buffer_bytes, info_.memory_bytes, info_.name);
     bring(&loaded, next, storage_, passes_);
   }
@@ -72,7 +72,7 @@ class RefBackend final : public Backend {
 
   void run(const std::vector<Pass>& passes, std::int32_t first, std::int32_t count, std::int64_t origin) override {
     for (std::int32_t step = first; step < first + count;) {
-      // As many steps together as have the same passes.
+      // Runs consecutive steps with the same passes together.
       const auto same = [&](std::int32_t other) {
         return std::all_of(passes.begin(), passes.end(),
                            [&](const Pass& p) { return p.runs_in(origin + step) == p.runs_in(origin + other); });
@@ -147,9 +147,9 @@ class RefBackend final : public Backend {
 
  private:
   struct Storage {
-    std::vector<Scalar> reals;  // one of the two; never empty, so that a pointer into it is valid
+    std::vector<Scalar> reals;  // one of the two is used; never empty, so that its pointer is valid
     std::vector<std::int32_t> ints;
-    bool written = false;  // by the host, since its initial values
+    bool written = false;  // written by the host after its initial values
   };
   struct Prepared : ref::PreparedTwin<Scalar> {
     Shape shape = Shape::lanes;
@@ -158,15 +158,15 @@ class RefBackend final : public Backend {
     std::int64_t launches = 0;
   };
 
-  /// A few indices, or bricks, are not worth a second thread.
+  /// Few indices or bricks are not worth a second thread.
   static bool splits(const Prepared& p, std::int64_t count) {
     return count >= (p.shape == Shape::bricks ? 4 : p.uneven ? (p.shape == Shape::items ? 64 : 256) : 1024);
   }
 
-  /// An uneven pass is dealt out in so many portions per thread.
+  /// Number of portions per thread of an uneven pass.
   static constexpr int kPortions = 16;
 
-  /// One piece of as many as there are threads: contiguous, and for `lanes` made of whole sixteens.
+  /// One piece of `pieces`: contiguous, and for `lanes` a multiple of sixteen indices.
   static Range share(const Prepared& p, std::int64_t count, int piece, int pieces) {
     const std::int64_t unit = p.shape == Shape::lanes ? 16 : 1;
     const std::int64_t units = count / unit;
@@ -175,7 +175,7 @@ class RefBackend final : public Backend {
 
   static void fill(const Buffer& buffer, Storage& s) {
     const std::size_t size = std::max<std::size_t>(buffer.values(), 1);
-    initial_count(buffer);  // throws if they do not fit
+    initial_count(buffer);  // throws if the initial values do not fit
     s.written = false;
     if (buffer.is_int()) {
       s.ints.assign(size, 0);
@@ -186,7 +186,8 @@ class RefBackend final : public Backend {
     }
   }
 
-  /// Bring what held `before` to the initial values of `buffer`. What passes or the host write is set anew.
+  /// Updates storage with the initial values of `before` to those of `buffer`. Buffers that passes or the host write are
+  /// reset.
   static void patch(const Buffer& before, const Buffer& buffer, Storage& s) {
     if (buffer.role != BufferRole::constant || s.written) return fill(buffer, s);
     const std::size_t size = std::max<std::size_t>(buffer.values(), 1);
@@ -207,7 +208,7 @@ class RefBackend final : public Backend {
     }
   }
 
-  /// The buffers of `next` with their initial values, from those of `before` where there are some, and its passes.
+  /// Sets up the buffers and passes of `next`, reusing the buffers of `before` if given.
   void bring(const Program* before, const Program& next, std::vector<Storage>& storage, PassTable<Prepared>& passes) {
     const DefaultFloatEnvironment environment;
     passes.clear();
@@ -290,7 +291,7 @@ class RefBackend final : public Backend {
   BufferTable table_;
   std::vector<Storage> storage_, extension_;
   PassTable<Prepared> passes_, extension_passes_;
-  /// A pass, and how many of its indices run.
+  /// A pass and the number of indices to run.
   struct Listed {
     Prepared* pass;
     std::int64_t indices;

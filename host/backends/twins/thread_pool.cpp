@@ -15,9 +15,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A wait shorter than this is noise, and so is one shorter than the caller's own work in the same pass.
+/// Shorter waits are noise, and so are waits shorter than the caller's own work in the same pass.
 constexpr auto kLateAtLeast = 200us;
-/// After a late piece the caller works alone for this many times the wait, twice as long each time that it happens again soon.
+/// After a late piece, the caller works alone for this many times the wait; the time doubles if it soon happens again.
 constexpr int kAloneTimes = 8;
 constexpr auto kAloneAtMost = 2s;
 
@@ -29,7 +29,7 @@ void relax() {
 #endif
 }
 
-/// Waits until ready(value): some 20 us of spinning, about the price of being woken, then sleep.
+/// Waits until ready(value): spins for about 20 us, the cost of a wake-up, then sleeps.
 template <class T, class Ready>
 void wait_until(const std::atomic<T>& value, const Ready& ready) {
   for (int i = 0; i < 500; ++i) {
@@ -82,7 +82,7 @@ void ThreadPool::share(Call call, const void* work) {
 void ThreadPool::work_through(std::uint32_t pass, int first) {
   for (int k = 0; k < threads_; ++k) {
     const int i = (first + k) % threads_;
-    // A thread that comes late, to a pass that has ended, finds every ticket taken in that pass or a later one.
+    // A thread that arrives after the end of a pass finds every ticket taken by that pass or a later one.
     std::uint32_t before = pass - 1;
     if (!tickets_[static_cast<std::size_t>(i)].pass.compare_exchange_strong(before, pass, std::memory_order_acq_rel)) continue;
     call_(work_, i);
@@ -95,7 +95,7 @@ void ThreadPool::serve(int thread) {
   std::uint32_t seen = 0;
   while (true) {
     wait_until(pass_, [seen](std::uint32_t pass) { return pass != seen; });
-    // The pass first: who sees the one that the destructor counts sees its stop too, and takes no piece of it.
+    // Load the pass first: a thread that sees the pass counted by the destructor also sees stop, and takes no piece.
     seen = pass_.load(std::memory_order_acquire);
     if (stop_.load(std::memory_order_relaxed)) return;
     work_through(seen, thread);

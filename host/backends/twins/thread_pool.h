@@ -1,5 +1,5 @@
-// A few persistent threads that share the pieces of one pass after another. Who does which piece changes no bit: pieces write
-// what no other piece of the pass reads or writes.
+// A few persistent threads that share the pieces of each pass. The assignment of pieces to threads does not affect any bit:
+// no piece reads or writes what another piece of the pass writes.
 #pragma once
 #include <atomic>
 #include <chrono>
@@ -12,19 +12,19 @@ namespace pliant::ref {
 
 class ThreadPool {
  public:
-  /// The calling thread is one of them; 0 means as many as the process may use.
+  /// `threads` includes the calling thread; 0: as many as available to the process.
   explicit ThreadPool(int threads);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;
   [[nodiscard]] int threads() const { return threads_; }
 
-  /// piece(i) for i = 0 .. threads() - 1, each once; returns when all are done. The other threads have the default
+  /// Calls piece(i) once for each i = 0 .. threads() - 1 and returns when all are done. The other threads use the default
   /// floating-point environment, the caller keeps its own. `piece` must not throw.
   ///
-  /// Nobody waits for a thread that has not begun: the caller takes its piece. It waits for one that the operating system has
-  /// stopped in the middle of a piece, which can take milliseconds where other programs want the cores; after that it works
-  /// alone for a while.
+  /// The caller does not wait for a thread that has not started: it takes over its piece. It does wait for a thread that the
+  /// operating system preempted within a piece, which can take milliseconds if other programs compete for the cores; after
+  /// that it runs alone for a while.
   template <class Piece>
   void run(const Piece& piece) {
     if (threads_ == 1 || works_alone()) {
@@ -37,13 +37,13 @@ class ThreadPool {
  private:
   using Clock = std::chrono::steady_clock;
   using Call = void (*)(const void* work, int piece);
-  /// On a cache line of its own: threads take pieces at the same time.
+  /// On its own cache line, since threads take pieces concurrently.
   struct alignas(64) Ticket {
-    std::atomic<std::uint32_t> pass{0};  // the last one in which this piece was taken
+    std::atomic<std::uint32_t> pass{0};  // number of the last pass in which this piece was taken
   };
   [[nodiscard]] bool works_alone() const { return alone_until_ != Clock::time_point{} && Clock::now() < alone_until_; }
   void share(Call call, const void* work);
-  /// The pieces of `pass` that nobody has taken, from `first` on.
+  /// Runs the pieces of `pass` that are not taken yet, from `first` on.
   void work_through(std::uint32_t pass, int first);
   void serve(int thread);
   void note_wait(Clock::duration own, Clock::duration waited);
@@ -53,7 +53,7 @@ class ThreadPool {
   Call call_ = nullptr;
   const void* work_ = nullptr;
   alignas(64) std::atomic<std::uint32_t> pass_{0};
-  alignas(64) std::atomic<int> done_{0};  // pieces of this pass
+  alignas(64) std::atomic<int> done_{0};  // number of completed pieces of this pass
   std::atomic<bool> stop_{false};
   Clock::time_point alone_until_{};
   Clock::duration alone_{};

@@ -13,12 +13,12 @@ constexpr double kReach = 8;      ///< beyond it a point of a blade does not go 
 constexpr double kLongest =
     4;  ///< longest side of a triangle at rest, in edges: longer ones lead from one part of a body to another
 constexpr int kMostRows = 1024;
-/// Points of all rows of one move, far more than a blade of any body has: a damaged checkpoint could ask for millions.
+/// Maximum number of points of all rows of one move, far more than any blade needs: a damaged checkpoint could request
+/// millions.
 constexpr double kMostPoints = 1 << 18;
 constexpr int kRangeSamples = 64;
 constexpr std::size_t kFarNodes = 256;
-constexpr std::int64_t kMostPlaces =
-    1 << 16;  ///< of a row; a blade that slides along itself by more is looked at more coarsely
+constexpr std::int64_t kMostPlaces = 1 << 16;  ///< of a row; a blade that slides along itself by more is sampled more coarsely
 
 /// The same formula wherever a point of a blade is meant: the same bits.
 Vec3d point_of(const BladeSegment& blade, std::int64_t place, int levels) {

@@ -1,8 +1,8 @@
-// How a blade cuts a body that moves. Its path is followed at rest: points of the blade, at most half an edge apart, are mapped
-// to where the material at that place was at rest (inverse_map.h), and what they sweep there is tested against edges that never
-// move. The line where the blade stood last is kept at rest; the next sweep begins with these very points. So successive sweeps
-// join exactly, no bridge is left between them however the body deforms, and tissue that is pulled across a resting blade is
-// cut, too.
+// Cutting of a moving body by a blade. The blade's path is mapped to the undeformed body: points of the blade, at most half
+// an edge apart, are mapped to the rest position of the material there (inverse_map.h), and the mapped sweep is tested
+// against the undeformed edges. The last line of the blade is stored in rest coordinates, and the next sweep begins with
+// exactly these points. So successive sweeps join exactly, no bridge remains between them however the body deforms, and
+// tissue that is pulled across a resting blade is cut too.
 #pragma once
 #include <span>
 #include <vector>
@@ -14,32 +14,33 @@
 
 namespace pliant {
 
-/// A point of a blade that goes with the body.
+/// A point of a blade that is carried by the body.
 struct TracePoint {
   std::int32_t place = 0;  ///< along the blade: place / 2^levels of the way from its first end
-  std::int32_t node = -1;  ///< with no material near: the real node that it goes with, `carried.rest` being the offset [m]
+  std::int32_t node = -1;  ///< without material nearby: the real node that carries it, with the offset `carried.rest` [m]
   MaterialPoint carried{};
 };
 
-/// Where a blade stood last.
+/// The last line of a blade.
 struct BladeTrace {
   BladeSegment blade{};
   int levels = 0;
-  std::vector<TracePoint> points;  ///< ascending places; the others are where they were
+  std::vector<TracePoint> points;  ///< ascending places; other points did not move with material
 };
 
-inline constexpr int kMostLevels = 30;  ///< of a blade: it may be 2^29 edges long
+inline constexpr int kMostLevels = 30;  ///< limit on the subdivision of a blade, which may be 2^29 edges long
 
 class BladeSweep {
  public:
-  /// `x` [m]: present positions of all nodes of the body's elements. `edge` [m]: mean edge of a cell at rest.
+  /// `x` [m]: current positions of all nodes of the body's elements. `edge` [m]: mean undeformed edge of a cell.
   BladeSweep(const CutTopology& body, std::span<const Vec3d> x, RestEdges& edges, double edge);
 
-  /// Whether a blade in this box [m] comes so near the body that it has to be followed.
+  /// Returns whether a blade in this box [m] is near enough to the body to be followed.
   [[nodiscard]] bool reaches(const vec::Box& box) const { return reach_.overlaps(box); }
-  /// Sweep from the front to the blade's next place, which becomes the front. Both along straight lines as seen now.
+  /// Sweeps from the stored line to the blade's next segment, which is then stored. Both move along straight lines in the
+  /// current configuration.
   void move(BladeTrace& front, const BladeSegment& to);
-  /// Edges crossed so far that are not cut yet. An edge crossed several times is cut where it was crossed first.
+  /// Edges crossed so far that are not cut yet. An edge crossed several times is cut at the first crossing.
   [[nodiscard]] const CutEdges& crossed() const { return crossed_; }
 
  private:

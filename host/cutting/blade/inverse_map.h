@@ -1,5 +1,4 @@
-// From where things are now to where the material there was at rest: a blade's path is followed in the body at rest, where what
-// it has swept does not move any more.
+// Maps current positions to rest positions of the material there, because a blade's path is followed in the undeformed body.
 #pragma once
 #include <span>
 #include <utility>
@@ -11,22 +10,22 @@
 
 namespace pliant {
 
-/// A point carried by a body: inside one of its tetrahedra, or next to it.
+/// A point carried by a body: inside one of its tetrahedra, or near it.
 struct MaterialPoint {
-  std::int32_t cell = -1, tet = 0;  ///< of the uncut body; -1: no material is near
+  std::int32_t cell = -1, tet = 0;  ///< of the uncut body; -1: no material nearby
   std::array<double, 4> weight{};   ///< barycentric; negative ones outside
   Vec3d rest{};                     ///< [m]
 };
 
-/// Where the material that carries a point is now. `x` [m]: present positions of all nodes of the body's elements.
+/// Returns the current position of a carried point. `x` [m]: current positions of all nodes of the body's elements.
 Vec3d present_position(const CutTopology& body, std::span<const Vec3d> x, const MaterialPoint& point);
 
-/// Looks for the material at points. Inside the body a point goes with the tetrahedron around it. Outside, up to `reach` away,
-/// with the nearest one, whose affine map is continued by at most three edges. In the gap of a cut it goes with the face of the
-/// cut that is nearest, so that both sides of a gap lead to the same place at rest.
+/// Searches the material at points. Inside the body a point belongs to the surrounding tetrahedron; outside, up to `reach`
+/// away, to the nearest one, whose affine map is extended by at most three edges. In the gap of a cut it belongs to the
+/// nearest face of the cut, so that both sides of the gap map to the same rest position.
 class InverseMap {
  public:
-  /// `edge` [m]: mean edge of a cell at rest. Only points in `region` can be found.
+  /// `edge` [m]: mean undeformed edge of a cell. Only points in `region` can be found.
   InverseMap(const CutTopology& body, std::span<const Vec3d> x, const vec::Box& region, double edge, double reach);
   [[nodiscard]] MaterialPoint find(const Vec3d& p);
 
@@ -47,7 +46,7 @@ class InverseMap {
   double edge_, reach_;
   SpatialHash hash_;
   std::vector<std::int32_t> element_;  ///< items of the hash
-  vec::Box all_;                       ///< that holds all of them
+  vec::Box all_;                       ///< bounding box of all of them
   std::vector<std::int32_t> hits_;
   std::vector<std::pair<double, std::int32_t>> near_;
 };

@@ -23,7 +23,7 @@ RestEdges::RestEdges(const CutMesh& mesh, double edge)
   for (const Vec3d& p : mesh.rest) all.extend(p);
   double size = edge;
   for (int a = 0; a < 3; ++a) size = std::max(size, all.upper[a] - all.lower[a]);
-  for (int a = 0; a < 3; ++a) {  // blades are looked at next to the body, too
+  for (int a = 0; a < 3; ++a) {  // blades may also be next to the body
     all.lower[a] -= size;
     all.upper[a] += size;
   }

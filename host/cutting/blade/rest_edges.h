@@ -1,4 +1,4 @@
-// The edges of a body at rest, ready to be crossed by triangles. At rest nothing moves, so this is built once.
+// The undeformed edges of a body, prepared for intersection with triangles. Built once.
 #pragma once
 #include <bit>
 #include <span>
@@ -10,15 +10,15 @@
 
 namespace pliant {
 
-/// The number of a blade's point: the same for the same coordinates, so that triangles that meet there agree in every call.
+/// Id of a blade's point, the same for the same coordinates, so that triangles that meet there are consistent across calls.
 std::int64_t blade_point_number(const Vec3d& p);
 
 class RestEdges {
  public:
   RestEdges(const CutMesh& mesh, double edge);
 
-  /// Call visit(pair, t) for each edge of the mesh that the triangle [m] crosses, t being the share of the way from the lower
-  /// node to the higher one. An edge comes once. Touching counts as in crossed_edges (blade.h).
+  /// Calls visit(pair, t) once for each edge of the mesh that the triangle [m] crosses, with the fraction t of the way from
+  /// the lower node to the higher one. Touching is treated as in crossed_edges (blade.h).
   template <class Visit>
   void crossed(const std::array<Vec3d, 3>& triangle, Visit&& visit) {
     std::array<ExactPoint, 3> tri;
@@ -46,18 +46,19 @@ class RestEdges {
   }
 
  private:
-  /// Tells cells that lie on one side of a triangle's plane, in steps of the exact grid, without a look at their corners.
+  /// Detects cells on one side of a triangle's plane, in steps of the exact grid, without testing their corners.
   class Plane {
    public:
     explicit Plane(const std::array<ExactPoint, 3>& t);
-    /// Whether a box around `middle` that extends by `reach` along each axis has all its points on one side. Errs towards no.
+    /// Returns whether all points of the box around `middle` with half sizes `reach` are on one side. Errors are towards
+    /// false.
     [[nodiscard]] bool misses(const Vec3d& middle, const Vec3d& reach) const;
 
    private:
     Vec3d base_{}, normal_{}, error_{};
   };
   [[nodiscard]] double place(const NodePair& pair, const std::array<Vec3d, 3>& t) const;
-  /// Of the triangle that is looked at: found once for all edges at the node.
+  /// Data of the current triangle, computed once per node for all edges.
   [[nodiscard]] int side(std::int32_t node, const std::array<ExactPoint, 3>& tri) {
     Side& known = side_[node];
     if (known.triangle != triangles_) known = {triangles_, orient(tri[0], tri[1], tri[2], node_[node])};
@@ -72,8 +73,8 @@ class RestEdges {
   ExactFrame frame_;
   std::vector<ExactPoint> node_;
   std::vector<Side> side_;                ///< [nodes]
-  std::uint32_t triangles_ = 0;           ///< looked at so far
-  std::vector<std::uint32_t> own_edges_;  ///< of each cell, as bits: those that no cell before it has
+  std::uint32_t triangles_ = 0;           ///< number of triangles tested so far
+  std::vector<std::uint32_t> own_edges_;  ///< bits of each cell's edges that no earlier cell has
   std::vector<Vec3d> middle_, reach_;     ///< of each cell, in steps of the exact grid
   SpatialHash hash_;                      ///< cells
 };

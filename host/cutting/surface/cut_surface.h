@@ -1,5 +1,5 @@
-// The surface of a cut body: the original surface, split along the cut and closed by caps. It is a function of the original
-// surface and of how the cells are cut, nothing else: only what an edit touches is made anew, and errors do not add up.
+// The surface of a cut body: the original surface, split along the cut and closed by caps. It depends only on the original
+// surface and on how the cells are cut. An edit recomputes only the affected part, and errors do not accumulate.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace pliant {
 
 enum class SurfaceKind : std::uint8_t {
   original,
-  cut,    ///< a face that the blade made
+  cut,    ///< a face of the cut
   filler  ///< closes a hole of the input surface
 };
 
@@ -30,30 +30,30 @@ struct CutSurfaceVertex {
 
 class CutSurface {
  public:
-  /// Vertices and triangles of `surface` keep their numbers; triangles that close its holes follow. `lattice` is the one built
+  /// `surface`: its vertices and triangles keep their numbers; triangles that close its holes follow. `lattice` must be built
   /// from it.
   CutSurface(const TriangleMesh& surface, const Lattice& lattice);
   ~CutSurface();
 
-  /// After an edit that changed these cells. Work: what lies in them and around them.
+  /// Updates after an edit that changed these cells. The cost is proportional to the surface in and around them.
   void update(const CutTopology& topology, const std::vector<std::int32_t>& cells);
-  /// The same from the cells themselves, those with one component being whole again.
+  /// The same with the cells' states; cells with one component become whole again.
   void update(const std::vector<overlay::CutGridCell>& cells);
 
-  /// Vertices never change their number; those no triangle uses any more stay.
+  /// Vertices never change their number; unused ones remain.
   [[nodiscard]] const std::vector<CutSurfaceVertex>& vertices() const { return vertices_; }
-  /// Outward. An original triangle that is whole, or one piece of it, has the number that it had.
+  /// Outward. An uncut original triangle, or one piece of a cut one, keeps its number.
   [[nodiscard]] const std::vector<std::array<std::int32_t, 3>>& triangles() const { return triangles_; }
   [[nodiscard]] const std::vector<SurfaceKind>& kinds() const { return kinds_; }
-  /// The triangle of the uncut surface that a triangle is part of, -1 on a cut.
+  /// The triangle of the uncut surface that contains a triangle, -1 on a cut.
   [[nodiscard]] std::int32_t original_of(std::int32_t triangle) const {
     return owners_[triangle].cap ? -1 : owners_[triangle].what;
   }
-  /// Where a vertex is embedded: nodes of `topology` (numbers of CutElements) and trilinear weights, which add up to 1.
+  /// Embedding of a vertex: nodes of `topology` (numbers of CutElements) and trilinear weights with sum 1.
   void embedding(const CutTopology& topology, std::int32_t vertex, std::array<std::int32_t, 8>& nodes,
                  std::array<double, 8>& weights) const;
-  /// What differs from when this was called last, or from the surface given. Vertices change when they are new or embedded
-  /// elsewhere.
+  /// Returns the changes since the last call, or since the original surface. A vertex counts as changed if it is new or
+  /// embedded elsewhere.
   [[nodiscard]] SurfaceChanges take_changes();
 
  private:
@@ -78,7 +78,7 @@ class CutSurface {
   std::vector<Owner> owners_;
   std::unordered_map<overlay::VertexKey, std::int32_t, overlay::VertexKeyHash> vertex_of_;
   std::unordered_map<std::int32_t, std::vector<std::int32_t>> piece_slots_, cap_slots_;
-  SurfaceChanges changes_;  ///< in any order, perhaps several times, perhaps gone again
+  SurfaceChanges changes_;  ///< unordered, may contain duplicates and removed entries
 };
 
 }  // namespace pliant

@@ -266,7 +266,7 @@ std::int32_t Overlay::across(const Edge& edge, std::int32_t side) const {
   const std::int32_t f = side / 2;
   const std::size_t count = edge.faces.size();
   const auto at = static_cast<std::size_t>(std::find(edge.faces.begin(), edge.faces.end(), f) - edge.faces.begin());
-  const bool onward = (side % 2 == 1) == forward(f);  // the side looks counter-clockwise
+  const bool onward = (side % 2 == 1) == forward(f);  // the side faces counter-clockwise
   const std::int32_t other = edge.faces[(at + (onward ? 1 : count - 1)) % count];
   return 2 * other + (forward(other) != onward ? 1 : 0);
 }

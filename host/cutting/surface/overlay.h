@@ -18,7 +18,7 @@
 
 namespace pliant::overlay {
 
-/// What a vertex of the result is: (kind, what, which sector).
+/// Identity of a vertex of the result: (kind, source, sector).
 struct VertexKey {
   /// The last four are middles of sides: of an edge of the cut surface, of a segment, of a side between two triangles of a
   /// cap or of a piece.
@@ -54,12 +54,12 @@ class Overlay {
   Overlay(TriangleMesh mesh, const CutGrid& grid) : source_(std::move(mesh), grid) {}
   [[nodiscard]] const SurfaceSource& source() const { return source_; }
 
-  /// Replace the cut surface inside these cells (those with one component only lose theirs). Afterwards dirty_triangles and
-  /// dirty_faces list what has to be made anew.
+  /// Replaces the cut surface inside these cells (removes it for those with one component). Afterwards dirty_triangles and
+  /// dirty_faces list what must be recomputed.
   void update(const std::vector<CutGridCell>& cells);
 
   [[nodiscard]] const std::vector<std::int32_t>& dirty_triangles() const { return dirty_triangles_; }
-  /// Cut faces, among them those that are gone.
+  /// Cut faces, including removed ones.
   [[nodiscard]] const std::vector<std::int32_t>& dirty_faces() const { return dirty_faces_; }
   /// Original vertices whose carrier changed; also filled by pieces_of for vertices next to the cut.
   std::unordered_map<std::int32_t, Carrier> moved_vertices;

@@ -183,7 +183,7 @@ Patch Overlay::pieces_of(std::int32_t triangle) {
     loop.group = sets.find(graph.halves[first].from);
     loops.push_back(std::move(loop));
   }
-  // What hangs together inside the triangle, away from its border, has one loop around it: a hole of the piece that holds it.
+  // A connected set inside the triangle, away from its border, has one loop around it: a hole of the piece that contains it.
   std::unordered_map<std::int32_t, std::size_t> outermost;
   for (std::size_t i = 0; i < loops.size(); ++i) {
     if (loops[i].group == sets.find(0)) continue;

@@ -31,7 +31,7 @@ struct CutGrid {
   [[nodiscard]] Vec3d position(const GridIndex& corner) const {
     return {origin[0] + spacing * corner[0], origin[1] + spacing * corner[1], origin[2] + spacing * corner[2]};
   }
-  /// The cell that holds a point, moved into the grid if there is none.
+  /// Returns the cell that contains a point, moved into the grid if it is outside.
   [[nodiscard]] GridIndex cell_at(const Vec3d& p) const;
 };
 
@@ -43,7 +43,7 @@ struct SourceEdge {
 
 class SurfaceSource {
  public:
-  /// Holes are closed by further triangles (`fillers` of them, the last ones), inconsistent winding is mended.
+  /// Holes are closed by additional triangles (`fillers` of them, at the end), and inconsistent winding is repaired.
   SurfaceSource(TriangleMesh mesh, const CutGrid& grid);
 
   [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }

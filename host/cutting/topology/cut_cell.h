@@ -14,7 +14,8 @@
 
 namespace pliant {
 
-/// A cut edge keeps this distance from both of its ends, as a share of its length: no part of a cell is without volume.
+/// Minimum distance of a cut from both ends of its edge, as a fraction of its length, so that no part of a cell has zero
+/// volume.
 inline constexpr double kLeastCrossing = 1e-3;
 
 /// Corners, tetrahedra, edges and faces of one kind of cell, by local corner numbers. Edges are those of the tetrahedra.
@@ -55,9 +56,9 @@ struct TetDivision {
   std::array<std::array<double, 4>, 4> face{};
   std::array<double, 4> centre{};
 };
-/// `crossing` of an edge that is not `cut` is not looked at.
+/// Ignores `crossing` for edges that are not `cut`.
 TetDivision divide(const std::array<int, 4>& label, const std::array<char, 6>& cut, const std::array<double, 6>& crossing);
-/// Volume shares of the corners' flags, in sum 1.
+/// Returns the volume fractions of the corners' flags, with sum 1.
 std::array<double, 4> corner_shares(const TetDivision& division);
 /// The corner whose flags hold a point given by its barycentric coordinates; for one outside those nearest along the ray from
 /// the centre.

@@ -74,7 +74,7 @@ std::vector<CutTopology::NodeClass> CutTopology::classes_at(std::int32_t node) c
   return classes;
 }
 
-/// Group the corners of the copies anew at the nodes of changed cells, then number all nodes.
+/// Groups the corners of the copies again at the nodes of changed cells, then numbers all nodes.
 void CutTopology::number_nodes(const OldCuts& old, const std::vector<std::array<std::int32_t, 8>>& old_copies, CutEdit& edit) {
   const auto cells = static_cast<std::int32_t>(mesh_->cells.size()), nodes = static_cast<std::int32_t>(mesh_->rest.size());
   std::vector<std::int32_t> touched;

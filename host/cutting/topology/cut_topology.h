@@ -1,9 +1,10 @@
 // The topology of a cut body by the virtual node algorithm (Molino, Bao and Fedkiw 2004).
 //
-// What is cut are edges between nodes of the uncut body, each at one point. A cell is *completely cut* when the graph of its
-// corners through its uncut edges falls apart; it is then replaced by one copy per component. In a copy the corners of its
-// component are real, the others virtual. Real corners at one node are one node. Copies on both sides of a face share the nodes
-// of that face when one of its corners is real in both. Everything here is a function of the set of cut edges alone: edits may
+// Edges between nodes of the uncut body are cut, each at one point. A cell is *completely cut* if the graph of its corners
+// and uncut edges is disconnected; it is then replaced by one copy per component. In a copy the corners of its component are
+// real, the others virtual. Real corners at one node are one node. Copies on both sides of a face share the nodes of that
+// face if one of its corners is real in both. The result depends only on the set of cut edges: edits may come in any order or
+// grouping.
 // come in any order or grouping.
 #pragma once
 #include <cstdint>
@@ -35,14 +36,14 @@ inline NodePair node_pair(std::int32_t a, std::int32_t b) { return a < b ? NodeP
 /// kLeastCrossing].
 using CutEdges = std::map<NodePair, double>;
 
-/// What became of a cell whose edges are cut.
+/// The state of a cell with cut edges.
 struct CellCut {
   std::uint32_t cut = 0;               ///< bit i: edge i of the shape is cut
   std::array<std::int8_t, 8> label{};  ///< component of each corner; components are numbered by their lowest corner
   int components = 1;                  ///< 1: not completely cut yet, the cell is whole
-  /// The copy of each component; -1: the component holds no material and has none. One of them keeps the cell's own number.
+  /// The copy of each component; -1: the component has no material and no copy. One copy keeps the cell's own number.
   std::array<std::int32_t, 8> element{-1, -1, -1, -1, -1, -1, -1, -1};
-  /// Of the cell's material, 0 without a copy. What a component is divided into later adds up to its own.
+  /// Fraction of the cell's material, 0 without a copy. If a component is divided later, the parts add up to its fraction.
   std::array<double, 8> share{};
 };
 
@@ -57,7 +58,7 @@ struct CutElements {
   std::vector<std::int32_t> origin;  ///< [nodes] node of the uncut body at the same place; of the first ones themselves
 };
 
-/// What an edit did. An edit that changed no element has empty lists.
+/// The result of an edit. An edit that changed no element has empty lists.
 struct CutEdit {
   std::vector<std::int32_t> cells;         ///< cells whose CellCut changed, ascending
   std::vector<std::int32_t> node_from;     ///< [nodes now] the node before
@@ -87,7 +88,8 @@ class CutTopology {
   /// Cells that have an edge.
   [[nodiscard]] std::vector<std::int32_t> cells_at_edge(const NodePair& edge) const;
 
-  /// The division of tetrahedron `tet` (of mesh().shape) of a cell. Points that cells share have the same bits in each.
+  /// Returns the division of tetrahedron `tet` (of mesh().shape) of a cell. Points shared by cells have identical bits in
+  /// each.
   [[nodiscard]] CutTet tet(std::int32_t cell, int tet) const;
   /// Component that holds a point of the cell at rest [m]: that of the flag's tetrahedron it lies in, or the nearest one.
   [[nodiscard]] int label_at(std::int32_t cell, const Vec3d& x) const;
@@ -100,12 +102,12 @@ class CutTopology {
     return cell_at_[cell]->label[mesh_->shape->tets[tet][corner_at(division, weight)]];
   }
 
-  /// Cut further edges; those that are cut already stay as they are. Throws Error, with nothing changed, for a pair that is no
-  /// edge of a cell or a crossing that is not in (0, 1). Work: the cells at new edges, plus a pass over all copies.
-  /// `divided`, if given, is called with CutEdit::cells as soon as it is clear how they are divided, unless none is; what does
-  /// not ask for elements and their nodes may look at the cells from then on, beside the rest of the work.
+  /// Cuts further edges; those already cut do not change. Throws Error, with nothing changed, for a pair that is not an edge
+  /// of a cell or a crossing that is not in (0, 1). Cost: the cells at new edges, plus a pass over all copies. `divided` (may
+  /// be empty) is called with CutEdit::cells as soon as their division is known, unless there are none; code that does not
+  /// need elements and their nodes may read the cells from then on, concurrently with the rest of this call.
   CutEdit cut(const CutEdges& edges, const std::function<void(const std::vector<std::int32_t>& cells)>& divided = {});
-  /// Go back to a smaller set of cut edges (after an edit that failed elsewhere).
+  /// Returns to a smaller set of cut edges (after an edit that failed elsewhere).
   void reset(const CutEdges& edges);
 
   /// Pieces: the number of sets of elements that share nodes, numbered by their lowest element, and the piece of each element.
@@ -133,8 +135,8 @@ class CutTopology {
   void label(CellCut& cell) const;
   [[nodiscard]] TetDivision division(std::int32_t cell, const CellCut& cut, int tet) const;
   void share(std::int32_t cell, CellCut& cut) const;
-  /// What a component becomes keeps its share, whatever crossings came to light since: copies are deformed differently, and
-  /// what changed hands would gain or lose energy and momentum.
+  /// The parts of a divided component keep its material fraction, whatever crossings were found since: copies are deformed
+  /// differently, so moving material between them would lose or gain energy and momentum.
   void inherit(const CellCut& before, CellCut& cut) const;
   void number_elements(const OldCuts& old, CutEdit& edit);
   [[nodiscard]] std::vector<NodeClass> classes_at(std::int32_t node) const;

@@ -1,4 +1,4 @@
-// The edges of a body, to see which are stretched too far.
+// Finds overstretched edges of a body.
 #pragma once
 #include <span>
 #include <vector>
@@ -7,22 +7,22 @@
 
 namespace pliant {
 
-/// Whole tissue, none of whose corners belongs to a cell with a cut edge, parts at this many times the limit: it hangs by no
-/// thread, and a soft organ stretches far under its own weight before anything touches it.
+/// Factor on the limit for tissue away from cuts (no corner belongs to a cell with a cut edge). Such tissue is not a thin
+/// remain of a cut, and a soft organ stretches far under its own weight without any contact.
 inline constexpr double kWholeStretch = 4;
 
-/// What a cut or tear has just freed takes a while to spring back: only what is stretched this many times further has not been
-/// freed by it.
+/// Further factor: tissue just freed by a cut or tear takes some time to spring back, so only edges stretched by this much
+/// more count.
 inline constexpr double kFreedStretch = 2;
 
 class MeshEdges {
  public:
   explicit MeshEdges(const CutMesh& mesh);
-  /// What is to be cut because it is longer than `times` its length at rest, in the middle of its edges: of a tetrahedron the
-  /// long edge, of a lattice cell with one all that lead to the other side; four times as long where no cell at its ends has a
-  /// cut edge; and where an edge of a divided cell's copy is twice as long, all edges of the cell at the copy's real corners:
-  /// what hangs there comes off. `x` [m] are present positions of the nodes of `body`, which has this mesh. An edge with an end
-  /// that is not finite is left alone.
+  /// Returns the edges to cut, in their middle, because an edge is longer than `times` its undeformed length: for a
+  /// tetrahedron the long edge, for a lattice cell all edges to the other side; with four times the limit if no cell at its
+  /// ends has a cut edge. If an edge of a divided cell's copy is twice as long as the limit, all edges of the cell at the
+  /// copy's real corners are cut, which separates it. `x` [m]: current positions of the nodes of `body`, which has this mesh.
+  /// Edges with a non-finite end are skipped.
   [[nodiscard]] CutEdges longer(const CutTopology& body, std::span<const Vec3d> x, double times) const;
 
  private:

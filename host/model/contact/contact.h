@@ -1,4 +1,4 @@
-// What takes part in contact: points on the surfaces of the bodies, and the shapes of the tools.
+// Contact data: points on the surfaces of the bodies, and the shapes of the tools.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -13,58 +13,60 @@ namespace pliant {
 struct Model;
 struct Scene;
 
-/// Embedding weights of contact points are multiples of 1 / contact_weight_unit that sum to exactly one: forces in fixed point
-/// are shared among the nodes without a remainder.
+/// Embedding weights of contact points are multiples of 1 / contact_weight_unit with sum exactly one, so that fixed-point
+/// forces are distributed to the nodes without remainder.
 inline constexpr std::int32_t contact_weight_unit = 4096;
 
-/// A plane that bounds a patch of surface; one without a normal bounds nothing.
+/// A plane that bounds a surface patch; without a normal it bounds nothing.
 struct PatchSide {
-  Vec3d normal{};        ///< outward, of unit length
-  double distance = 0;   ///< from the point [m]
-  bool goes_on = false;  ///< whether the surface goes on behind it, the same way
+  Vec3d normal{};        ///< outward, unit length
+  double distance = 0;   ///< from the contact point [m]
+  bool goes_on = false;  ///< whether the surface continues beyond it in the same direction
 };
 
-/// Points on the surface, about half a cell apart (three per face of a volume mesh), however fine the surface's triangles are.
+/// Contact points on the surface, about half a cell apart (three per face of a volume mesh), independent of its triangle
+/// size.
 struct ContactPoints {
   std::vector<Vec3d> rest;                           ///< [m]
-  std::vector<std::array<std::int32_t, 8>> nodes;    ///< slots; unused ones repeat one that has a weight, with weight 0
-  std::vector<std::array<std::int32_t, 8>> weights;  ///< in units of 1 / contact_weight_unit, not negative
-  std::vector<double> area;                          ///< of the surface that it stands for, at rest [m^2]
+  std::vector<std::array<std::int32_t, 8>> nodes;    ///< slots; unused entries repeat a node that has a weight, with weight 0
+  std::vector<std::array<std::int32_t, 8>> weights;  ///< in units of 1 / contact_weight_unit, non-negative
+  std::vector<double> area;                          ///< undeformed area of the surface that the point represents [m^2]
   std::vector<std::int32_t> body;
-  std::vector<Vec3d> normal;  ///< outward, at rest, of unit length
+  std::vector<Vec3d> normal;  ///< undeformed outward unit normal
   std::vector<std::array<PatchSide, 6>>
-      sides;                  ///< of the part of the surface that it stands for; empty where no tool has edges
-  std::vector<double> apart;  ///< how far from each other points around it are [m]
-  double spacing = 0;         ///< of the coarsest body's cells, or the mean edge of its surface [m]
-  /// How far the patch of surface around a point goes, so that patches leave no gap [m].
+      sides;                  ///< bounds of the surface that the point represents; empty unless a tool has edges
+  std::vector<double> apart;  ///< distance between the points around it [m]
+  double spacing = 0;         ///< of the coarsest body: cell size, or mean edge of its surface [m]
+  /// Extent of the surface patch around a point, large enough that patches leave no gap [m].
   [[nodiscard]] double reach(std::size_t i) const;
   [[nodiscard]] std::size_t size() const { return rest.size(); }
 };
 
-/// A mesh of a sequence. Its own frame follows the rigid part of what the sequence does (tool_sequence.cpp).
+/// A mesh of a sequence. Its own frame follows the rigid motion of the sequence (tool_sequence.cpp).
 struct ToolFrame {
-  Pose pose;             ///< of its own frame in the tool's
+  Pose pose;             ///< of its own frame in the tool's frame
   TriangleMesh surface;  ///< in its own frame
 };
 
-/// A shape as the kernels know it (kernels/contact/contact_shape.cl).
+/// A tool shape as the kernels use it (kernels/contact/contact_shape.cl).
 struct ToolForm {
   ToolShape shape = ToolShape::sphere;
   double radius = 0;                   ///< [m]
-  Vec3d first{}, second{};             ///< [m]; of a half space `second` is the unit normal; of a box `second` is half its size
-  Vec3d origin{};                      ///< of the grid of signed distances [m]
+  Vec3d first{}, second{};             ///< [m]; half space: `second` is the unit normal; box: `second` is half its size
+  Vec3d origin{};                      ///< origin of the distance grid [m]
   double spacing = 0;                  ///< of this grid [m]
-  std::array<std::int32_t, 3> size{};  ///< nodes of this grid
+  std::array<std::int32_t, 3> size{};  ///< number of nodes of this grid
   std::vector<double> distance;        ///< [nodes] signed distance, x fastest [m]
-  bool edges = false;                  ///< to be met as edges where it is thin (ContactTool::edges)
-  double thickness = 1e30;             ///< of a mesh: twice its volume over its area [m]
-  double reach = 0;                    ///< farthest point from the tool's origin [m]; of a half space 0
-  TriangleMesh surface;                ///< of a mesh, for pictures
-  double frames_per_second = 0;        ///< of a sequence
-  std::vector<ToolFrame> frames;       ///< of a sequence; `distance` has [frames][nodes]
+  bool edges = false;                  ///< use contact along edges where the tool is thin (ContactTool::edges)
+  double thickness = 1e30;             ///< mesh: twice its volume over its area [m]
+  double reach = 0;                    ///< largest distance of a point from the tool's origin [m]; half space: 0
+  TriangleMesh surface;                ///< mesh only, for pictures
+  double frames_per_second = 0;        ///< sequence only
+  std::vector<ToolFrame> frames;       ///< sequence only; `distance` is [frames][nodes]
 };
 
-/// Where a shape stands in its tool's frame at a time: a sequence is mixed of two frames, the second with this share.
+/// State of a shape at a time: its pose in the tool's frame; a sequence interpolates `frame` and the next one, which has the
+/// weight `share`.
 struct ToolMoment {
   Pose pose;
   std::int32_t frame = 0;
@@ -74,44 +76,44 @@ ToolMoment tool_moment(const ToolForm& form, double time);
 
 using ToolForms = std::vector<ToolForm>;
 
-/// How a tool pushes (ContactTool).
+/// Contact law of a tool (ContactTool).
 struct ContactLaw {
   double stiffness = 0, exponent = 1, alpha = 0, friction = 0;
-  double core = 0;  ///< depth from which the tool is hard [m]
+  double core = 0;  ///< depth beyond which contact is rigid [m]
 };
 
-/// Throws Error (bad_input) for a mesh that cannot be read or is not closed.
+/// Builds the form of a tool. Throws Error (bad_input) for a mesh that cannot be read or is not closed.
 ToolForm tool_form(const ContactTool& tool);
 
-/// A point on an edge of a tool, in the tool's frame, which is met as a ball (kernels/contact/contact_edge.cl).
+/// A point on an edge of a tool, in the tool's frame, treated as a ball (kernels/contact/contact_edge.cl).
 struct EdgePoint {
   Vec3d place{};      ///< [m]
   double radius = 0;  ///< [m]
 };
 
-/// Points along the edges of a tool with ContactTool::edges, as far apart as points of contact; none of one that is so thick
-/// that these feel it.
+/// Returns points along the edges of a tool with ContactTool::edges, as far apart as contact points; none if the tool is
+/// thick enough for contact points.
 std::vector<EdgePoint> edge_points(const ToolForm& form, const ContactPoints& points);
 
-/// Signed distance of a point in the tool's frame (of a sequence in its frame's own), as the kernels have it but in double [m].
+/// Signed distance of a point in the tool's frame (for a sequence in the frame's own), as in the kernels but in double [m].
 double tool_distance(const ToolForm& form, const Vec3d& y, const ToolMoment& moment = {});
 
-/// Points of all bodies on the model's surface; `patches`: with their sides, which edges of tools need.
+/// Returns the contact points of all bodies; `patches`: with their sides, which tools with edges need.
 ContactPoints contact_points(const Model& model, bool patches);
 
-/// A contact point's deformed tangents are F t1 = t1 + sum_a first_a u_a and F t2; t1, t2 and the normal at rest are
-/// orthonormal.
+/// Tangents of a contact point. Deformed, they are F t1 = t1 + sum_a first_a u_a and F t2 likewise; t1, t2 and the undeformed
+/// normal are orthonormal.
 struct ContactTangents {
   Vec3d t1{}, t2{};
-  std::array<std::array<std::int32_t, 8>, 2> units{};  ///< of 1 / (contact_weight_unit * spacing); they sum to zero
+  std::array<std::array<std::int32_t, 8>, 2> units{};  ///< in units of 1 / (contact_weight_unit * spacing); their sum is zero
   std::array<double, 8> first{}, second{};             ///< the same [1/m]
 };
 ContactTangents contact_tangents(const ContactPoints& points, std::size_t point, const std::vector<Vec3d>& rest);
 
-/// The patch of surface that a point stands for, PLIANT_PATCH numbers (kernels/contact/contact_edge.cl).
+/// Returns the surface patch of a point, PLIANT_PATCH numbers (kernels/contact/contact_patch.cl).
 std::vector<double> contact_patch(const ContactPoints& points, std::size_t point, const std::vector<Vec3d>& rest);
 
-/// Fill Model::contact and, if it has none yet, Model::tools. Nothing where nothing touches anything.
+/// Fills Model::contact and, if unset, Model::tools. Does nothing if the scene has no contact.
 void add_contact(const Scene& scene, Model& model);
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-// Points of contact on the faces of volume meshes.
+// Contact points on the faces of volume meshes.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -12,7 +12,7 @@
 namespace pliant {
 namespace {
 
-/// Neighbours look the same way if the cosine between their normals is more.
+/// Minimum cosine between the normals of neighbours that count as facing the same way.
 constexpr double kLevel = 0.7;
 
 using Triangle = std::array<Vec3d, 3>;
@@ -25,7 +25,7 @@ double longest_of(const Triangle& x) {
   return longest;
 }
 
-/// Weights in whole units that sum to one.
+/// Converts weights to integer units with sum one.
 std::array<std::int32_t, 8> whole(const std::array<double, 8>& weights) {
   std::array<std::int32_t, 8> out{};
   std::int32_t sum = 0;
@@ -39,8 +39,8 @@ std::array<std::int32_t, 8> whole(const std::array<double, 8>& weights) {
   return out;
 }
 
-/// `goes_on`: of the sides opposite to the corners. Of the part of a triangle where no corner has more weight than the one that
-/// has the most at the weights `at`.
+/// `goes_on`: for the sides opposite the corners. Bounds of the part of a triangle in which the corner with the largest
+/// weight at `at` has the largest weight.
 PatchSides sides_of(const std::array<Vec3d, 3>& x, const Vec3d& at, const std::array<bool, 3>& goes_on) {
   const Vec3d normal = vec::cross(vec::sub(x[1], x[0]), vec::sub(x[2], x[0]));
   std::array<Vec3d, 3> slope;  // of the weights
@@ -48,7 +48,7 @@ PatchSides sides_of(const std::array<Vec3d, 3>& x, const Vec3d& at, const std::a
     slope[c] = vec::mul(vec::cross(normal, vec::sub(x[(c + 2) % 3], x[(c + 1) % 3])), 1 / vec::dot(normal, normal));
   PatchSides sides{};
   std::size_t count = 0;
-  const auto add = [&](const Vec3d& down, double room, bool on) {  // where a weight of slope -down, `room` here, is positive
+  const auto add = [&](const Vec3d& down, double room, bool on) {  // where a weight of slope -down and value `room` is positive
     const double size = vec::norm(down);
     sides[count++] = {vec::mul(down, 1 / size), room / size, on};
   };
@@ -60,7 +60,7 @@ PatchSides sides_of(const std::array<Vec3d, 3>& x, const Vec3d& at, const std::a
   return sides;
 }
 
-/// Nodes and weights of a place on a triangle. Its corners lie in one tetrahedron, or on nodes: few nodes have a weight.
+/// Nodes and weights of a point on a triangle. Its corners are in one tetrahedron or on nodes, so few nodes have a weight.
 struct SampleEmbedding {
   std::array<std::int32_t, 8> nodes{};
   std::array<double, 8> weights{};
@@ -148,8 +148,8 @@ class Faces {
   const ModelBody& b_;
   std::int32_t body_;
   bool patches_;
-  double mean_ = 0;                                                 ///< of the longest edges of its triangles [m]
-  std::map<std::pair<std::int32_t, std::int32_t>, Vec3d> normals_;  ///< of triangles, by their sides
+  double mean_ = 0;                                                 ///< mean over its triangles of the longest edge [m]
+  std::map<std::pair<std::int32_t, std::int32_t>, Vec3d> normals_;  ///< normals of triangles, by their sides
 };
 
 }  // namespace

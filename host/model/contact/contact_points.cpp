@@ -1,4 +1,4 @@
-// Points on the surface that take part in contact: samples of the triangles, gathered into half cells.
+// Contact points on surfaces: samples of the triangles, combined by half cells.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -18,19 +18,20 @@ namespace {
 using Slots = std::array<std::int32_t, 8>;
 using Index = std::array<std::int64_t, 3>;
 
-/// Triangles are divided until no edge is longer than this share of a cell.
+/// Triangles are subdivided until no edge is longer than this fraction of a cell.
 constexpr double kSample = 0.25;
 
-/// Least area of a point, as a share of a face of a cell.
+/// Minimum area of a point, as a fraction of a cell's face.
 constexpr double kLeastArea = 1e-6;
 
-/// Depth of a soft shell, as a share of a cell.
+/// Depth of a soft shell, as a fraction of a cell.
 constexpr double kShell = 0.25;
 
-/// A sample lies in the cell that is so far below the surface, as a share of a cell: the surface may lie between two.
+/// Depth below the surface at which a sample's cell is determined, as a fraction of a cell, since the surface may lie between
+/// two cells.
 constexpr double kInside = 1e-3;
 
-/// The axis that a normal is nearest to, and its sign: 0 to 5.
+/// Index 0 to 5 of the axis and sign closest to a normal.
 int side_of(const Vec3d& normal) {
   std::size_t axis = 0;
   for (std::size_t c = 1; c < 3; ++c) {
@@ -39,8 +40,8 @@ int side_of(const Vec3d& normal) {
   return static_cast<int>(2 * axis) + (normal[axis] < 0 ? 1 : 0);
 }
 
-/// The body of a lattice: every triangle is divided into samples, and those of one half of a cell (in x, y and z) that look the
-/// same way become one point.
+/// Samples a lattice body: every triangle is divided into samples, and the samples in one half of a cell (in x, y and z) that
+/// face the same way become one point.
 class LatticeSampler {
  public:
   LatticeSampler(const Model& model, std::int32_t body, bool patches)
@@ -65,13 +66,13 @@ class LatticeSampler {
  private:
   struct Sample {
     Slots nodes{};
-    Vec3d local{};  ///< place in its cell, in [0, 1]
+    Vec3d local{};  ///< position in its cell, in [0, 1]
     int half = 0, side = 0;
     std::int64_t order = 0;
     Vec3d x{}, normal{};  ///< normal of unit length
     double area = 0;
   };
-  /// A cell that a vertex is embedded in.
+  /// A cell in which a vertex is embedded.
   struct Place {
     Slots nodes{};
     Vec3d corner{};  ///< its low corner [m]
@@ -101,7 +102,7 @@ class LatticeSampler {
     std::array<Place, 3> places;
     for (std::size_t c = 0; c < 3; ++c) places[c] = place_of(triangle[c]);
     for (int i = 0; i < n; ++i) {
-      for (int j = 0; j < 2 * (n - i) - 1; ++j) {  // small triangles of row i, every other one turned round
+      for (int j = 0; j < 2 * (n - i) - 1; ++j) {  // small triangles of row i, every second one inverted
         const double up = j % 2 == 0 ? 1.0 / 3 : 2.0 / 3;
         const double a = (i + up) / n, b = (j / 2 + up) / n;
         add(between(x, {1 - a - b, a, b}), places, normal, area / (static_cast<double>(n) * n));
@@ -134,8 +135,8 @@ class LatticeSampler {
     return most;
   }
 
-  /// The cell of a corner that holds the sample; of a coarse triangle the copy of the sample's own cell that shares most nodes
-  /// with the corners' cells.
+  /// Of the cells of the triangle's corners, returns the one that contains the sample. For a coarse triangle: the copy of the
+  /// sample's own cell that shares most nodes with the corners' cells.
   [[nodiscard]] Place choose(const Vec3d& x, const std::array<Place, 3>& places) {
     std::size_t nearest = 0;
     for (std::size_t c = 1; c < 3; ++c) {
@@ -161,7 +162,7 @@ class LatticeSampler {
     return best;
   }
 
-  /// By the place of the low corner.
+  /// Grid index of a low corner.
   [[nodiscard]] Index index_of(const Vec3d& corner) const {
     Index index{};
     for (std::size_t c = 0; c < 3; ++c) index[c] = std::llround((corner[c] - b_.rest[0][c]) / d_);
@@ -183,7 +184,7 @@ class LatticeSampler {
     for (std::size_t e = 0; e + 5 < b_.tets.size(); e += 6) add_cell(cell_corners(&b_.tets[e]));
   }
 
-  /// Of its half of a cell.
+  /// Bounds of the half cell.
   [[nodiscard]] PatchSides sides_of(const Sample& s) const {
     PatchSides sides{};
     for (std::size_t c = 0; c < 3; ++c) {
@@ -208,7 +209,7 @@ class LatticeSampler {
     return index;
   }
 
-  /// Whether a neighbour's surface looks the same way, also where it rises or falls by half a cell.
+  /// Returns true if a neighbouring half cell has surface with the same orientation, possibly half a cell higher or lower.
   [[nodiscard]] bool goes_on(const Sample& s, std::size_t axis, int way) const {
     Index next = half_cell(s);
     next[axis] += way;
@@ -221,7 +222,7 @@ class LatticeSampler {
     return false;
   }
 
-  /// The sample nearest to the middle of its group stands for all.
+  /// Makes one point of a group, at the sample nearest to the group's mean position.
   void gather(std::size_t first, std::size_t last, ContactPoints& points) const {
     Vec3d middle{}, normal{};
     double area = 0;
@@ -230,7 +231,7 @@ class LatticeSampler {
       middle = vec::add(middle, vec::mul(samples_[i].x, samples_[i].area));
       area += samples_[i].area;
     }
-    if (area < kLeastArea * d_ * d_) return;  // a splinter, whose normal says nothing
+    if (area < kLeastArea * d_ * d_) return;  // too small for a reliable normal
     middle = vec::mul(middle, 1 / area);
     std::size_t best = first;
     const auto distance = [&](std::size_t i) { return vec::norm(vec::sub(samples_[i].x, middle)); };
@@ -257,7 +258,7 @@ class LatticeSampler {
   std::set<std::pair<Index, int>> halves_;
 };
 
-/// Place along a curve that fills space, of points in a box of 1024^3.
+/// Morton code of a point in a box of 1024^3.
 std::uint64_t morton(const Vec3d& x, const vec::Box& box) {
   double longest = 0;
   for (std::size_t a = 0; a < 3; ++a) longest = std::max(longest, box.upper[a] - box.lower[a]);
@@ -295,7 +296,7 @@ ContactPoints contact_points(const Model& model, bool patches) {
   for (const Vec3d& x : points.rest) box.extend(x);
   std::vector<std::uint64_t> code(points.size());
   for (std::size_t i = 0; i < code.size(); ++i) code[i] = morton(points.rest[i], box);
-  // Points of a tile look the same way, so that the two faces of a cut stand in different ones.
+  // Points of a tile have the same orientation, so that the two faces of a cut are in different tiles.
   std::vector<int> side(points.size());
   for (std::size_t i = 0; i < side.size(); ++i) side[i] = side_of(points.normal[i]);
   std::vector<std::size_t> order(points.size());
@@ -328,7 +329,7 @@ void add_contact(const Scene& scene, Model& model) {
   const bool patches = std::any_of(scene.tools.begin(), scene.tools.end(), [](const ContactTool& t) { return t.edges; });
   if (model.contact == nullptr || (patches && model.contact->sides.empty()))
     model.contact = std::make_shared<const ContactPoints>(contact_points(model, patches));
-  // A shell with a law of its own is that law as far as a quarter of a cell; what is "auto" is hard at once.
+  // A soft shell extends to a quarter of a cell; "auto" contact is rigid at once.
   for (ContactLaw& law : model.contact_laws) law.core = law.stiffness > 0 ? kShell * model.contact->spacing : 0;
 }
 

@@ -1,4 +1,4 @@
-// How the surface at a contact point follows the nodes that move it.
+// Derivatives of the surface at contact points with respect to the nodes.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -11,13 +11,13 @@ namespace pliant {
 namespace {
 
 constexpr double kAlongSurface = 0.1;
-/// How far a patch goes beyond its sides, in distances between points: its share of a force falls to nothing there.
+/// Extent of a patch beyond its sides, in distances between points, over which its fraction of the force falls to zero.
 constexpr double kBeyond = 0.8, kAtBorder = 0.06;
 constexpr double kNoSide = 1e6;  // [m]
 
 using Gradients = std::array<Vec3d, 8>;
 
-/// Of the trilinear shape functions of a cube along the axes, at the point; empty where the nodes are none.
+/// Gradients of the trilinear shape functions of an axis-aligned cube at the point; empty if the nodes do not form one.
 bool cube_gradients(const std::array<Vec3d, 8>& x, const std::array<std::int32_t, 8>& weights, Gradients& out) {
   const double d = x[1][0] - x[0][0];
   if (!(d > 0)) return false;
@@ -41,7 +41,7 @@ bool cube_gradients(const std::array<Vec3d, 8>& x, const std::array<std::int32_t
   return true;
 }
 
-/// Of the linear field that is nearest to the nodes' values in the mean square; only along the directions that they span.
+/// Gradients of the least-squares linear field through the nodes' values, restricted to the directions that they span.
 Gradients linear_gradients(const std::array<Vec3d, 8>& x, const std::array<std::int32_t, 8>& nodes) {
   const auto first_of = [&](std::size_t a) {
     return std::find(nodes.begin(), nodes.begin() + a, nodes[a]) == nodes.begin() + a;
@@ -75,7 +75,7 @@ Gradients linear_gradients(const std::array<Vec3d, 8>& x, const std::array<std::
   return out;
 }
 
-/// Components of gradients in whole units that sum to zero, so that what turns a point pushes no body.
+/// Components of gradients in integer units with sum zero, so that the moment of a point exerts no net force.
 std::array<std::int32_t, 8> whole(const Gradients& gradient, const Vec3d& along, double unit) {
   std::array<std::int32_t, 8> out{};
   std::int32_t sum = 0;
@@ -119,7 +119,7 @@ std::vector<double> contact_patch(const ContactPoints& points, std::size_t point
   std::vector<double> out;
   for (const PatchSide& side : points.sides[point]) {
     const double p = vec::dot(side.normal, t.t1), q = vec::dot(side.normal, t.t2), size = std::hypot(p, q);
-    // A side that lies along the surface bounds nothing.
+    // A side parallel to the surface bounds nothing.
     const bool bounds = size > kAlongSurface;
     out.insert(out.end(), {bounds ? p / size : 0, bounds ? q / size : 0, bounds ? side.distance / size : kNoSide,
                            (side.goes_on ? kBeyond : kAtBorder) * points.apart[point]});

@@ -1,4 +1,4 @@
-// Tools that are thin against the distance between contact points are met at points along their edges.
+// Edge points of tools that are thin compared to the distance between contact points.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -11,16 +11,16 @@
 namespace pliant {
 namespace {
 
-/// Share of the distance between points that a patch reaches: half a diagonal is 0.71, and points do not stand in the middle.
+/// Extent of a patch relative to the distance between points: half a diagonal is 0.71, and points are not centred.
 constexpr double kReach = 0.8;
-/// A point that stands for a splinter of surface still reaches so far, as a share of the same distance.
+/// Minimum extent of the patch of a point with little surface, relative to the same distance.
 constexpr double kLeastSide = 0.6;
-/// A round tool whose radius is less than so many distances between points slips through between them where tissue is
+/// Round tools with a radius below this many distances between points can slip through between them where tissue is
 /// stretched.
 constexpr double kThin = 1.5;
 /// Edges of a mesh whose faces meet at less than this cosine are sharp.
 constexpr double kSharp = 0.866;
-/// The most edges of a mesh; the longest are taken.
+/// Maximum number of edges of a mesh; the longest are used.
 constexpr std::size_t kMostEdges = 512;
 
 /// In a tool's frame [m].
@@ -30,7 +30,7 @@ struct ToolEdge {
 };
 double length_of(const ToolEdge& e) { return vec::norm(vec::sub(e.second, e.first)); }
 
-/// The rim of a plate, or what is left of it where two sizes are alike: rounded, with half its thickness as the radius.
+/// The rim of a plate, reduced where two sizes are equal: rounded, with half its thickness as the radius.
 std::vector<ToolEdge> rim_of_box(const Vec3d& half) {
   const std::size_t thin = static_cast<std::size_t>(std::min_element(half.begin(), half.end()) - half.begin());
   const std::size_t one = (thin + 1) % 3, two = (thin + 2) % 3;

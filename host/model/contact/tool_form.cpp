@@ -1,4 +1,4 @@
-// Shapes of tools, and the signed distance that a mesh is turned into.
+// Shapes of tools, and the signed distances of meshes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace pliant {
 namespace {
 
-/// Twice the volume over the area: of a plate its thickness, of a long rod its radius [m].
+/// Twice the volume over the area [m]: the thickness of a plate, the radius of a long rod.
 double thickness_of(const TriangleMesh& mesh) {
   double volume = 0, area = 0;
   for (const auto& t : mesh.triangles) {

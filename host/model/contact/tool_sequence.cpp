@@ -15,17 +15,17 @@
 namespace pliant {
 namespace {
 
-/// Cells of the grid along the longest side of a mesh.
+/// Number of grid cells along the longest side of a mesh.
 constexpr double kGridCells = 64;
-/// Of a grid of one mesh, however thin its parts are.
+/// Maximum number of grid nodes of one mesh, however thin its parts are.
 constexpr double kMostNodes = 4194304;
-/// Values of all grids of a sequence: 600 MB on the device.
+/// Maximum number of values of all grids of a sequence: 600 MB on the device.
 constexpr std::int64_t kMostValues = 150'000'000;
-/// Points of a mesh that take part in its registration, and its iterations.
+/// Number of points of a mesh used in its registration, and of iterations.
 constexpr std::size_t kPoints = 2000;
 constexpr int kIterations = 30;
-/// A motion that moves the points less than this along their normals, in the mean of squares over its own, is free: the facets
-/// of a sphere say nothing about its turn.
+/// A motion whose mean square displacement along the points' normals is below this fraction of the whole is undetermined: the
+/// facets of a sphere do not determine its rotation.
 constexpr double kFree = 2e-3;
 
 /// "frame10" comes after "frame9": runs of digits are compared as numbers.
@@ -72,7 +72,7 @@ std::vector<std::filesystem::path> mesh_files(const ContactTool& tool) {
   return files;
 }
 
-/// Centroid of what a closed surface encloses.
+/// Centroid of the volume inside a closed surface.
 Vec3d centroid(const TriangleMesh& mesh) {
   Vec3d sum{};
   double volume = 0;
@@ -93,7 +93,7 @@ struct Sample {
   double area = 0;
 };
 
-/// Centres of some triangles, with the areas for which they stand.
+/// Centroids of some triangles, with the areas that they represent.
 std::vector<Sample> samples(const TriangleMesh& mesh) {
   std::vector<Sample> out;
   const std::size_t stride = mesh.triangles.size() / kPoints + 1;
@@ -110,7 +110,7 @@ std::vector<Sample> samples(const TriangleMesh& mesh) {
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-/// Normal equations of a small motion (turn about `centre`, move) that brings points onto the planes that they are nearest to.
+/// Normal equations of a small motion (rotation about `centre`, translation) that moves points onto their nearest planes.
 struct Fit {
   Matrix6 matrix = Matrix6::Zero();
   Vector6 right = Vector6::Zero();
@@ -125,7 +125,7 @@ struct Fit {
     area += of_area;
     squares += of_area * distance * distance;
   }
-  /// By Gauss and Newton in the motions that are not free; turns are measured at `radius`.
+  /// Gauss-Newton step in the determined motions; rotations are scaled with `radius`.
   [[nodiscard]] Vector6 motion(double radius) const {
     Vector6 scale;
     scale << 1 / radius, 1 / radius, 1 / radius, 1, 1, 1;
@@ -157,7 +157,7 @@ Fit fit_of(const std::vector<Sample>& points, const SurfaceDistance& surface, co
   return fit;
 }
 
-/// The small turn and move of body points, x' = x + turn x (x - centre) + move, as a pose that does the inverse to the frame.
+/// Converts a small motion of body points, x' = x + turn x (x - centre) + move, to the inverse motion of the frame's pose.
 Pose moved_back(const Pose& pose, const Vector6& by, const Vec3d& centre) {
   const Vec3d turn{by[0], by[1], by[2]}, move{by[3], by[4], by[5]};
   const double angle = vec::norm(turn), s = angle > 0 ? std::sin(angle / 2) / angle : 0.5;
@@ -203,18 +203,18 @@ void append_distances(const SurfaceDistance& surface, ToolForm& form) {
   parallel_for(rows, [&](std::int64_t r) {
     const Vec3d start{form.origin[0], form.origin[1] + static_cast<double>(r % form.size[1]) * form.spacing,
                       form.origin[2] + static_cast<double>(r / form.size[1]) * form.spacing};
-    double before = form.spacing, sign = 1;  // the row begins outside
+    double before = form.spacing, sign = 1;  // the row starts outside
     for (std::int64_t i = 0; i < row; ++i) {
       const Vec3d x{start[0] + static_cast<double>(i) * form.spacing, start[1], start[2]};
       const double distance = surface.closest(x).distance;
-      // Between two nodes the surface is crossed only where it is nearer to both than they are to each other.
+      // The surface is crossed between two nodes only if it is nearer to both than they are to each other.
       if (before <= form.spacing && distance <= form.spacing) sign = surface.inside(x) ? -1 : 1;
       before = distance;
       exact[static_cast<std::size_t>(r * row + i)] = sign * distance;
     }
   });
-  // Linear interpolation of a curved function is too high by h^2/12 of its Laplacian in the mean over a cell: a ball would be
-  // too small. Taken off at the nodes, the mean is right.
+  // Linear interpolation of a curved function is too high by h^2/12 of its Laplacian on average over a cell, which would make
+  // a ball too small. Subtracting this at the nodes corrects the mean.
   const std::array<std::int64_t, 3> step{1, row, row * form.size[1]};
   std::vector<double> mean = exact;
   parallel_for(rows, [&](std::int64_t r) {
@@ -264,7 +264,7 @@ void load_sequence(const ContactTool& tool, ToolForm& form) {
     pose.position = centroid(mesh);
     if (!surfaces.empty()) {
       pose.turn = form.frames.back().pose.turn;
-      // Where the last frame's centroid is in its own frame, there is this one's.
+      // Move this frame's centroid to the position of the previous one in its own frame.
       const Vec3d last = centroid(form.frames.back().surface);
       pose.position = vec::sub(pose.position, place({{}, pose.turn}, last));
       pose = registered(mesh, *surfaces.back(), pose);

@@ -1,4 +1,4 @@
-// Meshes of tools become grids of signed distances; a sequence of meshes one grid per frame.
+// Converts tool meshes to grids of signed distances; a sequence has one grid per frame.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -9,27 +9,27 @@
 
 namespace pliant {
 
-/// The grid of a tool reaches this many of its cells beyond the mesh.
+/// Number of cells by which a tool's grid extends beyond its mesh.
 inline constexpr std::int32_t kToolGridBeyond = 2;
 
-/// In metres. Throws what read_surface() throws.
+/// Reads a mesh, in metres. Throws what read_surface() throws.
 TriangleMesh read_tool_mesh(const ContactTool& tool, const std::filesystem::path& file);
-/// Throws Error (bad_input) for a surface with a rim.
+/// Throws Error (bad_input) for an open surface.
 void check_closed(const ContactTool& tool, const std::filesystem::path& file, const SurfaceDistance& surface);
-/// Place and size of a grid around a box, with at least two cells across a part as thick as `thickness` [m] if a grid of
-/// 2^22 nodes has them.
+/// Chooses position and size of a grid around a box, with at least two cells across a part of `thickness` [m] if 2^22 grid
+/// nodes suffice.
 void lay_grid(const vec::Box& box, double thickness, ToolForm& form);
-/// Signed distances at all nodes of the grid, behind those that are there.
+/// Appends the signed distances at all nodes of the grid.
 void append_distances(const SurfaceDistance& surface, ToolForm& form);
 
-/// One mesh per file of a folder, in the order of their names (numbers in them count as numbers). Each may have a topology of
-/// its own. Throws Error (bad_input) for a folder without meshes, a mesh that cannot be read or is not closed, and for more
-/// frames than the grids may have.
+/// Loads one mesh per file of a folder, in the order of their names (digits compare as numbers). The meshes may have
+/// different topologies. Throws Error (bad_input) for a folder without meshes, a mesh that cannot be read or is not closed,
+/// and for more frames than the grids allow.
 void load_sequence(const ContactTool& tool, ToolForm& form);
 
-/// The pose that takes the frame `pose` stands for to where `surface` is met best by the points `x`, by area: iterated closest
-/// points, point to plane (Chen and Medioni 1992), from a first guess. What the shape leaves free, as the turn of a sphere,
-/// stays.
+/// Registers a mesh: returns the pose, starting from `guess`, at which its points fit `surface` best, weighted by area. Uses
+/// iterated closest points, point to plane (Chen and Medioni 1992). Undetermined motions, such as the rotation of a sphere,
+/// stay as in the guess.
 Pose registered(const TriangleMesh& mesh, const SurfaceDistance& surface, const Pose& guess);
 
 }  // namespace pliant

@@ -59,7 +59,7 @@ void from_mesh(const Body& body, BodyMesh& solid) {
   const VolumeMesh mesh = read_volume(body.mesh, body.scale, body.translate);
   const bool tets = takes_tets(body.element);
   if (tets ? mesh.tets.empty() : mesh.hexes.empty()) {
-    const int corners = tets ? 8 : 4;  // of what the file has
+    const int corners = tets ? 8 : 4;  // of the file's elements
     throw Error(ErrorCode::bad_input,
                 fmt::format("{}: element {} needs {} and the file has only {}; use {}", body.mesh.string(),
                             to_string(body.element), element_info(body.element).cells, tets ? "hexahedra" : "tetrahedra",
@@ -77,7 +77,7 @@ void from_mesh(const Body& body, BodyMesh& solid) {
     solid.hexes.push_back(corners);
   }
   solid.fill.assign(solid.tets.size() + solid.hexes.size(), 1.0);
-  // The surface: boundary triangles over the nodes they use.
+  // Surface: boundary triangles over the nodes they use.
   solid.triangles = boundary_triangles(mesh);
   std::vector<std::int32_t> vertex(mesh.vertices.size(), -1);
   for (auto& triangle : solid.triangles) {
@@ -94,7 +94,7 @@ void from_mesh(const Body& body, BodyMesh& solid) {
   solid.surface_volume = signed_volume({solid.surface, solid.triangles});
 }
 
-/// The partition of the uncut lattice's cells holds for their copies; a node is what its elements make of it.
+/// Copies inherit the partition of the uncut lattice's cells; the kind of a node follows from its elements.
 void spread_to_copies(BodyElements& solid) {
   Partition& partition = solid.partition;
   const std::vector<char> of_cell = std::move(partition.operational);

@@ -10,7 +10,7 @@ namespace {
 
 using Index3 = std::array<std::int32_t, 3>;
 constexpr Index3 kSize{PLIANT_BRICK_X, PLIANT_BRICK_Y, PLIANT_BRICK_Z};
-constexpr std::int32_t kAbsent = -1;  // until close_bricks knows the empty brick
+constexpr std::int32_t kAbsent = -1;  // until close_bricks assigns the empty brick
 
 Index3 brick_of(const Index3& node) {
   return {node[2] / kSize[2], node[1] / kSize[1], node[0] / kSize[0]};
@@ -20,7 +20,7 @@ std::int32_t place_of(const Index3& node) {
   return node[0] % kSize[0] + kSize[0] * (node[1] % kSize[1] + kSize[1] * (node[2] % kSize[2]));
 }
 
-/// The number of each brick of a body, by its place in the box around all of them.
+/// Numbers the bricks of a body by their position in the box around all of them.
 class BrickMap {
  public:
   explicit BrickMap(const BodyElements& solid) {
@@ -45,7 +45,7 @@ class BrickMap {
     }
     return number_[index(place)];
   }
-  /// Numbers those that are not absent in the order of their places; returns the number after the last.
+  /// Numbers the present bricks in the order of their positions; returns the next number.
   std::int32_t number_from(std::int32_t first) {
     for (std::int32_t& number : number_) {
       if (number != kAbsent) number = first++;
@@ -70,7 +70,7 @@ class BrickMap {
   std::vector<std::int32_t> number_;
 };
 
-/// Note that the row of `slot` holds a cell (kind 0) or a node (kind 1).
+/// Marks that the row of `slot` contains a cell (kind 0) or a node (kind 1).
 void mark_row(std::int32_t slot, int kind, Model& model) {
   model.brick_rows[2 * (slot / PLIANT_BRICK_NODES) + kind] |= 1 << slot % PLIANT_BRICK_NODES / PLIANT_BRICK_X;
 }

@@ -1,4 +1,4 @@
-// The finite elements of a Model one by one, wherever they are kept: in lists, or in the bricks of a lattice.
+// Iterates over the finite elements of a Model, whether they are in lists or in bricks.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -15,19 +15,19 @@ namespace pliant {
 struct ElementView {
   ElementKind kind;
   std::int32_t body;
-  std::int64_t id;  ///< its number in the body
+  std::int64_t id;  ///< index in the body
   std::span<const std::int32_t> slots;
   const Material& material;
   std::span<const double> record;
-  double share;    ///< of a full one's stiffness, by fill and modulus
-  double modulus;  ///< over that of the material
-  [[nodiscard]] double volume() const { return element_volume(kind, record); }  ///< of a full one, at rest [m^3]
+  double share;    ///< fraction of a full element's stiffness, by fill and modulus
+  double modulus;  ///< relative to the material's
+  [[nodiscard]] double volume() const { return element_volume(kind, record); }  ///< undeformed volume of a full element [m^3]
 };
 
-/// Slots of the corners of the brick cell whose low corner is `slot`.
+/// Returns the slots of the corners of the brick cell whose low corner is `slot`.
 std::array<std::int32_t, 8> brick_cell_corners(const Model& model, std::int32_t slot);
 
-/// f(ElementView) for every element.
+/// Calls f(ElementView) for every element.
 template <class F>
 void for_each_element(const Model& model, const F& f) {
   for (const ElementBatch& batch : model.batches) {
@@ -48,7 +48,7 @@ void for_each_element(const Model& model, const F& f) {
   }
 }
 
-/// Values at its `N` corners, a column each. `of(slot)`: a vector.
+/// Returns the values at its `N` corners, a column each. `of(slot)` returns a vector.
 template <int N, class Of>
 Eigen::Matrix<double, 3, N> corner_values(const ElementView& e, const Of& of) {
   Eigen::Matrix<double, 3, N> u;
@@ -56,8 +56,8 @@ Eigen::Matrix<double, 3, N> corner_values(const ElementView& e, const Of& of) {
   return u;
 }
 
-/// f(gradients [corners][3] [1/m], weight [m^3], u) for each quadrature point, `u` with the displacements of the corners, which
-/// `of(slot)` says, a column each [m]. A point of an element that is not full weighs less.
+/// Calls f(gradients [corners][3] [1/m], weight [m^3], u) for each quadrature point. `u`: displacements of the corners from
+/// `of(slot)`, a column each [m]. The weight includes the element's share.
 template <class Of, class F>
 void for_each_point(const ElementView& e, const Of& of, const F& f) {
   with_element(e.kind, [&](auto element) {
@@ -67,7 +67,7 @@ void for_each_point(const ElementView& e, const Of& of, const F& f) {
   });
 }
 
-/// What hourglass control adds to its energy [J] and, at most, to its stiffness [N/m] at these displacements.
+/// Hourglass control: its energy [J], and an upper bound of its stiffness [N/m], at these displacements.
 template <class Of>
 double hourglass_energy(const ElementView& e, const Of& of) {
   return with_element(e.kind, [&](auto element) {

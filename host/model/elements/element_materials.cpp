@@ -18,10 +18,10 @@ Vec3d centroid(const BodyElements& solid, std::span<const std::int32_t> corners)
   return sum;
 }
 
-/// The element of the uncut mesh that element e is, or is a copy of.
+/// The element of the uncut mesh that element e equals or is a copy of.
 std::size_t uncut(const BodyElements& solid, std::size_t e) {
   if (solid.copy_of.empty()) return e;
-  const std::size_t parts = solid.size() / solid.copy_of.size();  // a cell of a lattice may be six tetrahedra
+  const std::size_t parts = solid.size() / solid.copy_of.size();  // a lattice cell may have six tetrahedra
   return parts * static_cast<std::size_t>(solid.copy_of[e / parts]) + e % parts;
 }
 

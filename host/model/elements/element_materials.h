@@ -1,4 +1,4 @@
-// Which material each element of a body has.
+// The material of each element of a body.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -10,19 +10,19 @@ namespace pliant {
 struct BodyElements;
 
 struct ElementMaterials {
-  std::vector<std::int32_t> index;  ///< [elements] 0: the body's own, i + 1: that of inclusion i
-  std::vector<double> modulus;      ///< [elements] over that of this material, in (0, 1]; empty: 1 everywhere
+  std::vector<std::int32_t> index;  ///< [elements] 0: the body's own, i + 1: of inclusion i
+  std::vector<double> modulus;      ///< [elements] relative to this material, in (0, 1]; empty: 1
   [[nodiscard]] double modulus_of(std::size_t e) const { return modulus.empty() ? 1 : modulus[e]; }
 };
 
-/// The last inclusion that has the centroid of an element wins; Material::young_field says its modulus. Copies of a cut element
-/// have the material of the whole one. Throws Error (bad_input) for an inclusion without an element, and for a value that is
-/// no modulus.
+/// Assigns materials. If several inclusions contain the centroid of an element, the last one applies; Material::young_field
+/// provides moduli. Copies of a cut element keep its material. Throws Error (bad_input) for an inclusion without elements and
+/// for an invalid modulus.
 ElementMaterials element_materials(const Body& body, const BodyElements& solid);
 
-/// The material of that index.
+/// Returns the material with this index.
 const Material& material_of(const Body& body, std::int32_t index);
-/// That of element e, with its own modulus.
+/// Returns the material of element e with the element's modulus.
 Material material_of(const Body& body, const ElementMaterials& materials, std::size_t e);
 
 }  // namespace pliant

@@ -7,7 +7,7 @@
 namespace pliant {
 namespace {
 
-/// Raise the thin ones of a cell's copies, at the cost of the others. `first`: an element of each copy, of `parts` elements.
+/// Raises the thin copies of a cell at the cost of the others. `first`: an element of each copy, of `parts` elements.
 void share(const std::vector<std::size_t>& first, double least, std::vector<double>& fill) {
   double material = 0, over = 0, excess = 0;
   for (const std::size_t e : first) material += fill[e];

@@ -1,4 +1,4 @@
-// Thin cells, and thin copies of cut ones: how stiff they are.
+// Stiffness of thin cells and of thin copies of cut cells.
 #pragma once
 #include <vector>
 
@@ -6,10 +6,10 @@
 
 namespace pliant {
 
-/// The share of a full element that each element is as stiff as: [elements], its own fill if `least` is 0. A cell that is not
-/// divided is as stiff as max(fill, least). The copies of a divided one share what it was, each getting `least` of it at least
-/// (or equal parts, if that is too little), the rest by their material: where a cut is made all copies are deformed alike, so
-/// it changes no elastic energy.
+/// Returns each element's stiffness as a fraction of a full element [elements]; its own fill if `least` is 0. An undivided
+/// cell has max(fill, least). The copies of a divided cell share its stiffness: each gets at least `least` of it (or equal
+/// parts if that is not enough), the rest in proportion to material. All copies are deformed alike at the time of a cut, so
+/// the elastic energy does not change.
 std::vector<double> stiff_fills(const BodyElements& solid, double least);
 
 }  // namespace pliant

@@ -11,11 +11,11 @@
 namespace pliant {
 namespace {
 
-/// The largest Poisson's ratio of a region: near 1/2 its resistance to a change of volume would ask for shorter steps than
-/// alpha = 1 does.
+/// Upper limit of the Poisson's ratio of a region: near 1/2 its volumetric stiffness would require shorter steps than alpha =
+/// 1.
 constexpr double kMostPoisson = 0.3;
 
-/// Cells in tiles of 8 x 8 rows: the planes that the sums along y and z take in stay in the cache.
+/// Orders cells in tiles of 8 x 8 rows, so that the planes read by the sums along y and z stay in the cache.
 std::array<std::int32_t, 5> place_in_tiles(const LatticeNode& n) {
   return {n.index[2] >> 3, n.index[1] >> 3, n.index[2], n.index[1], n.index[0]};
 }
@@ -31,7 +31,7 @@ std::vector<std::int32_t> nodes_in_order(const BodyElements& solid, NodeKind kin
   return nodes;
 }
 
-/// work(low, high, axis) for the edges of the shape-matching cells. `number` is the number in the batch of each node of the
+/// Calls work(low, high, axis) for the edges of the shape-matching cells. `number`: index in the batch of each node of the
 /// body.
 template <class Work>
 void for_each_edge(const BodyElements& solid, const std::vector<std::int32_t>& number, const Work& work) {
@@ -44,9 +44,9 @@ void for_each_edge(const BodyElements& solid, const std::vector<std::int32_t>& n
   }
 }
 
-/// A node has one link in each direction: where the lattice branches (one node, two copies of its neighbour), the first cell's
-/// edge is the link. What then hangs on nothing, a copy with a corner of a cell to itself, would fall out of its body: a branch
-/// holds it.
+/// A node has one link in each direction. Where the lattice branches (one node, two copies of its neighbour), the edge of the
+/// first cell becomes the link. Copies that would then be unconnected, such as one with only a corner of a cell, are
+/// connected by a branch.
 void link_nodes(const BodyElements& solid, const std::vector<std::int32_t>& number, FlsmBatch& batch) {
   batch.link.assign(batch.slot.size(), {-1, -1, -1, -1, -1, -1});
   DisjointSets linked(batch.slot.size());
@@ -64,7 +64,7 @@ void link_nodes(const BodyElements& solid, const std::vector<std::int32_t>& numb
   });
 }
 
-/// Whether a batch has the same nodes and links, before fillers.
+/// Returns true if two batches have the same nodes and links, before fillers.
 bool same_links(const FlsmBatch& batch, const FlsmBatch& other) {
   if (other.index != batch.index || other.branches != batch.branches) return false;
   const auto nodes = static_cast<std::int32_t>(batch.slot.size());
@@ -94,7 +94,7 @@ void require_width(const Body& body, const FlsmBatch& batch) {
                   body.model.pointer, batch.settings.width, body.name, longest, longest));
 }
 
-/// The share of each node's material that lies in cells of shape matching. `number` is the number in the batch of each node.
+/// Fraction of each node's material in shape-matching cells. `number`: index in the batch of each node.
 std::vector<double> matter_of(const BodyElements& solid, const std::vector<std::int32_t>& number, std::size_t nodes) {
   std::vector<double> inside(nodes), all(nodes);
   const auto add = [&](const auto& corners, std::size_t e) {
@@ -110,9 +110,9 @@ std::vector<double> matter_of(const BodyElements& solid, const std::vector<std::
   return inside;
 }
 
-/// Sums of moments along one axis, `width` links to both sides.
+/// Sums of moments along one axis, over `width` links on each side.
 std::vector<RestMoments> along(int axis, const FlsmBatch& batch, const std::vector<RestMoments>& in) {
-  constexpr int second[3][3] = {{4, 7, 8}, {7, 5, 9}, {8, 9, 6}};  // where m o_i o_j stands
+  constexpr int second[3][3] = {{4, 7, 8}, {7, 5, 9}, {8, 9, 6}};  // index of m o_i o_j
   std::vector<RestMoments> out = in;
   for (std::size_t i = 0; i < in.size(); ++i) {
     for (const int side : {-1, 1}) {
@@ -150,7 +150,7 @@ LinkedLattice filled_lattice(const FlsmBatch& batch) {
   return lattice;
 }
 
-/// The batch of the same body and width in the model before.
+/// Returns the batch of the same body and width in the previous model.
 const FlsmBatch* batch_before(const FlsmBatch& batch, const Model* previous) {
   if (previous == nullptr) return nullptr;
   const auto found = std::find_if(previous->flsm.begin(), previous->flsm.end(), [&](const FlsmBatch& other) {
@@ -172,7 +172,7 @@ FlsmBatch place_matching_nodes(const BodyElements& solid, const Body& body, std:
                                   shared = nodes_in_order(solid, NodeKind::interface);
   batch.own = static_cast<std::int32_t>(own.size());
   batch.interface = static_cast<std::int32_t>(shared.size());
-  // One slot without a node for the region that stands for absent ones, and one for each region that fills up the interface's
+  // One slot without a node for the region that represents absent ones, and one for each padding region in the interface's
   // last tile.
   batch.first_slot = model.slots;
   batch.slots = (batch.own + 1 + PLIANT_TILE + PLIANT_TILE - 1) / PLIANT_TILE * PLIANT_TILE;

@@ -1,19 +1,18 @@
 // Regions of shape matching that deform like a material.
 //
-// A rigid fit leaves of a uniform deformation F of a region the energy |(F - R) A^1/2|^2 / 2, with A the second moments of its
-// weights. Inside a body A is that of a whole window and the sum over regions is the energy of a material. A window that ends
-// at a clamp, at the interface or at a cut has a smaller A across that face: there the body is softer than it should be, as if
-// it were longer by several cells. So what the best affine fit x = c + F o leaves is kept, as it is what resists short waves,
+// The residual of a rigid fit to a uniform deformation F of a region has the energy |(F - R) A^1/2|^2 / 2, with the second
+// moments A of its weights. Inside a body A is that of a full window, and the sum over regions is the energy of a material. A
+// window that ends at a clamp, at the interface or at a cut has a smaller A across that face: there the body is too soft, as
+// if it were longer by several cells. So the residual of the best affine fit x = c + F o is kept, which resists short waves,
 // and the energy of F itself is that of the material in the region:
 //   V = beta sum_r [sum_i p_i |x_i - c - F o_i|^2 / 2 + s_r psi(F)],   F = R U, e = U - I,
 //   psi(F) = tr(e^2 / 2 - e^3 / 6 + e^4 / 32) / (1 + nu) + nu / (2 (1 + nu) (1 - 2 nu)) (tr e)^2,
-// with s_r the second moment of a whole window that holds the material of the region. The first term is that of U - U^-1 for
-// small e, so that it stiffens in compression like neo-Hookean tissue, and is convex and finite for every e. A quartic stiffens
-// without end in fragments that a cut or a tear has left with few nodes, more than any step stands: beyond e : e = s =
-// PLIANT_FLSM_STRAIN its cubic term is multiplied by k and its quartic one by k^2, k = y (2 - y) with y = s / (e : e), so that
-// psi grows like e^2. The gradient pulls
-// node i towards c + (F - s_r P(F) A^-1) o_i, P = d psi / d F, which is again an affine transformation:
-// kernels/matching/flsm_region.cl.
+// with s_r the second moment of a full window with the same amount of material as the region. The first term is that of U -
+// U^-1 for small e, so it stiffens in compression like neo-Hookean tissue, and is convex and finite for every e. A quartic
+// would stiffen without limit in fragments with few nodes after a cut or tear, beyond the stability of any step. So beyond e
+// : e = s = PLIANT_FLSM_STRAIN the cubic term is multiplied by k and the quartic one by k^2, k = y (2 - y) with y = s / (e :
+// e), and psi grows like e^2. The gradient pulls node i towards c + (F - s_r P(F) A^-1) o_i, P = d psi / d F, which is again
+// an affine transformation: kernels/matching/flsm_region.cl.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <utility>
@@ -23,11 +22,13 @@
 namespace pliant {
 namespace {
 
-/// Weight of a node that is held, over its mass, by half-width. A held node takes the traction of a face; a region that hangs
-/// from a node of half a cell's mass alone hangs from a weak spring. It has no inertia that would ask for shorter steps.
+/// Weight of a held node over its mass, by half-width. A held node carries the traction of a face; with the mass of half a
+/// cell alone, a region would be attached to it by a weak spring. The weight is no inertia, so it does not require shorter
+/// steps.
 constexpr double kHeldWeight[] = {1, 2.5, 4, 6, 8};
 
-/// From this ratio of the material's moment to the region's own on it stays rigid: its plane or line says too little about F.
+/// At this ratio of the material's moment to the region's own, a region stays rigid: its nodes on a plane or line do not
+/// determine F.
 constexpr double kThinRegion = 5;
 
 /// The inverse of the moments, and the ratio of `share` to each principal moment.
@@ -84,15 +85,15 @@ void make_elastic(FlsmBatch& batch, const Model& model) {
     if (c != model.constraints.end() && c->slot == batch.slot[i] && c->axes == 7) {
       batch.weight[i] *= kHeldWeight[w - 1];
     } else if (batch.matter[i] < 1) {
-      batch.weight[i] *= batch.matter[i];  // or the traction along an interface would pull on its inner side
+      batch.weight[i] *= batch.matter[i];  // otherwise the traction along an interface would pull at its inner side
     }
   }
   const std::vector<double> held = region_sums(batch, material, false);
   const std::vector<RestMoments> moments = rest_moments(batch);
   const double nu = batch.poisson, shear = 1 / (1 + nu), bulk = nu / ((1 + nu) * (1 - 2 * nu));
   batch.elastic.assign(nodes, {});
-  // The energy of a region is at most that of a spring to each of its nodes, so that of all is at most their mean over the
-  // regions that hold a node.
+  // The energy of a region is at most that of a spring to each of its nodes, so that of all regions is at most the mean over
+  // the regions that contain a node.
   std::vector<double> stiffest(nodes, 1.0);
   for (std::size_t r = 0; r < nodes; ++r) {
     const double share = w * (w + 1) / 3.0 * held[r];

@@ -7,7 +7,7 @@
 namespace pliant {
 namespace {
 
-// Makes paths across empty grid points.
+// Creates paths across empty grid points.
 class FillerPaths {
  public:
   using Point = std::array<std::int32_t, 3>;
@@ -29,15 +29,15 @@ class FillerPaths {
     }
   }
 
-  // Count the paths that would cross each empty grid point.
+  // Counts the paths that would cross each empty grid point.
   void survey(std::int32_t node, const Point& offset) {
     for_empty(node, offset, [&](std::uint16_t& uses) {
       if (uses < kMost) ++uses;
     });
   }
 
-  // From `node` along z, y, x to the grid point at `offset`. Ends early at a cut or at a point that several nodes share, and is
-  // not made where it would cross a point that few others cross: then the list of what is missing keeps the entry.
+  // Creates the path from `node` along z, y, x to the grid point at `offset`. Ends early at a cut or at a point that several
+  // nodes share. Skips paths across a point that few others cross; the entry then stays in the correction list.
   void open(std::int32_t node, const Point& offset) {
     bool pays = true;
     for_empty(node, offset, [&](std::uint16_t uses) { pays = pays && uses >= kLeastUses; });
@@ -57,7 +57,7 @@ class FillerPaths {
   }
   std::int32_t& at(const Point& p) { return at_[place(p)]; }
 
-  // The grid points on the path z, y, x that hold no node.
+  // Visits the empty grid points on the path z, y, x.
   template <class Work>
   void for_empty(std::int32_t node, const Point& offset, const Work& work) {
     Point p = lattice_.index[node];
@@ -84,7 +84,7 @@ class FillerPaths {
       lattice_.link.push_back({-1, -1, -1, -1, -1, -1});
       ++lattice_.fillers;
     }
-    if (lattice_.link[there][d ^ 1] >= 0) return -1;  // it belongs to another node of the grid point that n shares
+    if (lattice_.link[there][d ^ 1] >= 0) return -1;  // it belongs to another node at the grid point of n
     lattice_.link[there][d ^ 1] = n;
     lattice_.link[n][d] = there;
     return there;

@@ -1,4 +1,4 @@
-// Where two lattices of shape matching are the same: after a cut most of their regions are.
+// Finds the equal parts of two shape-matching lattices: most regions do not change in a cut.
 #include <algorithm>
 
 #include "model/matching/flsm_regions.h"
@@ -30,7 +30,7 @@ class GridPoints {
     return static_cast<std::size_t>(p[0] - low_[0] + size_[0] * (p[1] - low_[1] + size_[1] * (p[2] - low_[2])));
   }
 
-  /// Mark what lies within `width` of a mark, along each axis.
+  /// Extends the marks by `width` along each axis.
   void spread(std::vector<char>& marks, int width) const {
     std::int64_t step = 1;
     for (int c = 0; c < 3; step *= size_[c], ++c) {
@@ -50,7 +50,7 @@ class GridPoints {
   std::array<std::int64_t, 3> size_{};
 };
 
-/// The nodes at each grid point as a chain in ascending order: the first, and the next of each.
+/// The nodes at each grid point as an ascending chain: the first node, and the successor of each.
 struct Chains {
   std::vector<std::int32_t> first, next;
   Chains(const LinkedLattice& lattice, const GridPoints& grid) : first(grid.count(), -1), next(lattice.index.size(), -1) {

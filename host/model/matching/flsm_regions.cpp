@@ -1,4 +1,4 @@
-// Regions by three integer passes along links, and a search where those passes may have missed something.
+// Finds regions by three integer passes along links, and by a search where those passes may be incomplete.
 #include "model/matching/flsm_regions.h"
 
 #include <fmt/format.h>
@@ -15,9 +15,9 @@ namespace pliant {
 namespace {
 
 constexpr int kMostWidth = 5;
-constexpr std::int64_t kBlock = 512;  // nodes that a thread takes at a time
+constexpr std::int64_t kBlock = 512;  // nodes per block of a thread
 
-// Call work(first, last) for blocks of [0, count).
+// Calls work(first, last) for blocks of [0, count).
 template <class Work>
 void for_blocks(std::int64_t count, const Work& work) {
   parallel_for((count + kBlock - 1) / kBlock, [&](std::int64_t b) { work(b * kBlock, std::min(count, (b + 1) * kBlock)); });
@@ -30,7 +30,7 @@ void check_width(int width) {
   }
 }
 
-// All that follows relies on this: a link leads to the next grid point along its axis, and back.
+// Precondition: a link leads to the next grid point along its axis, and back.
 void check_links(const LinkedLattice& lattice) {
   const auto nodes = static_cast<std::int64_t>(lattice.index.size());
   if (lattice.link.size() != lattice.index.size() || nodes > std::numeric_limits<std::int32_t>::max()) {
@@ -51,8 +51,8 @@ void check_links(const LinkedLattice& lattice) {
   });
 }
 
-// A flagged node shares its grid point with another one. The sums carry the number of nodes in the low and of flagged nodes in
-// the high half; both stay below (2 * 5 + 1)^3 = 1331.
+// A flagged node shares its grid point with another one. The sums hold the number of nodes in the low half and of flagged
+// nodes in the high half; both stay below (2 * 5 + 1)^3 = 1331.
 constexpr std::uint32_t kFlag = 1U << 16, kCount = kFlag - 1;
 
 // 1 for each node, 0 for each filler, and the flag for those that share their grid point.
@@ -97,8 +97,8 @@ std::vector<std::uint32_t> ordered_sums(const LinkedLattice& lattice, const std:
   return sums;
 }
 
-// The search of one region at a time. A position is a place in the window with a border of one place around it; each holds the
-// chain of the nodes visited there, of which there are several only where nodes share a grid point.
+// Searches one region at a time. A position is a place in the window, which has a border of one place; each holds a chain of
+// the nodes visited there, with several nodes only if they share a grid point.
 class RegionSearch {
  public:
   RegionSearch(const LinkedLattice& lattice, int width, bool shared_points)
@@ -121,8 +121,8 @@ class RegionSearch {
     }
   }
 
-  // Find the region of `centre`, append the nodes that the ordered sums miss or reach in vain to `missing` and return its size.
-  // `ordered` is the number of nodes that the ordered sums count.
+  // Finds the region of `centre`, appends the nodes that the ordered sums miss or include wrongly to `missing` and returns
+  // its size. `ordered`: number of nodes in the ordered sums.
   std::int32_t run(std::int32_t centre, std::uint32_t ordered, std::vector<RegionEntry>& missing) {
     found_.clear();
     visit(centre, centre_);
@@ -162,7 +162,7 @@ class RegionSearch {
     at_[position] = number;
   }
 
-  // Visit the bars along one axis through all that has been found so far. No two of these nodes lie on one bar.
+  // Visits the bars along one axis through all nodes found so far, of which no two are on one bar.
   void walk(int axis) {
     const std::size_t count = found_.size();
     for (std::size_t f = 0; f < count; ++f) {
@@ -203,7 +203,7 @@ class RegionSearch {
   const LinkedLattice& lattice_;
   const int width_;
   const bool shared_points_;
-  std::array<std::int32_t, 6> step_{};  // from a position to the next along each link
+  std::array<std::int32_t, 6> step_{};  // position offset of each link direction
   std::int32_t centre_ = 0;
   std::multimap<std::int32_t, std::pair<int, std::int32_t>> branch_;  // of a node: direction and other end
   std::vector<std::int32_t> at_;            // per position: the node found last, as an index into found_
@@ -212,7 +212,7 @@ class RegionSearch {
   std::vector<std::int32_t> reached_;  // the nodes of the region, as indices into found_
 };
 
-// What is missing in a region that was known, by the numbers that nodes have now.
+// Copies the corrections of a known region, with the current node numbers.
 std::int32_t take_over(const FlsmRegions& known, std::int32_t region, const std::vector<std::int32_t>& now,
                        std::vector<RegionEntry>& missing) {
   const auto begin = static_cast<std::ptrdiff_t>(missing.size());
@@ -228,7 +228,7 @@ std::int32_t take_over(const FlsmRegions& known, std::int32_t region, const std:
   return known.size[region];
 }
 
-// Fill size, missing_offset and missing. `sums` are the ordered sums with x first.
+// Fills size, missing_offset and missing. `sums`: the ordered sums with x first.
 void find_missing(const LinkedLattice& lattice, const std::vector<std::uint32_t>& sums, bool shared_points,
                   const KnownRegions* before, FlsmRegions& regions) {
   const std::int64_t nodes = lattice.nodes();
@@ -241,7 +241,7 @@ void find_missing(const LinkedLattice& lattice, const std::vector<std::uint32_t>
     RegionSearch search(lattice, regions.width, shared_points);
     auto& list = found[first / kBlock];
     for (std::int64_t i = first; i < last; ++i) {
-      // Sums that fill the window miss nothing, unless a grid point in it holds a further node.
+      // Sums over a full window miss nothing, unless a grid point in it has a further node.
       if (sums[i] == whole) {
         regions.size[i] = static_cast<std::int32_t>(whole);
         continue;
@@ -268,7 +268,7 @@ void find_missing(const LinkedLattice& lattice, const std::vector<std::uint32_t>
   });
 }
 
-// Fill missing_of_offset and missing_of from missing.
+// Fills missing_of_offset and missing_of from missing.
 void transpose(FlsmRegions& regions) {
   const std::size_t nodes = regions.size.size();
   auto& begin = regions.missing_of_offset;

@@ -1,4 +1,4 @@
-// Growing the operational region of a hybrid body over faces of cells.
+// Grows the operational region of a hybrid body over faces of cells.
 #include "model/matching/partition.h"
 
 #include <fmt/format.h>
@@ -32,7 +32,7 @@ class CellFaces {
     }
   }
 
-  // Call work(other) for every cell that shares the four nodes of a face with `cell`.
+  // Calls work(other) for every cell that shares the four nodes of a face with `cell`.
   template <class Work>
   void for_neighbours(std::int32_t cell, const Work& work) const {
     const auto& mine = cells_[cell].nodes;
@@ -59,7 +59,7 @@ Vec3d centre_of(const Lattice& lattice, const Cell& cell) {
   return p;
 }
 
-// From the lowest to the highest corner of the cells.
+// Bounding box of the cells.
 vec::Box extent(const Lattice& lattice) {
   vec::Box box;
   for (const LatticeNode& n : lattice.nodes) box.extend(lattice.position(n));
@@ -71,7 +71,7 @@ std::string range_text(const vec::Box& box) {
                      box.upper[1], box.upper[2]);
 }
 
-// Where growth starts: a point in units of cells from the origin of the lattice, and the cell nearest to it.
+// Start of the growth: a point in units of cells from the origin of the lattice, and the nearest cell.
 struct Start {
   Vec3d point{};
   std::int32_t cell = 0;
@@ -99,7 +99,7 @@ Start start_of(const DeformationModel& model, const Lattice& lattice) {
       start.cell = static_cast<std::int32_t>(c);
     }
   }
-  // Of several copies of a cell, the one that holds the vertex.
+  // Of several copies of a cell, use the one that contains the vertex.
   if (!model.seed && !lattice.embedding.empty() &&
       distance2(lattice.cells[lattice.embedding[0].cell], start.point) <= nearest) {
     start.cell = lattice.embedding[0].cell;
@@ -134,8 +134,8 @@ void grow(const DeformationModel& model, const Lattice& lattice, const CellFaces
     front.pop();
     const auto& nodes = lattice.cells[c].nodes;
     const auto more = std::count_if(nodes.begin(), nodes.end(), [&](std::int32_t n) { return counted[n] == 0; });
-    // Would one more cell overshoot by more than what is lacking now? The first cell is always taken: an operational region
-    // that was asked for is not empty.
+    // Stop if one more cell would overshoot by more than the current deficit. The first cell is always added, so that a
+    // requested operational region is not empty.
     if (count > 0 && static_cast<double>(count + more) - target > target - static_cast<double>(count)) break;
     for (const std::int32_t n : nodes) counted[n] = 1;
     count += more;
@@ -176,8 +176,8 @@ void classify(const Lattice& lattice, Partition& partition) {
   }
 }
 
-// Turn groups of shape-matching cells without a node of their own operational. One round is enough: such a group holds no node
-// of kind `matching`, so that it takes none from another group.
+// Makes groups of shape-matching cells without a node of their own operational. One round suffices: such a group contains no
+// node of kind `matching`, so it takes none from another group.
 void absorb_isolated(const Lattice& lattice, const CellFaces& faces, Partition& partition) {
   std::vector<char> seen(partition.operational);
   std::vector<std::int32_t> group;

@@ -15,8 +15,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kReserve = 1.5;  ///< times what is needed now
-constexpr double kTooMuch = 2;    ///< times that again is given back
+constexpr double kReserve = 1.5;  ///< new ballast relative to the need
+constexpr double kTooMuch = 2;    ///< ballast of more than this times the need is reduced
 
 /// Largest eigenvalue of the tangent of a point with N nodes, rows of `b`: K = w B^T C B with C = dP/dF, hence at most
 /// w lambda_max(C) lambda_max(sum_a grad N_a grad N_a^T).

@@ -1,6 +1,6 @@
-// Inertia that single nodes get while a scene runs, so that the elements there stand the step: conventional mass scaling, but
-// of those few elements alone whose deformation asks for it (Olovsson, Simonsson, Unosson 2005 compare it with others). It has
-// no weight.
+// Ballast: inertia added to single nodes during a run so that the elements there are stable at the step. This is conventional
+// mass scaling, but only for the few elements whose deformation requires it (Olovsson, Simonsson, Unosson 2005 compare
+// variants). It has no weight.
 #pragma once
 #include <span>
 #include <vector>
@@ -9,23 +9,23 @@
 
 namespace pliant {
 
-/// Give `model` this inertia beside its masses, in place of what was given before, and its boundary conditions anew. `ballast`:
-/// ascending slots of nodes.
+/// Adds this inertia to the masses of `model`, replacing the previous ballast, and rebuilds the boundary conditions.
+/// `ballast`: ascending slots of nodes.
 void set_ballast(const Scene& scene, Model& model, std::span<const NodeInertia> ballast);
 
-/// Upper bound of the stiffness that each node feels at the displacements `u` [slots][4] (node_u): over its elements, the sum
-/// of the largest eigenvalue of each one's tangent [N/m]; 0 where there is no finite element. The highest squared angular
-/// frequency is at most the largest stiffness over mass of a node. `wanted` [slots]: only of these nodes, 0 elsewhere; empty:
-/// of all. `quick`: with the norm of the tangent in place of its eigenvalue, in a sixth of the time; rubber with a Poisson's
-/// ratio of 0.3 is then a fifth stiffer.
+/// Returns an upper bound of the stiffness at each node for the displacements `u` [slots][4] (node_u): the sum over its
+/// elements of the largest eigenvalue of the tangent [N/m]; 0 without finite elements. The highest squared angular frequency
+/// is at most the largest ratio of stiffness to mass. `wanted` [slots]: only these nodes are computed, the others are 0;
+/// empty: all. `quick`: uses the norm of the tangent instead of its eigenvalue, which takes a sixth of the time; rubber with
+/// Poisson's ratio 0.3 then appears a fifth stiffer.
 std::vector<double> nodal_stiffness(const Model& model, const std::vector<double>& u, const std::vector<char>& wanted = {},
                                     bool quick = false);
 
-/// 2 over the highest frequency that these stiffnesses allow [s]; 0 without elements.
+/// Returns 2 over the highest frequency that these stiffnesses allow [s]; 0 without elements.
 double stiffness_bound(const Model& model, const std::vector<double>& stiffness);
 
-/// The ballast with which every node stands the step `dt` [s]. What is too light gets half as much again, so that it
-/// lasts; what has twice as much as it needs gives it back down to that. Ascending slots.
+/// Returns the ballast with which every node is stable at the step `dt` [s]. A node that is too light gets half as much
+/// again, for reserve; ballast of more than twice the need is reduced to twice the need. Ascending slots.
 std::vector<NodeInertia> wanted_ballast(const Model& model, const std::vector<double>& stiffness, double dt);
 
 }  // namespace pliant

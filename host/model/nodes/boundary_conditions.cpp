@@ -25,8 +25,8 @@ std::string extent_of(const ModelBody& body) {
                      fmt::join(lower, ", "), fmt::join(upper, ", "));
 }
 
-/// Whether a virtual node that stands among chosen nodes is chosen too: if all its anchors are. So a piece is not held by the
-/// far side of its elements.
+/// Returns whether a virtual node is selected: only if all its anchors are, so that a piece is not held by the far side of
+/// its elements.
 bool follows(const VirtualNodes& nodes, std::size_t virtual_node, const std::vector<char>& chosen) {
   for (std::int32_t i = nodes.offset[virtual_node]; i < nodes.offset[virtual_node + 1]; ++i) {
     if (chosen[nodes.anchor[i]] == 0) return false;
@@ -69,7 +69,7 @@ std::int32_t add_curve(Model& model, const Curve& curve) {
   return static_cast<std::int32_t>(model.curves.size()) - 1;
 }
 
-/// The two curves of a rotation, one behind the other; the number of the first.
+/// Adds the two consecutive curves of a rotation; returns the index of the first.
 std::int32_t add_turn(Model& model, Curve curve, double angle) {
   curve.angle = angle;
   for (const Curve::Of of : {Curve::Of::cosine_less_one, Curve::Of::sine}) {
@@ -79,15 +79,15 @@ std::int32_t add_turn(Model& model, Curve curve, double angle) {
   return static_cast<std::int32_t>(model.curves.size()) - 2;
 }
 
-/// What one entry asks of one component of one node.
+/// The value that an entry prescribes for one component of one node.
 struct Wish {
-  const std::string* entry = nullptr;  ///< its pointer
+  const std::string* entry = nullptr;  ///< its JSON pointer
   bool turned = false;
   double target = 0, sine = 0;  ///< [m]
   std::int32_t curve = 0;
 };
 
-/// The constraints so far, at most one per slot.
+/// The constraints collected so far, at most one per slot.
 class Constraints {
  public:
   explicit Constraints(std::int32_t slots) : at_(static_cast<std::size_t>(slots), -1) {}
@@ -133,9 +133,9 @@ class Constraints {
                             *b.entry, "xyz"[axis], node, body.name, fmt::join(body.rest[node], ", "), told(a), told(b)));
   }
 
-  std::vector<std::int32_t> at_;  ///< of each slot: place in all_, or -1
+  std::vector<std::int32_t> at_;  ///< index in all_ for each slot, or -1
   std::vector<Constraint> all_;
-  std::vector<std::array<Wish, 3>> wishes_;  ///< beside all_
+  std::vector<std::array<Wish, 3>> wishes_;  ///< parallel to all_
 };
 
 void rotate(const Prescribed& prescribed, const ModelBody& placed, Model& model, Constraints& all) {
@@ -176,8 +176,9 @@ void load(const Body& body, const ModelBody& placed, Model& model) {
   for (const Force& force : body.forces) {
     const std::int32_t curve = add_curve(model, force.curve);
     const auto nodes = select_nodes(force.where, placed, Virtual::never);
-    // In a lattice by mass, so that a node of nearly empty cells gets nearly nothing, and a face what a traction would give. In
-    // a volume mesh every place gets as much, and the nodes that a tear made of one share it by mass: nobody else's changes.
+    // In a lattice in proportion to mass, so that a node of nearly empty cells gets almost nothing and a face gets the
+    // equivalent of a traction. In a volume mesh every original node gets the same, and nodes that a tear made of one share
+    // it by mass, so that the forces on other nodes do not change.
     const bool by_mass = placed.spacing > 0;
     double whole = 0;
     std::map<Vec3d, double> mass_at;
@@ -211,7 +212,7 @@ void load(const Body& body, const ModelBody& placed, Model& model) {
   }
 }
 
-/// Every mass accelerates with gravity; what is only inertia is held against it.
+/// All mass accelerates with gravity; this compensates the weight of added inertia.
 void weigh_added_inertia(const Scene& scene, Model& model) {
   if (scene.gravity == Vec3d{}) return;
   for (std::size_t s = 0; s < model.added.size(); ++s) {
@@ -224,7 +225,7 @@ void weigh_added_inertia(const Scene& scene, Model& model) {
   }
 }
 
-/// Forces of zero that the host may change between steps, one per node, behind the scene's own forces on that node.
+/// Adds zero forces that the host may change between steps, one per node, after the scene's own forces on that node.
 void reserve_forces(Model& model) {
   std::vector<bool> used(static_cast<std::size_t>(model.slots));
   for (std::size_t v = 0; v < model.surface.rest.size(); ++v) {
@@ -260,7 +261,7 @@ void add_boundary_conditions(const Scene& scene, Model& model) {
     }
   }
   model.constraints = std::move(constraints).by_slot();
-  for (FlsmBatch& batch : model.flsm) make_elastic(batch, model);  // which has to know what is held
+  for (FlsmBatch& batch : model.flsm) make_elastic(batch, model);  // needs the constraints
   weigh_added_inertia(scene, model);
   add_contact(scene, model);
   if (scene.interactive) reserve_forces(model);

@@ -7,7 +7,7 @@
 namespace pliant {
 namespace {
 
-/// Slots from `slot` on for nodes below `real` that have none yet; returns the next slot.
+/// Assigns slots from `slot` on to nodes below `real` that have none yet; returns the next slot.
 std::int32_t number_real_nodes(NodeNumbering& draft, std::int32_t real, std::int32_t slot) {
   const BodyElements& solid = draft.solid();
   const NodeOrder found = solid.uncut_order == nullptr ? node_order(solid) : NodeOrder{};
@@ -38,7 +38,7 @@ void number_list_nodes(std::vector<NodeNumbering>& drafts, Model& model) {
     bool any = false;
     for (std::int32_t n = 0; n < real && !any; ++n) any = on_list(n);
     if (any) slot = number_real_nodes(draft, real, slot);
-    // Those that a cut made come last: a cut moves no other node.
+    // Nodes made by a cut come last, so that a cut renumbers no other node.
     for (std::int32_t n = real; n < nodes; ++n) {
       if (on_list(n)) draft.slot[n] = slot++;
     }

@@ -1,4 +1,4 @@
-// A body on its way into the Model. Private to host/model.
+// Numbering of a body's nodes for the Model. Private to host/model.
 #pragma once
 #include <optional>
 #include <vector>
@@ -7,21 +7,21 @@
 
 namespace pliant {
 
-/// Everything about one body that is known before its list nodes have slots.
+/// A body before its list nodes have slots.
 struct NodeNumbering {
   const BodyMesh* given = nullptr;
-  std::optional<BodyElements> own;  ///< with a partition of its own
+  std::optional<BodyElements> own;  ///< with its own partition
   [[nodiscard]] const BodyElements& solid() const { return own ? *own : *given; }
   ElementMaterials materials;
   std::vector<double> stiff;  ///< stiff_fills()
   std::vector<char> in_brick;
-  std::vector<double> volume;  ///< [elements] of full ones [m^3]
+  std::vector<double> volume;  ///< [elements] of full elements [m^3]
   std::vector<std::int32_t> slot;
 };
 
-/// Slots for the nodes outside the bricks: body by body in Cuthill-McKee order, so that the nodes of one element stand as close
-/// as the cross-section of the body allows (sweeping through the elements then finds them in the cache), and inside windows of
-/// 256 nodes by the number of elements they touch, so that the rows of a tile's gather list are nearly full.
+/// Assigns slots to the nodes outside the bricks: body by body in Cuthill-McKee order, so that the nodes of an element are as
+/// close as the body's cross-section allows and a sweep over the elements finds them in the cache; and within windows of 256
+/// nodes sorted by number of elements, so that the rows of a tile's gather list are nearly full.
 void number_list_nodes(std::vector<NodeNumbering>& drafts, Model& model);
 
 }  // namespace pliant

@@ -58,7 +58,7 @@ std::vector<std::int32_t> sweep_order(const BodyElements& solid) {
   order.reserve(incidence.nodes());
   for (std::size_t n = 0; n < incidence.nodes(); ++n) {
     if (marks[n] == 2) continue;
-    // The node reached last from anywhere lies at an end of the part: sweeping from there keeps the front small.
+    // The node reached last from any start lies at an end of the part: a sweep from there has a small front.
     scout.clear();
     breadth_first(incidence, static_cast<std::int32_t>(n), 1, marks, scout);
     breadth_first(incidence, scout.back(), 2, marks, order);

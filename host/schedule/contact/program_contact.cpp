@@ -48,7 +48,7 @@ void ProgramBuilder::add_contact_points() {
     for (std::size_t a = 0; a < 8; ++a)
       area[static_cast<std::size_t>(points.nodes[i][a])] += points.area[i] * points.weights[i][a] / contact_weight_unit;
   }
-  for (std::size_t i = 0; i < count; ++i) {  // what fills the last tile has the last point's place, and no area
+  for (std::size_t i = 0; i < count; ++i) {  // padding has the last point's position and no area
     const std::size_t from = std::min(i, points.size() - 1);
     for (std::size_t c = 0; c < 3; ++c) rest[tile_base(i, 4) + c * PLIANT_TILE] = points.rest[from][c];
     if (i >= points.size()) continue;
@@ -78,7 +78,7 @@ void ProgramBuilder::add_contact_points() {
   add_state(make_ints("contact_near", BufferRole::state, "[tiles]", std::vector<std::int32_t>(tiles, all), 0, "contact_near"));
   add_state(make_reals("contact_yield", BufferType::real, count, BufferRole::state, "[points]", "m^3/N",
                        "contact_settle, touch_place"));
-  // Filled by the host after a look; they end with entries that are none.
+  // Written by the host after a search; they end with empty entries.
   add(make_ints("contact_list", BufferRole::control, "[tiles + 16]", std::vector<std::int32_t>(tiles + contact_list_end, -1), 0,
                 "host"));
   add(make_ints("contact_force", BufferRole::scratch, "[tiles][4][16]", {}, 4 * count, "contact_press, contact_settle"));
@@ -125,13 +125,13 @@ void ProgramBuilder::add_tools() {
                  "[steps + 1][tools][14]", "1 (9), m (3), 1 (2)", "host"));
   add(make_ints("tool_sum", BufferRole::scratch, "[steps][tools][16][16]", {},
                 rows * tools * contact_sum_parts * contact_sum_numbers, "contact_tool_sum"));
-  program_.buffers.back().carried = Carried::all;  // a row per step of the batch, until the host reads it
+  program_.buffers.back().carried = Carried::all;  // one row per step of the batch, until the host reads it
 }
 
 namespace {
 
-/// A point at a node: its position in contact_force, its weight there and its gradients along both tangents, in units, and
-/// which of the point's nodes this is.
+/// A point at a node: its position in contact_force, its weight and its gradients along both tangents there, in units, and
+/// the index of the node within the point.
 struct PointAtNode {
   std::int32_t at = 0, units = 0, corner = 0;
   std::array<std::int32_t, 2> turns{};
@@ -166,7 +166,7 @@ GatherList rows_of(const std::vector<std::vector<PointAtNode>>& entries, Number 
 
 }  // namespace
 
-/// The points at each node, and the tiles of points at each tile of nodes.
+/// Lists the points at each node, and the tiles of points at each tile of nodes.
 void ProgramBuilder::add_contact_gather() {
   std::map<std::int32_t, std::int32_t> axes;
   for (const Constraint& c : model_.constraints) axes[c.slot] = c.axes;
@@ -228,7 +228,7 @@ std::vector<Arg> ProgramBuilder::named(std::initializer_list<const char*> buffer
   return list;
 }
 
-/// What contact_press and contact_settle read and write.
+/// Arguments of contact_press and contact_settle.
 std::vector<Arg> ProgramBuilder::tool_pass_args(const std::string& kernel) const {
   std::vector<Arg> list = named({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_share",
                                  "contact_list", "contact_near", "contact_yield", "contact_anchor", "contact_force"});
@@ -244,7 +244,7 @@ std::vector<Arg> ProgramBuilder::tool_pass_args(const std::string& kernel) const
   return list;
 }
 
-/// The passes of every step, over what the look has listed as near.
+/// The contact passes of every step, over the points and nodes that the last search listed.
 void ProgramBuilder::add_contact_passes() {
   const auto points = static_cast<std::int64_t>(padded(model_.contact->size()));
   const auto nodes = static_cast<std::int64_t>(program_.at(program_.find("contact_slot")).count);
@@ -258,7 +258,7 @@ void ProgramBuilder::add_contact_passes() {
     list.push_back(step_arg());
     return list;
   };
-  // Counted as idle: what is near costs (docs/contact.md).
+  // Costs are counted as zero; the cost depends on the points near something (docs/contact.md).
   const auto pass = [&](const char* kernel, std::vector<Arg> list, Shape shape, std::int64_t count, const char* label) {
     program_.step.push_back({kernel, {}, std::move(list), shape, count, label, count, 0, 0});
     program_.step.back().uneven = true;
@@ -293,7 +293,7 @@ void ProgramBuilder::add_contact_passes() {
   apply("contact_change");
 }
 
-/// What is near tools, and which tissue is near other tissue.
+/// The broad-phase searches: contact_near for tools, touch_... for tissue.
 void ProgramBuilder::add_contact_look() {
   const auto tools = static_cast<std::int32_t>(model_.tools->size());
   if (tools > 0) {

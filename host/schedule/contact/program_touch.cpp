@@ -1,4 +1,4 @@
-// Buffers and passes of tissue that touches tissue.
+// Buffers and passes of contact of tissue with tissue.
 #include <algorithm>
 
 #include "schedule/contact/contact_data.h"
@@ -9,7 +9,8 @@ namespace {
 
 constexpr std::size_t kFanOut = 16;  // tiles per group, groups per larger group
 
-/// Two levels of groups over the tiles, which stand in an order that fills space, in depth-first order (touch_tree.cl).
+/// Two levels of groups over the tiles, which are in the order of a space-filling curve, stored in depth-first order
+/// (touch_tree.cl).
 std::vector<std::int32_t> tree_over(std::size_t tiles) {
   std::vector<std::int32_t> tree;
   auto boxes = static_cast<std::int32_t>(tiles);
@@ -35,7 +36,7 @@ std::vector<std::int32_t> tree_over(std::size_t tiles) {
 
 }  // namespace
 
-/// How the surface at points follows the nodes.
+/// Adds the derivatives of the surface at points with respect to the nodes.
 void ProgramBuilder::add_contact_surface() {
   const ContactPoints& points = *model_.contact;
   const auto count = static_cast<std::size_t>(padded(points.size()));
@@ -58,7 +59,7 @@ void ProgramBuilder::add_contact_surface() {
                  "see touch_point.cl", "model", std::move(surface)));
 }
 
-/// The patches that edges of tools meet, and what these do to their nodes.
+/// Adds the patches for contact with tool edges, and the forces on their nodes.
 void ProgramBuilder::add_contact_patches() {
   const ContactPoints& points = *model_.contact;
   const auto count = static_cast<std::size_t>(padded(points.size()));
@@ -99,7 +100,7 @@ void ProgramBuilder::add_touch() {
                        "[tiles][16 slots][6][16]", "see kernels/layout.h", "touch_pair, touch_press, touch_settle"));
   add_state(make_reals("touch_depth", BufferType::real, count, BufferRole::state, "[points]", "m", "touch_press"));
   reals("touch_place", PLIANT_TOUCH_PLACE, BufferRole::scratch, "[points][20]", "see touch_point.cl", "touch_place");
-  program_.buffers.back().carried = Carried::all;  // of points that are near nothing: that of the last look
+  program_.buffers.back().carried = Carried::all;  // points near nothing keep the values of the last search
   reals("touch_weight", PLIANT_TOUCH_SLOTS + 1, BufferRole::scratch, "[tiles][17][16]", "1 (16), m^2", "touch_pair");
   program_.buffers.back().carried = Carried::all;
   add(make_reals("touch_box", BufferType::real, PLIANT_TOUCH_BOX * (nodes + tiles), BufferRole::scratch, "[boxes][19]",

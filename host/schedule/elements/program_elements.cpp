@@ -52,7 +52,7 @@ void ProgramBuilder::add_bricks(const BrickBatch& b) {
        brick_force_flops(b.material.law)});
 }
 
-/// "tet_nodes/2": of the third batch whose buffers are named alike.
+/// "tet_nodes/2" for the third batch with the same buffer names.
 std::string ProgramBuilder::buffer_name(std::size_t index, const std::string& what) const {
   const auto family = [&](const ElementBatch& b) { return std::string_view(b.info().buffers); };
   const auto like = [&](const ElementBatch& b) { return family(b) == family(model_.batches[index]); };
@@ -63,7 +63,7 @@ std::string ProgramBuilder::buffer_name(std::size_t index, const std::string& wh
 BufferId ProgramBuilder::add_element_nodes(std::size_t index, std::size_t count) {
   const ElementBatch& b = model_.batches[index];
   const auto corners = static_cast<std::size_t>(b.info().corners);
-  // What fills up the last tile reads a slot of a list.
+  // Padding of the last tile reads a slot of a list.
   std::vector<std::int32_t> nodes(corners * count, corners == 4 ? model_.list_base : 0);
   for (std::size_t e = 0; e < b.size(); ++e) {
     for (std::size_t a = 0; a < corners; ++a) nodes[tile_base(e, corners) + a * PLIANT_TILE] = b.nodes_of(e)[a];
@@ -98,7 +98,7 @@ void ProgramBuilder::add_batch(std::size_t index) {
   const auto count = static_cast<std::size_t>(padded(b.size()));
   const std::string label = fmt::format("{}: {} {}", model_.bodies[b.body].name, info.word, to_string(b.material.law));
   const BufferId nodes_id = add_element_nodes(index, count), data_id = add_element_data(index, count);
-  BufferId beside = node_u_;  // the fourth argument: shares, or nodal pressures, or what is not read
+  BufferId beside = node_u_;  // the fourth argument: shares, nodal pressures, or unused
   std::vector<std::pair<std::string, int>> defines{{"LAW", static_cast<int>(b.material.law)}};
   if (info.weighted < 0) {
     std::vector<double> share(count, 0.0);
@@ -149,7 +149,7 @@ BufferId ProgramBuilder::add_averaging(std::size_t index, BufferId nodes_id, Buf
   const auto name = [&](const char* stem) { return buffer_name(index, stem); };
   const auto dilation_id = add(make_reals(name("anp_dilation"), BufferType::real, count + PLIANT_TILE, BufferRole::scratch,
                                           "[elements + 16]", "m^3", "tled_tet4_dilation", std::move(dilation)));
-  program_.buffers[dilation_id].fixed = PLIANT_TILE;  // what anp_index points to where a node has fewer elements than others
+  program_.buffers[dilation_id].fixed = PLIANT_TILE;  // padding of anp_index for nodes with fewer elements than others
   const auto offset_id = add(make_ints(name("anp_offset"), BufferRole::constant, "[tiles + 1]", std::move(list.offset)));
   const auto index_id = add(make_ints(name("anp_index"), BufferRole::constant, "[rows][16]", std::move(list.index)));
   const auto volume_id = add(make_reals(name("anp_inverse_volume"), BufferType::real, nodes, BufferRole::constant,

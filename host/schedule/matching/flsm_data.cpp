@@ -8,7 +8,7 @@
 namespace pliant {
 namespace {
 
-/// Offsets by region, and per entry a number and four factors. `scale` and `number` are functions of the entry's other end.
+/// Offsets by region, and per entry an index and four factors. `scale` and `number` are functions of the entry's other end.
 template <class Number, class Scale>
 void add_missing(const RegionLayout& places, const std::vector<std::int32_t>& offset, const std::vector<RegionEntry>& entries,
                  const Number& number, const Scale& scale, MissingList& out) {
@@ -24,7 +24,7 @@ void add_missing(const RegionLayout& places, const std::vector<std::int32_t>& of
   }
 }
 
-/// The inverse of a region's inertia about its centroid, times the spacing: xx yy zz xy xz yz. None for a region on a line.
+/// The inverse of a region's inertia about its centroid, times the spacing: xx yy zz xy xz yz. Zero for a region on a line.
 void set_spin(const double (&plane)[PLIANT_FLSM_REST_PLANES], double spacing, std::size_t r, std::vector<double>& spin) {
   Eigen::Matrix3d a;
   a << plane[4], plane[7], plane[8], plane[7], plane[5], plane[9], plane[8], plane[9], plane[6];
@@ -36,7 +36,7 @@ void set_spin(const double (&plane)[PLIANT_FLSM_REST_PLANES], double spacing, st
   for (int p = 0; p < PLIANT_FLSM_SPIN_PLANES; ++p) spin[tile_base(r, PLIANT_FLSM_SPIN_PLANES) + p * PLIANT_TILE] = value[p];
 }
 
-/// Planes of flsm_elastic, and the moments at rest of its best affine fit. `mean`: the weight that the sums are in [kg].
+/// Planes of flsm_elastic, and the undeformed moments of its best affine fit. `mean`: unit of the weights in the sums [kg].
 void set_elastic(const RegionElasticity& e, double mean, std::size_t r, RegionData& data) {
   double* const plane = data.elastic.data() + tile_base(r, PLIANT_FLSM_ELASTIC_PLANES);
   for (int p = 0; p < 6; ++p) plane[p * PLIANT_TILE] = e.share > 0 ? mean * e.inverse[p] : p < 3;
@@ -55,7 +55,7 @@ RegionData region_data(const FlsmBatch& b, const RegionLayout& places) {
   const auto with_region = static_cast<std::size_t>(places.nodes);
   data.slot.resize(count);
   for (std::int32_t r = 0; r < places.count; ++r) {
-    // What is no node gets a slot without a node; the interface's padding each its own, for flsm_interface writes there.
+    // Padding uses a slot without a node, in the interface a separate one each, since flsm_interface writes to it.
     const std::int32_t last = places.interface_base + (r - places.interface_base) % PLIANT_TILE;
     data.slot[r] = b.first_slot + (r < places.interface_base ? r : r < places.nodes ? last : places.own);
   }

@@ -1,4 +1,4 @@
-// A batch of shape matching as its buffers hold it. Private to host/schedule.
+// Buffer contents of a shape-matching batch. Private to host/schedule.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -8,9 +8,9 @@
 
 namespace pliant {
 
-/// Where the regions of a batch stand in its buffers: own nodes, the one that stands for absent ones (number `own`), padding,
-/// the interface from `interface_base` on, padding; these `nodes` have regions. Then come the fillers, which have sums only,
-/// and padding.
+/// Order of the regions of a batch in its buffers: own nodes, the region that represents absent ones (number `own`), padding,
+/// the interface from `interface_base` on, padding; these are `nodes` regions. Then the fillers, which have only sums, and
+/// padding.
 struct RegionLayout {
   std::int32_t own, interface, interface_base, nodes, count;
   explicit RegionLayout(const FlsmBatch& b)
@@ -26,15 +26,14 @@ struct RegionLayout {
   }
 };
 
-/// What to add to the ordered sums (kernels/matching/flsm_records.cl).
+/// Corrections of the ordered sums (kernels/matching/flsm_records.cl).
 struct MissingList {
   std::vector<std::int32_t> offset, other;
   std::vector<double> factor;
 };
 
-/// What the buffers hold of the model, in the order of the regions. `weight` and `missing` are for displacements; `rate_weight`
-/// and `rate_missing` for increments, those of interface nodes being shorter by the number of substeps (filled where damping
-/// needs them).
+/// Contents of the buffers, in region order. `weight` and `missing` are for displacements; `rate_weight` and `rate_missing`
+/// for increments, which are shorter at interface nodes by the number of substeps (only set if damping needs them).
 struct RegionData {
   std::vector<std::int32_t> slot, link[3];
   MissingList missing, missing_of, rate_missing;

@@ -1,5 +1,4 @@
-// Buffers and passes of fast lattice shape matching: nodes to regions, regions back to nodes, damping, and the force on the
-// interface.
+// Buffers and passes of fast lattice shape matching: nodes to regions, regions to nodes, damping, and the interface force.
 #include <fmt/format.h>
 
 #include <array>
@@ -18,7 +17,7 @@ Args operator+(Args a, const Args& b) {
   return a;
 }
 
-/// The buffers of all batches and bodies that shape matching works on.
+/// Buffers shared by all batches and bodies with shape matching.
 struct SharedBuffers {
   Arg node_u, node_w, node_load, step_params, alpha, fault;
 };
@@ -67,7 +66,7 @@ class FlsmPasses {
  private:
   /// Whether regions deform like a material.
   [[nodiscard]] bool elastic() const { return !b_.elastic.empty(); }
-  /// Whether the interface's springs take more or less momentum than shape matching gives.
+  /// Returns true if the interface springs do not conserve momentum by themselves.
   [[nodiscard]] bool reaction() const { return b_.interface > 0 && b_.settings.beta > 0 && b_.settings.conservative; }
   [[nodiscard]] Defines width() const { return {{"WIDTH", b_.settings.width}}; }
   [[nodiscard]] double goal_bytes() const { return 44 + 84 * missing_of_; }
@@ -103,7 +102,7 @@ class FlsmPasses {
     plates_ = reals("flsm_plates", PLIANT_FLSM_RECORD * count, BufferRole::scratch, "[regions][4][4]", "1",
                     "flsm_plate, flsm_goal_plate");
     regions_ = reals("flsm_regions", PLIANT_FLSM_RECORD * count, BufferRole::state, "[regions][4][4]", "m", "flsm_region");
-    elastic_ = rest_;  // which a rigid region does not look at
+    elastic_ = rest_;  // unused by rigid regions
     pulls_ = regions_;
     if (elastic()) {
       elastic_ = reals("flsm_elastic", PLIANT_FLSM_ELASTIC_PLANES * with_region, BufferRole::constant, "[tiles][7][16]", "1",
@@ -113,20 +112,20 @@ class FlsmPasses {
     }
     if (b_.settings.damping > 0 || reaction()) {
       rates_ = reals("flsm_rates", PLIANT_FLSM_RECORD * count, BufferRole::scratch, "[regions][4][4]", "m", "flsm_damp_region");
-      // Only regions move: the fillers behind them have sums alone and add nothing.
+      // Only regions move; the fillers after them contribute 0.
       program_.buffers[std::get<0>(rates_)].fixed = PLIANT_FLSM_RECORD * (count - with_region);
       spin_ = reals("flsm_spin", PLIANT_FLSM_SPIN_PLANES * with_region, BufferRole::constant, "[tiles][6][16]", "m", "model",
                     std::move(data_.spin));
     }
   }
 
-  /// Bars and plates of a texel buffer of the nodes.
+  /// Adds the passes for bars and plates of a texel buffer of the nodes.
   void add_sums(const Arg& texels, const Arg& weight, int relative, const char* of) {
     pass("flsm_bar", {{"WIDTH", b_.settings.width}, {"RELATIVE", relative}},
          {texels, slot_, weight, link_[0], reference_, bars_}, places_.count, 64, 8 + 32.0 * b_.settings.width, 0, of);
     pass("flsm_plate", width(), {bars_, link_[1], plates_}, places_.count, 104, 28.0 * b_.settings.width, 0, of);
   }
-  /// Plates and bars of the regions' records on the way back.
+  /// Adds the passes for plates and bars of the regions' records, from regions to nodes.
   void add_goals(const Arg& records, const char* of) {
     pass("flsm_goal_plate", width(), {records, link_[2], plates_}, places_.count, 136, 36.0 * b_.settings.width, 0, of);
     pass("flsm_goal_bar", width(), {plates_, link_[1], bars_}, places_.count, 104, 28.0 * b_.settings.width, 0, of);
@@ -134,7 +133,7 @@ class FlsmPasses {
   [[nodiscard]] Args goal_args(const Arg& records, const Arg& bars) const {
     return Args{bars, link_[0], records} + missing_of_args_ + Args{holders_};
   }
-  /// The rigid motion of each region nearest to increments, and what it leaves of them at the nodes.
+  /// Adds the closest rigid motion of each region to the increments, and the damping or reaction at the nodes.
   void add_rates(const Arg& increments, const Arg& weight, const Args& missing, int reaction, double damping, const char* of) {
     add_sums(increments, weight, 0, of);
     pass("flsm_damp_region", width(),
@@ -156,7 +155,7 @@ class FlsmPasses {
     const auto shared = static_cast<std::size_t>(places_.nodes - places_.interface_base);
     const int n = b_.settings.substeps;
     goals_ = reals("flsm_goals", 8 * shared, BufferRole::state, "[interface][2][4]", "m", "flsm_goal");
-    if (n > 1) {  // held or extrapolated over several steps, so a part of the state to go back to
+    if (n > 1) {  // kept over several steps, so they need backups for rollback
       for (const Arg& state : {reference_, goals_}) add_last_good(program_, std::get<0>(state));
     }
     beta_ = reals("flsm_beta", shared, BufferRole::control, "[interface]", "N/m", "host");
@@ -167,20 +166,20 @@ class FlsmPasses {
          {shared_.node_u, shared_.node_load, slot_, reference_, goals_, beta_, shared_.step_params, int_arg(n), base,
           step_arg()},
          static_cast<std::int32_t>(shared), 88, 12, b_.interface);
-    // Held goals pull in the first substep alone, n times as hard, when both ends of the spring are where the regions saw them:
-    // an impulse like that of shape matching's own nodes, so that momenta are kept. In later substeps they would drag at nodes
-    // that have moved on.
+    // Held goals act only in the first substep, n times as hard, when both ends of the spring are where the regions were
+    // evaluated: an impulse like that of shape matching's own nodes, so that momenta are conserved. In later substeps they
+    // would drag nodes that have moved on.
     program_.step.back().every = b_.settings.extrapolate ? 1 : n;
   }
 
-  /// Gives the excess of the interface's springs back to the regions. It goes through the bars and plates, so the goals follow
-  /// anew.
+  /// Returns the excess of the interface springs to the regions. This overwrites the bars and plates, so the goals are
+  /// computed again afterwards.
   void add_reaction(std::int32_t slots) {
     const Arg mean = reals("flsm_mean_beta", static_cast<std::size_t>(places_.nodes - places_.interface_base),
                            BufferRole::control, "[interface]", "N/m", "host");
     const Arg excess =
         reals("flsm_excess", 4 * static_cast<std::size_t>(slots), BufferRole::scratch, "[slots]", "m", "flsm_excess");
-    program_.buffers[std::get<0>(excess)].carried = Carried::unwritten;  // zero at all nodes but those of the interface
+    program_.buffers[std::get<0>(excess)].carried = Carried::unwritten;  // zero except at interface nodes
     pass("flsm_excess", {},
          {shared_.node_u, slot_, reference_, goals_, mean, shared_.alpha, shared_.step_params, excess, int_arg(index_),
           int_arg(b_.settings.substeps), int_arg(places_.interface_base)},

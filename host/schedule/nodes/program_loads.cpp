@@ -9,7 +9,7 @@
 namespace pliant {
 
 void ProgramBuilder::add_surface() {
-  if (model_.pressures.empty()) return;  // nothing in a step asks for it
+  if (model_.pressures.empty()) return;  // no step needs it
   Program surface = surface_program(model_.surface, program_);
   for (Buffer& buffer : surface.buffers) add(std::move(buffer));
   program_.step = std::move(surface.step);
@@ -49,7 +49,7 @@ void ProgramBuilder::add_pressure_passes() {
 }
 
 std::vector<std::pair<std::int32_t, std::int32_t>> ProgramBuilder::brick_corners() const {
-  // Sorted by counting: a cut body has thousands of them, few at each slot.
+  // Counting sort: a cut body has thousands of them, few at each slot.
   std::vector<std::int32_t> next(static_cast<std::size_t>(model_.list_base) + 1, 0);
   const auto for_corners = [&](auto&& visit) {
     for (std::size_t b = 0; b < model_.batches.size(); ++b) {
@@ -90,7 +90,7 @@ void ProgramBuilder::add_loads() {
   for (const NodeForce& f : model_.forces) slots.push_back(f.slot);
   for (const auto& s : shares) slots.push_back(std::get<0>(s));
   for (const auto& c : brick_corners_) slots.push_back(c.first);
-  // What flsm_interface adds to is written anew in every step.
+  // flsm_interface adds to these, so node_load rewrites them in every step.
   for (const FlsmBatch& b : model_.flsm) slots.insert(slots.end(), b.slot.begin() + b.own, b.slot.end());
   std::sort(slots.begin(), slots.end());
   slots.erase(std::unique(slots.begin(), slots.end()), slots.end());

@@ -15,7 +15,7 @@
 namespace pliant {
 namespace {
 
-/// Share of a body's surface on that of another one from which both are taken for the same thing, placed twice.
+/// Fraction of a body's surface that must lie on another body's surface for the two to count as duplicates.
 constexpr double kSamePlace = 0.75;
 
 Vec3d start_of(const Model& model, std::size_t point) {
@@ -44,11 +44,11 @@ TriangleMesh surface_at_start(const Model& model, std::size_t body) {
   return mesh;
 }
 
-/// Of a body against another: how deep the deepest of its points lies, and how much of its surface lies on the other's.
+/// Overlap of a body with another one: the depth of its deepest point, and the area of its surface on the other's.
 struct Overlap {
   double deepest = 0;     ///< [m]
-  std::size_t where = 0;  ///< this point
-  double same = 0;        ///< area nearer than `allowed` to surface that faces the same way [m^2]
+  std::size_t where = 0;  ///< index of this point
+  double same = 0;        ///< area within `allowed` of surface with the same orientation [m^2]
 };
 
 void add_point(const ContactPoints& points, const SurfaceDistance& surface, const Vec3d& x, std::size_t i, double allowed,

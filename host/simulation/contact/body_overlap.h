@@ -1,10 +1,10 @@
-// Bodies that begin inside each other.
+// Check for bodies that overlap at the start.
 #pragma once
 #include "model/model.h"
 
 namespace pliant {
 
-/// Throws Error (bad_input) where a body begins more than `allowed` [m] inside another one, or in the same place.
+/// Throws Error (bad_input) if a body starts more than `allowed` [m] inside another one, or coincides with it.
 void refuse_overlap(const Model& model, double allowed);
 
 }  // namespace pliant

@@ -9,15 +9,15 @@
 namespace pliant {
 namespace {
 
-/// Increments may grow until the next look, by so much; a look also counts on it (contact_near).
+/// Factor by which increments may grow until the next search; searches include it (contact_near).
 constexpr double kFaster = 2.5;
-/// What is not near may come nearer by the margin less this share of it before a look is due.
+/// ContactLook::room of a tool is the least gap of the tiles that are not near it, less this fraction of the margin.
 constexpr double kReserve = 0.5;
-/// Pairs of tissue are looked for again when they have moved by this share of the margin, or after so many steps.
+/// Pairs of tissue are searched again after motion by this fraction of the margin, or after this many steps.
 constexpr double kPairTravel = 0.08;
 constexpr std::int64_t kPairSteps = 64;
 
-/// Share of a cell.
+/// Broad-phase margin as a fraction of a cell.
 constexpr double kMargin = 0.25;
 
 }  // namespace
@@ -50,7 +50,7 @@ double ContactLists::largest_increment() {
 ContactLists::Due ContactLists::due_after_motion(std::int64_t step, const Motion& motion) {
   ContactLook& look = run_.state.look;
   const double now = run_.state.clock.time_at(step), ahead = contact_look_every * run_.state.clock.dt;
-  // What has moved since the last question, and what may move until the next.
+  // Motion since the last check, and possible motion until the next.
   const double nodes = kFaster * contact_look_every * largest_increment();
   Due due;
   for (std::size_t t = 0; t < look.room.size() && look.tools >= 0 && look.tools < step; ++t) {
@@ -90,7 +90,7 @@ void ContactLists::measure_room(const std::vector<std::int32_t>& near) {
       if ((near[tile] >> t & 1) == 0) room[t] = std::min(room[t], gap[tile * tools + t]);
     }
   }
-  // Where all is near, it is asked again after a cell, so that the lists become shorter again.
+  // If everything is near, search again after a cell of motion, so that the lists become shorter again.
   for (double& r : room) r = r > 1e28 ? 4 * margin : r - kReserve * margin;
   run_.state.look.room = std::move(room);
   run_.state.look.travel.assign(tools, 0);

@@ -1,4 +1,5 @@
-// Which contact points are near something: asked now and then, and listed for the passes of the steps that follow.
+// Broad phase of contact: searches now and then for contact points near something, and lists their tiles for the contact
+// passes.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -8,23 +9,26 @@
 
 namespace pliant {
 
-/// Looks (Program::look) take place at steps that are multiples of contact_look_every, and only when what has moved since the
-/// last one may have come near something. Passes then run over the tiles that are near, and over none where none is.
-/// A point is looked after when it is nearer than this, beside what it moves until the next look [m].
+/// Broad-phase margin [m]: a point counts as near a tool within this distance, in addition to the distance travelled until
+/// the next search.
 double contact_margin(const Model& model);
 
+/// A search (Program::look) takes place at multiples of contact_look_every steps, and only if something may have moved far
+/// enough since the last one to come near. The contact passes then run over the listed tiles, or not at all if there are
+/// none.
 class ContactLists {
  public:
-  /// How far any point of a tool moves between two times, at most [m].
+  /// Upper bound of the distance that any point of a tool moves between two times [m].
   using Motion = std::function<double(std::size_t tool, double from, double to)>;
 
   explicit ContactLists(RunContext& run) : run_(run) {}
 
-  /// Before a step of the current batch: look where a look is due, and list what is near where the lists do not hold any more.
+  /// Call before each step of the current batch. Searches if a search is due; rebuilds the lists if the model or state was
+  /// replaced.
   void update(std::int32_t step_in_batch, const Motion& motion);
 
  private:
-  /// Which looks are due.
+  /// Which searches are due.
   struct Due {
     bool tools = false, tissue = false;
   };
@@ -35,7 +39,7 @@ class ContactLists {
   void measure_room(const std::vector<std::int32_t>& near);
 
   RunContext& run_;
-  std::int64_t loaded_ = -1;  ///< LoadedModel::changes() that the lists belong to
+  std::int64_t loaded_ = -1;  ///< LoadedModel::changes() when the lists were built
 };
 
 }  // namespace pliant

@@ -1,16 +1,16 @@
-// The part of RunState that says when it must be asked again what is near what (contact_lists.h).
+// The part of RunState that decides when the next broad-phase search of contact is due (contact_lists.h).
 #pragma once
 #include <cstdint>
 #include <vector>
 
 namespace pliant {
 
-/// When it was last asked what is near what in contact, and how far things may move until it must be asked again.
+/// Steps of the last broad-phase searches, and how far things may move until the next.
 struct ContactLook {
-  std::int64_t tools = -1, tissue = -1;  ///< steps of the last looks; -1: one is due
-  std::vector<double> room;              ///< per tool: how far it may come nearer until the next look [m]
-  std::vector<double> travel;            ///< how far it has since the last one, at most [m]
-  double tissue_travel = 0;              ///< the same of tissue [m]
+  std::int64_t tools = -1, tissue = -1;  ///< steps of the last searches; -1: due now
+  std::vector<double> room;              ///< per tool: distance it may approach until the next search [m]
+  std::vector<double> travel;            ///< upper bound of its motion relative to the tissue since the last search [m]
+  double tissue_travel = 0;              ///< the same for tissue against tissue [m]
 };
 
 template <class V>

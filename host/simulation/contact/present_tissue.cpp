@@ -11,11 +11,11 @@
 namespace pliant {
 namespace {
 
-constexpr double kStride = 0.5;  ///< of the looks along a way, in cells
+constexpr double kStride = 0.5;  ///< distance between checks along a path, in cells
 constexpr std::size_t kMostLooks = 4096;
 constexpr std::size_t kSamplesOnTheWay = 16;
 
-/// Points of a shape in its own frame: of round ones the middle, of others the surface. None of a half space.
+/// Points of a shape in its own frame: the centre of round shapes, points on the surface of others, none for a half space.
 std::vector<Vec3d> samples_of(const ToolForm& form, const ToolMoment& moment, std::size_t most) {
   std::vector<Vec3d> out;
   switch (form.shape) {
@@ -27,7 +27,7 @@ std::vector<Vec3d> samples_of(const ToolForm& form, const ToolMoment& moment, st
         out.push_back(vec::add(vec::mul(form.first, 1 - s), vec::mul(form.second, s)));
       }
       return out;
-    case ToolShape::box: {  // corners, middles of edges and faces, and the middle
+    case ToolShape::box: {  // corners, centres of edges and faces, and the centre
       for (int i = 0; i < 27; ++i)
         out.push_back({(i % 3 - 1) * form.second[0], (i / 3 % 3 - 1) * form.second[1], (i / 9 - 1) * form.second[2]});
       return out;
@@ -51,7 +51,7 @@ double angle_between(const Pose& a, const Pose& b) {
   return 2 * std::acos(std::min(1.0, std::abs(cosine)));
 }
 
-/// How far the point of a tool goes that goes farthest, at most [m].
+/// Upper bound of the distance that any point of a tool travels [m].
 double travel(const ToolForm& form, const Pose& from, const Pose& to) {
   return vec::norm(vec::sub(to.position, from.position)) + angle_between(from, to) * form.reach;
 }
@@ -82,7 +82,7 @@ Vec3d PresentTissue::placed(const Vec3d& rest, const std::int32_t* nodes, const 
   return x;
 }
 
-/// Made when it is asked for: a tool that the tissue's points find needs none.
+/// Created on first use: not needed if a contact point already shows the overlap.
 const SurfaceDistance* PresentTissue::surface() const {
   const ModelSurface& s = model_.surface;
   if (surface_ == nullptr && !s.triangles.empty()) {
@@ -116,7 +116,7 @@ ToolOverlap PresentTissue::overlap(const ToolForm& form, const Pose& pose, doubl
 
 ToolOverlap PresentTissue::in_the_way(const ToolForm& form, const Pose& from, const Pose& to, double time) const {
   const double cell = model_.contact->spacing;
-  double first = 0, last = 1;  // of the way: where the ball around the tool may meet the box around the tissue
+  double first = 0, last = 1;  // part of the path where the sphere around the tool can intersect the box around the tissue
   for (std::size_t c = 0; c < 3 && form.shape != ToolShape::half_space; ++c) {
     const double d = to.position[c] - from.position[c];
     const double lower = box_.lower[c] - form.reach - from.position[c], upper = box_.upper[c] + form.reach - from.position[c];

@@ -1,4 +1,4 @@
-// Where the tissue of a running simulation is, for tools that appear in it or are moved faster than contact can follow.
+// The current position of the tissue, to check tools that appear in it or move faster than contact can follow.
 #pragma once
 #include <memory>
 #include <string>
@@ -10,36 +10,37 @@
 
 namespace pliant {
 
-/// Depth inside a body with which a tool may begin, as a share of a cell: contact pushes it out.
+/// Depth inside a body at which a tool may start, as a fraction of a cell; contact pushes the tissue out.
 inline constexpr double tool_start_depth = 0.25;
-/// Cells per second that a tool may be driven wherever it goes.
+/// Speed in cells per second up to which a tool may be driven without a check.
 inline constexpr double tool_cells_per_second = 100;
 
-/// The deepest place where tool and tissue are one in the other.
+/// The deepest point of overlap between tool and tissue.
 struct ToolOverlap {
-  double depth = 0;        ///< [m]; 0: nowhere
-  std::int32_t body = -1;  ///< of the model
+  double depth = 0;        ///< [m]; 0: no overlap
+  std::int32_t body = -1;  ///< index in the model
   Vec3d where{};           ///< [m]
 };
 
-/// Whether a tool goes a cell on its way in less time than contact needs to meet what is there.
+/// Returns true if the tool travels a cell on its way in less time than contact needs to respond.
 [[nodiscard]] bool is_too_fast(const ToolForm& form, const Pose& from, const Pose& to, double seconds, double cell);
 
 class PresentTissue {
  public:
-  /// The model must outlive it and have contact points. `u`: RunContext::u().
+  /// `u`: RunContext::u(). The model must have contact points and must outlive this object.
   PresentTissue(const Model& model, std::vector<double> u);
 
-  /// How deep a tool at this pose and time is in tissue: points of the tissue's surface inside the tool, and points of the tool
-  /// inside a body, which tell of tools that are wholly inside or pass between points. At most `samples` of the latter.
+  /// Returns the depth of a tool at this pose and time in tissue. Checks points of the tissue's surface against the tool, and
+  /// at most `samples` points of the tool against the bodies, which detects tools that lie wholly inside or pass between
+  /// surface points.
   [[nodiscard]] ToolOverlap overlap(const ToolForm& form, const Pose& pose, double time, std::size_t samples = 64) const;
-  /// The first place on the straight way between two poses where the tool is deeper in tissue than it may begin, and deeper
-  /// than it is at `from`.
+  /// Returns the first point on the straight way between two poses where the tool is deeper in tissue than allowed at a start
+  /// and deeper than at `from`.
   [[nodiscard]] ToolOverlap in_the_way(const ToolForm& form, const Pose& from, const Pose& to, double time) const;
 
-  /// Throws Error (bad_input) for a tool that begins deeper in a body than a quarter of a cell.
+  /// Throws Error (bad_input) if the tool starts deeper in a body than a quarter of a cell.
   void refuse_inside(const std::string& name, const ToolForm& form, const Pose& pose, double time) const;
-  /// Throws Error (bad_input) for a tool that is_too_fast() and has tissue in its way.
+  /// Throws Error (bad_input) if the tool is_too_fast() and tissue is in its way.
   void refuse_in_the_way(const std::string& name, const ToolForm& form, const Pose& from, const Pose& to, double time,
                          double seconds) const;
 
@@ -49,8 +50,8 @@ class PresentTissue {
 
   const Model& model_;
   std::vector<double> u_;
-  std::vector<Vec3d> points_;  ///< of contact
-  vec::Box box_;               ///< around them
+  std::vector<Vec3d> points_;  ///< contact points
+  vec::Box box_;               ///< bounding box of points_
   mutable std::unique_ptr<SurfaceDistance> surface_;
 };
 

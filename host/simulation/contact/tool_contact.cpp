@@ -17,13 +17,13 @@
 namespace pliant {
 namespace {
 
-/// Quanta of force are this share of what moves the heaviest node one cell in a step.
+/// The quantum of force is 2^-kForceBits of the force that moves the heaviest node one cell in a step.
 constexpr int kForceBits = 26;
 constexpr int kAreaBits = 26;
 
 double power_of_two(double x) { return std::ldexp(1.0, static_cast<int>(std::ceil(std::log2(x)))); }
 
-/// Of a step and a tool: force, torque and area in quanta, largest depth [m].
+/// Sums of a step and a tool: force, torque and area in quanta, largest depth [m].
 struct StepSum {
   std::array<double, 7> quanta{};
   double depth = 0;
@@ -62,9 +62,9 @@ void ToolContact::drive(std::size_t tool, const Pose& to, double seconds) {
   const double now = run_.state.clock.time();
   const ToolDrive drive{seconds > 0 ? pose(tool, now) : to, to, now, now + seconds};
   run_.state.driven[tools_[tool].name] = drive;
-  run_.state.relaxation.equilibrium = false;  // it begins anew
+  run_.state.relaxation.equilibrium = false;  // relaxation restarts
   if (!active()) return;
-  run_.state.look.tools = -1;  // it may meet anything
+  run_.state.look.tools = -1;  // force a new search
 }
 
 void ToolContact::follow() {
@@ -94,7 +94,7 @@ void ToolContact::start() {
   }
 }
 
-/// Powers of two, so that nothing is rounded but the quanta.
+/// Powers of two, so that only the conversion to quanta rounds.
 ToolContact::Units ToolContact::units() const {
   const Model& model = run_.model();
   const double h = run_.state.clock.dt;
@@ -114,9 +114,9 @@ ToolContact::Units ToolContact::units() const {
   return u;
 }
 
-/// A pair gives its first depth back by kEase per search, and searches come after a number of steps. At steps far below the
-/// stable one that is a speed in m/s without limit, which threw the faces of a cut apart (touch_test.cpp,
-/// SmallStepsPartBodiesNoFaster): there the rate is the one of half the stable step.
+/// Each search reduces the initial depth of a pair by kEase; searches come after a number of steps. At steps far below the
+/// stable one, this would be an unlimited speed in m/s, which threw the faces of a cut apart (touch_test.cpp,
+/// SmallStepsPartBodiesNoFaster). There the rate is limited to that at half the stable step.
 double ToolContact::touch_ease() const {
   constexpr double kEase = 0.04;
   const double stable = run_.state.limit.stable_dt;
@@ -174,16 +174,16 @@ std::int32_t ToolContact::before_step(std::int32_t step_in_batch, std::int32_t s
 
 double ToolContact::motion(std::size_t tool, double from, double to) const {
   const ToolForm& form = (*run_.model().tools)[tool];
-  if (form.frames.size() > 1) return 1e30;  // its surface moves in its frame
+  if (form.frames.size() > 1) return 1e30;  // the surface deforms within its frame
   const Pose a = pose(tool, from), b = pose(tool, to);
   const std::array<Vec3d, 3> ra = rotation_matrix(a.turn), rb = rotation_matrix(b.turn);
-  double turn = 0;  // |R_b - R_a|, the largest change of a unit vector, at most
+  double turn = 0;  // upper bound of |R_b - R_a|, the largest change of a unit vector
   for (std::size_t r = 0; r < 3; ++r) turn += vec::dot(vec::sub(rb[r], ra[r]), vec::sub(rb[r], ra[r]));
   const double reach = form.shape == ToolShape::half_space ? 1e3 * contact_margin(run_.model()) : form.reach;
   return vec::norm(vec::sub(b.position, a.position)) + std::sqrt(turn) * reach;
 }
 
-/// touch_depth has gathered the depths of a batch; the next one begins with none.
+/// Reads and resets touch_depth, which accumulates the depths of a batch.
 void ToolContact::read_touch() {
   const BufferId id = run_.loaded.program().find("touch_depth");
   const std::vector<double> depth = run_.backend().read_reals(id);
@@ -195,7 +195,7 @@ void ToolContact::read_touch() {
   if (report_.tissue.points > 0) run_.backend().write_reals(id, std::vector<double>(depth.size(), 0.0));
 }
 
-/// A force acts from the middle of the step before to that of the next one (central differences).
+/// A force acts from the middle of the previous step to that of the next one (central differences).
 double ToolContact::work(std::size_t tool, std::int32_t step, const Vec3d& force, const Vec3d& torque) const {
   const std::size_t before = static_cast<std::size_t>(step) * tools_.size() + tool;
   const Pose &from = poses_[before], &to = poses_[before + 2 * tools_.size()];

@@ -1,4 +1,4 @@
-// Contact of a running simulation with its tools: poses and fixed-point units go to the device, forces come back.
+// Contact with rigid tools: uploads poses and fixed-point units, reads back forces.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -10,31 +10,33 @@
 
 namespace pliant {
 
-/// Throws Error (usage) for a pose that is none.
+/// Throws Error (usage) for an invalid pose.
 void check_pose(const std::string& name, const Pose& pose);
-/// Throws Error (usage) for a pose or a time that is none.
+/// Throws Error (usage) for an invalid pose or time.
 void check_drive(const std::string& name, const Pose& to, double seconds);
 
 class ToolContact {
  public:
   ToolContact(RunContext& run, RunReport& report) : run_(run), report_(report), lists_(run) {}
 
-  /// Throws Error (bad_input) for a tool that begins inside a body, deeper than a quarter of a cell.
+  /// Throws Error (bad_input) for a tool that starts inside a body, deeper than a quarter of a cell, or for bodies that
+  /// overlap.
   void start();
-  /// Poses for the next `steps` steps, and units. Nothing without tools.
+  /// Uploads the poses for the next `steps` steps, and the units. Does nothing without contact points.
   void begin_batch(std::int32_t steps);
-  /// What is near, before a step of the batch. Returns how many of the next `steps` may run until it must be asked again.
+  /// Updates the contact lists before a step of the batch. Returns how many of the next `steps` steps may run before the next
+  /// update.
   std::int32_t before_step(std::int32_t step_in_batch, std::int32_t steps);
-  /// Read what the batch's tools felt. `steps`: how many were done.
+  /// Reads the tool forces of the batch. `steps`: number of steps done.
   void end_batch(std::int32_t steps);
 
-  /// The tools of the model: those of the scene, but for what the host added, removed or parked.
+  /// The tools of the model: those of the scene, with the host's additions, removals and parking.
   [[nodiscard]] const std::vector<ContactTool>& tools() const { return tools_; }
-  /// The model has the tools of the run state now. What tools have felt goes on with them.
+  /// Call after the model has got the tools of the run state. Tools that remain keep their statistics.
   void follow();
-  /// Drive a tool of the model from where it is now to a pose, which it has after `seconds`; at once if that is 0.
+  /// Moves a tool of the model from its current pose to `to` within `seconds` [s]; at once if that is 0.
   void drive(std::size_t tool, const Pose& to, double seconds);
-  /// Where a tool of the model is at a time [s].
+  /// Returns the pose of a tool of the model at a time [s].
   [[nodiscard]] Pose pose(std::size_t tool, double time) const;
 
  private:
@@ -43,23 +45,24 @@ class ToolContact {
   };
   [[nodiscard]] bool active() const;
   [[nodiscard]] Units units() const;
-  /// How far the offset of a pair goes back in a search for partners, in spacings.
+  /// Fraction of a spacing by which the initial offset of a pair is reduced in each search for partners.
   [[nodiscard]] double touch_ease() const;
 
-  /// Done on the tissue in a step of the batch by the force, and by the torque about the origin of a sequence's frame [J].
+  /// Returns the work on the tissue in a step of the batch, by the force and by the torque about the origin of a sequence's
+  /// frame [J].
   [[nodiscard]] double work(std::size_t tool, std::int32_t step, const Vec3d& force, const Vec3d& torque) const;
   void read_touch();
-  /// How far any point of a tool moves between two times, at most [m].
+  /// Upper bound of the distance that any point of a tool moves between two times [m].
   [[nodiscard]] double motion(std::size_t tool, double from, double to) const;
 
   RunContext& run_;
   RunReport& report_;
   ContactLists lists_;
   std::vector<ContactTool> tools_;
-  Units units_;               ///< of the present batch
-  std::vector<char> summed_;  ///< per step of the batch: the passes of contact ran
-  std::vector<Vec3d> arms_;   ///< [steps + 1][tools] from a tool's origin to that of a sequence's frame [m]
-  std::vector<Pose> poses_;   ///< [steps + 2][tools], of a sequence's frame, from the step before the batch on
+  Units units_;               ///< of the current batch
+  std::vector<char> summed_;  ///< per step of the batch: whether the contact passes ran
+  std::vector<Vec3d> arms_;   ///< from a tool's origin to the origin of a sequence's frame, shape [steps + 1][tools] [m]
+  std::vector<Pose> poses_;   ///< poses of a sequence's frame from the step before the batch on, shape [steps + 2][tools]
 };
 
 }  // namespace pliant

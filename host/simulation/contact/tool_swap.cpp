@@ -13,9 +13,9 @@
 namespace pliant {
 namespace {
 
-constexpr std::size_t kAnchorNumbers = 4;  ///< the fourth: number of the tool + 1, or 0 (contact_press.cl)
+constexpr std::size_t kAnchorNumbers = 4;  ///< the fourth: index of the tool + 1, or 0 (contact_press.cl)
 
-/// The new number of each tool of before; -1: it is gone.
+/// The new index of each previous tool; -1: removed.
 std::vector<int> new_numbers(const std::vector<ContactTool>& before, const std::vector<ContactTool>& next) {
   std::vector<int> number;
   for (const ContactTool& tool : before) {
@@ -25,14 +25,15 @@ std::vector<int> new_numbers(const std::vector<ContactTool>& before, const std::
   return number;
 }
 
-/// Tiles that were near a tool stay so; a new tool may be near any.
+/// Tiles that were near a tool stay so; a new tool counts as near to all.
 void renumber_near(std::vector<std::int32_t>& near, const std::vector<int>& number, std::size_t tools) {
   std::int32_t fresh = static_cast<std::int32_t>((std::int64_t{1} << tools) - 1);
   for (const int n : number) {
     if (n >= 0) fresh &= ~(std::int32_t{1} << n);
   }
   for (std::int32_t& bits : near) {
-    std::int32_t now = fresh | (bits & ~static_cast<std::int32_t>((std::int64_t{1} << number.size()) - 1));  // tissue's own
+    std::int32_t now =
+        fresh | (bits & ~static_cast<std::int32_t>((std::int64_t{1} << number.size()) - 1));  // keeps the bit for tissue
     for (std::size_t t = 0; t < number.size(); ++t) {
       if (number[t] >= 0 && (bits >> t & 1) != 0) now |= std::int32_t{1} << number[t];
     }
@@ -40,7 +41,7 @@ void renumber_near(std::vector<std::int32_t>& near, const std::vector<int>& numb
   }
 }
 
-/// to(tool) is the number that an anchor on that tool gets, or -1 for none.
+/// to(tool) returns the new index of the tool that an anchor belongs to, or -1 for none.
 template <class To>
 void renumber_anchors(std::vector<double>& anchor, const To& to) {
   const std::size_t points = anchor.size() / kAnchorNumbers;
@@ -52,7 +53,7 @@ void renumber_anchors(std::vector<double>& anchor, const To& to) {
   }
 }
 
-/// The buffers of the state go on in the next program, as far as both have them.
+/// Copies the state buffers that both programs have.
 void carry_state(const RunContext& run, Program& next, const std::vector<int>& number, std::size_t tools) {
   const Program& loaded = run.loaded.program();
   for (std::size_t id = 0; id < loaded.buffers.size(); ++id) {
@@ -104,7 +105,7 @@ void load_tools(RunContext& run, const std::shared_ptr<const Model>& model, cons
     throw;
   }
   settle(run);
-  run.state.look.tools = -1;  // tissue keeps its partners
+  run.state.look.tools = -1;  // pairs of tissue stay valid
   run.state.kept.reset();     // copies of the old program's buffers
 }
 

@@ -7,13 +7,13 @@
 
 namespace pliant {
 
-/// Go on with a model that is the present one but for its tools (model_with_tools); `before` and `next` are the tools of both.
-/// The motion, what tissue holds of tissue and what sticks to tools that stay go on as they are. Throws, with all as it was,
-/// what Backend::load throws.
+/// Loads a model that differs from the current one only in its tools (model_with_tools); `before` and `next` are the tools of
+/// both. Preserves the motion, tissue-tissue contact and sticking friction at tools that remain. Throws what Backend::load
+/// throws and then changes nothing.
 void load_tools(RunContext& run, const std::shared_ptr<const Model>& model, const std::vector<ContactTool>& before,
                 const std::vector<ContactTool>& next);
 
-/// Nothing sticks to this tool of the model any more, and it may be near anything: it was put elsewhere.
+/// Releases sticking friction at a tool of the model, for a tool that was placed elsewhere.
 void let_go(RunContext& run, std::size_t tool);
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-// When blades cut: those of the scene at the start of batches, those of the host when it says so.
+// Blade updates: blades of the scene at the start of batches, blades of the host on request.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -15,7 +15,7 @@
 namespace pliant {
 namespace {
 
-/// Where a blade goes from one time to another, along every row of its path in between. No places if it does not cut then.
+/// Returns the motion of a blade between two times, along every row of its path in between. Empty if it does not cut then.
 BladeMove move_of(const Blade& blade, double from, double to) {
   BladeMove move{blade.name, {}, {}};
   from = std::max({from, blade.start, blade.path.front()[0]});
@@ -29,7 +29,7 @@ BladeMove move_of(const Blade& blade, double from, double to) {
   return move;
 }
 
-/// Whether some of a blade stands where material is, and not merely near it.
+/// Returns true if part of a blade is inside material, not just near it.
 bool in_material(const BladeTrace& trace) {
   return std::any_of(trace.points.begin(), trace.points.end(), [](const TracePoint& p) { return p.carried.cell >= 0; });
 }
@@ -62,7 +62,7 @@ const BladeTrace* TopologyEdits::front(const BladeMove& move, std::size_t body) 
   return found == blade->second.end() ? nullptr : &found->second;
 }
 
-/// Follow each blade to its new places, and cut.
+/// Follows each blade along its motion, and cuts.
 CutReport TopologyEdits::run_blades(const std::vector<BladeMove>& moves, std::span<const SweepTriangle> triangles) {
   EditedBodies& all = cut_bodies();
   CutReport report;
@@ -94,7 +94,7 @@ CutReport TopologyEdits::run_blades(const std::vector<BladeMove>& moves, std::sp
   report.search = clock.seconds();
   if (report.edges > 0) make_cut(std::move(edges), std::move(u), report);
   for (const BladeMove& move : moves) {
-    // One that rests, as where a batch is made again, stays where it was.
+    // A blade that does not move, as when a batch is repeated, keeps its trace.
     if (!move.to.empty()) run_.state.blades.traces.erase(move.key);
   }
   run_.state.blades.traces.merge(traces);
@@ -102,7 +102,7 @@ CutReport TopologyEdits::run_blades(const std::vector<BladeMove>& moves, std::sp
   return report;
 }
 
-/// Whether anything that cuts may come near a body.
+/// Returns true if anything that cuts may come near a body.
 bool TopologyEdits::reached(std::size_t body, const std::vector<Vec3d>& x, const std::vector<BladeMove>& moves,
                             std::span<const SweepTriangle> triangles) const {
   vec::Box reach = box_of(x);
@@ -135,7 +135,7 @@ CutReport TopologyEdits::cut(std::span<const SweepTriangle> triangles) {
     }
   }
   if (run_.phase() == 0) return run_blades({}, triangles);
-  cut_bodies();  // refuses a scene that has none
+  cut_bodies();  // throws for a scene that cannot be cut
   auto& pending = run_.state.pending.triangles;
   pending.insert(pending.end(), triangles.begin(), triangles.end());
   return {};

@@ -1,4 +1,4 @@
-// What goes into an edit of the topology, and what comes out.
+// Input and result of a topology edit.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -8,17 +8,17 @@
 
 namespace pliant {
 
-/// Where a blade is to go.
+/// The new segment of a blade.
 struct BladePose {
   std::string blade;               ///< any name
   std::array<Vec3d, 2> segment{};  ///< [m]
 };
 
-/// What an edit of the topology did, and the time it took [s]. `surface` is what the model waited for its surface, `step` the
-/// look at what an automatic step may be after it.
+/// Result of a topology edit, and the time it took [s]. `surface` is the time that the model waited for its surface, `step`
+/// the time to determine the new automatic step.
 struct CutReport {
-  std::int64_t edges = 0;  ///< newly cut
-  bool changed = false;    ///< whether elements were split
+  std::int64_t edges = 0;  ///< number of edges cut
+  bool changed = false;    ///< true if elements were split
   double search = 0, topology = 0, surface = 0, model = 0, upload = 0, step = 0;
   [[nodiscard]] double seconds() const { return search + topology + surface + model + upload + step; }
 };

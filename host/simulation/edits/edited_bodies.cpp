@@ -75,7 +75,7 @@ namespace {
 ModelSurface copy_of(const ModelSurface& from) {
   ModelSurface out;
   const auto copy = [](const auto& values, auto& to) {
-    to.reserve(values.size() + values.size() / 8);  // for what an edit adds
+    to.reserve(values.size() + values.size() / 8);  // reserve for later edits
     to = values;
   };
   copy(from.rest, out.rest);
@@ -110,7 +110,7 @@ bool tears(const Body& body) {
                                                     [](const Inclusion& i) { return i.material.toughness > 0; });
 }
 
-/// The material of each element, as build_model gives it.
+/// Returns the material of each element, as build_model assigns it.
 std::vector<Material> materials_of(const Body& body, const BodyMesh& solid) {
   const ElementMaterials materials = element_materials(body, solid);
   std::vector<Material> out;
@@ -213,8 +213,8 @@ void EditedBodies::rebuild(std::size_t b, const RunState& state) {
 
 namespace {
 
-/// Cells that stand for all in a trial, spread so that some of a hybrid's are finite elements: what a blade leaves of those
-/// needs passes that the rest does not.
+/// Returns representative cells for a trial cut, spread over the body so that some cells of a hybrid are finite elements:
+/// their cut copies need passes that other cells do not.
 std::vector<std::size_t> trial_cells(std::size_t cells) {
   constexpr std::size_t kParts = 16;
   std::vector<std::size_t> chosen;

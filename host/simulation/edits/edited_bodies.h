@@ -1,4 +1,4 @@
-// The bodies of a simulation as cuts and tears have made them. Private to this shelf.
+// The bodies of a simulation after cuts and tears. Private to host/edits.
 #pragma once
 #include <future>
 #include <memory>
@@ -20,25 +20,25 @@
 
 namespace pliant {
 
-/// One body: as it was filled, its cut, its surface.
+/// One body: its elements before the cut, its cut topology and its surface.
 class BodyCut {
  public:
-  /// Throws Error for a body that cannot be cut.
+  /// Throws Error if the body cannot be cut.
   BodyCut(const Body& body, std::shared_ptr<const BodyMesh> uncut);
 
   [[nodiscard]] const CutTopology& topology() const { return topology_; }
-  /// Take out edges that may not be cut: those of cells left to shape matching where the scene says so.
+  /// Removes edges that may not be cut: those of shape-matching cells if the scene excludes them.
   void keep_allowed(const Body& body, CutEdges& edges) const;
-  /// Divide the elements, and let `helper` begin with the surface. Throws, with nothing changed, what CutTopology::cut throws.
+  /// Splits the elements and starts the surface on `helper`. Throws what CutTopology::cut throws and then changes nothing.
   CutEdit cut(const CutEdges& edges, HelperThread& helper);
-  /// Bring the elements of solid(), or its surface, up to date after an edit: only what it changed. Both may run at once.
+  /// Update the elements of solid(), or its surface, after an edit; only the changed part. Both may run concurrently.
   void update_elements() { update_body_elements(*uncut_, topology_, solid_); }
   void update_surface();
-  /// Be what these edits make of the uncut body.
+  /// Replays these edits on the uncut body.
   void rebuild(std::span<const CutEdges* const> edits);
-  /// The body as it is cut now, in what was brought up to date.
+  /// Returns the cut body as of the last updates.
   [[nodiscard]] const BodyMesh& solid() const { return solid_; }
-  /// Mean edge of a cell at rest [m].
+  /// Mean edge length of an undeformed cell [m].
   [[nodiscard]] double edge() const { return edge_; }
   [[nodiscard]] const CutSurface* surface() const { return surface_.get(); }
   [[nodiscard]] const BodyMesh& uncut() const { return *uncut_; }
@@ -50,59 +50,60 @@ class BodyCut {
   std::shared_ptr<const BodyMesh> uncut_;
   BodyMesh solid_;
   CutTopology topology_;
-  std::unique_ptr<CutSurface> surface_;  ///< of a lattice
-  std::future<void> dividing_;           ///< the helper's work on it
+  std::unique_ptr<CutSurface> surface_;  ///< lattices only
+  std::future<void> dividing_;           ///< pending work of the helper on surface_
   std::unique_ptr<RestEdges> rest_edges_;
   MeshEdges mesh_edges_;
   double edge_ = 0;
 };
 
-/// Not a volume mesh of hexahedra.
+/// Returns true unless the body is a volume mesh of hexahedra.
 bool can_be_cut(const BodyMesh& solid);
 
-/// The surface of the model that runs, for the next edit to change: a copy that is made while the bodies move.
+/// A copy of the current model's surface for the next edit to modify, made in the background while the bodies move.
 class SurfaceCopy {
  public:
   void make(const std::shared_ptr<const Model>& model, HelperThread& helper);
-  /// The copy, or one made now.
+  /// Returns the copy, or makes one now.
   [[nodiscard]] ModelSurface take(const Model& model);
 
  private:
   ModelSurface surface_;
-  std::shared_ptr<const Model> model_;  ///< whose surface it is
+  std::shared_ptr<const Model> model_;  ///< the model that surface_ was copied from
   std::future<void> made_;
 };
 
-/// All bodies of a scene, filled once more than for the first model. One is cut, or torn, or as it was.
+/// All bodies of a scene, with elements generated again independently of the first model. Each is either cut, torn or
+/// unchanged.
 class EditedBodies {
  public:
-  /// Throws what make_body_meshes throws, and Error (bad_input) for a body that has a toughness and is no volume mesh of
-  /// tetrahedra.
+  /// Throws what make_body_meshes throws, and Error (bad_input) for a body with a toughness that is not a tetrahedral volume
+  /// mesh.
   explicit EditedBodies(const Scene& scene);
-  /// Whether a material of the scene has a toughness.
+  /// Returns true if a material of the scene has a toughness.
   static bool tears(const Scene& scene);
 
   [[nodiscard]] std::size_t size() const { return uncut_.size(); }
   [[nodiscard]] const BodyMesh& uncut(std::size_t b) const { return *uncut_[b]; }
-  /// The body's cut, made when it is asked for. Throws Error (bad_input) for a body that cannot be cut.
+  /// Returns the body's cut, created on first use. Throws Error (bad_input) if the body cannot be cut.
   [[nodiscard]] BodyCut& cut(std::size_t b);
   [[nodiscard]] const BodyCut* find_cut(std::size_t b) const { return cuts_[b].get(); }
-  /// nullptr for a body that does not tear.
+  /// nullptr if the body does not tear.
   [[nodiscard]] TornBody* torn(std::size_t b) { return torn_[b].get(); }
   [[nodiscard]] const BodyMesh& solid(std::size_t b) const;
   [[nodiscard]] std::vector<const BodyMesh*> solids() const;
 
-  /// Make the edits of a state, which may come from anywhere. Throws Error (bad_input) for those that do not belong to these
-  /// bodies; the bodies are then in no defined state.
+  /// Replays the edits of a state of unknown origin. Throws Error (bad_input) for edits that do not belong to these bodies;
+  /// the bodies are then unusable.
   void replay(const RunState& state);
-  /// One body as the state has it, after an edit that failed.
+  /// Rebuilds one body from the state after a failed edit.
   void rebuild(std::size_t b, const RunState& state);
 
-  /// The model as it would be with a few cells cut: it has the kinds of elements, loads and tables that cuts bring.
+  /// Returns the model as it would be with a few cells cut, with the element kinds, loads and tables that cuts add.
   [[nodiscard]] Model trial_model() const;
 
   SurfaceCopy surface_copy;
-  HelperThread helper;  ///< divides surfaces while elements become a model
+  HelperThread helper;  ///< splits surfaces while the model is built
 
  private:
   void make_torn(std::size_t b);

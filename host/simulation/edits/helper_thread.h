@@ -1,5 +1,5 @@
-// A thread that waits for work: starting one for each piece of work, with a memory allocator that knows nothing yet, takes
-// longer than small pieces do.
+// A persistent worker thread. Starting a thread for each piece of work, with a fresh allocator arena, takes longer than small
+// pieces of work do.
 #pragma once
 #include <chrono>
 #include <condition_variable>
@@ -17,7 +17,7 @@ class HelperThread {
   HelperThread() : thread_([this] { work(); }) {}
   HelperThread(const HelperThread&) = delete;
   HelperThread& operator=(const HelperThread&) = delete;
-  /// Finishes what it was given.
+  /// Completes all submitted work.
   ~HelperThread() {
     {
       const std::lock_guard lock(mutex_);
@@ -27,8 +27,8 @@ class HelperThread {
     thread_.join();
   }
 
-  /// What the future's get() throws is what `job` threw. Jobs are done in the order in which they came; whoever gives one waits
-  /// for it before what it uses goes out of scope.
+  /// Submits a job. The future's get() rethrows what `job` threw. Jobs run in order; the caller must wait for the future
+  /// before anything that the job uses goes out of scope.
   [[nodiscard]] std::future<void> run(std::function<void()> job) {
     std::packaged_task<void()> task(std::move(job));
     std::future<void> done = task.get_future();
@@ -61,7 +61,8 @@ class HelperThread {
   std::thread thread_;
 };
 
-/// future.get() for what is nearly done: who sleeps for it is woken late, on a virtual machine by up to 0.1 ms.
+/// future.get() for work that is nearly done: waits actively, because waking a sleeping thread takes up to 0.1 ms on a
+/// virtual machine.
 inline void get_soon(std::future<void>& future) {
   constexpr std::chrono::milliseconds kLongest{2};
   const auto end = std::chrono::steady_clock::now() + kLongest;
@@ -71,7 +72,7 @@ inline void get_soon(std::future<void>& future) {
   future.get();
 }
 
-/// Waits, whatever happens.
+/// Waits for a future on destruction.
 class WaitFor {
  public:
   explicit WaitFor(std::future<void>& future) : future_(future) {}

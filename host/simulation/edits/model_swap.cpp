@@ -22,7 +22,7 @@ ModelSwap::ModelSwap(RunContext& run, HostLoads& loads, EditedBodies& bodies, st
   for (std::size_t b = 0; b < bodies.size(); ++b) v_.push_back(run.velocities(old_w_, b));
 }
 
-/// Most of a surface stays as it is, if real nodes keep their slots.
+/// Returns true if real nodes keep their slots, so that most of the surface can be reused.
 bool ModelSwap::keeps_surface() const {
   if (bodies_.size() != 1 || bodies_.find_cut(0) == nullptr || bodies_.uncut(0).lattice == nullptr) return false;
   const ModelBody &body = model_->bodies[0], &before = old_model_->bodies[0];
@@ -45,7 +45,7 @@ void ModelSwap::run(const Scene& scene, std::vector<NodeOrigins> origins, const 
   model_ = std::make_shared<Model>(build_elements(scene, solids, old_model_.get()));
   ballast_ = carried_ballast();
   kept_ = keeps_surface();
-  // A surface takes longest to make: it comes last unless loads ask for it.
+  // The surface takes longest, so it comes last unless loads need it.
   const bool first = needs_surface(scene);
   try {
     if (first) {
@@ -68,7 +68,7 @@ void ModelSwap::run(const Scene& scene, std::vector<NodeOrigins> origins, const 
   run_.state.ballast = std::move(ballast_);
   run_.state.kept.reset();  // copies of the old model's buffers
 
-  // What dynamic relaxation remembers is that of the old slots.
+  // The vectors of dynamic relaxation refer to the old slots.
   RelaxationState& relaxation = run_.state.relaxation;
   for (std::vector<double>* values : {&relaxation.u, &relaxation.force, &relaxation.v, &relaxation.middle, &relaxation.steady})
     values->clear();
@@ -114,11 +114,12 @@ void ModelSwap::load_steps(const Scene& scene) {
   new_w_ = w.reals;
   report_.model += clock_.lap();
   carry_motion();
-  // The buffers of the state are sent once, as they go on, and begin as always for whoever asks for the program.
+  // Upload the carried-over state only; restore the Program's initial values afterwards so that the Program itself stays
+  // pristine.
   u.reals.swap(new_u_);
   w.reals.swap(new_w_);
   run_.loaded.update(model_, std::move(program));
-  run_.state.look.tools = run_.state.look.tissue = -1;  // what is sampled anew has no partners yet
+  run_.state.look.tools = run_.state.look.tissue = -1;  // new contact points have no partners yet
   run_.loaded.reset_initial_state(std::move(new_u_), std::move(new_w_));
   report_.upload += clock_.lap();
 }
@@ -149,8 +150,9 @@ void ModelSwap::carry_motion() {
       }
     }
   }
-  // A cut may leave a moving virtual node with held anchors only: it would go on as it moved, for nothing moves a held node. It
-  // rests where it is: taken back to its place it would stretch what hangs on it, and create energy.
+  // A cut may leave a moving virtual node with held anchors only. Since no update moves a held node, it would keep its
+  // velocity; set it to zero. The node stays at its current place: moving it back would stretch the elements at it and create
+  // energy.
   for (const Constraint& held : model_->constraints) {
     const auto at = static_cast<std::ptrdiff_t>(4) * held.slot;
     if (!held.holds()) continue;

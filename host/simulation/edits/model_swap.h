@@ -1,4 +1,4 @@
-// Replaces the model of a running simulation by that of its bodies after an edit. Private to this shelf.
+// Replaces the model of a running simulation after an edit of its bodies. Private to host/edits.
 #pragma once
 #include <functional>
 #include <memory>
@@ -12,28 +12,30 @@
 
 namespace pliant {
 
-/// Where the nodes of an edited body come from.
+/// For each node of an edited body, the node it was copied from.
 struct NodeOrigins {
-  std::vector<std::int32_t> from;  ///< node of the body before the edit; empty: the edit left it alone
+  std::vector<std::int32_t> from;  ///< node of the body before the edit; empty: the body was not edited
   [[nodiscard]] std::size_t of(std::size_t node) const { return from.empty() ? node : static_cast<std::size_t>(from[node]); }
 };
 
-/// Every node keeps its displacement, and its momentum goes where its mass goes. Construct, edit the bodies, and run() once.
+/// Preserves the displacement and velocity of every node, so that momentum follows mass. Construct it, edit the bodies, then
+/// call run() once.
 class ModelSwap {
  public:
   /// `u`: RunContext::u(). Adds its times to `report`.
   ModelSwap(RunContext& run, HostLoads& loads, EditedBodies& bodies, std::vector<double> u, CutReport& report);
-  /// `scene`: with its operational regions as they are to be. The bodies' surfaces may still be in the making until `ready`
-  /// returns, which may throw. Throws with the old model back in place.
+  /// `scene`: with the new operational regions. The surfaces may still be in progress until `ready` returns, which may throw.
+  /// On an exception, the old model is restored.
   void run(const Scene& scene, std::vector<NodeOrigins> origins, const std::function<void()>& ready);
-  /// After run(): which nodes have another mass than the ones they come from, so that their elements are others. [slots]
+  /// After run(): nonzero for each slot whose mass differs from that of its origin, so that its elements have changed. Shape
+  /// [slots].
   [[nodiscard]] std::vector<char> changed_nodes() const;
 
  private:
   [[nodiscard]] bool keeps_surface() const;
-  /// Wait for the surfaces, and put them into the model.
+  /// Waits for the surfaces and adds them to the model.
   void take_surfaces(const std::vector<const BodyMesh*>& solids, const std::function<void()>& ready);
-  /// What the nodes had of ballast, shared among their copies like their masses.
+  /// Returns the ballast of the old nodes, distributed to their copies in proportion to mass.
   [[nodiscard]] std::vector<NodeInertia> carried_ballast() const;
   void load_steps(const Scene& scene);
   void load_surface();
@@ -47,12 +49,12 @@ class ModelSwap {
   Stopwatch clock_;
   std::shared_ptr<const Model> old_model_;
   std::vector<double> old_u_, old_w_;
-  std::vector<std::vector<Vec3d>> v_;  ///< [bodies][nodes before the edit]
+  std::vector<std::vector<Vec3d>> v_;  ///< shape [bodies][nodes before the edit]
   std::vector<NodeOrigins> origins_;
   std::shared_ptr<Model> model_;
   std::vector<NodeInertia> ballast_;
-  bool kept_ = false;                           ///< the surface of the old model is in the new one
-  const SurfaceChanges* changes_ = nullptr;     ///< where it differs from what was kept
+  bool kept_ = false;                           ///< the new model reuses the surface of the old one
+  const SurfaceChanges* changes_ = nullptr;     ///< the differences from the reused surface
   std::vector<double> new_u_, new_w_, offset_;  ///< offset_: RunState::offset of the new model
 };
 

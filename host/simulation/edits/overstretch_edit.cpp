@@ -1,5 +1,5 @@
-// Tissue that is stretched further than any tissue holds parts there, where blades cut: what hangs together by a thread
-// would otherwise stiffen until it takes the step with it. What tears has the same limit (tearing/torn_body.h).
+// In scenes with blades or cuts, splits tissue that is stretched further than any tissue bears. Thin remains of a cut would
+// otherwise stiffen until they determine the step. Tearing bodies have the same limit (tearing/torn_body.h).
 #include <limits>
 #include <utility>
 #include <vector>
@@ -9,7 +9,7 @@
 namespace pliant {
 namespace {
 
-/// Positions of a body's nodes; not a number where no element is left to move them.
+/// Positions of a body's nodes; NaN for nodes without elements.
 std::vector<Vec3d> moving_nodes(const RunContext& run, const std::vector<double>& u, std::size_t b) {
   std::vector<Vec3d> x = run.loaded.positions(u, b);
   const std::vector<std::int32_t>& slot = run.model().bodies[b].slot;

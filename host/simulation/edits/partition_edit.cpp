@@ -1,5 +1,5 @@
-// Edits that change how a body is modelled and leave its elements alone: operational regions that follow something, and
-// hybrids that go on with fewer substeps. Every node keeps its position and momentum.
+// Edits that change the model of cells but not the elements: the operational region that follows the tool, and hybrids that
+// continue with fewer substeps. Every node keeps its position and momentum.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <bit>
@@ -93,12 +93,12 @@ std::optional<BladeSegment> place_of(const RunContext& run, const std::string& n
   return {};
 }
 
-/// Shape matching and finite elements have different forces for the same large strain, and the first even folds: a cell that
-/// changed its model then would let energy go, or get some. Below this stretch, and above its inverse, they are near enough.
+/// At large strain shape matching and finite elements have different forces, and shape matching even folds, so a cell that
+/// changes its model there would lose or gain energy. Below this stretch, and above its inverse, they are similar enough.
 constexpr double kMostStretch = 1.5;
-constexpr std::int64_t kWaitSteps = 256;  ///< after which such a cell is looked at again
+constexpr std::int64_t kWaitSteps = 256;  ///< interval after which such a cell is checked again
 
-/// Whether a cell is deformed too far to change its model. corners: x fastest; u by node.
+/// Returns true if a cell is deformed too far to change its model. corners: x fastest; u by node.
 bool strained(const std::array<std::int32_t, 8>& corners, double spacing, const std::vector<Vec3d>& u) {
   Eigen::Matrix<double, 3, 8> x;
   Eigen::Matrix<double, 8, 3> sides;
@@ -107,7 +107,7 @@ bool strained(const std::array<std::int32_t, 8>& corners, double spacing, const 
     x.col(a) = spacing * at.transpose() + Eigen::Map<const Eigen::Vector3d>(u[static_cast<std::size_t>(corners[a])].data());
     sides.row(a) = (2 * at.array() - 1) / 4;
   }
-  const double volume = (x * sides).determinant() / std::pow(spacing, 3);  // of the mean edges
+  const double volume = (x * sides).determinant() / std::pow(spacing, 3);  // relative volume of the mean edges
   if (!(volume > 1 / kMostStretch)) return true;
   for (int a = 0; a < 8; ++a) {
     for (int b = a + 1; b < 8; ++b) {
@@ -143,8 +143,8 @@ MovedRegion TopologyEdits::region_at(std::size_t b, const Vec3d& seed, const std
   return region;
 }
 
-/// A region moves when the material that is nearest to what it follows is more than a cell from its seed, and only between
-/// steps of shape matching.
+/// A region moves when the material under the tool is more than a cell from its seed, and only between steps of shape
+/// matching.
 void TopologyEdits::move_regions() {
   const auto& bodies_of_scene = run_.scene.bodies;
   if (std::none_of(bodies_of_scene.begin(), bodies_of_scene.end(), [](const Body& b) { return !b.model.follow.empty(); }))
@@ -184,9 +184,8 @@ void TopologyEdits::move_regions() {
   step_.adapt();
 }
 
-/// Held goals pull at the finite elements once in n substeps, n times as hard: where elements have become stiffer than the last
-/// look at the step knew, that is a resonance, which a shorter step does not leave before it is a thousandth
-/// (docs/stability.md).
+/// Held goals pull at the finite elements once in n substeps, n times as hard. If elements have stiffened since the last
+/// step-size check, this is a resonance, which a shorter step avoids only below a thousandth (docs/stability.md).
 bool TopologyEdits::fewer_substeps() {
   const std::vector<FlsmBatch>& batches = run_.model().flsm;
   const bool many = std::any_of(batches.begin(), batches.end(),

@@ -1,6 +1,6 @@
-// Tearing: bodies of tetrahedra come apart along faces where their stress or a stretched edge breaks them, between two batches
-// of a run. Every node keeps the displacement and velocity of the one it comes from: masses of copies add up to that of their
-// node, so momentum is kept.
+// Tearing: bodies of tetrahedra separate along faces where stress or a stretched edge breaks them, between two batches of a
+// run. Every node keeps the displacement and velocity of its origin. The masses of copies add up to that of their origin, so
+// momentum is conserved.
 #include <utility>
 #include <vector>
 

@@ -15,7 +15,7 @@
 
 namespace pliant {
 
-/// What the tools are to be, and the model with them.
+/// The new tools and the model with them.
 struct ToolEdits::Next {
   ToolChanges changes;
   std::vector<ContactTool> tools;
@@ -32,7 +32,7 @@ void insert(std::vector<std::string>& names, const std::string& name) {
   names.insert(std::lower_bound(names.begin(), names.end(), name), name);
 }
 
-/// What has contact points; one whose bodies have no surface has none.
+/// Returns true if the model has contact points; bodies without a surface have none.
 bool touchable(const Model& model) { return model.contact != nullptr && model.contact->size() > 0; }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Tools that come and go while a simulation runs, and where the host puts them. Each call checks what it may meet in the tissue
-// as it is now; what it refuses changes nothing.
+// Adds, removes and moves tools of a running simulation. Each call first checks the tool against the current position of the
+// tissue; a rejected call changes nothing.
 #pragma once
 #include <string>
 
@@ -14,20 +14,20 @@ class ToolEdits {
  public:
   ToolEdits(RunContext& run, ToolContact& contact) : run_(run), contact_(contact) {}
 
-  // All are to be called between two batches. They throw Error: usage for a name that no tool has or another one has already,
-  // for a pose or a time that is none, bad_input for a tool that would begin inside a body or has one in its way, a scene that
-  // takes no tools, or more of them than there may be.
+  // Call these between two batches. They throw Error: usage for an unknown or duplicate name, an invalid pose or time;
+  // bad_input for a tool that would start inside a body or has one in its way, a scene that allows no tools, or too many
+  // tools.
 
   /// `form`: tool_form(tool).
   void add(const ContactTool& tool, const ToolForm& form);
   void remove(const std::string& name);
-  /// It stays known, and touches nothing. Nothing if it is parked.
+  /// Disables a tool, which stays known. Does nothing if it is parked.
   void park(const std::string& name);
-  /// Where it is now. Nothing if it is not parked.
+  /// Enables a parked tool at its current pose. Does nothing if it is not parked.
   void unpark(const std::string& name);
-  /// Put a tool somewhere at once, where it stays. One that was parked is so no more.
+  /// Moves a tool at once to a pose, where it stays. Unparks it.
   void place(const std::string& name, const Pose& at);
-  /// From where it is now to a pose, which it has after `seconds`. One that was parked is so no more.
+  /// Moves a tool from its current pose to another within `seconds` [s]. Unparks it.
   void drive(const std::string& name, const Pose& to, double seconds);
 
  private:

@@ -15,7 +15,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kLongestBatch = 1.0 / 60;  ///< the scene's blades move at least so often [s]
+constexpr double kLongestBatch = 1.0 / 60;  ///< maximum interval of the blade updates [s]
 
 void check_blade(const Blade& blade) {
   const auto fail = [&](const std::string& what) {
@@ -37,7 +37,7 @@ void check_blade(const Blade& blade) {
   }
 }
 
-/// Whether a blade's trace names places that this body has; it may have come with a checkpoint.
+/// Returns true if a blade's trace, which may come from a checkpoint, is valid for this body.
 bool belongs(const BladeTrace& front, const CutMesh& mesh) {
   if (front.levels < 0 || front.levels > kMostLevels) return false;
   std::int64_t place = -1;
@@ -94,7 +94,7 @@ EditedBodies& TopologyEdits::bodies() {
   return *bodies_;
 }
 
-/// The bodies, of a scene that can be cut.
+/// Returns the bodies; throws for a scene that cannot be cut.
 EditedBodies& TopologyEdits::cut_bodies() {
   if (run_.settings.tears || EditedBodies::tears(run_.scene)) {
     throw Error(ErrorCode::bad_input, "a scene with a material that tears (\"toughness\") cannot be cut");
@@ -136,7 +136,7 @@ Scene TopologyEdits::scene_at(const RunState& state) const {
     DeformationModel& m = body.model;
     if (state.most_substeps == 0 || m.type != ModelType::hybrid || m.substeps <= state.most_substeps) continue;
     const double ratio = static_cast<double>(state.most_substeps) / m.substeps;
-    // The same stiffness, and the same damping over time, at the shorter step.
+    // Keep stiffness and damping over time at the shorter step.
     m.alpha *= ratio * ratio;
     m.damping = 1 - std::pow(1 - m.damping, ratio);
     m.substeps = state.most_substeps;
@@ -155,7 +155,7 @@ std::unique_ptr<EditedBodies> TopologyEdits::bodies_at(const RunState& state) co
   };
   if (!edited(state) && !edited(run_.state)) return nullptr;
   auto all = std::make_unique<EditedBodies>(scene);
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {  // what is prepared stays so
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {  // keep prepared cuts
     if (cut_topology(b) != nullptr) static_cast<void>(all->cut(b));
   }
   for (std::size_t b = 0; b < state.regions.size(); ++b) {

@@ -1,5 +1,6 @@
-// Cuts, tears and moved operational regions: what changes the model of a running simulation. Each is found, made on the bodies,
-// carried over by a ModelSwap, and entered into the RunState; if anything fails on the way, all is as it was before.
+// Cuts, tears and moves of operational regions: edits that change the model of a running simulation. Each edit changes the
+// bodies, transfers the motion with a ModelSwap and is recorded in the RunState. If a step fails, the previous state is
+// restored.
 #pragma once
 #include <array>
 #include <memory>
@@ -18,31 +19,30 @@ class TopologyEdits {
  public:
   TopologyEdits(RunContext& run, StepControl& step, HostLoads& loads) : run_(run), step_(step), loads_(loads) {}
 
-  /// At the start of a simulation: fill bodies that blades of the scene will cut or that may tear, and settle when both are
-  /// looked at. Throws Error (bad_input) for scenes that cannot be edited so.
+  /// Call at the start of a simulation: generates the elements of bodies that the scene's blades will cut or that may tear,
+  /// and determines how often both are updated. Throws Error (bad_input) for scenes that cannot be edited.
   void start();
-  /// Before a batch that begins on the grid: move the scene's blades, part what is stretched too far, break faces, let regions
-  /// follow the tool.
+  /// Call before a batch that begins on the grid: moves the scene's blades, splits overstretched edges, breaks faces, and
+  /// moves regions that follow the tool.
   void update();
-  /// Go on with at most kSafeSubsteps substeps in all hybrids; false if none has more, if the step is the user's, or if a mesh
-  /// file has gone. To be called in a state that was kept.
-  /// Throws, with all as it was, what Backend::load throws.
+  /// Reduces all hybrids to at most kSafeSubsteps substeps. Returns false if none has more, if the step is given by the user,
+  /// or if a mesh file is missing or changed. Call in a kept state. Throws what Backend::load throws and then changes
+  /// nothing.
   [[nodiscard]] bool fewer_substeps();
 
-  /// Described at Simulation's functions of the same names.
+  /// See the functions of the same names in Simulation.
   CutReport cut(std::span<const SweepTriangle> triangles);
   CutReport move_blades(std::span<const BladePose> poses);
   void lift_blade(const std::string& blade);
   void prepare_cuts();
   [[nodiscard]] const CutTopology* cut_topology(std::size_t body) const;
 
-  /// The scene with its operational regions where a state has them, with the substeps that it goes on with, and with its tools
-  /// but for those that are parked.
+  /// Returns the scene with the operational regions, substeps and unparked tools of a state.
   [[nodiscard]] Scene scene_at(const RunState& state) const;
-  /// Bodies as the edits of a state make them; nullptr if neither it nor the present state has any. Throws Error (bad_input)
-  /// for a state that does not belong to this scene. Changes nothing.
+  /// Returns the bodies with a state's edits; nullptr if neither it nor the current state has any. Throws Error (bad_input)
+  /// for a state that does not belong to this scene. Does not change this object.
   [[nodiscard]] std::unique_ptr<EditedBodies> bodies_at(const RunState& state) const;
-  /// Go on with these.
+  /// Replaces the bodies by these.
   void take_up(std::unique_ptr<EditedBodies> bodies);
 
  private:
@@ -60,18 +60,18 @@ class TopologyEdits {
   void make_tears();
   void open_overstretched();
   void move_regions();
-  /// A region of a body that grows from `seed`, but for cells that are deformed too far to change their model (u: [nodes] of
-  /// the body).
+  /// Returns the region of a body that grows from `seed`, without cells that are deformed too far to change their model. u:
+  /// shape [nodes of the body].
   [[nodiscard]] MovedRegion region_at(std::size_t body, const Vec3d& seed, const std::vector<Vec3d>& u);
-  /// Whether the bodies' files, which are read when somebody edits a body for the first time, are still there and as they were.
+  /// Returns true if the bodies' files, which are read again at a body's first edit, still exist and are unchanged.
   [[nodiscard]] bool bodies_as_loaded();
-  /// The model of scene_at(state) with the bodies as they are.
+  /// Loads the model of scene_at(state) with the current bodies.
   void swap_partition(std::vector<double> u);
 
   RunContext& run_;
   StepControl& step_;
   HostLoads& loads_;
-  std::unique_ptr<EditedBodies> bodies_;  ///< what RunState's edits make of the scene's bodies; once somebody asked for them
+  std::unique_ptr<EditedBodies> bodies_;  ///< the scene's bodies with the edits of RunState; created on first use
 };
 
 }  // namespace pliant

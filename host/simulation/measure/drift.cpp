@@ -52,7 +52,7 @@ void Drift::find_loose_pieces() {
 }
 
 void Drift::follow() {
-  // Earlier displacements would have to follow, those that the integrator keeps and those of relaxation.
+  // Integrators that store earlier displacements, and relaxation, would need these shifted as well.
   if (!integrator_info(run_.scene.integrator).keeps_increment || run_.scene.relaxation.enabled) return;
   if (model_ != run_.loaded.shared_model()) find_loose_pieces();
   if (loose_.empty()) return;
@@ -65,7 +65,7 @@ void Drift::follow() {
       double mean = 0;
       for (const std::int32_t s : piece.slots) mean += u[4 * static_cast<std::size_t>(s) + c];
       mean /= static_cast<double>(piece.slots.size());
-      if (!(std::abs(mean) > piece.size)) continue;  // nor if it is not a number
+      if (!(std::abs(mean) > piece.size)) continue;  // also skips NaN
       const double flown = unit * std::round(mean / unit);
       if (offset.empty()) offset.resize(3 * static_cast<std::size_t>(run_.model().slots));
       for (const std::int32_t s : piece.slots) {

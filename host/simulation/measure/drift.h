@@ -1,5 +1,6 @@
-// Pieces that nothing holds fly as far as they like. In float the elements of a piece far from its place at rest see places
-// that are rounded more coarsely than they deform, and gain energy; so node_u leaves out how far the piece has flown.
+// Keeps displacements of free pieces small. Far from its rest position, a piece has displacements that float rounds more
+// coarsely than its elements deform, which adds energy. So node_u holds the displacement without the distance that the piece
+// has travelled.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -13,23 +14,24 @@ class Drift {
  public:
   explicit Drift(RunContext& run) : run_(run) {}
 
-  /// For every piece that nothing holds and that is further from its place at rest than its own size: take its mean
-  /// displacement out of node_u and into RunState::offset, in multiples of a power of two, so that hardly anything is rounded.
-  /// To be called where states are kept, before they are.
+  /// For every unconstrained piece that is further from its rest position than its own size: moves its mean displacement from
+  /// node_u to RunState::offset, in multiples of a power of two so that hardly anything is rounded. Call just before states
+  /// are kept.
   void follow();
 
  private:
-  /// Nodes that elements, or regions of shape matching, hang together.
+  /// Nodes that elements or shape-matching regions connect.
   struct Piece {
     std::vector<std::int32_t> slots;
-    double size = 0;  ///< [m] longest side of its box at rest
+    double size = 0;  ///< longest side of its undeformed bounding box [m]
   };
   void find_loose_pieces();
-  /// Shape matching remembers the displacement that its last goals were relative to. `before`: RunState::offset until now.
+  /// Shifts the displacements that shape matching stores as references of its last goals. `before`: the previous
+  /// RunState::offset.
   void move_references(const std::vector<double>& before);
 
   RunContext& run_;
-  std::shared_ptr<const Model> model_;  ///< whose pieces these are
+  std::shared_ptr<const Model> model_;  ///< the model that loose_ belongs to
   std::vector<Piece> loose_;
 };
 

@@ -22,12 +22,12 @@ double density(const Matrix3d& h, const Material& m) {
   return energy_without_volume(m, h) + volume_modulus(m) / 2 * dilation * dilation;
 }
 
-/// Of all elements, or of those between the slots `chosen`.
+/// Of all elements, or of those whose slots are all `chosen`.
 Energies internal(const Model& model, const std::vector<Vec3d>& u, const std::vector<char>* chosen) {
   struct Shares {
-    double rest = 0, deformed = 0;  ///< of the volumes of the elements at a node
+    double rest = 0, deformed = 0;  ///< per node: shares of its elements' volumes
   };
-  std::map<std::pair<const Material*, std::int32_t>, Shares> nodal;  // of a batch and a slot
+  std::map<std::pair<const Material*, std::int32_t>, Shares> nodal;  // by batch and slot
   Energies out;
   const auto displacement = [&](std::int32_t slot) { return vector_of(u[slot]); };
   for_each_element(model, [&](const ElementView& e) {

@@ -1,4 +1,4 @@
-// Energy that nothing put in.
+// Detects energy that appears without a source.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -12,7 +12,7 @@
 namespace pliant {
 namespace {
 
-/// What the integrator says of it.
+/// Kinetic energy as the integrator defines it.
 double kinetic(Simulation& s, const std::vector<Vec3d>& before) {
   const Model& m = s.model();
   std::vector<std::vector<Vec3d>> by_body(m.bodies.size());

@@ -22,14 +22,14 @@
 namespace pliant {
 namespace {
 
-constexpr double kOnFace = 1e-9;  ///< of an element's size: a point on its face is in it
+constexpr double kOnFace = 1e-9;  ///< relative to the element's size: a point this close to a face is inside
 
 using Weights = std::array<double, 8>;
 
-/// Of a cell in the order of VTK.
+/// Corners of a cell in VTK order.
 constexpr int kCorner[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
 
-/// Barycentric coordinates, and the distance to the tetrahedron: 0 inside.
+/// Returns barycentric coordinates, and the distance to the tetrahedron, which is 0 inside.
 std::pair<Weights, double> in_tet(const std::array<Vec3d, 4>& x, const Vec3d& p) {
   std::array<Vec3d, 3> edge{};
   for (std::size_t a = 0; a < 3; ++a) edge[a] = vec::sub(x[a + 1], x[0]);
@@ -49,7 +49,7 @@ std::pair<Weights, double> in_tet(const std::array<Vec3d, 4>& x, const Vec3d& p)
   return {w, distance};
 }
 
-/// The same for a cell of a lattice, in the order of VTK.
+/// The same for a lattice cell, in VTK order.
 std::pair<Weights, double> in_cell(const Vec3d& low, const Vec3d& high, const Vec3d& p) {
   Weights w{};
   Vec3d share{}, away{};
@@ -85,7 +85,7 @@ Vec3d interpolate(std::span<const std::int32_t> nodes, const Weights& weights, c
   return out;
 }
 
-/// Deformation gradient less the identity, in the tetrahedron, or at these weights in a cell of a lattice.
+/// H = F - I in a tetrahedron, or at these weights in a lattice cell.
 Eigen::Matrix3d gradient(const ModelBody& body, std::size_t e, const Weights& weights, const std::vector<Vec3d>& u) {
   const auto nodes = corners(body, e);
   const auto column = [](const Vec3d& x) { return Eigen::Vector3d(x[0], x[1], x[2]); };
@@ -94,7 +94,8 @@ Eigen::Matrix3d gradient(const ModelBody& body, std::size_t e, const Weights& we
     for (std::size_t c = 0; c < nodes.size(); ++c) {
       double slope = c == 0 ? -1 : static_cast<int>(c) == a + 1 ? 1 : 0;
       if (nodes.size() == 8) {
-        // A corner's share along the other two coordinates: its weight and that of the corner beyond the edge.
+        // Weight of a corner in the other two coordinates: the sum of its weight and that of the corner at the other end of
+        // the edge.
         std::size_t other = 0;
         for (std::size_t k = 0; k < 8; ++k) {
           bool edge = kCorner[k][a] != kCorner[c][a];
@@ -154,7 +155,7 @@ PlacedProbes::PlacedProbes(const std::vector<SceneProbe>& probes, const Model& u
       find(place, uncut);
     } else {
       while (uncut.bodies.at(place.body).name != probe.body) ++place.body;
-      (void)select_nodes(probe.where, uncut.bodies[place.body], Virtual::with_anchors);  // refuses what chooses nothing
+      (void)select_nodes(probe.where, uncut.bodies[place.body], Virtual::with_anchors);  // throws if nothing is selected
     }
     places_.push_back(std::move(place));
   }
@@ -184,7 +185,7 @@ std::size_t PlacedProbes::element_now(const Simulation& simulation, const Place&
   const CutTopology* topology = simulation.cut_topology(place.body);
   if (topology == nullptr) return place.element;
   const ModelBody& body = simulation.model().bodies[place.body];
-  // A cell of a lattice may stand for six tetrahedra.
+  // A lattice cell may have six tetrahedra.
   const std::size_t parts = static_cast<std::size_t>(body.elements()) / topology->elements().nodes.size();
   const auto cell = static_cast<std::int32_t>(place.element / parts);
   if (!topology->divided(cell)) return place.element;

@@ -4,7 +4,7 @@ namespace pliant {
 
 namespace {
 
-/// The prescribed displacement of one component at a time [m].
+/// Prescribed displacement of a component [m].
 double prescribed_at(const Model& model, const Constraint& c, std::size_t axis, double time) {
   const auto curve = static_cast<std::size_t>(c.curve[axis]);
   double u = c.target[axis] * model.curves[curve].value(time);

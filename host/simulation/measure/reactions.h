@@ -1,4 +1,4 @@
-// The forces that hold a body and move it as prescribed.
+// Reaction forces of fixed and prescribed nodes.
 #pragma once
 #include <vector>
 
@@ -6,9 +6,9 @@
 
 namespace pliant {
 
-/// What fixes or moves each node of a body [N], in the order of ModelBody::rest; 0 in components that are free: m (a + c v - g)
-/// - (R - F) at the present state, a and v by central differences of what is prescribed over one step. Nodes that shape
-/// matching moves have no such force: 0.
+/// Returns the reaction on each node of a body [N], in the order of ModelBody::rest; 0 in free components. It is m (a + c v -
+/// g) - (R - F) at the current state, with a and v from central differences of the prescribed motion over one step. Nodes
+/// moved by shape matching have none: 0.
 std::vector<Vec3d> reactions(Simulation& simulation, std::size_t body);
 
 }  // namespace pliant

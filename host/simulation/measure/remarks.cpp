@@ -11,13 +11,12 @@
 namespace pliant {
 namespace {
 
-/// Shape matching and the material of one body are alike if their moduli are within this factor.
+/// Shape matching and the material of a body count as similar if their moduli are within this factor.
 constexpr double kFarApart = 2;
-/// Strain by its own weight that shape matching still carries like a material (docs/flsm_stiffness.md).
+/// Strain by its own weight up to which shape matching behaves like a material (docs/flsm_stiffness.md).
 constexpr double kMostWeight = 0.1;
 
-/// From this taper or skewness on (distortion) hex8 elements bend more than 10 % too little, where a part is few elements
-/// thick.
+/// Taper or skew (Distortion) from which hex8 elements bend more than 10 % too little where a part is few elements thick.
 constexpr double kTapered = 0.25, kSkew = 0.7;
 
 void add_matching(const Model& model, const Scene& scene, double dt, std::vector<std::string>& remarks) {
@@ -51,14 +50,14 @@ void add_matching(const Model& model, const Scene& scene, double dt, std::vector
   }
 }
 
-/// How far a hexahedron is from a brick.
+/// Deviation of a hexahedron from a parallelepiped.
 struct Distortion {
-  double taper = 0;  ///< how much opposite edges differ, over the sum of their lengths
+  double taper = 0;  ///< difference of opposite edges over the sum of their lengths
   double skew = 0;   ///< largest cosine between its axes
 };
 
 Distortion distortion(const Model& model, std::span<const std::int32_t> slots) {
-  const auto sum = [&](std::size_t mode) {  // of the corners, with the product of the signs that `mode` names
+  const auto sum = [&](std::size_t mode) {  // sum over the corners, with the product of the signs selected by `mode`
     Vec3d v{};
     for (std::size_t a = 0; a < 8; ++a) {
       const bool minus = __builtin_popcount(static_cast<unsigned>(~a & mode)) % 2 != 0;

@@ -1,4 +1,4 @@
-// What a user should know before the first step.
+// Remarks on a scene before its first step.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,8 +7,8 @@
 
 namespace pliant {
 
-/// A sentence each, at the step `dt` [s]: shape matching whose stiffness is far from that of the material, or too little for
-/// the body's own weight; hex8 elements that are far from parallelepipeds. Empty: nothing.
+/// Returns one sentence for each finding at the step `dt` [s]: shape matching whose stiffness is far from the material's or
+/// too low for the body's own weight, and hex8 elements far from parallelepipeds. Empty: none.
 [[nodiscard]] std::vector<std::string> remarks_on(const Model& model, const Scene& scene, double dt);
 
 }  // namespace pliant

@@ -15,9 +15,9 @@ namespace {
 
 using Sentences = std::vector<std::string>;
 
-constexpr double kDeep = 0.5;     ///< cells in tissue
-constexpr double kThin = 0.7;     ///< cells: the diagonal between points of contact that are half a cell apart
-constexpr double kDamped = 0.03;  ///< share of the force of tools that damping may have without a word
+constexpr double kDeep = 0.5;     ///< [cells] in tissue
+constexpr double kThin = 0.7;     ///< [cells] the diagonal between contact points half a cell apart
+constexpr double kDamped = 0.03;  ///< fraction of tool forces from damping that is not reported
 
 void add_substeps(const Simulation& s, Sentences& out) {
   if (s.state().most_substeps == 0) return;
@@ -62,7 +62,7 @@ void add_inversions(const Simulation& s, Sentences& out) {
                   inverted.most, inverted.first_step, inverted.first_time, inverted.element, inverted.body, inverted.last));
 }
 
-/// The smallest measure of a shape [m]; of a half space infinite.
+/// The smallest dimension of a shape [m]; infinite for a half space.
 double thickness(const ToolForm& form) {
   switch (form.shape) {
     case ToolShape::sphere:
@@ -110,8 +110,8 @@ void add_tool(const Simulation& s, std::size_t tool, Sentences& out) {
   }
 }
 
-/// Tools give what holds the bodies, but for the weight and other loads, the inertia, and what the damping of the materials
-/// takes from everything that moves: M a + c M v = (what holds) + (loads) - (force on tools).
+/// The reactions of the bodies' supports balance the tool forces, except for loads, inertia and the damping of moving
+/// material: M a + c M v = (reactions) + (loads) - (force on tools).
 void add_damping(Simulation& s, Sentences& out) {
   if (s.scene().relaxation.enabled || !s.model().flsm.empty() || !integrator_info(s.scene().integrator).contact) return;
   Vec3d on_tools{}, held{}, damped{};

@@ -1,4 +1,4 @@
-// What a user should know of a run that goes on or has ended.
+// Remarks on a run in progress or completed.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,8 +7,8 @@
 
 namespace pliant {
 
-/// Sentences about what happened since the simulation was made: elements that were calmed, driven back or parted, ballast,
-/// tools that went deep, touched nothing or are too thin, and forces of tools that damping has a part in.
+/// Returns sentences on what happened since the start: elements that were calmed, inverted or split by overstretch, ballast,
+/// tools that went deep, had no contact or are too thin, and tool forces with a contribution from damping.
 [[nodiscard]] std::vector<std::string> run_remarks(Simulation& simulation);
 
 }  // namespace pliant

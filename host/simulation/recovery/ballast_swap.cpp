@@ -14,7 +14,7 @@
 namespace pliant {
 namespace {
 
-/// Load `model` from scratch with the state that `snapshot` holds.
+/// Loads `model` completely, with the state in `snapshot`.
 void load_with_state(RunContext& run, std::shared_ptr<const Model> model, const Snapshot& snapshot) {
   Program program = build_program(*model, {run.scene.integrator, run.settings.batch_steps});
   Program surface = surface_program(model->surface, program);
@@ -40,7 +40,7 @@ void load_ballast(RunContext& run, std::vector<NodeInertia> ballast) {
   const std::vector<double>& start = run.loaded.program().at(run.loaded.program().find("node_u")).reals;
   for (std::size_t s = 0; s < model->mass.size(); ++s) {
     if (!(model->mass[s] > 0)) continue;
-    u[4 * s + 3] = start[4 * s + 3];  // the inverse mass; 0 where the node is held
+    u[4 * s + 3] = start[4 * s + 3];  // the inverse mass; 0 for fixed nodes
     const double kept = std::min(1.0, old->mass[s] / model->mass[s]);
     for (std::size_t c = 0; c < 3; ++c) {
       if (run.loaded.free()[3 * s + c]) w[4 * s + c] *= kept;
@@ -49,7 +49,7 @@ void load_ballast(RunContext& run, std::vector<NodeInertia> ballast) {
   run.loaded.write_u(u);
   run.loaded.write_w(w);
   run.state.ballast = std::move(ballast);
-  run.state.kept.reset();  // its copies hold the masses of before
+  run.state.kept.reset();  // its buffers contain the old masses
   upload_coupling(run);
   if (!run.state.forces.empty()) HostLoads(run).upload();
 }

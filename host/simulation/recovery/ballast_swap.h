@@ -1,4 +1,4 @@
-// Gives nodes of a running simulation inertia, or takes it back.
+// Changes the added inertia (ballast) of nodes in a running simulation.
 #pragma once
 #include <vector>
 
@@ -6,8 +6,8 @@
 
 namespace pliant {
 
-/// Go on with this ballast in place of what there is. A node that gets heavier keeps its momentum, one that gets lighter its
-/// velocity: no energy comes in. Throws, with all as it was, what Backend::load throws.
+/// Replaces the current ballast. A node that becomes heavier keeps its momentum, one that becomes lighter keeps its velocity,
+/// so that no energy is added. Throws what Backend::load throws and then changes nothing.
 void load_ballast(RunContext& run, std::vector<NodeInertia> ballast);
 
 }  // namespace pliant

@@ -38,7 +38,7 @@ class Calm {
     }
     if (!(sum > 0)) return;
     mean /= sum;
-    // Not of links of shape matching, whose nodes move several steps at once, and held ones one.
+    // Not for links of shape matching, whose nodes move several steps at once while held ones move one.
     if (held > 0 && slots.size() > 2) mean = held_mean / held;
     double most = 0;
     for (const std::int32_t n : slots) {
@@ -69,7 +69,7 @@ class Calm {
   RunContext& run_;
   double share_;
   std::vector<double> w_;
-  std::vector<int> elements_;  ///< [slots]: 0, 1, 2 for more
+  std::vector<int> elements_;  ///< [slots] number of elements: 0, 1, or 2 for more
 };
 
 }  // namespace

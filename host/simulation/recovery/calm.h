@@ -1,4 +1,4 @@
-// Takes motion out of elements that would turn inside out within a few steps.
+// Reduces relative motion within elements that would invert within a few steps.
 #pragma once
 #include <cstdint>
 
@@ -6,13 +6,13 @@
 
 namespace pliant {
 
-/// Where the nodes of an element move against each other by more than `share` of its edge in one step, faster than its own
-/// waves could carry, that relative motion is brought down to this, as by a plastic impact: momentum stays, kinetic energy only
-/// falls. Where nodes of the element are held, it is the motion against those, and they take momentum up. An element that
-/// shares no node with another keeps a fifth of it.
+/// Where the nodes of an element move relative to their mean by more than `share` of its edge in one step, which is faster
+/// than waves in the element, the relative motion is reduced to that, like a plastic impact: momentum is conserved and
+/// kinetic energy decreases. If nodes of the element are held, the motion relative to them is reduced and they take up
+/// momentum. An element that shares no node with another is reduced to a fifth of that.
 struct Calmed {
-  std::int64_t elements = 0;
-  double fastest = 0;  ///< largest motion of an element's nodes against each other before, in edges per step
+  std::int64_t elements = 0;  ///< number of elements whose motion was reduced
+  double fastest = 0;         ///< largest relative motion of an element's nodes before, in edges per step
 };
 Calmed calm(RunContext& run, double share);
 

@@ -32,7 +32,7 @@ std::string Divergence::message() const {
 
 void Recovery::keep(bool on_grid) {
   const auto good = [&] {
-    // With a step that the user gave a run may burst long before a number ends: what flies apart is no state to go back to.
+    // With a user-given step a run may burst long before a value overflows; do not keep a state that is flying apart.
     if (run_.settings.automatic || !integrator_info(run_.scene.integrator).keeps_increment) return true;
     run_.backend().run(run_.loaded.program().status, 0, 1);
     return run_.loaded.largest_increment() <= kBurst * run_.model().shortest;
@@ -45,7 +45,7 @@ void Recovery::keep(bool on_grid) {
 }
 
 std::optional<Divergence> Recovery::look(std::int64_t batch_start) {
-  // The steps looked at the states they started from; the last state is looked at here, before it can pass for a good one.
+  // Each step checks the state it starts from, so the batch's final state is still unchecked. Check it before it can be kept.
   Symptoms s = read(batch_start, static_cast<std::int32_t>(run_.state.clock.step - batch_start));
   reports_.now.inversions.last = 0;
   if (s.lost_in == 0 && s.inverted > 0) count_inversions(s);
@@ -98,7 +98,7 @@ bool Recovery::may_trust_less() const {
 
 bool Recovery::calm_down(Symptoms& s) {
   if (s.lost_in > 0) return false;
-  // Judged by the state alone, and only where states are kept: a run may be cut into pieces anywhere else.
+  // Decided by the state alone, and only where states are kept, since a run may be divided anywhere else.
   if (!run_.settings.automatic || !run_.state.kept || !step_.on_grid(run_.state.clock.step)) return true;
   double fastest = 0;
   if (run_.loaded.largest_increment() / run_.model().shortest > kFastIncrement * fast_share()) {
@@ -113,7 +113,7 @@ bool Recovery::calm_down(Symptoms& s) {
     run_.loaded.clear_faults();
     return found;
   };
-  // Pieces that fly as they are deform no faster for it.
+  // Pieces in rigid flight do not deform faster.
   if (fastest <= kFastIncrement && (s.inverted == 0 || !inverted_now())) return true;
   measure(s);
   return !s.outgrown;
@@ -122,11 +122,12 @@ bool Recovery::calm_down(Symptoms& s) {
 void Recovery::measure(Symptoms& s) {
   const double dt = run_.state.clock.dt, least = step_.least_step(), ceiling = run_.state.limit.dt_ceiling;
   const StepControl::Allowed now = step_.allowed();
-  // What the state stands, without the distrust that shortens the step as well: both would shrink alike for ever.
+  // Compare with the limit without the distrust, which also shortens the step: otherwise both would shrink together
+  // indefinitely.
   if (now.dt / run_.state.limit.dt_backoff >= dt) return;
   double lowest = least;
   if (dt <= least) {
-    // Below the shortest step only a state that is lost leads: elements that are let go on are driven back by their laws.
+    // Below the shortest step only a lost state is treated: inverted elements that continue are driven back by their laws.
     if (!may_trust_less()) return;
     s.ballast = step_.more_ballast(dt, now.stiffness);
     lowest = kLeastBackoff * ceiling;
@@ -165,7 +166,7 @@ bool Recovery::trust_less(Symptoms& s) {
   run_.loaded.clear_faults();
   const double dt = run_.state.clock.dt, least = step_.least_step();
   const double next = std::min(kBackoff * dt, step_.estimated());
-  // Not at once below the floor, nor far: one element that is lost would take the step of all.
+  // Neither directly below the floor nor far: one lost element would determine the step of the whole scene.
   step_.change(std::max(next, dt > least ? least : kMostShortening * dt));
   return made_again();
 }
@@ -174,7 +175,7 @@ bool Recovery::add_ballast(Symptoms& s) {
   if (s.ballast.empty()) return false;
   step_.hold();
   load_ballast(run_, std::move(s.ballast));
-  run_.state.limit.dt_backoff *= kBackoff;  // so that this, too, ends
+  run_.state.limit.dt_backoff *= kBackoff;  // guarantees termination
   return made_again();
 }
 

@@ -1,4 +1,4 @@
-// What is done about a batch whose result is not to be trusted: one list of remedies, tried in order.
+// Treatment of a batch whose result is unreliable: a list of remedies, tried in order.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -11,20 +11,20 @@
 
 namespace pliant {
 
-/// What a batch left behind.
+/// Findings on a batch.
 struct Symptoms {
-  std::int64_t batch_start = 0;  ///< steps done before it
-  // From the one read of the marks of its elements:
-  std::int32_t lost_in = 0;       ///< the step of the batch, from 1, in which an element was lost first; 0: none was
-  std::int32_t lost = 0;          ///< that element
-  std::int64_t inverted = 0;      ///< elements with J <= 0
-  std::int32_t inverted_one = 0;  ///< the lowest of those
-  // Found by Recovery::calm_down where nothing is lost:
-  bool burst = false;                    ///< nodes of an element moved too far against each other in a step
-  bool outgrown = false;                 ///< the step is longer than its own result stands
-  double dt = 0;                         ///< the step to take then [s]
-  std::vector<NodeInertia> ballast;      ///< what to give the elements instead, if the step is the shortest already
-  std::optional<Divergence> divergence;  ///< nothing helped
+  std::int64_t batch_start = 0;  ///< number of steps before the batch
+  // From one read of the fault marks:
+  std::int32_t lost_in = 0;   ///< the step of the batch, counted from 1, in which the first element was lost; 0: none was lost
+  std::int32_t lost = 0;      ///< the fault index of that element
+  std::int64_t inverted = 0;  ///< number of elements with J <= 0
+  std::int32_t inverted_one = 0;  ///< the lowest of their fault indices
+  // Set by Recovery::calm_down if no element is lost:
+  bool burst = false;                    ///< nodes of an element moved too far relative to each other in one step
+  bool outgrown = false;                 ///< the step exceeds the stability limit of the batch's result
+  double dt = 0;                         ///< the step to use then [s]
+  std::vector<NodeInertia> ballast;      ///< or the ballast to add, if the step is already the shortest allowed
+  std::optional<Divergence> divergence;  ///< set if no remedy helped
 };
 
 class Recovery {
@@ -32,25 +32,26 @@ class Recovery {
   Recovery(RunContext& run, StepControl& step, TopologyEdits& edits, RunReports& reports)
       : run_(run), step_(step), edits_(edits), reports_(reports) {}
 
-  /// Before a batch: keep the present state to go back to if there is none, or if states are kept here (`on_grid`) and it is
-  /// good.
+  /// Call before a batch. Keeps the current state for rollback if there is none, or if this is a grid step (`on_grid`) and
+  /// the state is good.
   void keep(bool on_grid);
-  /// After a batch that began after `batch_start` steps: what to do so that the run can go on. The divergence if nothing is
-  /// left.
+  /// Call after a batch that began after `batch_start` steps. Applies remedies so that the run can continue; returns the
+  /// divergence if none helps.
   std::optional<Divergence> look(std::int64_t batch_start);
 
-  // The remedies. True: the run goes on, or ends, from what this one left.
-  /// Takes out motion that is faster than waves. All that a batch needs whose step was short enough.
+  // The remedies. A return value of true ends the list.
+  /// Reduces motion faster than waves. Sufficient unless the batch has burst or outgrown its step.
   bool calm_down(Symptoms& s);
-  /// The last good state again. Helps nothing by itself; what follows is done to it.
+  /// Restores the last good state. Returns false: the following remedies modify that state.
   bool go_back(Symptoms& s);
-  /// Hybrids go on with fewer substeps: what drives elements apart between two of them no shorter step heals.
+  /// Reduces the number of substeps of hybrids. A shorter step does not help if elements are driven apart between two steps
+  /// of shape matching.
   bool fewer_substeps(Symptoms& s);
-  /// Lost or burst: the estimate of the stable step is trusted less, down to a limit.
+  /// Lost or burst: reduces the trust in the estimated stable step, down to a limit.
   bool trust_less(Symptoms& s);
-  /// Outgrown, with the shortest step that the scene wants: inertia for single elements.
+  /// Outgrown at the shortest step that the scene allows: adds inertia to single elements.
   bool add_ballast(Symptoms& s);
-  /// Outgrown: a step that the state stood.
+  /// Outgrown: uses a step that the result is stable at.
   bool shorter_step(Symptoms& s);
   bool give_up(Symptoms& s);
   using Remedy = bool (Recovery::*)(Symptoms&);
@@ -61,9 +62,9 @@ class Recovery {
  private:
   [[nodiscard]] Symptoms read(std::int64_t batch_start, std::int32_t step_in_batch) const;
   void count_inversions(const Symptoms& s);
-  /// Whether there is inertia, or a shorter step, for a state that does not stand its step.
+  /// Sets outgrown, dt and ballast for a state whose step may exceed its stability limit.
   void measure(Symptoms& s);
-  /// What a step of this length takes of the limits of motion: below half the first step they are velocities.
+  /// Factor on the limits of motion for the current step: below half the first step the limits are velocities.
   [[nodiscard]] double fast_share() const;
   [[nodiscard]] bool may_trust_less() const;
   bool made_again();

@@ -11,7 +11,7 @@
 namespace pliant {
 namespace {
 
-/// Where in a step the buffers are looked at.
+/// A point of the step at which the buffers are compared.
 struct Place {
   std::int64_t step = 0;
   std::int32_t pass = -1;
@@ -42,7 +42,7 @@ class Lockstep {
     while (result_.steps < options_.steps && !a_.divergence() && !a_.at_equilibrium()) {
       const std::int32_t n = a_.next_batch(options_.steps - result_.steps);
       if (!batch(n)) break;
-      result_.steps = a_.step() - first + (a_.divergence() ? n : 0);  // the host may have gone back to try smaller steps
+      result_.steps = a_.step() - first + (a_.divergence() ? n : 0);  // a rollback may have reduced the step number
       if (options_.progress && !options_.progress(result_.steps)) {
         result_.stopped = result_.steps < options_.steps;
         break;
@@ -72,7 +72,7 @@ class Lockstep {
     }
   }
 
-  /// One batch of both. False when a difference was found.
+  /// Runs one batch on both. Returns false if a difference was found.
   bool batch(std::int32_t steps) {
     const std::int64_t first = a_.step();
     a_.begin_batch(steps);
@@ -94,7 +94,7 @@ class Lockstep {
     const auto& passes_b = b_.program().step;
     for (std::size_t p = 0; p < passes_a.size(); ++p) {
       if (!passes_a[p].runs_in(first + i)) continue;
-      // Both are queued before either is waited for.
+      // Enqueue both before waiting for either.
       a_.backend().run(passes_a[p], i);
       b_.backend().run(passes_b[p], i);
       if (!look({first + i + 1, static_cast<std::int32_t>(p), passes_a[p].kernel.c_str(), passes_a[p].label}, false))
@@ -109,7 +109,7 @@ class Lockstep {
     return look({first + i + 1, -1, "step", "after the whole step"}, false);
   }
 
-  /// Compare the buffers; remembers the first difference and returns false when there is one.
+  /// Compares the buffers. Returns false and stores the first difference if there is one.
   bool look(const Place& place, bool constants) { return look_at(a_.program(), place, constants); }
 
   bool look_at(const Program& program, const Place& place, bool constants) {
@@ -148,7 +148,8 @@ class Lockstep {
     return true;
   }
 
-  /// What the host made of the same buffers: nothing but a defect can make it differ, and nothing would show it later.
+  /// Compares the host state derived from the same buffers. Only a bug can make it differ, and no later check would detect
+  /// that.
   bool same_host(const Place& place) {
     const auto same = [&](const char* what, double va, double vb) {
       const auto bits_a = std::bit_cast<std::uint64_t>(va), bits_b = std::bit_cast<std::uint64_t>(vb);

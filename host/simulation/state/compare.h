@@ -1,4 +1,4 @@
-// Two backends in lockstep: the first pass, buffer and index at which they do not hold the same bits.
+// Runs two backends in lockstep and finds the first pass, buffer and index at which their bits differ.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -10,20 +10,21 @@
 namespace pliant {
 
 struct CompareOptions {
-  std::int64_t steps = 100;  ///< at most; a divergence or an equilibrium of both ends the comparison sooner
-  bool every_pass = true;    ///< false: look only after whole steps, and name the step as the pass
-  /// Called after every batch with the steps done; return false to stop there. May be empty.
+  std::int64_t steps = 100;  ///< maximum number; ends earlier if both diverge or reach equilibrium
+  bool every_pass = true;    ///< false: compare only after whole steps
+  /// Called after every batch with the number of steps done; returning false stops the comparison. May be empty.
   std::function<bool(std::int64_t done)> progress;
 };
 
-/// Where two simulations part. Values are given as bits and as numbers, because numbers that print alike may differ.
+/// Location of the first difference. Values are given as bits and as numbers, since different bits may print as the same
+/// number.
 struct FirstDifference {
-  std::int64_t step = 0;   ///< 1 is the first step of a scene; the step at work when they parted, 0 before the first
-  std::int32_t pass = -1;  ///< position in Program::step; -1 outside of it: `label` says where
-  std::string kernel;      ///< stem of the pass, "step" for whole steps, "host" outside of passes
+  std::int64_t step = 0;   ///< the step in progress, 1 is the first; 0: before the first step
+  std::int32_t pass = -1;  ///< position in Program::step; -1 outside of it, see `label`
+  std::string kernel;      ///< name of the pass; "step" when comparing whole steps, "host" outside of passes
   std::string label;
   std::string buffer;
-  std::int64_t index = 0;        ///< of the value, in numbers of four bytes
+  std::int64_t index = 0;        ///< index of the value, in units of four bytes
   std::string value_a, value_b;  ///< bits, "0x3f800000"
   std::string decimal_a, decimal_b;
   [[nodiscard]] std::string message() const;
@@ -31,19 +32,20 @@ struct FirstDifference {
 
 struct ComparisonResult {
   bool identical = true;
-  std::int64_t steps = 0;    ///< of the batches that both ran; after a divergence the simulations stand at its last good step
-  std::int32_t passes = 0;   ///< of one step
-  std::int32_t buffers = 0;  ///< compared after every pass; constant ones are compared once, before the first
-  std::int64_t values_compared = 0;  ///< numbers, over all looks
+  std::int64_t steps =
+      0;  ///< steps of the batches that both completed; after a divergence the simulations hold its last good step
+  std::int32_t passes = 0;   ///< number of passes of one step
+  std::int32_t buffers = 0;  ///< number compared after every pass; constant buffers are compared once, before the first pass
+  std::int64_t values_compared = 0;  ///< total number of values over all comparisons
   std::optional<FirstDifference> first_difference;
-  std::optional<Divergence> diverged;  ///< both, at the same element of the same step
+  std::optional<Divergence> diverged;  ///< set if both diverged at the same element in the same step
   bool at_equilibrium = false;
   bool stopped = false;  ///< by `progress`
 };
 
-/// Advance both by the same passes and compare every buffer as bits, NaN equal to NaN whatever its payload. Both must run the
-/// same Model from the same step number on backends that compute in float: throws Error otherwise. Different sizes of the step
-/// are a difference like any other.
+/// Advances both simulations pass by pass and compares the bits of every buffer; all NaN values count as equal. Both must run
+/// the same Model from the same step number on backends that compute in float, otherwise throws Error. A different step size
+/// counts as a difference.
 ComparisonResult compare(Simulation& a, Simulation& b, const CompareOptions& options = {});
 
 }  // namespace pliant

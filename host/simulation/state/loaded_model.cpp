@@ -41,7 +41,7 @@ void LoadedModel::reset_initial_state(std::vector<double> u, std::vector<double>
 }
 
 void LoadedModel::update_surface(Program surface, bool patched) {
-  // What is patched says itself what differs: of the rows before only kind and size are asked for.
+  // A patched surface lists its differences: of the previous buffers only type and size are needed.
   surface_ = std::move(surface);
   Program before;
   for (const Buffer& buffer : surface_.buffers) {
@@ -53,7 +53,7 @@ void LoadedModel::update_surface(Program surface, bool patched) {
   }
   for (std::size_t i = 0; patched && i < before.buffers.size(); ++i) before.buffers[i].count = surface_counts_.at(i);
   backend_->extend(patched ? &before : nullptr, surface_);
-  for (Buffer& buffer : surface_.buffers) buffer.changed.reset();  // it says nothing about the next surface
+  for (Buffer& buffer : surface_.buffers) buffer.changed.reset();  // refers only to this surface
   count_surface();
 }
 

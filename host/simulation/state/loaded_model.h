@@ -1,4 +1,4 @@
-// The model that runs: its Program on the backend, the embedded surface beside it, and where the host finds things in both.
+// The loaded model: its Program and the Program of its embedded surface on the backend, with typed access to their buffers.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -17,60 +17,61 @@ class LoadedModel {
   LoadedModel(const LoadedModel&) = delete;
   LoadedModel& operator=(const LoadedModel&) = delete;
 
-  /// Load from scratch. Throws what Backend::load throws.
+  /// Loads everything. Throws what Backend::load throws.
   void load(std::shared_ptr<const Model> model, Program program, Program surface);
-  /// The next model in two parts: first what steps, then its surface. After an error in either, load() a model.
+  /// Replaces the Program of the steps; update_surface() must follow. After an error in either, call load().
   void update(std::shared_ptr<const Model> model, Program program);
-  /// What program() says that node_u and node_w begin with; the backend keeps what it has.
+  /// Sets the initial values of node_u and node_w in program(); the buffers on the backend stay as they are.
   void reset_initial_state(std::vector<double> u, std::vector<double> w);
-  /// `patched`: it was made from take_surface() and says in Buffer::changed what differs.
+  /// Replaces the Program of the surface. `patched`: it was made from take_surface(), and Buffer::changed lists the
+  /// differences.
   void update_surface(Program surface, bool patched);
-  /// The program of the surface that is loaded, to be patched. The backend keeps its own copy until update_surface().
+  /// Returns the loaded surface Program for patching. The backend keeps its own copy until update_surface().
   [[nodiscard]] Program take_surface() { return std::exchange(surface_, {}); }
 
   [[nodiscard]] const Model& model() const { return *model_; }
   [[nodiscard]] const std::shared_ptr<const Model>& shared_model() const { return model_; }
   [[nodiscard]] const Program& program() const { return program_; }
-  /// Positions of the embedded surface; an extension of program().
+  /// The Program that computes the positions of the embedded surface, an extension of program().
   [[nodiscard]] const Program& surface() const { return surface_; }
-  /// The buffer with these positions, in either Program; -1 without a surface.
+  /// The buffer with these positions, valid in either Program; -1 without a surface.
   [[nodiscard]] BufferId surface_x() const;
   [[nodiscard]] Backend& backend() const { return *backend_; }
 
-  /// node_u and node_w as they are; displacements: RunContext::u().
+  /// node_u and node_w as stored. For displacements use RunContext::u().
   [[nodiscard]] std::vector<double> u() const { return backend_->read_reals(ids_.u); }
   [[nodiscard]] std::vector<double> w() const { return backend_->read_reals(ids_.w); }
   void write_u(const std::vector<double>& u) { backend_->write_reals(ids_.u, u); }
   void write_w(const std::vector<double>& w) { backend_->write_reals(ids_.w, w); }
   void write_params(const std::vector<double>& params) { backend_->write_reals(ids_.params, params); }
   void write_curves(const std::vector<double>& values) { backend_->write_reals(ids_.curves, values); }
-  /// R - F as Program::force leaves it.
+  /// R - F as computed by Program::force.
   [[nodiscard]] std::vector<double> force() const { return backend_->read_reals(ids_.force); }
-  /// What fault_reduce found, [256][4] (its kernel); clear_faults() forgets it.
+  /// The result of fault_reduce, shape [256][4] (see its kernel). clear_faults() resets the marks.
   [[nodiscard]] std::vector<std::int32_t> faults() const { return backend_->read_ints(ids_.summary); }
   void clear_faults();
-  /// The largest component of node_w when Program::status ran last.
+  /// The largest component of node_w at the last run of Program::status.
   [[nodiscard]] double largest_increment() const;
 
-  /// Grows with whatever may have put other values into state buffers than steps do.
+  /// Counter that is incremented when state buffers may have been changed by something other than steps.
   [[nodiscard]] std::int64_t changes() const { return changes_; }
   void note_change() { ++changes_; }
 
-  /// Copy the state aside, or back.
+  /// Copies the state buffers to their backups, or back.
   void keep_state();
   void return_to_kept_state();
 
-  /// The bytes of the buffers that keep_state() copies, and the reverse.
+  /// Returns the bytes of the buffers that keep_state() copies; write_state_bytes() restores them.
   [[nodiscard]] std::vector<std::vector<std::uint8_t>> state_bytes() const;
   void write_state_bytes(const std::vector<std::vector<std::uint8_t>>& bytes);
-  /// As Backend::read_bytes gave them, of a buffer of program().
+  /// Writes bytes from Backend::read_bytes to a buffer of program().
   void write_bytes(BufferId id, const std::vector<std::uint8_t>& bytes);
 
-  /// [slots][3] whether the component moves freely.
+  /// Shape [slots][3]: whether the component is unconstrained.
   [[nodiscard]] const std::vector<char>& free() const { return free_; }
-  /// Present positions of a body's nodes [m]; `u`: displacements, in texels.
+  /// Current positions of a body's nodes [m]. `u`: displacements, as texels.
   [[nodiscard]] std::vector<Vec3d> positions(const std::vector<double>& u, std::size_t body) const;
-  /// The first three numbers of each of a body's texels, times `factor`.
+  /// The first three numbers of each texel of a body's nodes, times `factor`.
   [[nodiscard]] std::vector<Vec3d> pick(const std::vector<double>& texels, std::size_t body, double factor) const;
 
  private:
@@ -83,9 +84,9 @@ class LoadedModel {
   std::unique_ptr<Backend> backend_;
   std::shared_ptr<const Model> model_;
   Program program_, surface_;
-  std::vector<std::size_t> surface_counts_;  ///< of the rows that the backend holds, also while surface_ is taken
+  std::vector<std::size_t> surface_counts_;  ///< lengths of the surface buffers on the backend, also while surface_ is taken
   Ids ids_;
-  std::vector<std::pair<BufferId, BufferId>> kept_;  ///< state buffers and their copies at the last good step
+  std::vector<std::pair<BufferId, BufferId>> kept_;  ///< state buffers and their backups at the last good step
   std::vector<char> free_;
   std::int64_t changes_ = 0;
 };

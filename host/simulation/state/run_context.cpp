@@ -45,7 +45,7 @@ std::vector<Vec3d> RunContext::velocities(const std::vector<double>& increments,
   for (std::size_t n = 0; n < v.size() && !model().flsm.empty(); ++n) {
     const auto slot = static_cast<std::size_t>(model().bodies[body].slot[n]);
     for (std::size_t c = 0; c < 3; ++c) {
-      if (loaded.free()[3 * slot + c]) v[n][c] /= substeps_of(model(), slot);  // a prescribed component moves in every substep
+      if (loaded.free()[3 * slot + c]) v[n][c] /= substeps_of(model(), slot);  // prescribed components move in every substep
     }
   }
   return v;

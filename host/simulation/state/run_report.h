@@ -1,5 +1,5 @@
-// What a run tells of itself afterwards. No step depends on it: checkpoints have it, so that a run that was interrupted tells
-// what happened before; the deep hash and comparisons leave it out.
+// Statistics of a run. No step depends on them. Checkpoints contain them, so that a resumed run reports what happened before;
+// the deep hash and comparisons exclude them.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -10,56 +10,58 @@
 
 namespace pliant {
 
-/// Elements that had J <= 0 and went on.
+/// Statistics of elements that had J <= 0 and continued.
 struct Inversions {
-  std::int64_t batches = 0;     ///< in how many batches there were some
-  std::int64_t most = 0;        ///< most of them in one batch
-  std::int64_t last = 0;        ///< in the last batch
-  std::int64_t first_step = 0;  ///< the first batch with some began with this step
+  std::int64_t batches = 0;     ///< number of batches with inverted elements
+  std::int64_t most = 0;        ///< largest number in one batch
+  std::int64_t last = 0;        ///< number in the last batch
+  std::int64_t first_step = 0;  ///< first step of the first such batch
   double first_time = 0;        ///< [s]
-  std::int64_t calmed = 0;      ///< elements that lost relative motion (recovery/calm.h), counted batch by batch
-  std::string body;             ///< of one of the first
-  std::int64_t element = -1;    ///< its number in the body
+  std::int64_t calmed = 0;      ///< elements whose relative motion was reduced (recovery/calm.h), summed over batches
+  std::string body;             ///< body of one of the first inverted elements
+  std::int64_t element = -1;    ///< its index in the body
 };
 
-/// Inertia given to nodes whose elements asked for a shorter step than Scene::least_step.
+/// Inertia added to nodes whose elements need a shorter step than Scene::least_step.
 struct BallastReport {
-  std::int64_t nodes = 0;  ///< now
-  double mass = 0;         ///< now [kg]
-  double most = 0;         ///< at any time [kg]
+  std::int64_t nodes = 0;  ///< current number of nodes
+  double mass = 0;         ///< current added mass [kg]
+  double most = 0;         ///< largest added mass so far [kg]
 };
 
-/// What a tool feels: of one step, or the mean over the steps since somebody asked.
+/// Contact load on a tool, of one step or of a batch: force and torque are means over the batch, the rest is that of its last
+/// step with contact.
 struct ToolLoad {
   Vec3d force{};     ///< on the tool [N]
   Vec3d torque{};    ///< about its origin [N m]
-  double area = 0;   ///< of the tissue that touches it, at rest [m^2]
-  double depth = 0;  ///< deepest point inside the tool, after contact [m]
+  double area = 0;   ///< undeformed area of the tissue in contact [m^2]
+  double depth = 0;  ///< greatest depth of a point inside the tool, after contact [m]
   std::int64_t points = 0;
 };
 
-/// What became of a tool over a run.
+/// Statistics of a tool.
 struct ToolHistory {
-  ToolLoad now;              ///< mean of the last batch
-  double max_force = 0;      ///< of a batch's mean [N]
-  double max_depth = 0;      ///< [m]
-  double work = 0;           ///< done on the tissue by its rigid motion since the simulation was made [J]
-  std::int64_t touched = 0;  ///< steps with contact
-  Pose before;               ///< a step before `step`, of a sequence's frame: driven tools do not know their past
-  std::int64_t step = -1;    ///< the end of the last batch with contact; -1: there was none
+  ToolLoad now;              ///< load of the last batch
+  double max_force = 0;      ///< largest mean force of a batch [N]
+  double max_depth = 0;      ///< largest depth [m]
+  double work = 0;           ///< work of its rigid motion on the tissue since the start [J]
+  std::int64_t touched = 0;  ///< number of steps with contact
+  Pose before;               ///< pose of the frame one step before `step`, stored because driven tools have no history
+  std::int64_t step = -1;    ///< end of the last batch with contact; -1: none
 };
 
-/// What became of the contact of tissue with tissue over a run.
+/// Statistics of contact between tissue and tissue.
 struct TouchHistory {
-  std::int64_t points = 0;  ///< points that touched in the last batch
-  double max_depth = 0;     ///< deepest pair, after contact [m]
+  std::int64_t points = 0;  ///< points in contact in the last batch
+  double max_depth = 0;     ///< depth of the deepest pair, after contact [m]
 };
 
-/// Energy that nothing put in (Simulation::watch_energy).
+/// Energy that appeared without a source (Simulation::watch_energy).
 struct EnergyHistory {
-  std::optional<double> least;      ///< less the work of the tools, at any look [J]; nothing: nobody has looked
-  double created = 0, highest = 0;  ///< the highest rise above an earlier `least`; kinetic and strain energy, or the work [J]
-  /// The first as a share of the second.
+  std::optional<double> least;  ///< least energy less tool work at any check [J]; empty: no check was made
+  double created = 0,
+         highest = 0;  ///< largest rise above an earlier `least`, and largest kinetic plus strain energy or work [J]
+  /// Returns created / highest.
   [[nodiscard]] std::optional<double> share() const {
     if (!least) return {};
     return highest > 0 ? created / highest : 0;
@@ -72,9 +74,9 @@ struct RunReport {
   std::vector<ToolHistory> tools;  ///< one per tool of the model
   TouchHistory tissue;
   EnergyHistory energy;
-  std::int64_t made_again = 0;  ///< batches that were gone back from (recovery/recovery.h)
+  std::int64_t made_again = 0;  ///< number of batches that were rolled back (recovery/recovery.h)
 
-  /// A batch that is made again has told nothing of what it went through: that is as it was in `kept`.
+  /// Call when a batch is rolled back: restores the statistics that it changed from `kept`, and counts it.
   void take_back(const RunReport& kept) {
     inversions = kept.inversions;
     tools = kept.tools;
@@ -83,7 +85,7 @@ struct RunReport {
   }
 };
 
-/// With the report as of the kept state.
+/// The current statistics and those at the kept state.
 struct RunReports {
   RunReport now, kept;
 };

@@ -1,4 +1,4 @@
-// The bytes of a RunState and of RunReports: for each member its name, then its value. Numbers take eight bytes, lists begin
+// Serialization of RunState and RunReports: for each member its name, then its value. Numbers take eight bytes; lists begin
 // with their length.
 #include "simulation/state/run_state.h"
 
@@ -108,7 +108,7 @@ class StateReader {
     at_ += 8;
     return value;
   }
-  /// A number of items, each of at least `least` bytes.
+  /// Reads a number of items, each at least `least` bytes long.
   std::size_t count(std::size_t least) {
     const std::uint64_t n = word();
     if (n > (bytes_.size() - at_) / least) fail("holds more items than there are bytes");

@@ -1,6 +1,6 @@
-// Everything that decides the next step of a run and is neither in the Model nor in the Program nor in a state buffer. One
-// visitor names every member: checkpoints, the deep hash and comparisons see what it visits. What is not in here does not exist
-// for a run.
+// Everything that determines the next step of a run and is neither in the Model, the Program nor a state buffer. One visitor
+// names every member; checkpoints, the deep hash and comparisons use it. State outside of this struct is lost when a run is
+// resumed.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -17,26 +17,26 @@ struct RunState {
   StepLimit limit;
   RelaxationState relaxation;
   std::optional<KeptState> kept;
-  std::vector<CutRecord> cuts;  ///< in the order in which they were made
+  std::vector<CutRecord> cuts;  ///< in the order of the cuts
   std::vector<TearRecord> tears;
-  std::vector<MovedRegion> regions;  ///< [bodies], once one has moved; empty: as in the scene
-  std::int32_t most_substeps = 0;    ///< of hybrids, since more of them burst; 0: as in the scene
+  std::vector<MovedRegion> regions;  ///< per body; empty until a region has moved
+  std::int32_t most_substeps = 0;    ///< limit for hybrids, lowered after they burst; 0: none
   BladeState blades;
   PendingEdits pending;
   std::vector<HostForce> forces;
-  std::vector<double> offset;        ///< [slots][3] of the displacement, what node_u leaves out (drift.h) [m]; empty: nothing
-  std::vector<NodeInertia> ballast;  ///< what elements got so that they stand the step (model/nodes/ballast.h)
+  std::vector<double> offset;  ///< part of the displacement that node_u omits (drift.h), shape [slots][3] [m]; empty: none
+  std::vector<NodeInertia> ballast;  ///< inertia added so that elements are stable at the step (model/nodes/ballast.h)
   std::optional<Vec3d>
-      focus;  ///< where the host put the focus [m]; nothing: on its path. "tool" in checkpoints and deep hashes
-  std::map<std::string, ToolDrive> driven;  ///< tools that the host has driven off their paths
+      focus;  ///< position of the focus set by the host [m], "tool" in checkpoints and hashes; empty: on its path
+  std::map<std::string, ToolDrive> driven;  ///< tools that the host moves off their paths
   ContactLook look;
-  std::int64_t opened = 0;            ///< edges that parted because they were stretched too far
-  std::int64_t topology_version = 0;  ///< edits that changed elements
-  ToolChanges tools;                  ///< tools that the host added, removed or parked
+  std::int64_t opened = 0;            ///< number of edges split because they were overstretched
+  std::int64_t topology_version = 0;  ///< number of edits that changed elements
+  ToolChanges tools;                  ///< tools added, removed or parked by the host
 };
 
-// The visitor, as that of the parts: v(name, member) for every member, in this order. v.last() has nothing to say where there
-// is nothing.
+// Visitor: calls v(name, member) for every member in this order, as the visitors of the parts do. v.last() writes nothing for
+// an empty member, which keeps checkpoints compatible.
 template <class V>
 void visit(V& v, RunState& s) {
   v("clock", s.clock), v("limit", s.limit), v("relaxation", s.relaxation), v("kept", s.kept), v("cuts", s.cuts);
@@ -47,9 +47,9 @@ void visit(V& v, RunState& s) {
   v.last("tools", s.tools);
 }
 
-/// Its bytes, the same on every machine: names, then values of eight little-endian bytes.
+/// Serializes the state, identically on every machine: names, and values as eight little-endian bytes.
 std::string write_state(const RunState& state);
-/// Throws Error (bad_input) that names the first member that is not there as it should be.
+/// Throws Error (bad_input) that names the first missing or malformed member.
 RunState read_state(const std::string& bytes);
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-// The parts of RunState: clock, limits of the step, relaxation, edits, blades, tools.
+// The parts of RunState: clock, step limits, relaxation, edits, blades, tools.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -13,43 +13,43 @@
 
 namespace pliant {
 
-/// Steps done and their length. The time of a step counts from where the length changed last.
+/// Number of steps done and step size. Times are computed from the last change of the step size.
 struct Clock {
-  std::int64_t step = 0;         ///< steps done
-  std::int64_t origin_step = 0;  ///< the step in which dt changed last
-  double origin_time = 0;        ///< [s] then
+  std::int64_t step = 0;         ///< number of steps done
+  std::int64_t origin_step = 0;  ///< the step at which dt changed last
+  double origin_time = 0;        ///< the time at origin_step [s]
   double dt = 0;                 ///< [s]
   [[nodiscard]] double time_at(std::int64_t at) const { return origin_time + static_cast<double>(at - origin_step) * dt; }
   [[nodiscard]] double time() const { return time_at(step); }
 };
 
-/// How long an automatic step may be.
+/// Limits on an automatic step.
 struct StepLimit {
-  double stable_dt = 0;   ///< 2 / omega_max as of the last estimate [s]; 0: none
-  double dt_ceiling = 0;  ///< an automatic step never grows beyond this [s]
-  double dt_backoff = 1;  ///< share of the estimate that an automatic step still trusts
-  std::int64_t hold = 0;  ///< it does not grow before this step
+  double stable_dt = 0;   ///< 2 / omega_max from the last estimate [s]; 0: no estimate was made
+  double dt_ceiling = 0;  ///< upper bound of an automatic step [s]
+  double dt_backoff = 1;  ///< fraction of the estimate that an automatic step uses
+  std::int64_t hold = 0;  ///< the step does not grow before this step number
 };
 
-/// Dynamic relaxation: its damping rate, and what its next change is measured against.
+/// Dynamic relaxation: the damping rate, and the state at its last update for comparison.
 struct RelaxationState {
-  double damping = 0;               ///< [1/s], beside that of the materials
-  bool equilibrium = false;         ///< reached: nothing is left to do
-  double residual = 0;              ///< |R - F| over the largest of external and reaction force
-  double time = 0;                  ///< of the last change [s]
-  std::vector<double> u, force, v;  ///< node_u, node_force and velocities [m/s] at the last change; empty: there was none
-  std::vector<double> middle;       ///< with shape matching: node_u halfway through the time that `force` is the mean of
-  std::vector<double> steady;       ///< with shape matching: velocities in the rhythm of its steps, see relaxation.cpp [m/s]
-  double largest = 0;               ///< with shape matching: of such means over all nodes [N]
+  double damping = 0;               ///< damping rate [1/s], in addition to that of the materials
+  bool equilibrium = false;         ///< true once equilibrium is reached
+  double residual = 0;              ///< |R - F| over the larger of external and reaction force
+  double time = 0;                  ///< time of the last update [s]
+  std::vector<double> u, force, v;  ///< node_u, node_force and velocities [m/s] at the last update; empty: no update yet
+  std::vector<double> middle;       ///< with shape matching: node_u halfway through the time over which `force` is averaged
+  std::vector<double> steady;       ///< with shape matching: velocities sampled at its steps, see relaxation.cpp [m/s]
+  double largest = 0;               ///< with shape matching: the largest such averaged force over all nodes [N]
 };
 
-/// The good state that last_u and last_w hold.
+/// Clock and damping of the good state that is stored in the last_... buffers.
 struct KeptState {
   Clock clock;
   double damping = 0;
 };
 
-/// The edges that one edit cut of one body.
+/// The edges of one body that one edit cut.
 struct CutRecord {
   std::int32_t body = 0;
   CutEdges edges;
@@ -60,7 +60,8 @@ struct TearRecord {
   std::int32_t body = 0, tet = 0, faces = 0;
 };
 
-/// Where a blade goes in one update: along straight lines to each of these places. `key` names it in BladeState::traces.
+/// The motion of a blade in one update: along straight lines to each of these segments. `key` is its key in
+/// BladeState::traces.
 struct BladeMove {
   std::string key;
   BladeSegment from{};
@@ -68,19 +69,19 @@ struct BladeMove {
 };
 
 struct BladeState {
-  std::optional<double> seen;                                        ///< time up to which the scene's blades have moved [s]
-  std::map<std::string, BladeSegment> placed;                        ///< where the host put its own blades
-  std::map<std::string, std::map<std::int32_t, BladeTrace>> traces;  ///< by key and body: the trace that it goes on from
-  std::vector<std::string> met;                                      ///< keys of those that have come upon a body
+  std::optional<double> seen;                  ///< time up to which the scene's blades have been moved [s]
+  std::map<std::string, BladeSegment> placed;  ///< last segments of the host's blades
+  std::map<std::string, std::map<std::int32_t, BladeTrace>> traces;  ///< by key and body: the trace that the next cut continues
+  std::vector<std::string> met;                                      ///< keys of the blades that have reached a body
 };
 
-/// Edits asked for inside a step of shape matching, made when the next one begins.
+/// Edits requested between two steps of shape matching; made when the next one begins.
 struct PendingEdits {
   std::vector<std::array<Vec3d, 3>> triangles;
   std::vector<BladeMove> moves;
 };
 
-/// A force that the host puts on a node [N].
+/// A force of the host on a node [N].
 struct HostForce {
   std::size_t body = 0;
   std::int64_t node = 0;
@@ -90,27 +91,27 @@ struct HostForce {
 /// An operational region that has moved.
 struct MovedRegion {
   Vec3d seed{};                     ///< [m]
-  std::vector<std::int32_t> cells;  ///< of the uncut lattice, in order
-  bool waits = false;               ///< some of them were deformed too far to change their model
+  std::vector<std::int32_t> cells;  ///< cells of the uncut lattice, ascending
+  bool waits = false;               ///< true if some cells were deformed too far to change their model
   bool operator==(const MovedRegion&) const = default;
 };
 
-/// A tool that the host drives from one pose to another, at constant speed; at once if `end` is `start`.
+/// Motion of a tool between two poses at constant speed, requested by the host; immediate if `end` equals `start`.
 struct ToolDrive {
   Pose from{}, to{};
   double start = 0, end = 0;  ///< [s]
 };
 
-/// What the host has made of the scene's tools. Nothing by itself: the tools are those of the scene.
+/// Changes of the host to the scene's tools. Empty: the tools are those of the scene.
 struct ToolChanges {
-  std::vector<ContactTool> added;    ///< in the order in which they came
-  std::vector<std::string> removed;  ///< tools of the scene that are no more, ascending
-  std::vector<std::string> parked;   ///< tools that are known and touch nothing, ascending
+  std::vector<ContactTool> added;    ///< in the order in which they were added
+  std::vector<std::string> removed;  ///< names of removed tools of the scene, ascending
+  std::vector<std::string> parked;   ///< names of parked tools, ascending
   [[nodiscard]] bool empty() const { return added.empty() && removed.empty() && parked.empty(); }
   bool operator==(const ToolChanges&) const = default;
 };
 
-// The visitor: v(name, member) for every member, in this order.
+// Visitors: v(name, member) for every member, in this order.
 template <class V>
 void visit(V& v, Clock& s) {
   v("step", s.step), v("origin_step", s.origin_step), v("origin_time", s.origin_time), v("dt", s.dt);

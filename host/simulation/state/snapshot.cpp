@@ -35,8 +35,8 @@ class Hash {
     for (const Pass& p : program.step) {
       add(p.kernel);
       for (const auto& [name, number] : p.defines) {
-        if (name == "VISCOUS" && number == 0) continue;  // those of before had none
-        // Checkpoints know the integrator by the name that it had when there were two.
+        if (name == "VISCOUS" && number == 0) continue;  // absent from older versions
+        // Checkpoints store the integrator under its name from when there were two.
         add(name == "INTEGRATOR" ? std::string("TEXTBOOK") : name);
         add(&number, sizeof number);
       }
@@ -101,7 +101,7 @@ std::vector<ModelPart> parts_of(const Scene& scene, const RunSettings& settings,
   part("what the solver derives from the scene");
   add(static_cast<double>(settings.batch_steps), static_cast<double>(settings.tears), static_cast<double>(settings.blade_steps),
       settings.curves_end, settings.increment_floor, settings.displacement_grid);
-  // Last, because some of the others shape the passes as well.
+  // Last, because some of the other parts also affect the passes.
   part("bodies (their meshes, materials, models, what holds and loads them)");
   add(program, surface);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {

@@ -1,4 +1,4 @@
-// All that a run is at one moment: from it a simulation of the same scene goes on with the same bits.
+// A complete state of a run, from which a simulation of the same scene continues with the same bits.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -9,14 +9,14 @@
 
 namespace pliant {
 
-/// The content of one buffer, as the backend holds it.
+/// The content of one buffer in the backend's format.
 struct NamedBytes {
   std::string name;
   std::vector<std::uint8_t> bytes;
   bool operator==(const NamedBytes&) const = default;
 };
 
-/// What a simulation was made of, in parts that a user knows by their names: {name, hash}.
+/// A named part of the model or settings with its hash, {name, hash}, for error messages.
 struct ModelPart {
   std::string name;
   std::uint64_t hash = 0;
@@ -24,42 +24,42 @@ struct ModelPart {
 };
 
 struct Snapshot {
-  std::vector<ModelPart> made_of;  ///< a snapshot is taken up only by what was made of the same
+  std::vector<ModelPart> made_of;  ///< parts of the model and settings; must match when restoring
   std::string real_type;           ///< "float" or "double"
   RunState state;
-  RunReports reports;               ///< what no step depends on
-  std::vector<NamedBytes> buffers;  ///< those of the role `state`, in the order of the table
+  RunReports reports;               ///< statistics, which no step depends on
+  std::vector<NamedBytes> buffers;  ///< state buffers, in the order of the buffer table
 };
 
-/// The model as the backend sees it, the scene's settings of the solver and what follows from the options: all that decides
-/// how a state goes on.
+/// Returns hashes of everything that determines how a state continues: the model as loaded, the scene's solver settings and
+/// the settings derived from the options.
 std::vector<ModelPart> parts_of(const Scene& scene, const RunSettings& settings, const Model& model, const Program& program,
                                 const Program& surface);
 
-/// One hash of all parts.
+/// Combines the hashes of all parts.
 [[nodiscard]] std::uint64_t hash_of(const std::vector<ModelPart>& parts);
 
-/// The names of one's own parts that a snapshot was not taken with, such as "gravity, blades".
+/// Returns the names of the parts of `own` that differ from `taken`, such as "gravity, blades".
 [[nodiscard]] std::string differing(const std::vector<ModelPart>& taken, const std::vector<ModelPart>& own);
 
 [[nodiscard]] Snapshot take_snapshot(const RunContext& run, const RunReports& reports = {});
 
-/// Hash over all of a snapshot but its reports: two runs with the same one go on alike.
+/// Hash over a snapshot without its reports. Runs with equal hashes continue identically.
 [[nodiscard]] std::uint64_t deep_hash(const Snapshot& snapshot);
 
-/// Throws Error (bad_input) for a state that came from elsewhere and holds numbers that no run of this model has: a step that
-/// is not positive, vectors of another length, forces on nodes that do not exist, points that are not finite.
+/// Validates a state of unknown origin. Throws Error (bad_input) for values that no run of this model can have: a
+/// non-positive step size, wrong lengths, forces on unknown nodes, non-finite points.
 void check_state(const RunState& state, const Model& model, const Scene& scene);
 
-/// Throws Error (bad_input) for a report of other tools than those of the model.
+/// Throws Error (bad_input) for a report on other tools than the model's.
 void check_report(const RunReports& reports, const RunState& state, std::size_t tools);
 
-/// Throws Error (bad_input) for ballast (RunState) that no node of this model can have.
+/// Throws Error (bad_input) for ballast (RunState) that this model's nodes cannot have.
 void check_ballast(const RunState& state, const Model& model);
 
-/// Throws Error (bad_input) that says what a snapshot holds of another size than `program` wants.
+/// Throws Error (bad_input) with the buffers whose size differs from `program`.
 void check_buffers(const Snapshot& snapshot, const Program& program);
-/// Write the state buffers. check_buffers() passed for the loaded program.
+/// Writes the state buffers. Requires check_buffers() for the loaded program.
 void write_buffers(const Snapshot& snapshot, LoadedModel& loaded);
 
 }  // namespace pliant

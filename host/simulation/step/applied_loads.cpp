@@ -6,7 +6,7 @@ namespace pliant {
 
 namespace {
 
-/// Pressures on the surface as it is now, by slot.
+/// Adds the pressures on the deformed surface, by slot.
 void add_pressures(const Model& model, const std::vector<Vec3d>& u, double time, std::vector<Vec3d>& out) {
   const ModelSurface& surface = model.surface;
   const auto position = [&](std::int32_t v) {
@@ -39,7 +39,7 @@ std::vector<Vec3d> applied_loads(const Simulation& simulation, std::size_t body)
     const std::vector<Vec3d> of_body = simulation.displacements(b);
     for (std::size_t n = 0; n < of_body.size(); ++n) u[model.bodies[b].slot[n]] = of_body[n];
   }
-  // The forces of the Model take the weight of what is inertia alone off again.
+  // The Model contains forces that cancel the weight of added inertia.
   const Vec3d gravity = simulation.scene().gravity_at(time);
   for (std::size_t s = 0; s < load.size(); ++s) load[s] = vec::mul(gravity, model.mass[s]);
   for (const NodeForce& f : model.forces)

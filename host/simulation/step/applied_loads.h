@@ -1,4 +1,4 @@
-// The loads that a scene and a program put on a body.
+// External loads on the nodes of a body.
 #pragma once
 #include <vector>
 
@@ -6,10 +6,10 @@
 
 namespace pliant {
 
-/// What acts on each node of a body from outside now [N], in the order of ModelBody::rest: its weight, the forces of the scene
-/// and of the host (Simulation::set_forces), and its part of the pressures on the deformed surface (a third of a triangle's at
-/// each vertex, from there to the nodes that move it). Not what fixes or prescribes nodes (reactions.h), and nothing elastic.
-/// In double and from the Model alone.
+/// Returns the external force on each node of a body [N], in the order of ModelBody::rest: weight, the forces of the scene
+/// and of the host (Simulation::set_forces), and the pressures on the deformed surface, of which each vertex of a triangle
+/// gets a third and passes it on to the nodes that move it. Excludes reactions (reactions.h) and internal forces. Computed in
+/// double from the Model alone.
 std::vector<Vec3d> applied_loads(const Simulation& simulation, std::size_t body);
 
 }  // namespace pliant

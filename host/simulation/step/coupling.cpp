@@ -15,27 +15,27 @@
 namespace pliant {
 namespace {
 
-/// How many times its beta the interface feels while it feels any: see flsm_interface in program_flsm.cpp.
+/// Factor on beta while the interface force is active: see flsm_interface in program_flsm.cpp.
 int pull_factor(const DeformationModel& m) { return m.extrapolate ? 1 : m.substeps; }
 
 /// Young's modulus of shape matching is E = c rho d^2 alpha / b, with b = H^2 / (1 + D H / 2) for the step H and the damping
-/// rate D [1/s]. c by half-width, minus one: the uniaxial pull of bars of any thickness, which is (w^2 + w) / 3, the variance
-/// of a window of 2 w + 1 nodes. Measured by bench/calibrate.py; bending is stiffer where regions are thicker than the body
-/// (docs/flsm_stiffness.md).
+/// rate D [1/s]. c, indexed by half-width minus one, is that of a uniaxial pull of bars of any thickness: (w^2 + w) / 3, the
+/// variance of a window of 2 w + 1 nodes. Measured by bench/calibrate.py; bending is stiffer if regions are thicker than the
+/// body (docs/flsm_stiffness.md).
 constexpr double kPullStiffness[] = {2.0 / 3, 2, 4, 20.0 / 3, 10};
 
-/// E b / alpha [Pa s^2]: what a batch's stiffness is in proportion to.
+/// E b / alpha [Pa s^2], to which the modulus of a batch is proportional.
 double stiffness_unit(const FlsmBatch& batch) {
   return kPullStiffness[batch.settings.width - 1] * batch.density * batch.spacing * batch.spacing;
 }
 
-/// b of a step h [s^2]: the acceleration by an increment, with the damping rate D [1/s].
+/// b of a step h [s^2]: the displacement per acceleration in a step, with the damping rate D [1/s].
 double step_square(double h, double damping) { return h * h / (1 + 0.5 * damping * h); }
 
-/// The largest alpha that the nodes of shape matching stand with a margin: omega^2 H^2 = alpha times their highest, below 4.
+/// The largest alpha for which shape matching is stable, with a margin: omega^2 H^2 = alpha times its highest mode, below 4.
 double largest_alpha(const FlsmBatch& batch) { return std::min(1.0, 3.8 / batch.stiffest); }
 
-/// The step of the scene at which alpha is that, the longest that "stiffness" allows [s].
+/// The step of the scene at which alpha reaches that limit, the longest that "stiffness" allows [s].
 double longest_step(const FlsmBatch& batch, double damping) {
   const DeformationModel& m = batch.settings;
   if (m.young <= 0) return std::numeric_limits<double>::infinity();
@@ -43,19 +43,19 @@ double longest_step(const FlsmBatch& batch, double damping) {
   return (quarter + std::sqrt(quarter * quarter + b)) / m.substeps;
 }
 
-/// The alpha of a batch at the step `dt` of the scene [s], for the damping rate of its material [1/s]: that of the scene
-/// belongs to the first step, that of a "stiffness" to any. It falls with the step: what a start allows, every smaller step
-/// allows. Throws Error above 1.
+/// The alpha of a batch at the step `dt` of the scene [s] for the damping rate of its material [1/s]. A scene's alpha refers
+/// to the first step, a "stiffness" to any step. Alpha decreases with the step: if the start is stable, every smaller step
+/// is. Throws Error if a "stiffness" needs more than the largest alpha.
 double alpha_for(const FlsmBatch& batch, double dt, double first_dt, double damping) {
   const DeformationModel& m = batch.settings;
   if (m.young <= 0) {
-    // Per step, it would stiffen a body whose step is shortened, and that would shorten the step.
+    // A constant alpha would stiffen a body whenever the step is shortened, which would shorten the step further.
     return dt < first_dt ? m.alpha * (step_square(m.substeps * dt, damping) / step_square(m.substeps * first_dt, damping))
                          : m.alpha;
   }
   const double b = step_square(m.substeps * dt, damping);
   const double largest = largest_alpha(batch), most = largest * stiffness_unit(batch) / b;
-  if (m.young > 1.00001 * most && !m.matched) {  // the message's digits are allowed
+  if (m.young > 1.00001 * most && !m.matched) {  // tolerate the digits of the message
     throw Error(ErrorCode::bad_input,
                 fmt::format("{}/stiffness/young: got {} Pa, which no alpha reaches with width {} at dt = {:.6g} s{}; allowed "
                             "is at most {:.6g} Pa, "
@@ -66,8 +66,8 @@ double alpha_for(const FlsmBatch& batch, double dt, double first_dt, double damp
   return std::min(largest, largest * (m.young / most));
 }
 
-/// The mass at the place of each interface node [kg]: its own, or that of all its copies where a cut has divided it. A given
-/// beta belongs to the place; the copies share it like their mass, or a cut would stiffen the lighter ones.
+/// The mass at the position of each interface node [kg]: its own, or that of all its copies if a cut has split it. A given
+/// beta belongs to the position; the copies share it in proportion to mass, otherwise a cut would stiffen the lighter ones.
 std::vector<double> place_masses(const Model& model, const FlsmBatch& batch) {
   const ModelBody& body = model.bodies[static_cast<std::size_t>(batch.body)];
   std::map<Vec3d, double> sum;
@@ -84,14 +84,14 @@ double least_place_mass(const Model& model, const FlsmBatch& batch) {
   return *std::min_element(masses.begin(), masses.end());
 }
 
-/// beta / m of the interface with an automatic beta and a "stiffness" [1/s^2].
+/// beta / m of an interface with automatic beta and a "stiffness" [1/s^2].
 double spring_of(const FlsmBatch& b) { return b.settings.young / stiffness_unit(b); }
 
-/// What the interface feels at most while it feels any, over its beta: regions may be stiffer than the springs to their goals.
+/// Upper bound of the active interface force relative to its beta: regions may be stiffer than the springs to their goals.
 double pull_bound(const FlsmBatch& b) { return pull_factor(b.settings) * b.stiffest_interface; }
 
-/// beta over mass that a batch adds to omega^2 of its interface nodes, as a multiple of 1 / dt^2 (automatic) and as a number
-/// [1/s^2] (given, or automatic with an alpha that falls with dt^2).
+/// beta / m that a batch adds to omega^2 of its interface nodes: as a multiple of 1 / dt^2 (automatic beta), and as a
+/// constant [1/s^2] (given beta, or automatic with an alpha that decreases with dt^2).
 struct InterfaceStiffness {
   double per_step = 0, fixed = 0;
 };
@@ -114,17 +114,19 @@ InterfaceStiffness interface_stiffness(const Model& model) {
   return largest;
 }
 
-/// The largest alpha = beta H^2 / m that an interface with held goals stands, where h is the step and 2 / omega_max of the
-/// elements is `elements`. Held goals pull once in n steps, n times as hard: an impulse. Between two pulls a mode turns by n
-/// phi with sin(phi / 2) = h omega / 2; one period has the trace 2 cos(n phi) - (alpha / n) sin(n phi) / sin(phi), which stays
-/// above -2 while (alpha / n) tan(n phi / 2) <= 2 sin(phi). Just below n phi = pi every pull pushes a mode that has turned half
-/// a circle: the resonance of multiple time steps (Biesiadecki and Skeel 1993). For n = 1 this is h^2 omega^2 + alpha <= 4.
+/// The largest stable alpha = beta H^2 / m of an interface with held goals, for the step h and 2 / omega_max of the elements
+/// in `elements`. Held goals act once in n steps, n times as hard, as an impulse. Between two impulses the phase of a mode
+/// advances by n phi with sin(phi / 2) = h omega / 2. The trace of one period is 2 cos(n phi) - (alpha / n) sin(n phi) /
+/// sin(phi), which stays above -2 while (alpha / n) tan(n phi / 2) <= 2 sin(phi). Just below n phi = pi each impulse meets a
+/// mode after half a period: the resonance of multiple time steps (Biesiadecki and Skeel 1993). For n = 1 this is h^2 omega^2
+/// + alpha <= 4.
 double largest_held_alpha(int n, double h, double elements) {
   const double phi = 2 * std::asin(std::min(1.0, h / elements));
   return n * phi < M_PI ? 2 * n * std::sin(phi) / std::tan(0.5 * n * phi) : 0;
 }
 
-/// The longest step that a batch of held goals stands: what its pull takes grows with the step, what is left for it shrinks.
+/// The longest stable step of a batch with held goals: the required alpha grows with the step, and the largest stable one
+/// decreases.
 double held_step(const FlsmBatch& b, const Model& model, double elements) {
   const DeformationModel& m = b.settings;
   double fixed = m.young > 0 ? spring_of(b) : 0;  // alpha = fixed H^2
@@ -184,8 +186,8 @@ std::vector<double> interface_springs(const Model& model, double dt) {
 
 namespace {
 
-/// The largest beta of a batch that the step `dt` stands [N/m], between what a bound without an iteration allows and what is
-/// given, to 0.2 %.
+/// The largest stable beta of a batch at the step `dt` [N/m], by bisection to 0.2 % between `bound`, which needs no
+/// iteration, and the given value.
 double largest_beta(const RunContext& run, const FlsmBatch& batch, double dt, double bound) {
   const std::vector<double> given = interface_springs(run.model(), dt);
   double low = bound, high = batch.settings.beta;
@@ -239,7 +241,8 @@ void upload_coupling(const RunContext& run) {
     const double dt = run.state.clock.dt, h = b.settings.substeps * dt;
     const double damping = run.scene.bodies[static_cast<std::size_t>(b.body)].material.damping;
     const double at_rest = alpha_for(b, dt, run.settings.first_dt, damping);
-    // Dynamic relaxation damps more, which shortens b; the pull towards the goals, alpha m / b, stays what it is.
+    // The damping of dynamic relaxation reduces b; alpha is adapted so that the pull towards the goals, alpha m / b, does not
+    // change.
     alpha.push_back(at_rest * (step_square(h, damping + run.state.relaxation.damping) / step_square(h, damping)));
     if (b.interface == 0) continue;
     const BufferId id = program.find(fmt::format("flsm_beta/{}", i));
@@ -247,7 +250,8 @@ void upload_coupling(const RunContext& run) {
     const std::vector<double> masses = b.settings.beta > 0 ? place_masses(model, b) : std::vector<double>();
     for (std::int32_t k = 0; k < b.interface; ++k) {
       const double own = model.mass[static_cast<std::size_t>(b.slot[b.own + k])];
-      // With a stiffness as the own nodes feel it, alpha m / b, whatever the damping: both ends of a spring pull alike at rest.
+      // With a "stiffness", use the spring of the own nodes, alpha m / b, regardless of the damping: both ends pull alike at
+      // rest.
       const double automatic = b.settings.young > 0 ? at_rest / step_square(h, damping) : at_rest / (h * h);
       const auto node = static_cast<std::size_t>(b.own + k);
       const double pulled = b.settings.young > 0 ? b.weight[node] * b.regions.holders[node] : own;

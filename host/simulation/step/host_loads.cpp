@@ -37,7 +37,7 @@ void HostLoads::upload() const {
   const BufferId id = program.find("load_force");
   if (id < 0) return;
   std::vector<double> texels = program.at(id).reals;
-  texels.resize(program.at(id).values());  // a table without forces has no values
+  texels.resize(program.at(id).values());  // without forces the table has no values
   std::vector<std::int32_t> place(static_cast<std::size_t>(model.slots), -1);
   for (std::size_t f = 0; f < model.forces.size(); ++f) {
     if (model.forces[f].reserved) place[static_cast<std::size_t>(model.forces[f].slot)] = static_cast<std::int32_t>(f);

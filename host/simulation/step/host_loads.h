@@ -1,4 +1,4 @@
-// Forces that a program puts on nodes while the simulation runs.
+// Forces that the calling program applies to nodes during the run.
 #pragma once
 #include <vector>
 
@@ -9,13 +9,13 @@ namespace pliant {
 class HostLoads {
  public:
   explicit HostLoads(RunContext& run) : run_(run) {}
-  /// These replace those set before, beside the forces of the scene. Throws Error (usage) for a node that does not exist,
-  /// (state) for one without a force reserved by the Model (Scene::interactive), with nothing changed.
+  /// Replaces the previous host forces; the scene's forces remain. Throws Error (usage) for an unknown node and (state) for a
+  /// node without a force reserved by the Model (Scene::interactive), and then changes nothing.
   void set(std::vector<HostForce> forces);
-  /// Throws what set() throws.
+  /// Throws as set().
   static void check(const Model& model, const std::vector<HostForce>& forces);
-  /// Write the whole table of forces: those of the scene are constants of the Model. After a cut a node may be gone, or move no
-  /// vertex any more; its force waits until the host sets them again.
+  /// Uploads the whole table of forces, including the constant ones of the scene. A force on a node that a cut removed, or
+  /// that moves no vertex any more, is skipped until the host sets the forces again.
   void upload() const;
 
  private:

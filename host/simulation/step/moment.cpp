@@ -1,4 +1,4 @@
-// Which states of a simulation may leave it as results, and states that wait for that.
+// Determines which states of a simulation are final, and stores states until they are.
 #include "simulation/simulation.h"
 
 namespace pliant {

@@ -1,4 +1,4 @@
-// A state of a run that is set aside, to be written once it is certain that no batch takes it back.
+// A copy of the state, to be output once it is certain that Recovery will not roll back behind it.
 #pragma once
 #include <cstdint>
 #include <vector>

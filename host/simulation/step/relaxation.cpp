@@ -9,25 +9,26 @@
 namespace pliant {
 namespace {
 
-constexpr double kExcited = 4;      ///< times the fast motion that rounding is expected to excite, in energy
-constexpr double kStandsOut = 3;    ///< elastic work of a change over that of the fast motion, for the change to be trusted
-constexpr double kInterval = 0.25;  ///< with shape matching: least time constants of the damping between two changes
-constexpr double kLittle = 100;     ///< times the tolerance: forces of fast motion that may be that of rounding
-constexpr double kSettled = 10;  ///< time constants of the damping without such a change after which nothing is left to resolve
+constexpr double kExcited = 4;  ///< factor on the expected energy of fast motion from rounding
+constexpr double kStandsOut =
+    3;  ///< minimum ratio of elastic work of a change to that of the fast motion for the change to be reliable
+constexpr double kInterval = 0.25;  ///< with shape matching: minimum time constants of the damping between two updates
+constexpr double kLittle = 100;     ///< factor on the tolerance: forces of fast motion below this may be rounding
+constexpr double kSettled = 10;  ///< time constants of the damping without a resolvable change after which the state is final
 
-/// Sums over the free components of what has happened since the last change of the damping.
+/// Sums over the free components since the last update of the damping.
 struct Sums {
-  double stiffness = 0;   ///< - du . df [J]
-  double inertia = 0;     ///< du . M du [kg m^2]
-  double fast = 0;        ///< w . M w [J], w the mean of both velocities less du / time: motion faster than the interval
-  double mean = 0;        ///< |mean force|^2 [N^2], from the change of momentum and what the damping took
-  double mean_noise = 0;  ///< the part of the fast motion in it
-  double residual = 0, external = 0, reaction = 0;  ///< |R - F|^2, |R|^2, |reaction|^2 now [N^2]
+  double stiffness = 0;  ///< - du . df [J]
+  double inertia = 0;    ///< du . M du [kg m^2]
+  double fast = 0;  ///< w . M w [J], where w is the mean of both velocities minus du / time: motion faster than the interval
+  double mean = 0;  ///< |mean force|^2 [N^2], from the change of momentum and the work of the damping
+  double mean_noise = 0;                            ///< contribution of the fast motion to it
+  double residual = 0, external = 0, reaction = 0;  ///< current |R - F|^2, |R|^2, |reaction|^2 [N^2]
   double size = 0;                                  ///< u . M u [kg m^2]
 };
 
-/// What moves faster than the time since the last change [m/s]: the mean of both velocities less that of the time, and less the
-/// rhythm of shape matching (has_rhythm).
+/// Velocity of motion faster than the time since the last update [m/s]: the mean of both velocities minus the mean over the
+/// time, and minus the periodic motion of shape matching (has_rhythm).
 double fast_velocity(const RelaxationState& last, const std::vector<double>& u, const std::vector<double>& v, double time,
                      std::size_t t) {
   return (v[t] + last.v[t]) / 2 - (u[t] - last.u[t]) / time - (last.steady.empty() ? 0 : last.steady[t]);
@@ -79,8 +80,8 @@ Sums sum(const RunContext& run, const std::vector<double>& u, const std::vector<
   return out;
 }
 
-/// Whether the fast motion is what rounding excites: u is rounded in every step, by a third of (eps u)^2 on average at most,
-/// which is a random velocity that the damping c takes out again within 1 / (2 c h) steps.
+/// Returns true if the fast motion is at the level of rounding. Each step rounds u by at most a third of (eps u)^2 on
+/// average, which is a random velocity that the damping c removes within 1 / (2 c h) steps.
 bool only_rounding(const RunContext& run, const Sums& sums, double c) {
   const double h = run.state.clock.dt;
   const double eps = run.backend().info().real_bytes == 4 ? std::numeric_limits<float>::epsilon() / 2
@@ -88,7 +89,7 @@ bool only_rounding(const RunContext& run, const Sums& sums, double c) {
   return c > 0 && sums.fast * c * h * h * h <= kExcited * eps * eps * sums.size;
 }
 
-/// When loads and tools have come to where they stay [s].
+/// Time after which loads and tools are constant [s].
 double loads_end(const RunContext& run) {
   double end = run.settings.curves_end;
   for (const auto& driven : run.state.driven) end = std::max(end, driven.second.end);
@@ -108,16 +109,16 @@ void remember(RunContext& run, const std::vector<double>& u, const std::vector<d
   last.time = run.state.clock.time();
 }
 
-/// Damp modes of angular frequency `omega` [1/s] critically.
+/// Sets critical damping for modes of angular frequency `omega` [1/s].
 void damp(RunContext& run, double omega) {
   run.state.relaxation.damping = std::max(0.0, 2 * omega - material_damping(run));
   run.upload_decay();
   upload_coupling(run);
 }
 
-// A body in float never rests: rounding of u shakes its highest modes, whose forces hide those of the lowest. Such motion has
-// as much elastic as kinetic energy, so that it adds four times `fast` to -du . df (two ends, and half of the variance in a
-// mean of two), and its momentum enters a mean force by 1 / time only.
+// A body in float never comes to rest: rounding of u excites its highest modes, whose forces hide those of the lowest. This
+// motion has as much elastic as kinetic energy, so it adds four times `fast` to -du . df (two ends, and half of the variance
+// in a mean of two). Its momentum contributes to a mean force only as 1 / time.
 void relax_elements(RunContext& run) {
   RelaxationState& last = run.state.relaxation;
   const std::vector<double> u = run.loaded.u();
@@ -134,7 +135,7 @@ void relax_elements(RunContext& run) {
     sums.stiffness -= noise;
     hidden = std::abs(sums.stiffness) <= kStandsOut * noise;
     if (scale > 0 && last.time >= loads_end(run)) {
-      // A mode that is damped critically decays as exp(-c t / 2): its force at the end from the mean.
+      // A critically damped mode decays as exp(-c t / 2): computes its force at the end from the mean.
       const double end = std::sqrt(std::max(0.0, sums.mean - sums.mean_noise)) * x / std::expm1(x);
       last.residual = std::min(last.residual, std::max(end, std::sqrt(sums.mean_noise)) / scale);
       settled = hidden && x >= kSettled;
@@ -146,18 +147,18 @@ void relax_elements(RunContext& run) {
   remember(run, u, force, v);
 }
 
-/// Whether nodes move in the rhythm of shape matching: it pulls them once in `substeps` steps, between which the elements and
-/// the springs to held goals take them back. At rest they have the same velocity after each of these steps, which the damping
-/// decides.
+/// Returns true if nodes move periodically with shape matching: it pulls them once in `substeps` steps, and in between the
+/// elements and the springs to held goals pull them back. At equilibrium they have the same velocity after each of these
+/// steps, determined by the damping.
 bool has_rhythm(const Model& model) {
   return std::any_of(model.flsm.begin(), model.flsm.end(),
                      [](const FlsmBatch& b) { return b.interface > 0 && b.settings.substeps > 1; });
 }
 
-/// Shape matching has no force that could be told from rounding. What its nodes and the elements' feel is known from their
-/// momentum all the same: the mean of all forces since the last change is m (dv + c du) / time, in which motion of velocity w
-/// that is faster than that time leaves 2 m w / time at most. -du . df and du . M du are those of two such means and of the
-/// mean positions that belong to them.
+/// Shape matching has no force that could be distinguished from rounding. The forces on its nodes and on those of the
+/// elements follow from their momentum instead: the mean force since the last update is m (dv + c du) / time, to which motion
+/// of velocity w faster than that time contributes at most 2 m w / time. -du . df and du . M du are computed from two such
+/// means and the corresponding mean positions.
 void relax_by_momentum(RunContext& run) {
   RelaxationState& last = run.state.relaxation;
   const Model& model = run.model();
@@ -179,7 +180,7 @@ void relax_by_momentum(RunContext& run) {
     const double m = model.mass[s];
     if (!(m > 0)) continue;
     for (std::size_t t = 4 * s; t < 4 * s + 3; ++t) {
-      carried += force[t] * force[t];  // at rest the load of a node that the other model's nodes or a support carry
+      carried += force[t] * force[t];  // at equilibrium the load that the other model's nodes or a support carry
       if (!run.loaded.free()[3 * s + t - 4 * s]) continue;
       const double du = u[t] - last.u[t], fast = fast_velocity(last, u, v, time, t);
       mean[t] = m * (v[t] - last.v[t] + (model.damping[s] + last.damping) * du) / time;
@@ -195,14 +196,14 @@ void relax_by_momentum(RunContext& run) {
   last.largest = std::max(last.largest, std::sqrt(sums.mean));
   const double loads = std::sqrt(std::max(sums.external, carried)), scale = loads > 0 ? loads : last.largest;
   const double slow = std::sqrt(std::max(0.0, sums.mean - sums.mean_noise)), fast = std::sqrt(sums.mean_noise);
-  // Of a mode that is damped critically less is left at the end than on average; more than one time constant is not relied on.
+  // A critically damped mode has a smaller force at the end than on average; the estimate assumes at most one time constant.
   const double left = std::min(x, 1.0) / std::expm1(std::min(x, 1.0));
   last.residual = scale > 0 ? std::max(x > 0 ? slow * left : slow, fast) / scale : 0;
   const double tolerance = run.scene.relaxation.tolerance;
   last.equilibrium = last.time >= loads_end(run) && x >= kInterval && last.residual <= tolerance;
   double omega = 0;
   if (!first && change <= kStandsOut * noise) {
-    // Where little moves, it may be rounding, and a longer time tells what is slow. What moves fast is to be damped.
+    // A small change may be rounding; over a longer time slow motion becomes visible. Fast motion must be damped.
     if (x > 0 && (x < 1 || (fast <= kLittle * tolerance * scale && x < kSettled))) return;
     omega = std::max(last.damping, 2 / time);
   } else if (stiffness > 0 && inertia > 0) {
@@ -222,7 +223,7 @@ void relax_by_momentum(RunContext& run) {
 }  // namespace
 
 void relax(RunContext& run) {
-  // What pushes in contact is no part of the force that elements and loads give.
+  // Contact forces are not part of the forces of elements and loads.
   if (run.model().flsm.empty() && run.model().contact == nullptr)
     relax_elements(run);
   else

@@ -10,9 +10,9 @@
 namespace pliant {
 namespace {
 
-constexpr double kStrain = 3e-4;  ///< size of the probing displacement over the shortest element
+constexpr double kStrain = 3e-4;  ///< size of the probing displacement relative to the shortest element
 
-/// A start vector with a share of every mode, the same for every run.
+/// Component of the start vector, which contains every mode and is the same in every run.
 double noise(std::size_t i) {
   std::uint64_t z = (i + 1) * 0x9E3779B97F4A7C15ULL;
   z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
@@ -20,10 +20,9 @@ double noise(std::size_t i) {
   return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1;
 }
 
-/// How far below the largest eigenvalue the Ritz value of k Lanczos steps from a random start may lie, relative to it: 0.103
-/// (ln(n (k - 1)^4) / (k - 1))^2 on average, whatever the gaps of the spectrum (Kuczynski and Wozniakowski 1992, theorem 3.2).
-/// A plain power iteration needs the square of that number of steps: a mode of a few nodes at the rim of a large body hides
-/// from it.
+/// Relative distance of the Ritz value of k Lanczos steps from a random start below the largest eigenvalue: 0.103 (ln(n (k -
+/// 1)^4) / (k - 1))^2 on average, whatever the gaps of the spectrum (Kuczynski and Wozniakowski 1992, theorem 3.2). A plain
+/// power iteration needs the square of that number of steps and misses modes of a few nodes at the rim of a large body.
 double ritz_deficit(std::size_t unknowns, int steps) {
   const double k = steps - 1, logarithm = std::log(static_cast<double>(unknowns)) + 4 * std::log(k);
   return std::min(0.5, 0.103 * logarithm * logarithm / (k * k));
@@ -51,7 +50,7 @@ double bound_step(const RunContext& run, double central) { return coupled_step(r
 
 double central_step_for(const RunContext& run, double dt) {
   double low = dt, high = 2 * dt;
-  for (int i = 0; i < 60 && bound_step(run, high) < dt; ++i) high *= 2;  // no elements are stiff enough for some springs
+  for (int i = 0; i < 60 && bound_step(run, high) < dt; ++i) high *= 2;  // with some springs no elements are stiff enough
   for (int i = 0; i < 40; ++i) {
     const double middle = 0.5 * (low + high);
     (bound_step(run, middle) < dt ? low : high) = middle;
@@ -109,7 +108,7 @@ double largest_omega2(const RunContext& run, const std::vector<double>& spring, 
     if (!(beta.back() > 1e-6 * std::abs(projection))) break;  // the whole space is spanned
   }
   loaded.write_u(u);
-  loaded.clear_faults();  // of elements in states that the run was never in
+  loaded.clear_faults();  // of elements in configurations outside the run
   if (alpha.empty() || !std::isfinite(beta.back())) return 0;
   const auto size = static_cast<Eigen::Index>(alpha.size());
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
@@ -128,7 +127,7 @@ StableStep estimate_stable_step(const RunContext& run, int iterations) {
   step.coupled = coupled_step(run.model(), step.elements);
   const std::vector<double> spring = interface_springs(run.model(), step.coupled);
   if (!spring.empty()) {
-    // Springs soften as the step grows, so what the springs of a shorter step allow is allowed.
+    // The springs soften as the step grows, so the step that is stable with the springs of a shorter step is stable.
     const double coupled = largest_omega2(run, spring, iterations);
     if (coupled > 0) step.coupled = std::max(step.coupled, stable_step(run, 2 / std::sqrt(coupled)));
     step.coupled = std::min(step.coupled, held_goals_step(run.model(), step.elements));

@@ -16,14 +16,14 @@
 namespace pliant {
 namespace {
 
-/// An automatic step is looked at again every few hundred steps, and sooner after the start, when loads come on.
+/// An automatic step is checked every few hundred steps, and earlier after the start, when loads increase.
 constexpr std::int64_t kAdaptEvery = 256;
 constexpr std::int64_t kFirstAdapts[] = {64, 128};
 constexpr int kAdaptIterations = 20;
-constexpr double kMostGrowth = 2;            ///< of the step from one look to the next
-constexpr double kClearlyLess = 0.8;         ///< the estimate by kAdaptIterations steps is up to a tenth too low
-constexpr double kFrame = 1.0 / 60;          ///< automatic step of a scene without finite elements [s]
-constexpr double kTouchFrame = kFrame / 16;  ///< of one whose tissue touches tissue, so that each frame looks for what is near
+constexpr double kMostGrowth = 2;     ///< largest growth of the step between two checks
+constexpr double kClearlyLess = 0.8;  ///< margin: the estimate after kAdaptIterations iterations is up to a tenth too low
+constexpr double kFrame = 1.0 / 60;   ///< automatic step of a scene without finite elements [s]
+constexpr double kTouchFrame = kFrame / 16;  ///< automatic step with tissue contact, so that each frame searches for pairs
 
 double total(const std::vector<NodeInertia>& ballast) {
   double sum = 0;
@@ -51,7 +51,7 @@ void StepControl::start(double wanted, bool estimate_always) {
     if (wanted <= 0 || estimate_always) stable = estimate_stable_step(run_, 48);
     run_.state.limit.stable_dt = stable.coupled;
     dt = wanted > 0 ? wanted : std::min(run_.scene.safety * stable.coupled, longest);
-    // Every cut leaves elements that are stable at the element bound: each copy's mass and stiffness scale alike.
+    // Every cut leaves elements that are stable at the element bound: the mass and stiffness of each copy scale alike.
     if (wanted <= 0 && !run_.scene.blades.empty()) {
       dt = std::min(dt, run_.scene.safety * bound_step(run_, model.element_bound));
     }
@@ -106,7 +106,7 @@ void StepControl::adapt() {
   const double dt = run_.state.clock.dt, ceiling = limit.dt_ceiling;
   const bool may_grow = run_.state.clock.step >= limit.hold;
   if (may_grow) run_.state.limit.dt_backoff = std::min(1.0, limit.dt_backoff / kBackoff);
-  // A state that asks for less than this has elements that are lost; they are calmed, which a step that follows them prevents.
+  // A state that requires less than this has lost elements. They are calmed, which a step that follows them would prevent.
   const double lowest = std::min(dt, kLeastShare * ceiling);
   const double next = std::max(lowest, std::min({ceiling, now.dt, kMostGrowth * dt}));
   if (next < dt || (may_grow && (next > 1.1 * dt || (next == ceiling && dt < ceiling)))) change(next);
@@ -117,7 +117,7 @@ double StepControl::least_step() const {
   return run_.scene.least_step * limit.dt_ceiling;
 }
 
-/// What of a stable step is taken.
+/// Fraction of the stable step that is used.
 double StepControl::share() const { return run_.state.limit.dt_backoff * run_.scene.safety; }
 
 double StepControl::estimated() { return share() * estimate(kAdaptIterations); }
@@ -126,8 +126,8 @@ StepControl::Allowed StepControl::allowed() {
   StepLimit& limit = run_.state.limit;
   Allowed out{estimated(), {}};
   if (out.dt >= run_.state.clock.dt) return out;
-  // The estimate takes differences of forces, which far from the place at rest are mostly rounding. The bound by elements is
-  // coarser, but in double, and certain.
+  // The estimate takes differences of forces, which are mostly rounding far from the rest position. The element bound is
+  // coarser but reliable, since it is computed in double.
   out.stiffness = nodal_stiffness(run_.model(), run_.loaded.u());
   const double bound = stiffness_bound(run_.model(), out.stiffness);
   if (bound > 0) limit.stable_dt = std::max(limit.stable_dt, bound_step(run_, bound));
@@ -158,7 +158,7 @@ double StepControl::balance(double wanted, const std::vector<double>& stiffness)
     dt = std::max(wanted, kBallastStride * dt);
     ballast = ballast_for(dt, stiffness);
   }
-  if (too_much(ballast)) ballast.clear();  // the bound that asks for it is far from what is measured
+  if (too_much(ballast)) ballast.clear();  // the element bound that requires it is far from the measured value
   const auto same = [](const NodeInertia& a, const NodeInertia& b) { return a.slot == b.slot && a.inertia == b.inertia; };
   const std::vector<NodeInertia>& before = run_.state.ballast;
   if (!std::equal(ballast.begin(), ballast.end(), before.begin(), before.end(), same)) load_ballast(run_, std::move(ballast));
@@ -171,9 +171,9 @@ void StepControl::limit_after_edit(const std::vector<char>& changed) {
   if (run_.model().element_bound > 0)
     ceiling = std::min(ceiling, run_.scene.safety * bound_step(run_, run_.model().element_bound));
   if (run_.state.clock.dt > ceiling) change(ceiling);
-  // New elements are as stretched as those they come from, on nodes of less mass. At rest the bound above is certain; elements
-  // that are deformed have one that costs less than the estimate, and only theirs may have changed: but an interface with
-  // shape matching feels what all of it allows.
+  // New elements are stretched like those they come from, on nodes of less mass. Undeformed, the bound above is safe. For
+  // deformed elements a bound is cheaper than the estimate and only needs the changed ones; with shape matching all nodes are
+  // included, since the interface depends on the step that all of them allow.
   const bool local = run_.model().flsm.empty();
   const std::vector<double> u = run_.loaded.u();
   for (const bool quick : {true, false}) {
@@ -187,7 +187,7 @@ void StepControl::limit_after_edit(const std::vector<char>& changed) {
 
 void StepControl::hold() { run_.state.limit.hold = run_.state.clock.step + kAdaptEvery; }
 
-/// Increments scale with the step, decay factors and shape matching follow it.
+/// Rescales increments, decay factors and shape matching to the new step.
 void StepControl::change(double dt) {
   Clock& clock = run_.state.clock;
   if (!integrator_info(run_.scene.integrator).automatic) return;
@@ -199,7 +199,7 @@ void StepControl::change(double dt) {
   clock = {clock.step, clock.step, clock.time(), dt};
   for (std::size_t s = 0; s < run_.model().mass.size(); ++s) w[4 * s + 3] = run_.decay(run_.model(), s);
   run_.loaded.write_w(w);
-  // What contact points yield to a force in one step goes with its square.
+  // The compliance of contact points in one step is proportional to the square of the step.
   if (const BufferId id = run_.loaded.program().find("contact_yield"); id >= 0) {
     std::vector<double> yield = run_.backend().read_reals(id);
     for (double& y : yield) y *= ratio * ratio;

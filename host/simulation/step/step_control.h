@@ -1,4 +1,4 @@
-// How long the next step is, and where batches end.
+// Controls the step size and where batches end.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -11,51 +11,53 @@ class StepControl {
  public:
   explicit StepControl(RunContext& run) : run_(run) {}
 
-  /// The first step. `wanted` [s]: 0 for an automatic one; `estimate`: look for the stable step also if nobody needs it. Throws
-  /// Error (bad_input) if there is none, or for a stiffness that the given step does not stand.
+  /// Chooses the first step. `wanted` [s]: 0 for an automatic step; `estimate`: estimate the stable step even if it is not
+  /// needed. Throws Error (bad_input) if there is no stable step, or if a given beta is unstable at the given step.
   void start(double wanted, bool estimate);
-  /// 2 / omega_max of the present configuration into StepLimit::stable_dt [s].
+  /// Estimates 2 / omega_max of the current configuration [s] and stores it in StepLimit::stable_dt.
   double estimate(int iterations = 48);
 
-  /// Whether batches end here however a run is cut into pieces: only these states are kept to go back to.
+  /// Returns true if batches end at this step however a run is divided. Only states at these steps are kept for rollback.
   [[nodiscard]] bool on_grid(std::int64_t step) const;
-  /// Steps that the next batch may hold, at most `wanted`.
+  /// Returns the number of steps of the next batch, at most `wanted`.
   [[nodiscard]] std::int32_t next_batch(std::int64_t wanted) const;
 
-  /// Follow the stable step of the deformed body down at once, and up again to the first step once it has recovered by a tenth.
+  /// Adapts an automatic step to the stable step of the deformed body: reduces it at once, and increases it (at most to the
+  /// first step) once the stable step has recovered by a tenth.
   void adapt();
-  /// adapt() where an automatic step is looked at again.
+  /// Calls adapt() at the steps where an automatic step is due for a check.
   void adapt_when_due();
-  /// An edit has made elements of others: no step beyond what they stand, at rest and as they are deformed now. `changed`
-  /// [slots]: whose elements or mass are others.
+  /// Call after a topology edit. Limits the step to what the new elements are stable at, both undeformed and as deformed now.
+  /// `changed`: per slot, nonzero if its elements or mass changed.
   void limit_after_edit(const std::vector<char>& changed);
 
-  // What recovery/ needs.
-  /// What an automatic step may be in the present configuration [s], `stiffness` (model/nodes/ballast.h) if it had to be looked
-  /// at element by element.
+  // Used by recovery/.
+  /// The largest automatic step in the current configuration [s], and the nodal stiffness (model/nodes/ballast.h) if the
+  /// elements had to be evaluated one by one.
   struct Allowed {
     double dt = 0;
     std::vector<double> stiffness;
   };
   [[nodiscard]] Allowed allowed();
-  /// The same by the estimate alone [s].
+  /// The same from the estimate alone [s].
   [[nodiscard]] double estimated();
-  /// The ballast for a step, if it is more than there is and not more than a scene may be given; or none.
+  /// Returns the ballast that makes a step of `dt` stable if it exceeds the current ballast and is within the limit;
+  /// otherwise empty.
   [[nodiscard]] std::vector<NodeInertia> more_ballast(double dt, const std::vector<double>& stiffness) const;
-  /// The shortest step that the scene wants [s].
+  /// The scene's lower limit of the step [s].
   [[nodiscard]] double least_step() const;
-  /// From now on, of the same motion.
+  /// Changes the step size and preserves the velocities.
   void change(double dt);
-  /// It does not grow for a while.
+  /// Prevents the step from growing for a while.
   void hold();
 
  private:
   [[nodiscard]] bool adapts_at(std::int64_t step) const;
   [[nodiscard]] double share() const;
-  /// Let the elements stand least_step() where they need less, and take back what they need no more; where that is too much of
-  /// the mass, a step between `wanted` and that. Returns this step [s].
+  /// Adds ballast so that elements are stable at least_step(), and removes ballast that is no longer needed. If this exceeds
+  /// the mass limit, chooses a step between `wanted` and least_step(). Returns the step [s].
   double balance(double wanted, const std::vector<double>& stiffness);
-  /// The ballast for a step, and whether it is more than a scene may be given.
+  /// Returns the ballast that makes a step of `dt` stable.
   [[nodiscard]] std::vector<NodeInertia> ballast_for(double dt, const std::vector<double>& stiffness) const;
   [[nodiscard]] bool too_much(const std::vector<NodeInertia>& ballast) const;
   RunContext& run_;
