@@ -65,6 +65,7 @@ class RandomScene {
     if (load == 2) push(body);
     const bool cuts = !tears && body["model"]["type"] != "flsm" && dice_.chance(0.5);
     if (cuts) scene["blades"] = blades();
+    if (cuts && body["model"]["type"] == "hybrid" && late_.chance(0.5)) body["model"]["follow"] = "blade0";
     const bool has_tools = touch_.chance(0.5), touches = touch_.chance(0.4);
     if (has_tools || touches) {
       for (const char* key : {"substeps", "goals"}) body["model"].erase(key);  // refused
