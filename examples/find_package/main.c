@@ -1,5 +1,5 @@
 /* The C API from C. */
-#include <pliant/pliant.h>
+#include <pliant/c/pliant.h>
 #include <stdio.h>
 
 static const char* scene =

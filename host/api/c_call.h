@@ -7,7 +7,7 @@
 
 #include "api/c_handles.h"
 #include "api/c_structs.h"
-#include "pliant/pliant.h"
+#include "pliant/c/pliant.h"
 
 namespace pliant::api {
 

@@ -1,4 +1,4 @@
-// Conversion of C API structs of other versions; pliant/types.h states the contract.
+// Conversion of C API structs of other versions; pliant/c/types.h states the contract.
 #pragma once
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "pliant/error.h"
-#include "pliant/types.h"
+#include "pliant/c/types.h"
 
 namespace pliant::api {
 

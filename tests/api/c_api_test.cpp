@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "api/c_handles.h"
-#include "pliant/pliant.h"
+#include "pliant/c/pliant.h"
 #include "scenes.h"
 #include "support/source_dir.h"
 

@@ -12,7 +12,7 @@
 #include <set>
 #include <string>
 
-#include "pliant/pliant.h"
+#include "pliant/c/pliant.h"
 #include "scenes.h"
 #include "support/source_dir.h"
 

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "api/scenes.h"
-#include "pliant/pliant.h"
+#include "pliant/c/pliant.h"
 
 namespace pliant {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "pliant/pliant.h"
+#include "pliant/c/pliant.h"
 #include "pliant/world.h"
 #include "support/temp_folder.h"
 

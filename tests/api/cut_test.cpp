@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "api/scenes.h"
-#include "pliant/pliant.h"
+#include "pliant/c/pliant.h"
 
 namespace pliant::cut_test {
 namespace {

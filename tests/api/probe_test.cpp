@@ -2,7 +2,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "pliant/pliant.h"
+#include "pliant/c/pliant.h"
 #include "scenes.h"
 
 namespace pliant {

@@ -78,9 +78,9 @@ def cpp():
 
 
 def c():
-    calls = re.findall(r"^PLIANT_API .*?pliant_(\w+)\(", code_of("include/pliant/pliant.h"), re.M)
+    calls = re.findall(r"^PLIANT_API .*?pliant_(\w+)\(", code_of("include/pliant/c/pliant.h"), re.M)
     found = {re.sub("^world_", "World::", n) for n in calls}
-    types = code_of("include/pliant/types.h")
+    types = code_of("include/pliant/c/types.h")
     for name, short in STRUCTS.items():
         for m in members(block(types, f"typedef struct pliant_{short} ")) - {"size", "reserved"}:
             range_of = re.fullmatch(r"(.*)(vertex|triangle)_(first|count)", m)

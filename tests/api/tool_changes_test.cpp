@@ -4,7 +4,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "pliant/pliant.h"
+#include "pliant/c/pliant.h"
 #include "scenes.h"
 #include "support/temp_folder.h"
 

@@ -15,7 +15,11 @@ cmake --install "$build" --prefix "$prefix" --component dev >/dev/null
 cmake --install "$build" --prefix "$prefix" --component runtime >/dev/null
 lib=$(dirname "$(find "$prefix" -name 'libpliant.*' | head -n 1)")
 version=$(sed -n 's/^Version: //p' "$lib/pkgconfig/pliant.pc")
-[ -f "$prefix/include/pliant/pliant.h" ] || { echo 'the headers are missing'; exit 1; }
+[ -f "$prefix/include/pliant/c/pliant.h" ] || { echo 'the headers are missing'; exit 1; }
+printf '#include <pliant/pliant.h>\n' | "$cc" -x c -I "$prefix/include" -fsyntax-only - 2>"$work/log" && { echo 'C takes the C++ API'; exit 1; }
+grep -q 'the C API is <pliant/c/pliant.h>' "$work/log" || { cat "$work/log"; exit 1; }
+printf '#include <pliant/pliant.h>\nint main() { return pliant::version() == nullptr; }\n' |
+  "$cxx" -std=c++17 -x c++ -I "$prefix/include" -fsyntax-only -
 
 if [ "$kind" = SHARED_LIBRARY ]; then
   [ -f "$lib/libpliant.so.$version" ] || { echo "there is no libpliant.so.$version"; exit 1; }
@@ -35,7 +39,7 @@ cmake --build "$work/consumer" >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 
 # The library may become a part of somebody's shared one, also the static library: a plugin, loaded by a program that knows nothing of it.
 cat >"$work/plugin.c" <<'C'
-#include <pliant/pliant.h>
+#include <pliant/c/pliant.h>
 #include <string.h>
 int plugin_works(void) {
   char names[4000];

@@ -7,6 +7,7 @@
 #include "io/save.h"
 #include "simulation/state/compare.h"
 #include "solver/scenes.h"
+#include "support/error_of.h"
 #include "support/source_dir.h"
 #include "support/temp_folder.h"
 
@@ -179,6 +180,17 @@ TEST(Follow, ACutThatTheRegionFollowsIsTheSameOnBothBackendsAndAfterAResume) {
     options.steps = 300;
     EXPECT_TRUE(compare(a, b, options).identical) << follow;
   }
+}
+
+TEST(Follow, ACheckpointOfAnotherInstrumentIsRefused) {
+  const std::string both = std::string(kScalpel) + kRod;
+  const test::TempFolder folder;
+  const auto file = folder.path() / "bar.pckpt";
+  Simulation first(instrumented_bar("scalpel", both), open_backend("cpu"));
+  write_checkpoint(file, take_checkpoint(first));
+  Simulation other(instrumented_bar("rod", both), open_backend("cpu"));
+  const std::string message = test::error_of([&] { restore_checkpoint(other, read_checkpoint(file), file); });
+  EXPECT_NE(message.find("not the same: focus"), std::string::npos) << message;
 }
 
 }  // namespace

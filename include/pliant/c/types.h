@@ -1,4 +1,4 @@
-/* Types of the C API (pliant/pliant.h).
+/* Types of the C API (pliant/c/pliant.h).
  *
  * Structs grow: later versions append members. Each struct begins with its size, which its PLIANT_..._INIT macro sets, so
  * that a program and a library of different versions are compatible. The library reads and writes at most `size` bytes. In
