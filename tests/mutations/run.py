@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Break the code on purpose and see which tests notice: ./dev mutate [--again] [--list] [--check] [N...]
 
-Each file NN_name.mutation beside this script is one small error: why it matters, what has to be built, which tests should
+Each file NN_name.mutation below this folder, on the shelf of the room that it breaks, is one small error: why it matters, what has to be built, which tests should
 notice, and the text that is replaced. They are made in a copy of the tracked files in build/mutate/src, which has its own build
 folder. Results are kept in build/mutate/results.json: a second call goes on with what is missing or was not caught, --again
 begins anew. The exit code is 0 only if every mutation asked for is caught.
@@ -111,7 +111,7 @@ class Mutation:
 
 
 def load_all():
-    mutations = [Mutation(path) for path in sorted(FOLDER.glob("*.mutation"))]
+    mutations = [Mutation(path) for path in sorted(FOLDER.rglob("*.mutation"), key=lambda path: path.name)]
     numbers = [m.number for m in mutations]
     for number in numbers:
         if numbers.count(number) > 1:
