@@ -56,7 +56,7 @@ double rest_volume_of(const Frame& frame) {
   return six / 6;
 }
 
-TEST(ApiCut, a_frame_shows_the_cut_and_keeps_the_vertices_beside_it) {
+TEST(ApiCut, AFrameShowsTheCutAndKeepsTheVerticesBesideIt) {
   World world(held_block(), on("cpu"));
   world.step(20);
   const FramePtr before = world.frame();
@@ -91,7 +91,7 @@ TEST(ApiCut, a_frame_shows_the_cut_and_keeps_the_vertices_beside_it) {
   EXPECT_EQ(world.frame()->dirty_triangles.count, 0U);
 }
 
-TEST(ApiCut, a_body_behind_one_that_is_cut_keeps_its_vertices) {
+TEST(ApiCut, ABodyBehindOneThatIsCutKeepsItsVertices) {
   SceneSpec scene = held_block();
   scene.gravity = {};
   scene.bodies.push_back(scene.bodies[0]);
@@ -119,7 +119,7 @@ TEST(ApiCut, a_body_behind_one_that_is_cut_keeps_its_vertices) {
   EXPECT_GT(world.frame()->positions[moved.first + 3][1], from[1] + 0.005F);
 }
 
-TEST(ApiCut, a_blade_cuts_from_its_second_place_on_and_not_after_it_was_lifted) {
+TEST(ApiCut, ABladeCutsFromItsSecondPlaceOnAndNotAfterItWasLifted) {
   World world(held_block(), on("cpu"));
   EXPECT_FALSE(world.move_blade("b", {0.041, 0.2, -1}, {0.041, 0.2, 1}).changed);
   EXPECT_GT(world.move_blade("b", {0.041, 0.05, -1}, {0.041, 0.05, 1}).edges, 0);
@@ -131,7 +131,7 @@ TEST(ApiCut, a_blade_cuts_from_its_second_place_on_and_not_after_it_was_lifted) 
   EXPECT_FALSE(world.step(100).diverged);
 }
 
-TEST(ApiCut, the_worker_cuts_before_its_next_batch) {
+TEST(ApiCut, TheWorkerCutsBeforeItsNextBatch) {
   World before(held_block(), on("cpu")), between(held_block(), on("cpu")), behind(held_block(), on("cpu"));
   before.cut(wall(0.047));
   between.step(64);
@@ -148,7 +148,7 @@ TEST(ApiCut, the_worker_cuts_before_its_next_batch) {
   EXPECT_TRUE(behind.hash() == between.hash() || behind.hash() == before.hash());
 }
 
-TEST(ApiCut, who_steps_beside_the_worker_waits_for_no_cut) {
+TEST(ApiCut, WhoStepsBesideTheWorkerWaitsForNoCut) {
   World world(held_block(), on("cpu")), alone(held_block(), on("cpu"));
   for (World* w : {&world, &alone}) w->move_blade("b", {0.041, 0.2, -1}, {0.041, 0.2, 1});
   ASSERT_TRUE(world.step_async(64));
@@ -182,7 +182,7 @@ TEST(ApiCut, who_steps_beside_the_worker_waits_for_no_cut) {
   EXPECT_EQ(world.frame()->topology_version, version + 3);
 }
 
-TEST(ApiCut, grabs_and_pushes_hold_on_through_cuts) {
+TEST(ApiCut, GrabsAndPushesHoldOnThroughCuts) {
   SceneSpec scene = held_block();
   scene.gravity = {};
   World world(scene, on("cpu", true));
@@ -206,7 +206,7 @@ TEST(ApiCut, grabs_and_pushes_hold_on_through_cuts) {
   EXPECT_FALSE(world.step(100).diverged);
 }
 
-TEST(ApiCut, reset_and_load_go_back_and_forth_over_a_cut) {
+TEST(ApiCut, ResetAndLoadGoBackAndForthOverACut) {
   World world(held_block(), on("cpu", true));
   const FramePtr whole = world.frame();
   world.cut(wall(0.047));
@@ -230,7 +230,7 @@ TEST(ApiCut, reset_and_load_go_back_and_forth_over_a_cut) {
   EXPECT_LE(dirty.first + dirty.count, vertices);
 }
 
-TEST(ApiCut, bad_blades_are_refused_and_change_nothing) {
+TEST(ApiCut, BadBladesAreRefusedAndChangeNothing) {
   World world(held_block(), on("cpu"));
   world.step(10);
   world.move_blade("b", {0.041, 0.2, -1}, {0.041, 0.2, 1});
@@ -253,7 +253,7 @@ TEST(ApiCut, bad_blades_are_refused_and_change_nothing) {
   EXPECT_TRUE(world.move_blade("b", {0.041, -0.2, -1}, {0.041, -0.2, 1}).changed) << "the blade is still where it was";
 }
 
-TEST(ApiCut, preparing_for_cuts_changes_nothing) {
+TEST(ApiCut, PreparingForCutsChangesNothing) {
   World plain(held_block(), on("cpu"));
   WorldOptions options = on("cpu");
   options.cutting = true;
@@ -269,7 +269,7 @@ TEST(ApiCut, preparing_for_cuts_changes_nothing) {
   EXPECT_EQ(plain.frame()->triangles.size(), prepared.frame()->triangles.size());
 }
 
-TEST(ApiCut, a_scene_that_cannot_be_cut_says_so_and_goes_on) {
+TEST(ApiCut, ASceneThatCannotBeCutSaysSoAndGoesOn) {
   const char* const text = R"({"format": "pliant-scene/1", "integrator": "textbook", "bodies": [{"surface": "memory:0",
     "lattice": {"spacing": 0.02}, "material": {"law": "neo-hookean", "young": 3000, "poisson": 0.4, "density": 1000}}]})";
   World world = World::parse(text, "", on("cpu"), {box_surface({0, 0, 0}, {0.1, 0.08, 0.06})});
@@ -280,7 +280,7 @@ TEST(ApiCut, a_scene_that_cannot_be_cut_says_so_and_goes_on) {
   EXPECT_EQ(world.step(5).done, 5);
 }
 
-TEST(ApiCut, a_device_lost_while_it_is_cut_leaves_the_last_frame) {
+TEST(ApiCut, ADeviceLostWhileItIsCutLeavesTheLastFrame) {
   auto left = std::make_shared<std::atomic<int>>(1000000);
   const OpenBackend open = [left](std::string*, std::int64_t) {
     return std::make_unique<FaultyBackend>(open_backend("cpu"), left);
@@ -298,7 +298,7 @@ TEST(ApiCut, a_device_lost_while_it_is_cut_leaves_the_last_frame) {
   EXPECT_TRUE(world.cut(wall(0.047)).changed);
 }
 
-TEST(ApiCut, the_same_from_c) {
+TEST(ApiCut, TheSameFromC) {
   const SurfaceSpec box = box_surface({0, 0, 0}, {0.1, 0.08, 0.06});
   const pliant_surface surface{sizeof(pliant_surface), box.vertices[0].data(), box.vertices.size(), box.triangles[0].data(),
                                box.triangles.size()};

@@ -12,7 +12,7 @@ double strain_energy(const Simulation& s) {
   return e.strain + e.hourglass;
 }
 
-TEST(CutEnergy, a_cut_through_copies_that_have_moved_apart_creates_no_energy) {
+TEST(CutEnergy, ACutThroughCopiesThatHaveMovedApartCreatesNoEnergy) {
   for (const ElementKind element : {ElementKind::hex8, ElementKind::tet4}) {
     Body body = box_body("box", {0.06, 0.03, 0.03}, element);
     hold(body, {0.001, 0, 0}, {-1, 0, 0});

@@ -74,7 +74,7 @@ INSTANTIATE_TEST_SUITE_P(Cutting, CutIncremental,
                                            std::tuple(ModelType::tled, ElementKind::hex8, "opencl:0"),
                                            std::tuple(ModelType::hybrid, ElementKind::tet4, "opencl:0")));
 
-TEST_P(CutIncremental, patched_buffers_have_the_bits_of_a_fresh_start) {
+TEST_P(CutIncremental, PatchedBuffersHaveTheBitsOfAFreshStart) {
   const auto [type, element, backend] = GetParam();
   if (std::string(backend) != "cpu" && !testing::has_opencl()) GTEST_SKIP() << "no OpenCL device";
   const Vec3d size{0.06, 0.03, 0.04};
@@ -87,7 +87,7 @@ TEST_P(CutIncremental, patched_buffers_have_the_bits_of_a_fresh_start) {
 }
 
 // What may not be made before the surface is known, or kept from before.
-TEST(CutIncremental, surfaces_with_loads_and_of_several_bodies_are_patched_too) {
+TEST(CutIncremental, SurfacesWithLoadsAndOfSeveralBodiesArePatchedToo) {
   const Vec3d size{0.06, 0.03, 0.04};
   Scene scene = scene_with(box_body("box", size));
   scene.interactive = true;
@@ -124,7 +124,7 @@ class FailingUpdates final : public test::ForwardingBackend {
   std::shared_ptr<Where> where_;
 };
 
-TEST(CutIncremental, edits_after_one_that_failed_are_those_of_a_run_in_which_none_did) {
+TEST(CutIncremental, EditsAfterOneThatFailedAreThoseOfARunInWhichNoneDid) {
   using Where = FailingUpdates::Where;
   const Vec3d size{0.06, 0.03, 0.04};
   Body body = box_body("box", size);
@@ -158,7 +158,7 @@ TEST(CutIncremental, edits_after_one_that_failed_are_those_of_a_run_in_which_non
   EXPECT_GE(rough.topology_version(), 4);
 }
 
-TEST(CutIncremental, a_backend_that_is_updated_holds_what_a_loaded_one_holds) {
+TEST(CutIncremental, ABackendThatIsUpdatedHoldsWhatALoadedOneHolds) {
   const Vec3d size{0.05, 0.03, 0.03};
   const Scene scene = scene_with(box_body("box", size));
   for (const char* name : {"cpu", "opencl:0"}) {
@@ -186,7 +186,7 @@ TEST(CutIncremental, a_backend_that_is_updated_holds_what_a_loaded_one_holds) {
   }
 }
 
-TEST(CutIncremental, a_body_brought_up_to_date_is_the_body_cut_at_once) {
+TEST(CutIncremental, ABodyBroughtUpToDateIsTheBodyCutAtOnce) {
   for (const ElementKind element : {ElementKind::hex8, ElementKind::tet4}) {
     const Vec3d size{0.05, 0.03, 0.03};
     const Body body = box_body("box", size, element);
@@ -226,7 +226,7 @@ TEST(CutIncremental, a_body_brought_up_to_date_is_the_body_cut_at_once) {
   }
 }
 
-TEST(CutBadInput, blades_of_a_scene_in_memory_are_checked) {
+TEST(CutBadInput, BladesOfASceneInMemoryAreChecked) {
   const Scene plain = scene_with(box_body("box", {0.02, 0.02, 0.02}));
   const auto refused = [&](const std::vector<std::array<double, 7>>& path, const std::string& part) {
     Scene scene = plain;
@@ -244,7 +244,7 @@ TEST(CutBadInput, blades_of_a_scene_in_memory_are_checked) {
   refused({{0, 0, 0, 0, 0, 0, 1}, {0, 1, 2, 2, 2, 2, 2}}, "ascending");
 }
 
-TEST(CutBadInput, a_blade_that_meets_nothing_changes_nothing) {
+TEST(CutBadInput, ABladeThatMeetsNothingChangesNothing) {
   Simulation s(scene_with(box_body("box", {0.04, 0.03, 0.03})), open_backend("cpu"));
   s.advance(10);
   const std::uint64_t before = s.hash();
@@ -258,7 +258,7 @@ TEST(CutBadInput, a_blade_that_meets_nothing_changes_nothing) {
   EXPECT_EQ(s.topology_version(), 0);
 }
 
-TEST(CutBadInput, a_checkpoint_does_not_go_on_with_other_blades) {
+TEST(CutBadInput, ACheckpointDoesNotGoOnWithOtherBlades) {
   Scene scene = scene_with(box_body("box", {0.04, 0.03, 0.03}));
   scene.blades.push_back(blade("b", {{0, 0.02, 0.05, -1, 0.02, 0.05, 1}, {0.1, 0.02, -0.05, -1, 0.02, -0.05, 1}}));
   Simulation s(scene, open_backend("cpu"));

@@ -14,7 +14,7 @@ using namespace cut_test;
 
 int pieces_of(const Simulation& s) { return s.cut_topology(0) == nullptr ? 1 : s.cut_topology(0)->pieces(); }
 
-TEST(CutMoving, tissue_is_cut_where_the_blade_stands_in_it) {
+TEST(CutMoving, TissueIsCutWhereTheBladeStandsInIt) {
   for (const double speed : {0.0, 0.3, -0.11}) {
     // The body moves along y at 0.4 m/s and turns, a long blade along z stays, follows, or comes towards it.
     Body body = box_body("box", {0.05, 0.06, 0.02});
@@ -48,7 +48,7 @@ Vec3d deformed(const Vec3d& p, double t, int kind) {
   return {c * q[0] - s * q[1] + 3 * t, s * q[0] + c * q[1], q[2] * (1 - 0.4 * t)};
 }
 
-TEST(CutMoving, a_deforming_block_falls_into_two_pieces) {
+TEST(CutMoving, ADeformingBlockFallsIntoTwoPieces) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> real(-1, 1);
   for (int trial = 0; trial < 40; ++trial) {
@@ -83,7 +83,7 @@ TEST(CutMoving, a_deforming_block_falls_into_two_pieces) {
   }
 }
 
-TEST(CutMoving, a_liver_that_a_tool_indents_falls_into_two_pieces) {
+TEST(CutMoving, ALiverThatAToolIndentsFallsIntoTwoPieces) {
   for (const double lean : {0.0, 0.02}) {
     Scene scene = load_scene(test::source_dir() + "/scenes/liver.json");
     scene.blades.push_back(
@@ -97,7 +97,7 @@ TEST(CutMoving, a_liver_that_a_tool_indents_falls_into_two_pieces) {
   }
 }
 
-TEST(CutMoving, tissue_pulled_across_a_resting_blade_is_cut) {
+TEST(CutMoving, TissuePulledAcrossARestingBladeIsCut) {
   const auto mesh = box_mesh(4, 3, 3);
   CutTopology body(mesh);
   RestEdges edges(*mesh, 1.2);
@@ -115,7 +115,7 @@ TEST(CutMoving, tissue_pulled_across_a_resting_blade_is_cut) {
 
 /// A box that is pulled to 1.4 times its length and springs open as it is cut: batches in between are made again with a smaller
 /// step, and the blade goes on from where it stood.
-TEST(CutMoving, a_stretched_block_that_springs_open_falls_into_two_pieces) {
+TEST(CutMoving, AStretchedBlockThatSpringsOpenFallsIntoTwoPieces) {
   for (const ElementKind element : {ElementKind::hex8, ElementKind::tet4}) {
     Body body = box_body("box", {0.1, 0.1, 0.1}, element);
     body.lattice.spacing = 0.0125;
@@ -136,7 +136,7 @@ TEST(CutMoving, a_stretched_block_that_springs_open_falls_into_two_pieces) {
   }
 }
 
-TEST(CutMoving, a_blade_may_stop_leave_return_and_cross_an_older_cut) {
+TEST(CutMoving, ABladeMayStopLeaveReturnAndCrossAnOlderCut) {
   const auto mesh = box_mesh(4, 4, 4);
   CutTopology body(mesh);
   RestEdges edges(*mesh, 1.2);
@@ -163,7 +163,7 @@ TEST(CutMoving, a_blade_may_stop_leave_return_and_cross_an_older_cut) {
   check_body(body);
 }
 
-TEST(CutMoving, a_blade_far_away_or_of_absurd_size_does_nothing_or_cuts) {
+TEST(CutMoving, ABladeFarAwayOrOfAbsurdSizeDoesNothingOrCuts) {
   const auto mesh = box_mesh(2, 2, 2);
   CutTopology body(mesh);
   RestEdges edges(*mesh, 1.2);

@@ -21,7 +21,7 @@ INSTANTIATE_TEST_SUITE_P(Cutting, CutRun,
                          ::testing::Values(ElementKind::hex8, ElementKind::hex8full, ElementKind::tet4, ElementKind::tet4anp),
                          [](const auto& element) { return std::string(to_string(element.param)); });
 
-TEST_P(CutRun, a_moving_body_keeps_mass_and_momentum_at_every_cut) {
+TEST_P(CutRun, AMovingBodyKeepsMassAndMomentumAtEveryCut) {
   Body body = box_body("box", {0.06, 0.04, 0.03}, GetParam());
   body.velocity = {0.005, -0.02, 0.01};
   body.angular_velocity = {0.3, 0.5, -0.4};
@@ -46,7 +46,7 @@ TEST_P(CutRun, a_moving_body_keeps_mass_and_momentum_at_every_cut) {
   EXPECT_EQ(s.advance(200), 200) << (s.divergence() ? s.divergence()->message() : "");
 }
 
-TEST_P(CutRun, the_stable_step_does_not_shrink) {
+TEST_P(CutRun, TheStableStepDoesNotShrink) {
   Simulation s(scene_with(box_body("box", {0.05, 0.04, 0.03}, GetParam())), open_backend("cpu:double"));
   const double before = s.estimate_stable_dt(), bound = s.model().element_bound;
   EXPECT_GE(before, 0.99 * bound);
@@ -61,7 +61,7 @@ TEST_P(CutRun, the_stable_step_does_not_shrink) {
               least);
 }
 
-TEST_P(CutRun, a_piece_that_nothing_holds_falls) {
+TEST_P(CutRun, APieceThatNothingHoldsFalls) {
   Body body = box_body("box", {0.06, 0.02, 0.02}, GetParam());
   Selection end;
   end.kind = Selection::Kind::box;
@@ -87,7 +87,7 @@ TEST_P(CutRun, a_piece_that_nothing_holds_falls) {
 
 /// A virtual node moves until a cut leaves it held anchors only. Nothing moves it from then on, nor may what it did before, and
 /// it does not jump.
-TEST_P(CutRun, a_virtual_node_that_becomes_held_rests) {
+TEST_P(CutRun, AVirtualNodeThatBecomesHeldRests) {
   Body body = box_body("box", {0.06, 0.02, 0.02}, GetParam());
   Selection end;
   end.kind = Selection::Kind::box;
@@ -128,7 +128,7 @@ TEST_P(CutRun, a_virtual_node_that_becomes_held_rests) {
 }
 
 /// What falls freely gains the momentum of its weight, whatever inertia its thin cells were given.
-TEST_P(CutRun, the_inertia_of_thin_cells_has_no_weight) {
+TEST_P(CutRun, TheInertiaOfThinCellsHasNoWeight) {
   Body body = box_body("box", {0.06, 0.04, 0.03}, GetParam());
   body.angular_velocity = {0.3, 0.5, -0.4};
   Scene scene = scene_with(body);
@@ -154,7 +154,7 @@ TEST_P(CutRun, the_inertia_of_thin_cells_has_no_weight) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(momentum_of(s, true)[c] - before[c], gained * scene.gravity[c], 1e-3 * gained * 9.81);
 }
 
-TEST(CutRun, virtual_nodes_of_a_loose_piece_are_not_fixed) {
+TEST(CutRun, VirtualNodesOfALoosePieceAreNotFixed) {
   Body body = box_body("box", {0.04, 0.02, 0.02});
   Selection end;
   end.kind = Selection::Kind::box;
@@ -204,7 +204,7 @@ SimulationOptions short_batches() {
   return options;
 }
 
-TEST_P(CutModels, both_backends_agree_through_200_steps_with_5_cuts) {
+TEST_P(CutModels, BothBackendsAgreeThrough200StepsWith5Cuts) {
   if (!testing::has_opencl()) GTEST_SKIP() << "no OpenCL device";
   const Scene scene = five_cuts(std::get<0>(GetParam()), std::get<1>(GetParam()));
   Simulation a(scene, open_backend("cpu"), short_batches()), b(scene, open_backend("opencl:0"), short_batches());
@@ -218,7 +218,7 @@ TEST_P(CutModels, both_backends_agree_through_200_steps_with_5_cuts) {
   EXPECT_FALSE(a.divergence());
 }
 
-TEST_P(CutModels, a_run_resumed_between_cuts_has_the_same_bits) {
+TEST_P(CutModels, ARunResumedBetweenCutsHasTheSameBits) {
   const Scene scene = five_cuts(std::get<0>(GetParam()), std::get<1>(GetParam()));
   Simulation whole(scene, open_backend("cpu"), short_batches());
   whole.advance(75);
@@ -237,7 +237,7 @@ TEST_P(CutModels, a_run_resumed_between_cuts_has_the_same_bits) {
   expect_same(whole.cut_topology(0)->elements(), resumed.cut_topology(0)->elements());
 }
 
-TEST(CutRun, copies_of_an_interface_node_share_its_beta_like_its_mass) {
+TEST(CutRun, CopiesOfAnInterfaceNodeShareItsBetaLikeItsMass) {
   Scene scene = five_cuts(ModelType::hybrid, ElementKind::hex8);
   scene.blades.clear();
   scene.bodies[0].model.beta = 100;
@@ -274,7 +274,7 @@ TEST(CutRun, copies_of_an_interface_node_share_its_beta_like_its_mass) {
   EXPECT_GE(s.estimate_stable_dt(), 0.99 * std::min(step, s.model().element_bound));
 }
 
-TEST(CutRun, a_scene_can_forbid_cuts_of_its_shape_matching_part) {
+TEST(CutRun, ASceneCanForbidCutsOfItsShapeMatchingPart) {
   Scene scene = five_cuts(ModelType::flsm, ElementKind::hex8);
   scene.bodies[0].model.cut = false;
   scene.blades.clear();
@@ -285,7 +285,7 @@ TEST(CutRun, a_scene_can_forbid_cuts_of_its_shape_matching_part) {
   EXPECT_EQ(s.hash(), before);
 }
 
-TEST(CutRun, bad_blades_are_refused_and_change_nothing) {
+TEST(CutRun, BadBladesAreRefusedAndChangeNothing) {
   Simulation s(scene_with(box_body("box", {0.04, 0.03, 0.03})), open_backend("cpu"));
   s.advance(10);
   const std::uint64_t before = s.hash();
@@ -298,7 +298,7 @@ TEST(CutRun, bad_blades_are_refused_and_change_nothing) {
   EXPECT_EQ(s.cut_topology(0)->pieces(), 2);
 }
 
-TEST(CutRun, nodes_of_a_cut_are_damped_like_others) {
+TEST(CutRun, NodesOfACutAreDampedLikeOthers) {
   Body body = box_body("box", {0.04, 0.03, 0.03});
   body.material.damping = 40;
   SimulationOptions options;
@@ -314,7 +314,7 @@ TEST(CutRun, nodes_of_a_cut_are_damped_like_others) {
 }
 
 /// A good state of before the edit belongs to a model that is gone.
-TEST(CutRun, a_divergence_after_an_edit_goes_back_to_it) {
+TEST(CutRun, ADivergenceAfterAnEditGoesBackToIt) {
   Body body = box_body("box", {0.06, 0.03, 0.03});
   body.velocity = {0.01, 0, 0.02};
   Scene scene = scene_with(body);
@@ -335,7 +335,7 @@ TEST(CutRun, a_divergence_after_an_edit_goes_back_to_it) {
 }
 
 /// Without blades in the scene the step is that of the whole body, which is longer than that of its elements.
-TEST(CutRun, an_automatic_step_falls_to_the_element_bound) {
+TEST(CutRun, AnAutomaticStepFallsToTheElementBound) {
   for (const ElementKind element : {ElementKind::hex8, ElementKind::tet4}) {
     Body body = box_body("box", {0.05, 0.03, 0.03}, element);
     body.velocity = {0.01, -0.02, 0.03};
@@ -354,7 +354,7 @@ TEST(CutRun, an_automatic_step_falls_to_the_element_bound) {
   }
 }
 
-TEST(CutRun, nodes_of_shape_matching_keep_their_velocity) {
+TEST(CutRun, NodesOfShapeMatchingKeepTheirVelocity) {
   Body body = box_body("box", {0.06, 0.03, 0.03});
   body.model.type = ModelType::flsm;
   body.model.width = 1;
@@ -376,7 +376,7 @@ TEST(CutRun, nodes_of_shape_matching_keep_their_velocity) {
   expect_velocity();
 }
 
-TEST(CutRun, blades_that_move_together_make_one_edit) {
+TEST(CutRun, BladesThatMoveTogetherMakeOneEdit) {
   const Scene scene = scene_with(box_body("box", {0.06, 0.03, 0.03}));
   Simulation together(scene, open_backend("cpu")), apart(scene, open_backend("cpu"));
   const auto at = [](const char* name, double x, double y) { return BladePose{name, {{{x, y, -1}, {x, y, 1}}}}; };

@@ -52,7 +52,7 @@ double rest_volume(const ModelSurface& surface) {
   return six / 6;
 }
 
-TEST_P(CutScene, every_edit_keeps_mass_volume_and_a_closed_surface) {
+TEST_P(CutScene, EveryEditKeepsMassVolumeAndAClosedSurface) {
   Simulation s(scene(), open_backend("cpu"));
   const double mass = mass_of(s), volume = rest_volume(s.model().surface), bound = s.model().element_bound;
   double end = 0;
@@ -79,7 +79,7 @@ TEST_P(CutScene, every_edit_keeps_mass_volume_and_a_closed_surface) {
               s.cut_topology(0)->pieces(), gone);
 }
 
-TEST_P(CutScene, both_backends_agree_across_cuts) {
+TEST_P(CutScene, BothBackendsAgreeAcrossCuts) {
   if (!testing::has_opencl()) GTEST_SKIP() << "no OpenCL device";
   Simulation a(scene(), open_backend("cpu")), b(scene(), open_backend("opencl:0"));
   while (a.topology_version() == 0 && a.time() < a.scene().duration) a.advance(a.next_batch(1000));

@@ -42,7 +42,7 @@ std::vector<SweepTriangle> random_blade(std::mt19937& random) {
   return plane_cut(point, normal, pick(4) == 0 ? 0.01 : 1);
 }
 
-TEST_P(CutSteps, no_cut_takes_the_step_away) {
+TEST_P(CutSteps, NoCutTakesTheStepAway) {
   const char* text = std::getenv("PLIANT_RANDOM_CUTS");
   const int wanted = text != nullptr ? std::atoi(text) / 2 : 60;
   std::mt19937 random(17);

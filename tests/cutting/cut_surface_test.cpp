@@ -127,7 +127,7 @@ Vec3d direction(std::mt19937& random) {
   return n;
 }
 
-TEST(CutSurface, a_sphere_falls_into_two_spheres) {
+TEST(CutSurface, ASphereFallsIntoTwoSpheres) {
   CutCase body(shape("sphere"), 0.023);
   body.cut({0, 0, 0.0203}, {0.3, -0.2, 1});
   body.expect_closed();
@@ -139,7 +139,7 @@ TEST(CutSurface, a_sphere_falls_into_two_spheres) {
   EXPECT_NEAR(std::min(pieces[0].volume, pieces[1].volume), cap, 0.02 * cap);
 }
 
-TEST(CutSurface, caps_are_flagged_and_lie_in_the_plane) {
+TEST(CutSurface, CapsAreFlaggedAndLieInThePlane) {
   CutCase body(shape("cube"), 0.0103);
   const Vec3d normal{0.6, 0, 0.8};
   body.cut({0.003, 0, 0}, normal);
@@ -155,7 +155,7 @@ TEST(CutSurface, caps_are_flagged_and_lie_in_the_plane) {
   body.expect_closed();
 }
 
-TEST(CutSurface, a_torus_opens_and_then_falls_into_two) {
+TEST(CutSurface, ATorusOpensAndThenFallsIntoTwo) {
   CutCase body(shape("torus"), 0.0113);
   body.cut({0.07, 0, 0}, {0, 1, 0.1}, 0.05);  // one side of the ring
   body.expect_closed();
@@ -167,7 +167,7 @@ TEST(CutSurface, a_torus_opens_and_then_falls_into_two) {
   for (const Piece& piece : body.pieces()) EXPECT_EQ(piece.euler(), 2);
 }
 
-TEST(CutSurface, a_cut_that_ends_inside_leaves_one_closed_piece) {
+TEST(CutSurface, ACutThatEndsInsideLeavesOneClosedPiece) {
   for (const char* name : {"cube", "liver"}) {
     CutCase body(shape(name), name == std::string("cube") ? 0.0111 : 0.013);
     body.cut({0.001, 0.5, 0.0013}, {1, 0.05, 0.2}, 0.5);  // from above down to y = 0
@@ -179,7 +179,7 @@ TEST(CutSurface, a_cut_that_ends_inside_leaves_one_closed_piece) {
 }
 
 // Cuts at random, through nodes, along lattice planes, through vertices of the surface, along its faces.
-TEST(CutSurface, closed_after_any_cut) {
+TEST(CutSurface, ClosedAfterAnyCut) {
   std::mt19937 random(7);
   for (const char* name : {"cube", "sphere", "torus", "liver", "kidney"}) {
     const double spacing = name == std::string("cube") ? 0.0125 : name == std::string("liver") ? 0.016 : 0.012;
@@ -202,7 +202,7 @@ TEST(CutSurface, closed_after_any_cut) {
   }
 }
 
-TEST(CutSurface, history_does_not_matter) {
+TEST(CutSurface, HistoryDoesNotMatter) {
   std::mt19937 random(11);
   CutCase one(shape("sphere"), 0.012), other(shape("sphere"), 0.012);
   std::vector<std::int32_t> cells;
@@ -236,7 +236,7 @@ TEST(CutSurface, history_does_not_matter) {
   EXPECT_NEAR(difference, 0, 1e-12);
 }
 
-TEST(CutSurface, numbers_are_stable) {
+TEST(CutSurface, NumbersAreStable) {
   const TriangleMesh mesh = shape("liver");
   CutCase body(mesh, 0.016);
   body.cut({0.01, 0, 0}, {1, 0.1, 0});
@@ -263,7 +263,7 @@ TEST(CutSurface, numbers_are_stable) {
 }
 
 // Every vertex of a piece is embedded in the same piece of the topology, so that pieces come apart as wholes.
-TEST(CutSurface, pieces_hang_in_their_own_elements) {
+TEST(CutSurface, PiecesHangInTheirOwnElements) {
   std::mt19937 random(3);
   // The skin of the second cube lies on faces of the lattice.
   for (const auto& [name, spacing] :
@@ -298,7 +298,7 @@ TEST(CutSurface, pieces_hang_in_their_own_elements) {
 
 // Cuts along faces and through nodes of the lattice, whole ones and short ones, in a box whose skin lies on the lattice: fronts
 // of cuts meet on the sharp edges of the box.
-TEST(CutSurface, any_cuts_of_a_box_leave_it_closed) {
+TEST(CutSurface, AnyCutsOfABoxLeaveItClosed) {
   const auto box = box_surface({0.04, 0.03, 0.03});
   const unsigned seeds = std::getenv("PLIANT_RANDOM_CUTS") != nullptr ? 1000 : 50;
   for (unsigned seed = 0; seed < seeds; ++seed) {
@@ -323,7 +323,7 @@ TEST(CutSurface, any_cuts_of_a_box_leave_it_closed) {
 }
 
 // The bunny has holes below, and places where several cells of the lattice share one cell of the grid.
-TEST(CutSurface, bunny) {
+TEST(CutSurface, Bunny) {
   const char* file = "/usr/share/glmark2/models/bunny.obj";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not installed";
   CutCase body(read_surface(file), 0.11);
@@ -334,7 +334,7 @@ TEST(CutSurface, bunny) {
   body.expect_closed();
 }
 
-TEST(CutSurface, holes_are_closed) {
+TEST(CutSurface, HolesAreClosed) {
   TriangleMesh mesh = shape("sphere");
   std::erase_if(mesh.triangles, [&](const auto& t) { return mesh.vertices[t[0]][2] < -0.085; });
   CutCase body(mesh, 0.023);

@@ -16,7 +16,7 @@ class BothShapes : public ::testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(CutTopology, BothShapes, ::testing::Bool(),
                          [](const auto& shape) { return shape.param ? "tetrahedra" : "lattice"; });
 
-TEST_P(BothShapes, an_uncut_body_is_itself) {
+TEST_P(BothShapes, AnUncutBodyIsItself) {
   const auto mesh = box_mesh(2, 2, 2, GetParam());
   const CutTopology body(mesh);
   EXPECT_EQ(body.elements().nodes, mesh->cells);
@@ -24,7 +24,7 @@ TEST_P(BothShapes, an_uncut_body_is_itself) {
   check_body(body);
 }
 
-TEST_P(BothShapes, a_plane_gives_two_pieces_of_the_right_volume) {
+TEST_P(BothShapes, APlaneGivesTwoPiecesOfTheRightVolume) {
   for (const Vec3d& normal : {Vec3d{1, 0, 0}, Vec3d{0.3, 1, 0}, Vec3d{1, 1, 1}, Vec3d{-0.2, 0.7, 0.4}}) {
     const auto mesh = box_mesh(4, 3, 3, GetParam());
     CutTopology body(mesh);
@@ -41,7 +41,7 @@ TEST_P(BothShapes, a_plane_gives_two_pieces_of_the_right_volume) {
   }
 }
 
-TEST_P(BothShapes, an_oblique_plane_divides_the_fill_exactly) {
+TEST_P(BothShapes, AnObliquePlaneDividesTheFillExactly) {
   CutTopology body(box_mesh(4, 2, 2, GetParam()));
   // x + y / 4 = 2.3: the mean of x over the section is 2.3 - 1 / 4.
   cut_at_rest(body, plane_cut({2.3, 0, 0}, {1, 0.25, 0}));
@@ -54,7 +54,7 @@ TEST_P(BothShapes, an_oblique_plane_divides_the_fill_exactly) {
   EXPECT_NEAR(volume[0] + volume[1], 16, 1e-11);
 }
 
-TEST_P(BothShapes, planes_through_nodes_edges_and_faces_cut_once) {
+TEST_P(BothShapes, PlanesThroughNodesEdgesAndFacesCutOnce) {
   for (const Vec3d& normal :
        {Vec3d{1, 0, 0}, Vec3d{1, -1, 0}, Vec3d{1, 1, 0}, Vec3d{1, 1, 1}, Vec3d{1, -1, 2}, Vec3d{0, 0, -1}}) {
     CutTopology body(box_mesh(4, 4, 4, GetParam()));
@@ -67,7 +67,7 @@ TEST_P(BothShapes, planes_through_nodes_edges_and_faces_cut_once) {
   }
 }
 
-TEST_P(BothShapes, crossing_planes_give_four_and_eight_pieces) {
+TEST_P(BothShapes, CrossingPlanesGiveFourAndEightPieces) {
   const auto mesh = box_mesh(4, 4, 4, GetParam());
   CutTopology body(mesh);
   int pieces = 1;
@@ -79,7 +79,7 @@ TEST_P(BothShapes, crossing_planes_give_four_and_eight_pieces) {
   }
 }
 
-TEST_P(BothShapes, a_blade_that_stops_leaves_one_piece_and_goes_on_later) {
+TEST_P(BothShapes, ABladeThatStopsLeavesOnePieceAndGoesOnLater) {
   const auto mesh = box_mesh(4, 4, 4, GetParam());
   CutTopology body(mesh);
   const auto blade = [](double y) { return BladeSegment{{{2.3, y, -1}, {2.3, y, 5}}}; };
@@ -100,7 +100,7 @@ TEST_P(BothShapes, a_blade_that_stops_leaves_one_piece_and_goes_on_later) {
   EXPECT_EQ(body.pieces(), 2);
 }
 
-TEST_P(BothShapes, cutting_the_same_place_again_changes_nothing) {
+TEST_P(BothShapes, CuttingTheSamePlaceAgainChangesNothing) {
   CutTopology body(box_mesh(3, 3, 3, GetParam()));
   cut_at_rest(body, plane_cut({1.4, 1.5, 1.5}, {1, 0.2, 0.1}));
   const CutElements before = body.elements();
@@ -109,7 +109,7 @@ TEST_P(BothShapes, cutting_the_same_place_again_changes_nothing) {
   expect_same(before, body.elements());
 }
 
-TEST_P(BothShapes, a_tube_cuts_out_a_core) {
+TEST_P(BothShapes, ATubeCutsOutACore) {
   const auto mesh = box_mesh(5, 5, 3, GetParam());
   CutTopology body(mesh);
   constexpr int kSides = 24;
@@ -131,7 +131,7 @@ TEST_P(BothShapes, a_tube_cuts_out_a_core) {
   EXPECT_NEAR(volume[1] / 3, 1.4 * 1.4 * std::numbers::pi, 0.6);  // of the curve inside a cell only the crossings are left
 }
 
-TEST_P(BothShapes, a_blade_that_crosses_its_own_path) {
+TEST_P(BothShapes, ABladeThatCrossesItsOwnPath) {
   const auto mesh = box_mesh(6, 6, 1, GetParam());
   CutTopology body(mesh);
   // In through the lower side, round a loop and out again: the loop falls out.
@@ -146,7 +146,7 @@ TEST_P(BothShapes, a_blade_that_crosses_its_own_path) {
   EXPECT_EQ(body.pieces(), 2);
 }
 
-TEST_P(BothShapes, all_edges_cut_leaves_single_corners) {
+TEST_P(BothShapes, AllEdgesCutLeavesSingleCorners) {
   const auto mesh = box_mesh(2, 1, 1, GetParam());
   CutTopology body(mesh);
   CutEdges all;
@@ -159,7 +159,7 @@ TEST_P(BothShapes, all_edges_cut_leaves_single_corners) {
 }
 
 /// A blade that crosses an edge twice cuts it where it came first, however far it goes on.
-TEST_P(BothShapes, the_first_crossing_of_an_edge_counts) {
+TEST_P(BothShapes, TheFirstCrossingOfAnEdgeCounts) {
   const CutTopology body(box_mesh(2, 1, 1, GetParam()));
   std::vector<SweepTriangle> way = plane_cut({0.3, 0, 0}, {1, 0, 0});
   const std::vector<SweepTriangle> further = plane_cut({0.6, 0, 0}, {1, 0, 0});
@@ -173,7 +173,7 @@ TEST_P(BothShapes, the_first_crossing_of_an_edge_counts) {
   }
 }
 
-TEST_P(BothShapes, no_copy_is_lighter_than_the_floor) {
+TEST_P(BothShapes, NoCopyIsLighterThanTheFloor) {
   CutTopology body(box_mesh(2, 2, 2, GetParam()));
   // A corner of the body and the node in its middle lose next to nothing.
   cut_at_rest(body, plane_cut({0.01, 0.01, 0.01}, {1, 1, 1}));
@@ -188,7 +188,7 @@ TEST_P(BothShapes, no_copy_is_lighter_than_the_floor) {
   EXPECT_NEAR(std::accumulate(volume.begin(), volume.end(), 0.0), 8, 1e-11);
 }
 
-TEST(CutTopology, a_part_without_a_sample_has_some_material) {
+TEST(CutTopology, APartWithoutASampleHasSomeMaterial) {
   const auto mesh = box_mesh(1, 1, 1);
   mesh->fill[0] = 0.25;
   mesh->material = {0};
@@ -203,7 +203,7 @@ TEST(CutTopology, a_part_without_a_sample_has_some_material) {
   check_body(body, false);
 }
 
-TEST(CutTopology, one_lattice_cell_in_two) {
+TEST(CutTopology, OneLatticeCellInTwo) {
   const auto mesh = box_mesh(1, 1, 1);
   CutTopology body(mesh);
   const CutEdit edit = cut_at_rest(body, plane_cut({0.25, 0, 0}, {1, 0, 0}));
@@ -223,7 +223,7 @@ TEST(CutTopology, one_lattice_cell_in_two) {
   EXPECT_EQ(body.label_at(0, {0.3, 0.5, 0.1}), 1);
 }
 
-TEST(CutTopology, points_of_faces_have_the_same_bits_on_both_sides) {
+TEST(CutTopology, PointsOfFacesHaveTheSameBitsOnBothSides) {
   CutTopology body(box_mesh(3, 3, 3));
   cut_at_rest(body, plane_cut({1.37, 1.41, 1.53}, {1, 0.31, -0.45}));
   cut_at_rest(body, plane_cut({1.6, 1.41, 1.53}, {0.2, 1, 0.45}));
@@ -245,7 +245,7 @@ TEST(CutTopology, points_of_faces_have_the_same_bits_on_both_sides) {
   EXPECT_GT(twice, 100);
 }
 
-TEST(CutTopology, material_is_shared_where_it_lies) {
+TEST(CutTopology, MaterialIsSharedWhereItLies) {
   const auto mesh = box_mesh(1, 1, 1);
   mesh->fill[0] = 0.25;
   mesh->material = {0};
@@ -258,7 +258,7 @@ TEST(CutTopology, material_is_shared_where_it_lies) {
   check_body(body, false);
 }
 
-TEST(CutTopology, bad_edges_are_refused_and_change_nothing) {
+TEST(CutTopology, BadEdgesAreRefusedAndChangeNothing) {
   CutTopology body(box_mesh(2, 1, 1));
   const CutElements before = body.elements();
   EXPECT_THROW(body.cut({{{0, 2}, 0.5}}), Error) << "two cells apart";
@@ -271,7 +271,7 @@ TEST(CutTopology, bad_edges_are_refused_and_change_nothing) {
   EXPECT_THROW(crossed_edges(body, body.mesh().rest, std::vector<SweepTriangle>{{Vec3d{0, 0, NAN}, {}, {}}}), Error);
 }
 
-TEST(CutTopology, an_edit_taken_back_is_as_if_it_had_not_been) {
+TEST(CutTopology, AnEditTakenBackIsAsIfItHadNotBeen) {
   const auto mesh = box_mesh(3, 3, 3);
   CutTopology body(mesh);
   cut_at_rest(body, plane_cut({1.3, 1.5, 1.5}, {1, 0.3, 0}));

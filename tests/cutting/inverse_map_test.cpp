@@ -16,7 +16,7 @@ using namespace cut_test;
 
 vec::Box everywhere() { return {{-1, -1, -1}, {1, 1, 1}}; }
 
-TEST(InverseMap, a_point_goes_with_the_material_around_it_and_lies_between_the_sides_of_a_cut) {
+TEST(InverseMap, APointGoesWithTheMaterialAroundItAndLiesBetweenTheSidesOfACut) {
   for (const ElementKind element : {ElementKind::hex8, ElementKind::tet4}) {
     const BodyMesh uncut = make_body_mesh(box_body("box", {0.03, 0.03, 0.03}, element));
     CutTopology topology(cut_mesh(uncut, "box"));
@@ -66,7 +66,7 @@ TEST(InverseMap, a_point_goes_with_the_material_around_it_and_lies_between_the_s
 }
 
 // A node that is not finite takes its elements out of the map, no others.
-TEST(InverseMap, elements_without_a_place_hold_nothing) {
+TEST(InverseMap, ElementsWithoutAPlaceHoldNothing) {
   const BodyMesh uncut = make_body_mesh(box_body("box", {0.03, 0.03, 0.03}));
   const CutTopology topology(cut_mesh(uncut, "box"));
   const Vec3d inside{0.0165, 0.0142, 0.0133};

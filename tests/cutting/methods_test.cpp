@@ -25,7 +25,7 @@ ElementMesh box(int nx, int ny, int nz, bool tets = true) {
 
 Material material() { return make_material(Law::neo_hookean, Moduli::from_lame(4000, 1000)); }
 
-TEST(Methods, figures_of_a_whole_box) {
+TEST(Methods, FiguresOfAWholeBox) {
   for (const bool tets : {true, false}) {
     const MeshFigures f = figures_of(box(3, 2, 2, tets));
     EXPECT_EQ(f.elements, tets ? 72 : 12);
@@ -37,7 +37,7 @@ TEST(Methods, figures_of_a_whole_box) {
   }
 }
 
-TEST(Methods, removal_loses_the_layer_that_the_blade_passes) {
+TEST(Methods, RemovalLosesTheLayerThatTheBladePasses) {
   for (const bool tets : {true, false}) {
     const MethodResult cut = remove_crossed(box(3, 2, 2, tets), plane_cut({1.5, 1, 1}, {1, 0, 0}));
     const MeshFigures f = figures_of(cut.mesh);
@@ -50,13 +50,13 @@ TEST(Methods, removal_loses_the_layer_that_the_blade_passes) {
   }
 }
 
-TEST(Methods, removal_sees_a_blade_that_ends_inside_an_element) {
+TEST(Methods, RemovalSeesABladeThatEndsInsideAnElement) {
   const SweepTriangle small{Vec3d{1.4, 0.3, 0.2}, Vec3d{1.45, 0.3, 0.2}, Vec3d{1.4, 0.32, 0.2}};
   EXPECT_EQ(remove_crossed(box(3, 2, 2), std::vector{small}).crossed, 1);
   EXPECT_EQ(remove_crossed(box(3, 2, 2, false), std::vector{small}).crossed, 1);
 }
 
-TEST(Methods, decomposition_keeps_mass_and_volume_and_shortens_the_stable_step) {
+TEST(Methods, DecompositionKeepsMassAndVolumeAndShortensTheStableStep) {
   const ElementMesh whole = box(3, 2, 2);
   const double before = element_bound(whole, material());
   double last = before;
@@ -75,7 +75,7 @@ TEST(Methods, decomposition_keeps_mass_and_volume_and_shortens_the_stable_step) 
   EXPECT_LT(last, 0.02 * before);
 }
 
-TEST(Methods, decomposition_divides_lattice_cells_by_kuhn) {
+TEST(Methods, DecompositionDividesLatticeCellsByKuhn) {
   const MethodResult cut = decompose_crossed(box(3, 2, 2, false), plane_cut({1.4, 1, 1}, {1, 0.2, 0.1}));
   const MeshFigures f = figures_of(cut.mesh);
   EXPECT_TRUE(cut.mesh.hexes.empty());
@@ -84,7 +84,7 @@ TEST(Methods, decomposition_divides_lattice_cells_by_kuhn) {
   EXPECT_TRUE(f.closed());
 }
 
-TEST(Methods, a_blade_that_stops_inside_leaves_one_closed_piece) {
+TEST(Methods, ABladeThatStopsInsideLeavesOneClosedPiece) {
   const auto half = plane_cut({1.5, 0, 1}, {1, 0, 0}, 1.05);  // from y = -1.05 to 1.05
   for (const MethodResult& cut : {decompose_crossed(box(3, 2, 2), half), separate_crossed(box(3, 2, 2), half)}) {
     const MeshFigures f = figures_of(cut.mesh);
@@ -95,7 +95,7 @@ TEST(Methods, a_blade_that_stops_inside_leaves_one_closed_piece) {
   }
 }
 
-TEST(Methods, separation_adds_no_element_and_keeps_volume) {
+TEST(Methods, SeparationAddsNoElementAndKeepsVolume) {
   const ElementMesh whole = box(3, 2, 2);
   for (const bool remesh : {false, true}) {
     SeparationOptions options;
@@ -117,7 +117,7 @@ TEST(Methods, separation_adds_no_element_and_keeps_volume) {
   }
 }
 
-TEST(Methods, remeshing_keeps_every_tetrahedron_above_the_bound) {
+TEST(Methods, RemeshingKeepsEveryTetrahedronAboveTheBound) {
   SeparationOptions options;
   for (const double bound : {0.1, 0.4, 0.7}) {
     options.least_quality = bound;
@@ -131,7 +131,7 @@ TEST(Methods, remeshing_keeps_every_tetrahedron_above_the_bound) {
 }
 
 /// Two bricks of tetrahedra that share the middle edge (or node) only, after everything between them is taken away.
-TEST(Methods, what_hangs_together_at_a_point_or_an_edge_is_parted) {
+TEST(Methods, WhatHangsTogetherAtAPointOrAnEdgeIsParted) {
   const ElementMesh whole = box(2, 2, 2);
   for (const bool edge : {true, false}) {
     ElementMesh mesh{whole.nodes, {}, {}, {}};
@@ -156,7 +156,7 @@ TEST(Methods, what_hangs_together_at_a_point_or_an_edge_is_parted) {
 }
 
 /// Planes, strips and repeated cuts through nodes, edges and faces.
-TEST(Methods, random_cuts_stay_closed_and_keep_what_they_should) {
+TEST(Methods, RandomCutsStayClosedAndKeepWhatTheyShould) {
   std::mt19937 random(11);
   const auto real = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
   const auto pick = [&](int n) { return std::uniform_int_distribution<int>(0, n - 1)(random); };
@@ -193,7 +193,7 @@ TEST(Methods, random_cuts_stay_closed_and_keep_what_they_should) {
   EXPECT_GT(opened, 60);
 }
 
-TEST(Methods, a_sweep_that_is_not_finite_is_refused) {
+TEST(Methods, ASweepThatIsNotFiniteIsRefused) {
   const SweepTriangle bad{Vec3d{0, 0, 0}, Vec3d{NAN, 0, 0}, Vec3d{0, 1, 0}};
   for (const auto& method : {remove_crossed, decompose_crossed}) {
     const std::string message = error_of([&] { method(box(1, 1, 1), std::vector{bad}); });
@@ -201,7 +201,7 @@ TEST(Methods, a_sweep_that_is_not_finite_is_refused) {
   }
 }
 
-TEST(Breaking, stress_of_uniaxial_stretch) {
+TEST(Breaking, StressOfUniaxialStretch) {
   const std::array<Vec3d, 4> rest{Vec3d{0, 0, 0}, Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}};
   std::array<Vec3d, 4> now = rest;
   now[1][0] = 1.2;
@@ -220,7 +220,7 @@ TEST(Breaking, stress_of_uniaxial_stretch) {
   EXPECT_FALSE(tet_stress(rest, now, m));
 }
 
-TEST(Breaking, sharpness_and_damage_raise_the_cutting_stress) {
+TEST(Breaking, SharpnessAndDamageRaiseTheCuttingStress) {
   Eigen::Matrix3d stress;
   stress << 300, 40, 0, 40, 100, 0, 0, 0, -50;
   BreakingLaw law{1, 1, 400};
@@ -237,7 +237,7 @@ TEST(Breaking, sharpness_and_damage_raise_the_cutting_stress) {
   EXPECT_NEAR(t.shear, 80, 1e-9);
 }
 
-TEST(Breaking, a_blunt_blade_parts_only_what_is_under_stress) {
+TEST(Breaking, ABluntBladePartsOnlyWhatIsUnderStress) {
   const ElementMesh whole = box(3, 2, 2);
   const Material m = material();
   std::vector<Vec3d> u(whole.nodes.size());

@@ -20,7 +20,7 @@ bool inside(const ExactPoint& p, const std::array<ExactPoint, 4>& t) {
          orient(t[0], t[1], t[2], p) == all;
 }
 
-TEST(Predicates, signs) {
+TEST(Predicates, Signs) {
   const ExactFrame frame({{-1, -1, -1}, {1, 1, 1}});
   const ExactPoint a = frame.snap({0, 0, 0}, 0), b = frame.snap({1, 0, 0}, 1), c = frame.snap({0, 1, 0}, 2);
   EXPECT_EQ(orient(a, b, c, frame.snap({0.3, 0.3, 1e-11}, 3)), 1);
@@ -31,7 +31,7 @@ TEST(Predicates, signs) {
 }
 
 // The corners of the grid take 39 bits in differences, and 118 in the determinant.
-TEST(Predicates, the_ends_of_the_range) {
+TEST(Predicates, TheEndsOfTheRange) {
   const ExactFrame frame({{-1, -1, -1}, {1, 1, 1}});
   const ExactPoint a = frame.snap({-1, -1, -1}, 0), b = frame.snap({1, 1, -1}, 1), c = frame.snap({1, -1, 1}, 2);
   EXPECT_EQ(orient(a, b, c, frame.snap({-1, 1, 1}, 3)), -1);
@@ -43,7 +43,7 @@ TEST(Predicates, the_ends_of_the_range) {
   EXPECT_EQ(orient(a, b, c, d), -above);
 }
 
-TEST(Predicates, swapping_two_points_swaps_the_sign) {
+TEST(Predicates, SwappingTwoPointsSwapsTheSign) {
   std::mt19937 random(1);
   for (int i = 0; i < 20000; ++i) {
     std::array<ExactPoint, 4> p;
@@ -57,7 +57,7 @@ TEST(Predicates, swapping_two_points_swaps_the_sign) {
 
 // What holds for points in general position has to hold for every answer: a segment enters and leaves a tetrahedron through its
 // faces as often as its ends say. Coordinates from a range of 1 to 4 make nearly every decision a tie.
-TEST(Predicates, ties_are_broken_consistently) {
+TEST(Predicates, TiesAreBrokenConsistently) {
   std::mt19937 random(2);
   constexpr std::array<std::array<int, 3>, 4> kFaces{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
   for (int i = 0; i < 50000; ++i) {

@@ -85,7 +85,7 @@ void check_edit(const CutElements& before, const CutTopology& body, const CutEdi
   for (const double m : mass) EXPECT_GT(m, 0);
 }
 
-TEST_P(RandomCuts, every_cut_keeps_the_fill_of_every_copy_and_so_mass_and_momentum) {
+TEST_P(RandomCuts, EveryCutKeepsTheFillOfEveryCopyAndSoMassAndMomentum) {
   RandomBlade random(7);
   const int wanted = GetParam() ? wanted_cuts() / 2 : wanted_cuts();
   int done = 0, split = 0;

@@ -31,14 +31,14 @@ void expect_all_found(const std::vector<vec::Box>& boxes, const std::vector<vec:
   }
 }
 
-TEST(SpatialHash, finds_what_overlaps_once) {
+TEST(SpatialHash, FindsWhatOverlapsOnce) {
   std::mt19937 random(1);
   const auto boxes = random_boxes(random, 300, 10, 1.5), queries = random_boxes(random, 100, 11, 4);
   expect_all_found(boxes, queries, 1024);
   expect_all_found(boxes, queries, 8);  // many places share a bucket
 }
 
-TEST(SpatialHash, boxes_that_only_touch_are_found) {
+TEST(SpatialHash, BoxesThatOnlyTouchAreFound) {
   std::vector<vec::Box> boxes;
   for (int i = -3; i < 3; ++i) boxes.push_back({{1.0 * i, 0, 0}, {i + 1.0, 1, 1}});
   std::vector<vec::Box> queries;
@@ -46,7 +46,7 @@ TEST(SpatialHash, boxes_that_only_touch_are_found) {
   expect_all_found(boxes, queries, 1024);
 }
 
-TEST(SpatialHash, large_far_and_unbounded_boxes_are_found) {
+TEST(SpatialHash, LargeFarAndUnboundedBoxesAreFound) {
   std::mt19937 random(2);
   auto boxes = random_boxes(random, 100, 5, 1), queries = random_boxes(random, 50, 6, 2);
   boxes.push_back({{-100, -0.1, -100}, {100, 0.1, 100}});

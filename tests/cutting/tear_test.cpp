@@ -59,7 +59,7 @@ std::int32_t pieces_of(const Simulation& s) {
   return figures_of(ElementMesh{body.rest, body.tets, {}, std::vector<double>(body.tets.size(), 1.0)}).pieces;
 }
 
-TEST_F(Tear, a_bar_parts_in_its_weak_slice_and_nowhere_else) {
+TEST_F(Tear, ABarPartsInItsWeakSliceAndNowhereElse) {
   Simulation s(bar_scene(file, 1500), open_backend("cpu"));
   const double mass = mass_of(s), volume = signed_volume({s.model().surface.rest, s.model().surface.triangles});
   while (s.time() < 0.4 && !s.divergence()) s.advance(16);
@@ -86,7 +86,7 @@ TEST_F(Tear, a_bar_parts_in_its_weak_slice_and_nowhere_else) {
   EXPECT_LT(std::abs(u[1][0]), 0.003);
 }
 
-TEST_F(Tear, below_its_toughness_it_holds) {
+TEST_F(Tear, BelowItsToughnessItHolds) {
   Simulation s(bar_scene(file, 20000), open_backend("cpu"));
   while (s.time() < 0.4) s.advance(64);
   EXPECT_EQ(s.topology_version(), 0);
@@ -116,7 +116,7 @@ std::vector<TetFace> faces_in_plane(const BodyMesh& whole, std::size_t axis, dou
 }
 
 /// A node comes from the one that its tetrahedra had at that corner before: also one that tears for the second time.
-TEST_F(Tear, every_corner_comes_from_the_node_it_had) {
+TEST_F(Tear, EveryCornerComesFromTheNodeItHad) {
   const auto whole = std::make_shared<const BodyMesh>(make_body_mesh(bar_scene(file, 1500).bodies[0]));
   TornBody body(whole, std::vector<Material>(whole->tets.size()));
   std::size_t nodes = whole->nodes.size();
@@ -154,7 +154,7 @@ void expect_faces_at(const BodyMesh& solid, const std::vector<TetFace>& faces, d
   }
 }
 
-TEST_F(Tear, a_stretched_edge_parts_at_the_end_that_is_pulled_more) {
+TEST_F(Tear, AStretchedEdgePartsAtTheEndThatIsPulledMore) {
   const Scene scene = bar_scene(file, 1500);
   const auto whole = std::make_shared<const BodyMesh>(make_body_mesh(scene.bodies[0]));
   const TornBody body(whole, std::vector<Material>(whole->tets.size(), scene.bodies[0].material));
@@ -167,7 +167,7 @@ TEST_F(Tear, a_stretched_edge_parts_at_the_end_that_is_pulled_more) {
   }
 }
 
-TEST_F(Tear, an_edge_that_is_free_at_one_end_parts_at_the_other_at_twice_the_stretch) {
+TEST_F(Tear, AnEdgeThatIsFreeAtOneEndPartsAtTheOtherAtTwiceTheStretch) {
   const Scene scene = bar_scene(file, 1500);
   const auto whole = std::make_shared<const BodyMesh>(make_body_mesh(scene.bodies[0]));
   TornBody body(whole, std::vector<Material>(whole->tets.size(), scene.bodies[0].material));
@@ -182,7 +182,7 @@ TEST_F(Tear, an_edge_that_is_free_at_one_end_parts_at_the_other_at_twice_the_str
   EXPECT_GE(body.solid().nodes.size(), nodes + static_cast<std::size_t>(found.edges));
 }
 
-TEST_F(Tear, integrity_lowers_what_it_bears) {
+TEST_F(Tear, IntegrityLowersWhatItBears) {
   Scene scene = bar_scene(file, 6000);
   scene.bodies[0].inclusions[0].material.integrity = 0.25;
   Simulation s(scene, open_backend("cpu"));
@@ -191,7 +191,7 @@ TEST_F(Tear, integrity_lowers_what_it_bears) {
 }
 
 /// What a node that tears gives to the others would do work on them.
-TEST_F(Tear, loads_stay_where_they_were) {
+TEST_F(Tear, LoadsStayWhereTheyWere) {
   Scene scene = bar_scene(file, 1500);
   Force force;
   force.where = {Selection::Kind::box, {-1, -1, -1}, {1, 1, 1}, 0, {}, ""};
@@ -215,7 +215,7 @@ TEST_F(Tear, loads_stay_where_they_were) {
   for (const auto& [place, sum] : before) EXPECT_NEAR(after.at(place) / sum, 1, 1e-12);
 }
 
-TEST_F(Tear, momentum_is_kept_where_it_tears) {
+TEST_F(Tear, MomentumIsKeptWhereItTears) {
   Scene scene = bar_scene(file, 1500);
   Body& body = scene.bodies[0];
   body.fixed.clear();
@@ -233,7 +233,7 @@ TEST_F(Tear, momentum_is_kept_where_it_tears) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(after[c], before[c], 1e-9 * mass_of(s));
 }
 
-TEST_F(Tear, a_resumed_run_and_the_other_backend_have_the_same_bits) {
+TEST_F(Tear, AResumedRunAndTheOtherBackendHaveTheSameBits) {
   const Scene scene = bar_scene(file, 1500);
   SimulationOptions options;
   options.dt = 4e-4;
@@ -262,7 +262,7 @@ Scene tough_bar(const std::filesystem::path& file, double break_stretch, double 
   return scene;
 }
 
-TEST_F(Tear, what_is_stretched_too_far_parts_whatever_its_toughness) {
+TEST_F(Tear, WhatIsStretchedTooFarPartsWhateverItsToughness) {
   Simulation s(tough_bar(file, 1.2, 0.4), open_backend("cpu"));
   const double mass = mass_of(s);
   while (s.time() < 0.4 && !s.divergence()) s.advance(16);
@@ -289,7 +289,7 @@ Scene notched_bar(const std::filesystem::path& file, double break_stretch) {
   return scene;
 }
 
-TEST_F(Tear, beside_a_tear_it_parts_sooner) {
+TEST_F(Tear, BesideATearItPartsSooner) {
   for (const double limit : {0.0, 2.0}) {
     Simulation s(notched_bar(file, limit), open_backend("cpu"));
     while (s.time() < 0.4 && !s.divergence()) s.advance(16);
@@ -300,7 +300,7 @@ TEST_F(Tear, beside_a_tear_it_parts_sooner) {
   }
 }
 
-TEST_F(Tear, stretched_edges_part_alike_after_a_checkpoint_and_on_the_other_backend) {
+TEST_F(Tear, StretchedEdgesPartAlikeAfterACheckpointAndOnTheOtherBackend) {
   const Scene scene = notched_bar(file, 2);
   SimulationOptions options;
   options.dt = 4e-4;
@@ -322,7 +322,7 @@ TEST_F(Tear, stretched_edges_part_alike_after_a_checkpoint_and_on_the_other_back
   EXPECT_EQ(write_state(whole.state()), write_state(device.state()));
 }
 
-TEST_F(Tear, what_cannot_tear_is_refused) {
+TEST_F(Tear, WhatCannotTearIsRefused) {
   Scene scene = bar_scene(file, 1500);
   scene.relaxation.enabled = true;
   EXPECT_NE(error_of([&] { Simulation(scene, open_backend("cpu")); }).find("relaxation"), std::string::npos);

@@ -77,7 +77,7 @@ void check_surface(const CutTopology& body, const BodyMesh& uncut, const BodyMes
   }
 }
 
-TEST(TetSurface, every_cut_leaves_closed_pieces_of_the_right_volume) {
+TEST(TetSurface, EveryCutLeavesClosedPiecesOfTheRightVolume) {
   std::mt19937 random(23);
   std::uniform_real_distribution<double> real(-1, 1);
   int split = 0;

@@ -371,6 +371,15 @@ def check_documents(tree):
 
 
 # Those since the last tag, or the last 20.
+TEST_NAME = re.compile(r"^TEST(?:_P|_F)?\((\w+), ([a-z]\w*|\w*_\w*)\)", re.M)
+
+
+def check_test_names(tree):
+    for file in tree.under("tests", ".cpp"):
+        for suite, name in TEST_NAME.findall(tree.text(file)):
+            tree.report(f"{file}: the test {suite}.{name} is to be named InCapitalsLikeThis")
+
+
 def check_subjects(tree):
     tag = tree.git("describe", "--tags", "--abbrev=0").strip()
     which = [f"{tag}..HEAD"] if tag else ["-20"]
@@ -393,6 +402,7 @@ def main():
     check_bits(tree)
     check_kernels(tree)
     check_documents(tree)
+    check_test_names(tree)
     check_subjects(tree)
     if tree.broken:
         print("\n".join(tree.broken))

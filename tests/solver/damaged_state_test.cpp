@@ -11,7 +11,7 @@
 namespace pliant {
 namespace {
 
-TEST(DamagedState, whatever_the_bytes_it_is_taken_up_or_refused) {
+TEST(DamagedState, WhateverTheBytesItIsTakenUpOrRefused) {
   const Scene scene = rich_scene();
   const auto source = rich_simulation(scene);
   const Snapshot good = source->snapshot();
@@ -71,7 +71,7 @@ TEST(DamagedState, whatever_the_bytes_it_is_taken_up_or_refused) {
   EXPECT_EQ(target.deep_hash(), source->deep_hash());
 }
 
-TEST(DamagedState, what_is_refused_is_named) {
+TEST(DamagedState, WhatIsRefusedIsNamed) {
   const Scene scene = rich_scene();
   const auto source = rich_simulation(scene);
   Simulation target(scene, open_backend("cpu"));

@@ -112,7 +112,7 @@ class ResumeMatrix : public ::testing::TestWithParam<Case> {
   test::TempFolder folder_;
 };
 
-TEST_P(ResumeMatrix, resumed_equals_uninterrupted) {
+TEST_P(ResumeMatrix, ResumedEqualsUninterrupted) {
   const auto probe = make();
   const std::set<std::int64_t> steps = checkpoints(*probe, edited() ? kMostStepsEdited : most_steps());
   // The same run with a checkpoint at each of these steps: taking one, or cutting a run into pieces, changes nothing.

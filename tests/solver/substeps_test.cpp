@@ -49,7 +49,7 @@ double farthest(const Simulation& s) {
   return most;
 }
 
-TEST(Substeps, a_hybrid_that_they_drive_apart_goes_on_with_one) {
+TEST(Substeps, AHybridThatTheyDriveApartGoesOnWithOne) {
   for (const bool extrapolate : {false, true}) {
     Simulation s(sheared_bar(extrapolate), open_backend("cpu"));
     EXPECT_EQ(s.model().flsm.at(0).settings.substeps, 8);
@@ -64,7 +64,7 @@ TEST(Substeps, a_hybrid_that_they_drive_apart_goes_on_with_one) {
   }
 }
 
-TEST(Substeps, a_run_resumes_with_those_that_it_went_on_with) {
+TEST(Substeps, ARunResumesWithThoseThatItWentOnWith) {
   for (const Scene& scene : {sheared_bar(false), pressed_bar()}) {
     Simulation whole(scene, open_backend("cpu"));
     while (whole.state().most_substeps == 0 && whole.step() < 10000) whole.advance(32);
@@ -84,7 +84,7 @@ TEST(Substeps, a_run_resumes_with_those_that_it_went_on_with) {
 }
 
 /// Positions, velocities and the stiffness of shape matching are as before.
-TEST(Substeps, nothing_moves_when_they_become_fewer) {
+TEST(Substeps, NothingMovesWhenTheyBecomeFewer) {
   Scene scene = sheared_bar(false);
   scene.bodies[0].model.young = 0;
   scene.bodies[0].model.alpha = 0.8;
@@ -122,7 +122,7 @@ TEST(Substeps, nothing_moves_when_they_become_fewer) {
   EXPECT_FALSE(edits.fewer_substeps()) << "there is one already";
 }
 
-TEST(Substeps, stay_where_a_mesh_file_has_gone) {
+TEST(Substeps, StayWhereAMeshFileHasGone) {
   Simulation first(pressed_bar(), open_backend("cpu"));
   while (first.state().most_substeps == 0 && first.step() < 10000) first.advance(32);
   const test::TempFolder folder;
@@ -141,7 +141,7 @@ TEST(Substeps, stay_where_a_mesh_file_has_gone) {
   EXPECT_EQ(s.state().most_substeps, 0);
 }
 
-TEST(Substeps, stay_where_the_step_is_given) {
+TEST(Substeps, StayWhereTheStepIsGiven) {
   Scene scene = sheared_bar(true);
   Simulation automatic(scene, open_backend("cpu"));
   scene.dt = automatic.dt();
