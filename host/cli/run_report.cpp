@@ -125,18 +125,28 @@ class Report {
       std::string text;
       for (const Quantity q : probe.quantities) {
         const std::string& word = word_of(quantity_words(), q);
-        if (q == Quantity::stress) {
-          row[word] = *state.stress;
-          text += fmt::format(", stress [{:.6g}] Pa", fmt::join(*state.stress, ", "));
-        } else if (q == Quantity::energy) {
-          row[word] = {{"kinetic", state.energy->kinetic}, {"strain", state.energy->strain}};
-          text += fmt::format(", energy {:.6g} J kinetic, {:.6g} J of strain", state.energy->kinetic, state.energy->strain);
-        } else {
-          row[word] = state.numbers(q);
+        row[word] = state.numbers(q);
+        const auto print = [&](const char* unit) {
+          text += fmt::format(", {} [{:.6g}] {}", word, fmt::join(state.numbers(q), ", "), unit);
+        };
+        switch (q) {
+          case Quantity::position:
+          case Quantity::velocity:
+            break;  // in the table and in the JSON
+          case Quantity::displacement:
+            print("m");
+            break;
+          case Quantity::stress:
+            print("Pa");
+            break;
+          case Quantity::force:
+          case Quantity::reaction:
+            print("N");
+            break;
+          case Quantity::energy:
+            row[word] = {{"kinetic", state.energy->kinetic}, {"strain", state.energy->strain}};
+            text += fmt::format(", energy {:.6g} J kinetic, {:.6g} J of strain", state.energy->kinetic, state.energy->strain);
         }
-        if (q == Quantity::displacement) text += fmt::format(", displacement [{:.6g}] m", fmt::join(*state.displacement, ", "));
-        if (q == Quantity::force) text += fmt::format(", force [{:.6g}] N", fmt::join(*state.force, ", "));
-        if (q == Quantity::reaction) text += fmt::format(", reaction [{:.6g}] N", fmt::join(*state.reaction, ", "));
       }
       rows.push_back(std::move(row));
       if (!text.empty()) out_.print(fmt::format("probe {}:{}", probe.name, text.substr(1)));

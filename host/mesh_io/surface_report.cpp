@@ -9,9 +9,9 @@
 namespace pliant {
 namespace {
 
-// A closed surface with less volume, in units of its area to the power of 3/2, is a sheet of which both sides coincide.
-constexpr double kFlatTriangle = 1e-9;
-// Between the lattice's volume and that inside the surface.
+// A closed surface whose volume is at most this times its area^(3/2) counts as a sheet whose two sides coincide.
+constexpr double kFlatSurface = 1e-9;
+// Largest relative difference between the volume of the lattice and that inside the surface before a remark is made.
 constexpr double kDisagree = 0.05;
 
 std::string at(const Vec3d& p) { return fmt::format("({:.6g}, {:.6g}, {:.6g}) m", p[0], p[1], p[2]); }
@@ -52,7 +52,7 @@ void require_inside(const SurfaceReport& r) {
   if (r.hole_area() > kLargestHole * (r.area - r.sheet_area)) {
     fail(r, fmt::format("has no inside to fill: {}; up to {:.0f} % are closed; {}", holes(r), 100 * kLargestHole, mend));
   }
-  if (!(r.volume > kFlatTriangle * std::pow(r.area, 1.5))) {
+  if (!(r.volume > kFlatSurface * std::pow(r.area, 1.5))) {
     fail(r, fmt::format("has no inside to fill: its {:.3g} m^2 enclose {:.3g} m^3; {}", r.area, r.volume, mend));
   }
 }

@@ -7,7 +7,8 @@
 
 namespace pliant::planning {
 
-/// Size of the body, for the spacing that gives about as many nodes as wanted: V / h^3 inside and A / 2 h^2 on the surface.
+/// Volume V and area A of the body. A lattice of spacing h has about V / h^3 + A / (2 h^2) nodes, from which the spacing for a
+/// wanted number follows.
 struct Size {
   double volume = 0;  ///< [m^3]
   double area = 0;    ///< [m^2]

@@ -79,7 +79,8 @@ struct DeformationModel {
   bool conservative =
       true;         ///< "coupling": "conservative" returns the reaction of the interface to the regions, "one-sided" does not
   bool cut = true;  ///< "cut": false: blades do not affect the shape-matching part
-  std::string follow;  ///< name of what the operational region follows: kFocus, a blade or a tool; empty: it stays
+  std::string
+      follow;  ///< what the operational region follows: the name of a blade or tool, or kFocus (blade.h); empty: nothing
   std::optional<std::vector<std::int32_t>> cells;  ///< set in code: the operational cells, after a region has moved
   std::string pointer;                             ///< JSON pointer ("/bodies/0/model")
 };

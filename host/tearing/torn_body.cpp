@@ -196,7 +196,8 @@ std::vector<std::int32_t> TornBody::tear(const std::vector<TetFace>& faces) {
   const std::vector<std::int32_t> origin = part_at_faces(torn_.tets, whole_->nodes.size(), broken_);
   torn_.nodes.clear();
   for (const std::int32_t n : origin) torn_.nodes.push_back(whole_->nodes[n]);
-  // Parts only ever become smaller, so the corners of a part had one node before.
+  // A tear splits nodes and never joins them: all corners that share a node now shared one before, and any of them gives its
+  // origin.
   std::vector<std::int32_t> from(origin.size(), -1);
   for (std::size_t t = 0; t < before.size(); ++t) {
     for (std::size_t a = 0; a < 4; ++a) from[torn_.tets[t][a]] = before[t][a];

@@ -1,8 +1,9 @@
 // Broad phase: which tools a tile of contact points may touch before the next search. contact_near: [tiles] one bit per tool. A point is near a tool
 // if their distance is less than a margin plus twice its relative motion until the next search at the present speed. contact_gap: [tiles][tools] the
-// least of these distances, reduced by that motion [m]. contact_params: quantum of force [N], its inverse, quantum per unit of weight, inverse quanta
-// of torque [1/(N m)] and area [1/m^2], margin [m], steps between two searches. Tiles that are no longer near a tool lose their friction anchors and
-// compliances.
+// least of these distances, reduced by that motion [m]. Tiles that are no longer near a tool lose their friction anchors and compliances.
+// contact_params: 0 unit of force, of which every force is a whole multiple [N]; 1 its inverse; 2 unit of force over the unit of weights; 3 inverse
+// of the unit of torque [1/(N m)]; 4 inverse of the unit of area [1/m^2]; 5 margin [m]; 6 steps between two searches; 7 friction of tissue on tissue;
+// 8 how far the first depth of a pair goes back per search, in spacings.
 #include "arith.cl"
 #include "contact_shape.cl"
 #include "contact_point.cl"

@@ -185,7 +185,7 @@ std::size_t PlacedProbes::element_now(const Simulation& simulation, const Place&
   const CutTopology* topology = simulation.cut_topology(place.body);
   if (topology == nullptr) return place.element;
   const ModelBody& body = simulation.model().bodies[place.body];
-  // A lattice cell may have six tetrahedra.
+  // In a lattice cut into tetrahedra each cell is six consecutive elements, otherwise one.
   const std::size_t parts = static_cast<std::size_t>(body.elements()) / topology->elements().nodes.size();
   const auto cell = static_cast<std::int32_t>(place.element / parts);
   if (!topology->divided(cell)) return place.element;
