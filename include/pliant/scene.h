@@ -122,14 +122,13 @@ struct SceneSpec {
   double least_step = 0.1;               ///< lower bound of an automatic step as a fraction of the first one, 0 (none) to 1
   double break_stretch =
       4;  ///< stretch beyond which an edge at a cut parts; elsewhere four times this; 0: never (docs/scene.md)
-  std::optional<RelaxationSpec> relaxation;  ///< absent: a dynamic simulation
-  std::vector<BladeSpec> blades;             ///< blades on prescribed paths
-  std::vector<ToolSpec> tools;               ///< rigid tools in contact with the bodies
-  std::optional<ContactSpec> contact;        ///< contact between tissue and tissue; absent: none
-  /// Rows (time [s], x, y, z [m]) of the focus, which operational regions can follow.
-  std::vector<std::array<double, 4>> focus_path;
-  std::vector<BodySpec> bodies;   ///< at least one
-  std::vector<ProbeSpec> probes;  ///< evaluated by World::probes()
+  std::optional<RelaxationSpec> relaxation;       ///< absent: a dynamic simulation
+  std::vector<BladeSpec> blades;                  ///< blades on prescribed paths
+  std::vector<ToolSpec> tools;                    ///< rigid tools in contact with the bodies
+  std::optional<ContactSpec> contact;             ///< contact between tissue and tissue; absent: none
+  std::vector<std::array<double, 4>> focus_path;  ///< path of the focus, which regions can follow: (time [s], x, y, z [m])
+  std::vector<BodySpec> bodies;                   ///< at least one
+  std::vector<ProbeSpec> probes;                  ///< evaluated by World::probes()
 };
 
 }  // namespace pliant

@@ -161,7 +161,7 @@ std::map<std::string, int> enumerators(const std::string& header, const std::str
 
 /// Names come from the header, so that a new code without a name, and two codes of one name, are seen here.
 TEST(CApiNames, EveryStatusHasOne) {
-  const std::map<std::string, int> codes = enumerators("types.h", "typedef enum pliant_status", "PLIANT_");
+  const std::map<std::string, int> codes = enumerators("c/types.h", "typedef enum pliant_status", "PLIANT_");
   EXPECT_GE(codes.size(), 8U);
   std::set<int> numbers;
   for (const auto& [name, number] : codes) {

@@ -67,7 +67,7 @@ def members(text):
 
 
 def cpp():
-    world = code_of("include/pliant/world.h")
+    world = re.sub(r"\[\[deprecated[^\n]*", "", code_of("include/pliant/world.h"))
     found = {f"World::{n}" for n in re.findall(r"(?<![\w~:])(\w+)\([^;]*?\)\s*(?:const)?\s*(?:noexcept)?;",
                                                block(world, "class PLIANT_API World").split("private:")[0])}
     headers = world + code_of("include/pliant/scene.h") + code_of("include/pliant/frame.h") + code_of("include/pliant/probe.h") + code_of("include/pliant/tool.h") + code_of("include/pliant/world_types.h")
