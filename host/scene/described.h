@@ -77,16 +77,17 @@ void describe_scene(V&& v, S&& s) {
      "([stability](stability.md#integrators)), both for comparison"});
   v(s.inverted, inverted_words(),
     {"inverted", any, "", "\"stop\"",
-     "what becomes of an element whose J = det F is not positive: it goes on and is driven back, or the run ends (see "
+     "treatment of an element whose J = det F is not positive: it is driven back, or the run ends (see "
      "[troubleshooting](troubleshooting.md))"});
   v(s.break_stretch,
     {"break_stretch", above(1).or_number(0), "", "0",
-     "in a scene that is cut, an edge beside a cut that is longer than this times its length at rest parts in its middle, and "
-     "elsewhere at four times this; in a body with a `toughness`, beside a tear likewise, along faces at one of its ends; 0: "
-     "none does"});
-  v(s.least_step, {"least_step", from_to(0, 1), "", "0",
-                   "floor of an automatic step, as a share of the first: elements that ask for less get inertia (no weight) "
-                   "instead, which `run` reports; 0: no floor"});
+     "in a scene that is cut, an edge at a cut parts in its middle when it is longer than this times its undeformed length, "
+     "and elsewhere at four times this; in a body with a `toughness` likewise at a tear, along faces at one of its ends; 0: "
+     "never"});
+  v(s.least_step,
+    {"least_step", from_to(0, 1), "", "0",
+     "lower bound of an automatic step, as a share of the first: elements that need a shorter one get inertia (no weight) "
+     "instead, which `run` reports; 0: no floor"});
   v(s.least_fill,
     {"least_fill", from_to(0, 1), "", "0",
      "where blades cut, a cell or a copy of one is at least as stiff and as inert as this share of a full cell (copies of one "

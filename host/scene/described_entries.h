@@ -22,8 +22,8 @@ void describe_curve(V&& v, S&& s) {
 /// Of fixed nodes and of rotations.
 template <class V, class S>
 void describe_axes(V&& v, S&& s) {
-  v(s.axes, {"axes", any, "", "\"yz\"", "axes that are held; in `prescribed` beside `rotate` only: those that it prescribes",
-             "`\"xyz\"`"});
+  v(s.axes,
+    {"axes", any, "", "\"yz\"", "axes that are held; in `prescribed` with `rotate`: those that it prescribes", "`\"xyz\"`"});
 }
 
 template <class V, class S>

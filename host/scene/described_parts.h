@@ -42,13 +42,13 @@ void describe_material(V&& v, S&& s) {
   v(s.density, {"density", above(0), "kg/m^3", "1060", "density at rest"});
   v(s.damping, {"damping", at_least(0), "1/s", "5", "mass-proportional rate c in M u'' + c M u' = R - F"});
   v(s.viscosity, {"viscosity", at_least(0), "Pa s", "20",
-                  "shear viscosity eta of a stress 2 eta dev(D) + zeta tr(D) I beside that of the law (see below)"});
+                  "shear viscosity eta of a stress 2 eta dev(D) + zeta tr(D) I, added to that of the law (see below)"});
   v(s.bulk_viscosity, {"bulk_viscosity", at_least(0), "Pa s", "50", "its bulk viscosity zeta"});
   v(s.hourglass, {"hourglass", at_least(0), "", "0.5", "factor on the hourglass stiffness of `hex8`"});
   v(s.toughness, {"toughness", above(0).absent_at(0), "Pa", "9000",
                   "largest principal stress that it bears before it tears; none: it does not tear"});
   v(s.integrity,
-    {"integrity", above_to(0, 1).absent_at(1), "", "0.7", "share of the toughness that is left; only beside `toughness`"});
+    {"integrity", above_to(0, 1).absent_at(1), "", "0.7", "share of the toughness that is left; only with `toughness`"});
 }
 
 /// Of a tool, and of tissue on tissue.
@@ -65,17 +65,17 @@ void describe_contact_law(V&& v, S&& s) {
      "`\"auto\"`: hard at once, without a number from you; a number is lambda of the law of Hunt and Crossley, per "
      "area, to a depth of a quarter of a cell, from where it is hard"});
   v(s.exponent, {"exponent", from_to(1, 1).or_number(1.5).absent_at(1), "", "1.5",
-                 "power of the depth, beside a stiffness that is a number"});
-  v(s.alpha,
-    {"alpha", at_least(0).absent_at(0), "s/m", "0.5",
-     "slope of the coefficient of restitution, which is 1 - alpha v at small speeds v; beside a stiffness that is a number"});
+                 "power of the depth; only with a stiffness that is a number"});
+  v(s.alpha, {"alpha", at_least(0).absent_at(0), "s/m", "0.5",
+              "slope of the coefficient of restitution, which is 1 - alpha v at small speeds v; only with a stiffness that is "
+              "a number"});
 }
 
 template <class V, class S>
 void describe_tool(V&& v, S&& s) {
   describe_friction(v, s);
   v(s.edges, {"edges", any, "", "true",
-              "`true` beside a sphere, capsule, box or mesh: where it is thinner than half a cell it is met along its edges "
+              "`true`, of a sphere, capsule, box or mesh: where it is thinner than half a cell it is met along its edges "
               "instead of passing between points of contact; experimental ([contact](contact.md#thin-tools))"});
   v(s.scale, {"scale", above(0).absent_at(1), "", "0.001", "factor on the coordinates of a mesh or a sequence"});
   v(s.frames_per_second, {"frames_per_second", above(0).absent_at(30), "1/s", "25",
@@ -122,7 +122,7 @@ void describe_interface(V&& v, S&& s) {
   v(s.beta,
     {"beta", above(0).or_word("auto"), "N/m", "20", "stiffness of the interface; `\"auto\"`: alpha m / dt^2 of each node"});
   v(s.substeps, {"substeps", from_to(1, 64), "", "4",
-                 "steps of TLED per step of FLSM; a run goes on with 1 where more drive the elements apart "
+                 "steps of TLED per step of FLSM; a run continues with 1 where more drive the elements apart "
                  "([stability.md](stability.md))"});
   v(goals_of(s), goals_words(),
     {"goals", any, "", "\"extrapolated\"",
@@ -143,7 +143,7 @@ void describe_regions(V&& v, S&& s) {
 template <class V, class S>
 void describe_alpha(V&& v, S&& s) {
   v(s.alpha, {"alpha", above_to(0, 1), "", "0.8",
-              "share of the way to its goal that a node takes per step, as long as the step is the first one; shorter steps "
+              "fraction of the distance to its goal that a node moves per step; refers to the first step: shorter steps "
               "take less, and are as stiff",
               "as `stiffness` of the material (hybrid), 0.5 (flsm)"});
 }

@@ -50,7 +50,7 @@ std::string compact(const Json& value) {
   return value.is_object() ? "{" + text + "}" : "[" + text + "]";
 }
 
-/// A value on one line if that ends within 128 columns, else one member a line. `around`: what stands beside it on its line.
+/// A value on one line if that ends within 128 columns, else one member a line. `around`: what stands on the same line.
 std::string pretty(const Json& value, std::size_t indent = 0, std::size_t around = 0) {
   std::string line = compact(value);
   if (!value.is_structured() || indent + around + line.size() <= 128) return line;
@@ -192,7 +192,7 @@ std::string law_tables() {
 }
 
 std::string element_table() {
-  std::string text = "| element | what it is |\n|---|---|\n";
+  std::string text = "| element | description |\n|---|---|\n";
   for (const Word<ElementKind>& w : element_words()) text += "| " + code(w.word) + " | " + w.what + " |\n";
   return text;
 }
