@@ -101,6 +101,7 @@ class PLIANT_API World {
   void push_node(std::size_t body, std::int64_t node, const Vec3d& force);
   void clear_handles();                    ///< removes all grabs and pushes, and drives that have not started
   void move_focus(const Vec3d& position);  ///< moves the focus, which operational regions can follow, to a point [m]
+
   /// The name of clear_handles() before 0.2.0.
   [[deprecated("clear_handles()")]] void clear_tools() { clear_handles(); }
   /// The name of move_focus() before 0.2.0.
