@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <cstring>
 
-#include "pliant/error.h"
 #include "pliant/c/types.h"
+#include "pliant/error.h"
 
 namespace pliant::api {
 
