@@ -52,6 +52,6 @@
 #define PLIANT_FLSM_REST_PLANES 10    // 1 / sum m, centroid (3) [cells], second moment (6)
 #define PLIANT_FLSM_SPIN_PLANES 6     // inverse of the undeformed inertia (6)
 #define PLIANT_FLSM_ELASTIC_PLANES 7  // inverse of the second moment (6), second moment of the material
-#define PLIANT_FLSM_STRAIN 2.25f  // e : e up to which the law of elastic regions is a polynomial (flsm_elastic.cpp)
+#define PLIANT_FLSM_STRAIN 2.25f      // e : e up to which the law of elastic regions is a polynomial (flsm_elastic.cpp)
 
 #endif
