@@ -7,9 +7,27 @@
 
 namespace pliant::ref {
 
+namespace {
+
+/// Returns true if a point at the tile of nodes is marked as touching in contact_force.
+bool touched(std::int64_t tile, const std::int32_t* offset, const std::int32_t* tiles, const std::int32_t* near,
+             const std::int32_t* force) {
+  for (std::int32_t t = offset[tile]; t < offset[tile + 1]; ++t) {
+    if (near[tiles[t]] == 0) continue;
+    const std::int32_t* marks = force + std::int64_t{4 * PLIANT_TILE} * tiles[t] + 3 * PLIANT_TILE;
+    std::int32_t any = 0;
+    for (int l = 0; l < PLIANT_TILE; ++l) any |= marks[l];
+    if (any != 0) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 template <class Scalar, int MOMENT, int EDGES>
 void contact_apply(Range range, Scalar* node_u, Scalar* node_w, const std::int32_t* contact_slot,
                    const std::int32_t* contact_free, const std::int32_t* contact_node_list,
+                   const std::int32_t* contact_tiles_offset, const std::int32_t* contact_tiles,
                    const std::int32_t* contact_gather_offset, const std::int32_t* contact_gather,
                    const std::int32_t* contact_gather_units, const std::int32_t* contact_gather_turns,
                    const std::int32_t* contact_near, const std::int32_t* contact_force, const std::int32_t* touch_moment,
@@ -18,11 +36,15 @@ void contact_apply(Range range, Scalar* node_u, Scalar* node_w, const std::int32
                    const Scalar* contact_params, const Scalar* step_params) {
   constexpr std::int64_t area_plane = std::int64_t{3} * PLIANT_TILE;
   const Scalar h = step_params[0], half_hh = (Scalar(0.5) * h) * h, quantum = contact_params[2];
+  std::int64_t seen = -1;
+  bool gathers = false;
   for (std::int64_t n = range.begin; n < range.end; ++n) {
     const std::int64_t i = listed(contact_node_list, n), tile = i / PLIANT_TILE;
+    if (tile != seen) gathers = touched(tile, contact_tiles_offset, contact_tiles, contact_near, contact_force);
+    seen = tile;
     std::int64_t sum[3] = {};
     Scalar area = 0;
-    for (std::int64_t k = contact_gather_offset[tile]; k < contact_gather_offset[tile + 1]; ++k) {
+    for (std::int64_t k = contact_gather_offset[tile]; gathers && k < contact_gather_offset[tile + 1]; ++k) {
       const std::int64_t entry = k * PLIANT_TILE + i % PLIANT_TILE, at = contact_gather[entry];
       const std::int64_t units = contact_gather_units[entry];
       if ((units == 0 && MOMENT == 0 && EDGES == 0) || contact_near[at / (4 * PLIANT_TILE)] == 0 ||

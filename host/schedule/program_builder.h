@@ -108,6 +108,7 @@ class ProgramBuilder {
   void add_contact_gather();
   void add_contact_passes();
   [[nodiscard]] std::vector<Arg> tool_pass_args(const std::string& kernel) const;
+  [[nodiscard]] std::vector<Arg> apply_args(const char* force) const;
   void add_contact_look();
   [[nodiscard]] std::vector<Arg> named(std::initializer_list<const char*> buffers) const;
 

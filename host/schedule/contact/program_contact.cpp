@@ -244,6 +244,32 @@ std::vector<Arg> ProgramBuilder::tool_pass_args(const std::string& kernel) const
   return list;
 }
 
+/// Arguments of contact_apply. `force`: the buffer with the forces of the points.
+std::vector<Arg> ProgramBuilder::apply_args(const char* force) const {
+  const bool tissue = model_.tissue_contact.has_value();
+  return named({"node_u",
+                "node_w",
+                "contact_slot",
+                "contact_free",
+                "contact_node_list",
+                "contact_tiles_offset",
+                "contact_tiles",
+                "contact_gather_offset",
+                "contact_gather",
+                "contact_gather_units",
+                tissue ? "contact_gather_turns" : "contact_gather_units",
+                "contact_near",
+                force,
+                tissue ? "touch_moment" : force,
+                of_edges("contact_gather_corner", "contact_gather_units"),
+                of_edges("contact_corner_force", force),
+                of_edges("contact_corner_weight", "contact_rest"),
+                "contact_rest",
+                "contact_node_sum",
+                "contact_params",
+                "step_params"});
+}
+
 /// The contact passes of every step, over the points and nodes that the last search listed.
 void ProgramBuilder::add_contact_passes() {
   const auto points = static_cast<std::int64_t>(padded(model_.contact->size()));
@@ -265,14 +291,7 @@ void ProgramBuilder::add_contact_passes() {
     program_.step.back().active = kernel == std::string("contact_apply") ? program_.near_nodes : program_.near_points;
   };
   const auto apply = [&](const char* force) {
-    pass("contact_apply",
-         named({"node_u", "node_w", "contact_slot", "contact_free", "contact_node_list", "contact_gather_offset",
-                "contact_gather", "contact_gather_units", tissue ? "contact_gather_turns" : "contact_gather_units",
-                "contact_near", force, tissue ? "touch_moment" : force,
-                of_edges("contact_gather_corner", "contact_gather_units"), of_edges("contact_corner_force", force),
-                of_edges("contact_corner_weight", "contact_rest"), "contact_rest", "contact_node_sum", "contact_params",
-                "step_params"}),
-         Shape::lanes, nodes, "contact nodes");
+    pass("contact_apply", apply_args(force), Shape::lanes, nodes, "contact nodes");
     program_.step.back().defines = {{"MOMENT", tissue ? 1 : 0}, {"EDGES", edged_tools_ != 0 ? 1 : 0}};
   };
   add_contact_look();

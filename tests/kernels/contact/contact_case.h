@@ -17,7 +17,7 @@ struct ContactData {
   Reals node_u, node_w, rest, weight, share, yield, anchor, node_sum, data, grid, pose, params, step_params;
   Ints node, near, force, change, tool_force, sum, kind;
   Reals gap;
-  Ints node_list, slot, free, gather_offset, gather, units, turns, moment;
+  Ints node_list, slot, free, tiles_offset, tiles, gather_offset, gather, units, turns, moment;
   Reals edge, surface, patch, corner_weight;
   Ints corner_force, corner;
 
@@ -171,14 +171,18 @@ struct ContactData {
             {static_cast<int>(base(i, 4)), parts, turn[16 * i + a], turn[16 * i + 8 + a], static_cast<int>(a)});
       }
     }
-    gather_offset = {0};
+    gather_offset = tiles_offset = {0};
     for (std::size_t first = 0; first < at.size(); first += 16) {
       std::size_t most = 0;
       for (std::size_t n = first; n < first + 16; ++n) {
         slot.push_back(static_cast<std::int32_t>(std::min(n, slots)));
         free.push_back(n < slots ? static_cast<std::int32_t>(n % 8) : 0);
         most = std::max(most, at[n].size());
+        for (const auto& entry : at[n]) tiles.push_back(entry[0] / 64);
       }
+      std::sort(tiles.begin() + tiles_offset.back(), tiles.end());
+      tiles.erase(std::unique(tiles.begin() + tiles_offset.back(), tiles.end()), tiles.end());
+      tiles_offset.push_back(static_cast<std::int32_t>(tiles.size()));
       for (std::size_t row = 0; row < most; ++row) {
         for (std::size_t n = first; n < first + 16; ++n) {
           gather.push_back(row < at[n].size() ? at[n][row][0] : 0);
@@ -303,6 +307,8 @@ inline KernelCase apply_case(const ContactData& d, int moment = 0, int edges = 0
       .ints("contact_slot", d.slot)
       .ints("contact_free", d.free)
       .ints("contact_node_list", d.node_list)
+      .ints("contact_tiles_offset", d.tiles_offset)
+      .ints("contact_tiles", d.tiles)
       .ints("contact_gather_offset", d.gather_offset)
       .ints("contact_gather", d.gather)
       .ints("contact_gather_units", d.units)
