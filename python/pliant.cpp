@@ -106,6 +106,13 @@ std::string add_tool(pliant::World& w, const py::dict& tool, const std::string& 
   return w.parse_tool(text, folder);
 }
 
+/// An entry of "changes" by its keys.
+void change(pliant::World& w, const py::kwargs& change) {
+  const auto text = py::module_::import("json").attr("dumps")(change).cast<std::string>();
+  const py::gil_scoped_release release;
+  w.parse_change(text);
+}
+
 void bind_frame(py::module_& m) {
   using pliant::Frame;
   py::class_<Frame, std::shared_ptr<Frame>>(m, "Frame", "The surface at one step. Arrays are views: they keep the frame alive.")
@@ -266,6 +273,10 @@ void bind_tools(py::class_<pliant::World>& world) {
       .def("push_node", &World::push_node, py::arg("body"), py::arg("node"), py::arg("force"))
       .def("clear_handles", &World::clear_handles)
       .def("move_focus", &World::move_focus, py::arg("position"))
+      .def("change", &change,
+           "Changes gravity, materials, models or what holds a body: the keys of an entry of `changes` of a scene file without "
+           "its time, such as "
+           "change(body=\"liver\", material={\"young\": 2000})")
       .def("add_tool", &add_tool, py::arg("tool"), py::arg("folder") = "",
            "tool: a dict with the keys of an entry of `tools` of a scene file; its name")
       .def("remove_tool", &World::remove_tool, py::arg("name"), Free())

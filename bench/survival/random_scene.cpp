@@ -73,6 +73,8 @@ class RandomScene {
     scene["bodies"] = Json::array({body});
     if (touches) touch(scene);
     if (has_tools) scene["tools"] = tools();
+    Dice later(number_ ^ 0x1b873593);
+    if (later.chance(0.3)) scene["changes"] = changes(later, body);
     return scene;
   }
 
@@ -135,6 +137,26 @@ class RandomScene {
     }
     if (tears) m["toughness"] = young_ * dice_.uniform(0.1, 0.8);
     body["material"] = m;
+  }
+
+  /// Parameters that change on the way: stiffer or softer up to ten times, other damping, gravity, region, or nothing holds it.
+  Json changes(Dice& dice, const Json& body) const {
+    Json list = Json::array();
+    double time = 0;
+    for (std::size_t i = 0; i <= dice.below(3); ++i) {
+      time += dice.uniform(0.05, 0.8);
+      Json change{{"time", time}};
+      const std::size_t kind = dice.below(4);
+      if (kind == 0) change["gravity"] = vec::mul(dice.direction(), dice.uniform(0, 20));
+      if (kind == 1) change["material"]["damping"] = dice.logarithmic(0.5, 50);
+      if (kind == 1 && body["material"].contains("young") && !varied_)
+        change["material"]["young"] = young_ * dice.logarithmic(0.1, 10);
+      if (kind == 2 && body["model"]["type"] == "hybrid") change["model"]["ratio"] = dice.uniform(0.2, 0.8);
+      if (kind == 2 && body["model"]["type"] == "flsm") change["model"]["alpha"] = dice.uniform(0.1, 1);
+      if (kind == 3) change["fixed"] = dice.chance(0.5) ? Json::array() : body["fixed"];
+      if (change.size() > 1) list.push_back(change);
+    }
+    return list;
   }
 
   /// All beyond a share of the longest axis: {"plane": [point, normal]}.

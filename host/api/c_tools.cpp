@@ -49,6 +49,12 @@ pliant_status pliant_world_parse_tool(pliant_world world, const char* tool_text,
     if (size > 0) name[given.copy(name, size - 1)] = 0;
   });
 }
+pliant_status pliant_world_parse_change(pliant_world world, const char* change_text) {
+  return on(world, [&](CWorld& w) {
+    need(change_text, "change_text");
+    w.world.parse_change(change_text);
+  });
+}
 pliant_status pliant_world_remove_tool(pliant_world world, const char* name) {
   return on(world, [&](CWorld& w) {
     need(name, "name");

@@ -79,6 +79,11 @@ struct World::Impl {
   void change_tools_now();
   std::string add_tool(ContactTool tool);
 
+  // world_changes.cpp
+  /// Checks a change of parameters, an entry of "changes" as text, and makes it now or leaves it to the worker.
+  void change(const std::string& text);
+  void change_pending();
+
   // world_worker.cpp
   bool start_job(std::function<void()> work);
   void wait_until_idle();
@@ -111,6 +116,8 @@ struct World::Impl {
   bool stop = false;
   std::function<void()> job;                  ///< work for the worker; empty: idle
   std::vector<api::CutRequest> pending_cuts;  ///< made before the worker's next batch
+  std::vector<std::string> pending_changes;   ///< likewise, after them
+  std::string asked_parameters;               ///< used by the caller: parameters after all changes (scene/change.h)
   bool beside = false;                        ///< used by the caller: asynchronous steps were started and not waited for
   bool cut_since_read = false;                ///< `newest` does not include the last cut
   std::exception_ptr failure;

@@ -134,10 +134,12 @@ StepReport World::Impl::run(std::int64_t steps) {
     if (simulation->at_equilibrium()) static_cast<void>(handles->apply(*simulation));  // driving a tool ends the equilibrium
     if (steps == 0) {  // makes pending cuts and tool changes even without steps
       cut_pending();
+      change_pending();
       change_tools_now();
     }
     while (simulation->step() - first < steps && !simulation->divergence() && !simulation->at_equilibrium()) {
       cut_pending();
+      change_pending();
       change_tools_now();
       const std::int64_t left = std::min<std::int64_t>(steps - (simulation->step() - first), handles->apply(*simulation));
       simulation->advance(simulation->next_batch(left));
@@ -280,7 +282,9 @@ void World::Impl::restart(std::shared_ptr<Simulation> fresh) {
     const std::lock_guard lock(mutex);
     failure = nullptr;
     pending_cuts.clear();
+    pending_changes.clear();
   }
+  asked_parameters = simulation->state().changed.parameters;
   publish_clock();
   read_frame(true);
 }

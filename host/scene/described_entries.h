@@ -55,6 +55,21 @@ void describe_pressure(V&& v, S&& s) {
                           "the pressure at factor 1; positive pushes along the inward normal of the deformed surface"}));
 }
 
+/// Of a change while the scene runs, besides what it changes.
+struct ChangePlace {
+  double time = 0;
+  std::string body{};
+  std::optional<std::int64_t> inclusion{};
+};
+template <class V, class S>
+void describe_change(V&& v, S&& s) {
+  v(s.time, required({"time", at_least(0), "s", "0.5", "when it happens; times do not descend"}));
+  v(s.body, {"body", any.absent_at(0), "", "\"liver\"", "the body that `material`, `model` and `fixed` belong to",
+             "the only body of the scene"});
+  v(s.inclusion,
+    {"inclusion", from_to(0, 1e6), "", "0", "the `material` is that of this entry of `inclusions`", "that of the body"});
+}
+
 /// Of a probe that is no selection of nodes.
 template <class V, class S>
 void describe_place(V&& v, S&& s) {

@@ -34,7 +34,7 @@ std::map<std::string, List> make_keys() {
   return {
       {"scene", PLIANT_DESCRIBED(Scene, scene) + PLIANT_DESCRIBED(Scene, run) +
                     List{"format", "name", "gravity", "relaxation", "solver", "focus", "tools", "contact", "blades", "view",
-                         "probes", "probe_every", "bodies"}},
+                         "probes", "probe_every", "bodies", "changes"}},
       {"body", List{"name", "surface", "mesh", "lattice", "material", "model", "inclusions", "fixed", "prescribed", "forces",
                     "pressures", "initial"} +
                    PLIANT_DESCRIBED(Body, body)},
@@ -50,6 +50,7 @@ std::map<std::string, List> make_keys() {
       {"shape", words_only(tool_shape_words())},
       {"contact", PLIANT_DESCRIBED(ContactTool, contact_law)},
       {"tissue_contact", PLIANT_DESCRIBED(TissueContact, friction)},
+      {"change", PLIANT_DESCRIBED(ChangePlace, change) + List{"gravity", "material", "model", "fixed"}},
       {"blade", List{"name", "path"} + PLIANT_DESCRIBED(Blade, blade)},
       {"view", PLIANT_DESCRIBED(SceneView, view)},
       {"relaxation", PLIANT_DESCRIBED(Relaxation, relaxation)},

@@ -137,6 +137,7 @@ Scene read_document(const nlohmann::json& document, const fs::path& file) {
   check_blades(top, scene);
   check_tools(top, scene);
   check_tearing(top, scene);
+  if (top.has("changes")) scene.changes = read_changes(top.at("changes"), scene);
   return scene;
 }
 

@@ -16,6 +16,9 @@ namespace pliant {
 Scene read_document(const nlohmann::json& document, const std::filesystem::path& file);
 /// The document of a scene in code. Of a body with a surface in memory it names no file that exists (write.cpp).
 nlohmann::ordered_json document_of(const SceneSpec& spec);
+nlohmann::ordered_json document_of(const Scene& scene);
+/// The entry of a change, without its time.
+nlohmann::ordered_json change_json(const ChangeSpec& change);
 inline bool in_memory(const BodySpec& body) { return !body.surface.vertices.empty() || !body.surface.triangles.empty(); }
 /// What paths and surfaces of a selection are relative to, and the mesh that its regions are parts of; null: a lattice's.
 struct SelectionFrame {
@@ -63,6 +66,8 @@ std::vector<std::array<double, N>> read_rows(const Reader& list, const char* exp
   }
   return rows;
 }
+/// After everything else of the scene has been read and checked.
+std::vector<SceneChange> read_changes(const Reader& changes, const Scene& scene);
 std::vector<Blade> read_blades(const Reader& blades);
 SceneView read_view(const Reader& view);
 std::optional<TissueContact> read_tissue_contact(const Reader& contact);

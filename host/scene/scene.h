@@ -13,6 +13,7 @@
 #include "integrators/integrator.h"
 #include "material/material.h"
 #include "scene/blade.h"
+#include "scene/change.h"
 #include "scene/contact_tool.h"
 #include "scene/curve.h"
 #include "scene/lattice_spec.h"
@@ -150,6 +151,7 @@ struct Scene {
   bool cuttable = false;     ///< set in code: prepare for cuts although there are no blades
   bool interactive = false;  ///< set in code: reserve a force on every node that moves a surface vertex
   std::vector<Body> bodies;
+  std::vector<SceneChange> changes;  ///< times do not descend
   /// [m/s^2] at a time [s].
   [[nodiscard]] Vec3d gravity_at(double time) const;
 };

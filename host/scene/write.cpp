@@ -299,6 +299,28 @@ OrderedJson top_json(const S& scene, const fs::path& file) {
   return top;
 }
 
+void add_change(OrderedJson& top, double time, const OrderedJson& change) {
+  OrderedJson entry{{"time", time}};
+  entry.update(change);
+  top["changes"].push_back(entry);
+}
+
+}  // namespace
+
+OrderedJson change_json(const ChangeSpec& change) {
+  OrderedJson entry = OrderedJson::object();
+  if (change.gravity) entry["gravity"] = *change.gravity;
+  if (!change.body.empty()) entry["body"] = change.body;
+  if (change.inclusion) entry["inclusion"] = *change.inclusion;
+  if (change.material) entry["material"] = material_json(*change.material);
+  if (change.damping) entry["material"]["damping"] = *change.damping;
+  if (change.model) entry["model"] = model_json(*change.model);
+  if (!change.fixed) return entry;
+  entry["fixed"] = OrderedJson::array();
+  add_entries(entry, "fixed", *change.fixed, {}, [](OrderedJson& one, const auto& e) { describe_axes(WriteKeys{one}, e); });
+  return entry;
+}
+
 OrderedJson document_of(const Scene& scene) {
   OrderedJson top = top_json(scene, scene.file);
   describe_run(WriteKeys{top}, scene);
@@ -311,6 +333,7 @@ OrderedJson document_of(const Scene& scene) {
   OrderedJson view = OrderedJson::object();
   describe_view(WriteKeys{view}, scene.view);
   if (!view.empty()) top["view"] = view;
+  for (const SceneChange& c : scene.changes) add_change(top, c.time, OrderedJson::parse(c.text));
   if (scene.probes == nullptr) return top;
   top["probes"] = OrderedJson::array();
   for (const SceneProbe& p : scene.probes->list) top["probes"].push_back(probe_json(p, scene.file));
@@ -319,12 +342,11 @@ OrderedJson document_of(const Scene& scene) {
   return top;
 }
 
-}  // namespace
-
 OrderedJson document_of(const SceneSpec& spec) {
   OrderedJson top = top_json(spec, {});
   if (spec.relaxation) describe_relaxation(WriteKeys{top["relaxation"]}, *spec.relaxation);
   for (const ProbeSpec& p : spec.probes) top["probes"].push_back(probe_json(p, {}));
+  for (const ChangeSpec& c : spec.changes) add_change(top, c.time, change_json(c));
   return top;
 }
 

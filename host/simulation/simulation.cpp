@@ -37,6 +37,7 @@ void Simulation::load(std::shared_ptr<const Model> model) {
 
 void Simulation::start(std::shared_ptr<const Model> model, const SimulationOptions& options) {
   settings_.batch_steps = options.batch_steps;
+  parameters_.start();
   load(std::move(model));
   for (const Curve& curve : loaded_.model().curves) {
     settings_.curves_end = std::max(settings_.curves_end, curve.end());
@@ -45,6 +46,7 @@ void Simulation::start(std::shared_ptr<const Model> model, const SimulationOptio
     if (scene_.relaxation.enabled && !tool.path.empty())
       settings_.curves_end = std::max(settings_.curves_end, tool.path.back()[0]);
   }
+  for (const SceneChange& change : scene_.changes) settings_.curves_end = std::max(settings_.curves_end, change.time);
   step_.start(options.dt > 0 ? options.dt : scene_.dt, options.stable_step);
   edits_.start();
   contact_.start();
@@ -97,7 +99,10 @@ void Simulation::run_steps(std::int32_t first, std::int32_t count) {
 
 void Simulation::begin_batch(std::int32_t steps) {
   const bool on_grid = step_.on_grid(step());
-  if (on_grid) edits_.update();
+  if (on_grid) {
+    parameters_.update();
+    edits_.update();
+  }
   step_.adapt_when_due();
   if (on_grid) drift_.follow();
   recovery_.keep(on_grid);
@@ -169,7 +174,18 @@ void Simulation::restore(const Snapshot& snapshot) {
     throw Error(ErrorCode::bad_input, fmt::format("a state in {} cannot resume on the backend {}, which computes in {}",
                                                   snapshot.real_type, backend().info().name, real));
   }
-  // Build and check everything before changing this simulation.
+  // Build and check everything before changing this simulation. What builds it sees the scene with the state's parameters.
+  Scene present = std::exchange(scene_, parameters_.scene_of(next));
+  try {
+    take_over(snapshot);
+  } catch (...) {
+    scene_ = std::move(present);
+    throw;
+  }
+}
+
+void Simulation::take_over(const Snapshot& snapshot) {
+  const RunState& next = snapshot.state;
   check_tool_changes(scene_, next.tools);
   std::unique_ptr<EditedBodies> bodies = edits_.bodies_at(next);
   std::shared_ptr<const Model> model = loaded_.shared_model();

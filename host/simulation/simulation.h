@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "simulation/contact/tool_contact.h"
+#include "simulation/edits/parameter_edits.h"
 #include "simulation/edits/tool_edits.h"
 #include "simulation/edits/topology_edits.h"
 #include "simulation/measure/drift.h"
@@ -116,6 +117,8 @@ class Simulation {
   void set_forces(std::vector<HostForce> forces) { loads_.set(std::move(forces)); }
   /// For adding, removing, parking, placing and driving tools between two batches.
   [[nodiscard]] ToolEdits& tools() { return tools_; }
+  /// Changes parameters of the scene between two batches; see ParameterEdits::change.
+  void change(const std::string& change) { parameters_.change(change); }
   /// Moves the focus of the scene to a point [m], where it stays.
   void set_focus(const Vec3d& position) { state_.focus = position; }
 
@@ -135,6 +138,7 @@ class Simulation {
   void restore(const Snapshot& snapshot);
 
   [[nodiscard]] const RunState& state() const { return state_; }
+  /// The scene with its present parameters.
   [[nodiscard]] const Scene& scene() const { return scene_; }
   [[nodiscard]] const Model& model() const { return loaded_.model(); }
   [[nodiscard]] std::shared_ptr<const Model> shared_model() const { return loaded_.shared_model(); }
@@ -147,8 +151,10 @@ class Simulation {
   void start(std::shared_ptr<const Model> model, const SimulationOptions& options);
   void load(std::shared_ptr<const Model> model);
   void set_initial_motion();
+  /// Continues from a snapshot whose parameters scene_ has.
+  void take_over(const Snapshot& snapshot);
 
-  const Scene scene_;
+  Scene scene_;           ///< with the present parameters
   RunSettings settings_;  ///< constant once the constructor has returned
   RunState state_;
   RunReports reports_;
@@ -160,6 +166,7 @@ class Simulation {
   ToolContact contact_{run_, reports_.now};
   TopologyEdits edits_{run_, step_, loads_};
   ToolEdits tools_{run_, contact_};
+  ParameterEdits parameters_{scene_, run_, step_, edits_, reports_};
   Recovery recovery_{run_, step_, edits_, reports_};
   std::optional<Divergence> divergence_;  ///< set: no further step is possible
 };

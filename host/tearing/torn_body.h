@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "model/elements/body_mesh.h"
@@ -17,6 +18,9 @@ class TornBody {
  public:
   /// `whole` is a volume mesh of tetrahedra; `material` of each, of which those without toughness do not tear.
   TornBody(std::shared_ptr<const BodyMesh> whole, std::vector<Material> material);
+
+  /// Replaces the material of each tetrahedron.
+  void set_materials(std::vector<Material> material) { material_ = std::move(material); }
 
   struct Breaks {
     std::vector<TetFace> faces;

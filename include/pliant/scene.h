@@ -103,6 +103,19 @@ struct BladeSpec {
   std::optional<double> end;                ///< end of cutting [s]; absent: end of the path
 };
 
+/// A change of parameters while the scene runs. What is absent stays as it is; what a body is held by is replaced as a whole,
+/// and nodes are held where they are at that moment.
+struct ChangeSpec {
+  double time = 0;                              ///< when it happens [s]; World::change() makes it at once
+  std::optional<Vec3d> gravity;                 ///< [m/s^2], constant from then on
+  std::string body;                             ///< the body that the rest belongs to; empty: the only body of the scene
+  std::optional<std::int64_t> inclusion;        ///< the material is that of this inclusion of the body
+  std::optional<MaterialSpec> material;         ///< new material
+  std::optional<double> damping;                ///< the damping rate alone [1/s]
+  std::optional<ModelSpec> model;               ///< new numbers of the same type of model
+  std::optional<std::vector<FixedSpec>> fixed;  ///< what holds the body from then on; an empty list releases it
+};
+
 /// Dynamic relaxation: adaptive damping towards static equilibrium.
 struct RelaxationSpec {
   double tolerance = 1e-5;          ///< converged at |R - F| <= tolerance * larger of the external and reaction forces
@@ -129,6 +142,7 @@ struct SceneSpec {
   std::vector<std::array<double, 4>> focus_path;  ///< path of the focus, which regions can follow: (time [s], x, y, z [m])
   std::vector<BodySpec> bodies;                   ///< at least one
   std::vector<ProbeSpec> probes;                  ///< evaluated by World::probes()
+  std::vector<ChangeSpec> changes;                ///< parameters that change; times do not descend
 };
 
 }  // namespace pliant

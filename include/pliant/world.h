@@ -132,6 +132,15 @@ class PLIANT_API World {
   void drive_tool(const std::string& name, const Vec3d& position, const std::array<double, 4>& turn, double seconds = 1.0 / 60);
   [[nodiscard]] std::vector<ToolForce> tool_forces() const;  ///< pose of all tools and forces on them; does not wait
 
+  /// Changes gravity, materials, models, or what holds a body (docs/scene.md, "changes"); ChangeSpec::time is not used. The
+  /// motion, contact and cuts stay, the stable step is estimated again. With substeps of shape matching, all but gravity waits
+  /// for a step at which subcycles begin. After step_async() or advance_async() the worker makes it before its next batch. In
+  /// checkpoints; reset() returns to the scene's parameters. Throws Error: input (a value that no scene could have, what
+  /// cannot change), and then changes nothing; diverged, device.
+  void change(const ChangeSpec& change);
+  /// The same from text, an entry of `changes` of a scene file without its time: {"material": {"young": 2000}}.
+  void parse_change(const std::string& text);
+
   /// Cuts. They need no WorldOptions::interactive. Hexahedral volume meshes and scenes with relaxation or the textbook
   /// integrator cannot be cut: Error (input), and nothing changes. After step_async() or advance_async(), the worker cuts
   /// before its next batch (CutResult::pending), moves of blades together, until wait() or another waiting call

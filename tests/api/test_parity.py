@@ -14,6 +14,7 @@ SOURCE = Path(os.environ.get("PLIANT_SOURCE", Path(__file__).resolve().parents[2
 MISSING = {
     ("C", "World::World"): "SceneSpec is a struct of C++; pliant_world_parse takes a scene as text with surfaces in memory",
     ("C", "World::add_tool"): "ToolSpec is a struct of C++; pliant_world_parse_tool takes a tool as text",
+    ("C", "World::change"): "ChangeSpec is a struct of C++; pliant_world_parse_change takes a change as text",
     ("C", "box_surface"): "a helper for small programs; eight vertices are written down as quickly",
     ("C", "WorldInfo.backend"): "in the text of pliant_world_backend",
     ("C", "WorldInfo.device"): "in the text of pliant_world_backend",
@@ -26,6 +27,7 @@ MISSING = {
     ("Python", "World::open"): "World(file)",
     ("Python", "World::parse"): "World(dict, surfaces, folder)",
     ("Python", "World::parse_tool"): "add_tool(dict, folder)",
+    ("Python", "World::parse_change"): "change(body=..., material={...})",
     ("Python", "box_surface"): "a helper for small programs; eight vertices are written down as quickly",
 }
 # What C or Python has, and why C++ has not.

@@ -131,6 +131,7 @@ TEST(Tables, SchemaHasTheLawsAndTheWordsOfTheCode) {
   describe_solver(keys("solver"), StaticSolver());
   describe_view(keys("view"), SceneView());
   describe_blade(keys("blade"), Blade());
+  describe_change(keys("change"), ChangePlace());
   describe_gravity(keys("gravity"), Scene());
   for (const char* part : {"gravity", "prescribed", "force", "pressure"}) describe_curve(keys(part), Curve());
   describe_axes(keys("fixed"), Fixed());
@@ -218,6 +219,7 @@ TEST(Tables, ScenesDocumentHasTheLawsAndElementsOfTheCode) {
   describe_solver(DocumentRows{text, "`solver` (what"}, StaticSolver());
   describe_view(DocumentRows{text, "`view`, for pictures"}, SceneView());
   describe_blade(DocumentRows{text, "\n`blades`, each"}, Blade());
+  describe_change(DocumentRows{text, "\n`changes`, each"}, ChangePlace());
   describe_rotation(DocumentRows{text, "\nA rotation moves"}, Rotation());
   describe_field(DocumentRows{text, "\nThe fields of `initial`"}, AffineField());
   describe_curve(DocumentRows{text, "\n## Curves\n"}, Curve());

@@ -150,6 +150,12 @@ void EditedBodies::make_torn(std::size_t b) {
   torn_[b] = std::make_unique<TornBody>(uncut_[b], materials_of(body, *uncut_[b]));
 }
 
+void EditedBodies::follow_materials() {
+  for (std::size_t b = 0; b < size(); ++b) {
+    if (torn_[b] != nullptr) torn_[b]->set_materials(materials_of(scene_.bodies[b], *uncut_[b]));
+  }
+}
+
 BodyCut& EditedBodies::cut(std::size_t b) {
   if (cuts_[b] == nullptr) cuts_[b] = std::make_unique<BodyCut>(scene_.bodies[b], uncut_[b]);
   return *cuts_[b];

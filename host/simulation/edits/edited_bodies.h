@@ -93,6 +93,9 @@ class EditedBodies {
   [[nodiscard]] const BodyMesh& solid(std::size_t b) const;
   [[nodiscard]] std::vector<const BodyMesh*> solids() const;
 
+  /// Takes the materials of the scene, which have changed, for what tears.
+  void follow_materials();
+
   /// Replays the edits of a state of unknown origin. Throws Error (bad_input) for edits that do not belong to these bodies;
   /// the bodies are then unusable.
   void replay(const RunState& state);

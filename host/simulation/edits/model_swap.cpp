@@ -47,11 +47,12 @@ void ModelSwap::run(const Scene& scene, std::vector<NodeOrigins> origins, const 
   kept_ = keeps_surface();
   // The surface takes longest, so it comes last unless loads need it.
   const bool first = needs_surface(scene);
+  if (first) {
+    report_.model += clock_.lap();
+    take_surfaces(solids, ready);
+  }
+  set_ballast(scene, *model_, ballast_);  // the last that can refuse a scene; nothing has changed so far
   try {
-    if (first) {
-      report_.model += clock_.lap();
-      take_surfaces(solids, ready);
-    }
     load_steps(scene);
     if (!first) {
       take_surfaces(solids, ready);
@@ -106,8 +107,31 @@ std::vector<NodeInertia> ModelSwap::carried_ballast() const {
   return out;
 }
 
+bool ModelSwap::keeps_nodes() const {
+  if (model_->slots != old_model_->slots) return false;
+  for (std::size_t b = 0; b < model_->bodies.size(); ++b) {
+    if (!origins_[b].from.empty() || model_->bodies[b].slot != old_model_->bodies[b].slot) return false;
+  }
+  return true;
+}
+
+void ModelSwap::carry_state(Program& program) const {
+  const Program& before = run_.loaded.program();
+  for (std::size_t id = 0; id < before.buffers.size(); ++id) {
+    const Buffer& from = before.buffers[id];
+    const bool motion = from.name == "node_u" || from.name == "node_w";
+    if (from.role != BufferRole::state || motion || program.find(from.name) < 0) continue;
+    Buffer& to = program.at(program.find(from.name));
+    if (to.values() != from.values()) continue;
+    if (from.is_int()) {
+      to.ints = run_.backend().read_ints(static_cast<BufferId>(id));
+    } else {
+      to.reals = run_.backend().read_reals(static_cast<BufferId>(id));
+    }
+  }
+}
+
 void ModelSwap::load_steps(const Scene& scene) {
-  set_ballast(scene, *model_, ballast_);
   Program program = build_program(*model_, {scene.integrator, run_.settings.batch_steps});
   Buffer &u = program.at(program.find("node_u")), &w = program.at(program.find("node_w"));
   new_u_ = u.reals;
@@ -118,8 +142,11 @@ void ModelSwap::load_steps(const Scene& scene) {
   // pristine.
   u.reals.swap(new_u_);
   w.reals.swap(new_w_);
+  const bool keeps = keeps_state_ && keeps_nodes();
+  if (keeps) carry_state(program);
   run_.loaded.update(model_, std::move(program));
-  run_.state.look.tools = run_.state.look.tissue = -1;  // new contact points have no partners yet
+  run_.state.look.tools = -1;
+  if (!keeps) run_.state.look.tissue = -1;  // new contact points have no partners yet
   run_.loaded.reset_initial_state(std::move(new_u_), std::move(new_w_));
   report_.upload += clock_.lap();
 }

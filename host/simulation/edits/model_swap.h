@@ -24,6 +24,8 @@ class ModelSwap {
  public:
   /// `u`: RunContext::u(). Adds its times to `report`.
   ModelSwap(RunContext& run, HostLoads& loads, EditedBodies& bodies, std::vector<double> u, CutReport& report);
+  /// Keeps contact and what shape matching holds if all nodes stay what they are.
+  void keep_state() { keeps_state_ = true; }
   /// `scene`: with the new operational regions. The surfaces may still be in progress until `ready` returns, which may throw.
   /// On an exception, the old model is restored.
   void run(const Scene& scene, std::vector<NodeOrigins> origins, const std::function<void()>& ready);
@@ -37,6 +39,10 @@ class ModelSwap {
   void take_surfaces(const std::vector<const BodyMesh*>& solids, const std::function<void()>& ready);
   /// Returns the ballast of the old nodes, distributed to their copies in proportion to mass.
   [[nodiscard]] std::vector<NodeInertia> carried_ballast() const;
+  /// Returns true if all nodes and points of contact are the same as before.
+  [[nodiscard]] bool keeps_nodes() const;
+  /// Gives the new Program what the old one holds beside the motion, such as contact and shape matching.
+  void carry_state(Program& program) const;
   void load_steps(const Scene& scene);
   void load_surface();
   void carry_motion();
@@ -53,6 +59,7 @@ class ModelSwap {
   std::vector<NodeOrigins> origins_;
   std::shared_ptr<Model> model_;
   std::vector<NodeInertia> ballast_;
+  bool keeps_state_ = false;
   bool kept_ = false;                           ///< the new model reuses the surface of the old one
   const SurfaceChanges* changes_ = nullptr;     ///< the differences from the reused surface
   std::vector<double> new_u_, new_w_, offset_;  ///< offset_: RunState::offset of the new model

@@ -184,6 +184,23 @@ void TopologyEdits::move_regions() {
   step_.adapt();
 }
 
+void TopologyEdits::load_scene(const std::vector<std::size_t>& remodelled) {
+  std::vector<double> u = run_.u();
+  std::vector<MovedRegion> regions = run_.state.regions;
+  for (const std::size_t b : remodelled) {
+    if (regions.empty() || run_.scene.bodies[b].model.follow.empty()) continue;
+    regions[b] = region_at(b, regions[b].seed, run_.loaded.pick(u, b, 1));
+  }
+  std::vector<MovedRegion> before = std::exchange(run_.state.regions, std::move(regions));
+  try {
+    swap_partition(std::move(u), true);
+  } catch (...) {
+    run_.state.regions = std::move(before);
+    throw;
+  }
+  bodies().follow_materials();
+}
+
 /// Held goals pull at the finite elements once in n substeps, n times as hard. If elements have stiffened since the last
 /// step-size check, this is a resonance, which a shorter step avoids only below a thousandth (docs/stability.md).
 bool TopologyEdits::fewer_substeps() {
@@ -213,9 +230,10 @@ bool TopologyEdits::bodies_as_loaded() {
   }
 }
 
-void TopologyEdits::swap_partition(std::vector<double> u) {
+void TopologyEdits::swap_partition(std::vector<double> u, bool keeps_state) {
   CutReport report;
   ModelSwap swap(run_, loads_, bodies(), std::move(u), report);
+  if (keeps_state) swap.keep_state();
   swap.run(scene_at(run_.state), std::vector<NodeOrigins>(run_.scene.bodies.size()), [] {});
 }
 

@@ -151,7 +151,8 @@ std::unique_ptr<EditedBodies> TopologyEdits::bodies_at(const RunState& state) co
   };
   if (!state.regions.empty() && (state.regions.size() != scene.bodies.size() || !follows(scene))) refuse("its moved regions");
   const auto edited = [](const RunState& s) {
-    return !s.cuts.empty() || !s.tears.empty() || !s.regions.empty() || s.most_substeps != 0 || !s.blades.traces.empty();
+    return !s.cuts.empty() || !s.tears.empty() || !s.regions.empty() || s.most_substeps != 0 || !s.blades.traces.empty() ||
+           !s.changed.parameters.empty();
   };
   if (!edited(state) && !edited(run_.state)) return nullptr;
   auto all = std::make_unique<EditedBodies>(scene);

@@ -37,6 +37,10 @@ class TopologyEdits {
   void prepare_cuts();
   [[nodiscard]] const CutTopology* cut_topology(std::size_t body) const;
 
+  /// Loads the model of the scene after a change of its parameters; the motion stays. `remodelled`: bodies whose operational
+  /// region has another size or seed. Throws Error and then changes nothing.
+  void load_scene(const std::vector<std::size_t>& remodelled);
+
   /// Returns the scene with the operational regions, substeps and unparked tools of a state.
   [[nodiscard]] Scene scene_at(const RunState& state) const;
   /// Returns the bodies with a state's edits; nullptr if neither it nor the current state has any. Throws Error (bad_input)
@@ -66,7 +70,7 @@ class TopologyEdits {
   /// Returns true if the bodies' files, which are read again at a body's first edit, still exist and are unchanged.
   [[nodiscard]] bool bodies_as_loaded();
   /// Loads the model of scene_at(state) with the current bodies.
-  void swap_partition(std::vector<double> u);
+  void swap_partition(std::vector<double> u, bool keeps_state = false);
 
   RunContext& run_;
   StepControl& step_;

@@ -26,6 +26,11 @@ bool RunContext::begins_after(std::int64_t step, std::int64_t every) const {
   return step % p == 0 && step % every < p;
 }
 
+bool RunContext::reached(double time, std::int64_t step) const {
+  constexpr double kRounding = 1e-6;  // of a step: times are sums of steps
+  return state.clock.time_at(step) >= time - kRounding * state.clock.dt;
+}
+
 double RunContext::decay(const Model& of, std::size_t slot) const {
   const double k = 0.5 * substeps_of(of, slot) * state.clock.dt * (of.damping[slot] + state.relaxation.damping);
   return integrator_info(scene.integrator).decay(k);

@@ -42,6 +42,10 @@ struct RunContext {
   /// Returns true if all subcycles start in this step, and it is the first such step since a multiple of `every`.
   [[nodiscard]] bool begins_after(std::int64_t step, std::int64_t every) const;
 
+  /// Returns true if the time of a step has reached `time` [s], with the present step size.
+  [[nodiscard]] bool reached(double time, std::int64_t step) const;
+  [[nodiscard]] bool reached(double time) const { return reached(time, state.clock.step); }
+
   /// Returns the value of node_w for the damping (IntegratorInfo::decay) with k = c h / 2. c is the damping rate of the
   /// material at a slot of `of` plus that of dynamic relaxation.
   [[nodiscard]] double decay(const Model& of, std::size_t slot) const;

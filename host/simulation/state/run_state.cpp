@@ -87,7 +87,12 @@ class StateReader {
   template <class T>
   void last(const char* name, T& value) {
     value = {};
-    if (at_ < bytes_.size()) (*this)(name, value);
+    const std::size_t start = at_;
+    if (start == bytes_.size()) return;
+    std::string found;
+    get(found);
+    at_ = start;
+    if (found == name) (*this)(name, value);
   }
   void end() const {
     if (at_ != bytes_.size()) {

@@ -33,6 +33,7 @@ struct RunState {
   std::int64_t opened = 0;            ///< number of edges split because they were overstretched
   std::int64_t topology_version = 0;  ///< number of edits that changed elements
   ToolChanges tools;                  ///< tools added, removed or parked by the host
+  ChangedParameters changed;          ///< parameters that have changed
 };
 
 // Visitor: calls v(name, member) for every member in this order, as the visitors of the parts do. v.last() writes nothing for
@@ -45,6 +46,7 @@ void visit(V& v, RunState& s) {
   v("offset", s.offset), v("ballast", s.ballast), v("tool", s.focus), v("driven", s.driven), v("look", s.look),
       v("opened", s.opened), v("topology_version", s.topology_version);
   v.last("tools", s.tools);
+  v.last("changed", s.changed);
 }
 
 /// Serializes the state, identically on every machine: names, and values as eight little-endian bytes.

@@ -10,6 +10,7 @@
 #include "cutting/blade/blade_trace.h"
 #include "model/model.h"
 #include "simulation/contact/contact_look.h"
+#include "simulation/state/changed_parameters.h"
 
 namespace pliant {
 

@@ -98,6 +98,8 @@ std::vector<ModelPart> parts_of(const Scene& scene, const RunSettings& settings,
   }
   part("tools");
   for (const ContactTool& tool : scene.tools) add(tool.name, tool.path);
+  if (!scene.changes.empty()) part("changes");
+  for (const SceneChange& change : scene.changes) add(change.time, change.text);
   part("what the solver derives from the scene");
   add(static_cast<double>(settings.batch_steps), static_cast<double>(settings.tears), static_cast<double>(settings.blade_steps),
       settings.curves_end, settings.increment_floor, settings.displacement_grid);

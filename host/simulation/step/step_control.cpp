@@ -75,7 +75,17 @@ bool StepControl::on_grid(std::int64_t step) const {
   const RunSettings& s = run_.settings;
   return run_.begins_after(step, s.batch_steps) || adapts_at(step) ||
          (s.blade_steps > 0 && run_.begins_after(step, s.blade_steps)) || (s.tears && run_.begins_after(step, kTearSteps)) ||
-         (run_.scene.relaxation.enabled && run_.begins_after(step, kRelaxEvery));
+         (run_.scene.relaxation.enabled && run_.begins_after(step, kRelaxEvery)) || changes_at(step);
+}
+
+/// Returns true at the step of the last change of parameters, and at the first one where the scene's next can be made.
+bool StepControl::changes_at(std::int64_t step) const {
+  if (run_.state.changed.step == step) return true;
+  const auto done = static_cast<std::size_t>(run_.state.changed.done);
+  if (done >= run_.scene.changes.size()) return false;
+  const double time = run_.scene.changes[done].time;
+  const std::int64_t period = run_.period();
+  return step % period == 0 && run_.reached(time, step) && !run_.reached(time, step - period);
 }
 
 std::int32_t StepControl::next_batch(std::int64_t wanted) const {
@@ -183,6 +193,18 @@ void StepControl::limit_after_edit(const std::vector<char>& changed) {
   }
   const double next = std::max(allowed().dt, least_step());
   if (next < kClearlyLess * run_.state.clock.dt) change(next);
+}
+
+void StepControl::follow_parameters(double before) {
+  const double bound = run_.model().element_bound;
+  if (run_.settings.automatic && before > 0 && bound > 0) {
+    double& ceiling = run_.state.limit.dt_ceiling;
+    ceiling = std::min(ceiling * bound_step(run_, bound) / before, longest_step(run_.model(), run_.scene));
+    if (run_.state.clock.dt > ceiling) change(ceiling);
+    adapt();
+  } else if (has_elements(run_.model())) {
+    estimate();
+  }
 }
 
 void StepControl::hold() { run_.state.limit.hold = run_.state.clock.step + kAdaptEvery; }

@@ -31,6 +31,10 @@ class StepControl {
   /// `changed`: per slot, nonzero if its elements or mass changed.
   void limit_after_edit(const std::vector<char>& changed);
 
+  /// Call after the parameters of the scene have changed: the limits of the step follow the new elements. `before`: step of the
+  /// element bound before the change [s].
+  void follow_parameters(double before);
+
   // Used by recovery/.
   /// The largest automatic step in the current configuration [s], and the nodal stiffness (model/nodes/ballast.h) if the
   /// elements had to be evaluated one by one.
@@ -53,6 +57,7 @@ class StepControl {
 
  private:
   [[nodiscard]] bool adapts_at(std::int64_t step) const;
+  [[nodiscard]] bool changes_at(std::int64_t step) const;
   [[nodiscard]] double share() const;
   /// Adds ballast so that elements are stable at least_step(), and removes ballast that is no longer needed. If this exceeds
   /// the mass limit, chooses a step between `wanted` and least_step(). Returns the step [s].

@@ -143,6 +143,10 @@ PLIANT_API pliant_status pliant_world_drive_tool(pliant_world world, const char*
  * Does not wait. */
 PLIANT_API pliant_status pliant_world_tool_forces(pliant_world world, pliant_tool_force* out, size_t count, size_t* needed);
 
+/** Changes parameters (see pliant::World) by text, an entry of `changes` of a scene file without its time:
+ * {"gravity": [0, 0, 0]}. */
+PLIANT_API pliant_status pliant_world_parse_change(pliant_world world, const char* change_text);
+
 /** Cuts all bodies where triangles [m], shape [triangle_count][3][3], intersect them now. `out` may be null. */
 PLIANT_API pliant_status pliant_world_cut(pliant_world world, const double* triangles, size_t triangle_count, pliant_cut* out);
 /** Moves a named blade to the segment from `a` to `b` [m] and cuts the surface that it sweeps. The first call for a name

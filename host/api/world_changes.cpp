@@ -1,0 +1,68 @@
+// Changes of a World's parameters: made at once if the caller steps, otherwise before the worker's next batch.
+#include <nlohmann/json.hpp>
+
+#include "api/world_call.h"
+#include "scene/change.h"
+#include "scene/parts.h"
+
+namespace pliant {
+namespace {
+
+using api::Call;
+
+}  // namespace
+
+void World::Impl::change_pending() {
+  std::vector<std::string> changes;
+  {
+    const std::lock_guard lock(mutex);
+    changes.swap(pending_changes);
+  }
+  if (changes.empty()) return;
+  std::exception_ptr refused;  // the others are made nevertheless
+  for (const std::string& text : changes) {
+    try {
+      simulation->change(text);
+    } catch (const Error& error) {
+      if (error.code() == ErrorCode::internal || error.code() == ErrorCode::device) throw;
+      if (refused == nullptr) refused = std::make_exception_ptr(api::Refused(error));
+    }
+  }
+  handles->follow(simulation->shared_model());
+  if (refused != nullptr) std::rethrow_exception(refused);
+}
+
+void World::Impl::change(const std::string& text) {
+  check_can_change_tools();
+  asked_parameters = changed_parameters(scene, asked_parameters, text, "change");
+  bool now = false;
+  {
+    const std::lock_guard lock(mutex);
+    pending_changes.push_back(text);
+    now = !job && !beside && !report.diverged && lost.empty();
+  }
+  if (!now) return;
+  try {
+    change_pending();
+    publish_clock();
+  } catch (const api::Refused& refused) {
+    asked_parameters = simulation->state().changed.parameters;
+    throw Error(refused.code(), refused.what());
+  } catch (const std::exception& error) {
+    const Error failure_now = as_device_error(error);
+    lost = failure_now.what();
+    throw failure_now;
+  }
+}
+
+void World::change(const ChangeSpec& change) {
+  const Call call(impl_, false);
+  impl_->change(change_json(change).dump());
+}
+
+void World::parse_change(const std::string& text) {
+  const Call call(impl_, false);
+  impl_->change(text);
+}
+
+}  // namespace pliant
