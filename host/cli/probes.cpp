@@ -29,6 +29,9 @@ const char* header(Quantity quantity) {
       return ",fx [N],fy [N],fz [N]";
     case Quantity::energy:
       return ",kinetic [J],strain [J]";
+    case Quantity::interpenetration:
+      return ",volume [m^3],centroid x [m],centroid y [m],centroid z [m],area of the first [m^2],area of the second "
+             "[m^2],depth [m],deepest x [m],deepest y [m],deepest z [m]";
   }
   return "";
 }

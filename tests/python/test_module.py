@@ -222,7 +222,12 @@ def test_rigid_tools():
     world.drive_tool("ball", [0.05, 0.095, 0.03], seconds=0.1)
     world.advance(0.3)
     assert world.tool_forces()["ball"]["force"][1] > 0.01 and world.tool_forces()["ball"]["parked"] is False
+    (inside,) = world.interpenetrations()
+    assert (inside["first"], inside["second"], inside["tool"]) == ("ball", "block", True)
+    assert 0 < inside["volume"] < 1e-5 and inside["area"].shape == (2,) and 0 <= inside["depth"] < 0.005
+    assert np.allclose(inside["centroid"], [0.05, 0.075, 0.03], atol=0.006) and inside["deepest"].shape == (3,)
     world.park_tool("ball")
+    assert world.interpenetrations() == []
     assert world.tool_forces()["ball"]["parked"] is True
     assert "begins inside body 'block'" in str(error_of(lambda: world.place_tool("ball", [0.05, 0.04, 0.03])))
     world.place_tool("ball", [0.05, 0.2, 0.03])

@@ -115,6 +115,14 @@ bool asks(const SceneProbe& probe, Quantity quantity) {
   return std::find(probe.quantities.begin(), probe.quantities.end(), quantity) != probe.quantities.end();
 }
 
+/// NaN where there is no volume and so no centroid, or no vertex in the other and so no deepest one.
+std::vector<double> numbers_of(const Interpenetration& o) {
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  const Vec3d nowhere{none, none, none}, centroid = o.volume > 0 ? o.centroid : nowhere;
+  const Vec3d deepest = o.depth > 0 ? o.deepest : nowhere;
+  return {o.volume, centroid[0], centroid[1], centroid[2], o.area[0], o.area[1], o.depth, deepest[0], deepest[1], deepest[2]};
+}
+
 template <class Numbers>
 std::vector<double> list(const Numbers& numbers) {
   return {numbers->begin(), numbers->end()};
@@ -138,6 +146,8 @@ std::vector<double> ProbeState::numbers(Quantity quantity) const {
       return list(force);
     case Quantity::energy:
       return {energy->kinetic, energy->strain};
+    case Quantity::interpenetration:
+      return numbers_of(*interpenetration);
   }
   return {};
 }
@@ -151,7 +161,9 @@ PlacedProbes::PlacedProbes(const std::vector<SceneProbe>& probes, const Model& u
       }
     }
     Place place{probe};
-    if (probe.point) {
+    if (!probe.between.empty()) {
+      if (interpenetrations_ == nullptr) interpenetrations_ = std::make_shared<Interpenetrations>();
+    } else if (probe.point) {
       find(place, uncut);
     } else {
       while (uncut.bodies.at(place.body).name != probe.body) ++place.body;
@@ -249,12 +261,20 @@ ProbeState PlacedProbes::of_nodes(Simulation& simulation, const Place& place, co
 
 std::vector<ProbeState> PlacedProbes::states(Simulation& simulation) const {
   std::vector<ProbeState> states(places_.size());
+  if (interpenetrations_ != nullptr) {
+    const std::vector<Interpenetration> found = interpenetrations_->now(simulation);
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      const std::vector<std::string>& names = places_[i].probe.between;
+      if (!names.empty()) states[i].interpenetration = sum_between(found, names[0], names.size() > 1 ? names[1] : "");
+    }
+  }
   for (std::size_t b = 0; b < simulation.model().bodies.size(); ++b) {
-    if (std::none_of(places_.begin(), places_.end(), [&](const Place& p) { return p.body == b; })) continue;
+    const auto is_here = [&](const Place& p) { return p.body == b && p.probe.between.empty(); };
+    if (std::none_of(places_.begin(), places_.end(), is_here)) continue;
     const std::vector<Vec3d> u = simulation.displacements(b), v = simulation.velocities(b);
     for (std::size_t i = 0; i < places_.size(); ++i) {
       const Place& place = places_[i];
-      if (place.body != b) continue;
+      if (!is_here(place)) continue;
       states[i] = place.probe.point ? at_point(simulation, place, u, v) : of_nodes(simulation, place, u, v);
     }
   }
