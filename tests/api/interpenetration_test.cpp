@@ -48,6 +48,7 @@ void expect_near(const Vec3d& a, const Vec3d& b, double within) {
 /// A ball, a rod, a box and a table, all in one block.
 SceneSpec four_tools() {
   SceneSpec scene;
+  scene.dt = 0.001;
   scene.bodies.push_back(held("block"));
   scene.tools.push_back(coming("ball", "sphere", {0.05, 0.09, 0.03}));
   ToolSpec rod = coming("rod", "capsule", {0.05, 0.04, 0.03}, 0.004);
@@ -90,7 +91,7 @@ TEST(Interpenetration, ToolsInClosedForm) {
   EXPECT_NEAR(box.volume, 0.01 * 0.02 * 0.015, 1e-15);
   EXPECT_NEAR(box.area[0], 0.01 * 0.02 + 2 * 0.015 * 0.03, 1e-12);
   EXPECT_NEAR(box.area[1], 0.01 * 0.02, 1e-12);
-  EXPECT_NEAR(box.depth, 0.01, 1e-12) << "its lower edge is 1 cm above the floor";
+  EXPECT_NEAR(box.depth, 0.015, 1e-12) << "its upper inner corners";
   expect_near(box.centroid, {0.02, 0.02, 0.0525}, 1e-12);
 
   const Interpenetration& table = between(all, "table", "block");
@@ -101,12 +102,11 @@ TEST(Interpenetration, ToolsInClosedForm) {
 
   world.park_tool("rod");
   EXPECT_EQ(world.interpenetrations().size(), 3U);
-  world.unpark_tool("rod");
-  EXPECT_EQ(world.interpenetrations().size(), 4U);
 }
 
 SceneSpec two_blocks() {
   SceneSpec scene;
+  scene.dt = 0.001;
   scene.bodies = {held("left"), held("right", {0.09, 0.06, 0.05}), held("far", {0.5, 0, 0})};
   scene.tools.push_back(coming("ball", "sphere", {0.095, 0.07, 0.055}, 0.05));
   return scene;
@@ -204,7 +204,7 @@ TEST(Interpenetration, InC) {
       R"(, "surface": "memory:0", "lattice": {"spacing": 0.02}, "material": {"young": 3000, "poisson": 0.45},
     "fixed": [{"all": true}])";
   const std::string text =
-      std::string(R"({"format": "pliant-scene/1", "bodies": [{"name": "a")") + body + R"(}, {"name": "b")" + body + "}]}";
+      std::string(R"({"format": "pliant-scene/1", "dt": 0.001, "bodies": [{"name": "a")") + body + R"(}, {"name": "b")" + body + "}]}";
   pliant_options options = PLIANT_OPTIONS_INIT;
   options.backend = "cpu";
   pliant_world world{};

@@ -132,7 +132,7 @@ class Tools(CliTest):
         other = {"name": "other", "surface": "other.obj"}
         held = {"prescribed": [], "fixed": [{"all": True}]}
         probes = [{"name": "ball", "between": ["probe", "cube"]}, {"name": "all", "between": ["cube"], "quantities": ["interpenetration"]}]
-        path = self.scene(body=held, tools=[ball("probe", 0.06)], duration=0.12, probes=probes)
+        path = self.scene(body=held, tools=[ball("probe", 0.06)], duration=0.12, dt=0.001, probes=probes)
         scene = json.loads(path.read_text())
         scene["bodies"].append({**scene["bodies"][0], **other})
         path.write_text(json.dumps(scene))
