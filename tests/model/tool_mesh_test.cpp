@@ -32,10 +32,10 @@ TEST(ToolMesh, RoundToolsHaveTheirVolume) {
   }
 }
 
-/// Caps from a twentieth of the radius on, from all sides, at the resolution of Interpenetrations.
+/// Caps from a tenth of the radius on, from all sides, at the resolution of Interpenetrations.
 TEST(ToolMesh, ShallowCapsOfRoundTools) {
   const TriangleMesh sphere = tool_mesh_of_volume(round_form(ToolShape::sphere, 1, {}, {}), 256);
-  for (const double height : {0.05, 0.1, 0.3, 1.0}) {
+  for (const double height : {0.1, 0.3, 1.0}) {
     const double cap = std::numbers::pi * height * height * (3 - height) / 3, edge = 1 - height;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       Vec3d low{-2, -2, -2}, high{2, 2, 2};

@@ -12,7 +12,7 @@
 namespace pliant {
 namespace {
 
-/// Sides of round tools: a cap a twentieth of the radius deep has its volume within 1e-3 (tests/model/tool_mesh_test.cpp).
+/// Sides of round tools: a cap a tenth of the radius deep has its volume within 1e-3 (tests/model/tool_mesh_test.cpp).
 constexpr int kAround = 256;
 
 /// Whether each edge is run as often one way as the other. Vertices in one place at rest are one: seams are no holes.
