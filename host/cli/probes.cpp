@@ -23,6 +23,10 @@ const char* header(Quantity quantity) {
       return ",vx [m/s],vy [m/s],vz [m/s]";
     case Quantity::stress:
       return ",sxx [Pa],syy [Pa],szz [Pa],sxy [Pa],syz [Pa],szx [Pa]";
+    case Quantity::green_strain:
+      return ",Exx,Eyy,Ezz,Exy,Eyz,Ezx";
+    case Quantity::almansi_strain:
+      return ",exx,eyy,ezz,exy,eyz,ezx";
     case Quantity::reaction:
       return ",rx [N],ry [N],rz [N]";
     case Quantity::force:

@@ -143,6 +143,10 @@ class Report {
           case Quantity::stress:
             print("Pa");
             break;
+          case Quantity::green_strain:
+          case Quantity::almansi_strain:
+            text += fmt::format(", {} [{:.6g}]", word, fmt::join(state.numbers(q), ", "));
+            break;
           case Quantity::force:
           case Quantity::reaction:
             print("N");

@@ -212,6 +212,8 @@ const Words<Quantity>& quantity_words() {
                                      {"displacement", Quantity::displacement, "from where it was at rest"},
                                      {"velocity", Quantity::velocity, "of the material"},
                                      {"stress", Quantity::stress, "Cauchy stress at a point"},
+                                     {"green_strain", Quantity::green_strain, "Green-Lagrange strain at a point"},
+                                     {"almansi_strain", Quantity::almansi_strain, "Almansi strain at a point"},
                                      {"reaction", Quantity::reaction, "force that fixes or moves nodes, summed"},
                                      {"force", Quantity::force, "applied loads on nodes, summed"},
                                      {"energy", Quantity::energy, "kinetic, and of the strain"},

@@ -9,13 +9,15 @@
 
 namespace pliant {
 
-/// Of a point: position, displacement, velocity, stress. Of chosen nodes: these but the stress, reaction, force, energy;
-/// position, displacement and velocity are their means. Between tools and bodies: interpenetration.
+/// Of a point: position, displacement, velocity, stress, strains. Of chosen nodes: the first three, and reaction, force,
+/// energy; position, displacement and velocity are their means. Between tools and bodies: interpenetration.
 enum class Quantity {
   position,          ///< [m]
   displacement,      ///< [m]
   velocity,          ///< [m/s]
   stress,            ///< Cauchy stress of the material at the point [Pa]
+  green_strain,      ///< Green-Lagrange strain there, in the axes at rest [1]
+  almansi_strain,    ///< Almansi strain there, in the axes of space [1]
   reaction,          ///< force that fixes or moves the nodes, summed [N]
   force,             ///< applied loads on the nodes, summed (simulation/step/applied_loads.h) [N]
   energy,            ///< kinetic of the nodes, strain of the elements between them [J]

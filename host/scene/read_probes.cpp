@@ -60,7 +60,8 @@ std::vector<Quantity> read_quantities(const Reader& probe, bool point, bool betw
       entry.fail("no interpenetration of a point or a selection: \"between\": [a tool or a body, a body] has one");
     if (point && (q == Quantity::reaction || q == Quantity::force || q == Quantity::energy))
       entry.fail(fmt::format("no {} of a point: a selection of nodes (box, plane, ...) has one", word));
-    if (!point && q == Quantity::stress) entry.fail("no stress of a selection: a \"point\" has one");
+    if (!point && (q == Quantity::stress || q == Quantity::green_strain || q == Quantity::almansi_strain))
+      entry.fail(fmt::format("no {} of a selection: a \"point\" has one", word));
     if (std::find(list.begin(), list.end(), q) != list.end()) entry.fail("every quantity at most once");
     list.push_back(q);
   }

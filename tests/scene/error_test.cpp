@@ -183,6 +183,8 @@ const std::vector<Case> entries{
     {"/probes", R"([{"name": "p", "all": true, "body": "b"}])", "/probes/0/body: got \"b\", expected one of a"},
     {"/probes", R"([{"name": "p", "point": [0, 0, 0], "quantities": ["reaction"]}])",
      "/probes/0/quantities/0: got \"reaction\", expected no reaction of a point"},
+    {"/probes", R"([{"name": "p", "all": true, "quantities": ["almansi_strain"]}])",
+     "/probes/0/quantities/0: got \"almansi_strain\", expected no almansi_strain of a selection"},
     {"/probes", R"([{"name": "p", "all": true, "quantities": ["stress"]}])",
      "/probes/0/quantities/0: got \"stress\", expected no stress of a selection"},
     {"/probes", R"([{"name": "p", "all": true, "quantities": ["velocity", "velocity"]}])",

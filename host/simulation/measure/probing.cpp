@@ -123,6 +123,14 @@ std::vector<double> numbers_of(const Interpenetration& o) {
   return {o.volume, centroid[0], centroid[1], centroid[2], o.area[0], o.area[1], o.depth, deepest[0], deepest[1], deepest[2]};
 }
 
+/// xx, yy, zz, xy, yz, zx of a symmetric tensor; NaN without one.
+std::array<double, 6> components(const std::optional<Eigen::Matrix3d>& tensor) {
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  if (!tensor) return {none, none, none, none, none, none};
+  const Eigen::Matrix3d& t = *tensor;
+  return {t(0, 0), t(1, 1), t(2, 2), t(0, 1), t(1, 2), t(2, 0)};
+}
+
 template <class Numbers>
 std::vector<double> list(const Numbers& numbers) {
   return {numbers->begin(), numbers->end()};
@@ -140,6 +148,10 @@ std::vector<double> ProbeState::numbers(Quantity quantity) const {
       return list(velocity);
     case Quantity::stress:
       return list(stress);
+    case Quantity::green_strain:
+      return list(green_strain);
+    case Quantity::almansi_strain:
+      return list(almansi_strain);
     case Quantity::reaction:
       return list(reaction);
     case Quantity::force:
@@ -214,13 +226,13 @@ ProbeState PlacedProbes::at_point(const Simulation& simulation, const Place& pla
   state.displacement = interpolate(nodes, place.weights, u);
   state.velocity = interpolate(nodes, place.weights, v);
   state.position = vec::add(*place.probe.point, *state.displacement);
+  const Eigen::Matrix3d h = gradient(body, element, place.weights, u);
+  if (asks(place.probe, Quantity::green_strain)) state.green_strain = components(green_strain(h));
+  if (asks(place.probe, Quantity::almansi_strain)) state.almansi_strain = components(almansi_strain(h));
   if (asks(place.probe, Quantity::stress)) {
     Material material = material_of(simulation.scene().bodies[place.body], body.materials, element);
     material.low = simulation.model().recovers ? low_volume : 0;
-    const auto s = cauchy_stress(material, gradient(body, element, place.weights, u));
-    const double none = std::numeric_limits<double>::quiet_NaN();
-    state.stress = {none, none, none, none, none, none};
-    if (s) state.stress = {(*s)(0, 0), (*s)(1, 1), (*s)(2, 2), (*s)(0, 1), (*s)(1, 2), (*s)(2, 0)};
+    state.stress = components(cauchy_stress(material, h));
   }
   return state;
 }

@@ -19,11 +19,13 @@ struct ProbeState {
     double kinetic = 0, strain = 0;  ///< [J]
   };
   std::optional<Energy> energy;
-  std::optional<std::array<double, 6>> stress;  ///< xx, yy, zz, xy, yz, zx [Pa]
+  std::optional<std::array<double, 6>> stress;                        ///< xx, yy, zz, xy, yz, zx [Pa]
+  std::optional<std::array<double, 6>> green_strain, almansi_strain;  ///< xx, yy, zz, xy, yz, zx
 
   std::optional<Interpenetration> interpenetration;
 
-  /// Returns the components of a requested quantity: three, six for stress, two for energy, ten for interpenetration.
+  /// Returns the components of a requested quantity: three, six for stress and strain, two for energy, ten for
+  /// interpenetration.
   [[nodiscard]] std::vector<double> numbers(Quantity quantity) const;
 };
 

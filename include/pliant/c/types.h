@@ -139,10 +139,10 @@ typedef struct pliant_cut {
 typedef struct pliant_probe_value {
   size_t size;           /**< PLIANT_PROBE_VALUE_INIT; the same in all elements of an array */
   const char* probe;     /**< name of the probe in the scene */
-  const char* quantity;  /**< position, displacement, velocity, stress, reaction, force, energy or
-                                interpenetration */
+  const char* quantity;  /**< position, displacement, velocity, stress, green_strain, almansi_strain, reaction, force, energy
+                            or interpenetration */
   const double* numbers; /**< shape [number_count], as ProbeValue::numbers */
-  size_t number_count;   /**< 3; for a stress 6, for an energy 2, for an interpenetration 10 */
+  size_t number_count;   /**< 3; for a stress or strain 6, for an energy 2, for an interpenetration 10 */
 } pliant_probe_value;
 #define PLIANT_PROBE_VALUE_INIT \
   { sizeof(pliant_probe_value), NULL, NULL, NULL, 0 }
