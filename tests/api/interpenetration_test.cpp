@@ -12,11 +12,11 @@ namespace pliant::interpenetration_test {
 using test::code_of;
 using test::on;
 
-/// A body of 10 x 8 x 6 cm from `low` on that is held as a whole.
-BodySpec held(const std::string& name, const Vec3d& low = {0, 0, 0}) {
+/// A body of 10 x 8 x 6 cm, or of another height, from `low` on that is held as a whole.
+BodySpec held(const std::string& name, const Vec3d& low = {0, 0, 0}, double height = 0.08) {
   BodySpec body;
   body.name = name;
-  body.surface = box_surface(low, {low[0] + 0.1, low[1] + 0.08, low[2] + 0.06});
+  body.surface = box_surface(low, {low[0] + 0.1, low[1] + height, low[2] + 0.06});
   body.lattice_spacing = 0.02;
   body.material.young = 3000;
   body.fixed.push_back({RegionSpec{}});
@@ -107,7 +107,7 @@ TEST(Interpenetration, ToolsInClosedForm) {
 SceneSpec two_blocks() {
   SceneSpec scene;
   scene.dt = 0.001;
-  scene.bodies = {held("left"), held("right", {0.09, 0.06, 0.05}), held("far", {0.5, 0, 0})};
+  scene.bodies = {held("left"), held("right", {0.09, 0.03, 0.05}, 0.04), held("far", {0.5, 0, 0})};
   scene.tools.push_back(coming("ball", "sphere", {0.095, 0.07, 0.055}, 0.05));
   return scene;
 }
@@ -119,9 +119,10 @@ TEST(Interpenetration, PairsOfBodies) {
     ASSERT_EQ(all.size(), 1U);
     const Interpenetration& pair = between(all, "left", "right");
     EXPECT_FALSE(pair.tool);
-    EXPECT_NEAR(pair.volume / 2e-6, 1, 1e-5);
-    expect_near(pair.centroid, {0.095, 0.07, 0.055}, 1e-7);
-    for (const double area : pair.area) EXPECT_NEAR(area / 5e-4, 1, 1e-5);
+    EXPECT_NEAR(pair.volume / 4e-6, 1, 1e-5);
+    expect_near(pair.centroid, {0.095, 0.05, 0.055}, 1e-7);
+    EXPECT_NEAR(pair.area[0] / 8e-4, 1, 1e-5);
+    EXPECT_NEAR(pair.area[1] / 1e-3, 1, 1e-5);
     EXPECT_NEAR(pair.depth, 0.01, 1e-6);
     const std::uint64_t hash = world.hash();
     world.advance(0.12);
@@ -203,8 +204,8 @@ TEST(Interpenetration, InC) {
   const char* const body =
       R"(, "surface": "memory:0", "lattice": {"spacing": 0.02}, "material": {"young": 3000, "poisson": 0.45},
     "fixed": [{"all": true}])";
-  const std::string text =
-      std::string(R"({"format": "pliant-scene/1", "dt": 0.001, "bodies": [{"name": "a")") + body + R"(}, {"name": "b")" + body + "}]}";
+  const std::string text = std::string(R"({"format": "pliant-scene/1", "dt": 0.001, "bodies": [{"name": "a")") + body +
+                           R"(}, {"name": "b")" + body + "}]}";
   pliant_options options = PLIANT_OPTIONS_INIT;
   options.backend = "cpu";
   pliant_world world{};

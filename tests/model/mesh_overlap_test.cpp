@@ -157,6 +157,14 @@ TEST(MeshOverlap, BoxesInClosedForm) {
   // Faces in one plane: what lies in the other's surface counts half.
   expect_box(a, test::box({0.5, 0, 0}, {1.5, 2, 3}), {0.5, 0, 0}, {1, 2, 3}, {8.5, 8.5});
   expect_box(a, a, {0, 0, 0}, {1, 2, 3}, {11, 11});
+  const TriangleMesh cube = test::box({0, 0, 0}, {1, 1, 1});
+  for (std::size_t axis = 0; axis < 3; ++axis) {  // one face of a smaller box in one of a larger one, on either side
+    for (const double low : {0.0, 0.5}) {
+      Vec3d lower{0.25, 0.25, 0.25}, upper{0.75, 0.75, 0.75};
+      lower[axis] = low, upper[axis] = low + 0.5;
+      expect_box(cube, test::box(lower, upper), lower, upper, {0.125, 1.375});
+    }
+  }
   for (const Vec3d& away : {Vec3d{1, 0, 0}, {0, 2, 0}, {0, 0, 3}, {1, 2, 3}, {9, 0, 0}}) {
     EXPECT_EQ(mesh_overlap(a, shifted(a, away)).volume, 0) << away[0] << away[1] << away[2];
   }
