@@ -108,7 +108,7 @@ TriangleMesh Interpenetrations::tool(const Simulation& simulation, std::size_t t
   if (form.shape == ToolShape::half_space) return half_space_mesh(form, pose, tissue);
   TriangleMesh mesh = shapes_[tool];
   if (!form.frames.empty()) {
-    mesh = form.frames[static_cast<std::size_t>(moment.frame + (moment.share < 0.5 ? 0 : 1))].surface;
+    mesh = form.frames[static_cast<std::size_t>(moment.frame) + (moment.share < 0.5 ? 0U : 1U)].surface;
   }
   for (Vec3d& v : mesh.vertices) v = place(pose, v);
   return mesh;
