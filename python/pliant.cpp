@@ -257,6 +257,32 @@ py::dict tool_forces(const pliant::World& w) {
   return d;
 }
 
+/// What tools and bodies, and bodies and bodies, have in common.
+py::list interpenetrations(const pliant::World& w) {
+  std::vector<pliant::Interpenetration> now;
+  {
+    const py::gil_scoped_release release;
+    now = w.interpenetrations();
+  }
+  const auto array = [](const auto& numbers) {
+    return py::array_t<double>(static_cast<py::ssize_t>(numbers.size()), numbers.data());
+  };
+  py::list all;
+  for (const pliant::Interpenetration& i : now) {
+    py::dict found;
+    found["first"] = i.first;
+    found["second"] = i.second;
+    found["tool"] = i.tool;
+    found["volume"] = i.volume;
+    found["centroid"] = array(i.centroid);
+    found["area"] = array(i.area);
+    found["depth"] = i.depth;
+    found["deepest"] = array(i.deepest);
+    all.append(found);
+  }
+  return all;
+}
+
 void bind_tools(py::class_<pliant::World>& world) {
   using pliant::World;
   using Free = py::call_guard<py::gil_scoped_release>;
@@ -286,7 +312,9 @@ void bind_tools(py::class_<pliant::World>& world) {
            py::arg("turn") = std::array<double, 4>{0, 0, 0, 1}, Free())
       .def("drive_tool", &World::drive_tool, py::arg("name"), py::arg("position"),
            py::arg("turn") = std::array<double, 4>{0, 0, 0, 1}, py::arg("seconds") = 1.0 / 60, Free())
-      .def("tool_forces", &tool_forces, "a dict of the tools: of each a dict of its pose and what it feels");
+      .def("tool_forces", &tool_forces, "a dict of the tools: of each a dict of its pose and what it feels")
+      .def("interpenetrations", &interpenetrations,
+           "a list of dicts: what tools and bodies, and bodies and bodies, have in common");
 }
 
 void bind_world(py::module_& m) {

@@ -17,7 +17,7 @@ struct CWorld {
   World world;
   std::mutex mutex;                        ///< protects the following members against concurrent calls
   std::map<std::uint64_t, FramePtr> seen;  ///< last frame of each consumer, which keeps its pointers valid
-  std::set<std::string> tool_names;        ///< storage of returned tool names
+  std::set<std::string> names;             ///< storage of returned names of tools and bodies
   std::vector<ProbeValue> probes;          ///< storage of returned probe values
 };
 

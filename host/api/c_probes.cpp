@@ -1,4 +1,4 @@
-// Probes and tool forces in the C API.
+// Probes, tool forces and interpenetrations in the C API.
 #include <algorithm>
 #include <utility>
 #include <vector>
@@ -54,7 +54,7 @@ pliant_status pliant_world_tool_forces(pliant_world world, pliant_tool_force* ou
     if (needed != nullptr) *needed = now.size();
     for (std::size_t i = 0; i < std::min(count, now.size()); ++i) {
       pliant_tool_force force{};
-      force.name = w.tool_names.insert(now[i].name).first->c_str();
+      force.name = w.names.insert(now[i].name).first->c_str();
       std::copy(now[i].position.begin(), now[i].position.end(), force.position);
       std::copy(now[i].turn.begin(), now[i].turn.end(), force.turn);
       std::copy(now[i].force.begin(), now[i].force.end(), force.force);
@@ -63,6 +63,27 @@ pliant_status pliant_world_tool_forces(pliant_world world, pliant_tool_force* ou
       force.penetration = now[i].penetration;
       force.parked = now[i].parked ? 1 : 0;
       give_struct<pliant_tool_force>(force, element(out, i));
+    }
+  });
+}
+
+pliant_status pliant_world_interpenetrations(pliant_world world, pliant_interpenetration* out, size_t count, size_t* needed) {
+  return on(world, [&](CWorld& w) {
+    check_array(out, count, "pliant_interpenetration");
+    const std::vector<pliant::Interpenetration> now = w.world.interpenetrations();
+    const std::lock_guard lock(w.mutex);
+    if (needed != nullptr) *needed = now.size();
+    for (std::size_t i = 0; i < std::min(count, now.size()); ++i) {
+      pliant_interpenetration found{};
+      found.first = w.names.insert(now[i].first).first->c_str();
+      found.second = w.names.insert(now[i].second).first->c_str();
+      found.volume = now[i].volume;
+      std::copy(now[i].centroid.begin(), now[i].centroid.end(), found.centroid);
+      std::copy(now[i].area.begin(), now[i].area.end(), found.area);
+      found.depth = now[i].depth;
+      std::copy(now[i].deepest.begin(), now[i].deepest.end(), found.deepest);
+      found.tool = now[i].tool ? 1 : 0;
+      give_struct<pliant_interpenetration>(found, element(out, i));
     }
   });
 }

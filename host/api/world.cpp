@@ -211,6 +211,12 @@ std::vector<ProbeValue> World::probes() const {
   return values;
 }
 
+std::vector<Interpenetration> World::interpenetrations() const {
+  const Call call(impl_);
+  check_device(*impl_);
+  return impl_->interpenetrations.now(*impl_->simulation);
+}
+
 std::vector<std::string> World::remarks() const {
   const Call call(impl_);
   check_device(*impl_);

@@ -96,6 +96,7 @@ struct World::Impl {
   WorldInfo info;
   std::shared_ptr<const Model> model;  ///< initial model
   PlacedProbes probes;
+  Interpenetrations interpenetrations;
   std::shared_ptr<Simulation> simulation;
   std::unique_ptr<api::SurfaceHandles> handles;
   api::RigidTools rigid_tools;

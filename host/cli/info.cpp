@@ -149,9 +149,14 @@ class Info {
     const Probes found(scene_.probes->list, model_);
     for (std::size_t i = 0; i < found.size(); ++i) {
       const SceneProbe& probe = found.probe(i);
-      const ModelBody& body = model_.bodies[found.body(i)];
       std::vector<std::string> words;
       for (const Quantity q : probe.quantities) words.push_back(word_of(quantity_words(), q));
+      if (!probe.between.empty()) {
+        json_["probes"].push_back({{"name", probe.name}, {"between", probe.between}, {"quantities", words}});
+        line(fmt::format("probe {}: {} of {}", probe.name, fmt::join(words, ", "), fmt::join(probe.between, " and ")));
+        continue;
+      }
+      const ModelBody& body = model_.bodies[found.body(i)];
       Json row{{"name", probe.name}, {"body", body.name}, {"quantities", words}};
       if (probe.point) row["point"] = *probe.point;
       const std::size_t nodes = probe.point ? 0 : select_nodes(probe.where, body, Virtual::with_anchors).size();

@@ -23,12 +23,19 @@ const char* header(Quantity quantity) {
       return ",vx [m/s],vy [m/s],vz [m/s]";
     case Quantity::stress:
       return ",sxx [Pa],syy [Pa],szz [Pa],sxy [Pa],syz [Pa],szx [Pa]";
+    case Quantity::green_strain:
+      return ",Exx,Eyy,Ezz,Exy,Eyz,Ezx";
+    case Quantity::almansi_strain:
+      return ",exx,eyy,ezz,exy,eyz,ezx";
     case Quantity::reaction:
       return ",rx [N],ry [N],rz [N]";
     case Quantity::force:
       return ",fx [N],fy [N],fz [N]";
     case Quantity::energy:
       return ",kinetic [J],strain [J]";
+    case Quantity::interpenetration:
+      return ",volume [m^3],centroid x [m],centroid y [m],centroid z [m],area of the first [m^2],area of the second "
+             "[m^2],depth [m],deepest x [m],deepest y [m],deepest z [m]";
   }
   return "";
 }

@@ -39,11 +39,13 @@ class Report {
     add_mass(json);
     add_inversions(json);
     add_tools(s_, json);
+    const std::vector<std::string> inside = add_interpenetrations(s_, json);
     if (const auto created = r_.energy.created()) json["contact"]["energy_created"] = *created;
     if (!result_.diverged.empty()) json["diverged_step"] = result_.diverged_step;
     print_summary();
     for (std::size_t t = 0; t < s_.contact().tools().size(); ++t) out_.print(tool_line(s_, t));
     if (s_.scene().contact && s_.model().contact != nullptr) out_.print(tissue_line(s_));
+    for (const std::string& line : inside) out_.print(line);
     for (const std::string& remark : run_remarks(s_)) out_.remark(remark);
     if (const auto remark = r_.energy.remark()) out_.remark(*remark);
     if (!r_.probes.empty() || !r_.scene_probes.empty()) {
@@ -120,7 +122,9 @@ class Report {
     for (std::size_t i = 0; i < now.size(); ++i) {
       const SceneProbe& probe = probes.probe(i);
       const ProbeState& state = now[i];
-      Json row{{"name", probe.name}, {"body", s_.model().bodies[probes.body(i)].name}};
+      Json row{{"name", probe.name}};
+      if (probe.between.empty()) row["body"] = s_.model().bodies[probes.body(i)].name;
+      if (!probe.between.empty()) row["between"] = probe.between;
       if (probe.point) row["rest"] = *probe.point;
       std::string text;
       for (const Quantity q : probe.quantities) {
@@ -139,6 +143,10 @@ class Report {
           case Quantity::stress:
             print("Pa");
             break;
+          case Quantity::green_strain:
+          case Quantity::almansi_strain:
+            text += fmt::format(", {} [{:.6g}]", word, fmt::join(state.numbers(q), ", "));
+            break;
           case Quantity::force:
           case Quantity::reaction:
             print("N");
@@ -146,6 +154,11 @@ class Report {
           case Quantity::energy:
             row[word] = {{"kinetic", state.energy->kinetic}, {"strain", state.energy->strain}};
             text += fmt::format(", energy {:.6g} J kinetic, {:.6g} J of strain", state.energy->kinetic, state.energy->strain);
+            break;
+          case Quantity::interpenetration:
+            row[word] = interpenetration_json(*state.interpenetration);
+            text += fmt::format(", interpenetration {:.6g} m^3, {:.6g} m deep", state.interpenetration->volume,
+                                state.interpenetration->depth);
         }
       }
       rows.push_back(std::move(row));

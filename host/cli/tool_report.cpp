@@ -4,9 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "geometry/vec.h"
 #include "io/atomic_file.h"
+#include "simulation/measure/interpenetration.h"
 
 namespace pliant::cli {
 namespace {
@@ -50,6 +52,32 @@ void add_tools(const Simulation& simulation, nlohmann::ordered_json& json) {
                      {"touching", points},
                      {"max_penetration", deepest},
                      {"penetration_in_cells", all == nullptr ? 0.0 : deepest / all->spacing}};
+}
+
+nlohmann::ordered_json interpenetration_json(const Interpenetration& found) {
+  using Json = nlohmann::ordered_json;
+  return {{"volume", found.volume},
+          {"centroid", found.volume > 0 ? Json(found.centroid) : Json(nullptr)},
+          {"area", found.area},
+          {"depth", found.depth},
+          {"deepest", found.depth > 0 ? Json(found.deepest) : Json(nullptr)}};
+}
+
+std::vector<std::string> add_interpenetrations(Simulation& simulation, nlohmann::ordered_json& json) {
+  std::vector<std::string> lines;
+  if (simulation.contact().tools().empty() && simulation.model().bodies.size() < 2) return lines;
+  Interpenetrations measure;
+  json["interpenetrations"] = nlohmann::ordered_json::array();
+  for (const Interpenetration& found : measure.now(simulation)) {
+    nlohmann::ordered_json row{{"first", found.first}, {"second", found.second}, {"tool", found.tool}};
+    row.update(interpenetration_json(found));
+    json["interpenetrations"].push_back(std::move(row));
+    lines.push_back(fmt::format("{} {} in body {}: {:.4g} m^3, {:.3g} and {:.3g} m^2 of their surfaces, {:.3g} m deep",
+                                found.tool ? "tool" : "body", found.first, found.second, found.volume, found.area[0],
+                                found.area[1], found.depth));
+  }
+  json["no_closed_surface"] = measure.left_out(simulation);
+  return lines;
 }
 
 std::string tool_line(const Simulation& simulation, std::size_t tool) {

@@ -5,12 +5,19 @@
 #include <string>
 #include <vector>
 
+#include "pliant/tool.h"
 #include "simulation/simulation.h"
 
 namespace pliant::cli {
 
 /// The members "tools" and "contact" of docs/schema/run.json; nothing without tools.
 void add_tools(const Simulation& simulation, nlohmann::ordered_json& json);
+/// The numbers of an interpenetration; null where there is no centroid or no deepest point.
+nlohmann::ordered_json interpenetration_json(const Interpenetration& found);
+/// Measures at the present state (docs/contact.md) and adds the members "interpenetrations" and "no_closed_surface"; nothing of
+/// a single body without tools. Returns a line for people per tool or body that is in another one.
+std::vector<std::string> add_interpenetrations(Simulation& simulation, nlohmann::ordered_json& json);
+
 /// A line per tool for people.
 std::string tool_line(const Simulation& simulation, std::size_t tool);
 

@@ -43,6 +43,16 @@ double volume_modulus(const Material& material) {
   return with_law(material, [](const auto& law) { return law.bulk(); });
 }
 
+Matrix3d green_strain(const Matrix3d& h) { return 0.5 * (h + h.transpose() + h.transpose() * h); }
+
+/// As F^-T E F^-1, which does not cancel at small strain.
+std::optional<Matrix3d> almansi_strain(const Matrix3d& h) {
+  const Kinematics k(h);
+  if (!(1 + k.j > 0) || !h.allFinite()) return {};
+  const Matrix3d inverse = k.inverse_transposed();
+  return inverse * green_strain(h) * inverse.transpose();
+}
+
 std::optional<Matrix3d> cauchy_stress(const Material& material, const Matrix3d& h) {
   const double j = 1 + Kinematics(h).j;
   Response out;

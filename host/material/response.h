@@ -29,6 +29,11 @@ void respond_linear(const Material& material, const Eigen::Matrix3d& h, Response
 double energy_without_volume(const Material& material, const Eigen::Matrix3d& h);
 double volume_modulus(const Material& material);
 
+/// Green-Lagrange strain (F^T F - I) / 2.
+Eigen::Matrix3d green_strain(const Eigen::Matrix3d& h);
+/// Almansi strain (I - F^-T F^-1) / 2; empty if J is not a positive, finite number.
+std::optional<Eigen::Matrix3d> almansi_strain(const Eigen::Matrix3d& h);
+
 /// Cauchy stress P F^T / J [Pa]; empty if J is not a positive, finite number.
 std::optional<Eigen::Matrix3d> cauchy_stress(const Material& material, const Eigen::Matrix3d& h);
 

@@ -14,9 +14,6 @@ namespace pliant::render {
 /// The body number of triangles that belong to tools.
 inline constexpr std::int32_t kToolBody = -1;
 
-/// A shape in its own frame, outward; nothing of a half space or a sequence.
-TriangleMesh tool_surface(const ToolForm& form);
-
 /// All tools where they are now. Shapes are made once.
 class ToolSurfaces {
  public:

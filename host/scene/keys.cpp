@@ -58,7 +58,7 @@ std::map<std::string, List> make_keys() {
       {"inclusion", points + List{"material"}},
       {"fixed", selection + PLIANT_DESCRIBED(Fixed, axes)},
       {"prescribed", selection + List{"displacement", "rotate"} + PLIANT_DESCRIBED(Prescribed, axes) + curve},
-      {"probe", selection + List{"name", "body", "quantities"} + PLIANT_DESCRIBED(SceneProbe, place)},
+      {"probe", selection + List{"name", "body", "between", "quantities"} + PLIANT_DESCRIBED(SceneProbe, place)},
       {"probe_every", PLIANT_DESCRIBED(SceneProbes, pace)},
       {"rotation", PLIANT_DESCRIBED(Rotation, rotation)},
       {"initial", selection + List{"velocity", "displacement"}},
@@ -213,9 +213,12 @@ const Words<Quantity>& quantity_words() {
                                      {"displacement", Quantity::displacement, "from where it was at rest"},
                                      {"velocity", Quantity::velocity, "of the material"},
                                      {"stress", Quantity::stress, "Cauchy stress at a point"},
+                                     {"green_strain", Quantity::green_strain, "Green-Lagrange strain at a point"},
+                                     {"almansi_strain", Quantity::almansi_strain, "Almansi strain at a point"},
                                      {"reaction", Quantity::reaction, "force that fixes or moves nodes, summed"},
                                      {"force", Quantity::force, "applied loads on nodes, summed"},
-                                     {"energy", Quantity::energy, "kinetic, and of the strain"}};
+                                     {"energy", Quantity::energy, "kinetic, and of the strain"},
+                                     {"interpenetration", Quantity::interpenetration, "what two things have in common"}};
   return words;
 }
 

@@ -25,14 +25,43 @@ const Body& read_whose(const Reader& probe, const Scene& scene) {
   field.fail_word(names);
 }
 
-std::vector<Quantity> read_quantities(const Reader& probe, bool point) {
-  if (!probe.has("quantities")) return {Quantity::position, Quantity::displacement, Quantity::velocity};
+/// Returns a tool or a body, and a body or nothing.
+std::vector<std::string> read_between(const Reader& field, const Scene& scene) {
+  std::vector<std::string> tools, bodies, names;
+  for (const ContactTool& tool : scene.tools) tools.push_back(tool.name);
+  for (const Body& body : scene.bodies) bodies.push_back(body.name);
+  std::vector<std::string> all = tools;
+  all.insert(all.end(), bodies.begin(), bodies.end());
+  const char* const expected = "the name of a tool or a body, and that of another body, or none for all bodies";
+  for (const Reader& entry : field.items(expected, 1)) {
+    const std::vector<std::string>& known = names.empty() ? all : bodies;
+    const auto same = [&](const std::string& name) { return entry.json() == name; };
+    if (std::none_of(known.begin(), known.end(), same)) entry.fail_word(known);
+    if (std::any_of(tools.begin(), tools.end(), same) && std::any_of(bodies.begin(), bodies.end(), same))
+      entry.fail("a name that a tool and a body do not share");
+    names.push_back(entry.json());
+  }
+  if (names.size() > 2 || (names.size() == 2 && names[0] == names[1])) field.fail(expected);
+  return names;
+}
+
+std::vector<Quantity> read_quantities(const Reader& probe, bool point, bool between) {
+  if (!probe.has("quantities")) {
+    if (between) return {Quantity::interpenetration};
+    return {Quantity::position, Quantity::displacement, Quantity::velocity};
+  }
   std::vector<Quantity> list;
   for (const Reader& entry : probe.at("quantities").items("a list of at least one quantity", 1)) {
     const Quantity q = entry.word(quantity_words());
+    const std::string& word = word_of(quantity_words(), q);
+    if (between && q != Quantity::interpenetration)
+      entry.fail(fmt::format("no {} between tools and bodies: only their interpenetration", word));
+    if (!between && q == Quantity::interpenetration)
+      entry.fail("no interpenetration of a point or a selection: \"between\": [a tool or a body, a body] has one");
     if (point && (q == Quantity::reaction || q == Quantity::force || q == Quantity::energy))
-      entry.fail(fmt::format("no {} of a point: a selection of nodes (box, plane, ...) has one", word_of(quantity_words(), q)));
-    if (!point && q == Quantity::stress) entry.fail("no stress of a selection: a \"point\" has one");
+      entry.fail(fmt::format("no {} of a point: a selection of nodes (box, plane, ...) has one", word));
+    if (!point && (q == Quantity::stress || q == Quantity::green_strain || q == Quantity::almansi_strain))
+      entry.fail(fmt::format("no {} of a selection: a \"point\" has one", word));
     if (std::find(list.begin(), list.end(), q) != list.end()) entry.fail("every quantity at most once");
     list.push_back(q);
   }
@@ -48,11 +77,14 @@ SceneProbe read_probe(const Reader& probe, const Scene& scene) {
   out.name = read_name(name, "slashes, commas, quotation marks", "/\\,\"");
   if (out.name[0] == '.') name.fail("a name without a dot at its beginning");
   const bool point = probe.has("point");
-  out.quantities = read_quantities(probe, point);
-  if (point) {
+  const bool between = probe.has("between");
+  out.quantities = read_quantities(probe, point, between);
+  if (point || between) {
     for (const char* key : {"box", "sphere", "plane", "surface", "region", "data", "dimension", "nodes", "all", "body"}) {
-      if (probe.has(key)) probe.at(key).fail(fmt::format("no \"{}\" beside a \"point\"", key));
+      if (probe.has(key)) probe.at(key).fail(fmt::format("no \"{}\" beside {}", key, point ? "a \"point\"" : "\"between\""));
     }
+    if (point && between) probe.at("between").fail("no \"between\" beside a \"point\"");
+    if (between) out.between = read_between(probe.at("between"), scene);
     describe_place(ReadKeys{probe}, out);
     return out;
   }

@@ -272,9 +272,11 @@ OrderedJson blade_json(const B& b) {
 
 template <class P>
 OrderedJson probe_json(const P& p, const fs::path& file) {
-  OrderedJson probe = p.point ? OrderedJson::object() : selection_json(p.where, file);
+  const bool selects = !p.point && p.between.empty();
+  OrderedJson probe = selects ? selection_json(p.where, file) : OrderedJson::object();
   describe_place(WriteKeys{probe}, p);
-  if (!p.point && !p.body.empty()) probe["body"] = p.body;
+  if (selects && !p.body.empty()) probe["body"] = p.body;
+  if (!p.between.empty()) probe["between"] = p.between;
   probe["name"] = p.name;
   for (const auto& q : p.quantities) probe["quantities"].push_back(text_of(quantity_words(), q));
   return probe;

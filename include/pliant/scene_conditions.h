@@ -120,14 +120,15 @@ struct PressureSpec {
   CurveSpec curve;      ///< the factor over time
 };
 
-/// A probe at a point or at selected nodes, evaluated by World::probes().
+/// A probe at a point, at selected nodes or between a tool and a body, evaluated by World::probes().
 struct ProbeSpec {
-  std::string name;            ///< unique
-  std::optional<Vec3d> point;  ///< undeformed position [m]; absent: the nodes of `where`
-  RegionSpec where;            ///< nodes of `body`; not together with a point
-  std::string body;            ///< name of the body; empty: the only one; not together with a point
-  std::vector<std::string>
-      quantities;  ///< names as in ProbeValue::quantity, in output order; empty: position, displacement, velocity
+  std::string name;                  ///< unique
+  std::optional<Vec3d> point;        ///< undeformed position [m]; absent: the nodes of `where`
+  RegionSpec where;                  ///< nodes of `body`; not together with a point
+  std::string body;                  ///< name of the body; empty: the only one; not together with a point
+  std::vector<std::string> between;  ///< instead: a tool or a body, and another body (or none: all); quantity interpenetration
+  std::vector<std::string> quantities;  ///< names as in ProbeValue::quantity, in output order; empty: position, displacement,
+                                        ///< velocity, or interpenetration
 };
 
 }  // namespace pliant

@@ -47,4 +47,17 @@ struct ToolForce {
   bool parked = false;                     ///< true if the tool is parked and has no contact (World::park_tool)
 };
 
+/// What a tool and a body, or two bodies, have in common: the overlap of their surfaces (docs/contact.md).
+struct Interpenetration {
+  std::string first;   ///< name of a tool or a body
+  std::string second;  ///< name of a body
+  bool tool = false;   ///< true if the first is a tool
+  double volume = 0;   ///< [m^3]
+  Vec3d centroid{};    ///< of this volume [m]
+  std::array<double, 2>
+      area{};        ///< of the first one's surface inside the second, and of the second one's inside the first [m^2]
+  double depth = 0;  ///< greatest distance of a vertex inside the other from the other's surface [m]
+  Vec3d deepest{};   ///< this vertex [m]; meaningless if the depth is 0: no vertex is inside
+};
+
 }  // namespace pliant

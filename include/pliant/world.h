@@ -82,6 +82,9 @@ class PLIANT_API World {
 
   /// Evaluates the scene's probes at the current state, in scene order, one entry per quantity.
   [[nodiscard]] std::vector<ProbeValue> probes() const;
+  /// Measures what tools and bodies, and bodies and bodies, have in common at the current state (docs/contact.md): those that
+  /// overlap, tools first. Parked tools and bodies without a closed surface are left out. Waits for the worker.
+  [[nodiscard]] std::vector<Interpenetration> interpenetrations() const;
   [[nodiscard]] std::vector<std::string> remarks() const;  ///< WorldInfo::remarks, then remarks about the run so far
   [[nodiscard]] std::uint64_t hash() const;                ///< hash of the state; equal hashes mean equal bits
 

@@ -63,6 +63,7 @@ TEST(CStructSizes, AreThoseOfTheFirstVersion) {
   EXPECT_EQ(api::CStruct<pliant_cut>::first_size, 32U);
   EXPECT_EQ(api::CStruct<pliant_probe_value>::first_size, 40U);
   EXPECT_EQ(api::CStruct<pliant_tool_force>::first_size, 144U);
+  EXPECT_EQ(api::CStruct<pliant_interpenetration>::first_size, 112U);
 }
 
 /// Every call that fills in a struct refuses sizes that no version has, and does nothing.

@@ -1,4 +1,6 @@
 // What the probes of a scene say in a World, in C++ and in C.
+#include <Eigen/Dense>
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -77,6 +79,38 @@ TEST(Probes, SayWhatTheNodesSay) {
   EXPECT_NEAR(find(now, "floor", "reaction")[1], 9.81 * mass, 0.05 * 9.81 * mass) << "it has come to rest";
   EXPECT_GT(find(now, "all", "energy")[0], 0);
   EXPECT_GT(find(now, "all", "energy")[1], 0);
+}
+
+/// Of a field u = L X at the start, of which F = I + L is known: for every element, at any point.
+TEST(Probes, StrainsOfALinearField) {
+  SceneSpec spec = test::block(0);
+  BodySpec& body = spec.bodies[0];
+  body.fixed.clear();
+  FieldSpec field;
+  field.linear = {{{0.1, 0.2, 0}, {-0.05, 0, 0.3}, {0, 0.02, -0.1}}};
+  body.initial.emplace_back().displacement = field;
+  ProbeSpec& probe = spec.probes.emplace_back();
+  probe.name = "p";
+  probe.point = Vec3d{0.033, 0.021, 0.047};
+  probe.quantities = {"green_strain", "almansi_strain"};
+  Eigen::Matrix3d f = Eigen::Matrix3d::Identity();
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) f(r, c) += field.linear[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)];
+  }
+  const Eigen::Matrix3d green = 0.5 * (f.transpose() * f - Eigen::Matrix3d::Identity());
+  const Eigen::Matrix3d almansi = 0.5 * (Eigen::Matrix3d::Identity() - (f * f.transpose()).inverse());
+  for (const char* const element : {"hex8", "tet4"}) {
+    body.element = element;
+    const std::vector<ProbeValue> now = World(spec, on("cpu:double")).probes();
+    ASSERT_EQ(now.size(), 2U);
+    const auto expect = [](const std::vector<double>& found, const Eigen::Matrix3d& t) {
+      const std::array<double, 6> expected{t(0, 0), t(1, 1), t(2, 2), t(0, 1), t(1, 2), t(2, 0)};
+      ASSERT_EQ(found.size(), 6U);
+      for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(found[k], expected[k], 1e-12) << k;
+    };
+    expect(now[0].numbers, green);
+    expect(now[1].numbers, almansi);
+  }
 }
 
 TEST(Probes, OfASceneInCodeAreThoseOfTheText) {

@@ -187,12 +187,14 @@ class SceneProbes(harness.CliTest):
         for element in ("hex8", "tet4"):
             scene = self.scene(body={"element": element, "fixed": [{"all": True, "axes": "xz"}, {"plane": [[0, -0.049, 0], [0, -1, 0]]}]},
                                gravity=[0, 0, 0], relaxation={"tolerance": 1e-8},
-                               probes=[{"name": "p", "point": [0.013, 0.007, -0.021], "quantities": ["stress", "position"]},
+                               probes=[{"name": "p", "point": [0.013, 0.007, -0.021], "quantities": ["stress", "position", "green_strain", "almansi_strain"]},
                                        {"name": "top", "plane": [[0, 0.049, 0], [0, 1, 0]], "quantities": ["reaction"]}])
             probes, _ = self.of(scene)
             self.near(probes["p"]["stress"], [side, axial, side, 0, 0, 0], 2e-3 * abs(axial))
             self.assertAlmostEqual(probes["top"]["reaction"][1], axial * 0.01, delta=2e-3 * abs(axial * 0.01))
             self.near(probes["p"]["position"], [0.013, -0.05 + 0.057 * stretch, -0.021], 1e-6)
+            self.near(probes["p"]["green_strain"], [0, (stretch ** 2 - 1) / 2, 0, 0, 0, 0], 1e-5)
+            self.near(probes["p"]["almansi_strain"], [0, (1 - stretch ** -2) / 2, 0, 0, 0, 0], 2e-5)
 
     def test_tables(self):
         """A file for each probe with units in its header, at a pace of its own, which changes nothing."""

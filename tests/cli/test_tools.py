@@ -2,6 +2,7 @@
 """Tools through the command: what a run says of their forces, in its text, its JSON and its table."""
 import csv
 import json
+import math
 import re
 
 from harness import SCENES, CliTest, main
@@ -122,6 +123,42 @@ class Tools(CliTest):
         told = [remark for remark in run["remarks"] if "cells deep into tissue" in remark]
         self.assertEqual(len(told), 1)
         self.assertIn("tool 'probe' went ", told[0])
+
+    def test_interpenetration(self):
+        # A ball of 20 mm comes 10 mm deep into a cube that is held as a whole, and a second cube overlaps its corner.
+        corners = [(x, y, z) for z in (-0.12, -0.02) for y in (0.03, 0.13) for x in (0.04, 0.14)]
+        faces = ["1 3 4 2", "5 6 8 7", "1 2 6 5", "3 7 8 4", "1 5 7 3", "2 4 8 6"]
+        (self.folder / "other.obj").write_text("".join(f"v {x} {y} {z}\n" for x, y, z in corners) + "".join(f"f {f}\n" for f in faces))
+        other = {"name": "other", "surface": "other.obj"}
+        held = {"prescribed": [], "fixed": [{"all": True}]}
+        probes = [{"name": "ball", "between": ["probe", "cube"]}, {"name": "all", "between": ["cube"], "quantities": ["interpenetration"]}]
+        path = self.scene(body=held, tools=[ball("probe", 0.06)], duration=0.12, dt=0.001, probes=probes)
+        scene = json.loads(path.read_text())
+        scene["bodies"].append({**scene["bodies"][0], **other})
+        path.write_text(json.dumps(scene))
+        run = self.json("run", path, "--backend", "cpu", "--out", "out")
+        found = {(i["first"], i["second"]): i for i in run["interpenetrations"]}
+        self.assertEqual(list(found), [("probe", "cube"), ("cube", "other")])
+        tool = found["probe", "cube"]
+        cap = math.pi * 0.01 ** 2 * (0.06 - 0.01) / 3
+        self.assertAlmostEqual(tool["volume"] / cap, 1, delta=1e-3)
+        self.assertAlmostEqual(tool["depth"], 0.01, delta=1e-5)
+        self.assertAlmostEqual(tool["area"][0] / (2 * math.pi * 0.02 * 0.01), 1, delta=1e-3)
+        self.assertEqual((tool["tool"], run["no_closed_surface"]), (True, []))
+        self.assertAlmostEqual(found["cube", "other"]["volume"] / 6e-6, 1, delta=1e-4)
+        self.assertAlmostEqual(found["cube", "other"]["centroid"][1], 0.04, delta=1e-6)
+        by_name = {p["name"]: p for p in run["probes"]}
+        self.assertEqual(by_name["ball"]["interpenetration"], {key: tool[key] for key in by_name["ball"]["interpenetration"]})
+        self.assertAlmostEqual(by_name["all"]["interpenetration"]["volume"] / (cap + 6e-6), 1, delta=1e-3)
+        with open(self.folder / "out" / "scene_ball.csv") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual((float(rows[0]["volume [m^3]"]), rows[0]["centroid x [m]"]), (0, "nan"))
+        self.assertAlmostEqual(float(rows[-1]["volume [m^3]"]), tool["volume"], delta=1e-12)
+        self.assertAlmostEqual(float(rows[-1]["deepest z [m]"]), tool["deepest"][2], delta=1e-8)
+        self.assertIn("tool probe in body cube: ", self.pliant("run", path, "--backend", "cpu").stdout)
+        told = self.pliant("info", path).stdout
+        self.assertIn("probe ball: interpenetration of probe and cube", told)
+        self.assertEqual(self.json("info", path)["probes"][0], {"name": "ball", "between": ["probe", "cube"], "quantities": ["interpenetration"]})
 
     def test_tissue_on_tissue(self):
         # The same cube twice, one above the other.

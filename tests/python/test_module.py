@@ -212,6 +212,20 @@ def test_tools():
     world.release(hand)
 
 
+def test_interpenetrations():
+    body = {"lattice": {"spacing": 0.02}, "material": {"young": 3000, "poisson": 0.45}}
+    scene = {"format": "pliant-scene/1", "bodies": [{"name": "low", "surface": "memory:0", **body}, {"name": "high", "surface": "memory:1", **body}],
+             "probes": [{"name": "both", "between": ["low", "high"]}]}
+    higher = VERTICES + [0.09, 0.07, 0.04]
+    world = pliant.World(scene, [(VERTICES, TRIANGLES), (higher, TRIANGLES)], backend="cpu:double")
+    (found,) = world.interpenetrations()
+    assert (found["first"], found["second"], found["tool"]) == ("low", "high", False)
+    assert np.isclose(found["volume"], 2e-6, rtol=1e-9) and np.allclose(found["centroid"], [0.095, 0.075, 0.05])
+    assert np.allclose(found["area"], 5e-4) and np.isclose(found["depth"], 0.01) and found["deepest"].shape == (3,)
+    assert np.array_equal(world.probes()["both"]["interpenetration"][:4], [found["volume"], *found["centroid"]])
+    assert block().interpenetrations() == []
+
+
 def test_rigid_tools():
     world = block()
     assert world.tool_forces() == {}

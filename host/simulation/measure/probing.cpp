@@ -115,6 +115,22 @@ bool asks(const SceneProbe& probe, Quantity quantity) {
   return std::find(probe.quantities.begin(), probe.quantities.end(), quantity) != probe.quantities.end();
 }
 
+/// NaN where there is no volume and so no centroid, or no vertex in the other and so no deepest one.
+std::vector<double> numbers_of(const Interpenetration& o) {
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  const Vec3d nowhere{none, none, none}, centroid = o.volume > 0 ? o.centroid : nowhere;
+  const Vec3d deepest = o.depth > 0 ? o.deepest : nowhere;
+  return {o.volume, centroid[0], centroid[1], centroid[2], o.area[0], o.area[1], o.depth, deepest[0], deepest[1], deepest[2]};
+}
+
+/// xx, yy, zz, xy, yz, zx of a symmetric tensor; NaN without one.
+std::array<double, 6> components(const std::optional<Eigen::Matrix3d>& tensor) {
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  if (!tensor) return {none, none, none, none, none, none};
+  const Eigen::Matrix3d& t = *tensor;
+  return {t(0, 0), t(1, 1), t(2, 2), t(0, 1), t(1, 2), t(2, 0)};
+}
+
 template <class Numbers>
 std::vector<double> list(const Numbers& numbers) {
   return {numbers->begin(), numbers->end()};
@@ -132,12 +148,18 @@ std::vector<double> ProbeState::numbers(Quantity quantity) const {
       return list(velocity);
     case Quantity::stress:
       return list(stress);
+    case Quantity::green_strain:
+      return list(green_strain);
+    case Quantity::almansi_strain:
+      return list(almansi_strain);
     case Quantity::reaction:
       return list(reaction);
     case Quantity::force:
       return list(force);
     case Quantity::energy:
       return {energy->kinetic, energy->strain};
+    case Quantity::interpenetration:
+      return numbers_of(*interpenetration);
   }
   return {};
 }
@@ -151,7 +173,9 @@ PlacedProbes::PlacedProbes(const std::vector<SceneProbe>& probes, const Model& u
       }
     }
     Place place{probe};
-    if (probe.point) {
+    if (!probe.between.empty()) {
+      if (interpenetrations_ == nullptr) interpenetrations_ = std::make_shared<Interpenetrations>();
+    } else if (probe.point) {
       find(place, uncut);
     } else {
       while (uncut.bodies.at(place.body).name != probe.body) ++place.body;
@@ -202,13 +226,13 @@ ProbeState PlacedProbes::at_point(const Simulation& simulation, const Place& pla
   state.displacement = interpolate(nodes, place.weights, u);
   state.velocity = interpolate(nodes, place.weights, v);
   state.position = vec::add(*place.probe.point, *state.displacement);
+  const Eigen::Matrix3d h = gradient(body, element, place.weights, u);
+  if (asks(place.probe, Quantity::green_strain)) state.green_strain = components(green_strain(h));
+  if (asks(place.probe, Quantity::almansi_strain)) state.almansi_strain = components(almansi_strain(h));
   if (asks(place.probe, Quantity::stress)) {
     Material material = material_of(simulation.scene().bodies[place.body], body.materials, element);
     material.low = simulation.model().recovers ? low_volume : 0;
-    const auto s = cauchy_stress(material, gradient(body, element, place.weights, u));
-    const double none = std::numeric_limits<double>::quiet_NaN();
-    state.stress = {none, none, none, none, none, none};
-    if (s) state.stress = {(*s)(0, 0), (*s)(1, 1), (*s)(2, 2), (*s)(0, 1), (*s)(1, 2), (*s)(2, 0)};
+    state.stress = components(cauchy_stress(material, h));
   }
   return state;
 }
@@ -249,12 +273,20 @@ ProbeState PlacedProbes::of_nodes(Simulation& simulation, const Place& place, co
 
 std::vector<ProbeState> PlacedProbes::states(Simulation& simulation) const {
   std::vector<ProbeState> states(places_.size());
+  if (interpenetrations_ != nullptr) {
+    const std::vector<Interpenetration> found = interpenetrations_->now(simulation);
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      const std::vector<std::string>& names = places_[i].probe.between;
+      if (!names.empty()) states[i].interpenetration = sum_between(found, names[0], names.size() > 1 ? names[1] : "");
+    }
+  }
   for (std::size_t b = 0; b < simulation.model().bodies.size(); ++b) {
-    if (std::none_of(places_.begin(), places_.end(), [&](const Place& p) { return p.body == b; })) continue;
+    const auto is_here = [&](const Place& p) { return p.body == b && p.probe.between.empty(); };
+    if (std::none_of(places_.begin(), places_.end(), is_here)) continue;
     const std::vector<Vec3d> u = simulation.displacements(b), v = simulation.velocities(b);
     for (std::size_t i = 0; i < places_.size(); ++i) {
       const Place& place = places_[i];
-      if (place.body != b) continue;
+      if (!is_here(place)) continue;
       states[i] = place.probe.point ? at_point(simulation, place, u, v) : of_nodes(simulation, place, u, v);
     }
   }

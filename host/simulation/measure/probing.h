@@ -2,10 +2,12 @@
 #pragma once
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "scene/probe.h"
+#include "simulation/measure/interpenetration.h"
 #include "simulation/simulation.h"
 
 namespace pliant {
@@ -17,9 +19,13 @@ struct ProbeState {
     double kinetic = 0, strain = 0;  ///< [J]
   };
   std::optional<Energy> energy;
-  std::optional<std::array<double, 6>> stress;  ///< xx, yy, zz, xy, yz, zx [Pa]
+  std::optional<std::array<double, 6>> stress;                        ///< xx, yy, zz, xy, yz, zx [Pa]
+  std::optional<std::array<double, 6>> green_strain, almansi_strain;  ///< xx, yy, zz, xy, yz, zx
 
-  /// Returns the components of a requested quantity: three, six for stress, two for energy.
+  std::optional<Interpenetration> interpenetration;
+
+  /// Returns the components of a requested quantity: three, six for stress and strain, two for energy, ten for
+  /// interpenetration.
   [[nodiscard]] std::vector<double> numbers(Quantity quantity) const;
 };
 
@@ -35,7 +41,7 @@ class PlacedProbes {
   [[nodiscard]] bool empty() const { return places_.empty(); }
   [[nodiscard]] std::size_t size() const { return places_.size(); }
   [[nodiscard]] const SceneProbe& probe(std::size_t i) const { return places_[i].probe; }
-  [[nodiscard]] std::size_t body(std::size_t i) const { return places_[i].body; }
+  [[nodiscard]] std::size_t body(std::size_t i) const { return places_[i].body; }  ///< meaningless for one between two
   /// Evaluates all probes; the simulation is not changed. Points are interpolated within their element; in a cell that a
   /// blade has split, within the copy that holds the point's material.
   [[nodiscard]] std::vector<ProbeState> states(Simulation& simulation) const;
@@ -55,6 +61,7 @@ class PlacedProbes {
   static void find(Place& place, const Model& uncut);
 
   std::vector<Place> places_;
+  std::shared_ptr<Interpenetrations> interpenetrations_;  ///< keeps the shapes of tools; null if no probe asks
 };
 
 }  // namespace pliant

@@ -139,9 +139,10 @@ typedef struct pliant_cut {
 typedef struct pliant_probe_value {
   size_t size;           /**< PLIANT_PROBE_VALUE_INIT; the same in all elements of an array */
   const char* probe;     /**< name of the probe in the scene */
-  const char* quantity;  /**< position, displacement, velocity, stress, reaction, force or energy */
+  const char* quantity;  /**< position, displacement, velocity, stress, green_strain, almansi_strain, reaction, force, energy
+                            or interpenetration */
   const double* numbers; /**< shape [number_count], as ProbeValue::numbers */
-  size_t number_count;   /**< 3; for a stress 6, for an energy 2 */
+  size_t number_count;   /**< 3; for a stress or strain 6, for an energy 2, for an interpenetration 10 */
 } pliant_probe_value;
 #define PLIANT_PROBE_VALUE_INIT \
   { sizeof(pliant_probe_value), NULL, NULL, NULL, 0 }
@@ -161,6 +162,22 @@ typedef struct pliant_tool_force {
 } pliant_tool_force;
 #define PLIANT_TOOL_FORCE_INIT \
   { sizeof(pliant_tool_force), NULL, {0}, {0}, {0}, {0}, 0, 0, 0, 0 }
+
+/** What a tool and a body, or two bodies, have in common, as pliant::Interpenetration. Names are valid as long as the world. */
+typedef struct pliant_interpenetration {
+  size_t size;        /**< PLIANT_INTERPENETRATION_INIT; the same in all elements of an array */
+  const char* first;  /**< name of a tool or a body */
+  const char* second; /**< name of a body */
+  double volume;      /**< [m^3] */
+  double centroid[3]; /**< of this volume [m] */
+  double area[2];     /**< of the first one's surface inside the second, and of the second one's inside the first [m^2] */
+  double depth;       /**< greatest distance of a vertex inside the other from the other's surface [m] */
+  double deepest[3];  /**< this vertex [m]; meaningless if the depth is 0 */
+  int tool;           /**< 1: the first is a tool */
+  int reserved;       /**< 0 */
+} pliant_interpenetration;
+#define PLIANT_INTERPENETRATION_INIT \
+  { sizeof(pliant_interpenetration), NULL, NULL, 0.0, {0}, {0}, 0.0, {0}, 0, 0 }
 
 #ifdef __cplusplus
 }
