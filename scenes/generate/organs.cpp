@@ -199,6 +199,7 @@ TriangleMesh make_cylinder(double radius, double length) {
 TriangleMesh make_tube(double inner, double outer, double length) {
   constexpr int kAround = 48, kAlong = 20, kEnd = 2;
   std::vector<std::array<double, 2>> profile;  // (radius, x)
+  profile.reserve(2 * (kAlong + kEnd));
   for (int r = 0; r < kEnd; ++r) profile.push_back({inner + (outer - inner) * r / kEnd, -length / 2});
   for (int s = 0; s < kAlong; ++s) profile.push_back({outer, length * (static_cast<double>(s) / kAlong - 0.5)});
   for (int r = 0; r < kEnd; ++r) profile.push_back({outer - (outer - inner) * r / kEnd, length / 2});
