@@ -7,10 +7,15 @@
   liver       four moments of scenes/liver.json, coloured by von Mises stress
   cut         four moments of scenes/cut_liver.json: at rest, stretched, half cut, cut through
   parts       who computes what in scenes/bunny_hybrid.json and liver_hybrid.json
+  tumour      scenes/palpate_tumour.json: a press, and the map of the forces at all places
+  methods     one cut through the same tetrahedra by removal, decomposition and virtual nodes (`pliant bench cutting`), with one camera
+
+and three moments each of the scenes cut_bunny_hybrid, cut_shell, fold, grasp, needle and skin_on_bone, by these names
 
 Pictures are traced at twice their size and scaled down, and saved with 256 colours so that they stay small.
 """
 import argparse
+import csv
 import json
 import math
 import subprocess
@@ -24,6 +29,15 @@ ROOT = Path(__file__).resolve().parent.parent
 SCENES = ROOT / "scenes"
 INK = (40, 43, 51)
 PAPER = (255, 255, 255)
+ROWS = {  # moments [s] of scenes that have a row of pictures
+    "cut_bunny_hybrid": (0.2, 0.6, 1.2),
+    "cut_shell": (0.4, 1.0, 1.7),
+    "fold": (0.3, 0.6, 1.4),
+    "grasp": (0.2, 0.6, 1.6),
+    "needle": (0, 0.2, 0.8),
+    "skin_on_bone": (0, 0.4, 1),
+}
+KNOWN = ("parameters", "bunny", "liver", "cut", "parts", "tumour", "methods", *ROWS)
 
 
 def font(size):
@@ -49,7 +63,7 @@ class Maker:
         self.pliant, self.out, self.quick = pliant, out, quick
 
     def frames(self, scene, size, seconds, every=10**9, extra=()):
-        """Pictures of a run at step 0, every so many steps, and at its end, scaled to `size`."""
+        """Pictures of a run at step 0, every so many steps (or so much time, in words), and at its end, scaled to `size`."""
         factor, samples = (1, 2) if self.quick else (2, 8)
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "scene.json"
@@ -136,21 +150,103 @@ class Maker:
             sheet.paste(self.frames(scene, (480, 360), 0.6, extra=["--color", "model"])[-1], (480 * i, 0))
         self.save("parts", sheet)
 
+    def row(self, name):
+        """Three moments of a shipped scene beside each other, at its own step: each the first step at or after its time."""
+        size, times = (320, 240), ROWS[name]
+        unit = math.gcd(*(round(1000 * t) for t in times))
+        pictures = self.frames(load(name), size, times[-1], f"{unit}ms")
+        sheet = Image.new("RGB", (3 * size[0], size[1]), PAPER)
+        for i, t in enumerate(times):
+            picture = pictures[round(1000 * t / unit)]
+            ImageDraw.Draw(picture).text((10, size[1] - 10), f"{t:.2f} s", fill=INK, font=font(13), anchor="ls")
+            sheet.paste(picture, (i * size[0], 0))
+        self.save(name, sheet)
+
+    def tumour(self):
+        """Left a press above the tumour; right the force of the probe [mN] at the end of each press, smooth in between."""
+        scene, size, pixels = load("palpate_tumour"), (480, 340), 4000  # pixels per metre
+        path = scene["tools"][0]["path"]
+        presses = [path[i:i + 4] for i in range(0, len(path), 4)]  # above, pressed, held, above again
+        centre, radius = scene["bodies"][0]["inclusions"][0]["sphere"]
+        with tempfile.TemporaryDirectory() as folder:
+            file, out = Path(folder) / "scene.json", Path(folder) / "out"
+            file.write_text(json.dumps(scene))
+            subprocess.run([self.pliant, "run", file, "--quiet", "--out", out, "--every", "1000s"], check=True)
+            rows = list(csv.DictReader((out / "scene_tools.csv").open()))
+        force = {}
+        for _, _, (end, x, _, z), _ in presses:
+            last = max((r for r in rows if float(r["time [s]"]) <= end), key=lambda r: float(r["time [s]"]))
+            force[x, z] = 1000 * float(last["fy [N]"])
+        xs, zs = (sorted({place[c] for place in force}) for c in (0, 1))
+        low, high = min(force.values()), max(force.values())
+        grid = Image.new("F", (len(xs), len(zs)))
+        for (x, z), f in force.items():
+            grid.putpixel((xs.index(x), zs.index(z)), (f - low) / (high - low))
+        step = [round(pixels * (c[1] - c[0])) for c in (xs, zs)]
+        cells = grid.resize((step[0] * len(xs), step[1] * len(zs)), Image.BICUBIC)
+        shades = [cells.point(lambda v, a=a, b=b: v * (b - a) + a).convert("L") for a, b in ((250, 150), (240, 20), (230, 30))]
+        drawn = Image.merge("RGB", shades)
+        left, top = size[0] + (size[0] - drawn.width) // 2, (size[1] - drawn.height) // 2
+
+        def at(x, z):
+            return left + step[0] / 2 + pixels * (x - xs[0]), top + step[1] / 2 + pixels * (z - zs[0])
+
+        pressed = min(presses, key=lambda p: (p[2][1] - centre[0])**2 + (p[2][3] - centre[2])**2)[2][0]
+        sheet = Image.new("RGB", (2 * size[0], size[1]), PAPER)
+        sheet.paste(self.frames(scene, size, pressed)[-1], (0, 0))
+        sheet.paste(drawn, (left, top))
+        pen = ImageDraw.Draw(sheet)
+        (x0, z0), (x1, z1) = at(centre[0] - radius, centre[2] - radius), at(centre[0] + radius, centre[2] + radius)
+        pen.ellipse((x0, z0, x1, z1), outline=INK, width=2)
+        for (x, z), f in force.items():
+            pen.text(at(x, z), f"{f:.0f}", fill=PAPER if 2 * f > low + high else INK, font=font(14), anchor="mm")
+        pen.text((left, top - 8), "force [mN], 3.5 mm deep; the ring is the tumour below", fill=INK, font=font(14), anchor="ls")
+        self.save("tumour", sheet)
+
+    def methods(self):
+        """`bench cutting` takes its second body from a cut_liver.json: here a cube that one of its cuts crosses, with a view."""
+        names, size = ("removal", "decomposition", "virtual nodes"), (320, 240)
+        middle = [0.0531, 0.06, 0.06]
+        scene = load("cut_liver")
+        scene["view"] = {"eye": [0.19, 0.17, 0.21], "target": middle, "field_of_view": 28}
+        body = scene["bodies"][0]
+        body.update({"surface": "cube.obj", "scale": 0.03, "translate": middle, "lattice": {"spacing": 0.006}})
+        body["fixed"] = []
+        with tempfile.TemporaryDirectory() as folder:
+            corners = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
+            faces = ((1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4))
+            (Path(folder) / "cube.obj").write_text("".join(f"v {x} {y} {z}\n" for x, y, z in corners) +
+                                                   "".join("f {} {} {} {}\n".format(*f) for f in faces))
+            (Path(folder) / "cut_liver.json").write_text(json.dumps(scene))
+            subprocess.run([self.pliant, "bench", "cutting", "--parts", "methods", "--quiet", "--scenes", folder, "--out", folder],
+                           check=True, stdout=subprocess.DEVNULL)
+            sheet = Image.new("RGB", (3 * size[0], size[1]), PAPER)
+            for i, name in enumerate(names):
+                picture = Image.open(Path(folder) / f"cutting_liver_{name.replace(' ', '_')}.png").convert("RGB")
+                width = picture.height * size[0] // size[1]
+                start = (picture.width - width) // 2
+                picture = picture.crop((start, 0, start + width, picture.height)).resize(size, Image.LANCZOS)
+                ImageDraw.Draw(picture).text((10, size[1] - 10), name, fill=INK, font=font(14), anchor="ls")
+                sheet.paste(picture, (i * size[0], 0))
+        self.save("methods", sheet)
+
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("pliant", help="the pliant command")
     parser.add_argument("--out", type=Path, default=ROOT / "docs" / "images")
-    parser.add_argument("--only", default="parameters,bunny,liver,cut,parts", help="names, separated by commas")
+    parser.add_argument("--only", default=",".join(KNOWN), help="names, separated by commas")
     parser.add_argument("--quick", action="store_true", help="few rays: to see that it works")
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     maker = Maker(Path(options.pliant).resolve(), options.out, options.quick)
-    known = ("parameters", "bunny", "liver", "cut", "parts")
     for name in options.only.split(","):
-        if name not in known:
-            sys.exit(f"figure.py: --only names \"{name}\"; there are {', '.join(known)}")
-        getattr(maker, name)()
+        if name not in KNOWN:
+            sys.exit(f"figure.py: --only names \"{name}\"; there are {', '.join(KNOWN)}")
+        if name in ROWS:
+            maker.row(name)
+        else:
+            getattr(maker, name)()
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@
 
 #include "pliant/error.h"
 #include "scenes/generate/hand.h"
+#include "scenes/generate/hollow.h"
 #include "scenes/generate/organs.h"
 
 int main(int argc, char** argv) {
@@ -19,6 +20,10 @@ int main(int argc, char** argv) {
       std::printf("%s: %zu vertices, %zu triangles, %.6g m^3\n", name.c_str(), mesh.vertices.size(), mesh.triangles.size(),
                   pliant::signed_volume(mesh));
     }
+    const pliant::TriangleMesh hollow = pliant::make_hollow(pliant::make_shape("liver"), 0.012, 0.006);
+    pliant::write_obj_text(hollow, "hollow liver, metres, y up; written by generate_meshes",
+                           std::string(argv[1]) + "/hollow_liver.obj");
+    std::printf("hollow_liver: %zu triangles, %.6g m^3\n", hollow.triangles.size(), pliant::signed_volume(hollow));
     const std::string folder = std::string(argv[1]) + "/hand";
     std::filesystem::create_directories(folder);
     for (int frame = 0; frame < pliant::hand_frames; ++frame) {

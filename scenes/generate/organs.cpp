@@ -195,9 +195,39 @@ TriangleMesh make_cylinder(double radius, double length) {
   return mesh;
 }
 
+// A thick tube along x: rings that grow over one end, go along the outside, shrink over the other end and come back inside.
+TriangleMesh make_tube(double inner, double outer, double length) {
+  constexpr int kAround = 48, kAlong = 20, kEnd = 2;
+  std::vector<std::array<double, 2>> profile;  // (radius, x)
+  profile.reserve(2 * (kAlong + kEnd));
+  for (int r = 0; r < kEnd; ++r) profile.push_back({inner + (outer - inner) * r / kEnd, -length / 2});
+  for (int s = 0; s < kAlong; ++s) profile.push_back({outer, length * (static_cast<double>(s) / kAlong - 0.5)});
+  for (int r = 0; r < kEnd; ++r) profile.push_back({outer - (outer - inner) * r / kEnd, length / 2});
+  for (int s = 0; s < kAlong; ++s) profile.push_back({inner, length * (0.5 - static_cast<double>(s) / kAlong)});
+  TriangleMesh mesh;
+  for (const auto& [r, x] : profile) {
+    for (int a = 0; a < kAround; ++a) {
+      const double angle = 2 * std::numbers::pi * a / kAround;
+      mesh.vertices.push_back({x, r * std::cos(angle), r * std::sin(angle)});
+    }
+  }
+  const int rings = static_cast<int>(profile.size());
+  for (int a = 0; a < kAround; ++a) {
+    const int b = (a + 1) % kAround;
+    for (int r = 0; r < rings; ++r) {
+      const int low = r * kAround, high = (r + 1) % rings * kAround;
+      mesh.triangles.push_back({low + a, low + b, high + b});
+      mesh.triangles.push_back({low + a, high + b, high + a});
+    }
+  }
+  return mesh;
+}
+
 }  // namespace
 
-std::vector<std::string> shape_names() { return {"apple", "liver", "kidney", "beam", "cube", "block", "cylinder"}; }
+std::vector<std::string> shape_names() {
+  return {"apple", "liver", "kidney", "beam", "cube", "block", "sheet", "cylinder", "tube"};
+}
 
 TriangleMesh make_shape(const std::string& name) {
   if (name == "apple") return make_organ({apple, {0.08, 0, 0.08}, 0.0022});
@@ -206,9 +236,12 @@ TriangleMesh make_shape(const std::string& name) {
   if (name == "beam") return make_box({0.1, 0.02, 0.02}, 0.005);
   if (name == "cube") return make_box({0.1, 0.1, 0.1}, 0.01);
   if (name == "block") return make_box({0.12, 0.04, 0.08}, 0.004);
+  if (name == "sheet") return make_box({0.16, 0.008, 0.06}, 0.004);
   if (name == "cylinder") return make_cylinder(0.02, 0.1);
-  throw Error(ErrorCode::bad_input,
-              fmt::format("no shape is called '{}'; known: apple, liver, kidney, beam, cube, block, cylinder", name));
+  if (name == "tube") return make_tube(0.0105, 0.024, 0.1);
+  throw Error(
+      ErrorCode::bad_input,
+      fmt::format("no shape is called '{}'; known: apple, liver, kidney, beam, cube, block, sheet, cylinder, tube", name));
 }
 
 void write_obj_text(const TriangleMesh& mesh, const std::string& comment, const std::string& path) {
