@@ -10,7 +10,7 @@
   tumour      scenes/palpate_tumour.json: a press, and the map of the forces at all places
   methods     one cut through the same tetrahedra by removal, decomposition and virtual nodes (`pliant bench cutting`), with one camera
 
-and three moments each of the scenes cut_bunny_hybrid, cut_shell, fold, grasp, needle and skin_on_bone, by these names
+and some moments each of the scenes bunny_settings, cut_bunny_hybrid, cut_shell, fold, grasp, needle and skin_on_bone, by these names
 
 Pictures are traced at twice their size and scaled down, and saved with 256 colours so that they stay small.
 """
@@ -30,6 +30,7 @@ SCENES = ROOT / "scenes"
 INK = (40, 43, 51)
 PAPER = (255, 255, 255)
 ROWS = {  # moments [s] of scenes that have a row of pictures
+    "bunny_settings": (0.7, 1.5, 2.3, 3.1),
     "cut_bunny_hybrid": (0.2, 0.6, 1.2),
     "cut_shell": (0.4, 1.0, 1.7),
     "fold": (0.3, 0.6, 1.4),
