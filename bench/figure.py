@@ -6,11 +6,12 @@
   bunny       four moments of scenes/bunny.json
   liver       four moments of scenes/liver.json, coloured by von Mises stress
   cut         four moments of scenes/cut_liver.json: at rest, stretched, half cut, cut through
+  grasp       four moments of scenes/grasp.json: at rest, cut, grasped, lifted
   parts       who computes what in scenes/bunny_hybrid.json and liver_hybrid.json
   tumour      scenes/palpate_tumour.json: a press, and the map of the forces at all places
   methods     one cut through the same tetrahedra by removal, decomposition and virtual nodes (`pliant bench cutting`), with one camera
 
-and some moments each of the scenes bunny_settings, cut_bunny_hybrid, cut_shell, fold, grasp, needle and skin_on_bone, by these names
+and some moments each of the scenes bunny_settings, cut_bunny_hybrid, cut_shell, fold, needle and skin_on_bone, by these names
 
 Pictures are traced at twice their size and scaled down, and saved with 256 colours so that they stay small.
 """
@@ -30,15 +31,14 @@ SCENES = ROOT / "scenes"
 INK = (40, 43, 51)
 PAPER = (255, 255, 255)
 ROWS = {  # moments [s] of scenes that have a row of pictures
-    "bunny_settings": (0.7, 1.5, 2.3, 3.1),
+    "bunny_settings": (0.6, 1.2, 1.8, 2.4),
     "cut_bunny_hybrid": (0.2, 0.6, 1.2),
     "cut_shell": (0.4, 1.0, 1.7),
     "fold": (0.3, 0.6, 1.4),
-    "grasp": (0.2, 0.6, 1.6),
     "needle": (0, 0.2, 0.8),
     "skin_on_bone": (0, 0.4, 1),
 }
-KNOWN = ("parameters", "bunny", "liver", "cut", "parts", "tumour", "methods", *ROWS)
+KNOWN = ("parameters", "bunny", "liver", "cut", "grasp", "parts", "tumour", "methods", *ROWS)
 
 
 def font(size):
@@ -144,6 +144,9 @@ class Maker:
     def cut(self):
         self.strip("cut", load("cut_liver"), (0, 0.4, 0.7, 1.0), (480, 340))
 
+    def grasp(self):
+        self.strip("grasp", load("grasp"), (0, 0.3, 0.9, 1.6), (480, 340))
+
     def parts(self):
         sheet = Image.new("RGB", (960, 360), PAPER)
         for i, name in enumerate(("bunny_hybrid", "liver_hybrid")):
@@ -152,11 +155,11 @@ class Maker:
         self.save("parts", sheet)
 
     def row(self, name):
-        """Three moments of a shipped scene beside each other, at its own step: each the first step at or after its time."""
+        """Moments of a shipped scene beside each other, at its own step: each the first step at or after its time."""
         size, times = (320, 240), ROWS[name]
         unit = math.gcd(*(round(1000 * t) for t in times))
         pictures = self.frames(load(name), size, times[-1], f"{unit}ms")
-        sheet = Image.new("RGB", (3 * size[0], size[1]), PAPER)
+        sheet = Image.new("RGB", (len(times) * size[0], size[1]), PAPER)
         for i, t in enumerate(times):
             picture = pictures[round(1000 * t / unit)]
             ImageDraw.Draw(picture).text((10, size[1] - 10), f"{t:.2f} s", fill=INK, font=font(13), anchor="ls")

@@ -51,12 +51,14 @@ class SceneRun {
     }
   }
 
-  /// Whether what makes this scene worth recording has happened: it was cut, tools touched it, tissue touched tissue.
+  /// Whether what makes this scene worth recording has happened: it was cut, tools touched it, tissue touched tissue,
+  /// parameters changed.
   [[nodiscard]] bool eventful() const {
     const Scene& scene = simulation_.scene();
     const bool edited = scene.blades.empty() || simulation_.topology_version() > 0;
     const bool torn = !EditedBodies::tears(scene) || simulation_.topology_version() > 0;
-    return edited && torn && touched_.size() == scene.tools.size() && (!scene.contact || met_);
+    const bool changed = scene.changes.empty() || simulation_.state().changed.done > 0;
+    return edited && torn && changed && touched_.size() == scene.tools.size() && (!scene.contact || met_);
   }
 
   /// Past 200 steps and the first of each event, on a multiple of 100 steps.
