@@ -328,6 +328,33 @@ TEST_P(ContactPhysics, WorkIsEnergyAndWhatIsDamped) {
   }
 }
 
+/// Tissue that presses on a thin tool stands in it, which takes work beyond that of the strain; it comes back when the tool
+/// withdraws, and is no energy from nowhere.
+TEST_P(ContactPhysics, WhatANeedleGivesBackIsNotCreated) {
+  ContactTool needle;
+  needle.name = "needle";
+  needle.shape = ToolShape::capsule;
+  needle.radius = 0.004;
+  needle.first = {0, 0, 0.004};
+  needle.second = {0, 0, 0.05};
+  needle.path = {{0, 0.02, 0.02, 0.0202, 0, 0, 0, 1},
+                 {0.4, 0.02, 0.02, 0.0162, 0, 0, 0, 1},
+                 {0.6, 0.02, 0.02, 0.0162, 0, 0, 0, 1},
+                 {0.8, 0.02, 0.02, 0.0242, 0, 0, 0, 1}};
+  Material m = material_young(Law::neo_hookean, 8e3, 0.45);
+  m.damping = 20;
+  Body body = box_body({{10, 10, 5}, 0.004}, Discretization::hex8_bricks, m);
+  body.fixed = {{face(2, 0)}};
+  auto sim = simulate(scene_of(body, needle), GetParam());
+  while (sim->time() < 1) {
+    sim->advance(sim->next_batch(16));
+    sim->watch_energy();
+  }
+  EXPECT_GT(sim->report().tools[0].max_force, 0.05);
+  ASSERT_TRUE(sim->report().energy.share());
+  check("energy made, over the largest", *sim->report().energy.share(), 0.01);
+}
+
 /// A tool pressed into tissue where it is held: points that hang mostly on held nodes are no harder than others.
 TEST_P(ContactPhysics, BesideHeldNodesForcesStayOrdinary) {
   ContactTool ball;

@@ -61,12 +61,17 @@ void Simulation::watch_energy() {
   Energies now = energies(m, by_slot(m, u), velocity, {scene_.gravity_at(time()), time()});
   now.kinetic = kinetic(*this, velocity);
   if (!std::isfinite(now.total())) return;
-  double work = 0;
-  for (const ToolHistory& tool : report().tools) work += tool.work;
+  // Tissue that presses on a tool stands in it, and when the tool withdraws it gives back what that took: at most half of force
+  // times depth.
+  double work = 0, stored = 0;
+  for (const ToolHistory& tool : report().tools) {
+    work += tool.work;
+    stored += 0.5 * vec::norm(tool.now.force) * tool.now.depth;
+  }
   const double left = now.total() - work;
   EnergyHistory& seen = reports_.now.energy;
   seen.highest = std::max({seen.highest, now.kinetic + now.strain + now.hourglass, std::abs(work)});
-  if (!seen.least || left < *seen.least) seen.least = left;
+  if (!seen.least || left + stored < *seen.least) seen.least = left + stored;
   seen.created = std::max(seen.created, left - *seen.least);
 }
 
