@@ -3,16 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "pliant/c/pliant.h"
-#include "pliant/world.h"
+#include "scenes.h"
 #include "support/temp_folder.h"
 
 namespace pliant {
 namespace {
+
+using test::code_of;
 
 SceneSpec probe_over_block() {
   SceneSpec scene;
@@ -28,15 +29,6 @@ SceneSpec probe_over_block() {
   probe.radius = 0.01;
   probe.path = {{0, 0, 0, 0.02, 0, 0, 0, 1}};
   return scene;
-}
-
-ErrorCode code_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.code();
-  }
-  return ErrorCode::internal;
 }
 
 TEST(ApiContact, AWorldTellsWhatHappensWhileItRuns) {

@@ -65,7 +65,7 @@ TEST_P(PiecesApart, NoVertexIsATenthOfACellDeepInAnotherPiece) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, PiecesApart, ::testing::Values("stack", "press_cut", "liver_on_table"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& scene) { return std::string(scene.param); });
 
 }  // namespace
 }  // namespace pliant::testing
