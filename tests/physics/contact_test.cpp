@@ -1,4 +1,4 @@
-// Contact with tools: restitution, weight, friction, impulse, work, against closed forms; shapes against each other.
+// Contact with tools: restitution, weight, friction, impulse, against closed forms; shapes against each other.
 #include "physics/harness.h"
 #include "support/error_of.h"
 
@@ -283,76 +283,6 @@ TEST_P(ContactPhysics, TorqueIsAboutTheOrigin) {
   Vector3d torque;
   const double force = pressed(ball, GetParam(), &torque);
   check_relative("torque about y", torque[1], -0.1 * force, 5e-3);
-}
-
-/// What a tool does on tissue is in its energy or was damped, whether a force along its way or a torque about its origin did
-/// it.
-TEST_P(ContactPhysics, WorkIsEnergyAndWhatIsDamped) {
-  ContactTool pushed;
-  pushed.name = "tool";
-  pushed.shape = ToolShape::box;
-  pushed.size = {0.5, 0.5, 0.02};
-  pushed.path = {{0, 0.04, 0.04, 0.0505, 0, 0, 0, 1}, {0.3, 0.04, 0.04, 0.045, 0, 0, 0, 1}};
-  ContactTool turned = pushed;  // about an edge of the block, which it then presses askew
-  turned.path = {{0, 0, 0.04, 0.0505, 0, 0, 0, 1}, {0.3, 0, 0.04, 0.0505, 0, std::sin(0.05), 0, std::cos(0.05)}};
-  for (const ContactTool& tool : {pushed, turned}) {
-    Material m = material_young(Law::neo_hookean, 1e4, 0.4);
-    m.damping = 30;
-    Body body = box_body({{8, 8, 4}, 0.01}, Discretization::hex8full_lattice, m);
-    body.fixed = {{face(2, 0)}};
-    auto sim = simulate(scene_of(body, tool), GetParam());
-    double damped = 0;
-    const auto energy = [&] {
-      auto w = read_texels(*sim, "node_w");
-      for (Vec3d& x : w) x = plain(eigen(x) / sim->dt());
-      return energies(sim->model(), read_texels(*sim, "node_u"), w);
-    };
-    while (sim->time() < 0.5) {
-      const double before = sim->time();
-      sim->advance(sim->next_batch(4));
-      damped += 2 * m.damping * energy().kinetic * (sim->time() - before);
-      sim->watch_energy();
-    }
-    const double work = sim->report().tools[0].work;
-    check_relative(std::string(tool.path[0][1] > 0 ? "pushed" : "turned") + ": work", work,
-                   energy().strain + energy().kinetic + damped,
-                   0.01);  // a plate that turns: 0.8 %, of the normals of the start
-    ASSERT_TRUE(sim->report().energy.share());
-    check("  energy made, over the largest", *sim->report().energy.share(), 1e-3);
-    // A push that nobody accounts for.
-    auto w = read_texels(*sim, "node_w");
-    for (Vec3d& x : w) x[0] += 0.05 * sim->dt();
-    write_texels(*sim, "node_w", w);
-    sim->watch_energy();
-    EXPECT_GT(*sim->report().energy.share(), 0.01);
-  }
-}
-
-/// Tissue that presses on a thin tool stands in it, which takes work beyond that of the strain; it comes back when the tool
-/// withdraws, and is no energy from nowhere.
-TEST_P(ContactPhysics, WhatANeedleGivesBackIsNotCreated) {
-  ContactTool needle;
-  needle.name = "needle";
-  needle.shape = ToolShape::capsule;
-  needle.radius = 0.004;
-  needle.first = {0, 0, 0.004};
-  needle.second = {0, 0, 0.05};
-  needle.path = {{0, 0.02, 0.02, 0.0202, 0, 0, 0, 1},
-                 {0.4, 0.02, 0.02, 0.0162, 0, 0, 0, 1},
-                 {0.6, 0.02, 0.02, 0.0162, 0, 0, 0, 1},
-                 {0.8, 0.02, 0.02, 0.0242, 0, 0, 0, 1}};
-  Material m = material_young(Law::neo_hookean, 8e3, 0.45);
-  m.damping = 20;
-  Body body = box_body({{10, 10, 5}, 0.004}, Discretization::hex8_bricks, m);
-  body.fixed = {{face(2, 0)}};
-  auto sim = simulate(scene_of(body, needle), GetParam());
-  while (sim->time() < 1) {
-    sim->advance(sim->next_batch(16));
-    sim->watch_energy();
-  }
-  EXPECT_GT(sim->report().tools[0].max_force, 0.05);
-  ASSERT_TRUE(sim->report().energy.share());
-  check("energy made, over the largest", *sim->report().energy.share(), 0.01);
 }
 
 /// A tool pressed into tissue where it is held: points that hang mostly on held nodes are no harder than others.
