@@ -154,6 +154,7 @@ class RandomScene {
       if (kind == 2 && body["model"]["type"] == "hybrid") change["model"]["ratio"] = dice.uniform(0.2, 0.8);
       if (kind == 2 && body["model"]["type"] == "flsm") change["model"]["alpha"] = dice.uniform(0.1, 1);
       if (kind == 3) change["fixed"] = dice.chance(0.5) ? Json::array() : body["fixed"];
+      if (change.size() > 1 && kind > 0) change["body"] = body["name"];
       if (change.size() > 1) list.push_back(change);
     }
     return list;

@@ -103,7 +103,7 @@ class Cutting(unittest.TestCase):
         if python is None:
             self.skipTest("no Python here has matplotlib (Debian: python3-matplotlib)")
         drawn = sorted(self.out.glob("cutting_block_*.png"))
-        done = subprocess.run([python, SOURCE / "bench" / "report.py", self.out], capture_output=True, text=True, timeout=300)
+        done = subprocess.run([python, SOURCE / "bench" / "report" / "report.py", self.out], capture_output=True, text=True, timeout=300)
         self.assertEqual(done.returncode, 0, done.stderr)
         page = (self.out / "report.html").read_text()
         self.assertEqual({f.stem for f in self.out.glob("*.svg")},

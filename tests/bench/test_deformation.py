@@ -109,7 +109,7 @@ class Deformation(unittest.TestCase):
         python = python_with_matplotlib()
         if python is None:
             self.skipTest("no Python here has matplotlib (Debian: python3-matplotlib)")
-        done = subprocess.run([python, SOURCE / "bench" / "report.py", folder], capture_output=True, text=True, timeout=300)
+        done = subprocess.run([python, SOURCE / "bench" / "report" / "report.py", folder], capture_output=True, text=True, timeout=300)
         self.assertEqual(done.returncode, 0, done.stderr)
         for file in folder.glob("*.svg"):
             ElementTree.parse(file)

@@ -65,7 +65,7 @@ class Report(unittest.TestCase):
 
     def report(self, data, expect=0):
         (self.folder / "kernels.json").write_text(data if isinstance(data, str) else json.dumps(data))
-        done = subprocess.run([PYTHON, SOURCE / "bench" / "report.py", self.folder], capture_output=True, text=True, timeout=300)
+        done = subprocess.run([PYTHON, SOURCE / "bench" / "report" / "report.py", self.folder], capture_output=True, text=True, timeout=300)
         self.assertEqual(done.returncode, expect, done.stderr)
         self.assertNotIn("Traceback", done.stderr)
         return (self.folder / "report.html").read_text() if expect == 0 else done.stderr
@@ -125,7 +125,7 @@ class Report(unittest.TestCase):
         self.assertIn("'spread'", self.report(data, expect=2))
         self.assertEqual(sorted(p.name for p in self.folder.glob("*.html")), [])
         (self.folder / "kernels.json").unlink()
-        done = subprocess.run([PYTHON, SOURCE / "bench" / "report.py", self.folder], capture_output=True, text=True)
+        done = subprocess.run([PYTHON, SOURCE / "bench" / "report" / "report.py", self.folder], capture_output=True, text=True)
         self.assertEqual(done.returncode, 2)
         self.assertIn("pliant bench kernels --out", done.stderr)
 
