@@ -30,7 +30,7 @@ Scene hanging(const std::string& scene_keys = "", const std::string& body_keys =
 /// of shape matching, which allow neither.
 Scene rich(const std::string& changes, bool touched = true) {
   const std::string contact = R"(, "contact": {}, "tools": [{"name": "ball", "shape": {"sphere": 0.015}, "friction": 0.4,
-    "path": [[0, 0.037, -0.02, 0], [0.1, 0.03, -0.02, 0]]}])";
+    "path": [[0, 0.037, -0.025, 0], [0.1, 0.03, -0.01, 0]]}])";
   return parse_scene(R"({"format": "pliant-scene/1", "gravity": [0, -9.81, 0], "bodies": [{"name": "bar",
     "surface": "meshes/cylinder.obj", "lattice": {"spacing": 0.012}, "material": {"young": 6000, "poisson": 0.4, "density": 1000, "damping": 20},
     "fixed": [{"plane": [[0, -0.045, 0], [0, -1, 0]]}],
