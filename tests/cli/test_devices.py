@@ -22,7 +22,7 @@ class Devices(harness.CliTest):
         (self.folder / "file").write_text("")
         run = ("run", self.scene(), "--steps", 2, "--hash", "--backend")
         plain = self.pliant(*run, "cpu").stdout.splitlines()[-1]
-        cases = (("POCL_CACHE_DIR", "/proc/none", "auto"), ("XDG_CACHE_HOME", "/proc/none", "opencl"), ("POCL_CACHE_DIR", "file", ""))
+        cases = (("POCL_CACHE_DIR", "/proc/none", "opencl:0"), ("XDG_CACHE_HOME", "/proc/none", "opencl"), ("POCL_CACHE_DIR", "file", ""))
         for variable, value, backend in cases:
             environment = {k: v for k, v in os.environ.items() if k not in ("POCL_CACHE_DIR", "XDG_CACHE_HOME")}
             environment.update({variable: value, "TMPDIR": str(self.folder)})

@@ -16,8 +16,10 @@ std::vector<BackendInfo> list_backends();
 /// Opens the backend `spec`: auto, cpu, cpu:double, cpu:check, opencl or opencl:N (opencl means opencl:0). auto selects a
 /// bit-exact GPU, otherwise another bit-exact OpenCL device (processors first), otherwise cpu; `why` (may be null) receives
 /// the choice and the reason. On a processor, scenes with few `nodes` (0: unknown) use a device without threads, if
-/// available, because launches would cost more than a second core gains. Throws Error for any other spec and for a missing
+/// available, because launches would cost more than a second core gains; if they are for one run in a process of its own
+/// (`once`), they use cpu, which has nothing to compile. Throws Error for any other spec and for a missing
 /// backend, with what is missing.
-std::unique_ptr<Backend> open_backend(const std::string& spec, std::string* why = nullptr, std::int64_t nodes = 0);
+std::unique_ptr<Backend> open_backend(const std::string& spec, std::string* why = nullptr, std::int64_t nodes = 0,
+                                      bool once = false);
 
 }  // namespace pliant
