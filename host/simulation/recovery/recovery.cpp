@@ -120,6 +120,7 @@ bool Recovery::calm_down(Symptoms& s) {
 }
 
 void Recovery::measure(Symptoms& s) {
+  if (step_.bound_allows()) return;
   const double dt = run_.state.clock.dt, least = step_.least_step(), ceiling = run_.state.limit.dt_ceiling;
   const StepControl::Allowed now = step_.allowed();
   // Compare with the limit without the distrust, which also shortens the step: otherwise both would shrink together

@@ -28,6 +28,15 @@ double ritz_deficit(std::size_t unknowns, int steps) {
   return std::min(0.5, 0.103 * logarithm * logarithm / (k * k));
 }
 
+/// Largest eigenvalue of the tridiagonal matrix with this diagonal and, but for its last entry, this secondary diagonal.
+double largest_eigenvalue(std::vector<double>& diagonal, std::vector<double>& beside) {
+  const auto size = static_cast<Eigen::Index>(diagonal.size());
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
+  solver.computeFromTridiagonal(Eigen::Map<Eigen::VectorXd>(diagonal.data(), size),
+                                Eigen::Map<Eigen::VectorXd>(beside.data(), size - 1), Eigen::EigenvaluesOnly);
+  return solver.eigenvalues()[size - 1];
+}
+
 }  // namespace
 
 double stable_step(const RunContext& run, double central) {
@@ -61,20 +70,25 @@ double central_step_for(const RunContext& run, double dt) {
 double largest_omega2(const RunContext& run, const std::vector<double>& spring, int iterations) {
   LoadedModel& loaded = run.loaded;
   const std::vector<double>& mass = run.model().mass;
-  const std::vector<char>& is_free = loaded.free();
   const std::vector<double> u = loaded.u();
   const std::vector<double> rest_force = run.forces_now();
-  const std::size_t n = is_free.size();
-  std::vector<double> v(n, 0), before(n, 0), probe = u;
+  struct Unknown {
+    std::size_t at;  ///< in arrays of [slots][4]
+    double mass, spring;
+  };
+  std::vector<Unknown> unknowns;
+  std::vector<double> v, before, probe = u;
   double norm = 0;
-  std::size_t unknowns = 0;
-  for (std::size_t i = 0; i < n; ++i) {
+  const std::vector<char>& is_free = loaded.free();
+  for (std::size_t i = 0; i < is_free.size(); ++i) {
     if (!is_free[i]) continue;
-    v[i] = noise(i);
-    norm += mass[i / 3] * v[i] * v[i];
-    ++unknowns;
+    unknowns.push_back({4 * (i / 3) + i % 3, mass[i / 3], spring.empty() ? 0 : spring[i / 3]});
+    v.push_back(noise(i));
+    norm += mass[i / 3] * v.back() * v.back();
   }
-  const int steps = static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(iterations), unknowns));
+  const std::size_t n = unknowns.size();
+  before.assign(n, 0);
+  const int steps = static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(iterations), n));
   std::vector<double> alpha, beta;  // the tridiagonal matrix
   for (int k = 0; k < steps && norm > 0 && std::isfinite(norm); ++k) {
     double largest = 0, unit = 1 / std::sqrt(norm);
@@ -83,25 +97,24 @@ double largest_omega2(const RunContext& run, const std::vector<double>& spring, 
       largest = std::max(largest, std::abs(x));
     }
     const double size = kStrain * run.model().shortest / largest;
-    for (std::size_t i = 0; i < n; ++i) probe[4 * (i / 3) + i % 3] = u[4 * (i / 3) + i % 3] + size * v[i];
+    for (std::size_t i = 0; i < n; ++i) probe[unknowns[i].at] = u[unknowns[i].at] + size * v[i];
     loaded.write_u(probe);
     run.backend().run(loaded.program().force, 0, 1);
     const std::vector<double> force = loaded.force();
     double projection = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      if (!is_free[i]) continue;
-      projection += v[i] * (rest_force[4 * (i / 3) + i % 3] - force[4 * (i / 3) + i % 3]) / size;
-      if (!spring.empty()) projection += mass[i / 3] * spring[i / 3] * v[i] * v[i];
+      const Unknown& x = unknowns[i];
+      projection += v[i] * (rest_force[x.at] - force[x.at]) / size;
+      if (!spring.empty()) projection += x.mass * x.spring * v[i] * v[i];
     }
     norm = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      if (!is_free[i]) continue;
-      const std::size_t t = 4 * (i / 3) + i % 3;
-      const double own = projection - (spring.empty() ? 0 : spring[i / 3]);
-      const double next = (rest_force[t] - force[t]) / size / mass[i / 3] - own * v[i] - (k > 0 ? beta.back() * before[i] : 0);
+      const Unknown& x = unknowns[i];
+      const double own = projection - x.spring;
+      const double next = (rest_force[x.at] - force[x.at]) / size / x.mass - own * v[i] - (k > 0 ? beta.back() * before[i] : 0);
       before[i] = v[i];
       v[i] = next;
-      norm += mass[i / 3] * next * next;
+      norm += x.mass * next * next;
     }
     alpha.push_back(projection);
     beta.push_back(std::sqrt(norm));
@@ -110,13 +123,8 @@ double largest_omega2(const RunContext& run, const std::vector<double>& spring, 
   loaded.write_u(u);
   loaded.clear_faults();  // of elements in configurations outside the run
   if (alpha.empty() || !std::isfinite(beta.back())) return 0;
-  const auto size = static_cast<Eigen::Index>(alpha.size());
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
-  solver.computeFromTridiagonal(Eigen::Map<Eigen::VectorXd>(alpha.data(), size),
-                                Eigen::Map<Eigen::VectorXd>(beta.data(), size - 1), Eigen::EigenvaluesOnly);
-  double omega2 = solver.eigenvalues()[size - 1];
-  if (static_cast<std::size_t>(size) < unknowns && size > 2) omega2 /= 1 - ritz_deficit(unknowns, static_cast<int>(size));
-  return omega2;
+  const double omega2 = largest_eigenvalue(alpha, beta);
+  return alpha.size() < n && alpha.size() > 2 ? omega2 / (1 - ritz_deficit(n, static_cast<int>(alpha.size()))) : omega2;
 }
 
 StableStep estimate_stable_step(const RunContext& run, int iterations) {

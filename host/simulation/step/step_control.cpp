@@ -132,6 +132,11 @@ double StepControl::share() const { return run_.state.limit.dt_backoff * run_.sc
 
 double StepControl::estimated() { return share() * estimate(kAdaptIterations); }
 
+bool StepControl::bound_allows() const {
+  const double bound = stiffness_bound(run_.model(), nodal_stiffness(run_.model(), run_.loaded.u(), {}, true));
+  return bound > 0 && run_.scene.safety * bound_step(run_, bound) >= run_.state.clock.dt;
+}
+
 StepControl::Allowed StepControl::allowed() {
   StepLimit& limit = run_.state.limit;
   Allowed out{estimated(), {}};

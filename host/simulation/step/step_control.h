@@ -43,6 +43,8 @@ class StepControl {
     std::vector<double> stiffness;
   };
   [[nodiscard]] Allowed allowed();
+  /// Returns true if a bound of the elements, which takes less time than the estimate, shows that the present step is stable.
+  [[nodiscard]] bool bound_allows() const;
   /// The same from the estimate alone [s].
   [[nodiscard]] double estimated();
   /// Returns the ballast that makes a step of `dt` stable if it exceeds the current ballast and is within the limit;
