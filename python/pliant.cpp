@@ -257,6 +257,17 @@ py::dict tool_forces(const pliant::World& w) {
   return d;
 }
 
+/// The surface of a tool in its own frame: vertices [m] and triangles.
+py::tuple tool_surface(const pliant::World& w, const std::string& name) {
+  const pliant::SurfaceSpec now = w.tool_surface(name);
+  const auto rows = [](const auto& list) { return std::array<py::ssize_t, 2>{static_cast<py::ssize_t>(list.size()), 3}; };
+  py::array_t<double> vertices(rows(now.vertices));
+  py::array_t<std::int32_t> triangles(rows(now.triangles));
+  std::copy_n(now.vertices.data()->data(), vertices.size(), vertices.mutable_data());
+  std::copy_n(now.triangles.data()->data(), triangles.size(), triangles.mutable_data());
+  return py::make_tuple(vertices, triangles);
+}
+
 /// What tools and bodies, and bodies and bodies, have in common.
 py::list interpenetrations(const pliant::World& w) {
   std::vector<pliant::Interpenetration> now;
@@ -313,6 +324,8 @@ void bind_tools(py::class_<pliant::World>& world) {
       .def("drive_tool", &World::drive_tool, py::arg("name"), py::arg("position"),
            py::arg("turn") = std::array<double, 4>{0, 0, 0, 1}, py::arg("seconds") = 1.0 / 60, Free())
       .def("tool_forces", &tool_forces, "a dict of the tools: of each a dict of its pose and what it feels")
+      .def("tool_surface", &tool_surface, py::arg("name"),
+           "a tool's surface in its own frame, for drawing: vertices [m] and triangles, shapes [n, 3]")
       .def("interpenetrations", &interpenetrations,
            "a list of dicts: what tools and bodies, and bodies and bodies, have in common");
 }

@@ -9,12 +9,13 @@ const char* const kBodyVertex = R"(#version 330 core
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 uniform mat4 matrix;
+uniform mat4 pose;
 out vec3 place;
 out vec3 direction;
 void main() {
-  place = position;
-  direction = normal;
-  gl_Position = matrix * vec4(position, 1);
+  place = (pose * vec4(position, 1)).xyz;
+  direction = mat3(pose) * normal;
+  gl_Position = matrix * vec4(place, 1);
 })";
 
 // A key light, a sky, the ground's light from below, and a highlight.
@@ -43,13 +44,14 @@ void main() {
 const char* const kFlatVertex = R"(#version 330 core
 layout(location = 0) in vec3 position;
 uniform mat4 matrix;
+uniform mat4 pose;
 uniform vec3 key;
 uniform float ground;
 uniform int shadow;
 out vec3 place;
 void main() {
-  place = position;
-  if (shadow == 1) place -= key * ((position.y - ground) / key.y);
+  place = (pose * vec4(position, 1)).xyz;
+  if (shadow == 1) place -= key * ((place.y - ground) / key.y);
   gl_Position = matrix * vec4(place, 1);
 })";
 const char* const kFlatFragment = R"(#version 330 core
@@ -104,7 +106,58 @@ void set(const Gl& gl, GLuint program, const char* name, const Mat4& m) {
   gl.UniformMatrix4fv(gl.GetUniformLocation(program, name), 1, GL_FALSE, m.data());
 }
 
+const Mat4 kStill{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+
+/// Three corners per triangle with position and normal: the mean of the faces at the vertex that meet at less than 40 degrees.
+std::vector<float> shaded(const pliant::SurfaceSpec& surface) {
+  const auto point = [&](std::int32_t v) {
+    const pliant::Vec3d& x = surface.vertices[static_cast<std::size_t>(v)];
+    return Vec3{static_cast<float>(x[0]), static_cast<float>(x[1]), static_cast<float>(x[2])};
+  };
+  std::vector<Vec3> normal;
+  std::vector<std::vector<std::size_t>> around(surface.vertices.size());
+  for (const pliant::Triangle& t : surface.triangles) {
+    const Vec3 n = cross(point(t[1]) - point(t[0]), point(t[2]) - point(t[0]));
+    for (const std::int32_t v : t) around[static_cast<std::size_t>(v)].push_back(normal.size());
+    normal.push_back(n * (1 / std::max(std::sqrt(dot(n, n)), 1e-30F)));
+  }
+  std::vector<float> corners;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    for (const std::int32_t v : surface.triangles[t]) {
+      Vec3 sum{};
+      for (const std::size_t other : around[static_cast<std::size_t>(v)]) {
+        if (dot(normal[other], normal[t]) > 0.766F) sum = sum + normal[other];
+      }
+      for (const Vec3& x : {point(v), sum}) corners.insert(corners.end(), x.begin(), x.end());
+    }
+  }
+  return corners;
+}
+
 }  // namespace
+
+Mat4 pose_matrix(const pliant::Vec3d& at, const std::array<double, 4>& turn) {
+  const auto [x, y, z, w] = turn;
+  const std::array<double, 16> m{1 - 2 * (y * y + z * z),
+                                 2 * (x * y + z * w),
+                                 2 * (x * z - y * w),
+                                 0,
+                                 2 * (x * y - z * w),
+                                 1 - 2 * (x * x + z * z),
+                                 2 * (y * z + x * w),
+                                 0,
+                                 2 * (x * z + y * w),
+                                 2 * (y * z - x * w),
+                                 1 - 2 * (x * x + y * y),
+                                 0,
+                                 at[0],
+                                 at[1],
+                                 at[2],
+                                 1};
+  Mat4 out;
+  std::transform(m.begin(), m.end(), out.begin(), [](double value) { return static_cast<float>(value); });
+  return out;
+}
 
 Drawing::Drawing() {
   body_program_ = program(gl_, kBodyVertex, kBodyFragment);
@@ -145,6 +198,45 @@ void Drawing::update(const pliant::Frame& frame) {
   if (empty_ || topology_ != frame.topology_version) set_topology(frame);
 }
 
+void Drawing::set_tool(const std::string& name, const pliant::SurfaceSpec& surface) {
+  Solid& tool = tools_[name];
+  if (tool.array == 0) {
+    gl_.GenVertexArrays(1, &tool.array);
+    gl_.GenBuffers(1, &tool.corners);
+  }
+  const std::vector<float> corners = shaded(surface);
+  tool.count = static_cast<GLsizei>(corners.size() / 6);
+  gl_.BindVertexArray(tool.array);
+  gl_.BindBuffer(GL_ARRAY_BUFFER, tool.corners);
+  gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(corners.size() * sizeof(float)), corners.data(), GL_STATIC_DRAW);
+  for (GLuint i = 0; i < 2; ++i) {
+    gl_.VertexAttribPointer(i, 3, GL_FLOAT, GL_FALSE, 6 * sizeof(float), reinterpret_cast<const void*>(3 * i * sizeof(float)));
+    gl_.EnableVertexAttribArray(i);
+  }
+}
+
+void Drawing::hide_tools() {
+  for (auto& [name, tool] : tools_) tool.look = ToolLook::hidden;
+}
+
+void Drawing::place_tool(const std::string& name, const Mat4& pose, ToolLook look) {
+  tools_.at(name).pose = pose;
+  tools_.at(name).look = look;
+}
+
+void Drawing::draw_tools(GLuint program) {
+  for (const auto& [name, tool] : tools_) {
+    if (tool.look == ToolLook::hidden || tool.count == 0) continue;
+    set(gl_, program, "pose", tool.pose);
+    if (program == body_program_) {
+      set(gl_, program, "color", tool.look == ToolLook::active ? Vec3{0.75F, 0.55F, 0.20F} : Vec3{0.42F, 0.45F, 0.50F});
+    }
+    gl_.BindVertexArray(tool.array);
+    gl_.DrawArrays(GL_TRIANGLES, 0, tool.count);
+  }
+  set(gl_, program, "pose", kStill);
+}
+
 void Drawing::draw_body() {
   gl_.BindVertexArray(body_);
   set(gl_, body_program_, "inside", 0);
@@ -180,6 +272,7 @@ void Drawing::draw_ground(const Mat4& matrix, const Orbit& camera, float ground)
   set(gl_, flat_program_, "shadow", 1);
   gl_.BindVertexArray(body_);
   gl_.DrawElements(GL_TRIANGLES, outside_ + cut_, GL_UNSIGNED_INT, nullptr);
+  draw_tools(flat_program_);
   gl_.Disable(GL_STENCIL_TEST);
   gl_.DepthMask(GL_TRUE);
   gl_.Disable(GL_BLEND);
@@ -193,13 +286,17 @@ void Drawing::draw(const Orbit& camera, int width, int height, float ground) {
   const Vec3 key = unit(camera.right() * -0.8F + Vec3{0, 1.2F, 0} + camera.back() * 0.5F);
   gl_.UseProgram(flat_program_);
   set(gl_, flat_program_, "key", key);
+  set(gl_, flat_program_, "pose", kStill);
   draw_ground(matrix, camera, ground);
   gl_.UseProgram(body_program_);
   set(gl_, body_program_, "matrix", matrix);
+  set(gl_, body_program_, "pose", kStill);
   set(gl_, body_program_, "eye", camera.eye());
   set(gl_, body_program_, "key", key);
   set(gl_, body_program_, "color", Vec3{0.42F, 0.075F, 0.055F});
   draw_body();
+  set(gl_, body_program_, "inside", 0);
+  draw_tools(body_program_);
 }
 
 std::vector<std::uint8_t> Drawing::pixels(int width, int height) const {

@@ -1,39 +1,41 @@
-// A soft body to play with.
-//   window SCENE [--screenshot FILE.png] [--seconds T] [--pull X,Y] [--cut X,Y,X,Y] [--size WxH]
-// Left button: grab and pull. With Control: cut along the way of the mouse, as deep as the eye sees. Right button: turn.
-// Wheel: nearer and farther. Space: poke what is under the mouse, R: start again.
+// A soft body to play with, and instruments.
+//   window SCENE [--screenshot FILE.png] [--seconds T] [--pull X,Y] [--cut X,Y,X,Y] [--depth D] [--probe D] [--grasp D]
+//          [--set LABEL=VALUE] [--size WxH]
+// Left button: grab and pull. With Control: cut along the way of the mouse, as deep as the panel says. Right button: turn.
+// Space: poke what is under the mouse. R: start again. P: a probe, G: a grasper, 1 to 9: the scene's tools, 0: the hand.
+// With an instrument the mouse moves it, the wheel pushes it deeper, Shift turns it; arrows, PageUp and PageDown likewise.
 // --screenshot writes a picture after T seconds of simulation and ends; in its first half --cut sweeps from one place to
-// another (parts of the window's height, from its middle), and --pull drags what is in the middle.
+// another (parts of the window's height, from its middle) with a blade of --depth D (sizes of the body), --pull drags what is
+// in the middle, --probe and --grasp push an instrument D sizes deep there, --set moves a slider at the start.
 #include <pliant/world.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "drawing.h"
+#include "instruments.h"
 #include "io/png.h"
+#include "options.h"
+#include "panel.h"
 
 namespace window {
 namespace {
 
-struct Options {
-  std::string scene, screenshot;
-  double seconds = 0.5;
-  std::optional<std::array<float, 2>> pull;
-  std::optional<std::array<float, 4>> cut;
-  int width = 1024, height = 768;
-};
-
 Vec3 xyz(const pliant::Vec4f& p) { return {p[0], p[1], p[2]}; }
 
-/// The vertex nearest to the first point where the ray meets the surface; -1: it misses.
-std::int32_t vertex_under(const pliant::Frame& frame, const Ray& ray) {
-  float nearest = 1e30F;
-  std::int32_t found = -1;
+struct Hit {
+  std::int32_t vertex = -1;  ///< the nearest to the point where the ray meets the surface; -1: it misses
+  float far = 1e30F;         ///< distance along the ray [m]
+};
+
+/// The first point where the ray meets the surface.
+Hit hit_by(const pliant::Frame& frame, const Ray& ray) {
+  Hit hit;
   for (const pliant::Triangle& t : frame.triangles) {
     const Vec3 a = xyz(frame.positions[t[0]]), e1 = xyz(frame.positions[t[1]]) - a, e2 = xyz(frame.positions[t[2]]) - a;
     const Vec3 p = cross(ray.along, e2);  // Moeller and Trumbore 1997
@@ -41,11 +43,10 @@ std::int32_t vertex_under(const pliant::Frame& frame, const Ray& ray) {
     if (det == 0) continue;
     const Vec3 s = ray.from - a, q = cross(s, e1);
     const float u = dot(s, p) / det, v = dot(ray.along, q) / det, far = dot(e2, q) / det;
-    if (u < 0 || v < 0 || u + v > 1 || far <= 0 || far >= nearest) continue;
-    nearest = far;
-    found = t[u > v ? (u > 1 - u - v ? 1 : 0) : (v > 1 - u - v ? 2 : 0)];
+    if (u < 0 || v < 0 || u + v > 1 || far <= 0 || far >= hit.far) continue;
+    hit = {t[u > v ? (u > 1 - u - v ? 1 : 0) : (v > 1 - u - v ? 2 : 0)], far};
   }
-  return found;
+  return hit;
 }
 
 class Window {
@@ -67,24 +68,37 @@ class Window {
     glfwSwapInterval(1);
     glfwSetWindowUserPointer(window_, this);
     glfwSetScrollCallback(window_, [](GLFWwindow* w, double, double by) {
-      auto& camera = static_cast<Window*>(glfwGetWindowUserPointer(w))->camera_;
-      camera.distance *= static_cast<float>(std::pow(0.9, by));
+      static_cast<Window*>(glfwGetWindowUserPointer(w))->scrolled_ += static_cast<float>(by);
+    });
+    glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int) {
+      if (action == GLFW_PRESS) static_cast<Window*>(glfwGetWindowUserPointer(w))->pressed_.push_back(key);
     });
     drawing_ = std::make_unique<Drawing>();
+    panel_ = std::make_unique<Panel>(window_, sliders_of(o_.scene));  // after the callbacks, which it calls
+    panel_->depth = o_.depth;
     aim();
+    instruments_ = std::make_unique<Instruments>(world_, *drawing_, size_);
+    instruments_->follow_scene();
   }
-  ~Window() { glfwTerminate(); }
+  ~Window() {
+    panel_.reset();
+    glfwTerminate();
+  }
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
   int run() {
     while (glfwWindowShouldClose(window_) == GLFW_FALSE) {
       glfwPollEvents();
+      follow(panel_->show(
+          {instruments_->labels(), instruments_->active(), instruments_->force(), frame_->time, speed(), message_}));
       simulate();
       drawing_->update(*frame_);
+      instruments_->draw();
       int width = 0, height = 0;
       glfwGetFramebufferSize(window_, &width, &height);
       drawing_->draw(camera_, std::max(width, 1), std::max(height, 1), ground_);
+      panel_->draw();
       if (!o_.screenshot.empty() && frame_->time >= o_.seconds) {
         pliant::write_png(o_.screenshot, {width, height, drawing_->pixels(width, height)});
         std::printf("%s: t = %.3f s, step %lld\n", o_.screenshot.c_str(), frame_->time, static_cast<long long>(frame_->step));
@@ -106,7 +120,8 @@ class Window {
     }
     const Vec3 size = high - low;
     camera_.target = (low + high) * 0.5F;
-    camera_.distance = start_distance_ = 2.1F * std::sqrt(dot(size, size));
+    size_ = std::sqrt(dot(size, size));
+    camera_.distance = start_distance_ = 2.1F * size_;
     ground_ = low[1];
   }
 
@@ -118,7 +133,7 @@ class Window {
   }
 
   void grab(const Ray& ray) {
-    const std::int32_t vertex = vertex_under(*frame_, ray);
+    const std::int32_t vertex = hit_by(*frame_, ray).vertex;
     if (vertex < 0) return;
     held_from_ = xyz(frame_->positions[static_cast<std::size_t>(vertex)]);
     held_ = world_.grab(vertex, {.radius = 0.03 * static_cast<double>(start_distance_)});
@@ -139,7 +154,7 @@ class Window {
       poked_ = -1;
     }
     if (!wanted || poked_ >= 0) return;
-    poked_ = vertex_under(*frame_, ray);
+    poked_ = hit_by(*frame_, ray).vertex;
     if (poked_ < 0) return;
     double mass = 0;
     for (const pliant::BodyInfo& body : world_.info().bodies) mass += body.mass;
@@ -148,10 +163,17 @@ class Window {
                          force * static_cast<double>(ray.along[2])});
   }
 
-  /// A blade along the line of sight, through everything that is there.
+  /// A blade along the line of sight: from a little before the surface to `depth` behind it, or through everything.
   void cut(const Ray& ray) {
     const float reach = camera_.distance + 2 * start_distance_;
-    const Vec3 near = ray.from + ray.along * (0.01F * reach), far = ray.from + ray.along * reach;
+    float from = 0.01F * reach, to = reach;
+    if (panel_->depth < 1) {
+      const float surface = hit_by(*frame_, ray).far;
+      if (surface < reach) surface_ = surface;
+      from = surface_ - 0.02F * size_;
+      to = surface_ + panel_->depth * size_;
+    }
+    const Vec3 near = ray.from + ray.along * from, far = ray.from + ray.along * to;
     world_.move_blade("mouse", {near[0], near[1], near[2]}, {far[0], far[1], far[2]});
     cutting_ = true;
   }
@@ -161,61 +183,180 @@ class Window {
     cutting_ = false;
   }
 
-  void use_mouse() {
-    double x = 0, y = 0;
-    glfwGetCursorPos(window_, &x, &y);
-    const Ray ray = ray_at(static_cast<float>(x), static_cast<float>(y));
-    const bool pressed = glfwGetMouseButton(window_, GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS;
-    const bool blade = pressed && held_ == 0 &&
-                       (cutting_ || glfwGetKey(window_, GLFW_KEY_LEFT_CONTROL) == GLFW_PRESS ||
-                        glfwGetKey(window_, GLFW_KEY_RIGHT_CONTROL) == GLFW_PRESS);
+  [[nodiscard]] bool key(int key) const { return glfwGetKey(window_, key) == GLFW_PRESS; }
+  [[nodiscard]] bool shift() const { return key(GLFW_KEY_LEFT_SHIFT) || key(GLFW_KEY_RIGHT_SHIFT); }
+  [[nodiscard]] bool control() const { return key(GLFW_KEY_LEFT_CONTROL) || key(GLFW_KEY_RIGHT_CONTROL); }
+
+  /// Grabs, cuts and pokes.
+  void use_hand(const Ray& ray, bool pressed) {
+    const bool blade = pressed && held_ == 0 && (cutting_ || control());
     blade ? cut(ray) : lift();
     const bool left = pressed && !blade;
     if (left && held_ == 0) grab(ray);
     if (left) drag(ray);
-    if (!left && held_ != 0) {
-      world_.release(held_);
-      held_ = 0;
-    }
-    if (glfwGetMouseButton(window_, GLFW_MOUSE_BUTTON_RIGHT) == GLFW_PRESS) {
-      camera_.turn -= 0.008F * static_cast<float>(x - last_x_);
-      camera_.lift = std::clamp(camera_.lift + 0.008F * static_cast<float>(y - last_y_), -1.5F, 1.5F);
-    }
-    last_x_ = x;
-    last_y_ = y;
-    poke(ray, glfwGetKey(window_, GLFW_KEY_SPACE) == GLFW_PRESS);
+    if (!left) let_go();
+    poke(ray, key(GLFW_KEY_SPACE));
   }
 
-  /// What --cut and --pull do: blade and hand reach their goal within the first half of the time.
+  void let_go() {
+    if (held_ != 0) world_.release(held_);
+    held_ = 0;
+  }
+
+  /// Six degrees of freedom: `across` and `up` move in the plane of the window, or turn about its axes, `deeper` along the
+  /// view, or turns about it.
+  void move_instrument(float across, float up, float deeper) {
+    if (across == 0 && up == 0 && deeper == 0) return;
+    if (shift()) {
+      instruments_->turn(camera_.up(), 4 * across);
+      instruments_->turn(camera_.right(), -4 * up);
+      instruments_->turn(camera_.back(), 4 * deeper);
+    } else {
+      const float scale = 2 * camera_.half_height * camera_.distance;
+      instruments_->move(camera_.right() * (scale * across) + camera_.up() * (scale * up) - camera_.back() * (scale * deeper));
+    }
+  }
+
+  void use_instrument(float across, float up, float wheel) {
+    constexpr float kStep = 0.008F;
+    const auto held = [&](int more, int less) { return kStep * static_cast<float>((key(more) ? 1 : 0) - (key(less) ? 1 : 0)); };
+    move_instrument(across + held(GLFW_KEY_RIGHT, GLFW_KEY_LEFT), up + held(GLFW_KEY_UP, GLFW_KEY_DOWN),
+                    0.02F * wheel + held(GLFW_KEY_PAGE_UP, GLFW_KEY_PAGE_DOWN));
+    instruments_->close(glfwGetMouseButton(window_, GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS && !panel_->takes_mouse());
+  }
+
+  void use_mouse() {
+    double x = 0, y = 0;
+    glfwGetCursorPos(window_, &x, &y);
+    int width = 1, height = 1;
+    glfwGetWindowSize(window_, &width, &height);
+    const auto high = static_cast<float>(std::max(height, 1));
+    const float across = static_cast<float>(x - last_x_) / high, up = static_cast<float>(last_y_ - y) / high;
+    last_x_ = x;
+    last_y_ = y;
+    const float wheel = std::exchange(scrolled_, 0.0F);
+    const bool free = !panel_->takes_mouse();
+    const bool turning = free && glfwGetMouseButton(window_, GLFW_MOUSE_BUTTON_RIGHT) == GLFW_PRESS;
+    if (turning) {
+      camera_.turn -= 6 * across;
+      camera_.lift = std::clamp(camera_.lift - 6 * up, -1.5F, 1.5F);
+    }
+    const bool nearer = !instruments_->held() || control();
+    if (free && nearer) camera_.distance *= std::pow(0.9F, wheel);
+    if (instruments_->held()) {
+      let_go();
+      lift();
+      use_instrument(free && !turning ? across : 0, free && !turning ? up : 0, free && !nearer ? wheel : 0);
+    } else {
+      use_hand(ray_at(static_cast<float>(x), static_cast<float>(y)),
+               free && glfwGetMouseButton(window_, GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS);
+    }
+  }
+
+  /// Before the middle of what the window shows, a little off the surface.
+  [[nodiscard]] Vec3 before_the_body() const {
+    int width = 1, height = 1;
+    glfwGetWindowSize(window_, &width, &height);
+    const Ray ray = ray_at(0.5F * static_cast<float>(width), 0.5F * static_cast<float>(height));
+    const float surface = hit_by(*frame_, ray).far;
+    return ray.from + ray.along * ((surface < 1e29F ? surface : camera_.distance) - 0.05F * size_);
+  }
+
+  /// Direction of the handle of a new instrument: towards the viewer, and up so that it does not hide its tip.
+  [[nodiscard]] Vec3 handle() const { return unit(camera_.back() + camera_.up() * 0.8F); }
+
+  void start_again() {
+    world_.reset();
+    held_ = 0;
+    poked_ = -1;
+    cutting_ = false;
+    message_.clear();
+    panel_->reset();
+    instruments_->follow_scene();
+  }
+
+  void follow(const PanelChoice& choice) {
+    std::vector<int> keys = std::exchange(pressed_, {});
+    if (panel_->takes_keys()) keys.clear();
+    const auto chosen = [&](int key) { return std::count(keys.begin(), keys.end(), key) > 0; };
+    try {
+      if (choice.probe || chosen(GLFW_KEY_P)) instruments_->take_probe(before_the_body(), handle());
+      if (choice.grasper || chosen(GLFW_KEY_G)) instruments_->take_grasper(before_the_body(), handle());
+      if (choice.instrument >= 0) instruments_->take(static_cast<std::size_t>(choice.instrument));
+      for (int n = 0; n < 9; ++n) {
+        if (chosen(GLFW_KEY_1 + n)) instruments_->take(static_cast<std::size_t>(n));
+      }
+      if (choice.hand || chosen(GLFW_KEY_0) || chosen(GLFW_KEY_ESCAPE)) instruments_->put_down();
+      if (choice.reset || chosen(GLFW_KEY_R)) start_again();
+      for (const std::string& change : choice.changes) world_.parse_change(change);
+      if (!choice.changes.empty()) message_.clear();
+    } catch (const pliant::Error& error) {
+      message_ = error.what();
+    }
+  }
+
+  /// What the options for pictures do: blade, hand and instruments reach their goal within the first half of the time.
   void use_script() {
     const float w = static_cast<float>(o_.width), h = static_cast<float>(o_.height);
     const float share = static_cast<float>(std::min(1.0, 2 * frame_->time / o_.seconds));
+    if (!o_.set.empty()) {
+      const std::size_t at = o_.set.find('=');
+      const std::string change = panel_->set(o_.set.substr(0, at), std::stof(o_.set.substr(at + 1)));
+      if (change.empty()) throw std::runtime_error("--set: no slider '" + o_.set.substr(0, at) + "'");
+      world_.parse_change(change);
+      o_.set.clear();
+    }
     if (o_.pull) {
       if (held_ == 0) grab(ray_at(w / 2, h / 2));
       drag(ray_at(w / 2 + share * (*o_.pull)[0] * h, h / 2 - share * (*o_.pull)[1] * h));
+    }
+    const float deep = std::max(o_.probe, o_.grasp);
+    if (deep > 0) {
+      if (!instruments_->held()) {
+        o_.probe > 0 ? instruments_->take_probe(before_the_body(), handle())
+                     : instruments_->take_grasper(before_the_body(), handle());
+      }
+      instruments_->move(camera_.back() * ((sent_ - share) * (deep + 0.05F) * size_));
+      sent_ = share;
+      instruments_->close(share >= 1);
     }
     if (!o_.cut) return;
     const auto& [x0, y0, x1, y1] = *o_.cut;
     cut(ray_at(w / 2 + (x0 + share * (x1 - x0)) * h, h / 2 - (y0 + share * (y1 - y0)) * h));
   }
 
+  /// Simulated seconds per second, smoothed.
+  double speed() {
+    const auto now = std::chrono::steady_clock::now();
+    const double passed = std::chrono::duration<double>(now - shown_).count(), simulated = frame_->time - shown_time_;
+    shown_ = now;
+    shown_time_ = frame_->time;
+    if (passed > 0 && simulated >= 0) speed_ += 0.1 * (simulated / passed - speed_);
+    return speed_;
+  }
+
+  /// The worker computes the next sixtieth of a second while this frame is drawn; the window never waits for it.
   void simulate() {
-    if (o_.pull || o_.cut) {
-      use_script();
-    } else {
-      use_mouse();
-    }
-    if (glfwGetKey(window_, GLFW_KEY_R) == GLFW_PRESS) {
-      world_.reset();
-      held_ = 0;
-      poked_ = -1;
-      cutting_ = false;
-    }
-    // The worker computes the next sixtieth of a second while this frame is drawn; the window never waits for it.
-    if (!o_.screenshot.empty()) {
-      world_.advance(1.0 / 60);
-    } else if (!world_.busy()) {
-      world_.advance_async(1.0 / 60);
+    const bool scripted = o_.pull || o_.cut || o_.probe > 0 || o_.grasp > 0 || !o_.set.empty();
+    constexpr double kFrame = 1.0 / 60;
+    try {
+      if (scripted) {
+        use_script();
+      } else {
+        use_mouse();
+      }
+      if (!world_.busy()) {
+        instruments_->fetch_shapes(frame_->time);
+        instruments_->drive(kFrame);
+      }
+      if (!o_.screenshot.empty()) {
+        world_.advance(kFrame);
+      } else if (!world_.busy()) {
+        world_.advance_async(kFrame);
+      }
+    } catch (const pliant::Error& error) {
+      if (!o_.screenshot.empty()) throw;
+      message_ = error.what();  // refused, or diverged: the last good state stays until R
     }
     frame_ = world_.frame();
   }
@@ -225,42 +366,21 @@ class Window {
   pliant::FramePtr frame_;
   GLFWwindow* window_ = nullptr;
   std::unique_ptr<Drawing> drawing_;
+  std::unique_ptr<Panel> panel_;
+  std::unique_ptr<Instruments> instruments_;
   Orbit camera_;
-  float ground_ = 0, start_distance_ = 1;
+  float ground_ = 0, start_distance_ = 1, size_ = 1;
+  float scrolled_ = 0, surface_ = 1, sent_ = 0;
+  std::vector<int> pressed_;  ///< keys since the last frame
+  std::string message_;
+  std::chrono::steady_clock::time_point shown_ = std::chrono::steady_clock::now();
+  double shown_time_ = 0, speed_ = 0;
   pliant::GrabId held_ = 0;
   Vec3 held_from_{};
   std::int32_t poked_ = -1;
   bool cutting_ = false;
   double last_x_ = 0, last_y_ = 0;
 };
-
-Options read(int argc, char** argv) {
-  Options o;
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    const char* const value = i + 1 < argc ? argv[i + 1] : "";
-    float x = 0, y = 0, to_x = 0, to_y = 0;
-    if (word == "--screenshot") {
-      o.screenshot = value;
-    } else if (word == "--seconds") {
-      o.seconds = std::atof(value);
-    } else if (word == "--pull" && std::sscanf(value, "%f,%f", &x, &y) == 2) {
-      o.pull = {x, y};
-    } else if (word == "--cut" && std::sscanf(value, "%f,%f,%f,%f", &x, &y, &to_x, &to_y) == 4) {
-      o.cut = {x, y, to_x, to_y};
-    } else if (word == "--size" && std::sscanf(value, "%dx%d", &o.width, &o.height) == 2) {
-    } else if (word[0] != '-' && o.scene.empty()) {
-      o.scene = word;
-      continue;
-    } else {
-      throw std::runtime_error("not understood: " + word);
-    }
-    ++i;
-  }
-  if (o.scene.empty())
-    throw std::runtime_error("usage: window SCENE [--screenshot FILE] [--seconds T] [--pull X,Y] [--cut X,Y,X,Y] [--size WxH]");
-  return o;
-}
 
 }  // namespace
 }  // namespace window

@@ -67,6 +67,25 @@ pliant_status pliant_world_tool_forces(pliant_world world, pliant_tool_force* ou
   });
 }
 
+pliant_status pliant_world_tool_surface(pliant_world world, const char* name, double* vertices, size_t vertex_count,
+                                        int32_t* triangles, size_t triangle_count, size_t* vertices_needed,
+                                        size_t* triangles_needed) {
+  return on(world, [&](CWorld& w) {
+    need(name, "name");
+    if (vertex_count > 0) need(vertices, "vertices");
+    if (triangle_count > 0) need(triangles, "triangles");
+    const pliant::SurfaceSpec now = w.world.tool_surface(name);
+    if (vertices_needed != nullptr) *vertices_needed = now.vertices.size();
+    if (triangles_needed != nullptr) *triangles_needed = now.triangles.size();
+    for (std::size_t i = 0; i < std::min(vertex_count, now.vertices.size()); ++i) {
+      std::copy(now.vertices[i].begin(), now.vertices[i].end(), vertices + 3 * i);
+    }
+    for (std::size_t i = 0; i < std::min(triangle_count, now.triangles.size()); ++i) {
+      std::copy(now.triangles[i].begin(), now.triangles[i].end(), triangles + 3 * i);
+    }
+  });
+}
+
 pliant_status pliant_world_interpenetrations(pliant_world world, pliant_interpenetration* out, size_t count, size_t* needed) {
   return on(world, [&](CWorld& w) {
     check_array(out, count, "pliant_interpenetration");

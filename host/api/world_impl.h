@@ -97,6 +97,7 @@ struct World::Impl {
   std::shared_ptr<const Model> model;  ///< initial model
   PlacedProbes probes;
   Interpenetrations interpenetrations;
+  ToolShapes tool_shapes{kToolSides};
   std::shared_ptr<Simulation> simulation;
   std::unique_ptr<api::SurfaceHandles> handles;
   api::RigidTools rigid_tools;

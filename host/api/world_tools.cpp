@@ -1,6 +1,13 @@
 // Rigid tools of a World: changes take effect at once if the caller steps, otherwise before the worker's next batch.
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "api/world_call.h"
+#include "model/contact/tool_mesh.h"
 #include "scene/tool_entry.h"
+#include "simulation/contact/tool_changes.h"
+#include "simulation/measure/tool_shapes.h"
 
 namespace pliant {
 namespace {
@@ -98,6 +105,28 @@ void World::drive_tool(const std::string& name, const Vec3d& position, const std
 std::vector<ToolForce> World::tool_forces() const {
   const Call call(impl_, false);
   return impl_->rigid_tools.forces();
+}
+
+SurfaceSpec World::tool_surface(const std::string& name) const {
+  const Call call(impl_);
+  Simulation& simulation = *impl_->simulation;
+  const ContactTool& tool = simulation.tools().known(name);
+  const std::vector<ContactTool>& present = simulation.contact().tools();
+  const auto found = std::find_if(present.begin(), present.end(), [&](const ContactTool& t) { return t.name == name; });
+  TriangleMesh mesh;
+  if (tool.shape == ToolShape::half_space) {
+    vec::Box all;
+    for (const ModelBody& body : simulation.model().bodies) {
+      for (const Vec3d& x : body.rest) all.extend(x);
+    }
+    mesh = plane_around(tool_form(tool), tool_pose(tool, simulation.state(), simulation.time()), all);
+  } else if (found != present.end()) {
+    mesh = impl_->tool_shapes.own(simulation, static_cast<std::size_t>(found - present.begin()));
+  } else {
+    const ToolForm parked = tool_form(tool);
+    mesh = shape_at(parked, tool_mesh(parked, kToolSides), simulation.time());
+  }
+  return {std::move(mesh.vertices), std::move(mesh.triangles)};
 }
 
 }  // namespace pliant

@@ -1,13 +1,9 @@
 // Triangles of the tools of a scene, for pictures.
 #pragma once
-#include <array>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
-#include "geometry/mesh.h"
-#include "model/contact/contact.h"
-#include "simulation/simulation.h"
+#include "simulation/measure/tool_shapes.h"
 
 namespace pliant::render {
 
@@ -21,8 +17,7 @@ class ToolSurfaces {
   void append(const Simulation& simulation, std::vector<float>& positions, std::vector<std::int32_t>& triangles);
 
  private:
-  std::shared_ptr<const ToolForms> made_of_;
-  std::vector<TriangleMesh> shapes_;
+  ToolShapes shapes_{kToolSides};
 };
 
 }  // namespace pliant::render

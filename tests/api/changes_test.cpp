@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "pliant/c/pliant.h"
+#include "c_world.h"
 #include "scenes.h"
 #include "support/temp_folder.h"
 
@@ -112,23 +112,11 @@ TEST(WorldChanges, WhatIsRefusedChangesNothing) {
 }
 
 TEST(WorldChanges, InC) {
-  const char* const text = R"({"format": "pliant-scene/1", "bodies": [{"name": "a", "surface": "memory:0",
-    "lattice": {"spacing": 0.02}, "material": {"young": 3000, "poisson": 0.45, "damping": 60}}]})";
-  const SurfaceSpec box = box_surface({0, 0, 0}, {0.04, 0.04, 0.04});
-  pliant_surface surface = PLIANT_SURFACE_INIT;
-  surface.vertices = box.vertices[0].data();
-  surface.vertex_count = box.vertices.size();
-  surface.triangles = box.triangles[0].data();
-  surface.triangle_count = box.triangles.size();
-  pliant_options options = PLIANT_OPTIONS_INIT;
-  options.backend = "cpu";
-  pliant_world world{};
-  ASSERT_EQ(pliant_world_parse(text, nullptr, &surface, 1, &options, &world), PLIANT_OK) << pliant_last_error();
+  const test::CCube world;
   EXPECT_EQ(pliant_world_parse_change(world, nullptr), PLIANT_USAGE);
   EXPECT_EQ(pliant_world_parse_change(world, R"({"material": {"young": -1}})"), PLIANT_INPUT);
   EXPECT_EQ(pliant_world_parse_change(world, R"({"gravity": [0, 0, -9.81]})"), PLIANT_OK) << pliant_last_error();
   ASSERT_EQ(pliant_world_advance(world, 0.1, nullptr), PLIANT_OK);
-  pliant_world_destroy(world);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "pliant/c/pliant.h"
+#include "c_world.h"
 #include "scenes.h"
 #include "support/temp_folder.h"
 
@@ -260,19 +260,7 @@ TEST(ToolChanges, AreReadFromAnotherThreadWhileTheWorkerMakesThem) {
 }
 
 TEST(ToolChanges, InC) {
-  const char* const text = R"({"format": "pliant-scene/1", "bodies": [{"name": "a", "surface": "memory:0",
-    "lattice": {"spacing": 0.02}, "material": {"young": 3000, "poisson": 0.45, "damping": 60},
-    "fixed": [{"box": [[-1, -1, -0.001], [1, 1, 0.001]]}]}]})";
-  const SurfaceSpec box = box_surface({0, 0, 0}, {0.04, 0.04, 0.04});
-  pliant_surface surface = PLIANT_SURFACE_INIT;
-  surface.vertices = box.vertices[0].data();
-  surface.vertex_count = box.vertices.size();
-  surface.triangles = box.triangles[0].data();
-  surface.triangle_count = box.triangles.size();
-  pliant_options options = PLIANT_OPTIONS_INIT;
-  options.backend = "cpu";
-  pliant_world world{};
-  ASSERT_EQ(pliant_world_parse(text, nullptr, &surface, 1, &options, &world), PLIANT_OK) << pliant_last_error();
+  const test::CCube world;
   const char* const plate = R"({"shape": {"half_space": [[0, 0, 0], [0, 0, -1]]}, "path": [[0, 0, 0, 0.05]]})";
   char name[16] = "";
   EXPECT_EQ(pliant_world_parse_tool(world, nullptr, nullptr, name, sizeof name), PLIANT_USAGE);
@@ -302,7 +290,6 @@ TEST(ToolChanges, InC) {
   ASSERT_EQ(pliant_world_tool_forces(world, &force, 1, &needed), PLIANT_OK);
   EXPECT_EQ(force.parked, 0);
   EXPECT_GT(force.force[2], 0.1);
-  EXPECT_EQ(pliant_world_destroy(world), PLIANT_OK);
 }
 
 TEST(ToolChanges, MisuseIsRefused) {

@@ -243,6 +243,8 @@ def test_rigid_tools():
     world.park_tool("ball")
     world.unpark_tool("ball")
     assert np.array_equal(world.tool_forces()["ball"]["position"], [0.05, 0.2, 0.03])
+    vertices, triangles = world.tool_surface("ball")
+    assert np.allclose(np.linalg.norm(vertices, axis=1), 0.02) and triangles.shape[1] == 3 and triangles.max() < len(vertices)
     world.remove_tool("ball")
     assert world.tool_forces() == {} and error_of(lambda: world.remove_tool("ball")).code == 5
 

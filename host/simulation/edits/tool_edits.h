@@ -30,9 +30,11 @@ class ToolEdits {
   /// Moves a tool from its current pose to another within `seconds` [s]. Unparks it.
   void drive(const std::string& name, const Pose& to, double seconds);
 
+  /// A tool of the scene or of the host, also a parked one. Throws Error (usage) for an unknown name.
+  [[nodiscard]] const ContactTool& known(const std::string& name) const;
+
  private:
   struct Next;
-  [[nodiscard]] const ContactTool& known(const std::string& name) const;
   [[nodiscard]] Next with(ToolChanges changes, const ContactTool* fresh = nullptr, const ToolForm* form = nullptr) const;
   void take_up(Next next);
   [[nodiscard]] Next unparked(const std::string& name) const;

@@ -12,9 +12,6 @@
 namespace pliant {
 namespace {
 
-/// Sides of round tools: a cap a tenth of the radius deep has its volume within 1e-3 (tests/model/tool_mesh_test.cpp).
-constexpr int kAround = 256;
-
 /// Whether each edge is run as often one way as the other. Vertices in one place at rest are one: seams are no holes.
 bool is_closed(const ModelSurface& surface, const ModelBody& body) {
   std::map<Vec3d, std::int32_t> places;
@@ -67,11 +64,6 @@ void Interpenetrations::follow(Simulation& simulation) {
   model_ = model;
   closed_.clear();
   for (const ModelBody& body : model->bodies) closed_.push_back(is_closed(model->surface, body) ? 1 : 0);
-  if (model->tools == tools_) return;
-  tools_ = model->tools;
-  shapes_.clear();
-  if (tools_ == nullptr) return;
-  for (const ToolForm& form : *tools_) shapes_.push_back(tool_mesh_of_volume(form, kAround));
 }
 
 std::vector<Interpenetrations::Part> Interpenetrations::bodies(Simulation& simulation) const {
@@ -101,19 +93,6 @@ std::vector<Interpenetrations::Part> Interpenetrations::bodies(Simulation& simul
   return parts;
 }
 
-TriangleMesh Interpenetrations::tool(const Simulation& simulation, std::size_t tool, const vec::Box& tissue) const {
-  const ToolForm& form = (*tools_)[tool];
-  const ToolMoment moment = tool_moment(form, simulation.time());
-  const Pose pose = compose(simulation.contact().pose(tool, simulation.time()), moment.pose);
-  if (form.shape == ToolShape::half_space) return half_space_mesh(form, pose, tissue);
-  TriangleMesh mesh = shapes_[tool];
-  if (!form.frames.empty()) {
-    mesh = form.frames[static_cast<std::size_t>(moment.frame) + (moment.share < 0.5 ? 0U : 1U)].surface;
-  }
-  for (Vec3d& v : mesh.vertices) v = place(pose, v);
-  return mesh;
-}
-
 std::vector<Interpenetration> Interpenetrations::now(Simulation& simulation) {
   follow(simulation);
   const std::vector<ContactTool>& tools = simulation.contact().tools();
@@ -128,11 +107,12 @@ std::vector<Interpenetration> Interpenetrations::now(Simulation& simulation) {
   for (const Part& part : parts) {
     if (!part.mesh.triangles.empty()) all.extend(part.box);
   }
-  for (std::size_t t = 0; t < tools.size() && tools_ != nullptr; ++t) {
-    const ToolForm& form = (*tools_)[t];
-    const Vec3d origin = simulation.contact().pose(t, simulation.time()).position;
-    if (form.shape != ToolShape::half_space && all.distance2(origin) > form.reach * form.reach) continue;
-    const TriangleMesh mesh = tool(simulation, t, all);
+  for (std::size_t t = 0; t < tools.size() && model_->tools != nullptr; ++t) {
+    const ToolForm& form = (*model_->tools)[t];
+    const Pose pose = simulation.contact().pose(t, simulation.time());
+    const bool everywhere = form.shape == ToolShape::half_space;
+    if (!everywhere && all.distance2(pose.position) > form.reach * form.reach) continue;
+    const TriangleMesh mesh = everywhere ? half_space_mesh(form, pose, all) : shapes_.placed(simulation, t);
     for (std::size_t b = 0; b < parts.size(); ++b) add(tools[t].name, b, true, mesh);
   }
   for (std::size_t a = 0; a < parts.size(); ++a) {

@@ -7,7 +7,7 @@
 #include "geometry/mesh.h"
 #include "geometry/vec.h"
 #include "pliant/tool.h"
-#include "simulation/simulation.h"
+#include "simulation/measure/tool_shapes.h"
 
 namespace pliant {
 
@@ -28,12 +28,11 @@ class Interpenetrations {
   void follow(Simulation& simulation);
   /// The present surface of each body; without triangles if it is left out.
   [[nodiscard]] std::vector<Part> bodies(Simulation& simulation) const;
-  [[nodiscard]] TriangleMesh tool(const Simulation& simulation, std::size_t tool, const vec::Box& tissue) const;
 
-  std::shared_ptr<const Model> model_;      ///< that the following belong to
-  std::shared_ptr<const ToolForms> tools_;  ///< that the shapes belong to
-  std::vector<TriangleMesh> shapes_;        ///< of the tools, in their own frames
-  std::vector<char> closed_;                ///< per body
+  std::shared_ptr<const Model> model_;  ///< that the following belongs to
+  std::vector<char> closed_;            ///< per body
+  /// A cap a tenth of the radius deep has its volume within 1e-3 (tests/model/tool_mesh_test.cpp).
+  ToolShapes shapes_{256, true};
 };
 
 /// The sum of those between the two names: a tool or a body, and a body. An empty second name: what the first has in all

@@ -146,6 +146,12 @@ PLIANT_API pliant_status pliant_world_drive_tool(pliant_world world, const char*
 /** Fills the poses of the first `count` tools and the forces on them; `*needed` (may be null) receives the number of tools.
  * Does not wait. */
 PLIANT_API pliant_status pliant_world_tool_forces(pliant_world world, pliant_tool_force* out, size_t count, size_t* needed);
+/** Copies the surface of a tool in its own frame (see pliant::World): at most `vertex_count` vertices [m], shape [vertices][3],
+ * and `triangle_count` triangles, shape [triangles][3]. `*vertices_needed` and `*triangles_needed` (may be null) receive their
+ * numbers. */
+PLIANT_API pliant_status pliant_world_tool_surface(pliant_world world, const char* name, double* vertices, size_t vertex_count,
+                                                   int32_t* triangles, size_t triangle_count, size_t* vertices_needed,
+                                                   size_t* triangles_needed);
 
 /** Changes parameters (see pliant::World) by text, an entry of `changes` of a scene file without its time:
  * {"gravity": [0, 0, 0]}. */
