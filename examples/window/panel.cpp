@@ -98,6 +98,25 @@ std::string Panel::set(const std::string& label, float value) {
   return text_of(*found);
 }
 
+void Panel::show_parameters(PanelChoice& choice) {
+  if (ImGui::CollapsingHeader("Parameters", ImGuiTreeNodeFlags_DefaultOpen)) {
+    for (Slider& s : sliders_) {
+      ImGui::SliderFloat(s.label.c_str(), &s.value, s.low, s.high, "%.4g", s.logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
+      if (ImGui::IsItemDeactivatedAfterEdit()) choice.changes.push_back(text_of(s));
+    }
+  }
+  if (ImGui::CollapsingHeader("Keys")) {
+    ImGui::TextUnformatted(
+        "without an instrument: the left button pulls, with\n"
+        "Control it cuts; Space pokes\n"
+        "instrument: the mouse moves it, the wheel pushes it\n"
+        "deeper, Shift turns it (wheel: about its view);\n"
+        "arrows, PageUp and PageDown do the same\n"
+        "grasper: left button closes it\n"
+        "right button: turn the view; Control and wheel: nearer");
+  }
+}
+
 PanelChoice Panel::show(const PanelState& state) {
   PanelChoice choice;
   ImGui_ImplOpenGL3_NewFrame();
@@ -136,22 +155,7 @@ PanelChoice Panel::show(const PanelState& state) {
     ImGui::PlotLines("##trace", trace_.data(), static_cast<int>(trace_.size()), static_cast<int>(next_), text, 0,
                      std::max(most_, 1e-6F), {240, 60});
   }
-  if (ImGui::CollapsingHeader("Parameters", ImGuiTreeNodeFlags_DefaultOpen)) {
-    for (Slider& s : sliders_) {
-      ImGui::SliderFloat(s.label.c_str(), &s.value, s.low, s.high, "%.4g", s.logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
-      if (ImGui::IsItemDeactivatedAfterEdit()) choice.changes.push_back(text_of(s));
-    }
-  }
-  if (ImGui::CollapsingHeader("Keys")) {
-    ImGui::TextUnformatted(
-        "without an instrument: the left button pulls, with\n"
-        "Control it cuts; Space pokes\n"
-        "instrument: the mouse moves it, the wheel pushes it\n"
-        "deeper, Shift turns it (wheel: about its view);\n"
-        "arrows, PageUp and PageDown do the same\n"
-        "grasper: left button closes it\n"
-        "right button: turn the view; Control and wheel: nearer");
-  }
+  show_parameters(choice);
   if (!state.message.empty()) {
     ImGui::PushTextWrapPos(260);
     ImGui::TextColored({0.7F, 0.1F, 0.05F, 1}, "%s", state.message.c_str());

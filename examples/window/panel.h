@@ -58,6 +58,8 @@ class Panel {
   float depth = 1;  ///< of the blade [sizes of the bodies]; 1: through everything
 
  private:
+  void show_parameters(PanelChoice& choice);
+
   std::vector<Slider> sliders_, first_;
   std::array<float, 240> trace_{};
   std::size_t next_ = 0;

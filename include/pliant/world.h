@@ -134,6 +134,7 @@ class PLIANT_API World {
   /// of more than 100 cells per second is rejected (input) where tissue is in the way.
   void drive_tool(const std::string& name, const Vec3d& position, const std::array<double, 4>& turn, double seconds = 1.0 / 60);
   [[nodiscard]] std::vector<ToolForce> tool_forces() const;  ///< pose of all tools and forces on them; does not wait
+
   /// Returns the surface of a tool at the current time, in its own frame, outward, for drawing at the pose of tool_forces(). A
   /// half space returns the part of its plane around the bodies. Only sequences change in time. Waits for the worker.
   [[nodiscard]] SurfaceSpec tool_surface(const std::string& name) const;
