@@ -27,7 +27,8 @@ bool two_numbers(const std::string& text, char sign, Number& a, Number& b) {
 
 void PictureWords::add_to(CLI::App& app) {
   app.add_option("--size", size, "Pictures: width and height in pixels; default: 1280x720")->type_name("WxH");
-  app.add_option("--color", color, "Pictures: none, displacement, energy, mises or model; default: none");
+  app.add_option("--color", color,
+                 "Pictures: none, displacement, energy, mises, green_strain, almansi_strain or model; default: none");
   app.add_option("--range", range, "Pictures: values at the ends of the colours in m, J/m^3 or Pa; default: from the values")
       ->type_name("A,B");
   app.add_option("--samples", samples, "Pictures: rays per pixel; default: 16");
@@ -50,9 +51,10 @@ render::PictureOptions PictureWords::options() const {
   if (!color.empty()) {
     const auto by = render::color_by(color);
     if (!by) {
-      throw Error(ErrorCode::bad_input,
-                  fmt::format("--color is \"{}\"; allowed are none, displacement, energy, mises, model{}", color,
-                              did_you_mean(color, {"none", "displacement", "energy", "mises", "model"})));
+      std::vector<std::string> words;
+      for (const render::ColorInfo& c : render::colors()) words.emplace_back(c.word);
+      throw Error(ErrorCode::bad_input, fmt::format("--color is \"{}\"; allowed are {}{}", color, fmt::join(words, ", "),
+                                                    did_you_mean(color, words)));
     }
     o.color = *by;
   }
@@ -64,7 +66,8 @@ render::PictureOptions PictureWords::options() const {
                   fmt::format("--range is \"{}\"; expected two ascending numbers, such as 0,0.02", range));
     }
     if (o.color == render::ColorBy::none || o.color == render::ColorBy::model) {
-      throw Error(ErrorCode::bad_input, "--range is for the colours of values; it needs --color displacement, energy or mises");
+      throw Error(ErrorCode::bad_input,
+                  "--range is for the colours of values; it needs --color displacement, energy, mises or a strain");
     }
     o.range = ends;
   }

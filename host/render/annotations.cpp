@@ -123,6 +123,7 @@ Ticks nice_ticks(double low, double high) {
 
 ScaledUnit scaled_unit(const std::string& unit, double largest) {
   const auto power = [&](double factor, const char* prefix) { return ScaledUnit{factor, prefix + unit}; };
+  if (unit == "1") return {1, unit};
   if (unit == "m") {
     if (largest >= 1) return {1, unit};
     return largest >= 1e-3 || largest == 0 ? power(1e3, "m") : power(1e6, "u");

@@ -1,6 +1,7 @@
 #include "render/fields.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 
 #include "material/response.h"
@@ -72,6 +73,19 @@ class NodeAverage {
   std::vector<double> sum_, weight_;
 };
 
+double value_of(const Strain& s, ColorBy by) {
+  switch (by) {
+    case ColorBy::energy:
+      return s.energy;
+    case ColorBy::green_strain:
+      return s.green;
+    case ColorBy::almansi_strain:
+      return s.almansi;
+    default:
+      return s.mises;
+  }
+}
+
 std::vector<double> node_values(const Body& scene_body, const ModelBody& body, const std::vector<Vec3d>& u, ColorBy by) {
   NodeAverage average(body.rest.size());
   const bool varied = !body.materials.modulus.empty();
@@ -83,7 +97,7 @@ std::vector<double> node_values(const Body& scene_body, const ModelBody& body, c
       Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(f.data()) = state.f;
       if (varied) own = material_of(scene_body, body.materials, e);
       const Strain s = strain_of(f, varied ? own : material_of(scene_body, body.materials.index[e]));
-      average.add(elements[e], state.volume, by == ColorBy::energy ? s.energy : s.mises);
+      average.add(elements[e], state.volume, value_of(s, by));
     }
   };
   add(body.tets);
@@ -105,13 +119,25 @@ std::vector<float> embed(const Model& model, const std::vector<double>& by_slot)
 
 }  // namespace
 
+const std::vector<ColorInfo>& colors() {
+  static const std::vector<ColorInfo> all{{ColorBy::none, "none", "", ""},
+                                          {ColorBy::displacement, "displacement", "displacement", "m"},
+                                          {ColorBy::energy, "energy", "strain energy density", "J/m^3"},
+                                          {ColorBy::mises, "mises", "von Mises stress", "Pa"},
+                                          {ColorBy::green_strain, "green_strain", "equivalent Green strain", "1"},
+                                          {ColorBy::almansi_strain, "almansi_strain", "equivalent Almansi strain", "1"},
+                                          {ColorBy::model, "model", "", ""}};
+  return all;
+}
+
+const ColorInfo& color_info(ColorBy by) {
+  return *std::find_if(colors().begin(), colors().end(), [&](const ColorInfo& c) { return c.by == by; });
+}
+
 std::optional<ColorBy> color_by(const std::string& word) {
-  if (word == "none") return ColorBy::none;
-  if (word == "displacement") return ColorBy::displacement;
-  if (word == "energy") return ColorBy::energy;
-  if (word == "mises") return ColorBy::mises;
-  if (word == "model") return ColorBy::model;
-  return std::nullopt;
+  const auto found = std::find_if(colors().begin(), colors().end(), [&](const ColorInfo& c) { return word == c.word; });
+  if (found == colors().end()) return std::nullopt;
+  return found->by;
 }
 
 Strain strain_of(const std::array<double, 9>& row_major, const Material& m) {
@@ -119,10 +145,13 @@ Strain strain_of(const std::array<double, 9>& row_major, const Material& m) {
   const Matrix3d h = f - Matrix3d::Identity();
   Response response;
   Strain out;
+  const auto deviator = [](const Matrix3d& e) { return (e - e.trace() / 3 * Matrix3d::Identity()).norm(); };
+  out.green = std::sqrt(2.0 / 3) * deviator(green_strain(h));
+  if (const auto almansi = almansi_strain(h)) out.almansi = std::sqrt(2.0 / 3) * deviator(*almansi);
   if (!respond(m, h, false, response)) return out;
   out.energy = response.energy;
   if (const auto sigma = cauchy_stress(m, h)) {
-    out.mises = std::sqrt(1.5) * (*sigma - sigma->trace() / 3 * Matrix3d::Identity()).norm();
+    out.mises = std::sqrt(1.5) * deviator(*sigma);
   }
   return out;
 }

@@ -9,25 +9,36 @@
 
 namespace pliant::render {
 
-enum class ColorBy { none, displacement, energy, mises, model };
-/// "none", "displacement", "energy", "mises", "model"; nothing for another word.
+enum class ColorBy { none, displacement, energy, mises, green_strain, almansi_strain, model };
+struct ColorInfo {
+  ColorBy by;
+  const char* word;   ///< of --color
+  const char* title;  ///< of the bar; empty: no values and no bar
+  const char* unit;
+};
+/// All that a surface can be coloured by.
+const std::vector<ColorInfo>& colors();
+const ColorInfo& color_info(ColorBy by);
+/// Nothing for another word.
 std::optional<ColorBy> color_by(const std::string& word);
 
 /// Displacements [m] of every body's nodes, in the order of ModelBody::rest.
 using BodyDisplacements = std::vector<std::vector<Vec3d>>;
 
-/// One value per vertex of the surface: |u| [m], strain energy per rest volume [J/m^3], or von Mises stress of the Cauchy
-/// stress [Pa]. Node values are averages over the node's elements weighted by rest volume. Nodes that shape matching moves have
-/// a deformation gradient like all others; their stress is what the body's material would answer.
+/// One value per vertex of the surface: |u| [m], strain energy per rest volume [J/m^3], von Mises stress of the Cauchy stress
+/// [Pa], or the equivalent strain of Green's or Almansi's strain. Node values are averages over the node's elements weighted by
+/// rest volume. Nodes that shape matching moves have a deformation gradient like all others; their stress is what the body's
+/// material would answer.
 std::vector<float> vertex_values(const Scene& scene, const Model& model, const BodyDisplacements& u, ColorBy by);
 
 /// [3 * vertices] shares of finite elements, interface and shape matching in the nodes that move a vertex.
 std::vector<float> vertex_kinds(const Model& model);
 
 /// Strain energy per rest volume [J/m^3] and von Mises stress [Pa] at the gradient f (row-major); 0 and 0 where the
-/// law has no value, as most where det f <= 0; sigma = P f^T / J, 0 where det f <= 0.
+/// law has no value, as most where det f <= 0; sigma = P f^T / J, 0 where det f <= 0. Equivalent strains sqrt(2/3 e : e) of the
+/// deviator e of Green's strain, and of Almansi's, 0 where det f <= 0: for small strains mises is 3 mu times each.
 struct Strain {
-  double energy = 0, mises = 0;
+  double energy = 0, mises = 0, green = 0, almansi = 0;
 };
 Strain strain_of(const std::array<double, 9>& f, const Material& material);
 

@@ -9,21 +9,7 @@
 namespace pliant::render {
 namespace {
 
-struct Quantity {
-  const char* title;
-  const char* unit;
-};
-
-Quantity quantity_of(ColorBy color) {
-  switch (color) {
-    case ColorBy::displacement:
-      return {"displacement", "m"};
-    case ColorBy::energy:
-      return {"strain energy density", "J/m^3"};
-    default:
-      return {"von Mises stress", "Pa"};
-  }
-}
+bool has_values(ColorBy color) { return color_info(color).title[0] != 0; }
 
 void append(std::vector<float>& list, const Vec3d& v) {
   for (const double c : v) list.push_back(static_cast<float>(c));
@@ -47,9 +33,17 @@ double least_of(const Simulation& simulation, ColorBy color) {
     size = std::max(size, vec::norm(vec::sub(box.upper, box.lower)));
   }
   constexpr double kStrain = 1e-4;
-  return color == ColorBy::displacement ? kStrain * size
-         : color == ColorBy::energy     ? young * kStrain * kStrain
-                                        : young * kStrain;
+  switch (color) {
+    case ColorBy::displacement:
+      return kStrain * size;
+    case ColorBy::energy:
+      return young * kStrain * kStrain;
+    case ColorBy::green_strain:
+    case ColorBy::almansi_strain:
+      return kStrain;
+    default:
+      return young * kStrain;
+  }
 }
 
 Vec3f vertical(const Scene& scene) {
@@ -74,7 +68,7 @@ void Pictures::aim(Simulation& simulation, const std::vector<float>& positions) 
   const auto fit = [&](const std::vector<float>& points) {
     Framing framing;
     framing.aspect = aspect();
-    if (o_.bar && o_.color != ColorBy::none && o_.color != ColorBy::model) framing.right = kBarShare;
+    if (o_.bar && has_values(o_.color)) framing.right = kBarShare;
     camera_ = fit_camera(view, points, up, framing);
   };
   if (!camera_) {
@@ -137,7 +131,7 @@ void Pictures::color(Simulation& simulation, Surface& surface) {
   surface.values = values_;
   largest_ = std::max(largest_, least_of(simulation, o_.color));
   largest_ = std::max(largest_, nearly_largest(values_, o_.color == ColorBy::displacement ? 1 : 0.99));
-  const ScaledUnit unit = scaled_unit(quantity_of(o_.color).unit, o_.range ? o_.range->second : largest_);
+  const ScaledUnit unit = scaled_unit(color_info(o_.color).unit, o_.range ? o_.range->second : largest_);
   ticks_ = o_.range ? ticks_within(o_.range->first * unit.factor, o_.range->second * unit.factor)
                     : nice_ticks(0, std::max(largest_ * unit.factor, 1e-12));
 }
@@ -150,7 +144,7 @@ void Pictures::annotate(Image& image) const {
                      {srgb_of(kind_color(2)), "shape matching"}});
     return;
   }
-  const Quantity q = quantity_of(o_.color);
+  const ColorInfo& q = color_info(o_.color);
   draw_color_bar(image, {q.title, scaled_unit(q.unit, o_.range ? o_.range->second : largest_).unit, ticks_});
 }
 
@@ -207,7 +201,7 @@ Image Pictures::draw(Simulation& simulation) {
   options.ground = has_ground_;
   options.ground_height = ground_;
   if (!values_.empty()) {
-    const double factor = scaled_unit(quantity_of(o_.color).unit, o_.range ? o_.range->second : largest_).factor;
+    const double factor = scaled_unit(color_info(o_.color).unit, o_.range ? o_.range->second : largest_).factor;
     options.low = static_cast<float>(ticks_.low / factor);
     options.high = static_cast<float>(ticks_.high / factor);
   }

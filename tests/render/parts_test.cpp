@@ -108,12 +108,17 @@ TEST(Fields, OfUniaxialStrainAreTheClosedForms) {
   EXPECT_NEAR(s.mises, m.mu * (stretch * stretch - 1) / stretch, 1e-9);
   EXPECT_NEAR(s.energy, m.mu / 2 * (stretch * stretch - 1) - m.mu * std::log(stretch) + m.lambda / 2 * 0.04, 1e-9);
   s = strain_of(f, make_material(Law::saint_venant_kirchhoff, m));
+  // A strain along one axis has the equivalent strain 2/3 of it.
   const double e = (stretch * stretch - 1) / 2;
+  EXPECT_NEAR(s.green, 2.0 / 3 * e, 1e-12);
+  EXPECT_NEAR(s.almansi, 2.0 / 3 * e / (stretch * stretch), 1e-12);
   EXPECT_NEAR(s.mises, std::fabs((m.lambda + 2 * m.mu) * e * stretch - m.lambda * e / stretch), 1e-9);
   EXPECT_NEAR(s.energy, (m.lambda / 2 + m.mu) * e * e, 1e-9);
   s = strain_of(f, make_material(Law::isochoric_neo_hookean, m));
   EXPECT_NEAR(s.mises, m.mu * std::pow(stretch, -5.0 / 3) * (stretch * stretch - 1), 1e-9);
   EXPECT_EQ(strain_of({-1, 0, 0, 0, 1, 0, 0, 0, 1}, make_material(Law::isochoric_neo_hookean, m)).mises, 0);
+  EXPECT_EQ(strain_of({-1, 0, 0, 0, 1, 0, 0, 0, 1}, make_material(Law::isochoric_neo_hookean, m)).almansi, 0)
+      << "turned inside out";
 }
 
 TEST(Png, ComesBackAsItWas) {
