@@ -102,7 +102,12 @@ void Instruments::take_up(const std::string& label, const std::vector<pliant::To
       pliant::ToolSpec tool = given;
       const Vec3d x = added.at;
       tool.path = {{0, x[0], x[1], x[2], added.turn[0], added.turn[1], added.turn[2], added.turn[3]}};
-      world_.add_tool(tool);
+      try {
+        world_.add_tool(tool);
+      } catch (const pliant::Error&) {
+        for (const std::string& name : added.tools) world_.remove_tool(name);  // half a grasper is none
+        throw;
+      }
       added.tools.push_back(tool.name);
     }
     all_.push_back(added);

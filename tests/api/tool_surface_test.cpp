@@ -81,7 +81,7 @@ TEST(ToolSurface, OfASequenceChangesInTime) {
   World world = World::open(test::source_dir() + "/scenes/hand_bunny.json", on("cpu"));
   const SurfaceSpec open = world.tool_surface("hand");
   EXPECT_GT(volume(open), 0);
-  world.advance(0.5);
+  world.advance(0.1);
   const SurfaceSpec closed = world.tool_surface("hand");
   EXPECT_NE(open.vertices, closed.vertices);
   EXPECT_NEAR(volume(closed) / volume(open), 1, 0.2);

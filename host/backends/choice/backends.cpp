@@ -61,7 +61,7 @@ Candidate first_bit_exact(const std::vector<BackendInfo>& devices, const std::st
 /// against 0.46 for shape matching of 10,000.
 constexpr std::int64_t kFewNodes = 6000;
 
-/// The twins, for one run of a small scene: PoCL takes 0.4 s to start with its kernels compiled and 6 to 14 s without, more
+/// The twins, for one run of a small scene: PoCL takes 0.4 s to start with its kernels compiled and 3 to 13 s without, more
 /// than its faster steps win back in a run. nullptr where this processor cannot run them.
 std::unique_ptr<Backend> open_without_compiling() {
   try {

@@ -1,13 +1,11 @@
 #include "simulation/measure/interpenetration.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <utility>
 
 #include "geometry/mesh_overlap.h"
 #include "geometry/vec.h"
-#include "model/contact/tool_mesh.h"
 
 namespace pliant {
 namespace {
@@ -33,26 +31,20 @@ bool is_closed(const ModelSurface& surface, const ModelBody& body) {
 
 /// A half space as a box that holds what is near it: three radii of the tissue to each side of its plane's nearest point.
 TriangleMesh half_space_mesh(const ToolForm& form, const Pose& pose, const vec::Box& tissue) {
-  const Vec3d middle = vec::mul(vec::add(tissue.lower, tissue.upper), 0.5);
-  const double radius = 0.5 * vec::norm(vec::sub(tissue.upper, tissue.lower));
-  const double height = tool_distance(form, place_back(pose, middle));
+  const Vec3d middle = place_back(pose, vec::mul(vec::add(tissue.lower, tissue.upper), 0.5));
+  const double radius = 0.5 * vec::norm(vec::sub(tissue.upper, tissue.lower)), height = tool_distance(form, middle);
   if (!(radius > 0) || height > radius) return {};
-  Pose outer;
-  outer.turn = pose.turn;
-  const Vec3d up = place(outer, form.second);
-  const Vec3d helper = std::abs(up[0]) < 0.7 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
-  Vec3d side = vec::cross(up, helper);
-  side = vec::mul(side, 1 / vec::norm(side));
-  const Vec3d other = vec::cross(up, side), foot = vec::sub(middle, vec::mul(up, height));
+  TriangleMesh mesh = plane_around(form, pose, tissue);
   const double deep = 3 * radius + std::max(0.0, -height);  // as deep as the tissue lies, and further than it is wide
-  ToolForm box;
-  box.shape = ToolShape::box;
-  box.second = {1, 1, 1};
-  TriangleMesh mesh = tool_mesh(box, 4);
-  for (Vec3d& v : mesh.vertices) {
-    const Vec3d in_plane = vec::add(vec::mul(side, 3 * radius * v[0]), vec::mul(other, 3 * radius * v[1]));
-    v = vec::add(vec::add(foot, in_plane), vec::mul(up, v[2] > 0 ? 0 : -deep));
+  for (std::int32_t k = 0; k < 4; ++k) {
+    mesh.vertices.push_back(vec::sub(mesh.vertices[static_cast<std::size_t>(k)], vec::mul(form.second, deep)));
+    const std::int32_t next = (k + 1) % 4;
+    mesh.triangles.push_back({k, k + 4, next + 4});
+    mesh.triangles.push_back({k, next + 4, next});
   }
+  mesh.triangles.push_back({4, 6, 5});
+  mesh.triangles.push_back({4, 7, 6});
+  for (Vec3d& v : mesh.vertices) v = place(pose, v);
   return mesh;
 }
 

@@ -40,7 +40,7 @@ TriangleMesh plane_around(const ToolForm& form, const Pose& pose, const vec::Box
   const Vec3d foot = vec::sub(middle, vec::mul(up, tool_distance(form, middle)));
   const Vec3d helper = std::abs(up[0]) < 0.7 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
   Vec3d side = vec::cross(up, helper);
-  side = vec::mul(side, wide / vec::norm(side));
+  side = vec::mul(side, 1.5 * wide / vec::norm(side));
   const Vec3d other = vec::cross(up, side);
   TriangleMesh mesh;
   for (const auto& [a, b] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {

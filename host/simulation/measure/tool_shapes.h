@@ -32,7 +32,7 @@ class ToolShapes {
   std::vector<TriangleMesh> fixed_;
 };
 
-/// The part of a half space's plane around a box [m], twice as wide as the box is long, as two triangles in the tool's own
+/// The part of a half space's plane around a box [m], three times as wide as its diagonal, as two triangles in the tool's own
 /// frame. Empty for other shapes and for an empty box.
 TriangleMesh plane_around(const ToolForm& form, const Pose& pose, const vec::Box& box);
 
