@@ -99,6 +99,13 @@ std::unique_ptr<pliant::World> make_world(const py::object& scene, const std::ve
   return std::make_unique<pliant::World>(pliant::World::open(file, o));
 }
 
+void set_tool_mesh(pliant::World& w, const std::string& name, const Vertices& vertices, const py::object& triangles,
+                   double time) {
+  const pliant::SurfaceSpec mesh = surface(vertices, triangles);
+  const py::gil_scoped_release release;
+  w.set_tool_mesh(name, mesh, time);
+}
+
 /// The name that it got.
 std::string add_tool(pliant::World& w, const py::dict& tool, const std::string& folder) {
   const auto text = py::module_::import("json").attr("dumps")(tool).cast<std::string>();
@@ -323,6 +330,8 @@ void bind_tools(py::class_<pliant::World>& world) {
            py::arg("turn") = std::array<double, 4>{0, 0, 0, 1}, Free())
       .def("drive_tool", &World::drive_tool, py::arg("name"), py::arg("position"),
            py::arg("turn") = std::array<double, 4>{0, 0, 0, 1}, py::arg("seconds") = 1.0 / 60, Free())
+      .def("set_tool_mesh", &set_tool_mesh, py::arg("name"), py::arg("vertices"), py::arg("triangles"), py::arg("time"),
+           "changes the shape of a mesh tool: at `time` [s] of the simulation it has this closed surface, in its own frame [m]")
       .def("tool_forces", &tool_forces, "a dict of the tools: of each a dict of its pose and what it feels")
       .def("tool_surface", &tool_surface, py::arg("name"),
            "a tool's surface in its own frame, for drawing: vertices [m] and triangles, shapes [n, 3]")

@@ -59,20 +59,6 @@ void give(const T& value, T* out) {
 
 pliant_world made(pliant::World world) { return {Handles::all().add(std::make_shared<CWorld>(std::move(world)))}; }
 
-pliant::SurfaceSpec surface_of(const pliant_surface& given) {
-  const pliant_surface s = take_struct<pliant_surface>(given, PLIANT_SURFACE_INIT);
-  if (s.vertex_count > 0) need(s.vertices, "vertices");
-  if (s.triangle_count > 0) need(s.triangles, "triangles");
-  pliant::SurfaceSpec spec;
-  for (std::size_t v = 0; v < s.vertex_count; ++v) {
-    spec.vertices.push_back({s.vertices[3 * v], s.vertices[3 * v + 1], s.vertices[3 * v + 2]});
-  }
-  for (std::size_t t = 0; t < s.triangle_count; ++t) {
-    spec.triangles.push_back({s.triangles[3 * t], s.triangles[3 * t + 1], s.triangles[3 * t + 2]});
-  }
-  return spec;
-}
-
 const pliant::BodyInfo& body_of(CWorld& w, std::size_t body) {
   const auto& bodies = w.world.info().bodies;
   if (body < bodies.size()) return bodies[body];

@@ -47,6 +47,21 @@ inline void need(const void* pointer, const char* name) {
   if (pointer == nullptr) throw Error(ErrorCode::usage, fmt::format("\"{}\" is a null pointer", name));
 }
 
+/// Copies a surface of the caller. Throws Error (usage) for a struct of the wrong size and for null arrays.
+inline SurfaceSpec surface_of(const pliant_surface& given) {
+  const pliant_surface s = take_struct<pliant_surface>(given, PLIANT_SURFACE_INIT);
+  if (s.vertex_count > 0) need(s.vertices, "vertices");
+  if (s.triangle_count > 0) need(s.triangles, "triangles");
+  SurfaceSpec spec;
+  for (std::size_t v = 0; v < s.vertex_count; ++v) {
+    spec.vertices.push_back({s.vertices[3 * v], s.vertices[3 * v + 1], s.vertices[3 * v + 2]});
+  }
+  for (std::size_t t = 0; t < s.triangle_count; ++t) {
+    spec.triangles.push_back({s.triangles[3 * t], s.triangles[3 * t + 1], s.triangles[3 * t + 2]});
+  }
+  return spec;
+}
+
 template <class Call>
 pliant_status on(pliant_world world, Call&& call) noexcept {
   return guarded([&] {

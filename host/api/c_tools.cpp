@@ -41,6 +41,13 @@ pliant_status pliant_world_drive_tool(pliant_world world, const char* name, cons
     w.world.drive_tool(name, vector_of(position, "position"), {turn[0], turn[1], turn[2], turn[3]}, seconds);
   });
 }
+pliant_status pliant_world_set_tool_mesh(pliant_world world, const char* name, const pliant_surface* surface, double time) {
+  return on(world, [&](CWorld& w) {
+    need(name, "name");
+    need(surface, "surface");
+    w.world.set_tool_mesh(name, surface_of(*surface), time);
+  });
+}
 pliant_status pliant_world_parse_tool(pliant_world world, const char* tool_text, const char* folder, char* name, size_t size) {
   return on(world, [&](CWorld& w) {
     need(tool_text, "tool_text");

@@ -11,20 +11,21 @@
 
 namespace pliant::api {
 
-bool RigidTools::knows(const std::string& name) const {
-  bool known = names_.contains(name);
+const ContactTool* RigidTools::find(const std::string& name) const {
+  const auto own = tools_.find(name);
+  const ContactTool* found = own == tools_.end() ? nullptr : &own->second;
   for (const std::vector<Request>* list : {&doing_, &asked_}) {
     for (const Request& r : *list) {
-      if (r.name == name && (r.what == What::add || r.what == What::remove)) known = r.what == What::add;
+      if (r.name == name && (r.what == What::add || r.what == What::remove)) found = r.what == What::add ? &r.tool : nullptr;
     }
   }
-  return known;
+  return found;
 }
 
 void RigidTools::check_known(const std::string& name) const {
   if (knows(name)) return;
   std::string all;
-  for (const std::string& other : names_) all += (all.empty() ? "\"" : ", \"") + other + "\"";
+  for (const auto& [other, tool] : tools_) all += (all.empty() ? "\"" : ", \"") + other + "\"";
   throw Error(ErrorCode::usage,
               fmt::format("there is no tool \"{}\"; {}", name, all.empty() ? "there are none" : "there are " + all));
 }
@@ -56,7 +57,11 @@ void RigidTools::ask(Request request) {
   }
 }
 
-void RigidTools::remove(const std::string& name) { ask({What::remove, name, {}, nullptr, {}, 0}); }
+void RigidTools::remove(const std::string& name) {
+  ask({What::remove, name, {}, nullptr, {}, 0});
+  const std::lock_guard lock(mutex_);
+  given_.erase(name);
+}
 void RigidTools::park(const std::string& name) { ask({What::park, name, {}, nullptr, {}, 0}); }
 void RigidTools::unpark(const std::string& name) { ask({What::unpark, name, {}, nullptr, {}, 0}); }
 
@@ -68,6 +73,23 @@ void RigidTools::place(const std::string& name, const Pose& at) {
 void RigidTools::drive(const std::string& name, const Pose& to, double seconds) {
   check_drive(name, to, seconds);
   ask({What::drive, name, {}, nullptr, to, seconds});
+}
+
+void RigidTools::set_mesh(const std::string& name, TriangleMesh mesh, double time) {
+  ContactTool tool;
+  std::shared_ptr<const GivenSurfaces> before;
+  {
+    const std::lock_guard lock(mutex_);
+    check_known(name);
+    tool = *find(name);
+    if (const auto given = given_.find(name); given != given_.end()) before = given->second;
+  }
+  check_takes_surfaces(tool);
+  auto next = std::make_shared<const GivenSurfaces>(
+      next_surface(name, std::move(mesh), time, before != nullptr ? *before : first_surface(tool)));
+  const std::lock_guard lock(mutex_);
+  given_[name] = next;
+  asked_.push_back({What::mesh, name, {}, nullptr, {}, 0, std::move(next)});
 }
 
 void RigidTools::drop_drives() {
@@ -95,6 +117,8 @@ void RigidTools::make(Simulation& simulation, const Request& request) {
       return tools.place(request.name, request.to);
     case What::drive:
       return tools.drive(request.name, request.to, request.seconds);
+    case What::mesh:
+      return tools.set_surface(request.name, *request.surfaces);
   }
 }
 
@@ -120,8 +144,8 @@ void RigidTools::apply(Simulation& simulation) {
 
 void RigidTools::settle(const Simulation& simulation) {
   const std::lock_guard lock(mutex_);
-  names_.clear();
-  for (const ContactTool& tool : known_tools(simulation.scene(), simulation.state().tools)) names_.insert(tool.name);
+  tools_.clear();
+  for (const ContactTool& tool : known_tools(simulation.scene(), simulation.state().tools)) tools_[tool.name] = tool;
   doing_.clear();
 }
 
@@ -150,6 +174,9 @@ void RigidTools::renew(const Simulation& simulation) {
   {
     const std::lock_guard lock(mutex_);
     asked_.clear();
+    given_.clear();
+    for (const auto& [name, given] : simulation.state().tools.given)
+      given_[name] = std::make_shared<const GivenSurfaces>(given);
   }
   settle(simulation);
   note(simulation);

@@ -1,8 +1,8 @@
 // The rigid tools of a World: requests of the caller, executed by the stepping thread, and the forces on the tools.
 #pragma once
+#include <map>
 #include <memory>
 #include <mutex>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -25,6 +25,8 @@ class RigidTools {
   void unpark(const std::string& name);
   void place(const std::string& name, const Pose& at);
   void drive(const std::string& name, const Pose& to, double seconds);
+  /// Gives a tool a surface to come, and computes its distances.
+  void set_mesh(const std::string& name, TriangleMesh mesh, double time);
   /// Discards drives that are not executed yet.
   void drop_drives();
   [[nodiscard]] std::vector<ToolForce> forces();
@@ -39,18 +41,20 @@ class RigidTools {
   void renew(const Simulation& simulation);
 
  private:
-  enum class What { add, remove, park, unpark, place, drive };
+  enum class What { add, remove, park, unpark, place, drive, mesh };
   struct Request {
     What what = What::add;
     std::string name;
-    ContactTool tool;                      ///< add
-    std::shared_ptr<const ToolForm> form;  ///< add
-    Pose to;                               ///< place, drive
-    double seconds = 0;                    ///< drive
+    ContactTool tool;                                         ///< add
+    std::shared_ptr<const ToolForm> form;                     ///< add
+    Pose to;                                                  ///< place, drive
+    double seconds = 0;                                       ///< drive
+    std::shared_ptr<const GivenSurfaces> surfaces = nullptr;  ///< mesh
   };
 
   // Require the mutex.
-  [[nodiscard]] bool knows(const std::string& name) const;
+  [[nodiscard]] const ContactTool* find(const std::string& name) const;
+  [[nodiscard]] bool knows(const std::string& name) const { return find(name) != nullptr; }
   void check_known(const std::string& name) const;
 
   void ask(Request request);
@@ -58,9 +62,10 @@ class RigidTools {
   void settle(const Simulation& simulation);
 
   std::mutex mutex_;
-  std::set<std::string> names_;  ///< tools of the simulation after the last apply()
-  std::vector<Request> doing_;   ///< being executed
-  std::vector<Request> asked_;   ///< queued after these
+  std::map<std::string, ContactTool> tools_;                           ///< those of the simulation after the last apply()
+  std::map<std::string, std::shared_ptr<const GivenSurfaces>> given_;  ///< the last surfaces of tools that set_mesh() changes
+  std::vector<Request> doing_;                                         ///< being executed
+  std::vector<Request> asked_;                                         ///< queued after these
   std::vector<ToolForce> forces_;
 };
 

@@ -102,6 +102,20 @@ void World::drive_tool(const std::string& name, const Vec3d& position, const std
   impl_->settle_tools();
 }
 
+void World::set_tool_mesh(const std::string& name, const SurfaceSpec& surface, double time) {
+  const Call call(impl_, false);
+  impl_->check_can_change_tools();
+  {
+    const std::lock_guard lock(impl_->mutex);
+    if (!impl_->job && !(time > impl_->report.time)) {
+      throw Error(ErrorCode::usage, fmt::format("tool \"{}\": a surface for {} s at {} s, expected a time to come", name, time,
+                                                impl_->report.time));
+    }
+  }
+  impl_->rigid_tools.set_mesh(name, {surface.vertices, surface.triangles}, time);
+  impl_->settle_tools();
+}
+
 std::vector<ToolForce> World::tool_forces() const {
   const Call call(impl_, false);
   return impl_->rigid_tools.forces();
@@ -123,7 +137,7 @@ SurfaceSpec World::tool_surface(const std::string& name) const {
   } else if (found != present.end()) {
     mesh = impl_->tool_shapes.own(simulation, static_cast<std::size_t>(found - present.begin()));
   } else {
-    const ToolForm parked = tool_form(tool);
+    const ToolForm parked = present_form(tool, simulation.state().tools.given);
     mesh = shape_at(parked, tool_mesh(parked, kToolSides), simulation.time());
   }
   return {std::move(mesh.vertices), std::move(mesh.triangles)};

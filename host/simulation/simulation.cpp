@@ -192,8 +192,9 @@ void Simulation::take_over(const Snapshot& snapshot) {
   const Scene scene = edits_.scene_at(next);
   if (bodies != nullptr) {
     model = std::make_shared<const Model>(build_model(scene, bodies->solids()));
-  } else if (scene.tools != contact_.tools()) {
-    model = model_with_tools(scene_, *model, contact_.tools(), scene.tools);
+    if (!next.tools.given.empty()) model = model_with_tools(scene, *model, scene.tools, scene.tools, next.tools.given);
+  } else if (scene.tools != contact_.tools() || !next.tools.given.empty() || !state_.tools.given.empty()) {
+    model = model_with_tools(scene_, *model, contact_.tools(), scene.tools, next.tools.given);
   }
   check_ballast(next, *model);
   if (!next.ballast.empty() || !model->ballast.empty()) {

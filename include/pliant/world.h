@@ -133,10 +133,16 @@ class PLIANT_API World {
   /// Moves a tool from its current pose to the given one within `seconds` [s], after which it stays. Its path ends. A speed
   /// of more than 100 cells per second is rejected (input) where tissue is in the way.
   void drive_tool(const std::string& name, const Vec3d& position, const std::array<double, 4>& turn, double seconds = 1.0 / 60);
+  /// Changes the shape of a mesh tool without `edges`: at `time` [s] of the simulation it has this closed surface, in the
+  /// tool's frame [m], whose triangles need not be those of the surface before. In between the shape is interpolated; its
+  /// surface moves, rubs and pushes accordingly (docs/contact.md). Up to three surfaces may be to come, with times that rise
+  /// (usage). One that comes too late for the worker is reached as much later. In checkpoints.
+  void set_tool_mesh(const std::string& name, const SurfaceSpec& surface, double time);
   [[nodiscard]] std::vector<ToolForce> tool_forces() const;  ///< pose of all tools and forces on them; does not wait
 
   /// Returns the surface of a tool at the current time, in its own frame, outward, for drawing at the pose of tool_forces(). A
-  /// half space returns the part of its plane around the bodies. Only sequences change in time. Waits for the worker.
+  /// half space returns the part of its plane around the bodies. Only sequences and meshes that set_tool_mesh() changes change
+  /// in time. Waits for the worker.
   [[nodiscard]] SurfaceSpec tool_surface(const std::string& name) const;
 
   /// Changes gravity, materials, models, or what holds a body (docs/scene.md, "changes"); ChangeSpec::time is not used. The

@@ -185,6 +185,7 @@ TEST(ToolChanges, ACheckpointHasThem) {
   ToolSpec wedge = ball("wedge", {-0.01, 0, 0.0005});
   wedge.shape = "mesh";
   wedge.mesh = obj;
+  wedge.edges = true;
   first.add_tool(wedge);
   first.add_tool(ball("", {0, 0.02, 0.0105}));
   first.drive_tool("b", {0.02, 0, 0.006}, {0, 0, 0, 1}, 0.1);

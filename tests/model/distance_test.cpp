@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "geometry/band_distance.h"
 #include "mesh_io/mesh_io.h"
 #include "scenes/generate/organs.h"
 #include "surfaces.h"
@@ -154,6 +155,54 @@ TEST(Inside, BunnyWithHoles) {
     EXPECT_GE(right, tested - 4);  // the scan has folds thinner than the step
     EXPECT_FALSE(distance.inside({box.lower[0], box.upper[1], box.lower[2]}));
     EXPECT_FALSE(distance.inside({box.upper[0] + size, 0, 0}));
+  }
+}
+
+/// Two balls that overlap, on a grid with many cells beyond the band and inside.
+TEST(Distance, BandOnAGridIsExactAndTheRestIsNear) {
+  TriangleMesh mesh = test::sphere(1, 0.2), other = test::sphere(0.7, 0.2);
+  const auto first = static_cast<std::int32_t>(mesh.vertices.size());
+  for (const Vec3d& v : other.vertices) mesh.vertices.push_back({v[0] + 1.2, v[1] + 0.1, v[2] - 0.2});
+  for (const auto& t : other.triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  const NodeGrid grid{{-1.62, -1.57, -1.51}, 0.11, {34, 29, 28}};
+  const std::vector<double> got = band_distances(mesh, grid);
+  ASSERT_EQ(got.size(), static_cast<std::size_t>(grid.nodes()));
+  const SurfaceDistance exact(mesh);
+  int inside = 0, far = 0;
+  for (std::size_t n = 0; n < got.size(); ++n) {
+    const auto i = static_cast<std::int64_t>(n);
+    const Vec3d p{grid.origin[0] + static_cast<double>(i % 34) * grid.spacing,
+                  grid.origin[1] + static_cast<double>(i / 34 % 29) * grid.spacing,
+                  grid.origin[2] + static_cast<double>(i / 34 / 29) * grid.spacing};
+    const double distance = exact.signed_distance(p);
+    inside += distance < 0 ? 1 : 0;
+    ASSERT_EQ(got[n] < 0, distance < 0) << n;
+    if (std::abs(distance) <= 2 * grid.spacing) {
+      ASSERT_NEAR(got[n], distance, 1e-12) << n;
+    } else {
+      ++far;
+      ASSERT_GE(got[n], distance - grid.spacing) << n;
+      ASSERT_LE(got[n], distance + 1e-12) << n;
+    }
+  }
+  EXPECT_GT(inside, 3000);
+  EXPECT_GT(far, 10000);
+}
+
+/// A box whose faces, edges and diagonals lie on rows of the grid: every row must still cross it as often in as out.
+TEST(Distance, BandSignsOnRowsAlongEdges) {
+  const TriangleMesh mesh = test::box({-1, -1, -1}, {1, 1, 1});
+  const NodeGrid grid{{-2, -2, -2}, 0.25, {17, 17, 17}};
+  const std::vector<double> got = band_distances(mesh, grid);
+  for (std::size_t n = 0; n < got.size(); ++n) {
+    const Vec3d p{-2 + 0.25 * static_cast<double>(n % 17), -2 + 0.25 * static_cast<double>(n / 17 % 17),
+                  -2 + 0.25 * static_cast<double>(n / 17 / 17)};
+    const double exact = box_distance(p, {1, 1, 1});
+    if (exact == 0) {
+      EXPECT_EQ(got[n], 0) << n;
+    } else {
+      EXPECT_EQ(got[n] < 0, exact < 0) << n;
+    }
   }
 }
 

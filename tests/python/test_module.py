@@ -3,6 +3,7 @@ import gc
 import os
 import runpy
 import sys
+import tempfile
 
 try:
     import numpy as np
@@ -224,6 +225,25 @@ def test_interpenetrations():
     assert np.allclose(found["area"], 5e-4) and np.isclose(found["depth"], 0.01) and found["deepest"].shape == (3,)
     assert np.array_equal(world.probes()["both"]["interpenetration"][:4], [found["volume"], *found["centroid"]])
     assert block().interpenetrations() == []
+
+
+def test_a_tool_takes_another_surface():
+    corners = np.array([[x, y, z] for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)]) * 0.02
+    faces = [[0, 2, 3], [0, 3, 1], [4, 5, 7], [4, 7, 6], [0, 1, 5], [0, 5, 4], [2, 6, 7], [2, 7, 3], [0, 4, 6], [0, 6, 2], [1, 3, 7], [1, 7, 5]]
+    lines = [f"v {x} {y} {z}" for x, y, z in corners] + [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in faces]
+    world = block()
+    with tempfile.TemporaryDirectory() as folder:
+        with open(os.path.join(folder, "box.obj"), "w") as out:
+            out.write("\n".join(lines))
+        world.add_tool({"name": "box", "shape": {"mesh": "box.obj"}, "path": [[0, 0.05, 0.105, 0.03]]}, folder=folder)
+        world.set_tool_mesh("box", corners, faces, world.time + 0.05)
+    world.set_tool_mesh("box", corners * [1, 1.4, 1], faces, world.time + 0.1)  # 8 mm longer at both ends
+    world.advance(0.3)
+    assert world.tool_forces()["box"]["force"][1] > 0.1
+    vertices, _ = world.tool_surface("box")
+    assert np.isclose(vertices[:, 1].min(), -0.028)
+    assert error_of(lambda: world.set_tool_mesh("box", corners, faces[1:], 1)).code == 2
+    assert error_of(lambda: world.set_tool_mesh("box", corners, faces, 0.1)).code == 5
 
 
 def test_rigid_tools():

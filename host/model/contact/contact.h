@@ -62,11 +62,12 @@ struct ToolForm {
   double reach = 0;                    ///< largest distance of a point from the tool's origin [m]; half space: 0
   TriangleMesh surface;                ///< mesh only, for pictures
   double frames_per_second = 0;        ///< sequence only
-  std::vector<ToolFrame> frames;       ///< sequence only; `distance` is [frames][nodes]
+  std::vector<double> times;           ///< given surfaces (given_surfaces.h): of the frames, ascending [s]
+  std::vector<ToolFrame> frames;       ///< of a sequence or given; `distance` is [frames][nodes]
 };
 
-/// State of a shape at a time: its pose in the tool's frame; a sequence interpolates `frame` and the next one, which has the
-/// weight `share`.
+/// State of a shape at a time: its pose in the tool's frame; a shape with frames interpolates `frame` and the next one, which
+/// has the weight `share`.
 struct ToolMoment {
   Pose pose;
   std::int32_t frame = 0;

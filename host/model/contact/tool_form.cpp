@@ -15,17 +15,6 @@
 namespace pliant {
 namespace {
 
-/// Twice the volume over the area [m]: the thickness of a plate, the radius of a long rod.
-double thickness_of(const TriangleMesh& mesh) {
-  double volume = 0, area = 0;
-  for (const auto& t : mesh.triangles) {
-    const Vec3d &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
-    volume += vec::dot(a, vec::cross(b, c)) / 6;
-    area += vec::norm(vec::cross(vec::sub(b, a), vec::sub(c, a))) / 2;
-  }
-  return area > 0 ? 2 * std::abs(volume) / area : 1e30;
-}
-
 void load_mesh(const ContactTool& tool, ToolForm& form) {
   const SurfaceDistance surface(read_tool_mesh(tool, tool.mesh));
   check_closed(tool, tool.mesh, surface);
@@ -34,7 +23,7 @@ void load_mesh(const ContactTool& tool, ToolForm& form) {
     box.extend(v);
     form.reach = std::max(form.reach, vec::norm(v));
   }
-  form.thickness = thickness_of(surface.mesh());
+  form.thickness = mesh_thickness(surface.mesh());
   lay_grid(box, form.thickness, form);
   append_distances(surface, form);
   form.surface = surface.mesh();
@@ -67,6 +56,16 @@ double grid_distance(const ToolForm& form, const Vec3d& y, std::int32_t frame) {
 }
 
 }  // namespace
+
+double mesh_thickness(const TriangleMesh& mesh) {
+  double volume = 0, area = 0;
+  for (const auto& t : mesh.triangles) {
+    const Vec3d &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    volume += vec::dot(a, vec::cross(b, c)) / 6;
+    area += vec::norm(vec::cross(vec::sub(b, a), vec::sub(c, a))) / 2;
+  }
+  return area > 0 ? 2 * std::abs(volume) / area : 1e30;
+}
 
 ToolForm tool_form(const ContactTool& tool) {
   ToolForm form;

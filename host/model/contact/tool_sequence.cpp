@@ -2,14 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <memory>
 
+#include "geometry/band_distance.h"
 #include "geometry/parallel.h"
 #include "mesh_io/mesh_io.h"
+#include "model/contact/registration.h"
 #include "pliant/error.h"
 
 namespace pliant {
@@ -21,12 +22,6 @@ constexpr double kGridCells = 64;
 constexpr double kMostNodes = 4194304;
 /// Maximum number of values of all grids of a sequence: 600 MB on the device.
 constexpr std::int64_t kMostValues = 150'000'000;
-/// Number of points of a mesh used in its registration, and of iterations.
-constexpr std::size_t kPoints = 2000;
-constexpr int kIterations = 30;
-/// A motion whose mean square displacement along the points' normals is below this fraction of the whole is undetermined: the
-/// facets of a sphere do not determine its rotation.
-constexpr double kFree = 2e-3;
 
 /// "frame10" comes after "frame9": runs of digits are compared as numbers.
 bool before_by_name(const std::string& a, const std::string& b) {
@@ -70,101 +65,6 @@ std::vector<std::filesystem::path> mesh_files(const ContactTool& tool) {
   std::sort(files.begin(), files.end(),
             [](const auto& a, const auto& b) { return before_by_name(a.filename().string(), b.filename().string()); });
   return files;
-}
-
-/// Centroid of the volume inside a closed surface.
-Vec3d centroid(const TriangleMesh& mesh) {
-  Vec3d sum{};
-  double volume = 0;
-  const Vec3d o = mesh.vertices.front();
-  for (const auto& t : mesh.triangles) {
-    const Vec3d a = vec::sub(mesh.vertices[static_cast<std::size_t>(t[0])], o),
-                b = vec::sub(mesh.vertices[static_cast<std::size_t>(t[1])], o),
-                c = vec::sub(mesh.vertices[static_cast<std::size_t>(t[2])], o);
-    const double v = vec::dot(a, vec::cross(b, c)) / 6;
-    volume += v;
-    sum = vec::add(sum, vec::mul(vec::add(vec::add(a, b), c), v / 4));
-  }
-  return volume > 0 ? vec::add(o, vec::mul(sum, 1 / volume)) : o;
-}
-
-struct Sample {
-  Vec3d place{};
-  double area = 0;
-};
-
-/// Centroids of some triangles, with the areas that they represent.
-std::vector<Sample> samples(const TriangleMesh& mesh) {
-  std::vector<Sample> out;
-  const std::size_t stride = mesh.triangles.size() / kPoints + 1;
-  for (std::size_t t = 0; t < mesh.triangles.size(); t += stride) {
-    const auto& corner = mesh.triangles[t];
-    const Vec3d a = mesh.vertices[static_cast<std::size_t>(corner[0])], b = mesh.vertices[static_cast<std::size_t>(corner[1])],
-                c = mesh.vertices[static_cast<std::size_t>(corner[2])];
-    const double area = 0.5 * vec::norm(vec::cross(vec::sub(b, a), vec::sub(c, a)));
-    if (area > 0) out.push_back({vec::mul(vec::add(vec::add(a, b), c), 1.0 / 3), area});
-  }
-  return out;
-}
-
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-
-/// Normal equations of a small motion (rotation about `centre`, translation) that moves points onto their nearest planes.
-struct Fit {
-  Matrix6 matrix = Matrix6::Zero();
-  Vector6 right = Vector6::Zero();
-  double area = 0, squares = 0;
-
-  void add(const Vec3d& arm, const Vec3d& normal, double gap, double distance, double of_area) {
-    const Vec3d turn = vec::cross(arm, normal);
-    Vector6 row;
-    row << turn[0], turn[1], turn[2], normal[0], normal[1], normal[2];
-    matrix += of_area * row * row.transpose();
-    right -= of_area * gap * row;
-    area += of_area;
-    squares += of_area * distance * distance;
-  }
-  /// Gauss-Newton step in the determined motions; rotations are scaled with `radius`.
-  [[nodiscard]] Vector6 motion(double radius) const {
-    Vector6 scale;
-    scale << 1 / radius, 1 / radius, 1 / radius, 1, 1, 1;
-    const Eigen::SelfAdjointEigenSolver<Matrix6> modes(scale.asDiagonal() * (matrix / area) * scale.asDiagonal());
-    const Vector6 pull = modes.eigenvectors().transpose() * (scale.asDiagonal() * (right / area));
-    Vector6 along = Vector6::Zero();
-    for (int i = 0; i < 6; ++i) {
-      if (modes.eigenvalues()[i] > kFree) along[i] = pull[i] / modes.eigenvalues()[i];
-    }
-    return scale.asDiagonal() * (modes.eigenvectors() * along);
-  }
-};
-
-Fit fit_of(const std::vector<Sample>& points, const SurfaceDistance& surface, const Pose& pose, const Vec3d& centre) {
-  Fit fit;
-  for (const Sample& s : points) {
-    const Vec3d x = place_back(pose, s.place);
-    const ClosestPoint near = surface.closest(x);
-    const auto& corner = surface.mesh().triangles[static_cast<std::size_t>(near.triangle)];
-    const Vec3d a = surface.mesh().vertices[static_cast<std::size_t>(corner[0])],
-                b = surface.mesh().vertices[static_cast<std::size_t>(corner[1])],
-                c = surface.mesh().vertices[static_cast<std::size_t>(corner[2])];
-    const Vec3d across = vec::cross(vec::sub(b, a), vec::sub(c, a));
-    const double size = vec::norm(across);
-    if (!(size > 0)) continue;
-    const Vec3d normal = vec::mul(across, 1 / size);
-    fit.add(vec::sub(x, centre), normal, vec::dot(vec::sub(x, near.point), normal), near.distance, s.area);
-  }
-  return fit;
-}
-
-/// Converts a small motion of body points, x' = x + turn x (x - centre) + move, to the inverse motion of the frame's pose.
-Pose moved_back(const Pose& pose, const Vector6& by, const Vec3d& centre) {
-  const Vec3d turn{by[0], by[1], by[2]}, move{by[3], by[4], by[5]};
-  const double angle = vec::norm(turn), s = angle > 0 ? std::sin(angle / 2) / angle : 0.5;
-  Pose motion{{}, {turn[0] * s, turn[1] * s, turn[2] * s, std::cos(angle / 2)}};
-  motion.position = vec::sub(vec::add(centre, move), place(motion, centre));  // x' = R (x - centre) + centre + move
-  const Pose inverse{place_back(motion, {}), {-motion.turn[0], -motion.turn[1], -motion.turn[2], motion.turn[3]}};
-  return compose(pose, inverse);
 }
 
 }  // namespace
@@ -213,40 +113,8 @@ void append_distances(const SurfaceDistance& surface, ToolForm& form) {
       exact[static_cast<std::size_t>(r * row + i)] = sign * distance;
     }
   });
-  // Linear interpolation of a curved function is too high by h^2/12 of its Laplacian on average over a cell, which would make
-  // a ball too small. Subtracting this at the nodes corrects the mean.
-  const std::array<std::int64_t, 3> step{1, row, row * form.size[1]};
-  std::vector<double> mean = exact;
-  parallel_for(rows, [&](std::int64_t r) {
-    if (r % form.size[1] == 0 || r % form.size[1] == form.size[1] - 1 || r < form.size[1] || r >= rows - form.size[1]) return;
-    for (std::int64_t n = r * row + 1; n < (r + 1) * row - 1; ++n) {
-      const auto value = [&](std::int64_t at) { return exact[static_cast<std::size_t>(at)]; };
-      double around = -6 * value(n);
-      for (const std::int64_t s : step) around += value(n - s) + value(n + s);
-      mean[static_cast<std::size_t>(n)] -= around / 12;
-    }
-  });
+  const std::vector<double> mean = with_right_means(exact, form.size);
   form.distance.insert(form.distance.end(), mean.begin(), mean.end());
-}
-
-Pose registered(const TriangleMesh& mesh, const SurfaceDistance& surface, const Pose& guess) {
-  const std::vector<Sample> points = samples(mesh);
-  const Vec3d centre = centroid(surface.mesh());
-  double radius = 0;
-  for (const Vec3d& v : surface.mesh().vertices) radius = std::max(radius, vec::norm(vec::sub(v, centre)));
-  Pose pose = guess, best = guess;
-  double least = HUGE_VAL;
-  for (int i = 0; i < kIterations; ++i) {
-    const Fit fit = fit_of(points, surface, pose, centre);
-    if (fit.squares < least) {
-      least = fit.squares;
-      best = pose;
-    }
-    const Vector6 motion = fit.motion(radius);
-    if (!(motion.head<3>().norm() * radius + motion.tail<3>().norm() > 1e-9 * radius)) break;
-    pose = moved_back(pose, motion, centre);
-  }
-  return best;
 }
 
 void load_sequence(const ContactTool& tool, ToolForm& form) {
@@ -261,12 +129,10 @@ void load_sequence(const ContactTool& tool, ToolForm& form) {
       mesh = outward.mesh();
     }
     Pose pose;
-    pose.position = centroid(mesh);
-    if (!surfaces.empty()) {
-      pose.turn = form.frames.back().pose.turn;
-      // Move this frame's centroid to the position of the previous one in its own frame.
-      const Vec3d last = centroid(form.frames.back().surface);
-      pose.position = vec::sub(pose.position, place({{}, pose.turn}, last));
+    if (surfaces.empty()) {
+      pose.position = centroid(mesh);
+    } else {
+      pose = registration_guess(mesh, form.frames.back().surface, form.frames.back().pose);
       pose = registered(mesh, *surfaces.back(), pose);
     }
     for (Vec3d& v : mesh.vertices) {
@@ -292,10 +158,15 @@ void load_sequence(const ContactTool& tool, ToolForm& form) {
 ToolMoment tool_moment(const ToolForm& form, double time) {
   ToolMoment now;
   if (form.frames.empty()) return now;
-  const auto last = static_cast<double>(form.frames.size() - 1);
-  const double at = std::clamp(time * form.frames_per_second, 0.0, last);
-  now.frame = static_cast<std::int32_t>(at);
-  now.share = at - now.frame;
+  if (form.times.empty()) {
+    const auto last = static_cast<double>(form.frames.size() - 1);
+    const double at = std::clamp(time * form.frames_per_second, 0.0, last);
+    now.frame = static_cast<std::int32_t>(at);
+    now.share = at - now.frame;
+  } else if (const auto after = std::upper_bound(form.times.begin(), form.times.end(), time); after != form.times.begin()) {
+    now.frame = static_cast<std::int32_t>(after - form.times.begin() - 1);
+    if (after != form.times.end()) now.share = (time - *(after - 1)) / (*after - *(after - 1));
+  }
   const auto f = static_cast<std::size_t>(now.frame);
   now.pose = now.share > 0 ? between(form.frames[f].pose, form.frames[f + 1].pose, now.share) : form.frames[f].pose;
   return now;

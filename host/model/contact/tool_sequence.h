@@ -19,6 +19,8 @@ void check_closed(const ContactTool& tool, const std::filesystem::path& file, co
 /// Chooses position and size of a grid around a box, with at least two cells across a part of `thickness` [m] if 2^22 grid
 /// nodes suffice.
 void lay_grid(const vec::Box& box, double thickness, ToolForm& form);
+/// Twice the volume over the area [m]: the thickness of a plate, the radius of a long rod.
+double mesh_thickness(const TriangleMesh& mesh);
 /// Appends the signed distances at all nodes of the grid.
 void append_distances(const SurfaceDistance& surface, ToolForm& form);
 
@@ -26,10 +28,5 @@ void append_distances(const SurfaceDistance& surface, ToolForm& form);
 /// different topologies. Throws Error (bad_input) for a folder without meshes, a mesh that cannot be read or is not closed,
 /// and for more frames than the grids allow.
 void load_sequence(const ContactTool& tool, ToolForm& form);
-
-/// Registers a mesh: returns the pose, starting from `guess`, at which its points fit `surface` best, weighted by area. Uses
-/// iterated closest points, point to plane (Chen and Medioni 1992). Undetermined motions, such as the rotation of a sphere,
-/// stay as in the guess.
-Pose registered(const TriangleMesh& mesh, const SurfaceDistance& surface, const Pose& guess);
 
 }  // namespace pliant

@@ -2,6 +2,9 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <vector>
+
+#include "model/contact/contact.h"
 
 namespace pliant {
 
@@ -10,5 +13,13 @@ inline constexpr std::size_t contact_pose_numbers = 14;  ///< per step and tool 
 inline constexpr std::size_t contact_list_end = 16;      ///< empty entries at the end of a list of tiles
 inline constexpr std::size_t contact_sum_parts = 16;    ///< per step and tool in tool_sum (kernels/contact/contact_tool_sum.cl)
 inline constexpr std::size_t contact_sum_numbers = 16;  ///< per part
+
+/// The values of the buffer tool_grid: the distances of all tools one after another, at least one value [m].
+inline std::vector<double> tool_grid(const ToolForms& forms) {
+  std::vector<double> grid;
+  for (const ToolForm& form : forms) grid.insert(grid.end(), form.distance.begin(), form.distance.end());
+  if (grid.empty()) grid.push_back(0);
+  return grid;
+}
 
 }  // namespace pliant

@@ -97,25 +97,27 @@ void ProgramBuilder::add_tools() {
   program_.buffers.back().carried = Carried::all;
   add(make_ints("contact_tool_force", BufferRole::scratch, "[tools][tiles][8][16]", {}, 8 * count * tools,
                 "contact_press, contact_settle"));
-  std::vector<double> data, grid, edge;
+  std::vector<double> data, edge;
+  std::size_t values = 0;
   std::vector<std::int32_t> kind;
   for (std::size_t t = 0; t < tools; ++t) {
     const ToolForm& form = (*model_.tools)[t];
     const std::vector<double> numbers = numbers_of(form, model_.contact_laws[t]);
     data.insert(data.end(), numbers.begin(), numbers.end());
     const ToolShape shape = form.shape == ToolShape::sequence ? ToolShape::mesh : form.shape;
-    kind.insert(kind.end(), {static_cast<std::int32_t>(shape), static_cast<std::int32_t>(grid.size()), form.size[0],
-                             form.size[1], form.size[2], static_cast<std::int32_t>(form.frames.size())});
+    kind.insert(kind.end(), {static_cast<std::int32_t>(shape), static_cast<std::int32_t>(values), form.size[0], form.size[1],
+                             form.size[2], static_cast<std::int32_t>(form.frames.size())});
     const std::vector<EdgePoint> edges = edge_points(form, *model_.contact);
     kind.insert(kind.end(), {static_cast<std::int32_t>(edge.size() / kEdgeNumbers), static_cast<std::int32_t>(edges.size())});
     for (const EdgePoint& e : edges) edge.insert(edge.end(), {e.place[0], e.place[1], e.place[2], e.radius});
     if (!edges.empty()) edged_tools_ |= 1 << t;
-    grid.insert(grid.end(), form.distance.begin(), form.distance.end());
+    values += form.distance.size();
   }
-  if (grid.empty()) grid.push_back(0);
   if (edge.empty()) edge.resize(kEdgeNumbers, 0.0);
   add(make_ints("tool_kind", BufferRole::constant, "[tools][8]", std::move(kind)));
-  const std::size_t numbers = data.size(), values = grid.size(), ends = edge.size();
+  std::vector<double> grid = tool_grid(*model_.tools);
+  values = grid.size();
+  const std::size_t numbers = data.size(), ends = edge.size();
   add(make_reals("tool_data", BufferType::real, numbers, BufferRole::constant, "[tools][20]", "see contact_shape.cl", "model",
                  std::move(data)));
   add(make_reals("tool_grid", BufferType::real, values, BufferRole::constant, "[grid nodes]", "m", "model", std::move(grid)));

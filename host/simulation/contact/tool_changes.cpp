@@ -40,7 +40,7 @@ std::vector<ContactTool> present_tools(const Scene& scene, const ToolChanges& ch
 bool is_parked(const ToolChanges& changes, const std::string& name) { return contains(changes.parked, name); }
 
 void check_tool_changes(const Scene& scene, const ToolChanges& changes) {
-  if (changes.empty()) return;
+  if (changes.empty() && changes.given.empty()) return;
   const auto refuse = [](const std::string& what) {
     throw Error(ErrorCode::bad_input, fmt::format("its tools do not belong to this scene, or are damaged: {}", what));
   };
@@ -59,6 +59,14 @@ void check_tool_changes(const Scene& scene, const ToolChanges& changes) {
   for (const std::string& name : changes.parked) {
     if (!names.contains(name)) refuse(fmt::format("a tool \"{}\" that is parked", name));
   }
+  for (const auto& [name, given] : changes.given) {
+    const std::vector<ContactTool> known = known_tools(scene, changes);
+    const auto named =
+        std::find_if(known.begin(), known.end(), [&name = name](const ContactTool& t) { return t.name == name; });
+    if (named == known.end()) refuse(fmt::format("the surfaces of a tool \"{}\"", name));
+    check_takes_surfaces(*named);
+    check_given(name, given);
+  }
   if (!ascending(changes.removed) || !ascending(changes.parked)) refuse("names that are not in order");
   const std::size_t present = names.size() - changes.parked.size();
   if (present > most_tools) refuse(fmt::format("{} tools that are not parked, expected at most {}", present, most_tools));
@@ -72,16 +80,31 @@ Pose tool_pose(const ContactTool& tool, const RunState& state, double time) {
   return between(d.from, d.to, std::clamp((time - d.start) / (d.end - d.start), 0.0, 1.0));
 }
 
+ToolForm present_form(const ContactTool& tool, const std::map<std::string, GivenSurfaces>& given) {
+  const auto found = given.find(tool.name);
+  if (found == given.end()) return tool_form(tool);
+  GivenSurfaces surfaces = found->second;
+  return tool_form(tool, surfaces);
+}
+
+void check_takes_surfaces(const ContactTool& tool) {
+  if (tool.shape == ToolShape::mesh && !tool.edges) return;
+  throw Error(ErrorCode::usage, fmt::format("tool \"{}\" {}, expected a tool whose shape is a mesh{}", tool.name,
+                                            tool.edges ? "has edges" : "is no mesh", tool.edges ? " without edges" : ""));
+}
+
 std::shared_ptr<Model> model_with_tools(const Scene& scene, const Model& model, const std::vector<ContactTool>& before,
-                                        const std::vector<ContactTool>& next, const std::vector<const ToolForm*>& known) {
+                                        const std::vector<ContactTool>& next, const std::map<std::string, GivenSurfaces>& given,
+                                        const std::vector<const ToolForm*>& known) {
   auto forms = std::make_shared<ToolForms>();
   for (std::size_t t = 0; t < next.size(); ++t) {
     const auto same = std::find(before.begin(), before.end(), next[t]);
-    if (same != before.end()) {
-      forms->push_back((*model.tools)[static_cast<std::size_t>(same - before.begin())]);
-    } else {
-      forms->push_back(t < known.size() && known[t] != nullptr ? *known[t] : tool_form(next[t]));
+    const ToolForm* form = t < known.size() ? known[t] : nullptr;
+    if (form == nullptr && same != before.end() && !given.contains(next[t].name)) {
+      form = &(*model.tools)[static_cast<std::size_t>(same - before.begin())];
+      if (!form->times.empty()) form = nullptr;  // it is to have its file's shape again
     }
+    forms->push_back(form != nullptr ? *form : present_form(next[t], given));
   }
   auto out = std::make_shared<Model>(model);
   out->tools = nullptr;

@@ -1,5 +1,6 @@
 // The tools of a run state: those of the scene, plus added ones, minus removed and parked ones.
 #pragma once
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -20,9 +21,16 @@ void check_tool_changes(const Scene& scene, const ToolChanges& changes);
 /// Returns the pose of a tool at a time [s].
 [[nodiscard]] Pose tool_pose(const ContactTool& tool, const RunState& state, double time);
 
-/// Returns a copy of `model` with the tools `next`. Shapes that `model` has (for the tools `before`) or that are in `known`
-/// are reused; others are built from their files. Throws what tool_form() throws.
+/// Returns a copy of `model` with the tools `next`. Shapes that are in `known` or that `model` has (for the tools `before`) are
+/// reused; others are built from the surfaces that the host has given or from their files. Throws what tool_form() throws.
 std::shared_ptr<Model> model_with_tools(const Scene& scene, const Model& model, const std::vector<ContactTool>& before,
-                                        const std::vector<ContactTool>& next, const std::vector<const ToolForm*>& known = {});
+                                        const std::vector<ContactTool>& next, const std::map<std::string, GivenSurfaces>& given,
+                                        const std::vector<const ToolForm*>& known = {});
+
+/// The present shape of a tool, also of a parked one.
+ToolForm present_form(const ContactTool& tool, const std::map<std::string, GivenSurfaces>& given);
+
+/// Throws Error (usage) for a tool whose shape cannot change.
+void check_takes_surfaces(const ContactTool& tool);
 
 }  // namespace pliant

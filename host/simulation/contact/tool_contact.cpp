@@ -174,7 +174,10 @@ std::int32_t ToolContact::before_step(std::int32_t step_in_batch, std::int32_t s
 
 double ToolContact::motion(std::size_t tool, double from, double to) const {
   const ToolForm& form = (*run_.model().tools)[tool];
-  if (form.frames.size() > 1) return 1e30;  // the surface deforms within its frame
+  if (form.frames.size() > 1) {  // the surface deforms within its frame
+    const ToolMoment a = tool_moment(form, from), b = tool_moment(form, to);
+    if (form.times.empty() || a.frame != b.frame || a.share != b.share) return 1e30;
+  }
   const Pose a = pose(tool, from), b = pose(tool, to);
   const std::array<Vec3d, 3> ra = rotation_matrix(a.turn), rb = rotation_matrix(b.turn);
   double turn = 0;  // upper bound of |R_b - R_a|, the largest change of a unit vector

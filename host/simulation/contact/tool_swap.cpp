@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "schedule/build_program.h"
+#include "schedule/contact/contact_data.h"
 #include "schedule/program_layout.h"
 #include "schedule/surface_program.h"
 #include "simulation/state/snapshot.h"
@@ -107,6 +108,19 @@ void load_tools(RunContext& run, const std::shared_ptr<const Model>& model, cons
   settle(run);
   run.state.look.tools = -1;  // pairs of tissue stay valid
   run.state.kept.reset();     // copies of the old program's buffers
+}
+
+void replace_shape(RunContext& run, std::size_t tool, const ToolForm& form) {
+  auto forms = std::make_shared<ToolForms>(*run.model().tools);
+  (*forms)[tool] = form;
+  auto model = std::make_shared<Model>(run.model());
+  model->tools = forms;
+  if (const BufferId grid = run.loaded.program().find("tool_grid"); grid >= 0) {
+    run.loaded.replace_constant(std::move(model), grid, tool_grid(*forms));
+  } else {  // nothing can touch
+    run.loaded.replace_model(std::move(model));
+  }
+  run.state.look.tools = -1;
 }
 
 void let_go(RunContext& run, std::size_t tool) {

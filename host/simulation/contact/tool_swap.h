@@ -13,6 +13,9 @@ namespace pliant {
 void load_tools(RunContext& run, const std::shared_ptr<const Model>& model, const std::vector<ContactTool>& before,
                 const std::vector<ContactTool>& next);
 
+/// Replaces the distances of a tool whose grid stays: its shape has changed. Everything else stays.
+void replace_shape(RunContext& run, std::size_t tool, const ToolForm& form);
+
 /// Releases sticking friction at a tool of the model, for a tool that was placed elsewhere.
 void let_go(RunContext& run, std::size_t tool);
 

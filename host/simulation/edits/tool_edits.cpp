@@ -56,7 +56,7 @@ ToolEdits::Next ToolEdits::with(ToolChanges changes, const ContactTool* fresh, c
   }
   std::vector<const ToolForm*> forms(next.tools.size(), nullptr);
   if (fresh != nullptr) forms[next.number(fresh->name)] = form;
-  next.model = model_with_tools(run_.scene, run_.model(), contact_.tools(), next.tools, forms);
+  next.model = model_with_tools(run_.scene, run_.model(), contact_.tools(), next.tools, next.changes.given, forms);
   return next;
 }
 
@@ -85,6 +85,7 @@ void ToolEdits::remove(const std::string& name) {
   std::erase(changes.parked, name);
   if (std::erase_if(changes.added, [&](const ContactTool& tool) { return tool.name == name; }) == 0)
     insert(changes.removed, name);
+  changes.given.erase(name);
   if (is_parked(run_.state.tools, name)) {
     run_.state.tools = std::move(changes);
   } else {
@@ -138,6 +139,28 @@ void ToolEdits::place(const std::string& name, const Pose& at) {
     let_go(run_, number(name));
   }
   contact_.drive(number(name), at, 0);
+}
+
+void ToolEdits::set_surface(const std::string& name, const GivenSurfaces& next) {
+  const ContactTool tool = known(name);
+  check_takes_surfaces(tool);
+  ToolChanges changes = run_.state.tools;
+  GivenSurfaces first = next;
+  first.surfaces.pop_back();
+  GivenSurfaces& all = changes.given.try_emplace(name, std::move(first)).first->second;
+  append_surface(name, all, next, run_.state.clock.time());
+  if (is_parked(changes, name)) {
+    run_.state.tools = std::move(changes);
+    return;
+  }
+  const ToolForm form = tool_form(tool, all), &before = (*run_.model().tools)[number(name)];
+  run_.state.relaxation.equilibrium = false;  // relaxation restarts
+  if (!before.times.empty() && before.size == form.size && before.origin == form.origin && before.spacing == form.spacing) {
+    replace_shape(run_, number(name), form);
+    run_.state.tools = std::move(changes);
+  } else {
+    take_up(with(std::move(changes), &tool, &form));
+  }
 }
 
 void ToolEdits::drive(const std::string& name, const Pose& to, double seconds) {

@@ -27,6 +27,9 @@ class ToolEdits {
   void unpark(const std::string& name);
   /// Moves a tool at once to a pose, where it stays. Unparks it.
   void place(const std::string& name, const Pose& at);
+  /// Gives a tool a surface to come: the last of `next` (next_surface()). Throws Error (usage) for a tool whose shape cannot
+  /// change, and if too many are to come.
+  void set_surface(const std::string& name, const GivenSurfaces& next);
   /// Moves a tool from its current pose to another within `seconds` [s]. Unparks it.
   void drive(const std::string& name, const Pose& to, double seconds);
 

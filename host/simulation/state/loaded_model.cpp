@@ -35,6 +35,12 @@ void LoadedModel::update(std::shared_ptr<const Model> model, Program program) {
   note_change();
 }
 
+void LoadedModel::replace_constant(std::shared_ptr<const Model> model, BufferId id, std::vector<double> values) {
+  backend_->write_reals(id, values);
+  program_.at(id).reals = std::move(values);
+  replace_model(std::move(model));
+}
+
 void LoadedModel::reset_initial_state(std::vector<double> u, std::vector<double> w) {
   program_.at(ids_.u).reals = std::move(u);
   program_.at(ids_.w).reals = std::move(w);

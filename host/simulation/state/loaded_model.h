@@ -21,6 +21,10 @@ class LoadedModel {
   void load(std::shared_ptr<const Model> model, Program program, Program surface);
   /// Replaces the Program of the steps; update_surface() must follow. After an error in either, call load().
   void update(std::shared_ptr<const Model> model, Program program);
+  /// Replaces the values of a constant buffer, in a model that differs in nothing else.
+  void replace_constant(std::shared_ptr<const Model> model, BufferId id, std::vector<double> values);
+  /// Replaces a model by one with the same Program.
+  void replace_model(std::shared_ptr<const Model> model) { model_ = std::move(model); }
   /// Sets the initial values of node_u and node_w in program(); the buffers on the backend stay as they are.
   void reset_initial_state(std::vector<double> u, std::vector<double> w);
   /// Replaces the Program of the surface. `patched`: it was made from take_surface(), and Buffer::changed lists the

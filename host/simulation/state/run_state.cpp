@@ -27,6 +27,9 @@ class StateWriter {
   void last(const char* name, const T& value) {
     if (!value.empty()) (*this)(name, value);
   }
+  void last(const char* name, bool value) {
+    if (value) (*this)(name, value);
+  }
   std::string bytes;
 
  private:

@@ -37,7 +37,7 @@ struct RunState {
 };
 
 // Visitor: calls v(name, member) for every member in this order, as the visitors of the parts do. v.last() writes nothing for
-// an empty member, which keeps checkpoints compatible.
+// an empty or false member, which keeps checkpoints compatible.
 template <class V>
 void visit(V& v, RunState& s) {
   v("clock", s.clock), v("limit", s.limit), v("relaxation", s.relaxation), v("kept", s.kept), v("cuts", s.cuts);
@@ -46,6 +46,7 @@ void visit(V& v, RunState& s) {
   v("offset", s.offset), v("ballast", s.ballast), v("tool", s.focus), v("driven", s.driven), v("look", s.look),
       v("opened", s.opened), v("topology_version", s.topology_version);
   v.last("tools", s.tools);
+  v.last("given", s.tools.given);
   v.last("changed", s.changed);
 }
 

@@ -11,6 +11,7 @@
 #include "model/model.h"
 #include "simulation/contact/contact_look.h"
 #include "simulation/state/changed_parameters.h"
+#include "simulation/state/tool_state.h"
 
 namespace pliant {
 
@@ -97,21 +98,6 @@ struct MovedRegion {
   bool operator==(const MovedRegion&) const = default;
 };
 
-/// Motion of a tool between two poses at constant speed, requested by the host; immediate if `end` equals `start`.
-struct ToolDrive {
-  Pose from{}, to{};
-  double start = 0, end = 0;  ///< [s]
-};
-
-/// Changes of the host to the scene's tools. Empty: the tools are those of the scene.
-struct ToolChanges {
-  std::vector<ContactTool> added;    ///< in the order in which they were added
-  std::vector<std::string> removed;  ///< names of removed tools of the scene, ascending
-  std::vector<std::string> parked;   ///< names of parked tools, ascending
-  [[nodiscard]] bool empty() const { return added.empty() && removed.empty() && parked.empty(); }
-  bool operator==(const ToolChanges&) const = default;
-};
-
 // Visitors: v(name, member) for every member, in this order.
 template <class V>
 void visit(V& v, Clock& s) {
@@ -173,25 +159,6 @@ void visit(V& v, NodeInertia& s) {
 template <class V>
 void visit(V& v, MovedRegion& s) {
   v("seed", s.seed), v("cells", s.cells), v("waits", s.waits);
-}
-template <class V>
-void visit(V& v, Pose& s) {
-  v("position", s.position), v("turn", s.turn);
-}
-template <class V>
-void visit(V& v, ToolDrive& s) {
-  v("from", s.from), v("to", s.to), v("start", s.start), v("end", s.end);
-}
-
-template <class V>
-void visit(V& v, ContactTool& s) {
-  v("name", s.name), v("shape", s.shape), v("radius", s.radius), v("first", s.first), v("second", s.second), v("size", s.size);
-  v("mesh", s.mesh), v("scale", s.scale), v("frames_per_second", s.frames_per_second), v("path", s.path);
-  v("friction", s.friction), v("stiffness", s.stiffness), v("exponent", s.exponent), v("alpha", s.alpha);
-}
-template <class V>
-void visit(V& v, ToolChanges& s) {
-  v("added", s.added), v("removed", s.removed), v("parked", s.parked);
 }
 
 }  // namespace pliant

@@ -143,6 +143,10 @@ PLIANT_API pliant_status pliant_world_place_tool(pliant_world world, const char*
 /** Moves a tool from its current pose to the given one within `seconds` [s], after which it stays. Its path ends. */
 PLIANT_API pliant_status pliant_world_drive_tool(pliant_world world, const char* name, const double position[3],
                                                  const double turn[4], double seconds);
+/** Changes the shape of a mesh tool: at `time` [s] of the simulation it has this closed surface, in the tool's frame (see
+ * pliant::World). */
+PLIANT_API pliant_status pliant_world_set_tool_mesh(pliant_world world, const char* name, const pliant_surface* surface,
+                                                    double time);
 /** Fills the poses of the first `count` tools and the forces on them; `*needed` (may be null) receives the number of tools.
  * Does not wait. */
 PLIANT_API pliant_status pliant_world_tool_forces(pliant_world world, pliant_tool_force* out, size_t count, size_t* needed);

@@ -1,0 +1,49 @@
+// Surfaces that a host gives a tool while a scene runs (World::set_tool_mesh).
+#pragma once
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "geometry/band_distance.h"
+#include "model/contact/contact.h"
+
+namespace pliant {
+
+/// A surface, in a frame of its own that follows the tool's rigid motion, like a frame of a sequence.
+struct GivenSurface {
+  double time = 0;       ///< when the tool has this shape [s]
+  Pose pose;             ///< of its frame in the tool's frame
+  TriangleMesh surface;  ///< closed, outward, in its frame [m]
+  /// Signed distances at the nodes of GivenSurfaces::grid [m], or null: not computed yet.
+  std::shared_ptr<const std::vector<double>> distance;
+};
+
+/// The surfaces of a tool: the present one and those to come, with ascending times.
+struct GivenSurfaces {
+  NodeGrid grid;  ///< in the frame of every surface
+  std::vector<GivenSurface> surfaces;
+};
+
+/// Maximum number of surfaces: the present one and three to come.
+inline constexpr std::size_t most_given_surfaces = 4;
+
+/// Returns the surface of a mesh tool's file, with a grid around it. Throws what tool_form() throws.
+GivenSurfaces first_surface(const ContactTool& tool);
+
+/// Returns the last surfaces of `before` and one more, with its distances; the grid contains all of them and is that of
+/// `before` where they fit. Throws Error: bad_input for a surface that is empty, not closed, without volume or not finite;
+/// usage for a time that does not rise.
+GivenSurfaces next_surface(const std::string& tool, TriangleMesh mesh, double time, GivenSurfaces before);
+
+/// Appends the last surface of `next` at the time `now` [s]: forgets surfaces that are over, and lets the present one last
+/// until now. One that comes too late is reached as much later, at the speed at which it was meant to be. Throws Error (usage)
+/// if there are too many surfaces to come, and then changes nothing.
+void append_surface(const std::string& tool, GivenSurfaces& all, const GivenSurfaces& next, double now);
+
+/// Returns the form of a tool with these surfaces and computes the distances that are missing.
+ToolForm tool_form(const ContactTool& tool, GivenSurfaces& given);
+
+/// Throws Error (bad_input) for surfaces that no host could have given.
+void check_given(const std::string& tool, const GivenSurfaces& given);
+
+}  // namespace pliant
