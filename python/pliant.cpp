@@ -275,6 +275,15 @@ py::tuple tool_surface(const pliant::World& w, const std::string& name) {
   return py::make_tuple(vertices, triangles);
 }
 
+py::array_t<float> vertex_values(const pliant::World& w, const std::string& field) {
+  std::vector<float> values;
+  {
+    const py::gil_scoped_release release;
+    values = w.vertex_values(field);
+  }
+  return py::array_t<float>(static_cast<py::ssize_t>(values.size()), values.data());
+}
+
 /// What tools and bodies, and bodies and bodies, have in common.
 py::list interpenetrations(const pliant::World& w) {
   std::vector<pliant::Interpenetration> now;
@@ -335,6 +344,10 @@ void bind_tools(py::class_<pliant::World>& world) {
       .def("tool_forces", &tool_forces, "a dict of the tools: of each a dict of its pose and what it feels")
       .def("tool_surface", &tool_surface, py::arg("name"),
            "a tool's surface in its own frame, for drawing: vertices [m] and triangles, shapes [n, 3]")
+      .def("vertex_values", &vertex_values, py::arg("field"),
+           "a value per vertex at the current time: \"displacement\", \"energy\", \"mises\", \"green_strain\", "
+           "\"almansi_strain\", "
+           "\"pressure\" or \"finite_elements\"")
       .def("interpenetrations", &interpenetrations,
            "a list of dicts: what tools and bodies, and bodies and bodies, have in common");
 }

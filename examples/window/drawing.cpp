@@ -1,6 +1,7 @@
 #include "drawing.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace window {
 namespace {
@@ -8,11 +9,14 @@ namespace {
 const char* const kBodyVertex = R"(#version 330 core
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
+layout(location = 2) in float value;
 uniform mat4 matrix;
 uniform mat4 pose;
 out vec3 place;
 out vec3 direction;
+out float share;
 void main() {
+  share = value;
   place = (pose * vec4(position, 1)).xyz;
   direction = mat3(pose) * normal;
   gl_Position = matrix * vec4(place, 1);
@@ -22,19 +26,25 @@ void main() {
 const char* const kBodyFragment = R"(#version 330 core
 in vec3 place;
 in vec3 direction;
+in float share;
 uniform vec3 eye;
 uniform vec3 color;
 uniform vec3 key;
+uniform vec3 ramp[5];
 uniform int inside;
+uniform int colored;
 out vec4 result;
 void main() {
+  float at = 4.0 * clamp(share, 0.0, 1.0);
+  int k = min(int(at), 3);
+  vec3 own = colored == 1 ? mix(ramp[k], ramp[k + 1], at - float(k)) : color;
   vec3 v = normalize(eye - place);
   // Normals along the rim of a cut are the skin's: faces of a cut have their own.
   vec3 n = normalize(inside == 1 ? cross(dFdx(place), dFdy(place)) : direction);
   if (inside == 0 && !gl_FrontFacing) n = -n;
   vec3 sky = mix(vec3(0.22, 0.19, 0.18), vec3(0.52, 0.55, 0.60), 0.5 + 0.5 * n.y);
   float facing = max(dot(n, key), 0.0);
-  vec3 light = color * (sky + vec3(0.95, 0.91, 0.86) * facing);
+  vec3 light = own * (sky + vec3(0.95, 0.91, 0.86) * facing);
   float shine = pow(max(dot(n, normalize(key + v)), 0.0), 60.0) * 0.35;
   float rim = pow(1.0 - max(dot(n, v), 0.0), 4.0) * 0.18;
   result = vec4(pow(light + shine + rim, vec3(1 / 2.2)), 1);
@@ -164,7 +174,7 @@ Drawing::Drawing() {
   flat_program_ = program(gl_, kFlatVertex, kFlatFragment);
   gl_.GenVertexArrays(1, &body_);
   gl_.GenVertexArrays(1, &ground_);
-  for (GLuint* buffer : {&positions_, &normals_, &indices_, &ground_corners_}) gl_.GenBuffers(1, buffer);
+  for (GLuint* buffer : {&positions_, &normals_, &values_, &indices_, &ground_corners_}) gl_.GenBuffers(1, buffer);
   gl_.Enable(GL_DEPTH_TEST);
   gl_.Enable(GL_MULTISAMPLE);
   gl_.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
@@ -196,6 +206,19 @@ void Drawing::update(const pliant::Frame& frame) {
   upload(positions_, 0, frame.positions);
   upload(normals_, 1, frame.normals);
   if (empty_ || topology_ != frame.topology_version) set_topology(frame);
+  vertices_ = frame.positions.size();
+}
+
+void Drawing::set_values(const std::vector<float>& values, float most) {
+  colored_ = !values.empty() && values.size() == vertices_;
+  gl_.BindVertexArray(body_);
+  if (!colored_) return gl_.DisableVertexAttribArray(2);
+  std::vector<float> shares;
+  for (const float value : values) shares.push_back(most > 0 ? value / most : 0);
+  gl_.BindBuffer(GL_ARRAY_BUFFER, values_);
+  gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(shares.size() * sizeof(float)), shares.data(), GL_STREAM_DRAW);
+  gl_.VertexAttribPointer(2, 1, GL_FLOAT, GL_FALSE, sizeof(float), nullptr);
+  gl_.EnableVertexAttribArray(2);
 }
 
 void Drawing::set_tool(const std::string& name, const pliant::SurfaceSpec& surface) {
@@ -240,6 +263,7 @@ void Drawing::draw_tools(GLuint program) {
 void Drawing::draw_body() {
   gl_.BindVertexArray(body_);
   set(gl_, body_program_, "inside", 0);
+  set(gl_, body_program_, "colored", colored_ ? 1 : 0);
   gl_.DrawElements(GL_TRIANGLES, outside_, GL_UNSIGNED_INT, nullptr);
   if (cut_ == 0) return;
   set(gl_, body_program_, "inside", 1);
@@ -294,8 +318,14 @@ void Drawing::draw(const Orbit& camera, int width, int height, float ground) {
   set(gl_, body_program_, "eye", camera.eye());
   set(gl_, body_program_, "key", key);
   set(gl_, body_program_, "color", Vec3{0.42F, 0.075F, 0.055F});
+  for (std::size_t i = 0; i < kRamp.size(); ++i) {  // the shader works with linear light
+    Vec3 linear = kRamp[i];
+    for (float& c : linear) c = std::pow(c, 2.2F);
+    set(gl_, body_program_, ("ramp[" + std::to_string(i) + "]").c_str(), linear);
+  }
   draw_body();
   set(gl_, body_program_, "inside", 0);
+  set(gl_, body_program_, "colored", 0);
   draw_tools(body_program_);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <pliant/world.h>
 
+#include <array>
 #include <map>
 #include <string>
 #include <vector>
@@ -13,6 +14,10 @@ namespace window {
 
 enum class ToolLook { hidden, steel, active };
 
+/// Colours of values from nothing to the largest, sRGB.
+inline constexpr std::array<Vec3, 5> kRamp{Vec3{0.80F, 0.79F, 0.77F}, Vec3{0.96F, 0.83F, 0.45F}, Vec3{0.94F, 0.55F, 0.18F},
+                                           Vec3{0.78F, 0.20F, 0.16F}, Vec3{0.40F, 0.02F, 0.16F}};
+
 /// Column-major, of a position [m] and a unit quaternion x, y, z, w.
 Mat4 pose_matrix(const pliant::Vec3d& at, const std::array<double, 4>& turn);
 
@@ -21,6 +26,8 @@ class Drawing {
   Drawing();
   /// Upload what changed since the last frame.
   void update(const pliant::Frame& frame);
+  /// Colours the bodies by values of the vertices from 0 to `most`; by nothing if there is not a value for each.
+  void set_values(const std::vector<float>& values, float most);
   /// The shape of a tool in its own frame [m], instead of what it was.
   void set_tool(const std::string& name, const pliant::SurfaceSpec& surface);
   void hide_tools();
@@ -45,12 +52,13 @@ class Drawing {
 
   Gl gl_;
   GLuint body_program_ = 0, flat_program_ = 0;
-  GLuint body_ = 0, positions_ = 0, normals_ = 0, indices_ = 0;
+  GLuint body_ = 0, positions_ = 0, normals_ = 0, values_ = 0, indices_ = 0;
   GLuint ground_ = 0, ground_corners_ = 0;
   GLsizei outside_ = 0, cut_ = 0;  ///< indices
   std::map<std::string, Solid> tools_;
   std::uint64_t topology_ = 0;
-  bool empty_ = true;
+  std::size_t vertices_ = 0;
+  bool empty_ = true, colored_ = false;
 };
 
 }  // namespace window

@@ -6,41 +6,42 @@
 #include <stdexcept>
 #include <string>
 
-#define PLIANT_GL_FUNCTIONS(ROW)                                 \
-  ROW(PFNGLATTACHSHADERPROC, AttachShader)                       \
-  ROW(PFNGLBINDBUFFERPROC, BindBuffer)                           \
-  ROW(PFNGLBINDVERTEXARRAYPROC, BindVertexArray)                 \
-  ROW(PFNGLBLENDFUNCPROC, BlendFunc)                             \
-  ROW(PFNGLBUFFERDATAPROC, BufferData)                           \
-  ROW(PFNGLCLEARPROC, Clear)                                     \
-  ROW(PFNGLCLEARCOLORPROC, ClearColor)                           \
-  ROW(PFNGLCOMPILESHADERPROC, CompileShader)                     \
-  ROW(PFNGLCREATEPROGRAMPROC, CreateProgram)                     \
-  ROW(PFNGLCREATESHADERPROC, CreateShader)                       \
-  ROW(PFNGLDEPTHMASKPROC, DepthMask)                             \
-  ROW(PFNGLDISABLEPROC, Disable)                                 \
-  ROW(PFNGLDRAWARRAYSPROC, DrawArrays)                           \
-  ROW(PFNGLDRAWELEMENTSPROC, DrawElements)                       \
-  ROW(PFNGLENABLEPROC, Enable)                                   \
-  ROW(PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray) \
-  ROW(PFNGLGENBUFFERSPROC, GenBuffers)                           \
-  ROW(PFNGLGENVERTEXARRAYSPROC, GenVertexArrays)                 \
-  ROW(PFNGLGETPROGRAMIVPROC, GetProgramiv)                       \
-  ROW(PFNGLGETSHADERINFOLOGPROC, GetShaderInfoLog)               \
-  ROW(PFNGLGETSHADERIVPROC, GetShaderiv)                         \
-  ROW(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)           \
-  ROW(PFNGLLINKPROGRAMPROC, LinkProgram)                         \
-  ROW(PFNGLPIXELSTOREIPROC, PixelStorei)                         \
-  ROW(PFNGLREADPIXELSPROC, ReadPixels)                           \
-  ROW(PFNGLSHADERSOURCEPROC, ShaderSource)                       \
-  ROW(PFNGLSTENCILFUNCPROC, StencilFunc)                         \
-  ROW(PFNGLSTENCILOPPROC, StencilOp)                             \
-  ROW(PFNGLUNIFORM1FPROC, Uniform1f)                             \
-  ROW(PFNGLUNIFORM3FPROC, Uniform3f)                             \
-  ROW(PFNGLUNIFORM1IPROC, Uniform1i)                             \
-  ROW(PFNGLUNIFORMMATRIX4FVPROC, UniformMatrix4fv)               \
-  ROW(PFNGLUSEPROGRAMPROC, UseProgram)                           \
-  ROW(PFNGLVERTEXATTRIBPOINTERPROC, VertexAttribPointer)         \
+#define PLIANT_GL_FUNCTIONS(ROW)                                   \
+  ROW(PFNGLATTACHSHADERPROC, AttachShader)                         \
+  ROW(PFNGLBINDBUFFERPROC, BindBuffer)                             \
+  ROW(PFNGLBINDVERTEXARRAYPROC, BindVertexArray)                   \
+  ROW(PFNGLBLENDFUNCPROC, BlendFunc)                               \
+  ROW(PFNGLBUFFERDATAPROC, BufferData)                             \
+  ROW(PFNGLCLEARPROC, Clear)                                       \
+  ROW(PFNGLCLEARCOLORPROC, ClearColor)                             \
+  ROW(PFNGLCOMPILESHADERPROC, CompileShader)                       \
+  ROW(PFNGLCREATEPROGRAMPROC, CreateProgram)                       \
+  ROW(PFNGLCREATESHADERPROC, CreateShader)                         \
+  ROW(PFNGLDEPTHMASKPROC, DepthMask)                               \
+  ROW(PFNGLDISABLEPROC, Disable)                                   \
+  ROW(PFNGLDISABLEVERTEXATTRIBARRAYPROC, DisableVertexAttribArray) \
+  ROW(PFNGLDRAWARRAYSPROC, DrawArrays)                             \
+  ROW(PFNGLDRAWELEMENTSPROC, DrawElements)                         \
+  ROW(PFNGLENABLEPROC, Enable)                                     \
+  ROW(PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray)   \
+  ROW(PFNGLGENBUFFERSPROC, GenBuffers)                             \
+  ROW(PFNGLGENVERTEXARRAYSPROC, GenVertexArrays)                   \
+  ROW(PFNGLGETPROGRAMIVPROC, GetProgramiv)                         \
+  ROW(PFNGLGETSHADERINFOLOGPROC, GetShaderInfoLog)                 \
+  ROW(PFNGLGETSHADERIVPROC, GetShaderiv)                           \
+  ROW(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)             \
+  ROW(PFNGLLINKPROGRAMPROC, LinkProgram)                           \
+  ROW(PFNGLPIXELSTOREIPROC, PixelStorei)                           \
+  ROW(PFNGLREADPIXELSPROC, ReadPixels)                             \
+  ROW(PFNGLSHADERSOURCEPROC, ShaderSource)                         \
+  ROW(PFNGLSTENCILFUNCPROC, StencilFunc)                           \
+  ROW(PFNGLSTENCILOPPROC, StencilOp)                               \
+  ROW(PFNGLUNIFORM1FPROC, Uniform1f)                               \
+  ROW(PFNGLUNIFORM3FPROC, Uniform3f)                               \
+  ROW(PFNGLUNIFORM1IPROC, Uniform1i)                               \
+  ROW(PFNGLUNIFORMMATRIX4FVPROC, UniformMatrix4fv)                 \
+  ROW(PFNGLUSEPROGRAMPROC, UseProgram)                             \
+  ROW(PFNGLVERTEXATTRIBPOINTERPROC, VertexAttribPointer)           \
   ROW(PFNGLVIEWPORTPROC, Viewport)
 
 struct Gl {

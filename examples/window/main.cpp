@@ -17,6 +17,7 @@
 #include <string>
 #include <utility>
 
+#include "coloring.h"
 #include "drawing.h"
 #include "instruments.h"
 #include "io/png.h"
@@ -76,6 +77,7 @@ class Window {
     drawing_ = std::make_unique<Drawing>();
     panel_ = std::make_unique<Panel>(window_, sliders_of(o_.scene));  // after the callbacks, which it calls
     panel_->depth = o_.depth;
+    panel_->choose_color(o_.color);
     aim();
     instruments_ = std::make_unique<Instruments>(world_, *drawing_, size_);
     instruments_->follow_scene();
@@ -90,10 +92,11 @@ class Window {
   int run() {
     while (glfwWindowShouldClose(window_) == GLFW_FALSE) {
       glfwPollEvents();
-      follow(panel_->show(
-          {instruments_->labels(), instruments_->active(), instruments_->force(), frame_->time, speed(), message_}));
+      follow(panel_->show({instruments_->labels(), instruments_->active(), instruments_->force(), frame_->time, speed(),
+                           coloring_.most(), message_}));
       simulate();
       drawing_->update(*frame_);
+      coloring_.apply(*drawing_);
       instruments_->draw();
       int width = 0, height = 0;
       glfwGetFramebufferSize(window_, &width, &height);
@@ -346,11 +349,13 @@ class Window {
         use_mouse();
       }
       if (!world_.busy()) {
+        coloring_.update(world_, panel_->field());
         instruments_->fetch_shapes(frame_->time);
         instruments_->drive(kFrame);
       }
       if (!o_.screenshot.empty()) {
         world_.advance(kFrame);
+        coloring_.update(world_, panel_->field());
       } else if (!world_.busy()) {
         world_.advance_async(kFrame);
       }
@@ -368,6 +373,7 @@ class Window {
   std::unique_ptr<Drawing> drawing_;
   std::unique_ptr<Panel> panel_;
   std::unique_ptr<Instruments> instruments_;
+  Coloring coloring_;
   Orbit camera_;
   float ground_ = 0, start_distance_ = 1, size_ = 1;
   float scrolled_ = 0, surface_ = 1, sent_ = 0;

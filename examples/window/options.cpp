@@ -26,6 +26,8 @@ Options read(int argc, char** argv) {
     } else if (word == "--grasp" && std::sscanf(value, "%f", &o.grasp) == 1) {
     } else if (word == "--set" && std::strchr(value, '=') != nullptr) {
       o.set = value;
+    } else if (word == "--color") {
+      o.color = value;
     } else if (word == "--size" && std::sscanf(value, "%dx%d", &o.width, &o.height) == 2) {
     } else if (word[0] != '-' && o.scene.empty()) {
       o.scene = word;
@@ -39,7 +41,7 @@ Options read(int argc, char** argv) {
     throw std::runtime_error(
         "usage: window SCENE [--screenshot FILE] [--seconds T] [--pull X,Y] [--cut X,Y,X,Y] [--depth D] [--probe D] [--grasp "
         "D] "
-        "[--set LABEL=VALUE] [--size WxH]");
+        "[--set LABEL=VALUE] [--color FIELD] [--size WxH]");
   }
   return o;
 }

@@ -12,7 +12,8 @@ struct Options {
   std::optional<std::array<float, 2>> pull;
   std::optional<std::array<float, 4>> cut;
   float depth = 1, probe = 0, grasp = 0;
-  std::string set;  ///< LABEL=VALUE
+  std::string set;    ///< LABEL=VALUE
+  std::string color;  ///< a field of World::vertex_values()
   int width = 1024, height = 768;
 };
 

@@ -7,8 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "drawing.h"
 
 namespace window {
 namespace {
@@ -98,6 +102,30 @@ std::string Panel::set(const std::string& label, float value) {
   return text_of(*found);
 }
 
+void Panel::choose_color(const std::string& field) {
+  const auto found = std::find_if(kColors.begin(), kColors.end(), [&](const ColorChoice& c) { return field == c.field; });
+  if (found == kColors.end()) throw std::runtime_error("--color: there is no field '" + field + "'");
+  color = static_cast<int>(found - kColors.begin());
+}
+
+void Panel::show_colors(float most) {
+  ImGui::Combo(
+      "colour", &color,
+      [](void*, int i, const char** text) { return (*text = kColors[static_cast<std::size_t>(i)].label, true); }, nullptr,
+      static_cast<int>(kColors.size()));
+  if (color == 0) return;
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  constexpr float kWide = 160 / 4.0F, kHigh = 12;
+  for (std::size_t i = 0; i + 1 < kRamp.size(); ++i) {
+    const auto shade = [&](std::size_t k) { return ImGui::GetColorU32({kRamp[k][0], kRamp[k][1], kRamp[k][2], 1}); };
+    const float left = corner.x + kWide * static_cast<float>(i);
+    ImGui::GetWindowDrawList()->AddRectFilledMultiColor({left, corner.y}, {left + kWide, corner.y + kHigh}, shade(i),
+                                                        shade(i + 1), shade(i + 1), shade(i));
+  }
+  ImGui::Dummy({160, kHigh});
+  ImGui::Text("0 to %.3g %s", static_cast<double>(most), kColors[static_cast<std::size_t>(color)].unit);
+}
+
 void Panel::show_parameters(PanelChoice& choice) {
   if (ImGui::CollapsingHeader("Parameters", ImGuiTreeNodeFlags_DefaultOpen)) {
     for (Slider& s : sliders_) {
@@ -155,6 +183,7 @@ PanelChoice Panel::show(const PanelState& state) {
     ImGui::PlotLines("##trace", trace_.data(), static_cast<int>(trace_.size()), static_cast<int>(next_), text, 0,
                      std::max(most_, 1e-6F), {240, 60});
   }
+  show_colors(state.most);
   show_parameters(choice);
   if (!state.message.empty()) {
     ImGui::PushTextWrapPos(260);

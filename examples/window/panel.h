@@ -21,12 +21,27 @@ struct Slider {
 /// ratio.
 std::vector<Slider> sliders_of(const std::string& scene_file);
 
+/// A field that the bodies can be coloured by (World::vertex_values).
+struct ColorChoice {
+  const char* field;  ///< empty: tissue
+  const char* label;
+  const char* unit;
+};
+inline constexpr std::array<ColorChoice, 7> kColors{{{"", "tissue", ""},
+                                                     {"displacement", "displacement", "m"},
+                                                     {"mises", "von Mises stress", "Pa"},
+                                                     {"green_strain", "Green strain", ""},
+                                                     {"energy", "strain energy density", "J/m3"},
+                                                     {"pressure", "contact pressure", "Pa"},
+                                                     {"finite_elements", "finite elements", ""}}};
+
 /// What the panel shows in one frame.
 struct PanelState {
   std::vector<std::string> instruments;
   std::size_t active = 0;  ///< beyond the last: the hand
   double force = 0, time = 0;
   double real_time = 0;  ///< simulated seconds per second
+  float most = 0;        ///< largest value of the colours
   std::string message;   ///< of the last thing that was refused
 };
 
@@ -55,9 +70,15 @@ class Panel {
   /// Sliders at the values of the scene.
   void reset() { sliders_ = first_; }
 
+  /// Chooses the colour by the name of its field. Throws std::runtime_error for another name.
+  void choose_color(const std::string& field);
+  [[nodiscard]] const char* field() const { return kColors[static_cast<std::size_t>(color)].field; }
+
+  int color = 0;    ///< index in kColors
   float depth = 1;  ///< of the blade [sizes of the bodies]; 1: through everything
 
  private:
+  void show_colors(float most);
   void show_parameters(PanelChoice& choice);
 
   std::vector<Slider> sliders_, first_;

@@ -86,6 +86,16 @@ pliant_status pliant_world_tool_surface(pliant_world world, const char* name, do
   });
 }
 
+pliant_status pliant_world_vertex_values(pliant_world world, const char* field, float* out, size_t count, size_t* needed) {
+  return on(world, [&](CWorld& w) {
+    need(field, "field");
+    if (count > 0) need(out, "out");
+    const std::vector<float> values = w.world.vertex_values(field);
+    if (needed != nullptr) *needed = values.size();
+    std::copy_n(values.begin(), std::min(count, values.size()), out);
+  });
+}
+
 pliant_status pliant_world_interpenetrations(pliant_world world, pliant_interpenetration* out, size_t count, size_t* needed) {
   return on(world, [&](CWorld& w) {
     check_array(out, count, "pliant_interpenetration");

@@ -14,6 +14,7 @@
 #include "scene/keys.h"
 #include "scene/spec.h"
 #include "simulation/measure/run_remarks.h"
+#include "simulation/measure/surface_fields.h"
 
 #define PLIANT_TEXT_OF(x) #x
 #define PLIANT_TEXT(x) PLIANT_TEXT_OF(x)
@@ -215,6 +216,25 @@ std::vector<Interpenetration> World::interpenetrations() const {
   const Call call(impl_);
   check_device(*impl_);
   return impl_->interpenetrations.now(*impl_->simulation);
+}
+
+std::vector<float> World::vertex_values(const std::string& field) const {
+  const Call call(impl_);
+  check_device(*impl_);
+  const Simulation& simulation = *impl_->simulation;
+  if (field == "finite_elements") {
+    const std::vector<float> kinds = vertex_kinds(simulation.model());
+    std::vector<float> share;
+    for (std::size_t v = 0; v < kinds.size(); v += 3) share.push_back(kinds[v]);
+    return share;
+  }
+  std::string allowed;
+  for (const ColorInfo& info : colors()) {
+    if (*info.title == 0) continue;
+    if (field == info.word) return pliant::vertex_values(simulation, info.by);
+    allowed += fmt::format("\"{}\", ", info.word);
+  }
+  throw Error(ErrorCode::usage, fmt::format("there is no field \"{}\", expected {}or \"finite_elements\"", field, allowed));
 }
 
 std::vector<std::string> World::remarks() const {

@@ -28,7 +28,7 @@ bool two_numbers(const std::string& text, char sign, Number& a, Number& b) {
 void PictureWords::add_to(CLI::App& app) {
   app.add_option("--size", size, "Pictures: width and height in pixels; default: 1280x720")->type_name("WxH");
   app.add_option("--color", color,
-                 "Pictures: none, displacement, energy, mises, green_strain, almansi_strain or model; default: none");
+                 "Pictures: none, displacement, energy, mises, green_strain, almansi_strain, pressure or model; default: none");
   app.add_option("--range", range, "Pictures: values at the ends of the colours in m, J/m^3 or Pa; default: from the values")
       ->type_name("A,B");
   app.add_option("--samples", samples, "Pictures: rays per pixel; default: 16");
@@ -49,10 +49,10 @@ render::PictureOptions PictureWords::options() const {
                 fmt::format("--size is \"{}\"; expected width x height with 16 to 8192 pixels each, such as 1280x720", size));
   }
   if (!color.empty()) {
-    const auto by = render::color_by(color);
+    const auto by = color_by(color);
     if (!by) {
       std::vector<std::string> words;
-      for (const render::ColorInfo& c : render::colors()) words.emplace_back(c.word);
+      for (const ColorInfo& c : colors()) words.emplace_back(c.word);
       throw Error(ErrorCode::bad_input, fmt::format("--color is \"{}\"; allowed are {}{}", color, fmt::join(words, ", "),
                                                     did_you_mean(color, words)));
     }
@@ -65,7 +65,7 @@ render::PictureOptions PictureWords::options() const {
       throw Error(ErrorCode::bad_input,
                   fmt::format("--range is \"{}\"; expected two ascending numbers, such as 0,0.02", range));
     }
-    if (o.color == render::ColorBy::none || o.color == render::ColorBy::model) {
+    if (o.color == ColorBy::none || o.color == ColorBy::model) {
       throw Error(ErrorCode::bad_input,
                   "--range is for the colours of values; it needs --color displacement, energy, mises or a strain");
     }

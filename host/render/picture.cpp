@@ -52,12 +52,6 @@ Vec3f vertical(const Scene& scene) {
   return unit(-Vec3f{static_cast<float>(g[0]), static_cast<float>(g[1]), static_cast<float>(g[2])});
 }
 
-BodyDisplacements displacements(const Simulation& simulation) {
-  BodyDisplacements u;
-  for (std::size_t b = 0; b < simulation.model().bodies.size(); ++b) u.push_back(simulation.displacements(b));
-  return u;
-}
-
 }  // namespace
 
 Pictures::Pictures(const PictureOptions& options) : o_(options), renderer_(options.threads) {}
@@ -127,7 +121,7 @@ void Pictures::color(Simulation& simulation, Surface& surface) {
     surface.kinds = kinds_;
     return;
   }
-  values_ = vertex_values(simulation.scene(), model, displacements(simulation), o_.color);
+  values_ = vertex_values(simulation, o_.color);
   surface.values = values_;
   largest_ = std::max(largest_, least_of(simulation, o_.color));
   largest_ = std::max(largest_, nearly_largest(values_, o_.color == ColorBy::displacement ? 1 : 0.99));

@@ -7,7 +7,7 @@
 
 #include "geometry/vec.h"
 #include "render/annotations.h"
-#include "render/fields.h"
+#include "simulation/measure/surface_fields.h"
 #include "render/renderer.h"
 #include "render/tool_surface.h"
 #include "simulation/simulation.h"

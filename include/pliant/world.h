@@ -133,18 +133,19 @@ class PLIANT_API World {
   /// Moves a tool from its current pose to the given one within `seconds` [s], after which it stays. Its path ends. A speed
   /// of more than 100 cells per second is rejected (input) where tissue is in the way.
   void drive_tool(const std::string& name, const Vec3d& position, const std::array<double, 4>& turn, double seconds = 1.0 / 60);
-  /// Changes the shape of a mesh tool without `edges`: at `time` [s] of the simulation it has this closed surface, in the
-  /// tool's frame [m], whose triangles need not be those of the surface before. In between the shape is interpolated; its
-  /// surface moves, rubs and pushes accordingly (docs/contact.md). Up to three surfaces may be to come, with times that rise
-  /// (usage). One that comes too late for the worker is reached as much later. In checkpoints.
+  /// Changes the shape of a mesh tool without `edges`: at `time` [s] it has this closed surface, in the tool's frame [m], of any
+  /// triangles; in between it is interpolated (docs/contact.md). Up to three may be to come, with times that rise (usage); one
+  /// that comes too late for the worker is reached as much later. In checkpoints.
   void set_tool_mesh(const std::string& name, const SurfaceSpec& surface, double time);
-  [[nodiscard]] std::vector<ToolForce> tool_forces() const;  ///< pose of all tools and forces on them; does not wait
-
-  /// Returns the surface of a tool at the current time, in its own frame, outward, for drawing at the pose of tool_forces(). A
-  /// half space returns the part of its plane around the bodies. Only sequences and meshes that set_tool_mesh() changes change
-  /// in time. Waits for the worker.
+  /// Returns the pose of all tools and the forces on them. Does not wait.
+  [[nodiscard]] std::vector<ToolForce> tool_forces() const;
+  /// Returns the surface of a tool at the current time, in its own frame, outward, for drawing at the pose of tool_forces(); of
+  /// a half space the part of its plane around the bodies. Waits for the worker.
   [[nodiscard]] SurfaceSpec tool_surface(const std::string& name) const;
-
+  /// Returns a value per vertex at the current time: "displacement" [m], "energy" (strain energy density) [J/m^3], "mises" (von
+  /// Mises stress) or contact "pressure" [Pa], "green_strain", "almansi_strain" (equivalent), or "finite_elements" (1; 0 where
+  /// shape matching moves the vertex). Waits for the worker. Throws Error (usage) for another field.
+  [[nodiscard]] std::vector<float> vertex_values(const std::string& field) const;
   /// Changes gravity, materials, models, or what holds a body (docs/scene.md, "changes"); ChangeSpec::time is not used. The
   /// motion, contact and cuts stay, the stable step is estimated again. With substeps of shape matching, all but gravity waits
   /// for a step at which subcycles begin. After step_async() or advance_async() the worker makes it before its next batch. In

@@ -76,7 +76,7 @@ class Picture(CliTest):
         if not self.has_pictures():
             self.skipTest("a build without Embree")
         seen = {}
-        for color in ["none", "displacement", "energy", "mises", "green_strain", "almansi_strain", "model"]:
+        for color in ["none", "displacement", "energy", "mises", "green_strain", "almansi_strain", "pressure", "model"]:
             self.pliant("run", self.scene(), "--steps", 200, "--every", 200, "--out", color, "--format", "png", "--size", "64x48",
                         "--samples", 1, "--color", color)
             seen[color] = png(self.folder / color / self.names(color)[-1])[2]

@@ -13,9 +13,9 @@
 #include "render/annotations.h"
 #include "render/color.h"
 #include "render/export.h"
-#include "render/fields.h"
 #include "shapes.h"
 #include "support/temp_folder.h"
+#include "simulation/measure/surface_fields.h"
 
 namespace pliant::render {
 namespace {

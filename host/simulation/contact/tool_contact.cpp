@@ -207,6 +207,9 @@ double ToolContact::work(std::size_t tool, std::int32_t step, const Vec3d& force
 
 void ToolContact::end_batch(std::int32_t steps) {
   if (!active() || steps <= 0) return;
+  const bool ran_last = summed_[static_cast<std::size_t>(steps) - 1] != 0;
+  known_at_ = ran_last ? run_.state.clock.step : -1;
+  known_changes_ = run_.loaded.changes();
   const bool ran = std::count(summed_.begin(), summed_.end(), 1) > 0;
   report_.tissue.points = 0;
   if (run_.scene.contact && ran) read_touch();

@@ -36,6 +36,10 @@ class ToolContact {
   void follow();
   /// Moves a tool of the model from its current pose to `to` within `seconds` [s]; at once if that is 0.
   void drive(std::size_t tool, const Pose& to, double seconds);
+  /// Returns the force of contact on every contact point in the last step [N]: that of all tools and of tissue. Empty if
+  /// nothing touched, or where it is not known: before the first step and after the state was changed. Of points that touch
+  /// tools and tissue the part of tissue that contact adds after its first pass (touch_settle) is missing.
+  [[nodiscard]] std::vector<Vec3d> point_forces() const;
   /// Returns the pose of a tool of the model at a time [s].
   [[nodiscard]] Pose pose(std::size_t tool, double time) const;
 
@@ -59,10 +63,12 @@ class ToolContact {
   RunReport& report_;
   ContactLists lists_;
   std::vector<ContactTool> tools_;
-  Units units_;               ///< of the current batch
-  std::vector<char> summed_;  ///< per step of the batch: whether the contact passes ran
-  std::vector<Vec3d> arms_;   ///< from a tool's origin to the origin of a sequence's frame, shape [steps + 1][tools] [m]
-  std::vector<Pose> poses_;   ///< poses of a sequence's frame from the step before the batch on, shape [steps + 2][tools]
+  Units units_;                      ///< of the current batch
+  std::int64_t known_at_ = -1;       ///< step after which the buffers hold the forces of points; -1: none
+  std::int64_t known_changes_ = -1;  ///< LoadedModel::changes() then
+  std::vector<char> summed_;         ///< per step of the batch: whether the contact passes ran
+  std::vector<Vec3d> arms_;          ///< from a tool's origin to the origin of a sequence's frame, shape [steps + 1][tools] [m]
+  std::vector<Pose> poses_;  ///< poses of a sequence's frame from the step before the batch on, shape [steps + 2][tools]
 };
 
 }  // namespace pliant

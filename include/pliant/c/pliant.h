@@ -103,6 +103,10 @@ PLIANT_API pliant_status pliant_world_rest_positions(pliant_world world, size_t 
 /** Evaluates the scene's probes at the current state and fills the first `count` of their quantities. `*needed` (may be
  * null) receives the number of quantities, which never changes. `out` may be null if `count` is 0. */
 PLIANT_API pliant_status pliant_world_probes(pliant_world world, pliant_probe_value* out, size_t count, size_t* needed);
+/** Copies a value per vertex at the current time (see pliant::World): at most `count` values. `*needed` (may be null) receives
+ * the number of vertices. */
+PLIANT_API pliant_status pliant_world_vertex_values(pliant_world world, const char* field, float* out, size_t count,
+                                                    size_t* needed);
 /** Measures what tools and bodies, and bodies and bodies, have in common, and fills the first `count` of those that overlap.
  * `*needed` (may be null) receives their number. `out` may be null if `count` is 0. */
 PLIANT_API pliant_status pliant_world_interpenetrations(pliant_world world, pliant_interpenetration* out, size_t count,

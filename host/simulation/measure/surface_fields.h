@@ -1,15 +1,16 @@
 // What a surface can be coloured by: values of elements, averaged to nodes and embedded to vertices. All in double from the
-// deformation gradient at the centre of each element; nothing here shares code with the kernels.
+// deformation gradient at the centre of each element; nothing of these shares code with the kernels.
 #pragma once
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "model/model.h"
+#include "simulation/simulation.h"
 
-namespace pliant::render {
+namespace pliant {
 
-enum class ColorBy { none, displacement, energy, mises, green_strain, almansi_strain, model };
+enum class ColorBy { none, displacement, energy, mises, green_strain, almansi_strain, pressure, model };
 struct ColorInfo {
   ColorBy by;
   const char* word;   ///< of --color
@@ -31,6 +32,9 @@ using BodyDisplacements = std::vector<std::vector<Vec3d>>;
 /// material would answer.
 std::vector<float> vertex_values(const Scene& scene, const Model& model, const BodyDisplacements& u, ColorBy by);
 
+/// The same of the present state, and contact pressures (contact_pressure.h).
+std::vector<float> vertex_values(const Simulation& simulation, ColorBy by);
+
 /// [3 * vertices] shares of finite elements, interface and shape matching in the nodes that move a vertex.
 std::vector<float> vertex_kinds(const Model& model);
 
@@ -42,4 +46,4 @@ struct Strain {
 };
 Strain strain_of(const std::array<double, 9>& f, const Material& material);
 
-}  // namespace pliant::render
+}  // namespace pliant

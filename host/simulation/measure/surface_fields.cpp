@@ -1,12 +1,13 @@
-#include "render/fields.h"
+#include "simulation/measure/surface_fields.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "material/response.h"
+#include "simulation/measure/contact_pressure.h"
 
-namespace pliant::render {
+namespace pliant {
 namespace {
 
 using Eigen::Matrix3d;
@@ -15,8 +16,8 @@ using Eigen::Vector3d;
 Vector3d vector_of(const Vec3d& v) { return {v[0], v[1], v[2]}; }
 
 /// Signs of a hexahedron's corners in VTK order.
-constexpr int kCorner[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
-                               {-1, -1, 1},  {1, -1, 1},  {1, 1, 1},  {-1, 1, 1}};
+constexpr int kHexSigns[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
+                                 {-1, -1, 1},  {1, -1, 1},  {1, 1, 1},  {-1, 1, 1}};
 
 struct ElementState {
   Matrix3d f = Matrix3d::Identity();
@@ -40,7 +41,7 @@ ElementState element_state(const std::array<std::int32_t, N>& nodes, const std::
     for (int c = 0; c < 3; ++c) {
       double slope = 0;  // of the node's shape function along the element's own coordinate c, at its centre
       if constexpr (N == 8) {
-        slope = kCorner[a][c] / 8.0;
+        slope = kHexSigns[a][c] / 8.0;
       } else {
         slope = a == 0 ? -1 : static_cast<int>(a) == c + 1 ? 1 : 0;
       }
@@ -126,6 +127,7 @@ const std::vector<ColorInfo>& colors() {
                                           {ColorBy::mises, "mises", "von Mises stress", "Pa"},
                                           {ColorBy::green_strain, "green_strain", "equivalent Green strain", "1"},
                                           {ColorBy::almansi_strain, "almansi_strain", "equivalent Almansi strain", "1"},
+                                          {ColorBy::pressure, "pressure", "contact pressure", "Pa"},
                                           {ColorBy::model, "model", "", ""}};
   return all;
 }
@@ -178,6 +180,13 @@ std::vector<float> vertex_values(const Scene& scene, const Model& model, const B
   return embed(model, by_slot);
 }
 
+std::vector<float> vertex_values(const Simulation& simulation, ColorBy by) {
+  if (by == ColorBy::pressure) return contact_pressures(simulation);
+  BodyDisplacements u;
+  for (std::size_t b = 0; b < simulation.model().bodies.size(); ++b) u.push_back(simulation.displacements(b));
+  return vertex_values(simulation.scene(), simulation.model(), u, by);
+}
+
 std::vector<float> vertex_kinds(const Model& model) {
   std::vector<int> kind(static_cast<std::size_t>(model.slots), 0);
   for (const FlsmBatch& batch : model.flsm) {
@@ -195,4 +204,4 @@ std::vector<float> vertex_kinds(const Model& model) {
   return out;
 }
 
-}  // namespace pliant::render
+}  // namespace pliant
