@@ -181,7 +181,7 @@ void TopologyEdits::move_regions() {
     run_.state.regions = std::move(before);
     throw;
   }
-  step_.adapt();
+  step_.adapt_after_move();
 }
 
 void TopologyEdits::load_scene(const std::vector<std::size_t>& remodelled) {

@@ -122,6 +122,24 @@ void StepControl::adapt() {
   if (next < dt || (may_grow && (next > 1.1 * dt || (next == ceiling && dt < ceiling)))) change(next);
 }
 
+void StepControl::adapt_after_move() {
+  if (!run_.settings.automatic) return;
+  const StepLimit& limit = run_.state.limit;
+  if (run_.state.ballast.empty() && run_.state.clock.dt == limit.dt_ceiling && clearly_allows({})) return;
+  adapt();
+}
+
+/// Returns true if a bound of the elements that `changed` marks (empty: of all) shows that the present step is not clearly too
+/// long.
+bool StepControl::clearly_allows(const std::vector<char>& changed) const {
+  const std::vector<double> u = run_.loaded.u();
+  for (const bool quick : {true, false}) {
+    const double bound = stiffness_bound(run_.model(), nodal_stiffness(run_.model(), u, changed, quick));
+    if (bound > 0 && share() * bound_step(run_, bound) >= kClearlyLess * run_.state.clock.dt) return true;
+  }
+  return false;
+}
+
 double StepControl::least_step() const {
   const StepLimit& limit = run_.state.limit;
   return run_.scene.least_step * limit.dt_ceiling;
@@ -189,13 +207,7 @@ void StepControl::limit_after_edit(const std::vector<char>& changed) {
   // New elements are stretched like those they come from, on nodes of less mass. Undeformed, the bound above is safe. For
   // deformed elements a bound is cheaper than the estimate and only needs the changed ones; with shape matching all nodes are
   // included, since the interface depends on the step that all of them allow.
-  const bool local = run_.model().flsm.empty();
-  const std::vector<double> u = run_.loaded.u();
-  for (const bool quick : {true, false}) {
-    const std::vector<double> stiffness = nodal_stiffness(run_.model(), u, local ? changed : std::vector<char>(), quick);
-    const double bound = stiffness_bound(run_.model(), stiffness);
-    if (bound > 0 && share() * bound_step(run_, bound) >= kClearlyLess * run_.state.clock.dt) return;
-  }
+  if (clearly_allows(run_.model().flsm.empty() ? changed : std::vector<char>())) return;
   const double next = std::max(allowed().dt, least_step());
   if (next < kClearlyLess * run_.state.clock.dt) change(next);
 }

@@ -27,6 +27,9 @@ class StepControl {
   void adapt();
   /// Calls adapt() at the steps where an automatic step is due for a check.
   void adapt_when_due();
+  /// Call after an operational region has moved: adapts the step unless it is at its ceiling and a bound of the elements, which
+  /// takes a fraction of the time of the estimate, shows that it is stable.
+  void adapt_after_move();
   /// Call after a topology edit. Limits the step to what the new elements are stable at, both undeformed and as deformed now.
   /// `changed`: per slot, nonzero if its elements or mass changed.
   void limit_after_edit(const std::vector<char>& changed);
@@ -61,6 +64,7 @@ class StepControl {
   [[nodiscard]] bool adapts_at(std::int64_t step) const;
   [[nodiscard]] bool changes_at(std::int64_t step) const;
   [[nodiscard]] double share() const;
+  [[nodiscard]] bool clearly_allows(const std::vector<char>& changed) const;
   /// Adds ballast so that elements are stable at least_step(), and removes ballast that is no longer needed. If this exceeds
   /// the mass limit, chooses a step between `wanted` and least_step(). Returns the step [s].
   double balance(double wanted, const std::vector<double>& stiffness);
