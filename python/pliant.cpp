@@ -1,4 +1,4 @@
-// The Python module: pliant::World with NumPy views of its frames.
+// The compiled part of the Python package, pliant._core: pliant::World with NumPy views of its frames.
 #include <pliant/world.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -438,10 +438,12 @@ void in_pythons_words(const py::object& type) {
 
 }  // namespace
 
-PYBIND11_MODULE(pliant, m) {
+PYBIND11_MODULE(_core, m) {
+  m.attr("__module__") = "pliant";  // where users find what is defined here: pybind11 names it so in classes and signatures
   m.doc() = "Soft-tissue deformation. SI units.";
   m.attr("__version__") = pliant::version();
   static const py::handle error = py::exception<pliant::Error>(m, "Error").release();  // never freed: exceptions may come late
+  error.attr("__module__") = "pliant";
   py::register_exception_translator([](std::exception_ptr p) {
     try {
       if (p) std::rethrow_exception(p);

@@ -98,7 +98,7 @@ def python():
     define = r'\.def(?:_readonly|_property_readonly)?\(\s*"(\w+)"'
     world, module = block(text, "void bind_world(") + block(text, "void bind_tools("), block(text, "PYBIND11_MODULE(")
     found = {f"World::{n}" for n in re.findall(define, world)} | {"World::__init__"}
-    found |= set(re.findall(r'm\.def\("(\w+)"', module)) | set(re.findall(r'm\.attr\("(\w+)"\) =', module))
+    found |= set(re.findall(r'm\.def\("(\w+)"', module)) | set(re.findall(r'm\.attr\("(\w+)"\) =', module)) - {"__module__"}
     constructor = world[world.index("py::init"):world.index(".def_property_readonly")]
     found |= {f"WorldOptions.{n}" for n in re.findall(r'py::arg\("(\w+)"\)', constructor)} - {f"WorldOptions.{n}" for n in ("scene", "surfaces", "folder")}
     for name, function in {"StepReport": "bind_report", "Frame": "bind_frame"}.items():

@@ -9,8 +9,9 @@ source=$1 build=$2 python=$3
 }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-mkdir -p "$work/source/include/pliant"  # pip builds inside the tree
+mkdir -p "$work/source/include/pliant" "$work/source/python/pliant"  # pip builds inside the tree
 cp "$source/setup.py" "$source/pyproject.toml" "$work/source"
+cp "$source"/python/pliant/*.py "$work/source/python/pliant"
 cp "$source/include/pliant/version.h" "$work/source/include/pliant"
 "$python" -m venv --system-site-packages "$work/venv"
 PLIANT_PYTHON_BUILD=$build "$work/venv/bin/python" -m pip --disable-pip-version-check install --quiet --no-index --no-build-isolation \
