@@ -1,7 +1,8 @@
-"""The page of World.show() in Chromium, which is steered by its DevTools protocol: what is drawn, real clicks, and that nothing is loaded from elsewhere.
+"""The page of World.show() in Chromium, steered by its DevTools protocol: what is drawn, real clicks, and that nothing is loaded from elsewhere.
 
-Skipped without NumPy, viser or Chromium.
+Skipped without NumPy, viser or Chromium. `test_browser.py --picture FILE.png` takes the picture of docs/embedding.md.
 """
+import base64
 import json
 import os
 import shutil
@@ -12,6 +13,8 @@ import time
 import urllib.request
 
 from visitor import SOURCE, free_port, run_all, wait_for  # first: it skips without NumPy
+
+import numpy as np
 
 import pliant
 
@@ -63,9 +66,12 @@ class Browser:
         self.mouse("mouseReleased", x, y, clickCount=1)
 
     def press(self, label):
-        at = wait_for(label, lambda: self.run(f"(() => {{const b = [...document.querySelectorAll('button,label')].find(b => b.innerText.trim() == {json.dumps(label)});"
-                                              "if (!b) return null; const r = b.getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2]})()"))
-        self.click(*at)
+        self.click(*wait_for(label, lambda: self.run(f"""(() => {{
+            const button = [...document.querySelectorAll("button, label")].find(b => b.innerText.trim() == {json.dumps(label)});
+            if (!button) return null;
+            const box = button.getBoundingClientRect();
+            return [box.x + box.width / 2, box.y + box.height / 2];
+        }})()""")))
 
     def close(self):
         self.socket.close()
@@ -102,6 +108,55 @@ def test_a_liver_is_drawn_and_cut():
         view.stop()
 
 
+def test_a_gizmo_is_dragged():
+    world = pliant.World(os.path.join(SOURCE, "scenes/palpate_tumour.json"), backend="cpu", interactive=True)
+    view = world.show(free_port(), block=False, play=False)
+    browser = Browser(view.url)
+    try:
+        wait_for("the panel", lambda: "probe" in browser.text() and "(paused)" in browser.text())
+        camera = wait_for("the visitor", lambda: list(view.server.get_clients().values()))[0].camera
+        start = np.array(view.page.tools.all["probe"].gizmo.position)
+        arrow = start + [0.9 * view.page.tools.all["probe"].gizmo.scale, 0, 0]
+
+        def on_screen(point):
+            w, u = camera.wxyz[0], -camera.wxyz[1:]  # from space to the camera, whose z looks forward and whose y looks down
+            x, y, z = (v := point - camera.position) + 2 * np.cross(u, np.cross(u, v) + w * v)
+            focus = camera.image_height / 2 / np.tan(camera.fov / 2)
+            return float(camera.image_width / 2 + focus * x / z), float(camera.image_height / 2 + focus * y / z)
+
+        def dragged():
+            (x, y), (to_x, to_y) = on_screen(arrow), on_screen(arrow + [0.01, 0, 0])
+            browser.mouse("mouseMoved", x, y)
+            browser.mouse("mousePressed", x, y, clickCount=1, buttons=1)
+            for share in (0.3, 0.6, 1.0):
+                browser.mouse("mouseMoved", x + share * (to_x - x), y + share * (to_y - y), buttons=1)
+            browser.mouse("mouseReleased", to_x, to_y, clickCount=1)
+            return view.page.tools.all["probe"].target
+
+        target, _ = wait_for("the gizmo to be drawn and dragged", dragged)
+        assert np.allclose(target[1:], start[1:], atol=1e-6) and 0.001 < target[0] - start[0] < 0.02, "along its arrow"
+        browser.press("Play")
+        wait_for("the tool", lambda: np.allclose(view.do(lambda w: w.tool_forces()["probe"]["position"]), target, atol=1e-6))
+    finally:
+        browser.close()
+        view.stop()
+
+
+def picture(file):
+    world = pliant.World(os.path.join(SOURCE, "scenes/liver_on_table.json"), interactive=True, cutting=True)
+    world.advance(1.05)
+    view = world.show(free_port(), block=False)
+    browser = Browser(view.url, 1060, 640)
+    view.page.surface.choice.value = view.page.surface.field = "displacement"
+    wait_for("the cut", lambda: view.do(lambda w: w.time) > 1.6)
+    browser.run("document.querySelector('.mantine-Notification-closeButton')?.click()")  # viser's, about drawing without a graphics card
+    time.sleep(15)  # the picture is faded in, slowly where there is no graphics card
+    with open(file, "wb") as out:
+        out.write(base64.b64decode(browser.call("Page.captureScreenshot", format="png")["data"]))
+    browser.close()
+    view.stop()
+
+
 def liver(browser):
     """Its middle in the picture, and the share of the picture that it fills; nothing before it is drawn. The page itself decodes the picture."""
     shot = browser.call("Page.captureScreenshot", format="png")["data"]
@@ -127,4 +182,7 @@ if __name__ == "__main__":
     if CHROMIUM is None:
         print("skipped: Chromium is not installed (Debian: chromium)")
         sys.exit(77)
-    run_all(globals(), sys.argv[1:])
+    if sys.argv[1:2] == ["--picture"]:
+        picture(sys.argv[2])
+    else:
+        run_all(globals(), sys.argv[1:])

@@ -3,18 +3,17 @@
 One thread steps the World, another draws; what is clicked on the page only leaves a request for the first. Nothing is loaded from elsewhere, and the page
 is served to this machine alone unless `host` says otherwise.
 """
+import atexit
+import collections
 import concurrent.futures
 import contextlib
 import html
 import io
 import json
-import os
 import queue
 import threading
 import time
 import traceback
-
-import numpy as np
 
 import pliant
 
@@ -68,7 +67,8 @@ class View:
     def __init__(self, world, viser, host, port, play):
         from pliant.view.page import Page
 
-        self.world, self.playing, self.messages, self.pictures = world, play, [], 0
+        self.world, self.playing, self.pictures = world, play, 0
+        self.messages = collections.deque(maxlen=100)  # the newest that were told
         self._requests, self._stopping, self._single = queue.SimpleQueue(), threading.Event(), False
         self._told_at, self._next_picture, self._seen = {}, 0.0, None
         self._due, self._last, self._batch, self._handed = 0.0, time.perf_counter(), PICTURE, None
@@ -81,10 +81,13 @@ class View:
         except BaseException:
             self.server.stop()
             raise
-        self._painter = concurrent.futures.ThreadPoolExecutor(1, "pliant.view.draw")
-        self._drawn = self._painter.submit(lambda: None)
+        self._to_draw, self._drawn = queue.SimpleQueue(), threading.Event()
+        self._drawn.set()
         self._thread = threading.Thread(target=self._run, name="pliant.view", daemon=True)
+        self._painter = threading.Thread(target=self._paint, name="pliant.view.draw", daemon=True)
         self._thread.start()
+        self._painter.start()
+        atexit.register(self.stop)
 
     @property
     def running(self):
@@ -92,9 +95,11 @@ class View:
 
     def stop(self):
         """Ends the page; the World is free again, at the step that it has reached."""
+        atexit.unregister(self.stop)
         self._stopping.set()
         self._thread.join()
-        self._painter.shutdown()
+        self._to_draw.put(None)
+        self._painter.join()
         with contextlib.redirect_stdout(io.StringIO()):
             self.server.stop()
 
@@ -207,17 +212,17 @@ class View:
 
     def _draw(self, now):
         """Lets the other thread draw what is new, if it has finished the last picture."""
-        if now < self._next_picture or not self._drawn.done():
+        if now < self._next_picture or not self._drawn.is_set():
             return
         self._next_picture = max(self._next_picture + PICTURE, now)
-        before, self._drawn = self._drawn, concurrent.futures.Future()
-        self._drawn.set_result(None)
-        before.result()  # what went wrong is told
         collected = self.page.collect(self._seen, now)
         self.pictures += collected[0] is not self._seen
         self._seen = collected[0]
-        self._drawn = self._painter.submit(self._paint, collected, now)
+        self._drawn.clear()
+        self._to_draw.put((collected, now))
 
-    def _paint(self, collected, now):
-        with self.server.atomic():
-            self.page.draw(collected, now)
+    def _paint(self):
+        while (picture := self._to_draw.get()) is not None:
+            with self._errors_told(), self.server.atomic():
+                self.page.draw(*picture)
+            self._drawn.set()

@@ -47,9 +47,9 @@ def sliders_of(scene):
             sliders.append(Slider(f"{label}, {name}" if several else label, low, high, value, change))
 
         material, model = body.get("material", {}), body.get("model", {})
-        for key in ("young", "shear", "c10"):
-            if is_number(material.get(key)):
-                add({"young": "Young [Pa]", "shear": "shear [Pa]", "c10": "c10 [Pa]"}[key], "material", key, material[key] / 10, 4 * material[key], material[key])
+        for key, label in (("young", "Young [Pa]"), ("mu", "mu [Pa]"), ("c10", "c10 [Pa]"), ("viscosity", "viscosity [Pa s]")):
+            if is_number(material.get(key)) and material[key] > 0:
+                add(label, "material", key, material[key] / 10, 4 * material[key], material[key])
         if is_number(material.get("damping", 0)):
             add("damping [1/s]", "material", "damping", 0.0, 100.0, material.get("damping", 0))
         for key in ("alpha", "ratio"):

@@ -49,8 +49,8 @@ class Tool:
             self.shown = server.gui.add_checkbox("gizmo", initial_value=not flat, hint="arrows and arcs that move and turn the tool")
             self.text = server.gui.add_markdown("")
             self.plot = server.gui.add_uplot(
-                (np.array([0.0, 1.0]), np.zeros(2)), ({"label": "s"}, {"label": "N", "stroke": "#b03a2e", "width": 2}), height=110,
-                scales={"x": {"time": False}}, legend={"show": False}, axes=({"size": 24}, {"size": 44}), padding=(6, 10, 0, 0))
+                (np.array([0.0, 1.0]), np.zeros(2)), ({"label": "s"}, {"label": "N", "stroke": "#b03a2e", "width": 2}), height=120,
+                scales={"x": {"time": False}, "y": {"range": (0.0, None)}}, legend={"show": False}, axes=({"size": 24}, {"size": 44}), padding=(6, 10, 0, 0))
         self.trace, self.plotted = collections.deque(), 0.0
 
         @self.gizmo.on_update
