@@ -37,6 +37,13 @@ py::array_t<double> copy(const std::vector<Vec3d>& v) {
   return array;
 }
 
+/// A copy of a list of numbers. The shape is a vector because pybind11 before 2.12 derives the stride of a mere count from a
+/// member of NumPy's descriptor that NumPy 2 has moved: every element was the first one.
+template <class Numbers>
+py::array_t<double> row(const Numbers& numbers) {
+  return py::array_t<double>(std::vector<py::ssize_t>{static_cast<py::ssize_t>(numbers.size())}, numbers.data());
+}
+
 py::tuple range(const pliant::IndexRange& r) { return py::make_tuple(r.first, r.count); }
 
 py::list ranges(pliant::View<pliant::IndexRange> all) {
@@ -232,23 +239,20 @@ py::dict probes(const pliant::World& w) {
   for (const pliant::ProbeValue& v : values) {
     const py::str name(v.probe);
     if (!d.contains(name)) d[name] = py::dict();
-    d[name][py::str(v.quantity)] = py::array_t<double>(static_cast<py::ssize_t>(v.numbers.size()), v.numbers.data());
+    d[name][py::str(v.quantity)] = row(v.numbers);
   }
   return d;
 }
 
 /// By name: where each tool is, and what it feels.
 py::dict tool_forces(const pliant::World& w) {
-  const auto array = [](const auto& numbers) {
-    return py::array_t<double>(static_cast<py::ssize_t>(numbers.size()), numbers.data());
-  };
   py::dict d;
   for (const pliant::ToolForce& f : w.tool_forces()) {
     py::dict tool;
-    tool["position"] = array(f.position);
-    tool["turn"] = array(f.turn);
-    tool["force"] = array(f.force);
-    tool["torque"] = array(f.torque);
+    tool["position"] = row(f.position);
+    tool["turn"] = row(f.turn);
+    tool["force"] = row(f.force);
+    tool["torque"] = row(f.torque);
     tool["area"] = f.area;
     tool["penetration"] = f.penetration;
     tool["parked"] = f.parked;
@@ -275,9 +279,6 @@ py::list interpenetrations(const pliant::World& w) {
     const py::gil_scoped_release release;
     now = w.interpenetrations();
   }
-  const auto array = [](const auto& numbers) {
-    return py::array_t<double>(static_cast<py::ssize_t>(numbers.size()), numbers.data());
-  };
   py::list all;
   for (const pliant::Interpenetration& i : now) {
     py::dict found;
@@ -285,10 +286,10 @@ py::list interpenetrations(const pliant::World& w) {
     found["second"] = i.second;
     found["tool"] = i.tool;
     found["volume"] = i.volume;
-    found["centroid"] = array(i.centroid);
-    found["area"] = array(i.area);
+    found["centroid"] = row(i.centroid);
+    found["area"] = row(i.area);
     found["depth"] = i.depth;
-    found["deepest"] = array(i.deepest);
+    found["deepest"] = row(i.deepest);
     all.append(found);
   }
   return all;

@@ -120,10 +120,11 @@ def test_fields():
         for field, unit in (("displacement", " m"), ("stretch of the surface", " "), ("speed", " m/s")):
             visitor.set("colours", field)
             wait_for("its legend", lambda: re.search(rf"<span>[\d.e-]+{unit}</span><span>most: ", visitor.text()))
-            bands = wait_for("its bands", lambda: not visitor.shown("/bodies/") and visitor.shown("/field/"))
+            wait_for("its bands", lambda: not visitor.shown("/bodies/") and visitor.shown("/field/"))
             if field == "displacement":
-                assert len(bands) == 12
-                assert np.isclose(sum(area(b["vertices"], b["faces"]) for b in bands.values()), whole, rtol=1e-4), "the bands are the surface"
+                bands = wait_for("all of them", lambda: len(visitor.shown("/field/")) == 12 and visitor.shown("/field/"))
+                wait_for("the bands to be the surface", lambda: np.isclose(sum(area(b["vertices"], b["faces"]) for b in visitor.shown("/field/").values()),
+                                                                           whole, rtol=1e-4))
                 highest = view.page.surface.bands[-1].name
                 assert bands[highest]["vertices"][:, 1].min() > 0.06, "the clamped side moves least"
         visitor.set("colours", "tissue")
@@ -139,7 +140,7 @@ def test_a_gizmo_drives_its_tool():
     with Opened(block()) as (view, visitor):
         wait_for("the tool", lambda: visitor.shown("/tools/ball") and visitor.shown("/gizmos/ball"))
         assert np.allclose(np.linalg.norm(visitor.nodes["/tools/ball"]["vertices"], axis=1), 0.02)
-        assert np.allclose(visitor.nodes["/gizmos/ball"]["position"], [0.05, 0.13, 0.03])
+        wait_for("its place", lambda: np.allclose(visitor.nodes["/gizmos/ball"]["position"], [0.05, 0.13, 0.03]))
         visitor.drag("ball", [0.05, 0.09, 0.03], wxyz=[np.sqrt(0.75), 0, 0.5, 0])
         wait_for("the hand", lambda: "ball" in view.page.tools.all and view.page.tools.all["ball"].target is not None)
         visitor.press("Step")
@@ -161,8 +162,8 @@ def test_tools_come_and_go():
     with Opened(block()) as (view, visitor):
         visitor.send("GuiUpdateMessage", uuid=visitor.part("Add a probe"), updates={"value": True})
         wait_for("the probe", lambda: "/tools/probe" in visitor.nodes)
-        at, turn = visitor.nodes["/tools/probe"]["position"], visitor.nodes["/tools/probe"]["wxyz"]
-        assert at[1] > 0.08 and np.allclose(turn, [np.sqrt(0.5), -np.sqrt(0.5), 0, 0], atol=1e-6), "it stands upright above the tissue"
+        wait_for("its place above the tissue", lambda: visitor.nodes["/tools/probe"]["position"][1] > 0.08)
+        wait_for("its stand", lambda: np.allclose(visitor.nodes["/tools/probe"]["wxyz"], [np.sqrt(0.5), -np.sqrt(0.5), 0, 0], atol=1e-6))
         view.do(lambda w: w.remove_tool("ball"))
         wait_for("the ball to go", lambda: "/tools/ball" not in visitor.nodes)
         visitor.press("Reset")
@@ -183,7 +184,7 @@ def test_a_cut_by_two_clicks():
         assert view.do(lambda w: w.pieces()) == 1, "it does not reach the other side"
         wait_for("its picture", lambda: "/bodies/block/cut" in visitor.shown("/bodies/"))
         wait_for("its end", lambda: visitor.gui[button]["label"] == "Cut: two clicks" and "/first_click" not in visitor.nodes)
-        inside = visitor.nodes["/bodies/block/cut"]["vertices"]
+        inside = visitor.nodes["/bodies/block/cut"]["vertices"]  # made by the message that made the node
         assert np.allclose(inside[:, 1], 0.0445, atol=0.003) and inside[:, 0].min() > 0.015, "in the plane through the eye and both clicks"
         visitor.send("GuiUpdateMessage", uuid=button, updates={"value": True})
         wait_for("the blade", lambda: visitor.gui[button]["label"] == "Cancel the cut")
@@ -191,9 +192,13 @@ def test_a_cut_by_two_clicks():
             visitor.click(list(eye), list(np.array(aim) - eye))
         wait_for("two pieces", lambda: view.do(lambda w: w.pieces()) == 2 and "2 pieces" in visitor.text())
         whole = world_frame(view)
-        parts = [visitor.nodes[f"/bodies/block/{part}"] for part in ("skin", "cut")]
-        assert all(part["faces"].max() == len(part["vertices"]) - 1 for part in parts)
-        assert np.isclose(sum(area(part["vertices"], part["faces"]) for part in parts), area(whole.positions, whole.triangles), rtol=1e-5)
+
+        def drawn():
+            parts = [visitor.nodes[f"/bodies/block/{part}"] for part in ("skin", "cut")]
+            return all(part["faces"].max() == len(part["vertices"]) - 1 for part in parts) and \
+                np.isclose(sum(area(part["vertices"], part["faces"]) for part in parts), area(whole.positions, whole.triangles), rtol=1e-5)
+
+        wait_for("both pieces to be drawn", drawn)
         visitor.press("Reset")
         wait_for("the whole block", lambda: "/bodies/block/cut" not in visitor.shown("/bodies/") and "pieces" not in visitor.text())
         assert not view.messages
