@@ -1,7 +1,7 @@
-"""pip install . : configures and builds the Python module with CMake. Needs what ./dev build needs, python3-dev and pybind11.
+"""pip install . : configures and builds the compiled part of the Python package with CMake. Needs what ./dev build needs, python3-dev and pybind11.
 
 CMAKE_ARGS are further options of CMake.
-PLIANT_PYTHON_BUILD names a build folder that holds the module already; it is then taken from there.
+PLIANT_PYTHON_BUILD names a build folder that holds that part already; it is then taken from there.
 """
 import os
 import re
@@ -60,14 +60,15 @@ class CMakeBuild(build_ext):
         folder = Path(ready) if ready else Path(self.build_temp).resolve() / "cmake"
         if not ready:
             cmake_build(folder)
-        modules = sorted((folder / "python").glob("pliant*.so"))
+        modules = sorted((folder / "python/pliant").glob("_core*.so"))
         if not modules:
-            raise SystemExit(f"pliant: {folder}/python holds no module pliant: that build has left it out")
+            raise SystemExit(f"pliant: {folder}/python holds no package pliant: that build has left it out")
         out = Path(self.get_ext_fullpath(ext.name)).resolve()
         out.parent.mkdir(parents=True, exist_ok=True)
         out.write_bytes(modules[0].read_bytes())
 
 
 setup(name="pliant", version=version(), description="Soft-tissue deformation on OpenCL and on a bit-exact CPU reference",
-      python_requires=">=3.9", install_requires=["numpy"], ext_modules=[Extension("pliant", [])], cmdclass={"build_ext": CMakeBuild},
-      packages=[])
+      python_requires=">=3.9", install_requires=["numpy"], extras_require={"view": ["viser>=1.1"]},
+      ext_modules=[Extension("pliant._core", [])], cmdclass={"build_ext": CMakeBuild},
+      packages=["pliant", "pliant.view"], package_dir={"pliant": "python/pliant"}, package_data={"pliant": ["__init__.pyi", "py.typed"]})

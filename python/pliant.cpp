@@ -1,4 +1,4 @@
-// The Python module: pliant::World with NumPy views of its frames.
+// The compiled part of the Python package, pliant._core: pliant::World with NumPy views of its frames.
 #include <pliant/world.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -35,6 +35,13 @@ py::array_t<double> copy(const std::vector<Vec3d>& v) {
   py::array_t<double> array({static_cast<py::ssize_t>(v.size()), py::ssize_t{3}});
   std::copy_n(v.empty() ? nullptr : v.data()->data(), 3 * v.size(), array.mutable_data());
   return array;
+}
+
+/// A copy of a list of numbers. The shape is a vector because pybind11 before 2.12 derives the stride of a mere count from a
+/// member of NumPy's descriptor that NumPy 2 has moved: every element was the first one.
+template <class Numbers>
+py::array_t<double> row(const Numbers& numbers) {
+  return py::array_t<double>(std::vector<py::ssize_t>{static_cast<py::ssize_t>(numbers.size())}, numbers.data());
 }
 
 py::tuple range(const pliant::IndexRange& r) { return py::make_tuple(r.first, r.count); }
@@ -239,23 +246,20 @@ py::dict probes(const pliant::World& w) {
   for (const pliant::ProbeValue& v : values) {
     const py::str name(v.probe);
     if (!d.contains(name)) d[name] = py::dict();
-    d[name][py::str(v.quantity)] = py::array_t<double>(static_cast<py::ssize_t>(v.numbers.size()), v.numbers.data());
+    d[name][py::str(v.quantity)] = row(v.numbers);
   }
   return d;
 }
 
 /// By name: where each tool is, and what it feels.
 py::dict tool_forces(const pliant::World& w) {
-  const auto array = [](const auto& numbers) {
-    return py::array_t<double>(static_cast<py::ssize_t>(numbers.size()), numbers.data());
-  };
   py::dict d;
   for (const pliant::ToolForce& f : w.tool_forces()) {
     py::dict tool;
-    tool["position"] = array(f.position);
-    tool["turn"] = array(f.turn);
-    tool["force"] = array(f.force);
-    tool["torque"] = array(f.torque);
+    tool["position"] = row(f.position);
+    tool["turn"] = row(f.turn);
+    tool["force"] = row(f.force);
+    tool["torque"] = row(f.torque);
     tool["area"] = f.area;
     tool["penetration"] = f.penetration;
     tool["parked"] = f.parked;
@@ -291,9 +295,6 @@ py::list interpenetrations(const pliant::World& w) {
     const py::gil_scoped_release release;
     now = w.interpenetrations();
   }
-  const auto array = [](const auto& numbers) {
-    return py::array_t<double>(static_cast<py::ssize_t>(numbers.size()), numbers.data());
-  };
   py::list all;
   for (const pliant::Interpenetration& i : now) {
     py::dict found;
@@ -301,10 +302,10 @@ py::list interpenetrations(const pliant::World& w) {
     found["second"] = i.second;
     found["tool"] = i.tool;
     found["volume"] = i.volume;
-    found["centroid"] = array(i.centroid);
-    found["area"] = array(i.area);
+    found["centroid"] = row(i.centroid);
+    found["area"] = row(i.area);
     found["depth"] = i.depth;
-    found["deepest"] = array(i.deepest);
+    found["deepest"] = row(i.deepest);
     all.append(found);
   }
   return all;
@@ -460,10 +461,12 @@ void in_pythons_words(const py::object& type) {
 
 }  // namespace
 
-PYBIND11_MODULE(pliant, m) {
+PYBIND11_MODULE(_core, m) {
+  m.attr("__module__") = "pliant";  // where users find what is defined here: pybind11 names it so in classes and signatures
   m.doc() = "Soft-tissue deformation. SI units.";
   m.attr("__version__") = pliant::version();
   static const py::handle error = py::exception<pliant::Error>(m, "Error").release();  // never freed: exceptions may come late
+  error.attr("__module__") = "pliant";
   py::register_exception_translator([](std::exception_ptr p) {
     try {
       if (p) std::rethrow_exception(p);

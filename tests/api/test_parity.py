@@ -1,6 +1,6 @@
 """The calls of C++, C and Python side by side: what one of them lacks has to stand here with its reason.
 
-Parsed from include/pliant and python/pliant.cpp; where the Python module can be imported, what it holds has to be what its source says.
+Parsed from include/pliant and python/; where the Python module can be imported, what it holds has to be what its source says.
 The members of options, reports, frames and other structs are compared likewise.
 """
 import os
@@ -43,6 +43,7 @@ BEYOND = {
     ("C", "World::normals"): "a copy of three numbers per vertex",
     ("C", "World::triangles"): "a copy in the caller's memory",
     ("C", "World::cut_faces"): "a copy with zeros where there is no cut",
+    ("Python", "World::show"): "the page in the browser is Python; examples/window is C++",
 }
 PYTHON_NAMES = {"backends": "backend_names", "__version__": "version", "World::__init__": "World::World"}
 STRUCTS = {"WorldOptions": "options", "StepReport": "report", "CutResult": "cut", "WorldInfo": "info", "BodyInfo": "body", "Frame": "frame",
@@ -98,7 +99,8 @@ def python():
     define = r'\.def(?:_readonly|_property_readonly)?\(\s*"(\w+)"'
     world, module = block(text, "void bind_world(") + block(text, "void bind_tools("), block(text, "PYBIND11_MODULE(")
     found = {f"World::{n}" for n in re.findall(define, world)} | {"World::__init__"}
-    found |= set(re.findall(r'm\.def\("(\w+)"', module)) | set(re.findall(r'm\.attr\("(\w+)"\) =', module))
+    found |= {f"World::{n}" for n in re.findall(r"^World\.([a-z]\w*) =", (SOURCE / "python/pliant/__init__.py").read_text(), re.M)}
+    found |= set(re.findall(r'm\.def\("(\w+)"', module)) | set(re.findall(r'm\.attr\("(\w+)"\) =', module)) - {"__module__"}
     constructor = world[world.index("py::init"):world.index(".def_property_readonly")]
     found |= {f"WorldOptions.{n}" for n in re.findall(r'py::arg\("(\w+)"\)', constructor)} - {f"WorldOptions.{n}" for n in ("scene", "surfaces", "folder")}
     for name, function in {"StepReport": "bind_report", "Frame": "bind_frame"}.items():

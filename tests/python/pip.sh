@@ -9,8 +9,9 @@ source=$1 build=$2 python=$3
 }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-mkdir -p "$work/source/include/pliant"  # pip builds inside the tree
+mkdir -p "$work/source/include/pliant" "$work/source/python"  # pip builds inside the tree
 cp "$source/setup.py" "$source/pyproject.toml" "$work/source"
+cp -r "$source/python/pliant" "$work/source/python"
 cp "$source/include/pliant/version.h" "$work/source/include/pliant"
 "$python" -m venv --system-site-packages "$work/venv"
 PLIANT_PYTHON_BUILD=$build "$work/venv/bin/python" -m pip --disable-pip-version-check install --quiet --no-index --no-build-isolation \
@@ -37,9 +38,11 @@ import importlib.metadata
 import sys
 
 import pliant
+import pliant.view
 
 assert pliant.__file__.startswith(sys.prefix), pliant.__file__
 assert pliant.__version__ == importlib.metadata.version("pliant")
 assert "cpu" in pliant.backends()
+assert [r for r in importlib.metadata.requires("pliant") if "viser" in r and 'extra == "view"' in r.replace("'", '"')], "viser is optional"
 print("pliant", pliant.__version__, "from", pliant.__file__)
 PYTHON

@@ -1,6 +1,7 @@
 """The Python module from the build folder: views, errors, and the example."""
 import gc
 import os
+import re
 import runpy
 import sys
 import tempfile
@@ -31,6 +32,41 @@ def error_of(call):
     except pliant.Error as error:
         return error
     raise AssertionError("no pliant.Error")
+
+
+def test_the_package():
+    from pliant import _core
+
+    folder = os.path.dirname(pliant.__file__)
+    assert os.path.dirname(_core.__file__) == folder, "the compiled part stands beside the Python files"
+    public = {name for name in vars(_core) if not name.startswith("_")}
+    assert public == set(pliant.__all__) and all(getattr(pliant, name) is getattr(_core, name) for name in public), public
+    assert {getattr(pliant, name).__module__ for name in public} == {"pliant"}, "what users see has one name"
+    assert repr(pliant.World) == "<class 'pliant.World'>" and pliant.World.step.__doc__.endswith("-> pliant.StepReport\n")
+    assert pliant.__version__ == _core.__version__
+
+
+def test_the_stub_names_what_is_there():
+    import ast
+    from pathlib import Path
+
+    stub = Path(pliant.__file__).with_suffix(".pyi")
+    assert stub.with_name("py.typed").exists()
+    classes = {c.name: c for c in ast.parse(stub.read_text()).body if isinstance(c, ast.ClassDef) and not c.name.startswith("_")}
+    for name in ("World", "Frame", "StepReport"):
+        said = {f.name: f.args for f in classes[name].body}
+        held = {n for n in vars(getattr(pliant, name)) if not n.startswith("_")}
+        assert said.keys() - {"__init__"} == held, (name, said.keys() ^ held)
+        for call, arguments in said.items():
+            text = getattr(pliant.World, call, None).__doc__ if name == "World" else None
+            if not (text or "").startswith(call + "("):
+                continue  # a property
+            allowed = [a.arg for a in arguments.posonlyargs + arguments.args + arguments.kwonlyargs][1:]
+            assert re.findall(r"(\w+): ", text.split("\n")[0].split(" -> ")[0])[1:] == allowed, call
+    infos = {"_WorldInfo": block().info, "_BodyInfo": block().info["bodies"][0], "_CutResult": block().cut(np.zeros((0, 3, 3)))}
+    for name, held in infos.items():
+        stubs = next(c for c in ast.parse(stub.read_text()).body if getattr(c, "name", "") == name)
+        assert [f.target.id for f in stubs.body] == list(held), name
 
 
 def test_views():

@@ -17,6 +17,8 @@ for backend in backends:
         world.step(100)
         hashes[backend] = world.hash()
 assert len(set(hashes.values())) == 1, hashes
+world.add_tool({"name": "ball", "shape": {"sphere": 0.02}, "path": [[0, 0.05, 0.3, 0.03]]})
+assert world.tool_forces()["ball"]["position"].tolist() == [0.05, 0.3, 0.03], "arrays are right with the newest NumPy, too"
 with open("/proc/self/maps") as maps:
     loaded = {line.split()[-1] for line in maps if ".so" in line}
 own = [f for f in loaded if any(f"/lib{name}" in f for name in ("assimp", "fmt", "pugixml", "embree", "tbb", "OpenCL"))]

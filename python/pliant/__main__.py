@@ -1,0 +1,31 @@
+"""python -m pliant SCENE.json: opens a scene in the browser."""
+import argparse
+import sys
+
+import pliant
+from pliant import view
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="python -m pliant", description="Opens a scene in the browser.")
+    parser.add_argument("scene", help="a scene file")
+    parser.add_argument("--backend", default="auto", help="as `pliant devices` names them (auto)")
+    parser.add_argument("--port", type=int, default=8080, help="the next free one is taken from here on (8080)")
+    parser.add_argument("--host", default="127.0.0.1", help="the address that is listened on; 0.0.0.0: every machine may look, and steer (127.0.0.1)")
+    parser.add_argument("--pause", action="store_true", help="wait for the button")
+    options = parser.parse_args()
+    try:
+        view.need_viser()
+        world = pliant.World(options.scene, backend=options.backend, interactive=True, cutting=True)
+        world.show(options.port, host=options.host, play=not options.pause)
+    except pliant.Error as error:
+        print(f"pliant: {error}", file=sys.stderr)
+        return 4 if error.code == 4 else 2
+    except (ImportError, OSError) as error:
+        print(f"pliant: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
