@@ -117,7 +117,7 @@ def test_fields():
     world.advance(0.2)
     with Opened(world) as (view, visitor):
         whole = area(world_frame(view).positions, world_frame(view).triangles)
-        for field, unit in (("displacement", " m"), ("stretch of the surface", " "), ("speed", " m/s")):
+        for field, unit in (("displacement", " m"), ("stretch of the surface", " "), ("speed", " m/s"), ("von Mises stress", " Pa")):
             visitor.set("colours", field)
             wait_for("its legend", lambda: re.search(rf"<span>[\d.e-]+{unit}</span><span>most: ", visitor.text()))
             wait_for("its bands", lambda: not visitor.shown("/bodies/") and visitor.shown("/field/"))

@@ -59,17 +59,18 @@ class Page:
 
     def collect(self, seen, now):
         """Of the World, in the thread that steps it: the new frame, and what the other thread needs to draw it."""
+        values = self.surface.values(self.world)
         frame, (_, vertices), (_, triangles) = self.world.frame_since(seen)
         if frame.topology_version != self.version:
             self.version = frame.topology_version
             self.pieces = sum(self.world.pieces(body) for body in range(len(self.world.info["bodies"])))
         self.frame = frame
-        return frame, seen is None or vertices + triangles > 0, *self.tools.collect(self.world, now)
+        return frame, seen is None or vertices + triangles > 0, values, *self.tools.collect(self.world, now)
 
     def draw(self, collected, now):
         """In the thread that draws."""
-        frame, moved, forces, surfaces = collected
-        self.surface.draw(frame, moved)
+        frame, moved, values, forces, surfaces = collected
+        self.surface.draw(frame, moved, values)
         self.tools.draw(forces, surfaces, frame.time, now)
         if now - self.shown > STATUS_EVERY:
             self.shown = now

@@ -44,6 +44,10 @@ def fields():
     }
 
 
+# By the words of the dropdown: the word of World.vertex_values, and its unit. They wait for the worker.
+OF_WORLD = {"von Mises stress": ("mises", "Pa"), "contact pressure": ("pressure", "Pa"), "finite elements": ("finite_elements", "")}
+
+
 class Nodes:
     """A mesh of the page that is made when it is first needed, and hidden while it is empty."""
 
@@ -77,22 +81,31 @@ class Surface:
         self.meshes, self.version, self.stale = [], None, True
 
     def add_gui(self, gui):
-        self.choice = gui.add_dropdown("colours", (TISSUE, *self.fields), initial_value=TISSUE)
+        self.choice = gui.add_dropdown("colours", (TISSUE, *self.fields, *OF_WORLD), initial_value=TISSUE)
         self.legend = gui.add_html("", visible=False)
 
         @self.choice.on_update
         async def _(_):
             self.field, self.range, self.stale = self.choice.value, None, True
 
-    def draw(self, frame, moved):
-        """moved: whether the frame differs from the one that was drawn last."""
+    def values(self, world):
+        """The field of the World that was chosen, or None; before the frame is taken, in the thread that steps."""
+        return world.vertex_values(OF_WORLD[self.field][0]) if self.field in OF_WORLD else None
+
+    def draw(self, frame, moved, values):
+        """moved: whether the frame differs from the one that was drawn last; values: see there."""
         stale, self.stale = self.stale, False
         if not moved and not stale:
             return
         if self.field == TISSUE:
             self._draw_tissue(frame, stale)
+        elif self.field in self.fields:
+            measure, unit, at_rest = self.fields[self.field]
+            self._draw_field(frame, measure(frame), unit, at_rest)
+        elif values is not None and len(values) == len(frame.positions):  # not while the choice is newer than the values
+            self._draw_field(frame, values, OF_WORLD[self.field][1], 0.0)
         else:
-            self._draw_field(frame)
+            self.stale = True
 
     def _draw_tissue(self, frame, stale):
         others = stale or frame.topology_version != self.version
@@ -118,9 +131,7 @@ class Surface:
             parts.append((Mesh(triangles[~on_cut], len(frame.positions)), Mesh(triangles[on_cut], len(frame.positions))))
         return parts
 
-    def _draw_field(self, frame):
-        measure, unit, at_rest = self.fields[self.field]
-        values = measure(frame)
+    def _draw_field(self, frame, values, unit, at_rest):
         # A few vertices, at the edge of a cut or under a tool, would take the colours from all others.
         low, high = (float(v) for v in np.quantile(values, (OUTLIERS, 1 - OUTLIERS)))
         low, high = min(low, at_rest), max(high, at_rest)
