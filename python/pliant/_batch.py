@@ -10,7 +10,8 @@ import numpy as np
 
 from pliant._core import Error, World
 
-_USAGE, _DIVERGED = 5, 4
+_USAGE, _STATE = 5, 8
+_FAILURES = (1, 4, 7)  # what happens to a member: internal, diverged, device; other codes are mistakes of the caller
 _CHANGE_KEYS = ("body", "inclusion", "gravity", "material", "model", "fixed")  # of an entry of `changes`; all others belong to a material
 
 
@@ -177,7 +178,7 @@ class Batch:
 
     def _open(self):
         if not self._worlds:
-            raise _error("the batch is closed", 8)
+            raise _error("the batch is closed", _STATE)
         return self._worlds
 
     def _members(self, members):
@@ -241,7 +242,7 @@ class Batch:
                 report = call(self._worlds[member])
                 message = (report.message or "it has diverged") if report.diverged else ""
             except Error as error:
-                if error.code == _USAGE:
+                if error.code not in _FAILURES:
                     raise
                 message = str(error)
             if message:
