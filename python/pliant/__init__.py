@@ -5,8 +5,9 @@ import os as _os
 import weakref as _weakref
 
 from pliant._core import Error, Frame, StepReport, World, __version__, backends
+from pliant._batch import Batch
 
-__all__ = ["Error", "Frame", "StepReport", "World", "backends"]
+__all__ = ["Batch", "Error", "Frame", "StepReport", "World", "backends"]
 
 # What each World was made from, a dict or the full name of a file: a World itself cannot be asked for its parameters, and a page shows them.
 _scenes = _weakref.WeakKeyDictionary()
@@ -35,3 +36,4 @@ def _show(self, port=8080, *, host="127.0.0.1", block=True, play=True):
 _show.__name__, _show.__qualname__ = "show", "World.show"
 World.__init__ = _remember_scenes(World.__init__)
 World.show = _show
+Batch.__module__ = "pliant"  # where users find it

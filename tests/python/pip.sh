@@ -43,6 +43,8 @@ import pliant.view
 assert pliant.__file__.startswith(sys.prefix), pliant.__file__
 assert pliant.__version__ == importlib.metadata.version("pliant")
 assert "cpu" in pliant.backends()
-assert [r for r in importlib.metadata.requires("pliant") if "viser" in r and 'extra == "view"' in r.replace("'", '"')], "viser is optional"
+for extra, needs in (("view", "viser"), ("gym", "gymnasium")):
+    found = [r for r in importlib.metadata.requires("pliant") if needs in r and f'extra == "{extra}"' in r.replace("'", '"')]
+    assert found, f"{needs} is optional"
 print("pliant", pliant.__version__, "from", pliant.__file__)
 PYTHON
