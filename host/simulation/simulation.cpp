@@ -14,6 +14,7 @@
 #include "simulation/contact/tool_changes.h"
 #include "simulation/measure/remarks.h"
 #include "simulation/step/coupling.h"
+#include "simulation/step/initial_motion.h"
 #include "simulation/step/relaxation.h"
 
 namespace pliant {
@@ -56,26 +57,7 @@ void Simulation::start(std::shared_ptr<const Model> model, const SimulationOptio
     settings_.displacement_grid = std::ldexp(1.0, 22 + std::ilogb(settings_.increment_floor));
   }
   upload_coupling(run_);
-  set_initial_motion();
-}
-
-void Simulation::set_initial_motion() {
-  const Model& m = loaded_.model();
-  const std::vector<double> force = run_.forces_now();
-  std::vector<double> w(4 * static_cast<std::size_t>(m.slots));
-  const Vec3d gravity = scene_.gravity_at(time());
-  const auto first = integrator_info(scene_.integrator).first;
-  const std::vector<double> u = loaded_.u();
-  for (std::size_t s = 0; s < m.mass.size(); ++s) {
-    const double h = substeps_of(m, s) * state_.clock.dt;
-    for (std::size_t c = 0; c < 3; ++c) {
-      if (!loaded_.free()[3 * s + c]) continue;
-      const double a = force[4 * s + c] / m.mass[s] + gravity[c] - m.damping[s] * m.velocity[s][c];
-      w[4 * s + c] = first({u[4 * s + c], m.velocity[s][c], a, h});
-    }
-    w[4 * s + 3] = run_.decay(m, s);
-  }
-  loaded_.write_w(w);
+  set_initial_motion(run_);
 }
 
 std::int64_t Simulation::advance(std::int64_t steps) {

@@ -150,7 +150,6 @@ class Simulation {
  private:
   void start(std::shared_ptr<const Model> model, const SimulationOptions& options);
   void load(std::shared_ptr<const Model> model);
-  void set_initial_motion();
   /// Continues from a snapshot whose parameters scene_ has.
   void take_over(const Snapshot& snapshot);
 

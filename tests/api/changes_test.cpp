@@ -55,6 +55,27 @@ TEST(WorldChanges, SofterTissueSagsFurther) {
   EXPECT_NEAR(lowest(world), before, 1e-9) << "reset goes back to the scene";
 }
 
+TEST(WorldChanges, BeforeTheFirstStepTheyAreTheScene) {
+  SceneSpec weightless = standing();
+  weightless.gravity = {};
+  weightless.bodies[0].material.damping = 30;
+  ChangeSpec change;
+  change.gravity = Vec3d{};
+  change.damping = 30;
+  for (const double push : {0.0, 0.3}) {
+    SceneSpec from = standing(), of = weightless;
+    for (SceneSpec* scene : {&from, &of}) {
+      scene->dt = 1e-3;
+      if (push > 0) scene->bodies[0].forces.push_back({RegionSpec::box({-1, -1, 0.039}, {1, 1, 0.041}), {push, 0, 0}});
+    }
+    World changed(from, on("cpu")), scene(of, on("cpu"));
+    changed.change(change);
+    for (World* w : {&changed, &scene}) w->step(50);
+    EXPECT_EQ(changed.hash(), scene.hash()) << push;
+    EXPECT_EQ(lowest(scene) == 0, push == 0);
+  }
+}
+
 TEST(WorldChanges, NowBesideTheCallerAndInTheSceneAreOne) {
   ChangeSpec change;
   change.damping = 20;

@@ -6,6 +6,7 @@
 
 #include "pliant/error.h"
 #include "scene/change.h"
+#include "simulation/step/initial_motion.h"
 #include "simulation/step/stable_step.h"
 
 namespace pliant {
@@ -67,6 +68,7 @@ bool ParameterEdits::make(const std::string& change, const std::string& where) {
   // What a change does to the energy is the host's work.
   reports_.now.energy.least.reset();
   run_.state.relaxation.equilibrium = false;
+  if (run_.state.clock.step == 0) set_initial_motion(run_);  // as if the scene had had them from the start
   return true;
 }
 
