@@ -37,6 +37,15 @@ inline WorldOptions on(const std::string& backend, bool interactive = false) {
   return options;
 }
 
+/// The twins, and the first OpenCL device where there is one: their bits are the same.
+inline std::vector<std::string> float_backends() {
+  std::vector<std::string> names{"cpu"};
+  for (const std::string& name : backend_names()) {
+    if (names.size() == 1 && name.starts_with("opencl")) names.push_back(name);
+  }
+  return names;
+}
+
 /// A step 3 times too long: it diverges after some steps.
 inline SceneSpec unstable() {
   SceneSpec scene = block(3);

@@ -173,7 +173,7 @@ TEST(ToolMesh, BitsAreTheSameAfterACheckpointAndOnAllBackends) {
   whole.save(file);
   run(whole, 9, 16);
   ASSERT_GT(whole.tool_forces()[0].force[2], 0.1);
-  for (const char* backend : {"cpu", "opencl"}) {
+  for (const std::string& backend : test::float_backends()) {
     World other(scene, on(backend)), resumed(scene, on(backend));
     run(other, 1, 16);
     resumed.load(file);

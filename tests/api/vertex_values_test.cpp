@@ -75,7 +75,7 @@ TEST(VertexValues, PressureUnderAPlateIsUniform) {
   plate.second = {0, 0, -1};
   plate.path = {{0, 0, 0, 0.0401, 0, 0, 0, 1}, {0.1, 0, 0, 0.039, 0, 0, 0, 1}};
   scene.tools = {plate};
-  for (const char* backend : {"cpu", "opencl"}) {
+  for (const std::string& backend : test::float_backends()) {
     World world(scene, on(backend));
     for (const float p : world.vertex_values("pressure")) ASSERT_EQ(p, 0);
     world.advance(0.6);

@@ -80,7 +80,7 @@ class Picture(CliTest):
             self.pliant("run", self.scene(), "--steps", 200, "--every", 200, "--out", color, "--format", "png", "--size", "64x48",
                         "--samples", 1, "--color", color)
             seen[color] = png(self.folder / color / self.names(color)[-1])[2]
-        self.assertEqual(len(set(seen.values())), 7)
+        self.assertEqual(len(set(seen.values())), 8)
 
     def test_view(self):
         if not self.has_pictures():
