@@ -476,8 +476,8 @@ PYBIND11_MODULE(_core, m) {
       PyErr_SetObject(error.ptr(), instance.ptr());
     }
   });
-  // pybind11 looks NumPy up at the first use of an array, within the guard of a static. That import lets other threads run, and one
-  // that needs an array would wait for the guard with the interpreter's lock in hand, for ever. Here there is one thread.
+  // pybind11 looks NumPy up at the first use of an array, within the guard of a static. That import lets other threads run, and
+  // one that needs an array would wait for the guard with the interpreter's lock in hand, for ever. Here there is one thread.
   py::dtype::of<double>();
   bind_frame(m);
   bind_report(m);

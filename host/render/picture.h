@@ -7,9 +7,9 @@
 
 #include "geometry/vec.h"
 #include "render/annotations.h"
-#include "simulation/measure/surface_fields.h"
 #include "render/renderer.h"
 #include "render/tool_surface.h"
+#include "simulation/measure/surface_fields.h"
 #include "simulation/simulation.h"
 
 namespace pliant::render {

@@ -133,9 +133,9 @@ class PLIANT_API World {
   /// Moves a tool from its current pose to the given one within `seconds` [s], after which it stays. Its path ends. A speed
   /// of more than 100 cells per second is rejected (input) where tissue is in the way.
   void drive_tool(const std::string& name, const Vec3d& position, const std::array<double, 4>& turn, double seconds = 1.0 / 60);
-  /// Changes the shape of a mesh tool without `edges`: at `time` [s] it has this closed surface, in the tool's frame [m], of any
-  /// triangles; in between it is interpolated (docs/contact.md). Up to three may be to come, with times that rise (usage); one
-  /// that comes too late for the worker is reached as much later. In checkpoints.
+  /// Changes the shape of a mesh tool without `edges`: at `time` [s] it has this closed surface, in the tool's frame [m], of
+  /// any triangles; in between it is interpolated (docs/contact.md). Up to three may be to come, with times that rise (usage);
+  /// one that comes too late for the worker is reached as much later. In checkpoints.
   void set_tool_mesh(const std::string& name, const SurfaceSpec& surface, double time);
   /// Returns the pose of all tools and the forces on them. Does not wait.
   [[nodiscard]] std::vector<ToolForce> tool_forces() const;

@@ -14,8 +14,8 @@
 #include "render/color.h"
 #include "render/export.h"
 #include "shapes.h"
-#include "support/temp_folder.h"
 #include "simulation/measure/surface_fields.h"
+#include "support/temp_folder.h"
 
 namespace pliant::render {
 namespace {
