@@ -66,7 +66,7 @@ TEST(WorldChanges, BeforeTheFirstStepTheyAreTheScene) {
     SceneSpec from = standing(), of = weightless;
     for (SceneSpec* scene : {&from, &of}) {
       scene->dt = 1e-3;
-      if (push > 0) scene->bodies[0].forces.push_back({RegionSpec::box({-1, -1, 0.039}, {1, 1, 0.041}), {push, 0, 0}});
+      if (push > 0) scene->bodies[0].forces.push_back({RegionSpec::box({-1, -1, 0.039}, {1, 1, 0.041}), {push, 0, 0}, {}});
     }
     World changed(from, on("cpu")), scene(of, on("cpu"));
     changed.change(change);
