@@ -228,12 +228,10 @@ std::vector<float> World::vertex_values(const std::string& field) const {
     for (std::size_t v = 0; v < kinds.size(); v += 3) share.push_back(kinds[v]);
     return share;
   }
+  const auto has_values = [](const ColorInfo& info) { return *info.title != 0; };
+  if (const auto by = color_by(field); by && has_values(color_info(*by))) return pliant::vertex_values(simulation, *by);
   std::string allowed;
-  for (const ColorInfo& info : colors()) {
-    if (*info.title == 0) continue;
-    if (field == info.word) return pliant::vertex_values(simulation, info.by);
-    allowed += fmt::format("\"{}\", ", info.word);
-  }
+  for (const ColorInfo& info : colors()) allowed += has_values(info) ? fmt::format("\"{}\", ", info.word) : "";
   throw Error(ErrorCode::usage, fmt::format("there is no field \"{}\", expected {}or \"finite_elements\"", field, allowed));
 }
 

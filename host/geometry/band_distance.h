@@ -5,17 +5,9 @@
 #include <vector>
 
 #include "geometry/mesh.h"
+#include "geometry/node_grid.h"
 
 namespace pliant {
-
-/// A regular grid of nodes, x fastest.
-struct NodeGrid {
-  Vec3d origin{};                      ///< position of the first node [m]
-  double spacing = 0;                  ///< [m]
-  std::array<std::int32_t, 3> size{};  ///< number of nodes
-  bool operator==(const NodeGrid&) const = default;
-  [[nodiscard]] std::int64_t nodes() const { return std::int64_t{size[0]} * size[1] * size[2]; }
-};
 
 /// Signed distances [m] of a closed, outward surface at the nodes of a grid that encloses it. Exact at nodes up to two cells
 /// from the surface. Farther outside they are too small by up to 0.75 cells, so that nothing is nearer than they say; deeper

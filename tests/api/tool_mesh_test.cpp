@@ -4,12 +4,12 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
-#include <numbers>
 
 #include "c_world.h"
 #include "geometry/mesh.h"
 #include "scenes.h"
 #include "support/temp_folder.h"
+#include "support/unit_ball.h"
 
 namespace pliant {
 namespace {
@@ -22,30 +22,12 @@ constexpr double kRadius = 0.012, kFrame = 1.0 / 60;
 
 /// A ball of exact volume, of `around` meridians about an axis that leans by `lean` [rad].
 SurfaceSpec ball_surface(int around, double lean = 0, const Vec3d& at = {}, double radius = kRadius) {
-  SurfaceSpec mesh;
-  const int up = around / 2;
-  for (int j = 0; j <= up; ++j) {
-    const double v = std::numbers::pi * (static_cast<double>(j) / up - 0.5);
-    for (int i = 0; i < (j == 0 || j == up ? 1 : around); ++i) {
-      const double u = 2 * std::numbers::pi * i / around;
-      mesh.vertices.push_back({std::cos(v) * std::cos(u), std::cos(v) * std::sin(u), std::sin(v)});
-    }
-  }
-  const auto vertex = [&](int j, int i) {
-    return j == 0 ? 0 : j == up ? 1 + (up - 1) * around : 1 + (j - 1) * around + i % around;
-  };
-  for (int j = 0; j < up; ++j) {
-    for (int i = 0; i < around; ++i) {
-      if (j > 0) mesh.triangles.push_back({vertex(j, i), vertex(j, i + 1), vertex(j + 1, i)});
-      if (j + 1 < up) mesh.triangles.push_back({vertex(j, i + 1), vertex(j + 1, i + 1), vertex(j + 1, i)});
-    }
-  }
-  const double grow = radius * std::cbrt(4.0 / 3 * std::numbers::pi / signed_volume({mesh.vertices, mesh.triangles}));
+  TriangleMesh mesh = test::unit_ball(around);
   for (Vec3d& v : mesh.vertices) {
     const double y = std::cos(lean) * v[1] - std::sin(lean) * v[2], z = std::sin(lean) * v[1] + std::cos(lean) * v[2];
-    v = {at[0] + grow * v[0], at[1] + grow * y, at[2] + grow * z};
+    v = {at[0] + radius * v[0], at[1] + radius * y, at[2] + radius * z};
   }
-  return mesh;
+  return {std::move(mesh.vertices), std::move(mesh.triangles)};
 }
 
 /// A block of 80 x 80 x 40 mm, held at its foot, its top at z = 0, and a tool above it.
@@ -313,7 +295,6 @@ TEST(ToolMesh, BadSurfacesChangeNothing) {
   for (auto& t : inverted.triangles) std::swap(t[0], t[1]);
   world.advance(0.1);
   world.set_tool_mesh("ball", inverted, 0.6);  // turned outward
-  EXPECT_GT(signed_volume({inverted.vertices, inverted.triangles}), -1);
   world.advance(0.5);
   const SurfaceSpec now = world.tool_surface("ball");
   EXPECT_GT(signed_volume({now.vertices, now.triangles}), 0);
@@ -326,22 +307,14 @@ TEST(ToolMesh, InC) {
     "lattice": {"spacing": 0.01}, "material": {"young": 1e4, "poisson": 0.4}}], "tools": [{"name": "ball",
     "shape": {"mesh": "ball.obj"}, "path": [[0, 0, 0, 0.02]]}]})";
   const SurfaceSpec box = box_surface({-0.04, -0.04, -0.04}, {0.04, 0.04, 0});
-  pliant_surface block = PLIANT_SURFACE_INIT;
-  block.vertices = box.vertices[0].data();
-  block.vertex_count = box.vertices.size();
-  block.triangles = box.triangles[0].data();
-  block.triangle_count = box.triangles.size();
+  const pliant_surface block = test::c_surface(box);
   pliant_options options = PLIANT_OPTIONS_INIT;
   options.backend = "cpu";
   pliant_world world{};
   ASSERT_EQ(pliant_world_parse(text, folder.path().string().c_str(), &block, 1, &options, &world), PLIANT_OK)
       << pliant_last_error();
   const SurfaceSpec next = ball_surface(28, 0.3);
-  pliant_surface surface = PLIANT_SURFACE_INIT;
-  surface.vertices = next.vertices.data()->data();
-  surface.vertex_count = next.vertices.size();
-  surface.triangles = next.triangles.data()->data();
-  surface.triangle_count = next.triangles.size();
+  pliant_surface surface = test::c_surface(next);
   ASSERT_EQ(pliant_world_set_tool_mesh(world, "ball", &surface, 0.01), PLIANT_OK) << pliant_last_error();
   EXPECT_EQ(pliant_world_set_tool_mesh(world, "ball", nullptr, 0.02), PLIANT_USAGE);
   EXPECT_EQ(pliant_world_set_tool_mesh(world, nullptr, &surface, 0.02), PLIANT_USAGE);

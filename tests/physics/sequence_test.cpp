@@ -5,6 +5,7 @@
 #include "model/contact/tool_sequence.h"
 #include "physics/harness.h"
 #include "support/error_of.h"
+#include "support/unit_ball.h"
 
 namespace pliant::physics {
 namespace {
@@ -15,26 +16,8 @@ constexpr double kRadius = 0.02;
 
 /// An ellipsoid of `around` meridians, turned by `turn`, whose volume is exact.
 TriangleMesh ellipsoid(int around, const Vec3d& radii, const Eigen::Quaterniond& turn = Eigen::Quaterniond::Identity()) {
-  TriangleMesh mesh;
-  const int up = around / 2;
-  for (int j = 0; j <= up; ++j) {
-    const double v = std::numbers::pi * (static_cast<double>(j) / up - 0.5);
-    for (int i = 0; i < (j == 0 || j == up ? 1 : around); ++i) {
-      const double u = 2 * std::numbers::pi * i / around;
-      mesh.vertices.push_back({std::cos(v) * std::cos(u), std::cos(v) * std::sin(u), std::sin(v)});
-    }
-  }
-  const auto at = [&](int j, int i) {
-    return j == 0 ? 0 : j == up ? 1 + (up - 1) * around : 1 + (j - 1) * around + i % around;
-  };
-  for (int j = 0; j < up; ++j) {
-    for (int i = 0; i < around; ++i) {
-      if (j > 0) mesh.triangles.push_back({at(j, i), at(j, i + 1), at(j + 1, i)});
-      if (j + 1 < up) mesh.triangles.push_back({at(j, i + 1), at(j + 1, i + 1), at(j + 1, i)});
-    }
-  }
-  const double grow = std::cbrt(4.0 / 3 * std::numbers::pi / signed_volume(mesh));
-  for (Vec3d& v : mesh.vertices) v = plain(turn * (grow * eigen(v).cwiseProduct(eigen(radii))));
+  TriangleMesh mesh = test::unit_ball(around);
+  for (Vec3d& v : mesh.vertices) v = plain(turn * eigen(v).cwiseProduct(eigen(radii)));
   return mesh;
 }
 
@@ -220,18 +203,19 @@ TEST(ToolSequence, SignsOfTheGridAreThoseOfTheMesh) {
   const ToolForm form = tool_form(tool);
   const SurfaceDistance surface(form.frames[0].surface);
   std::size_t at = 0, inside = 0;
-  for (int k = 0; k < form.size[2]; ++k) {
-    for (int j = 0; j < form.size[1]; ++j) {
-      for (int i = 0; i < form.size[0]; ++i, ++at) {
-        const Vec3d x{form.origin[0] + i * form.spacing, form.origin[1] + j * form.spacing, form.origin[2] + k * form.spacing};
+  for (int k = 0; k < form.grid.size[2]; ++k) {
+    for (int j = 0; j < form.grid.size[1]; ++j) {
+      for (int i = 0; i < form.grid.size[0]; ++i, ++at) {
+        const Vec3d x{form.grid.origin[0] + i * form.grid.spacing, form.grid.origin[1] + j * form.grid.spacing,
+                      form.grid.origin[2] + k * form.grid.spacing};
         inside += form.distance[at] < 0 ? 1 : 0;
-        if (surface.closest(x).distance < 0.3 * form.spacing) continue;  // the grid is right in the mean, not at its nodes
+        if (surface.closest(x).distance < 0.3 * form.grid.spacing) continue;  // the grid is right in the mean, not at its nodes
         ASSERT_EQ(form.distance[at] < 0, surface.inside(x)) << i << ' ' << j << ' ' << k;
       }
     }
   }
   EXPECT_EQ(at, form.distance.size());
-  const double cell = form.spacing * form.spacing * form.spacing;
+  const double cell = form.grid.spacing * form.grid.spacing * form.grid.spacing;
   check_relative("volume inside", static_cast<double>(inside) * cell, signed_volume(mesh), 0.05);
 }
 

@@ -6,17 +6,11 @@ import runpy
 import subprocess
 import sys
 
-try:
-    import numpy as np
-except ImportError:
-    print("skipped: NumPy is not installed (Debian: python3-numpy)")
-    sys.exit(77)
+from common import SOURCE, box  # first: exits where NumPy is missing
+import numpy as np
 import pliant
 
-SOURCE = os.environ["PLIANT_SOURCE"]
-VERTICES = np.array([[x, y, z] for z in (0, 0.06) for y in (0, 0.04) for x in (0, 0.06)])
-TRIANGLES = np.array([[0, 4, 6], [0, 6, 2], [1, 3, 7], [1, 7, 5], [0, 1, 5], [0, 5, 4],
-                      [2, 6, 7], [2, 7, 3], [0, 2, 3], [0, 3, 1], [4, 5, 7], [4, 7, 6]])
+VERTICES, TRIANGLES = box(0.06, 0.04, 0.06)
 CORES = os.sched_getaffinity(0)
 SURFACES = [(VERTICES, TRIANGLES)]
 SCENE = {"format": "pliant-scene/1", "gravity": [0, -9.81, 0],

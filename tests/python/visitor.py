@@ -1,21 +1,13 @@
 """For the tests of the page: a small World, and a visitor that speaks with the page as a browser does."""
-import os
 import socket
-import sys
 import threading
 import time
 
-try:
-    import numpy as np
-except ImportError:
-    print("skipped: NumPy is not installed (Debian: python3-numpy)")
-    sys.exit(77)
+from common import SOURCE, box  # first: exits where NumPy is missing
+import numpy as np
 import pliant
 
-SOURCE = os.environ["PLIANT_SOURCE"]
-VERTICES = np.array([[x, y, z] for z in (0, 0.06) for y in (0, 0.08) for x in (0, 0.1)])
-TRIANGLES = np.array([[0, 4, 6], [0, 6, 2], [1, 3, 7], [1, 7, 5], [0, 1, 5], [0, 5, 4],
-                      [2, 6, 7], [2, 7, 3], [0, 2, 3], [0, 3, 1], [4, 5, 7], [4, 7, 6]])
+VERTICES, TRIANGLES = box(0.1, 0.08, 0.06)
 BALL = {"name": "ball", "shape": {"sphere": 0.02}, "path": [[0, 0.05, 0.13, 0.03]]}
 
 

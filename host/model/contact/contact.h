@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geometry/mesh.h"
+#include "geometry/node_grid.h"
 #include "scene/contact_tool.h"
 
 namespace pliant {
@@ -51,19 +52,17 @@ struct ToolFrame {
 /// A tool shape as the kernels use it (kernels/contact/contact_shape.cl).
 struct ToolForm {
   ToolShape shape = ToolShape::sphere;
-  double radius = 0;                   ///< [m]
-  Vec3d first{}, second{};             ///< [m]; half space: `second` is the unit normal; box: `second` is half its size
-  Vec3d origin{};                      ///< origin of the distance grid [m]
-  double spacing = 0;                  ///< of this grid [m]
-  std::array<std::int32_t, 3> size{};  ///< number of nodes of this grid
-  std::vector<double> distance;        ///< [nodes] signed distance, x fastest [m]
-  bool edges = false;                  ///< use contact along edges where the tool is thin (ContactTool::edges)
-  double thickness = 1e30;             ///< mesh: twice its volume over its area [m]
-  double reach = 0;                    ///< largest distance of a point from the tool's origin [m]; half space: 0
-  TriangleMesh surface;                ///< mesh only, for pictures
-  double frames_per_second = 0;        ///< sequence only
-  std::vector<double> times;           ///< given surfaces (given_surfaces.h): of the frames, ascending [s]
-  std::vector<ToolFrame> frames;       ///< of a sequence or given; `distance` is [frames][nodes]
+  double radius = 0;              ///< [m]
+  Vec3d first{}, second{};        ///< [m]; half space: `second` is the unit normal; box: `second` is half its size
+  NodeGrid grid;                  ///< of a mesh, in its own frame
+  std::vector<double> distance;   ///< [nodes] signed distances at its nodes [m]
+  bool edges = false;             ///< use contact along edges where the tool is thin (ContactTool::edges)
+  double thickness = 1e30;        ///< mesh: twice its volume over its area [m]
+  double reach = 0;               ///< largest distance of a point from the tool's origin [m]; half space: 0
+  TriangleMesh surface;           ///< mesh only, for pictures
+  double frames_per_second = 0;   ///< sequence only
+  std::vector<double> times;      ///< given surfaces (given_surfaces.h): of the frames, ascending [s]
+  std::vector<ToolFrame> frames;  ///< of a sequence or given; `distance` is [frames][nodes]
 };
 
 /// State of a shape at a time: its pose in the tool's frame; a shape with frames interpolates `frame` and the next one, which

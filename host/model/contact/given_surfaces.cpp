@@ -14,10 +14,8 @@
 namespace pliant {
 namespace {
 
-/// Number of grid cells along the longest side of a surface, and the maximum number of grid nodes: an eighth of a sequence's,
-/// since the grid is filled while the scene runs.
-constexpr double kGivenCells = 32;
-constexpr double kGivenNodes = 131072;
+/// Coarser than the grid of a sequence, since it is filled while the scene runs.
+constexpr GridDetail kDetail{32, 131072};
 /// Room for a surface to grow within its grid, as a fraction of its longest side, on every side.
 constexpr double kRoom = 0.125;
 /// A surface whose longest side is shorter than this fraction of its grid's gets a finer grid.
@@ -81,24 +79,11 @@ void close_outward(const std::string& tool, TriangleMesh& mesh) {
 /// A grid around a box with room on every side.
 NodeGrid grid_around(vec::Box box, double thickness) {
   const double room = kRoom * longest_side(box);
-  NodeGrid grid;
   for (std::size_t a = 0; a < 3; ++a) {
     box.lower[a] -= room;
     box.upper[a] += room;
   }
-  const auto fit = [&](double spacing) {
-    grid.spacing = spacing;
-    double count = 1;
-    for (std::size_t a = 0; a < 3; ++a) {
-      const double nodes = std::ceil((box.upper[a] - box.lower[a]) / spacing) + 2 * kToolGridBeyond + 1;
-      grid.origin[a] = box.lower[a] - kToolGridBeyond * spacing;
-      count *= nodes;
-      grid.size[a] = count > kGivenNodes ? 0 : static_cast<std::int32_t>(nodes);
-    }
-    return count <= kGivenNodes;
-  };
-  for (double spacing = std::min(longest_side(box) / kGivenCells, thickness / 2); !fit(spacing);) spacing *= 1.1;
-  return grid;
+  return lay_grid(box, thickness, kDetail);
 }
 
 /// Whether a box leaves the margin of the grid free, beyond which distances are not stored.
@@ -117,38 +102,13 @@ void fill(const NodeGrid& grid, GivenSurface& given) {
       std::make_shared<const std::vector<double>>(with_right_means(band_distances(given.surface, grid), grid.size));
 }
 
-/// Finds a surface by its grid: distance and gradient of the trilinear interpolation; nothing beyond the grid.
+/// Finds a surface by the distances on its grid and their gradient; nothing beyond the grid.
 FindSurface by_grid(const NodeGrid& grid, const std::vector<double>& distance) {
   return [&grid, &distance](const Vec3d& x) -> std::optional<NearSurface> {
-    std::array<std::int64_t, 3> cell{};
-    Vec3d s{};
-    for (std::size_t a = 0; a < 3; ++a) {
-      const double at = (x[a] - grid.origin[a]) / grid.spacing;
-      if (!(at >= 0 && at < grid.size[a] - 1)) return {};
-      cell[a] = static_cast<std::int64_t>(at);
-      s[a] = at - static_cast<double>(cell[a]);
-    }
-    NearSurface near;
-    for (std::size_t corner = 0; corner < 8; ++corner) {
-      const std::array<std::size_t, 3> up{corner & 1, corner >> 1 & 1, corner >> 2 & 1};
-      const std::int64_t node =
-          ((cell[2] + static_cast<std::int64_t>(up[2])) * grid.size[1] + cell[1] + static_cast<std::int64_t>(up[1])) *
-              grid.size[0] +
-          cell[0] + static_cast<std::int64_t>(up[0]);
-      const double value = distance[static_cast<std::size_t>(node)];
-      Vec3d weight{}, slope{};
-      for (std::size_t a = 0; a < 3; ++a) {
-        weight[a] = up[a] != 0 ? s[a] : 1 - s[a];
-        slope[a] = up[a] != 0 ? 1 : -1;
-      }
-      near.gap += value * weight[0] * weight[1] * weight[2];
-      for (std::size_t a = 0; a < 3; ++a) near.normal[a] += value * slope[a] * weight[(a + 1) % 3] * weight[(a + 2) % 3];
-    }
-    const double length = vec::norm(near.normal);
-    if (!(length > 0)) return {};
-    near.normal = vec::mul(near.normal, 1 / length);
-    near.distance = near.gap;
-    return near;
+    const GridSample sample = interpolate(grid, distance.data(), x);
+    const double length = vec::norm(sample.slope);
+    if (sample.beyond != Vec3d{} || !(length > 0)) return {};
+    return NearSurface{vec::mul(sample.slope, 1 / length), sample.value, sample.value};
   };
 }
 
@@ -195,8 +155,7 @@ GivenSurfaces next_surface(const std::string& tool, TriangleMesh mesh, double ti
 }
 
 void append_surface(const std::string& tool, GivenSurfaces& all, const GivenSurfaces& next, double now) {
-  GivenSurfaces out = all;
-  std::vector<GivenSurface>& list = out.surfaces;
+  std::vector<GivenSurface>& list = all.surfaces;
   while (list.size() > 1 && list[1].time <= now) list.erase(list.begin());
   if (list.size() == most_given_surfaces) {
     throw Error(ErrorCode::usage,
@@ -208,20 +167,17 @@ void append_surface(const std::string& tool, GivenSurfaces& all, const GivenSurf
   if (!(added.time > list.back().time)) {
     added.time = list.back().time + (added.time - next.surfaces[next.surfaces.size() - 2].time);
   }
-  if (!(next.grid == out.grid)) {
-    out.grid = next.grid;
+  if (!(next.grid == all.grid)) {
+    all.grid = next.grid;
     for (GivenSurface& surface : list) surface.distance = nullptr;
   }
   list.push_back(std::move(added));
-  all = std::move(out);
 }
 
 ToolForm tool_form(const ContactTool& tool, GivenSurfaces& given) {
   ToolForm form;
   form.shape = ToolShape::mesh;
-  form.origin = given.grid.origin;
-  form.spacing = given.grid.spacing;
-  form.size = given.grid.size;
+  form.grid = given.grid;
   for (std::size_t i = 0; i < most_given_surfaces; ++i) {  // always as many, so that buffers keep their sizes
     GivenSurface& one = given.surfaces[std::min(i, given.surfaces.size() - 1)];
     if (one.distance == nullptr) fill(given.grid, one);
@@ -241,7 +197,7 @@ void check_given(const std::string& tool, const GivenSurfaces& given) {
   if (given.surfaces.empty() || given.surfaces.size() > most_given_surfaces) damaged("their number");
   double nodes = 1;
   for (const std::int32_t n : given.grid.size) nodes *= n >= 2 ? n : 1e30;
-  if (!(nodes <= kGivenNodes) || !(given.grid.spacing > 0) || !std::isfinite(given.grid.spacing) ||
+  if (!(nodes <= kDetail.most_nodes) || !(given.grid.spacing > 0) || !std::isfinite(given.grid.spacing) ||
       !vec::finite(given.grid.origin)) {
     damaged("their grid");
   }

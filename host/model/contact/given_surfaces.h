@@ -37,7 +37,7 @@ GivenSurfaces next_surface(const std::string& tool, TriangleMesh mesh, double ti
 
 /// Appends the last surface of `next` at the time `now` [s]: forgets surfaces that are over, and lets the present one last
 /// until now. One that comes too late is reached as much later, at the speed at which it was meant to be. Throws Error (usage)
-/// if there are too many surfaces to come, and then changes nothing.
+/// if there are too many surfaces to come.
 void append_surface(const std::string& tool, GivenSurfaces& all, const GivenSurfaces& next, double now);
 
 /// Returns the form of a tool with these surfaces and computes the distances that are missing.

@@ -24,35 +24,14 @@ void load_mesh(const ContactTool& tool, ToolForm& form) {
     form.reach = std::max(form.reach, vec::norm(v));
   }
   form.thickness = mesh_thickness(surface.mesh());
-  lay_grid(box, form.thickness, form);
+  form.grid = lay_grid(box, form.thickness);
   append_distances(surface, form);
   form.surface = surface.mesh();
 }
 
 double grid_distance(const ToolForm& form, const Vec3d& y, std::int32_t frame) {
-  const std::int64_t first = std::int64_t{frame} * form.size[0] * form.size[1] * form.size[2];
-  std::array<std::int32_t, 3> cell{};
-  Vec3d s{}, beyond{};
-  for (std::size_t a = 0; a < 3; ++a) {
-    const double x = (y[a] - form.origin[a]) / form.spacing, most = form.size[a] - 1.0;
-    const double inside = std::clamp(x, 0.0, most);
-    cell[a] = std::min(static_cast<std::int32_t>(inside), form.size[a] - 2);
-    s[a] = inside - cell[a];
-    beyond[a] = (x - inside) * form.spacing;
-  }
-  double sum = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    double weight = 1;
-    std::int64_t at = first, stride = 1;
-    for (int a = 0; a < 3; ++a) {
-      const int up = corner >> a & 1;
-      weight *= up != 0 ? s[a] : 1 - s[a];
-      at += (cell[a] + up) * stride;
-      stride *= form.size[a];
-    }
-    sum += weight * form.distance[static_cast<std::size_t>(at)];
-  }
-  return beyond == Vec3d{} ? sum : vec::norm(beyond) + kToolGridBeyond * form.spacing;
+  const GridSample sample = interpolate(form.grid, form.distance.data() + frame * form.grid.nodes(), y);
+  return sample.beyond == Vec3d{} ? sample.value : vec::norm(sample.beyond) + kToolGridBeyond * form.grid.spacing;
 }
 
 }  // namespace

@@ -16,10 +16,6 @@
 namespace pliant {
 namespace {
 
-/// Number of grid cells along the longest side of a mesh.
-constexpr double kGridCells = 64;
-/// Maximum number of grid nodes of one mesh, however thin its parts are.
-constexpr double kMostNodes = 4194304;
 /// Maximum number of values of all grids of a sequence: 600 MB on the device.
 constexpr std::int64_t kMostValues = 150'000'000;
 
@@ -81,39 +77,39 @@ void check_closed(const ContactTool& tool, const std::filesystem::path& file, co
                                                 tool.pointer, tool.name, file.string(), surface.orientation().rim.size()));
 }
 
-void lay_grid(const vec::Box& box, double thickness, ToolForm& form) {
+NodeGrid lay_grid(const vec::Box& box, double thickness, const GridDetail& detail) {
   double longest = 0;
   for (std::size_t a = 0; a < 3; ++a) longest = std::max(longest, box.upper[a] - box.lower[a]);
-  const auto nodes = [&](double spacing) {
-    double count = 1;
-    for (std::size_t a = 0; a < 3; ++a) count *= std::ceil((box.upper[a] - box.lower[a]) / spacing) + 2 * kToolGridBeyond + 1;
-    return count;
+  const auto along = [&](std::size_t a, double spacing) {
+    return std::ceil((box.upper[a] - box.lower[a]) / spacing) + 2 * kToolGridBeyond + 1;
   };
-  form.spacing = std::min(longest / kGridCells, thickness / 2);
-  while (nodes(form.spacing) > kMostNodes) form.spacing *= 1.1;
+  NodeGrid grid;
+  grid.spacing = std::min(longest / detail.cells, thickness / 2);
+  while (along(0, grid.spacing) * along(1, grid.spacing) * along(2, grid.spacing) > detail.most_nodes) grid.spacing *= 1.1;
   for (std::size_t a = 0; a < 3; ++a) {
-    form.origin[a] = box.lower[a] - kToolGridBeyond * form.spacing;
-    form.size[a] = static_cast<std::int32_t>(std::ceil((box.upper[a] - box.lower[a]) / form.spacing)) + 2 * kToolGridBeyond + 1;
+    grid.origin[a] = box.lower[a] - kToolGridBeyond * grid.spacing;
+    grid.size[a] = static_cast<std::int32_t>(along(a, grid.spacing));
   }
+  return grid;
 }
 
 void append_distances(const SurfaceDistance& surface, ToolForm& form) {
-  const std::int64_t row = form.size[0], rows = std::int64_t{form.size[1]} * form.size[2];
+  const std::int64_t row = form.grid.size[0], rows = std::int64_t{form.grid.size[1]} * form.grid.size[2];
   std::vector<double> exact(static_cast<std::size_t>(row * rows));
   parallel_for(rows, [&](std::int64_t r) {
-    const Vec3d start{form.origin[0], form.origin[1] + static_cast<double>(r % form.size[1]) * form.spacing,
-                      form.origin[2] + static_cast<double>(r / form.size[1]) * form.spacing};
-    double before = form.spacing, sign = 1;  // the row starts outside
+    const Vec3d start{form.grid.origin[0], form.grid.origin[1] + static_cast<double>(r % form.grid.size[1]) * form.grid.spacing,
+                      form.grid.origin[2] + static_cast<double>(r / form.grid.size[1]) * form.grid.spacing};
+    double before = form.grid.spacing, sign = 1;  // the row starts outside
     for (std::int64_t i = 0; i < row; ++i) {
-      const Vec3d x{start[0] + static_cast<double>(i) * form.spacing, start[1], start[2]};
+      const Vec3d x{start[0] + static_cast<double>(i) * form.grid.spacing, start[1], start[2]};
       const double distance = surface.closest(x).distance;
       // The surface is crossed between two nodes only if it is nearer to both than they are to each other.
-      if (before <= form.spacing && distance <= form.spacing) sign = surface.inside(x) ? -1 : 1;
+      if (before <= form.grid.spacing && distance <= form.grid.spacing) sign = surface.inside(x) ? -1 : 1;
       before = distance;
       exact[static_cast<std::size_t>(r * row + i)] = sign * distance;
     }
   });
-  const std::vector<double> mean = with_right_means(exact, form.size);
+  const std::vector<double> mean = with_right_means(exact, form.grid.size);
   form.distance.insert(form.distance.end(), mean.begin(), mean.end());
 }
 
@@ -143,8 +139,8 @@ void load_sequence(const ContactTool& tool, ToolForm& form) {
     surfaces.push_back(std::make_unique<SurfaceDistance>(mesh));
     form.frames.push_back({pose, surfaces.back()->mesh()});
   }
-  lay_grid(box, 1e30, form);
-  const std::int64_t nodes = std::int64_t{form.size[0]} * form.size[1] * form.size[2];
+  form.grid = lay_grid(box, 1e30);
+  const std::int64_t nodes = form.grid.nodes();
   const auto frames = static_cast<std::int64_t>(surfaces.size());
   if (nodes * frames > kMostValues) {
     throw Error(ErrorCode::bad_input,

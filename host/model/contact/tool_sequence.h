@@ -16,9 +16,13 @@ inline constexpr std::int32_t kToolGridBeyond = 2;
 TriangleMesh read_tool_mesh(const ContactTool& tool, const std::filesystem::path& file);
 /// Throws Error (bad_input) for an open surface.
 void check_closed(const ContactTool& tool, const std::filesystem::path& file, const SurfaceDistance& surface);
-/// Chooses position and size of a grid around a box, with at least two cells across a part of `thickness` [m] if 2^22 grid
-/// nodes suffice.
-void lay_grid(const vec::Box& box, double thickness, ToolForm& form);
+/// How fine the grid of a mesh is.
+struct GridDetail {
+  double cells = 64;            ///< along the longest side
+  double most_nodes = 4194304;  ///< however thin its parts are
+};
+/// Returns a grid around a box, with at least two cells across a part of `thickness` [m] if the nodes suffice.
+NodeGrid lay_grid(const vec::Box& box, double thickness, const GridDetail& detail = {});
 /// Twice the volume over the area [m]: the thickness of a plate, the radius of a long rod.
 double mesh_thickness(const TriangleMesh& mesh);
 /// Appends the signed distances at all nodes of the grid.

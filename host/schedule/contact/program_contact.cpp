@@ -15,9 +15,9 @@ constexpr std::size_t kEdgeNumbers = 4;
 
 std::vector<double> numbers_of(const ToolForm& form, const ContactLaw& law) {
   std::vector<double> n{form.radius};
-  for (const Vec3d& v : {form.first, form.second, form.origin}) n.insert(n.end(), v.begin(), v.end());
-  n.push_back(form.spacing > 0 ? 1 / form.spacing : 0);
-  n.push_back(form.spacing);
+  for (const Vec3d& v : {form.first, form.second, form.grid.origin}) n.insert(n.end(), v.begin(), v.end());
+  n.push_back(form.grid.spacing > 0 ? 1 / form.grid.spacing : 0);
+  n.push_back(form.grid.spacing);
   n.insert(n.end(), {law.stiffness, 1.5 * law.alpha, law.friction, law.core, law.exponent == 1.5 ? 1.0 : 0.0});
   n.resize(kToolNumbers, 0.0);
   return n;
@@ -105,8 +105,8 @@ void ProgramBuilder::add_tools() {
     const std::vector<double> numbers = numbers_of(form, model_.contact_laws[t]);
     data.insert(data.end(), numbers.begin(), numbers.end());
     const ToolShape shape = form.shape == ToolShape::sequence ? ToolShape::mesh : form.shape;
-    kind.insert(kind.end(), {static_cast<std::int32_t>(shape), static_cast<std::int32_t>(values), form.size[0], form.size[1],
-                             form.size[2], static_cast<std::int32_t>(form.frames.size())});
+    kind.insert(kind.end(), {static_cast<std::int32_t>(shape), static_cast<std::int32_t>(values), form.grid.size[0],
+                             form.grid.size[1], form.grid.size[2], static_cast<std::int32_t>(form.frames.size())});
     const std::vector<EdgePoint> edges = edge_points(form, *model_.contact);
     kind.insert(kind.end(), {static_cast<std::int32_t>(edge.size() / kEdgeNumbers), static_cast<std::int32_t>(edges.size())});
     for (const EdgePoint& e : edges) edge.insert(edge.end(), {e.place[0], e.place[1], e.place[2], e.radius});

@@ -86,8 +86,8 @@ std::optional<BladeSegment> place_of(const RunContext& run, const std::string& n
     const ToolForm& form = (*run.model().tools)[t];
     if (form.shape == ToolShape::capsule) return BladeSegment{place(pose, form.first), place(pose, form.second)};
     Vec3d middle{};  // of the box around a mesh
-    for (std::size_t c = 0; c < 3 && form.spacing > 0; ++c)
-      middle[c] = form.origin[c] + 0.5 * form.spacing * (form.size[c] - 1);
+    for (std::size_t c = 0; c < 3 && form.grid.spacing > 0; ++c)
+      middle[c] = form.grid.origin[c] + 0.5 * form.grid.spacing * (form.grid.size[c] - 1);
     return BladeSegment{place(pose, middle), place(pose, middle)};
   }
   return {};

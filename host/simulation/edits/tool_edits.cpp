@@ -155,7 +155,7 @@ void ToolEdits::set_surface(const std::string& name, const GivenSurfaces& next) 
   }
   const ToolForm form = tool_form(tool, all), &before = (*run_.model().tools)[number(name)];
   run_.state.relaxation.equilibrium = false;  // relaxation restarts
-  if (!before.times.empty() && before.size == form.size && before.origin == form.origin && before.spacing == form.spacing) {
+  if (!before.times.empty() && before.grid == form.grid) {
     replace_shape(run_, number(name), form);
     run_.state.tools = std::move(changes);
   } else {

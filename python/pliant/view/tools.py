@@ -8,7 +8,7 @@ HAND_SPEED = 1.2  # [sizes/s] farthest that a tool follows its gizmo in simulate
 HAND_TURN = 6.0  # [rad/s] likewise
 TRACE = 5.0  # [s] of simulated time in a plot
 PLOT_EVERY = 0.2  # [s] between two updates of a plot
-LOOK_EVERY = 0.1  # [s] between two looks at a tool whose shape changes
+LOOK_EVERY = 0.1  # [s] between two looks at the shapes, which sequences and World.set_tool_mesh change
 
 
 def rotated(turn, v):
@@ -98,11 +98,16 @@ class Tool:
             handle.remove()
 
 
+def _same(surface, other):
+    return other is not None and all(np.array_equal(a, b) for a, b in zip(surface, other))
+
+
 class Tools:
     def __init__(self, server, scene, size):
         """scene: a dict with the keys of a scene file."""
-        self.server, self.size, self.all, self.known, self.looked = server, size, {}, set(), 0.0
-        self.changing = {t.get("name") for t in scene.get("tools", []) if "sequence" in t.get("shape", {})}
+        self.server, self.size, self.all, self.looked = server, size, {}, 0.0
+        self.surfaces = {}  # those that were drawn last
+        self.fixed = {t.get("name") for t in scene.get("tools", []) if not {"sequence", "mesh"} & set(t.get("shape", {}))}  # their shapes never change
 
     def add_gui(self, gui, add_probe):
         self.folder = gui.add_folder("Tools")
@@ -124,12 +129,12 @@ class Tools:
     def collect(self, world, now):
         """What tools feel, and the surfaces of those that are new or have changed."""
         forces = world.tool_forces()
-        new = [name for name in forces if name not in self.known]
-        if now - self.looked > LOOK_EVERY:
-            self.looked = now
-            new += [name for name in forces if name in self.changing and name in self.known]
-        self.known = set(forces)
-        return forces, {name: world.tool_surface(name) for name in new}
+        look = now - self.looked > LOOK_EVERY
+        self.looked = now if look else self.looked
+        fresh = {name: world.tool_surface(name) for name in forces if name not in self.surfaces or (look and name not in self.fixed)}
+        fresh = {name: surface for name, surface in fresh.items() if not _same(surface, self.surfaces.get(name))}
+        self.surfaces = {name: fresh.get(name) or self.surfaces[name] for name in forces}
+        return forces, fresh
 
     # --- in the thread that draws ----------------------------------------------------------------------------------------------
     def draw(self, forces, surfaces, time, now):
