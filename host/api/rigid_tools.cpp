@@ -135,11 +135,21 @@ void RigidTools::apply(Simulation& simulation) {
     } catch (const Error& error) {
       if (error.code() == ErrorCode::internal || error.code() == ErrorCode::device) throw;
       if (refused == nullptr) refused = std::current_exception();
+      if (request.what == What::mesh) renew_given(simulation, request.name);
     }
   }
   settle(simulation);
   note(simulation);
   if (refused != nullptr) std::rethrow_exception(refused);
+}
+
+/// After a surface was refused, the next one follows what the tool has.
+void RigidTools::renew_given(const Simulation& simulation, const std::string& name) {
+  const auto& all = simulation.state().tools.given;
+  const auto found = all.find(name);
+  const std::lock_guard lock(mutex_);
+  given_.erase(name);
+  if (found != all.end()) given_[name] = std::make_shared<const GivenSurfaces>(found->second);
 }
 
 void RigidTools::settle(const Simulation& simulation) {

@@ -60,6 +60,7 @@ class RigidTools {
   void ask(Request request);
   static void make(Simulation& simulation, const Request& request);
   void settle(const Simulation& simulation);
+  void renew_given(const Simulation& simulation, const std::string& name);
 
   std::mutex mutex_;
   std::map<std::string, ContactTool> tools_;                           ///< those of the simulation after the last apply()

@@ -168,6 +168,31 @@ TEST(ToolMesh, BitsAreTheSameAfterACheckpointAndOnAllBackends) {
   }
 }
 
+TEST(ToolMesh, AGridThatIsLaidAnewAfterACheckpointIsTheSame) {
+  const test::TempFolder folder;
+  const std::string file = (folder.path() / "mesh.pckpt").string();
+  World whole(block_under(mesh_ball(folder)), on("cpu")), resumed(block_under(mesh_ball(folder)), on("cpu"));
+  const auto run = [](World& world, int from, int to) {
+    for (int f = from; f < to; ++f) {  // every third is longer than the grid, along another axis
+      SurfaceSpec mesh = ball_surface(30 + f % 5, f, {}, 0.7 * kRadius);
+      for (Vec3d& v : mesh.vertices) v[static_cast<std::size_t>(f) / 3 % 3] *= f % 3 == 1 ? 2 + 0.1 * f : 1;
+      world.set_tool_mesh("ball", mesh, world.time() + kFrame);
+      world.step(37);
+    }
+  };
+  whole.drive_tool("ball", {0, 0, 0.4 * kRadius}, {0, 0, 0, 1}, 0.05);
+  for (int k = 1; k <= 3; ++k) whole.set_tool_mesh("ball", ball_surface(20, k, {}, 0.7 * kRadius), k * kFrame);
+  EXPECT_EQ(code_of([&] { whole.set_tool_mesh("ball", ball_surface(40, 1, {}, 3 * kRadius), 1); }), ErrorCode::usage);
+  whole.step(150);
+  run(whole, 1, 4);
+  whole.save(file);
+  resumed.load(file);
+  for (World* w : {&whole, &resumed}) run(*w, 4, 16);
+  ASSERT_GT(whole.tool_forces()[0].force[2], 0.01);
+  EXPECT_EQ(whole.hash(), resumed.hash());
+  EXPECT_EQ(WorldAccess::simulation(whole).deep_hash(), WorldAccess::simulation(resumed).deep_hash());
+}
+
 TEST(ToolMesh, TheCheckingBackendFindsNothing) {
   const test::TempFolder folder;
   World checked(block_under(mesh_ball(folder)), on("cpu:check")), plain(block_under(mesh_ball(folder)), on("cpu"));

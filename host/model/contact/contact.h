@@ -52,17 +52,17 @@ struct ToolFrame {
 /// A tool shape as the kernels use it (kernels/contact/contact_shape.cl).
 struct ToolForm {
   ToolShape shape = ToolShape::sphere;
-  double radius = 0;              ///< [m]
-  Vec3d first{}, second{};        ///< [m]; half space: `second` is the unit normal; box: `second` is half its size
-  NodeGrid grid;                  ///< of a mesh, in its own frame
-  std::vector<double> distance;   ///< [nodes] signed distances at its nodes [m]
-  bool edges = false;             ///< use contact along edges where the tool is thin (ContactTool::edges)
-  double thickness = 1e30;        ///< mesh: twice its volume over its area [m]
-  double reach = 0;               ///< largest distance of a point from the tool's origin [m]; half space: 0
-  TriangleMesh surface;           ///< mesh only, for pictures
-  double frames_per_second = 0;   ///< sequence only
-  std::vector<double> times;      ///< given surfaces (given_surfaces.h): of the frames, ascending [s]
-  std::vector<ToolFrame> frames;  ///< of a sequence or given; `distance` is [frames][nodes]
+  double radius = 0;                         ///< [m]
+  Vec3d first{}, second{};                   ///< [m]; half space: `second` is the unit normal; box: `second` is half its size
+  NodeGrid grid;                             ///< of a mesh, in its own frame
+  std::vector<double> distance;              ///< [nodes] signed distances at its nodes [m]
+  bool edges = false;                        ///< use contact along edges where the tool is thin (ContactTool::edges)
+  double thickness = 1e30;                   ///< mesh: twice its volume over its area [m]
+  double reach = 0;                          ///< largest distance of a point from the tool's origin [m]; half space: 0
+  TriangleMesh surface;                      ///< mesh only, for pictures
+  double frames_per_second = 0;              ///< sequence only
+  std::vector<std::array<double, 2>> times;  ///< given surfaces: when the shape begins to become a frame, and has it [s]
+  std::vector<ToolFrame> frames;             ///< of a sequence or given; `distance` is [frames][nodes]
 };
 
 /// State of a shape at a time: its pose in the tool's frame; a shape with frames interpolates `frame` and the next one, which

@@ -117,7 +117,8 @@ FindSurface by_grid(const NodeGrid& grid, const std::vector<double>& distance) {
 GivenSurfaces first_surface(const ContactTool& tool) {
   const SurfaceDistance outward(read_tool_mesh(tool, tool.mesh));
   check_closed(tool, tool.mesh, outward);
-  GivenSurfaces first{grid_around(box_of(outward.mesh()), mesh_thickness(outward.mesh())), {{0, {}, outward.mesh(), nullptr}}};
+  GivenSurfaces first{grid_around(box_of(outward.mesh()), mesh_thickness(outward.mesh())),
+                      {{0, 0, {}, outward.mesh(), nullptr}}};
   fill(first.grid, first.surfaces.front());
   return first;
 }
@@ -134,7 +135,7 @@ GivenSurfaces next_surface(const std::string& tool, TriangleMesh mesh, double ti
   const vec::Box box_before = box_of(last.surface);
   const double radius = 0.5 * vec::norm(vec::sub(box_before.upper, box_before.lower));
   constexpr RegistrationEffort kEffort{500, 10};
-  GivenSurface next{time, registration_guess(mesh, last.surface, last.pose), {}, nullptr};
+  GivenSurface next{time, 0, registration_guess(mesh, last.surface, last.pose), {}, nullptr};
   next.pose = registered(mesh, by_grid(before.grid, *last.distance), centroid(last.surface), radius, next.pose, kEffort);
   for (Vec3d& v : mesh.vertices) v = place_back(next.pose, v);
   vec::Box box = box_of(mesh);
@@ -156,17 +157,18 @@ GivenSurfaces next_surface(const std::string& tool, TriangleMesh mesh, double ti
 
 void append_surface(const std::string& tool, GivenSurfaces& all, const GivenSurfaces& next, double now) {
   std::vector<GivenSurface>& list = all.surfaces;
-  while (list.size() > 1 && list[1].time <= now) list.erase(list.begin());
   if (list.size() == most_given_surfaces) {
-    throw Error(ErrorCode::usage,
-                fmt::format("tool \"{}\": {} surfaces are still to come at {} s, expected at most {} at a time", tool,
-                            list.size() - 1, now, most_given_surfaces - 1));
+    if (list[1].time > now) {
+      throw Error(ErrorCode::usage,
+                  fmt::format("tool \"{}\": {} surfaces are still to come at {} s, expected at most {} at a time", tool,
+                              list.size() - 1, now, most_given_surfaces - 1));
+    }
+    list.erase(list.begin());
   }
-  if (list.size() == 1) list.front().time = std::max(list.front().time, now);
   GivenSurface added = next.surfaces.back();
-  if (!(added.time > list.back().time)) {
-    added.time = list.back().time + (added.time - next.surfaces[next.surfaces.size() - 2].time);
-  }
+  const double span = added.time - next.surfaces[next.surfaces.size() - 2].time;
+  added.begin = std::max(list.back().time, now);
+  if (!(added.time > added.begin)) added.time = added.begin + span;
   if (!(next.grid == all.grid)) {
     all.grid = next.grid;
     for (GivenSurface& surface : list) surface.distance = nullptr;
@@ -181,7 +183,7 @@ ToolForm tool_form(const ContactTool& tool, GivenSurfaces& given) {
   for (std::size_t i = 0; i < most_given_surfaces; ++i) {  // always as many, so that buffers keep their sizes
     GivenSurface& one = given.surfaces[std::min(i, given.surfaces.size() - 1)];
     if (one.distance == nullptr) fill(given.grid, one);
-    form.times.push_back(one.time);
+    form.times.push_back({one.begin, one.time});
     form.frames.push_back({one.pose, one.surface});
     form.distance.insert(form.distance.end(), one.distance->begin(), one.distance->end());
     for (const Vec3d& v : one.surface.vertices) form.reach = std::max(form.reach, vec::norm(place(one.pose, v)));
@@ -203,7 +205,8 @@ void check_given(const std::string& tool, const GivenSurfaces& given) {
   }
   for (std::size_t i = 0; i < given.surfaces.size(); ++i) {
     const GivenSurface& one = given.surfaces[i];
-    if (!good_pose(one.pose) || !std::isfinite(one.time) || (i > 0 && !(one.time > given.surfaces[i - 1].time)))
+    if (!good_pose(one.pose) || !std::isfinite(one.time) ||
+        (i > 0 && !(one.begin >= given.surfaces[i - 1].time && one.time > one.begin)))
       damaged("their motion");
     check_numbers(tool, one.surface);
     if (!is_within(box_of(one.surface), given.grid)) damaged("one lies outside their grid");

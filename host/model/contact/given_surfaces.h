@@ -12,19 +12,21 @@ namespace pliant {
 /// A surface, in a frame of its own that follows the tool's rigid motion, like a frame of a sequence.
 struct GivenSurface {
   double time = 0;       ///< when the tool has this shape [s]
+  double begin = 0;      ///< when it begins to change to it from the shape before [s]
   Pose pose;             ///< of its frame in the tool's frame
   TriangleMesh surface;  ///< closed, outward, in its frame [m]
   /// Signed distances at the nodes of GivenSurfaces::grid [m], or null: not computed yet.
   std::shared_ptr<const std::vector<double>> distance;
 };
 
-/// The surfaces of a tool: the present one and those to come, with ascending times.
+/// The last surfaces of a tool, with ascending times: those to come, the present one, and as many that are over as there is
+/// room for. What follows depends on all of them, so that it is the same after a checkpoint.
 struct GivenSurfaces {
   NodeGrid grid;  ///< in the frame of every surface
   std::vector<GivenSurface> surfaces;
 };
 
-/// Maximum number of surfaces: the present one and three to come.
+/// Maximum number of surfaces: three may be to come.
 inline constexpr std::size_t most_given_surfaces = 4;
 
 /// Returns the surface of a mesh tool's file, with a grid around it. Throws what tool_form() throws.
@@ -35,8 +37,8 @@ GivenSurfaces first_surface(const ContactTool& tool);
 /// usage for a time that does not rise.
 GivenSurfaces next_surface(const std::string& tool, TriangleMesh mesh, double time, GivenSurfaces before);
 
-/// Appends the last surface of `next` at the time `now` [s]: forgets surfaces that are over, and lets the present one last
-/// until now. One that comes too late is reached as much later, at the speed at which it was meant to be. Throws Error (usage)
+/// Appends the last surface of `next` at the time `now` [s], to which the tool changes from now on or from when it has the one
+/// before. One that comes too late is reached as much later, at the speed at which it was meant to be. Throws Error (usage)
 /// if there are too many surfaces to come.
 void append_surface(const std::string& tool, GivenSurfaces& all, const GivenSurfaces& next, double now);
 

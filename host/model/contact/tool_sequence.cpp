@@ -159,9 +159,10 @@ ToolMoment tool_moment(const ToolForm& form, double time) {
     const double at = std::clamp(time * form.frames_per_second, 0.0, last);
     now.frame = static_cast<std::int32_t>(at);
     now.share = at - now.frame;
-  } else if (const auto after = std::upper_bound(form.times.begin(), form.times.end(), time); after != form.times.begin()) {
-    now.frame = static_cast<std::int32_t>(after - form.times.begin() - 1);
-    if (after != form.times.end()) now.share = (time - *(after - 1)) / (*after - *(after - 1));
+  } else {
+    const auto next = std::find_if(form.times.begin() + 1, form.times.end(), [&](const auto& t) { return time < t[1]; });
+    now.frame = static_cast<std::int32_t>(next - form.times.begin() - 1);
+    if (next != form.times.end()) now.share = std::max(0.0, (time - (*next)[0]) / ((*next)[1] - (*next)[0]));
   }
   const auto f = static_cast<std::size_t>(now.frame);
   now.pose = now.share > 0 ? between(form.frames[f].pose, form.frames[f + 1].pose, now.share) : form.frames[f].pose;

@@ -52,7 +52,7 @@ void visit(V& v, NodeGrid& s) {
 }
 template <class V>
 void visit(V& v, GivenSurface& s) {
-  v("time", s.time), v("pose", s.pose), v("surface", s.surface);
+  v("time", s.time), v("begin", s.begin), v("pose", s.pose), v("surface", s.surface);
 }
 template <class V>
 void visit(V& v, GivenSurfaces& s) {
