@@ -20,7 +20,7 @@
 #define PUT_ROW(lo, hi, out, offset, lane) STORE((lo) + FROM_LEFT(hi), out, offset)
 #define PUT_LAST(v, p, i, lane) ((p)[i] = (v).sf)
 #else
-// With one lane, a row of sixteen work-items processes a brick. A work-item reads its right neighbour's displacement itself, and passes its force to
+// With one lane, a row of sixteen work-items processes a brick, one or more per work-group. A work-item reads its right neighbour's displacement itself, and passes its force to
 // it through the memory of the row's sum, because PoCL 3.1 shares a __local array between work-groups that run at the same time.
 static inline void put_row(float lo, float hi, __global float* row, int lane) {
   row[lane] = hi;
@@ -92,7 +92,7 @@ __kernel void tled_hex8_brick_force(__global const float* node_u, __global const
 #if LANES == 16
   const int brick = first_brick + (int)get_global_id(0), lane = 0;
 #else
-  const int brick = first_brick + (int)get_group_id(0), lane = (int)get_local_id(0);
+  const int brick = first_brick + (int)get_global_id(0) / 16, lane = (int)get_local_id(0) % 16;
 #endif
   __global const int* neighbor = brick_neighbor + brick * PLIANT_BRICK_NEIGHBORS;
   __global float* out = brick_force + brick * PLIANT_BRICK_FORCE;
@@ -159,8 +159,9 @@ __kernel void tled_hex8_brick_force(__global const float* node_u, __global const
         forces[y].dd = z > 1 ? add(pending[y].dd, lower.dd) : lower.dd;
         pending[y] = upper;
       }
-      below[y] = above[y];
     }
+    // In a loop of its own: NVIDIA's compiler (driver 580.159) otherwise takes below[1] to below[3] for undefined.
+    for (int y = 0; y < 4; ++y) below[y] = above[y];
     if (z > 0) write_plane(forces, out, z - 1, lane);
   }
   write_plane(pending, out, 4, lane);

@@ -19,6 +19,23 @@ namespace {
 
 using namespace cut_test;
 
+std::string refusal(const Body& body) {
+  try {
+    const Simulation s(scene_with(body), open_backend("cpu"));
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(FirstStep, SaysWhyThereIsNone) {
+  Body held = box_body("box", {0.03, 0.02, 0.02}), stiff = held;
+  hold(held, {-1, 0, 0}, {1, 0, 0});
+  EXPECT_NE(refusal(held).find("hold every node of every body"), std::string::npos) << refusal(held);
+  stiff.material.set_moduli(Law::neo_hookean, Moduli::from_lame(1e40, 1e40));
+  EXPECT_NE(refusal(stiff).find("give no finite forces on cpu"), std::string::npos) << refusal(stiff);
+}
+
 /// A body that flies through empty space, with half of its automatic step.
 class HalvedStep : public ::testing::Test {
  protected:

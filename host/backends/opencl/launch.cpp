@@ -20,12 +20,21 @@ Aim aim_for(const Pass& pass, const LaunchRules& rules) {
   return aim;
 }
 
+/// Sixteen work-items per brick. On a GPU groups of four bricks fill two warps, and the bricks that remain are groups of one.
+std::vector<Launch> brick_rows(std::size_t count, const LaunchRules& rules) {
+  const std::size_t together = rules.cpu || rules.largest < 64 ? 1 : 4, rest = count % together;
+  std::vector<Launch> launches;
+  if (count > rest) launches.push_back({0, 16 * (count - rest), 16 * together});
+  if (rest > 0) launches.push_back({16 * (count - rest), 16 * rest, 16});
+  return launches;
+}
+
 }  // namespace
 
 std::vector<Launch> plan_launches(const Pass& pass, const LaunchRules& rules) {
   if (pass.count == 0) return {};
   const auto count = static_cast<std::size_t>(pass.count);
-  if (pass.shape == Shape::bricks && rules.lanes == 1) return {{0, 16 * count, 16}};
+  if (pass.shape == Shape::bricks && rules.lanes == 1) return brick_rows(count, rules);
   const std::size_t global = pass.shape == Shape::lanes ? count / static_cast<std::size_t>(rules.lanes) : count;
   const auto forced = static_cast<std::size_t>(std::max(rules.forced_local, 0));
   if (forced != 0 && global % forced == 0 && forced <= rules.largest) return {{0, global, forced}};

@@ -24,7 +24,8 @@ struct LaunchRules {
 };
 
 /// Returns the enqueues of one run of `pass`; none if its count is zero. A `lanes` or `items` pass may be split in two (the
-/// second with a global offset), so such kernels may use only get_global_id; `bricks` passes with one lane have groups of 16.
+/// second with a global offset), so such kernels may use only get_global_id; `bricks` passes with one lane have whole rows of 16
+/// work-items per group, and are split likewise.
 std::vector<Launch> plan_launches(const Pass& pass, const LaunchRules& rules);
 
 /// Returns the enqueue of a pass over a list of `indices` (Pass::active); the last group may extend beyond them, where lists

@@ -171,6 +171,7 @@ class OpenclBackend final : public Backend {
   struct Prepared {
     cl::Kernel kernel;
     std::vector<cl_uint> step_args;
+    opencl::LaunchRules rules{};
     std::vector<opencl::Launch> launches_of_one_run;
     std::string where;
     double seconds = 0;
@@ -260,8 +261,8 @@ class OpenclBackend final : public Backend {
         }
       }
       const std::size_t largest = p.kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device_);
-      rules_ = {info_.lanes, local_size_, largest, info_.kind == "cpu"};
-      p.launches_of_one_run = opencl::plan_launches(pass, rules_);
+      p.rules = {info_.lanes, local_size_, largest, info_.kind == "cpu"};
+      p.launches_of_one_run = opencl::plan_launches(pass, p.rules);
     });
     return p;
   }
@@ -277,7 +278,7 @@ class OpenclBackend final : public Backend {
     guarded(ErrorCode::internal, p.where, [&] {
       for (const cl_uint i : p.step_args) p.kernel.setArg(i, step);
       const bool listed = pass.active != nullptr && pass.shape != Shape::items;
-      const auto some = listed ? std::vector{opencl::plan_listed(indices, rules_)} : std::vector<opencl::Launch>();
+      const auto some = listed ? std::vector{opencl::plan_listed(indices, p.rules)} : std::vector<opencl::Launch>();
       for (const opencl::Launch& launch : listed ? some : p.launches_of_one_run) {
         cl::Event* event = nullptr;
         if (profiling_) {
@@ -348,7 +349,6 @@ class OpenclBackend final : public Backend {
   cl::CommandQueue queue_;
   opencl::KernelCache kernels_;
   const int local_size_;
-  opencl::LaunchRules rules_{};
   BufferTable table_;
   std::vector<opencl::DeviceMemory> memory_, extension_;
   std::multimap<KernelKey, cl::Kernel> spare_kernels_;

@@ -61,6 +61,7 @@ class StepControl {
   void hold();
 
  private:
+  [[noreturn]] void refuse_step() const;
   [[nodiscard]] bool adapts_at(std::int64_t step) const;
   [[nodiscard]] bool changes_at(std::int64_t step) const;
   [[nodiscard]] double share() const;

@@ -374,7 +374,9 @@ TEST_F(OnOpencl, ShowsTheLogOfAFailedBuild) {
   const std::string message = message_of([&] { backend->load(program); });
   EXPECT_MENTIONS(message, "cannot build kernel \"toy_axpy\"");
   EXPECT_MENTIONS(message, "-D SIGN=1");
-  EXPECT_MENTIONS(message, "toy_axpy.cl:3");
+  if (backend->info().platform != "NVIDIA CUDA") {  // its messages drop #line
+    EXPECT_MENTIONS(message, "toy_axpy.cl:3");
+  }
   EXPECT_MENTIONS(message, "undeclared_name");
 }
 

@@ -1,0 +1,50 @@
+// How passes are split into work-items and work-groups.
+#include "backends/opencl/launch.h"
+
+#include <gtest/gtest.h>
+
+namespace pliant::opencl {
+namespace {
+
+Pass bricks(int count) {
+  Pass pass;
+  pass.shape = Shape::bricks;
+  pass.count = count;
+  return pass;
+}
+
+LaunchRules gpu() {
+  LaunchRules rules;
+  rules.lanes = 1;
+  rules.largest = 256;
+  return rules;
+}
+
+TEST(PlanLaunches, FourBricksAreAGroupOnAGpu) {
+  for (const int count : {1, 3, 4, 9, 64, 4099}) {
+    std::size_t next = 0;
+    for (const Launch& launch : plan_launches(bricks(count), gpu())) {
+      EXPECT_EQ(launch.offset, next) << count;
+      EXPECT_EQ(launch.global % launch.local, 0U) << count;
+      EXPECT_EQ(launch.local % 16, 0U) << count;  // a row stays in one group
+      EXPECT_TRUE(launch.local == 64 || launch.global < 64) << count;
+      next = launch.offset + launch.global;
+    }
+    EXPECT_EQ(next, 16U * static_cast<unsigned>(count));
+  }
+}
+
+TEST(PlanLaunches, ABrickIsAGroupOnAProcessorAndWhereGroupsAreSmall) {
+  LaunchRules processor = gpu(), small = gpu();
+  processor.cpu = true;
+  small.largest = 32;
+  for (const LaunchRules& rules : {processor, small}) {
+    const std::vector<Launch> launches = plan_launches(bricks(9), rules);
+    ASSERT_EQ(launches.size(), 1U);
+    EXPECT_EQ(launches[0].global, 144U);
+    EXPECT_EQ(launches[0].local, 16U);
+  }
+}
+
+}  // namespace
+}  // namespace pliant::opencl
