@@ -68,7 +68,7 @@ struct Look {
     if (!(dot(na, nb) < Scalar(-0.5))) return true;
     const Scalar gap = dot(away, unit(difference(nb, na)));
     if (gap < Scalar(-0.2) * large) return true;
-    offset = gap < Scalar(0) ? gap : Scalar(0);
+    offset = gap <= Scalar(0) ? gap : Scalar(0);
     return false;
   }
 

@@ -33,7 +33,7 @@ static inline int one_part(__global const float* touch_surface, __global const f
   if (!(dot_xyz(na, nb) < -0.5f)) return 1;
   const float gap = dot_xyz(away, unit(nb - na));
   if (gap < -0.2f * large) return 1;
-  *offset = gap < 0.0f ? gap : 0.0f;
+  *offset = gap <= 0.0f ? gap : 0.0f;
   return 0;
 }
 

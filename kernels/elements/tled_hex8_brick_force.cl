@@ -13,77 +13,7 @@
 #include "arith.cl"
 #include "texels.cl"
 #include "law.cl"
-
-#if LANES == 16
-#define FROM_RIGHT(v, last) (float16)((v).s12345678, (v).s9abc, (v).sde, (v).sf, last)
-#define FROM_LEFT(v) (float16)(-0.0f, (v).s01234567, (v).s89ab, (v).scd, (v).se)
-#define PUT_ROW(lo, hi, out, offset, lane) STORE((lo) + FROM_LEFT(hi), out, offset)
-#define PUT_LAST(v, p, i, lane) ((p)[i] = (v).sf)
-#else
-// With one lane, a row of sixteen work-items processes a brick, one or more per work-group. A work-item reads its right neighbour's displacement itself, and passes its force to
-// it through the memory of the row's sum, because PoCL 3.1 shares a __local array between work-groups that run at the same time.
-static inline void put_row(float lo, float hi, __global float* row, int lane) {
-  row[lane] = hi;
-  barrier(CLK_GLOBAL_MEM_FENCE);
-  const float left = lane > 0 ? row[lane - 1] : -0.0f;
-  barrier(CLK_GLOBAL_MEM_FENCE);
-  row[lane] = lo + left;
-}
-#define PUT_ROW(lo, hi, out, offset, lane) put_row(lo, hi, (out) + (offset), lane)
-#define PUT_LAST(v, p, i, lane) \
-  if ((lane) == 15) (p)[i] = (v)
-#endif
-
-typedef struct {
-  real x, y, z;
-} vec3;
-static inline vec3 add(vec3 a, vec3 b) {
-  const vec3 r = {a.x + b.x, a.y + b.y, a.z + b.z};
-  return r;
-}
-static inline vec3 sub(vec3 a, vec3 b) {
-  const vec3 r = {a.x - b.x, a.y - b.y, a.z - b.z};
-  return r;
-}
-static inline vec3 times(real s, vec3 a) {
-  const vec3 r = {s * a.x, s * a.y, s * a.z};
-  return r;
-}
-static inline vec3 times_add(real s, vec3 a, vec3 b) {
-  const vec3 r = {fma(s, a.x, b.x), fma(s, a.y, b.y), fma(s, a.z, b.z)};
-  return r;
-}
-// A cell face normal to z after the butterflies along x and y: sums, differences along x, along y, along both.
-typedef struct {
-  vec3 ss, ds, sd, dd;
-} face;
-
-// Inverse butterflies along y and x for one plane of nodes, and output.
-static inline void write_plane(const face* forces, __global float* out, int plane, int lane) {
-  for (int y = 0; y < 5; ++y) {
-    vec3 s, d;
-    if (y > 0) {
-      s = add(forces[y - 1].ss, forces[y - 1].sd);
-      d = add(forces[y - 1].ds, forces[y - 1].dd);
-      if (y < 4) {
-        s = add(s, sub(forces[y].ss, forces[y].sd));
-        d = add(d, sub(forces[y].ds, forces[y].dd));
-      }
-    } else {
-      s = sub(forces[0].ss, forces[0].sd);
-      d = sub(forces[0].ds, forces[0].dd);
-    }
-    const vec3 lo = sub(s, d), hi = add(s, d);
-    const int row = plane * 5 + y;
-    PUT_ROW(lo.x, hi.x, out, (3 * row) * 16, lane);
-    PUT_ROW(lo.y, hi.y, out, (3 * row + 1) * 16, lane);
-    PUT_ROW(lo.z, hi.z, out, (3 * row + 2) * 16, lane);
-    __global float* last = out + PLIANT_BRICK_FORCE_X16 + 3 * row;
-    PUT_LAST(hi.x, last, 0, lane);
-    PUT_LAST(hi.y, last, 1, lane);
-    PUT_LAST(hi.z, last, 2, lane);
-  }
-}
+#include "brick_plane.cl"
 
 __kernel void tled_hex8_brick_force(__global const float* node_u, __global const int* brick_neighbor,
                                     __global const int* brick_rows, __global const float* brick_fill, __global float* brick_force,

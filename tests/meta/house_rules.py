@@ -300,6 +300,9 @@ def check_bits(tree):
 INEXACT = re.compile(r"\b(?:mad|dot|cross|length|normalize|distance|mix|min|max|fmin|fmax|clamp|rsqrt|native_[a-z0-9]+|half_[a-z0-9]+"
                      r"|sin|cos|tan|exp|log|pow|cbrt)\s*\(")
 
+# A minimum with zero that keeps the sign of -0 where a compiler makes min() of it (NVIDIA's does), and loses it elsewhere.
+MINIMUM_WITH_ZERO = re.compile(r"(\S+) < 0\.0f \? \1 : 0\.0f|(\S+) > 0\.0f \? 0\.0f : \2")
+
 
 def check_kernels(tree):
     registry = "cpu_ref/registry.cpp"
@@ -316,6 +319,8 @@ def check_kernels(tree):
         found = [f"{n}:{use}" for n, line in enumerate(code.split("\n"), 1) for use in INEXACT.findall(line)]
         if found:
             tree.report(f"{file}: forbidden on values (docs/determinism.md): {' '.join(found)}")
+        if MINIMUM_WITH_ZERO.search(code):
+            tree.report(f"{file}: write a minimum with zero as x <= 0.0f ? x : 0.0f (docs/determinism.md)")
         if "__kernel" not in code:
             continue
         first = next(iter(tree.includes(file)), "nothing")
