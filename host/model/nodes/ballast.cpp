@@ -77,11 +77,19 @@ std::vector<double> nodal_stiffness(const Model& model, const std::vector<double
 }
 
 double stiffness_bound(const Model& model, const std::vector<double>& stiffness) {
+  const std::size_t s = stiffest_node(model, stiffness);
+  return s < stiffness.size() && stiffness[s] > 0 ? 2 / std::sqrt(stiffness[s] / model.mass[s]) : 0;
+}
+
+std::size_t stiffest_node(const Model& model, const std::vector<double>& stiffness) {
+  std::size_t at = 0;
   double most = 0;
   for (std::size_t s = 0; s < stiffness.size(); ++s) {
-    if (model.mass[s] > 0) most = std::max(most, stiffness[s] / model.mass[s]);
+    if (!(model.mass[s] > 0) || !(stiffness[s] / model.mass[s] > most)) continue;
+    most = stiffness[s] / model.mass[s];
+    at = s;
   }
-  return most > 0 ? 2 / std::sqrt(most) : 0;
+  return at;
 }
 
 std::vector<NodeInertia> wanted_ballast(const Model& model, const std::vector<double>& stiffness, double dt) {

@@ -24,6 +24,9 @@ std::vector<double> nodal_stiffness(const Model& model, const std::vector<double
 /// Returns 2 over the highest frequency that these stiffnesses allow [s]; 0 without elements.
 double stiffness_bound(const Model& model, const std::vector<double>& stiffness);
 
+/// Returns the slot whose stiffness limits that; 0 without elements.
+std::size_t stiffest_node(const Model& model, const std::vector<double>& stiffness);
+
 /// Returns the ballast with which every node is stable at the step `dt` [s]. A node that is too light gets half as much
 /// again, for reserve; ballast of more than twice the need is reduced to twice the need. Ascending slots.
 std::vector<NodeInertia> wanted_ballast(const Model& model, const std::vector<double>& stiffness, double dt);

@@ -122,7 +122,7 @@ bool Recovery::calm_down(Symptoms& s) {
 void Recovery::measure(Symptoms& s) {
   if (step_.bound_allows()) return;
   const double dt = run_.state.clock.dt, least = step_.least_step(), ceiling = run_.state.limit.dt_ceiling;
-  const StepControl::Allowed now = step_.allowed();
+  StepControl::Allowed now = step_.allowed();
   // Compare with the limit without the distrust, which also shortens the step: otherwise both would shrink together
   // indefinitely.
   if (now.dt / run_.state.limit.dt_backoff >= dt) return;
@@ -130,7 +130,7 @@ void Recovery::measure(Symptoms& s) {
   if (dt <= least) {
     // Below the shortest step only a lost state is treated: inverted elements that continue are driven back by their laws.
     if (!may_trust_less()) return;
-    s.ballast = step_.more_ballast(dt, now.stiffness);
+    s.ballast = step_.more_ballast(dt, step_.full_stiffness(now));
     lowest = kLeastBackoff * ceiling;
     if (s.ballast.empty() && dt <= lowest) return;
   }

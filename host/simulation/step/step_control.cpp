@@ -118,8 +118,7 @@ void StepControl::adapt() {
   const StepLimit& limit = run_.state.limit;
   Allowed now = allowed();
   if (now.dt < least_step() || !run_.state.ballast.empty()) {
-    if (now.stiffness.empty()) now.stiffness = nodal_stiffness(run_.model(), run_.loaded.u());
-    now.dt = balance(now.dt, now.stiffness);
+    now.dt = balance(now.dt, full_stiffness(now));
   }
   const double dt = run_.state.clock.dt, ceiling = limit.dt_ceiling;
   const bool may_grow = run_.state.clock.step >= limit.hold;
@@ -168,12 +167,30 @@ StepControl::Allowed StepControl::allowed() {
   Allowed out{estimated(), {}};
   if (out.dt >= run_.state.clock.dt) return out;
   // The estimate takes differences of forces, which are mostly rounding far from the rest position. The element bound is
-  // coarser but reliable, since it is computed in double.
-  out.stiffness = nodal_stiffness(run_.model(), run_.loaded.u());
+  // coarser but reliable, since it is computed in double. It is at most that of any one node, which is nearly always below the
+  // estimate: of the node that was the stiffest last, or else of the one that a quick bound takes for it.
+  const std::vector<double> u = run_.loaded.u();
+  const auto is_below = [&] {
+    std::vector<char> one(run_.model().mass.size());
+    if (stiffest_ >= one.size()) return false;
+    one[stiffest_] = 1;
+    const double most = stiffness_bound(run_.model(), nodal_stiffness(run_.model(), u, one));
+    return most > 0 && bound_step(run_, most) <= limit.stable_dt;
+  };
+  if (is_below()) return out;
+  stiffest_ = stiffest_node(run_.model(), nodal_stiffness(run_.model(), u, {}, true));
+  if (is_below()) return out;
+  out.stiffness = nodal_stiffness(run_.model(), u);
+  stiffest_ = stiffest_node(run_.model(), out.stiffness);
   const double bound = stiffness_bound(run_.model(), out.stiffness);
   if (bound > 0) limit.stable_dt = std::max(limit.stable_dt, bound_step(run_, bound));
   out.dt = share() * limit.stable_dt;
   return out;
+}
+
+const std::vector<double>& StepControl::full_stiffness(Allowed& now) const {
+  if (now.stiffness.empty()) now.stiffness = nodal_stiffness(run_.model(), run_.loaded.u());
+  return now.stiffness;
 }
 
 std::vector<NodeInertia> StepControl::ballast_for(double dt, const std::vector<double>& stiffness) const {

@@ -1,5 +1,6 @@
 // Controls the step size and where batches end.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -46,6 +47,8 @@ class StepControl {
     std::vector<double> stiffness;
   };
   [[nodiscard]] Allowed allowed();
+  /// The nodal stiffness of all elements, evaluated if it was not.
+  const std::vector<double>& full_stiffness(Allowed& now) const;
   /// Returns true if a bound of the elements, which takes less time than the estimate, shows that the present step is stable.
   [[nodiscard]] bool bound_allows() const;
   /// The same from the estimate alone [s].
@@ -73,6 +76,7 @@ class StepControl {
   [[nodiscard]] std::vector<NodeInertia> ballast_for(double dt, const std::vector<double>& stiffness) const;
   [[nodiscard]] bool too_much(const std::vector<NodeInertia>& ballast) const;
   RunContext& run_;
+  std::size_t stiffest_ = 0;  ///< a slot that probably has the least bound of all; decides nothing but the cost
 };
 
 }  // namespace pliant
