@@ -252,6 +252,11 @@ py::dict probes(const pliant::World& w) {
 }
 
 /// By name: where each tool is, and what it feels.
+py::dict grab_state(const pliant::World& w, pliant::GrabId grab) {
+  const pliant::GrabState state = w.grab_state(grab);
+  return py::dict(py::arg("force") = row(state.force), py::arg("gap") = row(state.gap), py::arg("limited") = state.limited);
+}
+
 py::dict tool_forces(const pliant::World& w) {
   py::dict d;
   for (const pliant::ToolForce& f : w.tool_forces()) {
@@ -322,6 +327,7 @@ void bind_tools(py::class_<pliant::World>& world) {
           },
           py::arg("vertex"), py::arg("radius") = 0.0, py::arg("stiffness") = 0.0, py::arg("max_force") = 0.0)
       .def("move_grab", &World::move_grab, py::arg("grab"), py::arg("target"))
+      .def("grab_state", &grab_state, py::arg("grab"), "what a grab does: force [N], gap to its target [m], limited")
       .def("release", &World::release, py::arg("grab"))
       .def("push", &World::push, py::arg("vertex"), py::arg("force"))
       .def("push_node", &World::push_node, py::arg("body"), py::arg("node"), py::arg("force"))

@@ -1,4 +1,5 @@
 // Handles, tools, cuts and checkpoints of the C API.
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -23,6 +24,14 @@ pliant_status pliant_world_grab(pliant_world world, int32_t vertex, double radiu
 }
 pliant_status pliant_world_move_grab(pliant_world world, uint64_t grab, const double target[3]) {
   return on(world, [&](CWorld& w) { w.world.move_grab(grab, vector_of(target, "target")); });
+}
+pliant_status pliant_world_grab_state(pliant_world world, uint64_t grab, double force[3], double gap[3], int* limited) {
+  return on(world, [&](CWorld& w) {
+    const pliant::GrabState state = w.world.grab_state(grab);
+    if (force != nullptr) std::copy(state.force.begin(), state.force.end(), force);
+    if (gap != nullptr) std::copy(state.gap.begin(), state.gap.end(), gap);
+    if (limited != nullptr) *limited = state.limited ? 1 : 0;
+  });
 }
 pliant_status pliant_world_release(pliant_world world, uint64_t grab) {
   return on(world, [&](CWorld& w) { w.world.release(grab); });

@@ -9,9 +9,11 @@ namespace pliant::api {
 namespace {
 
 constexpr double kPeriod = 0.002;  ///< update interval of the grab springs [s]
-constexpr double kCatchUp = 0.1;   ///< time in which the integral part removes the spring's remaining error [s]
+constexpr double kCatchUp = 0.2;   ///< time in which the integral part removes the spring's remaining error [s]
 constexpr double kFree = 0.25;     ///< largest fraction of a free patch's momentum balance that one update may change
-constexpr double kStrain = 0.25;   ///< largest force over Young's modulus times the area of the patch
+constexpr double kHandful = 2;     ///< radius of a grab in edges of cells where none is given
+constexpr double kStrain = 3;      ///< largest force over Young's modulus times the square of the radius
+constexpr double kStretch = 0.25;  ///< and over the modulus times the body's cross-section, of a cube of its volume
 constexpr std::int32_t kAnySteps = 1 << 20;
 
 Vec3d limited(const Vec3d& v, double most) {
@@ -81,6 +83,7 @@ std::vector<NodeShare> SurfaceHandles::nodes_of(const SurfaceVertex& vertex) con
 void SurfaceHandles::hold(Grab& g) const {
   const std::size_t b = g.vertex.body;
   const ModelBody& body = model_->bodies[b];
+  const double r = g.options.radius > 0 ? g.options.radius : kHandful * edge_of(body);
   g.point = nodes_of(g.vertex);
   g.rest = model_->surface.rest[static_cast<std::size_t>(body.first_vertex + g.vertex.local)];
   g.patch.clear();
@@ -91,16 +94,17 @@ void SurfaceHandles::hold(Grab& g) const {
     const Vec3d& x = body.rest[static_cast<std::size_t>(n)];
     const bool own = std::any_of(g.point.begin(), g.point.end(), [n = n](const NodeShare& p) { return p.node == n; });
     const double distance = std::hypot(x[0] - g.rest[0], x[1] - g.rest[1], x[2] - g.rest[2]);
-    if (!own && !(distance <= g.options.radius)) continue;
+    if (!own && !(distance <= r)) continue;
     const double mass = model_->mass[static_cast<std::size_t>(f.slot)];
     g.patch.push_back({b, n, mass});
     g.mass += mass;
   }
   for (NodeShare& p : g.patch) p.share /= g.mass;
   // A disk of radius r on a half-space has the stiffness 2 E r / (1 - nu^2); half of that cannot overshoot at rest.
-  const double r = std::max(g.options.radius, edge_of(body)), young = materials_[b].moduli.young();
-  g.stiffness = g.options.stiffness > 0 ? g.options.stiffness : young * r;
-  g.max_force = g.options.max_force > 0 ? g.options.max_force : kStrain * young * r * r;
+  const double young = materials_[b].moduli.young(), size = std::max(r, edge_of(body));
+  g.stiffness = g.options.stiffness > 0 ? g.options.stiffness : young * size;
+  const double area = std::cbrt(body.volume * body.volume);
+  g.max_force = g.options.max_force > 0 ? g.options.max_force : young * std::min(kStrain * size * size, kStretch * area);
 }
 
 GrabId SurfaceHandles::grab(const SurfaceVertex& vertex, const GrabOptions& options) {
@@ -125,6 +129,13 @@ void SurfaceHandles::move(GrabId id, const Vec3d& target) {
   const auto found = grabs_.find(id);
   if (found == grabs_.end()) throw Error(ErrorCode::usage, fmt::format("there is no grab {}", id));
   found->second.target = target;
+}
+
+GrabState SurfaceHandles::state(GrabId id) {
+  const std::lock_guard lock(mutex_);
+  const auto found = grabs_.find(id);
+  if (found == grabs_.end()) throw Error(ErrorCode::usage, fmt::format("there is no grab {}", id));
+  return found->second.felt;
 }
 
 void SurfaceHandles::release(GrabId id) {
@@ -182,21 +193,22 @@ void SurfaceHandles::clear() {
   changed_ = true;
 }
 
-/// Spring and damper at the vertex, and an integral part that grows until the vertex is at its target. `period`: time until
-/// the next update [s]; the gains are limited to the stability range of explicit steps of a free patch.
-Vec3d SurfaceHandles::pull(const Grab& grab, Pull& state, const Vec3d& position, double time, double period) const {
+/// Spring and damper between the target and the mean of the patch that they act on, which takes energy out of every mode, and
+/// an integral part that grows until the vertex is at its target. `period`: time until the next update [s]; the gains are
+/// limited to the stability range of explicit steps of a free patch.
+Vec3d SurfaceHandles::pull(const Grab& grab, Pull& state, const Vec3d& position, const Vec3d& mean, double time,
+                           double period) const {
   const double k = std::min(grab.stiffness, kFree * grab.mass / (period * period));
   const double c = std::min(2 * std::sqrt(k * grab.mass), kFree * grab.mass / period);
   const double elapsed = time - state.time;
   Vec3d force{};
   for (std::size_t i = 0; i < 3; ++i) {
-    const double gap = state.target[i] - position[i];
-    const double speed = elapsed > 0 ? (position[i] - state.before[i]) / elapsed : 0;
-    state.held[i] += k * std::min(1.0, elapsed / kCatchUp) * gap;
-    force[i] = k * gap + state.held[i] - c * speed;
+    const double speed = elapsed > 0 ? (mean[i] - state.before[i]) / elapsed : 0;
+    state.held[i] += k * std::min(1.0, elapsed / kCatchUp) * (state.target[i] - position[i]);
+    force[i] = k * (state.target[i] - mean[i]) + state.held[i] - c * speed;
   }
   state.held = limited(state.held, grab.max_force);
-  state.before = position;
+  state.before = mean;
   state.time = time;
   return limited(force, grab.max_force);
 }
@@ -227,22 +239,33 @@ std::int32_t SurfaceHandles::apply(Simulation& simulation) {
   std::erase_if(pulls_, [&](const auto& entry) { return !grabs.contains(entry.first); });
   const auto steps = static_cast<std::int32_t>(std::clamp(kPeriod / simulation.dt(), 1.0, 64.0));
   std::map<std::size_t, std::vector<Vec3d>> displacements;
-  for (const auto& [id, grab] : grabs) {
+  for (auto& [id, grab] : grabs) {
     const std::size_t body = grab.vertex.body;
     if (!displacements.contains(body)) displacements[body] = simulation.displacements(body);
     const std::vector<Vec3d>& u = displacements[body];
-    Vec3d position = grab.rest;
-    for (const NodeShare& n : grab.point) {
-      for (std::size_t c = 0; c < 3; ++c) position[c] += n.share * u[static_cast<std::size_t>(n.node)][c];
-    }
-    const auto [state, first] = pulls_.try_emplace(id, Pull{position, position, {}, simulation.time()});
+    const auto moved = [&](const std::vector<NodeShare>& nodes) {
+      Vec3d at = grab.rest;
+      for (const NodeShare& n : nodes) {
+        for (std::size_t c = 0; c < 3; ++c) at[c] += n.share * u[static_cast<std::size_t>(n.node)][c];
+      }
+      return at;
+    };
+    const Vec3d position = moved(grab.point), mean = moved(grab.patch);
+    const auto [state, first] = pulls_.try_emplace(id, Pull{position, mean, {}, simulation.time()});
     if (grab.target) state->second.target = *grab.target;
-    const Vec3d f = pull(grab, state->second, position, simulation.time(), steps * simulation.dt());
+    const Vec3d f = pull(grab, state->second, position, mean, simulation.time(), steps * simulation.dt());
+    grab.felt.force = f;
+    for (std::size_t c = 0; c < 3; ++c) grab.felt.gap[c] = state->second.target[c] - position[c];
+    grab.felt.limited = std::hypot(f[0], f[1], f[2]) >= 0.999 * grab.max_force;
     for (const NodeShare& n : grab.patch) {
       forces.push_back({n.body, n.node, {n.share * f[0], n.share * f[1], n.share * f[2]}});
     }
   }
   simulation.set_forces(std::move(forces));
+  const std::lock_guard lock(mutex_);
+  for (const auto& [id, grab] : grabs) {
+    if (const auto found = grabs_.find(id); found != grabs_.end()) found->second.felt = grab.felt;
+  }
   return grabs.empty() ? kAnySteps : steps;
 }
 

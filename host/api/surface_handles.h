@@ -38,6 +38,7 @@ class SurfaceHandles {
 
   GrabId grab(const SurfaceVertex& vertex, const GrabOptions& options);
   void move(GrabId id, const Vec3d& target);
+  [[nodiscard]] GrabState state(GrabId id);
   void release(GrabId id);
   void push(const SurfaceVertex& vertex, const Vec3d& force);
   void push_node(std::size_t body, std::int64_t node, const Vec3d& force);
@@ -59,6 +60,7 @@ class SurfaceHandles {
     std::vector<NodeShare> patch;  ///< distribution of the force
     Vec3d rest{};
     double mass = 0, stiffness = 0, max_force = 0;
+    GrabState felt;
   };
   /// State of a grab in the stepping thread.
   struct Pull {
@@ -72,7 +74,7 @@ class SurfaceHandles {
   void check_vertex(const SurfaceVertex& vertex) const;
   [[nodiscard]] std::vector<NodeShare> nodes_of(const SurfaceVertex& vertex) const;
   void hold(Grab& grab) const;
-  Vec3d pull(const Grab& grab, Pull& state, const Vec3d& position, double time, double period) const;
+  Vec3d pull(const Grab& grab, Pull& state, const Vec3d& position, const Vec3d& mean, double time, double period) const;
 
   std::vector<Material> materials_;
   std::mutex mutex_;

@@ -261,6 +261,12 @@ void World::move_grab(GrabId grab, const Vec3d& target) {
   impl_->handles->move(grab, target);
 }
 
+GrabState World::grab_state(GrabId grab) const {
+  const Call call(impl_, false);
+  check_interactive(*impl_);
+  return impl_->handles->state(grab);
+}
+
 void World::release(GrabId grab) {
   const Call call(impl_, false);
   check_interactive(*impl_);

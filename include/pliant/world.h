@@ -89,14 +89,14 @@ class PLIANT_API World {
   [[nodiscard]] std::uint64_t hash() const;                ///< hash of the state; equal hashes mean equal bits
 
   /// Interactive tools. All but move_tool() need WorldOptions::interactive, otherwise Error (state); an unknown vertex or grab
-  /// is Error (usage). They do not wait and take effect at the next batch of steps. Vertex numbers refer to the frame returned
-  /// last.
+  /// is Error (usage). They do not wait and take effect at the next batch of steps. Vertex numbers are those of the last frame.
   ///
   /// Attaches a spring between the surface around `vertex` and a target point, which is initially the vertex's current
   /// position. Returns an id for move_grab() and release().
   GrabId grab(std::int32_t vertex, const GrabOptions& options = {});
-  void move_grab(GrabId grab, const Vec3d& target);  ///< moves the spring's target [m]
-  void release(GrabId grab);                         ///< removes the grab
+  void move_grab(GrabId grab, const Vec3d& target);       ///< moves the spring's target [m]
+  [[nodiscard]] GrabState grab_state(GrabId grab) const;  ///< force and gap
+  void release(GrabId grab);                              ///< removes the grab
 
   /// Applies a constant force [N] to a vertex, distributed to the nodes of its cell, until it is set again; zero removes it.
   void push(std::int32_t vertex, const Vec3d& force);

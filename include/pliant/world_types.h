@@ -55,9 +55,16 @@ struct StepReport {
 
 /// Parameters of a grab: a patch of nodes held by a spring.
 struct GrabOptions {
-  double radius = 0;     ///< nodes within this rest distance of the vertex are held too [m]; the vertex's own cell always is
+  double radius = 0;  ///< nodes within this rest distance of the vertex are held [m], and its own cell; 0: two edges of a cell
   double stiffness = 0;  ///< spring stiffness [N/m]; 0: comparable to the tissue's own stiffness
-  double max_force = 0;  ///< upper bound of the force [N]; 0: a quarter of Young's modulus times the area of the patch
+  double max_force = 0;  ///< upper bound of the force [N]; 0: three times Young's modulus times the square of the radius
+};
+
+/// What a grab does, as of its last update.
+struct GrabState {
+  Vec3d force{};         ///< force on the tissue [N]; zero before the first steps
+  Vec3d gap{};           ///< from the vertex to the target [m]
+  bool limited = false;  ///< the force is at its limit, and the vertex may not arrive
 };
 
 using GrabId = std::uint64_t;  ///< identifies a grab within one World; 0: none

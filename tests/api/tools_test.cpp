@@ -8,6 +8,7 @@ namespace pliant {
 namespace {
 
 using test::block;
+using test::code_of;
 using test::on;
 
 double distance(const Vec4f& a, const Vec3d& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
@@ -31,6 +32,55 @@ TEST(Tools, AGrabBringsTheVertexToItsTarget) {
   world.release(grab);
   world.advance(5);
   EXPECT_LT(distance(world.frame()->positions[kCorner], {0.1, 0.08, 0.06}), 0.001);
+}
+
+TEST(Tools, AGrabArrivesByDefaultInSoftAndStiffTissue) {
+  for (const double young : {1e3, 1e4, 1e5}) {
+    SceneSpec scene = block(0);
+    scene.gravity = {};
+    scene.bodies[0].material.young = young;
+    World world(scene, on("cpu", true));
+    const GrabId grab = world.grab(kCorner);
+    EXPECT_EQ(world.grab_state(grab).force, (Vec3d{}));
+    const Vec3d target{0.1, 0.12, 0.06};  // half the block's height away
+    world.move_grab(grab, target);
+    world.advance(3);
+    EXPECT_LT(distance(world.frame()->positions[kCorner], target), 0.05 * 0.04) << young;
+    const GrabState state = world.grab_state(grab);
+    EXPECT_GT(state.force[1], 0) << young;
+    EXPECT_FALSE(state.limited) << young;
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_NEAR(state.gap[c], target[c] - world.frame()->positions[kCorner][c], 2e-4) << young;  // as of the last update
+    }
+  }
+}
+
+/// At rest a grab pulls as much as the body is held with.
+TEST(Tools, TheForceOfAGrabIsWhatHoldsTheBody) {
+  SceneSpec scene = block(0);
+  scene.gravity = {};
+  ProbeSpec& hold = scene.probes.emplace_back();
+  hold.name = "hold";
+  hold.where = RegionSpec::plane({0, 0.001, 0}, {0, -1, 0});
+  hold.quantities = {"reaction"};
+  World world(scene, on("cpu", true));
+  const GrabId grab = world.grab(kCorner);
+  world.move_grab(grab, {0.1, 0.09, 0.07});
+  world.advance(6);
+  const GrabState state = world.grab_state(grab);
+  const std::vector<double> held = world.probes().at(0).numbers;
+  ASSERT_GT(state.force[2], 0.01);
+  for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(held[c], -state.force[c], 0.01 * state.force[2]) << c;
+}
+
+TEST(Tools, AGrabTellsThatItsForceIsAtTheLimit) {
+  World world(block(0), on("cpu", true));
+  const GrabId grab = world.grab(kCorner);
+  world.move_grab(grab, {0.1, 2, 0.06});
+  world.advance(0.5);
+  EXPECT_TRUE(world.grab_state(grab).limited);
+  EXPECT_GT(world.grab_state(grab).gap[1], 1.5);
+  EXPECT_EQ(code_of([&] { (void)world.grab_state(grab + 1); }), ErrorCode::usage);
 }
 
 TEST(Tools, AWildGrabDoesNotDiverge) {

@@ -324,5 +324,5 @@ if __name__ == "__main__":
         if name.startswith("test_"):
             test()
     example = runpy.run_path(os.path.join(SOURCE, "examples/python/pull_a_block.py"))
-    assert example["path"][-1, 0] > example["path"][0, 0] + 0.01, "the corner followed the hand"
+    assert example["path"][-1, 0] > 0.11, "the corner followed the hand"
     print("ok")

@@ -225,12 +225,23 @@ void weigh_added_inertia(const Scene& scene, Model& model) {
   }
 }
 
-/// Adds zero forces that the host may change between steps, one per node, after the scene's own forces on that node.
+/// Adds zero forces that the host may change between steps, one per node that moves the surface or is at the boundary of a
+/// lattice, after the scene's own forces on that node.
 void reserve_forces(Model& model) {
   std::vector<bool> used(static_cast<std::size_t>(model.slots));
   for (std::size_t v = 0; v < model.surface.rest.size(); ++v) {
     for (std::size_t a = 0; a < 8; ++a) {
       if (model.surface.weights[v][a] != 0) used[static_cast<std::size_t>(model.surface.nodes[v][a])] = true;
+    }
+  }
+  for (const ModelBody& body : model.bodies) {  // a surface of few triangles passes cells that hold none of its vertices
+    if (!(body.spacing > 0)) continue;
+    std::vector<int> cells(body.slot.size());
+    for (const auto& hex : body.hexes) {
+      for (const std::int32_t n : hex) ++cells[static_cast<std::size_t>(n)];
+    }
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+      if (cells[n] < 8) used[static_cast<std::size_t>(body.slot[n])] = true;
     }
   }
   for (std::int32_t slot = 0; slot < model.slots; ++slot) {

@@ -120,6 +120,9 @@ PLIANT_API pliant_status pliant_world_grab(pliant_world world, int32_t vertex, d
                                            double max_force, uint64_t* out);
 /** Moves the target of a grab to a point [m]. */
 PLIANT_API pliant_status pliant_world_move_grab(pliant_world world, uint64_t grab, const double target[3]);
+/** What a grab does, as pliant::GrabState. Pointers that are null receive nothing. */
+PLIANT_API pliant_status pliant_world_grab_state(pliant_world world, uint64_t grab, double force[3], double gap[3],
+                                                 int* limited);
 /** Removes a grab. */
 PLIANT_API pliant_status pliant_world_release(pliant_world world, uint64_t grab);
 /** Applies a constant force [N] to a vertex until it is set again. */
