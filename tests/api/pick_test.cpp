@@ -267,10 +267,12 @@ TEST(Pick, AfterACutItsVertexIsTheOneThatGrabTakes) {
   const FramePtr before = world.frame();
   const Vec3d p{0.047, -1, -1}, q{0.047, 1, -1}, r{0.047, 1, 1}, s{0.047, -1, 1};
   ASSERT_TRUE(world.cut({{p, q, r}, {p, r, s}}).changed);
+  ASSERT_TRUE(world.step_async(5));
+  world.wait();  // there is a frame of the cut, and nobody has it
   const Vec3d origin{0.05, 1, 0.03}, down{0, -1, 0};
   const auto unseen = world.pick(origin, down);
   ASSERT_TRUE(unseen.has_value());
-  EXPECT_LT(unseen->vertex, static_cast<std::int32_t>(before->positions.size())) << "nobody has seen the cut";
+  EXPECT_LT(unseen->vertex, static_cast<std::int32_t>(before->positions.size())) << "by the numbers of the frame before";
   const FramePtr after = world.frame();
   const auto found = world.pick(origin, down);
   ASSERT_TRUE(found.has_value());
