@@ -29,8 +29,6 @@ namespace {
 
 Vec3 xyz(const pliant::Vec4f& p) { return {p[0], p[1], p[2]}; }
 
-pliant::Vec3d wide(const Vec3& p) { return {p[0], p[1], p[2]}; }
-
 class Window {
  public:
   explicit Window(const Options& options)
