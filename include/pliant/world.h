@@ -78,7 +78,7 @@ class PLIANT_API World {
   /// not slip through. Throws Error (usage) for a direction that is zero and for numbers that are not finite.
   [[nodiscard]] std::optional<PickedPoint> pick(const Vec3d& origin, const Vec3d& direction) const;
 
-  /// Returns the displacements [m] of a body's nodes, shape [nodes]. This and the next two: Error (usage) if there is none.
+  /// Returns the displacements [m] of a body's nodes, shape [nodes]. An unknown body is Error (usage), also in the next two.
   [[nodiscard]] std::vector<Vec3d> displacements(std::size_t body) const;
   [[nodiscard]] std::vector<Vec3d> velocities(std::size_t body) const;      ///< [m/s], shape [nodes]
   [[nodiscard]] std::vector<Vec3d> rest_positions(std::size_t body) const;  ///< [m], shape [nodes]
