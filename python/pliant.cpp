@@ -216,6 +216,24 @@ py::dict result(const pliant::CutResult& r) {
   return d;
 }
 
+py::dict picked(const pliant::PickedPoint& p) {
+  py::dict d;
+  d["body"] = p.body;
+  d["triangle"] = p.triangle;
+  d["vertex"] = p.vertex;
+  d["weights"] = row(p.weights);
+  d["point"] = row(p.point);
+  d["normal"] = row(p.normal);
+  d["distance"] = p.distance;
+  return d;
+}
+
+/// Where a ray first meets the surface, or None.
+py::object pick(const pliant::World& w, const Vec3d& origin, const Vec3d& direction) {
+  const auto found = w.pick(origin, direction);
+  return found ? py::object(picked(*found)) : py::none();
+}
+
 py::dict cut(pliant::World& w, const Vertices& triangles) {
   if (triangles.ndim() != 3 || triangles.shape(1) != 3 || triangles.shape(2) != 3) {
     throw pliant::Error(pliant::ErrorCode::usage, "the triangles of a cut are an array of the shape [triangles, 3, 3]");
@@ -385,6 +403,9 @@ void bind_world(py::module_& m) {
           "frame", [](World& w) { return std::const_pointer_cast<pliant::Frame>(w.frame()); }, Free())
       .def("frame_since", &frame_since, py::arg("seen"),
            "seen: the frame that one of several consumers got last, or None; (frame, dirty_vertices, dirty_triangles)")
+      .def("pick", &pick, py::arg("origin"), py::arg("direction"),
+           "where the ray from origin [m] first meets the surface of the frame returned last: a dict with the fields of "
+           "PickedPoint, whose vertex grab and push take; None: it misses, or there was no frame")
       .def(
           "displacements", [](const World& w, std::size_t body) { return copy(w.displacements(body)); }, py::arg("body") = 0)
       .def(

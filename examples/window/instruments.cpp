@@ -15,7 +15,6 @@ constexpr double kJaw = 0.03;           ///< [sizes] thickness of a jaw
 constexpr double kClosing = 0.05;       ///< share of the opening in a frame
 constexpr double kLookForShapes = 0.5;  ///< [s] between two looks whether the shape of a tool changes
 
-Vec3d wide(Vec3 v) { return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])}; }
 double length(const Vec3d& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
 Turn product(const Turn& a, const Turn& b) {

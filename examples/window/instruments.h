@@ -10,6 +10,8 @@
 
 namespace window {
 
+inline pliant::Vec3d wide(Vec3 v) { return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])}; }
+
 using Turn = std::array<double, 4>;  ///< unit quaternion x, y, z, w
 
 class Instruments {

@@ -29,27 +29,6 @@ namespace {
 
 Vec3 xyz(const pliant::Vec4f& p) { return {p[0], p[1], p[2]}; }
 
-struct Hit {
-  std::int32_t vertex = -1;  ///< the nearest to the point where the ray meets the surface; -1: it misses
-  float far = 1e30F;         ///< distance along the ray [m]
-};
-
-/// The first point where the ray meets the surface.
-Hit hit_by(const pliant::Frame& frame, const Ray& ray) {
-  Hit hit;
-  for (const pliant::Triangle& t : frame.triangles) {
-    const Vec3 a = xyz(frame.positions[t[0]]), e1 = xyz(frame.positions[t[1]]) - a, e2 = xyz(frame.positions[t[2]]) - a;
-    const Vec3 p = cross(ray.along, e2);  // Moeller and Trumbore 1997
-    const float det = dot(e1, p);
-    if (det == 0) continue;
-    const Vec3 s = ray.from - a, q = cross(s, e1);
-    const float u = dot(s, p) / det, v = dot(ray.along, q) / det, far = dot(e2, q) / det;
-    if (u < 0 || v < 0 || u + v > 1 || far <= 0 || far >= hit.far) continue;
-    hit = {t[u > v ? (u > 1 - u - v ? 1 : 0) : (v > 1 - u - v ? 2 : 0)], far};
-  }
-  return hit;
-}
-
 class Window {
  public:
   explicit Window(const Options& options)
@@ -135,11 +114,15 @@ class Window {
     return camera_.ray(2 * x / w - 1, 1 - 2 * y / h, w / h);
   }
 
+  [[nodiscard]] std::optional<pliant::PickedPoint> pick(const Ray& ray) const {
+    return world_.pick(wide(ray.from), wide(ray.along));
+  }
+
   void grab(const Ray& ray) {
-    const std::int32_t vertex = hit_by(*frame_, ray).vertex;
-    if (vertex < 0) return;
-    held_from_ = xyz(frame_->positions[static_cast<std::size_t>(vertex)]);
-    held_ = world_.grab(vertex, {.radius = 0.03 * static_cast<double>(start_distance_)});
+    const auto picked = pick(ray);
+    if (!picked) return;
+    held_from_ = xyz(frame_->positions[picked->vertex]);
+    held_ = world_.grab(picked->vertex, {.radius = 0.03 * static_cast<double>(start_distance_)});
   }
 
   /// The hand stays in the plane through where it began that faces the viewer.
@@ -148,7 +131,7 @@ class Window {
     const float facing = dot(ray.along, back);
     if (held_ == 0 || facing >= 0) return;
     const Vec3 to = ray.from + ray.along * (dot(held_from_ - ray.from, back) / facing);
-    world_.move_grab(held_, {to[0], to[1], to[2]});
+    world_.move_grab(held_, wide(to));
   }
 
   void poke(const Ray& ray, bool wanted) {
@@ -157,8 +140,9 @@ class Window {
       poked_ = -1;
     }
     if (!wanted || poked_ >= 0) return;
-    poked_ = hit_by(*frame_, ray).vertex;
-    if (poked_ < 0) return;
+    const auto picked = pick(ray);
+    if (!picked) return;
+    poked_ = picked->vertex;
     double mass = 0;
     for (const pliant::BodyInfo& body : world_.info().bodies) mass += body.mass;
     const double force = 2 * 9.81 * mass;  // twice the weight
@@ -171,13 +155,12 @@ class Window {
     const float reach = camera_.distance + 2 * start_distance_;
     float from = 0.01F * reach, to = reach;
     if (panel_->depth < 1) {
-      const float surface = hit_by(*frame_, ray).far;
-      if (surface < reach) surface_ = surface;
+      if (const auto picked = pick(ray)) surface_ = static_cast<float>(picked->distance);
       from = surface_ - 0.02F * size_;
       to = surface_ + panel_->depth * size_;
     }
     const Vec3 near = ray.from + ray.along * from, far = ray.from + ray.along * to;
-    world_.move_blade("mouse", {near[0], near[1], near[2]}, {far[0], far[1], far[2]});
+    world_.move_blade("mouse", wide(near), wide(far));
     cutting_ = true;
   }
 
@@ -261,8 +244,8 @@ class Window {
     int width = 1, height = 1;
     glfwGetWindowSize(window_, &width, &height);
     const Ray ray = ray_at(0.5F * static_cast<float>(width), 0.5F * static_cast<float>(height));
-    const float surface = hit_by(*frame_, ray).far;
-    return ray.from + ray.along * ((surface < 1e29F ? surface : camera_.distance) - 0.05F * size_);
+    const auto picked = pick(ray);
+    return ray.from + ray.along * ((picked ? static_cast<float>(picked->distance) : camera_.distance) - 0.05F * size_);
   }
 
   /// Direction of the handle of a new instrument: towards the viewer, and up so that it does not hide its tip.

@@ -1,4 +1,4 @@
-// Probes, tool forces and interpenetrations in the C API.
+// Probes, tool forces, interpenetrations and picked points in the C API.
 #include <algorithm>
 #include <utility>
 #include <vector>
@@ -114,5 +114,26 @@ pliant_status pliant_world_interpenetrations(pliant_world world, pliant_interpen
       found.tool = now[i].tool ? 1 : 0;
       give_struct<pliant_interpenetration>(found, element(out, i));
     }
+  });
+}
+
+pliant_status pliant_world_pick(pliant_world world, const double origin[3], const double direction[3], int* hit,
+                                pliant_picked_point* out) {
+  return on(world, [&](CWorld& w) {
+    need(hit, "hit");
+    *hit = 0;
+    check_struct(out);
+    const auto found = w.world.pick(vector_of(origin, "origin"), vector_of(direction, "direction"));
+    if (!found) return;
+    *hit = 1;
+    pliant_picked_point picked{};
+    picked.body = found->body;
+    picked.triangle = found->triangle;
+    std::copy(found->weights.begin(), found->weights.end(), picked.weights);
+    std::copy(found->point.begin(), found->point.end(), picked.point);
+    std::copy(found->normal.begin(), found->normal.end(), picked.normal);
+    picked.distance = found->distance;
+    picked.vertex = found->vertex;
+    give_struct(picked, out);
   });
 }

@@ -35,6 +35,7 @@ PLIANT_C_STRUCT(pliant_cut, seconds);
 PLIANT_C_STRUCT(pliant_probe_value, number_count);
 PLIANT_C_STRUCT(pliant_tool_force, reserved);
 PLIANT_C_STRUCT(pliant_interpenetration, reserved);
+PLIANT_C_STRUCT(pliant_picked_point, reserved);
 #undef PLIANT_C_STRUCT
 
 /// Throws Error (usage) for an invalid size.

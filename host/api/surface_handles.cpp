@@ -27,6 +27,33 @@ double edge_of(const ModelBody& body) {
   return std::cbrt(body.volume / static_cast<double>(std::max<std::int64_t>(body.elements(), 1)));
 }
 
+/// Marks the nodes `own` and those within `radius` of the point `x` that elements within it connect with them, so that a hand
+/// does not hold the other side of a cut.
+std::vector<char> handful_of(const ModelBody& body, const std::vector<NodeShare>& own, const Vec3d& x, double radius) {
+  std::vector<char> held(body.slot.size());
+  for (const NodeShare& n : own) held[static_cast<std::size_t>(n.node)] = 1;
+  bool more = true;
+  const auto spread = [&](const auto& elements) {
+    for (const auto& nodes : elements) {
+      if (std::none_of(nodes.begin(), nodes.end(), [&](std::int32_t n) { return held[static_cast<std::size_t>(n)] != 0; }))
+        continue;
+      for (const std::int32_t n : nodes) {
+        char& mark = held[static_cast<std::size_t>(n)];
+        const Vec3d& at = body.rest[static_cast<std::size_t>(n)];
+        if (mark != 0 || !(std::hypot(at[0] - x[0], at[1] - x[1], at[2] - x[2]) <= radius)) continue;
+        mark = 1;
+        more = true;
+      }
+    }
+  };
+  while (more) {
+    more = false;
+    spread(body.hexes);
+    spread(body.tets);
+  }
+  return held;
+}
+
 }  // namespace
 
 SurfaceHandles::SurfaceHandles(std::shared_ptr<const Model> model, const Scene& scene) {
@@ -86,15 +113,13 @@ void SurfaceHandles::hold(Grab& g) const {
   const double r = g.options.radius > 0 ? g.options.radius : kHandful * edge_of(body);
   g.point = nodes_of(g.vertex);
   g.rest = model_->surface.rest[static_cast<std::size_t>(body.first_vertex + g.vertex.local)];
+  const std::vector<char> handful = handful_of(body, g.point, g.rest, r);
   g.patch.clear();
   g.mass = 0;
   for (const NodeForce& f : model_->forces) {
     const auto [of, n] = node_of_[static_cast<std::size_t>(f.slot)];
     if (!f.reserved || of != b) continue;
-    const Vec3d& x = body.rest[static_cast<std::size_t>(n)];
-    const bool own = std::any_of(g.point.begin(), g.point.end(), [n = n](const NodeShare& p) { return p.node == n; });
-    const double distance = std::hypot(x[0] - g.rest[0], x[1] - g.rest[1], x[2] - g.rest[2]);
-    if (!own && !(distance <= r)) continue;
+    if (handful[static_cast<std::size_t>(n)] == 0) continue;
     const double mass = model_->mass[static_cast<std::size_t>(f.slot)];
     g.patch.push_back({b, n, mass});
     g.mass += mass;

@@ -125,11 +125,10 @@ struct World::Impl {
   std::exception_ptr failure;
   StepReport report;  ///< of the last stepping call
   double stable_dt = 0;
-  std::shared_ptr<api::FrameData> newest;      ///< the last frame read
-  std::shared_ptr<api::FrameData> given;       ///< the last frame returned by frame()
-  IndexRange dirty_vertices, dirty_triangles;  ///< from `given` to `newest`
-  std::shared_ptr<const api::Topology>
-      shown;  ///< topology of the last frame returned to the user, which vertex numbers refer to
+  std::shared_ptr<api::FrameData> newest;       ///< the last frame read
+  std::shared_ptr<api::FrameData> given;        ///< the last frame returned by frame()
+  IndexRange dirty_vertices, dirty_triangles;   ///< from `given` to `newest`
+  std::shared_ptr<const api::FrameData> shown;  ///< the last frame returned to the user, which vertex numbers refer to
 };
 
 /// Access to a World for Pliant's own code and tests.

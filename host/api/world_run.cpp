@@ -250,7 +250,7 @@ void World::Impl::read_frame(bool again) {
 }
 
 /// Returns the last completed frame while the worker is busy, otherwise the current state. Its topology defines the vertex
-/// numbers for tools from now on. `to_poll`: restart poll() and the frame's own dirty ranges here.
+/// numbers for tools from now on, and pick() looks at it. `to_poll`: restart poll() and the frame's own dirty ranges here.
 FramePtr World::Impl::hand_out(bool to_poll) {
   bool idle = false;
   {
@@ -259,7 +259,7 @@ FramePtr World::Impl::hand_out(bool to_poll) {
   }
   if (idle && lost.empty()) read_frame();
   const std::lock_guard lock(mutex);
-  shown = newest->topology;
+  shown = newest;
   if (!to_poll) return {newest, &newest->frame};
   if (given != newest) {
     given = newest;

@@ -3,11 +3,12 @@
 // Threads: a World may be used from any thread, but only by one at a time; concurrent calls throw Error (state). Worlds share
 // no state: each may have its own thread, and results do not depend on other Worlds. The first step_async() or
 // advance_async() starts a worker thread. While the worker is busy, these calls do not wait for it: busy, poll, frame,
-// frame_since, info, time, step_number, dt, stable_dt, the tools, cut, move_blade, lift_blade, step_async, advance_async. All
-// other calls wait. Any number of threads may read a Frame.
+// frame_since, pick, info, time, step_number, dt, stable_dt, the tools, cut, move_blade, lift_blade, step_async,
+// advance_async. All other calls wait. Any number of threads may read a Frame.
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -65,17 +66,19 @@ class PLIANT_API World {
   /// Waits for the worker and returns the report of its last call. Throws the error that the worker met, if any.
   StepReport wait();
 
-  /// Returns the newest frame. While the worker is busy, this is the last completed frame; otherwise it is the current state,
-  /// read from the device if necessary. After a divergence it is the last good state, after a device failure the last state
-  /// read.
+  /// Returns the newest frame: the last completed one while the worker is busy, otherwise the current state, read from the
+  /// device if necessary. After a divergence it is the last good state, after a device failure the last state read.
   FramePtr frame();
   /// Returns the newest frame for one of several consumers, with the ranges that differ from `seen`, the frame that this
   /// consumer received last (null: everything is dirty). The World keeps no record of consumers, so poll() and the ranges of
   /// other consumers are unaffected.
   FrameChange frame_since(const FramePtr& seen);
+  /// Returns where the ray from `origin` [m] first meets the surface of the frame returned last, from either side; nothing if
+  /// it misses, or before the first frame. The length of `direction` does not matter. A ray through an edge or a vertex does
+  /// not slip through. Throws Error (usage) for a direction that is zero and for numbers that are not finite.
+  [[nodiscard]] std::optional<PickedPoint> pick(const Vec3d& origin, const Vec3d& direction) const;
 
-  /// Returns the displacements [m] of a body's nodes, shape [nodes]. This and the next two throw Error (usage) if there is no
-  /// such body.
+  /// Returns the displacements [m] of a body's nodes, shape [nodes]. An unknown body is Error (usage), also in the next two.
   [[nodiscard]] std::vector<Vec3d> displacements(std::size_t body) const;
   [[nodiscard]] std::vector<Vec3d> velocities(std::size_t body) const;      ///< [m/s], shape [nodes]
   [[nodiscard]] std::vector<Vec3d> rest_positions(std::size_t body) const;  ///< [m], shape [nodes]
@@ -89,10 +92,9 @@ class PLIANT_API World {
   [[nodiscard]] std::uint64_t hash() const;                ///< hash of the state; equal hashes mean equal bits
 
   /// Interactive tools. All but move_tool() need WorldOptions::interactive, otherwise Error (state); an unknown vertex or grab
-  /// is Error (usage). They do not wait and take effect at the next batch of steps. Vertex numbers are those of the last frame.
+  /// is Error (usage). They do not wait and take effect at the next batch. Vertex numbers are those of the frame returned last.
   ///
-  /// Attaches a spring between the surface around `vertex` and a target point, which is initially the vertex's current
-  /// position. Returns an id for move_grab() and release().
+  /// Attaches a spring between the surface around `vertex` and a target, initially its current position. Returns its id.
   GrabId grab(std::int32_t vertex, const GrabOptions& options = {});
   void move_grab(GrabId grab, const Vec3d& target);       ///< moves the spring's target [m]
   [[nodiscard]] GrabState grab_state(GrabId grab) const;  ///< force and gap
@@ -167,11 +169,9 @@ class PLIANT_API World {
   /// Moves a named blade to the segment from `a` to `b` [m]; the ends must differ (usage). It cuts the surface that it sweeps
   /// since its last position, which is carried along with the tissue. The first call for a name only places the blade.
   CutResult move_blade(const std::string& blade, const Vec3d& a, const Vec3d& b);
-  /// Lifts a blade out of the tissue: its next move_blade() places it without cutting. Throws Error (usage) if there is no
-  /// such blade.
+  /// Lifts a blade: its next move_blade() places it without cutting. Throws Error (usage) if there is no such blade.
   void lift_blade(const std::string& blade);
-  /// Returns the number of pieces of a body, that is, sets of elements that share nodes. Waits for the worker. Throws Error
-  /// (usage) if there is no such body.
+  /// Returns the number of pieces of a body: sets of elements that share nodes. Throws Error (usage) if there is no such body.
   [[nodiscard]] std::int64_t pieces(std::size_t body) const;
 
   /// Writes a checkpoint, which `pliant run --resume` can read too. It includes cuts and the positions of blades, but not

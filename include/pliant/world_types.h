@@ -1,5 +1,6 @@
 // Options, information and reports of a World.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -51,6 +52,17 @@ struct StepReport {
   bool diverged = false;        ///< true if the simulation diverged; `message` says where
   bool at_equilibrium = false;  ///< true if dynamic relaxation has converged; further steps do nothing
   std::string message;          ///< describes the divergence: step, body, element, dt and the stable step
+};
+
+/// Where a ray meets the surface. Numbers of vertices and triangles are those of the frame that World::pick() looked at.
+struct PickedPoint {
+  std::size_t body = 0;             ///< index of the body
+  std::size_t triangle = 0;         ///< number of the triangle
+  std::int32_t vertex = 0;          ///< the vertex of the triangle nearest to the point, for World::grab() and push()
+  std::array<double, 3> weights{};  ///< of the triangle's vertices; the point is their weighted mean (barycentric coordinates)
+  Vec3d point{};                    ///< [m]
+  Vec3d normal{};                   ///< outward normal of the triangle, unit length
+  double distance = 0;              ///< from the origin of the ray to the point [m], whatever the length of its direction
 };
 
 /// Parameters of a grab: a patch of nodes held by a spring.

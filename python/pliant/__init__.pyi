@@ -93,6 +93,15 @@ class _GrabState(TypedDict):
     gap: _Floats
     limited: bool
 
+class _PickedPoint(TypedDict):
+    body: int
+    triangle: int
+    vertex: int
+    weights: _Floats
+    point: _Floats
+    normal: _Floats
+    distance: float
+
 class _ToolForce(TypedDict):
     position: _Floats
     turn: _Floats
@@ -134,6 +143,7 @@ class World:
     def wait(self) -> StepReport: ...
     def frame(self) -> Frame: ...
     def frame_since(self, seen: Frame | None) -> tuple[Frame, _Range, _Range]: ...
+    def pick(self, origin: _Vector, direction: _Vector) -> _PickedPoint | None: ...
     def displacements(self, body: int = 0) -> _Floats: ...
     def velocities(self, body: int = 0) -> _Floats: ...
     def rest_positions(self, body: int = 0) -> _Floats: ...

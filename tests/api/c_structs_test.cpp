@@ -64,6 +64,7 @@ TEST(CStructSizes, AreThoseOfTheFirstVersion) {
   EXPECT_EQ(api::CStruct<pliant_probe_value>::first_size, 40U);
   EXPECT_EQ(api::CStruct<pliant_tool_force>::first_size, 144U);
   EXPECT_EQ(api::CStruct<pliant_interpenetration>::first_size, 112U);
+  EXPECT_EQ(api::CStruct<pliant_picked_point>::first_size, 112U);
 }
 
 /// Every call that fills in a struct refuses sizes that no version has, and does nothing.
@@ -92,7 +93,8 @@ void expect_checked(T given, Call&& call) {
 }
 
 TEST_F(CStructs, WhatIsFilledInFitsTheCaller) {
-  const double triangle[9]{0.04, -1, -1, 0.04, 1, -1, 0.04, 1, 1}, a[3]{1, 0, 0}, b[3]{1, 0, 1};
+  const double triangle[9]{0.04, -1, -1, 0.04, 1, -1, 0.04, 1, 1}, a[3]{1, 0, 0}, b[3]{1, 0, 1}, above[3]{0.05, 1, 0.05},
+      down[3]{0, -1, 0};
   std::int64_t step = -1;
   expect_checked<pliant_report>(PLIANT_REPORT_INIT, [&](pliant_report* r) { return pliant_world_step(world, 2, r); });
   ASSERT_EQ(pliant_world_step_number(world, &step), PLIANT_OK);
@@ -103,6 +105,10 @@ TEST_F(CStructs, WhatIsFilledInFitsTheCaller) {
   expect_checked<pliant_body>(PLIANT_BODY_INIT, [&](pliant_body* i) { return pliant_world_body(world, 0, i); });
   expect_checked<pliant_frame>(PLIANT_FRAME_INIT, [&](pliant_frame* f) { return pliant_world_frame(world, f); });
   expect_checked<pliant_frame>(PLIANT_FRAME_INIT, [&](pliant_frame* f) { return pliant_world_frame_since(world, 1, f); });
+  int hit = 0;
+  expect_checked<pliant_picked_point>(PLIANT_PICKED_POINT_INIT,
+                                      [&](pliant_picked_point* p) { return pliant_world_pick(world, above, down, &hit, p); });
+  EXPECT_EQ(hit, 1);
   expect_checked<pliant_cut>(PLIANT_CUT_INIT, [&](pliant_cut* c) { return pliant_world_cut(world, triangle, 1, c); });
   expect_checked<pliant_probe_value>(PLIANT_PROBE_VALUE_INIT,
                                      [&](pliant_probe_value* v) { return pliant_world_probes(world, v, 1, nullptr); });

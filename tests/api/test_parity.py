@@ -47,7 +47,7 @@ BEYOND = {
 }
 PYTHON_NAMES = {"backends": "backend_names", "__version__": "version", "World::__init__": "World::World"}
 STRUCTS = {"WorldOptions": "options", "StepReport": "report", "CutResult": "cut", "WorldInfo": "info", "BodyInfo": "body", "Frame": "frame",
-           "ProbeValue": "probe_value", "ToolForce": "tool_force", "Interpenetration": "interpenetration"}
+           "ProbeValue": "probe_value", "ToolForce": "tool_force", "Interpenetration": "interpenetration", "PickedPoint": "picked_point"}
 
 
 def code_of(path):
@@ -105,7 +105,7 @@ def python():
     found |= {f"WorldOptions.{n}" for n in re.findall(r'py::arg\("(\w+)"\)', constructor)} - {f"WorldOptions.{n}" for n in ("scene", "surfaces", "folder")}
     for name, function in {"StepReport": "bind_report", "Frame": "bind_frame"}.items():
         found |= {f"{name}.{n}" for n in re.findall(define, block(text, f"void {function}("))}
-    for name, variable, function in (("WorldInfo", "d", "info"), ("BodyInfo", "body", "info"), ("CutResult", "d", "result"),
+    for name, variable, function in (("WorldInfo", "d", "info"), ("BodyInfo", "body", "info"), ("CutResult", "d", "result"), ("PickedPoint", "d", "picked"),
                                      ("ToolForce", "tool", "tool_forces"), ("Interpenetration", "found", "interpenetrations")):
         kind = "list" if name == "Interpenetration" else "dict"
         found |= {f"{name}.{n}" for n in re.findall(rf'\b{variable}\["(\w+)"\] =', block(text, f"py::{kind} {function}("))}
@@ -145,7 +145,7 @@ def main():
         print(f"{language}: {len(found & reference)} of {len(reference)} calls and members of C++, {len(found - reference)} of its own")
     held = module()
     if held is not None:
-        said = {n for n in python() if not n.startswith(("WorldOptions.", "WorldInfo.", "BodyInfo.", "CutResult.", "ToolForce.", "Interpenetration."))}
+        said = {n for n in python() if not n.startswith(("WorldOptions.", "WorldInfo.", "BodyInfo.", "CutResult.", "ToolForce.", "Interpenetration.", "PickedPoint."))}
         wrong += [f"the module and its source differ in {n}" for n in sorted(held ^ said)]
     print("the Python module " + ("is not there: only its source was read" if held is None else "holds what its source says"))
     if wrong:

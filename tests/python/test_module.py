@@ -57,6 +57,9 @@ def test_the_stub_names_what_is_there():
             allowed = [a.arg for a in arguments.posonlyargs + arguments.args + arguments.kwonlyargs][1:]
             assert re.findall(r"(\w+): ", text.split("\n")[0].split(" -> ")[0])[1:] == allowed, call
     infos = {"_WorldInfo": block().info, "_BodyInfo": block().info["bodies"][0], "_CutResult": block().cut(np.zeros((0, 3, 3)))}
+    world = block()
+    world.frame()
+    infos["_PickedPoint"] = world.pick([0.01, 1, 0.02], [0, -1, 0])
     for name, held in infos.items():
         stubs = next(c for c in ast.parse(stub.read_text()).body if getattr(c, "name", "") == name)
         assert [f.target.id for f in stubs.body] == list(held), name
@@ -240,6 +243,22 @@ def test_tools():
     world.advance(0.5)
     assert world.frame().positions[7, 0] > 0.105
     world.release(hand)
+
+
+def test_pick():
+    world = block(interactive=True)
+    assert world.pick([0.01, 1, 0.02], [0, -1, 0]) is None, "there was no frame"
+    frame = world.frame()
+    found = world.pick(origin=np.array([0.01, 1, 0.02]), direction=(0, -3, 0))
+    corners = frame.triangles[found["triangle"]]
+    assert found["body"] == 0 and np.isclose(found["distance"], 0.92) and np.allclose(found["point"], [0.01, 0.08, 0.02])
+    assert np.allclose(found["weights"] @ frame.positions[corners], found["point"]) and np.array_equal(found["normal"], [0, 1, 0])
+    away = np.linalg.norm(frame.positions[corners] - found["point"], axis=1)
+    assert found["vertex"] == corners[away.argmin()]
+    assert world.pick([0.01, 1, 0.02], [0, 1, 0]) is None
+    world.grab(found["vertex"])
+    assert error_of(lambda: world.pick([0, 1, 0], [0, 0, 0])).code == 5
+    assert type_error_of(lambda: world.pick([0, 1, 0])).startswith("World.pick() takes (origin: ")
 
 
 def test_interpenetrations():

@@ -62,15 +62,14 @@ def test_filled_contours():
     assert mesh.numbers.tolist() == [3, 7, 9] and mesh.triangles.tolist() == [[1, 0, 2]]
 
 
-def test_stretch_and_rays():
-    from pliant.view.contours import first_hits, stretch
+def test_stretch():
+    from pliant.view.contours import stretch
 
     x = VERTICES.astype(np.float32)
     sheared = x * np.array([1.2, 1, 1], np.float32)
     assert np.allclose(stretch(x, sheared, TRIANGLES[6:8]), [1, 1, 1.2, 1.2, 1, 1, 1.2, 1.2], atol=1e-5), "the upper side, and no triangle elsewhere"
     turned = x @ np.array([[0, 1, 0], [-1, 0, 0], [0, 0, 1]], np.float32)
     assert np.allclose(stretch(x, turned, TRIANGLES), 1, atol=1e-5)
-    assert np.allclose(first_hits(x, TRIANGLES, np.array([0.03, 0.2, 0.02]), np.array([[0, -1.0, 0], [0, 1, 0], [1, 0, 0]])), [0.12, np.inf, np.inf])
 
 
 def test_the_scene_is_remembered():

@@ -85,6 +85,10 @@ PLIANT_API pliant_status pliant_world_frame(pliant_world world, pliant_frame* ou
 PLIANT_API pliant_status pliant_world_frame_since(pliant_world world, uint64_t consumer, pliant_frame* out);
 /** Releases a consumer's frame and invalidates its pointers. A later frame_since of this id reports everything as dirty. */
 PLIANT_API pliant_status pliant_world_forget_consumer(pliant_world world, uint64_t consumer);
+/** Where the ray from `origin` [m] first meets the surface of the frame returned last (see pliant::World). `*hit` is 0 if it
+ * misses, or before the first frame, and `out` is then as before. `out` may be null. */
+PLIANT_API pliant_status pliant_world_pick(pliant_world world, const double origin[3], const double direction[3], int* hit,
+                                           pliant_picked_point* out);
 /** Copies an array of the newest frame, three numbers per vertex or triangle. `count` is the length of `out` in numbers and
  * must match exactly (PLIANT_USAGE). This one copies positions [m]. */
 PLIANT_API pliant_status pliant_world_positions(pliant_world world, float* out, size_t count);

@@ -134,8 +134,7 @@ typedef struct pliant_cut {
 #define PLIANT_CUT_INIT \
   { sizeof(pliant_cut), 0, 0, 0, 0.0 }
 
-/** One quantity of a probe, as pliant::ProbeValue. The pointers are valid until the next pliant_world_probes or
- * pliant_world_destroy of the same world. */
+/** One quantity of a probe, as pliant::ProbeValue. Pointers are valid until the world's next pliant_world_probes or its end. */
 typedef struct pliant_probe_value {
   size_t size;           /**< PLIANT_PROBE_VALUE_INIT; the same in all elements of an array */
   const char* probe;     /**< name of the probe in the scene */
@@ -178,6 +177,21 @@ typedef struct pliant_interpenetration {
 } pliant_interpenetration;
 #define PLIANT_INTERPENETRATION_INIT \
   { sizeof(pliant_interpenetration), NULL, NULL, 0.0, {0}, {0}, 0.0, {0}, 0, 0 }
+
+/** Where a ray meets the surface of the frame returned last, as pliant::PickedPoint. */
+typedef struct pliant_picked_point {
+  size_t size;       /**< PLIANT_PICKED_POINT_INIT */
+  size_t body;       /**< index of the body */
+  size_t triangle;   /**< number of the triangle */
+  double weights[3]; /**< of the triangle's vertices; the point is their weighted mean */
+  double point[3];   /**< [m] */
+  double normal[3];  /**< outward normal of the triangle, unit length */
+  double distance;   /**< from the origin of the ray to the point [m], whatever the length of its direction */
+  int32_t vertex;    /**< the vertex of the triangle nearest to the point, for pliant_world_grab and pliant_world_push */
+  int reserved;      /**< 0 */
+} pliant_picked_point;
+#define PLIANT_PICKED_POINT_INIT \
+  { sizeof(pliant_picked_point), 0, 0, {0}, {0}, {0}, 0.0, 0, 0 }
 
 #ifdef __cplusplus
 }

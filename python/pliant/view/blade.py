@@ -1,24 +1,22 @@
 """A cut by two clicks: the blade stands in the plane through both and the eye, and follows the surface between them."""
 import numpy as np
 
-from pliant.view.contours import first_hits
-
 RAYS = 24  # between the clicks
 ABOVE = 0.15  # [sizes] where the blade begins before the surface: cells at the surface reach beyond it, and come apart only if the blade goes through
 MARK = (250, 210, 60)
 
 
-def sheet(points, triangles, clicks, size, depth):
+def sheet(hit, clicks, size, depth):
     """The triangles of the cut, [n, 3, 3]: as deep as `depth` [m] below the surface, or through everything if it is infinite.
 
-    clicks: two rays, each its origin and its direction of unit length.
+    hit: the distance to the tissue along a ray; clicks: two rays, each its origin and its direction of unit length.
     """
     share = np.linspace(0, 1, RAYS)[:, None]
     (origin, _), (other_origin, _) = clicks
     eyes = origin + share * (other_origin - origin)
     rays = clicks[0][1] + share * (clicks[1][1] - clicks[0][1])
     rays /= np.linalg.norm(rays, axis=1)[:, None]
-    far = np.array([first_hits(points, triangles, eye, ray[None])[0] for eye, ray in zip(eyes, rays)])
+    far = np.array([hit(eye, ray) for eye, ray in zip(eyes, rays)])
     met = np.isfinite(far)
     if not met.any():
         raise ValueError("no tissue lies between the two clicks")

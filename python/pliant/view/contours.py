@@ -1,4 +1,4 @@
-"""Triangles in NumPy: filled contours of a field, surface stretch, and what a ray meets."""
+"""Triangles in NumPy: filled contours of a field, and surface stretch."""
 import numpy as np
 
 
@@ -76,22 +76,3 @@ def stretch(rest, now, triangles):
     total = np.bincount(triangles.ravel(), np.repeat(weight, 3), len(rest))
     mean = np.bincount(triangles.ravel(), np.repeat(weight * most, 3), len(rest)) / np.where(total > 0, total, 1)
     return np.where(total > 0, mean, 1)
-
-
-def first_hits(points, triangles, origin, directions):
-    """How far along each ray from `origin` the surface is first met; infinity where it is not. (Moeller and Trumbore 1997.)"""
-    corner = points[triangles[:, 0]].astype(float)
-    e, f = points[triangles[:, 1]] - corner, points[triangles[:, 2]] - corner
-    from_corner = origin - corner
-    q = np.cross(from_corner, e)
-    along = (f * q).sum(axis=1)
-    far = np.full(len(directions), np.inf)
-    for number, direction in enumerate(directions):
-        p = np.cross(direction, f)
-        det = (e * p).sum(axis=1)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            u, v, t = (from_corner * p).sum(axis=1) / det, q @ direction / det, along / det
-            met = (u >= 0) & (v >= 0) & (u + v <= 1) & (t > 0)
-        if met.any():
-            far[number] = t[met].min()
-    return far

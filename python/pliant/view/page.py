@@ -4,7 +4,6 @@ import time
 import numpy as np
 
 from pliant.view.blade import Blade, sheet
-from pliant.view.contours import first_hits
 from pliant.view.panel import Panel, against_gravity
 from pliant.view.surface import Surface
 from pliant.view.tools import Tools, probe
@@ -88,11 +87,12 @@ class Page:
     # --- requests: in the thread of the page -----------------------------------------------------------------------------------
     def cut(self, clicks, depth):
         """clicks: two rays; depth [m] below the surface, or infinity."""
-        self.world.cut(sheet(self.frame.positions, self.frame.triangles, clicks, self.size, depth))
+        self.world.cut(sheet(self.hit, clicks, self.size, depth))
 
     def hit(self, origin, direction):
         """How far along a ray the tissue is, or infinity."""
-        return first_hits(self.frame.positions, self.frame.triangles, origin, direction[None])[0]
+        picked = self.world.pick(origin, direction)
+        return np.inf if picked is None else picked["distance"]
 
     def add_probe(self):
         x = self.frame.positions
