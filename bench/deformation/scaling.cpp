@@ -51,7 +51,7 @@ Scene liver(const DeformationRun& run, std::int64_t nodes, ModelType type, int w
   Scene scene = run.scene("liver");
   Body& body = scene.bodies[0];
   scene.gravity = {0, -0.5, 0};  // every node moves from the first step on; more would invert the cells at the hold in time
-  body.prescribed.clear();        // 20 mm of indentation would turn the small cells of a large lattice inside out
+  body.prescribed.clear();       // 20 mm of indentation would turn the small cells of a large lattice inside out
   body.lattice.nodes = nodes;
   body.model.type = type;
   body.model.width = width;
