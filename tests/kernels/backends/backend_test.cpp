@@ -63,7 +63,7 @@ __kernel void toy_brick(__global const float* x, __global float* y) {
 #if LANES == 16
   const int brick = get_global_id(0), i = 16 * brick;
 #else
-  const int brick = get_group_id(0), i = 16 * brick + get_local_id(0);
+  const int i = get_global_id(0), brick = i / 16;
 #endif
   const real v = LOAD(x, i);
   STORE(fma(v, v, (real)((float)brick)), y, i);
