@@ -268,8 +268,8 @@ std::int32_t SurfaceHandles::apply(Simulation& simulation) {
     const std::size_t body = grab.vertex.body;
     if (!displacements.contains(body)) displacements[body] = simulation.displacements(body);
     const std::vector<Vec3d>& u = displacements[body];
-    const auto moved = [&](const std::vector<NodeShare>& nodes) {
-      Vec3d at = grab.rest;
+    const auto moved = [&u, rest = grab.rest](const std::vector<NodeShare>& nodes) {
+      Vec3d at = rest;
       for (const NodeShare& n : nodes) {
         for (std::size_t c = 0; c < 3; ++c) at[c] += n.share * u[static_cast<std::size_t>(n.node)][c];
       }

@@ -7,13 +7,13 @@
 
 #include "backends/interface/buffer_checks.h"
 #include "backends/interface/float_environment.h"
+#include "backends/interface/launch.h"
 #include "backends/interface/pass_table.h"
 #include "backends/interface/probe.h"
 #include "backends/opencl/device_memory.h"
 #include "backends/opencl/devices.h"
 #include "backends/opencl/kernel_cache.h"
 #include "backends/opencl/kernel_text.h"
-#include "backends/opencl/launch.h"
 #include "backends/opencl/opencl.h"
 #include "backends/opencl/shared_context.h"
 
@@ -171,8 +171,8 @@ class OpenclBackend final : public Backend {
   struct Prepared {
     cl::Kernel kernel;
     std::vector<cl_uint> step_args;
-    opencl::LaunchRules rules{};
-    std::vector<opencl::Launch> launches_of_one_run;
+    LaunchRules rules{};
+    std::vector<Launch> launches_of_one_run;
     std::string where;
     double seconds = 0;
     std::int64_t launches = 0;
@@ -262,7 +262,7 @@ class OpenclBackend final : public Backend {
       }
       const std::size_t largest = p.kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device_);
       p.rules = {info_.lanes, local_size_, largest, info_.kind == "cpu"};
-      p.launches_of_one_run = opencl::plan_launches(pass, p.rules);
+      p.launches_of_one_run = plan_launches(pass, p.rules);
     });
     return p;
   }
@@ -278,15 +278,15 @@ class OpenclBackend final : public Backend {
     guarded(ErrorCode::internal, p.where, [&] {
       for (const cl_uint i : p.step_args) p.kernel.setArg(i, step);
       const bool listed = pass.active != nullptr && pass.shape != Shape::items;
-      const auto some = listed ? std::vector{opencl::plan_listed(indices, p.rules)} : std::vector<opencl::Launch>();
-      for (const opencl::Launch& launch : listed ? some : p.launches_of_one_run) {
+      const auto some = listed ? std::vector{plan_listed(indices, p.rules)} : std::vector<Launch>();
+      for (const Launch& launch : listed ? some : p.launches_of_one_run) {
         cl::Event* event = nullptr;
         if (profiling_) {
           events_.push_back({&p, {}});
           event = &events_.back().event;
         }
-        queue_.enqueueNDRangeKernel(p.kernel, launch.offset_range(), cl::NDRange(launch.global), launch.local_range(), nullptr,
-                                    event);
+        queue_.enqueueNDRangeKernel(p.kernel, launch.offset == 0 ? cl::NullRange : cl::NDRange(launch.offset),
+                                    cl::NDRange(launch.global), cl::NDRange(launch.local), nullptr, event);
       }
     });
     if (profiling_) {

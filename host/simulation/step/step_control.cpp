@@ -66,11 +66,13 @@ void StepControl::refuse_step() const {
   const std::vector<char>& is_free = run_.loaded.free();
   const bool moves = std::find(is_free.begin(), is_free.end(), 1) != is_free.end();
   const std::string why =
-      moves ? fmt::format("the elements give no finite forces on {} ({}); \"young\" and \"density\" may be beyond what a float "
-                          "holds, or the device computes wrongly, which \"pliant compare\" shows",
-                          run_.backend().info().name, run_.backend().info().device)
-            : std::string("\"fixed\" and \"prescribed\" hold every node of every body, and nothing is left that could move; "
-                          "choose smaller regions there");
+      moves ? fmt::format(
+                  "the elements give no finite forces on {} ({}); \"young\" and \"density\" may be beyond what a float "
+                  "holds, or the device computes wrongly, which \"pliant compare\" shows",
+                  run_.backend().info().name, run_.backend().info().device)
+            : std::string(
+                  "\"fixed\" and \"prescribed\" hold every node of every body, and nothing is left that could move; "
+                  "choose smaller regions there");
   throw Error(ErrorCode::bad_input, fmt::format("{}: no stable step could be found (estimate {} s): {}", run_.scene.name,
                                                 run_.state.limit.stable_dt, why));
 }

@@ -1,9 +1,9 @@
 // How passes are split into work-items and work-groups.
-#include "backends/opencl/launch.h"
+#include "backends/interface/launch.h"
 
 #include <gtest/gtest.h>
 
-namespace pliant::opencl {
+namespace pliant {
 namespace {
 
 Pass bricks(int count) {
@@ -47,4 +47,4 @@ TEST(PlanLaunches, ABrickIsAGroupOnAProcessorAndWhereGroupsAreSmall) {
 }
 
 }  // namespace
-}  // namespace pliant::opencl
+}  // namespace pliant

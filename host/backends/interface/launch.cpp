@@ -1,8 +1,8 @@
-#include "backends/opencl/launch.h"
+#include "backends/interface/launch.h"
 
 #include <algorithm>
 
-namespace pliant::opencl {
+namespace pliant {
 namespace {
 
 /// What to aim for. Measured on PoCL 3.1, two threads: a launch costs 1.3 us, a work-group 3.5 ns, and a local size left to the
@@ -59,4 +59,4 @@ Launch plan_listed(std::int64_t indices, const LaunchRules& rules) {
   return {0, (global + local - 1) / local * local, local};
 }
 
-}  // namespace pliant::opencl
+}  // namespace pliant

@@ -3,17 +3,14 @@
 #include <cstddef>
 #include <vector>
 
-#include "backends/opencl/opencl.h"
 #include "program/program.h"
 
-namespace pliant::opencl {
+namespace pliant {
 
 /// One enqueue.
 struct Launch {
   std::size_t offset = 0, global = 0;
   std::size_t local = 1;
-  [[nodiscard]] cl::NDRange offset_range() const { return offset == 0 ? cl::NullRange : cl::NDRange(offset); }
-  [[nodiscard]] cl::NDRange local_range() const { return cl::NDRange(local); }
 };
 
 struct LaunchRules {
@@ -24,12 +21,12 @@ struct LaunchRules {
 };
 
 /// Returns the enqueues of one run of `pass`; none if its count is zero. A `lanes` or `items` pass may be split in two (the
-/// second with a global offset), so such kernels may use only get_global_id; `bricks` passes with one lane have whole rows of 16
-/// work-items per group, and are split likewise.
+/// second with a global offset), so such kernels may use only get_global_id; `bricks` passes with one lane have whole rows of
+/// 16 work-items per group, and are split likewise.
 std::vector<Launch> plan_launches(const Pass& pass, const LaunchRules& rules);
 
 /// Returns the enqueue of a pass over a list of `indices` (Pass::active); the last group may extend beyond them, where lists
 /// hold -1.
 Launch plan_listed(std::int64_t indices, const LaunchRules& rules);
 
-}  // namespace pliant::opencl
+}  // namespace pliant
