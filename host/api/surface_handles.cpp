@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace pliant::api {
 namespace {
@@ -30,26 +31,33 @@ double edge_of(const ModelBody& body) {
 /// Marks the nodes `own` and those within `radius` of the point `x` that elements within it connect with them, so that a hand
 /// does not hold the other side of a cut.
 std::vector<char> handful_of(const ModelBody& body, const std::vector<NodeShare>& own, const Vec3d& x, double radius) {
-  std::vector<char> held(body.slot.size());
-  for (const NodeShare& n : own) held[static_cast<std::size_t>(n.node)] = 1;
-  bool more = true;
-  const auto spread = [&](const auto& elements) {
-    for (const auto& nodes : elements) {
-      if (std::none_of(nodes.begin(), nodes.end(), [&](std::int32_t n) { return held[static_cast<std::size_t>(n)] != 0; }))
-        continue;
+  std::vector<char> held(body.slot.size()), near(body.slot.size());
+  for (std::size_t n = 0; n < near.size(); ++n) {
+    const Vec3d& at = body.rest[n];
+    near[n] = std::hypot(at[0] - x[0], at[1] - x[1], at[2] - x[2]) <= radius ? 1 : 0;
+  }
+  for (const NodeShare& n : own) held[static_cast<std::size_t>(n.node)] = near[static_cast<std::size_t>(n.node)] = 1;
+  std::vector<std::span<const std::int32_t>> elements;  // those that may connect any
+  const auto marked = [](const std::vector<char>& marks) {
+    return [&marks](std::int32_t n) { return marks[static_cast<std::size_t>(n)] != 0; };
+  };
+  const auto collect = [&](const auto& all) {
+    for (const auto& nodes : all) {
+      if (std::any_of(nodes.begin(), nodes.end(), marked(near))) elements.emplace_back(nodes);
+    }
+  };
+  collect(body.hexes);
+  collect(body.tets);
+  for (bool more = true; more;) {
+    more = false;
+    for (const std::span<const std::int32_t> nodes : elements) {
+      if (std::none_of(nodes.begin(), nodes.end(), marked(held))) continue;
       for (const std::int32_t n : nodes) {
-        char& mark = held[static_cast<std::size_t>(n)];
-        const Vec3d& at = body.rest[static_cast<std::size_t>(n)];
-        if (mark != 0 || !(std::hypot(at[0] - x[0], at[1] - x[1], at[2] - x[2]) <= radius)) continue;
-        mark = 1;
+        if (marked(held)(n) || !marked(near)(n)) continue;
+        held[static_cast<std::size_t>(n)] = 1;
         more = true;
       }
     }
-  };
-  while (more) {
-    more = false;
-    spread(body.hexes);
-    spread(body.tets);
   }
   return held;
 }

@@ -36,6 +36,16 @@ TEST(FirstStep, SaysWhyThereIsNone) {
   EXPECT_NE(refusal(stiff).find("give no finite forces on cpu"), std::string::npos) << refusal(stiff);
 }
 
+/// Far from its rest position, differences of forces in float are rounding, and the bound of the elements keeps the step.
+TEST(StepFarAway, IsThatOfTheElementBound) {
+  Body body = box_body("box", {0.03, 0.02, 0.02});
+  body.velocity = {3000, -2000, 1000};
+  Simulation s(scene_with(body), open_backend("cpu"));
+  const double first = s.dt();
+  s.advance(600);
+  EXPECT_GT(s.dt(), 0.5 * first);
+}
+
 /// A body that flies through empty space, with half of its automatic step.
 class HalvedStep : public ::testing::Test {
  protected:
