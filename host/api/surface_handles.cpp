@@ -105,7 +105,7 @@ void SurfaceHandles::check_vertex(const SurfaceVertex& vertex) const {
 
 std::vector<NodeShare> SurfaceHandles::nodes_of(const SurfaceVertex& vertex) const {
   std::vector<NodeShare> nodes;
-  const auto v = static_cast<std::size_t>(model_->bodies[vertex.body].first_vertex + vertex.local);
+  const auto v = static_cast<std::size_t>(model_->bodies[vertex.body].first_vertex) + static_cast<std::size_t>(vertex.local);
   for (std::size_t a = 0; a < 8; ++a) {
     if (model_->surface.weights[v][a] == 0) continue;
     const auto [body, node] = node_of_[static_cast<std::size_t>(model_->surface.nodes[v][a])];
@@ -120,7 +120,7 @@ void SurfaceHandles::hold(Grab& g) const {
   const ModelBody& body = model_->bodies[b];
   const double r = g.options.radius > 0 ? g.options.radius : kHandful * edge_of(body);
   g.point = nodes_of(g.vertex);
-  g.rest = model_->surface.rest[static_cast<std::size_t>(body.first_vertex + g.vertex.local)];
+  g.rest = model_->surface.rest[static_cast<std::size_t>(body.first_vertex) + static_cast<std::size_t>(g.vertex.local)];
   const std::vector<char> handful = handful_of(body, g.point, g.rest, r);
   g.patch.clear();
   g.mass = 0;

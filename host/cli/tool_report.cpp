@@ -55,12 +55,12 @@ void add_tools(const Simulation& simulation, nlohmann::ordered_json& json) {
 }
 
 nlohmann::ordered_json interpenetration_json(const Interpenetration& found) {
-  using Json = nlohmann::ordered_json;
+  using Value = nlohmann::ordered_json;
   return {{"volume", found.volume},
-          {"centroid", found.volume > 0 ? Json(found.centroid) : Json(nullptr)},
+          {"centroid", found.volume > 0 ? Value(found.centroid) : Value(nullptr)},
           {"area", found.area},
           {"depth", found.depth},
-          {"deepest", found.depth > 0 ? Json(found.deepest) : Json(nullptr)}};
+          {"deepest", found.depth > 0 ? Value(found.deepest) : Value(nullptr)}};
 }
 
 std::vector<std::string> add_interpenetrations(Simulation& simulation, nlohmann::ordered_json& json) {

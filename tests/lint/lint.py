@@ -5,6 +5,7 @@ all: over all files. changed: the same, but clang-tidy only over what is not in 
 these: over the files given. staged: the format of what is about to be committed. kernels/*.h are also OpenCL C: of them only the
 format is checked.
 """
+import json
 import os
 import re
 import subprocess
@@ -71,7 +72,14 @@ def tidy(file):
     return [line.removeprefix(f"{ROOT}/") for line in said.splitlines() if re.search("(warning|error): ", line)]
 
 
+def known_to_build(files):
+    """Those with a command of their own: for others, like the Python module, clang-tidy guesses one, without their headers."""
+    known = {Path(entry["file"]).resolve() for entry in json.loads((ROOT / "build/lint/compile_commands.json").read_text())}
+    return [file for file in files if (ROOT / file).resolve() in known]
+
+
 def check_tidy(files):
+    files = known_to_build(files)
     say(f"clang-tidy: {len(files)} files")
     with ThreadPoolExecutor(JOBS) as pool:
         lines = sorted({line for found in pool.map(tidy, files) for line in found})

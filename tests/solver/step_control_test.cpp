@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "cutting/cut_scenes.h"
+#include "pliant/error.h"
 #include "simulation/recovery/recovery.h"
 #include "simulation/step/coupling.h"
 #include "solver/loaded.h"
