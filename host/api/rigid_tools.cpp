@@ -97,9 +97,41 @@ void RigidTools::drop_drives() {
   std::erase_if(asked_, [](const Request& r) { return r.what == What::drive; });
 }
 
+void RigidTools::drop_requests() {
+  const std::lock_guard lock(mutex_);
+  asked_.clear();
+}
+
 std::vector<ToolForce> RigidTools::forces() {
   const std::lock_guard lock(mutex_);
   return forces_;
+}
+
+std::vector<ForceSample> RigidTools::trace(const std::string& name, std::int64_t after) {
+  const std::lock_guard lock(mutex_);
+  check_known(name);
+  const auto found = traces_.find(name);
+  return found == traces_.end() ? std::vector<ForceSample>() : found->second.after(after);
+}
+
+void RigidTools::record(const Simulation& simulation) {
+  const ToolContact& contact = simulation.contact();
+  const std::vector<ContactTool>& tools = contact.tools();
+  if (tools.empty()) return;
+  const std::lock_guard lock(mutex_);
+  std::erase_if(traces_, [&](const auto& entry) { return !knows(entry.first); });
+  for (auto& [name, trace] : traces_) trace.forget_after(simulation.step());
+  if (contact.batch_end() != simulation.step()) return;  // the batch was taken back
+  const std::vector<StepForce>& forces = contact.step_forces();
+  const auto steps = static_cast<std::int64_t>(forces.size() / tools.size());
+  for (std::size_t t = 0; t < tools.size(); ++t) {
+    ForceTrace& trace = traces_[tools[t].name];
+    for (std::int64_t s = 0; s < steps; ++s) {
+      const StepForce& f = forces[static_cast<std::size_t>(s) * tools.size() + t];
+      const std::int64_t step = simulation.step() - steps + s + 1;
+      trace.add({step, simulation.state().clock.time_at(step), f.force, f.torque});
+    }
+  }
 }
 
 void RigidTools::make(Simulation& simulation, const Request& request) {
@@ -180,11 +212,12 @@ void RigidTools::note(const Simulation& simulation) {
   forces_ = std::move(forces);
 }
 
-void RigidTools::renew(const Simulation& simulation) {
+void RigidTools::renew(const Simulation& simulation, bool keep_requests) {
   {
     const std::lock_guard lock(mutex_);
-    asked_.clear();
+    if (!keep_requests) asked_.clear();
     given_.clear();
+    traces_.clear();
     for (const auto& [name, given] : simulation.state().tools.given)
       given_[name] = std::make_shared<const GivenSurfaces>(given);
   }

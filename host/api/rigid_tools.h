@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "api/force_trace.h"
 #include "pliant/tool.h"
 #include "simulation/simulation.h"
 
@@ -29,16 +30,22 @@ class RigidTools {
   void set_mesh(const std::string& name, TriangleMesh mesh, double time);
   /// Discards drives that are not executed yet.
   void drop_drives();
+  /// Discards all requests that are not executed yet.
+  void drop_requests();
   [[nodiscard]] std::vector<ToolForce> forces();
+  /// The force in each of the last steps after step `after`. Throws Error (usage) for an unknown tool.
+  [[nodiscard]] std::vector<ForceSample> trace(const std::string& name, std::int64_t after);
 
   // For the stepping thread.
 
   /// Executes the requests. All are attempted; then the first Error is rethrown.
   void apply(Simulation& simulation);
+  /// Call after a batch: stores the forces of its steps for trace().
+  void record(const Simulation& simulation);
   /// Stores the forces on the tools for forces().
   void note(const Simulation& simulation);
-  /// Call after the simulation was replaced: discards all requests.
-  void renew(const Simulation& simulation);
+  /// Call after the simulation was replaced: discards all requests, unless they were made for it.
+  void renew(const Simulation& simulation, bool keep_requests = false);
 
  private:
   enum class What { add, remove, park, unpark, place, drive, mesh };
@@ -68,6 +75,7 @@ class RigidTools {
   std::vector<Request> doing_;                                         ///< being executed
   std::vector<Request> asked_;                                         ///< queued after these
   std::vector<ToolForce> forces_;
+  std::map<std::string, ForceTrace> traces_;
 };
 
 }  // namespace pliant::api

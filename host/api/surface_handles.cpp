@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 
 namespace pliant::api {
 namespace {
@@ -164,6 +165,12 @@ void SurfaceHandles::move(GrabId id, const Vec3d& target) {
   found->second.target = target;
 }
 
+std::vector<ForceSample> SurfaceHandles::trace(GrabId id, std::int64_t after) {
+  const std::lock_guard lock(mutex_);
+  if (!grabs_.contains(id)) throw Error(ErrorCode::usage, fmt::format("there is no grab {}", id));
+  return traces_[id].after(after);
+}
+
 GrabState SurfaceHandles::state(GrabId id) {
   const std::lock_guard lock(mutex_);
   const auto found = grabs_.find(id);
@@ -174,6 +181,7 @@ GrabState SurfaceHandles::state(GrabId id) {
 void SurfaceHandles::release(GrabId id) {
   const std::lock_guard lock(mutex_);
   if (grabs_.erase(id) == 0) throw Error(ErrorCode::usage, fmt::format("there is no grab {}", id));
+  traces_.erase(id);
   changed_ = true;
 }
 
@@ -220,6 +228,7 @@ void SurfaceHandles::move_focus(const Vec3d& position) {
 void SurfaceHandles::clear() {
   const std::lock_guard lock(mutex_);
   grabs_.clear();
+  traces_.clear();
   pushes_.clear();
   node_pushes_.clear();
   focus_.reset();
@@ -248,6 +257,7 @@ Vec3d SurfaceHandles::pull(const Grab& grab, Pull& state, const Vec3d& position,
 
 void SurfaceHandles::renew() {
   const std::lock_guard lock(mutex_);
+  traces_.clear();
   changed_ = true;
 }
 
@@ -289,7 +299,9 @@ std::int32_t SurfaceHandles::apply(Simulation& simulation) {
     const Vec3d f = pull(grab, state->second, position, mean, simulation.time(), steps * simulation.dt());
     grab.felt.force = f;
     for (std::size_t c = 0; c < 3; ++c) grab.felt.gap[c] = state->second.target[c] - position[c];
-    grab.felt.limited = std::hypot(f[0], f[1], f[2]) >= 0.999 * grab.max_force;
+    const double size = std::hypot(f[0], f[1], f[2]);
+    if (!std::exchange(grab.felt.limited, size >= 0.999 * grab.max_force) && grab.felt.limited)
+      limits_.push_back({id, position, size});
     for (const NodeShare& n : grab.patch) {
       forces.push_back({n.body, n.node, {n.share * f[0], n.share * f[1], n.share * f[2]}});
     }
@@ -297,7 +309,12 @@ std::int32_t SurfaceHandles::apply(Simulation& simulation) {
   simulation.set_forces(std::move(forces));
   const std::lock_guard lock(mutex_);
   for (const auto& [id, grab] : grabs) {
-    if (const auto found = grabs_.find(id); found != grabs_.end()) found->second.felt = grab.felt;
+    const auto found = grabs_.find(id);
+    if (found == grabs_.end()) continue;
+    found->second.felt = grab.felt;
+    ForceTrace& trace = traces_[id];
+    trace.forget_after(simulation.step());
+    trace.add({simulation.step() + 1, simulation.time() + simulation.dt(), grab.felt.force, {}});
   }
   return grabs.empty() ? kAnySteps : steps;
 }

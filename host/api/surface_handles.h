@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "api/force_trace.h"
 #include "pliant/world.h"
 #include "simulation/simulation.h"
 
@@ -39,6 +40,7 @@ class SurfaceHandles {
   GrabId grab(const SurfaceVertex& vertex, const GrabOptions& options);
   void move(GrabId id, const Vec3d& target);
   [[nodiscard]] GrabState state(GrabId id);
+  [[nodiscard]] std::vector<ForceSample> trace(GrabId id, std::int64_t after);
   void release(GrabId id);
   void push(const SurfaceVertex& vertex, const Vec3d& force);
   void push_node(std::size_t body, std::int64_t node, const Vec3d& force);
@@ -49,6 +51,14 @@ class SurfaceHandles {
 
   /// Updates the simulation's forces at the start of a batch. Returns the maximum number of steps of the batch.
   std::int32_t apply(Simulation& simulation);
+  /// A grab whose force has reached its limit.
+  struct Limit {
+    GrabId grab = 0;
+    Vec3d position{};  ///< of its vertex [m]
+    double force = 0;  ///< [N]
+  };
+  /// Returns what apply() has found since the last call. For the stepping thread.
+  std::vector<Limit> limits() { return std::exchange(limits_, {}); }
 
  private:
   /// A grab as set by the caller.
@@ -86,7 +96,10 @@ class SurfaceHandles {
   std::map<std::pair<std::size_t, std::int64_t>, Vec3d> node_pushes_;
   std::optional<Vec3d> focus_;
   bool changed_ = false;
-  std::map<GrabId, Pull> pulls_;  ///< used only by the stepping thread
+  std::map<GrabId, ForceTrace> traces_;
+  // Used only by the stepping thread.
+  std::map<GrabId, Pull> pulls_;
+  std::vector<Limit> limits_;
 };
 
 }  // namespace pliant::api

@@ -9,7 +9,6 @@
 #include "api/surfaces.h"
 #include "api/world_call.h"
 #include "backends/choice/backends.h"
-#include "io/save.h"
 #include "pliant/version.h"
 #include "scene/keys.h"
 #include "scene/spec.h"
@@ -24,6 +23,7 @@ namespace {
 
 using api::Call;
 using api::check_body;
+using api::check_device;
 
 void check_steps(std::int64_t steps) {
   if (steps < 0) throw Error(ErrorCode::usage, fmt::format("the number of steps is {}; 0 or more are allowed", steps));
@@ -32,10 +32,6 @@ void check_steps(std::int64_t steps) {
 void check_seconds(double seconds) {
   if (seconds >= 0 && std::isfinite(seconds)) return;
   throw Error(ErrorCode::usage, fmt::format("the time to advance is {} s; 0 or more is allowed", seconds));
-}
-
-void check_device(const World::Impl& impl) {
-  if (!impl.lost.empty()) throw Error(ErrorCode::device, impl.lost + "; only frame() can still be read");
 }
 
 void check_interactive(const World::Impl& impl) {
@@ -126,6 +122,7 @@ double World::stable_dt() const {
 
 StepReport World::step(std::int64_t steps) {
   const Call call(impl_);
+  impl_->check_not_live("step");
   check_steps(steps);
   impl_->throw_failure();
   impl_->check_can_step();
@@ -134,6 +131,7 @@ StepReport World::step(std::int64_t steps) {
 
 StepReport World::advance(double seconds) {
   const Call call(impl_);
+  impl_->check_not_live("advance");
   check_seconds(seconds);
   impl_->throw_failure();
   impl_->check_can_step();
@@ -142,12 +140,14 @@ StepReport World::advance(double seconds) {
 
 bool World::step_async(std::int64_t steps) {
   const Call call(impl_, false);
+  impl_->check_not_live("step_async");
   check_steps(steps);
   return impl_->start_job([impl = impl_.get(), steps] { impl->run(steps); });
 }
 
 bool World::advance_async(double seconds) {
   const Call call(impl_, false);
+  impl_->check_not_live("advance_async");
   check_seconds(seconds);
   return impl_->start_job([impl = impl_.get(), seconds] { impl->advance(seconds); });
 }
@@ -155,14 +155,14 @@ bool World::advance_async(double seconds) {
 bool World::busy() const {
   const Call call(impl_, false);
   const std::lock_guard lock(impl_->mutex);
-  return impl_->job != nullptr;
+  return impl_->job != nullptr || impl_->pace.running();
 }
 
 bool World::poll() const noexcept {
   if (impl_ == nullptr) return false;
   const std::lock_guard lock(impl_->mutex);
   if (impl_->newest != impl_->given || impl_->cut_since_read) return true;
-  return !impl_->job && impl_->newest != nullptr && impl_->newest->frame.step != impl_->report.step;
+  return !impl_->job && !impl_->pace.running() && impl_->newest != nullptr && impl_->newest->frame.step != impl_->report.step;
 }
 
 StepReport World::wait() {
@@ -295,35 +295,6 @@ void World::clear_handles() {
 void World::move_focus(const Vec3d& position) {
   const Call call(impl_, false);
   impl_->handles->move_focus(position);
-}
-
-void World::save(const std::string& file) const {
-  const Call call(impl_);
-  check_device(*impl_);
-  const Checkpoint checkpoint = take_checkpoint(*impl_->simulation);
-  try {
-    write_checkpoint(file, checkpoint);
-  } catch (const Error& error) {
-    throw Error(ErrorCode::io, error.what());
-  }
-}
-
-void World::load(const std::string& file) {
-  const Call call(impl_);
-  std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored))
-    throw Error(ErrorCode::io, fmt::format("{}: no such file, expected a checkpoint", file));
-  const Checkpoint checkpoint = read_checkpoint(file);
-  auto fresh = impl_->make_simulation(nullptr);
-  restore_checkpoint(*fresh, checkpoint, file);
-  impl_->restart(std::move(fresh));
-}
-
-void World::reset() {
-  const Call call(impl_);
-  auto fresh = impl_->make_simulation(nullptr);
-  impl_->handles->clear();
-  impl_->restart(std::move(fresh));
 }
 
 const char* version() {

@@ -1,8 +1,23 @@
 // Common start of every World call. Private to host/api.
 #pragma once
+#include <optional>
+#include <string>
+
 #include "api/world_impl.h"
 
 namespace pliant::api {
+
+/// Waits until the worker is idle, and keeps it so.
+class Hold {
+ public:
+  explicit Hold(World::Impl& impl) : impl_(impl) { impl_.hold(); }
+  ~Hold() { impl_.let_go(); }
+  Hold(const Hold&) = delete;
+  Hold& operator=(const Hold&) = delete;
+
+ private:
+  World::Impl& impl_;
+};
 
 /// Guards a call against concurrent calls, and optionally waits until the worker is idle.
 class Call {
@@ -11,11 +26,12 @@ class Call {
     if (in_use_.exchange(true)) {
       throw Error(ErrorCode::state, "two threads use the same World at once; give each its own, or let them take turns");
     }
-    if (!wait) return;
-    impl->wait_until_idle();
-    impl->beside = false;
+    if (wait) hold_.emplace(*impl);
   }
-  ~Call() { in_use_.store(false); }
+  ~Call() {
+    hold_.reset();
+    in_use_.store(false);
+  }
   Call(const Call&) = delete;
   Call& operator=(const Call&) = delete;
 
@@ -25,7 +41,12 @@ class Call {
     return impl->in_use;
   }
   std::atomic<bool>& in_use_;
+  std::optional<Hold> hold_;
 };
+
+inline void check_device(const World::Impl& impl) {
+  if (!impl.lost.empty()) throw Error(ErrorCode::device, impl.lost + "; only frame() can still be read");
+}
 
 /// Throws Error (usage) if there is no such body.
 inline std::size_t check_body(const World::Impl& impl, std::size_t body) {

@@ -34,6 +34,10 @@ void World::Impl::change_pending() {
 
 void World::Impl::change(const std::string& text) {
   check_can_change_tools();
+  {
+    const std::lock_guard lock(mutex);
+    if (loaded_parameters) asked_parameters = *std::exchange(loaded_parameters, std::nullopt);
+  }
   asked_parameters = changed_parameters(scene, asked_parameters, text, "change");
   bool now = false;
   {

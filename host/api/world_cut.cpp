@@ -34,6 +34,15 @@ CutReport World::Impl::cut_now(std::span<const api::CutRequest> requests) {
     if (!poses.empty()) done = simulation->move_blades(poses);
     if (!done.changed) return done;
     handles->follow(simulation->shared_model());
+    const std::optional<Vec3d> at = simulation->edited_at();
+    events.add(*simulation, {"cut",
+                             {},
+                             0,
+                             0,
+                             at.has_value(),
+                             at.value_or(Vec3d{}),
+                             static_cast<double>(done.edges),
+                             fmt::format("{} edges were cut in {:.3g} s", done.edges, done.seconds())});
     const std::lock_guard lock(mutex);
     cut_since_read = true;
     return done;
@@ -68,8 +77,8 @@ CutResult World::Impl::cut(api::CutRequest request) {
   CutResult result;
   {
     const std::lock_guard lock(mutex);
-    result.pending = job != nullptr;
-    if (job) pending_cuts.push_back(std::move(request));
+    result.pending = job != nullptr || pace.running();
+    if (result.pending) pending_cuts.push_back(std::move(request));
   }
   if (result.pending) return result;
   throw_failure();

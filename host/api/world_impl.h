@@ -12,7 +12,9 @@
 #include <thread>
 #include <vector>
 
+#include "api/event_log.h"
 #include "api/frame_pool.h"
+#include "api/pace.h"
 #include "api/rigid_tools.h"
 #include "api/surface_handles.h"
 #include "pliant/world.h"
@@ -43,6 +45,13 @@ struct CutRequest {
   std::string lifted;           ///< blade to lift before the rest
 };
 
+/// Work on the whole simulation that a freely running World does between two frames.
+struct FileRequest {
+  enum class What { save, load, reset, recover };
+  What what = What::save;
+  std::string file;
+};
+
 }  // namespace api
 
 /// One thread at a time steps the simulation: the caller's in step(), the worker in advance_async(). `mutex` protects the
@@ -61,7 +70,8 @@ struct World::Impl {
   void follow_topology();
   void publish_clock();
   [[nodiscard]] std::shared_ptr<Simulation> make_simulation(std::string* reason);
-  void restart(std::shared_ptr<Simulation> fresh);
+  /// `keep_requests`: those made since belong to the fresh simulation.
+  void restart(std::shared_ptr<Simulation> fresh, bool keep_requests = false);
   [[nodiscard]] Error as_device_error(const std::exception& error) const;
   void check_can_step() const;
 
@@ -84,9 +94,32 @@ struct World::Impl {
   void change(const std::string& text);
   void change_pending();
 
+  // world_files.cpp
+  void save(const std::string& file);
+  void load(const std::string& file, bool live = false);
+  void reset(bool live = false);
+  void recover();
+  /// Leaves it to the worker if the World runs freely; returns false otherwise.
+  bool leave_to_worker(api::FileRequest request);
+  void serve_files();
+
+  // world_live.cpp
+  void run_live(const LiveOptions& live);
+  void stop_live();
+  [[nodiscard]] bool is_live() const;
+  void check_not_live(const char* call) const;
+  /// Makes the caller's cuts and changes. While the World runs freely, what is refused becomes an event.
+  void make_changes();
+  void look_for_events();
+  void live_frame();
+  /// Requires the mutex: true if the worker may begin a frame or serve files now.
+  [[nodiscard]] bool may_begin() const;
+
   // world_worker.cpp
   bool start_job(std::function<void()> work);
-  void wait_until_idle();
+  void hold();
+  void let_go();
+  void wait_for_work(std::unique_lock<std::mutex>& lock);
   void throw_failure();
   void serve();
 
@@ -101,6 +134,7 @@ struct World::Impl {
   std::shared_ptr<Simulation> simulation;
   std::unique_ptr<api::SurfaceHandles> handles;
   api::RigidTools rigid_tools;
+  api::EventLog events;
   std::string lost;         ///< message of the device failure; empty: the device works
   double seconds_left = 0;  ///< remainder of advance() below a whole step; used by the stepping thread
   std::atomic<bool> in_use{false};
@@ -122,6 +156,12 @@ struct World::Impl {
   std::string asked_parameters;               ///< used by the caller: parameters after all changes (scene/change.h)
   bool beside = false;                        ///< used by the caller: asynchronous steps were started and not waited for
   bool cut_since_read = false;                ///< `newest` does not include the last cut
+  api::Pace pace;
+  bool held = false;                             ///< a call that waits is at work; no frame may begin
+  bool halted = false;                           ///< diverged, or the device is lost: only files are served
+  std::vector<api::FileRequest> files;           ///< for the worker
+  bool replacing = false;                        ///< one of them, to come or at work, replaces the simulation
+  std::optional<std::string> loaded_parameters;  ///< asked_parameters from the next change on
   std::exception_ptr failure;
   StepReport report;  ///< of the last stepping call
   double stable_dt = 0;

@@ -85,6 +85,7 @@ World::Impl::Impl(Scene scene_, OpenBackend open, const WorldOptions& options_)
   topology = topology_of(model, 1);
   seen_model = model;
   rigid_tools.renew(*simulation);
+  events.renew(*simulation);
   publish_clock();
   read_frame();
 }
@@ -132,18 +133,14 @@ StepReport World::Impl::run(std::int64_t steps) {
   const std::int64_t first = simulation->step();
   try {
     if (simulation->at_equilibrium()) static_cast<void>(handles->apply(*simulation));  // driving a tool ends the equilibrium
-    if (steps == 0) {  // makes pending cuts and tool changes even without steps
-      cut_pending();
-      change_pending();
-      change_tools_now();
-    }
+    if (steps == 0) make_changes();                                                    // even without steps
     while (simulation->step() - first < steps && !simulation->divergence() && !simulation->at_equilibrium()) {
-      cut_pending();
-      change_pending();
-      change_tools_now();
+      make_changes();
       const std::int64_t left = std::min<std::int64_t>(steps - (simulation->step() - first), handles->apply(*simulation));
       simulation->advance(simulation->next_batch(left));
+      rigid_tools.record(*simulation);
       rigid_tools.note(*simulation);
+      look_for_events();
       const std::lock_guard lock(mutex);
       if (stop) break;
     }
@@ -246,6 +243,7 @@ void World::Impl::read_frame(bool again) {
   dirty_vertices = within(api::joined(dirty_vertices, vertices), count);
   dirty_triangles = within(api::joined(dirty_triangles, faces), triangles.size());
   cut_since_read = false;
+  if (newest != shown) pace.drop();
   newest = std::move(data);
 }
 
@@ -255,10 +253,11 @@ FramePtr World::Impl::hand_out(bool to_poll) {
   bool idle = false;
   {
     const std::lock_guard lock(mutex);
-    idle = !job;
+    idle = !job && !pace.running();
   }
   if (idle && lost.empty()) read_frame();
   const std::lock_guard lock(mutex);
+  if (pace.running() && shown != newest && pace.fetched(api::wall_time())) changed.notify_all();
   shown = newest;
   if (!to_poll) return {newest, &newest->frame};
   if (given != newest) {
@@ -271,20 +270,24 @@ FramePtr World::Impl::hand_out(bool to_poll) {
 }
 
 /// Continues with another simulation of the same scene.
-void World::Impl::restart(std::shared_ptr<Simulation> fresh) {
+void World::Impl::restart(std::shared_ptr<Simulation> fresh, bool keep_requests) {
   simulation = std::move(fresh);
   handles->renew();
-  rigid_tools.renew(*simulation);
+  rigid_tools.renew(*simulation, keep_requests);
+  events.renew(*simulation);
   lost.clear();
   seconds_left = 0;
-  blade_key.clear();
-  {
+  if (keep_requests) {
+    const std::lock_guard lock(mutex);
+    loaded_parameters = simulation->state().changed.parameters;
+  } else {
+    blade_key.clear();
+    asked_parameters = simulation->state().changed.parameters;
     const std::lock_guard lock(mutex);
     failure = nullptr;
     pending_cuts.clear();
     pending_changes.clear();
   }
-  asked_parameters = simulation->state().changed.parameters;
   publish_clock();
   read_frame(true);
 }

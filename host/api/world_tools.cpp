@@ -27,8 +27,9 @@ void World::Impl::change_tools_now() {
 
 void World::Impl::check_can_change_tools() {
   {
-    const std::lock_guard lock(mutex);
-    if (job) return;
+    std::unique_lock lock(mutex);
+    changed.wait(lock, [this] { return !replacing; });  // by a load() or reset() of a freely running World
+    if (job || pace.running()) return;
   }
   throw_failure();
   check_can_step();

@@ -44,9 +44,21 @@ bool World::Impl::start_job(std::function<void()> work) {
   return true;
 }
 
-void World::Impl::wait_until_idle() {
+/// Waits until the worker is idle, and keeps it so until let_go().
+void World::Impl::hold() {
   std::unique_lock lock(mutex);
+  held = true;
   changed.wait(lock, [this] { return !job; });
+  beside = pace.running();
+}
+
+void World::Impl::let_go() {
+  {
+    const std::lock_guard lock(mutex);
+    held = false;
+    if (!pace.running()) return;
+  }
+  changed.notify_all();
 }
 
 /// Rethrows the worker's error once.
@@ -59,13 +71,26 @@ void World::Impl::throw_failure() {
   if (met != nullptr) std::rethrow_exception(met);
 }
 
+/// Returns with a job, or to stop. A freely running World makes its own.
+void World::Impl::wait_for_work(std::unique_lock<std::mutex>& lock) {
+  while (!stop && !job) {
+    if (may_begin()) {
+      job = [this] { live_frame(); };
+    } else if (pace.running() && !held && !halted) {
+      changed.wait_until(lock, api::moment_of(pace.next_start()));
+    } else {
+      changed.wait(lock);
+    }
+  }
+}
+
 void World::Impl::serve() {
   let_the_waker_go_on();
   while (true) {
     std::function<void()> work;
     {
       std::unique_lock lock(mutex);
-      changed.wait(lock, [this] { return stop || job; });
+      wait_for_work(lock);
       if (stop) return;
       work = job;
     }
@@ -80,6 +105,7 @@ void World::Impl::serve() {
       const std::lock_guard lock(mutex);
       failure = met;
       job = nullptr;
+      halted = report.diverged || !lost.empty();
     }
     changed.notify_all();
   }

@@ -110,6 +110,8 @@ class Simulation {
   void lift_blade(const std::string& blade) { edits_.lift_blade(blade); }
   /// Number of edits that changed elements.
   [[nodiscard]] std::int64_t topology_version() const { return state_.topology_version; }
+  /// Returns where the last cut or tear was, in the current configuration [m]; empty if there was none since the start.
+  [[nodiscard]] std::optional<Vec3d> edited_at() const { return edits_.edited_at(); }
   /// Returns the cut topology of a body; nullptr if nothing was prepared for cutting.
   [[nodiscard]] const CutTopology* cut_topology(std::size_t body) const { return edits_.cut_topology(body); }
 

@@ -10,6 +10,13 @@
 namespace pliant {
 
 /// A rigid tool, at rest or on a prescribed path. Only the members that belong to `shape` are used.
+///
+/// The tools of a World are those of SceneSpec::tools and those added while it runs; they need no WorldOptions::interactive and
+/// are part of checkpoints. After step_async() or advance_async(), the worker makes changes to them before its next batch,
+/// until wait() or another waiting call returns; if it rejects one, the next call that reports the worker's errors throws. The
+/// World's functions for tools throw Error and then change nothing: usage (unknown or duplicate name, invalid pose), input
+/// (invalid shape or number, or the tool would start deeper than a quarter of a cell inside a body), io (mesh file); and,
+/// except drive_tool(), diverged, device and errors of the worker.
 struct ToolSpec {
   std::string name;               ///< unique; empty: tool0, tool1, ...
   std::string shape = "sphere";   ///< sphere, capsule, box, half_space, mesh or sequence, in the tool's own frame

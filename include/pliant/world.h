@@ -3,8 +3,8 @@
 // Threads: a World may be used from any thread, but only by one at a time; concurrent calls throw Error (state). Worlds share
 // no state: each may have its own thread, and results do not depend on other Worlds. The first step_async() or
 // advance_async() starts a worker thread. While the worker is busy, these calls do not wait for it: busy, poll, frame,
-// frame_since, pick, info, time, step_number, dt, stable_dt, the tools, cut, move_blade, lift_blade, step_async,
-// advance_async. All other calls wait. Any number of threads may read a Frame.
+// frame_since, pick, info, time, step_number, dt, stable_dt, live_state, events, force_trace, the tools, cut, move_blade,
+// lift_blade, step_async, advance_async, run_live. All other calls wait. Any number of threads may read a Frame.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -16,6 +16,7 @@
 #include "pliant/error.h"
 #include "pliant/export.h"
 #include "pliant/frame.h"
+#include "pliant/live.h"
 #include "pliant/probe.h"
 #include "pliant/scene.h"
 #include "pliant/world_types.h"
@@ -56,10 +57,22 @@ class PLIANT_API World {
   bool step_async(std::int64_t steps);
   /// The same for `seconds` [s]. As in advance(), the remainder below a whole step is added to the next call.
   bool advance_async(double seconds);
-  /// Deleted, because step_async() counts steps: pass seconds as a double.
   template <class Integer, class = std::enable_if_t<std::is_integral_v<Integer>>>
-  bool advance_async(Integer) = delete;
-  [[nodiscard]] bool busy() const;  ///< true while the worker runs
+  bool advance_async(Integer) = delete;  ///< step_async() counts steps: pass seconds as a double
+  [[nodiscard]] bool busy() const;       ///< true while the worker runs
+
+  /// Lets the worker run freely, paced by the wall clock (LiveOptions). Until stop_live(), step(), advance() and their
+  /// asynchronous forms are Error (state), calls that wait do so for the frame at work, and save(), load(), reset() and
+  /// recover() return at once: the worker does them between two frames. Called again it changes the options.
+  void run_live(const LiveOptions& options = {});
+  StepReport stop_live();                      ///< ends it after the frame at work; returns and throws as wait()
+  [[nodiscard]] LiveState live_state() const;  ///< also after stop_live()
+  /// Returns what happened since the last call, oldest first, at most 1024 events; older ones are forgotten.
+  std::vector<Event> events();
+  /// Returns the force on a tool in each of the last 4096 steps after step `after`. Throws Error (usage) for an unknown tool.
+  [[nodiscard]] std::vector<ForceSample> force_trace(const std::string& tool, std::int64_t after = -1) const;
+  /// The same for each update of a grab, some 2 ms apart.
+  [[nodiscard]] std::vector<ForceSample> force_trace(GrabId grab, std::int64_t after = -1) const;
 
   /// Returns true if frame() would return a different frame than the last time. Never waits, never throws.
   [[nodiscard]] bool poll() const noexcept;
@@ -83,10 +96,9 @@ class PLIANT_API World {
   [[nodiscard]] std::vector<Vec3d> velocities(std::size_t body) const;      ///< [m/s], shape [nodes]
   [[nodiscard]] std::vector<Vec3d> rest_positions(std::size_t body) const;  ///< [m], shape [nodes]
 
-  /// Evaluates the scene's probes at the current state, in scene order, one entry per quantity.
-  [[nodiscard]] std::vector<ProbeValue> probes() const;
-  /// Measures what tools and bodies, and bodies and bodies, have in common at the current state (docs/contact.md): those that
-  /// overlap, tools first. Parked tools and bodies without a closed surface are left out. Waits for the worker.
+  [[nodiscard]] std::vector<ProbeValue> probes() const;  ///< the scene's probes now, in scene order, one entry per quantity
+  /// Measures what tools and bodies, and bodies and bodies, have in common now (docs/contact.md): those that overlap, tools
+  /// first. Parked tools and bodies without a closed surface are left out.
   [[nodiscard]] std::vector<Interpenetration> interpenetrations() const;
   [[nodiscard]] std::vector<std::string> remarks() const;  ///< WorldInfo::remarks, then remarks about the run so far
   [[nodiscard]] std::uint64_t hash() const;                ///< hash of the state; equal hashes mean equal bits
@@ -102,22 +114,16 @@ class PLIANT_API World {
 
   /// Applies a constant force [N] to a vertex, distributed to the nodes of its cell, until it is set again; zero removes it.
   void push(std::int32_t vertex, const Vec3d& force);
-  /// Applies a force [N] to a node of a body, likewise. The node must belong to a cell that carries the surface.
+  /// The same for a node of a body, which must belong to a cell that carries the surface.
   void push_node(std::size_t body, std::int64_t node, const Vec3d& force);
   void clear_handles();                    ///< removes all grabs and pushes, and drives that have not started
   void move_focus(const Vec3d& position);  ///< moves the focus, which operational regions can follow, to a point [m]
 
-  /// The name of clear_handles() before 0.2.0.
+  /// The names of clear_handles() and move_focus() before 0.2.0.
   [[deprecated("clear_handles()")]] void clear_tools() { clear_handles(); }
-  /// The name of move_focus() before 0.2.0.
   [[deprecated("move_focus()")]] void move_tool(const Vec3d& position) { move_focus(position); }
 
-  /// Rigid tools in contact with the bodies (docs/contact.md): those of SceneSpec::tools and those added here. They need no
-  /// WorldOptions::interactive. After step_async() or advance_async(), the worker makes these changes before its next batch,
-  /// until wait() or another waiting call returns; if it rejects a change, the next call that reports the worker's errors
-  /// throws. Tools are part of checkpoints. All of these throw Error and then change nothing: usage (unknown or duplicate
-  /// name, invalid pose), input (invalid shape or number, or the tool would start deeper than a quarter of a cell inside a
-  /// body), io (mesh file); and, except drive_tool(), diverged, device and errors of the worker.
+  /// Rigid tools; pliant/tool.h says when they change and what they throw.
   ///
   /// Adds a tool at its path's current pose; at most 30 tools may be unparked. Returns its name: "tool0", "tool1", ... if it
   /// has none. Mesh files are read here and again by load(); relative paths start from the working folder.
@@ -146,7 +152,7 @@ class PLIANT_API World {
   [[nodiscard]] SurfaceSpec tool_surface(const std::string& name) const;
   /// Returns a value per vertex at the current time: "displacement" [m], "energy" (strain energy density) [J/m^3], "mises" (von
   /// Mises stress) or contact "pressure" [Pa], "green_strain", "almansi_strain" (equivalent), or "finite_elements" (1; 0 where
-  /// shape matching moves the vertex). Waits for the worker. Throws Error (usage) for another field.
+  /// shape matching moves the vertex). Throws Error (usage) for another field.
   [[nodiscard]] std::vector<float> vertex_values(const std::string& field) const;
   /// Changes gravity, materials, models, or what holds a body (docs/scene.md, "changes"); ChangeSpec::time is not used. The
   /// motion, contact and cuts stay, the stable step is estimated again. With substeps of shape matching, all but gravity waits
@@ -157,12 +163,7 @@ class PLIANT_API World {
   /// The same from text, an entry of `changes` of a scene file without its time: {"material": {"young": 2000}}.
   void parse_change(const std::string& text);
 
-  /// Cuts. They need no WorldOptions::interactive. Hexahedral volume meshes and scenes with relaxation or the textbook
-  /// integrator cannot be cut: Error (input), and nothing changes. After step_async() or advance_async(), the worker cuts
-  /// before its next batch (CutResult::pending), moves of blades together, until wait() or another waiting call
-  /// returns; if it rejects a cut, the next call that reports the worker's errors throws. With substeps of shape matching, a
-  /// cut waits for the next batch that begins with a shape-matching step. All throw Error: usage (non-finite numbers),
-  /// diverged, device.
+  /// Cuts; CutResult says what can be cut, and when. All throw Error: input, usage (non-finite numbers), diverged, device.
   ///
   /// Cuts all bodies where these triangles [m] intersect them now. Degenerate triangles cut nothing.
   CutResult cut(const std::vector<std::array<Vec3d, 3>>& triangles);
@@ -171,7 +172,7 @@ class PLIANT_API World {
   CutResult move_blade(const std::string& blade, const Vec3d& a, const Vec3d& b);
   /// Lifts a blade: its next move_blade() places it without cutting. Throws Error (usage) if there is no such blade.
   void lift_blade(const std::string& blade);
-  /// Returns the number of pieces of a body: sets of elements that share nodes. Throws Error (usage) if there is no such body.
+  /// Returns the number of sets of elements of a body that share nodes. Throws Error (usage) if there is no such body.
   [[nodiscard]] std::int64_t pieces(std::size_t body) const;
 
   /// Writes a checkpoint, which `pliant run --resume` can read too. It includes cuts and the positions of blades, but not
@@ -183,6 +184,9 @@ class PLIANT_API World {
   /// Returns to the initial state without cuts, also after a divergence or a device failure (the backend is reopened). Clears
   /// grabs and pushes and lifts all blades.
   void reset();
+  /// After a divergence, continues from the last good state, at rest and with tools, grabs and pushes as they are: move first
+  /// what drove it apart. Does nothing otherwise.
+  void recover();
 
   struct PLIANT_HIDDEN Impl;  ///< implementation
 
@@ -191,10 +195,5 @@ class PLIANT_API World {
   explicit World(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
-
-/// Version of the library, for example "0.1.0".
-PLIANT_API const char* version();
-/// Names of the backends available on this machine, "cpu" first.
-PLIANT_API std::vector<std::string> backend_names();
 
 }  // namespace pliant

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "pliant/export.h"
 #include "pliant/frame.h"
 
 namespace pliant {
@@ -81,12 +82,21 @@ struct GrabState {
 
 using GrabId = std::uint64_t;  ///< identifies a grab within one World; 0: none
 
-/// Result of a cut.
+/// Result of a cut. Cuts need no WorldOptions::interactive. Hexahedral volume meshes and scenes with relaxation or the textbook
+/// integrator cannot be cut: Error (input), and nothing changes. After step_async() or advance_async(), the worker cuts before
+/// its next batch, moves of blades together, until wait() or another waiting call returns; if it rejects a cut, the next call
+/// that reports the worker's errors throws. With substeps of shape matching, a cut waits for the next batch that begins with a
+/// shape-matching step.
 struct CutResult {
   bool pending = false;    ///< true if the worker will cut before its next batch of steps; the other members are then not set
   bool changed = false;    ///< true if elements were split; the next frame differs only if the surface changed
   std::int64_t edges = 0;  ///< number of edges between nodes cut by this call
   double seconds = 0;      ///< duration [s]
 };
+
+/// Version of the library, for example "0.1.0".
+PLIANT_API const char* version();
+/// Names of the backends available on this machine, "cpu" first.
+PLIANT_API std::vector<std::string> backend_names();
 
 }  // namespace pliant

@@ -214,6 +214,8 @@ void ToolContact::end_batch(std::int32_t steps) {
   report_.tissue.points = 0;
   if (run_.scene.contact && ran) read_touch();
   if (report_.tools.empty()) return;
+  step_forces_.assign(static_cast<std::size_t>(steps) * tools_.size(), {});
+  batch_end_ = run_.state.clock.step;
   for (ToolHistory& h : report_.tools) h.now = {};
   if (!ran) return;
   const std::vector<std::int32_t> sums = run_.backend().read_ints(run_.loaded.program().find("tool_sum"));
@@ -236,6 +238,7 @@ void ToolContact::end_batch(std::int32_t steps) {
       }
       h.work += work(t, step, force, torque);
       torque = vec::add(torque, vec::cross(arms_[(static_cast<std::size_t>(step) + 1) * tools + t], force));
+      step_forces_[static_cast<std::size_t>(step) * tools + t] = {force, torque};
       for (std::size_t c = 0; c < 3; ++c) {
         h.now.force[c] += force[c] / steps;
         h.now.torque[c] += torque[c] / steps;

@@ -15,6 +15,11 @@ void check_pose(const std::string& name, const Pose& pose);
 /// Throws Error (usage) for an invalid pose or time.
 void check_drive(const std::string& name, const Pose& to, double seconds);
 
+/// Contact force on a tool in one step [N], and the torque about its origin [N m].
+struct StepForce {
+  Vec3d force{}, torque{};
+};
+
 class ToolContact {
  public:
   ToolContact(RunContext& run, RunReport& report) : run_(run), report_(report), lists_(run) {}
@@ -40,6 +45,9 @@ class ToolContact {
   /// nothing touched, or where it is not known: before the first step and after the state was changed. Of points that touch
   /// tools and tissue the part of tissue that contact adds after its first pass (touch_settle) is missing.
   [[nodiscard]] std::vector<Vec3d> point_forces() const;
+  /// Force and torque of each step of the last batch, shape [steps][tools]; it ended after step batch_end().
+  [[nodiscard]] const std::vector<StepForce>& step_forces() const { return step_forces_; }
+  [[nodiscard]] std::int64_t batch_end() const { return batch_end_; }
   /// Returns the pose of a tool of the model at a time [s].
   [[nodiscard]] Pose pose(std::size_t tool, double time) const;
 
@@ -66,9 +74,11 @@ class ToolContact {
   Units units_;                      ///< of the current batch
   std::int64_t known_at_ = -1;       ///< step after which the buffers hold the forces of points; -1: none
   std::int64_t known_changes_ = -1;  ///< LoadedModel::changes() then
-  std::vector<char> summed_;         ///< per step of the batch: whether the contact passes ran
-  std::vector<Vec3d> arms_;          ///< from a tool's origin to the origin of a sequence's frame, shape [steps + 1][tools] [m]
-  std::vector<Pose> poses_;  ///< poses of a sequence's frame from the step before the batch on, shape [steps + 2][tools]
+  std::vector<StepForce> step_forces_;
+  std::int64_t batch_end_ = -1;
+  std::vector<char> summed_;  ///< per step of the batch: whether the contact passes ran
+  std::vector<Vec3d> arms_;   ///< from a tool's origin to the origin of a sequence's frame, shape [steps + 1][tools] [m]
+  std::vector<Pose> poses_;   ///< poses of a sequence's frame from the step before the batch on, shape [steps + 2][tools]
 };
 
 }  // namespace pliant

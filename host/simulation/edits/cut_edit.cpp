@@ -56,6 +56,7 @@ void TopologyEdits::make_cut(std::vector<CutEdges> edges, std::vector<double> u,
   clock.lap();
   step_.limit_after_edit(changed);
   report.step += clock.lap();
+  changed_nodes_ = std::move(changed);
 }
 
 }  // namespace pliant

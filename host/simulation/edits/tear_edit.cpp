@@ -50,6 +50,7 @@ void TopologyEdits::make_tears() {
   run_.state.opened += edges;
   ++run_.state.topology_version;
   step_.limit_after_edit(changed);
+  changed_nodes_ = std::move(changed);
 }
 
 }  // namespace pliant

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 
+#include "geometry/vec.h"
 #include "pliant/error.h"
 #include "schedule/build_program.h"
 #include "simulation/contact/tool_changes.h"
@@ -123,6 +124,24 @@ void TopologyEdits::prepare_cuts() {
 const CutTopology* TopologyEdits::cut_topology(std::size_t body) const {
   if (bodies_ == nullptr || body >= bodies_->size() || bodies_->find_cut(body) == nullptr) return nullptr;
   return &bodies_->find_cut(body)->topology();
+}
+
+std::optional<Vec3d> TopologyEdits::edited_at() const {
+  const Model& model = run_.model();
+  if (changed_nodes_.size() != model.mass.size()) return {};
+  const std::vector<double> u = run_.u();
+  Vec3d sum{};
+  double count = 0;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const std::vector<Vec3d> x = run_.loaded.positions(u, b);
+    for (std::size_t n = 0; n < x.size(); ++n) {
+      if (changed_nodes_[static_cast<std::size_t>(model.bodies[b].slot[n])] == 0) continue;
+      sum = vec::add(sum, x[n]);
+      ++count;
+    }
+  }
+  if (count == 0) return {};
+  return vec::mul(sum, 1 / count);
 }
 
 Scene TopologyEdits::scene_at(const RunState& state) const {

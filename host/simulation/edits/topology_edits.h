@@ -4,6 +4,7 @@
 #pragma once
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -36,6 +37,8 @@ class TopologyEdits {
   void lift_blade(const std::string& blade);
   void prepare_cuts();
   [[nodiscard]] const CutTopology* cut_topology(std::size_t body) const;
+  /// Returns the mean current position of the nodes whose elements the last cut or tear changed [m].
+  [[nodiscard]] std::optional<Vec3d> edited_at() const;
 
   /// Loads the model of the scene after a change of its parameters; the motion stays. `remodelled`: bodies whose operational
   /// region has another size or seed. Throws Error and then changes nothing.
@@ -75,6 +78,7 @@ class TopologyEdits {
   RunContext& run_;
   StepControl& step_;
   HostLoads& loads_;
+  std::vector<char> changed_nodes_;       ///< [slots] by the last cut or tear; empty: none
   std::unique_ptr<EditedBodies> bodies_;  ///< the scene's bodies with the edits of RunState; created on first use
 };
 

@@ -1,0 +1,122 @@
+#include "api/event_log.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "model/pieces.h"
+
+namespace pliant::api {
+namespace {
+
+constexpr double kDeep = 0.5, kShallow = 0.4;  // [cells] a tool becomes deep and ceases to be
+
+std::vector<std::int64_t> pieces_of_all(const Model& model) {
+  std::vector<std::int64_t> pieces;
+  for (const ModelBody& body : model.bodies) pieces.push_back(pieces_of(body));
+  return pieces;
+}
+
+void place(Event& event, const std::optional<Vec3d>& at) {
+  event.placed = at.has_value();
+  if (at) event.position = *at;
+}
+
+}  // namespace
+
+void EventLog::add(Event event) {
+  const std::lock_guard lock(mutex_);
+  if (events_.size() == kMost) events_.pop_front();
+  events_.push_back(std::move(event));
+}
+
+void EventLog::add(const Simulation& simulation, Event event) {
+  event.step = simulation.step();
+  event.time = simulation.time();
+  add(std::move(event));
+}
+
+std::vector<Event> EventLog::take() {
+  const std::lock_guard lock(mutex_);
+  std::vector<Event> events(std::make_move_iterator(events_.begin()), std::make_move_iterator(events_.end()));
+  events_.clear();
+  return events;
+}
+
+void EventLog::renew(const Simulation& simulation) {
+  const RunReport& report = simulation.report();
+  opened_ = simulation.state().opened;
+  topology_ = simulation.topology_version();
+  calmed_ = report.inversions.calmed;
+  inverted_ = report.inversions.last;
+  made_again_ = report.made_again;
+  diverged_ = simulation.divergence().has_value();
+  pieces_ = pieces_of_all(simulation.model());
+  deep_.clear();
+}
+
+void EventLog::look_at_pieces(const Simulation& simulation) {
+  const std::int64_t version = simulation.topology_version();
+  if (std::exchange(topology_, version) == version) return;
+  std::vector<std::int64_t> before = std::exchange(pieces_, pieces_of_all(simulation.model()));
+  before.resize(pieces_.size());
+  for (std::size_t b = 0; b < pieces_.size(); ++b) {
+    if (pieces_[b] == before[b]) continue;
+    const std::string& body = simulation.model().bodies[b].name;
+    Event event{"pieces", body, 0, 0, false, {}, static_cast<double>(pieces_[b]), {}};
+    event.text = fmt::format("body '{}' has {} pieces, {} before", body, pieces_[b], before[b]);
+    place(event, simulation.edited_at());
+    add(simulation, std::move(event));
+  }
+}
+
+void EventLog::look_at_tools(const Simulation& simulation) {
+  const std::vector<ToolHistory>& felt = simulation.report().tools;
+  const std::vector<ContactTool>& tools = simulation.contact().tools();
+  if (tools.empty() || simulation.model().contact == nullptr) return;
+  for (std::size_t t = 0; t < std::min(felt.size(), tools.size()); ++t) {
+    const double cells = felt[t].now.depth / simulation.model().contact->spacing;
+    bool& deep = deep_[tools[t].name];
+    if ((cells > (deep ? kShallow : kDeep)) == deep) continue;
+    deep = !deep;
+    if (!deep) continue;
+    Event event{"deep", tools[t].name, 0, 0, false, {}, cells, {}};
+    event.text = fmt::format("tool '{}' is {:.2g} cells deep in tissue", tools[t].name, cells);
+    place(event, simulation.contact().pose(t, simulation.time()).position);
+    add(simulation, std::move(event));
+  }
+}
+
+void EventLog::look(const Simulation& simulation) {
+  const RunReport& report = simulation.report();
+  const Inversions& inverted = report.inversions;
+  const std::int64_t opened = simulation.state().opened;
+  if (const std::int64_t more = opened - std::exchange(opened_, opened); more > 0) {
+    Event event{"opened", {}, 0, 0, false, {}, static_cast<double>(more), {}};
+    event.text = fmt::format("{} edges parted under the load", more);
+    place(event, simulation.edited_at());
+    add(simulation, std::move(event));
+  }
+  look_at_pieces(simulation);
+  if (const std::int64_t before = std::exchange(inverted_, inverted.last); inverted.last > 0 && before == 0) {
+    Event event{"inverted", inverted.body, 0, 0, false, {}, static_cast<double>(inverted.last), {}};
+    event.text = fmt::format("{} elements are turned inside out and driven back", inverted.last);
+    add(simulation, std::move(event));
+  }
+  if (const std::int64_t more = inverted.calmed - std::exchange(calmed_, inverted.calmed); more > 0) {
+    const std::string text = fmt::format("in {} elements, motion faster than waves was taken out", more);
+    add(simulation, {"calmed", {}, 0, 0, false, {}, static_cast<double>(more), text});
+  }
+  if (const std::int64_t more = report.made_again - std::exchange(made_again_, report.made_again); more > 0) {
+    add(simulation, {"rolled_back", {}, 0, 0, false, {}, static_cast<double>(more), "steps were made again, smaller"});
+  }
+  look_at_tools(simulation);
+  const bool diverged = simulation.divergence().has_value();
+  if (!std::exchange(diverged_, diverged) && diverged) {
+    const Divergence& d = *simulation.divergence();
+    add(simulation, {"diverged", d.body, 0, 0, false, {}, static_cast<double>(d.element), d.message()});
+  }
+}
+
+}  // namespace pliant::api

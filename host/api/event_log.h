@@ -1,0 +1,42 @@
+// What happened in a World, found between batches. Private to host/api and its tests.
+#pragma once
+#include <deque>
+#include <map>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "pliant/live.h"
+#include "simulation/simulation.h"
+
+namespace pliant::api {
+
+/// The stepping thread adds events, and the caller's thread takes them.
+class EventLog {
+ public:
+  static constexpr std::size_t kMost = 1024;
+
+  /// Compares the simulation with the last look and adds what is new. Costs a few comparisons if nothing is.
+  void look(const Simulation& simulation);
+  /// Call after the simulation was replaced or has gone back: nothing before this is new.
+  void renew(const Simulation& simulation);
+  void add(Event event);
+  /// The same at the simulation's current time.
+  void add(const Simulation& simulation, Event event);
+  std::vector<Event> take();
+
+ private:
+  void look_at_pieces(const Simulation& simulation);
+  void look_at_tools(const Simulation& simulation);
+
+  // Used by the stepping thread.
+  std::int64_t opened_ = 0, topology_ = 0, calmed_ = 0, inverted_ = 0, made_again_ = 0;
+  bool diverged_ = false;
+  std::vector<std::int64_t> pieces_;  ///< [bodies]
+  std::map<std::string, bool> deep_;  ///< tools that are deep in tissue
+
+  std::mutex mutex_;
+  std::deque<Event> events_;
+};
+
+}  // namespace pliant::api

@@ -1,0 +1,120 @@
+#include "api/pace.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "pliant/error.h"
+
+namespace pliant::api {
+namespace {
+
+constexpr double kUse = 0.85;     ///< share of a period that a frame may take, so that it is ready when it is fetched
+constexpr double kFaster = 1.25;  ///< largest simulated time of a frame, in periods
+constexpr double kOwed = 0.25;    ///< wall time that can be caught up with [s]
+constexpr double kShift = 0.2;    ///< largest change of the moment at which frames start, in periods
+constexpr double kLeast = 0.05;   ///< least simulated time of a frame, in periods
+constexpr double kNew = 0.1;      ///< weight of a new value in an average
+constexpr double kWindow = 1;     ///< wall time that LiveState::real_time looks back [s]
+
+}  // namespace
+
+double wall_time() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+std::chrono::steady_clock::time_point moment_of(double wall_time) {
+  using Clock = std::chrono::steady_clock;
+  return Clock::time_point(std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(wall_time)));
+}
+
+void check_live(const LiveOptions& options) {
+  const auto check = [](const char* name, double x, double least, double most) {
+    if (x >= least && x <= most) return;
+    throw Error(ErrorCode::usage, fmt::format("run_live: {} is {}, expected {} to {}", name, x, least, most));
+  };
+  check("rate", options.rate, 1, 1000);
+  check("speed", options.speed, 0.001, 1000);
+}
+
+void Pace::Average::add(double x) {
+  if (!known) mean = x;
+  const double off = x - mean;
+  mean += kNew * off;
+  deviation += kNew * (std::abs(off) - deviation);
+  known = true;
+}
+
+void Pace::start(const LiveOptions& options, double now) {
+  *this = Pace();
+  options_ = options;
+  running_ = true;
+  next_start_ = now;
+}
+
+void Pace::change(const LiveOptions& options) {
+  options_ = options;
+  owed_ = 0;
+}
+
+double Pace::begin(double now) {
+  const double period = 1 / options_.rate, full = options_.speed * period;
+  const double elapsed = started_ ? std::max(0.0, now - begun_) : period;
+  if (started_) state_.late += static_cast<std::int64_t>(std::max(0.0, std::round(elapsed / period) - 1));
+  owed_ += elapsed * options_.speed;
+  double covers = std::min(owed_, kFaster * full);
+  if (cost_.known && cost_.usual_most() > 0) {
+    const double time = kUse * period - reading_.usual_most();
+    covers = std::min(covers, std::max(kLeast * full, time / cost_.usual_most()));
+  }
+  owed_ -= covers;
+  const double most = kOwed * options_.speed;
+  if (owed_ > most) {
+    state_.lost += owed_ - most;
+    owed_ = most;
+  }
+  started_ = true;
+  begun_ = now;
+  next_start_ = now + period;
+  wall_of_this_ = elapsed;
+  return covers;
+}
+
+void Pace::end(double now, double simulated, double read) {
+  ++state_.frames;
+  if (simulated > 0) cost_.add(std::max(0.0, now - begun_ - read) / simulated);
+  reading_.add(read);
+  passed_.push_back({wall_of_this_, simulated});
+  passed_wall_ += wall_of_this_;
+  passed_simulated_ += simulated;
+  while (passed_wall_ - passed_.front().wall > kWindow) {
+    passed_wall_ -= passed_.front().wall;
+    passed_simulated_ -= passed_.front().simulated;
+    passed_.pop_front();
+  }
+}
+
+/// Moves the start of the next frame towards the moment of the period at which this one was fetched.
+bool Pace::fetched(double now) {
+  if (!running_ || !started_) return false;
+  const double period = 1 / options_.rate;
+  const double off = std::remainder(now - begun_, period);
+  const double before = std::exchange(next_start_, begun_ + period + std::clamp(off, -kShift * period, kShift * period));
+  return next_start_ < before;
+}
+
+void Pace::skip(double now) {
+  begun_ = now;
+  next_start_ = now;
+}
+
+LiveState Pace::state() const {
+  LiveState state = state_;
+  state.running = running_;
+  state.real_time = passed_wall_ > 0 ? passed_simulated_ / (options_.speed * passed_wall_) : 0;
+  const double period = 1 / options_.rate;
+  state.load = (cost_.mean * options_.speed * period + reading_.mean) / period;
+  return state;
+}
+
+}  // namespace pliant::api

@@ -1,0 +1,66 @@
+// When the frames of a freely running World start, and how much simulated time each covers. Private to host/api and its tests.
+#pragma once
+#include <chrono>
+#include <deque>
+
+#include "pliant/live.h"
+
+namespace pliant::api {
+
+/// A frame per period, at the moment of the period when the caller fetches frames, so that the next one has a whole period to
+/// be ready. All times are seconds of one monotonic clock.
+class Pace {
+ public:
+  void start(const LiveOptions& options, double now);
+  void change(const LiveOptions& options);
+  void stop() { running_ = false; }
+  [[nodiscard]] bool running() const { return running_; }
+
+  /// When the next frame may start.
+  [[nodiscard]] double next_start() const { return next_start_; }
+  /// Starts a frame. Returns the simulated time that it should cover [s]: the wall time since the last one times the speed,
+  /// with at most a quarter more to catch up, and no more than this machine can simulate in time.
+  double begin(double now);
+  /// Ends it. `simulated`: time that it covered [s]; `read`: wall time for reading the surface [s].
+  void end(double now, double simulated, double read);
+  /// Call when the caller fetches a frame. Returns true if the next one may start earlier than next_start() said before.
+  bool fetched(double now);
+  /// Counts a frame that nobody fetched.
+  void drop() { state_.dropped += running_ && state_.frames > 0 ? 1 : 0; }
+  /// Leaves out the time since the last frame, which something else than frames took.
+  void skip(double now);
+
+  [[nodiscard]] LiveState state() const;
+
+ private:
+  /// Mean and mean deviation of a varying number.
+  struct Average {
+    double mean = 0, deviation = 0;
+    bool known = false;
+    void add(double x);
+    [[nodiscard]] double usual_most() const { return mean + 2 * deviation; }
+  };
+  struct Passed {
+    double wall = 0, simulated = 0;
+  };
+
+  LiveOptions options_;
+  bool running_ = false, started_ = false;
+  double begun_ = 0;  ///< start of the last frame
+  double next_start_ = 0;
+  double owed_ = 0;         ///< simulated time that is not covered yet [s]
+  Average cost_, reading_;  ///< wall time per simulated second, and for reading a frame [s]
+  std::deque<Passed> passed_;
+  double passed_wall_ = 0, passed_simulated_ = 0;  ///< sums of passed_
+  double wall_of_this_ = 0;
+  LiveState state_;
+};
+
+/// Seconds of the steady clock, and the reverse.
+[[nodiscard]] double wall_time();
+[[nodiscard]] std::chrono::steady_clock::time_point moment_of(double wall_time);
+
+/// Throws Error (usage).
+void check_live(const LiveOptions& options);
+
+}  // namespace pliant::api

@@ -1,0 +1,128 @@
+// A World that runs freely, paced by the wall clock.
+#include <fmt/format.h>
+
+#include "api/world_call.h"
+
+namespace pliant {
+
+bool World::Impl::is_live() const {
+  const std::lock_guard lock(mutex);
+  return pace.running();
+}
+
+void World::Impl::check_not_live(const char* call) const {
+  if (is_live()) throw Error(ErrorCode::state, fmt::format("{}: the World runs freely; stop_live() ends that", call));
+}
+
+bool World::Impl::may_begin() const {
+  if (!pace.running() || held) return false;
+  return !files.empty() || (!halted && api::wall_time() >= pace.next_start());
+}
+
+void World::Impl::run_live(const LiveOptions& live) {
+  api::check_live(live);
+  {
+    const std::lock_guard lock(mutex);
+    if (pace.running()) {
+      pace.change(live);
+      return;
+    }
+    if (job) throw Error(ErrorCode::state, "run_live: the worker is busy with steps; wait() waits for them");
+  }
+  throw_failure();
+  check_can_step();
+  if (!worker.joinable()) worker = std::thread([this] { serve(); });
+  beside = true;
+  {
+    const std::lock_guard lock(mutex);
+    halted = false;
+    pace.start(live, api::wall_time());
+  }
+  changed.notify_all();
+}
+
+void World::Impl::stop_live() {
+  {
+    const std::lock_guard lock(mutex);
+    pace.stop();
+  }
+  serve_files();
+  beside = false;
+}
+
+void World::Impl::look_for_events() {
+  events.look(*simulation);
+  for (const api::SurfaceHandles::Limit& limit : handles->limits()) {
+    events.add(*simulation,
+               {"limited", std::to_string(limit.grab), 0, 0, true, limit.position, limit.force,
+                fmt::format("grab {} has reached its greatest force, {:.3g} N, and may not arrive", limit.grab, limit.force)});
+  }
+}
+
+void World::Impl::make_changes() {
+  const bool live = is_live();
+  const auto attempt = [&](auto&& make) {
+    try {
+      make();
+    } catch (const api::Refused& refused) {
+      if (!live) throw;
+      events.add(*simulation, {"refused", {}, 0, 0, false, {}, 0, refused.what()});
+    }
+  };
+  attempt([this] { cut_pending(); });
+  attempt([this] { change_pending(); });
+  attempt([this] { change_tools_now(); });
+}
+
+void World::Impl::live_frame() {
+  serve_files();
+  double covers = 0;
+  {
+    const std::lock_guard lock(mutex);
+    if (halted || !pace.running() || api::wall_time() < pace.next_start()) return;
+    covers = pace.begin(api::wall_time());
+  }
+  const double before = simulation->time();
+  advance(covers);
+  const double stepped = api::wall_time();
+  read_frame();
+  const double now = api::wall_time();
+  const std::lock_guard lock(mutex);
+  pace.end(now, simulation->time() - before, now - stepped);
+}
+
+void World::run_live(const LiveOptions& options) {
+  const api::Call call(impl_, false);
+  impl_->run_live(options);
+}
+
+StepReport World::stop_live() {
+  const api::Call call(impl_);
+  impl_->stop_live();
+  impl_->throw_failure();
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->report;
+}
+
+LiveState World::live_state() const {
+  const api::Call call(impl_, false);
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->pace.state();
+}
+
+std::vector<Event> World::events() {
+  const api::Call call(impl_, false);
+  return impl_->events.take();
+}
+
+std::vector<ForceSample> World::force_trace(const std::string& tool, std::int64_t after) const {
+  const api::Call call(impl_, false);
+  return impl_->rigid_tools.trace(tool, after);
+}
+
+std::vector<ForceSample> World::force_trace(GrabId grab, std::int64_t after) const {
+  const api::Call call(impl_, false);
+  return impl_->handles->trace(grab, after);
+}
+
+}  // namespace pliant
