@@ -377,6 +377,64 @@ void bind_tools(py::class_<pliant::World>& world) {
            "a list of dicts: what tools and bodies, and bodies and bodies, have in common");
 }
 
+py::dict live_state(const pliant::World& w) {
+  const pliant::LiveState s = w.live_state();
+  py::dict live;
+  live["running"] = s.running;
+  live["frames"] = s.frames;
+  live["late"] = s.late;
+  live["dropped"] = s.dropped;
+  live["real_time"] = s.real_time;
+  live["load"] = s.load;
+  live["lost"] = s.lost;
+  return live;
+}
+
+py::list events(pliant::World& w) {
+  py::list all;
+  for (const pliant::Event& e : w.events()) {
+    py::dict event;
+    event["kind"] = e.kind;
+    event["subject"] = e.subject;
+    event["step"] = e.step;
+    event["time"] = e.time;
+    event["position"] = e.placed ? py::cast(e.position) : py::object(py::none());
+    event["amount"] = e.amount;
+    event["text"] = e.text;
+    all.append(event);
+  }
+  return all;
+}
+
+/// An array of the fields of ForceSample.
+py::array force_trace(const pliant::World& w, const py::object& of, std::int64_t after) {
+  const std::vector<pliant::ForceSample> trace = py::isinstance<py::str>(of) ? w.force_trace(of.cast<std::string>(), after)
+                                                                             : w.force_trace(of.cast<pliant::GrabId>(), after);
+  return py::array(py::dtype::of<pliant::ForceSample>(), {trace.size()}, {}, trace.data());
+}
+
+void bind_live(py::class_<pliant::World>& world) {
+  using pliant::World;
+  using Free = py::call_guard<py::gil_scoped_release>;
+  PYBIND11_NUMPY_DTYPE(pliant::ForceSample, step, time, force, torque);
+  world
+      .def(
+          "run_live",
+          [](World& w, double rate, double speed) {
+            w.run_live({rate, speed});
+          },
+          py::arg("rate") = 60.0, py::arg("speed") = 1.0, Free(),
+          "the worker steps on its own, paced by the wall clock, and makes `rate` frames per second until stop_live()")
+      .def("stop_live", &World::stop_live, Free(), "ends run_live() after the frame at work; a StepReport")
+      .def("live_state", &live_state, "a dict with the fields of LiveState: what run_live() achieves")
+      .def("events", &events, "a list of dicts with the fields of Event: what happened since the last call")
+      .def(
+          "force_trace", &force_trace, py::arg("of"), py::arg("after") = -1,
+          "of: name of a tool, or a grab; a structured array with step, time [s], force [N] and torque [N m]: a tool's of each "
+          "of the last 4096 steps after step `after`, a grab's of each update")
+      .def("recover", &World::recover, Free(), "after a divergence, goes on from the last good state, at rest");
+}
+
 void bind_world(py::module_& m) {
   using pliant::World;
   using Free = py::call_guard<py::gil_scoped_release>;
@@ -426,6 +484,7 @@ void bind_world(py::module_& m) {
       .def("load", &World::load, py::arg("file"), Free())
       .def("reset", &World::reset, Free());
   bind_tools(world);
+  bind_live(world);
 }
 
 /// Names and types of a function's parameters without `self`, as its text says them: "steps: int = 1, ...".

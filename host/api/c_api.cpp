@@ -28,13 +28,6 @@ pliant::WorldOptions options_of(const pliant_options* pointer) {
   return options;
 }
 
-void give_report(const pliant::StepReport& r, pliant_report* out) {
-  thread_local std::string message;
-  if (out == nullptr) return;
-  message = r.message;
-  give_struct({0, r.done, r.step, r.time, r.dt, r.diverged ? 1 : 0, r.at_equilibrium ? 1 : 0, message.c_str()}, out);
-}
-
 /// Copies `text` into a buffer of `size` bytes, truncated to fit including the closing 0.
 void give_text(const std::string& text, char* out, std::size_t size) {
   need(out, "text");

@@ -62,6 +62,32 @@ inline SurfaceSpec surface_of(const pliant_surface& given) {
   return spec;
 }
 
+/// Element i of an array of the caller's structs, which may be larger than this library's.
+template <class T>
+T* element(T* first, std::size_t i) {
+  return reinterpret_cast<T*>(reinterpret_cast<char*>(first) + i * first->size);
+}
+
+template <class T>
+void check_array(T* first, std::size_t count, const char* name) {
+  if (count == 0) return;
+  need(first, "out");
+  check_struct(first);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t size = element(first, i)->size;
+    if (size == first->size) continue;
+    throw Error(ErrorCode::usage, fmt::format("{}::size is {} in out[{}] and {} in the first", name, size, i, first->size));
+  }
+}
+
+inline void give_report(const StepReport& r, pliant_report* out) {
+  thread_local std::string message;
+  if (out == nullptr) return;
+  message = r.message;
+  give_struct<pliant_report>({0, r.done, r.step, r.time, r.dt, r.diverged ? 1 : 0, r.at_equilibrium ? 1 : 0, message.c_str()},
+                             out);
+}
+
 template <class Call>
 pliant_status on(pliant_world world, Call&& call) noexcept {
   return guarded([&] {

@@ -1,6 +1,7 @@
 // The worlds of C callers. Handles are looked up in a table and never dereferenced.
 #pragma once
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -19,6 +20,8 @@ struct CWorld {
   std::map<std::uint64_t, FramePtr> seen;  ///< last frame of each consumer, which keeps its pointers valid
   std::set<std::string> names;             ///< storage of returned names of tools and bodies
   std::vector<ProbeValue> probes;          ///< storage of returned probe values
+  std::deque<Event> waiting_events;        ///< not returned yet
+  std::vector<Event> events;               ///< storage of returned events
 };
 
 /// The table of valid handles, the only state shared by all users of the C API.

@@ -5,31 +5,9 @@
 
 #include "api/c_call.h"
 
-namespace {
-
 using namespace pliant::api;
 using pliant::Error;
 using pliant::ErrorCode;
-
-/// Element i of an array of the caller's structs, which may be larger than this library's.
-template <class T>
-T* element(T* first, std::size_t i) {
-  return reinterpret_cast<T*>(reinterpret_cast<char*>(first) + i * first->size);
-}
-
-template <class T>
-void check_array(T* first, std::size_t count, const char* name) {
-  if (count == 0) return;
-  need(first, "out");
-  check_struct(first);
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t size = element(first, i)->size;
-    if (size == first->size) continue;
-    throw Error(ErrorCode::usage, fmt::format("{}::size is {} in out[{}] and {} in the first", name, size, i, first->size));
-  }
-}
-
-}  // namespace
 
 pliant_status pliant_world_probes(pliant_world world, pliant_probe_value* out, size_t count, size_t* needed) {
   return on(world, [&](CWorld& w) {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstring>
 
+#include "pliant/c/live.h"
 #include "pliant/c/types.h"
 #include "pliant/error.h"
 
@@ -36,6 +37,10 @@ PLIANT_C_STRUCT(pliant_probe_value, number_count);
 PLIANT_C_STRUCT(pliant_tool_force, reserved);
 PLIANT_C_STRUCT(pliant_interpenetration, reserved);
 PLIANT_C_STRUCT(pliant_picked_point, reserved);
+PLIANT_C_STRUCT(pliant_live_options, speed);
+PLIANT_C_STRUCT(pliant_live_state, lost);
+PLIANT_C_STRUCT(pliant_event, reserved);
+PLIANT_C_STRUCT(pliant_force_sample, torque);
 #undef PLIANT_C_STRUCT
 
 /// Throws Error (usage) for an invalid size.

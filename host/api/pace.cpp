@@ -11,12 +11,15 @@
 namespace pliant::api {
 namespace {
 
-constexpr double kUse = 0.85;     ///< share of a period that a frame may take, so that it is ready when it is fetched
+constexpr double kUse = 0.92;   ///< share of a period that a frame may take, so that it is ready when it is fetched
+constexpr double kIdle = 0.6;   ///< mean share below which there is time for much more
+constexpr double kLess = 0.92;  ///< changes of the simulated time that a frame may cover
+constexpr double kMore = 1.002, kMuchMore = 1.03;
 constexpr double kFaster = 1.25;  ///< largest simulated time of a frame, in periods
 constexpr double kOwed = 0.25;    ///< wall time that can be caught up with [s]
 constexpr double kShift = 0.2;    ///< largest change of the moment at which frames start, in periods
 constexpr double kLeast = 0.05;   ///< least simulated time of a frame, in periods
-constexpr double kNew = 0.1;      ///< weight of a new value in an average
+constexpr double kNew = 0.25;     ///< weight of a new value in an average
 constexpr double kWindow = 1;     ///< wall time that LiveState::real_time looks back [s]
 
 }  // namespace
@@ -37,14 +40,6 @@ void check_live(const LiveOptions& options) {
   check("speed", options.speed, 0.001, 1000);
 }
 
-void Pace::Average::add(double x) {
-  if (!known) mean = x;
-  const double off = x - mean;
-  mean += kNew * off;
-  deviation += kNew * (std::abs(off) - deviation);
-  known = true;
-}
-
 void Pace::start(const LiveOptions& options, double now) {
   *this = Pace();
   options_ = options;
@@ -62,11 +57,7 @@ double Pace::begin(double now) {
   const double elapsed = started_ ? std::max(0.0, now - begun_) : period;
   if (started_) state_.late += static_cast<std::int64_t>(std::max(0.0, std::round(elapsed / period) - 1));
   owed_ += elapsed * options_.speed;
-  double covers = std::min(owed_, kFaster * full);
-  if (cost_.known && cost_.usual_most() > 0) {
-    const double time = kUse * period - reading_.usual_most();
-    covers = std::min(covers, std::max(kLeast * full, time / cost_.usual_most()));
-  }
+  const double covers = std::min({owed_, kFaster * full, most_ * full});
   owed_ -= covers;
   const double most = kOwed * options_.speed;
   if (owed_ > most) {
@@ -80,10 +71,20 @@ double Pace::begin(double now) {
   return covers;
 }
 
-void Pace::end(double now, double simulated, double read) {
+/// A frame takes some time whatever it covers, and not always the same, so that only trying shows how much fits: less after a
+/// frame that took too long, slowly more after others, faster where much of the period is left. One frame in some 40 is then
+/// late.
+void Pace::end(double now, double simulated, double edits, double read) {
   ++state_.frames;
-  if (simulated > 0) cost_.add(std::max(0.0, now - begun_ - read) / simulated);
-  reading_.add(read);
+  const double period = 1 / options_.rate, full = options_.speed * period;
+  const double taken = std::max(0.0, now - begun_ - edits);
+  taken_ += kNew * (taken / period - taken_);
+  if (simulated > 0) cost_ += kNew * (std::max(0.0, taken - read) / simulated * options_.speed + read / period - cost_);
+  if (taken > kUse * period) {
+    most_ = std::max(kLeast, std::min(most_, simulated / full) * kLess);
+  } else {
+    most_ = std::min(kFaster, most_ * (taken_ < kIdle ? kMuchMore : kMore));
+  }
   passed_.push_back({wall_of_this_, simulated});
   passed_wall_ += wall_of_this_;
   passed_simulated_ += simulated;
@@ -112,8 +113,7 @@ LiveState Pace::state() const {
   LiveState state = state_;
   state.running = running_;
   state.real_time = passed_wall_ > 0 ? passed_simulated_ / (options_.speed * passed_wall_) : 0;
-  const double period = 1 / options_.rate;
-  state.load = (cost_.mean * options_.speed * period + reading_.mean) / period;
+  state.load = cost_;
   return state;
 }
 

@@ -21,8 +21,9 @@ class Pace {
   /// Starts a frame. Returns the simulated time that it should cover [s]: the wall time since the last one times the speed,
   /// with at most a quarter more to catch up, and no more than this machine can simulate in time.
   double begin(double now);
-  /// Ends it. `simulated`: time that it covered [s]; `read`: wall time for reading the surface [s].
-  void end(double now, double simulated, double read);
+  /// Ends it. `simulated`: time that it covered [s]; `edits`, `read`: wall time for cuts and changes, and for reading the
+  /// surface [s].
+  void end(double now, double simulated, double edits, double read);
   /// Call when the caller fetches a frame. Returns true if the next one may start earlier than next_start() said before.
   bool fetched(double now);
   /// Counts a frame that nobody fetched.
@@ -33,13 +34,6 @@ class Pace {
   [[nodiscard]] LiveState state() const;
 
  private:
-  /// Mean and mean deviation of a varying number.
-  struct Average {
-    double mean = 0, deviation = 0;
-    bool known = false;
-    void add(double x);
-    [[nodiscard]] double usual_most() const { return mean + 2 * deviation; }
-  };
   struct Passed {
     double wall = 0, simulated = 0;
   };
@@ -48,8 +42,10 @@ class Pace {
   bool running_ = false, started_ = false;
   double begun_ = 0;  ///< start of the last frame
   double next_start_ = 0;
-  double owed_ = 0;         ///< simulated time that is not covered yet [s]
-  Average cost_, reading_;  ///< wall time per simulated second, and for reading a frame [s]
+  double owed_ = 0;   ///< simulated time that is not covered yet [s]
+  double most_ = 1;   ///< what a frame may cover, in frames of full length
+  double taken_ = 0;  ///< mean duration of a frame, in periods
+  double cost_ = 0;   ///< the same of a frame of full length, if its duration is proportional to what it covers
   std::deque<Passed> passed_;
   double passed_wall_ = 0, passed_simulated_ = 0;  ///< sums of passed_
   double wall_of_this_ = 0;

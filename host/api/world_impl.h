@@ -136,6 +136,7 @@ struct World::Impl {
   api::RigidTools rigid_tools;
   api::EventLog events;
   std::string lost;         ///< message of the device failure; empty: the device works
+  double editing = 0;       ///< wall time of make_changes() in this frame [s]; used by the stepping thread
   double seconds_left = 0;  ///< remainder of advance() below a whole step; used by the stepping thread
   std::atomic<bool> in_use{false};
   std::int64_t strokes = 0;                      ///< number of blade strokes so far

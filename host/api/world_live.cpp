@@ -60,6 +60,7 @@ void World::Impl::look_for_events() {
 }
 
 void World::Impl::make_changes() {
+  const double start = api::wall_time();
   const bool live = is_live();
   const auto attempt = [&](auto&& make) {
     try {
@@ -72,6 +73,7 @@ void World::Impl::make_changes() {
   attempt([this] { cut_pending(); });
   attempt([this] { change_pending(); });
   attempt([this] { change_tools_now(); });
+  editing += api::wall_time() - start;
 }
 
 void World::Impl::live_frame() {
@@ -83,12 +85,13 @@ void World::Impl::live_frame() {
     covers = pace.begin(api::wall_time());
   }
   const double before = simulation->time();
+  editing = 0;
   advance(covers);
   const double stepped = api::wall_time();
   read_frame();
   const double now = api::wall_time();
   const std::lock_guard lock(mutex);
-  pace.end(now, simulation->time() - before, now - stepped);
+  pace.end(now, simulation->time() - before, editing, now - stepped);
 }
 
 void World::run_live(const LiveOptions& options) {
