@@ -18,12 +18,11 @@ std::vector<std::int64_t> pieces_of_all(const Model& model) {
   return pieces;
 }
 
-void place(Event& event, const std::optional<Vec3d>& at) {
-  event.placed = at.has_value();
-  if (at) event.position = *at;
-}
-
 }  // namespace
+
+Event event_of(std::string kind, std::string subject, double amount, std::string text, const std::optional<Vec3d>& at) {
+  return {std::move(kind), std::move(subject), 0, 0, at.has_value(), at.value_or(Vec3d{}), amount, std::move(text)};
+}
 
 void EventLog::add(Event event) {
   const std::lock_guard lock(mutex_);
@@ -64,10 +63,8 @@ void EventLog::look_at_pieces(const Simulation& simulation) {
   for (std::size_t b = 0; b < pieces_.size(); ++b) {
     if (pieces_[b] == before[b]) continue;
     const std::string& body = simulation.model().bodies[b].name;
-    Event event{"pieces", body, 0, 0, false, {}, static_cast<double>(pieces_[b]), {}};
-    event.text = fmt::format("body '{}' has {} pieces, {} before", body, pieces_[b], before[b]);
-    place(event, simulation.edited_at());
-    add(simulation, std::move(event));
+    const std::string text = fmt::format("body '{}' has {} pieces, {} before", body, pieces_[b], before[b]);
+    add(simulation, event_of("pieces", body, static_cast<double>(pieces_[b]), text, simulation.edited_at()));
   }
 }
 
@@ -81,10 +78,8 @@ void EventLog::look_at_tools(const Simulation& simulation) {
     if ((cells > (deep ? kShallow : kDeep)) == deep) continue;
     deep = !deep;
     if (!deep) continue;
-    Event event{"deep", tools[t].name, 0, 0, false, {}, cells, {}};
-    event.text = fmt::format("tool '{}' is {:.2g} cells deep in tissue", tools[t].name, cells);
-    place(event, simulation.contact().pose(t, simulation.time()).position);
-    add(simulation, std::move(event));
+    const std::string text = fmt::format("tool '{}' is {:.2g} cells deep in tissue", tools[t].name, cells);
+    add(simulation, event_of("deep", tools[t].name, cells, text, simulation.contact().pose(t, simulation.time()).position));
   }
 }
 
@@ -93,29 +88,26 @@ void EventLog::look(const Simulation& simulation) {
   const Inversions& inverted = report.inversions;
   const std::int64_t opened = simulation.state().opened;
   if (const std::int64_t more = opened - std::exchange(opened_, opened); more > 0) {
-    Event event{"opened", {}, 0, 0, false, {}, static_cast<double>(more), {}};
-    event.text = fmt::format("{} edges parted under the load", more);
-    place(event, simulation.edited_at());
-    add(simulation, std::move(event));
+    const std::string text = fmt::format("{} edges parted under the load", more);
+    add(simulation, event_of("opened", {}, static_cast<double>(more), text, simulation.edited_at()));
   }
   look_at_pieces(simulation);
   if (const std::int64_t before = std::exchange(inverted_, inverted.last); inverted.last > 0 && before == 0) {
-    Event event{"inverted", inverted.body, 0, 0, false, {}, static_cast<double>(inverted.last), {}};
-    event.text = fmt::format("{} elements are turned inside out and driven back", inverted.last);
-    add(simulation, std::move(event));
+    const std::string text = fmt::format("{} elements are turned inside out and driven back", inverted.last);
+    add(simulation, event_of("inverted", inverted.body, static_cast<double>(inverted.last), text));
   }
   if (const std::int64_t more = inverted.calmed - std::exchange(calmed_, inverted.calmed); more > 0) {
     const std::string text = fmt::format("in {} elements, motion faster than waves was taken out", more);
-    add(simulation, {"calmed", {}, 0, 0, false, {}, static_cast<double>(more), text});
+    add(simulation, event_of("calmed", {}, static_cast<double>(more), text));
   }
   if (const std::int64_t more = report.made_again - std::exchange(made_again_, report.made_again); more > 0) {
-    add(simulation, {"rolled_back", {}, 0, 0, false, {}, static_cast<double>(more), "steps were made again, smaller"});
+    add(simulation, event_of("rolled_back", {}, static_cast<double>(more), "steps were made again, smaller"));
   }
   look_at_tools(simulation);
   const bool diverged = simulation.divergence().has_value();
   if (!std::exchange(diverged_, diverged) && diverged) {
     const Divergence& d = *simulation.divergence();
-    add(simulation, {"diverged", d.body, 0, 0, false, {}, static_cast<double>(d.element), d.message()});
+    add(simulation, event_of("diverged", d.body, static_cast<double>(d.element), d.message()));
   }
 }
 

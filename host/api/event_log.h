@@ -3,6 +3,7 @@
 #include <deque>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,10 @@
 #include "simulation/simulation.h"
 
 namespace pliant::api {
+
+/// An event without its moment.
+[[nodiscard]] Event event_of(std::string kind, std::string subject, double amount, std::string text,
+                             const std::optional<Vec3d>& at = {});
 
 /// The stepping thread adds events, and the caller's thread takes them.
 class EventLog {

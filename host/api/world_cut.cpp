@@ -34,15 +34,8 @@ CutReport World::Impl::cut_now(std::span<const api::CutRequest> requests) {
     if (!poses.empty()) done = simulation->move_blades(poses);
     if (!done.changed) return done;
     handles->follow(simulation->shared_model());
-    const std::optional<Vec3d> at = simulation->edited_at();
-    events.add(*simulation, {"cut",
-                             {},
-                             0,
-                             0,
-                             at.has_value(),
-                             at.value_or(Vec3d{}),
-                             static_cast<double>(done.edges),
-                             fmt::format("{} edges were cut in {:.3g} s", done.edges, done.seconds())});
+    const std::string text = fmt::format("{} edges were cut in {:.3g} s", done.edges, done.seconds());
+    events.add(*simulation, api::event_of("cut", {}, static_cast<double>(done.edges), text, simulation->edited_at()));
     const std::lock_guard lock(mutex);
     cut_since_read = true;
     return done;

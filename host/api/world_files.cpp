@@ -75,7 +75,7 @@ void World::Impl::serve_files() {
   if (requests.empty()) return;
   for (const FileRequest& r : requests) {
     static constexpr const char* words[] = {"saved", "loaded", "reset", "recovered"};
-    Event event{words[static_cast<int>(r.what)], r.file, 0, 0, false, {}, 0, {}};
+    Event event = api::event_of(words[static_cast<int>(r.what)], r.file, 0, {});
     try {
       switch (r.what) {
         case FileRequest::What::save:

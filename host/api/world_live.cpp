@@ -53,9 +53,10 @@ void World::Impl::stop_live() {
 void World::Impl::look_for_events() {
   events.look(*simulation);
   for (const api::SurfaceHandles::Limit& limit : handles->limits()) {
-    events.add(*simulation,
-               {"limited", std::to_string(limit.grab), 0, 0, true, limit.position, limit.force,
-                fmt::format("grab {} has reached its greatest force, {:.3g} N, and may not arrive", limit.grab, limit.force)});
+    const std::string grab = std::to_string(limit.grab);
+    const std::string text =
+        fmt::format("grab {} has reached its greatest force, {:.3g} N, and may not arrive", grab, limit.force);
+    events.add(*simulation, api::event_of("limited", grab, limit.force, text, limit.position));
   }
 }
 
@@ -67,7 +68,7 @@ void World::Impl::make_changes() {
       make();
     } catch (const api::Refused& refused) {
       if (!live) throw;
-      events.add(*simulation, {"refused", {}, 0, 0, false, {}, 0, refused.what()});
+      events.add(*simulation, api::event_of("refused", {}, 0, refused.what()));
     }
   };
   attempt([this] { cut_pending(); });

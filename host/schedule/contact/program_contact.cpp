@@ -139,9 +139,17 @@ struct PointAtNode {
   std::array<std::int32_t, 2> turns{};
 };
 
-std::map<std::int32_t, std::vector<PointAtNode>> points_at_nodes(const Model& model, bool edged) {
+struct NodeWithPoints {
+  std::int32_t slot = 0;
+  std::vector<PointAtNode> points;
+};
+
+/// The nodes of contact points with their points, ascending. Nodes of neighbouring points come together, so that what touches
+/// takes few tiles.
+std::vector<NodeWithPoints> points_at_nodes(const Model& model, bool edged) {
   const ContactPoints& points = *model.contact;
-  std::map<std::int32_t, std::vector<PointAtNode>> at_node;
+  std::vector<NodeWithPoints> nodes;
+  std::vector<std::int32_t> place(static_cast<std::size_t>(model.slots), -1);
   for (std::size_t i = 0; i < points.size(); ++i) {
     std::array<std::array<std::int32_t, 8>, 2> turns{};
     if (model.tissue_contact) turns = contact_tangents(points, i, model.rest).units;
@@ -150,10 +158,16 @@ std::map<std::int32_t, std::vector<PointAtNode>> points_at_nodes(const Model& mo
                               points.weights[i][a],
                               static_cast<std::int32_t>(a),
                               {turns[0][a], turns[1][a]}};
-      if (edged || entry.units > 0 || entry.turns[0] != 0 || entry.turns[1] != 0) at_node[points.nodes[i][a]].push_back(entry);
+      if (!edged && entry.units <= 0 && entry.turns[0] == 0 && entry.turns[1] == 0) continue;
+      std::int32_t& at = place[static_cast<std::size_t>(points.nodes[i][a])];
+      if (at < 0) {
+        at = static_cast<std::int32_t>(nodes.size());
+        nodes.push_back({points.nodes[i][a], {}});
+      }
+      nodes[static_cast<std::size_t>(at)].points.push_back(entry);
     }
   }
-  return at_node;
+  return nodes;
 }
 
 /// One number of each entry, in rows.
@@ -166,41 +180,68 @@ GatherList rows_of(const std::vector<std::vector<PointAtNode>>& entries, Number 
   return pack_rows(values, none);
 }
 
+/// The tiles of points at each tile of nodes, ascending, and for each of them the positions in the rows of the entries that
+/// lead there, in the order of rows.
+struct TilesAtNodes {
+  std::vector<std::int32_t> offset{0}, tiles, entry_offset{0}, entry;
+};
+
+TilesAtNodes tiles_at_nodes(const std::vector<std::vector<PointAtNode>>& entries, const GatherList& rows, std::size_t tiles) {
+  TilesAtNodes list;
+  std::vector<std::vector<std::int32_t>> at(tiles);  // of the tile of nodes at work
+  for (std::size_t begin = 0; begin < entries.size(); begin += PLIANT_TILE) {
+    const std::size_t before = list.tiles.size();
+    const std::int32_t first = rows.offset[begin / PLIANT_TILE], last = rows.offset[begin / PLIANT_TILE + 1];
+    for (std::int32_t row = first; row < last; ++row) {
+      for (std::int32_t l = 0; l < PLIANT_TILE; ++l) {
+        if (static_cast<std::size_t>(row - first) >= entries[begin + static_cast<std::size_t>(l)].size()) continue;
+        const std::int32_t position = row * PLIANT_TILE + l;
+        const std::int32_t tile = rows.index[static_cast<std::size_t>(position)] / (4 * PLIANT_TILE);
+        std::vector<std::int32_t>& own = at[static_cast<std::size_t>(tile)];
+        if (own.empty()) list.tiles.push_back(tile);
+        own.push_back(position);
+      }
+    }
+    std::sort(list.tiles.begin() + static_cast<std::ptrdiff_t>(before), list.tiles.end());
+    for (std::size_t t = before; t < list.tiles.size(); ++t) {
+      std::vector<std::int32_t>& own = at[static_cast<std::size_t>(list.tiles[t])];
+      list.entry.insert(list.entry.end(), own.begin(), own.end());
+      list.entry_offset.push_back(static_cast<std::int32_t>(list.entry.size()));
+      own.clear();
+    }
+    list.offset.push_back(static_cast<std::int32_t>(list.tiles.size()));
+  }
+  return list;
+}
+
 }  // namespace
 
-/// Lists the points at each node, and the tiles of points at each tile of nodes.
+/// Lists the points at each node, and the tiles of points at each tile of nodes with the entries that lead there.
 void ProgramBuilder::add_contact_gather() {
   std::map<std::int32_t, std::int32_t> axes;
   for (const Constraint& c : model_.constraints) axes[c.slot] = c.axes;
   std::vector<std::int32_t> slot, free;
   std::vector<std::vector<PointAtNode>> entries;
-  for (auto& [s, own] : points_at_nodes(model_, edged_tools_ != 0)) {
-    slot.push_back(s);
-    const auto found = axes.find(s);
+  for (NodeWithPoints& node : points_at_nodes(model_, edged_tools_ != 0)) {
+    slot.push_back(node.slot);
+    const auto found = axes.find(node.slot);
     free.push_back(found == axes.end() ? 7 : 7 & ~found->second);
-    entries.push_back(std::move(own));
+    entries.push_back(std::move(node.points));
   }
   const std::size_t count = padded(slot.size());
   slot.resize(count, model_.slots);
   free.resize(count, 0);
   entries.resize(count);
-  std::vector<std::int32_t> offset{0}, tiles;
-  for (std::size_t begin = 0; begin < count; begin += PLIANT_TILE) {
-    const std::size_t before = tiles.size();
-    for (std::size_t n = begin; n < begin + PLIANT_TILE; ++n) {
-      for (const PointAtNode& entry : entries[n]) tiles.push_back(entry.at / (4 * PLIANT_TILE));
-    }
-    std::sort(tiles.begin() + static_cast<std::ptrdiff_t>(before), tiles.end());
-    tiles.erase(std::unique(tiles.begin() + static_cast<std::ptrdiff_t>(before), tiles.end()), tiles.end());
-    offset.push_back(static_cast<std::int32_t>(tiles.size()));
-  }
   GatherList where = rows_of(entries, [](const PointAtNode& p) { return p.at; });
+  TilesAtNodes tiles = tiles_at_nodes(entries, where, model_.contact->size() / PLIANT_TILE + 1);
   add(make_ints("contact_slot", BufferRole::constant, "[contact nodes]", std::move(slot)));
   add(make_ints("contact_free", BufferRole::constant, "[contact nodes]", std::move(free)));
   add(make_ints("contact_node_list", BufferRole::control, "[tiles + 16]",
                 std::vector<std::int32_t>(count / PLIANT_TILE + contact_list_end, -1), 0, "host"));
-  add(make_ints("contact_tiles_offset", BufferRole::constant, "[tiles + 1]", std::move(offset)));
-  add(make_ints("contact_tiles", BufferRole::constant, "[entries]", std::move(tiles)));
+  add(make_ints("contact_tiles_offset", BufferRole::constant, "[tiles + 1]", std::move(tiles.offset)));
+  add(make_ints("contact_tiles", BufferRole::constant, "[tiles of points]", std::move(tiles.tiles)));
+  add(make_ints("contact_entry_offset", BufferRole::constant, "[tiles of points + 1]", std::move(tiles.entry_offset)));
+  add(make_ints("contact_entry", BufferRole::constant, "[entries]", std::move(tiles.entry)));
   add(make_ints("contact_gather_offset", BufferRole::constant, "[tiles + 1]", std::move(where.offset)));
   add(make_ints("contact_gather", BufferRole::constant, "[rows][16]", std::move(where.index)));
   add(make_ints("contact_gather_units", BufferRole::constant, "[rows][16]",
@@ -256,6 +297,8 @@ std::vector<Arg> ProgramBuilder::apply_args(const char* force) const {
                 "contact_node_list",
                 "contact_tiles_offset",
                 "contact_tiles",
+                "contact_entry_offset",
+                "contact_entry",
                 "contact_gather_offset",
                 "contact_gather",
                 "contact_gather_units",

@@ -17,7 +17,7 @@ struct ContactData {
   Reals node_u, node_w, rest, weight, share, yield, anchor, node_sum, data, grid, pose, params, step_params;
   Ints node, near, force, change, tool_force, sum, kind;
   Reals gap;
-  Ints node_list, slot, free, tiles_offset, tiles, gather_offset, gather, units, turns, moment;
+  Ints node_list, slot, free, tiles_offset, tiles, entry_offset, entry, gather_offset, gather, units, turns, moment;
   Reals edge, surface, patch, corner_weight;
   Ints corner_force, corner;
 
@@ -171,14 +171,14 @@ struct ContactData {
             {static_cast<int>(base(i, 4)), parts, turn[16 * i + a], turn[16 * i + 8 + a], static_cast<int>(a)});
       }
     }
-    gather_offset = tiles_offset = {0};
+    gather_offset = tiles_offset = entry_offset = {0};
     for (std::size_t first = 0; first < at.size(); first += 16) {
       std::size_t most = 0;
       for (std::size_t n = first; n < first + 16; ++n) {
         slot.push_back(static_cast<std::int32_t>(std::min(n, slots)));
         free.push_back(n < slots ? static_cast<std::int32_t>(n % 8) : 0);
         most = std::max(most, at[n].size());
-        for (const auto& entry : at[n]) tiles.push_back(entry[0] / 64);
+        for (const auto& own : at[n]) tiles.push_back(own[0] / 64);
       }
       std::sort(tiles.begin() + tiles_offset.back(), tiles.end());
       tiles.erase(std::unique(tiles.begin() + tiles_offset.back(), tiles.end()), tiles.end());
@@ -192,6 +192,15 @@ struct ContactData {
         for (std::size_t k = 2; k < 4; ++k) {
           for (std::size_t n = first; n < first + 16; ++n) turns.push_back(row < at[n].size() ? at[n][row][k] : 0);
         }
+      }
+      for (std::size_t t = entry_offset.size() - 1; t < tiles.size(); ++t) {
+        for (std::size_t row = 0; row < most; ++row) {
+          for (std::size_t l = 0; l < 16; ++l) {
+            const std::size_t position = 16 * (static_cast<std::size_t>(gather_offset.back()) + row) + l;
+            if (row < at[first + l].size() && gather[position] / 64 == tiles[t]) entry.push_back(static_cast<int>(position));
+          }
+        }
+        entry_offset.push_back(static_cast<int>(entry.size()));
       }
       node_list.push_back(static_cast<std::int32_t>(first / 16));
       gather_offset.push_back(gather_offset.back() + static_cast<std::int32_t>(most));
@@ -309,6 +318,8 @@ inline KernelCase apply_case(const ContactData& d, int moment = 0, int edges = 0
       .ints("contact_node_list", d.node_list)
       .ints("contact_tiles_offset", d.tiles_offset)
       .ints("contact_tiles", d.tiles)
+      .ints("contact_entry_offset", d.entry_offset)
+      .ints("contact_entry", d.entry)
       .ints("contact_gather_offset", d.gather_offset)
       .ints("contact_gather", d.gather)
       .ints("contact_gather_units", d.units)

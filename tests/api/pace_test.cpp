@@ -1,0 +1,136 @@
+// The pace of a freely running World, on a clock of the test: how frames follow the caller, and what a slow machine does.
+#include "api/pace.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scenes.h"
+
+namespace pliant::api {
+namespace {
+
+/// A machine that needs `cost` seconds per simulated second and `fixed` per frame, and a caller that fetches a frame at `phase`
+/// of every period of 1 / 60 s.
+struct Machine {
+  Pace pace;
+  double now = 100, cost = 0.3, fixed = 0.001, phase = 0.4, simulated = 0;
+  std::int64_t fetches = 0, fresh = 0, frames = 0, seen = 0;
+
+  explicit Machine(const LiveOptions& options = {}) { pace.start(options, now); }
+
+  void fetch_until(double end) {
+    const double period = 1.0 / 60;
+    while (true) {
+      const double at = 100 + (static_cast<double>(fetches) + phase) * period;
+      if (at > end) return;
+      ++fetches;
+      fresh += frames != seen ? 1 : 0;
+      if (frames != seen) pace.fetched(at);
+      seen = frames;
+    }
+  }
+  void frame(double edits = 0) {
+    fetch_until(std::max(now, pace.next_start()));
+    now = std::max(now, pace.next_start());
+    const double covers = pace.begin(now), takes = fixed + cost * covers + edits;
+    fetch_until(now + takes);
+    now += takes;
+    if (seen != frames) pace.drop();
+    ++frames;
+    simulated += covers;
+    pace.end(now, covers, edits, fixed);
+  }
+  void run(double seconds) {
+    for (const double end = now + seconds; now < end;) frame();
+  }
+};
+
+TEST(Pace, EveryPictureShowsANewFrameInRealTime) {
+  for (const double phase : {0.0, 0.1, 0.4, 0.7, 0.95}) {
+    Machine m;
+    m.phase = phase;
+    m.run(1);
+    const std::int64_t fetches = m.fetches, fresh = m.fresh;
+    const double simulated = m.simulated, start = m.now;
+    m.run(10);
+    EXPECT_NEAR((m.simulated - simulated) / (m.now - start), 1, 0.005) << phase;
+    EXPECT_GE(static_cast<double>(m.fresh - fresh), 0.99 * static_cast<double>(m.fetches - fetches)) << phase;
+    const LiveState state = m.pace.state();
+    EXPECT_TRUE(state.running);
+    EXPECT_NEAR(state.real_time, 1, 0.01);
+    EXPECT_NEAR(state.load, 0.3 + 0.001 * 60, 0.02);
+    EXPECT_EQ(state.late, 0);
+    EXPECT_LT(state.lost, 0.01);
+  }
+}
+
+TEST(Pace, ASlowMachineKeepsTheRateAndSlowsTimeDown) {
+  Machine m;
+  m.cost = 2;  // simulates half of real time, less what a frame costs anyway
+  m.run(5);
+  const std::int64_t fetches = m.fetches, fresh = m.fresh;
+  const double simulated = m.simulated, start = m.now;
+  m.run(20);
+  const double speed = (m.simulated - simulated) / (m.now - start);
+  EXPECT_GT(speed, 0.36);
+  EXPECT_LT(speed, 0.48);
+  EXPECT_GE(static_cast<double>(m.fresh - fresh), 0.95 * static_cast<double>(m.fetches - fetches));
+  EXPECT_NEAR(m.pace.state().lost, m.now - 100 - m.simulated, 0.3);
+  EXPECT_GT(m.pace.state().load, 1.9);
+}
+
+TEST(Pace, CatchesUpAfterADelayButNotWithAllOfIt) {
+  Machine m;
+  m.run(2);
+  m.frame(0.1);  // a cut
+  const double after_cut = m.now - 100 - m.simulated;
+  EXPECT_GT(after_cut, 0.08);
+  m.run(1);
+  EXPECT_LT(m.now - 100 - m.simulated, 0.02);
+  EXPECT_GT(m.pace.state().late, 4);
+  m.frame(3);
+  m.run(2);
+  EXPECT_NEAR(m.pace.state().lost, 2.75, 0.1);
+  EXPECT_NEAR(m.now - 100 - m.simulated, 2.75, 0.1);
+}
+
+TEST(Pace, SkippedTimeIsNotOwed) {
+  Machine m;
+  m.run(1);
+  const double behind = m.now - m.simulated;
+  m.now += 5;  // a load
+  m.pace.skip(m.now);
+  m.run(1);
+  EXPECT_NEAR(m.now - m.simulated - behind, 5, 0.03);
+  EXPECT_LT(m.pace.state().lost, 0.01);
+}
+
+TEST(Pace, SpeedIsSimulatedOverWallTime) {
+  Machine m({60, 0.1});
+  m.run(5);
+  EXPECT_NEAR(m.simulated / (m.now - 100), 0.1, 0.005);
+  EXPECT_NEAR(m.pace.state().real_time, 1, 0.01);
+  m.pace.change({60, 2});
+  const double simulated = m.simulated, start = m.now;
+  m.run(5);
+  EXPECT_NEAR((m.simulated - simulated) / (m.now - start), 2, 0.05);
+}
+
+TEST(Pace, FramesWithoutACallerAreDropped) {
+  Machine m;
+  m.phase = 1e9;
+  m.run(1);
+  EXPECT_NEAR(static_cast<double>(m.frames), 60, 2);
+  EXPECT_EQ(m.pace.state().dropped, m.frames - 1);
+}
+
+TEST(Pace, BadOptionsAreRefused) {
+  EXPECT_NE(test::message_of([] { check_live({0, 1}); }).find("rate is 0, expected 1 to 1000"), std::string::npos);
+  EXPECT_NE(test::message_of([] { check_live({60, -1}); }).find("speed is -1, expected 0.001 to 1000"), std::string::npos);
+  EXPECT_NE(test::message_of([] { check_live({60, std::nan("")}); }).find("speed is nan"), std::string::npos);
+  EXPECT_EQ(test::message_of([] { check_live({1000, 0.001}); }), "");
+}
+
+}  // namespace
+}  // namespace pliant::api
