@@ -155,12 +155,14 @@ pliant_room(pliant_api)
 pliant_room(pliant_plan)
 
 file(GLOB_RECURSE bench_sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/bench/*.cpp)
-list(FILTER bench_sources EXCLUDE REGEX "/bench/api/")
+list(FILTER bench_sources EXCLUDE REGEX "/bench/(api|trainer)/")
 add_library(pliant_bench STATIC ${bench_sources})
 pliant_unity_folders(pliant_bench)  # each folder is a namespace of its own
 target_link_libraries(pliant_bench PUBLIC ${links_pliant_bench})
 target_include_directories(pliant_bench PUBLIC ${CMAKE_SOURCE_DIR})  # "bench/kernels/kernels.h"
 target_precompile_headers(pliant_bench REUSE_FROM pliant_command_headers)
+add_library(pliant_bench_trainer STATIC bench/trainer/trainer.cpp)
+target_link_libraries(pliant_bench_trainer PUBLIC ${links_pliant_bench_trainer})
 
 file(GLOB cli_sources CONFIGURE_DEPENDS host/cli/*.cpp)
 add_library(pliant_cli_objects OBJECT ${cli_sources})

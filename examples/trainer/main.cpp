@@ -1,4 +1,4 @@
-// Runs the trainer without a window and says what it was like: trainer [ORGAN.obj] [seconds].
+// Runs the trainer without a window and says what it was like: trainer [ORGAN.obj [hybrid | elements [SECONDS]]].
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -6,12 +6,12 @@
 #include "trainer.h"
 
 int main(int argc, char** argv) try {
-  const std::string mesh = argc > 1 ? argv[1] : "scenes/meshes/liver.obj";
-  const double seconds = argc > 2 ? std::atof(argv[2]) : 20;
-  const bool hybrid = argc > 3 && std::string(argv[3]) == "hybrid";
-  const int organs = argc > 4 ? std::atoi(argv[4]) : 1;
+  trainer::Organ organ;
+  organ.mesh = argc > 1 ? argv[1] : "scenes/meshes/liver.obj";
+  organ.hybrid = argc > 2 && std::string(argv[2]) == "hybrid";
+  const double seconds = argc > 3 ? std::atof(argv[3]) : 20;
   const std::string file = (std::filesystem::temp_directory_path() / "trainer.pck").string();
-  trainer::Session session(trainer::scene_of(mesh, 1, 2886, hybrid, organs), argc > 5 ? argv[5] : "auto", file);
+  trainer::Session session(trainer::scene_of(organ), "auto", file);
   std::size_t drawn = 0;
   const trainer::Report report = session.run(seconds, 60, [&](const pliant::Frame& frame) { drawn += frame.positions.size(); });
   std::filesystem::remove(file);

@@ -1,5 +1,5 @@
-// A surgical trainer: an organ on a table, a probe that presses and slides, a scalpel, a hand that lifts the flap, save, load and
-// reset, all while the World runs freely and a program draws sixty frames a second. It uses include/pliant only.
+// A surgical trainer: an organ on a table, a probe that presses and slides, a scalpel, a hand that lifts the flap, save, load
+// and reset, all while the World runs freely and a program draws sixty frames a second. It uses include/pliant only.
 #pragma once
 #include <pliant/pliant.h>
 
@@ -7,7 +7,9 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <fstream>
 #include <map>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <utility>
@@ -15,39 +17,64 @@
 
 namespace trainer {
 
-/// Builds the scene: `organs` copies of a closed triangle mesh [m] above a table, and a probe above them.
-inline pliant::SceneSpec scene_of(const std::string& mesh, double scale, std::int64_t nodes, bool hybrid, int organs) {
+struct Organ {
+  std::string mesh;  ///< an OBJ file, closed
+  double scale = 1;  ///< factor on its coordinates, for metres
+  std::int64_t nodes = 2886;
+  bool hybrid = false;  ///< finite elements near the probe only, shape matching elsewhere
+  int copies = 1;       ///< one above the other
+};
+
+/// Least and greatest height of the vertices of an OBJ file.
+inline std::array<double, 2> heights(const std::string& file) {
+  std::ifstream in(file);
+  std::array<double, 2> range{1e30, -1e30};
+  std::string word;
+  for (std::string line; std::getline(in, line);) {
+    double x = 0, y = 0;
+    std::istringstream text(line);
+    if (!(text >> word >> x >> y) || word != "v") continue;
+    range = {std::min(range[0], y), std::max(range[1], y)};
+  }
+  return range;
+}
+
+/// The scene: the organs just above a table, and a probe above them.
+inline pliant::SceneSpec scene_of(const Organ& organ) {
+  const auto [low, high] = heights(organ.mesh);
+  const double bottom = low * organ.scale, height = (high - low) * organ.scale;
   pliant::SceneSpec scene;
   scene.name = "trainer";
   scene.gravity = {0, -9.81, 0};
   scene.contact = pliant::ContactSpec{0.3};
-  for (int i = 0; i < organs; ++i) {
-    pliant::BodySpec organ;
-    organ.name = "organ" + std::to_string(i);
-    organ.surface_file = mesh;
-    organ.scale = scale;
-    organ.translate = {0, 0.13 * i, 0};
-    organ.lattice_nodes = nodes;
-    organ.material.young = 9000;
-    organ.material.poisson = 0.45;
-    organ.material.density = 1060;
-    organ.material.damping = 15;
-    if (hybrid) organ.model.type = "hybrid", organ.model.ratio = 0.4, organ.model.follow = "probe", organ.model.seed = {0, 0.03, 0};
-    scene.bodies.push_back(organ);
+  for (int i = 0; i < organ.copies; ++i) {
+    pliant::BodySpec body;
+    body.name = "organ" + std::to_string(i);
+    body.surface_file = organ.mesh;
+    body.scale = organ.scale;
+    body.translate = {0, (height + 0.005) * i - bottom + 0.005, 0};
+    body.lattice_nodes = organ.nodes;
+    body.material.young = 9000;
+    body.material.poisson = 0.45;
+    body.material.density = 1060;
+    body.material.damping = 15;
+    if (organ.hybrid) {
+      body.model.type = "hybrid";
+      body.model.ratio = 0.4;
+      body.model.follow = "probe";
+    }
+    scene.bodies.push_back(body);
   }
   pliant::ToolSpec table, probe;
   table.name = "table";
   table.shape = "half_space";
-  table.first = {0, -0.08, 0};
-  table.second = {0, 1, 0};
   table.friction = 0.5;
   probe.name = "probe";
   probe.shape = "capsule";
-  probe.first = {0, 0, 0};
-  probe.second = {0, 0.12, 0};
   probe.radius = 0.008;
+  probe.second = {0, 0.12, 0};
   probe.friction = 0.2;
-  probe.path = {{0, 0.02, 0.13 * organs, 0, 0, 0, 0, 1}};
+  probe.path = {{0, 0, (height + 0.005) * organ.copies + 0.08, 0, 0, 0, 0, 1}};
   scene.tools = {table, probe};
   return scene;
 }
@@ -63,6 +90,7 @@ struct Report {
   std::vector<pliant::Event> events;
   pliant::LiveState live;
   std::string backend;
+  std::int64_t nodes = 0;
   [[nodiscard]] double real_time() const { return wall > 0 ? simulated / wall : 0; }
   [[nodiscard]] double stale_share() const { return frames > 0 ? static_cast<double>(stale) / static_cast<double>(frames) : 0; }
 };
@@ -91,6 +119,7 @@ class Session {
       act(20 * static_cast<double>(picture) / static_cast<double>(pictures), 1 / rate, *frame);
       draw(*frame);
     }
+    report_.nodes = world_.info().nodes;
     report_.backend = world_.info().backend + " (" + world_.info().reason + ")";
     report_.live = timed("live_state", [&] { return world_.live_state(); });
     world_.stop_live();
@@ -134,20 +163,19 @@ class Session {
 
   /// What the trainee does at a time of the session, which has 20 parts.
   void act(double t, double period, const pliant::Frame& frame) {
-    const pliant::Vec3d above{0.02, 0.13, 0};
     const auto once = [&](int part) { return t >= part && std::exchange(done_, std::max(done_, part)) < part; };
+    const auto at = [&](std::size_t c, double share) { return low_[c] + share * (high_[c] - low_[c]); };
+    if (t <= 2) measure(frame);
     if (t > 2 && t < 8) {  // down, along, up again
       const double down = std::min({1.0, (t - 2) / 2, 8 - t}), along = std::clamp((t - 4) / 3, 0.0, 1.0);
-      drive({above[0] - 0.05 * along, above[1] - (above[1] - top_ + 0.018) * down, 0}, period);
-    } else if (t <= 2) {
-      top_ = highest(frame);
+      drive({at(0, 0.6 - 0.25 * along), high_[1] + 0.06 - 0.078 * down, at(2, 0.5)}, period);
     }
     if (t > 9 && t < 11) {  // a slice, from the side into the middle
-      const double x = 0.12 - 0.08 * (t - 9) / 2;
-      timed("move_blade", [&] { world_.move_blade("scalpel", {x, cut_height(), -0.15}, {x, cut_height(), 0.15}); });
+      const double x = at(0, 1.05 - 0.4 * (t - 9) / 2), y = high_[1] - 0.025;
+      timed("move_blade", [&] { world_.move_blade("scalpel", {x, y, low_[2] - 0.03}, {x, y, high_[2] + 0.03}); });
     }
     if (once(11)) timed("lift_blade", [&] { world_.lift_blade("scalpel"); });
-    if (once(12)) hold();
+    if (once(12)) hold({at(0, 0.84), high_[1] + 0.5, at(2, 0.5)});
     if (grab_ != 0 && t < 15) lift(std::min(1.0, (t - 12) / 2));
     if (once(15) && grab_ != 0) timed("release", [&] { world_.release(std::exchange(grab_, 0)); });
     if (once(16)) ++waiting_, timed("save", [&] { world_.save(file_); });
@@ -155,13 +183,24 @@ class Session {
     if (once(18)) ++waiting_, timed("reset", [&] { world_.reset(); });
   }
 
+  void measure(const pliant::Frame& frame) {
+    low_ = {1e30, 1e30, 1e30};
+    high_ = {-1e30, -1e30, -1e30};
+    for (const pliant::Vec4f& x : frame.positions) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        low_[c] = std::min(low_[c], static_cast<double>(x[c]));
+        high_[c] = std::max(high_[c], static_cast<double>(x[c]));
+      }
+    }
+  }
+
   void drive(const pliant::Vec3d& to, double period) {
     timed("drive_tool", [&] { world_.drive_tool("probe", to, {0, 0, 0, 1}, period); });
     timed("tool_forces", [&] { return world_.tool_forces(); });
   }
 
-  void hold() {
-    const auto hit = timed("pick", [&] { return world_.pick({0.075, 0.5, 0}, {0, -1, 0}); });
+  void hold(const pliant::Vec3d& above) {
+    const auto hit = timed("pick", [&] { return world_.pick(above, {0, -1, 0}); });
     if (!hit) return;
     from_ = hit->point;
     grab_ = timed("grab", [&] { return world_.grab(hit->vertex); });
@@ -175,18 +214,13 @@ class Session {
   }
 
   static double size(const pliant::Vec3d& v) { return std::hypot(v[0], v[1], v[2]); }
-  static double highest(const pliant::Frame& frame) {
-    double y = -1;
-    for (const pliant::Vec4f& x : frame.positions) y = std::max(y, static_cast<double>(x[1]));
-    return y;
-  }
-  [[nodiscard]] double cut_height() const { return top_ - 0.025; }
 
   pliant::World world_;
   std::string file_;
   Report report_;
   std::int64_t seen_ = -1;
-  double shown_ = 0, top_ = 0;
+  double shown_ = 0;
+  pliant::Vec3d low_{}, high_{};  ///< of the organs
   int done_ = 0, waiting_ = 0;
   pliant::GrabId grab_ = 0;
   pliant::Vec3d from_{};

@@ -62,7 +62,12 @@ void World::Impl::look_for_events() {
 
 void World::Impl::make_changes() {
   const double start = api::wall_time();
-  const bool live = is_live();
+  bool live = false;
+  {
+    const std::lock_guard lock(mutex);
+    if (replacing) return;  // they are for the simulation to come
+    live = pace.running();
+  }
   const auto attempt = [&](auto&& make) {
     try {
       make();

@@ -12,6 +12,7 @@
 #include "bench/kernels/kernels.h"
 #include "bench/stability/stability.h"
 #include "bench/survival/survival.h"
+#include "bench/trainer/trainer.h"
 #include "cli/cli.h"
 #include "io/atomic_file.h"
 #include "io/png.h"
@@ -31,6 +32,7 @@ struct BenchArguments {
   bench::CuttingOptions cutting;
   bench::SurvivalOptions survival;
   bench::ContactOptions contact;
+  bench::TrainerOptions trainer;
   std::filesystem::path out;
 };
 
@@ -205,6 +207,25 @@ void add_contact(CLI::App& app, const std::shared_ptr<BenchArguments>& options) 
   sub->add_option("--out", options->out, "folder for contact.json and contact.csv");
 }
 
+int trainer(BenchArguments& options) {
+  options.common.check();
+  return measure(options, "trainer", options.trainer, bench::bench_trainer, bench::trainer_table);
+}
+
+void add_trainer(CLI::App& app, const std::shared_ptr<BenchArguments>& options) {
+  CLI::App* sub = app.add_subcommand(
+      "trainer", "A trainer at 60 Hz: probe, scalpel, hand, save, load, reset; real time, pictures without news, worst calls");
+  bench::TrainerOptions& t = options->trainer;
+  options->common.add_to(*sub);
+  sub->add_option("--organs", t.organs, "liver_hybrid, liver, two_livers, bunny, liver_10k; default: all")->delimiter(',');
+  sub->add_option("--scenes", t.scenes, "folder of the shipped scenes");
+  sub->add_option("--backend", t.backend, "default: auto");
+  sub->add_option("--seconds", t.seconds, "length of a session, default: 20");
+  sub->add_option("--busy", t.busy, "threads that compute all the time beside it, default: 0");
+  sub->add_flag("--quick", t.quick, "3 s of the first organ");
+  sub->add_option("--out", options->out, "folder for trainer.json and trainer.csv");
+}
+
 }  // namespace
 
 std::function<int()> setup_bench(CLI::App& app) {
@@ -224,12 +245,14 @@ std::function<int()> setup_bench(CLI::App& app) {
   add_cutting(app, options);
   add_survival(app, options);
   add_contact(app, options);
+  add_trainer(app, options);
   return [options, &app] {
     if (app.got_subcommand("kernels")) return kernels(*options);
     if (app.got_subcommand("accuracy")) return accuracy(*options);
     if (app.got_subcommand("survival")) return survival(*options);
     if (app.got_subcommand("cutting")) return cutting(*options);
     if (app.got_subcommand("contact")) return contact(*options);
+    if (app.got_subcommand("trainer")) return trainer(*options);
     return app.got_subcommand("stability") ? stability(*options) : deformation(*options);
   };
 }

@@ -19,6 +19,7 @@ MISSING = {
     ("C", "WorldInfo.backend"): "in the text of pliant_world_backend",
     ("C", "WorldInfo.device"): "in the text of pliant_world_backend",
     ("C", "WorldInfo.remarks"): "in the text of pliant_world_remarks",
+    ("Python", "Event.placed"): "the position is None where it is not",
     ("Python", "ToolForce.name"): "a key of what World.tool_forces() returns",
     ("Python", "ProbeValue.probe"): "a key of what World.probes() returns",
     ("Python", "ProbeValue.quantity"): "a key of what World.probes() has for a probe",
@@ -38,6 +39,7 @@ BEYOND = {
     ("C", "World::backend"): "WorldInfo::backend and device as one text",
     ("C", "World::body"): "an element of WorldInfo::bodies",
     ("C", "World::body_nodes"): "BodyInfo::nodes",
+    ("C", "World::grab_trace"): "C has no overloads: World::force_trace of a grab",
     ("C", "World::forget_consumer"): "for C the library holds the frames that others hold themselves",
     ("C", "World::positions"): "a copy of three numbers per vertex",
     ("C", "World::normals"): "a copy of three numbers per vertex",
@@ -47,7 +49,8 @@ BEYOND = {
 }
 PYTHON_NAMES = {"backends": "backend_names", "__version__": "version", "World::__init__": "World::World"}
 STRUCTS = {"WorldOptions": "options", "StepReport": "report", "CutResult": "cut", "WorldInfo": "info", "BodyInfo": "body", "Frame": "frame",
-           "ProbeValue": "probe_value", "ToolForce": "tool_force", "Interpenetration": "interpenetration", "PickedPoint": "picked_point"}
+           "ProbeValue": "probe_value", "ToolForce": "tool_force", "Interpenetration": "interpenetration", "PickedPoint": "picked_point", "LiveState": "live_state",
+           "LiveOptions": "live_options", "Event": "event", "ForceSample": "force_sample"}
 
 
 def code_of(path):
@@ -74,6 +77,7 @@ def cpp():
     found = {f"World::{n}" for n in re.findall(r"(?<![\w~:])(\w+)\([^;]*?\)\s*(?:const)?\s*(?:noexcept)?;",
                                                block(world, "class PLIANT_API World").split("private:")[0])}
     headers = world + code_of("include/pliant/scene.h") + code_of("include/pliant/frame.h") + code_of("include/pliant/probe.h") + code_of("include/pliant/tool.h") + code_of("include/pliant/world_types.h")
+    headers += code_of("include/pliant/live.h")
     found |= set(re.findall(r"^PLIANT_API .*?(\w+)\(", headers, re.M))
     for name in STRUCTS:
         found |= {f"{name}.{m}" for m in members(block(headers, f"struct {name} "))}
@@ -81,9 +85,9 @@ def cpp():
 
 
 def c():
-    calls = re.findall(r"^PLIANT_API .*?pliant_(\w+)\(", code_of("include/pliant/c/pliant.h"), re.M)
+    calls = re.findall(r"^PLIANT_API .*?pliant_(\w+)\(", code_of("include/pliant/c/pliant.h") + code_of("include/pliant/c/live.h"), re.M)
     found = {re.sub("^world_", "World::", n) for n in calls}
-    types = code_of("include/pliant/c/types.h")
+    types = code_of("include/pliant/c/types.h") + code_of("include/pliant/c/live.h")
     for name, short in STRUCTS.items():
         for m in members(block(types, f"typedef struct pliant_{short} ")) - {"size", "reserved"}:
             range_of = re.fullmatch(r"(.*)(vertex|triangle)_(first|count)", m)
@@ -97,7 +101,8 @@ def c():
 def python():
     text = code_of("python/pliant.cpp")
     define = r'\.def(?:_readonly|_property_readonly)?\(\s*"(\w+)"'
-    world, module = block(text, "void bind_world(") + block(text, "void bind_tools("), block(text, "PYBIND11_MODULE(")
+    live = block(text, "void bind_live(")
+    world, module = block(text, "void bind_world(") + block(text, "void bind_tools(") + live, block(text, "PYBIND11_MODULE(")
     found = {f"World::{n}" for n in re.findall(define, world)} | {"World::__init__"}
     found |= {f"World::{n}" for n in re.findall(r"^World\.([a-z]\w*) =", (SOURCE / "python/pliant/__init__.py").read_text(), re.M)}
     found |= set(re.findall(r'm\.def\("(\w+)"', module)) | set(re.findall(r'm\.attr\("(\w+)"\) =', module)) - {"__module__"}
@@ -106,9 +111,11 @@ def python():
     for name, function in {"StepReport": "bind_report", "Frame": "bind_frame"}.items():
         found |= {f"{name}.{n}" for n in re.findall(define, block(text, f"void {function}("))}
     for name, variable, function in (("WorldInfo", "d", "info"), ("BodyInfo", "body", "info"), ("CutResult", "d", "result"), ("PickedPoint", "d", "picked"),
-                                     ("ToolForce", "tool", "tool_forces"), ("Interpenetration", "found", "interpenetrations")):
-        kind = "list" if name == "Interpenetration" else "dict"
+                                     ("LiveState", "live", "live_state"), ("Event", "event", "events"), ("ToolForce", "tool", "tool_forces"), ("Interpenetration", "found", "interpenetrations")):
+        kind = "list" if name in ("Interpenetration", "Event") else "dict"
         found |= {f"{name}.{n}" for n in re.findall(rf'\b{variable}\["(\w+)"\] =', block(text, f"py::{kind} {function}("))}
+    found |= {f"LiveOptions.{n}" for n in re.findall(r'py::arg\("(\w+)"\)', live[:live.index("stop_live")])}
+    found |= {f"ForceSample.{n}" for n in re.search(r"PYBIND11_NUMPY_DTYPE\(pliant::ForceSample, ([^)]*)\)", live)[1].split(", ")}
     return {PYTHON_NAMES.get(n, n) for n in found}
 
 
@@ -145,7 +152,7 @@ def main():
         print(f"{language}: {len(found & reference)} of {len(reference)} calls and members of C++, {len(found - reference)} of its own")
     held = module()
     if held is not None:
-        said = {n for n in python() if not n.startswith(("WorldOptions.", "WorldInfo.", "BodyInfo.", "CutResult.", "ToolForce.", "Interpenetration.", "PickedPoint."))}
+        said = {n for n in python() if "." not in n or n.split(".")[0] in ("StepReport", "Frame")}  # others are dicts or arguments
         wrong += [f"the module and its source differ in {n}" for n in sorted(held ^ said)]
     print("the Python module " + ("is not there: only its source was read" if held is None else "holds what its source says"))
     if wrong:

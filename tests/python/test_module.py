@@ -4,6 +4,7 @@ import os
 import re
 import runpy
 import tempfile
+import time
 
 from common import SOURCE, box  # first: exits where NumPy is missing
 import numpy as np
@@ -336,6 +337,37 @@ def test_cuts():
     assert error_of(lambda: world.cut(sheet[0])).code == 5
     world.move_blade("knife", [0, 0, 0], [0, 0, 0.1])
     world.lift_blade("knife")
+
+
+def test_a_world_runs_freely():
+    world = block(interactive=True)
+    world.run_live(rate=100, speed=0.5)
+    assert error_of(lambda: world.step(1)).code == 8
+    before = world.live_state()
+    assert before["running"] and world.busy()
+    for _ in range(4000):
+        if world.live_state()["frames"] > before["frames"] + 5:
+            break
+        time.sleep(0.005)
+    assert world.live_state()["frames"] > before["frames"] + 5
+    report = world.stop_live()
+    assert report.step == world.step_number > 0 and not world.live_state()["running"]
+    other = block(interactive=True)
+    other.step(report.step)
+    assert other.hash() == world.hash()
+    world.cut([[[-1, 0.041, -1], [-1, 0.041, 3], [3, 0.041, -1]]])
+    world.step(5)
+    cut, pieces = world.events()
+    assert cut["kind"] == "cut" and cut["amount"] > 4 and abs(cut["position"][1] - 0.041) < 0.03 and cut["text"]
+    assert pieces["kind"] == "pieces" and pieces["amount"] == 2 and world.events() == []
+    grab = world.grab(0)
+    world.move_grab(grab, [-0.02, 0, 0])
+    world.advance(0.05)
+    trace = world.force_trace(grab)
+    assert trace.dtype.names == ("step", "time", "force", "torque") and trace["force"].shape == (len(trace), 3) and len(trace) > 10
+    assert len(world.force_trace(grab, int(trace["step"][-3]))) == 2
+    assert error_of(lambda: world.force_trace("none")).code == 5
+    world.recover()  # nothing to recover from
 
 
 if __name__ == "__main__":
