@@ -205,10 +205,11 @@ std::size_t frames_in(const std::filesystem::path& folder, const std::string& st
 }  // namespace
 
 FrameWriter::FrameWriter(std::filesystem::path folder, std::string stem, std::set<OutputFormat> formats,
-                         const render::PictureOptions& pictures)
+                         std::vector<FrameField> fields, const render::PictureOptions& pictures)
     : folder_(std::move(folder)),
       stem_(std::move(stem)),
       formats_(std::move(formats)),
+      fields_(std::move(fields)),
       volume_(folder_ / (stem_ + ".pvd")),
       surface_(folder_ / (stem_ + "_surface.pvd")) {
   std::error_code code;
@@ -228,10 +229,14 @@ void FrameWriter::write(Simulation& simulation) {
   last_step_ = simulation.step();
   const std::string number = fmt::format("_{:08}", simulation.step());
   const bool has_surface = !simulation.model().surface.triangles.empty();
-  const VtuMesh surface = has_surface ? surface_frame(simulation) : VtuMesh{};
+  VtuMesh surface = has_surface ? surface_frame(simulation) : VtuMesh{};
+  const std::vector<VtuArray> fields = has_surface ? vertex_fields(simulation, fields_) : std::vector<VtuArray>{};
+  surface.point_arrays.insert(surface.point_arrays.end(), fields.begin(), fields.end());
   if (formats_.count(OutputFormat::vtu) != 0) {
     const auto file = folder_ / (stem_ + number + ".vtu");
-    write_vtu(file, volume_frame(simulation));
+    VtuMesh volume = volume_frame(simulation);
+    for (VtuArray& array : element_fields(simulation, fields_)) volume.cell_arrays.push_back(std::move(array));
+    write_vtu(file, volume);
     volume_.append(simulation.time(), file);
     if (has_surface) {
       const auto surface_file = folder_ / (stem_ + "_surface" + number + ".vtu");
@@ -246,7 +251,9 @@ void FrameWriter::write(Simulation& simulation) {
   if (formats_.count(OutputFormat::gltf) != 0 && has_surface) {
     render::SurfaceCopy copy;
     copy.read(simulation);
-    animation_.add(splitter_.split(copy.view(), simulation.time()));
+    std::vector<VertexArray> values;
+    for (const VtuArray& field : fields) values.push_back({field.name, field.components, field.values});
+    animation_.add(splitter_.split(copy.view(), simulation.time(), values));
   }
   ++frames_;
 }

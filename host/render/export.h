@@ -9,7 +9,8 @@ namespace pliant::render {
 /// Vertices split along creases and rims of cuts; which ones is decided when the topology changes, and kept.
 class FrameSplitter {
  public:
-  SurfaceFrame split(const Surface& surface, double time);
+  /// `fields`: values at the vertices of `surface`.
+  SurfaceFrame split(const Surface& surface, double time, const std::vector<VertexArray>& fields = {});
 
  private:
   SmoothNormals smooth_;
