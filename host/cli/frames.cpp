@@ -10,6 +10,7 @@
 #include "io/png.h"
 #include "model/elements/each_element.h"
 #include "model/pieces.h"
+#include "model/surface_texture.h"
 #include "pliant/error.h"
 
 namespace pliant::cli {
@@ -182,6 +183,21 @@ VtuMesh surface_frame(Simulation& simulation) {
   return mesh;
 }
 
+void write_surface_obj(const std::filesystem::path& file, const Model& model, const std::vector<Vec3d>& positions) {
+  const std::vector<TextureCorners> texture = texture_of(model);
+  if (texture.empty()) return write_obj(file, {positions, model.surface.triangles});
+  std::vector<float> packed;
+  for (const Vec3d& x : positions) append(packed, x);
+  std::vector<std::int32_t> triangles;
+  for (const auto& t : model.surface.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
+  const std::vector<std::uint8_t> cut(model.surface.triangle_cut.begin(), model.surface.triangle_cut.end());
+  render::Surface surface;
+  surface.positions = packed;
+  surface.triangles = triangles;
+  surface.cut = cut;
+  write_textured_obj(file, {positions, model.surface.triangles}, render::obj_corners(surface, texture));
+}
+
 namespace {
 
 /// Files such as bunny_00000100.vtu and bunny_surface_00000100.obj.
@@ -245,7 +261,7 @@ void FrameWriter::write(Simulation& simulation) {
     }
   }
   if (formats_.count(OutputFormat::obj) != 0 && has_surface) {
-    write_obj(folder_ / (stem_ + "_surface" + number + ".obj"), {surface.points, surface.triangles});
+    write_surface_obj(folder_ / (stem_ + "_surface" + number + ".obj"), simulation.model(), surface.points);
   }
   if (pictures_ && has_surface) write_png(folder_ / (stem_ + number + ".png"), pictures_->draw(simulation));
   if (formats_.count(OutputFormat::gltf) != 0 && has_surface) {
@@ -253,7 +269,7 @@ void FrameWriter::write(Simulation& simulation) {
     copy.read(simulation);
     std::vector<VertexArray> values;
     for (const VtuArray& field : fields) values.push_back({field.name, field.components, field.values});
-    animation_.add(splitter_.split(copy.view(), simulation.time(), values));
+    animation_.add(splitter_.split(copy.view(), simulation.time(), values, texture_of(simulation.model())));
   }
   ++frames_;
 }

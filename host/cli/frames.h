@@ -34,6 +34,9 @@ VtuMesh volume_frame(const Simulation& simulation);
 /// cut (1: a face that a blade made).
 VtuMesh surface_frame(Simulation& simulation);
 
+/// The surface as an OBJ file, with the texture coordinates of the scene's surfaces and with normals if they have any.
+void write_surface_obj(const std::filesystem::path& file, const Model& model, const std::vector<Vec3d>& positions);
+
 class FrameWriter {
  public:
   /// Makes the folder where it is missing, locks it (FolderLock) and tries it. Throws Error when nothing can be written there,

@@ -21,10 +21,10 @@ constexpr int kFloat = 5126, kUint = 5125, kVertexTarget = 34962, kIndexTarget =
 /// The binary chunk and what the JSON says about it.
 class Blob {
  public:
-  /// Returns the number of the accessor. `components` 1 or 3; bounds are required for positions and times.
+  /// Returns the number of the accessor. `components` 1 to 3; bounds are required for positions and times.
   std::size_t floats(const std::vector<float>& values, std::size_t components, bool vertices, bool bounds) {
-    Json accessor = {
-        {"componentType", kFloat}, {"count", values.size() / components}, {"type", components == 3 ? "VEC3" : "SCALAR"}};
+    constexpr const char* types[]{"SCALAR", "VEC2", "VEC3"};
+    Json accessor = {{"componentType", kFloat}, {"count", values.size() / components}, {"type", types[components - 1]}};
     if (bounds) {
       std::vector<float> low(components, HUGE_VALF), high(components, -HUGE_VALF);
       for (std::size_t i = 0; i < values.size(); ++i) {
@@ -100,6 +100,11 @@ Json mesh_of(Blob& blob, const Part& part, const std::vector<std::size_t>& frame
   }
   const std::size_t position = blob.floats(part.positions[frames[0]], 3, true, true);
   Json attributes = {{"POSITION", position}, {"NORMAL", blob.floats(part.normals[frames[0]], 3, true, false)}};
+  if (!part.texture.empty()) {
+    std::vector<float> from_above = part.texture;
+    for (std::size_t i = 1; i < from_above.size(); i += 2) from_above[i] = 1 - from_above[i];
+    attributes["TEXCOORD_0"] = blob.floats(from_above, 2, true, false);
+  }
   for (const VertexArray& field : part.fields[frames[0]]) {
     attributes[attribute_of(field)] = blob.floats(field.values, static_cast<std::size_t>(field.components), true, false);
   }
@@ -184,7 +189,9 @@ void SurfaceAnimation::add(SurfaceFrame frame) {
   require(frame.cut.empty() || 3 * frame.cut.size() == frame.triangles.size(), "as many cut flags as triangles");
   require(parts_.empty() || frame.time > parts_.back().times.back(), "times must ascend");
   if (parts_.empty() || parts_.back().topology != frame.topology) {
-    parts_.push_back({frame.topology, std::move(frame.triangles), std::move(frame.cut), {}, {}, {}, {}});
+    require(frame.texture.empty() || 3 * frame.texture.size() == 2 * frame.positions.size(), "two coordinates per vertex");
+    parts_.push_back(
+        {frame.topology, std::move(frame.triangles), std::move(frame.cut), std::move(frame.texture), {}, {}, {}, {}});
   } else {
     require(frame.positions.size() == parts_.back().positions[0].size(), "as many vertices as in the frame before");
     require(same_fields(frame.fields, parts_.back().fields[0]), "the same fields as in the frame before");

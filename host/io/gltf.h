@@ -23,6 +23,7 @@ struct SurfaceFrame {
   std::vector<std::int32_t> triangles;  ///< [3 * triangles] outward by the right-hand rule
   std::vector<std::uint8_t> cut;        ///< [triangles] not 0: made by a cut; empty: none
   std::vector<VertexArray> fields{};    ///< the same in every frame
+  std::vector<float> texture{};         ///< [2 * vertices] coordinates u to the right, v up; empty: none
 };
 
 /// Frames in the order of time; triangles are kept once per topology.
@@ -36,6 +37,7 @@ class SurfaceAnimation {
     std::uint64_t topology = 0;
     std::vector<std::int32_t> triangles;
     std::vector<std::uint8_t> cut;
+    std::vector<float> texture;
     std::vector<double> times;                           ///< [s]
     std::vector<std::vector<float>> positions, normals;  ///< per time [3 * vertices]
     std::vector<std::vector<VertexArray>> fields;        ///< per time
@@ -48,8 +50,9 @@ class SurfaceAnimation {
 
 /// One mesh per topology, one morph target per further frame, an animation of their weights (linear) from time 0; a mesh whose
 /// topology is not present is scaled to nothing. Cut faces have a material of their own. A field `mises` is the attribute
-/// _MISES: its values in the first frame, and in every morph target what is added to them. At most kMostFrames frames: of
-/// longer animations an even choice. Throws Error when the file cannot be written or would exceed 4 GiB.
+/// _MISES: its values in the first frame, and in every morph target what is added to them. Texture coordinates are TEXCOORD_0,
+/// which glTF counts from the upper edge. At most kMostFrames frames: of longer animations an even choice. Throws Error when
+/// the file cannot be written or would exceed 4 GiB.
 void write_glb(const std::filesystem::path& file, const SurfaceAnimation& animation);
 
 inline constexpr std::size_t kMostFrames = 120;
