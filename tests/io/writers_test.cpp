@@ -139,9 +139,9 @@ TEST(WriteObj, IsReadBack) {
   corners.cut.assign(m.triangles.size(), 0);
   corners.cut[0] = 1;
   write_textured_obj(folder.path() / "t.obj", m, corners);
-  const std::string text = test::bytes_of(folder.path() / "t.obj");
-  EXPECT_NE(text.find("vt 0.25 0.5\nvn 0 0 1\ng skin\n"), std::string::npos) << text;
-  EXPECT_LT(text.find("g skin"), text.find("g cut"));
+  const std::string textured = bytes_of(folder.path() / "t.obj");
+  EXPECT_NE(textured.find("vt 0.25 0.5\nvn 0 0 1\ng skin\n"), std::string::npos) << textured;
+  EXPECT_LT(textured.find("g skin"), textured.find("g cut"));
   corners.texture_of[0][1] = 1;
   EXPECT_THROW(write_textured_obj(folder.path() / "t.obj", m, corners), Error) << "one coordinate";
   EXPECT_THROW(write_obj(folder.path() / "n.obj", {m.vertices, {{0, 1, 4}}}), Error);
