@@ -1,4 +1,5 @@
 """run --fields: stresses, strains, energies and contact pressures in the files of frames, against closed forms and each other."""
+import itertools
 import json
 import math
 import struct
@@ -23,6 +24,12 @@ def read_glb(file):
         return struct.unpack_from(f"<{count}{'f' if accessor['componentType'] == 5126 else 'I'}", data, at)
 
     return top, numbers
+
+
+def keys(place):
+    """The corners of a grid of 2e-6 m around a place: two places that rounding has parted have one in common."""
+    sides = [(math.floor(5e5 * c), math.floor(5e5 * c) + 1) for c in place]
+    return list(itertools.product(*sides))
 
 
 def expected():
@@ -88,7 +95,9 @@ class Fields(harness.CliTest):
 
     def test_attributes_of_an_animation(self):
         """In every frame the attribute plus what the frame's target adds to it is the value of the VTU file, at the same places."""
-        self.run_fields(self.scene(dt=0.002), "mises,model", "--steps", 60, "--every", 30, "--format", "vtu,gltf")
+        # It is strained from the start, so that the values of the first frame are not 0.
+        stretched = {"fixed": [], "prescribed": [], "initial": [{"all": True, "displacement": {"linear": LINEAR}}]}
+        self.run_fields(self.scene(dt=0.002, body=stretched), "mises,model", "--steps", 60, "--every", 30, "--format", "vtu,gltf")
         top, numbers = read_glb(self.folder / "out" / "scene.glb")
         primitive = top["meshes"][0]["primitives"][0]
         self.assertEqual(top["accessors"][primitive["attributes"]["_MODEL"]]["type"], "VEC3")
@@ -101,10 +110,12 @@ class Fields(harness.CliTest):
                 value = [a + b for a, b in zip(value, numbers(target["_MISES"]))]
             _, surface = read_vtu(self.folder / "out" / f"scene_surface_{step:08}.vtu")
             points = surface["Points"]
-            at = {tuple(round(c, 6) for c in points[3 * i:3 * i + 3]): v for i, v in enumerate(surface["mises"])}
+            at = {key: v for i, v in enumerate(surface["mises"]) for key in keys(points[3 * i:3 * i + 3])}
             for i, v in enumerate(value):
-                self.assertAlmostEqual(v, at[tuple(round(c, 6) for c in place[3 * i:3 * i + 3])], delta=1e-3)
-        self.assertGreater(max(value), 50)
+                found = [at[key] for key in keys(place[3 * i:3 * i + 3]) if key in at]
+                self.assertGreater(len(found), 0)
+                self.assertAlmostEqual(v, found[0], delta=2e-3)
+            self.assertGreater(max(value), 50)
 
     def test_refused(self):
         scene = self.scene()
