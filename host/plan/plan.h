@@ -17,7 +17,7 @@ struct PlanOptions {
   std::int64_t least_nodes = 300;       ///< of the coarsest lattice tried
   std::int64_t most_nodes = 10000;      ///< of the finest
   std::int64_t reference_nodes = 3000;  ///< of the first reference lattice (hex8full)
-  double reference_seconds = 20;        ///< that finer references of a body at rest may take
+  double reference_seconds = 35;        ///< that finer references of a body at rest may take
   double seconds = 60;                  ///< in which all of it should be done; trials for which none is left are skipped
   std::function<void(const std::string&)> progress;  ///< a part begins
   std::function<void(const std::string&)> detail;    ///< how far it is
