@@ -1,4 +1,5 @@
 """Texture coordinates of a surface: through cuts, in OBJ and glTF files, after a resumed run, in a region that moves."""
+import json
 import math
 import random
 import struct
@@ -120,6 +121,23 @@ class Texture(harness.CliTest):
             faces = self.check_obj(self.folder / "out" / "scene_surface_00000080.obj", True)  # on the way
             self.assertGreater(len(faces), len(self.source))
             self.check_obj(self.folder / "out" / "scene_surface_00000120.obj", True)
+
+    def test_the_second_of_two_bodies(self):
+        """One beside it, whose file has no coordinates, has (0, 0); it is not cut."""
+        scene = json.loads(self.textured(blades=[BLADE]).read_text())
+        plain = {**scene["bodies"][0], "name": "plain", "surface": str(harness.SCENES / "meshes" / "cube.obj"), "translate": [0.3, 0, 0]}
+        scene["bodies"] = [plain, scene["bodies"][0]]
+        (self.folder / "two.json").write_text(json.dumps(scene))
+        self.pliant("run", "two.json", "--backend", "cpu", "--out", "out", "--every", 1000, "--format", "obj")
+        sides = [0, 0]
+        for group, corners, at, _ in read_obj(self.folder / "out" / "two_surface_00000120.obj"):
+            own = corners[0][0] < 0.2
+            sides[own] += 1
+            if group == "skin" and own:
+                self.compare(corners, at)
+            else:
+                self.assertEqual(at, [[0, 0]] * 3)
+        self.assertGreater(min(sides), 0)
 
     def test_a_resumed_run_has_the_same(self):
         scene = self.textured(blades=[BLADE])
