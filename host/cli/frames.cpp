@@ -10,6 +10,7 @@
 #include "io/png.h"
 #include "model/elements/each_element.h"
 #include "model/pieces.h"
+#include "model/surface_texture.h"
 #include "pliant/error.h"
 
 namespace pliant::cli {
@@ -182,6 +183,21 @@ VtuMesh surface_frame(Simulation& simulation) {
   return mesh;
 }
 
+void write_surface_obj(const std::filesystem::path& file, const Model& model, const std::vector<Vec3d>& positions) {
+  const std::vector<TextureCorners> texture = texture_of(model);
+  if (texture.empty()) return write_obj(file, {positions, model.surface.triangles});
+  std::vector<float> packed;
+  for (const Vec3d& x : positions) append(packed, x);
+  std::vector<std::int32_t> triangles;
+  for (const auto& t : model.surface.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
+  const std::vector<std::uint8_t> cut(model.surface.triangle_cut.begin(), model.surface.triangle_cut.end());
+  render::Surface surface;
+  surface.positions = packed;
+  surface.triangles = triangles;
+  surface.cut = cut;
+  write_textured_obj(file, {positions, model.surface.triangles}, render::obj_corners(surface, texture));
+}
+
 namespace {
 
 /// Files such as bunny_00000100.vtu and bunny_surface_00000100.obj.
@@ -205,10 +221,11 @@ std::size_t frames_in(const std::filesystem::path& folder, const std::string& st
 }  // namespace
 
 FrameWriter::FrameWriter(std::filesystem::path folder, std::string stem, std::set<OutputFormat> formats,
-                         const render::PictureOptions& pictures)
+                         std::vector<FrameField> fields, const render::PictureOptions& pictures)
     : folder_(std::move(folder)),
       stem_(std::move(stem)),
       formats_(std::move(formats)),
+      fields_(std::move(fields)),
       volume_(folder_ / (stem_ + ".pvd")),
       surface_(folder_ / (stem_ + "_surface.pvd")) {
   std::error_code code;
@@ -228,10 +245,14 @@ void FrameWriter::write(Simulation& simulation) {
   last_step_ = simulation.step();
   const std::string number = fmt::format("_{:08}", simulation.step());
   const bool has_surface = !simulation.model().surface.triangles.empty();
-  const VtuMesh surface = has_surface ? surface_frame(simulation) : VtuMesh{};
+  VtuMesh surface = has_surface ? surface_frame(simulation) : VtuMesh{};
+  const std::vector<VtuArray> fields = has_surface ? vertex_fields(simulation, fields_) : std::vector<VtuArray>{};
+  surface.point_arrays.insert(surface.point_arrays.end(), fields.begin(), fields.end());
   if (formats_.count(OutputFormat::vtu) != 0) {
     const auto file = folder_ / (stem_ + number + ".vtu");
-    write_vtu(file, volume_frame(simulation));
+    VtuMesh volume = volume_frame(simulation);
+    for (VtuArray& array : element_fields(simulation, fields_)) volume.cell_arrays.push_back(std::move(array));
+    write_vtu(file, volume);
     volume_.append(simulation.time(), file);
     if (has_surface) {
       const auto surface_file = folder_ / (stem_ + "_surface" + number + ".vtu");
@@ -240,13 +261,15 @@ void FrameWriter::write(Simulation& simulation) {
     }
   }
   if (formats_.count(OutputFormat::obj) != 0 && has_surface) {
-    write_obj(folder_ / (stem_ + "_surface" + number + ".obj"), {surface.points, surface.triangles});
+    write_surface_obj(folder_ / (stem_ + "_surface" + number + ".obj"), simulation.model(), surface.points);
   }
   if (pictures_ && has_surface) write_png(folder_ / (stem_ + number + ".png"), pictures_->draw(simulation));
   if (formats_.count(OutputFormat::gltf) != 0 && has_surface) {
     render::SurfaceCopy copy;
     copy.read(simulation);
-    animation_.add(splitter_.split(copy.view(), simulation.time()));
+    std::vector<VertexArray> values;
+    for (const VtuArray& field : fields) values.push_back({field.name, field.components, field.values});
+    animation_.add(splitter_.split(copy.view(), simulation.time(), values, texture_of(simulation.model())));
   }
   ++frames_;
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/frame_fields.h"
 #include "io/folder_lock.h"
 #include "io/gltf.h"
 #include "io/vtu.h"
@@ -33,11 +34,14 @@ VtuMesh volume_frame(const Simulation& simulation);
 /// cut (1: a face that a blade made).
 VtuMesh surface_frame(Simulation& simulation);
 
+/// The surface as an OBJ file, with the texture coordinates of the scene's surfaces and with normals if they have any.
+void write_surface_obj(const std::filesystem::path& file, const Model& model, const std::vector<Vec3d>& positions);
+
 class FrameWriter {
  public:
   /// Makes the folder where it is missing, locks it (FolderLock) and tries it. Throws Error when nothing can be written there,
   /// or another run writes there.
-  FrameWriter(std::filesystem::path folder, std::string stem, std::set<OutputFormat> formats,
+  FrameWriter(std::filesystem::path folder, std::string stem, std::set<OutputFormat> formats, std::vector<FrameField> fields,
               const render::PictureOptions& pictures);
 
   /// Write the present state. Files carry the number of the step: bunny_00000100.vtu, bunny_surface_00000100.vtu and .obj,
@@ -55,6 +59,7 @@ class FrameWriter {
   std::optional<FolderLock> lock_;
   std::string stem_;
   std::set<OutputFormat> formats_;
+  std::vector<FrameField> fields_;
   PvdSeries volume_, surface_;
   std::optional<render::Pictures> pictures_;
   SurfaceAnimation animation_;

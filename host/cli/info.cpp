@@ -13,6 +13,7 @@
 #include "cli/probes.h"
 #include "geometry/vec.h"
 #include "model/nodes/boundary_conditions.h"
+#include "model/nodes/whereabouts.h"
 #include "pliant/error.h"
 #include "scene/keys.h"
 #include "schedule/build_program.h"
@@ -65,13 +66,6 @@ double per(std::uint64_t bytes, std::int64_t count) {
   return count > 0 ? static_cast<double>(bytes) / static_cast<double>(count) : 0;
 }
 
-/// Of a body's elements at rest, along the axes [m].
-Vec3d size_of(const ModelBody& body) {
-  vec::Box box;
-  for (const Vec3d& x : body.rest) box.extend(x);
-  return vec::sub(box.upper, box.lower);
-}
-
 class Info {
  public:
   Info(const InfoArguments& options, const Scene& scene, const Model& model, const std::vector<SurfaceCheck>& surfaces)
@@ -101,13 +95,16 @@ class Info {
     double mass = 0;
     for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
       const ModelBody& b = model_.bodies[i];
+      const vec::Box box = bounds_of(b.rest);
+      const Vec3d size = vec::sub(box.upper, box.lower);
       mass += b.mass;
       json_["bodies"].push_back({{"name", b.name},
                                  {"element", pliant::to_string(b.element)},
                                  {"nodes", b.slot.size()},
                                  {"elements", b.elements()},
                                  {"spacing", b.spacing},
-                                 {"size", size_of(b)},
+                                 {"size", size},
+                                 {"box", {box.lower, box.upper}},
                                  {"mass", b.mass},
                                  {"volume", b.volume},
                                  {"surface_volume", b.surface_volume},
@@ -118,7 +115,7 @@ class Info {
                        b.triangles));
       if (b.matching_nodes + b.interface_nodes > 0) matching(b);
       const double excess = b.surface_volume > 0 ? 100 * (b.volume / b.surface_volume - 1) : 0;
-      line(fmt::format("  {:.4g} m large", fmt::join(size_of(b), " x ")));
+      line(fmt::format("  {:.4g} m large, between {}", fmt::join(size, " x "), corners_text(box)));
       line(fmt::format("  mass {:.6g} kg, volume {:.6g} m^3, inside its surface {:.6g} m^3 ({:+.2f} %)", b.mass, b.volume,
                        b.surface_volume, excess));
       const Json regions = tell_mesh_regions(scene_.bodies[i], options_.common);

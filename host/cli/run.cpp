@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 struct RunArguments {
   Common common;
   std::string scene, backend = "auto", out, checkpoint, resume;
-  std::vector<std::string> formats{"vtu"}, probes;
+  std::vector<std::string> formats{"vtu"}, fields, probes;
   PictureWords picture;
   std::optional<std::int64_t> steps;
   std::optional<std::string> every;
@@ -56,6 +56,11 @@ void check(const RunArguments& o) {
   if (o.checkpoint_every && o.checkpoint.empty())
     throw Error(ErrorCode::bad_input, "--checkpoint-every says how often to save; it needs --checkpoint FILE");
   const std::set<OutputFormat> formats = parse_formats(o.formats);
+  if (!parse_fields(o.fields).empty()) {
+    if (o.out.empty()) throw Error(ErrorCode::bad_input, "--fields says what the files of frames hold; it needs --out DIR");
+    if (formats.count(OutputFormat::vtu) + formats.count(OutputFormat::gltf) == 0)
+      throw Error(ErrorCode::bad_input, "--fields are values in VTU and glTF files; it needs --format vtu or gltf");
+  }
   if (!o.picture.given().empty() && formats.count(OutputFormat::png) == 0) {
     throw Error(ErrorCode::bad_input, fmt::format("{} is for pictures; it needs --format png", o.picture.given()));
   }
@@ -123,6 +128,12 @@ class Run {
                   fmt::format("--backend is \"{}\"; {} asks for a static solver, which runs in double on the processor alone",
                               o_.backend, o_.scene));
     }
+    if (!o_.fields.empty()) {
+      throw Error(ErrorCode::bad_input,
+                  fmt::format("--fields: {} asks for a static solver, whose files hold displacements and reactions alone; the "
+                              "fields are for steps in time (\"relaxation\" finds the same equilibrium)",
+                              o_.scene));
+    }
     return run_static(scene, {o_.common, stem_, o_.out, parse_formats(o_.formats), o_.hash});
   }
 
@@ -130,7 +141,8 @@ class Run {
     if (o_.dt) scene.dt = *o_.dt;  // from here on the step is a fixed one, and part of what a checkpoint belongs to
     std::optional<Checkpoint> saved;
     if (!o_.resume.empty()) saved = read_checkpoint(o_.resume);
-    if (!o_.out.empty()) frames_.emplace(o_.out, stem_, parse_formats(o_.formats), o_.picture.options());
+    if (!o_.out.empty())
+      frames_.emplace(o_.out, stem_, parse_formats(o_.formats), parse_fields(o_.fields), o_.picture.options());
     std::string reason;
     const auto model = std::make_shared<const Model>(checked_model(scene, o_.common, warnings_));
     std::vector<SceneProbe> points;
@@ -266,6 +278,7 @@ std::function<int()> setup_run(CLI::App& app) {
       ->type_name("NAME=x,y,z")
       ->allow_extra_args(false);
   app.add_option("--format", o->formats, explained(format_words()))->delimiter(',')->capture_default_str();
+  app.add_option("--fields", o->fields, "Values in VTU and glTF files: " + explained(field_words()))->delimiter(',');
   o->picture.add_to(app);
   app.add_option("--checkpoint", o->checkpoint, "Save the last state")->type_name("FILE");
   app.add_option("--checkpoint-every", o->checkpoint_every,

@@ -6,6 +6,7 @@
 #include <bit>
 
 #include "cli/run_loop.h"
+#include "cutting/topology/cut_topology.h"
 #include "geometry/vec.h"
 #include "model/pieces.h"
 
@@ -29,6 +30,7 @@ RunEvents run_events(const Simulation& simulation) {
   events.broken_faces /= 2;  // each is a face of two tetrahedra
   for (std::size_t b = 0; b < simulation.model().bodies.size(); ++b) {
     events.pieces += pieces_of(simulation.model().bodies[b]);
+    if (const CutTopology* cut = simulation.cut_topology(b)) events.cut_in_part += cut->cut_in_part();
     for (const Vec3d& u : simulation.displacements(b))
       events.max_displacement = std::max(events.max_displacement, vec::norm(u));
   }

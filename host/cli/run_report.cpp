@@ -97,6 +97,7 @@ class Report {
   void add_events(Json& json) const {
     json["max_displacement"] = events_.max_displacement;
     json["cut_edges"] = events_.cut_edges;
+    json["cut_in_part"] = events_.cut_in_part;
     json["broken_faces"] = events_.broken_faces;
     json["pieces"] = events_.pieces;
     json["blades_without_contact"] = blades_without_contact(s_, false);
@@ -221,6 +222,7 @@ class Report {
     if (events_.broken_faces > 0) text += fmt::format(", {} faces broken by tears", events_.broken_faces);
     if (cuts || events_.broken_faces > 0)
       text += fmt::format(", {} {}", events_.pieces, events_.pieces == 1 ? "piece" : "pieces");
+    if (cuts && events_.cut_in_part > 0) text += fmt::format(", {} elements cut in part and still whole", events_.cut_in_part);
     return text;
   }
 

@@ -10,7 +10,6 @@
 #include "cli/checked_model.h"
 #include "geometry/stopwatch.h"
 #include "io/folder_lock.h"
-#include "io/obj.h"
 #include "io/vtu.h"
 #include "pliant/error.h"
 #include "program/hash.h"
@@ -232,7 +231,7 @@ class Static {
       surface.point_arrays = {surface_u};
       if (!surface.triangles.empty()) write_vtu(surface_stem + ".vtu", surface);
     }
-    if (run_.formats.count(OutputFormat::obj) != 0) write_obj(surface_stem + ".obj", {surface.points, surface.triangles});
+    if (run_.formats.count(OutputFormat::obj) != 0) write_surface_obj(surface_stem + ".obj", model_, surface.points);
     run_.common.print(fmt::format("written to {}", run_.out));
   }
 

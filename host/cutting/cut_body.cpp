@@ -113,11 +113,13 @@ void place_vertex(const CutSurfaceVertex& from, std::size_t v, BodySurface& soli
 void set_triangle(const CutSurface& surface, const BodyMesh& uncut, std::size_t t, BodySurface& solid) {
   solid.triangles[t] = surface.triangles()[t];
   solid.triangle_cut[t] = surface.kinds()[t] == SurfaceKind::cut ? 1 : 0;
+  const std::int32_t original = surface.original_of(static_cast<std::int32_t>(t));
+  const bool part = original >= 0 && original < static_cast<std::int32_t>(uncut.triangles.size());
+  if (solid.texture != nullptr) solid.triangle_source[t] = part ? original : -1;
   if (!solid.wants_middles) return;
   const double none = std::numeric_limits<double>::quiet_NaN();
   solid.triangle_middle[t] = {none, none, none};
-  const std::int32_t original = surface.original_of(static_cast<std::int32_t>(t));
-  if (original < 0 || original >= static_cast<std::int32_t>(uncut.triangles.size())) return;
+  if (!part) return;
   const auto& [a, b, c] = uncut.triangles[original];
   solid.triangle_middle[t] = vec::mul(vec::add(vec::add(uncut.surface[a], uncut.surface[b]), uncut.surface[c]), 1.0 / 3);
 }
@@ -131,6 +133,7 @@ void resize_surface(const CutSurface& surface, BodySurface& solid) {
   solid.triangles.resize(triangles);
   solid.triangle_cut.resize(triangles);
   solid.triangle_middle.resize(solid.wants_middles ? triangles : 0);
+  solid.triangle_source.resize(solid.texture != nullptr ? triangles : 0);
 }
 
 /// The split and capped surface in place of the one that `solid` has.
@@ -195,8 +198,10 @@ void update_body_surface(const BodyMesh& uncut, const CutTopology& cut, const Cu
 void patch_body_surface(const BodyMesh& uncut, const CutTopology& cut, const CutSurface& surface, SurfaceChanges changes,
                         BodySurface& solid) {
   const bool has_middles = !solid.triangle_middle.empty() || !solid.wants_middles;
+  const bool has_sources = !solid.triangle_source.empty() || solid.texture == nullptr;
   resize_surface(surface, solid);
-  for (std::size_t t = 0; t < solid.triangles.size() && !has_middles; ++t) set_triangle(surface, uncut, t, solid);
+  for (std::size_t t = 0; t < solid.triangles.size() && !(has_middles && has_sources); ++t)
+    set_triangle(surface, uncut, t, solid);
   for (const std::int32_t v : changes.vertices) {
     place_vertex(surface.vertices()[v], static_cast<std::size_t>(v), solid);
   }

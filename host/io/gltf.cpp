@@ -21,10 +21,10 @@ constexpr int kFloat = 5126, kUint = 5125, kVertexTarget = 34962, kIndexTarget =
 /// The binary chunk and what the JSON says about it.
 class Blob {
  public:
-  /// Returns the number of the accessor. `components` 1 or 3; bounds are required for positions and times.
+  /// Returns the number of the accessor. `components` 1 to 3; bounds are required for positions and times.
   std::size_t floats(const std::vector<float>& values, std::size_t components, bool vertices, bool bounds) {
-    Json accessor = {
-        {"componentType", kFloat}, {"count", values.size() / components}, {"type", components == 3 ? "VEC3" : "SCALAR"}};
+    constexpr const char* types[]{"SCALAR", "VEC2", "VEC3"};
+    Json accessor = {{"componentType", kFloat}, {"count", values.size() / components}, {"type", types[components - 1]}};
     if (bounds) {
       std::vector<float> low(components, HUGE_VALF), high(components, -HUGE_VALF);
       for (std::size_t i = 0; i < values.size(); ++i) {
@@ -79,15 +79,35 @@ std::vector<float> difference(const std::vector<float>& a, const std::vector<flo
   return d;
 }
 
+/// The name that glTF 2.0 (3.7.2.1) asks of what an application adds: an underscore, and capitals.
+std::string attribute_of(const VertexArray& field) {
+  std::string name = "_" + field.name;
+  for (char& c : name) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return name;
+}
+
 Json mesh_of(Blob& blob, const Part& part, const std::vector<std::size_t>& frames) {
   Json targets = Json::array();
   for (std::size_t i = 1; i < frames.size(); ++i) {
     const std::size_t at = frames[i], from = frames[0];
     targets.push_back({{"POSITION", blob.floats(difference(part.positions[at], part.positions[from]), 3, true, true)},
                        {"NORMAL", blob.floats(difference(part.normals[at], part.normals[from]), 3, true, false)}});
+    for (std::size_t f = 0; f < part.fields[at].size(); ++f) {
+      const VertexArray& field = part.fields[at][f];
+      targets.back()[attribute_of(field)] = blob.floats(difference(field.values, part.fields[from][f].values),
+                                                        static_cast<std::size_t>(field.components), true, false);
+    }
   }
   const std::size_t position = blob.floats(part.positions[frames[0]], 3, true, true);
-  const std::size_t normal = blob.floats(part.normals[frames[0]], 3, true, false);
+  Json attributes = {{"POSITION", position}, {"NORMAL", blob.floats(part.normals[frames[0]], 3, true, false)}};
+  if (!part.texture.empty()) {
+    std::vector<float> from_above = part.texture;
+    for (std::size_t i = 1; i < from_above.size(); i += 2) from_above[i] = 1 - from_above[i];
+    attributes["TEXCOORD_0"] = blob.floats(from_above, 2, true, false);
+  }
+  for (const VertexArray& field : part.fields[frames[0]]) {
+    attributes[attribute_of(field)] = blob.floats(field.values, static_cast<std::size_t>(field.components), true, false);
+  }
   Json primitives = Json::array();
   for (const bool cut : {false, true}) {
     std::vector<std::int32_t> corners;
@@ -96,9 +116,7 @@ Json mesh_of(Blob& blob, const Part& part, const std::vector<std::size_t>& frame
       corners.insert(corners.end(), {part.triangles[3 * t], part.triangles[3 * t + 1], part.triangles[3 * t + 2]});
     }
     if (corners.empty()) continue;
-    Json primitive = {{"attributes", {{"POSITION", position}, {"NORMAL", normal}}},
-                      {"indices", blob.indices(corners)},
-                      {"material", cut ? 1 : 0}};
+    Json primitive = {{"attributes", attributes}, {"indices", blob.indices(corners)}, {"material", cut ? 1 : 0}};
     if (!targets.empty()) primitive["targets"] = targets;
     primitives.push_back(primitive);
   }
@@ -148,6 +166,12 @@ Json material(const char* name, std::array<double, 3> color, double roughness) {
           {"doubleSided", true}};
 }
 
+bool same_fields(const std::vector<VertexArray>& a, const std::vector<VertexArray>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const VertexArray& x, const VertexArray& y) {
+    return x.name == y.name && x.components == y.components && x.values.size() == y.values.size();
+  });
+}
+
 /// `type`: the characters JSON, or BIN and a zero.
 void append_chunk(std::string& file, std::uint32_t type, const std::string& content) {
   const std::uint32_t head[2] = {static_cast<std::uint32_t>(content.size()), type};
@@ -165,14 +189,22 @@ void SurfaceAnimation::add(SurfaceFrame frame) {
   require(frame.cut.empty() || 3 * frame.cut.size() == frame.triangles.size(), "as many cut flags as triangles");
   require(parts_.empty() || frame.time > parts_.back().times.back(), "times must ascend");
   if (parts_.empty() || parts_.back().topology != frame.topology) {
-    parts_.push_back({frame.topology, std::move(frame.triangles), std::move(frame.cut), {}, {}, {}});
+    require(frame.texture.empty() || 3 * frame.texture.size() == 2 * frame.positions.size(), "two coordinates per vertex");
+    parts_.push_back(
+        {frame.topology, std::move(frame.triangles), std::move(frame.cut), std::move(frame.texture), {}, {}, {}, {}});
   } else {
     require(frame.positions.size() == parts_.back().positions[0].size(), "as many vertices as in the frame before");
+    require(same_fields(frame.fields, parts_.back().fields[0]), "the same fields as in the frame before");
+  }
+  for (const VertexArray& field : frame.fields) {
+    require(3 * field.values.size() == static_cast<std::size_t>(field.components) * frame.positions.size(),
+            "a value of each field per vertex");
   }
   Part& part = parts_.back();
   part.times.push_back(frame.time);
   part.positions.push_back(std::move(frame.positions));
   part.normals.push_back(std::move(frame.normals));
+  part.fields.push_back(std::move(frame.fields));
 }
 
 void write_glb(const std::filesystem::path& file, const SurfaceAnimation& animation) {

@@ -87,7 +87,8 @@ std::size_t corner_count(const VtuMesh& m) {
 
 void check_arrays(const std::vector<VtuArray>& arrays, std::size_t count, const char* what, const std::filesystem::path& file) {
   for (const VtuArray& a : arrays) {
-    if ((a.components != 1 && a.components != 3) || a.values.size() != count * static_cast<std::size_t>(a.components)) {
+    if ((a.components != 1 && a.components != 3 && a.components != 6) ||
+        a.values.size() != count * static_cast<std::size_t>(a.components)) {
       throw Error(ErrorCode::internal, fmt::format("cannot write '{}': array '{}' has {} values of {} components for {} {}",
                                                    file.string(), a.name, a.values.size(), a.components, count, what));
     }

@@ -11,7 +11,8 @@
 
 namespace pliant {
 
-/// A named array with 1 or 3 components for every point or cell: values[i * components + c].
+/// A named array with 1, 3 or 6 components for every point or cell: values[i * components + c]. Six are those of a symmetric
+/// tensor in the order of VTK: xx, yy, zz, xy, yz, xz.
 struct VtuArray {
   std::string name;
   int components = 1;

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "geometry/mesh.h"
+#include "geometry/texture.h"
 
 namespace pliant {
 
@@ -12,9 +13,10 @@ struct SurfaceReport;
 
 /// Read a surface (OBJ, STL, PLY, 3DS, glTF/glb and whatever else assimp reads). Polygons are triangulated, equal positions
 /// welded, degenerate triangles and superfluous copies dropped; `report` says what (surface_report.h). Throws Error when
-/// missing, unreadable, empty or not finite, or if no triangle has area.
+/// missing, unreadable, empty or not finite, or if no triangle has area. `texture`: of every triangle; empty if the file has no
+/// texture coordinates, or is a PLY.
 TriangleMesh read_surface(const std::filesystem::path& file, double scale = 1, const Vec3d& translate = {},
-                          SurfaceReport* report = nullptr);
+                          SurfaceReport* report = nullptr, std::vector<TextureCorners>* texture = nullptr);
 
 /// The same for a surface in memory; `name` is for messages.
 TriangleMesh clean_surface(const TriangleMesh& surface, const std::string& name, double scale = 1, const Vec3d& translate = {},

@@ -16,6 +16,7 @@
 
 #include "geometry/orient.h"
 #include "geometry/vec.h"
+#include "mesh_io/lacking.h"
 #include "mesh_io/mesh_io.h"
 #include "mesh_io/obj_points.h"
 #include "mesh_io/read_ply.h"
@@ -69,6 +70,7 @@ struct Hash {
 
 struct Welder {
   TriangleMesh mesh;
+  std::vector<TextureCorners> texture;  ///< parallel to the triangles
   std::unordered_map<Vec3d, std::int32_t, Hash> ids;
   std::int64_t degenerate = 0;
   Vec3d degenerate_at{};
@@ -78,7 +80,7 @@ struct Welder {
     if (added) mesh.vertices.push_back(p);
     return at->second;
   }
-  void triangle(const std::array<Vec3d, 3>& p) {
+  void triangle(const std::array<Vec3d, 3>& p, const TextureCorners& at = {}) {
     const Vec3d a = vec::sub(p[1], p[0]), b = vec::sub(p[2], p[0]), c = vec::sub(p[2], p[1]);
     const double longest2 = std::max({vec::dot(a, a), vec::dot(b, b), vec::dot(c, c)});
     if (!(vec::norm(vec::cross(a, b)) > kFlatArea * longest2)) {
@@ -86,6 +88,7 @@ struct Welder {
       return;
     }
     mesh.triangles.push_back({vertex(p[0]), vertex(p[1]), vertex(p[2])});
+    texture.push_back(at);
   }
 };
 
@@ -97,6 +100,7 @@ struct FormatReader {
   Welder welder{};
   std::int64_t vertices = 0;  // read so far, for messages
   SurfaceReport report{};
+  bool textured = false;  // whether the file has texture coordinates
 
   Vec3d place(const Matrix& m, const Vec3d& local, std::int64_t index) const {
     Vec3d out{};
@@ -127,6 +131,13 @@ struct FormatReader {
     for (const auto& t : ply.triangles) welder.triangle({points[t[0]], points[t[1]], points[t[2]]});
   }
 
+  std::array<float, 2> texture_at(const aiMesh& part, unsigned vertex) {
+    textured = true;
+    const aiVector3D& at = part.mTextureCoords[0][vertex];
+    if (std::isfinite(at.x) && std::isfinite(at.y)) return {static_cast<float>(at.x), static_cast<float>(at.y)};
+    fail(file, fmt::format("texture coordinates ({}, {}) of vertex {}; finite ones are needed", at.x, at.y, vertex));
+  }
+
   void mesh(const Matrix& m, const aiMesh& part) {
     std::vector<Vec3d> points;
     points.reserve(part.mNumVertices);
@@ -138,13 +149,15 @@ struct FormatReader {
       const aiFace& face = part.mFaces[f];
       if (face.mNumIndices != 3) continue;  // points and lines
       std::array<Vec3d, 3> corners;
+      TextureCorners at{};
       for (int c = 0; c < 3; ++c) {
         if (face.mIndices[c] >= part.mNumVertices) {
           fail(file, fmt::format("triangle {} names vertex {}, but there are {}", f, face.mIndices[c], part.mNumVertices));
         }
         corners[c] = points[face.mIndices[c]];
+        if (part.HasTextureCoords(0)) at[c] = texture_at(part, face.mIndices[c]);
       }
-      welder.triangle(corners);
+      welder.triangle(corners, at);
     }
   }
 
@@ -163,6 +176,9 @@ struct FormatReader {
     drop_copies(mesh);
     const auto given = mesh.triangles;
     const OrientationReport orientation = orient_outward(mesh);
+    for (std::size_t t = 0; t < given.size(); ++t) {  // a triangle is turned by exchanging its last two corners
+      if (given[t] != mesh.triangles[t]) std::swap(welder.texture[t][1], welder.texture[t][2]);
+    }
     describe(mesh, given, orientation);
     return std::move(mesh);
   }
@@ -172,7 +188,13 @@ struct FormatReader {
     report.doubled = copies.found;
     report.doubled_dropped = copies.dropped;
     if (copies.found > 0) report.doubled_at = centroid_of(mesh, copies.first);
-    if (copies.dropped > 0) mesh = without(mesh, copies.drop);
+    if (copies.dropped == 0) return;
+    mesh = without(mesh, copies.drop);
+    std::vector<TextureCorners> kept;
+    for (std::size_t t = 0; t < copies.drop.size(); ++t) {
+      if (copies.drop[t] == 0) kept.push_back(welder.texture[t]);
+    }
+    welder.texture = std::move(kept);
   }
 
   void describe(const TriangleMesh& mesh, const std::vector<std::array<std::int32_t, 3>>& given,
@@ -242,14 +264,17 @@ const aiScene* import(const std::filesystem::path& file, Assimp::Importer& impor
   } catch (const std::exception& e) {
     fail(file, fmt::format("cannot be read: {}", e.what()));
   }
-  if (scene == nullptr) fail(file, fmt::format("cannot be read: {}", importer.GetErrorString()));
+  if (scene == nullptr) {
+    fail(file, fmt::format("cannot be read: {}{}", importer.GetErrorString(), lacking("surface", file.extension().string())));
+  }
   if (scene->mRootNode == nullptr || scene->mNumMeshes == 0) fail(file, "holds no mesh");
   return scene;
 }
 
 }  // namespace
 
-TriangleMesh read_surface(const std::filesystem::path& file, double scale, const Vec3d& translate, SurfaceReport* report) {
+TriangleMesh read_surface(const std::filesystem::path& file, double scale, const Vec3d& translate, SurfaceReport* report,
+                          std::vector<TextureCorners>* texture) {
   check_file(file);
   if (!std::isfinite(scale) || scale == 0)
     fail(file, fmt::format("scale is {}; a finite number other than 0 is needed", scale));
@@ -269,6 +294,7 @@ TriangleMesh read_surface(const std::filesystem::path& file, double scale, const
     reader.node(kIdentity, *reader.scene->mRootNode);
   }
   TriangleMesh mesh = reader.finish();
+  if (texture != nullptr) *texture = reader.textured ? std::move(reader.welder.texture) : std::vector<TextureCorners>{};
   if (report != nullptr) *report = std::move(reader.report);
   return mesh;
 }

@@ -9,6 +9,7 @@
 #include <system_error>
 #include <tuple>
 
+#include "mesh_io/lacking.h"
 #include "mesh_io/mesh_io.h"
 #include "mesh_io/mesh_tags.h"
 #include "mesh_io/read_volume_parts.h"
@@ -30,8 +31,8 @@ RawMesh read_any(const fs::path& file, bool tagged) {
   if (ext != ".msh" && ext != ".vtk" && ext != ".vtu") {
     throw Error(
         ErrorCode::bad_input,
-        fmt::format("cannot read mesh '{}': extension '{}'; allowed are .msh (Gmsh), .vtk, .vtu, .node and .ele (TetGen)",
-                    file.string(), ext));
+        fmt::format("cannot read mesh '{}': extension '{}'; allowed are .msh (Gmsh), .vtk, .vtu, .node and .ele (TetGen){}",
+                    file.string(), ext, lacking("mesh", ext)));
   }
   const std::string data = volume_file::load(file);
   return ext == ".msh"   ? volume_file::read_gmsh(file, data, tagged)

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "geometry/mesh.h"
+#include "geometry/texture.h"
 #include "model/contact/contact.h"
 #include "model/elements/batches.h"
 #include "model/elements/element_materials.h"
@@ -53,7 +54,10 @@ struct ModelBody {
   std::int32_t first_triangle = 0, triangles = 0;
   VirtualNodes virtual_nodes;
   std::vector<Vec3d> triangle_middle;  ///< for a cut surface: centroid of the uncut triangle that contains each, NaN on a cut
-  double spacing = 0;                  ///< cell size of its lattice [m]; 0 for a volume mesh
+  std::shared_ptr<const SurfaceTexture> texture;  ///< of the uncut surface; null: its file has no texture coordinates
+  std::vector<std::int32_t>
+      triangle_source;  ///< with a texture: the uncut triangle that contains each, -1: none; empty: itself
+  double spacing = 0;   ///< cell size of its lattice [m]; 0 for a volume mesh
   std::int64_t operational_nodes = 0, matching_nodes = 0, interface_nodes = 0;
   std::int64_t operational_elements = 0;  ///< number of finite elements among elements()
   double mass = 0;                        ///< [kg]

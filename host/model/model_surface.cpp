@@ -7,6 +7,8 @@ namespace {
 /// Sets the part of the model's surface that belongs to a body.
 void place_surface(const BodySurface& solid, std::int32_t first_vertex, std::int32_t first_triangle, ModelBody& body) {
   body.triangle_middle = solid.triangle_middle;
+  body.texture = solid.texture;
+  body.triangle_source = solid.triangle_source;
   body.first_vertex = first_vertex;
   body.vertices = static_cast<std::int32_t>(solid.surface.size());
   body.first_triangle = first_triangle;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/stopwatch.h"
+#include "plan/plan_motion.h"
 #include "plan/plan_trial.h"
 #include "pliant/error.h"
 
@@ -33,8 +35,14 @@ class Planner {
   Plan run() {
     check(scene_);
     size_ = size_of(scene_);
-    say(fmt::format("reference: hex8full, {} nodes or more, static", o_.reference_nodes));
-    reference_ = make_reference(scene_, size_, o_);
+    if (moves()) {
+      say(fmt::format("reference: hex8full, up to {} nodes or more, with the tools", o_.reference_nodes));
+      course_ = course_of(scene_);
+      reference_ = make_moving_reference(scene_, size_, o_, course_);
+    } else {
+      say(fmt::format("reference: hex8full, {} nodes or more, static", o_.reference_nodes));
+      reference_ = make_reference(scene_, size_, o_);
+    }
     for (const ElementKind element : {ElementKind::hex8, ElementKind::tet4anp, ElementKind::hex8full, ElementKind::tet4}) {
       if (element == ElementKind::tet4anp && !law_info(scene_.bodies[0].material.law).volumetric) continue;
       climb(element);
@@ -48,11 +56,21 @@ class Planner {
     if (o_.progress) o_.progress(what);
   }
 
+  /// Tools press and slide: there is no rest to compare.
+  [[nodiscard]] bool moves() const { return !scene_.tools.empty(); }
+  [[nodiscard]] double left() const { return o_.seconds - clock_.seconds(); }
+
   Trial& measure(Trial trial) {
     say(trial.what);
     try {
-      measure_time(trial, o_);
-      if (trial.remark.empty()) measure_error(trial, reference_, o_);
+      if (!trials_.empty() && left() <= 0) {
+        trial.remark = fmt::format("left out: {:.3g} s are over (--seconds)", o_.seconds);
+      } else if (moves()) {
+        measure_motion(trial, reference_, course_, std::max(1.0, left()), o_);
+      } else {
+        measure_time(trial, o_);
+        if (trial.remark.empty()) measure_error(trial, reference_, o_);
+      }
     } catch (const Error& error) {
       trial.remark = error.what();
     }
@@ -122,6 +140,7 @@ class Planner {
     bool first = true;
     for (const Choice& c :
          {Choice{0.6, 2, 1, 0}, {0.6, 1, 1, 0}, {0.6, 3, 1, 0}, {0.6, 2, 2, 0}, {0.6, 2, 1, 0.5}, {0.3, 2, 1, 0}}) {
+      if (moves() && c.substeps > 1) continue;  // contact needs every step
       Trial t = finite_elements(ElementKind::hex8, nodes);
       DeformationModel& m = t.scene.bodies[0].model;
       const DeformationModel& own = scene_.bodies[0].model;
@@ -182,6 +201,7 @@ class Planner {
             {"ms_per_frame", t.ms_per_frame},
             {"error_l2", known(t.error)},
             {"error_max", known(t.error_max)},
+            {"error_force", known(t.error_force)},
             {"predicted_error", known(t.predicted_error)},
             {"predicted_ms", known(t.predicted_ms)},
             {"remark", t.remark}};
@@ -191,8 +211,9 @@ class Planner {
     const std::string error = t.error >= 0 ? fmt::format("{:7.3f} %", 100 * t.error) : "        -";
     const std::string predicted =
         t.predicted_error >= 0 ? fmt::format("  expected {:.3f} % and {:.3g} ms", 100 * t.predicted_error, t.predicted_ms) : "";
-    return fmt::format("  {:<72} {:>7} nodes {:>9.4g} ms per frame, error {}{}{}{}", t.what, t.nodes, t.ms_per_frame, error,
-                       predicted, t.remark.empty() ? "" : "  ", t.remark);
+    const std::string force = t.error_force >= 0 ? fmt::format(", of forces {:.3g} %", 100 * t.error_force) : "";
+    return fmt::format("  {:<72} {:>7} nodes {:>9.4g} ms per frame, error {}{}{}{}{}", t.what, t.nodes, t.ms_per_frame, error,
+                       force, predicted, t.remark.empty() ? "" : "  ", t.remark);
   }
 
   Plan conclude() {
@@ -202,8 +223,9 @@ class Planner {
     const Trial* const exact = most_exact(o_.budget);
     const Trial* const any = most_exact(HUGE_VAL);
     if (any == nullptr)
-      throw Error(ErrorCode::bad_input,
-                  fmt::format("{}: no configuration came to rest, so none can be planned", scene_.file.string()));
+      throw Error(ErrorCode::bad_input, fmt::format("{}: no configuration {}, so none can be planned; the first: {}",
+                                                    scene_.file.string(), moves() ? "reached the end" : "came to rest",
+                                                    trials_.empty() ? "none was tried" : trials_[0].remark));
     const Trial* const nearest = best != nullptr ? best : any;
     plan.scene = (plan.found ? best : nearest)->scene;
     plan.report = {{"scene", scene_.name},
@@ -211,6 +233,7 @@ class Planner {
                    {"budget_ms", o_.budget},
                    {"frame", o_.frame},
                    {"backend", o_.backend},
+                   {"compared", moves() ? Json{{"seconds", course_}, {"times", kSamples}} : Json(nullptr)},
                    {"reference",
                     {{"element", "hex8full"},
                      {"nodes", reference_.nodes},
@@ -222,6 +245,7 @@ class Planner {
                    {"trials", Json::array()}};
     plan.text = fmt::format("reference: hex8full, three lattices up to {} nodes, {:.2f} % apart\n", reference_.nodes,
                             100 * reference_.uncertainty);
+    if (moves()) plan.text += fmt::format("compared at {} times of the first {:.3g} s, with the tools\n", kSamples, course_);
     for (const Trial& t : trials_) {
       plan.report["trials"].push_back(row(t));
       plan.text += line(t) + "\n";
@@ -250,7 +274,9 @@ class Planner {
 
   const Scene& scene_;
   const PlanOptions& o_;
+  const Stopwatch clock_;
   Size size_;
+  double course_ = 0;  ///< of a scene with tools [s]
   Reference reference_;
   std::vector<Trial> trials_;
 };

@@ -10,24 +10,12 @@
 #include "geometry/stopwatch.h"
 #include "geometry/vec.h"
 #include "mesh_io/mesh_io.h"
+#include "model/nodes/whereabouts.h"
 #include "pliant/error.h"
 #include "simulation/simulation.h"
 #include "statics/statics.h"
 
 namespace pliant::planning {
-namespace {
-
-constexpr double kMostSeconds = 20;  ///< that one body may take to come to rest
-
-std::vector<Vec3d> surface_of(const statics::Problem& problem, const std::vector<Vec3d>& u) {
-  std::vector<Vec3d> out;
-  for (const statics::SurfacePoint& p : problem.surface) {
-    Vec3d sum{};
-    for (std::size_t a = 0; a < p.nodes.size(); ++a) sum = vec::add(sum, vec::mul(u[p.nodes[a]], p.weights[a]));
-    out.push_back(sum);
-  }
-  return out;
-}
 
 double norm_of(const std::vector<Vec3d>& u) {
   double sum = 0;
@@ -47,24 +35,37 @@ double largest(const std::vector<Vec3d>& u) {
   return most;
 }
 
+namespace {
+
+constexpr double kMostShare = 0.2;  ///< of the time that is given, for one body to come to rest
+
+std::vector<Vec3d> surface_of(const statics::Problem& problem, const std::vector<Vec3d>& u) {
+  std::vector<Vec3d> out;
+  for (const statics::SurfacePoint& p : problem.surface) {
+    Vec3d sum{};
+    for (std::size_t a = 0; a < p.nodes.size(); ++a) sum = vec::add(sum, vec::mul(u[p.nodes[a]], p.weights[a]));
+    out.push_back(sum);
+  }
+  return out;
+}
+
 struct AtRest {
   std::vector<Vec3d> u;
   double frequency = 0;
   std::int64_t nodes = 0;
 };
 
-/// Before the first reference is given up: times the seconds that finer ones may take, and at least so many.
-constexpr double kPatience = 5, kLeastPatience = 120;
+constexpr double kPatience = 0.75;  ///< share of the time that is given, before the first reference is given up
 
 AtRest solve(const Scene& scene, const Size& size, std::int64_t nodes, const PlanOptions& options, const Stopwatch& start) {
-  const Scene fine = configured(scene, size, ElementKind::hex8full, nodes);
+  const Scene fine = reference_scene(scene, size, nodes);
   const Model model = build_model(fine);
   const statics::Problem problem = statics::problem_of(fine, model, 0);
   statics::Settings settings;
   settings.tolerance = 1e-7;
   settings.progress = [&](double load, int iteration, double) {
     if (options.detail) options.detail(fmt::format("{:.0f} % of the load, iteration {}", 100 * load, iteration));
-    if (start.seconds() < std::max(kLeastPatience, kPatience * options.reference_seconds)) return;
+    if (start.seconds() < kPatience * options.seconds) return;
     throw Error(
         ErrorCode::bad_input,
         fmt::format(
@@ -86,16 +87,6 @@ AtRest solve(const Scene& scene, const Size& size, std::int64_t nodes, const Pla
           static_cast<std::int64_t>(problem.mesh.nodes.size())};
 }
 
-double end_of_curves(const Scene& scene) {
-  double end = 0;
-  const auto note = [&](const Curve& c) { end = std::max(end, c.end()); };
-  note(scene.gravity_curve);
-  for (const Prescribed& p : scene.bodies[0].prescribed) note(p.curve);
-  for (const Force& f : scene.bodies[0].forces) note(f.curve);
-  for (const Pressure& p : scene.bodies[0].pressures) note(p.curve);
-  return end;
-}
-
 std::vector<Vec3d> moved(Simulation& simulation) {
   return difference(simulation.surface_positions(), simulation.model().surface.rest);
 }
@@ -109,6 +100,32 @@ void go(Simulation& simulation, double until) {
 
 }  // namespace
 
+double end_of_curves(const Scene& scene) {
+  double end = 0;
+  const auto note = [&](const Curve& c) { end = std::max(end, c.end()); };
+  note(scene.gravity_curve);
+  for (const Prescribed& p : scene.bodies[0].prescribed) note(p.curve);
+  for (const Force& f : scene.bodies[0].forces) note(f.curve);
+  for (const Pressure& p : scene.bodies[0].pressures) note(p.curve);
+  return end;
+}
+
+namespace {
+
+/// Whether every selection of the scene holds something in coarse and finer lattices.
+bool all_hold(const Scene& scene, const Size& size) {
+  for (const std::int64_t nodes : {300, 700, 1500}) {
+    try {
+      static_cast<void>(build_model(reference_scene(scene, size, nodes)));
+    } catch (const Error&) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
 Size size_of(const Scene& scene) {
   const Body& body = scene.bodies[0];
   const bool held = body.surface_in_memory != nullptr;
@@ -118,10 +135,14 @@ Size size_of(const Scene& scene) {
     const Vec3d &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
     size.area += vec::norm(vec::cross(vec::sub(b, a), vec::sub(c, a))) / 2;
   }
+  const vec::Box box = bounds_of(mesh.vertices);
+  size.extent = vec::mul(vec::sub(box.upper, box.lower), held ? body.scale : 1);
   if (held) {
     size.volume *= body.scale * body.scale * body.scale;
     size.area *= body.scale * body.scale;
   }
+  for (int axis = 0; axis < 3 && !all_hold(scene, size); ++axis) size.fitted = axis;
+  if (!all_hold(scene, size)) size.fitted = -1;
   return size;
 }
 
@@ -134,12 +155,21 @@ Scene configured(const Scene& scene, const Size& size, ElementKind element, std:
     const double h = (low + high) / 2;
     (size.volume / (h * h * h) + size.area / (2 * h * h) > static_cast<double>(nodes) ? low : high) = h;
   }
+  if (size.fitted >= 0) {
+    const double length = size.extent[size.fitted];
+    high = length / std::max(1.0, std::round(length / high));
+  }
   body.lattice = {high, 0};
   body.model = DeformationModel{};
   out.solver = StaticSolver{};
   out.relaxation = Relaxation{};
   out.dt = 0;
+  out.blades.clear();
   return out;
+}
+
+Scene reference_scene(const Scene& scene, const Size& size, std::int64_t nodes) {
+  return configured(scene, size, ElementKind::hex8full, nodes);
 }
 
 Reference make_reference(const Scene& scene, const Size& size, const PlanOptions& options) {
@@ -169,7 +199,8 @@ Reference make_reference(const Scene& scene, const Size& size, const PlanOptions
     out.frequency = answers[0].frequency;
     out.nodes = answers[0].nodes;
     // Twice the nodes take about four times as long.
-    if (out.uncertainty <= options.tolerance / 2 || start.seconds() + 4 * began.seconds() > options.reference_seconds) break;
+    const bool enough = out.uncertainty <= options.tolerance / 2 && out.nodes >= options.most_nodes;
+    if (enough || start.seconds() + 4 * began.seconds() > options.reference_seconds) break;
   }
   out.seconds = start.seconds();
   return out;
@@ -215,13 +246,14 @@ void measure_error(Trial& trial, const Reference& reference, const PlanOptions& 
   Simulation simulation(scene, open_backend(options.backend, nullptr, trial.nodes));
   bool rest = false;
   if (relaxes) {
-    while (!simulation.at_equilibrium() && !simulation.divergence() && start.seconds() < kMostSeconds) simulation.advance(1024);
+    while (!simulation.at_equilibrium() && !simulation.divergence() && start.seconds() < kMostShare * options.seconds)
+      simulation.advance(1024);
     rest = simulation.at_equilibrium();
   } else {
     const double beat = 2 / reference.frequency, small = std::min(1e-3, options.tolerance / 20);
     go(simulation, end_of_curves(scene) + beat);
     std::vector<Vec3d> last = moved(simulation);
-    while (!rest && !simulation.divergence() && start.seconds() < kMostSeconds) {
+    while (!rest && !simulation.divergence() && start.seconds() < kMostShare * options.seconds) {
       go(simulation, simulation.time() + beat);
       std::vector<Vec3d> now = moved(simulation);
       rest = norm_of(difference(now, last)) <= small * reference.norm;

@@ -31,4 +31,9 @@ bool ClosedSurface::contains(const Vec3d& x) const {
   return distance_->inside(x) || distance_->closest(x).distance <= slack_;
 }
 
+double ClosedSurface::distance(const Vec3d& x) const {
+  std::call_once(once_, [this] { read(); });
+  return distance_->inside(x) ? 0 : distance_->closest(x).distance;
+}
+
 }  // namespace pliant

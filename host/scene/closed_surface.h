@@ -24,6 +24,8 @@ class ClosedSurface {
   /// Returns whether a point [m] is inside or on the surface, to 1e-9 of its size. Throws Error for a surface that is not
   /// closed.
   [[nodiscard]] bool contains(const Vec3d& x) const;
+  /// From a point to the inside, 0 in it [m]. Throws Error as `contains` does.
+  [[nodiscard]] double distance(const Vec3d& x) const;
 
  private:
   void read() const;

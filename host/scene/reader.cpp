@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh_io/lacking.h"
 #include "pliant/error.h"
 #include "scene/json_text.h"
 #include "scene/parts.h"
@@ -31,6 +32,16 @@ std::string with_hint(const std::string& expected, const std::string& hint) {
   return hint.empty() ? expected : fmt::format("{} (did you mean \"{}\"?)", expected, hint);
 }
 
+/// The key of a value as the table of what is lacking has it: `type` stands in several objects.
+std::string key_of(const std::string& pointer) {
+  const std::size_t last = pointer.rfind('/');
+  if (last == std::string::npos) return pointer;
+  std::string key = pointer.substr(last + 1);
+  if (key != "type" || last == 0) return key;
+  const std::size_t before = pointer.rfind('/', last - 1);
+  return pointer.substr(before == std::string::npos ? 0 : before + 1);
+}
+
 }  // namespace
 
 void Reader::fail(const std::string& expected) const { fail(shown(value_), expected); }
@@ -49,7 +60,9 @@ void Reader::expect_object(const std::string& kind) const {
     if (!known) {
       if (kind == "scene" && key == "tool") fail("the key \"tool\"", "\"focus\", which is its name since 0.2.0");
       const std::string quoted = shortened(nlohmann::json(key).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
-      fail("the unknown key " + quoted, with_hint("one of " + listed(allowed), nearest(key, allowed)));
+      const std::string without = lacking("key of " + kind, key);
+      const std::string hint = without.empty() ? nearest(key, allowed) : "";
+      fail("the unknown key " + quoted, with_hint("one of " + listed(allowed), hint) + without);
     }
   }
 }
@@ -115,7 +128,9 @@ Vec3d Reader::vec3(const std::string& expected) const {
 }
 
 void Reader::fail_word(const std::vector<std::string>& allowed) const {
-  fail(with_hint("one of " + listed(allowed), value_.is_string() ? nearest(value_.get<std::string>(), allowed) : ""));
+  const std::string word = value_.is_string() ? value_.get<std::string>() : "";
+  const std::string without = lacking(key_of(pointer_), word);
+  fail(with_hint("one of " + listed(allowed), without.empty() ? nearest(word, allowed) : "") + without);
 }
 
 std::string read_name(const Reader& field, const std::string& what, const char* refused) {

@@ -48,6 +48,17 @@ class Cut(CliTest):
     def scene_with_blade(self, **keys):
         return self.scene(body={"prescribed": []}, gravity=[0, 0, 0], blades=[BLADE], **keys)
 
+    def test_elements_that_a_blade_left_whole(self):
+        """The body reaches down to -0.05 in cells of 0.02: a blade that ends inside its last cell leaves the layer whole there."""
+        for end, pieces, layer in ((-0.08, 2, 0), (-0.04, 1, 5), (0.01, 1, 5)):
+            blade = {"name": "knife", "path": [[0, 0.013, 0.08, -0.1, 0.013, 0.08, 0.1], [0.05, 0.013, end, -0.1, 0.013, end, 0.1]]}
+            scene = self.scene(body={"prescribed": []}, gravity=[0, 0, 0], blades=[blade])
+            done = self.pliant("run", scene, "--backend", "cpu", "--seconds", 0.08)
+            run = self.json("run", scene, "--backend", "cpu", "--seconds", 0.08)
+            self.assertEqual((run["pieces"], run["cut_in_part"]), (pieces, layer), end)
+            self.assertEqual(f", {layer} elements cut in part and still whole" in done.stdout, layer > 0, done.stdout)
+        self.assertEqual(self.json("run", self.scene(), "--backend", "cpu", "--steps", 1)["cut_in_part"], 0)
+
     def test_vtu_marks_what_is_cut(self):
         self.pliant("run", self.scene_with_blade(), "--seconds", 0.08, "--every", 10, "--out", "out")
         surfaces = sorted((self.folder / "out").glob("*_surface_*.vtu"))

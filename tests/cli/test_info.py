@@ -52,7 +52,15 @@ class Info(harness.CliTest):
             self.assertEqual(len(said), 1, said)
             for word in words:
                 self.assertIn(word, said[0])
+
+    def test_where_a_body_is(self):
         self.assertEqual(self.json("info", self.scene())["bodies"][0]["size"], [0.1, 0.1, 0.1])
+        moved = self.scene(body={"translate": [1, 2, 3], "prescribed": [], "fixed": [{"all": True}]})
+        box = self.json("info", moved)["bodies"][0]["box"]
+        for corner, expected in zip(box, ([0.95, 1.95, 2.95], [1.05, 2.05, 3.05])):
+            for value, wanted in zip(corner, expected):
+                self.assertAlmostEqual(value, wanted)
+        self.assertIn("0.1 x 0.1 x 0.1 m large, between [0.95, 1.95, 2.95] and [1.05, 2.05, 3.05] m\n", self.pliant("info", moved).stdout)
 
     def test_partition_of_a_hybrid(self):
         # The lower two of five layers of cells are operational: 2 layers of 36 nodes, 1 of interface, 3 of shape matching.

@@ -42,6 +42,29 @@ class Selections(harness.CliTest):
                             ("none.obj", ["none.obj"])):
             self.refused("run", self.scene(body={"fixed": [{"surface": file}]}), "--backend", "cpu", words=words)
 
+    def test_an_empty_set_tells_where_the_body_is(self):
+        """The cube reaches from -0.05 to 0.05; what each entry is compared with lies on its faces, or in the middles of its parts."""
+        corners = "between [-0.05, -0.05, -0.05] and [0.05, 0.05, 0.05] m"
+        self.surface("away.obj", [0.06, -0.01, -0.01], [0.08, 0.01, 0.01])
+        box, sphere = {"box": [[0.08, -1, -1], [1, 1, 1]]}, {"sphere": [[0.25, 0.05, 0.05], 0.1]}
+        plane, surface = {"plane": [[0, 0.07, 0], [0, 2, 0]]}, {"surface": "away.obj"}
+        for where, away in ((box, "0.03 m away"), (sphere, "the nearest node is at [0.05, 0.05, 0.05] m, 0.1 m away"),
+                            (plane, "0.02 m away"), (surface, "0.01 m away")):
+            for entry in ("fixed", "forces"):
+                scene = self.scene(body={entry: [{**where, **({"force": [0, 0, 1]} if entry == "forces" else {})}]})
+                self.refused("run", scene, "--backend", "cpu", words=[f"/bodies/0/{entry}/0: no node in this set", corners, away])
+            scene = self.scene(probes=[{"name": "p", **where}])
+            self.refused("run", scene, "--backend", "cpu", words=["/probes/0: no node in this set", corners, away])
+            # Not their centres: the surface begins a hundredth from the face, the centres of triangles lie in it.
+            scene = self.scene(body={"pressures": [{**where, "pressure": 10}]})
+            self.refused("run", scene, "--backend", "cpu", words=["no surface triangle has its centre in this set", corners, "the nearest centre is at"])
+        stiff = {"material": {"young": 9000, "poisson": 0.3}}
+        for keys in ({"inclusions": [{**box, **stiff}]}, {"model": {"type": "hybrid", "width": 1, "region": box}}):
+            self.refused("run", self.scene(body=keys), "--backend", "cpu", words=["-0.05", "0.05", "the nearest centre is at [0.04, ", "0.04 m away"])
+        self.refused("run", self.scene(body={"fixed": [{"nodes": [999]}]}), "--backend", "cpu", words=["node 999 does not exist", corners])
+        self.refused("run", self.scene(), "--probe", "tip=0.08,0,0", "--backend", "cpu",
+                     words=["the nearest, 'cube', is 0.03 m away and lies " + corners])
+
     def test_contradictions_are_refused(self):
         top = {"plane": [[0, 0.049, 0], [0, 1, 0]]}
         for more, words in (({"displacement": [None, 0.01, None]}, ["moves it by -0.01 m", "moves it by 0.01 m", "the y component"]),

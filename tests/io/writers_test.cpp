@@ -132,6 +132,18 @@ TEST(WriteObj, IsReadBack) {
   const std::string text = bytes_of(folder.path() / "bare.obj");
   EXPECT_NE(text.find("\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n"), std::string::npos) << text;
   EXPECT_THROW(write_obj(folder.path() / "n.obj", m, {{0, 0, 1}}), Error);
+  ObjCorners corners{{{0, 0, 1}}, {{0.25F, 0.5F}}, {}, {}, {}};
+  EXPECT_THROW(write_textured_obj(folder.path() / "t.obj", m, corners), Error) << "no entry per triangle";
+  corners.normal_of.assign(m.triangles.size(), {0, 0, 0});
+  corners.texture_of = corners.normal_of;
+  corners.cut.assign(m.triangles.size(), 0);
+  corners.cut[0] = 1;
+  write_textured_obj(folder.path() / "t.obj", m, corners);
+  const std::string textured = bytes_of(folder.path() / "t.obj");
+  EXPECT_NE(textured.find("vt 0.25 0.5\nvn 0 0 1\ng skin\n"), std::string::npos) << textured;
+  EXPECT_LT(textured.find("g skin"), textured.find("g cut"));
+  corners.texture_of[0][1] = 1;
+  EXPECT_THROW(write_textured_obj(folder.path() / "t.obj", m, corners), Error) << "one coordinate";
   EXPECT_THROW(write_obj(folder.path() / "n.obj", {m.vertices, {{0, 1, 4}}}), Error);
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "n.obj"));
 }

@@ -169,5 +169,30 @@ TEST(Gltf, HoldsFramesAsMorphTargetsAndOneMeshPerTopology) {
   EXPECT_NE(message_of([&] { animation.add(splitter.split(s.view(), 0.1)); }).find("times must ascend"), std::string::npos);
 }
 
+TEST(Gltf, FieldsAndTexturesFollowSplitVertices) {
+  TestSurface s = cube(0.1F);
+  const std::vector<VertexArray> fields{{"mises", 1, {0, 1, 2, 3, 4, 5, 6, 7}}};
+  std::vector<TextureCorners> texture(12);
+  for (std::size_t t = 0; t < 12; ++t) {
+    for (std::size_t k = 0; k < 3; ++k) texture[t][k] = {0.1F * static_cast<float>(t), 0.5F * static_cast<float>(k)};
+  }
+  FrameSplitter splitter;
+  const SurfaceFrame frame = splitter.split(s.view(), 0, fields, texture);
+  ASSERT_EQ(frame.texture.size() / 2, frame.positions.size() / 3);
+  ASSERT_EQ(frame.fields[0].values.size(), frame.positions.size() / 3);
+  for (std::size_t c = 0; c < 36; ++c) {
+    const auto own = static_cast<std::size_t>(s.triangles[c]), split = static_cast<std::size_t>(frame.triangles[c]);
+    EXPECT_EQ(frame.fields[0].values[split], static_cast<float>(own));
+    EXPECT_EQ(frame.positions[3 * split], s.positions[3 * own]);
+    EXPECT_EQ((std::array{frame.texture[2 * split], frame.texture[2 * split + 1]}), texture[c / 3][c % 3]);
+  }
+  const ObjCorners corners = obj_corners(s.view(), texture);
+  EXPECT_EQ(corners.texture.size(), 36U) << "each once";
+  SurfaceAnimation animation;
+  animation.add(frame);
+  const SurfaceFrame bare = splitter.split(s.view(), 1, {}, texture);
+  EXPECT_NE(message_of([&] { animation.add(bare); }).find("the same fields"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace pliant::render

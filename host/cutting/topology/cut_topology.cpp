@@ -66,6 +66,28 @@ std::span<const std::int32_t> CutTopology::cells_at_face(std::int32_t cell, int 
 
 const CellCut* CutTopology::find_cell(std::int32_t cell) const { return cell_at_[cell]; }
 
+namespace {
+
+bool is_cut_in_part(const CellShape& shape, const CellCut& cell) {
+  for (std::size_t e = 0; e < shape.edges.size(); ++e) {
+    if ((cell.cut >> e & 1) != 0 && cell.label[shape.edges[e][0]] == cell.label[shape.edges[e][1]]) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::int64_t CutTopology::cut_in_part() const {
+  return std::count_if(cells_.begin(), cells_.end(),
+                       [this](const auto& entry) { return is_cut_in_part(*mesh_->shape, entry.second); });
+}
+
+std::int64_t CutTopology::cut_in_part(std::span<const std::int32_t> cells) const {
+  return std::count_if(cells.begin(), cells.end(), [this](std::int32_t c) {
+    return cell_at_[c] != nullptr && is_cut_in_part(*mesh_->shape, *cell_at_[c]);
+  });
+}
+
 std::int32_t CutTopology::element_of(std::int32_t cell, int label) const {
   const CellCut* cut = find_cell(cell);
   return cut == nullptr ? cell : cut->element[label];

@@ -80,6 +80,11 @@ class CutTopology {
   [[nodiscard]] const std::map<std::int32_t, CellCut>& cells() const { return cells_; }
   /// Whether a cell has copies.
   [[nodiscard]] bool divided(std::int32_t cell) const { return cell_at_[cell] != nullptr && cell_at_[cell]->components > 1; }
+  /// Number of cells that are cut in part: the ends of one of their cut edges still hold together in the cell, at the tip of a
+  /// cut or where a blade ended inside the cell. 0 when everything that was cut has come apart.
+  [[nodiscard]] std::int64_t cut_in_part() const;
+  /// Of these cells.
+  [[nodiscard]] std::int64_t cut_in_part(std::span<const std::int32_t> cells) const;
   /// The element that holds component `label` of a cell, -1 if it has none.
   [[nodiscard]] std::int32_t element_of(std::int32_t cell, int label) const;
   /// Cells that share all nodes of a cell's local face; nearly always one or none.

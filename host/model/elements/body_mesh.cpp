@@ -15,15 +15,20 @@ namespace {
 bool takes_tets(ElementKind kind) { return element_info(kind).corners == 4; }
 
 void from_lattice(const Body& body, BodyMesh& solid, SurfaceReport& report) {
-  const TriangleMesh mesh = body.surface_in_memory == nullptr ? read_surface(body.surface, body.scale, body.translate, &report)
-                                                              : clean_surface(*body.surface_in_memory, body.surface.string(),
-                                                                              body.scale, body.translate, &report);
+  std::vector<TextureCorners> texture;
+  const TriangleMesh mesh =
+      body.surface_in_memory == nullptr
+          ? read_surface(body.surface, body.scale, body.translate, &report, &texture)
+          : clean_surface(*body.surface_in_memory, body.surface.string(), body.scale, body.translate, &report);
   require_inside(report);
   Lattice lattice = build_lattice(mesh, body.lattice);
   solid.spacing = lattice.spacing;
   solid.surface_volume = report.volume;
   solid.surface = mesh.vertices;
   solid.triangles = mesh.triangles;
+  if (!texture.empty()) {
+    solid.texture = std::make_shared<const SurfaceTexture>(SurfaceTexture{mesh.triangles, std::move(texture)});
+  }
   for (const LatticeNode& n : lattice.nodes) solid.nodes.push_back(lattice.position(n));
   for (const Embedding& at : lattice.embedding) {
     const Cell& cell = lattice.cells[at.cell];

@@ -53,12 +53,14 @@ struct BodySurface {
   std::vector<std::array<std::int32_t, 3>> triangles;
   std::vector<std::array<std::int32_t, 8>> surface_nodes;
   std::vector<std::array<double, 8>> surface_weights;
-  std::vector<std::int32_t> surface_cell;  ///< lattice cell that contains each vertex; empty for a volume mesh
-  double surface_volume = 0;               ///< volume before cuts [m^3]
-  std::vector<char> triangle_cut;          ///< for a cut body: whether the triangle lies on a cut
-  std::vector<Vec3d> triangle_middle;      ///< ModelBody::triangle_middle
-  bool wants_middles = true;               ///< whether cuts update triangle_middle, which pressures need
-  std::optional<SurfaceChanges> changes;   ///< of the last edit; empty: unknown
+  std::vector<std::int32_t> surface_cell;         ///< lattice cell that contains each vertex; empty for a volume mesh
+  double surface_volume = 0;                      ///< volume before cuts [m^3]
+  std::vector<char> triangle_cut;                 ///< for a cut body: whether the triangle lies on a cut
+  std::vector<Vec3d> triangle_middle;             ///< ModelBody::triangle_middle
+  bool wants_middles = true;                      ///< whether cuts update triangle_middle, which pressures need
+  std::shared_ptr<const SurfaceTexture> texture;  ///< ModelBody::texture
+  std::vector<std::int32_t> triangle_source;      ///< ModelBody::triangle_source
+  std::optional<SurfaceChanges> changes;          ///< of the last edit; empty: unknown
 };
 
 struct BodyMesh : BodyElements, BodySurface {};

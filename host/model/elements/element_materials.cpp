@@ -5,6 +5,7 @@
 #include <span>
 
 #include "model/elements/body_mesh.h"
+#include "model/nodes/whereabouts.h"
 #include "pliant/error.h"
 
 namespace pliant {
@@ -59,9 +60,12 @@ ElementMaterials element_materials(const Body& body, const BodyElements& solid) 
     }
   }
   for (std::size_t i = 0; i < hit.size(); ++i) {
-    if (!hit[i])
-      throw Error(ErrorCode::bad_input,
-                  fmt::format("{}: no element has its centre in this inclusion", body.inclusions[i].where.pointer));
+    if (hit[i]) continue;
+    NearestPoint nearest(body.inclusions[i].where);
+    for (std::size_t e = 0; e < solid.size(); ++e) nearest.add(centroid(solid, solid.corners(e)));
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{}: no element has its centre in this inclusion; the body lies between {}{}",
+                            body.inclusions[i].where.pointer, corners_text(bounds_of(solid.nodes)), nearest.text("centre")));
   }
   for (std::size_t e = 0; e < solid.size(); ++e) {
     const std::int32_t index = out.index[e];

@@ -8,6 +8,7 @@
 #include <queue>
 
 #include "geometry/vec.h"
+#include "model/nodes/whereabouts.h"
 #include "pliant/error.h"
 
 namespace pliant {
@@ -159,9 +160,11 @@ void choose_inside(const DeformationModel& model, const Lattice& lattice, std::v
     given = fmt::format("the sphere of radius {:g} m around ({:g}, {:g}, {:g}) ", region.radius, region.a[0], region.a[1],
                         region.a[2]);
   }
+  NearestPoint nearest(region);
+  for (const Cell& cell : lattice.cells) nearest.add(centre_of(lattice, cell));
   throw Error(ErrorCode::bad_input,
-              fmt::format("{}: {}holds no centre of a cell; the body reaches from {} m in cells of {:g} m", region.pointer,
-                          given, range_text(extent(lattice)), lattice.spacing));
+              fmt::format("{}: {}holds no centre of a cell; the body reaches from {} m in cells of {:g} m{}", region.pointer,
+                          given, range_text(extent(lattice)), lattice.spacing, nearest.text("centre")));
 }
 
 void classify(const Lattice& lattice, Partition& partition) {

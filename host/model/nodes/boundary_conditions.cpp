@@ -8,21 +8,14 @@
 #include <utility>
 
 #include "model/matching/flsm.h"
+#include "model/nodes/whereabouts.h"
 #include "pliant/error.h"
 
 namespace pliant {
 namespace {
 
 std::string extent_of(const ModelBody& body) {
-  Vec3d lower = body.rest.at(0), upper = lower;
-  for (const Vec3d& x : body.rest) {
-    for (int c = 0; c < 3; ++c) {
-      lower[c] = std::min(lower[c], x[c]);
-      upper[c] = std::max(upper[c], x[c]);
-    }
-  }
-  return fmt::format("body '{}' has {} nodes between [{:.4g}] and [{:.4g}] m", body.name, body.rest.size(),
-                     fmt::join(lower, ", "), fmt::join(upper, ", "));
+  return fmt::format("body '{}' has {} nodes between {}", body.name, body.rest.size(), corners_text(bounds_of(body.rest)));
 }
 
 /// Returns whether a virtual node is selected: only if all its anchors are, so that a piece is not held by the far side of
@@ -57,7 +50,8 @@ std::vector<std::int32_t> select_nodes(const Selection& where, const ModelBody& 
     if (among && follows(virtual_nodes, n - real, is_chosen)) chosen.push_back(static_cast<std::int32_t>(n));
   }
   if (chosen.empty())
-    throw Error(ErrorCode::bad_input, fmt::format("{}: no node in this set; {}", where.pointer, extent_of(body)));
+    throw Error(ErrorCode::bad_input, fmt::format("{}: no node in this set; {}{}", where.pointer, extent_of(body),
+                                                  nearest_text(where, body.rest, "node")));
   return chosen;
 }
 
@@ -196,19 +190,23 @@ void load(const Body& body, const ModelBody& placed, Model& model) {
   for (const Pressure& pressure : body.pressures) {
     const std::int32_t curve = add_curve(model, pressure.curve);
     bool any = false;
+    NearestPoint nearest(pressure.where);
     for (std::int32_t t = placed.first_triangle; t < placed.first_triangle + placed.triangles; ++t) {
       Vec3d centre{};
       for (const std::int32_t v : model.surface.triangles[t]) {
         for (int c = 0; c < 3; ++c) centre[c] += model.surface.rest[v][c] / 3;
       }
       if (!placed.triangle_middle.empty()) centre = placed.triangle_middle[t - placed.first_triangle];
-      if (!pressure.where.contains(centre, t - placed.first_triangle)) continue;
+      if (!pressure.where.contains(centre, t - placed.first_triangle)) {
+        if (!any) nearest.add(centre);
+        continue;
+      }
       model.pressures.push_back({t, pressure.pressure, curve});
       any = true;
     }
     if (!any)
-      throw Error(ErrorCode::bad_input, fmt::format("{}: no surface triangle has its centre in this set; {}",
-                                                    pressure.where.pointer, extent_of(placed)));
+      throw Error(ErrorCode::bad_input, fmt::format("{}: no surface triangle has its centre in this set; {}{}",
+                                                    pressure.where.pointer, extent_of(placed), nearest.text("centre")));
   }
 }
 

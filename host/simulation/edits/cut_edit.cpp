@@ -20,6 +20,7 @@ void TopologyEdits::make_cut(std::vector<CutEdges> edges, std::vector<double> u,
     for (; done < edges.size(); ++done) {
       if (!edges[done].empty()) edits[done] = all.cut(done).cut(edges[done], all.helper);
       report.changed = report.changed || edits[done].changed_elements();
+      if (!edges[done].empty()) report.in_part += all.cut(done).topology().cut_in_part(edits[done].cells);
     }
     report.topology += clock.lap();
     if (report.changed) {

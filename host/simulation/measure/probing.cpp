@@ -14,6 +14,7 @@
 #include "geometry/vec.h"
 #include "material/response.h"
 #include "model/nodes/boundary_conditions.h"
+#include "model/nodes/whereabouts.h"
 #include "pliant/error.h"
 #include "simulation/measure/energy.h"
 #include "simulation/measure/reactions.h"
@@ -198,10 +199,12 @@ void PlacedProbes::find(Place& place, const Model& uncut) {
     }
   }
   if (nearest > 0) {
-    const std::string body = std::isfinite(nearest) ? uncut.bodies[place.body].name : "none";
-    throw Error(ErrorCode::bad_input,
-                fmt::format("{}: [{}, {}, {}] m is in no body at rest; the nearest, '{}', is {:.4g} m away",
-                            place.probe.pointer, point[0], point[1], point[2], body, nearest));
+    const std::string body = std::isfinite(nearest) ? fmt::format("the nearest, '{}', is {:.4g} m away and lies between {}",
+                                                                  uncut.bodies[place.body].name, nearest,
+                                                                  corners_text(bounds_of(uncut.bodies[place.body].rest)))
+                                                    : "there is none";
+    throw Error(ErrorCode::bad_input, fmt::format("{}: [{}, {}, {}] m is in no body at rest; {}", place.probe.pointer, point[0],
+                                                  point[1], point[2], body));
   }
 }
 

@@ -89,20 +89,12 @@ double value_of(const Strain& s, ColorBy by) {
 
 std::vector<double> node_values(const Body& scene_body, const ModelBody& body, const std::vector<Vec3d>& u, ColorBy by) {
   NodeAverage average(body.rest.size());
-  const bool varied = !body.materials.modulus.empty();
-  Material own;
+  const ElementStrains of = element_strains(scene_body, body, u);
   const auto add = [&](const auto& elements) {
-    for (std::size_t e = 0; e < elements.size(); ++e) {
-      const ElementState state = element_state(elements[e], body.rest, u);
-      std::array<double, 9> f{};
-      Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(f.data()) = state.f;
-      if (varied) own = material_of(scene_body, body.materials, e);
-      const Strain s = strain_of(f, varied ? own : material_of(scene_body, body.materials.index[e]));
-      average.add(elements[e], state.volume, value_of(s, by));
-    }
+    for (std::size_t e = 0; e < elements.size(); ++e) average.add(elements[e], of.volume[e], value_of(of.strain[e], by));
   };
   add(body.tets);
-  add(body.hexes);
+  add(body.hexes);  // a body has elements of one kind
   return average.values();
 }
 
@@ -154,7 +146,28 @@ Strain strain_of(const std::array<double, 9>& row_major, const Material& m) {
   out.energy = response.energy;
   if (const auto sigma = cauchy_stress(m, h)) {
     out.mises = std::sqrt(1.5) * deviator(*sigma);
+    const Matrix3d& s = *sigma;
+    out.stress = {s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(0, 2)};
   }
+  return out;
+}
+
+ElementStrains element_strains(const Body& scene_body, const ModelBody& body, const std::vector<Vec3d>& u) {
+  ElementStrains out;
+  const bool varied = !body.materials.modulus.empty();
+  Material own;
+  const auto add = [&](const auto& elements) {
+    for (std::size_t e = 0; e < elements.size(); ++e) {
+      const ElementState state = element_state(elements[e], body.rest, u);
+      std::array<double, 9> f{};
+      Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(f.data()) = state.f;
+      if (varied) own = material_of(scene_body, body.materials, e);
+      out.strain.push_back(strain_of(f, varied ? own : material_of(scene_body, body.materials.index[e])));
+      out.volume.push_back(state.volume);
+    }
+  };
+  add(body.tets);
+  add(body.hexes);
   return out;
 }
 

@@ -43,7 +43,16 @@ std::vector<float> vertex_kinds(const Model& model);
 /// deviator e of Green's strain, and of Almansi's, 0 where det f <= 0: for small strains mises is 3 mu times each.
 struct Strain {
   double energy = 0, mises = 0, green = 0, almansi = 0;
+  std::array<double, 6> stress{};  ///< Cauchy stress xx, yy, zz, xy, yz, xz [Pa]; 0 where mises is
 };
 Strain strain_of(const std::array<double, 9>& f, const Material& material);
+
+/// Of the elements of a body at their centres, in the order of its tetrahedra and hexahedra.
+struct ElementStrains {
+  std::vector<Strain> strain;
+  std::vector<double> volume;  ///< at rest, of the whole element, whatever its fill [m^3]
+};
+/// `u`: displacements of the body's nodes [m].
+ElementStrains element_strains(const Body& scene_body, const ModelBody& body, const std::vector<Vec3d>& u);
 
 }  // namespace pliant
