@@ -213,6 +213,7 @@ py::dict result(const pliant::CutResult& r) {
   d["changed"] = r.changed;
   d["edges"] = r.edges;
   d["seconds"] = r.seconds;
+  d["in_part"] = r.in_part;
   return d;
 }
 

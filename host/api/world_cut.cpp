@@ -34,7 +34,8 @@ CutReport World::Impl::cut_now(std::span<const api::CutRequest> requests) {
     if (!poses.empty()) done = simulation->move_blades(poses);
     if (!done.changed) return done;
     handles->follow(simulation->shared_model());
-    const std::string text = fmt::format("{} edges were cut in {:.3g} s", done.edges, done.seconds());
+    std::string text = fmt::format("{} edges were cut in {:.3g} s", done.edges, done.seconds());
+    if (done.in_part > 0) text += fmt::format("; {} elements were cut in part and hold together", done.in_part);
     events.add(*simulation, api::event_of("cut", {}, static_cast<double>(done.edges), text, simulation->edited_at()));
     const std::lock_guard lock(mutex);
     cut_since_read = true;
@@ -86,7 +87,7 @@ CutResult World::Impl::cut(api::CutRequest request) {
     cut_pending();
     const CutReport done = cut_now({&request, 1});
     publish_clock();
-    return {false, done.changed, done.edges, done.seconds()};
+    return {false, done.changed, done.edges, done.seconds(), done.in_part};
   } catch (const api::Refused& refused) {
     throw Error(refused.code(), refused.what());
   } catch (const std::exception& error) {

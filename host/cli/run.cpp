@@ -140,7 +140,11 @@ class Run {
   void open(Scene scene) {
     if (o_.dt) scene.dt = *o_.dt;  // from here on the step is a fixed one, and part of what a checkpoint belongs to
     std::optional<Checkpoint> saved;
-    if (!o_.resume.empty()) saved = read_checkpoint(o_.resume);
+    if (!o_.resume.empty()) {
+      saved = read_checkpoint(o_.resume);
+      scene.interactive = has_part(saved->snapshot.made_of, kInteractive);  // as the host that saved it had it
+      scene.cuttable = has_part(saved->snapshot.made_of, kCutting);
+    }
     if (!o_.out.empty())
       frames_.emplace(o_.out, stem_, parse_formats(o_.formats), parse_fields(o_.fields), o_.picture.options());
     std::string reason;

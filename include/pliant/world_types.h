@@ -88,10 +88,11 @@ using GrabId = std::uint64_t;  ///< identifies a grab within one World; 0: none
 /// that reports the worker's errors throws. With substeps of shape matching, a cut waits for the next batch that begins with a
 /// shape-matching step.
 struct CutResult {
-  bool pending = false;    ///< true if the worker will cut before its next batch of steps; the other members are then not set
-  bool changed = false;    ///< true if elements were split; the next frame differs only if the surface changed
-  std::int64_t edges = 0;  ///< number of edges between nodes cut by this call
-  double seconds = 0;      ///< duration [s]
+  bool pending = false;      ///< true if the worker will cut before its next batch of steps; the other members are then not set
+  bool changed = false;      ///< true if elements were split; the next frame differs only if the surface changed
+  std::int64_t edges = 0;    ///< number of edges between nodes cut by this call
+  double seconds = 0;        ///< duration [s]
+  std::int64_t in_part = 0;  ///< elements that still hold together where edges of theirs were cut: the blade ended in them
 };
 
 /// Version of the library, for example "0.1.0".

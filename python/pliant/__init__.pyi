@@ -87,6 +87,7 @@ class _CutResult(TypedDict):
     changed: bool
     edges: int
     seconds: float
+    in_part: int
 
 class _GrabState(TypedDict):
     force: _Floats

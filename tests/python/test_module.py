@@ -339,6 +339,17 @@ def test_cuts():
     world.lift_blade("knife")
 
 
+def test_a_checkpoint_with_options_names_them():
+    with tempfile.TemporaryDirectory() as folder:
+        file = os.path.join(folder, "state.pck")
+        world = block(interactive=True, cutting=True)
+        world.step(20)
+        world.save(file)
+        message = str(error_of(lambda: block().load(file)))
+        assert message.endswith("not the same: interactive (on there, off here), cutting (on there, off here)"), message
+        block(interactive=True, cutting=True).load(file)
+
+
 def test_a_world_runs_freely():
     world = block(interactive=True)
     world.run_live(rate=100, speed=0.5)

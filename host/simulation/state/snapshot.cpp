@@ -69,6 +69,9 @@ std::vector<ModelPart> parts_of(const Scene& scene, const RunSettings& settings,
   const auto add_curve = [&](const Curve& c) {
     add(static_cast<double>(c.kind), c.start, c.duration, static_cast<double>(c.of), c.angle, c.table);
   };
+  // Reserved forces and prepared cuts are part of the model. Hosts choose them (WorldOptions), and `run --resume` follows.
+  if (scene.interactive) part(kInteractive);
+  if (scene.cuttable) part(kCutting);
   part("curves");
   for (const Curve& c : model.curves) add_curve(c);
   part("gravity");
@@ -121,8 +124,19 @@ std::uint64_t hash_of(const std::vector<ModelPart>& parts) {
   return hash.value;
 }
 
+bool has_part(const std::vector<ModelPart>& parts, const char* name) {
+  return std::any_of(parts.begin(), parts.end(), [&](const ModelPart& part) { return part.name == name; });
+}
+
 std::string differing(const std::vector<ModelPart>& taken, const std::vector<ModelPart>& own) {
   std::string names;
+  for (const char* option : {kInteractive, kCutting}) {
+    const bool had = has_part(taken, option), has = has_part(own, option);
+    if (had != has)
+      names +=
+          fmt::format("{}{} ({} there, {} here)", names.empty() ? "" : ", ", option, had ? "on" : "off", has ? "on" : "off");
+  }
+  if (!names.empty()) return names;  // other parts differ because of these
   for (const ModelPart& part : own) {
     if (std::find(taken.begin(), taken.end(), part) == taken.end()) names += (names.empty() ? "" : ", ") + part.name;
   }

@@ -23,6 +23,11 @@ struct ModelPart {
   bool operator==(const ModelPart&) const = default;
 };
 
+/// Names of the parts that options of a host add (WorldOptions).
+inline constexpr const char* kInteractive = "interactive";
+inline constexpr const char* kCutting = "cutting";
+[[nodiscard]] bool has_part(const std::vector<ModelPart>& parts, const char* name);
+
 struct Snapshot {
   std::vector<ModelPart> made_of;  ///< parts of the model and settings; must match when restoring
   std::string real_type;           ///< "float" or "double"

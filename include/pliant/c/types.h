@@ -1,9 +1,9 @@
 /* Types of the C API (pliant/c/pliant.h).
  *
- * Structs grow: later versions append members. Each struct begins with its size, which its PLIANT_..._INIT macro sets, so
- * that a program and a library of different versions are compatible. The library reads and writes at most `size` bytes. In
- * an output struct, it sets members that it does not know to 0; in an input struct, such members must be 0 (PLIANT_USAGE).
- * A size below that of the first version or above 4096 is PLIANT_USAGE, and the call has no effect.
+ * Structs grow: later versions append members. Each struct begins with its size, set by its PLIANT_..._INIT macro, so that a
+ * program and a library of different versions are compatible. The library reads and writes at most `size` bytes. In an output
+ * struct, it sets members that it does not know to 0; in an input struct, such members must be 0 (PLIANT_USAGE), and a size
+ * below that of the first version or above 4096 is PLIANT_USAGE.
  */
 #ifndef PLIANT_TYPES_H
 #define PLIANT_TYPES_H
@@ -125,14 +125,15 @@ typedef struct pliant_frame {
 
 /** Result of a cut, as pliant::CutResult. */
 typedef struct pliant_cut {
-  size_t size;    /**< PLIANT_CUT_INIT */
-  int pending;    /**< 1: the worker will cut before its next batch of steps; the other members are 0 */
-  int changed;    /**< 1: elements were split */
-  int64_t edges;  /**< number of edges between nodes cut by this call */
-  double seconds; /**< duration [s] */
+  size_t size;     /**< PLIANT_CUT_INIT */
+  int pending;     /**< 1: the worker will cut before its next batch of steps; the other members are 0 */
+  int changed;     /**< 1: elements were split */
+  int64_t edges;   /**< number of edges between nodes cut by this call */
+  double seconds;  /**< duration [s] */
+  int64_t in_part; /**< elements that still hold together where edges of theirs were cut */
 } pliant_cut;
 #define PLIANT_CUT_INIT \
-  { sizeof(pliant_cut), 0, 0, 0, 0.0 }
+  { sizeof(pliant_cut), 0, 0, 0, 0.0, 0 }
 
 /** One quantity of a probe, as pliant::ProbeValue. Pointers are valid until the world's next pliant_world_probes or its end. */
 typedef struct pliant_probe_value {
