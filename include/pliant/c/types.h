@@ -55,7 +55,6 @@ typedef struct pliant_surface {
 } pliant_surface;
 #define PLIANT_SURFACE_INIT \
   { sizeof(pliant_surface), NULL, 0, NULL, 0 }
-
 /** Properties of a world that do not change while it runs. */
 typedef struct pliant_info {
   size_t size;      /**< PLIANT_INFO_INIT */
