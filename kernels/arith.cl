@@ -23,6 +23,13 @@ typedef int integer;
 #define AS_REAL(i) as_float(i)
 #endif
 
+// PoCL passes structures of vectors through memory to a function that it does not inline: 1344 bytes for a deformation.
+#if LANES == 16
+#define INLINE static inline __attribute__((always_inline))
+#else
+#define INLINE static inline
+#endif
+
 // FIRST_INDEX: first element (or node) of this work-item. FIRST_LISTED: the same for a pass over a list of tiles (Pass::active), negative for an
 // empty entry. TILE_BASE: position of element e in plane 0 of a tiled array.
 #define FIRST_INDEX ((int)get_global_id(0) * LANES)

@@ -12,8 +12,8 @@
 #endif
 
 // f: summed element forces (w is unused); i: first texel of the quad.
-static inline void integrate_quad(quad f, __global float* node_u, __global float* node_w, __global const float* node_load,
-                           __global float* node_force, __global const float* step_params, int i) {
+INLINE void integrate_quad(quad f, __global float* node_u, __global float* node_w, __global const float* node_load,
+                   __global float* node_force, __global const float* step_params, int i) {
 #if HAS_LOAD
   const quad r = LOAD_QUAD(node_load) - f;
 #else
