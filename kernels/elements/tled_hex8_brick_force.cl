@@ -41,7 +41,7 @@ __kernel void tled_hex8_brick_force(__global const float* node_u, __global const
       const texels t = texels_load(node_u, neighbor[mask] * PLIANT_BRICK_NODES + row + lane);
       const vec3 lo = {texels_x(t), texels_y(t), texels_z(t)};
 #if LANES == 16
-      const float4 right = vload4(neighbor[mask + 1] * PLIANT_BRICK_NODES + row, node_u);
+      const float4 right = BLOCK4(node_u, neighbor[mask + 1] * PLIANT_BRICK_NODES + row);
       const vec3 hi = {FROM_RIGHT(lo.x, right.x), FROM_RIGHT(lo.y, right.y), FROM_RIGHT(lo.z, right.z)};
 #else
       const int beside = lane == 15 ? neighbor[mask + 1] * PLIANT_BRICK_NODES + row : neighbor[mask] * PLIANT_BRICK_NODES + row + lane + 1;
