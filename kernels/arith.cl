@@ -23,6 +23,19 @@ typedef int integer;
 #define AS_REAL(i) as_float(i)
 #endif
 
+// PoCL passes structures of vectors through memory to a function that it does not inline: 1344 bytes for a deformation.
+#if LANES == 16
+#define INLINE static inline __attribute__((always_inline))
+#else
+#define INLINE static inline
+#endif
+
+// Aligned blocks of 4, 8 or 16 numbers: block i of a buffer, whose memory is aligned to at least 128 bytes. PoCL takes a vload4, which may not be
+// aligned, apart into pairs of numbers, with twice as many instructions in the sums of shape matching.
+#define BLOCK4(p, i) (((__global const float4*)(p))[i])
+#define BLOCK8(p, i) (((__global const float8*)(p))[i])
+#define BLOCK16(p, i) (((__global const float16*)(p))[i])
+
 // FIRST_INDEX: first element (or node) of this work-item. FIRST_LISTED: the same for a pass over a list of tiles (Pass::active), negative for an
 // empty entry. TILE_BASE: position of element e in plane 0 of a tiled array.
 #define FIRST_INDEX ((int)get_global_id(0) * LANES)

@@ -24,26 +24,26 @@ static inline float16 texels_w(texels t) {
 // `k` points to sixteen texel indices.
 static inline texels texels_gather(__global const float* p, __global const int* k) {
   texels t;
-  t.a = (float8)(vload4(k[0], p), vload4(k[4], p));
-  t.b = (float8)(vload4(k[1], p), vload4(k[5], p));
-  t.c = (float8)(vload4(k[2], p), vload4(k[6], p));
-  t.d = (float8)(vload4(k[3], p), vload4(k[7], p));
-  t.e = (float8)(vload4(k[8], p), vload4(k[12], p));
-  t.f = (float8)(vload4(k[9], p), vload4(k[13], p));
-  t.g = (float8)(vload4(k[10], p), vload4(k[14], p));
-  t.h = (float8)(vload4(k[11], p), vload4(k[15], p));
+  t.a = (float8)(BLOCK4(p, k[0]), BLOCK4(p, k[4]));
+  t.b = (float8)(BLOCK4(p, k[1]), BLOCK4(p, k[5]));
+  t.c = (float8)(BLOCK4(p, k[2]), BLOCK4(p, k[6]));
+  t.d = (float8)(BLOCK4(p, k[3]), BLOCK4(p, k[7]));
+  t.e = (float8)(BLOCK4(p, k[8]), BLOCK4(p, k[12]));
+  t.f = (float8)(BLOCK4(p, k[9]), BLOCK4(p, k[13]));
+  t.g = (float8)(BLOCK4(p, k[10]), BLOCK4(p, k[14]));
+  t.h = (float8)(BLOCK4(p, k[11]), BLOCK4(p, k[15]));
   return t;
 }
 static inline texels texels_load(__global const float* p, int i) {
   texels t;
-  t.a = (float8)(vload4(i, p), vload4(i + 4, p));
-  t.b = (float8)(vload4(i + 1, p), vload4(i + 5, p));
-  t.c = (float8)(vload4(i + 2, p), vload4(i + 6, p));
-  t.d = (float8)(vload4(i + 3, p), vload4(i + 7, p));
-  t.e = (float8)(vload4(i + 8, p), vload4(i + 12, p));
-  t.f = (float8)(vload4(i + 9, p), vload4(i + 13, p));
-  t.g = (float8)(vload4(i + 10, p), vload4(i + 14, p));
-  t.h = (float8)(vload4(i + 11, p), vload4(i + 15, p));
+  t.a = (float8)(BLOCK4(p, i), BLOCK4(p, i + 4));
+  t.b = (float8)(BLOCK4(p, i + 1), BLOCK4(p, i + 5));
+  t.c = (float8)(BLOCK4(p, i + 2), BLOCK4(p, i + 6));
+  t.d = (float8)(BLOCK4(p, i + 3), BLOCK4(p, i + 7));
+  t.e = (float8)(BLOCK4(p, i + 8), BLOCK4(p, i + 12));
+  t.f = (float8)(BLOCK4(p, i + 9), BLOCK4(p, i + 13));
+  t.g = (float8)(BLOCK4(p, i + 10), BLOCK4(p, i + 14));
+  t.h = (float8)(BLOCK4(p, i + 11), BLOCK4(p, i + 15));
   return t;
 }
 static inline void texels_store_half(float8 x, float8 y, float8 z, float8 w, __global float* p) {

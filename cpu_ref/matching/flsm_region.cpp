@@ -111,6 +111,7 @@ void flsm_region(Range range, const Scalar* node_u, const Scalar* flsm_plates, c
     const Scalar* soft = Elastic == 1 ? flsm_elastic + PLIANT_FLSM_ELASTIC_PLANES * tile : nullptr;
     Mat3<Scalar> deformation[PLIANT_TILE], rotation[PLIANT_TILE];
     bool valid[PLIANT_TILE];
+    HornTile<Scalar> horn;
     for (int l = 0; l < PLIANT_TILE; ++l) {
       const auto at = [&](int plane) { return rest[plane * PLIANT_TILE + l]; };
       const Scalar d[3] = {at(1), at(2), at(3)};
@@ -120,10 +121,13 @@ void flsm_region(Range range, const Scalar* node_u, const Scalar* flsm_plates, c
       if constexpr (Elastic == 1) e = times_symmetric(e, inverse_of(soft + l));
       const Scalar a[6] = {at(4), at(5), at(6), at(7), at(8), at(9)};
       bool ok = false;
-      rotation[l] = rotation_of(a, e, (a[0] + a[1]) + a[2], ok);
+      horn.set(l, horn_matrix(a, e, (a[0] + a[1]) + a[2], ok));
+      horn.settled[l] = ok ? 0 : 1;
       deformation[l] = e;
       valid[l] = ok;
     }
+    square_until_settled(horn);
+    for (int l = 0; l < PLIANT_TILE; ++l) rotation[l] = rotation_from(horn.at(l));
     for (int l = 0; l < PLIANT_TILE; ++l) {
       Scalar* record = flsm_regions + PLIANT_FLSM_RECORD * (tile + l);
       const Mat3<Scalar>& r = rotation[l];

@@ -23,6 +23,19 @@ typedef struct {
   vec3 ss, ds, sd, dd;
 } face;
 
+// The rows of nodes (bit 5 z + y) of a brick's rows of cells (bit 4 z + y). An organ leaves half of its bricks' rows empty. On a GPU, whose work-items
+// process rows side by side, they cost nothing.
+static inline int node_rows(int cells) {
+  int lower = 0;
+  for (int z = 0; z < 4; ++z) lower |= (cells >> 4 * z & 15) << 5 * z;
+  return lower | lower << 1 | lower << 5 | lower << 6;
+}
+#if LANES == 16
+#define ROW_USED(used, z, y) ((used) >> (5 * (z) + (y)) & 1)
+#else
+#define ROW_USED(used, z, y) 1
+#endif
+
 // Inverse butterflies along y and x: what row y of a plane of nodes gets from the cells to its right, and what their right neighbours get.
 static inline void row_forces(const face* forces, int y, vec3* lo, vec3* hi) {
   vec3 s, d;
@@ -44,15 +57,23 @@ static inline void row_forces(const face* forces, int y, vec3* lo, vec3* hi) {
 #if LANES == 16
 #define FROM_RIGHT(v, last) (float16)((v).s12345678, (v).s9abc, (v).sde, (v).sf, last)
 #define FROM_LEFT(v) (float16)(-0.0f, (v).s01234567, (v).s89ab, (v).scd, (v).se)
-static inline void write_plane(const face* forces, __global float* out, int plane, int lane) {
+static inline void write_plane(const face* forces, int used, __global float* out, int plane, int lane) {
   for (int y = 0; y < 5; ++y) {
     vec3 lo, hi;
-    row_forces(forces, y, &lo, &hi);
     const int row = plane * 5 + y;
+    __global float* last = out + PLIANT_BRICK_FORCE_X16 + 3 * row;
+    if (!ROW_USED(used, plane, y)) {
+      const real none = 0.0f;
+      STORE(none, out, (3 * row) * 16);
+      STORE(none, out, (3 * row + 1) * 16);
+      STORE(none, out, (3 * row + 2) * 16);
+      last[0] = last[1] = last[2] = 0.0f;
+      continue;
+    }
+    row_forces(forces, y, &lo, &hi);
     STORE(lo.x + FROM_LEFT(hi.x), out, (3 * row) * 16);
     STORE(lo.y + FROM_LEFT(hi.y), out, (3 * row + 1) * 16);
     STORE(lo.z + FROM_LEFT(hi.z), out, (3 * row + 2) * 16);
-    __global float* last = out + PLIANT_BRICK_FORCE_X16 + 3 * row;
     last[0] = hi.x.sf;
     last[1] = hi.y.sf;
     last[2] = hi.z.sf;
@@ -62,7 +83,7 @@ static inline void write_plane(const face* forces, __global float* out, int plan
 // With one lane, a row of sixteen work-items processes a brick, one or more per work-group. A work-item reads its right neighbour's displacement
 // itself, and passes its force to it through the memory of the sums, because PoCL 3.1 shares a __local array between work-groups that run at the same
 // time.
-static inline void write_plane(const face* forces, __global float* out, int plane, int lane) {
+static inline void write_plane(const face* forces, int used, __global float* out, int plane, int lane) {
   __global float* sums = out + plane * (5 * 48) + lane;
   vec3 lo[5], hi[5];
   for (int y = 0; y < 5; ++y) {

@@ -28,19 +28,20 @@ __kernel void tled_hex8_brick_force(__global const float* node_u, __global const
   __global float* out = brick_force + brick * PLIANT_BRICK_FORCE;
   const vec3 zero = {0.0f, 0.0f, 0.0f};
   const face no_force = {zero, zero, zero, zero};
-  const int rows = brick_rows[2 * brick];
+  const int rows = brick_rows[2 * brick], used = node_rows(rows);
   const law m = law_load(law_parameters);
   face below[4], pending[4];  // displacement butterflies of the plane below; forces of the cells below on the current plane
   for (int z = 0; z < 5; ++z) {
     face above[4];
-    vec3 sum, difference;
+    vec3 sum = zero, difference = zero;
     for (int y = 0; y < 5; ++y) {
+      if (!ROW_USED(used, z, y)) continue;
       const int mask = (y == 4 ? 2 : 0) + (z == 4 ? 4 : 0);
       const int row = ((z & 3) * 4 + (y & 3)) * 16;
       const texels t = texels_load(node_u, neighbor[mask] * PLIANT_BRICK_NODES + row + lane);
       const vec3 lo = {texels_x(t), texels_y(t), texels_z(t)};
 #if LANES == 16
-      const float4 right = vload4(neighbor[mask + 1] * PLIANT_BRICK_NODES + row, node_u);
+      const float4 right = BLOCK4(node_u, neighbor[mask + 1] * PLIANT_BRICK_NODES + row);
       const vec3 hi = {FROM_RIGHT(lo.x, right.x), FROM_RIGHT(lo.y, right.y), FROM_RIGHT(lo.z, right.z)};
 #else
       const int beside = lane == 15 ? neighbor[mask + 1] * PLIANT_BRICK_NODES + row : neighbor[mask] * PLIANT_BRICK_NODES + row + lane + 1;
@@ -92,7 +93,7 @@ __kernel void tled_hex8_brick_force(__global const float* node_u, __global const
     }
     // In a loop of its own: NVIDIA's compiler (driver 580.159) otherwise takes below[1] to below[3] for undefined.
     for (int y = 0; y < 4; ++y) below[y] = above[y];
-    if (z > 0) write_plane(forces, out, z - 1, lane);
+    if (z > 0) write_plane(forces, used, out, z - 1, lane);
   }
-  write_plane(pending, out, 4, lane);
+  write_plane(pending, used, out, 4, lane);
 }

@@ -4,7 +4,7 @@
 //   LAW_INVERTIBLE                                       1: the law is finite for J <= 0 without continuation
 //   law law_load(__global const float* law_parameters)   loads the parameters, the same for a batch: called once, before any loop
 //   real law_pressure(law m, real j)                     dU/dJ [Pa] of the volumetric part U(J) at j = J - 1; 0 if it has none
-//   mat3 law_stress(deformation d, real scale, law m, real pressure, integer low)
+//   INLINE mat3 law_stress(deformation d, real scale, law m, real pressure, integer low)
 // low: J < m.low. law_stress returns the first Piola-Kirchhoff stress P = F S times `scale` (a volume); `pressure` is law_pressure or its nodal
 // average.
 #include "deformation.cl"

@@ -11,7 +11,7 @@ static inline law law_load(__global const float* law_parameters) {
 }
 static inline real law_pressure(law m, real j) { return m.lambda * j; }
 
-static inline mat3 law_stress(deformation d, real scale, law m, real pressure, integer low) {
+INLINE mat3 law_stress(deformation d, real scale, law m, real pressure, integer low) {
   const real jacobian = 1.0f + d.j;
   const real ratio = low ? m.mu * low_inverse(low_distance(d.j)) : m.mu / jacobian;
   const real s = scale * ratio;

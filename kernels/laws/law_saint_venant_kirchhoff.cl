@@ -15,7 +15,7 @@ static inline real law_pressure(law m, real j) {
   return none;
 }
 
-static inline mat3 law_stress(deformation d, real scale, law m, real pressure, integer low) {
+INLINE mat3 law_stress(deformation d, real scale, law m, real pressure, integer low) {
   const sym3 e = green_strain(d.h);
   const real mu = scale * m.mu;
   const real two_mu = 2.0f * mu;

@@ -13,7 +13,7 @@ static inline law law_load(__global const float* law_parameters) {
 }
 static inline real law_pressure(law m, real j) { return m.lambda * j; }
 
-static inline mat3 law_stress(deformation d, real scale, law m, real pressure, integer low) {
+INLINE mat3 law_stress(deformation d, real scale, law m, real pressure, integer low) {
   const real e = fma(2.0f, d.t, squared_norm(d.h));
   const real ratio = e / fma(3.0f, e, 12.0f);
   const real mu = scale * m.mu;

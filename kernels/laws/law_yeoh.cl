@@ -12,7 +12,7 @@ static inline law law_load(__global const float* law_parameters) {
 }
 static inline real law_pressure(law m, real j) { return m.kappa * j; }
 
-static inline mat3 law_stress(deformation d, real scale, law m, real pressure, integer low) {
+INLINE mat3 law_stress(deformation d, real scale, law m, real pressure, integer low) {
   const real jacobian = 1.0f + d.j;
   const real root = inverse_cube_root(jacobian), squared = root * root;
   const real hh = squared_norm(d.h);

@@ -12,18 +12,19 @@ __kernel void flsm_bar(__global const float* node_u, __global const int* flsm_sl
                        __global const int* flsm_link, __global float* flsm_reference, __global float* flsm_bars) {
   const float4 zero = 0.0f;
 #if RELATIVE
-  const float4 origin = vload4(flsm_slot[0], node_u);
-  if (get_global_id(0) == 0) vstore8((float8)(origin, vload4(0, flsm_reference)), 0, flsm_reference);
+  const float4 origin = BLOCK4(node_u, flsm_slot[0]);
+  if (get_global_id(0) == 0) vstore8((float8)(origin, BLOCK4(flsm_reference, 0)), 0, flsm_reference);
 #else
   const float4 origin = zero;
 #endif
   for (int i = FIRST_INDEX; i < FIRST_INDEX + LANES; ++i) {
-    float4 sum = fma((float4)(flsm_weight[i]), vload4(flsm_slot[i], node_u) - origin, zero), moment = zero;
+    float4 sum = fma((float4)(flsm_weight[i]), BLOCK4(node_u, flsm_slot[i]) - origin, zero), moment = zero;
     int below = i, above = i;
+#pragma unroll
     for (int o = 1; o <= WIDTH; ++o) {
       below = flsm_link[2 * below];
       above = flsm_link[2 * above + 1];
-      const float4 u_below = vload4(flsm_slot[below], node_u) - origin, u_above = vload4(flsm_slot[above], node_u) - origin;
+      const float4 u_below = BLOCK4(node_u, flsm_slot[below]) - origin, u_above = BLOCK4(node_u, flsm_slot[above]) - origin;
       const float m_below = flsm_weight[below], m_above = flsm_weight[above];
       sum = fma((float4)(m_above), u_above, fma((float4)(m_below), u_below, sum));
       moment = fma((float4)((float)o * m_above), u_above, fma((float4)(-((float)o * m_below)), u_below, moment));

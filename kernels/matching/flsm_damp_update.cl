@@ -15,7 +15,7 @@ __kernel void flsm_damp_update(__global const float* node_u, __global float* nod
     const int slot = flsm_slot[i];
     const float4 rigid = goal_sum(flsm_bars, flsm_link, flsm_rates, missing_of_offset, missing_of, missing_of_factor, i);
     const float share = i < interface_base ? flsm_inverse_holders[i] : flsm_inverse_holders[i] / (float)substeps;
-    const float4 w = vload4(slot, node_w);
+    const float4 w = BLOCK4(node_w, slot);
 #if REACTION
     const float4 next = fma(-rigid, (float4)(share), w);
 #else

@@ -9,9 +9,9 @@ __kernel void flsm_excess(__global const float* node_u, __global const int* flsm
   const float h = (float)substeps * step_params[0], hh = h * h;
   for (int i = FIRST_INDEX; i < FIRST_INDEX + LANES; ++i) {
     const int slot = flsm_slot[region_base + i];
-    const float4 u = vload4(slot, node_u);
+    const float4 u = BLOCK4(node_u, slot);
     const float share = fma(flsm_beta[i] * u.w, hh, -flsm_alpha[batch]);
-    const float4 excess = share * (vload8(i, flsm_goals).lo - (u - vload4(0, flsm_reference)));
+    const float4 excess = share * (BLOCK8(flsm_goals, i).lo - (u - BLOCK4(flsm_reference, 0)));
     vstore4((float4)(excess.xyz, 0.0f), slot, flsm_excess);
   }
 }

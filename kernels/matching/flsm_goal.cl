@@ -9,10 +9,10 @@
 __kernel void flsm_goal(__global const float* flsm_bars, __global const int* flsm_link, __global const float* flsm_regions,
                         __global const int* missing_of_offset, __global const int* missing_of, __global const float* missing_of_factor,
                         __global const float* flsm_inverse_holders, __global const float* flsm_reference, __global float* flsm_goals, int region_base) {
-  const float4 moved = vload4(1, flsm_reference) - vload4(0, flsm_reference);
+  const float4 moved = BLOCK4(flsm_reference, 1) - BLOCK4(flsm_reference, 0);
   for (int i = FIRST_INDEX; i < FIRST_INDEX + LANES; ++i) {
     const int region = region_base + i;
     const float4 goal = goal_sum(flsm_bars, flsm_link, flsm_regions, missing_of_offset, missing_of, missing_of_factor, region) * flsm_inverse_holders[region];
-    vstore8((float8)(goal, vload4(2 * i, flsm_goals) + moved), i, flsm_goals);
+    vstore8((float8)(goal, BLOCK4(flsm_goals, 2 * i) + moved), i, flsm_goals);
   }
 }

@@ -6,13 +6,14 @@
 __kernel void flsm_goal_plate(__global const float* flsm_regions, __global const int* flsm_link, __global float* flsm_plates) {
   const float4 zero = 0.0f;
   for (int i = FIRST_INDEX; i < FIRST_INDEX + LANES; ++i) {
-    float16 sum = vload16(i, flsm_regions);
+    float16 sum = BLOCK16(flsm_regions, i);
     float4 moment = zero;
     int below = i, above = i;
+#pragma unroll
     for (int o = 1; o <= WIDTH; ++o) {
       below = flsm_link[2 * below];
       above = flsm_link[2 * above + 1];
-      const float16 at_below = vload16(below, flsm_regions), at_above = vload16(above, flsm_regions);
+      const float16 at_below = BLOCK16(flsm_regions, below), at_above = BLOCK16(flsm_regions, above);
       sum = (sum + at_below) + at_above;
       moment = fma((float4)((float)o), at_below.hi.hi - at_above.hi.hi, moment);
     }

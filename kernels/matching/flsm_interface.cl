@@ -10,16 +10,16 @@ __kernel void flsm_interface(__global const float* node_u, __global float* node_
 #if EXTRAPOLATED
   const float ahead = (float)(((int)step_params[6] + step) % substeps) / (float)substeps;
 #endif
-  const float4 origin = vload4(0, flsm_reference);
+  const float4 origin = BLOCK4(flsm_reference, 0);
   for (int i = FIRST_INDEX; i < FIRST_INDEX + LANES; ++i) {
     const int slot = flsm_slot[region_base + i];
-    const float8 goals = vload8(i, flsm_goals);
+    const float8 goals = BLOCK8(flsm_goals, i);
 #if EXTRAPOLATED
     const float4 goal = fma((float4)(ahead), goals.lo - goals.hi, goals.lo);
 #else
     const float4 goal = goals.lo;
 #endif
-    const float4 force = fma((float4)(flsm_beta[i]), goal - (vload4(slot, node_u) - origin), vload4(slot, node_load));
+    const float4 force = fma((float4)(flsm_beta[i]), goal - (BLOCK4(node_u, slot) - origin), BLOCK4(node_load, slot));
     vstore4((float4)(force.xyz, 0.0f), slot, node_load);
   }
 }

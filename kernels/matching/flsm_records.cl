@@ -3,7 +3,7 @@
 // node from the region's centre; s = 1 for a node that the sums miss, -1 for one that they include wrongly. On the way to regions the factors are
 // multiplied by the node's weight. Entries are summed separately, block by block.
 static inline float16 add_entry(__global const float* factors, int entry, float16 numbers, float16 sum) {
-  const float4 f = vload4(entry, factors);
+  const float4 f = BLOCK4(factors, entry);
   return fma((float16)(f.xxxx, f.yyyy, f.zzzz, f.wwww), numbers, sum);
 }
 

@@ -69,7 +69,7 @@ __kernel void flsm_region(__global const float* node_u, __global const float* fl
   const int first = FIRST_INDEX;
   float moments[LANES * PLIANT_FLSM_RECORD];
   for (int l = 0; l < LANES; ++l) {
-    vstore16(region_moments(node_u, flsm_plates, flsm_link, missing_offset, missing, missing_factor, vload4(0, flsm_reference), first + l), l, moments);
+    vstore16(region_moments(node_u, flsm_plates, flsm_link, missing_offset, missing, missing_factor, BLOCK4(flsm_reference, 0), first + l), l, moments);
   }
   __global const float* rest = flsm_rest + TILE_BASE(first, PLIANT_FLSM_REST_PLANES);
   const real inverse = REST(0), dx = REST(1), dy = REST(2), dz = REST(3);

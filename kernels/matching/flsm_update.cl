@@ -16,13 +16,13 @@ __kernel void flsm_update(__global float* node_u, __global float* node_w, __glob
   const float h = (float)substeps * step_params[0], half_hh = (0.5f * h) * h;
   const float still = step_params[4], fine = step_params[5], anchor = 3.0f * fine;
   const float4 gravity = (float4)(step_params[1], step_params[2], step_params[3], 0.0f);
-  const float4 origin = vload4(0, flsm_reference);
+  const float4 origin = BLOCK4(flsm_reference, 0);
   for (int i = FIRST_INDEX; i < FIRST_INDEX + LANES; ++i) {
     const float4 goal = goal_sum(flsm_bars, flsm_link, flsm_regions, missing_of_offset, missing_of, missing_of_factor, i);
-    const float4 u = vload4(node_base + i, node_u), w = vload4(node_base + i, node_w);
+    const float4 u = BLOCK4(node_u, node_base + i), w = BLOCK4(node_w, node_base + i);
     const float b = fma(half_hh, w.w, half_hh);
 #if HAS_LOAD
-    const float4 push = fma((float4)(b * u.w), vload4(node_base + i, node_load), b * gravity);
+    const float4 push = fma((float4)(b * u.w), BLOCK4(node_load, node_base + i), b * gravity);
 #else
     const float4 push = b * gravity;
 #endif

@@ -1,7 +1,7 @@
 // Common end of every update kernel: external loads and a step of the integrator, see node_update.cl.
 #include "integrator.cl"
 #if LANES == 16
-#define LOAD_QUAD(p) vload16(0, (p) + 4 * i)
+#define LOAD_QUAD(p) BLOCK16((p) + 4 * i, 0)
 #define STORE_QUAD(q, p) vstore16(q, 0, (p) + 4 * i)
 #define GRAVITY (float4)(step_params[1], step_params[2], step_params[3], 0.0f)
 #define GRAVITY_QUAD (quad)(GRAVITY, GRAVITY, GRAVITY, GRAVITY)
@@ -12,8 +12,8 @@
 #endif
 
 // f: summed element forces (w is unused); i: first texel of the quad.
-static inline void integrate_quad(quad f, __global float* node_u, __global float* node_w, __global const float* node_load,
-                           __global float* node_force, __global const float* step_params, int i) {
+INLINE void integrate_quad(quad f, __global float* node_u, __global float* node_w, __global const float* node_load,
+                   __global float* node_force, __global const float* step_params, int i) {
 #if HAS_LOAD
   const quad r = LOAD_QUAD(node_load) - f;
 #else
@@ -31,15 +31,22 @@ static inline void integrate_quad(quad f, __global float* node_u, __global float
 #endif
 }
 
+#if LANES == 16
+// Eight nodes, unpacked within 128-bit lanes, for which PoCL needs fewer instructions than for wider shuffles.
+INLINE void integrate_half(float8 x, float8 y, float8 z, __global float* node_u, __global float* node_w, __global const float* node_load,
+                   __global float* node_force, __global const float* step_params, int i) {
+  const float8 none = 0.0f, xy0 = UNPACK_LO(x, y), xy1 = UNPACK_HI(x, y), z0 = UNPACK_LO(z, none), z1 = UNPACK_HI(z, none);
+  const float8 a = PAIRS_LO(xy0, z0), b = PAIRS_HI(xy0, z0), c = PAIRS_LO(xy1, z1), d = PAIRS_HI(xy1, z1);
+  integrate_quad((quad)(a.lo, b.lo, c.lo, d.lo), node_u, node_w, node_load, node_force, step_params, i);
+  integrate_quad((quad)(a.hi, b.hi, c.hi, d.hi), node_u, node_w, node_load, node_force, step_params, i + 4);
+}
+#endif
+
 static inline void integrate(real fx, real fy, real fz, __global float* node_u, __global float* node_w, __global const float* node_load,
                       __global float* node_force, __global const float* step_params, int i) {
 #if LANES == 16
-#define FORCE_TEXEL(n) fx.s##n, fy.s##n, fz.s##n, 0.0f
-#define FORCE_QUAD(n0, n1, n2, n3) (quad)(FORCE_TEXEL(n0), FORCE_TEXEL(n1), FORCE_TEXEL(n2), FORCE_TEXEL(n3))
-  integrate_quad(FORCE_QUAD(0, 1, 2, 3), node_u, node_w, node_load, node_force, step_params, i);
-  integrate_quad(FORCE_QUAD(4, 5, 6, 7), node_u, node_w, node_load, node_force, step_params, i + 4);
-  integrate_quad(FORCE_QUAD(8, 9, a, b), node_u, node_w, node_load, node_force, step_params, i + 8);
-  integrate_quad(FORCE_QUAD(c, d, e, f), node_u, node_w, node_load, node_force, step_params, i + 12);
+  integrate_half(fx.lo, fy.lo, fz.lo, node_u, node_w, node_load, node_force, step_params, i);
+  integrate_half(fx.hi, fy.hi, fz.hi, node_u, node_w, node_load, node_force, step_params, i + 8);
 #else
   integrate_quad((quad)(fx, fy, fz, 0.0f), node_u, node_w, node_load, node_force, step_params, i);
 #endif

@@ -15,7 +15,7 @@ for row in "${rows[@]}"; do
   word=${stem//_/-}
   holds "host/material/law_$stem.h" "struct $type {"
   holds "host/material/law_$stem.h" ".word = \"$word\""
-  holds "kernels/laws/law_$stem.cl" 'static inline mat3 law_stress('
+  holds "kernels/laws/law_$stem.cl" 'INLINE mat3 law_stress('
   holds "kernels/laws/law_$stem.cl" '#define LAW_INVERTIBLE '
   holds "cpu_ref/laws/law_$stem.h" "struct $type {"
   holds tests/kernels/laws/law_oracle.h "case Law::$stem:"

@@ -103,7 +103,7 @@ inline KernelCase brick_force_case(Law law, std::size_t bricks, Data data, std::
       .ints("brick_neighbor", std::move(neighbor))
       .ints("brick_rows", random.ints(2 * all, 0, 0xFFFF))
       .reals("brick_fill", std::move(fill))
-      .reals("brick_force", random.reals(all * PLIANT_BRICK_FORCE, Data::zeros, 1))
+      .reals("brick_force", random.reals(all * PLIANT_BRICK_FORCE, Data::large, 1))
       .ints("fault", random.faults(nodes + 32))
       .reals("law_parameters", law_data(law))
       .real(1 / (4 * edge))

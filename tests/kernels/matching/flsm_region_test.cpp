@@ -336,6 +336,25 @@ TEST(FlsmRotation, LinesTurnIntoTheirNewDirection) {
   }
 }
 
+/// A region that settles late, such as a line, does not change the bits of the others in its tile, nor does the number of
+/// lanes.
+TEST(FlsmRotation, RegionsStopByThemselves) {
+  Random random(25);
+  std::vector<Moments> alone;
+  for (int i = 0; i < PLIANT_TILE; ++i) {
+    const Matrix3d rest = rounded(random_rest_moments(random));
+    alone.push_back({rest, random_rotation(random) * (Matrix3d::Identity() + 0.3 * random_matrix(random)) * rest - rest});
+  }
+  const Reals expected = run_in_float(flsm_region_case(moments_data(alone), 1), "flsm_regions");
+  std::vector<Moments> mixed = alone;
+  mixed[3].rest = Vector3d(1, 0, 0).asDiagonal();
+  mixed[3].added = random_rotation(random) * mixed[3].rest - mixed[3].rest;
+  const Reals records = run_in_float(flsm_region_case(moments_data(mixed), 1), "flsm_regions");
+  for (std::size_t i = 0; i < alone.size(); ++i) {
+    if (i != 3) EXPECT_EQ(difference_at(records, i), difference_at(expected, i)) << i;
+  }
+}
+
 /// Where the moments vanish or are not finite, D stays, and t follows the centroid with it.
 TEST(FlsmRotation, CollapsedMomentsKeepTheRotationBefore) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
