@@ -67,6 +67,7 @@ class PLIANT_API World {
   void run_live(const LiveOptions& options = {});
   StepReport stop_live();                      ///< ends it after the frame at work; returns and throws as wait()
   [[nodiscard]] LiveState live_state() const;  ///< also after stop_live()
+
   /// Returns what happened since the last call, oldest first, at most 1024 events; older ones are forgotten.
   std::vector<Event> events();
   /// Returns the force on a tool in each of the last 4096 steps after step `after`. Throws Error (usage) for an unknown tool.
@@ -97,6 +98,7 @@ class PLIANT_API World {
   [[nodiscard]] std::vector<Vec3d> rest_positions(std::size_t body) const;  ///< [m], shape [nodes]
 
   [[nodiscard]] std::vector<ProbeValue> probes() const;  ///< the scene's probes now, in scene order, one entry per quantity
+
   /// Measures what tools and bodies, and bodies and bodies, have in common now (docs/contact.md): those that overlap, tools
   /// first. Parked tools and bodies without a closed surface are left out.
   [[nodiscard]] std::vector<Interpenetration> interpenetrations() const;
@@ -119,9 +121,8 @@ class PLIANT_API World {
   void clear_handles();                    ///< removes all grabs and pushes, and drives that have not started
   void move_focus(const Vec3d& position);  ///< moves the focus, which operational regions can follow, to a point [m]
 
-  /// The names of clear_handles() and move_focus() before 0.2.0.
-  [[deprecated("clear_handles()")]] void clear_tools() { clear_handles(); }
-  [[deprecated("move_focus()")]] void move_tool(const Vec3d& position) { move_focus(position); }
+  [[deprecated("clear_handles()")]] void clear_tools() { clear_handles(); }                       ///< its name before 0.2.0
+  [[deprecated("move_focus()")]] void move_tool(const Vec3d& position) { move_focus(position); }  ///< its name before 0.2.0
 
   /// Rigid tools; pliant/tool.h says when they change and what they throw.
   ///

@@ -351,7 +351,8 @@ TEST(FlsmRotation, RegionsStopByThemselves) {
   mixed[3].added = random_rotation(random) * mixed[3].rest - mixed[3].rest;
   const Reals records = run_in_float(flsm_region_case(moments_data(mixed), 1), "flsm_regions");
   for (std::size_t i = 0; i < alone.size(); ++i) {
-    if (i != 3) EXPECT_EQ(difference_at(records, i), difference_at(expected, i)) << i;
+    if (i == 3) continue;
+    EXPECT_EQ(difference_at(records, i), difference_at(expected, i)) << i;
   }
 }
 
