@@ -67,7 +67,7 @@ BackendInfo describe_device(const cl::Device& device, int index) {
 }
 
 std::string build_options(const cl::Device& device) {
-  std::string options = "-cl-std=CL1.2";
+  std::string options = "-cl-std=CL1.2 -w";  // PoCL would write to standard error how many warnings its compiler has
   // Without the capability the option is an error; the probe then finds out what divide and sqrt really give.
   if ((device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>() & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0) {
     options += " -cl-fp32-correctly-rounded-divide-sqrt";
