@@ -11,10 +11,9 @@
 namespace pliant::api {
 namespace {
 
-constexpr double kUse = 0.92;   ///< share of a period that a frame may take, so that it is ready when it is fetched
-constexpr double kIdle = 0.6;   ///< mean share below which there is time for much more
-constexpr double kLess = 0.92;  ///< changes of the simulated time that a frame may cover
-constexpr double kMore = 1.002, kMuchMore = 1.03;
+constexpr double kUse = 0.8;   ///< share of a period that frames may take in the mean, so that most are ready in time
+constexpr double kLess = 0.8;  ///< changes of the simulated time that a frame may cover
+constexpr double kMore = 1.03;
 constexpr double kFaster = 1.25;  ///< largest simulated time of a frame, in periods
 constexpr double kOwed = 0.25;    ///< wall time that can be caught up with [s]
 constexpr double kShift = 0.2;    ///< largest change of the moment at which frames start, in periods
@@ -71,19 +70,21 @@ double Pace::begin(double now) {
   return covers;
 }
 
-/// A frame takes some time whatever it covers, and not always the same, so that only trying shows how much fits: less after a
-/// frame that took too long, slowly more after others, faster where much of the period is left. One frame in some 40 is then
-/// late.
+/// A frame takes some time whatever it covers, and not always the same, so that only trying shows how much fits: less while
+/// frames take too long in the mean, more while they do not. A single slow frame, such as one that checks the step, is late
+/// once, and time goes on.
 void Pace::end(double now, double simulated, double edits, double read) {
   ++state_.frames;
   const double period = 1 / options_.rate, full = options_.speed * period;
   const double taken = std::max(0.0, now - begun_ - edits);
   taken_ += kNew * (taken / period - taken_);
   if (simulated > 0) cost_ += kNew * (std::max(0.0, taken - read) / simulated * options_.speed + read / period - cost_);
-  if (taken > kUse * period) {
-    most_ = std::max(kLeast, std::min(most_, simulated / full) * kLess);
+  if (taken_ > kUse) {
+    const double less = std::max(kLess, kUse / taken_);
+    most_ = std::max(kLeast, std::min(most_, simulated / full) * less);
+    taken_ *= less;
   } else {
-    most_ = std::min(kFaster, most_ * (taken_ < kIdle ? kMuchMore : kMore));
+    most_ = std::min(kFaster, most_ * kMore);
   }
   passed_.push_back({wall_of_this_, simulated});
   passed_wall_ += wall_of_this_;
