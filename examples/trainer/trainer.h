@@ -165,7 +165,7 @@ class Session {
   void act(double t, double period, const pliant::Frame& frame) {
     const auto once = [&](int part) { return t >= part && std::exchange(done_, std::max(done_, part)) < part; };
     const auto at = [&](std::size_t c, double share) { return low_[c] + share * (high_[c] - low_[c]); };
-    if (t <= 2) measure(frame);
+    if (t <= 2 || (t > 8 && t < 9)) measure(frame);
     if (t > 2 && t < 8) {  // down, along, up again
       const double down = std::min({1.0, (t - 2) / 2, 8 - t}), along = std::clamp((t - 4) / 3, 0.0, 1.0);
       drive({at(0, 0.6 - 0.25 * along), high_[1] + 0.06 - 0.078 * down, at(2, 0.5)}, period);
