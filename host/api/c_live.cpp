@@ -3,6 +3,7 @@
 #include <iterator>
 
 #include "api/c_call.h"
+#include "api/event_log.h"
 
 namespace {
 
@@ -56,6 +57,7 @@ pliant_status pliant_world_events(pliant_world world, pliant_event* out, size_t 
     std::vector<pliant::Event> fresh = w.world.events();
     const std::lock_guard lock(w.mutex);
     std::move(fresh.begin(), fresh.end(), std::back_inserter(w.waiting_events));
+    while (w.waiting_events.size() > EventLog::kMost) w.waiting_events.pop_front();
     const auto end = w.waiting_events.begin() + static_cast<std::ptrdiff_t>(std::min(count, w.waiting_events.size()));
     w.events.assign(std::make_move_iterator(w.waiting_events.begin()), std::make_move_iterator(end));
     w.waiting_events.erase(w.waiting_events.begin(), end);

@@ -49,6 +49,7 @@ void Pace::start(const LiveOptions& options, double now) {
 void Pace::change(const LiveOptions& options) {
   options_ = options;
   owed_ = 0;
+  if (started_) next_start_ = std::min(next_start_, begun_ + 1 / options.rate);
 }
 
 double Pace::begin(double now) {
@@ -57,6 +58,7 @@ double Pace::begin(double now) {
   if (started_) state_.late += static_cast<std::int64_t>(std::max(0.0, std::round(elapsed / period) - 1));
   owed_ += elapsed * options_.speed;
   const double covers = std::min({owed_, kFaster * full, most_ * full});
+  covers_ = covers;
   owed_ -= covers;
   const double most = kOwed * options_.speed;
   if (owed_ > most) {
@@ -81,7 +83,7 @@ void Pace::end(double now, double simulated, double edits, double read) {
   if (simulated > 0) cost_ += kNew * (std::max(0.0, taken - read) / simulated * options_.speed + read / period - cost_);
   if (taken_ > kUse) {
     const double less = std::max(kLess, kUse / taken_);
-    most_ = std::max(kLeast, std::min(most_, simulated / full) * less);
+    most_ = std::max(kLeast, std::min(most_, covers_ / full) * less);
     taken_ *= less;
   } else {
     most_ = std::min(kFaster, most_ * kMore);
@@ -105,9 +107,9 @@ bool Pace::fetched(double now) {
   return next_start_ < before;
 }
 
-void Pace::skip(double now) {
-  begun_ = now;
-  next_start_ = now;
+void Pace::skip(double duration) {
+  begun_ += duration;
+  next_start_ += duration;
 }
 
 LiveState Pace::state() const {

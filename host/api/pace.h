@@ -28,8 +28,8 @@ class Pace {
   bool fetched(double now);
   /// Counts a frame that nobody fetched.
   void drop() { state_.dropped += running_ && state_.frames > 0 ? 1 : 0; }
-  /// Leaves out the time since the last frame, which something else than frames took.
-  void skip(double now);
+  /// Leaves out time that something else than frames took [s].
+  void skip(double duration);
 
   [[nodiscard]] LiveState state() const;
 
@@ -42,10 +42,11 @@ class Pace {
   bool running_ = false, started_ = false;
   double begun_ = 0;  ///< start of the last frame
   double next_start_ = 0;
-  double owed_ = 0;   ///< simulated time that is not covered yet [s]
-  double most_ = 1;   ///< what a frame may cover, in frames of full length
-  double taken_ = 0;  ///< mean duration of a frame, in periods
-  double cost_ = 0;   ///< the same of a frame of full length, if its duration is proportional to what it covers
+  double covers_ = 0;  ///< what the frame at work should cover [s]
+  double owed_ = 0;    ///< simulated time that is not covered yet [s]
+  double most_ = 1;    ///< what a frame may cover, in frames of full length
+  double taken_ = 0;   ///< mean duration of a frame, in periods
+  double cost_ = 0;    ///< the same of a frame of full length, if its duration is proportional to what it covers
   std::deque<Passed> passed_;
   double passed_wall_ = 0, passed_simulated_ = 0;  ///< sums of passed_
   double wall_of_this_ = 0;

@@ -97,9 +97,15 @@ void RigidTools::drop_drives() {
   std::erase_if(asked_, [](const Request& r) { return r.what == What::drive; });
 }
 
-void RigidTools::drop_requests() {
+void RigidTools::hold_back() {
   const std::lock_guard lock(mutex_);
   asked_.clear();
+  held_back_ = true;
+}
+
+void RigidTools::go_on() {
+  const std::lock_guard lock(mutex_);
+  held_back_ = false;
 }
 
 std::vector<ToolForce> RigidTools::forces() {
@@ -157,7 +163,7 @@ void RigidTools::make(Simulation& simulation, const Request& request) {
 void RigidTools::apply(Simulation& simulation) {
   {
     const std::lock_guard lock(mutex_);
-    if (asked_.empty()) return;
+    if (asked_.empty() || held_back_) return;
     doing_ = std::exchange(asked_, {});
   }
   std::exception_ptr refused;
@@ -216,6 +222,7 @@ void RigidTools::renew(const Simulation& simulation, bool keep_requests) {
   {
     const std::lock_guard lock(mutex_);
     if (!keep_requests) asked_.clear();
+    held_back_ = false;
     given_.clear();
     traces_.clear();
     for (const auto& [name, given] : simulation.state().tools.given)

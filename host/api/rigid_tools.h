@@ -30,8 +30,9 @@ class RigidTools {
   void set_mesh(const std::string& name, TriangleMesh mesh, double time);
   /// Discards drives that are not executed yet.
   void drop_drives();
-  /// Discards all requests that are not executed yet.
-  void drop_requests();
+  /// Discards all requests that are not executed yet, and executes none until renew() or go_on().
+  void hold_back();
+  void go_on();
   [[nodiscard]] std::vector<ToolForce> forces();
   /// The force in each of the last steps after step `after`. Throws Error (usage) for an unknown tool.
   [[nodiscard]] std::vector<ForceSample> trace(const std::string& name, std::int64_t after);
@@ -74,6 +75,7 @@ class RigidTools {
   std::map<std::string, std::shared_ptr<const GivenSurfaces>> given_;  ///< the last surfaces of tools that set_mesh() changes
   std::vector<Request> doing_;                                         ///< being executed
   std::vector<Request> asked_;                                         ///< queued after these
+  bool held_back_ = false;
   std::vector<ToolForce> forces_;
   std::map<std::string, ForceTrace> traces_;
 };

@@ -87,6 +87,7 @@ void SurfaceHandles::follow(std::shared_ptr<const Model> model) {
   set_model(std::move(model));
   // Restoring a state before a cut may remove vertices and nodes.
   std::erase_if(grabs_, [&](const auto& entry) { return !has(entry.second.vertex); });
+  std::erase_if(traces_, [&](const auto& entry) { return !grabs_.contains(entry.first); });
   std::erase_if(pushes_, [&](const auto& entry) { return !has(entry.first); });
   std::erase_if(node_pushes_, [&](const auto& entry) {
     return entry.first.second >= static_cast<std::int64_t>(model_->bodies[entry.first.first].slot.size());
@@ -242,7 +243,7 @@ Vec3d SurfaceHandles::pull(const Grab& grab, Pull& state, const Vec3d& position,
                            double period) const {
   const double k = std::min(grab.stiffness, kFree * grab.mass / (period * period));
   const double c = std::min(2 * std::sqrt(k * grab.mass), kFree * grab.mass / period);
-  const double elapsed = time - state.time;
+  const double elapsed = std::max(0.0, time - state.time);  // a batch may have been taken back
   Vec3d force{};
   for (std::size_t i = 0; i < 3; ++i) {
     const double speed = elapsed > 0 ? (mean[i] - state.before[i]) / elapsed : 0;
@@ -258,6 +259,8 @@ Vec3d SurfaceHandles::pull(const Grab& grab, Pull& state, const Vec3d& position,
 void SurfaceHandles::renew() {
   const std::lock_guard lock(mutex_);
   traces_.clear();
+  pulls_.clear();
+  limits_.clear();
   changed_ = true;
 }
 

@@ -161,7 +161,7 @@ bool World::busy() const {
 bool World::poll() const noexcept {
   if (impl_ == nullptr) return false;
   const std::lock_guard lock(impl_->mutex);
-  if (impl_->newest != impl_->given || impl_->cut_since_read) return true;
+  if (impl_->newest != impl_->given || (impl_->cut_since_read && !impl_->pace.running())) return true;
   return !impl_->job && !impl_->pace.running() && impl_->newest != nullptr && impl_->newest->frame.step != impl_->report.step;
 }
 

@@ -16,6 +16,7 @@ void World::Impl::change_pending() {
   std::vector<std::string> changes;
   {
     const std::lock_guard lock(mutex);
+    if (replacing) return;  // they are for the simulation to come
     changes.swap(pending_changes);
   }
   if (changes.empty()) return;

@@ -51,6 +51,7 @@ void World::Impl::cut_pending() {
   std::vector<api::CutRequest> requests;
   {
     const std::lock_guard lock(mutex);
+    if (replacing) return;  // they are for the simulation to come
     requests.swap(pending_cuts);
   }
   std::exception_ptr refused;  // the others are made nevertheless

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
 
 #include "api/world_call.h"
@@ -10,6 +11,28 @@
 namespace pliant {
 
 using api::FileRequest;
+
+namespace {
+
+void check_there(const std::string& file) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored))
+    throw Error(ErrorCode::io, fmt::format("{}: no such file, expected a checkpoint", file));
+}
+
+/// Stops the motion in the bytes of node_w, whose records are three numbers and the decay, which stays.
+template <class Real>
+void stop_motion(std::vector<std::uint8_t>& w, const std::vector<std::uint8_t>& u, bool keeps_increment) {
+  for (std::size_t at = 0; at + 4 * sizeof(Real) <= w.size(); at += 4 * sizeof(Real)) {
+    if (keeps_increment) {
+      std::memset(w.data() + at, 0, 3 * sizeof(Real));
+    } else {
+      std::memcpy(w.data() + at, u.data() + at, 3 * sizeof(Real));  // the displacement of the step before
+    }
+  }
+}
+
+}  // namespace
 
 void World::Impl::save(const std::string& file) {
   const Checkpoint checkpoint = take_checkpoint(*simulation);
@@ -21,9 +44,6 @@ void World::Impl::save(const std::string& file) {
 }
 
 void World::Impl::load(const std::string& file, bool live) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored))
-    throw Error(ErrorCode::io, fmt::format("{}: no such file, expected a checkpoint", file));
   const Checkpoint checkpoint = read_checkpoint(file);
   auto fresh = make_simulation(nullptr);
   restore_checkpoint(*fresh, checkpoint, file);
@@ -39,11 +59,19 @@ void World::Impl::reset(bool live) {
 /// Goes on from the last good state, at rest: its motion was on the way to the divergence.
 void World::Impl::recover() {
   Snapshot snapshot = simulation->snapshot();
-  for (NamedBytes& buffer : snapshot.buffers) {
-    if (buffer.name == "node_w") std::fill(buffer.bytes.begin(), buffer.bytes.end(), std::uint8_t{0});
+  const auto bytes_of = [&](const char* name) -> std::vector<std::uint8_t>& {
+    return std::find_if(snapshot.buffers.begin(), snapshot.buffers.end(), [&](const NamedBytes& b) { return b.name == name; })
+        ->bytes;
+  };
+  const bool keeps_increment = integrator_info(simulation->scene().integrator).keeps_increment;
+  if (snapshot.real_type == "double") {
+    stop_motion<double>(bytes_of("node_w"), bytes_of("node_u"), keeps_increment);
+  } else {
+    stop_motion<float>(bytes_of("node_w"), bytes_of("node_u"), keeps_increment);
   }
   simulation->restore(snapshot);
   events.renew(*simulation);
+  seconds_left = 0;
   publish_clock();
   read_frame(true);
 }
@@ -56,7 +84,7 @@ bool World::Impl::leave_to_worker(FileRequest request) {
       replacing = true;  // what the caller asked for before this is void, and what it asks for from now on is for the next
       pending_cuts.clear();
       pending_changes.clear();
-      rigid_tools.drop_requests();
+      rigid_tools.hold_back();
       blade_key.clear();
     }
     files.push_back(std::move(request));
@@ -65,8 +93,26 @@ bool World::Impl::leave_to_worker(FileRequest request) {
   return true;
 }
 
+void World::Impl::serve_file(const FileRequest& request) {
+  switch (request.what) {
+    case FileRequest::What::save:
+      api::check_device(*this);
+      if (!report.diverged) make_changes();  // what was asked for before it
+      return save(request.file);
+    case FileRequest::What::load:
+      return load(request.file, true);
+    case FileRequest::What::reset:
+      return reset(true);
+    case FileRequest::What::recover:
+      api::check_device(*this);
+      if (report.diverged) recover();
+      return;
+  }
+}
+
 /// The time that this takes is not one that frames have to catch up with.
 void World::Impl::serve_files() {
+  const double start = api::wall_time();
   std::vector<FileRequest> requests;
   {
     const std::lock_guard lock(mutex);
@@ -77,23 +123,12 @@ void World::Impl::serve_files() {
     static constexpr const char* words[] = {"saved", "loaded", "reset", "recovered"};
     Event event = api::event_of(words[static_cast<int>(r.what)], r.file, 0, {});
     try {
-      switch (r.what) {
-        case FileRequest::What::save:
-          save(r.file);
-          break;
-        case FileRequest::What::load:
-          load(r.file, true);
-          break;
-        case FileRequest::What::reset:
-          reset(true);
-          break;
-        case FileRequest::What::recover:
-          if (report.diverged) recover();
-          break;
-      }
+      serve_file(r);
     } catch (const std::exception& error) {
       event.kind = "refused";
       event.text = error.what();
+      const std::lock_guard lock(mutex);
+      loaded_parameters = simulation->state().changed.parameters;  // the caller may have counted on others
     }
     events.add(*simulation, std::move(event));
   }
@@ -103,7 +138,8 @@ void World::Impl::serve_files() {
     replacing = std::any_of(files.begin(), files.end(), [](const FileRequest& r) {
       return r.what == FileRequest::What::load || r.what == FileRequest::What::reset;
     });
-    pace.skip(api::wall_time());
+    if (!replacing) rigid_tools.go_on();
+    pace.skip(api::wall_time() - start);
   }
   changed.notify_all();
 }
@@ -118,6 +154,7 @@ void World::save(const std::string& file) const {
 
 void World::load(const std::string& file) {
   const api::Call call(impl_, false);
+  check_there(file);
   if (impl_->leave_to_worker({FileRequest::What::load, file})) return;
   const api::Hold hold(*impl_);
   impl_->load(file);
@@ -136,6 +173,10 @@ void World::reset() {
 
 void World::recover() {
   const api::Call call(impl_, false);
+  {
+    const std::lock_guard lock(impl_->mutex);
+    if (impl_->pace.running() && !impl_->report.diverged) return;
+  }
   if (impl_->leave_to_worker({FileRequest::What::recover, {}})) return;
   const api::Hold hold(*impl_);
   if (!impl_->report.diverged) return;

@@ -102,6 +102,7 @@ struct World::Impl {
   /// Leaves it to the worker if the World runs freely; returns false otherwise.
   bool leave_to_worker(api::FileRequest request);
   void serve_files();
+  void serve_file(const api::FileRequest& request);
 
   // world_live.cpp
   void run_live(const LiveOptions& live);
@@ -111,6 +112,7 @@ struct World::Impl {
   /// Makes the caller's cuts and changes. While the World runs freely, what is refused becomes an event.
   void make_changes();
   void look_for_events();
+  void tell_failure(const std::exception_ptr& met);
   void live_frame();
   /// Requires the mutex: true if the worker may begin a frame or serve files now.
   [[nodiscard]] bool may_begin() const;

@@ -15,8 +15,8 @@ void World::Impl::check_not_live(const char* call) const {
 }
 
 bool World::Impl::may_begin() const {
-  if (!pace.running() || held) return false;
-  return !files.empty() || (!halted && api::wall_time() >= pace.next_start());
+  if (!pace.running()) return false;
+  return !files.empty() || (!held && !halted && api::wall_time() >= pace.next_start());
 }
 
 void World::Impl::run_live(const LiveOptions& live) {
@@ -25,6 +25,7 @@ void World::Impl::run_live(const LiveOptions& live) {
     const std::lock_guard lock(mutex);
     if (pace.running()) {
       pace.change(live);
+      changed.notify_all();
       return;
     }
     if (job) throw Error(ErrorCode::state, "run_live: the worker is busy with steps; wait() waits for them");
@@ -33,6 +34,7 @@ void World::Impl::run_live(const LiveOptions& live) {
   check_can_step();
   if (!worker.joinable()) worker = std::thread([this] { serve(); });
   beside = true;
+  seconds_left = 0;
   {
     const std::lock_guard lock(mutex);
     halted = false;
@@ -62,12 +64,7 @@ void World::Impl::look_for_events() {
 
 void World::Impl::make_changes() {
   const double start = api::wall_time();
-  bool live = false;
-  {
-    const std::lock_guard lock(mutex);
-    if (replacing) return;  // they are for the simulation to come
-    live = pace.running();
-  }
+  const bool live = is_live();
   const auto attempt = [&](auto&& make) {
     try {
       make();
@@ -82,12 +79,20 @@ void World::Impl::make_changes() {
   editing += api::wall_time() - start;
 }
 
+void World::Impl::tell_failure(const std::exception_ptr& met) {
+  try {
+    std::rethrow_exception(met);
+  } catch (const std::exception& error) {
+    events.add(*simulation, api::event_of("failed", {}, 0, error.what()));
+  }
+}
+
 void World::Impl::live_frame() {
   serve_files();
   double covers = 0;
   {
     const std::lock_guard lock(mutex);
-    if (halted || !pace.running() || api::wall_time() < pace.next_start()) return;
+    if (held || halted || !pace.running() || api::wall_time() < pace.next_start()) return;
     covers = pace.begin(api::wall_time());
   }
   const double before = simulation->time();

@@ -176,7 +176,8 @@ StepReport World::Impl::advance(double seconds) {
     seconds_left = end - simulation->time();
     throw;
   }
-  seconds_left = end - simulation->time();
+  const bool ends = simulation->divergence() || simulation->at_equilibrium();  // time that passes then is not owed
+  seconds_left = ends ? 0 : end - simulation->time();
   const std::lock_guard lock(mutex);
   report.done = std::max<std::int64_t>(0, simulation->step() - first);
   return report;
@@ -279,12 +280,14 @@ void World::Impl::restart(std::shared_ptr<Simulation> fresh, bool keep_requests)
   seconds_left = 0;
   if (keep_requests) {
     const std::lock_guard lock(mutex);
+    failure = nullptr;
     loaded_parameters = simulation->state().changed.parameters;
   } else {
     blade_key.clear();
     asked_parameters = simulation->state().changed.parameters;
     const std::lock_guard lock(mutex);
     failure = nullptr;
+    loaded_parameters.reset();
     pending_cuts.clear();
     pending_changes.clear();
   }

@@ -108,7 +108,7 @@ void World::set_tool_mesh(const std::string& name, const SurfaceSpec& surface, d
   impl_->check_can_change_tools();
   {
     const std::lock_guard lock(impl_->mutex);
-    if (!impl_->job && !(time > impl_->report.time)) {
+    if (!impl_->job && !impl_->pace.running() && !(time > impl_->report.time)) {
       throw Error(ErrorCode::usage, fmt::format("tool \"{}\": a surface for {} s at {} s, expected a time to come", name, time,
                                                 impl_->report.time));
     }

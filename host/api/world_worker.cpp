@@ -25,6 +25,11 @@ World::Impl::~Impl() {
   }
   changed.notify_all();
   if (worker.joinable()) worker.join();
+  std::erase_if(files, [](const api::FileRequest& r) { return r.what != api::FileRequest::What::save; });
+  try {
+    serve_files();
+  } catch (...) {  // no memory for the events
+  }
 }
 
 bool World::Impl::start_job(std::function<void()> work) {
@@ -44,11 +49,11 @@ bool World::Impl::start_job(std::function<void()> work) {
   return true;
 }
 
-/// Waits until the worker is idle, and keeps it so until let_go().
+/// Waits until the worker is idle and has done what save(), load() and reset() left to it, and keeps it idle until let_go().
 void World::Impl::hold() {
   std::unique_lock lock(mutex);
   held = true;
-  changed.wait(lock, [this] { return !job; });
+  changed.wait(lock, [this] { return !job && files.empty(); });
   beside = pace.running();
 }
 
@@ -101,9 +106,10 @@ void World::Impl::serve() {
     } catch (...) {
       met = std::current_exception();
     }
+    if (met != nullptr && is_live()) tell_failure(met);
     {
       const std::lock_guard lock(mutex);
-      failure = met;
+      if (met != nullptr) failure = met;
       job = nullptr;
       halted = report.diverged || !lost.empty();
     }

@@ -100,10 +100,21 @@ TEST(Pace, SkippedTimeIsNotOwed) {
   m.run(1);
   const double behind = m.now - m.simulated;
   m.now += 5;  // a load
-  m.pace.skip(m.now);
+  m.pace.skip(5);
   m.run(1);
   EXPECT_NEAR(m.now - m.simulated - behind, 5, 0.03);
   EXPECT_LT(m.pace.state().lost, 0.01);
+}
+
+/// A save in every period, which takes no time, must not stop the clock.
+TEST(Pace, ManyShortInterruptionsDoNotStopTime) {
+  Machine m;
+  for (int i = 0; i < 600; ++i) {
+    m.pace.skip(0.001);
+    m.now += 0.001;
+    m.frame();
+  }
+  EXPECT_NEAR(m.simulated, m.now - 100 - 0.6, 0.05);
 }
 
 TEST(Pace, SpeedIsSimulatedOverWallTime) {
