@@ -32,7 +32,7 @@ PLIANT_C_STRUCT(pliant_info, reserved);
 PLIANT_C_STRUCT(pliant_body, triangle_count);
 PLIANT_C_STRUCT(pliant_report, message);
 PLIANT_C_STRUCT(pliant_frame, body_triangles);
-PLIANT_C_STRUCT(pliant_cut, seconds);
+PLIANT_C_STRUCT(pliant_cut, in_part);
 PLIANT_C_STRUCT(pliant_probe_value, number_count);
 PLIANT_C_STRUCT(pliant_tool_force, reserved);
 PLIANT_C_STRUCT(pliant_interpenetration, reserved);
