@@ -60,11 +60,15 @@ TEST(CStructSizes, AreThoseOfTheFirstVersion) {
   EXPECT_EQ(api::CStruct<pliant_body>::first_size, 72U);
   EXPECT_EQ(api::CStruct<pliant_report>::first_size, 56U);
   EXPECT_EQ(api::CStruct<pliant_frame>::first_size, 136U);
-  EXPECT_EQ(api::CStruct<pliant_cut>::first_size, 32U);
+  EXPECT_EQ(api::CStruct<pliant_cut>::first_size, 40U);
   EXPECT_EQ(api::CStruct<pliant_probe_value>::first_size, 40U);
   EXPECT_EQ(api::CStruct<pliant_tool_force>::first_size, 144U);
   EXPECT_EQ(api::CStruct<pliant_interpenetration>::first_size, 112U);
   EXPECT_EQ(api::CStruct<pliant_picked_point>::first_size, 112U);
+  EXPECT_EQ(api::CStruct<pliant_live_options>::first_size, 24U);
+  EXPECT_EQ(api::CStruct<pliant_live_state>::first_size, 64U);
+  EXPECT_EQ(api::CStruct<pliant_event>::first_size, 88U);
+  EXPECT_EQ(api::CStruct<pliant_force_sample>::first_size, 72U);
 }
 
 /// Every call that fills in a struct refuses sizes that no version has, and does nothing.
