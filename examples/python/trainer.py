@@ -34,7 +34,8 @@ scene = {
     ],
 }
 world = pliant.World(scene, interactive=True, cutting=True)
-checkpoint = os.path.join(tempfile.mkdtemp(), "trainer.pck")
+folder = tempfile.TemporaryDirectory()
+checkpoint = os.path.join(folder.name, "trainer.pck")
 
 # %% What the trainee does at time t of 20; `low` and `high` are the corners of the organ's box at rest.
 hand, done, events = None, set(), []
@@ -84,8 +85,9 @@ for picture in range(int(SECONDS * RATE)):
     samples = world.force_trace("probe", seen)
     if len(samples):
         seen, force = samples["step"][-1], max(force, np.linalg.norm(samples["force"], axis=1).max())
-    events += world.events()
-    seen = -1 if any(e["kind"] in ("loaded", "reset") for e in events[-5:]) else seen
+    news = world.events()
+    events += news
+    seen = -1 if any(e["kind"] in ("loaded", "reset") for e in news) else seen  # steps begin anew
     worst = max(worst, time.perf_counter() - begun)
 
 # %% What it was like.

@@ -156,7 +156,8 @@ class Session {
 
   void take_events() {
     for (pliant::Event& event : timed("events", [&] { return world_.events(); })) {
-      if (event.kind == "saved" || event.kind == "loaded" || event.kind == "reset") --waiting_, seen_ = -1;
+      const bool refused = event.kind == "refused" && event.subject == file_;
+      if (refused || event.kind == "saved" || event.kind == "loaded" || event.kind == "reset") --waiting_, seen_ = -1;
       report_.events.push_back(std::move(event));
     }
   }

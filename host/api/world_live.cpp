@@ -48,7 +48,6 @@ void World::Impl::stop_live() {
     const std::lock_guard lock(mutex);
     pace.stop();
   }
-  serve_files();
   beside = false;
 }
 

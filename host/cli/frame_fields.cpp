@@ -6,9 +6,8 @@
 #include <array>
 #include <optional>
 
-#include "cli/cli.h"
+#include "cli/option_word.h"
 #include "model/elements/each_element.h"
-#include "pliant/error.h"
 #include "simulation/measure/surface_fields.h"
 
 namespace pliant::cli {
@@ -68,15 +67,9 @@ const Words<FrameField>& field_words() {
 }
 
 std::vector<FrameField> parse_fields(const std::vector<std::string>& words) {
-  const std::vector<std::string> known = words_only(field_words());
   std::vector<FrameField> fields;
   for (const std::string& word : words) {
-    const auto place = std::find(known.begin(), known.end(), word);
-    if (place == known.end()) {
-      throw Error(ErrorCode::bad_input,
-                  fmt::format("--fields: got \"{}\"; allowed are {}{}", word, listed(known), did_you_mean(word, known)));
-    }
-    const FrameField field = field_words()[static_cast<std::size_t>(place - known.begin())].value;
+    const FrameField field = value_of("--fields", word, field_words());
     if (std::find(fields.begin(), fields.end(), field) == fields.end()) fields.push_back(field);
   }
   return fields;

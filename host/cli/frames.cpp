@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "cli/cli.h"
+#include "cli/option_word.h"
 #include "cutting/topology/cut_topology.h"
 #include "io/obj.h"
 #include "io/png.h"
@@ -95,14 +95,8 @@ Words<OutputFormat> available_formats() {
 
 std::set<OutputFormat> parse_formats(const std::vector<std::string>& formats) {
   std::set<OutputFormat> chosen;
-  const std::vector<std::string> known = words_only(format_words());
   for (const std::string& format : formats) {
-    const auto place = std::find(known.begin(), known.end(), format);
-    if (place == known.end()) {
-      throw Error(ErrorCode::bad_input,
-                  fmt::format("--format: got \"{}\"; allowed are {}{}", format, listed(known), did_you_mean(format, known)));
-    }
-    const OutputFormat value = format_words()[static_cast<std::size_t>(place - known.begin())].value;
+    const OutputFormat value = value_of("--format", format, format_words());
     if (value == OutputFormat::png && !render::Renderer::available()) {
       throw Error(ErrorCode::bad_input, fmt::format("--format: png is not available: {}; allowed are {}",
                                                     render::Renderer::missing(), listed(words_only(available_formats()))));
