@@ -149,6 +149,10 @@ target_link_libraries(pliant_io PRIVATE pugixml::pugixml)
 pliant_room(pliant_render Threads::Threads)
 pliant_with_embree(pliant_render host/render/ray_scene)
 
+# Touch: devices that a hand holds, and the forces on them at their own rate.
+pliant_room(pliant_devices Threads::Threads)
+pliant_room(pliant_haptics pliant_twins Threads::Threads)
+
 # What include/pliant declares.
 pliant_room(pliant_api)
 

@@ -1,0 +1,38 @@
+// What computes the force on an instrument at the haptic rate, from what the simulation reports at its own, lower rate.
+#pragma once
+#include <cstdint>
+
+#include "scene/contact_tool.h"
+
+namespace pliant::haptics {
+
+/// Force [N] and torque about the origin [N m] on the instrument.
+struct Wrench {
+  Vec3d force{}, torque{};
+};
+
+/// What the simulation reports of an instrument after each frame.
+struct FrameReport {
+  double time = 0;            ///< simulated time of its last step [s]
+  double period = 0;          ///< simulated time since the report before [s]
+  Pose tool;                  ///< at `time`
+  Wrench mean;                ///< over the steps of the frame
+  Wrench last;                ///< in its last step
+  std::int64_t topology = 0;  ///< number of edits that changed elements
+  std::uint64_t number = 0;   ///< number of reports so far
+};
+
+/// Both calls come from the haptic thread: they neither allocate nor wait.
+class ForceModel {
+ public:
+  ForceModel() = default;
+  ForceModel(const ForceModel&) = delete;
+  ForceModel& operator=(const ForceModel&) = delete;
+  virtual ~ForceModel() = default;
+  /// A new report has come.
+  virtual void receive(const FrameReport& report) noexcept = 0;
+  /// Advances by `dt` [s], during which the instrument moves to `tool`. Returns the wrench on it.
+  virtual Wrench tick(const Pose& tool, double dt) noexcept = 0;
+};
+
+}  // namespace pliant::haptics

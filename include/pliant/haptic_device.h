@@ -1,0 +1,52 @@
+// Devices that a hand holds: where they are, and the force that they exert on the hand.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+
+#include "pliant/export.h"
+#include "pliant/frame.h"
+
+namespace pliant {
+
+/// Pose of a device when it was sampled.
+struct DeviceSample {
+  Vec3d position{};                        ///< of the tip [m]
+  std::array<double, 4> turn{0, 0, 0, 1};  ///< orientation, unit quaternion x, y, z, w
+  double time = 0;                         ///< when it was sampled, on the device's own clock [s]
+  std::uint32_t buttons = 0;               ///< a bit per button
+  std::uint64_t number = 0;                ///< number of samples so far; 0: none has come yet
+};
+
+/// Force and torque on the hand that holds the device.
+struct DeviceWrench {
+  Vec3d force{};             ///< [N]
+  Vec3d torque{};            ///< about the tip [N m]
+  double time = 0;           ///< DeviceSample::time of the sample that it answers [s]
+  std::uint64_t number = 0;  ///< DeviceSample::number of this sample
+};
+
+/// What a device can exert.
+struct DeviceLimits {
+  double force = std::numeric_limits<double>::infinity();   ///< greatest force [N]
+  double torque = std::numeric_limits<double>::infinity();  ///< greatest torque [N m]; 0: it exerts none
+};
+
+/// A device. HapticLoop calls read() and then write() once per tick, from its own thread: they must return at once, without
+/// waiting for a lock, another thread or the network.
+class PLIANT_API HapticDevice {
+ public:
+  HapticDevice() = default;
+  HapticDevice(const HapticDevice&) = delete;
+  HapticDevice& operator=(const HapticDevice&) = delete;
+  virtual ~HapticDevice();
+  /// Returns the newest sample, the same one again if there is no newer one.
+  virtual DeviceSample read() noexcept = 0;
+  /// Exerts a wrench until the next call.
+  virtual void write(const DeviceWrench& wrench) noexcept = 0;
+  [[nodiscard]] virtual DeviceLimits limits() const noexcept { return {}; }
+};
+
+}  // namespace pliant
