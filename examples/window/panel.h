@@ -1,11 +1,12 @@
 // What the window shows beside the bodies: instruments, force, and sliders for the parameters of the scene.
 #pragma once
-#include <GLFW/glfw3.h>
 #include <pliant/world.h>
 
 #include <array>
 #include <string>
 #include <vector>
+
+#include "gl.h"
 
 namespace window {
 

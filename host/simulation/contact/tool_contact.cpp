@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -15,32 +14,6 @@
 #include "simulation/contact/tool_changes.h"
 
 namespace pliant {
-namespace {
-
-/// The quantum of force is 2^-kForceBits of the force that moves the heaviest node one cell in a step.
-constexpr int kForceBits = 26;
-constexpr int kAreaBits = 26;
-
-double power_of_two(double x) { return std::ldexp(1.0, static_cast<int>(std::ceil(std::log2(x)))); }
-
-/// Sums of a step and a tool: force, torque and area in quanta, largest depth [m].
-struct StepSum {
-  std::array<double, 7> quanta{};
-  double depth = 0;
-  std::int64_t points = 0;
-};
-
-StepSum sum_of_parts(const std::int32_t* part) {
-  StepSum sum;
-  for (std::size_t p = 0; p < contact_sum_parts; ++p, part += contact_sum_numbers) {
-    for (std::size_t c = 0; c < 7; ++c) sum.quanta[c] += 32768.0 * part[2 * c] + part[2 * c + 1];  // exact below 2^53
-    sum.depth = std::max(sum.depth, static_cast<double>(std::bit_cast<float>(part[14])));
-    sum.points += part[15];
-  }
-  return sum;
-}
-
-}  // namespace
 
 void check_pose(const std::string& name, const Pose& pose) {
   if (good_pose(pose)) return;
@@ -94,26 +67,6 @@ void ToolContact::start() {
   }
 }
 
-/// Powers of two, so that only the conversion to quanta rounds.
-ToolContact::Units ToolContact::units() const {
-  const Model& model = run_.model();
-  const double h = run_.state.clock.dt;
-  double heaviest = 0, area = 0, longest = 0;
-  for (const auto& nodes : model.contact->nodes) {
-    for (const std::int32_t n : nodes) heaviest = std::max(heaviest, model.mass[n]);
-  }
-  for (const double a : model.contact->area) area += a;
-  vec::Box box;
-  for (const Vec3d& x : model.contact->rest) box.extend(x);
-  longest = vec::norm(vec::sub(box.upper, box.lower));
-  for (const ToolForm& form : *model.tools) longest = std::max(longest, form.reach);
-  Units u;
-  u.force = power_of_two(heaviest * model.contact->spacing / (h * h)) * std::ldexp(1.0, -kForceBits);
-  u.torque = u.force * power_of_two(longest);
-  u.area = power_of_two(area) * std::ldexp(1.0, -kAreaBits);
-  return u;
-}
-
 /// Each search reduces the initial depth of a pair by kEase; searches come after a number of steps. At steps far below the
 /// stable one, this would be an unlimited speed in m/s, which threw the faces of a cut apart (touch_test.cpp,
 /// SmallStepsPartBodiesNoFaster). There the rate is limited to that at half the stable step.
@@ -153,11 +106,10 @@ void ToolContact::begin_batch(std::int32_t steps) {
   const Program& program = run_.loaded.program();
   Backend& backend = run_.backend();
   if (tools > 0) backend.write_reals(program.find("tool_pose"), poses);
-  units_ = units();
-  const Units& u = units_;
-  backend.write_reals(program.find("contact_params"), {u.force, 1 / u.force, u.force / contact_weight_unit, 1 / u.torque,
-                                                       1 / u.area, contact_margin(run_.model()), double(contact_look_every),
-                                                       run_.scene.contact ? run_.scene.contact->friction : 0, touch_ease()});
+  units_ = contact_units(run_.model(), run_.state.clock.dt);
+  const std::array<double, 9> numbers =
+      contact_numbers(run_.model(), units_, run_.scene.contact ? run_.scene.contact->friction : 0, touch_ease());
+  backend.write_reals(program.find("contact_params"), {numbers.begin(), numbers.end()});
   summed_.assign(static_cast<std::size_t>(steps), 0);
 }
 
@@ -227,8 +179,8 @@ void ToolContact::end_batch(std::int32_t steps) {
     h.step = run_.state.clock.step;
     for (std::int32_t step = 0; step < steps; ++step) {
       if (summed_[static_cast<std::size_t>(step)] == 0) continue;  // nothing was near
-      const StepSum sum =
-          sum_of_parts(&sums[(static_cast<std::size_t>(step) * tools + t) * contact_sum_parts * contact_sum_numbers]);
+      const ContactSum sum =
+          contact_sum(&sums[(static_cast<std::size_t>(step) * tools + t) * contact_sum_parts * contact_sum_numbers]);
       if (sum.points == 0) continue;
       ++h.touched;
       Vec3d force{}, torque{};

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "simulation/contact/contact_lists.h"
+#include "simulation/contact/contact_units.h"
 #include "simulation/state/run_context.h"
 #include "simulation/state/run_report.h"
 
@@ -52,11 +53,7 @@ class ToolContact {
   [[nodiscard]] Pose pose(std::size_t tool, double time) const;
 
  private:
-  struct Units {
-    double force = 0, torque = 0, area = 0;
-  };
   [[nodiscard]] bool active() const;
-  [[nodiscard]] Units units() const;
   /// Fraction of a spacing by which the initial offset of a pair is reduced in each search for partners.
   [[nodiscard]] double touch_ease() const;
 
@@ -71,7 +68,7 @@ class ToolContact {
   RunReport& report_;
   ContactLists lists_;
   std::vector<ContactTool> tools_;
-  Units units_;                      ///< of the current batch
+  ContactUnits units_;               ///< of the current batch
   std::int64_t known_at_ = -1;       ///< step after which the buffers hold the forces of points; -1: none
   std::int64_t known_changes_ = -1;  ///< LoadedModel::changes() then
   std::vector<StepForce> step_forces_;

@@ -13,7 +13,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-Vector3d vector_of(const Vec3d& v) { return {v[0], v[1], v[2]}; }
+Vector3d eigen_of(const Vec3d& v) { return {v[0], v[1], v[2]}; }
 
 /// Signs of a hexahedron's corners in VTK order.
 constexpr int kHexSigns[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
@@ -37,7 +37,7 @@ ElementState element_state(const std::array<std::int32_t, N>& nodes, const std::
   Matrix3d before = Matrix3d::Zero(), after = Matrix3d::Zero();
   for (std::size_t a = 0; a < N; ++a) {
     const auto n = static_cast<std::size_t>(nodes[a]);
-    const Vector3d x = vector_of(rest[n]), moved = x + vector_of(u[n]);
+    const Vector3d x = eigen_of(rest[n]), moved = x + eigen_of(u[n]);
     for (int c = 0; c < 3; ++c) {
       double slope = 0;  // of the node's shape function along the element's own coordinate c, at its centre
       if constexpr (N == 8) {

@@ -1,0 +1,57 @@
+// A haptic session in virtual time: the simulation at its frame rate, a force model at the haptic rate, the schedule as data.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "haptics/buffer_force.h"
+#include "scene/scene.h"
+
+namespace pliant::bench::haptics {
+
+using pliant::haptics::Wrench;
+
+/// What the instrument does: poses over time [s].
+using Stroke = std::function<Pose(double)>;
+
+/// Forces on the instrument, at multiples of a period.
+struct ForceTrace {
+  double period = 0;           ///< [s]
+  std::vector<Wrench> wrench;  ///< at period, 2 period, ...
+};
+
+struct SessionOptions {
+  double frame_rate = 30;     ///< of the simulation [1/s]
+  double haptic_rate = 1000;  ///< [1/s]
+  double seconds = 1;
+  double delay = 1;        ///< frames between the pose that a frame begins with and the arrival of its result
+  std::int32_t rings = 2;  ///< of the buffer; negative: the whole body
+  double predict = 1;      ///< frames by which the simulation's tool is ahead of the last pose, at its speed
+  double lead = 1;         ///< BufferForce
+};
+
+/// What a session cost, beside its forces.
+struct SessionReport {
+  ForceTrace felt;
+  std::int64_t ticks = 0, built = 0, resets = 0, uncovered = 0;
+  double tick_seconds = 0, worst_tick = 0;  ///< wall time of all ticks, of the longest [s]
+  std::int64_t elements = 0, nodes = 0;     ///< of the largest buffer
+  int substeps = 0;                         ///< of the last tick
+};
+
+/// The force on the scene's tool `tool` of a simulation in which it follows the stroke in every step.
+ForceTrace full_model(Scene scene, const std::string& tool, const Stroke& stroke, double seconds, double rate);
+
+/// The force of the buffer model, beside a simulation whose tool goes once per frame to where the instrument was.
+SessionReport with_buffer(Scene scene, const std::string& tool, const Stroke& stroke, const SessionOptions& options);
+
+/// Differences of the forces [N] from `start` [s] on: largest and root mean square, and the largest and the root mean square of
+/// `expected`.
+struct ForceError {
+  double most = 0, rms = 0, largest = 0, size = 0;
+};
+ForceError compare(const ForceTrace& felt, const ForceTrace& expected, double start = 0);
+
+}  // namespace pliant::bench::haptics

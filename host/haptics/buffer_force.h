@@ -1,0 +1,36 @@
+// The haptic thread's side of the buffer model.
+#pragma once
+#include <cstdint>
+
+#include "haptics/buffer_source.h"
+
+namespace pliant::haptics {
+
+/// A ForceModel that ticks the newest buffer. It owns none: the BufferSource keeps what in_use() names.
+class BufferForce final : public ForceModel {
+ public:
+  /// `lead`: how far the rim is ahead of the last state of the simulation, in frames: 0 follows the last two states (Mendoza
+  /// and Laugier 2003) one frame late, 1 continues their motion.
+  explicit BufferForce(double lead = 1) : lead_(lead) {}
+
+  void receive(const FrameReport& report) noexcept override { report_ = report; }
+  /// A message has come, `interval` [s] after the one before.
+  void receive(const BufferMessage& message, double interval) noexcept;
+  Wrench tick(const Pose& tool, double dt) noexcept override;
+
+  /// Generation of the buffer in use; 0: none.
+  [[nodiscard]] std::uint64_t in_use() const { return generation_; }
+  [[nodiscard]] const BufferModel* buffer() const { return buffer_; }
+  [[nodiscard]] std::uint64_t resets() const { return resets_; }  ///< times that a buffer blew up and began anew
+
+ private:
+  double lead_;
+  FrameReport report_;
+  BufferModel* buffer_ = nullptr;
+  std::uint64_t generation_ = 0, resets_ = 0, ticks_ = 0;
+  const TissueState* last_ = nullptr;
+  Pose pose_;
+  bool placed_ = false;  ///< `pose_` is set
+};
+
+}  // namespace pliant::haptics

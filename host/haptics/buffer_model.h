@@ -1,0 +1,84 @@
+// The buffer model: a small part of the body around the contact, integrated at the haptic rate (Mendoza and Laugier 2003,
+// "volumetric buffer model"). Its rim follows the last two states of the simulation; inside, elements, integrator and contact
+// are those of the simulation, computed by the twins of its kernels.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "haptics/force_model.h"
+#include "haptics/submodel.h"
+#include "haptics/twin_runner.h"
+#include "simulation/contact/contact_units.h"
+
+namespace pliant::haptics {
+
+/// State of the tissue at the end of a frame, at the nodes of one buffer.
+struct TissueState {
+  std::vector<float> displacement;  ///< [nodes][3] [m]
+  std::vector<float> velocity;      ///< [nodes][3] [m/s]
+  std::vector<float> drift;         ///< [nodes][3] mean velocity since the state before [m/s]
+  std::vector<Pose> tools;          ///< of all tools of the model, at the end of the frame
+  std::vector<ToolMoment> moments;  ///< of their shapes
+  double step = 0;                  ///< of the simulation [s]: a stable step for these elements
+  Vec3d gravity{};                  ///< [m/s^2]
+};
+
+class BufferModel {
+ public:
+  /// `tool`: index of the instrument among the model's tools. Allocates everything that ticks need. Throws Error for an
+  /// element or a law that has no twin.
+  BufferModel(Submodel part, std::size_t tool, const TissueState& state);
+  BufferModel(const BufferModel&) = delete;
+  BufferModel& operator=(const BufferModel&) = delete;
+
+  /// Sets all nodes to a state of the simulation.
+  void start(const TissueState& state) noexcept;
+  /// Takes displacements, velocities and friction of common nodes and points from the buffer before.
+  void carry(const BufferModel& before) noexcept;
+  /// From now on rim and other tools move so that they are at the state in `seconds`, ahead of it by `lead` times their motion
+  /// since the state before.
+  void follow(const TissueState& state, double seconds, double lead) noexcept;
+  /// Advances by `dt` [s] while the instrument moves from `from` to `to`. Returns the mean wrench on it, about its origin.
+  Wrench tick(const Pose& from, const Pose& to, double dt) noexcept;
+
+  [[nodiscard]] const Submodel& part() const { return part_; }
+  [[nodiscard]] std::int64_t contacts() const { return touching_; }  ///< contact points that touched in the last substep
+  [[nodiscard]] int substeps() const { return substeps_; }           ///< of the last tick
+  /// Displacement of a node [m].
+  [[nodiscard]] Vec3d displacement(std::size_t node) const;
+  /// Returns false if a displacement is not a finite number.
+  [[nodiscard]] bool finite() const noexcept;
+
+ private:
+  void set_step(double h) noexcept;
+  void write_poses(double from, double to, double dt) noexcept;
+  void move_rim(double passed, double h) noexcept;
+  void look_again() noexcept;
+  [[nodiscard]] Wrench read_wrench() noexcept;
+  /// Pose of a tool when `share` of this tick has passed, which began `passed_` after follow().
+  [[nodiscard]] Pose pose_of(std::size_t tool, double share, double dt) const noexcept;
+
+  Submodel part_;
+  std::size_t tool_;
+  const Program program_;
+  TwinRunner runner_;
+  std::span<float> u_, w_, params_, poses_, contact_params_, anchor_, yield_;
+  std::span<std::int32_t> near_, list_, node_list_, tool_sum_;
+  std::vector<std::int32_t> tiles_offset_, tiles_;  ///< tiles of points at each tile of nodes
+  std::vector<std::int32_t> rim_;                   ///< nodes
+  /// Per rim node and axis: a cubic of the share s in [0, 1] of the way to the target, p = a + s (b + s (c + s d)) [m].
+  std::vector<std::array<float, 4>> way_;
+  std::vector<Pose> other_from_, other_to_;  ///< of all tools at the start of follow() and at its end
+  std::vector<ToolMoment> moments_;
+  Pose from_, to_;  ///< of the instrument in this tick
+  ContactUnits units_;
+  double step_ = 0;                 ///< h, 0: not set [s]
+  double stable_ = 0;               ///< of the simulation [s]
+  double passed_ = 0, period_ = 0;  ///< since follow() [s]
+  Vec3d gravity_{};
+  int substeps_ = 1, since_look_ = 0;
+  std::int64_t touching_ = 0;
+};
+
+}  // namespace pliant::haptics

@@ -1,0 +1,192 @@
+#include "haptics/buffer_source.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "geometry/vec.h"
+#include "pliant/error.h"
+#include "simulation/contact/tool_changes.h"
+#include "simulation/measure/energy.h"
+
+namespace pliant::haptics {
+namespace {
+
+/// Distances from the instrument, in spacings of contact points: nearer points are in contact, or may be before the next
+/// frame; beyond the second one there is no buffer at all.
+constexpr double kNear = 0.4, kFar = 6;
+constexpr std::int32_t kAll = std::numeric_limits<std::int32_t>::max();
+
+/// Ring of elements that the contact may reach before the buffer is rebuilt; ring 0 is that of the contact when it was built.
+std::int32_t inner_ring(std::int32_t rings) { return rings >= 3 ? 1 : 0; }
+
+}  // namespace
+
+/// Displacements [m] and velocities [m/s] by slot.
+struct BufferSource::Tissue {
+  std::vector<Vec3d> u, v;
+
+  explicit Tissue(const Simulation& simulation) {
+    std::vector<std::vector<Vec3d>> us, vs;
+    for (std::size_t b = 0; b < simulation.model().bodies.size(); ++b) {
+      us.push_back(simulation.displacements(b));
+      vs.push_back(simulation.velocities(b));
+    }
+    u = by_slot(simulation.model(), us);
+    v = by_slot(simulation.model(), vs);
+  }
+};
+
+/// What the instrument touches, or will.
+struct BufferSource::Seeds {
+  std::vector<std::int32_t> slots;   ///< nodes of the points
+  std::vector<std::int32_t> points;  ///< that are near
+};
+
+TissueState BufferSource::state_of(const Simulation& simulation, const Tissue& tissue, const std::vector<std::int32_t>& slots,
+                                   double period) const {
+  TissueState state;
+  const bool moved = period > 0 && last_u_.size() == tissue.u.size();
+  for (const std::int32_t slot : slots) {
+    const auto s = static_cast<std::size_t>(slot);
+    for (std::size_t c = 0; c < 3; ++c) {
+      state.displacement.push_back(static_cast<float>(tissue.u[s][c]));
+      state.velocity.push_back(static_cast<float>(tissue.v[s][c]));
+      state.drift.push_back(static_cast<float>(moved ? (tissue.u[s][c] - last_u_[s][c]) / period : tissue.v[s][c]));
+    }
+  }
+  const ToolContact& contact = simulation.contact();
+  const Model& model = simulation.model();
+  for (std::size_t t = 0; t < contact.tools().size(); ++t) {
+    state.tools.push_back(contact.pose(t, simulation.time()));
+    state.moments.push_back(tool_moment((*model.tools)[t], simulation.time()));
+  }
+  state.step = simulation.dt();
+  const Curve* curve = model.gravity_curve == 0 ? nullptr : &model.curves[static_cast<std::size_t>(model.gravity_curve)];
+  state.gravity = vec::mul(simulation.scene().gravity, curve == nullptr ? 1 : curve->value(simulation.time()));
+  return state;
+}
+
+BufferSource::Seeds BufferSource::find_seeds(const Simulation& simulation, const Tissue& tissue, std::size_t tool) const {
+  Seeds seeds;
+  const Model& model = simulation.model();
+  if (model.contact == nullptr || model.tools == nullptr) return seeds;
+  const ContactPoints& points = *model.contact;
+  const ToolForm& form = (*model.tools)[tool];
+  const ToolMoment moment = tool_moment(form, simulation.time());
+  const Pose at = compose(simulation.contact().pose(tool, simulation.time()), moment.pose);
+  double nearest = kFar * points.spacing;
+  std::int32_t closest = -1;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    Vec3d x = points.rest[i];
+    for (std::size_t a = 0; a < 8; ++a) {
+      const double weight = static_cast<double>(points.weights[i][a]) / contact_weight_unit;
+      x = vec::add(x, vec::mul(tissue.u[static_cast<std::size_t>(points.nodes[i][a])], weight));
+    }
+    const double distance = tool_distance(form, place_back(at, x), moment);
+    if (distance < kNear * points.spacing) seeds.points.push_back(static_cast<std::int32_t>(i));
+    if (distance < nearest) {
+      nearest = distance;
+      closest = static_cast<std::int32_t>(i);
+    }
+  }
+  if (seeds.points.empty() && closest >= 0) seeds.points.push_back(closest);
+  for (const std::int32_t i : seeds.points) {
+    const auto& nodes = points.nodes[static_cast<std::size_t>(i)];
+    seeds.slots.insert(seeds.slots.end(), nodes.begin(), nodes.end());
+  }
+  std::sort(seeds.slots.begin(), seeds.slots.end());
+  seeds.slots.erase(std::unique(seeds.slots.begin(), seeds.slots.end()), seeds.slots.end());
+  return seeds;
+}
+
+bool BufferSource::holds(const Seeds& seeds) const {
+  if (buffers_.empty() || ring_.empty()) return false;
+  if (rings_ < 0) {
+    const std::vector<std::int32_t>& slot = buffers_.back().model->part().slot;
+    return std::all_of(seeds.slots.begin(), seeds.slots.end(),
+                       [&](std::int32_t s) { return std::binary_search(slot.begin(), slot.end(), s); });
+  }
+  const std::int32_t inner = inner_ring(rings_);
+  const std::vector<std::int32_t> now = graph_->rings(seeds.slots, 0);
+  for (std::size_t e = 0; e < now.size(); ++e) {
+    if (now[e] == 0 && (ring_[e] < 0 || ring_[e] > inner)) return false;
+  }
+  return true;
+}
+
+void BufferSource::build(const Simulation& simulation, const Seeds& seeds, std::size_t tool, const Tissue& tissue) {
+  ring_ = graph_->rings(seeds.slots, rings_ < 0 ? kAll : std::max(rings_ - 1, 0));
+  if (std::none_of(ring_.begin(), ring_.end(), [](std::int32_t r) { return r >= 0; })) {
+    ring_.clear();
+    return;
+  }
+  Submodel part = extract(*model_, *graph_, ring_);
+  part.topology = simulation.topology_version();
+  const TissueState state = state_of(simulation, tissue, part.slot, 0);
+  buffers_.push_back({++generation_, std::make_unique<BufferModel>(std::move(part), tool, state)});
+}
+
+void BufferSource::report(const Simulation& simulation, std::size_t tool, FrameReport& out) {
+  const ToolContact& contact = simulation.contact();
+  out.time = simulation.time();
+  out.period = last_step_ >= 0 ? out.time - last_time_ : 0;
+  out.tool = contact.pose(tool, out.time);
+  const ToolLoad& now = simulation.report().tools[tool].now;
+  out.mean = {now.force, now.torque};
+  out.last = out.mean;
+  if (const std::vector<StepForce>& steps = contact.step_forces(); contact.batch_end() == simulation.step() && !steps.empty()) {
+    const StepForce& last = steps[steps.size() - contact.tools().size() + tool];
+    out.last = {last.force, last.torque};
+  }
+  out.topology = simulation.topology_version();
+  out.number = ++number_;
+  last_step_ = simulation.step();
+  last_time_ = out.time;
+}
+
+void BufferSource::fill(const Simulation& simulation, std::uint64_t in_use, BufferMessage& message) {
+  const std::vector<ContactTool>& tools = simulation.contact().tools();
+  const auto own = std::find_if(tools.begin(), tools.end(), [&](const ContactTool& t) { return t.name == tool_; });
+  std::erase_if(buffers_, [&](const Kept& k) { return k.generation < in_use && k.generation != generation_; });
+  message.model = nullptr;
+  message.covered = true;
+  message.generation = generation_;
+  if (own == tools.end()) {  // parked, or removed
+    message.report = {};
+    message.report.time = last_time_ = simulation.time();
+    message.report.number = ++number_;
+    return;
+  }
+  const auto tool = static_cast<std::size_t>(own - tools.begin());
+  report(simulation, tool, message.report);
+  const Tissue tissue(simulation);
+  const Seeds seeds = find_seeds(simulation, tissue, tool);
+  if (model_ != simulation.shared_model()) {
+    model_ = simulation.shared_model();
+    graph_ = std::make_shared<const ElementGraph>(*model_);
+    ring_.clear();
+    last_u_.clear();
+  }
+  if (seeds.points.empty()) {
+    last_u_ = tissue.u;
+    return;
+  }
+  if (!holds(seeds)) build(simulation, seeds, tool, tissue);
+  if (ring_.empty()) {
+    last_u_ = tissue.u;
+    message.covered = false;
+    return;
+  }
+  BufferModel& buffer = *buffers_.back().model;
+  const std::vector<std::int32_t>& within = buffer.part().point;
+  message.covered = std::all_of(seeds.points.begin(), seeds.points.end(),
+                                [&](std::int32_t i) { return std::binary_search(within.begin(), within.end(), i); });
+  message.model = &buffer;
+  message.generation = generation_;
+  message.state = state_of(simulation, tissue, buffer.part().slot, message.report.period);
+  last_u_ = tissue.u;
+}
+
+}  // namespace pliant::haptics

@@ -1,0 +1,58 @@
+// The simulation's side of the buffer model: chooses its elements, builds it, and exports the state of its nodes.
+#pragma once
+#include <cstdint>
+#include <list>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "haptics/buffer_model.h"
+#include "simulation/simulation.h"
+
+namespace pliant::haptics {
+
+/// What the simulation sends to the haptic thread after each frame.
+struct BufferMessage {
+  FrameReport report;
+  BufferModel* model = nullptr;  ///< the newest buffer; null: nothing is near the instrument
+  std::uint64_t generation = 0;  ///< number of buffers built so far
+  bool covered = true;           ///< false: the instrument touches nodes that no finite element moves
+  TissueState state;             ///< of the nodes of `model`
+};
+
+class BufferSource {
+ public:
+  /// `rings`: of elements around the nodes that the instrument touches; negative: all elements of what it touches.
+  BufferSource(std::string tool, std::int32_t rings) : tool_(std::move(tool)), rings_(rings) {}
+
+  /// Call after a frame, from the thread that steps. `in_use`: generation of the buffer that the haptic thread uses; older ones
+  /// are destroyed. Throws Error (usage) if the tool has gone.
+  void fill(const Simulation& simulation, std::uint64_t in_use, BufferMessage& message);
+
+ private:
+  struct Tissue;
+  struct Seeds;
+  [[nodiscard]] Seeds find_seeds(const Simulation& simulation, const Tissue& tissue, std::size_t tool) const;
+  [[nodiscard]] bool holds(const Seeds& seeds) const;
+  void build(const Simulation& simulation, const Seeds& seeds, std::size_t tool, const Tissue& tissue);
+  void report(const Simulation& simulation, std::size_t tool, FrameReport& report);
+  [[nodiscard]] TissueState state_of(const Simulation& simulation, const Tissue& tissue, const std::vector<std::int32_t>& slots,
+                                     double period) const;
+
+  std::string tool_;
+  std::int32_t rings_;
+  std::shared_ptr<const Model> model_;  ///< that the graph and the newest buffer belong to
+  std::shared_ptr<const ElementGraph> graph_;
+  std::vector<std::int32_t> ring_;  ///< [elements] of the newest buffer
+  struct Kept {
+    std::uint64_t generation;
+    std::unique_ptr<BufferModel> model;
+  };
+  std::list<Kept> buffers_;
+  std::uint64_t generation_ = 0, number_ = 0;
+  std::int64_t last_step_ = -1;
+  double last_time_ = 0;
+  std::vector<Vec3d> last_u_;  ///< displacements by slot at the last report, of `model_` [m]
+};
+
+}  // namespace pliant::haptics
