@@ -1,0 +1,110 @@
+// Touch: a device drives a tool of a World and feels the force on it, at a rate of its own (docs/haptics.md).
+#pragma once
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "pliant/export.h"
+#include "pliant/haptic_device.h"
+#include "pliant/world.h"
+
+namespace pliant {
+
+/// Options of a HapticLoop.
+struct HapticOptions {
+  double rate = 1000;  ///< ticks per second, 300 to 10000
+  /// What computes the force between two frames of the simulation: "buffer", the elements around the contact, integrated in the
+  /// tick; "whole", all elements of the body; "auto", as much as fits into `share`; "held", the force of the last frame;
+  /// "extrapolated", the line through the last two.
+  std::string model = "auto";
+  int rings = 3;       ///< "buffer": rings of elements around the nodes that the tool touches, 1 to 100
+  double share = 0.3;  ///< "auto": share of a tick that the model may take, 0.01 to 0.9
+  double predict = 1;  ///< frames by which the simulation's tool is ahead of the device, at its speed, 0 to 2
+  double lead = 1;     ///< frames by which the buffer's rim is ahead of the simulation's last state, 0 to 2
+
+  /// Virtual coupling between device and tool. 0: rigid, the tool is where the device is [N/m]
+  double stiffness = 0;
+  double damping = 0;         ///< of the coupling [N s/m]
+  double turn_stiffness = 0;  ///< [N m/rad]; 0: 0.002 m^2 of `stiffness`
+  double turn_damping = 0;    ///< [N m s/rad]
+
+  bool passive = true;          ///< the device receives no more energy than it gave (Hannaford and Ryu 2002)
+  double device_damping = 0.1;  ///< of the device itself, at least [N s/m]
+  double stale_after = 0.25;    ///< age of the newest frame beyond which the force fades out [s]
+  double ramp = 0.1;            ///< time of fading out, and in at the start [s]
+  double greatest_force = 0;    ///< limit besides the device's own; 0: none [N]
+  double greatest_torque = 0;   ///< [N m]
+
+  bool align =
+      true;  ///< where device and tool are at the start is the same place; false: the device speaks in scene coordinates
+  double motion_scale = 1;      ///< way of the tool per way of the device
+  double force_scale = 1;       ///< force on the hand per force on the tool
+  bool realtime = true;         ///< ask for real-time priority; without the right to it the thread runs as others
+  std::size_t log_samples = 0;  ///< number of device samples to keep for write_log(); 0: none
+};
+
+/// One tick.
+struct HapticSample {
+  std::int64_t tick = 0;  ///< number since the start, from 1
+  double time = 0;        ///< wall time since the start [s]
+  Vec3d device{};         ///< position of the device, in scene coordinates [m]
+  Vec3d position{};       ///< of the tool's origin [m]
+  Vec3d tissue{};         ///< force of the tissue on the tool [N]
+  Vec3d force{};          ///< on the hand, in scene coordinates [N]
+};
+
+/// State of a loop.
+struct HapticState {
+  bool running = false;
+  bool realtime = false;  ///< it got real-time priority
+  std::string model;      ///< in use: "buffer", "whole", "held", "extrapolated"
+  std::int64_t ticks = 0;
+  std::int64_t late = 0;                ///< ticks that began more than a period late; the missed ones are left out
+  double work_mean = 0, work_most = 0;  ///< time of a tick's work: mean, p99.9 and largest [s]
+  double work_p999 = 0;
+  double delay_p999 = 0, delay_most = 0;                ///< how much later than planned ticks begin [s]
+  std::int64_t frames = 0;                              ///< received from the World
+  double age = 0;                                       ///< of the newest one [s]
+  int rings = 0;                                        ///< of the buffer; -1: the whole body
+  std::int64_t elements = 0;                            ///< of the buffer; 0: nothing is near the tool
+  int substeps = 0;                                     ///< of the buffer, in a tick
+  std::int64_t buffers = 0;                             ///< built so far
+  std::int64_t resets = 0;                              ///< buffers that blew up and began anew
+  std::int64_t contacts = 0;                            ///< points that touch
+  std::int64_t stale = 0, limited = 0, not_finite = 0;  ///< ticks of each kind (docs/haptics.md, What protects the hand)
+  std::int64_t corrections = 0;                         ///< ticks in which the force was reduced for passivity
+  double energy = 0, least_energy = 0;                  ///< of the device's account: now and at least so far [J]
+  std::int64_t refused = 0;                             ///< poses that the World refused
+  HapticSample last;                                    ///< the newest tick
+};
+
+/// Couples a device with a tool of a World. Its thread reads the device, computes the force and writes it, tick by tick; it
+/// never waits for steps, cuts or frames of the World, allocates nothing and takes no lock. The World has to run, freely
+/// (World::run_live) or by advance(): each frame takes the tool to where the device is, and tells the loop the state of the
+/// tissue. The loop may live longer than the World: then the force fades out.
+class PLIANT_API HapticLoop {
+ public:
+  /// Starts the thread. `device` must not be null. Throws Error: usage (an unknown or parked tool, one that another loop
+  /// drives, options out of range), state (the World does not take tools).
+  HapticLoop(World& world, const std::string& tool, std::shared_ptr<HapticDevice> device, const HapticOptions& options = {});
+  HapticLoop(const HapticLoop&) = delete;
+  HapticLoop& operator=(const HapticLoop&) = delete;
+  ~HapticLoop();  ///< stop()
+  /// Ends the thread; the device gets a zero force, and the tool stays where it is.
+  void stop() noexcept;
+  [[nodiscard]] HapticState state() const;
+  /// Returns the samples of the ticks since the last call, oldest first; the newest 65536 are kept.
+  std::vector<HapticSample> samples();
+  /// Writes what the device said as a stroke, which "file:" plays (docs/haptic_devices.md). Throws Error: state (without
+  /// log_samples), io.
+  void write_log(const std::string& file) const;
+
+  struct PLIANT_HIDDEN Impl;  ///< implementation
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace pliant
