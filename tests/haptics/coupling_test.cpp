@@ -53,7 +53,9 @@ TEST(VirtualCoupling, ConvergesToTheExponential) {
       x = coupling.step({{0.3 * n * dt, 0, 0}}, {0.3, 0, 0}, {}, {{0.7, 0, 0}, {}}, dt).instrument.position[0];
     const double miss = std::abs(x - exact);
     EXPECT_LT(miss, 200 * dt * exact);
-    if (before > 0) EXPECT_NEAR(before / miss, 10, 1.5) << "first order";
+    if (before > 0) {
+      EXPECT_NEAR(before / miss, 10, 1.5) << "first order";
+    }
     before = miss;
   }
 }
@@ -99,7 +101,9 @@ TEST(VirtualCoupling, MeetsContactsAsStiffAsItSays) {
       CouplingOptions options = kOptions;
       options.mass = mass;
       const double limit = VirtualCoupling(options, dt).stable_contact(dt);
-      if (mass == 0) EXPECT_NEAR(limit, 5 * 400 + 2 * 1.5 / dt, 1e-6);
+      if (mass == 0) {
+        EXPECT_NEAR(limit, 5 * 400 + 2 * 1.5 / dt, 1e-6);
+      }
       EXPECT_FALSE(swings_up(options, 0.99 * limit, dt)) << dt << " " << mass;
       EXPECT_TRUE(swings_up(options, 1.01 * limit, dt)) << dt << " " << mass;
     }
