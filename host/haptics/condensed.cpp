@@ -13,7 +13,7 @@ using Eigen::SparseMatrix;
 using Eigen::VectorXd;
 
 /// Numbers of the components within contacts or others: [components]; others as -1 - number.
-std::vector<int> numbered(int components, const std::vector<int>& contacts) {
+std::vector<int> numbers_of(int components, const std::vector<int>& contacts) {
   std::vector<int> number(static_cast<std::size_t>(components), -1);
   int last = -1;
   for (std::size_t c = 0; c < contacts.size(); ++c) {
@@ -33,15 +33,15 @@ std::vector<int> numbered(int components, const std::vector<int>& contacts) {
 }  // namespace
 
 Norton condense(const SparseMatrix<double>& stiffness, const std::vector<int>& contacts, const VectorXd& load) {
-  const int components = static_cast<int>(stiffness.rows()), held = static_cast<int>(contacts.size());
+  const int components = static_cast<int>(stiffness.rows()), touched = static_cast<int>(contacts.size());
   if (stiffness.cols() != components || load.size() != components)
     throw Error(ErrorCode::bad_input, fmt::format("condense: a stiffness of {} x {} with a load of {}, allowed are equal sizes",
                                                   components, stiffness.cols(), load.size()));
-  const std::vector<int> number = numbered(components, contacts);
-  const int others = components - held;
+  const std::vector<int> number = numbers_of(components, contacts);
+  const int others = components - touched;
   std::vector<Eigen::Triplet<double>> inner;
-  MatrixXd across = MatrixXd::Zero(others, held);
-  Norton norton{MatrixXd::Zero(held, held), VectorXd::Zero(held)};
+  MatrixXd across = MatrixXd::Zero(others, touched);
+  Norton norton{MatrixXd::Zero(touched, touched), VectorXd::Zero(touched)};
   for (int column = 0; column < components; ++column) {
     const int j = number[static_cast<std::size_t>(column)];
     for (SparseMatrix<double>::InnerIterator entry(stiffness, column); entry; ++entry) {

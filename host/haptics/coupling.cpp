@@ -24,7 +24,7 @@ Vec3d pulled(double mass, double stiffness, double damping, const Vec3d& velocit
   return next;
 }
 
-void require(bool good, const char* what, double value) {
+void require_not_negative(bool good, const char* what, double value) {
   if (!good) throw Error(ErrorCode::bad_input, fmt::format("coupling: {} is {}, allowed are 0 and more", what, value));
 }
 
@@ -53,7 +53,9 @@ CouplingOptions passive_coupling(double damping, double turn_damping, double tic
 }
 
 VirtualCoupling::VirtualCoupling(const CouplingOptions& options, double tick) : options_(options) {
-  const auto check = [](const char* what, double value) { require(value >= 0 && std::isfinite(value), what, value); };
+  const auto check = [](const char* what, double value) {
+    require_not_negative(value >= 0 && std::isfinite(value), what, value);
+  };
   check("tick", tick);
   check("stiffness", options.stiffness);
   check("damping", options.damping);
@@ -76,19 +78,20 @@ double VirtualCoupling::stable_contact(double dt) const noexcept {
 
 Coupled VirtualCoupling::step(const Pose& device, const Vec3d& velocity, const Vec3d& spin, const Wrench& contact,
                               double dt) noexcept {
-  if (options_.rigid || dt <= 0) {
-    if (options_.rigid) pose_ = device;
-    return {pose_, contact};
+  if (options_.rigid) {
+    pose_ = device;
+    on_hand_ = contact;
   }
+  if (options_.rigid || !(dt > 0)) return {pose_, on_hand_};
   const CouplingOptions& o = options_;
-  Wrench on_hand;
   velocity_ = pulled(o.mass, o.stiffness, o.damping, velocity_, contact.force, vec::sub(device.position, pose_.position),
-                     velocity, dt, on_hand.force);
+                     velocity, dt, on_hand_.force);
   spin_ = pulled(o.inertia, o.turn_stiffness, o.turn_damping, spin_, contact.torque, turn_between(pose_, device), spin, dt,
-                 on_hand.torque);
+                 on_hand_.torque);
   pose_.position = vec::add(pose_.position, vec::mul(velocity_, dt));
   pose_ = turned(pose_, vec::mul(spin_, dt));
-  return {pose_, on_hand};
+  if (!vec::finite(velocity_) || !vec::finite(spin_) || !good_pose(pose_)) place(device);
+  return {pose_, on_hand_};
 }
 
 }  // namespace pliant::haptics

@@ -12,10 +12,10 @@
 namespace pliant::haptics {
 namespace {
 
-using Matrix = std::array<std::array<double, 3>, 3>;
+using Matrix3 = std::array<std::array<double, 3>, 3>;
 
-Matrix product(const Matrix& a, const Matrix& b) {
-  Matrix c{};
+Matrix3 product_of(const Matrix3& a, const Matrix3& b) {
+  Matrix3 c{};
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
       for (std::size_t k = 0; k < 3; ++k) c[i][j] += a[i][k] * b[k][j];
@@ -25,7 +25,7 @@ Matrix product(const Matrix& a, const Matrix& b) {
 }
 
 /// Taylor's series at a norm of at most 1/4, where 14 terms reach rounding, and squarings.
-Matrix exponential(Matrix a) {
+Matrix3 exponential_of(Matrix3 a) {
   double norm = 0;
   for (const auto& row : a) norm = std::max(norm, std::abs(row[0]) + std::abs(row[1]) + std::abs(row[2]));
   int squarings = 0;
@@ -34,48 +34,49 @@ Matrix exponential(Matrix a) {
   for (auto& row : a) {
     for (double& c : row) c *= scale;
   }
-  Matrix sum{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-  Matrix term = sum;
+  Matrix3 sum{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  Matrix3 term = sum;
   for (int n = 1; n <= 14; ++n) {
-    term = product(term, a);
+    term = product_of(term, a);
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t j = 0; j < 3; ++j) sum[i][j] += term[i][j] /= n;
     }
   }
-  for (int s = 0; s < squarings; ++s) sum = product(sum, sum);
+  for (int s = 0; s < squarings; ++s) sum = product_of(sum, sum);
   return sum;
 }
 
-void check(const Held& held, const char* of) {
+void check_grip(const Grip& grip, const char* of) {
   const auto good = [](double value) { return value >= 0 && std::isfinite(value); };
-  if (!good(held.mass) || held.mass == 0)
-    throw Error(ErrorCode::bad_input, fmt::format("hand: the mass of the {} is {}, allowed is more than 0", of, held.mass));
-  for (const double value : {held.device_damping, held.stiffness, held.damping}) {
+  if (!good(grip.mass) || grip.mass == 0)
+    throw Error(ErrorCode::bad_input, fmt::format("hand: the mass of the {} is {}, allowed is more than 0", of, grip.mass));
+  for (const double value : {grip.device_damping, grip.stiffness, grip.damping}) {
     if (!good(value))
       throw Error(ErrorCode::bad_input,
                   fmt::format("hand: a stiffness or damping of the {} is {}, allowed are 0 and more", of, value));
   }
 }
 
-Vec3d limited(const Vec3d& v, double limit) {
+Vec3d within_limit(const Vec3d& v, double limit) {
   const double size = vec::norm(v);
+  if (!std::isfinite(size)) return {};
   return size > limit ? vec::mul(v, limit / size) : v;
 }
 
 }  // namespace
 
 SimulatedHand::SimulatedHand(const HandOptions& options) : options_(options) {
-  check(options.translation, "translation");
-  check(options.rotation, "rotation");
+  check_grip(options.translation, "translation");
+  check_grip(options.rotation, "rotation");
   path_.path = options.path;
   pose_ = path_.at(0);
 }
 
-SimulatedHand::Rows SimulatedHand::over(const Held& held, double dt) noexcept {
+SimulatedHand::Rows SimulatedHand::over(const Grip& grip, double dt) noexcept {
   // The second unknown is dt y' so that all entries have the unit of y, and the norm is that of the motion within a tick.
-  const double per_mass = dt * dt / held.mass;
-  const Matrix e = exponential(
-      {{{0, 1, 0}, {-per_mass * held.stiffness, -(held.device_damping + held.damping) * dt / held.mass, per_mass}, {0, 0, 0}}});
+  const double per_mass = dt * dt / grip.mass;
+  const Matrix3 e = exponential_of(
+      {{{0, 1, 0}, {-per_mass * grip.stiffness, -(grip.device_damping + grip.damping) * dt / grip.mass, per_mass}, {0, 0, 0}}});
   return {{{e[0][0], e[0][1] * dt, e[0][2]}, {e[1][0] / dt, e[1][1], e[1][2] / dt}}};
 }
 
@@ -96,8 +97,8 @@ DeviceSample SimulatedHand::read() noexcept {
 
 void SimulatedHand::write(const DeviceWrench& wrench) noexcept {
   held_ = wrench;
-  held_.force = limited(wrench.force, options_.limits.force);
-  held_.torque = limited(wrench.torque, options_.limits.torque);
+  held_.force = within_limit(wrench.force, options_.limits.force);
+  held_.torque = within_limit(wrench.torque, options_.limits.torque);
 }
 
 void SimulatedHand::advance(double dt) noexcept {

@@ -10,7 +10,7 @@
 namespace pliant::haptics {
 
 /// A mass with a damper to the ground and a spring and damper to where the hand wants it.
-struct Held {
+struct Grip {
   double mass = 0;            ///< of device and hand [kg; kg m^2]
   double device_damping = 0;  ///< [N s/m; N m s/rad]
   double stiffness = 0;       ///< of the hand [N/m; N m/rad]
@@ -21,12 +21,12 @@ struct Held {
 /// order of 0.1 kg, some N s/m and some hundred N/m (Israr, Choi and Tan 2006); damper and spring grow with the grip (Hasser
 /// and Cutkosky 2002).
 struct HandOptions {
-  Held translation{0.07 + 0.15, 0.2, 300, 4};
-  Held rotation{1e-4 + 2e-4, 1e-3, 0.5, 5e-3};
+  Grip translation{0.07 + 0.15, 0.2, 300, 4};
+  Grip rotation{1e-4 + 2e-4, 1e-3, 0.5, 5e-3};
   /// Where the hand wants the tip: (time [s], position [m], turn x, y, z, w); times ascending, interpolated linearly, constant
   /// outside; empty: at the origin.
   std::vector<std::array<double, 8>> path;
-  DeviceLimits limits;     ///< what exceeds them is exerted at the limit, in its direction
+  DeviceLimits limits;     ///< what exceeds them is exerted at the limit, what is no number not at all
   bool wall_time = false;  ///< read() advances to the time of the clock; otherwise only advance() does
 };
 
@@ -57,7 +57,7 @@ class SimulatedHand : public HapticDevice {
  private:
   /// Of (y, y', constant input): the first two rows of the exponential.
   using Rows = std::array<std::array<double, 3>, 2>;
-  static Rows over(const Held& held, double dt) noexcept;
+  static Rows over(const Grip& grip, double dt) noexcept;
   HandOptions options_;
   ContactTool path_;  ///< only its path
   double time_ = 0, dt_ = 0, work_ = 0;

@@ -9,7 +9,8 @@ namespace pliant::haptics {
 
 Motion MotionEstimate::update(const DeviceSample& sample, double dt) noexcept {
   since_ += dt;
-  if (sample.number == last_.number) return motion_;
+  const bool good = good_pose({sample.position, sample.turn}) && std::isfinite(sample.time);
+  if (sample.number == last_.number || !good) return motion_;
   const double own = sample.time - last_.time, between = own > 0 ? own : since_;
   if (last_.number > 0 && between > 0) {
     const double share = smoothing_ > 0 ? -std::expm1(-between / smoothing_) : 1;

@@ -11,7 +11,8 @@ struct Motion {
 };
 
 /// Differences of samples through a first-order low-pass, v' = v + (1 - e^(-dt/tau)) (dx/dt - v). A sample that comes again
-/// changes nothing; the time between two is that of the device's own clock, or of the ticks where the device has none.
+/// changes nothing, nor does one that is no pose. The time between two is that of the device's own clock, or of the ticks where
+/// the device has none.
 class MotionEstimate {
  public:
   /// `smoothing`: tau [s]; 0: plain differences.

@@ -40,12 +40,16 @@ Vec3d PassivityController::tick(const Vec3d& step, const Vec3d& velocity, const 
   }
   if (taken > std::max(energy, 0.0)) out = vec::mul(out, std::max(energy, 0.0) / taken);
   if (out != force) ++corrections_;
-  observer_.exert(out);
+  observer_.exert(vec::finite(out) ? out : Vec3d{});
   return out;
 }
 
 Wrench PassivityGate::tick(const Pose& device, const Vec3d& velocity, const Vec3d& spin, const Wrench& wrench,
                            double dt) noexcept {
+  if (!good_pose(device) || !vec::finite(velocity) || !vec::finite(spin)) {
+    exerted({});
+    return {};
+  }
   const Vec3d step = started_ ? vec::sub(device.position, before_.position) : Vec3d{};
   const Vec3d turn = started_ ? turn_between(before_, device) : Vec3d{};
   before_ = device;

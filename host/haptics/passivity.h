@@ -9,10 +9,12 @@ namespace pliant::haptics {
 /// Of the translation or of the rotation of a device, each with an account of its own. Units of the rotation stand behind the
 /// semicolon.
 struct EnergyOptions {
-  double allowance = 1e-3;  ///< E(0) of Hannaford and Ryu (2002, eq. 1): what may be taken before anything was given [J]
+  double allowance = 1e-3;  ///< E(0) of Hannaford and Ryu (2002): what may be taken before anything was given [J]
   double damping = 0;       ///< of the device itself, at least [N s/m; N m s/rad]
-  double acceleration = 0;  ///< greatest that the hand gives the device [m/s^2; rad/s^2]; 0: its velocity is trusted
-  double limit = 1;         ///< of what the controller adds to pay a debt back [N; N m]
+  /// Greatest that the hand gives the device, twice that where its velocity is a difference of samples [m/s^2; rad/s^2]; 0: its
+  /// velocity is trusted.
+  double acceleration = 0;
+  double limit = 1;  ///< of what the controller adds to pay a debt back [N; N m]
 };
 
 /// Accounts for the energy at the port, of three components of motion.
@@ -41,7 +43,8 @@ class PassivityObserver {
 /// Corrects the force of a tick so that the account stays above zero through the coming tick.
 ///
 /// With v from the device, the coming tick takes F v T. Where E < F v T, the force loses alpha v with alpha = (F v T - E) / (T
-/// v^2) (Hannaford and Ryu 2002, eq. 8, with the coming tick in E). That is at most the part of F along v, so that it needs no
+/// v^2) (Hannaford and Ryu 2002, series controller in impedance
+/// causality, with the coming tick in E). That is at most the part of F along v, so that it needs no
 /// limit.
 ///
 /// The hand may also accelerate: within a tick the motion differs from v T by up to r = a T^2 / 2 (Taylor), so that F v T + |F|
@@ -55,7 +58,8 @@ class PassivityController {
   /// Since the last tick, `dt` [s] ago, the device has moved by `step` [m; rad]; now it has `velocity` [m/s; rad/s]. Returns
   /// what to exert instead of `force` [N; N m]; the coming tick is taken to be as long.
   Vec3d tick(const Vec3d& step, const Vec3d& velocity, const Vec3d& force, double dt) noexcept;
-  /// What was exerted in the end, where something behind the controller changed it.
+  /// What was exerted in the end, where something behind the controller changed it. A share in [0, 1] of what it gave out keeps
+  /// what the account promises.
   void exerted(const Vec3d& force) noexcept { observer_.exert(force); }
   [[nodiscard]] const PassivityObserver& observer() const noexcept { return observer_; }
   /// Ticks in which the force was changed.
@@ -74,7 +78,8 @@ class PassivityGate {
  public:
   PassivityGate(const EnergyOptions& translation, const EnergyOptions& rotation)
       : translation_(translation), rotation_(rotation) {}
-  /// `velocity` [m/s], `spin` [rad/s]: of the device at `device`; `dt` since the last tick [s].
+  /// `velocity` [m/s], `spin` [rad/s]: of the device at `device`; `dt` since the last tick [s]. Where one of them is no number,
+  /// nothing is exerted.
   Wrench tick(const Pose& device, const Vec3d& velocity, const Vec3d& spin, const Wrench& wrench, double dt) noexcept;
   /// What was exerted in the end, where something behind the gate changed it.
   void exerted(const Wrench& wrench) noexcept;

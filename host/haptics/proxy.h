@@ -18,8 +18,8 @@ namespace pliant::haptics {
 /// direction to the proxy, whichever hinders less. This repeats from the new place until the proxy rests, up to kRounds times a
 /// tick. The nearest point under the planes that are touched is found by Hildreth's coordinate ascent of the dual (1957).
 ///
-/// F = k (proxy - instrument); the torque about the origin of a sphere is zero. The reports of the simulation are not used: the
-/// surface is what it knows.
+/// F = k (proxy - instrument), or zero where the instrument's place is no number; the torque about the origin of a sphere is
+/// zero. The reports of the simulation are not used: the surface is what it knows.
 class ProxyForce : public ForceModel {
  public:
   static constexpr std::size_t kTriangles = 256, kTouched = 12;
@@ -48,7 +48,7 @@ class ProxyForce : public ForceModel {
     double distance = 0;
     Vec3d point{};
   };
-  [[nodiscard]] Near nearest() noexcept;
+  [[nodiscard]] Near nearest(double reach) noexcept;
   void put_outside(const Near& near) noexcept;
   [[nodiscard]] Plane plane_for(std::size_t triangle, const Plane& below, const Vec3d& goal) const noexcept;
   [[nodiscard]] Vec3d nearest_allowed(const Vec3d& goal, std::size_t planes) const noexcept;
@@ -56,7 +56,11 @@ class ProxyForce : public ForceModel {
   double radius_, stiffness_;
   std::array<Triangle, kTriangles> triangles_{};
   std::array<Vec3d, kTriangles> normals_{};
-  std::array<Vec3d, kTriangles> points_{};  ///< nearest to the proxy
+  std::array<Vec3d, kTriangles> centres_{};
+  std::array<double, kTriangles> extents_{};     ///< greatest distance of a corner from the centre [m]
+  std::array<std::size_t, kTriangles> close_{};  ///< triangles within reach
+  std::size_t close_count_ = 0;
+  std::array<Vec3d, kTriangles> points_{};  ///< of those: nearest to the proxy
   std::array<Plane, kTriangles> planes_{};
   std::size_t count_ = 0;
   Vec3d proxy_{};

@@ -9,7 +9,7 @@ namespace pliant::haptics {
 namespace {
 
 /// Returns whether it was too long. The square of a large vector may overflow, that of a small one cannot matter.
-bool shorten(Vec3d& v, double limit) {
+bool shortened_to(Vec3d& v, double limit) {
   const double size = std::hypot(v[0], v[1], v[2]);
   if (size <= limit) return false;
   const double greatest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
@@ -34,7 +34,7 @@ Wrench ForceGuard::tick(const Wrench& wrench, double age, double dt) noexcept {
     return {};
   }
   Wrench out = wrench;
-  const bool force = shorten(out.force, limits_.force), torque = shorten(out.torque, limits_.torque);
+  const bool force = shortened_to(out.force, limits_.force), torque = shortened_to(out.torque, limits_.torque);
   if (force || torque) ++counts_.limited;
   const double w = weight();
   return {vec::mul(out.force, w), vec::mul(out.torque, w)};

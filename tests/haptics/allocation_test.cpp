@@ -58,7 +58,7 @@ namespace pliant::haptics_test {
 long allocations() { return made.load(); }
 }  // namespace pliant::haptics_test
 
-namespace pliant::haptics {
+namespace pliant::haptics::allocation_test {
 namespace {
 
 using haptics_test::allocations;
@@ -113,4 +113,4 @@ TEST(Allocation, NoTickAllocates) {
 }
 
 }  // namespace
-}  // namespace pliant::haptics
+}  // namespace pliant::haptics::allocation_test

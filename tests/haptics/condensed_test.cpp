@@ -12,7 +12,7 @@
 #include "statics/system.h"
 #include "support/error_of.h"
 
-namespace pliant::haptics {
+namespace pliant::haptics::condensed_test {
 namespace {
 
 const Vec3d kSize{0.04, 0.04, 0.02};
@@ -176,4 +176,4 @@ TEST(Condensed, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace pliant::haptics
+}  // namespace pliant::haptics::condensed_test

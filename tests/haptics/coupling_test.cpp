@@ -12,9 +12,11 @@
 #include "geometry/vec.h"
 #include "haptics/hand.h"
 #include "haptics/motion.h"
+#include "haptics/passivity.h"
+#include "haptics/safety.h"
 #include "support/error_of.h"
 
-namespace pliant::haptics {
+namespace pliant::haptics::coupling_test {
 namespace {
 
 const CouplingOptions kOptions{
@@ -170,6 +172,44 @@ TEST(VirtualCoupling, RigidIsNone) {
   EXPECT_EQ(out.on_hand.torque, contact.torque);
 }
 
+/// One bad number costs a tick or two, at each stage of a chain.
+TEST(VirtualCoupling, RecoversFromWhatIsNoNumber) {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), dt = 1e-3;
+  SimulatedHand hand({});
+  MotionEstimate estimate;
+  VirtualCoupling coupling({}, dt);
+  PassivityGate gate({}, {});
+  ForceGuard guard({.rise = 0});
+  Wrench last;
+  for (int k = 0; k < 600; ++k) {
+    DeviceSample sample = hand.read();
+    const Motion motion = estimate.update(sample, dt);
+    Wrench contact{{0.3, 0, 0}, {0, 0.01, 0}};
+    if (k == 100) contact.force[0] = nan;
+    if (k == 110) contact.torque[2] = nan;
+    if (k == 120) {
+      ++sample.number;
+      sample.position[1] = nan;
+      estimate.update(sample, dt);
+    }
+    const Pose device{sample.position, sample.turn};
+    const Coupled out = coupling.step(device, motion.velocity, motion.spin, contact, dt);
+    last = guard.tick(gate.tick(device, motion.velocity, motion.spin, out.on_hand, dt), 0, dt);
+    ASSERT_TRUE(vec::finite(last.force) && vec::finite(last.torque)) << k;
+    gate.exerted(last);
+    hand.write({last.force, last.torque, 0, 0});
+    if (k == 130) hand.write({{nan, 0, 0}, {}, 0, 0});
+    hand.advance(dt);
+    ASSERT_TRUE(good_pose(hand.pose())) << k;
+  }
+  EXPECT_GE(guard.counts().not_finite, 2u);
+  EXPECT_LE(guard.counts().not_finite, 6u);
+  EXPECT_TRUE(std::isfinite(gate.translation().observer().energy()));
+  EXPECT_TRUE(std::isfinite(gate.rotation().observer().energy()));
+  EXPECT_NEAR(last.force[0], 0.3, 0.02);
+  EXPECT_NEAR(last.torque[1], 0.01, 2e-3);
+}
+
 TEST(VirtualCoupling, RefusesWhatIsNoNumber) {
   const auto error = [](CouplingOptions options) { return test::error_of([&] { VirtualCoupling(options, 1e-3); }); };
   EXPECT_EQ(error({}), "");
@@ -200,4 +240,4 @@ TEST(MotionEstimate, IsThatOfUniformMotion) {
 }
 
 }  // namespace
-}  // namespace pliant::haptics
+}  // namespace pliant::haptics::coupling_test

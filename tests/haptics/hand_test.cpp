@@ -12,7 +12,7 @@
 #include "haptics/coupling.h"
 #include "support/error_of.h"
 
-namespace pliant::haptics {
+namespace pliant::haptics::hand_test {
 namespace {
 
 TEST(SimulatedHand, AFreeMassFallsByHalfATSquared) {
@@ -142,4 +142,4 @@ TEST(SimulatedHand, RefusesWhatCannotMove) {
 }
 
 }  // namespace
-}  // namespace pliant::haptics
+}  // namespace pliant::haptics::hand_test

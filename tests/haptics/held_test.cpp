@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace pliant::haptics {
+namespace pliant::haptics::held_test {
 namespace {
 
 constexpr double kFrame = 1.0 / 30, kTick = 1.0 / 3000;
@@ -70,4 +70,4 @@ TEST(ExtrapolatedForce, BeginsAgainWhereTimeGoesBack) {
 }
 
 }  // namespace
-}  // namespace pliant::haptics
+}  // namespace pliant::haptics::held_test

@@ -12,8 +12,10 @@
 #include "geometry/vec.h"
 #include "haptics/coupling.h"
 #include "haptics/hand.h"
+#include "haptics/motion.h"
+#include "haptics/safety.h"
 
-namespace pliant::haptics {
+namespace pliant::haptics::passivity_test {
 namespace {
 
 double uniform(std::mt19937& random, double low, double high) {
@@ -37,7 +39,7 @@ TEST(PassivityObserver, AddsUpTheWorkOfHeldForces) {
   EXPECT_EQ(observer.least(), 0.25);
 }
 
-/// Hannaford and Ryu (2002, eqs. 6 to 8), one component, with their energy of each tick: f v T.
+/// Hannaford and Ryu (2002), series controller, one component, with their energy of each tick: f v T.
 TEST(PassivityController, IsThatOfHannafordAndRyu) {
   std::mt19937 random(3);
   const double dt = 1e-3;
@@ -196,6 +198,35 @@ double least_energy(const Wall& wall, bool controlled, int ticks, double& felt) 
   return least;
 }
 
+/// Velocities from differences of samples, with twice the acceleration, and the guard behind, which takes a share.
+TEST(Passivity, HoldsForVelocitiesFromDifferences) {
+  HandOptions options;
+  for (int row = 0; row < 14000; ++row) options.path.push_back({row * 5e-3, 0.01 * std::cos(row * 0.06), 0, 0, 0, 0, 0, 1});
+  for (const double rate : {300.0, 1000.0, 5000.0}) {
+    SimulatedHand hand(options);
+    MotionEstimate estimate(0);
+    const double dt = 1 / rate;
+    PassivityGate gate({.acceleration = 300}, {});
+    ForceGuard guard({.stale_after = 0.5, .ramp = 0.1, .rise = 0.1}, {.force = 4});
+    double energy = 1e-3;
+    for (int k = 0; k < 20000; ++k) {
+      const DeviceSample sample = hand.read();
+      const Pose pose{sample.position, sample.turn};
+      const Motion motion = estimate.update(sample, dt);
+      const double depth = std::max(-sample.position[0], 0.0);
+      const Wrench wall{{std::min(4000 * depth, 10.0), 0, 0}, {}};
+      const Wrench out = guard.tick(gate.tick(pose, motion.velocity, motion.spin, wall, dt), k % 3000 * dt, dt);
+      gate.exerted(out);
+      hand.write({out.force, out.torque, 0, 0});
+      hand.advance(dt);
+      energy -= vec::dot(out.force, vec::sub(hand.pose().position, pose.position));
+      ASSERT_GE(energy, -1e-9) << rate << " " << k;
+    }
+    EXPECT_GT(gate.translation().corrections(), 0u) << rate;
+    EXPECT_NEAR(gate.translation().observer().energy(), energy, 0.01) << "but for the last tick";
+  }
+}
+
 TEST(Passivity, AMillionTicksOfWalls) {
   int active = 0;
   double least = 1, felt = 0, worst_without = 0;
@@ -228,4 +259,4 @@ TEST(Passivity, AMillionTicksOfWalls) {
 }
 
 }  // namespace
-}  // namespace pliant::haptics
+}  // namespace pliant::haptics::passivity_test

@@ -9,7 +9,7 @@
 #include "geometry/vec.h"
 #include "support/unit_ball.h"
 
-namespace pliant::haptics {
+namespace pliant::haptics::proxy_test {
 namespace {
 
 using Triangles = std::vector<ProxyForce::Triangle>;
@@ -136,6 +136,14 @@ TEST(Proxy, IsPutInFrontOfASurfaceThatMoved) {
   EXPECT_EQ(model.tick(at(0.001, 0, 0.005), 1e-3).force, Vec3d{});
 }
 
+TEST(Proxy, IgnoresWhatIsNoNumber) {
+  ProxyForce model(kRadius, kStiffness);
+  model.surface(roof(0, 0));
+  model.tick(at(0, 0, 0.005), 1e-3);
+  EXPECT_EQ(model.tick(at(0, std::nan(""), 0), 1e-3).force, Vec3d{});
+  EXPECT_NEAR(model.tick(at(0, 0, 0.003), 1e-3).force[2], kStiffness * 1e-3, 1e-8);
+}
+
 TEST(Proxy, SaysWhatDoesNotFit) {
   ProxyForce model(kRadius, kStiffness);
   Triangles many(ProxyForce::kTriangles + 1, {Vec3d{0, 0, 0}, Vec3d{1, 0, 0}, Vec3d{0, 1, 0}});
@@ -144,4 +152,4 @@ TEST(Proxy, SaysWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace pliant::haptics
+}  // namespace pliant::haptics::proxy_test

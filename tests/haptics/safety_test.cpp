@@ -8,7 +8,7 @@
 
 #include "geometry/vec.h"
 
-namespace pliant::haptics {
+namespace pliant::haptics::safety_test {
 namespace {
 
 constexpr double kTick = 1e-3;
@@ -95,4 +95,4 @@ TEST(ForceGuard, GivesNothingForWhatIsNoNumber) {
 }
 
 }  // namespace
-}  // namespace pliant::haptics
+}  // namespace pliant::haptics::safety_test

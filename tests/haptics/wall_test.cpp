@@ -8,7 +8,7 @@
 
 #include "haptics/hand.h"
 
-namespace pliant::haptics {
+namespace pliant::haptics::wall_test {
 namespace {
 
 constexpr double kMass = 0.08, kDamping = 0.5;
@@ -67,4 +67,4 @@ TEST(Wall, TheStiffestFollowsColgate) {
 }
 
 }  // namespace
-}  // namespace pliant::haptics
+}  // namespace pliant::haptics::wall_test
