@@ -42,7 +42,7 @@ class VirtualCoupling {
   void place(const Pose& instrument) noexcept;
   /// Advances by `dt` [s], at the end of which the device is at `device` with `velocity` [m/s] and `spin` [rad/s]. `contact`
   /// acts on the instrument at its pose of the last call, with the torque about its origin. Where one of them is no number, the
-  /// wrench is none for this tick, and the instrument begins again at the device.
+  /// wrench may be none in this tick, too, and the instrument begins again at the device.
   Coupled step(const Pose& device, const Vec3d& velocity, const Vec3d& spin, const Wrench& contact, double dt) noexcept;
   [[nodiscard]] const Pose& instrument() const noexcept { return pose_; }
   /// The stiffness below which a contact is stable at this tick [N/m].
