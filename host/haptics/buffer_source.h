@@ -25,6 +25,11 @@ class BufferSource {
   /// `rings`: of elements around the nodes that the instrument touches; negative: all elements of what it touches.
   BufferSource(std::string tool, std::int32_t rings) : tool_(std::move(tool)), rings_(rings) {}
 
+  /// From the next fill() on; what is there is rebuilt if its rings are others.
+  void set_rings(std::int32_t rings) {
+    if (rings != rings_) ring_.clear();
+    rings_ = rings;
+  }
   /// Call after a frame, from the thread that steps. `in_use`: generation of the buffer that the haptic thread uses; older ones
   /// are destroyed. Throws Error (usage) if the tool has gone.
   void fill(const Simulation& simulation, std::uint64_t in_use, BufferMessage& message);

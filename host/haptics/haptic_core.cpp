@@ -1,0 +1,88 @@
+#include "haptics/haptic_core.h"
+
+#include "geometry/vec.h"
+
+namespace pliant::haptics {
+namespace {
+
+Wrench scaled(const Wrench& w, double by) { return {vec::mul(w.force, by), vec::mul(w.torque, by)}; }
+
+std::array<double, 4> conjugate(const std::array<double, 4>& q) { return {-q[0], -q[1], -q[2], q[3]}; }
+
+/// The rotation `turn` alone.
+Pose rotation(const std::array<double, 4>& turn) { return {{}, turn}; }
+
+}  // namespace
+
+HapticCore::HapticCore(const CoreOptions& options, const Pose& tool)
+    : options_(options),
+      buffer_(options.lead),
+      coupling_(options.coupling, options.tick),
+      gate_(options.translation, options.rotation),
+      guard_(options.guard, options.limits),
+      in_use_(options.model),
+      start_(tool) {
+  out_.tool = out_.device = tool;
+}
+
+void HapticCore::receive(const BufferMessage& message, double interval) noexcept {
+  covered_ = message.covered;
+  buffer_.receive(message, interval);
+  held_.receive(message.report);
+  extrapolated_.receive(message.report);
+}
+
+/// Positions are scaled about where the device began, turns are not.
+Pose HapticCore::in_scene(const DeviceSample& sample) const noexcept {
+  const Pose raw{sample.position, sample.turn};
+  const Pose& from = options_.align ? device_start_ : Pose{};
+  const Pose& to = options_.align ? start_ : Pose{};
+  const Pose moved{vec::mul(vec::sub(raw.position, from.position), options_.motion_scale), raw.turn};
+  Pose out;
+  out.position = vec::add(to.position, moved.position);
+  out.turn =
+      options_.align ? compose(compose(rotation(raw.turn), rotation(conjugate(from.turn))), rotation(to.turn)).turn : raw.turn;
+  return out;
+}
+
+/// Where the tool touches what no finite element moves, the reports are all that is known.
+Wrench HapticCore::felt(const Pose& tool, double dt) noexcept {
+  const Wrench buffer = options_.model == ModelKind::buffer ? buffer_.tick(tool, dt) : Wrench{};
+  const Wrench held = held_.tick(tool, dt), line = extrapolated_.tick(tool, dt);
+  in_use_ = options_.model == ModelKind::buffer && !covered_ ? ModelKind::extrapolated : options_.model;
+  return in_use_ == ModelKind::buffer ? buffer : in_use_ == ModelKind::held ? held : line;
+}
+
+const CoreTick& HapticCore::tick(const DeviceSample& sample, double age, double dt) noexcept {
+  if (sample.number == 0) {  // the device has said nothing yet
+    out_.hand = {};
+    out_.exerted = {};
+    return out_;
+  }
+  if (!aligned_) {
+    aligned_ = true;
+    device_start_ = {sample.position, sample.turn};
+    coupling_.place(in_scene(sample));
+  }
+  out_.device = in_scene(sample);
+  DeviceSample scene = sample;
+  scene.position = out_.device.position;
+  scene.turn = out_.device.turn;
+  const Motion now = motion_.update(scene, dt), smooth = smooth_.update(scene, dt);
+  const Coupled coupled = coupling_.step(out_.device, now.velocity, now.spin, last_, dt);
+  out_.tool = coupled.instrument;
+  out_.tissue = last_ = felt(out_.tool, dt);
+  Wrench hand = scaled(options_.coupling.rigid ? last_ : coupled.on_hand, options_.force_scale);
+  const Wrench allowed = options_.passive ? gate_.tick({sample.position, sample.turn},
+                                                       vec::mul(now.velocity, 1 / options_.motion_scale), now.spin, hand, dt)
+                                          : hand;
+  out_.hand = guard_.tick(allowed, age, dt);
+  if (options_.passive) gate_.exerted(out_.hand);
+  out_.exerted = {out_.hand.force, out_.hand.torque, sample.time, sample.number};
+  pose_.pose = out_.tool;
+  pose_.motion = smooth;
+  pose_.given = true;
+  return out_;
+}
+
+}  // namespace pliant::haptics
