@@ -34,6 +34,13 @@ struct DeviceLimits {
   double torque = std::numeric_limits<double>::infinity();  ///< greatest torque [N m]; 0: it exerts none
 };
 
+/// What a device has received so far.
+struct DeviceCounts {
+  std::uint64_t received = 0;  ///< samples
+  std::uint64_t refused = 0;   ///< messages that gave none: malformed, not finite, too long, out of order
+  std::string last_refusal;    ///< why the last one of them was refused; empty: none was
+};
+
 /// A device. HapticLoop calls read() and then write() once per tick, from its own thread: they must return at once, without
 /// waiting for a lock, another thread or the network.
 class PLIANT_API HapticDevice {
@@ -47,6 +54,15 @@ class PLIANT_API HapticDevice {
   /// Exerts a wrench until the next call.
   virtual void write(const DeviceWrench& wrench) noexcept = 0;
   [[nodiscard]] virtual DeviceLimits limits() const noexcept { return {}; }
+  /// May be called from any thread.
+  [[nodiscard]] virtual DeviceCounts counts() const { return {}; }
+  /// The port of UDP or TCP that it listens on, for a text that asked for port 0; 0: it listens on none.
+  [[nodiscard]] virtual int port() const noexcept { return 0; }
 };
+
+/// Opens a device by a text (docs/haptic_devices.md): "file:STROKE.csv", "udp:PORT", "shm:NAME", "websocket:PORT", "igtl:PORT",
+/// "osc:PORT" or "spacenav". Whoever is at the other end may come and go later. Throws Error: `usage` for a text that names no
+/// device, `bad_input` for one that cannot be opened, among others because this build lacks its library, `io` for a file.
+PLIANT_API std::shared_ptr<HapticDevice> open_haptic_device(const std::string& text);
 
 }  // namespace pliant

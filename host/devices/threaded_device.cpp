@@ -1,0 +1,75 @@
+#include "devices/threaded_device.h"
+
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include "pliant/error.h"
+
+namespace pliant::devices {
+
+ThreadedDevice::ThreadedDevice() : wake_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
+  if (!wake_) throw Error(ErrorCode::bad_input, "haptic device: the system has no more file handles");
+}
+
+ThreadedDevice::~ThreadedDevice() { stop(); }
+
+void ThreadedDevice::start() { thread_ = std::thread(&ThreadedDevice::run, this); }
+
+void ThreadedDevice::stop() noexcept {
+  if (!thread_.joinable()) return;
+  stopping_.store(true, std::memory_order_release);
+  wake();
+  thread_.join();
+}
+
+void ThreadedDevice::run() noexcept {
+  try {
+    serve();
+  } catch (...) {
+    refuse("the thread of the device has ended");
+  }
+}
+
+DeviceSample ThreadedDevice::read() noexcept {
+  samples_.take();
+  return samples_.newest();
+}
+
+void ThreadedDevice::write(const DeviceWrench& wrench) noexcept {
+  wrenches_.publish(wrench);
+  if (!woken_.exchange(true, std::memory_order_acq_rel)) wake();
+}
+
+void ThreadedDevice::wake() noexcept {
+  const std::uint64_t one = 1;
+  [[maybe_unused]] const auto written = ::write(wake_.get(), &one, sizeof one);  // fails only if it is readable already
+}
+
+void ThreadedDevice::awake() {
+  std::uint64_t count = 0;
+  [[maybe_unused]] const auto got = ::read(wake_.get(), &count, sizeof count);
+  woken_.exchange(false, std::memory_order_acq_rel);
+}
+
+void ThreadedDevice::publish(DeviceSample sample) {
+  if (sample.time == 0) sample.time = elapsed();
+  published_ = counter_.receive();
+  senders_number_[published_ % senders_number_.size()] = sample.number;
+  sample.number = published_;
+  samples_.publish(sample);
+}
+
+std::optional<DeviceWrench> ThreadedDevice::newest_wrench() {
+  if (!wrenches_.take()) return std::nullopt;
+  DeviceWrench wrench = wrenches_.newest();
+  const std::uint64_t number = wrench.number;
+  const bool known = number >= 1 && number <= published_ && published_ - number < senders_number_.size();
+  wrench.number = known ? senders_number_[number % senders_number_.size()] : 0;
+  return wrench;
+}
+
+double ThreadedDevice::elapsed() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - opened_).count();
+}
+
+}  // namespace pliant::devices
