@@ -3,6 +3,10 @@
 #include <fmt/format.h>
 
 #include "devices/datagram_device.h"
+#include "devices/osc.h"
+#include "devices/shared_device.h"
+#include "devices/stroke.h"
+#include "devices/stroke_device.h"
 #include "pliant/error.h"
 
 namespace pliant {
@@ -19,9 +23,17 @@ struct DeviceKind {
 };
 
 const DeviceKind kKinds[] = {
+    {"file", "file:STROKE.csv",
+     [](const std::string& rest, const std::string&) -> Device { return std::make_shared<StrokeDevice>(read_stroke(rest)); }},
     {"udp", "udp:PORT",
      [](const std::string& rest, const std::string& text) -> Device {
        return std::make_shared<DatagramDevice>(kPackets, rest, text);
+     }},
+    {"shm", "shm:NAME",
+     [](const std::string& rest, const std::string& text) -> Device { return std::make_shared<SharedDevice>(rest, text); }},
+    {"osc", "osc:PORT",
+     [](const std::string& rest, const std::string& text) -> Device {
+       return std::make_shared<DatagramDevice>(kOsc, rest, text);
      }},
 };
 

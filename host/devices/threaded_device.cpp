@@ -63,6 +63,7 @@ std::optional<DeviceWrench> ThreadedDevice::newest_wrench() {
   if (!wrenches_.take()) return std::nullopt;
   DeviceWrench wrench = wrenches_.newest();
   const std::uint64_t number = wrench.number;
+  if (number == 0) return std::nullopt;
   const bool known = number >= 1 && number <= published_ && published_ - number < senders_number_.size();
   wrench.number = known ? senders_number_[number % senders_number_.size()] : 0;
   return wrench;

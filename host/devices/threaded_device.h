@@ -42,8 +42,8 @@ class ThreadedDevice : public HapticDevice {
   /// Publishes a sample. Its `number` comes as its sender counts it, and is kept for the answer. A time of 0 becomes elapsed().
   void publish(DeviceSample sample);
   void refuse(Refusal why) { counter_.refuse(why); }
-  /// The newest wrench if there is one that was not taken yet; `number` is that of the sender of the sample, or 0 if it is
-  /// unknown.
+  /// The newest wrench if there is one that was not taken yet and that answers a sample; `number` is that of the sender of the
+  /// sample, or 0 if it is unknown.
   std::optional<DeviceWrench> newest_wrench();
   /// Seconds since the device was opened.
   [[nodiscard]] double elapsed() const;
