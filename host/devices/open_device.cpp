@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "devices/datagram_device.h"
+#include "devices/igtl_device.h"
 #include "devices/osc.h"
 #include "devices/shared_device.h"
 #include "devices/stroke.h"
@@ -31,6 +32,8 @@ const DeviceKind kKinds[] = {
      }},
     {"shm", "shm:NAME",
      [](const std::string& rest, const std::string& text) -> Device { return std::make_shared<SharedDevice>(rest, text); }},
+    {"igtl", "igtl:PORT",
+     [](const std::string& rest, const std::string& text) -> Device { return std::make_shared<IgtlDevice>(rest, text); }},
     {"osc", "osc:PORT",
      [](const std::string& rest, const std::string& text) -> Device {
        return std::make_shared<DatagramDevice>(kOsc, rest, text);
