@@ -150,7 +150,22 @@ pliant_room(pliant_render Threads::Threads)
 pliant_with_embree(pliant_render host/render/ray_scene)
 
 # Touch: devices that a hand holds, and the forces on them at their own rate.
-pliant_room(pliant_devices Threads::Threads)
+pliant_room(pliant_devices fmt::fmt nlohmann_json::nlohmann_json Threads::Threads)
+# pliant_loaded(FILE HEADER LIBRARY MACRO): a C library that host/devices loads when a device needs it, so that nobody links it. FILE is
+# compiled with the name of its shared object, or without what needs it.
+function(pliant_loaded file header library macro)
+  find_path(${macro}_HEADERS ${header})
+  find_library(${macro} ${library})
+  if(NOT ${macro}_HEADERS OR NOT ${macro})
+    return()
+  endif()
+  file(REAL_PATH ${${macro}} shared_object)
+  if(shared_object MATCHES "/(lib[^/]*[.]so[.][0-9]+)[^/]*$")
+    set_source_files_properties(${CMAKE_SOURCE_DIR}/${file} PROPERTIES COMPILE_DEFINITIONS "${macro}=\"${CMAKE_MATCH_1}\"")
+  endif()
+endfunction()
+pliant_loaded(host/devices/websocket_device.cpp libwebsockets.h websockets PLIANT_WEBSOCKETS_LIBRARY)
+pliant_loaded(host/devices/spacenav_device.cpp spnav.h spnav PLIANT_SPNAV_LIBRARY)
 pliant_room(pliant_haptics pliant_twins Threads::Threads)
 
 # What include/pliant declares.

@@ -6,8 +6,10 @@
 #include "devices/igtl_device.h"
 #include "devices/osc.h"
 #include "devices/shared_device.h"
+#include "devices/spacenav_device.h"
 #include "devices/stroke.h"
 #include "devices/stroke_device.h"
+#include "devices/websocket_device.h"
 #include "pliant/error.h"
 
 namespace pliant {
@@ -32,12 +34,14 @@ const DeviceKind kKinds[] = {
      }},
     {"shm", "shm:NAME",
      [](const std::string& rest, const std::string& text) -> Device { return std::make_shared<SharedDevice>(rest, text); }},
+    {"websocket", "websocket:PORT", open_websocket},
     {"igtl", "igtl:PORT",
      [](const std::string& rest, const std::string& text) -> Device { return std::make_shared<IgtlDevice>(rest, text); }},
     {"osc", "osc:PORT",
      [](const std::string& rest, const std::string& text) -> Device {
        return std::make_shared<DatagramDevice>(kOsc, rest, text);
      }},
+    {"spacenav", "spacenav", open_spacenav},
 };
 
 }  // namespace
