@@ -72,7 +72,8 @@ def stages(mode):
         return Stage(name, preset, tests, targets, [f"-DPLIANT_FUZZ_PATHS={paths}"], SANITIZERS)
 
     def fuzz(name, seconds):
-        return Stage(name, "fuzz", ["-L", "^fuzz$"], ["fuzz_scene", "fuzz_mesh", "fuzz_cut", "fuzz_state"], [f"-DPLIANT_FUZZ_SECONDS={seconds}"])
+        fuzzers = [f"fuzz_{topic}" for topic in "scene mesh cut state pose osc igtl haply stroke".split()]
+        return Stage(name, "fuzz", ["-L", "^fuzz$"], fuzzers, [f"-DPLIANT_FUZZ_SECONDS={seconds}"])
 
     yield Stage("all tests (g++, release)", "check", ["-LE", "^(.*[.]single|fuzz|oclgrind|variant_.*)$"], [], strict, opencl, lend_command)
     if mode == "--quick":
