@@ -139,7 +139,7 @@ class Service {
     const std::string file = (folder_.path() / "port").string(), log = (folder_.path() / "log").string();
     process_ = fork();
     if (process_ == 0) {
-      execlp(python, "python3", "-B", script.c_str(), file.c_str(), log.c_str(), mode.c_str(), nullptr);
+      execlp(python, python, "-B", script.c_str(), file.c_str(), log.c_str(), mode.c_str(), nullptr);
       _exit(127);
     }
     EXPECT_TRUE(until([&] {

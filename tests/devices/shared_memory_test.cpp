@@ -3,7 +3,8 @@
 #include <sys/mman.h>
 #include <sys/wait.h>
 
-#include <atomic>
+#include <algorithm>
+#include <array>
 #include <cstring>
 
 #include "device_ends.h"
@@ -84,24 +85,27 @@ TEST(SharedDevice, ADriverInAnotherProcessIsHeardAndAnswered) {
 }
 
 TEST(SharedDevice, NeverReadsAMixtureOfTwoPoses) {
-  const std::string name = fresh_name("mixture");
-  const auto device = open_device("shm:" + name);
-  const Driver driver(name);
-  std::atomic<bool> done{false};
+  pliant_haptic_pose_slot slot{};
+  constexpr std::size_t kWords = sizeof slot.words / 8;
+  constexpr std::uint64_t kLast = 3000000;
   std::thread writer([&] {
-    for (int i = 0; i < 200000; ++i) {
-      DeviceSample sample;
-      sample.time = i + 1;
-      sample.position.fill(1e-3 * i);
-      sample.number = static_cast<std::uint64_t>(i + 1);
-      driver.publish(sample);
+    std::array<std::uint64_t, kWords> words;
+    for (std::uint64_t i = 1; i <= kLast; ++i) {
+      words.fill(i);
+      pliant_haptic_publish(&slot.sequence, slot.words, words.data(), kWords);
     }
-    done.store(true);
   });
-  while (!done.load() || device->read().time != 200000) {
-    const DeviceSample sample = device->read();
-    if (sample.number == 0) continue;
-    for (const double x : sample.position) ASSERT_EQ(x, 1e-3 * (sample.time - 1));
+  std::array<std::uint64_t, kWords> words{};
+  for (std::uint64_t last = 0; last < kLast;) {
+    const std::uint64_t sequence = pliant_haptic_copy(&slot.sequence, slot.words, words.data(), kWords);
+    if (sequence == 0) continue;
+    EXPECT_GE(words[0], last);
+    last = words[0];
+    EXPECT_EQ(sequence, 2 * last);
+    if (std::count(words.begin(), words.end(), last) != static_cast<std::ptrdiff_t>(kWords)) {
+      ADD_FAILURE() << "a mixture at " << last;
+      break;
+    }
   }
   writer.join();
 }
