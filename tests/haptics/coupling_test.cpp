@@ -146,7 +146,7 @@ TEST(VirtualCoupling, ThePassiveOneIsStableWithAnyContact) {
         hand.place({{5e-3, 0, 0}});
         coupling.place(hand.pose());
         double early = 0, late = 0, x = 5e-3;
-        constexpr int kTicks = 200000;
+        constexpr int kTicks = 100000;
         for (int n = 0; n < kTicks; ++n) {
           const Coupled out = coupling.step(hand.pose(), hand.velocity(), {}, {{-share * limit * x, 0, 0}, {}}, dt);
           x = out.instrument.position[0];
