@@ -6,6 +6,7 @@
 
 #include "api/haptic_thread.h"
 #include "api/world_call.h"
+#include "devices/device_log.h"
 #include "pliant/haptics.h"
 
 namespace pliant {
@@ -40,6 +41,9 @@ void check_options(const HapticOptions& o) {
               fmt::format("haptics: model is \"{}\", expected auto, buffer, whole, held or extrapolated", o.model));
 }
 
+/// Greatest acceleration of a hand [m/s^2], and the arm at which it holds a stylus [m].
+constexpr double kHandAcceleration = 50, kArm = 0.045;
+
 haptics::CoreOptions core_options(const HapticOptions& o, const DeviceLimits& limits) {
   haptics::CoreOptions c;
   c.model = o.model == "held"           ? haptics::ModelKind::held
@@ -49,7 +53,7 @@ haptics::CoreOptions core_options(const HapticOptions& o, const DeviceLimits& li
   c.tick = 1 / o.rate;
   c.coupling.rigid = o.stiffness == 0;
   if (o.stiffness > 0) {
-    constexpr double kArm2 = 0.002;  // square of the arm at which a stylus is held [m^2]
+    constexpr double kArm2 = kArm * kArm;
     c.coupling.stiffness = o.stiffness;
     c.coupling.damping = o.damping;
     c.coupling.turn_stiffness = o.turn_stiffness > 0 ? o.turn_stiffness : kArm2 * o.stiffness;
@@ -57,6 +61,8 @@ haptics::CoreOptions core_options(const HapticOptions& o, const DeviceLimits& li
   }
   c.passive = o.passive;
   c.translation.damping = o.device_damping;
+  c.translation.acceleration = 2 * kHandAcceleration;  // velocities are differences of samples
+  c.rotation.acceleration = 2 * kHandAcceleration / kArm;
   c.guard = {o.stale_after, o.ramp, o.ramp};
   c.limits = limits;
   if (o.greatest_force > 0) c.limits.force = std::min(c.limits.force, o.greatest_force);

@@ -126,7 +126,7 @@ StepReport World::step(std::int64_t steps) {
   check_steps(steps);
   impl_->throw_failure();
   impl_->check_can_step();
-  return impl_->run(steps);
+  return impl_->step_frame(steps);
 }
 
 StepReport World::advance(double seconds) {
@@ -135,21 +135,21 @@ StepReport World::advance(double seconds) {
   check_seconds(seconds);
   impl_->throw_failure();
   impl_->check_can_step();
-  return impl_->advance(seconds);
+  return impl_->advance_frame(seconds);
 }
 
 bool World::step_async(std::int64_t steps) {
   const Call call(impl_, false);
   impl_->check_not_live("step_async");
   check_steps(steps);
-  return impl_->start_job([impl = impl_.get(), steps] { impl->run(steps); });
+  return impl_->start_job([impl = impl_.get(), steps] { impl->step_frame(steps); });
 }
 
 bool World::advance_async(double seconds) {
   const Call call(impl_, false);
   impl_->check_not_live("advance_async");
   check_seconds(seconds);
-  return impl_->start_job([impl = impl_.get(), seconds] { impl->advance(seconds); });
+  return impl_->start_job([impl = impl_.get(), seconds] { impl->advance_frame(seconds); });
 }
 
 bool World::busy() const {

@@ -17,6 +17,7 @@
 #include "api/pace.h"
 #include "api/rigid_tools.h"
 #include "api/surface_handles.h"
+#include "haptics/instrument.h"
 #include "pliant/world.h"
 #include "simulation/measure/probing.h"
 #include "simulation/simulation.h"
@@ -80,6 +81,15 @@ struct World::Impl {
   CutReport cut_now(std::span<const api::CutRequest> requests);
   void cut_pending();
   [[nodiscard]] api::SurfaceVertex vertex_of(std::int32_t vertex) const;
+
+  // world_instruments.cpp
+  /// As run() and advance(), as a frame of the instruments: before it tools go where their devices are, after it the devices
+  /// learn the state of the tissue.
+  StepReport step_frame(std::int64_t steps);
+  StepReport advance_frame(double seconds);
+  Pose attach(std::shared_ptr<haptics::Instrument> instrument);
+  void move_instruments(double seconds);
+  void tell_instruments();
 
   // world_tools.cpp
   /// Throws if the World cannot continue, unless the worker is running (it reports errors itself).
@@ -159,6 +169,7 @@ struct World::Impl {
   std::string asked_parameters;               ///< used by the caller: parameters after all changes (scene/change.h)
   bool beside = false;                        ///< used by the caller: asynchronous steps were started and not waited for
   bool cut_since_read = false;                ///< `newest` does not include the last cut
+  std::vector<std::shared_ptr<haptics::Instrument>> instruments;
   api::Pace pace;
   bool held = false;                             ///< a call that waits is at work; no frame may begin
   bool halted = false;                           ///< diverged, or the device is lost: only files are served
@@ -180,6 +191,9 @@ struct WorldAccess {
   static World make(Scene scene, OpenBackend open, const WorldOptions& options = {});
   /// Returns the simulation, once the worker is idle. reset() and load() replace it.
   static Simulation& simulation(World& world);
+  /// Lets an instrument drive its tool. Returns where the tool is. Throws Error (usage) for a tool that is unknown, parked or
+  /// driven by another instrument.
+  static Pose attach(World& world, std::shared_ptr<haptics::Instrument> instrument);
 };
 
 }  // namespace pliant

@@ -96,7 +96,7 @@ void World::Impl::live_frame() {
   }
   const double before = simulation->time();
   editing = 0;
-  advance(covers);
+  advance_frame(covers);
   const double stepped = api::wall_time();
   read_frame();
   const double now = api::wall_time();

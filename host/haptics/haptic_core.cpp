@@ -68,14 +68,13 @@ const CoreTick& HapticCore::tick(const DeviceSample& sample, double age, double 
   DeviceSample scene = sample;
   scene.position = out_.device.position;
   scene.turn = out_.device.turn;
-  const Motion now = motion_.update(scene, dt), smooth = smooth_.update(scene, dt);
+  const Motion plain = plain_.update(sample, dt), now = motion_.update(scene, dt), smooth = smooth_.update(scene, dt);
   const Coupled coupled = coupling_.step(out_.device, now.velocity, now.spin, last_, dt);
   out_.tool = coupled.instrument;
   out_.tissue = last_ = felt(out_.tool, dt);
   Wrench hand = scaled(options_.coupling.rigid ? last_ : coupled.on_hand, options_.force_scale);
-  const Wrench allowed = options_.passive ? gate_.tick({sample.position, sample.turn},
-                                                       vec::mul(now.velocity, 1 / options_.motion_scale), now.spin, hand, dt)
-                                          : hand;
+  const Wrench allowed =
+      options_.passive ? gate_.tick({sample.position, sample.turn}, plain.velocity, plain.spin, hand, dt) : hand;
   out_.hand = guard_.tick(allowed, age, dt);
   if (options_.passive) gate_.exerted(out_.hand);
   out_.exerted = {out_.hand.force, out_.hand.torque, sample.time, sample.number};

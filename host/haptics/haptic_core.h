@@ -61,7 +61,8 @@ class HapticCore {
   VirtualCoupling coupling_;
   PassivityGate gate_;
   ForceGuard guard_;
-  MotionEstimate motion_{2e-3}, smooth_{8e-3};  ///< of the device, for the coupling and for the simulation's tool
+  /// Of the device: for the account of its energy, for the coupling, and for the simulation's tool.
+  MotionEstimate plain_{0}, motion_{2e-3}, smooth_{8e-3};
   ModelKind in_use_;
   bool covered_ = true, aligned_ = false;
   Pose start_;         ///< of the tool

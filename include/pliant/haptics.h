@@ -95,7 +95,7 @@ class PLIANT_API HapticLoop {
   /// Ends the thread; the device gets a zero force, and the tool stays where it is.
   void stop() noexcept;
   [[nodiscard]] HapticState state() const;
-  /// Returns the samples of the ticks since the last call, oldest first; the newest 65536 are kept.
+  /// Returns the samples of the ticks since the last call, oldest first. When 65536 wait, further ones are left out.
   std::vector<HapticSample> samples();
   /// Writes what the device said as a stroke, which "file:" plays (docs/haptic_devices.md). Throws Error: state (without
   /// log_samples), io.

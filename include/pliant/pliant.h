@@ -6,6 +6,8 @@
 
 #include "pliant/error.h"
 #include "pliant/frame.h"
+#include "pliant/haptic_device.h"
+#include "pliant/haptics.h"
 #include "pliant/probe.h"
 #include "pliant/scene.h"
 #include "pliant/tool.h"
