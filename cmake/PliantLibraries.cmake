@@ -174,7 +174,7 @@ pliant_room(pliant_api)
 pliant_room(pliant_plan)
 
 file(GLOB_RECURSE bench_sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/bench/*.cpp)
-list(FILTER bench_sources EXCLUDE REGEX "/bench/(api|trainer)/")
+list(FILTER bench_sources EXCLUDE REGEX "/bench/(api|trainer|haptics)/")
 add_library(pliant_bench STATIC ${bench_sources})
 pliant_unity_folders(pliant_bench)  # each folder is a namespace of its own
 target_link_libraries(pliant_bench PUBLIC ${links_pliant_bench})
@@ -182,6 +182,10 @@ target_include_directories(pliant_bench PUBLIC ${CMAKE_SOURCE_DIR})  # "bench/ke
 target_precompile_headers(pliant_bench REUSE_FROM pliant_command_headers)
 add_library(pliant_bench_trainer STATIC bench/trainer/trainer.cpp)
 target_link_libraries(pliant_bench_trainer PUBLIC ${links_pliant_bench_trainer})
+file(GLOB haptics_bench_sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/bench/haptics/*.cpp)
+add_library(pliant_bench_haptics STATIC ${haptics_bench_sources})
+target_link_libraries(pliant_bench_haptics PUBLIC ${links_pliant_bench_haptics})
+target_precompile_headers(pliant_bench_haptics REUSE_FROM pliant_command_headers)
 
 file(GLOB cli_sources CONFIGURE_DEPENDS host/cli/*.cpp)
 add_library(pliant_cli_objects OBJECT ${cli_sources})

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "bench/contact/parts.h"
 #include "bench/kernels/kernels.h"
@@ -13,8 +12,6 @@
 
 namespace pliant::bench {
 namespace contact {
-
-using nlohmann::json;
 
 const std::vector<Part>& parts() {
   static const std::vector<Part> all{
@@ -25,45 +22,6 @@ const std::vector<Part>& parts() {
       {"costs", "What is the step with contact over the step without?", measure_costs},
   };
   return all;
-}
-
-/// JSON knows no infinity.
-json finite_or_null(double value) { return std::isfinite(value) ? json(value) : json(); }
-
-void PartRun::add(const std::string& test, const std::string& scene, json value, json expected, json error, json bound,
-                  const std::string& message) {
-  json ok;
-  if (!bound.is_null()) ok = error.is_number() && error.get<double>() <= bound.get<double>();
-  if (!message.empty()) ok = false;
-  rows_.push_back({{"part", name_},
-                   {"test", test},
-                   {"scene", scene},
-                   {"value", std::move(value)},
-                   {"expected", std::move(expected)},
-                   {"error", std::move(error)},
-                   {"bound", std::move(bound)},
-                   {"ok", std::move(ok)},
-                   {"message", message}});
-}
-
-void PartRun::at_most(const std::string& test, const std::string& scene, double value, double bound) {
-  add(test, scene, finite_or_null(value), 0.0, finite_or_null(std::abs(value)), bound);
-}
-
-void PartRun::close_to(const std::string& test, const std::string& scene, double value, double expected, double bound) {
-  add(test, scene, finite_or_null(value), finite_or_null(expected), finite_or_null(std::abs(value / expected - 1)), bound);
-}
-
-void PartRun::at_least(const std::string& test, const std::string& scene, double value, double expected, double bound) {
-  add(test, scene, finite_or_null(value), expected, finite_or_null(std::max(0.0, 1 - value / expected)), bound);
-}
-
-void PartRun::told(const std::string& test, const std::string& scene, double value) {
-  add(test, scene, finite_or_null(value), {}, {}, {});
-}
-
-void PartRun::failed(const std::string& test, const std::string& scene, const std::string& why) {
-  add(test, scene, {}, {}, {}, {}, why);
 }
 
 }  // namespace contact
@@ -106,15 +64,6 @@ ContactOptions checked(const ContactOptions& asked) {
   return o;
 }
 
-json summary_of(const json& rows) {
-  int asked = 0, good = 0;
-  for (const json& row : rows) {
-    asked += row["ok"].is_boolean();
-    good += row["ok"] == true;
-  }
-  return {{"rows", rows.size()}, {"asked", asked}, {"ok", good}};
-}
-
 }  // namespace
 
 json bench_contact(const ContactOptions& asked) {
@@ -138,5 +87,7 @@ json bench_contact(const ContactOptions& asked) {
   if (options.progress) options.progress(1, "done");
   return result;
 }
+
+std::string contact_table(const json& result) { return rows_table(result); }
 
 }  // namespace pliant::bench

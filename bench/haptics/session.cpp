@@ -50,6 +50,9 @@ void run_until(Simulation& s, double time, std::size_t tool, const F& seen) {
   }
 }
 
+/// Messages travel for `delay` frames; each has its own slot until it is replaced.
+std::size_t session_slots(const SessionOptions& options) { return static_cast<std::size_t>(std::ceil(options.delay)) + 3; }
+
 /// Where the instrument will be `ahead` seconds after `t`, if it goes on as in the last moments.
 Pose predicted(const Stroke& stroke, double t, double ahead) {
   constexpr double kPast = 0.01;  // [s]
@@ -63,7 +66,8 @@ Pose predicted(const Stroke& stroke, double t, double ahead) {
 
 }  // namespace
 
-ForceTrace full_model(Scene scene, const std::string& tool, const Stroke& stroke, double seconds, double rate) {
+ForceTrace full_model(Scene scene, const std::string& tool, const Stroke& stroke, double seconds, double rate,
+                      const std::function<void(Simulation&, double)>& edit, double frame) {
   ContactTool& own = tool_of(scene, tool);
   own.path.clear();
   for (double t = 0; t <= seconds + 1e-9; t += 1 / rate) own.path.push_back(path_point(t, stroke(t)));
@@ -76,7 +80,7 @@ ForceTrace full_model(Scene scene, const std::string& tool, const Stroke& stroke
   ForceTrace trace{1 / rate, {}};
   double before = 0;
   Wrench last;
-  run_until(s, seconds, index_of(s, tool), [&](double time, const StepForce& f) {
+  const auto seen = [&](double time, const StepForce& f) {
     while ((static_cast<double>(trace.wrench.size()) + 1) / rate <= time + 1e-12) {  // interpolated between two steps
       const double at = (static_cast<double>(trace.wrench.size()) + 1) / rate, share = (at - before) / (time - before);
       Wrench w;
@@ -88,56 +92,85 @@ ForceTrace full_model(Scene scene, const std::string& tool, const Stroke& stroke
     }
     before = time;
     last = {f.force, f.torque};
-  });
+  };
+  const std::size_t index = index_of(s, tool);
+  for (double t = frame; edit && t < seconds; t += frame) {
+    run_until(s, t, index, seen);
+    edit(s, t);
+  }
+  run_until(s, seconds, index, seen);
   return trace;
 }
 
-SessionReport with_buffer(Scene scene, const std::string& tool, const Stroke& stroke, const SessionOptions& options) {
+SessionReport run_session(Scene scene, const std::string& tool, const Stroke& stroke, const SessionOptions& options,
+                          const SessionParts& parts) {
   ContactTool& own = tool_of(scene, tool);
   own.path = {path_point(0, stroke(0))};
   Simulation s(scene, open_backend("cpu"));
-  BufferSource source(tool, options.rings);
-  BufferForce force(options.lead);
   SessionReport out;
   out.felt.period = 1 / options.haptic_rate;
   const double frame = 1 / options.frame_rate, dt = 1 / options.haptic_rate;
-  // Messages travel for `delay` frames; each has its own slot until it is replaced.
-  const std::size_t slots = static_cast<std::size_t>(std::ceil(options.delay)) + 3;
-  std::vector<std::unique_ptr<BufferMessage>> messages(slots);
-  for (auto& m : messages) m = std::make_unique<BufferMessage>();
+  const std::size_t slots = session_slots(options), index = index_of(s, tool);
+  const auto stalled = [&](double t) { return t > options.stalled_from && t < options.stalled_until; };
   std::int64_t made = 0, taken = 0;
-  const auto ticks = static_cast<std::int64_t>(std::llround(options.seconds * options.haptic_rate));
-  for (std::int64_t k = 1; k <= ticks; ++k) {
+  out.ticks = static_cast<std::int64_t>(std::llround(options.seconds * options.haptic_rate));
+  for (std::int64_t k = 1; k <= out.ticks; ++k) {
     const double t = static_cast<double>(k) * dt;
-    // Frame n takes the tool to where it was when the frame began; its result arrives `delay` frames after that.
+    // Frame n takes the tool to where it will be when it ends, as seen from when it begins.
     while (static_cast<double>(made) * frame < t - 1e-12) {
-      const double begin = static_cast<double>(made) * frame;
-      BufferMessage& message = *messages[static_cast<std::size_t>(made) % slots];
+      const double end = static_cast<double>(made) * frame;
+      if (stalled(end)) {
+        ++made;
+        ++taken;
+        continue;
+      }
       if (made > 0) {
-        s.tools().drive(tool, predicted(stroke, begin - frame, options.predict * frame), frame);
-        run_until(s, begin, index_of(s, tool), [](double, const StepForce&) {});
+        if (parts.edit) parts.edit(s, end);
+        s.tools().drive(tool, predicted(stroke, end - frame, options.predict * frame), frame);
+        run_until(s, s.time() + frame, index, [](double, const StepForce&) {});
       }
-      source.fill(s, force.in_use(), message);
-      if (!message.covered) ++out.uncovered;
-      ++made;
+      parts.made(s, static_cast<std::size_t>(made++) % slots);
     }
-    while (taken < made && (static_cast<double>(taken) + options.delay - 1) * frame < t - 1e-12) {
-      const BufferMessage& message = *messages[static_cast<std::size_t>(taken++) % slots];
-      force.receive(message, frame);
-      out.built = static_cast<std::int64_t>(message.generation);
-      if (message.model != nullptr) {
-        out.elements = std::max(out.elements, message.model->part().elements);
-        out.nodes = std::max(out.nodes, static_cast<std::int64_t>(message.model->part().slot.size()));
-      }
-    }
+    while (taken < made && (static_cast<double>(taken) + options.delay - 1) * frame < t - 1e-12)
+      parts.arrived(static_cast<std::size_t>(taken++) % slots);
     const auto start = Clock::now();
-    out.felt.wrench.push_back(force.tick(stroke(t), dt));
+    out.felt.wrench.push_back(parts.tick(stroke(t), dt));
     const double took = std::chrono::duration<double>(Clock::now() - start).count();
     out.tick_seconds += took;
     out.worst_tick = std::max(out.worst_tick, took);
   }
-  out.ticks = ticks;
-  if (force.buffer() != nullptr) out.substeps = force.buffer()->substeps();
+  return out;
+}
+
+SessionReport with_buffer(Scene scene, const std::string& tool, const Stroke& stroke, const SessionOptions& options,
+                          const std::function<void(Simulation&, double)>& edit) {
+  BufferSource source(tool, options.rings);
+  BufferForce force(options.lead);
+  SessionReport seen;
+  std::vector<std::unique_ptr<BufferMessage>> messages(session_slots(options));
+  for (auto& m : messages) m = std::make_unique<BufferMessage>();
+  SessionParts parts;
+  parts.edit = edit;
+  parts.made = [&](Simulation& s, std::size_t slot) {
+    source.fill(s, force.in_use(), *messages[slot]);
+    if (!messages[slot]->covered) ++seen.uncovered;
+  };
+  parts.arrived = [&](std::size_t slot) {
+    const BufferMessage& message = *messages[slot];
+    force.receive(message, 1 / options.frame_rate);
+    seen.built = static_cast<std::int64_t>(message.generation);
+    if (message.model == nullptr) return;
+    seen.elements = std::max(seen.elements, message.model->part().elements);
+    seen.nodes = std::max(seen.nodes, static_cast<std::int64_t>(message.model->part().slot.size()));
+    seen.substeps = message.model->substeps();
+  };
+  parts.tick = [&](const Pose& pose, double dt) { return force.tick(pose, dt); };
+  SessionReport out = run_session(std::move(scene), tool, stroke, options, parts);
+  out.built = seen.built;
+  out.uncovered = seen.uncovered;
+  out.elements = seen.elements;
+  out.nodes = seen.nodes;
+  out.substeps = seen.substeps;
   out.resets = static_cast<std::int64_t>(force.resets());
   return out;
 }

@@ -28,8 +28,9 @@ struct SessionOptions {
   double seconds = 1;
   double delay = 1;        ///< frames between the pose that a frame begins with and the arrival of its result
   std::int32_t rings = 2;  ///< of the buffer; negative: the whole body
-  double predict = 1;      ///< frames by which the simulation's tool is ahead of the last pose, at its speed
-  double lead = 1;         ///< BufferForce
+  double stalled_from = 0, stalled_until = 0;  ///< no frame is made in between [s]
+  double predict = 1;  ///< frames by which the simulation's tool is ahead of the last pose, at its speed
+  double lead = 1;     ///< BufferForce
 };
 
 /// What a session cost, beside its forces.
@@ -41,11 +42,25 @@ struct SessionReport {
   int substeps = 0;                         ///< of the last tick
 };
 
-/// The force on the scene's tool `tool` of a simulation in which it follows the stroke in every step.
-ForceTrace full_model(Scene scene, const std::string& tool, const Stroke& stroke, double seconds, double rate);
+/// The force on the scene's tool `tool` of a simulation in which it follows the stroke in every step. `edit`: called every
+/// `frame` seconds with the time; may be empty.
+ForceTrace full_model(Scene scene, const std::string& tool, const Stroke& stroke, double seconds, double rate,
+                      const std::function<void(Simulation&, double)>& edit = nullptr, double frame = 1.0 / 60);
 
-/// The force of the buffer model, beside a simulation whose tool goes once per frame to where the instrument was.
-SessionReport with_buffer(Scene scene, const std::string& tool, const Stroke& stroke, const SessionOptions& options);
+/// What is tried in a session. Frames are numbered by slots that are used again when their turn comes.
+struct SessionParts {
+  std::function<void(Simulation&, double)> edit;       ///< before a frame; may be empty. Its end [s]
+  std::function<void(Simulation&, std::size_t)> made;  ///< a frame has ended: keep in this slot what it says
+  std::function<void(std::size_t)> arrived;            ///< the frame in this slot reaches the haptic thread
+  std::function<Wrench(const Pose&, double)> tick;     ///< the instrument goes to a pose within a time [s]
+};
+/// Beside the ticks runs a simulation whose tool goes once per frame to where the instrument was.
+SessionReport run_session(Scene scene, const std::string& tool, const Stroke& stroke, const SessionOptions& options,
+                          const SessionParts& parts);
+
+/// The same with the buffer model.
+SessionReport with_buffer(Scene scene, const std::string& tool, const Stroke& stroke, const SessionOptions& options,
+                          const std::function<void(Simulation&, double)>& edit = nullptr);
 
 /// Differences of the forces [N] from `start` [s] on: largest and root mean square, and the largest and the root mean square of
 /// `expected`.

@@ -9,6 +9,7 @@
 #include "bench/contact/contact.h"
 #include "bench/cutting/cutting.h"
 #include "bench/deformation/deformation.h"
+#include "bench/haptics/haptics.h"
 #include "bench/kernels/kernels.h"
 #include "bench/stability/stability.h"
 #include "bench/survival/survival.h"
@@ -33,6 +34,7 @@ struct BenchArguments {
   bench::SurvivalOptions survival;
   bench::ContactOptions contact;
   bench::TrainerOptions trainer;
+  bench::HapticsOptions haptics;
   std::filesystem::path out;
 };
 
@@ -226,6 +228,23 @@ void add_trainer(CLI::App& app, const std::shared_ptr<BenchArguments>& options) 
   sub->add_option("--out", options->out, "folder for trainer.json and trainer.csv");
 }
 
+int haptics(BenchArguments& options) {
+  options.common.check();
+  return measure(options, "haptics", options.haptics, bench::bench_haptics, bench::haptics_table);
+}
+
+void add_haptics(CLI::App& app, const std::shared_ptr<BenchArguments>& options) {
+  CLI::App* sub =
+      app.add_subcommand("haptics", "What a hand feels: buffer model against the full one, passivity, ticks in time");
+  bench::HapticsOptions& h = options->haptics;
+  options->common.add_to(*sub);
+  sub->add_option("--parts", h.parts, "strokes, others, edits, passivity, times")->delimiter(',');
+  sub->add_option("--scenes", h.scenes, "folder of the shipped scenes");
+  sub->add_option("--seconds", h.seconds, "length of each measurement in wall time, default: 20");
+  sub->add_flag("--quick", h.quick, "one body, two sizes of buffer, 2 s");
+  sub->add_option("--out", options->out, "folder for haptics.json and haptics.csv");
+}
+
 }  // namespace
 
 std::function<int()> setup_bench(CLI::App& app) {
@@ -246,6 +265,7 @@ std::function<int()> setup_bench(CLI::App& app) {
   add_survival(app, options);
   add_contact(app, options);
   add_trainer(app, options);
+  add_haptics(app, options);
   return [options, &app] {
     if (app.got_subcommand("kernels")) return kernels(*options);
     if (app.got_subcommand("accuracy")) return accuracy(*options);
@@ -253,6 +273,7 @@ std::function<int()> setup_bench(CLI::App& app) {
     if (app.got_subcommand("cutting")) return cutting(*options);
     if (app.got_subcommand("contact")) return contact(*options);
     if (app.got_subcommand("trainer")) return trainer(*options);
+    if (app.got_subcommand("haptics")) return haptics(*options);
     return app.got_subcommand("stability") ? stability(*options) : deformation(*options);
   };
 }

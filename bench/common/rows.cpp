@@ -1,14 +1,19 @@
-// The rows of `pliant bench contact` as text.
+#include "bench/common/rows.h"
+
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
-#include "bench/contact/contact.h"
-
 namespace pliant::bench {
-namespace {
 
 using nlohmann::json;
+
+namespace {
+
+/// JSON knows no infinity.
+json finite_or_null(double value) { return std::isfinite(value) ? json(value) : json(); }
 
 std::string short_number(const json& value) { return value.is_null() ? "-" : fmt::format("{:.4g}", value.get<double>()); }
 
@@ -52,7 +57,52 @@ std::string lines_of(const std::vector<const json*>& rows) {
 
 }  // namespace
 
-std::string contact_table(const json& result) {
+void Rows::add(const std::string& test, const std::string& scene, json value, json expected, json error, json bound,
+               const std::string& message) {
+  json ok;
+  if (!bound.is_null()) ok = error.is_number() && error.get<double>() <= bound.get<double>();
+  if (!message.empty()) ok = false;
+  rows_.push_back({{"part", part_},
+                   {"test", test},
+                   {"scene", scene},
+                   {"value", std::move(value)},
+                   {"expected", std::move(expected)},
+                   {"error", std::move(error)},
+                   {"bound", std::move(bound)},
+                   {"ok", std::move(ok)},
+                   {"message", message}});
+}
+
+void Rows::at_most(const std::string& test, const std::string& scene, double value, double bound) {
+  add(test, scene, finite_or_null(value), 0.0, finite_or_null(std::abs(value)), bound);
+}
+
+void Rows::close_to(const std::string& test, const std::string& scene, double value, double expected, double bound) {
+  add(test, scene, finite_or_null(value), finite_or_null(expected), finite_or_null(std::abs(value / expected - 1)), bound);
+}
+
+void Rows::at_least(const std::string& test, const std::string& scene, double value, double expected, double bound) {
+  add(test, scene, finite_or_null(value), expected, finite_or_null(std::max(0.0, 1 - value / expected)), bound);
+}
+
+void Rows::told(const std::string& test, const std::string& scene, double value) {
+  add(test, scene, finite_or_null(value), {}, {}, {});
+}
+
+void Rows::failed(const std::string& test, const std::string& scene, const std::string& why) {
+  add(test, scene, {}, {}, {}, {}, why);
+}
+
+json summary_of(const json& rows) {
+  int asked = 0, good = 0;
+  for (const json& row : rows) {
+    asked += row["ok"].is_boolean();
+    good += row["ok"] == true;
+  }
+  return {{"rows", rows.size()}, {"asked", asked}, {"ok", good}};
+}
+
+std::string rows_table(const json& result) {
   std::string text;
   for (const json& part : result["parts"]) {
     text += fmt::format("{}{}\n", text.empty() ? "" : "\n", part["question"].get<std::string>());
