@@ -73,7 +73,7 @@ class Sleeper {
   std::thread thread_;
 };
 
-void session(PartRun& run, const std::string& file, double rate, double share_done) {
+void session(PartRun& run, const std::string& file, double rate, const std::string& model, double share_done) {
   const std::filesystem::path folder = find_shipped_scenes(run.options.scenes, file);
   WorldOptions options;
   options.cutting = true;
@@ -84,10 +84,12 @@ void session(PartRun& run, const std::string& file, double rate, double share_do
   ball.path = {{0, -0.02, 0.092, 0, 0, 0, 0, 1}};
   ball.friction = 0.2;
   world.add_tool(ball);
-  const std::string name = fmt::format("{}, {} Hz", file, rate);
+  const std::string name = fmt::format("{}, {} Hz, {}", file, rate, model == "auto" ? "auto" : "2 rings");
   run.show(share_done, name);
   HapticOptions haptic;
   haptic.rate = rate;
+  haptic.model = model;
+  haptic.rings = 2;
   HapticLoop loop(world, "ball", std::make_shared<Circling>(0.012), haptic);
   const Sleeper bare(rate, loop.state().realtime);
   world.run_live();
@@ -106,7 +108,11 @@ void session(PartRun& run, const std::string& file, double rate, double share_do
   const HapticState state = loop.state();
   const LiveState live = world.live_state();
   constexpr double kMicro = 1e6;
-  run.at_most("mean work of a tick [us]", name, kMicro * state.work_mean, 10);
+  if (model == "auto") {
+    run.told("mean work of a tick [us]", name, kMicro * state.work_mean);
+  } else {
+    run.at_most("mean work of a tick [us]", name, kMicro * state.work_mean, 10);
+  }
   run.told("99.9 % of the ticks work at most [us]", name, kMicro * state.work_p999);
   run.told("longest work of a tick [us]", name, kMicro * state.work_most);
   run.told("99.9 % of the ticks begin at most so late [us]", name, kMicro * state.delay_p999);
@@ -121,14 +127,17 @@ void session(PartRun& run, const std::string& file, double rate, double share_do
   run.told("cuts", name, static_cast<double>(cuts));
   run.told("simulated over real time", name, live.real_time);
   run.at_most("buffers that blew up", name, static_cast<double>(state.resets), 0);
-  run.at_least("least energy of the observer [J]", name, state.least_energy + 1, 1 - 1e-9, 0);
+  run.at_most("energy taken beyond the allowance of 1e-3 J [J]", name, std::max(0.0, -state.least_energy), 1e-9);
 }
 
 }  // namespace
 
 void measure_times(PartRun& run) {
-  session(run, "liver.json", 1000, 0);
-  if (!run.options.quick) session(run, "liver.json", 10000, 0.5);
+  session(run, "liver.json", 1000, "buffer", 0);
+  if (run.options.quick) return;
+  session(run, "liver.json", 10000, "buffer", 0.25);
+  session(run, "liver.json", 1000, "auto", 0.5);
+  session(run, "liver.json", 10000, "auto", 0.75);
 }
 
 }  // namespace pliant::bench::haptics
