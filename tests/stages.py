@@ -98,7 +98,7 @@ def stages(mode):
         yield sanitized("thread sanitizer", "tsan", ".", 300, "all")
         yield fuzz("fuzzing, 10 minutes each", 600)
     else:
-        yield sanitized("address and undefined-behaviour sanitizers", "fuzz", "scene|io|paths", 300, "test_scene", "test_io", "random_cut")
+        yield sanitized("address and undefined-behaviour sanitizers", "fuzz", "scene|io|devices|paths", 300, "test_scene", "test_io", "test_devices", "random_cut")
         yield fuzz("fuzzing, 20 s each", 20)
     yield Stage("clang-format, cppcheck, clang-tidy", "lint", command=lint)
 

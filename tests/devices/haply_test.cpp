@@ -12,7 +12,7 @@
 #include "support/source_dir.h"
 #include "support/temp_folder.h"
 
-namespace pliant::device_test {
+namespace pliant::device_test::haply {
 namespace {
 
 using devices::haply_force;
@@ -237,4 +237,4 @@ TEST(HaplyDevice, WaitsForAServiceThatIsNotThereYet) {
 }
 
 }  // namespace
-}  // namespace pliant::device_test
+}  // namespace pliant::device_test::haply

@@ -15,7 +15,7 @@
 #include <igtl_util.h>
 #endif
 
-namespace pliant::device_test {
+namespace pliant::device_test::openigtlink {
 namespace {
 
 using devices::open_device;
@@ -252,4 +252,4 @@ TEST(IgtlDevice, TheLibrarySendsPosesAndReceivesWrenches) {
 #endif
 
 }  // namespace
-}  // namespace pliant::device_test
+}  // namespace pliant::device_test::openigtlink

@@ -9,7 +9,7 @@
 #include <lo/lo.h>
 #endif
 
-namespace pliant::device_test {
+namespace pliant::device_test::osc {
 namespace {
 
 using devices::open_device;
@@ -99,7 +99,11 @@ class Liblo {
 
  private:
   static int keep(const char*, const char*, lo_arg** values, int count, lo_message, void* self) {
-    for (int i = 0; i < count; ++i) static_cast<Liblo*>(self)->got_.push_back(values[i]->f);
+    for (int i = 0; i < count; ++i) {
+      float value = 0;
+      std::memcpy(&value, values[i], sizeof value);  // liblo does not align them
+      static_cast<Liblo*>(self)->got_.push_back(value);
+    }
     return 0;
   }
   lo_server server_;
@@ -130,4 +134,4 @@ TEST(OscDevice, LibloSendsPosesAndReceivesWrenches) { GTEST_SKIP() << "liblo (li
 #endif
 
 }  // namespace
-}  // namespace pliant::device_test
+}  // namespace pliant::device_test::osc

@@ -11,7 +11,7 @@
 #include "devices/open_device.h"
 #include "pliant/c/haptic_packet.h"
 
-namespace pliant::device_test {
+namespace pliant::device_test::shared_memory {
 namespace {
 
 using devices::open_device;
@@ -172,4 +172,4 @@ TEST(SharedDevice, TwoAtOnceKeepApart) {
 }
 
 }  // namespace
-}  // namespace pliant::device_test
+}  // namespace pliant::device_test::shared_memory

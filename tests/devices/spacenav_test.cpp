@@ -9,7 +9,7 @@
 #include "devices/open_device.h"
 #include "support/temp_folder.h"
 
-namespace pliant::device_test {
+namespace pliant::device_test::spacenav {
 namespace {
 
 using devices::move_pose;
@@ -127,4 +127,4 @@ TEST(SpacenavDevice, WithoutADaemonThereIsAnErrorOfOneLine) {
 }
 
 }  // namespace
-}  // namespace pliant::device_test
+}  // namespace pliant::device_test::spacenav

@@ -10,7 +10,7 @@
 #include "support/error_of.h"
 #include "support/temp_folder.h"
 
-namespace pliant::device_test {
+namespace pliant::device_test::stroke {
 namespace {
 
 using devices::DeviceLog;
@@ -115,4 +115,4 @@ TEST(Stroke, BadFilesAreRefusedByLine) {
 }
 
 }  // namespace
-}  // namespace pliant::device_test
+}  // namespace pliant::device_test::stroke

@@ -7,7 +7,7 @@
 #include "devices/open_device.h"
 #include "devices/packet.h"
 
-namespace pliant::device_test {
+namespace pliant::device_test::udp {
 namespace {
 
 using devices::open_device;
@@ -183,4 +183,4 @@ TEST(OpenDevice, OtherTextsAreRefusedWithWhatIsAllowed) {
 }
 
 }  // namespace
-}  // namespace pliant::device_test
+}  // namespace pliant::device_test::udp

@@ -89,8 +89,7 @@ PLIANT_HAPTIC_ASSERT(offsetof(pliant_haptic_shared, pose) == 32 && offsetof(plia
 static inline void pliant_haptic_publish(uint64_t* sequence, uint64_t* slot, const uint64_t* words, size_t count) {
   const uint64_t before = __atomic_load_n(sequence, __ATOMIC_RELAXED);
   __atomic_store_n(sequence, before | 1, __ATOMIC_RELAXED);
-  __atomic_thread_fence(__ATOMIC_RELEASE);
-  for (size_t i = 0; i < count; ++i) __atomic_store_n(slot + i, words[i], __ATOMIC_RELAXED);
+  for (size_t i = 0; i < count; ++i) __atomic_store_n(slot + i, words[i], __ATOMIC_RELEASE); /* after the odd sequence */
   __atomic_store_n(sequence, (before | 1) + 1, __ATOMIC_RELEASE);
 }
 
@@ -99,8 +98,7 @@ static inline void pliant_haptic_publish(uint64_t* sequence, uint64_t* slot, con
 static inline uint64_t pliant_haptic_copy(const uint64_t* sequence, const uint64_t* slot, uint64_t* words, size_t count) {
   const uint64_t before = __atomic_load_n(sequence, __ATOMIC_ACQUIRE);
   if (before & 1) return 0;
-  for (size_t i = 0; i < count; ++i) words[i] = __atomic_load_n(slot + i, __ATOMIC_RELAXED);
-  __atomic_thread_fence(__ATOMIC_ACQUIRE);
+  for (size_t i = 0; i < count; ++i) words[i] = __atomic_load_n(slot + i, __ATOMIC_ACQUIRE); /* before the second read */
   return __atomic_load_n(sequence, __ATOMIC_RELAXED) == before ? before : 0;
 }
 
