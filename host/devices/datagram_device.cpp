@@ -26,20 +26,37 @@ DatagramDevice::DatagramDevice(const DatagramFormat& format, const std::string& 
   start();
 }
 
+DeviceSample DatagramDevice::read() noexcept {
+  if (arrived_.take()) {
+    const Arrived& newest = arrived_.newest();
+    read_[newest.sample.number % read_.size()] = {newest.sample.number, newest.senders_number};
+  }
+  return arrived_.newest().sample;
+}
+
+void DatagramDevice::write(const DeviceWrench& wrench) noexcept {
+  const sockaddr_in& to = arrived_.newest().sender;
+  if (wrench.number == 0 || to.sin_port == 0) return;
+  const Numbers& numbers = read_[wrench.number % read_.size()];
+  DeviceWrench answer = wrench;
+  answer.number = numbers.ours == wrench.number ? numbers.senders : 0;
+  std::array<std::uint8_t, 512> bytes;
+  const std::size_t size = format_.write(answer, bytes);
+  // A full or absent receiver loses the datagram, as on the way: the next wrench is newer.
+  sendto(listening_.socket.get(), bytes.data(), size, MSG_DONTWAIT | MSG_NOSIGNAL, reinterpret_cast<const sockaddr*>(&to),
+         sizeof to);
+}
+
 void DatagramDevice::serve() {
   std::array<pollfd, 2> waiting{pollfd{listening_.socket.get(), POLLIN, 0}, pollfd{wake_handle(), POLLIN, 0}};
   while (!stopping()) {
     poll(waiting.data(), waiting.size(), -1);
     if (waiting[0].revents != 0) receive();
-    if (waiting[1].revents != 0) {
-      awake();
-      send();
-    }
   }
 }
 
 void DatagramDevice::receive() {
-  for (int i = 0; i < 64; ++i) {  // then wrenches have their turn
+  while (!stopping()) {
     sockaddr_in from{};
     socklen_t size = sizeof from;
     const ssize_t got =
@@ -63,18 +80,9 @@ void DatagramDevice::receive() {
     }
     sender_ = from;
     newest_ = number;
-    publish(sample);
+    count(sample);
+    arrived_.publish({sample, number, from});
   }
-}
-
-void DatagramDevice::send() {
-  const std::optional<DeviceWrench> wrench = newest_wrench();
-  if (!wrench || sender_.sin_port == 0) return;
-  std::array<std::uint8_t, 512> bytes;
-  const std::size_t size = format_.write(*wrench, bytes);
-  // A full or absent receiver loses the datagram, as on the way: the next wrench is newer.
-  sendto(listening_.socket.get(), bytes.data(), size, MSG_DONTWAIT | MSG_NOSIGNAL, reinterpret_cast<const sockaddr*>(&sender_),
-         sizeof sender_);
 }
 
 }  // namespace pliant::devices

@@ -51,22 +51,20 @@ void ThreadedDevice::awake() {
   woken_.exchange(false, std::memory_order_acq_rel);
 }
 
-void ThreadedDevice::publish(DeviceSample sample) {
+void ThreadedDevice::count(DeviceSample& sample) {
   if (sample.time == 0) sample.time = elapsed();
-  published_ = counter_.receive();
-  senders_number_[published_ % senders_number_.size()] = sample.number;
-  sample.number = published_;
+  sample.number = counter_.receive();
+}
+
+void ThreadedDevice::publish(DeviceSample sample) {
+  count(sample);
   samples_.publish(sample);
 }
 
 std::optional<DeviceWrench> ThreadedDevice::newest_wrench() {
   if (!wrenches_.take()) return std::nullopt;
-  DeviceWrench wrench = wrenches_.newest();
-  const std::uint64_t number = wrench.number;
-  if (number == 0) return std::nullopt;
-  const bool known = number >= 1 && number <= published_ && published_ - number < senders_number_.size();
-  wrench.number = known ? senders_number_[number % senders_number_.size()] : 0;
-  return wrench;
+  if (wrenches_.newest().number == 0) return std::nullopt;
+  return wrenches_.newest();
 }
 
 double ThreadedDevice::elapsed() const {

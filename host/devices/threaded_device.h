@@ -1,6 +1,5 @@
 // What devices with a thread of their own share: the thread waits for the network, the haptic thread never does.
 #pragma once
-#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
@@ -19,8 +18,8 @@ namespace pliant::devices {
 class ThreadedDevice : public HapticDevice {
  public:
   ~ThreadedDevice() override;
-  DeviceSample read() noexcept final;
-  void write(const DeviceWrench& wrench) noexcept final;
+  DeviceSample read() noexcept override;
+  void write(const DeviceWrench& wrench) noexcept override;
   [[nodiscard]] DeviceCounts counts() const final { return counter_.counts(); }
 
  protected:
@@ -39,11 +38,12 @@ class ThreadedDevice : public HapticDevice {
   [[nodiscard]] int wake_handle() const { return wake_.get(); }
   /// Makes wake_handle() wait again. Call it before newest_wrench().
   void awake();
-  /// Publishes a sample. Its `number` comes as its sender counts it, and is kept for the answer. A time of 0 becomes elapsed().
+  /// Gives a sample its number, and for a time of 0, elapsed().
+  void count(DeviceSample& sample);
+  /// Counts a sample and publishes it.
   void publish(DeviceSample sample);
   void refuse(Refusal why) { counter_.refuse(why); }
-  /// The newest wrench if there is one that was not taken yet and that answers a sample; `number` is that of the sender of the
-  /// sample, or 0 if it is unknown.
+  /// The newest wrench if there is one that was not taken yet and that answers a sample.
   std::optional<DeviceWrench> newest_wrench();
   /// Seconds since the device was opened.
   [[nodiscard]] double elapsed() const;
@@ -56,8 +56,6 @@ class ThreadedDevice : public HapticDevice {
   Counter counter_;
   FileHandle wake_;
   std::atomic<bool> woken_{false}, stopping_{false};
-  std::array<std::uint64_t, 1024> senders_number_{};  ///< of sample n, at n % 1024
-  std::uint64_t published_ = 0;
   std::chrono::steady_clock::time_point opened_ = std::chrono::steady_clock::now();
   std::thread thread_;
 };
