@@ -22,7 +22,7 @@ std::size_t write_packet(const DeviceWrench& wrench, std::span<std::uint8_t> byt
 const DatagramFormat kPackets{read_pose, write_packet};
 
 DatagramDevice::DatagramDevice(const DatagramFormat& format, const std::string& place, const std::string& text)
-    : format_(format), listening_(listen_at(Transport::udp, place, text)) {
+    : ThreadedDevice(false), format_(format), listening_(listen_at(Transport::udp, place, text)) {
   start();
 }
 

@@ -6,10 +6,17 @@
 #include <sys/socket.h>
 
 #include <cerrno>
+#include <ctime>
 
 namespace pliant::devices {
+namespace {
 
-IgtlDevice::IgtlDevice(const std::string& place, const std::string& text) : listening_(listen_at(Transport::tcp, place, text)) {
+constexpr timespec kLook{0, 500000};  ///< how often a wrench is looked for while there is a client
+
+}  // namespace
+
+IgtlDevice::IgtlDevice(const std::string& place, const std::string& text)
+    : ThreadedDevice(false), listening_(listen_at(Transport::tcp, place, text)) {
   start();
 }
 
@@ -18,9 +25,8 @@ void IgtlDevice::serve() {
     const auto events = static_cast<short>(sent_ < sending_.size() ? POLLIN | POLLOUT : POLLIN);
     std::array<pollfd, 3> waiting{pollfd{listening_.socket.get(), POLLIN, 0}, pollfd{wake_handle(), POLLIN, 0},
                                   pollfd{client_.get(), events, 0}};  // a negative handle is left out
-    poll(waiting.data(), waiting.size(), -1);
+    ppoll(waiting.data(), waiting.size(), client_ ? &kLook : nullptr, nullptr);
     if ((waiting[2].revents & ~POLLOUT) != 0) receive();
-    if (waiting[1].revents != 0) awake();
     if (client_) {
       send();
     } else {

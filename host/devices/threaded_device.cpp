@@ -7,7 +7,8 @@
 
 namespace pliant::devices {
 
-ThreadedDevice::ThreadedDevice() : wake_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
+ThreadedDevice::ThreadedDevice(bool woken_by_write)
+    : wake_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)), woken_by_write_(woken_by_write) {
   if (!wake_) throw Error(ErrorCode::bad_input, "haptic device: the system has no more file handles");
 }
 
@@ -37,7 +38,7 @@ DeviceSample ThreadedDevice::read() noexcept {
 
 void ThreadedDevice::write(const DeviceWrench& wrench) noexcept {
   wrenches_.publish(wrench);
-  if (!woken_.exchange(true, std::memory_order_acq_rel)) wake();
+  if (woken_by_write_ && !woken_.exchange(true, std::memory_order_acq_rel)) wake();
 }
 
 void ThreadedDevice::wake() noexcept {

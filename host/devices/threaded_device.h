@@ -13,8 +13,10 @@
 
 namespace pliant::devices {
 
-/// read() takes from a mailbox; write() fills another and, if the thread sleeps, wakes it by one system call that never waits.
-/// A derived class calls start() at the end of its constructor and stop() at the beginning of its destructor.
+/// read() takes from a mailbox; write() fills another and, if the thread sleeps and has asked for that, wakes it by one system
+/// call that never waits. On a machine without a free core, this call lets the thread run first: where that matters, the thread
+/// looks into the mailbox by itself. A derived class calls start() at the end of its constructor and stop() at the beginning of
+/// its destructor.
 class ThreadedDevice : public HapticDevice {
  public:
   ~ThreadedDevice() override;
@@ -23,7 +25,7 @@ class ThreadedDevice : public HapticDevice {
   [[nodiscard]] DeviceCounts counts() const final { return counter_.counts(); }
 
  protected:
-  ThreadedDevice();
+  explicit ThreadedDevice(bool woken_by_write = true);
   void start();
   void stop() noexcept;
 
@@ -55,6 +57,7 @@ class ThreadedDevice : public HapticDevice {
   Mailbox<DeviceWrench> wrenches_;
   Counter counter_;
   FileHandle wake_;
+  const bool woken_by_write_;
   std::atomic<bool> woken_{false}, stopping_{false};
   std::chrono::steady_clock::time_point opened_ = std::chrono::steady_clock::now();
   std::thread thread_;
