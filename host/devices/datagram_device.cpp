@@ -22,7 +22,7 @@ std::size_t write_packet(const DeviceWrench& wrench, std::span<std::uint8_t> byt
 const DatagramFormat kPackets{read_pose, write_packet};
 
 DatagramDevice::DatagramDevice(const DatagramFormat& format, const std::string& place, const std::string& text)
-    : ThreadedDevice(false), format_(format), listening_(listen_at(Transport::udp, place, text)) {
+    : format_(format), listening_(listen_at(Transport::udp, place, text)) {
   start();
 }
 
@@ -48,7 +48,7 @@ void DatagramDevice::write(const DeviceWrench& wrench) noexcept {
 }
 
 void DatagramDevice::serve() {
-  std::array<pollfd, 2> waiting{pollfd{listening_.socket.get(), POLLIN, 0}, pollfd{wake_handle(), POLLIN, 0}};
+  std::array<pollfd, 2> waiting{pollfd{listening_.socket.get(), POLLIN, 0}, pollfd{stop_handle(), POLLIN, 0}};
   while (!stopping()) {
     poll(waiting.data(), waiting.size(), -1);
     if (waiting[0].revents != 0) receive();

@@ -15,15 +15,14 @@ constexpr timespec kLook{0, 500000};  ///< how often a wrench is looked for whil
 
 }  // namespace
 
-IgtlDevice::IgtlDevice(const std::string& place, const std::string& text)
-    : ThreadedDevice(false), listening_(listen_at(Transport::tcp, place, text)) {
+IgtlDevice::IgtlDevice(const std::string& place, const std::string& text) : listening_(listen_at(Transport::tcp, place, text)) {
   start();
 }
 
 void IgtlDevice::serve() {
   while (!stopping()) {
     const auto events = static_cast<short>(sent_ < sending_.size() ? POLLIN | POLLOUT : POLLIN);
-    std::array<pollfd, 3> waiting{pollfd{listening_.socket.get(), POLLIN, 0}, pollfd{wake_handle(), POLLIN, 0},
+    std::array<pollfd, 3> waiting{pollfd{listening_.socket.get(), POLLIN, 0}, pollfd{stop_handle(), POLLIN, 0},
                                   pollfd{client_.get(), events, 0}};  // a negative handle is left out
     ppoll(waiting.data(), waiting.size(), client_ ? &kLook : nullptr, nullptr);
     if ((waiting[2].revents & ~POLLOUT) != 0) receive();

@@ -52,7 +52,7 @@ std::atomic<bool> g_spacenav_open{false};
 
 class SpacenavDevice final : public ThreadedDevice {
  public:
-  SpacenavDevice(const MouseSpeeds& speeds, const std::string& text) : ThreadedDevice(false), speeds_(speeds), library_(text) {
+  SpacenavDevice(const MouseSpeeds& speeds, const std::string& text) : speeds_(speeds), library_(text) {
     if (g_spacenav_open.exchange(true)) {
       throw Error(ErrorCode::bad_input,
                   fmt::format("haptic device \"{}\": a 3D mouse is open already; there can be one", text));

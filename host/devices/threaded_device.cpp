@@ -7,9 +7,8 @@
 
 namespace pliant::devices {
 
-ThreadedDevice::ThreadedDevice(bool woken_by_write)
-    : wake_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)), woken_by_write_(woken_by_write) {
-  if (!wake_) throw Error(ErrorCode::bad_input, "haptic device: the system has no more file handles");
+ThreadedDevice::ThreadedDevice() : stop_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
+  if (!stop_) throw Error(ErrorCode::bad_input, "haptic device: the system has no more file handles");
 }
 
 ThreadedDevice::~ThreadedDevice() { stop(); }
@@ -36,20 +35,11 @@ DeviceSample ThreadedDevice::read() noexcept {
   return samples_.newest();
 }
 
-void ThreadedDevice::write(const DeviceWrench& wrench) noexcept {
-  wrenches_.publish(wrench);
-  if (woken_by_write_ && !woken_.exchange(true, std::memory_order_acq_rel)) wake();
-}
+void ThreadedDevice::write(const DeviceWrench& wrench) noexcept { wrenches_.publish(wrench); }
 
 void ThreadedDevice::wake() noexcept {
   const std::uint64_t one = 1;
-  [[maybe_unused]] const auto written = ::write(wake_.get(), &one, sizeof one);  // fails only if it is readable already
-}
-
-void ThreadedDevice::awake() {
-  std::uint64_t count = 0;
-  [[maybe_unused]] const auto got = ::read(wake_.get(), &count, sizeof count);
-  woken_.exchange(false, std::memory_order_acq_rel);
+  [[maybe_unused]] const auto written = ::write(stop_.get(), &one, sizeof one);  // fails only if it is readable already
 }
 
 void ThreadedDevice::count(DeviceSample& sample) {
@@ -57,9 +47,10 @@ void ThreadedDevice::count(DeviceSample& sample) {
   sample.number = counter_.receive();
 }
 
-void ThreadedDevice::publish(DeviceSample sample) {
+std::uint64_t ThreadedDevice::publish(DeviceSample sample) {
   count(sample);
   samples_.publish(sample);
+  return sample.number;
 }
 
 std::optional<DeviceWrench> ThreadedDevice::newest_wrench() {

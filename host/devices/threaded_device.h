@@ -13,10 +13,9 @@
 
 namespace pliant::devices {
 
-/// read() takes from a mailbox; write() fills another and, if the thread sleeps and has asked for that, wakes it by one system
-/// call that never waits. On a machine without a free core, this call lets the thread run first: where that matters, the thread
-/// looks into the mailbox by itself. A derived class calls start() at the end of its constructor and stop() at the beginning of
-/// its destructor.
+/// read() takes from a mailbox, write() fills another, and the thread looks into it at its own times: to wake a thread would
+/// let it run before the caller on a machine without a free core. A derived class calls start() at the end of its constructor
+/// and stop() at the beginning of its destructor.
 class ThreadedDevice : public HapticDevice {
  public:
   ~ThreadedDevice() override;
@@ -25,7 +24,7 @@ class ThreadedDevice : public HapticDevice {
   [[nodiscard]] DeviceCounts counts() const final { return counter_.counts(); }
 
  protected:
-  explicit ThreadedDevice(bool woken_by_write = true);
+  ThreadedDevice();
   void start();
   void stop() noexcept;
 
@@ -33,17 +32,15 @@ class ThreadedDevice : public HapticDevice {
 
   /// Runs in the thread until stopping(). What it throws ends the thread and counts as a refusal.
   virtual void serve() = 0;
-  /// Called in the calling thread by stop() and write(), if the thread waits for something else than wake_handle().
+  /// Called by stop(), in its thread, if serve() waits for something else than stop_handle().
   virtual void wake() noexcept;
   [[nodiscard]] bool stopping() const { return stopping_.load(std::memory_order_acquire); }
-  /// Readable after a write() or a stop(); wait for it with poll().
-  [[nodiscard]] int wake_handle() const { return wake_.get(); }
-  /// Makes wake_handle() wait again. Call it before newest_wrench().
-  void awake();
+  /// Readable once stopping(); wait for it with poll().
+  [[nodiscard]] int stop_handle() const { return stop_.get(); }
   /// Gives a sample its number, and for a time of 0, elapsed().
   void count(DeviceSample& sample);
-  /// Counts a sample and publishes it.
-  void publish(DeviceSample sample);
+  /// Counts a sample and publishes it. Returns its number.
+  std::uint64_t publish(DeviceSample sample);
   void refuse(Refusal why) { counter_.refuse(why); }
   /// The newest wrench if there is one that was not taken yet and that answers a sample.
   std::optional<DeviceWrench> newest_wrench();
@@ -56,9 +53,8 @@ class ThreadedDevice : public HapticDevice {
   Mailbox<DeviceSample> samples_;
   Mailbox<DeviceWrench> wrenches_;
   Counter counter_;
-  FileHandle wake_;
-  const bool woken_by_write_;
-  std::atomic<bool> woken_{false}, stopping_{false};
+  FileHandle stop_;
+  std::atomic<bool> stopping_{false};
   std::chrono::steady_clock::time_point opened_ = std::chrono::steady_clock::now();
   std::thread thread_;
 };

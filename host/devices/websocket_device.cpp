@@ -31,8 +31,9 @@ std::shared_ptr<HapticDevice> open_websocket(const std::string& rest, const std:
 namespace pliant::devices {
 namespace {
 
-constexpr lws_usec_t kPatience = 2000;  ///< for the force that answers a state [us]
-constexpr int kAgain = 30;              ///< between attempts to connect [10 ms]
+constexpr double kPatience = 2e-3;               ///< for the force that answers a state [s]
+constexpr std::chrono::microseconds kLook{100};  ///< how often it is looked for
+constexpr int kAgain = 30;                       ///< between attempts to connect [10 ms]
 
 /// What is called of the library.
 struct Websockets {
@@ -47,7 +48,6 @@ struct Websockets {
     library.find(write, "lws_write");
     library.find(is_final_fragment, "lws_is_final_fragment");
     library.find(remaining_payload, "lws_remaining_packet_payload");
-    library.find(set_timer, "lws_set_timer_usecs");
     library.find(context_of, "lws_get_context");
     library.find(user_of, "lws_context_user");
     library.find(set_log_level, "lws_set_log_level");
@@ -61,7 +61,6 @@ struct Websockets {
   decltype(lws_write)* write;
   decltype(lws_is_final_fragment)* is_final_fragment;
   decltype(lws_remaining_packet_payload)* remaining_payload;
-  decltype(lws_set_timer_usecs)* set_timer;
   decltype(lws_get_context)* context_of;
   decltype(lws_context_user)* user_of;
   decltype(lws_set_log_level)* set_log_level;
@@ -83,6 +82,7 @@ class WebsocketDevice final : public ThreadedDevice {
   static int on_event(lws* connection, lws_callback_reasons reason, void* user, void* data, std::size_t size);
   void serve() override;
   void wake() noexcept override;
+  void answer();
   void connect();
   void handle(lws* connection, lws_callback_reasons reason, const void* data, std::size_t size);
   void receive(lws* connection, const void* data, std::size_t size);
@@ -95,8 +95,10 @@ class WebsocketDevice final : public ThreadedDevice {
   lws_context* context_ = nullptr;
   lws* connection_ = nullptr;
   bool connecting_ = false;
-  bool lost_ = false;  ///< told since the last connection
-  bool owed_ = false;  ///< a state has come that no force has answered
+  bool lost_ = false;         ///< told since the last connection
+  bool owed_ = false;         ///< a state has come that no force has answered
+  double due_ = 0;            ///< when it is answered by the force before [s since the device was opened]
+  std::uint64_t number_ = 0;  ///< of the newest sample
   bool too_long_ = false;
   std::vector<std::uint8_t> message_;
   HaplyState state_;
@@ -135,8 +137,21 @@ void WebsocketDevice::serve() {
       for (int i = 0; lost_ && i < kAgain && !stopping(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
       connect();
     }
-    library_.service(context_, 0);
+    if (owed_) {
+      answer();
+    } else {
+      library_.service(context_, 0);
+    }
   }
+}
+
+/// Looks for the wrench that answers the newest state; nobody is woken for it.
+void WebsocketDevice::answer() {
+  std::this_thread::sleep_for(kLook);
+  const std::optional<DeviceWrench> wrench = newest_wrench();
+  if (wrench) force_ = wrench->force;
+  if ((wrench && wrench->number == number_) || elapsed() > due_) library_.callback_on_writable(connection_);
+  library_.service(context_, -1);  // does what there is to do
 }
 
 void WebsocketDevice::connect() {
@@ -169,8 +184,6 @@ int WebsocketDevice::on_event(lws* connection, lws_callback_reasons reason, void
     case LWS_CALLBACK_CLIENT_CLOSED:
     case LWS_CALLBACK_CLIENT_RECEIVE:
     case LWS_CALLBACK_CLIENT_WRITEABLE:
-    case LWS_CALLBACK_TIMER:
-    case LWS_CALLBACK_EVENT_WAIT_CANCELLED:
       break;
     default:
       return 0;
@@ -191,16 +204,6 @@ void WebsocketDevice::handle(lws* connection, lws_callback_reasons reason, const
     case LWS_CALLBACK_CLIENT_RECEIVE:
       receive(connection, data, size);
       break;
-    case LWS_CALLBACK_EVENT_WAIT_CANCELLED:
-      awake();
-      if (const std::optional<DeviceWrench> wrench = newest_wrench(); wrench && connection_ != nullptr) {
-        force_ = wrench->force;
-        if (owed_) library_.callback_on_writable(connection_);
-      }
-      break;
-    case LWS_CALLBACK_TIMER:
-      if (owed_ && connection == connection_) library_.callback_on_writable(connection);
-      break;
     case LWS_CALLBACK_CLIENT_WRITEABLE:
       if (owed_) send(connection);
       break;
@@ -220,11 +223,11 @@ void WebsocketDevice::receive(lws* connection, const void* data, std::size_t siz
   if (why != nullptr) {
     refuse(why);
   } else {
-    publish(state_.sample);
+    number_ = publish(state_.sample);
   }
   if (owed_ || state_.device_id.empty()) return;
   owed_ = true;
-  library_.set_timer(connection, kPatience);
+  due_ = elapsed() + kPatience;
 }
 
 void WebsocketDevice::send(lws* connection) {
