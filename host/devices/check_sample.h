@@ -1,6 +1,7 @@
 // What every device asks of a sample that came from outside.
 #pragma once
 #include <array>
+#include <limits>
 
 #include "pliant/haptic_device.h"
 
@@ -13,6 +14,9 @@ using Refusal = const char*;
 constexpr double kFarthest = 1000;
 /// How far the length of a quaternion, or of the axes of a rotation, may be from 1.
 constexpr double kTurnTolerance = 1e-3;
+
+/// Time of a sample whose format has none: the device puts in when it came.
+constexpr double kNoTime = std::numeric_limits<double>::lowest();
 
 /// Checks that position and time are finite and the quaternion has unit length within kTurnTolerance; makes it exactly so.
 Refusal check_sample(DeviceSample& sample);

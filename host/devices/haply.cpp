@@ -102,7 +102,7 @@ Refusal read_haply_state(std::span<const std::uint8_t> text, const std::string& 
     if (turn != std::array<double, 4>{}) sample.turn = turn;
   }
   if (const Json* buttons = member(handle, "buttons"); buttons != nullptr) sample.buttons = button_bits(*buttons);
-  sample.time = 0;
+  sample.time = kNoTime;
   sample.number = 0;
   if (const Refusal why = check_sample(sample); why != nullptr) return why;
   state.sample = sample;

@@ -23,8 +23,8 @@ struct HaplyState {
 
 /// Reads a state. `device_id` chooses among several devices; empty: the first. The orientation is that of the first handle,
 /// whatever its kind; a state without a handle, or with one that has not turned yet (all zeros), keeps `sample.turn`, and one
-/// without buttons keeps `sample.buttons`. Buttons a, b, c, or button_0 to button_3, are bits 0 to 3. Time and number are 0.
-/// Refused: no JSON, too long, no such device, numbers that are missing, what check_sample refuses.
+/// without buttons keeps `sample.buttons`. Buttons a, b, c, or button_0 to button_3, are bits 0 to 3. The time is kNoTime, the
+/// number 0. Refused: no JSON, too long, no such device, numbers that are missing, what check_sample refuses.
 Refusal read_haply_state(std::span<const std::uint8_t> text, const std::string& device_id, HaplyState& state);
 
 /// How a version of the service wants its forces.

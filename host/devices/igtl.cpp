@@ -95,7 +95,8 @@ Refusal read_igtl_pose(Bytes message, DeviceSample& sample) {
   }
   if (const Refusal why = transform ? read_transform(content, sample) : read_position(content, sample); why != nullptr)
     return why;
-  sample.time = seconds_of(number_at(message, 34));
+  const std::uint64_t stamp = number_at(message, 34);
+  sample.time = stamp == 0 ? kNoTime : seconds_of(stamp);
   sample.buttons = 0;
   sample.number = 0;
   return check_sample(sample);

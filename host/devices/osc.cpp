@@ -37,7 +37,7 @@ Refusal read_message(Bytes bytes, DeviceSample& sample) {
   }
   sample.buttons = types.size() == 9 ? reader.number<std::uint32_t>() : 0;
   if (!reader.at_end()) return "/pliant/pose whose length is not that of its types";
-  sample.time = 0;
+  sample.time = kNoTime;
   sample.number = 0;
   return check_sample(sample);
 }

@@ -43,7 +43,7 @@ void ThreadedDevice::wake() noexcept {
 }
 
 void ThreadedDevice::count(DeviceSample& sample) {
-  if (sample.time == 0) sample.time = elapsed();
+  if (sample.time == kNoTime) sample.time = elapsed();
   sample.number = counter_.receive();
 }
 

@@ -37,7 +37,7 @@ class ThreadedDevice : public HapticDevice {
   [[nodiscard]] bool stopping() const { return stopping_.load(std::memory_order_acquire); }
   /// Readable once stopping(); wait for it with poll().
   [[nodiscard]] int stop_handle() const { return stop_.get(); }
-  /// Gives a sample its number, and for a time of 0, elapsed().
+  /// Gives a sample its number, and for kNoTime, elapsed().
   void count(DeviceSample& sample);
   /// Counts a sample and publishes it. Returns its number.
   std::uint64_t publish(DeviceSample sample);
