@@ -103,6 +103,7 @@ TEST(UdpDevice, PosesComeInAndWrenchesGoBackToTheSender) {
   for (int i = 0; i < 20; ++i) {
     DeviceSample sent = pose_at(i);
     sent.number += 700;  // the driver's own numbers
+    sent.time -= 100;    // and its own clock, from 0
     const pliant_haptic_pose pose = packet_of(sent);
     driver.send(&pose, sizeof pose);
     const DeviceSample sample = wait_sample(*device, static_cast<std::uint64_t>(i + 1));
