@@ -20,9 +20,9 @@ inline constexpr std::size_t kIgtlWrenchSize = 116;
 std::uint64_t igtl_crc(Bytes bytes);
 
 /// A message, head and body in one. TRANSFORM gives a pose by a matrix, POSITION and its older name QTRANS by a position and a
-/// quaternion of 4, 3 or 0 numbers; lengths come in mm and become m. The time is that of the head [s since 1970], 0 if it has
-/// none. Refused: other versions and types, a wrong CRC or length, an extended header that does not fit, what check_sample
-/// refuses.
+/// quaternion of 4, 3 or 0 numbers; lengths come in mm and become m. The time is that of the head [s since 1970], kNoTime
+/// if that is 0. Refused: other versions and types, a wrong CRC or length, an extended header that does not fit, what
+/// check_sample refuses.
 Refusal read_igtl_pose(Bytes message, DeviceSample& sample);
 
 /// A SENSOR message of six numbers, force [N] and torque [N m], from the device name PliantWrench, with the time of the sample
