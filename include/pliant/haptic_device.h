@@ -53,6 +53,7 @@ class PLIANT_API HapticDevice {
   virtual DeviceSample read() noexcept = 0;
   /// Exerts a wrench until the next call.
   virtual void write(const DeviceWrench& wrench) noexcept = 0;
+  /// What it can exert; unlimited unless a device says otherwise.
   [[nodiscard]] virtual DeviceLimits limits() const noexcept { return {}; }
   /// May be called from any thread.
   [[nodiscard]] virtual DeviceCounts counts() const { return {}; }
