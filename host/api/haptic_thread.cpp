@@ -104,6 +104,7 @@ void HapticThread::take_message(Nanoseconds now) noexcept {
   instrument_->in_use.store(core_.buffer().in_use(), std::memory_order_release);
   ++told_.frames;
   told_.buffers = static_cast<std::int64_t>(message.generation);
+  elements_ = message.elements;
 }
 
 void HapticThread::tick(Nanoseconds now) noexcept {
@@ -117,25 +118,29 @@ void HapticThread::tick(Nanoseconds now) noexcept {
   tell(done, now);
 }
 
-/// Buffers of as many rings as fit into the share of a tick: a ring more is tried where it would probably fit.
+/// The whole body, or buffers of as many rings as fit into the share of a tick: more is tried where it would probably fit.
 void HapticThread::choose_rings(double work) noexcept {
-  constexpr double kSmooth = 0.02, kMostRings = 8;
+  constexpr double kSmooth = 0.02, kReserve = 1.3;
+  constexpr std::int32_t kMostRings = 8;
   constexpr std::int64_t kWait = 400;  // ticks
   const haptics::BufferModel* buffer = core_.buffer().buffer();
-  if (buffer == nullptr) return;
+  if (buffer == nullptr || core_.buffer().in_use() == 0) return;
   work_ += kSmooth * (work - work_);
   if (++since_change_ < kWait) return;
-  const double room = share_ * period_;
-  const double larger = static_cast<double>((rings_ + 2) * (rings_ + 2)) / static_cast<double>((rings_ + 1) * (rings_ + 1));
-  if (work_ > room && rings_ > 1) {
-    --rings_;
-  } else if (work_ * larger * 1.3 < room && rings_ < kMostRings) {
-    ++rings_;
-  } else {
-    return;
+  const double room = share_ * period_, each = work_ / static_cast<double>(std::max<std::int64_t>(buffer->part().elements, 1));
+  const auto growth = static_cast<double>(rings_ + 1) / static_cast<double>(std::max(rings_, 1));
+  std::int32_t next = rings_;
+  if (work_ > room) {
+    next = rings_ < 0 ? kMostRings : std::max(rings_ - 1, 1);
+  } else if (rings_ > 0 && kReserve * each * static_cast<double>(elements_) < room) {
+    next = -1;
+  } else if (rings_ > 0 && rings_ < kMostRings && kReserve * work_ * growth * growth < room) {
+    next = rings_ + 1;
   }
+  if (next == rings_) return;
+  rings_ = next;
   since_change_ = 0;
-  instrument_->rings = rings_;
+  instrument_->wanted_rings = rings_;
 }
 
 void HapticThread::tell(const haptics::CoreTick& tick, Nanoseconds now) noexcept {

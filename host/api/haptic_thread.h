@@ -57,8 +57,9 @@ class HapticThread {
   // Of the thread.
   Nanoseconds began_ = 0, last_message_ = 0;
   Told told_;
-  std::int32_t rings_;  ///< asked for; -1: all
-  double work_ = 0;     ///< of a tick, smoothed [s]
+  std::int64_t elements_ = 0;  ///< of all bodies
+  std::int32_t rings_;         ///< asked for; -1: all
+  double work_ = 0;            ///< of a tick, smoothed [s]
   std::int64_t since_change_ = 0;
 
   // Between the threads.

@@ -1,5 +1,6 @@
 #include "haptics/buffer_force.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace pliant::haptics {
@@ -26,6 +27,7 @@ Wrench BufferForce::tick(const Pose& tool, double dt) noexcept {
   pose_ = tool;
   placed_ = true;
   if (buffer_ == nullptr) return {};
+  if (settle_ > 0 && buffer_->whole()) buffer_->draw(*last_, std::min(1.0, dt / settle_));
   const Wrench wrench = buffer_->tick(from, tool, dt);
   double sum = 0;
   for (std::size_t c = 0; c < 3; ++c) sum += wrench.force[c] + wrench.torque[c];

@@ -9,9 +9,10 @@ namespace pliant::haptics {
 /// A ForceModel that ticks the newest buffer. It owns none: the BufferSource keeps what in_use() names.
 class BufferForce final : public ForceModel {
  public:
-  /// `lead`: how far the rim is ahead of the last state of the simulation, in frames: 0 follows the last two states (Mendoza
-  /// and Laugier 2003) one frame late, 1 continues their motion.
-  explicit BufferForce(double lead = 1) : lead_(lead) {}
+  /// `settle`: time in which a buffer without a rim, of a whole body, comes back to the simulation [s]; 0: never. `lead`: how
+  /// far the rim is ahead of the last state of the simulation, in frames: 0 follows the last two states (Mendoza and Laugier
+  /// 2003) one frame late, 1 continues their motion.
+  explicit BufferForce(double lead = 1, double settle = 0) : lead_(lead), settle_(settle) {}
 
   void receive(const FrameReport& report) noexcept override { report_ = report; }
   /// A message has come, `interval` [s] after the one before.
@@ -24,7 +25,7 @@ class BufferForce final : public ForceModel {
   [[nodiscard]] std::uint64_t resets() const { return resets_; }  ///< times that a buffer blew up and began anew
 
  private:
-  double lead_;
+  double lead_, settle_;
   FrameReport report_;
   BufferModel* buffer_ = nullptr;
   std::uint64_t generation_ = 0, resets_ = 0, ticks_ = 0;

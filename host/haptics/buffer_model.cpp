@@ -122,6 +122,14 @@ void BufferModel::follow(const TissueState& state, double seconds, double lead) 
   passed_ = 0;
 }
 
+void BufferModel::draw(const TissueState& state, double share) noexcept {
+  const auto by = static_cast<float>(share);
+  for (std::size_t n = 0; n < part_.slot.size(); ++n) {
+    if (u_[4 * n + 3] == 0) continue;  // held, or of the rim
+    for (std::size_t c = 0; c < 3; ++c) u_[4 * n + c] += by * (state.displacement[3 * n + c] - u_[4 * n + c]);
+  }
+}
+
 /// Damping, gravity and the units of contact depend on the step.
 void BufferModel::set_step(double h) noexcept {
   if (step_ > 0 && h != step_) {

@@ -39,10 +39,13 @@ class BufferModel {
   /// From now on rim and other tools move so that they are at the state in `seconds`, ahead of it by `lead` times their motion
   /// since the state before.
   void follow(const TissueState& state, double seconds, double lead) noexcept;
+  /// Draws the nodes inside the rim to a state, by a share of the difference.
+  void draw(const TissueState& state, double share) noexcept;
   /// Advances by `dt` [s] while the instrument moves from `from` to `to`. Returns the mean wrench on it, about its origin.
   Wrench tick(const Pose& from, const Pose& to, double dt) noexcept;
 
   [[nodiscard]] const Submodel& part() const { return part_; }
+  [[nodiscard]] bool whole() const { return part_.whole; }
   [[nodiscard]] std::int64_t contacts() const { return touching_; }  ///< contact points that touched in the last substep
   [[nodiscard]] int substeps() const { return substeps_; }           ///< of the last tick
   /// Displacement of a node [m].

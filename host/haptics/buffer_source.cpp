@@ -169,6 +169,7 @@ void BufferSource::fill(const Simulation& simulation, std::uint64_t in_use, Buff
     ring_.clear();
     last_u_.clear();
   }
+  message.elements = graph_->elements();
   if (seeds.points.empty()) {
     last_u_ = tissue.u;
     return;

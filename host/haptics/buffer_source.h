@@ -16,6 +16,7 @@ struct BufferMessage {
   FrameReport report;
   BufferModel* model = nullptr;  ///< the newest buffer; null: nothing is near the instrument
   std::uint64_t generation = 0;  ///< number of buffers built so far
+  std::int64_t elements = 0;     ///< of all bodies
   bool covered = true;           ///< false: the instrument touches nodes that no finite element moves
   TissueState state;             ///< of the nodes of `model`
 };

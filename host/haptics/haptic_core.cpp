@@ -16,7 +16,7 @@ Pose rotation(const std::array<double, 4>& turn) { return {{}, turn}; }
 
 HapticCore::HapticCore(const CoreOptions& options, const Pose& tool)
     : options_(options),
-      buffer_(options.lead),
+      buffer_(options.lead, options.settle),
       coupling_(options.coupling, options.tick),
       gate_(options.translation, options.rotation),
       guard_(options.guard, options.limits),

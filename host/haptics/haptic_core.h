@@ -15,8 +15,8 @@ enum class ModelKind { buffer, held, extrapolated };
 
 struct CoreOptions {
   ModelKind model = ModelKind::buffer;
-  double lead = 1;
-  double tick = 1e-3;  ///< [s]
+  double lead = 1, settle = 2;  ///< BufferForce
+  double tick = 1e-3;           ///< [s]
   CouplingOptions coupling;
   bool passive = true;
   EnergyOptions translation, rotation;

@@ -29,7 +29,7 @@ std::optional<std::string> Instrument::before(Simulation& simulation, double sec
 }
 
 void Instrument::after(const Simulation& simulation) {
-  if (const std::int32_t wanted = rings.load(); wanted != 0) source_.set_rings(wanted);
+  if (const std::int32_t wanted = wanted_rings.load(); wanted != 0) source_.set_rings(wanted);
   source_.fill(simulation, in_use.load(std::memory_order_acquire), tissue.draft());
   tissue.publish();
 }

@@ -37,9 +37,9 @@ class Instrument {
   devices::Mailbox<BufferMessage> tissue;  ///< from the simulation
   std::atomic<std::uint64_t> in_use{0};    ///< generation of the buffer that the haptic thread uses
 
-  std::atomic<bool> closed{false};       ///< the loop has ended
-  std::atomic<std::int64_t> refused{0};  ///< poses that the simulation refused
-  std::atomic<std::int32_t> rings{0};    ///< wanted; 0: as constructed
+  std::atomic<bool> closed{false};            ///< the loop has ended
+  std::atomic<std::int64_t> refused{0};       ///< poses that the simulation refused
+  std::atomic<std::int32_t> wanted_rings{0};  ///< wanted; 0: as constructed
 
  private:
   std::string tool_;

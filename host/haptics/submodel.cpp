@@ -32,18 +32,24 @@ struct Numbering {
   [[nodiscard]] std::int32_t of(std::int32_t s) const { return number[static_cast<std::size_t>(s)]; }
 };
 
-std::vector<char> rim_of(const Model& model, const ElementGraph& graph, const std::vector<std::int32_t>& ring,
-                         const Numbering& numbers) {
-  std::vector<char> rim(numbers.slot.size(), 0);
+/// Marks the nodes that elements outside share.
+std::vector<char> shared_nodes(const ElementGraph& graph, const std::vector<std::int32_t>& ring, const Numbering& numbers) {
+  std::vector<char> shared(numbers.slot.size(), 0);
   for (std::int32_t e = 0; e < graph.elements(); ++e) {
     if (ring[static_cast<std::size_t>(e)] >= 0) continue;
     for (const std::int32_t n : graph.nodes_of(e)) {
-      if (numbers.of(n) >= 0) rim[static_cast<std::size_t>(numbers.of(n))] = 1;
+      if (numbers.of(n) >= 0) shared[static_cast<std::size_t>(numbers.of(n))] = 1;
     }
   }
-  for (std::size_t i = 0; i < rim.size(); ++i) {
-    if (!graph.moves_alone(numbers.slot[i])) rim[i] = 1;
+  for (std::size_t i = 0; i < shared.size(); ++i) {
+    if (!graph.moves_alone(numbers.slot[i])) shared[i] = 1;
   }
+  return shared;
+}
+
+/// These, and what moves on a curve.
+std::vector<char> rim_of(const Model& model, const std::vector<char>& shared, const Numbering& numbers) {
+  std::vector<char> rim = shared;
   for (const Constraint& c : model.constraints) {
     if (numbers.of(c.slot) >= 0 && is_driven(c)) rim[static_cast<std::size_t>(numbers.of(c.slot))] = 1;
   }
@@ -210,7 +216,9 @@ Submodel extract(const Model& model, const ElementGraph& graph, const std::vecto
   if (numbers.slot.empty()) throw Error(ErrorCode::internal, "haptics: a buffer without elements");
   Submodel sub;
   sub.slot = numbers.slot;
-  sub.rim = rim_of(model, graph, ring, numbers);
+  const std::vector<char> shared = shared_nodes(graph, ring, numbers);
+  sub.rim = rim_of(model, shared, numbers);
+  sub.whole = std::find(shared.begin(), shared.end(), 1) == shared.end();
   sub.names = names_of(model, numbers);
   sub.elements = std::count_if(ring.begin(), ring.end(), [](std::int32_t r) { return r >= 0; });
   auto out = std::make_shared<Model>();

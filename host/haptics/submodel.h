@@ -42,6 +42,7 @@ struct Submodel {
   /// [nodes] (body << 32 | index in the body, node), ascending: what a node is called in every model of the scene.
   std::vector<std::pair<std::int64_t, std::int32_t>> names;
   std::int64_t elements = 0;
+  bool whole = false;         ///< no element outside shares a node with it
   std::int64_t topology = 0;  ///< number of edits of the model that it is a part of
 };
 
