@@ -97,7 +97,9 @@ TEST(Haptics, TheHandFeelsWhatTheSimulationFeels) {
                          << state.frames << " frames, age " << state.age;
     EXPECT_GT(state.ticks, 300) << model;
     EXPECT_GT(state.last.force[1], 0.05) << model;
-    if (std::string(model) != "auto") EXPECT_EQ(state.model, model);
+    if (std::string(model) != "auto") {
+      EXPECT_EQ(state.model, model);
+    }
     EXPECT_EQ(state.resets, 0) << model;
     EXPECT_EQ(state.not_finite, 0) << model;
     EXPECT_EQ(state.refused, 0) << model;
