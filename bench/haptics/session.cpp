@@ -64,6 +64,15 @@ Pose predicted(const Stroke& stroke, double t, double ahead) {
   return now;
 }
 
+/// Where a hand is too quick for the simulation, its tool stays (haptics/instrument.cpp).
+void try_drive(Simulation& s, const std::string& tool, const Pose& to, double seconds) {
+  try {
+    s.tools().drive(tool, to, seconds);
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::internal || error.code() == ErrorCode::device) throw;
+  }
+}
+
 }  // namespace
 
 ForceTrace full_model(Scene scene, const std::string& tool, const Stroke& stroke, double seconds, double rate,
@@ -126,7 +135,7 @@ SessionReport run_session(Scene scene, const std::string& tool, const Stroke& st
       }
       if (made > 0) {
         if (parts.edit) parts.edit(s, end);
-        s.tools().drive(tool, predicted(stroke, end - frame, options.predict * frame), frame);
+        try_drive(s, tool, predicted(stroke, end - frame, options.predict * frame), frame);
         run_until(s, s.time() + frame, index, [](double, const StepForce&) {});
       }
       parts.made(s, static_cast<std::size_t>(made++) % slots);

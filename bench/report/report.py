@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 # Another benchmark is one more name here and a module report_NAME with section(result, folder) -> report_page.Section.
-BENCHMARKS = ["kernels", "accuracy", "deformation", "stability", "cutting"]
+BENCHMARKS = ["kernels", "accuracy", "deformation", "stability", "cutting", "haptics"]
 
 
 class Refused(Exception):
