@@ -52,7 +52,6 @@ HandOptions hand(double device_damping, double seconds) {
 struct Loop {
   double rate = 1000, frames = 60, delay = 1, device_damping = 0.2, young = 5000, damping = 20, seconds = 1;
   bool passive = true, held = false;
-  double coupling = 0;                         ///< [N/m]; 0: rigid
   double stalled_from = 0, stalled_until = 0;  ///< [s]
 };
 
@@ -65,20 +64,36 @@ struct Outcome {
   double work = 0;      ///< on hand and device [J]
 };
 
-/// One closed loop in virtual time.
-Outcome run_loop(const Loop& loop) {
-  Scene scene = block(loop.young, loop.damping);
-  SimulatedHand hand_held(hand(loop.device_damping, loop.seconds));
+CoreOptions core_of(const Loop& loop) {
   CoreOptions core;
   core.model = loop.held ? pliant::haptics::ModelKind::held : pliant::haptics::ModelKind::buffer;
   core.tick = 1 / loop.rate;
-  core.coupling.rigid = loop.coupling == 0;
-  if (loop.coupling > 0) core.coupling.stiffness = loop.coupling;
+  core.coupling.rigid = true;
   core.passive = loop.passive;
   core.translation.damping = loop.device_damping;
   core.translation.acceleration = 100;
   core.align = false;
   core.guard.stale_after = 0.25;
+  return core;
+}
+
+SessionOptions session_of(const Loop& loop) {
+  SessionOptions options;
+  options.frame_rate = loop.frames;
+  options.haptic_rate = loop.rate;
+  options.seconds = loop.seconds;
+  options.delay = loop.delay;
+  options.predict = 0;  // the hand's own prediction is in the stroke
+  options.stalled_from = loop.stalled_from;
+  options.stalled_until = loop.stalled_until;
+  return options;
+}
+
+/// One closed loop in virtual time.
+Outcome run_loop(const Loop& loop) {
+  Scene scene = block(loop.young, loop.damping);
+  SimulatedHand hand_held(hand(loop.device_damping, loop.seconds));
+  const CoreOptions core = core_of(loop);
   const Pose start = scene.tools[0].at(0);
   HapticCore felt(core, start);
   BufferSource source("ball", 2);
@@ -87,14 +102,7 @@ Outcome run_loop(const Loop& loop) {
   std::vector<std::unique_ptr<BufferMessage>> messages(8);
   for (auto& m : messages) m = std::make_unique<BufferMessage>();
   Outcome out;
-  SessionOptions options;
-  options.frame_rate = loop.frames;
-  options.haptic_rate = loop.rate;
-  options.seconds = loop.seconds;
-  options.delay = loop.delay;
-  options.predict = 0;
-  options.stalled_from = loop.stalled_from;
-  options.stalled_until = loop.stalled_until;
+  const SessionOptions options = session_of(loop);
   double now = 0, received = 0;
   SessionParts parts;
   parts.made = [&](Simulation& s, std::size_t slot) { source.fill(s, felt.buffer().in_use(), *messages[slot]); };
