@@ -9,6 +9,9 @@
 #include <set>
 #include <string>
 
+#include "haptics.h"
+#include "rows.h"
+
 namespace py = pybind11;
 using pliant::Vec3d;
 
@@ -35,13 +38,6 @@ py::array_t<double> copy(const std::vector<Vec3d>& v) {
   py::array_t<double> array({static_cast<py::ssize_t>(v.size()), py::ssize_t{3}});
   std::copy_n(v.empty() ? nullptr : v.data()->data(), 3 * v.size(), array.mutable_data());
   return array;
-}
-
-/// A copy of a list of numbers. The shape is a vector because pybind11 before 2.12 derives the stride of a mere count from a
-/// member of NumPy's descriptor that NumPy 2 has moved: every element was the first one.
-template <class Numbers>
-py::array_t<double> row(const Numbers& numbers) {
-  return py::array_t<double>(std::vector<py::ssize_t>{static_cast<py::ssize_t>(numbers.size())}, numbers.data());
 }
 
 py::tuple range(const pliant::IndexRange& r) { return py::make_tuple(r.first, r.count); }
@@ -505,9 +501,10 @@ std::string parameters_of(const std::string& text) {
     names.insert((*at)[1]);
     allowed += (allowed.empty() ? "'" : ", '") + (*at)[1].str() + "'";
   }
+  const bool any = parameters.find("**kwargs") != std::string::npos;
   for (const auto& [key, value] : kwargs) {
     const auto word = key.cast<std::string>();
-    if (names.count(word) > 0) continue;
+    if (names.count(word) > 0 || any) continue;
     throw py::type_error(call + "() has no argument '" + word + "'; allowed are: " + (allowed.empty() ? "none" : allowed));
   }
   std::string given;
@@ -569,6 +566,7 @@ PYBIND11_MODULE(_core, m) {
   bind_frame(m);
   bind_report(m);
   bind_world(m);
-  in_pythons_words(m.attr("World"));
+  bind_haptics(m);
+  for (const char* name : {"World", "HapticLoop", "HapticDevice", "ManualDevice"}) in_pythons_words(m.attr(name));
   m.def("backends", &pliant::backend_names, "names of the backends of this machine");
 }

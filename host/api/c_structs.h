@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstring>
 
+#include "pliant/c/haptics.h"
 #include "pliant/c/live.h"
 #include "pliant/c/types.h"
 #include "pliant/error.h"
@@ -41,6 +42,14 @@ PLIANT_C_STRUCT(pliant_live_options, speed);
 PLIANT_C_STRUCT(pliant_live_state, lost);
 PLIANT_C_STRUCT(pliant_event, reserved);
 PLIANT_C_STRUCT(pliant_force_sample, torque);
+PLIANT_C_STRUCT(pliant_device_sample, reserved);
+PLIANT_C_STRUCT(pliant_device_wrench, number);
+PLIANT_C_STRUCT(pliant_device_limits, torque);
+PLIANT_C_STRUCT(pliant_device_counts, last_refusal);
+PLIANT_C_STRUCT(pliant_device_callbacks, release);
+PLIANT_C_STRUCT(pliant_haptic_options, realtime);
+PLIANT_C_STRUCT(pliant_haptic_sample, force);
+PLIANT_C_STRUCT(pliant_haptic_state, substeps);
 #undef PLIANT_C_STRUCT
 
 /// Throws Error (usage) for an invalid size.

@@ -77,7 +77,7 @@ haptics::CoreOptions core_options(const HapticOptions& o, const DeviceLimits& li
 
 struct HapticLoop::Impl {
   std::unique_ptr<api::HapticThread> thread;
-  mutable std::mutex mutex;  ///< of the callers of state() and samples()
+  mutable std::mutex mutex;  ///< of the callers of state(), samples() and stop()
   std::shared_ptr<devices::DeviceLog> log;
 };
 
@@ -99,7 +99,10 @@ HapticLoop::HapticLoop(World& world, const std::string& tool, std::shared_ptr<Ha
 
 HapticLoop::~HapticLoop() = default;
 
-void HapticLoop::stop() noexcept { impl_->thread->stop(); }
+void HapticLoop::stop() noexcept {
+  const std::lock_guard lock(impl_->mutex);
+  impl_->thread->stop();
+}
 
 HapticState HapticLoop::state() const {
   const std::lock_guard lock(impl_->mutex);

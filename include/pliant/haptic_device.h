@@ -61,6 +61,29 @@ class PLIANT_API HapticDevice {
   [[nodiscard]] virtual int port() const noexcept { return 0; }
 };
 
+/// A device without hardware: a program says where it is (a mouse, an animation, a test) and asks what its hand would feel.
+/// These calls come from any thread, and none makes the loop wait.
+class PLIANT_API ManualDevice final : public HapticDevice {
+ public:
+  /// Throws Error (usage) for limits that are negative or no number.
+  explicit ManualDevice(const DeviceLimits& limits = {});
+  ~ManualDevice() override;
+  /// Moves the device; before the first call it is nowhere, and its tool stays. Throws Error (usage) for a position that is not
+  /// finite or beyond 1000 m, and for a turn that has not unit length within 0.001; it then stays where it was.
+  void set_pose(const Vec3d& position, const std::array<double, 4>& turn = {0, 0, 0, 1}, std::uint32_t buttons = 0);
+  /// What it exerts now. The time and the number are those of the pose that it answers; 0: it answers none.
+  [[nodiscard]] DeviceWrench wrench() const;
+  DeviceSample read() noexcept override;
+  void write(const DeviceWrench& wrench) noexcept override;
+  [[nodiscard]] DeviceLimits limits() const noexcept override;
+  [[nodiscard]] DeviceCounts counts() const override;
+
+  struct PLIANT_HIDDEN Impl;  ///< implementation
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
 /// Opens a device by a text (docs/haptic_devices.md): "file:STROKE.csv", "udp:PORT", "shm:NAME", "websocket:PORT", "igtl:PORT",
 /// "osc:PORT" or "spacenav". Whoever is at the other end may come and go later. Throws Error: `usage` for a text that names no
 /// device, `bad_input` for one that cannot be opened, among others because this build lacks its library, `io` for a file.

@@ -83,7 +83,8 @@ struct HapticState {
 /// Couples a device with a tool of a World. Its thread reads the device, computes the force and writes it, tick by tick; it
 /// never waits for steps, cuts or frames of the World, allocates nothing and takes no lock. The World has to run, freely
 /// (World::run_live) or by advance(): each frame takes the tool to where the device is, and tells the loop the state of the
-/// tissue. The loop may live longer than the World: then the force fades out.
+/// tissue. The loop may live longer than the World: then the force fades out. Any thread may make these calls, also while
+/// another does.
 class PLIANT_API HapticLoop {
  public:
   /// Starts the thread. `device` must not be null. Throws Error: usage (an unknown or parked tool, one that another loop

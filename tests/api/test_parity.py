@@ -25,6 +25,22 @@ MISSING = {
     ("Python", "ProbeValue.quantity"): "a key of what World.probes() has for a probe",
     ("Python", "ProbeValue.numbers"): "an array of World.probes()",
     ("C", "WorldInfo.reason"): "for people, who see it in `pliant devices`",
+    ("C", "HapticState.last"): "an argument of pliant_haptic_loop_state of its own, so that it can grow",
+    ("C", "HapticDevice::read"): "a loop calls it; pliant_haptic_device_create takes one",
+    ("C", "HapticDevice::write"): "a loop calls it; pliant_haptic_device_create takes one",
+    ("C", "ManualDevice::read"): "a loop calls it",
+    ("C", "ManualDevice::write"): "a loop calls it",
+    ("C", "ManualDevice::limits"): "pliant_haptic_device_limits",
+    ("C", "ManualDevice::counts"): "pliant_haptic_device_counts",
+    ("Python", "HapticDevice::HapticDevice"): "a thread of the loop would have to wait for Python; ManualDevice takes poses from it",
+    ("Python", "HapticDevice::read"): "a loop calls it",
+    ("Python", "HapticDevice::write"): "a loop calls it",
+    ("Python", "ManualDevice::read"): "a loop calls it",
+    ("Python", "ManualDevice::write"): "a loop calls it",
+    ("Python", "ManualDevice::limits"): "inherited",
+    ("Python", "ManualDevice::counts"): "inherited",
+    **{("Python", f"DeviceSample.{n}"): "an argument of ManualDevice.set_pose()" for n in ("position", "turn", "buttons")},
+    **{("Python", f"DeviceSample.{n}"): "DeviceCounts.received and DeviceWrench tell it" for n in ("time", "number")},
     ("Python", "World::open"): "World(file)",
     ("Python", "World::parse"): "World(dict, surfaces, folder)",
     ("Python", "World::parse_tool"): "add_tool(dict, folder)",
@@ -36,6 +52,8 @@ BEYOND = {
     ("C", "last_error"): "C has no exceptions",
     ("C", "status_name"): "C has no exceptions",
     ("C", "World::destroy"): "C has no destructors",
+    ("C", "HapticDevice::destroy"): "C has no destructors",
+    ("C", "HapticLoop::destroy"): "C has no destructors",
     ("C", "World::backend"): "WorldInfo::backend and device as one text",
     ("C", "World::body"): "an element of WorldInfo::bodies",
     ("C", "World::body_nodes"): "BodyInfo::nodes",
@@ -50,7 +68,14 @@ BEYOND = {
 PYTHON_NAMES = {"backends": "backend_names", "__version__": "version", "World::__init__": "World::World"}
 STRUCTS = {"WorldOptions": "options", "StepReport": "report", "CutResult": "cut", "WorldInfo": "info", "BodyInfo": "body", "Frame": "frame",
            "ProbeValue": "probe_value", "ToolForce": "tool_force", "Interpenetration": "interpenetration", "PickedPoint": "picked_point", "LiveState": "live_state",
-           "LiveOptions": "live_options", "Event": "event", "ForceSample": "force_sample"}
+           "LiveOptions": "live_options", "Event": "event", "ForceSample": "force_sample", "HapticOptions": "haptic_options", "HapticSample": "haptic_sample",
+           "HapticState": "haptic_state", "DeviceSample": "device_sample", "DeviceWrench": "device_wrench", "DeviceLimits": "device_limits",
+           "DeviceCounts": "device_counts"}
+CLASSES = {"World": "world", "HapticLoop": "haptic_loop", "HapticDevice": "haptic_device", "ManualDevice": "manual_device"}
+C_NAMES = {"HapticDevice::open": "open_haptic_device"} | {f"{n}::create": f"{n}::{n}" for n in CLASSES}
+
+# The classes of Python; other structs are dicts or arguments.
+COMPARED = ("StepReport", "Frame", "HapticState", "HapticSample", "DeviceWrench", "DeviceLimits", "DeviceCounts", *CLASSES)
 
 
 def code_of(path):
@@ -69,15 +94,23 @@ def block(text, begin):
 
 
 def members(text):
-    return set(re.findall(r"(\w+)(?:\[\d+\]|\{[^;]*\}|\s*=[^;]*)?;", text))
+    """Of a struct; one line may declare several."""
+    text = re.sub(r"\{[^{}]*\}|<[^<>]*>", "", text)
+    return set(re.findall(r"(\w+)(?:\[\d+\]|\s*=[^;,]*)?[;,]", text))
+
+
+def calls_of(headers, name):
+    """The public calls of a class, its constructors by its own name."""
+    public = block(headers, re.search(rf"class PLIANT_API {name}\b[^;{{]*", headers)[0]).split("private:")[0]
+    public = re.sub(r"\)([\w\s]*)\{[^{}]*\}", r")\1;", public.replace("{}", ""))
+    calls = re.findall(r"(?<![\w~:])(\w+)\([^;]*?\)\s*(?:const)?\s*(?:noexcept)?\s*(?:override|= 0|= default)?;", public)
+    return {f"{name}::{n}" for n in calls}
 
 
 def cpp():
-    world = re.sub(r"\[\[deprecated[^\n]*", "", code_of("include/pliant/world.h"))
-    found = {f"World::{n}" for n in re.findall(r"(?<![\w~:])(\w+)\([^;]*?\)\s*(?:const)?\s*(?:noexcept)?;",
-                                               block(world, "class PLIANT_API World").split("private:")[0])}
-    headers = world + code_of("include/pliant/scene.h") + code_of("include/pliant/frame.h") + code_of("include/pliant/probe.h") + code_of("include/pliant/tool.h") + code_of("include/pliant/world_types.h")
-    headers += code_of("include/pliant/live.h")
+    names = ("world", "scene", "frame", "probe", "tool", "world_types", "live", "haptics", "haptic_device")
+    headers = re.sub(r"\[\[deprecated[^\n]*", "", "".join(code_of(f"include/pliant/{n}.h") for n in names))
+    found = set().union(*(calls_of(headers, name) for name in CLASSES))
     found |= set(re.findall(r"^PLIANT_API .*?(\w+)\(", headers, re.M))
     for name in STRUCTS:
         found |= {f"{name}.{m}" for m in members(block(headers, f"struct {name} "))}
@@ -85,16 +118,32 @@ def cpp():
 
 
 def c():
-    calls = re.findall(r"^PLIANT_API .*?pliant_(\w+)\(", code_of("include/pliant/c/pliant.h") + code_of("include/pliant/c/live.h"), re.M)
-    found = {re.sub("^world_", "World::", n) for n in calls}
-    types = code_of("include/pliant/c/types.h") + code_of("include/pliant/c/live.h")
+    text = "".join(code_of(f"include/pliant/c/{n}.h") for n in ("pliant", "types", "live", "haptics", "haptic_device"))
+    found = set()
+    for call in re.findall(r"^PLIANT_API .*?pliant_(\w+)\(", text, re.M):
+        of = next((n for n, short in CLASSES.items() if call.startswith(short + "_")), None)
+        name = call if of is None else f"{of}::{call[len(CLASSES[of]) + 1:]}"
+        found.add(C_NAMES.get(name, name))
     for name, short in STRUCTS.items():
-        for m in members(block(types, f"typedef struct pliant_{short} ")) - {"size", "reserved"}:
+        for m in members(block(text, f"typedef struct pliant_{short} ")) - {"size", "reserved"}:
             range_of = re.fullmatch(r"(.*)(vertex|triangle)_(first|count)", m)
-            if range_of and (range_of[3] == "first" or f"{range_of[1]}{range_of[2]}_first" not in types):
+            if range_of and (range_of[3] == "first" or f"{range_of[1]}{range_of[2]}_first" not in text):
                 m = range_of[1] + {"vertex": "vertices", "triangle": "triangles"}[range_of[2]]
             if not m.endswith("_count"):
                 found.add(f"{name}.{m}")
+    return found
+
+
+def touch():
+    """Of python/haptics.cpp: each class is bound by one expression."""
+    text = code_of("python/haptics.cpp")
+    found = set(re.findall(r'm\.def\("(\w+)"', text))
+    for of, bound in re.findall(r"py::class_<(\w+)(.*?)(?=py::class_<|\n})", text.replace("m.def", ""), re.S):
+        mark = "::" if of in CLASSES else "."
+        found |= {f"{of}{mark}{n}" for n in re.findall(r'\.def(?:_readonly|_property_readonly)?\(\s*"([a-z]\w*)"', bound)}
+        if "py::init" in bound:
+            found.add(f"{of}::{of}")
+    found |= {f"HapticOptions.{n}" for n in re.findall(r'\{"(\w+)", "\w+", put<', text)}
     return found
 
 
@@ -115,6 +164,7 @@ def python():
         kind = "list" if name in ("Interpenetration", "Event") else "dict"
         found |= {f"{name}.{n}" for n in re.findall(rf'\b{variable}\["(\w+)"\] =', block(text, f"py::{kind} {function}("))}
     found |= {f"LiveOptions.{n}" for n in re.findall(r'py::arg\("(\w+)"\)', live[:live.index("stop_live")])}
+    found |= touch()
     found |= {f"ForceSample.{n}" for n in re.search(r"PYBIND11_NUMPY_DTYPE\(pliant::ForceSample, ([^)]*)\)", live)[1].split(", ")}
     return {PYTHON_NAMES.get(n, n) for n in found}
 
@@ -125,10 +175,13 @@ def module():
         import pliant
     except ImportError:
         return None
-    found = {f"World::{n}" for n in vars(pliant.World) if not n.startswith("_")} | {"World::__init__"}
-    found |= {n for n, v in vars(pliant).items() if not n.startswith("_") and not isinstance(v, type)} | {"__version__"}
-    for name in ("StepReport", "Frame"):
-        found |= {f"{name}.{n}" for n in vars(getattr(pliant, name)) if not n.startswith("_")}
+    found = {n for n, v in vars(pliant).items() if not n.startswith("_") and not isinstance(v, type)} | {"__version__"}
+    for name in COMPARED:
+        kind = getattr(pliant, name)
+        mark = "::" if name in CLASSES else "."
+        found |= {f"{name}{mark}{n}" for n in vars(kind) if not n.startswith("_")}
+        if name in CLASSES and name != "HapticDevice":
+            found.add(f"{name}::{name}")
     return {PYTHON_NAMES.get(n, n) for n in found}
 
 
@@ -152,7 +205,7 @@ def main():
         print(f"{language}: {len(found & reference)} of {len(reference)} calls and members of C++, {len(found - reference)} of its own")
     held = module()
     if held is not None:
-        said = {n for n in python() if "." not in n or n.split(".")[0] in ("StepReport", "Frame")}  # others are dicts or arguments
+        said = {n for n in python() if "." not in n or n.split(".")[0] in COMPARED}  # others are dicts or arguments
         wrong += [f"the module and its source differ in {n}" for n in sorted(held ^ said)]
     print("the Python module " + ("is not there: only its source was read" if held is None else "holds what its source says"))
     if wrong:

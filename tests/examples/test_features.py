@@ -9,8 +9,8 @@ from pathlib import Path
 FOLDER = Path(os.environ["EXAMPLES"])
 
 
-def output(name):
-    done = subprocess.run([str(FOLDER / name)], capture_output=True, text=True, timeout=120)
+def output(name, *arguments):
+    done = subprocess.run([str(FOLDER / name), *arguments], capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 
@@ -50,6 +50,17 @@ class Features(unittest.TestCase):
         self.assertEqual(news + same, 120)
         self.assertGreaterEqual(sent, 8)
         self.assertLess(low, 0, "it does not hang down")
+
+    def test_haptics_feels_the_press(self):
+        lines = output("haptics", "2").splitlines()
+        force = [numbers(line)[2] for line in lines[:-1]]
+        self.assertEqual(len(force), 20)
+        self.assertEqual(force[0], 0, "it is above the block")
+        self.assertGreater(max(force), 0.1)
+        self.assertGreater(numbers(lines[-1])[0], 100, "ticks")
+        refused = subprocess.run([str(FOLDER / "haptics"), "1", "telepathy:1"], capture_output=True, text=True, timeout=120)
+        self.assertEqual(refused.returncode, 5)
+        self.assertIn("udp:PORT", refused.stderr)
 
 
 if __name__ == "__main__":

@@ -181,7 +181,7 @@ def check_includes(tree):
     host, twins = tree.under("host", ".h", ".cpp"), tree.under("cpu_ref", ".h", ".cpp")
     # A kernel is included by its base name, whatever its folder.
     allow(tree, "kernels include kernels and layout.h only", r'^"([a-z0-9_]+\.cl|layout\.h)"$', tree.under("kernels", ".cl", ".h"))
-    allow(tree, "the public API uses the standard library only", r'^(<[a-z_0-9]+>|<std(def|int)\.h>|"pliant/[a-z_/]+\.h")$',
+    allow(tree, "the public API uses the standard library only", r'^(<[a-z_0-9]+>|<(std(def|int)|math)\.h>|"pliant/[a-z_/]+\.h")$',
           tree.under("include", ".h"))
     forbid(tree, "only host/backends/opencl includes OpenCL headers", opencl_header,
            [f for f in host if not f.startswith("host/backends/opencl/")] + twins)

@@ -25,8 +25,8 @@ if [ "$kind" = SHARED_LIBRARY ]; then
   [ -f "$lib/libpliant.so.$version" ] || { echo "there is no libpliant.so.$version"; exit 1; }
   # Only the API can be seen.
   seen=$(nm -D --defined-only -C "$lib/libpliant.so" | sed 's/^[0-9a-f]* [A-Z] //' | grep -vE \
-    '^(pliant_[a-z_]+|pliant::(World::|HapticDevice::|version|backend_names|box_surface|open_haptic_device).*|(typeinfo|typeinfo name|vtable) for pliant::(Error|HapticDevice))$' || true)
-  seen+=$(nm -D --defined-only -C "$lib/libpliant.so" | grep 'World::Impl::' || true)
+    '^(pliant_[a-z_]+|pliant::(World::|HapticDevice::|HapticLoop::|ManualDevice::|version|backend_names|box_surface|open_haptic_device).*|(typeinfo|typeinfo name|vtable) for pliant::(Error|HapticDevice|ManualDevice))$' || true)
+  seen+=$(nm -D --defined-only -C "$lib/libpliant.so" | grep '::Impl::' || true)
   [ -z "$seen" ] || { printf 'symbols that should be hidden:\n%s\n' "$seen" | head -n 20; exit 1; }
 fi
 
