@@ -20,9 +20,9 @@ struct InstrumentPose {
 
 class Instrument {
  public:
-  /// `predict`: frames by which the simulation's tool is ahead of the device. `rings`: see BufferSource.
-  Instrument(std::string tool, std::int32_t rings, double predict)
-      : tool_(std::move(tool)), predict_(predict), source_(tool_, rings) {}
+  /// `predict`: frames by which the simulation's tool is ahead of the device. `first_rings`: see BufferSource.
+  Instrument(std::string tool, std::int32_t first_rings, double predict)
+      : tool_(std::move(tool)), predict_(predict), source_(tool_, first_rings) {}
   [[nodiscard]] const std::string& tool() const { return tool_; }
 
   // For the stepping thread.

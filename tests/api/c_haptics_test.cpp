@@ -317,6 +317,7 @@ TEST_F(CHaptics, StructsOfOtherVersions) {
   expect_checked<pliant_haptic_sample>(PLIANT_HAPTIC_SAMPLE_INIT,
                                        [&](pliant_haptic_sample* out) { return pliant_haptic_loop_state(loop, nullptr, out); });
   std::size_t given = 0;
+  EXPECT_TRUE(wait_for([&] { return state().ticks > 3; }));
   pliant_haptic_loop_stop(loop);
   expect_checked<pliant_haptic_sample>(
       PLIANT_HAPTIC_SAMPLE_INIT, [&](pliant_haptic_sample* out) { return pliant_haptic_loop_samples(loop, out, 1, &given); });

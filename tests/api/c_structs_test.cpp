@@ -69,7 +69,7 @@ TEST(CStructSizes, AreThoseOfTheFirstVersion) {
   EXPECT_EQ(api::CStruct<pliant_device_callbacks>::first_size, 40U);
   EXPECT_EQ(api::CStruct<pliant_haptic_options>::first_size, 160U);
   EXPECT_EQ(api::CStruct<pliant_haptic_sample>::first_size, 120U);
-  EXPECT_EQ(api::CStruct<pliant_haptic_state>::first_size, 184U);
+  EXPECT_EQ(api::CStruct<pliant_haptic_state>::first_size, 192U);
 }
 
 TEST_F(CStructs, WhatIsFilledInFitsTheCaller) {
