@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "backends/interface/float_environment.h"
+#include "devices/check_sample.h"
 
 namespace pliant::api {
 namespace {
@@ -107,9 +108,16 @@ void HapticThread::take_message(Nanoseconds now) noexcept {
   elements_ = message.elements;
 }
 
+/// The newest sample that is a pose: a device that says something else holds still.
+const DeviceSample& HapticThread::newest_sample() noexcept {
+  DeviceSample sample = device_->read();
+  if (devices::check_sample(sample) == nullptr) sample_ = sample;
+  return sample_;
+}
+
 void HapticThread::tick(Nanoseconds now) noexcept {
   take_message(now);
-  const DeviceSample sample = device_->read();
+  const DeviceSample& sample = newest_sample();
   const double age = told_.frames > 0 ? static_cast<double>(now - last_message_) * kNano : 1e9;
   const haptics::CoreTick& done = core_.tick(sample, age, period_);
   device_->write(done.exerted);

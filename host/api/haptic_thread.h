@@ -43,6 +43,7 @@ class HapticThread {
   void run() noexcept;
   void tick(Nanoseconds now) noexcept;
   void take_message(Nanoseconds now) noexcept;
+  const DeviceSample& newest_sample() noexcept;
   void choose_rings(double work) noexcept;
   void tell(const haptics::CoreTick& tick, Nanoseconds now) noexcept;
   void ask_for_priority() noexcept;
@@ -57,6 +58,7 @@ class HapticThread {
   // Of the thread.
   Nanoseconds began_ = 0, last_message_ = 0;
   Told told_;
+  DeviceSample sample_;
   std::int64_t elements_ = 0;  ///< of all bodies
   std::int32_t rings_;         ///< asked for; -1: all
   double work_ = 0;            ///< of a tick, smoothed [s]

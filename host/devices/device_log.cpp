@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "devices/check_sample.h"
 #include "devices/stroke.h"
 #include "pliant/error.h"
 
@@ -43,7 +44,8 @@ RecordedDevice::RecordedDevice(std::shared_ptr<HapticDevice> device, std::shared
 
 DeviceSample RecordedDevice::read() noexcept {
   const DeviceSample sample = device_->read();
-  if (sample.number != newest_) log_->append(sample);
+  DeviceSample checked = sample;  // a stroke has no place for what is no pose
+  if (sample.number != newest_ && check_sample(checked) == nullptr) log_->append(sample);
   newest_ = sample.number;
   return sample;
 }

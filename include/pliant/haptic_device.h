@@ -53,7 +53,7 @@ class PLIANT_API HapticDevice {
   virtual DeviceSample read() noexcept = 0;
   /// Exerts a wrench until the next call.
   virtual void write(const DeviceWrench& wrench) noexcept = 0;
-  /// What it can exert; unlimited unless a device says otherwise.
+  /// What it can exert, unlimited unless a device says otherwise; a loop asks once, at its start.
   [[nodiscard]] virtual DeviceLimits limits() const noexcept { return {}; }
   /// May be called from any thread.
   [[nodiscard]] virtual DeviceCounts counts() const { return {}; }
@@ -75,6 +75,7 @@ class PLIANT_API ManualDevice final : public HapticDevice {
   [[nodiscard]] DeviceWrench wrench() const;
   DeviceSample read() noexcept override;
   void write(const DeviceWrench& wrench) noexcept override;
+  /// Those that it was made with.
   [[nodiscard]] DeviceLimits limits() const noexcept override;
   [[nodiscard]] DeviceCounts counts() const override;
 

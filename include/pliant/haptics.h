@@ -14,15 +14,15 @@ namespace pliant {
 
 /// Options of a HapticLoop.
 struct HapticOptions {
-  double rate = 1000;  ///< ticks per second, 300 to 10000
-  /// What computes the force between two frames of the simulation: "buffer", the elements around the contact, integrated in the
-  /// tick; "whole", all elements of the body; "auto", as much as fits into `share`; "held", the force of the last frame;
-  /// "extrapolated", the line through the last two.
-  std::string model = "auto";
-  int rings = 3;       ///< "buffer": rings of elements around the nodes that the tool touches, 1 to 100
-  double share = 0.3;  ///< "auto": share of a tick that the model may take, 0.01 to 0.9
-  double predict = 1;  ///< frames by which the simulation's tool is ahead of the device, at its speed, 0 to 2
-  double lead = 1;     ///< frames by which the buffer's rim is ahead of the simulation's last state, 0 to 2
+  double rate = 1000;          ///< ticks per second, 300 to 10000
+  std::string model = "auto";  ///< what computes the force between two frames of the simulation: "buffer", the elements around
+                               ///< the contact, integrated in the tick; "whole", all elements of the body; "auto", as much as
+                               ///< fits into `share`; "held", the force of the last frame; "extrapolated", the line through the
+                               ///< last two
+  int rings = 3;               ///< "buffer": rings of elements around the nodes that the tool touches, 1 to 100
+  double share = 0.3;          ///< "auto": share of a tick that the model may take, 0.01 to 0.9
+  double predict = 1;          ///< frames by which the simulation's tool is ahead of the device, at its speed, 0 to 2
+  double lead = 1;             ///< frames by which the buffer's rim is ahead of the simulation's last state, 0 to 2
 
   /// Virtual coupling between device and tool. 0: rigid, the tool is where the device is [N/m]
   double stiffness = 0;
@@ -57,27 +57,32 @@ struct HapticSample {
 
 /// State of a loop.
 struct HapticState {
-  bool running = false;
-  bool realtime = false;  ///< it got real-time priority
-  std::string model;      ///< in use: "buffer", "whole", "held", "extrapolated"
-  std::int64_t ticks = 0;
-  std::int64_t late = 0;                ///< ticks that began more than a period late; the missed ones are left out
-  double work_mean = 0, work_most = 0;  ///< time of a tick's work: mean, p99.9 and largest [s]
-  double work_p999 = 0;
-  double delay_p999 = 0, delay_most = 0;                ///< how much later than planned ticks begin [s]
-  std::int64_t frames = 0;                              ///< received from the World
-  double age = 0;                                       ///< of the newest one [s]
-  int rings = 0;                                        ///< of the buffer; -1: the whole body
-  std::int64_t elements = 0;                            ///< of the buffer; 0: nothing is near the tool
-  int substeps = 0;                                     ///< of the buffer, in a tick
-  std::int64_t buffers = 0;                             ///< built so far
-  std::int64_t resets = 0;                              ///< buffers that blew up and began anew
-  std::int64_t contacts = 0;                            ///< points that touch
-  std::int64_t stale = 0, limited = 0, not_finite = 0;  ///< ticks of each kind (docs/haptics.md, What protects the hand)
-  std::int64_t corrections = 0;                         ///< ticks in which the force was reduced for passivity
-  double energy = 0, least_energy = 0;                  ///< of the device's account: now and at least so far [J]
-  std::int64_t refused = 0;                             ///< poses that the World refused
-  HapticSample last;                                    ///< the newest tick
+  bool running = false;          ///< until stop()
+  bool realtime = false;         ///< it got real-time priority
+  std::string model;             ///< in use: "buffer", "whole", "held", "extrapolated"
+  std::int64_t ticks = 0;        ///< so far
+  std::int64_t late = 0;         ///< ticks that began more than a period late; the missed ones are left out
+  double work_mean = 0;          ///< time of a tick's work: mean [s]
+  double work_most = 0;          ///< largest [s]
+  double work_p999 = 0;          ///< the 99.9th percentile [s]
+  double delay_p999 = 0;         ///< how much later than planned ticks begin: the 99.9th percentile [s]
+  double delay_most = 0;         ///< largest [s]
+  std::int64_t frames = 0;       ///< received from the World
+  double age = 0;                ///< of the newest one [s]
+  int rings = 0;                 ///< of the buffer; -1: the whole body
+  std::int64_t elements = 0;     ///< of the buffer; 0: nothing is near the tool
+  int substeps = 0;              ///< of the buffer, in a tick
+  std::int64_t buffers = 0;      ///< built so far
+  std::int64_t resets = 0;       ///< buffers that blew up and began anew
+  std::int64_t contacts = 0;     ///< points that touch
+  std::int64_t stale = 0;        ///< ticks without a recent frame (docs/haptics.md, What protects the hand)
+  std::int64_t limited = 0;      ///< ticks whose force was limited
+  std::int64_t not_finite = 0;   ///< ticks whose force was no number, and became 0
+  std::int64_t corrections = 0;  ///< ticks in which the force was reduced for passivity
+  double energy = 0;             ///< of the device's account [J]
+  double least_energy = 0;       ///< at least so far [J]
+  std::int64_t refused = 0;      ///< poses that the World refused
+  HapticSample last;             ///< the newest tick
 };
 
 /// Couples a device with a tool of a World. Its thread reads the device, computes the force and writes it, tick by tick; it
@@ -92,9 +97,11 @@ class PLIANT_API HapticLoop {
   HapticLoop(World& world, const std::string& tool, std::shared_ptr<HapticDevice> device, const HapticOptions& options = {});
   HapticLoop(const HapticLoop&) = delete;
   HapticLoop& operator=(const HapticLoop&) = delete;
-  ~HapticLoop();  ///< stop()
+  /// stop()
+  ~HapticLoop();
   /// Ends the thread; the device gets a zero force, and the tool stays where it is.
   void stop() noexcept;
+  /// What it does now.
   [[nodiscard]] HapticState state() const;
   /// Returns the samples of the ticks since the last call, oldest first. When 65536 wait, further ones are left out.
   std::vector<HapticSample> samples();

@@ -42,15 +42,20 @@ class PressingDevice final : public HapticDevice {
     sample.position = {0, -depth_ * s * s * (3 - 2 * s), 0};
     sample.time = t;
     sample.number = ++number_;
+    if (mad_) sample.position[2] = std::nan("");
     return sample;
   }
   void write(const DeviceWrench& wrench) noexcept override {
+    if (!std::isfinite(wrench.force[1])) finite_ = false;
     if (wrench.force[1] > most_) most_ = wrench.force[1];
     last_ = wrench.force[1];
   }
   [[nodiscard]] DeviceLimits limits() const noexcept override { return limits_; }
   void set_limit(double newtons) { limits_.force = newtons; }
+  /// Whether it says what is no position.
+  void set_mad(bool mad) { mad_ = mad; }
   // For after the loop.
+  [[nodiscard]] bool finite() const { return finite_; }
   [[nodiscard]] double most() const { return most_; }
   [[nodiscard]] double last() const { return last_; }
 
@@ -59,6 +64,7 @@ class PressingDevice final : public HapticDevice {
   Clock::time_point began_;
   std::uint64_t number_ = 0;
   std::atomic<double> most_{0}, last_{0};
+  std::atomic<bool> mad_{false}, finite_{true};
   DeviceLimits limits_;
 };
 
@@ -149,6 +155,34 @@ TEST(Haptics, TheForceStaysWithinTheLimits) {
   EXPECT_TRUE(run_until(world, 20, [&] { return loop.state().limited > 0; }));
   loop.stop();
   EXPECT_LE(device->most(), 0.1 * (1 + 1e-12));
+}
+
+TEST(Haptics, ADeviceThatWasMadIsFeltAgain) {
+  World world(block_and_ball(), on("cpu"));
+  auto device = std::make_shared<PressingDevice>(0.012, 0.2);
+  HapticLoop loop(world, "ball", device);
+  world.run_live();
+  ASSERT_TRUE(run_until(world, 20, [&] { return loop.state().last.force[1] > 0.05 && loop.state().last.time > 0.4; }));
+  device->set_mad(true);
+  const std::int64_t ticks = loop.state().ticks;
+  ASSERT_TRUE(run_until(world, 20, [&] { return loop.state().ticks > ticks + 20; }));
+  EXPECT_TRUE(std::isfinite(loop.state().last.position[2])) << "the last good place holds";
+  device->set_mad(false);
+  EXPECT_TRUE(run_until(world, 5, [&] { return loop.state().last.force[1] > 0.05; }));
+  EXPECT_EQ(loop.state().refused, 0);
+  loop.stop();
+  EXPECT_TRUE(device->finite());
+}
+
+TEST(Haptics, ADeviceMayBeginMad) {
+  World world(block_and_ball(), on("cpu"));
+  auto device = std::make_shared<PressingDevice>(0.012, 1);
+  device->set_mad(true);
+  HapticLoop loop(world, "ball", device);
+  world.run_live();
+  ASSERT_TRUE(run_until(world, 20, [&] { return loop.state().ticks > 20; }));
+  device->set_mad(false);
+  EXPECT_TRUE(run_until(world, 20, [&] { return loop.state().last.force[1] > 0.05; })) << loop.state().last.position[1];
 }
 
 TEST(Haptics, TwoDevicesDriveTwoTools) {
