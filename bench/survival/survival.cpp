@@ -10,6 +10,7 @@
 #include "backends/choice/backends.h"
 #include "bench/common/shipped_scenes.h"
 #include "bench/kernels/kernels.h"
+#include "bench/survival/live_tools.h"
 #include "geometry/stopwatch.h"
 #include "geometry/vec.h"
 #include "io/atomic_file.h"
@@ -25,6 +26,7 @@ using nlohmann::json;
 constexpr double kEnd = 2;          // [s]
 constexpr double kShortStep = 0.1;  // of the first
 constexpr double kEnergy = 0.01;
+constexpr double kFrame = 1.0 / 60;  // [s]
 
 /// Largest displacement over the largest extent of the body at rest; not a number if one of them is not.
 double largest_displacement(const Simulation& s) {
@@ -72,6 +74,20 @@ json describe(const Scene& scene) {
           {"bodies", scene.bodies.size()}};
 }
 
+/// What hands met in a scene.
+void add_live(const LiveTools& live, json& row) {
+  const LiveFindings& found = live.findings();
+  row["live"] = live.count();
+  if (live.count() == 0) return;
+  row["hand_force"] = found.largest_force;
+  row["hand_energy"] = found.least_energy;
+  row["hand_buffers"] = found.buffers;
+  row["poses_refused"] = found.poses_refused;
+  if (row["outcome"] != "ended" || found.fault().empty()) return;
+  row["outcome"] = "unsafe";
+  row["message"] = found.fault();
+}
+
 /// One scene to its end.
 json run_one(std::int64_t number, const SurvivalOptions& options) {
   const Scene scene = parse_scene(survival_scene(number, options.scenes), fmt::format("survival-{}.json", number));
@@ -85,6 +101,11 @@ json run_one(std::int64_t number, const SurvivalOptions& options) {
     double least = first;
     const Stopwatch clock;
     double watched = 0;
+    LiveTools live(number, s, end);
+    while (live.count() > 0 && s.time() + 1.5 * kFrame < end && !s.divergence()) {
+      live.frame(s, kFrame);
+      least = std::min(least, s.dt());
+    }
     while (s.time() < end && !s.divergence()) {
       s.advance(64);
       least = std::min(least, s.dt());
@@ -101,6 +122,7 @@ json run_one(std::int64_t number, const SurvivalOptions& options) {
     const double largest = largest_displacement(s);
     row["outcome"] = s.divergence() ? "diverged" : std::isfinite(largest) ? "ended" : "not finite";
     row["message"] = s.divergence() ? s.divergence()->message() : "";
+    add_live(live, row);
     row["time"] = s.time();
     row["first_dt"] = first;
     row["least_dt"] = least / first;
@@ -160,7 +182,7 @@ class Kept {
 
 json summary_of(const json& rows) {
   std::map<std::string, int> outcomes;
-  int short_steps = 0, slow = 0, inverted = 0, left_inverted = 0, created = 0;
+  int short_steps = 0, slow = 0, inverted = 0, left_inverted = 0, created = 0, live = 0;
   for (const json& row : rows) {
     ++outcomes[row["outcome"].get<std::string>()];
     short_steps += row.value("least_dt", 1.0) < kShortStep;
@@ -168,12 +190,15 @@ json summary_of(const json& rows) {
     inverted += row.value("inverted", 0) > 0;
     left_inverted += row.value("inverted_now", 0) > 0;
     created += creates_energy(row);
+    live += row.value("live", 0) > 0;
   }
   return {{"scenes", rows.size()},
           {"ended", outcomes["ended"]},
           {"diverged", outcomes["diverged"]},
           {"not_finite", outcomes["not finite"]},
           {"refused", outcomes["refused"]},
+          {"live", live},
+          {"unsafe", outcomes["unsafe"]},
           {"least_dt_below_a_tenth", short_steps},
           {"mean_dt_below_a_tenth", slow},
           {"inverted", inverted},
@@ -222,6 +247,8 @@ std::string survival_table(const json& result) {
   text +=
       fmt::format("{} gained more than a hundredth of their energy beyond the work of tools while all loads were constant\n",
                   s["energy_created_above_a_hundredth"].get<int>());
+  text += fmt::format("{} had tools in hands; in {} of them a force on the hand was not as it must be\n", s["live"].get<int>(),
+                      s["unsafe"].get<int>());
   for (const json& row : result["rows"]) {
     if (creates_energy(row)) {
       text += fmt::format("  {:>4} {} {} {}, {} bodies, {} tools{}: gained {:.2g} of its energy\n",

@@ -19,7 +19,7 @@ struct SurvivalOptions {
 };
 
 /// The text of scene `number`: a body, method, material, loads and blades drawn at random, the same for a number wherever it is
-/// drawn.
+/// drawn. In half of the scenes with tools, one or two of them are in hands (LiveTools), which the text does not say.
 std::string survival_scene(std::int64_t number, const std::filesystem::path& scenes);
 
 /// {"machine": {...}, "summary": {...}, "rows": [...]}, docs/schema/bench-survival.json. Throws Error for bad options.

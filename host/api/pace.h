@@ -1,4 +1,5 @@
-// When the frames of a freely running World start, and how much simulated time each covers. Private to host/api and its tests.
+// When the frames of a freely running World start, and how much simulated time each covers. Private to host/api,
+// host/cli and tests.
 #pragma once
 #include <chrono>
 #include <deque>

@@ -10,6 +10,7 @@
 #include "cli/energy_report.h"
 #include "cli/frame_grid.h"
 #include "cli/frames.h"
+#include "cli/live_run.h"
 #include "cli/picture_words.h"
 #include "cli/probes.h"
 #include "cli/run_events.h"
@@ -32,6 +33,7 @@ struct RunArguments {
   std::string scene, backend = "auto", out, checkpoint, resume;
   std::vector<std::string> formats{"vtu"}, fields, probes;
   PictureWords picture;
+  LiveArguments live;
   std::optional<std::int64_t> steps;
   std::optional<std::string> every;
   std::optional<double> seconds, dt, checkpoint_every;
@@ -64,6 +66,7 @@ void check(const RunArguments& o) {
   if (!o.picture.given().empty() && formats.count(OutputFormat::png) == 0) {
     throw Error(ErrorCode::bad_input, fmt::format("{} is for pictures; it needs --format png", o.picture.given()));
   }
+  o.live.check();
   (void)o.picture.options();  // throws for invalid words
   o.common.check(o.hash);
   if (!o.checkpoint.empty()) check_writable(o.checkpoint);
@@ -81,7 +84,8 @@ class Run {
     watch_interrupt();
     std::vector<DueOutput> due = outputs();
     if (o_.profile) simulation_->backend().profile(true);
-    RunLoop loop(*simulation_, end(), o_.profile);
+    if (!o_.live.given().empty()) live_.emplace(o_.live, o_.common, *simulation_, o_.steps || o_.seconds);
+    RunLoop loop(*simulation_, end(), o_.profile, live_ ? &live_->guide() : nullptr);
     energy_.emplace(*simulation_, loop);
     RunProgress progress(o_.common, *simulation_, loop);
     const Stopwatch since_start;
@@ -94,6 +98,7 @@ class Run {
       save_on_the_way();
       saved = since_start.seconds();
     });
+    if (live_) live_->finish();
     progress.missed(blades_without_contact(*simulation_, false));
     progress.clear();
     if (!result_.diverged.empty()) return diverged();
@@ -117,6 +122,8 @@ class Run {
                                         {!o_.checkpoint.empty(), "--checkpoint"},
                                         {o_.checkpoint_every.has_value(), "--checkpoint-every"},
                                         {!o_.resume.empty(), "--resume"},
+                                        {!o_.live.live.empty(), "--live"},
+                                        {!o_.live.replay.empty(), "--replay"},
                                         {o_.profile, "--profile"}}) {
       if (given)
         throw Error(
@@ -248,7 +255,8 @@ class Run {
 
   void report() {
     report_run({o_.common, stem_, *simulation_, result_, probes_, scene_probes_, *energy_, warnings_,
-                frames_ ? &*frames_ : nullptr, o_.checkpoint, first_time_, o_.hash, o_.deep_hash, o_.profile});
+                frames_ ? &*frames_ : nullptr, o_.checkpoint, first_time_, o_.hash, o_.deep_hash, o_.profile,
+                live_ ? &*live_ : nullptr});
   }
 
   const RunArguments& o_;
@@ -258,6 +266,7 @@ class Run {
   Probes probes_, scene_probes_;
   ToolTable tools_;
   std::optional<EnergyReport> energy_;
+  std::optional<LiveRun> live_;
   RunResult result_;
   std::vector<std::string> warnings_;  // about surfaces
   double first_time_ = 0;
@@ -284,6 +293,7 @@ std::function<int()> setup_run(CLI::App& app) {
   app.add_option("--format", o->formats, explained(format_words()))->delimiter(',')->capture_default_str();
   app.add_option("--fields", o->fields, "Values in VTU and glTF files: " + explained(field_words()))->delimiter(',');
   o->picture.add_to(app);
+  o->live.add_to(app);
   app.add_option("--checkpoint", o->checkpoint, "Save the last state")->type_name("FILE");
   app.add_option("--checkpoint-every", o->checkpoint_every,
                  "Save the state on the way, too, after so many seconds of wall time [s]");

@@ -33,10 +33,21 @@ std::int64_t RunLoop::remaining() const {
   return std::max<std::int64_t>(0, steps);
 }
 
+/// Until steps are to follow. Returns false if the run ends here.
+bool RunLoop::ask_guide(RunResult& result) {
+  while (guide_ != nullptr && guide_->steps_left(simulation_) == 0) {
+    const bool goes_on = guide_->next(simulation_);
+    result.interrupted = interrupted();
+    if (!goes_on || result.interrupted) return false;
+  }
+  return true;
+}
+
 /// Runs one batch, up to the next output or the end at most. Returns false if the run was rolled back to an earlier state.
 bool RunLoop::batch(const std::vector<DueOutput>& due, std::int32_t& steps) {
   const auto wanted = [&] {
     std::int64_t left = remaining();
+    if (guide_ != nullptr) left = std::min(left, guide_->steps_left(simulation_));
     for (const DueOutput& d : due) left = std::min(left, d.grid.steps_left(simulation_));
     return std::max<std::int64_t>(1, left);
   };
@@ -108,7 +119,8 @@ RunResult RunLoop::run(std::vector<DueOutput>& due, const std::function<void(con
   for (DueOutput& d : due) d.grid.start(simulation_);
   put_out(due, now);
   do {
-    while (!simulation_.at_equilibrium() && !result.interrupted && result.diverged.empty() && remaining() > 0) {
+    while (!simulation_.at_equilibrium() && !result.interrupted && result.diverged.empty() && remaining() > 0 &&
+           ask_guide(result)) {
       const Stopwatch clock;
       std::int32_t n = 0;
       const bool stayed = batch(due, n);

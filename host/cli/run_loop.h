@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cli/frame_grid.h"
-#include "simulation/simulation.h"
+#include "haptics/run_guide.h"
 
 namespace pliant::cli {
 
@@ -40,9 +40,10 @@ struct DueOutput {
 
 class RunLoop {
  public:
-  /// `profile`: passes are timed, but for those of confirm(), which do not belong to the run.
-  RunLoop(Simulation& simulation, const RunEnd& end, bool profile = false)
-      : simulation_(simulation), end_(end), profile_(profile) {}
+  /// `profile`: passes are timed, but for those of confirm(), which do not belong to the run. `guide`: has its say between the
+  /// steps, and may end the run; null: there is none.
+  RunLoop(Simulation& simulation, const RunEnd& end, bool profile = false, haptics::RunGuide* guide = nullptr)
+      : simulation_(simulation), end_(end), profile_(profile), guide_(guide) {}
   /// Steps still to do at the present size of the step.
   [[nodiscard]] std::int64_t remaining() const;
   [[nodiscard]] const RunEnd& end() const { return end_; }
@@ -57,6 +58,7 @@ class RunLoop {
     Moment moment;
     std::vector<std::size_t> outputs;
   };
+  bool ask_guide(RunResult& result);
   bool batch(const std::vector<DueOutput>& due, std::int32_t& steps);
   void put_out(std::vector<DueOutput>& due, const std::vector<std::size_t>& outputs);
   void put_out_due(std::vector<DueOutput>& due);
@@ -67,6 +69,7 @@ class RunLoop {
   Simulation& simulation_;
   RunEnd end_;
   bool profile_;
+  haptics::RunGuide* guide_;
   std::vector<Held> held_;
 };
 

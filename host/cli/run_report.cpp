@@ -46,6 +46,10 @@ class Report {
     for (std::size_t t = 0; t < s_.contact().tools().size(); ++t) out_.print(tool_line(s_, t));
     if (s_.scene().contact && s_.model().contact != nullptr) out_.print(tissue_line(s_));
     for (const std::string& line : inside) out_.print(line);
+    if (r_.live != nullptr) {
+      json["instruments"] = r_.live->json();
+      for (const std::string& line : r_.live->lines()) out_.print(line);
+    }
     for (const std::string& remark : run_remarks(s_)) out_.remark(remark);
     if (const auto remark = r_.energy.remark()) out_.remark(*remark);
     if (!r_.probes.empty() || !r_.scene_probes.empty()) {

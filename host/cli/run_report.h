@@ -6,6 +6,7 @@
 #include "cli/cli.h"
 #include "cli/energy_report.h"
 #include "cli/frames.h"
+#include "cli/live_run.h"
 #include "cli/probes.h"
 #include "cli/run_loop.h"
 
@@ -24,6 +25,7 @@ struct FinishedRun {
   const std::string& checkpoint;             ///< file that holds the end; empty: none
   double first_time = 0;                     ///< when this run began, on the scene's clock [s]
   bool hash = false, deep_hash = false, profile = false;
+  LiveRun* live = nullptr;  ///< nullptr: no hands were in it
 };
 
 /// Prints the summary, remarks, and the JSON object (docs/schema/run.json).

@@ -16,7 +16,7 @@ namespace pliant::devices {
 /// thread reads what is there. When it is full, further samples are left out and counted.
 class DeviceLog {
  public:
-  /// 72 bytes a sample: 600,000 are ten minutes of a device at 1000 Hz. Throws Error `usage` unless `most` is 1 to 100 million.
+  /// 80 bytes a sample: 600,000 are ten minutes of a device at 1000 Hz. Throws Error `usage` unless `most` is 1 to 100 million.
   explicit DeviceLog(std::size_t most = 600000);
   void append(const DeviceSample& sample) noexcept;
   /// The samples so far. They stay valid and unchanged while the log lives.

@@ -59,10 +59,12 @@ std::uint32_t button_bits(const Json& buttons) {
 }
 
 [[noreturn]] void fail_address(const std::string& text, const std::string& got) {
-  throw Error(ErrorCode::usage,
-              fmt::format("haptic device \"{}\": got \"{}\", expected websocket:PORT or websocket:ws://HOST:PORT/PATH, "
-                          "perhaps with ?device=ID&force=FORM, where FORM is vector, values or plain",
-                          text, got));
+  throw Error(
+      ErrorCode::usage,
+      fmt::format(
+          "haptic device \"{}\": got \"{}\", expected websocket:PORT or websocket:ws://HOST:PORT/PATH, "
+          "perhaps with ?device=ID&force=FORM&answer=WHEN, where FORM is vector, values or plain, and WHEN soon or wrench",
+          text, got));
 }
 
 void read_option(const std::string& option, const std::string& text, HaplyAddress& address) {
@@ -72,6 +74,8 @@ void read_option(const std::string& option, const std::string& text, HaplyAddres
     address.device_id = value;
   } else if (name == "force" && (value == "vector" || value == "values" || value == "plain")) {
     address.force = value == "vector" ? HaplyForce::vector : value == "values" ? HaplyForce::values : HaplyForce::plain;
+  } else if (name == "answer" && (value == "soon" || value == "wrench")) {
+    address.waits = value == "wrench";
   } else {
     fail_address(text, option);
   }

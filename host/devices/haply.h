@@ -44,10 +44,11 @@ struct HaplyAddress {
   std::string path = "/";
   std::string device_id;
   HaplyForce force = HaplyForce::vector;
+  bool waits = false;  ///< a state is answered when a wrench is written, however long that takes
 };
 
-/// PORT or ws://HOST[:PORT][/PATH], either with ?device=ID and &force=vector, values or plain. Throws Error `usage` for
-/// anything else; `text` is the whole text of the device.
+/// PORT or ws://HOST[:PORT][/PATH], either with ?device=ID, &force=vector, values or plain, and &answer=soon or wrench. Throws
+/// Error `usage` for anything else; `text` is the whole text of the device.
 HaplyAddress parse_haply_address(const std::string& rest, const std::string& text);
 
 }  // namespace pliant::devices

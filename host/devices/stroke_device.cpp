@@ -12,9 +12,14 @@ const DeviceSample& StrokeDevice::after(double seconds) const noexcept {
 }
 
 DeviceSample StrokeDevice::read() noexcept {
+  if (by_answers_) return samples_[std::min(answered_, samples_.size() - 1)];
   const auto now = std::chrono::steady_clock::now();
   if (!began_) began_ = now;
   return after(std::chrono::duration<double>(now - *began_).count());
+}
+
+void StrokeDevice::write(const DeviceWrench& wrench) noexcept {
+  if (by_answers_ && !ended() && wrench.number == samples_[answered_].number) ++answered_;
 }
 
 }  // namespace pliant::devices

@@ -43,7 +43,10 @@ void ThreadedDevice::wake() noexcept {
 }
 
 void ThreadedDevice::count(DeviceSample& sample) {
-  if (sample.time == kNoTime) sample.time = elapsed();
+  if (sample.time == kNoTime) {
+    sample.time = elapsed();
+    sample.dated = false;
+  }
   sample.number = counter_.receive();
 }
 

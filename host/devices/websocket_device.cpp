@@ -22,6 +22,7 @@ std::shared_ptr<HapticDevice> open_websocket(const std::string& rest, const std:
 
 #include <chrono>
 #include <cstring>
+#include <limits>
 #include <thread>
 #include <vector>
 
@@ -227,7 +228,7 @@ void WebsocketDevice::receive(lws* connection, const void* data, std::size_t siz
   }
   if (owed_ || state_.device_id.empty()) return;
   owed_ = true;
-  due_ = elapsed() + kPatience;
+  due_ = address_.waits ? std::numeric_limits<double>::infinity() : elapsed() + kPatience;
 }
 
 void WebsocketDevice::send(lws* connection) {

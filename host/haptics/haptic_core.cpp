@@ -33,16 +33,16 @@ void HapticCore::receive(const BufferMessage& message, double interval) noexcept
 }
 
 /// Positions are scaled about where the device began, turns are not.
+Pose aligned(const Pose& device, const Pose& device_start, const Pose& tool_start, double scale) noexcept {
+  const Vec3d way = vec::mul(vec::sub(device.position, device_start.position), scale);
+  const Pose turn = compose(compose(rotation(device.turn), rotation(conjugate(device_start.turn))), rotation(tool_start.turn));
+  return {vec::add(tool_start.position, way), turn.turn};
+}
+
 Pose HapticCore::in_scene(const DeviceSample& sample) const noexcept {
-  const Pose raw{sample.position, sample.turn};
-  const Pose& from = options_.align ? device_start_ : Pose{};
-  const Pose& to = options_.align ? start_ : Pose{};
-  const Pose moved{vec::mul(vec::sub(raw.position, from.position), options_.motion_scale), raw.turn};
-  Pose out;
-  out.position = vec::add(to.position, moved.position);
-  out.turn =
-      options_.align ? compose(compose(rotation(raw.turn), rotation(conjugate(from.turn))), rotation(to.turn)).turn : raw.turn;
-  return out;
+  const Pose device{sample.position, sample.turn};
+  if (options_.align) return aligned(device, device_start_, start_, options_.motion_scale);
+  return {vec::mul(device.position, options_.motion_scale), device.turn};
 }
 
 /// Where the tool touches what no finite element moves, the reports are all that is known.

@@ -11,6 +11,10 @@
 
 namespace pliant::haptics {
 
+/// Where the tool is when the device is at `device`: at `tool_start` when it was at `device_start`, from there by as far times
+/// `scale`, and turned as much.
+Pose aligned(const Pose& device, const Pose& device_start, const Pose& tool_start, double scale) noexcept;
+
 enum class ModelKind { buffer, held, extrapolated };
 
 struct CoreOptions {

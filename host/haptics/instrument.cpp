@@ -9,6 +9,7 @@
 namespace pliant::haptics {
 
 std::optional<std::string> Instrument::before(Simulation& simulation, double seconds) {
+  driven_.reset();
   hand.take();
   const InstrumentPose& newest = hand.newest();
   if (!newest.given || !(seconds > 0)) return {};
@@ -19,7 +20,7 @@ std::optional<std::string> Instrument::before(Simulation& simulation, double sec
   if (sent_ && *sent_ == target) return {};
   try {
     simulation.tools().drive(tool_, target, seconds);
-    sent_ = target;
+    sent_ = driven_ = target;
     return {};
   } catch (const Error& error) {
     if (error.code() == ErrorCode::internal || error.code() == ErrorCode::device) throw;

@@ -29,6 +29,8 @@ class Instrument {
 
   /// Call before a frame of `seconds`: drives the tool to where the device will be. Returns why the simulation refuses it.
   std::optional<std::string> before(Simulation& simulation, double seconds);
+  /// Where the last before() has driven the tool; empty: it has not.
+  [[nodiscard]] const std::optional<Pose>& driven() const { return driven_; }
   /// Call after it: sends the state of the tissue.
   void after(const Simulation& simulation);
 
@@ -46,6 +48,7 @@ class Instrument {
   double predict_;
   BufferSource source_;
   std::optional<Pose> sent_;  ///< last target
+  std::optional<Pose> driven_;
 };
 
 }  // namespace pliant::haptics

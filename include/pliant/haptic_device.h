@@ -18,6 +18,7 @@ struct DeviceSample {
   double time = 0;                         ///< when it was sampled, on the device's own clock [s]
   std::uint32_t buttons = 0;               ///< a bit per button
   std::uint64_t number = 0;                ///< number of samples so far; 0: none has come yet
+  bool dated = true;                       ///< false: the device said no time, and `time` is when the sample came
 };
 
 /// Force and torque on the hand that holds the device.

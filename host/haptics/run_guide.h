@@ -1,0 +1,28 @@
+// What has a say between two steps of a run: it changes the simulation, and says how far the run may go before the next change.
+#pragma once
+#include <cmath>
+#include <cstdint>
+
+#include "simulation/simulation.h"
+
+namespace pliant::haptics {
+
+class RunGuide {
+ public:
+  RunGuide() = default;
+  RunGuide(const RunGuide&) = delete;
+  RunGuide& operator=(const RunGuide&) = delete;
+  virtual ~RunGuide() = default;
+  /// Steps of the present length before next() is due; 0: it is.
+  [[nodiscard]] virtual std::int64_t steps_left(const Simulation& simulation) const = 0;
+  /// Changes the simulation. Returns false where the run ends; a call after that changes nothing.
+  virtual bool next(Simulation& simulation) = 0;
+};
+
+/// Whole steps of the present length that fit before `time` [s].
+inline std::int64_t steps_before(const Simulation& simulation, double time) {
+  const double fit = std::floor((time - simulation.time()) / simulation.dt() + 1e-6);
+  return fit < 1 ? 0 : fit < 1e15 ? static_cast<std::int64_t>(fit) : std::int64_t{1'000'000'000'000'000};
+}
+
+}  // namespace pliant::haptics
