@@ -3,7 +3,7 @@
 
 namespace pliant {
 
-Moment Simulation::moment() const { return {state_.clock, loaded_.state_bytes(), reports_.now}; }
+Moment Simulation::moment() const { return {state_.clock, loaded_.state_bytes(), reports_.now, state_.driven}; }
 
 void Simulation::look_at(const Moment& moment, const std::function<void()>& look) {
   const Moment present = this->moment();
@@ -11,6 +11,7 @@ void Simulation::look_at(const Moment& moment, const std::function<void()>& look
     state_.clock = to.clock;
     loaded_.write_state_bytes(to.buffers);
     reports_.now = to.report;
+    state_.driven = to.driven;
   };
   go(moment);
   try {

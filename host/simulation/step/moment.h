@@ -1,9 +1,12 @@
 // A copy of the state, to be output once it is certain that Recovery will not roll back behind it.
 #pragma once
 #include <cstdint>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "simulation/state/run_report.h"
+#include "simulation/state/tool_state.h"
 
 namespace pliant {
 
@@ -11,6 +14,7 @@ struct Moment {
   Clock clock;
   std::vector<std::vector<std::uint8_t>> buffers;  ///< LoadedModel::state_bytes()
   RunReport report;
+  std::map<std::string, ToolDrive> driven;  ///< RunState::driven
 };
 
 }  // namespace pliant

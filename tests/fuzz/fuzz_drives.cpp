@@ -1,0 +1,42 @@
+// Any bytes may stand in a log of drives. One that is read holds what a replay relies on, and comes back with the same bits.
+#include <cmath>
+#include <cstdlib>
+
+#include "haptics/drive_log.h"
+#include "pliant/error.h"
+
+namespace {
+
+void expect(bool holds) {
+  if (!holds) std::abort();
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace pliant::haptics;
+  DriveLog log;
+  try {
+    log = parse_drive_log({reinterpret_cast<const char*>(data), size}, "drives.log");
+  } catch (const pliant::Error&) {
+    return 0;
+  }
+  LoggedMoment last = log.begin;
+  expect(last.step >= 0 && std::isfinite(last.time));
+  for (const LoggedDrive& drive : log.drives) {
+    expect(drive.at.step >= last.step && drive.at.time >= last.time);
+    expect(drive.seconds > 0 && std::isfinite(drive.seconds) && !drive.tool.empty() && pliant::good_pose(drive.target));
+    last = drive.at;
+  }
+  if (log.end) expect(log.end->step >= last.step && log.end->time >= last.time);
+  const std::string written = drive_log_text(log);
+  const DriveLog again = parse_drive_log(written, "drives.log");
+  expect(again.drives.size() == log.drives.size() && again.end.has_value() == log.end.has_value());
+  for (std::size_t i = 0; i < log.drives.size(); ++i) {
+    const LoggedDrive &a = log.drives[i], &b = again.drives[i];
+    expect(a.at.step == b.at.step && a.at.time == b.at.time && a.seconds == b.seconds && a.target == b.target &&
+           a.tool == b.tool);
+  }
+  expect(drive_log_text(again) == written);
+  return 0;
+}
