@@ -107,7 +107,7 @@ class Parser {
     if (!good_pose(drive.target)) {
       fail("the turn", fmt::format("{}", fmt::join(drive.target.turn, ",")), "a unit quaternion x, y, z, w");
     }
-    if (rest.empty()) fail("the tool", rest, "its name");
+    if (rest.empty() || rest.find('\r') != std::string_view::npos) fail("the tool", rest, "its name, without a line break");
     drive.tool = rest;
     log_.drives.push_back(std::move(drive));
   }
