@@ -24,10 +24,16 @@ HapticLoop::HapticLoop(World& world, const std::string& tool, std::shared_ptr<Ha
     device = std::make_shared<devices::RecordedDevice>(std::move(device), impl_->log);
   }
   const std::int32_t rings = options.model == "whole" ? -1 : options.rings;
-  auto instrument = std::make_shared<haptics::Instrument>(tool, rings, options.predict);
+  const bool buffers = options.model != "held" && options.model != "extrapolated";
+  auto instrument = std::make_shared<haptics::Instrument>(tool, rings, options.predict, buffers);
   const Pose start = WorldAccess::attach(world, instrument);
   const haptics::CoreOptions core = api::core_options(options, device->limits());
-  impl_->thread = std::make_unique<api::HapticThread>(std::move(instrument), std::move(device), options, core, start);
+  try {
+    impl_->thread = std::make_unique<api::HapticThread>(instrument, std::move(device), options, core, start);
+  } catch (...) {
+    instrument->closed = true;
+    throw;
+  }
 }
 
 HapticLoop::~HapticLoop() = default;

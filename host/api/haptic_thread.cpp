@@ -76,6 +76,7 @@ void HapticThread::run() noexcept {
   const DefaultFloatEnvironment environment;
   const auto period = static_cast<Nanoseconds>(period_ / kNano);
   began_ = last_message_ = now_ns();
+  last_tick_ = 0;
   Nanoseconds next = began_ + period;
   while (!stop_.load(std::memory_order_relaxed)) {
     sleep_until(next);
@@ -87,12 +88,15 @@ void HapticThread::run() noexcept {
     work_times_.add(work);
     if (automatic_) choose_rings(work);
     next += period;
-    if (end > next + period) {  // the missed ticks are left out
-      ++told_.late;
-      next = end;
+    if (end > next) {  // the missed ticks are left out, and the thread sleeps in any case
+      const Nanoseconds missed = (end - next) / period + 1;
+      told_.late += missed;
+      next += missed * period;
     }
   }
-  device_->write({});
+  if (sample_.number > 0) {  // a device knows an answer by the number of its sample
+    device_->write({{}, {}, sample_.time, sample_.number});
+  }
 }
 
 void HapticThread::take_message(Nanoseconds now) noexcept {
@@ -119,7 +123,10 @@ void HapticThread::tick(Nanoseconds now) noexcept {
   take_message(now);
   const DeviceSample& sample = newest_sample();
   const double age = told_.frames > 0 ? static_cast<double>(now - last_message_) * kNano : 1e9;
-  const haptics::CoreTick& done = core_.tick(sample, age, period_);
+  constexpr double kMostPeriods = 4;
+  const double since = last_tick_ > 0 ? static_cast<double>(now - last_tick_) * kNano : period_;
+  last_tick_ = now;
+  const haptics::CoreTick& done = core_.tick(sample, age, std::clamp(since, 0.5 * period_, kMostPeriods * period_), since);
   device_->write(done.exerted);
   instrument_->hand.publish(core_.pose());
   told_.age = age;
@@ -132,7 +139,11 @@ void HapticThread::choose_rings(double work) noexcept {
   constexpr std::int32_t kMostRings = 8;
   constexpr std::int64_t kWait = 400;  // ticks
   const haptics::BufferModel* buffer = core_.buffer().buffer();
-  if (buffer == nullptr || core_.buffer().in_use() == 0) return;
+  if (buffer == nullptr) return;
+  if (std::exchange(measured_, core_.buffer().in_use()) != core_.buffer().in_use()) {
+    work_ = work;
+    since_change_ = 0;
+  }
   work_ += kSmooth * (work - work_);
   if (++since_change_ < kWait) return;
   const double room = share_ * period_, each = work_ / static_cast<double>(std::max<std::int64_t>(buffer->part().elements, 1));
@@ -140,7 +151,8 @@ void HapticThread::choose_rings(double work) noexcept {
   std::int32_t next = rings_;
   if (work_ > room) {
     next = rings_ < 0 ? kMostRings : std::max(rings_ - 1, 1);
-  } else if (rings_ > 0 && kReserve * each * static_cast<double>(elements_) < room) {
+    too_many_ = buffer->part().elements;
+  } else if (rings_ > 0 && elements_ < too_many_ && kReserve * each * static_cast<double>(elements_) < room) {
     next = -1;
   } else if (rings_ > 0 && rings_ < kMostRings && kReserve * work_ * growth * growth < room) {
     next = rings_ + 1;
@@ -155,8 +167,8 @@ void HapticThread::tell(const haptics::CoreTick& tick, Nanoseconds now) noexcept
   Told& t = told_;
   ++t.ticks;
   t.model = core_.in_use();
-  t.rings = rings_;
   const haptics::BufferModel* buffer = core_.buffer().buffer();
+  t.rings = buffer == nullptr ? 0 : buffer->part().rings;
   t.elements = buffer != nullptr ? buffer->part().elements : 0;
   t.substeps = buffer != nullptr ? buffer->substeps() : 0;
   t.contacts = buffer != nullptr ? buffer->contacts() : 0;
@@ -164,7 +176,7 @@ void HapticThread::tell(const haptics::CoreTick& tick, Nanoseconds now) noexcept
   t.guard = core_.guard().counts();
   const haptics::PassivityController &move = core_.gate().translation(), &turn = core_.gate().rotation();
   t.corrections = move.corrections() + turn.corrections();
-  t.energy = move.observer().energy() + turn.observer().energy();
+  t.energy = std::min(move.observer().energy(), turn.observer().energy());
   t.least_energy = std::min(move.observer().least(), turn.observer().least());
   t.last = {
       t.ticks,        static_cast<double>(now - began_) * kNano, tick.device.position, tick.tool.position, tick.tissue.force,

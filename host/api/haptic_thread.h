@@ -1,5 +1,6 @@
 // The haptic thread of a device: ticks at a fixed rate by an absolute clock.
 #pragma once
+#include <limits>
 #include <memory>
 #include <thread>
 #include <vector>
@@ -56,13 +57,15 @@ class HapticThread {
   haptics::HapticCore core_;
 
   // Of the thread.
-  Nanoseconds began_ = 0, last_message_ = 0;
+  Nanoseconds began_ = 0, last_message_ = 0, last_tick_ = 0;
   Told told_;
   DeviceSample sample_;
   std::int64_t elements_ = 0;  ///< of all bodies
   std::int32_t rings_;         ///< asked for; -1: all
   double work_ = 0;            ///< of a tick, smoothed [s]
   std::int64_t since_change_ = 0;
+  std::uint64_t measured_ = 0;                                        ///< generation of the buffer that work_ belongs to
+  std::int64_t too_many_ = std::numeric_limits<std::int64_t>::max();  ///< elements that did not fit into a tick
 
   // Between the threads.
   devices::Mailbox<Told> mailbox_;

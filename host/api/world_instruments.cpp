@@ -26,7 +26,13 @@ void World::Impl::tell_instruments() {
     const std::lock_guard lock(mutex);
     present = instruments;
   }
-  for (const auto& instrument : present) instrument->after(*simulation);
+  try {
+    for (const auto& instrument : present) instrument->after(*simulation);
+  } catch (const std::exception& error) {
+    const Error failure_now = as_device_error(error);
+    lost = failure_now.what();
+    throw failure_now;
+  }
 }
 
 StepReport World::Impl::step_frame(std::int64_t steps) {

@@ -15,9 +15,10 @@ void BufferForce::receive(const BufferMessage& message, double interval) noexcep
   }
   if (message.generation != generation_ || buffer_ == nullptr) {
     message.model->start(message.state);
-    if (buffer_ != nullptr) message.model->carry(*buffer_);
+    if (buffer_ != nullptr && message.run == run_) message.model->carry(*buffer_);
     buffer_ = message.model;
     generation_ = message.generation;
+    run_ = message.run;
   }
   buffer_->follow(message.state, interval, lead_);
 }

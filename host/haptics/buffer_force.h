@@ -19,7 +19,7 @@ class BufferForce final : public ForceModel {
   void receive(const BufferMessage& message, double interval) noexcept;
   Wrench tick(const Pose& tool, double dt) noexcept override;
 
-  /// Generation of the buffer in use; 0: none.
+  /// Generation of the buffer in use; older ones are no longer needed.
   [[nodiscard]] std::uint64_t in_use() const { return generation_; }
   [[nodiscard]] const BufferModel* buffer() const { return buffer_; }
   [[nodiscard]] std::uint64_t resets() const { return resets_; }  ///< times that a buffer blew up and began anew
@@ -30,6 +30,7 @@ class BufferForce final : public ForceModel {
   BufferModel* buffer_ = nullptr;
   std::uint64_t generation_ = 0, resets_ = 0, ticks_ = 0;
   const TissueState* last_ = nullptr;
+  std::int64_t run_ = 0;  ///< BufferMessage::run
   Pose pose_;
   bool placed_ = false;  ///< `pose_` is set
 };

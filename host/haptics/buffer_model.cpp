@@ -8,6 +8,7 @@
 #include "schedule/build_program.h"
 #include "schedule/contact/contact_data.h"
 #include "schedule/program_layout.h"
+#include "simulation/contact/contact_lists.h"
 
 namespace pliant::haptics {
 namespace {
@@ -39,7 +40,8 @@ BufferModel::BufferModel(Submodel part, std::size_t tool, const TissueState& sta
   list_ = runner_.ints("contact_list");
   node_list_ = runner_.ints("contact_node_list");
   tool_sum_ = runner_.ints("tool_sum");
-  std::ranges::fill(runner_.reals("curve_value"), 1.0F);
+  curves_ = runner_.reals("curve_value");
+  if (part_.model->contact->size() > 0) margin_ = contact_margin(*part_.model);
   if (const BufferId tiles = program_.find("contact_tiles"); tiles >= 0) {
     tiles_offset_ = program_.at(program_.find("contact_tiles_offset")).ints;
     tiles_ = program_.at(tiles).ints;
@@ -52,7 +54,17 @@ BufferModel::BufferModel(Submodel part, std::size_t tool, const TissueState& sta
   from_ = to_ = state.tools.at(tool_);
 }
 
+/// At both ends of the step.
+void BufferModel::set_curves(const TissueState& state) noexcept {
+  const std::size_t count = std::min(state.curves.size(), curves_.size() / 2);
+  for (std::size_t row = 0; row < 2; ++row)
+    std::copy_n(state.curves.begin(), count, curves_.begin() + static_cast<std::ptrdiff_t>(row * count));
+}
+
 void BufferModel::start(const TissueState& state) noexcept {
+  set_curves(state);
+  std::ranges::fill(anchor_, 0.0F);
+  std::ranges::fill(yield_, 0.0F);
   stable_ = state.step;
   gravity_ = state.gravity;
   const double h = step_ > 0 ? step_ : stable_;
@@ -87,7 +99,7 @@ void BufferModel::carry(const BufferModel& before) noexcept {
       w_[to + c] = before.w_[from + c] * scale;
     }
   }
-  if (before.part_.topology != part_.topology || anchor_.empty()) return;
+  if (before.part_.topology != part_.topology || before.part_.tools != part_.tools || anchor_.empty()) return;
   std::size_t k = 0;
   for (std::size_t i = 0; i < part_.point.size(); ++i) {
     while (k < before.part_.point.size() && before.part_.point[k] < part_.point[i]) ++k;
@@ -100,6 +112,7 @@ void BufferModel::carry(const BufferModel& before) noexcept {
 }
 
 void BufferModel::follow(const TissueState& state, double seconds, double lead) noexcept {
+  set_curves(state);
   stable_ = state.step;
   gravity_ = state.gravity;
   const auto rate = static_cast<float>(step_ > 0 ? seconds / step_ : 0), time = static_cast<float>(seconds);
@@ -192,6 +205,7 @@ void BufferModel::move_rim(double passed, double h) noexcept {
 /// Lists the tiles near a tool, as the simulation does (simulation/contact/contact_lists.cpp).
 void BufferModel::look_again() noexcept {
   since_look_ = 0;
+  travel_ = 0;
   runner_.look();
   std::size_t points = 0, nodes = 0;
   for (std::size_t tile = 0; tile < near_.size(); ++tile) {
@@ -228,12 +242,16 @@ Wrench BufferModel::tick(const Pose& from, const Pose& to, double dt) noexcept {
   substeps_ = std::max(1, static_cast<int>(std::ceil(dt / stable_ * (1 - 1e-6))));
   const double h = dt / substeps_;
   set_step(h);
+  constexpr double kTravel = 0.4;  // share of the margin of a search that the instrument may use up
+  const double reach = (*part_.model->tools)[tool_].reach;
+  const double way = vec::norm(vec::sub(to.position, from.position)) + vec::norm(turn_between(from, to)) * reach;
   Wrench mean;
   for (int s = 0; s < substeps_; ++s) {
     const double begin = static_cast<double>(s) / substeps_, end = static_cast<double>(s + 1) / substeps_;
     write_poses(begin, end, dt);
     move_rim(passed_ + begin * dt, h);
-    if (!near_.empty() && ++since_look_ >= contact_look_every) look_again();
+    travel_ += way / substeps_;
+    if (!near_.empty() && (++since_look_ >= contact_look_every || travel_ > kTravel * margin_)) look_again();
     runner_.step();
     Wrench now = read_wrench();
     const Pose whole = pose_of(tool_, end, dt);

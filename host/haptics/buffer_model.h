@@ -22,6 +22,7 @@ struct TissueState {
   std::vector<ToolMoment> moments;  ///< of their shapes
   double step = 0;                  ///< of the simulation [s]: a stable step for these elements
   Vec3d gravity{};                  ///< [m/s^2]
+  std::vector<float> curves;        ///< values of the model's curves
 };
 
 class BufferModel {
@@ -36,8 +37,8 @@ class BufferModel {
   void start(const TissueState& state) noexcept;
   /// Takes displacements, velocities and friction of common nodes and points from the buffer before.
   void carry(const BufferModel& before) noexcept;
-  /// From now on rim and other tools move so that they are at the state in `seconds`, ahead of it by `lead` times their motion
-  /// since the state before.
+  /// From now on the rim moves so that it is at the state in `seconds`, ahead of it by `lead` times its motion since the state
+  /// before; the other tools so that they are there.
   void follow(const TissueState& state, double seconds, double lead) noexcept;
   /// Draws the nodes inside the rim to a state, by a share of the difference.
   void draw(const TissueState& state, double share) noexcept;
@@ -55,6 +56,7 @@ class BufferModel {
 
  private:
   void set_step(double h) noexcept;
+  void set_curves(const TissueState& state) noexcept;
   void write_poses(double from, double to, double dt) noexcept;
   void move_rim(double passed, double h) noexcept;
   void look_again() noexcept;
@@ -66,7 +68,7 @@ class BufferModel {
   std::size_t tool_;
   const Program program_;
   TwinRunner runner_;
-  std::span<float> u_, w_, params_, poses_, contact_params_, anchor_, yield_;
+  std::span<float> curves_, u_, w_, params_, poses_, contact_params_, anchor_, yield_;
   std::span<std::int32_t> near_, list_, node_list_, tool_sum_;
   std::vector<std::int32_t> tiles_offset_, tiles_;  ///< tiles of points at each tile of nodes
   std::vector<std::int32_t> rim_;                   ///< nodes
@@ -81,6 +83,7 @@ class BufferModel {
   double passed_ = 0, period_ = 0;  ///< since follow() [s]
   Vec3d gravity_{};
   int substeps_ = 1, since_look_ = 0;
+  double travel_ = 0, margin_ = 0;  ///< of the instrument since the last search, and that of a search [m]
   std::int64_t touching_ = 0;
 };
 

@@ -21,6 +21,14 @@ constexpr std::int32_t kAll = std::numeric_limits<std::int32_t>::max();
 /// Ring of elements that the contact may reach before the buffer is rebuilt; ring 0 is that of the contact when it was built.
 std::int32_t inner_ring(std::int32_t rings) { return rings >= 3 ? 1 : 0; }
 
+/// Whether a body can stand without the rest of the scene: what touches and presses it are tools, gravity and forces on nodes.
+bool may_be_whole(const Model& model) {
+  const bool held =
+      std::any_of(model.constraints.begin(), model.constraints.end(), [](const Constraint& c) { return c.axes != 0; });
+  const bool grabbed = std::any_of(model.forces.begin(), model.forces.end(), [](const NodeForce& f) { return f.reserved; });
+  return !model.tissue_contact && model.pressures.empty() && held && !grabbed;
+}
+
 }  // namespace
 
 /// Displacements [m] and velocities [m/s] by slot.
@@ -63,6 +71,7 @@ TissueState BufferSource::state_of(const Simulation& simulation, const Tissue& t
     state.moments.push_back(tool_moment((*model.tools)[t], simulation.time()));
   }
   state.step = simulation.dt();
+  for (const Curve& curve : model.curves) state.curves.push_back(static_cast<float>(curve.value(simulation.time())));
   const Curve* curve = model.gravity_curve == 0 ? nullptr : &model.curves[static_cast<std::size_t>(model.gravity_curve)];
   state.gravity = vec::mul(simulation.scene().gravity, curve == nullptr ? 1 : curve->value(simulation.time()));
   return state;
@@ -105,8 +114,9 @@ bool BufferSource::holds(const Seeds& seeds) const {
   if (buffers_.empty() || ring_.empty()) return false;
   if (rings_ < 0) {
     const std::vector<std::int32_t>& slot = buffers_.back().model->part().slot;
-    return std::all_of(seeds.slots.begin(), seeds.slots.end(),
-                       [&](std::int32_t s) { return std::binary_search(slot.begin(), slot.end(), s); });
+    return std::all_of(seeds.slots.begin(), seeds.slots.end(), [&](std::int32_t s) {
+      return !graph_->has_elements(s) || std::binary_search(slot.begin(), slot.end(), s);
+    });
   }
   const std::int32_t inner = inner_ring(rings_);
   const std::vector<std::int32_t> now = graph_->rings(seeds.slots, 0);
@@ -124,6 +134,8 @@ void BufferSource::build(const Simulation& simulation, const Seeds& seeds, std::
   }
   Submodel part = extract(*model_, *graph_, ring_);
   part.topology = simulation.topology_version();
+  part.rings = rings_;
+  for (const ContactTool& t : simulation.contact().tools()) part.tools.push_back(t.name);
   const TissueState state = state_of(simulation, tissue, part.slot, 0);
   buffers_.push_back({++generation_, std::make_unique<BufferModel>(std::move(part), tool, state)});
 }
@@ -146,21 +158,35 @@ void BufferSource::report(const Simulation& simulation, std::size_t tool, FrameR
   last_time_ = out.time;
 }
 
-void BufferSource::fill(const Simulation& simulation, std::uint64_t in_use, BufferMessage& message) {
+void BufferSource::fill_report(const Simulation& simulation, BufferMessage& message) {
   const std::vector<ContactTool>& tools = simulation.contact().tools();
   const auto own = std::find_if(tools.begin(), tools.end(), [&](const ContactTool& t) { return t.name == tool_; });
-  std::erase_if(buffers_, [&](const Kept& k) { return k.generation < in_use && k.generation != generation_; });
+  if (&simulation != simulation_ || simulation.step() < last_step_) {  // reset, loaded, or taken back
+    simulation_ = &simulation;
+    ++run_;
+    ring_.clear();
+    last_u_.clear();
+    last_step_ = -1;
+  }
   message.model = nullptr;
   message.covered = true;
   message.generation = generation_;
-  if (own == tools.end()) {  // parked, or removed
-    message.report = {};
-    message.report.time = last_time_ = simulation.time();
-    message.report.number = ++number_;
-    return;
-  }
+  message.run = run_;
+  message.elements = 0;
+  if (own != tools.end()) return report(simulation, static_cast<std::size_t>(own - tools.begin()), message.report);
+  message.report = {};  // parked, or removed
+  message.report.time = last_time_ = simulation.time();
+  message.report.number = ++number_;
+  last_step_ = -1;
+}
+
+void BufferSource::fill(const Simulation& simulation, std::uint64_t in_use, BufferMessage& message) {
+  std::erase_if(buffers_, [&](const Kept& k) { return k.generation < in_use && k.generation != generation_; });
+  fill_report(simulation, message);
+  const std::vector<ContactTool>& tools = simulation.contact().tools();
+  const auto own = std::find_if(tools.begin(), tools.end(), [&](const ContactTool& t) { return t.name == tool_; });
+  if (own == tools.end()) return;
   const auto tool = static_cast<std::size_t>(own - tools.begin());
-  report(simulation, tool, message.report);
   const Tissue tissue(simulation);
   const Seeds seeds = find_seeds(simulation, tissue, tool);
   if (model_ != simulation.shared_model()) {
@@ -169,7 +195,7 @@ void BufferSource::fill(const Simulation& simulation, std::uint64_t in_use, Buff
     ring_.clear();
     last_u_.clear();
   }
-  message.elements = graph_->elements();
+  message.elements = may_be_whole(*model_) ? graph_->elements() : std::numeric_limits<std::int64_t>::max();
   if (seeds.points.empty()) {
     last_u_ = tissue.u;
     return;

@@ -17,6 +17,7 @@ struct BufferMessage {
   BufferModel* model = nullptr;  ///< the newest buffer; null: nothing is near the instrument
   std::uint64_t generation = 0;  ///< number of buffers built so far
   std::int64_t elements = 0;     ///< of all bodies
+  std::int64_t run = 0;          ///< another one: the simulation began anew, or went back
   bool covered = true;           ///< false: the instrument touches nodes that no finite element moves
   TissueState state;             ///< of the nodes of `model`
 };
@@ -31,8 +32,10 @@ class BufferSource {
     if (rings != rings_) ring_.clear();
     rings_ = rings;
   }
+  /// The report alone, without a buffer.
+  void fill_report(const Simulation& simulation, BufferMessage& message);
   /// Call after a frame, from the thread that steps. `in_use`: generation of the buffer that the haptic thread uses; older ones
-  /// are destroyed. Throws Error (usage) if the tool has gone.
+  /// are destroyed. A tool that is parked or gone has no buffer.
   void fill(const Simulation& simulation, std::uint64_t in_use, BufferMessage& message);
 
  private:
@@ -56,7 +59,8 @@ class BufferSource {
   };
   std::list<Kept> buffers_;
   std::uint64_t generation_ = 0, number_ = 0;
-  std::int64_t last_step_ = -1;
+  std::int64_t last_step_ = -1, run_ = 0;
+  const Simulation* simulation_ = nullptr;  ///< of the last call; only compared
   double last_time_ = 0;
   std::vector<Vec3d> last_u_;  ///< displacements by slot at the last report, of `model_` [m]
 };

@@ -16,7 +16,7 @@ struct FrameReport {
   double time = 0;            ///< simulated time of its last step [s]
   double period = 0;          ///< simulated time since the report before [s]
   Pose tool;                  ///< at `time`
-  Wrench mean;                ///< over the steps of the frame
+  Wrench mean;                ///< over the steps of the last batch of the frame
   Wrench last;                ///< in its last step
   std::int64_t topology = 0;  ///< number of edits that changed elements
   std::uint64_t number = 0;   ///< number of reports so far

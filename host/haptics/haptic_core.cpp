@@ -1,5 +1,7 @@
 #include "haptics/haptic_core.h"
 
+#include <utility>
+
 #include "geometry/vec.h"
 
 namespace pliant::haptics {
@@ -50,10 +52,11 @@ Wrench HapticCore::felt(const Pose& tool, double dt) noexcept {
   const Wrench buffer = options_.model == ModelKind::buffer ? buffer_.tick(tool, dt) : Wrench{};
   const Wrench held = held_.tick(tool, dt), line = extrapolated_.tick(tool, dt);
   in_use_ = options_.model == ModelKind::buffer && !covered_ ? ModelKind::extrapolated : options_.model;
+  if (std::exchange(resets_, buffer_.resets()) != buffer_.resets()) guard_.restart();
   return in_use_ == ModelKind::buffer ? buffer : in_use_ == ModelKind::held ? held : line;
 }
 
-const CoreTick& HapticCore::tick(const DeviceSample& sample, double age, double dt) noexcept {
+const CoreTick& HapticCore::tick(const DeviceSample& sample, double age, double dt, double since) noexcept {
   if (sample.number == 0) {  // the device has said nothing yet
     out_.hand = {};
     out_.exerted = {};
@@ -74,7 +77,7 @@ const CoreTick& HapticCore::tick(const DeviceSample& sample, double age, double 
   out_.tissue = last_ = felt(out_.tool, dt);
   Wrench hand = scaled(options_.coupling.rigid ? last_ : coupled.on_hand, options_.force_scale);
   const Wrench allowed =
-      options_.passive ? gate_.tick({sample.position, sample.turn}, plain.velocity, plain.spin, hand, dt) : hand;
+      options_.passive ? gate_.tick({sample.position, sample.turn}, plain.velocity, plain.spin, hand, since) : hand;
   out_.hand = guard_.tick(allowed, age, dt);
   if (options_.passive) gate_.exerted(out_.hand);
   out_.exerted = {out_.hand.force, out_.hand.torque, sample.time, sample.number};

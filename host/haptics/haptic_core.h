@@ -45,8 +45,10 @@ class HapticCore {
   HapticCore(const CoreOptions& options, const Pose& tool);
   /// A message of the simulation has come, `interval` [s] after the one before.
   void receive(const BufferMessage& message, double interval) noexcept;
-  /// `age`: of the newest message [s].
-  const CoreTick& tick(const DeviceSample& sample, double age, double dt) noexcept;
+  /// `age`: of the newest message [s]. Advances by `dt` [s]; `since`: the real time since the tick before, in which the device
+  /// gave and took energy.
+  const CoreTick& tick(const DeviceSample& sample, double age, double dt, double since) noexcept;
+  const CoreTick& tick(const DeviceSample& sample, double age, double dt) noexcept { return tick(sample, age, dt, dt); }
 
   [[nodiscard]] const InstrumentPose& pose() const { return pose_; }  ///< for the simulation
   [[nodiscard]] const BufferForce& buffer() const { return buffer_; }
@@ -60,14 +62,15 @@ class HapticCore {
 
   CoreOptions options_;
   BufferForce buffer_;
-  HeldForce held_;
-  ExtrapolatedForce extrapolated_;
+  HeldForce held_{Sampled::last};
+  ExtrapolatedForce extrapolated_{0.1, Sampled::last};
   VirtualCoupling coupling_;
   PassivityGate gate_;
   ForceGuard guard_;
   /// Of the device: for the account of its energy, for the coupling, and for the simulation's tool.
   MotionEstimate plain_{0}, motion_{2e-3}, smooth_{8e-3};
   ModelKind in_use_;
+  std::uint64_t resets_ = 0;  ///< of the buffer, at the last tick
   bool covered_ = true, aligned_ = false;
   Pose start_;         ///< of the tool
   Pose device_start_;  ///< of the device's first sample

@@ -1,6 +1,7 @@
 #include "haptics/instrument.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "geometry/vec.h"
 #include "haptics/coupling.h"
@@ -17,21 +18,28 @@ std::optional<std::string> Instrument::before(Simulation& simulation, double sec
   const double ahead = predict_ * seconds;
   target.position = vec::add(target.position, vec::mul(newest.motion.velocity, ahead));
   target = turned(target, vec::mul(newest.motion.spin, ahead));
-  if (sent_ && *sent_ == target) return {};
+  const std::vector<ContactTool>& tools = simulation.contact().tools();
+  const auto own = std::find_if(tools.begin(), tools.end(), [&](const ContactTool& t) { return t.name == tool_; });
+  if (own == tools.end()) return {};  // parked or removed: it stays so
+  const auto index = static_cast<std::size_t>(own - tools.begin());
+  if (simulation.contact().pose(index, simulation.time() + seconds) == target) return {};
   try {
     simulation.tools().drive(tool_, target, seconds);
-    sent_ = driven_ = target;
+    driven_ = target;
+    said_.clear();
     return {};
   } catch (const Error& error) {
     if (error.code() == ErrorCode::internal || error.code() == ErrorCode::device) throw;
     ++refused;
+    if (std::exchange(said_, error.what()) == error.what()) return {};  // once is enough
     return error.what();
   }
 }
 
 void Instrument::after(const Simulation& simulation) {
   if (const std::int32_t wanted = wanted_rings.load(); wanted != 0) source_.set_rings(wanted);
-  source_.fill(simulation, in_use.load(std::memory_order_acquire), tissue.draft());
+  if (!buffers_) source_.fill_report(simulation, tissue.draft());
+  if (buffers_) source_.fill(simulation, in_use.load(std::memory_order_acquire), tissue.draft());
   tissue.publish();
 }
 

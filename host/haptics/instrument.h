@@ -21,8 +21,9 @@ struct InstrumentPose {
 class Instrument {
  public:
   /// `predict`: frames by which the simulation's tool is ahead of the device. `first_rings`: see BufferSource.
-  Instrument(std::string tool, std::int32_t first_rings, double predict)
-      : tool_(std::move(tool)), predict_(predict), source_(tool_, first_rings) {}
+  /// `buffers`: false if nobody ticks them.
+  Instrument(std::string tool, std::int32_t first_rings, double predict, bool buffers = true)
+      : tool_(std::move(tool)), predict_(predict), source_(tool_, first_rings), buffers_(buffers) {}
   [[nodiscard]] const std::string& tool() const { return tool_; }
 
   // For the stepping thread.
@@ -47,8 +48,9 @@ class Instrument {
   std::string tool_;
   double predict_;
   BufferSource source_;
-  std::optional<Pose> sent_;  ///< last target
+  bool buffers_;
   std::optional<Pose> driven_;
+  std::string said_;  ///< why the last pose was refused
 };
 
 }  // namespace pliant::haptics

@@ -10,7 +10,11 @@ namespace pliant::haptics {
 Motion MotionEstimate::update(const DeviceSample& sample, double dt) noexcept {
   since_ += dt;
   const bool good = good_pose({sample.position, sample.turn}) && std::isfinite(sample.time);
-  if (sample.number == last_.number || !good) return motion_;
+  constexpr double kStill = 0.02;  // a device that says nothing for so long stands still [s]
+  if (sample.number == last_.number || !good) {
+    if (since_ > kStill) motion_ = {};
+    return motion_;
+  }
   const double own = sample.time - last_.time, between = own > 0 ? own : since_;
   if (last_.number > 0 && between > 0) {
     const double share = smoothing_ > 0 ? -std::expm1(-between / smoothing_) : 1;

@@ -116,7 +116,12 @@ void add_nodes(const Model& model, const Numbering& numbers, const std::vector<c
     out.damping[i] = model.damping[s];
     if (!model.added.empty()) out.added[i] = model.added[s];
   }
-  out.curves.emplace_back();
+  out.curves = model.curves;
+  if (out.curves.empty()) out.curves.emplace_back();
+  for (const NodeForce& f : model.forces) {  // among them what takes the weight of added inertia away
+    const std::int32_t n = f.reserved ? -1 : numbers.of(f.slot);
+    if (n >= 0 && rim[static_cast<std::size_t>(n)] == 0) out.forces.push_back({n, f.force, f.curve, false});
+  }
   std::vector<const Constraint*> held(count, nullptr);
   for (const Constraint& c : model.constraints) {
     if (numbers.of(c.slot) >= 0) held[static_cast<std::size_t>(numbers.of(c.slot))] = &c;

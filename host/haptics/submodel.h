@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -19,6 +20,10 @@ class ElementGraph {
   /// beyond `rings`.
   [[nodiscard]] std::vector<std::int32_t> rings(const std::vector<std::int32_t>& seeds, std::int32_t rings) const;
   /// Returns whether finite elements alone move this node.
+  /// Returns whether any finite element has this node.
+  [[nodiscard]] bool has_elements(std::int32_t slot) const {
+    return offset_[static_cast<std::size_t>(slot)] < offset_[static_cast<std::size_t>(slot) + 1];
+  }
   [[nodiscard]] bool moves_alone(std::int32_t slot) const { return coupled_[static_cast<std::size_t>(slot)] == 0; }
   /// The slots of an element.
   [[nodiscard]] std::vector<std::int32_t> nodes_of(std::int32_t element) const {
@@ -41,9 +46,11 @@ struct Submodel {
   std::vector<std::int32_t> point;  ///< [contact points] index in the whole model's
   /// [nodes] (body << 32 | index in the body, node), ascending: what a node is called in every model of the scene.
   std::vector<std::pair<std::int64_t, std::int32_t>> names;
+  std::int32_t rings = 0;  ///< as asked for
   std::int64_t elements = 0;
-  bool whole = false;         ///< no element outside shares a node with it
-  std::int64_t topology = 0;  ///< number of edits of the model that it is a part of
+  bool whole = false;              ///< no element outside shares a node with it
+  std::vector<std::string> tools;  ///< names, in order: what friction refers to
+  std::int64_t topology = 0;       ///< number of edits of the model that it is a part of
 };
 
 /// Extracts the elements with ring >= 0. Throws Error (internal) if there are none.

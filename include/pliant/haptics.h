@@ -79,7 +79,7 @@ struct HapticState {
   std::int64_t limited = 0;      ///< ticks whose force was limited
   std::int64_t not_finite = 0;   ///< ticks whose force was no number, and became 0
   std::int64_t corrections = 0;  ///< ticks in which the force was reduced for passivity
-  double energy = 0;             ///< of the device's account [J]
+  double energy = 0;             ///< of the device's accounts of motion and turns, the lesser one, with its allowance [J]
   double least_energy = 0;       ///< at least so far [J]
   std::int64_t refused = 0;      ///< poses that the World refused
   HapticSample last;             ///< the newest tick
@@ -88,12 +88,12 @@ struct HapticState {
 /// Couples a device with a tool of a World. Its thread reads the device, computes the force and writes it, tick by tick; it
 /// never waits for steps, cuts or frames of the World, allocates nothing and takes no lock. The World has to run, freely
 /// (World::run_live) or by advance(): each frame takes the tool to where the device is, and tells the loop the state of the
-/// tissue. The loop may live longer than the World: then the force fades out. Any thread may make these calls, also while
-/// another does.
+/// tissue. The loop may live longer than the World: then the force fades out. It takes a second of the World for a second of
+/// the hand: run the World at a speed of 1. Any thread may make these calls, also while another does.
 class PLIANT_API HapticLoop {
  public:
   /// Starts the thread. `device` must not be null. Throws Error: usage (an unknown or parked tool, one that another loop
-  /// drives, options out of range), state (the World does not take tools).
+  /// drives, options out of range).
   HapticLoop(World& world, const std::string& tool, std::shared_ptr<HapticDevice> device, const HapticOptions& options = {});
   HapticLoop(const HapticLoop&) = delete;
   HapticLoop& operator=(const HapticLoop&) = delete;

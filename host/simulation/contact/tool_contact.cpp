@@ -41,6 +41,8 @@ void ToolContact::drive(std::size_t tool, const Pose& to, double seconds) {
 }
 
 void ToolContact::follow() {
+  step_forces_.clear();  // of the tools before
+  batch_end_ = -1;
   const std::vector<ContactTool> before = std::exchange(tools_, present_tools(run_.scene, run_.state.tools));
   const std::vector<ToolHistory> felt = std::exchange(report_.tools, std::vector<ToolHistory>(tools_.size()));
   for (std::size_t t = 0; t < tools_.size(); ++t) {
