@@ -206,6 +206,32 @@ TEST(Haptics, TwoDevicesDriveTwoTools) {
   HapticLoop again(world, "ball", one);  // the tool is free again
 }
 
+TEST(Haptics, AParkedToolStaysParked) {
+  World world(block_and_ball(), on("cpu"));
+  HapticLoop loop(world, "ball", std::make_shared<PressingDevice>(0.012, 0.2));
+  world.run_live();
+  ASSERT_TRUE(run_until(world, 20, [&] { return loop.state().last.force[1] > 0.05; }));
+  world.park_tool("ball");
+  EXPECT_TRUE(run_until(world, 20, [&] { return world.tool_forces().at(0).parked && loop.state().last.force == Vec3d{}; }));
+  EXPECT_FALSE(run_until(world, 0.3, [&] { return !world.tool_forces().at(0).parked; }));
+  world.unpark_tool("ball");
+  EXPECT_TRUE(run_until(world, 20, [&] { return loop.state().last.force[1] > 0.05; }));
+}
+
+TEST(Haptics, AfterAResetTheToolIsWhereTheDeviceIs) {
+  World world(block_and_ball(), on("cpu"));
+  HapticLoop loop(world, "ball", std::make_shared<PressingDevice>(0.012, 0.2));
+  const double start = world.tool_forces().at(0).position[1];
+  const auto pressed = [&] { return std::abs(world.tool_forces().at(0).position[1] - (start - 0.012)) < 1e-4; };
+  world.run_live();
+  ASSERT_TRUE(run_until(world, 20, [&] { return loop.state().last.time > 0.5 && pressed(); }));
+  world.stop_live();
+  world.reset();
+  ASSERT_NEAR(world.tool_forces().at(0).position[1], start, 1e-9);
+  world.run_live();
+  EXPECT_TRUE(run_until(world, 20, pressed));  // the device has not moved meanwhile
+}
+
 TEST(Haptics, WrongOptionsAreRefused) {
   World world(block_and_ball(), on("cpu"));
   auto device = std::make_shared<PressingDevice>(0.01, 1);

@@ -165,6 +165,37 @@ TEST(Buffer, BeginsAnewWhereItBlowsUp) {
   EXPECT_TRUE(force.buffer()->finite());
 }
 
+/// Cells with little tissue have inertia added that weighs nothing: a buffer that let it weigh would sag.
+TEST(Buffer, WeighsWhatTheBodyWeighs) {
+  Scene scene = block_scene();
+  scene.gravity = {0, -9.81, 0};
+  scene.least_fill = 1;  // in scenes that may be cut
+  Blade blade;
+  blade.name = "blade";
+  blade.path = {{100, 5, 5, 5, 6, 5, 5}, {101, 5, 5, 5, 6, 5, 5}};
+  scene.blades = {blade};
+  scene.bodies[0].surface_in_memory = std::make_shared<const TriangleMesh>(haptics_test::box({0, 0, 0}, {0.104, kTop, 0.104}));
+  ASSERT_FALSE(build_model(scene).added.empty());
+  const Felt felt = follow(scene, -1, 7, 200);
+  EXPECT_LT(felt.most, 2e-5 * std::max(felt.largest, 0.05));
+}
+
+TEST(Buffer, BeginsAnewWithASimulationThatDoes) {
+  const auto s = simulate(block_scene());
+  BufferSource source("ball", 3);
+  BufferForce force(1);
+  BufferMessage before, after;
+  drive_until(*s, 0.2, pressed(0.2));
+  source.fill(*s, 0, before);
+  force.receive(before, 0.01);
+  for (int k = 0; k < 20; ++k) force.tick(pressed(0.2), 1e-3);
+  const auto fresh = simulate(block_scene());
+  source.fill(*fresh, force.in_use(), after);
+  EXPECT_NE(after.run, before.run);
+  force.receive(after, 0.01);
+  for (std::size_t n = 0; n < force.buffer()->part().slot.size(); ++n) EXPECT_EQ(force.buffer()->displacement(n), (Vec3d{}));
+}
+
 TEST(Buffer, IsNoneWhereNothingIsNear) {
   const auto s = simulate(block_scene(ElementKind::hex8, 0.2));
   BufferSource source("ball", 2);
