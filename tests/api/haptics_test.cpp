@@ -17,7 +17,7 @@ using test::message_of;
 using test::on;
 using Clock = std::chrono::steady_clock;
 
-constexpr double kTop = 0.08, kRadius = 0.015;
+constexpr double kBlockTop = 0.08, kBallRadius = 0.015;
 
 /// The soft block with a ball above the middle of its top.
 SceneSpec block_and_ball() {
@@ -26,8 +26,8 @@ SceneSpec block_and_ball() {
   scene.bodies[0].material.damping = 30;
   ToolSpec ball;
   ball.name = "ball";
-  ball.radius = kRadius;
-  ball.path = {{0, 0.05, kTop + kRadius + 0.002, 0.03, 0, 0, 0, 1}};
+  ball.radius = kBallRadius;
+  ball.path = {{0, 0.05, kBlockTop + kBallRadius + 0.002, 0.03, 0, 0, 0, 1}};
   scene.tools.push_back(ball);
   return scene;
 }
@@ -191,7 +191,7 @@ TEST(Haptics, TwoDevicesDriveTwoTools) {
   scene.tools[0].path[0][1] = 0.03;
   scene.tools[1].path[0][1] = 0.075;
   scene.tools[1].name = "second";
-  scene.tools[0].radius = scene.tools[1].radius = kRadius;
+  scene.tools[0].radius = scene.tools[1].radius = kBallRadius;
   World world(scene, on("cpu"));
   auto one = std::make_shared<PressingDevice>(0.008, 0.2), two = std::make_shared<PressingDevice>(0.012, 0.2);
   HapticLoop first(world, "ball", one), second(world, "second", two);
