@@ -9,7 +9,7 @@
 namespace pliant::bench::haptics {
 namespace {
 
-constexpr double kRate = 1000, kFrames = 60, kFirst = 0.6, kLast = 0.9;
+constexpr double kFrames = 60, kFirst = 0.6, kLast = 0.9;
 
 /// A blade goes down beside the ball, from above the block through two thirds of it.
 void cut(Simulation& s, double time) {
@@ -46,10 +46,10 @@ double force_at(const ForceTrace& trace, double time) {
 void measure_edits(PartRun& run) {
   const HandScene scene = pressed();
   run.show(0, "full model");
-  const ForceTrace full = full_model(scene.scene, scene.tool, scene.stroke, scene.seconds, kRate, cut, 1 / kFrames);
+  const ForceTrace full = full_model(scene.scene, scene.tool, scene.stroke, scene.seconds, kTickRate, cut, 1 / kFrames);
   SessionOptions options;
   options.frame_rate = kFrames;
-  options.haptic_rate = kRate;
+  options.haptic_rate = kTickRate;
   options.seconds = scene.seconds;
   options.rings = 4;
   run.show(0.5, "buffer");

@@ -27,8 +27,6 @@ using pliant::haptics::Linearised;
 using pliant::haptics::ProxyForce;
 using Triangle = ProxyForce::Triangle;
 
-constexpr double kRate = 1000;
-
 /// Stiffness of a body at rest against a rigid tool that sticks to its contact points (Guyan 1965), from the static solver's
 /// tangent, factorised once.
 class RestStiffness {
@@ -121,7 +119,7 @@ struct FrameMessage {
 ForceTrace felt_by(const HandScene& scene, double frames, ForceModel& model, const RestStiffness* rest) {
   SessionOptions options;
   options.frame_rate = frames;
-  options.haptic_rate = kRate;
+  options.haptic_rate = kTickRate;
   options.seconds = scene.seconds;
   std::array<FrameMessage, 8> slots;
   BufferSource source(scene.tool, 1);
@@ -167,10 +165,10 @@ void measure_others(PartRun& run) {
   constexpr double kFrames = 30;
   double done = 0;
   for (const HandScene& scene : scenes) {
-    const ForceTrace full = full_model(scene.scene, scene.tool, scene.stroke, scene.seconds, kRate);
+    const ForceTrace full = full_model(scene.scene, scene.tool, scene.stroke, scene.seconds, kTickRate);
     SessionOptions options;
     options.frame_rate = kFrames;
-    options.haptic_rate = kRate;
+    options.haptic_rate = kTickRate;
     options.seconds = scene.seconds;
     options.rings = 4;
     const ForceTrace buffer = with_buffer(scene.scene, scene.tool, scene.stroke, options).felt;

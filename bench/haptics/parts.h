@@ -29,6 +29,9 @@ struct Part {
 /// In the order of the report.
 const std::vector<Part>& parts();
 
+/// Of the sessions in virtual time [1/s].
+inline constexpr double kTickRate = 1000;
+
 /// A body and a tool that a hand presses into it, draws along it and lifts, with the speeds of a hand (minimum jerk, Flash and
 /// Hogan 1985).
 struct HandScene {

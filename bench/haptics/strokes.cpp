@@ -9,7 +9,6 @@
 namespace pliant::bench::haptics {
 namespace {
 
-constexpr double kRate = 1000;  // [1/s]
 /// Asked of a buffer of this many rings, at 60 frames a second: largest and root mean square difference, as shares of the
 /// largest force (Kim and Lee 2020 report the largest).
 constexpr std::int32_t kAsked = 4;
@@ -27,7 +26,7 @@ struct Result {
 Result measure(PartRun& run, const HandScene& scene, const ForceTrace& full, double frames, std::int32_t rings) {
   SessionOptions options;
   options.frame_rate = frames;
-  options.haptic_rate = kRate;
+  options.haptic_rate = kTickRate;
   options.seconds = scene.seconds;
   options.rings = rings;
   Result out{{}, with_buffer(scene.scene, scene.tool, scene.stroke, options)};
@@ -59,7 +58,7 @@ void measure_strokes(PartRun& run) {
   const std::vector<double> rates = run.options.quick ? std::vector{60.0} : std::vector{30.0, 60.0};
   double done = 0;
   for (const HandScene& scene : scenes) {
-    const ForceTrace full = full_model(scene.scene, scene.tool, scene.stroke, scene.seconds, kRate);
+    const ForceTrace full = full_model(scene.scene, scene.tool, scene.stroke, scene.seconds, kTickRate);
     run.trace(scene.name, "full", full);
     for (const double frames : rates) {
       double first = 0, last = 0;

@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kRate = 1000, kPatience = 5;
 
-void refuse(const std::string& text) { throw Error(ErrorCode::bad_input, text); }
+void refuse_live(const std::string& text) { throw Error(ErrorCode::bad_input, text); }
 
 std::vector<std::string> tool_names(const Simulation& simulation) {
   std::vector<std::string> names;
@@ -32,18 +32,18 @@ std::vector<std::string> chosen_tools(const LiveArguments& o, const Simulation& 
   const std::vector<std::string> names = tool_names(simulation);
   std::string all;
   for (const std::string& name : names) all += fmt::format("{}\"{}\"", all.empty() ? "" : ", ", name);
-  if (names.empty()) refuse("--live: the scene has no tools; expected one for each device (docs/scene.md, \"tools\")");
+  if (names.empty()) refuse_live("--live: the scene has no tools; expected one for each device (docs/scene.md, \"tools\")");
   if (o.tools.empty() && names.size() == 1 && o.live.size() == 1) return names;
   if (o.tools.size() != o.live.size()) {
-    refuse(fmt::format("{} --live and {} --tool are given; expected as many, in the same order; the scene has {}",
-                       o.live.size(), o.tools.size(), all));
+    refuse_live(fmt::format("{} --live and {} --tool are given; expected as many, in the same order; the scene has {}",
+                            o.live.size(), o.tools.size(), all));
   }
   for (std::size_t i = 0; i < o.tools.size(); ++i) {
     if (std::find(names.begin(), names.end(), o.tools[i]) == names.end()) {
-      refuse(fmt::format("--tool is \"{}\"; the scene has {}{}", o.tools[i], all, did_you_mean(o.tools[i], names)));
+      refuse_live(fmt::format("--tool is \"{}\"; the scene has {}{}", o.tools[i], all, did_you_mean(o.tools[i], names)));
     }
     if (std::count(o.tools.begin(), o.tools.end(), o.tools[i]) > 1)
-      refuse(fmt::format("--tool \"{}\" is given twice; expected one device for each tool", o.tools[i]));
+      refuse_live(fmt::format("--tool \"{}\" is given twice; expected one device for each tool", o.tools[i]));
   }
   return o.tools;
 }
@@ -70,28 +70,28 @@ std::string LiveArguments::given() const { return !live.empty() ? "--live" : !re
 
 void LiveArguments::check() const {
   if (!live.empty() && !replay.empty())
-    refuse("--replay applies the drives of a log, --live those of a device: expected one of both");
+    refuse_live("--replay applies the drives of a log, --live those of a device: expected one of both");
   for (const auto& [there, option] : {std::pair{!tools.empty(), "--tool"},
                                       {lockstep, "--lockstep"},
                                       {rate.has_value(), "--rate"},
                                       {patience.has_value(), "--patience"},
                                       {!log.empty(), "--log"}}) {
-    if (there && live.empty()) refuse(fmt::format("{} is for devices that drive tools; it needs --live DEVICE", option));
+    if (there && live.empty()) refuse_live(fmt::format("{} is for devices that drive tools; it needs --live DEVICE", option));
   }
-  if (patience && !lockstep) refuse("--patience is for samples that are waited for; it needs --lockstep");
+  if (patience && !lockstep) refuse_live("--patience is for samples that are waited for; it needs --lockstep");
   if (rate && !(*rate >= (lockstep ? 1 : 300) && *rate <= (lockstep ? 1e6 : 1e4))) {
-    refuse(fmt::format("--rate is {}; expected {}", *rate,
-                       lockstep ? "1 to 1000000 samples per second" : "300 to 10000 ticks per second"));
+    refuse_live(fmt::format("--rate is {}; expected {}", *rate,
+                            lockstep ? "1 to 1000000 samples per second" : "300 to 10000 ticks per second"));
   }
   if (patience && !(*patience > 0 && *patience <= 1e6))
-    refuse(fmt::format("--patience is {} s; expected more than 0, at most 1000000 s", *patience));
+    refuse_live(fmt::format("--patience is {} s; expected more than 0, at most 1000000 s", *patience));
   if (!log.empty()) check_writable(log);
 }
 
 LiveRun::LiveRun(const LiveArguments& arguments, const Common& common, const Simulation& simulation, bool own_end)
     : o_(arguments), common_(common), simulation_(simulation) {
   if (simulation.scene().relaxation.enabled)
-    refuse(fmt::format("{}: the scene asks for \"relaxation\", which has no time that a hand could share", o_.given()));
+    refuse_live(fmt::format("{}: the scene asks for \"relaxation\", which has no time that a hand could share", o_.given()));
   if (!o_.replay.empty()) {
     replay_.emplace(haptics::read_drive_log(o_.replay), simulation, !own_end);
     return;
@@ -111,7 +111,7 @@ void LiveRun::open() {
   const std::vector<std::string> tools = chosen_tools(o_, simulation_);
   for (std::size_t i = 0; i < tools.size(); ++i) {
     if (tools[i].find_first_of("\r\n") != std::string::npos)
-      refuse("--live: the name of the tool has a line break, which the log of drives cannot hold");
+      refuse_live("--live: the name of the tool has a line break, which the log of drives cannot hold");
     held_.push_back({tools[i], devices::open_device(o_.live[i])});
     const int port = held_.back().device->port();
     common_.note(fmt::format("tool {} is driven by {}{}", tools[i], o_.live[i],
