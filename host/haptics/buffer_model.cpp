@@ -18,9 +18,9 @@ constexpr std::int32_t kBatch = 1;
 /// Of the size of an element, as in a simulation: below, numbers fade into denormals.
 constexpr double kIncrementFloor = 1e-12;
 
+/// The default integrator keeps increments, which this file writes; trajectories are those of any.
 Program program_of(const Submodel& part) {
   ProgramOptions options;
-  options.integrator = Integrator::increment;
   options.batch_steps = kBatch;
   return build_program(*part.model, options);
 }
@@ -159,7 +159,7 @@ void BufferModel::set_step(double h) noexcept {
   params_[5] = static_cast<float>(std::ldexp(1.0, 22 + std::ilogb(floor)));
   if (h == step_) return;
   step_ = h;
-  const IntegratorInfo& integrator = integrator_info(Integrator::increment);
+  const IntegratorInfo& integrator = integrator_info(ProgramOptions{}.integrator);
   for (std::size_t n = 0; n < part_.slot.size(); ++n)
     w_[4 * n + 3] = part_.rim[n] != 0 ? 1.0F : static_cast<float>(integrator.decay(0.5 * h * model.damping[n]));
   if (contact_params_.empty()) return;

@@ -25,6 +25,8 @@ MISSING = {
     ("Python", "ProbeValue.quantity"): "a key of what World.probes() has for a probe",
     ("Python", "ProbeValue.numbers"): "an array of World.probes()",
     ("C", "WorldInfo.reason"): "for people, who see it in `pliant devices`",
+    ("C", "DeviceSample.dated"): "of devices by text for `pliant run --live`; a device of a program says its time",
+    ("Python", "DeviceSample.dated"): "of devices by text for `pliant run --live`; a device of a program says its time",
     ("C", "HapticState.last"): "an argument of pliant_haptic_loop_state of its own, so that it can grow",
     ("C", "HapticDevice::read"): "a loop calls it; pliant_haptic_device_create takes one",
     ("C", "HapticDevice::write"): "a loop calls it; pliant_haptic_device_create takes one",
