@@ -49,6 +49,7 @@ class PressingDevice final : public HapticDevice {
     if (!std::isfinite(wrench.force[1])) finite_ = false;
     if (wrench.force[1] > most_) most_ = wrench.force[1];
     last_ = wrench.force[1];
+    answered_ = wrench.number;
   }
   [[nodiscard]] DeviceLimits limits() const noexcept override { return limits_; }
   void set_limit(double newtons) { limits_.force = newtons; }
@@ -58,12 +59,14 @@ class PressingDevice final : public HapticDevice {
   [[nodiscard]] bool finite() const { return finite_; }
   [[nodiscard]] double most() const { return most_; }
   [[nodiscard]] double last() const { return last_; }
+  [[nodiscard]] std::uint64_t answered() const { return answered_; }  ///< number of the sample of the last write()
 
  private:
   double depth_, seconds_;
   Clock::time_point began_;
   std::uint64_t number_ = 0;
   std::atomic<double> most_{0}, last_{0};
+  std::atomic<std::uint64_t> answered_{0};
   std::atomic<bool> mad_{false}, finite_{true};
   DeviceLimits limits_;
 };
@@ -204,6 +207,18 @@ TEST(Haptics, TwoDevicesDriveTwoTools) {
   first.stop();
   world.frame();
   HapticLoop again(world, "ball", one);  // the tool is free again
+}
+
+/// A device knows an answer by its number: devices behind a network drop those that answer nothing.
+TEST(Haptics, TheLastForceIsZero) {
+  World world(block_and_ball(), on("cpu"));
+  auto device = std::make_shared<PressingDevice>(0.012, 0.2);
+  HapticLoop loop(world, "ball", device);
+  world.run_live();
+  ASSERT_TRUE(run_until(world, 20, [&] { return device->last() > 0.05; }));
+  loop.stop();
+  EXPECT_EQ(device->last(), 0);
+  EXPECT_GT(device->answered(), 0U);
 }
 
 TEST(Haptics, AParkedToolStaysParked) {
