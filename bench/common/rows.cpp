@@ -1,10 +1,13 @@
 #include "bench/common/rows.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
+
+#include "pliant/error.h"
 
 namespace pliant::bench {
 
@@ -91,6 +94,13 @@ void Rows::told(const std::string& test, const std::string& scene, double value)
 
 void Rows::failed(const std::string& test, const std::string& scene, const std::string& why) {
   add(test, scene, {}, {}, {}, {}, why);
+}
+
+void check_parts(const std::vector<std::string>& known, const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw Error(ErrorCode::bad_input, fmt::format("--parts: got \"{}\", expected {}", name, fmt::join(known, ", ")));
+  }
 }
 
 json summary_of(const json& rows) {

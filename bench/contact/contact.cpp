@@ -1,13 +1,11 @@
 #include "bench/contact/contact.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 
 #include "bench/contact/parts.h"
 #include "bench/kernels/kernels.h"
-#include "geometry/stopwatch.h"
 #include "pliant/error.h"
 
 namespace pliant::bench {
@@ -28,23 +26,7 @@ const std::vector<Part>& parts() {
 
 namespace {
 
-using contact::Part;
-using contact::PartRun;
 using nlohmann::json;
-
-std::vector<const Part*> chosen(const std::vector<std::string>& names) {
-  std::vector<std::string> known;
-  for (const Part& part : contact::parts()) known.emplace_back(part.name);
-  for (const std::string& name : names) {
-    if (std::find(known.begin(), known.end(), name) == known.end())
-      throw Error(ErrorCode::bad_input, fmt::format("--parts: got \"{}\", expected {}", name, fmt::join(known, ", ")));
-  }
-  std::vector<const Part*> out;
-  for (const Part& part : contact::parts()) {
-    if (names.empty() || std::find(names.begin(), names.end(), part.name) != names.end()) out.push_back(&part);
-  }
-  return out;
-}
 
 ContactOptions checked(const ContactOptions& asked) {
   ContactOptions o = asked;
@@ -68,23 +50,12 @@ ContactOptions checked(const ContactOptions& asked) {
 
 json bench_contact(const ContactOptions& asked) {
   const ContactOptions options = checked(asked);
-  const std::vector<const Part*> wanted = chosen(options.parts);
-  json result{{"machine", machine_facts()},
-              {"quick", options.quick},
-              {"backend", options.backend},
-              {"parts", json::array()},
-              {"rows", json::array()}};
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
-    const Stopwatch clock;
-    PartRun run(wanted[i]->name, options, [&](double done, const std::string& what) {
-      if (options.progress) options.progress((static_cast<double>(i) + done) / static_cast<double>(wanted.size()), what);
-    });
-    wanted[i]->measure(run);
-    result["parts"].push_back({{"name", wanted[i]->name}, {"question", wanted[i]->question}, {"seconds", clock.seconds()}});
-    for (const json& row : run.rows()) result["rows"].push_back(row);
-  }
-  result["summary"] = summary_of(result["rows"]);
-  if (options.progress) options.progress(1, "done");
+  json result{
+      {"machine", machine_facts()},
+      {"quick", options.quick},
+      {"backend", options.backend},
+  };
+  measure_parts<contact::PartRun>(contact::parts(), options, result, [](const contact::PartRun&) {});
   return result;
 }
 

@@ -1,14 +1,12 @@
 #include "bench/haptics/haptics.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "bench/haptics/parts.h"
 #include "bench/kernels/kernels.h"
-#include "geometry/stopwatch.h"
 #include "pliant/error.h"
 
 namespace pliant::bench {
@@ -37,48 +35,17 @@ void PartRun::trace(const std::string& scene, const std::string& model, const Fo
 
 }  // namespace haptics
 
-namespace {
-
-using haptics::Part;
-using haptics::PartRun;
 using nlohmann::json;
-
-std::vector<const Part*> chosen(const std::vector<std::string>& names) {
-  std::vector<std::string> known;
-  for (const Part& part : haptics::parts()) known.emplace_back(part.name);
-  for (const std::string& name : names) {
-    if (std::find(known.begin(), known.end(), name) == known.end())
-      throw Error(ErrorCode::bad_input, fmt::format("--parts: got \"{}\", expected {}", name, fmt::join(known, ", ")));
-  }
-  std::vector<const Part*> out;
-  for (const Part& part : haptics::parts()) {
-    if (names.empty() || std::find(names.begin(), names.end(), part.name) != names.end()) out.push_back(&part);
-  }
-  return out;
-}
-
-}  // namespace
 
 json bench_haptics(const HapticsOptions& asked) {
   HapticsOptions options = asked;
   if (!(options.seconds >= 1) || options.seconds > 3600)
     throw Error(ErrorCode::bad_input, fmt::format("--seconds: got {}, expected 1 to 3600", options.seconds));
   if (options.quick) options.seconds = std::min(options.seconds, 2.0);
-  const std::vector<const Part*> wanted = chosen(options.parts);
-  json result{{"machine", machine_facts()}, {"quick", options.quick}, {"seconds", options.seconds},
-              {"parts", json::array()},     {"rows", json::array()},  {"traces", json::array()}};
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
-    const Stopwatch clock;
-    PartRun run(wanted[i]->name, options, [&](double done, const std::string& what) {
-      if (options.progress) options.progress((static_cast<double>(i) + done) / static_cast<double>(wanted.size()), what);
-    });
-    wanted[i]->measure(run);
-    result["parts"].push_back({{"name", wanted[i]->name}, {"question", wanted[i]->question}, {"seconds", clock.seconds()}});
-    for (const json& row : run.rows()) result["rows"].push_back(row);
+  json result{{"machine", machine_facts()}, {"quick", options.quick}, {"seconds", options.seconds}, {"traces", json::array()}};
+  measure_parts<haptics::PartRun>(haptics::parts(), options, result, [&](const haptics::PartRun& run) {
     for (const json& trace : run.traces()) result["traces"].push_back(trace);
-  }
-  result["summary"] = summary_of(result["rows"]);
-  if (options.progress) options.progress(1, "done");
+  });
   return result;
 }
 

@@ -28,12 +28,6 @@ std::array<double, 8> path_point(double t, const Pose& p) {
   return {t, p.position[0], p.position[1], p.position[2], p.turn[0], p.turn[1], p.turn[2], p.turn[3]};
 }
 
-std::size_t index_of(const Simulation& s, const std::string& name) {
-  const auto& tools = s.contact().tools();
-  return static_cast<std::size_t>(
-      std::find_if(tools.begin(), tools.end(), [&](const ContactTool& t) { return t.name == name; }) - tools.begin());
-}
-
 /// Steps until `time`, in batches that end there. `seen` receives the time and the force of every step.
 template <class F>
 void run_until(Simulation& s, double time, std::size_t tool, const F& seen) {
@@ -102,7 +96,7 @@ ForceTrace full_model(Scene scene, const std::string& tool, const Stroke& stroke
     before = time;
     last = {f.force, f.torque};
   };
-  const std::size_t index = index_of(s, tool);
+  const std::size_t index = s.contact().find(tool).value();
   for (double t = frame; edit && t < seconds; t += frame) {
     run_until(s, t, index, seen);
     edit(s, t);
@@ -119,7 +113,7 @@ SessionReport run_session(Scene scene, const std::string& tool, const Stroke& st
   SessionReport out;
   out.felt.period = 1 / options.haptic_rate;
   const double frame = 1 / options.frame_rate, dt = 1 / options.haptic_rate;
-  const std::size_t slots = session_slots(options), index = index_of(s, tool);
+  const std::size_t slots = session_slots(options), index = s.contact().find(tool).value();
   const auto stalled = [&](double t) { return t > options.stalled_from && t < options.stalled_until; };
   std::int64_t made = 0, taken = 0;
   out.ticks = static_cast<std::int64_t>(std::llround(options.seconds * options.haptic_rate));

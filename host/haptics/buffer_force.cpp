@@ -6,7 +6,6 @@
 namespace pliant::haptics {
 
 void BufferForce::receive(const BufferMessage& message, double interval) noexcept {
-  report_ = message.report;
   last_ = &message.state;
   if (message.model == nullptr) {
     buffer_ = nullptr;

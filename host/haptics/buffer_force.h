@@ -14,7 +14,7 @@ class BufferForce final : public ForceModel {
   /// 2003) one frame late, 1 continues their motion.
   explicit BufferForce(double lead = 1, double settle = 0) : lead_(lead), settle_(settle) {}
 
-  void receive(const FrameReport& report) noexcept override { report_ = report; }
+  void receive(const FrameReport& /*report*/) noexcept override {}  // its messages hold more
   /// A message has come, `interval` [s] after the one before.
   void receive(const BufferMessage& message, double interval) noexcept;
   Wrench tick(const Pose& tool, double dt) noexcept override;
@@ -26,7 +26,6 @@ class BufferForce final : public ForceModel {
 
  private:
   double lead_, settle_;
-  FrameReport report_;
   BufferModel* buffer_ = nullptr;
   std::uint64_t generation_ = 0, resets_ = 0, ticks_ = 0;
   const TissueState* last_ = nullptr;

@@ -1,13 +1,9 @@
 #include "haptics/buffer_source.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <limits>
 
 #include "geometry/vec.h"
-#include "pliant/error.h"
-#include "simulation/contact/tool_changes.h"
 #include "simulation/measure/energy.h"
 
 namespace pliant::haptics {
@@ -148,19 +144,14 @@ void BufferSource::report(const Simulation& simulation, std::size_t tool, FrameR
   const ToolLoad& now = simulation.report().tools[tool].now;
   out.mean = {now.force, now.torque};
   out.last = out.mean;
-  if (const std::vector<StepForce>& steps = contact.step_forces(); contact.batch_end() == simulation.step() && !steps.empty()) {
-    const StepForce& last = steps[steps.size() - contact.tools().size() + tool];
-    out.last = {last.force, last.torque};
-  }
+  if (const std::optional<StepForce> last = contact.last_force(tool)) out.last = {last->force, last->torque};
   out.topology = simulation.topology_version();
   out.number = ++number_;
   last_step_ = simulation.step();
   last_time_ = out.time;
 }
 
-void BufferSource::fill_report(const Simulation& simulation, BufferMessage& message) {
-  const std::vector<ContactTool>& tools = simulation.contact().tools();
-  const auto own = std::find_if(tools.begin(), tools.end(), [&](const ContactTool& t) { return t.name == tool_; });
+std::optional<std::size_t> BufferSource::fill_report(const Simulation& simulation, BufferMessage& message) {
   if (&simulation != simulation_ || simulation.step() < last_step_) {  // reset, loaded, or taken back
     simulation_ = &simulation;
     ++run_;
@@ -173,20 +164,22 @@ void BufferSource::fill_report(const Simulation& simulation, BufferMessage& mess
   message.generation = generation_;
   message.run = run_;
   message.elements = 0;
-  if (own != tools.end()) return report(simulation, static_cast<std::size_t>(own - tools.begin()), message.report);
+  if (const std::optional<std::size_t> own = simulation.contact().find(tool_)) {
+    report(simulation, *own, message.report);
+    return own;
+  }
   message.report = {};  // parked, or removed
   message.report.time = last_time_ = simulation.time();
   message.report.number = ++number_;
   last_step_ = -1;
+  return {};
 }
 
 void BufferSource::fill(const Simulation& simulation, std::uint64_t in_use, BufferMessage& message) {
   std::erase_if(buffers_, [&](const Kept& k) { return k.generation < in_use && k.generation != generation_; });
-  fill_report(simulation, message);
-  const std::vector<ContactTool>& tools = simulation.contact().tools();
-  const auto own = std::find_if(tools.begin(), tools.end(), [&](const ContactTool& t) { return t.name == tool_; });
-  if (own == tools.end()) return;
-  const auto tool = static_cast<std::size_t>(own - tools.begin());
+  const std::optional<std::size_t> own = fill_report(simulation, message);
+  if (!own) return;
+  const std::size_t tool = *own;
   const Tissue tissue(simulation);
   const Seeds seeds = find_seeds(simulation, tissue, tool);
   if (model_ != simulation.shared_model()) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <list>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,8 +33,8 @@ class BufferSource {
     if (rings != rings_) ring_.clear();
     rings_ = rings;
   }
-  /// The report alone, without a buffer.
-  void fill_report(const Simulation& simulation, BufferMessage& message);
+  /// The report alone, without a buffer. Returns the tool's index; empty: it is parked or gone.
+  std::optional<std::size_t> fill_report(const Simulation& simulation, BufferMessage& message);
   /// Call after a frame, from the thread that steps. `in_use`: generation of the buffer that the haptic thread uses; older ones
   /// are destroyed. A tool that is parked or gone has no buffer.
   void fill(const Simulation& simulation, std::uint64_t in_use, BufferMessage& message);

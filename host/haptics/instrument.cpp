@@ -18,11 +18,9 @@ std::optional<std::string> Instrument::before(Simulation& simulation, double sec
   const double ahead = predict_ * seconds;
   target.position = vec::add(target.position, vec::mul(newest.motion.velocity, ahead));
   target = turned(target, vec::mul(newest.motion.spin, ahead));
-  const std::vector<ContactTool>& tools = simulation.contact().tools();
-  const auto own = std::find_if(tools.begin(), tools.end(), [&](const ContactTool& t) { return t.name == tool_; });
-  if (own == tools.end()) return {};  // parked or removed: it stays so
-  const auto index = static_cast<std::size_t>(own - tools.begin());
-  if (simulation.contact().pose(index, simulation.time() + seconds) == target) return {};
+  const std::optional<std::size_t> own = simulation.contact().find(tool_);
+  if (!own) return {};  // parked or removed: it stays so
+  if (simulation.contact().pose(*own, simulation.time() + seconds) == target) return {};
   try {
     simulation.tools().drive(tool_, target, seconds);
     driven_ = target;

@@ -19,18 +19,14 @@ namespace {
 constexpr double kLeastWay = 1e-6;  ///< for a drive whose sample is due already [s]
 
 std::size_t index_of(const Simulation& simulation, const std::string& name) {
-  const auto& tools = simulation.contact().tools();
-  const auto own = std::find_if(tools.begin(), tools.end(), [&](const ContactTool& t) { return t.name == name; });
-  if (own == tools.end()) throw Error(ErrorCode::usage, fmt::format("there is no tool \"{}\"", name));
-  return static_cast<std::size_t>(own - tools.begin());
+  const std::optional<std::size_t> own = simulation.contact().find(name);
+  if (!own) throw Error(ErrorCode::usage, fmt::format("there is no tool \"{}\"", name));
+  return *own;
 }
 
 /// On the tool in the last step.
 Wrench felt(const Simulation& simulation, const std::string& name) {
-  const ToolContact& contact = simulation.contact();
-  const std::size_t tools = contact.tools().size(), known = contact.step_forces().size();
-  if (contact.batch_end() != simulation.step() || known < tools) return {};
-  const StepForce& last = contact.step_forces()[known - tools + index_of(simulation, name)];
+  const StepForce last = simulation.contact().last_force(index_of(simulation, name)).value_or(StepForce{});
   return {last.force, last.torque};
 }
 

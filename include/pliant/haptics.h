@@ -61,7 +61,7 @@ struct HapticState {
   bool realtime = false;         ///< it got real-time priority
   std::string model;             ///< in use: "buffer", "whole", "held", "extrapolated"
   std::int64_t ticks = 0;        ///< so far
-  std::int64_t late = 0;         ///< ticks that began more than a period late; the missed ones are left out
+  std::int64_t late = 0;         ///< ticks that were left out because one before took too long
   double work_mean = 0;          ///< time of a tick's work: mean [s]
   double work_most = 0;          ///< largest [s]
   double work_p999 = 0;          ///< the 99.9th percentile [s]

@@ -31,6 +31,17 @@ bool ToolContact::active() const { return run_.model().contact != nullptr && run
 
 Pose ToolContact::pose(std::size_t tool, double time) const { return tool_pose(tools_[tool], run_.state, time); }
 
+std::optional<std::size_t> ToolContact::find(const std::string& name) const {
+  const auto own = std::find_if(tools_.begin(), tools_.end(), [&](const ContactTool& t) { return t.name == name; });
+  if (own == tools_.end()) return {};
+  return static_cast<std::size_t>(own - tools_.begin());
+}
+
+std::optional<StepForce> ToolContact::last_force(std::size_t tool) const {
+  if (batch_end_ != run_.state.clock.step || step_forces_.size() < tools_.size()) return {};
+  return step_forces_[step_forces_.size() - tools_.size() + tool];
+}
+
 void ToolContact::drive(std::size_t tool, const Pose& to, double seconds) {
   const double now = run_.state.clock.time();
   const ToolDrive drive{seconds > 0 ? pose(tool, now) : to, to, now, now + seconds};

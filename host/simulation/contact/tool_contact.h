@@ -1,6 +1,7 @@
 // Contact with rigid tools: uploads poses and fixed-point units, reads back forces.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,8 @@ class ToolContact {
 
   /// The tools of the model: those of the scene, with the host's additions, removals and parking.
   [[nodiscard]] const std::vector<ContactTool>& tools() const { return tools_; }
+  /// Index of a tool of the model by name; empty: it is parked, or there is none.
+  [[nodiscard]] std::optional<std::size_t> find(const std::string& name) const;
   /// Call after the model has got the tools of the run state. Tools that remain keep their statistics.
   void follow();
   /// Moves a tool of the model from its current pose to `to` within `seconds` [s]; at once if that is 0.
@@ -49,6 +52,8 @@ class ToolContact {
   /// Force and torque of each step of the last batch, shape [steps][tools]; it ended after step batch_end().
   [[nodiscard]] const std::vector<StepForce>& step_forces() const { return step_forces_; }
   [[nodiscard]] std::int64_t batch_end() const { return batch_end_; }
+  /// Of the last step; empty where it is not known: before the first step and after the tools or the state were changed.
+  [[nodiscard]] std::optional<StepForce> last_force(std::size_t tool) const;
   /// Returns the pose of a tool of the model at a time [s].
   [[nodiscard]] Pose pose(std::size_t tool, double time) const;
 

@@ -69,7 +69,7 @@ typedef struct pliant_haptic_state {
   int realtime;        /**< 1: it got real-time priority */
   const char* model;   /**< in use; valid as long as the handle */
   int64_t ticks;       /**< so far */
-  int64_t late;        /**< ticks that began more than a period late; the missed ones are left out */
+  int64_t late;        /**< ticks that were left out because one before took too long */
   double work_mean;    /**< time of a tick's work: mean [s] */
   double work_most;    /**< largest [s] */
   double work_p999;    /**< the 99.9th percentile [s] */
