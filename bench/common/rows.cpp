@@ -51,7 +51,9 @@ std::string lines_of(const std::vector<const json*>& rows) {
   for (const json* row : rows) {
     if (rows.size() > few && (*row)["ok"] != false) continue;
     const std::string scene = (*row)["scene"].get<std::string>(), message = (*row)["message"].get<std::string>();
-    const std::string name = rows.size() > few ? "  " + scene : scene.empty() ? test : test + ": " + scene;
+    const std::string name = rows.size() > few ? fmt::format("  {}", scene)
+                             : scene.empty()   ? test
+                                               : fmt::format("{}: {}", test, scene);
     text += line(name, *row, word(*row));
     if (!message.empty()) text += fmt::format("    {}\n", message);
   }

@@ -162,12 +162,12 @@ double surface_stiffness(const HandScene& scene) {
 
 void measure_others(PartRun& run) {
   const std::vector<HandScene> scenes = hand_scenes(run.options);
-  constexpr double kFrames = 30;
+  constexpr double kFrameRate = 30;
   double done = 0;
   for (const HandScene& scene : scenes) {
     const ForceTrace full = full_model(scene.scene, scene.tool, scene.stroke, scene.seconds, kTickRate);
     SessionOptions options;
-    options.frame_rate = kFrames;
+    options.frame_rate = kFrameRate;
     options.haptic_rate = kTickRate;
     options.seconds = scene.seconds;
     options.rings = 4;
@@ -190,10 +190,10 @@ void measure_others(PartRun& run) {
     tell("buffer of 4 rings", buffer);
     for (const auto& [name, model] : models) {
       run.show(done++ / static_cast<double>(4 * scenes.size()), scene.name + ", " + name);
-      const ForceTrace felt = felt_by(scene, kFrames, *model, &rest);
+      const ForceTrace felt = felt_by(scene, kFrameRate, *model, &rest);
       tell(name, felt);
       if (model != &held) continue;
-      const double quieter = energy_at_multiples(felt, full, kFrames) / energy_at_multiples(buffer, full, kFrames);
+      const double quieter = energy_at_multiples(felt, full, kFrameRate) / energy_at_multiples(buffer, full, kFrameRate);
       run.at_least("energy at the frame rate and its multiples, held over buffer [dB]", scene.name, 10 * std::log10(quieter),
                    20, 0);
     }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -143,7 +144,7 @@ HaplyAddress parse_haply_address(const std::string& rest, const std::string& tex
     place = place.substr(scheme.size());
     const std::size_t slash = place.find('/');
     if (slash != std::string::npos) address.path = place.substr(slash);
-    place = place.substr(0, slash);
+    place.resize(std::min(slash, place.size()));
     const std::size_t colon = place.find(':');
     address.host = place.substr(0, colon);
     if (address.host.empty()) fail_address(text, rest);

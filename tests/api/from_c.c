@@ -1,4 +1,4 @@
-/* A hand presses a block and feels it, in C99: what a program in C needs of include/pliant/c. Compiled by the test api.from_c. */
+/* A hand presses a block and feels it, in C99: what a program in C needs of include/pliant/c. */
 #include <pliant/c/pliant.h>
 #include <stdio.h>
 

@@ -130,7 +130,7 @@ std::int32_t ToolContact::before_step(std::int32_t step_in_batch, std::int32_t s
   if (!active()) return steps;
   lists_.update(step_in_batch, [this](std::size_t tool, double from, double to) { return motion(tool, from, to); });
   const std::int64_t step = run_.state.clock.step + step_in_batch;
-  const auto n = std::min(steps, static_cast<std::int32_t>(contact_look_every - step % contact_look_every));
+  const auto n = static_cast<std::int32_t>(std::min(std::int64_t{steps}, contact_look_every - step % contact_look_every));
   if (*run_.loaded.program().near_points > 0) {
     for (std::int32_t k = 0; k < n; ++k) summed_.at(static_cast<std::size_t>(step_in_batch + k)) = 1;
   }
