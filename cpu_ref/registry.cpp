@@ -36,6 +36,9 @@
   ROW(node_rotate) \
   ROW(node_load) \
   ROW(step_gravity) \
+  ROW(link_points) \
+  ROW(spring_force) \
+  ROW(link_gather) \
   ROW(surface_position) \
   ROW(pressure_force) \
   ROW(fault_reduce) \

@@ -28,6 +28,7 @@
 #define PLIANT_HEXFULL_DATA_PLANES 200  // 8 points x (grad N (24) [1/m], weight [m^3])
 #define PLIANT_TET_FORCE_PLANES 12      // 4 corners x 3 components [N]
 #define PLIANT_HEX_FORCE_PLANES 24      // 8 corners x 3 components [N]
+#define PLIANT_SPRING_PLANES 8          // see spring_force.cl
 
 #define PLIANT_FAULT_SUMMARY 4  // numbers written by each of the 256 work-items of fault_reduce
 

@@ -88,6 +88,8 @@ class RandomScene {
     if (shape_.tets) {
       body["element"] = dice_.chance(0.5) ? "tet4" : "tet4anp";
       body["model"] = {{"type", "tled"}};
+      Dice springs(number_ ^ 0x3c6ef372);
+      if (springs.chance(0.2)) body["model"] = network(springs);
       return;
     }
     body["lattice"] = {{"spacing", std::cbrt(size_[0] * size_[1] * size_[2] / dice_.logarithmic(300, 1500))}};
@@ -103,6 +105,14 @@ class RandomScene {
     } else {
       body["model"] = {{"type", "flsm"}};
     }
+  }
+
+  /// A fifth of the meshes are networks of springs, some of them damped or slack.
+  static Json network(Dice& dice) {
+    Json spring = Json::object();
+    if (dice.chance(0.5)) spring["damping"] = dice.logarithmic(1e-4, 1e-1);
+    if (dice.chance(0.2)) spring["slack"] = true;
+    return {{"type", "mass-spring"}, {"spring", spring}};
   }
 
   void subcycle(Json& model) {

@@ -121,8 +121,16 @@ class Info {
       const Json regions = tell_mesh_regions(scene_.bodies[i], options_.common);
       if (!regions.is_null()) json_["bodies"].back()["regions"] = regions;
     }
+    springs();
     surface_checks();
     json_["mass"] = mass;
+  }
+
+  void springs() {
+    for (const SpringBatch& b : model_.links.springs) {
+      json_["springs"].push_back({{"what", b.label}, {"law", word_of(spring_law_words(), b.law.law)}, {"springs", b.size()}});
+      line(fmt::format("{}: {} springs, {}", b.label, b.size(), word_of(spring_law_words(), b.law.law)));
+    }
   }
 
   /// Number of nodes of each entry of `fixed` and `prescribed`: a body with too few fixed nodes swings.

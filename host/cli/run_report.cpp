@@ -66,6 +66,11 @@ class Report {
   }
 
  private:
+  [[nodiscard]] std::size_t broken_joins() const {
+    std::size_t sum = 0;
+    for (const auto& join : s_.state().broken) sum += join.size();
+    return sum;
+  }
   [[nodiscard]] bool relaxes() const { return s_.scene().relaxation.enabled; }
   [[nodiscard]] double simulated() const { return s_.time() - r_.first_time; }
 
@@ -120,6 +125,7 @@ class Report {
     for (const std::string& sentence : parts_far_away(s_)) out_.remark(sentence);
     json["most_substeps"] = s_.state().most_substeps;
     json["opened_edges"] = s_.state().opened;
+    if (!s_.scene().joins.empty()) json["broken_joins"] = broken_joins();
   }
 
   void add_probes(const Probes& probes, Json& rows) const {
@@ -223,6 +229,7 @@ class Report {
     std::string text = fmt::format("largest displacement {:.4g} m", events_.max_displacement);
     const bool cuts = !s_.scene().blades.empty() || events_.cut_edges > 0;
     if (cuts) text += fmt::format(", {} edges cut", events_.cut_edges);
+    if (broken_joins() > 0) text += fmt::format(", {} springs of joins broken", broken_joins());
     if (events_.broken_faces > 0) text += fmt::format(", {} faces broken by tears", events_.broken_faces);
     if (cuts || events_.broken_faces > 0)
       text += fmt::format(", {} {}", events_.pieces, events_.pieces == 1 ? "piece" : "pieces");

@@ -12,6 +12,7 @@
 #include "model/elements/bricks.h"
 #include "model/elements/element_materials.h"
 #include "model/elements/least_fill.h"
+#include "model/links/build_links.h"
 #include "model/matching/flsm.h"
 #include "model/model.h"
 #include "model/nodes/boundary_conditions.h"
@@ -115,7 +116,7 @@ class ElementLists {
     const auto corners = solid.corners(e);
     for (std::size_t a = 0; a < corners.size(); ++a) all_slots[a] = draft_.slot[corners[a]];
     const std::span<const std::int32_t> slots(all_slots.data(), corners.size());
-    const bool finite = solid.operational(e);
+    const bool finite = solid.operational(e) && body_.model.type != ModelType::mass_spring;
     const double modulus = draft_.materials.modulus_of(e);
     double& volume = draft_.volume[e];
     std::vector<double> record;
@@ -164,7 +165,8 @@ void fill_body(const Body& body, NodeNumbering& draft, ModelBody& out) {
   }
   out.spacing = draft.solid().spacing;
   out.surface_volume = draft.given->surface_volume;
-  for (std::size_t e = 0; e < draft.solid().size(); ++e) out.operational_elements += draft.solid().operational(e);
+  for (std::size_t e = 0; e < draft.solid().size() && body.model.type != ModelType::mass_spring; ++e)
+    out.operational_elements += draft.solid().operational(e);
   const Partition& partition = draft.solid().partition;
   const auto nodes = static_cast<std::int64_t>(draft.solid().nodes.size());
   out.operational_nodes = partition.kind.empty() ? nodes : partition.operational_nodes;
@@ -218,7 +220,7 @@ void place_bodies(const Scene& scene, std::span<const BodyMesh* const> solids, c
     const Body& body = scene.bodies[b];
     NodeNumbering draft;
     draft.given = solids[b];
-    if (body.model.type != ModelType::tled) {
+    if (body.model.matches()) {
       draft.own = static_cast<const BodyElements&>(*solids[b]);
       repartition(body, *draft.own);
     }
@@ -292,11 +294,14 @@ Model build_elements(const Scene& scene, std::span<const BodyMesh* const> solids
       model.damping[draft.slot[n]] = body.material.damping;
     }
     ElementLists(body, static_cast<std::int32_t>(i), draft, model).add();
+    if (body.model.type == ModelType::mass_spring) add_mass_springs(body, static_cast<std::int32_t>(i), draft, model);
     add_totals(body, draft, model.bodies[i]);
     for (const std::int32_t s : model.bodies[i].slot) model.bodies[i].added_mass += model.mass[s] - model.own_mass(s);
     set_velocity(body, model.bodies[i], model);
     told_with_file(scene, [&] { add_initial(body, model.bodies[i], model); });
   }
+  add_joins(scene, model);
+  note_link_bounds(model);
   for (FlsmBatch& batch : model.flsm) {
     weigh(batch, model.mass);
     if (model.shortest == 0 || batch.spacing < model.shortest) model.shortest = batch.spacing;

@@ -13,6 +13,7 @@
 #include "model/contact/contact.h"
 #include "model/elements/batches.h"
 #include "model/elements/element_materials.h"
+#include "model/links/links.h"
 #include "model/matching/partition.h"
 #include "scene/scene.h"
 
@@ -127,6 +128,7 @@ struct Model {
   std::vector<ElementBatch> batches;  ///< elements outside the bricks
   std::vector<BrickBatch> brick_batches;
   std::vector<FlsmBatch> flsm;
+  Links links;  ///< springs between nodes and other points; empty: none
   ModelSurface surface;
   std::vector<Curve> curves;
   std::int32_t gravity_curve = 0;                ///< curve of gravity; 0: constant

@@ -183,7 +183,7 @@ Json after(const Scene& scene, const Json& before, const Reader& entry) {
   if (entry.has("model")) {
     const Reader model = entry.at("model");
     model.expect_object("model");
-    if (now.bodies[b].model.type == ModelType::tled) model.fail("a model of a body of finite elements alone", "none");
+    if (!now.bodies[b].model.matches()) model.fail("a model of a body without shape matching", "none");
     kept["model"] = merged_model(body["model"], model);
   }
   if (entry.has("fixed")) {

@@ -148,6 +148,30 @@ void describe_alpha(V&& v, S&& s) {
               "as `stiffness` of the material (hybrid), 0.5 (flsm)"});
 }
 
+/// Of a mass-spring model and of a join.
+template <class V, class S>
+void describe_spring(V&& v, S&& s) {
+  v(s.law, spring_law_words(), {"law", any, "", "\"cubic\"", "force F over the elongation e from the length l0 at rest"});
+  v(s.stiffness, {"stiffness", above(0).or_word("auto").absent_at(0), "N/m", "40",
+                  "of `linear`; `\"auto\"`, not in a join: of each edge from Young's modulus"});
+  v(s.lambda1, {"lambda1", at_least(0).absent_at(0), "N", "30", "of `cubic`"});
+  v(s.lambda2, {"lambda2", above(0).absent_at(0), "N", "5", "of `cubic`"});
+  v(s.a, {"a", any.absent_at(0), "1/N", "-0.2",
+          "of `measured`; below 0 the spring stiffens, and from 3/4 of the elongation b / -a, where F is infinite, follows its "
+          "tangent"});
+  v(s.b, {"b", above(0).absent_at(0), "m/N", "0.02", "of `measured`: 1 / b is the stiffness at rest"});
+  v(s.damping, {"damping", at_least(0).absent_at(0), "N s/m", "0.1", "force over the rate of the length"});
+  v(s.slack, {"slack", any.absent_at(0), "", "true", "`true`: no force when it is shorter than at rest"});
+}
+
+template <class V, class S>
+void describe_join(V&& v, S&& s) {
+  v(s.distance, required({"distance", above(0), "m", "0.004", "pairs of nodes that are no further apart at rest are joined"}));
+  v(s.break_stretch, {"break_stretch", above(1).absent_at(0), "", "1.8",
+                      "a spring longer than this times its length at rest breaks; none: it does not"});
+  v(s.break_force, {"break_force", above(0).absent_at(0), "N", "0.3", "a spring that pulls more breaks; none: it does not"});
+}
+
 template <class V, class S>
 void describe_stiffness(V&& v, S&& s) {
   v(s.young, required({"young", above(0), "Pa", "3000", "effective Young's modulus of shape matching"}));

@@ -34,13 +34,15 @@ std::map<std::string, List> make_keys() {
   return {
       {"scene", PLIANT_DESCRIBED(Scene, scene) + PLIANT_DESCRIBED(Scene, run) +
                     List{"format", "name", "gravity", "relaxation", "solver", "focus", "tools", "contact", "blades", "view",
-                         "probes", "probe_every", "bodies", "changes"}},
+                         "probes", "probe_every", "bodies", "joins", "changes"}},
       {"body", List{"name", "surface", "mesh", "lattice", "material", "model", "inclusions", "fixed", "prescribed", "forces",
                     "pressures", "initial"} +
                    PLIANT_DESCRIBED(Body, body)},
       {"lattice", PLIANT_DESCRIBED(LatticeSpec, lattice)},
       {"material", List{"law"} + elastic_keys() + PLIANT_DESCRIBED(Material, material)},
-      {"model", PLIANT_DESCRIBED(DeformationModel, type) + hybrid_keys() + matching_keys()},
+      {"model", PLIANT_DESCRIBED(DeformationModel, type) + hybrid_keys() + matching_keys() + List{"spring"}},
+      {"spring", PLIANT_DESCRIBED(Spring, spring) + List{"table"}},
+      {"join", List{"bodies", "spring"} + PLIANT_DESCRIBED(Join, join)},
       {"region", {"box", "sphere"}},
       {"element_field", {"field"}},
       {"stiffness", PLIANT_DESCRIBED(DeformationModel, stiffness)},
@@ -194,7 +196,16 @@ const Words<bool>& solver_words() {
 const Words<ModelType>& model_words() {
   static const Words<ModelType> words{{"tled", ModelType::tled, "finite elements"},
                                       {"hybrid", ModelType::hybrid, "finite elements in the operational region"},
-                                      {"flsm", ModelType::flsm, "shape matching"}};
+                                      {"flsm", ModelType::flsm, "shape matching"},
+                                      {"mass-spring", ModelType::mass_spring, "springs along the edges of tetrahedra"}};
+  return words;
+}
+
+const Words<SpringLaw>& spring_law_words() {
+  static const Words<SpringLaw> words{{"linear", SpringLaw::linear, "F = k e"},
+                                      {"cubic", SpringLaw::cubic, "F = lambda1 (e / l0)^3 + lambda2 e / l0"},
+                                      {"measured", SpringLaw::measured, "F = e / (a abs(e) + b)"},
+                                      {"table", SpringLaw::curve, "linear between rows"}};
   return words;
 }
 

@@ -51,6 +51,7 @@ const Words<Inverted>& inverted_words();
 const Words<ToolShape>& tool_shape_words();
 const Words<bool>& solver_words();
 const Words<ModelType>& model_words();
+const Words<SpringLaw>& spring_law_words();
 /// The flags of DeformationModel that a scene file writes as words: extrapolate, conservative.
 const Words<bool>& goals_words();
 const Words<bool>& coupling_words();

@@ -130,10 +130,12 @@ Scene read_document(const nlohmann::json& document, const fs::path& file) {
   if (top.has("blades")) scene.blades = read_blades(top.at("blades"));
   if (top.has("view")) scene.view = read_view(top.at("view"));
   read_bodies(top, file.parent_path(), scene);
+  if (top.has("joins")) scene.joins = read_joins(top.at("joins"), scene);
   scene.probes = read_probes(top, scene);
   check_initial(top, scene);
   check_models(top, scene);
   check_viscous(top, scene);
+  check_springs(top, scene);
   check_blades(top, scene);
   check_tools(top, scene);
   check_tearing(top, scene);

@@ -39,6 +39,11 @@ Material read_material(const Reader& material, const TaggedMesh* mesh);
 /// `lattice`: whether the body is a surface filled with a lattice, which shape matching needs.
 DeformationModel read_model(const Reader& model, bool lattice);
 Focus read_focus(const Reader& focus);
+Spring read_spring(const Reader& spring);
+/// After the bodies.
+std::vector<Join> read_joins(const Reader& joins, const Scene& scene);
+/// Springs against the integrator and the solver.
+void check_springs(const Reader& top, const Scene& scene);
 /// The last entry of a list has a name of its own.
 template <class Named>
 void check_last_name(const Reader& entry, const std::vector<Named>& all, const char* kind) {

@@ -21,7 +21,9 @@ void refuse_both(const Reader& model, const std::string& a, const std::string& b
 
 void refuse_senseless(const Reader& model, ModelType type) {
   if (type != ModelType::hybrid) refuse(model, hybrid_keys(), type, "hybrid");
-  if (type == ModelType::tled) refuse(model, matching_keys(), type, "hybrid or flsm");
+  const bool matching = type == ModelType::hybrid || type == ModelType::flsm;
+  if (!matching) refuse(model, matching_keys(), type, "hybrid or flsm");
+  if (type != ModelType::mass_spring) refuse(model, {"spring"}, type, "mass-spring");
   for (const std::string& key : growth_keys()) refuse_both(model, "region", key, "either a region, or ratio, seed and follow");
   refuse_both(model, "alpha", "stiffness", "at most one: a stiffness chooses alpha");
 }
@@ -41,9 +43,13 @@ DeformationModel read_model(const Reader& model, bool lattice) {
   DeformationModel m;
   m.pointer = model.pointer();
   describe_type(ReadKeys{model}, m);
-  if (!lattice && m.type != ModelType::tled) {
+  if (lattice && m.type == ModelType::mass_spring) {
+    model.at("type").fail("tled, hybrid or flsm beside a surface (springs need a \"mesh\" of tetrahedra)");
+  }
+  if (!lattice && m.matches()) {
     model.at("type").fail(
-        "tled beside a volume mesh (shape matching needs a lattice: give a \"surface\" instead of the \"mesh\")");
+        "tled or mass-spring beside a volume mesh (shape matching needs a lattice: give a \"surface\" instead of the "
+        "\"mesh\")");
   }
   refuse_senseless(model, m.type);
   describe_growth(ReadKeys{model}, m);
@@ -56,6 +62,7 @@ DeformationModel read_model(const Reader& model, bool lattice) {
     stiffness.expect_object("stiffness");
     describe_stiffness(ReadKeys{stiffness}, m);
   }
+  if (model.has("spring")) m.spring = read_spring(model.at("spring"));
   m.matched = m.type == ModelType::hybrid && !model.has("alpha") && !model.has("stiffness");
   return m;
 }
@@ -104,7 +111,7 @@ void check_models(const Reader& top, const Scene& scene) {
   const std::vector<Reader> bodies = top.at("bodies").items("a list of bodies");
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const DeformationModel& m = scene.bodies[i].model;
-    if (m.type == ModelType::tled) continue;
+    if (!m.matches()) continue;
     require_integrator(top, scene, &IntegratorInfo::matching, fmt::format("{} has the type {}", m.pointer, to_string(m.type)));
     if (m.follow.empty()) continue;
     if (scene.relaxation.enabled) {

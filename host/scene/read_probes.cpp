@@ -92,7 +92,7 @@ SceneProbe read_probe(const Reader& probe, const Scene& scene) {
   out.body = body.name;
   out.where = read_selection(probe, Selected::nodes, frame_of(body, scene.file.parent_path()));
   for (const Quantity q : out.quantities) {
-    if ((q != Quantity::reaction && q != Quantity::energy) || body.model.type == ModelType::tled) continue;
+    if ((q != Quantity::reaction && q != Quantity::energy) || !body.model.matches()) continue;
     probe.fail(fmt::format("{} {} of body \"{}\", whose model is {}", q == Quantity::reaction ? "a" : "an",
                            word_of(quantity_words(), q), body.name, to_string(body.model.type)),
                "a body of finite elements (tled): shape matching knows no forces and no energy");

@@ -19,6 +19,7 @@
 #include "scene/lattice_spec.h"
 #include "scene/motion.h"
 #include "scene/selection.h"
+#include "scene/spring.h"
 
 namespace pliant {
 
@@ -59,8 +60,9 @@ struct Pressure {
   Curve curve;
 };
 
-/// Division of a body's nodes into finite elements (TLED) and fast lattice shape matching (FLSM).
-enum class ModelType { tled, hybrid, flsm };
+/// What moves a body's nodes: finite elements (TLED), fast lattice shape matching (FLSM), both in parts of it, or springs along
+/// the edges of its tetrahedra.
+enum class ModelType { tled, hybrid, flsm, mass_spring };
 const char* to_string(ModelType type);
 
 /// The key "model" of a body. FLSM: Rivers and James 2007; hybrid: Hybrid Deformation Model, eq. 1 to 9.
@@ -83,7 +85,10 @@ struct DeformationModel {
   std::string
       follow;  ///< what the operational region follows: the name of a blade or tool, or kFocus (blade.h); empty: nothing
   std::optional<std::vector<std::int32_t>> cells;  ///< set in code: the operational cells, after a region has moved
+  Spring spring;                                   ///< mass-spring
   std::string pointer;                             ///< JSON pointer ("/bodies/0/model")
+  /// Whether shape matching moves some of its nodes.
+  [[nodiscard]] bool matches() const { return type == ModelType::hybrid || type == ModelType::flsm; }
 };
 
 struct Body {
@@ -151,6 +156,7 @@ struct Scene {
   bool cuttable = false;     ///< set in code: prepare for cuts although there are no blades
   bool interactive = false;  ///< set in code: reserve a force on every node that moves a surface vertex
   std::vector<Body> bodies;
+  std::vector<Join> joins;
   std::vector<SceneChange> changes;  ///< times do not descend
   /// [m/s^2] at a time [s].
   [[nodiscard]] Vec3d gravity_at(double time) const;

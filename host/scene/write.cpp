@@ -130,10 +130,23 @@ void add_matching(OrderedJson& model, const ModelSpec& m) {
   if (m.young) describe_stiffness(WriteKeys{model["stiffness"]}, m);
 }
 
+OrderedJson spring_json(const Spring& s) {
+  OrderedJson spring;
+  describe_spring(WriteKeys{spring}, s);
+  if (!s.curve.empty()) spring["table"] = s.curve;
+  return spring;
+}
+
 template <class M>
 OrderedJson model_json(const M& m) {
   OrderedJson model;
   describe_type(WriteKeys{model}, m);
+  if constexpr (requires { m.spring; }) {
+    if (model["type"] == to_string(ModelType::mass_spring)) {
+      model["spring"] = spring_json(m.spring);
+      return model;
+    }
+  }
   if (model["type"] == to_string(ModelType::hybrid)) {
     if (m.region) {
       model["region"] = selection_json(*m.region, {});
@@ -326,6 +339,12 @@ OrderedJson change_json(const ChangeSpec& change) {
 OrderedJson document_of(const Scene& scene) {
   OrderedJson top = top_json(scene, scene.file);
   describe_run(WriteKeys{top}, scene);
+  for (const Join& j : scene.joins) {
+    OrderedJson join{{"bodies", j.bodies}};
+    describe_join(WriteKeys{join}, j);
+    join["spring"] = spring_json(j.spring);
+    top["joins"].push_back(join);
+  }
   if (scene.relaxation.enabled) {
     describe_relaxation(WriteKeys{top["relaxation"]}, scene.relaxation);
   } else {

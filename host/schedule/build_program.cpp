@@ -25,6 +25,7 @@ Program ProgramBuilder::build() {
   for (std::size_t b = 0; b < model_.brick_batches.size(); ++b) add_bricks(model_.brick_batches[b]);
   for (std::size_t b = 0; b < model_.batches.size(); ++b) add_batch(b);
   add_loads();
+  add_links();
   program_.force = program_.step;
   for (Pass& pass : program_.force) evaluate_only(pass);
   add_gravity();
@@ -63,7 +64,7 @@ void ProgramBuilder::add_shared_buffers() {
   node_load_ = add(
       make_reals("node_load", BufferType::real4, needs_load() ? slots : 1, BufferRole::scratch, "[slots]", "N", "node_load"));
   program_.buffers[node_load_].carried = Carried::unwritten;  // zero for unloaded nodes
-  if (has_list_elements()) {
+  if (has_list_elements() || (has_list_nodes() && !model_.links.empty())) {
     const std::size_t numbers = static_cast<std::size_t>(layout_.corner_numbers) + 3 * PLIANT_TILE;
     corner_ = add(make_reals("corner_force", BufferType::real, numbers, BufferRole::scratch, "[tiles][corners][3][16]", "N",
                              "element kernels"));
@@ -141,7 +142,7 @@ void ProgramBuilder::add_list_update() {
   GatherList list = pack_rows(corners, layout_.corner_numbers);
   const double entries = double(list.index.size()) / nodes;
   const auto offset_id = add(make_ints("gather_offset", BufferRole::constant, "[tiles + 1]", std::move(list.offset)));
-  const auto index_id = add(make_ints("gather_index", BufferRole::constant, "[rows][16]", std::move(list.index)));
+  const auto index_id = add(make_ints("gather_index", BufferRole::constant, "[rows][16]", std::move(list.index), 1));
   for (const int force_only : {0, 1}) {
     Pass pass{
         "node_update",

@@ -126,6 +126,16 @@ class ProgramBuilder {
   void emit_loads(const std::vector<std::int32_t>& slots, std::vector<std::int32_t> offset, std::vector<double> force,
                   std::vector<std::int32_t> curve, std::vector<std::int32_t> triangle, std::vector<double> weight,
                   std::vector<std::int32_t> corner);
+  /// Defined in links/program_links.cpp: forces of links, added to those loads. LinkForces: per point the forces on it.
+  struct PointForce {
+    std::int32_t position = 0;  ///< of its x component in link_force
+    double sign = 1;            ///< -1: the opposite force stands there
+  };
+  using LinkForces = std::vector<std::vector<PointForce>>;
+  void add_links();
+  void add_link_points();
+  void add_springs(const SpringBatch& b, std::size_t index, std::int32_t base, LinkForces& forces);
+  void add_link_gather(const LinkForces& forces, std::int32_t zero);
   /// (slot, position in corner_force) for the corners of list elements at brick nodes, ascending.
   [[nodiscard]] std::vector<std::pair<std::int32_t, std::int32_t>> brick_corners() const;
 
@@ -135,7 +145,8 @@ class ProgramBuilder {
   [[nodiscard]] bool has_list_nodes() const { return model_.list_end > model_.list_base; }
   [[nodiscard]] bool has_list_elements() const { return !model_.batches.empty(); }
   [[nodiscard]] bool needs_load() const {
-    return !model_.forces.empty() || !model_.pressures.empty() || !brick_corners_.empty() || has_interface();
+    return !model_.forces.empty() || !model_.pressures.empty() || !brick_corners_.empty() || has_interface() ||
+           !model_.links.empty();
   }
   [[nodiscard]] bool has_interface() const {
     return std::any_of(model_.flsm.begin(), model_.flsm.end(), [](const FlsmBatch& b) { return b.interface > 0; });
@@ -151,7 +162,8 @@ class ProgramBuilder {
   Program program_;
   BufferId node_u_ = -1, node_w_ = -1, node_force_ = -1, node_load_ = -1, corner_ = -1, fault_ = -1, summary_ = -1,
            fastest_ = -1, params_ = -1, now_ = -1, curves_ = -1, surface_x_ = -1, pressure_ = -1, brick_neighbor_ = -1,
-           brick_rows_ = -1, brick_fill_ = -1, brick_force_ = -1, flsm_alpha_ = -1;
+           link_u_ = -1, link_w_ = -1, link_force_ = -1, brick_rows_ = -1, brick_fill_ = -1, brick_force_ = -1,
+           flsm_alpha_ = -1;
   std::int32_t edged_tools_ = 0;  ///< one bit per tool with edges (kernels/contact/contact_edge.cl)
   /// Returns `buffer` if a tool has edges, otherwise `other` as a placeholder that no kernel reads.
   [[nodiscard]] const char* of_edges(const char* buffer, const char* other) const { return edged_tools_ != 0 ? buffer : other; }

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Writes the meshes of the scenes that tear: meshes/sheet_tet.msh, a sheet with a notch, and meshes/gallbladder_tet.msh, a liver-like body with
-a gallbladder under it and a layer between them. Both are grids of tetrahedra as in tet_meshes.py; those of the second one are chosen by a
+a gallbladder under it and a layer between them, and meshes/liver_tet.msh and meshes/pear_tet.msh, the two without the layer. Both are grids of tetrahedra as in tet_meshes.py; those of the second one are chosen by a
 distance function, and their boundary is drawn onto it. Running it again changes nothing.
 """
 import pathlib
@@ -102,9 +102,18 @@ def gallbladder():
     return vertices, tets
 
 
+def half(mesh, above):
+    """The liver, or the gallbladder, without the layer between them."""
+    vertices, tets = mesh
+    middles = [centroid(vertices, tet)[1] for tet in tets]
+    return without_unused(vertices, [tet for tet, y in zip(tets, middles) if (y > LAYER[1] if above else y < LAYER[0])])
+
+
 def main():
     folder = pathlib.Path(__file__).resolve().parent.parent / "meshes"
-    for name, (vertices, tets) in (("sheet_tet.msh", sheet()), ("gallbladder_tet.msh", gallbladder())):
+    both = gallbladder()
+    halves = (("liver_tet.msh", half(both, True)), ("pear_tet.msh", half(both, False)))
+    for name, (vertices, tets) in (("sheet_tet.msh", sheet()), ("gallbladder_tet.msh", both), *halves):
         volumes = [volume(vertices, tet) for tet in tets]
         mean = sum(volumes) / len(volumes)
         assert min(volumes) > 0.1 * mean, f"{name}: a tetrahedron has only {min(volumes) / mean:.3f} of the mean volume"

@@ -155,6 +155,8 @@ TEST(Tables, SchemaHasTheLawsAndTheWordsOfTheCode) {
   describe_regions(keys("model", "hybrid, flsm: "), DeformationModel());
   describe_alpha(keys("model", "hybrid, flsm: "), DeformationModel());
   describe_stiffness(keys("stiffness"), DeformationModel());
+  describe_spring(keys("spring"), Spring());
+  describe_join(keys("join"), Join());
   set_laws(schema["$defs"]["material"]);
   expect_file("scenes/schema.json", pretty(schema) + "\n");
 }
@@ -239,6 +241,8 @@ TEST(Tables, ScenesDocumentHasTheLawsAndElementsOfTheCode) {
   describe_interface(hybrid, DeformationModel());
   describe_regions(matching, DeformationModel());
   describe_alpha(matching, DeformationModel());
+  describe_spring(DocumentRows{text, "\n`spring` of a mass-spring"}, Spring());
+  describe_join(DocumentRows{text, "\n`joins`, each"}, Join());
   replace_part(text, "elements", element_table());
   replace_part(text, "laws", law_tables());
   expect_file("docs/scene.md", text);

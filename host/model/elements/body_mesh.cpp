@@ -143,7 +143,7 @@ std::array<std::int32_t, 8> cell_corners(const std::array<std::int32_t, 4>* tets
 }
 
 void repartition(const Body& body, BodyElements& solid) {
-  if (body.model.type == ModelType::tled) return;
+  if (!body.model.matches()) return;
   const Lattice& lattice = *solid.lattice;
   solid.partition = partition_lattice(body, lattice);
   solid.matching_cells.clear();

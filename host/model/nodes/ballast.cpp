@@ -36,6 +36,30 @@ Vector3d displacement(const std::vector<double>& u, std::int32_t slot) {
   return Eigen::Map<const Vector3d>(u.data() + 4 * static_cast<std::size_t>(slot));
 }
 
+/// Adds for each spring twice the larger of its slope and of force over length, which are the eigenvalues of its tangent.
+void add_link_stiffness(const Model& model, const std::vector<double>& u, const std::vector<char>& wanted,
+                        std::vector<double>& sum) {
+  const LinkPoints& points = model.links.points;
+  const auto moved = [&](std::int32_t slot) {
+    const double* at = u.data() + 4 * static_cast<std::size_t>(slot);
+    return Vec3d{at[0], at[1], at[2]};
+  };
+  for (const SpringBatch& b : model.links.springs) {
+    for (std::size_t s = 0; s < b.size(); ++s) {
+      if (!b.whole(s)) continue;
+      const double e = elongation(points, b, s, moved), length = std::max(b.length[s] + e, 1e-30);
+      const SpringState state = spring_state(b.law, b.parameters[s], e);
+      const double stiffness = 2 * std::max({state.slope, state.force / length, rest_stiffness(b, s)});
+      for (const std::int32_t p : b.points[s]) {
+        for (std::size_t a = 0; a < 8; ++a) {
+          const std::int32_t slot = points.slots[p][a];
+          if (points.weights[p][a] != 0 && (wanted.empty() || wanted[slot] != 0)) sum[slot] += points.weights[p][a] * stiffness;
+        }
+      }
+    }
+  }
+}
+
 double element_stiffness(const ElementView& e, const std::vector<double>& u, bool quick) {
   const auto moved = [&](std::int32_t slot) { return displacement(u, slot); };
   double sum = 0;
@@ -73,6 +97,7 @@ std::vector<double> nodal_stiffness(const Model& model, const std::vector<double
       if (asked(s)) sum[s] += stiffness;
     }
   });
+  add_link_stiffness(model, u, wanted, sum);
   return sum;
 }
 

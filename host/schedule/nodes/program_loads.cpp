@@ -94,6 +94,7 @@ void ProgramBuilder::add_loads() {
   for (const FlsmBatch& b : model_.flsm) slots.insert(slots.end(), b.slot.begin() + b.own, b.slot.end());
   std::sort(slots.begin(), slots.end());
   slots.erase(std::unique(slots.begin(), slots.end()), slots.end());
+  if (slots.empty()) return;  // links alone, which write what they load
   std::vector<std::int32_t> offset, curve, triangle, corner;
   std::vector<double> force, weight;
   std::size_t f = 0, s = 0, c = 0;

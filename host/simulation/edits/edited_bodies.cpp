@@ -34,7 +34,7 @@ void BodyCut::make_surface() {
 }
 
 void BodyCut::keep_allowed(const Body& body, CutEdges& edges) const {
-  if (body.model.cut || body.model.type == ModelType::tled || edges.empty()) return;
+  if (body.model.cut || !body.model.matches() || edges.empty()) return;
   const Partition partition = partition_lattice(body, *uncut_->lattice);
   std::erase_if(edges, [&](const auto& edge) {
     for (const std::int32_t c : topology_.cells_at_edge(edge.first)) {

@@ -63,6 +63,8 @@ bool follows(const Scene& scene) {
 
 void TopologyEdits::start() {
   const Scene& scene = run_.scene;
+  run_.settings.breaks = std::any_of(scene.joins.begin(), scene.joins.end(),
+                                     [](const Join& j) { return j.break_stretch > 0 || j.break_force > 0; });
   const bool moves_freely = integrator_info(scene.integrator).edits && !scene.relaxation.enabled;
   if (!scene.blades.empty()) {
     for (const Blade& blade : scene.blades) check_blade(blade);
@@ -87,6 +89,7 @@ void TopologyEdits::update() {
   move_scene_blades();
   if (run_.phase() == 0) open_overstretched();
   make_tears();
+  break_joins();
   move_regions();
 }
 
@@ -148,6 +151,7 @@ Scene TopologyEdits::scene_at(const RunState& state) const {
   Scene scene = run_.scene;
   scene.cuttable = scene.cuttable || !state.cuts.empty();
   if (!state.tools.empty()) scene.tools = present_tools(run_.scene, state.tools);
+  for (std::size_t j = 0; j < state.broken.size(); ++j) scene.joins[j].broken = state.broken[j];
   for (std::size_t b = 0; b < scene.bodies.size() && !state.regions.empty(); ++b) {
     if (!scene.bodies[b].model.follow.empty()) scene.bodies[b].model.cells = state.regions[b].cells;
   }
@@ -169,9 +173,10 @@ std::unique_ptr<EditedBodies> TopologyEdits::bodies_at(const RunState& state) co
     throw Error(ErrorCode::bad_input, fmt::format("{} do not belong to this scene, or are damaged", what));
   };
   if (!state.regions.empty() && (state.regions.size() != scene.bodies.size() || !follows(scene))) refuse("its moved regions");
+  if (!state.broken.empty() && state.broken.size() != scene.joins.size()) refuse("its broken joins");
   const auto edited = [](const RunState& s) {
     return !s.cuts.empty() || !s.tears.empty() || !s.regions.empty() || s.most_substeps != 0 || !s.blades.traces.empty() ||
-           !s.changed.parameters.empty();
+           !s.changed.parameters.empty() || !s.broken.empty();
   };
   if (!edited(state) && !edited(run_.state)) return nullptr;
   auto all = std::make_unique<EditedBodies>(scene);

@@ -62,9 +62,10 @@ class TopologyEdits {
   [[nodiscard]] bool reached(std::size_t body, const std::vector<Vec3d>& x, const std::vector<BladeMove>& moves,
                              std::span<const SweepTriangle> triangles) const;
   [[nodiscard]] const BladeTrace* front(const BladeMove& move, std::size_t body) const;
-  // cut_edit.cpp, overstretch_edit.cpp, tear_edit.cpp, partition_edit.cpp
+  // cut_edit.cpp, overstretch_edit.cpp, tear_edit.cpp, join_edit.cpp, partition_edit.cpp
   void make_cut(std::vector<CutEdges> edges, std::vector<double> u, CutReport& report);
   void make_tears();
+  void break_joins();
   void open_overstretched();
   void move_regions();
   /// Returns the region of a body that grows from `seed`, without cells that are deformed too far to change their model. u:

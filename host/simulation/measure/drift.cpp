@@ -25,6 +25,15 @@ void Drift::find_loose_pieces() {
   const Model& m = *model_;
   DisjointSets sets(static_cast<std::size_t>(m.slots));
   for_each_element(m, [&](const ElementView& e) { join(sets, e.slots); });
+  for (const SpringBatch& batch : m.links.springs) {
+    for (std::size_t s = 0; s < batch.size(); ++s) {
+      if (!batch.whole(s)) continue;
+      for (const std::int32_t p : batch.points[s]) {
+        join(sets, m.links.points.slots[p]);
+        sets.join(m.links.points.slots[batch.points[s][0]].front(), m.links.points.slots[p].front());
+      }
+    }
+  }
   for (const FlsmBatch& batch : m.flsm) join(sets, m.bodies[static_cast<std::size_t>(batch.body)].slot);
   std::vector<char> held(static_cast<std::size_t>(m.slots), false);
   for (const Constraint& c : m.constraints) held[static_cast<std::size_t>(sets.find(c.slot))] = true;

@@ -56,11 +56,33 @@ Energies internal(const Model& model, const std::vector<Vec3d>& u, const std::ve
   return out;
 }
 
+/// Potential energy of springs, or of those between slots that are all `chosen` [J].
+double spring_energy(const Model& model, const std::vector<Vec3d>& u, const std::vector<char>* chosen) {
+  const LinkPoints& points = model.links.points;
+  const auto counts = [&](std::int32_t p) {
+    for (std::size_t a = 0; a < 8; ++a) {
+      if (points.weights[p][a] != 0 && chosen != nullptr && (*chosen)[points.slots[p][a]] == 0) return false;
+    }
+    return true;
+  };
+  const auto moved = [&](std::int32_t slot) { return u[slot]; };
+  double sum = 0;
+  for (const SpringBatch& b : model.links.springs) {
+    for (std::size_t s = 0; s < b.size(); ++s) {
+      const auto [from, to] = b.points[s];
+      if (!b.whole(s) || !counts(from) || !counts(to)) continue;
+      sum += spring_state(b.law, b.parameters[s], elongation(points, b, s, moved)).energy;
+    }
+  }
+  return sum;
+}
+
 }  // namespace
 
 Energies energies_among(const Model& model, const std::vector<Vec3d>& u, const std::vector<Vec3d>& v,
                         const std::vector<char>& chosen) {
   Energies out = internal(model, u, &chosen);
+  out.strain += spring_energy(model, u, &chosen);
   for (std::size_t s = 0; s < model.mass.size(); ++s) {
     if (chosen[s] != 0) out.kinetic += model.mass[s] / 2 * vector_of(v[s]).squaredNorm();
   }
@@ -69,6 +91,7 @@ Energies energies_among(const Model& model, const std::vector<Vec3d>& u, const s
 
 Energies energies(const Model& model, const std::vector<Vec3d>& u, const std::vector<Vec3d>& v, const DeadLoads& loads) {
   Energies out = internal(model, u, nullptr);
+  out.strain += spring_energy(model, u, nullptr);
   const Vector3d gravity = vector_of(loads.gravity);
   for (std::size_t s = 0; s < model.mass.size(); ++s) {
     if (!(model.mass[s] > 0)) continue;

@@ -12,9 +12,7 @@
 #include "simulation/step/host_loads.h"
 
 namespace pliant {
-namespace {
 
-/// Loads `model` completely, with the state in `snapshot`.
 void load_with_state(RunContext& run, std::shared_ptr<const Model> model, const Snapshot& snapshot) {
   Program program = build_program(*model, {run.scene.integrator, run.settings.batch_steps});
   Program surface = surface_program(model->surface, program);
@@ -22,8 +20,6 @@ void load_with_state(RunContext& run, std::shared_ptr<const Model> model, const 
   write_buffers(snapshot, run.loaded);
   run.place_surface();
 }
-
-}  // namespace
 
 void load_ballast(RunContext& run, std::vector<NodeInertia> ballast) {
   const std::shared_ptr<const Model> old = run.loaded.shared_model();

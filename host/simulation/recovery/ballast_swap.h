@@ -10,4 +10,7 @@ namespace pliant {
 /// so that no energy is added. Throws what Backend::load throws and then changes nothing.
 void load_ballast(RunContext& run, std::vector<NodeInertia> ballast);
 
+/// Loads `model`, which has the nodes of the present one, with the state in `snapshot`.
+void load_with_state(RunContext& run, std::shared_ptr<const Model> model, const Snapshot& snapshot);
+
 }  // namespace pliant

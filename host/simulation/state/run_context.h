@@ -14,6 +14,7 @@ struct RunSettings {
   std::int32_t batch_steps = 64;  ///< maximum number of steps between two reads of the fault flags
   bool automatic = false;         ///< Pliant chooses the step size
   bool tears = false;             ///< a material of the scene has a toughness
+  bool breaks = false;            ///< a join of the scene can break
   double first_dt = 0;            ///< initial step size [s]
   std::int64_t blade_steps = 0;   ///< steps between two updates of the scene's blades; 0: no blades
   double curves_end = 0;          ///< time after which all loads are constant [s]
@@ -21,7 +22,7 @@ struct RunSettings {
   double displacement_grid = 0;   ///< smaller displacements are rounded to multiples of 2^-22 of this [m]; a power of two
 };
 
-inline constexpr std::int64_t kTearSteps = 16;   ///< steps between two checks for breaking faces
+inline constexpr std::int64_t kTearSteps = 16;   ///< steps between two checks for breaking faces and joins
 inline constexpr std::int64_t kRelaxEvery = 32;  ///< steps between two updates of dynamic relaxation
 
 /// Returns the number of finite-element steps per shape-matching step at a slot.

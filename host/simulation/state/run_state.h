@@ -30,10 +30,11 @@ struct RunState {
       focus;  ///< position of the focus set by the host [m], "tool" in checkpoints and hashes; empty: on its path
   std::map<std::string, ToolDrive> driven;  ///< tools that the host moves off their paths
   ContactLook look;
-  std::int64_t opened = 0;            ///< number of edges split because they were overstretched
-  std::int64_t topology_version = 0;  ///< number of edits that changed elements
-  ToolChanges tools;                  ///< tools added, removed or parked by the host
-  ChangedParameters changed;          ///< parameters that have changed
+  std::int64_t opened = 0;                        ///< number of edges split because they were overstretched
+  std::int64_t topology_version = 0;              ///< number of edits that changed elements
+  ToolChanges tools;                              ///< tools added, removed or parked by the host
+  ChangedParameters changed;                      ///< parameters that have changed
+  std::vector<std::vector<std::int32_t>> broken;  ///< per entry of Scene::joins its broken springs, ascending; empty: none
 };
 
 // Visitor: calls v(name, member) for every member in this order, as the visitors of the parts do. v.last() writes nothing for
@@ -48,6 +49,7 @@ void visit(V& v, RunState& s) {
   v.last("tools", s.tools);
   v.last("given", s.tools.given);
   v.last("changed", s.changed);
+  v.last("broken", s.broken);
 }
 
 /// Serializes the state, identically on every machine: names, and values as eight little-endian bytes.

@@ -101,6 +101,8 @@ std::vector<ModelPart> parts_of(const Scene& scene, const RunSettings& settings,
   }
   part("tools");
   for (const ContactTool& tool : scene.tools) add(tool.name, tool.path);
+  if (!scene.joins.empty()) part("joins");
+  for (const Join& join : scene.joins) add(join.break_stretch, join.break_force);
   if (!scene.changes.empty()) part("changes");
   for (const SceneChange& change : scene.changes) add(change.time, change.text);
   part("what the solver derives from the scene");

@@ -143,6 +143,7 @@ double held_step(const FlsmBatch& b, const Model& model, double elements) {
 }  // namespace
 
 bool has_elements(const Model& model) {
+  if (!model.links.empty()) return true;
   return std::any_of(model.bodies.begin(), model.bodies.end(), [](const ModelBody& b) { return b.operational_elements > 0; });
 }
 

@@ -52,6 +52,13 @@ double stable_step(const RunContext& run, double central) {
     d.least_time = std::min(d.least_time, batch.material.viscous_time());
     d.most_time = std::max(d.most_time, batch.material.viscous_time());
   }
+  for (const SpringBatch& batch : model.links.springs) {
+    for (std::size_t s = 0; s < batch.size(); ++s) {
+      const double time = batch.damper[s] / rest_stiffness(batch, s);
+      d.least_time = std::min(d.least_time, time);
+      d.most_time = std::max(d.most_time, time);
+    }
+  }
   return integrator_info(run.scene.integrator).stable_step(central, d);
 }
 

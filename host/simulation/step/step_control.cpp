@@ -84,7 +84,8 @@ double StepControl::estimate(int iterations) {
 bool StepControl::on_grid(std::int64_t step) const {
   const RunSettings& s = run_.settings;
   return run_.begins_after(step, s.batch_steps) || adapts_at(step) ||
-         (s.blade_steps > 0 && run_.begins_after(step, s.blade_steps)) || (s.tears && run_.begins_after(step, kTearSteps)) ||
+         (s.blade_steps > 0 && run_.begins_after(step, s.blade_steps)) ||
+         ((s.tears || s.breaks) && run_.begins_after(step, kTearSteps)) ||
          (run_.scene.relaxation.enabled && run_.begins_after(step, kRelaxEvery)) || changes_at(step);
 }
 
