@@ -52,13 +52,15 @@ class SceneRun {
   }
 
   /// Whether what makes this scene worth recording has happened: it was cut, tools touched it, tissue touched tissue,
-  /// parameters changed.
+  /// parameters changed, joins broke.
   [[nodiscard]] bool eventful() const {
     const Scene& scene = simulation_.scene();
     const bool edited = scene.blades.empty() || simulation_.topology_version() > 0;
     const bool torn = !EditedBodies::tears(scene) || simulation_.topology_version() > 0;
     const bool changed = scene.changes.empty() || simulation_.state().changed.done > 0;
-    return edited && torn && changed && touched_.size() == scene.tools.size() && (!scene.contact || met_);
+    const auto breaks = [](const Join& j) { return j.break_stretch > 0 || j.break_force > 0; };
+    const bool joined = std::none_of(scene.joins.begin(), scene.joins.end(), breaks) || !simulation_.state().broken.empty();
+    return edited && torn && changed && joined && touched_.size() == scene.tools.size() && (!scene.contact || met_);
   }
 
   /// Past 200 steps and the first of each event, on a multiple of 100 steps.

@@ -132,8 +132,9 @@ void ProgramBuilder::add_springs(const SpringBatch& b, std::size_t index, std::i
       add(make_reals(fmt::format("spring_data/{}", index), BufferType::real, PLIANT_SPRING_PLANES * count, BufferRole::constant,
                      "[tiles][8][16]", "m, N/m", "model", spring_numbers(b, model_.links.points, count)));
   std::vector<double> curve = curve_numbers(b.law);
-  const auto segments = static_cast<std::int32_t>(curve.size() / 3);
-  const auto curve_id = add(make_reals(fmt::format("spring_curve/{}", index), BufferType::real, curve.size(),
+  const std::size_t curve_size = curve.size();
+  const auto segments = static_cast<std::int32_t>(curve_size / 3);
+  const auto curve_id = add(make_reals(fmt::format("spring_curve/{}", index), BufferType::real, curve_size,
                                        BufferRole::constant, "[segments][3]", "m, N, N/m", "model", std::move(curve)));
   program_.step.push_back(
       {"spring_force",
