@@ -39,7 +39,7 @@ constexpr Lacking kTable[]{
      "integrator of this name", "\"increment\", central differences, which these are as well"},
     {"integrator", "rk2 rk4 rungekutta", "integrator of several stages", "\"increment\", of second order"},
     {"integrator", "euler expliciteuler", "integrator of this name", "\"forward-euler\", which is explicit Euler"},
-    {"model/type", "xpbd pbd massspring springs projectivedynamics", "model of springs or positions",
+    {"model/type", "xpbd pbd springs projectivedynamics", "model of springs or positions",
      "\"flsm\", shape matching, or \"tled\", finite elements"},
     {"model/type", "fem finiteelements nonlinear elements meshless mpm sph efg modal reduced", "model of this name",
      "\"tled\", finite elements with the total Lagrangian formulation"},

@@ -137,7 +137,7 @@ TEST(Change, WhatCannotChangeIsRefusedWithOneMessage) {
   says(R"({"body": "liver", "inclusion": 1, "material": {"young": 5}})", "from 0 to 0");
   says(R"({"body": "rest", "inclusion": 0, "material": {"young": 5}})", "the body has none");
   says(R"({"body": "liver", "inclusion": 0})", "without a \"material\"");
-  says(R"({"body": "liver", "model": {"alpha": 0.2}})", "finite elements alone");
+  says(R"({"body": "liver", "model": {"alpha": 0.2}})", "without shape matching");
   says(R"({"body": "rest", "model": {"type": "flsm"}})", "began with");
   says(R"({"body": "rest", "model": {"alpha": 2}})", "alpha");
   says(R"({"body": "liver", "fixed": [{"all": true, "axes": "x"}]})", "in all directions");

@@ -98,7 +98,7 @@ const std::vector<Case> values{
      "/bodies/0/element: got \"hex9\", expected one of tet4, tet4anp, hex8, hex8full (did you mean \"hex8\"?)"},
     {"/bodies/0/element", "8", "/bodies/0/element: got 8, expected one of tet4"},
     {"/bodies/0/model", "{\"type\": \"tlde\"}",
-     "/bodies/0/model/type: got \"tlde\", expected one of tled, hybrid, flsm (did you mean \"tled\"?)"},
+     "/bodies/0/model/type: got \"tlde\", expected one of tled, hybrid, flsm, mass-spring (did you mean \"tled\"?)"},
     {"/bodies/0/model", "{}", "/bodies/0/model: got no \"type\", expected"},
     {"/bodies/0/velocity", "null", "/bodies/0/velocity: got null, expected three numbers"},
 };

@@ -148,9 +148,9 @@ TEST(Model, ValuesOutOfRangeAreNamed) {
   const std::vector<Case> cases{
       {R"("hybrid")",
        R"(/bodies/0/model: got "hybrid", expected an object with the keys type, ratio, seed, follow, region, beta)"},
-      {R"({})", R"(/bodies/0/model: got no "type", expected one of tled, hybrid, flsm)"},
+      {R"({})", R"(/bodies/0/model: got no "type", expected one of tled, hybrid, flsm, mass-spring)"},
       {R"({"type": "hybird"})",
-       R"(/bodies/0/model/type: got "hybird", expected one of tled, hybrid, flsm (did you mean "hybrid"?))"},
+       R"(/bodies/0/model/type: got "hybird", expected one of tled, hybrid, flsm, mass-spring (did you mean "hybrid"?))"},
       {R"({"type": "hybrid", "ratio": 1.01})", "/bodies/0/model/ratio: got 1.01, expected a number with 0 <= ratio <= 1"},
       {R"({"type": "hybrid", "ratio": -0.5})", "/bodies/0/model/ratio: got -0.5, expected a number with 0 <= ratio <= 1"},
       {R"({"type": "hybrid", "ratio": "0.4"})", R"(/bodies/0/model/ratio: got "0.4", expected a number with 0 <= ratio)"},
@@ -208,7 +208,7 @@ TEST(Model, ValuesOutOfRangeAreNamed) {
 TEST(Model, UnknownKeysSuggestTheNearest) {
   expect_refused(with_model(R"({"type": "hybrid", "ration": 0.4})"),
                  R"(/bodies/0/model: got the unknown key "ration", expected one of type, ratio, seed, follow, region, )"
-                 R"(beta, substeps, goals, coupling, width, damping, cut, alpha, stiffness (did you mean "ratio"?))");
+                 R"(beta, substeps, goals, coupling, width, damping, cut, alpha, stiffness, spring (did you mean "ratio"?))");
   expect_refused(with_model(R"({"type": "flsm", "stiffness": {"yuong": 1}})"),
                  R"(/bodies/0/model/stiffness: got the unknown key "yuong", expected one of young (did you mean "young"?))");
   expect_refused(patched(R"({"focus": {"paths": []}})"),
@@ -257,7 +257,8 @@ TEST(Model, KeysThatExcludeEachOther) {
 TEST(Model, ShapeMatchingNeedsALattice) {
   for (const std::string type : {"hybrid", "flsm"}) {
     const std::string body = R"({"surface": null, "lattice": null, "mesh": "a.msh", "model": {"type": ")" + type + "\"}}";
-    expect_refused(patched("{}", body), R"(/bodies/0/model/type: got ")" + type + R"(", expected tled beside a volume mesh )" +
+    expect_refused(patched("{}", body), R"(/bodies/0/model/type: got ")" + type +
+                                            R"(", expected tled or mass-spring beside a volume mesh )" +
                                             R"((shape matching needs a lattice: give a "surface" instead of the "mesh"))");
   }
   const std::string tled = R"({"surface": null, "lattice": null, "mesh": "a.msh", "model": {"type": "tled"}})";

@@ -59,7 +59,9 @@ TEST(SceneSprings, EachMistakeHasOneMessage) {
     scene[Json::json_pointer(m.pointer)] = Json::parse(m.value);
     const std::string expected = std::string("dir/s.json: ") + m.expected, got = model_test::message(scene.dump());
     EXPECT_EQ(got.substr(0, expected.size()), expected) << m.pointer << " = " << m.value << "\n" << got;
-    if (m.schema_sees) EXPECT_FALSE(schema().findings(scene).empty()) << m.pointer << " = " << m.value;
+    if (m.schema_sees) {
+      EXPECT_FALSE(schema().findings(scene).empty()) << m.pointer << " = " << m.value;
+    }
   }
 }
 
