@@ -6,7 +6,7 @@ namespace pliant {
 
 /// Adds the springs of a mass-spring body along the edges of its tetrahedra. A stiffness, damper or force that the scene gives
 /// belongs to an uncut edge: each tetrahedron at it has a share by its volume, a copy of a cut one times its fill, so that the
-/// springs of both sides add up to it. `auto`: k = E sum of V / l^2 over the tetrahedra (Van Gelder 1998, equation 2).
+/// springs of both sides add up to it. `auto`: k = E sum of V / l^2 over the tetrahedra (Van Gelder 1998).
 void add_mass_springs(const Body& body, std::int32_t b, const NodeNumbering& draft, Model& model);
 
 /// Adds the springs of Scene::joins between the nodes that the bodies had before cuts, without those that are broken. Throws
