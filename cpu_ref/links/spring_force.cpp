@@ -55,8 +55,10 @@ void spring_force(Range range, const Scalar* link_u, const Scalar* link_w, const
       const Scalar length = std::sqrt(std::fma(dz, dz, std::fma(dy, dy, dx * dx)));
       const Scalar squares = std::fma(u[2][s], z + dz, std::fma(u[1][s], y + dy, u[0][s] * (x + dx))) + number(4);
       const Scalar both = length + number(3);
-      const Scalar e = both > Scalar(0) ? squares / both : Scalar(0);
-      const Scalar inverse = length > Scalar(0) ? Scalar(1) / length : Scalar(0);
+      // Divided first and chosen then, which a compiler can do for several springs at once.
+      const Scalar ratio = squares / both, reciprocal = Scalar(1) / length;
+      const Scalar e = both > Scalar(0) ? ratio : Scalar(0);
+      const Scalar inverse = length > Scalar(0) ? reciprocal : Scalar(0);
       Scalar force = spring_law_force<Law>(e, number(5), number(6), spring_curve, segments);
       if constexpr (Viscous) {
         const Scalar rate = (std::fma(w[2][s], dz, std::fma(w[1][s], dy, w[0][s] * dx)) * inverse) / step_params[0];
