@@ -30,6 +30,7 @@
   ROW(tled_hex8_force) \
   ROW(tled_hex8full_force) \
   ROW(tled_hex8_brick_force) \
+  ROW(membrane_force) \
   ROW(node_update) \
   ROW(brick_update) \
   ROW(node_prescribe) \

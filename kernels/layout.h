@@ -29,6 +29,8 @@
 #define PLIANT_TET_FORCE_PLANES 12      // 4 corners x 3 components [N]
 #define PLIANT_HEX_FORCE_PLANES 24      // 8 corners x 3 components [N]
 #define PLIANT_SPRING_PLANES 8          // see spring_force.cl
+#define PLIANT_MEMBRANE_DATA_PLANES 10  // unit tangents (6) [1], dN_1/dX_1, dN_1/dX_2, dN_2/dX_2 [1/m], volume [m^3]
+#define PLIANT_MEMBRANE_FORCE_PLANES 9  // 3 corners x 3 components [N]
 
 #define PLIANT_FAULT_SUMMARY 4  // numbers written by each of the 256 work-items of fault_reduce
 
