@@ -13,7 +13,7 @@ namespace pliant {
 struct Membrane {
   double thickness = 0;   ///< [m]
   double young = 0;       ///< [Pa]
-  double poisson = 0;     ///< 0 <= nu <= 0.5: at 0.5 the plane law is that of an incompressible material
+  double poisson = 0.5;   ///< 0 <= nu <= 0.5: at 0.5 the plane law is that of an incompressible material
   double density = 1000;  ///< [kg/m^3]
   friend bool operator==(const Membrane&, const Membrane&) = default;
 

@@ -12,6 +12,14 @@ void describe_lattice(V&& v, S&& s) {
 }
 
 template <class V, class S>
+void describe_membrane(V&& v, S&& s) {
+  v(s.thickness, required({"thickness", above(0), "m", "0.0001", "thickness at rest"}));
+  v(s.young, required({"young", above(0), "Pa", "8e6", "Young's modulus"}));
+  v(s.poisson, {"poisson", from_to(0, 0.5), "", "0.5", "Poisson's ratio; 0.5: incompressible"});
+  v(s.density, {"density", at_least(0), "kg/m^3", "1000", "density at rest, in addition to the mass of the body"});
+}
+
+template <class V, class S>
 void describe_body(V&& v, S&& s) {
   v(s.scale, {"scale", above(0), "", "0.001", "factor on the coordinates of the file"});
   v(s.translate, {"translate", any, "m", "[0, 0.1, 0]", "shift after scaling"});

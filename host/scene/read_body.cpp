@@ -93,6 +93,11 @@ Body read_body(const Reader& body, const fs::path& folder, std::size_t index) {
   b.material = read_material(material, frame.mesh.get());
   if (b.model.matched) b.model.young = b.material.moduli.young();
   check_pressure_law(material, b, b.material);
+  if (body.has("membrane")) {
+    const Reader membrane = body.at("membrane");
+    membrane.expect_object("membrane");
+    describe_membrane(ReadKeys{membrane}, b.membrane.emplace());
+  }
   read_entries(body, "inclusions", "inclusion", Selected::elements, frame, b.inclusions,
                [&](const Reader& entry, Inclusion& out) {
                  const Reader other = entry.at("material", "the material of the inclusion");

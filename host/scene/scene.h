@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "elements/element.h"
+#include "elements/membrane.h"
 #include "integrators/integrator.h"
 #include "material/material.h"
 #include "scene/blade.h"
@@ -103,6 +104,7 @@ struct Body {
   DeformationModel model;
   Material material;
   std::vector<Inclusion> inclusions;
+  std::optional<Membrane> membrane;  ///< on its whole surface
   std::vector<Fixed> fixed;
   std::vector<Prescribed> prescribed;
   std::vector<Force> forces;

@@ -234,6 +234,7 @@ OrderedJson body_json(const B& b, const fs::path& file) {
   }
   describe_body(WriteKeys{body}, b);
   body["material"] = material_json(b.material);
+  if (b.membrane) describe_membrane(WriteKeys{body["membrane"]}, *b.membrane);
   if (text_of(model_words(), b.model.type) != to_string(ModelType::tled)) body["model"] = model_json(b.model);
   add_conditions(body, b, file);
   return body;

@@ -72,6 +72,14 @@ struct ModelSpec {
   int substeps = 1;             ///< hybrid: finite-element steps per step of shape matching
 };
 
+/// A thin elastic layer on the whole surface of a body, as the capsule of an organ; it does not resist bending.
+struct MembraneSpec {
+  double thickness = 0;   ///< [m]
+  double young = 0;       ///< Young's modulus [Pa]
+  double poisson = 0.5;   ///< 0 to 0.5; 0.5: incompressible
+  double density = 1000;  ///< [kg/m^3]
+};
+
 /// One body: shape, material, model, boundary conditions and loads.
 struct BodySpec {
   std::string name = "body";               ///< unique within the scene
@@ -85,6 +93,7 @@ struct BodySpec {
   std::string element = "hex8";            ///< tet4, tet4anp, hex8 or hex8full
   MaterialSpec material;                   ///< material outside the inclusions
   ModelSpec model;                         ///< finite elements, shape matching or both
+  std::optional<MembraneSpec> membrane;    ///< absent: none
   std::vector<InclusionSpec> inclusions;   ///< parts with a different material
   std::vector<FixedSpec> fixed;            ///< fixed nodes
   std::vector<PrescribedSpec> prescribed;  ///< nodes with prescribed motion

@@ -144,6 +144,7 @@ TEST(Tables, SchemaHasTheLawsAndTheWordsOfTheCode) {
   describe_pace(keys("probe_every"), SceneProbes());
   describe_body(keys("body"), Body());
   describe_lattice(keys("lattice"), LatticeSpec());
+  describe_membrane(keys("membrane"), Membrane());
   describe_elastic(keys("material"), ElasticConstants());
   describe_material(keys("material"), Material());
   describe_friction(keys("tissue_contact"), TissueContact());
@@ -232,6 +233,7 @@ TEST(Tables, ScenesDocumentHasTheLawsAndElementsOfTheCode) {
   describe_place(DocumentRows{text, "\n`probes`, each"}, SceneProbe());
   describe_body(body, Body());
   describe_lattice(DocumentRows{text, "`lattice`, exactly"}, LatticeSpec());
+  describe_membrane(DocumentRows{text, "`membrane`, a thin"}, Membrane());
   describe_elastic(material, ElasticConstants());
   describe_material(material, Material());
   describe_tool(DocumentRows{text, "`tools`, at most 30"}, ContactTool());
