@@ -131,6 +131,10 @@ class Info {
       json_["springs"].push_back({{"what", b.label}, {"law", word_of(spring_law_words(), b.law.law)}, {"springs", b.size()}});
       line(fmt::format("{}: {} springs, {}", b.label, b.size(), word_of(spring_law_words(), b.law.law)));
     }
+    for (const MembraneBatch& b : model_.links.membranes) {
+      json_["membranes"].push_back({{"what", b.label}, {"triangles", b.size()}, {"thickness", b.law.thickness}});
+      line(fmt::format("{}: {} triangles", b.label, b.size()));
+    }
   }
 
   /// Number of nodes of each entry of `fixed` and `prescribed`: a body with too few fixed nodes swings.

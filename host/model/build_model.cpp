@@ -13,6 +13,7 @@
 #include "model/elements/element_materials.h"
 #include "model/elements/least_fill.h"
 #include "model/links/build_links.h"
+#include "model/links/membranes.h"
 #include "model/matching/flsm.h"
 #include "model/model.h"
 #include "model/nodes/boundary_conditions.h"
@@ -301,7 +302,7 @@ Model build_elements(const Scene& scene, std::span<const BodyMesh* const> solids
     told_with_file(scene, [&] { add_initial(body, model.bodies[i], model); });
   }
   add_joins(scene, model);
-  note_link_bounds(model);
+  if (!has_membranes(scene)) note_link_bounds(model);
   for (FlsmBatch& batch : model.flsm) {
     weigh(batch, model.mass);
     if (model.shortest == 0 || batch.spacing < model.shortest) model.shortest = batch.spacing;
@@ -312,6 +313,7 @@ Model build_elements(const Scene& scene, std::span<const BodyMesh* const> solids
 Model build_model(const Scene& scene, std::span<const BodyMesh* const> solids) {
   Model model = build_elements(scene, solids);
   add_surfaces(solids, model);
+  add_membranes(scene, model);
   add_boundary_conditions(scene, model);
   return model;
 }

@@ -135,6 +135,7 @@ class ProgramBuilder {
   void add_links();
   void add_link_points();
   void add_springs(const SpringBatch& b, std::size_t index, std::int32_t base, LinkForces& forces);
+  void add_membrane(std::size_t index, std::int32_t base, LinkForces& forces);
   void add_link_gather(const LinkForces& forces, std::int32_t zero);
   /// (slot, position in corner_force) for the corners of list elements at brick nodes, ascending.
   [[nodiscard]] std::vector<std::pair<std::int32_t, std::int32_t>> brick_corners() const;

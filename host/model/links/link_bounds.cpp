@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "model/links/build_links.h"
+#include "model/links/membranes.h"
 
 namespace pliant {
 namespace {
@@ -28,7 +29,13 @@ SlotStiffness slot_stiffness(const Model& model) {
       }
     }
   }
+  add_membrane_stiffness(model, out.sum);
   return out;
+}
+
+/// The label of whatever links a slot: springs, or else a membrane.
+const std::string& label_of(const Model& model, const SlotStiffness& stiffness, std::size_t slot) {
+  return stiffness.label[slot] != nullptr ? *stiffness.label[slot] : model.links.membranes.front().label;
 }
 
 /// Whether finite elements move each slot.
@@ -64,7 +71,7 @@ void note_link_bounds(Model& model) {
     const double bound = 2 / std::sqrt(stiffness.sum[s] / model.mass[s] + (elements[s] != 0 ? of_elements : 0));
     if (model.element_bound > 0 && bound >= model.element_bound) continue;
     model.element_bound = bound;
-    model.bound_element = *stiffness.label[s];
+    model.bound_element = label_of(model, stiffness, s);
   }
 }
 

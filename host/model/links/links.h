@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "elements/membrane.h"
 #include "geometry/vec.h"
 #include "scene/spring.h"
 
@@ -50,10 +51,21 @@ struct SpringBatch {
   [[nodiscard]] SpringBatch without_broken() const;
 };
 
+/// The triangles of one body's membrane.
+struct MembraneBatch {
+  Membrane law;
+  std::int32_t body = -1;
+  std::string label;                                ///< for reports and messages
+  std::vector<std::array<std::int32_t, 3>> points;  ///< [triangles] of LinkPoints
+  std::vector<Membrane::Record> records;            ///< [triangles]
+  [[nodiscard]] std::size_t size() const { return points.size(); }
+};
+
 /// All links of a Model.
 struct Links {
   LinkPoints points;
   std::vector<SpringBatch> springs;
+  std::vector<MembraneBatch> membranes;
   [[nodiscard]] bool empty() const { return points.size() == 0; }
 };
 

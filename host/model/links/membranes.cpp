@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "geometry/vec.h"
+#include "model/links/build_links.h"
 #include "pliant/error.h"
 
 namespace pliant {
@@ -44,7 +45,8 @@ void check_edges(const Scene& scene, const Body& body, const ModelSurface& surfa
 /// One body's membrane, from the triangles of its surface.
 class Skin {
  public:
-  Skin(const Scene& scene, std::size_t body, Model& model) : model_(model), out_{*scene.bodies[body].membrane, {}, {}, {}, {}} {
+  Skin(const Scene& scene, std::size_t body, Model& model) : model_(model) {
+    out_.law = *scene.bodies[body].membrane;
     out_.body = static_cast<std::int32_t>(body);
     out_.label = model.bodies[body].name + ": membrane";
     const ModelBody& own = model.bodies[body];
@@ -104,11 +106,13 @@ bool has_membranes(const Scene& scene) {
 }
 
 void add_membranes(const Scene& scene, Model& model) {
+  if (!has_membranes(scene)) return;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     if (!scene.bodies[b].membrane) continue;
     MembraneBatch batch = Skin(scene, b, model).take();
     if (batch.size() > 0) model.links.membranes.push_back(std::move(batch));
   }
+  note_link_bounds(model);
 }
 
 void add_membrane_stiffness(const Model& model, std::vector<double>& sum) {

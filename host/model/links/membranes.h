@@ -4,9 +4,9 @@
 
 namespace pliant {
 
-/// Adds the membranes of all bodies to the links of a model that has its surfaces: triangles between embedded points, without
-/// those on cuts and without slivers, their masses, and their stiffness. Throws Error (bad_input) where more than two
-/// triangles of a membrane meet at an edge, or where a body has no triangles.
+/// Adds the membranes of all bodies to the links of a model that has its surfaces, if there are any: triangles between embedded
+/// points, without those on cuts and without slivers, their masses, and their stiffness. Throws Error (bad_input) where more
+/// than two triangles of a membrane meet at an edge, or where a body has no triangles.
 void add_membranes(const Scene& scene, Model& model);
 
 bool has_membranes(const Scene& scene);

@@ -7,6 +7,7 @@
 #include "elements/eigenvalues.h"
 #include "material/response.h"
 #include "model/elements/each_element.h"
+#include "model/links/membranes.h"
 #include "model/nodes/boundary_conditions.h"
 
 namespace pliant {
@@ -98,6 +99,7 @@ std::vector<double> nodal_stiffness(const Model& model, const std::vector<double
     }
   });
   add_link_stiffness(model, u, wanted, sum);
+  add_membrane_stiffness(model, sum);
   return sum;
 }
 

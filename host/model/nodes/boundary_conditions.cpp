@@ -251,7 +251,8 @@ void reserve_forces(Model& model) {
 
 bool needs_surface(const Scene& scene) {
   return scene.interactive || !scene.tools.empty() || scene.contact.has_value() ||
-         std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& b) { return !b.pressures.empty(); });
+         std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                     [](const Body& b) { return !b.pressures.empty() || b.membrane; });
 }
 
 void add_boundary_conditions(const Scene& scene, Model& model) {

@@ -79,14 +79,19 @@ void ProgramBuilder::add_links() {
     whole.push_back(b.without_broken());
     numbers += 3 * padded(whole.back().size());
   }
+  for (const MembraneBatch& b : links.membranes) {
+    base.push_back(numbers);
+    numbers += PLIANT_MEMBRANE_FORCE_PLANES * padded(b.size());
+  }
   link_force_ = add(make_reals("link_force", BufferType::real, static_cast<std::size_t>(numbers) + 3 * PLIANT_TILE,
-                               BufferRole::scratch, "[tiles][points][3][16]", "N", "spring_force"));
+                               BufferRole::scratch, "[tiles][points][3][16]", "N", "spring_force, membrane_force"));
   program_.buffers[link_force_].fixed = 3 * PLIANT_TILE;  // zeros that pad the lists of link_gather
   add_link_points();
   LinkForces forces(links.points.size());
   for (std::size_t b = 0; b < whole.size(); ++b) {
     if (whole[b].size() > 0) add_springs(whole[b], b, base[b], forces);
   }
+  for (std::size_t m = 0; m < links.membranes.size(); ++m) add_membrane(m, base[whole.size() + m], forces);
   add_link_gather(forces, numbers);
 }
 

@@ -4,6 +4,7 @@
 #include <map>
 #include <utility>
 
+#include "model/links/membranes.h"
 #include "model/nodes/ballast.h"
 #include "model/nodes/boundary_conditions.h"
 #include "schedule/build_program.h"
@@ -50,6 +51,7 @@ void ModelSwap::run(const Scene& scene, std::vector<NodeOrigins> origins, const 
   if (first) {
     report_.model += clock_.lap();
     take_surfaces(solids, ready);
+    add_membranes(scene, *model_);
   }
   set_ballast(scene, *model_, ballast_);  // the last that can refuse a scene; nothing has changed so far
   try {

@@ -34,6 +34,14 @@ void Drift::find_loose_pieces() {
       }
     }
   }
+  for (const MembraneBatch& batch : m.links.membranes) {
+    for (const auto& triangle : batch.points) {
+      for (const std::int32_t p : triangle) {
+        join(sets, m.links.points.slots[p]);
+        sets.join(m.links.points.slots[triangle[0]].front(), m.links.points.slots[p].front());
+      }
+    }
+  }
   for (const FlsmBatch& batch : m.flsm) join(sets, m.bodies[static_cast<std::size_t>(batch.body)].slot);
   std::vector<char> held(static_cast<std::size_t>(m.slots), false);
   for (const Constraint& c : m.constraints) held[static_cast<std::size_t>(sets.find(c.slot))] = true;

@@ -56,15 +56,34 @@ Energies internal(const Model& model, const std::vector<Vec3d>& u, const std::ve
   return out;
 }
 
+/// Whether all slots of a point of links are `chosen`.
+bool point_counts(const LinkPoints& points, std::int32_t p, const std::vector<char>* chosen) {
+  for (std::size_t a = 0; a < 8; ++a) {
+    if (points.weights[p][a] != 0 && chosen != nullptr && (*chosen)[points.slots[p][a]] == 0) return false;
+  }
+  return true;
+}
+
+double membrane_energy(const Model& model, const std::vector<Vec3d>& u, const std::vector<char>* chosen) {
+  const LinkPoints& points = model.links.points;
+  const auto moved = [&](std::int32_t slot) { return u[slot]; };
+  double sum = 0;
+  for (const MembraneBatch& b : model.links.membranes) {
+    for (std::size_t t = 0; t < b.size(); ++t) {
+      const auto counts = [&](std::int32_t p) { return point_counts(points, p, chosen); };
+      if (!std::all_of(b.points[t].begin(), b.points[t].end(), counts)) continue;
+      Membrane::Corners corners{};
+      for (std::size_t a = 0; a < 3; ++a) corners[a] = points.value(b.points[t][a], moved);
+      sum += b.law.energy(b.records[t], corners);
+    }
+  }
+  return sum;
+}
+
 /// Potential energy of springs, or of those between slots that are all `chosen` [J].
 double spring_energy(const Model& model, const std::vector<Vec3d>& u, const std::vector<char>* chosen) {
   const LinkPoints& points = model.links.points;
-  const auto counts = [&](std::int32_t p) {
-    for (std::size_t a = 0; a < 8; ++a) {
-      if (points.weights[p][a] != 0 && chosen != nullptr && (*chosen)[points.slots[p][a]] == 0) return false;
-    }
-    return true;
-  };
+  const auto counts = [&](std::int32_t p) { return point_counts(points, p, chosen); };
   const auto moved = [&](std::int32_t slot) { return u[slot]; };
   double sum = 0;
   for (const SpringBatch& b : model.links.springs) {
@@ -82,7 +101,7 @@ double spring_energy(const Model& model, const std::vector<Vec3d>& u, const std:
 Energies energies_among(const Model& model, const std::vector<Vec3d>& u, const std::vector<Vec3d>& v,
                         const std::vector<char>& chosen) {
   Energies out = internal(model, u, &chosen);
-  out.strain += spring_energy(model, u, &chosen);
+  out.strain += spring_energy(model, u, &chosen) + membrane_energy(model, u, &chosen);
   for (std::size_t s = 0; s < model.mass.size(); ++s) {
     if (chosen[s] != 0) out.kinetic += model.mass[s] / 2 * vector_of(v[s]).squaredNorm();
   }
@@ -91,7 +110,7 @@ Energies energies_among(const Model& model, const std::vector<Vec3d>& u, const s
 
 Energies energies(const Model& model, const std::vector<Vec3d>& u, const std::vector<Vec3d>& v, const DeadLoads& loads) {
   Energies out = internal(model, u, nullptr);
-  out.strain += spring_energy(model, u, nullptr);
+  out.strain += spring_energy(model, u, nullptr) + membrane_energy(model, u, nullptr);
   const Vector3d gravity = vector_of(loads.gravity);
   for (std::size_t s = 0; s < model.mass.size(); ++s) {
     if (!(model.mass[s] > 0)) continue;
