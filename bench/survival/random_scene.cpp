@@ -55,6 +55,8 @@ class RandomScene {
     method(body);
     const bool tears = shape_.tets && body["element"] == "tet4" && dice_.chance(0.35);
     material(body, tears);
+    Dice skin(number_ ^ 0x7a3d71b9);
+    if (skin.chance(0.15)) body["membrane"] = membrane(skin);
     Json scene{{"format", "pliant-scene/1"}, {"name", fmt::format("survival {}", number_)}, {"duration", 2.0}};
     hold(body);
     const bool weight = dice_.chance(0.75);
@@ -147,6 +149,15 @@ class RandomScene {
     }
     if (tears) m["toughness"] = young_ * dice_.uniform(0.1, 0.8);
     body["material"] = m;
+  }
+
+  /// From a hundredth to ten times as stiff as the tissue within a thirtieth of the body.
+  [[nodiscard]] Json membrane(Dice& dice) const {
+    const double thickness = extent_ * dice.logarithmic(1e-4, 1e-2);
+    return {{"thickness", thickness},
+            {"young", young_ * extent_ / 30 / thickness * dice.logarithmic(0.01, 10)},
+            {"poisson", dice.uniform(0, 0.5)},
+            {"density", dice.uniform(0, 1500)}};
   }
 
   /// Parameters that change on the way: stiffer or softer up to ten times, other damping, gravity, region, or nothing holds it.
