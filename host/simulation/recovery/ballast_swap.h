@@ -1,8 +1,10 @@
 // Changes the added inertia (ballast) of nodes in a running simulation.
 #pragma once
+#include <memory>
 #include <vector>
 
 #include "simulation/state/run_context.h"
+#include "simulation/state/snapshot.h"
 
 namespace pliant {
 
