@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "simulation/state/pressed_blades.h"
 #include "simulation/state/run_state_parts.h"
 
 namespace pliant {
@@ -30,10 +31,11 @@ struct RunState {
       focus;  ///< position of the focus set by the host [m], "tool" in checkpoints and hashes; empty: on its path
   std::map<std::string, ToolDrive> driven;  ///< tools that the host moves off their paths
   ContactLook look;
-  std::int64_t opened = 0;            ///< number of edges split because they were overstretched
-  std::int64_t topology_version = 0;  ///< number of edits that changed elements
-  ToolChanges tools;                  ///< tools added, removed or parked by the host
-  ChangedParameters changed;          ///< parameters that have changed
+  std::int64_t opened = 0;                      ///< number of edges split because they were overstretched
+  std::int64_t topology_version = 0;            ///< number of edits that changed elements
+  ToolChanges tools;                            ///< tools added, removed or parked by the host
+  ChangedParameters changed;                    ///< parameters that have changed
+  std::map<std::string, PressedBlade> pressed;  ///< by name: the blades that cut by force
 };
 
 // Visitor: calls v(name, member) for every member in this order, as the visitors of the parts do. v.last() writes nothing for
@@ -48,6 +50,7 @@ void visit(V& v, RunState& s) {
   v.last("tools", s.tools);
   v.last("given", s.tools.given);
   v.last("changed", s.changed);
+  v.last("pressed", s.pressed);
 }
 
 /// Serializes the state, identically on every machine: names, and values as eight little-endian bytes.
