@@ -13,9 +13,10 @@ namespace {
 constexpr double kPerEdge = 2;  ///< samples per typical edge
 constexpr std::int32_t kMostSamples = 512;
 constexpr double kOffSurface = 0.25;  ///< a sample that cut nothing and is this far off has left [edges]
-constexpr double kOutOfCut = 0.5;     ///< one that has cut, beyond the way that it has cut [edges]
-constexpr double kSideways = 1;       ///< a front point that is this far beside the sample is no longer its own [edges]
-constexpr double kBeside = 1.5;       ///< what goes with the last sample that cuts, so that edges at a side are cut [edges]
+constexpr double kOutOfCut =
+    4;  ///< one that has cut, beyond the way that it has cut: until then it finds its cut again [edges]
+constexpr double kSideways = 1;  ///< a front point that is this far beside the sample is no longer its own [edges]
+constexpr double kBeside = 1.5;  ///< what goes with the last sample that cuts, so that edges at a side are cut [edges]
 constexpr double kBehind = 1, kAhead = 0.25;  ///< where a sample looks for a surface, besides its way [edges]
 constexpr double kFacing = -0.2;              ///< a surface whose normal is less against the edge than this is passed along
 constexpr double kTurns = 0.2;                ///< cosine up to which a moving edge in tissue keeps pressing forward
@@ -280,7 +281,7 @@ void BladeFronts::sweep(PressedBlade& blade, const Edge& edge, BodyCut& body, st
       FrontSample& s = blade.samples[i + k];
       const bool held = all.takes[i + k] == 1;
       if (held && s.advance == 0) continue;
-      if (held) weaken(blade, s, edge, body);
+      if (held) weaken(blade, s, edge);
       const double least = *std::min_element(now[k].weight.begin(), now[k].weight.end());
       s.body = static_cast<std::int32_t>(b);
       s.point = now[k];
@@ -294,8 +295,7 @@ void BladeFronts::sweep(PressedBlade& blade, const Edge& edge, BodyCut& body, st
 }
 
 /// Counts what a sample's way took. Tissue that has given way resists less: its integrity falls with the way.
-void BladeFronts::weaken(PressedBlade& blade, FrontSample& s, const Edge& edge, BodyCut& body) const {
-  static_cast<void>(body);
+void BladeFronts::weaken(PressedBlade& blade, FrontSample& s, const Edge& edge) {
   ++(s.limit > 0 ? blade.by_contact : blade.by_stress);
   blade.fracture += s.limit * s.advance;
   const double before = s.depth / (s.depth + kLostIn * edge.size);

@@ -41,7 +41,7 @@ class BladeFronts {
   void give_way(PressedBlade& blade, const Edge& edge, EditedBodies& bodies, std::vector<CutEdges>& edges);
   void sweep(PressedBlade& blade, const Edge& edge, BodyCut& body, std::size_t b, CutEdges& edges) const;
   void meet(PressedBlade& blade, const Edge& edge, EditedBodies& bodies, const std::vector<Vec3d>& surface);
-  void weaken(PressedBlade& blade, FrontSample& sample, const Edge& edge, BodyCut& body) const;
+  static void weaken(PressedBlade& blade, FrontSample& sample, const Edge& edge);
   [[nodiscard]] double limit(const Blade& blade, const FrontSample& sample, double length, EditedBodies& bodies);
   [[nodiscard]] const Material& material(std::size_t body, std::int32_t cell, EditedBodies& bodies);
 
