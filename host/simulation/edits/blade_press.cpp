@@ -36,7 +36,8 @@ void BladePress::start(const Model& model) {
   if (!cuts_by_force(run_.scene)) return;
   run_.settings.blade_edge = typical_edge(model);
   const double edge = run_.settings.blade_edge, widest = widest_body(model);
-  for (const Blade& blade : run_.scene.blades) {
+  for (std::size_t b = 0; b < run_.scene.blades.size(); ++b) {
+    const Blade& blade = run_.scene.blades[b];
     if (blade.cuts != BladeCuts::by_force) continue;
     if (2 * blade.edge > widest) {
       throw Error(
@@ -45,7 +46,7 @@ void BladePress::start(const Model& model) {
                       blade.name, blade.edge, widest / 2));
     }
     names_.push_back(blade.name);
-    blades_.push_back(&blade);
+    blades_.push_back(b);
     first_.push_back(first_.back() + static_cast<std::size_t>(sample_count(blade, edge)));
   }
   run_.settings.force_blades = static_cast<std::int32_t>(names_.size());
@@ -89,8 +90,8 @@ void BladePress::upload_poses(std::int32_t steps) {
   std::vector<double> pose;
   const auto last = static_cast<std::int64_t>(steps);
   for (std::int64_t row = -1; row < static_cast<std::int64_t>(rows); ++row) {
-    for (const Blade* blade : blades_) {
-      const BladeSegment at = blade->at(clock.time_at(clock.step + std::min(row, last)));
+    for (const std::size_t b : blades_) {
+      const BladeSegment at = run_.scene.blades[b].at(clock.time_at(clock.step + std::min(row, last)));
       poses_.push_back({at[0], vec::sub(at[1], at[0])});
       if (row < 0) continue;
       for (const Vec3d& v : poses_.back()) pose.insert(pose.end(), v.begin(), v.end());
@@ -126,7 +127,7 @@ BladePress::Numbers BladePress::numbers() const {
         std::copy(rest.begin(), rest.end(), data);
         std::copy(own.normal.begin(), own.normal.end(), data + 3);
         data[6] = s.limit;
-        data[7] = blades_[blade]->friction;
+        data[7] = run_.scene.blades[blades_[blade]].friction;
         data[8] = static_cast<double>(i - first_[blade]) / static_cast<double>(first_[blade + 1] - first_[blade] - 1);
         data[9] = static_cast<double>(blade);
         n.front[2 * i] = s.advance;

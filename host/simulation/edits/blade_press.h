@@ -45,7 +45,7 @@ class BladePress {
   RunContext& run_;
   const TopologyEdits& edits_;
   std::vector<std::string> names_;
-  std::vector<const Blade*> blades_;
+  std::vector<std::size_t> blades_;          ///< their places in Scene::blades, which a restored state replaces
   std::vector<std::size_t> first_;           ///< sample of each blade, and the number of all
   std::vector<std::array<Vec3d, 2>> poses_;  ///< first end and span, from the step before the batch on, [steps + 2][blades]
   std::vector<StepForce> step_forces_;
