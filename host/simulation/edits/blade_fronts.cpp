@@ -18,6 +18,7 @@ constexpr double kOutOfCut =
 constexpr double kSideways = 1;  ///< a front point that is this far beside the sample is no longer its own [edges]
 constexpr double kBeside = 1.5;  ///< what goes with the last sample that cuts, so that edges at a side are cut [edges]
 constexpr double kBehind = 1, kAhead = 0.25;  ///< where a sample looks for a surface, besides its way [edges]
+constexpr double kBefore = 0.1;               ///< above the surface the first sweep of a front begins [edges]
 constexpr double kFacing = -0.2;              ///< a surface whose normal is less against the edge than this is passed along
 constexpr double kTurns = 0.2;                ///< cosine up to which a moving edge in tissue keeps pressing forward
 constexpr double kLost = 0.5;                 ///< of the integrity is lost where tissue has given way ...
@@ -232,6 +233,10 @@ struct BladeFronts::Sweep {
       from[i] = until[i] = front_place(body, x, s.point);
       gap[i] = vec::dot(vec::sub(edge.x[i], from[i]), n) - s.advance;
       if (s.advance > 0) until[i] = vec::sub(edge.x[i], vec::mul(n, gap[i]));
+      if (s.advance > 0 && s.depth == 0) {  // edges in the surface, where the front stood, are crossed too
+        point[i] = {};
+        from[i] = vec::sub(from[i], vec::mul(n, kBefore * edge.size));
+      }
     }
     const auto reach = static_cast<std::ptrdiff_t>(std::ceil(kBeside * edge.size / edge.spacing));
     for (std::ptrdiff_t i = 0; i < std::ssize(takes); ++i) {
@@ -258,7 +263,7 @@ struct BladeFronts::Sweep {
       from[i] = front_place(body, x, s.point);
       if (lead.advance == 0) until[i] = from[i];
     } else {
-      from[i] = vec::sub(edge.x[i], vec::mul(blade.normal, gap + lead.advance));
+      from[i] = vec::sub(edge.x[i], vec::mul(blade.normal, gap + lead.advance + (lead.depth == 0 ? kBefore * edge.size : 0)));
     }
   }
 };
