@@ -17,6 +17,8 @@
   ROW(contact_settle) \
   ROW(contact_tool_sum) \
   ROW(contact_apply) \
+  ROW(blade_press) \
+  ROW(blade_apply) \
   ROW(touch_box) \
   ROW(touch_tree) \
   ROW(touch_pair) \

@@ -68,6 +68,7 @@ class RandomScene {
     const bool cuts = !tears && body["model"]["type"] != "flsm" && dice_.chance(0.5);
     if (cuts) scene["blades"] = blades();
     if (cuts && body["model"]["type"] == "hybrid" && late_.chance(0.5)) body["model"]["follow"] = "blade0";
+    if (cuts) press(scene["blades"], body["material"]);
     const bool has_tools = touch_.chance(0.5), touches = touch_.chance(0.4);
     if (has_tools || touches) {
       for (const char* key : {"substeps", "goals"}) body["model"].erase(key);  // refused
@@ -248,6 +249,23 @@ class RandomScene {
                                             row(end, vec::add(through, vec::mul(along, depth)))})}});
     }
     return list;
+  }
+
+  /// Makes some of the blades press until tissue gives way, at forces that dent it little or much.
+  void press(Json& blades, Json& material) {
+    Dice sharp(number_ ^ 0x5ca1be1);
+    if (!sharp.chance(0.3)) return;
+    material["toughness"] = young_ * sharp.logarithmic(0.3, 100);
+    for (Json& blade : blades) {
+      if (sharp.chance(0.2)) continue;
+      blade["cuts"] = "by-force";
+      blade["edge"] = extent_ * sharp.logarithmic(1e-3, 2e-2);
+      blade["friction"] = sharp.chance(0.5) ? 0.0 : sharp.uniform(0, 1);
+    }
+    if (!blades[0].contains("cuts")) {
+      blades[0]["cuts"] = "by-force";
+      blades[0]["edge"] = 0.005 * extent_;
+    }
   }
 
   /// Spheres, capsules, boxes and half spaces that stand beside the body or come towards it, up to two fifths of its size deep,

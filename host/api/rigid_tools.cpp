@@ -115,12 +115,32 @@ std::vector<ToolForce> RigidTools::forces() {
 
 std::vector<ForceSample> RigidTools::trace(const std::string& name, std::int64_t after) {
   const std::lock_guard lock(mutex_);
+  const auto blade = blades_.find(name);
+  if (blade != blades_.end() && !knows(name)) return blade->second.after(after);
   check_known(name);
   const auto found = traces_.find(name);
   return found == traces_.end() ? std::vector<ForceSample>() : found->second.after(after);
 }
 
+void RigidTools::record_blades(const Simulation& simulation) {
+  const BladePress& press = simulation.press();
+  if (press.names().empty()) return;
+  const std::lock_guard lock(mutex_);
+  for (auto& [name, trace] : blades_) trace.forget_after(simulation.step());
+  const std::vector<StepForce>& forces = press.step_forces();
+  const auto steps = static_cast<std::int64_t>(forces.size() / press.names().size());
+  for (std::size_t b = 0; b < press.names().size(); ++b) {
+    ForceTrace& trace = blades_[press.names()[b]];
+    for (std::int64_t s = 0; s < steps && press.batch_end() == simulation.step(); ++s) {
+      const StepForce& f = forces[static_cast<std::size_t>(s) * press.names().size() + b];
+      const std::int64_t step = simulation.step() - steps + s + 1;
+      trace.add({step, simulation.state().clock.time_at(step), f.force, f.torque});
+    }
+  }
+}
+
 void RigidTools::record(const Simulation& simulation) {
+  record_blades(simulation);
   const ToolContact& contact = simulation.contact();
   const std::vector<ContactTool>& tools = contact.tools();
   if (tools.empty()) return;
@@ -225,6 +245,8 @@ void RigidTools::renew(const Simulation& simulation, bool keep_requests) {
     held_back_ = false;
     given_.clear();
     traces_.clear();
+    blades_.clear();
+    for (const std::string& name : simulation.press().names()) blades_[name] = {};
     for (const auto& [name, given] : simulation.state().tools.given)
       given_[name] = std::make_shared<const GivenSurfaces>(given);
   }

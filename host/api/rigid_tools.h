@@ -49,6 +49,7 @@ class RigidTools {
   void renew(const Simulation& simulation, bool keep_requests = false);
 
  private:
+  void record_blades(const Simulation& simulation);
   enum class What { add, remove, park, unpark, place, drive, mesh };
   struct Request {
     What what = What::add;
@@ -78,6 +79,7 @@ class RigidTools {
   bool held_back_ = false;
   std::vector<ToolForce> forces_;
   std::map<std::string, ForceTrace> traces_;
+  std::map<std::string, ForceTrace> blades_;  ///< of blades that cut by force
 };
 
 }  // namespace pliant::api

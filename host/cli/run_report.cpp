@@ -39,11 +39,13 @@ class Report {
     add_mass(json);
     add_inversions(json);
     add_tools(s_, json);
+    add_blades(s_, json);
     const std::vector<std::string> inside = add_interpenetrations(s_, json);
     if (const auto created = r_.energy.created()) json["contact"]["energy_created"] = *created;
     if (!result_.diverged.empty()) json["diverged_step"] = result_.diverged_step;
     print_summary();
     for (std::size_t t = 0; t < s_.contact().tools().size(); ++t) out_.print(tool_line(s_, t));
+    for (std::size_t b = 0; b < s_.press().names().size(); ++b) out_.print(blade_line(s_, b));
     if (s_.scene().contact && s_.model().contact != nullptr) out_.print(tissue_line(s_));
     for (const std::string& line : inside) out_.print(line);
     if (r_.live != nullptr) {

@@ -54,6 +54,37 @@ void add_tools(const Simulation& simulation, nlohmann::ordered_json& json) {
                      {"penetration_in_cells", all == nullptr ? 0.0 : deepest / all->spacing}};
 }
 
+void add_blades(const Simulation& simulation, nlohmann::ordered_json& json) {
+  const std::vector<std::string>& names = simulation.press().names();
+  if (names.empty()) return;
+  json["blades"] = nlohmann::ordered_json::array();
+  for (std::size_t b = 0; b < names.size(); ++b) {
+    const StepForce now = simulation.press().last_force(b);
+    const auto found = simulation.state().pressed.find(names[b]);
+    const PressedBlade blade = found == simulation.state().pressed.end() ? PressedBlade{} : found->second;
+    json["blades"].push_back(
+        {{"name", names[b]},
+         {"force", now.force},
+         {"torque", now.torque},
+         {"max_force", blade.max_force},
+         {"work", blade.work},
+         {"fracture", blade.fracture},
+         {"gave_way", blade.first < 0 ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(blade.first)},
+         {"by_contact", blade.by_contact},
+         {"by_stress", blade.by_stress}});
+  }
+}
+
+std::string blade_line(const Simulation& simulation, std::size_t blade) {
+  const std::string& name = simulation.press().names()[blade];
+  const auto found = simulation.state().pressed.find(name);
+  if (found == simulation.state().pressed.end()) return fmt::format("blade {}: met nothing", name);
+  const PressedBlade& b = found->second;
+  const std::string first = b.first < 0 ? "tissue held" : fmt::format("tissue gave way at {:.4g} s", b.first);
+  return fmt::format("blade {}: force [{:.4g}] N, at most {:.4g} N; {}; did {:.4g} J, {:.4g} J of it in cutting", name,
+                     fmt::join(simulation.press().last_force(blade).force, ", "), b.max_force, first, b.work, b.fracture);
+}
+
 nlohmann::ordered_json interpenetration_json(const Interpenetration& found) {
   using Value = nlohmann::ordered_json;
   return {{"volume", found.volume},

@@ -64,6 +64,8 @@ struct Program {
   std::vector<Pass> status;  ///< once per batch: first fault into fault_summary, largest increment into increment_summary
   /// Values for Pass::active: contact points in tiles near something, and the nodes that they move.
   std::shared_ptr<std::int64_t> near_points, near_nodes;
+  /// The same for blades that cut by force: samples of their edges that have met material.
+  std::shared_ptr<std::int64_t> near_samples;
   [[nodiscard]] BufferId find(const std::string& name) const;  ///< -1 if absent
   BufferId add(Buffer buffer);                                 ///< appends a buffer and returns its id
   [[nodiscard]] Buffer& at(BufferId id) { return buffers.at(static_cast<std::size_t>(id - first)); }

@@ -21,6 +21,9 @@ struct Focus {
   [[nodiscard]] Vec3d position(double time) const;
 };
 
+/// What a blade cuts: all that it sweeps, or what gives way to the force of its edge (docs/cutting.md).
+enum class BladeCuts { always, by_force };
+
 /// A blade on a prescribed path: a segment that cuts the surface it sweeps.
 struct Blade {
   std::string name;
@@ -29,6 +32,10 @@ struct Blade {
   double start = -std::numeric_limits<double>::infinity();  ///< cutting starts here [s], but not before the path begins
   double end = std::numeric_limits<double>::infinity();     ///< cutting ends here [s], but not after the path ends
   std::string pointer;                                      ///< JSON pointer ("/blades/0")
+  BladeCuts cuts = BladeCuts::always;
+  double sharpness = 1;  ///< by force: kappa, the smaller the sharper
+  double edge = 0;       ///< by force: radius of the edge [m]
+  double friction = 0;   ///< by force: coefficient between the edge and tissue
   /// Returns both ends at a time [m]; constant outside the path.
   [[nodiscard]] std::array<Vec3d, 2> at(double time) const;
 };

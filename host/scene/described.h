@@ -125,6 +125,14 @@ void describe_blade(V&& v, S&& s) {
   v(s.start,
     {"start", any.absent_at(-kAlways), "s", "0.1", "it cuts from then on, while its path lasts", "first time of the path"});
   v(s.end, {"end", any.absent_at(kAlways), "s", "0.4", "it cuts until then, while its path lasts", "last time of the path"});
+  v(s.cuts, blade_cuts_words(),
+    {"cuts", any, "", "\"by-force\"",
+     "what it cuts: all that it sweeps over, or what gives way to the force of its edge "
+     "([cutting by force](cutting.md#cutting-by-force))"});
+  v(s.sharpness, {"sharpness", above(0).absent_at(1), "", "0.5",
+                  "kappa: tissue gives way at this share of its `toughness`; the smaller the sharper; only by force"});
+  v(s.edge, {"edge", above(0).absent_at(0), "m", "0.0002", "radius of the edge; required by force, refused otherwise"});
+  v(s.friction, {"friction", at_least(0).absent_at(0), "", "0.2", "between the edge and tissue; only by force"});
 }
 
 template <class V, class S>

@@ -179,6 +179,12 @@ const Words<Inverted>& inverted_words() {
   return words;
 }
 
+const Words<BladeCuts>& blade_cuts_words() {
+  static const Words<BladeCuts> words{{"always", BladeCuts::always, "all that it sweeps over"},
+                                      {"by-force", BladeCuts::by_force, "what gives way to the force of its edge"}};
+  return words;
+}
+
 const Words<ToolShape>& tool_shape_words() {
   static const Words<ToolShape> words{{"sphere", ToolShape::sphere, "about the origin"},
                                       {"capsule", ToolShape::capsule, "a segment with a radius"},

@@ -47,6 +47,7 @@ const Words<ElementKind>& element_words();
 const Words<Curve::Kind>& curve_words();
 const Words<Integrator>& integrator_words();
 const Words<Inverted>& inverted_words();
+const Words<BladeCuts>& blade_cuts_words();
 /// The shapes of tools, which are keys.
 const Words<ToolShape>& tool_shape_words();
 const Words<bool>& solver_words();

@@ -26,10 +26,26 @@ Blade read_blade(const Reader& blade, std::size_t index) {
   }
   describe_blade(ReadKeys{blade}, b);
   if (!(b.end > b.start)) blade.at("end").fail(fmt::format("a time after the start {}", b.start));
+  if (b.cuts == BladeCuts::by_force && b.edge == 0) {
+    static_cast<void>(blade.at("edge", "the radius of the edge in metres, because the blade cuts by force"));
+  }
+  for (const char* key : {"sharpness", "edge", "friction"}) {
+    if (b.cuts == BladeCuts::always && blade.has(key))
+      blade.at(key).fail(fmt::format("no {} of a blade that does not cut \"by-force\"", key));
+  }
   return b;
 }
 
+bool has_toughness(const Body& b) {
+  return b.material.toughness > 0 ||
+         std::any_of(b.inclusions.begin(), b.inclusions.end(), [](const Inclusion& i) { return i.material.toughness > 0; });
+}
+
 }  // namespace
+
+bool cuts_by_force(const Scene& scene) {
+  return std::any_of(scene.blades.begin(), scene.blades.end(), [](const Blade& b) { return b.cuts == BladeCuts::by_force; });
+}
 
 std::vector<Blade> read_blades(const Reader& blades) {
   const char* const expected = "a list of blades";
@@ -46,6 +62,12 @@ void check_blades(const Reader& top, const Scene& scene) {
   require_integrator(top, scene, &IntegratorInfo::edits, "the scene has blades");
   if (scene.relaxation.enabled) top.at("relaxation").fail("false, because the scene has blades");
   const std::vector<Reader> bodies = top.at("bodies").items("a list of bodies");
+  if (cuts_by_force(scene) && std::none_of(scene.bodies.begin(), scene.bodies.end(), has_toughness)) {
+    const auto first =
+        std::find_if(scene.blades.begin(), scene.blades.end(), [](const Blade& b) { return b.cuts == BladeCuts::by_force; });
+    top.at("blades").items("a list of blades")[static_cast<std::size_t>(first - scene.blades.begin())].at("cuts").fail(
+        "\"always\", or a material with a \"toughness\" [Pa] in at least one body: without one no force cuts");
+  }
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& b = scene.bodies[i];
     const ElementInfo& info = element_info(b.element);

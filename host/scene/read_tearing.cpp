@@ -16,11 +16,13 @@ void check_tearing(const Reader& top, const Scene& scene) {
     for (const Reader& material : materials) {
       if (!material.has("toughness")) continue;
       const Reader field = material.at("toughness");
+      if (cuts_by_force(scene)) continue;  // it is that of the blades, and nothing tears by itself
       const bool splits = element_info(body.element).splits;
       if (body.mesh.empty() || !splits) field.fail("no toughness here: only a volume mesh (\"mesh\") of tetrahedra tears");
       require_integrator(top, scene, &IntegratorInfo::edits, "a material has a toughness");
       if (scene.relaxation.enabled) top.at("relaxation").fail("false, because a material has a toughness");
-      if (!scene.blades.empty()) top.at("blades").fail("no blades, because a material has a toughness");
+      if (!scene.blades.empty())
+        top.at("blades").fail("no blades, or one that cuts \"by-force\", because a material has a toughness");
     }
   }
 }

@@ -34,6 +34,7 @@ Program ProgramBuilder::build() {
   add_constraints();
   add_rotations();
   add_contact();
+  add_blades();
   add_status();
   return std::move(program_);
 }

@@ -7,7 +7,9 @@ namespace pliant {
 
 struct ProgramOptions {
   Integrator integrator = Integrator::increment;
-  std::int32_t batch_steps = 64;  ///< maximum number of steps of a batch: rows of curve_value
+  std::int32_t batch_steps = 64;   ///< maximum number of steps of a batch: rows of curve_value
+  std::int32_t blades = 0;         ///< blades that cut by force
+  std::int32_t blade_samples = 0;  ///< samples of their edges, of all together
 };
 
 /// Builds the buffer table and the Schedule of a model, with only what the model needs. The surface has its own Program

@@ -119,6 +119,9 @@ class ProgramBuilder {
   void add_touch_look();
   void add_touch_pass(const char* kernel);
 
+  /// Defined in program_blades.cpp: blades that cut by force, after contact.
+  void add_blades();
+
   /// Defined in program_loads.cpp: external forces, and the embedded surface if a pressure acts on it.
   void add_surface();
   void add_pressure_passes();

@@ -31,7 +31,7 @@ Simulation::Simulation(Scene scene, std::shared_ptr<const Model> model, std::uni
 }
 
 void Simulation::load(std::shared_ptr<const Model> model) {
-  Program program = build_program(*model, {scene_.integrator, settings_.batch_steps});
+  Program program = build_program(*model, run_.program_options());
   Program surface = pliant::surface_program(model->surface, program);
   loaded_.load(std::move(model), std::move(program), std::move(surface));
 }
@@ -39,6 +39,7 @@ void Simulation::load(std::shared_ptr<const Model> model) {
 void Simulation::start(std::shared_ptr<const Model> model, const SimulationOptions& options) {
   settings_.batch_steps = options.batch_steps;
   parameters_.start();
+  press_.start(*model);
   load(std::move(model));
   for (const Curve& curve : loaded_.model().curves) {
     settings_.curves_end = std::max(settings_.curves_end, curve.end());
@@ -87,6 +88,7 @@ void Simulation::begin_batch(std::int32_t steps) {
   }
   step_.adapt_when_due();
   if (on_grid) drift_.follow();
+  press_.begin_batch(steps);
   recovery_.keep(on_grid);
   run_.upload_params();
   run_.upload_curves(steps);
@@ -98,6 +100,7 @@ void Simulation::end_batch(std::int32_t steps) {
   state_.clock.step += steps;
   divergence_ = recovery_.look(start);
   if (step() == start + steps) contact_.end_batch(steps);
+  press_.end_batch(step() == start + steps ? steps : 0);
   if (!divergence_ && scene_.relaxation.enabled && run_.begins_after(step(), kRelaxEvery)) relax(run_);
   BallastReport& ballast = reports_.now.ballast;
   ballast = {static_cast<std::int64_t>(state_.ballast.size()), 0, ballast.most};
@@ -184,7 +187,7 @@ void Simulation::take_over(const Snapshot& snapshot) {
     set_ballast(scene, *heavier, next.ballast);
     model = heavier;
   }
-  Program program = build_program(*model, {scene_.integrator, settings_.batch_steps});
+  Program program = build_program(*model, run_.program_options());
   Program surface = pliant::surface_program(model->surface, program);
   const std::string other = differing(snapshot.made_of, parts_of(scene_, settings_, *model, program, surface));
   if (!other.empty()) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "simulation/contact/tool_contact.h"
+#include "simulation/edits/blade_press.h"
 #include "simulation/edits/parameter_edits.h"
 #include "simulation/edits/tool_edits.h"
 #include "simulation/edits/topology_edits.h"
@@ -61,6 +62,8 @@ class Simulation {
   /// two steps.
   void watch_energy();
   [[nodiscard]] const ToolContact& contact() const { return contact_; }
+  /// What the blades that cut by force feel.
+  [[nodiscard]] const BladePress& press() const { return press_; }
   [[nodiscard]] bool at_equilibrium() const { return state_.relaxation.equilibrium; }
   /// |R - F| over the larger of external and reaction force, at the last update of dynamic relaxation.
   [[nodiscard]] double residual() const { return state_.relaxation.residual; }
@@ -166,6 +169,7 @@ class Simulation {
   HostLoads loads_{run_};
   ToolContact contact_{run_, reports_.now};
   TopologyEdits edits_{run_, step_, loads_};
+  BladePress press_{run_, edits_};
   ToolEdits tools_{run_, contact_};
   ParameterEdits parameters_{scene_, run_, step_, edits_, reports_};
   Recovery recovery_{run_, step_, edits_, reports_};

@@ -110,6 +110,10 @@ struct BladeSpec {
   std::vector<std::array<double, 7>> path;  ///< (time [s], both ends [m]), at least two rows, times ascending
   std::optional<double> start;              ///< start of cutting [s]; absent: start of the path
   std::optional<double> end;                ///< end of cutting [s]; absent: end of the path
+  std::string cuts = "always";              ///< always: all that it sweeps; by-force: what gives way to its edge
+  std::optional<double> sharpness;          ///< by-force: kappa, the smaller the sharper; absent: 1
+  std::optional<double> edge;               ///< by-force: radius of the edge [m], required
+  std::optional<double> friction;           ///< by-force: between the edge and tissue; absent: 0
 };
 
 /// A change of parameters while the scene runs. What is absent stays as it is; what a body is held by is replaced as a whole,

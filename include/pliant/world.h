@@ -70,7 +70,7 @@ class PLIANT_API World {
 
   /// Returns what happened since the last call, oldest first, at most 1024 events; older ones are forgotten.
   std::vector<Event> events();
-  /// Returns the force on a tool in each of the last 4096 steps after step `after`. Throws Error (usage) for an unknown tool.
+  /// Returns the force on a tool or by-force blade of each of the last 4096 steps after `after`. Throws usage: unknown name.
   [[nodiscard]] std::vector<ForceSample> force_trace(const std::string& tool, std::int64_t after = -1) const;
   /// The same for each update of a grab, some 2 ms apart.
   [[nodiscard]] std::vector<ForceSample> force_trace(GrabId grab, std::int64_t after = -1) const;

@@ -94,28 +94,25 @@ TEST_P(MembranePhysics, RigidMotionIsForceFree) {
   }
 }
 
-/// A soft ball under a pressure from inside: p = 2 t E / (1 - nu) e / r of the membrane and 3 K e of the tissue, e small.
+/// A ball under a pressure from inside: p = 2 t E / (1 - nu) e / r of the membrane and 3 K e of the tissue, e small.
 TEST_P(MembranePhysics, AnInflatedBall) {
-  TriangleMesh ball = test::unit_ball(32);
+  TriangleMesh ball = test::unit_ball(24);
   constexpr double radius = 0.05, strain = 0.01;
   for (Vec3d& x : ball.vertices) x = vec::mul(x, radius);
   Body body;
   body.name = "ball";
   body.surface = save(ball);
-  body.lattice.spacing = 0.0085;
-  body.material = material_young(Law::neo_hookean, 100, 0.3);
-  body.material.damping = 5;
-  body.membrane = Membrane{.thickness = 2e-4, .young = 1e5, .poisson = 0.4};
+  body.lattice.spacing = 0.01;
+  body.material = material_young(Law::neo_hookean, 600, 0);
+  body.material.damping = 60;
+  body.membrane = Membrane{.thickness = 2e-4, .young = 1e6, .poisson = 0.4};
   const double of_membrane = 2 * body.membrane->thickness * body.membrane->young / 0.6 * strain / radius;
-  const double pressure = of_membrane + 3 * 100 / (3 * (1 - 0.6)) * strain;
-  ASSERT_GT(of_membrane, 10 * (pressure - of_membrane));
-  body.pressures.push_back({all_nodes(), -pressure, {}});
+  const double pressure = of_membrane + 600 * strain;  // 3 K = E / (1 - 2 nu)
+  body.pressures.push_back({all_nodes(), -pressure, smooth(0.2)});
   Scene scene;
   scene.bodies = {body};
-  scene.relaxation.enabled = true;
-  scene.relaxation.tolerance = 1e-4;
   auto sim = simulate(scene, GetParam());
-  settle(*sim);
+  while (sim->time() < 0.8) sim->advance(64);
   const Model& model = sim->model();
   const std::vector<Vec3d> u = read_texels(*sim, "node_u");
   const auto volume = [&](double moved) {
@@ -129,7 +126,7 @@ TEST_P(MembranePhysics, AnInflatedBall) {
     now.triangles = model.surface.triangles;
     return signed_volume(now);
   };
-  check_relative("radius's growth", std::cbrt(volume(1) / volume(0)) - 1, strain, 0.04);
+  check_relative("radius's growth", std::cbrt(volume(1) / volume(0)) - 1, strain, 0.02);
 }
 
 double membrane_area(const Model& model) {
@@ -144,6 +141,7 @@ TEST_P(MembranePhysics, ACutDividesItAndKeepsMomentum) {
   for (const Discretization cut : {Discretization::tet4, Discretization::hex8_bricks}) {
     Scene scene = coated({{4, 3, 3}, 0.02, 0, 3}, cut);
     scene.cuttable = true;
+    scene.least_fill = 0;  // its inertia would come on top
     scene.bodies[0].membrane->thickness = 2e-4;
     scene.bodies[0].angular_velocity = {1, 2, 3};
     auto sim = simulate(scene, GetParam());
@@ -156,7 +154,7 @@ TEST_P(MembranePhysics, ACutDividesItAndKeepsMomentum) {
     check(name + " area", membrane_area(sim->model()) / area - 1, 0.02);
     check(name + " mass", sim->model().bodies[0].mass / mass - 1, 1e-3);
     const Momenta after = momenta_of(*sim);
-    check(name + " momentum", vec::norm(vec::sub(after.linear, before.linear)) / (mass * 0.1), 1e-3);
+    check(name + " momentum", vec::norm(vec::sub(after.linear, before.linear)) / (mass * 0.1), 1e-5);
     sim->advance(200);
     EXPECT_FALSE(sim->divergence().has_value());
   }

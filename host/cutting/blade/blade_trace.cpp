@@ -184,6 +184,36 @@ void BladeSweep::move(BladeTrace& front, const BladeSegment& to) {
   if (finish == 1) keep(front, before);
 }
 
+std::vector<MaterialPoint> BladeSweep::advance(std::span<const MaterialPoint> carried, std::span<const Vec3d> from,
+                                               std::span<const Vec3d> until) {
+  vec::Box region;
+  double longest = 0;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    region.extend(from[i]);
+    region.extend(until[i]);
+    longest = std::max(longest, vec::norm(vec::sub(until[i], from[i])));
+  }
+  InverseMap map(body_, x_, region, edge_, kNear * edge_);
+  const int rows = std::max(1, static_cast<int>(std::min(std::ceil(longest / (kSpacing * edge_)), double{kMostRows})));
+  Row before{0, 0, {}};
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    before.vertices.push_back(carried[i].cell >= 0 ? Vertex{carried[i], from[i]} : vertex(from[i], map));
+  }
+  for (int k = 1; k <= rows; ++k) {
+    std::vector<Vec3d> points;
+    for (std::size_t i = 0; i < from.size(); ++i) points.push_back(between(from[i], until[i], static_cast<double>(k) / rows));
+    Row row = mapped(0, 0, points, map);
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      if (from[i] == until[i] && carried[i].cell >= 0) row.vertices[i].carried = carried[i];  // where tissue holds
+    }
+    strip(before, row);
+    before = std::move(row);
+  }
+  std::vector<MaterialPoint> out;
+  for (const Vertex& v : before.vertices) out.push_back(v.carried);
+  return out;
+}
+
 /// Triangles between two rows, of which one may have more points.
 void BladeSweep::strip(const Row& a, const Row& b) {
   const Row &coarse = b.levels >= a.levels ? a : b, &fine = b.levels >= a.levels ? b : a;

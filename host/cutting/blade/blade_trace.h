@@ -40,6 +40,11 @@ class BladeSweep {
   /// Sweeps from the stored line to the blade's next segment, which is then stored. Both move along straight lines in the
   /// current configuration.
   void move(BladeTrace& front, const BladeSegment& to);
+  /// Sweeps from points that the body carries (at `from` now) to others, each along a straight line, and returns the material
+  /// at the end of each. Neighbours in the list are neighbours along the blade; a point without material (cell -1) in `carried`
+  /// begins where `from` says.
+  std::vector<MaterialPoint> advance(std::span<const MaterialPoint> carried, std::span<const Vec3d> from,
+                                     std::span<const Vec3d> until);
   /// Edges crossed so far that are not cut yet. An edge crossed several times is cut at the first crossing.
   [[nodiscard]] const CutEdges& crossed() const { return crossed_; }
 

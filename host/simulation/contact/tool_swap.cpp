@@ -74,7 +74,7 @@ void carry_state(const RunContext& run, Program& next, const std::vector<int>& n
 }
 
 void load_with(RunContext& run, const Snapshot& snapshot, const std::shared_ptr<const Model>& model) {
-  Program program = build_program(*model, {run.scene.integrator, run.settings.batch_steps});
+  Program program = build_program(*model, run.program_options());
   Program surface = surface_program(model->surface, program);
   run.loaded.load(model, std::move(program), std::move(surface));
   write_buffers(snapshot, run.loaded);
@@ -93,7 +93,7 @@ void load_tools(RunContext& run, const std::shared_ptr<const Model>& model, cons
   const std::shared_ptr<const Model> old = run.loaded.shared_model();
   const Snapshot snapshot = take_snapshot(run);
   try {
-    Program program = build_program(*model, {run.scene.integrator, run.settings.batch_steps});
+    Program program = build_program(*model, run.program_options());
     std::vector<double> u = program.at(program.find("node_u")).reals, w = program.at(program.find("node_w")).reals;
     carry_state(run, program, new_numbers(before, next), next.size());
     Program surface = surface_program(model->surface, program);

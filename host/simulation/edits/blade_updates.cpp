@@ -49,10 +49,32 @@ void TopologyEdits::move_scene_blades() {
   if (!run_.scene.blades.empty()) {
     const double now = run_.state.clock.time();
     if (!blades.seen) blades.seen = now;
-    for (const Blade& blade : run_.scene.blades) moves.push_back(move_of(blade, *blades.seen, now));
+    for (const Blade& blade : run_.scene.blades) {
+      if (blade.cuts == BladeCuts::always) moves.push_back(move_of(blade, *blades.seen, now));
+    }
     if (now > *blades.seen) blades.seen = now;
   }
   if (!pending.triangles.empty() || !moves.empty()) run_blades(moves, pending.triangles);
+}
+
+/// The same for blades that cut by force.
+void TopologyEdits::move_fronts() {
+  if (run_.settings.force_blades == 0 || run_.phase() != 0) return;
+  EditedBodies& all = cut_bodies();
+  std::vector<double> u = run_.u();
+  CutReport report;
+  const Stopwatch clock;
+  const double next = run_.state.clock.time_at(run_.state.clock.step + run_.settings.blade_steps);
+  std::vector<CutEdges> edges = fronts_.update(all, u, next);
+  for (const CutEdges& e : edges) report.edges += static_cast<std::int64_t>(e.size());
+  report.search = clock.seconds();
+  if (report.edges > 0) make_cut(std::move(edges), std::move(u), report);
+  std::vector<std::string>& met = run_.state.blades.met;
+  for (const auto& [name, blade] : run_.state.pressed) {
+    const bool meets = std::any_of(blade.samples.begin(), blade.samples.end(),
+                                   [](const FrontSample& s) { return s.kind == static_cast<std::int32_t>(FrontKind::held); });
+    if (meets && std::find(met.begin(), met.end(), name) == met.end()) met.push_back(name);
+  }
 }
 
 const BladeTrace* TopologyEdits::front(const BladeMove& move, std::size_t body) const {

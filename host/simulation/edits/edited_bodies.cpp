@@ -125,7 +125,7 @@ std::vector<Material> materials_of(const Body& body, const BodyMesh& solid) {
 }  // namespace
 
 bool EditedBodies::tears(const Scene& scene) {
-  return !scene.solver.enabled && std::any_of(scene.bodies.begin(), scene.bodies.end(), pliant::tears);
+  return !scene.solver.enabled && !cuts_by_force(scene) && std::any_of(scene.bodies.begin(), scene.bodies.end(), pliant::tears);
 }
 
 EditedBodies::EditedBodies(const Scene& scene) : scene_(scene), cuts_(scene.bodies.size()), torn_(scene.bodies.size()) {

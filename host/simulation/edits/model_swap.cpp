@@ -134,7 +134,7 @@ void ModelSwap::carry_state(Program& program) const {
 }
 
 void ModelSwap::load_steps(const Scene& scene) {
-  Program program = build_program(*model_, {scene.integrator, run_.settings.batch_steps});
+  Program program = build_program(*model_, run_.program_options());
   Buffer &u = program.at(program.find("node_u")), &w = program.at(program.find("node_w"));
   new_u_ = u.reals;
   new_w_ = w.reals;
@@ -192,7 +192,7 @@ void ModelSwap::carry_motion() {
 }
 
 void ModelSwap::restore() {
-  Program program = build_program(*old_model_, {run_.scene.integrator, run_.settings.batch_steps});
+  Program program = build_program(*old_model_, run_.program_options());
   Program surface = surface_program(old_model_->surface, program);
   run_.loaded.load(old_model_, std::move(program), std::move(surface));
   run_.write_u(old_u_);

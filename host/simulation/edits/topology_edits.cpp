@@ -55,6 +55,28 @@ bool belongs(const BladeTrace& front, const CutMesh& mesh) {
   return true;
 }
 
+/// The same for a sample of the edge of a blade that cuts by force.
+bool belongs(const FrontSample& s, EditedBodies& all) {
+  if (s.kind < 0 || s.kind > static_cast<std::int32_t>(FrontKind::beside)) return false;
+  if (s.kind == static_cast<std::int32_t>(FrontKind::none)) return true;
+  if (s.body < 0 || static_cast<std::size_t>(s.body) >= all.size()) return false;
+  const auto b = static_cast<std::size_t>(s.body);
+  if (!can_be_cut(all.uncut(b))) return false;
+  const CutMesh& mesh = all.cut(b).topology().mesh();
+  return s.point.cell >= 0 && s.point.cell < static_cast<std::int64_t>(mesh.cells.size()) && s.point.tet >= 0 &&
+         s.point.tet < static_cast<std::int64_t>(mesh.shape->tets.size());
+}
+
+/// Interval of the blade updates [s]: the front of a blade that cuts by force stays within a small part of a cell of it.
+double update_interval(const Scene& scene, double edge) {
+  constexpr double kLag = 0.1;  // of an edge
+  double longest = kLongestBatch;
+  for (const Blade& blade : scene.blades) {
+    if (blade.cuts == BladeCuts::by_force && top_speed(blade) > 0) longest = std::min(longest, kLag * edge / top_speed(blade));
+  }
+  return longest;
+}
+
 bool follows(const Scene& scene) {
   return std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& b) { return !b.model.follow.empty(); });
 }
@@ -69,7 +91,7 @@ void TopologyEdits::start() {
   if (!scene.blades.empty()) {
     for (const Blade& blade : scene.blades) check_blade(blade);
     prepare_cuts();
-    const double steps = kLongestBatch / run_.state.clock.dt;
+    const double steps = update_interval(scene, run_.settings.blade_edge) / run_.state.clock.dt;
     run_.settings.blade_steps =
         steps < 1 ? 1 : static_cast<std::int64_t>(std::min(steps, static_cast<double>(run_.settings.batch_steps)));
   }
@@ -87,6 +109,7 @@ void TopologyEdits::start() {
 
 void TopologyEdits::update() {
   move_scene_blades();
+  move_fronts();
   if (run_.phase() == 0) open_overstretched();
   make_tears();
   break_joins();
@@ -116,7 +139,7 @@ EditedBodies& TopologyEdits::cut_bodies() {
 void TopologyEdits::prepare_cuts() {
   EditedBodies& all = cut_bodies();
   if (run_.backend().info().compiles) {
-    run_.backend().compile(build_program(all.trial_model(), {run_.scene.integrator, run_.settings.batch_steps}));
+    run_.backend().compile(build_program(all.trial_model(), run_.program_options()));
   }
   for (std::size_t b = 0; b < all.size(); ++b) {
     if (can_be_cut(all.uncut(b))) static_cast<void>(all.cut(b));
@@ -176,7 +199,7 @@ std::unique_ptr<EditedBodies> TopologyEdits::bodies_at(const RunState& state) co
   if (!state.broken.empty() && state.broken.size() != scene.joins.size()) refuse("its broken joins");
   const auto edited = [](const RunState& s) {
     return !s.cuts.empty() || !s.tears.empty() || !s.regions.empty() || s.most_substeps != 0 || !s.blades.traces.empty() ||
-           !s.changed.parameters.empty() || !s.broken.empty();
+           !s.pressed.empty() || !s.changed.parameters.empty() || !s.broken.empty();
   };
   if (!edited(state) && !edited(run_.state)) return nullptr;
   auto all = std::make_unique<EditedBodies>(scene);
@@ -190,6 +213,14 @@ std::unique_ptr<EditedBodies> TopologyEdits::bodies_at(const RunState& state) co
     if (!ordered || (!cells.empty() && (cells.front() < 0 || cells.back() >= last))) refuse("its moved regions");
   }
   all->replay(state);
+  for (const auto& [name, blade] : state.pressed) {
+    const auto own = std::find_if(scene.blades.begin(), scene.blades.end(), [&](const Blade& b) { return b.name == name; });
+    const bool known = own != scene.blades.end() && own->cuts == BladeCuts::by_force &&
+                       blade.samples.size() == static_cast<std::size_t>(sample_count(*own, run_.settings.blade_edge));
+    if (!known ||
+        !std::all_of(blade.samples.begin(), blade.samples.end(), [&](const FrontSample& s) { return belongs(s, *all); }))
+      refuse("its fronts of blades");
+  }
   for (const auto& [key, traces] : state.blades.traces) {
     for (const auto& [body, front] : traces) {
       const bool known = body >= 0 && static_cast<std::size_t>(body) < all->size() &&

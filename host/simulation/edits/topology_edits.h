@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "simulation/edits/blade_fronts.h"
 #include "simulation/edits/cut_report.h"
 #include "simulation/edits/edited_bodies.h"
 #include "simulation/step/host_loads.h"
@@ -18,7 +19,7 @@ namespace pliant {
 
 class TopologyEdits {
  public:
-  TopologyEdits(RunContext& run, StepControl& step, HostLoads& loads) : run_(run), step_(step), loads_(loads) {}
+  TopologyEdits(RunContext& run, StepControl& step, HostLoads& loads) : run_(run), step_(step), loads_(loads), fronts_(run) {}
 
   /// Call at the start of a simulation: generates the elements of bodies that the scene's blades will cut or that may tear,
   /// and determines how often both are updated. Throws Error (bad_input) for scenes that cannot be edited.
@@ -58,6 +59,7 @@ class TopologyEdits {
 
   // blade_updates.cpp
   void move_scene_blades();
+  void move_fronts();
   CutReport run_blades(const std::vector<BladeMove>& moves, std::span<const SweepTriangle> triangles);
   [[nodiscard]] bool reached(std::size_t body, const std::vector<Vec3d>& x, const std::vector<BladeMove>& moves,
                              std::span<const SweepTriangle> triangles) const;
@@ -79,6 +81,7 @@ class TopologyEdits {
   RunContext& run_;
   StepControl& step_;
   HostLoads& loads_;
+  BladeFronts fronts_;
   std::vector<char> changed_nodes_;       ///< [slots] by the last cut or tear; empty: none
   std::unique_ptr<EditedBodies> bodies_;  ///< the scene's bodies with the edits of RunState; created on first use
 };

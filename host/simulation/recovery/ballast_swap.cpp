@@ -14,7 +14,7 @@
 namespace pliant {
 
 void load_with_state(RunContext& run, std::shared_ptr<const Model> model, const Snapshot& snapshot) {
-  Program program = build_program(*model, {run.scene.integrator, run.settings.batch_steps});
+  Program program = build_program(*model, run.program_options());
   Program surface = surface_program(model->surface, program);
   run.loaded.load(std::move(model), std::move(program), std::move(surface));
   write_buffers(snapshot, run.loaded);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "scene/scene.h"
+#include "schedule/build_program.h"
 #include "simulation/state/loaded_model.h"
 #include "simulation/state/run_state.h"
 
@@ -11,15 +12,18 @@ namespace pliant {
 
 /// Derived from the scene, the options and the backend at the start; constant afterwards.
 struct RunSettings {
-  std::int32_t batch_steps = 64;  ///< maximum number of steps between two reads of the fault flags
-  bool automatic = false;         ///< Pliant chooses the step size
-  bool tears = false;             ///< a material of the scene has a toughness
-  bool breaks = false;            ///< a join of the scene can break
-  double first_dt = 0;            ///< initial step size [s]
-  std::int64_t blade_steps = 0;   ///< steps between two updates of the scene's blades; 0: no blades
-  double curves_end = 0;          ///< time after which all loads are constant [s]
-  double increment_floor = 0;     ///< smaller increments are set to 0 [m]
-  double displacement_grid = 0;   ///< smaller displacements are rounded to multiples of 2^-22 of this [m]; a power of two
+  std::int32_t batch_steps = 64;   ///< maximum number of steps between two reads of the fault flags
+  bool automatic = false;          ///< Pliant chooses the step size
+  bool tears = false;              ///< a material of the scene has a toughness
+  bool breaks = false;             ///< a join of the scene can break
+  double first_dt = 0;             ///< initial step size [s]
+  std::int32_t force_blades = 0;   ///< blades that cut by force
+  std::int32_t blade_samples = 0;  ///< samples of their edges
+  double blade_edge = 0;           ///< with such blades: mean edge of an element [m]
+  std::int64_t blade_steps = 0;    ///< steps between two updates of the scene's blades; 0: no blades
+  double curves_end = 0;           ///< time after which all loads are constant [s]
+  double increment_floor = 0;      ///< smaller increments are set to 0 [m]
+  double displacement_grid = 0;    ///< smaller displacements are rounded to multiples of 2^-22 of this [m]; a power of two
 };
 
 inline constexpr std::int64_t kTearSteps = 16;   ///< steps between two checks for breaking faces and joins
@@ -36,6 +40,9 @@ struct RunContext {
 
   [[nodiscard]] const Model& model() const { return loaded.model(); }
   [[nodiscard]] Backend& backend() const { return loaded.backend(); }
+  [[nodiscard]] ProgramOptions program_options() const {
+    return {scene.integrator, settings.batch_steps, settings.force_blades, settings.blade_samples};
+  }
 
   /// Number of steps after which all subcycles start together.
   [[nodiscard]] std::int64_t period() const;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "simulation/state/pressed_blades.h"
 #include "simulation/state/run_state_parts.h"
 
 namespace pliant {
@@ -35,6 +36,7 @@ struct RunState {
   ToolChanges tools;                              ///< tools added, removed or parked by the host
   ChangedParameters changed;                      ///< parameters that have changed
   std::vector<std::vector<std::int32_t>> broken;  ///< per entry of Scene::joins its broken springs, ascending; empty: none
+  std::map<std::string, PressedBlade> pressed;    ///< by name: the blades that cut by force
 };
 
 // Visitor: calls v(name, member) for every member in this order, as the visitors of the parts do. v.last() writes nothing for
@@ -50,6 +52,7 @@ void visit(V& v, RunState& s) {
   v.last("given", s.tools.given);
   v.last("changed", s.changed);
   v.last("broken", s.broken);
+  v.last("pressed", s.pressed);
 }
 
 /// Serializes the state, identically on every machine: names, and values as eight little-endian bytes.

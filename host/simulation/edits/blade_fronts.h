@@ -1,0 +1,53 @@
+// Fronts of blades that cut by force, on the host: where edges meet tissue, and how far they have gone through it. Between two
+// updates the device presses the edges against the front points (kernels/contact/blade_press.cl).
+#pragma once
+#include <map>
+#include <vector>
+
+#include "simulation/edits/edited_bodies.h"
+#include "simulation/state/run_context.h"
+
+namespace pliant {
+
+/// The nodes of a body that carry a front point, with their weights: of the cell's one or two copies, at most eight.
+struct FrontCarrier {
+  std::int32_t node = 0;
+  double weight = 0;
+};
+std::vector<FrontCarrier> front_carriers(const CutTopology& body, const MaterialPoint& point);
+
+/// Mean edge of the model's elements [m], from which samples and updates of blades are counted.
+double typical_edge(const Model& model);
+/// Number of samples of the edge of a blade; two per typical edge and both ends.
+std::int32_t sample_count(const Blade& blade, double edge);
+/// Largest speed of an end of a blade [m/s].
+double top_speed(const Blade& blade);
+
+class BladeFronts {
+ public:
+  explicit BladeFronts(RunContext& run) : run_(run) {}
+  /// Moves the fronts to where the edges have got and lets edges meet what is ahead of them. Returns the edges of each body
+  /// that the fronts have crossed. u: RunContext::u(); `until`: time of the next update [s].
+  std::vector<CutEdges> update(EditedBodies& bodies, const std::vector<double>& u, double until);
+
+ private:
+  /// One blade during an update.
+  struct Edge;
+  /// What the samples of a blade sweep in one body.
+  struct Sweep;
+  [[nodiscard]] std::vector<Vec3d> surface(const std::vector<double>& u) const;
+  void turn(PressedBlade& blade, const Edge& edge) const;
+  void let_go(PressedBlade& blade, const Edge& edge, EditedBodies& bodies) const;
+  void give_way(PressedBlade& blade, const Edge& edge, EditedBodies& bodies, std::vector<CutEdges>& edges);
+  void sweep(PressedBlade& blade, const Edge& edge, BodyCut& body, std::size_t b, CutEdges& edges) const;
+  void meet(PressedBlade& blade, const Edge& edge, EditedBodies& bodies, const std::vector<Vec3d>& surface);
+  static void weaken(PressedBlade& blade, FrontSample& sample, const Edge& edge);
+  [[nodiscard]] double limit(const Blade& blade, const FrontSample& sample, double length, EditedBodies& bodies);
+  [[nodiscard]] const Material& material(std::size_t body, std::int32_t cell, EditedBodies& bodies);
+
+  RunContext& run_;
+  std::vector<std::vector<Vec3d>> x_;  ///< present positions of the nodes of each body [m]
+  std::map<std::size_t, ElementMaterials> materials_;
+};
+
+}  // namespace pliant

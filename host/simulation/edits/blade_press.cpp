@@ -1,0 +1,221 @@
+#include "simulation/edits/blade_press.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "geometry/vec.h"
+#include "pliant/error.h"
+#include "schedule/contact/blade_data.h"
+#include "simulation/edits/blade_fronts.h"
+
+namespace pliant {
+namespace {
+
+bool presses(const FrontSample& s) {
+  return s.kind == static_cast<std::int32_t>(FrontKind::ahead) || s.kind == static_cast<std::int32_t>(FrontKind::held);
+}
+
+/// The least side of the boxes around the bodies is at most this [m].
+double widest_body(const Model& model) {
+  double widest = 0;
+  for (const ModelBody& body : model.bodies) {
+    vec::Box box;
+    for (const Vec3d& p : body.rest) box.extend(p);
+    widest =
+        std::max(widest, std::min({box.upper[0] - box.lower[0], box.upper[1] - box.lower[1], box.upper[2] - box.lower[2]}));
+  }
+  return widest;
+}
+
+}  // namespace
+
+void BladePress::start(const Model& model) {
+  first_.assign(1, 0);
+  if (!cuts_by_force(run_.scene)) return;
+  run_.settings.blade_edge = typical_edge(model);
+  const double edge = run_.settings.blade_edge, widest = widest_body(model);
+  for (std::size_t b = 0; b < run_.scene.blades.size(); ++b) {
+    const Blade& blade = run_.scene.blades[b];
+    if (blade.cuts != BladeCuts::by_force) continue;
+    if (2 * blade.edge > widest) {
+      throw Error(
+          ErrorCode::bad_input,
+          fmt::format("blade '{}': got an \"edge\" of radius {} m; allowed is up to half of the thickness of a body, {} m",
+                      blade.name, blade.edge, widest / 2));
+    }
+    names_.push_back(blade.name);
+    blades_.push_back(b);
+    first_.push_back(first_.back() + static_cast<std::size_t>(sample_count(blade, edge)));
+  }
+  run_.settings.force_blades = static_cast<std::int32_t>(names_.size());
+  run_.settings.blade_samples = static_cast<std::int32_t>(first_.back());
+}
+
+template <class Visit>
+void BladePress::for_samples(Visit&& visit) {
+  for (std::size_t k = 0; k < names_.size(); ++k) {
+    const auto found = run_.state.pressed.find(names_[k]);
+    if (found == run_.state.pressed.end()) continue;
+    std::vector<FrontSample>& samples = found->second.samples;
+    for (std::size_t i = 0; i < samples.size(); ++i) visit(k, first_[k] + i, samples[i], found->second);
+  }
+}
+
+bool BladePress::near() const {
+  return std::any_of(run_.state.pressed.begin(), run_.state.pressed.end(), [](const auto& blade) {
+    return std::any_of(blade.second.samples.begin(), blade.second.samples.end(), presses);
+  });
+}
+
+struct BladePress::Numbers {
+  std::vector<std::int32_t> node;
+  std::vector<double> weight, share, data, front;
+};
+
+void BladePress::begin_batch(std::int32_t steps) {
+  if (names_.empty()) return;
+  pressing_ = near();
+  *run_.loaded.program().near_samples = pressing_ ? 1 : 0;
+  if (!pressing_) return;
+  upload_poses(steps);
+  upload_nodes(numbers());
+}
+
+void BladePress::upload_poses(std::int32_t steps) {
+  const std::size_t rows = static_cast<std::size_t>(run_.settings.batch_steps) + 1;
+  const Clock& clock = run_.state.clock;
+  poses_.clear();
+  std::vector<double> pose;
+  const auto last = static_cast<std::int64_t>(steps);
+  for (std::int64_t row = -1; row < static_cast<std::int64_t>(rows); ++row) {
+    for (const std::size_t b : blades_) {
+      const BladeSegment at = run_.scene.blades[b].at(clock.time_at(clock.step + std::min(row, last)));
+      poses_.push_back({at[0], vec::sub(at[1], at[0])});
+      if (row < 0) continue;
+      for (const Vec3d& v : poses_.back()) pose.insert(pose.end(), v.begin(), v.end());
+    }
+  }
+  run_.backend().write_reals(run_.loaded.program().find("blade_pose"), pose);
+}
+
+BladePress::Numbers BladePress::numbers() const {
+  const std::size_t samples = first_.back();
+  Numbers n{std::vector<std::int32_t>(blade_sample_nodes * samples), std::vector<double>(blade_sample_nodes * samples),
+            std::vector<double>(blade_sample_nodes * samples), std::vector<double>(blade_sample_numbers * samples, -1.0),
+            std::vector<double>(2 * samples)};
+  const Model& model = run_.model();
+  std::map<std::int32_t, double> sums;  // of the weights of all samples at a slot
+  const_cast<BladePress*>(this)->for_samples(
+      [&](std::size_t blade, std::size_t i, const FrontSample& s, const PressedBlade& own) {
+        if (!presses(s)) return;
+        const auto b = static_cast<std::size_t>(s.body);
+        Vec3d rest{};
+        std::size_t at = blade_sample_nodes * i;
+        for (const FrontCarrier& c : front_carriers(*edits_.cut_topology(b), s.point)) {
+          const std::int32_t slot = model.bodies[b].slot[static_cast<std::size_t>(c.node)];
+          n.node[at] = slot;
+          n.weight[at++] = c.weight;
+          sums[slot] += std::abs(c.weight);
+          Vec3d x = model.rest[static_cast<std::size_t>(slot)];
+          for (std::size_t k = 0; k < 3 && !run_.state.offset.empty(); ++k)
+            x[k] += run_.state.offset[3 * static_cast<std::size_t>(slot) + k];
+          rest = vec::add(rest, vec::mul(x, c.weight));
+        }
+        double* data = &n.data[blade_sample_numbers * i];
+        std::copy(rest.begin(), rest.end(), data);
+        std::copy(own.normal.begin(), own.normal.end(), data + 3);
+        data[6] = s.limit;
+        data[7] = run_.scene.blades[blades_[blade]].friction;
+        data[8] = static_cast<double>(i - first_[blade]) / static_cast<double>(first_[blade + 1] - first_[blade] - 1);
+        data[9] = static_cast<double>(blade);
+        n.front[2 * i] = s.advance;
+        n.front[2 * i + 1] = s.pressed;
+      });
+  for (std::size_t at = 0; at < n.node.size(); ++at) {
+    if (n.weight[at] != 0) n.share[at] = std::abs(n.weight[at]) * sums[n.node[at]];
+  }
+  return n;
+}
+
+/// Writes the samples, and for each node that one of them moves the list of these.
+void BladePress::upload_nodes(const Numbers& n) {
+  std::map<std::int32_t, std::vector<std::int32_t>> at_slot;
+  for (std::size_t at = 0; at < n.node.size(); ++at) {
+    if (n.weight[at] != 0) at_slot[n.node[at]].push_back(static_cast<std::int32_t>(at));
+  }
+  std::vector<std::int32_t> slot, free, first{0}, entry;
+  const std::vector<char>& axes = run_.loaded.free();
+  for (const auto& [s, entries] : at_slot) {
+    slot.push_back(s);
+    const std::size_t base = 3 * static_cast<std::size_t>(s);
+    free.push_back((axes[base] != 0 ? 1 : 0) | (axes[base + 1] != 0 ? 2 : 0) | (axes[base + 2] != 0 ? 4 : 0));
+    entry.insert(entry.end(), entries.begin(), entries.end());
+    first.push_back(static_cast<std::int32_t>(entry.size()));
+  }
+  slot.resize(n.node.size(), -1);
+  free.resize(n.node.size(), 0);
+  first.resize(n.node.size() + 1, first.back());
+  entry.resize(n.node.size(), 0);
+  const Program& program = run_.loaded.program();
+  Backend& backend = run_.backend();
+  backend.write_ints(program.find("blade_node"), n.node);
+  backend.write_ints(program.find("blade_slot"), slot);
+  backend.write_ints(program.find("blade_free"), free);
+  backend.write_ints(program.find("blade_first"), first);
+  backend.write_ints(program.find("blade_entry"), entry);
+  backend.write_reals(program.find("blade_weight"), n.weight);
+  backend.write_reals(program.find("blade_share"), n.share);
+  backend.write_reals(program.find("blade_data"), n.data);
+  backend.write_reals(program.find("blade_front"), n.front);
+}
+
+void BladePress::read_fronts() {
+  const std::vector<double> front = run_.backend().read_reals(run_.loaded.program().find("blade_front"));
+  for_samples([&](std::size_t, std::size_t i, FrontSample& s, const PressedBlade&) {
+    if (!presses(s)) return;
+    s.advance = front[2 * i];
+    s.pressed = front[2 * i + 1];
+  });
+}
+
+void BladePress::end_batch(std::int32_t steps) {
+  if (names_.empty()) return;
+  step_forces_.clear();
+  batch_end_ = run_.state.clock.step;
+  if (!pressing_) return;
+  read_fronts();
+  if (steps <= 0) return;
+  const std::size_t blades = names_.size(), samples = first_.back();
+  step_forces_.resize(static_cast<std::size_t>(steps) * blades);
+  const std::vector<double> force = run_.backend().read_reals(run_.loaded.program().find("blade_force"));
+  for (std::size_t step = 0; step < static_cast<std::size_t>(steps); ++step) {
+    for_samples([&](std::size_t k, std::size_t i, const FrontSample&, PressedBlade& own) {
+      const double* f = &force[blade_force_numbers * (step * samples + i)];
+      const Vec3d on_blade{-f[0], -f[1], -f[2]};
+      const double place = static_cast<double>(i - first_[k]) / static_cast<double>(first_[k + 1] - first_[k] - 1);
+      StepForce& sum = step_forces_[step * blades + k];
+      const auto at = [&](std::size_t row) {
+        const auto& pose = poses_[row * blades + k];
+        return vec::add(pose[0], vec::mul(pose[1], place));
+      };
+      // A force acts from the middle of the step before to that of the next one.
+      own.work -= 0.5 * vec::dot(on_blade, vec::sub(at(step + 2), at(step)));
+      sum.force = vec::add(sum.force, on_blade);
+      sum.torque = vec::add(sum.torque, vec::cross(vec::mul(poses_[(step + 2) * blades + k][1], place - 0.5), on_blade));
+    });
+    for (std::size_t k = 0; k < blades; ++k) {
+      const auto own = run_.state.pressed.find(names_[k]);
+      if (own != run_.state.pressed.end())
+        own->second.max_force = std::max(own->second.max_force, vec::norm(step_forces_[step * blades + k].force));
+    }
+  }
+}
+
+StepForce BladePress::last_force(std::size_t blade) const {
+  if (step_forces_.size() < names_.size() || batch_end_ != run_.state.clock.step) return {};
+  return step_forces_[step_forces_.size() - names_.size() + blade];
+}
+
+}  // namespace pliant

@@ -1,0 +1,56 @@
+// Blades that cut by force, on the device: uploads the places of their edges and fronts, and reads what they felt.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "simulation/contact/tool_contact.h"
+#include "simulation/edits/topology_edits.h"
+#include "simulation/state/run_context.h"
+
+namespace pliant {
+
+class BladePress {
+ public:
+  BladePress(RunContext& run, const TopologyEdits& edits) : run_(run), edits_(edits) {}
+
+  /// Counts the blades and their samples; call before the first Program is built. Throws Error (bad_input) for an edge that is
+  /// wider than every body.
+  void start(const Model& model);
+  /// Before a batch: uploads edges, fronts and limits, if an edge is near tissue.
+  void begin_batch(std::int32_t steps);
+  /// After a batch of which `steps` were done, or which went back (0).
+  void end_batch(std::int32_t steps);
+
+  /// Names of the blades that cut by force.
+  [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
+  /// Force on each blade [N] and torque about the middle of its edge [N m] in each step of the last batch, shape
+  /// [steps][blades]; it ended after step batch_end(). Empty where nothing was near.
+  [[nodiscard]] const std::vector<StepForce>& step_forces() const { return step_forces_; }
+  [[nodiscard]] std::int64_t batch_end() const { return batch_end_; }
+  /// In the last step; zero where nothing was near.
+  [[nodiscard]] StepForce last_force(std::size_t blade) const;
+
+ private:
+  /// What the samples give the kernels.
+  struct Numbers;
+  [[nodiscard]] bool near() const;
+  [[nodiscard]] Numbers numbers() const;
+  void upload_poses(std::int32_t steps);
+  void upload_nodes(const Numbers& numbers);
+  void read_fronts();
+  template <class Visit>
+  void for_samples(Visit&& visit);
+
+  RunContext& run_;
+  const TopologyEdits& edits_;
+  std::vector<std::string> names_;
+  std::vector<std::size_t> blades_;          ///< their places in Scene::blades, which a restored state replaces
+  std::vector<std::size_t> first_;           ///< sample of each blade, and the number of all
+  std::vector<std::array<Vec3d, 2>> poses_;  ///< first end and span, from the step before the batch on, [steps + 2][blades]
+  std::vector<StepForce> step_forces_;
+  std::int64_t batch_end_ = -1;
+  bool pressing_ = false;  ///< the passes run in the present batch
+};
+
+}  // namespace pliant

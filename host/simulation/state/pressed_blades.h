@@ -1,0 +1,54 @@
+// Blades that cut by force: what their edges have met, and what they have done (docs/cutting.md). Part of RunState.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "cutting/blade/blade_trace.h"
+
+namespace pliant {
+
+/// What a sample of an edge is to tissue.
+enum class FrontKind : std::int32_t {
+  none,   ///< it is near nothing
+  ahead,  ///< its front point is on the surface that it comes to
+  held,   ///< it presses, or has pressed and is still in its cut
+  beside  ///< beyond the end of what is cut, it goes with the nearest sample that cuts, without a force
+};
+
+/// A sample of the edge of a blade.
+struct FrontSample {
+  std::int32_t kind = 0;  ///< FrontKind
+  std::int32_t body = 0;
+  MaterialPoint point{};  ///< the front point
+  double advance = 0;     ///< of the front beyond that point [m], as of the end of the last batch
+  double pressed = 0;     ///< steps since the last update in which it pressed
+  double depth = 0;       ///< way of the front through material [m]
+  double zeta = 1;        ///< integrity that is left
+  double limit = 0;       ///< F* [N]
+};
+
+/// A blade that cuts by force.
+struct PressedBlade {
+  Vec3d normal{};                    ///< n1, the direction in which it presses; 0: none yet
+  std::vector<FrontSample> samples;  ///< at equal distances along the edge, both ends included
+  double work = 0;                   ///< on the tissue [J]
+  double fracture = 0;               ///< of it, what cutting took: sum of F* times the way of the front [J]
+  double max_force = 0;              ///< [N]
+  double first = -1;                 ///< time at which tissue first gave way [s]; -1: not yet
+  std::int64_t by_contact = 0;       ///< samples that gave way by the traction of the edge, summed over updates
+  std::int64_t by_stress = 0;        ///< by the stress of the element below
+};
+
+template <class V>
+void visit(V& v, FrontSample& s) {
+  v("kind", s.kind), v("body", s.body), v("point", s.point), v("advance", s.advance), v("pressed", s.pressed);
+  v("depth", s.depth), v("zeta", s.zeta), v("limit", s.limit);
+}
+template <class V>
+void visit(V& v, PressedBlade& s) {
+  v("normal", s.normal), v("samples", s.samples), v("work", s.work), v("fracture", s.fracture);
+  v("max_force", s.max_force), v("first", s.first), v("by_contact", s.by_contact), v("by_stress", s.by_stress);
+}
+
+}  // namespace pliant
