@@ -56,7 +56,10 @@ class RandomScene {
     const bool tears = shape_.tets && body["element"] == "tet4" && dice_.chance(0.35);
     material(body, tears);
     Dice skin(number_ ^ 0x7a3d71b9);
-    if (skin.chance(0.15)) body["membrane"] = membrane(skin);
+    if (skin.chance(0.15)) {
+      body["membrane"] = membrane(skin);
+      for (const char* key : {"substeps", "goals"}) body["model"].erase(key);  // refused
+    }
     Json scene{{"format", "pliant-scene/1"}, {"name", fmt::format("survival {}", number_)}, {"duration", 2.0}};
     hold(body);
     const bool weight = dice_.chance(0.75);
@@ -68,7 +71,7 @@ class RandomScene {
     const bool cuts = !tears && body["model"]["type"] != "flsm" && dice_.chance(0.5);
     if (cuts) scene["blades"] = blades();
     if (cuts && body["model"]["type"] == "hybrid" && late_.chance(0.5)) body["model"]["follow"] = "blade0";
-    if (cuts) press(scene["blades"], body["material"]);
+    if (cuts) press(scene["blades"], body);
     const bool has_tools = touch_.chance(0.5), touches = touch_.chance(0.4);
     if (has_tools || touches) {
       for (const char* key : {"substeps", "goals"}) body["model"].erase(key);  // refused
@@ -252,10 +255,11 @@ class RandomScene {
   }
 
   /// Makes some of the blades press until tissue gives way, at forces that dent it little or much.
-  void press(Json& blades, Json& material) {
+  void press(Json& blades, Json& body) {
     Dice sharp(number_ ^ 0x5ca1be1);
     if (!sharp.chance(0.3)) return;
-    material["toughness"] = young_ * sharp.logarithmic(0.3, 100);
+    body["material"]["toughness"] = young_ * sharp.logarithmic(0.3, 100);
+    for (const char* key : {"substeps", "goals"}) body["model"].erase(key);  // refused
     for (Json& blade : blades) {
       if (sharp.chance(0.2)) continue;
       blade["cuts"] = "by-force";

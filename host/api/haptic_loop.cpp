@@ -1,14 +1,18 @@
 // HapticLoop: the thread of a device, and its tool's place in a World.
 #include <mutex>
+#include <optional>
 
+#include "api/device_claim.h"
 #include "api/haptic_options.h"
 #include "api/haptic_thread.h"
 #include "api/world_call.h"
 #include "devices/device_log.h"
+#include "devices/limits.h"
 #include "pliant/haptics.h"
 
 namespace pliant {
 struct HapticLoop::Impl {
+  std::optional<api::DeviceClaim> claim;  ///< ends after the thread
   std::unique_ptr<api::HapticThread> thread;
   mutable std::mutex mutex;  ///< of the callers of state(), samples() and stop()
   std::shared_ptr<devices::DeviceLog> log;
@@ -19,6 +23,9 @@ HapticLoop::HapticLoop(World& world, const std::string& tool, std::shared_ptr<Ha
     : impl_(std::make_unique<Impl>()) {
   api::check_options(options);
   if (device == nullptr) throw Error(ErrorCode::usage, "haptics: the device is null");
+  const DeviceLimits limits = device->limits();
+  devices::check_limits(limits);
+  impl_->claim.emplace(device.get());
   if (options.log_samples > 0) {
     impl_->log = std::make_shared<devices::DeviceLog>(options.log_samples);
     device = std::make_shared<devices::RecordedDevice>(std::move(device), impl_->log);
@@ -27,7 +34,7 @@ HapticLoop::HapticLoop(World& world, const std::string& tool, std::shared_ptr<Ha
   const bool buffers = options.model != "held" && options.model != "extrapolated";
   auto instrument = std::make_shared<haptics::Instrument>(tool, rings, options.predict, buffers);
   const Pose start = WorldAccess::attach(world, instrument);
-  const haptics::CoreOptions core = api::core_options(options, device->limits());
+  const haptics::CoreOptions core = api::core_options(options, limits);
   try {
     impl_->thread = std::make_unique<api::HapticThread>(instrument, std::move(device), options, core, start);
   } catch (...) {
@@ -41,6 +48,7 @@ HapticLoop::~HapticLoop() = default;
 void HapticLoop::stop() noexcept {
   const std::lock_guard lock(impl_->mutex);
   impl_->thread->stop();
+  impl_->claim->release();
 }
 
 HapticState HapticLoop::state() const {

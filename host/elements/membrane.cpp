@@ -28,6 +28,20 @@ Membrane::Record Membrane::record(const Corners& x, const std::string& what) con
   return {t1[0], t1[1], t1[2], t2[0], t2[1], t2[2], 1 / l, -along / (l * height), 1 / height, area * thickness};
 }
 
+double Membrane::tangent_bound(const Record& r, const Corners& u) const {
+  const Vec3d v1 = vec::sub(u[1], u[0]), v2 = vec::sub(u[2], u[0]);
+  Vec3d f1{}, f2{};
+  for (int c = 0; c < 3; ++c) {
+    f1[c] = r[c] + v1[c] * r[6];
+    f2[c] = r[3 + c] + v1[c] * r[7] + v2[c] * r[8];
+  }
+  const auto larger = [](double xx, double yy, double xy) { return (xx + yy) / 2 + std::hypot((xx - yy) / 2, xy); };
+  const double c11 = vec::dot(f1, f1), c22 = vec::dot(f2, f2), c12 = vec::dot(f1, f2);
+  const double e11 = (c11 - 1) / 2, e22 = (c22 - 1) / 2, c = stiffness();
+  const double stress = larger(c * (e11 + poisson * e22), c * (e22 + poisson * e11), c * (1 - poisson) * c12 / 2);
+  return young / (1 - poisson) * std::max(1.0, larger(c11, c22, c12)) + std::max(0.0, stress);
+}
+
 double Membrane::energy(const Record& r, const Corners& u) const {
   const Vec3d v1 = vec::sub(u[1], u[0]), v2 = vec::sub(u[2], u[0]);
   const Vec3d t1{r[0], r[1], r[2]}, t2{r[3], r[4], r[5]};

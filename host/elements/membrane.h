@@ -30,6 +30,8 @@ struct Membrane {
   /// An upper bound of the largest eigenvalue of its stiffness matrix at rest [N/m]: V E / (1 - nu) lambda_max(A), A = sum_a
   /// grad N_a grad N_a^T.
   [[nodiscard]] double stiffness_bound(const Record& record) const;
+  /// An upper bound of the tangent modulus at the displacements u, that multiplies V A [Pa].
+  [[nodiscard]] double tangent_bound(const Record& record, const Corners& u) const;
 };
 
 }  // namespace pliant

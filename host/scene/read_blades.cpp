@@ -70,6 +70,8 @@ void check_blades(const Reader& top, const Scene& scene) {
   }
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& b = scene.bodies[i];
+    if (cuts_by_force(scene) && b.model.substeps > 1)
+      bodies[i].at("model").at("substeps").fail("1, because the scene has a blade that cuts by force, in every step");
     const ElementInfo& info = element_info(b.element);
     if (b.mesh.empty() || info.splits) continue;
     bodies[i].at("element").fail(fmt::format("{}, because the scene has blades (a mesh of {} cannot be cut)",

@@ -101,10 +101,24 @@ std::vector<Join> read_joins(const Reader& joins, const Scene& scene) {
 
 void check_springs(const Reader& top, const Scene& scene) {
   for (const Body& body : scene.bodies) {
+    const Reader entry = top.at("bodies").items("a list of bodies")[static_cast<std::size_t>(&body - scene.bodies.data())];
+    if (body.membrane && scene.solver.enabled)
+      entry.at("membrane").fail("none beside \"solver\": {\"type\": \"static\"}, which knows no membranes");
+    const bool joined = std::any_of(scene.joins.begin(), scene.joins.end(), [&](const Join& j) {
+      return std::find(j.bodies.begin(), j.bodies.end(), body.name) != j.bodies.end();
+    });
+    if (body.model.substeps > 1 && (joined || body.membrane)) {
+      entry.at("model")
+          .at("substeps")
+          .fail(fmt::format("1, because of the {}, which pull on shape matching in every step",
+                            joined ? "joins" : "membrane's triangles"));
+    }
     if (body.model.type != ModelType::mass_spring) continue;
+    if (scene.solver.enabled)
+      entry.at("model").at("type").fail("tled beside \"solver\": {\"type\": \"static\"}, which knows no springs");
     if (element_info(body.element).corners != 4) {
-      top.at("bodies").items("a list of bodies")[static_cast<std::size_t>(&body - scene.bodies.data())].at("element").fail(
-          elements_with([](const ElementInfo& e) { return e.corners == 4; }) + ": springs lie along the edges of tetrahedra");
+      entry.at("element").fail(elements_with([](const ElementInfo& e) { return e.corners == 4; }) +
+                               ": springs lie along the edges of tetrahedra");
     }
     if (body.model.spring.damping > 0)
       require_integrator(top, scene, &IntegratorInfo::keeps_increment,

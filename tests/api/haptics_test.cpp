@@ -267,6 +267,22 @@ TEST(Haptics, WrongOptionsAreRefused) {
   EXPECT_EQ(message_of([&] { HapticLoop loop(world, "ball", device); }), "haptics: tool \"ball\" is parked; unpark it first");
 }
 
+TEST(Haptics, ADeviceDrivesOneLoopWithinItsLimits) {
+  World world(block_and_ball(), on("cpu")), other(block_and_ball(), on("cpu"));
+  auto device = std::make_shared<PressingDevice>(0.01, 1);
+  device->set_limit(-1);
+  EXPECT_EQ(message_of([&] { HapticLoop loop(world, "ball", device); }),
+            "haptic device: its limits are -1 N and inf N m, expected 0 or more");
+  device->set_limit(std::nan(""));
+  EXPECT_EQ(code_of([&] { HapticLoop loop(world, "ball", device); }), ErrorCode::usage);
+  device->set_limit(5);
+  HapticLoop loop(world, "ball", device);
+  EXPECT_EQ(message_of([&] { HapticLoop second(other, "ball", device); }),
+            "haptics: this device drives another loop; stop() that one first, or open the device again");
+  loop.stop();
+  HapticLoop second(other, "ball", device);
+}
+
 TEST(Haptics, WhatTheDeviceSaidPlaysAgain) {
   const test::TempFolder folder;
   World world(block_and_ball(), on("cpu"));

@@ -6,7 +6,7 @@
 #include "pliant/error.h"
 #include "scene/scene.h"
 
-namespace pliant {
+namespace pliant::blade_force_test {
 namespace {
 
 nlohmann::json by_force() {
@@ -64,4 +64,4 @@ TEST(BladeByForce, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace pliant
+}  // namespace pliant::blade_force_test

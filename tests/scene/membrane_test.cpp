@@ -22,9 +22,9 @@ TEST(SceneMembrane, EachMistakeHasOneMessage) {
       {"", "{}", "/bodies/0/membrane: got no \"thickness\", expected"},
       {"/thickness", "0", "/bodies/0/membrane/thickness: got 0, expected a number > 0"},
       {"/young", "-1", "/bodies/0/membrane/young: got -1, expected a number > 0"},
-      {"/poisson", "0.6", "/bodies/0/membrane/poisson: got 0.6, expected a number from 0 to 0.5"},
+      {"/poisson", "0.6", "/bodies/0/membrane/poisson: got 0.6, expected a number with 0 <= poisson <= 0.5"},
       {"/density", "-1", "/bodies/0/membrane/density: got -1, expected a number >= 0"},
-      {"/bending", "1", "/bodies/0/membrane/bending: unknown key"},
+      {"/bending", "1", "/bodies/0/membrane: got the unknown key \"bending\""},
   };
   ASSERT_EQ(model_test::message(good().dump()), "");
   EXPECT_TRUE(schema().findings(good()).empty());
@@ -35,6 +35,15 @@ TEST(SceneMembrane, EachMistakeHasOneMessage) {
     EXPECT_NE(got.find(expected), std::string::npos) << got;
     EXPECT_FALSE(schema().findings(scene).empty()) << pointer;
   }
+}
+
+TEST(SceneMembrane, StaticSolutionsRefuseIt) {
+  Json scene = good();
+  scene["solver"] = {{"type", "static"}};
+  EXPECT_NE(
+      model_test::message(scene.dump()).find("/bodies/0/membrane: got an object with 2 keys, expected none beside \"solver\""),
+      std::string::npos)
+      << model_test::message(scene.dump());
 }
 
 TEST(SceneMembrane, IsWrittenAndReadAgain) {

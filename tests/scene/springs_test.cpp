@@ -50,7 +50,7 @@ TEST(SceneSprings, EachMistakeHasOneMessage) {
        "/bodies/1/model/spring: got {}, expected no \"spring\" beside the type tled"},
       {"/bodies/0/element", R"("hex8")", "/bodies/0/element: got \"hex8\", expected tet4", false},
       {"/integrator", R"("textbook")", "/integrator: got \"textbook\"", false},
-      {"/solver", R"({"type": "static"})", "/joins: got [{", false},
+      {"/solver", R"({"type": "static"})", "/bodies/0/model/type: got \"mass-spring\", expected tled beside", false},
   };
   ASSERT_EQ(model_test::message(good().dump()), "");
   EXPECT_TRUE(schema().findings(good()).empty());
@@ -63,6 +63,13 @@ TEST(SceneSprings, EachMistakeHasOneMessage) {
       EXPECT_FALSE(schema().findings(scene).empty()) << m.pointer << " = " << m.value;
     }
   }
+}
+
+TEST(SceneSprings, StaticSolutionsRefuseJoins) {
+  Json scene = good();
+  scene["bodies"][0].erase("model");
+  scene["solver"] = {{"type", "static"}};
+  EXPECT_EQ(model_test::message(scene.dump()).substr(0, 26), "dir/s.json: /joins: got [{");
 }
 
 TEST(SceneSprings, SurfacesHaveNone) {

@@ -100,7 +100,17 @@ void add_join(const Scene& scene, std::int32_t number, Model& model) {
     batch.parameters.push_back(spring_parameters(join.spring, length, 1, join.spring.stiffness));
     batch.damper.push_back(join.spring.damping);
   }
-  if (!join.broken.empty()) batch.broken.assign(batch.size(), 0);
+  // After a cut a corner of a lattice may have no element left, which would hold its springs at a place in space.
+  const auto gone = [&](std::size_t i) {
+    return !(model.mass[static_cast<std::size_t>(a.slot[pairs[i][0]])] > 0) ||
+           !(model.mass[static_cast<std::size_t>(b.slot[pairs[i][1]])] > 0);
+  };
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (!gone(i)) continue;
+    batch.broken.resize(batch.size(), 0);
+    batch.broken[i] = 1;
+  }
+  if (!join.broken.empty()) batch.broken.resize(batch.size(), 0);
   for (const std::int32_t s : join.broken) {
     if (s >= 0 && static_cast<std::size_t>(s) < batch.size()) batch.broken[static_cast<std::size_t>(s)] = 1;
   }

@@ -29,7 +29,7 @@ SlotStiffness slot_stiffness(const Model& model) {
       }
     }
   }
-  add_membrane_stiffness(model, out.sum);
+  add_membrane_stiffness(model, nullptr, out.sum);
   return out;
 }
 
@@ -59,6 +59,7 @@ double rest_stiffness(const SpringBatch& b, std::size_t s) {
 void note_link_bounds(Model& model) {
   if (model.links.empty()) return;
   for (const SpringBatch& b : model.links.springs) {
+    if (b.join >= 0) continue;  // nodes of two bodies may rest at almost one place
     for (const double length : b.length) {
       if (length > 0 && (model.shortest == 0 || length < model.shortest)) model.shortest = length;
     }

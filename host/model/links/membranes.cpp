@@ -9,6 +9,7 @@
 
 #include "geometry/vec.h"
 #include "model/links/build_links.h"
+#include "model/matching/flsm.h"
 #include "pliant/error.h"
 
 namespace pliant {
@@ -35,6 +36,7 @@ void check_edges(const Scene& scene, const Body& body, const ModelSurface& surfa
   std::map<std::pair<std::int32_t, std::int32_t>, int> triangles;
   for (std::int32_t t = first; t < end; ++t) {
     const auto& v = surface.triangles[static_cast<std::size_t>(t)];
+    if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) continue;
     for (std::size_t a = 0; a < 3; ++a) {
       const std::int32_t from = v[a], to = v[(a + 1) % 3];
       if (++triangles[std::minmax(from, to)] > 2) fail_edge(scene, body, surface.rest[static_cast<std::size_t>(from)]);
@@ -56,7 +58,8 @@ class Skin {
                               scene.bodies[body].pointer));
     }
     point_.assign(model.surface.rest.size(), -1);
-    check_edges(scene, scene.bodies[body], model.surface, own.first_triangle, own.first_triangle + own.triangles);
+    if (model.surface.triangle_cut.empty())
+      check_edges(scene, scene.bodies[body], model.surface, own.first_triangle, own.first_triangle + own.triangles);
     for (std::int32_t t = own.first_triangle; t < own.first_triangle + own.triangles; ++t) add(static_cast<std::size_t>(t));
   }
   MembraneBatch take() { return std::move(out_); }
@@ -112,13 +115,24 @@ void add_membranes(const Scene& scene, Model& model) {
     MembraneBatch batch = Skin(scene, b, model).take();
     if (batch.size() > 0) model.links.membranes.push_back(std::move(batch));
   }
+  for (FlsmBatch& batch : model.flsm) weigh(batch, model.mass);
   note_link_bounds(model);
 }
 
-void add_membrane_stiffness(const Model& model, std::vector<double>& sum) {
+void add_membrane_stiffness(const Model& model, const std::vector<double>* u, std::vector<double>& sum) {
+  const auto moved = [&](std::int32_t slot) {
+    const double* at = u->data() + 4 * static_cast<std::size_t>(slot);
+    return Vec3d{at[0], at[1], at[2]};
+  };
   for (const MembraneBatch& b : model.links.membranes) {
     for (std::size_t t = 0; t < b.size(); ++t) {
-      const double scale = b.records[t].back() * b.law.young / (1 - b.law.poisson);
+      double modulus = b.law.young / (1 - b.law.poisson);
+      if (u != nullptr) {
+        Membrane::Corners corners{};
+        for (std::size_t a = 0; a < 3; ++a) corners[a] = model.links.points.value(b.points[t][a], moved);
+        modulus = b.law.tangent_bound(b.records[t], corners);
+      }
+      const double scale = b.records[t].back() * modulus;
       for_each_gradient(model.links.points, b, t, [&](std::int32_t i, const auto& g) {
         for_each_gradient(model.links.points, b, t, [&](std::int32_t, const auto& h) {
           sum[static_cast<std::size_t>(i)] += scale * std::abs(g[0] * h[0] + g[1] * h[1]);

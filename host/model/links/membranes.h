@@ -35,7 +35,8 @@ void for_each_gradient(const LinkPoints& points, const MembraneBatch& b, std::si
 
 /// Adds to `sum` [slots] what bounds the stiffness of the membranes at each slot [N/m]: the sums of the absolute values of its
 /// row, V E / (1 - nu) sum_j |g_i . g_j| with the gradients g of for_each_gradient (Gershgorin). Points of one cell move
-/// together, so a small triangle is not stiff.
-void add_membrane_stiffness(const Model& model, std::vector<double>& sum);
+/// together, so a small triangle is not stiff. `u` ([slots][4] [m]; null: at rest): E / (1 - nu) times the largest squared
+/// stretch, plus the largest principal stress.
+void add_membrane_stiffness(const Model& model, const std::vector<double>* u, std::vector<double>& sum);
 
 }  // namespace pliant

@@ -79,6 +79,7 @@ SpringState spring_state(const Spring& law, const std::array<double, 2>& paramet
       break;
   }
   const SpringState s = curve_state(law.curve, e);
+  if (law.slack && s.force <= 0) return {};
   return {second * s.force, second * s.slope, second * s.energy};
 }
 

@@ -99,7 +99,7 @@ std::vector<double> nodal_stiffness(const Model& model, const std::vector<double
     }
   });
   add_link_stiffness(model, u, wanted, sum);
-  add_membrane_stiffness(model, sum);
+  add_membrane_stiffness(model, &u, sum);
   return sum;
 }
 

@@ -146,6 +146,7 @@ std::vector<CutEdges> BladeFronts::update(EditedBodies& bodies, const std::vecto
       continue;
     }
     const Edge edge(b, blade.samples.size(), size, now, until);
+    if (!(edge.spacing > 0)) continue;  // its ends pass through each other
     let_go(blade, edge, bodies);
     give_way(blade, edge, bodies, edges);
     turn(blade, edge);
@@ -364,19 +365,20 @@ void BladeFronts::meet(PressedBlade& blade, const Edge& edge, EditedBodies& bodi
   }
 }
 
-const Material& BladeFronts::material(std::size_t body, std::int32_t cell, EditedBodies& bodies) {
+Material BladeFronts::material(std::size_t body, std::int32_t cell, EditedBodies& bodies) {
   const auto known = materials_.find(body);
   const ElementMaterials& all =
       known != materials_.end()
           ? known->second
           : materials_.emplace(body, element_materials(run_.scene.bodies[body], bodies.uncut(body))).first->second;
-  return material_of(run_.scene.bodies[body], all.index.empty() ? 0 : all.index[static_cast<std::size_t>(cell)]);
+  if (all.index.empty()) return material_of(run_.scene.bodies[body], 0);
+  return material_of(run_.scene.bodies[body], all, static_cast<std::size_t>(cell));
 }
 
 /// F* = K_I kappa zeta dA on the footprint dA = 2 r l; 0 where the element below breaks by itself (Mendoza et al.).
 double BladeFronts::limit(const Blade& blade, const FrontSample& s, double length, EditedBodies& bodies) {
   const auto b = static_cast<std::size_t>(s.body);
-  const Material& m = material(b, s.point.cell, bodies);
+  const Material m = material(b, s.point.cell, bodies);
   if (m.toughness == 0) return kNeverGives;
   const BreakingLaw law{blade.sharpness, s.zeta, m.toughness};
   if (kind_of(s) == FrontKind::held) {

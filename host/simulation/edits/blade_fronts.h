@@ -43,7 +43,7 @@ class BladeFronts {
   void meet(PressedBlade& blade, const Edge& edge, EditedBodies& bodies, const std::vector<Vec3d>& surface);
   static void weaken(PressedBlade& blade, FrontSample& sample, const Edge& edge);
   [[nodiscard]] double limit(const Blade& blade, const FrontSample& sample, double length, EditedBodies& bodies);
-  [[nodiscard]] const Material& material(std::size_t body, std::int32_t cell, EditedBodies& bodies);
+  [[nodiscard]] Material material(std::size_t body, std::int32_t cell, EditedBodies& bodies);
 
   RunContext& run_;
   std::vector<std::vector<Vec3d>> x_;  ///< present positions of the nodes of each body [m]

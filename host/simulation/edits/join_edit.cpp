@@ -46,8 +46,10 @@ void TopologyEdits::break_joins() {
   const auto model = std::make_shared<Model>(*old);
   for (SpringBatch& b : model->links.springs) {
     if (b.join < 0) continue;
-    b.broken.assign(b.size(), 0);
-    for (const std::int32_t s : broken[static_cast<std::size_t>(b.join)]) b.broken[static_cast<std::size_t>(s)] = 1;
+    b.broken.resize(b.size(), 0);
+    for (const std::int32_t s : broken[static_cast<std::size_t>(b.join)]) {
+      if (s >= 0 && static_cast<std::size_t>(s) < b.size()) b.broken[static_cast<std::size_t>(s)] = 1;
+    }
   }
   const Snapshot before = take_snapshot(run_);
   try {

@@ -44,7 +44,6 @@ void ModelSwap::run(const Scene& scene, std::vector<NodeOrigins> origins, const 
   origins_ = std::move(origins);
   const std::vector<const BodyMesh*> solids = bodies_.solids();
   model_ = std::make_shared<Model>(build_elements(scene, solids, old_model_.get()));
-  ballast_ = carried_ballast();
   kept_ = keeps_surface();
   // The surface takes longest, so it comes last unless loads need it.
   const bool first = needs_surface(scene);
@@ -53,9 +52,10 @@ void ModelSwap::run(const Scene& scene, std::vector<NodeOrigins> origins, const 
     take_surfaces(solids, ready);
     add_membranes(scene, *model_);
   }
+  ballast_ = carried_ballast();           // in proportion to masses, of membranes too
   set_ballast(scene, *model_, ballast_);  // the last that can refuse a scene; nothing has changed so far
   try {
-    load_steps(scene);
+    load_steps();
     if (!first) {
       take_surfaces(solids, ready);
       report_.model += clock_.lap();
@@ -133,7 +133,7 @@ void ModelSwap::carry_state(Program& program) const {
   }
 }
 
-void ModelSwap::load_steps(const Scene& scene) {
+void ModelSwap::load_steps() {
   Program program = build_program(*model_, run_.program_options());
   Buffer &u = program.at(program.find("node_u")), &w = program.at(program.find("node_w"));
   new_u_ = u.reals;

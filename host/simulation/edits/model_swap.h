@@ -43,7 +43,7 @@ class ModelSwap {
   [[nodiscard]] bool keeps_nodes() const;
   /// Gives the new Program what the old one holds beside the motion, such as contact and shape matching.
   void carry_state(Program& program) const;
-  void load_steps(const Scene& scene);
+  void load_steps();
   void load_surface();
   void carry_motion();
   void restore();

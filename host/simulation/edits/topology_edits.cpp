@@ -62,6 +62,10 @@ bool belongs(const FrontSample& s, EditedBodies& all) {
   if (s.body < 0 || static_cast<std::size_t>(s.body) >= all.size()) return false;
   const auto b = static_cast<std::size_t>(s.body);
   if (!can_be_cut(all.uncut(b))) return false;
+  for (const double w : s.point.weight) {
+    if (!std::isfinite(w)) return false;
+  }
+  if (!std::isfinite(s.advance + s.depth + s.zeta + s.limit)) return false;
   const CutMesh& mesh = all.cut(b).topology().mesh();
   return s.point.cell >= 0 && s.point.cell < static_cast<std::int64_t>(mesh.cells.size()) && s.point.tet >= 0 &&
          s.point.tet < static_cast<std::int64_t>(mesh.shape->tets.size());

@@ -25,6 +25,14 @@ class Hash {
   void add(const std::vector<T>& values) {
     add(values.data(), values.size() * sizeof(T));
   }
+  void add(const Blade& blade) {
+    add(blade.name);
+    add(blade.start);
+    add(blade.end);
+    add(blade.path);
+    if (blade.cuts != BladeCuts::by_force) return;
+    for (const double number : {blade.sharpness, blade.edge, blade.friction}) add(number);
+  }
   void add(const Program& program) {
     for (const Buffer& b : program.buffers) {
       if (b.role != BufferRole::constant && b.name != "node_u" && b.name != "node_w") continue;
@@ -93,7 +101,7 @@ std::vector<ModelPart> parts_of(const Scene& scene, const RunSettings& settings,
   part("break_stretch");
   add(scene.break_stretch, static_cast<double>(scene.cuttable));
   part("blades");
-  for (const Blade& blade : scene.blades) add(blade.name, blade.start, blade.end, blade.path);
+  for (const Blade& blade : scene.blades) add(blade);
   part("focus");
   add(scene.focus.path);
   for (const Body& body : scene.bodies) {

@@ -53,7 +53,10 @@ void StepControl::start(double wanted, bool estimate_always) {
     run_.state.limit.stable_dt = stable.coupled;
     dt = wanted > 0 ? wanted : std::min(run_.scene.safety * stable.coupled, longest);
     // Every cut leaves elements that are stable at the element bound: the mass and stiffness of each copy scale alike.
-    if (wanted <= 0 && !run_.scene.blades.empty()) {
+    // Slack springs pull only when they are longer than at rest, and an estimate there sees some of them.
+    const auto slack = [](const SpringBatch& b) { return b.law.slack; };
+    const bool any_slack = std::any_of(model.links.springs.begin(), model.links.springs.end(), slack);
+    if (wanted <= 0 && (!run_.scene.blades.empty() || any_slack)) {
       dt = std::min(dt, run_.scene.safety * bound_step(run_, model.element_bound));
     }
     if (wanted > 0) check_beta(run_, wanted, stable.elements);
