@@ -25,7 +25,7 @@ HapticLoop::HapticLoop(World& world, const std::string& tool, std::shared_ptr<Ha
   if (device == nullptr) throw Error(ErrorCode::usage, "haptics: the device is null");
   const DeviceLimits limits = device->limits();
   devices::check_limits(limits);
-  impl_->claim.emplace(device.get());
+  const HapticDevice* const driver = device.get();
   if (options.log_samples > 0) {
     impl_->log = std::make_shared<devices::DeviceLog>(options.log_samples);
     device = std::make_shared<devices::RecordedDevice>(std::move(device), impl_->log);
@@ -36,6 +36,7 @@ HapticLoop::HapticLoop(World& world, const std::string& tool, std::shared_ptr<Ha
   const Pose start = WorldAccess::attach(world, instrument);
   const haptics::CoreOptions core = api::core_options(options, limits);
   try {
+    impl_->claim.emplace(driver);
     impl_->thread = std::make_unique<api::HapticThread>(instrument, std::move(device), options, core, start);
   } catch (...) {
     instrument->closed = true;
