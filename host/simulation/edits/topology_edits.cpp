@@ -217,8 +217,10 @@ std::unique_ptr<EditedBodies> TopologyEdits::bodies_at(const RunState& state) co
     if (!ordered || (!cells.empty() && (cells.front() < 0 || cells.back() >= last))) refuse("its moved regions");
   }
   all->replay(state);
-  for (const auto& [name, blade] : state.pressed) {
-    const auto own = std::find_if(scene.blades.begin(), scene.blades.end(), [&](const Blade& b) { return b.name == name; });
+  for (const auto& pressed : state.pressed) {
+    const PressedBlade& blade = pressed.second;
+    const auto own =
+        std::find_if(scene.blades.begin(), scene.blades.end(), [&](const Blade& b) { return b.name == pressed.first; });
     const bool known = own != scene.blades.end() && own->cuts == BladeCuts::by_force &&
                        blade.samples.size() == static_cast<std::size_t>(sample_count(*own, run_.settings.blade_edge));
     if (!known ||
