@@ -63,7 +63,7 @@ void blade_press(Range range, const Scalar* node_u, const Scalar* node_w, const 
         push = gap / p.w;
         if (push > most) {
           push = most;
-          blade_front[2 * i] += gap - most * p.w;
+          blade_front[2 * i] += gap - std::fma(most, p.w, Scalar(0));  // the rounded product, as in the kernel
         }
         blade_front[2 * i + 1] += Scalar(1);
         Vec<Scalar> slip, side;
