@@ -2,6 +2,7 @@
 // -1: none; blade_free: [nodes] bit mask of the free components; blade_first: [nodes + 1] into blade_entry: positions in blade_weight, ascending;
 // blade_weight: [samples][8]; blade_force: [steps][samples][4] [N].
 #include "arith.cl"
+#include "contact_move.cl"
 
 __kernel void blade_apply(__global float* node_u, __global float* node_w, __global const int* blade_slot, __global const int* blade_free,
                           __global const int* blade_first, __global const int* blade_entry, __global const float* blade_weight,
@@ -19,19 +20,5 @@ __kernel void blade_apply(__global float* node_u, __global float* node_w, __glob
     fy = fma(weight, force[1], fy);
     fz = fma(weight, force[2], fz);
   }
-  __global float* u = node_u + 4 * slot;
-  __global float* w = node_w + 4 * slot;
-  const float bm = fma(half_hh, w[3], half_hh) * u[3];
-  if (free & 1) {
-    u[0] = fma(bm, fx, u[0]);
-    w[0] = fma(bm, fx, w[0]);
-  }
-  if (free & 2) {
-    u[1] = fma(bm, fy, u[1]);
-    w[1] = fma(bm, fy, w[1]);
-  }
-  if (free & 4) {
-    u[2] = fma(bm, fz, u[2]);
-    w[2] = fma(bm, fz, w[2]);
-  }
+  contact_move(node_u + 4 * slot, node_w + 4 * slot, free, half_hh, fx, fy, fz);
 }

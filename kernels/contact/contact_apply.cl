@@ -7,6 +7,7 @@
 // zero over a point's nodes, for touch_moment (touch_point.cl). With EDGES contact_gather_corner: [rows][16] index of this node within the point, -1:
 // none, for contact_corner_force (contact_edge.cl). contact_node_sum: [slots] (force (3) [N], sum of weights times areas of the touching points [m^2]).
 #include "arith.cl"
+#include "contact_move.cl"
 
 // Adds what the point of an entry of contact_gather gives to its node, if it touches.
 static inline void add_entry(int entry, __global const int* contact_gather, __global const int* contact_gather_units, __global const int* contact_gather_turns,
@@ -89,19 +90,6 @@ __kernel void contact_apply(__global float* node_u, __global float* node_w, __gl
     __global float* u = node_u + 4 * slot;
     __global float* w = node_w + 4 * slot;
     vstore4((float4)(fx, fy, fz, area[l]), slot, contact_node_sum);
-    if (free == 0) continue;
-    const float bm = fma(half_hh, w[3], half_hh) * u[3];
-    if (free & 1) {
-      u[0] = fma(bm, fx, u[0]);
-      w[0] = fma(bm, fx, w[0]);
-    }
-    if (free & 2) {
-      u[1] = fma(bm, fy, u[1]);
-      w[1] = fma(bm, fy, w[1]);
-    }
-    if (free & 4) {
-      u[2] = fma(bm, fz, u[2]);
-      w[2] = fma(bm, fz, w[2]);
-    }
+    contact_move(u, w, free, half_hh, fx, fy, fz);
   }
 }
