@@ -92,6 +92,25 @@ struct Tools {
   }
 };
 
+/// The depth that a point has through its held nodes. `at`: the place of the meeting.
+template <class Scalar>
+inline Scalar held_depth(const Points<Scalar>& points, const Scalar* contact_share, const Scalar* contact_held, std::int64_t i,
+                         const Vec<Scalar>& at, const Meeting<Scalar>& m) {
+  const Scalar *held = contact_held + tile_base(i, 4), part = held[std::int64_t{3} * PLIANT_TILE];
+  if (!(part > Scalar(0))) return 0;
+  Vec<Scalar> u{};
+  for (std::int64_t a = 0, base = tile_base(i, 8); a < 8; ++a) {
+    const std::int64_t plane = base + a * PLIANT_TILE, texel = std::int64_t{4} * points.node[plane];
+    if (contact_share[plane] > Scalar(0)) continue;
+    for (std::size_t k = 0; k < 3; ++k)
+      u[k] = std::fma(points.weight[plane], points.node_u[texel + static_cast<std::int64_t>(k)], u[k]);
+  }
+  Vec<Scalar> place;
+  for (std::size_t k = 0; k < 3; ++k) place[k] = held[static_cast<std::int64_t>(k) * PLIANT_TILE] + u[k];
+  const Scalar distance = std::fma(part, m.distance, dot(m.normal, scaled_sum(-part, at, place)));
+  return distance < Scalar(0) ? -distance : Scalar(0);
+}
+
 inline constexpr double quantum_limit = 67108864.0;
 
 template <class Scalar>

@@ -7,10 +7,10 @@ namespace {
 
 using namespace contact;
 
-/// The normal force on a point.
+/// The normal force on a point. `held`: the depth that no force takes back.
 template <class Scalar>
-Scalar normal_force(const Meeting<Scalar>& m, const Scalar* law, Scalar area, Scalar stiffness, Scalar h) {
-  const Scalar depth = -m.distance, opening = m.opening, before = depth + opening;
+Scalar normal_force(const Meeting<Scalar>& m, Scalar held, const Scalar* law, Scalar area, Scalar stiffness, Scalar h) {
+  const Scalar depth = -m.distance - held, opening = m.opening, before = depth + opening;
   Scalar push = 0;
   if (law[12] > Scalar(0) && before > Scalar(0)) {
     const Scalar spring = (area * law[12]) * (law[16] > Scalar(0) ? before * std::sqrt(before) : before);
@@ -78,8 +78,8 @@ Reached reach(const EdgedTools<Scalar, EDGES>& all, [[maybe_unused]] const Corne
 template <class Scalar, int EDGES>
 void contact_press(Range range, const Scalar* node_u, const Scalar* node_w, const Scalar* contact_rest,
                    const std::int32_t* contact_node, const Scalar* contact_weight, const Scalar* contact_share,
-                   const std::int32_t* contact_list, const std::int32_t* contact_near, Scalar* contact_yield,
-                   Scalar* contact_anchor, std::int32_t* contact_force, std::int32_t* contact_tool_force,
+                   const Scalar* contact_held, const std::int32_t* contact_list, const std::int32_t* contact_near,
+                   Scalar* contact_yield, Scalar* contact_anchor, std::int32_t* contact_force, std::int32_t* contact_tool_force,
                    const std::int32_t* tool_kind, const Scalar* tool_data, const Scalar* tool_grid, const Scalar* tool_edge,
                    const Scalar* tool_pose, const Scalar* touch_surface, const Scalar* contact_patch,
                    Scalar* contact_corner_weight, std::int32_t* contact_corner_force, const Scalar* contact_params,
@@ -99,8 +99,8 @@ void contact_press(Range range, const Scalar* node_u, const Scalar* node_w, cons
     const std::int32_t touching = reached.touching, count = reached.count;
     const PointNumbers<Scalar> anchor = numbers_of(contact_anchor, i);
     const PointNumbers<std::int32_t> force = numbers_of(contact_force, i);
-    const std::int32_t held = static_cast<std::int32_t>(anchor[3]) - 1;
-    if (held >= 0 && (touching >> held & 1) == 0) anchor[3] = 0;
+    const std::int32_t stuck_to = static_cast<std::int32_t>(anchor[3]) - 1;
+    if (stuck_to >= 0 && (touching >> stuck_to & 1) == 0) anchor[3] = 0;
     Quanta sum{};
     corners.clear(i);
     Scalar w = contact_yield[i];
@@ -116,13 +116,13 @@ void contact_press(Range range, const Scalar* node_u, const Scalar* node_w, cons
       const Meeting<Scalar>& m = met.m;
       const Scalar stiffness = (whole * met.share) * met.ease;
       const Scalar* law = all.law(t);
-      const Scalar push = normal_force(m, law, area, stiffness, h);
+      const Scalar held = held_depth(points, contact_share, contact_held, i, met.place, m);
+      const Scalar push = normal_force(m, held, law, area, stiffness, h);
       Vec<Scalar> f = times(m.normal, push);
       if (law[14] > Scalar(0)) {
         const auto own = static_cast<Scalar>(t + 1);
         if (anchor[3] == Scalar(0)) {
-          const Vec<Scalar> stuck = turned_back(all.now(t), difference(difference(p.now, p.moved), origin_of(all.now(t))));
-          set_three(anchor, stuck);
+          set_three(anchor, turned_back(all.now(t), difference(difference(p.now, p.moved), origin_of(all.now(t)))));
           anchor[3] = own;
         }
         if (anchor[3] == own) f = press_friction(m, all.next(t), anchor, stiffness, law[14] * push, f);

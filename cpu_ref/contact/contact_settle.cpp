@@ -47,8 +47,8 @@ Scalar yield_of_touching(const Points<Scalar>& points, const Scalar* contact_sha
 template <class Scalar, int EDGES>
 void contact_settle(Range range, const Scalar* node_u, const Scalar* node_w, const Scalar* contact_rest,
                     const std::int32_t* contact_node, const Scalar* contact_weight, const Scalar* contact_share,
-                    const std::int32_t* contact_list, const std::int32_t* contact_near, Scalar* contact_yield,
-                    Scalar* contact_anchor, std::int32_t* contact_force, std::int32_t* contact_change,
+                    const Scalar* contact_held, const std::int32_t* contact_list, const std::int32_t* contact_near,
+                    Scalar* contact_yield, Scalar* contact_anchor, std::int32_t* contact_force, std::int32_t* contact_change,
                     const Scalar* contact_node_sum, std::int32_t* contact_tool_force, const std::int32_t* tool_kind,
                     const Scalar* tool_data, const Scalar* tool_grid, const Scalar* tool_edge, const Scalar* tool_pose,
                     const Scalar* touch_surface, const Scalar* contact_patch, Scalar* contact_corner_weight,
@@ -75,8 +75,7 @@ void contact_settle(Range range, const Scalar* node_u, const Scalar* node_w, con
       contact_yield[i] = yield_of_touching(points, contact_share, contact_node_sum, i, half_hh, weight);
       std::int32_t count = 0;
       for (std::int32_t t = 0; t < tools; ++t) count += touching >> t & 1;
-      const Scalar area = points.area(i);
-      const Scalar whole = known > Scalar(0) ? area / (known * static_cast<Scalar>(count)) : Scalar(0);
+      const Scalar whole = known > Scalar(0) ? points.area(i) / (known * static_cast<Scalar>(count)) : Scalar(0);
       for (std::int32_t t = 0; t < tools; ++t) {
         if ((touching >> t & 1) == 0) continue;
         const PatchMeeting<Scalar, EDGES> met = all.meet_patch(t, i, p);
@@ -84,7 +83,8 @@ void contact_settle(Range range, const Scalar* node_u, const Scalar* node_w, con
         const Scalar stiffness = (whole * met.share) * met.ease;
         const PointNumbers<std::int32_t> on_tool = tool_force_of(contact_tool_force, point_count, t, i);
         const Scalar* law = all.law(t);
-        const Scalar rest = -m.distance - law[15], push = rest > Scalar(0) ? stiffness * rest : Scalar(0);
+        const Scalar held = held_depth(points, contact_share, contact_held, i, met.place, m);
+        const Scalar rest = (-m.distance - held) - law[15], push = rest > Scalar(0) ? stiffness * rest : Scalar(0);
         Vec<Scalar> f = times(m.normal, push);
         Quanta before{};
         if (count == 1) {

@@ -8,6 +8,14 @@ namespace {
 
 using namespace touch;
 
+/// Lowers the offset of a pair where its depth at the start of the step, at the gap `start`, exceeds the limit.
+template <class Scalar>
+void limit_start(const Place<Scalar>& lower, const Place<Scalar>& upper, Scalar start, Scalar ease, Scalar& offset) {
+  const Scalar sparse = lower.density < upper.density ? lower.density : upper.density;
+  const Scalar most = start + (Scalar(4) * ease) / sparse;
+  if (offset > most) offset = most;
+}
+
 /// Friction of a pair towards its anchor, at most `most`; sets the anchor if there is none.
 template <class Scalar>
 Vec<Scalar> press_friction(const Place<Scalar>& lower, const Pair<Scalar>& p, Scalar* anchor, Scalar stiffness, Scalar most,
@@ -52,14 +60,14 @@ void touch_press(Range range, const Scalar* touch_place, const std::int32_t* con
       std::int32_t* own = pair_force(touch_force, i, s);
       own[std::int64_t{3} * PLIANT_TILE] = 0;
       if (!(numbers[0] > Scalar(0))) continue;
-      const Place<Scalar> other = place_of(touch_place, j);
-      const Place<Scalar>&lower = i < j ? mine : other, &upper = i < j ? other : mine;
+      const Place<Scalar> other = place_of(touch_place, j), &lower = i < j ? mine : other, &upper = i < j ? other : mine;
       Scalar *anchor = numbers + std::int64_t{2} * PLIANT_TILE, *stuck = anchor + std::int64_t{3} * PLIANT_TILE;
       const Vec<Scalar> moved = difference(lower.moved, upper.moved);
       const Scalar front = front_of(lower, upper, moved), w = lower.yielding + upper.yielding;
       if (front < within) touching |= PLIANT_READY_BIT;
       const bool meets = front < far && w > Scalar(0);
       const Pair<Scalar> p = meets ? pair_of(lower, upper) : Pair<Scalar>{};
+      if (meets) limit_start(lower, upper, dot(difference(p.apart, moved), p.normal), contact_params[8], numbers[PLIANT_TILE]);
       const Scalar depth = numbers[PLIANT_TILE] - p.gap;
       if (!meets || !(depth > Scalar(0))) {
         *stuck = 0;

@@ -67,6 +67,26 @@ static inline meeting meet(__global const int* tool_kind, __global const float* 
   return m;
 }
 
+// The depth that a point has through its held nodes, where they are inside the tool (a tool pressed over the edge of what is held). They do not give
+// way: forces that took it back from the other nodes would never end and, being those of a step, grow as steps get shorter, until the elements between
+// are lost. `at`: the place of the meeting; contact_held: [tiles][4][16] the held nodes' undeformed positions times their weights (3) [m], and the sum
+// of these weights.
+static inline float held_depth(__global const float* node_u, __global const int* contact_node, __global const float* contact_weight,
+                               __global const float* contact_share, __global const float* contact_held, int i, float4 at, meeting m) {
+  __global const float* held = contact_held + POINT_BASE(i, 4);
+  const float part = held[3 * PLIANT_TILE];
+  if (!(part > 0.0f)) return 0.0f;
+  float4 u = 0.0f;
+  for (int a = 0; a < 8; ++a) {
+    const int plane = POINT_BASE(i, 8) + a * PLIANT_TILE;
+    if (contact_share[plane] > 0.0f) continue;
+    u = fma((float4)(contact_weight[plane]), vload4(contact_node[plane], node_u), u);
+  }
+  const float4 place = (float4)(held[0] + u.x, held[PLIANT_TILE] + u.y, held[2 * PLIANT_TILE] + u.z, 0.0f);
+  const float distance = fma(part, m.distance, dot_xyz(m.normal, fma((float4)(-part), at, place)));
+  return distance < 0.0f ? -distance : 0.0f;
+}
+
 // Fraction of the margin within which a point may touch in the next step. It is larger for points that were within it before, so that the set of
 // these points does not flicker.
 static inline float ready_share(float yield) { return yield > 0.0f ? 0.24f : 0.08f; }

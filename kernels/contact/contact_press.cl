@@ -17,7 +17,8 @@
 
 __kernel void contact_press(__global const float* node_u, __global const float* node_w, __global const float* contact_rest,
                             __global const int* contact_node, __global const float* contact_weight,
-                            __global const float* contact_share, __global const int* contact_list, __global const int* contact_near, __global float* contact_yield,
+                            __global const float* contact_share, __global const float* contact_held, __global const int* contact_list,
+                            __global const int* contact_near, __global float* contact_yield,
                             __global float* contact_anchor, __global int* contact_force, __global int* contact_tool_force, __global const int* tool_kind,
                             __global const float* tool_data, __global const float* tool_grid, __global const float* tool_edge,
                             __global const float* tool_pose, __global const float* touch_surface, __global const float* contact_patch,
@@ -49,8 +50,8 @@ __kernel void contact_press(__global const float* node_u, __global const float* 
     }
     __global float* anchor = contact_anchor + POINT_BASE(i, 4);
     __global int* force = contact_force + POINT_BASE(i, 4);
-    const int held = (int)anchor[3 * PLIANT_TILE] - 1;
-    if (held >= 0 && !(touching >> held & 1)) anchor[3 * PLIANT_TILE] = 0.0f;
+    const int stuck_to = (int)anchor[3 * PLIANT_TILE] - 1;
+    if (stuck_to >= 0 && !(touching >> stuck_to & 1)) anchor[3 * PLIANT_TILE] = 0.0f;
     int4 sum = 0;
     float w = contact_yield[i];
     if (touching != 0 && !(w > 0.0f)) {  // compliance from touching points is not known yet
@@ -75,7 +76,8 @@ __kernel void contact_press(__global const float* node_u, __global const float* 
       const meeting m = met.m;
       const float stiffness = (whole * met.share) * met.ease;
       __global const float* data = tool_data + TOOL_NUMBERS * t;
-      const float depth = -m.distance, opening = m.opening, before = depth + opening;
+      const float held = held_depth(node_u, contact_node, contact_weight, contact_share, contact_held, i, met.at.now, m);
+      const float depth = -m.distance - held, opening = m.opening, before = depth + opening;
       float push = 0.0f;
       if (data[12] > 0.0f && before > 0.0f) {
         const float spring = (area * data[12]) * (data[16] > 0.0f ? before * sqrt(before) : before);
@@ -109,7 +111,8 @@ __kernel void contact_press(__global const float* node_u, __global const float* 
       const int4 q = (int4)(quanta(f.x * inverse), quanta(f.y * inverse), quanta(f.z * inverse), 0);
       for (int c = 0; c < 6; ++c) on_tool[c * PLIANT_TILE] = 0;
       add_to_tool(on_tool, tool_pose + POSE_NUMBERS * ((step + 1) * tools + t), contact_params, met.at.now, q);
-      on_tool[6 * PLIANT_TILE] = as_int(before > 0.0f ? before : 0.0f);
+      const float whole_before = opening - m.distance;
+      on_tool[6 * PLIANT_TILE] = as_int(whole_before > 0.0f ? whole_before : 0.0f);
       if (EDGES && met.edged) {
         add_to_corners(contact_corner_force, i, met, q);
       } else {

@@ -11,7 +11,8 @@
 
 __kernel void contact_settle(__global const float* node_u, __global const float* node_w, __global const float* contact_rest,
                              __global const int* contact_node, __global const float* contact_weight,
-                             __global const float* contact_share, __global const int* contact_list, __global const int* contact_near, __global float* contact_yield,
+                             __global const float* contact_share, __global const float* contact_held, __global const int* contact_list,
+                             __global const int* contact_near, __global float* contact_yield,
                              __global float* contact_anchor, __global int* contact_force, __global int* contact_change, __global const float* contact_node_sum,
                              __global int* contact_tool_force, __global const int* tool_kind, __global const float* tool_data,
                              __global const float* tool_grid, __global const float* tool_edge, __global const float* tool_pose,
@@ -60,7 +61,8 @@ __kernel void contact_settle(__global const float* node_u, __global const float*
         const float stiffness = (whole * met.share) * met.ease;
         __global int* on_tool = tool_force_of(contact_tool_force, point_count, t, i);
         __global const float* data = tool_data + TOOL_NUMBERS * t;
-        const float rest = -m.distance - data[15];
+        const float held = held_depth(node_u, contact_node, contact_weight, contact_share, contact_held, i, met.at.now, m);
+        const float rest = (-m.distance - held) - data[15];
         const float push = rest > 0.0f ? stiffness * rest : 0.0f;
         const float inverse = contact_params[1], quantum = contact_params[0];
         float4 f = m.normal * push;

@@ -1,7 +1,9 @@
 // Forces of tissue on tissue, first part, after the trial step. The depth d of a pair of area a is removed by
 //   f = a d / (W_i + W_j),
 // which bounds a row of the compliance matrix of all pairs (Gershgorin; contact_press): any number of pairs is stable, and contact does not limit the
-// step. Friction pulls a pair towards its anchor in the frame of its lower point, with at most mu f. contact_change: the force (3) [quanta] including
+// step. A pair that is deep at the start of a step, although the step before took its depth back, got it from its normals: those of a crushed face turn
+// far in a step. Taken back at once, that would throw its points off (as in touch_meet.cl), so it becomes part of the pair's offset.
+// Friction pulls a pair towards its anchor in the frame of its lower point, with at most mu f. contact_change: the force (3) [quanta] including
 // that of tools (contact_force), and contact bits; touch_force: [tiles][16 slots][4][16] force of each pair (3) [quanta], whether it pushes;
 // touch_depth: [points] largest depth of a point inside its partners, averaged over their area, at the start of a step since the last read by the
 // host [m].
@@ -9,6 +11,8 @@
 #include "contact_shape.cl"
 #include "contact_point.cl"
 #include "touch_point.cl"
+
+#define TOUCH_START 4.0f  // [ease of an offset] largest depth at the start of a step, a sixth of a spacing at most
 
 __kernel void touch_press(__global const float* touch_place, __global const int* contact_list, __global const int* contact_near, __global const float* contact_yield,
                           __global const int* contact_force,
@@ -50,6 +54,9 @@ __kernel void touch_press(__global const float* touch_place, __global const int*
         continue;
       }
       const touch_meeting m = meeting_of(lower, upper);
+      const float sparse = lower.density < upper.density ? lower.density : upper.density;
+      const float most = dot_xyz(m.apart - moved, m.normal) + (TOUCH_START * contact_params[8]) / sparse;
+      if (numbers[PLIANT_TILE] > most) numbers[PLIANT_TILE] = most;
       const float depth = numbers[PLIANT_TILE] - m.gap;
       if (!(depth > 0.0f)) {
         anchor[3 * PLIANT_TILE] = 0.0f;

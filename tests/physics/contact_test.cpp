@@ -296,6 +296,25 @@ TEST_P(ContactPhysics, BesideHeldNodesForcesStayOrdinary) {
   EXPECT_LT(force, 20);
 }
 
+/// A tool pressed over the edge of what is held: no force takes back the depth of held nodes, so the tissue beside them moves
+/// no farther than the tool, however short the step is. It was thrown out by twice the body's length.
+TEST_P(ContactPhysics, BesideHeldNodesTissueMovesNoFartherThanTheTool) {
+  Body body = box_body({{3, 3, 3}, 0.03}, Discretization::hex8_bricks, material_young(Law::neo_hookean, 2e3, 0.3));
+  body.fixed = {{face(0, 0)}};
+  ContactTool ball;
+  ball.name = "ball";
+  ball.radius = 0.04;
+  ball.path = {{0, 0, 0.045, 0.131, 0, 0, 0, 1}, {0.2, 0, 0.045, 0.09, 0, 0, 0, 1}};
+  Scene scene = scene_of(body, ball);
+  scene.dt = 1e-3;
+  auto sim = simulate(scene, GetParam());
+  impulse_until(*sim, 0.25);
+  double most = 0;
+  for (const Vec3d& u : sim->displacements(0)) most = std::max(most, vec::norm(u));
+  check("largest displacement, over the way", most / 0.04, 1);
+  EXPECT_GT(eigen(sim->report().tools[0].now.force).norm(), 0.1);
+}
+
 /// A body that flies at a wall, a cell in twenty steps, is stopped at it.
 TEST_P(ContactPhysics, AFastToolIsMetInTime) {
   Body body = box_body({{3, 3, 3}, 0.02}, Discretization::hex8_bricks, material_young(Law::neo_hookean, 2e4, 0.3));

@@ -39,7 +39,7 @@ void ProgramBuilder::add_contact() {
 void ProgramBuilder::add_contact_points() {
   const ContactPoints& points = *model_.contact;
   const std::size_t count = padded(points.size()), tiles = count / PLIANT_TILE;
-  std::vector<double> rest(4 * count, 0.0), weight(8 * count, 0.0), share(8 * count, 0.0);
+  std::vector<double> rest(4 * count, 0.0), weight(8 * count, 0.0), share(8 * count, 0.0), of_held(4 * count, 0.0);
   std::vector<std::int32_t> node(8 * count, points.nodes[0][0]);
   std::vector<char> held(static_cast<std::size_t>(model_.slots), 0);
   for (const Constraint& c : model_.constraints) held[static_cast<std::size_t>(c.slot)] = static_cast<char>(c.axes == 7);
@@ -60,7 +60,11 @@ void ProgramBuilder::add_contact_points() {
       node[at] = points.nodes[i][a];
       weight[at] = double(points.weights[i][a]) / contact_weight_unit;
       whole += weight[at] * area[slot];
-      if (held[slot] != 0) continue;
+      if (held[slot] != 0) {
+        for (std::size_t c = 0; c < 3; ++c) of_held[tile_base(i, 4) + c * PLIANT_TILE] += weight[at] * model_.rest[slot][c];
+        of_held[tile_base(i, 4) + std::size_t{3} * PLIANT_TILE] += weight[at];
+        continue;
+      }
       share[at] = weight[at] * area[slot];
       moving += share[at];
     }
@@ -74,6 +78,7 @@ void ProgramBuilder::add_contact_points() {
   add(make_ints("contact_node", BufferRole::constant, "[tiles][8][16]", std::move(node)));
   constant("contact_weight", 8, "[tiles][8][16]", "1", std::move(weight));
   constant("contact_share", 8, "[tiles][8][16]", "m^2", std::move(share));
+  if (!model_.tools->empty()) constant("contact_held", 4, "[tiles][4][16]", "m, m, m, 1", std::move(of_held));
   const auto all = static_cast<std::int32_t>((std::int64_t{1} << model_.tools->size()) - 1);
   add_state(make_ints("contact_near", BufferRole::state, "[tiles]", std::vector<std::int32_t>(tiles, all), 0, "contact_near"));
   add_state(make_reals("contact_yield", BufferType::real, count, BufferRole::state, "[points]", "m^3/N",
@@ -273,8 +278,9 @@ std::vector<Arg> ProgramBuilder::named(std::initializer_list<const char*> buffer
 
 /// Arguments of contact_press and contact_settle.
 std::vector<Arg> ProgramBuilder::tool_pass_args(const std::string& kernel) const {
-  std::vector<Arg> list = named({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_share",
-                                 "contact_list", "contact_near", "contact_yield", "contact_anchor", "contact_force"});
+  std::vector<Arg> list =
+      named({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_share", "contact_held",
+             "contact_list", "contact_near", "contact_yield", "contact_anchor", "contact_force"});
   const bool settle = kernel == "contact_settle";
   const std::vector<Arg> results = settle ? named({"contact_change", "contact_node_sum"}) : std::vector<Arg>{};
   const std::vector<Arg> tools = named(

@@ -36,6 +36,7 @@ class Hash {
   void add(const Program& program) {
     for (const Buffer& b : program.buffers) {
       if (b.role != BufferRole::constant && b.name != "node_u" && b.name != "node_w") continue;
+      if (b.name == "contact_held") continue;  // absent from older versions; what it follows from is here, too
       add(b.name);
       add(b.reals);
       add(b.ints);

@@ -14,7 +14,7 @@ namespace pliant::kernel_test {
 struct ContactData {
   static constexpr std::size_t tools = 5, rows = test_step + 2, frames = 3, pose_numbers = 14, edges = 24;
   std::size_t points, slots = 96;
-  Reals node_u, node_w, rest, weight, share, yield, anchor, node_sum, data, grid, pose, params, step_params;
+  Reals node_u, node_w, rest, weight, share, held, yield, anchor, node_sum, data, grid, pose, params, step_params;
   Ints node, near, force, change, tool_force, sum, kind;
   Reals gap;
   Ints node_list, slot, free, tiles_offset, tiles, entry_offset, entry, gather_offset, gather, units, turns, moment;
@@ -44,6 +44,7 @@ struct ContactData {
     rest.resize(4 * points);
     weight.resize(8 * points);
     share.resize(8 * points);
+    held.assign(4 * points, 0.0);
     node.resize(8 * points);
     anchor.assign(4 * points, 0.0);
     for (std::size_t i = 0; i < points; ++i) {
@@ -56,6 +57,10 @@ struct ContactData {
         node[base(i, 8) + 16 * a] = own[a];
         weight[base(i, 8) + 16 * a] = parts[a] / 4096.0;
         share[base(i, 8) + 16 * a] = random.chance(0.1) ? 0 : parts[a] / 4096.0 * random.uniform(0.01, 0.05);
+        if (share[base(i, 8) + 16 * a] == 0) held[base(i, 4) + 48] += parts[a] / 4096.0;
+      }
+      for (std::size_t c = 0; c < 3; ++c) {  // of what is held, which lies anywhere near the point
+        held[base(i, 4) + 16 * c] = held[base(i, 4) + 48] * (rest[base(i, 4) + 16 * c] + 0.2 * std::sin(double(3 * i + c)));
       }
       if (random.chance(0.5)) {
         for (std::size_t c = 0; c < 3; ++c) anchor[base(i, 4) + 16 * c] = random.uniform(-0.1, 0.1);
@@ -267,6 +272,7 @@ inline KernelCase near_case(const ContactData& d, int edges = 0) {
 inline KernelCase& add_touching(KernelCase& test, const ContactData& d) {
   return add_points(test, d)
       .reals("contact_share", d.share)
+      .reals("contact_held", d.held)
       .ints("contact_list", listed(d))
       .ints("contact_near", d.near)
       .reals("contact_yield", d.yield)

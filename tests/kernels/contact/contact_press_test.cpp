@@ -138,5 +138,42 @@ TEST(ContactPressOracle, ASphereWithoutFrictionPushesAwayFromItsCentre) {
   EXPECT_GT(pushed, 20);
 }
 
+/// Of a point with held nodes inside a sphere, only the depth beyond theirs is taken back: a node that is held does not move.
+TEST(ContactPressOracle, TheDepthOfHeldNodesStays) {
+  int less = 0, none = 0;
+  for (std::uint32_t seed = 0; seed < 24; ++seed) {
+    ContactData d(800 + seed);
+    std::fill(d.near.begin(), d.near.end(), 1);  // tool 0
+    std::fill(d.yield.begin(), d.yield.end(), 1e-4);
+    const Reals force = ints_in_double(press_case(d), "contact_force");
+    const double* pose = &d.pose[ContactData::pose_numbers * (test_step + 1) * ContactData::tools];
+    for (std::size_t i = 0; i < d.points; ++i) {
+      const std::size_t at = ContactData::base(i, 4);
+      const double part = d.held[at + 48];
+      if (force[at + 48] == 0 || d.rest[at + 48] == 0 || part == 0) continue;
+      Vector3d held;
+      for (std::size_t c = 0; c < 3; ++c) {
+        held[static_cast<int>(c)] = d.held[at + 16 * c];
+        for (std::size_t a = 0; a < 8; ++a) {
+          const std::size_t entry = ContactData::base(i, 8) + 16 * a;
+          if (d.share[entry] == 0)
+            held[static_cast<int>(c)] += d.weight[entry] * d.node_u[4 * static_cast<std::size_t>(d.node[entry]) + c];
+        }
+      }
+      const Vector3d start = in_frame(d, 0, test_step, place_of(d, i, true)), n = start.normalized();
+      Vector3d normal;
+      for (int k = 0; k < 3; ++k) normal[k] = Vector3d(pose[3 * k], pose[3 * k + 1], pose[3 * k + 2]).dot(n);
+      const double depth = -distance_of(d, 0, start) - n.dot(in_frame(d, 0, test_step + 1, place_of(d, i)) - start);
+      const double of_held = std::max(0.0, part * depth - normal.dot(held - part * place_of(d, i)));
+      const Vector3d f(force[at], force[at + 16], force[at + 32]);
+      const double push = d.rest[at + 48] / 1e-4 * std::max(0.0, depth - of_held);
+      EXPECT_NEAR(d.params[0] * f.norm(), push, 1e-3 * push + 1e-2) << "point " << i;
+      (push == 0 ? none : less) += of_held > 0;
+    }
+  }
+  EXPECT_GT(less, 20);
+  EXPECT_GT(none, 5);
+}
+
 }  // namespace
 }  // namespace pliant::kernel_test

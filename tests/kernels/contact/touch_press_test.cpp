@@ -46,7 +46,7 @@ TEST(TouchPressOracle, ForcesOfToolsStay) {
 }
 
 TEST(TouchPressOracle, DepthIsTakenBackAlongTheNormal) {
-  int pushed = 0, apart = 0, rubbed = 0;
+  int pushed = 0, apart = 0, rubbed = 0, limited = 0;
   for (const double friction : {0.0, 0.4}) {
     TouchData d = tissue_alone(2400);
     d.params[7] = friction;
@@ -64,11 +64,18 @@ TEST(TouchPressOracle, DepthIsTakenBackAlongTheNormal) {
         const auto j = static_cast<std::size_t>(name) - 1, lower = std::min(i, j), upper = std::max(i, j);
         const Vector3d n = (d.normal(upper) - d.normal(lower)).normalized();
         const double w = d.yielding(i) + d.yielding(j);
-        const double gap = d.gap(lower, upper), depth = d.pair[TouchData::pair_at(i, s) + 16] - gap;
+        const bool meets = w > 0 && d.front(lower, upper) < 0.48 * d.params[5];
+        const Vector3d start = d.x(lower) - d.x(upper) - d.moved(lower) + d.moved(upper);
+        const double had = d.pair[TouchData::pair_at(i, s) + 16];
+        const bool limits = d.spacing(i) > 0 && d.spacing(j) > 0;  // as all partners outside of this test
+        const double most = limits ? start.dot(n) + 4 * d.params[8] * std::max(d.spacing(i), d.spacing(j)) : had;
+        EXPECT_NEAR(pair[TouchData::pair_at(i, s) + 16], meets ? std::min(had, most) : had, 1e-6);
+        limited += meets && had > most;
+        const double gap = d.gap(lower, upper), depth = pair[TouchData::pair_at(i, s) + 16] - gap;
         ready = ready || d.front(lower, upper) < 2 * (d.yield[i] > 0 ? 0.24 : 0.08) * d.params[5];
         if (std::abs(depth) < 1e-6) continue;
         const std::size_t at = TouchData::force_at(i, s);
-        const bool pushes = depth > 0 && w > 0 && d.front(lower, upper) < 0.48 * d.params[5];
+        const bool pushes = depth > 0 && meets;
         EXPECT_EQ(force[at + 48], pushes ? 1 : 0);
         EXPECT_EQ(pair[TouchData::pair_at(i, s) + 80] != 0,
                   pushes && (friction > 0 || d.pair[TouchData::pair_at(i, s) + 80] != 0));
@@ -92,6 +99,7 @@ TEST(TouchPressOracle, DepthIsTakenBackAlongTheNormal) {
   EXPECT_GT(pushed, 200);
   EXPECT_GT(apart, 200);
   EXPECT_GT(rubbed, 50);
+  EXPECT_GT(limited, 20);
 }
 
 }  // namespace
