@@ -288,6 +288,26 @@ py::dict tool_forces(const pliant::World& w) {
   return d;
 }
 
+/// By name: where each blade that cuts by force is, and what it feels.
+py::dict blade_forces(const pliant::World& w) {
+  py::dict d;
+  for (const pliant::BladeForce& f : w.blade_forces()) {
+    py::dict blade;
+    blade["a"] = row(f.a);
+    blade["b"] = row(f.b);
+    blade["force"] = row(f.force);
+    blade["torque"] = row(f.torque);
+    blade["max_force"] = f.max_force;
+    blade["work"] = f.work;
+    blade["fracture"] = f.fracture;
+    blade["gave_way"] = f.gave_way;
+    blade["present"] = f.present;
+    blade["pressing"] = f.pressing;
+    d[py::str(f.name)] = blade;
+  }
+  return d;
+}
+
 /// The surface of a tool in its own frame: vertices [m] and triangles.
 py::tuple tool_surface(const pliant::World& w, const std::string& name) {
   const pliant::SurfaceSpec now = w.tool_surface(name);
@@ -476,6 +496,9 @@ void bind_world(py::module_& m) {
           [](World& w, const std::string& blade, const Vec3d& a, const Vec3d& b) { return result(w.move_blade(blade, a, b)); },
           py::arg("blade"), py::arg("a"), py::arg("b"))
       .def("lift_blade", &World::lift_blade, py::arg("blade"))
+      .def("drive_blade", &World::drive_blade, py::arg("blade"), py::arg("a"), py::arg("b"), py::arg("seconds") = 1.0 / 60)
+      .def("blade_forces", &blade_forces,
+           "a dict of the blades that cut by force: of each a dict of its place and what it feels")
       .def("pieces", &World::pieces, py::arg("body") = 0, Free())
       .def("save", &World::save, py::arg("file"), Free())
       .def("load", &World::load, py::arg("file"), Free())

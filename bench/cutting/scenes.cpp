@@ -19,7 +19,7 @@ void move_blades(Simulation& simulation, const std::vector<Blade>& blades, doubl
                  std::vector<double>& frames) {
   std::vector<BladePose> begin, places;
   for (const Blade& blade : blades) {
-    const double first = std::max(blade.start, blade.path.front()[0]), last = std::min(blade.end, blade.path.back()[0]);
+    const double first = blade.begins(), last = blade.ends();
     if (time < first || time >= last + kFrame) continue;
     if (time < first + kFrame) begin.push_back({blade.name, blade.at(first)});
     places.push_back({blade.name, blade.at(std::min(time, last))});
@@ -39,7 +39,7 @@ void measure(const CuttingRun& run, const std::string& name) {
   scene.cuttable = true;
   scene.name = name;
   double end = 0;
-  for (const Blade& blade : blades) end = std::max(end, std::min(blade.end, blade.path.back()[0]));
+  for (const Blade& blade : blades) end = std::max(end, blade.ends());
   if (run.options.quick) {  // smaller bodies, and a step that needs no estimate
     for (Body& body : scene.bodies) {
       if (body.lattice.nodes > 0) body.lattice.nodes = std::min<std::int64_t>(body.lattice.nodes, 500);

@@ -45,6 +45,30 @@ pliant_status pliant_world_tool_forces(pliant_world world, pliant_tool_force* ou
   });
 }
 
+pliant_status pliant_world_blade_forces(pliant_world world, pliant_blade_force* out, size_t count, size_t* needed) {
+  return on(world, [&](CWorld& w) {
+    check_array(out, count, "pliant_blade_force");
+    const std::vector<pliant::BladeForce> now = w.world.blade_forces();
+    const std::lock_guard lock(w.mutex);
+    if (needed != nullptr) *needed = now.size();
+    for (std::size_t i = 0; i < std::min(count, now.size()); ++i) {
+      pliant_blade_force f{};
+      f.name = w.names.insert(now[i].name).first->c_str();
+      std::copy(now[i].a.begin(), now[i].a.end(), f.a);
+      std::copy(now[i].b.begin(), now[i].b.end(), f.b);
+      std::copy(now[i].force.begin(), now[i].force.end(), f.force);
+      std::copy(now[i].torque.begin(), now[i].torque.end(), f.torque);
+      f.max_force = now[i].max_force;
+      f.work = now[i].work;
+      f.fracture = now[i].fracture;
+      f.gave_way = now[i].gave_way;
+      f.present = now[i].present ? 1 : 0;
+      f.pressing = now[i].pressing ? 1 : 0;
+      give_struct<pliant_blade_force>(f, element(out, i));
+    }
+  });
+}
+
 pliant_status pliant_world_tool_surface(pliant_world world, const char* name, double* vertices, size_t vertex_count,
                                         int32_t* triangles, size_t triangle_count, size_t* vertices_needed,
                                         size_t* triangles_needed) {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstring>
 
+#include "pliant/c/blades.h"
 #include "pliant/c/haptics.h"
 #include "pliant/c/live.h"
 #include "pliant/c/types.h"
@@ -36,6 +37,7 @@ PLIANT_C_STRUCT(pliant_frame, body_triangles);
 PLIANT_C_STRUCT(pliant_cut, in_part);
 PLIANT_C_STRUCT(pliant_probe_value, number_count);
 PLIANT_C_STRUCT(pliant_tool_force, reserved);
+PLIANT_C_STRUCT(pliant_blade_force, pressing);
 PLIANT_C_STRUCT(pliant_interpenetration, reserved);
 PLIANT_C_STRUCT(pliant_picked_point, reserved);
 PLIANT_C_STRUCT(pliant_live_options, speed);

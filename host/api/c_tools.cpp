@@ -128,6 +128,13 @@ pliant_status pliant_world_lift_blade(pliant_world world, const char* blade) {
     w.world.lift_blade(blade);
   });
 }
+pliant_status pliant_world_drive_blade(pliant_world world, const char* blade, const double a[3], const double b[3],
+                                       double seconds) {
+  return on(world, [&](CWorld& w) {
+    need(blade, "blade");
+    w.world.drive_blade(blade, vector_of(a, "a"), vector_of(b, "b"), seconds);
+  });
+}
 pliant_status pliant_world_pieces(pliant_world world, size_t body, int64_t* out) {
   return on(world, [&](CWorld& w) {
     need(out, "out");

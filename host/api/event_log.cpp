@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "geometry/vec.h"
 #include "model/pieces.h"
 
 namespace pliant::api {
@@ -53,6 +54,8 @@ void EventLog::renew(const Simulation& simulation) {
   diverged_ = simulation.divergence().has_value();
   pieces_ = pieces_of_all(simulation.model());
   deep_.clear();
+  gave_way_.clear();
+  for (const auto& [name, blade] : simulation.state().pressed) gave_way_[name] = blade.first >= 0;
 }
 
 void EventLog::look_at_pieces(const Simulation& simulation) {
@@ -83,6 +86,19 @@ void EventLog::look_at_tools(const Simulation& simulation) {
   }
 }
 
+void EventLog::look_at_blades(const Simulation& simulation) {
+  for (const auto& [name, blade] : simulation.state().pressed) {
+    const bool gave = blade.first >= 0;
+    if (std::exchange(gave_way_[name], gave) || !gave) continue;
+    const auto own = std::find_if(simulation.scene().blades.begin(), simulation.scene().blades.end(),
+                                  [&, wanted = &name](const Blade& b) { return b.name == *wanted; });
+    const BladeSegment at = blade_place(simulation.state().driven_blades, *own, simulation.time());
+    const Vec3d middle = vec::mul(vec::add(at[0], at[1]), 0.5);
+    const std::string text = fmt::format("tissue gave way to blade '{}' at up to {:.4g} N", name, blade.max_force);
+    add(simulation, event_of("gave_way", name, blade.max_force, text, middle));
+  }
+}
+
 void EventLog::look(const Simulation& simulation) {
   const RunReport& report = simulation.report();
   const Inversions& inverted = report.inversions;
@@ -104,6 +120,7 @@ void EventLog::look(const Simulation& simulation) {
     add(simulation, event_of("rolled_back", {}, static_cast<double>(more), "steps were made again, smaller"));
   }
   look_at_tools(simulation);
+  look_at_blades(simulation);
   const bool diverged = simulation.divergence().has_value();
   if (!std::exchange(diverged_, diverged) && diverged) {
     const Divergence& d = *simulation.divergence();

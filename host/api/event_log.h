@@ -33,12 +33,14 @@ class EventLog {
  private:
   void look_at_pieces(const Simulation& simulation);
   void look_at_tools(const Simulation& simulation);
+  void look_at_blades(const Simulation& simulation);
 
   // Used by the stepping thread.
   std::int64_t opened_ = 0, topology_ = 0, calmed_ = 0, inverted_ = 0, made_again_ = 0;
   bool diverged_ = false;
-  std::vector<std::int64_t> pieces_;  ///< [bodies]
-  std::map<std::string, bool> deep_;  ///< tools that are deep in tissue
+  std::vector<std::int64_t> pieces_;      ///< [bodies]
+  std::map<std::string, bool> deep_;      ///< tools that are deep in tissue
+  std::map<std::string, bool> gave_way_;  ///< blades to which tissue has given way
 
   std::mutex mutex_;
   std::deque<Event> events_;

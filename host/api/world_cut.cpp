@@ -124,6 +124,8 @@ CutResult World::cut(const std::vector<std::array<Vec3d, 3>>& triangles) {
 CutResult World::move_blade(const std::string& blade, const Vec3d& a, const Vec3d& b) {
   const api::Call call(impl_, false);
   const std::string what = fmt::format("blade '{}'", blade);
+  if (impl_->force_blades.knows(blade))
+    throw Error(ErrorCode::usage, fmt::format("{} cuts by force: drive_blade() moves it in time", what));
   check_finite(a, what.c_str());
   check_finite(b, what.c_str());
   if (a == b) {
@@ -138,6 +140,11 @@ CutResult World::move_blade(const std::string& blade, const Vec3d& a, const Vec3
 
 void World::lift_blade(const std::string& blade) {
   const api::Call call(impl_, false);
+  if (impl_->force_blades.knows(blade)) {
+    impl_->force_blades.lift(blade);
+    impl_->settle_tools();
+    return;
+  }
   const auto key = impl_->blade_key.find(blade);
   if (key == impl_->blade_key.end()) {
     throw Error(ErrorCode::usage, fmt::format("there is no blade '{}' to lift: move_blade makes it", blade));
@@ -146,6 +153,17 @@ void World::lift_blade(const std::string& blade) {
   impl_->blade_key.erase(key);
   const std::lock_guard lock(impl_->mutex);
   impl_->pending_cuts.push_back({{}, {}, name});
+}
+
+void World::drive_blade(const std::string& blade, const Vec3d& a, const Vec3d& b, double seconds) {
+  const api::Call call(impl_, false);
+  impl_->force_blades.drive(blade, {a, b}, seconds);
+  impl_->settle_tools();
+}
+
+std::vector<BladeForce> World::blade_forces() const {
+  const api::Call call(impl_, false);
+  return impl_->force_blades.forces();
 }
 
 std::int64_t World::pieces(std::size_t body) const {

@@ -85,6 +85,7 @@ bool World::Impl::leave_to_worker(FileRequest request) {
       pending_cuts.clear();
       pending_changes.clear();
       rigid_tools.hold_back();
+      force_blades.hold_back();
       blade_key.clear();
     }
     files.push_back(std::move(request));
@@ -138,7 +139,10 @@ void World::Impl::serve_files() {
     replacing = std::any_of(files.begin(), files.end(), [](const FileRequest& r) {
       return r.what == FileRequest::What::load || r.what == FileRequest::What::reset;
     });
-    if (!replacing) rigid_tools.go_on();
+    if (!replacing) {
+      rigid_tools.go_on();
+      force_blades.go_on();
+    }
     pace.skip(api::wall_time() - start);
   }
   changed.notify_all();

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "api/event_log.h"
+#include "api/force_blades.h"
 #include "api/frame_pool.h"
 #include "api/pace.h"
 #include "api/rigid_tools.h"
@@ -94,8 +95,7 @@ struct World::Impl {
   // world_tools.cpp
   /// Throws if the World cannot continue, unless the worker is running (it reports errors itself).
   void check_can_change_tools();
-  /// Applies tool changes now, unless a worker will.
-  void settle_tools();
+  void settle_tools();  ///< applies changes of tools and blades now, unless a worker will
   void change_tools_now();
   std::string add_tool(ContactTool tool);
 
@@ -146,6 +146,7 @@ struct World::Impl {
   std::shared_ptr<Simulation> simulation;
   std::unique_ptr<api::SurfaceHandles> handles;
   api::RigidTools rigid_tools;
+  api::ForceBlades force_blades{scene};
   api::EventLog events;
   std::string lost;         ///< message of the device failure; empty: the device works
   double editing = 0;       ///< wall time of make_changes() in this frame [s]; used by the stepping thread

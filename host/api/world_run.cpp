@@ -119,6 +119,7 @@ void World::Impl::check_can_step() const {
 
 void World::Impl::publish_clock() {
   rigid_tools.note(*simulation);
+  force_blades.note(*simulation);
   const std::lock_guard lock(mutex);
   report.step = simulation->step();
   report.time = simulation->time();
@@ -140,6 +141,7 @@ StepReport World::Impl::run(std::int64_t steps) {
       simulation->advance(simulation->next_batch(left));
       rigid_tools.record(*simulation);
       rigid_tools.note(*simulation);
+      force_blades.note(*simulation);
       look_for_events();
       const std::lock_guard lock(mutex);
       if (stop) break;
@@ -275,6 +277,7 @@ void World::Impl::restart(std::shared_ptr<Simulation> fresh, bool keep_requests)
   simulation = std::move(fresh);
   handles->renew();
   rigid_tools.renew(*simulation, keep_requests);
+  force_blades.renew(*simulation, keep_requests);
   events.renew(*simulation);
   lost.clear();
   seconds_left = 0;

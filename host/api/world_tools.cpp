@@ -19,6 +19,7 @@ using api::Call;
 void World::Impl::change_tools_now() {
   try {
     rigid_tools.apply(*simulation);
+    force_blades.apply(*simulation);
   } catch (const Error& error) {
     if (error.code() == ErrorCode::internal || error.code() == ErrorCode::device) throw;
     throw api::Refused(error);

@@ -15,9 +15,7 @@ namespace {
 
 constexpr double kFarAway = 20;  ///< in sizes of a body
 
-bool over(const Blade& blade, double now, double dt) {
-  return now >= std::min(blade.end, blade.path.back()[0]) - kStepSlack * dt;
-}
+bool over(const Blade& blade, double now, double dt) { return now >= blade.ends() - kStepSlack * dt; }
 
 }  // namespace
 
@@ -55,8 +53,6 @@ std::vector<std::string> parts_far_away(const Simulation& simulation) {
   return sentences;
 }
 
-double first_time(const Blade& blade) { return std::max(blade.start, blade.path.front()[0]); }
-
 std::vector<std::string> blades_without_contact(const Simulation& simulation, bool certain) {
   const BladeState& state = simulation.state().blades;
   const double now = certain ? state.seen.value_or(0) : simulation.time();
@@ -82,7 +78,7 @@ std::vector<std::string> blades_without_effect(const Simulation& simulation) {
 std::vector<const Blade*> blades_to_come(const Simulation& simulation) {
   std::vector<const Blade*> blades;
   for (const Blade& blade : simulation.scene().blades) {
-    if (simulation.time() < first_time(blade)) blades.push_back(&blade);
+    if (simulation.time() < blade.begins()) blades.push_back(&blade);
   }
   return blades;
 }

@@ -116,7 +116,7 @@ class Report {
     for (const Blade* blade : blades_to_come(s_)) {
       json["blades_to_come"].push_back(blade->name);
       out_.remark(fmt::format("blade '{}' has not cut yet: it begins at {:.4g} s, and the run ended at {:.4g} s", blade->name,
-                              first_time(*blade), s_.time()));
+                              blade->begins(), s_.time()));
     }
     for (const std::string& name : blades_without_effect(s_)) {
       out_.remark(

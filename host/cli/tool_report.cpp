@@ -124,9 +124,25 @@ std::string tissue_line(const Simulation& simulation) {
                      simulation.model().contact->size(), tissue.max_depth);
 }
 
+void ToolTable::add_blades(const Simulation& simulation) {
+  const RunState& state = simulation.state();
+  std::size_t b = 0;
+  for (const Blade& blade : simulation.scene().blades) {
+    if (blade.cuts != BladeCuts::by_force) continue;
+    const StepForce now = simulation.press().last_force(b++);
+    const BladeSegment ends = blade_place(state.driven_blades, blade, simulation.time());
+    const Vec3d at = vec::mul(vec::add(ends[0], ends[1]), 0.5);
+    const auto own = state.pressed.find(blade.name);
+    const double work = own == state.pressed.end() ? 0 : own->second.work;
+    table_ +=
+        fmt::format("{:.9g},{},{},{:.9g},{:.9g},{:.9g},,,,{:.9g}\n", simulation.time(), simulation.step(), csv_text(blade.name),
+                    fmt::join(at, ","), fmt::join(now.force, ","), fmt::join(now.torque, ","), work);
+  }
+}
+
 void ToolTable::write(const Simulation& simulation, const std::filesystem::path& file) {
   const std::vector<ContactTool>& tools = simulation.contact().tools();
-  if (tools.empty() || simulation.step() == last_step_) return;
+  if ((tools.empty() && simulation.press().names().empty()) || simulation.step() == last_step_) return;
   last_step_ = simulation.step();
   if (table_.empty()) {
     table_ =
@@ -141,6 +157,7 @@ void ToolTable::write(const Simulation& simulation, const std::filesystem::path&
                           csv_text(tools[t].name), fmt::join(at.position, ","), fmt::join(now.force, ","),
                           fmt::join(now.torque, ","), now.area, now.depth, now.points, history.work);
   }
+  add_blades(simulation);
   write_file(file, table_);
 }
 

@@ -29,13 +29,16 @@ std::string tool_line(const Simulation& simulation, std::size_t tool);
 /// How much tissue touches tissue, of a scene with `contact`.
 std::string tissue_line(const Simulation& simulation);
 
-/// A table of the forces on all tools, a row per tool and time.
+/// A table of the forces on all tools and on blades that cut by force, a row per tool and time. Of a blade: the force in the
+/// last step, torque about the middle of its edge, whose place it tells; area, penetration and points stay empty.
 class ToolTable {
  public:
-  /// Add rows and replace the file, which is always complete. Nothing without tools, or when no step was done since.
+  /// Add rows and replace the file, which is always complete. Nothing without either, or when no step was done since.
   void write(const Simulation& simulation, const std::filesystem::path& file);
 
  private:
+  void add_blades(const Simulation& simulation);
+
   std::string table_;
   std::int64_t last_step_ = -1;
 };

@@ -1,5 +1,6 @@
 // Parts of a scene besides its bodies: the followed tool, blades, and the camera.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <optional>
@@ -28,7 +29,7 @@ enum class BladeCuts { always, by_force };
 struct Blade {
   std::string name;
   std::vector<std::array<double, 7>>
-      path;  ///< (time [s], both ends [m]), at least two rows, times ascending, linear in between
+      path;  ///< (time [s], both ends [m]), times ascending, linear in between; by force one row will do: it stands there
   double start = -std::numeric_limits<double>::infinity();  ///< cutting starts here [s], but not before the path begins
   double end = std::numeric_limits<double>::infinity();     ///< cutting ends here [s], but not after the path ends
   std::string pointer;                                      ///< JSON pointer ("/blades/0")
@@ -38,6 +39,10 @@ struct Blade {
   double friction = 0;   ///< by force: coefficient between the edge and tissue
   /// Returns both ends at a time [m]; constant outside the path.
   [[nodiscard]] std::array<Vec3d, 2> at(double time) const;
+  [[nodiscard]] bool stands() const { return path.size() == 1; }  ///< it waits for the host to move it
+  /// When it comes, and when it goes [s].
+  [[nodiscard]] double begins() const { return stands() ? start : std::max(start, path.front()[0]); }
+  [[nodiscard]] double ends() const { return stands() ? end : std::min(end, path.back()[0]); }
 };
 
 /// Camera of pictures. Absent values are derived from the scene.

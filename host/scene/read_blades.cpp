@@ -16,15 +16,16 @@ Blade read_blade(const Reader& blade, std::size_t index) {
   Blade b;
   b.pointer = blade.pointer();
   b.name = blade.has("name") ? read_name(blade.at("name")) : fmt::format("blade{}", index);
-  const char* const expected = "a list of at least two rows [time, x, y, z, x, y, z]";
+  const char* const expected = "a list of rows [time, x, y, z, x, y, z]: at least two, or one of a blade that cuts by force";
   const Reader path = blade.at("path", expected);
-  b.path = read_rows<7>(path, expected, "a row [time, x, y, z, x, y, z] in seconds and metres: both ends of the blade", 2);
+  b.path = read_rows<7>(path, expected, "a row [time, x, y, z, x, y, z] in seconds and metres: both ends of the blade", 1);
   for (std::size_t i = 0; i < b.path.size(); ++i) {
     const Row& r = b.path[i];
     if (std::equal(r.begin() + 1, r.begin() + 4, r.begin() + 4))
       path.items(expected)[i].fail("two different ends (a blade has a length)");
   }
   describe_blade(ReadKeys{blade}, b);
+  if (b.cuts == BladeCuts::always && b.path.size() < 2) path.fail(expected);
   if (!(b.end > b.start)) blade.at("end").fail(fmt::format("a time after the start {}", b.start));
   if (b.cuts == BladeCuts::by_force && b.edge == 0) {
     static_cast<void>(blade.at("edge", "the radius of the edge in metres, because the blade cuts by force"));

@@ -111,6 +111,9 @@ class Simulation {
   CutReport move_blade(const std::string& blade, const BladeSegment& segment);
   /// Removes a blade's position, if any: its next move_blade() places it without cutting.
   void lift_blade(const std::string& blade) { edits_.lift_blade(blade); }
+  /// TopologyEdits::drive_blade(), lift_blade_by_force().
+  void drive_blade(const std::string& blade, const BladeSegment& to, double seconds) { edits_.drive_blade(blade, to, seconds); }
+  void lift_blade_by_force(const std::string& blade) { edits_.lift_blade_by_force(blade); }
   /// Number of edits that changed elements.
   [[nodiscard]] std::int64_t topology_version() const { return state_.topology_version; }
   /// Returns where the last cut or tear was, in the current configuration [m]; empty if there was none since the start.

@@ -29,10 +29,10 @@ struct LiveState {
 
 /// Something that happened while a World ran.
 struct Event {
-  /// "cut", "opened", "pieces", "inverted", "calmed", "rolled_back", "deep", "limited", "diverged", "refused", "saved",
-  /// "loaded", "reset" or "recovered" (docs/embedding.md, Running freely).
+  /// "cut", "opened", "pieces", "inverted", "calmed", "rolled_back", "deep", "gave_way", "limited", "diverged", "refused",
+  /// "saved", "loaded", "reset" or "recovered" (docs/embedding.md, Running freely).
   std::string kind;
-  std::string subject;    ///< name of the body or tool, id of the grab, or file; empty: the whole scene
+  std::string subject;    ///< name of the body, tool or blade, id of the grab, or file; empty: the whole scene
   std::int64_t step = 0;  ///< number of steps since the start
   double time = 0;        ///< [s]
   bool placed = false;    ///< `position` is set

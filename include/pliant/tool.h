@@ -54,6 +54,20 @@ struct ToolForce {
   bool parked = false;                     ///< true if the tool is parked and has no contact (World::park_tool)
 };
 
+/// Place of a blade that cuts by force (docs/cutting.md), what it feels and what it has done.
+struct BladeForce {
+  std::string name;       ///< name in the scene
+  Vec3d a{}, b{};         ///< ends of its edge [m]
+  Vec3d force{};          ///< on the blade in the last step [N]
+  Vec3d torque{};         ///< about the middle of its edge [N m]
+  double max_force = 0;   ///< largest force so far [N]
+  double work = 0;        ///< done on tissue so far [J]
+  double fracture = 0;    ///< of it, what cutting took [J]
+  double gave_way = -1;   ///< time at which tissue first gave way [s]; -1: not yet
+  bool present = false;   ///< false: its path has not begun or has ended, or it is lifted
+  bool pressing = false;  ///< a part of its edge is in contact
+};
+
 /// What a tool and a body, or two bodies, have in common: the overlap of their surfaces (docs/contact.md).
 struct Interpenetration {
   std::string first;   ///< name of a tool or a body

@@ -3,8 +3,8 @@
 // Threads: a World may be used from any thread, but only by one at a time; concurrent calls throw Error (state). Worlds share
 // no state: each may have its own thread, and results do not depend on other Worlds. The first step_async() or
 // advance_async() starts a worker thread. While the worker is busy, these calls do not wait for it: busy, poll, frame,
-// frame_since, pick, info, time, step_number, dt, stable_dt, live_state, events, force_trace, the tools, cut, move_blade,
-// lift_blade, step_async, advance_async, run_live. All other calls wait. Any number of threads may read a Frame.
+// frame_since, pick, info, time, step_number, dt, stable_dt, live_state, events, force_trace, the tools, cut, the blades,
+// step_async, advance_async, run_live. All other calls wait. Any number of threads may read a Frame.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -72,8 +72,7 @@ class PLIANT_API World {
   std::vector<Event> events();
   /// Returns the force on a tool or by-force blade of each of the last 4096 steps after `after`. Throws usage: unknown name.
   [[nodiscard]] std::vector<ForceSample> force_trace(const std::string& tool, std::int64_t after = -1) const;
-  /// The same for each update of a grab, some 2 ms apart.
-  [[nodiscard]] std::vector<ForceSample> force_trace(GrabId grab, std::int64_t after = -1) const;
+  [[nodiscard]] std::vector<ForceSample> force_trace(GrabId grab, std::int64_t after = -1) const;  ///< per update, some 2 ms
 
   /// Returns true if frame() would return a different frame than the last time. Never waits, never throws.
   [[nodiscard]] bool poll() const noexcept;
@@ -116,8 +115,7 @@ class PLIANT_API World {
 
   /// Applies a constant force [N] to a vertex, distributed to the nodes of its cell, until it is set again; zero removes it.
   void push(std::int32_t vertex, const Vec3d& force);
-  /// The same for a node of a body, which must belong to a cell that carries the surface.
-  void push_node(std::size_t body, std::int64_t node, const Vec3d& force);
+  void push_node(std::size_t body, std::int64_t node, const Vec3d& force);  ///< to a node of a cell that carries the surface
   void clear_handles();                    ///< removes all grabs and pushes, and drives that have not started
   void move_focus(const Vec3d& position);  ///< moves the focus, which operational regions can follow, to a point [m]
 
@@ -131,12 +129,10 @@ class PLIANT_API World {
   std::string add_tool(const ToolSpec& tool);
   /// Adds a tool from text, an entry of `tools` of a scene file (docs/scene.md); relative paths start from `folder`.
   std::string parse_tool(const std::string& text, const std::string& folder = "");
-  /// Removes a tool. Its name may be reused.
-  void remove_tool(const std::string& name);
+  void remove_tool(const std::string& name);  ///< its name may be reused
   /// Disables a tool at no cost per step until unpark_tool(), place_tool() or drive_tool().
   void park_tool(const std::string& name);
-  /// Enables a parked tool again, at its last pose or at its path's current pose.
-  void unpark_tool(const std::string& name);
+  void unpark_tool(const std::string& name);  ///< enables it again, at its last pose or at its path's current pose
   /// Moves a tool at once to a position [m] and orientation (unit quaternion x, y, z, w), where it stays. Its path ends.
   void place_tool(const std::string& name, const Vec3d& position, const std::array<double, 4>& turn = {0, 0, 0, 1});
   /// Moves a tool from its current pose to the given one within `seconds` [s], after which it stays. Its path ends. A speed
@@ -171,10 +167,14 @@ class PLIANT_API World {
   /// Moves a named blade to the segment from `a` to `b` [m]; the ends must differ (usage). It cuts the surface that it sweeps
   /// since its last position, which is carried along with the tissue. The first call for a name only places the blade.
   CutResult move_blade(const std::string& blade, const Vec3d& a, const Vec3d& b);
-  /// Lifts a blade: its next move_blade() places it without cutting. Throws Error (usage) if there is no such blade.
+  /// Lifts a blade: its next move_blade() places it without cutting; one that cuts by force is nowhere until it is driven.
+  /// Throws Error (usage) if there is no such blade.
   void lift_blade(const std::string& blade);
-  /// Returns the number of sets of elements of a body that share nodes. Throws Error (usage) if there is no such body.
-  [[nodiscard]] std::int64_t pieces(std::size_t body) const;
+  /// Moves a blade that cuts by force (docs/cutting.md) to the segment from `a` to `b` [m] within `seconds`; one that is
+  /// nowhere is there at once. Its path ends. Throws as drive_tool(); input: longer than on its path, or too fast.
+  void drive_blade(const std::string& blade, const Vec3d& a, const Vec3d& b, double seconds = 1.0 / 60);
+  [[nodiscard]] std::vector<BladeForce> blade_forces() const;  ///< those blades, in scene order; does not wait
+  [[nodiscard]] std::int64_t pieces(std::size_t body) const;   ///< number of sets of elements of a body that share nodes
 
   /// Writes a checkpoint, which `pliant run --resume` can read too. It includes cuts and the positions of blades, but not
   /// grabs and pushes, which belong to the World. Throws Error: io.

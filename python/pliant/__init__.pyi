@@ -112,6 +112,18 @@ class _ToolForce(TypedDict):
     penetration: float
     parked: bool
 
+class _BladeForce(TypedDict):
+    a: _Floats
+    b: _Floats
+    force: _Floats
+    torque: _Floats
+    max_force: float
+    work: float
+    fracture: float
+    gave_way: float
+    present: bool
+    pressing: bool
+
 class _LiveState(TypedDict):
     running: bool
     frames: int
@@ -177,6 +189,8 @@ class World:
     def cut(self, triangles: ArrayLike) -> _CutResult: ...
     def move_blade(self, blade: str, a: _Vector, b: _Vector) -> _CutResult: ...
     def lift_blade(self, blade: str) -> None: ...
+    def drive_blade(self, blade: str, a: _Vector, b: _Vector, seconds: float = ...) -> None: ...
+    def blade_forces(self) -> dict[str, _BladeForce]: ...
     def pieces(self, body: int = 0) -> int: ...
     def save(self, file: str) -> None: ...
     def load(self, file: str) -> None: ...

@@ -21,6 +21,7 @@ MISSING = {
     ("C", "WorldInfo.remarks"): "in the text of pliant_world_remarks",
     ("Python", "Event.placed"): "the position is None where it is not",
     ("Python", "ToolForce.name"): "a key of what World.tool_forces() returns",
+    ("Python", "BladeForce.name"): "a key of what World.blade_forces() returns",
     ("Python", "ProbeValue.probe"): "a key of what World.probes() returns",
     ("Python", "ProbeValue.quantity"): "a key of what World.probes() has for a probe",
     ("Python", "ProbeValue.numbers"): "an array of World.probes()",
@@ -69,7 +70,7 @@ BEYOND = {
 }
 PYTHON_NAMES = {"backends": "backend_names", "__version__": "version", "World::__init__": "World::World"}
 STRUCTS = {"WorldOptions": "options", "StepReport": "report", "CutResult": "cut", "WorldInfo": "info", "BodyInfo": "body", "Frame": "frame",
-           "ProbeValue": "probe_value", "ToolForce": "tool_force", "Interpenetration": "interpenetration", "PickedPoint": "picked_point", "LiveState": "live_state",
+           "ProbeValue": "probe_value", "ToolForce": "tool_force", "BladeForce": "blade_force", "Interpenetration": "interpenetration", "PickedPoint": "picked_point", "LiveState": "live_state",
            "LiveOptions": "live_options", "Event": "event", "ForceSample": "force_sample", "HapticOptions": "haptic_options", "HapticSample": "haptic_sample",
            "HapticState": "haptic_state", "DeviceSample": "device_sample", "DeviceWrench": "device_wrench", "DeviceLimits": "device_limits",
            "DeviceCounts": "device_counts"}
@@ -120,7 +121,7 @@ def cpp():
 
 
 def c():
-    text = "".join(code_of(f"include/pliant/c/{n}.h") for n in ("pliant", "types", "live", "haptics", "haptic_device"))
+    text = "".join(code_of(f"include/pliant/c/{n}.h") for n in ("pliant", "types", "blades", "live", "haptics", "haptic_device"))
     found = set()
     for call in re.findall(r"^PLIANT_API .*?pliant_(\w+)\(", text, re.M):
         of = next((n for n, short in CLASSES.items() if call.startswith(short + "_")), None)
@@ -162,7 +163,8 @@ def python():
     for name, function in {"StepReport": "bind_report", "Frame": "bind_frame"}.items():
         found |= {f"{name}.{n}" for n in re.findall(define, block(text, f"void {function}("))}
     for name, variable, function in (("WorldInfo", "d", "info"), ("BodyInfo", "body", "info"), ("CutResult", "d", "result"), ("PickedPoint", "d", "picked"),
-                                     ("LiveState", "live", "live_state"), ("Event", "event", "events"), ("ToolForce", "tool", "tool_forces"), ("Interpenetration", "found", "interpenetrations")):
+                                     ("LiveState", "live", "live_state"), ("Event", "event", "events"), ("ToolForce", "tool", "tool_forces"), ("BladeForce", "blade", "blade_forces"),
+                                     ("Interpenetration", "found", "interpenetrations")):
         kind = "list" if name in ("Interpenetration", "Event") else "dict"
         found |= {f"{name}.{n}" for n in re.findall(rf'\b{variable}\["(\w+)"\] =', block(text, f"py::{kind} {function}("))}
     found |= {f"LiveOptions.{n}" for n in re.findall(r'py::arg\("(\w+)"\)', live[:live.index("stop_live")])}

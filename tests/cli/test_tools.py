@@ -160,6 +160,17 @@ class Tools(CliTest):
         self.assertIn("probe ball: interpenetration of probe and cube", told)
         self.assertEqual(self.json("info", path)["probes"][0], {"name": "ball", "between": ["probe", "cube"], "quantities": ["interpenetration"]})
 
+    def test_a_blade_that_cuts_by_force_has_rows(self):
+        run = self.json("run", str(SCENES / "incise.json"), "--steps", "150", "--backend", "cpu", "--out", "out")
+        with open(self.folder / "out" / "incise_tools.csv") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual({row["tool"] for row in rows}, {"scalpel"})
+        blade = run["blades"][0]
+        self.assertGreater(blade["force"][1], 1)
+        self.assertAlmostEqual(float(rows[-1]["fy [N]"]), blade["force"][1], places=6)
+        self.assertAlmostEqual(float(rows[-1]["work [J]"]), blade["work"], places=9)
+        self.assertLess(float(rows[-1]["y [m]"]), float(rows[0]["y [m]"]))
+
     def test_tissue_on_tissue(self):
         # The same cube twice, one above the other.
         with open(self.folder / self.scene(body={"prescribed": [], "name": "low"}, contact={"friction": 0.3}, duration=0.5)) as file:

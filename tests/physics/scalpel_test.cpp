@@ -2,6 +2,8 @@
 // is what tissue stores, moves with and loses.
 #include <fmt/format.h>
 
+#include <map>
+
 #include "physics/harness.h"
 #include "statics/statics.h"
 #include "support/error_of.h"
@@ -99,6 +101,26 @@ TEST_P(Scalpel, WorkIsKept) {
   }
   check("work of the blade, less elastic, kinetic and fracture energy", worst, 0.02);
   EXPECT_GT(blade_of(*sim).fracture, 0);
+}
+
+/// Work and largest force are those of the steps that were kept, not of batches that were made again.
+TEST_P(Scalpel, WhatIsTakenBackDidNothing) {
+  const Press p{.speed = 0.5, .damping = 5, .element = "hex8", .depth = 0.09};
+  const Scene scene = pressed_block(p);
+  auto sim = simulate(scene, GetParam());
+  std::map<std::int64_t, std::array<double, 2>> kept;                   // by step: largest force and work
+  while (sim->time() < 0.95 * scene.duration && sim->advance(1) > 0) {  // batches end between the steps to which they go back
+    kept.erase(kept.upper_bound(sim->step()), kept.end());
+    for (const auto& f : sim->press().step_forces()) {
+      const double way = p.speed * sim->dt() * (sim->step() == 1 ? 0.5 : 1);  // the path begins with the first step
+      kept[sim->step()] = {eigen(f.force).norm(), f.force[1] * way};
+    }
+  }
+  EXPECT_GT(sim->report().made_again, 0);
+  double most = 0, work = 0;
+  for (const auto& [step, felt] : kept) most = std::max(most, felt[0]), work += felt[1];
+  EXPECT_EQ(blade_of(*sim).max_force, most);
+  check_relative("work against that of the steps", blade_of(*sim).work, work, 1e-9);
 }
 
 PLIANT_ON_BACKENDS(Scalpel);

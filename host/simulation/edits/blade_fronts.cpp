@@ -116,8 +116,9 @@ struct BladeFronts::Edge {
   Vec3d motion{};        ///< of its middle until the next update, across the edge [m]
   std::vector<Vec3d> x;  ///< samples [m]
 
-  Edge(const Blade& b, std::size_t samples, double length, double now, double until) : blade(b), size(length), time(now) {
-    const BladeSegment at = b.at(now), next = b.at(until);
+  Edge(const Blade& b, const BladeDrives& driven, std::size_t samples, double length, double now, double until)
+      : blade(b), size(length), time(now) {
+    const BladeSegment at = blade_place(driven, b, now), next = blade_place(driven, b, until);
     const Vec3d span = vec::sub(at[1], at[0]);
     spacing = vec::norm(span) / static_cast<double>(samples - 1);
     along = vec::mul(span, 1 / vec::norm(span));
@@ -140,12 +141,11 @@ std::vector<CutEdges> BladeFronts::update(EditedBodies& bodies, const std::vecto
     if (b.cuts != BladeCuts::by_force) continue;
     PressedBlade& blade = run_.state.pressed[b.name];
     blade.samples.resize(static_cast<std::size_t>(sample_count(b, size)));
-    const double first = std::max(b.start, b.path.front()[0]), last = std::min(b.end, b.path.back()[0]);
-    if (until < first || now > last) {  // it is not there
+    if (!blade_present(run_.state.driven_blades, b, now, until)) {
       std::fill(blade.samples.begin(), blade.samples.end(), FrontSample{});
       continue;
     }
-    const Edge edge(b, blade.samples.size(), size, now, until);
+    const Edge edge(b, run_.state.driven_blades, blade.samples.size(), size, now, until);
     if (!(edge.spacing > 0)) continue;  // its ends pass through each other
     let_go(blade, edge, bodies);
     give_way(blade, edge, bodies, edges);

@@ -91,7 +91,8 @@ void BladePress::upload_poses(std::int32_t steps) {
   const auto last = static_cast<std::int64_t>(steps);
   for (std::int64_t row = -1; row < static_cast<std::int64_t>(rows); ++row) {
     for (const std::size_t b : blades_) {
-      const BladeSegment at = run_.scene.blades[b].at(clock.time_at(clock.step + std::min(row, last)));
+      const double time = clock.time_at(clock.step + std::min(row, last));
+      const BladeSegment at = blade_place(run_.state.driven_blades, run_.scene.blades[b], time);
       poses_.push_back({at[0], vec::sub(at[1], at[0])});
       if (row < 0) continue;
       for (const Vec3d& v : poses_.back()) pose.insert(pose.end(), v.begin(), v.end());
@@ -182,20 +183,19 @@ void BladePress::read_fronts() {
 
 void BladePress::end_batch(std::int32_t steps) {
   if (names_.empty()) return;
-  step_forces_.clear();
-  batch_end_ = run_.state.clock.step;
-  if (!pressing_) return;
+  felt_.step_forces.clear();
+  felt_.batch_end = run_.state.clock.step;
+  if (!pressing_ || steps <= 0) return;
   read_fronts();
-  if (steps <= 0) return;
   const std::size_t blades = names_.size(), samples = first_.back();
-  step_forces_.resize(static_cast<std::size_t>(steps) * blades);
+  felt_.step_forces.resize(static_cast<std::size_t>(steps) * blades);
   const std::vector<double> force = run_.backend().read_reals(run_.loaded.program().find("blade_force"));
   for (std::size_t step = 0; step < static_cast<std::size_t>(steps); ++step) {
     for_samples([&](std::size_t k, std::size_t i, const FrontSample&, PressedBlade& own) {
       const double* f = &force[blade_force_numbers * (step * samples + i)];
       const Vec3d on_blade{-f[0], -f[1], -f[2]};
       const double place = static_cast<double>(i - first_[k]) / static_cast<double>(first_[k + 1] - first_[k] - 1);
-      StepForce& sum = step_forces_[step * blades + k];
+      StepForce& sum = felt_.step_forces[step * blades + k];
       const auto at = [&](std::size_t row) {
         const auto& pose = poses_[row * blades + k];
         return vec::add(pose[0], vec::mul(pose[1], place));
@@ -208,14 +208,14 @@ void BladePress::end_batch(std::int32_t steps) {
     for (std::size_t k = 0; k < blades; ++k) {
       const auto own = run_.state.pressed.find(names_[k]);
       if (own != run_.state.pressed.end())
-        own->second.max_force = std::max(own->second.max_force, vec::norm(step_forces_[step * blades + k].force));
+        own->second.max_force = std::max(own->second.max_force, vec::norm(felt_.step_forces[step * blades + k].force));
     }
   }
 }
 
 StepForce BladePress::last_force(std::size_t blade) const {
-  if (step_forces_.size() < names_.size() || batch_end_ != run_.state.clock.step) return {};
-  return step_forces_[step_forces_.size() - names_.size() + blade];
+  if (felt_.step_forces.size() < names_.size() || felt_.batch_end != run_.state.clock.step) return {};
+  return felt_.step_forces[felt_.step_forces.size() - names_.size() + blade];
 }
 
 }  // namespace pliant

@@ -26,10 +26,18 @@ class BladePress {
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
   /// Force on each blade [N] and torque about the middle of its edge [N m] in each step of the last batch, shape
   /// [steps][blades]; it ended after step batch_end(). Empty where nothing was near.
-  [[nodiscard]] const std::vector<StepForce>& step_forces() const { return step_forces_; }
-  [[nodiscard]] std::int64_t batch_end() const { return batch_end_; }
+  [[nodiscard]] const std::vector<StepForce>& step_forces() const { return felt_.step_forces; }
+  [[nodiscard]] std::int64_t batch_end() const { return felt_.batch_end; }
   /// In the last step; zero where nothing was near.
   [[nodiscard]] StepForce last_force(std::size_t blade) const;
+
+  /// Forces on the blades in the last batch, to be put back after the simulation has gone ahead.
+  struct Felt {
+    std::vector<StepForce> step_forces;
+    std::int64_t batch_end = -1;
+  };
+  [[nodiscard]] const Felt& felt() const { return felt_; }
+  void put_back(const Felt& felt) { felt_ = felt; }
 
  private:
   /// What the samples give the kernels.
@@ -48,8 +56,7 @@ class BladePress {
   std::vector<std::size_t> blades_;          ///< their places in Scene::blades, which a restored state replaces
   std::vector<std::size_t> first_;           ///< sample of each blade, and the number of all
   std::vector<std::array<Vec3d, 2>> poses_;  ///< first end and span, from the step before the batch on, [steps + 2][blades]
-  std::vector<StepForce> step_forces_;
-  std::int64_t batch_end_ = -1;
+  Felt felt_;
   bool pressing_ = false;  ///< the passes run in the present batch
 };
 

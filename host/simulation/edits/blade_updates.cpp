@@ -18,8 +18,8 @@ namespace {
 /// Returns the motion of a blade between two times, along every row of its path in between. Empty if it does not cut then.
 BladeMove move_of(const Blade& blade, double from, double to) {
   BladeMove move{blade.name, {}, {}};
-  from = std::max({from, blade.start, blade.path.front()[0]});
-  to = std::min({to, blade.end, blade.path.back()[0]});
+  from = std::max(from, blade.begins());
+  to = std::min(to, blade.ends());
   if (!(from < to)) return move;
   move.from = blade.at(from);
   for (const auto& row : blade.path) {

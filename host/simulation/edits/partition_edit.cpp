@@ -77,7 +77,7 @@ std::optional<BladeSegment> place_of(const RunContext& run, const std::string& n
     return found->second;
   }
   for (const Blade& blade : run.scene.blades) {
-    if (blade.name == name) return blade.at(now);
+    if (blade.name == name) return blade_place(state.driven_blades, blade, now);
   }
   const std::vector<ContactTool> tools = present_tools(run.scene, state.tools);
   for (std::size_t t = 0; t < tools.size(); ++t) {

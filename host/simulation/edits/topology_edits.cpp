@@ -16,13 +16,16 @@
 namespace pliant {
 namespace {
 
+constexpr double kDrivenSpeed = 0.1;        ///< of a blade that waits for the host, by which its updates are counted [m/s]
 constexpr double kLongestBatch = 1.0 / 60;  ///< maximum interval of the blade updates [s]
 
 void check_blade(const Blade& blade) {
   const auto fail = [&](const std::string& what) {
     throw Error(ErrorCode::bad_input, fmt::format("blade '{}': {}", blade.name, what));
   };
-  if (blade.path.size() < 2) fail(fmt::format("got a path of {} rows; allowed are two or more", blade.path.size()));
+  if (blade.path.size() < (blade.cuts == BladeCuts::by_force ? 1U : 2U))
+    fail(
+        fmt::format("got a path of {} rows; allowed are two or more, or one of a blade that cuts by force", blade.path.size()));
   for (std::size_t i = 0; i < blade.path.size(); ++i) {
     const auto& row = blade.path[i];
     const bool finite = std::all_of(row.begin(), row.end(), [](double v) { return std::isfinite(v); });
@@ -76,7 +79,9 @@ double update_interval(const Scene& scene, double edge) {
   constexpr double kLag = 0.1;  // of an edge
   double longest = kLongestBatch;
   for (const Blade& blade : scene.blades) {
-    if (blade.cuts == BladeCuts::by_force && top_speed(blade) > 0) longest = std::min(longest, kLag * edge / top_speed(blade));
+    if (blade.cuts != BladeCuts::by_force) continue;
+    const double speed = blade.stands() ? kDrivenSpeed : top_speed(blade);
+    if (speed > 0) longest = std::min(longest, kLag * edge / speed);
   }
   return longest;
 }

@@ -36,6 +36,11 @@ class TopologyEdits {
   CutReport cut(std::span<const SweepTriangle> triangles);
   CutReport move_blades(std::span<const BladePose> poses);
   void lift_blade(const std::string& blade);
+  /// Moves a blade of the scene that cuts by force from where it is to a place within `seconds`; one that is nowhere is there
+  /// at once. Its path ends. Throws Error (bad_input): no such blade, numbers, an edge longer than on its path, too fast.
+  void drive_blade(const std::string& name, const BladeSegment& to, double seconds);
+  /// Takes it away, until it is driven again. Throws Error (bad_input) if there is no such blade.
+  void lift_blade_by_force(const std::string& name);
   void prepare_cuts();
   [[nodiscard]] const CutTopology* cut_topology(std::size_t body) const;
   /// Returns the mean current position of the nodes whose elements the last cut or tear changed [m].
@@ -60,6 +65,7 @@ class TopologyEdits {
   // blade_updates.cpp
   void move_scene_blades();
   void move_fronts();
+  [[nodiscard]] const Blade& blade_by_force(const std::string& name) const;
   CutReport run_blades(const std::vector<BladeMove>& moves, std::span<const SweepTriangle> triangles);
   [[nodiscard]] bool reached(std::size_t body, const std::vector<Vec3d>& x, const std::vector<BladeMove>& moves,
                              std::span<const SweepTriangle> triangles) const;

@@ -40,7 +40,7 @@ void Recovery::keep(bool on_grid) {
   RunState& state = run_.state;
   if (state.kept && !(on_grid && good())) return;
   run_.loaded.keep_state();
-  state.kept = KeptState{state.clock, state.relaxation.damping};
+  state.kept = KeptState{state.clock, state.relaxation.damping, state.pressed};
   reports_.kept = reports_.now;
 }
 
@@ -144,6 +144,7 @@ bool Recovery::go_back(Symptoms&) {
   state.look.tools = state.look.tissue = -1;
   state.clock = state.kept->clock;
   state.relaxation.damping = state.kept->damping;
+  state.pressed = state.kept->pressed;
   reports_.now.take_back(reports_.kept);
   return false;
 }

@@ -1,10 +1,12 @@
 // Blades that cut by force: what their edges have met, and what they have done (docs/cutting.md). Part of RunState.
 #pragma once
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "cutting/blade/blade_trace.h"
+#include "scene/blade.h"
 
 namespace pliant {
 
@@ -40,6 +42,23 @@ struct PressedBlade {
   std::int64_t by_stress = 0;        ///< by the stress of the element below
 };
 
+/// Motion of a blade between two places at constant speed, requested by the host; its path has ended.
+struct BladeDrive {
+  BladeSegment from{}, to{};
+  double start = 0, end = 0;  ///< [s]
+  bool lifted = false;        ///< it is nowhere until it is driven again
+};
+using BladeDrives = std::map<std::string, BladeDrive>;
+
+/// The ends of a blade at a time [m].
+BladeSegment blade_place(const BladeDrives& driven, const Blade& blade, double time);
+/// Returns true if a blade is anywhere between two times [s].
+bool blade_present(const BladeDrives& driven, const Blade& blade, double from, double until);
+
+template <class V>
+void visit(V& v, BladeDrive& s) {
+  v("from", s.from), v("to", s.to), v("start", s.start), v("end", s.end), v("lifted", s.lifted);
+}
 template <class V>
 void visit(V& v, FrontSample& s) {
   v("kind", s.kind), v("body", s.body), v("point", s.point), v("advance", s.advance), v("pressed", s.pressed);

@@ -37,6 +37,7 @@ struct RunState {
   ChangedParameters changed;                      ///< parameters that have changed
   std::vector<std::vector<std::int32_t>> broken;  ///< per entry of Scene::joins its broken springs, ascending; empty: none
   std::map<std::string, PressedBlade> pressed;    ///< by name: the blades that cut by force
+  BladeDrives driven_blades;                      ///< those of them that the host moves off their paths
 };
 
 // Visitor: calls v(name, member) for every member in this order, as the visitors of the parts do. v.last() writes nothing for
@@ -53,6 +54,7 @@ void visit(V& v, RunState& s) {
   v.last("changed", s.changed);
   v.last("broken", s.broken);
   v.last("pressed", s.pressed);
+  v.last("driven_blades", s.driven_blades);
 }
 
 /// Serializes the state, identically on every machine: names, and values as eight little-endian bytes.

@@ -49,6 +49,7 @@ struct RelaxationState {
 struct KeptState {
   Clock clock;
   double damping = 0;
+  std::map<std::string, PressedBlade> pressed;  ///< RunState::pressed
 };
 
 /// The edges of one body that one edit cut.
@@ -115,6 +116,7 @@ void visit(V& v, RelaxationState& s) {
 template <class V>
 void visit(V& v, KeptState& s) {
   v("clock", s.clock), v("damping", s.damping);
+  v.last("pressed", s.pressed);
 }
 template <class V>
 void visit(V& v, CutRecord& s) {

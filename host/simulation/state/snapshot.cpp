@@ -217,6 +217,14 @@ void check_state(const RunState& state, const Model& model, const Scene& scene) 
     need(f.body < model.bodies.size() && f.node >= 0 && vec::finite(f.force), "a force of the host");
   }
   need(!state.focus || vec::finite(*state.focus), "the focus is not finite");
+  for (const auto& [name, drive] : state.driven_blades) {
+    const bool known = std::any_of(scene.blades.begin(), scene.blades.end(), [&, own = &name](const Blade& b) {
+      return b.name == *own && b.cuts == BladeCuts::by_force;
+    });
+    need(known && std::isfinite(drive.start) && std::isfinite(drive.end) && drive.end >= drive.start, "a driven blade");
+    good_segment(drive.from);
+    good_segment(drive.to);
+  }
   const std::vector<ContactTool> tools = known_tools(scene, state.tools);
   for (const auto& driven : state.driven) {
     const ToolDrive& drive = driven.second;

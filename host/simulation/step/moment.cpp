@@ -3,7 +3,10 @@
 
 namespace pliant {
 
-Moment Simulation::moment() const { return {state_.clock, loaded_.state_bytes(), reports_.now, state_.driven}; }
+Moment Simulation::moment() const {
+  return {state_.clock,   loaded_.state_bytes(), reports_.now, state_.driven,
+          state_.pressed, state_.driven_blades,  press_.felt()};
+}
 
 void Simulation::look_at(const Moment& moment, const std::function<void()>& look) {
   const Moment present = this->moment();
@@ -12,6 +15,9 @@ void Simulation::look_at(const Moment& moment, const std::function<void()>& look
     loaded_.write_state_bytes(to.buffers);
     reports_.now = to.report;
     state_.driven = to.driven;
+    state_.pressed = to.pressed;
+    state_.driven_blades = to.driven_blades;
+    press_.put_back(to.felt);
   };
   go(moment);
   try {
@@ -26,6 +32,7 @@ void Simulation::look_at(const Moment& moment, const std::function<void()>& look
 bool Simulation::confirm() {
   if (settled() || divergence_) return !divergence_;
   const Snapshot present = snapshot();
+  const BladePress::Felt felt = press_.felt();
   while (!settled()) {
     const std::int32_t n = next_batch(settings_.batch_steps);
     const std::int64_t end = step() + n;
@@ -37,6 +44,7 @@ bool Simulation::confirm() {
   write_buffers(present, loaded_);
   state_ = present.state;
   reports_ = present.reports;
+  press_.put_back(felt);
   return true;
 }
 

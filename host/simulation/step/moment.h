@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "simulation/edits/blade_press.h"
 #include "simulation/state/run_report.h"
 #include "simulation/state/tool_state.h"
 
@@ -14,7 +15,10 @@ struct Moment {
   Clock clock;
   std::vector<std::vector<std::uint8_t>> buffers;  ///< LoadedModel::state_bytes()
   RunReport report;
-  std::map<std::string, ToolDrive> driven;  ///< RunState::driven
+  std::map<std::string, ToolDrive> driven;      ///< RunState::driven
+  std::map<std::string, PressedBlade> pressed;  ///< RunState::pressed
+  BladeDrives driven_blades;                    ///< RunState::driven_blades
+  BladePress::Felt felt;
 };
 
 }  // namespace pliant

@@ -12,6 +12,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "pliant/c/blades.h"
 #include "pliant/c/haptics.h"
 #include "pliant/c/live.h"
 #include "pliant/c/types.h"

@@ -1,0 +1,133 @@
+#include "api/force_blades.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <utility>
+
+#include "geometry/vec.h"
+#include "pliant/error.h"
+
+namespace pliant::api {
+namespace {
+
+std::vector<std::string> names_by_force(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const Blade& b : scene.blades) {
+    if (b.cuts == BladeCuts::by_force) names.push_back(b.name);
+  }
+  return names;
+}
+
+}  // namespace
+
+ForceBlades::ForceBlades(const Scene& scene) : names_(names_by_force(scene)) {}
+
+bool ForceBlades::knows(const std::string& name) const { return std::find(names_.begin(), names_.end(), name) != names_.end(); }
+
+void ForceBlades::drive(const std::string& name, const BladeSegment& to, double seconds) {
+  if (!knows(name)) {
+    const std::string all = names_.empty() ? "there are none" : fmt::format("there are '{}'", fmt::join(names_, "', '"));
+    throw Error(ErrorCode::usage, fmt::format("the scene has no blade '{}' that cuts by force; {}", name, all));
+  }
+  if (!vec::finite(to[0]) || !vec::finite(to[1]) || to[0] == to[1] || !std::isfinite(seconds) || seconds < 0) {
+    throw Error(ErrorCode::usage, fmt::format("blade '{}': got a segment from [{}] m to [{}] m within {} s; allowed are two "
+                                              "different finite points and a finite time that is not negative",
+                                              name, fmt::join(to[0], ", "), fmt::join(to[1], ", "), seconds));
+  }
+  const std::lock_guard lock(mutex_);
+  const auto last = std::find_if(asked_.rbegin(), asked_.rend(), [&](const Request& r) { return r.name == name; });
+  if (last != asked_.rend() && last->seconds > 0) {  // of several pending drives only the last one is kept
+    *last = {name, to, seconds};
+  } else {
+    asked_.push_back({name, to, seconds});
+  }
+}
+
+void ForceBlades::lift(const std::string& name) {
+  const std::lock_guard lock(mutex_);
+  asked_.push_back({name});
+}
+
+void ForceBlades::hold_back() {
+  const std::lock_guard lock(mutex_);
+  asked_.clear();
+  held_back_ = true;
+}
+
+void ForceBlades::go_on() {
+  const std::lock_guard lock(mutex_);
+  held_back_ = false;
+}
+
+void ForceBlades::renew(const Simulation& simulation, bool keep_requests) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!keep_requests) asked_.clear();
+    held_back_ = false;
+  }
+  note(simulation);
+}
+
+std::vector<BladeForce> ForceBlades::forces() const {
+  const std::lock_guard lock(mutex_);
+  return forces_;
+}
+
+void ForceBlades::apply(Simulation& simulation) {
+  std::vector<Request> doing;
+  {
+    const std::lock_guard lock(mutex_);
+    if (asked_.empty() || held_back_) return;
+    doing = std::exchange(asked_, {});
+  }
+  std::exception_ptr refused;
+  for (const Request& r : doing) {
+    try {
+      if (r.seconds < 0) {
+        simulation.lift_blade_by_force(r.name);
+      } else {
+        simulation.drive_blade(r.name, r.to, r.seconds);
+      }
+    } catch (const Error& error) {
+      if (error.code() == ErrorCode::internal || error.code() == ErrorCode::device) throw;
+      if (refused == nullptr) refused = std::current_exception();
+    }
+  }
+  note(simulation);
+  if (refused != nullptr) std::rethrow_exception(refused);
+}
+
+void ForceBlades::note(const Simulation& simulation) {
+  if (names_.empty()) return;
+  std::vector<BladeForce> forces;
+  const RunState& state = simulation.state();
+  const double now = simulation.time();
+  for (const Blade& blade : simulation.scene().blades) {
+    if (blade.cuts != BladeCuts::by_force) continue;
+    const StepForce felt = simulation.press().last_force(forces.size());
+    const BladeSegment at = blade_place(state.driven_blades, blade, now);
+    BladeForce f;
+    f.name = blade.name;
+    f.a = at[0];
+    f.b = at[1];
+    f.force = felt.force;
+    f.torque = felt.torque;
+    f.present = blade_present(state.driven_blades, blade, now, now);
+    f.pressing = felt.force != Vec3d{};
+    if (const auto own = state.pressed.find(blade.name); own != state.pressed.end()) {
+      f.max_force = own->second.max_force;
+      f.work = own->second.work;
+      f.fracture = own->second.fracture;
+      f.gave_way = own->second.first;
+    }
+    forces.push_back(std::move(f));
+  }
+  const std::lock_guard lock(mutex_);
+  forces_ = std::move(forces);
+}
+
+}  // namespace pliant::api
