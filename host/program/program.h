@@ -38,7 +38,7 @@ struct Pass {
   std::vector<Arg> args;
   Shape shape = Shape::lanes;
   std::int64_t count = 0;
-  std::string label;             ///< for display, e.g. "liver: tet4 neo-hookean"
+  std::string label;             ///< for display, e.g. the body, its element and its law
   std::int64_t elements = 0;     ///< number of elements or nodes it advances, for reports
   double bytes_per_element = 0;  ///< memory traffic, each datum once
   double flops_per_element = 0;  ///< operations; an fma is two

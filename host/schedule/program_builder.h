@@ -94,7 +94,7 @@ class ProgramBuilder {
   [[nodiscard]] std::string buffer_name(std::size_t index, const std::string& what) const;
   BufferId add_element_nodes(std::size_t index, std::size_t count);
   BufferId add_element_data(std::size_t index, std::size_t count);
-  /// Adds the two passes before the force of tet4anp; returns the buffer of nodal pressures.
+  /// Adds the two passes before the force of elements with averaged dilation; returns the buffer of nodal pressures.
   BufferId add_averaging(std::size_t index, BufferId nodes_id, BufferId data_id, BufferId law_id, std::size_t count,
                          const std::string& label);
 
