@@ -67,7 +67,7 @@ struct Program {
   /// The same for blades that cut by force: samples of their edges that have met material.
   std::shared_ptr<std::int64_t> near_samples;
   [[nodiscard]] BufferId find(const std::string& name) const;  ///< -1 if absent
-  BufferId add(Buffer buffer);                                 ///< appends a buffer and returns its id
+  BufferId add(Buffer buffer);  ///< appends a buffer and returns its id; state has to declare its Carry
   [[nodiscard]] Buffer& at(BufferId id) { return buffers.at(static_cast<std::size_t>(id - first)); }
   [[nodiscard]] const Buffer& at(BufferId id) const { return buffers.at(static_cast<std::size_t>(id - first)); }
 };
