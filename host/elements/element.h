@@ -20,7 +20,7 @@
 
 namespace pliant {
 
-/// ELEMENT(STEM, TYPE), in the order of ElementKind.
+/// ELEMENT(STEM, TYPE), in the order of ElementKind. The first with a number of corners is the usual one (usual_element).
 #define PLIANT_ELEMENTS(ELEMENT) \
   ELEMENT(tet4, Tet4)            \
   ELEMENT(tet4anp, Tet4Anp)      \
@@ -49,9 +49,11 @@ struct ElementInfo {
   int force;            ///< force numbers per element: three per corner
   bool averaged;        ///< dilation is averaged over the elements at each node; requires a law with a volumetric part
   bool hourglass;       ///< has hourglass control for the modes without strain
-  bool bricks;          ///< lattice cells are stored in bricks (kernels/layout.h)
+  const char* brick;    ///< force kernel of lattice cells stored in bricks (kernels/layout.h); null: they are lists
   bool statics;         ///< supported by the static solver
   bool splits;          ///< volume meshes of it can be cut, and tear face by face
+  bool reference;       ///< accurate in bending and at any Poisson's ratio: what `plan` compares the others with
+  int trial;            ///< place in the order in which `plan` tries elements: the most accurate for their cost come first
 };
 
 /// Memory traffic [bytes] and operations (an fma is two) per element and step. Each datum counts once; cache hits do not
@@ -65,6 +67,12 @@ struct ElementCost {
 const ElementInfo& element_info(ElementKind kind);
 /// In the order of PLIANT_ELEMENTS.
 std::span<const ElementKind, element_count> all_elements();
+/// The first element with so many corners: what a body is made of if its scene does not say.
+ElementKind usual_element(int corners);
+/// The element whose lattice cells are stored in bricks (ElementInfo::brick). There is one layout of bricks, so one element.
+ElementKind brick_element();
+/// The element of references, see ElementInfo::reference.
+ElementKind reference_element();
 inline const char* to_string(ElementKind kind) { return element_info(kind).word; }
 
 /// Permutation between VTK's corner order of a hexahedron and bit order; it is its own inverse.

@@ -19,9 +19,11 @@ struct Hex8 {
                                     .force = PLIANT_HEX_FORCE_PLANES,
                                     .averaged = false,
                                     .hourglass = true,
-                                    .bricks = true,
+                                    .brick = "tled_hex8_brick_force",
                                     .statics = true,
-                                    .splits = false};
+                                    .splits = false,
+                                    .reference = false,
+                                    .trial = 1};
 
   static std::vector<double> record(std::span<const Vec3d> x, const Material& material, const std::string& what);
   static std::vector<double> cube_record(double edge, const Material& material, const std::string& what);

@@ -19,9 +19,11 @@ struct Hex8Full {
                                     .force = PLIANT_HEX_FORCE_PLANES,
                                     .averaged = false,
                                     .hourglass = false,
-                                    .bricks = false,
+                                    .brick = nullptr,
                                     .statics = true,
-                                    .splits = false};
+                                    .splits = false,
+                                    .reference = true,
+                                    .trial = 3};
 
   static std::vector<double> record(std::span<const Vec3d> x, const Material&, const std::string& what);
   static std::vector<double> cube_record(double edge, const Material&, const std::string& what);

@@ -21,9 +21,11 @@ struct Tet4 {
                                     .force = PLIANT_TET_FORCE_PLANES,
                                     .averaged = false,
                                     .hourglass = false,
-                                    .bricks = false,
+                                    .brick = nullptr,
                                     .statics = true,
-                                    .splits = true};
+                                    .splits = true,
+                                    .reference = false,
+                                    .trial = 4};
 
   /// Gradients of the shape functions 1 to 3, and the volume, which is negative for an inverted element.
   static std::vector<double> record(std::span<const Vec3d> x, const Material&, const std::string&) {

@@ -11,6 +11,7 @@ struct Tet4Anp : Tet4 {
     out.what = "the same with averaged nodal pressure, which does not lock when nearly incompressible";
     out.averaged = true;
     out.statics = false;
+    out.trial = 2;
     return out;
   }();
   static ElementCost cost(double law, bool uniform) {

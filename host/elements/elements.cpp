@@ -1,5 +1,6 @@
 #include "elements/elements.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace pliant {
@@ -34,6 +35,13 @@ std::vector<double> full_record(const Corners8& x, const std::string& what) {
   return record;
 }
 
+/// The first element of the list with a property that at least one has.
+template <class Has>
+ElementKind first_with(const Has& has) {
+  const auto all = all_elements();
+  return *std::find_if(all.begin(), all.end(), [&](ElementKind kind) { return has(element_info(kind)); });
+}
+
 }  // namespace
 
 const ElementInfo& element_info(ElementKind kind) {
@@ -45,6 +53,18 @@ std::span<const ElementKind, element_count> all_elements() {
   static constexpr ElementKind all[] = {PLIANT_ELEMENTS(PLIANT_ELEMENT_KIND)};
 #undef PLIANT_ELEMENT_KIND
   return all;
+}
+
+ElementKind usual_element(int corners) {
+  return first_with([&](const ElementInfo& info) { return info.corners == corners; });
+}
+
+ElementKind brick_element() {
+  return first_with([](const ElementInfo& info) { return info.brick != nullptr; });
+}
+
+ElementKind reference_element() {
+  return first_with([](const ElementInfo& info) { return info.reference; });
 }
 
 std::vector<double> Hex8::record(std::span<const Vec3d> corners, const Material& material, const std::string& what) {

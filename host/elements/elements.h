@@ -26,6 +26,11 @@ inline std::vector<double> element_record(ElementKind kind, std::span<const Vec3
                                           const std::string& what) {
   return with_element(kind, [&](auto e) { return decltype(e)::record(x, material, what); });
 }
+/// The same for a cube of a lattice with this edge [m].
+inline std::vector<double> element_cube_record(ElementKind kind, double edge, const Material& material,
+                                               const std::string& what) {
+  return with_element(kind, [&](auto e) { return decltype(e)::cube_record(edge, material, what); });
+}
 inline double element_volume(ElementKind kind, std::span<const double> record) {
   return with_element(kind, [&](auto e) { return decltype(e)::volume(record); });
 }

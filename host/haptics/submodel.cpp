@@ -80,7 +80,7 @@ void add_list(const ElementBatch& from, std::int32_t element, const std::vector<
 std::int32_t add_bricks(const Model& model, const BrickBatch& from, std::int32_t element, const std::vector<std::int32_t>& ring,
                         const Numbering& numbers, Model& out) {
   ElementBatch batch;
-  batch.kind = BrickBatch::kind;
+  batch.kind = BrickBatch::kind();
   batch.material = from.material;
   batch.body = from.body;
   batch.uniform = true;

@@ -46,7 +46,7 @@ struct LawInfo {
   std::span<const ParameterInfo> parameters;
   bool takes_moduli;  ///< two elastic constants determine it, so a scene file gives those (young + poisson, ...) instead of its
                       ///< parameters
-  bool volumetric;    ///< W = (...) + U(J) with U = k/2 (J - 1)^2, whose derivative tet4anp averages
+  bool volumetric;    ///< W = (...) + U(J) with U = k/2 (J - 1)^2, whose derivative elements can average over nodes
   bool invertible;    ///< finite for J <= 0; others need Material::low
   double flops;       ///< operations of law_stress in its kernel fragment (an fma is two)
 };
@@ -75,7 +75,7 @@ struct Material {
   double viscosity = 0;       ///< shear viscosity eta [Pa s] of the Kelvin-Voigt stress 2 eta dev(D) + zeta tr(D) I
   double bulk_viscosity = 0;  ///< zeta [Pa s]; with a field, both belong to the largest modulus
   double damping = 0;         ///< mass-proportional damping rate c [1/s]: M u'' + c M u' = R - F
-  double hourglass = 1;       ///< factor on the hourglass stiffness of hex8 (1: exact bending of a bar at nu = 0)
+  double hourglass = 1;       ///< factor on the stiffness of hourglass control (1: exact bending of a bar at nu = 0)
   double toughness = 0;       ///< K_I: principal stress at which it tears [Pa]; 0: never
   double integrity = 1;       ///< zeta in (0, 1]: remaining fraction of the toughness
   double low = 0;             ///< low_volume: the law is continued below this J (kinematics.h); 0: undefined for J <= 0

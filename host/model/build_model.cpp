@@ -229,7 +229,7 @@ void place_bodies(const Scene& scene, std::span<const BodyMesh* const> solids, c
     draft.stiff = stiff_fills(draft.solid(), model.least_fill);
     draft.in_brick.assign(draft.solid().size(), false);
     draft.slot.assign(draft.solid().nodes.size(), -1);
-    if (!draft.solid().cells.empty() && element_info(body.element).bricks) {
+    if (!draft.solid().cells.empty() && element_info(body.element).brick != nullptr) {
       for (std::size_t e = 0; e < draft.in_brick.size(); ++e)
         draft.in_brick[e] = draft.materials.index[e] == 0 && draft.solid().operational(e) && !body.material.viscous();
       const std::int32_t first = model.bricks;

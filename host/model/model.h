@@ -45,7 +45,7 @@ struct VirtualNodes {
 
 struct ModelBody {
   std::string name;
-  ElementKind element = ElementKind::hex8;
+  ElementKind element{};
   ElementMaterials materials;
   std::vector<std::int32_t> slot;                  ///< slot of each node, in the order of the mesh or lattice
   std::vector<Vec3d> rest;                         ///< [m]

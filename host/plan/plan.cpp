@@ -29,6 +29,13 @@ void check(const Scene& scene) {
   if (v != Vec3d{} || w != Vec3d{}) fail("/bodies/0: an initial velocity");
 }
 
+std::vector<ElementKind> in_order_of_trial() {
+  std::vector<ElementKind> kinds(all_elements().begin(), all_elements().end());
+  std::stable_sort(kinds.begin(), kinds.end(),
+                   [](ElementKind a, ElementKind b) { return element_info(a).trial < element_info(b).trial; });
+  return kinds;
+}
+
 class Planner {
  public:
   Planner(const Scene& scene, const PlanOptions& options) : scene_(scene), o_(options) {}
@@ -37,15 +44,16 @@ class Planner {
     check(scene_);
     size_ = size_of(scene_);
     if (moves()) {
-      say(fmt::format("reference: hex8full, up to {} nodes or more, with the tools", o_.reference_nodes));
+      say(fmt::format("reference: {}, up to {} nodes or more, with the tools", to_string(reference_element()),
+                      o_.reference_nodes));
       course_ = course_of(scene_);
       reference_ = make_moving_reference(scene_, size_, o_, course_);
     } else {
-      say(fmt::format("reference: hex8full, {} nodes or more, static", o_.reference_nodes));
+      say(fmt::format("reference: {}, {} nodes or more, static", to_string(reference_element()), o_.reference_nodes));
       reference_ = make_reference(scene_, size_, o_);
     }
-    for (const ElementKind element : {ElementKind::hex8, ElementKind::tet4anp, ElementKind::hex8full, ElementKind::tet4}) {
-      if (element == ElementKind::tet4anp && !law_info(scene_.bodies[0].material.law).volumetric) continue;
+    for (const ElementKind element : in_order_of_trial()) {
+      if (element_info(element).averaged && !law_info(scene_.bodies[0].material.law).volumetric) continue;
       climb(element);
     }
     try_hybrids();
@@ -128,9 +136,11 @@ class Planner {
     measure(std::move(t));
   }
 
-  /// Hybrids on the lattice of the cheapest hex8 that meets the tolerance: fewer finite elements, and substeps where they pay.
+  /// Hybrids on the lattice of the cheapest usual element of cells that meets the tolerance: fewer finite elements, and
+  /// substeps where they pay.
   void try_hybrids() {
-    const Trial* const base = cheapest("hex8");
+    const ElementKind element = usual_element(8);
+    const Trial* const base = cheapest(to_string(element));
     if (base == nullptr || !integrator_info(scene_.integrator).matching) return;
     const std::int64_t nodes = base->wanted_nodes;
     struct Choice {
@@ -142,7 +152,7 @@ class Planner {
     for (const Choice& c :
          {Choice{0.6, 2, 1, 0}, {0.6, 1, 1, 0}, {0.6, 3, 1, 0}, {0.6, 2, 2, 0}, {0.6, 2, 1, 0.5}, {0.3, 2, 1, 0}}) {
       if (moves() && c.substeps > 1) continue;  // contact needs every step
-      Trial t = finite_elements(ElementKind::hex8, nodes);
+      Trial t = finite_elements(element, nodes);
       DeformationModel& m = t.scene.bodies[0].model;
       const DeformationModel& own = scene_.bodies[0].model;
       m.type = ModelType::hybrid;
@@ -156,8 +166,8 @@ class Planner {
         m.young = scene_.bodies[0].material.moduli.young();
       }
       t.model = "hybrid";
-      t.what = fmt::format("hybrid of hex8, about {} nodes, ratio {}, w {}, {}, substeps {}", nodes, c.ratio, c.width,
-                           c.alpha > 0 ? fmt::format("alpha {}", c.alpha) : "stiffness matched", c.substeps);
+      t.what = fmt::format("hybrid of {}, about {} nodes, ratio {}, w {}, {}, substeps {}", to_string(element), nodes, c.ratio,
+                           c.width, c.alpha > 0 ? fmt::format("alpha {}", c.alpha) : "stiffness matched", c.substeps);
       const Trial now = measure(std::move(t));
       // Where most of the body is already far off, less of it in finite elements will not do.
       if (first && !(now.error >= 0 && now.error <= 10 * o_.tolerance)) return;
@@ -236,7 +246,7 @@ class Planner {
                    {"backend", o_.backend},
                    {"compared", moves() ? Json{{"seconds", course_}, {"times", kSamples}} : Json(nullptr)},
                    {"reference",
-                    {{"element", "hex8full"},
+                    {{"element", to_string(reference_element())},
                      {"nodes", reference_.nodes},
                      {"uncertainty", reference_.uncertainty},
                      {"seconds", reference_.seconds}}},
@@ -244,8 +254,8 @@ class Planner {
                    {"choice", plan.found ? row(*best) : Json(nullptr)},
                    {"nearest", Json::array()},
                    {"trials", Json::array()}};
-    plan.text = fmt::format("reference: hex8full, three lattices up to {} nodes, {:.2f} % apart\n", reference_.nodes,
-                            100 * reference_.uncertainty);
+    plan.text = fmt::format("reference: {}, three lattices up to {} nodes, {:.2f} % apart\n", to_string(reference_element()),
+                            reference_.nodes, 100 * reference_.uncertainty);
     if (moves()) plan.text += fmt::format("compared at {} times of the first {:.3g} s, with the tools\n", kSamples, course_);
     for (const Trial& t : trials_) {
       plan.report["trials"].push_back(row(t));

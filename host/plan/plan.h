@@ -16,7 +16,7 @@ struct PlanOptions {
   std::string backend = "auto";
   std::int64_t least_nodes = 300;       ///< of the coarsest lattice tried
   std::int64_t most_nodes = 10000;      ///< of the finest
-  std::int64_t reference_nodes = 3000;  ///< of the first reference lattice (hex8full)
+  std::int64_t reference_nodes = 3000;  ///< of the first reference lattice
   double reference_seconds = 35;        ///< that finer references of a body at rest may take
   double seconds = 60;                  ///< in which all of it should be done; trials for which none is left are skipped
   std::function<void(const std::string&)> progress;  ///< a part begins

@@ -169,7 +169,7 @@ Scene configured(const Scene& scene, const Size& size, ElementKind element, std:
 }
 
 Scene reference_scene(const Scene& scene, const Size& size, std::int64_t nodes) {
-  return configured(scene, size, ElementKind::hex8full, nodes);
+  return configured(scene, size, reference_element(), nodes);
 }
 
 Reference make_reference(const Scene& scene, const Size& size, const PlanOptions& options) {

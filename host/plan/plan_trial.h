@@ -41,7 +41,7 @@ Reference make_reference(const Scene& scene, const Size& size, const PlanOptions
 /// One configuration. Its scene is the base scene with another lattice, element and model.
 struct Trial {
   Scene scene;
-  std::string what;  ///< "hex8, 2300 nodes"
+  std::string what;  ///< for display, e.g. the element and its nodes
   std::string element, model;
   std::int64_t nodes = 0, wanted_nodes = 0;
   double spacing = 0, dt = 0;

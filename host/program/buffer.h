@@ -30,6 +30,23 @@ enum class Carried {
   all,        ///< values written by passes of earlier steps are used
 };
 
+/// What an edit that makes nodes, elements or regions anew (a cut, a tear, a moved region, other substeps) does to a state
+/// buffer. Edits that leave all of them what they are (changed parameters, tools that come and go, joins that break, ballast)
+/// keep every state buffer.
+enum class Carry {
+  undeclared,  ///< Program::add refuses it for a state buffer
+  drop,        ///< begins anew from the new Program's initial values: pairs, points and regions are found again
+  copy,        ///< [slots]: every copy of a node has the value of the node it was copied from
+  velocity,    ///< [slots], what the integrator keeps of the motion: every copy of a node has its velocity, and held nodes none
+};
+
+/// How a state buffer names tools. Their numbers change where tools come and go.
+enum class ToolNumbers {
+  none,
+  bits,    ///< integers whose bit t stands for tool t
+  fourth,  ///< in tiles of four planes, the fourth: the tool's number + 1, or 0 for none
+};
+
 using BufferId = std::int32_t;
 
 /// Values [first, last) of a buffer.
@@ -55,7 +72,9 @@ struct Buffer {
   Carried carried = Carried::nothing;  ///< scratch only
   std::size_t fixed =
       0;  ///< scratch only: number of values at the end that no pass writes, so that they keep their initial values
-  BufferId copy_of = -1;  ///< the state buffer of which this one keeps the last good values
+  Carry carry = Carry::undeclared;        ///< state only
+  ToolNumbers tools = ToolNumbers::none;  ///< state only
+  BufferId copy_of = -1;                  ///< the state buffer of which this one keeps the last good values
 
   /// Number of values of four (in a double backend eight) bytes.
   [[nodiscard]] std::size_t values() const { return type == BufferType::real4 ? 4 * count : count; }

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "pliant/error.h"
+
 namespace pliant {
 
 BufferId Program::find(const std::string& name) const {
@@ -12,6 +14,8 @@ BufferId Program::find(const std::string& name) const {
 }
 
 BufferId Program::add(Buffer buffer) {
+  if (buffer.role == BufferRole::state && buffer.carry == Carry::undeclared)
+    throw Error(ErrorCode::internal, "the state buffer " + buffer.name + " does not declare what an edit does to it");
   buffers.push_back(std::move(buffer));
   return first + static_cast<BufferId>(buffers.size()) - 1;
 }

@@ -38,7 +38,7 @@ struct Pass {
   std::vector<Arg> args;
   Shape shape = Shape::lanes;
   std::int64_t count = 0;
-  std::string label;             ///< for display, e.g. "liver: tet4 neo-hookean"
+  std::string label;             ///< for display, e.g. the body, its element and its law
   std::int64_t elements = 0;     ///< number of elements or nodes it advances, for reports
   double bytes_per_element = 0;  ///< memory traffic, each datum once
   double flops_per_element = 0;  ///< operations; an fma is two
@@ -67,7 +67,7 @@ struct Program {
   /// The same for blades that cut by force: samples of their edges that have met material.
   std::shared_ptr<std::int64_t> near_samples;
   [[nodiscard]] BufferId find(const std::string& name) const;  ///< -1 if absent
-  BufferId add(Buffer buffer);                                 ///< appends a buffer and returns its id
+  BufferId add(Buffer buffer);  ///< appends a buffer and returns its id; state has to declare its Carry
   [[nodiscard]] Buffer& at(BufferId id) { return buffers.at(static_cast<std::size_t>(id - first)); }
   [[nodiscard]] const Buffer& at(BufferId id) const { return buffers.at(static_cast<std::size_t>(id - first)); }
 };

@@ -73,7 +73,7 @@ std::vector<Enum> values_of(const Words<Enum>& words) {
   return list;
 }
 
-/// "tet4 (linear tetrahedron), ...", for the help of an option.
+/// "WORD (what it means), ...", for the help of an option.
 template <class Enum>
 std::string explained(const Words<Enum>& words) {
   std::string text;

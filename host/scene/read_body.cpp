@@ -84,7 +84,7 @@ Body read_body(const Reader& body, const fs::path& folder, std::size_t index) {
   if (b.name == "." || b.name == "..") body.at("name").fail("a name that is no folder");
   read_geometry(body, folder, b);
   // A volume mesh is of tetrahedra more often than not; one of hexahedra has to say so.
-  b.element = b.mesh.empty() ? ElementKind::hex8 : ElementKind::tet4;
+  b.element = usual_element(b.mesh.empty() ? 8 : 4);
   describe_body(ReadKeys{body}, b);
   if (body.has("model")) b.model = read_model(body.at("model"), b.mesh.empty());
 

@@ -55,10 +55,12 @@ void ProgramBuilder::add_shared_buffers() {
     }
     if (c.holds()) u[4 * static_cast<std::size_t>(c.slot) + 3] = 0;
   }
-  node_u_ = add(make_reals("node_u", BufferType::real4, slots, BufferRole::state, "[slots]", "m, m, m, 1/kg",
-                           "node_update, brick_update, node_prescribe, node_rotate", std::move(u)));
-  node_w_ = add(make_reals("node_w", BufferType::real4, slots, BufferRole::state, "[slots]", "m, m, m, 1",
-                           "node_update, brick_update, node_prescribe, node_rotate", std::move(w)));
+  node_u_ = add(declare_state(make_reals("node_u", BufferType::real4, slots, BufferRole::state, "[slots]", "m, m, m, 1/kg",
+                                         "node_update, brick_update, node_prescribe, node_rotate", std::move(u)),
+                              Carry::copy));
+  node_w_ = add(declare_state(make_reals("node_w", BufferType::real4, slots, BufferRole::state, "[slots]", "m, m, m, 1",
+                                         "node_update, brick_update, node_prescribe, node_rotate", std::move(w)),
+                              Carry::velocity));
   node_force_ = add(make_reals("node_force", BufferType::real4, slots, BufferRole::scratch, "[slots]", "N",
                                "node_update, brick_update (FORCE_ONLY)"));
   program_.buffers[node_force_].carried = Carried::unwritten;  // zero at slots without a node and at those of shape matching

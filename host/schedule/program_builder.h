@@ -24,17 +24,25 @@ inline Buffer make_ints(std::string name, BufferRole role, std::string shape, st
   return {std::move(name), BufferType::int32, n, role, std::move(shape), "1", std::move(producer), {}, std::move(ints)};
 }
 
-/// Adds the backup of a state buffer, which keeps its last good values for rollback.
+/// A buffer whose values pass from step to step, and what edits do to them.
+inline Buffer declare_state(Buffer buffer, Carry carry, ToolNumbers tools = ToolNumbers::none) {
+  buffer.role = BufferRole::state;
+  buffer.carry = carry;
+  buffer.tools = tools;
+  return buffer;
+}
+
+/// Adds the backup of a state buffer, which keeps its last good values for rollback. An edit drops those.
 inline BufferId add_last_good(Program& program, BufferId of) {
   const Buffer& live = program.at(of);
   const std::size_t stem = live.name.starts_with("node_") ? 5 : 0;
   Buffer copy;
   copy.name = "last_" + live.name.substr(stem);
-  copy.type = live.type, copy.count = live.count, copy.role = BufferRole::state;
+  copy.type = live.type, copy.count = live.count;
   copy.shape = live.shape, copy.unit = live.unit, copy.producer = "host";
   if (live.type == BufferType::int32) copy.ints = live.ints;
   copy.copy_of = of;
-  return program.add(std::move(copy));
+  return program.add(declare_state(std::move(copy), Carry::drop, live.tools));
 }
 
 /// A gather list in rows of 16: each tile of owners has as many rows as its longest list, padded with `padding`.
@@ -94,7 +102,7 @@ class ProgramBuilder {
   [[nodiscard]] std::string buffer_name(std::size_t index, const std::string& what) const;
   BufferId add_element_nodes(std::size_t index, std::size_t count);
   BufferId add_element_data(std::size_t index, std::size_t count);
-  /// Adds the two passes before the force of tet4anp; returns the buffer of nodal pressures.
+  /// Adds the two passes before the force of elements with averaged dilation; returns the buffer of nodal pressures.
   BufferId add_averaging(std::size_t index, BufferId nodes_id, BufferId data_id, BufferId law_id, std::size_t count,
                          const std::string& label);
 
@@ -144,8 +152,10 @@ class ProgramBuilder {
   [[nodiscard]] std::vector<std::pair<std::int32_t, std::int32_t>> brick_corners() const;
 
   BufferId add(Buffer buffer) { return program_.add(std::move(buffer)); }
-  /// Adds a state buffer and its backup for rollback.
-  void add_state(Buffer buffer) { add_last_good(program_, add(std::move(buffer))); }
+  /// Adds a state buffer of contact, whose points an edit samples anew, and its backup for rollback.
+  void add_contact_state(Buffer buffer, ToolNumbers tools = ToolNumbers::none) {
+    add_last_good(program_, add(declare_state(std::move(buffer), Carry::drop, tools)));
+  }
   [[nodiscard]] bool has_list_nodes() const { return model_.list_end > model_.list_base; }
   [[nodiscard]] bool has_list_elements() const { return !model_.batches.empty(); }
   [[nodiscard]] bool needs_load() const {

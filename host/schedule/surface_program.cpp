@@ -66,11 +66,12 @@ void fill(const ModelSurface& s, std::size_t width, const SurfaceChanges* change
   rows.node.changed = tiles_of(changes->reembedded, width);
 }
 
-Pass surface_pass(const ModelSurface& s, std::size_t width, const Program& steps, BufferId first) {
+/// `own`: the Program that has the buffers of the surface.
+Pass surface_pass(const ModelSurface& s, std::size_t width, const Program& steps, const Program& own) {
+  const auto arg = [&](const char* name) { return buffer_arg(own.find(name)); };
   return {"surface_position",
           {{"WIDTH", static_cast<int>(width)}},
-          {buffer_arg(steps.find("node_u")), buffer_arg(first), buffer_arg(first + 1), buffer_arg(first + 2),
-           buffer_arg(first + 3)},
+          {buffer_arg(steps.find("node_u")), arg("surface_rest"), arg("surface_node"), arg("surface_weight"), arg("surface_x")},
           Shape::lanes,
           static_cast<std::int64_t>(padded(s.rest.size())),
           "surface",
@@ -85,8 +86,8 @@ Program surface_program(const ModelSurface& s, const Program& steps, Program* be
   Program program;
   program.first = static_cast<BufferId>(steps.buffers.size());
   if (s.rest.empty()) return program;
-  if (const BufferId x = steps.find("surface_x"); x >= 0) {  // already part of the step for pressures
-    program.step.push_back(surface_pass(s, width_of(s), steps, x - 3));
+  if (steps.find("surface_x") >= 0) {  // already part of the step for pressures
+    program.step.push_back(surface_pass(s, width_of(s), steps, steps));
     return program;
   }
   const std::size_t width = width_of(s);
@@ -101,7 +102,7 @@ Program surface_program(const ModelSurface& s, const Program& steps, Program* be
     program.add(make_reals("surface_x", BufferType::real4, 0, BufferRole::scratch, "[vertices]", "m", "surface_position"));
   }
   fill(s, width, patch ? changes : nullptr, Rows(program));
-  program.step.push_back(surface_pass(s, width, steps, program.first));
+  program.step.push_back(surface_pass(s, width, steps, program));
   return program;
 }
 

@@ -121,15 +121,16 @@ double mean_edge(const ElementMesh& mesh) {
 
 double element_bound(const ElementMesh& mesh, const Material& material) {
   double highest = 0;
-  const auto ask = [&](ElementKind kind, std::span<const Vec3d> x) {
+  const auto ask = [&](std::span<const Vec3d> x) {
+    const ElementKind kind = usual_element(static_cast<int>(x.size()));
     const std::vector<double> record = element_record(kind, x, material, "an element to cut");
     highest = std::max(highest, element_frequency(kind, record, material));
   };
-  for (const auto& tet : mesh.tets) ask(ElementKind::tet4, corners_of(mesh, tet));
+  for (const auto& tet : mesh.tets) ask(corners_of(mesh, tet));
   for (const auto& hex : mesh.hexes) {
     std::array<Vec3d, 8> x;
     for (int a = 0; a < 8; ++a) x[a] = mesh.nodes[hex[a]];
-    ask(ElementKind::hex8, x);
+    ask(x);
   }
   return highest > 0 ? 2 / highest : 0;
 }

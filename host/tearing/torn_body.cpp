@@ -8,7 +8,7 @@
 
 #include "cutting/topology/cut_cell.h"
 #include "cutting/topology/mesh_edges.h"
-#include "elements/element_tet4.h"
+#include "elements/elements.h"
 #include "geometry/vec.h"
 
 namespace pliant {
@@ -63,11 +63,12 @@ double TornBody::strength(std::int32_t tet) const {
 std::vector<TornBody::NodeStress> TornBody::node_stresses(const std::vector<Vec3d>& x) const {
   std::vector<NodeStress> at(x.size());
   for (NodeStress& node : at) node.strength = kInfinite;
+  const ElementKind kind = usual_element(4);
   for (std::size_t t = 0; t < torn_.tets.size(); ++t) {
     const auto rest = corners(torn_.nodes, torn_.tets[t]);
     const auto stress = tet_stress(rest, corners(x, torn_.tets[t]), material_[t]);
     if (!stress) continue;
-    const double volume = Tet4::volume(Tet4::record(rest, material_[t], ""));
+    const double volume = element_volume(kind, element_record(kind, rest, material_[t], ""));
     for (const std::int32_t n : torn_.tets[t]) {
       at[n].mean += volume * *stress;
       at[n].volume += volume;

@@ -14,7 +14,7 @@ namespace pliant {
 
 /// Elements of one kind, one body and one material outside the bricks.
 struct ElementBatch {
-  ElementKind kind = ElementKind::hex8;
+  ElementKind kind{};
   Material material;
   std::int32_t body = 0;
   bool uniform = false;             ///< all are equal cubes, with one record
@@ -40,7 +40,7 @@ struct BrickBatch {
   std::int32_t body = 0;  ///< body of the first brick, for labels
   double spacing = 0;     ///< [m]
   std::int32_t first = 0, count = 0;
-  static constexpr ElementKind kind = ElementKind::hex8;
+  [[nodiscard]] static ElementKind kind() { return brick_element(); }
   [[nodiscard]] std::vector<double> record() const;  ///< the record of each of its cells
 };
 

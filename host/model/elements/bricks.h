@@ -1,4 +1,4 @@
-// Places the cells and nodes of hex8 lattices into bricks of 16 x 4 x 4 (kernels/layout.h).
+// Places the cells and nodes of lattices into bricks of 16 x 4 x 4 (kernels/layout.h).
 #pragma once
 #include <cstdint>
 #include <span>

@@ -14,6 +14,6 @@ std::array<std::int32_t, 8> brick_cell_corners(const Model& model, std::int32_t 
   return corners;
 }
 
-std::vector<double> BrickBatch::record() const { return Hex8::cube_record(spacing, material, "lattice cell"); }
+std::vector<double> BrickBatch::record() const { return element_cube_record(kind(), spacing, material, "lattice cell"); }
 
 }  // namespace pliant

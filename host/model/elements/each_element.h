@@ -42,7 +42,7 @@ void for_each_element(const Model& model, const F& f) {
     for (std::int32_t slot = first; slot < end; ++slot) {
       if (!(model.brick_fill[slot] > 0)) continue;
       const std::array<std::int32_t, 8> corners = brick_cell_corners(model, slot);
-      f(ElementView{BrickBatch::kind, model.brick_body[slot / PLIANT_BRICK_NODES], model.brick_cell[slot], corners,
+      f(ElementView{BrickBatch::kind(), model.brick_body[slot / PLIANT_BRICK_NODES], model.brick_cell[slot], corners,
                     batch.material, record, model.brick_fill[slot], 1});
     }
   }

@@ -19,7 +19,8 @@ void ProgramBuilder::add_blades() {
   control("blade_share", entries, "[samples][8]", "1");
   control("blade_data", samples * blade_sample_numbers, "[samples][12]", "m (3), 1 (3), N, 1", -1);
   control("blade_pose", (steps + 1) * blades * blade_pose_numbers, "[steps + 1][blades][6]", "m");
-  add_state(make_reals("blade_front", BufferType::real, 2 * samples, BufferRole::state, "[samples][2]", "m, 1", "blade_press"));
+  add_contact_state(
+      make_reals("blade_front", BufferType::real, 2 * samples, BufferRole::state, "[samples][2]", "m, 1", "blade_press"));
   add(make_reals("blade_force", BufferType::real, steps * samples * blade_force_numbers, BufferRole::scratch,
                  "[steps][samples][4]", "N", "blade_press"));
   program_.buffers.back().carried = Carried::all;  // one row per step of the batch, until the host reads it

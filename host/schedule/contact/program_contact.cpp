@@ -80,9 +80,11 @@ void ProgramBuilder::add_contact_points() {
   constant("contact_share", 8, "[tiles][8][16]", "m^2", std::move(share));
   if (!model_.tools->empty()) constant("contact_held", 4, "[tiles][4][16]", "m, m, m, 1", std::move(of_held));
   const auto all = static_cast<std::int32_t>((std::int64_t{1} << model_.tools->size()) - 1);
-  add_state(make_ints("contact_near", BufferRole::state, "[tiles]", std::vector<std::int32_t>(tiles, all), 0, "contact_near"));
-  add_state(make_reals("contact_yield", BufferType::real, count, BufferRole::state, "[points]", "m^3/N",
-                       "contact_settle, touch_place"));
+  add_contact_state(
+      make_ints("contact_near", BufferRole::state, "[tiles]", std::vector<std::int32_t>(tiles, all), 0, "contact_near"),
+      ToolNumbers::bits);
+  add_contact_state(make_reals("contact_yield", BufferType::real, count, BufferRole::state, "[points]", "m^3/N",
+                               "contact_settle, touch_place"));
   // Written by the host after a search; they end with empty entries.
   add(make_ints("contact_list", BufferRole::control, "[tiles + 16]", std::vector<std::int32_t>(tiles + contact_list_end, -1), 0,
                 "host"));
@@ -95,8 +97,9 @@ void ProgramBuilder::add_contact_points() {
 
 void ProgramBuilder::add_tools() {
   const std::size_t tools = model_.tools->size(), count = static_cast<std::size_t>(padded(model_.contact->size()));
-  add_state(make_reals("contact_anchor", BufferType::real, 4 * count, BufferRole::state, "[tiles][4][16]", "m, m, m, 1",
-                       "contact_press, contact_settle"));
+  add_contact_state(make_reals("contact_anchor", BufferType::real, 4 * count, BufferRole::state, "[tiles][4][16]", "m, m, m, 1",
+                               "contact_press, contact_settle"),
+                    ToolNumbers::fourth);
   add(make_reals("contact_gap", BufferType::real, count / PLIANT_TILE * tools, BufferRole::scratch, "[tiles][tools]", "m",
                  "contact_near"));
   program_.buffers.back().carried = Carried::all;

@@ -94,11 +94,12 @@ void ProgramBuilder::add_touch() {
   };
   reals("touch_rest", 4, BufferRole::constant, "[tiles][4][16]", "m, m, m, 1", "model", std::move(rest));
   add(make_ints("touch_node", BufferRole::constant, "[tree][4]", std::move(tree)));
-  add_state(
+  add_contact_state(
       make_ints("touch_partner", BufferRole::state, "[tiles][16 slots][16]", {}, PLIANT_TOUCH_SLOTS * count, "touch_pair"));
-  add_state(make_reals("touch_pair", BufferType::real, PLIANT_TOUCH_SLOTS * PLIANT_TOUCH_PAIR * count, BufferRole::state,
-                       "[tiles][16 slots][6][16]", "see kernels/layout.h", "touch_pair, touch_press, touch_settle"));
-  add_state(make_reals("touch_depth", BufferType::real, count, BufferRole::state, "[points]", "m", "touch_press"));
+  add_contact_state(make_reals("touch_pair", BufferType::real, PLIANT_TOUCH_SLOTS * PLIANT_TOUCH_PAIR * count,
+                               BufferRole::state, "[tiles][16 slots][6][16]", "see kernels/layout.h",
+                               "touch_pair, touch_press, touch_settle"));
+  add_contact_state(make_reals("touch_depth", BufferType::real, count, BufferRole::state, "[points]", "m", "touch_press"));
   reals("touch_place", PLIANT_TOUCH_PLACE, BufferRole::scratch, "[points][20]", "see touch_point.cl", "touch_place");
   program_.buffers.back().carried = Carried::all;  // points near nothing keep the values of the last search
   reals("touch_weight", PLIANT_TOUCH_SLOTS + 1, BufferRole::scratch, "[tiles][17][16]", "1 (16), m^2", "touch_pair");

@@ -39,14 +39,14 @@ void ProgramBuilder::add_bricks(const BrickBatch& b) {
     cells += model_.brick_cell[i] >= 0;
   const double slots_per_cell = cells == 0 ? 0 : double(b.count) * PLIANT_BRICK_NODES / double(cells);
   program_.step.push_back(
-      {"tled_hex8_brick_force",
+      {element_info(BrickBatch::kind()).brick,
        {{"LAW", static_cast<int>(b.material.law)}},
        {buffer_arg(node_u_), buffer_arg(brick_neighbor_), buffer_arg(brick_rows_), buffer_arg(brick_fill_),
         buffer_arg(brick_force_), buffer_arg(fault_), buffer_arg(add_law(b.material)), real_arg(1 / (4 * d)),
         real_arg(d * d / 4), real_arg(hourglass_stiffness(b.material, d * d * d)), int_arg(b.first), int_arg(0), step_arg()},
        Shape::bricks,
        b.count,
-       fmt::format("{}: hex8 bricks {}", model_.bodies[b.body].name, to_string(b.material.law)),
+       fmt::format("{}: {} bricks {}", model_.bodies[b.body].name, to_string(BrickBatch::kind()), to_string(b.material.law)),
        cells,
        brick_force_bytes() * slots_per_cell,
        brick_force_flops(b.material.law)});

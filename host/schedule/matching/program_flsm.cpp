@@ -81,6 +81,12 @@ class FlsmPasses {
     return buffer_arg(program_.add(make_reals(fmt::format("{}/{}", stem, index_), BufferType::real, size, role, shape, unit,
                                               producer, std::move(values))));
   }
+  /// In metres. Regions and the interface are other ones after an edit.
+  Arg state(const std::string& stem, std::size_t size, const char* shape, const char* producer) {
+    return buffer_arg(program_.add(declare_state(
+        make_reals(fmt::format("{}/{}", stem, index_), BufferType::real, size, BufferRole::state, shape, "m", producer),
+        Carry::drop)));
+  }
   Args list(const std::string& stem, MissingList& from) {
     const std::size_t entries = std::max<std::size_t>(from.other.size(), 1);
     return {ints(stem + "_offset", "[regions + 1]", std::move(from.offset)), ints(stem, "[entries]", std::move(from.other)),
@@ -97,11 +103,11 @@ class FlsmPasses {
                   std::move(data_.rest));
     holders_ = reals("flsm_inverse_holders", with_region, BufferRole::constant, "[regions]", "1", "model",
                      std::move(data_.inverse_holders));
-    reference_ = reals("flsm_reference", 8, BufferRole::state, "[2][4]", "m", "flsm_bar");
+    reference_ = state("flsm_reference", 8, "[2][4]", "flsm_bar");
     bars_ = reals("flsm_bars", 8 * count, BufferRole::scratch, "[regions][2][4]", "1", "flsm_bar, flsm_goal_bar");
     plates_ = reals("flsm_plates", PLIANT_FLSM_RECORD * count, BufferRole::scratch, "[regions][4][4]", "1",
                     "flsm_plate, flsm_goal_plate");
-    regions_ = reals("flsm_regions", PLIANT_FLSM_RECORD * count, BufferRole::state, "[regions][4][4]", "m", "flsm_region");
+    regions_ = state("flsm_regions", PLIANT_FLSM_RECORD * count, "[regions][4][4]", "flsm_region");
     elastic_ = rest_;  // unused by rigid regions
     pulls_ = regions_;
     if (elastic()) {
@@ -154,7 +160,7 @@ class FlsmPasses {
   void add_interface() {
     const auto shared = static_cast<std::size_t>(places_.nodes - places_.interface_base);
     const int n = b_.settings.substeps;
-    goals_ = reals("flsm_goals", 8 * shared, BufferRole::state, "[interface][2][4]", "m", "flsm_goal");
+    goals_ = state("flsm_goals", 8 * shared, "[interface][2][4]", "flsm_goal");
     if (n > 1) {  // kept over several steps, so they need backups for rollback
       for (const Arg& state : {reference_, goals_}) add_last_good(program_, std::get<0>(state));
     }

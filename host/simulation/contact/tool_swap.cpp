@@ -7,6 +7,7 @@
 #include "schedule/contact/contact_data.h"
 #include "schedule/program_layout.h"
 #include "schedule/surface_program.h"
+#include "simulation/state/carried_state.h"
 #include "simulation/state/snapshot.h"
 #include "simulation/step/coupling.h"
 #include "simulation/step/host_loads.h"
@@ -54,23 +55,13 @@ void renumber_anchors(std::vector<double>& anchor, const To& to) {
   }
 }
 
-/// Copies the state buffers that both programs have.
+/// Copies the state buffers that both programs have, with the new numbers of the tools that they name.
 void carry_state(const RunContext& run, Program& next, const std::vector<int>& number, std::size_t tools) {
-  const Program& loaded = run.loaded.program();
-  for (std::size_t id = 0; id < loaded.buffers.size(); ++id) {
-    const Buffer& from = loaded.buffers[id];
-    if (from.role != BufferRole::state || next.find(from.name) < 0) continue;
-    Buffer& to = next.at(next.find(from.name));
-    if (to.values() != from.values()) continue;
-    if (from.is_int()) {
-      to.ints = run.backend().read_ints(static_cast<BufferId>(id));
-      if (from.name.ends_with("contact_near")) renumber_near(to.ints, number, tools);
-    } else {
-      to.reals = run.backend().read_reals(static_cast<BufferId>(id));
-      if (from.name.ends_with("contact_anchor"))
-        renumber_anchors(to.reals, [&](int t) { return number[static_cast<std::size_t>(t)]; });
-    }
-  }
+  for_each_kept(run.loaded.program(), next, [&](BufferId id, Buffer& to) {
+    take_values(run.backend(), id, to);
+    if (to.tools == ToolNumbers::bits) renumber_near(to.ints, number, tools);
+    if (to.tools == ToolNumbers::fourth) renumber_anchors(to.reals, [&](int t) { return number[static_cast<std::size_t>(t)]; });
+  });
 }
 
 void load_with(RunContext& run, const Snapshot& snapshot, const std::shared_ptr<const Model>& model) {
@@ -94,11 +85,11 @@ void load_tools(RunContext& run, const std::shared_ptr<const Model>& model, cons
   const Snapshot snapshot = take_snapshot(run);
   try {
     Program program = build_program(*model, run.program_options());
-    std::vector<double> u = program.at(program.find("node_u")).reals, w = program.at(program.find("node_w")).reals;
+    std::vector<BufferValues> initial = initial_state(program);
     carry_state(run, program, new_numbers(before, next), next.size());
     Program surface = surface_program(model->surface, program);
     run.loaded.update(model, std::move(program));
-    run.loaded.reset_initial_state(std::move(u), std::move(w));
+    run.loaded.reset_initial_state(std::move(initial));
     run.loaded.update_surface(std::move(surface), false);
   } catch (...) {
     load_with(run, snapshot, old);
@@ -125,9 +116,9 @@ void replace_shape(RunContext& run, std::size_t tool, const ToolForm& form) {
 
 void let_go(RunContext& run, std::size_t tool) {
   const Program& program = run.loaded.program();
-  for (const char* name : {"contact_anchor", "last_contact_anchor"}) {
-    const BufferId id = program.find(name);
-    if (id < 0) continue;
+  for (std::size_t i = 0; i < program.buffers.size(); ++i) {
+    if (program.buffers[i].tools != ToolNumbers::fourth) continue;
+    const auto id = static_cast<BufferId>(i);
     std::vector<double> anchor = run.backend().read_reals(id);
     renumber_anchors(anchor, [&](int t) { return t == static_cast<int>(tool) ? -1 : t; });
     run.backend().write_reals(id, anchor);

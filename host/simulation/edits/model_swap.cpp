@@ -79,31 +79,33 @@ void ModelSwap::run(const Scene& scene, std::vector<NodeOrigins> origins, const 
   report_.upload += clock_.lap();
 }
 
-std::vector<char> ModelSwap::changed_nodes() const {
-  std::vector<char> changed(model_->mass.size());
+std::vector<SlotOrigin> ModelSwap::slot_origins() const {
+  std::vector<SlotOrigin> out;
   for (std::size_t b = 0; b < origins_.size(); ++b) {
     const std::vector<std::int32_t>&slots = model_->bodies[b].slot, &old_slots = old_model_->bodies[b].slot;
-    for (std::size_t n = 0; n < slots.size(); ++n) {
-      const auto slot = static_cast<std::size_t>(slots[n]), old = static_cast<std::size_t>(old_slots[origins_[b].of(n)]);
-      changed[slot] = static_cast<char>(model_->mass[slot] != old_model_->mass[old]);
-    }
+    for (std::size_t n = 0; n < slots.size(); ++n)
+      out.push_back({static_cast<std::size_t>(slots[n]), static_cast<std::size_t>(old_slots[origins_[b].of(n)])});
   }
+  return out;
+}
+
+std::vector<char> ModelSwap::changed_nodes() const {
+  std::vector<char> changed(model_->mass.size());
+  for (const SlotOrigin& o : slot_origins())
+    changed[o.slot] = static_cast<char>(model_->mass[o.slot] != old_model_->mass[o.before]);
   return changed;
 }
 
 std::vector<NodeInertia> ModelSwap::carried_ballast() const {
   std::vector<NodeInertia> out;
   if (old_model_->ballast.empty()) return out;
-  std::map<std::int32_t, const Ballast*> before;
-  for (const Ballast& b : old_model_->ballast) before[b.slot] = &b;
-  for (std::size_t b = 0; b < v_.size(); ++b) {
-    const std::vector<std::int32_t>&slots = model_->bodies[b].slot, &old_slots = old_model_->bodies[b].slot;
-    for (std::size_t n = 0; n < slots.size(); ++n) {
-      const auto found = before.find(old_slots[origins_[b].of(n)]);
-      if (found == before.end()) continue;
-      const Ballast& had = *found->second;
-      out.push_back({slots[n], had.inertia * model_->mass[static_cast<std::size_t>(slots[n])] / had.mass});
-    }
+  std::map<std::size_t, const Ballast*> before;
+  for (const Ballast& b : old_model_->ballast) before[static_cast<std::size_t>(b.slot)] = &b;
+  for (const SlotOrigin& o : slot_origins()) {
+    const auto found = before.find(o.before);
+    if (found == before.end()) continue;
+    const Ballast& had = *found->second;
+    out.push_back({static_cast<std::int32_t>(o.slot), had.inertia * model_->mass[o.slot] / had.mass});
   }
   std::sort(out.begin(), out.end(), [](const NodeInertia& a, const NodeInertia& b) { return a.slot < b.slot; });
   return out;
@@ -117,39 +119,25 @@ bool ModelSwap::keeps_nodes() const {
   return true;
 }
 
-void ModelSwap::carry_state(Program& program) const {
-  const Program& before = run_.loaded.program();
-  for (std::size_t id = 0; id < before.buffers.size(); ++id) {
-    const Buffer& from = before.buffers[id];
-    const bool motion = from.name == "node_u" || from.name == "node_w";
-    if (from.role != BufferRole::state || motion || program.find(from.name) < 0) continue;
-    Buffer& to = program.at(program.find(from.name));
-    if (to.values() != from.values()) continue;
-    if (from.is_int()) {
-      to.ints = run_.backend().read_ints(static_cast<BufferId>(id));
-    } else {
-      to.reals = run_.backend().read_reals(static_cast<BufferId>(id));
-    }
-  }
+void ModelSwap::keep_rest(Program& program) const {
+  for_each_kept(run_.loaded.program(), program, [&](BufferId id, Buffer& to) {
+    if (to.carry == Carry::drop) take_values(run_.backend(), id, to);
+  });
 }
 
 void ModelSwap::load_steps() {
   Program program = build_program(*model_, run_.program_options());
-  Buffer &u = program.at(program.find("node_u")), &w = program.at(program.find("node_w"));
-  new_u_ = u.reals;
-  new_w_ = w.reals;
+  std::vector<BufferValues> initial = initial_state(program);
   report_.model += clock_.lap();
-  carry_motion();
   // Upload the carried-over state only; restore the Program's initial values afterwards so that the Program itself stays
   // pristine.
-  u.reals.swap(new_u_);
-  w.reals.swap(new_w_);
+  carry_nodes(program);
   const bool keeps = keeps_state_ && keeps_nodes();
-  if (keeps) carry_state(program);
+  if (keeps) keep_rest(program);
   run_.loaded.update(model_, std::move(program));
   run_.state.look.tools = -1;
   if (!keeps) run_.state.look.tissue = -1;  // new contact points have no partners yet
-  run_.loaded.reset_initial_state(std::move(new_u_), std::move(new_w_));
+  run_.loaded.reset_initial_state(std::move(initial));
   report_.upload += clock_.lap();
 }
 
@@ -162,21 +150,28 @@ void ModelSwap::load_surface() {
   report_.upload += clock_.lap();
 }
 
-void ModelSwap::carry_motion() {
-  const std::vector<double>& before = run_.state.offset;
-  if (!before.empty()) offset_.assign(3 * static_cast<std::size_t>(model_->slots), 0.0);
+void ModelSwap::carry_nodes(Program& program) {
+  const Program& before = run_.loaded.program();
+  const std::vector<SlotOrigin> origins = slot_origins();
+  for (Buffer& to : program.buffers) {
+    const BufferId id = to.carry == Carry::copy ? before.find(to.name) : -1;
+    if (id == run_.loaded.u_id()) {
+      copy_values(origins, old_u_, to);  // with RunState::offset
+    } else if (id >= 0) {
+      copy_values(origins, run_.backend().read_reals(id), to);
+    }
+    if (to.carry == Carry::velocity) carry_velocity(to);
+  }
+  carry_offset(origins, program.at(program.find("node_u")).reals);
+}
+
+void ModelSwap::carry_velocity(Buffer& to) const {
   for (std::size_t b = 0; b < v_.size(); ++b) {
-    const NodeOrigins& origins = origins_[b];
-    const std::vector<std::int32_t>&slots = model_->bodies[b].slot, &old_slots = old_model_->bodies[b].slot;
+    const std::vector<std::int32_t>& slots = model_->bodies[b].slot;
     for (std::size_t n = 0; n < slots.size(); ++n) {
       const auto slot = static_cast<std::size_t>(slots[n]);
-      const double* moved = &old_u_[4 * static_cast<std::size_t>(old_slots[origins.of(n)])];
       const double step = substeps_of(*model_, slot) * run_.state.clock.dt;
-      if (!before.empty()) std::copy_n(&before[3 * static_cast<std::size_t>(old_slots[origins.of(n)])], 3, &offset_[3 * slot]);
-      for (std::size_t c = 0; c < 3; ++c) {
-        new_u_[4 * slot + c] = moved[c];
-        new_w_[4 * slot + c] = step * v_[b][origins.of(n)][c];
-      }
+      for (std::size_t c = 0; c < 3; ++c) to.reals[4 * slot + c] = step * v_[b][origins_[b].of(n)][c];
     }
   }
   // A cut may leave a moving virtual node with held anchors only. Since no update moves a held node, it would keep its
@@ -185,10 +180,17 @@ void ModelSwap::carry_motion() {
   for (const Constraint& held : model_->constraints) {
     const auto at = static_cast<std::ptrdiff_t>(4) * held.slot;
     if (!held.holds()) continue;
-    std::fill_n(new_w_.begin() + at, 3, 0.0);
+    std::fill_n(to.reals.begin() + at, 3, 0.0);
   }
-  for (std::size_t i = 0; i < offset_.size(); ++i) new_u_[i / 3 * 4 + i % 3] -= offset_[i];
-  for (std::size_t slot = 0; slot < model_->mass.size(); ++slot) new_w_[4 * slot + 3] = run_.decay(*model_, slot);
+  for (std::size_t slot = 0; slot < model_->mass.size(); ++slot) to.reals[4 * slot + 3] = run_.decay(*model_, slot);
+}
+
+void ModelSwap::carry_offset(const std::vector<SlotOrigin>& origins, std::vector<double>& u) {
+  const std::vector<double>& before = run_.state.offset;
+  if (before.empty()) return;
+  offset_.assign(3 * static_cast<std::size_t>(model_->slots), 0.0);
+  for (const SlotOrigin& o : origins) std::copy_n(&before[3 * o.before], 3, &offset_[3 * o.slot]);
+  for (std::size_t i = 0; i < offset_.size(); ++i) u[i / 3 * 4 + i % 3] -= offset_[i];
 }
 
 void ModelSwap::restore() {

@@ -7,6 +7,7 @@
 #include "geometry/stopwatch.h"
 #include "simulation/edits/cut_report.h"
 #include "simulation/edits/edited_bodies.h"
+#include "simulation/state/carried_state.h"
 #include "simulation/state/run_context.h"
 #include "simulation/step/host_loads.h"
 
@@ -41,11 +42,17 @@ class ModelSwap {
   [[nodiscard]] std::vector<NodeInertia> carried_ballast() const;
   /// Returns true if all nodes and points of contact are the same as before.
   [[nodiscard]] bool keeps_nodes() const;
-  /// Gives the new Program what the old one holds beside the motion, such as contact and shape matching.
-  void carry_state(Program& program) const;
+  /// For each slot with a node, the slot of the node that it was copied from.
+  [[nodiscard]] std::vector<SlotOrigin> slot_origins() const;
+  /// Gives the new Program the values that nodes hold, as Carry of each state buffer says.
+  void carry_nodes(Program& program);
+  void carry_velocity(Buffer& to) const;
+  /// The same for RunState::offset, which is taken off the displacements `u`.
+  void carry_offset(const std::vector<SlotOrigin>& origins, std::vector<double>& u);
+  /// Gives the new Program, whose nodes are those of the old one, what Carry::drop would drop: contact and shape matching.
+  void keep_rest(Program& program) const;
   void load_steps();
   void load_surface();
-  void carry_motion();
   void restore();
 
   RunContext& run_;
@@ -60,9 +67,9 @@ class ModelSwap {
   std::shared_ptr<Model> model_;
   std::vector<NodeInertia> ballast_;
   bool keeps_state_ = false;
-  bool kept_ = false;                           ///< the new model reuses the surface of the old one
-  const SurfaceChanges* changes_ = nullptr;     ///< the differences from the reused surface
-  std::vector<double> new_u_, new_w_, offset_;  ///< offset_: RunState::offset of the new model
+  bool kept_ = false;                        ///< the new model reuses the surface of the old one
+  const SurfaceChanges* changes_ = nullptr;  ///< the differences from the reused surface
+  std::vector<double> offset_;               ///< RunState::offset of the new model
 };
 
 }  // namespace pliant

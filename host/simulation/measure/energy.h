@@ -9,7 +9,7 @@ namespace pliant {
 struct Energies {
   double kinetic = 0;    ///< sum m v.v / 2 [J]
   double strain = 0;     ///< of the elements, without hourglass energy [J]
-  double hourglass = 0;  ///< of the hourglass modes of hex8 (elements/hourglass.h) [J]
+  double hourglass = 0;  ///< of the hourglass modes (elements/hourglass.h) [J]
   double external = 0;   ///< potential of gravity and node forces, -R.u [J]; follower pressures have none
   [[nodiscard]] double total() const { return kinetic + strain + hourglass + external; }
 };
@@ -21,8 +21,8 @@ struct DeadLoads {
 };
 
 /// u, v: displacement [m] and velocity [m/s] by slot, shape [Model::slots]. An element with J <= 0 yields NaN or infinity if
-/// its law's energy is undefined there (host/material). For tet4anp, the term in (J - 1)^2 is evaluated at the nodes, with J
-/// averaged by volume over the elements of one batch at each node.
+/// its law's energy is undefined there (host/material). Where dilation is averaged, the term in (J - 1)^2 is evaluated at the
+/// nodes, with J averaged by volume over the elements of one batch at each node.
 Energies energies(const Model& model, const std::vector<Vec3d>& u, const std::vector<Vec3d>& v, const DeadLoads& loads = {});
 
 /// Kinetic energy of the chosen slots, and strain and hourglass energy of the elements whose nodes are all chosen; external

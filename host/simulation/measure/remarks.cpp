@@ -16,7 +16,8 @@ constexpr double kFarApart = 2;
 /// Strain by its own weight up to which shape matching behaves like a material (docs/flsm_stiffness.md).
 constexpr double kMostWeight = 0.1;
 
-/// Taper or skew (Distortion) from which hex8 elements bend more than 10 % too little where a part is few elements thick.
+/// Taper or skew (Distortion) from which elements with hourglass control bend more than 10 % too little where a part is few
+/// elements thick.
 constexpr double kTapered = 0.25, kSkew = 0.7;
 
 void add_matching(const Model& model, const Scene& scene, double dt, std::vector<std::string>& remarks) {
@@ -79,6 +80,7 @@ Distortion distortion(const Model& model, std::span<const std::int32_t> slots) {
 
 void add_distorted(const Model& model, std::vector<std::string>& remarks) {
   struct Found {
+    const char* element = "";
     std::int64_t all = 0, distorted = 0;
     Distortion worst;
   };
@@ -86,6 +88,7 @@ void add_distorted(const Model& model, std::vector<std::string>& remarks) {
   for (const ElementBatch& batch : model.batches) {
     if (!batch.info().hourglass || batch.uniform) continue;
     Found& body = found[static_cast<std::size_t>(batch.body)];
+    body.element = batch.info().word;
     for (std::size_t e = 0; e < batch.size(); ++e) {
       const Distortion d = distortion(model, batch.nodes_of(e));
       body.worst = {std::max(body.worst.taper, d.taper), std::max(body.worst.skew, d.skew)};
@@ -96,10 +99,10 @@ void add_distorted(const Model& model, std::vector<std::string>& remarks) {
   for (std::size_t b = 0; b < found.size(); ++b) {
     if (10 * found[b].distorted <= found[b].all) continue;
     remarks.push_back(fmt::format(
-        "body '{}': {} of {} hex8 elements are wedge-shaped (opposite edges differ by up to {:.2g} of their sum) or "
+        "body '{}': {} of {} {} elements are wedge-shaped (opposite edges differ by up to {:.2g} of their sum) or "
         "skewed (axes up to {:.0f} degrees from a right angle). Where a part is few elements thick these bend too little, "
         "wedges by 12 % at 0.25 and 35 % at 0.5, skewed ones by 10 to 20 % at 45 degrees",
-        model.bodies[b].name, found[b].distorted, found[b].all, found[b].worst.taper,
+        model.bodies[b].name, found[b].distorted, found[b].all, found[b].element, found[b].worst.taper,
         std::asin(std::min(1.0, found[b].worst.skew)) * 180 / 3.141592653589793));
   }
 }

@@ -8,7 +8,7 @@
 namespace pliant {
 
 /// Returns one sentence for each finding at the step `dt` [s]: shape matching whose stiffness is far from the material's or
-/// too low for the body's own weight, and hex8 elements far from parallelepipeds. Empty: none.
+/// too low for the body's own weight, and elements with hourglass control far from parallelepipeds. Empty: none.
 [[nodiscard]] std::vector<std::string> remarks_on(const Model& model, const Scene& scene, double dt);
 
 }  // namespace pliant

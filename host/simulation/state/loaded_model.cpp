@@ -41,9 +41,11 @@ void LoadedModel::replace_constant(std::shared_ptr<const Model> model, BufferId 
   replace_model(std::move(model));
 }
 
-void LoadedModel::reset_initial_state(std::vector<double> u, std::vector<double> w) {
-  program_.at(ids_.u).reals = std::move(u);
-  program_.at(ids_.w).reals = std::move(w);
+void LoadedModel::reset_initial_state(std::vector<BufferValues> initial) {
+  for (BufferValues& values : initial) {
+    program_.at(values.id).reals = std::move(values.reals);
+    program_.at(values.id).ints = std::move(values.ints);
+  }
 }
 
 void LoadedModel::update_surface(Program surface, bool patched) {
@@ -88,9 +90,9 @@ void LoadedModel::look_up() {
   }
 }
 
-BufferId LoadedModel::surface_x() const {
-  const BufferId own = surface_.find("surface_x");
-  return own >= 0 ? own : program_.find("surface_x");
+BufferId LoadedModel::surface_buffer(const char* name) const {
+  const BufferId own = surface_.find(name);
+  return own >= 0 ? own : program_.find(name);
 }
 
 void LoadedModel::clear_faults() {

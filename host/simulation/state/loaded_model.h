@@ -11,6 +11,13 @@
 
 namespace pliant {
 
+/// The values of a buffer.
+struct BufferValues {
+  BufferId id = -1;
+  std::vector<double> reals;
+  std::vector<std::int32_t> ints;
+};
+
 class LoadedModel {
  public:
   explicit LoadedModel(std::unique_ptr<Backend> backend) : backend_(std::move(backend)) {}
@@ -25,8 +32,8 @@ class LoadedModel {
   void replace_constant(std::shared_ptr<const Model> model, BufferId id, std::vector<double> values);
   /// Replaces a model by one with the same Program.
   void replace_model(std::shared_ptr<const Model> model) { model_ = std::move(model); }
-  /// Sets the initial values of node_u and node_w in program(); the buffers on the backend stay as they are.
-  void reset_initial_state(std::vector<double> u, std::vector<double> w);
+  /// Sets initial values in program(); the buffers on the backend stay as they are.
+  void reset_initial_state(std::vector<BufferValues> initial);
   /// Replaces the Program of the surface. `patched`: it was made from take_surface(), and Buffer::changed lists the
   /// differences.
   void update_surface(Program surface, bool patched);
@@ -39,10 +46,13 @@ class LoadedModel {
   /// The Program that computes the positions of the embedded surface, an extension of program().
   [[nodiscard]] const Program& surface() const { return surface_; }
   /// The buffer with these positions, valid in either Program; -1 without a surface.
-  [[nodiscard]] BufferId surface_x() const;
+  [[nodiscard]] BufferId surface_x() const { return surface_buffer("surface_x"); }
+  /// The same for the rest positions [m] that it starts from.
+  [[nodiscard]] BufferId surface_rest() const { return surface_buffer("surface_rest"); }
   [[nodiscard]] Backend& backend() const { return *backend_; }
 
   /// node_u and node_w as stored. For displacements use RunContext::u().
+  [[nodiscard]] BufferId u_id() const { return ids_.u; }
   [[nodiscard]] std::vector<double> u() const { return backend_->read_reals(ids_.u); }
   [[nodiscard]] std::vector<double> w() const { return backend_->read_reals(ids_.w); }
   void write_u(const std::vector<double>& u) { backend_->write_reals(ids_.u, u); }
@@ -82,6 +92,7 @@ class LoadedModel {
   struct Ids {
     BufferId u = -1, w = -1, force = -1, params = -1, curves = -1, fault = -1, summary = -1, fastest = -1;
   };
+  [[nodiscard]] BufferId surface_buffer(const char* name) const;
   void look_up();
   void count_surface();
 

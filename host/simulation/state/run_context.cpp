@@ -71,7 +71,7 @@ void RunContext::place_surface() const {
   const ModelSurface& s = model().surface;
   if (state.offset.empty() || s.rest.empty()) return;
   place_contact();
-  const BufferId id = loaded.surface_x() - 3;  // schedule/surface_program.cpp
+  const BufferId id = loaded.surface_rest();
   std::vector<double> rest = backend().read_reals(id);
   for (std::size_t v = 0; v < s.rest.size(); ++v) {
     const auto node = static_cast<std::size_t>(s.nodes[v][0]);  // the others belong to the same piece

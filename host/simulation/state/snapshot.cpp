@@ -14,6 +14,8 @@
 namespace pliant {
 namespace {
 
+bool held_by_nodes(const Buffer& b) { return b.role == BufferRole::state && b.carry != Carry::drop; }
+
 class Hash {
  public:
   Hash() = default;
@@ -35,7 +37,7 @@ class Hash {
   }
   void add(const Program& program) {
     for (const Buffer& b : program.buffers) {
-      if (b.role != BufferRole::constant && b.name != "node_u" && b.name != "node_w") continue;
+      if (b.role != BufferRole::constant && !held_by_nodes(b)) continue;  // other state does not begin with values of a model
       if (b.name == "contact_held") continue;  // absent from older versions; what it follows from is here, too
       add(b.name);
       add(b.reals);

@@ -91,7 +91,7 @@ Program toy_program(std::int64_t count) {
   Buffer x, y, list, weight, out;
   x.name = "x", y.name = "y", list.name = "list", weight.name = "weight", out.name = "out";
   list.type = weight.type = BufferType::int32;
-  x.role = list.role = weight.role = BufferRole::constant, y.role = BufferRole::state;
+  x.role = list.role = weight.role = BufferRole::constant, y.role = BufferRole::state, y.carry = Carry::drop;
   x.count = y.count = weight.count = out.count = static_cast<std::size_t>(count);
   for (std::int64_t i = 0; i < count; ++i) {
     x.reals.push_back(0.1 * static_cast<double>(i % 1000) - 7);

@@ -79,6 +79,7 @@ class Toy {
   BufferId add(const std::string& name, BufferRole role) {
     Buffer buffer;
     buffer.name = name, buffer.role = role, buffer.count = kCount;
+    buffer.carry = Carry::drop;
     return program.add(std::move(buffer));
   }
   Buffer& at(BufferId id) { return program.at(id); }
