@@ -1,5 +1,5 @@
-// The cut surface of all completely cut cells as a mesh of triangles: its points, edges and faces, each found by what it is
-// made of, so that neighbouring cells share them. A face has two sides: 2 f is the back of face f, 2 f + 1 its front.
+// The cut surface of all completely cut cells as a mesh of triangles: its points, edges and faces, each found by its
+// corners, so that neighbouring cells share them. A face has two sides: 2 f is the back of face f, 2 f + 1 its front.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -1,6 +1,6 @@
 // The overlay of a closed surface with the cut surface of all completely cut cells: which triangle is crossed where, the pieces
-// that triangles fall into, and the caps that close the cut. Only combinatorial decisions, all exact, say what belongs
-// together; coordinates are rounded once, at the end. Every edge of the result is therefore used twice, once in each direction.
+// that triangles fall into, and the caps that close the cut. Only combinatorial decisions, all exact, connect
+// them; coordinates are rounded once, at the end. Every edge of the result is therefore used twice, once in each direction.
 //
 // A vertex of the result is an original vertex, an original edge x a cut face, an original triangle x a cut edge, or a point of
 // the cut surface inside the body; all but the first come once per *sector* (cut_sectors.h). At the front of a cut its sides
@@ -32,7 +32,7 @@ class Overlay {
   [[nodiscard]] const SurfaceSource& source() const { return source_; }
 
   /// Replaces the cut surface inside these cells (removes it for those with one component). Afterwards dirty_triangles and
-  /// dirty_faces list what must be recomputed.
+  /// dirty_faces list the triangles and faces to recompute.
   void update(const std::vector<CutGridCell>& cells);
 
   [[nodiscard]] const std::vector<std::int32_t>& dirty_triangles() const { return dirty_triangles_; }

@@ -9,7 +9,7 @@
 
 namespace pliant::overlay {
 
-/// What the pieces are made of.
+/// The input of pieces_of().
 struct PieceSource {
   const SurfaceSource& surface;
   const CutFaces& faces;

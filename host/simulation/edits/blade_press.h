@@ -1,4 +1,4 @@
-// Blades that cut by force, on the device: uploads the places of their edges and fronts, and reads what they felt.
+// Blades that cut by force, on the device: uploads the places of their edges and fronts, and reads the forces on them.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -26,13 +26,13 @@ class BladePress {
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
   /// Force on each blade [N] and torque about the middle of its edge [N m] in each step of the last batch, shape
   /// [steps][blades]; it ended after step batch_end(). Empty where nothing was near.
-  [[nodiscard]] const std::vector<StepForce>& step_forces() const { return step_forces_; }
+  [[nodiscard]] const std::vector<Wrench>& step_forces() const { return step_forces_; }
   [[nodiscard]] std::int64_t batch_end() const { return batch_end_; }
   /// In the last step; zero where nothing was near.
-  [[nodiscard]] StepForce last_force(std::size_t blade) const;
+  [[nodiscard]] Wrench last_force(std::size_t blade) const;
 
  private:
-  /// What the samples give the kernels.
+  /// Data of the samples for the kernels.
   struct Numbers;
   [[nodiscard]] bool near() const;
   [[nodiscard]] Numbers numbers() const;
@@ -48,7 +48,7 @@ class BladePress {
   std::vector<std::size_t> blades_;          ///< their places in Scene::blades, which a restored state replaces
   std::vector<std::size_t> first_;           ///< sample of each blade, and the number of all
   std::vector<std::array<Vec3d, 2>> poses_;  ///< first end and span, from the step before the batch on, [steps + 2][blades]
-  std::vector<StepForce> step_forces_;
+  std::vector<Wrench> step_forces_;
   std::int64_t batch_end_ = -1;
   bool pressing_ = false;  ///< the passes run in the present batch
 };

@@ -24,7 +24,7 @@ class ModelSwap {
  public:
   /// `u`: RunContext::u(). Adds its times to `report`.
   ModelSwap(RunContext& run, HostLoads& loads, EditedBodies& bodies, std::vector<double> u, CutReport& report);
-  /// Keeps contact and what shape matching holds if all nodes stay what they are.
+  /// Keeps contact and the state of shape matching if the nodes are unchanged.
   void keep_state() { keeps_state_ = true; }
   /// `scene`: with the new operational regions. The surfaces may still be in progress until `ready` returns, which may throw.
   /// On an exception, the old model is restored.
@@ -41,7 +41,7 @@ class ModelSwap {
   [[nodiscard]] std::vector<NodeInertia> carried_ballast() const;
   /// Returns true if all nodes and points of contact are the same as before.
   [[nodiscard]] bool keeps_nodes() const;
-  /// Gives the new Program what the old one holds beside the motion, such as contact and shape matching.
+  /// Copies the state other than the motion, such as contact and shape matching, to the new Program.
   void carry_state(Program& program) const;
   void load_steps();
   void load_surface();
