@@ -423,17 +423,32 @@ py::list events(pliant::World& w) {
   return all;
 }
 
+/// The members of ForceSample as fields of an array.
+py::dtype dtype_of_force_sample() {
+  const pliant::ForceSample sample;
+  py::list names, formats, offsets;
+  const auto add = [&](const char* name, const char* format, const void* member) {
+    names.append(name);
+    formats.append(format);
+    offsets.append(static_cast<const char*>(member) - reinterpret_cast<const char*>(&sample));
+  };
+  add("step", "i8", &sample.step);
+  add("time", "f8", &sample.time);
+  add("force", "3f8", &sample.force);
+  add("torque", "3f8", &sample.torque);
+  return {names, formats, offsets, sizeof sample};
+}
+
 /// An array of the fields of ForceSample.
 py::array force_trace(const pliant::World& w, const py::object& of, std::int64_t after) {
   const std::vector<pliant::ForceSample> trace = py::isinstance<py::str>(of) ? w.force_trace(of.cast<std::string>(), after)
                                                                              : w.force_trace(of.cast<pliant::GrabId>(), after);
-  return py::array(py::dtype::of<pliant::ForceSample>(), {trace.size()}, {}, trace.data());
+  return py::array(dtype_of_force_sample(), {trace.size()}, {}, trace.data());
 }
 
 void bind_live(py::class_<pliant::World>& world) {
   using pliant::World;
   using Free = py::call_guard<py::gil_scoped_release>;
-  PYBIND11_NUMPY_DTYPE(pliant::ForceSample, step, time, force, torque);
   world
       .def(
           "run_live",

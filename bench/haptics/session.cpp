@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "backends/choice/backends.h"
-#include "geometry/vec.h"
+#include "geometry/wrench.h"
 #include "pliant/error.h"
 
 namespace pliant::bench::haptics {
@@ -83,18 +83,13 @@ ForceTrace full_model(Scene scene, const std::string& tool, const Stroke& stroke
   ForceTrace trace{1 / rate, {}};
   double before = 0;
   Wrench last;
-  const auto seen = [&](double time, const StepForce& f) {
+  const auto seen = [&](double time, const Wrench& f) {
     while ((static_cast<double>(trace.wrench.size()) + 1) / rate <= time + 1e-12) {  // interpolated between two steps
       const double at = (static_cast<double>(trace.wrench.size()) + 1) / rate, share = (at - before) / (time - before);
-      Wrench w;
-      for (std::size_t c = 0; c < 3; ++c) {
-        w.force[c] = last.force[c] + share * (f.force[c] - last.force[c]);
-        w.torque[c] = last.torque[c] + share * (f.torque[c] - last.torque[c]);
-      }
-      trace.wrench.push_back(w);
+      trace.wrench.push_back(plus(last, scaled(minus(f, last), share)));
     }
     before = time;
-    last = {f.force, f.torque};
+    last = f;
   };
   const std::size_t index = s.contact().find(tool).value();
   for (double t = frame; edit && t < seconds; t += frame) {
@@ -130,7 +125,7 @@ SessionReport run_session(Scene scene, const std::string& tool, const Stroke& st
       if (made > 0) {
         if (parts.edit) parts.edit(s, end);
         try_drive(s, tool, predicted(stroke, end - frame, options.predict * frame), frame);
-        run_until(s, s.time() + frame, index, [](double, const StepForce&) {});
+        run_until(s, s.time() + frame, index, [](double, const Wrench&) {});
       }
       parts.made(s, static_cast<std::size_t>(made++) % slots);
     }

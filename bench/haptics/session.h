@@ -11,8 +11,6 @@
 
 namespace pliant::bench::haptics {
 
-using pliant::haptics::Wrench;
-
 /// What the instrument does: poses over time [s].
 using Stroke = std::function<Pose(double)>;
 

@@ -5,6 +5,7 @@
 #include "api/c_call.h"
 #include "devices/counter.h"
 #include "devices/limits.h"
+#include "geometry/wrench.h"
 
 namespace {
 
@@ -23,8 +24,7 @@ union Roomy {
 
 pliant_device_wrench c_wrench(const DeviceWrench& given) {
   pliant_device_wrench wrench = PLIANT_DEVICE_WRENCH_INIT;
-  std::copy(given.force.begin(), given.force.end(), wrench.force);
-  std::copy(given.torque.begin(), given.torque.end(), wrench.torque);
+  copy_wrench(given, wrench);
   wrench.time = given.time;
   wrench.number = given.number;
   return wrench;

@@ -4,6 +4,7 @@
 
 #include "api/c_call.h"
 #include "api/event_log.h"
+#include "geometry/wrench.h"
 
 namespace {
 
@@ -13,8 +14,7 @@ pliant_force_sample sample_of(const pliant::ForceSample& given) {
   pliant_force_sample sample{};
   sample.step = given.step;
   sample.time = given.time;
-  std::copy(given.force.begin(), given.force.end(), sample.force);
-  std::copy(given.torque.begin(), given.torque.end(), sample.torque);
+  copy_wrench(given, sample);
   return sample;
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "api/c_call.h"
+#include "geometry/wrench.h"
 
 using namespace pliant::api;
 using pliant::Error;
@@ -35,8 +36,7 @@ pliant_status pliant_world_tool_forces(pliant_world world, pliant_tool_force* ou
       force.name = w.names.insert(now[i].name).first->c_str();
       std::copy(now[i].position.begin(), now[i].position.end(), force.position);
       std::copy(now[i].turn.begin(), now[i].turn.end(), force.turn);
-      std::copy(now[i].force.begin(), now[i].force.end(), force.force);
-      std::copy(now[i].torque.begin(), now[i].torque.end(), force.torque);
+      copy_wrench(now[i], force);
       force.area = now[i].area;
       force.penetration = now[i].penetration;
       force.parked = now[i].parked ? 1 : 0;
@@ -56,8 +56,7 @@ pliant_status pliant_world_blade_forces(pliant_world world, pliant_blade_force* 
       f.name = w.names.insert(now[i].name).first->c_str();
       std::copy(now[i].a.begin(), now[i].a.end(), f.a);
       std::copy(now[i].b.begin(), now[i].b.end(), f.b);
-      std::copy(now[i].force.begin(), now[i].force.end(), f.force);
-      std::copy(now[i].torque.begin(), now[i].torque.end(), f.torque);
+      copy_wrench(now[i], f);
       f.max_force = now[i].max_force;
       f.work = now[i].work;
       f.fracture = now[i].fracture;

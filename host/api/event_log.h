@@ -1,4 +1,4 @@
-// What happened in a World, found between batches. Private to host/api and its tests.
+// Events of a World, detected between batches. Private to host/api and its tests.
 #pragma once
 #include <deque>
 #include <map>
@@ -21,7 +21,7 @@ class EventLog {
  public:
   static constexpr std::size_t kMost = 1024;
 
-  /// Compares the simulation with the last look and adds what is new. Costs a few comparisons if nothing is.
+  /// Compares the simulation with the last call and adds new events. Costs a few comparisons if nothing is.
   void look(const Simulation& simulation);
   /// Call after the simulation was replaced or has gone back: nothing before this is new.
   void renew(const Simulation& simulation);

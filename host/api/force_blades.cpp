@@ -108,7 +108,7 @@ void ForceBlades::note(const Simulation& simulation) {
   const double now = simulation.time();
   for (const Blade& blade : simulation.scene().blades) {
     if (blade.cuts != BladeCuts::by_force) continue;
-    const StepForce felt = simulation.press().last_force(forces.size());
+    const Wrench felt = simulation.press().last_force(forces.size());
     const BladeSegment at = blade_place(state.driven_blades, blade, now);
     BladeForce f;
     f.name = blade.name;

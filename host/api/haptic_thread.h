@@ -28,7 +28,7 @@ class HapticThread {
 
  private:
   using Nanoseconds = std::int64_t;
-  /// What the thread tells in each tick.
+  /// State that the thread publishes in each tick.
   struct Told {
     std::int64_t ticks = 0, late = 0, frames = 0;
     double age = 0;
@@ -61,7 +61,7 @@ class HapticThread {
   Told told_;
   DeviceSample sample_;
   std::int64_t elements_ = 0;  ///< of all bodies
-  std::int32_t rings_;         ///< asked for; -1: all
+  std::int32_t rings_;         ///< as requested; -1: all
   double work_ = 0;            ///< of a tick, smoothed [s]
   std::int64_t since_change_ = 0;
   std::uint64_t measured_ = 0;                                        ///< generation of the buffer that work_ belongs to

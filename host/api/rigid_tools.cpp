@@ -127,14 +127,14 @@ void RigidTools::record_blades(const Simulation& simulation) {
   if (press.names().empty()) return;
   const std::lock_guard lock(mutex_);
   for (auto& [name, trace] : blades_) trace.forget_after(simulation.step());
-  const std::vector<StepForce>& forces = press.step_forces();
+  const std::vector<Wrench>& forces = press.step_forces();
   const auto steps = static_cast<std::int64_t>(forces.size() / press.names().size());
   for (std::size_t b = 0; b < press.names().size(); ++b) {
     ForceTrace& trace = blades_[press.names()[b]];
     for (std::int64_t s = 0; s < steps && press.batch_end() == simulation.step(); ++s) {
-      const StepForce& f = forces[static_cast<std::size_t>(s) * press.names().size() + b];
+      const Wrench& f = forces[static_cast<std::size_t>(s) * press.names().size() + b];
       const std::int64_t step = simulation.step() - steps + s + 1;
-      trace.add({step, simulation.state().clock.time_at(step), f.force, f.torque});
+      trace.add({f, step, simulation.state().clock.time_at(step)});
     }
   }
 }
@@ -148,14 +148,14 @@ void RigidTools::record(const Simulation& simulation) {
   std::erase_if(traces_, [&](const auto& entry) { return !knows(entry.first); });
   for (auto& [name, trace] : traces_) trace.forget_after(simulation.step());
   if (contact.batch_end() != simulation.step()) return;  // the batch was taken back
-  const std::vector<StepForce>& forces = contact.step_forces();
+  const std::vector<Wrench>& forces = contact.step_forces();
   const auto steps = static_cast<std::int64_t>(forces.size() / tools.size());
   for (std::size_t t = 0; t < tools.size(); ++t) {
     ForceTrace& trace = traces_[tools[t].name];
     for (std::int64_t s = 0; s < steps; ++s) {
-      const StepForce& f = forces[static_cast<std::size_t>(s) * tools.size() + t];
+      const Wrench& f = forces[static_cast<std::size_t>(s) * tools.size() + t];
       const std::int64_t step = simulation.step() - steps + s + 1;
-      trace.add({step, simulation.state().clock.time_at(step), f.force, f.torque});
+      trace.add({f, step, simulation.state().clock.time_at(step)});
     }
   }
 }
@@ -224,11 +224,10 @@ void RigidTools::note(const Simulation& simulation) {
   std::size_t present = 0;
   for (const ContactTool& tool : known_tools(simulation.scene(), state.tools)) {
     const Pose at = tool_pose(tool, state, simulation.time());
-    ToolForce force{tool.name, at.position, at.turn, {}, {}, 0, 0, is_parked(state.tools, tool.name)};
+    ToolForce force{{}, tool.name, at.position, at.turn, 0, 0, is_parked(state.tools, tool.name)};
     if (!force.parked) {
       const ToolLoad& now = felt[present++].now;
-      force.force = now.force;
-      force.torque = now.torque;
+      static_cast<Wrench&>(force) = now;
       force.area = now.area;
       force.penetration = now.depth;
     }

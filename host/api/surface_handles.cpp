@@ -317,7 +317,7 @@ std::int32_t SurfaceHandles::apply(Simulation& simulation) {
     found->second.felt = grab.felt;
     ForceTrace& trace = traces_[id];
     trace.forget_after(simulation.step());
-    trace.add({simulation.step() + 1, simulation.time() + simulation.dt(), grab.felt.force, {}});
+    trace.add({{grab.felt.force, {}}, simulation.step() + 1, simulation.time() + simulation.dt()});
   }
   return grabs.empty() ? kAnySteps : steps;
 }

@@ -119,7 +119,7 @@ struct World::Impl {
   void stop_live();
   [[nodiscard]] bool is_live() const;
   void check_not_live(const char* call) const;
-  /// Makes the caller's cuts and changes. While the World runs freely, what is refused becomes an event.
+  /// Makes the caller's cuts and changes. While the World runs freely, a rejected change becomes an event.
   void make_changes();
   void look_for_events();
   void tell_failure(const std::exception_ptr& met);

@@ -38,7 +38,7 @@ void put(std::FILE* stream, const std::string& line) { (void)std::fwrite(line.da
 void Common::add_to(CLI::App& app) {
   app.add_option("--json", json, "Write the result as one JSON object to this file, or to standard output with -")
       ->type_name("FILE|-");
-  app.add_flag("--quiet", quiet, "Print nothing but errors and what was asked for");
+  app.add_flag("--quiet", quiet, "Print only errors and requested output");
 }
 
 void Common::check(bool prints) const {

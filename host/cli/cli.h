@@ -1,4 +1,4 @@
-// What the commands share: registration, --json and --quiet, progress, interruption.
+// Shared by the commands: registration, --json and --quiet, progress, interruption.
 #pragma once
 #include <chrono>
 #include <cstdint>
@@ -16,7 +16,8 @@ class ParseError;
 
 namespace pliant::cli {
 
-/// Adds a command's options (or subcommands of its own) to `app` and returns what runs it; the result is the exit code.
+/// Adds a command's options (or subcommands of its own) to `app` and returns the function that runs it; its result is the exit
+/// code.
 using Setup = std::function<int()> (*)(CLI::App& app);
 
 /// A row of the table in main.cpp. A new command is one file, one declaration here and one row there.

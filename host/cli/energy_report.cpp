@@ -47,8 +47,8 @@ std::optional<std::string> EnergyReport::remark() const {
   const std::optional<double> share = created();
   if (!share || *share <= kCreated) return {};
   return fmt::format(
-      "energy came from nowhere: {:.2g} times the largest energy of the run more than tools, loads and gravity "
-      "put in; tissue that trembles under a tool does that: look at a run with a shorter step",
+      "energy appeared without a source: {:.2g} times the largest energy of the run more than tools, loads and gravity "
+      "put in; tissue that vibrates under a tool causes this: compare a run with a shorter step",
       *share);
 }
 

@@ -1,4 +1,4 @@
-// Values of elements and vertices in the files of frames, as `run --fields` asks for them.
+// Values of elements and vertices in the files of frames, as `run --fields` selects them.
 #pragma once
 #include <string>
 #include <vector>

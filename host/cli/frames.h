@@ -47,7 +47,7 @@ class FrameWriter {
   /// Write the present state. Files carry the number of the step: bunny_00000100.vtu, bunny_surface_00000100.vtu and .obj,
   /// listed in bunny.pvd and bunny_surface.pvd; bunny_00000100.png.
   void write(Simulation& simulation);
-  /// What can only be written at the end: bunny.glb, all frames in one animation.
+  /// Files that can only be written at the end: bunny.glb, all frames in one animation.
   void finish();
   [[nodiscard]] std::size_t frames() const { return frames_; }
   /// Files of frames of this stem and these formats that were there before.

@@ -235,8 +235,8 @@ class Info {
   [[nodiscard]] std::string automatic_text(double step, double iterated_dt) const {
     if (iterated_dt > 0 && step > 0.999 * scene_.safety * iterated_dt)
       return fmt::format("{:.3g} of it, {:.6g} s", scene_.safety, step);
-    if (step > 0.999 * longest_step(model_, scene_)) return fmt::format("{:.6g} s, as shape matching asks", step);
-    if (iterated_dt > 0) return fmt::format("{:.6g} s, {:.3g} of the element bound, as cuts ask", step, scene_.safety);
+    if (step > 0.999 * longest_step(model_, scene_)) return fmt::format("{:.6g} s, limited by shape matching", step);
+    if (iterated_dt > 0) return fmt::format("{:.6g} s, {:.3g} of the element bound, limited by cuts", step, scene_.safety);
     return fmt::format("{:.6g} s, one frame, as no finite element limits it", step);
   }
 

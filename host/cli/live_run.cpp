@@ -91,7 +91,7 @@ void LiveArguments::check() const {
 LiveRun::LiveRun(const LiveArguments& arguments, const Common& common, const Simulation& simulation, bool own_end)
     : o_(arguments), common_(common), simulation_(simulation) {
   if (simulation.scene().relaxation.enabled)
-    refuse_live(fmt::format("{}: the scene asks for \"relaxation\", which has no time that a hand could share", o_.given()));
+    refuse_live(fmt::format("{}: the scene uses \"relaxation\", whose steps are not in the time of a hand", o_.given()));
   if (!o_.replay.empty()) {
     replay_.emplace(haptics::read_drive_log(o_.replay), simulation, !own_end);
     return;

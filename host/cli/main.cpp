@@ -18,8 +18,8 @@ using pliant::ErrorCode;
 
 constexpr pliant::cli::Command kCommands[] = {
     {"devices", "List the backends of this machine and whether each gives the same bits", pliant::cli::setup_devices},
-    {"info", "What a scene holds: elements, mass, stable step, memory, passes", pliant::cli::setup_info},
-    {"run", "Simulate a scene and write what comes out", pliant::cli::setup_run},
+    {"info", "Contents of a scene: elements, mass, stable step, memory, passes", pliant::cli::setup_info},
+    {"run", "Simulate a scene and write the results", pliant::cli::setup_run},
     {"compare", "Run a scene on two backends in lockstep and find the first bit that differs", pliant::cli::setup_compare},
     {"bench", "Measure the engine itself: pliant bench kernels", pliant::cli::setup_bench},
     {"plan", "The cheapest lattice, element and model of a scene for a tolerance and a frame budget", pliant::cli::setup_plan},
@@ -81,7 +81,7 @@ int main(int argc, char** argv) {
     const int code = static_cast<int>(error.code());
     return fail(code > 4 ? 2 : code, error.what());  // the embedding API has finer codes than the command
   } catch (const std::bad_alloc&) {
-    return fail(2, "out of memory: the scene needs more than this machine has (pliant info SCENE lists what it needs)");
+    return fail(2, "out of memory: the scene needs more than this machine has (pliant info SCENE lists its memory)");
   } catch (const std::exception& error) {
     return fail(1, fmt::format("a defect of Pliant itself: {}", error.what()));
   }

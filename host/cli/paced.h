@@ -12,10 +12,10 @@
 namespace pliant::cli {
 
 /// A frame each sixtieth of a second: as much simulated time as has passed on the wall, as far as this machine can. Before a
-/// frame the tools are driven to where their devices take them, after it the haptic threads are told how the tissue is.
+/// frame the tools are driven to where their devices take them, after it the haptic threads receive the state of the tissue.
 class Paced final : public haptics::RunGuide {
  public:
-  /// Starts the threads. `rate`: their ticks per second. `stop` ends the waiting, `remark` is told the first refused pose of
+  /// Starts the threads. `rate`: their ticks per second. `stop` ends the waiting, `remark` receives the first rejected pose of
   /// each tool. `log` gets every drive; it and the simulation must outlive this. Throws Error (usage) for a rate out of range.
   Paced(const Simulation& simulation, const std::vector<haptics::HeldTool>& tools, double rate, std::function<bool()> stop,
         std::function<void(const std::string&)> remark, haptics::DriveLog& log);
@@ -32,7 +32,7 @@ class Paced final : public haptics::RunGuide {
     std::shared_ptr<haptics::Instrument> instrument;
     std::unique_ptr<api::HapticThread> thread;
     double largest_force = 0;
-    bool refused = false;  ///< told
+    bool refused = false;  ///< reported
   };
   void end_frame(const Simulation& simulation);
   bool wait();

@@ -59,7 +59,8 @@ void check(const RunArguments& o) {
     throw Error(ErrorCode::bad_input, "--checkpoint-every says how often to save; it needs --checkpoint FILE");
   const std::set<OutputFormat> formats = parse_formats(o.formats);
   if (!parse_fields(o.fields).empty()) {
-    if (o.out.empty()) throw Error(ErrorCode::bad_input, "--fields says what the files of frames hold; it needs --out DIR");
+    if (o.out.empty())
+      throw Error(ErrorCode::bad_input, "--fields selects the contents of the files of frames; it needs --out DIR");
     if (formats.count(OutputFormat::vtu) + formats.count(OutputFormat::gltf) == 0)
       throw Error(ErrorCode::bad_input, "--fields are values in VTU and glTF files; it needs --format vtu or gltf");
   }
@@ -126,18 +127,17 @@ class Run {
                                         {!o_.live.replay.empty(), "--replay"},
                                         {o_.profile, "--profile"}}) {
       if (given)
-        throw Error(
-            ErrorCode::bad_input,
-            fmt::format("{} means nothing for {}, which asks for a static solver: there are no steps", option, o_.scene));
+        throw Error(ErrorCode::bad_input,
+                    fmt::format("{} has no effect on {}, which uses the static solver: there are no steps", option, o_.scene));
     }
     if (o_.backend != "auto" && o_.backend != "cpu:double") {
       throw Error(ErrorCode::bad_input,
-                  fmt::format("--backend is \"{}\"; {} asks for a static solver, which runs in double on the processor alone",
+                  fmt::format("--backend is \"{}\"; {} uses the static solver, which runs in double on the processor alone",
                               o_.backend, o_.scene));
     }
     if (!o_.fields.empty()) {
       throw Error(ErrorCode::bad_input,
-                  fmt::format("--fields: {} asks for a static solver, whose files hold displacements and reactions alone; the "
+                  fmt::format("--fields: {} uses the static solver, whose files hold displacements and reactions alone; the "
                               "fields are for steps in time (\"relaxation\" finds the same equilibrium)",
                               o_.scene));
     }
@@ -173,7 +173,7 @@ class Run {
     if (frames_ && frames_->older() > 0 && !saved) {
       o_.common.remark(fmt::format(
           "--out: the folder {} holds {} files of an earlier run of {}; those of steps that this run does not write "
-          "stay beside the new ones",
+          "remain with the new ones",
           o_.out, frames_->older(), stem_));
     }
     first_time_ = simulation_->time();
@@ -299,7 +299,7 @@ std::function<int()> setup_run(CLI::App& app) {
                  "Save the state on the way, too, after so many seconds of wall time [s]");
   app.add_option("--resume", o->resume, "Go on from a saved state of the same scene")->type_name("FILE");
   app.add_flag("--deep-hash", o->deep_hash,
-               "Also print the hash of all that decides what comes: model, state buffers and run state");
+               "Also print the hash of all that later steps depend on: model, state buffers and run state");
   app.add_flag("--hash", o->hash, "Print the hash of the last state, with --quiet as the only output");
   app.add_flag("--profile", o->profile, "Time every pass on the device; this slows a run down");
   o->common.add_to(app);

@@ -47,7 +47,7 @@ std::vector<std::string> parts_far_away(const Simulation& simulation) {
     if (farthest <= kFarAway * size) continue;
     sentences.push_back(
         fmt::format("body '{}': some of it is {:.3g} m from its place at rest, {:.3g} times its size: nothing holds that part "
-                    "(what comes off keeps its velocity and its share of a force)",
+                    "(a piece that comes off keeps its velocity and its share of a force)",
                     body.name, farthest, farthest / size));
   }
   return sentences;

@@ -1,4 +1,4 @@
-// What happened to the bodies in a run: cuts, tears, pieces, displacements.
+// Events of the bodies in a run: cuts, tears, pieces, displacements.
 #pragma once
 #include <cstdint>
 #include <string>

@@ -70,7 +70,7 @@ void RunProgress::warn_of_no_end(double left) {
   common_.remark(fmt::format("this run needs about {} more: {:.3g} steps of dt = {:.3g} s at {:.3g} ms each; {}",
                              duration_text(left), static_cast<double>(loop_.remaining()), dt,
                              1e3 * left / static_cast<double>(loop_.remaining()),
-                             change + (loop_.end().time ? ", or simulate less time" : ", or ask for fewer steps")));
+                             change + (loop_.end().time ? ", or simulate less time" : ", or run fewer steps")));
 }
 
 void RunProgress::missed(const std::vector<std::string>& blades) {
@@ -78,8 +78,8 @@ void RunProgress::missed(const std::vector<std::string>& blades) {
     if (!missed_.insert(name).second) continue;
     bar_.clear();
     common_.remark(
-        fmt::format("blade '{}' met nothing on its whole path; look at its \"path\", \"start\" and \"end\", and at where "
-                    "the bodies are then",
+        fmt::format("blade '{}' met nothing on its whole path; check its \"path\", \"start\" and \"end\", and the places "
+                    "of the bodies at that time",
                     name));
   }
 }

@@ -26,7 +26,7 @@ using Json = nlohmann::ordered_json;
 void check(const Scene& scene, const StaticRun& run) {
   const auto refuse = [&](const std::string& pointer, const std::string& what) {
     throw Error(ErrorCode::bad_input,
-                fmt::format("{}: {}: got {}, expected none of it beside a static solver", scene.file.string(), pointer, what));
+                fmt::format("{}: {}: got {}, expected none of it with a static solver", scene.file.string(), pointer, what));
   };
   if (scene.relaxation.enabled) refuse("/relaxation", "dynamic relaxation");
   if (!scene.focus.path.empty()) refuse("/focus", "a focus");
@@ -37,7 +37,7 @@ void check(const Scene& scene, const StaticRun& run) {
       const std::string word = to_string(body.element);
       throw Error(
           ErrorCode::bad_input,
-          fmt::format("{}: {}/element: got \"{}\", expected {}, or {} beside the solver's \"order\": 2", scene.file.string(),
+          fmt::format("{}: {}/element: got \"{}\", expected {}, or {} with the solver's \"order\": 2", scene.file.string(),
                       body.pointer, word, elements_with([](const ElementInfo& e) { return e.statics; }), word));
     }
   }

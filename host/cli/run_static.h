@@ -17,8 +17,8 @@ struct StaticRun {
   bool hash = false;               ///< print it also with --quiet
 };
 
-/// Solves every body, writes and reports. Throws Error for what the static solver does not do, and (diverged) when it does not
-/// converge; the last converged state is then written under <stem>-last-good.
+/// Solves every body, writes and reports. Throws Error for features that the static solver lacks, and (diverged) when it does
+/// not converge; the last converged state is then written under <stem>-last-good.
 int run_static(const Scene& scene, const StaticRun& run);
 
 }  // namespace pliant::cli

@@ -59,7 +59,7 @@ void add_blades(const Simulation& simulation, nlohmann::ordered_json& json) {
   if (names.empty()) return;
   json["blades"] = nlohmann::ordered_json::array();
   for (std::size_t b = 0; b < names.size(); ++b) {
-    const StepForce now = simulation.press().last_force(b);
+    const Wrench now = simulation.press().last_force(b);
     const auto found = simulation.state().pressed.find(names[b]);
     const PressedBlade blade = found == simulation.state().pressed.end() ? PressedBlade{} : found->second;
     json["blades"].push_back(
@@ -129,7 +129,7 @@ void ToolTable::add_blades(const Simulation& simulation) {
   std::size_t b = 0;
   for (const Blade& blade : simulation.scene().blades) {
     if (blade.cuts != BladeCuts::by_force) continue;
-    const StepForce now = simulation.press().last_force(b++);
+    const Wrench now = simulation.press().last_force(b++);
     const BladeSegment ends = blade_place(state.driven_blades, blade, simulation.time());
     const Vec3d at = vec::mul(vec::add(ends[0], ends[1]), 0.5);
     const auto own = state.pressed.find(blade.name);

@@ -18,7 +18,7 @@ nlohmann::ordered_json interpenetration_json(const Interpenetration& found);
 /// a single body without tools. Returns a line for people per tool or body that is in another one.
 std::vector<std::string> add_interpenetrations(Simulation& simulation, nlohmann::ordered_json& json);
 
-/// The member "blades": what the blades that cut by force felt; nothing without such blades.
+/// The member "blades": the forces on blades that cut by force; nothing without such blades.
 void add_blades(const Simulation& simulation, nlohmann::ordered_json& json);
 /// A line per blade that cuts by force, for people.
 std::string blade_line(const Simulation& simulation, std::size_t blade);

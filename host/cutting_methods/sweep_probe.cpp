@@ -51,7 +51,7 @@ SweepProbe::SweepProbe(vec::Box box, double edge, std::span<const SweepTriangle>
     for (const Vec3d& p : t) {
       if (!vec::finite(p)) {
         throw Error(ErrorCode::bad_input,
-                    fmt::format("a corner of what a blade sweeps is [{}] m; allowed are finite numbers", fmt::join(p, ", ")));
+                    fmt::format("a corner of a blade's sweep is [{}] m; allowed are finite numbers", fmt::join(p, ", ")));
       }
       box.extend(p);
     }

@@ -1,4 +1,4 @@
-// What every device asks of a sample that came from outside.
+// The check of every sample that comes from outside, for all devices.
 #pragma once
 #include <array>
 #include <limits>

@@ -1,4 +1,4 @@
-// What a device has received and refused, counted by one thread and read by any.
+// Counts of the samples that a device has received and rejected, updated by one thread and read by any.
 #pragma once
 #include <atomic>
 #include <cstdint>

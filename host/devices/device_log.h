@@ -1,4 +1,4 @@
-// What a device said, for a file that the device file:STROKE.csv plays again.
+// The samples of a device, for a file that the device file:STROKE.csv plays again.
 #pragma once
 #include <atomic>
 #include <cstddef>
@@ -13,7 +13,7 @@
 namespace pliant::devices {
 
 /// Memory for a fixed number of samples, which one thread appends to, in constant time and without allocating, while any
-/// thread reads what is there. When it is full, further samples are left out and counted.
+/// thread reads the samples so far. When it is full, further samples are left out and counted.
 class DeviceLog {
  public:
   /// 80 bytes a sample: 600,000 are ten minutes of a device at 1000 Hz. Throws Error `usage` unless `most` is 1 to 100 million.

@@ -4,12 +4,12 @@
 
 namespace pliant::devices {
 
-/// Stays loaded until the program ends. What is missing throws Error `bad_input`.
+/// Stays loaded until the program ends. A missing library or function throws Error `bad_input`.
 class DynamicLibrary {
  public:
   /// `file` as the dynamic linker finds it; `device` is the whole text of the device, for messages.
   DynamicLibrary(const std::string& file, const std::string& device);
-  /// Looks up `name` and gives it the type of `function`.
+  /// Finds `name` and gives it the type of `function`.
   template <class Function>
   void find(Function*& function, const char* name) const {
     function = reinterpret_cast<Function*>(symbol(name));

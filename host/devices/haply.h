@@ -37,7 +37,7 @@ enum class HaplyForce {
 /// The message that sets a force [N]. A force that is not finite is sent as 0.
 std::string haply_force(HaplyForce form, const std::string& device_id, const Vec3d& force);
 
-/// Where the service listens, and what is wanted of it.
+/// Where the service listens, and the data requested from it.
 struct HaplyAddress {
   std::string host = "127.0.0.1";
   int port = 10001;

@@ -33,9 +33,9 @@ std::size_t write_igtl_wrench(const DeviceWrench& wrench, std::span<std::uint8_t
 class IgtlStream {
  public:
   /// Takes bytes up to the end of a message. Returns how many; `message` is the message that has become complete, empty if none
-  /// has, and valid until the next call. `why` tells of a message that is left out because its body is too large.
+  /// has, and valid until the next call. `why` describes a message that is skipped because its body is too large.
   std::size_t take(Bytes bytes, Bytes& message, Refusal& why);
-  /// Whether a body of more than a GiB was announced: what comes is not OpenIGTLink.
+  /// Whether a body of more than a GiB was announced: the stream is not OpenIGTLink.
   [[nodiscard]] bool lost() const { return skip_ > std::uint64_t{1} << 30; }
 
  private:

@@ -11,7 +11,7 @@ enum class Transport { udp, tcp };
 /// A socket that does not block, and where it listens.
 struct Listening {
   FileHandle socket;
-  int port = 0;  ///< the one that the system chose if 0 was asked for
+  int port = 0;  ///< the one that the system chose if 0 was given
 };
 
 /// Binds, and for TCP listens. `place` is PORT, on this machine's loopback alone, or ADDRESS:PORT with a numeric IPv4 address,

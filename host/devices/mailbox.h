@@ -19,7 +19,7 @@ class Mailbox {
 
   // For the writer.
 
-  /// The slot to fill; it holds what was published some time before.
+  /// The slot to fill; it holds an older published value.
   T& draft() { return slots_[writing_].value; }
   void publish() {
     const std::uint32_t before = between_.exchange(writing_ | kFresh, std::memory_order_acq_rel);

@@ -7,7 +7,7 @@
 
 namespace pliant::devices {
 
-/// What the cap says: x right, y up, z away from the hand, then the turns about them; 0 at rest, about +-350 at most.
+/// Deflection of the cap: x right, y up, z away from the hand, then the turns about them; 0 at rest, about +-350 at most.
 using CapAxes = std::array<int, 6>;
 
 constexpr double kFullDeflection = 350;
@@ -18,8 +18,8 @@ struct MouseSpeeds {
   double turn = 1.5;    ///< [rad/s]
 };
 
-/// Moves and turns a pose by what the cap said during `dt` seconds, at most 0.1. The pose has x right, y up and z towards the
-/// hand, so that z and the turn about it change their signs; it turns about these axes, not its own.
+/// Moves and turns a pose by the deflection of the cap during `dt` seconds, at most 0.1. The pose has x right, y up and z
+/// towards the hand, so that z and the turn about it change their signs; it turns about these axes, not its own.
 void move_pose(DeviceSample& pose, const CapAxes& cap, double dt, const MouseSpeeds& speeds);
 
 /// Button `number` went down or up: bit `number`, of 0 to 31.

@@ -4,6 +4,8 @@
 #include <bit>
 #include <cstring>
 
+#include "geometry/wrench.h"
+
 namespace pliant::devices {
 
 // The packets are copied as they lie in memory.
@@ -32,8 +34,7 @@ pliant_haptic_wrench wrench_packet(const DeviceWrench& wrench) {
   packet.size = sizeof packet;
   packet.number = wrench.number;
   packet.stamp = wrench.time;
-  std::copy_n(wrench.force.begin(), 3, packet.force);
-  std::copy_n(wrench.torque.begin(), 3, packet.torque);
+  copy_wrench(wrench, packet);
   return packet;
 }
 

@@ -13,7 +13,7 @@
 
 namespace pliant::devices {
 
-/// read() takes from a mailbox, write() fills another, and the thread looks into it at its own times: to wake a thread would
+/// read() takes from a mailbox, write() fills another, and the thread reads it at its own times: to wake a thread would
 /// let it run before the caller on a machine without a free core. A derived class calls start() at the end of its constructor
 /// and stop() at the beginning of its destructor.
 class ThreadedDevice : public HapticDevice {
@@ -30,7 +30,7 @@ class ThreadedDevice : public HapticDevice {
 
   // For the thread.
 
-  /// Runs in the thread until stopping(). What it throws ends the thread and counts as a refusal.
+  /// Runs in the thread until stopping(). An exception ends the thread and counts as a rejected sample.
   virtual void serve() = 0;
   /// Called by stop(), in its thread, if serve() waits for something else than stop_handle().
   virtual void wake() noexcept;

@@ -51,7 +51,7 @@ class Bins {
         for (std::size_t k = first_[static_cast<std::size_t>(bin)]; k < first_[static_cast<std::size_t>(bin) + 1]; ++k) {
           const Column& c = (*columns_)[entries_[k]];
           if (c.upper[0] < lower[0] || c.lower[0] > upper[0] || c.upper[1] < lower[1] || c.lower[1] > upper[1]) continue;
-          // A pair stands in several bins and counts in that of the lower corner of what both boxes have in common.
+          // A pair stands in several bins and counts in that of the lower corner of the intersection of both boxes.
           const auto own = bin_of({std::max(c.lower[0], lower[0]), std::max(c.lower[1], lower[1]), 0});
           if (own[1] * count_[0] + own[0] == bin) visit(entries_[k]);
         }

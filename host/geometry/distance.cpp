@@ -19,7 +19,7 @@ SurfaceDistance::SurfaceDistance(TriangleMesh mesh, DistanceEngine engine)
     : mesh_(oriented(std::move(mesh), orientation_)), tree_(mesh_) {
   if (engine == DistanceEngine::embree && !has_embree()) {
     throw Error(ErrorCode::bad_input,
-                "closest points by Embree were asked for, but this build has no Embree; use the automatic engine");
+                "closest points by Embree were requested, but this build has no Embree; use the automatic engine");
   }
   if (!orientation_.closed()) {
     TriangleMesh edges;

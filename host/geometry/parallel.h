@@ -10,7 +10,7 @@
 
 namespace pliant {
 
-/// Call work(index) for every index in [0, count), from several threads. Each call may write only what belongs to its index.
+/// Call work(index) for every index in [0, count), from several threads. Each call may write only the data of its index.
 /// The first exception is rethrown here, after all threads have ended.
 template <class Work>
 void parallel_for(std::int64_t count, const Work& work) {

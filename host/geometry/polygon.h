@@ -2,8 +2,12 @@
 // once, in its direction, and all other sides come in opposite pairs.
 #pragma once
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
+
+#include "geometry/vec.h"
 
 namespace pliant::overlay {
 
@@ -12,6 +16,27 @@ namespace pliant::overlay {
 struct FlatPoint {
   double x = 0, y = 0;
   std::uint8_t lines = 0;
+};
+
+/// Projects a plane along the axis that its normal is closest to, keeping the sense of rotation.
+class FlatAxes {
+ public:
+  explicit FlatAxes(const Vec3d& normal) {
+    int axis = 0;
+    for (int a = 1; a < 3; ++a) {
+      if (std::abs(normal[a]) > std::abs(normal[axis])) axis = a;
+    }
+    u_ = (axis + 1) % 3;
+    v_ = (axis + 2) % 3;
+    if (normal[axis] < 0) std::swap(u_, v_);
+  }
+  /// Returns x relative to `base`.
+  [[nodiscard]] FlatPoint project(const Vec3d& x, const Vec3d& base, int lines) const {
+    return {x[u_] - base[u_], x[v_] - base[v_], static_cast<std::uint8_t>(lines)};
+  }
+
+ private:
+  int u_ = 0, v_ = 1;
 };
 
 /// A closed loop of corners: counter-clockwise outlines, clockwise holes (of at least two corners: a slit is a hole). A corner

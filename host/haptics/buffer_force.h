@@ -22,7 +22,7 @@ class BufferForce final : public ForceModel {
   /// Generation of the buffer in use; older ones are no longer needed.
   [[nodiscard]] std::uint64_t in_use() const { return generation_; }
   [[nodiscard]] const BufferModel* buffer() const { return buffer_; }
-  [[nodiscard]] std::uint64_t resets() const { return resets_; }  ///< times that a buffer blew up and began anew
+  [[nodiscard]] std::uint64_t resets() const { return resets_; }  ///< times that a buffer diverged and restarted
 
  private:
   double lead_, settle_;

@@ -141,10 +141,8 @@ void BufferSource::report(const Simulation& simulation, std::size_t tool, FrameR
   out.time = simulation.time();
   out.period = last_step_ >= 0 ? out.time - last_time_ : 0;
   out.tool = contact.pose(tool, out.time);
-  const ToolLoad& now = simulation.report().tools[tool].now;
-  out.mean = {now.force, now.torque};
-  out.last = out.mean;
-  if (const std::optional<StepForce> last = contact.last_force(tool)) out.last = {last->force, last->torque};
+  out.mean = simulation.report().tools[tool].now;
+  out.last = contact.last_force(tool).value_or(out.mean);
   out.topology = simulation.topology_version();
   out.number = ++number_;
   last_step_ = simulation.step();

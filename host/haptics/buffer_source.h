@@ -12,23 +12,23 @@
 
 namespace pliant::haptics {
 
-/// What the simulation sends to the haptic thread after each frame.
+/// The message of the simulation to the haptic thread after each frame.
 struct BufferMessage {
   FrameReport report;
   BufferModel* model = nullptr;  ///< the newest buffer; null: nothing is near the instrument
   std::uint64_t generation = 0;  ///< number of buffers built so far
   std::int64_t elements = 0;     ///< of all bodies
-  std::int64_t run = 0;          ///< another one: the simulation began anew, or went back
+  std::int64_t run = 0;          ///< another one: the simulation was reset or rolled back
   bool covered = true;           ///< false: the instrument touches nodes that no finite element moves
   TissueState state;             ///< of the nodes of `model`
 };
 
 class BufferSource {
  public:
-  /// `rings`: of elements around the nodes that the instrument touches; negative: all elements of what it touches.
+  /// `rings`: of elements around the nodes that the instrument touches; negative: all elements of the body it touches.
   BufferSource(std::string tool, std::int32_t rings) : tool_(std::move(tool)), rings_(rings) {}
 
-  /// From the next fill() on; what is there is rebuilt if its rings are others.
+  /// From the next fill() on; an existing buffer is rebuilt if its rings differ.
   void set_rings(std::int32_t rings) {
     if (rings != rings_) ring_.clear();
     rings_ = rings;

@@ -61,7 +61,7 @@ Norton condense(const SparseMatrix<double>& stiffness, const std::vector<int>& c
   k.setFromTriplets(inner.begin(), inner.end());
   const Eigen::SimplicialLLT<SparseMatrix<double>> factor(k);
   if (factor.info() != Eigen::Success)
-    throw Error(ErrorCode::bad_input, "condense: the stiffness of what the contacts leave free is not positive definite");
+    throw Error(ErrorCode::bad_input, "condense: the stiffness of the nodes without contact is not positive definite");
   norton.stiffness -= across.transpose() * factor.solve(across);
   norton.force -= across.transpose() * factor.solve(other_load);
   return norton;

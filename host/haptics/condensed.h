@@ -11,7 +11,7 @@
 
 namespace pliant::haptics {
 
-/// What the contact nodes exert on what holds them: r = stiffness u - force, for their displacements u.
+/// Force of the contact nodes on their constraints: r = stiffness u - force, for their displacements u.
 struct Norton {
   Eigen::MatrixXd stiffness;  ///< [3 contacts][3 contacts], symmetric [N/m]
   Eigen::VectorXd force;      ///< [3 contacts]: what would hold them at u = 0, with the other sign [N]

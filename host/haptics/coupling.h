@@ -6,9 +6,10 @@ namespace pliant::haptics {
 
 /// A spring and damper in each of the three translations and rotations, and the mass that the instrument has in between.
 ///
-/// What the hand feels is at most the coupling, whatever the instrument meets, so that the coupling alone decides whether the
-/// device is stable (Adams and Hannaford 1999: its parameters depend on the device, not on the environment). A device with a
-/// damper b stays passive with a spring K and damper B at sampled positions where b > K T / 2 + B (Colgate and Schenkel 1997).
+/// The stiffness at the hand is at most that of the coupling, whatever the instrument meets, so that the coupling alone decides
+/// whether the device is stable (Adams and Hannaford 1999: its parameters depend on the device, not on the environment). A
+/// device with a damper b stays passive with a spring K and damper B at sampled positions where b > K T / 2 + B (Colgate and
+/// Schenkel 1997).
 struct CouplingOptions {
   bool rigid = false;          ///< no coupling: the instrument is where the device is, its wrench goes to the hand as it is
   double stiffness = 500;      ///< K [N/m]
@@ -23,7 +24,7 @@ struct CouplingOptions {
 /// T [s]: half of b goes to each side of b = K T / 2 + B, so that K = b / T and B = b / 2, less a tenth.
 CouplingOptions passive_coupling(double damping, double turn_damping, double tick);
 
-/// Where the instrument is and what the coupling exerts on the hand.
+/// Pose of the instrument, and the wrench of the coupling on the hand.
 struct Coupled {
   Pose instrument;
   Wrench on_hand;  ///< torque about the device's tip
@@ -36,7 +37,7 @@ struct Coupled {
 /// such.
 class VirtualCoupling {
  public:
-  /// `tick`: T for which masses that are not given are chosen [s]. Throws Error for what is negative or no number.
+  /// `tick`: T for which masses that are not given are chosen [s]. Throws Error for negative or non-finite numbers.
   VirtualCoupling(const CouplingOptions& options, double tick);
   /// Puts the instrument there, at rest.
   void place(const Pose& instrument) noexcept;

@@ -38,7 +38,7 @@ struct DriveLog {
 };
 
 /// Reads the text of a file. Lines that are empty or begin with # are skipped. Throws Error `bad_input` "<file>:<line>: ..."
-/// with what was given and what is allowed: for another first line, no begin, a row of another form or behind the end, steps
+/// with the given and the allowed value: for another first line, no begin, a row of another form or behind the end, steps
 /// or times that fall, numbers that are not finite, a turn that is no unit quaternion, seconds that are not above 0.
 DriveLog parse_drive_log(std::string_view text, const std::string& file);
 

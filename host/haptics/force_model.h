@@ -1,22 +1,18 @@
-// What computes the force on an instrument at the haptic rate, from what the simulation reports at its own, lower rate.
+// Computes the force on an instrument at the haptic rate from the reports of the simulation, which come at a lower rate.
 #pragma once
 #include <cstdint>
 
+#include "pliant/wrench.h"
 #include "scene/contact_tool.h"
 
 namespace pliant::haptics {
 
-/// Force [N] and torque about the origin [N m] on the instrument.
-struct Wrench {
-  Vec3d force{}, torque{};
-};
-
-/// What the simulation reports of an instrument after each frame.
+/// The simulation's report on an instrument after each frame.
 struct FrameReport {
   double time = 0;            ///< simulated time of its last step [s]
   double period = 0;          ///< simulated time since the report before [s]
   Pose tool;                  ///< at `time`
-  Wrench mean;                ///< over the steps of the last batch of the frame
+  Wrench mean;                ///< on the instrument, over the steps of the last batch of the frame
   Wrench last;                ///< in its last step
   std::int64_t topology = 0;  ///< number of edits that changed elements
   std::uint64_t number = 0;   ///< number of reports so far

@@ -1,4 +1,4 @@
-// A device and the hand that holds it, simulated: for tests, demonstrations and what is measured without a device.
+// A device and the hand that holds it, simulated: for tests, demonstrations and measurements without a device.
 #pragma once
 #include <array>
 #include <chrono>
@@ -26,7 +26,7 @@ struct HandOptions {
   /// Where the hand wants the tip: (time [s], position [m], turn x, y, z, w); times ascending, interpolated linearly, constant
   /// outside; empty: at the origin.
   std::vector<std::array<double, 8>> path;
-  DeviceLimits limits;     ///< what exceeds them is exerted at the limit, what is no number not at all
+  DeviceLimits limits;     ///< larger forces are exerted at the limit, non-finite ones not at all
   bool wall_time = false;  ///< read() advances to the time of the clock; otherwise only advance() does
 };
 
@@ -36,12 +36,12 @@ struct HandOptions {
 /// the hand wants it.
 class SimulatedHand : public HapticDevice {
  public:
-  /// Throws Error for a mass that is not positive and for what is negative or no number.
+  /// Throws Error for a mass that is not positive and for negative or non-finite numbers.
   explicit SimulatedHand(const HandOptions& options);
   DeviceSample read() noexcept override;
   void write(const DeviceWrench& wrench) noexcept override;
   [[nodiscard]] DeviceLimits limits() const noexcept override { return options_.limits; }
-  /// Advances by `dt` [s]; allocates nothing. What the device exerts in between is the wrench of the last write().
+  /// Advances by `dt` [s]; allocates nothing. In between the device exerts the wrench of the last write().
   void advance(double dt) noexcept;
 
   [[nodiscard]] double time() const noexcept { return time_; }         ///< [s]

@@ -1,4 +1,4 @@
-// What happens in a tick, without thread or clock: from the device's sample to the wrench on the hand.
+// One tick, without thread or clock: from the device's sample to the wrench on the hand.
 #pragma once
 #include <cstdint>
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "geometry/vec.h"
+#include "geometry/wrench.h"
 
 namespace pliant::haptics {
 namespace {
@@ -22,9 +22,7 @@ void ExtrapolatedForce::receive(const FrameReport& report) noexcept {
   const double at = report.time - (sampled_ == Sampled::mean ? report.period / 2 : 0);
   slope_ = {};
   if (any_ && at > sampled_at_) {
-    const double per_second = 1 / (at - sampled_at_);
-    slope_ = {vec::mul(vec::sub(wrench.force, newest_.force), per_second),
-              vec::mul(vec::sub(wrench.torque, newest_.torque), per_second)};
+    slope_ = scaled(minus(wrench, newest_), 1 / (at - sampled_at_));
   }
   newest_ = wrench;
   sampled_at_ = at;
@@ -35,7 +33,7 @@ void ExtrapolatedForce::receive(const FrameReport& report) noexcept {
 Wrench ExtrapolatedForce::tick(const Pose& /*tool*/, double dt) noexcept {
   time_ += dt;
   const double ahead = std::clamp(time_ - sampled_at_, 0.0, horizon_);
-  return {vec::add(newest_.force, vec::mul(slope_.force, ahead)), vec::add(newest_.torque, vec::mul(slope_.torque, ahead))};
+  return plus(newest_, scaled(slope_, ahead));
 }
 
 }  // namespace pliant::haptics

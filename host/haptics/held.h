@@ -21,7 +21,7 @@ class HeldForce : public ForceModel {
 };
 
 /// F(t) = F_n + (t - t_n) (F_n - F_(n-1)) / (t_n - t_(n-1)) (Picinbono and Lombardo 1999 extrapolate forces so). `t` is the
-/// time of the newest report and what the ticks have added to it; it is followed up to `horizon` [s] beyond t_n, then held. A
+/// time of the newest report plus the ticks since then; it is followed up to `horizon` [s] beyond t_n, then held. A
 /// ramp is exact; where a force jumps by J between two reports, it overshoots by up to J min(t - t_n, horizon) / (t_n -
 /// t_(n-1)).
 class ExtrapolatedForce : public ForceModel {

@@ -1,4 +1,4 @@
-// A tool of a simulation that a device drives: what the stepping thread and the haptic thread tell each other.
+// A tool of a simulation that a device drives: the data that the stepping thread and the haptic thread exchange.
 #pragma once
 #include <atomic>
 #include <cstdint>

@@ -26,8 +26,7 @@ std::size_t index_of(const Simulation& simulation, const std::string& name) {
 
 /// On the tool in the last step.
 Wrench felt(const Simulation& simulation, const std::string& name) {
-  const StepForce last = simulation.contact().last_force(index_of(simulation, name)).value_or(StepForce{});
-  return {last.force, last.torque};
+  return simulation.contact().last_force(index_of(simulation, name)).value_or(Wrench{});
 }
 
 bool ended(const HapticDevice& device) {
@@ -77,7 +76,7 @@ bool Lockstep::next(Simulation& simulation) {
 void Lockstep::answer(Hand& hand, const Simulation& simulation) {
   const Wrench exerted = hand.guard.tick(felt(simulation, hand.held.tool), 0, hand.period);
   const DeviceSample& sample = *hand.sample;
-  hand.answer = {exerted.force, exerted.torque, sample.dated ? sample.time : 0, sample.number};
+  hand.answer = {exerted, sample.dated ? sample.time : 0, sample.number};
   hand.counts.largest_force = std::max(hand.counts.largest_force, vec::norm(exerted.force));
   hand.open = false;
   hand.held.device->write(hand.answer);
@@ -170,7 +169,7 @@ void Lockstep::release() noexcept {
   for (Hand& hand : hands_) {
     if (!hand.open) continue;
     hand.open = false;
-    hand.held.device->write({{}, {}, hand.sample->dated ? hand.sample->time : 0, hand.sample->number});
+    hand.held.device->write({{}, hand.sample->dated ? hand.sample->time : 0, hand.sample->number});
   }
 }
 

@@ -23,7 +23,7 @@ struct LockstepOptions {
   double rate = 1000;                              ///< samples per second of a device that dates none [1/s]
   double patience = 5;                             ///< a device that says nothing for longer has ended [s]
   std::function<bool()> stop;                      ///< ends the waiting; may be empty
-  std::function<void(const std::string&)> remark;  ///< is told what people should know; may be empty
+  std::function<void(const std::string&)> remark;  ///< receives messages for people; may be empty
 };
 
 /// Of one device.

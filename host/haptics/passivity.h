@@ -1,5 +1,5 @@
-// Passivity in the time domain: an account of the energy that a device has taken from what is rendered to it, and a damper that
-// keeps the account from going below zero (Hannaford and Ryu 2002). What is rendered is a one-port in impedance causality: the
+// Passivity in the time domain: an account of the energy that a device has taken from the rendered force, and a damper that
+// keeps the account from going below zero (Hannaford and Ryu 2002). The rendering is a one-port in impedance causality: the
 // motion comes from the device, the wrench goes to it.
 #pragma once
 #include "haptics/force_model.h"
@@ -9,20 +9,20 @@ namespace pliant::haptics {
 /// Of the translation or of the rotation of a device, each with an account of its own. Units of the rotation stand behind the
 /// semicolon.
 struct EnergyOptions {
-  double allowance = 1e-3;  ///< E(0) of Hannaford and Ryu (2002): what may be taken before anything was given [J]
+  double allowance = 1e-3;  ///< E(0) of Hannaford and Ryu (2002): the energy that may be taken at the start [J]
   double damping = 0;       ///< of the device itself, at least [N s/m; N m s/rad]
   /// Greatest that the hand gives the device, twice that where its velocity is a difference of samples [m/s^2; rad/s^2]; 0: its
   /// velocity is trusted.
   double acceleration = 0;
-  double limit = 1;  ///< of what the controller adds to pay a debt back [N; N m]
+  double limit = 1;  ///< of the force that the controller adds to pay a debt back [N; N m]
 };
 
 /// Accounts for the energy at the port, of three components of motion.
 ///
 /// A wrench is held from one tick to the next, so that its work over the motion between both is known exactly at the next tick
-/// (Ryu, Kim and Hannaford 2004): E(n) = E(n-1) - F(n-1) (x(n) - x(n-1)). To it comes what the device's own damper has taken,
-/// which is at least b |x(n) - x(n-1)|^2 / T whatever the motion within the tick (Cauchy and Schwarz). For a spring K at
-/// sampled positions this balances for K = 2 b / T, which is the condition of Colgate and Schenkel (1997, b > K T / 2).
+/// (Ryu, Kim and Hannaford 2004): E(n) = E(n-1) - F(n-1) (x(n) - x(n-1)). It includes the energy that the device's own damper
+/// has taken, which is at least b |x(n) - x(n-1)|^2 / T whatever the motion within the tick (Cauchy and Schwarz). For a spring
+/// K at sampled positions this balances for K = 2 b / T, which is the condition of Colgate and Schenkel (1997, b > K T / 2).
 class PassivityObserver {
  public:
   explicit PassivityObserver(const EnergyOptions& options) : options_(options), energy_(options.allowance) {}
@@ -58,8 +58,8 @@ class PassivityController {
   /// Since the last tick, `dt` [s] ago, the device has moved by `step` [m; rad]; now it has `velocity` [m/s; rad/s]. Returns
   /// what to exert instead of `force` [N; N m]; the coming tick is taken to be as long.
   Vec3d tick(const Vec3d& step, const Vec3d& velocity, const Vec3d& force, double dt) noexcept;
-  /// What was exerted in the end, where something behind the controller changed it. A share in [0, 1] of what it gave out keeps
-  /// what the account promises.
+  /// The force exerted in the end, if a stage behind the controller changed it. A share in [0, 1] of the controller's output
+  /// keeps the account non-negative.
   void exerted(const Vec3d& force) noexcept { observer_.exert(force); }
   [[nodiscard]] const PassivityObserver& observer() const noexcept { return observer_; }
   /// Ticks in which the force was changed.
@@ -81,7 +81,7 @@ class PassivityGate {
   /// `velocity` [m/s], `spin` [rad/s]: of the device at `device`; `dt` since the last tick [s]. Where one of them is no number,
   /// nothing is exerted.
   Wrench tick(const Pose& device, const Vec3d& velocity, const Vec3d& spin, const Wrench& wrench, double dt) noexcept;
-  /// What was exerted in the end, where something behind the gate changed it.
+  /// The wrench exerted in the end, if a stage behind the gate changed it.
   void exerted(const Wrench& wrench) noexcept;
   [[nodiscard]] const PassivityController& translation() const noexcept { return translation_; }
   [[nodiscard]] const PassivityController& rotation() const noexcept { return rotation_; }

@@ -19,7 +19,7 @@ namespace pliant::haptics {
 /// tick. The nearest point under the planes that are touched is found by Hildreth's coordinate ascent of the dual (1957).
 ///
 /// F = k (proxy - instrument), or zero where the instrument's place is no number; the torque about the origin of a sphere is
-/// zero. The reports of the simulation are not used: the surface is what it knows.
+/// zero. The reports of the simulation are not used: it uses the surface alone.
 class ProxyForce : public ForceModel {
  public:
   static constexpr std::size_t kTriangles = 256, kTouched = 12;

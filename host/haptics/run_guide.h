@@ -1,4 +1,4 @@
-// What has a say between two steps of a run: it changes the simulation, and says how far the run may go before the next change.
+// Interface for code between two steps of a run: it changes the simulation and limits the steps until the next change.
 #pragma once
 #include <cmath>
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The last stage before a device: no force from old reports, none that is not a number, none above what the device can exert,
+// The last stage before a device: no force from old reports, none that is not a number, none above the device's limits,
 // and none that begins at once.
 #pragma once
 #include "haptics/force_model.h"

@@ -44,9 +44,9 @@ struct Submodel {
   std::vector<std::int32_t> slot;   ///< [nodes] slot in the whole model, ascending
   std::vector<char> rim;            ///< [nodes] 1: shared with elements outside, or moved by something else than its elements
   std::vector<std::int32_t> point;  ///< [contact points] index in the whole model's
-  /// [nodes] (body << 32 | index in the body, node), ascending: what a node is called in every model of the scene.
+  /// [nodes] (body << 32 | index in the body, node), ascending: identifies a node in every model of the scene.
   std::vector<std::pair<std::int64_t, std::int32_t>> names;
-  std::int32_t rings = 0;  ///< as asked for
+  std::int32_t rings = 0;  ///< as requested
   std::int64_t elements = 0;
   bool whole = false;              ///< no element outside shares a node with it
   std::vector<std::string> tools;  ///< names, in order: what friction refers to

@@ -1,4 +1,4 @@
-// What people ask of a soft-tissue engine and this version has not, with what comes nearest: one table for the readers.
+// Features of soft-tissue engines that this version lacks, each with the nearest one that it has: one table for the readers.
 #pragma once
 #include <span>
 #include <string>
@@ -13,12 +13,12 @@ struct Lacking {
   std::string_view where;
   std::string_view words;    ///< separated by spaces, each in small letters and without hyphens and underscores
   std::string_view missing;  ///< "no law with a memory"
-  std::string_view nearest;  ///< what this version has instead
+  std::string_view nearest;  ///< the alternative in this version
 };
 std::span<const Lacking> lacking_table();
 
-/// A half-sentence such as "; this version has no law with a memory: the nearest is ..."; empty for what the table does not
-/// have.
+/// A half-sentence such as "; this version has no law with a memory: the nearest is ..."; empty for features that the table
+/// does not have.
 std::string lacking(std::string_view where, std::string_view word);
 
 }  // namespace pliant

@@ -24,7 +24,7 @@ TriangleMesh clean_surface(const TriangleMesh& surface, const std::string& name,
 
 /// Read a volume mesh: Gmsh .msh (versions 1, 2 and 4, text; 2 and 4 also binary), VTK legacy, VTU, TetGen (.node/.ele).
 /// Unused vertices are dropped; tetrahedra of negative volume are an error that names the element unless all are negative
-/// (then the file's orientation convention is swapped). `tags`: what the file says of its cells besides (mesh_tags.h).
+/// (then the file's orientation convention is swapped). `tags`: further data of its cells (mesh_tags.h).
 VolumeMesh read_volume(const std::filesystem::path& file, double scale = 1, const Vec3d& translate = {},
                        MeshTags* tags = nullptr);
 

@@ -14,7 +14,7 @@ namespace pliant::volume_file {
 /// The bytes of a file; throws Error when it is absent, empty, no regular file or cannot be read.
 std::string load(const std::filesystem::path& file);
 
-/// What a message may quote of a file that can hold anything: at most `most` characters, all of them printable.
+/// Returns the part of a file's text that a message may quote: at most `most` characters, all of them printable.
 std::string shown(std::string_view word, std::size_t most = 40);
 
 /// A decimal integer, if that is all that the word is.
@@ -42,13 +42,13 @@ class Cursor {
 
   /// True when only white space is left.
   bool at_end();
-  /// The next word; throws at the end of the file. `what` says what was expected.
+  /// The next word; throws at the end of the file. `what`: the expected item, for the message.
   std::string_view token(const char* what);
   /// The rest of the current line, without its end.
   std::string_view line();
   std::int64_t integer(const char* what);
   double real(const char* what);
-  /// A number of items of which each takes at least `bytes` bytes of what is left of the file.
+  /// A number of items of which each takes at least `bytes` bytes of the rest of the file.
   std::int64_t count(const char* what, std::size_t bytes) { return check_count(integer(what), what, bytes); }
   std::int64_t check_count(std::int64_t n, const char* what, std::size_t bytes);
   /// Throws unless `bytes` more are there.
@@ -77,7 +77,7 @@ class Cursor {
   std::filesystem::path file_;
   std::string_view data_;
   std::size_t at_ = 0;
-  std::size_t last_ = 0;  ///< start of what was read last
+  std::size_t last_ = 0;  ///< start of the last item read
   std::string section_;
   enum class Where { line, byte, section } where_ = Where::line;
   bool swap_ = false;

@@ -47,7 +47,7 @@ struct RawMesh {
   std::vector<std::int64_t> hex_numbers;
   std::map<std::string, std::int64_t> others;  ///< cells that were passed over, by name
 
-  /// What follows is kept if `tagged`: each cell's place among all cells of the file, and what arrays say of them.
+  /// The next members are filled if `tagged`: each cell's place among all cells of the file, and what arrays say of them.
   bool tagged = false;
   std::int64_t cells = 0;                          ///< of all kinds, so far
   std::vector<std::int64_t> tet_cell, hex_cell;    ///< parallel to tets and hexes
@@ -102,7 +102,7 @@ void add_cell(RawMesh& mesh, const CellType& type, std::int64_t number, std::spa
 void append_vtk_cells(RawMesh& mesh, std::span<const std::int64_t> offsets, std::span<const std::int64_t> nodes,
                       std::span<const std::int64_t> types, std::int64_t first_cell, std::int64_t first_point, const Cursor& at);
 
-/// `tagged`: with what the file says of its cells besides their nodes.
+/// `tagged`: with further data of its cells in addition to their nodes.
 RawMesh read_gmsh(const std::filesystem::path& file, std::string_view data, bool tagged = false);
 RawMesh read_vtk(const std::filesystem::path& file, std::string_view data, bool tagged = false);
 RawMesh read_vtu(const std::filesystem::path& file, std::string_view data, bool tagged = false);

@@ -9,7 +9,7 @@
 
 namespace pliant::volume_file {
 
-/// What the VTKFile element says about all arrays, and where the appended data are.
+/// Attributes of the VTKFile element for all arrays, and where the appended data are.
 struct VtuEncoding {
   bool swap = false;       ///< byte order differs from the machine's
   bool wide = false;       ///< 64-bit block headers

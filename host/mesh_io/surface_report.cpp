@@ -85,7 +85,7 @@ std::vector<std::string> surface_warnings(const SurfaceReport& r, const Crossing
   if (!r.holes.empty()) say(holes(r) + "; the body ends there as if they were closed");
   if (crossings.pairs > 0) {
     say(fmt::format(
-        "pairs of triangles that pass through each other: {} ({} of them of two parts), the first at {}; what lies in "
+        "pairs of triangles that pass through each other: {} ({} of them of two parts), the first at {}; volume inside "
         "several parts counts once",
         crossings.pairs, crossings.between_shells, at(crossings.place)));
   }

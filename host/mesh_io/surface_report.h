@@ -35,7 +35,7 @@ struct SurfaceReport {
 void require_inside(const SurfaceReport& report);
 
 /// Sentences that a user should read, none for a sound surface. `crossings` and `filled`, the volume of the lattice [m^3], say
-/// what the report does not know.
+/// data that the report lacks.
 std::vector<std::string> surface_warnings(const SurfaceReport& report, const Crossings& crossings, double filled);
 
 }  // namespace pliant

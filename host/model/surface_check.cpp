@@ -31,9 +31,8 @@ Model build_model(const Scene& scene, std::vector<SurfaceCheck>& checks) {
     const auto nodes = static_cast<double>(body.slot.size()),
                wanted = static_cast<double>(scene.bodies[number[c]].lattice.nodes);
     if (wanted > 0 && std::abs(nodes / wanted - 1) > kNodesApart) {
-      checks[c].warnings.push_back(
-          fmt::format("\"lattice\" asks for {} nodes; the nearest lattice that was found has {} ({:+.1f} %)", wanted, nodes,
-                      100 * (nodes / wanted - 1)));
+      checks[c].warnings.push_back(fmt::format("\"lattice\" requests {} nodes; the nearest lattice found has {} ({:+.1f} %)",
+                                               wanted, nodes, 100 * (nodes / wanted - 1)));
     }
   }
   return model;

@@ -38,7 +38,7 @@ void add_weight(const std::string& where, const Body& body, const Scene& scene, 
   const double share = body.material.density * scene.gravity_curve.largest() * column / body.material.moduli.young();
   if (body.material.moduli.young() < kSoftest || share <= kCrushed) return;  // already reported, or plausible
   remarks.push_back(
-      fmt::format("{}: the weight of a column as high as it is {:.3g} times its Young's modulus, which would crush it; look at "
+      fmt::format("{}: the weight of a column as high as it is {:.3g} times its Young's modulus, which would crush it; check "
                   "\"scale\", \"density\", \"young\" and \"gravity\" ({})",
                   where, share, kAllSi));
 }

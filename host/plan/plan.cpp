@@ -276,8 +276,7 @@ class Planner {
     if (reference_.uncertainty > o_.tolerance / 2) {
       plan.text += fmt::format(
           "\nthe reference is known to {:.2g} % only, and so is every error here (--reference takes more nodes); where planes "
-          "and "
-          "spheres hold nodes, what they hold changes with the lattice",
+          "and spheres select nodes, their selection changes with the lattice",
           100 * reference_.uncertainty);
     }
     return plan;

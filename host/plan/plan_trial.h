@@ -18,14 +18,14 @@ struct Size {
   double volume = 0;  ///< [m^3]
   double area = 0;    ///< [m^2]
   Vec3d extent{};     ///< along the axes [m]
-  /// What a thin box or a plane at a face holds is empty in most lattices. Then an axis along which whole cells fill the body,
-  /// so that the faces across it are nodes; -1: not needed, or of no use.
+  /// A selection by a thin box or a plane at a face is empty in most lattices. Then an axis along which whole cells fill the
+  /// body, so that the faces across it are nodes; -1: not needed, or of no use.
   int fitted = -1;
 };
 Size size_of(const Scene& scene);
 
-/// The scene at rest: the mean of three fine lattices. What a plane or a sphere holds changes with the lattice by a share of
-/// its spacing, and that is most of the difference between two fine lattices.
+/// The scene at rest: the mean of three fine lattices. The selection of a plane or a sphere changes with the lattice by a share
+/// of its spacing, and that is most of the difference between two fine lattices.
 struct Reference {
   std::vector<Vec3d> u;        ///< displacements of the surface's vertices [m]; of a scene with tools at kSamples times
   std::vector<Vec3d> force{};  ///< of its tools at these times [N]

@@ -23,7 +23,7 @@ enum class BufferRole {
   control,   ///< written by the host between batches (step parameters, curve values)
 };
 
-/// What a scratch buffer contains at the start of the next step. Other values must be written before they are read.
+/// Contents of a scratch buffer at the start of the next step. Other values must be written before they are read.
 enum class Carried {
   nothing,    ///< everything is rewritten in each step
   unwritten,  ///< values that no pass ever writes keep their initial values

@@ -1,4 +1,4 @@
-// What the samples of a picture add up to, and how it becomes bytes.
+// The sums of the samples of a picture, and their conversion to bytes.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace pliant::render {
 
-/// What a pixel shows. Pixels that show several things are `mixed`, and no filter touches them.
+/// Contents of a pixel. Pixels that show several things are `mixed`, and no filter touches them.
 enum class Shows : std::uint8_t { background, ground, outside, cut, mixed };
 
 /// One sample. Its colour is albedo * (light + key * key_light) + key_gloss * key + sky_gloss * open.

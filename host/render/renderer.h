@@ -13,7 +13,7 @@ namespace pliant::render {
 
 /// A surface as its owner holds it; nothing is copied but positions, and triangles when `topology` changes.
 struct Surface {
-  std::span<const float> positions;         ///< [stride * vertices] x, y, z and what the renderer skips [m]
+  std::span<const float> positions;         ///< [stride * vertices] x, y, z and numbers that the renderer skips [m]
   std::size_t stride = 3;                   ///< floats from one vertex to the next
   std::span<const std::int32_t> triangles;  ///< [3 * triangles] vertices, outward by the right-hand rule
   std::span<const std::uint8_t> cut;        ///< [triangles] not 0: made by a cut; empty: no cuts

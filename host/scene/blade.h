@@ -1,4 +1,4 @@
-// Parts of a scene besides its bodies: the followed tool, blades, and the camera.
+// Parts of a scene other than its bodies: the followed tool, blades, and the camera.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@ namespace pliant {
 
 /// The name of the focus in "follow".
 inline constexpr const char* kFocus = "focus";
-/// What the name of a blade that a program moves begins with in "follow".
+/// Prefix in "follow" of the name of a blade that a program moves.
 inline constexpr const char* kHostBlade = "host/";
 
 /// A point on a prescribed path, which operational regions can follow.
@@ -22,7 +22,7 @@ struct Focus {
   [[nodiscard]] Vec3d position(double time) const;
 };
 
-/// What a blade cuts: all that it sweeps, or what gives way to the force of its edge (docs/cutting.md).
+/// Cutting mode: all tissue that a blade sweeps, or only tissue that fails under the force of its edge (docs/cutting.md).
 enum class BladeCuts { always, by_force };
 
 /// A blade on a prescribed path: a segment that cuts the surface it sweeps.

@@ -1,4 +1,4 @@
-// Changes of a scene's parameters while it runs: gravity, materials, models, and what is held. Key "changes" of a scene file,
+// Changes of a scene's parameters while it runs: gravity, materials, models, and supports. Key "changes" of a scene file,
 // and the calls World::change(), set_gravity(), ... of a host.
 #pragma once
 #include <string>
@@ -21,7 +21,7 @@ struct SceneChange {
 Scene with_parameters(const Scene& scene, const std::string& parameters);
 
 /// Returns the parameters after a change. `change`: JSON text, an entry of "changes" without its time. `where` is what messages
-/// call it. Throws Error (bad_input) with the JSON pointer, the value and what is allowed.
+/// call it. Throws Error (bad_input) with the JSON pointer, the value and the allowed values.
 std::string changed_parameters(const Scene& scene, const std::string& parameters, const std::string& change,
                                const std::string& where);
 

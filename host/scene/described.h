@@ -11,7 +11,7 @@
 
 namespace pliant {
 
-/// What a number may be. Bounds of 1e30 are those of every number; an open bound at 0 is 1e-30 (reader.h).
+/// Allowed range of a number. Bounds of 1e30 are those of every number; an open bound at 0 is 1e-30 (reader.h).
 struct Range {
   double least = -1e30, most = 1e30;
   bool above = false, below = false;  ///< whether the bounds themselves are not allowed
@@ -63,8 +63,8 @@ constexpr Key required(Key key) {
   return key;
 }
 
-// Each calls v(member, key) or, for what a file writes as a word, v(member, words, key). The object is a part of a Scene, or
-// the struct of include/pliant that becomes one, whose words are text and whose members may be optional.
+// Each calls v(member, key) or, for a value that a file writes as a word, v(member, words, key). The object is a part of a
+// Scene, or the struct of include/pliant that becomes one, whose words are text and whose members may be optional.
 
 template <class V, class S>
 void describe_scene(V&& v, S&& s) {

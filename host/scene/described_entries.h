@@ -1,4 +1,4 @@
-// The described keys of conditions, of what they change over time, and of probes (described.h).
+// The described keys of conditions, of their changes over time, and of probes (described.h).
 #pragma once
 #include "scene/described.h"
 
@@ -55,7 +55,7 @@ void describe_pressure(V&& v, S&& s) {
                           "the pressure at factor 1; positive pushes along the inward normal of the deformed surface"}));
 }
 
-/// Of a change while the scene runs, besides what it changes.
+/// Of a change while the scene runs, without the changed parameters.
 struct ChangePlace {
   double time = 0;
   std::string body{};

@@ -1,4 +1,4 @@
-// What the loader and the writer do with described keys (described.h).
+// Reading and writing of described keys (described.h).
 #pragma once
 #include <concepts>
 #include <nlohmann/json.hpp>
@@ -16,7 +16,7 @@ namespace pliant {
 bool within(double x, const Range& range);
 /// "0 <= least_fill <= 1", "> 0", ">= 0", "> 1", empty for any; whole numbers: "from 1 to 64".
 std::string range_text(const Key& key, bool whole);
-/// What a message expects.
+/// Text of the expected value, for messages.
 std::string expected_text(const Key& key, bool whole);
 /// The number of the file. Throws Error.
 double read_number(const Reader& field, const Key& key, bool whole);

@@ -1,4 +1,4 @@
-// From text to a JSON document, refusing what a scene may not contain. Internal to the scene room and its tests.
+// From text to a JSON document, rejecting constructs that a scene may not contain. Internal to the scene room and its tests.
 #pragma once
 #include <cstddef>
 #include <nlohmann/json.hpp>

@@ -17,8 +17,8 @@ namespace pliant {
 /// in scenes/schema.json.
 const std::map<std::string, std::vector<std::string>>& scene_keys();
 
-/// What a law can be given by: the moduli (young, poisson, lambda, mu, kappa), or its own parameters; those of all laws, each
-/// once.
+/// Parameters that can define a law: the moduli (young, poisson, lambda, mu, kappa), or its own parameters; those of all laws,
+/// each once.
 std::vector<std::string> moduli_keys();
 std::vector<std::string> elastic_keys(const LawInfo& law);
 std::vector<std::string> elastic_keys();

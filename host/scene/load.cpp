@@ -76,7 +76,7 @@ void read_solver(const Reader& top, Scene& scene) {
   StaticSolver& solver = scene.solver;
   describe_solver(ReadKeys{field}, solver);
   for (const auto& [key, value] : field.json().items()) {
-    if (!solver.enabled && key != "type") field.at(key).fail("this key only beside \"type\": \"static\"");
+    if (!solver.enabled && key != "type") field.at(key).fail("this key only with \"type\": \"static\"");
   }
 }
 
@@ -98,7 +98,7 @@ void check_initial(const Reader& top, const Scene& scene) {
   if (!scene.solver.enabled) return;
   for (const Reader& body : top.at("bodies").items("bodies")) {
     if (body.has("initial") && !body.at("initial").json().empty())
-      body.at("initial").fail("none beside \"solver\": {\"type\": \"static\"}, which finds the equilibrium whatever the start");
+      body.at("initial").fail("none with \"solver\": {\"type\": \"static\"}, which finds the equilibrium whatever the start");
   }
 }
 

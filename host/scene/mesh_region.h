@@ -10,7 +10,7 @@
 
 namespace pliant {
 
-/// What an entry of a scene applies its selection to.
+/// Kind of objects that an entry of a scene selects.
 enum class Selected {
   nodes,      ///< by their places, or by number
   elements,   ///< by their centroids

@@ -31,7 +31,7 @@ struct AffineField {
   [[nodiscard]] bool zero() const { return offset == Vec3d{} && linear == std::array<Vec3d, 3>{}; }
 };
 
-/// Motion at the start, in addition to what other entries and the body's velocities give the same nodes.
+/// Motion at the start, in addition to other entries and the body's velocities at the same nodes.
 struct Initial {
   Selection where;
   AffineField velocity;      ///< [m/s]

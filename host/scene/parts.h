@@ -30,7 +30,7 @@ struct SelectionFrame {
 SelectionFrame frame_of(const Body& body, const std::filesystem::path& folder);
 /// Only of nodes there may be lists: neither elements nor triangles have numbers that a scene could know.
 Selection read_selection(const Reader& entry, Selected of, const SelectionFrame& frame);
-/// Parts of `prescribed` and `initial` entries besides their selection.
+/// Parts of `prescribed` and `initial` entries other than their selection.
 void read_prescribed(const Reader& entry, Prescribed& prescribed);
 void read_initial(const Reader& entry, Initial& initial);
 Curve read_curve(const Reader& entry);

@@ -1,4 +1,4 @@
-// What a run writes down over time: the keys "probes" and "probe_every" of a scene.
+// Quantities that a run records over time: the keys "probes" and "probe_every" of a scene.
 #pragma once
 #include <cstdint>
 #include <optional>

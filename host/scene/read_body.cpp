@@ -24,7 +24,7 @@ void read_geometry(const Reader& body, const fs::path& folder, Body& b) {
   if (surface) b.surface = read_path(body.at("surface"), folder);
   if (mesh) b.mesh = read_path(body.at("mesh"), folder);
   if (mesh) {
-    if (body.has("lattice")) body.at("lattice").fail("no lattice beside a volume mesh (which has elements of its own)");
+    if (body.has("lattice")) body.at("lattice").fail("no lattice with a volume mesh (which has elements of its own)");
     return;
   }
   const Reader lattice = body.at("lattice", "a lattice to fill the surface, such as {\"spacing\": 0.01}");

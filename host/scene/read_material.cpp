@@ -62,7 +62,7 @@ void refuse_foreign(const Reader& material, const LawInfo& law) {
   for (const std::string& key : elastic_keys()) {
     if (!material.has(key) || std::find(own.begin(), own.end(), key) != own.end()) continue;
     material.at(key).fail(
-        fmt::format("no \"{}\" beside the law {}, which takes {}", key, law.word, law.takes_moduli ? pairs : listed(own)));
+        fmt::format("no \"{}\" with the law {}, which takes {}", key, law.word, law.takes_moduli ? pairs : listed(own)));
   }
 }
 

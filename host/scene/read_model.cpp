@@ -11,7 +11,7 @@ namespace {
 void refuse(const Reader& model, const std::vector<std::string>& keys, ModelType type, const char* needed) {
   for (const std::string& key : keys) {
     if (!model.has(key)) continue;
-    model.at(key).fail(fmt::format("no \"{}\" beside the type {} (it needs the type {})", key, to_string(type), needed));
+    model.at(key).fail(fmt::format("no \"{}\" with the type {} (it needs the type {})", key, to_string(type), needed));
   }
 }
 
@@ -44,11 +44,11 @@ DeformationModel read_model(const Reader& model, bool lattice) {
   m.pointer = model.pointer();
   describe_type(ReadKeys{model}, m);
   if (lattice && m.type == ModelType::mass_spring) {
-    model.at("type").fail("tled, hybrid or flsm beside a surface (springs need a \"mesh\" of tetrahedra)");
+    model.at("type").fail("tled, hybrid or flsm with a surface (springs need a \"mesh\" of tetrahedra)");
   }
   if (!lattice && m.matches()) {
     model.at("type").fail(
-        "tled or mass-spring beside a volume mesh (shape matching needs a lattice: give a \"surface\" instead of the "
+        "tled or mass-spring with a volume mesh (shape matching needs a lattice: give a \"surface\" instead of the "
         "\"mesh\")");
   }
   refuse_senseless(model, m.type);
@@ -90,7 +90,7 @@ void check_follow(const Reader& follow, const Scene& scene, const std::string& n
     names.push_back(tool.name);
   }
   if (std::find(names.begin(), names.end(), name) == names.end())
-    follow.fail(fmt::format("the name of what the region follows, one of {}, or {}NAME for a blade that a program moves",
+    follow.fail(fmt::format("the name of a target of the region, one of {}, or {}NAME for a blade that a program moves",
                             listed(names), kHostBlade));
 }
 

@@ -63,7 +63,7 @@ void read_prescribed(const Reader& entry, Prescribed& prescribed) {
     describe_axes(ReadKeys{entry}, prescribed);
     return;
   }
-  if (entry.has("axes")) entry.at("axes").fail("no axes beside a displacement (null leaves a component of it free)");
+  if (entry.has("axes")) entry.at("axes").fail("no axes with a displacement (null leaves a component of it free)");
   read_displacement(entry.at("displacement"), prescribed);
 }
 

@@ -81,9 +81,9 @@ SceneProbe read_probe(const Reader& probe, const Scene& scene) {
   out.quantities = read_quantities(probe, point, between);
   if (point || between) {
     for (const char* key : {"box", "sphere", "plane", "surface", "region", "data", "dimension", "nodes", "all", "body"}) {
-      if (probe.has(key)) probe.at(key).fail(fmt::format("no \"{}\" beside {}", key, point ? "a \"point\"" : "\"between\""));
+      if (probe.has(key)) probe.at(key).fail(fmt::format("no \"{}\" with {}", key, point ? "a \"point\"" : "\"between\""));
     }
-    if (point && between) probe.at("between").fail("no \"between\" beside a \"point\"");
+    if (point && between) probe.at("between").fail("no \"between\" with a \"point\"");
     if (between) out.between = read_between(probe.at("between"), scene);
     describe_place(ReadKeys{probe}, out);
     return out;
@@ -114,11 +114,11 @@ void read_every(const Reader& field, SceneProbes& probes) {
 
 std::shared_ptr<const SceneProbes> read_probes(const Reader& top, const Scene& scene) {
   if (!top.has("probes")) {
-    if (top.has("probe_every")) top.at("probe_every").fail("\"probes\" beside it");
+    if (top.has("probe_every")) top.at("probe_every").fail("\"probes\" with it");
     return nullptr;
   }
   const Reader field = top.at("probes");
-  if (scene.solver.enabled) field.fail("none beside \"solver\": {\"type\": \"static\"}: there are no steps");
+  if (scene.solver.enabled) field.fail("none with \"solver\": {\"type\": \"static\"}: there are no steps");
   SceneProbes probes;
   for (const Reader& entry : field.items("a list of objects")) {
     probes.list.push_back(read_probe(entry, scene));

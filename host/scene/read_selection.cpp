@@ -102,7 +102,7 @@ Selection read_selection(const Reader& entry, Selected of, const SelectionFrame&
   }
   if (given.size() != 1) entry.fail(given.empty() ? "no selection" : listed(given), expected);
   for (const char* key : {"data", "dimension"}) {
-    if (entry.has(key) && given[0] != "region") entry.at(key).fail(fmt::format("no \"{}\" beside \"{}\"", key, given[0]));
+    if (entry.has(key) && given[0] != "region") entry.at(key).fail(fmt::format("no \"{}\" with \"{}\"", key, given[0]));
   }
 
   const std::string& key = given.front();
@@ -135,12 +135,12 @@ Curve read_curve(const Reader& entry) {
   if (table && curve.kind != Curve::Kind::table) entry.at("curve").fail("table, because the entry has a \"table\"");
   if (curve.kind == Curve::Kind::table) {
     for (const char* key : {"start", "duration"}) {
-      if (entry.has(key)) entry.at(key).fail(fmt::format("no {} beside a table (the table has its own times)", key));
+      if (entry.has(key)) entry.at(key).fail(fmt::format("no {} with a table (the table has its own times)", key));
     }
     curve.table =
         read_rows<2>(entry.at("table", "the rows of the table curve"), "a list of rows [time, factor]", "a row [time, factor]");
   } else if (curve.kind == Curve::Kind::constant && entry.has("duration")) {
-    entry.at("duration").fail("no duration beside a constant curve (set \"curve\" to ramp or smooth)");
+    entry.at("duration").fail("no duration with a constant curve (set \"curve\" to ramp or smooth)");
   } else if (curve.kind != Curve::Kind::constant) {
     (void)entry.at("duration", "the duration of the curve in seconds");
   }

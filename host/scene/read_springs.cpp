@@ -30,7 +30,7 @@ void refuse_other_laws(const Reader& spring, SpringLaw law) {
     for (const std::string& key : keys_of(w.value)) {
       if (!spring.has(key) || std::find(own.begin(), own.end(), key) != own.end()) continue;
       spring.at(key).fail(
-          fmt::format("no \"{}\" beside the law {} (it belongs to {})", key, word_of(spring_law_words(), law), w.word));
+          fmt::format("no \"{}\" with the law {} (it belongs to {})", key, word_of(spring_law_words(), law), w.word));
     }
   }
 }
@@ -103,7 +103,7 @@ void check_springs(const Reader& top, const Scene& scene) {
   for (const Body& body : scene.bodies) {
     const Reader entry = top.at("bodies").items("a list of bodies")[static_cast<std::size_t>(&body - scene.bodies.data())];
     if (body.membrane && scene.solver.enabled)
-      entry.at("membrane").fail("none beside \"solver\": {\"type\": \"static\"}, which knows no membranes");
+      entry.at("membrane").fail("none with \"solver\": {\"type\": \"static\"}, which knows no membranes");
     const bool joined = std::any_of(scene.joins.begin(), scene.joins.end(), [&](const Join& j) {
       return std::find(j.bodies.begin(), j.bodies.end(), body.name) != j.bodies.end();
     });
@@ -115,7 +115,7 @@ void check_springs(const Reader& top, const Scene& scene) {
     }
     if (body.model.type != ModelType::mass_spring) continue;
     if (scene.solver.enabled)
-      entry.at("model").at("type").fail("tled beside \"solver\": {\"type\": \"static\"}, which knows no springs");
+      entry.at("model").at("type").fail("tled with \"solver\": {\"type\": \"static\"}, which knows no springs");
     if (element_info(body.element).corners != 4) {
       entry.at("element").fail(elements_with([](const ElementInfo& e) { return e.corners == 4; }) +
                                ": springs lie along the edges of tetrahedra");
@@ -127,7 +127,7 @@ void check_springs(const Reader& top, const Scene& scene) {
   for (const Join& join : scene.joins) {
     if (join.spring.damping > 0)
       require_integrator(top, scene, &IntegratorInfo::keeps_increment, fmt::format("{}/spring has a damping", join.pointer));
-    if (scene.solver.enabled) top.at("joins").fail("none beside \"solver\": {\"type\": \"static\"}, which knows no springs");
+    if (scene.solver.enabled) top.at("joins").fail("none with \"solver\": {\"type\": \"static\"}, which knows no springs");
   }
 }
 

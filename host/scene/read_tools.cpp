@@ -82,7 +82,7 @@ void read_shape(const Reader& shape, ContactTool& tool) {
 }
 
 void refuse_key(const Reader& object, const char* key, bool refused, const char* beside) {
-  if (refused && object.has(key)) object.at(key).fail(fmt::format("this key only beside {}", beside));
+  if (refused && object.has(key)) object.at(key).fail(fmt::format("this key only with {}", beside));
 }
 
 void read_contact(const Reader& contact, ContactTool& tool) {

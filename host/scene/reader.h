@@ -25,7 +25,7 @@ class Reader {
   /// An object all of whose keys are in scene_keys().at(kind).
   void expect_object(const std::string& kind) const;
   [[nodiscard]] bool has(const std::string& key) const { return value_.contains(key); }
-  /// The member `key`; `expected` says what belongs there when it is missing.
+  /// The member `key`; `expected`: text of the expected value, for the message if it is missing.
   [[nodiscard]] Reader at(const std::string& key, const std::string& expected) const;
   [[nodiscard]] Reader at(const std::string& key) const { return at(key, "the key \"" + key + "\""); }
   /// The entries of an array; at least `least` of them.

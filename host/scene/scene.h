@@ -61,8 +61,8 @@ struct Pressure {
   Curve curve;
 };
 
-/// What moves a body's nodes: finite elements (TLED), fast lattice shape matching (FLSM), both in parts of it, or springs along
-/// the edges of its tetrahedra.
+/// Method that moves a body's nodes: finite elements (TLED), fast lattice shape matching (FLSM), both in parts of it, or
+/// springs along the edges of its tetrahedra.
 enum class ModelType { tled, hybrid, flsm, mass_spring };
 const char* to_string(ModelType type);
 
@@ -76,7 +76,7 @@ struct DeformationModel {
   int width = 2;                    ///< half-width w of the regions in cells, 1 to 5
   double alpha = 0.5;               ///< in (0, 1]
   double young = 0;                 ///< "stiffness": {"young": E} [Pa] determines alpha; 0: alpha is used directly
-  bool matched = false;             ///< young is the material's by default; limited to what an alpha of 1 reaches
+  bool matched = false;             ///< young is the material's by default; limited to the stiffness of an alpha of 1
   double damping = 0;               ///< per-region damping, in [0, 1] per step
   int substeps = 1;                 ///< steps of TLED per step of FLSM, 1 to 64
   bool extrapolate = false;         ///< "goals": "extrapolated" instead of "held" between steps of FLSM
@@ -84,7 +84,7 @@ struct DeformationModel {
       true;         ///< "coupling": "conservative" returns the reaction of the interface to the regions, "one-sided" does not
   bool cut = true;  ///< "cut": false: blades do not affect the shape-matching part
   std::string
-      follow;  ///< what the operational region follows: the name of a blade or tool, or kFocus (blade.h); empty: nothing
+      follow;  ///< target that the operational region follows: the name of a blade or tool, or kFocus (blade.h); empty: nothing
   std::optional<std::vector<std::int32_t>> cells;  ///< set in code: the operational cells, after a region has moved
   Spring spring;                                   ///< mass-spring
   std::string pointer;                             ///< JSON pointer ("/bodies/0/model")
@@ -135,7 +135,7 @@ struct StaticSolver {
 enum class Inverted { recover, stop };
 
 struct Scene {
-  std::string name;            ///< file stem, or what the caller set
+  std::string name;            ///< file stem, or as set by the caller
   std::filesystem::path file;  ///< empty if built in code
   Vec3d gravity{0, 0, 0};      ///< [m/s^2] at factor 1
   Curve gravity_curve;         ///< over time

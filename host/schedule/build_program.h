@@ -12,8 +12,8 @@ struct ProgramOptions {
   std::int32_t blade_samples = 0;  ///< samples of their edges, of all together
 };
 
-/// Builds the buffer table and the Schedule of a model, with only what the model needs. The surface has its own Program
-/// (surface_program.h) unless a pressure acts on it.
+/// Builds the buffer table and the Schedule of a model, with only the buffers and passes that the model needs. The surface has
+/// its own Program (surface_program.h) unless a pressure acts on it.
 Program build_program(const Model& model, const ProgramOptions& options = {});
 
 /// The element, or the node moved by shape matching, at a position in the `fault` buffer.

@@ -62,7 +62,7 @@ class Simulation {
   /// two steps.
   void watch_energy();
   [[nodiscard]] const ToolContact& contact() const { return contact_; }
-  /// What the blades that cut by force feel.
+  /// The forces on blades that cut by force.
   [[nodiscard]] const BladePress& press() const { return press_; }
   [[nodiscard]] bool at_equilibrium() const { return state_.relaxation.equilibrium; }
   /// |R - F| over the larger of external and reaction force, at the last update of dynamic relaxation.
@@ -106,7 +106,7 @@ class Simulation {
   CutReport cut(std::span<const SweepTriangle> triangles) { return edits_.cut(triangles); }
   /// Does the one-time work of the first cut now, such as filling the bodies with elements. Throws like cut().
   void prepare_cuts() { edits_.prepare_cuts(); }
-  /// Moves blades, which cut what they sweep. The first call for a blade only places it. Throws like cut().
+  /// Moves blades, which cut the tissue they sweep. The first call for a blade only places it. Throws like cut().
   CutReport move_blades(std::span<const BladePose> poses) { return edits_.move_blades(poses); }
   CutReport move_blade(const std::string& blade, const BladeSegment& segment);
   /// Removes a blade's position, if any: its next move_blade() places it without cutting.

@@ -26,7 +26,7 @@ class Cholesky {
     std::vector<int> children;  ///< fronts
     int depth = 0;
     Eigen::MatrixXd factor;  ///< [rows][own], lower
-    Eigen::MatrixXd update;  ///< [boundary][boundary], lower: what the parent takes over
+    Eigen::MatrixXd update;  ///< [boundary][boundary], lower: the part for the parent
   };
   bool eliminate(Front& front, const SparseMatrix& permuted, double shift);
   std::vector<Front> fronts_;               ///< children before parents

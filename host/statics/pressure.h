@@ -28,7 +28,7 @@ struct PressurePatch {
   /// The symmetric part of minus their derivative, [3 nodes][3 nodes]. The other part vanishes inside a surface and is left at
   /// the rim of an open one.
   [[nodiscard]] Eigen::MatrixXd stiffness(const Eigen::Matrix3Xd& u) const;
-  /// What the other part of minus their derivative gives for a change d.
+  /// The product of the other part of minus their derivative with a change d.
   [[nodiscard]] Eigen::Matrix3Xd skew_product(const Eigen::Matrix3Xd& u, const Eigen::Matrix3Xd& d) const;
 };
 

@@ -1,5 +1,5 @@
 // Static equilibrium in double precision: the reference against which the engine's methods are measured, and the solver of a
-// scene that asks for "solver": {"type": "static"}. Newton-Raphson with line search and load stepping over consistent tangents
+// scene with "solver": {"type": "static"}. Newton-Raphson with line search and load stepping over consistent tangents
 // and a sparse Cholesky factorisation. Shares no code with the kernels or their twins.
 #pragma once
 #include <array>
@@ -115,7 +115,7 @@ struct Solution {
 /// volume, an index out of range. Failure to converge is reported in the Solution.
 Solution solve(const Problem& problem, const Settings& settings = {});
 
-/// Sum of the reactions over what each set of prescribed components holds [N]; the last entry for a component holds it.
+/// Sum of the reactions over the nodes of each set of prescribed components [N]; the last entry for a component holds it.
 std::vector<Vec3d> reactions(const Problem& problem, const Solution& solution);
 
 /// The same nodes, and one in the middle of every edge behind them: nodes keep their numbers.

@@ -37,8 +37,8 @@ class System {
   bool tangent(const VectorXd& u, double load, Forces& out, SparseMatrix& stiffness, VectorXd* moved_force = nullptr,
                const VectorXd* moved = nullptr) const;
 
-  /// What the unsymmetric part of the pressures' stiffness, which the tangent lacks, gives on the free components for a change
-  /// d of all.
+  /// The product of the unsymmetric part of the pressures' stiffness, which the tangent lacks, on the free components with a
+  /// change d of all.
   [[nodiscard]] VectorXd skew_product(const VectorXd& u, double load, const VectorXd& d) const;
   [[nodiscard]] bool has_skew_part() const { return !linear_ && !patches_.empty(); }
 

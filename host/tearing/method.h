@@ -1,6 +1,6 @@
 // Methods that Pliant's cutting is compared with (docs/references.md): removal of the crossed elements, decomposition of them
 // into smaller tetrahedra, and separation along existing faces. Each works on plain elements and makes a new mesh; the surface
-// of such a mesh is the boundary of its elements. docs/cutting.md says what each loses.
+// of such a mesh is the boundary of its elements. docs/cutting.md compares them.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -52,7 +52,7 @@ struct MeshFigures {
 };
 MeshFigures figures_of(const ElementMesh& mesh);
 
-/// What a method makes of a mesh.
+/// The mesh that a method produces.
 struct MethodResult {
   ElementMesh mesh;
   std::vector<std::int32_t> node_from;     ///< [nodes] node of the mesh before, -1: new on an edge or inside an element

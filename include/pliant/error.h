@@ -23,7 +23,7 @@ enum class ErrorCode : int {
 };
 
 /// Thrown while a scene is read, a model is built or a device is opened. A divergence during a step is reported in StepReport
-/// and not thrown. The message states what is wrong, where, the value received and the values allowed.
+/// and not thrown. The message states the error, its place, the value received and the values allowed.
 class PLIANT_API Error : public std::runtime_error {
  public:
   /// There is deliberately no default code, so that a bug in Pliant is never reported as a user error.

@@ -8,6 +8,7 @@
 
 #include "pliant/export.h"
 #include "pliant/frame.h"
+#include "pliant/wrench.h"
 
 namespace pliant {
 
@@ -21,21 +22,24 @@ struct DeviceSample {
   bool dated = true;                       ///< false: the device said no time, and `time` is when the sample came
 };
 
-/// Force and torque on the hand that holds the device.
-struct DeviceWrench {
-  Vec3d force{};             ///< [N]
-  Vec3d torque{};            ///< about the tip [N m]
+/// Force on the hand that holds the device, and torque about the device's tip.
+struct DeviceWrench : Wrench {
+  DeviceWrench() = default;
+  DeviceWrench(const Wrench& wrench, double at, std::uint64_t sample) : Wrench(wrench), time(at), number(sample) {}
+  DeviceWrench(const Vec3d& f, const Vec3d& t, double at = 0, std::uint64_t sample = 0)
+      : Wrench{f, t}, time(at), number(sample) {}
+
   double time = 0;           ///< DeviceSample::time of the sample that it answers [s]
   std::uint64_t number = 0;  ///< DeviceSample::number of this sample
 };
 
-/// What a device can exert.
+/// Greatest force and torque of a device.
 struct DeviceLimits {
   double force = std::numeric_limits<double>::infinity();   ///< greatest force [N]
   double torque = std::numeric_limits<double>::infinity();  ///< greatest torque [N m]; 0: it exerts none
 };
 
-/// What a device has received so far.
+/// Counts of the samples of a device.
 struct DeviceCounts {
   std::uint64_t received = 0;  ///< samples
   std::uint64_t refused = 0;   ///< messages that gave none: malformed, not finite, too long, out of order
@@ -54,15 +58,15 @@ class PLIANT_API HapticDevice {
   virtual DeviceSample read() noexcept = 0;
   /// Exerts a wrench until the next call.
   virtual void write(const DeviceWrench& wrench) noexcept = 0;
-  /// What it can exert, unlimited unless a device says otherwise; a loop asks once, at its start.
+  /// Its greatest force and torque, unlimited by default; a loop calls this once, at its start.
   [[nodiscard]] virtual DeviceLimits limits() const noexcept { return {}; }
   /// May be called from any thread.
   [[nodiscard]] virtual DeviceCounts counts() const { return {}; }
-  /// The port of UDP or TCP that it listens on, for a text that asked for port 0; 0: it listens on none.
+  /// The port of UDP or TCP that it listens on, for a text with port 0; 0: it listens on none.
   [[nodiscard]] virtual int port() const noexcept { return 0; }
 };
 
-/// A device without hardware: a program says where it is (a mouse, an animation, a test) and asks what its hand would feel.
+/// A device without hardware: a program sets its pose (a mouse, an animation, a test) and reads the wrench on its hand.
 /// These calls come from any thread, and none makes the loop wait.
 class PLIANT_API ManualDevice final : public HapticDevice {
  public:
@@ -72,7 +76,7 @@ class PLIANT_API ManualDevice final : public HapticDevice {
   /// Moves the device; before the first call it is nowhere, and its tool stays. Throws Error (usage) for a position that is not
   /// finite or beyond 1000 m, and for a turn that has not unit length within 0.001; it then stays where it was.
   void set_pose(const Vec3d& position, const std::array<double, 4>& turn = {0, 0, 0, 1}, std::uint32_t buttons = 0);
-  /// What it exerts now. The time and the number are those of the pose that it answers; 0: it answers none.
+  /// Force and torque on the hand now. The time and the number are those of the pose that it answers; 0: it answers none.
   [[nodiscard]] DeviceWrench wrench() const;
   DeviceSample read() noexcept override;
   void write(const DeviceWrench& wrench) noexcept override;

@@ -34,14 +34,14 @@ struct HapticOptions {
   double device_damping = 0.1;  ///< of the device itself, at least [N s/m]
   double stale_after = 0.25;    ///< age of the newest frame beyond which the force fades out [s]
   double ramp = 0.1;            ///< time of fading out, and in at the start [s]
-  double greatest_force = 0;    ///< limit besides the device's own; 0: none [N]
+  double greatest_force = 0;    ///< limit in addition to the device's own; 0: none [N]
   double greatest_torque = 0;   ///< [N m]
 
   bool align =
       true;  ///< where device and tool are at the start is the same place; false: the device speaks in scene coordinates
   double motion_scale = 1;      ///< way of the tool per way of the device
   double force_scale = 1;       ///< force on the hand per force on the tool
-  bool realtime = true;         ///< ask for real-time priority; without the right to it the thread runs as others
+  bool realtime = true;         ///< request real-time priority; without permission the thread runs as others
   std::size_t log_samples = 0;  ///< number of device samples to keep for write_log(); 0: none
 };
 
@@ -73,7 +73,7 @@ struct HapticState {
   std::int64_t elements = 0;     ///< of the buffer; 0: nothing is near the tool
   int substeps = 0;              ///< of the buffer, in a tick
   std::int64_t buffers = 0;      ///< built so far
-  std::int64_t resets = 0;       ///< buffers that blew up and began anew
+  std::int64_t resets = 0;       ///< buffers that diverged and restarted
   std::int64_t contacts = 0;     ///< points that touch
   std::int64_t stale = 0;        ///< ticks without a recent frame (docs/haptics.md, What protects the hand)
   std::int64_t limited = 0;      ///< ticks whose force was limited
@@ -87,7 +87,7 @@ struct HapticState {
 
 /// Couples a device with a tool of a World. Its thread reads the device, computes the force and writes it, tick by tick; it
 /// never waits for steps, cuts or frames of the World, allocates nothing and takes no lock. The World has to run, freely
-/// (World::run_live) or by advance(): each frame takes the tool to where the device is, and tells the loop the state of the
+/// (World::run_live) or by advance(): each frame moves the tool to the device's pose, and sends the loop the state of the
 /// tissue. The loop may live longer than the World: then the force fades out. It takes a second of the World for a second of
 /// the hand: run the World at a speed of 1. Any thread may make these calls, also while another does.
 class PLIANT_API HapticLoop {
@@ -101,11 +101,11 @@ class PLIANT_API HapticLoop {
   ~HapticLoop();
   /// Ends the thread; the device gets a zero force, and the tool stays where it is.
   void stop() noexcept;
-  /// What it does now.
+  /// Its current state.
   [[nodiscard]] HapticState state() const;
   /// Returns the samples of the ticks since the last call, oldest first. When 65536 wait, further ones are left out.
   std::vector<HapticSample> samples();
-  /// Writes what the device said as a stroke, which "file:" plays (docs/haptic_devices.md). Throws Error: state (without
+  /// Writes the device's samples as a stroke, which "file:" plays (docs/haptic_devices.md). Throws Error: state (without
   /// log_samples), io.
   void write_log(const std::string& file) const;
 

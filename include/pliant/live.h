@@ -4,19 +4,20 @@
 #include <string>
 
 #include "pliant/frame.h"
+#include "pliant/wrench.h"
 
 namespace pliant {
 
 /// Options of World::run_live(). The worker makes a frame per period of `rate`, begun shortly after the caller fetches the one
 /// before. A machine that cannot keep up gets frames of less simulated time at the same rate, so that time slows down evenly;
 /// after a delay, such as a cut, time catches up with up to 0.25 s. What the worker does between two frames (World::save) or
-/// refuses is told by an Event.
+/// rejects is reported by an Event.
 struct LiveOptions {
   double rate = 60;  ///< frames per second of wall time, 1 to 1000
   double speed = 1;  ///< simulated seconds per second of wall time, 0.001 to 1000
 };
 
-/// What a World that runs freely achieves.
+/// Performance of a World that runs freely.
 struct LiveState {
   bool running = false;      ///< true between run_live() and stop_live(), also while a divergence holds it up
   std::int64_t frames = 0;   ///< number of frames made since run_live()
@@ -41,12 +42,11 @@ struct Event {
   std::string text;       ///< a sentence for people
 };
 
-/// Contact force on a tool in one step, or the force of a grab on the tissue in one of its updates.
-struct ForceSample {
+/// Contact force on a tool in one step, with the torque about its origin; or the force of a grab on the tissue in one of its
+/// updates, with a torque of zero.
+struct ForceSample : Wrench {
   std::int64_t step = 0;  ///< the step at whose end it acted, counted from the start
   double time = 0;        ///< [s]
-  Vec3d force{};          ///< [N]
-  Vec3d torque{};         ///< about the tool's origin [N m]; zero for grabs
 };
 
 }  // namespace pliant

@@ -13,3 +13,4 @@
 #include "pliant/tool.h"
 #include "pliant/version.h"
 #include "pliant/world.h"
+#include "pliant/wrench.h"

@@ -55,12 +55,12 @@ struct InclusionSpec {
 
 /// How a body's nodes move: finite elements (tled), shape matching (flsm), or both (hybrid). See docs/scene.md.
 struct ModelSpec {
-  std::string type = "tled";         ///< tled, hybrid or flsm
-  double ratio = 0.5;                ///< hybrid: fraction of the nodes that finite elements move, in [0, 1]
-  std::optional<Vec3d> seed;         ///< hybrid: point from which the operational region grows [m]
-  std::string follow;                ///< hybrid: what the operational region follows: "focus", a blade, a tool, "host/BLADE"
-  std::optional<RegionSpec> region;  ///< hybrid: box or sphere that is the operational region, instead of ratio and seed
-  std::string goals = "held";        ///< hybrid: goals between two steps of shape matching, held or extrapolated
+  std::string type = "tled";              ///< tled, hybrid or flsm
+  double ratio = 0.5;                     ///< hybrid: fraction of the nodes that finite elements move, in [0, 1]
+  std::optional<Vec3d> seed;              ///< hybrid: point from which the operational region grows [m]
+  std::string follow;                     ///< hybrid: target of the operational region: "focus", a blade, a tool, "host/BLADE"
+  std::optional<RegionSpec> region;       ///< hybrid: box or sphere that is the operational region, instead of ratio and seed
+  std::string goals = "held";             ///< hybrid: goals between two steps of shape matching, held or extrapolated
   std::string coupling = "conservative";  ///< hybrid: conservative or one-sided
   bool cut = true;                        ///< hybrid, flsm: whether blades cut the shape-matching part
   std::optional<double> beta;             ///< hybrid: stiffness of the interface [N/m]; absent or 0: automatic
@@ -116,7 +116,7 @@ struct BladeSpec {
   std::optional<double> friction;           ///< by-force: between the edge and tissue; absent: 0
 };
 
-/// A change of parameters while the scene runs. What is absent stays as it is; what a body is held by is replaced as a whole,
+/// A change of parameters while the scene runs. Absent members change nothing; the supports of a body are replaced as a whole,
 /// and nodes are held where they are at that moment.
 struct ChangeSpec {
   double time = 0;                              ///< when it happens [s]; World::change() makes it at once
@@ -126,7 +126,7 @@ struct ChangeSpec {
   std::optional<MaterialSpec> material;         ///< new material
   std::optional<double> damping;                ///< the damping rate alone [1/s]
   std::optional<ModelSpec> model;               ///< new numbers of the same type of model
-  std::optional<std::vector<FixedSpec>> fixed;  ///< what holds the body from then on; an empty list releases it
+  std::optional<std::vector<FixedSpec>> fixed;  ///< the body's supports from then on; an empty list releases it
 };
 
 /// Dynamic relaxation: adaptive damping towards static equilibrium.

@@ -38,9 +38,9 @@ struct RegionSpec {
 
   /// Selects everything.
   static RegionSpec all() { return {}; }
-  /// Selects what lies between two corners [m], bounds included.
+  /// Selects all between two corners [m], bounds included.
   static RegionSpec box(const Vec3d& lower, const Vec3d& upper) { return {Kind::box, lower, upper, 0, {}}; }
-  /// Selects what lies within `radius` [m] of a point [m].
+  /// Selects all within `radius` [m] of a point [m].
   static RegionSpec sphere(const Vec3d& centre, double radius) { return {Kind::sphere, centre, {}, radius, {}}; }
   /// Selects the side of the plane through `point` [m] to which `normal` points.
   static RegionSpec plane(const Vec3d& point, const Vec3d& normal) { return {Kind::plane, point, normal, 0, {}}; }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pliant/scene_conditions.h"
+#include "pliant/wrench.h"
 
 namespace pliant {
 
@@ -41,25 +42,22 @@ struct ContactSpec {
   double friction = 0;  ///< Coulomb friction coefficient
 };
 
-/// Pose of a tool and the contact load on it in the newest batch of steps. Force and torque are means over the batch; area
-/// and penetration are those of its last step with contact.
-struct ToolForce {
+/// Pose of a tool and the contact load on it in the newest batch of steps. Force and torque (about its origin) are means over
+/// the batch; area and penetration are those of its last step with contact.
+struct ToolForce : Wrench {
   std::string name;                        ///< name in the scene, or as added
   Vec3d position{};                        ///< position of its origin [m]
   std::array<double, 4> turn{0, 0, 0, 1};  ///< orientation, unit quaternion x, y, z, w
-  Vec3d force{};                           ///< contact force on the tool [N]
-  Vec3d torque{};                          ///< contact torque about its origin [N m]
   double area = 0;                         ///< undeformed area of the tissue in contact [m^2]
   double penetration = 0;                  ///< greatest depth of a point inside the tool [m]
   bool parked = false;                     ///< true if the tool is parked and has no contact (World::park_tool)
 };
 
-/// Place of a blade that cuts by force (docs/cutting.md), what it feels and what it has done.
-struct BladeForce {
+/// Place of a blade that cuts by force (docs/cutting.md), the force and the torque (about the middle of its edge) on it in the
+/// last step, and its history.
+struct BladeForce : Wrench {
   std::string name;       ///< name in the scene
   Vec3d a{}, b{};         ///< ends of its edge [m]
-  Vec3d force{};          ///< on the blade in the last step [N]
-  Vec3d torque{};         ///< about the middle of its edge [N m]
   double max_force = 0;   ///< largest force so far [N]
   double work = 0;        ///< done on tissue so far [J]
   double fracture = 0;    ///< of it, what cutting took [J]
@@ -68,7 +66,7 @@ struct BladeForce {
   bool pressing = false;  ///< a part of its edge is in contact
 };
 
-/// What a tool and a body, or two bodies, have in common: the overlap of their surfaces (docs/contact.md).
+/// The overlap of a tool and a body, or of two bodies (docs/contact.md).
 struct Interpenetration {
   std::string first;   ///< name of a tool or a body
   std::string second;  ///< name of a body

@@ -68,7 +68,7 @@ class PLIANT_API World {
   StepReport stop_live();                      ///< ends it after the frame at work; returns and throws as wait()
   [[nodiscard]] LiveState live_state() const;  ///< also after stop_live()
 
-  /// Returns what happened since the last call, oldest first, at most 1024 events; older ones are forgotten.
+  /// Returns the events since the last call, oldest first, at most 1024 events; older ones are forgotten.
   std::vector<Event> events();
   /// Returns the force on a tool or by-force blade of each of the last 4096 steps after `after`. Throws usage: unknown name.
   [[nodiscard]] std::vector<ForceSample> force_trace(const std::string& tool, std::int64_t after = -1) const;
@@ -98,7 +98,7 @@ class PLIANT_API World {
 
   [[nodiscard]] std::vector<ProbeValue> probes() const;  ///< the scene's probes now, in scene order, one entry per quantity
 
-  /// Measures what tools and bodies, and bodies and bodies, have in common now (docs/contact.md): those that overlap, tools
+  /// Measures the overlaps of tools and bodies, and of bodies and bodies, now (docs/contact.md), those of tools
   /// first. Parked tools and bodies without a closed surface are left out.
   [[nodiscard]] std::vector<Interpenetration> interpenetrations() const;
   [[nodiscard]] std::vector<std::string> remarks() const;  ///< WorldInfo::remarks, then remarks about the run so far
@@ -122,7 +122,7 @@ class PLIANT_API World {
   [[deprecated("clear_handles()")]] void clear_tools() { clear_handles(); }                       ///< its name before 0.2.0
   [[deprecated("move_focus()")]] void move_tool(const Vec3d& position) { move_focus(position); }  ///< its name before 0.2.0
 
-  /// Rigid tools; pliant/tool.h says when they change and what they throw.
+  /// Rigid tools; pliant/tool.h describes when they change and their errors.
   ///
   /// Adds a tool at its path's current pose; at most 30 tools may be unparked. Returns its name: "tool0", "tool1", ... if it
   /// has none. Mesh files are read here and again by load(); relative paths start from the working folder.
@@ -151,16 +151,16 @@ class PLIANT_API World {
   /// Mises stress) or contact "pressure" [Pa], "green_strain", "almansi_strain" (equivalent), or "finite_elements" (1; 0 where
   /// shape matching moves the vertex). Throws Error (usage) for another field.
   [[nodiscard]] std::vector<float> vertex_values(const std::string& field) const;
-  /// Changes gravity, materials, models, or what holds a body (docs/scene.md, "changes"); ChangeSpec::time is not used. The
-  /// motion, contact and cuts stay, the stable step is estimated again. With substeps of shape matching, all but gravity waits
-  /// for a step at which subcycles begin. After step_async() or advance_async() the worker makes it before its next batch. In
-  /// checkpoints; reset() returns to the scene's parameters. Throws Error: input (a value that no scene could have, what
-  /// cannot change), and then changes nothing; diverged, device.
+  /// Changes gravity, materials, models, or the supports of a body (docs/scene.md, "changes"); ChangeSpec::time is not used.
+  /// The motion, contact and cuts stay, the stable step is estimated again. With substeps of shape matching, all but gravity
+  /// waits for a step at which subcycles begin. After step_async() or advance_async() the worker makes it before its next
+  /// batch. In checkpoints; reset() returns to the scene's parameters. Throws Error: input (a value that no scene could have,
+  /// what cannot change), and then changes nothing; diverged, device.
   void change(const ChangeSpec& change);
   /// The same from text, an entry of `changes` of a scene file without its time: {"material": {"young": 2000}}.
   void parse_change(const std::string& text);
 
-  /// Cuts; CutResult says what can be cut, and when. All throw Error: input, usage (non-finite numbers), diverged, device.
+  /// Cuts, as CutResult describes. All throw Error: input, usage (non-finite numbers), diverged, device.
   ///
   /// Cuts all bodies where these triangles [m] intersect them now. Degenerate triangles cut nothing.
   CutResult cut(const std::vector<std::array<Vec3d, 3>>& triangles);

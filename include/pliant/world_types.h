@@ -55,7 +55,7 @@ struct StepReport {
   std::string message;          ///< describes the divergence: step, body, element, dt and the stable step
 };
 
-/// Where a ray meets the surface. Numbers of vertices and triangles are those of the frame that World::pick() looked at.
+/// Where a ray meets the surface. Numbers of vertices and triangles are those of the frame that World::pick() used.
 struct PickedPoint {
   std::size_t body = 0;             ///< index of the body
   std::size_t triangle = 0;         ///< number of the triangle
@@ -73,7 +73,7 @@ struct GrabOptions {
   double max_force = 0;  ///< upper bound of the force [N]; 0: three times Young's modulus times the square of the radius
 };
 
-/// What a grab does, as of its last update.
+/// State of a grab after its last update.
 struct GrabState {
   Vec3d force{};         ///< force on the tissue [N]; zero before the first steps
   Vec3d gap{};           ///< from the vertex to the target [m]

@@ -76,10 +76,10 @@ class Info(harness.CliTest):
     def test_what_the_automatic_step_follows(self):
         blade = {"name": "b", "path": [[0, 0.013, 0.08, -0.1, 0.013, 0.08, 0.1], [1, 0.013, -0.08, -0.1, 0.013, -0.08, 0.1]]}
         flsm = {"type": "flsm", "stiffness": {"young": 3000}}
-        for keys, text in ((dict(), "automatic: 0.9 of it, "), (dict(blades=[blade]), "of the element bound, as cuts ask"),
-                           (dict(body={"model": flsm}), "as shape matching asks"), (dict(body={"model": {"type": "flsm"}}), "one frame")):
+        for keys, text in ((dict(), "automatic: 0.9 of it, "), (dict(blades=[blade]), "of the element bound, limited by cuts"),
+                           (dict(body={"model": flsm}), "limited by shape matching"), (dict(body={"model": {"type": "flsm"}}), "one frame")):
             said = self.pliant("info", self.scene(**keys)).stdout
-            for other in ("automatic: 0.9 of it, ", "as cuts ask", "as shape matching asks", "one frame"):
+            for other in ("automatic: 0.9 of it, ", "limited by cuts", "limited by shape matching", "one frame"):
                 self.assertEqual(other in said, other in text, said)
             self.assertEqual("stable step: no finite element limits it" in said, "body" in keys, said)
 
@@ -128,7 +128,7 @@ class Info(harness.CliTest):
         lines = self.cube((-0.05, -0.05, -0.05), (0.05, 0.05, 0.05))
         info = self.json("info", self.surface(lines, nodes=9))
         self.assertEqual(info["nodes"], 8)
-        self.assertIn("asks for 9 nodes; the nearest lattice that was found has 8 (-11.1 %)", info["warnings"][0])
+        self.assertIn("requests 9 nodes; the nearest lattice found has 8 (-11.1 %)", info["warnings"][0])
         self.refused("info", self.surface(lines, spacing=2e-4), words=("at least 12500000", "at most 100000000 are allowed"))
 
     def test_shipped_scene(self):

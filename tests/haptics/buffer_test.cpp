@@ -22,7 +22,7 @@ using haptics_test::simulate;
 Wrench drive_until(Simulation& s, double time, const Pose& pose) {
   s.tools().drive("ball", pose, time - s.time());
   while (s.time() < time - 0.5 * s.dt()) s.advance(1);
-  const StepForce& f = s.contact().step_forces().back();
+  const Wrench& f = s.contact().step_forces().back();
   return {f.force, f.torque};
 }
 

@@ -27,7 +27,7 @@ Checkpoint sample() {
   s.real_type = "float";
   s.state.clock = {-5'000'000'000, 7, 0.1, std::numeric_limits<double>::denorm_min()};
   s.state.relaxation.u = {1.5, -0.0, std::numeric_limits<double>::infinity(), std::bit_cast<double>(0x7ff8000000000123ULL)};
-  s.state.kept = KeptState{{1, 2, 3, 4}, 5};
+  s.state.kept = KeptState{{1, 2, 3, 4}, 5, {}};
   s.state.cuts = {{1, {{{2, 3}, 0.25}, {{2, 4}, 0.5}}}};
   s.state.tears = {{0, 17, 5}};
   s.state.regions = {{{1, 2, 3}, {4, 7}}};
@@ -39,9 +39,12 @@ Checkpoint sample() {
   s.state.pending.moves = {{"host/scalpel", {}, {{Vec3d{1, 1, 1}, Vec3d{2, 2, 2}}}}};
   s.state.forces = {{0, 12, {1, 0, 0}}};
   s.state.focus = Vec3d{0, 0, 1};
+  s.state.pressed["scalpel"] = {Vec3d{0, -1, 0}, {FrontSample{2, 1, {}, 0.5}}, 0.25, 0.125, 3, 0.5, 7, 8};
+  s.state.kept->pressed = s.state.pressed;
+  s.state.driven_blades["scalpel"] = {{Vec3d{1, 2, 3}, Vec3d{4, 5, 6}}, {Vec3d{7, 8, 9}, Vec3d{1, 1, 1}}, 0.5, 1, true};
   s.state.topology_version = 3;
   s.reports.now.inversions = {1, 2, 3, 4, 0.5, 6, "liver", 7};
-  s.reports.now.tools = {{{{1, 2, 3}, {4, 5, 6}, 0.25, 0.5, 7}, 1, 2, 3, 4, {{0, 1, 0}}, 5}};
+  s.reports.now.tools = {{{{{1, 2, 3}, {4, 5, 6}}, 0.25, 0.5, 7}, 1, 2, 3, 4, {{0, 1, 0}}, 5}};
   s.reports.now.energy = {1.0, 2, 3};
   s.buffers = {{"u", {1, 2, 3, 255, 0, 7, 8, 9, 10}}, {"", {}}, {"w", std::vector<std::uint8_t>(50, 17)}};
   return c;

@@ -260,7 +260,7 @@ TEST(SurfaceReport, TheModelHasTheWarnings) {
   ASSERT_EQ(checks.size(), 1U);
   EXPECT_EQ(checks[0].body, "b");
   ASSERT_EQ(checks[0].warnings.size(), 1U);
-  EXPECT_EQ(checks[0].warnings[0], "\"lattice\" asks for 9 nodes; the nearest lattice that was found has 8 (-11.1 %)");
+  EXPECT_EQ(checks[0].warnings[0], "\"lattice\" requests 9 nodes; the nearest lattice found has 8 (-11.1 %)");
 }
 
 }  // namespace

@@ -153,7 +153,7 @@ const std::vector<Case> entries{
      "/bodies/0/prescribed/0: got neither \"displacement\" nor \"rotate\", expected"},
     {"/bodies/0/prescribed/0/rotate", R"({"axis": [0, 0, 1], "angle": 90})",
      "/bodies/0/prescribed/0: got both \"displacement\" and \"rotate\", expected exactly one of them"},
-    {"/bodies/0/prescribed/0/axes", "\"x\"", "/bodies/0/prescribed/0/axes: got \"x\", expected no axes beside a displacement"},
+    {"/bodies/0/prescribed/0/axes", "\"x\"", "/bodies/0/prescribed/0/axes: got \"x\", expected no axes with a displacement"},
     {"/bodies/0/prescribed/0", R"({"all": true, "rotate": {"axis": [0, 0, 0], "angle": 90}})",
      "/bodies/0/prescribed/0/rotate/axis: got [0,0,0], expected a direction that is not zero"},
     {"/bodies/0/prescribed/0", R"({"all": true, "rotate": {"axis": [0, 0, 1]}})",
@@ -173,13 +173,13 @@ const std::vector<Case> entries{
     {"/bodies/0/fixed/0", R"({"region": 3})",
      "/bodies/0/fixed/0/region: got 3, expected no region in a body that is a surface filled with a lattice"},
     {"/bodies/0/fixed/0", R"({"all": true, "data": "x"})",
-     "/bodies/0/fixed/0/data: got \"x\", expected no \"data\" beside \"all\""},
+     "/bodies/0/fixed/0/data: got \"x\", expected no \"data\" with \"all\""},
     {"/probes", R"([{"name": "p", "point": [0, 0, 0], "region": 3}])",
-     "/probes/0/region: got 3, expected no \"region\" beside a"},
+     "/probes/0/region: got 3, expected no \"region\" with a"},
     {"/probes", R"([{"point": [0, 0, 0]}])", "/probes/0: got no \"name\", expected a name of 1 to 100"},
     {"/probes", R"([{"name": "a/b", "point": [0, 0, 0]}])", "/probes/0/name: got \"a/b\", expected a name of 1 to 100"},
     {"/probes", R"([{"name": "p"}])", "/probes/0: got no selection, expected exactly one of box"},
-    {"/probes", R"([{"name": "p", "point": [0, 0, 0], "all": true}])", "/probes/0/all: got true, expected no \"all\" beside a"},
+    {"/probes", R"([{"name": "p", "point": [0, 0, 0], "all": true}])", "/probes/0/all: got true, expected no \"all\" with a"},
     {"/probes", R"([{"name": "p", "all": true, "body": "b"}])", "/probes/0/body: got \"b\", expected one of a"},
     {"/probes", R"([{"name": "p", "point": [0, 0, 0], "quantities": ["reaction"]}])",
      "/probes/0/quantities/0: got \"reaction\", expected no reaction of a point"},
@@ -194,15 +194,15 @@ const std::vector<Case> entries{
     {"/probes", R"([{"name": "p", "between": ["a"], "quantities": ["force"]}])",
      "/probes/0/quantities/0: got \"force\", expected no force between tools and bodies"},
     {"/probes", R"([{"name": "p", "between": ["a"], "all": true}])",
-     "/probes/0/all: got true, expected no \"all\" beside \"between\""},
+     "/probes/0/all: got true, expected no \"all\" with \"between\""},
     {"/probes", R"([{"name": "p", "between": ["a"], "point": [0, 0, 0]}])",
-     "/probes/0/between: got [\"a\"], expected no \"between\" beside a \"point\""},
+     "/probes/0/between: got [\"a\"], expected no \"between\" with a \"point\""},
     {"/probes", R"([{"name": "p", "between": ["knife"]}])", "/probes/0/between/0: got \"knife\", expected one of"},
     {"/probes", R"([{"name": "p", "between": ["a", "a"]}])", "/probes/0/between: got"},
     {"/probes", R"([{"name": "p", "between": []}])", "/probes/0/between: got []"},
     {"/probes", R"([{"name": "p", "all": true}, {"name": "p", "all": true}])",
      "/probes/1: got the name \"p\", which /probes/0 has already, expected a different name for every probe"},
-    {"/probe_every", "0.1", "/probe_every: got 0.1, expected \"probes\" beside it"},
+    {"/probe_every", "0.1", "/probe_every: got 0.1, expected \"probes\" with it"},
     {"/gravity", "9.81", "/gravity: got 9.81, expected three numbers [x, y, z], or an object with acceleration and a curve"},
     {"/gravity", R"({"curve": "ramp", "duration": 1})", "/gravity: got no \"acceleration\", expected the acceleration"},
     {"/gravity", R"({"acceleration": [0, 0, 1], "curve": "ramp"})", "/gravity: got no \"duration\", expected the duration"},
@@ -217,7 +217,7 @@ const std::vector<Case> entries{
      "/bodies/0/prescribed/0/curve: got \"smoth\", expected one of constant, ramp, smooth, table (did you mean \"smooth\"?)"},
     {"/bodies/0/forces/0/force", "5", "/bodies/0/forces/0/force: got 5, expected three numbers"},
     {"/bodies/0/forces/0/force", "", "/bodies/0/forces/0: got no \"force\", expected the total force at factor 1 [N]"},
-    {"/bodies/0/forces/0/duration", "5", "/bodies/0/forces/0/duration: got 5, expected no duration beside a constant curve"},
+    {"/bodies/0/forces/0/duration", "5", "/bodies/0/forces/0/duration: got 5, expected no duration with a constant curve"},
     {"/bodies/0/forces/0/curve", "\"table\"", "/bodies/0/forces/0: got no \"table\", expected"},
     {"/bodies/0/forces/0/table", "[[0, 0], [1, 1], [1, 2]]",
      "/bodies/0/forces/0/table/2/0: got 1, expected a time after the previous row's 1"},
@@ -261,7 +261,7 @@ TEST(Mistakes, ALatticeBesideAMesh) {
   Json scene = Json::parse(kGoodScene);
   scene["bodies"][0].erase("surface");
   scene["bodies"][0]["mesh"] = "a.msh";
-  EXPECT_NE(message(scene.dump()).find("/bodies/0/lattice: got an object with 1 key, expected no lattice beside a volume mesh"),
+  EXPECT_NE(message(scene.dump()).find("/bodies/0/lattice: got an object with 1 key, expected no lattice with a volume mesh"),
             std::string::npos);
 }
 
@@ -311,7 +311,7 @@ TEST(Mistakes, FieldsOfAMesh) {
       {R"({})", "/young: got no \"field\", expected the name of an array of the mesh"}};
   for (const auto& [young, text] : wrong) EXPECT_NE(with(young).find(text), std::string::npos) << with(young);
   body["material"] = {{"law", "yeoh"}, {"young", {{"field", "E"}}}, {"poisson", 0.4}};
-  EXPECT_NE(message(scene.dump()).find("expected no \"young\" beside the law yeoh"), std::string::npos);
+  EXPECT_NE(message(scene.dump()).find("expected no \"young\" with the law yeoh"), std::string::npos);
 }
 
 TEST(Mistakes, TwoBodiesOfOneName) {

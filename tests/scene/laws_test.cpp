@@ -79,7 +79,7 @@ TEST_F(EveryLaw, RefusesConstantsThatItDoesNotTake) {
       Json bad = good;
       bad["bodies"][0]["material"][key] = 0.25;
       expect_refused(bad,
-                     "/bodies/0/material/" + key + ": got 0.25, expected no \"" + key + "\" beside the law " + to_string(law));
+                     "/bodies/0/material/" + key + ": got 0.25, expected no \"" + key + "\" with the law " + to_string(law));
     }
   }
 }

@@ -41,7 +41,7 @@ TEST(SceneMembrane, StaticSolutionsRefuseIt) {
   Json scene = good();
   scene["solver"] = {{"type", "static"}};
   EXPECT_NE(
-      model_test::message(scene.dump()).find("/bodies/0/membrane: got an object with 2 keys, expected none beside \"solver\""),
+      model_test::message(scene.dump()).find("/bodies/0/membrane: got an object with 2 keys, expected none with \"solver\""),
       std::string::npos)
       << model_test::message(scene.dump());
 }

@@ -196,7 +196,7 @@ TEST(Model, ValuesOutOfRangeAreNamed) {
   EXPECT_EQ(follow("rod"), "");
   EXPECT_EQ(follow("host/knife"), "");
   EXPECT_EQ(follow("path"),
-            "dir/s.json: /bodies/0/model/follow: got \"path\", expected the name of what the region follows, one of "
+            "dir/s.json: /bodies/0/model/follow: got \"path\", expected the name of a target of the region, one of "
             "focus, rod, table, or host/NAME for a blade that a program moves");
   EXPECT_EQ(follow("table"),
             "dir/s.json: /bodies/0/model/follow: got \"table\", expected something that is in one place, which a "
@@ -233,8 +233,7 @@ TEST(Model, KeysThatMakeNoSenseForTheTypeAreRefused) {
       const std::string needed = of_regions.count(key) > 0 ? "hybrid or flsm" : "hybrid";
       const std::string got = message(scene.dump());
       EXPECT_EQ(got.find("dir/s.json: /bodies/0/model/" + key + ": got "), 0U) << got;
-      const std::string expected =
-          "expected no \"" + key + "\" beside the type " + type + " (it needs the type " + needed + ")";
+      const std::string expected = "expected no \"" + key + "\" with the type " + type + " (it needs the type " + needed + ")";
       EXPECT_NE(got.find(expected), std::string::npos) << got;
       EXPECT_FALSE(schema().findings(scene).empty()) << key << " " << type;
     }
@@ -258,7 +257,7 @@ TEST(Model, ShapeMatchingNeedsALattice) {
   for (const std::string type : {"hybrid", "flsm"}) {
     const std::string body = R"({"surface": null, "lattice": null, "mesh": "a.msh", "model": {"type": ")" + type + "\"}}";
     expect_refused(patched("{}", body), R"(/bodies/0/model/type: got ")" + type +
-                                            R"(", expected tled or mass-spring beside a volume mesh )" +
+                                            R"(", expected tled or mass-spring with a volume mesh )" +
                                             R"((shape matching needs a lattice: give a "surface" instead of the "mesh"))");
   }
   const std::string tled = R"({"surface": null, "lattice": null, "mesh": "a.msh", "model": {"type": "tled"}})";

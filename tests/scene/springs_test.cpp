@@ -35,7 +35,7 @@ TEST(SceneSprings, EachMistakeHasOneMessage) {
       {"/joins/0/distance", "0", "/joins/0/distance: got 0, expected a number > 0"},
       {"/joins/0/spring", "{}", "/joins/0/spring: got {}, expected a number \"stiffness\" > 0", false},
       {"/joins/0/break_stretch", "1", "/joins/0/break_stretch: got 1, expected a number > 1"},
-      {"/joins/0/spring", R"({"stiffness": 4, "a": 1})", "/joins/0/spring/a: got 1, expected no \"a\" beside the law linear"},
+      {"/joins/0/spring", R"({"stiffness": 4, "a": 1})", "/joins/0/spring/a: got 1, expected no \"a\" with the law linear"},
       {"/bodies/0/model/spring", R"({"law": "measured", "a": 1})", "/bodies/0/model/spring: got no \"b\", expected b [m/N]"},
       {"/bodies/0/model/spring", R"({"law": "measured", "a": 1, "b": 0})",
        "/bodies/0/model/spring/b: got 0, expected a number > 0"},
@@ -45,12 +45,12 @@ TEST(SceneSprings, EachMistakeHasOneMessage) {
        "/bodies/0/model/spring/table/1/0: got 0, expected an elongation above the previous row's 0", false},
       {"/bodies/0/model/spring", R"({"law": "table", "table": [[0, 0], [1, -1]]})",
        "/bodies/0/model/spring/table/1/1: got -1, expected a force of at least the previous row's 0", false},
-      {"/bodies/0/model/width", "2", "/bodies/0/model/width: got 2, expected no \"width\" beside the type mass-spring"},
+      {"/bodies/0/model/width", "2", "/bodies/0/model/width: got 2, expected no \"width\" with the type mass-spring"},
       {"/bodies/1/model", R"({"type": "tled", "spring": {}})",
-       "/bodies/1/model/spring: got {}, expected no \"spring\" beside the type tled"},
+       "/bodies/1/model/spring: got {}, expected no \"spring\" with the type tled"},
       {"/bodies/0/element", R"("hex8")", "/bodies/0/element: got \"hex8\", expected tet4", false},
       {"/integrator", R"("textbook")", "/integrator: got \"textbook\"", false},
-      {"/solver", R"({"type": "static"})", "/bodies/0/model/type: got \"mass-spring\", expected tled beside", false},
+      {"/solver", R"({"type": "static"})", "/bodies/0/model/type: got \"mass-spring\", expected tled with", false},
   };
   ASSERT_EQ(model_test::message(good().dump()), "");
   EXPECT_TRUE(schema().findings(good()).empty());
@@ -74,7 +74,7 @@ TEST(SceneSprings, StaticSolutionsRefuseJoins) {
 
 TEST(SceneSprings, SurfacesHaveNone) {
   model_test::expect_refused(model_test::with_model(R"({"type": "mass-spring"})"),
-                             "/bodies/0/model/type: got \"mass-spring\", expected tled, hybrid or flsm beside a surface");
+                             "/bodies/0/model/type: got \"mass-spring\", expected tled, hybrid or flsm with a surface");
 }
 
 TEST(SceneSprings, WriterAndReaderAgree) {

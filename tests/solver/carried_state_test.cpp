@@ -97,7 +97,9 @@ TEST(CarriedState, AnEditLeavesTheInitialValuesOfItsProgram) {
   for (const Buffer& b : run->program().buffers) {
     if (b.role != BufferRole::state) continue;
     for (std::size_t i = 0; i < b.reals.size(); ++i) {
-      if (i % 4 != 3) ASSERT_EQ(b.reals[i], 0) << b.name << ' ' << i;
+      if (i % 4 != 3) {
+        ASSERT_EQ(b.reals[i], 0) << b.name << ' ' << i;
+      }
     }
   }
 }

@@ -144,7 +144,7 @@ std::unique_ptr<Backend> open_backend(const std::string& spec, std::string* why,
     throw Error(ErrorCode::bad_input,
                 fmt::format("unknown backend \"{}\"; allowed are auto, cpu, cpu:double, cpu:check, opencl and opencl:N", spec));
   }
-  if (spec != "auto") reason = fmt::format("{} ({}): asked for", backend->info().name, backend->info().device);
+  if (spec != "auto") reason = fmt::format("{} ({}): requested", backend->info().name, backend->info().device);
   const bool asks_for_opencl = spec.rfind("cpu", 0) != 0, is_gpu = backend->info().kind == "gpu";
   const std::string remark = asks_for_opencl && !is_gpu ? opencl_remark() : "";
   if (why != nullptr) *why = remark.empty() ? reason : fmt::format("{}; {}", reason, remark);

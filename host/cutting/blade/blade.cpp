@@ -155,7 +155,7 @@ CutEdges crossed_edges(const CutTopology& body, std::span<const Vec3d> x, std::s
     for (const Vec3d& p : t) {
       if (!vec::finite(p)) {
         throw Error(ErrorCode::bad_input,
-                    fmt::format("a corner of what a blade sweeps is [{}] m; allowed are finite numbers", fmt::join(p, ", ")));
+                    fmt::format("a corner of a blade's sweep is [{}] m; allowed are finite numbers", fmt::join(p, ", ")));
       }
     }
   }

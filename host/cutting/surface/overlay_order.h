@@ -29,8 +29,8 @@ inline int side_of(const std::array<ExactPoint, 3>& a, const std::array<ExactPoi
   return side;
 }
 
-/// Sort what a segment from u to w crosses. `triangle(item)` gives the triangle crossed, `position(item)` the place [m]. Exact
-/// whenever one of two triangles lies on one side of the other's plane.
+/// Sorts the crossings of a segment from u to w. `triangle(item)` gives the triangle crossed, `position(item)` the place [m].
+/// Exact whenever one of two triangles lies on one side of the other's plane.
 template <class Item, class Ends, class Triangle, class Position>
 void sort_along(std::vector<Item>& items, const Ends& u, const Ends& w, const Triangle& triangle, const Position& position) {
   const auto before = [&](const Item& x, const Item& y) {

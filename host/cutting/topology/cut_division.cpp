@@ -1,8 +1,9 @@
-// Where the components of a cut cell lie, and how its material is shared among them.
+#include "cutting/topology/cut_division.h"
+
 #include <algorithm>
 #include <bit>
+#include <numeric>
 
-#include "cutting/topology/cut_topology.h"
 #include "geometry/vec.h"
 #include "lattice/lattice_cell.h"
 
@@ -70,16 +71,31 @@ constexpr double kLeastPart = 1e-3;
 
 }  // namespace
 
-TetDivision CutTopology::division(std::int32_t cell, const CellCut& cut, int tet) const {
-  const auto& corner = mesh_->shape->tets[tet];
+void label_components(const CellShape& shape, CellCut& cell) {
+  std::array<int, 8> root{};
+  std::iota(root.begin(), root.end(), 0);
+  for (std::size_t e = 0; e < shape.edges.size(); ++e) {
+    if (cell.cut >> e & 1) continue;
+    const int a = root[shape.edges[e][0]], b = root[shape.edges[e][1]];
+    if (a == b) continue;
+    for (int& r : root) r = r == std::max(a, b) ? std::min(a, b) : r;
+  }
+  cell.components = 0;
+  for (int a = 0; a < shape.corners; ++a) {
+    cell.label[a] = root[a] == a ? static_cast<std::int8_t>(cell.components++) : cell.label[root[a]];
+  }
+}
+
+TetDivision CutDivision::of(std::int32_t cell, const CellCut& cut, int tet) const {
+  const auto& corner = mesh_.shape->tets[tet];
   std::array<int, 4> label{};
   for (int a = 0; a < 4; ++a) label[a] = cut.label[corner[a]];
   std::array<char, 6> is_cut{};
   std::array<double, 6> crossing{};
   for (int e = 0; e < 6; ++e) {
     const int from = corner[kTetEdges[e][0]], to = corner[kTetEdges[e][1]];
-    if ((cut.cut >> mesh_->shape->edge_of[from][to] & 1) == 0) continue;
-    const std::int32_t a = mesh_->cells[cell][from], b = mesh_->cells[cell][to];
+    if ((cut.cut >> mesh_.shape->edge_of[from][to] & 1) == 0) continue;
+    const std::int32_t a = mesh_.cells[cell][from], b = mesh_.cells[cell][to];
     const double t = edges_.at(node_pair(a, b));
     is_cut[e] = 1;
     crossing[e] = a < b ? t : 1 - t;
@@ -87,11 +103,10 @@ TetDivision CutTopology::division(std::int32_t cell, const CellCut& cut, int tet
   return divide(label, is_cut, crossing);
 }
 
-/// Share the material of a cell out among its components.
-void CutTopology::inherit(const CellCut& before, CellCut& cut) const {
+void CutDivision::inherit(const CellCut& before, CellCut& cut) const {
   if (before.components < 2) return;
   std::array<int, 8> parent{};
-  for (int a = mesh_->shape->corners - 1; a >= 0; --a) parent[cut.label[a]] = before.label[a];
+  for (int a = mesh_.shape->corners - 1; a >= 0; --a) parent[cut.label[a]] = before.label[a];
   std::array<double, 8> whole{}, sum{};
   for (int k = 0; k < cut.components; ++k) whole[parent[k]] += cut.share[k];
   for (int k = 0; k < cut.components; ++k) {
@@ -103,28 +118,28 @@ void CutTopology::inherit(const CellCut& before, CellCut& cut) const {
   }
 }
 
-void CutTopology::share(std::int32_t cell, CellCut& cut) const {
+void CutDivision::share(std::int32_t cell, CellCut& cut) const {
   cut.share.fill(0);
   if (cut.components == 1) {
     cut.share[0] = 1;
     return;
   }
-  const CellShape& shape = *mesh_->shape;
+  const CellShape& shape = *mesh_.shape;
   std::array<TetDivision, 6> tets;
   std::array<double, 8> volume{};
   const auto count = static_cast<int>(shape.tets.size());  // of a lattice cell all have the same volume
   for (int t = 0; t < count; ++t) {
-    tets[t] = division(cell, cut, t);
+    tets[t] = of(cell, cut, t);
     const std::array<double, 4> part = corner_shares(tets[t]);
     for (int a = 0; a < 4; ++a) volume[cut.label[shape.tets[t][a]]] += part[a] / count;
   }
-  if (mesh_->material.empty() || mesh_->material[cell] == kAllSamples) {
+  if (mesh_.material.empty() || mesh_.material[cell] == kAllSamples) {
     cut.share = volume;
     raise_to_floor(cut.share);
     return;
   }
   std::array<double, 8> samples{};
-  for (std::uint64_t rest = mesh_->material[cell]; rest != 0; rest &= rest - 1) {
+  for (std::uint64_t rest = mesh_.material[cell]; rest != 0; rest &= rest - 1) {
     const SamplePlace& place = sample_places()[std::countr_zero(rest)];
     samples[cut.label[shape.tets[place.tet][corner_at(tets[place.tet], place.weight)]]] += 1.0 / 64;
   }
@@ -138,21 +153,20 @@ void CutTopology::share(std::int32_t cell, CellCut& cut) const {
   raise_to_floor(cut.share);
 }
 
-CutTet CutTopology::tet(std::int32_t cell, int tet) const {
+CutTet CutDivision::tet(std::int32_t cell, const CellCut* cut, int tet) const {
   CutTet out;
-  const CellCut* cut = find_cell(cell);
-  const auto& corner = mesh_->shape->tets[tet];
+  const auto& corner = mesh_.shape->tets[tet];
   for (int a = 0; a < 4; ++a) {
-    out.node[a] = mesh_->cells[cell][corner[a]];
+    out.node[a] = mesh_.cells[cell][corner[a]];
     out.label[a] = cut == nullptr ? 0 : cut->label[corner[a]];
-    out.corner[a] = mesh_->rest[out.node[a]];
+    out.corner[a] = mesh_.rest[out.node[a]];
   }
   std::array<NodePair, 6> pair{};
   for (int e = 0; e < 6; ++e) {
     pair[e] = node_pair(out.node[kTetEdges[e][0]], out.node[kTetEdges[e][1]]);
     const auto found = edges_.find(pair[e]);
     out.cut[e] = found != edges_.end();
-    const Vec3d &a = mesh_->rest[pair[e][0]], &b = mesh_->rest[pair[e][1]];
+    const Vec3d &a = mesh_.rest[pair[e][0]], &b = mesh_.rest[pair[e][1]];
     out.edge[e] = vec::add(a, vec::mul(vec::sub(b, a), out.cut[e] ? found->second : 0.5));
   }
   for (int f = 0; f < 4; ++f) {
@@ -163,7 +177,7 @@ CutTet CutTopology::tet(std::int32_t cell, int tet) const {
     const int count = out.cut[edges[0]] + out.cut[edges[1]] + out.cut[edges[2]];
     for (const int e : edges) {
       // The centroid of a face is the mean of the middles of its edges.
-      const Vec3d middle = vec::mul(vec::add(mesh_->rest[pair[e][0]], mesh_->rest[pair[e][1]]), 0.5);
+      const Vec3d middle = vec::mul(vec::add(mesh_.rest[pair[e][0]], mesh_.rest[pair[e][1]]), 0.5);
       if (count < 2) out.face[f] = vec::add(out.face[f], vec::mul(middle, 1.0 / 3));
       if (count >= 2 && out.cut[e]) out.face[f] = vec::add(out.face[f], vec::mul(out.edge[e], 1.0 / count));
     }
@@ -180,16 +194,15 @@ CutTet CutTopology::tet(std::int32_t cell, int tet) const {
   return out;
 }
 
-int CutTopology::label_at(std::int32_t cell, const Vec3d& x) const {
-  const CellCut* cut = find_cell(cell);
+int CutDivision::label_at(std::int32_t cell, const CellCut* cut, const Vec3d& x) const {
   if (cut == nullptr || cut->components == 1) return 0;
   // The tetrahedron in which the least coordinate is largest: the one around the point, or the nearest.
   int best = 0;
   double depth = -HUGE_VAL;
   std::array<double, 4> weight{};
-  for (std::size_t t = 0; t < mesh_->shape->tets.size(); ++t) {
+  for (std::size_t t = 0; t < mesh_.shape->tets.size(); ++t) {
     std::array<Vec3d, 4> corner;
-    for (int a = 0; a < 4; ++a) corner[a] = mesh_->rest[mesh_->cells[cell][mesh_->shape->tets[t][a]]];
+    for (int a = 0; a < 4; ++a) corner[a] = mesh_.rest[mesh_.cells[cell][mesh_.shape->tets[t][a]]];
     const std::array<double, 4> w = barycentric_weights(corner, x);
     const double least = *std::min_element(w.begin(), w.end());
     if (least <= depth) continue;
@@ -197,13 +210,12 @@ int CutTopology::label_at(std::int32_t cell, const Vec3d& x) const {
     weight = w;
     best = static_cast<int>(t);
   }
-  return label_in(cell, best, weight);
+  return label_in(cell, cut, best, weight);
 }
 
-int CutTopology::label_in(std::int32_t cell, int tet, const std::array<double, 4>& weight) const {
-  const CellCut* cut = find_cell(cell);
+int CutDivision::label_in(std::int32_t cell, const CellCut* cut, int tet, const std::array<double, 4>& weight) const {
   if (cut == nullptr || cut->components == 1) return 0;
-  return cut->label[mesh_->shape->tets[tet][corner_at(division(cell, *cut, tet), weight)]];
+  return cut->label[mesh_.shape->tets[tet][corner_at(of(cell, *cut, tet), weight)]];
 }
 
 }  // namespace pliant

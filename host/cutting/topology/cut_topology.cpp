@@ -1,4 +1,3 @@
-// Edits: from new cut edges to changed cells, and from those to elements.
 #include "cutting/topology/cut_topology.h"
 
 #include <fmt/format.h>
@@ -7,64 +6,15 @@
 #include <cmath>
 #include <numeric>
 
-#include "lattice/lattice_parts.h"
+#include "geometry/disjoint_sets.h"
 #include "pliant/error.h"
 
 namespace pliant {
 
-CutTopology::CutTopology(std::shared_ptr<const CutMesh> mesh) : mesh_(std::move(mesh)) {
-  const auto nodes = static_cast<std::int32_t>(mesh_->rest.size());
-  const int corners = mesh_->shape->corners;
-  node_offset_.assign(mesh_->rest.size() + 1, 0);
-  for (std::size_t c = 0; c < mesh_->cells.size(); ++c) {
-    for (int a = 0; a < corners; ++a) {
-      const std::int32_t n = mesh_->cells[c][a];
-      if (n < 0 || n >= nodes) {
-        throw Error(ErrorCode::internal, fmt::format("cell {} of a body to cut names node {} of {}", c, n, nodes));
-      }
-      ++node_offset_[n + 1];
-    }
-  }
-  std::partial_sum(node_offset_.begin(), node_offset_.end(), node_offset_.begin());
-  node_cells_.resize(mesh_->cells.size() * static_cast<std::size_t>(corners));
-  std::vector<std::int32_t> next(node_offset_.begin(), node_offset_.end() - 1);
-  for (std::size_t c = 0; c < mesh_->cells.size(); ++c) {
-    for (int a = 0; a < corners; ++a) node_cells_[next[mesh_->cells[c][a]]++] = static_cast<std::int32_t>(c);
-  }
-  find_neighbors();
+CutTopology::CutTopology(std::shared_ptr<const CutMesh> mesh)
+    : mesh_(std::move(mesh)), neighbors_(*mesh_), division_(*mesh_, edges_), nodes_(*mesh_, neighbors_, cell_at_) {
   reset({});
 }
-
-void CutTopology::find_neighbors() {
-  const CellShape& shape = *mesh_->shape;
-  face_offset_.assign(1, 0);
-  face_offset_.reserve(mesh_->cells.size() * shape.faces.size() + 1);
-  for (std::size_t c = 0; c < mesh_->cells.size(); ++c) {
-    const auto& corners = mesh_->cells[c];
-    for (const auto& face : shape.faces) {
-      for (const std::int32_t other : cells_at_node(corners[face[0]])) {
-        if (other == static_cast<std::int32_t>(c)) continue;
-        const auto& there = mesh_->cells[other];
-        const bool shared = std::all_of(face.begin() + 1, face.end(), [&](int a) {
-          return std::find(there.begin(), there.begin() + shape.corners, corners[a]) != there.begin() + shape.corners;
-        });
-        if (shared) face_cells_.push_back(other);
-      }
-      face_offset_.push_back(static_cast<std::int32_t>(face_cells_.size()));
-    }
-  }
-}
-
-std::span<const std::int32_t> CutTopology::cells_at_node(std::int32_t node) const {
-  return {node_cells_.data() + node_offset_[node], node_cells_.data() + node_offset_[node + 1]};
-}
-
-std::span<const std::int32_t> CutTopology::cells_at_face(std::int32_t cell, int face) const {
-  const std::size_t at = static_cast<std::size_t>(cell) * mesh_->shape->faces.size() + static_cast<std::size_t>(face);
-  return {face_cells_.data() + face_offset_[at], face_cells_.data() + face_offset_[at + 1]};
-}
-
-const CellCut* CutTopology::find_cell(std::int32_t cell) const { return cell_at_[cell]; }
 
 namespace {
 
@@ -89,7 +39,7 @@ std::int64_t CutTopology::cut_in_part(std::span<const std::int32_t> cells) const
 }
 
 std::int32_t CutTopology::element_of(std::int32_t cell, int label) const {
-  const CellCut* cut = find_cell(cell);
+  const CellCut* cut = cell_at_[cell];
   return cut == nullptr ? cell : cut->element[label];
 }
 
@@ -97,7 +47,7 @@ void CutTopology::reset(const CutEdges& edges) {
   edges_.clear();
   cells_.clear();
   cell_at_.assign(mesh_->cells.size(), nullptr);
-  classes_.clear();
+  nodes_.clear();
   elements_.nodes = mesh_->cells;
   elements_.fill = mesh_->fill;
   elements_.cell.resize(mesh_->cells.size());
@@ -108,34 +58,15 @@ void CutTopology::reset(const CutEdges& edges) {
   if (!edges.empty()) cut(edges);
 }
 
-/// Number in the shape of the edge between two nodes of a cell, -1 if it has none.
-int CutTopology::edge_of(std::int32_t cell, std::int32_t a, std::int32_t b) const {
-  const auto& corners = mesh_->cells[cell];
-  int from = -1, to = -1;
-  for (int i = 0; i < mesh_->shape->corners; ++i) {
-    if (corners[i] == a) from = i;
-    if (corners[i] == b) to = i;
-  }
-  return from >= 0 && to >= 0 ? mesh_->shape->edge_of[from][to] : -1;
-}
-
-std::vector<std::int32_t> CutTopology::cells_at_edge(const NodePair& edge) const {
-  std::vector<std::int32_t> cells;
-  for (const std::int32_t c : cells_at_node(edge[0])) {
-    if (edge_of(c, edge[0], edge[1]) >= 0) cells.push_back(c);
-  }
-  return cells;
-}
-
 CutEdit CutTopology::cut(const CutEdges& edges, const std::function<void(const std::vector<std::int32_t>&)>& divided) {
   CutEdit edit;
   const OldCuts old = mark(edges, edit);
   bool split = false;
   for (const std::int32_t c : edit.cells) {
     CellCut& cell = cells_.at(c);
-    label(cell);
-    share(c, cell);
-    inherit(old.at(c), cell);
+    label_components(*mesh_->shape, cell);
+    division_.share(c, cell);
+    division_.inherit(old.at(c), cell);
     split |= cell.components > 1;
   }
   if (!split) return edit;
@@ -143,19 +74,19 @@ CutEdit CutTopology::cut(const CutEdges& edges, const std::function<void(const s
   const auto copies = elements_.nodes.begin() + static_cast<std::ptrdiff_t>(mesh_->cells.size());
   const std::vector<std::array<std::int32_t, 8>> old_copies(copies, elements_.nodes.end());
   number_elements(old, edit);
-  number_nodes(old, old_copies, edit);
+  nodes_.number(old_copies, elements_, edit);
   return edit;
 }
 
-/// Enter new cut edges; returns what the cells there were before.
-CutTopology::OldCuts CutTopology::mark(const CutEdges& edges, CutEdit& edit) {
+void CutTopology::check(const CutEdges& edges) const {
   const auto nodes = static_cast<std::int32_t>(mesh_->rest.size());
   for (const auto& [pair, t] : edges) {
     const auto [a, b] = pair;
     bool known = a >= 0 && a < b && b < nodes;
     if (known) {
-      const auto around = cells_at_node(a);
-      known = std::any_of(around.begin(), around.end(), [&, a = a, b = b](std::int32_t c) { return edge_of(c, a, b) >= 0; });
+      const auto around = neighbors_.at_node(a);
+      known = std::any_of(around.begin(), around.end(),
+                          [&, a = a, b = b](std::int32_t c) { return neighbors_.edge_of(c, a, b) >= 0; });
     }
     if (!known)
       throw Error(ErrorCode::bad_input,
@@ -165,11 +96,16 @@ CutTopology::OldCuts CutTopology::mark(const CutEdges& edges, CutEdit& edit) {
                   fmt::format("a cut edge from node {} to node {} at {}: allowed are places between 0 and 1", a, b, t));
     }
   }
+}
+
+/// Enter new cut edges; returns what the cells there were before.
+CutTopology::OldCuts CutTopology::mark(const CutEdges& edges, CutEdit& edit) {
+  check(edges);
   OldCuts old;
   for (const auto& [pair, t] : edges) {
     if (!edges_.emplace(pair, std::clamp(t, kLeastCrossing, 1 - kLeastCrossing)).second) continue;
-    for (const std::int32_t c : cells_at_node(pair[0])) {
-      const int e = edge_of(c, pair[0], pair[1]);
+    for (const std::int32_t c : neighbors_.at_node(pair[0])) {
+      const int e = neighbors_.edge_of(c, pair[0], pair[1]);
       if (e < 0) continue;
       auto [at, added] = cells_.try_emplace(c);
       if (added) {
@@ -183,22 +119,6 @@ CutTopology::OldCuts CutTopology::mark(const CutEdges& edges, CutEdit& edit) {
   }
   for (const auto& [c, cut] : old) edit.cells.push_back(c);
   return old;
-}
-
-void CutTopology::label(CellCut& cell) const {
-  const CellShape& shape = *mesh_->shape;
-  std::array<int, 8> root{};
-  std::iota(root.begin(), root.end(), 0);
-  for (std::size_t e = 0; e < shape.edges.size(); ++e) {
-    if (cell.cut >> e & 1) continue;
-    const int a = root[shape.edges[e][0]], b = root[shape.edges[e][1]];
-    if (a == b) continue;
-    for (int& r : root) r = r == std::max(a, b) ? std::min(a, b) : r;
-  }
-  cell.components = 0;
-  for (int a = 0; a < shape.corners; ++a) {
-    cell.label[a] = root[a] == a ? static_cast<std::int8_t>(cell.components++) : cell.label[root[a]];
-  }
 }
 
 /// Number the copies, ascending by cell and component, and give each its fill.
@@ -242,6 +162,22 @@ void CutTopology::number_elements(const OldCuts& old, CutEdit& edit) {
       edit.element_from[e] = from >= 0 ? from : c;
     }
   }
+}
+
+std::int32_t CutTopology::pieces(std::vector<std::int32_t>* piece_of) const {
+  DisjointSets sets(elements_.origin.size());
+  for (const auto& nodes : elements_.nodes) {
+    for (int a = 1; a < mesh_->shape->corners; ++a) sets.join(nodes[0], nodes[a]);
+  }
+  std::vector<std::int32_t> number(elements_.origin.size(), -1);
+  std::int32_t count = 0;
+  if (piece_of != nullptr) piece_of->clear();
+  for (const auto& nodes : elements_.nodes) {
+    std::int32_t& n = number[sets.find(nodes[0])];
+    if (n < 0) n = count++;
+    if (piece_of != nullptr) piece_of->push_back(n);
+  }
+  return count;
 }
 
 }  // namespace pliant

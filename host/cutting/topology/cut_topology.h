@@ -5,7 +5,9 @@
 // real, the others virtual. Real corners at one node are one node. Copies on both sides of a face share the nodes of that
 // face if one of its corners is real in both. The result depends only on the set of cut edges: edits may come in any order or
 // grouping.
-// come in any order or grouping.
+//
+// CutTopology holds the cut edges and cells and numbers the elements. CellNeighbors finds the cells at a node, an edge or a
+// face; CutDivision computes where the components of a cell lie and how they share its material; CutNodes numbers the nodes.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -14,57 +16,12 @@
 #include <span>
 #include <vector>
 
-#include "cutting/topology/cut_cell.h"
+#include "cutting/topology/cell_neighbors.h"
+#include "cutting/topology/cut_division.h"
+#include "cutting/topology/cut_mesh.h"
+#include "cutting/topology/cut_nodes.h"
 
 namespace pliant {
-
-/// The uncut body.
-struct CutMesh {
-  const CellShape* shape = nullptr;
-  std::vector<Vec3d> rest;                         ///< [nodes] [m]
-  std::vector<std::array<std::int32_t, 8>> cells;  ///< lattice corners in bit order; a tetrahedron uses the first four
-  std::vector<double> fill;                        ///< [cells]
-  /// [cells] which of the 4 x 4 x 4 samples of a lattice cell lie in material (lattice_cell.h); empty: all of every cell.
-  std::vector<std::uint64_t> material;
-};
-
-/// Two nodes of the uncut body, the lower one first.
-using NodePair = std::array<std::int32_t, 2>;
-inline NodePair node_pair(std::int32_t a, std::int32_t b) { return a < b ? NodePair{a, b} : NodePair{b, a}; }
-
-/// Cut edges and where they are cut: the share of the way from the lower to the higher node, in [kLeastCrossing, 1 -
-/// kLeastCrossing].
-using CutEdges = std::map<NodePair, double>;
-
-/// The state of a cell with cut edges.
-struct CellCut {
-  std::uint32_t cut = 0;               ///< bit i: edge i of the shape is cut
-  std::array<std::int8_t, 8> label{};  ///< component of each corner; components are numbered by their lowest corner
-  int components = 1;                  ///< 1: not completely cut yet, the cell is whole
-  /// The copy of each component; -1: the component has no material and no copy. One copy keeps the cell's own number.
-  std::array<std::int32_t, 8> element{-1, -1, -1, -1, -1, -1, -1, -1};
-  /// Fraction of the cell's material, 0 without a copy. If a component is divided later, the parts add up to its fraction.
-  std::array<double, 8> share{};
-};
-
-/// Elements 0 .. cells - 1 are the cells, those cut completely being the copies of their first component with material; the
-/// other copies follow, ascending by cell and component. Nodes 0 .. nodes - 1 are those of the uncut body, and real if any node
-/// there is; further virtual nodes follow, ascending by origin.
-struct CutElements {
-  std::vector<std::array<std::int32_t, 8>> nodes;  ///< [elements] corners as in CutMesh::cells
-  std::vector<std::int32_t> cell;                  ///< [elements] of the uncut body
-  std::vector<std::uint8_t> real;                  ///< [elements] bit a: corner a is real
-  std::vector<double> fill;                        ///< [elements] of a whole cell's volume; copies of a cell add up to its fill
-  std::vector<std::int32_t> origin;  ///< [nodes] node of the uncut body at the same place; of the first ones themselves
-};
-
-/// The result of an edit. An edit that changed no element has empty lists.
-struct CutEdit {
-  std::vector<std::int32_t> cells;         ///< cells whose CellCut changed, ascending
-  std::vector<std::int32_t> node_from;     ///< [nodes now] the node before
-  std::vector<std::int32_t> element_from;  ///< [elements now] the element before
-  [[nodiscard]] bool changed_elements() const { return !node_from.empty(); }
-};
 
 class CutTopology {
  public:
@@ -87,21 +44,19 @@ class CutTopology {
   [[nodiscard]] std::int64_t cut_in_part(std::span<const std::int32_t> cells) const;
   /// The element that holds component `label` of a cell, -1 if it has none.
   [[nodiscard]] std::int32_t element_of(std::int32_t cell, int label) const;
-  /// Cells that share all nodes of a cell's local face; nearly always one or none.
-  [[nodiscard]] std::span<const std::int32_t> cells_at_face(std::int32_t cell, int face) const;
+  [[nodiscard]] std::span<const std::int32_t> cells_at_face(std::int32_t cell, int face) const {
+    return neighbors_.at_face(cell, face);
+  }
+  [[nodiscard]] std::vector<std::int32_t> cells_at_edge(const NodePair& edge) const { return neighbors_.at_edge(edge); }
 
-  /// Cells that have an edge.
-  [[nodiscard]] std::vector<std::int32_t> cells_at_edge(const NodePair& edge) const;
-
-  /// Returns the division of tetrahedron `tet` (of mesh().shape) of a cell. Points shared by cells have identical bits in
-  /// each.
-  [[nodiscard]] CutTet tet(std::int32_t cell, int tet) const;
-  /// Component that holds a point of the cell at rest [m]: that of the flag's tetrahedron it lies in, or the nearest one.
-  [[nodiscard]] int label_at(std::int32_t cell, const Vec3d& x) const;
-  /// The same by barycentric coordinates in one of its tetrahedra.
-  [[nodiscard]] int label_in(std::int32_t cell, int tet, const std::array<double, 4>& weight) const;
+  /// As in CutDivision, for a cell as it is cut now.
+  [[nodiscard]] CutTet tet(std::int32_t cell, int tet) const { return division_.tet(cell, cell_at_[cell], tet); }
+  [[nodiscard]] int label_at(std::int32_t cell, const Vec3d& x) const { return division_.label_at(cell, cell_at_[cell], x); }
+  [[nodiscard]] int label_in(std::int32_t cell, int tet, const std::array<double, 4>& weight) const {
+    return division_.label_in(cell, cell_at_[cell], tet, weight);
+  }
   /// For many places in one tetrahedron. The cell is divided.
-  [[nodiscard]] TetDivision division(std::int32_t cell, int tet) const { return division(cell, *cell_at_[cell], tet); }
+  [[nodiscard]] TetDivision division(std::int32_t cell, int tet) const { return division_.of(cell, *cell_at_[cell], tet); }
   [[nodiscard]] int label_in(std::int32_t cell, int tet, const TetDivision& division,
                              const std::array<double, 4>& weight) const {
     return cell_at_[cell]->label[mesh_->shape->tets[tet][corner_at(division, weight)]];
@@ -119,41 +74,19 @@ class CutTopology {
   [[nodiscard]] std::int32_t pieces(std::vector<std::int32_t>* piece_of = nullptr) const;
 
  private:
-  /// The nodes at one node of the uncut body: its copies of cells, grouped.
-  struct Member {
-    std::int32_t cell;
-    std::int8_t component, corner;
-  };
-  struct NodeClass {
-    std::int32_t node = -1;  ///< as of the last numbering
-    bool real = false;
-    std::vector<Member> members;
-  };
   using OldCuts = std::map<std::int32_t, CellCut>;  ///< changed cells before the edit
 
-  void find_neighbors();
-  [[nodiscard]] int edge_of(std::int32_t cell, std::int32_t a, std::int32_t b) const;
-  [[nodiscard]] std::span<const std::int32_t> cells_at_node(std::int32_t node) const;
-  [[nodiscard]] const CellCut* find_cell(std::int32_t cell) const;
-  [[nodiscard]] double crossing(std::int32_t a, std::int32_t b) const;
+  void check(const CutEdges& edges) const;
   OldCuts mark(const CutEdges& edges, CutEdit& edit);
-  void label(CellCut& cell) const;
-  [[nodiscard]] TetDivision division(std::int32_t cell, const CellCut& cut, int tet) const;
-  void share(std::int32_t cell, CellCut& cut) const;
-  /// The parts of a divided component keep its material fraction, whatever crossings were found since: copies are deformed
-  /// differently, so moving material between them would lose or gain energy and momentum.
-  void inherit(const CellCut& before, CellCut& cut) const;
   void number_elements(const OldCuts& old, CutEdit& edit);
-  [[nodiscard]] std::vector<NodeClass> classes_at(std::int32_t node) const;
-  void number_nodes(const OldCuts& old, const std::vector<std::array<std::int32_t, 8>>& old_nodes, CutEdit& edit);
 
   std::shared_ptr<const CutMesh> mesh_;
-  std::vector<std::int32_t> node_offset_, node_cells_;  ///< cells at each node
-  std::vector<std::int32_t> face_offset_, face_cells_;  ///< cells across each face of each cell
+  CellNeighbors neighbors_;
   CutEdges edges_;
   std::map<std::int32_t, CellCut> cells_;
-  std::vector<const CellCut*> cell_at_;                     ///< [cells] into cells_, nullptr: no edge is cut
-  std::map<std::int32_t, std::vector<NodeClass>> classes_;  ///< at nodes of cells with copies
+  std::vector<const CellCut*> cell_at_;  ///< [cells] into cells_, nullptr: no edge is cut
+  CutDivision division_;
+  CutNodes nodes_;
   CutElements elements_;
 };
 

@@ -20,7 +20,7 @@ struct GivenSurface {
 };
 
 /// The last surfaces of a tool, with ascending times: those to come, the present one, and as many that are over as there is
-/// room for. What follows depends on all of them, so that it is the same after a checkpoint.
+/// room for. The result depends on all of them, so that it is the same after a checkpoint.
 struct GivenSurfaces {
   NodeGrid grid;  ///< in the frame of every surface
   std::vector<GivenSurface> surfaces;

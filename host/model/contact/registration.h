@@ -21,7 +21,7 @@ struct NearSurface {
 /// Returns nothing for a point that does not count.
 using FindSurface = std::function<std::optional<NearSurface>(const Vec3d&)>;
 
-/// What a registration may cost.
+/// Limits of the cost of a registration.
 struct RegistrationEffort {
   std::size_t points = 2000;
   int iterations = 30;

@@ -1,4 +1,4 @@
-// Links: what joins material points by a force, beside the elements. Every kind of link reads displacements of LinkPoints and
+// Links: forces between material points, in addition to the elements. Every kind of link reads displacements of LinkPoints and
 // gives forces on them.
 #pragma once
 #include <array>

@@ -23,7 +23,7 @@ struct Partition {
 /// selects no cell, 1 all, any other at least one; growth stays within the face-connected piece that contains the seed.
 /// Remaining cells that would form an isolated piece (a face-connected group of shape-matching cells without a node of kind
 /// `matching`) become operational too. If DeformationModel::cells is given, those cells are operational instead. Throws Error
-/// (pointer, value, what is allowed) if a region contains no cell, or if the seed is further from the body than its own size.
+/// (pointer, value, allowed values) if a region contains no cell, or if the seed is further from the body than its own size.
 Partition partition_lattice(const Body& body, const Lattice& lattice);
 
 }  // namespace pliant

@@ -98,7 +98,7 @@ void refuse_overlap(const Model& model, double allowed) {
         throw Error(ErrorCode::bad_input,
                     fmt::format("/contact: body '{}' begins in the same place as body '{}': {:.0f} % of its surface is nearer "
                                 "than {:.3g} m (a quarter of a cell) to surface of the other that faces the same way; expected "
-                                "bodies beside each other, or the scene without contact",
+                                "separate bodies, or a scene without contact",
                                 name, other, 100 * of[a].same / area[a], allowed));
       }
     }

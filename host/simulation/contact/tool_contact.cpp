@@ -37,7 +37,7 @@ std::optional<std::size_t> ToolContact::find(const std::string& name) const {
   return static_cast<std::size_t>(own - tools_.begin());
 }
 
-std::optional<StepForce> ToolContact::last_force(std::size_t tool) const {
+std::optional<Wrench> ToolContact::last_force(std::size_t tool) const {
   if (batch_end_ != run_.state.clock.step || step_forces_.size() < tools_.size()) return {};
   return step_forces_[step_forces_.size() - tools_.size() + tool];
 }
@@ -164,10 +164,11 @@ void ToolContact::read_touch() {
 }
 
 /// A force acts from the middle of the previous step to that of the next one (central differences).
-double ToolContact::work(std::size_t tool, std::int32_t step, const Vec3d& force, const Vec3d& torque) const {
+double ToolContact::work(std::size_t tool, std::int32_t step, const Wrench& on_tool) const {
   const std::size_t before = static_cast<std::size_t>(step) * tools_.size() + tool;
   const Pose &from = poses_[before], &to = poses_[before + 2 * tools_.size()];
-  return -0.5 * (vec::dot(force, vec::sub(to.position, from.position)) + vec::dot(torque, turn_between(from, to)));
+  return -0.5 *
+         (vec::dot(on_tool.force, vec::sub(to.position, from.position)) + vec::dot(on_tool.torque, turn_between(from, to)));
 }
 
 void ToolContact::end_batch(std::int32_t steps) {
@@ -196,17 +197,17 @@ void ToolContact::end_batch(std::int32_t steps) {
           contact_sum(&sums[(static_cast<std::size_t>(step) * tools + t) * contact_sum_parts * contact_sum_numbers]);
       if (sum.points == 0) continue;
       ++h.touched;
-      Vec3d force{}, torque{};
+      Wrench& on_tool = step_forces_[static_cast<std::size_t>(step) * tools + t];
       for (std::size_t c = 0; c < 3; ++c) {
-        force[c] = sum.quanta[c] * units_.force;
-        torque[c] = sum.quanta[3 + c] * units_.torque;
+        on_tool.force[c] = sum.quanta[c] * units_.force;
+        on_tool.torque[c] = sum.quanta[3 + c] * units_.torque;
       }
-      h.work += work(t, step, force, torque);
-      torque = vec::add(torque, vec::cross(arms_[(static_cast<std::size_t>(step) + 1) * tools + t], force));
-      step_forces_[static_cast<std::size_t>(step) * tools + t] = {force, torque};
+      h.work += work(t, step, on_tool);
+      on_tool.torque =
+          vec::add(on_tool.torque, vec::cross(arms_[(static_cast<std::size_t>(step) + 1) * tools + t], on_tool.force));
       for (std::size_t c = 0; c < 3; ++c) {
-        h.now.force[c] += force[c] / steps;
-        h.now.torque[c] += torque[c] / steps;
+        h.now.force[c] += on_tool.force[c] / steps;
+        h.now.torque[c] += on_tool.torque[c] / steps;
       }
       h.now.area = sum.quanta[6] * units_.area;
       h.now.points = sum.points;

@@ -17,11 +17,6 @@ void check_pose(const std::string& name, const Pose& pose);
 /// Throws Error (usage) for an invalid pose or time.
 void check_drive(const std::string& name, const Pose& to, double seconds);
 
-/// Contact force on a tool in one step [N], and the torque about its origin [N m].
-struct StepForce {
-  Vec3d force{}, torque{};
-};
-
 class ToolContact {
  public:
   ToolContact(RunContext& run, RunReport& report) : run_(run), report_(report), lists_(run) {}
@@ -50,10 +45,10 @@ class ToolContact {
   /// tools and tissue the part of tissue that contact adds after its first pass (touch_settle) is missing.
   [[nodiscard]] std::vector<Vec3d> point_forces() const;
   /// Force and torque of each step of the last batch, shape [steps][tools]; it ended after step batch_end().
-  [[nodiscard]] const std::vector<StepForce>& step_forces() const { return step_forces_; }
+  [[nodiscard]] const std::vector<Wrench>& step_forces() const { return step_forces_; }
   [[nodiscard]] std::int64_t batch_end() const { return batch_end_; }
   /// Of the last step; empty where it is not known: before the first step and after the tools or the state were changed.
-  [[nodiscard]] std::optional<StepForce> last_force(std::size_t tool) const;
+  [[nodiscard]] std::optional<Wrench> last_force(std::size_t tool) const;
   /// Returns the pose of a tool of the model at a time [s].
   [[nodiscard]] Pose pose(std::size_t tool, double time) const;
 
@@ -64,7 +59,7 @@ class ToolContact {
 
   /// Returns the work on the tissue in a step of the batch, by the force and by the torque about the origin of a sequence's
   /// frame [J].
-  [[nodiscard]] double work(std::size_t tool, std::int32_t step, const Vec3d& force, const Vec3d& torque) const;
+  [[nodiscard]] double work(std::size_t tool, std::int32_t step, const Wrench& on_tool) const;
   void read_touch();
   /// Upper bound of the distance that any point of a tool moves between two times [m].
   [[nodiscard]] double motion(std::size_t tool, double from, double to) const;
@@ -76,7 +71,7 @@ class ToolContact {
   ContactUnits units_;               ///< of the current batch
   std::int64_t known_at_ = -1;       ///< step after which the buffers hold the forces of points; -1: none
   std::int64_t known_changes_ = -1;  ///< LoadedModel::changes() then
-  std::vector<StepForce> step_forces_;
+  std::vector<Wrench> step_forces_;
   std::int64_t batch_end_ = -1;
   std::vector<char> summed_;  ///< per step of the batch: whether the contact passes ran
   std::vector<Vec3d> arms_;   ///< from a tool's origin to the origin of a sequence's frame, shape [steps + 1][tools] [m]

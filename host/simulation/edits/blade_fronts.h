@@ -26,14 +26,14 @@ double top_speed(const Blade& blade);
 class BladeFronts {
  public:
   explicit BladeFronts(RunContext& run) : run_(run) {}
-  /// Moves the fronts to where the edges have got and lets edges meet what is ahead of them. Returns the edges of each body
+  /// Moves the fronts to the places of the edges and lets edges meet the tissue ahead of them. Returns the edges of each body
   /// that the fronts have crossed. u: RunContext::u(); `until`: time of the next update [s].
   std::vector<CutEdges> update(EditedBodies& bodies, const std::vector<double>& u, double until);
 
  private:
   /// One blade during an update.
   struct Edge;
-  /// What the samples of a blade sweep in one body.
+  /// The sweep of the samples of a blade in one body.
   struct Sweep;
   [[nodiscard]] std::vector<Vec3d> surface(const std::vector<double>& u) const;
   void turn(PressedBlade& blade, const Edge& edge) const;

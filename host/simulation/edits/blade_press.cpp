@@ -195,7 +195,7 @@ void BladePress::end_batch(std::int32_t steps) {
       const double* f = &force[blade_force_numbers * (step * samples + i)];
       const Vec3d on_blade{-f[0], -f[1], -f[2]};
       const double place = static_cast<double>(i - first_[k]) / static_cast<double>(first_[k + 1] - first_[k] - 1);
-      StepForce& sum = felt_.step_forces[step * blades + k];
+      Wrench& sum = felt_.step_forces[step * blades + k];
       const auto at = [&](std::size_t row) {
         const auto& pose = poses_[row * blades + k];
         return vec::add(pose[0], vec::mul(pose[1], place));
@@ -213,7 +213,7 @@ void BladePress::end_batch(std::int32_t steps) {
   }
 }
 
-StepForce BladePress::last_force(std::size_t blade) const {
+Wrench BladePress::last_force(std::size_t blade) const {
   if (felt_.step_forces.size() < names_.size() || felt_.batch_end != run_.state.clock.step) return {};
   return felt_.step_forces[felt_.step_forces.size() - names_.size() + blade];
 }

@@ -1,4 +1,4 @@
-// Blades that cut by force, on the device: uploads the places of their edges and fronts, and reads what they felt.
+// Blades that cut by force, on the device: uploads the places of their edges and fronts, and reads the forces on them.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -26,21 +26,21 @@ class BladePress {
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
   /// Force on each blade [N] and torque about the middle of its edge [N m] in each step of the last batch, shape
   /// [steps][blades]; it ended after step batch_end(). Empty where nothing was near.
-  [[nodiscard]] const std::vector<StepForce>& step_forces() const { return felt_.step_forces; }
+  [[nodiscard]] const std::vector<Wrench>& step_forces() const { return felt_.step_forces; }
   [[nodiscard]] std::int64_t batch_end() const { return felt_.batch_end; }
   /// In the last step; zero where nothing was near.
-  [[nodiscard]] StepForce last_force(std::size_t blade) const;
+  [[nodiscard]] Wrench last_force(std::size_t blade) const;
 
   /// Forces on the blades in the last batch, to be put back after the simulation has gone ahead.
   struct Felt {
-    std::vector<StepForce> step_forces;
+    std::vector<Wrench> step_forces;
     std::int64_t batch_end = -1;
   };
   [[nodiscard]] const Felt& felt() const { return felt_; }
   void put_back(const Felt& felt) { felt_ = felt; }
 
  private:
-  /// What the samples give the kernels.
+  /// Data of the samples for the kernels.
   struct Numbers;
   [[nodiscard]] bool near() const;
   [[nodiscard]] Numbers numbers() const;

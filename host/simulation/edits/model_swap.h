@@ -25,7 +25,7 @@ class ModelSwap {
  public:
   /// `u`: RunContext::u(). Adds its times to `report`.
   ModelSwap(RunContext& run, HostLoads& loads, EditedBodies& bodies, std::vector<double> u, CutReport& report);
-  /// Keeps contact and what shape matching holds if all nodes stay what they are.
+  /// Keeps contact and the state of shape matching if the nodes are unchanged.
   void keep_state() { keeps_state_ = true; }
   /// `scene`: with the new operational regions. The surfaces may still be in progress until `ready` returns, which may throw.
   /// On an exception, the old model is restored.

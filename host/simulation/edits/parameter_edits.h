@@ -1,4 +1,4 @@
-// Changes of parameters of a running simulation: gravity, materials, models, and what is held. The scene is replaced by one
+// Changes of parameters of a running simulation: gravity, materials, models, and supports. The scene is replaced by one
 // with the new values, and a model of it takes over the motion. Materials and models wait for a step at which all subcycles of
 // shape matching begin, before and after the change.
 #pragma once

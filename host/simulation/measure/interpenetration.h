@@ -35,8 +35,8 @@ class Interpenetrations {
   ToolShapes shapes_{256, true};
 };
 
-/// The sum of those between the two names: a tool or a body, and a body. An empty second name: what the first has in all
-/// bodies, or, of a body, also what others have in it. The deepest point is that of all.
+/// The sum of those between the two names: a tool or a body, and a body. An empty second name: the overlaps of the first with
+/// all bodies and, for a body, those of others with it. The deepest point is that of all.
 Interpenetration sum_between(const std::vector<Interpenetration>& found, const std::string& first, const std::string& second);
 
 }  // namespace pliant

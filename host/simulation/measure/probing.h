@@ -61,7 +61,7 @@ class PlacedProbes {
   static void find(Place& place, const Model& uncut);
 
   std::vector<Place> places_;
-  std::shared_ptr<Interpenetrations> interpenetrations_;  ///< keeps the shapes of tools; null if no probe asks
+  std::shared_ptr<Interpenetrations> interpenetrations_;  ///< keeps the shapes of tools; null if no probe needs them
 };
 
 }  // namespace pliant

@@ -30,8 +30,8 @@ void add_substeps(const Simulation& s, Sentences& out) {
 void add_opened(const Simulation& s, Sentences& out) {
   if (s.state().opened == 0) return;
   out.push_back(fmt::format(
-      "{} edges parted: they were stretched beyond {:.3g} times their length beside a cut or tear, or {:.3g} times "
-      "elsewhere (\"break_stretch\"); a material far too soft for its weight does that, too: look at the units of the "
+      "{} edges split: they were stretched beyond {:.3g} times their length next to a cut or tear, or {:.3g} times "
+      "elsewhere (\"break_stretch\"); a material far too soft for its weight also causes this: check the units of the "
       "scene",
       s.state().opened, s.scene().break_stretch, kWholeStretch * s.scene().break_stretch));
 }
@@ -42,7 +42,7 @@ void add_ballast(const Simulation& s, Sentences& out) {
   double mass = 0;
   for (const ModelBody& body : s.model().bodies) mass += body.mass;
   out.push_back(fmt::format(
-      "elements that asked for less than {:.3g} of the first step got inertia instead: at most {:.3g} of the mass, {:.3g} "
+      "elements whose stable step is below {:.3g} of the first step received inertia: at most {:.3g} of the mass, {:.3g} "
       "on {} nodes at the end",
       s.scene().least_step, ballast.most / mass, ballast.mass / mass, ballast.nodes));
 }
@@ -51,8 +51,8 @@ void add_inversions(const Simulation& s, Sentences& out) {
   const Inversions& inverted = s.report().inversions;
   if (inverted.calmed > 0) {
     out.push_back(
-        fmt::format("in {} elements, counted batch by batch, nodes came to move against each other by more than a quarter of "
-                    "an edge in a step; what exceeded that was taken out",
+        fmt::format("{} elements deformed by more than a quarter of an edge in one step, and the solver damped the excess "
+                    "(an element counts once per batch)",
                     inverted.calmed));
   }
   if (inverted.batches == 0) return;
@@ -98,15 +98,15 @@ void add_tool(const Simulation& s, std::size_t tool, Sentences& out) {
         name, thick, 0.5 * spacing));
   }
   if (cells > kDeep) {
-    out.push_back(fmt::format(
-        "tool '{}' went {:.2g} cells deep into tissue: nodes that are fixed or prescribed do not give way to it, an "
-        "edge thinner than half a cell passes between contact points, and a tool that moves a cell in a few steps "
-        "is met late",
-        name, cells));
+    out.push_back(
+        fmt::format("tool '{}' went {:.2g} cells deep into tissue: nodes that are fixed or prescribed do not yield to it, an "
+                    "edge thinner than half a cell passes between contact points, and a tool that moves a cell in a few steps "
+                    "is detected late",
+                    name, cells));
   }
   if (h.touched == 0 && s.step() > 0) {
     out.push_back(fmt::format(
-        "tool '{}' has touched nothing until t = {:.4g} s: look at its path, its size and the units of both", name, s.time()));
+        "tool '{}' has touched nothing until t = {:.4g} s: check its path, its size and the units of both", name, s.time()));
   }
 }
 
@@ -132,8 +132,8 @@ void add_damping(Simulation& s, Sentences& out) {
   const double apart = vec::norm(vec::sub(on_tools, held));
   if (!holds || !(apart > kDamped * size) || !(vec::norm(damped) > 0.5 * apart)) return;
   out.push_back(fmt::format(
-      "tools feel {:.3g} N, and what holds the bodies gives {:.3g} N less their loads: of the difference, {:.2g} % of the "
-      "force, \"damping\" takes most, which resists all motion as if the tissue stood in a thick liquid; slower tools, less "
+      "the force on the tools is {:.3g} N, and the supports carry {:.3g} N less the loads: \"damping\" causes most of the "
+      "difference, {:.2g} % of the force; it resists all motion as if the tissue stood in a thick liquid; slower tools, less "
       "damping or \"relaxation\" give the force of the tissue alone (docs/contact.md, Force curves)",
       size, vec::norm(held), 100 * apart / size));
 }

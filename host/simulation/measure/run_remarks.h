@@ -7,7 +7,7 @@
 
 namespace pliant {
 
-/// Returns sentences on what happened since the start: elements that were calmed, inverted or split by overstretch, ballast,
+/// Returns sentences on the events since the start: elements that were calmed, inverted or split by overstretch, ballast,
 /// tools that went deep, had no contact or are too thin, and tool forces with a contribution from damping.
 [[nodiscard]] std::vector<std::string> run_remarks(Simulation& simulation);
 

@@ -1,4 +1,4 @@
-// What a surface can be coloured by: values of elements, averaged to nodes and embedded to vertices. All in double from the
+// Fields that can colour a surface: values of elements, averaged to nodes and embedded to vertices. All in double from the
 // deformation gradient at the centre of each element; nothing of these shares code with the kernels.
 #pragma once
 #include <optional>

@@ -8,15 +8,15 @@
 
 namespace pliant {
 
-inline constexpr int kToolSides = 64;  ///< sides of what is round, for drawing
+inline constexpr int kToolSides = 64;  ///< sides of round parts, for drawing
 
 /// Triangles of a shape in its own frame at `time` [s], outward: `fixed`, or of a sequence the nearer frame.
 TriangleMesh shape_at(const ToolForm& form, const TriangleMesh& fixed, double time);
 
-/// The present shapes of tools. What does not change in time is made once.
+/// The present shapes of tools. Parts that do not change in time are made once.
 class ToolShapes {
  public:
-  /// `around`: sides of what is round, a multiple of four. `volume`: round shapes keep their volume, so that their corners lie
+  /// `around`: sides of round parts, a multiple of four. `volume`: round shapes keep their volume, so that their corners lie
   /// a little outside; otherwise the corners lie on them.
   explicit ToolShapes(int around, bool volume = false) : around_(around), volume_(volume) {}
 

@@ -1,5 +1,5 @@
-// All numbers that decide when a batch is unreliable and what is done then. Each is followed by its unit, its reason, and the
-// scene or test that needs it ("survival N" is scene N of `pliant bench survival`, docs/stability.md).
+// All numbers that decide when a batch is unreliable and which remedy follows. Each is followed by its unit, its reason, and
+// the scene or test that needs it ("survival N" is scene N of `pliant bench survival`, docs/stability.md).
 #pragma once
 #include <cstdint>
 

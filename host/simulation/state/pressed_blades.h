@@ -1,4 +1,4 @@
-// Blades that cut by force: what their edges have met, and what they have done (docs/cutting.md). Part of RunState.
+// Blades that cut by force: the tissue that their edges meet, and their results (docs/cutting.md). Part of RunState.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -10,12 +10,12 @@
 
 namespace pliant {
 
-/// What a sample of an edge is to tissue.
+/// Relation of a sample of an edge to tissue.
 enum class FrontKind : std::int32_t {
   none,   ///< it is near nothing
   ahead,  ///< its front point is on the surface that it comes to
   held,   ///< it presses, or has pressed and is still in its cut
-  beside  ///< beyond the end of what is cut, it goes with the nearest sample that cuts, without a force
+  beside  ///< beyond the end of the cut, it goes with the nearest sample that cuts, without a force
 };
 
 /// A sample of the edge of a blade.

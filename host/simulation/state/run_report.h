@@ -1,4 +1,4 @@
-// Statistics of a run. No step depends on them. Checkpoints contain them, so that a resumed run reports what happened before;
+// Statistics of a run. No step depends on them. Checkpoints contain them, so that a resumed run also reports earlier events;
 // the deep hash and comparisons exclude them.
 #pragma once
 #include <cstdint>
@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "pliant/wrench.h"
 #include "simulation/state/run_state_parts.h"
 
 namespace pliant {
@@ -31,9 +32,7 @@ struct BallastReport {
 
 /// Contact load on a tool, of one step or of a batch: force and torque are means over the batch, the rest is that of its last
 /// step with contact.
-struct ToolLoad {
-  Vec3d force{};     ///< on the tool [N]
-  Vec3d torque{};    ///< about its origin [N m]
+struct ToolLoad : Wrench {
   double area = 0;   ///< undeformed area of the tissue in contact [m^2]
   double depth = 0;  ///< greatest depth of a point inside the tool, after contact [m]
   std::int64_t points = 0;

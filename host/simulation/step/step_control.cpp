@@ -70,8 +70,8 @@ void StepControl::refuse_step() const {
   const bool moves = std::find(is_free.begin(), is_free.end(), 1) != is_free.end();
   const std::string why =
       moves ? fmt::format(
-                  "the elements give no finite forces on {} ({}); \"young\" and \"density\" may be beyond what a float "
-                  "holds, or the device computes wrongly, which \"pliant compare\" shows",
+                  "the elements give no finite forces on {} ({}); \"young\" and \"density\" may exceed the range of a "
+                  "float, or the device computes wrongly, which \"pliant compare\" shows",
                   run_.backend().info().name, run_.backend().info().device)
             : std::string(
                   "\"fixed\" and \"prescribed\" hold every node of every body, and nothing is left that could move; "

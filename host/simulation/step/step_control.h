@@ -31,7 +31,7 @@ class StepControl {
   /// Call after an operational region has moved: adapts the step unless it is at its ceiling and a bound of the elements, which
   /// takes a fraction of the time of the estimate, shows that it is stable.
   void adapt_after_move();
-  /// Call after a topology edit. Limits the step to what the new elements are stable at, both undeformed and as deformed now.
+  /// Call after a topology edit. Limits the step to the stable step of the new elements, both undeformed and as deformed now.
   /// `changed`: per slot, nonzero if its elements or mass changed.
   void limit_after_edit(const std::vector<char>& changed);
 

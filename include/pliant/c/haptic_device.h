@@ -44,7 +44,7 @@ typedef struct pliant_device_wrench {
 #define PLIANT_DEVICE_WRENCH_INIT \
   { sizeof(pliant_device_wrench), {0}, {0}, 0, 0 }
 
-/** What a device can exert, as pliant::DeviceLimits. */
+/** Greatest force and torque of a device, as pliant::DeviceLimits. */
 typedef struct pliant_device_limits {
   size_t size;   /**< PLIANT_DEVICE_LIMITS_INIT */
   double force;  /**< greatest force [N] */
@@ -53,7 +53,7 @@ typedef struct pliant_device_limits {
 #define PLIANT_DEVICE_LIMITS_INIT \
   { sizeof(pliant_device_limits), HUGE_VAL, HUGE_VAL }
 
-/** What a device has received so far, as pliant::DeviceCounts. */
+/** Counts of the samples of a device, as pliant::DeviceCounts. */
 typedef struct pliant_device_counts {
   size_t size;              /**< PLIANT_DEVICE_COUNTS_INIT */
   uint64_t received;        /**< samples */
@@ -86,9 +86,9 @@ PLIANT_API pliant_status pliant_haptic_device_create(const pliant_device_callbac
                                                      const pliant_device_limits* limits, pliant_haptic_device* out);
 /** Destroys a handle. The device itself lives until no loop uses it. */
 PLIANT_API pliant_status pliant_haptic_device_destroy(pliant_haptic_device device);
-/** What it has received so far. */
+/** Counts of the samples so far. */
 PLIANT_API pliant_status pliant_haptic_device_counts(pliant_haptic_device device, pliant_device_counts* out);
-/** What it can exert. */
+/** Greatest force and torque. */
 PLIANT_API pliant_status pliant_haptic_device_limits(pliant_haptic_device device, pliant_device_limits* out);
 /** The port of UDP or TCP that it listens on; 0: none. */
 PLIANT_API pliant_status pliant_haptic_device_port(pliant_haptic_device device, int* out);
@@ -98,7 +98,7 @@ PLIANT_API pliant_status pliant_manual_device_create(const pliant_device_limits*
 /** Moves it. A device of another kind is PLIANT_USAGE, here and in the next call. */
 PLIANT_API pliant_status pliant_manual_device_set_pose(pliant_haptic_device device, const double position[3],
                                                        const double turn[4], uint32_t buttons);
-/** What it exerts now. */
+/** Force and torque on the hand now. */
 PLIANT_API pliant_status pliant_manual_device_wrench(pliant_haptic_device device, pliant_device_wrench* out);
 
 #ifdef __cplusplus

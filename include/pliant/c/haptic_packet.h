@@ -1,5 +1,6 @@
-/* What a driver of a haptic device exchanges with Pliant (docs/haptic_devices.md), for "udp:PORT" and "shm:NAME". A driver may
- * include this header alone: it needs no library. All numbers are little-endian, all floating-point numbers have 64 bits.
+/* Packets that a driver of a haptic device exchanges with Pliant (docs/haptic_devices.md), for "udp:PORT" and "shm:NAME". A
+ * driver may include this header alone: it needs no library. All numbers are little-endian, all floating-point numbers have 64
+ * bits.
  *
  * UDP: a datagram to Pliant is one pliant_haptic_pose, a datagram back is one pliant_haptic_wrench.
  * Shared memory: one pliant_haptic_shared; the driver publishes `pose`, Pliant publishes `wrench`.

@@ -34,7 +34,7 @@ typedef struct pliant_haptic_options {
   double device_damping;  /**< of the device itself, at least [N s/m] */
   double stale_after;     /**< age of the newest frame beyond which the force fades out [s] */
   double ramp;            /**< time of fading out, and in at the start [s] */
-  double greatest_force;  /**< limit besides the device's own; 0: none [N] */
+  double greatest_force;  /**< limit in addition to the device's own; 0: none [N] */
   double greatest_torque; /**< [N m] */
   double motion_scale;    /**< way of the tool per way of the device */
   double force_scale;     /**< force on the hand per force on the tool */
@@ -42,7 +42,7 @@ typedef struct pliant_haptic_options {
   int rings;              /**< "buffer": rings of elements around the nodes that the tool touches, 1 to 100 */
   int passive;            /**< 1: the device receives no more energy than it gave */
   int align;              /**< 1: device and tool start at the same place; 0: the device speaks in scene coordinates */
-  int realtime;           /**< 1: ask for real-time priority */
+  int realtime;           /**< 1: request real-time priority */
 } pliant_haptic_options;
 #define PLIANT_HAPTIC_OPTIONS_INIT \
   { sizeof(pliant_haptic_options), 1000, NULL, 0.3, 1, 1, 0, 0, 0, 0, 0.1, 0.25, 0.1, 0, 0, 1, 1, 0, 3, 1, 1, 1 }
@@ -79,7 +79,7 @@ typedef struct pliant_haptic_state {
   double age;          /**< of the newest one [s] */
   int64_t elements;    /**< of the buffer; 0: nothing is near the tool */
   int64_t buffers;     /**< built so far */
-  int64_t resets;      /**< buffers that blew up and began anew */
+  int64_t resets;      /**< buffers that diverged and restarted */
   int64_t contacts;    /**< points that touch */
   int64_t stale;       /**< ticks without a recent frame */
   int64_t limited;     /**< ticks whose force was limited */
@@ -109,7 +109,7 @@ PLIANT_API pliant_status pliant_haptic_loop_state(pliant_haptic_loop loop, plian
  * wait, further ones are left out. */
 PLIANT_API pliant_status pliant_haptic_loop_samples(pliant_haptic_loop loop, pliant_haptic_sample* out, size_t count,
                                                     size_t* given);
-/** Writes what the device said as a stroke, which "file:" plays. PLIANT_STATE without `log_samples`. */
+/** Writes the device's samples as a stroke, which "file:" plays. PLIANT_STATE without `log_samples`. */
 PLIANT_API pliant_status pliant_haptic_loop_write_log(pliant_haptic_loop loop, const char* file);
 
 #ifdef __cplusplus

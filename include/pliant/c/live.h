@@ -18,7 +18,7 @@ typedef struct pliant_live_options {
 #define PLIANT_LIVE_OPTIONS_INIT \
   { sizeof(pliant_live_options), 60, 1 }
 
-/** What a world that runs freely achieves, as pliant::LiveState. */
+/** Performance of a world that runs freely, as pliant::LiveState. */
 typedef struct pliant_live_state {
   size_t size;      /**< PLIANT_LIVE_STATE_INIT */
   int running;      /**< 1 between pliant_world_run_live and pliant_world_stop_live */
@@ -36,7 +36,7 @@ typedef struct pliant_live_state {
 /** Something that happened, as pliant::Event. The texts are valid until the next pliant_world_events of this world. */
 typedef struct pliant_event {
   size_t size;         /**< PLIANT_EVENT_INIT; the same in all elements of an array */
-  const char* kind;    /**< what happened, for example "cut" */
+  const char* kind;    /**< kind of event, for example "cut" */
   const char* subject; /**< name of the body or tool, id of the grab, or file; empty: the whole scene */
   const char* text;    /**< a sentence for people */
   int64_t step;        /**< steps since the start */

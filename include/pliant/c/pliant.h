@@ -114,7 +114,7 @@ PLIANT_API pliant_status pliant_world_probes(pliant_world world, pliant_probe_va
  * the number of vertices. */
 PLIANT_API pliant_status pliant_world_vertex_values(pliant_world world, const char* field, float* out, size_t count,
                                                     size_t* needed);
-/** Measures what tools and bodies, and bodies and bodies, have in common, and fills the first `count` of those that overlap.
+/** Measures the overlaps of tools and bodies, and of bodies and bodies, and fills the first `count` of those that overlap.
  * `*needed` (may be null) receives their number. `out` may be null if `count` is 0. */
 PLIANT_API pliant_status pliant_world_interpenetrations(pliant_world world, pliant_interpenetration* out, size_t count,
                                                         size_t* needed);
@@ -127,7 +127,7 @@ PLIANT_API pliant_status pliant_world_grab(pliant_world world, int32_t vertex, d
                                            double max_force, uint64_t* out);
 /** Moves the target of a grab to a point [m]. */
 PLIANT_API pliant_status pliant_world_move_grab(pliant_world world, uint64_t grab, const double target[3]);
-/** What a grab does, as pliant::GrabState. Pointers that are null receive nothing. */
+/** State of a grab, as pliant::GrabState. Pointers that are null receive nothing. */
 PLIANT_API pliant_status pliant_world_grab_state(pliant_world world, uint64_t grab, double force[3], double gap[3],
                                                  int* limited);
 /** Removes a grab. */

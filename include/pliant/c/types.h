@@ -162,7 +162,7 @@ typedef struct pliant_tool_force {
 #define PLIANT_TOOL_FORCE_INIT \
   { sizeof(pliant_tool_force), NULL, {0}, {0}, {0}, {0}, 0, 0, 0, 0 }
 
-/** What a tool and a body, or two bodies, have in common, as pliant::Interpenetration. Names are valid as long as the world. */
+/** The overlap of a tool and a body, or of two bodies, as pliant::Interpenetration. Names are valid as long as the world. */
 typedef struct pliant_interpenetration {
   size_t size;        /**< PLIANT_INTERPENETRATION_INIT; the same in all elements of an array */
   const char* first;  /**< name of a tool or a body */

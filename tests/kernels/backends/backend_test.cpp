@@ -318,7 +318,7 @@ TEST(RefRegistry, NamesUnknownStemsAndDefines) {
 TEST(Backends, OpensByNameAndSaysWhy) {
   std::string why;
   EXPECT_EQ(open_backend("cpu", &why)->info().name, "cpu");
-  EXPECT_MENTIONS(why, "asked for");
+  EXPECT_MENTIONS(why, "requested");
   for (const char* name : {"cpu:double", "cpu:check"}) EXPECT_EQ(open_backend(name)->info().name, name);
   const auto chosen = open_backend("auto", &why);
   EXPECT_TRUE(chosen->info().bit_exact);
