@@ -57,7 +57,8 @@ struct ToolForce : Wrench {
 /// last step, and its history.
 struct BladeForce : Wrench {
   std::string name;       ///< name in the scene
-  Vec3d a{}, b{};         ///< ends of its edge [m]
+  Vec3d a{};              ///< one end of its edge [m]
+  Vec3d b{};              ///< the other end [m]
   double max_force = 0;   ///< largest force so far [N]
   double work = 0;        ///< done on tissue so far [J]
   double fracture = 0;    ///< of it, what cutting took [J]

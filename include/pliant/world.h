@@ -130,9 +130,9 @@ class PLIANT_API World {
   /// Adds a tool from text, an entry of `tools` of a scene file (docs/scene.md); relative paths start from `folder`.
   std::string parse_tool(const std::string& text, const std::string& folder = "");
   void remove_tool(const std::string& name);  ///< its name may be reused
-  /// Disables a tool at no cost per step until unpark_tool(), place_tool() or drive_tool().
-  void park_tool(const std::string& name);
+  void park_tool(const std::string& name);    ///< disables it, at no cost, until unpark_tool(), place_tool() or drive_tool()
   void unpark_tool(const std::string& name);  ///< enables it again, at its last pose or at its path's current pose
+
   /// Moves a tool at once to a position [m] and orientation (unit quaternion x, y, z, w), where it stays. Its path ends.
   void place_tool(const std::string& name, const Vec3d& position, const std::array<double, 4>& turn = {0, 0, 0, 1});
   /// Moves a tool from its current pose to the given one within `seconds` [s], after which it stays. Its path ends. A speed
