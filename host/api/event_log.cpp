@@ -88,8 +88,7 @@ void EventLog::look_at_tools(const Simulation& simulation) {
 
 void EventLog::look_at_blades(const Simulation& simulation) {
   for (const auto& [name, blade] : simulation.state().pressed) {
-    const bool gave = blade.first >= 0;
-    if (std::exchange(gave_way_[name], gave) || !gave) continue;
+    if (blade.first < 0 || std::exchange(gave_way_[name], true)) continue;
     const auto own = std::find_if(simulation.scene().blades.begin(), simulation.scene().blades.end(),
                                   [&, wanted = &name](const Blade& b) { return b.name == *wanted; });
     const BladeSegment at = blade_place(simulation.state().driven_blades, *own, simulation.time());

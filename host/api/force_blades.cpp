@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <iterator>
 #include <utility>
 
 #include "geometry/vec.h"
@@ -39,8 +40,11 @@ void ForceBlades::drive(const std::string& name, const BladeSegment& to, double 
                                               name, fmt::join(to[0], ", "), fmt::join(to[1], ", "), seconds));
   }
   const std::lock_guard lock(mutex_);
-  const auto last = std::find_if(asked_.rbegin(), asked_.rend(), [&](const Request& r) { return r.name == name; });
-  if (last != asked_.rend() && last->seconds > 0) {  // of several pending drives only the last one is kept
+  const auto own = [&](const Request& r) { return r.name == name; };
+  const auto last = std::find_if(asked_.rbegin(), asked_.rend(), own);
+  const auto before = last == asked_.rend() ? last : std::find_if(std::next(last), asked_.rend(), own);
+  // Of several pending drives the last one is kept, and the first, which may place the blade.
+  if (seconds > 0 && before != asked_.rend() && last->seconds > 0 && before->seconds >= 0) {
     *last = {name, to, seconds};
   } else {
     asked_.push_back({name, to, seconds});
@@ -114,11 +118,12 @@ void ForceBlades::note(const Simulation& simulation) {
     f.name = blade.name;
     f.a = at[0];
     f.b = at[1];
-    f.force = felt.force;
-    f.torque = felt.torque;
     f.present = blade_present(state.driven_blades, blade, now, now);
-    f.pressing = felt.force != Vec3d{};
-    if (const auto own = state.pressed.find(blade.name); own != state.pressed.end()) {
+    const auto own = state.pressed.find(blade.name);
+    const bool touches = own != state.pressed.end() && own->second.touches();
+    if (f.present && touches) static_cast<Wrench&>(f) = felt;
+    f.pressing = f.force != Vec3d{};
+    if (own != state.pressed.end()) {
       f.max_force = own->second.max_force;
       f.work = own->second.work;
       f.fracture = own->second.fracture;

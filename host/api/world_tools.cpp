@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "api/world_call.h"
 #include "model/contact/tool_mesh.h"
@@ -17,13 +18,18 @@ using api::Call;
 }  // namespace
 
 void World::Impl::change_tools_now() {
-  try {
-    rigid_tools.apply(*simulation);
-    force_blades.apply(*simulation);
-  } catch (const Error& error) {
-    if (error.code() == ErrorCode::internal || error.code() == ErrorCode::device) throw;
-    throw api::Refused(error);
-  }
+  std::optional<api::Refused> refused;
+  const auto attempt = [&](auto& requests) {
+    try {
+      requests.apply(*simulation);
+    } catch (const Error& error) {
+      if (error.code() == ErrorCode::internal || error.code() == ErrorCode::device) throw;
+      if (!refused) refused.emplace(error);
+    }
+  };
+  attempt(rigid_tools);
+  attempt(force_blades);
+  if (refused) throw api::Refused(*refused);
 }
 
 void World::Impl::check_can_change_tools() {

@@ -82,6 +82,24 @@ TEST(BladeForce, LiftedItIsNowhereAndMayBeginAnywhere) {
   EXPECT_EQ(scalpel(world).a, (Vec3d{0.02, 0.025, -0.05}));
 }
 
+/// A place ahead of where it was lifted is not the way of its front.
+TEST(BladeForce, LiftedAndPlacedAheadItDoesNotCutTheWay) {
+  World world = driven();
+  world.drive_blade("scalpel", {0, 0.017, -0.06}, {0, 0.017, 0.06}, 0.1);
+  world.advance(0.1);
+  ASSERT_TRUE(scalpel(world).pressing);
+  const double work = scalpel(world).work, most = scalpel(world).max_force;
+  world.lift_blade("scalpel");
+  EXPECT_FALSE(scalpel(world).pressing);
+  EXPECT_EQ(scalpel(world).force, Vec3d{});
+  world.drive_blade("scalpel", deep_a, deep_b);
+  world.step(1);
+  world.advance(0.05);
+  EXPECT_EQ(scalpel(world).fracture, 0);
+  EXPECT_EQ(scalpel(world).work, work);
+  EXPECT_EQ(scalpel(world).max_force, most);
+}
+
 TEST(BladeForce, IsPartOfCheckpointsAndResets) {
   const test::TempFolder folder;
   const std::string file = (folder.path() / "state.pckpt").string();

@@ -1,6 +1,7 @@
 // Surfaces as strangers make them: what is told, what is refused, what is mended.
 #include "mesh_io/surface_report.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "geometry/distance.h"

@@ -52,6 +52,7 @@ void TopologyEdits::drive_blade(const std::string& name, const BladeSegment& to,
   const double now = run_.state.clock.time();
   if (!blade_present(driven, blade, now, now)) {
     driven[name] = {to, to, now, now, false};
+    forget_fronts(name);
     return;
   }
   const BladeSegment from = blade_place(driven, blade, now);
@@ -70,6 +71,12 @@ void TopologyEdits::lift_blade_by_force(const std::string& name) {
   const BladeSegment at = blade_place(run_.state.driven_blades, blade_by_force(name), run_.state.clock.time());
   const double now = run_.state.clock.time();
   run_.state.driven_blades[name] = {at, at, now, now, true};
+  forget_fronts(name);
+}
+
+void TopologyEdits::forget_fronts(const std::string& name) {
+  const auto own = run_.state.pressed.find(name);
+  if (own != run_.state.pressed.end()) own->second.forget_fronts();
 }
 
 }  // namespace pliant

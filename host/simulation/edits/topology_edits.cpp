@@ -208,7 +208,7 @@ std::unique_ptr<EditedBodies> TopologyEdits::bodies_at(const RunState& state) co
   if (!state.broken.empty() && state.broken.size() != scene.joins.size()) refuse("its broken joins");
   const auto edited = [](const RunState& s) {
     return !s.cuts.empty() || !s.tears.empty() || !s.regions.empty() || s.most_substeps != 0 || !s.blades.traces.empty() ||
-           !s.pressed.empty() || !s.changed.parameters.empty() || !s.broken.empty();
+           !s.pressed.empty() || (s.kept && !s.kept->pressed.empty()) || !s.changed.parameters.empty() || !s.broken.empty();
   };
   if (!edited(state) && !edited(run_.state)) return nullptr;
   auto all = std::make_unique<EditedBodies>(scene);
@@ -222,16 +222,19 @@ std::unique_ptr<EditedBodies> TopologyEdits::bodies_at(const RunState& state) co
     if (!ordered || (!cells.empty() && (cells.front() < 0 || cells.back() >= last))) refuse("its moved regions");
   }
   all->replay(state);
-  for (const auto& pressed : state.pressed) {
-    const PressedBlade& blade = pressed.second;
-    const auto own =
-        std::find_if(scene.blades.begin(), scene.blades.end(), [&](const Blade& b) { return b.name == pressed.first; });
-    const bool known = own != scene.blades.end() && own->cuts == BladeCuts::by_force &&
-                       blade.samples.size() == static_cast<std::size_t>(sample_count(*own, run_.settings.blade_edge));
-    if (!known ||
-        !std::all_of(blade.samples.begin(), blade.samples.end(), [&](const FrontSample& s) { return belongs(s, *all); }))
-      refuse("its fronts of blades");
-  }
+  const auto check_fronts = [&](const std::map<std::string, PressedBlade>& blades) {
+    for (const auto& pressed : blades) {
+      const std::vector<FrontSample>& samples = pressed.second.samples;
+      const auto own =
+          std::find_if(scene.blades.begin(), scene.blades.end(), [&](const Blade& b) { return b.name == pressed.first; });
+      const bool known = own != scene.blades.end() && own->cuts == BladeCuts::by_force &&
+                         samples.size() == static_cast<std::size_t>(sample_count(*own, run_.settings.blade_edge));
+      if (!known || !std::all_of(samples.begin(), samples.end(), [&](const FrontSample& s) { return belongs(s, *all); }))
+        refuse("its fronts of blades");
+    }
+  };
+  check_fronts(state.pressed);
+  if (state.kept) check_fronts(state.kept->pressed);
   for (const auto& [key, traces] : state.blades.traces) {
     for (const auto& [body, front] : traces) {
       const bool known = body >= 0 && static_cast<std::size_t>(body) < all->size() &&

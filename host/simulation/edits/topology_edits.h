@@ -66,6 +66,7 @@ class TopologyEdits {
   void move_scene_blades();
   void move_fronts();
   [[nodiscard]] const Blade& blade_by_force(const std::string& name) const;
+  void forget_fronts(const std::string& name);
   CutReport run_blades(const std::vector<BladeMove>& moves, std::span<const SweepTriangle> triangles);
   [[nodiscard]] bool reached(std::size_t body, const std::vector<Vec3d>& x, const std::vector<BladeMove>& moves,
                              std::span<const SweepTriangle> triangles) const;

@@ -145,6 +145,11 @@ bool Recovery::go_back(Symptoms&) {
   state.clock = state.kept->clock;
   state.relaxation.damping = state.kept->damping;
   state.pressed = state.kept->pressed;
+  for (auto& [name, blade] : state.pressed) {  // the host has taken it elsewhere since
+    const auto drive = state.driven_blades.find(name);
+    if (drive != state.driven_blades.end() && drive->second.placed() && drive->second.start > state.clock.time())
+      blade.forget_fronts();
+  }
   reports_.now.take_back(reports_.kept);
   return false;
 }

@@ -1,5 +1,6 @@
 // Blades that cut by force: the tissue that their edges meet, and their results (docs/cutting.md). Part of RunState.
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -40,13 +41,23 @@ struct PressedBlade {
   double first = -1;                 ///< time at which tissue first gave way [s]; -1: not yet
   std::int64_t by_contact = 0;       ///< samples that gave way by the traction of the edge, summed over updates
   std::int64_t by_stress = 0;        ///< by the stress of the element below
+
+  [[nodiscard]] bool touches() const {
+    return std::any_of(samples.begin(), samples.end(), [](const FrontSample& s) { return s.kind != 0; });
+  }
+  /// Call when the blade is taken elsewhere: it touches nothing.
+  void forget_fronts() {
+    std::fill(samples.begin(), samples.end(), FrontSample{});
+    normal = {};
+  }
 };
 
 /// Motion of a blade between two places at constant speed, requested by the host; its path has ended.
 struct BladeDrive {
   BladeSegment from{}, to{};
-  double start = 0, end = 0;  ///< [s]
-  bool lifted = false;        ///< it is nowhere until it is driven again
+  double start = 0, end = 0;                                  ///< [s]
+  bool lifted = false;                                        ///< it is nowhere until it is driven again
+  [[nodiscard]] bool placed() const { return end == start; }  ///< or lifted: it did not go there
 };
 using BladeDrives = std::map<std::string, BladeDrive>;
 

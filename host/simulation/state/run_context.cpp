@@ -91,6 +91,28 @@ void RunContext::place_contact() const {
       rest[tile_base(i, 4) + c * PLIANT_TILE] = points.rest[i][c] + state.offset[3 * node + c];
   }
   backend().write_reals(id, rest);
+  place_held_nodes();
+}
+
+/// The same for the part of contact points that depends on held nodes, where tools need it (contact_held).
+void RunContext::place_held_nodes() const {
+  if (model().tools->empty()) return;
+  const ContactPoints& points = *model().contact;
+  const BufferId id = loaded.program().find("contact_held");
+  std::vector<double> held = backend().read_reals(id);
+  const std::vector<double> share = backend().read_reals(loaded.program().find("contact_share"));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!(held[tile_base(i, 4) + std::size_t{3} * PLIANT_TILE] > 0)) continue;
+    Vec3d sum{};
+    for (std::size_t a = 0; a < 8; ++a) {
+      if (share[tile_base(i, 8) + a * PLIANT_TILE] > 0) continue;
+      const auto slot = static_cast<std::size_t>(points.nodes[i][a]);
+      for (std::size_t c = 0; c < 3; ++c)
+        sum[c] += double(points.weights[i][a]) / contact_weight_unit * (model().rest[slot][c] + state.offset[3 * slot + c]);
+    }
+    for (std::size_t c = 0; c < 3; ++c) held[tile_base(i, 4) + c * PLIANT_TILE] = sum[c];
+  }
+  backend().write_reals(id, held);
 }
 
 void RunContext::upload_params() const {

@@ -71,6 +71,7 @@ struct RunContext {
   void place_surface() const;
   /// The same for contact points only; place_surface() calls it.
   void place_contact() const;
+  void place_held_nodes() const;
 
   void upload_params() const;
   /// Uploads the curve values of the next `steps` steps.

@@ -224,8 +224,10 @@ void check_state(const RunState& state, const Model& model, const Scene& scene) 
       return b.name == *own && b.cuts == BladeCuts::by_force;
     });
     need(known && std::isfinite(drive.start) && std::isfinite(drive.end) && drive.end >= drive.start, "a driven blade");
-    good_segment(drive.from);
-    good_segment(drive.to);
+    for (const BladeSegment& s : {drive.from, drive.to}) {
+      good_segment(s);
+      need(s[0] != s[1], "a driven blade has no length");
+    }
   }
   const std::vector<ContactTool> tools = known_tools(scene, state.tools);
   for (const auto& driven : state.driven) {
