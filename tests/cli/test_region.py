@@ -176,7 +176,7 @@ class Regions(harness.CliTest):
                              ({"region": "liver"}, ['got "liver"', there]), ({"region": 7}, ["got 7", there]),
                              ({"region": 1.5}, ["got 1.5, expected a tag of the mesh file"]), ({"region": ""}, ['/region: got ""']),
                              ({"region": 3, "data": "x"}, ['expected an array "x"']), ({"region": 3, "dimension": 1}, ["/dimension: got 1"]),
-                             ({"all": True, "data": "x"}, ['/data: got "x", expected no "data" beside "all"']),
+                             ({"all": True, "data": "x"}, ['/data: got "x", expected no "data" with "all"']),
                              ({"region": 3, "all": True}, ["got region, all, expected exactly one of box"])):
             self.refused("run", self.bar_scene("scene", file, where, self.END, initial=[], pressures=[]), "--backend", "cpu",
                          words=["scene.json: ", *words])

@@ -51,7 +51,7 @@ class Run(harness.CliTest):
         done = self.pliant("run", scene, "--backend", "cpu", "--steps", "5")
         for word in ("scene: 216 nodes, 125 elements on cpu", "bit-exact", "5 steps", "stable", "median", "real time", "hash "):
             self.assertIn(word, done.stdout)
-        self.assertRegex(done.stderr, r"^pliant: backend cpu \(.*\): asked for\n$")
+        self.assertRegex(done.stderr, r"^pliant: backend cpu \(.*\): requested\n$")
         quiet = self.pliant("run", scene, "--backend", "cpu", "--steps", "5", "--quiet")
         self.assertEqual((quiet.stdout, quiet.stderr), ("", ""))
         only = self.pliant("run", scene, "--backend", "cpu", "--steps", "5", "--quiet", "--hash")

@@ -99,7 +99,7 @@ class Tools(CliTest):
 
     def test_damping_in_the_force_of_a_tool_is_told(self):
         def told(*run):
-            return [r for r in self.json("run", *run, "--backend", "cpu")["remarks"] if "\"damping\" takes most" in r]
+            return [r for r in self.json("run", *run, "--backend", "cpu")["remarks"] if "\"damping\" causes most" in r]
 
         self.assertEqual(len(told(self.pressed(100, duration=0.1))), 1)
         self.assertEqual(told(self.pressed(0, duration=0.1)), [])
