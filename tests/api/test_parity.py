@@ -98,6 +98,7 @@ def block(text, begin):
 
 def members(text):
     """Of a struct; one line may declare several."""
+    text = re.sub(r"^\s*(?:[A-Z]\w*\(|: ).*$", "", text, flags=re.M)  # constructors
     text = re.sub(r"\{[^{}]*\}|<[^<>]*>", "", text)
     return set(re.findall(r"(\w+)(?:\[\d+\]|\s*=[^;,]*)?[;,]", text))
 
@@ -115,8 +116,11 @@ def cpp():
     headers = re.sub(r"\[\[deprecated[^\n]*", "", "".join(code_of(f"include/pliant/{n}.h") for n in names))
     found = set().union(*(calls_of(headers, name) for name in CLASSES))
     found |= set(re.findall(r"^PLIANT_API .*?(\w+)\(", headers, re.M))
+    wrench = members(block(code_of("include/pliant/wrench.h"), "struct Wrench "))
     for name in STRUCTS:
         found |= {f"{name}.{m}" for m in members(block(headers, f"struct {name} "))}
+        if f"struct {name} : Wrench" in headers:
+            found |= {f"{name}.{m}" for m in wrench}
     return found
 
 
@@ -169,7 +173,7 @@ def python():
         found |= {f"{name}.{n}" for n in re.findall(rf'\b{variable}\["(\w+)"\] =', block(text, f"py::{kind} {function}("))}
     found |= {f"LiveOptions.{n}" for n in re.findall(r'py::arg\("(\w+)"\)', live[:live.index("stop_live")])}
     found |= touch()
-    found |= {f"ForceSample.{n}" for n in re.search(r"PYBIND11_NUMPY_DTYPE\(pliant::ForceSample, ([^)]*)\)", live)[1].split(", ")}
+    found |= {f"ForceSample.{n}" for n in re.findall(r'add\("(\w+)"', block(text, "py::dtype dtype_of_force_sample("))}
     return {PYTHON_NAMES.get(n, n) for n in found}
 
 
