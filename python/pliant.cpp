@@ -10,7 +10,10 @@
 #include <string>
 
 #include "haptics.h"
+#include "live.h"
 #include "rows.h"
+#include "surfaces.h"
+#include "tools.h"
 
 namespace py = pybind11;
 using pliant::Vec3d;
@@ -48,33 +51,6 @@ py::list ranges(pliant::View<pliant::IndexRange> all) {
   return list;
 }
 
-using Vertices = py::array_t<double, py::array::c_style | py::array::forcecast>;
-
-std::int32_t vertex_number(std::int64_t v) {
-  if (v >= 0 && v <= std::numeric_limits<std::int32_t>::max()) return static_cast<std::int32_t>(v);
-  throw pliant::Error(pliant::ErrorCode::usage, "a triangle of a surface names the vertex " + std::to_string(v));
-}
-
-pliant::SurfaceSpec surface(const Vertices& vertices, const py::object& given) {
-  const auto numbers = py::array::ensure(given);
-  if (!numbers || (numbers.dtype().kind() != 'i' && numbers.dtype().kind() != 'u')) {
-    throw pliant::Error(pliant::ErrorCode::usage, "the triangles of a surface are an array of integers");
-  }
-  const auto triangles = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>::ensure(numbers);
-  if (vertices.ndim() != 2 || vertices.shape(1) != 3 || triangles.ndim() != 2 || triangles.shape(1) != 3) {
-    throw pliant::Error(pliant::ErrorCode::usage,
-                        "a surface is a pair of arrays of the shapes [vertices, 3] and [triangles, 3]");
-  }
-  pliant::SurfaceSpec s;
-  for (py::ssize_t v = 0; v < vertices.shape(0); ++v)
-    s.vertices.push_back({vertices.at(v, 0), vertices.at(v, 1), vertices.at(v, 2)});
-  for (py::ssize_t t = 0; t < triangles.shape(0); ++t) {
-    s.triangles.push_back(
-        {vertex_number(triangles.at(t, 0)), vertex_number(triangles.at(t, 1)), vertex_number(triangles.at(t, 2))});
-  }
-  return s;
-}
-
 pliant::WorldOptions options(const std::string& backend, double dt, bool normals, bool interactive, bool cutting) {
   pliant::WorldOptions o;
   o.backend = backend;
@@ -100,27 +76,6 @@ std::unique_ptr<pliant::World> make_world(const py::object& scene, const std::ve
   const auto file = py::module_::import("os").attr("fspath")(scene).cast<std::string>();
   const py::gil_scoped_release release;
   return std::make_unique<pliant::World>(pliant::World::open(file, o));
-}
-
-void set_tool_mesh(pliant::World& w, const std::string& name, const Vertices& vertices, const py::object& triangles,
-                   double time) {
-  const pliant::SurfaceSpec mesh = surface(vertices, triangles);
-  const py::gil_scoped_release release;
-  w.set_tool_mesh(name, mesh, time);
-}
-
-/// The name that it got.
-std::string add_tool(pliant::World& w, const py::dict& tool, const std::string& folder) {
-  const auto text = py::module_::import("json").attr("dumps")(tool).cast<std::string>();
-  const py::gil_scoped_release release;
-  return w.parse_tool(text, folder);
-}
-
-/// An entry of "changes" by its keys.
-void change(pliant::World& w, const py::kwargs& change) {
-  const auto text = py::module_::import("json").attr("dumps")(change).cast<std::string>();
-  const py::gil_scoped_release release;
-  w.parse_change(text);
 }
 
 void bind_frame(py::module_& m) {
@@ -266,207 +221,6 @@ py::dict probes(const pliant::World& w) {
   return d;
 }
 
-/// By name: where each tool is, and what it feels.
-py::dict grab_state(const pliant::World& w, pliant::GrabId grab) {
-  const pliant::GrabState state = w.grab_state(grab);
-  return py::dict(py::arg("force") = row(state.force), py::arg("gap") = row(state.gap), py::arg("limited") = state.limited);
-}
-
-py::dict tool_forces(const pliant::World& w) {
-  py::dict d;
-  for (const pliant::ToolForce& f : w.tool_forces()) {
-    py::dict tool;
-    tool["position"] = row(f.position);
-    tool["turn"] = row(f.turn);
-    tool["force"] = row(f.force);
-    tool["torque"] = row(f.torque);
-    tool["area"] = f.area;
-    tool["penetration"] = f.penetration;
-    tool["parked"] = f.parked;
-    d[py::str(f.name)] = tool;
-  }
-  return d;
-}
-
-/// By name: where each blade that cuts by force is, and what it feels.
-py::dict blade_forces(const pliant::World& w) {
-  py::dict d;
-  for (const pliant::BladeForce& f : w.blade_forces()) {
-    py::dict blade;
-    blade["a"] = row(f.a);
-    blade["b"] = row(f.b);
-    blade["force"] = row(f.force);
-    blade["torque"] = row(f.torque);
-    blade["max_force"] = f.max_force;
-    blade["work"] = f.work;
-    blade["fracture"] = f.fracture;
-    blade["gave_way"] = f.gave_way;
-    blade["present"] = f.present;
-    blade["pressing"] = f.pressing;
-    d[py::str(f.name)] = blade;
-  }
-  return d;
-}
-
-/// The surface of a tool in its own frame: vertices [m] and triangles.
-py::tuple tool_surface(const pliant::World& w, const std::string& name) {
-  const pliant::SurfaceSpec now = w.tool_surface(name);
-  const auto rows = [](const auto& list) { return std::array<py::ssize_t, 2>{static_cast<py::ssize_t>(list.size()), 3}; };
-  py::array_t<double> vertices(rows(now.vertices));
-  py::array_t<std::int32_t> triangles(rows(now.triangles));
-  std::copy_n(now.vertices.data()->data(), vertices.size(), vertices.mutable_data());
-  std::copy_n(now.triangles.data()->data(), triangles.size(), triangles.mutable_data());
-  return py::make_tuple(vertices, triangles);
-}
-
-py::array_t<float> vertex_values(const pliant::World& w, const std::string& field) {
-  std::vector<float> values;
-  {
-    const py::gil_scoped_release release;
-    values = w.vertex_values(field);
-  }
-  return py::array_t<float>(static_cast<py::ssize_t>(values.size()), values.data());
-}
-
-/// What tools and bodies, and bodies and bodies, have in common.
-py::list interpenetrations(const pliant::World& w) {
-  std::vector<pliant::Interpenetration> now;
-  {
-    const py::gil_scoped_release release;
-    now = w.interpenetrations();
-  }
-  py::list all;
-  for (const pliant::Interpenetration& i : now) {
-    py::dict found;
-    found["first"] = i.first;
-    found["second"] = i.second;
-    found["tool"] = i.tool;
-    found["volume"] = i.volume;
-    found["centroid"] = row(i.centroid);
-    found["area"] = row(i.area);
-    found["depth"] = i.depth;
-    found["deepest"] = row(i.deepest);
-    all.append(found);
-  }
-  return all;
-}
-
-void bind_tools(py::class_<pliant::World>& world) {
-  using pliant::World;
-  using Free = py::call_guard<py::gil_scoped_release>;
-  world
-      .def(
-          "grab",
-          [](World& w, std::int32_t vertex, double radius, double stiffness, double max_force) {
-            return w.grab(vertex, {radius, stiffness, max_force});
-          },
-          py::arg("vertex"), py::arg("radius") = 0.0, py::arg("stiffness") = 0.0, py::arg("max_force") = 0.0)
-      .def("move_grab", &World::move_grab, py::arg("grab"), py::arg("target"))
-      .def("grab_state", &grab_state, py::arg("grab"), "what a grab does: force [N], gap to its target [m], limited")
-      .def("release", &World::release, py::arg("grab"))
-      .def("push", &World::push, py::arg("vertex"), py::arg("force"))
-      .def("push_node", &World::push_node, py::arg("body"), py::arg("node"), py::arg("force"))
-      .def("clear_handles", &World::clear_handles)
-      .def("move_focus", &World::move_focus, py::arg("position"))
-      .def("change", &change,
-           "Changes gravity, materials, models or what holds a body: the keys of an entry of `changes` of a scene file without "
-           "its time, such as "
-           "change(body=\"liver\", material={\"young\": 2000})")
-      .def("add_tool", &add_tool, py::arg("tool"), py::arg("folder") = "",
-           "tool: a dict with the keys of an entry of `tools` of a scene file; its name")
-      .def("remove_tool", &World::remove_tool, py::arg("name"), Free())
-      .def("park_tool", &World::park_tool, py::arg("name"), Free())
-      .def("unpark_tool", &World::unpark_tool, py::arg("name"), Free())
-      .def("place_tool", &World::place_tool, py::arg("name"), py::arg("position"),
-           py::arg("turn") = std::array<double, 4>{0, 0, 0, 1}, Free())
-      .def("drive_tool", &World::drive_tool, py::arg("name"), py::arg("position"),
-           py::arg("turn") = std::array<double, 4>{0, 0, 0, 1}, py::arg("seconds") = 1.0 / 60, Free())
-      .def("set_tool_mesh", &set_tool_mesh, py::arg("name"), py::arg("vertices"), py::arg("triangles"), py::arg("time"),
-           "changes the shape of a mesh tool: at `time` [s] of the simulation it has this closed surface, in its own frame [m]")
-      .def("tool_forces", &tool_forces, "a dict of the tools: of each a dict of its pose and what it feels")
-      .def("tool_surface", &tool_surface, py::arg("name"),
-           "a tool's surface in its own frame, for drawing: vertices [m] and triangles, shapes [n, 3]")
-      .def("vertex_values", &vertex_values, py::arg("field"),
-           "a value per vertex at the current time: \"displacement\", \"energy\", \"mises\", \"green_strain\", "
-           "\"almansi_strain\", "
-           "\"pressure\" or \"finite_elements\"")
-      .def("interpenetrations", &interpenetrations,
-           "a list of dicts: what tools and bodies, and bodies and bodies, have in common");
-}
-
-py::dict live_state(const pliant::World& w) {
-  const pliant::LiveState s = w.live_state();
-  py::dict live;
-  live["running"] = s.running;
-  live["frames"] = s.frames;
-  live["late"] = s.late;
-  live["dropped"] = s.dropped;
-  live["real_time"] = s.real_time;
-  live["load"] = s.load;
-  live["lost"] = s.lost;
-  return live;
-}
-
-py::list events(pliant::World& w) {
-  py::list all;
-  for (const pliant::Event& e : w.events()) {
-    py::dict event;
-    event["kind"] = e.kind;
-    event["subject"] = e.subject;
-    event["step"] = e.step;
-    event["time"] = e.time;
-    event["position"] = e.placed ? py::cast(e.position) : py::object(py::none());
-    event["amount"] = e.amount;
-    event["text"] = e.text;
-    all.append(event);
-  }
-  return all;
-}
-
-/// The members of ForceSample as fields of an array.
-py::dtype dtype_of_force_sample() {
-  const pliant::ForceSample sample;
-  py::list names, formats, offsets;
-  const auto add = [&](const char* name, const char* format, const void* member) {
-    names.append(name);
-    formats.append(format);
-    offsets.append(static_cast<const char*>(member) - reinterpret_cast<const char*>(&sample));
-  };
-  add("step", "i8", &sample.step);
-  add("time", "f8", &sample.time);
-  add("force", "3f8", &sample.force);
-  add("torque", "3f8", &sample.torque);
-  return {names, formats, offsets, sizeof sample};
-}
-
-/// An array of the fields of ForceSample.
-py::array force_trace(const pliant::World& w, const py::object& of, std::int64_t after) {
-  const std::vector<pliant::ForceSample> trace = py::isinstance<py::str>(of) ? w.force_trace(of.cast<std::string>(), after)
-                                                                             : w.force_trace(of.cast<pliant::GrabId>(), after);
-  return py::array(dtype_of_force_sample(), {trace.size()}, {}, trace.data());
-}
-
-void bind_live(py::class_<pliant::World>& world) {
-  using pliant::World;
-  using Free = py::call_guard<py::gil_scoped_release>;
-  world
-      .def(
-          "run_live",
-          [](World& w, double rate, double speed) {
-            w.run_live({rate, speed});
-          },
-          py::arg("rate") = 60.0, py::arg("speed") = 1.0, Free(),
-          "the worker steps on its own, paced by the wall clock, and makes `rate` frames per second until stop_live()")
-      .def("stop_live", &World::stop_live, Free(), "ends run_live() after the frame at work; a StepReport")
-      .def("live_state", &live_state, "a dict with the fields of LiveState: what run_live() achieves")
-      .def("events", &events, "a list of dicts with the fields of Event: what happened since the last call")
-      .def(
-          "force_trace", &force_trace, py::arg("of"), py::arg("after") = -1,
-          "of: name of a tool, or a grab; a structured array with step, time [s], force [N] and torque [N m]: a tool's of each "
-          "of the last 4096 steps after step `after`, a grab's of each update")
-      .def("recover", &World::recover, Free(), "after a divergence, goes on from the last good state, at rest");
-}
-
 void bind_world(py::module_& m) {
   using pliant::World;
   using Free = py::call_guard<py::gil_scoped_release>;
@@ -510,8 +264,9 @@ void bind_world(py::module_& m) {
           "move_blade",
           [](World& w, const std::string& blade, const Vec3d& a, const Vec3d& b) { return result(w.move_blade(blade, a, b)); },
           py::arg("blade"), py::arg("a"), py::arg("b"))
-      .def("lift_blade", &World::lift_blade, py::arg("blade"))
-      .def("drive_blade", &World::drive_blade, py::arg("blade"), py::arg("a"), py::arg("b"), py::arg("seconds") = 1.0 / 60)
+      .def("lift_blade", &World::lift_blade, py::arg("blade"), Free())
+      .def("drive_blade", &World::drive_blade, py::arg("blade"), py::arg("a"), py::arg("b"), py::arg("seconds") = 1.0 / 60,
+           Free())
       .def("blade_forces", &blade_forces,
            "a dict of the blades that cut by force: of each a dict of its place and what it feels")
       .def("pieces", &World::pieces, py::arg("body") = 0, Free())

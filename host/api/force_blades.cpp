@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <iterator>
 #include <utility>
 
+#include "api/first_refusal.h"
 #include "geometry/vec.h"
 #include "pliant/error.h"
 
@@ -88,21 +88,18 @@ void ForceBlades::apply(Simulation& simulation) {
     if (asked_.empty() || held_back_) return;
     doing = std::exchange(asked_, {});
   }
-  std::exception_ptr refused;
+  FirstRefusal refusal;
   for (const Request& r : doing) {
-    try {
+    refusal.attempt([&] {
       if (r.seconds < 0) {
         simulation.lift_blade_by_force(r.name);
       } else {
         simulation.drive_blade(r.name, r.to, r.seconds);
       }
-    } catch (const Error& error) {
-      if (error.code() == ErrorCode::internal || error.code() == ErrorCode::device) throw;
-      if (refused == nullptr) refused = std::current_exception();
-    }
+    });
   }
   note(simulation);
-  if (refused != nullptr) std::rethrow_exception(refused);
+  refusal.rethrow();
 }
 
 void ForceBlades::note(const Simulation& simulation) {

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <exception>
 #include <utility>
 
+#include "api/first_refusal.h"
 #include "pliant/error.h"
 #include "simulation/contact/tool_changes.h"
 
@@ -186,19 +186,14 @@ void RigidTools::apply(Simulation& simulation) {
     if (asked_.empty() || held_back_) return;
     doing_ = std::exchange(asked_, {});
   }
-  std::exception_ptr refused;
+  FirstRefusal refusal;
   for (const Request& request : doing_) {
-    try {
-      make(simulation, request);
-    } catch (const Error& error) {
-      if (error.code() == ErrorCode::internal || error.code() == ErrorCode::device) throw;
-      if (refused == nullptr) refused = std::current_exception();
-      if (request.what == What::mesh) renew_given(simulation, request.name);
-    }
+    if (!refusal.attempt([&] { make(simulation, request); }) && request.what == What::mesh)
+      renew_given(simulation, request.name);
   }
   settle(simulation);
   note(simulation);
-  if (refused != nullptr) std::rethrow_exception(refused);
+  refusal.rethrow();
 }
 
 /// After a surface was refused, the next one follows what the tool has.

@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
 
+#include "api/first_refusal.h"
 #include "api/world_call.h"
 #include "model/contact/tool_mesh.h"
 #include "scene/tool_entry.h"
@@ -18,18 +18,14 @@ using api::Call;
 }  // namespace
 
 void World::Impl::change_tools_now() {
-  std::optional<api::Refused> refused;
-  const auto attempt = [&](auto& requests) {
-    try {
-      requests.apply(*simulation);
-    } catch (const Error& error) {
-      if (error.code() == ErrorCode::internal || error.code() == ErrorCode::device) throw;
-      if (!refused) refused.emplace(error);
-    }
-  };
-  attempt(rigid_tools);
-  attempt(force_blades);
-  if (refused) throw api::Refused(*refused);
+  api::FirstRefusal refusal;
+  refusal.attempt([&] { rigid_tools.apply(*simulation); });
+  refusal.attempt([&] { force_blades.apply(*simulation); });
+  try {
+    refusal.rethrow();
+  } catch (const Error& error) {
+    throw api::Refused(error);
+  }
 }
 
 void World::Impl::check_can_change_tools() {

@@ -79,7 +79,7 @@ const CoreTick& HapticCore::tick(const DeviceSample& sample, double age, double 
       options_.passive ? gate_.tick({sample.position, sample.turn}, plain.velocity, plain.spin, hand, since) : hand;
   out_.hand = guard_.tick(allowed, age, dt);
   if (options_.passive) gate_.exerted(out_.hand);
-  out_.exerted = {out_.hand, sample.time, sample.number};
+  out_.exerted = {out_.hand.force, out_.hand.torque, sample.time, sample.number};
   pose_.pose = out_.tool;
   pose_.motion = smooth;
   pose_.given = true;

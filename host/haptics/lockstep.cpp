@@ -76,7 +76,7 @@ bool Lockstep::next(Simulation& simulation) {
 void Lockstep::answer(Hand& hand, const Simulation& simulation) {
   const Wrench exerted = hand.guard.tick(felt(simulation, hand.held.tool), 0, hand.period);
   const DeviceSample& sample = *hand.sample;
-  hand.answer = {exerted, sample.dated ? sample.time : 0, sample.number};
+  hand.answer = {exerted.force, exerted.torque, sample.dated ? sample.time : 0, sample.number};
   hand.counts.largest_force = std::max(hand.counts.largest_force, vec::norm(exerted.force));
   hand.open = false;
   hand.held.device->write(hand.answer);
@@ -169,7 +169,7 @@ void Lockstep::release() noexcept {
   for (Hand& hand : hands_) {
     if (!hand.open) continue;
     hand.open = false;
-    hand.held.device->write({{}, hand.sample->dated ? hand.sample->time : 0, hand.sample->number});
+    hand.held.device->write({{}, {}, hand.sample->dated ? hand.sample->time : 0, hand.sample->number});
   }
 }
 

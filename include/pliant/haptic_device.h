@@ -25,9 +25,7 @@ struct DeviceSample {
 /// Force on the hand that holds the device, and torque about the device's tip.
 struct DeviceWrench : Wrench {
   DeviceWrench() = default;
-  /// Answers sample `sample`, taken at `at` [s].
-  DeviceWrench(const Wrench& wrench, double at, std::uint64_t sample) : Wrench(wrench), time(at), number(sample) {}
-  /// The same of a force [N] and a torque [N m].
+  /// A force [N] and a torque [N m] that answer sample `sample`, taken at `at` [s].
   DeviceWrench(const Vec3d& f, const Vec3d& t, double at = 0, std::uint64_t sample = 0)
       : Wrench{f, t}, time(at), number(sample) {}
 

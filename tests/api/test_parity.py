@@ -155,7 +155,7 @@ def touch():
 
 
 def python():
-    text = code_of("python/pliant.cpp")
+    text = "".join(code_of(f"python/{n}.cpp") for n in ("pliant", "tools", "live"))
     define = r'\.def(?:_readonly|_property_readonly)?\(\s*"(\w+)"'
     live = block(text, "void bind_live(")
     world, module = block(text, "void bind_world(") + block(text, "void bind_tools(") + live, block(text, "PYBIND11_MODULE(")

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "geometry/vec.h"
+#include "model/contact/contact.h"
+#include "schedule/program_layout.h"
 #include "solver/scenes.h"
 
 namespace pliant {
@@ -84,6 +86,49 @@ TEST_P(Drifts, AreCutAndResumedWhereTheyAre) {
     EXPECT_EQ(whole.hash(), twin.hash());
     EXPECT_EQ(write_state(whole.state()), write_state(twin.state()));
   }
+}
+
+/// A piece that is held where it has flown to keeps its offset, and its points of contact know where their held nodes are.
+TEST_P(Drifts, HeldNodesOfContactAreWhereTheyAre) {
+  Scene scene = flying_cube();
+  ContactTool far;
+  far.name = "far";
+  far.radius = 0.01;
+  far.path = {{0, 0, -5, 0, 0, 0, 0, 1}};
+  scene.tools = {far};
+  Simulation s(scene, open_backend(GetParam()));
+  s.advance(3000);
+  ASSERT_FALSE(s.state().offset.empty());
+  s.change(R"({"body": "flies", "fixed": [{"plane": [[0, -0.049, 0], [0, -1, 0]]}]})");
+  s.advance(64);
+  ASSERT_FALSE(s.state().offset.empty());
+  const ContactPoints& points = *s.model().contact;
+  const std::vector<double> held = s.backend().read_reals(s.program().find("contact_held")),
+                            share = s.backend().read_reals(s.program().find("contact_share")),
+                            u = s.backend().read_reals(s.program().find("node_u"));
+  std::vector<Vec3d> place(static_cast<std::size_t>(s.model().slots));
+  for (std::size_t b = 0; b < 2; ++b) {
+    const std::vector<Vec3d> moved = s.displacements(b);
+    for (std::size_t n = 0; n < moved.size(); ++n)
+      place[static_cast<std::size_t>(s.model().bodies[b].slot[n])] = vec::add(s.model().bodies[b].rest[n], moved[n]);
+  }
+  double most = 0, far_off = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!(held[tile_base(i, 4) + std::size_t{3} * PLIANT_TILE] > 0)) continue;
+    Vec3d sum{}, known{};
+    for (std::size_t a = 0; a < 8; ++a) {
+      if (share[tile_base(i, 8) + a * PLIANT_TILE] > 0) continue;
+      const auto slot = static_cast<std::size_t>(points.nodes[i][a]);
+      const double weight = double(points.weights[i][a]) / contact_weight_unit;
+      sum = vec::add(sum, vec::mul(place[slot], weight));
+      known = vec::add(known, vec::mul(Vec3d{u[4 * slot], u[4 * slot + 1], u[4 * slot + 2]}, weight));
+    }
+    for (std::size_t c = 0; c < 3; ++c) known[c] += held[tile_base(i, 4) + c * PLIANT_TILE];
+    most = std::max(most, vec::norm(vec::sub(sum, known)));
+    far_off = std::max(far_off, vec::norm(sum));
+  }
+  EXPECT_GT(far_off, 10);
+  EXPECT_LT(most, 1e-4);
 }
 
 /// What holds a body anywhere, holds it to its place at rest.

@@ -85,7 +85,7 @@ void load_tools(RunContext& run, const std::shared_ptr<const Model>& model, cons
   const Snapshot snapshot = take_snapshot(run);
   try {
     Program program = build_program(*model, run.program_options());
-    std::vector<BufferValues> initial = initial_state(program);
+    std::vector<BufferValues> initial = initial_state(program, true);
     carry_state(run, program, new_numbers(before, next), next.size());
     Program surface = surface_program(model->surface, program);
     run.loaded.update(model, std::move(program));

@@ -127,12 +127,12 @@ void ModelSwap::keep_rest(Program& program) const {
 
 void ModelSwap::load_steps() {
   Program program = build_program(*model_, run_.program_options());
-  std::vector<BufferValues> initial = initial_state(program);
+  const bool keeps = keeps_state_ && keeps_nodes();
+  std::vector<BufferValues> initial = initial_state(program, keeps);
   report_.model += clock_.lap();
   // Upload the carried-over state only; restore the Program's initial values afterwards so that the Program itself stays
   // pristine.
   carry_nodes(program);
-  const bool keeps = keeps_state_ && keeps_nodes();
   if (keeps) keep_rest(program);
   run_.loaded.update(model_, std::move(program));
   run_.state.look.tools = -1;

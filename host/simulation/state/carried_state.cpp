@@ -4,11 +4,12 @@
 
 namespace pliant {
 
-std::vector<BufferValues> initial_state(const Program& program) {
+std::vector<BufferValues> initial_state(const Program& program, bool dropped) {
   std::vector<BufferValues> initial;
   for (std::size_t i = 0; i < program.buffers.size(); ++i) {
     const Buffer& buffer = program.buffers[i];
-    if (buffer.role == BufferRole::state) initial.push_back({static_cast<BufferId>(i), buffer.reals, buffer.ints});
+    if (buffer.role == BufferRole::state && (dropped || buffer.carry != Carry::drop))
+      initial.push_back({static_cast<BufferId>(i), buffer.reals, buffer.ints});
   }
   return initial;
 }

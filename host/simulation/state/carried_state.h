@@ -7,8 +7,9 @@
 
 namespace pliant {
 
-/// The initial values of all state buffers, for LoadedModel::reset_initial_state once carried values have been uploaded.
-[[nodiscard]] std::vector<BufferValues> initial_state(const Program& program);
+/// The initial values of the state buffers that take carried values, for LoadedModel::reset_initial_state once these have been
+/// uploaded. `dropped`: buffers of Carry::drop take theirs, too.
+[[nodiscard]] std::vector<BufferValues> initial_state(const Program& program, bool dropped);
 
 /// Gives a buffer of the next Program the values that a buffer has on the backend.
 void take_values(Backend& backend, BufferId from, Buffer& to);
