@@ -124,6 +124,7 @@ void add_membrane_stiffness(const Model& model, const std::vector<double>* u, st
     const double* at = u->data() + 4 * static_cast<std::size_t>(slot);
     return Vec3d{at[0], at[1], at[2]};
   };
+  std::vector<std::pair<std::int32_t, std::array<double, 2>>> gradients;
   for (const MembraneBatch& b : model.links.membranes) {
     for (std::size_t t = 0; t < b.size(); ++t) {
       double modulus = b.law.young / (1 - b.law.poisson);
@@ -133,11 +134,12 @@ void add_membrane_stiffness(const Model& model, const std::vector<double>* u, st
         modulus = b.law.tangent_bound(b.records[t], corners);
       }
       const double scale = b.records[t].back() * modulus;
-      for_each_gradient(model.links.points, b, t, [&](std::int32_t i, const auto& g) {
-        for_each_gradient(model.links.points, b, t, [&](std::int32_t, const auto& h) {
-          sum[static_cast<std::size_t>(i)] += scale * std::abs(g[0] * h[0] + g[1] * h[1]);
-        });
-      });
+      gradients.clear();  // each meets each: gathered once
+      for_each_gradient(model.links.points, b, t, [&](std::int32_t i, const auto& g) { gradients.emplace_back(i, g); });
+      for (const auto& [i, g] : gradients) {
+        double& own = sum[static_cast<std::size_t>(i)];
+        for (const auto& [j, h] : gradients) own += scale * std::abs(g[0] * h[0] + g[1] * h[1]);
+      }
     }
   }
 }
