@@ -11,6 +11,7 @@
 #include "model/model.h"
 #include "simulation/contact/contact_look.h"
 #include "simulation/state/changed_parameters.h"
+#include "simulation/state/pressed_blades.h"
 #include "simulation/state/tool_state.h"
 
 namespace pliant {
