@@ -11,8 +11,11 @@
 
 namespace pliant::bench {
 
+/// The words of elements, "springs" of a network and "membrane" on a sheet.
+std::vector<std::string> kernels_elements();
+
 struct KernelsOptions {
-  std::vector<std::string> elements = words_only(element_words());
+  std::vector<std::string> elements = kernels_elements();
   std::vector<std::string> backends;  ///< empty: the first OpenCL device, cpu and cpu:double
   std::vector<std::int64_t> sizes{10'000, 100'000, 1'000'000};
   std::string law = "neo-hookean";

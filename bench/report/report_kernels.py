@@ -9,10 +9,11 @@ from report_charts import COLOURS, FAINT, INK, MARKERS, PAPER, count, number, sh
 from report_page import Column, Section, figure, heading, machine_facts, notice, paragraph, table, text
 
 ELEMENTS = {"tet4": "tet4: linear tetrahedron", "tet4anp": "tet4anp: tetrahedron, nodal pressure",
-            "hex8": "hex8: brick, one point", "hex8full": "hex8full: brick, eight points"}
+            "hex8": "hex8: brick, one point", "hex8full": "hex8full: brick, eight points",
+            "springs": "springs along the edges of tetrahedra", "membrane": "triangles of a membrane on a sheet of springs"}
 # Passes that do the same for different elements share a colour, by the end of their kernel's name.
 ROLES = [("_force", "element forces"), ("_update", "node update"), ("_dilation", "element volumes"), ("_pressure", "nodal pressure"),
-         ("_prescribe", "prescribed nodes")]
+         ("_prescribe", "prescribed nodes"), ("link_gather", "sums of links at nodes"), ("link_points", "points of links")]
 NOISY = 0.10
 
 

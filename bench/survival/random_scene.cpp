@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "bench/common/dice.h"
+#include "bench/survival/random_vessels.h"
 #include "bench/survival/survival.h"
 #include "geometry/mesh.h"
 #include "geometry/vec.h"
@@ -40,8 +42,14 @@ class RandomScene {
     // Half of the cubes of tetrahedra become a block with a modulus per element.
     varied_ = std::string_view(shape_.file) == "cube_tet.vtu" && varied.chance(0.5);
     if (varied_) shape_.file = "nodule_tet.vtu";
+    Dice thin(number ^ 0x6a09e667);
+    if (thin.chance(0.08)) {
+      shape_ = {"cloth.obj", true};
+      thickness_ = thin.uniform(0.0015, 0.006);
+    }
     file_ = std::filesystem::absolute(scenes / "meshes" / shape_.file);
-    box_ = box_of(file_, shape_.tets);
+    box_ = box_of(file_, shape_.tets && thickness_ == 0);
+    if (thickness_ > 0) box_.lower[2] = -thickness_ / 2, box_.upper[2] = thickness_ / 2;  // it lies in the plane z = 0
     size_ = vec::sub(box_.upper, box_.lower);
     for (std::size_t c = 1; c < 3; ++c) {
       if (size_[c] > size_[axis_]) axis_ = c;
@@ -51,13 +59,21 @@ class RandomScene {
 
   Json operator()() {
     Json body{{"name", std::filesystem::path(shape_.file).stem().string()}};
-    body[shape_.tets ? "mesh" : "surface"] = file_.string();
+    body[shape_.tets && thickness_ == 0 ? "mesh" : "surface"] = file_.string();
+    if (thickness_ > 0) body["thickness"] = thickness_;
     method(body);
     const bool tears = shape_.tets && body["element"] == "tet4" && dice_.chance(0.35);
     material(body, tears);
     Dice skin(number_ ^ 0x7a3d71b9);
     if (skin.chance(0.15)) {
       body["membrane"] = membrane(skin);
+      for (const char* key : {"substeps", "goals"}) body["model"].erase(key);  // refused
+    }
+    Dice tubes(number_ ^ 0x3c6ef372a54);
+    const std::string_view name = shape_.file;
+    const bool box_like = name == "beam.obj" || name == "cube.obj" || name == "cylinder.obj";
+    if (thickness_ == 0 && (shape_.tets || box_like) && tubes.chance(0.15)) {
+      body["vessels"] = random_vessels(tubes, shape_.tets ? file_ : "", box_, young_);
       for (const char* key : {"substeps", "goals"}) body["model"].erase(key);  // refused
     }
     Json scene{{"format", "pliant-scene/1"}, {"name", fmt::format("survival {}", number_)}, {"duration", 2.0}};
@@ -357,7 +373,8 @@ class RandomScene {
   Vec3d second_{};  ///< from the first body to the second; 0: there is none
   std::size_t axis_ = 0;
   double extent_ = 0, young_ = 0;
-  bool varied_ = false;  ///< a modulus per element
+  bool varied_ = false;   ///< a modulus per element
+  double thickness_ = 0;  ///< of a sheet [m]
   bool upper_ = false;
 };
 

@@ -253,7 +253,10 @@ std::function<int()> setup_bench(CLI::App& app) {
   CLI::App* sub =
       app.add_subcommand("kernels", "Every pass of a step: ns, bytes and flops per element, share of the machine's limit");
   options->common.add_to(*sub);
-  sub->add_option("--elements", options->kernels.elements, explained(element_words()))->delimiter(',');
+  sub->add_option("--elements", options->kernels.elements,
+                  "the elements of blocks, \"springs\" of a network and \"membrane\" on a sheet: " +
+                      alternatives(bench::kernels_elements()))
+      ->delimiter(',');
   sub->add_option("--sizes", options->kernels.sizes, "numbers of elements")->delimiter(',');
   sub->add_option("--backends", options->kernels.backends, "default: the first OpenCL device, cpu, cpu:double")->delimiter(',');
   sub->add_option("--law", options->kernels.law, alternatives(words_only(law_words())));

@@ -43,7 +43,7 @@ std::int64_t SurfaceReport::hole_edges() const {
 }
 
 void require_inside(const SurfaceReport& r) {
-  const char* const mend = "close it in a mesh editor, or give a sheet a thickness";
+  const char* const mend = "close it in a mesh editor, or make it a sheet with \"thickness\"";
   if (r.sheet_area > 0.5 * r.area) {
     fail(r, fmt::format("has no inside to fill: {} of its {} triangles, {:.3g} % of the area, the first at {}, belong to parts "
                         "whose holes are larger than {:.0f} % of the part; {}",

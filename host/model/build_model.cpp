@@ -297,6 +297,7 @@ Model build_elements(const Scene& scene, std::span<const BodyMesh* const> solids
     ElementLists(body, static_cast<std::int32_t>(i), draft, model).add();
     if (body.model.type == ModelType::mass_spring) add_mass_springs(body, static_cast<std::int32_t>(i), draft, model);
     add_totals(body, draft, model.bodies[i]);
+    told_with_file(scene, [&] { add_vessels(body, static_cast<std::int32_t>(i), draft, model); });
     for (const std::int32_t s : model.bodies[i].slot) model.bodies[i].added_mass += model.mass[s] - model.own_mass(s);
     set_velocity(body, model.bodies[i], model);
     told_with_file(scene, [&] { add_initial(body, model.bodies[i], model); });

@@ -18,7 +18,7 @@ Model build_model(const Scene& scene, std::vector<SurfaceCheck>& checks) {
     const Body& body = scene.bodies[b];
     SurfaceCheck check;
     solids.push_back(make_body_mesh(body, check.report));
-    if (!body.mesh.empty()) continue;
+    if (!body.has_lattice()) continue;
     check.body = body.name;
     check.crossings = crossings_of({solids.back().surface, solids.back().triangles}, check.report.shell);
     checks.push_back(std::move(check));

@@ -22,8 +22,12 @@ void check(const Scene& scene) {
                 fmt::format("{}: {}; plan takes one body with a surface that comes to rest", scene.file.string(), what));
   };
   if (scene.bodies.size() != 1) fail(fmt::format("/bodies: {} bodies", scene.bodies.size()));
-  if (!scene.bodies[0].mesh.empty()) fail("/bodies/0/mesh: a volume mesh has no lattice to choose");
+  if (!scene.bodies[0].has_lattice()) {
+    fail(scene.bodies[0].mesh.empty() ? "/bodies/0/thickness: a sheet has no lattice to choose"
+                                      : "/bodies/0/mesh: a volume mesh has no lattice to choose");
+  }
   if (scene.bodies[0].model.follow.empty() == false) fail("/bodies/0/model/follow: a moving region");
+  if (!scene.bodies[0].vessels.empty()) fail("/bodies/0/vessels: the static reference knows no vessels");
   if (scene.bodies[0].membrane) fail("/bodies/0/membrane: the static reference knows no membranes");
   const Vec3d &v = scene.bodies[0].velocity, &w = scene.bodies[0].angular_velocity;
   if (v != Vec3d{} || w != Vec3d{}) fail("/bodies/0: an initial velocity");

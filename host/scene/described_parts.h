@@ -20,11 +20,21 @@ void describe_membrane(V&& v, S&& s) {
 }
 
 template <class V, class S>
+void describe_vessel(V&& v, S&& s) {
+  v(s.radius, required({"radius", above(0), "m", "0.002", "outer radius"}));
+  v(s.wall, {"wall", above(0).absent_at(0), "m", "0.0004", "thickness of the wall, less than the radius; none: a solid bar"});
+  v(s.young, required({"young", above(0), "Pa", "6e5", "Young's modulus of the wall"}));
+  v(s.density, {"density", at_least(0), "kg/m^3", "1050", "density of the wall, in addition to the mass of the body"});
+}
+
+template <class V, class S>
 void describe_body(V&& v, S&& s) {
   v(s.scale, {"scale", above(0), "", "0.001", "factor on the coordinates of the file"});
   v(s.translate, {"translate", any, "m", "[0, 0.1, 0]", "shift after scaling"});
+  v(s.thickness, {"thickness", above(0).absent_at(0), "m", "0.002",
+                  "with a `surface`, instead of `lattice`: the surface is a sheet, one layer of tetrahedra this thick"});
   v(s.element, element_words(),
-    {"element", any, "", "\"hex8full\"", "what the body is made of", "`hex8` with a surface, `tet4` with a mesh"});
+    {"element", any, "", "\"hex8full\"", "what the body is made of", "`hex8` with a lattice, `tet4` with a mesh or a sheet"});
   v(s.velocity, {"velocity", any, "m/s", "[0.1, 0, 0]", "velocity at the start"});
   v(s.angular_velocity,
     {"angular_velocity", any, "rad/s", "[0, 0, 6]", "angular velocity at the start, about the centre of mass"});

@@ -39,6 +39,7 @@ Material read_material(const Reader& material, const TaggedMesh* mesh);
 /// `lattice`: whether the body is a surface filled with a lattice, which shape matching needs.
 DeformationModel read_model(const Reader& model, bool lattice);
 Focus read_focus(const Reader& focus);
+Vessel read_vessel(const Reader& entry);
 Spring read_spring(const Reader& spring);
 /// After the bodies.
 std::vector<Join> read_joins(const Reader& joins, const Scene& scene);

@@ -74,7 +74,7 @@ void check_blades(const Reader& top, const Scene& scene) {
     if (cuts_by_force(scene) && b.model.substeps > 1)
       bodies[i].at("model").at("substeps").fail("1, because the scene has a blade that cuts by force, in every step");
     const ElementInfo& info = element_info(b.element);
-    if (b.mesh.empty() || info.splits) continue;
+    if (b.has_lattice() || info.splits) continue;
     bodies[i].at("element").fail(fmt::format("{}, because the scene has blades (a mesh of {} cannot be cut)",
                                              elements_with([](const ElementInfo& e) { return e.splits; }), info.cells));
   }

@@ -25,6 +25,12 @@ void read_geometry(const Reader& body, const fs::path& folder, Body& b) {
   if (mesh) b.mesh = read_path(body.at("mesh"), folder);
   if (mesh) {
     if (body.has("lattice")) body.at("lattice").fail("no lattice with a volume mesh (which has elements of its own)");
+    if (body.has("thickness"))
+      body.at("thickness").fail("no thickness with a volume mesh (that of a \"surface\" makes a sheet of it)");
+    return;
+  }
+  if (body.has("thickness")) {
+    if (body.has("lattice")) body.at("lattice").fail("no lattice with a \"thickness\", which makes the surface a sheet");
     return;
   }
   const Reader lattice = body.at("lattice", "a lattice to fill the surface, such as {\"spacing\": 0.01}");
@@ -84,9 +90,13 @@ Body read_body(const Reader& body, const fs::path& folder, std::size_t index) {
   if (b.name == "." || b.name == "..") body.at("name").fail("a name that is no folder");
   read_geometry(body, folder, b);
   // A volume mesh is of tetrahedra more often than not; one of hexahedra has to say so.
-  b.element = usual_element(b.mesh.empty() ? 8 : 4);
+  b.element = usual_element(body.has("lattice") ? 8 : 4);
   describe_body(ReadKeys{body}, b);
-  if (body.has("model")) b.model = read_model(body.at("model"), b.mesh.empty());
+  if (b.thickness > 0 && element_info(b.element).corners != 4) {
+    body.at("element").fail(elements_with([](const ElementInfo& e) { return e.corners == 4; }) +
+                            ": a sheet is a layer of tetrahedra");
+  }
+  if (body.has("model")) b.model = read_model(body.at("model"), b.has_lattice());
 
   const Reader material = body.at("material", "a material such as {\"young\": 3000, \"poisson\": 0.45, \"density\": 1060}");
   const SelectionFrame frame = frame_of(b, folder);
@@ -97,6 +107,9 @@ Body read_body(const Reader& body, const fs::path& folder, std::size_t index) {
     const Reader membrane = body.at("membrane");
     membrane.expect_object("membrane");
     describe_membrane(ReadKeys{membrane}, b.membrane.emplace());
+  }
+  if (body.has("vessels")) {
+    for (const Reader& entry : body.at("vessels").items("a list of objects")) b.vessels.push_back(read_vessel(entry));
   }
   read_entries(body, "inclusions", "inclusion", Selected::elements, frame, b.inclusions,
                [&](const Reader& entry, Inclusion& out) {

@@ -44,12 +44,13 @@ DeformationModel read_model(const Reader& model, bool lattice) {
   m.pointer = model.pointer();
   describe_type(ReadKeys{model}, m);
   if (lattice && m.type == ModelType::mass_spring) {
-    model.at("type").fail("tled, hybrid or flsm with a surface (springs need a \"mesh\" of tetrahedra)");
+    model.at("type").fail(
+        "tled, hybrid or flsm with a lattice (springs need a \"mesh\" of tetrahedra, or a surface with a \"thickness\")");
   }
   if (!lattice && m.matches()) {
     model.at("type").fail(
-        "tled or mass-spring with a volume mesh (shape matching needs a lattice: give a \"surface\" instead of the "
-        "\"mesh\")");
+        "tled or mass-spring with a volume mesh or a sheet (shape matching needs a lattice: give a \"surface\" with a "
+        "\"lattice\")");
   }
   refuse_senseless(model, m.type);
   describe_growth(ReadKeys{model}, m);

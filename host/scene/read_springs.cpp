@@ -104,14 +104,18 @@ void check_springs(const Reader& top, const Scene& scene) {
     const Reader entry = top.at("bodies").items("a list of bodies")[static_cast<std::size_t>(&body - scene.bodies.data())];
     if (body.membrane && scene.solver.enabled)
       entry.at("membrane").fail("none with \"solver\": {\"type\": \"static\"}, which knows no membranes");
+    if (!body.vessels.empty() && scene.solver.enabled)
+      entry.at("vessels").fail("none with \"solver\": {\"type\": \"static\"}, which knows no vessels");
     const bool joined = std::any_of(scene.joins.begin(), scene.joins.end(), [&](const Join& j) {
       return std::find(j.bodies.begin(), j.bodies.end(), body.name) != j.bodies.end();
     });
-    if (body.model.substeps > 1 && (joined || body.membrane)) {
+    if (body.model.substeps > 1 && (joined || body.membrane || !body.vessels.empty())) {
       entry.at("model")
           .at("substeps")
-          .fail(fmt::format("1, because of the {}, which pull on shape matching in every step",
-                            joined ? "joins" : "membrane's triangles"));
+          .fail(fmt::format("1, because of the {}, which pull on shape matching in every step", joined ? "joins"
+                                                                                                : body.membrane
+                                                                                                    ? "membrane's triangles"
+                                                                                                    : "vessels"));
     }
     if (body.model.type != ModelType::mass_spring) continue;
     if (scene.solver.enabled)

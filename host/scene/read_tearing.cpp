@@ -18,7 +18,8 @@ void check_tearing(const Reader& top, const Scene& scene) {
       const Reader field = material.at("toughness");
       if (cuts_by_force(scene)) continue;  // it is that of the blades, and nothing tears by itself
       const bool splits = element_info(body.element).splits;
-      if (body.mesh.empty() || !splits) field.fail("no toughness here: only a volume mesh (\"mesh\") of tetrahedra tears");
+      if (body.has_lattice() || !splits)
+        field.fail("no toughness here: only tetrahedra of a volume mesh (\"mesh\") or of a sheet (\"thickness\") tear");
       require_integrator(top, scene, &IntegratorInfo::edits, "a material has a toughness");
       if (scene.relaxation.enabled) top.at("relaxation").fail("false, because a material has a toughness");
       if (!scene.blades.empty())

@@ -21,6 +21,7 @@
 #include "scene/motion.h"
 #include "scene/selection.h"
 #include "scene/spring.h"
+#include "scene/vessel.h"
 
 namespace pliant {
 
@@ -100,11 +101,13 @@ struct Body {
   double scale = 1;                        ///< applied to the file's coordinates first
   Vec3d translate{};                       ///< [m], after scaling
   LatticeSpec lattice;                     ///< used with `surface`
+  double thickness = 0;                    ///< > 0: the `surface` is a sheet of this thickness, without a lattice [m]
   ElementKind element = usual_element(8);  ///< of lattices
   DeformationModel model;
   Material material;
   std::vector<Inclusion> inclusions;
   std::optional<Membrane> membrane;  ///< on its whole surface
+  std::vector<Vessel> vessels;       ///< inside
   std::vector<Fixed> fixed;
   std::vector<Prescribed> prescribed;
   std::vector<Force> forces;
@@ -113,6 +116,8 @@ struct Body {
   Vec3d angular_velocity{};  ///< initial angular velocity about the centre of mass [rad/s]
   std::vector<Initial> initial;
   std::string pointer;  ///< JSON pointer ("/bodies/0")
+  /// Otherwise it is a volume mesh, from a file or of a sheet.
+  [[nodiscard]] bool has_lattice() const { return mesh.empty() && thickness == 0; }
 };
 
 /// Dynamic relaxation: adaptive damping towards static equilibrium.

@@ -130,7 +130,8 @@ void add_matching(OrderedJson& model, const ModelSpec& m) {
   if (m.young) describe_stiffness(WriteKeys{model["stiffness"]}, m);
 }
 
-OrderedJson spring_json(const Spring& s) {
+template <class S>
+OrderedJson spring_json(const S& s) {
   OrderedJson spring;
   describe_spring(WriteKeys{spring}, s);
   if (!s.curve.empty()) spring["table"] = s.curve;
@@ -141,11 +142,9 @@ template <class M>
 OrderedJson model_json(const M& m) {
   OrderedJson model;
   describe_type(WriteKeys{model}, m);
-  if constexpr (requires { m.spring; }) {
-    if (model["type"] == to_string(ModelType::mass_spring)) {
-      model["spring"] = spring_json(m.spring);
-      return model;
-    }
+  if (model["type"] == to_string(ModelType::mass_spring)) {
+    model["spring"] = spring_json(m.spring);
+    return model;
   }
   if (model["type"] == to_string(ModelType::hybrid)) {
     if (m.region) {
@@ -222,6 +221,14 @@ fs::path mesh_of(const BodySpec& b) { return b.volume_file; }
 LatticeSpec lattice_of(const Body& b) { return b.lattice; }
 LatticeSpec lattice_of(const BodySpec& b) { return {b.lattice_spacing, b.lattice_spacing == 0 ? b.lattice_nodes : 0}; }
 
+template <class T>
+OrderedJson vessel_json(const T& t) {
+  OrderedJson vessel{{"points", t.points}};
+  if (!t.segments.empty()) vessel["segments"] = t.segments;
+  describe_vessel(WriteKeys{vessel}, t);
+  return vessel;
+}
+
 template <class B>
 OrderedJson body_json(const B& b, const fs::path& file) {
   OrderedJson body{{"name", b.name}};
@@ -229,12 +236,15 @@ OrderedJson body_json(const B& b, const fs::path& file) {
     body["mesh"] = path_json(mesh, file);
   } else {
     body["surface"] = path_json(surface_of(b), file);
-    body["lattice"] = OrderedJson::object();
-    describe_lattice(WriteKeys{body["lattice"]}, lattice_of(b));
+    if (b.thickness == 0) {
+      body["lattice"] = OrderedJson::object();
+      describe_lattice(WriteKeys{body["lattice"]}, lattice_of(b));
+    }
   }
   describe_body(WriteKeys{body}, b);
   body["material"] = material_json(b.material);
   if (b.membrane) describe_membrane(WriteKeys{body["membrane"]}, *b.membrane);
+  for (const auto& vessel : b.vessels) body["vessels"].push_back(vessel_json(vessel));
   if (text_of(model_words(), b.model.type) != to_string(ModelType::tled)) body["model"] = model_json(b.model);
   add_conditions(body, b, file);
   return body;
@@ -315,6 +325,16 @@ OrderedJson top_json(const S& scene, const fs::path& file) {
   return top;
 }
 
+template <class J>
+void add_joins(OrderedJson& top, const std::vector<J>& joins) {
+  for (const J& j : joins) {
+    OrderedJson join{{"bodies", j.bodies}};
+    describe_join(WriteKeys{join}, j);
+    join["spring"] = spring_json(j.spring);
+    top["joins"].push_back(join);
+  }
+}
+
 void add_change(OrderedJson& top, double time, const OrderedJson& change) {
   OrderedJson entry{{"time", time}};
   entry.update(change);
@@ -340,12 +360,7 @@ OrderedJson change_json(const ChangeSpec& change) {
 OrderedJson document_of(const Scene& scene) {
   OrderedJson top = top_json(scene, scene.file);
   describe_run(WriteKeys{top}, scene);
-  for (const Join& j : scene.joins) {
-    OrderedJson join{{"bodies", j.bodies}};
-    describe_join(WriteKeys{join}, j);
-    join["spring"] = spring_json(j.spring);
-    top["joins"].push_back(join);
-  }
+  add_joins(top, scene.joins);
   if (scene.relaxation.enabled) {
     describe_relaxation(WriteKeys{top["relaxation"]}, scene.relaxation);
   } else {
@@ -366,6 +381,7 @@ OrderedJson document_of(const Scene& scene) {
 
 OrderedJson document_of(const SceneSpec& spec) {
   OrderedJson top = top_json(spec, {});
+  add_joins(top, spec.joins);
   if (spec.relaxation) describe_relaxation(WriteKeys{top["relaxation"]}, *spec.relaxation);
   for (const ProbeSpec& p : spec.probes) top["probes"].push_back(probe_json(p, {}));
   for (const ChangeSpec& c : spec.changes) add_change(top, c.time, change_json(c));

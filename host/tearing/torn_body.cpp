@@ -156,6 +156,43 @@ std::vector<TetFace> TornBody::parting_faces(const LongEdge& edge, double stretc
   return stress[1] > stress[0] ? faces[1] : faces[0];
 }
 
+void TornBody::mark(const TetFace& face, std::vector<std::uint8_t>& broken, bool on) const {
+  const TetFace& other = neighbors_[face.tet][face.face];
+  for (const TetFace& side : {face, other}) {
+    if (side.tet < 0) continue;
+    const auto bit = static_cast<std::uint8_t>(1 << side.face);
+    broken[side.tet] = static_cast<std::uint8_t>(on ? broken[side.tet] | bit : broken[side.tet] & ~bit);
+  }
+}
+
+std::vector<std::int32_t> TornBody::piece_at(std::int32_t tet, const std::vector<std::uint8_t>& broken) const {
+  std::vector<std::int32_t> piece{tet};
+  for (std::size_t i = 0; i < piece.size() && piece.size() < kLeastPiece; ++i) {
+    for (std::size_t f = 0; f < 4; ++f) {
+      const TetFace& other = neighbors_[piece[i]][f];
+      if (other.tet < 0 || (broken[piece[i]] >> f & 1) || (broken[other.tet] >> other.face & 1)) continue;
+      if (std::find(piece.begin(), piece.end(), other.tet) == piece.end()) piece.push_back(other.tet);
+    }
+  }
+  return piece;
+}
+
+std::vector<TetFace> TornBody::without_crumbs(std::vector<TetFace> faces, std::vector<std::uint8_t> broken) const {
+  for (const TetFace& face : faces) mark(face, broken, true);
+  for (std::size_t i = 0; i < faces.size();) {
+    const std::size_t here = piece_at(faces[i].tet, broken).size();
+    const std::size_t there = piece_at(neighbors_[faces[i].tet][faces[i].face].tet, broken).size();
+    if ((here < kLeastPiece) == (there < kLeastPiece)) {
+      ++i;
+      continue;
+    }
+    mark(faces[i], broken, false);
+    faces.erase(faces.begin() + static_cast<std::ptrdiff_t>(i));
+    i = 0;  // what stays together now is larger
+  }
+  return faces;
+}
+
 TornBody::Breaks TornBody::breaking_faces(const std::vector<Vec3d>& x, double stretch) const {
   const std::vector<NodeStress> stresses = node_stresses(x);
   const std::vector<Peak> found = peaks(stresses);
@@ -167,8 +204,10 @@ TornBody::Breaks TornBody::breaking_faces(const std::vector<Vec3d>& x, double st
     for (const std::int32_t n : torn_.tets[t]) around[n].push_back(static_cast<std::int32_t>(t));
   }
   std::vector<char> waits(x.size(), 0);
+  std::vector<std::uint8_t> broken = broken_;  // with the faces taken so far
   const auto take = [&](const std::vector<TetFace>& faces, std::span<const std::int32_t> nodes) {
     breaks.faces.insert(breaks.faces.end(), faces.begin(), faces.end());
+    for (const TetFace& face : faces) mark(face, broken, true);
     for (const std::int32_t node : nodes) {
       for (const std::int32_t t : around[node]) {
         for (const std::int32_t n : torn_.tets[t]) waits[n] = 1;
@@ -184,7 +223,7 @@ TornBody::Breaks TornBody::breaking_faces(const std::vector<Vec3d>& x, double st
   }
   for (const Peak& peak : found) {
     if (waits[peak.node] != 0) continue;
-    const std::vector<TetFace> faces = faces_on({peak.node, -1, peak.normal, peak.stress}, x, around);
+    const std::vector<TetFace> faces = without_crumbs(faces_on({peak.node, -1, peak.normal, peak.stress}, x, around), broken);
     if (!faces.empty()) take(faces, {&peak.node, 1});
   }
   return breaks;

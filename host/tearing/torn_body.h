@@ -60,6 +60,8 @@ class TornBody {
     Eigen::Vector3d normal;
     double stress;  ///< largest principal [Pa]
   };
+  /// Tetrahedra of the smallest piece that a tear makes: those of two triangles of a sheet, or of one cell of a grid.
+  static constexpr std::size_t kLeastPiece = 6;
   struct LongEdge {
     double excess;  ///< length over that at rest
     std::array<std::int32_t, 2> ends;
@@ -77,6 +79,13 @@ class TornBody {
   [[nodiscard]] static std::vector<Peak> peaks(const std::vector<NodeStress>& at);
   [[nodiscard]] std::vector<LongEdge> long_edges(const std::vector<Vec3d>& x, double stretch) const;
   [[nodiscard]] std::vector<TetFace> faces_on(const Plane& plane, const std::vector<Vec3d>& x, const Around& around) const;
+  /// Sets or clears the bits of both sides of a face.
+  void mark(const TetFace& face, std::vector<std::uint8_t>& broken, bool on) const;
+  /// Tetrahedra that whole faces connect with `tet`, itself first, no more than about kLeastPiece.
+  [[nodiscard]] std::vector<std::int32_t> piece_at(std::int32_t tet, const std::vector<std::uint8_t>& broken) const;
+  /// The faces without those that would cut off fewer than kLeastPiece tetrahedra from more: a crumb carries no load, and a
+  /// tear goes around it.
+  [[nodiscard]] std::vector<TetFace> without_crumbs(std::vector<TetFace> faces, std::vector<std::uint8_t> broken) const;
   [[nodiscard]] std::vector<TetFace> parting_faces(const LongEdge& edge, double stretch, const std::vector<Vec3d>& x,
                                                    const std::vector<NodeStress>& at, const Around& around) const;
   void make_surface();

@@ -13,6 +13,7 @@
 
 #include "pliant/export.h"
 #include "pliant/scene_conditions.h"
+#include "pliant/scene_links.h"
 #include "pliant/tool.h"
 
 namespace pliant {
@@ -55,7 +56,7 @@ struct InclusionSpec {
 
 /// How a body's nodes move: finite elements (tled), shape matching (flsm), or both (hybrid). See docs/scene.md.
 struct ModelSpec {
-  std::string type = "tled";              ///< tled, hybrid or flsm
+  std::string type = "tled";              ///< tled, hybrid, flsm or mass-spring
   double ratio = 0.5;                     ///< hybrid: fraction of the nodes that finite elements move, in [0, 1]
   std::optional<Vec3d> seed;              ///< hybrid: point from which the operational region grows [m]
   std::string follow;                     ///< hybrid: target of the operational region: "focus", a blade, a tool, "host/BLADE"
@@ -70,14 +71,7 @@ struct ModelSpec {
                                 ///< material's, flsm alpha = 0.5
   double damping = 0;           ///< per-region damping, in [0, 1]
   int substeps = 1;             ///< hybrid: finite-element steps per step of shape matching
-};
-
-/// A thin elastic layer on the whole surface of a body, as the capsule of an organ; it does not resist bending.
-struct MembraneSpec {
-  double thickness = 0;   ///< [m]
-  double young = 0;       ///< Young's modulus [Pa]
-  double poisson = 0.5;   ///< 0 to 0.5; 0.5: incompressible
-  double density = 1000;  ///< [kg/m^3]
+  SpringSpec spring;            ///< mass-spring: law of the springs
 };
 
 /// One body: shape, material, model, boundary conditions and loads.
@@ -90,10 +84,12 @@ struct BodySpec {
   Vec3d translate{};                       ///< offset [m], applied after scale
   double lattice_spacing = 0;              ///< edge length of a cell [m]; 0: from lattice_nodes
   std::int64_t lattice_nodes = 2000;       ///< approximate number of nodes if no spacing is given
-  std::string element = "hex8";            ///< tet4, tet4anp, hex8 or hex8full
+  double thickness = 0;                    ///< [m]; > 0: the surface is a sheet, a layer of tetrahedra instead of a lattice
+  std::string element = "hex8";            ///< tet4, tet4anp, hex8 or hex8full; of a sheet tet4 or tet4anp
   MaterialSpec material;                   ///< material outside the inclusions
   ModelSpec model;                         ///< finite elements, shape matching or both
   std::optional<MembraneSpec> membrane;    ///< absent: none
+  std::vector<VesselSpec> vessels;         ///< vessels inside
   std::vector<InclusionSpec> inclusions;   ///< parts with a different material
   std::vector<FixedSpec> fixed;            ///< fixed nodes
   std::vector<PrescribedSpec> prescribed;  ///< nodes with prescribed motion
@@ -154,6 +150,7 @@ struct SceneSpec {
   std::optional<ContactSpec> contact;             ///< contact between tissue and tissue; absent: none
   std::vector<std::array<double, 4>> focus_path;  ///< path of the focus, which regions can follow: (time [s], x, y, z [m])
   std::vector<BodySpec> bodies;                   ///< at least one
+  std::vector<JoinSpec> joins;                    ///< springs between bodies
   std::vector<ProbeSpec> probes;                  ///< evaluated by World::probes()
   std::vector<ChangeSpec> changes;                ///< parameters that change; times do not descend
 };

@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <random>
 
 #include "cutting/cut_bodies.h"
 #include "cutting/cut_scenes.h"
 #include "io/save.h"
+#include "model/pieces.h"
 #include "solver/scenes.h"
 #include "support/error_of.h"
 #include "support/temp_folder.h"
@@ -84,6 +86,40 @@ TEST_F(Tear, ABarPartsInItsWeakSliceAndNowhereElse) {
   const auto u = s.displacements(0);
   EXPECT_NEAR(u[0][0], 0, 1e-9);
   EXPECT_LT(std::abs(u[1][0]), 0.003);
+}
+
+/// Random displacements of every node, large enough to tear the whole bar in many places.
+TEST_F(Tear, NoTearCutsOffACrumb) {
+  Scene scene = bar_scene(file, 1500);
+  const auto whole = std::make_shared<const BodyMesh>(make_body_mesh(scene.bodies[0]));
+  Material weak = scene.bodies[0].material;
+  weak.toughness = 700;
+  std::mt19937 random(11);
+  std::size_t broken = 0, parted = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    TornBody body(whole, std::vector<Material>(whole->tets.size(), weak));
+    for (int look = 0; look < 4; ++look) {
+      std::vector<Vec3d> x = body.solid().nodes;
+      for (Vec3d& p : x) {
+        for (double& c : p) c += 0.006 * (static_cast<double>(random()) / 4294967295.0 - 0.5);
+      }
+      const auto faces = body.breaking_faces(x).faces;
+      if (faces.empty()) break;
+      broken += faces.size();
+      body.tear(faces);
+    }
+    ModelBody model;
+    model.slot.resize(body.solid().nodes.size());
+    model.tets = body.solid().tets;
+    std::vector<std::int32_t> piece;
+    const auto pieces = static_cast<std::size_t>(pliant::pieces_of(model, &piece));
+    std::vector<int> size(pieces);
+    for (const std::int32_t p : piece) ++size[static_cast<std::size_t>(p)];
+    EXPECT_GE(*std::min_element(size.begin(), size.end()), 6) << "trial " << trial;
+    parted += pieces > 1 ? 1 : 0;
+  }
+  EXPECT_GT(broken, 1000U);
+  EXPECT_GT(parted, 5U) << "larger pieces do come off";
 }
 
 TEST_F(Tear, BelowItsToughnessItHolds) {

@@ -185,7 +185,7 @@ TEST(SurfaceReport, WhatHasNoInsideIsRefused) {
   for (const TriangleMesh& mesh : {half, thinned, flat}) {
     const std::string message = checked(mesh).refused;
     EXPECT_TRUE(has(message, "surface mesh 'm': has no inside to fill"));
-    EXPECT_TRUE(has(message, "larger than 25 % of the part; close it in a mesh editor, or give a sheet a thickness"));
+    EXPECT_TRUE(has(message, "larger than 25 % of the part; close it in a mesh editor, or make it a sheet with \"thickness\""));
   }
   TriangleMesh folded = welded(cube({0, 0, 0}, 2));  // pressed flat: closed, but both sides coincide
   for (Vec3d& v : folded.vertices) v[1] *= 1e-9;

@@ -257,8 +257,8 @@ TEST(Model, ShapeMatchingNeedsALattice) {
   for (const std::string type : {"hybrid", "flsm"}) {
     const std::string body = R"({"surface": null, "lattice": null, "mesh": "a.msh", "model": {"type": ")" + type + "\"}}";
     expect_refused(patched("{}", body), R"(/bodies/0/model/type: got ")" + type +
-                                            R"(", expected tled or mass-spring with a volume mesh )" +
-                                            R"((shape matching needs a lattice: give a "surface" instead of the "mesh"))");
+                                            R"(", expected tled or mass-spring with a volume mesh or a sheet )" +
+                                            R"((shape matching needs a lattice: give a "surface" with a "lattice"))");
   }
   const std::string tled = R"({"surface": null, "lattice": null, "mesh": "a.msh", "model": {"type": "tled"}})";
   EXPECT_EQ(message(patched("{}", tled)), "");

@@ -147,6 +147,43 @@ TEST(Spec, ToolsAreThoseOfTheFile) {
   EXPECT_NE(test::error_of([&] { (void)scene_of(s); }).find("/tools/0/contact/alpha: got 0.5"), std::string::npos);
 }
 
+TEST(Spec, SheetsSpringsVesselsAndJoinsAreThoseOfTheFile) {
+  SceneSpec s;
+  s.name = "scene";
+  BodySpec skin, organ;
+  skin.name = "skin";
+  skin.surface_file = "skin.obj";
+  skin.thickness = 0.002;
+  skin.element = "tet4";
+  skin.model.type = "mass-spring";
+  skin.model.spring.law = "cubic";
+  skin.model.spring.lambda1 = 3;
+  skin.model.spring.lambda2 = 2;
+  organ.name = "organ";
+  organ.surface_file = "a.obj";
+  organ.vessels = {{{{0, 0, 0}, {0, 0, 0.1}}, {{0, 1}}, 0.003, 0.001, 6e5, 1050}};
+  s.bodies = {skin, organ};
+  JoinSpec join;
+  join.bodies = {"skin", "organ"};
+  join.distance = 0.004;
+  join.spring.law = "table";
+  join.spring.curve = {{-0.01, -2}, {0, 0}, {0.01, 1}};
+  join.spring.damping = 0.1;
+  join.break_force = 0.3;
+  s.joins = {join};
+  const char* const text = R"({"format": "pliant-scene/1", "name": "scene",
+  "bodies": [
+    {"name": "skin", "surface": "skin.obj", "thickness": 0.002, "material": {"young": 3000, "poisson": 0.45},
+     "model": {"type": "mass-spring", "spring": {"law": "cubic", "lambda1": 3, "lambda2": 2}}},
+    {"name": "organ", "surface": "a.obj", "lattice": {"nodes": 2000}, "material": {"young": 3000, "poisson": 0.45},
+     "vessels": [{"points": [[0, 0, 0], [0, 0, 0.1]], "radius": 0.003, "wall": 0.001, "young": 6e5, "density": 1050}]}],
+  "joins": [{"bodies": ["skin", "organ"], "distance": 0.004, "break_force": 0.3,
+    "spring": {"law": "table", "table": [[-0.01, -2], [0, 0], [0.01, 1]], "damping": 0.1}}]})";
+  EXPECT_EQ(scene_to_json(scene_of(s)), scene_to_json(parse_scene(text, "")));
+  s.joins[0].bodies[1] = "spleen";
+  EXPECT_NE(test::error_of([&] { (void)scene_of(s); }).find("/joins/0/bodies/1: got \"spleen\""), std::string::npos);
+}
+
 TEST(Spec, RegionsOfAMeshAreThoseOfTheFile) {
   SceneSpec spec;
   spec.name = "scene";

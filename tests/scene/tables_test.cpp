@@ -145,6 +145,7 @@ TEST(Tables, SchemaHasTheLawsAndTheWordsOfTheCode) {
   describe_body(keys("body"), Body());
   describe_lattice(keys("lattice"), LatticeSpec());
   describe_membrane(keys("membrane"), Membrane());
+  describe_vessel(keys("vessel"), Vessel());
   describe_elastic(keys("material"), ElasticConstants());
   describe_material(keys("material"), Material());
   describe_friction(keys("tissue_contact"), TissueContact());
@@ -234,6 +235,7 @@ TEST(Tables, ScenesDocumentHasTheLawsAndElementsOfTheCode) {
   describe_body(body, Body());
   describe_lattice(DocumentRows{text, "`lattice`, exactly"}, LatticeSpec());
   describe_membrane(DocumentRows{text, "`membrane`, a thin"}, Membrane());
+  describe_vessel(DocumentRows{text, "`vessels`, a list"}, Vessel());
   describe_elastic(material, ElasticConstants());
   describe_material(material, Material());
   describe_tool(DocumentRows{text, "`tools`, at most 30"}, ContactTool());

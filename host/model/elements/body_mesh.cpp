@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "geometry/sheet.h"
 #include "mesh_io/mesh_io.h"
 #include "mesh_io/surface_report.h"
 #include "model/model.h"
@@ -14,12 +15,15 @@ namespace {
 
 bool takes_tets(ElementKind kind) { return element_info(kind).corners == 4; }
 
+TriangleMesh surface_of(const Body& body, SurfaceReport& report, std::vector<TextureCorners>* texture = nullptr) {
+  return body.surface_in_memory == nullptr
+             ? read_surface(body.surface, body.scale, body.translate, &report, texture)
+             : clean_surface(*body.surface_in_memory, body.surface.string(), body.scale, body.translate, &report);
+}
+
 void from_lattice(const Body& body, BodyMesh& solid, SurfaceReport& report) {
   std::vector<TextureCorners> texture;
-  const TriangleMesh mesh =
-      body.surface_in_memory == nullptr
-          ? read_surface(body.surface, body.scale, body.translate, &report, &texture)
-          : clean_surface(*body.surface_in_memory, body.surface.string(), body.scale, body.translate, &report);
+  const TriangleMesh mesh = surface_of(body, report, &texture);
   require_inside(report);
   Lattice lattice = build_lattice(mesh, body.lattice);
   solid.spacing = lattice.spacing;
@@ -60,8 +64,9 @@ void from_lattice(const Body& body, BodyMesh& solid, SurfaceReport& report) {
   solid.cells = std::move(lattice.cells);
 }
 
-void from_mesh(const Body& body, BodyMesh& solid) {
-  const VolumeMesh mesh = read_volume(body.mesh, body.scale, body.translate);
+void from_mesh(const Body& body, BodyMesh& solid, SurfaceReport& report) {
+  const VolumeMesh mesh = body.thickness > 0 ? thicken(surface_of(body, report), body.thickness, body.surface.string())
+                                             : read_volume(body.mesh, body.scale, body.translate);
   const bool tets = takes_tets(body.element);
   if (tets ? mesh.tets.empty() : mesh.hexes.empty()) {
     const int corners = tets ? 8 : 4;  // of the file's elements
@@ -163,10 +168,10 @@ BodyMesh make_body_mesh(const Body& body) {
 
 BodyMesh make_body_mesh(const Body& body, SurfaceReport& report) {
   BodyMesh solid;
-  if (body.mesh.empty()) {
+  if (body.has_lattice()) {
     from_lattice(body, solid, report);
   } else {
-    from_mesh(body, solid);
+    from_mesh(body, solid, report);
   }
   return solid;
 }

@@ -59,7 +59,7 @@ double rest_stiffness(const SpringBatch& b, std::size_t s) {
 void note_link_bounds(Model& model) {
   if (model.links.empty()) return;
   for (const SpringBatch& b : model.links.springs) {
-    if (b.join >= 0) continue;  // nodes of two bodies may rest at almost one place
+    if (b.join >= 0 || b.bars) continue;  // nodes of two bodies may rest at almost one place
     for (const double length : b.length) {
       if (length > 0 && (model.shortest == 0 || length < model.shortest)) model.shortest = length;
     }

@@ -44,6 +44,7 @@ struct SpringBatch {
   std::vector<std::array<double, 2>> parameters;    ///< [springs] as kernels/links/spring_force.cl has them
   std::vector<double> damper;                       ///< [springs] [N s/m]
   std::vector<char> broken;  ///< [springs] of a join, empty: none is. They stay in the lists, and give no force
+  bool bars = false;         ///< of vessels: between points in elements, however short
   [[nodiscard]] std::size_t size() const { return points.size(); }
   [[nodiscard]] bool damped() const { return law.damping > 0; }
   [[nodiscard]] bool whole(std::size_t s) const { return broken.empty() || broken[s] == 0; }

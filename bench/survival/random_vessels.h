@@ -1,0 +1,15 @@
+// Random vessels in the body of a random scene.
+#pragma once
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "bench/common/dice.h"
+#include "geometry/vec.h"
+
+namespace pliant::bench {
+
+/// A row of bars between the centroids of random elements of a `mesh` of tetrahedra, or, without one, between places in the
+/// middle of the `box` of a shape without hollows. `young`: of the tissue [Pa].
+nlohmann::ordered_json random_vessels(Dice& dice, const std::filesystem::path& mesh, const vec::Box& box, double young);
+
+}  // namespace pliant::bench

@@ -1,0 +1,223 @@
+// Bars along vessels that lie in the elements of a body.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "geometry/spatial_hash.h"
+#include "geometry/vec.h"
+#include "lattice/lattice.h"
+#include "model/links/build_links.h"
+#include "pliant/error.h"
+
+namespace pliant {
+namespace {
+
+/// Most times that a segment is halved until its parts lie in elements that touch.
+constexpr int kHalvings = 12;
+/// Barycentric coordinates of a point in a tetrahedron are at least minus this.
+constexpr double kSlack = 1e-9;
+
+/// A point in an element: nodes of the body with their weights.
+struct Held {
+  std::int32_t element = -1;
+  std::array<std::int32_t, 4> nodes{};
+  std::array<double, 4> weights{};
+};
+
+std::array<double, 4> barycentric(const std::array<Vec3d, 4>& x, const Vec3d& p) {
+  const Vec3d a = vec::sub(x[1], x[0]), b = vec::sub(x[2], x[0]), c = vec::sub(x[3], x[0]), d = vec::sub(p, x[0]);
+  const double det = vec::dot(a, vec::cross(b, c));
+  const double s = vec::dot(d, vec::cross(b, c)) / det, t = vec::dot(a, vec::cross(d, c)) / det,
+               u = vec::dot(a, vec::cross(b, d)) / det;
+  return {1 - s - t - u, s, t, u};
+}
+
+/// Finds the element that holds a point at rest. Of the copies of a cut element it is the one with most of the point's weight
+/// on nodes that have material there.
+class ElementFinder {
+ public:
+  explicit ElementFinder(const BodyElements& solid) : solid_(solid), hash_(edge_of(solid)) {
+    for (std::size_t e = 0; e < solid.size(); ++e) {
+      vec::Box box;
+      for (const std::int32_t n : solid.corners(e)) box.extend(solid.nodes[n]);
+      hash_.insert(box, static_cast<std::int32_t>(e));
+    }
+  }
+
+  [[nodiscard]] Held find(const Vec3d& p) {
+    Held best;
+    double most = -1;
+    vec::Box at;
+    at.extend(p);
+    std::vector<std::int32_t> near;
+    hash_.query(at, [&](std::int32_t e) { near.push_back(e); });
+    std::sort(near.begin(), near.end());
+    for (const std::int32_t e : near) {
+      const std::optional<Held> held = in_element(e, p);
+      if (!held) continue;
+      const double real = real_weight(*held);
+      if (real > most + kSlack) {
+        most = real;
+        best = *held;
+      }
+    }
+    return best;
+  }
+
+  /// Whether two elements have a corner at the same place, and whether they have a node in common.
+  [[nodiscard]] bool touch(std::int32_t e, std::int32_t f) const { return any_pair(e, f, true); }
+  [[nodiscard]] bool connected(std::int32_t e, std::int32_t f) const { return any_pair(e, f, false); }
+
+ private:
+  static double edge_of(const BodyElements& solid) {
+    vec::Box box;
+    for (const std::int32_t n : solid.corners(0)) box.extend(solid.nodes[n]);
+    return std::max({box.upper[0] - box.lower[0], box.upper[1] - box.lower[1], box.upper[2] - box.lower[2]});
+  }
+
+  [[nodiscard]] std::optional<Held> in_tet(std::int32_t e, const std::array<std::int32_t, 4>& nodes, const Vec3d& p) const {
+    std::array<Vec3d, 4> x{};
+    for (std::size_t a = 0; a < 4; ++a) x[a] = solid_.nodes[nodes[a]];
+    const std::array<double, 4> w = barycentric(x, p);
+    if (!std::all_of(w.begin(), w.end(), [](double v) { return v >= -kSlack; })) return {};
+    return Held{e, nodes, w};
+  }
+
+  /// In one of the six tetrahedra of a hexahedron the displacement of the point is linear in those of four corners.
+  [[nodiscard]] std::optional<Held> in_element(std::int32_t e, const Vec3d& p) const {
+    const std::span<const std::int32_t> corners = solid_.corners(static_cast<std::size_t>(e));
+    if (corners.size() == 4) return in_tet(e, {corners[0], corners[1], corners[2], corners[3]}, p);
+    for (const auto& tet : kKuhnTets) {
+      if (auto held = in_tet(e, {corners[tet[0]], corners[tet[1]], corners[tet[2]], corners[tet[3]]}, p)) return held;
+    }
+    return {};
+  }
+
+  [[nodiscard]] double real_weight(const Held& held) const {
+    const std::int32_t first = solid_.virtual_nodes.first;
+    double sum = 0;
+    for (std::size_t a = 0; a < 4; ++a) {
+      if (first < 0 || held.nodes[a] < first) sum += held.weights[a];
+    }
+    return sum;
+  }
+
+  [[nodiscard]] bool any_pair(std::int32_t e, std::int32_t f, bool places) const {
+    for (const std::int32_t m : solid_.corners(static_cast<std::size_t>(e))) {
+      for (const std::int32_t n : solid_.corners(static_cast<std::size_t>(f))) {
+        if (places ? solid_.nodes[m] == solid_.nodes[n] : m == n) return true;
+      }
+    }
+    return false;
+  }
+
+  const BodyElements& solid_;
+  SpatialHash hash_;
+};
+
+/// The bars of one entry of `vessels`.
+class Bars {
+ public:
+  Bars(const Body& body, const Vessel& vessel, const NodeNumbering& draft, ElementFinder& finder, Model& model)
+      : body_(body), vessel_(vessel), draft_(draft), finder_(finder), model_(model) {
+    out_.law.stiffness = vessel.young * vessel.area();  // k of a bar is this over its length
+    out_.bars = true;
+  }
+
+  SpringBatch take() {
+    for (const auto& [from, to] : vessel_.segments) {
+      const Vec3d &a = vessel_.points[static_cast<std::size_t>(from)], &b = vessel_.points[static_cast<std::size_t>(to)];
+      divide(a, find(a, from), b, find(b, to), 0);
+    }
+    return std::move(out_);
+  }
+  [[nodiscard]] double mass() const { return mass_; }
+
+ private:
+  Held find(const Vec3d& x, std::int32_t number) {
+    Held held = finder_.find(x);
+    if (held.element >= 0 || !uncut()) return held;
+    throw Error(ErrorCode::bad_input, fmt::format("{}: got point {} at [{:.4g}, {:.4g}, {:.4g}] m, outside the elements of {}, "
+                                                  "expected points inside",
+                                                  vessel_.pointer, number, x[0], x[1], x[2], body_.name));
+  }
+
+  [[nodiscard]] bool uncut() const { return draft_.solid().virtual_nodes.first < 0 && draft_.solid().copy_of.empty(); }
+
+  /// Halves a segment until the elements of both ends touch.
+  void divide(const Vec3d& a, const Held& at_a, const Vec3d& b, const Held& at_b, int depth) {
+    if (at_a.element >= 0 && at_b.element >= 0 && (depth >= kHalvings || finder_.touch(at_a.element, at_b.element))) {
+      // A cut between them leaves both without a common node.
+      if (depth >= kHalvings || finder_.connected(at_a.element, at_b.element)) add(a, at_a, b, at_b);
+      return;
+    }
+    if (depth >= kHalvings) return;  // in a gap, or where a cut has removed the element
+    const Vec3d middle = vec::mul(vec::add(a, b), 0.5);
+    const Held at = finder_.find(middle);
+    divide(a, at_a, middle, at, depth + 1);
+    divide(middle, at, b, at_b, depth + 1);
+  }
+
+  void add(const Vec3d& a, const Held& at_a, const Vec3d& b, const Held& at_b) {
+    const double length = vec::norm(vec::sub(b, a));
+    if (!(length > 0)) return;
+    out_.points.push_back({point(a, at_a), point(b, at_b)});
+    out_.length.push_back(length);
+    out_.parameters.push_back(spring_parameters(out_.law, length, 1, out_.law.stiffness / length));
+    out_.damper.push_back(0);
+    const double mass = vessel_.density * vessel_.area() * length;
+    mass_ += mass;
+    for (const Held& held : {at_a, at_b}) {
+      for (std::size_t k = 0; k < 4; ++k) model_.mass[slot(held, k)] += held.weights[k] * mass / 2;
+    }
+  }
+
+  [[nodiscard]] std::size_t slot(const Held& held, std::size_t k) const {
+    return static_cast<std::size_t>(draft_.slot[static_cast<std::size_t>(held.nodes[k])]);
+  }
+
+  std::int32_t point(const Vec3d& x, const Held& held) {
+    LinkPoints& points = model_.links.points;
+    if (last_ >= 0 && points.rest.back() == x) return last_;  // the end of the bar before
+    points.rest.push_back(x);
+    std::array<std::int32_t, 8> slots{};
+    std::array<double, 8> weights{};
+    slots.fill(static_cast<std::int32_t>(slot(held, 0)));
+    for (std::size_t k = 0; k < 4; ++k) {
+      slots[k] = static_cast<std::int32_t>(slot(held, k));
+      weights[k] = std::max(held.weights[k], 0.0);
+    }
+    points.slots.push_back(slots);
+    points.weights.push_back(weights);
+    return last_ = static_cast<std::int32_t>(points.size()) - 1;
+  }
+
+  const Body& body_;
+  const Vessel& vessel_;
+  const NodeNumbering& draft_;
+  ElementFinder& finder_;
+  Model& model_;
+  SpringBatch out_;
+  double mass_ = 0;
+  std::int32_t last_ = -1;
+};
+
+}  // namespace
+
+void add_vessels(const Body& body, std::int32_t b, const NodeNumbering& draft, Model& model) {
+  if (body.vessels.empty() || draft.solid().size() == 0) return;
+  ElementFinder finder(draft.solid());
+  for (std::size_t v = 0; v < body.vessels.size(); ++v) {
+    Bars bars(body, body.vessels[v], draft, finder, model);
+    SpringBatch batch = bars.take();
+    batch.body = b;
+    batch.label = fmt::format("{}: vessel {}", body.name, v);
+    model.bodies[static_cast<std::size_t>(b)].mass += bars.mass();
+    if (batch.size() > 0) model.links.springs.push_back(std::move(batch));
+  }
+}
+
+}  // namespace pliant
