@@ -12,6 +12,7 @@
 #include "haptics.h"
 #include "live.h"
 #include "rows.h"
+#include "state.h"
 #include "surfaces.h"
 #include "tools.h"
 
@@ -245,14 +246,6 @@ void bind_world(py::module_& m) {
       .def("pick", &pick, py::arg("origin"), py::arg("direction"),
            "where the ray from origin [m] first meets the surface of the frame returned last: a dict with the fields of "
            "PickedPoint, whose vertex grab and push take; None: it misses, or there was no frame")
-      .def(
-          "displacements", [](const World& w, std::size_t body) { return hand_over(w.displacements(body)); },
-          py::arg("body") = 0)
-      .def(
-          "velocities", [](const World& w, std::size_t body) { return hand_over(w.velocities(body)); }, py::arg("body") = 0)
-      .def(
-          "rest_positions", [](const World& w, std::size_t body) { return hand_over(w.rest_positions(body)); },
-          py::arg("body") = 0)
       .def("probes", &probes, "a dict of the scene's probes: of each a dict of its quantities, arrays of numbers")
       .def("remarks", &World::remarks, Free(), "a list of sentences: WorldInfo's, and what has happened since the start")
       .def("hash", &World::hash)
@@ -272,6 +265,7 @@ void bind_world(py::module_& m) {
       .def("reset", &World::reset, Free());
   bind_tools(world);
   bind_live(world);
+  bind_state(world);
 }
 
 /// Names and types of a function's parameters without `self`, as its text says them: "steps: int = 1, ...".

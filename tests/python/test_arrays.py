@@ -143,6 +143,56 @@ def test_views_stay_through_cut_reset_load_and_the_end_of_the_world():
         assert all(np.array_equal(view, value) for view, value in zip(views, values))
 
 
+def error_of(call):
+    try:
+        call()
+    except pliant.Error as error:
+        assert "\n" not in str(error)
+        return error
+    raise AssertionError("no pliant.Error")
+
+
+def test_a_state_from_arrays():
+    scene = {"format": "pliant-scene/1", "gravity": [0, -9.81, 0], "dt": 1e-3, "bodies": [{
+        "name": "block", "surface": "memory:0", "lattice": {"spacing": 0.02},
+        "material": {"young": 3000, "poisson": 0.45, "damping": 5}, "fixed": [{"plane": [[0, 0.001, 0], [0, -1, 0]]}]}]}
+    one, two = (pliant.World(scene, surfaces=[(VERTICES, TRIANGLES)], backend="cpu") for _ in range(2))
+    one.step(130)
+    two.set_state(displacements=one.displacements(), velocities=one.velocities())
+    assert one.hash() == two.hash()
+    one.step(200)
+    two.step(200)
+    assert one.hash() == two.hash(), "the same state goes on with the same bits"
+    rest = one.rest_positions()
+    two.set_state(rest + one.displacements())
+    assert np.allclose(two.displacements(), one.displacements(), atol=1e-12)
+    held = rest[:, 1] < 0.001
+    shifted = (rest + [0.001, 0, 0]).astype(np.float32)  # float32, strides and lists will do
+    two.set_state(shifted, velocities=np.zeros((len(rest), 6))[:, ::2])
+    assert np.allclose(two.displacements()[~held], [0.001, 0, 0], atol=1e-8) and not two.displacements()[held].any() and not two.velocities().any()
+    two.set_state(velocities=np.tile([0, 0, 0.5], (len(rest), 1)).tolist(), body=0)
+    assert np.allclose(two.velocities()[~held], [0, 0, 0.5]) and np.allclose(two.displacements()[~held], [0.001, 0, 0], atol=1e-8)
+    before = two.hash()
+    two.set_state()
+    assert two.hash() == before
+
+
+def test_wrong_states_are_refused_in_one_sentence():
+    world = block()
+    rest = world.rest_positions()
+    nodes = len(rest)
+    for wrong, found in ((rest[:-1], f"[{nodes}, 3], in the order of rest_positions(), not the shape [{nodes - 1}, 3]"),
+                         (world.frame().positions, "not the shape [8, 3]"), (rest[:, :2], f"not the shape [{nodes}, 2]"), ("up", "something else")):
+        error = error_of(lambda: world.set_state(wrong))
+        assert error.code == 5 and found in str(error) and str(error).startswith("positions of a state"), error
+    nan = rest.copy()
+    nan[5, 2] = np.nan
+    assert "node 5" in str(error_of(lambda: world.set_state(nan))) and "node 5" in str(error_of(lambda: world.set_state(velocities=nan)))
+    assert "not both" in str(error_of(lambda: world.set_state(rest, displacements=rest)))
+    assert error_of(lambda: world.set_state(rest, body=2)).code == 5
+    assert not world.displacements().any()
+
+
 def test_pytorch_takes_a_frame_without_a_copy():
     try:
         import torch
