@@ -90,14 +90,14 @@ class PLIANT_API World {
   /// it misses, or before the first frame. The length of `direction` does not matter. A ray through an edge or a vertex does
   /// not slip through. Throws Error (usage) for a direction that is zero and for numbers that are not finite.
   [[nodiscard]] std::optional<PickedPoint> pick(const Vec3d& origin, const Vec3d& direction) const;
-
+  /// Sets displacements [m] and velocities [m/s] of a body's nodes now; an empty list leaves what there is. Components that the
+  /// scene holds or moves keep theirs. Throws Error: usage (length, not finite), diverged, device.
+  void set_state(std::size_t body, const std::vector<Vec3d>& displacements, const std::vector<Vec3d>& velocities = {});
   /// Returns the displacements [m] of a body's nodes, shape [nodes]. An unknown body is Error (usage), also in the next two.
   [[nodiscard]] std::vector<Vec3d> displacements(std::size_t body) const;
   [[nodiscard]] std::vector<Vec3d> velocities(std::size_t body) const;      ///< [m/s], shape [nodes]
   [[nodiscard]] std::vector<Vec3d> rest_positions(std::size_t body) const;  ///< [m], shape [nodes]
-  /// Sets displacements [m] and velocities [m/s] of a body's nodes now; an empty list leaves what there is. Components that the
-  /// scene holds or moves keep theirs. Throws Error: usage (length, not finite), diverged, device.
-  void set_state(std::size_t body, const std::vector<Vec3d>& displacements, const std::vector<Vec3d>& velocities = {});
+
   [[nodiscard]] std::vector<ProbeValue> probes() const;  ///< the scene's probes now, in scene order, one entry per quantity
 
   /// Measures the overlaps of tools and bodies, and of bodies and bodies, now (docs/contact.md), those of tools
