@@ -112,7 +112,9 @@ py::array loop_samples(HapticLoop& loop) {
     const py::gil_scoped_release release;
     samples = loop.samples();
   }
-  return py::array(py::dtype::of<pliant::HapticSample>(), {samples.size()}, {}, samples.data());
+  const std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(samples.size())}, strides{sizeof(pliant::HapticSample)};
+  const Held<pliant::HapticSample> all = held(std::move(samples));
+  return py::array(py::dtype::of<pliant::HapticSample>(), shape, strides, all.data, all.owner);
 }
 
 void bind_devices(py::module_& m) {

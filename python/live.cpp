@@ -4,7 +4,10 @@
 #include <pybind11/stl.h>
 
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "rows.h"
 
 namespace py = pybind11;
 
@@ -57,10 +60,11 @@ py::dtype dtype_of_force_sample() {
 
 /// An array of the fields of ForceSample.
 py::array force_trace(const pliant::World& w, const py::object& of, std::int64_t after) {
-  const std::vector<pliant::ForceSample> trace = py::isinstance<py::str>(of) ? w.force_trace(of.cast<std::string>(), after)
-                                                                             : w.force_trace(of.cast<pliant::GrabId>(), after);
-  const std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(trace.size())}, strides{sizeof(pliant::ForceSample)};  // rows.h
-  return py::array(dtype_of_force_sample(), shape, strides, trace.data());
+  std::vector<pliant::ForceSample> trace = py::isinstance<py::str>(of) ? w.force_trace(of.cast<std::string>(), after)
+                                                                       : w.force_trace(of.cast<pliant::GrabId>(), after);
+  const std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(trace.size())}, strides{sizeof(pliant::ForceSample)};
+  const Held<pliant::ForceSample> all = held(std::move(trace));
+  return py::array(dtype_of_force_sample(), shape, strides, all.data, all.owner);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "haptics.h"
 #include "live.h"
 #include "rows.h"
+#include "state.h"
 #include "surfaces.h"
 #include "tools.h"
 
@@ -20,7 +21,8 @@ using pliant::Vec3d;
 
 namespace {
 
-/// A read-only array over memory that `owner` keeps alive: shape [size][columns], `stride` bytes from row to row.
+/// A read-only array over memory that `owner` keeps alive: shape [size][columns], `stride` bytes from row to row. Its class
+/// exports it by DLPack, too.
 template <class T>
 py::array view(const T* data, std::size_t size, std::size_t columns, std::size_t stride, const py::object& owner) {
   std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(size)}, strides{static_cast<py::ssize_t>(stride)};
@@ -30,17 +32,11 @@ py::array view(const T* data, std::size_t size, std::size_t columns, std::size_t
   }
   py::array array(py::dtype::of<T>(), shape, strides, data, owner);
   array.attr("setflags")(py::arg("write") = false);
-  return array;
+  return array.attr("view")(py::module_::import("pliant._arrays").attr("FrameArray"));
 }
 
 py::array texels(pliant::View<pliant::Vec4f> v, const py::object& owner) {
   return view(v.empty() ? nullptr : v.data()->data(), v.size(), 3, sizeof(pliant::Vec4f), owner);
-}
-
-py::array_t<double> copy(const std::vector<Vec3d>& v) {
-  py::array_t<double> array({static_cast<py::ssize_t>(v.size()), py::ssize_t{3}});
-  std::copy_n(v.empty() ? nullptr : v.data()->data(), 3 * v.size(), array.mutable_data());
-  return array;
 }
 
 py::tuple range(const pliant::IndexRange& r) { return py::make_tuple(r.first, r.count); }
@@ -250,12 +246,6 @@ void bind_world(py::module_& m) {
       .def("pick", &pick, py::arg("origin"), py::arg("direction"),
            "where the ray from origin [m] first meets the surface of the frame returned last: a dict with the fields of "
            "PickedPoint, whose vertex grab and push take; None: it misses, or there was no frame")
-      .def(
-          "displacements", [](const World& w, std::size_t body) { return copy(w.displacements(body)); }, py::arg("body") = 0)
-      .def(
-          "velocities", [](const World& w, std::size_t body) { return copy(w.velocities(body)); }, py::arg("body") = 0)
-      .def(
-          "rest_positions", [](const World& w, std::size_t body) { return copy(w.rest_positions(body)); }, py::arg("body") = 0)
       .def("probes", &probes, "a dict of the scene's probes: of each a dict of its quantities, arrays of numbers")
       .def("remarks", &World::remarks, Free(), "a list of sentences: WorldInfo's, and what has happened since the start")
       .def("hash", &World::hash)
@@ -275,6 +265,7 @@ void bind_world(py::module_& m) {
       .def("reset", &World::reset, Free());
   bind_tools(world);
   bind_live(world);
+  bind_state(world);
 }
 
 /// Names and types of a function's parameters without `self`, as its text says them: "steps: int = 1, ...".

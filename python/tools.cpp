@@ -4,6 +4,7 @@
 #include <pybind11/stl.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "rows.h"
@@ -59,22 +60,17 @@ py::dict tool_forces(const pliant::World& w) {
 
 /// The surface of a tool in its own frame: vertices [m] and triangles.
 py::tuple tool_surface(const pliant::World& w, const std::string& name) {
-  const pliant::SurfaceSpec now = w.tool_surface(name);
-  const auto rows = [](const auto& list) { return std::array<py::ssize_t, 2>{static_cast<py::ssize_t>(list.size()), 3}; };
-  py::array_t<double> vertices(rows(now.vertices));
-  py::array_t<std::int32_t> triangles(rows(now.triangles));
-  std::copy_n(now.vertices.data()->data(), vertices.size(), vertices.mutable_data());
-  std::copy_n(now.triangles.data()->data(), triangles.size(), triangles.mutable_data());
-  return py::make_tuple(vertices, triangles);
+  pliant::SurfaceSpec now = w.tool_surface(name);
+  return py::make_tuple(hand_over(std::move(now.vertices)), hand_over(std::move(now.triangles)));
 }
 
-py::array_t<float> vertex_values(const pliant::World& w, const std::string& field) {
+py::array vertex_values(const pliant::World& w, const std::string& field) {
   std::vector<float> values;
   {
     const py::gil_scoped_release release;
     values = w.vertex_values(field);
   }
-  return py::array_t<float>(static_cast<py::ssize_t>(values.size()), values.data());
+  return hand_over(std::move(values));
 }
 
 /// What tools and bodies, and bodies and bodies, have in common.

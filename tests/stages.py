@@ -91,7 +91,7 @@ def stages(mode):
     # command, and the tests that are quick.
     debian_python = ["-DPython3_EXECUTABLE=/usr/bin/python3"] if os.access("/usr/bin/python3", os.X_OK) else []  # it has NumPy
     yield Stage("Debug, shared library, Python (clang++)", "clang", ["-L", "^(package|python|scene)$", "-LE", "[.]single$"],
-                ["pliant_lib", "pliant_python", "example_hello", "pliant_cli", "test_scene"], debian_python)
+                ["pliant_lib", "pliant_python", "example_hello", "pliant_cli", "tutorial_embed", "test_scene"], debian_python)
     lint = [sys.executable, "-B", str(ROOT / "tests/lint/lint.py"), "all" if full else "changed"]
     if full:
         yield sanitized("address and undefined-behaviour sanitizers", "asan", ".", 100000, "all")

@@ -87,6 +87,13 @@ void copy_vectors(const std::vector<pliant::Vec3d>& vectors, double* out, std::s
   for (const pliant::Vec3d& v : vectors) out = std::copy(v.begin(), v.end(), out);
 }
 
+/// Three numbers for each node; null: none.
+std::vector<pliant::Vec3d> vectors_of(const double* numbers, std::size_t count) {
+  std::vector<pliant::Vec3d> vectors(numbers == nullptr ? 0 : count / 3);
+  if (!vectors.empty()) std::copy_n(numbers, 3 * vectors.size(), vectors.front().data());
+  return vectors;
+}
+
 void give_frame(const pliant::Frame& f, const pliant::IndexRange& vertices, const pliant::IndexRange& triangles,
                 pliant_frame* out) {
   const auto floats = [](pliant::View<pliant::Vec4f> v) { return v.empty() ? nullptr : v.data()->data(); };
@@ -319,6 +326,13 @@ pliant_status pliant_world_velocities(pliant_world world, size_t body, double* o
 }
 pliant_status pliant_world_rest_positions(pliant_world world, size_t body, double* out, size_t count) {
   return on(world, [&](CWorld& w) { copy_vectors(w.world.rest_positions(body), out, count, "rest_positions"); });
+}
+pliant_status pliant_world_set_state(pliant_world world, size_t body, const double* displacements, const double* velocities,
+                                     size_t count) {
+  return on(world, [&](CWorld& w) {
+    check_count(count, 3 * w.world.rest_positions(body).size(), "the state");
+    w.world.set_state(body, vectors_of(displacements, count), vectors_of(velocities, count));
+  });
 }
 pliant_status pliant_world_hash(pliant_world world, uint64_t* out) {
   return on(world, [&](CWorld& w) { give(w.world.hash(), out); });

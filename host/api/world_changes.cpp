@@ -60,6 +60,28 @@ void World::Impl::change(const std::string& text) {
   }
 }
 
+void World::set_state(std::size_t body, const std::vector<Vec3d>& displacements, const std::vector<Vec3d>& velocities) {
+  const Call call(impl_);
+  api::check_device(*impl_);
+  impl_->check_can_step();
+  api::check_body(*impl_, body);
+  try {
+    impl_->make_changes();  // what was asked for before it
+    impl_->simulation->set_nodes(body, displacements, velocities);
+  } catch (const api::Refused& refused) {
+    impl_->publish_clock();
+    throw Error(refused.code(), refused.what());
+  } catch (const std::exception& error) {
+    const auto* const known = dynamic_cast<const Error*>(&error);
+    if (known != nullptr && known->code() == ErrorCode::usage) throw;
+    const Error failure_now = impl_->as_device_error(error);
+    impl_->lost = failure_now.what();
+    throw failure_now;
+  }
+  impl_->publish_clock();
+  impl_->read_frame(true);
+}
+
 void World::change(const ChangeSpec& change) {
   const Call call(impl_, false);
   impl_->change(change_json(change).dump());

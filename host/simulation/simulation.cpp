@@ -12,6 +12,7 @@
 #include "schedule/build_program.h"
 #include "schedule/surface_program.h"
 #include "simulation/contact/tool_changes.h"
+#include "simulation/edits/node_edits.h"
 #include "simulation/measure/remarks.h"
 #include "simulation/step/coupling.h"
 #include "simulation/step/initial_motion.h"
@@ -135,6 +136,18 @@ void Simulation::read_surface_into(void* out) {
 CutReport Simulation::move_blade(const std::string& blade, const BladeSegment& segment) {
   const BladePose pose{blade, segment};
   return move_blades(std::span(&pose, 1));
+}
+
+void Simulation::set_nodes(std::size_t body, const std::vector<Vec3d>& displacements, const std::vector<Vec3d>& velocities) {
+  pliant::set_nodes(run_, body, displacements, velocities);
+  loaded_.note_change();
+  state_.kept.reset();
+  state_.look.tools = state_.look.tissue = -1;
+  const double damping = state_.relaxation.damping;
+  state_.relaxation = {};  // it compares forces and motions with those of the state before
+  state_.relaxation.damping = damping;
+  reports_.now.energy.least.reset();  // the host's work
+  if (run_.phase() == 0) step_.adapt_after_move();
 }
 
 std::vector<std::string> Simulation::remarks() const { return remarks_on(model(), scene_, dt()); }

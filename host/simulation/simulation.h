@@ -127,6 +127,8 @@ class Simulation {
   [[nodiscard]] ToolEdits& tools() { return tools_; }
   /// Changes parameters of the scene between two batches; see ParameterEdits::change.
   void change(const std::string& change) { parameters_.change(change); }
+  /// Sets the motion of a body's nodes between two batches; see set_nodes(). No rollback goes behind it.
+  void set_nodes(std::size_t body, const std::vector<Vec3d>& displacements, const std::vector<Vec3d>& velocities);
   /// Moves the focus of the scene to a point [m], where it stays.
   void set_focus(const Vec3d& position) { state_.focus = position; }
 

@@ -2,9 +2,9 @@
 //
 // Threads: a World may be used from any thread, but only by one at a time; concurrent calls throw Error (state). Worlds share
 // no state: each may have its own thread, and results do not depend on other Worlds. The first step_async() or
-// advance_async() starts a worker thread. While the worker is busy, these calls do not wait for it: busy, poll, frame,
-// frame_since, pick, info, time, step_number, dt, stable_dt, live_state, events, force_trace, the tools, cut, the blades,
-// step_async, advance_async, run_live. All other calls wait. Any number of threads may read a Frame.
+// advance_async() starts a worker thread. These calls do not wait while it is busy: busy, poll, frame, frame_since, pick,
+// info, time, step_number, dt, stable_dt, live_state, events, force_trace, the tools, cut, the blades, step_async,
+// advance_async, run_live. All others wait. Any number of threads may read a Frame.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -90,7 +90,9 @@ class PLIANT_API World {
   /// it misses, or before the first frame. The length of `direction` does not matter. A ray through an edge or a vertex does
   /// not slip through. Throws Error (usage) for a direction that is zero and for numbers that are not finite.
   [[nodiscard]] std::optional<PickedPoint> pick(const Vec3d& origin, const Vec3d& direction) const;
-
+  /// Sets displacements [m] and velocities [m/s] of a body's nodes now; an empty list leaves what there is. Components that the
+  /// scene holds or moves keep theirs. Throws Error: usage (length, not finite), diverged, device.
+  void set_state(std::size_t body, const std::vector<Vec3d>& displacements, const std::vector<Vec3d>& velocities = {});
   /// Returns the displacements [m] of a body's nodes, shape [nodes]. An unknown body is Error (usage), also in the next two.
   [[nodiscard]] std::vector<Vec3d> displacements(std::size_t body) const;
   [[nodiscard]] std::vector<Vec3d> velocities(std::size_t body) const;      ///< [m/s], shape [nodes]
@@ -113,8 +115,7 @@ class PLIANT_API World {
   [[nodiscard]] GrabState grab_state(GrabId grab) const;  ///< force and gap
   void release(GrabId grab);                              ///< removes the grab
 
-  /// Applies a constant force [N] to a vertex, distributed to the nodes of its cell, until it is set again; zero removes it.
-  void push(std::int32_t vertex, const Vec3d& force);
+  void push(std::int32_t vertex, const Vec3d& force);  ///< a constant force [N] on the nodes of its cell, until it is set again
   void push_node(std::size_t body, std::int64_t node, const Vec3d& force);  ///< to a node of a cell that carries the surface
   void clear_handles();                    ///< removes all grabs and pushes, and drives that have not started
   void move_focus(const Vec3d& position);  ///< moves the focus, which operational regions can follow, to a point [m]
@@ -157,8 +158,7 @@ class PLIANT_API World {
   /// batch. In checkpoints; reset() returns to the scene's parameters. Throws Error: input (a value that no scene could have,
   /// what cannot change), and then changes nothing; diverged, device.
   void change(const ChangeSpec& change);
-  /// The same from text, an entry of `changes` of a scene file without its time: {"material": {"young": 2000}}.
-  void parse_change(const std::string& text);
+  void parse_change(const std::string& text);  ///< the same from text, an entry of `changes` of a scene file without its time
 
   /// Cuts, as CutResult describes. All throw Error: input, usage (non-finite numbers), diverged, device.
   ///

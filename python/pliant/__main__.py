@@ -1,4 +1,4 @@
-"""python -m pliant SCENE.json: opens a scene in the browser."""
+"""python -m pliant SCENE.json opens a scene in the browser, python -m pliant convert IN OUT converts meshes, stages and results."""
 import argparse
 import sys
 
@@ -7,7 +7,11 @@ from pliant import view
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="python -m pliant", description="Opens a scene in the browser.")
+    if sys.argv[1:2] == ["convert"]:
+        from pliant.convert import _command
+
+        return _command.main(sys.argv[2:])
+    parser = argparse.ArgumentParser(prog="python -m pliant", description="Opens a scene in the browser. `python -m pliant convert --help` converts.")
     parser.add_argument("scene", help="a scene file")
     parser.add_argument("--backend", default="auto", help="as `pliant devices` names them (auto)")
     parser.add_argument("--port", type=int, default=8080, help="the next free one is taken from here on (8080)")

@@ -1,6 +1,7 @@
-"""Palpation as an environment of Gymnasium, "Pliant/Palpation-v0": pip install "pliant[gym]". Importing this module registers it.
+"""Environments of Gymnasium: pip install "pliant[gym]". Importing this module registers "Pliant/Palpation-v0" and "Pliant/Retraction-v0".
 
-A ball at the end of a probe feels its way over a block of tissue with a stiff inclusion below its surface, at another place in each episode.
+Retraction: a layer of tissue is pulled and cut off its bed (RetractionEnv).
+Palpation: a ball at the end of a probe feels its way over a block of tissue with a stiff inclusion below its surface, at another place in each episode.
 """
 import numpy as np
 
@@ -12,6 +13,9 @@ except ImportError:
     raise ImportError('pliant.gym needs gymnasium: pip install "pliant[gym]", or pip install gymnasium') from None
 
 from pliant import Batch
+from pliant._retraction import RetractionEnv  # registers itself, too
+
+__all__ = ["PalpationEnv", "PalpationVectorEnv", "RetractionEnv", "make_vec"]
 
 ID = "Pliant/Palpation-v0"
 SIZE = (0.075, 0.03, 0.075)  # of the block [m]; its top is the plane y = 0, its bottom is held

@@ -125,7 +125,7 @@ def cpp():
 
 
 def c():
-    text = "".join(code_of(f"include/pliant/c/{n}.h") for n in ("pliant", "types", "blades", "live", "haptics", "haptic_device"))
+    text = "".join(code_of(f"include/pliant/c/{n}.h") for n in ("pliant", "types", "state", "blades", "live", "haptics", "haptic_device"))
     found = set()
     for call in re.findall(r"^PLIANT_API .*?pliant_(\w+)\(", text, re.M):
         of = next((n for n, short in CLASSES.items() if call.startswith(short + "_")), None)
@@ -155,10 +155,10 @@ def touch():
 
 
 def python():
-    text = "".join(code_of(f"python/{n}.cpp") for n in ("pliant", "tools", "live"))
+    text = "".join(code_of(f"python/{n}.cpp") for n in ("pliant", "tools", "live", "state"))
     define = r'\.def(?:_readonly|_property_readonly)?\(\s*"(\w+)"'
     live = block(text, "void bind_live(")
-    world, module = block(text, "void bind_world(") + block(text, "void bind_tools(") + live, block(text, "PYBIND11_MODULE(")
+    world, module = block(text, "void bind_world(") + block(text, "void bind_tools(") + block(text, "void bind_state(") + live, block(text, "PYBIND11_MODULE(")
     found = {f"World::{n}" for n in re.findall(define, world)} | {"World::__init__"}
     found |= {f"World::{n}" for n in re.findall(r"^World\.([a-z]\w*) =", (SOURCE / "python/pliant/__init__.py").read_text(), re.M)}
     found |= set(re.findall(r'm\.def\("(\w+)"', module)) | set(re.findall(r'm\.attr\("(\w+)"\) =', module)) - {"__module__"}

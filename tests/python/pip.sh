@@ -38,12 +38,13 @@ import importlib.metadata
 import sys
 
 import pliant
+import pliant.convert
 import pliant.view
 
 assert pliant.__file__.startswith(sys.prefix), pliant.__file__
 assert pliant.__version__ == importlib.metadata.version("pliant")
 assert "cpu" in pliant.backends()
-for extra, needs in (("view", "viser"), ("gym", "gymnasium")):
+for extra, needs in (("view", "viser"), ("gym", "gymnasium"), ("convert", "meshio"), ("convert", "usd-core")):
     found = [r for r in importlib.metadata.requires("pliant") if needs in r and f'extra == "{extra}"' in r.replace("'", '"')]
     assert found, f"{needs} is optional"
 print("pliant", pliant.__version__, "from", pliant.__file__)

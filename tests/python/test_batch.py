@@ -1,4 +1,4 @@
-"""Many Worlds at once, pliant.Batch: the bits of single Worlds, failures, arguments; and its palpation environment, where gymnasium is installed."""
+"""Many Worlds at once, pliant.Batch: the bits of single Worlds, failures, arguments; and the environments, where gymnasium is installed."""
 import importlib.util
 import inspect
 import os
@@ -305,6 +305,64 @@ def gym_rewards_add_up_to_the_largest_force():
         assert rewards[-2:] == [0, 0] and np.isclose(sum(rewards), info["best_force"]) and np.isclose(max(forces), info["best_force"])
         assert 0.05 < info["best_force"] < 1 and np.isclose(info["distance"], np.linalg.norm(first[[0, 2]] - info["inclusion"]), atol=1e-6)
         assert np.isclose(observation[1], pliant.gym.LOW[1] + 2 * pliant.gym.MOTION[1])
+    env.close()
+
+
+def retract_and_cut(env, seed, pull, steer=True):
+    """A hand-written policy: pulls up steadily and draws the blade along the seam that it sees. The sum of rewards, the largest force, info."""
+    from pliant import _retraction
+
+    seen, _ = env.reset(seed=seed)
+    total = most = 0.0
+    while True:
+        seam = seen[9:].reshape(-1, 2)
+        blade = seen[4:6]
+        height = np.interp(blade[0] + _retraction.ADVANCE[0], seam[:, 0], seam[:, 1])
+        up = (height - blade[1]) / _retraction.ADVANCE[1] if steer else 0.0
+        forward = 1.0 if abs(up) < 1 else 0.0  # at the height of the seam
+        seen, reward, terminated, truncated, info = env.step(np.float32([0, pull if seen[1] < 0.045 else 0, forward, np.clip(up, -1, 1)]))
+        assert env.observation_space.contains(seen)
+        total, most = total + reward, max(most, info["force"])
+        if terminated or truncated:
+            return total, most, {**info, "truncated": truncated}
+
+
+def gym_retraction_passes_the_checks():
+    import warnings
+
+    import gymnasium
+    import pliant.gym
+    from gymnasium.utils.env_checker import check_env
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        env = gymnasium.make("Pliant/Retraction-v0")
+        check_env(env.unwrapped)
+    assert isinstance(env.unwrapped, pliant.gym.RetractionEnv)
+    env.close()
+    several = gymnasium.make_vec("Pliant/Retraction-v0", num_envs=2, vectorization_mode="sync")
+    first, _ = several.reset(seed=3)
+    assert first.shape == (2, 21) and np.abs(first[0] - first[1]).max() > 1e-5, "each has its own tissue"
+    several.close()
+
+
+def gym_retraction_takes_a_hand_and_a_blade():
+    import gymnasium
+
+    env = gymnasium.make("Pliant/Retraction-v0").unwrapped
+    for seed in range(3):
+        gentle, force, info = retract_and_cut(env, seed, 0.4)
+        assert info["off"] and gentle > 1.9 and info["cut"] > 0.95 and info["astray"] < 0.02 and force < 0.25, (gentle, force, info)
+        assert retract_and_cut(env, seed, 0.4)[0] == gentle, "an episode is what its seed and actions make of it"
+        idle, _, info = retract_and_cut(env, seed, 0.0)
+        assert info["truncated"] and idle < 0.3 and not info["off"], "without the hand the blade sees nothing"
+        hard, force, _ = retract_and_cut(env, seed, 1.0)
+        assert force > 0.25 and hard < gentle, "and too much of it costs"
+    seen, _ = env.reset(seed=1)
+    env.blade[1] = env.seam + 0.006  # and from here straight on
+    blind = [env.step(np.float32([0, 0.4 if k < 40 else 0, 1, 0])) for k in range(50)]
+    astray, total = blind[-1][4]["astray"], sum(step[1] for step in blind)
+    assert astray > 0.5 and total < -0.5 and not blind[-1][4]["off"], ("a cut elsewhere is no good", astray, total, blind[-1][4])
     env.close()
 
 

@@ -15,6 +15,7 @@
 #include "pliant/c/blades.h"
 #include "pliant/c/haptics.h"
 #include "pliant/c/live.h"
+#include "pliant/c/state.h"
 #include "pliant/c/types.h"
 #include "pliant/export.h"
 #include "pliant/version.h"
@@ -101,12 +102,6 @@ PLIANT_API pliant_status pliant_world_normals(pliant_world world, float* out, si
 PLIANT_API pliant_status pliant_world_triangles(pliant_world world, int32_t* out, size_t count);
 /** One number per triangle: 1 on a cut, otherwise 0. */
 PLIANT_API pliant_status pliant_world_cut_faces(pliant_world world, uint8_t* out, size_t count);
-/** Displacements [m] of a body's nodes, three per node. `count` must be three times the number of nodes. */
-PLIANT_API pliant_status pliant_world_displacements(pliant_world world, size_t body, double* out, size_t count);
-/** Velocities [m/s], likewise. */
-PLIANT_API pliant_status pliant_world_velocities(pliant_world world, size_t body, double* out, size_t count);
-/** Undeformed positions [m], likewise. */
-PLIANT_API pliant_status pliant_world_rest_positions(pliant_world world, size_t body, double* out, size_t count);
 /** Evaluates the scene's probes at the current state and fills the first `count` of their quantities. `*needed` (may be
  * null) receives the number of quantities, which never changes. `out` may be null if `count` is 0. */
 PLIANT_API pliant_status pliant_world_probes(pliant_world world, pliant_probe_value* out, size_t count, size_t* needed);
