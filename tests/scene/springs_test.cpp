@@ -74,7 +74,7 @@ TEST(SceneSprings, StaticSolutionsRefuseJoins) {
 
 TEST(SceneSprings, SurfacesHaveNone) {
   model_test::expect_refused(model_test::with_model(R"({"type": "mass-spring"})"),
-                             "/bodies/0/model/type: got \"mass-spring\", expected tled, hybrid or flsm with a surface");
+                             "/bodies/0/model/type: got \"mass-spring\", expected tled, hybrid or flsm with a lattice");
 }
 
 TEST(SceneSprings, WriterAndReaderAgree) {

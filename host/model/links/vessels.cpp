@@ -17,8 +17,9 @@ namespace {
 
 /// Most times that a segment is halved until its parts lie in elements that touch.
 constexpr int kHalvings = 12;
-/// Barycentric coordinates of a point in a tetrahedron are at least minus this.
-constexpr double kSlack = 1e-9;
+/// Barycentric coordinates of a point in a tetrahedron are at least minus this: the corners of a lattice differ from those of
+/// its surface by rounding.
+constexpr double kSlack = 1e-6;
 
 /// A point in an element: nodes of the body with their weights.
 struct Held {
@@ -39,7 +40,7 @@ std::array<double, 4> barycentric(const std::array<Vec3d, 4>& x, const Vec3d& p)
 /// on nodes that have material there.
 class ElementFinder {
  public:
-  explicit ElementFinder(const BodyElements& solid) : solid_(solid), hash_(edge_of(solid)) {
+  explicit ElementFinder(const BodyElements& solid) : solid_(solid), edge_(edge_of(solid)), hash_(edge_) {
     for (std::size_t e = 0; e < solid.size(); ++e) {
       vec::Box box;
       for (const std::int32_t n : solid.corners(e)) box.extend(solid.nodes[n]);
@@ -51,7 +52,11 @@ class ElementFinder {
     Held best;
     double most = -1;
     vec::Box at;
-    at.extend(p);
+    for (const double side : {-kSlack, kSlack}) {
+      Vec3d near_p = p;
+      for (double& c : near_p) c += side * edge_;
+      at.extend(near_p);
+    }
     std::vector<std::int32_t> near;
     hash_.query(at, [&](std::int32_t e) { near.push_back(e); });
     std::sort(near.begin(), near.end());
@@ -115,6 +120,7 @@ class ElementFinder {
   }
 
   const BodyElements& solid_;
+  double edge_ = 0;  ///< about that of an element [m]
   SpatialHash hash_;
 };
 
@@ -150,6 +156,7 @@ class Bars {
   /// Halves a segment until the elements of both ends touch.
   void divide(const Vec3d& a, const Held& at_a, const Vec3d& b, const Held& at_b, int depth) {
     if (at_a.element >= 0 && at_b.element >= 0 && (depth >= kHalvings || finder_.touch(at_a.element, at_b.element))) {
+      weigh(vec::norm(vec::sub(b, a)), at_a, at_b);
       // A cut between them leaves both without a common node.
       if (depth >= kHalvings || finder_.connected(at_a.element, at_b.element)) add(a, at_a, b, at_b);
       return;
@@ -168,6 +175,9 @@ class Bars {
     out_.length.push_back(length);
     out_.parameters.push_back(spring_parameters(out_.law, length, 1, out_.law.stiffness / length));
     out_.damper.push_back(0);
+  }
+
+  void weigh(double length, const Held& at_a, const Held& at_b) {
     const double mass = vessel_.density * vessel_.area() * length;
     mass_ += mass;
     for (const Held& held : {at_a, at_b}) {
@@ -188,7 +198,7 @@ class Bars {
     slots.fill(static_cast<std::int32_t>(slot(held, 0)));
     for (std::size_t k = 0; k < 4; ++k) {
       slots[k] = static_cast<std::int32_t>(slot(held, k));
-      weights[k] = std::max(held.weights[k], 0.0);
+      weights[k] = held.weights[k];
     }
     points.slots.push_back(slots);
     points.weights.push_back(weights);
