@@ -21,8 +21,9 @@ void check_tearing(const Reader& top, const Scene& scene) {
       if (body.mesh.empty() || !splits) field.fail("no toughness here: only a volume mesh (\"mesh\") of tetrahedra tears");
       require_integrator(top, scene, &IntegratorInfo::edits, "a material has a toughness");
       if (scene.relaxation.enabled) top.at("relaxation").fail("false, because a material has a toughness");
-      if (!scene.blades.empty())
-        top.at("blades").fail("no blades, or one that cuts \"by-force\", because a material has a toughness");
+      if (!scene.blades.empty() && !parts_along_faces(scene))
+        top.at("blades").fail(
+            "no blades, or blades that cut \"by-force\" or with the method \"separation\", because a material has a toughness");
     }
   }
 }

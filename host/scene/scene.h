@@ -169,6 +169,8 @@ struct Scene {
 Scene load_scene(const std::filesystem::path& file);
 /// Returns true if a blade of the scene cuts by force: its materials' toughness then belongs to blades, and nothing tears.
 bool cuts_by_force(const Scene& scene);
+/// Returns true if the scene's blades part bodies along the faces of their elements, as do then all cuts of a program.
+bool parts_along_faces(const Scene& scene);
 /// The same from text; `file` is used in messages and to resolve relative paths.
 Scene parse_scene(const std::string& text, const std::filesystem::path& file);
 /// The text of a scene file: parse_scene(scene_to_json(s), s.file) gives the same scene, moduli to the last bit.

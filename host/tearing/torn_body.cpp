@@ -157,10 +157,12 @@ std::vector<TetFace> TornBody::parting_faces(const LongEdge& edge, double stretc
 }
 
 TornBody::Breaks TornBody::breaking_faces(const std::vector<Vec3d>& x, double stretch) const {
+  Breaks breaks;
+  const std::vector<LongEdge> edges = long_edges(x, stretch);
+  const bool weak = std::any_of(material_.begin(), material_.end(), [](const Material& m) { return m.toughness > 0; });
+  if (edges.empty() && !weak) return breaks;
   const std::vector<NodeStress> stresses = node_stresses(x);
   const std::vector<Peak> found = peaks(stresses);
-  const std::vector<LongEdge> edges = long_edges(x, stretch);
-  Breaks breaks;
   if (found.empty() && edges.empty()) return breaks;
   Around around(x.size());
   for (std::size_t t = 0; t < torn_.tets.size(); ++t) {

@@ -44,6 +44,12 @@ class TornBody {
   /// The body now. Elements keep their numbers, and so do nodes and vertices of the surface that were there at first; triangles
   /// of tears follow those of the surface and count as cut.
   [[nodiscard]] const BodyMesh& solid() const { return torn_; }
+  /// The face across which another tetrahedron of the whole body lies; tet -1: none.
+  [[nodiscard]] TetFace neighbor(std::int32_t tet, std::size_t face) const {
+    return neighbors_[static_cast<std::size_t>(tet)][face];
+  }
+  /// Nodes of the whole body, which keep their numbers.
+  [[nodiscard]] std::size_t whole_nodes() const { return whole_->nodes.size(); }
   /// All broken faces, [tetrahedra] bit f.
   [[nodiscard]] const std::vector<std::uint8_t>& broken() const { return broken_; }
 

@@ -61,8 +61,8 @@ vec::Box box_of(const std::vector<Vec3d>& points) {
 
 }  // namespace
 
-BladeSweep::BladeSweep(const CutTopology& body, std::span<const Vec3d> x, RestEdges& edges, double edge)
-    : body_(body), x_(x), edges_(edges), edge_(edge) {
+BladeSweep::BladeSweep(const CutTopology& body, std::span<const Vec3d> x, const SweptPairs& pairs, double edge)
+    : body_(body), x_(x), pairs_(pairs), edge_(edge) {
   for (const Vec3d& p : x) {
     if (vec::finite(p)) reach_.extend(p);
   }
@@ -155,7 +155,7 @@ void BladeSweep::move(BladeTrace& front, const BladeSegment& to) {
   if (from.empty() || begin > finish) return;
   vec::Box region = start;
   region.extend(end);
-  InverseMap map(body_, x_, region, edge_, kNear * edge_);
+  InverseMap map(body_, x_, region, edge_, kNear * edge_, pairs_.parted);
   double longest = 0;
   for (std::size_t i = 0; i < from.size(); ++i) longest = std::max(longest, vec::norm(vec::sub(until[i], from[i])));
   const double wanted = std::ceil(longest * (finish - begin) / (kSpacing * edge_));
@@ -193,7 +193,7 @@ std::vector<MaterialPoint> BladeSweep::advance(std::span<const MaterialPoint> ca
     region.extend(until[i]);
     longest = std::max(longest, vec::norm(vec::sub(until[i], from[i])));
   }
-  InverseMap map(body_, x_, region, edge_, kNear * edge_);
+  InverseMap map(body_, x_, region, edge_, kNear * edge_, pairs_.parted);
   const int rows = std::max(1, static_cast<int>(std::min(std::ceil(longest / (kSpacing * edge_)), double{kMostRows})));
   Row before{0, 0, {}};
   for (std::size_t i = 0; i < from.size(); ++i) {
@@ -244,15 +244,15 @@ void BladeSweep::triangle(const Vertex* a, const Vertex* b, const Vertex* c) {
       std::max({vec::norm(vec::sub(b->now, a->now)), vec::norm(vec::sub(c->now, a->now)), vec::norm(vec::sub(c->now, b->now))});
   const Vec3d normal = vec::cross(u, v);
   const double area2 = vec::dot(normal, normal);
-  edges_.crossed(rest, [&](const NodePair& pair, double t) {
+  pairs_.between.crossed(rest, [&](const NodePair& pair, double t) {
     if (crossed_.contains(pair) || body_.edges().contains(pair)) return;
     // A triangle between parts that have come near each other is wrong at rest: there the blade is not where the edge is.
-    const Vec3d at = vec::sub(between(body_.mesh().rest[pair[0]], body_.mesh().rest[pair[1]], t), rest[0]);
+    const Vec3d at = vec::sub(between(pairs_.rest[pair[0]], pairs_.rest[pair[1]], t), rest[0]);
     const double s = area2 > 0 ? std::clamp(vec::dot(vec::cross(at, v), normal) / area2, 0.0, 1.0) : 0.5;
     const double r = area2 > 0 ? std::clamp(vec::dot(vec::cross(u, at), normal) / area2, 0.0, 1.0) : 0.5;
     const Vec3d blade =
         vec::add(a->now, vec::add(vec::mul(vec::sub(b->now, a->now), s), vec::mul(vec::sub(c->now, a->now), r)));
-    const Vec3d edge = between(x_[pair[0]], x_[pair[1]], t);
+    const Vec3d edge = between(pairs_.now[pair[0]], pairs_.now[pair[1]], t);
     if (vec::norm(vec::sub(blade, edge)) > edge_ + 0.5 * size) return;
     crossed_.emplace(pair, t);
   });
@@ -274,7 +274,7 @@ void BladeSweep::keep(BladeTrace& front, const Row& last) const {
 
 /// The nearest of some real nodes: what is far off moves with its part of the body closely enough.
 std::int32_t BladeSweep::nearest_node(const Vec3d& p) const {
-  const std::size_t nodes = body_.mesh().rest.size(), stride = nodes / kFarNodes + 1;
+  const std::size_t nodes = pairs_.carriers, stride = nodes / kFarNodes + 1;
   std::int32_t best = -1;
   double distance2 = HUGE_VAL;
   for (std::size_t n = 0; n < nodes; n += stride) {

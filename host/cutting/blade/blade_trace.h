@@ -30,10 +30,20 @@ struct BladeTrace {
 
 inline constexpr int kMostLevels = 30;  ///< limit on the subdivision of a blade, which may be 2^29 edges long
 
+/// Pairs of points of a body that a blade may come between: by default the ends of its edges.
+struct SweptPairs {
+  RestEdges& between;
+  std::span<const Vec3d> rest, now;           ///< [points] at rest, and where they are [m]
+  std::size_t carriers = 0;                   ///< the nodes below this one keep their numbers when the body is cut
+  std::span<const std::uint8_t> parted = {};  ///< see InverseMap
+};
+
 class BladeSweep {
  public:
   /// `x` [m]: current positions of all nodes of the body's elements. `edge` [m]: mean undeformed edge of a cell.
-  BladeSweep(const CutTopology& body, std::span<const Vec3d> x, RestEdges& edges, double edge);
+  BladeSweep(const CutTopology& body, std::span<const Vec3d> x, RestEdges& edges, double edge)
+      : BladeSweep(body, x, SweptPairs{edges, body.mesh().rest, x, body.mesh().rest.size()}, edge) {}
+  BladeSweep(const CutTopology& body, std::span<const Vec3d> x, const SweptPairs& pairs, double edge);
 
   /// Returns whether a blade in this box [m] is near enough to the body to be followed.
   [[nodiscard]] bool reaches(const vec::Box& box) const { return reach_.overlaps(box); }
@@ -45,7 +55,7 @@ class BladeSweep {
   /// begins where `from` says.
   std::vector<MaterialPoint> advance(std::span<const MaterialPoint> carried, std::span<const Vec3d> from,
                                      std::span<const Vec3d> until);
-  /// Edges crossed so far that are not cut yet. An edge crossed several times is cut at the first crossing.
+  /// Pairs crossed so far, without edges that are cut already. An edge crossed several times is cut at the first crossing.
   [[nodiscard]] const CutEdges& crossed() const { return crossed_; }
 
  private:
@@ -75,7 +85,7 @@ class BladeSweep {
 
   const CutTopology& body_;
   std::span<const Vec3d> x_;
-  RestEdges& edges_;
+  SweptPairs pairs_;
   double edge_;
   vec::Box reach_;
   CutEdges crossed_;

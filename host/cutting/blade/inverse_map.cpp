@@ -76,8 +76,9 @@ Vec3d present_position(const CutTopology& body, std::span<const Vec3d> x, const 
   return count > 0 ? vec::mul(sum, 1 / count) : in(point.cell);
 }
 
-InverseMap::InverseMap(const CutTopology& body, std::span<const Vec3d> x, const vec::Box& region, double edge, double reach)
-    : body_(body), x_(x), edge_(edge), reach_(reach), hash_(1.5 * edge) {
+InverseMap::InverseMap(const CutTopology& body, std::span<const Vec3d> x, const vec::Box& region, double edge, double reach,
+                       std::span<const std::uint8_t> parted)
+    : body_(body), x_(x), edge_(edge), reach_(reach), parted_(parted), hash_(1.5 * edge) {
   const vec::Box near = grown(region, reach);
   // Beyond which sides of the region a node lies: an element is far where all its nodes lie beyond one side.
   std::vector<std::uint8_t> beyond(x.size());
@@ -197,6 +198,23 @@ bool InverseMap::to_own_part(std::int32_t element, int tet, const OwnPart& part,
   return true;
 }
 
+/// Whether a place outside a tetrahedron lies beyond one of its faces along which the body has come apart.
+bool InverseMap::beyond_parted_face(std::int32_t cell, int tet, const Weights& weight) const {
+  if (parted_.empty() || parted_[cell] == 0) return false;
+  const auto& corner = body_.mesh().shape->tets[tet];
+  const auto& faces = body_.mesh().shape->faces;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    if ((parted_[cell] >> f & 1) == 0) continue;
+    for (std::size_t a = 0; a < 4; ++a) {  // the face of the tetrahedron opposite a corner lies in that of the cell
+      bool lies = weight[a] < 0;
+      for (std::size_t k = 0; k < 4 && lies; ++k)
+        lies = k == a || std::find(faces[f].begin(), faces[f].end(), corner[k]) != faces[f].end();
+      if (lies) return true;
+    }
+  }
+  return false;
+}
+
 void InverseMap::nearest(std::int32_t element, const Vec3d& p, Best& best) const {
   const auto tets = static_cast<int>(body_.mesh().shape->tets.size());
   const std::int32_t cell = body_.elements().cell[element];
@@ -217,6 +235,10 @@ void InverseMap::nearest(std::int32_t element, const Vec3d& p, Best& best) const
       if (!to_own_part(element, t, part, at)) continue;
       d2 = distance2();
       if (!(d2 < best.distance2)) continue;
+      best = {d2, {cell, t, at, blend(rest, at)}};
+      continue;
+    }
+    if (beyond_parted_face(cell, t, w)) {
       best = {d2, {cell, t, at, blend(rest, at)}};
       continue;
     }
