@@ -8,6 +8,7 @@
 namespace pliant {
 namespace {
 
+constexpr std::size_t kFaces = 4;
 constexpr std::array<std::array<int, 2>, 4> kSpokes{{{0, 1}, {0, 2}, {0, 3}, {0, 4}}};
 
 /// A middle and those across the faces of a tetrahedron.
@@ -60,10 +61,37 @@ void SweptFaces::follow() { topology_ = std::make_unique<CutTopology>(cut_mesh(b
 
 void SweptFaces::place_middles(std::span<const Vec3d> x) { now_ = middles_of(body_.solid(), x); }
 
+/// The largest distance between what was one corner of a face.
+void SweptFaces::measure_gaps(std::span<const Vec3d> x) {
+  gap_.clear();
+  const BodyMesh &now = body_.solid(), &whole = body_.whole();
+  for (std::size_t e = 0; e < now.size(); ++e) {
+    for (std::size_t f = 0; f < kFaces; ++f) {
+      if ((body_.broken()[e] >> f & 1) == 0) continue;
+      if (gap_.empty()) gap_.resize(kFaces * now.size());
+      const TetFace other = body_.neighbor(static_cast<std::int32_t>(e), f);
+      const std::span<const std::int32_t> was = whole.corners(static_cast<std::size_t>(other.tet));
+      for (const int k : kTetFaces[f]) {
+        const auto corner = static_cast<std::size_t>(k);
+        const auto there = std::find(was.begin(), was.end(), whole.corners(e)[corner]) - was.begin();
+        const std::int32_t here = now.corners(e)[corner];
+        const std::int32_t beyond = now.corners(static_cast<std::size_t>(other.tet))[static_cast<std::size_t>(there)];
+        double& gap = gap_[kFaces * e + f];
+        gap = std::max(gap, vec::norm(vec::sub(x[static_cast<std::size_t>(here)], x[static_cast<std::size_t>(beyond)])));
+      }
+    }
+  }
+}
+
 BladeSweep SweptFaces::sweep(std::span<const Vec3d> x) {
   place_middles(x);
-  const SweptPairs pairs{*lines_, middles_->mesh().rest, now_, body_.whole_nodes(), body_.broken()};
-  return {*topology_, x, pairs, edge_};
+  measure_gaps(x);
+  return {*topology_, x, SweptPairs{*lines_, middles_->mesh().rest, now_, body_.whole().nodes.size(), gap_}, edge_};
+}
+
+InverseMap SweptFaces::inverse_map(std::span<const Vec3d> x, const vec::Box& region, double reach) {
+  measure_gaps(x);
+  return {*topology_, x, region, edge_, reach, gap_};
 }
 
 CutEdges SweptFaces::crossed(std::span<const Vec3d> x, std::span<const SweepTriangle> triangles) {

@@ -31,16 +31,20 @@ class SweptFaces {
   void keep_joined(CutEdges& pairs) const;
   /// The common faces of these pairs.
   [[nodiscard]] std::vector<TetFace> faces(const CutEdges& pairs) const;
+  /// Finds the material at points of a region with the body's nodes at `x` [m], as InverseMap does.
+  [[nodiscard]] InverseMap inverse_map(std::span<const Vec3d> x, const vec::Box& region, double reach);
 
  private:
   [[nodiscard]] TetFace face_between(const NodePair& pair) const;
   void place_middles(std::span<const Vec3d> x);
+  void measure_gaps(std::span<const Vec3d> x);
 
   const TornBody& body_;
   std::unique_ptr<CutTopology> middles_;  ///< a cell per element, whose edges lead from its middle to those of its neighbours
   std::unique_ptr<RestEdges> lines_;
   std::unique_ptr<CutTopology> topology_;
-  std::vector<Vec3d> now_;  ///< the middles of the last sweep [m]
+  std::vector<Vec3d> now_;   ///< the middles of the last sweep [m]
+  std::vector<double> gap_;  ///< how far both sides of each face are apart [m]; empty: nothing is broken
   double edge_ = 0;
 };
 

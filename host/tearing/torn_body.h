@@ -48,8 +48,8 @@ class TornBody {
   [[nodiscard]] TetFace neighbor(std::int32_t tet, std::size_t face) const {
     return neighbors_[static_cast<std::size_t>(tet)][face];
   }
-  /// Nodes of the whole body, which keep their numbers.
-  [[nodiscard]] std::size_t whole_nodes() const { return whole_->nodes.size(); }
+  /// The whole body, whose nodes keep their numbers.
+  [[nodiscard]] const BodyMesh& whole() const { return *whole_; }
   /// All broken faces, [tetrahedra] bit f.
   [[nodiscard]] const std::vector<std::uint8_t>& broken() const { return broken_; }
 

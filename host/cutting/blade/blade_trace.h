@@ -33,9 +33,9 @@ inline constexpr int kMostLevels = 30;  ///< limit on the subdivision of a blade
 /// Pairs of points of a body that a blade may come between: by default the ends of its edges.
 struct SweptPairs {
   RestEdges& between;
-  std::span<const Vec3d> rest, now;           ///< [points] at rest, and where they are [m]
-  std::size_t carriers = 0;                   ///< the nodes below this one keep their numbers when the body is cut
-  std::span<const std::uint8_t> parted = {};  ///< see InverseMap
+  std::span<const Vec3d> rest, now;  ///< [points] at rest, and where they are [m]
+  std::size_t carriers = 0;          ///< the nodes below this one keep their numbers when the body is cut
+  std::span<const double> gap = {};  ///< see InverseMap
 };
 
 class BladeSweep {

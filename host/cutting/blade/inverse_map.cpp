@@ -77,8 +77,8 @@ Vec3d present_position(const CutTopology& body, std::span<const Vec3d> x, const 
 }
 
 InverseMap::InverseMap(const CutTopology& body, std::span<const Vec3d> x, const vec::Box& region, double edge, double reach,
-                       std::span<const std::uint8_t> parted)
-    : body_(body), x_(x), edge_(edge), reach_(reach), parted_(parted), hash_(1.5 * edge) {
+                       std::span<const double> gap)
+    : body_(body), x_(x), edge_(edge), reach_(reach), gap_(gap), hash_(1.5 * edge) {
   const vec::Box near = grown(region, reach);
   // Beyond which sides of the region a node lies: an element is far where all its nodes lie beyond one side.
   std::vector<std::uint8_t> beyond(x.size());
@@ -198,21 +198,32 @@ bool InverseMap::to_own_part(std::int32_t element, int tet, const OwnPart& part,
   return true;
 }
 
-/// Whether a place outside a tetrahedron lies beyond one of its faces along which the body has come apart.
-bool InverseMap::beyond_parted_face(std::int32_t cell, int tet, const Weights& weight) const {
-  if (parted_.empty() || parted_[cell] == 0) return false;
+/// Moves a place outside an element that lies in the gap at one of its faces onto the plane of this face, at rest.
+void InverseMap::to_parted_face(std::int32_t element, int tet, Weights& weight) const {
+  const std::int32_t cell = body_.elements().cell[element];
   const auto& corner = body_.mesh().shape->tets[tet];
   const auto& faces = body_.mesh().shape->faces;
   for (std::size_t f = 0; f < faces.size(); ++f) {
-    if ((parted_[cell] >> f & 1) == 0) continue;
-    for (std::size_t a = 0; a < 4; ++a) {  // the face of the tetrahedron opposite a corner lies in that of the cell
-      bool lies = weight[a] < 0;
-      for (std::size_t k = 0; k < 4 && lies; ++k)
-        lies = k == a || std::find(faces[f].begin(), faces[f].end(), corner[k]) != faces[f].end();
-      if (lies) return true;
+    const double gap = gap_[static_cast<std::size_t>(cell) * faces.size() + f];
+    if (!(gap > 0)) continue;
+    for (std::size_t a = 0; a < 4; ++a) {  // the face of the tetrahedron opposite this corner lies in that of the cell
+      const auto on_face = [&](std::size_t k) {
+        return k == a || std::find(faces[f].begin(), faces[f].end(), corner[k]) != faces[f].end();
+      };
+      if (!(weight[a] < 0) || !on_face(0) || !on_face(1) || !on_face(2) || !on_face(3)) continue;
+      const auto height = [&](const std::array<Vec3d, 4>& x, Vec3d& normal) {
+        const Vec3d &p = x[(a + 1) % 4], across = vec::cross(vec::sub(x[(a + 2) % 4], p), vec::sub(x[(a + 3) % 4], p));
+        normal = vec::mul(across, 1 / vec::norm(across));
+        return vec::dot(vec::sub(x[a], p), normal);
+      };
+      Vec3d normal{};
+      if (-weight[a] * std::abs(height(corners(element, tet), normal)) > gap) continue;
+      const std::array<Vec3d, 4> rest = rest_corners(cell, tet);
+      const double above = weight[a] * height(rest, normal);
+      weight = barycentric(rest, vec::sub(blend(rest, weight), vec::mul(normal, above)));
+      weight[a] = 0;
     }
   }
-  return false;
 }
 
 void InverseMap::nearest(std::int32_t element, const Vec3d& p, Best& best) const {
@@ -238,13 +249,10 @@ void InverseMap::nearest(std::int32_t element, const Vec3d& p, Best& best) const
       best = {d2, {cell, t, at, blend(rest, at)}};
       continue;
     }
-    if (beyond_parted_face(cell, t, w)) {
-      best = {d2, {cell, t, at, blend(rest, at)}};
-      continue;
-    }
     const double away = vec::norm(vec::sub(blend(rest, w), blend(rest, at)));
     const double most = kFarthest * edge_;
-    const Weights outside = away > most ? mix(at, w, most / away) : w;
+    Weights outside = away > most ? mix(at, w, most / away) : w;
+    if (!gap_.empty()) to_parted_face(element, t, outside);
     best = {d2, {cell, t, outside, blend(rest, outside)}};
   }
 }

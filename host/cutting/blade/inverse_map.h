@@ -25,10 +25,11 @@ Vec3d present_position(const CutTopology& body, std::span<const Vec3d> x, const 
 /// nearest face of the cut, so that both sides of the gap map to the same rest position.
 class InverseMap {
  public:
-  /// `edge` [m]: mean undeformed edge of a cell. Only points in `region` can be found. `parted`: per cell the faces (bits)
-  /// along which the body has come apart; beyond these a cell's map is not continued, as at the faces of a cut. Empty: none.
+  /// `edge` [m]: mean undeformed edge of a cell. Only points in `region` can be found. `gap` [m]: how far the sides of each
+  /// face of each cell have come apart, shape [cells][faces], 0 where they have not; empty: nowhere. In such a gap a point
+  /// belongs to the face, as in that of a cut.
   InverseMap(const CutTopology& body, std::span<const Vec3d> x, const vec::Box& region, double edge, double reach,
-             std::span<const std::uint8_t> parted = {});
+             std::span<const double> gap = {});
   [[nodiscard]] MaterialPoint find(const Vec3d& p);
 
  private:
@@ -41,13 +42,13 @@ class InverseMap {
   void nearest(std::int32_t element, const Vec3d& p, Best& best) const;
   [[nodiscard]] std::array<Vec3d, 4> corners(std::int32_t element, int tet) const;
   [[nodiscard]] std::array<Vec3d, 4> rest_corners(std::int32_t cell, int tet) const;
-  [[nodiscard]] bool beyond_parted_face(std::int32_t cell, int tet, const std::array<double, 4>& weight) const;
+  void to_parted_face(std::int32_t element, int tet, std::array<double, 4>& weight) const;
   [[nodiscard]] bool to_own_part(std::int32_t element, int tet, const OwnPart& part, std::array<double, 4>& weight) const;
 
   const CutTopology& body_;
   std::span<const Vec3d> x_;
   double edge_, reach_;
-  std::span<const std::uint8_t> parted_;
+  std::span<const double> gap_;
   SpatialHash hash_;
   std::vector<std::int32_t> element_;  ///< items of the hash
   vec::Box all_;                       ///< bounding box of all of them

@@ -181,8 +181,8 @@ void EditedBodies::keep_allowed(std::size_t b, CutEdges& crossed) {
 }
 
 InverseMap EditedBodies::inverse_map(std::size_t b, const std::vector<Vec3d>& x, const vec::Box& region, double reach) {
-  const std::span<const std::uint8_t> parted = swept_[b] != nullptr ? torn_[b]->broken() : std::span<const std::uint8_t>{};
-  return {topology(b), x, region, edge(b), reach, parted};
+  if (swept_[b] != nullptr) return swept_[b]->inverse_map(x, region, reach);
+  return {cut(b).topology(), x, region, cut(b).edge(), reach};
 }
 
 void EditedBodies::follow_materials() {
