@@ -24,8 +24,8 @@ RunEvents run_events(const Simulation& simulation) {
   RunEvents events;
   for (const CutRecord& cut : state.cuts) events.cut_edges += static_cast<std::int64_t>(cut.edges.size());
   events.cut_edges -= state.opened;
-  for (const TearRecord& tear : state.tears) events.broken_faces += std::popcount(static_cast<unsigned>(tear.faces));
-  events.broken_faces /= 2;  // each is a face of two tetrahedra
+  for (const TearRecord& tear : state.tears) events.broken_faces += std::popcount(static_cast<unsigned>(tear.broken()));
+  events.broken_faces /= 2;  // each is a face of two elements
   for (std::size_t b = 0; b < simulation.model().bodies.size(); ++b) {
     events.pieces += pieces_of(simulation.model().bodies[b]);
     if (const CutTopology* cut = simulation.cut_topology(b)) events.cut_in_part += cut->cut_in_part();

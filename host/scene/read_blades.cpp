@@ -74,7 +74,7 @@ std::vector<Blade> read_blades(const Reader& blades) {
 
 namespace {
 
-/// What a scene whose blades separate must have: the same method everywhere, and bodies of plain tetrahedra.
+/// What a scene whose blades separate must have: the same method everywhere, and bodies of elements alone.
 void check_separation(const Reader& top, const Scene& scene) {
   const std::vector<Reader> blades = top.at("blades").items("a list of blades");
   for (std::size_t i = 0; i < blades.size(); ++i) {
@@ -83,10 +83,9 @@ void check_separation(const Reader& top, const Scene& scene) {
     blades[i].at("method", expected).fail(expected);
   }
   for (const Body& b : scene.bodies) {
-    if (!b.mesh.empty() && element_info(b.element).splits) continue;
-    blades[0].at("method").fail(
-        fmt::format("\"virtual-nodes\", because body '{}' is {}: only volume meshes (\"mesh\") of tetrahedra part along faces",
-                    b.name, b.mesh.empty() ? "a lattice" : fmt::format("a mesh of {}", element_info(b.element).cells)));
+    if (!b.model.matches()) continue;
+    blades[0].at("method").fail(fmt::format(
+        "\"virtual-nodes\", because shape matching moves nodes of body '{}': only elements part along faces", b.name));
   }
 }
 
@@ -109,7 +108,7 @@ void check_blades(const Reader& top, const Scene& scene) {
     if (cuts_by_force(scene) && b.model.substeps > 1)
       bodies[i].at("model").at("substeps").fail("1, because the scene has a blade that cuts by force, in every step");
     const ElementInfo& info = element_info(b.element);
-    if (b.mesh.empty() || info.splits) continue;
+    if (b.mesh.empty() || info.splits || parts_along_faces(scene)) continue;
     bodies[i].at("element").fail(fmt::format("{}, because the scene has blades (a mesh of {} cannot be cut)",
                                              elements_with([](const ElementInfo& e) { return e.splits; }), info.cells));
   }

@@ -96,10 +96,11 @@ struct Body {
   std::string name;
   std::filesystem::path surface;  ///< triangle mesh to be filled with a lattice; empty if `mesh` is given
   std::shared_ptr<const TriangleMesh> surface_in_memory;  ///< set in code: instead of the file, which names it in messages
-  std::filesystem::path mesh;              ///< tetrahedral (or hexahedral) volume mesh; empty if `surface` is given
-  double scale = 1;                        ///< applied to the file's coordinates first
-  Vec3d translate{};                       ///< [m], after scaling
-  LatticeSpec lattice;                     ///< used with `surface`
+  std::filesystem::path mesh;  ///< tetrahedral (or hexahedral) volume mesh; empty if `surface` is given
+  double scale = 1;            ///< applied to the file's coordinates first
+  Vec3d translate{};           ///< [m], after scaling
+  LatticeSpec lattice;         ///< used with `surface`
+  bool plain = false;          ///< a lattice becomes a volume mesh of its cells, whose surface is theirs: where blades separate
   ElementKind element = usual_element(8);  ///< of lattices
   DeformationModel model;
   Material material;

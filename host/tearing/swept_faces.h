@@ -16,7 +16,7 @@ class SweptFaces {
   /// `body` must outlive it.
   explicit SweptFaces(const TornBody& body);
 
-  /// Call after body.tear(): takes its nodes.
+  /// Call after body.tear() or part(): takes its nodes.
   void follow();
   /// The elements, with the nodes of body.solid(); none is divided.
   [[nodiscard]] const CutTopology& topology() const { return *topology_; }
@@ -27,7 +27,7 @@ class SweptFaces {
   [[nodiscard]] BladeSweep sweep(std::span<const Vec3d> x);
   /// Pairs of elements that triangles [m] come between now (crossed_edges).
   [[nodiscard]] CutEdges crossed(std::span<const Vec3d> x, std::span<const SweepTriangle> triangles);
-  /// Removes pairs that have come apart at their common face.
+  /// Removes pairs whose common face is broken, or waits.
   void keep_joined(CutEdges& pairs) const;
   /// The common faces of these pairs.
   [[nodiscard]] std::vector<TetFace> faces(const CutEdges& pairs) const;
@@ -44,7 +44,7 @@ class SweptFaces {
   std::unique_ptr<RestEdges> lines_;
   std::unique_ptr<CutTopology> topology_;
   std::vector<Vec3d> now_;   ///< the middles of the last sweep [m]
-  std::vector<double> gap_;  ///< how far both sides of each face are apart [m]; empty: nothing is broken
+  std::vector<double> gap_;  ///< of each node, see InverseMap [m]
   double edge_ = 0;
 };
 

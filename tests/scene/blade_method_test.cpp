@@ -60,12 +60,15 @@ TEST(BladeMethod, SaysWhatIsWrong) {
   scene = separating();
   scene["bodies"][0] = nlohmann::json::parse(R"({"name": "b", "surface": "s.obj", "lattice": {"spacing": 0.01},
     "material": {"young": 1000, "poisson": 0.4, "density": 1000}})");
-  expect_message(scene, "/blades/0/method", "body 'b' is a lattice");
-  scene["bodies"][0]["model"] = {{"type", "flsm"}};
-  expect_message(scene, "/blades/0/method", "body 'b' is a lattice");
+  EXPECT_EQ(message(scene), "");
+  for (const char* model : {"flsm", "hybrid"}) {
+    scene["bodies"][0]["model"] = {{"type", model}};
+    if (scene["bodies"][0]["model"]["type"] == "hybrid") scene["bodies"][0]["model"]["ratio"] = 0.5;
+    expect_message(scene, "/blades/0/method", "shape matching moves nodes of body 'b'");
+  }
   scene = separating();
   scene["bodies"][0]["element"] = "hex8";
-  expect_message(scene, "/blades/0/method", "body 'b' is a mesh of hexahedra");
+  EXPECT_EQ(message(scene), "");
   scene = separating();
   for (auto& blade : scene["blades"]) blade.erase("method");
   scene["bodies"][0]["material"]["toughness"] = 500;

@@ -232,8 +232,22 @@ void BladeSweep::strip(const Row& a, const Row& b) {
   }
 }
 
+/// Whether a vertex lies on a side of an open gap, not in material.
+bool BladeSweep::in_gap(const Vertex& v) const {
+  constexpr double kNone = 1e-9;
+  if (pairs_.gap.empty()) return false;
+  bool inside = true, open = true;
+  for (std::size_t a = 0; a < 4; ++a) {
+    const int corner = body_.mesh().shape->tets[v.carried.tet][a];
+    inside = inside && v.carried.weight[a] > kNone;
+    open = open && (v.carried.weight[a] <= kNone || pairs_.gap[body_.elements().nodes[v.carried.cell][corner]] > 0);
+  }
+  return open && !inside;
+}
+
 void BladeSweep::triangle(const Vertex* a, const Vertex* b, const Vertex* c) {
   if (a == nullptr || b == nullptr || c == nullptr) return;
+  if (in_gap(*a) && in_gap(*b) && in_gap(*c)) return;  // from side to side it would pass through what sticks out of them
   const std::array<Vec3d, 3> rest{a->carried.rest, b->carried.rest, c->carried.rest};
   if (rest[0] == rest[1] || rest[1] == rest[2] || rest[2] == rest[0]) return;
   const Vec3d u = vec::sub(rest[1], rest[0]), v = vec::sub(rest[2], rest[0]), w = vec::sub(rest[2], rest[1]);

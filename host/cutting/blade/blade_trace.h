@@ -76,6 +76,7 @@ class BladeSweep {
   };
   [[nodiscard]] Row stored(const BladeTrace& front) const;
   void strip(const Row& a, const Row& b);
+  [[nodiscard]] bool in_gap(const Vertex& v) const;
   void triangle(const Vertex* a, const Vertex* b, const Vertex* c);
   [[nodiscard]] std::array<std::int64_t, 2> range(const BladeTrace& front, const BladeSegment& to, int levels) const;
   [[nodiscard]] Vertex vertex(const Vec3d& p, InverseMap& map) const;

@@ -198,32 +198,15 @@ bool InverseMap::to_own_part(std::int32_t element, int tet, const OwnPart& part,
   return true;
 }
 
-/// Moves a place outside an element that lies in the gap at one of its faces onto the plane of this face, at rest.
-void InverseMap::to_parted_face(std::int32_t element, int tet, Weights& weight) const {
-  const std::int32_t cell = body_.elements().cell[element];
-  const auto& corner = body_.mesh().shape->tets[tet];
-  const auto& faces = body_.mesh().shape->faces;
-  for (std::size_t f = 0; f < faces.size(); ++f) {
-    const double gap = gap_[static_cast<std::size_t>(cell) * faces.size() + f];
-    if (!(gap > 0)) continue;
-    for (std::size_t a = 0; a < 4; ++a) {  // the face of the tetrahedron opposite this corner lies in that of the cell
-      const auto on_face = [&](std::size_t k) {
-        return k == a || std::find(faces[f].begin(), faces[f].end(), corner[k]) != faces[f].end();
-      };
-      if (!(weight[a] < 0) || !on_face(0) || !on_face(1) || !on_face(2) || !on_face(3)) continue;
-      const auto height = [&](const std::array<Vec3d, 4>& x, Vec3d& normal) {
-        const Vec3d &p = x[(a + 1) % 4], across = vec::cross(vec::sub(x[(a + 2) % 4], p), vec::sub(x[(a + 3) % 4], p));
-        normal = vec::mul(across, 1 / vec::norm(across));
-        return vec::dot(vec::sub(x[a], p), normal);
-      };
-      Vec3d normal{};
-      if (-weight[a] * std::abs(height(corners(element, tet), normal)) > gap) continue;
-      const std::array<Vec3d, 4> rest = rest_corners(cell, tet);
-      const double above = weight[a] * height(rest, normal);
-      weight = barycentric(rest, vec::sub(blend(rest, weight), vec::mul(normal, above)));
-      weight[a] = 0;
-    }
+/// Whether a point outside, to which this place of an element is nearest, lies in a gap between opened faces.
+bool InverseMap::in_gap(std::int32_t element, int tet, const Weights& nearest, double distance2) const {
+  if (gap_.empty()) return false;
+  double gap = HUGE_VAL;
+  for (std::size_t a = 0; a < 4; ++a) {
+    const std::int32_t node = body_.elements().nodes[element][body_.mesh().shape->tets[tet][a]];
+    if (nearest[a] > 0) gap = std::min(gap, gap_[node]);
   }
+  return distance2 <= gap * gap;
 }
 
 void InverseMap::nearest(std::int32_t element, const Vec3d& p, Best& best) const {
@@ -251,8 +234,7 @@ void InverseMap::nearest(std::int32_t element, const Vec3d& p, Best& best) const
     }
     const double away = vec::norm(vec::sub(blend(rest, w), blend(rest, at)));
     const double most = kFarthest * edge_;
-    Weights outside = away > most ? mix(at, w, most / away) : w;
-    if (!gap_.empty()) to_parted_face(element, t, outside);
+    const Weights outside = in_gap(element, t, at, d2) ? at : away > most ? mix(at, w, most / away) : w;
     best = {d2, {cell, t, outside, blend(rest, outside)}};
   }
 }

@@ -89,7 +89,7 @@ void TopologyEdits::divide(std::vector<CutEdges> crossed, std::vector<double> u,
   if (!parts_along_faces(run_.scene)) return make_cut(std::move(crossed), std::move(u), report);
   std::vector<std::vector<TetFace>> faces;
   for (std::size_t b = 0; b < crossed.size(); ++b) faces.push_back(bodies().swept(b)->faces(crossed[b]));
-  part(faces, std::move(u), report);
+  part(faces, std::move(u), true, report);
 }
 
 /// Follows each blade along its motion, and cuts.

@@ -149,7 +149,8 @@ EditedBodies::EditedBodies(const Scene& scene)
 
 void EditedBodies::make_torn(std::size_t b) {
   const Body& body = scene_.bodies[b];
-  if (!uncut_[b]->lattice_nodes.empty() || uncut_[b]->tets.empty()) {
+  const bool stress = tears(scene_) && pliant::tears(body);
+  if (!uncut_[b]->lattice_nodes.empty() || (stress && uncut_[b]->tets.empty())) {
     const char* const why = parts_along_faces(scene_) ? "shall be parted along its faces" : "has a material with a toughness";
     throw Error(ErrorCode::bad_input,
                 fmt::format("body '{}' {}; only volume meshes of tetrahedra (\"mesh\") tear or part", body.name, why));
@@ -159,8 +160,10 @@ void EditedBodies::make_torn(std::size_t b) {
   if (parts_along_faces(scene_)) swept_[b] = std::make_unique<SweptFaces>(*torn_[b]);
 }
 
-std::vector<std::int32_t> EditedBodies::tear(std::size_t b, const std::vector<TetFace>& faces) {
-  std::vector<std::int32_t> from = torn_[b]->tear(faces);
+std::vector<std::int32_t> EditedBodies::part(std::size_t b, const std::vector<TetFace>& faces, bool by_blade) {
+  const std::vector<std::uint8_t> before = torn_[b]->broken();
+  std::vector<std::int32_t> from = by_blade ? torn_[b]->part(faces) : torn_[b]->tear(faces);
+  if (before == torn_[b]->broken()) return {};
   if (swept_[b] != nullptr) swept_[b]->follow();
   return from;
 }
@@ -221,19 +224,22 @@ void EditedBodies::replay(const RunState& state) {
 }
 
 void EditedBodies::replay_tears(const RunState& state) {
-  std::vector<std::vector<TetFace>> faces(size());
+  std::vector<std::vector<TetFace>> faces(size()), waiting(size());
   for (const TearRecord& record : state.tears) {
     const auto b = static_cast<std::size_t>(record.body);
     const bool known = record.body >= 0 && b < size() && torn_[b] != nullptr && record.tet >= 0 &&
-                       static_cast<std::size_t>(record.tet) < torn_[b]->broken().size() && record.faces > 0 &&
-                       record.faces < 16;
-    if (!known) refuse_edits("tears");
-    for (int f = 0; f < 4; ++f) {
-      if (record.faces >> f & 1) faces[b].push_back({record.tet, static_cast<std::int8_t>(f)});
+                       static_cast<std::size_t>(record.tet) < torn_[b]->broken().size() && record.faces > 0;
+    const int all = known ? (1 << torn_[b]->faces()) - 1 : 0;
+    if (!known || (record.faces & ~(all | all << TearRecord::kWaiting)) != 0) refuse_edits("tears");
+    for (int f = 0; f < static_cast<int>(torn_[b]->faces()); ++f) {
+      const TetFace face{record.tet, static_cast<std::int8_t>(f)};
+      if (record.faces >> f & 1) faces[b].push_back(face);
+      if (record.faces >> (f + TearRecord::kWaiting) & 1) waiting[b].push_back(face);
     }
   }
   for (std::size_t b = 0; b < size(); ++b) {
-    if (!faces[b].empty()) tear(b, faces[b]);
+    if (!faces[b].empty()) part(b, faces[b], false);
+    if (!waiting[b].empty()) torn_[b]->set_waiting(waiting[b]);
   }
 }
 

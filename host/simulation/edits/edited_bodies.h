@@ -94,8 +94,9 @@ class EditedBodies {
   /// What blades find in a body that is parted along its faces; nullptr for others.
   [[nodiscard]] SweptFaces* swept(std::size_t b) { return swept_[b].get(); }
   [[nodiscard]] const SweptFaces* find_swept(std::size_t b) const { return swept_[b].get(); }
-  /// Breaks faces of torn(b). Returns what TornBody::tear returns.
-  std::vector<std::int32_t> tear(std::size_t b, const std::vector<TetFace>& faces);
+  /// Breaks faces of torn(b), which a blade has passed or which stress breaks. Returns what TornBody::tear returns; empty if
+  /// all of them wait.
+  std::vector<std::int32_t> part(std::size_t b, const std::vector<TetFace>& faces, bool by_blade);
 
   // The same of both kinds of body that blades meet, cut with virtual nodes or parted along faces.
   /// Returns the body's elements now; the cut is created on first use.

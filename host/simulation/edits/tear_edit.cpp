@@ -26,11 +26,12 @@ void TopologyEdits::make_tears() {
   }
   if (!any) return;
   CutReport report;
-  part(faces, u, report);
+  part(faces, u, false, report);
   run_.state.opened += edges;
 }
 
-void TopologyEdits::part(const std::vector<std::vector<TetFace>>& faces, std::vector<double> u, CutReport& report) {
+void TopologyEdits::part(const std::vector<std::vector<TetFace>>& faces, std::vector<double> u, bool by_blade,
+                         CutReport& report) {
   EditedBodies& all = bodies();
   Stopwatch clock;
   std::vector<char> changed;
@@ -38,11 +39,14 @@ void TopologyEdits::part(const std::vector<std::vector<TetFace>>& faces, std::ve
     ModelSwap swap(run_, loads_, all, std::move(u), report);
     std::vector<NodeOrigins> origins(all.size());
     for (std::size_t b = 0; b < all.size(); ++b) {
-      if (!faces[b].empty()) origins[b].from = all.tear(b, faces[b]);
+      if (!faces[b].empty()) origins[b].from = all.part(b, faces[b], by_blade);
+      report.changed = report.changed || !origins[b].from.empty();
     }
     report.topology += clock.lap();
-    swap.run(scene_at(run_.state), std::move(origins), [] {});
-    changed = swap.changed_nodes();
+    if (report.changed) {
+      swap.run(scene_at(run_.state), std::move(origins), [] {});
+      changed = swap.changed_nodes();
+    }
   } catch (...) {
     for (std::size_t b = 0; b < all.size(); ++b) {
       if (!faces[b].empty()) all.rebuild(b, run_.state);
@@ -52,11 +56,11 @@ void TopologyEdits::part(const std::vector<std::vector<TetFace>>& faces, std::ve
   run_.state.tears.clear();
   for (std::size_t b = 0; b < all.size(); ++b) {
     for (std::size_t t = 0; all.torn(b) != nullptr && t < all.torn(b)->broken().size(); ++t) {
-      const int bits = all.torn(b)->broken()[t];
+      const int bits = all.torn(b)->broken()[t] | all.torn(b)->waiting()[t] << TearRecord::kWaiting;
       if (bits != 0) run_.state.tears.push_back({static_cast<std::int32_t>(b), static_cast<std::int32_t>(t), bits});
     }
   }
-  report.changed = true;
+  if (!report.changed) return;
   ++run_.state.topology_version;
   clock.lap();
   step_.limit_after_edit(changed);

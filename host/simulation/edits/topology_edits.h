@@ -75,8 +75,8 @@ class TopologyEdits {
   // cut_edit.cpp, overstretch_edit.cpp, tear_edit.cpp, join_edit.cpp, partition_edit.cpp
   void make_cut(std::vector<CutEdges> edges, std::vector<double> u, CutReport& report);
   void make_tears();
-  /// Breaks these faces of each body.
-  void part(const std::vector<std::vector<TetFace>>& faces, std::vector<double> u, CutReport& report);
+  /// Breaks these faces of each body, or has them wait until a gap can open (TornBody::part).
+  void part(const std::vector<std::vector<TetFace>>& faces, std::vector<double> u, bool by_blade, CutReport& report);
   void break_joins();
   void open_overstretched();
   void move_regions();
