@@ -1,5 +1,5 @@
-// Separation along existing faces (Mendoza and Laugier): which faces a blade opens, and the local remeshing that moves the
-// nodes of the cut onto it.
+// Separation along existing faces (Mendoza and Laugier) of a mesh at rest: which faces a blade opens, and the local remeshing
+// that moves the nodes of the cut onto it. Running bodies are parted by tearing/swept_faces.h.
 #include <fmt/format.h>
 
 #include <algorithm>

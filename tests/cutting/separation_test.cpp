@@ -73,6 +73,24 @@ std::int64_t opened_faces(const Simulation& s) {
   return sides / 2;
 }
 
+/// A blade goes from somewhere near the block to somewhere else while it moves.
+template <class Any>
+void random_stroke(Simulation& s, const std::string& name, Any&& any) {
+  const auto point = [&] {
+    const double x = any(), y = any(), z = any();
+    return Vec3d{0.09 * x - 0.01, 0.06 * y - 0.01, 0.06 * z - 0.01};
+  };
+  const BladeSegment from{point(), point()}, to{point(), point()};
+  for (int k = 0; k <= 6; ++k) {
+    BladePose pose{name, {}};
+    for (std::size_t end = 0; end < 2; ++end)
+      pose.segment[end] = vec::add(from[end], vec::mul(vec::sub(to[end], from[end]), k / 6.0));
+    s.move_blades(std::span(&pose, 1));
+    s.advance(s.next_batch(16));
+    ASSERT_FALSE(s.divergence()) << s.divergence()->message();
+  }
+}
+
 TEST_F(Separation, ABlockIsCutThroughWithoutNewElements) {
   Simulation s(block_cut_through(), open_backend("cpu"));
   const std::int64_t elements = s.model().bodies[0].elements();
@@ -105,6 +123,56 @@ TEST_F(Separation, ABlockIsCutThroughWithoutNewElements) {
   }
   EXPECT_EQ(cut, 2 * opened_faces(s));
   EXPECT_LT(distance / static_cast<double>(cut), 0.004) << "it follows the sweep as faces allow: cells are 1 cm wide";
+}
+
+/// A lattice of 6 x 4 x 4 cells, as a scene file with such a blade makes it.
+Scene lattice_scene(ElementKind element) {
+  Body body = box_body("block", {0.06, 0.04, 0.04}, element);
+  body.plain = true;
+  body.material.damping = 20;
+  hold(body, {0, 0, 0}, {-1, 0, 0});
+  Scene scene = scene_with(body);
+  scene.blades.push_back(separating("far", {{0, 5, 5, 5, 5, 5, 6}, {1, 5, 6, 5, 5, 6, 6}}));
+  return scene;
+}
+
+/// Cells part at their faces alone: a leaning blade leaves a staircase, a blade along a layer of faces that layer.
+TEST_F(Separation, ALatticePartsAlongAStaircase) {
+  for (const ElementKind element : {ElementKind::hex8, ElementKind::hex8full, ElementKind::tet4}) {
+    for (const double lean : {0.0, 0.4}) {
+      Simulation s(lattice_scene(element), open_backend("cpu"));
+      const std::int64_t elements = s.model().bodies[0].elements();
+      const double mass = mass_of(s), volume = volume_of(s);
+      EXPECT_NEAR(volume, 0.06 * 0.04 * 0.04, 1e-12);
+      for (int k = 0; k <= 12; ++k) {
+        const double y = -0.011 + 0.005 * k, x = 0.0312 + lean * (y - 0.02);
+        s.move_blades(std::vector<BladePose>{{"scalpel", {{{x, y, -0.012}, {x, y, 0.053}}}}});
+        expect_kept(s, elements, mass, volume);
+      }
+      EXPECT_EQ(pieces_of(s.model().bodies[0]), 2);
+      if (element == ElementKind::tet4) continue;
+      EXPECT_EQ(s.model().bodies[0].hexes.size(), 96U);
+      if (lean == 0) EXPECT_EQ(opened_faces(s), 16);
+      if (lean > 0) EXPECT_GE(opened_faces(s), 20) << "with the faces between the steps";
+    }
+  }
+}
+
+TEST_F(Separation, RandomStrokesThroughALoadedLatticeLeaveClosedSurfaces) {
+  std::mt19937 dice(23);
+  std::uniform_real_distribution<double> any(0, 1);
+  for (int run = 0; run < 6; ++run) {
+    Scene scene = pulled(lattice_scene(run % 2 == 0 ? ElementKind::hex8 : ElementKind::hex8full));
+    scene.gravity = {0, -9.81, 0};
+    Simulation s(scene, open_backend("cpu"));
+    const std::int64_t elements = s.model().bodies[0].elements();
+    const double mass = mass_of(s), volume = volume_of(s);
+    for (int stroke = 0; stroke < 10; ++stroke) {
+      random_stroke(s, "stroke" + std::to_string(stroke), [&] { return any(dice); });
+      expect_kept(s, elements, mass, volume);
+    }
+    EXPECT_GT(s.topology_version(), 5);
+  }
 }
 
 /// The broken faces of a body, sorted by element: [elements] bits.
@@ -224,19 +292,10 @@ TEST_F(Separation, RandomStrokesUnderLoadLeaveClosedSurfaces) {
     const std::int64_t elements = s.model().bodies[0].elements();
     const double mass = mass_of(s), volume = volume_of(s);
     for (int stroke = 0; stroke < 10; ++stroke) {
-      const auto point = [&] { return Vec3d{0.09 * any(dice) - 0.01, 0.06 * any(dice) - 0.01, 0.06 * any(dice) - 0.01}; };
-      const BladeSegment from{point(), point()}, to{point(), point()};
-      const std::string name = "stroke" + std::to_string(stroke);
-      for (int k = 0; k <= 6; ++k) {
-        BladePose pose{name, {}};
-        for (std::size_t end = 0; end < 2; ++end)
-          pose.segment[end] = vec::add(from[end], vec::mul(vec::sub(to[end], from[end]), k / 6.0));
-        edits += s.move_blades(std::span(&pose, 1)).changed ? 1 : 0;
-        s.advance(s.next_batch(16));
-        ASSERT_FALSE(s.divergence()) << s.divergence()->message();
-      }
+      random_stroke(s, "stroke" + std::to_string(stroke), [&] { return any(dice); });
       expect_kept(s, elements, mass, volume);
     }
+    edits += s.topology_version();
   }
   EXPECT_GT(edits, 120);
 }
