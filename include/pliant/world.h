@@ -160,8 +160,7 @@ class PLIANT_API World {
   /// The same from text, an entry of `changes` of a scene file without its time: {"material": {"young": 2000}}.
   void parse_change(const std::string& text);
 
-  /// Cuts, as CutResult describes. Where the scene's blades have the method separation (BladeSpec::method), these cuts have it,
-  /// too, and open faces between elements. All throw Error: input, usage (non-finite numbers), diverged, device.
+  /// Cuts, as CutResult and BladeSpec::method say. All throw Error: input, usage (non-finite numbers), diverged, device.
   ///
   /// Cuts all bodies where these triangles [m] intersect them now. Degenerate triangles cut nothing.
   CutResult cut(const std::vector<std::array<Vec3d, 3>>& triangles);
