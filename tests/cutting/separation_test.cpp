@@ -152,8 +152,8 @@ TEST_F(Separation, ALatticePartsAlongAStaircase) {
       EXPECT_EQ(pieces_of(s.model().bodies[0]), 2);
       if (element == ElementKind::tet4) continue;
       EXPECT_EQ(s.model().bodies[0].hexes.size(), 96U);
-      if (lean == 0) EXPECT_EQ(opened_faces(s), 16);
-      if (lean > 0) EXPECT_GE(opened_faces(s), 20) << "with the faces between the steps";
+      const std::int64_t opened = opened_faces(s);
+      EXPECT_TRUE(lean == 0 ? opened == 16 : opened >= 20) << opened << "; a leaning cut has faces between its steps, too";
     }
   }
 }

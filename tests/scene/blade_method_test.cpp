@@ -52,7 +52,7 @@ TEST(BladeMethod, SaysWhatIsWrong) {
   scene["blades"][1]["method"] = "decomposition";
   expect_message(scene, "/blades/1/method: got \"decomposition\"", "\"virtual-nodes\" or \"separation\"");
   scene["blades"][1]["method"] = "magic";
-  expect_message(scene, "/blades/1/method: got \"magic\"", "\"virtual-nodes\"");
+  expect_message(scene, "/blades/1/method: got \"magic\"", "one of virtual-nodes, separation");
   scene["blades"][1]["method"] = "virtual-nodes";
   expect_message(scene, "/blades/1/method", "all blades of a scene have the same");
   scene["blades"][1].erase("method");
