@@ -220,6 +220,27 @@ TEST_F(Separation, ABladeThatMovesOpensWhatTheWholeSweepOpens) {
   EXPECT_LE(more, opened_faces(once) / 10) << "at ends of the cut, where elements hang together by an edge only";
 }
 
+TEST_F(Separation, FacesThatWaitBreakAfterACheckpointToo) {
+  Simulation whole(block(), open_backend("cpu"));
+  const auto go = [](Simulation& s, int from, int to) {
+    for (int k = from; k <= to; ++k) {
+      const double y = -0.01 + 0.005 * k, x = 0.033 + 0.27 * (y - 0.0193);
+      s.move_blades(std::vector<BladePose>{{"scalpel", {{{x, y, -0.01}, {x, y, 0.05}}}}});
+    }
+  };
+  const auto waits = [](const TearRecord& tear) { return tear.faces > tear.broken(); };
+  int k = 0;
+  while (k < 10 && std::none_of(whole.state().tears.begin(), whole.state().tears.end(), waits)) go(whole, k, k), ++k;
+  ASSERT_TRUE(std::any_of(whole.state().tears.begin(), whole.state().tears.end(), waits));
+  Simulation resumed(block(), open_backend("cpu"));
+  restore_checkpoint(resumed, take_checkpoint(whole), "saved");
+  go(whole, k, 12);
+  go(resumed, k, 12);
+  EXPECT_EQ(broken_faces(whole), broken_faces(resumed));
+  EXPECT_EQ(write_state(whole.state()), write_state(resumed.state()));
+  EXPECT_EQ(pieces_of(whole.model().bodies[0]), 2);
+}
+
 TEST_F(Separation, MomentumAndMotionGoOn) {
   Scene scene = block();
   scene.bodies[0].fixed.clear();
