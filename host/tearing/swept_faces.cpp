@@ -97,11 +97,6 @@ BladeSweep SweptFaces::sweep(std::span<const Vec3d> x) {
   return {*topology_, x, SweptPairs{*lines_, middles_->mesh().rest, now_, body_.whole().nodes.size(), gap_}, edge_};
 }
 
-InverseMap SweptFaces::inverse_map(std::span<const Vec3d> x, const vec::Box& region, double reach) {
-  measure_gaps(x);
-  return {*topology_, x, region, edge_, reach, gap_};
-}
-
 CutEdges SweptFaces::crossed(std::span<const Vec3d> x, std::span<const SweepTriangle> triangles) {
   if (triangles.empty()) return {};
   place_middles(x);

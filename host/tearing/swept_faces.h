@@ -31,8 +31,6 @@ class SweptFaces {
   void keep_joined(CutEdges& pairs) const;
   /// The common faces of these pairs.
   [[nodiscard]] std::vector<TetFace> faces(const CutEdges& pairs) const;
-  /// Finds the material at points of a region with the body's nodes at `x` [m], as InverseMap does.
-  [[nodiscard]] InverseMap inverse_map(std::span<const Vec3d> x, const vec::Box& region, double reach);
 
  private:
   [[nodiscard]] TetFace face_between(const NodePair& pair) const;
@@ -44,7 +42,7 @@ class SweptFaces {
   std::unique_ptr<RestEdges> lines_;
   std::unique_ptr<CutTopology> topology_;
   std::vector<Vec3d> now_;   ///< the middles of the last sweep [m]
-  std::vector<double> gap_;  ///< of each node, see InverseMap [m]
+  std::vector<double> gap_;  ///< of each node, see SweptPairs [m]
   double edge_ = 0;
 };
 

@@ -155,7 +155,7 @@ void BladeSweep::move(BladeTrace& front, const BladeSegment& to) {
   if (from.empty() || begin > finish) return;
   vec::Box region = start;
   region.extend(end);
-  InverseMap map(body_, x_, region, edge_, kNear * edge_, pairs_.gap);
+  InverseMap map(body_, x_, region, edge_, kNear * edge_);
   double longest = 0;
   for (std::size_t i = 0; i < from.size(); ++i) longest = std::max(longest, vec::norm(vec::sub(until[i], from[i])));
   const double wanted = std::ceil(longest * (finish - begin) / (kSpacing * edge_));
@@ -193,7 +193,7 @@ std::vector<MaterialPoint> BladeSweep::advance(std::span<const MaterialPoint> ca
     region.extend(until[i]);
     longest = std::max(longest, vec::norm(vec::sub(until[i], from[i])));
   }
-  InverseMap map(body_, x_, region, edge_, kNear * edge_, pairs_.gap);
+  InverseMap map(body_, x_, region, edge_, kNear * edge_);
   const int rows = std::max(1, static_cast<int>(std::min(std::ceil(longest / (kSpacing * edge_)), double{kMostRows})));
   Row before{0, 0, {}};
   for (std::size_t i = 0; i < from.size(); ++i) {
@@ -232,7 +232,7 @@ void BladeSweep::strip(const Row& a, const Row& b) {
   }
 }
 
-/// Whether a vertex lies on a side of an open gap, not in material.
+/// Whether a vertex lies in an open gap, not in material.
 bool BladeSweep::in_gap(const Vertex& v) const {
   constexpr double kNone = 1e-9;
   if (pairs_.gap.empty()) return false;

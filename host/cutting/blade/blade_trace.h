@@ -35,7 +35,9 @@ struct SweptPairs {
   RestEdges& between;
   std::span<const Vec3d> rest, now;  ///< [points] at rest, and where they are [m]
   std::size_t carriers = 0;          ///< the nodes below this one keep their numbers when the body is cut
-  std::span<const double> gap = {};  ///< see InverseMap
+  /// Of each node how far others are that were the same node before faces opened, 0 where none was [m]; empty: nowhere. A sweep
+  /// in such a gap crosses nothing.
+  std::span<const double> gap = {};
 };
 
 class BladeSweep {

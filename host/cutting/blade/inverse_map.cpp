@@ -76,9 +76,8 @@ Vec3d present_position(const CutTopology& body, std::span<const Vec3d> x, const 
   return count > 0 ? vec::mul(sum, 1 / count) : in(point.cell);
 }
 
-InverseMap::InverseMap(const CutTopology& body, std::span<const Vec3d> x, const vec::Box& region, double edge, double reach,
-                       std::span<const double> gap)
-    : body_(body), x_(x), edge_(edge), reach_(reach), gap_(gap), hash_(1.5 * edge) {
+InverseMap::InverseMap(const CutTopology& body, std::span<const Vec3d> x, const vec::Box& region, double edge, double reach)
+    : body_(body), x_(x), edge_(edge), reach_(reach), hash_(1.5 * edge) {
   const vec::Box near = grown(region, reach);
   // Beyond which sides of the region a node lies: an element is far where all its nodes lie beyond one side.
   std::vector<std::uint8_t> beyond(x.size());
@@ -198,17 +197,6 @@ bool InverseMap::to_own_part(std::int32_t element, int tet, const OwnPart& part,
   return true;
 }
 
-/// Whether a point outside, to which this place of an element is nearest, lies in a gap between opened faces.
-bool InverseMap::in_gap(std::int32_t element, int tet, const Weights& nearest, double distance2) const {
-  if (gap_.empty()) return false;
-  double gap = HUGE_VAL;
-  for (std::size_t a = 0; a < 4; ++a) {
-    const std::int32_t node = body_.elements().nodes[element][body_.mesh().shape->tets[tet][a]];
-    if (nearest[a] > 0) gap = std::min(gap, gap_[node]);
-  }
-  return distance2 <= gap * gap;
-}
-
 void InverseMap::nearest(std::int32_t element, const Vec3d& p, Best& best) const {
   const auto tets = static_cast<int>(body_.mesh().shape->tets.size());
   const std::int32_t cell = body_.elements().cell[element];
@@ -234,7 +222,7 @@ void InverseMap::nearest(std::int32_t element, const Vec3d& p, Best& best) const
     }
     const double away = vec::norm(vec::sub(blend(rest, w), blend(rest, at)));
     const double most = kFarthest * edge_;
-    const Weights outside = in_gap(element, t, at, d2) ? at : away > most ? mix(at, w, most / away) : w;
+    const Weights outside = away > most ? mix(at, w, most / away) : w;
     best = {d2, {cell, t, outside, blend(rest, outside)}};
   }
 }

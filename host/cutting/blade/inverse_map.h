@@ -25,11 +25,8 @@ Vec3d present_position(const CutTopology& body, std::span<const Vec3d> x, const 
 /// nearest face of the cut, so that both sides of the gap map to the same rest position.
 class InverseMap {
  public:
-  /// `edge` [m]: mean undeformed edge of a cell. Only points in `region` can be found. `gap` [m]: of each node how far others
-  /// are that were the same node before faces opened, 0 where none was; empty: nowhere. A point in such a gap belongs to the
-  /// nearest of its sides, as in that of a cut.
-  InverseMap(const CutTopology& body, std::span<const Vec3d> x, const vec::Box& region, double edge, double reach,
-             std::span<const double> gap = {});
+  /// `edge` [m]: mean undeformed edge of a cell. Only points in `region` can be found.
+  InverseMap(const CutTopology& body, std::span<const Vec3d> x, const vec::Box& region, double edge, double reach);
   [[nodiscard]] MaterialPoint find(const Vec3d& p);
 
  private:
@@ -42,13 +39,11 @@ class InverseMap {
   void nearest(std::int32_t element, const Vec3d& p, Best& best) const;
   [[nodiscard]] std::array<Vec3d, 4> corners(std::int32_t element, int tet) const;
   [[nodiscard]] std::array<Vec3d, 4> rest_corners(std::int32_t cell, int tet) const;
-  [[nodiscard]] bool in_gap(std::int32_t element, int tet, const std::array<double, 4>& nearest, double distance2) const;
   [[nodiscard]] bool to_own_part(std::int32_t element, int tet, const OwnPart& part, std::array<double, 4>& weight) const;
 
   const CutTopology& body_;
   std::span<const Vec3d> x_;
   double edge_, reach_;
-  std::span<const double> gap_;
   SpatialHash hash_;
   std::vector<std::int32_t> element_;  ///< items of the hash
   vec::Box all_;                       ///< bounding box of all of them

@@ -184,8 +184,7 @@ void EditedBodies::keep_allowed(std::size_t b, CutEdges& crossed) {
 }
 
 InverseMap EditedBodies::inverse_map(std::size_t b, const std::vector<Vec3d>& x, const vec::Box& region, double reach) {
-  if (swept_[b] != nullptr) return swept_[b]->inverse_map(x, region, reach);
-  return {cut(b).topology(), x, region, cut(b).edge(), reach};
+  return {topology(b), x, region, edge(b), reach};
 }
 
 void EditedBodies::follow_materials() {
