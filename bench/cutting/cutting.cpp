@@ -21,7 +21,7 @@ namespace {
 
 using nlohmann::json;
 
-const std::vector<std::string> kParts{"scenes", "methods", "steps"};
+const std::vector<std::string> kParts{"scenes", "methods", "live", "steps"};
 
 CuttingOptions completed(CuttingOptions o) {
   if (o.parts.empty()) o.parts = kParts;
@@ -130,6 +130,7 @@ json bench_cutting(const CuttingOptions& asked) {
     const CuttingRun run{options, result["rows"], [&](const std::string& what) { progress(0, what); }, progress};
     if (part == "scenes") measure_cut_scenes(run);
     if (part == "methods") measure_cut_methods(run);
+    if (part == "live") measure_live_methods(run);
     if (part == "steps") measure_stable_steps(run);
     ++done;
   }

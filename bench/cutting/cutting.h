@@ -15,8 +15,8 @@ namespace pliant::bench {
 
 struct CuttingOptions {
   std::filesystem::path scenes;                              ///< folder of the shipped scenes; empty: find it
-  std::vector<std::string> parts;                            ///< of scenes, methods, steps; empty: all
-  std::string backend = "auto";                              ///< of parts scenes and methods
+  std::vector<std::string> parts;                            ///< of scenes, methods, live, steps; empty: all
+  std::string backend = "auto";                              ///< of all parts but steps
   std::int64_t cuts = 0;                                     ///< of part steps; 0: 10 000, quick 200
   bool quick = false;                                        ///< small bodies and few frames: the times mean nothing
   std::function<void(double, const std::string&)> progress;  ///< share done, what is being measured

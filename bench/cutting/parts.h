@@ -23,6 +23,8 @@ struct CuttingRun {
 void measure_cut_scenes(const CuttingRun& run);
 /// The four methods on the same cuts of the same tetrahedra.
 void measure_cut_methods(const CuttingRun& run);
+/// The methods of blades on the same stroke through the same running bodies.
+void measure_live_methods(const CuttingRun& run);
 /// The stable step over random cuts.
 void measure_stable_steps(const CuttingRun& run);
 

@@ -59,6 +59,9 @@ std::string cutting_table(const json& result) {
   if (has_part(rows, "scenes"))
     tables.emplace_back("The shipped scenes, per frame that changed elements [ms]", costs_table(rows, "scenes"));
   if (has_part(rows, "methods")) tables.emplace_back("The same cuts by four methods [ms]", costs_table(rows, "methods"));
+  if (has_part(rows, "live"))
+    tables.emplace_back("The same stroke through the same running body by the methods of blades [ms]",
+                        costs_table(rows, "live"));
   if (has_part(rows, "steps"))
     tables.emplace_back("The stable step over random cuts, as a share of that before", steps_table(rows));
   return titled(tables);

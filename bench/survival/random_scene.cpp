@@ -86,8 +86,14 @@ class RandomScene {
     if (load == 2) push(body);
     const bool cuts = !tears && body["model"]["type"] != "flsm" && dice_.chance(0.5);
     if (cuts) scene["blades"] = blades();
+    Dice along_faces(number_ ^ 0x3e11ad5);
+    const bool parts = shape_.tets && along_faces.chance(0.4);
+    if (parts && tears && along_faces.chance(0.5)) scene["blades"] = blades();  // one scene with both
     if (cuts && body["model"]["type"] == "hybrid" && late_.chance(0.5)) body["model"]["follow"] = "blade0";
     if (cuts) press(scene["blades"], body);
+    if (parts && scene.contains("blades")) {
+      for (Json& blade : scene["blades"]) blade["method"] = "separation";
+    }
     const bool has_tools = touch_.chance(0.5), touches = touch_.chance(0.4);
     if (has_tools || touches) {
       for (const char* key : {"substeps", "goals"}) body["model"].erase(key);  // refused

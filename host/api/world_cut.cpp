@@ -34,7 +34,8 @@ CutReport World::Impl::cut_now(std::span<const api::CutRequest> requests) {
     if (!poses.empty()) done = simulation->move_blades(poses);
     if (!done.changed) return done;
     handles->follow(simulation->shared_model());
-    std::string text = fmt::format("{} edges were cut in {:.3g} s", done.edges, done.seconds());
+    const char* const what = parts_along_faces(simulation->scene()) ? "faces were opened" : "edges were cut";
+    std::string text = fmt::format("{} {} in {:.3g} s", done.edges, what, done.seconds());
     if (done.in_part > 0) text += fmt::format("; {} elements were cut in part and hold together", done.in_part);
     events.add(*simulation, api::event_of("cut", {}, static_cast<double>(done.edges), text, simulation->edited_at()));
     const std::lock_guard lock(mutex);

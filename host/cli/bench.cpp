@@ -162,8 +162,8 @@ void add_cutting(CLI::App& app, const std::shared_ptr<BenchArguments>& options) 
   bench::CuttingOptions& c = options->cutting;
   options->common.add_to(*sub);
   sub->add_option("--scenes", c.scenes, "folder of the shipped scenes");
-  sub->add_option("--parts", c.parts, "scenes, methods, steps")->delimiter(',');
-  sub->add_option("--backend", c.backend, "of parts scenes and methods, default: auto");
+  sub->add_option("--parts", c.parts, "scenes, methods, live, steps")->delimiter(',');
+  sub->add_option("--backend", c.backend, "of all parts but steps, default: auto");
   sub->add_option("--cuts", c.cuts, "random cuts of part steps, default: 10000")->check(CLI::Range(1, 10'000'000));
   sub->add_flag("--quick", c.quick, "small bodies, 200 random cuts; the times mean nothing");
   sub->add_option("--out", options->out, "folder for cutting.json, cutting.csv and the pictures");

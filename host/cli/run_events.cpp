@@ -23,9 +23,9 @@ RunEvents run_events(const Simulation& simulation) {
   const RunState& state = simulation.state();
   RunEvents events;
   for (const CutRecord& cut : state.cuts) events.cut_edges += static_cast<std::int64_t>(cut.edges.size());
-  events.cut_edges -= state.opened;
-  for (const TearRecord& tear : state.tears) events.broken_faces += std::popcount(static_cast<unsigned>(tear.faces));
-  events.broken_faces /= 2;  // each is a face of two tetrahedra
+  events.cut_edges = std::max<std::int64_t>(0, events.cut_edges - state.opened);
+  for (const TearRecord& tear : state.tears) events.broken_faces += std::popcount(static_cast<unsigned>(tear.broken()));
+  events.broken_faces /= 2;  // each is a face of two elements
   for (std::size_t b = 0; b < simulation.model().bodies.size(); ++b) {
     events.pieces += pieces_of(simulation.model().bodies[b]);
     if (const CutTopology* cut = simulation.cut_topology(b)) events.cut_in_part += cut->cut_in_part();
@@ -67,6 +67,7 @@ std::vector<std::string> blades_without_contact(const Simulation& simulation, bo
 std::vector<std::string> blades_without_effect(const Simulation& simulation) {
   const RunState& state = simulation.state();
   if (std::any_of(state.cuts.begin(), state.cuts.end(), [](const CutRecord& cut) { return !cut.edges.empty(); })) return {};
+  if (parts_along_faces(simulation.scene()) && !state.tears.empty()) return {};
   std::vector<std::string> names;
   for (const Blade& blade : simulation.scene().blades) {
     const bool met = std::find(state.blades.met.begin(), state.blades.met.end(), blade.name) != state.blades.met.end();

@@ -230,9 +230,11 @@ class Report {
   [[nodiscard]] std::string events_text() const {
     std::string text = fmt::format("largest displacement {:.4g} m", events_.max_displacement);
     const bool cuts = !s_.scene().blades.empty() || events_.cut_edges > 0;
-    if (cuts) text += fmt::format(", {} edges cut", events_.cut_edges);
+    const bool parts = parts_along_faces(s_.scene());
+    if (cuts && !parts) text += fmt::format(", {} edges cut", events_.cut_edges);
     if (broken_joins() > 0) text += fmt::format(", {} springs of joins broken", broken_joins());
-    if (events_.broken_faces > 0) text += fmt::format(", {} faces broken by tears", events_.broken_faces);
+    if (parts || events_.broken_faces > 0)
+      text += fmt::format(", {} faces {}", events_.broken_faces, parts ? "opened" : "broken by tears");
     if (cuts || events_.broken_faces > 0)
       text += fmt::format(", {} {}", events_.pieces, events_.pieces == 1 ? "piece" : "pieces");
     if (cuts && events_.cut_in_part > 0) text += fmt::format(", {} elements cut in part and still whole", events_.cut_in_part);

@@ -192,7 +192,7 @@ class Decomposer {
   /// Open the faces between parts of one tetrahedron that belong to different components.
   void part() {
     std::vector<std::uint8_t> cut(out_.mesh.tets.size(), 0);
-    const auto neighbors = tet_neighbors(out_.mesh.tets);
+    const auto neighbors = element_neighbors(out_.mesh.tets);
     for (std::size_t t = 0; t < cut.size(); ++t) {
       for (int f = 0; f < 4; ++f) {
         const std::int32_t other = neighbors[t][f].tet;

@@ -1,5 +1,5 @@
-// Separation along existing faces (Mendoza and Laugier): which faces a blade opens, and the local remeshing that moves the
-// nodes of the cut onto it.
+// Separation along existing faces (Mendoza and Laugier) of a mesh at rest: which faces a blade opens, and the local remeshing
+// that moves the nodes of the cut onto it. Running bodies are parted by tearing/swept_faces.h.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ constexpr int kHalvings = 5;
 class Separator {
  public:
   Separator(const ElementMesh& mesh, std::span<const SweepTriangle> sweep, const SeparationOptions& options)
-      : options_(options), neighbors_(tet_neighbors(mesh.tets)), cut_(mesh.tets.size(), 0) {
+      : options_(options), neighbors_(element_neighbors(mesh.tets)), cut_(mesh.tets.size(), 0) {
     out_.mesh = mesh;
     vec::Box box;
     for (const Vec3d& x : mesh.nodes) box.extend(x);

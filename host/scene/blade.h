@@ -25,6 +25,10 @@ struct Focus {
 /// Cutting mode: all tissue that a blade sweeps, or only tissue that fails under the force of its edge (docs/cutting.md).
 enum class BladeCuts { always, by_force };
 
+/// How a blade divides what it cuts: elements become copies with virtual nodes, or they part along their faces and stay what
+/// they are (docs/cutting.md).
+enum class BladeMethod { virtual_nodes, separation };
+
 /// A blade on a prescribed path: a segment that cuts the surface it sweeps.
 struct Blade {
   std::string name;
@@ -34,9 +38,10 @@ struct Blade {
   double end = std::numeric_limits<double>::infinity();     ///< cutting ends here [s], but not after the path ends
   std::string pointer;                                      ///< JSON pointer ("/blades/0")
   BladeCuts cuts = BladeCuts::always;
-  double sharpness = 1;  ///< by force: kappa, the smaller the sharper
-  double edge = 0;       ///< by force: radius of the edge [m]
-  double friction = 0;   ///< by force: coefficient between the edge and tissue
+  BladeMethod method = BladeMethod::virtual_nodes;  ///< the same for all blades of a scene
+  double sharpness = 1;                             ///< by force: kappa, the smaller the sharper
+  double edge = 0;                                  ///< by force: radius of the edge [m]
+  double friction = 0;                              ///< by force: coefficient between the edge and tissue
   /// Returns both ends at a time [m]; constant outside the path.
   [[nodiscard]] std::array<Vec3d, 2> at(double time) const;
   [[nodiscard]] bool stands() const { return path.size() == 1; }  ///< it waits for the host to move it

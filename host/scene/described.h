@@ -129,6 +129,9 @@ void describe_blade(V&& v, S&& s) {
     {"cuts", any, "", "\"by-force\"",
      "what it cuts: all that it sweeps over, or what gives way to the force of its edge "
      "([cutting by force](cutting.md#cutting-by-force))"});
+  v(s.method, blade_method_words(),
+    {"method", any, "", "\"separation\"",
+     "how it divides the elements ([live methods](cutting.md#methods-of-live-cuts)); all blades of a scene have the same"});
   v(s.sharpness, {"sharpness", above(0).absent_at(1), "", "0.5",
                   "kappa: tissue gives way at this share of its `toughness`; the smaller the sharper; only by force"});
   v(s.edge, {"edge", above(0).absent_at(0), "m", "0.0002", "radius of the edge; required by force, refused otherwise"});

@@ -186,6 +186,13 @@ const Words<BladeCuts>& blade_cuts_words() {
   return words;
 }
 
+const Words<BladeMethod>& blade_method_words() {
+  static const Words<BladeMethod> words{
+      {"virtual-nodes", BladeMethod::virtual_nodes, "the elements that it crosses become copies, one for each side"},
+      {"separation", BladeMethod::separation, "elements part along the faces nearest to what it sweeps; none is added"}};
+  return words;
+}
+
 const Words<ToolShape>& tool_shape_words() {
   static const Words<ToolShape> words{{"sphere", ToolShape::sphere, "about the origin"},
                                       {"capsule", ToolShape::capsule, "a segment with a radius"},

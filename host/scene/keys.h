@@ -48,6 +48,7 @@ const Words<Curve::Kind>& curve_words();
 const Words<Integrator>& integrator_words();
 const Words<Inverted>& inverted_words();
 const Words<BladeCuts>& blade_cuts_words();
+const Words<BladeMethod>& blade_method_words();
 /// The shapes of tools, which are keys.
 const Words<ToolShape>& tool_shape_words();
 const Words<bool>& solver_words();

@@ -11,6 +11,14 @@ namespace {
 
 using Row = std::array<double, 7>;
 
+/// Says of the methods that only the benchmark has why they are no words of a scene.
+void check_method(const Reader& blade) {
+  if (!blade.has("method")) return;
+  const Reader method = blade.at("method");
+  if (method.json() == "removal" || method.json() == "decomposition")
+    method.fail("\"virtual-nodes\" or \"separation\"; a running body is not cut by the others, which `bench cutting` compares");
+}
+
 Blade read_blade(const Reader& blade, std::size_t index) {
   blade.expect_object("blade");
   Blade b;
@@ -24,6 +32,7 @@ Blade read_blade(const Reader& blade, std::size_t index) {
     if (std::equal(r.begin() + 1, r.begin() + 4, r.begin() + 4))
       path.items(expected)[i].fail("two different ends (a blade has a length)");
   }
+  check_method(blade);
   describe_blade(ReadKeys{blade}, b);
   if (b.cuts == BladeCuts::always && b.path.size() < 2) path.fail(expected);
   if (!(b.end > b.start)) blade.at("end").fail(fmt::format("a time after the start {}", b.start));
@@ -48,6 +57,11 @@ bool cuts_by_force(const Scene& scene) {
   return std::any_of(scene.blades.begin(), scene.blades.end(), [](const Blade& b) { return b.cuts == BladeCuts::by_force; });
 }
 
+bool parts_along_faces(const Scene& scene) {
+  return std::any_of(scene.blades.begin(), scene.blades.end(),
+                     [](const Blade& b) { return b.method == BladeMethod::separation; });
+}
+
 std::vector<Blade> read_blades(const Reader& blades) {
   const char* const expected = "a list of blades";
   std::vector<Blade> all;
@@ -58,8 +72,28 @@ std::vector<Blade> read_blades(const Reader& blades) {
   return all;
 }
 
+namespace {
+
+/// What a scene whose blades separate must have: the same method everywhere, and bodies of elements alone.
+void check_separation(const Reader& top, const Scene& scene) {
+  const std::vector<Reader> blades = top.at("blades").items("a list of blades");
+  for (std::size_t i = 0; i < blades.size(); ++i) {
+    if (scene.blades[i].method == BladeMethod::separation) continue;
+    const char* const expected = "\"separation\", the method of another blade: all blades of a scene have the same";
+    blades[i].at("method", expected).fail(expected);
+  }
+  for (const Body& b : scene.bodies) {
+    if (!b.model.matches()) continue;
+    blades[0].at("method").fail(fmt::format(
+        "\"virtual-nodes\", because shape matching moves nodes of body '{}': only elements part along faces", b.name));
+  }
+}
+
+}  // namespace
+
 void check_blades(const Reader& top, const Scene& scene) {
   if (scene.blades.empty()) return;
+  if (parts_along_faces(scene)) check_separation(top, scene);
   require_integrator(top, scene, &IntegratorInfo::edits, "the scene has blades");
   if (scene.relaxation.enabled) top.at("relaxation").fail("false, because the scene has blades");
   const std::vector<Reader> bodies = top.at("bodies").items("a list of bodies");
@@ -74,7 +108,7 @@ void check_blades(const Reader& top, const Scene& scene) {
     if (cuts_by_force(scene) && b.model.substeps > 1)
       bodies[i].at("model").at("substeps").fail("1, because the scene has a blade that cuts by force, in every step");
     const ElementInfo& info = element_info(b.element);
-    if (b.has_lattice() || info.splits) continue;
+    if (b.has_lattice() || info.splits || parts_along_faces(scene)) continue;
     bodies[i].at("element").fail(fmt::format("{}, because the scene has blades (a mesh of {} cannot be cut)",
                                              elements_with([](const ElementInfo& e) { return e.splits; }), info.cells));
   }

@@ -22,8 +22,9 @@ void check_tearing(const Reader& top, const Scene& scene) {
         field.fail("no toughness here: only tetrahedra of a volume mesh (\"mesh\") or of a sheet (\"thickness\") tear");
       require_integrator(top, scene, &IntegratorInfo::edits, "a material has a toughness");
       if (scene.relaxation.enabled) top.at("relaxation").fail("false, because a material has a toughness");
-      if (!scene.blades.empty())
-        top.at("blades").fail("no blades, or one that cuts \"by-force\", because a material has a toughness");
+      if (!scene.blades.empty() && !parts_along_faces(scene))
+        top.at("blades").fail(
+            "no blades, or blades that cut \"by-force\" or with the method \"separation\", because a material has a toughness");
     }
   }
 }

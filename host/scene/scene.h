@@ -97,11 +97,12 @@ struct Body {
   std::string name;
   std::filesystem::path surface;  ///< triangle mesh to be filled with a lattice; empty if `mesh` is given
   std::shared_ptr<const TriangleMesh> surface_in_memory;  ///< set in code: instead of the file, which names it in messages
-  std::filesystem::path mesh;              ///< tetrahedral (or hexahedral) volume mesh; empty if `surface` is given
-  double scale = 1;                        ///< applied to the file's coordinates first
-  Vec3d translate{};                       ///< [m], after scaling
-  LatticeSpec lattice;                     ///< used with `surface`
-  double thickness = 0;                    ///< > 0: the `surface` is a sheet of this thickness, without a lattice [m]
+  std::filesystem::path mesh;  ///< tetrahedral (or hexahedral) volume mesh; empty if `surface` is given
+  double scale = 1;            ///< applied to the file's coordinates first
+  Vec3d translate{};           ///< [m], after scaling
+  LatticeSpec lattice;         ///< used with `surface`
+  double thickness = 0;        ///< > 0: the `surface` is a sheet of this thickness, without a lattice [m]
+  bool plain = false;          ///< a lattice becomes a volume mesh of its cells, whose surface is theirs: where blades separate
   ElementKind element = usual_element(8);  ///< of lattices
   DeformationModel model;
   Material material;
@@ -174,6 +175,8 @@ struct Scene {
 Scene load_scene(const std::filesystem::path& file);
 /// Returns true if a blade of the scene cuts by force: its materials' toughness then belongs to blades, and nothing tears.
 bool cuts_by_force(const Scene& scene);
+/// Returns true if the scene's blades part bodies along the faces of their elements, as do then all cuts of a program.
+bool parts_along_faces(const Scene& scene);
 /// The same from text; `file` is used in messages and to resolve relative paths.
 Scene parse_scene(const std::string& text, const std::filesystem::path& file);
 /// The text of a scene file: parse_scene(scene_to_json(s), s.file) gives the same scene, moduli to the last bit.

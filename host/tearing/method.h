@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cutting/blade/blade.h"
+#include "cutting/topology/cut_cell.h"
 #include "model/elements/body_mesh.h"
 #include "tearing/breaking.h"
 
@@ -84,20 +85,45 @@ struct SeparationOptions {
 MethodResult separate_crossed(const ElementMesh& mesh, std::span<const SweepTriangle> sweep,
                               const SeparationOptions& options = {});
 
-/// A face of a tetrahedron, kTetFaces[face] (cut_cell.h).
+/// Corners of the faces of an element, counter-clockwise from outside, and of its edges: hexahedra with corners in bit order,
+/// their faces in the order of lattice_cell_shape().
+template <std::size_t Corners>
+struct ElementShape;
+template <>
+struct ElementShape<4> {
+  static constexpr const auto& faces = kTetFaces;
+  static constexpr const auto& edges = kTetEdges;
+};
+template <>
+struct ElementShape<8> {
+  static constexpr std::array<std::array<int, 4>, 6> faces{
+      {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
+  static constexpr std::array<std::array<int, 2>, 12> edges{
+      {{0, 1}, {2, 3}, {4, 5}, {6, 7}, {0, 2}, {1, 3}, {4, 6}, {5, 7}, {0, 4}, {1, 5}, {2, 6}, {3, 7}}};
+};
+
+/// A face of an element: ElementShape::faces[face], of a tetrahedron kTetFaces[face] (cut_cell.h).
 struct TetFace {
   std::int32_t tet = 0;
   std::int8_t face = 0;
   friend bool operator==(const TetFace&, const TetFace&) = default;
 };
-/// The face across which another tetrahedron lies, for each tetrahedron and face; tet -1 on the boundary.
-std::vector<std::array<TetFace, 4>> tet_neighbors(const std::vector<std::array<std::int32_t, 4>>& tets);
+/// The face across which another element lies, for each element and face; tet -1 on the boundary.
+std::vector<std::array<TetFace, 4>> element_neighbors(const std::vector<std::array<std::int32_t, 4>>& tets);
+std::vector<std::array<TetFace, 6>> element_neighbors(const std::vector<std::array<std::int32_t, 8>>& hexes);
 
-/// Opens a mesh at faces: `mesh` with `cut` faces ([tets], bit f; both sides). Tetrahedra at a node that no uncut face
+/// Opens a mesh at faces: `mesh` with `cut` faces ([elements], bit f; both sides). Elements at a node that no uncut face
 /// connects there get separate nodes. If they are connected only by an edge, the faces of the smaller part at one end of the
 /// edge are cut as well and added to `cut`. Nodes without cut faces (and not in `touched`) do not change. Returns node_from
 /// of the current nodes.
+///
+/// `wait` (may be null): cut faces that may stay closed at the end of a cut, where both sides still share the nodes of an edge:
+/// cutting further faces there would lead away from the cut. Those that do are taken out of `cut` and left in `wait`.
 std::vector<std::int32_t> part_at_faces(std::vector<std::array<std::int32_t, 4>>& tets, std::size_t nodes,
-                                        std::vector<std::uint8_t>& cut, std::span<const std::int32_t> touched = {});
+                                        std::vector<std::uint8_t>& cut, std::span<const std::int32_t> touched = {},
+                                        std::vector<TetFace>* wait = nullptr);
+std::vector<std::int32_t> part_at_faces(std::vector<std::array<std::int32_t, 8>>& hexes, std::size_t nodes,
+                                        std::vector<std::uint8_t>& cut, std::span<const std::int32_t> touched = {},
+                                        std::vector<TetFace>* wait = nullptr);
 
 }  // namespace pliant

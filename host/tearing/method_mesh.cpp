@@ -169,24 +169,31 @@ MeshFigures figures_of(const ElementMesh& mesh) {
   return f;
 }
 
-std::vector<std::array<TetFace, 4>> tet_neighbors(const std::vector<std::array<std::int32_t, 4>>& tets) {
+namespace {
+
+template <std::size_t Corners>
+auto neighbors_of(const std::vector<std::array<std::int32_t, Corners>>& elements) {
+  using Shape = ElementShape<Corners>;
+  constexpr std::size_t kFaces = Shape::faces.size(), kNodes = Shape::faces[0].size();
   struct Side {
-    std::array<std::int32_t, 3> key;
+    std::array<std::int32_t, kNodes> key;
     TetFace at;
   };
   std::vector<Side> sides;
-  sides.reserve(4 * tets.size());
-  for (std::size_t t = 0; t < tets.size(); ++t) {
-    for (std::size_t f = 0; f < 4; ++f) {
-      std::array<std::int32_t, 3> key{};
-      for (std::size_t k = 0; k < 3; ++k) key[k] = tets[t][kTetFaces[f][k]];
+  sides.reserve(kFaces * elements.size());
+  for (std::size_t e = 0; e < elements.size(); ++e) {
+    for (std::size_t f = 0; f < kFaces; ++f) {
+      std::array<std::int32_t, kNodes> key{};
+      for (std::size_t k = 0; k < kNodes; ++k) key[k] = elements[e][static_cast<std::size_t>(Shape::faces[f][k])];
       std::sort(key.begin(), key.end());
-      sides.push_back({key, {static_cast<std::int32_t>(t), static_cast<std::int8_t>(f)}});
+      sides.push_back({key, {static_cast<std::int32_t>(e), static_cast<std::int8_t>(f)}});
     }
   }
   std::sort(sides.begin(), sides.end(),
             [](const Side& a, const Side& b) { return a.key != b.key ? a.key < b.key : a.at.tet < b.at.tet; });
-  std::vector<std::array<TetFace, 4>> out(tets.size(), {TetFace{-1, 0}, {-1, 0}, {-1, 0}, {-1, 0}});
+  std::array<TetFace, kFaces> alone;
+  alone.fill({-1, 0});
+  std::vector<std::array<TetFace, kFaces>> out(elements.size(), alone);
   for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
     if (sides[i].key != sides[i + 1].key) continue;
     const TetFace a = sides[i].at, b = sides[i + 1].at;
@@ -195,6 +202,16 @@ std::vector<std::array<TetFace, 4>> tet_neighbors(const std::vector<std::array<s
     ++i;
   }
   return out;
+}
+
+}  // namespace
+
+std::vector<std::array<TetFace, 4>> element_neighbors(const std::vector<std::array<std::int32_t, 4>>& tets) {
+  return neighbors_of(tets);
+}
+
+std::vector<std::array<TetFace, 6>> element_neighbors(const std::vector<std::array<std::int32_t, 8>>& hexes) {
+  return neighbors_of(hexes);
 }
 
 }  // namespace pliant

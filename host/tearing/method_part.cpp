@@ -1,4 +1,5 @@
-// Opens a mesh of tetrahedra at faces: splits nodes, and separates parts that are connected only by a point or an edge.
+// Opens a mesh of tetrahedra or hexahedra at faces: splits nodes, and separates parts that are connected only by a point or an
+// edge.
 #include <algorithm>
 #include <map>
 #include <set>
@@ -10,49 +11,87 @@
 namespace pliant {
 namespace {
 
-using Tets = std::vector<std::array<std::int32_t, 4>>;
-
+/// `Cell`: the corners of an element.
+template <class Cell>
 class Parting {
  public:
-  Parting(Tets& tets, std::size_t nodes, std::vector<std::uint8_t>& cut, std::span<const std::int32_t> touched)
-      : tets_(tets), original_(tets), nodes_(nodes), cut_(cut), extra_(touched), neighbors_(tet_neighbors(tets)) {
+  using Cells = std::vector<Cell>;
+  using Shape = ElementShape<std::tuple_size_v<Cell>>;
+
+  Parting(Cells& tets, std::size_t nodes, std::vector<std::uint8_t>& cut, std::span<const std::int32_t> touched)
+      : tets_(tets), original_(tets), nodes_(nodes), cut_(cut), extra_(touched), neighbors_(element_neighbors(tets)) {
     offset_.assign(nodes + 1, 0);
     for (const auto& tet : tets) {
       for (const std::int32_t n : tet) ++offset_[n + 1];
     }
     for (std::size_t n = 0; n < nodes; ++n) offset_[n + 1] += offset_[n];
-    at_node_.resize(4 * tets.size());
+    at_node_.resize(std::tuple_size_v<Cell> * tets.size());
     std::vector<std::int32_t> next(offset_.begin(), offset_.end() - 1);
     for (std::size_t t = 0; t < tets.size(); ++t) {
       for (const std::int32_t n : tets[t]) at_node_[next[n]++] = static_cast<std::int32_t>(t);
     }
     for (std::size_t t = 0; t < tets.size(); ++t) {  // both sides of a face say the same
-      for (int f = 0; f < 4; ++f) {
+      for (int f = 0; f < kFaces; ++f) {
         if (cut_[t] >> f & 1) open({static_cast<std::int32_t>(t), static_cast<std::int8_t>(f)});
       }
     }
   }
 
-  std::vector<std::int32_t> run() {
-    constexpr int kRounds = 50;  // each opens further faces, of which there are finitely many; two or three are usual
+  /// `wait` (may be null): cut faces that may stay closed; those that do are left in it.
+  std::vector<std::int32_t> run(std::vector<TetFace>* wait) {
+    if (wait != nullptr) may_wait_ = std::move(*wait);
+    const std::size_t rounds = 50 + may_wait_.size();  // each opens or closes some of finitely many; two or three are usual
     std::vector<std::int32_t> from = split();
-    for (int round = 0; round < kRounds && part_edges(); ++round) from = split();
+    for (std::size_t round = 0; round < rounds && part_edges(); ++round) from = split();
+    if (wait != nullptr) *wait = std::move(closed_);
     return from;
   }
 
  private:
+  static constexpr int kFaces = static_cast<int>(Shape::faces.size());
+
+  static bool has(const Cell& corners, int face, std::int32_t node) {
+    const auto& f = Shape::faces[static_cast<std::size_t>(face)];
+    return std::any_of(f.begin(), f.end(), [&](int k) { return corners[static_cast<std::size_t>(k)] == node; });
+  }
+
   void open(TetFace face) {
     cut_[face.tet] |= static_cast<std::uint8_t>(1 << face.face);
     const TetFace other = neighbors_[face.tet][face.face];
     if (other.tet >= 0) cut_[other.tet] |= static_cast<std::uint8_t>(1 << other.face);
   }
 
+  void close(TetFace face) {
+    cut_[face.tet] &= static_cast<std::uint8_t>(~(1 << face.face));
+    const TetFace other = neighbors_[face.tet][face.face];
+    if (other.tet >= 0) cut_[other.tet] &= static_cast<std::uint8_t>(~(1 << other.face));
+  }
+
+  using Edge = std::array<std::int32_t, 2>;
+
+  /// Whether a face has an edge. `around`: the elements of the edge.
+  [[nodiscard]] bool is_at(const TetFace& face, const Edge& edge, const std::vector<std::int32_t>& around) const {
+    return std::find(around.begin(), around.end(), face.tet) != around.end() && has(tets_[face.tet], face.face, edge[0]) &&
+           has(tets_[face.tet], face.face, edge[1]);
+  }
+
+  /// Closes the faces at an edge that may wait. Returns false if there is none.
+  bool close_at(const Edge& edge, const std::vector<std::int32_t>& around) {
+    const auto first = std::stable_partition(may_wait_.begin(), may_wait_.end(),
+                                             [&](const TetFace& face) { return !is_at(face, edge, around); });
+    if (first == may_wait_.end()) return false;
+    std::for_each(first, may_wait_.end(), [&](const TetFace& face) { close(face); });
+    closed_.insert(closed_.end(), first, may_wait_.end());
+    may_wait_.erase(first, may_wait_.end());
+    return true;
+  }
+
   [[nodiscard]] std::set<std::int32_t> touched_nodes() const {
     std::set<std::int32_t> touched(extra_.begin(), extra_.end());
     for (std::size_t t = 0; t < cut_.size(); ++t) {
-      for (int f = 0; f < 4 && cut_[t] != 0; ++f) {
+      for (int f = 0; f < kFaces && cut_[t] != 0; ++f) {
         if (!(cut_[t] >> f & 1)) continue;
-        for (const int k : kTetFaces[f]) touched.insert(original_[t][k]);
+        for (const int k : Shape::faces[f]) touched.insert(original_[t][k]);
       }
     }
     return touched;
@@ -72,9 +111,9 @@ class Parting {
       };
       DisjointSets sets(around.size());
       for (const std::int32_t t : around) {
-        for (int f = 0; f < 4; ++f) {
+        for (int f = 0; f < kFaces; ++f) {
           const std::int32_t other = neighbors_[t][f].tet;
-          if (original_[t][f] == n || other < 0 || (cut_[t] >> f & 1)) continue;
+          if (!has(original_[t], f, n) || other < 0 || (cut_[t] >> f & 1)) continue;
           sets.join(place(t), place(other));
         }
       }
@@ -89,45 +128,54 @@ class Parting {
     return from;
   }
 
-  /// Cuts faces so that no edge connects two fans of tetrahedra; returns false if there is none.
+  /// Cuts faces so that no edge connects two fans of elements, or closes those that may wait; returns false if there is none.
   bool part_edges() {
+    const std::map<Edge, std::vector<std::int32_t>> singular = singular_edges();
+    bool any = false;
+    for (const auto& [edge, around] : singular) any = free_fan(edge, around) || any;
+    if (any) return true;
+    for (const auto& [edge, around] : singular) any = close_at(edge, around) || any;
+    return any;
+  }
+
+  /// Edges with more than two triangles of the boundary, and the elements around each.
+  std::map<Edge, std::vector<std::int32_t>> singular_edges() const {
     // Edges of the boundary near the cut, by the nodes as they are parted now, and how many triangles use each.
-    std::map<std::array<std::int32_t, 2>, int> uses;
+    std::map<Edge, int> uses;
     std::set<std::int32_t> tets;
     for (const std::int32_t n : touched_) tets.insert(at_node_.begin() + offset_[n], at_node_.begin() + offset_[n + 1]);
     for (const std::int32_t t : tets) {
-      for (int f = 0; f < 4; ++f) {
+      for (int f = 0; f < kFaces; ++f) {
         if (neighbors_[t][f].tet >= 0 && !(cut_[t] >> f & 1)) continue;
-        for (int k = 0; k < 3; ++k) {
-          const std::int32_t a = tets_[t][kTetFaces[f][k]], b = tets_[t][kTetFaces[f][(k + 1) % 3]];
+        const auto& face = Shape::faces[f];
+        for (std::size_t k = 0; k < face.size(); ++k) {
+          const std::int32_t a = tets_[t][face[k]], b = tets_[t][face[(k + 1) % face.size()]];
           ++uses[{std::min(a, b), std::max(a, b)}];
         }
       }
     }
-    bool any = false;
-    std::map<std::array<std::int32_t, 2>, std::vector<std::int32_t>> singular;
+    std::map<Edge, std::vector<std::int32_t>> singular;
     for (const auto& [edge, count] : uses) {
       if (count > 2) singular[edge];
     }
-    if (singular.empty()) return false;
+    if (singular.empty()) return singular;
     for (const std::int32_t t : tets) {
-      for (const auto& [i, j] : kTetEdges) {
+      for (const auto& [i, j] : Shape::edges) {
         const std::int32_t a = tets_[t][i], b = tets_[t][j];
         const auto at = singular.find({std::min(a, b), std::max(a, b)});
         if (at != singular.end()) at->second.push_back(t);
       }
     }
-    for (const auto& [edge, around] : singular) any = free_fan(edge, around) || any;
-    return any;
+    return singular;
   }
 
   /// Give the smallest fan around an edge a node of its own at that end of the edge where fewer faces have to be cut.
-  bool free_fan(const std::array<std::int32_t, 2>& edge, const std::vector<std::int32_t>& around) {
+  bool free_fan(const Edge& edge, const std::vector<std::int32_t>& around) {
     DisjointSets sets(around.size());
     for (std::size_t i = 0; i < around.size(); ++i) {
-      for (int f = 0; f < 4; ++f) {
+      for (int f = 0; f < kFaces; ++f) {
         const std::int32_t t = around[i];
-        if (tets_[t][f] == edge[0] || tets_[t][f] == edge[1] || (cut_[t] >> f & 1)) continue;
+        if (!has(tets_[t], f, edge[0]) || !has(tets_[t], f, edge[1]) || (cut_[t] >> f & 1)) continue;
         const auto other = std::find(around.begin(), around.end(), neighbors_[t][f].tet);
         if (other != around.end()) sets.join(static_cast<std::int32_t>(i), static_cast<std::int32_t>(other - around.begin()));
       }
@@ -135,15 +183,18 @@ class Parting {
     std::map<std::int32_t, std::vector<std::int32_t>> fans;
     for (std::size_t i = 0; i < around.size(); ++i) fans[sets.find(static_cast<std::int32_t>(i))].push_back(around[i]);
     if (fans.size() < 2) return false;
+    // At the end of a cut both sides of it share the nodes of the edge, and no gap can open yet.
+    const auto waits = [&](const TetFace& face) { return is_at(face, edge, around); };
+    if (fans.size() == 2 && std::any_of(may_wait_.begin(), may_wait_.end(), waits)) return false;
     const auto& fan = std::min_element(fans.begin(), fans.end(), [](const auto& a, const auto& b) {
                         return a.second.size() < b.second.size();
                       })->second;
     std::array<std::vector<TetFace>, 2> faces;
     for (std::size_t end = 0; end < 2; ++end) {
       for (const std::int32_t t : fan) {
-        for (int f = 0; f < 4; ++f) {
+        for (int f = 0; f < kFaces; ++f) {
           const std::int32_t other = neighbors_[t][f].tet;
-          if (tets_[t][f] == edge[end] || other < 0 || (cut_[t] >> f & 1)) continue;
+          if (!has(tets_[t], f, edge[end]) || other < 0 || (cut_[t] >> f & 1)) continue;
           if (std::find(fan.begin(), fan.end(), other) == fan.end()) faces[end].push_back({t, static_cast<std::int8_t>(f)});
         }
       }
@@ -153,21 +204,29 @@ class Parting {
     return !fewer.empty();
   }
 
-  Tets& tets_;
-  const Tets original_;
+  Cells& tets_;
+  const Cells original_;
   std::size_t nodes_;
   std::vector<std::uint8_t>& cut_;
   std::span<const std::int32_t> extra_;
-  std::vector<std::array<TetFace, 4>> neighbors_;
+  std::vector<std::array<TetFace, Shape::faces.size()>> neighbors_;
   std::vector<std::int32_t> offset_, at_node_;
   std::set<std::int32_t> touched_;
+  std::vector<TetFace> may_wait_, closed_;
 };
 
 }  // namespace
 
-std::vector<std::int32_t> part_at_faces(Tets& tets, std::size_t nodes, std::vector<std::uint8_t>& cut,
-                                        std::span<const std::int32_t> touched) {
-  return Parting(tets, nodes, cut, touched).run();
+std::vector<std::int32_t> part_at_faces(std::vector<std::array<std::int32_t, 4>>& tets, std::size_t nodes,
+                                        std::vector<std::uint8_t>& cut, std::span<const std::int32_t> touched,
+                                        std::vector<TetFace>* wait) {
+  return Parting(tets, nodes, cut, touched).run(wait);
+}
+
+std::vector<std::int32_t> part_at_faces(std::vector<std::array<std::int32_t, 8>>& hexes, std::size_t nodes,
+                                        std::vector<std::uint8_t>& cut, std::span<const std::int32_t> touched,
+                                        std::vector<TetFace>* wait) {
+  return Parting(hexes, nodes, cut, touched).run(wait);
 }
 
 }  // namespace pliant

@@ -25,10 +25,16 @@ std::array<Vec3d, 4> corners(const std::vector<Vec3d>& x, const std::array<std::
   return {x[tet[0]], x[tet[1]], x[tet[2]], x[tet[3]]};
 }
 
-std::array<std::int32_t, 3> sorted_face(const std::array<std::int32_t, 4>& tet, std::size_t face) {
-  std::array<std::int32_t, 3> key{tet[kTetFaces[face][0]], tet[kTetFaces[face][1]], tet[kTetFaces[face][2]]};
+std::array<std::int32_t, 3> sorted(std::array<std::int32_t, 3> key) {
   std::sort(key.begin(), key.end());
   return key;
+}
+
+template <class Elements>
+std::vector<TetFace> flat_neighbors(const Elements& elements) {
+  std::vector<TetFace> out;
+  for (const auto& of_element : element_neighbors(elements)) out.insert(out.end(), of_element.begin(), of_element.end());
+  return out;
 }
 
 }  // namespace
@@ -36,22 +42,36 @@ std::array<std::int32_t, 3> sorted_face(const std::array<std::int32_t, 4>& tet, 
 TornBody::TornBody(std::shared_ptr<const BodyMesh> whole, std::vector<Material> material)
     : whole_(std::move(whole)),
       material_(std::move(material)),
-      neighbors_(tet_neighbors(whole_->tets)),
-      broken_(whole_->tets.size(), 0),
+      neighbors_(whole_->tets.empty() ? flat_neighbors(whole_->hexes) : flat_neighbors(whole_->tets)),
+      broken_(whole_->size(), 0),
+      waiting_(whole_->size(), 0),
       torn_(*whole_) {
-  std::map<std::array<std::int32_t, 3>, TetFace> outside;
-  for (std::size_t t = 0; t < neighbors_.size(); ++t) {
-    for (std::size_t f = 0; f < 4; ++f) {
-      if (neighbors_[t][f].tet >= 0) continue;
-      outside[sorted_face(whole_->tets[t], f)] = {static_cast<std::int32_t>(t), static_cast<std::int8_t>(f)};
+  std::map<std::array<std::int32_t, 3>, std::int32_t> outside;  // elements, by any three corners of an outer face
+  for (std::size_t i = 0; i < neighbors_.size(); ++i) {
+    if (neighbors_[i].tet >= 0) continue;
+    const std::size_t e = i / faces();
+    const std::span<const std::int32_t> corner = whole_->corners(e);
+    const std::span<const int> face = face_corners(i % faces());
+    for (std::size_t without = 0; without < (face.size() == 3 ? 1 : face.size()); ++without) {
+      std::array<std::int32_t, 3> key{};
+      for (std::size_t k = 0; k < 3; ++k) key[k] = corner[static_cast<std::size_t>(face[(without + k) % face.size()])];
+      outside[sorted(key)] = static_cast<std::int32_t>(e);
     }
   }
   for (const auto& triangle : whole_->triangles) {
-    std::array<std::int32_t, 3> key{};
-    for (std::size_t k = 0; k < 3; ++k) key[k] = whole_->surface_nodes[triangle[k]][0];
-    std::sort(key.begin(), key.end());
-    outside_.push_back(outside.at(key));
+    std::array<std::int32_t, 3> node{};
+    for (std::size_t k = 0; k < 3; ++k) node[k] = whole_->surface_nodes[triangle[k]][0];
+    Corners at{outside.at(sorted(node)), {}};
+    const std::span<const std::int32_t> corner = whole_->corners(static_cast<std::size_t>(at.element));
+    for (std::size_t k = 0; k < 3; ++k)
+      at.corner[k] = static_cast<std::int8_t>(std::find(corner.begin(), corner.end(), node[k]) - corner.begin());
+    outside_.push_back(at);
   }
+}
+
+std::span<const int> TornBody::face_corners(std::size_t face) const {
+  if (whole_->tets.empty()) return ElementShape<8>::faces[face];
+  return ElementShape<4>::faces[face];
 }
 
 /// The largest principal stress that a tetrahedron bears [Pa].
@@ -131,7 +151,7 @@ std::vector<TetFace> TornBody::faces_on(const Plane& plane, const std::vector<Ve
   for (const std::int32_t t : around[plane.node]) {
     if (!in_front(t)) continue;
     for (std::size_t f = 0; f < 4; ++f) {
-      const std::int32_t other = neighbors_[t][f].tet;
+      const std::int32_t other = neighbor(t, f).tet;
       if (torn_.tets[t][f] == plane.node || other < 0 || (broken_[t] >> f & 1) || in_front(other)) continue;
       if (plane.stress >= std::min(strength(t), strength(other))) faces.push_back({t, static_cast<std::int8_t>(f)});
     }
@@ -156,20 +176,11 @@ std::vector<TetFace> TornBody::parting_faces(const LongEdge& edge, double stretc
   return stress[1] > stress[0] ? faces[1] : faces[0];
 }
 
-void TornBody::mark(const TetFace& face, std::vector<std::uint8_t>& broken, bool on) const {
-  const TetFace& other = neighbors_[face.tet][face.face];
-  for (const TetFace& side : {face, other}) {
-    if (side.tet < 0) continue;
-    const auto bit = static_cast<std::uint8_t>(1 << side.face);
-    broken[side.tet] = static_cast<std::uint8_t>(on ? broken[side.tet] | bit : broken[side.tet] & ~bit);
-  }
-}
-
 std::vector<std::int32_t> TornBody::piece_at(std::int32_t tet, const std::vector<std::uint8_t>& broken) const {
   std::vector<std::int32_t> piece{tet};
   for (std::size_t i = 0; i < piece.size() && piece.size() < kLeastPiece; ++i) {
     for (std::size_t f = 0; f < 4; ++f) {
-      const TetFace& other = neighbors_[piece[i]][f];
+      const TetFace other = neighbor(piece[i], f);
       if (other.tet < 0 || (broken[piece[i]] >> f & 1) || (broken[other.tet] >> other.face & 1)) continue;
       if (std::find(piece.begin(), piece.end(), other.tet) == piece.end()) piece.push_back(other.tet);
     }
@@ -178,15 +189,15 @@ std::vector<std::int32_t> TornBody::piece_at(std::int32_t tet, const std::vector
 }
 
 std::vector<TetFace> TornBody::without_crumbs(std::vector<TetFace> faces, std::vector<std::uint8_t> broken) const {
-  for (const TetFace& face : faces) mark(face, broken, true);
+  for (const TetFace& face : faces) mark(broken, face);
   for (std::size_t i = 0; i < faces.size();) {
     const std::size_t here = piece_at(faces[i].tet, broken).size();
-    const std::size_t there = piece_at(neighbors_[faces[i].tet][faces[i].face].tet, broken).size();
+    const std::size_t there = piece_at(neighbor(faces[i].tet, static_cast<std::size_t>(faces[i].face)).tet, broken).size();
     if ((here < kLeastPiece) == (there < kLeastPiece)) {
       ++i;
       continue;
     }
-    mark(faces[i], broken, false);
+    mark(broken, faces[i], false);
     faces.erase(faces.begin() + static_cast<std::ptrdiff_t>(i));
     i = 0;  // what stays together now is larger
   }
@@ -194,10 +205,13 @@ std::vector<TetFace> TornBody::without_crumbs(std::vector<TetFace> faces, std::v
 }
 
 TornBody::Breaks TornBody::breaking_faces(const std::vector<Vec3d>& x, double stretch) const {
+  Breaks breaks;
+  if (whole_->tets.empty()) return breaks;
+  const std::vector<LongEdge> edges = long_edges(x, stretch);
+  const bool weak = std::any_of(material_.begin(), material_.end(), [](const Material& m) { return m.toughness > 0; });
+  if (edges.empty() && !weak) return breaks;
   const std::vector<NodeStress> stresses = node_stresses(x);
   const std::vector<Peak> found = peaks(stresses);
-  const std::vector<LongEdge> edges = long_edges(x, stretch);
-  Breaks breaks;
   if (found.empty() && edges.empty()) return breaks;
   Around around(x.size());
   for (std::size_t t = 0; t < torn_.tets.size(); ++t) {
@@ -207,7 +221,7 @@ TornBody::Breaks TornBody::breaking_faces(const std::vector<Vec3d>& x, double st
   std::vector<std::uint8_t> broken = broken_;  // with the faces taken so far
   const auto take = [&](const std::vector<TetFace>& faces, std::span<const std::int32_t> nodes) {
     breaks.faces.insert(breaks.faces.end(), faces.begin(), faces.end());
-    for (const TetFace& face : faces) mark(face, broken, true);
+    for (const TetFace& face : faces) mark(broken, face);
     for (const std::int32_t node : nodes) {
       for (const std::int32_t t : around[node]) {
         for (const std::int32_t n : torn_.tets[t]) waits[n] = 1;
@@ -230,21 +244,77 @@ TornBody::Breaks TornBody::breaking_faces(const std::vector<Vec3d>& x, double st
 }
 
 std::vector<std::int32_t> TornBody::tear(const std::vector<TetFace>& faces) {
-  const auto before = std::move(torn_.tets);
   for (const TetFace& face : faces) broken_[face.tet] |= static_cast<std::uint8_t>(1 << face.face);
+  return open(nullptr);
+}
+
+std::vector<std::int32_t> TornBody::part(const std::vector<TetFace>& faces) {
+  std::vector<TetFace> wait;
+  for (const TetFace& face : faces) waiting_[face.tet] |= static_cast<std::uint8_t>(1 << face.face);
+  for (std::size_t e = 0; e < waiting_.size(); ++e) {
+    for (std::size_t f = 0; f < this->faces(); ++f) {
+      const TetFace face{static_cast<std::int32_t>(e), static_cast<std::int8_t>(f)};
+      if ((waiting_[e] >> f & 1) == 0 || (broken_[e] >> f & 1) != 0) continue;
+      mark(broken_, face);
+      wait.push_back(face);
+    }
+  }
+  std::vector<std::int32_t> from = open(&wait);
+  set_waiting(wait);
+  return from;
+}
+
+void TornBody::set_waiting(const std::vector<TetFace>& faces) {
+  std::fill(waiting_.begin(), waiting_.end(), std::uint8_t{0});
+  for (const TetFace& face : faces) mark(waiting_, face);
+}
+
+void TornBody::mark(std::vector<std::uint8_t>& bits, const TetFace& face, bool on) const {
+  for (const TetFace& side : {face, neighbor(face.tet, static_cast<std::size_t>(face.face))}) {
+    if (side.tet < 0) continue;
+    const auto bit = static_cast<std::uint8_t>(1 << side.face);
+    bits[side.tet] = static_cast<std::uint8_t>(on ? bits[side.tet] | bit : bits[side.tet] & ~bit);
+  }
+}
+
+/// Gives the elements the nodes that the broken faces leave them.
+std::vector<std::int32_t> TornBody::open(std::vector<TetFace>* wait) {
+  const BodyElements before{.nodes = {}, .tets = std::move(torn_.tets), .hexes = std::move(torn_.hexes)};
   torn_.tets = whole_->tets;
-  const std::vector<std::int32_t> origin = part_at_faces(torn_.tets, whole_->nodes.size(), broken_);
+  torn_.hexes = whole_->hexes;
+  const std::vector<std::int32_t> origin = torn_.tets.empty()
+                                               ? part_at_faces(torn_.hexes, whole_->nodes.size(), broken_, {}, wait)
+                                               : part_at_faces(torn_.tets, whole_->nodes.size(), broken_, {}, wait);
   torn_.nodes.clear();
   for (const std::int32_t n : origin) torn_.nodes.push_back(whole_->nodes[n]);
   // A tear splits nodes and never joins them: all corners that share a node now shared one before, and any of them gives its
   // origin.
   std::vector<std::int32_t> from(origin.size(), -1);
-  for (std::size_t t = 0; t < before.size(); ++t) {
-    for (std::size_t a = 0; a < 4; ++a) from[torn_.tets[t][a]] = before[t][a];
+  for (std::size_t e = 0; e < torn_.size(); ++e) {
+    const std::span<const std::int32_t> now = torn_.corners(e), then = before.corners(e);
+    for (std::size_t a = 0; a < now.size(); ++a) from[now[a]] = then[a];
   }
   for (std::size_t n = 0; n < from.size(); ++n) from[n] = from[n] < 0 ? origin[n] : from[n];
   make_surface();
   return from;
+}
+
+/// The triangles of one side of a broken face. Both sides of a quadrilateral may share its four nodes; so that no edge has more
+/// than two triangles, they are divided along different diagonals.
+std::vector<TornBody::Corners> TornBody::triangles_of(const TetFace& face) const {
+  const std::span<const int> c = face_corners(static_cast<std::size_t>(face.face));
+  const auto triangle = [&](std::size_t i, std::size_t j, std::size_t k) {
+    return Corners{face.tet,
+                   {static_cast<std::int8_t>(c[i % c.size()]), static_cast<std::int8_t>(c[j % c.size()]),
+                    static_cast<std::int8_t>(c[k % c.size()])}};
+  };
+  if (c.size() == 3) return {triangle(0, 1, 2)};
+  const std::span<const std::int32_t> node = whole_->corners(static_cast<std::size_t>(face.tet));
+  std::size_t first = 0;  // the lowest node, the same on both sides
+  for (std::size_t k = 1; k < 4; ++k)
+    first = node[static_cast<std::size_t>(c[k])] < node[static_cast<std::size_t>(c[first])] ? k : first;
+  if (neighbor(face.tet, static_cast<std::size_t>(face.face)).tet < face.tet) ++first;
+  return {triangle(first, first + 1, first + 2), triangle(first, first + 2, first + 3)};
 }
 
 void TornBody::make_surface() {
@@ -256,18 +326,19 @@ void TornBody::make_surface() {
   torn_.triangle_middle.clear();
   std::map<std::int32_t, std::int32_t> vertex;  // of a node
   for (std::size_t v = 0; v < whole_->surface.size(); ++v) vertex[whole_->surface_nodes[v][0]] = static_cast<std::int32_t>(v);
-  const auto add = [&](const TetFace& face, bool cut) {
+  const auto add = [&](const Corners& at, bool cut) {
     std::array<std::int32_t, 3> triangle{};
     Vec3d middle{};
+    const std::span<const std::int32_t> nodes = torn_.corners(static_cast<std::size_t>(at.element));
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::int32_t n = torn_.tets[face.tet][kTetFaces[face.face][k]];
-      const auto [at, added] = vertex.emplace(n, static_cast<std::int32_t>(torn_.surface.size()));
+      const std::int32_t n = nodes[static_cast<std::size_t>(at.corner[k])];
+      const auto [place, added] = vertex.emplace(n, static_cast<std::int32_t>(torn_.surface.size()));
       if (added) {
         torn_.surface.push_back(torn_.nodes[n]);
         torn_.surface_nodes.push_back({n, n, n, n, n, n, n, n});
         torn_.surface_weights.push_back({1, 0, 0, 0, 0, 0, 0, 0});
       }
-      triangle[k] = at->second;
+      triangle[k] = place->second;
       middle = vec::add(middle, vec::mul(torn_.nodes[n], 1.0 / 3));
     }
     const double none = std::numeric_limits<double>::quiet_NaN();
@@ -275,10 +346,11 @@ void TornBody::make_surface() {
     torn_.triangle_cut.push_back(cut ? 1 : 0);
     torn_.triangle_middle.push_back(cut ? Vec3d{none, none, none} : middle);
   };
-  for (const TetFace& face : outside_) add(face, false);
-  for (std::size_t t = 0; t < broken_.size(); ++t) {
-    for (std::size_t f = 0; f < 4; ++f) {
-      if (broken_[t] >> f & 1) add({static_cast<std::int32_t>(t), static_cast<std::int8_t>(f)}, true);
+  for (const Corners& at : outside_) add(at, false);
+  for (std::size_t e = 0; e < broken_.size(); ++e) {
+    for (std::size_t f = 0; f < faces(); ++f) {
+      if ((broken_[e] >> f & 1) == 0) continue;
+      for (const Corners& at : triangles_of({static_cast<std::int32_t>(e), static_cast<std::int8_t>(f)})) add(at, true);
     }
   }
 }

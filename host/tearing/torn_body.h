@@ -1,10 +1,12 @@
-// A body of tetrahedra that tears along its faces without a blade, by a stress criterion and a limit on the stretch of edges.
+// A body that comes apart along the faces of its elements: tetrahedra, which tear by a stress criterion and a limit on the
+// stretch of edges, or hexahedra, which only a blade parts.
 #pragma once
 #include <Eigen/Dense>
 #include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -16,10 +18,10 @@ namespace pliant {
 
 class TornBody {
  public:
-  /// `whole` is a volume mesh of tetrahedra; `material` of each, of which those without toughness do not tear.
+  /// `whole` is a volume mesh; `material` of each element, of which those without toughness do not tear.
   TornBody(std::shared_ptr<const BodyMesh> whole, std::vector<Material> material);
 
-  /// Replaces the material of each tetrahedron.
+  /// Replaces the material of each element.
   void set_materials(std::vector<Material> material) { material_ = std::move(material); }
 
   struct Breaks {
@@ -40,11 +42,26 @@ class TornBody {
 
   /// Break faces. Returns, for each node now, the node before.
   std::vector<std::int32_t> tear(const std::vector<TetFace>& faces);
+  /// The same where a blade has passed: a face at the end of the cut that cannot come apart yet waits (part_at_faces), until
+  /// faces next to it break.
+  std::vector<std::int32_t> part(const std::vector<TetFace>& faces);
+  /// Faces that wait, [elements] bit f.
+  [[nodiscard]] const std::vector<std::uint8_t>& waiting() const { return waiting_; }
+  void set_waiting(const std::vector<TetFace>& faces);
 
   /// The body now. Elements keep their numbers, and so do nodes and vertices of the surface that were there at first; triangles
   /// of tears follow those of the surface and count as cut.
   [[nodiscard]] const BodyMesh& solid() const { return torn_; }
-  /// All broken faces, [tetrahedra] bit f.
+  /// Faces of an element.
+  [[nodiscard]] std::size_t faces() const { return whole_->tets.empty() ? 6 : 4; }
+  [[nodiscard]] std::span<const int> face_corners(std::size_t face) const;
+  /// The face across which another element of the whole body lies; tet -1: none.
+  [[nodiscard]] TetFace neighbor(std::int32_t element, std::size_t face) const {
+    return neighbors_[faces() * static_cast<std::size_t>(element) + face];
+  }
+  /// The whole body, whose nodes keep their numbers.
+  [[nodiscard]] const BodyMesh& whole() const { return *whole_; }
+  /// All broken faces, [elements] bit f.
   [[nodiscard]] const std::vector<std::uint8_t>& broken() const { return broken_; }
 
  private:
@@ -79,8 +96,6 @@ class TornBody {
   [[nodiscard]] static std::vector<Peak> peaks(const std::vector<NodeStress>& at);
   [[nodiscard]] std::vector<LongEdge> long_edges(const std::vector<Vec3d>& x, double stretch) const;
   [[nodiscard]] std::vector<TetFace> faces_on(const Plane& plane, const std::vector<Vec3d>& x, const Around& around) const;
-  /// Sets or clears the bits of both sides of a face.
-  void mark(const TetFace& face, std::vector<std::uint8_t>& broken, bool on) const;
   /// Tetrahedra that whole faces connect with `tet`, itself first, no more than about kLeastPiece.
   [[nodiscard]] std::vector<std::int32_t> piece_at(std::int32_t tet, const std::vector<std::uint8_t>& broken) const;
   /// The faces without those that would cut off fewer than kLeastPiece tetrahedra from more: a crumb carries no load, and a
@@ -88,13 +103,23 @@ class TornBody {
   [[nodiscard]] std::vector<TetFace> without_crumbs(std::vector<TetFace> faces, std::vector<std::uint8_t> broken) const;
   [[nodiscard]] std::vector<TetFace> parting_faces(const LongEdge& edge, double stretch, const std::vector<Vec3d>& x,
                                                    const std::vector<NodeStress>& at, const Around& around) const;
+  std::vector<std::int32_t> open(std::vector<TetFace>* wait);
+  /// Sets or clears the bits of both sides of a face.
+  void mark(std::vector<std::uint8_t>& bits, const TetFace& face, bool on = true) const;
   void make_surface();
 
   std::shared_ptr<const BodyMesh> whole_;
   std::vector<Material> material_;
-  std::vector<std::array<TetFace, 4>> neighbors_;
-  std::vector<TetFace> outside_;  ///< of each triangle of the whole surface
-  std::vector<std::uint8_t> broken_;
+  /// A triangle of the surface as corners of an element.
+  struct Corners {
+    std::int32_t element = 0;
+    std::array<std::int8_t, 3> corner{};
+  };
+  [[nodiscard]] std::vector<Corners> triangles_of(const TetFace& face) const;
+
+  std::vector<TetFace> neighbors_;  ///< [elements][faces]
+  std::vector<Corners> outside_;    ///< of each triangle of the whole surface
+  std::vector<std::uint8_t> broken_, waiting_;
   BodyMesh torn_;
 };
 

@@ -160,7 +160,7 @@ class PLIANT_API World {
   void change(const ChangeSpec& change);
   void parse_change(const std::string& text);  ///< the same from text, an entry of `changes` of a scene file without its time
 
-  /// Cuts, as CutResult describes. All throw Error: input, usage (non-finite numbers), diverged, device.
+  /// Cuts, as CutResult and BladeSpec::method say. All throw Error: input, usage (non-finite numbers), diverged, device.
   ///
   /// Cuts all bodies where these triangles [m] intersect them now. Degenerate triangles cut nothing.
   CutResult cut(const std::vector<std::array<Vec3d, 3>>& triangles);

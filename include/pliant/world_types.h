@@ -90,7 +90,7 @@ using GrabId = std::uint64_t;  ///< identifies a grab within one World; 0: none
 struct CutResult {
   bool pending = false;      ///< true if the worker will cut before its next batch of steps; the other members are then not set
   bool changed = false;      ///< true if elements were split; the next frame differs only if the surface changed
-  std::int64_t edges = 0;    ///< number of edges between nodes cut by this call
+  std::int64_t edges = 0;    ///< number of edges between nodes cut by this call, or of faces that it passed (separation)
   double seconds = 0;        ///< duration [s]
   std::int64_t in_part = 0;  ///< elements that still hold together where edges of theirs were cut: the blade ended in them
 };

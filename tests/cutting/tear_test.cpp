@@ -1,5 +1,4 @@
 // Tearing: the physical criterion alone parts the faces of a mesh while it runs.
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <map>
@@ -7,6 +6,7 @@
 
 #include "cutting/cut_bodies.h"
 #include "cutting/cut_scenes.h"
+#include "cutting/mesh_files.h"
 #include "geometry/disjoint_sets.h"
 #include "io/save.h"
 #include "solver/scenes.h"
@@ -21,19 +21,7 @@ using namespace cut_test;
 using test::error_of;
 
 /// A bar of 6 x 2 x 2 cells of 1 cm along x as a file.
-std::filesystem::path bar_file(const test::TempFolder& folder) {
-  const auto mesh = box_mesh(6, 2, 2, true);
-  std::string text = fmt::format("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n", mesh->rest.size());
-  for (std::size_t n = 0; n < mesh->rest.size(); ++n) {
-    text += fmt::format("{} {} {} {}\n", n + 1, 0.01 * mesh->rest[n][0], 0.01 * mesh->rest[n][1], 0.01 * mesh->rest[n][2]);
-  }
-  text += fmt::format("$EndNodes\n$Elements\n{}\n", mesh->cells.size());
-  for (std::size_t t = 0; t < mesh->cells.size(); ++t) {
-    const auto& c = mesh->cells[t];
-    text += fmt::format("{} 4 2 1 1 {} {} {} {}\n", t + 1, c[0] + 1, c[1] + 1, c[2] + 1, c[3] + 1);
-  }
-  return folder.write("bar.msh", text + "$EndElements\n");
-}
+std::filesystem::path bar_file(const test::TempFolder& folder) { return tet_box_file(folder, "bar.msh", 6, 2, 2); }
 
 /// Pulled along x to twice its length, with a weak slice in its middle.
 Scene bar_scene(const std::filesystem::path& file, double toughness) {
@@ -90,7 +78,7 @@ TEST_F(Tear, ABarPartsInItsWeakSliceAndNowhereElse) {
 
 /// Numbers of tetrahedra that whole faces connect.
 std::vector<int> piece_sizes(const BodyMesh& whole, const std::vector<TetFace>& faces) {
-  const auto neighbors = tet_neighbors(whole.tets);
+  const auto neighbors = element_neighbors(whole.tets);
   DisjointSets sets(whole.tets.size());
   for (std::size_t t = 0; t < whole.tets.size(); ++t) {
     for (std::size_t f = 0; f < 4; ++f) {

@@ -61,8 +61,8 @@ vec::Box box_of(const std::vector<Vec3d>& points) {
 
 }  // namespace
 
-BladeSweep::BladeSweep(const CutTopology& body, std::span<const Vec3d> x, RestEdges& edges, double edge)
-    : body_(body), x_(x), edges_(edges), edge_(edge) {
+BladeSweep::BladeSweep(const CutTopology& body, std::span<const Vec3d> x, const SweptPairs& pairs, double edge)
+    : body_(body), x_(x), pairs_(pairs), edge_(edge) {
   for (const Vec3d& p : x) {
     if (vec::finite(p)) reach_.extend(p);
   }
@@ -232,8 +232,22 @@ void BladeSweep::strip(const Row& a, const Row& b) {
   }
 }
 
+/// Whether a vertex lies in an open gap, not in material.
+bool BladeSweep::in_gap(const Vertex& v) const {
+  constexpr double kNone = 1e-9;
+  if (pairs_.gap.empty()) return false;
+  bool inside = true, open = true;
+  for (std::size_t a = 0; a < 4; ++a) {
+    const int corner = body_.mesh().shape->tets[v.carried.tet][a];
+    inside = inside && v.carried.weight[a] > kNone;
+    open = open && (v.carried.weight[a] <= kNone || pairs_.gap[body_.elements().nodes[v.carried.cell][corner]] > 0);
+  }
+  return open && !inside;
+}
+
 void BladeSweep::triangle(const Vertex* a, const Vertex* b, const Vertex* c) {
   if (a == nullptr || b == nullptr || c == nullptr) return;
+  if (in_gap(*a) && in_gap(*b) && in_gap(*c)) return;  // from side to side it would pass through what sticks out of them
   const std::array<Vec3d, 3> rest{a->carried.rest, b->carried.rest, c->carried.rest};
   if (rest[0] == rest[1] || rest[1] == rest[2] || rest[2] == rest[0]) return;
   const Vec3d u = vec::sub(rest[1], rest[0]), v = vec::sub(rest[2], rest[0]), w = vec::sub(rest[2], rest[1]);
@@ -244,15 +258,15 @@ void BladeSweep::triangle(const Vertex* a, const Vertex* b, const Vertex* c) {
       std::max({vec::norm(vec::sub(b->now, a->now)), vec::norm(vec::sub(c->now, a->now)), vec::norm(vec::sub(c->now, b->now))});
   const Vec3d normal = vec::cross(u, v);
   const double area2 = vec::dot(normal, normal);
-  edges_.crossed(rest, [&](const NodePair& pair, double t) {
+  pairs_.between.crossed(rest, [&](const NodePair& pair, double t) {
     if (crossed_.contains(pair) || body_.edges().contains(pair)) return;
     // A triangle between parts that have come near each other is wrong at rest: there the blade is not where the edge is.
-    const Vec3d at = vec::sub(between(body_.mesh().rest[pair[0]], body_.mesh().rest[pair[1]], t), rest[0]);
+    const Vec3d at = vec::sub(between(pairs_.rest[pair[0]], pairs_.rest[pair[1]], t), rest[0]);
     const double s = area2 > 0 ? std::clamp(vec::dot(vec::cross(at, v), normal) / area2, 0.0, 1.0) : 0.5;
     const double r = area2 > 0 ? std::clamp(vec::dot(vec::cross(u, at), normal) / area2, 0.0, 1.0) : 0.5;
     const Vec3d blade =
         vec::add(a->now, vec::add(vec::mul(vec::sub(b->now, a->now), s), vec::mul(vec::sub(c->now, a->now), r)));
-    const Vec3d edge = between(x_[pair[0]], x_[pair[1]], t);
+    const Vec3d edge = between(pairs_.now[pair[0]], pairs_.now[pair[1]], t);
     if (vec::norm(vec::sub(blade, edge)) > edge_ + 0.5 * size) return;
     crossed_.emplace(pair, t);
   });
@@ -274,7 +288,7 @@ void BladeSweep::keep(BladeTrace& front, const Row& last) const {
 
 /// The nearest of some real nodes: what is far off moves with its part of the body closely enough.
 std::int32_t BladeSweep::nearest_node(const Vec3d& p) const {
-  const std::size_t nodes = body_.mesh().rest.size(), stride = nodes / kFarNodes + 1;
+  const std::size_t nodes = pairs_.carriers, stride = nodes / kFarNodes + 1;
   std::int32_t best = -1;
   double distance2 = HUGE_VAL;
   for (std::size_t n = 0; n < nodes; n += stride) {

@@ -30,10 +30,22 @@ struct BladeTrace {
 
 inline constexpr int kMostLevels = 30;  ///< limit on the subdivision of a blade, which may be 2^29 edges long
 
+/// Pairs of points of a body that a blade may come between: by default the ends of its edges.
+struct SweptPairs {
+  RestEdges& between;
+  std::span<const Vec3d> rest, now;  ///< [points] at rest, and where they are [m]
+  std::size_t carriers = 0;          ///< the nodes below this one keep their numbers when the body is cut
+  /// Of each node how far others are that were the same node before faces opened, 0 where none was [m]; empty: nowhere. A sweep
+  /// in such a gap crosses nothing.
+  std::span<const double> gap = {};
+};
+
 class BladeSweep {
  public:
   /// `x` [m]: current positions of all nodes of the body's elements. `edge` [m]: mean undeformed edge of a cell.
-  BladeSweep(const CutTopology& body, std::span<const Vec3d> x, RestEdges& edges, double edge);
+  BladeSweep(const CutTopology& body, std::span<const Vec3d> x, RestEdges& edges, double edge)
+      : BladeSweep(body, x, SweptPairs{edges, body.mesh().rest, x, body.mesh().rest.size()}, edge) {}
+  BladeSweep(const CutTopology& body, std::span<const Vec3d> x, const SweptPairs& pairs, double edge);
 
   /// Returns whether a blade in this box [m] is near enough to the body to be followed.
   [[nodiscard]] bool reaches(const vec::Box& box) const { return reach_.overlaps(box); }
@@ -45,7 +57,7 @@ class BladeSweep {
   /// begins where `from` says.
   std::vector<MaterialPoint> advance(std::span<const MaterialPoint> carried, std::span<const Vec3d> from,
                                      std::span<const Vec3d> until);
-  /// Edges crossed so far that are not cut yet. An edge crossed several times is cut at the first crossing.
+  /// Pairs crossed so far, without edges that are cut already. An edge crossed several times is cut at the first crossing.
   [[nodiscard]] const CutEdges& crossed() const { return crossed_; }
 
  private:
@@ -66,6 +78,7 @@ class BladeSweep {
   };
   [[nodiscard]] Row stored(const BladeTrace& front) const;
   void strip(const Row& a, const Row& b);
+  [[nodiscard]] bool in_gap(const Vertex& v) const;
   void triangle(const Vertex* a, const Vertex* b, const Vertex* c);
   [[nodiscard]] std::array<std::int64_t, 2> range(const BladeTrace& front, const BladeSegment& to, int levels) const;
   [[nodiscard]] Vertex vertex(const Vec3d& p, InverseMap& map) const;
@@ -75,7 +88,7 @@ class BladeSweep {
 
   const CutTopology& body_;
   std::span<const Vec3d> x_;
-  RestEdges& edges_;
+  SweptPairs pairs_;
   double edge_;
   vec::Box reach_;
   CutEdges crossed_;

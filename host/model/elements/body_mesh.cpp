@@ -64,6 +64,24 @@ void from_lattice(const Body& body, BodyMesh& solid, SurfaceReport& report) {
   solid.cells = std::move(lattice.cells);
 }
 
+/// Boundary triangles over the nodes they use.
+void surface_from_boundary(const VolumeMesh& mesh, BodyMesh& solid) {
+  solid.triangles = boundary_triangles(mesh);
+  std::vector<std::int32_t> vertex(mesh.vertices.size(), -1);
+  for (auto& triangle : solid.triangles) {
+    for (std::int32_t& v : triangle) {
+      if (vertex[v] < 0) {
+        vertex[v] = static_cast<std::int32_t>(solid.surface.size());
+        solid.surface.push_back(mesh.vertices[v]);
+        solid.surface_nodes.push_back({v, v, v, v, v, v, v, v});
+        solid.surface_weights.push_back({1, 0, 0, 0, 0, 0, 0, 0});
+      }
+      v = vertex[v];
+    }
+  }
+  solid.surface_volume = signed_volume({solid.surface, solid.triangles});
+}
+
 void from_mesh(const Body& body, BodyMesh& solid, SurfaceReport& report) {
   const VolumeMesh mesh = body.thickness > 0 ? thicken(surface_of(body, report), body.thickness, body.surface.string())
                                              : read_volume(body.mesh, body.scale, body.translate);
@@ -87,21 +105,24 @@ void from_mesh(const Body& body, BodyMesh& solid, SurfaceReport& report) {
     solid.hexes.push_back(corners);
   }
   solid.fill.assign(solid.tets.size() + solid.hexes.size(), 1.0);
-  // Surface: boundary triangles over the nodes they use.
-  solid.triangles = boundary_triangles(mesh);
-  std::vector<std::int32_t> vertex(mesh.vertices.size(), -1);
-  for (auto& triangle : solid.triangles) {
-    for (std::int32_t& v : triangle) {
-      if (vertex[v] < 0) {
-        vertex[v] = static_cast<std::int32_t>(solid.surface.size());
-        solid.surface.push_back(mesh.vertices[v]);
-        solid.surface_nodes.push_back({v, v, v, v, v, v, v, v});
-        solid.surface_weights.push_back({1, 0, 0, 0, 0, 0, 0, 0});
-      }
-      v = vertex[v];
-    }
+  surface_from_boundary(mesh, solid);
+}
+
+/// The cells of a lattice alone. What they enclose is the body now, though some are filled in part only.
+void forget_lattice(BodyMesh& solid) {
+  VolumeMesh mesh{solid.nodes, solid.tets, {}};
+  for (const auto& hex : solid.hexes) {
+    std::array<std::int32_t, 8> corners{};
+    for (int a = 0; a < 8; ++a) corners[a] = hex[kVtkFromBits[a]];
+    mesh.hexes.push_back(corners);
   }
-  solid.surface_volume = signed_volume({solid.surface, solid.triangles});
+  BodyMesh plain;
+  plain.nodes = std::move(solid.nodes);
+  plain.tets = std::move(solid.tets);
+  plain.hexes = std::move(solid.hexes);
+  plain.fill = std::move(solid.fill);
+  surface_from_boundary(mesh, plain);
+  solid = std::move(plain);
 }
 
 /// Copies inherit the partition of the uncut lattice's cells; the kind of a node follows from its elements.
@@ -170,6 +191,7 @@ BodyMesh make_body_mesh(const Body& body, SurfaceReport& report) {
   BodyMesh solid;
   if (body.has_lattice()) {
     from_lattice(body, solid, report);
+    if (body.plain) forget_lattice(solid);
   } else {
     from_mesh(body, solid, report);
   }

@@ -194,7 +194,7 @@ void BladeFronts::let_go(PressedBlade& blade, const Edge& edge, EditedBodies& bo
     if (kind_of(s) == FrontKind::ahead) set_kind(s, s.pressed > 0 ? FrontKind::held : FrontKind::none);
     if (kind_of(s) != FrontKind::held) continue;
     const auto b = static_cast<std::size_t>(s.body);
-    const Vec3d d = vec::sub(edge.x[i], front_place(bodies.cut(b).topology(), x_[b], s.point));
+    const Vec3d d = vec::sub(edge.x[i], front_place(bodies.topology(b), x_[b], s.point));
     const double gap = vec::dot(d, blade.normal) - s.advance;
     const double side = vec::norm(vec::sub(d, vec::mul(blade.normal, vec::dot(d, blade.normal))));
     const bool left =
@@ -211,8 +211,8 @@ void BladeFronts::give_way(PressedBlade& blade, const Edge& edge, EditedBodies& 
     });
     if (!cuts) continue;
     if (blade.first < 0) blade.first = edge.time;
-    sweep(blade, edge, bodies.cut(b), b, edges[b]);
-    bodies.cut(b).keep_allowed(run_.scene.bodies[b], edges[b]);
+    sweep(blade, edge, bodies, b, edges[b]);
+    bodies.keep_allowed(b, edges[b]);
   }
 }
 
@@ -269,9 +269,9 @@ struct BladeFronts::Sweep {
   }
 };
 
-void BladeFronts::sweep(PressedBlade& blade, const Edge& edge, BodyCut& body, std::size_t b, CutEdges& edges) const {
-  const Sweep all(blade, edge, body.topology(), x_[b], b);
-  BladeSweep blades(body.topology(), x_[b], body.rest_edges(), body.edge());
+void BladeFronts::sweep(PressedBlade& blade, const Edge& edge, EditedBodies& bodies, std::size_t b, CutEdges& edges) const {
+  const Sweep all(blade, edge, bodies.topology(b), x_[b], b);
+  BladeSweep blades = bodies.sweep(b, x_[b]);
   for (std::size_t i = 0; i < all.takes.size();) {
     std::size_t end = i;
     while (end < all.takes.size() && all.takes[end] != 0) ++end;
@@ -352,8 +352,7 @@ void BladeFronts::meet(PressedBlade& blade, const Edge& edge, EditedBodies& bodi
     if (b < 0) continue;
     const auto at = static_cast<std::size_t>(b);
     const Vec3d p = vec::add(edge.x[i], vec::mul(n, inside ? hits[i].behind : hits[i].ahead));
-    BodyCut& body = bodies.cut(at);
-    InverseMap map(body.topology(), x_[at], {p, p}, body.edge(), body.edge());
+    InverseMap map = bodies.inverse_map(at, x_[at], {p, p}, bodies.edge(at));
     const MaterialPoint point = map.find(p);
     if (point.cell < 0) continue;
     FrontSample& sample = blade.samples[i];
@@ -382,7 +381,7 @@ double BladeFronts::limit(const Blade& blade, const FrontSample& s, double lengt
   if (m.toughness == 0) return kNeverGives;
   const BreakingLaw law{blade.sharpness, s.zeta, m.toughness};
   if (kind_of(s) == FrontKind::held) {
-    const CutTopology& body = bodies.cut(b).topology();
+    const CutTopology& body = bodies.topology(b);
     const auto& corners = body.mesh().shape->tets[static_cast<std::size_t>(s.point.tet)];
     const auto& nodes = body.elements().nodes[static_cast<std::size_t>(s.point.cell)];
     std::array<Vec3d, 4> rest, now;

@@ -39,7 +39,7 @@ class BladeFronts {
   void turn(PressedBlade& blade, const Edge& edge) const;
   void let_go(PressedBlade& blade, const Edge& edge, EditedBodies& bodies) const;
   void give_way(PressedBlade& blade, const Edge& edge, EditedBodies& bodies, std::vector<CutEdges>& edges);
-  void sweep(PressedBlade& blade, const Edge& edge, BodyCut& body, std::size_t b, CutEdges& edges) const;
+  void sweep(PressedBlade& blade, const Edge& edge, EditedBodies& bodies, std::size_t b, CutEdges& edges) const;
   void meet(PressedBlade& blade, const Edge& edge, EditedBodies& bodies, const std::vector<Vec3d>& surface);
   static void weaken(PressedBlade& blade, FrontSample& sample, const Edge& edge);
   [[nodiscard]] double limit(const Blade& blade, const FrontSample& sample, double length, EditedBodies& bodies);

@@ -68,7 +68,7 @@ void TopologyEdits::move_fronts() {
   std::vector<CutEdges> edges = fronts_.update(all, u, next);
   for (const CutEdges& e : edges) report.edges += static_cast<std::int64_t>(e.size());
   report.search = clock.seconds();
-  if (report.edges > 0) make_cut(std::move(edges), std::move(u), report);
+  if (report.edges > 0) divide(std::move(edges), std::move(u), report);
   std::vector<std::string>& met = run_.state.blades.met;
   for (const auto& [name, blade] : run_.state.pressed) {
     const bool meets = std::any_of(blade.samples.begin(), blade.samples.end(),
@@ -84,6 +84,14 @@ const BladeTrace* TopologyEdits::front(const BladeMove& move, std::size_t body) 
   return found == blade->second.end() ? nullptr : &found->second;
 }
 
+/// Cuts edges, or opens the faces between pairs of elements.
+void TopologyEdits::divide(std::vector<CutEdges> crossed, std::vector<double> u, CutReport& report) {
+  if (!parts_along_faces(run_.scene)) return make_cut(std::move(crossed), std::move(u), report);
+  std::vector<std::vector<TetFace>> faces;
+  for (std::size_t b = 0; b < crossed.size(); ++b) faces.push_back(bodies().swept(b)->faces(crossed[b]));
+  part(faces, std::move(u), true, report);
+}
+
 /// Follows each blade along its motion, and cuts.
 CutReport TopologyEdits::run_blades(const std::vector<BladeMove>& moves, std::span<const SweepTriangle> triangles) {
   EditedBodies& all = cut_bodies();
@@ -96,9 +104,8 @@ CutReport TopologyEdits::run_blades(const std::vector<BladeMove>& moves, std::sp
   for (std::size_t b = 0; b < edges.size(); ++b) {
     const std::vector<Vec3d> x = run_.loaded.positions(u, b);
     if (!reached(b, x, moves, triangles)) continue;
-    BodyCut& body = all.cut(b);
-    edges[b] = crossed_edges(body.topology(), x, triangles);
-    BladeSweep sweep(body.topology(), x, body.rest_edges(), body.edge());
+    edges[b] = all.crossed(b, x, triangles);
+    BladeSweep sweep = all.sweep(b, x);
     for (const BladeMove& move : moves) {
       if (move.to.empty()) continue;
       const BladeTrace* known = front(move, b);
@@ -110,11 +117,11 @@ CutReport TopologyEdits::run_blades(const std::vector<BladeMove>& moves, std::sp
       if (!trace.points.empty()) traces[move.key][static_cast<std::int32_t>(b)] = std::move(trace);
     }
     edges[b].insert(sweep.crossed().begin(), sweep.crossed().end());
-    body.keep_allowed(run_.scene.bodies[b], edges[b]);
+    all.keep_allowed(b, edges[b]);
     report.edges += static_cast<std::int64_t>(edges[b].size());
   }
   report.search = clock.seconds();
-  if (report.edges > 0) make_cut(std::move(edges), std::move(u), report);
+  if (report.edges > 0) divide(std::move(edges), std::move(u), report);
   for (const BladeMove& move : moves) {
     // A blade that does not move, as when a batch is repeated, keeps its trace.
     if (!move.to.empty()) run_.state.blades.traces.erase(move.key);

@@ -17,7 +17,7 @@ struct BladePose {
 /// Result of a topology edit, and the time it took [s]. `surface` is the time that the model waited for its surface, `step`
 /// the time to determine the new automatic step.
 struct CutReport {
-  std::int64_t edges = 0;    ///< number of edges cut
+  std::int64_t edges = 0;    ///< number of edges cut, or of faces passed by a blade that separates
   std::int64_t in_part = 0;  ///< cells with one of these edges that still hold together there (CutTopology::cut_in_part)
   bool changed = false;      ///< true if elements were split
   double search = 0, topology = 0, surface = 0, model = 0, upload = 0, step = 0;

@@ -110,11 +110,16 @@ bool tears(const Body& body) {
                                                     [](const Inclusion& i) { return i.material.toughness > 0; });
 }
 
-/// Returns the material of each element, as build_model assigns it.
-std::vector<Material> materials_of(const Body& body, const BodyMesh& solid) {
+/// Returns the material of each element, as build_model assigns it. In a scene in which nothing tears by itself none has a
+/// toughness: it belongs to the blades.
+std::vector<Material> materials_of(const Scene& scene, const Body& body, const BodyMesh& solid) {
   const ElementMaterials materials = element_materials(body, solid);
+  const bool tear = EditedBodies::tears(scene);
   std::vector<Material> out;
-  for (std::size_t e = 0; e < solid.size(); ++e) out.push_back(material_of(body, materials, e));
+  for (std::size_t e = 0; e < solid.size(); ++e) {
+    out.push_back(material_of(body, materials, e));
+    if (!tear) out.back().toughness = 0;
+  }
   return out;
 }
 
@@ -128,8 +133,9 @@ bool EditedBodies::tears(const Scene& scene) {
   return !scene.solver.enabled && !cuts_by_force(scene) && std::any_of(scene.bodies.begin(), scene.bodies.end(), pliant::tears);
 }
 
-EditedBodies::EditedBodies(const Scene& scene) : scene_(scene), cuts_(scene.bodies.size()), torn_(scene.bodies.size()) {
-  const bool torn = tears(scene);
+EditedBodies::EditedBodies(const Scene& scene)
+    : scene_(scene), cuts_(scene.bodies.size()), torn_(scene.bodies.size()), swept_(scene.bodies.size()) {
+  const bool parted = parts_along_faces(scene), torn = parted || tears(scene);
   for (BodyMesh& solid : make_body_meshes(scene)) {
     const std::size_t b = uncut_.size();
     if (!torn) {
@@ -137,22 +143,53 @@ EditedBodies::EditedBodies(const Scene& scene) : scene_(scene), cuts_(scene.bodi
       solid.uncut_order = std::make_shared<const NodeOrder>(node_order(solid));
     }
     uncut_.push_back(std::make_shared<const BodyMesh>(std::move(solid)));
-    if (torn && pliant::tears(scene.bodies[b])) make_torn(b);
+    if (parted || (torn && pliant::tears(scene.bodies[b]))) make_torn(b);
   }
 }
 
 void EditedBodies::make_torn(std::size_t b) {
   const Body& body = scene_.bodies[b];
-  if (!uncut_[b]->lattice_nodes.empty() || uncut_[b]->tets.empty()) {
+  const bool stress = tears(scene_) && pliant::tears(body);
+  if (!uncut_[b]->lattice_nodes.empty() || (stress && uncut_[b]->tets.empty())) {
+    const char* const why = parts_along_faces(scene_) ? "shall be parted along its faces" : "has a material with a toughness";
     throw Error(ErrorCode::bad_input,
-                "body '" + body.name + "' has a material with a toughness; only volume meshes of tetrahedra (\"mesh\") tear");
+                fmt::format("body '{}' {}; only volume meshes of tetrahedra (\"mesh\") tear or part", body.name, why));
   }
-  torn_[b] = std::make_unique<TornBody>(uncut_[b], materials_of(body, *uncut_[b]));
+  swept_[b].reset();
+  torn_[b] = std::make_unique<TornBody>(uncut_[b], materials_of(scene_, body, *uncut_[b]));
+  if (parts_along_faces(scene_)) swept_[b] = std::make_unique<SweptFaces>(*torn_[b]);
+}
+
+std::vector<std::int32_t> EditedBodies::part(std::size_t b, const std::vector<TetFace>& faces, bool by_blade) {
+  const std::vector<std::uint8_t> before = torn_[b]->broken();
+  std::vector<std::int32_t> from = by_blade ? torn_[b]->part(faces) : torn_[b]->tear(faces);
+  if (before == torn_[b]->broken()) return {};
+  if (swept_[b] != nullptr) swept_[b]->follow();
+  return from;
+}
+
+BladeSweep EditedBodies::sweep(std::size_t b, const std::vector<Vec3d>& x) {
+  if (swept_[b] != nullptr) return swept_[b]->sweep(x);
+  BodyCut& body = cut(b);
+  return {body.topology(), x, body.rest_edges(), body.edge()};
+}
+
+CutEdges EditedBodies::crossed(std::size_t b, const std::vector<Vec3d>& x, std::span<const SweepTriangle> triangles) {
+  return swept_[b] != nullptr ? swept_[b]->crossed(x, triangles) : crossed_edges(cut(b).topology(), x, triangles);
+}
+
+void EditedBodies::keep_allowed(std::size_t b, CutEdges& crossed) {
+  if (swept_[b] != nullptr) return swept_[b]->keep_joined(crossed);
+  cut(b).keep_allowed(scene_.bodies[b], crossed);
+}
+
+InverseMap EditedBodies::inverse_map(std::size_t b, const std::vector<Vec3d>& x, const vec::Box& region, double reach) {
+  return {topology(b), x, region, edge(b), reach};
 }
 
 void EditedBodies::follow_materials() {
   for (std::size_t b = 0; b < size(); ++b) {
-    if (torn_[b] != nullptr) torn_[b]->set_materials(materials_of(scene_.bodies[b], *uncut_[b]));
+    if (torn_[b] != nullptr) torn_[b]->set_materials(materials_of(scene_, scene_.bodies[b], *uncut_[b]));
   }
 }
 
@@ -173,6 +210,7 @@ std::vector<const BodyMesh*> EditedBodies::solids() const {
 }
 
 void EditedBodies::replay(const RunState& state) {
+  if (parts_along_faces(scene_) && !state.cuts.empty()) refuse_edits("cuts");
   for (const CutRecord& record : state.cuts) {
     if (record.body < 0 || static_cast<std::size_t>(record.body) >= size()) refuse_edits("cuts");
     BodyCut& body = cut(static_cast<std::size_t>(record.body));
@@ -185,19 +223,22 @@ void EditedBodies::replay(const RunState& state) {
 }
 
 void EditedBodies::replay_tears(const RunState& state) {
-  std::vector<std::vector<TetFace>> faces(size());
+  std::vector<std::vector<TetFace>> faces(size()), waiting(size());
   for (const TearRecord& record : state.tears) {
     const auto b = static_cast<std::size_t>(record.body);
     const bool known = record.body >= 0 && b < size() && torn_[b] != nullptr && record.tet >= 0 &&
-                       static_cast<std::size_t>(record.tet) < torn_[b]->broken().size() && record.faces > 0 &&
-                       record.faces < 16;
-    if (!known) refuse_edits("tears");
-    for (int f = 0; f < 4; ++f) {
-      if (record.faces >> f & 1) faces[b].push_back({record.tet, static_cast<std::int8_t>(f)});
+                       static_cast<std::size_t>(record.tet) < torn_[b]->broken().size() && record.faces > 0;
+    const int all = known ? (1 << torn_[b]->faces()) - 1 : 0;
+    if (!known || (record.faces & ~(all | all << TearRecord::kWaiting)) != 0) refuse_edits("tears");
+    for (int f = 0; f < static_cast<int>(torn_[b]->faces()); ++f) {
+      const TetFace face{record.tet, static_cast<std::int8_t>(f)};
+      if (record.faces >> f & 1) faces[b].push_back(face);
+      if (record.faces >> (f + TearRecord::kWaiting) & 1) waiting[b].push_back(face);
     }
   }
   for (std::size_t b = 0; b < size(); ++b) {
-    if (!faces[b].empty()) torn_[b]->tear(faces[b]);
+    if (!faces[b].empty()) part(b, faces[b], false);
+    if (!waiting[b].empty()) torn_[b]->set_waiting(waiting[b]);
   }
 }
 

@@ -16,6 +16,7 @@
 #include "model/elements/body_mesh.h"
 #include "simulation/edits/helper_thread.h"
 #include "simulation/state/run_state.h"
+#include "tearing/swept_faces.h"
 #include "tearing/torn_body.h"
 
 namespace pliant {
@@ -77,8 +78,8 @@ class SurfaceCopy {
 /// unchanged.
 class EditedBodies {
  public:
-  /// Throws what make_body_meshes throws, and Error (bad_input) for a body with a toughness that is not a tetrahedral volume
-  /// mesh.
+  /// Throws what make_body_meshes throws, and Error (bad_input) for a body that shall tear or be parted along its faces and is
+  /// not a tetrahedral volume mesh.
   explicit EditedBodies(const Scene& scene);
   /// Returns true if a material of the scene has a toughness.
   static bool tears(const Scene& scene);
@@ -88,8 +89,28 @@ class EditedBodies {
   /// Returns the body's cut, created on first use. Throws Error (bad_input) if the body cannot be cut.
   [[nodiscard]] BodyCut& cut(std::size_t b);
   [[nodiscard]] const BodyCut* find_cut(std::size_t b) const { return cuts_[b].get(); }
-  /// nullptr if the body does not tear.
+  /// nullptr if the body neither tears nor is parted along its faces.
   [[nodiscard]] TornBody* torn(std::size_t b) { return torn_[b].get(); }
+  /// What blades find in a body that is parted along its faces; nullptr for others.
+  [[nodiscard]] SweptFaces* swept(std::size_t b) { return swept_[b].get(); }
+  [[nodiscard]] const SweptFaces* find_swept(std::size_t b) const { return swept_[b].get(); }
+  /// Breaks faces of torn(b), which a blade has passed or which stress breaks. Returns what TornBody::tear returns; empty if
+  /// all of them wait.
+  std::vector<std::int32_t> part(std::size_t b, const std::vector<TetFace>& faces, bool by_blade);
+
+  // The same of both kinds of body that blades meet, cut with virtual nodes or parted along faces.
+  /// Returns the body's elements now; the cut is created on first use.
+  [[nodiscard]] const CutTopology& topology(std::size_t b) { return swept_[b] ? swept_[b]->topology() : cut(b).topology(); }
+  /// Mean edge of an undeformed element [m].
+  [[nodiscard]] double edge(std::size_t b) { return swept_[b] ? swept_[b]->edge() : cut(b).edge(); }
+  /// A sweep over the body with its nodes at `x` [m], which must outlive it; the next one of the body ends it.
+  [[nodiscard]] BladeSweep sweep(std::size_t b, const std::vector<Vec3d>& x);
+  /// Returns what triangles [m] cross now: edges, or pairs of elements.
+  [[nodiscard]] CutEdges crossed(std::size_t b, const std::vector<Vec3d>& x, std::span<const SweepTriangle> triangles);
+  /// Removes what may not be cut (BodyCut::keep_allowed) or has come apart.
+  void keep_allowed(std::size_t b, CutEdges& crossed);
+  /// Finds the material at points of a region, as InverseMap does.
+  [[nodiscard]] InverseMap inverse_map(std::size_t b, const std::vector<Vec3d>& x, const vec::Box& region, double reach);
   [[nodiscard]] const BodyMesh& solid(std::size_t b) const;
   [[nodiscard]] std::vector<const BodyMesh*> solids() const;
 
@@ -116,6 +137,7 @@ class EditedBodies {
   std::vector<std::shared_ptr<const BodyMesh>> uncut_;
   std::vector<std::unique_ptr<BodyCut>> cuts_;
   std::vector<std::unique_ptr<TornBody>> torn_;
+  std::vector<std::unique_ptr<SweptFaces>> swept_;
 };
 
 }  // namespace pliant

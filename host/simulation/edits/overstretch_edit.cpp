@@ -23,6 +23,7 @@ std::vector<Vec3d> moving_nodes(const RunContext& run, const std::vector<double>
 
 void TopologyEdits::open_overstretched() {
   const double limit = run_.scene.break_stretch;
+  if (parts_along_faces(run_.scene)) return;  // make_tears does it
   if (!(limit > 0) || (run_.scene.blades.empty() && run_.state.cuts.empty())) return;
   EditedBodies& all = bodies();
   std::vector<double> u = run_.u();

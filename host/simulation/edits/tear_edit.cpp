@@ -1,9 +1,10 @@
-// Tearing: bodies of tetrahedra separate along faces where stress or a stretched edge breaks them, between two batches of a
-// run. Every node keeps the displacement and velocity of its origin. The masses of copies add up to that of their origin, so
-// momentum is conserved.
+// Parting: bodies of tetrahedra separate along faces between two batches of a run, where stress or a stretched edge breaks them
+// (tearing) or where a blade passes whose method is separation. Every node keeps the displacement and velocity of its origin.
+// The masses of copies add up to that of their origin, so momentum is conserved.
 #include <utility>
 #include <vector>
 
+#include "geometry/stopwatch.h"
 #include "simulation/edits/model_swap.h"
 #include "simulation/edits/topology_edits.h"
 
@@ -25,15 +26,27 @@ void TopologyEdits::make_tears() {
   }
   if (!any) return;
   CutReport report;
+  part(faces, u, false, report);
+  run_.state.opened += edges;
+}
+
+void TopologyEdits::part(const std::vector<std::vector<TetFace>>& faces, std::vector<double> u, bool by_blade,
+                         CutReport& report) {
+  EditedBodies& all = bodies();
+  Stopwatch clock;
   std::vector<char> changed;
   try {
-    ModelSwap swap(run_, loads_, all, u, report);
+    ModelSwap swap(run_, loads_, all, std::move(u), report);
     std::vector<NodeOrigins> origins(all.size());
     for (std::size_t b = 0; b < all.size(); ++b) {
-      if (!faces[b].empty()) origins[b].from = all.torn(b)->tear(faces[b]);
+      if (!faces[b].empty()) origins[b].from = all.part(b, faces[b], by_blade);
+      report.changed = report.changed || !origins[b].from.empty();
     }
-    swap.run(scene_at(run_.state), std::move(origins), [] {});
-    changed = swap.changed_nodes();
+    report.topology += clock.lap();
+    if (report.changed) {
+      swap.run(scene_at(run_.state), std::move(origins), [] {});
+      changed = swap.changed_nodes();
+    }
   } catch (...) {
     for (std::size_t b = 0; b < all.size(); ++b) {
       if (!faces[b].empty()) all.rebuild(b, run_.state);
@@ -43,13 +56,15 @@ void TopologyEdits::make_tears() {
   run_.state.tears.clear();
   for (std::size_t b = 0; b < all.size(); ++b) {
     for (std::size_t t = 0; all.torn(b) != nullptr && t < all.torn(b)->broken().size(); ++t) {
-      const int bits = all.torn(b)->broken()[t];
+      const int bits = all.torn(b)->broken()[t] | all.torn(b)->waiting()[t] << TearRecord::kWaiting;
       if (bits != 0) run_.state.tears.push_back({static_cast<std::int32_t>(b), static_cast<std::int32_t>(t), bits});
     }
   }
-  run_.state.opened += edges;
+  if (!report.changed) return;
   ++run_.state.topology_version;
+  clock.lap();
   step_.limit_after_edit(changed);
+  report.step += clock.lap();
   changed_nodes_ = std::move(changed);
 }
 

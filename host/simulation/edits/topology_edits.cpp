@@ -69,7 +69,7 @@ bool belongs(const FrontSample& s, EditedBodies& all) {
     if (!std::isfinite(w)) return false;
   }
   if (!std::isfinite(s.advance + s.depth + s.zeta + s.limit)) return false;
-  const CutMesh& mesh = all.cut(b).topology().mesh();
+  const CutMesh& mesh = all.topology(b).mesh();
   return s.point.cell >= 0 && s.point.cell < static_cast<std::int64_t>(mesh.cells.size()) && s.point.tet >= 0 &&
          s.point.tet < static_cast<std::int64_t>(mesh.shape->tets.size());
 }
@@ -104,15 +104,17 @@ void TopologyEdits::start() {
     run_.settings.blade_steps =
         steps < 1 ? 1 : static_cast<std::int64_t>(std::min(steps, static_cast<double>(run_.settings.batch_steps)));
   }
+  const bool parts = parts_along_faces(scene);
+  if (parts) run_.settings.tears = true;  // along overstretched edges at least
   if (!EditedBodies::tears(scene)) return;
-  if (!moves_freely || !scene.blades.empty()) {
+  if (!moves_freely || (!scene.blades.empty() && !parts)) {
     throw Error(
         ErrorCode::bad_input,
-        fmt::format("a scene with another integrator than {}, with relaxation or with blades cannot tear: no material may "
-                    "have a toughness",
+        fmt::format("a scene with another integrator than {}, with relaxation or with blades that do not separate cannot tear: "
+                    "no material may have a toughness",
                     integrators_with(&IntegratorInfo::edits)));
   }
-  bodies_ = std::make_unique<EditedBodies>(scene);
+  static_cast<void>(bodies());
   run_.settings.tears = true;
 }
 
@@ -132,7 +134,7 @@ EditedBodies& TopologyEdits::bodies() {
 
 /// Returns the bodies; throws for a scene that cannot be cut.
 EditedBodies& TopologyEdits::cut_bodies() {
-  if (run_.settings.tears || EditedBodies::tears(run_.scene)) {
+  if (!parts_along_faces(run_.scene) && (run_.settings.tears || EditedBodies::tears(run_.scene))) {
     throw Error(ErrorCode::bad_input, "a scene with a material that tears (\"toughness\") cannot be cut");
   }
   const IntegratorInfo& integrator = integrator_info(run_.scene.integrator);
@@ -147,6 +149,7 @@ EditedBodies& TopologyEdits::cut_bodies() {
 
 void TopologyEdits::prepare_cuts() {
   EditedBodies& all = cut_bodies();
+  if (parts_along_faces(run_.scene)) return;  // opened faces add no kind of element
   if (run_.backend().info().compiles) {
     run_.backend().compile(build_program(all.trial_model(), run_.program_options()));
   }
@@ -157,8 +160,9 @@ void TopologyEdits::prepare_cuts() {
 }
 
 const CutTopology* TopologyEdits::cut_topology(std::size_t body) const {
-  if (bodies_ == nullptr || body >= bodies_->size() || bodies_->find_cut(body) == nullptr) return nullptr;
-  return &bodies_->find_cut(body)->topology();
+  if (bodies_ == nullptr || body >= bodies_->size()) return nullptr;
+  if (const SweptFaces* swept = bodies_->find_swept(body)) return &swept->topology();
+  return bodies_->find_cut(body) == nullptr ? nullptr : &bodies_->find_cut(body)->topology();
 }
 
 std::optional<Vec3d> TopologyEdits::edited_at() const {
@@ -213,7 +217,7 @@ std::unique_ptr<EditedBodies> TopologyEdits::bodies_at(const RunState& state) co
   if (!edited(state) && !edited(run_.state)) return nullptr;
   auto all = std::make_unique<EditedBodies>(scene);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {  // keep prepared cuts
-    if (cut_topology(b) != nullptr) static_cast<void>(all->cut(b));
+    if (bodies_ != nullptr && bodies_->find_cut(b) != nullptr) static_cast<void>(all->cut(b));
   }
   for (std::size_t b = 0; b < state.regions.size(); ++b) {
     const std::vector<std::int32_t>& cells = state.regions[b].cells;
@@ -239,7 +243,7 @@ std::unique_ptr<EditedBodies> TopologyEdits::bodies_at(const RunState& state) co
     for (const auto& [body, front] : traces) {
       const bool known = body >= 0 && static_cast<std::size_t>(body) < all->size() &&
                          can_be_cut(all->uncut(static_cast<std::size_t>(body))) &&
-                         belongs(front, all->cut(static_cast<std::size_t>(body)).topology().mesh());
+                         belongs(front, all->topology(static_cast<std::size_t>(body)).mesh());
       if (!known) refuse("its traces of blades");
     }
   }

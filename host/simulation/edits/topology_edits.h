@@ -68,12 +68,15 @@ class TopologyEdits {
   [[nodiscard]] const Blade& blade_by_force(const std::string& name) const;
   void forget_fronts(const std::string& name);
   CutReport run_blades(const std::vector<BladeMove>& moves, std::span<const SweepTriangle> triangles);
+  void divide(std::vector<CutEdges> crossed, std::vector<double> u, CutReport& report);
   [[nodiscard]] bool reached(std::size_t body, const std::vector<Vec3d>& x, const std::vector<BladeMove>& moves,
                              std::span<const SweepTriangle> triangles) const;
   [[nodiscard]] const BladeTrace* front(const BladeMove& move, std::size_t body) const;
   // cut_edit.cpp, overstretch_edit.cpp, tear_edit.cpp, join_edit.cpp, partition_edit.cpp
   void make_cut(std::vector<CutEdges> edges, std::vector<double> u, CutReport& report);
   void make_tears();
+  /// Breaks these faces of each body, or has them wait until a gap can open (TornBody::part).
+  void part(const std::vector<std::vector<TetFace>>& faces, std::vector<double> u, bool by_blade, CutReport& report);
   void break_joins();
   void open_overstretched();
   void move_regions();

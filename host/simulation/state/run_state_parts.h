@@ -59,9 +59,12 @@ struct CutRecord {
   CutEdges edges;
 };
 
-/// The broken faces of one tetrahedron: bit f of `faces` is face f.
+/// The broken faces of one element: bit f of `faces` is face f, bit kWaiting + f a face that a blade has passed and that waits
+/// (TornBody::part).
 struct TearRecord {
+  static constexpr int kWaiting = 8;
   std::int32_t body = 0, tet = 0, faces = 0;
+  [[nodiscard]] int broken() const { return faces & ((1 << kWaiting) - 1); }
 };
 
 /// The motion of a blade in one update: along straight lines to each of these segments. `key` is its key in

@@ -32,6 +32,7 @@ class Hash {
     add(blade.start);
     add(blade.end);
     add(blade.path);
+    if (blade.method == BladeMethod::separation) add(std::string("separation"));
     if (blade.cuts != BladeCuts::by_force) return;
     for (const double number : {blade.sharpness, blade.edge, blade.friction}) add(number);
   }
