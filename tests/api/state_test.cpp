@@ -16,7 +16,7 @@ using test::message_of;
 using test::on;
 
 /// Stands under constant loads, with a step that stays.
-SceneSpec standing() {
+SceneSpec standing_block() {
   SceneSpec scene = test::block(0);
   scene.dt = 1e-3;
   return scene;
@@ -24,7 +24,7 @@ SceneSpec standing() {
 
 TEST(SetState, GoesOnWithTheSameBits) {
   for (const std::string& backend : test::float_backends()) {
-    World original(standing(), on(backend)), other(standing(), on(backend));
+    World original(standing_block(), on(backend)), other(standing_block(), on(backend));
     original.step(130);
     other.set_state(0, original.displacements(0), original.velocities(0));
     EXPECT_EQ(other.hash(), original.hash()) << backend;
@@ -35,7 +35,7 @@ TEST(SetState, GoesOnWithTheSameBits) {
 }
 
 TEST(SetState, InDoubleUpToRounding) {
-  World original(standing(), on("cpu:double")), other(standing(), on("cpu:double"));
+  World original(standing_block(), on("cpu:double")), other(standing_block(), on("cpu:double"));
   original.step(130);
   other.set_state(0, original.displacements(0), original.velocities(0));
   original.step(200);
@@ -46,7 +46,7 @@ TEST(SetState, InDoubleUpToRounding) {
 
 TEST(SetState, OfOtherIntegrators) {
   for (const char* word : {"increment", "textbook", "forward-euler"}) {
-    SceneSpec scene = standing();
+    SceneSpec scene = standing_block();
     scene.integrator = word;
     scene.dt = 1e-4;
     World original(scene, on("cpu:double")), other(scene, on("cpu:double"));
@@ -62,7 +62,7 @@ TEST(SetState, OfOtherIntegrators) {
 }
 
 TEST(SetState, MovesFreeNodesAndLeavesHeldOnes) {
-  World world(standing(), on("cpu"));
+  World world(standing_block(), on("cpu"));
   const std::vector<Vec3d> rest = world.rest_positions(0);
   std::vector<Vec3d> u(rest.size(), Vec3d{0.001, 0, 0}), v(rest.size(), Vec3d{0, 0, 0.25});
   const FramePtr before = world.frame();
@@ -87,7 +87,7 @@ TEST(SetState, MovesFreeNodesAndLeavesHeldOnes) {
 }
 
 TEST(SetState, FreeFlightIsExact) {
-  SceneSpec scene = standing();
+  SceneSpec scene = standing_block();
   scene.bodies[0].fixed.clear();
   scene.bodies[0].material.damping = 0;
   scene.gravity = {};
@@ -103,7 +103,7 @@ TEST(SetState, FreeFlightIsExact) {
 
 TEST(SetState, OfShapeMatchingAndHybrids) {
   for (const char* type : {"flsm", "hybrid"}) {
-    SceneSpec scene = standing();
+    SceneSpec scene = standing_block();
     scene.dt = 0;
     scene.gravity = {};
     scene.bodies[0].model.type = type;
@@ -121,7 +121,7 @@ TEST(SetState, OfShapeMatchingAndHybrids) {
 }
 
 TEST(SetState, NoRollbackGoesBehindIt) {
-  SceneSpec scene = standing();
+  SceneSpec scene = standing_block();
   scene.dt = 0;  // automatic: a step that turns out too long is made again from the state that was kept last
   scene.gravity = {};
   scene.bodies[0].fixed.clear();
@@ -140,7 +140,7 @@ TEST(SetState, NoRollbackGoesBehindIt) {
 }
 
 TEST(SetState, WhileTheWorldRunsFreely) {
-  World world(standing(), on("cpu"));
+  World world(standing_block(), on("cpu"));
   world.run_live();
   const std::size_t nodes = world.rest_positions(0).size();
   world.set_state(0, std::vector<Vec3d>(nodes, Vec3d{0.002, 0, 0}));
@@ -149,7 +149,7 @@ TEST(SetState, WhileTheWorldRunsFreely) {
 }
 
 TEST(SetState, AfterACut) {
-  World world(standing(), on("cpu"));
+  World world(standing_block(), on("cpu"));
   world.cut({{Vec3d{-1, 0.045, -1}, Vec3d{-1, 0.045, 3}, Vec3d{3, 0.045, -1}}});
   world.step(50);
   const std::vector<Vec3d> u = world.displacements(0), v = world.velocities(0);
@@ -160,7 +160,7 @@ TEST(SetState, AfterACut) {
 }
 
 TEST(SetState, Misuse) {
-  World world(standing(), on("cpu"));
+  World world(standing_block(), on("cpu"));
   const std::size_t nodes = world.rest_positions(0).size();
   const std::uint64_t hash = world.hash();
   EXPECT_EQ(code_of([&] { world.set_state(1, {}); }), ErrorCode::usage);
