@@ -279,7 +279,9 @@ void TornBody::mark(std::vector<std::uint8_t>& bits, const TetFace& face, bool o
 
 /// Gives the elements the nodes that the broken faces leave them.
 std::vector<std::int32_t> TornBody::open(std::vector<TetFace>* wait) {
-  const BodyElements before{.nodes = {}, .tets = std::move(torn_.tets), .hexes = std::move(torn_.hexes)};
+  BodyElements before;
+  before.tets = std::move(torn_.tets);
+  before.hexes = std::move(torn_.hexes);
   torn_.tets = whole_->tets;
   torn_.hexes = whole_->hexes;
   const std::vector<std::int32_t> origin = torn_.tets.empty()
