@@ -46,6 +46,7 @@ class RandomScene {
     if (thin.chance(0.08)) {
       shape_ = {"cloth.obj", true};
       thickness_ = thin.uniform(0.0015, 0.006);
+      varied_ = false;
     }
     file_ = std::filesystem::absolute(scenes / "meshes" / shape_.file);
     box_ = box_of(file_, shape_.tets && thickness_ == 0);

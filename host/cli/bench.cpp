@@ -254,8 +254,7 @@ std::function<int()> setup_bench(CLI::App& app) {
       app.add_subcommand("kernels", "Every pass of a step: ns, bytes and flops per element, share of the machine's limit");
   options->common.add_to(*sub);
   sub->add_option("--elements", options->kernels.elements,
-                  "the elements of blocks, \"springs\" of a network and \"membrane\" on a sheet: " +
-                      alternatives(bench::kernels_elements()))
+                  explained(element_words()) + ", springs (a network), membrane (its triangles on a sheet)")
       ->delimiter(',');
   sub->add_option("--sizes", options->kernels.sizes, "numbers of elements")->delimiter(',');
   sub->add_option("--backends", options->kernels.backends, "default: the first OpenCL device, cpu, cpu:double")->delimiter(',');

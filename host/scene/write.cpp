@@ -242,6 +242,8 @@ OrderedJson body_json(const B& b, const fs::path& file) {
     }
   }
   describe_body(WriteKeys{body}, b);
+  // In code the default is that of lattices.
+  if (b.thickness > 0 && body["element"] == to_string(usual_element(8))) body.erase("element");
   body["material"] = material_json(b.material);
   if (b.membrane) describe_membrane(WriteKeys{body["membrane"]}, *b.membrane);
   for (const auto& vessel : b.vessels) body["vessels"].push_back(vessel_json(vessel));

@@ -188,12 +188,12 @@ std::vector<std::int32_t> TornBody::piece_at(std::int32_t tet, const std::vector
   return piece;
 }
 
-std::vector<TetFace> TornBody::without_crumbs(std::vector<TetFace> faces, std::vector<std::uint8_t> broken) const {
+std::vector<TetFace> TornBody::without_crumbs(std::vector<TetFace> faces, std::vector<std::uint8_t>& broken) const {
   for (const TetFace& face : faces) mark(broken, face);
   for (std::size_t i = 0; i < faces.size();) {
     const std::size_t here = piece_at(faces[i].tet, broken).size();
     const std::size_t there = piece_at(neighbor(faces[i].tet, static_cast<std::size_t>(faces[i].face)).tet, broken).size();
-    if ((here < kLeastPiece) == (there < kLeastPiece)) {
+    if (here >= kLeastPiece && there >= kLeastPiece) {
       ++i;
       continue;
     }

@@ -98,9 +98,9 @@ class TornBody {
   [[nodiscard]] std::vector<TetFace> faces_on(const Plane& plane, const std::vector<Vec3d>& x, const Around& around) const;
   /// Tetrahedra that whole faces connect with `tet`, itself first, no more than about kLeastPiece.
   [[nodiscard]] std::vector<std::int32_t> piece_at(std::int32_t tet, const std::vector<std::uint8_t>& broken) const;
-  /// The faces without those that would cut off fewer than kLeastPiece tetrahedra from more: a crumb carries no load, and a
-  /// tear goes around it.
-  [[nodiscard]] std::vector<TetFace> without_crumbs(std::vector<TetFace> faces, std::vector<std::uint8_t> broken) const;
+  /// The faces without those that would cut off fewer than kLeastPiece tetrahedra: a crumb carries no load, and a
+  /// tear goes around it. Marks those that remain in `broken`.
+  [[nodiscard]] std::vector<TetFace> without_crumbs(std::vector<TetFace> faces, std::vector<std::uint8_t>& broken) const;
   [[nodiscard]] std::vector<TetFace> parting_faces(const LongEdge& edge, double stretch, const std::vector<Vec3d>& x,
                                                    const std::vector<NodeStress>& at, const Around& around) const;
   std::vector<std::int32_t> open(std::vector<TetFace>* wait);

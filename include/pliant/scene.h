@@ -85,7 +85,7 @@ struct BodySpec {
   double lattice_spacing = 0;              ///< edge length of a cell [m]; 0: from lattice_nodes
   std::int64_t lattice_nodes = 2000;       ///< approximate number of nodes if no spacing is given
   double thickness = 0;                    ///< [m]; > 0: the surface is a sheet, a layer of tetrahedra instead of a lattice
-  std::string element = "hex8";            ///< tet4, tet4anp, hex8 or hex8full; of a sheet tet4 or tet4anp
+  std::string element = "hex8";            ///< tet4, tet4anp, hex8 or hex8full; hex8 means tet4 for a sheet
   MaterialSpec material;                   ///< material outside the inclusions
   ModelSpec model;                         ///< finite elements, shape matching or both
   std::optional<MembraneSpec> membrane;    ///< absent: none

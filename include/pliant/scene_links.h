@@ -13,8 +13,10 @@ namespace pliant {
 struct SpringSpec {
   std::string law = "linear";                ///< linear, cubic, measured or table
   double stiffness = 0;                      ///< linear: k of F = k e [N/m]; 0: of each edge of a body from Young's modulus
-  double lambda1 = 0, lambda2 = 0;           ///< cubic: F = lambda1 (e / l0)^3 + lambda2 e / l0 [N]
-  double a = 0, b = 0;                       ///< measured: F = e / (a abs(e) + b) [1/N], [m/N]
+  double lambda1 = 0;                        ///< cubic: F = lambda1 (e / l0)^3 + lambda2 e / l0 [N]
+  double lambda2 = 0;                        ///< cubic: the same law, required [N]
+  double a = 0;                              ///< measured: F = e / (a abs(e) + b) [1/N]
+  double b = 0;                              ///< measured: 1 / b is the stiffness at rest, required [m/N]
   std::vector<std::array<double, 2>> curve;  ///< table: pairs e [m], F [N], e ascending
   double damping = 0;                        ///< force over the rate of the length [N s/m]
   bool slack = false;                        ///< no force when it is shorter than at rest

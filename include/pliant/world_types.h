@@ -82,8 +82,9 @@ struct GrabState {
 
 using GrabId = std::uint64_t;  ///< identifies a grab within one World; 0: none
 
-/// Result of a cut. Cuts need no WorldOptions::interactive. Hexahedral volume meshes and scenes with relaxation or the textbook
-/// integrator cannot be cut: Error (input), and nothing changes. After step_async() or advance_async(), the worker cuts before
+/// Result of a cut. Cuts need no WorldOptions::interactive. Hexahedral volume meshes (unless the blades of
+/// the scene have the method "separation") and scenes with relaxation or the textbook integrator cannot be cut: Error (input),
+/// and nothing changes. After step_async() or advance_async(), the worker cuts before
 /// its next batch, moves of blades together, until wait() or another waiting call returns; if it rejects a cut, the next call
 /// that reports the worker's errors throws. With substeps of shape matching, a cut waits for the next batch that begins with a
 /// shape-matching step.

@@ -10,8 +10,8 @@ namespace pliant {
 void add_mass_springs(const Body& body, std::int32_t b, const NodeNumbering& draft, Model& model);
 
 /// Adds bars along the vessels of a body, k = E A / l, between points that move with the elements that hold them at rest, and
-/// their mass. A segment is halved until the elements of both ends of each bar touch. The model of a cut or torn body has no bar
-/// where its two elements have come apart. Throws Error (bad_input) for a point outside an uncut body.
+/// their mass. A segment is halved until the elements of both ends of each bar touch. The model of a cut or torn body has no
+/// bar where its two elements have come apart. Throws Error (bad_input) for a point outside an uncut body.
 void add_vessels(const Body& body, std::int32_t b, const NodeNumbering& draft, Model& model);
 
 /// Adds the springs of Scene::joins between the nodes that the bodies had before cuts, without those that are broken. Throws

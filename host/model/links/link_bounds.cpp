@@ -20,13 +20,10 @@ SlotStiffness slot_stiffness(const Model& model) {
   for (const SpringBatch& b : model.links.springs) {
     for (std::size_t s = 0; s < b.size(); ++s) {
       const double k = rest_stiffness(b, s);
-      for (const std::int32_t p : b.points[s]) {
-        for (std::size_t a = 0; a < 8; ++a) {
-          if (points.weights[p][a] == 0) continue;
-          out.sum[points.slots[p][a]] += 2 * k * points.weights[p][a];
-          out.label[points.slots[p][a]] = &b.label;
-        }
-      }
+      for_each_share(points, b, s, [&](std::int32_t slot, double share) {
+        out.sum[slot] += k * share;
+        out.label[slot] = &b.label;
+      });
     }
   }
   add_membrane_stiffness(model, nullptr, out.sum);

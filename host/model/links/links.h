@@ -2,6 +2,7 @@
 // gives forces on them.
 #pragma once
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -88,6 +89,30 @@ double elongation(const LinkPoints& points, const SpringBatch& b, std::size_t s,
   const Vec3d u = vec::sub(points.value(b.points[s][1], of), points.value(b.points[s][0], of)), d = vec::add(rest, u);
   const double l0 = b.length[s], both = vec::norm(d) + l0;
   return both > 0 ? (vec::dot(u, vec::add(rest, d)) + (vec::dot(rest, rest) - l0 * l0)) / both : 0;
+}
+
+/// Calls f(slot, share) for the slots that move spring s: its stiffness times `share` bounds what it adds to the sum of the
+/// absolute values of a row of the stiffness matrix (Gershgorin). Between two nodes the share is 2. Between points of one
+/// element, which move together, it falls as they come nearer: |g_i| sum_j |g_j|, with g the weights of one end less those of
+/// the other.
+template <class F>
+void for_each_share(const LinkPoints& points, const SpringBatch& b, std::size_t s, const F& f) {
+  std::array<std::int32_t, 16> slots{};
+  std::array<double, 16> g{};
+  std::size_t count = 0;
+  for (const double sign : {-1.0, 1.0}) {
+    const std::int32_t p = b.points[s][sign < 0 ? 0 : 1];
+    for (std::size_t a = 0; a < 8; ++a) {
+      if (points.weights[p][a] == 0) continue;
+      std::size_t at = 0;
+      while (at < count && slots[at] != points.slots[p][a]) ++at;
+      if (at == count) slots[count++] = points.slots[p][a];
+      g[at] += sign * points.weights[p][a];
+    }
+  }
+  double sum = 0;
+  for (std::size_t i = 0; i < count; ++i) sum += std::abs(g[i]);
+  for (std::size_t i = 0; i < count; ++i) f(slots[i], std::abs(g[i]) * sum);
 }
 
 /// The slope of the force of a spring at its length at rest; of a slack one when it is longer [N/m].

@@ -77,10 +77,15 @@ class ElementFinder {
   [[nodiscard]] bool connected(std::int32_t e, std::int32_t f) const { return any_pair(e, f, false); }
 
  private:
+  /// The mean size of the elements' boxes.
   static double edge_of(const BodyElements& solid) {
-    vec::Box box;
-    for (const std::int32_t n : solid.corners(0)) box.extend(solid.nodes[n]);
-    return std::max({box.upper[0] - box.lower[0], box.upper[1] - box.lower[1], box.upper[2] - box.lower[2]});
+    double sum = 0;
+    for (std::size_t e = 0; e < solid.size(); ++e) {
+      vec::Box box;
+      for (const std::int32_t n : solid.corners(e)) box.extend(solid.nodes[n]);
+      sum += std::max({box.upper[0] - box.lower[0], box.upper[1] - box.lower[1], box.upper[2] - box.lower[2]});
+    }
+    return sum / static_cast<double>(solid.size());
   }
 
   [[nodiscard]] std::optional<Held> in_tet(std::int32_t e, const std::array<std::int32_t, 4>& nodes, const Vec3d& p) const {
@@ -151,6 +156,13 @@ class Bars {
                                                   vessel_.pointer, number, x[0], x[1], x[2], body_.name));
   }
 
+  [[noreturn]] void fail_outside(const Vec3d& a, const Vec3d& b) const {
+    const Vec3d x = vec::mul(vec::add(a, b), 0.5);
+    throw Error(ErrorCode::bad_input, fmt::format("{}/segments: got one that leaves the elements of {} near [{:.4g}, {:.4g}, "
+                                                  "{:.4g}] m, expected segments inside",
+                                                  vessel_.pointer, body_.name, x[0], x[1], x[2]));
+  }
+
   [[nodiscard]] bool uncut() const { return draft_.solid().virtual_nodes.first < 0 && draft_.solid().copy_of.empty(); }
 
   /// Halves a segment until the elements of both ends touch.
@@ -161,7 +173,10 @@ class Bars {
       if (depth >= kHalvings || finder_.connected(at_a.element, at_b.element)) add(a, at_a, b, at_b);
       return;
     }
-    if (depth >= kHalvings) return;  // in a gap, or where a cut has removed the element
+    if (depth >= kHalvings) {  // in a gap, or where a cut has removed the element
+      if (uncut()) fail_outside(a, b);
+      return;
+    }
     const Vec3d middle = vec::mul(vec::add(a, b), 0.5);
     const Held at = finder_.find(middle);
     divide(a, at_a, middle, at, depth + 1);

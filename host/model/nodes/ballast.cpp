@@ -50,13 +50,10 @@ void add_link_stiffness(const Model& model, const std::vector<double>& u, const 
       if (!b.whole(s)) continue;
       const double e = elongation(points, b, s, moved), length = std::max(b.length[s] + e, 1e-30);
       const SpringState state = spring_state(b.law, b.parameters[s], e);
-      const double stiffness = 2 * std::max({state.slope, state.force / length, rest_stiffness(b, s)});
-      for (const std::int32_t p : b.points[s]) {
-        for (std::size_t a = 0; a < 8; ++a) {
-          const std::int32_t slot = points.slots[p][a];
-          if (points.weights[p][a] != 0 && (wanted.empty() || wanted[slot] != 0)) sum[slot] += points.weights[p][a] * stiffness;
-        }
-      }
+      const double stiffness = std::max({state.slope, state.force / length, rest_stiffness(b, s)});
+      for_each_share(points, b, s, [&](std::int32_t slot, double share) {
+        if (wanted.empty() || wanted[slot] != 0) sum[slot] += share * stiffness;
+      });
     }
   }
 }

@@ -330,7 +330,7 @@ void BladeFronts::meet(PressedBlade& blade, const Edge& edge, EditedBodies& bodi
     std::array<Vec3d, 3> corners;
     vec::Box own;
     for (std::size_t k = 0; k < 3; ++k) own.extend(corners[k] = surface[static_cast<std::size_t>(s.triangles[t][k])]);
-    if (!box.overlaps(own) || !can_be_cut(bodies.uncut(static_cast<std::size_t>(s.triangle_body[t])))) continue;
+    if (!box.overlaps(own) || !bodies.meets_blades(static_cast<std::size_t>(s.triangle_body[t]))) continue;
     for (std::size_t i = 0; i < hits.size(); ++i) {
       if (kind_of(blade.samples[i]) == FrontKind::held) continue;
       const std::optional<Crossing> c = crossing(edge.x[i], n, corners);

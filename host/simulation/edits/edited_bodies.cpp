@@ -153,7 +153,7 @@ void EditedBodies::make_torn(std::size_t b) {
   if (!uncut_[b]->lattice_nodes.empty() || (stress && uncut_[b]->tets.empty())) {
     const char* const why = parts_along_faces(scene_) ? "shall be parted along its faces" : "has a material with a toughness";
     throw Error(ErrorCode::bad_input,
-                fmt::format("body '{}' {}; only volume meshes of tetrahedra (\"mesh\") tear or part", body.name, why));
+                fmt::format("body '{}' {}; only volume meshes and sheets do, and only their tetrahedra tear", body.name, why));
   }
   swept_[b].reset();
   torn_[b] = std::make_unique<TornBody>(uncut_[b], materials_of(scene_, body, *uncut_[b]));

@@ -78,8 +78,8 @@ class SurfaceCopy {
 /// unchanged.
 class EditedBodies {
  public:
-  /// Throws what make_body_meshes throws, and Error (bad_input) for a body that shall tear or be parted along its faces and is
-  /// not a tetrahedral volume mesh.
+  /// Throws what make_body_meshes throws, and Error (bad_input) for a body that shall be parted along its faces and is a
+  /// lattice, or shall tear and is not of tetrahedra.
   explicit EditedBodies(const Scene& scene);
   /// Returns true if a material of the scene has a toughness.
   static bool tears(const Scene& scene);
@@ -94,6 +94,8 @@ class EditedBodies {
   /// What blades find in a body that is parted along its faces; nullptr for others.
   [[nodiscard]] SweptFaces* swept(std::size_t b) { return swept_[b].get(); }
   [[nodiscard]] const SweptFaces* find_swept(std::size_t b) const { return swept_[b].get(); }
+  /// Returns true if blades cut the body with virtual nodes or part it along its faces.
+  [[nodiscard]] bool meets_blades(std::size_t b) const { return swept_[b] != nullptr || can_be_cut(*uncut_[b]); }
   /// Breaks faces of torn(b), which a blade has passed or which stress breaks. Returns what TornBody::tear returns; empty if
   /// all of them wait.
   std::vector<std::int32_t> part(std::size_t b, const std::vector<TetFace>& faces, bool by_blade);

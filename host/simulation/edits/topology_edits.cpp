@@ -64,7 +64,7 @@ bool belongs(const FrontSample& s, EditedBodies& all) {
   if (s.kind == static_cast<std::int32_t>(FrontKind::none)) return true;
   if (s.body < 0 || static_cast<std::size_t>(s.body) >= all.size()) return false;
   const auto b = static_cast<std::size_t>(s.body);
-  if (!can_be_cut(all.uncut(b))) return false;
+  if (!all.meets_blades(b)) return false;
   for (const double w : s.point.weight) {
     if (!std::isfinite(w)) return false;
   }
@@ -242,7 +242,7 @@ std::unique_ptr<EditedBodies> TopologyEdits::bodies_at(const RunState& state) co
   for (const auto& [key, traces] : state.blades.traces) {
     for (const auto& [body, front] : traces) {
       const bool known = body >= 0 && static_cast<std::size_t>(body) < all->size() &&
-                         can_be_cut(all->uncut(static_cast<std::size_t>(body))) &&
+                         all->meets_blades(static_cast<std::size_t>(body)) &&
                          belongs(front, all->topology(static_cast<std::size_t>(body)).mesh());
       if (!known) refuse("its traces of blades");
     }

@@ -52,8 +52,9 @@ void StepControl::start(double wanted, bool estimate_always) {
     if (wanted <= 0 || estimate_always) stable = estimate_stable_step(run_, 48);
     run_.state.limit.stable_dt = stable.coupled;
     dt = wanted > 0 ? wanted : std::min(run_.scene.safety * stable.coupled, longest);
-    // Every cut leaves elements that are stable at the element bound: the mass and stiffness of each copy scale alike.
-    // Slack springs pull only when they are longer than at rest, and an estimate there sees some of them.
+    // Every cut leaves elements that are stable at the element bound: the mass and stiffness of each copy scale alike. (Those
+    // of membranes and vessels do not, and an automatic step follows the bound after a cut.) Slack springs pull only when they
+    // are longer than at rest, and an estimate there sees some of them.
     const auto slack = [](const SpringBatch& b) { return b.law.slack; };
     const bool any_slack = std::any_of(model.links.springs.begin(), model.links.springs.end(), slack);
     if (wanted <= 0 && (!run_.scene.blades.empty() || any_slack)) {
