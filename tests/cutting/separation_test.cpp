@@ -283,6 +283,30 @@ TEST_F(Separation, BackendsAndAResumedRunAgree) {
   EXPECT_EQ(write_state(whole.state()), write_state(device.state()));
 }
 
+/// Traces of a blade in hexahedra are part of a checkpoint, too.
+TEST_F(Separation, HexahedraResumeAndBackendsAgree) {
+  Scene scene = pulled(lattice_scene(ElementKind::hex8));
+  scene.blades = block_cut_through().blades;
+  SimulationOptions options;
+  options.dt = 4e-4;
+  Simulation whole(scene, open_backend("cpu"), options);
+  while (whole.topology_version() < 3 && whole.step() < 2000) whole.advance(16);
+  ASSERT_GE(whole.topology_version(), 3);
+  whole.advance(5);
+  const Checkpoint saved = take_checkpoint(whole);
+  ASSERT_FALSE(whole.state().blades.traces.empty());
+  whole.advance(300);
+  Simulation resumed(scene, open_backend("cpu"), options);
+  restore_checkpoint(resumed, saved, "saved");
+  resumed.advance(300);
+  EXPECT_EQ(whole.hash(), resumed.hash());
+  EXPECT_EQ(write_state(whole.state()), write_state(resumed.state()));
+  if (!testing::has_opencl()) return;
+  Simulation device(scene, open_backend("opencl:0"), options);
+  device.advance(whole.step());
+  EXPECT_EQ(whole.hash(), device.hash());
+}
+
 /// In the gap of a cut, a blade that moves cuts nothing more.
 TEST_F(Separation, ABladeInTheGapOpensNothing) {
   for (const double gap : {0.012, 0.02, 0.03}) {
@@ -359,6 +383,29 @@ TEST_F(Separation, ABladeThatPressesOpensFacesWhereTissueGivesWay) {
   EXPECT_GT(pressed.fracture, 0);
   EXPECT_GE(opened_faces(s), 12);
   EXPECT_EQ(pieces_of(s.model().bodies[0]), 1);
+}
+
+TEST_F(Separation, ABladeThatPressesMeetsHexahedra) {
+  Scene scene = lattice_scene(ElementKind::hex8);
+  scene.bodies[0].fixed.clear();
+  hold(scene.bodies[0], {0, 0.0001, 0}, {0, -1, 0});
+  scene.bodies[0].material.toughness = 4000;
+  Blade scalpel =
+      separating("scalpel", {{0, 0.033, 0.041, -0.01, 0.033, 0.041, 0.05}, {0.3, 0.033, 0.015, -0.01, 0.033, 0.015, 0.05}});
+  scalpel.cuts = BladeCuts::by_force;
+  scalpel.edge = 0.0005;
+  scene.blades = {scalpel};
+  Simulation s(scene, open_backend("cpu"));
+  while (s.time() < 0.3 && !s.divergence()) s.advance(16);
+  ASSERT_FALSE(s.divergence()) << s.divergence()->message();
+  EXPECT_GT(s.state().pressed.at("scalpel").first, 0) << "it has met the tissue";
+  EXPECT_GT(opened_faces(s), 0);
+  const Checkpoint saved = take_checkpoint(s);
+  Simulation resumed(scene, open_backend("cpu"));
+  restore_checkpoint(resumed, saved, "saved");
+  s.advance(50);
+  resumed.advance(50);
+  EXPECT_EQ(s.hash(), resumed.hash());
 }
 
 TEST_F(Separation, WhatCannotPartIsRefused) {

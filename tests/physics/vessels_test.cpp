@@ -1,6 +1,7 @@
 // Vessels in bodies of every kind: stress of an affine field, stiffness in parallel with the tissue, momentum, and what a cut
 // leaves of them.
 #include <algorithm>
+#include <array>
 #include <span>
 
 #include "cutting/blade/blade.h"
@@ -150,6 +151,30 @@ TEST_P(VesselPhysics, ACutPartsItAndKeepsMomentum) {
     check(name + " momentum", vec::norm(vec::sub(after.linear, before.linear)) / (mass * 0.1), 1e-5);
     sim->advance(200);
     EXPECT_FALSE(sim->divergence().has_value());
+  }
+}
+
+/// A centre line of many points is as stiff as one of two.
+TEST(VesselsBound, ShortBarsDoNotShortenTheStep) {
+  for (const Discretization cut : {Discretization::tet4, Discretization::hex8_bricks}) {
+    Scene scene;
+    scene.bodies = {box_body({{6, 4, 4}, 0.125, 0, 3}, cut, material_young(Law::neo_hookean, 3000, 0.4))};
+    const double without = build_model(scene).element_bound;
+    std::array<double, 2> bound{};
+    for (const int points : {2, 201}) {
+      Vessel vessel = tree();
+      vessel.young = 2e6;
+      vessel.points.clear();
+      vessel.segments.clear();
+      for (int i = 0; i < points; ++i) {
+        vessel.points.push_back({0.05 + 0.65 * i / (points - 1), 0.2, 0.22});
+        if (i > 0) vessel.segments.push_back({i - 1, i});
+      }
+      scene.bodies[0].vessels = {vessel};
+      bound[points > 2 ? 1 : 0] = build_model(scene).element_bound;
+    }
+    EXPECT_LT(bound[0], without) << name_of(cut) << ": the vessel is stiff enough to matter";
+    EXPECT_GT(bound[1] / bound[0], 0.8) << name_of(cut);
   }
 }
 
