@@ -1,95 +1,8 @@
 // Blades whose method is separation: running bodies part along the faces of their elements, and no element is added.
-#include <gtest/gtest.h>
-
-#include <random>
-
-#include "cutting/cut_bodies.h"
-#include "cutting/cut_scenes.h"
-#include "cutting/mesh_files.h"
-#include "io/save.h"
-#include "model/pieces.h"
-#include "solver/scenes.h"
-#include "support/error_of.h"
-#include "support/temp_folder.h"
-#include "tearing/method.h"
+#include "cutting/separation_scenes.h"
 
 namespace pliant::separation_test {
 namespace {
-
-using namespace cut_test;
-using test::error_of;
-
-Blade separating(const std::string& name, std::vector<std::array<double, 7>> path) {
-  Blade out = blade(name, std::move(path));
-  out.method = BladeMethod::separation;
-  return out;
-}
-
-struct Separation : ::testing::Test {
-  test::TempFolder folder;
-  std::filesystem::path file = tet_box_file(folder, "block.msh", 6, 4, 4);
-
-  /// A block of 6 x 4 x 4 cm, held at its left end, with a blade that is far from it until it is moved.
-  [[nodiscard]] Scene block(ElementKind element = ElementKind::tet4) const {
-    Body body;
-    body.name = "block";
-    body.mesh = file;
-    body.element = element;
-    body.material.set_moduli(Law::neo_hookean, Moduli::from_lame(4000, 1000));
-    body.material.damping = 20;
-    hold(body, {0, 0, 0}, {-1, 0, 0});
-    Scene scene = scene_with(body);
-    scene.blades.push_back(separating("far", {{0, 5, 5, 5, 5, 5, 6}, {1, 5, 6, 5, 5, 6, 6}}));
-    return scene;
-  }
-  /// The same, cut through in the leaning plane x = 0.033 + 0.3 (y - 0.02) within 0.2 s.
-  [[nodiscard]] Scene block_cut_through() const {
-    Scene scene = block();
-    scene.blades = {separating(
-        "scalpel", {{0, 0.0252, -0.006, -0.01, 0.0252, -0.006, 0.05}, {0.2, 0.0408, 0.046, -0.01, 0.0408, 0.046, 0.05}})};
-    return scene;
-  }
-  /// Pulled to one and a half times its length.
-  static Scene pulled(Scene scene) {
-    pull(scene.bodies[0], {0.06, 0, 0}, {1, 0, 0}, {0.03, 0, 0}, 0.2);
-    return scene;
-  }
-};
-
-double volume_of(const Simulation& s) { return signed_volume({s.model().surface.rest, s.model().surface.triangles}); }
-
-/// What no edit may change: the elements, mass and volume, and that the surface is closed.
-void expect_kept(const Simulation& s, std::int64_t elements, double mass, double volume) {
-  EXPECT_EQ(s.model().bodies[0].elements(), elements);
-  EXPECT_NEAR(mass_of(s) / mass, 1, 1e-12);
-  EXPECT_NEAR(volume_of(s) / volume, 1, 1e-12);
-  EXPECT_EQ(singular_edges(s.model().surface.triangles), 0);
-}
-
-/// Faces of tetrahedra that have opened.
-std::int64_t opened_faces(const Simulation& s) {
-  std::int64_t sides = 0;
-  for (const TearRecord& tear : s.state().tears) sides += std::popcount(static_cast<unsigned>(tear.broken()));
-  return sides / 2;
-}
-
-/// A blade goes from somewhere near the block to somewhere else while it moves.
-template <class Any>
-void random_stroke(Simulation& s, const std::string& name, Any&& any) {
-  const auto point = [&] {
-    const double x = any(), y = any(), z = any();
-    return Vec3d{0.09 * x - 0.01, 0.06 * y - 0.01, 0.06 * z - 0.01};
-  };
-  const BladeSegment from{point(), point()}, to{point(), point()};
-  for (int k = 0; k <= 6; ++k) {
-    BladePose pose{name, {}};
-    for (std::size_t end = 0; end < 2; ++end)
-      pose.segment[end] = vec::add(from[end], vec::mul(vec::sub(to[end], from[end]), k / 6.0));
-    s.move_blades(std::span(&pose, 1));
-    s.advance(s.next_batch(16));
-    ASSERT_FALSE(s.divergence()) << s.divergence()->message();
-  }
-}
 
 TEST_F(Separation, ABlockIsCutThroughWithoutNewElements) {
   Simulation s(block_cut_through(), open_backend("cpu"));
@@ -123,63 +36,6 @@ TEST_F(Separation, ABlockIsCutThroughWithoutNewElements) {
   }
   EXPECT_EQ(cut, 2 * opened_faces(s));
   EXPECT_LT(distance / static_cast<double>(cut), 0.004) << "it follows the sweep as faces allow: cells are 1 cm wide";
-}
-
-/// A lattice of 6 x 4 x 4 cells, as a scene file with such a blade makes it.
-Scene lattice_scene(ElementKind element) {
-  Body body = box_body("block", {0.06, 0.04, 0.04}, element);
-  body.plain = true;
-  body.material.damping = 20;
-  hold(body, {0, 0, 0}, {-1, 0, 0});
-  Scene scene = scene_with(body);
-  scene.blades.push_back(separating("far", {{0, 5, 5, 5, 5, 5, 6}, {1, 5, 6, 5, 5, 6, 6}}));
-  return scene;
-}
-
-/// Cells part at their faces alone: a leaning blade leaves a staircase, a blade along a layer of faces that layer.
-TEST_F(Separation, ALatticePartsAlongAStaircase) {
-  for (const ElementKind element : {ElementKind::hex8, ElementKind::hex8full, ElementKind::tet4}) {
-    for (const double lean : {0.0, 0.4}) {
-      Simulation s(lattice_scene(element), open_backend("cpu"));
-      const std::int64_t elements = s.model().bodies[0].elements();
-      const double mass = mass_of(s), volume = volume_of(s);
-      EXPECT_NEAR(volume, 0.06 * 0.04 * 0.04, 1e-12);
-      for (int k = 0; k <= 12; ++k) {
-        const double y = -0.011 + 0.005 * k, x = 0.0312 + lean * (y - 0.02);
-        s.move_blades(std::vector<BladePose>{{"scalpel", {{{x, y, -0.012}, {x, y, 0.053}}}}});
-        expect_kept(s, elements, mass, volume);
-      }
-      EXPECT_EQ(pieces_of(s.model().bodies[0]), 2);
-      if (element == ElementKind::tet4) continue;
-      EXPECT_EQ(s.model().bodies[0].hexes.size(), 96U);
-      const std::int64_t opened = opened_faces(s);
-      EXPECT_TRUE(lean == 0 ? opened == 16 : opened >= 20) << opened << "; a leaning cut has faces between its steps, too";
-    }
-  }
-}
-
-TEST_F(Separation, RandomStrokesThroughALoadedLatticeLeaveClosedSurfaces) {
-  std::mt19937 dice(23);
-  std::uniform_real_distribution<double> any(0, 1);
-  for (int run = 0; run < 6; ++run) {
-    Scene scene = pulled(lattice_scene(run % 2 == 0 ? ElementKind::hex8 : ElementKind::hex8full));
-    scene.gravity = {0, -9.81, 0};
-    Simulation s(scene, open_backend("cpu"));
-    const std::int64_t elements = s.model().bodies[0].elements();
-    const double mass = mass_of(s), volume = volume_of(s);
-    for (int stroke = 0; stroke < 10; ++stroke) {
-      random_stroke(s, "stroke" + std::to_string(stroke), [&] { return any(dice); });
-      expect_kept(s, elements, mass, volume);
-    }
-    EXPECT_GT(s.topology_version(), 5);
-  }
-}
-
-/// The broken faces of a body, sorted by element: [elements] bits.
-std::vector<int> broken_faces(const Simulation& s) {
-  std::vector<int> bits(static_cast<std::size_t>(s.model().bodies[0].elements()), 0);
-  for (const TearRecord& tear : s.state().tears) bits[static_cast<std::size_t>(tear.tet)] = tear.broken();
-  return bits;
 }
 
 TEST_F(Separation, AnUnloadedBodyOpensAsItsMeshAtRestDoes) {
@@ -283,30 +139,6 @@ TEST_F(Separation, BackendsAndAResumedRunAgree) {
   EXPECT_EQ(write_state(whole.state()), write_state(device.state()));
 }
 
-/// Traces of a blade in hexahedra are part of a checkpoint, too.
-TEST_F(Separation, HexahedraResumeAndBackendsAgree) {
-  Scene scene = pulled(lattice_scene(ElementKind::hex8));
-  scene.blades = block_cut_through().blades;
-  SimulationOptions options;
-  options.dt = 4e-4;
-  Simulation whole(scene, open_backend("cpu"), options);
-  while (whole.topology_version() < 3 && whole.step() < 2000) whole.advance(16);
-  ASSERT_GE(whole.topology_version(), 3);
-  whole.advance(5);
-  const Checkpoint saved = take_checkpoint(whole);
-  ASSERT_FALSE(whole.state().blades.traces.empty());
-  whole.advance(300);
-  Simulation resumed(scene, open_backend("cpu"), options);
-  restore_checkpoint(resumed, saved, "saved");
-  resumed.advance(300);
-  EXPECT_EQ(whole.hash(), resumed.hash());
-  EXPECT_EQ(write_state(whole.state()), write_state(resumed.state()));
-  if (!testing::has_opencl()) return;
-  Simulation device(scene, open_backend("opencl:0"), options);
-  device.advance(whole.step());
-  EXPECT_EQ(whole.hash(), device.hash());
-}
-
 /// In the gap of a cut, a blade that moves cuts nothing more.
 TEST_F(Separation, ABladeInTheGapOpensNothing) {
   for (const double gap : {0.012, 0.02, 0.03}) {
@@ -383,29 +215,6 @@ TEST_F(Separation, ABladeThatPressesOpensFacesWhereTissueGivesWay) {
   EXPECT_GT(pressed.fracture, 0);
   EXPECT_GE(opened_faces(s), 12);
   EXPECT_EQ(pieces_of(s.model().bodies[0]), 1);
-}
-
-TEST_F(Separation, ABladeThatPressesMeetsHexahedra) {
-  Scene scene = lattice_scene(ElementKind::hex8);
-  scene.bodies[0].fixed.clear();
-  hold(scene.bodies[0], {0, 0.0001, 0}, {0, -1, 0});
-  scene.bodies[0].material.toughness = 4000;
-  Blade scalpel =
-      separating("scalpel", {{0, 0.033, 0.041, -0.01, 0.033, 0.041, 0.05}, {0.3, 0.033, 0.015, -0.01, 0.033, 0.015, 0.05}});
-  scalpel.cuts = BladeCuts::by_force;
-  scalpel.edge = 0.0005;
-  scene.blades = {scalpel};
-  Simulation s(scene, open_backend("cpu"));
-  while (s.time() < 0.3 && !s.divergence()) s.advance(16);
-  ASSERT_FALSE(s.divergence()) << s.divergence()->message();
-  EXPECT_GT(s.state().pressed.at("scalpel").first, 0) << "it has met the tissue";
-  EXPECT_GT(opened_faces(s), 0);
-  const Checkpoint saved = take_checkpoint(s);
-  Simulation resumed(scene, open_backend("cpu"));
-  restore_checkpoint(resumed, saved, "saved");
-  s.advance(50);
-  resumed.advance(50);
-  EXPECT_EQ(s.hash(), resumed.hash());
 }
 
 TEST_F(Separation, WhatCannotPartIsRefused) {
