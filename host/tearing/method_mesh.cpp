@@ -85,19 +85,7 @@ BodyMesh solid_of(const ElementMesh& mesh) {
   for (auto& tet : solid.tets) std::for_each(tet.begin(), tet.end(), keep);
   for (auto& hex : solid.hexes) std::for_each(hex.begin(), hex.end(), keep);
   solid.triangles = boundary_of({solid.nodes, solid.tets, solid.hexes, {}});
-  std::vector<std::int32_t> vertex(solid.nodes.size(), -1);
-  for (auto& triangle : solid.triangles) {
-    for (std::int32_t& v : triangle) {
-      if (vertex[v] < 0) {
-        vertex[v] = static_cast<std::int32_t>(solid.surface.size());
-        solid.surface.push_back(solid.nodes[v]);
-        solid.surface_nodes.push_back({v, v, v, v, v, v, v, v});
-        solid.surface_weights.push_back({1, 0, 0, 0, 0, 0, 0, 0});
-      }
-      v = vertex[v];
-    }
-  }
-  solid.surface_volume = signed_volume({solid.surface, solid.triangles});
+  surface_on_nodes(solid);
   return solid;
 }
 

@@ -4,6 +4,7 @@ import sys
 
 import pliant
 from pliant import view
+from pliant._codes import exit_code
 
 
 def main():
@@ -18,17 +19,13 @@ def main():
     parser.add_argument("--host", default="127.0.0.1", help="the address that is listened on; 0.0.0.0: every machine may look, and steer (127.0.0.1)")
     parser.add_argument("--pause", action="store_true", help="wait for the button")
     options = parser.parse_args()
-    try:
-        view.need_viser()
-        world = pliant.World(options.scene, backend=options.backend, interactive=True, cutting=True)
-        world.show(options.port, host=options.host, play=not options.pause)
-    except pliant.Error as error:
-        print(f"pliant: {error}", file=sys.stderr)
-        return 4 if error.code == 4 else 2
-    except (ImportError, OSError) as error:
-        print(f"pliant: {error}", file=sys.stderr)
-        return 2
-    return 0
+    return exit_code(lambda: _open(options))
+
+
+def _open(options):
+    view.need_viser()
+    world = pliant.World(options.scene, backend=options.backend, interactive=True, cutting=True)
+    world.show(options.port, host=options.host, play=not options.pause)
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@
 #include <bit>
 #include <numeric>
 
+#include "geometry/barycentric.h"
 #include "geometry/vec.h"
 #include "lattice/lattice_cell.h"
 
@@ -45,14 +46,6 @@ const std::array<SamplePlace, 64>& sample_places() {
     return all;
   }();
   return places;
-}
-
-std::array<double, 4> barycentric_weights(const std::array<Vec3d, 4>& x, const Vec3d& p) {
-  const Vec3d a = vec::sub(x[1], x[0]), b = vec::sub(x[2], x[0]), c = vec::sub(x[3], x[0]), r = vec::sub(p, x[0]);
-  const double volume = vec::dot(a, vec::cross(b, c));
-  const double wa = vec::dot(r, vec::cross(b, c)) / volume, wb = vec::dot(a, vec::cross(r, c)) / volume,
-               wc = vec::dot(a, vec::cross(b, r)) / volume;
-  return {1 - wa - wb - wc, wa, wb, wc};
 }
 
 /// No copy is lighter than the lightest part of a lattice cell may be: nodes with next to no mass are beyond what float

@@ -64,24 +64,6 @@ void from_lattice(const Body& body, BodyMesh& solid, SurfaceReport& report) {
   solid.cells = std::move(lattice.cells);
 }
 
-/// Boundary triangles over the nodes they use.
-void surface_from_boundary(const VolumeMesh& mesh, BodyMesh& solid) {
-  solid.triangles = boundary_triangles(mesh);
-  std::vector<std::int32_t> vertex(mesh.vertices.size(), -1);
-  for (auto& triangle : solid.triangles) {
-    for (std::int32_t& v : triangle) {
-      if (vertex[v] < 0) {
-        vertex[v] = static_cast<std::int32_t>(solid.surface.size());
-        solid.surface.push_back(mesh.vertices[v]);
-        solid.surface_nodes.push_back({v, v, v, v, v, v, v, v});
-        solid.surface_weights.push_back({1, 0, 0, 0, 0, 0, 0, 0});
-      }
-      v = vertex[v];
-    }
-  }
-  solid.surface_volume = signed_volume({solid.surface, solid.triangles});
-}
-
 void from_mesh(const Body& body, BodyMesh& solid, SurfaceReport& report) {
   const VolumeMesh mesh = body.thickness > 0 ? thicken(surface_of(body, report), body.thickness, body.surface.string())
                                              : read_volume(body.mesh, body.scale, body.translate);
@@ -105,7 +87,8 @@ void from_mesh(const Body& body, BodyMesh& solid, SurfaceReport& report) {
     solid.hexes.push_back(corners);
   }
   solid.fill.assign(solid.tets.size() + solid.hexes.size(), 1.0);
-  surface_from_boundary(mesh, solid);
+  solid.triangles = boundary_triangles(mesh);
+  surface_on_nodes(solid);
 }
 
 /// The cells of a lattice alone. What they enclose is the body now, though some are filled in part only.
@@ -121,7 +104,8 @@ void forget_lattice(BodyMesh& solid) {
   plain.tets = std::move(solid.tets);
   plain.hexes = std::move(solid.hexes);
   plain.fill = std::move(solid.fill);
-  surface_from_boundary(mesh, plain);
+  plain.triangles = boundary_triangles(mesh);
+  surface_on_nodes(plain);
   solid = std::move(plain);
 }
 
@@ -180,6 +164,22 @@ void repartition(const Body& body, BodyElements& solid) {
     if (!solid.copy_of.empty()) cell.nodes = solid.tets.empty() ? solid.hexes[c] : cell_corners(&solid.tets[6 * c]);
     solid.matching_cells.push_back(cell);
   }
+}
+
+void surface_on_nodes(BodyMesh& solid) {
+  std::vector<std::int32_t> vertex(solid.nodes.size(), -1);
+  for (auto& triangle : solid.triangles) {
+    for (std::int32_t& v : triangle) {
+      if (vertex[v] < 0) {
+        vertex[v] = static_cast<std::int32_t>(solid.surface.size());
+        solid.surface.push_back(solid.nodes[v]);
+        solid.surface_nodes.push_back({v, v, v, v, v, v, v, v});
+        solid.surface_weights.push_back({1, 0, 0, 0, 0, 0, 0, 0});
+      }
+      v = vertex[v];
+    }
+  }
+  solid.surface_volume = signed_volume({solid.surface, solid.triangles});
 }
 
 BodyMesh make_body_mesh(const Body& body) {

@@ -69,6 +69,9 @@ struct BodyMesh : BodyElements, BodySurface {};
 BodyMesh make_body_mesh(const Body& body);
 std::vector<BodyMesh> make_body_meshes(const Scene& scene);
 
+/// Gives a body without a surface that of its triangles, whose corners are nodes: the vertices are the nodes they use.
+void surface_on_nodes(BodyMesh& solid);
+
 /// Repeats the choice of the lattice's operational cells, for the current body.model.
 void repartition(const Body& body, BodyElements& solid);
 

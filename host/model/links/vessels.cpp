@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "geometry/barycentric.h"
 #include "geometry/spatial_hash.h"
 #include "geometry/vec.h"
 #include "lattice/lattice.h"
@@ -27,14 +28,6 @@ struct Held {
   std::array<std::int32_t, 4> nodes{};
   std::array<double, 4> weights{};
 };
-
-std::array<double, 4> barycentric(const std::array<Vec3d, 4>& x, const Vec3d& p) {
-  const Vec3d a = vec::sub(x[1], x[0]), b = vec::sub(x[2], x[0]), c = vec::sub(x[3], x[0]), d = vec::sub(p, x[0]);
-  const double det = vec::dot(a, vec::cross(b, c));
-  const double s = vec::dot(d, vec::cross(b, c)) / det, t = vec::dot(a, vec::cross(d, c)) / det,
-               u = vec::dot(a, vec::cross(b, d)) / det;
-  return {1 - s - t - u, s, t, u};
-}
 
 /// Finds the element that holds a point at rest. Of the copies of a cut element it is the one with most of the point's weight
 /// on nodes that have material there.
@@ -91,7 +84,7 @@ class ElementFinder {
   [[nodiscard]] std::optional<Held> in_tet(std::int32_t e, const std::array<std::int32_t, 4>& nodes, const Vec3d& p) const {
     std::array<Vec3d, 4> x{};
     for (std::size_t a = 0; a < 4; ++a) x[a] = solid_.nodes[nodes[a]];
-    const std::array<double, 4> w = barycentric(x, p);
+    const std::array<double, 4> w = barycentric_weights(x, p);
     if (!std::all_of(w.begin(), w.end(), [](double v) { return v >= -kSlack; })) return {};
     return Held{e, nodes, w};
   }
@@ -167,10 +160,10 @@ class Bars {
 
   /// Halves a segment until the elements of both ends touch.
   void divide(const Vec3d& a, const Held& at_a, const Vec3d& b, const Held& at_b, int depth) {
-    if (at_a.element >= 0 && at_b.element >= 0 && (depth >= kHalvings || finder_.touch(at_a.element, at_b.element))) {
+    if (at_a.element >= 0 && at_b.element >= 0 && finder_.touch(at_a.element, at_b.element)) {
       weigh(vec::norm(vec::sub(b, a)), at_a, at_b);
       // A cut between them leaves both without a common node.
-      if (depth >= kHalvings || finder_.connected(at_a.element, at_b.element)) add(a, at_a, b, at_b);
+      if (finder_.connected(at_a.element, at_b.element)) add(a, at_a, b, at_b);
       return;
     }
     if (depth >= kHalvings) {  // in a gap, or where a cut has removed the element

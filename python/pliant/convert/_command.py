@@ -4,6 +4,7 @@ import sys
 from pathlib import Path
 
 import pliant
+from pliant._codes import exit_code
 from pliant.convert import MATERIAL, from_meshio, from_usd, save_scene, to_usd
 
 STAGES = (".usd", ".usda", ".usdc", ".usdz")
@@ -52,20 +53,15 @@ def _of_mesh(options, out, common):
 
 def main(arguments):
     options = _parser().parse_args(arguments)
-    try:
-        if Path(options.source).suffix.lower() == ".json":
-            world = pliant.World(options.source, backend=options.backend)
-            report = to_usd(options.out, world, options.seconds, fps=options.fps, source=options.over)
-            print(f"{options.out}: {report.time:.4g} s")
-            if report.diverged:
-                print(f"pliant: {report.message}", file=sys.stderr)
-                return 4
-        else:
-            _scene(options)
-    except pliant.Error as error:
-        print(f"pliant: {error}", file=sys.stderr)
-        return 4 if error.code == 4 else 2
-    except (ImportError, OSError) as error:
-        print(f"pliant: {error}", file=sys.stderr)
-        return 2
-    return 0
+    is_scene = Path(options.source).suffix.lower() == ".json"
+    return exit_code(lambda: _stage(options) if is_scene else _scene(options))
+
+
+def _stage(options):
+    world = pliant.World(options.source, backend=options.backend)
+    report = to_usd(options.out, world, options.seconds, fps=options.fps, source=options.over)
+    print(f"{options.out}: {report.time:.4g} s")
+    if not report.diverged:
+        return 0
+    print(f"pliant: {report.message}", file=sys.stderr)
+    return 4
