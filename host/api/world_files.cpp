@@ -117,7 +117,7 @@ void World::Impl::serve_files() {
   std::vector<FileRequest> requests;
   {
     const std::lock_guard lock(mutex);
-    requests.swap(files);
+    requests = files;  // they stay there until they are served: load() looks for a save() under way
   }
   if (requests.empty()) return;
   for (const FileRequest& r : requests) {
@@ -135,6 +135,7 @@ void World::Impl::serve_files() {
   }
   {
     const std::lock_guard lock(mutex);
+    files.erase(files.begin(), files.begin() + static_cast<std::ptrdiff_t>(requests.size()));
     halted = report.diverged || !lost.empty();
     replacing = std::any_of(files.begin(), files.end(), [](const FileRequest& r) {
       return r.what == FileRequest::What::load || r.what == FileRequest::What::reset;
@@ -158,7 +159,11 @@ void World::save(const std::string& file) const {
 
 void World::load(const std::string& file) {
   const api::Call call(impl_, false);
-  check_there(file);
+  const auto writes_it = [&](const FileRequest& r) { return r.what == FileRequest::What::save && r.file == file; };
+  std::unique_lock lock(impl_->mutex);
+  const bool about_to_come = std::any_of(impl_->files.begin(), impl_->files.end(), writes_it);
+  lock.unlock();
+  if (!about_to_come) check_there(file);
   if (impl_->leave_to_worker({FileRequest::What::load, file})) return;
   const api::Hold hold(*impl_);
   impl_->load(file);

@@ -32,12 +32,15 @@ SceneSpec block_and_ball() {
   return scene;
 }
 
-/// A device whose tip goes down from its first place, by `depth` within `seconds`, and stays there.
+/// A device whose tip goes down from its first place, by `depth` within `seconds` of the first read, and stays there. The loop
+/// aligns the tool with the first sample, which a busy machine may read late.
 class PressingDevice final : public HapticDevice {
  public:
-  PressingDevice(double depth, double seconds) : depth_(depth), seconds_(seconds), began_(Clock::now()) {}
+  PressingDevice(double depth, double seconds) : depth_(depth), seconds_(seconds) {}
   DeviceSample read() noexcept override {
-    const double t = std::chrono::duration<double>(Clock::now() - began_).count(), s = std::min(1.0, t / seconds_);
+    const Clock::time_point now = Clock::now();
+    if (number_ == 0) began_ = now;
+    const double t = std::chrono::duration<double>(now - began_).count(), s = std::min(1.0, t / seconds_);
     DeviceSample sample;
     sample.position = {0, -depth_ * s * s * (3 - 2 * s), 0};
     sample.time = t;

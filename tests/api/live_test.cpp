@@ -167,6 +167,21 @@ TEST(Live, SaveLoadAndResetDoNotWait) {
   EXPECT_EQ(world.hash(), other.hash());
 }
 
+TEST(Live, AFileThatIsAboutToBeWrittenCanBeLoaded) {
+  const test::TempFolder folder;
+  const std::string file = (folder.path() / "state.pck").string();
+  World world(block(), on("cpu"));
+  Told told(world);
+  world.run_live({20, 1});
+  until_frames(world, 3);
+  for (int i = 0; i < 20; ++i) {  // at any moment of the worker
+    world.save(file);
+    world.load(file);
+    EXPECT_EQ(told.wait_for("loaded").subject, file) << i;
+    std::filesystem::remove(file);
+  }
+}
+
 TEST(Live, ACallThatWaitsSeesWhatWasAskedForBefore) {
   const test::TempFolder folder;
   const std::string file = (folder.path() / "state.pck").string();
