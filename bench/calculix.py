@@ -22,10 +22,10 @@ PATHS = ((1, 3), (3, 2), (2, 6), (6, 4), (4, 5), (5, 1))
 EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
 
 
-def box():
+def box(cells=CELLS, size=SIZE):
     """Corner nodes, and tetrahedra around each cell's diagonal from corner 0 to 7."""
-    nx, ny, nz = CELLS
-    nodes = [tuple(SIZE[c] * at[c] / CELLS[c] for c in range(3))
+    nx, ny, nz = cells
+    nodes = [tuple(size[c] * at[c] / cells[c] for c in range(3))
              for at in ((i, j, k) for k in range(nz + 1) for j in range(ny + 1) for i in range(nx + 1))]
     tets = []
     for k in range(nz):
@@ -98,18 +98,19 @@ def pliant_displacements(pliant, folder, nodes, force, linear):
     return vertices
 
 
-def surface_order(nodes, tets):
-    """Nodes of the boundary in the order in which Pliant numbers the vertices of a mesh's surface: as its triangles name them."""
+def boundary(tets):
+    """Faces of one tetrahedron alone, outward."""
     faces = {}
     for tet in tets:
         for f in ((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1)):
             corners = tuple(tet[i] for i in f)
             faces.setdefault(tuple(sorted(corners)), []).append(corners)
-    order = []
-    for found in faces.values():
-        if len(found) == 1:
-            order += [n for n in found[0] if n not in order]
-    return order
+    return [found[0] for found in faces.values() if len(found) == 1]
+
+
+def surface_order(tets):
+    """Nodes of the boundary in the order in which Pliant numbers the vertices of a mesh's surface: as its triangles name them."""
+    return list(dict.fromkeys(n for triangle in boundary(tets) for n in triangle))
 
 
 def main():
@@ -123,7 +124,7 @@ def main():
     folder.mkdir(parents=True, exist_ok=True)
     nodes, tets = box()
     write_vtk(folder / "box.vtk", nodes, tets)
-    order = surface_order(nodes, tets)
+    order = surface_order(tets)
     worst = 0.0
     for name, nonlinear, force in (("linear", False, -0.001), ("nonlinear", True, -0.05)):
         count = write_deck(folder / f"{name}.inp", nodes, tets, force, nonlinear)

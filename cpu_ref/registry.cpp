@@ -40,6 +40,7 @@
   ROW(node_load) \
   ROW(step_gravity) \
   ROW(link_points) \
+  ROW(spring_node) \
   ROW(spring_force) \
   ROW(link_gather) \
   ROW(surface_position) \

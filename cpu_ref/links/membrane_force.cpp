@@ -72,8 +72,13 @@ void membrane_force(Range range, const Scalar* link_u, const std::int32_t* membr
       f[0][e] = minus(std::fma(p2.x, b22, a1.x)), f[1][e] = minus(std::fma(p2.y, b22, a1.y)),
       f[2][e] = minus(std::fma(p2.z, b22, a1.z));
     }
-    std::copy(&f[0][0], &f[0][0] + PLIANT_MEMBRANE_FORCE_PLANES * PLIANT_TILE,
-              link_force + force_base + PLIANT_MEMBRANE_FORCE_PLANES * tile);
+    for (int a = 0; a < 3; ++a) {
+      for (int e = 0; e < PLIANT_TILE; ++e) {
+        Scalar* texel = link_force + 4 * (force_base + 3 * tile + a * PLIANT_TILE + e);
+        for (int c = 0; c < 3; ++c) texel[c] = f[3 * a + c][e];
+        texel[3] = 0;
+      }
+    }
   }
 }
 

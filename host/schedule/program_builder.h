@@ -137,17 +137,25 @@ class ProgramBuilder {
   void emit_loads(const std::vector<std::int32_t>& slots, std::vector<std::int32_t> offset, std::vector<double> force,
                   std::vector<std::int32_t> curve, std::vector<std::int32_t> triangle, std::vector<double> weight,
                   std::vector<std::int32_t> corner);
-  /// Defined in links/program_links.cpp: forces of links, added to those loads. LinkForces: per point the forces on it.
+  /// Defined in links/: forces of links, added to those loads.
   struct PointForce {
-    std::int32_t position = 0;  ///< of its x component in link_force
-    double sign = 1;            ///< -1: the opposite force stands there
+    std::int32_t texel = 0;  ///< in link_force
+    double sign = 1;         ///< -1: the opposite force stands there
   };
-  using LinkForces = std::vector<std::vector<PointForce>>;
+  using LinkForces = std::vector<std::vector<PointForce>>;  ///< per point the forces on it
   void add_links();
-  void add_link_points();
-  void add_springs(const SpringBatch& b, std::size_t index, std::int32_t base, LinkForces& forces);
-  void add_membrane(std::size_t index, std::int32_t base, LinkForces& forces);
-  void add_link_gather(const LinkForces& forces, std::int32_t zero);
+  /// Adds the springs of bodies, which are between nodes; returns the other links, without broken springs, and their points.
+  Links add_networks();
+  void add_network(const SpringBatch& b, std::size_t index);
+  /// Fills link_place_, and adds a pass for the displacements of the points, unless all are nodes.
+  void add_link_points(const Links& links);
+  void add_springs(const Links& links, std::size_t index, std::int32_t base, LinkForces& forces);
+  void add_membrane(const Links& links, std::size_t index, std::int32_t base, LinkForces& forces);
+  void add_link_gather(const LinkPoints& points, const LinkForces& forces, std::int32_t zero);
+  /// The law of springs as a polygon; returns its number of segments, too.
+  std::pair<BufferId, std::int32_t> add_spring_curve(const Spring& law, std::string name);
+  /// [tiles][2][16] slots and whether their loads are there (kernels/links/node_sum.cl); from now on they are.
+  std::vector<std::int32_t> load_nodes(const std::vector<std::int32_t>& slots);
   /// (slot, position in corner_force) for the corners of list elements at brick nodes, ascending.
   [[nodiscard]] std::vector<std::pair<std::int32_t, std::int32_t>> brick_corners() const;
 
@@ -181,7 +189,9 @@ class ProgramBuilder {
   std::int32_t edged_tools_ = 0;  ///< one bit per tool with edges (kernels/contact/contact_edge.cl)
   /// Returns `buffer` if a tool has edges, otherwise `other` as a placeholder that no kernel reads.
   [[nodiscard]] const char* of_edges(const char* buffer, const char* other) const { return edged_tools_ != 0 ? buffer : other; }
-  int laws_ = 0;  ///< number of batches whose law was added
+  int laws_ = 0;                          ///< number of batches whose law was added
+  std::vector<std::int32_t> link_place_;  ///< [points] texel of link_u
+  std::vector<char> loaded_;              ///< [slots] whether a pass has written node_load; of links
 };
 
 }  // namespace pliant

@@ -4,9 +4,9 @@
 //   F_k = T_k + G_k,  E_kk = T_k . G_k + G_k . G_k / 2,  2 E_12 = T_1 . G_2 + T_2 . G_1 + G_1 . G_2
 //   S_11 = c (E_11 + nu E_22),  S_22 = c (E_22 + nu E_11),  S_12 = c (1 - nu) E_12,  c = E / (1 - nu^2);  P_k = F_1 S_1k + F_2 S_2k
 // Strain is computed from displacements, so that no digits cancel where it is small.
-// link_u: texels, displacements of the links' points [m]. membrane_points: [tiles][3][16] indices of points.
+// link_u: texels, displacements of the links' points [m]. membrane_points: [tiles][3][16] texels of link_u.
 // membrane_data: [tiles][10][16] T_1, T_2 [1], dN_1/dX_1, dN_1/dX_2, dN_2/dX_2 [1/m] (dN_2/dX_1 is 0), V [m^3].
-// link_force: [tiles][3 corners][3][16] from force_base on [N]. stiffness: c [Pa]. ratio: nu [1].
+// link_force: texels [tiles][3 corners][16] from force_base on [N]. stiffness: c [Pa]. ratio: nu [1].
 #include "arith.cl"
 #include "texels.cl"
 
@@ -21,7 +21,7 @@ __kernel void membrane_force(__global const float* link_u, __global const int* m
   const texels u0 = texels_gather(link_u, points), u1 = texels_gather(link_u, points + PLIANT_TILE);
   const texels u2 = texels_gather(link_u, points + 2 * PLIANT_TILE);
   const real x0 = texels_x(u0), y0 = texels_y(u0), z0 = texels_z(u0);
-  const real b11 = DATA(6), b12 = DATA(7), b22 = DATA(8), v = DATA(9);
+  const real b11 = DATA(6), b12 = DATA(7), b22 = DATA(8), v = DATA(9), none = 0.0f;
   const real v1x = texels_x(u1) - x0, v1y = texels_y(u1) - y0, v1z = texels_z(u1) - z0;
   const real v2x = texels_x(u2) - x0, v2y = texels_y(u2) - y0, v2z = texels_z(u2) - z0;
   const real g1x = v1x * b11, g1y = v1y * b11, g1z = v1z * b11;
@@ -38,15 +38,8 @@ __kernel void membrane_force(__global const float* link_u, __global const int* m
   const real p2x = fma(f2x, s22, f1x * s12), p2y = fma(f2y, s22, f1y * s12), p2z = fma(f2z, s22, f1z * s12);
   const real a1x = fma(p2x, b12, p1x * b11), a1y = fma(p2y, b12, p1y * b11), a1z = fma(p2z, b12, p1z * b11);
   const real a2x = p2x * b22, a2y = p2y * b22, a2z = p2z * b22;
-  __global float* out = link_force + force_base + TILE_BASE(e, PLIANT_MEMBRANE_FORCE_PLANES);
-#define PUT(plane, value) STORE(value, out, (plane)*PLIANT_TILE)
-  PUT(0, -fma(p2x, b22, a1x));
-  PUT(1, -fma(p2y, b22, a1y));
-  PUT(2, -fma(p2z, b22, a1z));
-  PUT(3, a1x);
-  PUT(4, a1y);
-  PUT(5, a1z);
-  PUT(6, a2x);
-  PUT(7, a2y);
-  PUT(8, a2z);
+  const int out = force_base + TILE_BASE(e, 3);
+  texels_store(-fma(p2x, b22, a1x), -fma(p2y, b22, a1y), -fma(p2z, b22, a1z), none, link_force, out);
+  texels_store(a1x, a1y, a1z, none, link_force, out + PLIANT_TILE);
+  texels_store(a2x, a2y, a2z, none, link_force, out + 2 * PLIANT_TILE);
 }

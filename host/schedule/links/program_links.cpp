@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 
+#include "schedule/links/spring_numbers.h"
 #include "schedule/program_builder.h"
 
 namespace pliant {
@@ -32,74 +34,60 @@ PointRows point_rows(const LinkPoints& points) {
   return rows;
 }
 
-/// Slots that the pass node_load writes.
-std::vector<std::int32_t> written_loads(const Program& program) {
+/// [slots] whether the pass node_load writes them.
+std::vector<char> written_loads(const Program& program, std::int32_t slots) {
+  std::vector<char> out(static_cast<std::size_t>(slots));
   const BufferId id = program.find("load_node");
-  return id < 0 ? std::vector<std::int32_t>{} : program.at(id).ints;
+  if (id < 0) return out;
+  for (const std::int32_t s : program.at(id).ints) {
+    if (s >= 0) out[s] = 1;
+  }
+  return out;
 }
 
 bool moves(const Links& links) {
   return std::any_of(links.springs.begin(), links.springs.end(), [](const SpringBatch& b) { return b.damped(); });
 }
 
-std::vector<double> spring_numbers(const SpringBatch& b, const LinkPoints& points, std::size_t count) {
-  std::vector<double> data(PLIANT_SPRING_PLANES * count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t s = std::min(i, b.size() - 1);  // padding repeats the last one, whose copies nobody gathers
-    const Vec3d d = vec::sub(points.rest[b.points[s][1]], points.rest[b.points[s][0]]);
-    const double l = b.length[s];
-    const std::array<double, PLIANT_SPRING_PLANES> record{
-        d[0], d[1], d[2], l, vec::dot(d, d) - l * l, b.parameters[s][0], b.parameters[s][1], b.damper[s]};
-    for (std::size_t k = 0; k < record.size(); ++k) data[tile_base(i, record.size()) + k * PLIANT_TILE] = record[k];
-  }
-  return data;
-}
-
-/// [segments][3] e, F and slope of each line of a curve; one row of zeros for the other laws.
-std::vector<double> curve_numbers(const Spring& law) {
-  std::vector<double> out;
-  for (std::size_t k = 0; k + 1 < law.curve.size(); ++k) {
-    const auto &from = law.curve[k], &to = law.curve[k + 1];
-    out.insert(out.end(), {from[0], from[1], (to[1] - from[1]) / (to[0] - from[0])});
-  }
-  if (out.empty()) out.assign(3, 0.0);
-  return out;
-}
-
 }  // namespace
 
 void ProgramBuilder::add_links() {
-  const Links& links = model_.links;
+  if (model_.links.empty()) return;
+  loaded_ = written_loads(program_, model_.slots);
+  const Links links = add_networks();
   if (links.empty()) return;
   std::vector<std::int32_t> base;  // of each batch in link_force
-  std::int32_t numbers = 0;
-  std::vector<SpringBatch> whole;
+  std::int32_t texels = 0;
   for (const SpringBatch& b : links.springs) {
-    base.push_back(numbers);
-    whole.push_back(b.without_broken());
-    numbers += 3 * padded(whole.back().size());
+    base.push_back(texels);
+    texels += padded(b.size());
   }
   for (const MembraneBatch& b : links.membranes) {
-    base.push_back(numbers);
-    numbers += PLIANT_MEMBRANE_FORCE_PLANES * padded(b.size());
+    base.push_back(texels);
+    texels += 3 * padded(b.size());
   }
-  link_force_ = add(make_reals("link_force", BufferType::real, static_cast<std::size_t>(numbers) + 3 * PLIANT_TILE,
-                               BufferRole::scratch, "[tiles][points][3][16]", "N", "spring_force, membrane_force"));
-  program_.buffers[link_force_].fixed = 3 * PLIANT_TILE;  // zeros that pad the lists of link_gather
-  add_link_points();
+  link_force_ = add(make_reals("link_force", BufferType::real4, static_cast<std::size_t>(texels) + 1, BufferRole::scratch,
+                               "[tiles][points][16]", "N", "spring_force, membrane_force"));
+  program_.buffers[link_force_].fixed = 4;  // zeros that pad the lists of link_gather
+  add_link_points(links);
   LinkForces forces(links.points.size());
-  for (std::size_t b = 0; b < whole.size(); ++b) {
-    if (whole[b].size() > 0) add_springs(whole[b], b, base[b], forces);
+  for (std::size_t b = 0; b < links.springs.size(); ++b) add_springs(links, b, base[b], forces);
+  for (std::size_t m = 0; m < links.membranes.size(); ++m) {
+    add_membrane(links, m, base[links.springs.size() + m], forces);
   }
-  for (std::size_t m = 0; m < links.membranes.size(); ++m) add_membrane(m, base[whole.size() + m], forces);
-  add_link_gather(forces, numbers);
+  add_link_gather(links.points, forces, texels);
 }
 
-void ProgramBuilder::add_link_points() {
-  const LinkPoints& points = model_.links.points;
+void ProgramBuilder::add_link_points(const Links& links) {
+  const LinkPoints& points = links.points;
+  link_u_ = node_u_, link_w_ = node_w_;
+  link_place_.clear();
+  for (std::size_t p = 0; p < points.size(); ++p) link_place_.push_back(points.slots[p][0]);
+  if (std::all_of(points.weights.begin(), points.weights.end(), [](const auto& w) { return w[0] == 1; })) return;
+  std::iota(link_place_.begin(), link_place_.end(), 0);
   const auto count = static_cast<std::size_t>(padded(points.size()));
   PointRows rows = point_rows(points);
-  const bool moving = moves(model_.links);
+  const bool moving = moves(links);
   const std::size_t entries = rows.weights.size();
   const auto offset_id = add(make_ints("point_offset", BufferRole::constant, "[tiles + 1]", std::move(rows.slots.offset)));
   const auto slot_id = add(make_ints("point_slot", BufferRole::constant, "[rows][16]", std::move(rows.slots.index)));
@@ -121,43 +109,44 @@ void ProgramBuilder::add_link_points() {
                            each * (moving ? 12 : 6)});
 }
 
-void ProgramBuilder::add_springs(const SpringBatch& b, std::size_t index, std::int32_t base, LinkForces& forces) {
+void ProgramBuilder::add_springs(const Links& links, std::size_t index, std::int32_t base, LinkForces& forces) {
+  const SpringBatch& b = links.springs[index];
   const auto count = static_cast<std::size_t>(padded(b.size()));
   std::vector<std::int32_t> ends(2 * count);
+  std::vector<double> data(PLIANT_SPRING_PLANES * count);
   for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t k = 0; k < 2; ++k) ends[tile_base(i, 2) + k * PLIANT_TILE] = b.points[std::min(i, b.size() - 1)][k];
+    const std::size_t s = std::min(i, b.size() - 1);  // padding repeats the last one, whose copies nobody gathers
+    for (std::size_t k = 0; k < 2; ++k) ends[tile_base(i, 2) + k * PLIANT_TILE] = link_place_[b.points[s][k]];
+    const SpringRecord r = spring_record(links.points, b, s);
+    const std::array<double, PLIANT_SPRING_PLANES> record{r.rest[0], r.rest[1], r.rest[2], r.length,
+                                                          r.squares, r.first,   r.second,  r.damper};
+    for (std::size_t k = 0; k < record.size(); ++k) data[tile_base(i, record.size()) + k * PLIANT_TILE] = record[k];
   }
   for (std::size_t s = 0; s < b.size(); ++s) {
-    const std::int32_t position = base + static_cast<std::int32_t>(tile_base(s, 3));
-    forces[b.points[s][0]].push_back({position, 1});
-    forces[b.points[s][1]].push_back({position, -1});
+    const std::int32_t texel = base + static_cast<std::int32_t>(s);
+    forces[b.points[s][0]].push_back({texel, 1});
+    forces[b.points[s][1]].push_back({texel, -1});
   }
   const auto ends_id = add(make_ints(fmt::format("spring_points/{}", index), BufferRole::constant, "[tiles][2][16]", ends));
-  const auto data_id =
-      add(make_reals(fmt::format("spring_data/{}", index), BufferType::real, PLIANT_SPRING_PLANES * count, BufferRole::constant,
-                     "[tiles][8][16]", "m, N/m", "model", spring_numbers(b, model_.links.points, count)));
-  std::vector<double> curve = curve_numbers(b.law);
-  const std::size_t curve_size = curve.size();
-  const auto segments = static_cast<std::int32_t>(curve_size / 3);
-  const auto curve_id = add(make_reals(fmt::format("spring_curve/{}", index), BufferType::real, curve_size,
-                                       BufferRole::constant, "[segments][3]", "m, N, N/m", "model", std::move(curve)));
+  const auto data_id = add(make_reals(fmt::format("spring_data/{}", index), BufferType::real, PLIANT_SPRING_PLANES * count,
+                                      BufferRole::constant, "[tiles][8][16]", "m, N/m", "model", std::move(data)));
+  const auto [curve_id, segments] = add_spring_curve(b.law, fmt::format("spring_curve/{}", index));
   program_.step.push_back(
       {"spring_force",
-       {{"LAW", static_cast<int>(b.law.law)}, {"SLACK", b.law.slack ? 1 : 0}, {"VISCOUS", b.damped() ? 1 : 0}},
+       spring_defines(b),
        {buffer_arg(link_u_), buffer_arg(link_w_), buffer_arg(ends_id), buffer_arg(data_id), buffer_arg(curve_id),
         buffer_arg(link_force_), buffer_arg(params_), int_arg(segments), int_arg(base)},
        Shape::lanes,
        static_cast<std::int64_t>(count),
        b.label,
        static_cast<std::int64_t>(b.size()),
-       8 + 4.0 * PLIANT_SPRING_PLANES + 12 + 16.0 * double(model_.links.points.size()) / double(b.size()),
+       8 + 4.0 * PLIANT_SPRING_PLANES + 16 + 16.0 * double(links.points.size()) / double(b.size()),
        b.damped() ? 42.0 : 31.0});
 }
 
-void ProgramBuilder::add_link_gather(const LinkForces& forces, std::int32_t zero) {
-  const LinkPoints& points = model_.links.points;
+void ProgramBuilder::add_link_gather(const LinkPoints& points, const LinkForces& forces, std::int32_t zero) {
   struct Entry {
-    std::int32_t position;
+    std::int32_t texel;
     double weight;
   };
   std::map<std::int32_t, std::vector<Entry>> at;  // by slot
@@ -165,32 +154,30 @@ void ProgramBuilder::add_link_gather(const LinkForces& forces, std::int32_t zero
     for (std::size_t a = 0; a < 8; ++a) {
       if (points.weights[p][a] == 0) continue;
       std::vector<Entry>& of = at[points.slots[p][a]];
-      for (const PointForce& f : forces[p]) of.push_back({f.position, f.sign * points.weights[p][a]});
+      for (const PointForce& f : forces[p]) of.push_back({f.texel, f.sign * points.weights[p][a]});
     }
   }
-  const std::vector<std::int32_t> written = written_loads(program_);
   const auto count = static_cast<std::size_t>(padded(at.size()));
-  std::vector<std::int32_t> node;
+  std::vector<std::int32_t> slots;
   std::vector<Entry> entries;
   std::vector<std::vector<std::int32_t>> rows(count);
   for (auto& [slot, of] : at) {
-    std::stable_sort(of.begin(), of.end(), [](const Entry& x, const Entry& y) { return x.position < y.position; });
+    std::stable_sort(of.begin(), of.end(), [](const Entry& x, const Entry& y) { return x.texel < y.texel; });
     for (const Entry& e : of) {
-      rows[node.size()].push_back(static_cast<std::int32_t>(entries.size()));
+      rows[slots.size()].push_back(static_cast<std::int32_t>(entries.size()));
       entries.push_back(e);
     }
-    node.push_back(2 * slot + (std::binary_search(written.begin(), written.end(), slot) ? 1 : 0));
+    slots.push_back(slot);
   }
-  node.resize(count, -1);
   GatherList list = pack_rows(rows, -1);
   std::vector<double> weight;
   for (std::int32_t& entry : list.index) {
     weight.push_back(entry < 0 ? 0 : entries[entry].weight);
-    entry = entry < 0 ? zero : entries[entry].position;
+    entry = entry < 0 ? zero : entries[entry].texel;
   }
   const std::size_t length = weight.size();
   const double each = double(entries.size()) / double(at.size());
-  const auto node_id = add(make_ints("link_node", BufferRole::constant, "[nodes]", std::move(node)));
+  const auto node_id = add(make_ints("link_node", BufferRole::constant, "[tiles][2][16]", load_nodes(slots)));
   const auto offset_id = add(make_ints("link_offset", BufferRole::constant, "[tiles + 1]", std::move(list.offset)));
   const auto index_id = add(make_ints("link_index", BufferRole::constant, "[rows][16]", std::move(list.index)));
   const auto weight_id = add(
@@ -203,7 +190,7 @@ void ProgramBuilder::add_link_gather(const LinkForces& forces, std::int32_t zero
                            static_cast<std::int64_t>(count),
                            "links at nodes",
                            static_cast<std::int64_t>(at.size()),
-                           20 * each + 20,
+                           24 * each + 40,
                            6 * each});
 }
 

@@ -7,23 +7,22 @@
 
 namespace pliant {
 
-void ProgramBuilder::add_membrane(std::size_t index, std::int32_t base, LinkForces& forces) {
-  const MembraneBatch& b = model_.links.membranes[index];
+void ProgramBuilder::add_membrane(const Links& links, std::size_t index, std::int32_t base, LinkForces& forces) {
+  const MembraneBatch& b = links.membranes[index];
   const auto count = static_cast<std::size_t>(padded(b.size()));
   constexpr std::size_t planes = PLIANT_MEMBRANE_DATA_PLANES;
   std::vector<std::int32_t> corners(3 * count);
   std::vector<double> data(planes * count);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t t = std::min(i, b.size() - 1);  // padding repeats the last one, whose copies nobody gathers
-    for (std::size_t a = 0; a < 3; ++a) corners[tile_base(i, 3) + a * PLIANT_TILE] = b.points[t][a];
+    for (std::size_t a = 0; a < 3; ++a) corners[tile_base(i, 3) + a * PLIANT_TILE] = link_place_[b.points[t][a]];
     for (std::size_t k = 0; k < planes; ++k) data[tile_base(i, planes) + k * PLIANT_TILE] = b.records[t][k];
   }
   for (std::size_t t = 0; t < b.size(); ++t) {
-    const std::int32_t position = base + static_cast<std::int32_t>(tile_base(t, PLIANT_MEMBRANE_FORCE_PLANES));
+    const std::int32_t texel = base + static_cast<std::int32_t>(tile_base(t, 3));
     for (std::int32_t a = 0; a < 3; ++a) {
       // The triangle's force on its corner is the opposite of V P grad N.
-      forces[static_cast<std::size_t>(b.points[t][static_cast<std::size_t>(a)])].push_back(
-          {position + 3 * a * PLIANT_TILE, -1});
+      forces[static_cast<std::size_t>(b.points[t][static_cast<std::size_t>(a)])].push_back({texel + a * PLIANT_TILE, -1});
     }
   }
   const auto points_id =
@@ -38,7 +37,7 @@ void ProgramBuilder::add_membrane(std::size_t index, std::int32_t base, LinkForc
                            static_cast<std::int64_t>(count),
                            b.label,
                            static_cast<std::int64_t>(b.size()),
-                           12 + 4.0 * planes + 36 + 16.0 * double(model_.links.points.size()) / double(b.size()),
+                           12 + 4.0 * planes + 48 + 16.0 * double(links.points.size()) / double(b.size()),
                            115});
 }
 

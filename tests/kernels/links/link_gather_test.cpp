@@ -1,7 +1,6 @@
 // link_gather: kernel and twin give the same bits; in double, forces of links add up at the nodes, and to what other passes
 // wrote.
-#include "kernels/random_data.h"
-#include "layout.h"
+#include "kernels/links/random_nodes.h"
 
 namespace pliant::kernel_test {
 namespace {
@@ -10,17 +9,17 @@ class LinkGather : public TwinTest {};
 
 KernelCase link_gather_case(std::size_t count, Data data, std::uint32_t seed) {
   Random random(seed);
-  constexpr int tiles = 10;
+  constexpr int texels = 160;
   Ints offset{0};
   for (std::size_t tile = 0; tile < count / PLIANT_TILE; ++tile) offset.push_back(offset.back() + random.integer(0, 9));
   const std::size_t entries = (static_cast<std::size_t>(offset.back()) + 1) * PLIANT_TILE;
-  Ints node = random.distinct(count, count + 20), index = random.ints(entries, 0, tiles - 1);
-  for (auto& n : node) n = random.chance(0.1) ? -1 : 2 * n + random.integer(0, 1);
-  for (auto& i : index) i = i * 3 * PLIANT_TILE + random.integer(0, PLIANT_TILE - 1);
   KernelCase test("link_gather", {}, Shape::lanes, count);
-  test.reals("node_load", random.reals(4 * (count + 20), data, 1)).ints("link_node", node).ints("link_offset", offset);
-  test.ints("link_index", index).reals("link_weight", random.reals(entries, data_for_constants(data), 1));
-  test.reals("link_force", random.reals(3 * PLIANT_TILE * tiles, data, 1));
+  test.reals("node_load", random.reals(4 * (count + 20), data, 1))
+      .ints("link_node", random_nodes(random, count))
+      .ints("link_offset", offset);
+  test.ints("link_index", random.ints(entries, 0, texels - 1))
+      .reals("link_weight", random.reals(entries, data_for_constants(data), 1));
+  test.reals("link_force", random.reals(4 * texels, data, 1));
   return test;
 }
 
@@ -32,10 +31,12 @@ TEST_F(LinkGather, TwinGivesTheSameBits) {
 }
 
 TEST(LinkGatherOracle, AddsToLoadsOrReplacesThem) {
-  Reals force(96, 0.0), weight(32, 0.0);
-  force[3] = 1, force[16 + 3] = 2, force[32 + 3] = 4;
-  Ints node(16, -1), index(32, 48);
-  node[0] = 2 * 1 + 1, node[1] = 2 * 2, node[2] = 2 * 0;
+  Reals force(64, 0.0), weight(32, 0.0);
+  force[4 * 3] = 1, force[4 * 3 + 1] = 2, force[4 * 3 + 2] = 4;
+  Ints node(32, 0), index(32, 15);
+  for (std::size_t l = 3; l < 16; ++l) node[16 + l] = -1;
+  node[0] = 1, node[16] = 1;
+  node[1] = 2, node[2] = 0;
   index[0] = 3, weight[0] = 1;
   index[1] = 3, weight[1] = -1;
   index[16 + 1] = 3, weight[16 + 1] = 0.25;

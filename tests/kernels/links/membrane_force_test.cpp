@@ -18,7 +18,7 @@ KernelCase random_case(ElementSizes size, Data data, std::uint32_t seed) {
   test.reals("link_u", displacements(random, size.nodes, data))
       .ints("membrane_points", random.ints(3 * size.elements, 0, static_cast<int>(size.nodes) - 1))
       .reals("membrane_data", random.reals(PLIANT_MEMBRANE_DATA_PLANES * size.elements, data_for_constants(data), 1 / edge))
-      .reals("link_force", random.reals(32 + PLIANT_MEMBRANE_FORCE_PLANES * size.elements, Data::large, 1))
+      .reals("link_force", random.reals(4 * (32 + 3 * size.elements), Data::large, 1))
       .real(sheet.stiffness())
       .real(sheet.poisson)
       .integer(32);
@@ -59,12 +59,12 @@ Membrane::Record record_of(const Reals& record) {
 std::vector<Shift> forces_of(const Triangles& t, const std::vector<Shift>& u) {
   KernelCase test("membrane_force", {}, Shape::lanes, 16);
   test.exact("link_u", texels_of(u)).ints("membrane_points", own_nodes(3)).exact("membrane_data", planes_of(t.record));
-  test.exact("link_force", Reals(16 * PLIANT_MEMBRANE_FORCE_PLANES)).exact(sheet.stiffness()).exact(sheet.poisson).integer(0);
+  test.exact("link_force", Reals(16 * 3 * 4)).exact(sheet.stiffness()).exact(sheet.poisson).integer(0);
   const Reals out = run_in_double(test, "link_force");
   std::vector<Shift> forces(16, Shift(3));
   for (std::size_t e = 0; e < 16; ++e) {
     for (std::size_t a = 0; a < 3; ++a) {
-      for (std::size_t c = 0; c < 3; ++c) forces[e][a][static_cast<Eigen::Index>(c)] = out[(3 * a + c) * 16 + e];
+      for (std::size_t c = 0; c < 3; ++c) forces[e][a][static_cast<Eigen::Index>(c)] = out[4 * (16 * a + e) + c];
     }
   }
   return forces;
