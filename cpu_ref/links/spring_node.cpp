@@ -19,9 +19,8 @@ void differences(const Scalar* of, const std::int32_t* end, const Scalar (&own)[
 template <class Scalar, int Law, bool Slack, bool Viscous>
 void spring_node(Range range, Scalar* node_load, const Scalar* node_u, const Scalar* node_w, const std::int32_t* spring_node,
                  const std::int32_t* spring_offset, const std::int32_t* spring_end, const Scalar* spring_data,
-                 const Scalar* spring_curve, const Scalar* step_params, std::int32_t segments) {
+                 const Scalar* spring_curve, const Scalar* step_params, std::int32_t segments, std::int32_t planes) {
   constexpr bool has_first = Law == 1 || Law == 2;
-  constexpr std::int64_t planes = 6 + has_first + Viscous;
   for (std::int64_t tile = range.begin; tile < range.end; tile += PLIANT_TILE) {
     const NodeSum<Scalar> nodes(spring_node, tile);
     Scalar f[3][PLIANT_TILE], u[3][PLIANT_TILE], w[3][PLIANT_TILE] = {}, du[3][PLIANT_TILE], dw[3][PLIANT_TILE] = {};
@@ -33,14 +32,14 @@ void spring_node(Range range, Scalar* node_load, const Scalar* node_u, const Sca
     const std::int64_t last = spring_offset[tile / PLIANT_TILE + 1];
     for (std::int64_t k = spring_offset[tile / PLIANT_TILE]; k < last; ++k) {
       const std::int32_t* end = spring_end + k * PLIANT_TILE;
-      const Scalar* data = spring_data + k * planes * PLIANT_TILE;
+      const Scalar* data = spring_data + k * (planes * PLIANT_TILE);
       differences(node_u, end, u, du);
       if constexpr (Viscous) differences(node_w, end, w, dw);
       for (int l = 0; l < PLIANT_TILE; ++l) {
         const auto number = [&](int plane) { return data[plane * PLIANT_TILE + l]; };
         const SpringNumbers<Scalar> numbers{
             {number(0), number(1), number(2)}, number(3), number(4),
-            has_first ? number(6) : Scalar(0), number(5), Viscous ? number(6 + has_first) : Scalar(0)};
+            has_first ? number(6) : Scalar(0), number(5), Viscous ? number(planes - 1) : Scalar(0)};
         Scalar d[3];
         const Scalar scale = spring_pull<Law, Slack, Viscous>(
             numbers, {du[0][l], du[1][l], du[2][l]}, {dw[0][l], dw[1][l], dw[2][l]}, spring_curve, segments, step_params[0], d);

@@ -1,7 +1,8 @@
 // Forces of springs between nodes, node by node: each node adds those of all its springs, by spring_pull.cl, in the order of its list. Both ends compute
 // a spring, to the same bits with opposite signs, so that no force is written and gathered again, which would cost more memory traffic.
 // spring_node: node_sum.cl. spring_offset: [tiles + 1] rows. spring_end: [rows][16] slot of the other end. spring_data:
-// [rows][PLANES][16] D (3, towards the other end) [m], l0 [m], |D|^2 - l0^2 [m^2], `second`, then `first` if the LAW has one, then the damper if VISCOUS.
+// [rows][planes][16] D (3, towards the other end) [m], l0 [m], |D|^2 - l0^2 [m^2], `second`, then `first` if the LAW has one, then the damper of damped
+// springs, which is read if VISCOUS.
 // Padding of the rows is a spring from the node to itself that is as long as at rest.
 #include "arith.cl"
 #include "texels.cl"
@@ -9,12 +10,11 @@
 #include "spring_pull.cl"
 
 #define HAS_FIRST (LAW == 1 || LAW == 2)
-#define PLANES (6 + HAS_FIRST + VISCOUS)
 #define DATA(k) LOAD(data, (k)*PLIANT_TILE)
 
 __kernel void spring_node(__global float* node_load, __global const float* node_u, __global const float* node_w, __global const int* spring_node,
                           __global const int* spring_offset, __global const int* spring_end, __global const float* spring_data,
-                          __global const float* spring_curve, __global const float* step_params, int segments) {
+                          __global const float* spring_curve, __global const float* step_params, int segments, int planes) {
   const int i = FIRST_INDEX;
   const node_list list = node_list_at(spring_node, i);
 #if LANES == 1
@@ -31,7 +31,7 @@ __kernel void spring_node(__global float* node_load, __global const float* node_
   const int last = spring_offset[i / PLIANT_TILE + 1];
   for (int k = spring_offset[i / PLIANT_TILE]; k < last; ++k) {
     __global const int* end = spring_end + k * PLIANT_TILE + i % PLIANT_TILE;
-    __global const float* data = spring_data + k * (PLANES * PLIANT_TILE) + i % PLIANT_TILE;
+    __global const float* data = spring_data + k * (planes * PLIANT_TILE) + i % PLIANT_TILE;
     const texels ub = texels_gather(node_u, end);
 #if HAS_FIRST
     const real first = DATA(6);
@@ -40,7 +40,7 @@ __kernel void spring_node(__global float* node_load, __global const float* node_
 #endif
 #if VISCOUS
     const texels wb = texels_gather(node_w, end);
-    const real vx = texels_x(wb) - wx, vy = texels_y(wb) - wy, vz = texels_z(wb) - wz, damper = DATA(6 + HAS_FIRST);
+    const real vx = texels_x(wb) - wx, vy = texels_y(wb) - wy, vz = texels_z(wb) - wz, damper = DATA(planes - 1);
 #else
     const real vx = none, vy = none, vz = none, damper = none;
 #endif

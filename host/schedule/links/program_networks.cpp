@@ -174,17 +174,17 @@ void ProgramBuilder::add_network(const SpringBatch& b, std::size_t index) {
   const auto data_id = add(make_reals(name("spring_data"), BufferType::real, planes * entries, BufferRole::constant,
                                       "[rows][planes][16]", "m, N/m", "model", std::move(data)));
   const auto [curve_id, segments] = add_spring_curve(b.law, name("spring_curve"));
-  program_.step.push_back(
-      {"spring_node",
-       spring_defines(b),
-       {buffer_arg(node_load_), buffer_arg(node_u_), buffer_arg(node_w_), buffer_arg(node_id), buffer_arg(offset_id),
-        buffer_arg(end_id), buffer_arg(data_id), buffer_arg(curve_id), buffer_arg(params_), int_arg(segments)},
-       Shape::lanes,
-       static_cast<std::int64_t>(nodes.springs.size()),
-       b.label,
-       static_cast<std::int64_t>(b.size()),
-       each * (4 + 4.0 * double(planes)) + 40 * double(slots.size()) / double(b.size()),
-       each * (b.damped() ? 48.0 : 37.0)});
+  program_.step.push_back({"spring_node",
+                           spring_defines(b),
+                           {buffer_arg(node_load_), buffer_arg(node_u_), buffer_arg(node_w_), buffer_arg(node_id),
+                            buffer_arg(offset_id), buffer_arg(end_id), buffer_arg(data_id), buffer_arg(curve_id),
+                            buffer_arg(params_), int_arg(segments), int_arg(static_cast<std::int32_t>(planes))},
+                           Shape::lanes,
+                           static_cast<std::int64_t>(nodes.springs.size()),
+                           b.label,
+                           static_cast<std::int64_t>(b.size()),
+                           each * (4 + 4.0 * double(planes)) + 40 * double(slots.size()) / double(b.size()),
+                           each * (b.damped() ? 48.0 : 37.0)});
 }
 
 }  // namespace pliant

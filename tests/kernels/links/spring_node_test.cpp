@@ -27,7 +27,7 @@ KernelCase spring_node_case(const Law& law, std::size_t count, Data data, std::u
   test.reals("node_w", random.reals(4 * slots, data, 1e-4)).ints("spring_node", random_nodes(random, count));
   test.ints("spring_offset", offset).ints("spring_end", random.ints(entries, 0, static_cast<int>(slots) - 1));
   test.reals("spring_data", random.reals(law.planes() * entries, data_for_constants(data), 1)).reals("spring_curve", curve);
-  return test.reals("step_params", {1e-3, 0, 0, 0, 0, 0, 0, 0}).integer(3);
+  return test.reals("step_params", {1e-3, 0, 0, 0, 0, 0, 0, 0}).integer(3).integer(static_cast<int>(law.planes()));
 }
 
 TEST_F(SpringNode, TwinGivesTheSameBits) {
@@ -115,7 +115,8 @@ Reals loads_of(const Law& law, const Star& s) {
   KernelCase test("spring_node", law.defines(), Shape::lanes, 32);
   test.exact("node_load", Reals(4 * 17, 1.0)).exact("node_u", s.u).exact("node_w", s.w).ints("spring_node", node);
   test.ints("spring_offset", {0, 16, 17}).ints("spring_end", end).exact("spring_data", data).exact("spring_curve", curve);
-  return run_in_double(test.exact("step_params", {1e-3, 0, 0, 0, 0, 0, 0, 0}).integer(3), "node_load");
+  return run_in_double(
+      test.exact("step_params", {1e-3, 0, 0, 0, 0, 0, 0, 0}).integer(3).integer(static_cast<int>(law.planes())), "node_load");
 }
 
 TEST(SpringNodeOracle, SumsWhatSpringForceGives) {
