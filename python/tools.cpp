@@ -143,6 +143,7 @@ void bind_tools(py::class_<pliant::World>& world) {
       .def("remove_tool", &World::remove_tool, py::arg("name"), Free())
       .def("park_tool", &World::park_tool, py::arg("name"), Free())
       .def("unpark_tool", &World::unpark_tool, py::arg("name"), Free())
+      .def("grip_tool", &World::grip_tool, py::arg("name"), py::arg("on") = true, Free())
       .def("place_tool", &World::place_tool, py::arg("name"), py::arg("position"),
            py::arg("turn") = std::array<double, 4>{0, 0, 0, 1}, Free())
       .def("drive_tool", &World::drive_tool, py::arg("name"), py::arg("position"),

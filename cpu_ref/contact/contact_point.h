@@ -5,7 +5,7 @@
 
 namespace pliant::ref::contact {
 
-inline constexpr std::int64_t pose_numbers = 14;
+inline constexpr std::int64_t pose_numbers = 15;
 
 template <class Scalar>
 struct Place {

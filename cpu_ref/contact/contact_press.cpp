@@ -1,5 +1,5 @@
 // Twin of kernels/contact/contact_press.cl.
-#include "cpu_ref/contact/contact_edge.h"
+#include "cpu_ref/contact/contact_grip.h"
 #include "cpu_ref/registry.h"
 
 namespace pliant::ref {
@@ -48,12 +48,13 @@ Scalar yield_of_all(const Scalar* node_u, const Scalar* node_w, const std::int32
 
 /// The tools that a point touches, one bit each, and whether it may touch something in the next step.
 struct Reached {
-  std::int32_t touching = 0, count = 0, ready = 0;
+  std::int32_t touching = 0, gripped = 0, count = 0, ready = 0;
 };
 
-template <class Scalar, int EDGES>
+template <int GRIPS, class Scalar, int EDGES>
 Reached reach(const EdgedTools<Scalar, EDGES>& all, [[maybe_unused]] const Corners<Scalar, EDGES>& corners,
-              [[maybe_unused]] const Scalar* contact_weight, std::int64_t i, const Place<Scalar>& p, std::int32_t near,
+              [[maybe_unused]] const Scalar* contact_weight, [[maybe_unused]] const Scalar* contact_held,
+              [[maybe_unused]] const PointNumbers<Scalar>& anchor, std::int64_t i, const Place<Scalar>& p, std::int32_t near,
               Scalar margin, Scalar within) {
   Reached out;
   [[maybe_unused]] bool weighed = false;
@@ -66,7 +67,10 @@ Reached reach(const EdgedTools<Scalar, EDGES>& all, [[maybe_unused]] const Corne
       if (!weighed || (met.edged && soon)) corners.write_weights(contact_weight, i, met);
       weighed = true;
     }
-    if (!(met.m.distance < Scalar(0))) continue;
+    bool gripped = false;
+    if constexpr (GRIPS != 0) gripped = !met.edged && grips(all, contact_held, anchor, t, i, met.m, margin);
+    if (!(met.m.distance < Scalar(0)) && !gripped) continue;
+    out.gripped |= (gripped ? 1 : 0) << t;
     out.touching |= 1 << t;
     ++out.count;
   }
@@ -75,7 +79,7 @@ Reached reach(const EdgedTools<Scalar, EDGES>& all, [[maybe_unused]] const Corne
 
 }  // namespace
 
-template <class Scalar, int EDGES>
+template <class Scalar, int EDGES, int GRIPS>
 void contact_press(Range range, const Scalar* node_u, const Scalar* node_w, const Scalar* contact_rest,
                    const std::int32_t* contact_node, const Scalar* contact_weight, const Scalar* contact_share,
                    const Scalar* contact_held, const std::int32_t* contact_list, const std::int32_t* contact_near,
@@ -94,13 +98,16 @@ void contact_press(Range range, const Scalar* node_u, const Scalar* node_w, cons
     const std::int32_t near = contact_near[i / PLIANT_TILE];
     const Place<Scalar> p = points.at(i);
     const Scalar area = points.area(i), within = ready_share(contact_yield[i]);  // padding has no area
-    const Reached reached =
-        area > Scalar(0) ? reach(all, corners, contact_weight, i, p, near, contact_params[5], within) : Reached{};
-    const std::int32_t touching = reached.touching, count = reached.count;
     const PointNumbers<Scalar> anchor = numbers_of(contact_anchor, i);
+    const Reached reached = area > Scalar(0) ? reach<GRIPS>(all, corners, contact_weight, contact_held, anchor, i, p, near,
+                                                            contact_params[5], within)
+                                             : Reached{};
+    const std::int32_t touching = reached.touching, count = reached.count;
     const PointNumbers<std::int32_t> force = numbers_of(contact_force, i);
     const std::int32_t stuck_to = static_cast<std::int32_t>(anchor[3]) - 1;
     if (stuck_to >= 0 && (touching >> stuck_to & 1) == 0) anchor[3] = 0;
+    if (GRIPS != 0 && anchor[3] < Scalar(0) && (reached.gripped >> static_cast<std::int32_t>(-anchor[3] - Scalar(1)) & 1) == 0)
+      anchor[3] = 0;
     Quanta sum{};
     corners.clear(i);
     Scalar w = contact_yield[i];
@@ -119,12 +126,16 @@ void contact_press(Range range, const Scalar* node_u, const Scalar* node_w, cons
       const Scalar held = held_depth(points, contact_share, contact_held, i, met.place, m);
       const Scalar push = normal_force(m, held, law, area, stiffness, h);
       Vec<Scalar> f = times(m.normal, push);
-      if (law[14] > Scalar(0)) {
+      const auto hold_here = [&](Scalar by) {
+        set_three(anchor, turned_back(all.now(t), difference(difference(p.now, p.moved), origin_of(all.now(t)))));
+        anchor[3] = by;
+      };
+      if (GRIPS != 0 && (reached.gripped >> t & 1) != 0 && anchor[3] >= Scalar(0)) hold_here(gripped_by<Scalar>(t));
+      if (GRIPS != 0 && anchor[3] == gripped_by<Scalar>(t)) {
+        f = times(grip_slip(all, t, anchor, m), -stiffness);
+      } else if (law[14] > Scalar(0)) {
         const auto own = static_cast<Scalar>(t + 1);
-        if (anchor[3] == Scalar(0)) {
-          set_three(anchor, turned_back(all.now(t), difference(difference(p.now, p.moved), origin_of(all.now(t)))));
-          anchor[3] = own;
-        }
+        if (anchor[3] == Scalar(0)) hold_here(own);
         if (anchor[3] == own) f = press_friction(m, all.next(t), anchor, stiffness, law[14] * push, f);
       }
       const Quanta q = quanta(f, contact_params[1]);
@@ -138,8 +149,9 @@ void contact_press(Range range, const Scalar* node_u, const Scalar* node_w, cons
 }
 
 void register_contact_press(Registry& registry) {
-  registry.add_specialised<2>("contact_press", {"EDGES"},
-                              [](auto scalar, auto edges) { return contact_press<decltype(scalar), edges>; });
+  registry.add_specialised<2, 2>("contact_press", {"EDGES", "GRIPS"}, [](auto scalar, auto edges, auto grips) {
+    return contact_press<decltype(scalar), edges(), grips()>;
+  });
 }
 
 }  // namespace pliant::ref

@@ -1,5 +1,5 @@
 // Twin of kernels/contact/contact_settle.cl.
-#include "cpu_ref/contact/contact_edge.h"
+#include "cpu_ref/contact/contact_grip.h"
 #include "cpu_ref/registry.h"
 
 namespace pliant::ref {
@@ -44,7 +44,7 @@ Scalar yield_of_touching(const Points<Scalar>& points, const Scalar* contact_sha
 
 }  // namespace
 
-template <class Scalar, int EDGES>
+template <class Scalar, int EDGES, int GRIPS>
 void contact_settle(Range range, const Scalar* node_u, const Scalar* node_w, const Scalar* contact_rest,
                     const std::int32_t* contact_node, const Scalar* contact_weight, const Scalar* contact_share,
                     const Scalar* contact_held, const std::int32_t* contact_list, const std::int32_t* contact_near,
@@ -84,14 +84,19 @@ void contact_settle(Range range, const Scalar* node_u, const Scalar* node_w, con
         const PointNumbers<std::int32_t> on_tool = tool_force_of(contact_tool_force, point_count, t, i);
         const Scalar* law = all.law(t);
         const Scalar held = held_depth(points, contact_share, contact_held, i, met.place, m);
-        const Scalar rest = (-m.distance - held) - law[15], push = rest > Scalar(0) ? stiffness * rest : Scalar(0);
+        const bool held_fast = GRIPS != 0 && anchor[3] == gripped_by<Scalar>(t);
+        const Scalar rest = (-m.distance - held) - law[15];
+        const Scalar push = rest > Scalar(0) && !held_fast ? stiffness * rest : Scalar(0);
         Vec<Scalar> f = times(m.normal, push);
         Quanta before{};
         if (count == 1) {
           before = {-on_tool[0], -on_tool[1], -on_tool[2]};
           for (std::size_t k = 0; k < 3; ++k) f[k] += static_cast<Scalar>(before[k]) * quantum;
-          if (anchor[3] == static_cast<Scalar>(t + 1)) f = settle_friction(m, all.next(t), anchor, stiffness, law[14], f);
         }
+        if (held_fast) f = scaled_sum(-stiffness, grip_slip(all, t, anchor, m), f);
+        if (count == 1 && held_fast && tears_off(f, m.normal, points.area(i) * grip_of(all, t))) anchor[3] = 0;
+        if (count == 1 && anchor[3] == static_cast<Scalar>(t + 1))
+          f = settle_friction(m, all.next(t), anchor, stiffness, law[14], f);
         Quanta q = quanta(f, inverse);
         for (std::size_t k = 0; k < 3; ++k) q[k] -= before[k];
         add_to_tool(on_tool, all.next(t), contact_params, met.place, q);
@@ -107,8 +112,9 @@ void contact_settle(Range range, const Scalar* node_u, const Scalar* node_w, con
 }
 
 void register_contact_settle(Registry& registry) {
-  registry.add_specialised<2>("contact_settle", {"EDGES"},
-                              [](auto scalar, auto edges) { return contact_settle<decltype(scalar), edges>; });
+  registry.add_specialised<2, 2>("contact_settle", {"EDGES", "GRIPS"}, [](auto scalar, auto edges, auto grips) {
+    return contact_settle<decltype(scalar), edges(), grips()>;
+  });
 }
 
 }  // namespace pliant::ref

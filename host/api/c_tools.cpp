@@ -89,6 +89,12 @@ pliant_status pliant_world_unpark_tool(pliant_world world, const char* name) {
     w.world.unpark_tool(name);
   });
 }
+pliant_status pliant_world_grip_tool(pliant_world world, const char* name, int hold) {
+  return on(world, [&](CWorld& w) {
+    need(name, "name");
+    w.world.grip_tool(name, hold != 0);
+  });
+}
 pliant_status pliant_world_place_tool(pliant_world world, const char* name, const double position[3], const double turn[4]) {
   return on(world, [&](CWorld& w) {
     need(name, "name");

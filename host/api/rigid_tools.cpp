@@ -63,6 +63,14 @@ void RigidTools::remove(const std::string& name) {
   given_.erase(name);
 }
 void RigidTools::park(const std::string& name) { ask({What::park, name, {}, nullptr, {}, 0}); }
+void RigidTools::grip(const std::string& name, bool on) {
+  {
+    const std::lock_guard lock(mutex_);
+    check_known(name);
+    check_grip(*find(name));
+  }
+  ask({on ? What::grip : What::let_go, name, {}, nullptr, {}, 0});
+}
 void RigidTools::unpark(const std::string& name) { ask({What::unpark, name, {}, nullptr, {}, 0}); }
 
 void RigidTools::place(const std::string& name, const Pose& at) {
@@ -169,6 +177,9 @@ void RigidTools::make(Simulation& simulation, const Request& request) {
       return tools.remove(request.name);
     case What::park:
       return tools.park(request.name);
+    case What::grip:
+    case What::let_go:
+      return tools.grip(request.name, request.what == What::grip);
     case What::unpark:
       return tools.unpark(request.name);
     case What::place:

@@ -24,6 +24,7 @@ class RigidTools {
   void remove(const std::string& name);
   void park(const std::string& name);
   void unpark(const std::string& name);
+  void grip(const std::string& name, bool on);
   void place(const std::string& name, const Pose& at);
   void drive(const std::string& name, const Pose& to, double seconds);
   /// Gives a tool a surface to come, and computes its distances.
@@ -50,7 +51,7 @@ class RigidTools {
 
  private:
   void record_blades(const Simulation& simulation);
-  enum class What { add, remove, park, unpark, place, drive, mesh };
+  enum class What { add, remove, park, unpark, place, drive, mesh, grip, let_go };
   struct Request {
     What what = What::add;
     std::string name;

@@ -93,6 +93,13 @@ void World::unpark_tool(const std::string& name) {
   impl_->settle_tools();
 }
 
+void World::grip_tool(const std::string& name, bool on) {
+  const Call call(impl_, false);
+  impl_->check_can_change_tools();
+  impl_->rigid_tools.grip(name, on);
+  impl_->settle_tools();
+}
+
 void World::place_tool(const std::string& name, const Vec3d& position, const std::array<double, 4>& turn) {
   const Call call(impl_, false);
   impl_->check_can_change_tools();

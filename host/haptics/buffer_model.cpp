@@ -186,7 +186,8 @@ void BufferModel::write_poses(double from, double to, double dt) noexcept {
       }
       for (const double x : at.position) *out++ = static_cast<float>(x);
       *out++ = static_cast<float>(moments_[t].frame);
-      *out = static_cast<float>(moments_[t].share);
+      *out++ = static_cast<float>(moments_[t].share);
+      *out = 0;  // no tool grips here
     }
   }
 }

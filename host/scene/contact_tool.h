@@ -2,10 +2,12 @@
 #pragma once
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "geometry/vec3.h"
+#include "pliant/tool.h"
 
 namespace pliant {
 
@@ -52,7 +54,8 @@ struct ContactTool {
   double exponent = 1;  ///< 1 or 1.5
   double alpha = 0;     ///< slope of the coefficient of restitution [s/m]: e = 1 - alpha v for small speeds v
   bool edges = false;   ///< contact along edges, for a sphere, capsule, box or mesh that fits between contact points
-  std::string pointer;  ///< JSON pointer ("/tools/0")
+  std::optional<GripSpec> grip;  ///< absent: it cannot hold tissue
+  std::string pointer;           ///< JSON pointer ("/tools/0")
   [[nodiscard]] Pose at(double time) const;
   bool operator==(const ContactTool&) const = default;
 };

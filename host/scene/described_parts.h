@@ -100,6 +100,13 @@ void describe_tool(V&& v, S&& s) {
                           "rate of a sequence, whose first mesh stands at time 0 and whose last one stays"});
 }
 
+/// Of a tool that can hold tissue.
+template <class V, class S>
+void describe_grip(V&& v, S&& s) {
+  v(s.strength, {"strength", above(0).absent_at(0), "Pa", "20000",
+                 "traction at which a point of the surface slips out: along the tool or away from it; none: none does"});
+}
+
 template <class V, class S>
 void describe_type(V&& v, S&& s) {
   v(s.type, model_words(),

@@ -40,6 +40,7 @@ Material read_material(const Reader& material, const TaggedMesh* mesh);
 DeformationModel read_model(const Reader& model, bool lattice);
 Focus read_focus(const Reader& focus);
 Vessel read_vessel(const Reader& entry);
+nlohmann::ordered_json grip_json(const GripSpec& grip);
 Spring read_spring(const Reader& spring);
 /// After the bodies.
 std::vector<Join> read_joins(const Reader& joins, const Scene& scene);

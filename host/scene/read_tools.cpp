@@ -93,7 +93,31 @@ void read_contact(const Reader& contact, ContactTool& tool) {
   }
 }
 
+GripSpec read_grip(const Reader& grip) {
+  grip.expect_object("grip");
+  GripSpec out;
+  describe_grip(ReadKeys{grip}, out);
+  if (!grip.has("times")) return out;
+  const char* expected = "a list of rows [from, to] in seconds, ascending";
+  out.times = read_rows<2>(grip.at("times", expected), expected, "a row [from, to] in seconds, from < to");
+  double before = -1e300;
+  for (std::size_t i = 0; i < out.times.size(); ++i) {
+    const auto& [from, to] = out.times[i];
+    if (!(before <= from && from < to))
+      grip.at("times").items(expected)[i].fail("from < to, and not before the row above ends");
+    before = to;
+  }
+  return out;
+}
+
 }  // namespace
+
+nlohmann::ordered_json grip_json(const GripSpec& grip) {
+  auto out = nlohmann::ordered_json::object();
+  describe_grip(WriteKeys{out}, grip);
+  if (!grip.times.empty()) out["times"] = grip.times;
+  return out;
+}
 
 ContactTool read_contact_tool(const Reader& entry, const std::string& name, const std::filesystem::path& folder) {
   entry.expect_object("contact_tool");
@@ -110,6 +134,7 @@ ContactTool read_contact_tool(const Reader& entry, const std::string& name, cons
   }
   describe_tool(ReadKeys{entry}, tool);
   if (entry.has("contact")) read_contact(entry.at("contact"), tool);
+  if (entry.has("grip")) tool.grip = read_grip(entry.at("grip"));
   refuse_key(entry, "edges", tool.edges && (tool.shape == ToolShape::half_space || tool.shape == ToolShape::sequence),
              "a shape that is a sphere, capsule, box or mesh");
   return tool;

@@ -281,9 +281,9 @@ OrderedJson any_tool_json(const T& t, const fs::path& file) {
   }
   if (!t.path.empty()) tool["path"] = t.path;
   describe_tool(WriteKeys{tool}, t);
-  OrderedJson contact = OrderedJson::object();
-  describe_contact_law(WriteKeys{contact}, t);
-  if (!contact.empty()) tool["contact"] = contact;
+  describe_contact_law(WriteKeys{tool["contact"]}, t);
+  if (tool["contact"].empty()) tool.erase("contact");
+  if (t.grip) tool["grip"] = grip_json(*t.grip);
   return tool;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,13 @@
 #include "pliant/wrench.h"
 
 namespace pliant {
+
+/// A tool that can hold tissue: while it grips, it holds the surface that its own meets (docs/contact.md).
+struct GripSpec {
+  double strength = 0;                       ///< traction at which tissue slips out [Pa]; 0: none does
+  std::vector<std::array<double, 2>> times;  ///< intervals [from, to) in which it grips [s], ascending; or World::grip_tool()
+  bool operator==(const GripSpec&) const = default;
+};
 
 /// A rigid tool, at rest or on a prescribed path. Only the members that belong to `shape` are used.
 ///
@@ -35,6 +43,7 @@ struct ToolSpec {
   double exponent = 1;   ///< 1 or 1.5; needs a stiffness
   double alpha = 0;      ///< slope of the coefficient of restitution [s/m]; needs a stiffness
   bool edges = false;    ///< contact along the tool's edges, for parts thinner than half a cell (docs/contact.md)
+  std::optional<GripSpec> grip;  ///< absent: it cannot hold tissue
 };
 
 /// Contact between bodies, of bodies with themselves, and between the faces of a cut (docs/contact.md).

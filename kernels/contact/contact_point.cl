@@ -1,7 +1,7 @@
 // Contact points: position, motion and contact with a tool. Data per point are in tiles of 16. contact_rest: (undeformed position (3) [m], area
 // [m^2]); contact_node: 8 slots; contact_weight: 8 weights with sum one. tool_pose: [steps + 1][tools] rows of the rotation (9), position of the
-// origin (3) [m], frame of a sequence and weight of the next frame; row `step` is the current time.
-#define POSE_NUMBERS 14
+// origin (3) [m], frame of a sequence and weight of the next frame, strength of the grip [Pa]; row `step` is the current time.
+#define POSE_NUMBERS 15
 #define POINT_BASE(i, planes) TILE_BASE(i, planes)
 #define QUANTUM_LIMIT 67108864.0f  // thirty of these fit into an integer
 

@@ -5,6 +5,7 @@
 //   at node j times their weights. W bounds a row sum of the compliance matrix (Gershgorin), so that points with common nodes never
 //   overshoot together.
 //   Friction: towards the anchor, where the point stuck first, f = min(mu f_n, A |x - anchor| / W).
+// GRIPS: contact_grip.cl; such a point is pulled to its place instead.
 // contact_share: 8 planes c_j s_j [m^2]; held nodes have 0, and their part is distributed to the others, so that a point with held nodes is as stiff
 // as any other; contact_anchor: (position in the tool's frame (3) [m], tool + 1); contact_force: (force (3) [quanta], one bit per touching tool).
 #include "arith.cl"
@@ -14,6 +15,7 @@
 #include "touch_point.cl"
 #include "contact_patch.cl"
 #include "contact_edge.cl"
+#include "contact_grip.cl"
 
 __kernel void contact_press(__global const float* node_u, __global const float* node_w, __global const float* contact_rest,
                             __global const int* contact_node, __global const float* contact_weight,
@@ -32,7 +34,7 @@ __kernel void contact_press(__global const float* node_u, __global const float* 
   for (int i = first; i < first + LANES; ++i) {
     const contact_place p = place_of_point(node_u, node_w, contact_rest, contact_node, contact_weight, i);
     const float area = contact_rest[POINT_BASE(i, 4) + 3 * PLIANT_TILE];  // 0 for padding
-    int touching = 0, count = 0, ready = 0, weighed = 0;
+    int touching = 0, gripped = 0, count = 0, ready = 0, weighed = 0;
     const float within = ready_share(contact_yield[i]);
     for (int t = 0; t < tools; ++t) {
       if (!(near >> t & 1) || !(area > 0.0f)) continue;
@@ -43,7 +45,9 @@ __kernel void contact_press(__global const float* node_u, __global const float* 
       if (soon) ready = PLIANT_READY_BIT;
       if (EDGES && (!weighed || (met.edged && soon))) write_weights(contact_corner_weight, contact_weight, i, met);
       weighed = 1;
-      if (m.distance < 0.0f) {
+      const int held_fast = GRIPS && !met.edged && grips(contact_held, contact_anchor + POINT_BASE(i, 4), tool_pose, tools, step, t, i, m, contact_params[5]);
+      if (m.distance < 0.0f || held_fast) {
+        gripped |= held_fast << t;
         touching |= 1 << t;
         ++count;
       }
@@ -52,6 +56,7 @@ __kernel void contact_press(__global const float* node_u, __global const float* 
     __global int* force = contact_force + POINT_BASE(i, 4);
     const int stuck_to = (int)anchor[3 * PLIANT_TILE] - 1;
     if (stuck_to >= 0 && !(touching >> stuck_to & 1)) anchor[3 * PLIANT_TILE] = 0.0f;
+    if (GRIPS && anchor[3 * PLIANT_TILE] < 0.0f && !(gripped >> (int)(-anchor[3 * PLIANT_TILE] - 1.0f) & 1)) anchor[3 * PLIANT_TILE] = 0.0f;
     int4 sum = 0;
     float w = contact_yield[i];
     if (touching != 0 && !(w > 0.0f)) {  // compliance from touching points is not known yet
@@ -88,8 +93,17 @@ __kernel void contact_press(__global const float* node_u, __global const float* 
       const float rest = stiffness > 0.0f ? depth - push / stiffness - data[15] : 0.0f;
       push = rest > 0.0f ? fma(stiffness, rest, push) : push;
       float4 f = m.normal * push;
-      if (data[14] > 0.0f) {
-        __global const float* now = tool_pose + POSE_NUMBERS * (step * tools + t);
+      __global const float* now = tool_pose + POSE_NUMBERS * (step * tools + t);
+      if (GRIPS && (gripped >> t & 1) && anchor[3 * PLIANT_TILE] >= 0.0f) {  // the first tool that reaches it holds it
+        const float4 place = turned_back(now, (p.now - p.moved) - origin_of(now));
+        anchor[0] = place.x;
+        anchor[PLIANT_TILE] = place.y;
+        anchor[2 * PLIANT_TILE] = place.z;
+        anchor[3 * PLIANT_TILE] = GRIPPED_BY(t);
+      }
+      if (GRIPS && anchor[3 * PLIANT_TILE] == GRIPPED_BY(t)) {
+        f = grip_slip(now + POSE_NUMBERS * tools, anchor, m) * -stiffness;
+      } else if (data[14] > 0.0f) {
         if (anchor[3 * PLIANT_TILE] == 0.0f) {
           const float4 stuck = turned_back(now, (p.now - p.moved) - origin_of(now));
           anchor[0] = stuck.x;

@@ -8,6 +8,7 @@
 #include "touch_point.cl"
 #include "contact_patch.cl"
 #include "contact_edge.cl"
+#include "contact_grip.cl"
 
 __kernel void contact_settle(__global const float* node_u, __global const float* node_w, __global const float* contact_rest,
                              __global const int* contact_node, __global const float* contact_weight,
@@ -63,7 +64,8 @@ __kernel void contact_settle(__global const float* node_u, __global const float*
         __global const float* data = tool_data + TOOL_NUMBERS * t;
         const float held = held_depth(node_u, contact_node, contact_weight, contact_share, contact_held, i, met.at.now, m);
         const float rest = (-m.distance - held) - data[15];
-        const float push = rest > 0.0f ? stiffness * rest : 0.0f;
+        const int held_fast = GRIPS && anchor[3 * PLIANT_TILE] == GRIPPED_BY(t);
+        const float push = rest > 0.0f && !held_fast ? stiffness * rest : 0.0f;
         const float inverse = contact_params[1], quantum = contact_params[0];
         float4 f = m.normal * push;
         int4 before = 0;
@@ -71,6 +73,8 @@ __kernel void contact_settle(__global const float* node_u, __global const float*
           before = (int4)(-on_tool[0], -on_tool[PLIANT_TILE], -on_tool[2 * PLIANT_TILE], 0);
           f += (float4)((float)before.x * quantum, (float)before.y * quantum, (float)before.z * quantum, 0.0f);
         }
+        if (held_fast) f = fma((float4)(-stiffness), grip_slip(tool_pose + POSE_NUMBERS * ((step + 1) * tools + t), anchor, m), f);
+        if (count == 1 && held_fast && tears_off(f, m.normal, area * grip_of(tool_pose, tools, step, t))) anchor[3 * PLIANT_TILE] = 0.0f;
         if (count == 1 && anchor[3 * PLIANT_TILE] == (float)(t + 1)) {
           const float4 stuck = (float4)(anchor[0], anchor[PLIANT_TILE], anchor[2 * PLIANT_TILE], 0.0f);
           __global const float* next = tool_pose + POSE_NUMBERS * ((step + 1) * tools + t);

@@ -56,6 +56,7 @@ struct ToolForm {
   Vec3d first{}, second{};                   ///< [m]; half space: `second` is the unit normal; box: `second` is half its size
   NodeGrid grid;                             ///< of a mesh, in its own frame
   std::vector<double> distance;              ///< [nodes] signed distances at its nodes [m]
+  bool grips = false;                        ///< it may hold tissue (ContactTool::grip)
   bool edges = false;                        ///< use contact along edges where the tool is thin (ContactTool::edges)
   double thickness = 1e30;                   ///< mesh: twice its volume over its area [m]
   double reach = 0;                          ///< largest distance of a point from the tool's origin [m]; half space: 0

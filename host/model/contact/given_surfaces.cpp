@@ -189,6 +189,7 @@ ToolForm tool_form(const ContactTool& tool, GivenSurfaces& given) {
     for (const Vec3d& v : one.surface.vertices) form.reach = std::max(form.reach, vec::norm(place(one.pose, v)));
   }
   form.edges = tool.edges;
+  form.grips = tool.grip.has_value();
   return form;
 }
 

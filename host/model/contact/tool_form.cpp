@@ -50,6 +50,7 @@ ToolForm tool_form(const ContactTool& tool) {
   ToolForm form;
   form.shape = tool.shape;
   form.edges = tool.edges;
+  form.grips = tool.grip.has_value();
   form.radius = tool.radius;
   form.first = tool.first;
   form.second = tool.second;

@@ -9,7 +9,7 @@
 namespace pliant {
 
 inline constexpr std::int32_t contact_look_every = 16;   ///< steps between two possible broad-phase searches
-inline constexpr std::size_t contact_pose_numbers = 14;  ///< per step and tool in tool_pose (kernels/contact/contact_point.cl)
+inline constexpr std::size_t contact_pose_numbers = 15;  ///< per step and tool in tool_pose (kernels/contact/contact_point.cl)
 inline constexpr std::size_t contact_list_end = 16;      ///< empty entries at the end of a list of tiles
 inline constexpr std::size_t contact_sum_parts = 16;    ///< per step and tool in tool_sum (kernels/contact/contact_tool_sum.cl)
 inline constexpr std::size_t contact_sum_numbers = 16;  ///< per part

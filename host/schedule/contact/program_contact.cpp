@@ -349,9 +349,10 @@ void ProgramBuilder::add_contact_passes() {
     program_.step.back().defines = {{"MOMENT", tissue ? 1 : 0}, {"EDGES", edged_tools_ != 0 ? 1 : 0}};
   };
   add_contact_look();
+  const bool grips = std::any_of(model_.tools->begin(), model_.tools->end(), [](const ToolForm& t) { return t.grips; });
   const auto of_tools = [&](const char* kernel) {
     pass(kernel, with_step(tool_pass_args(kernel)), Shape::lanes, points, "contact points");
-    program_.step.back().defines = {{"EDGES", edged_tools_ != 0 ? 1 : 0}};
+    program_.step.back().defines = {{"EDGES", edged_tools_ != 0 ? 1 : 0}, {"GRIPS", grips ? 1 : 0}};
   };
   if (tools > 0) of_tools("contact_press");
   if (tissue) add_touch_pass("touch_press");

@@ -80,11 +80,27 @@ Pose tool_pose(const ContactTool& tool, const RunState& state, double time) {
   return between(d.from, d.to, std::clamp((time - d.start) / (d.end - d.start), 0.0, 1.0));
 }
 
+double tool_grip(const ContactTool& tool, const RunState& state, double time) {
+  constexpr double kAny = 1e15;  // holds against every force
+  if (!tool.grip) return 0;
+  const auto told = state.gripping.find(tool.name);
+  const bool on = told != state.gripping.end()
+                      ? told->second
+                      : std::any_of(tool.grip->times.begin(), tool.grip->times.end(),
+                                    [&](const std::array<double, 2>& t) { return t[0] <= time && time < t[1]; });
+  return !on ? 0 : tool.grip->strength > 0 ? tool.grip->strength : kAny;
+}
+
 ToolForm present_form(const ContactTool& tool, const std::map<std::string, GivenSurfaces>& given) {
   const auto found = given.find(tool.name);
   if (found == given.end()) return tool_form(tool);
   GivenSurfaces surfaces = found->second;
   return tool_form(tool, surfaces);
+}
+
+void check_grip(const ContactTool& tool) {
+  if (tool.grip) return;
+  throw Error(ErrorCode::usage, fmt::format("tool \"{}\" has no \"grip\", so it cannot hold tissue", tool.name));
 }
 
 void check_takes_surfaces(const ContactTool& tool) {

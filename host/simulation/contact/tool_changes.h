@@ -20,6 +20,8 @@ void check_tool_changes(const Scene& scene, const ToolChanges& changes);
 
 /// Returns the pose of a tool at a time [s].
 [[nodiscard]] Pose tool_pose(const ContactTool& tool, const RunState& state, double time);
+/// Returns the strength of a tool's grip at a time [Pa]; 0: it does not grip.
+[[nodiscard]] double tool_grip(const ContactTool& tool, const RunState& state, double time);
 
 /// Returns a copy of `model` with the tools `next`. Shapes that are in `known` or that `model` has (for the tools `before`) are
 /// reused; others are built from the surfaces that the host has given or from their files. Throws what tool_form() throws.
@@ -30,6 +32,8 @@ std::shared_ptr<Model> model_with_tools(const Scene& scene, const Model& model, 
 /// The present shape of a tool, also of a parked one.
 ToolForm present_form(const ContactTool& tool, const std::map<std::string, GivenSurfaces>& given);
 
+/// Throws Error (usage) for a tool that cannot hold tissue.
+void check_grip(const ContactTool& tool);
 /// Throws Error (usage) for a tool whose shape cannot change.
 void check_takes_surfaces(const ContactTool& tool);
 

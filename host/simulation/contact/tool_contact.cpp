@@ -111,7 +111,7 @@ void ToolContact::begin_batch(std::int32_t steps) {
       const Pose whole = pose(tool, t), at = compose(whole, moment.pose);
       for (const Vec3d& r : rotation_matrix(at.turn)) poses.insert(poses.end(), r.begin(), r.end());
       poses.insert(poses.end(), at.position.begin(), at.position.end());
-      poses.insert(poses.end(), {double(moment.frame), moment.share});
+      poses.insert(poses.end(), {double(moment.frame), moment.share, tool_grip(tools_[tool], run_.state, t)});
       arms_[row * tools + tool] = vec::sub(at.position, whole.position);
       poses_.push_back(at);
     }

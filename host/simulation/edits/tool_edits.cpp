@@ -92,6 +92,7 @@ void ToolEdits::remove(const std::string& name) {
     take_up(with(std::move(changes)));
   }
   run_.state.driven.erase(name);
+  run_.state.gripping.erase(name);
 }
 
 void ToolEdits::park(const std::string& name) {
@@ -161,6 +162,12 @@ void ToolEdits::set_surface(const std::string& name, const GivenSurfaces& next) 
   } else {
     take_up(with(std::move(changes), &tool, &form));
   }
+}
+
+void ToolEdits::grip(const std::string& name, bool on) {
+  check_grip(known(name));
+  run_.state.gripping[name] = on;
+  run_.state.relaxation.equilibrium = false;  // relaxation restarts
 }
 
 void ToolEdits::drive(const std::string& name, const Pose& to, double seconds) {

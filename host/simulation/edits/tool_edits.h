@@ -30,6 +30,8 @@ class ToolEdits {
   /// Gives a tool a surface to come: the last of `next` (next_surface()). Throws Error (usage) for a tool whose shape cannot
   /// change, and if too many are to come.
   void set_surface(const std::string& name, const GivenSurfaces& next);
+  /// Tells a tool to hold tissue, or to let it go. Throws Error (usage) for one without a grip.
+  void grip(const std::string& name, bool on);
   /// Moves a tool from its current pose to another within `seconds` [s]. Unparks it.
   void drive(const std::string& name, const Pose& to, double seconds);
 

@@ -27,6 +27,10 @@ class StateWriter {
   void last(const char* name, const T& value) {
     if (!value.empty()) (*this)(name, value);
   }
+  template <class T>
+  void last(const char* name, const std::optional<T>& value) {
+    if (value) (*this)(name, value);
+  }
   void last(const char* name, bool value) {
     if (value) (*this)(name, value);
   }

@@ -37,6 +37,7 @@ struct RunState {
   ChangedParameters changed;                      ///< parameters that have changed
   std::vector<std::vector<std::int32_t>> broken;  ///< per entry of Scene::joins its broken springs, ascending; empty: none
   std::map<std::string, PressedBlade> pressed;    ///< by name: the blades that cut by force
+  std::map<std::string, bool> gripping;           ///< tools that the host told to grip or to let go, whatever their times say
   BladeDrives driven_blades;                      ///< those of them that the host moves off their paths
 };
 
@@ -55,6 +56,7 @@ void visit(V& v, RunState& s) {
   v.last("broken", s.broken);
   v.last("pressed", s.pressed);
   v.last("driven_blades", s.driven_blades);
+  v.last("gripping", s.gripping);
 }
 
 /// Serializes the state, identically on every machine: names, and values as eight little-endian bytes.

@@ -34,6 +34,10 @@ template <class V>
 void visit(V& v, ToolDrive& s) {
   v("from", s.from), v("to", s.to), v("start", s.start), v("end", s.end);
 }
+template <class V>
+void visit(V& v, GripSpec& s) {
+  v("strength", s.strength), v("times", s.times);
+}
 
 template <class V>
 void visit(V& v, ContactTool& s) {
@@ -41,6 +45,7 @@ void visit(V& v, ContactTool& s) {
   v("mesh", s.mesh), v("scale", s.scale), v("frames_per_second", s.frames_per_second), v("path", s.path);
   v("friction", s.friction), v("stiffness", s.stiffness), v("exponent", s.exponent), v("alpha", s.alpha);
   v.last("edges", s.edges);
+  v.last("grip", s.grip);
 }
 template <class V>
 void visit(V& v, TriangleMesh& s) {

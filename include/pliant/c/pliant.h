@@ -146,6 +146,8 @@ PLIANT_API pliant_status pliant_world_remove_tool(pliant_world world, const char
 PLIANT_API pliant_status pliant_world_park_tool(pliant_world world, const char* name);
 /** Enables a parked tool again. */
 PLIANT_API pliant_status pliant_world_unpark_tool(pliant_world world, const char* name);
+/** Lets a tool that has a grip hold the tissue that it touches (`hold` not 0), or let it go. */
+PLIANT_API pliant_status pliant_world_grip_tool(pliant_world world, const char* name, int hold);
 /** Moves a tool at once to a position [m] and orientation (unit quaternion x, y, z, w), where it stays. Its path ends. */
 PLIANT_API pliant_status pliant_world_place_tool(pliant_world world, const char* name, const double position[3],
                                                  const double turn[4]);

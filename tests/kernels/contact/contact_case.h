@@ -12,7 +12,7 @@ namespace pliant::kernel_test {
 
 /// Everything that the passes of contact read. The numbers are of a body of about 1 m whose nodes weigh about 1 kg.
 struct ContactData {
-  static constexpr std::size_t tools = 5, rows = test_step + 2, frames = 3, pose_numbers = 14, edges = 24;
+  static constexpr std::size_t tools = 5, rows = test_step + 2, frames = 3, pose_numbers = 15, edges = 24;
   std::size_t points, slots = 96;
   Reals node_u, node_w, rest, weight, share, held, yield, anchor, node_sum, data, grid, pose, params, step_params;
   Ints node, near, force, change, tool_force, sum, kind;
@@ -159,6 +159,7 @@ struct ContactData {
         for (int k = 0; k < 3; ++k) pose.push_back(0.001 * static_cast<double>(row) + random.uniform(-1e-4, 1e-4));
         pose.push_back(static_cast<double>(row % (frames - 1)));
         pose.push_back(random.chance(0.3) ? 0 : random.uniform(0, 1));
+        pose.push_back(0);
       }
     }
     const double unit = std::ldexp(1.0, -10);
@@ -285,15 +286,28 @@ inline KernelCase& add_counts(KernelCase& test, const ContactData& d) {
   return test.integer(static_cast<int>(d.points)).integer(static_cast<int>(ContactData::tools)).step();
 }
 
-inline KernelCase press_case(const ContactData& d, int edges = 0) {
-  KernelCase test("contact_press", {{"EDGES", edges}}, Shape::lanes, near_points(d));
+/// The same with tools that grip, against some force or any, and let go, and points that they hold.
+inline ContactData with_grips(ContactData d) {
+  for (std::size_t row = 0; row < ContactData::rows; ++row) {
+    for (std::size_t t = 0; t < ContactData::tools; ++t) {
+      const double strength = (t + row) % 4 == 0 ? 0 : t == 1 ? 1e15 : 2e4 * static_cast<double>(t + 1);
+      d.pose[ContactData::pose_numbers * (row * ContactData::tools + t) + 14] = strength;
+    }
+  }
+  for (std::size_t i = 0; i < d.points; i += 2) d.anchor[ContactData::base(i, 4) + 48] *= -1;
+  return d;
+}
+
+/// `grips`: 1 where some tools can hold tissue.
+inline KernelCase press_case(const ContactData& d, int edges = 0, int grips = 0) {
+  KernelCase test("contact_press", {{"EDGES", edges}, {"GRIPS", grips}}, Shape::lanes, near_points(d));
   add_touching(test, d).ints("contact_tool_force", d.tool_force);
   add_counts(add_tools(test, d).reals("step_params", d.step_params), d);
   return test;
 }
 
-inline KernelCase settle_case(const ContactData& d, int edges = 0) {
-  KernelCase test("contact_settle", {{"EDGES", edges}}, Shape::lanes, near_points(d));
+inline KernelCase settle_case(const ContactData& d, int edges = 0, int grips = 0) {
+  KernelCase test("contact_settle", {{"EDGES", edges}, {"GRIPS", grips}}, Shape::lanes, near_points(d));
   add_touching(test, d)
       .ints("contact_change", d.change)
       .reals("contact_node_sum", d.node_sum)

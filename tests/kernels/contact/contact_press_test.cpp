@@ -14,6 +14,8 @@ TEST_F(ContactPress, TwinGivesTheSameBits) {
   for_contact_data(200, [&](const ContactData& d, const std::string& label) {
     expect_same_bits(press_case(d), label);
     expect_same_bits(press_case(d, 1), label + ", with edges");
+    expect_same_bits(press_case(with_grips(d), 0, 1), label + ", with grips");
+    expect_same_bits(press_case(with_grips(d), 1, 1), label + ", with edges and grips");
   });
 }
 

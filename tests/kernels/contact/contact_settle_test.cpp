@@ -10,6 +10,8 @@ TEST_F(ContactSettle, TwinGivesTheSameBits) {
   for_contact_data(300, [&](const ContactData& d, const std::string& label) {
     expect_same_bits(settle_case(d), label);
     expect_same_bits(settle_case(d, 1), label + ", with edges");
+    expect_same_bits(settle_case(with_grips(d), 0, 1), label + ", with grips");
+    expect_same_bits(settle_case(with_grips(d), 1, 1), label + ", with edges and grips");
   });
 }
 
@@ -22,6 +24,8 @@ TEST(ContactSettleOracle, ActionIsReactionInFixedPoint) {
     }
     expect_action_is_reaction(d, settle_case(d), "contact_change", {d.tool_force.begin(), d.tool_force.end()});
     expect_action_is_reaction(d, settle_case(d, 1), "contact_change", {d.tool_force.begin(), d.tool_force.end()}, 1);
+    expect_action_is_reaction(d, settle_case(with_grips(d), 0, 1), "contact_change",
+                              {d.tool_force.begin(), d.tool_force.end()});
   }
 }
 

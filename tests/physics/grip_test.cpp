@@ -1,0 +1,193 @@
+// Tools that grip: what they hold follows them as if it were prescribed, slips at the strength of the grip, and is let go.
+#include "physics/harness.h"
+#include "simulation/measure/reactions.h"
+
+namespace pliant::physics {
+namespace {
+
+class GripPhysics : public OnBackend {};
+
+constexpr int kCells = 4;
+constexpr double kCell = 0.0125, kSide = kCells * kCell;
+
+Body cube(Discretization cut, double damping) {
+  Material m = material_young(Law::neo_hookean, 2e4, 0.3);
+  m.damping = damping;
+  return box_body({{kCells, kCells, kCells}, kCell}, cut, m);
+}
+
+/// A plate on the whole top of the cube, which it touches.
+ContactTool plate(double thickness = 0.02) {
+  ContactTool tool;
+  tool.name = "plate";
+  tool.shape = ToolShape::box;
+  tool.size = {0.08, 0.08, thickness};
+  tool.path = {{0, 0.5 * kSide, 0.5 * kSide, kSide + 0.5 * thickness - 1e-5, 0, 0, 0, 1}};
+  tool.grip = GripSpec{0, {{0, 1e9}}};
+  return tool;
+}
+
+/// Then it moves by `d` until `time`.
+void move(ContactTool& tool, double time, const Vec3d& d) {
+  std::array<double, 8> row = tool.path.back();
+  row[0] = time;
+  for (std::size_t c = 0; c < 3; ++c) row[1 + c] += d[c];
+  tool.path.push_back(row);
+}
+
+Scene scene_of(Body body, ContactTool tool) {
+  Scene scene;
+  scene.bodies = {std::move(body)};
+  scene.tools = {std::move(tool)};
+  return scene;
+}
+
+double mean(const std::vector<Vec3d>& u, std::size_t axis) {
+  double sum = 0;
+  for (const Vec3d& v : u) sum += v[axis];
+  return sum / static_cast<double>(u.size());
+}
+
+void until(Simulation& sim, double time) {
+  while (sim.time() < time) sim.advance(sim.next_batch(16));
+}
+
+/// A body that hangs from a tool: its weight is on the tool, and it goes where the tool goes.
+TEST_P(GripPhysics, CarriesABody) {
+  for (const Discretization cut : all_cuts()) {
+    ContactTool tool = plate();
+    move(tool, 0.2, {0, 0, 0});
+    move(tool, 0.5, {0.02, -0.01, 0.03});
+    Scene scene = scene_of(cube(cut, 40), tool);
+    scene.gravity = {0, 0, -9.81};
+    auto sim = simulate(scene, GetParam());
+    until(*sim, 0.2);
+    const std::vector<Vec3d> hung = sim->displacements(0);
+    until(*sim, 1.2);
+    const std::vector<Vec3d> carried = sim->displacements(0);
+    const double weight = sim->model().bodies[0].mass * 9.81;
+    check_relative(std::string(name_of(cut)) + ": weight on the tool", sim->report().tools[0].now.force[2], -weight,
+                   bound(2e-3, 2e-3));
+    check("  way along x", mean(carried, 0) - mean(hung, 0) - 0.02, 1e-4);
+    check("  way along y", mean(carried, 1) - mean(hung, 1) + 0.01, 1e-4);
+    check("  way along z", mean(carried, 2) - mean(hung, 2) - 0.03, 1e-4);
+  }
+}
+
+/// Held all over one face, a body behaves as one whose nodes there are prescribed.
+TEST_P(GripPhysics, PullsAndTurnsAsPrescribedNodesDo) {
+  for (const Discretization cut : {Discretization::hex8_bricks, Discretization::hex8full, Discretization::tet4}) {
+    for (const bool turns : {false, true}) {
+      ContactTool tool = plate();
+      Body body = cube(cut, 60);
+      body.fixed.push_back({face(2, 0), {true, true, true}});
+      Body same = body;
+      if (turns) {
+        for (int k = 1; k <= 30; ++k) {  // about z, through the middle
+          std::array<double, 8> row = tool.path.front();
+          row[0] = 0.01 * k;
+          row[6] = std::sin(0.01 * k);
+          row[7] = std::cos(0.01 * k);
+          tool.path.push_back(row);
+        }
+        Prescribed turn;
+        turn.where = face(2, kSide);
+        turn.rotate = Rotation{{0, 0, 1}, {0.5 * kSide, 0.5 * kSide, 0}, 0.6};
+        turn.curve = smooth(0.3);
+        same.prescribed.push_back(turn);
+      } else {
+        move(tool, 0.3, {0.004, 0, 0.01});
+        same.prescribed.push_back(pull(2, kSide, 0.01, smooth(0.3)));
+        same.prescribed.back().displacement = {0.004, 0, 0.01};
+      }
+      auto held = simulate(scene_of(body, tool), GetParam());
+      until(*held, 1);
+      Scene bare;
+      bare.bodies = {same};
+      auto given = simulate(bare, GetParam());
+      until(*given, 1);
+      const std::vector<Vec3d> u = held->displacements(0), v = given->displacements(0);
+      double apart = 0;
+      for (std::size_t n = 0; n < u.size(); ++n) apart = std::max(apart, (eigen(u[n]) - eigen(v[n])).norm());
+      check(std::string(name_of(cut)) + (turns ? ": turned" : ": pulled") + ", difference over the largest displacement",
+            apart / largest(v), 5e-3);
+      Vector3d force = Vector3d::Zero();
+      for (const Vec3d& r : reactions(*given, 0)) force += eigen(r);  // of both ends
+      check("  the forces of both ends balance", force.norm(), 1e-2);
+      Vector3d pull_on_top = Vector3d::Zero();
+      const std::vector<Vec3d> r = reactions(*given, 0);
+      for (std::size_t n = 0; n < r.size(); ++n) {
+        if (given->model().bodies[0].rest[n][2] > 0.5 * kSide) pull_on_top += eigen(r[n]);
+      }
+      const Wrench& on_tool = held->report().tools[0].now;
+      if (!turns) check("  force", (eigen(on_tool.force) + pull_on_top).norm() / pull_on_top.norm(), 5e-3);
+    }
+  }
+}
+
+/// Tissue slips out where the traction is that of the grip, all at once under a plate, and then moves freely.
+TEST_P(GripPhysics, SlipsOutAtItsStrength) {
+  for (const double strength : {500.0, 1500.0}) {
+    ContactTool tool = plate();
+    tool.grip->strength = strength;
+    move(tool, 1, {0, 0, 0.02});
+    Body body = cube(Discretization::hex8_bricks, 60);
+    body.fixed.push_back({face(2, 0), {true, true, true}});
+    auto sim = simulate(scene_of(body, tool), GetParam());
+    double most = 0;
+    while (sim->time() < 1) {
+      sim->advance(sim->next_batch(16));
+      most = std::max(most, -sim->report().tools[0].now.force[2]);
+    }
+    // Where the sides are free the traction at the rim is above the mean.
+    const double bond = most / (strength * kSide * kSide);
+    std::printf("  strength %g Pa: largest force %.3f of strength times area\n", strength, bond);
+    EXPECT_GT(bond, 0.5);
+    EXPECT_LT(bond, 1.02);
+    until(*sim, 1.5);
+    EXPECT_EQ(sim->report().tools[0].now.force, Vec3d{});
+    check("  free again, displacement", largest(sim->displacements(0)), 1e-4);
+  }
+}
+
+/// Outside of its times a tool holds nothing: the body falls off, and is not gripped again from afar.
+TEST_P(GripPhysics, LetsGoInTime) {
+  ContactTool tool = plate();
+  tool.grip->times = {{0, 0.1}, {0.3, 0.4}};
+  Scene scene = scene_of(cube(Discretization::tet4, 5), tool);
+  scene.gravity = {0, 0, -9.81};
+  auto sim = simulate(scene, GetParam());
+  until(*sim, 0.1);
+  const double hung = mean(sim->displacements(0), 2);
+  EXPECT_GT(hung, -1e-3);
+  until(*sim, 0.4);
+  const double t = sim->time() - 0.1, c = 5, fall = 9.81 / c * (t - (1 - std::exp(-c * t)) / c);
+  check_relative("fall", hung - mean(sim->displacements(0), 2), fall, 0.02);
+}
+
+/// A cut takes a part away; what the tool holds stays held.
+TEST_P(GripPhysics, HoldsOnThroughACut) {
+  for (const Discretization cut : {Discretization::hex8_bricks, Discretization::tet4}) {
+    Scene scene = scene_of(cube(cut, 40), plate());
+    scene.gravity = {0, 0, -9.81};
+    Blade blade;
+    blade.name = "blade";
+    blade.path = {{0.1, -0.01, -0.02, 0.02, -0.01, 0.07, 0.02}, {0.3, 0.06, -0.02, 0.021, 0.06, 0.07, 0.021}};
+    scene.blades = {blade};
+    auto sim = simulate(scene, GetParam());
+    until(*sim, 0.8);
+    double top = 0, bottom = 0;
+    for (std::size_t n = 0; n < sim->model().bodies[0].rest.size(); ++n) {
+      const double z = sim->displacements(0)[n][2];
+      if (sim->model().bodies[0].rest[n][2] > kSide - 1e-6) top = std::max(top, std::abs(z));
+      bottom = std::min(bottom, z);
+    }
+    check(std::string(name_of(cut)) + ": the held face stays", top, 1e-3);
+    EXPECT_LT(bottom, -0.5) << "the other part falls";
+  }
+}
+
+PLIANT_ON_BACKENDS(GripPhysics);
+
+}  // namespace
+}  // namespace pliant::physics
