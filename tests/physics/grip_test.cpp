@@ -2,7 +2,7 @@
 #include "physics/harness.h"
 #include "simulation/measure/reactions.h"
 
-namespace pliant::physics {
+namespace pliant::physics::grip_test {
 namespace {
 
 class GripPhysics : public OnBackend {};
@@ -190,4 +190,4 @@ TEST_P(GripPhysics, HoldsOnThroughACut) {
 PLIANT_ON_BACKENDS(GripPhysics);
 
 }  // namespace
-}  // namespace pliant::physics
+}  // namespace pliant::physics::grip_test
