@@ -70,20 +70,23 @@ struct Material {
   std::vector<double> parameters;  ///< in the order of LawInfo::parameters
   Moduli moduli;                   ///< at small strain, for the stable step, hourglass control and warnings
   std::shared_ptr<const YoungField>
-      young_field;            ///< null: uniform; otherwise parameters and moduli belong to its largest value
-  double density = 1000;      ///< [kg/m^3]
-  double viscosity = 0;       ///< shear viscosity eta [Pa s] of the Kelvin-Voigt stress 2 eta dev(D) + zeta tr(D) I
-  double bulk_viscosity = 0;  ///< zeta [Pa s]; with a field, both belong to the largest modulus
-  double damping = 0;         ///< mass-proportional damping rate c [1/s]: M u'' + c M u' = R - F
-  double hourglass = 1;       ///< factor on the stiffness of hourglass control (1: exact bending of a bar at nu = 0)
-  double toughness = 0;       ///< K_I: principal stress at which it tears [Pa]; 0: never
-  double integrity = 1;       ///< zeta in (0, 1]: remaining fraction of the toughness
-  double low = 0;             ///< low_volume: the law is continued below this J (kinematics.h); 0: undefined for J <= 0
+      young_field;               ///< null: uniform; otherwise parameters and moduli belong to its largest value
+  double density = 1000;         ///< [kg/m^3]
+  double viscosity = 0;          ///< shear viscosity eta [Pa s] of the Kelvin-Voigt stress 2 eta dev(D) + zeta tr(D) I
+  double bulk_viscosity = 0;     ///< zeta [Pa s]; with a field, both belong to the largest modulus
+  double stiffness_damping = 0;  ///< b of the damping b K (Rayleigh): eta and zeta have b mu and b kappa more [s]
+  double damping = 0;            ///< mass-proportional damping rate c [1/s]: M u'' + c M u' = R - F
+  double hourglass = 1;          ///< factor on the stiffness of hourglass control (1: exact bending of a bar at nu = 0)
+  double toughness = 0;          ///< K_I: principal stress at which it tears [Pa]; 0: never
+  double integrity = 1;          ///< zeta in (0, 1]: remaining fraction of the toughness
+  double low = 0;                ///< low_volume: the law is continued below this J (kinematics.h); 0: undefined for J <= 0
 
-  [[nodiscard]] bool viscous() const { return viscosity > 0 || bulk_viscosity > 0; }
+  [[nodiscard]] double eta() const { return viscosity + stiffness_damping * moduli.mu; }
+  [[nodiscard]] double zeta() const { return bulk_viscosity + stiffness_damping * moduli.kappa; }
+  [[nodiscard]] bool viscous() const { return eta() > 0 || zeta() > 0; }
   /// Largest ratio of viscosity to modulus [s]: at small strain, viscous forces are at most this times the elastic forces of
   /// the corresponding velocity.
-  [[nodiscard]] double viscous_time() const { return std::max(viscosity / moduli.mu, bulk_viscosity / moduli.kappa); }
+  [[nodiscard]] double viscous_time() const { return std::max(eta() / moduli.mu, zeta() / moduli.kappa); }
 
   /// Returns the law with these moduli at small strain. If they do not determine it, it is a typical one with these moduli.
   void set_moduli(Law law, const Moduli& moduli);

@@ -62,6 +62,9 @@ void describe_material(V&& v, S&& s) {
   v(s.viscosity, {"viscosity", at_least(0), "Pa s", "20",
                   "shear viscosity eta of a stress 2 eta dev(D) + zeta tr(D) I, added to that of the law (see below)"});
   v(s.bulk_viscosity, {"bulk_viscosity", at_least(0), "Pa s", "50", "its bulk viscosity zeta"});
+  v(s.stiffness_damping,
+    {"stiffness_damping", at_least(0), "s", "0.001",
+     "stiffness-proportional time b: the part b K of Rayleigh damping, K the stiffness at rest (see below); also of springs"});
   v(s.hourglass, {"hourglass", at_least(0), "", "0.5", "factor on the hourglass stiffness of `hex8`"});
   v(s.toughness, {"toughness", above(0).absent_at(0), "Pa", "9000",
                   "largest principal stress that it bears before it tears; none: it does not tear"});

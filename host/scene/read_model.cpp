@@ -95,13 +95,20 @@ void check_follow(const Reader& follow, const Scene& scene, const std::string& n
                             listed(names), kHostBlade));
 }
 
+/// Beside a damping in proportion to stiffness, which springs have, too.
+static bool has_viscosity(const Body& body) {
+  const auto of = [](const Material& m) { return m.viscosity > 0 || m.bulk_viscosity > 0; };
+  return of(body.material) ||
+         std::any_of(body.inclusions.begin(), body.inclusions.end(), [&](const Inclusion& i) { return of(i.material); });
+}
+
 void check_viscous(const Reader& top, const Scene& scene) {
   for (const Body& body : scene.bodies) {
     bool viscous = body.material.viscous();
     for (const Inclusion& inclusion : body.inclusions) viscous = viscous || inclusion.material.viscous();
     if (!viscous) continue;
     require_integrator(top, scene, &IntegratorInfo::keeps_increment, fmt::format("{} has a viscosity", body.pointer));
-    if (body.model.type == ModelType::tled) continue;
+    if (body.model.type == ModelType::tled || (body.model.type == ModelType::mass_spring && !has_viscosity(body))) continue;
     const std::vector<Reader> bodies = top.at("bodies").items("a list of bodies");
     bodies[static_cast<std::size_t>(&body - scene.bodies.data())].at("model").at("type").fail(
         fmt::format("tled, because {} has a viscosity, which is one of elements", body.pointer));

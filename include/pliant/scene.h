@@ -43,6 +43,7 @@ struct MaterialSpec {
   double damping = 0;               ///< mass-proportional damping rate [1/s]
   double viscosity = 0;             ///< shear viscosity [Pa s]
   double bulk_viscosity = 0;        ///< bulk viscosity [Pa s]
+  double stiffness_damping = 0;     ///< time b of the damping b K, K the stiffness at rest (Rayleigh) [s]
   double hourglass = 1;             ///< factor on the hourglass stiffness of hex8
   std::optional<double> toughness;  ///< stress at which the material tears [Pa]; absent: it does not tear
   std::optional<double> integrity;  ///< remaining fraction of the toughness, in (0, 1]

@@ -40,6 +40,32 @@ double tip(const Simulation& sim) {
 /// First frequency of the bar as a continuum [1/s].
 double first_omega() { return M_PI / (2 * kLength) * std::sqrt(kYoung / 1000); }
 
+struct Decay {
+  double rate, omega2;  ///< [1/s], square of the frequency without damping [1/s^2]
+};
+
+/// Of the free vibration of a bar.
+Decay free_decay(Simulation& sim) {
+  std::vector<double> crossings, peaks;
+  double before = tip(sim), peak = 0;
+  while (crossings.size() < 8 && sim.step() < 8000) {
+    sim.advance(1);
+    const double now = tip(sim);
+    if (before * now < 0) {
+      crossings.push_back(sim.time() - sim.dt() * now / (now - before));
+      peaks.push_back(peak);
+      peak = 0;
+    }
+    peak = std::max(peak, std::abs(now));
+    before = now;
+  }
+  EXPECT_EQ(crossings.size(), 8U);
+  crossings.resize(8), peaks.resize(8);
+  // The first swings hold higher modes, which are damped much more.
+  const double half = (crossings[7] - crossings[2]) / 5, rate = std::log(peaks[3] / peaks[7]) / (4 * half);
+  return {rate, M_PI * M_PI / (half * half) + rate * rate};
+}
+
 /// A free vibration decays as exp(-delta t), delta = eta omega^2 / (2 E) with eta the viscosity of the bar; its own omega.
 TEST_P(Viscosity, AFreeVibrationDecays) {
   const double time = 0.1 / first_omega();
@@ -52,25 +78,48 @@ TEST_P(Viscosity, AFreeVibrationDecays) {
     scene.bodies = {body};
     scene.dt = 5e-4;
     auto sim = simulate(scene, GetParam());
-    std::vector<double> crossings, peaks;
-    double before = tip(*sim), peak = 0;
-    while (crossings.size() < 8 && sim->step() < 4000) {
-      sim->advance(1);
-      const double now = tip(*sim);
-      if (before * now < 0) {
-        crossings.push_back(sim->time() - sim->dt() * now / (now - before));
-        peaks.push_back(peak);
-        peak = 0;
-      }
-      peak = std::max(peak, std::abs(now));
-      before = now;
-    }
-    ASSERT_EQ(crossings.size(), 8U) << name_of(cut);
-    // The first swings hold higher modes, which are damped much more.
-    const double half = (crossings[7] - crossings[2]) / 5, decay = std::log(peaks[3] / peaks[7]) / (4 * half);
-    const double omega2 = M_PI * M_PI / (half * half) + decay * decay;
+    const auto [decay, omega2] = free_decay(*sim);
     check_relative(std::string(name_of(cut)) + " decay rate [1/s]", decay, time * omega2 / 2, 0.01);
     check_relative(std::string(name_of(cut)) + " omega of the first mode [1/s]", std::sqrt(omega2), first_omega(), 0.02);
+  }
+}
+
+/// Springs with dampers in proportion to their stiffness: xi = b omega / 2, whatever omega the network has.
+TEST_P(Viscosity, ANetworkOfSpringsDecays) {
+  for (const double given : {0.0, 15.0}) {  // stiffness of each spring [N/m]; 0: from the material
+    Material m = material_young(Law::neo_hookean, kYoung, 0.25);
+    m.stiffness_damping = 0.1 / first_omega();
+    Body body = bar(Discretization::tet4, 4, m);
+    body.model.type = ModelType::mass_spring;
+    body.model.spring.stiffness = given;
+    AffineField stretch;
+    stretch.linear[0] = {1e-3, 0, 0};
+    body.initial.push_back({all_nodes(), {}, stretch});
+    Scene scene;
+    scene.bodies = {body};
+    scene.dt = 2e-4;
+    auto sim = simulate(scene, GetParam());
+    const auto [decay, omega2] = free_decay(*sim);
+    check_relative("decay rate of the network [1/s]", decay, m.stiffness_damping * omega2 / 2, 0.01);
+  }
+}
+
+/// The stiffness-proportional part of Rayleigh's damping is a viscosity of b mu and b kappa.
+TEST_P(Viscosity, StiffnessDampingIsTheViscosityOfItsModuli) {
+  for (const Discretization cut : all_cuts()) {
+    std::vector<std::uint64_t> hashes;
+    for (const bool by_time : {false, true}) {
+      Material m = viscous_material(by_time ? 0 : 0.01);
+      m.stiffness_damping = by_time ? 0.01 : 0;
+      Body body = bar(cut, 3, m);
+      body.velocity = {0.1, 0, 0};
+      Scene scene;
+      scene.bodies = {body};
+      auto sim = simulate(scene, GetParam());
+      sim->advance(50);
+      hashes.push_back(sim->hash());
+    }
+    EXPECT_EQ(hashes[0], hashes[1]) << name_of(cut);
   }
 }
 

@@ -44,10 +44,11 @@ struct SpringBatch {
   std::vector<double> length;                       ///< [springs] l0, 0 where both ends rest at one place [m]
   std::vector<std::array<double, 2>> parameters;    ///< [springs] as kernels/links/spring_force.cl has them
   std::vector<double> damper;                       ///< [springs] [N s/m]
-  std::vector<char> broken;  ///< [springs] of a join, empty: none is. They stay in the lists, and give no force
-  bool bars = false;         ///< of vessels: between points in elements, however short
+  std::vector<char> broken;        ///< [springs] of a join, empty: none is. They stay in the lists, and give no force
+  bool bars = false;               ///< of vessels: between points in elements, however short
+  bool stiffness_damping = false;  ///< some dampers come from Material::stiffness_damping
   [[nodiscard]] std::size_t size() const { return points.size(); }
-  [[nodiscard]] bool damped() const { return law.damping > 0; }
+  [[nodiscard]] bool damped() const { return law.damping > 0 || stiffness_damping; }
   [[nodiscard]] bool whole(std::size_t s) const { return broken.empty() || broken[s] == 0; }
   /// The batch without its broken springs.
   [[nodiscard]] SpringBatch without_broken() const;

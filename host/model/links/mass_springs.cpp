@@ -20,6 +20,7 @@ struct EdgeShare {
   Pair ends;         ///< ascending
   double filled;     ///< its volume times its fill [m^3]
   double stiffness;  ///< E V fill / l^2 [N/m]
+  double damping;    ///< times Material::stiffness_damping [N s/m]
 };
 
 /// Whether there may be copies of nodes.
@@ -47,12 +48,17 @@ std::vector<EdgeShare> edge_shares(const Body& body, const NodeNumbering& draft,
   std::vector<std::size_t> next(static_cast<std::size_t>(*std::max_element(name.begin(), name.end())) + 2, 0);
   all.reserve(6 * solid.tets.size());
   for (std::size_t e = 0; e < solid.tets.size(); ++e) {
-    const double young = draft.materials.modulus_of(e) * material_of(body, draft.materials.index[e]).moduli.young();
+    const Material& material = material_of(body, draft.materials.index[e]);
+    const double young = draft.materials.modulus_of(e) * material.moduli.young();
     const double filled = draft.volume[e] * fill[e];
     for (const auto& [i, j] : kTetEdges) {
       const std::int32_t a = solid.tets[e][i], b = solid.tets[e][j];
       const Vec3d d = vec::sub(solid.nodes[b], solid.nodes[a]);
-      all.push_back({{std::min(name[a], name[b]), std::max(name[a], name[b])}, filled, young * filled / vec::dot(d, d)});
+      const double stiffness = young * filled / vec::dot(d, d);
+      all.push_back({{std::min(name[a], name[b]), std::max(name[a], name[b])},
+                     filled,
+                     stiffness,
+                     stiffness * material.stiffness_damping});
       ++next[static_cast<std::size_t>(all.back().ends[0]) + 1];
     }
   }
@@ -76,6 +82,7 @@ std::vector<EdgeShare> summed(const std::vector<EdgeShare>& shares) {
     } else {
       out.back().filled += s.filled;
       out.back().stiffness += s.stiffness;
+      out.back().damping += s.damping;
     }
   }
   return out;
@@ -116,7 +123,8 @@ void add_mass_springs(const Body& body, std::int32_t b, const NodeNumbering& dra
     batch.points.push_back({point[e.ends[0]], point[e.ends[1]]});
     batch.length.push_back(length);
     batch.parameters.push_back(spring_parameters(batch.law, length, share, stiffness));
-    batch.damper.push_back(share * batch.law.damping);
+    batch.damper.push_back(share * batch.law.damping + rest_stiffness(batch, batch.size() - 1) * e.damping / e.stiffness);
+    batch.stiffness_damping = batch.stiffness_damping || e.damping > 0;
   }
   if (batch.size() > 0) model.links.springs.push_back(std::move(batch));
 }

@@ -18,7 +18,7 @@ BufferId ProgramBuilder::add_law(const Material& material) {
 BufferId ProgramBuilder::add_viscosity(const Material& material, BufferId other) {
   if (!material.viscous()) return other;
   return add(make_reals(fmt::format("viscosity/{}", laws_), BufferType::real, 2, BufferRole::constant, "[2]", "Pa s", "model",
-                        {2 * material.viscosity, material.bulk_viscosity - 2 * material.viscosity / 3}));
+                        {2 * material.eta(), material.zeta() - 2 * material.eta() / 3}));
 }
 
 void ProgramBuilder::add_bricks(const BrickBatch& b) {
