@@ -13,7 +13,7 @@ ELEMENTS = {"tet4": "tet4: linear tetrahedron", "tet4anp": "tet4anp: tetrahedron
             "springs": "springs along the edges of tetrahedra", "membrane": "triangles of a membrane on a sheet of springs"}
 # Passes that do the same for different elements share a colour, by the end of their kernel's name.
 ROLES = [("_force", "element forces"), ("_update", "node update"), ("_dilation", "element volumes"), ("_pressure", "nodal pressure"),
-         ("_prescribe", "prescribed nodes"), ("link_gather", "sums of links at nodes"), ("link_points", "points of links")]
+         ("_prescribe", "prescribed nodes"), ("_node", "springs at nodes"), ("link_gather", "sums of links at nodes"), ("link_points", "points of links")]
 NOISY = 0.10
 
 

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "bench/common/dice.h"
+#include "bench/survival/random_grip.h"
 #include "bench/survival/random_vessels.h"
 #include "bench/survival/survival.h"
 #include "geometry/mesh.h"
@@ -168,8 +169,11 @@ class RandomScene {
     }
     m["density"] = dice_.uniform(900, 1100);
     m["damping"] = damping;
-    // Viscosity is one of elements: a sixth of the bodies without shape matching have some, of up to a tenth of a second.
-    Dice viscous(number_ ^ 0x632be59b);
+    // A sixth of the bodies of elements have a viscosity, of up to a tenth of a second; some that shape matching leaves have b
+    // K.
+    Dice viscous(number_ ^ 0x632be59b), rayleigh(number_ ^ 0x2545f491);
+    if (body["model"]["type"] == "tled" || body["model"]["type"] == "mass-spring")
+      if (rayleigh.chance(0.1)) m["stiffness_damping"] = rayleigh.logarithmic(1e-5, 1e-2);
     if (body["model"]["type"] == "tled" && viscous.chance(1.0 / 6)) {
       m["viscosity"] = young_ * viscous.logarithmic(1e-5, 0.03);
       if (viscous.chance(0.5)) m["bulk_viscosity"] = young_ * viscous.logarithmic(1e-5, 0.1);
@@ -320,6 +324,8 @@ class RandomScene {
       if (tool["path"].size() > 1 && touch_.chance(0.4)) tool["path"].push_back(row(end + touch_.uniform(0.1, 0.5), start));
       if (touch_.chance(0.6)) tool["friction"] = touch_.uniform(0, 0.8);
       if (touch_.chance(0.2)) tool["contact"] = {{"stiffness", touch_.logarithmic(1e4, 1e7)}, {"alpha", touch_.uniform(0, 1)}};
+      Dice hold(number_ ^ (0x51ed270b + i));
+      if (hold.chance(0.25)) tool["grip"] = random_grip(hold, young_);
       list.push_back(std::move(tool));
     }
     return list;

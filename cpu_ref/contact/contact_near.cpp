@@ -29,6 +29,10 @@ void contact_near(Range range, const Scalar* node_u, const Scalar* node_w, const
       }
     }
     for (std::int32_t t = 0; t < tools; ++t) near |= least[t] < margin ? 1 << t : 0;
+    for (std::int64_t i = tile * PLIANT_TILE; i < (tile + 1) * PLIANT_TILE; ++i) {
+      const Scalar by = numbers_of(contact_anchor, i)[3];
+      if (by < Scalar(0) && by > Scalar(-64)) near |= 1 << static_cast<std::int32_t>(-by - Scalar(1));
+    }
     const std::int32_t before = contact_near[tile];
     if (near == 0 && (before & ~PLIANT_TOUCH_BIT) != 0) {
       const std::int64_t base = tile * 4 * PLIANT_TILE;

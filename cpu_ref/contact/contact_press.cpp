@@ -33,6 +33,41 @@ Vec<Scalar> press_friction(const Meeting<Scalar>& m, const Scalar* next, const P
   return scaled_sum(-factor, side, f);
 }
 
+/// The point keeps its place on the tool from the start of the step on. `by`: what says that this tool has it.
+template <class Scalar>
+void hold_here(const Tools<Scalar>& tools, std::int32_t t, const Place<Scalar>& p, Scalar by,
+               const PointNumbers<Scalar>& anchor) {
+  set_three(anchor, turned_back(tools.now(t), difference(difference(p.now, p.moved), origin_of(tools.now(t)))));
+  anchor[3] = by;
+}
+
+/// The normal force, and friction if the tool has any.
+template <class Scalar>
+Vec<Scalar> with_friction(const Tools<Scalar>& tools, std::int32_t t, const Place<Scalar>& p, const Meeting<Scalar>& m,
+                          const PointNumbers<Scalar>& anchor, Scalar stiffness, Scalar push) {
+  const Vec<Scalar> f = times(m.normal, push);
+  const Scalar friction = tools.law(t)[14];
+  const auto own = static_cast<Scalar>(t + 1);
+  if (!(friction > Scalar(0))) return f;
+  if (anchor[3] == Scalar(0)) hold_here(tools, t, p, own, anchor);
+  return anchor[3] == own ? press_friction(m, tools.next(t), anchor, stiffness, friction * push, f) : f;
+}
+
+/// The tools that a point touches, one bit each, and whether it may touch something in the next step.
+struct Reached {
+  std::int32_t touching = 0, gripped = 0, out = 0, count = 0, ready = 0;
+};
+
+/// Releases a point from a tool that it touches no longer, or that has let it go.
+template <int GRIPS, class Scalar>
+void let_go(const PointNumbers<Scalar>& anchor, const Reached& reached) {
+  const std::int32_t stuck_to = static_cast<std::int32_t>(anchor[3]) - 1;
+  if (stuck_to >= 0 && (reached.touching >> stuck_to & 1) == 0) anchor[3] = 0;
+  if (GRIPS == 0 || !(anchor[3] < Scalar(0))) return;
+  const auto by = static_cast<std::int32_t>(-anchor[3] - Scalar(1));
+  if (((by < 64 ? reached.gripped >> by : reached.out >> (by - 64)) & 1) == 0) anchor[3] = 0;
+}
+
 /// W if the touching points are not known yet: that of all points around.
 template <class Scalar>
 Scalar yield_of_all(const Scalar* node_u, const Scalar* node_w, const std::int32_t* contact_node, const Scalar* contact_share,
@@ -45,11 +80,6 @@ Scalar yield_of_all(const Scalar* node_u, const Scalar* node_w, const std::int32
   }
   return w;
 }
-
-/// The tools that a point touches, one bit each, and whether it may touch something in the next step.
-struct Reached {
-  std::int32_t touching = 0, gripped = 0, count = 0, ready = 0;
-};
 
 template <int GRIPS, class Scalar, int EDGES>
 Reached reach(const EdgedTools<Scalar, EDGES>& all, [[maybe_unused]] const Corners<Scalar, EDGES>& corners,
@@ -68,7 +98,10 @@ Reached reach(const EdgedTools<Scalar, EDGES>& all, [[maybe_unused]] const Corne
       weighed = true;
     }
     bool gripped = false;
-    if constexpr (GRIPS != 0) gripped = !met.edged && grips(all, contact_held, anchor, t, i, met.m, margin);
+    if constexpr (GRIPS != 0) {
+      gripped = !met.edged && grips(all, contact_held, anchor, t, i, met.m, margin);
+      out.out |= (slipped(all, anchor, t, met.m, margin) ? 1 : 0) << t;
+    }
     if (!(met.m.distance < Scalar(0)) && !gripped) continue;
     out.gripped |= (gripped ? 1 : 0) << t;
     out.touching |= 1 << t;
@@ -104,10 +137,7 @@ void contact_press(Range range, const Scalar* node_u, const Scalar* node_w, cons
                                              : Reached{};
     const std::int32_t touching = reached.touching, count = reached.count;
     const PointNumbers<std::int32_t> force = numbers_of(contact_force, i);
-    const std::int32_t stuck_to = static_cast<std::int32_t>(anchor[3]) - 1;
-    if (stuck_to >= 0 && (touching >> stuck_to & 1) == 0) anchor[3] = 0;
-    if (GRIPS != 0 && anchor[3] < Scalar(0) && (reached.gripped >> static_cast<std::int32_t>(-anchor[3] - Scalar(1)) & 1) == 0)
-      anchor[3] = 0;
+    let_go<GRIPS>(anchor, reached);
     Quanta sum{};
     corners.clear(i);
     Scalar w = contact_yield[i];
@@ -125,19 +155,11 @@ void contact_press(Range range, const Scalar* node_u, const Scalar* node_w, cons
       const Scalar* law = all.law(t);
       const Scalar held = held_depth(points, contact_share, contact_held, i, met.place, m);
       const Scalar push = normal_force(m, held, law, area, stiffness, h);
-      Vec<Scalar> f = times(m.normal, push);
-      const auto hold_here = [&](Scalar by) {
-        set_three(anchor, turned_back(all.now(t), difference(difference(p.now, p.moved), origin_of(all.now(t)))));
-        anchor[3] = by;
-      };
-      if (GRIPS != 0 && (reached.gripped >> t & 1) != 0 && anchor[3] >= Scalar(0)) hold_here(gripped_by<Scalar>(t));
-      if (GRIPS != 0 && anchor[3] == gripped_by<Scalar>(t)) {
-        f = times(grip_slip(all, t, anchor, m), -stiffness);
-      } else if (law[14] > Scalar(0)) {
-        const auto own = static_cast<Scalar>(t + 1);
-        if (anchor[3] == Scalar(0)) hold_here(own);
-        if (anchor[3] == own) f = press_friction(m, all.next(t), anchor, stiffness, law[14] * push, f);
-      }
+      if (GRIPS != 0 && (reached.gripped >> t & 1) != 0 && anchor[3] >= Scalar(0))
+        hold_here(all, t, p, gripped_by<Scalar>(t), anchor);
+      const bool gripped = GRIPS != 0 && anchor[3] == gripped_by<Scalar>(t);
+      const Vec<Scalar> f =
+          gripped ? times(grip_slip(all, t, anchor, m), -stiffness) : with_friction(all, t, p, m, anchor, stiffness, push);
       const Quanta q = quanta(f, contact_params[1]);
       begin_touch(on_tool, m.opening - m.distance);
       add_to_tool(on_tool, all.next(t), contact_params, met.place, q);

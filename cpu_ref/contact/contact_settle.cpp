@@ -1,4 +1,6 @@
 // Twin of kernels/contact/contact_settle.cl.
+#include <bit>
+
 #include "cpu_ref/contact/contact_grip.h"
 #include "cpu_ref/registry.h"
 
@@ -23,6 +25,30 @@ Vec<Scalar> settle_friction(const Meeting<Scalar>& m, const Scalar* next, const 
     for (std::size_t k = 0; k < 3; ++k) anchor[static_cast<std::int64_t>(k)] = m.inside[k] + back[k];
   }
   return scaled_sum(length > most ? most / length : Scalar(1), pull, times(m.normal, across));
+}
+
+/// The second part of a grip, added to `f`; a point that both parts together tear off has slipped out after this step. `more`:
+/// of the first part what `f` has not.
+template <class Scalar>
+Vec<Scalar> settle_grip(const Tools<Scalar>& tools, std::int32_t t, const Meeting<Scalar>& m,
+                        const PointNumbers<Scalar>& anchor, Scalar stiffness, Scalar area, const Vec<Scalar>* more,
+                        const Vec<Scalar>& f) {
+  const Vec<Scalar> both = scaled_sum(-stiffness, grip_slip(tools, t, anchor, m), f);
+  Vec<Scalar> all = both;
+  for (std::size_t k = 0; more != nullptr && k < 3; ++k) all[k] += (*more)[k];
+  if (tears_off(all, m.normal, area * grip_of(tools, t))) anchor[3] = slipped_from<Scalar>(t);
+  return both;
+}
+
+template <class Scalar>
+Vec<Scalar> force_of(const Quanta& q, Scalar quantum) {
+  return {static_cast<Scalar>(q[0]) * quantum, static_cast<Scalar>(q[1]) * quantum, static_cast<Scalar>(q[2]) * quantum};
+}
+
+/// Weights of the nodes where the point meets its tools.
+template <int EDGES, class Scalar>
+const Scalar* weights_of(std::int64_t i, bool by_tools, const Scalar* contact_weight, const Scalar* contact_corner_weight) {
+  return EDGES != 0 && by_tools ? contact_corner_weight + tile_base(i, 9) : contact_weight + tile_base(i, 8);
 }
 
 /// W of the points that touch or may touch; `weight`: weights of the nodes at the place of contact.
@@ -70,11 +96,10 @@ void contact_settle(Range range, const Scalar* node_u, const Scalar* node_w, con
     if (touching != 0) {
       const Place<Scalar> p = points.at(i);
       const Scalar known = contact_yield[i];
-      const bool at_corners = EDGES != 0 && (contact_near[i / PLIANT_TILE] & ~PLIANT_TOUCH_BIT) != 0;
-      const Scalar* weight = at_corners ? contact_corner_weight + tile_base(i, 9) : contact_weight + tile_base(i, 8);
+      const bool by_tools = (contact_near[i / PLIANT_TILE] & ~PLIANT_TOUCH_BIT) != 0;
+      const Scalar* weight = weights_of<EDGES>(i, by_tools, contact_weight, contact_corner_weight);
       contact_yield[i] = yield_of_touching(points, contact_share, contact_node_sum, i, half_hh, weight);
-      std::int32_t count = 0;
-      for (std::int32_t t = 0; t < tools; ++t) count += touching >> t & 1;
+      const int count = std::popcount(static_cast<std::uint32_t>(touching) & ((1U << tools) - 1));
       const Scalar whole = known > Scalar(0) ? points.area(i) / (known * static_cast<Scalar>(count)) : Scalar(0);
       for (std::int32_t t = 0; t < tools; ++t) {
         if ((touching >> t & 1) == 0) continue;
@@ -87,14 +112,10 @@ void contact_settle(Range range, const Scalar* node_u, const Scalar* node_w, con
         const bool held_fast = GRIPS != 0 && anchor[3] == gripped_by<Scalar>(t);
         const Scalar rest = (-m.distance - held) - law[15];
         const Scalar push = rest > Scalar(0) && !held_fast ? stiffness * rest : Scalar(0);
-        Vec<Scalar> f = times(m.normal, push);
-        Quanta before{};
-        if (count == 1) {
-          before = {-on_tool[0], -on_tool[1], -on_tool[2]};
-          for (std::size_t k = 0; k < 3; ++k) f[k] += static_cast<Scalar>(before[k]) * quantum;
-        }
-        if (held_fast) f = scaled_sum(-stiffness, grip_slip(all, t, anchor, m), f);
-        if (count == 1 && held_fast && tears_off(f, m.normal, points.area(i) * grip_of(all, t))) anchor[3] = 0;
+        const Quanta pressed{-on_tool[0], -on_tool[1], -on_tool[2]}, before = count == 1 ? pressed : Quanta{};
+        const Vec<Scalar> first = force_of(pressed, quantum), own = times(m.normal, push);
+        Vec<Scalar> f = count == 1 ? sum_of(own, first) : own;
+        if (held_fast) f = settle_grip(all, t, m, anchor, stiffness, points.area(i), count == 1 ? nullptr : &first, f);
         if (count == 1 && anchor[3] == static_cast<Scalar>(t + 1))
           f = settle_friction(m, all.next(t), anchor, stiffness, law[14], f);
         Quanta q = quanta(f, inverse);

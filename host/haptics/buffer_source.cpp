@@ -22,7 +22,8 @@ bool may_be_whole(const Model& model) {
   const bool held =
       std::any_of(model.constraints.begin(), model.constraints.end(), [](const Constraint& c) { return c.axes != 0; });
   const bool grabbed = std::any_of(model.forces.begin(), model.forces.end(), [](const NodeForce& f) { return f.reserved; });
-  return !model.tissue_contact && model.pressures.empty() && model.links.empty() && held && !grabbed;
+  const bool grips = std::any_of(model.tools->begin(), model.tools->end(), [](const ToolForm& t) { return t.grips; });
+  return !grips && !model.tissue_contact && model.pressures.empty() && model.links.empty() && held && !grabbed;
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "scene/described.h"
 #include "scene/described_entries.h"
 #include "scene/described_parts.h"
+#include "scene/described_tools.h"
 #include "scene/reader.h"
 
 namespace pliant {

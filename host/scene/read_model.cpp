@@ -107,11 +107,13 @@ void check_viscous(const Reader& top, const Scene& scene) {
     bool viscous = body.material.viscous();
     for (const Inclusion& inclusion : body.inclusions) viscous = viscous || inclusion.material.viscous();
     if (!viscous) continue;
-    require_integrator(top, scene, &IntegratorInfo::keeps_increment, fmt::format("{} has a viscosity", body.pointer));
+    require_integrator(top, scene, &IntegratorInfo::keeps_increment,
+                       fmt::format("{} has a {}", body.pointer, has_viscosity(body) ? "viscosity" : "stiffness_damping"));
     if (body.model.type == ModelType::tled || (body.model.type == ModelType::mass_spring && !has_viscosity(body))) continue;
     const std::vector<Reader> bodies = top.at("bodies").items("a list of bodies");
-    bodies[static_cast<std::size_t>(&body - scene.bodies.data())].at("model").at("type").fail(
-        fmt::format("tled, because {} has a viscosity, which is one of elements", body.pointer));
+    const Reader type = bodies[static_cast<std::size_t>(&body - scene.bodies.data())].at("model").at("type");
+    if (has_viscosity(body)) type.fail(fmt::format("tled, because {} has a viscosity, which is one of elements", body.pointer));
+    type.fail(fmt::format("tled or mass-spring, because {} has a stiffness_damping", body.pointer));
   }
 }
 

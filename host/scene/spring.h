@@ -7,7 +7,7 @@
 
 namespace pliant {
 
-/// Force F [N] over elongation e = l - l0 [m]. The order is that of LAW in kernels/links/spring_force.cl.
+/// Force F [N] over elongation e = l - l0 [m]. The order is that of LAW in kernels/links/spring_pull.cl.
 enum class SpringLaw {
   linear,    ///< F = k e
   cubic,     ///< F = lambda1 (e / l0)^3 + lambda2 e / l0

@@ -15,8 +15,9 @@ namespace pliant {
 struct GripSpec {
   double strength = 0;                       ///< traction at which tissue slips out [Pa]; 0: none does
   std::vector<std::array<double, 2>> times;  ///< intervals [from, to) in which it grips [s], ascending; or World::grip_tool()
-  bool operator==(const GripSpec&) const = default;
 };
+/// Returns true if both are the same.
+inline bool operator==(const GripSpec& a, const GripSpec& b) { return a.strength == b.strength && a.times == b.times; }
 
 /// A rigid tool, at rest or on a prescribed path. Only the members that belong to `shape` are used.
 ///

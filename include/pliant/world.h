@@ -123,8 +123,8 @@ class PLIANT_API World {
   [[deprecated("clear_handles()")]] void clear_tools() { clear_handles(); }                       ///< its name before 0.2.0
   [[deprecated("move_focus()")]] void move_tool(const Vec3d& position) { move_focus(position); }  ///< its name before 0.2.0
 
-  /// Rigid tools; pliant/tool.h describes when they change and their errors.
-  /// Adds a tool at its path's current pose; at most 30 tools may be unparked. Returns its name: "tool0", "tool1", ... if it
+  /// Rigid tools; pliant/tool.h describes when they change and their errors. This one
+  /// adds a tool at its path's current pose; at most 30 tools may be unparked. Returns its name: "tool0", "tool1", ... if it
   /// has none. Mesh files are read here and again by load(); relative paths start from the working folder.
   std::string add_tool(const ToolSpec& tool);
   /// Adds a tool from text, an entry of `tools` of a scene file (docs/scene.md); relative paths start from `folder`.
@@ -132,8 +132,8 @@ class PLIANT_API World {
   void remove_tool(const std::string& name);  ///< its name may be reused
   void park_tool(const std::string& name);    ///< disables it, at no cost, until unpark_tool(), place_tool() or drive_tool()
   void unpark_tool(const std::string& name);  ///< enables it again, at its last pose or at its path's current pose
-
   void grip_tool(const std::string& name, bool on = true);  ///< holds the tissue that it touches (ToolSpec::grip), or lets go
+
   /// Moves a tool at once to a position [m] and orientation (unit quaternion x, y, z, w), where it stays. Its path ends.
   void place_tool(const std::string& name, const Vec3d& position, const std::array<double, 4>& turn = {0, 0, 0, 1});
   /// Moves a tool from its current pose to the given one within `seconds` [s], after which it stays. Its path ends. A speed

@@ -32,6 +32,10 @@ __kernel void contact_near(__global const float* node_u, __global const float* n
     }
   }
   for (int t = 0; t < tools; ++t) near |= least[t] < margin ? 1 << t : 0;
+  for (int i = tile * PLIANT_TILE; i < (tile + 1) * PLIANT_TILE; ++i) {  // what a tool grips is near it
+    const float by = contact_anchor[POINT_BASE(i, 4) + 3 * PLIANT_TILE];
+    if (by < 0.0f && by > -64.0f) near |= 1 << (int)(-by - 1.0f);
+  }
   const int before = contact_near[tile];
   if (near == 0 && (before & ~PLIANT_TOUCH_BIT) != 0) {
     const int base = tile * 4 * PLIANT_TILE;

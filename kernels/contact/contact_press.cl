@@ -34,7 +34,7 @@ __kernel void contact_press(__global const float* node_u, __global const float* 
   for (int i = first; i < first + LANES; ++i) {
     const contact_place p = place_of_point(node_u, node_w, contact_rest, contact_node, contact_weight, i);
     const float area = contact_rest[POINT_BASE(i, 4) + 3 * PLIANT_TILE];  // 0 for padding
-    int touching = 0, gripped = 0, count = 0, ready = 0, weighed = 0;
+    int touching = 0, gripped = 0, out = 0, count = 0, ready = 0, weighed = 0;
     const float within = ready_share(contact_yield[i]);
     for (int t = 0; t < tools; ++t) {
       if (!(near >> t & 1) || !(area > 0.0f)) continue;
@@ -46,6 +46,7 @@ __kernel void contact_press(__global const float* node_u, __global const float* 
       if (EDGES && (!weighed || (met.edged && soon))) write_weights(contact_corner_weight, contact_weight, i, met);
       weighed = 1;
       const int held_fast = GRIPS && !met.edged && grips(contact_held, contact_anchor + POINT_BASE(i, 4), tool_pose, tools, step, t, i, m, contact_params[5]);
+      if (GRIPS) out |= slipped(contact_anchor + POINT_BASE(i, 4), tool_pose, tools, step, t, m, contact_params[5]) << t;
       if (m.distance < 0.0f || held_fast) {
         gripped |= held_fast << t;
         touching |= 1 << t;
@@ -56,7 +57,10 @@ __kernel void contact_press(__global const float* node_u, __global const float* 
     __global int* force = contact_force + POINT_BASE(i, 4);
     const int stuck_to = (int)anchor[3 * PLIANT_TILE] - 1;
     if (stuck_to >= 0 && !(touching >> stuck_to & 1)) anchor[3 * PLIANT_TILE] = 0.0f;
-    if (GRIPS && anchor[3 * PLIANT_TILE] < 0.0f && !(gripped >> (int)(-anchor[3 * PLIANT_TILE] - 1.0f) & 1)) anchor[3 * PLIANT_TILE] = 0.0f;
+    if (GRIPS && anchor[3 * PLIANT_TILE] < 0.0f) {
+      const int by = (int)(-anchor[3 * PLIANT_TILE] - 1.0f);
+      if (!((by < 64 ? gripped >> by : out >> (by - 64)) & 1)) anchor[3 * PLIANT_TILE] = 0.0f;
+    }
     int4 sum = 0;
     float w = contact_yield[i];
     if (touching != 0 && !(w > 0.0f)) {  // compliance from touching points is not known yet

@@ -69,12 +69,17 @@ __kernel void contact_settle(__global const float* node_u, __global const float*
         const float inverse = contact_params[1], quantum = contact_params[0];
         float4 f = m.normal * push;
         int4 before = 0;
+        const int4 pressed = (int4)(-on_tool[0], -on_tool[PLIANT_TILE], -on_tool[2 * PLIANT_TILE], 0);
+        const float4 first_part = (float4)((float)pressed.x * quantum, (float)pressed.y * quantum, (float)pressed.z * quantum, 0.0f);
         if (count == 1) {
-          before = (int4)(-on_tool[0], -on_tool[PLIANT_TILE], -on_tool[2 * PLIANT_TILE], 0);
-          f += (float4)((float)before.x * quantum, (float)before.y * quantum, (float)before.z * quantum, 0.0f);
+          before = pressed;
+          f += first_part;
         }
-        if (held_fast) f = fma((float4)(-stiffness), grip_slip(tool_pose + POSE_NUMBERS * ((step + 1) * tools + t), anchor, m), f);
-        if (count == 1 && held_fast && tears_off(f, m.normal, area * grip_of(tool_pose, tools, step, t))) anchor[3 * PLIANT_TILE] = 0.0f;
+        if (held_fast) {
+          f = fma((float4)(-stiffness), grip_slip(tool_pose + POSE_NUMBERS * ((step + 1) * tools + t), anchor, m), f);
+          const float4 all_of_it = count == 1 ? f : f + first_part;
+          if (tears_off(all_of_it, m.normal, area * grip_of(tool_pose, tools, step, t))) anchor[3 * PLIANT_TILE] = SLIPPED_FROM(t);
+        }
         if (count == 1 && anchor[3 * PLIANT_TILE] == (float)(t + 1)) {
           const float4 stuck = (float4)(anchor[0], anchor[PLIANT_TILE], anchor[2 * PLIANT_TILE], 0.0f);
           __global const float* next = tool_pose + POSE_NUMBERS * ((step + 1) * tools + t);

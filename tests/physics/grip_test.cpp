@@ -49,28 +49,28 @@ double mean(const std::vector<Vec3d>& u, std::size_t axis) {
 }
 
 void until(Simulation& sim, double time) {
-  while (sim.time() < time) sim.advance(sim.next_batch(16));
+  while (sim.time() < time) sim.advance(1);
 }
 
 /// A body that hangs from a tool: its weight is on the tool, and it goes where the tool goes.
 TEST_P(GripPhysics, CarriesABody) {
   for (const Discretization cut : all_cuts()) {
     ContactTool tool = plate();
-    move(tool, 0.2, {0, 0, 0});
-    move(tool, 0.5, {0.02, -0.01, 0.03});
+    move(tool, 0.5, {0, 0, 0});
+    move(tool, 0.8, {0.02, -0.01, 0.03});
     Scene scene = scene_of(cube(cut, 40), tool);
     scene.gravity = {0, 0, -9.81};
     auto sim = simulate(scene, GetParam());
-    until(*sim, 0.2);
+    until(*sim, 0.49);
     const std::vector<Vec3d> hung = sim->displacements(0);
-    until(*sim, 1.2);
+    until(*sim, 1.5);
     const std::vector<Vec3d> carried = sim->displacements(0);
     const double weight = sim->model().bodies[0].mass * 9.81;
     check_relative(std::string(name_of(cut)) + ": weight on the tool", sim->report().tools[0].now.force[2], -weight,
-                   bound(2e-3, 2e-3));
-    check("  way along x", mean(carried, 0) - mean(hung, 0) - 0.02, 1e-4);
-    check("  way along y", mean(carried, 1) - mean(hung, 1) + 0.01, 1e-4);
-    check("  way along z", mean(carried, 2) - mean(hung, 2) - 0.03, 1e-4);
+                   bound(1e-4, 1e-5));
+    check("  way along x", mean(carried, 0) - mean(hung, 0) - 0.02, 1e-6);
+    check("  way along y", mean(carried, 1) - mean(hung, 1) + 0.01, 1e-6);
+    check("  way along z", mean(carried, 2) - mean(hung, 2) - 0.03, 1e-6);
   }
 }
 
@@ -92,7 +92,7 @@ TEST_P(GripPhysics, PullsAndTurnsAsPrescribedNodesDo) {
         }
         Prescribed turn;
         turn.where = face(2, kSide);
-        turn.rotate = Rotation{{0, 0, 1}, {0.5 * kSide, 0.5 * kSide, 0}, 0.6};
+        turn.rotate = Rotation{{0, 0, 1}, {0.5 * kSide, 0.5 * kSide, 0}, 0.6 * 180 / M_PI};
         turn.curve = smooth(0.3);
         same.prescribed.push_back(turn);
       } else {
@@ -100,7 +100,9 @@ TEST_P(GripPhysics, PullsAndTurnsAsPrescribedNodesDo) {
         same.prescribed.push_back(pull(2, kSide, 0.01, smooth(0.3)));
         same.prescribed.back().displacement = {0.004, 0, 0.01};
       }
-      auto held = simulate(scene_of(body, tool), GetParam());
+      Scene holding = scene_of(body, tool);
+      holding.safety = 0.3;  // a held point gives way with the square of the step
+      auto held = simulate(holding, GetParam());
       until(*held, 1);
       Scene bare;
       bare.bodies = {same};
@@ -110,40 +112,41 @@ TEST_P(GripPhysics, PullsAndTurnsAsPrescribedNodesDo) {
       double apart = 0;
       for (std::size_t n = 0; n < u.size(); ++n) apart = std::max(apart, (eigen(u[n]) - eigen(v[n])).norm());
       check(std::string(name_of(cut)) + (turns ? ": turned" : ": pulled") + ", difference over the largest displacement",
-            apart / largest(v), 5e-3);
+            apart / largest(v), 1.5e-2);
       Vector3d force = Vector3d::Zero();
       for (const Vec3d& r : reactions(*given, 0)) force += eigen(r);  // of both ends
-      check("  the forces of both ends balance", force.norm(), 1e-2);
+      check("  the forces of both ends balance", force.norm(), 1e-4);
       Vector3d pull_on_top = Vector3d::Zero();
       const std::vector<Vec3d> r = reactions(*given, 0);
       for (std::size_t n = 0; n < r.size(); ++n) {
         if (given->model().bodies[0].rest[n][2] > 0.5 * kSide) pull_on_top += eigen(r[n]);
       }
       const Wrench& on_tool = held->report().tools[0].now;
-      if (!turns) check("  force", (eigen(on_tool.force) + pull_on_top).norm() / pull_on_top.norm(), 5e-3);
+      if (!turns) check("  force", (eigen(on_tool.force) + pull_on_top).norm() / pull_on_top.norm(), 1e-3);
     }
   }
 }
 
-/// Tissue slips out where the traction is that of the grip, all at once under a plate, and then moves freely.
+/// Tissue slips out where the traction is that of the grip: at once under a plate, where the traction is the same everywhere,
+/// and then moves freely.
 TEST_P(GripPhysics, SlipsOutAtItsStrength) {
-  for (const double strength : {500.0, 1500.0}) {
+  for (const auto& [strength, safety] : {std::pair{500.0, 0.9}, {1500.0, 0.9}, {500.0, 0.3}, {1500.0, 0.3}}) {
     ContactTool tool = plate();
     tool.grip->strength = strength;
     move(tool, 1, {0, 0, 0.02});
     Body body = cube(Discretization::hex8_bricks, 60);
+    body.material = material_young(Law::neo_hookean, 2e4, 0);
+    body.material.damping = 60;
     body.fixed.push_back({face(2, 0), {true, true, true}});
-    auto sim = simulate(scene_of(body, tool), GetParam());
+    Scene scene = scene_of(body, tool);
+    scene.safety = safety;
+    auto sim = simulate(scene, GetParam());
     double most = 0;
     while (sim->time() < 1) {
-      sim->advance(sim->next_batch(16));
+      sim->advance(1);
       most = std::max(most, -sim->report().tools[0].now.force[2]);
     }
-    // Where the sides are free the traction at the rim is above the mean.
-    const double bond = most / (strength * kSide * kSide);
-    std::printf("  strength %g Pa: largest force %.3f of strength times area\n", strength, bond);
-    EXPECT_GT(bond, 0.5);
-    EXPECT_LT(bond, 1.02);
+    check_relative("largest force", most, strength * kSide * kSide, 0.1);  // of all steps, of which the largest counts
     until(*sim, 1.5);
     EXPECT_EQ(sim->report().tools[0].now.force, Vec3d{});
     check("  free again, displacement", largest(sim->displacements(0)), 1e-4);
@@ -153,15 +156,16 @@ TEST_P(GripPhysics, SlipsOutAtItsStrength) {
 /// Outside of its times a tool holds nothing: the body falls off, and is not gripped again from afar.
 TEST_P(GripPhysics, LetsGoInTime) {
   ContactTool tool = plate();
-  tool.grip->times = {{0, 0.1}, {0.3, 0.4}};
-  Scene scene = scene_of(cube(Discretization::tet4, 5), tool);
+  tool.grip->times = {{0, 0.6}, {0.8, 0.9}};
+  Scene scene = scene_of(cube(Discretization::tet4, 20), tool);
   scene.gravity = {0, 0, -9.81};
   auto sim = simulate(scene, GetParam());
-  until(*sim, 0.1);
+  until(*sim, 0.6);
   const double hung = mean(sim->displacements(0), 2);
   EXPECT_GT(hung, -1e-3);
-  until(*sim, 0.4);
-  const double t = sim->time() - 0.1, c = 5, fall = 9.81 / c * (t - (1 - std::exp(-c * t)) / c);
+  const double start = sim->time();
+  until(*sim, 0.9);
+  const double t = sim->time() - start, c = 20, fall = 9.81 / c * (t - (1 - std::exp(-c * t)) / c);
   check_relative("fall", hung - mean(sim->displacements(0), 2), fall, 0.02);
 }
 
@@ -182,8 +186,35 @@ TEST_P(GripPhysics, HoldsOnThroughACut) {
       if (sim->model().bodies[0].rest[n][2] > kSide - 1e-6) top = std::max(top, std::abs(z));
       bottom = std::min(bottom, z);
     }
-    check(std::string(name_of(cut)) + ": the held face stays", top, 1e-3);
-    EXPECT_LT(bottom, -0.5) << "the other part falls";
+    check(std::string(name_of(cut)) + ": the held face stays", top, 1e-4);
+    EXPECT_LT(bottom, -0.1) << "the other part falls";
+  }
+}
+
+/// What is held under a pull stays held while a cut goes on below it.
+TEST_P(GripPhysics, HoldsStretchedTissueThroughACut) {
+  for (const Discretization cut : {Discretization::hex8_bricks, Discretization::tet4}) {
+    ContactTool tool = plate();
+    move(tool, 0.3, {0, 0, 0.01});
+    Body body = cube(cut, 60);
+    body.fixed.push_back({face(2, 0), {true, true, true}});
+    Scene scene = scene_of(body, tool);
+    Blade blade;
+    blade.name = "blade";
+    blade.path = {{0.6, -0.01, -0.02, 0.02, -0.01, 0.07, 0.02}, {0.8, 0.025, -0.02, 0.02, 0.025, 0.07, 0.02}};
+    scene.blades = {blade};
+    auto sim = simulate(scene, GetParam());
+    until(*sim, 0.59);
+    const ToolLoad before = sim->report().tools[0].now;
+    until(*sim, 1.2);
+    const ToolLoad after = sim->report().tools[0].now;
+    EXPECT_GE(after.points, before.points) << name_of(cut);
+    EXPECT_LT(after.force[2], 0.4 * before.force[2]) << name_of(cut) << ": half of it is cut, the other half pulls";
+    double top = 0;
+    for (std::size_t n = 0; n < sim->model().bodies[0].rest.size(); ++n) {
+      if (sim->model().bodies[0].rest[n][2] > kSide - 1e-6) top = std::max(top, std::abs(sim->displacements(0)[n][2] - 0.01));
+    }
+    check(std::string(name_of(cut)) + ": the held face stays", top, 5e-4);
   }
 }
 

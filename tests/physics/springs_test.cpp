@@ -353,6 +353,7 @@ TEST(SpringsOff, ScenesWithoutLinksHaveNoneOfTheirPassesAndBuffers) {
   const auto sim = simulate(scene, "cpu");
   for (const Pass& pass : sim->program().step) {
     EXPECT_EQ(pass.kernel.find("link"), std::string::npos);
+    EXPECT_EQ(pass.kernel.find("spring"), std::string::npos);
     EXPECT_NE(pass.kernel, "node_load");
   }
   for (const char* name : {"link_u", "link_force", "link_node"}) EXPECT_LT(sim->program().find(name), 0) << name;

@@ -24,9 +24,14 @@ TEST(Tools, EveryShapeIsReadAndWrittenAgain) {
     {"shape": {"box": [0.1, 0.2, 0.3]}, "contact": {"stiffness": "auto"}},
     {"shape": {"half_space": [[0, -0.1, 0], [0, 2, 0]]}},
     {"shape": {"mesh": "hand.obj"}, "scale": 0.001},
-    {"shape": {"sequence": "meshes/hand"}, "scale": 0.01, "frames_per_second": 25}])");
+    {"shape": {"sequence": "meshes/hand"}, "scale": 0.01, "frames_per_second": 25},
+    {"shape": {"sphere": 0.01}, "grip": {}},
+    {"shape": {"sphere": 0.01}, "grip": {"strength": 4000, "times": [[0, 0.5], [0.5, 2]]}}])");
   const Scene scene = parse_scene(text, "scenes/x.json");
-  ASSERT_EQ(scene.tools.size(), 6u);
+  ASSERT_EQ(scene.tools.size(), 8u);
+  EXPECT_FALSE(scene.tools[0].grip);
+  EXPECT_EQ(scene.tools[6].grip, GripSpec{});
+  EXPECT_EQ(scene.tools[7].grip, (GripSpec{4000, {{0, 0.5}, {0.5, 2}}}));
   EXPECT_EQ(scene.tools[0].name, "tool0");
   EXPECT_EQ(scene.tools[0].radius, 0.01);
   EXPECT_EQ(scene.tools[1].pointer, "/tools/1");
@@ -57,6 +62,12 @@ TEST(Tools, BadOnesAreRefused) {
        "/tools/0/shape: got {}, expected one of the keys sphere, capsule, box, half_space, mesh or sequence"},
       {R"([{"shape": {"sphere": 0.1, "box": [1, 1, 1]}}])", "expected one of the keys sphere"},
       {R"([{"shape": {"spere": 0.1}}])", "did you mean \"sphere\"?"},
+      {"[{" + ball + R"(, "grip": {"strength": 0}}])", "/tools/0/grip/strength: got 0, expected a number > 0"},
+      {"[{" + ball + R"(, "grip": {"times": [[0.5, 0.5]]}}])", "/tools/0/grip/times/0: got [0.5,0.5], expected from < to"},
+      {"[{" + ball + R"(, "grip": {"times": [[0, 1], [0.5, 2]]}}])",
+       "/tools/0/grip/times/1: got [0.5,2], expected from < to, and not before the row above ends"},
+      {"[{" + ball + R"(, "grip": {"force": 3}}])",
+       "/tools/0/grip: got the unknown key \"force\", expected one of times, strength"},
       {R"([{"shape": {"sphere": 0}}])", "/tools/0/shape/sphere: got 0, expected a number > 0"},
       {R"([{"shape": {"capsule": [[0, 0, 0], [0, 0, 0], 1]}}])", "two different ends"},
       {R"([{"shape": {"box": [1, -1, 1]}}])", "/tools/0/shape/box: got [1,-1,1], expected three edges"},

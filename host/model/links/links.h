@@ -42,7 +42,7 @@ struct SpringBatch {
   std::string label;                                ///< for reports and messages
   std::vector<std::array<std::int32_t, 2>> points;  ///< [springs] of LinkPoints
   std::vector<double> length;                       ///< [springs] l0, 0 where both ends rest at one place [m]
-  std::vector<std::array<double, 2>> parameters;    ///< [springs] as kernels/links/spring_force.cl has them
+  std::vector<std::array<double, 2>> parameters;    ///< [springs] as kernels/links/spring_pull.cl has them
   std::vector<double> damper;                       ///< [springs] [N s/m]
   std::vector<char> broken;        ///< [springs] of a join, empty: none is. They stay in the lists, and give no force
   bool bars = false;               ///< of vessels: between points in elements, however short

@@ -132,7 +132,7 @@ void ProgramBuilder::add_tools() {
   add(make_reals("tool_edge", BufferType::real, ends, BufferRole::constant, "[edge points][4]", "m", "model", std::move(edge)));
   const auto rows = static_cast<std::size_t>(options_.batch_steps);
   add(make_reals("tool_pose", BufferType::real, (rows + 1) * tools * contact_pose_numbers, BufferRole::control,
-                 "[steps + 1][tools][14]", "1 (9), m (3), 1 (2)", "host"));
+                 "[steps + 1][tools][15]", "1 (9), m (3), 1 (2), Pa", "host"));
   add(make_ints("tool_sum", BufferRole::scratch, "[steps][tools][16][16]", {},
                 rows * tools * contact_sum_parts * contact_sum_numbers, "contact_tool_sum"));
   program_.buffers.back().carried = Carried::all;  // one row per step of the batch, until the host reads it

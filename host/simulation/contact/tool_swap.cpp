@@ -1,6 +1,7 @@
 #include "simulation/contact/tool_swap.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "schedule/build_program.h"
@@ -15,7 +16,7 @@
 namespace pliant {
 namespace {
 
-constexpr std::size_t kAnchorNumbers = 4;  ///< the fourth: index of the tool + 1, or 0 (contact_press.cl)
+constexpr std::size_t kAnchorNumbers = 4;  ///< the fourth: index of the tool + 1, negative if it grips, or 0 (contact_grip.cl)
 
 /// The new index of each previous tool; -1: removed.
 std::vector<int> new_numbers(const std::vector<ContactTool>& before, const std::vector<ContactTool>& next) {
@@ -50,8 +51,8 @@ void renumber_anchors(std::vector<double>& anchor, const To& to) {
   for (std::size_t i = 0; i < points; ++i) {
     double& held = anchor[tile_base(i, kAnchorNumbers) + 3 * PLIANT_TILE];
     if (held == 0) continue;
-    const int now = to(static_cast<int>(held) - 1);
-    held = now + 1;
+    const int mark = static_cast<int>(std::abs(held)) - 1, slipped = mark >= 64 ? 64 : 0, now = to(mark - slipped);
+    held = now < 0 ? 0 : held < 0 ? -(now + slipped + 1) : now + 1;
   }
 }
 

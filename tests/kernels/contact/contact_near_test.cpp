@@ -10,6 +10,7 @@ TEST_F(ContactNear, TwinGivesTheSameBits) {
   for_contact_data(100, [&](const ContactData& d, const std::string& label) {
     expect_same_bits(near_case(d), label);
     expect_same_bits(near_case(d, 1), label + ", with edges");
+    expect_same_bits(near_case(with_grips(d)), label + ", with grips");
   });
 }
 
@@ -21,7 +22,7 @@ TEST(ContactNearOracle, NearIsWithinTheMargin) {
   for (std::size_t t = 0; t < ContactData::tools; ++t) d.kind[8 * t] = 0;
   d.pose.clear();
   for (std::size_t row = 0; row < ContactData::rows * ContactData::tools; ++row)
-    d.pose.insert(d.pose.end(), {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 0});
+    d.pose.insert(d.pose.end(), {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0});
   for (std::size_t i = 0; i < d.points; ++i) {  // tile k lies 0.3 k from the origin
     for (std::size_t c = 0; c < 3; ++c)
       d.rest[ContactData::base(i, 4) + 16 * c] = c == 0 ? 0.3 * static_cast<double>(i / 16) : 0;
