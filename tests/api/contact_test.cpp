@@ -9,6 +9,7 @@
 #include "pliant/c/pliant.h"
 #include "scenes.h"
 #include "support/temp_folder.h"
+#include "tool_block.h"
 
 namespace pliant {
 namespace {
@@ -16,14 +17,7 @@ namespace {
 using test::code_of;
 
 SceneSpec probe_over_block() {
-  SceneSpec scene;
-  BodySpec& body = scene.bodies.emplace_back();
-  body.name = "block";
-  body.surface = box_surface({-0.04, -0.04, -0.04}, {0.04, 0.04, 0});
-  body.lattice_spacing = 0.01;
-  body.material.young = 1e4;
-  body.material.damping = 60;
-  body.fixed = {{RegionSpec::box({-1, -1, -0.0401}, {1, 1, -0.0399}), "xyz"}};
+  SceneSpec scene = test::bare_block();
   ToolSpec& probe = scene.tools.emplace_back();
   probe.name = "probe";
   probe.radius = 0.01;
