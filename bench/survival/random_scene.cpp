@@ -7,6 +7,7 @@
 
 #include "bench/common/dice.h"
 #include "bench/survival/random_grip.h"
+#include "bench/survival/random_springs.h"
 #include "bench/survival/random_vessels.h"
 #include "bench/survival/survival.h"
 #include "geometry/mesh.h"
@@ -72,12 +73,11 @@ class RandomScene {
       for (const char* key : {"substeps", "goals"}) body["model"].erase(key);  // refused
     }
     Dice tubes(number_ ^ 0x3c6ef372a54);
-    const std::string_view name = shape_.file;
-    const bool box_like = name == "beam.obj" || name == "cube.obj" || name == "cylinder.obj";
-    if (thickness_ == 0 && (shape_.tets || box_like) && tubes.chance(0.15)) {
+    if (thickness_ == 0 && (shape_.tets || has_no_hollows(shape_.file)) && tubes.chance(0.15)) {
       body["vessels"] = random_vessels(tubes, shape_.tets ? file_ : "", box_, young_);
       for (const char* key : {"substeps", "goals"}) body["model"].erase(key);  // refused
     }
+    if (shape_.tets && thickness_ == 0) add_random_springs(Dice(number_ ^ 0x2545f491), file_, young_, extent_, body);
     Json scene{{"format", "pliant-scene/1"}, {"name", fmt::format("survival {}", number_)}, {"duration", 2.0}};
     hold(body);
     const bool weight = dice_.chance(0.75);

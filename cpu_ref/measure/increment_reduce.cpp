@@ -1,5 +1,6 @@
 // Twin of kernels/measure/increment_reduce.cl.
 #include <cmath>
+#include <limits>
 
 #include "cpu_ref/registry.h"
 
@@ -9,13 +10,15 @@ template <class Scalar>
 void increment_reduce(Range range, const Scalar* node_w, Scalar* increment_summary, std::int32_t texels) {
   for (std::int64_t lane = range.begin; lane < range.end; ++lane) {
     Scalar most = 0;
+    bool finite = true;
     for (std::int64_t i = lane; i < texels; i += 256) {
       for (int c = 0; c < 3; ++c) {
         const Scalar size = std::fabs(node_w[4 * i + c]);
+        finite = finite && size < std::numeric_limits<Scalar>::infinity();
         most = size > most ? size : most;
       }
     }
-    increment_summary[lane] = most;
+    increment_summary[lane] = finite ? most : std::numeric_limits<Scalar>::infinity();
   }
 }
 

@@ -295,7 +295,9 @@ Model build_elements(const Scene& scene, std::span<const BodyMesh* const> solids
       model.damping[draft.slot[n]] = body.material.damping;
     }
     ElementLists(body, static_cast<std::int32_t>(i), draft, model).add();
-    if (body.model.type == ModelType::mass_spring) add_mass_springs(body, static_cast<std::int32_t>(i), draft, model);
+    if (body.model.type == ModelType::mass_spring && body.model.edge_springs)
+      add_mass_springs(body, static_cast<std::int32_t>(i), draft, model);
+    told_with_file(scene, [&] { add_spring_lists(body, static_cast<std::int32_t>(i), draft, model); });
     add_totals(body, draft, model.bodies[i]);
     told_with_file(scene, [&] { add_vessels(body, static_cast<std::int32_t>(i), draft, model); });
     for (const std::int32_t s : model.bodies[i].slot) model.bodies[i].added_mass += model.mass[s] - model.own_mass(s);

@@ -141,6 +141,7 @@ struct Model {
   std::vector<ContactLaw> contact_laws;          ///< one per tool
   double element_bound = 0;                      ///< 2 / max element frequency [s], safe for small strain
   std::string bound_element;                     ///< the element that determines it
+  double network_bound = 0;                      ///< the same of networks of springs alone, safe however they deform; 0: none
   double shortest = 0;                           ///< cube root of the smallest element's volume [m]
   double least_fill = 0;                         ///< minimum fill of a cell, as a fraction of a full cell's mass
   /// Mass without added inertia [kg].

@@ -5,6 +5,7 @@
 #include "geometry/vec.h"
 #include "pliant/error.h"
 #include "render/color.h"
+#include "render/link_surface.h"
 
 namespace pliant::render {
 namespace {
@@ -119,6 +120,8 @@ void Pictures::color(Simulation& simulation, Surface& surface) {
   if (o_.color == ColorBy::model) {
     kinds_ = vertex_kinds(model);
     surface.kinds = kinds_;
+    const bool springs = model.network_bound > 0, elements = model.batches.size() + model.brick_batches.size() > 0;
+    elements_ = !springs ? "finite elements" : elements ? "elements, springs" : "springs";
     return;
   }
   values_ = vertex_values(simulation, o_.color);
@@ -133,7 +136,7 @@ void Pictures::color(Simulation& simulation, Surface& surface) {
 void Pictures::annotate(Image& image) const {
   if (!o_.bar || o_.color == ColorBy::none) return;
   if (o_.color == ColorBy::model) {
-    draw_key(image, {{srgb_of(kind_color(0)), "finite elements"},
+    draw_key(image, {{srgb_of(kind_color(0)), elements_},
                      {srgb_of(kind_color(1)), "interface"},
                      {srgb_of(kind_color(2)), "shape matching"}});
     return;
@@ -163,13 +166,14 @@ Surface SurfaceCopy::view() const {
   return s;
 }
 
-/// Appends the triangles of the tools. They have no values, and the camera ignores them.
-void Pictures::add_tools(const Simulation& simulation, Surface& surface) {
+/// Appends the triangles of tools, springs and vessels. They have no values, and the camera ignores them.
+void Pictures::add_others(Simulation& simulation, Surface& surface) {
   const std::size_t triangles = surface_.triangles.size() / 3;
   tools_.append(simulation, surface_.positions, surface_.triangles);
+  surface_.body.resize(surface_.triangles.size() / 3, kToolBody);
+  append_links(simulation, surface_.positions, surface_.triangles, surface_.body);
   const std::size_t all = surface_.triangles.size() / 3, vertices = surface_.positions.size() / 3;
   if (all == triangles) return;
-  surface_.body.resize(all, kToolBody);
   if (!surface_.cut.empty()) surface_.cut.resize(all, 0);
   if (!surface.values.empty()) values_.resize(vertices, 0);
   if (!surface.kinds.empty()) kinds_.resize(3 * vertices, 0);
@@ -186,7 +190,7 @@ Image Pictures::draw(Simulation& simulation) {
   Surface surface = surface_.view();
   aim(simulation, surface_.positions);
   color(simulation, surface);
-  add_tools(simulation, surface);
+  add_others(simulation, surface);
   renderer_.update(surface);
   RenderOptions options;
   options.width = o_.width;

@@ -53,7 +53,7 @@ class Pictures {
   [[nodiscard]] std::vector<float> surroundings(const std::vector<float>& positions) const;
   [[nodiscard]] bool in_picture(const std::vector<float>& points) const;
   void color(Simulation& simulation, Surface& surface);
-  void add_tools(const Simulation& simulation, Surface& surface);
+  void add_others(Simulation& simulation, Surface& surface);
   void annotate(Image& image) const;
 
   PictureOptions o_;
@@ -68,6 +68,7 @@ class Pictures {
   SurfaceCopy surface_;
   ToolSurfaces tools_;
   std::vector<float> values_, kinds_;
+  std::string elements_;  ///< what kind 0 is called
 };
 
 }  // namespace pliant::render

@@ -17,10 +17,11 @@ struct Surface {
   std::size_t stride = 3;                   ///< floats from one vertex to the next
   std::span<const std::int32_t> triangles;  ///< [3 * triangles] vertices, outward by the right-hand rule
   std::span<const std::uint8_t> cut;        ///< [triangles] not 0: made by a cut; empty: no cuts
-  std::span<const std::int32_t> body;       ///< [triangles] numbers that choose a tint, negative: a tool; empty: all the same
-  std::span<const float> values;            ///< [vertices] coloured by the map when not empty
-  std::span<const float> kinds;             ///< [3 * vertices] shares of three kinds, coloured by the largest when not empty
-  std::uint64_t topology = 0;               ///< changes whenever triangles, cut or the number of vertices do
+  std::span<const std::int32_t>
+      body;  ///< [triangles] numbers that choose a tint, negative: a tool, a spring or a vessel; empty: all the same
+  std::span<const float> values;  ///< [vertices] coloured by the map when not empty
+  std::span<const float> kinds;   ///< [3 * vertices] shares of three kinds, coloured by the largest when not empty
+  std::uint64_t topology = 0;     ///< changes whenever triangles, cut or the number of vertices do
 };
 
 struct RenderOptions {

@@ -7,7 +7,9 @@
 #include "render/color.h"
 #include "render/film.h"
 #include "render/lighting.h"
+#include "render/link_surface.h"
 #include "render/sampling.h"
+#include "render/tool_surface.h"
 
 namespace pliant::render {
 namespace {
@@ -135,9 +137,12 @@ class Tracer {
     const std::array<float, 3> w{1 - hit.u - hit.v, hit.u, hit.v};
     Material m;
     m.albedo = tint(s.body.empty() ? 0 : s.body[static_cast<std::size_t>(hit.triangle)]);
-    if (!s.body.empty() && s.body[static_cast<std::size_t>(hit.triangle)] < 0) {  // a tool: steel
-      m.albedo = linear_of({0.60F, 0.64F, 0.70F});
-      m.roughness = 0.25F;
+    if (const std::int32_t body = s.body.empty() ? 0 : s.body[static_cast<std::size_t>(hit.triangle)]; body < 0) {
+      const bool steel = body == kToolBody;
+      m.albedo = linear_of(steel                 ? Vec3f{0.60F, 0.64F, 0.70F}
+                           : body == kSpringBody ? Vec3f{0.93F, 0.90F, 0.80F}
+                                                 : Vec3f{0.45F, 0.10F, 0.16F});
+      m.roughness = steel ? 0.25F : 0.4F;
       return m;
     }
     if (is_cut) {

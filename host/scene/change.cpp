@@ -183,7 +183,8 @@ Json after(const Scene& scene, const Json& before, const Reader& entry) {
   if (entry.has("model")) {
     const Reader model = entry.at("model");
     model.expect_object("model");
-    if (!now.bodies[b].model.matches()) model.fail("a model of a body without shape matching", "none");
+    if (!now.bodies[b].model.matches())
+      model.fail("a model of a body without shape matching", "none: only the numbers of shape matching can change");
     kept["model"] = merged_model(body["model"], model);
   }
   if (entry.has("fixed")) {

@@ -138,12 +138,19 @@ void describe_alpha(V&& v, S&& s) {
               "as `stiffness` of the material (hybrid), 0.5 (flsm)"});
 }
 
-/// Of a mass-spring model and of a join.
+/// Of a mass-spring model.
+template <class V, class S>
+void describe_network(V&& v, S&& s) {
+  v(s.edge_springs, {"edge_springs", any, "", "false",
+                     "`false`: no springs along the edges of the tetrahedra, only those of the body's `springs`"});
+}
+
+/// Of a mass-spring model, of the springs of a body and of a join.
 template <class V, class S>
 void describe_spring(V&& v, S&& s) {
   v(s.law, spring_law_words(), {"law", any, "", "\"cubic\"", "force F over the elongation e from the length l0 at rest"});
   v(s.stiffness, {"stiffness", above(0).or_word("auto").absent_at(0), "N/m", "40",
-                  "of `linear`; `\"auto\"`, not in a join: of each edge from Young's modulus"});
+                  "of `linear`; `\"auto\"`, only in a model: of each edge from Young's modulus"});
   v(s.lambda1, {"lambda1", at_least(0).absent_at(0), "N", "30", "of `cubic`"});
   v(s.lambda2, {"lambda2", above(0).absent_at(0), "N", "5", "of `cubic`"});
   v(s.a, {"a", any.absent_at(0), "1/N", "-0.2",

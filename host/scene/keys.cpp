@@ -35,15 +35,17 @@ std::map<std::string, List> make_keys() {
       {"scene", PLIANT_DESCRIBED(Scene, scene) + PLIANT_DESCRIBED(Scene, run) +
                     List{"format", "name", "gravity", "relaxation", "solver", "focus", "tools", "contact", "blades", "view",
                          "probes", "probe_every", "bodies", "joins", "changes"}},
-      {"body", List{"name", "surface", "mesh", "lattice", "material", "membrane", "vessels", "model", "inclusions", "fixed",
+      {"body", List{"name", "surface", "mesh", "lattice", "material", "membrane", "vessels", "springs", "model", "inclusions", "fixed",
                     "prescribed", "forces", "pressures", "initial"} +
                    PLIANT_DESCRIBED(Body, body)},
       {"lattice", PLIANT_DESCRIBED(LatticeSpec, lattice)},
       {"membrane", PLIANT_DESCRIBED(Membrane, membrane)},
       {"vessel", List{"points", "segments"} + PLIANT_DESCRIBED(Vessel, vessel)},
       {"material", List{"law"} + elastic_keys() + PLIANT_DESCRIBED(Material, material)},
-      {"model", PLIANT_DESCRIBED(DeformationModel, type) + hybrid_keys() + matching_keys() + List{"spring"}},
+      {"model", PLIANT_DESCRIBED(DeformationModel, type) + hybrid_keys() + matching_keys() + List{"spring"} +
+                    PLIANT_DESCRIBED(DeformationModel, network)},
       {"spring", PLIANT_DESCRIBED(Spring, spring) + List{"table"}},
+      {"spring_list", List{"nodes", "file", "spring"}},
       {"join", List{"bodies", "spring"} + PLIANT_DESCRIBED(Join, join)},
       {"region", {"box", "sphere"}},
       {"element_field", {"field"}},

@@ -42,6 +42,8 @@ Focus read_focus(const Reader& focus);
 Vessel read_vessel(const Reader& entry);
 nlohmann::ordered_json grip_json(const GripSpec& grip);
 Spring read_spring(const Reader& spring);
+/// `folder`: what its file is relative to.
+SpringList read_spring_list(const Reader& entry, const std::filesystem::path& folder);
 /// After the bodies.
 std::vector<Join> read_joins(const Reader& joins, const Scene& scene);
 /// Springs against the integrator and the solver.

@@ -111,6 +111,14 @@ Body read_body(const Reader& body, const fs::path& folder, std::size_t index) {
   if (body.has("vessels")) {
     for (const Reader& entry : body.at("vessels").items("a list of objects")) b.vessels.push_back(read_vessel(entry));
   }
+  if (body.has("springs")) {
+    if (b.has_lattice())
+      body.at("springs").fail(
+          "no springs between nodes of a lattice, which have no numbers before it is made (\"vessels\" have places)");
+    for (const Reader& entry : body.at("springs").items("a list of objects"))
+      b.springs.push_back(read_spring_list(entry, folder));
+  }
+  if (!b.model.edge_springs && b.springs.empty()) body.at("model").at("edge_springs").fail("true in a body without \"springs\"");
   read_entries(body, "inclusions", "inclusion", Selected::elements, frame, b.inclusions,
                [&](const Reader& entry, Inclusion& out) {
                  const Reader other = entry.at("material", "the material of the inclusion");

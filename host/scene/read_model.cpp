@@ -23,7 +23,7 @@ void refuse_senseless(const Reader& model, ModelType type) {
   if (type != ModelType::hybrid) refuse(model, hybrid_keys(), type, "hybrid");
   const bool matching = type == ModelType::hybrid || type == ModelType::flsm;
   if (!matching) refuse(model, matching_keys(), type, "hybrid or flsm");
-  if (type != ModelType::mass_spring) refuse(model, {"spring"}, type, "mass-spring");
+  if (type != ModelType::mass_spring) refuse(model, {"spring", "edge_springs"}, type, "mass-spring");
   for (const std::string& key : growth_keys()) refuse_both(model, "region", key, "either a region, or ratio, seed and follow");
   refuse_both(model, "alpha", "stiffness", "at most one: a stiffness chooses alpha");
 }
@@ -63,6 +63,7 @@ DeformationModel read_model(const Reader& model, bool lattice) {
     stiffness.expect_object("stiffness");
     describe_stiffness(ReadKeys{stiffness}, m);
   }
+  describe_network(ReadKeys{model}, m);
   if (model.has("spring")) m.spring = read_spring(model.at("spring"));
   m.matched = m.type == ModelType::hybrid && !model.has("alpha") && !model.has("stiffness");
   return m;

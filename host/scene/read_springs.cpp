@@ -104,6 +104,12 @@ void check_springs(const Reader& top, const Scene& scene) {
     const Reader entry = top.at("bodies").items("a list of bodies")[static_cast<std::size_t>(&body - scene.bodies.data())];
     if (body.membrane && scene.solver.enabled)
       entry.at("membrane").fail("none with \"solver\": {\"type\": \"static\"}, which knows no membranes");
+    if (!body.springs.empty() && scene.solver.enabled)
+      entry.at("springs").fail("none with \"solver\": {\"type\": \"static\"}, which knows no springs");
+    for (const SpringList& list : body.springs) {
+      if (list.spring.damping > 0)
+        require_integrator(top, scene, &IntegratorInfo::keeps_increment, fmt::format("{}/spring has a damping", list.pointer));
+    }
     if (!body.vessels.empty() && scene.solver.enabled)
       entry.at("vessels").fail("none with \"solver\": {\"type\": \"static\"}, which knows no vessels");
     const bool joined = std::any_of(scene.joins.begin(), scene.joins.end(), [&](const Join& j) {

@@ -88,6 +88,7 @@ struct DeformationModel {
       follow;  ///< target that the operational region follows: the name of a blade or tool, or kFocus (blade.h); empty: nothing
   std::optional<std::vector<std::int32_t>> cells;  ///< set in code: the operational cells, after a region has moved
   Spring spring;                                   ///< mass-spring
+  bool edge_springs = true;                        ///< mass-spring: springs along the edges of the tetrahedra
   std::string pointer;                             ///< JSON pointer ("/bodies/0/model")
   /// Whether shape matching moves some of its nodes.
   [[nodiscard]] bool matches() const { return type == ModelType::hybrid || type == ModelType::flsm; }
@@ -109,6 +110,7 @@ struct Body {
   std::vector<Inclusion> inclusions;
   std::optional<Membrane> membrane;  ///< on its whole surface
   std::vector<Vessel> vessels;       ///< inside
+  std::vector<SpringList> springs;   ///< between given nodes
   std::vector<Fixed> fixed;
   std::vector<Prescribed> prescribed;
   std::vector<Force> forces;

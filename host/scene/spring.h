@@ -28,6 +28,22 @@ struct Spring {
   static constexpr double kMostOfPole = 0.75;
 };
 
+/// An entry of a body's "springs": springs with one law between nodes of the body.
+struct SpringList {
+  std::vector<std::array<std::int32_t, 2>> nodes;  ///< [springs]
+  std::vector<double> factor;                      ///< [springs] on the force of the law; empty: 1
+  std::vector<double> length;                      ///< [springs] at rest [m]; empty or 0: that between the nodes
+  Spring spring;                                   ///< each of them
+  std::string pointer;                             ///< JSON pointer ("/bodies/0/springs/0")
+  std::string file;                                ///< that lists them, one per line from the second; empty: the scene does
+  [[nodiscard]] double factor_of(std::size_t s) const { return factor.empty() ? 1 : factor[s]; }
+  [[nodiscard]] double length_of(std::size_t s, double between) const {
+    return length.empty() || length[s] == 0 ? between : length[s];
+  }
+  /// Of spring s, for messages.
+  [[nodiscard]] std::string place(std::size_t s) const;
+};
+
 /// An entry of "joins": springs between the nodes of two bodies that are near each other at rest.
 struct Join {
   std::array<std::string, 2> bodies;  ///< names

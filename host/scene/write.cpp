@@ -6,6 +6,7 @@
 #include "scene/closed_surface.h"
 #include "scene/described_keys.h"
 #include "scene/keys.h"
+#include "scene/link_json.h"
 #include "scene/parts.h"
 #include "scene/probe.h"
 
@@ -130,20 +131,13 @@ void add_matching(OrderedJson& model, const ModelSpec& m) {
   if (m.young) describe_stiffness(WriteKeys{model["stiffness"]}, m);
 }
 
-template <class S>
-OrderedJson spring_json(const S& s) {
-  OrderedJson spring;
-  describe_spring(WriteKeys{spring}, s);
-  if (!s.curve.empty()) spring["table"] = s.curve;
-  return spring;
-}
-
 template <class M>
 OrderedJson model_json(const M& m) {
   OrderedJson model;
   describe_type(WriteKeys{model}, m);
   if (model["type"] == to_string(ModelType::mass_spring)) {
     model["spring"] = spring_json(m.spring);
+    describe_network(WriteKeys{model}, m);
     return model;
   }
   if (model["type"] == to_string(ModelType::hybrid)) {
@@ -221,14 +215,6 @@ fs::path mesh_of(const BodySpec& b) { return b.volume_file; }
 LatticeSpec lattice_of(const Body& b) { return b.lattice; }
 LatticeSpec lattice_of(const BodySpec& b) { return {b.lattice_spacing, b.lattice_spacing == 0 ? b.lattice_nodes : 0}; }
 
-template <class T>
-OrderedJson vessel_json(const T& t) {
-  OrderedJson vessel{{"points", t.points}};
-  if (!t.segments.empty()) vessel["segments"] = t.segments;
-  describe_vessel(WriteKeys{vessel}, t);
-  return vessel;
-}
-
 template <class B>
 OrderedJson body_json(const B& b, const fs::path& file) {
   OrderedJson body{{"name", b.name}};
@@ -247,6 +233,7 @@ OrderedJson body_json(const B& b, const fs::path& file) {
   body["material"] = material_json(b.material);
   if (b.membrane) describe_membrane(WriteKeys{body["membrane"]}, *b.membrane);
   for (const auto& vessel : b.vessels) body["vessels"].push_back(vessel_json(vessel));
+  for (const auto& list : b.springs) body["springs"].push_back(spring_list_json(list));
   if (text_of(model_words(), b.model.type) != to_string(ModelType::tled)) body["model"] = model_json(b.model);
   add_conditions(body, b, file);
   return body;
@@ -325,16 +312,6 @@ OrderedJson top_json(const S& scene, const fs::path& file) {
   top["bodies"] = OrderedJson::array();
   for (const auto& b : scene.bodies) top["bodies"].push_back(body_json(b, file));
   return top;
-}
-
-template <class J>
-void add_joins(OrderedJson& top, const std::vector<J>& joins) {
-  for (const J& j : joins) {
-    OrderedJson join{{"bodies", j.bodies}};
-    describe_join(WriteKeys{join}, j);
-    join["spring"] = spring_json(j.spring);
-    top["joins"].push_back(join);
-  }
 }
 
 void add_change(OrderedJson& top, double time, const OrderedJson& change) {

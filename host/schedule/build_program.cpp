@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "pliant/error.h"
 #include "schedule/kernel_cost.h"
 #include "schedule/program_builder.h"
 
@@ -16,6 +17,15 @@ static void evaluate_only(Pass& pass) {
   for (auto& [name, number] : pass.defines) {
     if (name == "VISCOUS") number = 0;
   }
+}
+
+/// An edit finds what a buffer was before by its name (ProgramBackend::remake).
+static void check_names(const std::vector<Buffer>& buffers) {
+  std::vector<std::string_view> names;
+  for (const Buffer& buffer : buffers) names.emplace_back(buffer.name);
+  std::sort(names.begin(), names.end());
+  const auto twice = std::adjacent_find(names.begin(), names.end());
+  if (twice != names.end()) throw Error(ErrorCode::internal, "two buffers have the name " + std::string(*twice));
 }
 
 Program ProgramBuilder::build() {
@@ -36,6 +46,7 @@ Program ProgramBuilder::build() {
   add_contact();
   add_blades();
   add_status();
+  check_names(program_.buffers);
   return std::move(program_);
 }
 

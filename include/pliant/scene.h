@@ -73,6 +73,7 @@ struct ModelSpec {
   double damping = 0;           ///< per-region damping, in [0, 1]
   int substeps = 1;             ///< hybrid: finite-element steps per step of shape matching
   SpringSpec spring;            ///< mass-spring: law of the springs
+  bool edge_springs = true;     ///< mass-spring: springs along the edges of the tetrahedra
 };
 
 /// One body: shape, material, model, boundary conditions and loads.
@@ -91,6 +92,7 @@ struct BodySpec {
   ModelSpec model;                         ///< finite elements, shape matching or both
   std::optional<MembraneSpec> membrane;    ///< absent: none
   std::vector<VesselSpec> vessels;         ///< vessels inside
+  std::vector<SpringListSpec> springs;     ///< springs between given nodes, in addition to those of the model
   std::vector<InclusionSpec> inclusions;   ///< parts with a different material
   std::vector<FixedSpec> fixed;            ///< fixed nodes
   std::vector<PrescribedSpec> prescribed;  ///< nodes with prescribed motion

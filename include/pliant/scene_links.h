@@ -22,6 +22,14 @@ struct SpringSpec {
   bool slack = false;                        ///< no force when it is shorter than at rest
 };
 
+/// Springs between nodes of a body, a volume mesh or a sheet.
+struct SpringListSpec {
+  std::vector<std::array<std::int32_t, 2>> nodes;  ///< [springs] two nodes each
+  std::vector<double> factor;                      ///< [springs] on the force of the law; empty: 1
+  std::vector<double> length;                      ///< [springs] at rest [m]; empty or 0: that between the nodes
+  SpringSpec spring;                               ///< each of them
+};
+
 /// Springs between the nodes of two bodies that are near each other at rest.
 struct JoinSpec {
   std::array<std::string, 2> bodies;  ///< names

@@ -1,6 +1,7 @@
 // Tools that grip: what they hold follows them as if it were prescribed, slips at the strength of the grip, and is let go.
 #include "physics/harness.h"
 #include "simulation/measure/reactions.h"
+#include "simulation/measure/run_remarks.h"
 
 namespace pliant::physics::grip_test {
 namespace {
@@ -216,6 +217,29 @@ TEST_P(GripPhysics, HoldsStretchedTissueThroughACut) {
     }
     check(std::string(name_of(cut)) + ": the held face stays", top, 5e-4);
   }
+}
+
+/// A grip that holds nothing is told: nothing began it, or nothing was there when it began.
+TEST(GripRemarks, TellOfGripsThatHoldNothing) {
+  const auto said = [](ContactTool tool, const std::string& sentence) {
+    Body body = cube(Discretization::hex8_bricks, 60);
+    body.fixed.push_back({face(2, 0), {true, true, true}});
+    auto sim = simulate(scene_of(body, tool), "cpu");
+    until(*sim, 0.05);
+    for (const std::string& remark : run_remarks(*sim)) {
+      if (remark.find(sentence) != std::string::npos) return true;
+    }
+    return false;
+  };
+  const char *const untold = "nothing told it to grip: it holds no tissue", *const empty =
+                                                                                "and holds no tissue: it holds what it touches";
+  ContactTool tool = plate();
+  EXPECT_FALSE(said(tool, "holds no tissue"));
+  tool.grip->times.clear();
+  EXPECT_TRUE(said(tool, untold));
+  tool = plate();
+  for (auto& row : tool.path) row[3] += 0.05;
+  EXPECT_TRUE(said(tool, empty));
 }
 
 PLIANT_ON_BACKENDS(GripPhysics);

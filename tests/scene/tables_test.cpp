@@ -157,6 +157,7 @@ TEST(Tables, SchemaHasTheLawsAndTheWordsOfTheCode) {
   describe_regions(keys("model", "hybrid, flsm: "), DeformationModel());
   describe_alpha(keys("model", "hybrid, flsm: "), DeformationModel());
   describe_stiffness(keys("stiffness"), DeformationModel());
+  describe_network(keys("model", "mass-spring: "), DeformationModel());
   describe_spring(keys("spring"), Spring());
   describe_join(keys("join"), Join());
   set_laws(schema["$defs"]["material"]);
@@ -245,6 +246,7 @@ TEST(Tables, ScenesDocumentHasTheLawsAndElementsOfTheCode) {
   describe_interface(hybrid, DeformationModel());
   describe_regions(matching, DeformationModel());
   describe_alpha(matching, DeformationModel());
+  describe_network(DocumentRows{text, "\n## Model\n", "", " mass-spring |"}, DeformationModel());
   describe_spring(DocumentRows{text, "\n`spring` of a mass-spring"}, Spring());
   describe_join(DocumentRows{text, "\n`joins`, each"}, Join());
   replace_part(text, "elements", element_table());

@@ -9,6 +9,10 @@ namespace pliant {
 /// springs of both sides add up to it. `auto`: k = E sum of V / l^2 over the tetrahedra (Van Gelder 1998).
 void add_mass_springs(const Body& body, std::int32_t b, const NodeNumbering& draft, Model& model);
 
+/// Adds the springs of Body::springs. One breaks where a cut or a tear parts the elements on its line at rest. Throws Error
+/// (bad_input) for nodes that do not exist or are at one place.
+void add_spring_lists(const Body& body, std::int32_t b, const NodeNumbering& draft, Model& model);
+
 /// Adds bars along the vessels of a body, k = E A / l, between points that move with the elements that hold them at rest, and
 /// their mass. A segment is halved until the elements of both ends of each bar touch. The model of a cut or torn body has no
 /// bar where its two elements have come apart. Throws Error (bad_input) for a point outside an uncut body.

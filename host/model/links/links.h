@@ -47,6 +47,9 @@ struct SpringBatch {
   std::vector<char> broken;        ///< [springs] of a join, empty: none is. They stay in the lists, and give no force
   bool bars = false;               ///< of vessels: between points in elements, however short
   bool stiffness_damping = false;  ///< some dampers come from Material::stiffness_damping
+  bool listed = false;             ///< of Body::springs
+  double radius = 0;               ///< of vessels [m]
+  double omega2 = 0;               ///< of the edges of tetrahedra: at least their highest squared frequency [1/s^2]
   [[nodiscard]] std::size_t size() const { return points.size(); }
   [[nodiscard]] bool damped() const { return law.damping > 0 || stiffness_damping; }
   [[nodiscard]] bool whole(std::size_t s) const { return broken.empty() || broken[s] == 0; }
@@ -116,7 +119,15 @@ void for_each_share(const LinkPoints& points, const SpringBatch& b, std::size_t 
   for (std::size_t i = 0; i < count; ++i) f(slots[i], std::abs(g[i]) * sum);
 }
 
+/// Whether springs of a law may become stiffer than they are at rest.
+bool stiffens(const Spring& law);
+
+/// At least what the displacements `u` [slots][4] make of the squared frequency of a batch, relative to that at rest, in every
+/// direction that its springs may turn to.
+double stiffening(const LinkPoints& points, const SpringBatch& b, const std::vector<double>& u);
+
 /// The slope of the force of a spring at its length at rest; of a slack one when it is longer [N/m].
-double rest_stiffness(const SpringBatch& b, std::size_t s);
+double rest_stiffness(const Spring& law, const std::array<double, 2>& parameters);
+inline double rest_stiffness(const SpringBatch& b, std::size_t s) { return rest_stiffness(b.law, b.parameters[s]); }
 
 }  // namespace pliant

@@ -1,6 +1,7 @@
 // Springs along the edges of the tetrahedra of a body.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <numeric>
 
@@ -98,6 +99,54 @@ std::vector<std::int32_t> add_points(const std::vector<EdgeShare>& edges, Model&
   return point;
 }
 
+/// At least the largest eigenvalue of the Laplacian of a tetrahedron with these stiffnesses at its edges (Wolkowicz and Styan
+/// 1980: three numbers by their mean and their variance; the fourth eigenvalue is 0).
+double largest_eigenvalue(const std::array<double, 6>& stiffness) {
+  std::array<double, 4> degree{};
+  double squares = 0;
+  for (std::size_t k = 0; k < 6; ++k) {
+    for (const int end : kTetEdges[k]) degree[static_cast<std::size_t>(end)] += stiffness[k];
+    squares += 2 * stiffness[k] * stiffness[k];
+  }
+  double trace = 0;
+  for (const double d : degree) {
+    trace += d;
+    squares += d * d;
+  }
+  const double mean = trace / 3;
+  return mean + std::sqrt(2 * std::max(0.0, squares / 3 - mean * mean));
+}
+
+/// At least the squared frequency of a network, however its springs turn: the largest one of a tetrahedron alone, whose edges
+/// have their shares of its springs and whose corners a quarter of its mass each. Cuts leave shares of both, and the bound.
+double edges_omega2(const Body& body, const NodeNumbering& draft, const std::vector<std::int32_t>& place,
+                    const std::vector<EdgeShare>& uncut) {
+  const BodyElements& solid = draft.solid();
+  std::vector<std::size_t> first(solid.nodes.size() + 1, uncut.size());
+  std::vector<double> per_volume(uncut.size());
+  for (std::size_t i = uncut.size(); i-- > 0;) {
+    const EdgeShare& e = uncut[i];
+    first[static_cast<std::size_t>(e.ends[0])] = i;
+    const double length = vec::norm(vec::sub(solid.nodes[e.ends[1]], solid.nodes[e.ends[0]]));
+    const double stiffness = body.model.spring.stiffness > 0 ? body.model.spring.stiffness : e.stiffness;
+    per_volume[i] = rest_stiffness(body.model.spring, spring_parameters(body.model.spring, length, 1, stiffness)) / e.filled;
+  }
+  double most = 0;
+  for (std::size_t t = 0; t < solid.tets.size(); ++t) {
+    std::array<double, 6> stiffness{};
+    for (std::size_t k = 0; k < 6; ++k) {
+      Pair ends{place[solid.tets[t][kTetEdges[k][0]]], place[solid.tets[t][kTetEdges[k][1]]]};
+      if (ends[0] > ends[1]) std::swap(ends[0], ends[1]);
+      std::size_t i = first[static_cast<std::size_t>(ends[0])];
+      while (uncut[i].ends[1] != ends[1]) ++i;
+      stiffness[k] = per_volume[i] * draft.volume[t];
+    }
+    const double corner = material_of(body, draft.materials.index[t]).density * draft.volume[t] / 4;
+    most = std::max(most, largest_eigenvalue(stiffness) / corner);
+  }
+  return most;
+}
+
 }  // namespace
 
 void add_mass_springs(const Body& body, std::int32_t b, const NodeNumbering& draft, Model& model) {
@@ -126,6 +175,7 @@ void add_mass_springs(const Body& body, std::int32_t b, const NodeNumbering& dra
     batch.damper.push_back(share * batch.law.damping + rest_stiffness(batch, batch.size() - 1) * e.damping / e.stiffness);
     batch.stiffness_damping = batch.stiffness_damping || e.damping > 0;
   }
+  batch.omega2 = edges_omega2(body, draft, place, uncut);
   if (batch.size() > 0) model.links.springs.push_back(std::move(batch));
 }
 

@@ -54,7 +54,7 @@ std::int32_t LinkPoints::add_node(std::int32_t slot, const Vec3d& place) {
 
 SpringBatch SpringBatch::without_broken() const {
   if (broken.empty()) return *this;
-  SpringBatch out{law, body, join, label, {}, {}, {}, {}, {}, bars, stiffness_damping};
+  SpringBatch out{law, body, join, label, {}, {}, {}, {}, {}, bars, stiffness_damping, listed, radius, omega2};
   for (std::size_t s = 0; s < size(); ++s) {
     if (!whole(s)) continue;
     out.points.push_back(points[s]);
@@ -81,6 +81,42 @@ SpringState spring_state(const Spring& law, const std::array<double, 2>& paramet
   const SpringState s = curve_state(law.curve, e);
   if (law.slack && s.force <= 0) return {};
   return {second * s.force, second * s.slope, second * s.energy};
+}
+
+double rest_stiffness(const Spring& law, const std::array<double, 2>& parameters) {
+  Spring taut = law;
+  taut.slack = false;  // stiff as soon as it is longer than at rest
+  return spring_state(taut, parameters, 0).slope;
+}
+
+bool stiffens(const Spring& law) {
+  switch (law.law) {
+    case SpringLaw::linear:
+      return false;
+    case SpringLaw::cubic:
+      return law.lambda1 > 0;
+    case SpringLaw::measured:
+      return law.a < 0;
+    case SpringLaw::curve:
+      break;
+  }
+  return true;
+}
+
+double stiffening(const LinkPoints& points, const SpringBatch& b, const std::vector<double>& u) {
+  const auto moved = [&](std::int32_t slot) {
+    const double* at = u.data() + 4 * static_cast<std::size_t>(slot);
+    return Vec3d{at[0], at[1], at[2]};
+  };
+  double most = 1;
+  for (std::size_t s = 0; s < b.size(); ++s) {
+    const double rest = rest_stiffness(b, s);
+    if (!(rest > 0) || !b.whole(s)) continue;
+    const double e = elongation(points, b, s, moved), length = std::max(b.length[s] + e, 1e-30);
+    const SpringState state = spring_state(b.law, b.parameters[s], e);
+    most = std::max({most, state.slope / rest, state.force / (length * rest)});
+  }
+  return most;
 }
 
 std::array<double, 2> spring_parameters(const Spring& law, double l0, double share, double stiffness) {

@@ -6,121 +6,13 @@
 #include <limits>
 #include <optional>
 
-#include "geometry/barycentric.h"
-#include "geometry/spatial_hash.h"
 #include "geometry/vec.h"
-#include "lattice/lattice.h"
 #include "model/links/build_links.h"
+#include "model/links/element_finder.h"
 #include "pliant/error.h"
 
 namespace pliant {
 namespace {
-
-/// Most times that a segment is halved until its parts lie in elements that touch.
-constexpr int kHalvings = 12;
-/// Barycentric coordinates of a point in a tetrahedron are at least minus this: the corners of a lattice differ from those of
-/// its surface by rounding.
-constexpr double kSlack = 1e-6;
-
-/// A point in an element: nodes of the body with their weights.
-struct Held {
-  std::int32_t element = -1;
-  std::array<std::int32_t, 4> nodes{};
-  std::array<double, 4> weights{};
-};
-
-/// Finds the element that holds a point at rest. Of the copies of a cut element it is the one with most of the point's weight
-/// on nodes that have material there.
-class ElementFinder {
- public:
-  explicit ElementFinder(const BodyElements& solid) : solid_(solid), edge_(edge_of(solid)), hash_(edge_) {
-    for (std::size_t e = 0; e < solid.size(); ++e) {
-      vec::Box box;
-      for (const std::int32_t n : solid.corners(e)) box.extend(solid.nodes[n]);
-      hash_.insert(box, static_cast<std::int32_t>(e));
-    }
-  }
-
-  [[nodiscard]] Held find(const Vec3d& p) {
-    Held best;
-    double most = -1;
-    vec::Box at;
-    for (const double side : {-kSlack, kSlack}) {
-      Vec3d near_p = p;
-      for (double& c : near_p) c += side * edge_;
-      at.extend(near_p);
-    }
-    std::vector<std::int32_t> near;
-    hash_.query(at, [&](std::int32_t e) { near.push_back(e); });
-    std::sort(near.begin(), near.end());
-    for (const std::int32_t e : near) {
-      const std::optional<Held> held = in_element(e, p);
-      if (!held) continue;
-      const double real = real_weight(*held);
-      if (real > most + kSlack) {
-        most = real;
-        best = *held;
-      }
-    }
-    return best;
-  }
-
-  /// Whether two elements have a corner at the same place, and whether they have a node in common.
-  [[nodiscard]] bool touch(std::int32_t e, std::int32_t f) const { return any_pair(e, f, true); }
-  [[nodiscard]] bool connected(std::int32_t e, std::int32_t f) const { return any_pair(e, f, false); }
-
- private:
-  /// The mean size of the elements' boxes.
-  static double edge_of(const BodyElements& solid) {
-    double sum = 0;
-    for (std::size_t e = 0; e < solid.size(); ++e) {
-      vec::Box box;
-      for (const std::int32_t n : solid.corners(e)) box.extend(solid.nodes[n]);
-      sum += std::max({box.upper[0] - box.lower[0], box.upper[1] - box.lower[1], box.upper[2] - box.lower[2]});
-    }
-    return sum / static_cast<double>(solid.size());
-  }
-
-  [[nodiscard]] std::optional<Held> in_tet(std::int32_t e, const std::array<std::int32_t, 4>& nodes, const Vec3d& p) const {
-    std::array<Vec3d, 4> x{};
-    for (std::size_t a = 0; a < 4; ++a) x[a] = solid_.nodes[nodes[a]];
-    const std::array<double, 4> w = barycentric_weights(x, p);
-    if (!std::all_of(w.begin(), w.end(), [](double v) { return v >= -kSlack; })) return {};
-    return Held{e, nodes, w};
-  }
-
-  /// In one of the six tetrahedra of a hexahedron the displacement of the point is linear in those of four corners.
-  [[nodiscard]] std::optional<Held> in_element(std::int32_t e, const Vec3d& p) const {
-    const std::span<const std::int32_t> corners = solid_.corners(static_cast<std::size_t>(e));
-    if (corners.size() == 4) return in_tet(e, {corners[0], corners[1], corners[2], corners[3]}, p);
-    for (const auto& tet : kKuhnTets) {
-      if (auto held = in_tet(e, {corners[tet[0]], corners[tet[1]], corners[tet[2]], corners[tet[3]]}, p)) return held;
-    }
-    return {};
-  }
-
-  [[nodiscard]] double real_weight(const Held& held) const {
-    const std::int32_t first = solid_.virtual_nodes.first;
-    double sum = 0;
-    for (std::size_t a = 0; a < 4; ++a) {
-      if (first < 0 || held.nodes[a] < first) sum += held.weights[a];
-    }
-    return sum;
-  }
-
-  [[nodiscard]] bool any_pair(std::int32_t e, std::int32_t f, bool places) const {
-    for (const std::int32_t m : solid_.corners(static_cast<std::size_t>(e))) {
-      for (const std::int32_t n : solid_.corners(static_cast<std::size_t>(f))) {
-        if (places ? solid_.nodes[m] == solid_.nodes[n] : m == n) return true;
-      }
-    }
-    return false;
-  }
-
-  const BodyElements& solid_;
-  double edge_ = 0;  ///< about that of an element [m]
-  SpatialHash hash_;
-};
 
 /// The bars of one entry of `vessels`.
 class Bars {
@@ -160,13 +52,13 @@ class Bars {
 
   /// Halves a segment until the elements of both ends touch.
   void divide(const Vec3d& a, const Held& at_a, const Vec3d& b, const Held& at_b, int depth) {
-    if (at_a.element >= 0 && at_b.element >= 0 && finder_.touch(at_a.element, at_b.element)) {
+    if (at_a.element >= 0 && at_b.element >= 0 && finder_.common_places(at_a.element, at_b.element) > 0) {
       weigh(vec::norm(vec::sub(b, a)), at_a, at_b);
       // A cut between them leaves both without a common node.
-      if (finder_.connected(at_a.element, at_b.element)) add(a, at_a, b, at_b);
+      if (finder_.common_nodes(at_a.element, at_b.element) > 0) add(a, at_a, b, at_b);
       return;
     }
-    if (depth >= kHalvings) {  // in a gap, or where a cut has removed the element
+    if (depth >= ElementFinder::kHalvings) {  // in a gap, or where a cut has removed the element
       if (uncut()) fail_outside(a, b);
       return;
     }
@@ -232,6 +124,7 @@ void add_vessels(const Body& body, std::int32_t b, const NodeNumbering& draft, M
     Bars bars(body, body.vessels[v], draft, finder, model);
     SpringBatch batch = bars.take();
     batch.body = b;
+    batch.radius = body.vessels[v].radius;
     batch.label = fmt::format("{}: vessel {}", body.name, v);
     model.bodies[static_cast<std::size_t>(b)].mass += bars.mass();
     if (batch.size() > 0) model.links.springs.push_back(std::move(batch));

@@ -168,12 +168,12 @@ void ProgramBuilder::add_network(const SpringBatch& b, std::size_t index) {
   }
   const double each = double(entries) / double(b.size());  // about two
   const auto name = [&](const char* stem) { return fmt::format("{}/{}", stem, index); };
-  const auto node_id = add(make_ints(name("spring_node"), BufferRole::constant, "[tiles][2][16]", std::move(lists)));
-  const auto offset_id = add(make_ints(name("spring_offset"), BufferRole::constant, "[tiles + 1]", std::move(list.offset)));
-  const auto end_id = add(make_ints(name("spring_end"), BufferRole::constant, "[rows][16]", std::move(end)));
-  const auto data_id = add(make_reals(name("spring_data"), BufferType::real, planes * entries, BufferRole::constant,
+  const auto node_id = add(make_ints(name("network_node"), BufferRole::constant, "[tiles][2][16]", std::move(lists)));
+  const auto offset_id = add(make_ints(name("network_offset"), BufferRole::constant, "[tiles + 1]", std::move(list.offset)));
+  const auto end_id = add(make_ints(name("network_end"), BufferRole::constant, "[rows][16]", std::move(end)));
+  const auto data_id = add(make_reals(name("network_data"), BufferType::real, planes * entries, BufferRole::constant,
                                       "[rows][planes][16]", "m, N/m", "model", std::move(data)));
-  const auto [curve_id, segments] = add_spring_curve(b.law, name("spring_curve"));
+  const auto [curve_id, segments] = add_spring_curve(b.law, name("network_curve"));
   program_.step.push_back({"spring_node",
                            spring_defines(b),
                            {buffer_arg(node_load_), buffer_arg(node_u_), buffer_arg(node_w_), buffer_arg(node_id),

@@ -44,7 +44,8 @@ double ContactLists::largest_increment() {
   for (const Pass& pass : run_.loaded.program().status) {
     if (pass.kernel == "increment_reduce") run_.backend().run(pass, 0);
   }
-  return run_.loaded.largest_increment();
+  const double most = run_.loaded.largest_increment();
+  return std::isfinite(most) ? most : 0;  // a lost batch is taken back
 }
 
 ContactLists::Due ContactLists::due_after_motion(std::int64_t step, const Motion& motion) {

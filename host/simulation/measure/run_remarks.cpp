@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "cutting/topology/mesh_edges.h"
 #include "geometry/vec.h"
+#include "schedule/program_layout.h"
+#include "simulation/contact/tool_changes.h"
 #include "simulation/measure/reactions.h"
 #include "simulation/step/applied_loads.h"
 
@@ -60,6 +63,47 @@ void add_inversions(const Simulation& s, Sentences& out) {
       fmt::format("up to {} elements at a time were turned inside out and driven back, first in step {} (t = {:.4g} s), "
                   "element {} of body '{}'; {} in the last steps",
                   inverted.most, inverted.first_step, inverted.first_time, inverted.element, inverted.body, inverted.last));
+}
+
+/// Springs resist no change of volume, so that a network may stay as it is when it has been crushed or turned inside out.
+void add_turned_networks(const Simulation& s, Sentences& out) {
+  for (std::size_t b = 0; b < s.model().bodies.size(); ++b) {
+    if (s.scene().bodies[b].model.type != ModelType::mass_spring) continue;
+    const ModelBody& body = s.model().bodies[b];
+    const std::vector<Vec3d> u = s.displacements(b);
+    std::size_t turned = 0;
+    for (const auto& t : body.tets) {
+      std::array<Vec3d, 4> x{};
+      for (std::size_t a = 0; a < 4; ++a) x[a] = vec::add(body.rest[t[a]], u[static_cast<std::size_t>(t[a])]);
+      const Vec3d p = vec::sub(x[1], x[0]), q = vec::sub(x[2], x[0]), r = vec::sub(x[3], x[0]);
+      if (vec::dot(p, vec::cross(q, r)) < 0) ++turned;
+    }
+    if (turned == 0) continue;
+    out.push_back(fmt::format(
+        "{} of {} tetrahedra of the network '{}' are inside out at t = {:.4g} s: its springs resist no change of volume, and a "
+        "network that is pressed or bent too far stays so; stiffer springs, smaller loads or finite elements (\"tled\") do not",
+        turned, body.tets.size(), body.name, s.time()));
+  }
+}
+
+void add_grip(const Simulation& s, std::size_t tool, Sentences& out) {
+  const ContactTool& t = s.scene().tools[tool];
+  if (!t.grip) return;
+  if (t.grip->times.empty() && s.state().gripping.count(t.name) == 0) {
+    out.push_back(
+        fmt::format("tool '{}' has a \"grip\" without \"times\", and nothing told it to grip: it holds no tissue", t.name));
+    return;
+  }
+  const BufferId anchors = s.program().find("contact_anchor");
+  if (anchors < 0 || !(tool_grip(t, s.state(), s.time()) > 0)) return;
+  const std::vector<double> numbers = s.backend().read_reals(anchors);
+  for (std::size_t i = 0; i < s.model().contact->size(); ++i) {
+    if (numbers[tile_base(i, 4) + 3 * PLIANT_TILE] == -static_cast<double>(tool + 1)) return;
+  }
+  out.push_back(fmt::format(
+      "tool '{}' grips at t = {:.4g} s and holds no tissue: it holds what it touches, but for fixed and prescribed nodes, from "
+      "when its times begin; check its path, its \"times\" and its \"strength\"",
+      t.name, s.time()));
 }
 
 /// The smallest dimension of a shape [m]; infinite for a half space.
@@ -149,6 +193,7 @@ void add_contact(Simulation& s, Sentences& out) {
         deepest));
   }
   for (std::size_t t = 0; t < s.scene().tools.size(); ++t) add_tool(s, t, out);
+  for (std::size_t t = 0; t < s.scene().tools.size(); ++t) add_grip(s, t, out);
   add_damping(s, out);
 }
 
@@ -160,6 +205,7 @@ std::vector<std::string> run_remarks(Simulation& simulation) {
   add_opened(simulation, out);
   add_ballast(simulation, out);
   add_inversions(simulation, out);
+  add_turned_networks(simulation, out);
   add_contact(simulation, out);
   return out;
 }

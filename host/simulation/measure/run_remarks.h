@@ -8,7 +8,8 @@
 namespace pliant {
 
 /// Returns sentences on the events since the start: elements that were calmed, inverted or split by overstretch, ballast,
-/// tools that went deep, had no contact or are too thin, and tool forces with a contribution from damping.
+/// networks of springs that are inside out, tools that went deep, had no contact, grip nothing or are too thin, and tool forces
+/// with a contribution from damping.
 [[nodiscard]] std::vector<std::string> run_remarks(Simulation& simulation);
 
 }  // namespace pliant

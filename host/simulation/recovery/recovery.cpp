@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "layout.h"
@@ -17,6 +18,15 @@ namespace {
 const std::string& body_name(const Model& model, std::int32_t body) {
   static const std::string unknown = "?";
   return body >= 0 ? model.bodies[static_cast<std::size_t>(body)].name : unknown;
+}
+
+FaultLocation node_at(const Model& model, std::int32_t slot) {
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const std::vector<std::int32_t>& slots = model.bodies[b].slot;
+    const auto node = std::find(slots.begin(), slots.end(), slot);
+    if (node != slots.end()) return {static_cast<std::int32_t>(b), node - slots.begin(), true};
+  }
+  return {};
 }
 
 }  // namespace
@@ -72,7 +82,20 @@ Symptoms Recovery::read(std::int64_t batch_start, std::int32_t step_in_batch) co
       s.lost = summary[i + 1];
     }
   }
+  if (s.lost_in == 0 && !std::isfinite(run_.loaded.largest_increment())) find_lost_node(s);
   return s;
+}
+
+/// Springs have no marks of their own.
+void Recovery::find_lost_node(Symptoms& s) const {
+  const std::vector<double> w = run_.loaded.w();
+  for (std::size_t i = 0; i < w.size(); ++i) {
+    if (std::isfinite(w[i])) continue;
+    s.lost_in = static_cast<std::int32_t>(std::max<std::int64_t>(1, run_.state.clock.step - s.batch_start));
+    s.lost = -1;
+    s.lost_slot = static_cast<std::int32_t>(i / 4);
+    return;
+  }
 }
 
 void Recovery::count_inversions(const Symptoms& s) {
@@ -100,6 +123,8 @@ bool Recovery::calm_down(Symptoms& s) {
   if (s.lost_in > 0) return false;
   // Decided by the state alone, and only where states are kept, since a run may be divided anywhere else.
   if (!run_.settings.automatic || !run_.state.kept || !step_.on_grid(run_.state.clock.step)) return true;
+  look_at_networks(s);
+  if (s.outgrown) return false;
   double fastest = 0;
   if (run_.loaded.largest_increment() / run_.model().shortest > kFastIncrement * fast_share()) {
     const Calmed calmed = calm(run_, kFastest * fast_share());
@@ -117,6 +142,13 @@ bool Recovery::calm_down(Symptoms& s) {
   if (fastest <= kFastIncrement && (s.inverted == 0 || !inverted_now())) return true;
   measure(s);
   return !s.outgrown;
+}
+
+void Recovery::look_at_networks(Symptoms& s) const {
+  const double dt = run_.state.clock.dt, least = step_.least_step(), allowed = step_.networks_allow();
+  if (!(allowed < (1 - 1e-6) * dt) || dt <= least) return;
+  s.outgrown = true;
+  s.dt = std::max({std::min(allowed, kLeastShortening * dt), kMostShortening * dt, least});
 }
 
 void Recovery::measure(Symptoms& s) {
@@ -194,7 +226,7 @@ bool Recovery::shorter_step(Symptoms& s) {
 }
 
 bool Recovery::give_up(Symptoms& s) {
-  const FaultLocation found = find_fault(run_.model(), s.lost);
+  const FaultLocation found = s.lost < 0 ? node_at(run_.model(), s.lost_slot) : find_fault(run_.model(), s.lost);
   const Clock& clock = run_.state.clock;
   s.divergence = Divergence{s.batch_start + s.lost_in,
                             clock.time_at(s.batch_start + s.lost_in - 1),

@@ -15,9 +15,10 @@ namespace pliant {
 struct Symptoms {
   std::int64_t batch_start = 0;  ///< number of steps before the batch
   // From one read of the fault marks:
-  std::int32_t lost_in = 0;   ///< the step of the batch, counted from 1, in which the first element was lost; 0: none was lost
-  std::int32_t lost = 0;      ///< the fault index of that element
-  std::int64_t inverted = 0;  ///< number of elements with J <= 0
+  std::int32_t lost_in = 0;    ///< the step of the batch, counted from 1, in which the first element was lost; 0: none was lost
+  std::int32_t lost = 0;       ///< the fault index of that element; -1: a node that belongs to none
+  std::int32_t lost_slot = 0;  ///< of that node
+  std::int64_t inverted = 0;   ///< number of elements with J <= 0
   std::int32_t inverted_one = 0;  ///< the lowest of their fault indices
   // Set by Recovery::calm_down if no element is lost:
   bool burst = false;                    ///< nodes of an element moved too far relative to each other in one step
@@ -61,6 +62,9 @@ class Recovery {
 
  private:
   [[nodiscard]] Symptoms read(std::int64_t batch_start, std::int32_t step_in_batch) const;
+  /// Sets outgrown and dt where springs have stiffened so much that the step is too long for their network.
+  void look_at_networks(Symptoms& s) const;
+  void find_lost_node(Symptoms& s) const;
   void count_inversions(const Symptoms& s);
   /// Sets outgrown, dt and ballast for a state whose step may exceed its stability limit.
   void measure(Symptoms& s);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "model/nodes/ballast.h"
 #include "simulation/step/coupling.h"
 
 namespace pliant {
@@ -152,6 +153,31 @@ double largest_omega2(const RunContext& run, const std::vector<double>& spring, 
   return alpha.size() < n && alpha.size() > 2 ? omega2 / (1 - ritz_deficit(n, static_cast<int>(alpha.size()))) : omega2;
 }
 
+/// Networks whose springs have stiffened: the bound at rest, or that of each node now, whichever is larger.
+static double stiffened_bound(const RunContext& run) {
+  const Model& model = run.model();
+  const std::vector<double> u = run.loaded.u();
+  std::vector<char> slots(model.mass.size());
+  double ratio = 1;
+  for (const SpringBatch& b : model.links.springs) {
+    if (b.body < 0 || b.bars) continue;
+    if (stiffens(b.law)) ratio = std::max(ratio, stiffening(model.links.points, b, u));
+    for (const auto& ends : b.points) {
+      for (const std::int32_t p : ends) slots[static_cast<std::size_t>(model.links.points.slots[p][0])] = 1;
+    }
+  }
+  if (!(ratio > 1)) return model.network_bound;
+  return std::max(model.network_bound / std::sqrt(ratio), stiffness_bound(model, nodal_stiffness(model, u, slots)));
+}
+
+double network_step(const RunContext& run) {
+  const Model& model = run.model();
+  if (!(model.network_bound > 0)) return std::numeric_limits<double>::infinity();
+  const auto may_stiffen = [](const SpringBatch& b) { return b.body >= 0 && !b.bars && stiffens(b.law); };
+  const bool any = std::any_of(model.links.springs.begin(), model.links.springs.end(), may_stiffen);
+  return bound_step(run, any ? stiffened_bound(run) : model.network_bound);
+}
+
 StableStep estimate_stable_step(const RunContext& run, int iterations) {
   StableStep step;
   const double omega2 = largest_omega2(run, {}, iterations);
@@ -165,6 +191,9 @@ StableStep estimate_stable_step(const RunContext& run, int iterations) {
     if (coupled > 0) step.coupled = std::max(step.coupled, stable_step(run, 2 / std::sqrt(coupled)));
     step.coupled = std::min(step.coupled, held_goals_step(run.model(), step.elements));
   }
+  const double network = network_step(run);
+  step.elements = std::min(step.elements, network);
+  step.coupled = std::min(step.coupled, network);
   return step;
 }
 

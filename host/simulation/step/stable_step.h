@@ -21,6 +21,10 @@ double bound_step(const RunContext& run, double central);
 /// Inverse of bound_step(): the 2 / omega of the elements that allows a step of `dt` [s].
 double central_step_for(const RunContext& run, double dt);
 
+/// Returns the longest step [s] that is stable for the networks of springs, however they deform while no spring gets stiffer
+/// than it is now; infinite without networks.
+double network_step(const RunContext& run);
+
 struct StableStep {
   double elements = 0;  ///< of the elements alone [s]; 0: none is stable
   double coupled = 0;   ///< including the shape-matching interface [s]; 0: none is stable

@@ -164,6 +164,8 @@ double StepControl::share() const { return run_.state.limit.dt_backoff * run_.sc
 
 double StepControl::estimated() { return share() * estimate(kAdaptIterations); }
 
+double StepControl::networks_allow() const { return run_.scene.safety * network_step(run_); }
+
 bool StepControl::bound_allows() const {
   const double bound = stiffness_bound(run_.model(), nodal_stiffness(run_.model(), run_.loaded.u(), {}, true));
   return bound > 0 && run_.scene.safety * bound_step(run_, bound) >= run_.state.clock.dt;

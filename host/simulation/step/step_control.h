@@ -51,6 +51,8 @@ class StepControl {
   const std::vector<double>& full_stiffness(Allowed& now) const;
   /// Returns true if a bound of the elements, which takes less time than the estimate, shows that the present step is stable.
   [[nodiscard]] bool bound_allows() const;
+  /// The longest step that networks of springs allow as they are now [s]; infinite without networks.
+  [[nodiscard]] double networks_allow() const;
   /// The same from the estimate alone [s].
   [[nodiscard]] double estimated();
   /// Returns the ballast that makes a step of `dt` stable if it exceeds the current ballast and is within the limit;
