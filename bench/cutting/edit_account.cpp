@@ -78,6 +78,7 @@ EditFigures edit_figures(const Simulation& simulation) {
   out.energy = std::numeric_limits<double>::quiet_NaN();
   if (!out.finite || !out.inverted.empty()) return out;
   const Energies e = energies(model, by_slot(model, us), by_slot(model, vs));
+  out.kinetic = e.kinetic;
   out.energy = e.kinetic + e.strain + e.hourglass;
   return out;
 }
@@ -87,7 +88,8 @@ PieceFigures piece_figures(const Model& model, double density, double cell) {
   DisjointSets sets(model.mass.size());
   const auto join = [&](const auto& elements) {
     for (const auto& e : elements) {
-      for (const std::int32_t n : e) sets.join(body.slot[static_cast<std::size_t>(e[0])], body.slot[static_cast<std::size_t>(n)]);
+      for (const std::int32_t n : e)
+        sets.join(body.slot[static_cast<std::size_t>(e[0])], body.slot[static_cast<std::size_t>(n)]);
     }
   };
   join(body.tets);
@@ -105,8 +107,8 @@ PieceFigures piece_figures(const Model& model, double density, double cell) {
     const std::int32_t piece = piece_of(a);
     if (piece_of(b) != piece || piece_of(c) != piece) ++out.strays;
     const auto& x = model.surface.rest;
-    pieces[piece].volume += determinant(x[static_cast<std::size_t>(a)], x[static_cast<std::size_t>(b)],
-                                        x[static_cast<std::size_t>(c)]) / 6;
+    pieces[piece].volume +=
+        determinant(x[static_cast<std::size_t>(a)], x[static_cast<std::size_t>(b)], x[static_cast<std::size_t>(c)]) / 6;
   }
   out.pieces = static_cast<std::int64_t>(pieces.size());
   for (const auto& [piece, sum] : pieces) {

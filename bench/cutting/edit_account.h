@@ -16,14 +16,15 @@ using ElementPlaces = std::set<std::array<double, 12>>;
 /// A body at one moment.
 struct EditFigures {
   std::int64_t elements = 0;
-  double mass = 0, volume = 0;   ///< [kg], enclosed by the surface at rest [m^3]
-  double bound = 0;              ///< of the step, by the single elements [s]
-  std::int64_t open_edges = 0;   ///< of the surface
-  Vec3d momentum{};              ///< [kg m/s]
-  double motion = 0;             ///< sum of m |v|, what the momentum is compared with [kg m/s]
-  double energy = 0;             ///< kinetic and of strain [J]; NaN where an element is inverted
-  ElementPlaces inverted;        ///< elements with J <= 0
-  bool finite = true;            ///< displacements and velocities are
+  double mass = 0, volume = 0;  ///< [kg], enclosed by the surface at rest [m^3]
+  double bound = 0;             ///< of the step, by the single elements [s]
+  std::int64_t open_edges = 0;  ///< of the surface
+  Vec3d momentum{};             ///< [kg m/s]
+  double motion = 0;            ///< sum of m |v|, what the momentum is compared with [kg m/s]
+  double kinetic = 0;           ///< of it [J]
+  double energy = 0;            ///< kinetic and of strain [J]; NaN where an element is inverted
+  ElementPlaces inverted;       ///< elements with J <= 0
+  bool finite = true;           ///< displacements and velocities are
 };
 EditFigures edit_figures(const Simulation& simulation);
 
