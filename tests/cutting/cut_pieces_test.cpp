@@ -4,6 +4,7 @@
 #include <map>
 
 #include "cutting/cut_bodies.h"
+#include "cutting/cut_scenes.h"
 
 namespace pliant::cut_pieces_test {
 namespace {
@@ -68,6 +69,69 @@ TEST(CutPieces, ALaterCutMovesNoFormerOne) {
     }
     EXPECT_GT(faces.size(), 40U);
     EXPECT_GT(centres.size(), 20U);
+  }
+}
+
+/// The largest difference between a piece's mass and that of the volume its surface encloses, in masses of a cell.
+double worst_piece(const Model& model, double cell) {
+  const ModelBody& body = model.bodies[0];
+  DisjointSets sets(model.mass.size());
+  const auto join = [&](const auto& elements) {
+    for (const auto& e : elements) {
+      for (const std::int32_t n : e)
+        sets.join(body.slot[static_cast<std::size_t>(e[0])], body.slot[static_cast<std::size_t>(n)]);
+    }
+  };
+  join(body.tets);
+  join(body.hexes);
+  std::map<std::int32_t, double> wrong;
+  for (const std::int32_t slot : body.slot) wrong[sets.find(slot)] += model.own_mass(static_cast<std::size_t>(slot)) / cell;
+  for (const auto& t : model.surface.triangles) {
+    std::array<Vec3d, 3> x;
+    for (std::size_t i = 0; i < 3; ++i) x[i] = model.surface.rest[static_cast<std::size_t>(t[i])];
+    wrong[sets.find(model.surface.nodes[static_cast<std::size_t>(t[0])][0])] -=
+        vec::dot(x[0], vec::cross(x[1], x[2])) / 6 * 1e6;
+  }
+  EXPECT_GT(wrong.size(), 5U);
+  double worst = 0;
+  for (const auto& [piece, difference] : wrong) worst = std::max(worst, std::abs(difference));
+  return worst;
+}
+
+/// A strip to and fro across an axis, with sharp bends inside of cells, that leans.
+std::vector<SweepTriangle> zigzag(int axis, double at, double lean) {
+  const auto place = [&](int k) {
+    BladeSegment blade{};
+    const auto across = static_cast<std::size_t>(axis), along = (across + 1) % 3, down = (across + 2) % 3;
+    for (std::size_t end = 0; end < 2; ++end) {
+      const double depth = end == 0 ? -0.1 : 0.1;
+      blade[end][across] = at + (k % 2 == 0 ? 0.004 : -0.004) + lean * depth;
+      blade[end][along] = 0.007 * k;
+      blade[end][down] = 0.015 + depth;
+    }
+    return blade;
+  };
+  std::vector<SweepTriangle> all;
+  for (int k = -8; k < 14; ++k) {
+    const auto part = sweep(place(k), place(k + 1));
+    all.insert(all.end(), part.begin(), part.end());
+  }
+  return all;
+}
+
+TEST(CutPieces, TheMassOfAPieceIsThatOfWhatItsSurfaceEncloses) {
+  for (const ElementKind element : {ElementKind::hex8, ElementKind::tet4}) {
+    for (const bool plain : {false, true}) {
+      if (plain && element == ElementKind::hex8) continue;  // a blade cannot divide plain hexahedra
+      Body body = box_body("box", {0.04, 0.03, 0.03}, element);
+      body.plain = plain;
+      Simulation s(scene_with(body), open_backend("cpu"));
+      s.cut(zigzag(0, 0.0183, 0.2));
+      s.cut(zigzag(1, 0.0141, -0.3));
+      s.cut(zigzag(2, 0.0162, 0.1));
+      s.cut(zigzag(0, 0.0229, -0.1));
+      EXPECT_LT(worst_piece(s.model(), 1000 * 1e-6), 2e-3) << to_string(element) << (plain ? ", plain" : "");
+    }
   }
 }
 
