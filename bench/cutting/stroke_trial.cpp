@@ -55,7 +55,8 @@ Body random_block(Dice& dice, std::array<int, 3>& cells) {
   body.surface = "block.obj";
   body.surface_in_memory = closed_box(size);
   body.lattice.spacing = kCellEdge;
-  body.material.set_moduli(Law::neo_hookean, Moduli::from_young(dice.logarithmic(1e3, 2e4), dice.uniform(0.3, 0.48)));
+  const double poisson = dice.uniform(0.3, 0.48), young = dice.logarithmic(1e3, 2e4);
+  body.material.set_moduli(Law::neo_hookean, Moduli::from_young(young, poisson));
   body.material.density = dice.uniform(900, 1100);
   body.material.damping = dice.chance(0.3) ? 0 : dice.logarithmic(0.1, 30);
   body.material.stiffness_damping = dice.chance(0.3) ? dice.logarithmic(1e-5, 1e-3) : 0;
