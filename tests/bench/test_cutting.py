@@ -122,9 +122,11 @@ class Cutting(unittest.TestCase):
                     self.assertLess(row["piece_error"], 1e-12)
 
     def test_one_trial_of_the_strokes_alone(self):
-        done = pliant("--parts", "strokes", "--trial", 7, "--json", "-")
+        done = pliant("--parts", "strokes", "--trial", 127, "--json", "-")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual({(r["trials"], r["resumed"]) for r in json.loads(done.stdout)["rows"]}, {(1, 1)})
+        rows = json.loads(done.stdout)["rows"]
+        self.assertEqual({(r["trials"], r["resumed"]) for r in rows}, {(1, 1)})
+        self.assertEqual([r["faults"] for r in rows], [[]] * 4)  # one whose cut touches the border of a face from inside
 
     def test_files_hold_the_same_rows(self):
         self.assertEqual(json.loads((self.out / "cutting.json").read_text()), self.result)

@@ -5,6 +5,7 @@
 
 #include "cutting/cut_bodies.h"
 #include "cutting/cut_scenes.h"
+#include "geometry/polygon.h"
 
 namespace pliant::cut_pieces_test {
 namespace {
@@ -133,6 +134,21 @@ TEST(CutPieces, TheMassOfAPieceIsThatOfWhatItsSurfaceEncloses) {
       EXPECT_LT(worst_piece(s.model(), 1000 * 1e-6), 2e-3) << to_string(element) << (plain ? ", plain" : "");
     }
   }
+}
+
+TEST(CutPieces, AHoleThatTouchesTheBorderBelongsToThePieceAroundIt) {
+  using overlay::FlatPoint;
+  const std::vector<FlatPoint> at{{0, 0}, {1, 0}, {1, 4}, {0, 4}, {1, 0}, {4, 0}, {4, 4}, {1, 4}, {0.5, 4}, {0.7, 2}, {0.3, 2}};
+  const std::vector<overlay::Loop> loops{{{0, 1, 2, 3}}, {{4, 5, 6, 7}}, {{8, 9, 10}, true}};  // beside it lies a larger piece
+  double area = 0;
+  for (const auto& [a, b, c] : overlay::triangulate(at, loops)) {
+    std::array<double, 3> x{};
+    for (std::size_t i = 0; i < 3; ++i) x[i] = at[static_cast<std::size_t>(std::array{a, b, c}[i])].x;
+    EXPECT_FALSE(*std::min_element(x.begin(), x.end()) < 1 && *std::max_element(x.begin(), x.end()) > 1)
+        << "across both pieces";
+    area += std::abs(overlay::loop_area(at, {a, b, c})) / 2;
+  }
+  EXPECT_NEAR(area, 16 - 0.4, 1e-12);
 }
 
 }  // namespace
