@@ -21,7 +21,7 @@ namespace {
 
 using nlohmann::json;
 
-const std::vector<std::string> kParts{"scenes", "methods", "live", "steps"};
+const std::vector<std::string> kParts{"scenes", "methods", "live", "steps", "strokes"};
 
 CuttingOptions completed(CuttingOptions o) {
   if (o.parts.empty()) o.parts = kParts;
@@ -32,9 +32,15 @@ CuttingOptions completed(CuttingOptions o) {
   }
   if (o.cuts < 0 || o.cuts > 10'000'000)
     throw Error(ErrorCode::bad_input, fmt::format("--cuts: got {}, expected 1 to 10000000", o.cuts));
-  if (o.cuts == 0) o.cuts = o.quick ? 200 : 10'000;
+  if (o.trial < -1 || o.trial > 10'000'000)
+    throw Error(ErrorCode::bad_input, fmt::format("--trial: got {}, expected 0 to 10000000", o.trial));
   o.scenes = find_shipped_scenes(o.scenes, "cut_liver.json");
   return o;
+}
+
+std::int64_t usual_cuts(const std::string& part, bool quick) {
+  if (part == "strokes") return quick ? 20 : 1000;
+  return quick ? 200 : 10'000;
 }
 
 double median(std::vector<double> values) {
@@ -127,11 +133,13 @@ json bench_cutting(const CuttingOptions& asked) {
     const auto progress = [&](double share, const std::string& what) {
       if (options.progress) options.progress((done + share) / total, part + ": " + what);
     };
-    const CuttingRun run{options, result["rows"], [&](const std::string& what) { progress(0, what); }, progress};
+    CuttingRun run{options, result["rows"], [&](const std::string& what) { progress(0, what); }, progress};
+    if (options.cuts == 0) run.options.cuts = usual_cuts(part, options.quick);
     if (part == "scenes") measure_cut_scenes(run);
     if (part == "methods") measure_cut_methods(run);
     if (part == "live") measure_live_methods(run);
     if (part == "steps") measure_stable_steps(run);
+    if (part == "strokes") measure_strokes(run);
     ++done;
   }
   if (options.progress) options.progress(1, "done");

@@ -15,9 +15,10 @@ namespace pliant::bench {
 
 struct CuttingOptions {
   std::filesystem::path scenes;                              ///< folder of the shipped scenes; empty: find it
-  std::vector<std::string> parts;                            ///< of scenes, methods, live, steps; empty: all
-  std::string backend = "auto";                              ///< of all parts but steps
-  std::int64_t cuts = 0;                                     ///< of part steps; 0: 10 000, quick 200
+  std::vector<std::string> parts;                            ///< of scenes, methods, live, steps, strokes; empty: all
+  std::string backend = "auto";                              ///< of all parts but steps and strokes
+  std::int64_t cuts = 0;                                     ///< of steps, strokes; 0: 10 000 and 1000, quick 200 and 20
+  std::int64_t trial = -1;                                   ///< of part strokes: the only one; -1: all
   bool quick = false;                                        ///< small bodies and few frames: the times mean nothing
   std::function<void(double, const std::string&)> progress;  ///< share done, what is being measured
   /// Part methods: draw a simulation whose pieces have been moved apart. Its bodies are not used again.

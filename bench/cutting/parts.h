@@ -13,7 +13,7 @@ namespace pliant::bench {
 
 /// Options with nothing left open, and where rows go.
 struct CuttingRun {
-  const CuttingOptions& options;
+  CuttingOptions options;
   nlohmann::json& rows;
   std::function<void(const std::string&)> show;                   ///< a measurement begins
   std::function<void(double, const std::string&)> show_progress;  ///< share of the present one
@@ -27,6 +27,8 @@ void measure_cut_methods(const CuttingRun& run);
 void measure_live_methods(const CuttingRun& run);
 /// The stable step over random cuts.
 void measure_stable_steps(const CuttingRun& run);
+/// Random strokes through running bodies under load.
+void measure_strokes(const CuttingRun& run);
 
 /// What is compared before and after cuts.
 struct BodyFigures {

@@ -51,6 +51,30 @@ std::string steps_table(const json& rows) {
   return text;
 }
 
+std::string strokes_table(const json& rows) {
+  const auto count = [](const json& r, const char* key) {
+    return r[key].is_null() ? std::string() : fmt::format("{}", r[key].get<std::int64_t>());
+  };
+  std::string text = fmt::format("{:<14} {:<8} {:>7} {:>6} {:>5} {:>8} {:>5} {:>7} {:>8} {:>8} {:>9} {:>9} {:>8} {:>9} {:>9}\n",
+                                 "method", "element", "strokes", "edits", "open", "inverted", "lost", "new", "mass", "volume",
+                                 "momentum", "energy", "pieces", "differing", "dt ratio");
+  for (const json& r : rows) {
+    if (r["part"] != "strokes") continue;
+    text += fmt::format("{:<14} {:<8} {:>7} {:>6} {:>5} {:>8} {:>5} {:>7} {:>8} {:>8} {:>9} {:>9} {:>8} {:>9} {:>9}\n",
+                        words(r, "method"), words(r, "element"), count(r, "cuts"), count(r, "edits"), count(r, "open_edits"),
+                        count(r, "inverted"), count(r, "lost"), count(r, "elements_new"), power(r, "mass_error"),
+                        power(r, "volume_error"), power(r, "momentum_error"), power(r, "energy_gain"), power(r, "piece_error"),
+                        fmt::format("{}/{}", r["differing"].get<int>() + r["resumed_differing"].get<int>(),
+                                    r["compared"].get<int>() + r["resumed"].get<int>()),
+                        ratio(r));
+  }
+  for (const json& r : rows) {
+    for (const json& fault : r.value("faults", json::array()))
+      text += fmt::format("{}, {}: {}\n", words(r, "method"), words(r, "element"), fault.get<std::string>());
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string cutting_table(const json& result) {
@@ -64,6 +88,8 @@ std::string cutting_table(const json& result) {
                         costs_table(rows, "live"));
   if (has_part(rows, "steps"))
     tables.emplace_back("The stable step over random cuts, as a share of that before", steps_table(rows));
+  if (has_part(rows, "strokes"))
+    tables.emplace_back("Random strokes under load: what edits kept at worst, and what went wrong", strokes_table(rows));
   return titled(tables);
 }
 

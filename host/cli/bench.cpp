@@ -162,10 +162,12 @@ void add_cutting(CLI::App& app, const std::shared_ptr<BenchArguments>& options) 
   bench::CuttingOptions& c = options->cutting;
   options->common.add_to(*sub);
   sub->add_option("--scenes", c.scenes, "folder of the shipped scenes");
-  sub->add_option("--parts", c.parts, "scenes, methods, live, steps")->delimiter(',');
-  sub->add_option("--backend", c.backend, "of all parts but steps, default: auto");
-  sub->add_option("--cuts", c.cuts, "random cuts of part steps, default: 10000")->check(CLI::Range(1, 10'000'000));
-  sub->add_flag("--quick", c.quick, "small bodies, 200 random cuts; the times mean nothing");
+  sub->add_option("--parts", c.parts, "scenes, methods, live, steps, strokes")->delimiter(',');
+  sub->add_option("--backend", c.backend, "of all parts but steps and strokes, default: auto");
+  sub->add_option("--cuts", c.cuts, "random cuts of part steps, default: 10000, and of strokes, default: 1000")
+      ->check(CLI::Range(1, 10'000'000));
+  sub->add_option("--trial", c.trial, "part strokes: only the trial of this number")->check(CLI::Range(0, 10'000'000));
+  sub->add_flag("--quick", c.quick, "small bodies, 200 random cuts, 20 strokes; the times mean nothing");
   sub->add_option("--out", options->out, "folder for cutting.json, cutting.csv and the pictures");
 }
 

@@ -187,6 +187,31 @@ void join(const Points& points, Ring& ring, const Ring& hole, const std::vector<
   ring.swap(joined);
 }
 
+/// The outline that a hole belongs to. A corner of the hole may lie on the border of the polygon, where none contains it.
+std::size_t outline_around(const Points& points, const std::vector<Loop>& loops, const std::vector<std::size_t>& outlines,
+                           const Loop& hole) {
+  std::size_t owner = 0;
+  for (const std::int32_t corner : hole.corners) {
+    double smallest = HUGE_VAL;
+    for (const std::size_t o : outlines) {
+      if (hole.group >= 0 && loops[o].group == hole.group) continue;
+      const double area = loop_area(points, loops[o].corners);
+      if (area >= smallest || !contains(points, loops[o].corners, points[corner])) continue;
+      owner = o;
+      smallest = area;
+    }
+    if (smallest < HUGE_VAL) return owner;
+  }
+  double largest = -HUGE_VAL;
+  for (const std::size_t o : outlines) {
+    if (hole.group >= 0 && loops[o].group == hole.group) continue;
+    const double area = loop_area(points, loops[o].corners);
+    if (area > largest) owner = o;
+    largest = std::max(largest, area);
+  }
+  return owner;
+}
+
 }  // namespace
 
 double loop_area(const Points& points, const Ring& loop) {
@@ -203,20 +228,7 @@ std::vector<std::array<std::int32_t, 3>> triangulate(const Points& points, std::
   }
   for (std::size_t h = 0; h < loops.size(); ++h) {
     if (!loops[h].hole) continue;
-    double smallest = HUGE_VAL, largest = -HUGE_VAL;
-    bool found = false;
-    for (const std::size_t o : outlines) {
-      if (loops[h].group >= 0 && loops[o].group == loops[h].group) continue;
-      const double area = loop_area(points, loops[o].corners);
-      if (contains(points, loops[o].corners, points[loops[h].corners[0]])) {
-        if (area < smallest) owner[h] = o;
-        smallest = std::min(smallest, area);
-        found = true;
-      } else if (!found && area > largest) {
-        owner[h] = o;
-        largest = area;
-      }
-    }
+    owner[h] = outline_around(points, loops, outlines, loops[h]);
     if (outlines.empty()) loops[h].hole = false;  // only by rounding: a loop that stands alone
   }
   for (std::size_t o = 0; o < loops.size(); ++o) {

@@ -98,6 +98,36 @@ class Cutting(unittest.TestCase):
             if row["method"] == "decomposition":
                 self.assertLess(row["dt_ratio_least"], 0.05)
 
+    def test_strokes_under_load_keep_what_they_promise(self):
+        rows = self.rows("strokes")
+        self.assertEqual([(r["method"], r["element"]) for r in rows],
+                         [(m, e) for m in ("virtual nodes", "separation") for e in ("hex8", "tet4")])
+        for row in rows:
+            with self.subTest(method=row["method"], element=row["element"]):
+                self.assertEqual(row["faults"], [])
+                self.assertGreaterEqual(row["cuts"], 60)
+                self.assertGreater(row["edits"], row["trials"])
+                self.assertGreater(row["pieces"], 2)
+                self.assertLess(row["mass_error"], 1e-12)
+                self.assertLess(row["volume_error"], 1e-12)
+                self.assertLess(row["momentum_error"], 1e-7)
+                self.assertEqual(row["dt_after"], row["dt_before"])
+                self.assertGreater(row["compared"], 0)
+                self.assertEqual(row["resumed"], 1)
+                for none in ("open_edits", "inverted", "stray_triangles", "lost", "differing", "resumed_differing"):
+                    self.assertEqual(row[none], 0, none)
+                if row["method"] == "separation":
+                    self.assertEqual(row["elements_new"], 0)
+                    self.assertLess(max(row["energy_gain"], row["energy_loss"]), 1e-7)
+                    self.assertLess(row["piece_error"], 1e-12)
+
+    def test_one_trial_of_the_strokes_alone(self):
+        done = pliant("--parts", "strokes", "--trial", 127, "--json", "-")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        rows = json.loads(done.stdout)["rows"]
+        self.assertEqual({(r["trials"], r["resumed"]) for r in rows}, {(1, 1)})
+        self.assertEqual([r["faults"] for r in rows], [[]] * 4)  # one whose cut touches the border of a face from inside
+
     def test_files_hold_the_same_rows(self):
         self.assertEqual(json.loads((self.out / "cutting.json").read_text()), self.result)
         self.assertEqual(len((self.out / "cutting.csv").read_text().splitlines()), 1 + len(self.result["rows"]))

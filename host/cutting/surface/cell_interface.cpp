@@ -2,12 +2,10 @@
 
 #include <algorithm>
 
+#include "cutting/topology/cut_cell.h"
+
 namespace pliant::overlay {
 namespace {
-
-// Corners of the six tetrahedra, one for each order of the axes in which a path leads from corner 0 to corner 7.
-constexpr std::array<std::array<int, 4>, 6> kPaths{
-    {{0, 1, 3, 7}, {0, 1, 5, 7}, {0, 2, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 4, 6, 7}}};
 
 struct KuhnTable {
   std::array<std::array<int, 8>, 8> edge{};
@@ -76,11 +74,19 @@ class Builder {
     if (a > b) std::swap(a, b);
     return add(id(a, a ^ b), edge_point(a, b));
   }
-  /// The middle of the three cut points of a face.
+  /// The point of a face whose three edges are cut: the middle of those that were cut first, two or all.
   std::int8_t face(std::array<int, 3> v) {
     std::sort(v.begin(), v.end());
-    const Vec3d sum = vec::add(vec::add(edge_point(v[0], v[1]), edge_point(v[0], v[2])), edge_point(v[1], v[2]));
-    return add(id(v[0], 8 * (v[0] ^ v[1]) + (v[0] ^ v[2])), vec::mul(sum, 1.0 / 3));
+    const std::array<std::array<int, 2>, 3> edges{{{v[0], v[1]}, {v[0], v[2]}, {v[1], v[2]}}};
+    std::array<std::int32_t, 3> when{};
+    for (std::size_t i = 0; i < 3; ++i) when[i] = cell_.when[kuhn_edge(edges[i][0], edges[i][1])];
+    const std::array<bool, 3> at = at_face_point(when);
+    Vec3d sum{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (at[i]) sum = vec::add(sum, edge_point(edges[i][0], edges[i][1]));
+    }
+    const auto count = static_cast<double>(std::count(at.begin(), at.end(), true));
+    return add(id(v[0], 8 * (v[0] ^ v[1]) + (v[0] ^ v[2])), vec::mul(sum, 1.0 / count));
   }
 
   /// `a` and `b` are corners whose edge the triangle separates.
@@ -120,7 +126,8 @@ class Builder {
     int count = 0;
     for (int i = 0; i < 4; ++i) {
       for (int j = i + 1; j < 4; ++j) {
-        if (!apart(v[i], v[j])) continue;
+        const std::uint32_t chosen = cell_.centre[tet_];
+        if (chosen == 0 ? !apart(v[i], v[j]) : (chosen >> kuhn_edge(v[i], v[j]) & 1) == 0) continue;
         sum = vec::add(sum, edge_point(v[i], v[j]));
         ++count;
       }
@@ -158,6 +165,11 @@ class Builder {
 int kuhn_edge(int a, int b) {
   static const KuhnTable table;
   return table.edge[a][b];
+}
+
+std::size_t path_of(std::array<int, 4> corners) {
+  std::sort(corners.begin(), corners.end());
+  return static_cast<std::size_t>(std::find(kPaths.begin(), kPaths.end(), corners) - kPaths.begin());
 }
 
 CellInterface interface_of(const CutGrid& grid, const CutGridCell& cell) { return Builder(grid, cell).build(); }

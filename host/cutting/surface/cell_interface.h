@@ -33,6 +33,12 @@ inline constexpr std::array<std::array<int, 2>, 19> kKuhnEdges{{{0, 1},
 /// Number in kKuhnEdges, -1 for two corners that no edge joins.
 int kuhn_edge(int a, int b);
 
+/// The tetrahedra of a cell: their corners, one for each order of the axes in which a path leads from corner 0 to corner 7.
+inline constexpr std::array<std::array<int, 4>, 6> kPaths{
+    {{0, 1, 3, 7}, {0, 1, 5, 7}, {0, 2, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 4, 6, 7}}};
+/// The one that has these corners.
+std::size_t path_of(std::array<int, 4> corners);
+
 /// What carries a component: a component of a lattice cell.
 struct Carrier {
   std::int32_t cell = -1;
@@ -43,10 +49,13 @@ struct Carrier {
 /// A completely cut cell of the grid.
 struct CutGridCell {
   GridIndex index{};
-  bool air = false;                    ///< a cell that the lattice does not have, cut like its neighbours
-  std::array<std::int8_t, 8> label{};  ///< component of each corner
-  std::array<double, 19> crossing{};   ///< share of the way along each edge of kKuhnEdges; negative: not cut
-  std::array<Carrier, 8> carrier{};    ///< of each component
+  bool air = false;                     ///< a cell that the lattice does not have, cut like its neighbours
+  std::array<std::int8_t, 8> label{};   ///< component of each corner
+  std::array<double, 19> crossing{};    ///< share of the way along each edge of kKuhnEdges; negative: not cut
+  std::array<std::int32_t, 19> when{};  ///< number of the edit in which it was cut
+  std::array<std::uint32_t, 6>
+      centre{};                      ///< of each of its tetrahedra, edges whose points' mean it is; 0: all between components
+  std::array<Carrier, 8> carrier{};  ///< of each component
   friend bool operator==(const CutGridCell&, const CutGridCell&) = default;
 };
 

@@ -12,6 +12,20 @@ using overlay::CutGridCell;
 using overlay::GridIndex;
 using overlay::Patch;
 
+namespace {
+
+void set_centres(const CellShape& shape, const CellCut& cut, CutGridCell& cell) {
+  for (std::size_t t = 0; t < shape.tets.size(); ++t) {
+    std::uint32_t& centre = cell.centre[overlay::path_of(shape.tets[t])];
+    for (std::size_t e = 0; e < kTetEdges.size(); ++e) {
+      const int a = shape.tets[t][kTetEdges[e][0]], b = shape.tets[t][kTetEdges[e][1]];
+      if ((cut.centre[t] >> e & 1) != 0) centre |= 1U << overlay::kuhn_edge(a, b);
+    }
+  }
+}
+
+}  // namespace
+
 struct CutSurface::Base {
   Base(const TriangleMesh& surface, const Lattice& full)
       : lattice(full),
@@ -104,7 +118,9 @@ void CutSurface::update(const CutTopology& topology, const std::vector<std::int3
         const std::int32_t m = mesh.cells[c][a], n = mesh.cells[c][b];
         const double t = topology.edges().at(node_pair(m, n));
         cell.crossing[e] = m < n ? t : 1 - t;
+        cell.when[e] = cut.when[mesh.shape->edge_of[a][b]];
       }
+      set_centres(*mesh.shape, cut, cell);
     }
     changed.push_back(cell);
   }

@@ -133,23 +133,26 @@ GridIndex ExteriorCells::anchor(const GridIndex& corner) {
   return best;
 }
 
-// Where an edge is cut, from its lower corner; -1 if it is not.
-double ExteriorCells::crossing(const GridIndex& a, const GridIndex& b) {
+// Where an edge is cut, from its lower corner, and since when; -1 if it is not. One that no cell of the lattice has counts as
+// cut before all others.
+ExteriorCells::Crossing ExteriorCells::crossing(const GridIndex& a, const GridIndex& b) {
   bool known = false;
   for (int c = 0; c < 8; ++c) {  // a cell that has both ends
     const GridIndex cell = sum(a, {-(c & 1), -(c >> 1 & 1), -(c >> 2 & 1)});
     const GridIndex d{b[0] - cell[0], b[1] - cell[1], b[2] - cell[2]};
     if (std::max({d[0], d[1], d[2]}) > 1 || lattice_cell(cell) < 0) continue;
     known = true;
-    if (const CutGridCell* cut = cut_cell(cell); cut != nullptr) return cut->crossing[kuhn_edge(c, d[0] + 2 * d[1] + 4 * d[2])];
+    const CutGridCell* cut = cut_cell(cell);
+    const int e = kuhn_edge(c, d[0] + 2 * d[1] + 4 * d[2]);
+    if (cut != nullptr) return {cut->crossing[e], cut->when[e]};
   }
-  if (known) return -1;
+  if (known) return {};
   const GridIndex p = anchor(a), q = anchor(b);
   const Block& around = block(a);
   const int s = around.joined[around.at(p)], t = around.joined[around.at(q)];
-  if (s < 0 || t < 0 || s == t) return -1;
+  if (s < 0 || t < 0 || s == t) return {};
   const double u = around.distance(source_.grid().position(a)), w = around.distance(source_.grid().position(b));
-  return u * w < 0 ? std::clamp(u / (u - w), kLeast, 1 - kLeast) : 0.5;
+  return {u * w < 0 ? std::clamp(u / (u - w), kLeast, 1 - kLeast) : 0.5};
 }
 
 // The component of the lattice next to a cell of air that holds a corner: of the cell that is nearest.
@@ -177,7 +180,9 @@ CutGridCell ExteriorCells::cut(const GridIndex& index) {
   DisjointSets sets(8);
   for (std::size_t e = 0; e < kKuhnEdges.size(); ++e) {
     const auto [a, b] = kKuhnEdges[e];
-    cell.crossing[e] = crossing(corner_index(index, a), corner_index(index, b));
+    const Crossing found = crossing(corner_index(index, a), corner_index(index, b));
+    cell.crossing[e] = found.at;
+    cell.when[e] = found.when;
     if (cell.crossing[e] < 0) sets.join(a, b);
   }
   int components = 0;
@@ -194,7 +199,7 @@ CutGridCell ExteriorCells::cut(const GridIndex& index) {
   for (int k = 0; k < components; ++k) {
     if (cell.carrier[k].cell < 0) components = 1;  // too far from the lattice to be divided
   }
-  if (components == 1) cell = {index, true, {}, {}, {}};
+  if (components == 1) cell = {index, true, {}, {}, {}, {}, {}};
   return cell;
 }
 

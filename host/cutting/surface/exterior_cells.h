@@ -22,11 +22,15 @@ class ExteriorCells {
 
  private:
   struct Block;
+  struct Crossing {
+    double at = -1;
+    std::int32_t when = 0;
+  };
   const Block& block(const GridIndex& corner);
   [[nodiscard]] std::int32_t lattice_cell(const GridIndex& cell) const;
   [[nodiscard]] const CutGridCell* cut_cell(const GridIndex& cell) const;
   [[nodiscard]] GridIndex anchor(const GridIndex& corner);
-  [[nodiscard]] double crossing(const GridIndex& a, const GridIndex& b);
+  [[nodiscard]] Crossing crossing(const GridIndex& a, const GridIndex& b);
   [[nodiscard]] Carrier carrier(const GridIndex& cell, const GridIndex& corner);
   CutGridCell cut(const GridIndex& cell);
 

@@ -136,20 +136,7 @@ class TetSurface {
     return vertex(key, cut_.tet(cell, 0).face[face], cell, label_of(cell, node), division(cell).face[face]);
   }
 
-  [[nodiscard]] TetDivision division(std::int32_t cell) const {
-    std::array<int, 4> labels{};
-    std::array<char, 6> is_cut{};
-    std::array<double, 6> crossing{};
-    for (int a = 0; a < 4; ++a) labels[a] = label(cell, a);
-    for (int e = 0; e < 6; ++e) {
-      const std::int32_t a = cut_.mesh().cells[cell][kTetEdges[e][0]], b = cut_.mesh().cells[cell][kTetEdges[e][1]];
-      const auto found = cut_.edges().find(node_pair(a, b));
-      if (found == cut_.edges().end()) continue;
-      is_cut[e] = 1;
-      crossing[e] = a < b ? found->second : 1 - found->second;
-    }
-    return divide(labels, is_cut, crossing);
-  }
+  [[nodiscard]] TetDivision division(std::int32_t cell) const { return cut_.division(cell, 0); }
 
   /// The cell behind a triangle of the boundary, and which of its faces that is.
   [[nodiscard]] std::array<std::int32_t, 2> behind(const std::array<std::int32_t, 3>& nodes) const {

@@ -1,6 +1,7 @@
 #include "cutting/topology/cut_cell.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "lattice/lattice.h"
 
@@ -64,7 +65,7 @@ const CellShape& tetrahedron_shape() {
   return shape;
 }
 
-TetDivision divide(const std::array<int, 4>& label, const std::array<char, 6>& cut, const std::array<double, 6>& crossing) {
+TetDivision divide(const DivisionPoints& points, const std::array<char, 6>& cut, const std::array<double, 6>& crossing) {
   TetDivision d;
   for (int e = 0; e < 6; ++e) d.edge[e] = cut[e] != 0 ? crossing[e] : 0.5;
   const auto add = [&](std::array<double, 4>& sum, int e) {
@@ -74,21 +75,19 @@ TetDivision divide(const std::array<int, 4>& label, const std::array<char, 6>& c
   for (int f = 0; f < 4; ++f) {
     const auto& [a, b, c] = kTetFaces[f];
     const std::array<int, 3> edges{kTetEdgeOf[a][b], kTetEdgeOf[b][c], kTetEdgeOf[c][a]};
-    const int count = cut[edges[0]] + cut[edges[1]] + cut[edges[2]];
-    if (count < 2) {
+    const int count = std::popcount(points.face[f]);
+    if (count == 0) {
       d.face[f][a] = d.face[f][b] = d.face[f][c] = 1.0 / 3;
       continue;
     }
     for (const int e : edges) {
-      if (cut[e] != 0) add(d.face[f], e);
+      if ((points.face[f] >> e & 1) != 0) add(d.face[f], e);
     }
     for (double& w : d.face[f]) w /= count;
   }
-  int count = 0;
+  const int count = std::popcount(points.centre);
   for (int e = 0; e < 6; ++e) {
-    if (label[kTetEdges[e][0]] == label[kTetEdges[e][1]]) continue;
-    add(d.centre, e);
-    ++count;
+    if ((points.centre >> e & 1) != 0) add(d.centre, e);
   }
   for (double& w : d.centre) w = count == 0 ? 0.25 : w / count;
   return d;

@@ -59,6 +59,21 @@ void raise_to_floor(std::array<double, 8>& share) {
   for (double& s : share) s /= sum;
 }
 
+/// A tetrahedron of a lattice cell with two corners in each of two components: the surface between them is two triangles
+/// (cell_interface.h), and the centre lies on their common edge. The edges whose points it joins; 0: any other tetrahedron.
+std::uint8_t between_pairs(const std::array<int, 4>& corner, const std::array<std::int8_t, 8>& label) {
+  std::array<int, 4> order{0, 1, 2, 3};
+  std::sort(order.begin(), order.end(), [&](int i, int j) { return corner[i] < corner[j]; });
+  std::array<int, 4> with{}, without{};
+  std::size_t own = 0, other = 0;
+  for (const int i : order) {
+    const bool same = label[corner[i]] == label[corner[order[0]]];
+    (same ? with[own++] : without[other++]) = i;
+  }
+  if (own != 2 || label[corner[without[0]]] != label[corner[without[1]]]) return 0;
+  return static_cast<std::uint8_t>(1 << kTetEdgeOf[with[0]][without[0]] | 1 << kTetEdgeOf[with[1]][without[1]]);
+}
+
 /// Of a copy, what each of those that it is divided into takes at least.
 constexpr double kLeastPart = 1e-3;
 
@@ -79,10 +94,40 @@ void label_components(const CellShape& shape, CellCut& cell) {
   }
 }
 
+void CutDivision::place_centres(CellCut& cut) const {
+  for (std::size_t t = 0; t < mesh_.shape->tets.size(); ++t) {
+    if (cut.centre[t] != 0) continue;
+    const auto& corner = mesh_.shape->tets[t];
+    cut.centre[t] = mesh_.shape->corners == 8 ? between_pairs(corner, cut.label) : 0;
+    if (cut.centre[t] != 0) continue;
+    for (std::size_t e = 0; e < kTetEdges.size(); ++e) {
+      if (cut.label[corner[kTetEdges[e][0]]] == cut.label[corner[kTetEdges[e][1]]]) continue;
+      cut.centre[t] |= static_cast<std::uint8_t>(1 << e);
+    }
+  }
+}
+
+DivisionPoints CutDivision::points(const CellCut& cut, int tet) const {
+  DivisionPoints out;
+  out.centre = cut.centre[tet];
+  const auto& corner = mesh_.shape->tets[tet];
+  for (std::size_t f = 0; f < 4; ++f) {
+    const auto& [a, b, c] = kTetFaces[f];
+    const std::array<int, 3> edges{kTetEdgeOf[a][b], kTetEdgeOf[b][c], kTetEdgeOf[c][a]};
+    std::array<std::int32_t, 3> when{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto [from, to] = kTetEdges[edges[i]];
+      const int e = mesh_.shape->edge_of[corner[from]][corner[to]];
+      when[i] = (cut.cut >> e & 1) != 0 ? cut.when[e] : -1;
+    }
+    const std::array<bool, 3> at = at_face_point(when);
+    for (std::size_t i = 0; i < 3; ++i) out.face[f] |= static_cast<std::uint8_t>(at[i] ? 1 << edges[i] : 0);
+  }
+  return out;
+}
+
 TetDivision CutDivision::of(std::int32_t cell, const CellCut& cut, int tet) const {
   const auto& corner = mesh_.shape->tets[tet];
-  std::array<int, 4> label{};
-  for (int a = 0; a < 4; ++a) label[a] = cut.label[corner[a]];
   std::array<char, 6> is_cut{};
   std::array<double, 6> crossing{};
   for (int e = 0; e < 6; ++e) {
@@ -93,7 +138,7 @@ TetDivision CutDivision::of(std::int32_t cell, const CellCut& cut, int tet) cons
     is_cut[e] = 1;
     crossing[e] = a < b ? t : 1 - t;
   }
-  return divide(label, is_cut, crossing);
+  return divide(points(cut, tet), is_cut, crossing);
 }
 
 void CutDivision::inherit(const CellCut& before, CellCut& cut) const {
@@ -154,6 +199,7 @@ CutTet CutDivision::tet(std::int32_t cell, const CellCut* cut, int tet) const {
     out.label[a] = cut == nullptr ? 0 : cut->label[corner[a]];
     out.corner[a] = mesh_.rest[out.node[a]];
   }
+  const DivisionPoints points = cut == nullptr ? DivisionPoints{} : this->points(*cut, tet);
   std::array<NodePair, 6> pair{};
   for (int e = 0; e < 6; ++e) {
     pair[e] = node_pair(out.node[kTetEdges[e][0]], out.node[kTetEdges[e][1]]);
@@ -167,20 +213,18 @@ CutTet CutDivision::tet(std::int32_t cell, const CellCut* cut, int tet) const {
     const auto& [a, b, c] = kTetFaces[f];
     std::array<int, 3> edges{kTetEdgeOf[a][b], kTetEdgeOf[b][c], kTetEdgeOf[c][a]};
     std::sort(edges.begin(), edges.end(), [&](int i, int j) { return pair[i] < pair[j]; });
-    const int count = out.cut[edges[0]] + out.cut[edges[1]] + out.cut[edges[2]];
+    const int count = std::popcount(points.face[f]);
     for (const int e : edges) {
       // The centroid of a face is the mean of the middles of its edges.
       const Vec3d middle = vec::mul(vec::add(mesh_.rest[pair[e][0]], mesh_.rest[pair[e][1]]), 0.5);
-      if (count < 2) out.face[f] = vec::add(out.face[f], vec::mul(middle, 1.0 / 3));
-      if (count >= 2 && out.cut[e]) out.face[f] = vec::add(out.face[f], vec::mul(out.edge[e], 1.0 / count));
+      if (count == 0) out.face[f] = vec::add(out.face[f], vec::mul(middle, 1.0 / 3));
+      if ((points.face[f] >> e & 1) != 0) out.face[f] = vec::add(out.face[f], vec::mul(out.edge[e], 1.0 / count));
     }
   }
-  int count = 0;
+  const int count = std::popcount(points.centre);
   Vec3d between{}, corners{};
   for (int e = 0; e < 6; ++e) {
-    if (out.label[kTetEdges[e][0]] == out.label[kTetEdges[e][1]]) continue;
-    between = vec::add(between, out.edge[e]);
-    ++count;
+    if ((points.centre >> e & 1) != 0) between = vec::add(between, out.edge[e]);
   }
   for (const Vec3d& x : out.corner) corners = vec::add(corners, x);
   out.centre = count > 0 ? vec::mul(between, 1.0 / count) : vec::mul(corners, 0.25);

@@ -22,6 +22,8 @@ class CutDivision {
   /// The same by barycentric coordinates in one of its tetrahedra.
   [[nodiscard]] int label_in(std::int32_t cell, const CellCut* cut, int tet, const std::array<double, 4>& weight) const;
 
+  /// Gives tetrahedra that now have several components the centre that they keep.
+  void place_centres(CellCut& cut) const;
   /// Shares the material of a cell among its components.
   void share(std::int32_t cell, CellCut& cut) const;
   /// The parts of a divided component keep its material fraction, whatever crossings were found since: copies are deformed
@@ -29,6 +31,8 @@ class CutDivision {
   void inherit(const CellCut& before, CellCut& cut) const;
 
  private:
+  [[nodiscard]] DivisionPoints points(const CellCut& cut, int tet) const;
+
   const CutMesh& mesh_;
   const CutEdges& edges_;
 };

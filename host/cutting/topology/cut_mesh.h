@@ -29,9 +29,11 @@ using CutEdges = std::map<NodePair, double>;
 
 /// The state of a cell with cut edges.
 struct CellCut {
-  std::uint32_t cut = 0;               ///< bit i: edge i of the shape is cut
-  std::array<std::int8_t, 8> label{};  ///< component of each corner; components are numbered by their lowest corner
-  int components = 1;                  ///< 1: not completely cut yet, the cell is whole
+  std::uint32_t cut = 0;                 ///< bit i: edge i of the shape is cut
+  std::array<std::int8_t, 8> label{};    ///< component of each corner; components are numbered by their lowest corner
+  int components = 1;                    ///< 1: not completely cut yet, the cell is whole
+  std::array<std::int32_t, 19> when{};   ///< number of the edit in which an edge of the shape was cut
+  std::array<std::uint8_t, 6> centre{};  ///< DivisionPoints::centre of each tetrahedron of the shape
   /// The copy of each component; -1: the component has no material and no copy. One copy keeps the cell's own number.
   std::array<std::int32_t, 8> element{-1, -1, -1, -1, -1, -1, -1, -1};
   /// Fraction of the cell's material, 0 without a copy. If a component is divided later, the parts add up to its fraction.

@@ -45,6 +45,7 @@ std::int32_t CutTopology::element_of(std::int32_t cell, int label) const {
 
 void CutTopology::reset(const CutEdges& edges) {
   edges_.clear();
+  edit_ = 0;
   cells_.clear();
   cell_at_.assign(mesh_->cells.size(), nullptr);
   nodes_.clear();
@@ -65,6 +66,7 @@ CutEdit CutTopology::cut(const CutEdges& edges, const std::function<void(const s
   for (const std::int32_t c : edit.cells) {
     CellCut& cell = cells_.at(c);
     label_components(*mesh_->shape, cell);
+    division_.place_centres(cell);
     division_.share(c, cell);
     division_.inherit(old.at(c), cell);
     split |= cell.components > 1;
@@ -102,6 +104,7 @@ void CutTopology::check(const CutEdges& edges) const {
 CutTopology::OldCuts CutTopology::mark(const CutEdges& edges, CutEdit& edit) {
   check(edges);
   OldCuts old;
+  ++edit_;
   for (const auto& [pair, t] : edges) {
     if (!edges_.emplace(pair, std::clamp(t, kLeastCrossing, 1 - kLeastCrossing)).second) continue;
     for (const std::int32_t c : neighbors_.at_node(pair[0])) {
@@ -115,6 +118,7 @@ CutTopology::OldCuts CutTopology::mark(const CutEdges& edges, CutEdit& edit) {
       }
       old.emplace(c, at->second);
       at->second.cut |= 1U << e;
+      at->second.when[e] = edit_;
     }
   }
   for (const auto& [c, cut] : old) edit.cells.push_back(c);

@@ -3,8 +3,8 @@
 // Edges between nodes of the uncut body are cut, each at one point. A cell is *completely cut* if the graph of its corners
 // and uncut edges is disconnected; it is then replaced by one copy per component. In a copy the corners of its component are
 // real, the others virtual. Real corners at one node are one node. Copies on both sides of a face share the nodes of that
-// face if one of its corners is real in both. The result depends only on the set of cut edges: edits may come in any order or
-// grouping.
+// face if one of its corners is real in both. The copies depend only on the set of cut edges: edits may come in any order or
+// grouping. Where their parts lie does not: a cut stays where it was made (cut_cell.h).
 //
 // CutTopology holds the cut edges and cells and numbers the elements. CellNeighbors finds the cells at a node, an edge or a
 // face; CutDivision computes where the components of a cell lie and how they share its material; CutNodes numbers the nodes.
@@ -55,8 +55,10 @@ class CutTopology {
   [[nodiscard]] int label_in(std::int32_t cell, int tet, const std::array<double, 4>& weight) const {
     return division_.label_in(cell, cell_at_[cell], tet, weight);
   }
-  /// For many places in one tetrahedron. The cell is divided.
-  [[nodiscard]] TetDivision division(std::int32_t cell, int tet) const { return division_.of(cell, *cell_at_[cell], tet); }
+  /// For many places in one tetrahedron.
+  [[nodiscard]] TetDivision division(std::int32_t cell, int tet) const {
+    return cell_at_[cell] == nullptr ? divide({}, {}, {}) : division_.of(cell, *cell_at_[cell], tet);
+  }
   [[nodiscard]] int label_in(std::int32_t cell, int tet, const TetDivision& division,
                              const std::array<double, 4>& weight) const {
     return cell_at_[cell]->label[mesh_->shape->tets[tet][corner_at(division, weight)]];
@@ -83,6 +85,7 @@ class CutTopology {
   std::shared_ptr<const CutMesh> mesh_;
   CellNeighbors neighbors_;
   CutEdges edges_;
+  std::int32_t edit_ = 0;  ///< the last one
   std::map<std::int32_t, CellCut> cells_;
   std::vector<const CellCut*> cell_at_;  ///< [cells] into cells_, nullptr: no edge is cut
   CutDivision division_;

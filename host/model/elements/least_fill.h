@@ -8,8 +8,8 @@ namespace pliant {
 
 /// Returns each element's stiffness as a fraction of a full element [elements]; its own fill if `least` is 0. An undivided
 /// cell has max(fill, least). The copies of a divided cell share its stiffness: each gets at least `least` of it (or equal
-/// parts if that is not enough), the rest in proportion to material. All copies are deformed alike at the time of a cut, so
-/// the elastic energy does not change.
+/// parts if that is not enough), the rest in proportion to material. At the first cut of a cell all are
+/// deformed alike, and the elastic energy does not change; at a later one copies take stiffness from others that are not.
 std::vector<double> stiff_fills(const BodyElements& solid, double least);
 
 }  // namespace pliant
