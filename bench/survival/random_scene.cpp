@@ -366,14 +366,14 @@ class RandomScene {
     for (std::size_t c = 1; c < 3; ++c) {
       if (std::abs(from[c]) > std::abs(from[axis])) axis = c;
     }
-    Vec3d& offset = second_;
-    offset[axis] = std::copysign(1.01 * size_[axis], from[axis]);
+    second_[axis] = std::copysign(1.01 * size_[axis], from[axis]);
     for (std::size_t c = 0; c < 3; ++c) {
-      if (c != axis) offset[c] = touch_.uniform(-0.3, 0.3) * size_[c];
+      if (c != axis) second_[c] = touch_.uniform(-0.3, 0.3) * size_[c];
     }
-    second["translate"] = offset;
-    second["velocity"] = vec::mul(offset, -touch_.logarithmic(0.1, 2) / vec::norm(offset));
+    second["translate"] = second_;
+    second["velocity"] = vec::mul(second_, -touch_.logarithmic(0.1, 2) / vec::norm(second_));
     scene["bodies"].push_back(std::move(second));
+    add_random_joins(Dice(number_ ^ 0x41c64e6d), file_, second_, young_, extent_, scene);
   }
 
   Dice dice_;

@@ -1,5 +1,9 @@
 #include "bench/survival/random_springs.h"
 
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
 #include "geometry/vec.h"
 #include "mesh_io/mesh_io.h"
 
@@ -28,6 +32,24 @@ void add_random_springs(Dice dice, const std::filesystem::path& mesh, double you
   if (dice.chance(0.3)) spring = {{"law", "measured"}, {"a", 0.3 / (stiffness * extent)}, {"b", 1 / stiffness}};
   if (dice.chance(0.3)) spring["slack"] = true;
   body["springs"] = Json::array({{{"nodes", rows}, {"spring", spring}}});
+}
+
+void add_random_joins(Dice dice, const std::filesystem::path& shape, const Vec3d& offset, double young, double extent,
+                      Json& scene) {
+  if (!dice.chance(0.35)) return;
+  const std::string kind = shape.extension().string();
+  const std::vector<Vec3d> places = kind == ".obj" ? read_surface(shape).vertices : read_volume(shape).vertices;
+  double nearest = HUGE_VAL;
+  for (const Vec3d& p : places) {
+    for (const Vec3d& q : places) nearest = std::min(nearest, vec::norm(vec::sub(vec::add(q, offset), p)));
+  }
+  // The nodes of a lattice lie up to a cell outside the surface.
+  Json join{{"bodies", {scene["bodies"][0]["name"], scene["bodies"][1]["name"]}},
+            {"distance", nearest + extent * dice.uniform(0.1, 0.15)},
+            {"spring", {{"stiffness", young * extent * dice.logarithmic(1e-4, 0.01)}}}};
+  if (dice.chance(0.3)) join["spring"]["slack"] = true;
+  if (dice.chance(0.5)) join["break_force"] = young * extent * extent * dice.logarithmic(1e-6, 1e-3);
+  scene["joins"] = Json::array({join});
 }
 
 }  // namespace pliant::bench

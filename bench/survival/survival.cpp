@@ -146,6 +146,14 @@ json run_one(std::int64_t number, const SurvivalOptions& options) {
   return row;
 }
 
+/// Whether the scene has a key or a word that is asked for.
+bool is_asked_for(std::int64_t number, const SurvivalOptions& o) {
+  if (o.having.empty()) return true;
+  const std::string text = survival_scene(number, o.scenes);
+  return std::any_of(o.having.begin(), o.having.end(),
+                     [&](const std::string& word) { return text.find("\"" + word + "\"") != std::string::npos; });
+}
+
 bool creates_energy(const json& row) {
   return row.contains("energy_created") && row["energy_created"].is_number() && row["energy_created"] > kEnergy;
 }
@@ -225,6 +233,7 @@ json bench_survival(const SurvivalOptions& asked) {
       rows.push_back(*found);
       continue;
     }
+    if (!is_asked_for(number, options)) continue;
     // Written first, so that a scene that hangs is there, too.
     const std::filesystem::path file = options.out / fmt::format("survival-{}.json", number);
     if (!options.out.empty()) write_file(file, survival_scene(number, options.scenes));

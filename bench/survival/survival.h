@@ -5,6 +5,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 namespace pliant::bench {
 
@@ -13,6 +14,7 @@ struct SurvivalOptions {
   std::string backend = "cpu";                               ///< one thread of it, so that times can be compared
   std::int64_t first = 0;                                    ///< number of the first scene
   std::int64_t count = 1000;                                 ///< how many
+  std::vector<std::string> having;                           ///< only scenes with one of these keys or words; empty: all
   bool quick = false;                                        ///< 50 scenes, a quarter of the time
   std::filesystem::path out;                                 ///< finished scenes are kept there and not run again; empty: none
   std::function<void(double, const std::string&)> progress;  ///< share done, what is being run

@@ -186,6 +186,8 @@ void add_survival(CLI::App& app, const std::shared_ptr<BenchArguments>& options)
   sub->add_option("--backend", s.backend, "default: cpu");
   sub->add_option("--first", s.first, "number of the first scene, default: 0");
   sub->add_option("--count", s.count, "default: 1000");
+  sub->add_option("--having", s.having, "only scenes with one of these keys or words, such as joins,membrane,mass-spring")
+      ->delimiter(',');
   sub->add_flag("--quick", s.quick, "50 scenes for a quarter of the time");
   sub->add_option("--out", options->out,
                   "folder for survival.json and survival.csv, and the scenes that end badly or take short steps; finished ones "
