@@ -11,6 +11,9 @@
   tumour      scenes/palpate_tumour.json: a press, and the map of the forces at all places
   methods     one cut through the same tetrahedra by removal, decomposition and virtual nodes (`pliant bench cutting`), with one camera
 
+  forces      blades that press before they cut, and forceps: a moment of scenes/incise.json, stroke.json and dissect.json each, and the forces
+              over time
+
 and some moments each of the scenes bunny_settings, cut_bunny_hybrid, cut_shell, fold, needle and skin_on_bone, by these names
 
 Pictures are traced at twice their size and scaled down, and saved with 256 colours so that they stay small.
@@ -38,7 +41,7 @@ ROWS = {  # moments [s] of scenes that have a row of pictures
     "needle": (0, 0.2, 0.8),
     "skin_on_bone": (0, 0.4, 1),
 }
-KNOWN = ("parameters", "bunny", "liver", "cut", "grasp", "parts", "tumour", "methods", *ROWS)
+KNOWN = ("parameters", "bunny", "liver", "cut", "grasp", "parts", "tumour", "methods", "forces", *ROWS)
 
 
 def font(size):
@@ -54,8 +57,8 @@ def load(name):
     """A shipped scene whose mesh paths hold anywhere."""
     scene = json.loads((SCENES / f"{name}.json").read_text())
     for body in scene["bodies"]:
-        if "surface" in body:
-            body["surface"] = str((SCENES / body["surface"]).resolve())
+        for key in {"surface", "mesh"} & body.keys():
+            body[key] = str((SCENES / body[key]).resolve())
     return scene
 
 
@@ -233,6 +236,44 @@ class Maker:
                 ImageDraw.Draw(picture).text((10, size[1] - 10), name, fill=INK, font=font(14), anchor="ls")
                 sheet.paste(picture, (i * size[0], 0))
         self.save("methods", sheet)
+
+    def forces(self):
+        import matplotlib
+        matplotlib.use("Agg")
+        import matplotlib.pyplot as plt
+        size, moments = (320, 240), {"incise": 0.9, "stroke": 0.8, "dissect": 0.9}
+        sheet = Image.new("RGB", (3 * size[0], 2 * size[1]), PAPER)
+        colours = {"scalpel": "#d55e00", "forceps": "#0072b2"}
+        for i, (name, moment) in enumerate(moments.items()):
+            scene = load(name)
+            sheet.paste(self.frames(scene, size, moment)[-1], (i * size[0], 0))
+            with tempfile.TemporaryDirectory() as folder:
+                file, out = Path(folder) / "scene.json", Path(folder) / "out"
+                file.write_text(json.dumps(scene))
+                subprocess.run([self.pliant, "run", file, "--quiet", "--out", out, "--every", "10ms"], check=True)
+                rows = list(csv.DictReader((out / "scene_tools.csv").open()))
+            chart, axes = plt.subplots(figsize=(size[0] / 100, size[1] / 100), dpi=200)
+            for tool, colour in colours.items():
+                own = [r for r in rows if r["tool"] == tool]
+                force = [1000 * math.hypot(*(float(r[f"f{c} [N]"]) for c in "xyz")) for r in own]
+                if own:
+                    axes.plot([float(r["time [s]"]) for r in own], force, color=colour, linewidth=1, label=tool)
+            axes.axvline(moment, color="#c0c4c8", linewidth=0.8, zorder=0)
+            axes.set_title(name, fontsize=8)
+            axes.set_xlabel("time [s]", fontsize=7)
+            axes.set_ylabel("force [mN]", fontsize=7)
+            axes.tick_params(labelsize=7)
+            axes.set_ylim(bottom=0)
+            axes.spines[["top", "right"]].set_visible(False)
+            if len(axes.lines) > 2:
+                axes.legend(fontsize=7, frameon=False)
+            chart.tight_layout()
+            drawn = Path(tempfile.gettempdir()) / "pliant-forces.png"
+            chart.savefig(drawn)
+            plt.close(chart)
+            sheet.paste(Image.open(drawn).convert("RGB").resize(size, Image.LANCZOS), (i * size[0], size[1]))
+            drawn.unlink()
+        self.save("forces", sheet)
 
 
 def main():

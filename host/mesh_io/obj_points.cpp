@@ -46,6 +46,12 @@ std::vector<Vec3d> obj_points(const std::filesystem::path& file) {
     for (int axis = 0; axis < 3; ++axis) {
       const std::string_view word = take_word(rest);
       point[axis] = static_cast<double>(static_cast<float>(number(word)));
+      const std::string_view digits = word.substr(word.starts_with('-') || word.starts_with('+') ? 1 : 0);
+      if (digits.starts_with('.') && std::isfinite(point[axis])) {  // assimp takes such a vertex for none
+        throw Error(ErrorCode::bad_input, fmt::format("surface mesh '{}': vertex {} (line {}): {} is '{}'; a digit before the "
+                                                      "point is needed",
+                                                      file.string(), points.size() - 1, at, "xyz"[axis], word));
+      }
       if (std::isfinite(point[axis])) continue;
       throw Error(ErrorCode::bad_input,
                   fmt::format("surface mesh '{}': vertex {} (line {}): {} is '{}'; a finite number is needed", file.string(),

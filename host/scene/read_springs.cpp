@@ -48,6 +48,8 @@ std::vector<std::array<double, 2>> read_spring_table(const Reader& table) {
     if (!(now[0] > before[0])) parts[0].fail(fmt::format("an elongation above the previous row's {}", before[0]));
     if (now[1] < before[1]) parts[1].fail(fmt::format("a force of at least the previous row's {}", before[1]));
   }
+  const auto pulls = [](const std::array<double, 2>& row) { return row[1] != 0; };
+  if (std::none_of(rows.begin(), rows.end(), pulls)) table.fail("a force that is not 0 in at least one row");
   return rows;
 }
 

@@ -103,6 +103,8 @@ TEST_F(ReadSurface, ErrorsSayWhatIsWrong) {
   const std::string message = error(write("nan.obj", "v 0 0 0\nv 1 0 0\nv 0 nan 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\n"));
   EXPECT_TRUE(mentions(message, "vertex 2 (line 3): y is 'nan'")) << message;
   EXPECT_TRUE(mentions(error(write("word.obj", "v 0 0 0\nv 1 zero 0\nv 0 1 0\nf 1 2 3\n")), "vertex 1 (line 2): y is 'zero'"));
+  EXPECT_TRUE(mentions(error(write("point.obj", "v 0 0 0\nv 1 -.5 0\nv 0 1 0\nf 1 2 3\n")),
+                       "vertex 1 (line 2): y is '-.5'; a digit before the point is needed"));
   const std::string ply = error(
       write("nan.ply",
             "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"

@@ -43,6 +43,8 @@ TEST(SceneSprings, EachMistakeHasOneMessage) {
       {"/bodies/0/model/spring", R"({"law": "table", "table": [[0, 0]]})", "/bodies/0/model/spring/table: got"},
       {"/bodies/0/model/spring", R"({"law": "table", "table": [[0, 0], [0, 1]]})",
        "/bodies/0/model/spring/table/1/0: got 0, expected an elongation above the previous row's 0", false},
+      {"/bodies/0/model/spring", R"({"law": "table", "table": [[0, 0], [1, 0]]})",
+       "/bodies/0/model/spring/table: got [[0,0],[1,0]], expected a force that is not 0 in at least one row", false},
       {"/bodies/0/model/spring", R"({"law": "table", "table": [[0, 0], [1, -1]]})",
        "/bodies/0/model/spring/table/1/1: got -1, expected a force of at least the previous row's 0", false},
       {"/bodies/0/model/width", "2", "/bodies/0/model/width: got 2, expected no \"width\" with the type mass-spring"},
