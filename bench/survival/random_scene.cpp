@@ -358,7 +358,7 @@ class RandomScene {
     scene["contact"] = {{"friction", touch_.chance(0.5) ? 0 : touch_.uniform(0, 0.8)}};
     if (touch_.chance(0.4)) return;
     Json second = scene["bodies"][0];
-    for (const char* key : {"fixed", "prescribed", "forces"}) second.erase(key);
+    for (const char* key : {"fixed", "prescribed", "forces", "vessels"}) second.erase(key);
     second["name"] = second["name"].get<std::string>() + "2";
     Vec3d from = touch_.direction();
     if (scene.contains("gravity")) from = vec::mul(scene["gravity"].get<Vec3d>(), -1 / 9.81);

@@ -85,8 +85,9 @@ inline void set_frame(const contact::Points<Scalar>& points, const Scalar* touch
   const Scalar length = std::sqrt(dot(first, first));
   p.tangent = contact::normalised(first, length);
   const Scalar height = dot(second, cross(p.normal, p.tangent));
-  p.dual = {length > Scalar(0.1) ? Scalar(1) / length : Scalar(10), Scalar(0),
-            height > Scalar(0.1) ? Scalar(1) / height : Scalar(10)};
+  constexpr auto crushed = Scalar(0.5), slope = Scalar(4);
+  p.dual = {length > crushed ? Scalar(1) / length : slope * length, Scalar(0),
+            height > crushed ? Scalar(1) / height : slope * height};
   p.dual[1] = dot(second, p.tangent) * p.dual[2];
   const Scalar spacing = touch_surface[own + std::int64_t{22} * PLIANT_TILE];
   p.density = spacing > Scalar(0) ? Scalar(1) / spacing : Scalar(0);

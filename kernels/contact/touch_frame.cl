@@ -1,4 +1,8 @@
 // Contact of tissue with tissue: the surface frame of a point at the start of the step, and its rotation in the step (touch_point.cl).
+// The moment of a push turns the tangents by forces that grow as they get shorter. Of a face that is crushed to less than half of its length they
+// would throw its nodes off: there 1 / |F t1| and 1 / height go back to 0.
+#define TOUCH_CRUSHED 0.5f
+#define TOUCH_SLOPE 4.0f  // 1 / TOUCH_CRUSHED^2: without a jump
 static inline void write_state(__global float* touch_place, int i, touch_state s) {
   __global float* at = touch_place + PLIANT_TOUCH_PLACE * i;
   vstore4((float4)(s.x.xyz, s.yielding), 0, at);
@@ -35,8 +39,8 @@ static inline void set_frame(__global const float* node_u, __global const float*
   const float length = sqrt(dot_xyz(first, first));
   s->tangent = normalised(first.x, first.y, first.z, length);
   const float height = dot_xyz(second, cross3(s->normal, s->tangent));
-  s->short_first = length > 0.1f ? 1.0f / length : 10.0f;
-  s->short_height = height > 0.1f ? 1.0f / height : 10.0f;
+  s->short_first = length > TOUCH_CRUSHED ? 1.0f / length : TOUCH_SLOPE * length;
+  s->short_height = height > TOUCH_CRUSHED ? 1.0f / height : TOUCH_SLOPE * height;
   s->skew = dot_xyz(second, s->tangent) * s->short_height;
   const float spacing = own[22 * PLIANT_TILE];
   s->density = spacing > 0.0f ? 1.0f / spacing : 0.0f;

@@ -1,4 +1,7 @@
 // Tools that grip: what they hold follows them as if it were prescribed, slips at the strength of the grip, and is let go.
+#include <array>
+
+#include "cutting/blade/blade.h"
 #include "physics/harness.h"
 #include "simulation/measure/reactions.h"
 #include "simulation/measure/run_remarks.h"
@@ -216,6 +219,25 @@ TEST_P(GripPhysics, HoldsStretchedTissueThroughACut) {
       if (sim->model().bodies[0].rest[n][2] > kSide - 1e-6) top = std::max(top, std::abs(sim->displacements(0)[n][2] - 0.01));
     }
     check(std::string(name_of(cut)) + ": the held face stays", top, 5e-4);
+  }
+}
+
+/// An edit elsewhere is not felt at the grip: its force in the next step is that of the step before.
+TEST_P(GripPhysics, ACutElsewhereIsNotFelt) {
+  for (const Discretization cut : {Discretization::hex8_bricks, Discretization::tet4}) {
+    ContactTool tool = plate();
+    move(tool, 0.3, {0, 0, 0.01});
+    Body body = cube(cut, 60);
+    body.fixed.push_back({face(2, 0), {true, true, true}});
+    Scene scene = scene_of(body, tool);
+    scene.cuttable = true;
+    auto sim = simulate(scene, GetParam());
+    until(*sim, 0.8);
+    const double before = sim->report().tools[0].now.force[2];
+    const Vec3d a{0.3 * kCell, -1, 0.2 * kCell}, b{0.3 * kCell, 1, 0.2 * kCell}, c{-1, -1, 0.6 * kCell}, d{-1, 1, 0.6 * kCell};
+    ASSERT_GT(sim->cut(std::array<SweepTriangle, 2>{SweepTriangle{a, b, c}, SweepTriangle{b, d, c}}).edges, 0);
+    sim->advance(1);
+    check_relative(std::string(name_of(cut)) + ": force on the tool", sim->report().tools[0].now.force[2], before, 0.02);
   }
 }
 

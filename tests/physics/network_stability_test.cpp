@@ -140,6 +140,35 @@ TEST_P(NetworkStep, AStepThatIsTooLongIsADivergence) {
   for (const Vec3d& u : sim->displacements(0)) ASSERT_TRUE(std::isfinite(vec::norm(u)));
 }
 
+/// One on the other, they crush their faces; contact of those adds no energy.
+TEST_P(NetworkStep, StackedNetworksComeToRest) {
+  Scene scene = network_scene({{4, 4, 4}, 0.01, 0, 3});
+  Body upper = scene.bodies[0];
+  upper.name = "upper";
+  upper.translate = {0, 0.042, 0};
+  scene.bodies[0].translate = {0, 0.001, 0};
+  scene.bodies.push_back(upper);
+  scene.contact = TissueContact{0.3};
+  ContactTool table;
+  table.name = "table";
+  table.shape = ToolShape::half_space;
+  table.second = {0, 1, 0};
+  table.path = {{0, 0, 0, 0, 0, 0, 0, 1}};
+  table.friction = 0.3;
+  scene.tools = {table};
+  scene.gravity = {0, -9.81, 0};
+  auto sim = simulate(scene, GetParam());
+  double most = 0;
+  while (sim->time() < 1.5 && !sim->divergence()) {
+    sim->advance(64);
+    most = std::max(most, energy_of(*sim));
+  }
+  ASSERT_FALSE(sim->divergence().has_value());
+  // Both weigh 0.128 kg together and come down by 16 mm at most.
+  check("most energy [J]", most, 0.04);
+  check("energy at the end [J]", energy_of(*sim), 0.02);
+}
+
 /// Several networks, a join and vessels in one scene have buffers of their own, also after a cut.
 TEST(NetworkBuffers, BackendsAgreeAfterACut) {
   if (!test::has_opencl()) GTEST_SKIP() << "there is no OpenCL device";
