@@ -28,6 +28,7 @@ struct Moduli {
   static Moduli from_bulk(double mu, double kappa);
   [[nodiscard]] double young() const { return 9 * kappa * mu / (3 * kappa + mu); }
   [[nodiscard]] double poisson() const { return (3 * kappa - 2 * mu) / (2 * (3 * kappa + mu)); }
+  friend bool operator==(const Moduli&, const Moduli&) = default;
 };
 
 /// A parameter of a law, with its key in a scene file.
@@ -93,6 +94,7 @@ struct Material {
   void set_parameters(Law law, std::vector<double> parameters);
   /// Scales the stiffness at every strain: the stresses of all laws are linear in their moduli.
   [[nodiscard]] Material scaled(double factor) const;
+  friend bool operator==(const Material&, const Material&) = default;
 };
 
 Material make_material(Law law, const Moduli& moduli, double density = 1000);

@@ -11,6 +11,7 @@
 #include "model/elements/body_mesh.h"
 #include "model/elements/bricks.h"
 #include "model/elements/element_materials.h"
+#include "model/elements/kept_elements.h"
 #include "model/elements/least_fill.h"
 #include "model/links/build_links.h"
 #include "model/links/membranes.h"
@@ -41,13 +42,18 @@ Material material_for(const Model& model, const Body& body, int index) {
   return material;
 }
 
-void note_bound(Model& model, double frequency, double volume, const std::string& element) {
-  const double edge = std::cbrt(volume);
-  if (model.shortest == 0 || edge < model.shortest) model.shortest = edge;
+/// `element`: returns its name.
+template <class Name>
+void note_bound(Model& model, double frequency, double volume, Name element) {
+  constexpr double kSurelyMore = 1 + 1e-9;  // than rounding; most elements need no root
+  if (model.shortest == 0 || volume < kSurelyMore * model.shortest * model.shortest * model.shortest) {
+    const double edge = std::cbrt(volume);
+    if (model.shortest == 0 || edge < model.shortest) model.shortest = edge;
+  }
   const double bound = 2 / frequency;
   if (model.element_bound == 0 || bound < model.element_bound) {
     model.element_bound = bound;
-    model.bound_element = element;
+    model.bound_element = element();
   }
 }
 
@@ -79,8 +85,9 @@ void add_inertia(Model& model, std::span<const std::int32_t> slots, double fill,
 /// The element lists of one body, one per material, and the masses of all its elements.
 class ElementLists {
  public:
-  ElementLists(const Body& body, std::int32_t b, NodeNumbering& draft, Model& model)
-      : body_(body), info_(element_info(body.element)), b_(b), draft_(draft), model_(model) {}
+  /// `previous` (may be null): a model from before an edit, which spares work where elements kept their shape.
+  ElementLists(const Body& body, std::int32_t b, const Model* previous, NodeNumbering& draft, Model& model)
+      : body_(body), info_(element_info(body.element)), b_(b), previous_(previous), draft_(draft), model_(model) {}
 
   void add() {
     draft_.volume.resize(draft_.solid().size());
@@ -92,14 +99,28 @@ class ElementLists {
       batch_.body = b_;
       batch_.uniform = draft_.solid().spacing > 0 && info_.corners == 8;
       if (batch_.uniform) add_cube();
+      const KeptElements kept(previous_, batch_);
+      make_room(static_cast<std::int32_t>(m));
       for (const std::int32_t e : order) {
-        if (draft_.materials.index[e] == static_cast<std::int32_t>(m)) add(static_cast<std::size_t>(e));
+        if (draft_.materials.index[e] == static_cast<std::int32_t>(m)) add(static_cast<std::size_t>(e), kept);
       }
       if (batch_.size() > 0) model_.batches.push_back(std::move(batch_));
     }
   }
 
  private:
+  /// For the elements of material `m`.
+  void make_room(std::int32_t m) {
+    const std::vector<std::int32_t>& index = draft_.materials.index;
+    const auto count = static_cast<std::size_t>(std::count(index.begin(), index.end(), m));
+    batch_.nodes.reserve(count * static_cast<std::size_t>(info_.corners));
+    batch_.share.reserve(count);
+    batch_.id.reserve(count);
+    if (batch_.uniform) return;
+    batch_.records.reserve(count * static_cast<std::size_t>(info_.record));
+    batch_.frequency.reserve(count);
+  }
+
   /// The record of all cells of a lattice.
   void add_cube() {
     const double d = draft_.solid().spacing;
@@ -108,10 +129,12 @@ class ElementLists {
     });
     if (model_.bodies[b_].operational_elements > 0)
       note_bound(model_, element_frequency(batch_.kind, batch_.records, batch_.material), d * d * d,
-                 fmt::format("{}: every lattice cell", body_.name));
+                 [&] { return fmt::format("{}: every lattice cell", body_.name); });
   }
 
-  void add(std::size_t e) {
+  [[nodiscard]] std::string name_of(std::size_t e) const { return fmt::format("{}: {} {}", body_.name, info_.cell, e); }
+
+  void add(std::size_t e, const KeptElements& kept) {
     const BodyElements& solid = draft_.solid();
     std::array<std::int32_t, 8> all_slots{};
     const auto corners = solid.corners(e);
@@ -121,23 +144,32 @@ class ElementLists {
     const double modulus = draft_.materials.modulus_of(e);
     double& volume = draft_.volume[e];
     std::vector<double> record;
+    double frequency = 0;
     if (batch_.uniform) {
       volume = solid.spacing * solid.spacing * solid.spacing;
     } else {
       std::array<Vec3d, 8> x;
       for (std::size_t a = 0; a < corners.size(); ++a) x[a] = solid.nodes[corners[a]];
-      const std::string what = fmt::format("{}: {} {}", body_.name, info_.cell, e);
-      record = element_record(batch_.kind, std::span(x.data(), corners.size()), batch_.material, what);
+      const std::span<const Vec3d> rest(x.data(), corners.size());
+      if (const auto had = kept.find(e, rest)) {
+        record.assign(had->record.begin(), had->record.end());
+        frequency = had->frequency;
+      } else {
+        record = element_record(batch_.kind, rest, batch_.material, name_of(e));
+        if (finite) frequency = element_frequency(batch_.kind, record, batch_.material);
+      }
       volume = element_volume(batch_.kind, record);
-      if (finite)
-        note_bound(model_, std::sqrt(modulus) * element_frequency(batch_.kind, record, batch_.material), volume, what);
+      if (finite) note_bound(model_, std::sqrt(modulus) * frequency, volume, [&] { return name_of(e); });
     }
     const double full = batch_.material.density * volume, mass = full * solid.fill[e];
     for (const std::int32_t n : slots) model_.mass[n] += mass / static_cast<double>(slots.size());
     add_inertia(model_, slots, solid.fill[e], draft_.stiff[e], full);
     if (draft_.in_brick[e] || !finite) return;
     batch_.nodes.insert(batch_.nodes.end(), slots.begin(), slots.end());
-    if (!batch_.uniform) batch_.records.insert(batch_.records.end(), record.begin(), record.end());
+    if (!batch_.uniform) {
+      batch_.records.insert(batch_.records.end(), record.begin(), record.end());
+      batch_.frequency.push_back(frequency);
+    }
     batch_.share.push_back(modulus * draft_.stiff[e]);
     batch_.id.push_back(static_cast<std::int64_t>(e));
   }
@@ -145,6 +177,7 @@ class ElementLists {
   const Body& body_;
   const ElementInfo& info_;
   std::int32_t b_;
+  const Model* previous_;
   NodeNumbering& draft_;
   Model& model_;
   ElementBatch batch_;
@@ -294,7 +327,7 @@ Model build_elements(const Scene& scene, std::span<const BodyMesh* const> solids
       model.rest[draft.slot[n]] = draft.solid().nodes[n];
       model.damping[draft.slot[n]] = body.material.damping;
     }
-    ElementLists(body, static_cast<std::int32_t>(i), draft, model).add();
+    ElementLists(body, static_cast<std::int32_t>(i), previous, draft, model).add();
     if (body.model.type == ModelType::mass_spring && body.model.edge_springs)
       add_mass_springs(body, static_cast<std::int32_t>(i), draft, model);
     told_with_file(scene, [&] { add_spring_lists(body, static_cast<std::int32_t>(i), draft, model); });

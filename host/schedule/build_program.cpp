@@ -143,6 +143,13 @@ void ProgramBuilder::add_updates() {
 void ProgramBuilder::add_list_update() {
   const std::int32_t nodes = model_.list_end - model_.list_base;
   std::vector<std::vector<std::int32_t>> corners(nodes);
+  std::vector<std::size_t> valence(nodes, 0);
+  for (const ElementBatch& batch : model_.batches) {
+    for (const std::int32_t slot : batch.nodes) {
+      if (slot >= model_.list_base) ++valence[slot - model_.list_base];
+    }
+  }
+  for (std::size_t n = 0; n < corners.size(); ++n) corners[n].reserve(valence[n]);
   for (std::size_t b = 0; b < model_.batches.size(); ++b) {
     const ElementBatch& batch = model_.batches[b];
     for (std::size_t e = 0; e < batch.size(); ++e) {

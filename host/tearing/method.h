@@ -112,6 +112,19 @@ struct TetFace {
 std::vector<std::array<TetFace, 4>> element_neighbors(const std::vector<std::array<std::int32_t, 4>>& tets);
 std::vector<std::array<TetFace, 6>> element_neighbors(const std::vector<std::array<std::int32_t, 8>>& hexes);
 
+/// What lies next to each other in a mesh. `Corners` of an element.
+template <std::size_t Corners>
+struct ElementAdjacency {
+  ElementAdjacency(const std::vector<std::array<std::int32_t, Corners>>& elements, std::size_t nodes);
+  [[nodiscard]] std::span<const std::int32_t> at(std::int32_t node) const {
+    return {at_node.data() + offset[node], at_node.data() + offset[node + 1]};
+  }
+  std::vector<std::array<TetFace, ElementShape<Corners>::faces.size()>> neighbors;  ///< element_neighbors()
+  std::vector<std::int32_t> offset, at_node;                                        ///< the elements at each node, ascending
+};
+extern template struct ElementAdjacency<4>;
+extern template struct ElementAdjacency<8>;
+
 /// Opens a mesh at faces: `mesh` with `cut` faces ([elements], bit f; both sides). Elements at a node that no uncut face
 /// connects there get separate nodes. If they are connected only by an edge, the faces of the smaller part at one end of the
 /// edge are cut as well and added to `cut`. Nodes without cut faces (and not in `touched`) do not change. Returns node_from
@@ -125,5 +138,10 @@ std::vector<std::int32_t> part_at_faces(std::vector<std::array<std::int32_t, 4>>
 std::vector<std::int32_t> part_at_faces(std::vector<std::array<std::int32_t, 8>>& hexes, std::size_t nodes,
                                         std::vector<std::uint8_t>& cut, std::span<const std::int32_t> touched = {},
                                         std::vector<TetFace>* wait = nullptr);
+/// The same of a mesh that is opened again and again, each time as it was at first: `at_first` belongs to it.
+template <std::size_t Corners>
+std::vector<std::int32_t> part_at_faces(std::vector<std::array<std::int32_t, Corners>>& elements,
+                                        const ElementAdjacency<Corners>& at_first, std::vector<std::uint8_t>& cut,
+                                        std::span<const std::int32_t> touched, std::vector<TetFace>* wait);
 
 }  // namespace pliant

@@ -17,19 +17,16 @@ class Parting {
  public:
   using Cells = std::vector<Cell>;
   using Shape = ElementShape<std::tuple_size_v<Cell>>;
+  using Adjacency = ElementAdjacency<std::tuple_size_v<Cell>>;
 
-  Parting(Cells& tets, std::size_t nodes, std::vector<std::uint8_t>& cut, std::span<const std::int32_t> touched)
-      : tets_(tets), original_(tets), nodes_(nodes), cut_(cut), extra_(touched), neighbors_(element_neighbors(tets)) {
-    offset_.assign(nodes + 1, 0);
-    for (const auto& tet : tets) {
-      for (const std::int32_t n : tet) ++offset_[n + 1];
-    }
-    for (std::size_t n = 0; n < nodes; ++n) offset_[n + 1] += offset_[n];
-    at_node_.resize(std::tuple_size_v<Cell> * tets.size());
-    std::vector<std::int32_t> next(offset_.begin(), offset_.end() - 1);
-    for (std::size_t t = 0; t < tets.size(); ++t) {
-      for (const std::int32_t n : tets[t]) at_node_[next[n]++] = static_cast<std::int32_t>(t);
-    }
+  Parting(Cells& tets, const Adjacency& around, std::vector<std::uint8_t>& cut, std::span<const std::int32_t> touched)
+      : tets_(tets),
+        original_(tets),
+        nodes_(around.offset.size() - 1),
+        cut_(cut),
+        extra_(touched),
+        around_(around),
+        neighbors_(around.neighbors) {
     for (std::size_t t = 0; t < tets.size(); ++t) {  // both sides of a face say the same
       for (int f = 0; f < kFaces; ++f) {
         if (cut_[t] >> f & 1) open({static_cast<std::int32_t>(t), static_cast<std::int8_t>(f)});
@@ -104,7 +101,7 @@ class Parting {
     for (std::size_t n = 0; n < nodes_; ++n) from[n] = static_cast<std::int32_t>(n);
     touched_ = touched_nodes();
     for (const std::int32_t n : touched_) {
-      const std::span<const std::int32_t> around(at_node_.data() + offset_[n], at_node_.data() + offset_[n + 1]);
+      const std::span<const std::int32_t> around = around_.at(n);
       const auto place = [&](std::int32_t t) {
         const auto at = std::lower_bound(around.begin(), around.end(), t);
         return static_cast<std::int32_t>(at - around.begin());
@@ -143,7 +140,7 @@ class Parting {
     // Edges of the boundary near the cut, by the nodes as they are parted now, and how many triangles use each.
     std::map<Edge, int> uses;
     std::set<std::int32_t> tets;
-    for (const std::int32_t n : touched_) tets.insert(at_node_.begin() + offset_[n], at_node_.begin() + offset_[n + 1]);
+    for (const std::int32_t n : touched_) tets.insert(around_.at(n).begin(), around_.at(n).end());
     for (const std::int32_t t : tets) {
       for (int f = 0; f < kFaces; ++f) {
         if (neighbors_[t][f].tet >= 0 && !(cut_[t] >> f & 1)) continue;
@@ -209,24 +206,54 @@ class Parting {
   std::size_t nodes_;
   std::vector<std::uint8_t>& cut_;
   std::span<const std::int32_t> extra_;
-  std::vector<std::array<TetFace, Shape::faces.size()>> neighbors_;
-  std::vector<std::int32_t> offset_, at_node_;
+  const Adjacency& around_;
+  const std::vector<std::array<TetFace, Shape::faces.size()>>& neighbors_;
   std::set<std::int32_t> touched_;
   std::vector<TetFace> may_wait_, closed_;
 };
 
 }  // namespace
 
+template <std::size_t Corners>
+ElementAdjacency<Corners>::ElementAdjacency(const std::vector<std::array<std::int32_t, Corners>>& elements, std::size_t nodes)
+    : neighbors(element_neighbors(elements)), offset(nodes + 1, 0), at_node(Corners * elements.size()) {
+  for (const auto& element : elements) {
+    for (const std::int32_t n : element) ++offset[n + 1];
+  }
+  for (std::size_t n = 0; n < nodes; ++n) offset[n + 1] += offset[n];
+  std::vector<std::int32_t> next(offset.begin(), offset.end() - 1);
+  for (std::size_t e = 0; e < elements.size(); ++e) {
+    for (const std::int32_t n : elements[e]) at_node[next[n]++] = static_cast<std::int32_t>(e);
+  }
+}
+
+template struct ElementAdjacency<4>;
+template struct ElementAdjacency<8>;
+
+template <std::size_t Corners>
+std::vector<std::int32_t> part_at_faces(std::vector<std::array<std::int32_t, Corners>>& elements,
+                                        const ElementAdjacency<Corners>& at_first, std::vector<std::uint8_t>& cut,
+                                        std::span<const std::int32_t> touched, std::vector<TetFace>* wait) {
+  return Parting(elements, at_first, cut, touched).run(wait);
+}
+
 std::vector<std::int32_t> part_at_faces(std::vector<std::array<std::int32_t, 4>>& tets, std::size_t nodes,
                                         std::vector<std::uint8_t>& cut, std::span<const std::int32_t> touched,
                                         std::vector<TetFace>* wait) {
-  return Parting(tets, nodes, cut, touched).run(wait);
+  return part_at_faces(tets, ElementAdjacency<4>(tets, nodes), cut, touched, wait);
 }
 
 std::vector<std::int32_t> part_at_faces(std::vector<std::array<std::int32_t, 8>>& hexes, std::size_t nodes,
                                         std::vector<std::uint8_t>& cut, std::span<const std::int32_t> touched,
                                         std::vector<TetFace>* wait) {
-  return Parting(hexes, nodes, cut, touched).run(wait);
+  return part_at_faces(hexes, ElementAdjacency<8>(hexes, nodes), cut, touched, wait);
 }
+
+template std::vector<std::int32_t> part_at_faces(std::vector<std::array<std::int32_t, 4>>&, const ElementAdjacency<4>&,
+                                                 std::vector<std::uint8_t>&, std::span<const std::int32_t>,
+                                                 std::vector<TetFace>*);
+template std::vector<std::int32_t> part_at_faces(std::vector<std::array<std::int32_t, 8>>&, const ElementAdjacency<8>&,
+                                                 std::vector<std::uint8_t>&, std::span<const std::int32_t>,
+                                                 std::vector<TetFace>*);
 
 }  // namespace pliant

@@ -30,26 +30,20 @@ std::array<std::int32_t, 3> sorted(std::array<std::int32_t, 3> key) {
   return key;
 }
 
-template <class Elements>
-std::vector<TetFace> flat_neighbors(const Elements& elements) {
-  std::vector<TetFace> out;
-  for (const auto& of_element : element_neighbors(elements)) out.insert(out.end(), of_element.begin(), of_element.end());
-  return out;
-}
-
 }  // namespace
 
 TornBody::TornBody(std::shared_ptr<const BodyMesh> whole, std::vector<Material> material)
     : whole_(std::move(whole)),
       material_(std::move(material)),
-      neighbors_(whole_->tets.empty() ? flat_neighbors(whole_->hexes) : flat_neighbors(whole_->tets)),
+      tets_(whole_->tets, whole_->nodes.size()),
+      hexes_(whole_->hexes, whole_->nodes.size()),
       broken_(whole_->size(), 0),
       waiting_(whole_->size(), 0),
       torn_(*whole_) {
   std::map<std::array<std::int32_t, 3>, std::int32_t> outside;  // elements, by any three corners of an outer face
-  for (std::size_t i = 0; i < neighbors_.size(); ++i) {
-    if (neighbors_[i].tet >= 0) continue;
+  for (std::size_t i = 0; i < faces() * whole_->size(); ++i) {
     const std::size_t e = i / faces();
+    if (neighbor(static_cast<std::int32_t>(e), i % faces()).tet >= 0) continue;
     const std::span<const std::int32_t> corner = whole_->corners(e);
     const std::span<const int> face = face_corners(i % faces());
     for (std::size_t without = 0; without < (face.size() == 3 ? 1 : face.size()); ++without) {
@@ -284,9 +278,8 @@ std::vector<std::int32_t> TornBody::open(std::vector<TetFace>* wait) {
   before.hexes = std::move(torn_.hexes);
   torn_.tets = whole_->tets;
   torn_.hexes = whole_->hexes;
-  const std::vector<std::int32_t> origin = torn_.tets.empty()
-                                               ? part_at_faces(torn_.hexes, whole_->nodes.size(), broken_, {}, wait)
-                                               : part_at_faces(torn_.tets, whole_->nodes.size(), broken_, {}, wait);
+  const std::vector<std::int32_t> origin = torn_.tets.empty() ? part_at_faces(torn_.hexes, hexes_, broken_, {}, wait)
+                                                              : part_at_faces(torn_.tets, tets_, broken_, {}, wait);
   torn_.nodes.clear();
   for (const std::int32_t n : origin) torn_.nodes.push_back(whole_->nodes[n]);
   // A tear splits nodes and never joins them: all corners that share a node now shared one before, and any of them gives its
@@ -326,7 +319,7 @@ void TornBody::make_surface() {
   torn_.triangles.clear();
   torn_.triangle_cut.clear();
   torn_.triangle_middle.clear();
-  std::map<std::int32_t, std::int32_t> vertex;  // of a node
+  std::vector<std::int32_t> vertex(torn_.nodes.size(), -1);  // of a node
   for (std::size_t v = 0; v < whole_->surface.size(); ++v) vertex[whole_->surface_nodes[v][0]] = static_cast<std::int32_t>(v);
   const auto add = [&](const Corners& at, bool cut) {
     std::array<std::int32_t, 3> triangle{};
@@ -334,13 +327,13 @@ void TornBody::make_surface() {
     const std::span<const std::int32_t> nodes = torn_.corners(static_cast<std::size_t>(at.element));
     for (std::size_t k = 0; k < 3; ++k) {
       const std::int32_t n = nodes[static_cast<std::size_t>(at.corner[k])];
-      const auto [place, added] = vertex.emplace(n, static_cast<std::int32_t>(torn_.surface.size()));
-      if (added) {
+      if (vertex[n] < 0) {
+        vertex[n] = static_cast<std::int32_t>(torn_.surface.size());
         torn_.surface.push_back(torn_.nodes[n]);
         torn_.surface_nodes.push_back({n, n, n, n, n, n, n, n});
         torn_.surface_weights.push_back({1, 0, 0, 0, 0, 0, 0, 0});
       }
-      triangle[k] = place->second;
+      triangle[k] = vertex[n];
       middle = vec::add(middle, vec::mul(torn_.nodes[n], 1.0 / 3));
     }
     const double none = std::numeric_limits<double>::quiet_NaN();

@@ -57,7 +57,8 @@ class TornBody {
   [[nodiscard]] std::span<const int> face_corners(std::size_t face) const;
   /// The face across which another element of the whole body lies; tet -1: none.
   [[nodiscard]] TetFace neighbor(std::int32_t element, std::size_t face) const {
-    return neighbors_[faces() * static_cast<std::size_t>(element) + face];
+    const auto e = static_cast<std::size_t>(element);
+    return whole_->tets.empty() ? hexes_.neighbors[e][face] : tets_.neighbors[e][face];
   }
   /// The whole body, whose nodes keep their numbers.
   [[nodiscard]] const BodyMesh& whole() const { return *whole_; }
@@ -117,8 +118,9 @@ class TornBody {
   };
   [[nodiscard]] std::vector<Corners> triangles_of(const TetFace& face) const;
 
-  std::vector<TetFace> neighbors_;  ///< [elements][faces]
-  std::vector<Corners> outside_;    ///< of each triangle of the whole surface
+  ElementAdjacency<4> tets_;  ///< of the whole body; one of the two is empty
+  ElementAdjacency<8> hexes_;
+  std::vector<Corners> outside_;  ///< of each triangle of the whole surface
   std::vector<std::uint8_t> broken_, waiting_;
   BodyMesh torn_;
 };

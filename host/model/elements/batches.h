@@ -21,6 +21,7 @@ struct ElementBatch {
   std::vector<std::int32_t> nodes;  ///< [elements][corners] slots
   std::vector<double> records;      ///< [elements or 1][numbers of a record] (elements/element.h)
   std::vector<double> share;        ///< [elements] fraction of a full element's stiffness, by fill and modulus
+  std::vector<double> frequency;    ///< [elements] of each alone, before its modulus [1/s]; empty if uniform
   std::vector<std::int64_t> id;     ///< [elements] index in the body
   [[nodiscard]] std::size_t size() const { return id.size(); }
   [[nodiscard]] const ElementInfo& info() const { return element_info(kind); }
