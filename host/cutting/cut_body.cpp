@@ -93,6 +93,7 @@ void set_nodes(const BodyMesh& uncut, const CutTopology& cut, BodyElements& soli
     solid.lattice_nodes.push_back(node);
   }
   solid.virtual_nodes = anchors_of(cut);
+  solid.whole_nodes = uncut.nodes.size();
 }
 
 void embed_vertex(const CutSurfaceVertex& from, const CutTopology& cut, std::array<std::int32_t, 8>& nodes) {

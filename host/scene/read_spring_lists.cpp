@@ -89,11 +89,13 @@ void read_spring_file(const Reader& entry, const fs::path& folder, SpringList& l
   if (fs::is_directory(path) || !std::getline(stream, line)) entry.fail("a CSV file that can be read");
   const std::size_t columns = columns_of(line, list.file);
   for (std::size_t number = 2; std::getline(stream, line); ++number) {
+    if (line.find_first_not_of(" \r") == std::string::npos && !std::getline(stream, line)) break;  // an empty last line
     const std::vector<std::string_view> parts = fields(line);
     SpringRow row{0, 0, 1, 0};
     bool right = parts.size() == columns;
     for (std::size_t k = 0; right && k < columns; ++k) right = parse(parts[k], row[k]);
     if (!right) fail_line(list.file, number, line, fmt::format("{} numbers separated by commas", columns));
+    if (columns == 4 && row[3] == 0) fail_line(list.file, number, line, "a length > 0");
     if (const char* const expected = check_spring_row(row); expected != nullptr) fail_line(list.file, number, line, expected);
     add_row(row, list);
   }

@@ -282,6 +282,7 @@ std::vector<std::int32_t> TornBody::open(std::vector<TetFace>* wait) {
                                                               : part_at_faces(torn_.tets, tets_, broken_, {}, wait);
   torn_.nodes.clear();
   for (const std::int32_t n : origin) torn_.nodes.push_back(whole_->nodes[n]);
+  torn_.whole_nodes = whole_->nodes.size();
   // A tear splits nodes and never joins them: all corners that share a node now shared one before, and any of them gives its
   // origin.
   std::vector<std::int32_t> from(origin.size(), -1);

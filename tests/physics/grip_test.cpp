@@ -264,6 +264,23 @@ TEST(GripRemarks, TellOfGripsThatHoldNothing) {
   EXPECT_TRUE(said(tool, empty));
 }
 
+/// Tools are those that are there: one before it in the scene may be gone.
+TEST(GripRemarks, FollowToolsThatAreRemoved) {
+  Body body = cube(Discretization::hex8_bricks, 60);
+  body.fixed.push_back({face(2, 0), {true, true, true}});
+  Scene scene = scene_of(body, plate());
+  ContactTool far = plate();
+  far.name = "far";
+  far.grip.reset();
+  for (auto& row : far.path) row[3] += 1;
+  scene.tools.insert(scene.tools.begin(), far);
+  auto sim = simulate(scene, "cpu");
+  until(*sim, 0.02);
+  sim->tools().remove("far");
+  until(*sim, 0.05);
+  for (const std::string& remark : run_remarks(*sim)) EXPECT_EQ(remark.find("holds no tissue"), std::string::npos) << remark;
+}
+
 PLIANT_ON_BACKENDS(GripPhysics);
 
 }  // namespace

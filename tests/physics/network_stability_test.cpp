@@ -48,7 +48,7 @@ double largest_omega2(const Model& model, const std::vector<Vector3d>& x) {
   return solver.eigenvalues()[k.rows() - 1];
 }
 
-/// Linear springs, in every configuration that a random motion finds, and the bound is no more than a fifth below the best one.
+/// Linear springs, in every configuration that a random motion finds; the bound is less than 1.6 times the largest one found.
 TEST(NetworkBound, HoldsHoweverTheNodesMove) {
   for (const double stiffness : {0.0, 12.0}) {
     Scene scene = network_scene({{3, 2, 2}, 0.01, 0.15, 5});
@@ -72,7 +72,7 @@ TEST(NetworkBound, HoldsHoweverTheNodesMove) {
     }
     std::printf("  squared frequency: largest found %.4g, bound %.4g, ratio %.3f\n", most, bound, most / bound);
     EXPECT_LE(most, bound * (1 + 1e-9));
-    EXPECT_GE(most, 0.5 * bound);
+    EXPECT_GE(most, bound / 1.6);
   }
 }
 
@@ -98,31 +98,33 @@ TEST_P(NetworkStep, DeformedNetworksCalmDown) {
   }
 }
 
-/// A table a hundred times as stiff beyond two millimetres: the step follows it, and grows again.
+/// Tables a hundred times as stiff beyond two millimetres, and flat before them: the step follows them, and grows again.
 TEST_P(NetworkStep, FollowsSpringsThatStiffen) {
-  Scene scene = network_scene({{6, 2, 2}, 0.01, 0.1, 3});
-  scene.bodies[0].model.spring.law = SpringLaw::curve;
-  scene.bodies[0].model.spring.curve = {{0, 0}, {0.001, 0.005}, {0.002, 0.5}};
-  scene.bodies[0].fixed.push_back({face(0, 0), {true, true, true}});
-  Force pulse;
-  pulse.where = face(0, 0.06);
-  pulse.force = {0.3, 0, 0};
-  pulse.curve.kind = Curve::Kind::table;
-  pulse.curve.table = {{0, 1}, {0.4, 1}, {0.41, 0}, {9, 0}};
-  scene.bodies[0].forces = {pulse};
-  auto sim = simulate(scene, GetParam());
-  const double first = sim->dt();
-  double least = first, most = 0;
-  while (sim->time() < 0.4 && !sim->divergence()) {
-    sim->advance(16);
-    least = std::min(least, sim->dt());
-    most = std::max(most, energy_of(*sim));
+  for (const double toe : {0.005, 0.0}) {
+    Scene scene = network_scene({{6, 2, 2}, 0.01, 0.1, 3});
+    scene.bodies[0].model.spring.law = SpringLaw::curve;
+    scene.bodies[0].model.spring.curve = {{0, 0}, {0.001, toe}, {0.002, 0.5}};
+    scene.bodies[0].fixed.push_back({face(0, 0), {true, true, true}});
+    Force pulse;
+    pulse.where = face(0, 0.06);
+    pulse.force = {0.3, 0, 0};
+    pulse.curve.kind = Curve::Kind::table;
+    pulse.curve.table = {{0, 1}, {0.4, 1}, {0.41, 0}, {9, 0}};
+    scene.bodies[0].forces = {pulse};
+    auto sim = simulate(scene, GetParam());
+    const double first = sim->dt();
+    double least = first, most = 0;
+    while (sim->time() < 0.4 && !sim->divergence()) {
+      sim->advance(16);
+      least = std::min(least, sim->dt());
+      most = std::max(most, energy_of(*sim));
+    }
+    EXPECT_LT(least, toe > 0 ? 0.5 * first : 1.01 * first);
+    while (sim->time() < 2 && !sim->divergence()) sim->advance(64);
+    ASSERT_FALSE(sim->divergence().has_value()) << toe;
+    EXPECT_LT(energy_of(*sim), 0.05 * most) << toe;
+    EXPECT_GT(sim->dt(), toe > 0 ? 1.5 * least : 0.99 * least);
   }
-  EXPECT_LT(least, 0.5 * first);
-  while (sim->time() < 2 && !sim->divergence()) sim->advance(64);
-  ASSERT_FALSE(sim->divergence().has_value());
-  EXPECT_LT(energy_of(*sim), 0.02 * most);
-  EXPECT_GT(sim->dt(), 1.5 * least);
 }
 
 TEST_P(NetworkStep, AStepThatIsTooLongIsADivergence) {

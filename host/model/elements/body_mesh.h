@@ -31,8 +31,9 @@ struct BodyElements {
   std::vector<std::uint64_t> samples;              ///< per cell of a lattice: Cell::samples
   std::vector<std::int32_t> copy_of;  ///< for a cut body: the uncut cell of each element (of each six tetrahedra of a lattice)
   VirtualNodes virtual_nodes;
-  std::vector<Cell> matching_cells;              ///< the shape-matching cells
-  double spacing = 0;                            ///< [m]
+  std::size_t whole_nodes = 0;       ///< of a cut or torn body: its nodes before, which keep their numbers; 0: it is whole
+  std::vector<Cell> matching_cells;  ///< the shape-matching cells
+  double spacing = 0;                ///< [m]
   std::shared_ptr<const NodeOrder> uncut_order;  ///< order of the uncut body, if known; valid for the cut body
   [[nodiscard]] std::size_t size() const { return tets.size() + hexes.size(); }
   [[nodiscard]] std::span<const std::int32_t> corners(std::size_t e) const {

@@ -18,7 +18,7 @@ struct SlotStiffness {
 double first_stiffness(const LinkPoints& points, const SpringBatch& b, std::size_t s) {
   const double e = elongation(points, b, s, [](std::int32_t) { return Vec3d{}; }), length = b.length[s] + e;
   const double rest = rest_stiffness(b, s);
-  if (std::abs(e) <= 1e-9 * length) return rest;
+  if (b.law.law != SpringLaw::curve && std::abs(e) <= 1e-9 * length) return rest;
   const SpringState state = spring_state(b.law, b.parameters[s], e);
   return std::max({rest, state.slope, state.force / length});
 }
@@ -118,7 +118,10 @@ void note_link_bounds(Model& model) {
   if (model.links.empty()) return;
   for (const SpringBatch& b : model.links.springs) {
     if (b.join >= 0 || b.bars) continue;  // nodes of two bodies may rest at almost one place
-    for (const double length : b.length) {
+    for (std::size_t s = 0; s < b.size(); ++s) {
+      // Of listed ones the length at rest may be any.
+      const std::vector<Vec3d>& at = model.links.points.rest;
+      const double length = b.listed ? vec::norm(vec::sub(at[b.points[s][1]], at[b.points[s][0]])) : b.length[s];
       if (length > 0 && (model.shortest == 0 || length < model.shortest)) model.shortest = length;
     }
   }

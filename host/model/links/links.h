@@ -126,7 +126,8 @@ bool stiffens(const Spring& law);
 /// direction that its springs may turn to.
 double stiffening(const LinkPoints& points, const SpringBatch& b, const std::vector<double>& u);
 
-/// The slope of the force of a spring at its length at rest; of a slack one when it is longer [N/m].
+/// The slope of the force of a spring at its length at rest; of a slack one when it is longer; of a table that is flat there,
+/// the least slope that it has [N/m].
 double rest_stiffness(const Spring& law, const std::array<double, 2>& parameters);
 inline double rest_stiffness(const SpringBatch& b, std::size_t s) { return rest_stiffness(b.law, b.parameters[s]); }
 

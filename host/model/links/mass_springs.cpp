@@ -28,7 +28,7 @@ struct EdgeShare {
 bool may_have_copies(const Body& body, const BodyElements& solid) {
   bool tears = body.material.toughness > 0;
   for (const Inclusion& i : body.inclusions) tears = tears || i.material.toughness > 0;
-  return tears || solid.virtual_nodes.first >= 0;
+  return tears || solid.whole_nodes > 0;
 }
 
 /// For each node the first one at its place: copies of a node made by a cut or a tear rest where it does.
@@ -131,17 +131,25 @@ double edges_omega2(const Body& body, const NodeNumbering& draft, const std::vec
     const double stiffness = body.model.spring.stiffness > 0 ? body.model.spring.stiffness : e.stiffness;
     per_volume[i] = rest_stiffness(body.model.spring, spring_parameters(body.model.spring, length, 1, stiffness)) / e.filled;
   }
+  const bool own = body.model.spring.law == SpringLaw::linear && body.model.spring.stiffness == 0;  // each from its own modulus
   double most = 0;
   for (std::size_t t = 0; t < solid.tets.size(); ++t) {
     std::array<double, 6> stiffness{};
+    const Material& material = material_of(body, draft.materials.index[t]);
+    const double young = draft.materials.modulus_of(t) * material.moduli.young();
     for (std::size_t k = 0; k < 6; ++k) {
+      if (own) {
+        const Vec3d d = vec::sub(solid.nodes[solid.tets[t][kTetEdges[k][1]]], solid.nodes[solid.tets[t][kTetEdges[k][0]]]);
+        stiffness[k] = young * draft.volume[t] / vec::dot(d, d);
+        continue;
+      }
       Pair ends{place[solid.tets[t][kTetEdges[k][0]]], place[solid.tets[t][kTetEdges[k][1]]]};
       if (ends[0] > ends[1]) std::swap(ends[0], ends[1]);
       std::size_t i = first[static_cast<std::size_t>(ends[0])];
       while (uncut[i].ends[1] != ends[1]) ++i;
       stiffness[k] = per_volume[i] * draft.volume[t];
     }
-    const double corner = material_of(body, draft.materials.index[t]).density * draft.volume[t] / 4;
+    const double corner = material.density * draft.volume[t] / 4;
     most = std::max(most, largest_eigenvalue(stiffness) / corner);
   }
   return most;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "model/links/links.h"
 
@@ -84,9 +85,20 @@ SpringState spring_state(const Spring& law, const std::array<double, 2>& paramet
 }
 
 double rest_stiffness(const Spring& law, const std::array<double, 2>& parameters) {
-  Spring taut = law;
-  taut.slack = false;  // stiff as soon as it is longer than at rest
-  return spring_state(taut, parameters, 0).slope;
+  double slope = 0;
+  if (law.slack) {
+    Spring taut = law;
+    taut.slack = false;  // stiff as soon as it is longer than at rest
+    slope = spring_state(taut, parameters, 0).slope;
+  } else {
+    slope = spring_state(law, parameters, 0).slope;
+  }
+  if (law.law != SpringLaw::curve || slope > 0) return slope;
+  for (std::size_t k = 0; k + 1 < law.curve.size(); ++k) {
+    const double s = parameters[1] * (law.curve[k + 1][1] - law.curve[k][1]) / (law.curve[k + 1][0] - law.curve[k][0]);
+    if (s > 0 && (slope == 0 || s < slope)) slope = s;
+  }
+  return slope;
 }
 
 bool stiffens(const Spring& law) {
@@ -110,11 +122,12 @@ double stiffening(const LinkPoints& points, const SpringBatch& b, const std::vec
   };
   double most = 1;
   for (std::size_t s = 0; s < b.size(); ++s) {
+    if (!b.whole(s)) continue;
     const double rest = rest_stiffness(b, s);
-    if (!(rest > 0) || !b.whole(s)) continue;
     const double e = elongation(points, b, s, moved), length = std::max(b.length[s] + e, 1e-30);
     const SpringState state = spring_state(b.law, b.parameters[s], e);
-    most = std::max({most, state.slope / rest, state.force / (length * rest)});
+    const double now = std::max(state.slope, state.force / length);
+    if (now > rest) most = std::max(most, rest > 0 ? now / rest : std::numeric_limits<double>::infinity());
   }
   return most;
 }

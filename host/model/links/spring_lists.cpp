@@ -19,14 +19,13 @@ using Pair = std::array<std::int32_t, 2>;
 constexpr double kInside = 1e-3;
 
 /// Finds out which copies of its two nodes a spring still joins. It follows its line at rest through the elements and breaks
-/// at a face that has opened. Where its line leaves the body, it breaks with its pieces.
+/// at a face that has opened. Where its line leaves the body, or the whole mesh has slits, it breaks with its pieces.
 class HeldEnds {
  public:
   explicit HeldEnds(const BodyElements& solid) : solid_(solid), pieces_(solid.nodes.size()) {
+    if (solid.whole_nodes == 0) return;
     std::map<Vec3d, std::int32_t> places;
-    for (const Vec3d& x : solid.nodes) parted_ = parted_ || !places.try_emplace(x, 0).second;
-    parted_ = parted_ || solid.virtual_nodes.first >= 0;
-    if (!parted_) return;
+    for (std::size_t n = 0; n < solid.whole_nodes; ++n) slit_ = slit_ || !places.try_emplace(solid.nodes[n], 0).second;
     finder_.emplace(solid);
     for (std::size_t e = 0; e < solid.size(); ++e) {
       for (const std::int32_t n : solid.corners(e)) pieces_.join(solid.corners(e)[0], n);
@@ -35,14 +34,15 @@ class HeldEnds {
 
   /// Nothing: it is broken.
   [[nodiscard]] std::optional<Pair> find(const Pair& nodes) {
-    if (!parted_) return nodes;
+    if (!finder_) return nodes;
     const Vec3d &a = solid_.nodes[nodes[0]], &b = solid_.nodes[nodes[1]], d = vec::sub(b, a);
     const Vec3d first = vec::add(a, vec::mul(d, kInside)), last = vec::sub(b, vec::mul(d, kInside));
     const Held at_a = finder_->find(first), at_b = finder_->find(last);
     const Pair ends{corner_at(at_a.element, a), corner_at(at_b.element, b)};
     if (ends[0] >= 0 && ends[1] >= 0) {
       const Line line = follow(first, at_a, last, at_b, 0);
-      if (line != Line::outside) return line == Line::whole ? std::optional<Pair>(ends) : std::nullopt;
+      if (line == Line::whole || (line == Line::parted && !slit_))
+        return line == Line::whole ? std::optional<Pair>(ends) : std::nullopt;
     }
     if (pieces_.find(nodes[0]) != pieces_.find(nodes[1])) return {};
     return nodes;
@@ -78,7 +78,7 @@ class HeldEnds {
 
   const BodyElements& solid_;
   DisjointSets pieces_;
-  bool parted_ = false;
+  bool slit_ = false;  ///< nodes of the whole mesh are at one place, so that an open face may have been one from the start
   std::optional<ElementFinder> finder_;
 };
 

@@ -86,8 +86,8 @@ void add_turned_networks(const Simulation& s, Sentences& out) {
   }
 }
 
-void add_grip(const Simulation& s, std::size_t tool, Sentences& out) {
-  const ContactTool& t = s.scene().tools[tool];
+/// `t`: the tool that the model has at number `tool`.
+void add_grip(const Simulation& s, const ContactTool& t, std::size_t tool, Sentences& out) {
   if (!t.grip) return;
   if (t.grip->times.empty() && s.state().gripping.count(t.name) == 0) {
     out.push_back(
@@ -130,8 +130,7 @@ double thickness(const ToolForm& form) {
   return std::numeric_limits<double>::infinity();
 }
 
-void add_tool(const Simulation& s, std::size_t tool, Sentences& out) {
-  const std::string& name = s.scene().tools[tool].name;
+void add_tool(const Simulation& s, const std::string& name, std::size_t tool, Sentences& out) {
   const ToolHistory& h = s.report().tools[tool];
   const double spacing = s.model().contact->spacing, cells = h.max_depth / spacing;
   const double thick = thickness((*s.model().tools)[tool]);
@@ -192,8 +191,10 @@ void add_contact(Simulation& s, Sentences& out) {
         "do not give way; smaller cells help",
         deepest));
   }
-  for (std::size_t t = 0; t < s.scene().tools.size(); ++t) add_tool(s, t, out);
-  for (std::size_t t = 0; t < s.scene().tools.size(); ++t) add_grip(s, t, out);
+  // Those that the model has: without those that a host has removed or parked, with those that it has added.
+  const std::vector<ContactTool> tools = present_tools(s.scene(), s.state().tools);
+  for (std::size_t t = 0; t < tools.size(); ++t) add_tool(s, tools[t].name, t, out);
+  for (std::size_t t = 0; t < tools.size(); ++t) add_grip(s, tools[t], t, out);
   add_damping(s, out);
 }
 

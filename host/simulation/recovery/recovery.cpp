@@ -145,10 +145,12 @@ bool Recovery::calm_down(Symptoms& s) {
 }
 
 void Recovery::look_at_networks(Symptoms& s) const {
-  const double dt = run_.state.clock.dt, least = step_.least_step(), allowed = step_.networks_allow();
-  if (!(allowed < (1 - 1e-6) * dt) || dt <= least) return;
+  const double dt = run_.state.clock.dt, allowed = step_.networks_allow();
+  // Springs have no remedy but the step: below that of the scene it is the least one that any state gets.
+  const double lowest = dt > step_.least_step() ? step_.least_step() : kLeastBackoff * run_.state.limit.dt_ceiling;
+  if (!(allowed < (1 - 1e-6) * dt) || dt <= lowest) return;
   s.outgrown = true;
-  s.dt = std::max({std::min(allowed, kLeastShortening * dt), kMostShortening * dt, least});
+  s.dt = std::max({std::min(allowed, kLeastShortening * dt), kMostShortening * dt, lowest});
 }
 
 void Recovery::measure(Symptoms& s) {

@@ -170,18 +170,25 @@ static double stiffened_bound(const RunContext& run) {
   return std::max(model.network_bound / std::sqrt(ratio), stiffness_bound(model, nodal_stiffness(model, u, slots)));
 }
 
+static bool may_stiffen(const Model& model) {
+  return std::any_of(model.links.springs.begin(), model.links.springs.end(),
+                     [](const SpringBatch& b) { return b.body >= 0 && !b.bars && stiffens(b.law); });
+}
+
 double network_step(const RunContext& run) {
   const Model& model = run.model();
   if (!(model.network_bound > 0)) return std::numeric_limits<double>::infinity();
-  const auto may_stiffen = [](const SpringBatch& b) { return b.body >= 0 && !b.bars && stiffens(b.law); };
-  const bool any = std::any_of(model.links.springs.begin(), model.links.springs.end(), may_stiffen);
-  return bound_step(run, any ? stiffened_bound(run) : model.network_bound);
+  return bound_step(run, may_stiffen(model) ? stiffened_bound(run) : model.network_bound);
 }
 
 StableStep estimate_stable_step(const RunContext& run, int iterations) {
   StableStep step;
   const double omega2 = largest_omega2(run, {}, iterations);
-  if (!(omega2 > 0)) return step;
+  if (!(omega2 > 0)) {
+    // A network of springs that are flat at rest has no frequency yet.
+    if (run.model().network_bound > 0 && may_stiffen(run.model())) step.elements = step.coupled = network_step(run);
+    return step;
+  }
   step.elements = stable_step(run, 2 / std::sqrt(omega2));
   step.coupled = coupled_step(run.model(), step.elements);
   const std::vector<double> spring = interface_springs(run.model(), step.coupled);
