@@ -9,14 +9,13 @@
 
 namespace pliant::bench {
 
-using Json = nlohmann::ordered_json;
-
-void add_random_springs(Dice dice, const std::filesystem::path& mesh, double young, double extent, Json& body) {
+void add_random_springs(Dice dice, const std::filesystem::path& mesh, double young, double extent,
+                        nlohmann::ordered_json& body) {
   if (!dice.chance(0.2)) return;
   const VolumeMesh elements = read_volume(mesh);
   const auto any_node = [&] { return elements.tets[dice.below(elements.tets.size())][dice.below(4)]; };
   const bool tense = dice.chance(0.4);
-  Json rows = Json::array();
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (std::size_t i = 0, count = static_cast<std::size_t>(dice.logarithmic(10, 200)); i < 20 * count && rows.size() < count;
        ++i) {
     const std::int32_t from = any_node(), to = any_node();
@@ -28,14 +27,14 @@ void add_random_springs(Dice dice, const std::filesystem::path& mesh, double you
   }
   if (rows.empty()) return;
   const double stiffness = young * extent * dice.logarithmic(1e-4, 0.03);
-  Json spring{{"law", "linear"}, {"stiffness", stiffness}};
+  nlohmann::ordered_json spring{{"law", "linear"}, {"stiffness", stiffness}};
   if (dice.chance(0.3)) spring = {{"law", "measured"}, {"a", 0.3 / (stiffness * extent)}, {"b", 1 / stiffness}};
   if (dice.chance(0.3)) spring["slack"] = true;
-  body["springs"] = Json::array({{{"nodes", rows}, {"spring", spring}}});
+  body["springs"] = nlohmann::ordered_json::array({{{"nodes", rows}, {"spring", spring}}});
 }
 
 void add_random_joins(Dice dice, const std::filesystem::path& shape, const Vec3d& offset, double young, double extent,
-                      Json& scene) {
+                      nlohmann::ordered_json& scene) {
   if (!dice.chance(0.35)) return;
   const std::string kind = shape.extension().string();
   const std::vector<Vec3d> places = kind == ".obj" ? read_surface(shape).vertices : read_volume(shape).vertices;
@@ -44,12 +43,12 @@ void add_random_joins(Dice dice, const std::filesystem::path& shape, const Vec3d
     for (const Vec3d& q : places) nearest = std::min(nearest, vec::norm(vec::sub(vec::add(q, offset), p)));
   }
   // The nodes of a lattice lie up to a cell outside the surface.
-  Json join{{"bodies", {scene["bodies"][0]["name"], scene["bodies"][1]["name"]}},
-            {"distance", nearest + extent * dice.uniform(0.1, 0.15)},
-            {"spring", {{"stiffness", young * extent * dice.logarithmic(1e-4, 0.01)}}}};
+  nlohmann::ordered_json join{{"bodies", {scene["bodies"][0]["name"], scene["bodies"][1]["name"]}},
+                              {"distance", nearest + extent * dice.uniform(0.1, 0.15)},
+                              {"spring", {{"stiffness", young * extent * dice.logarithmic(1e-4, 0.01)}}}};
   if (dice.chance(0.3)) join["spring"]["slack"] = true;
   if (dice.chance(0.5)) join["break_force"] = young * extent * extent * dice.logarithmic(1e-6, 1e-3);
-  scene["joins"] = Json::array({join});
+  scene["joins"] = nlohmann::ordered_json::array({join});
 }
 
 }  // namespace pliant::bench
