@@ -35,8 +35,8 @@ std::map<std::string, List> make_keys() {
       {"scene", PLIANT_DESCRIBED(Scene, scene) + PLIANT_DESCRIBED(Scene, run) +
                     List{"format", "name", "gravity", "relaxation", "solver", "focus", "tools", "contact", "blades", "view",
                          "probes", "probe_every", "bodies", "joins", "changes"}},
-      {"body", List{"name", "surface", "mesh", "lattice", "material", "membrane", "vessels", "springs", "model", "inclusions", "fixed",
-                    "prescribed", "forces", "pressures", "initial"} +
+      {"body", List{"name", "surface", "mesh", "lattice", "material", "membrane", "vessels", "springs", "model", "inclusions",
+                    "fixed", "prescribed", "forces", "pressures", "initial"} +
                    PLIANT_DESCRIBED(Body, body)},
       {"lattice", PLIANT_DESCRIBED(LatticeSpec, lattice)},
       {"membrane", PLIANT_DESCRIBED(Membrane, membrane)},

@@ -118,7 +118,8 @@ Body read_body(const Reader& body, const fs::path& folder, std::size_t index) {
     for (const Reader& entry : body.at("springs").items("a list of objects"))
       b.springs.push_back(read_spring_list(entry, folder));
   }
-  if (!b.model.edge_springs && b.springs.empty()) body.at("model").at("edge_springs").fail("true in a body without \"springs\"");
+  if (!b.model.edge_springs && b.springs.empty())
+    body.at("model").at("edge_springs").fail("true in a body without \"springs\"");
   read_entries(body, "inclusions", "inclusion", Selected::elements, frame, b.inclusions,
                [&](const Reader& entry, Inclusion& out) {
                  const Reader other = entry.at("material", "the material of the inclusion");

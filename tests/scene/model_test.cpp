@@ -206,9 +206,10 @@ TEST(Model, ValuesOutOfRangeAreNamed) {
 }
 
 TEST(Model, UnknownKeysSuggestTheNearest) {
-  expect_refused(with_model(R"({"type": "hybrid", "ration": 0.4})"),
-                 R"(/bodies/0/model: got the unknown key "ration", expected one of type, ratio, seed, follow, region, )"
-                 R"(beta, substeps, goals, coupling, width, damping, cut, alpha, stiffness, spring, edge_springs (did you mean "ratio"?))");
+  expect_refused(
+      with_model(R"({"type": "hybrid", "ration": 0.4})"),
+      R"(/bodies/0/model: got the unknown key "ration", expected one of type, ratio, seed, follow, region, )"
+      R"(beta, substeps, goals, coupling, width, damping, cut, alpha, stiffness, spring, edge_springs (did you mean "ratio"?))");
   expect_refused(with_model(R"({"type": "flsm", "stiffness": {"yuong": 1}})"),
                  R"(/bodies/0/model/stiffness: got the unknown key "yuong", expected one of young (did you mean "young"?))");
   expect_refused(patched(R"({"focus": {"paths": []}})"),
