@@ -5,9 +5,9 @@
 #include <map>
 
 #include "bench/cutting/parts.h"
-#include "geometry/disjoint_sets.h"
 #include "geometry/orient.h"
 #include "geometry/vec.h"
+#include "model/pieces.h"
 #include "simulation/measure/energy.h"
 
 namespace pliant::bench {
@@ -85,23 +85,18 @@ EditFigures edit_figures(const Simulation& simulation) {
 
 PieceFigures piece_figures(const Model& model, double density, double cell) {
   const ModelBody& body = model.bodies[0];
-  DisjointSets sets(model.mass.size());
-  const auto join = [&](const auto& elements) {
-    for (const auto& e : elements) {
-      for (const std::int32_t n : e)
-        sets.join(body.slot[static_cast<std::size_t>(e[0])], body.slot[static_cast<std::size_t>(n)]);
-    }
-  };
-  join(body.tets);
-  join(body.hexes);
+  const std::vector<std::int32_t> at = pieces_of_slots(body, model.slots);
   struct Sums {
     double mass = 0, volume = 0;
   };
   std::map<std::int32_t, Sums> pieces;
-  for (const std::int32_t slot : body.slot) pieces[sets.find(slot)].mass += model.own_mass(static_cast<std::size_t>(slot));
+  for (const std::int32_t slot : body.slot) {
+    const auto n = static_cast<std::size_t>(slot);
+    if (at[n] >= 0) pieces[at[n]].mass += model.own_mass(n);
+  }
   PieceFigures out;
   const auto piece_of = [&](std::int32_t vertex) {
-    return sets.find(model.surface.nodes[static_cast<std::size_t>(vertex)][0]);
+    return at[static_cast<std::size_t>(model.surface.nodes[static_cast<std::size_t>(vertex)][0])];
   };
   for (const auto& [a, b, c] : model.surface.triangles) {
     const std::int32_t piece = piece_of(a);

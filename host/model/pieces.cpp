@@ -28,4 +28,19 @@ std::int64_t pieces_of(const ModelBody& body, std::vector<std::int32_t>* piece) 
   return static_cast<std::int64_t>(number.size());
 }
 
+std::vector<std::int32_t> pieces_of_slots(const ModelBody& body, std::int32_t slots) {
+  std::vector<std::int32_t> piece, out(static_cast<std::size_t>(slots), -1);
+  static_cast<void>(pieces_of(body, &piece));
+  std::size_t e = 0;
+  const auto mark = [&](const auto& elements) {
+    for (const auto& nodes : elements) {
+      for (const std::int32_t n : nodes) out[static_cast<std::size_t>(body.slot[static_cast<std::size_t>(n)])] = piece[e];
+      ++e;
+    }
+  };
+  mark(body.tets);
+  mark(body.hexes);
+  return out;
+}
+
 }  // namespace pliant

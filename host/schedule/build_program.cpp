@@ -78,7 +78,7 @@ void ProgramBuilder::add_shared_buffers() {
   node_load_ = add(
       make_reals("node_load", BufferType::real4, needs_load() ? slots : 1, BufferRole::scratch, "[slots]", "N", "node_load"));
   program_.buffers[node_load_].carried = Carried::unwritten;  // zero for unloaded nodes
-  if (has_list_elements() || (has_list_nodes() && !model_.links.empty())) {
+  if (has_list_elements() || has_list_nodes()) {
     const std::size_t numbers = static_cast<std::size_t>(layout_.corner_numbers) + 3 * PLIANT_TILE;
     corner_ = add(make_reals("corner_force", BufferType::real, numbers, BufferRole::scratch, "[tiles][corners][3][16]", "N",
                              "element kernels"));

@@ -6,6 +6,7 @@
 #include "cutting/cut_bodies.h"
 #include "cutting/cut_scenes.h"
 #include "geometry/polygon.h"
+#include "model/pieces.h"
 
 namespace pliant::cut_pieces_test {
 namespace {
@@ -76,21 +77,16 @@ TEST(CutPieces, ALaterCutMovesNoFormerOne) {
 /// The largest difference between a piece's mass and that of the volume its surface encloses, in masses of a cell.
 double worst_piece(const Model& model, double cell) {
   const ModelBody& body = model.bodies[0];
-  DisjointSets sets(model.mass.size());
-  const auto join = [&](const auto& elements) {
-    for (const auto& e : elements) {
-      for (const std::int32_t n : e)
-        sets.join(body.slot[static_cast<std::size_t>(e[0])], body.slot[static_cast<std::size_t>(n)]);
-    }
-  };
-  join(body.tets);
-  join(body.hexes);
+  const std::vector<std::int32_t> at = pieces_of_slots(body, model.slots);
   std::map<std::int32_t, double> wrong;
-  for (const std::int32_t slot : body.slot) wrong[sets.find(slot)] += model.own_mass(static_cast<std::size_t>(slot)) / cell;
+  for (const std::int32_t slot : body.slot) {
+    const auto n = static_cast<std::size_t>(slot);
+    if (at[n] >= 0) wrong[at[n]] += model.own_mass(n) / cell;
+  }
   for (const auto& t : model.surface.triangles) {
     std::array<Vec3d, 3> x;
     for (std::size_t i = 0; i < 3; ++i) x[i] = model.surface.rest[static_cast<std::size_t>(t[i])];
-    wrong[sets.find(model.surface.nodes[static_cast<std::size_t>(t[0])][0])] -=
+    wrong[at[static_cast<std::size_t>(model.surface.nodes[static_cast<std::size_t>(t[0])][0])]] -=
         vec::dot(x[0], vec::cross(x[1], x[2])) / 6 * 1e6;
   }
   EXPECT_GT(wrong.size(), 5U);

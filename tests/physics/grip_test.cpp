@@ -195,14 +195,19 @@ TEST_P(GripPhysics, HoldsOnThroughACut) {
   }
 }
 
+/// A cube that stands on its bottom and is pulled up by a fifth of its height.
+Scene pulled_cube(Discretization cut) {
+  ContactTool tool = plate();
+  move(tool, 0.3, {0, 0, 0.01});
+  Body body = cube(cut, 60);
+  body.fixed.push_back({face(2, 0), {true, true, true}});
+  return scene_of(body, tool);
+}
+
 /// What is held under a pull stays held while a cut goes on below it.
 TEST_P(GripPhysics, HoldsStretchedTissueThroughACut) {
   for (const Discretization cut : {Discretization::hex8_bricks, Discretization::tet4}) {
-    ContactTool tool = plate();
-    move(tool, 0.3, {0, 0, 0.01});
-    Body body = cube(cut, 60);
-    body.fixed.push_back({face(2, 0), {true, true, true}});
-    Scene scene = scene_of(body, tool);
+    Scene scene = pulled_cube(cut);
     Blade blade;
     blade.name = "blade";
     blade.path = {{0.6, -0.01, -0.02, 0.02, -0.01, 0.07, 0.02}, {0.8, 0.025, -0.02, 0.02, 0.025, 0.07, 0.02}};
@@ -225,11 +230,7 @@ TEST_P(GripPhysics, HoldsStretchedTissueThroughACut) {
 /// An edit elsewhere is not felt at the grip: its force in the next step is that of the step before.
 TEST_P(GripPhysics, ACutElsewhereIsNotFelt) {
   for (const Discretization cut : {Discretization::hex8_bricks, Discretization::tet4}) {
-    ContactTool tool = plate();
-    move(tool, 0.3, {0, 0, 0.01});
-    Body body = cube(cut, 60);
-    body.fixed.push_back({face(2, 0), {true, true, true}});
-    Scene scene = scene_of(body, tool);
+    Scene scene = pulled_cube(cut);
     scene.cuttable = true;
     auto sim = simulate(scene, GetParam());
     until(*sim, 0.8);

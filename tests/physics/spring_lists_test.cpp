@@ -138,13 +138,7 @@ TEST_P(SpringLists, ATendonBendsABeamByItsMoment) {
 
 /// Pieces of the ends of the springs of a list.
 void expect_within_pieces(const Model& model, const std::string& name) {
-  std::vector<std::int32_t> piece, of(static_cast<std::size_t>(model.slots), -1);
-  const ModelBody& body = model.bodies[0];
-  static_cast<void>(pieces_of(body, &piece));
-  for (std::size_t e = 0; e < piece.size(); ++e) {
-    const std::span<const std::int32_t> nodes = body.tets.empty() ? std::span<const std::int32_t>(body.hexes[e]) : body.tets[e];
-    for (const std::int32_t n : nodes) of[body.slot[n]] = piece[e];
-  }
+  const std::vector<std::int32_t> of = pieces_of_slots(model.bodies[0], model.slots);
   for (const SpringBatch& batch : model.links.springs) {
     for (const auto& [from, to] : batch.points) {
       const std::int32_t a = of[model.links.points.slots[from][0]], b = of[model.links.points.slots[to][0]];

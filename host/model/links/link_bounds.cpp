@@ -79,7 +79,7 @@ struct Networks {
 Networks note_networks(const std::vector<double>& all, const std::vector<char>& elements, Model& model) {
   Networks out{std::vector<char>(all.size()), {}};
   model.network_bound = 0;
-  for (const SpringBatch& b : model.links.springs) {
+  for (SpringBatch& b : model.links.springs) {
     if (b.body < 0 || b.bars) continue;
     const std::vector<char> slots = slots_of(model, b);
     std::vector<double> own(slots.size());
@@ -96,6 +96,7 @@ Networks note_networks(const std::vector<double>& all, const std::vector<char>& 
       others = std::max(others, (all[s] - own[s]) / model.mass[s]);
     }
     if (!bare || !(most > 0)) continue;
+    b.network = true;
     const double omega2 = b.omega2 > 0 ? std::min(most, b.omega2 + others) : most, bound = 2 / std::sqrt(omega2);
     for (std::size_t s = 0; s < slots.size(); ++s) out.slots[s] |= slots[s];
     if (model.network_bound > 0 && bound >= model.network_bound) continue;

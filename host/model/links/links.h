@@ -48,6 +48,7 @@ struct SpringBatch {
   bool bars = false;               ///< of vessels: between points in elements, however short
   bool stiffness_damping = false;  ///< some dampers come from Material::stiffness_damping
   bool listed = false;             ///< of Body::springs
+  bool network = false;            ///< nothing but springs holds the nodes that it joins (note_link_bounds)
   double radius = 0;               ///< of vessels [m]
   double omega2 = 0;               ///< of the edges of tetrahedra: at least their highest squared frequency [1/s^2]
   [[nodiscard]] std::size_t size() const { return points.size(); }

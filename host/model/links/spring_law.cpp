@@ -55,7 +55,7 @@ std::int32_t LinkPoints::add_node(std::int32_t slot, const Vec3d& place) {
 
 SpringBatch SpringBatch::without_broken() const {
   if (broken.empty()) return *this;
-  SpringBatch out{law, body, join, label, {}, {}, {}, {}, {}, bars, stiffness_damping, listed, radius, omega2};
+  SpringBatch out{law, body, join, label, {}, {}, {}, {}, {}, bars, stiffness_damping, listed, network, radius, omega2};
   for (std::size_t s = 0; s < size(); ++s) {
     if (!whole(s)) continue;
     out.points.push_back(points[s]);

@@ -160,7 +160,7 @@ static double stiffened_bound(const RunContext& run) {
   std::vector<char> slots(model.mass.size());
   double ratio = 1;
   for (const SpringBatch& b : model.links.springs) {
-    if (b.body < 0 || b.bars) continue;
+    if (!b.network) continue;
     if (stiffens(b.law)) ratio = std::max(ratio, stiffening(model.links.points, b, u));
     for (const auto& ends : b.points) {
       for (const std::int32_t p : ends) slots[static_cast<std::size_t>(model.links.points.slots[p][0])] = 1;
@@ -172,7 +172,7 @@ static double stiffened_bound(const RunContext& run) {
 
 static bool may_stiffen(const Model& model) {
   return std::any_of(model.links.springs.begin(), model.links.springs.end(),
-                     [](const SpringBatch& b) { return b.body >= 0 && !b.bars && stiffens(b.law); });
+                     [](const SpringBatch& b) { return b.network && stiffens(b.law); });
 }
 
 double network_step(const RunContext& run) {

@@ -120,8 +120,12 @@ void StepControl::adapt_when_due() {
   if (adapts_at(run_.state.clock.step)) adapt();
 }
 
+/// Returns true if the step is automatic and something is left that limits it: of a network all of whose springs are cut
+/// nothing is.
+bool StepControl::follows() const { return run_.settings.automatic && has_elements(run_.model()); }
+
 void StepControl::adapt() {
-  if (!run_.settings.automatic) return;
+  if (!follows()) return;
   const StepLimit& limit = run_.state.limit;
   Allowed now = allowed();
   if (now.dt < least_step() || !run_.state.ballast.empty()) {
@@ -233,7 +237,7 @@ double StepControl::balance(double wanted, const std::vector<double>& stiffness)
 }
 
 void StepControl::limit_after_edit(const std::vector<char>& changed) {
-  if (!run_.settings.automatic) return;
+  if (!follows()) return;
   double& ceiling = run_.state.limit.dt_ceiling;
   if (run_.model().element_bound > 0)
     ceiling = std::min(ceiling, run_.scene.safety * bound_step(run_, run_.model().element_bound));

@@ -69,6 +69,7 @@ class StepControl {
   [[noreturn]] void refuse_step() const;
   [[nodiscard]] bool adapts_at(std::int64_t step) const;
   [[nodiscard]] bool changes_at(std::int64_t step) const;
+  [[nodiscard]] bool follows() const;
   [[nodiscard]] double share() const;
   [[nodiscard]] bool clearly_allows(const std::vector<char>& changed) const;
   /// Adds ballast so that elements are stable at least_step(), and removes ballast that is no longer needed. If this exceeds
