@@ -110,9 +110,11 @@ class Info {
                                  {"surface_volume", b.surface_volume},
                                  {"surface_vertices", b.vertices},
                                  {"surface_triangles", b.triangles}});
-      line(fmt::format("body {}: {} nodes, {} {} elements{}, {} surface triangles", b.name, b.slot.size(), b.elements(),
-                       pliant::to_string(b.element), b.spacing > 0 ? fmt::format(" on a lattice of {:.5g} m", b.spacing) : "",
-                       b.triangles));
+      const bool springs = scene_.bodies[i].model.type == ModelType::mass_spring;
+      line(fmt::format("body {}: {} nodes, {} {}{}, {} surface triangles", b.name, b.slot.size(), b.elements(),
+                       springs ? std::string("tetrahedra of a network of springs")
+                               : fmt::format("{} elements", pliant::to_string(b.element)),
+                       b.spacing > 0 ? fmt::format(" on a lattice of {:.5g} m", b.spacing) : "", b.triangles));
       if (b.matching_nodes + b.interface_nodes > 0) matching(b);
       const double excess = b.surface_volume > 0 ? 100 * (b.volume / b.surface_volume - 1) : 0;
       line(fmt::format("  {:.4g} m large, between {}", fmt::join(size, " x "), corners_text(box)));

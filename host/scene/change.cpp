@@ -145,9 +145,26 @@ void check_toughness(const Reader& material, const Material& now) {
     material.at("toughness").fail("none: a material that did not tear when the scene began does not begin to");
 }
 
+/// Springs with a law of their own follow no modulus. Their dampers do where materials differ in stiffness_damping: an edge has
+/// the mean of those around it, weighted by their moduli.
+void check_springs(const Reader& material, const Body& now) {
+  const DeformationModel& model = now.model;
+  if (model.type != ModelType::mass_spring) return;
+  if (model.edge_springs) {
+    if (model.spring.law == SpringLaw::linear && model.spring.stiffness == 0) return;
+    const auto differs = [&](const auto& i) { return i.material.stiffness_damping != now.material.stiffness_damping; };
+    if (std::any_of(now.inclusions.begin(), now.inclusions.end(), differs)) return;
+  }
+  for (const std::string& key : elastic_keys()) {
+    if (material.has(key))
+      material.at(key).fail(fmt::format("no \"{}\": the springs of body \"{}\" have a law of their own", key, now.name));
+  }
+}
+
 void change_material(const Reader& entry, Json& body, const Body& now, Json& kept) {
   const Reader change = entry.at("material");
   change.expect_object("material");
+  check_springs(change, now);
   if (!entry.has("inclusion")) {
     check_toughness(change, now.material);
     kept["material"] = merged_material(body["material"], now.material, change.json());

@@ -146,6 +146,35 @@ TEST(Change, WhatCannotChangeIsRefusedWithOneMessage) {
   says(R"({"gravity": [0, 0]})", "gravity");
 }
 
+/// A network of springs with a law of their own has no use for a modulus, unless it weighs dampers.
+TEST(Change, AModulusThatNoSpringFollowsIsRefused) {
+  const auto net = [](const std::string& spring, const std::string& more) {
+    return parse_scene(R"({"format": "pliant-scene/1", "bodies": [{"name": "net", "mesh": "meshes/cube_tet.vtu",
+      "model": {"type": "mass-spring")" +
+                           spring + R"(},
+      "material": {"young": 3000, "poisson": 0.4, "density": 1000, "stiffness_damping": 0.001})" +
+                           more + "}]}",
+                       test::source_dir() + "/scenes/changes.json");
+  };
+  const auto harder = [](const std::string& damping) {
+    return R"(, "inclusions": [{"sphere": [[0, 0, 0], 0.02], "material": {"young": 9000, "poisson": 0.3, "density": 1000,
+      "stiffness_damping": )" +
+           damping + "}}]";
+  };
+  const std::string stiffer = R"({"material": {"young": 6000}})", own = R"(, "spring": {"stiffness": 20})";
+  EXPECT_EQ(refusal(net("", ""), stiffer), "");
+  EXPECT_EQ(refusal(net(own, harder("0.002")), stiffer), "");
+  EXPECT_EQ(refusal(net(own, ""), R"({"material": {"damping": 3, "stiffness_damping": 0.01}})"), "");
+  const auto refused = [&](const Scene& scene) {
+    const std::string message = refusal(scene, stiffer);
+    EXPECT_NE(message.find("springs of body \"net\" have a law of their own"), std::string::npos) << message;
+  };
+  refused(net(own, ""));
+  refused(net(own, harder("0.001")));
+  refused(net(R"(, "spring": {"law": "measured", "a": 0.1, "b": 0.01})", ""));
+  refused(net(R"(, "edge_springs": false)", R"(, "springs": [{"nodes": [[0, 1]], "spring": {"stiffness": 3}}])"));
+}
+
 TEST(Change, AFileWithABadChangeIsRefusedAtItsPlace) {
   const auto message = [](const char* changes) { return test::error_of([&] { static_cast<void>(scene_with(changes)); }); };
   EXPECT_NE(message(R"([{"time": 0.2, "gravity": [0, 0, 0]}, {"time": 0.1, "gravity": [0, 0, 0]}])").find("/changes/1/time"),
