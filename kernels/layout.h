@@ -43,7 +43,7 @@
 #define PLIANT_TOUCH_PLACE 20
 #define PLIANT_TOUCH_SURFACE 24
 #define PLIANT_TOUCH_FORCE 4
-#define PLIANT_TOUCH_MOMENT 6  // per point: moments about its first and second tangent (3 each) [quanta]
+#define PLIANT_TOUCH_MOMENT 8  // per point: moments about its first and second tangent (3 each, then a 0) [quanta]
 #define PLIANT_PATCH 34        // per point: bounds of its patch (24) and its embedding (10)
 #define PLIANT_TOUCH_BOX 19
 #define PLIANT_TOUCH_TREE 4

@@ -58,6 +58,25 @@ static inline void texels_store(float16 x, float16 y, float16 z, float16 w, __gl
   texels_store_half(x.lo, y.lo, z.lo, w.lo, p + 4 * i);
   texels_store_half(x.hi, y.hi, z.hi, w.hi, p + 4 * i + 32);
 }
+// Rows of `stride` texels, one per lane: stores texel `texel` of each.
+#define STORE_HALF(half, l)                                                                              \
+  {                                                                                                     \
+    const float8 xy0 = UNPACK_LO(x.half, y.half), xy1 = UNPACK_HI(x.half, y.half);                       \
+    const float8 zw0 = UNPACK_LO(z.half, w.half), zw1 = UNPACK_HI(z.half, w.half);                       \
+    const float8 a = PAIRS_LO(xy0, zw0), b = PAIRS_HI(xy0, zw0), c = PAIRS_LO(xy1, zw1), d = PAIRS_HI(xy1, zw1); \
+    vstore4(a.lo, stride * (l) + texel, p);                                                                \
+    vstore4(b.lo, stride * ((l) + 1) + texel, p);                                                          \
+    vstore4(c.lo, stride * ((l) + 2) + texel, p);                                                          \
+    vstore4(d.lo, stride * ((l) + 3) + texel, p);                                                          \
+    vstore4(a.hi, stride * ((l) + 4) + texel, p);                                                          \
+    vstore4(b.hi, stride * ((l) + 5) + texel, p);                                                          \
+    vstore4(c.hi, stride * ((l) + 6) + texel, p);                                                          \
+    vstore4(d.hi, stride * ((l) + 7) + texel, p);                                                          \
+  }
+static inline void texels_store_rows(float16 x, float16 y, float16 z, float16 w, __global float* p, int stride, int texel) {
+  STORE_HALF(lo, 0)
+  STORE_HALF(hi, 8)
+}
 static inline float16 gather(__global const float* p, __global const int* k) {
   return (float16)(p[k[0]], p[k[1]], p[k[2]], p[k[3]], p[k[4]], p[k[5]], p[k[6]], p[k[7]], p[k[8]], p[k[9]], p[k[10]], p[k[11]],
                    p[k[12]], p[k[13]], p[k[14]], p[k[15]]);
@@ -71,5 +90,6 @@ typedef float4 texels;
 #define texels_gather(p, k) vload4((k)[0], p)
 #define texels_load(p, i) vload4(i, p)
 #define texels_store(x, y, z, w, p, i) vstore4((float4)(x, y, z, w), i, p)
+#define texels_store_rows(x, y, z, w, p, stride, texel) vstore4((float4)(x, y, z, w), texel, p)
 #define gather(p, k) ((p)[(k)[0]])
 #endif

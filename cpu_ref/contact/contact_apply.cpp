@@ -21,7 +21,7 @@ bool touched(std::int64_t points, const std::int32_t* near, const std::int32_t* 
 /// What the points give to the nodes of a tile: force in quanta, and area.
 template <class Scalar>
 struct TileSum {
-  std::int64_t force[3][PLIANT_TILE] = {};
+  std::int64_t force[PLIANT_TILE][3] = {};
   Scalar area[PLIANT_TILE] = {};
 };
 
@@ -32,38 +32,36 @@ void contact_apply(Range range, Scalar* node_u, Scalar* node_w, const std::int32
                    const std::int32_t* contact_free, const std::int32_t* contact_node_list,
                    const std::int32_t* contact_tiles_offset, const std::int32_t* contact_tiles,
                    const std::int32_t* contact_entry_offset, const std::int32_t* contact_entry,
-                   const std::int32_t* contact_gather_offset, const std::int32_t* contact_gather,
-                   const std::int32_t* contact_gather_units, const std::int32_t* contact_gather_turns,
+                   const std::int32_t* /*contact_gather_offset*/, const std::int32_t* /*contact_gather*/,
+                   const std::int32_t* /*contact_gather_units*/, const std::int32_t* /*contact_gather_turns*/,
                    const std::int32_t* contact_near, const std::int32_t* contact_force, const std::int32_t* touch_moment,
-                   const std::int32_t* contact_gather_corner, const std::int32_t* contact_corner_force,
+                   const std::int32_t* /*contact_gather_corner*/, const std::int32_t* contact_corner_force,
                    const Scalar* contact_corner_weight, const Scalar* contact_rest, Scalar* contact_node_sum,
                    const Scalar* contact_params, const Scalar* step_params) {
-  static_cast<void>(contact_gather_offset);  // of devices with one node per work-item
   constexpr std::int64_t area_plane = std::int64_t{3} * PLIANT_TILE;
   const Scalar h = step_params[0], half_hh = (Scalar(0.5) * h) * h, quantum = contact_params[2];
   TileSum<Scalar> sum;
   std::int64_t seen = -1;
-  const auto add = [&](std::int64_t entry) {
-    const std::int64_t lane = entry % PLIANT_TILE, at = contact_gather[entry], units = contact_gather_units[entry];
-    const std::int64_t tile = at / (4 * PLIANT_TILE), of_tile = at % PLIANT_TILE;
-    if ((units == 0 && MOMENT == 0 && EDGES == 0) || contact_force[at + area_plane] == 0) return;
-    for (std::int64_t c = 0; c < 3; ++c) sum.force[c][lane] += contact_force[at + c * PLIANT_TILE] * units;
+  const auto add = [&](std::int64_t tile, const std::int32_t* entry) {
+    const std::int64_t lane = entry[0] % 16, of_tile = entry[0] / 16 % 16, units = entry[1];
+    const std::int32_t* force = contact_force + tile * 4 * PLIANT_TILE + of_tile;
+    if ((units == 0 && MOMENT == 0 && EDGES == 0) || force[area_plane] == 0) return;
+    std::int64_t* own = sum.force[lane];
+    for (std::int64_t c = 0; c < 3; ++c) own[c] += force[c * PLIANT_TILE] * units;
     if (MOMENT != 0 && (contact_near[tile] & PLIANT_TOUCH_BIT) != 0) {
-      const std::int32_t* moment = touch_moment + tile * (PLIANT_TOUCH_MOMENT * PLIANT_TILE) + of_tile;
-      for (std::int64_t along = 0; along < 2; ++along) {
-        const std::int64_t turns = contact_gather_turns[(2 * (entry / PLIANT_TILE) + along) * PLIANT_TILE + lane];
-        for (std::int64_t c = 0; c < 3; ++c) sum.force[c][lane] += moment[(3 * along + c) * PLIANT_TILE] * turns;
-      }
+      const std::int32_t* moment = touch_moment + PLIANT_TOUCH_MOMENT * (tile * PLIANT_TILE + of_tile);
+      for (std::int64_t c = 0; c < 3; ++c)
+        own[c] += std::int64_t{moment[c]} * entry[2] + std::int64_t{moment[4 + c]} * entry[3];
     }
     Scalar weight = static_cast<Scalar>(units) * Scalar(1.0 / 4096);
-    if (EDGES != 0 && contact_gather_corner[entry] >= 0 && (contact_near[tile] & ~PLIANT_TOUCH_BIT) != 0) {
-      const std::int64_t corner = contact_gather_corner[entry];
+    const std::int64_t corner = entry[0] / 256;
+    if (EDGES != 0 && (contact_near[tile] & ~PLIANT_TOUCH_BIT) != 0) {
       const std::int32_t* part = contact_corner_force + tile * 24 * PLIANT_TILE + 3 * corner * PLIANT_TILE + of_tile;
       const Scalar* weights = contact_corner_weight + tile * 9 * PLIANT_TILE + of_tile;
-      for (std::int64_t c = 0; c < 3; ++c) sum.force[c][lane] += std::int64_t{4096} * part[c * PLIANT_TILE];
+      for (std::int64_t c = 0; c < 3; ++c) own[c] += std::int64_t{4096} * part[c * PLIANT_TILE];
       weight = std::abs(weights[corner * PLIANT_TILE]) * weights[std::int64_t{8} * PLIANT_TILE];
     }
-    sum.area[lane] = std::fma(weight, contact_rest[at + area_plane], sum.area[lane]);
+    sum.area[lane] = std::fma(weight, contact_rest[tile * 4 * PLIANT_TILE + of_tile + area_plane], sum.area[lane]);
   };
   for (std::int64_t n = range.begin; n < range.end; ++n) {
     const std::int64_t i = listed(contact_node_list, n), tile = i / PLIANT_TILE, lane = i % PLIANT_TILE;
@@ -71,13 +69,14 @@ void contact_apply(Range range, Scalar* node_u, Scalar* node_w, const std::int32
       sum = {};
       for (std::int32_t t = contact_tiles_offset[tile]; t < contact_tiles_offset[tile + 1]; ++t) {
         if (!touched(contact_tiles[t], contact_near, contact_force)) continue;
-        std::for_each(contact_entry + contact_entry_offset[t], contact_entry + contact_entry_offset[t + 1], add);
+        for (std::int32_t e = contact_entry_offset[t]; e < contact_entry_offset[t + 1]; ++e)
+          add(contact_tiles[t], contact_entry + std::int64_t{4} * e);
       }
     }
     const std::int64_t slot = contact_slot[i];
     const std::int32_t free = contact_free[i];
     Scalar *u = node_u + 4 * slot, *w = node_w + 4 * slot, *out = contact_node_sum + 4 * slot;
-    for (int c = 0; c < 3; ++c) out[c] = static_cast<Scalar>(sum.force[c][lane]) * quantum;
+    for (int c = 0; c < 3; ++c) out[c] = static_cast<Scalar>(sum.force[lane][c]) * quantum;
     out[3] = sum.area[lane];
     if (free == 0) continue;
     const Scalar bm = std::fma(half_hh, w[3], half_hh) * u[3];

@@ -21,9 +21,10 @@ void touch_box(Range range, const Scalar* node_u, const Scalar* node_w, const Sc
     box[18] = 0;
     for (std::int64_t i = tile * PLIANT_TILE; i < (tile + 1) * PLIANT_TILE; ++i) {
       const contact::Place<Scalar> p = points.at(i);
+      const AlongTangents<Scalar> along = along_tangents(points, touch_surface, i);
       Place<Scalar> place{p.now, p.moved};
-      set_frame(points, touch_surface, i, place);
-      place.tilt = tilt_of(points, touch_surface, i, place);
+      set_frame(along, touch_surface, i, place);
+      place.tilt = tilt_of(along, place);
       write_place(touch_place, i, place);
       const Scalar spacing = touch_surface[tile_base(i, PLIANT_TOUCH_SURFACE) + std::int64_t{22} * PLIANT_TILE];
       if (!(spacing > Scalar(0))) continue;

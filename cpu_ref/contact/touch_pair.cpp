@@ -21,8 +21,10 @@ class Partners {
         partner_(touch_partner + tile_base(i, kSlots)),
         weight_(touch_weight + tile_base(i, kSlots + 1)),
         pair_(touch_pair) {
-    for (std::int64_t s = 0; s < kSlots; ++s) {
+    for (; known_ < kSlots; ++known_) {
+      const std::int64_t s = known_;
       old_[s] = partner_[s * PLIANT_TILE];
+      if (old_[s] == 0) break;  // used slots come first
       for (std::int64_t c = 0; c < PLIANT_TOUCH_PAIR; ++c) kept_[s][c] = pair_numbers(pair_, i_, s)[c * PLIANT_TILE];
       partner_[s * PLIANT_TILE] = 0;
       weight_[s * PLIANT_TILE] = 0;
@@ -33,8 +35,8 @@ class Partners {
   void try_one(const Look<Scalar>& look, std::int64_t j) {
     const auto name = static_cast<std::int32_t>(j + 1);
     std::int64_t before = 0;
-    while (before < kSlots && old_[before] != name) ++before;
-    const bool known = before < kSlots && kept_[before][0] > Scalar(0);
+    while (before < known_ && old_[before] != name) ++before;
+    const bool known = before < known_ && kept_[before][0] > Scalar(0);
     Scalar offset = 0;
     const Scalar w = look.weigh(std::min(i_, j), std::max(i_, j), known, known ? kept_[before][1] : Scalar(0), offset);
     if (!(w > Scalar(0))) return;
@@ -67,7 +69,7 @@ class Partners {
   }
 
  private:
-  std::int64_t i_, filled_ = 0;
+  std::int64_t i_, filled_ = 0, known_ = 0;
   std::int32_t* partner_;
   Scalar *weight_, *pair_;
   std::int32_t old_[kSlots];

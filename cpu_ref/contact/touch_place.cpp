@@ -17,11 +17,12 @@ void touch_place(Range range, const Scalar* node_u, const Scalar* node_w, const 
     const std::int64_t i = listed(contact_list, entry);
     if ((contact_near[i / PLIANT_TILE] & PLIANT_TOUCH_BIT) == 0) continue;
     const contact::Place<Scalar> p = points.at(i);
+    const AlongTangents<Scalar> along = along_tangents(points, touch_surface, i);
     Place<Scalar> place = place_of(touch_place, i);
     place.x = p.now;
     place.moved = p.moved;
-    if (again == 0) set_frame(points, touch_surface, i, place);
-    place.tilt = tilt_of(points, touch_surface, i, place);
+    if (again == 0) set_frame(along, touch_surface, i, place);
+    place.tilt = tilt_of(along, place);
     Scalar w = 0, whole = 0, moving = 0;
     for (std::int64_t a = 0, first = tile_base(i, 8); a < 8; ++a) {
       const std::int64_t at = first + a * PLIANT_TILE, texel = std::int64_t{4} * contact_node[at];

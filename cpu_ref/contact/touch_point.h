@@ -1,5 +1,7 @@
 // Twin of kernels/contact/touch_point.cl, which describes the computation.
 #pragma once
+#include <algorithm>
+
 #include "cpu_ref/contact/contact_sum.h"
 
 namespace pliant::ref::touch {
@@ -51,17 +53,24 @@ inline Place<Scalar> place_of(const Scalar* touch_place, std::int64_t i) {
       {p[7], p[11], p[15]}};
 }
 
-/// Sums over the nodes of a point, weighted by the gradients along both tangents.
+/// Sums over the nodes of a point, weighted by the gradients along both tangents: of displacements and of increments.
 template <class Scalar>
-inline std::array<Vec<Scalar>, 2> along_tangents(const contact::Points<Scalar>& points, const Scalar* touch_surface,
-                                                 std::int64_t i, const Scalar* values) {
+struct AlongTangents {
+  Vec<Scalar> first_u{}, second_u{}, first_w{}, second_w{};
+};
+template <class Scalar>
+inline AlongTangents<Scalar> along_tangents(const contact::Points<Scalar>& points, const Scalar* touch_surface,
+                                            std::int64_t i) {
   const std::int64_t own = tile_base(i, PLIANT_TOUCH_SURFACE), base = tile_base(i, 8);
-  std::array<Vec<Scalar>, 2> out{};
+  AlongTangents<Scalar> out;
   for (std::int64_t a = 0; a < 8; ++a) {
-    const Scalar* v = values + std::int64_t{4} * points.node[base + a * PLIANT_TILE];
-    const Vec<Scalar> value{v[0], v[1], v[2]};
-    out[0] = scaled_sum(touch_surface[own + a * PLIANT_TILE], value, out[0]);
-    out[1] = scaled_sum(touch_surface[own + (8 + a) * PLIANT_TILE], value, out[1]);
+    const std::int64_t texel = std::int64_t{4} * points.node[base + a * PLIANT_TILE];
+    const Scalar *u = points.node_u + texel, *w = points.node_w + texel;
+    const Scalar first = touch_surface[own + a * PLIANT_TILE], second = touch_surface[own + (8 + a) * PLIANT_TILE];
+    out.first_u = scaled_sum(first, Vec<Scalar>{u[0], u[1], u[2]}, out.first_u);
+    out.second_u = scaled_sum(second, Vec<Scalar>{u[0], u[1], u[2]}, out.second_u);
+    out.first_w = scaled_sum(first, Vec<Scalar>{w[0], w[1], w[2]}, out.first_w);
+    out.second_w = scaled_sum(second, Vec<Scalar>{w[0], w[1], w[2]}, out.second_w);
   }
   return out;
 }
@@ -75,12 +84,10 @@ inline std::array<Scalar, 2> dual_of(const Place<Scalar>& p, const Vec<Scalar>& 
 
 /// The frame of a point at the start of the step, and the change of its normal in the step.
 template <class Scalar>
-inline void set_frame(const contact::Points<Scalar>& points, const Scalar* touch_surface, std::int64_t i, Place<Scalar>& p) {
+inline void set_frame(const AlongTangents<Scalar>& along, const Scalar* touch_surface, std::int64_t i, Place<Scalar>& p) {
   const std::int64_t own = tile_base(i, PLIANT_TOUCH_SURFACE);
-  const auto now = along_tangents(points, touch_surface, i, points.node_u);
-  const auto moved = along_tangents(points, touch_surface, i, points.node_w);
-  const Vec<Scalar> first = difference(contact::sum_of(three(touch_surface, own, 16), now[0]), moved[0]);
-  const Vec<Scalar> second = difference(contact::sum_of(three(touch_surface, own, 19), now[1]), moved[1]);
+  const Vec<Scalar> first = difference(contact::sum_of(three(touch_surface, own, 16), along.first_u), along.first_w);
+  const Vec<Scalar> second = difference(contact::sum_of(three(touch_surface, own, 19), along.second_u), along.second_w);
   p.normal = unit(cross(first, second));
   const Scalar length = std::sqrt(dot(first, first));
   p.tangent = contact::normalised(first, length);
@@ -95,10 +102,8 @@ inline void set_frame(const contact::Points<Scalar>& points, const Scalar* touch
 
 /// The normal changes by -(n . F' t_k) a^k, with the dual vectors a^k of the tangents.
 template <class Scalar>
-inline Vec<Scalar> tilt_of(const contact::Points<Scalar>& points, const Scalar* touch_surface, std::int64_t i,
-                           const Place<Scalar>& p) {
-  const auto moved = along_tangents(points, touch_surface, i, points.node_w);
-  const Scalar one = dot(p.normal, moved[0]) * p.dual[0], two = dot(p.normal, moved[1]);
+inline Vec<Scalar> tilt_of(const AlongTangents<Scalar>& along, const Place<Scalar>& p) {
+  const Scalar one = dot(p.normal, along.first_w) * p.dual[0], two = dot(p.normal, along.second_w);
   const Scalar across = std::fma(two, p.dual[2], -(one * p.dual[1]));
   return difference(Vec<Scalar>{}, scaled_sum(one, p.tangent, times(cross(p.normal, p.tangent), across)));
 }
@@ -156,7 +161,9 @@ inline void set_moment(std::int32_t* touch_moment, std::int64_t i, const Place<S
   const std::array<Scalar, 2> turn = dual_of(own, lever);
   for (std::size_t k = 0; k < 2; ++k) {
     const Quanta q = contact::quanta(times(own.normal, turn[k] * own.density), inverse);
-    set_three(touch_moment, tile_base(i, PLIANT_TOUCH_MOMENT), static_cast<std::int64_t>(3 * k), q);
+    std::int32_t* moment = touch_moment + i * PLIANT_TOUCH_MOMENT + 4 * k;
+    std::copy(q.begin(), q.end(), moment);
+    moment[3] = 0;
   }
 }
 

@@ -28,6 +28,7 @@ inline Arg step_arg() { return Arg{StepInBatch{}}; }
 enum class Shape {
   lanes,   ///< one index per element or node, `count` a multiple of 16; a work-item processes LANES consecutive indices
   items,   ///< one work-item per index, always scalar (short lists, bricks of irregular work)
+  tiles,   ///< one work-item per index, which stands for 16 elements or nodes; they are processed LANES at a time
   bricks,  ///< one brick per index, processed by one work-item (16 lanes) or by a row of 16 work-items (1 lane)
 };
 

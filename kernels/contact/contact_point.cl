@@ -89,7 +89,9 @@ static inline float held_depth(__global const float* node_u, __global const int*
 
 // Fraction of the margin within which a point may touch in the next step. It is larger for points that were within it before, so that the set of
 // these points does not flicker.
-static inline float ready_share(float yield) { return yield > 0.0f ? 0.24f : 0.08f; }
+#define READY_AGAIN 0.24f
+#define READY_NEW 0.08f
+static inline float ready_share(float yield) { return yield > 0.0f ? READY_AGAIN : READY_NEW; }
 
 static inline int may_touch_next(meeting m, float margin, float share) {
   return m.distance < fma(share, margin, m.opening < 0.0f ? -m.opening : 0.0f);

@@ -15,6 +15,30 @@ static inline int may_meet(const float* a, __global const float* b, float margin
   return facing < -0.5f;
 }
 
+#if LANES == 16
+// may_meet of sixteen points with one box: a bit for each.
+INLINE int meeting_points(vec3 x, vec3 moved, vec3 normal, real spacing, __global const float* b, float margin, float ahead) {
+  const real none = 0.0f, wide = b[18], radius = TOUCH_RADIUS, room = margin, steps = ahead;
+  const real reach = fma(radius, spacing > wide ? spacing : wide, room), place[3] = {x.x, x.y, x.z}, way[3] = {moved.x, moved.y, moved.z};
+  const real direction[3] = {normal.x, normal.y, normal.z};
+  real facing = none;
+  integer apart = 0;
+  for (int c = 0; c < 3; ++c) {
+    const real above = b[2 * c] - place[c], rising = way[c] - b[2 * c + 6];
+    const real below = place[c] - b[2 * c + 1], falling = b[2 * c + 7] - way[c];
+    apart |= above - steps * (rising > 0.0f ? rising : none) > reach;
+    apart |= below - steps * (falling > 0.0f ? falling : none) > reach;
+    const real l = direction[c] * b[2 * c + 12], h = direction[c] * b[2 * c + 13];
+    facing = facing + (l < h ? l : h);
+  }
+  const integer bits = (apart == 0 && facing < -0.5f) ? (integer)(1) << LANE_INDEX : (integer)(0);
+  const int8 eight = bits.lo | bits.hi;
+  const int4 four = eight.lo | eight.hi;
+  const int2 two = four.lo | four.hi;
+  return two.x | two.y;
+}
+#endif
+
 // Returns 1 for two points of one part that never touch. Otherwise returns 0 and in `offset` their undeformed depth [m].
 static inline int one_part(__global const float* touch_surface, __global const float* touch_rest, __global const int* contact_node, int lower,
                            int upper, float large, float* offset) {
@@ -48,28 +72,26 @@ static inline float farthest(const float* a, __global const float* b, float marg
   return fma(TOUCH_RADIUS + 2.0f, spacing, fma(ahead, way, margin));
 }
 
-// Returns the weight of a pair; 0: no pair. A new pair starts with its current depth as offset, which is then reduced gradually: a point that slides
-// over an edge is suddenly deep, and removing that depth in one step would throw it off. `before`: the offset of a known pair; `ease`: the reduction
-// per search, in spacings.
-static inline float weight_of(__global const float* touch_place, __global const float* touch_surface, __global const float* touch_rest,
-                              __global const int* contact_node, int lower, int upper, int known, float before, float margin,
-                              float ahead, float ease, float* offset) {
-  const touch_state a = state_of(touch_place, lower), b = state_of(touch_place, upper);
-  const float facing = fma(-2.0f, dot_xyz(a.normal, b.normal), -1.0f);
-  if (!(facing > 0.0f)) return 0.0f;
-  const float one = touch_surface[POINT_BASE(lower, PLIANT_TOUCH_SURFACE) + 22 * PLIANT_TILE];
-  const float two = touch_surface[POINT_BASE(upper, PLIANT_TOUCH_SURFACE) + 22 * PLIANT_TILE];
-  const float large = one > two ? one : two;
-  const touch_meeting m = meeting_of(a, b);
-  const float4 side = fma((float4)(-dot_xyz(m.apart, m.normal)), m.normal, m.apart);
-  const float radius = TOUCH_RADIUS * large, part = dot_xyz(side, side) / (radius * radius);
-  if (!(part < 1.0f)) return 0.0f;
-  const float closing = -dot_xyz(a.moved - b.moved, m.normal);
-  if (!(m.gap < fma(ahead, closing > 0.0f ? closing : 0.0f, margin))) return 0.0f;
-  if (!(m.gap > (known ? -2.0f * large : -large))) return 0.0f;
-  if (one_part(touch_surface, touch_rest, contact_node, lower, upper, large, offset)) return 0.0f;
-  const float start = known ? fma(ease, large, before) : m.gap;
-  *offset = start < *offset ? start : *offset;
-  const float rest = 1.0f - part;
-  return (rest * rest) * facing;
+// Candidates for partners of one point: LANES others at once.
+typedef struct {
+  real weight, gap, large;  // 0: no pair; [m]; the larger spacing [m]
+} touch_candidates;
+
+// faces: the lanes whose points are near enough and face the point; facing: twice the cosine between its normal and the reversed other one, less 1.
+// one_part and the depth of pairs that are new are still to be looked at (keep_partner).
+INLINE touch_candidates weigh(integer faces, real facing, integer is_lower, touch_lanes own, touch_lanes other, float own_spacing, real spacing, float margin,
+                              float ahead) {
+  const real none = 0.0f, one = 1.0f, mine = own_spacing, deepest = -2.0f;
+  touch_candidates c;
+  c.large = mine > spacing ? mine : spacing;
+  lanes_meeting m = begin_meeting(is_lower, own, other);
+  end_meeting(is_lower, own, other, &m);
+  c.gap = m.gap;
+  const vec3 side = times_add(-dot_lanes(m.apart, m.normal), m.normal, m.apart);
+  const real radius = TOUCH_RADIUS * c.large, part = dot_lanes(side, side) / (radius * radius);
+  const real closing = -dot_lanes(m.moved, m.normal), room = fma((real)(ahead), closing > 0.0f ? closing : none, (real)(margin));
+  const real rest = one - part;
+  const integer pairs = faces && part < 1.0f && m.gap < room && m.gap > deepest * c.large;
+  c.weight = pairs ? (rest * rest) * facing : none;
+  return c;
 }

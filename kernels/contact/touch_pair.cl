@@ -9,10 +9,14 @@
 // The tree of boxes (touch_tree) is the same for all searches, and so is the order of partners. If there are more partners than slots, those with the
 // least weight are dropped. contact_params: margin [m] at 5, steps between two searches at 6, ease of an offset at 8.
 #include "arith.cl"
+#include "texels.cl"
 #include "contact_shape.cl"
 #include "contact_point.cl"
 #include "touch_point.cl"
+#include "touch_lanes.cl"
+#include "touch_meeting.cl"
 #include "touch_meet.cl"
+#include "touch_partners.cl"
 
 #define FOUND 64
 
@@ -40,67 +44,46 @@ __kernel void touch_pair(__global const float* touch_place, __global const float
     ++k;
   }
   const int listed = count <= FOUND;
+#if LANES == 16
+  int meeting[FOUND];  // the points of this tile that may meet those of each listed one
+  const vec3 x = xyz(own_texels(touch_place, tile * PLIANT_TILE, 0)), moved = xyz(own_texels(touch_place, tile * PLIANT_TILE, 1));
+  const vec3 normal = xyz(own_texels(touch_place, tile * PLIANT_TILE, 2));
+  const real spacings = LOAD(touch_surface, POINT_BASE(tile * PLIANT_TILE, PLIANT_TOUCH_SURFACE) + 22 * PLIANT_TILE);
+  for (int k = 0; k < count && listed; ++k) {
+    const int other = touch_node[PLIANT_TOUCH_TREE * found[k]];
+    meeting[k] = meeting_points(x, moved, normal, spacings, touch_box + PLIANT_TOUCH_BOX * other, margin, ahead);
+  }
+#define MAY_MEET(k, node) (listed ? meeting[k] >> (i % PLIANT_TILE) & 1 : may_meet(box, touch_box + PLIANT_TOUCH_BOX * (node)[0], margin, ahead))
+#else
+#define MAY_MEET(k, node) may_meet(box, touch_box + PLIANT_TOUCH_BOX * (node)[0], margin, ahead)
+#endif
   int any = 0;
   for (int i = tile * PLIANT_TILE; i < (tile + 1) * PLIANT_TILE; ++i) {
-    int old[TOUCH_SLOTS];
-    float kept[TOUCH_SLOTS][PLIANT_TOUCH_PAIR];
-    __global int* partner = touch_partner + POINT_BASE(i, TOUCH_SLOTS);
-    __global float* weight = touch_weight + POINT_BASE(i, TOUCH_SLOTS + 1);
-    for (int s = 0; s < TOUCH_SLOTS; ++s) {
-      old[s] = partner[s * PLIANT_TILE];
-      for (int c = 0; c < PLIANT_TOUCH_PAIR; ++c) kept[s][c] = touch_pair[pair_base(i, s) + c * PLIANT_TILE];
-      partner[s * PLIANT_TILE] = 0;
-      weight[s * PLIANT_TILE] = 0.0f;
-    }
-    weight[TOUCH_SLOTS * PLIANT_TILE] = 0.0f;
+    touch_partners partners;
+    begin_partners(&partners, i, touch_partner, touch_pair, touch_weight);
     const float spacing = touch_surface[POINT_BASE(i, PLIANT_TOUCH_SURFACE) + 22 * PLIANT_TILE];
     if (!(spacing > 0.0f)) continue;
     for (int k = 0; k < 9; ++k) box[2 * k] = box[2 * k + 1] = touch_place[PLIANT_TOUCH_PLACE * i + k + k / 3];
     box[18] = spacing;
-    int filled = 0;
     for (int k = 0; k < (listed ? count : node_count);) {
       __global const int* node = touch_node + PLIANT_TOUCH_TREE * (listed ? found[k] : k);
-      if (!may_meet(box, touch_box + PLIANT_TOUCH_BOX * node[0], margin, ahead)) {
+      if (!MAY_MEET(k, node)) {
         k = listed ? k + 1 : node[1];
         continue;
       }
       ++k;
       if (node[3] - node[2] != 1) continue;
       const float far = farthest(box, touch_box + PLIANT_TOUCH_BOX * node[0], margin, ahead);
-      for (int j = node[2] * PLIANT_TILE; j < node[3] * PLIANT_TILE; ++j) {
-        __global const float* x = touch_place + PLIANT_TOUCH_PLACE * j;
-        const float dx = x[0] - box[0], dy = x[1] - box[2], dz = x[2] - box[4];
-        if (!(dot3(dx, dx, dy, dy, dz, dz) < far * far)) continue;
-        if (j == i || !(touch_surface[POINT_BASE(j, PLIANT_TOUCH_SURFACE) + 22 * PLIANT_TILE] > 0.0f)) continue;
-        int before = 0;
-        while (before < TOUCH_SLOTS && old[before] != j + 1) ++before;
-        const int known = before < TOUCH_SLOTS && kept[before < TOUCH_SLOTS ? before : 0][0] > 0.0f;  // partners of each other before
-        float offset;
-        const float w = weight_of(touch_place, touch_surface, touch_rest, contact_node, i < j ? i : j, i < j ? j : i,
-                                  known, known ? kept[before][1] : 0.0f, margin, ahead, ease, &offset);
-        if (!(w > 0.0f)) continue;
-        int slot = filled;
-        if (filled == TOUCH_SLOTS) {
-          slot = 0;
-          for (int s = 1; s < TOUCH_SLOTS; ++s) slot = weight[s * PLIANT_TILE] < weight[slot * PLIANT_TILE] ? s : slot;
-          if (!(w > weight[slot * PLIANT_TILE])) continue;
-        } else {
-          ++filled;
-        }
-        partner[slot * PLIANT_TILE] = j + 1;
-        weight[slot * PLIANT_TILE] = w;
-        __global float* numbers = touch_pair + pair_base(i, slot);
-        numbers[PLIANT_TILE] = offset;
-        for (int c = 2; c < PLIANT_TOUCH_PAIR; ++c) numbers[c * PLIANT_TILE] = known ? kept[before][c] : 0.0f;
-      }
+      try_tile(&partners, i, node[2], far, spacing, margin, ahead, ease, touch_place, touch_surface, touch_rest, contact_node, touch_partner, touch_pair,
+               touch_weight);
     }
     float sum = 0.0f;
-    for (int s = 0; s < filled; ++s) {
-      const int j = partner[s * PLIANT_TILE] - 1;
-      sum = fma(contact_rest[POINT_BASE(j, 4) + 3 * PLIANT_TILE], weight[s * PLIANT_TILE], sum);
+    for (int s = 0; s < partners.filled; ++s) {
+      const int j = touch_partner[POINT_BASE(i, TOUCH_SLOTS) + s * PLIANT_TILE] - 1;
+      sum = fma(contact_rest[POINT_BASE(j, 4) + 3 * PLIANT_TILE], touch_weight[POINT_BASE(i, TOUCH_SLOTS + 1) + s * PLIANT_TILE], sum);
     }
-    weight[TOUCH_SLOTS * PLIANT_TILE] = sum;
-    if (filled > 0) any = PLIANT_TOUCH_BIT;
+    touch_weight[POINT_BASE(i, TOUCH_SLOTS + 1) + TOUCH_SLOTS * PLIANT_TILE] = sum;
+    if (partners.filled > 0) any = PLIANT_TOUCH_BIT;
   }
   const int before = contact_near[tile], near = (before & ~PLIANT_TOUCH_BIT) | any;
   for (int i = tile * PLIANT_TILE; i < (tile + 1) * PLIANT_TILE && near == 0 && before != 0; ++i) contact_yield[i] = 0.0f;

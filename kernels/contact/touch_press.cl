@@ -8,11 +8,85 @@
 // touch_depth: [points] largest depth of a point inside its partners, averaged over their area, at the start of a step since the last read by the
 // host [m].
 #include "arith.cl"
+#include "texels.cl"
 #include "contact_shape.cl"
 #include "contact_point.cl"
 #include "touch_point.cl"
+#include "touch_lanes.cl"
+#include "touch_meeting.cl"
 
 #define TOUCH_START 4.0f  // [ease of an offset] largest depth at the start of a step, a sixth of a spacing at most
+
+// The sums over the pairs of a point.
+typedef struct {
+  quanta3 force;
+  integer touching;
+  real pressed, inside;
+  vec3 lever;
+} press_sums;
+
+// Friction of pairs towards their anchors, at most `most`, added to `f`; anchors are set where there are none.
+INLINE vec3 press_friction(integer pushes, lower_frame frame, lanes_meeting m, real stiffness, real most, __global float* anchor, vec3 f) {
+  const integer fresh = LOAD(anchor, 3 * PLIANT_TILE) == 0.0f;
+  const vec3 begins = into_lower(frame, sub(m.apart, m.moved)), stuck = where(fresh, begins, load3(anchor));
+  const real one = 1.0f;
+  put_real(pushes && fresh, begins.x, anchor, 0);
+  put_real(pushes && fresh, begins.y, anchor, 1);
+  put_real(pushes && fresh, begins.z, anchor, 2);
+  put_real(pushes && fresh, one, anchor, 3);
+  const vec3 side = slip_of_lanes(frame, m, stuck);
+  const real length = sqrt(dot_lanes(side, side));
+  return times_add(stiffness * length > most ? -(most / length) : -stiffness, side, f);
+}
+
+// One slot of pairs of the points from `first` on. used: the lanes that have one.
+INLINE void press_pairs(integer used, integer is_lower, touch_lanes mine, __global const float* touch_place, __global const int* partner,
+                        __global float* numbers, __global int* own, real within, __global const float* contact_params, press_sums* sums) {
+  const float inverse = contact_params[1], friction = contact_params[7], far = 0.48f * contact_params[5];
+  const real none = 0.0f, area = LOAD(numbers, 0);
+  const integer zero = 0, one = 1, pairs = used && area > 0.0f;
+  put(used, zero, own, 3);
+  if (!ANY(pairs)) return;
+  __global float* anchor = numbers + 2 * PLIANT_TILE;
+  touch_lanes other;
+  load_front(touch_place, partner, &other);
+  lanes_meeting m = begin_meeting(is_lower, mine, other);
+  const real front = front_of_lanes(m), w = mine.yielding + other.yielding;
+  sums->touching |= pick(pairs && front < within, (integer)(PLIANT_READY_BIT), zero);
+  const integer meets = pairs && front < far && w > 0.0f;
+  if (!ANY(meets)) {
+    put_real(pairs, none, anchor, 3);
+    return;
+  }
+  load_tilt(touch_place, partner, &other);
+  end_meeting(is_lower, mine, other, &m);
+  const real sparse = mine.density < other.density ? mine.density : other.density, offset = LOAD(numbers, PLIANT_TILE);
+  const real most = dot_lanes(sub(m.apart, m.moved), m.normal) + (TOUCH_START * contact_params[8]) / sparse;
+  const real kept = meets && offset > most ? most : offset;
+  STORE(kept, numbers, PLIANT_TILE);
+  const real depth = kept - m.gap;
+  const integer pushes = meets && depth > 0.0f;
+  put_real(pairs && !pushes, none, anchor, 3);
+  if (!ANY(pushes)) return;
+  const real stiffness = area / w, push = stiffness * depth, before = dot_lanes(m.moved, m.normal) - m.gap;
+  vec3 f = times(push, m.normal);
+  if (friction > 0.0f) {
+    load_tangent(touch_place, partner, &other);
+    f = press_friction(pushes, frame_of_lower(is_lower, mine, other), m, stiffness, friction * push, anchor, f);
+  }
+  sums->lever = where(pushes, times_add(is_lower ? push : -push, m.arm, sums->lever), sums->lever);
+  const quanta3 q = negated_where(!is_lower, quanta3_of(f, inverse));
+  put(pushes, q.x, own, 0);
+  put(pushes, q.y, own, 1);
+  put(pushes, q.z, own, 2);
+  put(pushes, one, own, 3);
+  sums->force.x += pick(pushes, q.x, zero);
+  sums->force.y += pick(pushes, q.y, zero);
+  sums->force.z += pick(pushes, q.z, zero);
+  sums->touching |= pick(pushes, (integer)(PLIANT_TOUCH_BIT), zero);
+  sums->pressed = pushes ? sums->pressed + area : sums->pressed;
+  sums->inside = pushes ? fma(area, before, sums->inside) : sums->inside;
+}
 
 __kernel void touch_press(__global const float* touch_place, __global const int* contact_list, __global const int* contact_near, __global const float* contact_yield,
                           __global const int* contact_force,
@@ -22,75 +96,31 @@ __kernel void touch_press(__global const float* touch_place, __global const int*
   if (first < 0) return;
   const int near = contact_near[first / PLIANT_TILE];
   if (near == 0) return;
-  const float inverse = contact_params[1], friction = contact_params[7];
-  for (int i = first; i < first + LANES; ++i) {
-    __global const int* force = contact_force + POINT_BASE(i, 4);
-    __global int* change = contact_change + POINT_BASE(i, 4);
-    int4 sum = 0;
-    int touching = 0;
-    const float far = 0.48f * contact_params[5], within = (2.0f * ready_share(contact_yield[i])) * contact_params[5];
-    float pressed = 0.0f, inside = 0.0f;
-    float4 lever = 0.0f;
-    const touch_state mine = state_of(touch_place, i);
-    if ((near & ~PLIANT_TOUCH_BIT) != 0) {  // the forces of tools
-      sum = (int4)(force[0], force[PLIANT_TILE], force[2 * PLIANT_TILE], 0);
-      touching = force[3 * PLIANT_TILE];
-    }
-    for (int s = 0; s < TOUCH_SLOTS && (near & PLIANT_TOUCH_BIT) != 0; ++s) {
-      const int j = touch_partner[POINT_BASE(i, TOUCH_SLOTS) + s * PLIANT_TILE] - 1;
-      if (j < 0) break;  // used slots come first
-      __global float* numbers = touch_pair + pair_base(i, s);
-      __global int* own = touch_force + pair_force_base(i, s);
-      own[3 * PLIANT_TILE] = 0;
-      if (!(numbers[0] > 0.0f)) continue;
-      const touch_state other = state_of(touch_place, j), lower = i < j ? mine : other, upper = i < j ? other : mine;
-      const float w = lower.yielding + upper.yielding;
-      __global float* anchor = numbers + 2 * PLIANT_TILE;
-      const float4 moved = lower.moved - upper.moved;
-      const float front = front_of(lower, upper, moved);
-      if (front < within) touching |= PLIANT_READY_BIT;
-      if (!(front < far) || !(w > 0.0f)) {
-        anchor[3 * PLIANT_TILE] = 0.0f;
-        continue;
-      }
-      const touch_meeting m = meeting_of(lower, upper);
-      const float sparse = lower.density < upper.density ? lower.density : upper.density;
-      const float most = dot_xyz(m.apart - moved, m.normal) + (TOUCH_START * contact_params[8]) / sparse;
-      if (numbers[PLIANT_TILE] > most) numbers[PLIANT_TILE] = most;
-      const float depth = numbers[PLIANT_TILE] - m.gap;
-      if (!(depth > 0.0f)) {
-        anchor[3 * PLIANT_TILE] = 0.0f;
-        continue;
-      }
-      const float stiffness = numbers[0] / w, push = stiffness * depth, before = dot_xyz(moved, m.normal) - m.gap;
-      float4 f = m.normal * push;
-      if (friction > 0.0f) {
-        if (anchor[3 * PLIANT_TILE] == 0.0f) {
-          set_three(anchor, into_frame(lower, m.apart - moved));
-          anchor[3 * PLIANT_TILE] = 1.0f;
-        }
-        const float4 side = slip_of(lower, m, three(anchor));
-        const float length = sqrt(dot_xyz(side, side)), most = friction * push;
-        f = fma((float4)(stiffness * length > most ? -(most / length) : -stiffness), side, f);
-      }
-      lever = fma((float4)(i < j ? push : -push), m.arm, lever);
-      int4 q = (int4)(quanta(f.x * inverse), quanta(f.y * inverse), quanta(f.z * inverse), 0);
-      if (i > j) q = -q;
-      own[0] = q.x;
-      own[PLIANT_TILE] = q.y;
-      own[2 * PLIANT_TILE] = q.z;
-      own[3 * PLIANT_TILE] = 1;
-      sum += q;
-      touching |= PLIANT_TOUCH_BIT;
-      pressed = pressed + numbers[0];
-      inside = fma(numbers[0], before, inside);
-    }
-    const float mean = pressed > 0.0f ? inside / pressed : 0.0f;
-    touch_depth[i] = mean > touch_depth[i] ? mean : touch_depth[i];
-    change[0] = sum.x;
-    change[PLIANT_TILE] = sum.y;
-    change[2 * PLIANT_TILE] = sum.z;
-    change[3 * PLIANT_TILE] = touching;
-    if ((near & PLIANT_TOUCH_BIT) != 0) set_moment(touch_moment, i, mine, lever, inverse);
+  const real none = 0.0f, yield = LOAD(contact_yield, first), again = READY_AGAIN, fresh = READY_NEW;
+  const real within = (2.0f * (yield > 0.0f ? again : fresh)) * contact_params[5];  // ready_share
+  const integer zero = 0, i = first + LANE_INDEX;
+  const touch_lanes mine = own_lanes(touch_place, first);
+  press_sums sums = {{zero, zero, zero}, zero, none, none, {none, none, none}};
+  if ((near & ~PLIANT_TOUCH_BIT) != 0) {  // the forces of tools
+    __global const int* force = contact_force + POINT_BASE(first, 4);
+    sums.force.x = LOAD(force, 0);
+    sums.force.y = LOAD(force, PLIANT_TILE);
+    sums.force.z = LOAD(force, 2 * PLIANT_TILE);
+    sums.touching = LOAD(force, 3 * PLIANT_TILE);
   }
+  for (int s = 0; s < TOUCH_SLOTS && (near & PLIANT_TOUCH_BIT) != 0; ++s) {
+    __global const int* partner = touch_partner + POINT_BASE(first, TOUCH_SLOTS) + s * PLIANT_TILE;
+    const integer j = LOAD(partner, 0) - 1, used = j >= 0;
+    if (!ANY(used)) break;  // used slots come first
+    press_pairs(used, i < j, mine, touch_place, partner, touch_pair + pair_base(first, s), touch_force + pair_force_base(first, s), within,
+                contact_params, &sums);
+  }
+  const real mean = sums.pressed > 0.0f ? sums.inside / sums.pressed : none, deepest = LOAD(touch_depth, first);
+  STORE(mean > deepest ? mean : deepest, touch_depth, first);
+  __global int* change = contact_change + POINT_BASE(first, 4);
+  STORE(sums.force.x, change, 0);
+  STORE(sums.force.y, change, PLIANT_TILE);
+  STORE(sums.force.z, change, 2 * PLIANT_TILE);
+  STORE(sums.touching, change, 3 * PLIANT_TILE);
+  if ((near & PLIANT_TOUCH_BIT) != 0) set_moments(touch_moment, first, mine, sums.lever, contact_params[1]);
 }

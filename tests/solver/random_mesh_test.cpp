@@ -54,32 +54,45 @@ TEST(RandomMeshes, LockstepOnOpenclAndTwins) {
   }
 }
 
-TEST(RandomMeshes, SameStateWhateverLanesGroupsAndThreads) {
-  unsigned seed = 100;
-  for (const Discretization cut : all_cuts()) {
-    const Scene scene = random_scene(cut, Law::neo_hookean, seed++);
-    Simulation first(scene, open_backend("cpu"));
-    first.advance(30);
-    const auto expect_same = [&](std::unique_ptr<Backend> backend, const std::string& what) {
-      Simulation other(scene, first.shared_model(), std::move(backend));
-      other.advance(30);
-      EXPECT_EQ(other.hash(), first.hash()) << name_of(cut) << " with " << what;
-    };
-    for (const int threads : {1, 2, 3}) {
-      RefOptions options;
-      options.threads = threads;
-      expect_same(make_ref_backend(options), std::to_string(threads) + " threads");
-    }
-    if (!testing::has_opencl()) continue;
-    for (const int lanes : {1, 16}) {
-      for (const int local : {0, 1, 4}) {
-        OpenclOptions options;
-        options.lanes = lanes;
-        options.local_size = local;
-        expect_same(make_opencl_backend(0, options), std::to_string(lanes) + " lanes, groups of " + std::to_string(local));
-      }
+/// Calls f(backend, its name) for the twins on several threads and OpenCL with several lanes and groups.
+template <class F>
+void for_all_splits(const F& f) {
+  for (const int threads : {1, 2, 3}) {
+    RefOptions options;
+    options.threads = threads;
+    f(make_ref_backend(options), std::to_string(threads) + " threads");
+  }
+  if (!testing::has_opencl()) return;
+  for (const int lanes : {1, 16}) {
+    for (const int local : {0, 1, 4}) {
+      OpenclOptions options;
+      options.lanes = lanes;
+      options.local_size = local;
+      f(make_opencl_backend(0, options), std::to_string(lanes) + " lanes, groups of " + std::to_string(local));
     }
   }
+}
+
+/// The state after `steps` is that of the twins.
+void expect_one_state(const Scene& scene, std::int64_t steps, const std::string& name) {
+  Simulation first(scene, open_backend("cpu"));
+  first.advance(steps);
+  for_all_splits([&](std::unique_ptr<Backend> backend, const std::string& what) {
+    Simulation other(scene, first.shared_model(), std::move(backend));
+    other.advance(steps);
+    EXPECT_EQ(other.hash(), first.hash()) << name << " with " << what;
+  });
+}
+
+TEST(RandomMeshes, SameStateWhateverLanesGroupsAndThreads) {
+  unsigned seed = 100;
+  for (const Discretization cut : all_cuts()) expect_one_state(random_scene(cut, Law::neo_hookean, seed++), 30, name_of(cut));
+}
+
+/// Devices with one lane read other lists of contact than those with sixteen. A needle with edges, and bodies that touch.
+TEST(ContactOnAllSplits, SameStateWhateverLanesGroupsAndThreads) {
+  for (const char* name : {"needle", "stack"})
+    expect_one_state(load_scene(test::source_dir() + "/scenes/" + name + ".json"), 200, name);
 }
 
 }  // namespace

@@ -68,6 +68,8 @@ void check_pass(const Pass& pass, std::size_t buffers) {
     fail(fmt::format("count {} is outside [0, 2147483647]", pass.count));
   }
   if (pass.shape == Shape::lanes && pass.count % 16 != 0) fail(fmt::format("count {} is not a multiple of 16", pass.count));
+  if (pass.active != nullptr && pass.shape != Shape::lanes && pass.shape != Shape::items)
+    fail("only passes over lanes or items run over lists");
 }
 
 void check_extension(const Program& extension, std::size_t buffers) {

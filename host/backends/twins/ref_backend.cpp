@@ -122,7 +122,7 @@ class RefBackend final : public ref::TwinBackend<Storage<Scalar>, PreparedPass<S
 
   /// Few indices or bricks are not worth a second thread.
   static bool splits(const Prepared& p, std::int64_t count) {
-    return count >= (p.shape == Shape::bricks ? 4 : p.uneven ? (p.shape == Shape::items ? 64 : 256) : 1024);
+    return count >= (p.shape == Shape::bricks ? 4 : p.uneven ? (p.shape == Shape::lanes ? 256 : 64) : 1024);
   }
 
   /// Number of portions per thread of an uneven pass.

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <set>
 #include <tuple>
+#include <unordered_map>
 
 #include "geometry/vec.h"
 #include "model/contact/contact.h"
@@ -49,29 +50,54 @@ class LatticeSampler {
 
   void sample(ContactPoints& points) {
     for (std::int32_t t = b_.first_triangle; t < b_.first_triangle + b_.triangles; ++t) divide(t);
-    std::sort(samples_.begin(), samples_.end(), [](const Sample& x, const Sample& y) {
-      return std::tie(x.side, x.half, x.nodes, x.order) < std::tie(y.side, y.half, y.nodes, y.order);
-    });
-    for (std::size_t i = 0; i < samples_.size() && patches_; ++i) halves_.insert({half_cell(samples_[i]), samples_[i].side});
-    for (std::size_t first = 0; first < samples_.size();) {
-      std::size_t last = first + 1;
-      while (last < samples_.size() && samples_[last].side == samples_[first].side &&
-             samples_[last].half == samples_[first].half && samples_[last].nodes == samples_[first].nodes)
-        ++last;
-      gather(first, last, points);
-      first = last;
-    }
+    for (std::size_t i = 0; i < samples_.size() && patches_; ++i)
+      halves_.insert({half_cell(samples_[i]), of(samples_[i]).side});
+    std::vector<std::size_t> order(groups_.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t k) { return groups_[i] < groups_[k]; });
+    const std::vector<std::vector<std::size_t>> members = members_of_groups();
+    for (const std::size_t group : order) gather(members[group], points);
   }
 
  private:
-  struct Sample {
+  /// Samples that become one point: in one half of a cell, and facing the same way.
+  struct Group {
+    int side = 0, half = 0;
     Slots nodes{};
-    Vec3d local{};  ///< position in its cell, in [0, 1]
-    int half = 0, side = 0;
-    std::int64_t order = 0;
+    bool operator<(const Group& other) const {
+      return std::tie(side, half, nodes) < std::tie(other.side, other.half, other.nodes);
+    }
+    bool operator==(const Group& other) const { return side == other.side && half == other.half && nodes == other.nodes; }
+  };
+  struct HashOfGroup {
+    std::size_t operator()(const Group& g) const {
+      std::uint64_t hash = static_cast<std::uint64_t>(8 * g.side + g.half);
+      for (const std::int32_t n : g.nodes) hash = (hash ^ static_cast<std::uint64_t>(n)) * 0x9e3779b97f4a7c15U;
+      return static_cast<std::size_t>(hash ^ hash >> 32);
+    }
+  };
+  struct Sample {
+    std::size_t group = 0;
+    Vec3d local{};        ///< position in its cell, in [0, 1]
     Vec3d x{}, normal{};  ///< normal of unit length
     double area = 0;
   };
+  [[nodiscard]] const Group& of(const Sample& s) const { return groups_[s.group]; }
+
+  /// Index of a group. Neighbouring samples mostly have the same.
+  [[nodiscard]] std::size_t group_of(const Group& group) {
+    if (!groups_.empty() && groups_[last_] == group) return last_;
+    const auto [found, added] = index_.try_emplace(group, groups_.size());
+    if (added) groups_.push_back(group);
+    return last_ = found->second;
+  }
+  /// [groups] the samples of each, in the order of the triangles.
+  [[nodiscard]] std::vector<std::vector<std::size_t>> members_of_groups() const {
+    std::vector<std::vector<std::size_t>> members(groups_.size());
+    for (std::size_t i = 0; i < samples_.size(); ++i) members[samples_[i].group].push_back(i);
+    return members;
+  }
+
   /// A cell in which a vertex is embedded.
   struct Place {
     Slots nodes{};
@@ -101,28 +127,31 @@ class LatticeSampler {
     const int n = std::max(1, static_cast<int>(std::ceil(longest / (kSample * d_))));
     std::array<Place, 3> places;
     for (std::size_t c = 0; c < 3; ++c) places[c] = place_of(triangle[c]);
+    const Vec3d unit = vec::mul(normal, 1 / vec::norm(normal)), inwards = vec::mul(normal, -kInside * d_ / vec::norm(normal));
+    const int side = side_of(normal);
     for (int i = 0; i < n; ++i) {
       for (int j = 0; j < 2 * (n - i) - 1; ++j) {  // small triangles of row i, every second one inverted
         const double up = j % 2 == 0 ? 1.0 / 3 : 2.0 / 3;
         const double a = (i + up) / n, b = (j / 2 + up) / n;
-        add(between(x, {1 - a - b, a, b}), places, normal, area / (static_cast<double>(n) * n));
+        add(between(x, {1 - a - b, a, b}), places, unit, inwards, side, area / (static_cast<double>(n) * n));
       }
     }
   }
 
-  void add(const Vec3d& x, const std::array<Place, 3>& places, const Vec3d& normal, double area) {
+  /// `normal`: of unit length; `inwards`: from a sample to where its cell is determined [m].
+  void add(const Vec3d& x, const std::array<Place, 3>& places, const Vec3d& normal, const Vec3d& inwards, int side,
+           double area) {
     Sample s;
     s.x = x;
-    s.normal = vec::mul(normal, 1 / vec::norm(normal));
+    s.normal = normal;
     s.area = area;
-    s.order = static_cast<std::int64_t>(samples_.size());
-    const Place place = choose(vec::add(x, vec::mul(normal, -kInside * d_ / vec::norm(normal))), places);
-    s.nodes = place.nodes;
+    const Place place = choose(vec::add(x, inwards), places);
+    Group group{side, 0, place.nodes};
     for (std::size_t c = 0; c < 3; ++c) {
       s.local[c] = std::clamp((x[c] - place.corner[c]) / d_, 0.0, 1.0);
-      if (s.local[c] >= 0.5) s.half |= 1 << c;
+      if (s.local[c] >= 0.5) group.half |= 1 << c;
     }
-    s.side = side_of(normal);
+    s.group = group_of(group);
     samples_.push_back(s);
   }
 
@@ -139,10 +168,14 @@ class LatticeSampler {
   /// sample's own cell that shares most nodes with the corners' cells.
   [[nodiscard]] Place choose(const Vec3d& x, const std::array<Place, 3>& places) {
     std::size_t nearest = 0;
-    for (std::size_t c = 1; c < 3; ++c) {
-      if (outside(x, places[c]) < outside(x, places[nearest])) nearest = c;
+    double least = outside(x, places[0]);
+    for (std::size_t c = 1; c < 3 && least > 0; ++c) {
+      const double out = outside(x, places[c]);
+      if (out >= least) continue;
+      least = out;
+      nearest = c;
     }
-    if (outside(x, places[nearest]) < 1e-6) return places[nearest];
+    if (least < 1e-6) return places[nearest];
     if (cells_.empty()) list_cells();
     const auto found = cells_.find(index_of(vec::sub(x, {d_ / 2, d_ / 2, d_ / 2})));
     if (found == cells_.end()) return places[nearest];
@@ -188,7 +221,7 @@ class LatticeSampler {
   [[nodiscard]] PatchSides sides_of(const Sample& s) const {
     PatchSides sides{};
     for (std::size_t c = 0; c < 3; ++c) {
-      const double low = (s.half >> c & 1) != 0 ? 0.5 : 0;
+      const double low = (of(s).half >> c & 1) != 0 ? 0.5 : 0;
       for (const int way : {1, -1}) {
         PatchSide& side = sides[2 * c + (way > 0 ? 0 : 1)];
         side.normal[c] = way;
@@ -204,7 +237,7 @@ class LatticeSampler {
     Index index{};
     for (std::size_t c = 0; c < 3; ++c) {
       const double corner = s.x[c] - s.local[c] * d_;
-      index[c] = 2 * std::llround((corner - b_.rest[0][c]) / d_) + (s.half >> c & 1);
+      index[c] = 2 * std::llround((corner - b_.rest[0][c]) / d_) + (of(s).half >> c & 1);
     }
     return index;
   }
@@ -213,30 +246,34 @@ class LatticeSampler {
   [[nodiscard]] bool goes_on(const Sample& s, std::size_t axis, int way) const {
     Index next = half_cell(s);
     next[axis] += way;
-    const auto up = static_cast<std::size_t>(s.side / 2);
+    const int side = of(s).side;
+    const auto up = static_cast<std::size_t>(side / 2);
     for (const int rise : {0, 1, -1}) {
       Index at = next;
       at[up] += rise;
-      if (halves_.count({at, s.side}) != 0) return true;
+      if (halves_.count({at, side}) != 0) return true;
     }
     return false;
   }
 
   /// Makes one point of a group, at the sample nearest to the group's mean position.
-  void gather(std::size_t first, std::size_t last, ContactPoints& points) const {
+  void gather(const std::vector<std::size_t>& members, ContactPoints& points) const {
     Vec3d middle{}, normal{};
     double area = 0;
-    for (std::size_t i = first; i < last; ++i) {
+    for (const std::size_t i : members) {
       normal = vec::add(normal, vec::mul(samples_[i].normal, samples_[i].area));
       middle = vec::add(middle, vec::mul(samples_[i].x, samples_[i].area));
       area += samples_[i].area;
     }
     if (area < kLeastArea * d_ * d_) return;  // too small for a reliable normal
     middle = vec::mul(middle, 1 / area);
-    std::size_t best = first;
-    const auto distance = [&](std::size_t i) { return vec::norm(vec::sub(samples_[i].x, middle)); };
-    for (std::size_t i = first; i < last; ++i) {
-      if (distance(i) < distance(best)) best = i;
+    std::size_t best = members.front();
+    double least = vec::norm(vec::sub(samples_[best].x, middle));
+    for (const std::size_t i : members) {
+      const double distance = vec::norm(vec::sub(samples_[i].x, middle));
+      if (distance >= least) continue;
+      least = distance;
+      best = i;
     }
     const Sample& s = samples_[best];
     std::array<double, 8> weights{};
@@ -244,7 +281,7 @@ class LatticeSampler {
       weights[a] = 1;
       for (std::size_t c = 0; c < 3; ++c) weights[a] *= (a >> c & 1) != 0 ? s.local[c] : 1 - s.local[c];
     }
-    add_contact_point(points, s.x, s.nodes, weights, area, body_, normal, d_ / 2);
+    add_contact_point(points, s.x, of(s).nodes, weights, area, body_, normal, d_ / 2);
     if (patches_) points.sides.push_back(sides_of(s));
   }
 
@@ -254,6 +291,9 @@ class LatticeSampler {
   double d_;
   bool patches_;
   std::vector<Sample> samples_;
+  std::vector<Group> groups_;
+  std::unordered_map<Group, std::size_t, HashOfGroup> index_;
+  std::size_t last_ = 0;
   std::map<Index, std::vector<Place>> cells_;
   std::set<std::pair<Index, int>> halves_;
 };

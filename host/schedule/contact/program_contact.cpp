@@ -188,33 +188,35 @@ GatherList rows_of(const std::vector<std::vector<PointAtNode>>& entries, Number 
   return pack_rows(values, none);
 }
 
-/// The tiles of points at each tile of nodes, ascending, and for each of them the positions in the rows of the entries that
-/// lead there, in the order of rows.
+/// The tiles of points at each tile of nodes, ascending, and for each of them the entries that lead there, in the order of rows
+/// (contact_apply.cl).
 struct TilesAtNodes {
   std::vector<std::int32_t> offset{0}, tiles, entry_offset{0}, entry;
 };
 
 TilesAtNodes tiles_at_nodes(const std::vector<std::vector<PointAtNode>>& entries, const GatherList& rows, std::size_t tiles) {
   TilesAtNodes list;
-  std::vector<std::vector<std::int32_t>> at(tiles);  // of the tile of nodes at work
+  std::vector<std::vector<std::int32_t>> at(tiles);  // of the tile of nodes at work: four numbers of each entry
   for (std::size_t begin = 0; begin < entries.size(); begin += PLIANT_TILE) {
     const std::size_t before = list.tiles.size();
     const std::int32_t first = rows.offset[begin / PLIANT_TILE], last = rows.offset[begin / PLIANT_TILE + 1];
     for (std::int32_t row = first; row < last; ++row) {
       for (std::int32_t l = 0; l < PLIANT_TILE; ++l) {
-        if (static_cast<std::size_t>(row - first) >= entries[begin + static_cast<std::size_t>(l)].size()) continue;
-        const std::int32_t position = row * PLIANT_TILE + l;
-        const std::int32_t tile = rows.index[static_cast<std::size_t>(position)] / (4 * PLIANT_TILE);
+        const std::vector<PointAtNode>& points = entries[begin + static_cast<std::size_t>(l)];
+        const auto k = static_cast<std::size_t>(row - first);
+        if (k >= points.size()) continue;
+        const PointAtNode& p = points[k];
+        const std::int32_t tile = p.at / (4 * PLIANT_TILE), lane = p.at % PLIANT_TILE;
         std::vector<std::int32_t>& own = at[static_cast<std::size_t>(tile)];
         if (own.empty()) list.tiles.push_back(tile);
-        own.push_back(position);
+        own.insert(own.end(), {l + 16 * lane + 256 * p.corner, p.units, p.turns[0], p.turns[1]});
       }
     }
     std::sort(list.tiles.begin() + static_cast<std::ptrdiff_t>(before), list.tiles.end());
     for (std::size_t t = before; t < list.tiles.size(); ++t) {
       std::vector<std::int32_t>& own = at[static_cast<std::size_t>(list.tiles[t])];
       list.entry.insert(list.entry.end(), own.begin(), own.end());
-      list.entry_offset.push_back(static_cast<std::int32_t>(list.entry.size()));
+      list.entry_offset.push_back(static_cast<std::int32_t>(list.entry.size() / 4));
       own.clear();
     }
     list.offset.push_back(static_cast<std::int32_t>(list.tiles.size()));
@@ -249,7 +251,7 @@ void ProgramBuilder::add_contact_gather() {
   add(make_ints("contact_tiles_offset", BufferRole::constant, "[tiles + 1]", std::move(tiles.offset)));
   add(make_ints("contact_tiles", BufferRole::constant, "[tiles of points]", std::move(tiles.tiles)));
   add(make_ints("contact_entry_offset", BufferRole::constant, "[tiles of points + 1]", std::move(tiles.entry_offset)));
-  add(make_ints("contact_entry", BufferRole::constant, "[entries]", std::move(tiles.entry)));
+  add(make_ints("contact_entry", BufferRole::constant, "[entries][4]", std::move(tiles.entry)));
   add(make_ints("contact_gather_offset", BufferRole::constant, "[tiles + 1]", std::move(where.offset)));
   add(make_ints("contact_gather", BufferRole::constant, "[rows][16]", std::move(where.index)));
   add(make_ints("contact_gather_units", BufferRole::constant, "[rows][16]",

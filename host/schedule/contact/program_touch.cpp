@@ -110,7 +110,7 @@ void ProgramBuilder::add_touch() {
   add(make_ints("touch_force", BufferRole::scratch, "[tiles][16 slots][4][16]", {},
                 PLIANT_TOUCH_SLOTS * PLIANT_TOUCH_FORCE * count, "touch_press"));
   program_.buffers.back().carried = Carried::all;
-  add(make_ints("touch_moment", BufferRole::scratch, "[tiles][6][16]", {}, PLIANT_TOUCH_MOMENT * count,
+  add(make_ints("touch_moment", BufferRole::scratch, "[points][8]", {}, PLIANT_TOUCH_MOMENT * count,
                 "touch_press, touch_settle"));
   program_.buffers.back().carried = Carried::all;
 }
@@ -127,13 +127,13 @@ void ProgramBuilder::add_touch_look() {
   pass("touch_box",
        named(
            {"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "touch_surface", "touch_place", "touch_box"}),
-       Shape::items, tiles, "boxes of contact points", 16 * 350.0);
+       Shape::tiles, tiles, "boxes of contact points", 16 * 350.0);
   pass("touch_tree", named({"touch_node", "touch_box"}), Shape::items, nodes, "boxes of tiles", 100);
   std::vector<Arg> pair =
       named({"touch_place", "touch_box", "touch_node", "touch_surface", "touch_rest", "contact_rest", "contact_node",
              "touch_partner", "touch_pair", "touch_weight", "contact_near", "contact_yield", "contact_params"});
   pair.push_back(int_arg(static_cast<std::int32_t>(nodes)));
-  pass("touch_pair", std::move(pair), Shape::items, tiles, "partners", 16 * 200.0);
+  pass("touch_pair", std::move(pair), Shape::tiles, tiles, "partners", 16 * 200.0);
   pass("touch_share", named({"contact_rest", "contact_near", "touch_partner", "touch_weight", "touch_pair"}), Shape::lanes,
        points, "areas of pairs", 0.25);
 }

@@ -46,5 +46,27 @@ TEST(PlanLaunches, ABrickIsAGroupOnAProcessorAndWhereGroupsAreSmall) {
   }
 }
 
+TEST(PlanLaunches, ATileIsAWorkItemWhateverTheLanes) {
+  for (const int lanes : {1, 16}) {
+    for (const bool cpu : {false, true}) {
+      for (const int count : {1, 3, 64, 403, 4099}) {
+        Pass pass;
+        pass.shape = Shape::tiles;
+        pass.count = count;
+        LaunchRules rules = gpu();
+        rules.lanes = lanes;
+        rules.cpu = cpu;
+        std::size_t next = 0;
+        for (const Launch& launch : plan_launches(pass, rules)) {
+          EXPECT_EQ(launch.offset, next) << count;
+          EXPECT_EQ(launch.global % launch.local, 0U) << count;
+          next = launch.offset + launch.global;
+        }
+        EXPECT_EQ(next, static_cast<std::size_t>(count));
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace pliant

@@ -203,10 +203,12 @@ struct ContactData {
         for (std::size_t row = 0; row < most; ++row) {
           for (std::size_t l = 0; l < 16; ++l) {
             const std::size_t position = 16 * (static_cast<std::size_t>(gather_offset.back()) + row) + l;
-            if (row < at[first + l].size() && gather[position] / 64 == tiles[t]) entry.push_back(static_cast<int>(position));
+            if (row >= at[first + l].size() || gather[position] / 64 != tiles[t]) continue;
+            const auto& own = at[first + l][row];
+            entry.insert(entry.end(), {static_cast<int>(l) + 16 * (own[0] % 16) + 256 * own[4], own[1], own[2], own[3]});
           }
         }
-        entry_offset.push_back(static_cast<int>(entry.size()));
+        entry_offset.push_back(static_cast<int>(entry.size() / 4));
       }
       node_list.push_back(static_cast<std::int32_t>(first / 16));
       gather_offset.push_back(gather_offset.back() + static_cast<std::int32_t>(most));

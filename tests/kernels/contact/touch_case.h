@@ -183,7 +183,7 @@ struct TouchData : ContactData {
 };
 
 inline KernelCase touch_box_case(const TouchData& d) {
-  KernelCase test("touch_box", {}, Shape::items, d.points / 16);
+  KernelCase test("touch_box", {}, Shape::tiles, d.points / 16);
   add_points(test, d).reals("touch_surface", d.surface).reals("touch_place", d.place).reals("touch_box", d.box);
   return test;
 }
@@ -195,7 +195,7 @@ inline KernelCase touch_tree_case(const TouchData& d) {
 }
 
 inline KernelCase touch_pair_case(const TouchData& d) {
-  KernelCase test("touch_pair", {}, Shape::items, d.points / 16);
+  KernelCase test("touch_pair", {}, Shape::tiles, d.points / 16);
   test.reals("touch_place", d.place)
       .reals("touch_box", d.box)
       .ints("touch_node", d.tree)

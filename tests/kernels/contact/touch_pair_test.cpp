@@ -13,6 +13,7 @@ class TouchPair : public TwinTest {};
 
 TEST_F(TouchPair, TwinGivesTheSameBits) {
   for_touch_data(1400, [&](const TouchData& d, const std::string& label) { expect_same_bits(touch_pair_case(d), label); });
+  expect_same_bits(touch_pair_case(TouchData(1500, Data::large, 66 * 16)), "more tiles near than are listed");
 }
 
 /// The numbers of a pair that both points have had; null: none.
@@ -114,8 +115,8 @@ TEST(TouchPairOracle, PartnersAreThoseOfASearchThroughAllPairs) {
   EXPECT_GT(kept, 100);
 }
 
-/// Of more partners than there is room for those with the largest weights stay.
-TEST(TouchPairOracle, TheWeakestGiveWay) {
+/// Points that each have seventeen others before them.
+TouchData crowd() {
   TouchData d(1700, Data::large, 32);
   for (std::size_t i = 0; i < 32; ++i) {
     const bool high = i >= 16 || i == 0;
@@ -129,6 +130,14 @@ TEST(TouchPairOracle, TheWeakestGiveWay) {
     d.touch_rest[ContactData::base(i, 4) + 48] = high ? 1 : 0;
   }
   d.make_boxes();
+  return d;
+}
+
+TEST_F(TouchPair, TwinDropsTheSamePartners) { expect_same_bits(touch_pair_case(crowd()), "crowd"); }
+
+/// Of more partners than there is room for those with the largest weights stay.
+TEST(TouchPairOracle, TheWeakestGiveWay) {
+  const TouchData d = crowd();
   const Reals found = ints_in_double(touch_pair_case(d), "touch_partner");
   std::set<int> partners;  // of point 1: 0 is nearest, 31 farthest; 17 points face it
   for (std::size_t s = 0; s < 16; ++s) partners.insert(static_cast<int>(found[ContactData::base(1, 16) + 16 * s]) - 1);
