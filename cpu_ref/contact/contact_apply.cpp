@@ -74,6 +74,7 @@ void contact_apply(Range range, Scalar* node_u, Scalar* node_w, const std::int32
       }
     }
     const std::int64_t slot = contact_slot[i];
+    if (slot < 0) continue;
     const std::int32_t free = contact_free[i];
     Scalar *u = node_u + 4 * slot, *w = node_w + 4 * slot, *out = contact_node_sum + 4 * slot;
     for (int c = 0; c < 3; ++c) out[c] = static_cast<Scalar>(sum.force[lane][c]) * quantum;

@@ -1,7 +1,7 @@
 // Applies the forces of contact points to their nodes immediately: u and w change by b c f / m. Forces are integer quanta and weights integer units,
-// so the sum over the nodes equals the sum over the points to the last bit, in any order. contact_slot: [nodes] slots; contact_free: [nodes] bit mask
-// of the free components; contact_node_list: tiles of nodes whose points are near something; contact_tiles_offset: [tiles + 1]; contact_tiles: the
-// tiles of points at each tile of nodes; contact_entry_offset: [tiles of contact_tiles + 1]; contact_entry: [entries][4] the entries of contact_gather
+// so the sum over the nodes equals the sum over the points to the last bit, in any order. contact_slot: [nodes] slots, -1: padding; contact_free: [nodes] bit
+// mask of the free components; contact_node_list: tiles of nodes whose points are near something; contact_tiles_offset: [tiles + 1]; contact_tiles:
+// the tiles of points at each tile of nodes; contact_entry_offset: [tiles of contact_tiles + 1]; contact_entry: [entries][4] the entries of contact_gather
 // that lead to that tile of points, in the order of rows: lane of the node + 16 * lane of the point + 256 * contact_gather_corner, weight in units,
 // both gradients; contact_gather_offset: [tiles + 1] rows; contact_gather: [rows][16] positions in contact_force; contact_gather_units: [rows][16]
 // weights in units; with MOMENT contact_gather_turns: [rows][2][16] gradients along both tangents in units, which sum to zero over a point's nodes, for
@@ -79,6 +79,7 @@ __kernel void contact_apply(__global float* node_u, __global float* node_w, __gl
 #endif
   for (int l = 0; l < LANES; ++l) {
     const int slot = contact_slot[first + l], free = contact_free[first + l];
+    if (slot < 0) continue;
     const float fx = (float)sum[l].x * quantum, fy = (float)sum[l].y * quantum, fz = (float)sum[l].z * quantum;
     __global float* u = node_u + 4 * slot;
     __global float* w = node_w + 4 * slot;

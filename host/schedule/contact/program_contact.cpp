@@ -239,7 +239,7 @@ void ProgramBuilder::add_contact_gather() {
     entries.push_back(std::move(node.points));
   }
   const std::size_t count = padded(slot.size());
-  slot.resize(count, model_.slots);
+  slot.resize(count, -1);
   free.resize(count, 0);
   entries.resize(count);
   GatherList where = rows_of(entries, [](const PointAtNode& p) { return p.at; });

@@ -181,7 +181,7 @@ struct ContactData {
     for (std::size_t first = 0; first < at.size(); first += 16) {
       std::size_t most = 0;
       for (std::size_t n = first; n < first + 16; ++n) {
-        slot.push_back(static_cast<std::int32_t>(std::min(n, slots)));
+        slot.push_back(n < slots ? static_cast<std::int32_t>(n) : -1);
         free.push_back(n < slots ? static_cast<std::int32_t>(n % 8) : 0);
         most = std::max(most, at[n].size());
         for (const auto& own : at[n]) tiles.push_back(own[0] / 64);
