@@ -76,6 +76,8 @@ endfunction()
 
 # What runs: a Program, and the interface of what runs it. Neither knows where a Program comes from.
 pliant_room(pliant_program fmt::fmt)
+find_path(PLIANT_XXHASH xxhash.h REQUIRED DOC "the header of xxHash (Debian: libxxhash-dev)")
+target_include_directories(pliant_program SYSTEM PRIVATE ${PLIANT_XXHASH})
 pliant_room(pliant_backend)
 
 # The twins: their own flags, so that nothing a consumer sets can change a bit.
