@@ -7,6 +7,7 @@
   liver       four moments of scenes/liver.json, coloured by von Mises stress
   cut         four moments of scenes/cut_liver.json: at rest, stretched, half cut, cut through
   grasp       four moments of scenes/grasp.json: at rest, cut, grasped, lifted
+  hands       the first picture of README.md: the flap of scenes/grasp.json held open; a probe over the tumour of scenes/palpate.json, and its force
   parts       who computes what in scenes/bunny_hybrid.json and liver_hybrid.json
   tumour      scenes/palpate_tumour.json: a press, and the map of the forces at all places
   methods     one cut through the same tetrahedra by removal, decomposition and virtual nodes (`pliant bench cutting`), with one camera
@@ -20,6 +21,7 @@ Pictures are traced at twice their size and scaled down, and saved with 256 colo
 """
 import argparse
 import csv
+import io
 import json
 import math
 import subprocess
@@ -41,7 +43,7 @@ ROWS = {  # moments [s] of scenes that have a row of pictures
     "needle": (0, 0.2, 0.8),
     "skin_on_bone": (0, 0.4, 1),
 }
-KNOWN = ("parameters", "bunny", "liver", "cut", "grasp", "parts", "tumour", "methods", "forces", *ROWS)
+KNOWN = ("parameters", "bunny", "liver", "cut", "grasp", "hands", "parts", "tumour", "methods", "forces", *ROWS)
 
 
 def font(size):
@@ -237,42 +239,79 @@ class Maker:
                 sheet.paste(picture, (i * size[0], 0))
         self.save("methods", sheet)
 
-    def forces(self):
+    def tool_forces(self, scene):
+        """Rows of the file of forces that a run of the scene writes, every 10 ms."""
+        with tempfile.TemporaryDirectory() as folder:
+            file, out = Path(folder) / "scene.json", Path(folder) / "out"
+            file.write_text(json.dumps(scene))
+            subprocess.run([self.pliant, "run", file, "--quiet", "--out", out, "--every", "10ms"], check=True)
+            return list(csv.DictReader((out / "scene_tools.csv").open()))
+
+    @staticmethod
+    def chart(size, words, lines, moment, span=None):
+        """Forces [N] over time, drawn in mN: `lines` are tuples of name, colour, times and forces; `span` is shaded and named."""
         import matplotlib
         matplotlib.use("Agg")
         import matplotlib.pyplot as plt
+        chart, axes = plt.subplots(figsize=(size[0] / 100, size[1] / 100), dpi=200)
+        small = 5.4 + size[0] / 200
+        if span:
+            shade = "#f3e3dc"
+            axes.axvspan(*span[:2], color=shade, linewidth=0, zorder=0)
+            axes.text(sum(span[:2]) / 2, 0.08, span[2], fontsize=small, ha="center", transform=axes.get_xaxis_transform(),
+                      bbox={"facecolor": shade, "edgecolor": "none", "pad": 1})
+        axes.axvline(moment, color="#c0c4c8", linewidth=0.8, zorder=0)
+        for name, colour, times, forces in lines:
+            axes.plot(times, [1000 * f for f in forces], color=colour, linewidth=size[0] / 320, label=name)
+        axes.set_title(words, fontsize=small + 1)
+        axes.set_xlabel("time [s]", fontsize=small)
+        axes.set_ylabel("force [mN]", fontsize=small)
+        axes.tick_params(labelsize=small)
+        axes.set_ylim(bottom=0)
+        axes.spines[["top", "right"]].set_visible(False)
+        if len(lines) > 1:
+            axes.legend(fontsize=small, frameon=False)
+        chart.tight_layout()
+        drawn = io.BytesIO()
+        chart.savefig(drawn)
+        plt.close(chart)
+        return Image.open(drawn).convert("RGB").resize(size, Image.LANCZOS)
+
+    def hands(self):
+        size, colour = (480, 240), "#d55e00"
+        sheet = Image.new("RGB", (2 * size[0], 2 * size[1]), PAPER)
+        scene = load("grasp")
+        sheet.paste(self.moments(scene, (size[0], 2 * size[1]), (1.6,))[0], (0, 0))
+        scene = load("palpate")
+        scene["view"] = {"eye": [0.075, 0.11, 0.2], "target": [0.003, 0.003, 0], "field_of_view": 30}
+        path, (centre, radius) = scene["tools"][0]["path"], scene["bodies"][0]["inclusions"][0]["sphere"]
+        (pressed, start, *_), (end, last, *_) = path[1:]
+
+        def when(x):
+            return pressed + (end - pressed) * (x - start) / (last - start)
+
+        moment = when(centre[0])
+        sheet.paste(self.frames(scene, size, moment)[-1], (size[0], 0))
+        rows = self.tool_forces(scene)
+        line = ("probe", colour, [float(r["time [s]"]) for r in rows], [float(r["fy [N]"]) for r in rows])
+        span = (when(centre[0] - radius), when(centre[0] + radius), "over the\ntumour")
+        sheet.paste(self.chart(size, "the probe is pressed in and drawn over a tumour", [line], moment, span), size)
+        self.save("hands", sheet)
+
+    def forces(self):
         size, moments = (320, 240), {"incise": 0.9, "stroke": 0.8, "dissect": 0.9}
         sheet = Image.new("RGB", (3 * size[0], 2 * size[1]), PAPER)
         colours = {"scalpel": "#d55e00", "forceps": "#0072b2"}
         for i, (name, moment) in enumerate(moments.items()):
             scene = load(name)
             sheet.paste(self.frames(scene, size, moment)[-1], (i * size[0], 0))
-            with tempfile.TemporaryDirectory() as folder:
-                file, out = Path(folder) / "scene.json", Path(folder) / "out"
-                file.write_text(json.dumps(scene))
-                subprocess.run([self.pliant, "run", file, "--quiet", "--out", out, "--every", "10ms"], check=True)
-                rows = list(csv.DictReader((out / "scene_tools.csv").open()))
-            chart, axes = plt.subplots(figsize=(size[0] / 100, size[1] / 100), dpi=200)
+            rows, lines = self.tool_forces(scene), []
             for tool, colour in colours.items():
                 own = [r for r in rows if r["tool"] == tool]
-                force = [1000 * math.hypot(*(float(r[f"f{c} [N]"]) for c in "xyz")) for r in own]
+                force = [math.hypot(*(float(r[f"f{c} [N]"]) for c in "xyz")) for r in own]
                 if own:
-                    axes.plot([float(r["time [s]"]) for r in own], force, color=colour, linewidth=1, label=tool)
-            axes.axvline(moment, color="#c0c4c8", linewidth=0.8, zorder=0)
-            axes.set_title(name, fontsize=8)
-            axes.set_xlabel("time [s]", fontsize=7)
-            axes.set_ylabel("force [mN]", fontsize=7)
-            axes.tick_params(labelsize=7)
-            axes.set_ylim(bottom=0)
-            axes.spines[["top", "right"]].set_visible(False)
-            if len(axes.lines) > 2:
-                axes.legend(fontsize=7, frameon=False)
-            chart.tight_layout()
-            drawn = Path(tempfile.gettempdir()) / "pliant-forces.png"
-            chart.savefig(drawn)
-            plt.close(chart)
-            sheet.paste(Image.open(drawn).convert("RGB").resize(size, Image.LANCZOS), (i * size[0], size[1]))
-            drawn.unlink()
+                    lines.append((tool, colour, [float(r["time [s]"]) for r in own], force))
+            sheet.paste(self.chart(size, name, lines, moment), (i * size[0], size[1]))
         self.save("forces", sheet)
 
 

@@ -76,6 +76,8 @@ endfunction()
 
 # What runs: a Program, and the interface of what runs it. Neither knows where a Program comes from.
 pliant_room(pliant_program fmt::fmt)
+find_path(PLIANT_XXHASH xxhash.h REQUIRED DOC "the header of xxHash (Debian: libxxhash-dev)")
+target_include_directories(pliant_program SYSTEM PRIVATE ${PLIANT_XXHASH})
 pliant_room(pliant_backend)
 
 # The twins: their own flags, so that nothing a consumer sets can change a bit.
@@ -148,6 +150,16 @@ target_link_libraries(pliant_io PRIVATE pugixml::pugixml)
 
 pliant_room(pliant_render Threads::Threads)
 pliant_with_embree(pliant_render host/render/ray_scene)
+find_file(PLIANT_FONT DejaVuSans.ttf PATHS /usr/share/fonts /usr/local/share/fonts PATH_SUFFIXES truetype/dejavu dejavu dejavu-sans-fonts TTF
+          NO_DEFAULT_PATH REQUIRED DOC "the TrueType font of labels in pictures (Debian: fonts-dejavu-core)")
+set(font_text ${CMAKE_BINARY_DIR}/generated/font_bytes.cpp)
+add_custom_command(
+  OUTPUT ${font_text}
+  COMMAND ${CMAKE_COMMAND} -D OUT=${font_text} -D FONT=${PLIANT_FONT} -P ${CMAKE_SOURCE_DIR}/cmake/embed_font.cmake
+  DEPENDS ${PLIANT_FONT} ${CMAKE_SOURCE_DIR}/cmake/embed_font.cmake
+  COMMENT "Embedding the font of labels"
+  VERBATIM)
+target_sources(pliant_render PRIVATE ${font_text})
 
 # Touch: devices that a hand holds, and the forces on them at their own rate.
 pliant_room(pliant_devices fmt::fmt nlohmann_json::nlohmann_json Threads::Threads)

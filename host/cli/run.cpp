@@ -20,6 +20,7 @@
 #include "cli/run_static.h"
 #include "cli/tool_report.h"
 #include "geometry/stopwatch.h"
+#include "io/atomic_file.h"
 #include "io/save.h"
 #include "pliant/error.h"
 
@@ -30,7 +31,7 @@ namespace fs = std::filesystem;
 
 struct RunArguments {
   Common common;
-  std::string scene, backend = "auto", out, checkpoint, resume;
+  std::string scene, backend = "auto", out, checkpoint, resume, motion;
   std::vector<std::string> formats{"vtu"}, fields, probes;
   PictureWords picture;
   LiveArguments live;
@@ -70,7 +71,9 @@ void check(const RunArguments& o) {
   o.live.check();
   (void)o.picture.options();  // throws for invalid words
   o.common.check(o.hash);
-  if (!o.checkpoint.empty()) check_writable(o.checkpoint);
+  for (const std::string& file : {o.checkpoint, o.motion}) {
+    if (!file.empty()) check_writable(file);
+  }
 }
 
 class Run {
@@ -109,6 +112,7 @@ class Run {
       frames_->finish();
     }
     if (!o_.checkpoint.empty()) write_checkpoint(o_.checkpoint, checkpoint());
+    if (!o_.motion.empty()) write_motion();
     report();
     return result_.interrupted ? kInterrupted : 0;
   }
@@ -123,6 +127,7 @@ class Run {
                                         {!o_.checkpoint.empty(), "--checkpoint"},
                                         {o_.checkpoint_every.has_value(), "--checkpoint-every"},
                                         {!o_.resume.empty(), "--resume"},
+                                        {!o_.motion.empty(), "--motion"},
                                         {!o_.live.live.empty(), "--live"},
                                         {!o_.live.replay.empty(), "--replay"},
                                         {o_.profile, "--profile"}}) {
@@ -240,6 +245,11 @@ class Run {
     }
   }
 
+  void write_motion() const {
+    const std::vector<std::uint8_t> bytes = simulation_->motion();
+    write_file(o_.motion, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  }
+
   [[nodiscard]] Checkpoint checkpoint() const { return take_checkpoint(*simulation_); }
 
   /// Save the last good state, report, and leave with the divergence's exit code.
@@ -298,6 +308,8 @@ std::function<int()> setup_run(CLI::App& app) {
   app.add_option("--checkpoint-every", o->checkpoint_every,
                  "Save the state on the way, too, after so many seconds of wall time [s]");
   app.add_option("--resume", o->resume, "Go on from a saved state of the same scene")->type_name("FILE");
+  app.add_option("--motion", o->motion, "Save the bytes that the hash is of: displacements and increments of the last state")
+      ->type_name("FILE");
   app.add_flag("--deep-hash", o->deep_hash,
                "Also print the hash of all that later steps depend on: model, state buffers and run state");
   app.add_flag("--hash", o->hash, "Print the hash of the last state, with --quiet as the only output");

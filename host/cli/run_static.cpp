@@ -110,10 +110,9 @@ class Static {
   }
 
   [[nodiscard]] std::uint64_t hash() const {
-    std::uint64_t value = 0;
-    for (const Solved& s : solved_)
-      value = hash_bytes(s.solution.displacement.data(), sizeof(Vec3d) * s.solution.displacement.size(), value);
-    return value;
+    Hasher all;
+    for (const Solved& s : solved_) all.add(s.solution.displacement.data(), sizeof(Vec3d) * s.solution.displacement.size());
+    return all.value();
   }
 
   void report(const std::string& failure) {

@@ -12,12 +12,12 @@
 
 // Layout: "PLIANTCK", u32 version, u32 zero, u64 length of the whole file, then u64 parts {string, u64 hash}, string name,
 // string real type, string run state (run_state.h), string report (run_report.h), u64 buffers {string, u64 n, n bytes}, u64
-// hash of all before. A string is a u64 length and its bytes.
+// hash of all before (XXH3). A string is a u64 length and its bytes.
 namespace pliant {
 namespace {
 
 constexpr std::string_view kMagic = "PLIANTCK";
-constexpr std::uint32_t kVersion = 6;
+constexpr std::uint32_t kVersion = 7;
 constexpr std::size_t kHead = 24;
 constexpr std::size_t kTail = 8;
 

@@ -19,7 +19,7 @@ float distance(float px, float py, float x0, float y0, float x1, float y1) {
 
 std::string number_text(double value, double step) {
   const int digits = std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 6);
-  std::string text = fmt::format("{:.{}f}", value + 0.0, digits);
+  std::string text = fmt::format("{:.{}f}", value, digits);
   // 2.5 next to 5.0: one digit for all; 250 next to 500: none.
   if (std::fabs(step * std::pow(10, digits) - std::round(step * std::pow(10, digits))) > 1e-6) {
     text = fmt::format("{:.{}f}", value, digits + 1);
@@ -41,24 +41,15 @@ void Pen::blend(int x, int y, float cover) {
   }
 }
 
-void Pen::line(float x0, float y0, float x1, float y1, float width) { stroke({{x0, y0}, {x1, y1}}, width); }
-
-void Pen::stroke(const std::vector<std::array<float, 2>>& points, float width) {
-  float left = HUGE_VALF, right = -HUGE_VALF, top = HUGE_VALF, bottom = -HUGE_VALF;
-  for (const auto& p : points) {
-    left = std::min(left, p[0]);
-    right = std::max(right, p[0]);
-    top = std::min(top, p[1]);
-    bottom = std::max(bottom, p[1]);
-  }
+void Pen::line(float x0, float y0, float x1, float y1, float width) {
   const float reach = width / 2 + 1;
-  for (int y = static_cast<int>(std::floor(top - reach)); y <= static_cast<int>(std::ceil(bottom + reach)); ++y) {
-    for (int x = static_cast<int>(std::floor(left - reach)); x <= static_cast<int>(std::ceil(right + reach)); ++x) {
-      float d = HUGE_VALF;
-      for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-        d = std::min(d, distance(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F, points[i][0], points[i][1],
-                                 points[i + 1][0], points[i + 1][1]));
-      }
+  const int left = static_cast<int>(std::floor(std::min(x0, x1) - reach)),
+            right = static_cast<int>(std::ceil(std::max(x0, x1) + reach));
+  const int top = static_cast<int>(std::floor(std::min(y0, y1) - reach)),
+            bottom = static_cast<int>(std::ceil(std::max(y0, y1) + reach));
+  for (int y = top; y <= bottom; ++y) {
+    for (int x = left; x <= right; ++x) {
+      const float d = distance(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F, x0, y0, x1, y1);
       blend(x, y, width / 2 + 0.5F - d);
     }
   }
@@ -73,34 +64,43 @@ void Pen::rectangle(float x0, float y0, float x1, float y1) {
   }
 }
 
-float Pen::text(float x, float y, float height, const std::string& text) {
-  float size = height, base = y;
-  for (const char c : text) {
-    if (c == '^') {  // what follows is a power
-      size = 0.65F * height;
-      base = y - 0.5F * height;
+namespace {
+
+/// Walks over a text: calls draw(character, x, size, height of the baseline over the first one) and returns the end in x. The
+/// number after a ^ is a power.
+template <class Draw>
+float walk(float x, float height, const std::string& text, const Draw& draw) {
+  bool power = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '^') {
+      power = true;
       continue;
     }
-    const Glyph& g = glyph(c);
-    for (auto points : g.strokes) {
-      for (auto& p : points) p = {x + size * p[0], base - size * p[1]};
-      stroke(points, std::fmax(0.13F * size, 1.2F));
-    }
-    x += size * g.advance;
+    power = power && (text[i] == '-' || (text[i] >= '0' && text[i] <= '9'));
+    const float size = power ? 0.65F * height : height;
+    draw(text[i], x, size, power ? 0.5F * height : 0);
+    x += size * advance(text[i], i + 1 < text.size() && text[i + 1] != '^' ? text[i + 1] : '\0');
   }
   return x;
 }
 
-float text_width(float height, const std::string& text) {
-  float width = 0, size = height;
-  for (const char c : text) {
-    if (c == '^') {
-      size = 0.65F * height;
-      continue;
+}  // namespace
+
+float Pen::text(float x, float y, float height, const std::string& text) {
+  return walk(x, height, text, [&](char c, float at, float size, float raised) {
+    const Coverage glyph = cover(c, at, y - raised, size);
+    for (int row = 0; row < glyph.height; ++row) {
+      for (int column = 0; column < glyph.width; ++column) {
+        const std::size_t pixel =
+            static_cast<std::size_t>(row) * static_cast<std::size_t>(glyph.width) + static_cast<std::size_t>(column);
+        blend(glyph.left + column, glyph.top + row, static_cast<float>(glyph.share[pixel]) / 255);
+      }
     }
-    width += size * glyph(c).advance;
-  }
-  return width;
+  });
+}
+
+float text_width(float height, const std::string& text) {
+  return walk(0, height, text, [](char, float, float, float) {});
 }
 
 Ticks ticks_within(double low, double high) {
@@ -110,7 +110,8 @@ Ticks ticks_within(double low, double high) {
     if (nice * power >= raw * (1 - 1e-9)) step = nice * power;
   }
   Ticks ticks{low, high, {}};
-  for (double n = std::ceil(low / step - 1e-9); n * step <= high + 1e-9 * width; ++n) ticks.at.push_back(n * step);
+  for (double n = std::ceil(low / step - 1e-9); n * step <= high + 1e-9 * width; ++n)
+    ticks.at.push_back((n + 0.0) * step);  // no -0
   return ticks;
 }
 
@@ -133,18 +134,48 @@ ScaledUnit scaled_unit(const std::string& unit, double largest) {
   return largest >= 1 || largest == 0 ? ScaledUnit{1, unit} : power(1e3, "m");
 }
 
+namespace {
+
+/// Words of a title in lines that are no wider than `room`, which a single word may be.
+std::vector<std::string> title_lines(const std::string& title, float size, float room) {
+  std::vector<std::string> lines{""};
+  for (std::size_t from = 0; from < title.size();) {
+    const std::size_t to = std::min(title.find(' ', from), title.size());
+    const std::string word = title.substr(from, to - from);
+    const std::string longer = lines.back().empty() ? word : lines.back() + " " + word;
+    if (text_width(size, longer) <= room || lines.back().empty()) {
+      lines.back() = longer;
+    } else {
+      lines.push_back(word);
+    }
+    from = to + 1;
+  }
+  return lines;
+}
+
+/// Over the bar, which begins at (left, top). A wide title begins further left, and where that is not enough it is smaller.
+void draw_title(Image& image, const ColorBar& bar, float left, float top, float size) {
+  const auto w = static_cast<float>(image.width);
+  const float right = 0.98F * w, strip = right - w * (1 - kBarShare);
+  std::vector<std::string> lines = title_lines(bar.title, size, strip);
+  lines.push_back("[" + bar.unit + "]");
+  float widest = 0;
+  for (const std::string& line : lines) widest = std::max(widest, text_width(size, line));
+  const float smaller = std::fmin(1.0F, strip / widest);
+  const float start = std::fmin(left, right - smaller * widest);
+  float y = top + 0.1F * size;
+  for (auto line = lines.rbegin(); line != lines.rend(); ++line) {
+    Pen(image, kInk).text(start, y -= 1.7F * size, smaller * size, *line);
+  }
+}
+
+}  // namespace
+
 void draw_color_bar(Image& image, const ColorBar& bar) {
   const auto w = static_cast<float>(image.width), h = static_cast<float>(image.height);
   const float top = std::round(0.24F * h), bottom = std::round(0.86F * h);
   const float left = w * (1 - kBarShare) + 0.2F * kBarShare * w, right = left + 0.026F * h;
-  const float room = 0.98F * w - left;
-  float size = std::fmax(0.022F * h, 7.0F);
-  for (std::size_t from = 0; from < bar.title.size();) {  // no word is wider than the strip
-    const std::size_t to = std::min(bar.title.find(' ', from), bar.title.size());
-    const float width = text_width(size, bar.title.substr(from, to - from));
-    if (width > room) size *= room / width;
-    from = to + 1;
-  }
+  const float size = std::fmax(0.022F * h, 7.0F);
   for (float y = top; y < bottom; ++y) {
     const Vec3f c = srgb_of(map_color((bottom - y - 0.5F) / (bottom - top)));
     Pen(image, c).rectangle(left, y, right, std::min(y + 1, bottom));
@@ -158,23 +189,7 @@ void draw_color_bar(Image& image, const ColorBar& bar) {
     ink.line(right, y, right + 0.35F * size, y, std::fmax(0.1F * size, 1.0F));
     ink.text(right + 0.75F * size, y + size / 2, size, number_text(value, step));
   }
-  const std::string unit = "[" + bar.unit + "]";
-  // The title stands over the bar, one line per word group, so that it fits the strip.
-  float y = top - 1.6F * size;
-  ink.text(left, y, size, unit);
-  std::vector<std::string> lines{""};
-  for (std::size_t from = 0; from < bar.title.size();) {
-    const std::size_t to = std::min(bar.title.find(' ', from), bar.title.size());
-    const std::string word = bar.title.substr(from, to - from);
-    const std::string longer = lines.back().empty() ? word : lines.back() + " " + word;
-    if (text_width(size, longer) <= room || lines.back().empty()) {
-      lines.back() = longer;
-    } else {
-      lines.push_back(word);
-    }
-    from = to + 1;
-  }
-  for (auto line = lines.rbegin(); line != lines.rend(); ++line) ink.text(left, y -= 1.7F * size, size, *line);
+  draw_title(image, bar, left, top, size);
 }
 
 void draw_key(Image& image, const std::vector<KeyEntry>& entries) {

@@ -1,6 +1,5 @@
-// Drawing on a finished picture: lines, text in a stroke font, the colour bar.
+// Drawing on a finished picture: lines, text, the colour bar.
 #pragma once
-#include <array>
 #include <string>
 #include <vector>
 
@@ -14,10 +13,9 @@ class Pen {
  public:
   Pen(Image& image, Vec3f color) : image_(image), color_(color) {}
   void line(float x0, float y0, float x1, float y1, float width);
-  void stroke(const std::vector<std::array<float, 2>>& points, float width);
   void rectangle(float x0, float y0, float x1, float y1);
-  /// Text with its baseline at y; `height` is that of capitals. Characters without a glyph are left blank. Returns the end in
-  /// x.
+  /// Text with its baseline at y; `height` is that of capitals, and ^ raises the number that follows. Characters outside ASCII
+  /// are left blank. Returns the end in x.
   float text(float x, float y, float height, const std::string& text);
 
  private:

@@ -1,17 +1,22 @@
-// A font of lines and arcs.
+// The font of labels (DejaVu Sans), drawn with stb_truetype.
 #pragma once
-#include <array>
+#include <cstdint>
 #include <vector>
 
 namespace pliant::render {
 
-/// Lines in units of the capitals' height, y upwards from the baseline.
-struct Glyph {
-  std::vector<std::vector<std::array<float, 2>>> strokes;
-  float advance = 0.4F;
+/// What a glyph covers of each pixel, row by row from above: 255 is all of it. The first pixel is (left, top).
+struct Coverage {
+  int left = 0, top = 0, width = 0, height = 0;
+  std::vector<std::uint8_t> share;
 };
 
-/// Letters, digits and the signs . , - + / [ ] ( ) % : =; everything else is a blank.
-const Glyph& glyph(char c);
+/// Of a glyph whose baseline starts at (x, y) [pixels, y downwards], with capitals of this height. Only ASCII has glyphs;
+/// anything else is a blank.
+Coverage cover(char c, float x, float y, float height);
+
+/// From the start of a glyph to that of the next, in units of the capitals' height; `next` (0 at the end) brings it closer or
+/// pushes it away.
+float advance(char c, char next);
 
 }  // namespace pliant::render

@@ -152,13 +152,16 @@ void Simulation::set_nodes(std::size_t body, const std::vector<Vec3d>& displacem
 
 std::vector<std::string> Simulation::remarks() const { return remarks_on(model(), scene_, dt()); }
 
+std::vector<std::uint8_t> Simulation::motion() const {
+  std::vector<std::uint8_t> all = backend().read_bytes(program().find("node_u"));
+  const std::vector<std::uint8_t> increments = backend().read_bytes(program().find("node_w"));
+  all.insert(all.end(), increments.begin(), increments.end());
+  return all;
+}
+
 std::uint64_t Simulation::hash() const {
-  std::uint64_t h = 0;
-  for (const char* name : {"node_u", "node_w"}) {
-    const auto bytes = backend().read_bytes(program().find(name));
-    h = hash_bytes(bytes.data(), bytes.size(), h);
-  }
-  return h;
+  const std::vector<std::uint8_t> bytes = motion();
+  return hash_bytes(bytes.data(), bytes.size());
 }
 
 std::uint64_t Simulation::model_hash() const {

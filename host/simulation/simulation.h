@@ -135,7 +135,9 @@ class Simulation {
   /// Remarks before the first step (remarks.h).
   [[nodiscard]] std::vector<std::string> remarks() const;
 
-  /// Hash over node_u and node_w.
+  /// The displacements of all nodes and then their increments (node_u, node_w), as the backend stores them.
+  [[nodiscard]] std::vector<std::uint8_t> motion() const;
+  /// XXH3 of motion().
   [[nodiscard]] std::uint64_t hash() const;
   /// Hash over everything that determines the next steps: model, state buffers and run state.
   [[nodiscard]] std::uint64_t deep_hash() const { return pliant::deep_hash(snapshot()); }

@@ -104,7 +104,7 @@ class PLIANT_API World {
   /// first. Parked tools and bodies without a closed surface are left out.
   [[nodiscard]] std::vector<Interpenetration> interpenetrations() const;
   [[nodiscard]] std::vector<std::string> remarks() const;  ///< WorldInfo::remarks, then remarks about the run so far
-  [[nodiscard]] std::uint64_t hash() const;                ///< hash of the state; equal hashes mean equal bits
+  [[nodiscard]] std::uint64_t hash() const;  ///< XXH3 of displacements and increments; equal hashes mean equal bits
 
   /// Interactive tools. All but move_tool() need WorldOptions::interactive, otherwise Error (state); an unknown vertex or grab
   /// is Error (usage). They do not wait and take effect at the next batch. Vertex numbers are those of the frame returned last.

@@ -115,6 +115,7 @@ class Files(harness.CliTest):
         self.refused_quickly("--out", "file", words=["file"])
         self.refused_quickly("--out", "file/below", words=["file/below"])
         self.refused_quickly("--checkpoint", "no/such/c.pckpt", words=["no/such/c.pckpt"])
+        self.refused_quickly("--motion", "no/such/c.motion", words=["no/such/c.motion"])
         self.refused_quickly("--json", "no/such/r.json", words=["no/such/r.json"])
         self.refused_quickly("--out", "/proc/pliant", words=["/proc/pliant"])
         self.assertEqual(self.names(), ["file", "scene.json"])

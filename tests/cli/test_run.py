@@ -2,6 +2,7 @@
 import json
 import os
 import pty
+import shutil
 import signal
 import subprocess
 import threading
@@ -45,6 +46,16 @@ class Run(harness.CliTest):
         self.assertFalse(short["converged"])
         self.assertEqual(short["steps"], 64)
         self.assertGreater(short["residual"], 1e-3)
+
+    def test_xxhsum_gives_the_hash_of_the_motion_and_the_golden_one(self):
+        if shutil.which("xxhsum") is None:
+            self.skipTest("there is no xxhsum (Debian: xxhash)")
+        golden = json.loads((harness.SOURCE / "tests/golden/hashes.json").read_text())["beam"]
+        run = self.json("run", harness.SOURCE / "scenes/beam.json", "--backend", "cpu", "--steps", golden["steps"], "--motion", "beam.motion")
+        found = subprocess.run(["xxhsum", "-H3", "beam.motion"], cwd=self.folder, check=True, capture_output=True, text=True).stdout.split()[-1]
+        self.assertEqual((found, run["hash"]), (golden["state"], golden["state"]))
+        slots = -(-run["nodes"] // 16) * 16  # of a list; lattices in bricks have more
+        self.assertEqual((self.folder / "beam.motion").stat().st_size, 2 * 4 * 4 * slots)
 
     def test_streams(self):
         scene = self.scene()

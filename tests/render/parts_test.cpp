@@ -1,6 +1,7 @@
 // What pictures are made of: normals, colours, ticks, fields, PNG files and animations.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -13,6 +14,7 @@
 #include "render/annotations.h"
 #include "render/color.h"
 #include "render/export.h"
+#include "render/font.h"
 #include "shapes.h"
 #include "simulation/measure/surface_fields.h"
 #include "support/temp_folder.h"
@@ -64,6 +66,7 @@ TEST(Ticks, HoldTheRangeInRoundSteps) {
   EXPECT_EQ(t.low, 0);
   EXPECT_EQ(t.high, 40);
   EXPECT_EQ(t.at.size(), 5U);
+  EXPECT_FALSE(std::signbit(t.at[0])) << "would be written as -0";
   for (const double high : {1e-9, 0.0234, 1.0, 7.3, 99.0, 1234567.0}) {
     const Ticks n = nice_ticks(0, high);
     EXPECT_GE(n.high, high * (1 - 1e-9));
@@ -78,6 +81,35 @@ TEST(ScaledUnit, KeepsNumbersShort) {
   EXPECT_EQ(scaled_unit("m", 0.02).factor, 1e3);
   EXPECT_EQ(scaled_unit("Pa", 12000).unit, "kPa");
   EXPECT_EQ(scaled_unit("J/m^3", 50).unit, "J/m^3");
+}
+
+TEST(Font, CapitalsStandOnTheLineAndHaveTheirHeight) {
+  const Coverage h = cover('H', 10, 50, 20);
+  EXPECT_EQ(h.top, 30);
+  EXPECT_EQ(h.height, 20);
+  EXPECT_GE(h.left, 10);
+  EXPECT_LE(h.left + h.width, 10 + std::ceil(20 * advance('H', 0)));
+  EXPECT_EQ(*std::max_element(h.share.begin(), h.share.end()), 255);
+  EXPECT_TRUE(cover(' ', 0, 0, 20).share.empty());
+  for (char c = '!'; c <= '~'; ++c) {
+    const Coverage glyph = cover(c, 3.5F, 7.25F, 12);
+    EXPECT_GT(std::count_if(glyph.share.begin(), glyph.share.end(), [](std::uint8_t s) { return s > 100; }), 2) << c;
+  }
+  EXPECT_TRUE(cover('\xc3', 0, 0, 20).share.empty()) << "not ASCII";
+}
+
+TEST(Font, TextIsAsWideAsItIsDrawn) {
+  Image image{200, 40, std::vector<std::uint8_t>(3 * 200 * 40, 255)};
+  const std::string text = "AV [J/m^3]";
+  const float end = Pen(image, {0, 0, 0}).text(5, 30, 14, text);
+  EXPECT_FLOAT_EQ(end, 5 + text_width(14, text));
+  EXPECT_LT(text_width(14, "AV"), text_width(14, "A") + text_width(14, "V")) << "pairs that fit into each other come closer";
+  EXPECT_FLOAT_EQ(text_width(14, "m^3]"), text_width(14, "m]") + 0.65F * text_width(14, "3")) << "only the number is small";
+  int last = 0;
+  for (int x = 0; x < 200; ++x) {
+    for (int y = 0; y < 40; ++y) last = image.rgb[3 * (y * 200 + x)] < 128 ? x : last;
+  }
+  EXPECT_NEAR(last, end, 5);
 }
 
 TEST(ColorBar, DrawsItsRangeAtTheRight) {

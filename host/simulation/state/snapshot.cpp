@@ -18,9 +18,12 @@ bool held_by_nodes(const Buffer& b) { return b.role == BufferRole::state && b.ca
 
 class Hash {
  public:
-  Hash() = default;
-  explicit Hash(std::uint64_t start) : value(start) {}
-  void add(const void* data, std::size_t bytes) { value = hash_bytes(data, bytes, value); }
+  /// The length counts, so that what belongs to one block cannot move to the next unseen.
+  void add(const void* data, std::size_t bytes) {
+    const std::uint64_t length = bytes;
+    all_.add(&length, sizeof length);
+    all_.add(data, bytes);
+  }
   void add(double number) { add(&number, sizeof number); }
   void add(const std::string& text) { add(text.data(), text.size()); }
   template <class T>
@@ -39,7 +42,6 @@ class Hash {
   void add(const Program& program) {
     for (const Buffer& b : program.buffers) {
       if (b.role != BufferRole::constant && !held_by_nodes(b)) continue;  // other state does not begin with values of a model
-      if (b.name == "contact_held") continue;  // absent from older versions; what it follows from is here, too
       add(b.name);
       add(b.reals);
       add(b.ints);
@@ -47,9 +49,7 @@ class Hash {
     for (const Pass& p : program.step) {
       add(p.kernel);
       for (const auto& [name, number] : p.defines) {
-        if (name == "VISCOUS" && number == 0) continue;  // absent from older versions
-        // Checkpoints store the integrator under its name from when there were two.
-        add(name == "INTEGRATOR" ? std::string("TEXTBOOK") : name);
+        add(name);
         add(&number, sizeof number);
       }
       for (const Arg& a : p.args) {
@@ -57,7 +57,29 @@ class Hash {
       }
     }
   }
-  std::uint64_t value = 0;
+  [[nodiscard]] std::uint64_t value() const { return all_.value(); }
+
+ private:
+  Hasher all_;
+};
+
+/// Parts in their order; what is added belongs to the last one.
+class Parts {
+ public:
+  void part(const char* name) {
+    parts_.emplace_back().name = name;
+    hash_ = Hash();
+  }
+  template <class... T>
+  void add(const T&... values) {
+    (hash_.add(values), ...);
+    parts_.back().hash = hash_.value();
+  }
+  [[nodiscard]] std::vector<ModelPart> take() { return std::move(parts_); }
+
+ private:
+  std::vector<ModelPart> parts_;
+  Hash hash_;
 };
 
 const NamedBytes* find(const Snapshot& snapshot, const std::string& name) {
@@ -71,13 +93,9 @@ const NamedBytes* find(const Snapshot& snapshot, const std::string& name) {
 
 std::vector<ModelPart> parts_of(const Scene& scene, const RunSettings& settings, const Model& model, const Program& program,
                                 const Program& surface) {
-  std::vector<ModelPart> parts;
-  const auto part = [&](const char* name) { parts.emplace_back().name = name; };
-  const auto add = [&](const auto&... values) {
-    Hash hash{parts.back().hash};
-    (hash.add(values), ...);
-    parts.back().hash = hash.value;
-  };
+  Parts parts;
+  const auto part = [&](const char* name) { parts.part(name); };
+  const auto add = [&](const auto&... values) { parts.add(values...); };
   const auto add_curve = [&](const Curve& c) {
     add(static_cast<double>(c.kind), c.start, c.duration, static_cast<double>(c.of), c.angle, c.table);
   };
@@ -126,16 +144,16 @@ std::vector<ModelPart> parts_of(const Scene& scene, const RunSettings& settings,
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     if (!scene.bodies[b].model.cut) add(static_cast<double>(b));
   }
-  return parts;
+  return parts.take();
 }
 
 std::uint64_t hash_of(const std::vector<ModelPart>& parts) {
   Hash hash;
   for (const ModelPart& part : parts) {
-    hash.add(part.name == "focus" ? std::string("tool") : part.name);  // as it was called first: hashes last longer than names
+    hash.add(part.name);
     hash.add(&part.hash, sizeof part.hash);
   }
-  return hash.value;
+  return hash.value();
 }
 
 bool has_part(const std::vector<ModelPart>& parts, const char* name) {
@@ -180,7 +198,7 @@ std::uint64_t deep_hash(const Snapshot& snapshot) {
     hash.add(buffer.name);
     hash.add(buffer.bytes);
   }
-  return hash.value;
+  return hash.value();
 }
 
 void check_state(const RunState& state, const Model& model, const Scene& scene) {

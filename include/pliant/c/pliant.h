@@ -113,7 +113,7 @@ PLIANT_API pliant_status pliant_world_vertex_values(pliant_world world, const ch
  * `*needed` (may be null) receives their number. `out` may be null if `count` is 0. */
 PLIANT_API pliant_status pliant_world_interpenetrations(pliant_world world, pliant_interpenetration* out, size_t count,
                                                         size_t* needed);
-/** Hash of the state; equal hashes mean equal bits. */
+/** XXH3 (64 bits) of displacements and increments; equal hashes mean equal bits. */
 PLIANT_API pliant_status pliant_world_hash(pliant_world world, uint64_t* out);
 
 /** Attaches a spring between the surface around `vertex` and a target, initially the vertex's position; `*out` receives its
