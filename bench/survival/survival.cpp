@@ -253,9 +253,9 @@ std::string survival_table(const json& result) {
   text += fmt::format("{} took a step below a tenth of the first, {} on average; {} had inverted elements, {} at the end\n",
                       s["least_dt_below_a_tenth"].get<int>(), s["mean_dt_below_a_tenth"].get<int>(), s["inverted"].get<int>(),
                       s["left_inverted"].get<int>());
-  text +=
-      fmt::format("{} gained more than a hundredth of their energy beyond the work of tools while all loads were constant\n",
-                  s["energy_created_above_a_hundredth"].get<int>());
+  text += fmt::format(
+      "{} gained more than a hundredth of their energy beyond the work of tools and blades while all loads were constant\n",
+      s["energy_created_above_a_hundredth"].get<int>());
   text += fmt::format("{} had tools in hands; in {} of them a force on the hand was not as it must be\n", s["live"].get<int>(),
                       s["unsafe"].get<int>());
   for (const json& row : result["rows"]) {

@@ -55,11 +55,11 @@ class Simulation {
   [[nodiscard]] const std::optional<Divergence>& divergence() const { return divergence_; }
   /// Statistics of the run so far.
   [[nodiscard]] const RunReport& report() const { return reports_.now; }
-  /// Once all loads are constant, the energy (kinetic, of elements, gravity and node forces) less the work of the tools can
-  /// only decrease. This checks it and records the result in RunReport::energy; call it between batches, as often as
-  /// practical. Follower pressures and host forces are not accounted for. Scenes with shape matching, which has no energy,
-  /// are skipped, and so are states with inverted elements, whose oscillation is too fast to know the kinetic energy between
-  /// two steps.
+  /// Once all loads are constant, the energy (kinetic, of elements, gravity and node forces) less the work of tools and of
+  /// blades that press can only decrease. This checks it and records the result in RunReport::energy; call it between
+  /// batches, as often as practical. Follower pressures and host forces are not accounted for. Scenes with shape matching,
+  /// which has no energy, are skipped, and so are states with inverted elements, whose oscillation is too fast to know the
+  /// kinetic energy between two steps.
   void watch_energy();
   [[nodiscard]] const ToolContact& contact() const { return contact_; }
   /// The forces on blades that cut by force.

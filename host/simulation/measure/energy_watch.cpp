@@ -68,6 +68,7 @@ void Simulation::watch_energy() {
     work += tool.work;
     stored += 0.5 * vec::norm(tool.now.force) * tool.now.depth;
   }
+  for (const auto& blade : state_.pressed) work += blade.second.work;
   const double left = now.total() - work;
   EnergyHistory& seen = reports_.now.energy;
   seen.highest = std::max({seen.highest, now.kinetic + now.strain + now.hourglass, std::abs(work)});

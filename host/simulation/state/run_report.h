@@ -57,7 +57,7 @@ struct TouchHistory {
 
 /// Energy that appeared without a source (Simulation::watch_energy).
 struct EnergyHistory {
-  std::optional<double> least;  ///< least energy less tool work at any check [J]; empty: no check was made
+  std::optional<double> least;  ///< least energy less work of tools and blades at any check [J]; empty: no check was made
   double created = 0,
          highest = 0;  ///< largest rise above an earlier `least`, and largest kinetic plus strain energy or work [J]
   /// Returns created / highest.
