@@ -111,6 +111,32 @@ inline Scalar held_depth(const Points<Scalar>& points, const Scalar* contact_sha
   return distance < Scalar(0) ? -distance : Scalar(0);
 }
 
+/// The depth in tool t that an edit has left a point. `start`: two numbers; `before`: depth at the start of the step.
+template <class Scalar>
+inline Scalar start_depth(const Scalar* start, std::int32_t t, Scalar before) {
+  const bool in_it = static_cast<std::int32_t>(start[PLIANT_TILE]) == t + 1;
+  const Scalar own = start[0] < Scalar(0) ? before : in_it ? start[0] : Scalar(0);
+  const Scalar depth = before < own ? before : own;
+  return depth > Scalar(0) ? depth : Scalar(0);
+}
+
+/// The same of all tools of a point, of which the deepest is kept.
+template <class Scalar>
+struct LeftDeep {
+  Scalar* start;
+  Scalar lag = 0, lag_in = 0;
+  Scalar in(std::int32_t t, Scalar before) {
+    const Scalar own = start_depth(start, t, before);
+    if (own > lag) lag = own, lag_in = static_cast<Scalar>(t + 1);
+    return own;
+  }
+  void keep() const { start[0] = lag, start[PLIANT_TILE] = lag_in; }
+};
+template <class Scalar>
+inline Scalar left_in(const Scalar* start, std::int32_t t) {
+  return start[PLIANT_TILE] == static_cast<Scalar>(t + 1) ? start[0] : Scalar(0);
+}
+
 inline constexpr double quantum_limit = 67108864.0;
 
 template <class Scalar>

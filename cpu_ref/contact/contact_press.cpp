@@ -7,10 +7,10 @@ namespace {
 
 using namespace contact;
 
-/// The normal force on a point. `held`: the depth that no force takes back.
+/// The normal force on a point. `depth`: without what no force takes back.
 template <class Scalar>
-Scalar normal_force(const Meeting<Scalar>& m, Scalar held, const Scalar* law, Scalar area, Scalar stiffness, Scalar h) {
-  const Scalar depth = -m.distance - held, opening = m.opening, before = depth + opening;
+Scalar normal_force(Scalar depth, Scalar opening, const Scalar* law, Scalar area, Scalar stiffness, Scalar h) {
+  const Scalar before = depth + opening;
   Scalar push = 0;
   if (law[12] > Scalar(0) && before > Scalar(0)) {
     const Scalar spring = (area * law[12]) * (law[16] > Scalar(0) ? before * std::sqrt(before) : before);
@@ -116,11 +116,12 @@ template <class Scalar, int EDGES, int GRIPS>
 void contact_press(Range range, const Scalar* node_u, const Scalar* node_w, const Scalar* contact_rest,
                    const std::int32_t* contact_node, const Scalar* contact_weight, const Scalar* contact_share,
                    const Scalar* contact_held, const std::int32_t* contact_list, const std::int32_t* contact_near,
-                   Scalar* contact_yield, Scalar* contact_anchor, std::int32_t* contact_force, std::int32_t* contact_tool_force,
-                   const std::int32_t* tool_kind, const Scalar* tool_data, const Scalar* tool_grid, const Scalar* tool_edge,
-                   const Scalar* tool_pose, const Scalar* touch_surface, const Scalar* contact_patch,
-                   Scalar* contact_corner_weight, std::int32_t* contact_corner_force, const Scalar* contact_params,
-                   const Scalar* step_params, std::int32_t point_count, std::int32_t tools, std::int32_t step) {
+                   Scalar* contact_yield, Scalar* contact_anchor, Scalar* contact_start, std::int32_t* contact_force,
+                   std::int32_t* contact_tool_force, const std::int32_t* tool_kind, const Scalar* tool_data,
+                   const Scalar* tool_grid, const Scalar* tool_edge, const Scalar* tool_pose, const Scalar* touch_surface,
+                   const Scalar* contact_patch, Scalar* contact_corner_weight, std::int32_t* contact_corner_force,
+                   const Scalar* contact_params, const Scalar* step_params, std::int32_t point_count, std::int32_t tools,
+                   std::int32_t step) {
   const Points<Scalar> points{node_u, node_w, contact_rest, contact_node, contact_weight};
   const EdgedTools<Scalar, EDGES> all{
       {tool_kind, tool_data, tool_grid, tool_pose, tools, step}, tool_edge, {points, touch_surface, contact_patch}};
@@ -138,6 +139,7 @@ void contact_press(Range range, const Scalar* node_u, const Scalar* node_w, cons
     const std::int32_t touching = reached.touching, count = reached.count;
     const PointNumbers<std::int32_t> force = numbers_of(contact_force, i);
     let_go<GRIPS>(anchor, reached);
+    LeftDeep<Scalar> left{contact_start + tile_base(i, 2)};
     Quanta sum{};
     corners.clear(i);
     Scalar w = contact_yield[i];
@@ -154,7 +156,8 @@ void contact_press(Range range, const Scalar* node_u, const Scalar* node_w, cons
       const Scalar stiffness = (whole * met.share) * met.ease;
       const Scalar* law = all.law(t);
       const Scalar held = held_depth(points, contact_share, contact_held, i, met.place, m);
-      const Scalar push = normal_force(m, held, law, area, stiffness, h);
+      const Scalar beyond = -m.distance - held, depth = beyond - left.in(t, beyond + m.opening);
+      const Scalar push = normal_force(depth, m.opening, law, area, stiffness, h);
       if (GRIPS != 0 && (reached.gripped >> t & 1) != 0 && anchor[3] >= Scalar(0))
         hold_here(all, t, p, gripped_by<Scalar>(t), anchor);
       const bool gripped = GRIPS != 0 && anchor[3] == gripped_by<Scalar>(t);
@@ -165,6 +168,7 @@ void contact_press(Range range, const Scalar* node_u, const Scalar* node_w, cons
       add_to_tool(on_tool, all.next(t), contact_params, met.place, q);
       corners.add(i, met, q, sum);
     }
+    left.keep();
     set_three(force, sum);
     force[3] = touching | reached.ready;
   }

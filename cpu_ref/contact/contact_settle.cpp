@@ -74,12 +74,12 @@ template <class Scalar, int EDGES, int GRIPS>
 void contact_settle(Range range, const Scalar* node_u, const Scalar* node_w, const Scalar* contact_rest,
                     const std::int32_t* contact_node, const Scalar* contact_weight, const Scalar* contact_share,
                     const Scalar* contact_held, const std::int32_t* contact_list, const std::int32_t* contact_near,
-                    Scalar* contact_yield, Scalar* contact_anchor, std::int32_t* contact_force, std::int32_t* contact_change,
-                    const Scalar* contact_node_sum, std::int32_t* contact_tool_force, const std::int32_t* tool_kind,
-                    const Scalar* tool_data, const Scalar* tool_grid, const Scalar* tool_edge, const Scalar* tool_pose,
-                    const Scalar* touch_surface, const Scalar* contact_patch, Scalar* contact_corner_weight,
-                    std::int32_t* contact_corner_force, const Scalar* contact_params, const Scalar* step_params,
-                    std::int32_t point_count, std::int32_t tools, std::int32_t step) {
+                    Scalar* contact_yield, Scalar* contact_anchor, const Scalar* contact_start, std::int32_t* contact_force,
+                    std::int32_t* contact_change, const Scalar* contact_node_sum, std::int32_t* contact_tool_force,
+                    const std::int32_t* tool_kind, const Scalar* tool_data, const Scalar* tool_grid, const Scalar* tool_edge,
+                    const Scalar* tool_pose, const Scalar* touch_surface, const Scalar* contact_patch,
+                    Scalar* contact_corner_weight, std::int32_t* contact_corner_force, const Scalar* contact_params,
+                    const Scalar* step_params, std::int32_t point_count, std::int32_t tools, std::int32_t step) {
   const Points<Scalar> points{node_u, node_w, contact_rest, contact_node, contact_weight};
   const EdgedTools<Scalar, EDGES> all{
       {tool_kind, tool_data, tool_grid, tool_pose, tools, step}, tool_edge, {points, touch_surface, contact_patch}};
@@ -110,7 +110,7 @@ void contact_settle(Range range, const Scalar* node_u, const Scalar* node_w, con
         const Scalar* law = all.law(t);
         const Scalar held = held_depth(points, contact_share, contact_held, i, met.place, m);
         const bool held_fast = GRIPS != 0 && anchor[3] == gripped_by<Scalar>(t);
-        const Scalar rest = (-m.distance - held) - law[15];
+        const Scalar rest = ((-m.distance - held) - left_in(contact_start + tile_base(i, 2), t)) - law[15];
         const Scalar push = rest > Scalar(0) && !held_fast ? stiffness * rest : Scalar(0);
         const Quanta pressed{-on_tool[0], -on_tool[1], -on_tool[2]}, before = count == 1 ? pressed : Quanta{};
         const Vec<Scalar> first = force_of(pressed, quantum), own = times(m.normal, push);

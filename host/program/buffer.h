@@ -44,6 +44,7 @@ enum class Carry {
 enum class ToolNumbers {
   none,
   bits,    ///< integers whose bit t stands for tool t
+  second,  ///< in tiles of two planes, the second: the tool's number + 1, or 0 for none
   fourth,  ///< in tiles of four planes, the fourth: the tool's number + 1, or 0 for none
 };
 

@@ -87,6 +87,15 @@ static inline float held_depth(__global const float* node_u, __global const int*
   return distance < 0.0f ? -distance : 0.0f;
 }
 
+// The depth in tool t that a point had when an edit of its body left it there (it hung on held nodes, or is new): taken back in a step, it would be
+// energy from nowhere. It never grows. `start`: depth [m], or -1 of a point that an edit has left, and tool + 1; `before`: depth at the start of the
+// step [m].
+static inline float start_depth(__global const float* start, int t, float before) {
+  const float own = start[0] < 0.0f ? before : (int)start[PLIANT_TILE] == t + 1 ? start[0] : 0.0f;
+  const float depth = before < own ? before : own;
+  return depth > 0.0f ? depth : 0.0f;
+}
+
 // Fraction of the margin within which a point may touch in the next step. It is larger for points that were within it before, so that the set of
 // these points does not flicker.
 #define READY_AGAIN 0.24f

@@ -21,7 +21,7 @@ __kernel void contact_press(__global const float* node_u, __global const float* 
                             __global const int* contact_node, __global const float* contact_weight,
                             __global const float* contact_share, __global const float* contact_held, __global const int* contact_list,
                             __global const int* contact_near, __global float* contact_yield,
-                            __global float* contact_anchor, __global int* contact_force, __global int* contact_tool_force, __global const int* tool_kind,
+                            __global float* contact_anchor, __global float* contact_start, __global int* contact_force, __global int* contact_tool_force, __global const int* tool_kind,
                             __global const float* tool_data, __global const float* tool_grid, __global const float* tool_edge,
                             __global const float* tool_pose, __global const float* touch_surface, __global const float* contact_patch,
                             __global float* contact_corner_weight, __global int* contact_corner_force,
@@ -61,6 +61,8 @@ __kernel void contact_press(__global const float* node_u, __global const float* 
       const int by = (int)(-anchor[3 * PLIANT_TILE] - 1.0f);
       if (!((by < 64 ? gripped >> by : out >> (by - 64)) & 1)) anchor[3 * PLIANT_TILE] = 0.0f;
     }
+    __global float* start = contact_start + POINT_BASE(i, 2);
+    float lag = 0.0f, lag_in = 0.0f;
     int4 sum = 0;
     float w = contact_yield[i];
     if (touching != 0 && !(w > 0.0f)) {  // compliance from touching points is not known yet
@@ -86,7 +88,9 @@ __kernel void contact_press(__global const float* node_u, __global const float* 
       const float stiffness = (whole * met.share) * met.ease;
       __global const float* data = tool_data + TOOL_NUMBERS * t;
       const float held = held_depth(node_u, contact_node, contact_weight, contact_share, contact_held, i, met.at.now, m);
-      const float depth = -m.distance - held, opening = m.opening, before = depth + opening;
+      const float opening = m.opening, beyond = -m.distance - held, own = start_depth(start, t, beyond + opening);
+      if (own > lag) lag = own, lag_in = (float)(t + 1);
+      const float depth = beyond - own, before = depth + opening;
       float push = 0.0f;
       if (data[12] > 0.0f && before > 0.0f) {
         const float spring = (area * data[12]) * (data[16] > 0.0f ? before * sqrt(before) : before);
@@ -137,6 +141,7 @@ __kernel void contact_press(__global const float* node_u, __global const float* 
         sum += q;
       }
     }
+    start[0] = lag, start[PLIANT_TILE] = lag_in;
     force[0] = sum.x;
     force[PLIANT_TILE] = sum.y;
     force[2 * PLIANT_TILE] = sum.z;

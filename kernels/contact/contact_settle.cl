@@ -14,7 +14,7 @@ __kernel void contact_settle(__global const float* node_u, __global const float*
                              __global const int* contact_node, __global const float* contact_weight,
                              __global const float* contact_share, __global const float* contact_held, __global const int* contact_list,
                              __global const int* contact_near, __global float* contact_yield,
-                             __global float* contact_anchor, __global int* contact_force, __global int* contact_change, __global const float* contact_node_sum,
+                             __global float* contact_anchor, __global const float* contact_start, __global int* contact_force, __global int* contact_change, __global const float* contact_node_sum,
                              __global int* contact_tool_force, __global const int* tool_kind, __global const float* tool_data,
                              __global const float* tool_grid, __global const float* tool_edge, __global const float* tool_pose,
                              __global const float* touch_surface, __global const float* contact_patch,
@@ -29,6 +29,7 @@ __kernel void contact_settle(__global const float* node_u, __global const float*
     __global int* force = contact_force + POINT_BASE(i, 4);
     __global int* change = contact_change + POINT_BASE(i, 4);
     const int touching = force[3 * PLIANT_TILE];
+    __global const float* start = contact_start + POINT_BASE(i, 2);
     int4 sum = 0;
     if (EDGES) clear_corners(contact_corner_force, i);
     if (touching != 0) {
@@ -63,7 +64,8 @@ __kernel void contact_settle(__global const float* node_u, __global const float*
         __global int* on_tool = tool_force_of(contact_tool_force, point_count, t, i);
         __global const float* data = tool_data + TOOL_NUMBERS * t;
         const float held = held_depth(node_u, contact_node, contact_weight, contact_share, contact_held, i, met.at.now, m);
-        const float rest = (-m.distance - held) - data[15];
+        const float lag = start[PLIANT_TILE] == (float)(t + 1) ? start[0] : 0.0f;
+        const float rest = ((-m.distance - held) - lag) - data[15];
         const int held_fast = GRIPS && anchor[3 * PLIANT_TILE] == GRIPPED_BY(t);
         const float push = rest > 0.0f && !held_fast ? stiffness * rest : 0.0f;
         const float inverse = contact_params[1], quantum = contact_params[0];

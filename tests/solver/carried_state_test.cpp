@@ -87,7 +87,7 @@ TEST(CarriedState, BackupsAreDroppedAndNameToolsAsWhatTheyKeep) {
   }
   EXPECT_EQ(copied, 1);
   EXPECT_EQ(moving, 1);
-  EXPECT_EQ(tools, 4);  // contact_near, contact_anchor and their backups
+  EXPECT_EQ(tools, 6);  // contact_near, contact_anchor, contact_start and their backups
 }
 
 TEST(CarriedState, AnEditLeavesTheInitialValuesOfItsProgram) {

@@ -100,6 +100,9 @@ void ProgramBuilder::add_tools() {
   add_contact_state(make_reals("contact_anchor", BufferType::real, 4 * count, BufferRole::state, "[tiles][4][16]", "m, m, m, 1",
                                "contact_press, contact_settle"),
                     ToolNumbers::fourth);
+  add_contact_state(
+      make_reals("contact_start", BufferType::real, 2 * count, BufferRole::state, "[tiles][2][16]", "m, 1", "contact_press"),
+      ToolNumbers::second);
   add(make_reals("contact_gap", BufferType::real, count / PLIANT_TILE * tools, BufferRole::scratch, "[tiles][tools]", "m",
                  "contact_near"));
   program_.buffers.back().carried = Carried::all;
@@ -285,7 +288,7 @@ std::vector<Arg> ProgramBuilder::named(std::initializer_list<const char*> buffer
 std::vector<Arg> ProgramBuilder::tool_pass_args(const std::string& kernel) const {
   std::vector<Arg> list =
       named({"node_u", "node_w", "contact_rest", "contact_node", "contact_weight", "contact_share", "contact_held",
-             "contact_list", "contact_near", "contact_yield", "contact_anchor", "contact_force"});
+             "contact_list", "contact_near", "contact_yield", "contact_anchor", "contact_start", "contact_force"});
   const bool settle = kernel == "contact_settle";
   const std::vector<Arg> results = settle ? named({"contact_change", "contact_node_sum"}) : std::vector<Arg>{};
   const std::vector<Arg> tools = named(

@@ -16,7 +16,8 @@
 namespace pliant {
 namespace {
 
-constexpr std::size_t kAnchorNumbers = 4;  ///< the fourth: index of the tool + 1, negative if it grips, or 0 (contact_grip.cl)
+/// Planes of a buffer whose last one has the index of the tool + 1, negative if it grips (contact_grip.cl), or 0; 0: none has.
+std::size_t planes_of(ToolNumbers tools) { return tools == ToolNumbers::fourth ? 4 : tools == ToolNumbers::second ? 2 : 0; }
 
 /// The new index of each previous tool; -1: removed.
 std::vector<int> new_numbers(const std::vector<ContactTool>& before, const std::vector<ContactTool>& next) {
@@ -44,12 +45,11 @@ void renumber_near(std::vector<std::int32_t>& near, const std::vector<int>& numb
   }
 }
 
-/// to(tool) returns the new index of the tool that an anchor belongs to, or -1 for none.
+/// to(tool) returns the new index of the tool that a point's numbers belong to, or -1 for none.
 template <class To>
-void renumber_anchors(std::vector<double>& anchor, const To& to) {
-  const std::size_t points = anchor.size() / kAnchorNumbers;
-  for (std::size_t i = 0; i < points; ++i) {
-    double& held = anchor[tile_base(i, kAnchorNumbers) + 3 * PLIANT_TILE];
+void renumber_points(std::vector<double>& values, std::size_t planes, const To& to) {
+  for (std::size_t i = 0; i < values.size() / planes; ++i) {
+    double& held = values[tile_base(i, planes) + (planes - 1) * PLIANT_TILE];
     if (held == 0) continue;
     const int mark = static_cast<int>(std::abs(held)) - 1, slipped = mark >= 64 ? 64 : 0, now = to(mark - slipped);
     held = now < 0 ? 0 : held < 0 ? -(now + slipped + 1) : now + 1;
@@ -61,7 +61,8 @@ void carry_state(const RunContext& run, Program& next, const std::vector<int>& n
   for_each_kept(run.loaded.program(), next, [&](BufferId id, Buffer& to) {
     take_values(run.backend(), id, to);
     if (to.tools == ToolNumbers::bits) renumber_near(to.ints, number, tools);
-    if (to.tools == ToolNumbers::fourth) renumber_anchors(to.reals, [&](int t) { return number[static_cast<std::size_t>(t)]; });
+    if (const std::size_t planes = planes_of(to.tools); planes > 0)
+      renumber_points(to.reals, planes, [&](int t) { return number[static_cast<std::size_t>(t)]; });
   });
 }
 
@@ -118,11 +119,12 @@ void replace_shape(RunContext& run, std::size_t tool, const ToolForm& form) {
 void let_go(RunContext& run, std::size_t tool) {
   const Program& program = run.loaded.program();
   for (std::size_t i = 0; i < program.buffers.size(); ++i) {
-    if (program.buffers[i].tools != ToolNumbers::fourth) continue;
+    const std::size_t planes = planes_of(program.buffers[i].tools);
+    if (planes == 0) continue;
     const auto id = static_cast<BufferId>(i);
-    std::vector<double> anchor = run.backend().read_reals(id);
-    renumber_anchors(anchor, [&](int t) { return t == static_cast<int>(tool) ? -1 : t; });
-    run.backend().write_reals(id, anchor);
+    std::vector<double> values = run.backend().read_reals(id);
+    renumber_points(values, planes, [&](int t) { return t == static_cast<int>(tool) ? -1 : t; });
+    run.backend().write_reals(id, values);
   }
 }
 

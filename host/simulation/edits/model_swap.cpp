@@ -9,6 +9,7 @@
 #include "model/nodes/boundary_conditions.h"
 #include "schedule/build_program.h"
 #include "schedule/surface_program.h"
+#include "simulation/edits/carried_depths.h"
 #include "simulation/edits/carried_grips.h"
 #include "simulation/step/coupling.h"
 
@@ -129,7 +130,7 @@ void ModelSwap::keep_rest(Program& program) const {
 void ModelSwap::load_steps() {
   Program program = build_program(*model_, run_.program_options());
   const bool keeps = keeps_state_ && keeps_nodes();
-  std::vector<BufferValues> initial = initial_state(program, keeps || has_grips(*model_));
+  std::vector<BufferValues> initial = initial_state(program, keeps || program.find("contact_start") >= 0);
   report_.model += clock_.lap();
   // Upload the carried-over state only; restore the Program's initial values afterwards so that the Program itself stays
   // pristine.
@@ -139,6 +140,7 @@ void ModelSwap::load_steps() {
   } else {
     carry_grips(run_, *model_, program);
   }
+  carry_depths(run_, *model_, program);
   run_.loaded.update(model_, std::move(program));
   run_.state.look.tools = -1;
   if (!keeps) run_.state.look.tissue = -1;  // new contact points have no partners yet

@@ -14,7 +14,7 @@ namespace pliant::kernel_test {
 struct ContactData {
   static constexpr std::size_t tools = 5, rows = test_step + 2, frames = 3, pose_numbers = 15, edges = 24;
   std::size_t points, slots = 96;
-  Reals node_u, node_w, rest, weight, share, held, yield, anchor, node_sum, data, grid, pose, params, step_params;
+  Reals node_u, node_w, rest, weight, share, held, yield, anchor, left_deep, node_sum, data, grid, pose, params, step_params;
   Ints node, near, force, change, tool_force, sum, kind;
   Reals gap;
   Ints node_list, slot, free, tiles_offset, tiles, entry_offset, entry, gather_offset, gather, units, turns, moment;
@@ -47,6 +47,7 @@ struct ContactData {
     held.assign(4 * points, 0.0);
     node.resize(8 * points);
     anchor.assign(4 * points, 0.0);
+    left_deep.assign(2 * points, 0.0);
     for (std::size_t i = 0; i < points; ++i) {
       for (std::size_t c = 0; c < 3; ++c) rest[base(i, 4) + 16 * c] = random.uniform(-0.6, 0.6);
       rest[base(i, 4) + 48] = random.chance(0.1) ? 0 : random.uniform(0.001, 0.01);
@@ -280,6 +281,7 @@ inline KernelCase& add_touching(KernelCase& test, const ContactData& d) {
       .ints("contact_near", d.near)
       .reals("contact_yield", d.yield)
       .reals("contact_anchor", d.anchor)
+      .reals("contact_start", d.left_deep)
       .ints("contact_force", d.force);
 }
 
@@ -297,6 +299,15 @@ inline ContactData with_grips(ContactData d) {
     }
   }
   for (std::size_t i = 0; i < d.points; i += 2) d.anchor[ContactData::base(i, 4) + 48] *= -1;
+  return d;
+}
+
+/// The same with points that an edit has just left where they are, or has left deep in a tool before.
+inline ContactData with_starts(ContactData d) {
+  for (std::size_t i = 0; i < d.points; ++i) {
+    d.left_deep[ContactData::base(i, 2)] = i % 3 == 0 ? -1 : 0.02 * static_cast<double>(i % 7);
+    d.left_deep[ContactData::base(i, 2) + 16] = i % 3 == 0 ? 0 : static_cast<double>(i % (ContactData::tools + 1));
+  }
   return d;
 }
 

@@ -16,6 +16,8 @@ TEST_F(ContactPress, TwinGivesTheSameBits) {
     expect_same_bits(press_case(d, 1), label + ", with edges");
     expect_same_bits(press_case(with_grips(d), 0, 1), label + ", with grips");
     expect_same_bits(press_case(with_grips(d), 1, 1), label + ", with edges and grips");
+    expect_same_bits(press_case(with_starts(d)), label + ", after an edit");
+    expect_same_bits(press_case(with_starts(d), 1), label + ", after an edit, with edges");
   });
 }
 
@@ -108,6 +110,42 @@ TEST(ContactPressOracle, TouchesWhatIsInside) {
   }
   EXPECT_GT(inside, 100);
   EXPECT_GT(outside, 100);
+}
+
+/// What an edit has left deep in a tool is known as deep after the first step, never deeper than it was, and forgotten outside;
+/// where nothing was left, nothing is.
+TEST(ContactPressOracle, RemembersWhatAnEditLeftDeep) {
+  int seen = 0, kept = 0, forgotten = 0;
+  for (std::uint32_t seed = 0; seed < 8; ++seed) {
+    ContactData d(700 + seed);
+    std::fill(d.near.begin(), d.near.end(), 31);
+    std::fill(d.held.begin(), d.held.end(), 0.0);
+    const Reals none = run_in_double(press_case(d), "contact_start");
+    EXPECT_EQ(none, Reals(none.size(), 0.0));
+    const ContactData left = with_starts(d);
+    const Reals after = run_in_double(press_case(left), "contact_start");
+    const std::vector<std::int32_t> bits = [&] {
+      const Reals force = ints_in_double(press_case(left), "contact_force");
+      std::vector<std::int32_t> out;
+      for (std::size_t i = 0; i < d.points; ++i) out.push_back(static_cast<std::int32_t>(force[ContactData::base(i, 4) + 48]));
+      return out;
+    }();
+    for (std::size_t i = 0; i < d.points; ++i) {
+      const std::size_t at = ContactData::base(i, 2);
+      const double had = left.left_deep[at], in = left.left_deep[at + 16], has = after[at], now_in = after[at + 16];
+      EXPECT_GE(has, 0) << i;
+      EXPECT_EQ(has > 0, now_in > 0) << i;
+      EXPECT_TRUE(has == 0 || (bits[i] >> (static_cast<int>(now_in) - 1) & 1) != 0) << i;
+      EXPECT_TRUE(had <= 0 || has == 0 || now_in == in) << i;
+      EXPECT_TRUE(had < 0 || has <= had + 1e-8) << i;
+      seen += had < 0 && has > 0;
+      kept += had > 0 && std::abs(has - had) < 1e-8;  // the case is rounded to float
+      forgotten += had > 0 && has == 0;
+    }
+  }
+  EXPECT_GT(seen, 20);
+  EXPECT_GT(kept, 20);
+  EXPECT_GT(forgotten, 20);
 }
 
 TEST(ContactPressOracle, ActionIsReactionInFixedPoint) {

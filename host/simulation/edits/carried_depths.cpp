@@ -1,0 +1,68 @@
+#include "simulation/edits/carried_depths.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <utility>
+
+#include "geometry/vec.h"
+#include "model/contact/contact.h"
+#include "schedule/program_layout.h"
+
+namespace pliant {
+namespace {
+
+/// The share of a point that hangs on held nodes.
+double held_part(const Program& program, std::size_t i) {
+  return program.at(program.find("contact_held")).reals[tile_base(i, 4) + std::size_t{3} * PLIANT_TILE];
+}
+
+/// A point near a tool: how much of it is held, and its two numbers in contact_start.
+struct NearPoint {
+  double held = 0;
+  std::array<double, 2> start{};
+};
+
+struct NearPoints {
+  std::map<std::pair<std::int32_t, Vec3d>, NearPoint> at;  ///< by body and place at rest
+  vec::Box box;                                            ///< of these places
+};
+
+NearPoints points_near_tools(const RunContext& run, BufferId starts) {
+  const ContactPoints& points = *run.model().contact;
+  const Program& program = run.loaded.program();
+  const std::vector<std::int32_t> near = run.backend().read_ints(program.find("contact_near"));
+  NearPoints out;
+  std::vector<double> start;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if ((near[i / PLIANT_TILE] & ~PLIANT_TOUCH_BIT) == 0) continue;
+    if (start.empty()) start = run.backend().read_reals(starts);
+    const std::size_t base = tile_base(i, 2);
+    out.at.emplace(std::pair{points.body[i], points.rest[i]},
+                   NearPoint{held_part(program, i), {start[base], start[base + PLIANT_TILE]}});
+    out.box.extend(points.rest[i]);
+  }
+  return out;
+}
+
+}  // namespace
+
+void carry_depths(const RunContext& run, const Model& next, Program& program) {
+  const BufferId from = run.loaded.program().find("contact_start"), to = program.find("contact_start");
+  if (from < 0 || to < 0) return;
+  const NearPoints before = points_near_tools(run, from);
+  if (before.at.empty()) return;
+  std::vector<double>& start = program.at(to).reals;
+  start.assign(program.at(to).values(), 0.0);
+  for (std::size_t i = 0; i < next.contact->size(); ++i) {
+    const std::size_t base = tile_base(i, 2);
+    start[base] = -1;
+    if (before.box.distance2(next.contact->rest[i]) > 0) continue;
+    const auto found = before.at.find({next.contact->body[i], next.contact->rest[i]});
+    if (found == before.at.end() || found->second.held != held_part(program, i)) continue;
+    start[base] = found->second.start[0];
+    start[base + PLIANT_TILE] = found->second.start[1];
+  }
+}
+
+}  // namespace pliant

@@ -1,0 +1,12 @@
+// What stands in tools, through an edit of the bodies.
+#pragma once
+#include "simulation/state/run_context.h"
+
+namespace pliant {
+
+/// Points of contact of `next`, the model of `program`, that hang on other nodes than before, or are new, may lie deep in a
+/// tool; they are marked, so that the first step sees how deep (contact_start). The others keep what they had. Call before
+/// `program` is loaded.
+void carry_depths(const RunContext& run, const Model& next, Program& program);
+
+}  // namespace pliant
