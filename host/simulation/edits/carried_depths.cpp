@@ -47,6 +47,14 @@ NearPoints points_near_tools(const RunContext& run, BufferId starts) {
 
 }  // namespace
 
+void mark_freed(const RunContext& run, const Model& next, Program& program) {
+  const BufferId to = program.find("contact_start");
+  if (to < 0 || run.model().contact == nullptr || run.model().contact->size() != next.contact->size()) return;
+  for (std::size_t i = 0; i < next.contact->size(); ++i) {
+    if (held_part(run.loaded.program(), i) != held_part(program, i)) program.at(to).reals[tile_base(i, 2)] = -1;
+  }
+}
+
 void carry_depths(const RunContext& run, const Model& next, Program& program) {
   const BufferId from = run.loaded.program().find("contact_start"), to = program.find("contact_start");
   if (from < 0 || to < 0) return;

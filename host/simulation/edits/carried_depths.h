@@ -8,5 +8,7 @@ namespace pliant {
 /// tool; they are marked, so that the first step sees how deep (contact_start). The others keep what they had. Call before
 /// `program` is loaded.
 void carry_depths(const RunContext& run, const Model& next, Program& program);
+/// The same after an edit that leaves nodes and points as they were, when `program` has the values of all of them.
+void mark_freed(const RunContext& run, const Model& next, Program& program);
 
 }  // namespace pliant

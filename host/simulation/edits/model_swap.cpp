@@ -137,10 +137,11 @@ void ModelSwap::load_steps() {
   carry_nodes(program);
   if (keeps) {
     keep_rest(program);
+    mark_freed(run_, *model_, program);
   } else {
     carry_grips(run_, *model_, program);
+    carry_depths(run_, *model_, program);
   }
-  carry_depths(run_, *model_, program);
   run_.loaded.update(model_, std::move(program));
   run_.state.look.tools = -1;
   if (!keeps) run_.state.look.tissue = -1;  // new contact points have no partners yet
