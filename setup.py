@@ -69,6 +69,7 @@ class CMakeBuild(build_ext):
 
 
 setup(name="pliant", version=version(), description="Soft-tissue deformation on OpenCL and on a bit-exact CPU reference",
+      license_files=["LICENSE", "cmake/copyright"],
       python_requires=">=3.9", install_requires=["numpy"], extras_require={"view": ["viser>=1.1"], "gym": ["gymnasium>=1.0"],
                       "convert": ["meshio>=5", "usd-core>=23"]},
       ext_modules=[Extension("pliant._core", [])], cmdclass={"build_ext": CMakeBuild},
