@@ -18,6 +18,9 @@ bool touched(std::int64_t points, const std::int32_t* near, const std::int32_t* 
   return std::any_of(marks, marks + PLIANT_TILE, [](std::int32_t mark) { return mark != 0; });
 }
 
+template <class... T>
+void only_for_one_lane(const T&... /*rows*/) {}
+
 /// What the points give to the nodes of a tile: force in quanta, and area.
 template <class Scalar>
 struct TileSum {
@@ -32,12 +35,13 @@ void contact_apply(Range range, Scalar* node_u, Scalar* node_w, const std::int32
                    const std::int32_t* contact_free, const std::int32_t* contact_node_list,
                    const std::int32_t* contact_tiles_offset, const std::int32_t* contact_tiles,
                    const std::int32_t* contact_entry_offset, const std::int32_t* contact_entry,
-                   const std::int32_t* /*contact_gather_offset*/, const std::int32_t* /*contact_gather*/,
-                   const std::int32_t* /*contact_gather_units*/, const std::int32_t* /*contact_gather_turns*/,
+                   const std::int32_t* contact_gather_offset, const std::int32_t* contact_gather,
+                   const std::int32_t* contact_gather_units, const std::int32_t* contact_gather_turns,
                    const std::int32_t* contact_near, const std::int32_t* contact_force, const std::int32_t* touch_moment,
-                   const std::int32_t* /*contact_gather_corner*/, const std::int32_t* contact_corner_force,
+                   const std::int32_t* contact_gather_corner, const std::int32_t* contact_corner_force,
                    const Scalar* contact_corner_weight, const Scalar* contact_rest, Scalar* contact_node_sum,
                    const Scalar* contact_params, const Scalar* step_params) {
+  only_for_one_lane(contact_gather_offset, contact_gather, contact_gather_units, contact_gather_turns, contact_gather_corner);
   constexpr std::int64_t area_plane = std::int64_t{3} * PLIANT_TILE;
   const Scalar h = step_params[0], half_hh = (Scalar(0.5) * h) * h, quantum = contact_params[2];
   TileSum<Scalar> sum;
