@@ -18,6 +18,8 @@ bool touched(std::int64_t points, const std::int32_t* near, const std::int32_t* 
   return std::any_of(marks, marks + PLIANT_TILE, [](std::int32_t mark) { return mark != 0; });
 }
 
+constexpr std::int64_t area_plane = std::int64_t{3} * PLIANT_TILE;  ///< of contact_rest; of contact_force its bits
+
 template <class... T>
 void only_for_one_lane(const T&... /*rows*/) {}
 
@@ -42,7 +44,6 @@ void contact_apply(Range range, Scalar* node_u, Scalar* node_w, const std::int32
                    const Scalar* contact_corner_weight, const Scalar* contact_rest, Scalar* contact_node_sum,
                    const Scalar* contact_params, const Scalar* step_params) {
   only_for_one_lane(contact_gather_offset, contact_gather, contact_gather_units, contact_gather_turns, contact_gather_corner);
-  constexpr std::int64_t area_plane = std::int64_t{3} * PLIANT_TILE;
   const Scalar h = step_params[0], half_hh = (Scalar(0.5) * h) * h, quantum = contact_params[2];
   TileSum<Scalar> sum;
   std::int64_t seen = -1;

@@ -3,9 +3,7 @@
 #define PLACE_TEXELS (PLIANT_TOUCH_PLACE / 4)
 
 #if LANES == 16
-#define TO_INTEGER(x)                                                                                                                       \
-  (int16)((int)(x).s0, (int)(x).s1, (int)(x).s2, (int)(x).s3, (int)(x).s4, (int)(x).s5, (int)(x).s6, (int)(x).s7, (int)(x).s8, (int)(x).s9, \
-          (int)(x).sa, (int)(x).sb, (int)(x).sc, (int)(x).sd, (int)(x).se, (int)(x).sf)
+#define TO_INTEGER(x) convert_int16_rtz(x)  // of whole numbers within the range of int: exact
 #define TO_REAL(i) convert_float16(i)
 #define LANE_INDEX (int16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15)
 #else

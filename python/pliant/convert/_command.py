@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pliant
 from pliant._codes import exit_code
-from pliant.convert import MATERIAL, from_meshio, from_usd, save_scene, to_usd
+from pliant.convert import MATERIAL, from_meshio, save_scene, to_usd
+from pliant.convert._usd_in import scene_of_stage
 
 STAGES = (".usd", ".usda", ".usdc", ".usdz")
 
@@ -15,9 +16,9 @@ def _parser():
                                      "or runs a scene and writes its motion as a stage.")
     parser.add_argument("source", metavar="IN", help="a mesh that meshio reads, a stage of USD, or a scene (.json)")
     parser.add_argument("out", metavar="OUT", help="a scene (.json), with its meshes beside it; of a scene a stage (.usd, .usda, .usdc)")
-    parser.add_argument("--young", type=float, default=MATERIAL["young"], help="Young's modulus [Pa] (5000)")
-    parser.add_argument("--poisson", type=float, default=MATERIAL["poisson"], help="Poisson's ratio (0.45)")
-    parser.add_argument("--density", type=float, default=MATERIAL["density"], help="[kg/m^3] (1000)")
+    parser.add_argument("--young", type=float, help="Young's modulus [Pa] (of the stage, or 5000)")
+    parser.add_argument("--poisson", type=float, help="Poisson's ratio (of the stage, or 0.45)")
+    parser.add_argument("--density", type=float, help="[kg/m^3] (of the stage, or 1000)")
     parser.add_argument("--nodes", type=int, default=2000, help="about how many nodes the lattice in a surface has (2000)")
     parser.add_argument("--scale", type=float, default=1.0, help="metres per unit of a mesh; a stage says it itself (1)")
     parser.add_argument("--hold-bottom", action="store_true", help="hold the lowest twentieth of each body")
@@ -32,12 +33,14 @@ def _scene(options):
     out = Path(options.out)
     if out.suffix != ".json":
         raise pliant.convert._files.input_error(f"{out}: a scene is written as .json")
-    material = {**MATERIAL, "young": options.young, "poisson": options.poisson, "density": options.density}
-    common = {"material": material, "nodes": options.nodes, "hold_bottom": options.hold_bottom}
+    over = {key: value for key in ("young", "poisson", "density") if (value := getattr(options, key)) is not None}
+    common = {"nodes": options.nodes, "hold_bottom": options.hold_bottom}
     if Path(options.source).suffix.lower() in STAGES:
-        scene = from_usd(options.source, out.parent, **common)
+        scene, said = scene_of_stage(options.source, out.parent, material=None, contact=None, time=None, over=over, **common)
+        for text in said:
+            print(f"pliant: {text}", file=sys.stderr)
     else:
-        scene = _of_mesh(options, out, common)
+        scene = _of_mesh(options, out, {**common, "material": {**MATERIAL, **over}})
     save_scene(scene, out)
     print(f"{out}: {len(scene['bodies'])} bodies: {', '.join(b['name'] for b in scene['bodies'])}")
 

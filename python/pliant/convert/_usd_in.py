@@ -1,54 +1,12 @@
 """Scenes from stages of OpenUSD: surfaces (UsdGeom.Mesh) and tetrahedra (UsdGeom.TetMesh)."""
-import os
+import warnings
 from pathlib import Path
 
 import numpy as np
 
+from pliant.convert import _deformable
 from pliant.convert._files import MATERIAL, input_error, scene_of, stands_on_its_foot, write_obj, write_vtu
-
-
-def need_usd():
-    try:
-        from pxr import Usd, UsdGeom
-    except ImportError:
-        raise ImportError("pliant.convert needs OpenUSD for this: pip install usd-core") from None
-    return Usd, UsdGeom
-
-
-def open_stage(stage):
-    Usd, _ = need_usd()
-    if isinstance(stage, Usd.Stage):
-        return stage
-    file = os.fspath(stage)
-    if not os.path.exists(file):
-        error = input_error(f"{file}: no such file, expected a stage of USD")
-        error.code = 6
-        raise error
-    try:
-        return Usd.Stage.Open(file)
-    except Exception as error:  # pxr.Tf.ErrorException, which is not its own class everywhere
-        raise input_error(f"{file}: OpenUSD cannot read it: {str(error).splitlines()[0]}") from None
-
-
-def body_name(prim):
-    """A prim's path with dots: names of bodies have no slashes, and names of prims no dots, so it can be found again."""
-    return str(prim.GetPath()).strip("/").replace("/", ".")
-
-
-def prim_path(name):
-    return "/" + name.replace(".", "/")
-
-
-def to_world(prim, time):
-    """The matrix that takes a prim's points, as rows of x y z 1, to metres in the frame of the stage."""
-    _, UsdGeom = need_usd()
-    matrix = np.array(UsdGeom.Imageable(prim).ComputeLocalToWorldTransform(time), dtype=np.float64)
-    matrix[:, :3] *= UsdGeom.GetStageMetersPerUnit(prim.GetStage())
-    return matrix
-
-
-def moved(points, matrix):
-    return points @ matrix[:3, :3] + matrix[3, :3]
+from pliant.convert._stage import body_name, check_cells, moved, need_usd, open_stage, to_world
 
 
 def faces_of(mesh, time):
@@ -82,49 +40,84 @@ def _body(prim, folder, time, nodes):
     name = body_name(prim)
     if tets:
         corners = np.asarray(tets.GetTetVertexIndicesAttr().Get(time) or [], dtype=np.int64).reshape(-1, 4)
-        _check(corners, points, prim)
+        check_cells(corners, points, prim)
         file = folder / f"{name}.vtu"
         write_vtu(file, points, [("tetra", corners)], {})
         return {"name": name, "mesh": str(file.resolve()), "element": "tet4anp"}, points[np.unique(corners)]
     faces = faces_of(surface, time)
-    _check(np.array([v for f in faces for v in f], dtype=np.int64), points, prim)
+    check_cells(np.array([v for f in faces for v in f], dtype=np.int64), points, prim)
     file = folder / f"{name}.obj"
     write_obj(file, points, faces)
     return {"name": name, "surface": str(file.resolve()), "lattice": {"nodes": int(nodes)}}, points
 
 
-def _check(corners, points, prim):
-    if corners.size == 0:
-        raise input_error(f"{prim.GetPath()}: it has no cells")
-    if corners.min() < 0 or corners.max() >= len(points):
-        raise input_error(f"{prim.GetPath()}: a cell names the point {corners.max() if corners.min() >= 0 else corners.min()} of {len(points)}")
+def _plain(prims, folder, time, nodes):
+    """The bodies of a stage without deformable bodies, with their points: what is a surface or tetrahedra, and visible."""
+    _, UsdGeom = need_usd()
+    found = (_body(p, folder, time, nodes) for p in prims if p.IsA(UsdGeom.Imageable) and _shown(p, time))
+    return [pair for pair in found if pair]
 
 
-def from_usd(stage, folder, *, material=MATERIAL, nodes=2000, hold_bottom=False, time=None):
-    """A scene with a body for each visible UsdGeom.Mesh and UsdGeom.TetMesh: a dict for pliant.World or save_scene.
+def _deformables(found, prims, folder, time, over, contact, said):
+    """The bodies of the deformable bodies of a stage, with their points, and `contact`, unless that is given."""
+    _, UsdGeom = need_usd()
+    bodies, owned = found
+    made = []
+    for body in bodies:
+        entry = body.write(folder, said)
+        said += body.remarks()
+        made.append((entry | {"material": dict(MATERIAL) if over is None else body.material(over, said)}, body.points[body.node >= 0]))
+    contact = _deformable.contact_of(bodies, time, said) if contact is None else contact
+    _deformable.attach(prims, bodies, time, said)
+    for body, (entry, _) in zip(bodies, made):
+        entry |= {"fixed": [{"all": True}]} if body.kinematic else {"fixed": body.fixed} if body.fixed else {}
+    others = [p for p in prims if (UsdGeom.Mesh(p) or UsdGeom.TetMesh(p)) and _shown(p, time) and not any(p.GetPath().HasPrefix(o) for o in owned)]
+    if others:
+        names = ", ".join(str(p.GetPath()) for p in others[:3]) + (", ..." if len(others) > 3 else "")
+        said.append(f"the stage says which bodies are deformable; meshes that belong to none are left out ({len(others)}): {names}")
+    return made, contact
+
+
+def scene_of_stage(stage, folder, *, material, nodes, hold_bottom, contact, time, over=None):
+    """from_usd, and what it has to say. over: parts of the material that win over those of the stage."""
+    Usd, UsdGeom = need_usd()
+    opened, said, folder = open_stage(stage), [], Path(folder)
+    at = Usd.TimeCode.EarliestTime() if time is None else Usd.TimeCode(time)
+    up = {"X": 0, "Y": 1, "Z": 2}[str(UsdGeom.GetStageUpAxis(opened))]
+    prims = list(Usd.PrimRange.Stage(opened, Usd.TraverseInstanceProxies()))
+    found = _deformable.find(prims, at, said)
+    if found is None:
+        bodies = _plain(prims, folder, at, nodes)
+    else:
+        bodies, contact = _deformables(found, prims, folder, at, (over or {}) if material is None else None, contact, said)
+    for body, points in bodies:
+        if material is not None:
+            body["material"] = dict(material(body["name"]) if callable(material) else material)
+        elif found is None:
+            body["material"] = {**MATERIAL, **(over or {})}
+        if hold_bottom:
+            body["fixed"] = body.get("fixed", []) + stands_on_its_foot(points, up)
+    if not bodies:
+        what = "visible UsdGeom.Mesh or UsdGeom.TetMesh" if found is None else "deformable body that is taken" + "".join(f"; {s}" for s in said)
+        raise input_error(f"{opened.GetRootLayer().identifier}: it has no {what}")
+    gravity = [0.0, 0.0, 0.0]
+    gravity[up] = -9.81
+    scene = scene_of(Path(opened.GetRootLayer().realPath or "stage").stem, [body for body, _ in bodies], gravity)
+    return scene | ({"contact": contact} if contact else {}), said
+
+
+def from_usd(stage, folder, *, material=None, nodes=2000, hold_bottom=False, contact=None, time=None):
+    """A scene with a body for each visible UsdGeom.Mesh and UsdGeom.TetMesh, or, in a stage that has deformable bodies, for each of these: a dict for
+    pliant.World or save_scene.
 
     stage: a file, or a Usd.Stage. folder: takes a mesh file for each body. A body's name is the path of its prim with dots. Points are transformed to
     the stage and scaled by metersPerUnit; axes stay as they are, and gravity follows the up axis. A surface is its cage of polygons, not a subdivision, and is
-    filled with a lattice of about `nodes` nodes. material: of every body, or a function of the name of a body. hold_bottom: holds the lowest twentieth
-    of each. time: a time code; None: the first one.
+    filled with a lattice of about `nodes` nodes. material: of every body, or a function of the name of a body; None: the physics material that the stage
+    binds to a deformable body, and MATERIAL for any other. hold_bottom: holds the lowest twentieth of each, and what the stage holds. contact: as in a
+    scene; None: with collision of the stage's deformable bodies. time: a time code; None: the first one. What the stage says of deformable bodies and a
+    scene does not take is warned of.
     """
-    Usd, UsdGeom = need_usd()
-    opened = open_stage(stage)
-    at = Usd.TimeCode.EarliestTime() if time is None else Usd.TimeCode(time)
-    up = {"X": 0, "Y": 1, "Z": 2}[str(UsdGeom.GetStageUpAxis(opened))]
-    folder, bodies = Path(folder), []
-    for prim in Usd.PrimRange.Stage(opened, Usd.TraverseInstanceProxies()):
-        found = _body(prim, folder, at, nodes) if prim.IsA(UsdGeom.Imageable) and _shown(prim, at) else None
-        if found is None:
-            continue
-        body, points = found
-        body["material"] = dict(material(body["name"]) if callable(material) else material)
-        if hold_bottom:
-            body["fixed"] = stands_on_its_foot(points, up)
-        bodies.append(body)
-    if not bodies:
-        raise input_error(f"{opened.GetRootLayer().identifier}: it has no visible UsdGeom.Mesh or UsdGeom.TetMesh")
-    gravity = [0.0, 0.0, 0.0]
-    gravity[up] = -9.81
-    name = Path(opened.GetRootLayer().realPath or "stage").stem
-    return scene_of(name, bodies, gravity)
+    scene, said = scene_of_stage(stage, folder, material=material, nodes=nodes, hold_bottom=hold_bottom, contact=contact, time=time)
+    for text in said:
+        warnings.warn(text, stacklevel=2)
+    return scene

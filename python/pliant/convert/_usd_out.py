@@ -6,7 +6,10 @@ from pathlib import Path
 import numpy as np
 
 from pliant.convert._files import input_error
-from pliant.convert._usd_in import faces_of, moved, need_usd, open_stage, prim_path, to_world
+from pliant.convert._deformable import rest_shape, root_of
+from pliant.convert._embedded import embedded_in
+from pliant.convert._stage import moved, need_usd, open_stage, prim_path, to_world
+from pliant.convert._usd_in import faces_of
 
 
 def _nearest(points, among):
@@ -89,11 +92,14 @@ class _Tetrahedra:
     def __init__(self, source, stage, body, world):
         _, UsdGeom = need_usd()
         self.mesh, self.body = UsdGeom.TetMesh(stage.GetPrimAtPath(source.GetPath())), body
-        self.points = moved(np.asarray(UsdGeom.TetMesh(source).GetPointsAttr().Get(_earliest()), np.float64), to_world(source, _earliest()))
+        points, cells, _ = rest_shape(source, _earliest())
+        self.points = moved(points, to_world(source, _earliest()))
         self.rest = world.rest_positions(body)
         self.node = _nearest(self.points, self.rest)
         if len(np.setdiff1d(np.arange(len(self.rest)), self.node)) > 0:
             raise input_error(f"{source.GetPath()}: its points are not the nodes of the body: the scene is not from_usd() of this stage")
+        root = root_of(source)
+        self.embedded = embedded_in(root, source, stage, cells, _earliest()) if root else []
 
     def add(self, world, frame, code):
         del frame
@@ -103,6 +109,8 @@ class _Tetrahedra:
         points = self.points.copy()
         points[self.node >= 0] = (self.rest + u)[self.node[self.node >= 0]]
         _set_points(self.mesh, points, code, to_world(self.mesh.GetPrim(), code))
+        for part in self.embedded:
+            _set_points(part.mesh, part.points(points), code, to_world(part.mesh.GetPrim(), code))
 
 
 def _earliest():
