@@ -19,7 +19,7 @@ except ImportError:
 try:
     from pxr import Gf, Usd, UsdGeom, Vt
 except ImportError:
-    Usd = None
+    Gf = Usd = UsdGeom = Vt = None
 
 
 def error_of(call):
