@@ -12,10 +12,15 @@
 namespace pliant {
 namespace {
 
-/// The share of a point that hangs on held nodes.
-double held_part(const Program& program, std::size_t i) {
-  return program.at(program.find("contact_held")).reals[tile_base(i, 4) + std::size_t{3} * PLIANT_TILE];
-}
+/// The shares of points that hang on held nodes.
+class HeldParts {
+ public:
+  explicit HeldParts(const Program& program) : held_(program.at(program.find("contact_held")).reals) {}
+  [[nodiscard]] double of(std::size_t i) const { return held_[tile_base(i, 4) + std::size_t{3} * PLIANT_TILE]; }
+
+ private:
+  const std::vector<double>& held_;
+};
 
 /// A point near a tool: how much of it is held, and its two numbers in contact_start.
 struct NearPoint {
@@ -32,14 +37,14 @@ NearPoints points_near_tools(const RunContext& run, BufferId starts) {
   const ContactPoints& points = *run.model().contact;
   const Program& program = run.loaded.program();
   const std::vector<std::int32_t> near = run.backend().read_ints(program.find("contact_near"));
+  const HeldParts held(program);
   NearPoints out;
   std::vector<double> start;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if ((near[i / PLIANT_TILE] & ~PLIANT_TOUCH_BIT) == 0) continue;
     if (start.empty()) start = run.backend().read_reals(starts);
     const std::size_t base = tile_base(i, 2);
-    out.at.emplace(std::pair{points.body[i], points.rest[i]},
-                   NearPoint{held_part(program, i), {start[base], start[base + PLIANT_TILE]}});
+    out.at.emplace(std::pair{points.body[i], points.rest[i]}, NearPoint{held.of(i), {start[base], start[base + PLIANT_TILE]}});
     out.box.extend(points.rest[i]);
   }
   return out;
@@ -50,8 +55,9 @@ NearPoints points_near_tools(const RunContext& run, BufferId starts) {
 void mark_freed(const RunContext& run, const Model& next, Program& program) {
   const BufferId to = program.find("contact_start");
   if (to < 0 || run.model().contact == nullptr || run.model().contact->size() != next.contact->size()) return;
+  const HeldParts before(run.loaded.program()), now(program);
   for (std::size_t i = 0; i < next.contact->size(); ++i) {
-    if (held_part(run.loaded.program(), i) != held_part(program, i)) program.at(to).reals[tile_base(i, 2)] = -1;
+    if (before.of(i) != now.of(i)) program.at(to).reals[tile_base(i, 2)] = -1;
   }
 }
 
@@ -60,6 +66,7 @@ void carry_depths(const RunContext& run, const Model& next, Program& program) {
   if (from < 0 || to < 0) return;
   const NearPoints before = points_near_tools(run, from);
   if (before.at.empty()) return;
+  const HeldParts held(program);
   std::vector<double>& start = program.at(to).reals;
   start.assign(program.at(to).values(), 0.0);
   for (std::size_t i = 0; i < next.contact->size(); ++i) {
@@ -67,7 +74,7 @@ void carry_depths(const RunContext& run, const Model& next, Program& program) {
     start[base] = -1;
     if (before.box.distance2(next.contact->rest[i]) > 0) continue;
     const auto found = before.at.find({next.contact->body[i], next.contact->rest[i]});
-    if (found == before.at.end() || found->second.held != held_part(program, i)) continue;
+    if (found == before.at.end() || found->second.held != held.of(i)) continue;
     start[base] = found->second.start[0];
     start[base + PLIANT_TILE] = found->second.start[1];
   }

@@ -89,9 +89,6 @@ const NamedBytes* find(const Snapshot& snapshot, const std::string& name) {
   return nullptr;
 }
 
-/// Absent from older versions, where nothing was left deep in a tool.
-bool begins_empty(const Buffer& buffer) { return buffer.name == "contact_start" || buffer.name == "last_contact_start"; }
-
 }  // namespace
 
 std::vector<ModelPart> parts_of(const Scene& scene, const RunSettings& settings, const Model& model, const Program& program,
@@ -284,7 +281,6 @@ void check_buffers(const Snapshot& snapshot, const Program& program) {
   for (const Buffer& buffer : program.buffers) {
     if (buffer.role != BufferRole::state) continue;
     const NamedBytes* match = find(snapshot, buffer.name);
-    if (match == nullptr && begins_empty(buffer)) continue;
     const std::size_t expected = buffer.values() * (snapshot.real_type == "double" && !buffer.is_int() ? 8 : 4);
     if (match == nullptr || match->bytes.size() != expected) {
       throw Error(ErrorCode::bad_input, fmt::format("buffer {} has {} bytes, the scene needs {}", buffer.name,
@@ -298,8 +294,7 @@ void write_buffers(const Snapshot& snapshot, LoadedModel& loaded) {
   for (std::size_t i = 0; i < program.buffers.size(); ++i) {
     const Buffer& buffer = program.buffers[i];
     if (buffer.role != BufferRole::state) continue;
-    const NamedBytes* match = find(snapshot, buffer.name);
-    if (match != nullptr) loaded.write_bytes(static_cast<BufferId>(i), match->bytes);
+    loaded.write_bytes(static_cast<BufferId>(i), find(snapshot, buffer.name)->bytes);
   }
 }
 
