@@ -80,13 +80,27 @@ void ToolContact::start() {
   }
 }
 
+/// Longest time in which a wave along a bar, of speed sqrt(E / density), crosses a cell [s]; 0 without elements.
+static double slowest_crossing(const Model& model) {
+  double slowest = 0;
+  for (const ElementBatch& batch : model.batches) {
+    const double young = batch.material.moduli.young();
+    if (young > 0) slowest = std::max(slowest, model.contact->spacing * std::sqrt(batch.material.density / young));
+  }
+  return slowest;
+}
+
 /// Each search reduces the initial depth of a pair by kEase; searches come after a number of steps. At steps far below the
 /// stable one, this would be an unlimited speed in m/s, which threw the faces of a cut apart (touch_test.cpp,
-/// SmallStepsPartBodiesNoFaster). There the rate is limited to that at half the stable step.
+/// SmallStepsPartBodiesNoFaster). There the rate is limited to that at half the stable step. Viscosity, or one stiff part, makes
+/// the stable step itself short: then the rate is limited to that at kCrossing of the time in which a wave crosses a cell.
 double ToolContact::touch_ease() const {
-  constexpr double kEase = 0.04;
-  const double stable = run_.state.limit.stable_dt;
-  return stable > 0 ? kEase * std::min(1.0, 2 * run_.state.clock.dt / stable) : kEase;
+  constexpr double kEase = 0.04, kCrossing = 0.25;
+  const double stable = run_.state.limit.stable_dt, dt = run_.state.clock.dt, crossing = slowest_crossing(run_.model());
+  double share = 1;
+  if (stable > 0) share = std::min(share, 2 * dt / stable);
+  if (crossing > 0) share = std::min(share, dt / (kCrossing * crossing));
+  return kEase * share;
 }
 
 void ToolContact::begin_batch(std::int32_t steps) {
