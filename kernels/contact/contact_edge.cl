@@ -117,34 +117,3 @@ static inline patch_meeting meet_patch(__global const float* node_u, __global co
   out.m.distance = EDGE_FAR, out.m.opening = 0.0f;
   return out;
 }
-
-// contact_corner_weight: [tiles][9][16] weights of a point's nodes at the place where the last tool with edges touches its patch, or at the point
-// itself, and the fraction of its area. contact_corner_force: [tiles][8][3][16] forces of edges on these nodes [quanta].
-static inline void write_weights(__global float* contact_corner_weight, __global const float* contact_weight, int i, patch_meeting met) {
-  __global float* out = contact_corner_weight + POINT_BASE(i, 9);
-  for (int k = 0; k < 8; ++k) out[k * PLIANT_TILE] = met.edged ? met.at.weight[k] : contact_weight[POINT_BASE(i, 8) + k * PLIANT_TILE];
-  out[8 * PLIANT_TILE] = met.share;
-}
-
-static inline void clear_corners(__global int* contact_corner_force, int i) {
-  for (int k = 0; k < 24; ++k) contact_corner_force[POINT_BASE(i, 24) + k * PLIANT_TILE] = 0;
-}
-
-// Distributes a force over the nodes; the rounding remainder goes to the node with the largest weight.
-static inline void add_to_corners(__global int* contact_corner_force, int i, patch_meeting met, int4 force) {
-  __global int* out = contact_corner_force + POINT_BASE(i, 24);
-  int4 left = force;
-  int largest = 0;
-  for (int k = 0; k < 8; ++k) {
-    const float w = met.at.weight[k];
-    const int4 part = (int4)(quanta(w * (float)force.x), quanta(w * (float)force.y), quanta(w * (float)force.z), 0);
-    out[3 * k * PLIANT_TILE] += part.x;
-    out[(3 * k + 1) * PLIANT_TILE] += part.y;
-    out[(3 * k + 2) * PLIANT_TILE] += part.z;
-    left -= part;
-    largest = w > met.at.weight[largest] ? k : largest;
-  }
-  out[3 * largest * PLIANT_TILE] += left.x;
-  out[(3 * largest + 1) * PLIANT_TILE] += left.y;
-  out[(3 * largest + 2) * PLIANT_TILE] += left.z;
-}

@@ -13,32 +13,38 @@ static inline float grip_of(__global const float* tool_pose, int tools, int step
   return tool_pose[POSE_NUMBERS * ((step + 1) * tools + t) + 14];
 }
 
-// From the point to where the tool holds it, turned to the world [m].
-static inline float4 grip_slip(__global const float* next, __global const float* anchor, meeting m) {
-  return turned(next, m.inside - (float4)(anchor[0], anchor[PLIANT_TILE], anchor[2 * PLIANT_TILE], 0.0f));
+// From the points to where the tool holds them, turned to the world [m].
+INLINE vec3 grip_slip(__global const float* next, __global const float* anchor, meetings m) { return turned_lanes(next, sub(m.inside, load3(anchor))); }
+
+// The lanes of points that a tool holds in this step and met at a place that is no edge.
+INLINE integer grips(__global const float* contact_held, __global const float* anchor, __global const float* tool_pose, int tools, int step, int t,
+                     int first, tool_meetings met, float margin) {
+  const integer none = 0;
+  if (!(grip_of(tool_pose, tools, step, t) > 0.0f)) return none;
+  const real by = LOAD(anchor, 3 * PLIANT_TILE);
+  const integer free = !(LOAD(contact_held, POINT_BASE(first, 4) + 3 * PLIANT_TILE) > 0.0f) && !met.edged;
+  const vec3 slip = grip_slip(tool_pose + POSE_NUMBERS * ((step + 1) * tools + t), anchor, met.m);
+  const integer still = by == GRIPPED_BY(t) && dot_lanes(slip, slip) <= (GRIP_LIMIT * margin) * (GRIP_LIMIT * margin);
+  return (free && by < 0.0f && still) || (free && !(by < 0.0f) && met.m.distance < GRIP_REACH * margin);
 }
 
-// Whether a tool holds point i in this step, which met it at a place that is no edge.
-static inline int grips(__global const float* contact_held, __global const float* anchor, __global const float* tool_pose, int tools, int step, int t,
-                        int i, meeting m, float margin) {
-  if (!(grip_of(tool_pose, tools, step, t) > 0.0f) || contact_held[POINT_BASE(i, 4) + 3 * PLIANT_TILE] > 0.0f) return 0;
-  const float by = anchor[3 * PLIANT_TILE];
-  if (by < 0.0f && by != GRIPPED_BY(t)) return 0;
-  if (by < 0.0f) {
-    const float4 slip = grip_slip(tool_pose + POSE_NUMBERS * ((step + 1) * tools + t), anchor, m);
-    return dot_xyz(slip, slip) <= (GRIP_LIMIT * margin) * (GRIP_LIMIT * margin);
-  }
-  return m.distance < GRIP_REACH * margin;
+// The lanes of points that have slipped out of a tool that still grips, and are still within its reach.
+INLINE integer slipped(__global const float* anchor, __global const float* tool_pose, int tools, int step, int t, meetings m, float margin) {
+  const integer none = 0;
+  if (!(grip_of(tool_pose, tools, step, t) > 0.0f)) return none;
+  return LOAD(anchor, 3 * PLIANT_TILE) == SLIPPED_FROM(t) && m.distance < GRIP_REACH * margin;
 }
 
-// Whether point i has slipped out of a tool that still grips, and is still within its reach.
-static inline int slipped(__global const float* anchor, __global const float* tool_pose, int tools, int step, int t, meeting m, float margin) {
-  return anchor[3 * PLIANT_TILE] == SLIPPED_FROM(t) && grip_of(tool_pose, tools, step, t) > 0.0f && m.distance < GRIP_REACH * margin;
+// Whether forces tear points off the tool: what of them does not press the points against the tool.
+INLINE integer tears_off(vec3 f, vec3 normal, real most) {
+  const real along = dot_lanes(f, normal), none = 0.0f;
+  const vec3 off = times_add(-(along > 0.0f ? along : none), normal, f);
+  return dot_lanes(off, off) > most * most;
 }
 
-// Whether a force tears a point off the tool: what of it does not press the point against the tool.
-static inline int tears_off(float4 f, float4 normal, float most) {
-  const float along = dot_xyz(f, normal), push = along > 0.0f ? along : 0.0f;
-  const float4 off = fma((float4)(-push), normal, f);
-  return dot_xyz(off, off) > most * most;
+// Lets go of the points that are neither gripped (bits of the tools that hold them) nor `out` (bits of those that they have slipped out of).
+INLINE void let_go(__global float* anchor, integer gripped, integer out) {
+  const real by = LOAD(anchor, 3 * PLIANT_TILE), none = 0.0f;
+  const integer holder = TO_INTEGER(-by - 1.0f), bits = holder < 64 ? gripped >> holder : out >> (holder - 64);
+  put_real(by < 0.0f && (bits & 1) == 0, none, anchor, 3);
 }

@@ -5,11 +5,13 @@
 // of the unit of torque [1/(N m)]; 4 inverse of the unit of area [1/m^2]; 5 margin [m]; 6 steps between two searches; 7 friction of tissue on tissue;
 // 8 how far the first depth of a pair goes back per search, in spacings.
 #include "arith.cl"
+#include "texels.cl"
 #include "contact_shape.cl"
 #include "contact_point.cl"
 #include "touch_point.cl"
 #include "contact_patch.cl"
 #include "contact_edge.cl"
+#include "tool_lanes.cl"
 
 __kernel void contact_near(__global const float* node_u, __global const float* node_w, __global const float* contact_rest,
                            __global const int* contact_node, __global const float* contact_weight, __global int* contact_near,
@@ -22,13 +24,14 @@ __kernel void contact_near(__global const float* node_u, __global const float* n
   int near = 0;
   __global float* least = contact_gap + tile * tools;
   for (int t = 0; t < tools; ++t) least[t] = 1e30f;
-  for (int i = tile * PLIANT_TILE; i < (tile + 1) * PLIANT_TILE; ++i) {
-    const contact_place p = place_of_point(node_u, node_w, contact_rest, contact_node, contact_weight, i);
+  for (int first = tile * PLIANT_TILE; first < (tile + 1) * PLIANT_TILE; first += LANES) {
+    const point_lanes p = places_of_points(node_u, node_w, contact_rest, contact_node, contact_weight, first);
     for (int t = 0; t < tools; ++t) {
-      const meeting m = meet(tool_kind, tool_data, tool_grid, tool_pose, tools, step, t, p);
-      const float reach = has_edges(tool_kind, t) ? EDGE_STRETCH * touch_surface[POINT_BASE(i, PLIANT_TOUCH_SURFACE) + 23 * PLIANT_TILE] : 0.0f;
-      const float gap = fma(-ahead, sqrt(dot_xyz(m.slip, m.slip)), m.distance) - reach;
-      least[t] = gap < least[t] ? gap : least[t];
+      const meetings m = meet_lanes(tool_kind, tool_data, tool_grid, tool_pose, tools, step, t, p);
+      const real none = 0.0f, stretch = EDGE_STRETCH;
+      const real reach = has_edges(tool_kind, t) ? stretch * LOAD(touch_surface, POINT_BASE(first, PLIANT_TOUCH_SURFACE) + 23 * PLIANT_TILE) : none;
+      const real gap = fma(SAME(-ahead), sqrt(dot_lanes(m.slip, m.slip)), m.distance) - reach;
+      for (int l = 0; l < LANES; ++l) least[t] = LANE(gap, l) < least[t] ? LANE(gap, l) : least[t];
     }
   }
   for (int t = 0; t < tools; ++t) near |= least[t] < margin ? 1 << t : 0;

@@ -67,44 +67,10 @@ static inline meeting meet(__global const int* tool_kind, __global const float* 
   return m;
 }
 
-// The depth that a point has through its held nodes, where they are inside the tool (a tool pressed over the edge of what is held). They do not give
-// way: forces that took it back from the other nodes would never end and, being those of a step, grow as steps get shorter, until the elements between
-// are lost. `at`: the place of the meeting; contact_held: [tiles][4][16] the held nodes' undeformed positions times their weights (3) [m], and the sum
-// of these weights.
-static inline float held_depth(__global const float* node_u, __global const int* contact_node, __global const float* contact_weight,
-                               __global const float* contact_share, __global const float* contact_held, int i, float4 at, meeting m) {
-  __global const float* held = contact_held + POINT_BASE(i, 4);
-  const float part = held[3 * PLIANT_TILE];
-  if (!(part > 0.0f)) return 0.0f;
-  float4 u = 0.0f;
-  for (int a = 0; a < 8; ++a) {
-    const int plane = POINT_BASE(i, 8) + a * PLIANT_TILE;
-    if (contact_share[plane] > 0.0f) continue;
-    u = fma((float4)(contact_weight[plane]), vload4(contact_node[plane], node_u), u);
-  }
-  const float4 place = (float4)(held[0] + u.x, held[PLIANT_TILE] + u.y, held[2 * PLIANT_TILE] + u.z, 0.0f);
-  const float distance = fma(part, m.distance, dot_xyz(m.normal, fma((float4)(-part), at, place)));
-  return distance < 0.0f ? -distance : 0.0f;
-}
-
-// The depth in tool t that a point had when an edit of its body left it there (it hung on held nodes, or is new): taken back in a step, it would be
-// energy from nowhere. It never grows. `start`: depth [m], or -1 of a point that an edit has left, and tool + 1; `before`: depth at the start of the
-// step [m].
-static inline float start_depth(__global const float* start, int t, float before) {
-  const float own = start[0] < 0.0f ? before : (int)start[PLIANT_TILE] == t + 1 ? start[0] : 0.0f;
-  const float depth = before < own ? before : own;
-  return depth > 0.0f ? depth : 0.0f;
-}
-
 // Fraction of the margin within which a point may touch in the next step. It is larger for points that were within it before, so that the set of
 // these points does not flicker.
 #define READY_AGAIN 0.24f
 #define READY_NEW 0.08f
-static inline float ready_share(float yield) { return yield > 0.0f ? READY_AGAIN : READY_NEW; }
-
-static inline int may_touch_next(meeting m, float margin, float share) {
-  return m.distance < fma(share, margin, m.opening < 0.0f ? -m.opening : 0.0f);
-}
 
 // Rounds a force in quanta; NaN becomes 0.
 static inline int quanta(float value) {

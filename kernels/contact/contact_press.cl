@@ -9,13 +9,29 @@
 // contact_share: 8 planes c_j s_j [m^2]; held nodes have 0, and their part is distributed to the others, so that a point with held nodes is as stiff
 // as any other; contact_anchor: (position in the tool's frame (3) [m], tool + 1); contact_force: (force (3) [quanta], one bit per touching tool).
 #include "arith.cl"
+#include "texels.cl"
 #include "contact_shape.cl"
 #include "contact_point.cl"
 #include "contact_sum.cl"
 #include "touch_point.cl"
 #include "contact_patch.cl"
 #include "contact_edge.cl"
+#include "tool_lanes.cl"
+#include "press_lanes.cl"
+#include "corner_lanes.cl"
 #include "contact_grip.cl"
+
+// Adds friction towards the anchors of this tool, at most `most`; points without an anchor get one at `place`.
+INLINE vec3 press_friction(integer hit, int t, __global const float* next, __global float* anchor, meetings m, vec3 place, real stiffness, real most, vec3 f) {
+  const real own = (float)(t + 1), none = 0.0f;
+  const integer fresh = hit && LOAD(anchor, 3 * PLIANT_TILE) == none;
+  put3(fresh, place, anchor);
+  put_real(fresh, own, anchor, 3);
+  const integer sticks = hit && LOAD(anchor, 3 * PLIANT_TILE) == own;
+  const vec3 side = slip_on_tool(next, anchor, m).side;
+  const real length = sqrt(dot_lanes(side, side)), factor = stiffness * length > most ? most / length : stiffness;
+  return where(sticks, times_add(-factor, side, f), f);
+}
 
 __kernel void contact_press(__global const float* node_u, __global const float* node_w, __global const float* contact_rest,
                             __global const int* contact_node, __global const float* contact_weight,
@@ -30,121 +46,97 @@ __kernel void contact_press(__global const float* node_u, __global const float* 
   if (first < 0) return;
   const int near = contact_near[first / PLIANT_TILE];
   if (near == 0) return;
-  const float h = step_params[0], half_hh = (0.5f * h) * h;
-  for (int i = first; i < first + LANES; ++i) {
-    const contact_place p = place_of_point(node_u, node_w, contact_rest, contact_node, contact_weight, i);
-    const float area = contact_rest[POINT_BASE(i, 4) + 3 * PLIANT_TILE];  // 0 for padding
-    int touching = 0, gripped = 0, out = 0, count = 0, ready = 0, weighed = 0;
-    const float within = ready_share(contact_yield[i]);
-    for (int t = 0; t < tools; ++t) {
-      if (!(near >> t & 1) || !(area > 0.0f)) continue;
-      const patch_meeting met = meet_patch(node_u, node_w, contact_rest, contact_node, contact_weight, tool_kind, tool_data, tool_grid,
-                                           tool_edge, tool_pose, touch_surface, contact_patch, tools, step, t, i, p);
-      const meeting m = met.m;
-      const int soon = may_touch_next(m, contact_params[5], within);
-      if (soon) ready = PLIANT_READY_BIT;
-      if (EDGES && (!weighed || (met.edged && soon))) write_weights(contact_corner_weight, contact_weight, i, met);
-      weighed = 1;
-      const int held_fast = GRIPS && !met.edged && grips(contact_held, contact_anchor + POINT_BASE(i, 4), tool_pose, tools, step, t, i, m, contact_params[5]);
-      if (GRIPS) out |= slipped(contact_anchor + POINT_BASE(i, 4), tool_pose, tools, step, t, m, contact_params[5]) << t;
-      if (m.distance < 0.0f || held_fast) {
-        gripped |= held_fast << t;
-        touching |= 1 << t;
-        ++count;
-      }
+  const float h = step_params[0], half_hh = (0.5f * h) * h, margin = contact_params[5];
+  const point_lanes p = places_of_points(node_u, node_w, contact_rest, contact_node, contact_weight, first);
+  const real area = LOAD(contact_rest, POINT_BASE(first, 4) + 3 * PLIANT_TILE), known = LOAD(contact_yield, first), none = 0.0f, one = 1.0f;
+  const real again = READY_AGAIN, fresh = READY_NEW, within = known > 0.0f ? again : fresh;
+  const integer zero = 0, wanted = area > 0.0f;  // 0 for padding
+  __global float* anchor = contact_anchor + POINT_BASE(first, 4);
+  __global float* start = contact_start + POINT_BASE(first, 2);
+  patch_meeting patches[EDGES ? LANES : 1];
+  integer touching = zero, gripped = zero, out = zero, ready = zero;
+  real count = none;
+  int weighed = 0, tool = -1;  // tool: of the last meetings
+  tool_meetings met;
+  for (int t = 0; t < tools; ++t) {
+    if (!(near >> t & 1)) continue;
+    met = meet_tool(MEET_VALUES, t, first, wanted, p, patches);
+    tool = t;
+    const integer soon = wanted && may_touch_next(met.m, margin, within), bit = 1 << t;
+    ready = pick(soon, (integer)(PLIANT_READY_BIT), ready);
+    if (EDGES) write_weights(contact_corner_weight, contact_weight, first, wanted, soon, weighed, patches);
+    weighed = 1;
+    integer hit = wanted && met.m.distance < none;
+    if (GRIPS) {
+      const integer held_fast = wanted && grips(contact_held, anchor, tool_pose, tools, step, t, first, met, margin);
+      out |= pick(wanted && slipped(anchor, tool_pose, tools, step, t, met.m, margin), bit, zero);
+      gripped |= pick(held_fast, bit, zero);
+      hit = hit || held_fast;
     }
-    __global float* anchor = contact_anchor + POINT_BASE(i, 4);
-    __global int* force = contact_force + POINT_BASE(i, 4);
-    const int stuck_to = (int)anchor[3 * PLIANT_TILE] - 1;
-    if (stuck_to >= 0 && !(touching >> stuck_to & 1)) anchor[3 * PLIANT_TILE] = 0.0f;
-    if (GRIPS && anchor[3 * PLIANT_TILE] < 0.0f) {
-      const int by = (int)(-anchor[3 * PLIANT_TILE] - 1.0f);
-      if (!((by < 64 ? gripped >> by : out >> (by - 64)) & 1)) anchor[3 * PLIANT_TILE] = 0.0f;
-    }
-    __global float* start = contact_start + POINT_BASE(i, 2);
-    float lag = 0.0f, lag_in = 0.0f;
-    int4 sum = 0;
-    float w = contact_yield[i];
-    if (touching != 0 && !(w > 0.0f)) {  // compliance from touching points is not known yet
-      __global const int* node = contact_node + POINT_BASE(i, 8);
-      __global const float* share = contact_share + POINT_BASE(i, 8);
-      w = 0.0f;
-      for (int a = 0; a < 8; ++a) {
-        const float b = fma(half_hh, node_w[4 * node[a * PLIANT_TILE] + 3], half_hh);
-        w = fma(share[a * PLIANT_TILE], b * node_u[4 * node[a * PLIANT_TILE] + 3], w);
-      }
-      contact_yield[i] = w;
-    }
-    const float whole = w > 0.0f ? area / (w * (float)count) : 0.0f;
-    if (EDGES) clear_corners(contact_corner_force, i);
-    for (int t = 0; t < tools; ++t) {
-      if (!(near >> t & 1)) continue;
-      __global int* on_tool = tool_force_of(contact_tool_force, point_count, t, i);
-      on_tool[7 * PLIANT_TILE] = touching >> t & 1;
-      if (!(touching >> t & 1)) continue;
-      const patch_meeting met = meet_patch(node_u, node_w, contact_rest, contact_node, contact_weight, tool_kind, tool_data, tool_grid,
-                                           tool_edge, tool_pose, touch_surface, contact_patch, tools, step, t, i, p);
-      const meeting m = met.m;
-      const float stiffness = (whole * met.share) * met.ease;
-      __global const float* data = tool_data + TOOL_NUMBERS * t;
-      const float held = held_depth(node_u, contact_node, contact_weight, contact_share, contact_held, i, met.at.now, m);
-      const float opening = m.opening, beyond = -m.distance - held, own = start_depth(start, t, beyond + opening);
-      if (own > lag) lag = own, lag_in = (float)(t + 1);
-      const float depth = beyond - own, before = depth + opening;
-      float push = 0.0f;
-      if (data[12] > 0.0f && before > 0.0f) {
-        const float spring = (area * data[12]) * (data[16] > 0.0f ? before * sqrt(before) : before);
-        const float damped = spring * fma(data[13], -opening / h, 1.0f);
-        const float most = 0.5f * (stiffness * before);
-        push = damped > 0.0f ? (damped < most ? damped : most) : 0.0f;
-      }
-      const float rest = stiffness > 0.0f ? depth - push / stiffness - data[15] : 0.0f;
-      push = rest > 0.0f ? fma(stiffness, rest, push) : push;
-      float4 f = m.normal * push;
-      __global const float* now = tool_pose + POSE_NUMBERS * (step * tools + t);
-      if (GRIPS && (gripped >> t & 1) && anchor[3 * PLIANT_TILE] >= 0.0f) {  // the first tool that reaches it holds it
-        const float4 place = turned_back(now, (p.now - p.moved) - origin_of(now));
-        anchor[0] = place.x;
-        anchor[PLIANT_TILE] = place.y;
-        anchor[2 * PLIANT_TILE] = place.z;
-        anchor[3 * PLIANT_TILE] = GRIPPED_BY(t);
-      }
-      if (GRIPS && anchor[3 * PLIANT_TILE] == GRIPPED_BY(t)) {
-        f = grip_slip(now + POSE_NUMBERS * tools, anchor, m) * -stiffness;
-      } else if (data[14] > 0.0f) {
-        if (anchor[3 * PLIANT_TILE] == 0.0f) {
-          const float4 stuck = turned_back(now, (p.now - p.moved) - origin_of(now));
-          anchor[0] = stuck.x;
-          anchor[PLIANT_TILE] = stuck.y;
-          anchor[2 * PLIANT_TILE] = stuck.z;
-          anchor[3 * PLIANT_TILE] = (float)(t + 1);
-        }
-        if (anchor[3 * PLIANT_TILE] == (float)(t + 1)) {
-          const float4 stuck = (float4)(anchor[0], anchor[PLIANT_TILE], anchor[2 * PLIANT_TILE], 0.0f);
-          const float4 slip = turned(now + POSE_NUMBERS * tools, m.inside - stuck);
-          const float along = dot_xyz(slip, m.normal);
-          const float4 side = fma((float4)(-along), m.normal, slip);
-          const float length = sqrt(dot_xyz(side, side)), most = data[14] * push, pull = stiffness * length;
-          const float factor = pull > most ? most / length : stiffness;
-          f = fma((float4)(-factor), side, f);
-        }
-      }
-      const float inverse = contact_params[1];
-      const int4 q = (int4)(quanta(f.x * inverse), quanta(f.y * inverse), quanta(f.z * inverse), 0);
-      for (int c = 0; c < 6; ++c) on_tool[c * PLIANT_TILE] = 0;
-      add_to_tool(on_tool, tool_pose + POSE_NUMBERS * ((step + 1) * tools + t), contact_params, met.at.now, q);
-      const float whole_before = opening - m.distance;
-      on_tool[6 * PLIANT_TILE] = as_int(whole_before > 0.0f ? whole_before : 0.0f);
-      if (EDGES && met.edged) {
-        add_to_corners(contact_corner_force, i, met, q);
-      } else {
-        sum += q;
-      }
-    }
-    start[0] = lag, start[PLIANT_TILE] = lag_in;
-    force[0] = sum.x;
-    force[PLIANT_TILE] = sum.y;
-    force[2 * PLIANT_TILE] = sum.z;
-    force[3 * PLIANT_TILE] = touching | ready;
+    touching |= pick(hit, bit, zero);
+    count = hit ? count + one : count;
   }
+  const integer stuck_to = TO_INTEGER(LOAD(anchor, 3 * PLIANT_TILE)) - 1;
+  put_real(stuck_to >= 0 && (touching >> stuck_to & 1) == 0, none, anchor, 3);
+  if (GRIPS) let_go(anchor, gripped, out);
+  real lag = none, lag_in = none, w = known;
+  quanta3 sum = {zero, zero, zero};
+  const integer unknown = touching != 0 && !(w > 0.0f);
+  if (ANY(unknown)) {
+    w = unknown ? yield_of_all(node_u, node_w, contact_node, contact_share, first, half_hh) : w;
+    STORE(w, contact_yield, first);
+  }
+  const real whole = w > 0.0f ? area / (w * count) : none;
+  if (EDGES) clear_corners(contact_corner_force, first);
+  for (int t = 0; t < tools; ++t) {
+    if (!(near >> t & 1)) continue;
+    __global int* on_tool = tool_force_of(contact_tool_force, point_count, t, first);
+    const integer hit = (touching >> t & 1) != 0;
+    STORE(touching >> t & 1, on_tool, 7 * PLIANT_TILE);
+    if (!ANY(hit)) continue;
+    if (tool != t) met = meet_tool(MEET_VALUES, t, first, wanted, p, patches);
+    tool = t;
+    const real stiffness = (whole * met.share) * met.ease, opening = met.m.opening;
+    __global const float* data = tool_data + TOOL_NUMBERS * t;
+    const real held = held_depth(node_u, contact_node, contact_weight, contact_share, contact_held, first, met);
+    const real beyond = -met.m.distance - held, own = start_depth(start, t, beyond + opening), tool_number = (float)(t + 1);
+    const integer later = hit && own > lag;
+    lag = later ? own : lag;
+    lag_in = later ? tool_number : lag_in;
+    const real depth = beyond - own;
+    const real shell = shell_push(data, area, stiffness, depth + opening, opening, h);
+    const real rest = stiffness > 0.0f ? depth - shell / stiffness - data[15] : none, push = rest > 0.0f ? fma(stiffness, rest, shell) : shell;
+    vec3 f = times(push, met.m.normal);
+    __global const float* now = tool_pose + POSE_NUMBERS * (step * tools + t);
+    __global const float* next = now + POSE_NUMBERS * tools;
+    const vec3 place = turned_back_lanes(now, less_origin(sub(p.now, p.moved), now));
+    integer slides = hit;
+    if (GRIPS) {
+      const real holds = GRIPPED_BY(t);
+      const integer takes = (gripped >> t & 1) != 0 && LOAD(anchor, 3 * PLIANT_TILE) >= 0.0f;  // the first tool that reaches it holds it
+      put3(takes, place, anchor);
+      put_real(takes, holds, anchor, 3);
+      const integer held_fast = hit && LOAD(anchor, 3 * PLIANT_TILE) == holds;
+      f = where(held_fast, times(-stiffness, grip_slip(next, anchor, met.m)), f);
+      slides = hit && !held_fast;
+    }
+    if (data[14] > 0.0f) f = press_friction(slides, t, next, anchor, met.m, place, stiffness, data[14] * push, f);
+    const quanta3 q = quanta3_of(f, contact_params[1]);
+    for (int c = 0; c < 6; ++c) put(hit, zero, on_tool, c);
+    add_to_tool(hit, on_tool, next, contact_params, met.at, q);
+    const real depth_before = opening - met.m.distance;
+    put(hit, AS_INTEGER(depth_before > 0.0f ? depth_before : none), on_tool, 6);
+    if (EDGES) add_to_corners(contact_corner_force, first, hit, patches, q);
+    const integer at_point = hit && !met.edged;
+    sum.x += pick(at_point, q.x, zero);
+    sum.y += pick(at_point, q.y, zero);
+    sum.z += pick(at_point, q.z, zero);
+  }
+  STORE(lag, start, 0);
+  STORE(lag_in, start, PLIANT_TILE);
+  __global int* force = contact_force + POINT_BASE(first, 4);
+  STORE(sum.x, force, 0);
+  STORE(sum.y, force, PLIANT_TILE);
+  STORE(sum.z, force, 2 * PLIANT_TILE);
+  STORE(touching | ready, force, 3 * PLIANT_TILE);
 }

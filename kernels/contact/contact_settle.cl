@@ -2,13 +2,52 @@
 // that actually touch (contact_node_sum). So the penetration that the first part left is removed, whether one point touches or all. The friction
 // limit applies to the sum of both parts; where a point slips, its anchor follows. contact_change: the added force [quanta].
 #include "arith.cl"
+#include "texels.cl"
 #include "contact_shape.cl"
 #include "contact_point.cl"
 #include "contact_sum.cl"
 #include "touch_point.cl"
 #include "contact_patch.cl"
 #include "contact_edge.cl"
+#include "tool_lanes.cl"
+#include "press_lanes.cl"
+#include "corner_lanes.cl"
 #include "contact_grip.cl"
+
+// W of points, as the points that touch push equally; held nodes count as free (contact_press). weight: 8 planes.
+INLINE real yield_of_touching(__global const float* node_u, __global const float* node_w, __global const int* contact_node, __global const float* weight,
+                              __global const float* contact_share, __global const float* contact_node_sum, int first, float half_hh) {
+  const real half_of = half_hh, none = 0.0f;
+  real w = none, all = none, moving = none;
+  for (int a = 0; a < 8; ++a) {
+    const int plane = POINT_BASE(first, 8) + a * PLIANT_TILE;
+    __global const int* node = contact_node + plane;
+    const real b = fma(half_of, texels_w(texels_gather(node_w, node)), half_of), c = LOAD(weight, a * PLIANT_TILE);
+    const real own = c > 0.0f ? c * texels_w(texels_gather(contact_node_sum, node)) : none;
+    const real free = LOAD(contact_share, plane) > 0.0f ? own : none;
+    w = fma(free, b * texels_w(texels_gather(node_u, node)), w);
+    all += own;
+    moving += free;
+  }
+  return moving > 0.0f ? w * (all / moving) : none;
+}
+
+// Limits the friction of the whole forces f of the points that stick to this tool; anchors follow points that slip.
+INLINE vec3 settle_friction(integer sticks, __global const float* next, __global float* anchor, meetings m, real stiffness, float friction, vec3 f) {
+  const real none = 0.0f, one = 1.0f, across = dot_lanes(f, m.normal);
+  const tool_slip slip = slip_on_tool(next, anchor, m);
+  const vec3 pull = times_add(-stiffness, slip.side, times_add(-across, m.normal, f));
+  const real length = sqrt(dot_lanes(pull, pull)), most = across > 0.0f ? friction * across : none;
+  const integer slips = sticks && length > most;
+  if (ANY(slips)) {  // to the distance that the friction limit can hold
+    const real size = sqrt(dot_lanes(slip.side, slip.side)), hold = stiffness > 0.0f ? most / stiffness : none;
+    const real kept = size > hold ? hold / size : one;
+    const vec3 back = turned_back_lanes(next, times_add(-kept, slip.side, times(-slip.along, m.normal)));
+    const vec3 follows = {m.inside.x + back.x, m.inside.y + back.y, m.inside.z + back.z};
+    put3(slips, follows, anchor);
+  }
+  return where(sticks, times_add(length > most ? most / length : one, pull, times(across, m.normal)), f);
+}
 
 __kernel void contact_settle(__global const float* node_u, __global const float* node_w, __global const float* contact_rest,
                              __global const int* contact_node, __global const float* contact_weight,
@@ -22,104 +61,75 @@ __kernel void contact_settle(__global const float* node_u, __global const float*
                              __global const float* step_params, int point_count, int tools, int step) {
   const int first = FIRST_LISTED(contact_list);
   if (first < 0) return;
-  if (contact_near[first / PLIANT_TILE] == 0) return;
-  const float h = step_params[0], half_hh = (0.5f * h) * h;
-  for (int i = first; i < first + LANES; ++i) {
-    __global float* anchor = contact_anchor + POINT_BASE(i, 4);
-    __global int* force = contact_force + POINT_BASE(i, 4);
-    __global int* change = contact_change + POINT_BASE(i, 4);
-    const int touching = force[3 * PLIANT_TILE];
-    __global const float* start = contact_start + POINT_BASE(i, 2);
-    int4 sum = 0;
-    if (EDGES) clear_corners(contact_corner_force, i);
-    if (touching != 0) {
-      const contact_place p = place_of_point(node_u, node_w, contact_rest, contact_node, contact_weight, i);
-      __global const int* node = contact_node + POINT_BASE(i, 8);
-      __global const float* weight = contact_weight + POINT_BASE(i, 8);
-      __global const float* share = contact_share + POINT_BASE(i, 8);
-      const int by_tools = (contact_near[first / PLIANT_TILE] & ~PLIANT_TOUCH_BIT) != 0;
-      float w = 0.0f, all = 0.0f, moving = 0.0f;
-      for (int a = 0; a < 8; ++a) {
-        const int n = node[a * PLIANT_TILE];
-        const float b = fma(half_hh, node_w[4 * n + 3], half_hh);
-        const float c = EDGES && by_tools ? contact_corner_weight[POINT_BASE(i, 9) + a * PLIANT_TILE] : weight[a * PLIANT_TILE];
-        const float own = c > 0.0f ? c * contact_node_sum[4 * n + 3] : 0.0f;
-        const float free = share[a * PLIANT_TILE] > 0.0f ? own : 0.0f;
-        w = fma(free, b * node_u[4 * n + 3], w);
-        all += own;
-        moving += free;
-      }
-      const float known = contact_yield[i];
-      contact_yield[i] = moving > 0.0f ? w * (all / moving) : 0.0f;  // held nodes count as free (contact_press)
-      int count = 0;
-      for (int t = 0; t < tools; ++t) count += touching >> t & 1;
-      const float area = contact_rest[POINT_BASE(i, 4) + 3 * PLIANT_TILE];
-      const float whole = known > 0.0f ? area / (known * (float)count) : 0.0f;
-      for (int t = 0; t < tools; ++t) {
-        if (!(touching >> t & 1)) continue;
-        const patch_meeting met = meet_patch(node_u, node_w, contact_rest, contact_node, contact_weight, tool_kind, tool_data, tool_grid,
-                                           tool_edge, tool_pose, touch_surface, contact_patch, tools, step, t, i, p);
-        const meeting m = met.m;
-        const float stiffness = (whole * met.share) * met.ease;
-        __global int* on_tool = tool_force_of(contact_tool_force, point_count, t, i);
-        __global const float* data = tool_data + TOOL_NUMBERS * t;
-        const float held = held_depth(node_u, contact_node, contact_weight, contact_share, contact_held, i, met.at.now, m);
-        const float lag = start[PLIANT_TILE] == (float)(t + 1) ? start[0] : 0.0f;
-        const float rest = ((-m.distance - held) - lag) - data[15];
-        const int held_fast = GRIPS && anchor[3 * PLIANT_TILE] == GRIPPED_BY(t);
-        const float push = rest > 0.0f && !held_fast ? stiffness * rest : 0.0f;
-        const float inverse = contact_params[1], quantum = contact_params[0];
-        float4 f = m.normal * push;
-        int4 before = 0;
-        const int4 pressed = (int4)(-on_tool[0], -on_tool[PLIANT_TILE], -on_tool[2 * PLIANT_TILE], 0);
-        const float4 first_part = (float4)((float)pressed.x * quantum, (float)pressed.y * quantum, (float)pressed.z * quantum, 0.0f);
-        if (count == 1) {
-          before = pressed;
-          f += first_part;
-        }
-        if (held_fast) {
-          f = fma((float4)(-stiffness), grip_slip(tool_pose + POSE_NUMBERS * ((step + 1) * tools + t), anchor, m), f);
-          const float4 all_of_it = count == 1 ? f : f + first_part;
-          if (tears_off(all_of_it, m.normal, area * grip_of(tool_pose, tools, step, t))) anchor[3 * PLIANT_TILE] = SLIPPED_FROM(t);
-        }
-        if (count == 1 && anchor[3 * PLIANT_TILE] == (float)(t + 1)) {
-          const float4 stuck = (float4)(anchor[0], anchor[PLIANT_TILE], anchor[2 * PLIANT_TILE], 0.0f);
-          __global const float* next = tool_pose + POSE_NUMBERS * ((step + 1) * tools + t);
-          const float4 slip = turned(next, m.inside - stuck);
-          const float along = dot_xyz(slip, m.normal);
-          const float4 side = fma((float4)(-along), m.normal, slip);
-          const float across = dot_xyz(f, m.normal);
-          const float4 pull = fma((float4)(-stiffness), side, fma((float4)(-across), m.normal, f));
-          const float length = sqrt(dot_xyz(pull, pull)), most = across > 0.0f ? data[14] * across : 0.0f;
-          const float share_of = length > most ? most / length : 1.0f;
-          f = fma((float4)(share_of), pull, m.normal * across);
-          if (length > most) {
-            // Slip: the anchor moves to the distance that the friction limit can hold.
-            const float size = sqrt(dot_xyz(side, side)), hold = stiffness > 0.0f ? most / stiffness : 0.0f;
-            const float kept = size > hold ? hold / size : 1.0f;
-            const float4 back = turned_back(next, fma((float4)(-kept), side, (float4)(-along) * m.normal));
-            anchor[0] = m.inside.x + back.x;
-            anchor[PLIANT_TILE] = m.inside.y + back.y;
-            anchor[2 * PLIANT_TILE] = m.inside.z + back.z;
-          }
-        }
-        const int4 q = (int4)(quanta(f.x * inverse), quanta(f.y * inverse), quanta(f.z * inverse), 0) - before;
-        add_to_tool(on_tool, tool_pose + POSE_NUMBERS * ((step + 1) * tools + t), contact_params, met.at.now, q);
-        if (EDGES && met.edged) {
-          add_to_corners(contact_corner_force, i, met, q);
-        } else {
-          sum += q;
-        }
-      }
-      force[0] += sum.x;
-      force[PLIANT_TILE] += sum.y;
-      force[2 * PLIANT_TILE] += sum.z;
-    } else {
-      contact_yield[i] = 0.0f;
-    }
-    change[0] = sum.x;
-    change[PLIANT_TILE] = sum.y;
-    change[2 * PLIANT_TILE] = sum.z;
-    change[3 * PLIANT_TILE] = touching;
+  const int near = contact_near[first / PLIANT_TILE];
+  if (near == 0) return;
+  const float h = step_params[0], half_hh = (0.5f * h) * h, inverse = contact_params[1], quantum = contact_params[0];
+  const real none = 0.0f, one = 1.0f;
+  const integer zero = 0;
+  __global float* anchor = contact_anchor + POINT_BASE(first, 4);
+  __global int* force = contact_force + POINT_BASE(first, 4);
+  __global int* change = contact_change + POINT_BASE(first, 4);
+  const integer touching = LOAD(force, 3 * PLIANT_TILE), active = touching != 0;
+  quanta3 sum = {zero, zero, zero};
+  if (EDGES) clear_corners(contact_corner_force, first);
+  const real known = LOAD(contact_yield, first);
+  if (!ANY(active)) STORE(none, contact_yield, first);
+  if (ANY(active)) {
+    const int by_tools = (near & ~PLIANT_TOUCH_BIT) != 0;
+    __global const float* weight = EDGES && by_tools ? contact_corner_weight + POINT_BASE(first, 9) : contact_weight + POINT_BASE(first, 8);
+    const real yield = yield_of_touching(node_u, node_w, contact_node, weight, contact_share, contact_node_sum, first, half_hh);
+    STORE(active ? yield : none, contact_yield, first);
   }
+  const integer by_tool = touching & ((1 << tools) - 1);
+  if (ANY(by_tool != 0)) {
+    const point_lanes p = places_of_points(node_u, node_w, contact_rest, contact_node, contact_weight, first);
+    patch_meeting patches[EDGES ? LANES : 1];
+    real count = none;
+    for (int t = 0; t < tools; ++t) count = (by_tool >> t & 1) != 0 ? count + one : count;
+    const integer single = count == one;
+    const real area = LOAD(contact_rest, POINT_BASE(first, 4) + 3 * PLIANT_TILE), whole = known > 0.0f ? area / (known * count) : none;
+    for (int t = 0; t < tools; ++t) {
+      const integer hit = (by_tool >> t & 1) != 0;
+      if (!ANY(hit)) continue;
+      const tool_meetings met = meet_tool(MEET_VALUES, t, first, hit, p, patches);
+      const real stiffness = (whole * met.share) * met.ease, tool_number = (float)(t + 1), holds = GRIPPED_BY(t), slipped_out = SLIPPED_FROM(t);
+      __global int* on_tool = tool_force_of(contact_tool_force, point_count, t, first);
+      __global const float* data = tool_data + TOOL_NUMBERS * t;
+      __global const float* next = tool_pose + POSE_NUMBERS * ((step + 1) * tools + t);
+      __global const float* start = contact_start + POINT_BASE(first, 2);
+      const real held = held_depth(node_u, contact_node, contact_weight, contact_share, contact_held, first, met);
+      const real lag = LOAD(start, PLIANT_TILE) == tool_number ? LOAD(start, 0) : none;
+      const real rest = ((-met.m.distance - held) - lag) - data[15];
+      const integer held_fast = GRIPS && hit && LOAD(anchor, 3 * PLIANT_TILE) == holds;
+      const real push = rest > 0.0f && !held_fast ? stiffness * rest : none, force_unit = quantum;
+      vec3 f = times(push, met.m.normal);
+      const quanta3 pressed = {-LOAD(on_tool, 0), -LOAD(on_tool, PLIANT_TILE), -LOAD(on_tool, 2 * PLIANT_TILE)};
+      const vec3 first_part = {TO_REAL(pressed.x) * force_unit, TO_REAL(pressed.y) * force_unit, TO_REAL(pressed.z) * force_unit};
+      const vec3 both = {f.x + first_part.x, f.y + first_part.y, f.z + first_part.z};
+      f = where(single, both, f);
+      if (GRIPS) {
+        f = where(held_fast, times_add(-stiffness, grip_slip(next, anchor, met.m), f), f);
+        const vec3 sum_of = {f.x + first_part.x, f.y + first_part.y, f.z + first_part.z};
+        const integer torn = tears_off(where(single, f, sum_of), met.m.normal, area * grip_of(tool_pose, tools, step, t));
+        put_real(held_fast && torn, slipped_out, anchor, 3);
+      }
+      const integer sticks = hit && single && LOAD(anchor, 3 * PLIANT_TILE) == tool_number;
+      if (ANY(sticks)) f = settle_friction(sticks, next, anchor, met.m, stiffness, data[14], f);
+      const quanta3 all = quanta3_of(f, inverse);
+      const quanta3 q = {all.x - pick(single, pressed.x, zero), all.y - pick(single, pressed.y, zero), all.z - pick(single, pressed.z, zero)};
+      add_to_tool(hit, on_tool, next, contact_params, met.at, q);
+      if (EDGES) add_to_corners(contact_corner_force, first, hit, patches, q);
+      const integer at_point = hit && !met.edged;
+      sum.x += pick(at_point, q.x, zero);
+      sum.y += pick(at_point, q.y, zero);
+      sum.z += pick(at_point, q.z, zero);
+    }
+    STORE(LOAD(force, 0) + sum.x, force, 0);
+    STORE(LOAD(force, PLIANT_TILE) + sum.y, force, PLIANT_TILE);
+    STORE(LOAD(force, 2 * PLIANT_TILE) + sum.z, force, 2 * PLIANT_TILE);
+  }
+  STORE(sum.x, change, 0);
+  STORE(sum.y, change, PLIANT_TILE);
+  STORE(sum.z, change, 2 * PLIANT_TILE);
+  STORE(touching, change, 3 * PLIANT_TILE);
 }

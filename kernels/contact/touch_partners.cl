@@ -1,11 +1,4 @@
 // Search for pairs of contact points (touch_pair): the partners of one point among those of a tile.
-#if LANES == 16
-#define LANE(v, l) (((const float*)&(v))[l])
-#define SAME(x) ((float16)(x))
-#else
-#define LANE(v, l) (v)
-#define SAME(x) (x)
-#endif
 
 // The partners of a point, as they are found.
 typedef struct {

@@ -329,6 +329,23 @@ TEST_P(ContactPhysics, AFastToolIsMetInTime) {
   EXPECT_GT(sim->report().tools[0].touched, 5);
 }
 
+/// A tool that waits far away, where it is looked at every 64 steps only, and then comes within forty is met as well.
+TEST_P(ContactPhysics, ADashFromAfarIsMetInTime) {
+  Body body = box_body({{3, 3, 3}, 0.02}, Discretization::hex8_bricks, material_young(Law::neo_hookean, 2e4, 0.3));
+  body.fixed = {{face(2, 0)}};
+  ContactTool plate = wall();
+  plate.second = {0, 0, -1};
+  Scene scene = scene_of(body, plate);
+  const double dt = scene.dt = 5e-4, top = 0.06, cell = 0.02;
+  scene.tools[0].path.clear();
+  const std::vector<std::pair<double, double>> ways = {{0, 20}, {8, 20}, {40, 0.5}, {60, -0.1}};
+  for (const auto& [step, cells] : ways) scene.tools[0].path.push_back({step * dt, 0, 0, top + cells * cell, 0, 0, 0, 1});
+  auto sim = simulate(scene, GetParam());
+  sim->advance(60);
+  EXPECT_GT(sim->report().tools[0].touched, 0);
+  check("deepest, in cells", sim->report().tools[0].max_depth / cell, 0.15);
+}
+
 TEST(ContactSetUp, RefusesAToolInsideABody) {
   ContactTool ball;
   ball.name = "ball";

@@ -382,7 +382,7 @@ void ProgramBuilder::add_contact_look() {
                                    "tool_pose", of_edges("touch_surface", "contact_weight"), "contact_params"});
     list.push_back(int_arg(tools));
     list.push_back(step_arg());
-    program_.look.push_back({"contact_near", {}, std::move(list), Shape::items, tiles, "near tools", tiles, 16 * 200.0, 0});
+    program_.look.push_back({"contact_near", {}, std::move(list), Shape::tiles, tiles, "near tools", tiles, 16 * 200.0, 0});
     program_.look.back().uneven = true;
     program_.look.back().defines = {{"EDGES", edged_tools_ != 0 ? 1 : 0}};
   }

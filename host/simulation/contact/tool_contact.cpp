@@ -92,8 +92,9 @@ static double slowest_crossing(const Model& model) {
 
 /// Each search reduces the initial depth of a pair by kEase; searches come after a number of steps. At steps far below the
 /// stable one, this would be an unlimited speed in m/s, which threw the faces of a cut apart (touch_test.cpp,
-/// SmallStepsPartBodiesNoFaster). There the rate is limited to that at half the stable step. Viscosity, or one stiff part, makes
-/// the stable step itself short: then the rate is limited to that at kCrossing of the time in which a wave crosses a cell.
+/// SmallStepsPartBodiesNoFaster). There the rate is limited to that at half the stable step. Viscosity, or one stiff part,
+/// makes the stable step itself short: then the rate is limited to that at kCrossing of the time in which a wave crosses a
+/// cell.
 double ToolContact::touch_ease() const {
   constexpr double kEase = 0.04, kCrossing = 0.25;
   const double stable = run_.state.limit.stable_dt, dt = run_.state.clock.dt, crossing = slowest_crossing(run_.model());

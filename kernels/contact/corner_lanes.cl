@@ -1,0 +1,43 @@
+// Forces of edges of tools (contact_edge.cl) on the nodes of LANES contact points.
+// contact_corner_weight: [tiles][9][16] weights of a point's nodes at the place where the last tool with edges touches its patch, or at the point
+// itself, and the fraction of its area. contact_corner_force: [tiles][8][3][16] forces of edges on these nodes [quanta].
+
+// Of the points that are `wanted`: where nothing is written yet, and of those that meet an edge `soon`.
+INLINE void write_weights(__global float* contact_corner_weight, __global const float* contact_weight, int first, integer wanted, integer soon, int weighed,
+                          const patch_meeting* patches) {
+  for (int l = 0; l < LANES; ++l) {
+    const patch_meeting* met = patches + l;
+    if (!LANE_INT(wanted, l) || (weighed && !(met->edged && LANE_INT(soon, l)))) continue;
+    __global float* out = contact_corner_weight + POINT_BASE(first + l, 9);
+    for (int k = 0; k < 8; ++k) out[k * PLIANT_TILE] = met->edged ? met->at.weight[k] : contact_weight[POINT_BASE(first + l, 8) + k * PLIANT_TILE];
+    out[8 * PLIANT_TILE] = met->share;
+  }
+}
+
+INLINE void clear_corners(__global int* contact_corner_force, int first) {
+  const integer zero = 0;
+  for (int k = 0; k < 24; ++k) STORE(zero, contact_corner_force, POINT_BASE(first, 24) + k * PLIANT_TILE);
+}
+
+// Distributes the forces of the points that are `hit` and meet an edge over their nodes; the rounding remainder goes to the node with the largest weight.
+INLINE void add_to_corners(__global int* contact_corner_force, int first, integer hit, const patch_meeting* patches, quanta3 force) {
+  for (int l = 0; l < LANES; ++l) {
+    if (!LANE_INT(hit, l) || !patches[l].edged) continue;
+    __global int* out = contact_corner_force + POINT_BASE(first + l, 24);
+    const int4 whole = (int4)(LANE_INT(force.x, l), LANE_INT(force.y, l), LANE_INT(force.z, l), 0);
+    int4 left = whole;
+    int largest = 0;
+    for (int k = 0; k < 8; ++k) {
+      const float w = patches[l].at.weight[k];
+      const int4 part = (int4)(quanta(w * (float)whole.x), quanta(w * (float)whole.y), quanta(w * (float)whole.z), 0);
+      out[3 * k * PLIANT_TILE] += part.x;
+      out[(3 * k + 1) * PLIANT_TILE] += part.y;
+      out[(3 * k + 2) * PLIANT_TILE] += part.z;
+      left -= part;
+      largest = w > patches[l].at.weight[largest] ? k : largest;
+    }
+    out[3 * largest * PLIANT_TILE] += left.x;
+    out[(3 * largest + 1) * PLIANT_TILE] += left.y;
+    out[(3 * largest + 2) * PLIANT_TILE] += left.z;
+  }
+}
