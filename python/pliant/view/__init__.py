@@ -199,11 +199,11 @@ class View:
             self._batch *= min(max(PICTURE / (now - self._handed), 0.25), 2)
             self._handed = None
         # The first is a single step: a picture's worth of a slow scene may take minutes, for which the World would answer nothing.
-        self._batch = min(max(self._batch, self.world.dt), LATE)
+        self._batch = min(max(self._batch, self.world.dt), PICTURE)
         if self._single > 0:
             seconds = min(self._single, self._batch)
         elif self.playing and self._due >= PICTURE:
-            seconds = min(self._due, self._batch)
+            seconds = self._batch  # what is due beyond a picture stays due, so that the next one is not later
         else:
             return
         self.page.tools.drive(self.world, seconds)
