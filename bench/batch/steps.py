@@ -1,9 +1,11 @@
 """Steps per second of a pliant.Batch against as many single Worlds in a loop, alternating in one process.
 
 Usage: PYTHONPATH=build/release/python python3 bench/batch/steps.py SCENE [-n MEMBERS] [--threads T ...] [--steps S] [--rounds R]
+[--one-loop] [--sizes N ...]
 The loop is over Worlds with one thread each; "as they are": with a thread for every core. Ratios of the loop's times to the others' are medians over
 rounds, with the least and the largest. A round counts as disturbed by other programs where a call got less than 0.9 of the cores that it has threads for;
-figures are of undisturbed rounds, or, marked so, of all where there are none. "cores": processor time over time, in the median.
+figures are of undisturbed rounds, or, marked so, of all where there are none. "cores": processor time over time, in the median;
+"of processor time": by what all cores worked for the process, which other programs disturb less than the clock.
 """
 import argparse
 import os
@@ -46,12 +48,12 @@ def report(steps, times, threads):
     free = np.all([pairs[name][:, 1] > 0.9 * t * pairs[name][:, 0] for name, t in threads.items()], axis=0)
     print(f"{free.sum()} of {len(free)} rounds undisturbed" + ("" if free.any() else "; figures of all rounds"))
     used = free if free.any() else ~free
-    reference = next(iter(pairs.values()))[used, 0]
+    reference, reference_busy = next(iter(pairs.values()))[used].T
     for name, rounds in pairs.items():
         clock, busy = rounds[used].T
         ratios = reference / clock
         print(f"{name}: {steps / np.median(clock):.0f} steps/s, {np.median(busy / clock):.2f} cores, {np.median(ratios):.2f} times the first line's "
-              f"({ratios.min():.2f} to {ratios.max():.2f})")
+              f"({ratios.min():.2f} to {ratios.max():.2f}), of processor time {np.median(reference_busy / busy):.2f}")
 
 
 def main():
@@ -62,6 +64,8 @@ def main():
     parser.add_argument("--steps", type=int, default=10, help="of each member in one call")
     parser.add_argument("--rounds", type=int, default=9)
     parser.add_argument("--alone", action="store_true", help="no single Worlds: memory and steps per second of the Batch")
+    parser.add_argument("--one-loop", action="store_true", help="without the loop over Worlds as they are, for want of memory")
+    parser.add_argument("--sizes", type=int, nargs="+", default=[], help="of further Batches whose members are to have the same hash")
     options = parser.parse_args()
     n, steps = options.n, options.steps
     empty = memory()
@@ -71,7 +75,7 @@ def main():
     calls, singles = {}, []
     if not options.alone:
         cores = os.sched_getaffinity(0)
-        for name, used in (("loop", {min(cores)}), ("loop, Worlds as they are", cores)):
+        for name, used in (("loop", {min(cores)}), ("loop, Worlds as they are", cores))[:2 - options.one_loop]:
             worlds = single_worlds(options.scene, n, used)
             calls[name] = lambda worlds=worlds: loop(worlds, steps)
             singles += worlds
@@ -82,7 +86,12 @@ def main():
             times[name].append(seconds(call))
     report(n * steps, times, {name: int(name.split()[1]) if name.startswith("Batch") else 1 for name in times if "as they are" not in name})
     hashes = {h for b in batches.values() for h in b.hashes()} | {w.hash() for w in singles}
-    print("hashes of all members:", "the same" if len(hashes) == 1 else f"{len(hashes)} different ones")
+    for size in options.sizes:
+        with pliant.Batch(options.scene, size) as batch:
+            for _ in range(options.rounds + 1):
+                batch.step(steps)
+            hashes |= set(batch.hashes())
+    print(f"hashes of all members{', and of Batches of ' + ', '.join(map(str, options.sizes)) if options.sizes else ''}:", "the same" if len(hashes) == 1 else f"{len(hashes)} different ones")
 
 
 if __name__ == "__main__":

@@ -180,11 +180,14 @@ def build(targets, log):
 
 
 def configure(log):
-    if not (BUILD / "build.ninja").is_file():
+    # Debian's Python has what the Python module is built with, and NumPy.
+    options = ["-DPLIANT_PYTHON=ON", *(["-DPython3_EXECUTABLE=/usr/bin/python3"] if os.access("/usr/bin/python3", os.X_OK) else [])]
+    cache = BUILD / "CMakeCache.txt"
+    if not (BUILD / "build.ninja").is_file() or "\nPLIANT_PYTHON:BOOL=ON\n" not in cache.read_text():
         environment = dict(os.environ)
         if shutil.which("ccache"):
             environment.setdefault("CMAKE_CXX_COMPILER_LAUNCHER", "ccache")
-        code, output = run(["cmake", "--preset", "release"], log, cwd=COPY, env=environment)
+        code, output = run(["cmake", "--preset", "release", *options], log, cwd=COPY, env=environment)
         if code != 0:
             raise Bad(f"cmake failed, see {log.relative_to(ROOT)}: {output.strip().splitlines()[-1]}")
 

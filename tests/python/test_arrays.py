@@ -3,7 +3,7 @@ import gc
 import os
 import tempfile
 
-from common import box  # first: exits where NumPy is missing
+from common import SOURCE, box  # first: exits where NumPy is missing
 import numpy as np
 import pliant
 
@@ -18,6 +18,12 @@ def block(**options):
         "material": {"young": 3000, "poisson": 0.45, "damping": 5}, "fixed": [{"plane": [[0, 0.001, 0], [0, -1, 0]]}]}],
         "tools": [{"name": "ball", "shape": {"sphere": 0.02}, "path": [[0, 0.05, 0.11, 0.03], [0.1, 0.05, 0.07, 0.03]]}]}
     return pliant.World(scene, surfaces=[(VERTICES, TRIANGLES)], backend="cpu", **options)
+
+
+def resident():
+    """Memory of this process [bytes]."""
+    with open("/proc/self/statm") as file:
+        return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
 
 
 def address(array):
@@ -141,6 +147,46 @@ def test_views_stay_through_cut_reset_load_and_the_end_of_the_world():
             other.step(3)
             other.frame()
         assert all(np.array_equal(view, value) for view, value in zip(views, values))
+
+
+def test_views_take_no_memory():
+    world = pliant.World(os.path.join(SOURCE, "scenes/liver.json"), backend="cpu")
+    frame = world.frame()
+    each = frame.positions.nbytes
+    before = resident()
+    views = [getattr(frame, field) for _ in range(500) for field in ("positions", "rest", "normals")]
+    assert len(views) * each > 5e7 and resident() - before < 5e6, "a copy of each would take ten times as much"
+    frames = resident()
+    for _ in range(150):
+        world.step(1)
+        views.append(world.frame().positions)
+        del views[0]
+    assert resident() - frames > 100 * each, "a view keeps its frame"
+    del views, frame
+    gc.collect()
+    taken = resident()
+    for _ in range(150):
+        world.step(1)
+        world.frame()
+    assert resident() - taken < 20 * each, "frames that nobody sees any more make room for others"
+
+
+def test_views_stay_through_errors():
+    world = block(dt=0.02)  # four times the stable step
+    frame = world.frame()
+    views = [getattr(frame, field) for field in FIELDS[:4]]
+    values = [view.copy() for view in views]
+    del frame
+    assert "young: got -1" in str(error_of(lambda: world.change(material={"young": -1})))
+    assert world.step(200).diverged
+    views.append(world.frame().positions)
+    values.append(views[-1].copy())
+    assert "reset() or load()" in str(error_of(lambda: world.step(1)))
+    for _ in range(6):  # frames that take memory which is free
+        world.reset()
+        world.step(2)
+        world.frame()
+    assert all(np.array_equal(view, value) for view, value in zip(views, values))
 
 
 def error_of(call):

@@ -69,9 +69,9 @@ class View:
 
         self.world, self.playing, self.pictures = world, play, 0
         self.messages = collections.deque(maxlen=100)  # the newest that were told
-        self._requests, self._stopping, self._single = queue.SimpleQueue(), threading.Event(), False
+        self._requests, self._stopping, self._single = queue.SimpleQueue(), threading.Event(), 0.0
         self._told_at, self._next_picture, self._seen = {}, 0.0, None
-        self._due, self._last, self._batch, self._handed = 0.0, time.perf_counter(), PICTURE, None
+        self._due, self._last, self._batch, self._handed = 0.0, time.perf_counter(), 0.0, None
         with contextlib.redirect_stdout(io.StringIO()):  # viser prints a table
             self.server = viser.ViserServer(host=host, port=port, label="Pliant", verbose=False)
         self.server.request_share_url = lambda verbose=True: None  # nothing leaves the machine
@@ -138,7 +138,7 @@ class View:
     def press(self, button):
         """"Play", "Pause", "Step" or "Reset"; in the thread of the page."""
         self.playing = button == "Play" or (button == "Reset" and self.playing)
-        self._single = button == "Step"
+        self._single = PICTURE if button == "Step" else 0.0  # [s] of it that are left
         if button == "Reset":
             self.world.reset()
             self._due, self._seen = 0.0, None
@@ -196,19 +196,19 @@ class View:
         if self.world.busy():
             return
         if self._handed is not None:  # towards batches that take as long as a picture, whatever a batch costs besides its steps
-            self._batch *= min(max(PICTURE / (now - self._handed), 0.5), 1.5)
-            self._batch = min(max(self._batch, self.world.dt), LATE)
+            self._batch *= min(max(PICTURE / (now - self._handed), 0.25), 2)
             self._handed = None
-        if self._single:
-            seconds = PICTURE
+        # The first is a single step: a picture's worth of a slow scene may take minutes, for which the World would answer nothing.
+        self._batch = min(max(self._batch, self.world.dt), PICTURE)
+        if self._single > 0:
+            seconds = min(self._single, self._batch)
         elif self.playing and self._due >= PICTURE:
-            seconds = min(self._due, self._batch)
+            seconds = self._batch  # what is due beyond a picture stays due, so that the next one is not later
         else:
             return
-        self._single = False
         self.page.tools.drive(self.world, seconds)
         if self.world.advance_async(seconds):
-            self._handed, self._due = now, max(self._due - seconds, 0.0)
+            self._handed, self._due, self._single = now, max(self._due - seconds, 0.0), max(self._single - seconds, 0.0)
 
     def _draw(self, now):
         """Lets the other thread draw what is new, if it has finished the last picture."""
