@@ -6,10 +6,13 @@ import weakref as _weakref
 
 from pliant._core import (DeviceCounts, DeviceLimits, DeviceWrench, Error, Frame, HapticDevice, HapticLoop, HapticSample, HapticState, ManualDevice,
                           StepReport, World, __version__, backends, open_haptic_device)
+from pliant import _driver
 from pliant._batch import Batch
 
 __all__ = ["Batch", "DeviceCounts", "DeviceLimits", "DeviceWrench", "Error", "Frame", "HapticDevice", "HapticLoop", "HapticSample", "HapticState",
            "ManualDevice", "StepReport", "World", "backends", "open_haptic_device"]
+
+_driver.offer()
 
 # What each World was made from, a dict or the full name of a file: a World itself cannot be asked for its parameters, and a page shows them.
 _scenes = _weakref.WeakKeyDictionary()
