@@ -67,9 +67,11 @@ def stages(mode):
     def variant(name, word, environment):
         return Stage(name, "check", ["-L", f"^variant_{word}$"], [f"variant_{word}"], strict, environment)
 
-    def sanitized(name, preset, labels, paths, *targets):
+    debian_python = ["-DPython3_EXECUTABLE=/usr/bin/python3"] if os.access("/usr/bin/python3", os.X_OK) else []  # it has NumPy
+
+    def sanitized(name, preset, labels, paths, *targets, options=()):
         tests = ["-L", labels, "-LE", "^(.*[.]single|fuzz|oclgrind|slow|variant_.*)$"]
-        return Stage(name, preset, tests, targets, [f"-DPLIANT_FUZZ_PATHS={paths}"], SANITIZERS)
+        return Stage(name, preset, tests, targets, [f"-DPLIANT_FUZZ_PATHS={paths}", *options], SANITIZERS)
 
     def fuzz(name, seconds):
         fuzzers = sorted(path.stem for path in (ROOT / "tests/fuzz").glob("fuzz_*.cpp"))
@@ -89,7 +91,6 @@ def stages(mode):
     yield Stage("kernels under oclgrind", "check", ["-L", "^oclgrind$"], ["pliant_cli"])
     # A Debug build by the other compiler, with assertions: the shared library, installed and used from outside, the Python module, the
     # command, and the tests that are quick.
-    debian_python = ["-DPython3_EXECUTABLE=/usr/bin/python3"] if os.access("/usr/bin/python3", os.X_OK) else []  # it has NumPy
     yield Stage("Debug, shared library, Python (clang++)", "clang", ["-L", "^(package|python|scene)$", "-LE", "[.]single$"],
                 ["pliant_lib", "pliant_python", "example_hello", "pliant_cli", "tutorial_embed", "test_scene"], debian_python)
     lint = [sys.executable, "-B", str(ROOT / "tests/lint/lint.py"), "all" if full else "changed"]
@@ -98,7 +99,8 @@ def stages(mode):
         yield sanitized("thread sanitizer", "tsan", ".", 300, "all")
         yield fuzz("fuzzing, 10 minutes each", 600)
     else:
-        yield sanitized("address and undefined-behaviour sanitizers", "fuzz", "scene|io|devices|paths", 300, "test_scene", "test_io", "test_devices", "random_cut")
+        yield sanitized("address and undefined-behaviour sanitizers", "fuzz", "scene|io|devices|paths|python_sanitized", 300, "test_scene", "test_io",
+                        "test_devices", "random_cut", "pliant_python", options=["-DPLIANT_PYTHON=ON", *debian_python])
         yield fuzz("fuzzing, 20 s each", 20)
     yield Stage("clang-format, cppcheck, clang-tidy", "lint", command=lint)
 
