@@ -1,4 +1,4 @@
-// Twin of kernels/contact/contact_edge.cl, which describes the computation.
+// Twin of contact_edge.cl and corner_lanes.cl, which describe the computation (kernels/contact).
 #pragma once
 #include "cpu_ref/contact/contact_patch.h"
 

@@ -1,4 +1,4 @@
-// Twin of kernels/contact/contact_point.cl, which describes the computation.
+// Twin of contact_point.cl, press_lanes.cl and tool_lanes.cl, which describe the computation (kernels/contact).
 #pragma once
 #include "cpu_ref/contact/contact_shape.h"
 #include "cpu_ref/tile.h"

@@ -1,4 +1,4 @@
-// Twin of kernels/contact/contact_sum.cl, which describes the computation.
+// Twin of contact_sum.cl and press_lanes.cl, which describe the computation (kernels/contact).
 #pragma once
 #include <bit>
 

@@ -184,14 +184,18 @@ class Session {
     if (once(18)) ++waiting_, timed("reset", [&] { world_.reset(); });
   }
 
+  /// Measures the organ that reaches highest.
   void measure(const pliant::Frame& frame) {
-    low_ = {1e30, 1e30, 1e30};
-    high_ = {-1e30, -1e30, -1e30};
-    for (const pliant::Vec4f& x : frame.positions) {
-      for (std::size_t c = 0; c < 3; ++c) {
-        low_[c] = std::min(low_[c], static_cast<double>(x[c]));
-        high_[c] = std::max(high_[c], static_cast<double>(x[c]));
+    double top = -1e30;
+    for (const pliant::IndexRange& body : frame.body_vertices) {
+      pliant::Vec3d low{1e30, 1e30, 1e30}, high{-1e30, -1e30, -1e30};
+      for (std::size_t v = body.first; v < body.first + body.count; ++v) {
+        for (std::size_t c = 0; c < 3; ++c) {
+          low[c] = std::min(low[c], static_cast<double>(frame.positions[v][c]));
+          high[c] = std::max(high[c], static_cast<double>(frame.positions[v][c]));
+        }
       }
+      if (high[1] > top) top = high[1], low_ = low, high_ = high;
     }
   }
 
@@ -221,7 +225,7 @@ class Session {
   Report report_;
   std::int64_t seen_ = -1;
   double shown_ = 0;
-  pliant::Vec3d low_{}, high_{};  ///< of the organs
+  pliant::Vec3d low_{}, high_{};  ///< of the organ that reaches highest
   int done_ = 0, waiting_ = 0;
   pliant::GrabId grab_ = 0;
   pliant::Vec3d from_{};

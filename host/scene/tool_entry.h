@@ -9,7 +9,7 @@
 namespace pliant {
 
 /// Limit because each contact point stores one bit per nearby tool.
-inline constexpr std::size_t most_tools = 30;
+inline constexpr std::size_t most_tools = 29;
 
 /// The tool of a struct, checked as scene_of() checks those of a scene. A name may be missing. Throws Error (input).
 ContactTool tool_of(const ToolSpec& spec);

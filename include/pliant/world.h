@@ -124,7 +124,7 @@ class PLIANT_API World {
   [[deprecated("move_focus()")]] void move_tool(const Vec3d& position) { move_focus(position); }  ///< its name before 0.2.0
 
   /// Rigid tools; pliant/tool.h describes when they change and their errors. This one
-  /// adds a tool at its path's current pose; at most 30 tools may be unparked. Returns its name: "tool0", "tool1", ... if it
+  /// adds a tool at its path's current pose; at most 29 tools may be unparked. Returns its name: "tool0", "tool1", ... if it
   /// has none. Mesh files are read here and again by load(); relative paths start from the working folder.
   std::string add_tool(const ToolSpec& tool);
   /// Adds a tool from text, an entry of `tools` of a scene file (docs/scene.md); relative paths start from `folder`.

@@ -25,9 +25,10 @@ __kernel void contact_near(__global const float* node_u, __global const float* n
   __global float* least = contact_gap + tile * tools;
   for (int t = 0; t < tools; ++t) least[t] = 1e30f;
   for (int first = tile * PLIANT_TILE; first < (tile + 1) * PLIANT_TILE; first += LANES) {
+    const integer all = -1;
     const point_lanes p = places_of_points(node_u, node_w, contact_rest, contact_node, contact_weight, first);
     for (int t = 0; t < tools; ++t) {
-      const meetings m = meet_lanes(tool_kind, tool_data, tool_grid, tool_pose, tools, step, t, p);
+      const meetings m = meet_lanes(tool_kind, tool_data, tool_grid, tool_pose, tools, step, t, all, p);
       const real none = 0.0f, stretch = EDGE_STRETCH;
       const real reach = has_edges(tool_kind, t) ? stretch * LOAD(touch_surface, POINT_BASE(first, PLIANT_TOUCH_SURFACE) + 23 * PLIANT_TILE) : none;
       const real gap = fma(SAME(-ahead), sqrt(dot_lanes(m.slip, m.slip)), m.distance) - reach;

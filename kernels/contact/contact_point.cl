@@ -10,23 +10,6 @@ typedef struct {
   float4 moved; // increment of this step [m]
 } contact_place;
 
-static inline contact_place place_of_point(__global const float* node_u, __global const float* node_w, __global const float* contact_rest,
-                                           __global const int* contact_node, __global const float* contact_weight, int i) {
-  __global const int* node = contact_node + POINT_BASE(i, 8);
-  __global const float* weight = contact_weight + POINT_BASE(i, 8);
-  float4 u = 0.0f, w = 0.0f;
-  for (int a = 0; a < 8; ++a) {
-    const float4 c = weight[a * PLIANT_TILE];
-    u = fma(c, vload4(node[a * PLIANT_TILE], node_u), u);
-    w = fma(c, vload4(node[a * PLIANT_TILE], node_w), w);
-  }
-  __global const float* rest = contact_rest + POINT_BASE(i, 4);
-  contact_place out;
-  out.now = (float4)(rest[0] + u.x, rest[PLIANT_TILE] + u.y, rest[2 * PLIANT_TILE] + u.z, 0.0f);
-  out.moved = w;
-  return out;
-}
-
 // R v of a pose, and its transpose.
 static inline float4 turned(__global const float* r, float4 v) {
   return (float4)(dot3(r[0], v.x, r[1], v.y, r[2], v.z), dot3(r[3], v.x, r[4], v.y, r[5], v.z), dot3(r[6], v.x, r[7], v.y, r[8], v.z), 0.0f);

@@ -29,8 +29,8 @@ INLINE void set_lane3(vec3* v, int l, float4 x) {
 // `wanted`: the lanes that have a point.
 INLINE tool_meetings meet_tool(MEET_ARGUMENTS, int t, int first, integer wanted, point_lanes p, patch_meeting* patches) {
   const real one = 1.0f;
-  const integer zero = 0;
-  tool_meetings out = {meet_lanes(tool_kind, tool_data, tool_grid, tool_pose, tools, step, t, p), p.now, one, one, zero};
+  const integer zero = 0, alone = has_edges(tool_kind, t) ? zero : wanted;
+  tool_meetings out = {meet_lanes(tool_kind, tool_data, tool_grid, tool_pose, tools, step, t, alone, p), p.now, one, one, zero};
 #if EDGES
   for (int l = 0; l < LANES; ++l) {
     patches[l].share = 1.0f, patches[l].edged = 0;

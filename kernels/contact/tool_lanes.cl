@@ -34,19 +34,20 @@ INLINE tool_gaps box_gaps(__global const float* data, vec3 y) {
   return out;
 }
 
-// From any tool: of a mesh each lane reads its own grid nodes.
+// From any tool: of a mesh each of the lanes that are `wanted` reads its own grid nodes. (The shapes are those of tool_distance, contact_shape.cl.)
 INLINE tool_gaps gaps_of_tool(__global const int* kind, __global const float* data, __global const float* tool_grid, __global const float* moment,
-                              vec3 y) {
+                              integer wanted, vec3 y) {
   if (kind[0] == 0 || kind[0] == 1) return round_gaps(kind[0], data, y);
   if (kind[0] == 2) return box_gaps(data, y);
-  tool_gaps out;
   if (kind[0] == 3) {
     const vec3 normal = {SAME(data[4]), SAME(data[5]), SAME(data[6])}, from = {y.x - data[1], y.y - data[2], y.z - data[3]};
-    out.normal = normal;
-    out.distance = dot_lanes(from, normal);
-    return out;
+    const tool_gaps plane = {normal, dot_lanes(from, normal)};
+    return plane;
   }
+  const real none = 0.0f, one = 1.0f;
+  tool_gaps out = {{none, none, one}, none};
   for (int l = 0; l < LANES; ++l) {
+    if (!LANE_INT(wanted, l)) continue;
     const float4 found = mesh_distance(kind, data, tool_grid, moment, (float4)(LANE(y.x, l), LANE(y.y, l), LANE(y.z, l), 0.0f));
     SET_LANE(out.normal.x, l, found.x);
     SET_LANE(out.normal.y, l, found.y);
@@ -92,13 +93,13 @@ INLINE point_lanes places_of_points(__global const float* node_u, __global const
   return out;
 }
 
-// meeting (contact_point.cl) of LANES points.
+// meeting (contact_point.cl) of the LANES points that are `wanted`.
 typedef struct {
   real distance, opening;
   vec3 normal, slip, inside;
 } meetings;
 INLINE meetings meet_lanes(__global const int* tool_kind, __global const float* tool_data, __global const float* tool_grid,
-                           __global const float* tool_pose, int tools, int step, int t, point_lanes p) {
+                           __global const float* tool_pose, int tools, int step, int t, integer wanted, point_lanes p) {
   __global const float* now = tool_pose + POSE_NUMBERS * (step * tools + t);
   __global const float* next = now + POSE_NUMBERS * tools;
   __global const int* kind = tool_kind + TOOL_INTEGERS * t;
@@ -106,12 +107,12 @@ INLINE meetings meet_lanes(__global const int* tool_kind, __global const float* 
   const vec3 start = turned_back_lanes(now, less_origin(sub(p.now, p.moved), now));
   meetings m;
   m.inside = turned_back_lanes(next, less_origin(p.now, next));
-  const tool_gaps found = gaps_of_tool(kind, data, tool_grid, next + 12, start);
+  const tool_gaps found = gaps_of_tool(kind, data, tool_grid, next + 12, wanted, start);
   const vec3 way = sub(m.inside, start);
   m.opening = dot_lanes(found.normal, way);
   m.distance = found.distance + m.opening;
   m.normal = turned_lanes(next, found.normal);
   m.slip = turned_lanes(now, way);
-  if (kind[5] > 1) m.opening = m.opening + (found.distance - gaps_of_tool(kind, data, tool_grid, now + 12, start).distance);
+  if (kind[5] > 1) m.opening = m.opening + (found.distance - gaps_of_tool(kind, data, tool_grid, now + 12, wanted, start).distance);
   return m;
 }

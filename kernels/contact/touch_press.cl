@@ -97,7 +97,7 @@ __kernel void touch_press(__global const float* touch_place, __global const int*
   const int near = contact_near[first / PLIANT_TILE];
   if (near == 0) return;
   const real none = 0.0f, yield = LOAD(contact_yield, first), again = READY_AGAIN, fresh = READY_NEW;
-  const real within = (2.0f * (yield > 0.0f ? again : fresh)) * contact_params[5];  // ready_share
+  const real within = (2.0f * (yield > 0.0f ? again : fresh)) * contact_params[5];  // may_touch_next
   const integer zero = 0, i = first + LANE_INDEX;
   const touch_lanes mine = own_lanes(touch_place, first);
   press_sums sums = {{zero, zero, zero}, zero, none, none, {none, none, none}};

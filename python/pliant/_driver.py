@@ -13,13 +13,15 @@ def find():
     if spec is None or spec.origin is None:
         return None
     site = os.path.dirname(os.path.dirname(spec.origin))
-    found = sorted(glob.glob(os.path.join(site, "pyopencl", ".libs", "libpocl*.so*")))  # where its wheel puts the library
+    found = glob.glob(os.path.join(site, "pyopencl", ".libs", "libpocl*.so*"))  # where its wheel puts the library
+    found = sorted(file for file in found if "libpocl-devices" not in file)
     return found[0] if found else None
 
 
 def offer(vendors="/etc/OpenCL/vendors"):
     """Lets the OpenCL loader find that driver, unless the environment names drivers or the folder `vendors` lists some. Returns its library or None.
 
+    It sets OCL_ICD_VENDORS, so that all that uses ocl-icd in this process and its children sees this driver alone.
     Works until OpenCL is first used in the process (`pliant.backends`, a World on another backend than `cpu`).
     """
     if any(name in os.environ for name in _CHOICES) or glob.glob(os.path.join(vendors, "*.icd")):

@@ -282,8 +282,8 @@ TEST(ToolChanges, MisuseIsRefused) {
   EXPECT_EQ(code_of([&] { world.add_tool(bad); }), ErrorCode::input);
   EXPECT_TRUE(
       has(message_of([&] { world.parse_tool(R"({"shape": {"sphere": 0.01}, "radius": 1})"); }), "unknown key \"radius\""));
-  for (int i = 0; i < 29; ++i) world.add_tool(ball("", {0, 0, 0.05}));
-  EXPECT_TRUE(has(message_of([&] { world.add_tool(ball("", {0, 0, 0.05})); }), "at most 30"));
+  for (int i = 0; i < 28; ++i) world.add_tool(ball("", {0, 0, 0.05}));
+  EXPECT_TRUE(has(message_of([&] { world.add_tool(ball("", {0, 0, 0.05})); }), "at most 29"));
   SceneSpec relaxed = bare_block();
   relaxed.relaxation = RelaxationSpec{};
   World still(relaxed, on("cpu"));

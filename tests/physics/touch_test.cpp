@@ -96,9 +96,9 @@ TEST_P(TouchPhysics, SmallStepsPartBodiesNoFaster) {
   check("speed of parting at a fiftieth of the stable step, over that at half of it", small / half, 1.5);
 }
 
-/// Viscosity shortens the stable step. Bodies that begin inside each other part no faster for that.
-TEST_P(TouchPhysics, ViscosityPartsBodiesNoFaster) {
-  const auto fastest = [&](double viscosity) {
+/// Viscosity, and a stiff body elsewhere, shorten the stable step. Bodies that begin inside each other part no faster for that.
+TEST_P(TouchPhysics, ShortStepsPartBodiesNoFaster) {
+  const auto fastest = [&](double viscosity, double third) {
     Scene scene;
     Material material = material_young(Law::neo_hookean, 1e4, 0.3);
     material.viscosity = viscosity;
@@ -107,6 +107,12 @@ TEST_P(TouchPhysics, ViscosityPartsBodiesNoFaster) {
     two.name = "two";
     two.translate = {0.0002, 0.0003, 0.0285};
     scene.bodies = {one, two};
+    if (third > 0) {
+      Body stiff = box_body({{3, 3, 3}, 0.01}, Discretization::hex8_bricks, material_young(Law::neo_hookean, third, 0.3));
+      stiff.name = "stiff";
+      stiff.translate = {0.2, 0, 0};
+      scene.bodies.push_back(stiff);
+    }
     scene.contact = TissueContact{};
     auto sim = simulate(scene, GetParam());
     double most = 0;
@@ -116,11 +122,14 @@ TEST_P(TouchPhysics, ViscosityPartsBodiesNoFaster) {
     }
     return std::pair{most, sim->stable_dt()};
   };
-  const auto [elastic, step] = fastest(0);
-  const auto [viscous, short_step] = fastest(1000);
+  const auto [elastic, step] = fastest(0, 0);
   EXPECT_GT(elastic, 0);
-  EXPECT_LT(short_step, 0.02 * step);
+  const auto [viscous, viscous_step] = fastest(1000, 0);
+  EXPECT_LT(viscous_step, 0.02 * step);
   check("speed of parting with a viscosity that shortens the step to a fiftieth, over that without", viscous / elastic, 3);
+  const auto [beside, stiff_step] = fastest(0, 2.5e7);
+  EXPECT_LT(stiff_step, 0.03 * step);
+  check("speed of parting beside a body that shortens the step to a fiftieth, over that without", beside / elastic, 3);
 }
 
 /// Three cubes that do not lie straight on each other come to rest and stay; the table holds the weight of all.

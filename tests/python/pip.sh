@@ -88,7 +88,7 @@ import importlib.metadata
 import pliant
 
 assert pliant.__version__ == importlib.metadata.version("pliant")
-for extra, needs in (("view", "viser"), ("gym", "gymnasium"), ("convert", "meshio"), ("convert", "usd-core")):
+for extra, needs in (("opencl", "pocl-binary-distribution"), ("view", "viser"), ("gym", "gymnasium"), ("convert", "meshio"), ("convert", "usd-core")):
     found = [r for r in importlib.metadata.requires("pliant") if needs in r and f'extra == "{extra}"' in r.replace("'", '"')]
     assert found, f"{needs} is optional"
 named = {file.name for file in importlib.metadata.files("pliant")}

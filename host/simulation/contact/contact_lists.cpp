@@ -17,11 +17,6 @@ constexpr double kReserve = 0.5;
 constexpr double kPairTravel = 0.08;
 constexpr std::int64_t kPairSteps = 64;
 
-/// A tool is far from the tissue where it has this way left [cells] until a search is due. No node moves by more than a quarter
-/// of a cell in a step that lasts, so that a check every kFarChecks times contact_look_every steps is enough.
-constexpr std::int64_t kFarChecks = 4;
-constexpr double kFarCells = 0.25 * kFarChecks * contact_look_every;
-
 /// Broad-phase margin as a fraction of a cell.
 constexpr double kMargin = 0.25;
 
@@ -34,7 +29,7 @@ void ContactLists::update(std::int32_t step_in_batch, const Motion& motion) {
   const bool tools = !run_.model().tools->empty(), tissue = run_.scene.contact.has_value();
   ContactLook& last = run_.state.look;
   Due due{tools && last.tools < 0, tissue && last.tissue < 0};
-  if (step % contact_look_every == 0 && ((tools && !due.tools) || (tissue && !due.tissue)) && !may_wait(step, motion)) {
+  if (step % contact_look_every == 0 && ((tools && !due.tools) || (tissue && !due.tissue))) {
     const Due moved = due_after_motion(step, motion);
     due = {tools && (due.tools || moved.tools), tissue && (due.tissue || moved.tissue)};
   }
@@ -53,33 +48,11 @@ double ContactLists::largest_increment() {
   return std::isfinite(most) ? most : 0;  // a lost batch is taken back
 }
 
-bool ContactLists::far() const {
-  const ContactLook& look = run_.state.look;
-  if (run_.scene.contact || look.tools < 0) return false;
-  const double most = kFarCells * run_.model().contact->spacing;
-  for (std::size_t t = 0; t < look.room.size(); ++t) {
-    if (look.room[t] - look.travel[t] < most) return false;
-  }
-  return true;
-}
-
-bool ContactLists::may_wait(std::int64_t step, const Motion& motion) const {
-  if (step % (kFarChecks * contact_look_every) == 0 || !far()) return false;
-  const ContactLook& look = run_.state.look;
-  const double now = run_.state.clock.time_at(step), most = kFarCells * run_.model().contact->spacing;
-  const double span = kFarChecks * contact_look_every * run_.state.clock.dt;
-  for (std::size_t t = 0; t < look.room.size(); ++t) {
-    if (look.room[t] - look.travel[t] - motion(t, now - span, now) - motion(t, now, now + span) < most) return false;
-  }
-  return true;
-}
-
 ContactLists::Due ContactLists::due_after_motion(std::int64_t step, const Motion& motion) {
   ContactLook& look = run_.state.look;
-  const double now = run_.state.clock.time_at(step), dt = run_.state.clock.dt;
+  const double now = run_.state.clock.time_at(step), ahead = contact_look_every * run_.state.clock.dt;
   // Motion since the last check, and possible motion until the next.
-  const std::int64_t steps = (far() ? kFarChecks : 1) * contact_look_every;
-  const double ahead = static_cast<double>(steps) * dt, nodes = kFaster * static_cast<double>(steps) * largest_increment();
+  const double nodes = kFaster * contact_look_every * largest_increment();
   Due due;
   for (std::size_t t = 0; t < look.room.size() && look.tools >= 0 && look.tools < step; ++t) {
     look.travel[t] += nodes + motion(t, now - ahead, now);

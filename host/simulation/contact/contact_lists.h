@@ -32,10 +32,6 @@ class ContactLists {
   struct Due {
     bool tools = false, tissue = false;
   };
-  /// Whether every tool is far from the tissue (kFarCells).
-  [[nodiscard]] bool far() const;
-  /// Whether this multiple of contact_look_every needs no check, since all tools are far and stay so.
-  [[nodiscard]] bool may_wait(std::int64_t step, const Motion& motion) const;
   [[nodiscard]] Due due_after_motion(std::int64_t step, const Motion& motion);
   [[nodiscard]] double largest_increment();
   void look(const Due& due, std::int32_t step_in_batch, std::int64_t step);

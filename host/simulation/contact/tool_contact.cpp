@@ -80,13 +80,24 @@ void ToolContact::start() {
   }
 }
 
-/// Longest time in which a wave along a bar, of speed sqrt(E / density), crosses a cell [s]; 0 without elements.
+/// Least modulus of a material [Pa]; of a field, that of its softest element.
+static double least_young(const Material& material) {
+  double least = material.moduli.young();
+  if (material.young_field == nullptr) return least;
+  for (const double young : material.young_field->values) least = young > 0 ? std::min(least, young) : least;
+  return least;
+}
+
+/// Longest time in which a wave along a bar, of speed sqrt(E / density), crosses a cell of the coarsest body [s]; 0 without
+/// elements.
 static double slowest_crossing(const Model& model) {
   double slowest = 0;
-  for (const ElementBatch& batch : model.batches) {
-    const double young = batch.material.moduli.young();
-    if (young > 0) slowest = std::max(slowest, model.contact->spacing * std::sqrt(batch.material.density / young));
-  }
+  const auto look_at = [&](const Material& material) {
+    const double young = least_young(material);
+    if (young > 0) slowest = std::max(slowest, model.contact->spacing * std::sqrt(material.density / young));
+  };
+  for (const ElementBatch& batch : model.batches) look_at(batch.material);
+  for (const BrickBatch& batch : model.brick_batches) look_at(batch.material);
   return slowest;
 }
 
