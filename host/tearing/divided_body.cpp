@@ -59,7 +59,8 @@ class DividedBody : public RemadeBody {
   [[nodiscard]] bool follows_at_rest() const override { return true; }
   BladeSweep sweep(std::span<const Vec3d> x) override {
     const std::size_t nodes = whole_->nodes.size();
-    return {topology(), x, SweptPairs{*rest_edges_, whole_->nodes, x.first(nodes), nodes}, edge()};
+    measure_gaps(x);
+    return {topology(), x, SweptPairs{*rest_edges_, whole_->nodes, x.first(nodes), nodes, gap_, true}, edge()};
   }
 
   void keep_new(CutEdges& crossed) const override {
@@ -101,6 +102,19 @@ class DividedBody : public RemadeBody {
     const std::span<const std::int32_t> a = around_.at(pair[0]), b = around_.at(pair[1]);
     std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(both));
     return both;
+  }
+
+  /// How far the copies of each node are apart (SweptPairs::gap).
+  void measure_gaps(std::span<const Vec3d> x) {
+    gap_.assign(origin_.size(), 0);
+    std::map<std::int32_t, std::vector<std::size_t>> copies;
+    for (std::size_t n = rest_.size(); n < origin_.size(); ++n) copies[origin_[n]].push_back(n);
+    for (auto& [origin, nodes] : copies) {
+      nodes.push_back(static_cast<std::size_t>(origin));
+      for (const std::size_t m : nodes) {
+        for (const std::size_t n : nodes) gap_[m] = std::max(gap_[m], vec::norm(vec::sub(x[m], x[n])));
+      }
+    }
   }
 
   void cut_edge(const NodePair& pair, double share, std::set<std::int32_t>& changed) {
@@ -315,6 +329,7 @@ class DividedBody : public RemadeBody {
   std::map<NodePair, std::int32_t> middle_;           ///< the node on a crossed edge
   std::vector<std::pair<NodePair, double>> on_edge_;  ///< of each node on an edge
   std::map<std::int32_t, std::vector<std::int32_t>> children_;
+  std::vector<double> gap_;           ///< of each node of solid(), for the last sweep [m]
   std::vector<std::int32_t> origin_;  ///< of each node of solid() that with closed faces
 };
 
