@@ -171,7 +171,7 @@ class StrokeBench {
   template <class Fault>
   void look_at_elements(std::int64_t trial, const EditFigures& before, const EditFigures& now, const Fault& fault) {
     const auto fresh = std::count_if(now.inverted.begin(), now.inverted.end(),
-                                     [&](const auto& place) { return !before.inverted.contains(place); });
+                                     [&](const auto& place) { return !lies_in(place, before.inverted); });
     found_.inverted += fresh;
     if (fresh > 0) fault(fmt::format("{} elements are inverted that were not", fresh));
     found_.dt_ratio = std::min(found_.dt_ratio, now.bound / before.bound);

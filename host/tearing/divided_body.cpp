@@ -309,6 +309,7 @@ class DividedBody : public RemadeBody {
         OuterFace face{};
         for (std::size_t k = 0; k < 3; ++k) face.nodes[k] = solid_.tets[e][static_cast<std::size_t>(kTetFaces[f][k])];
         if (outside) face.source = source_of(joined_[e], kTetFaces[f]);
+        if (outside && face.source < 0) continue;
         (outside ? outer : cut).push_back(face);
       }
     }

@@ -16,8 +16,11 @@ std::array<std::int32_t, 3> face_key(std::array<std::int32_t, 3> nodes);
 class SurfaceSources {
  public:
   explicit SurfaceSources(const BodyMesh& whole);
-  [[nodiscard]] bool has(const std::array<std::int32_t, 3>& nodes) const { return at_.contains(face_key(nodes)); }
-  [[nodiscard]] std::int32_t at(const std::array<std::int32_t, 3>& nodes) const { return at_.at(face_key(nodes)); }
+  /// -1: the surface has none there. Elements in a lattice of which one cell is two may share a face with both of them.
+  [[nodiscard]] std::int32_t at(const std::array<std::int32_t, 3>& nodes) const {
+    const auto found = at_.find(face_key(nodes));
+    return found == at_.end() ? -1 : found->second;
+  }
 
  private:
   std::map<std::array<std::int32_t, 3>, std::int32_t> at_;

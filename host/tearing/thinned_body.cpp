@@ -26,7 +26,9 @@ class ThinnedBody : public RemadeBody {
         around_(all(), whole_->nodes.size()),
         sources_(*whole_),
         broken_(all().size(), 0),
-        gone_(all().size(), 0) {}
+        gone_(all().size(), 0) {
+    find_groups();
+  }
 
   CutEdges crossed(std::span<const Vec3d> x, std::span<const SweepTriangle> triangles) override {
     CutEdges out;
@@ -149,19 +151,40 @@ class ThinnedBody : public RemadeBody {
     }
   }
 
-  /// The triangles of a face by places in it: those of the whole surface where it has them, else at its lowest node.
+  /// Numbers faces that have the same nodes. Two elements share one, as a rule; in a lattice of which one cell is two, three
+  /// may.
+  void find_groups() {
+    std::map<std::array<std::int32_t, Shape::faces[0].size()>, std::int32_t> known;
+    group_.resize(all().size());
+    for (std::size_t e = 0; e < all().size(); ++e) {
+      for (std::size_t f = 0; f < Shape::faces.size(); ++f) {
+        std::array<std::int32_t, Shape::faces[0].size()> key{};
+        for (std::size_t k = 0; k < key.size(); ++k) key[k] = all()[e][static_cast<std::size_t>(Shape::faces[f][k])];
+        std::sort(key.begin(), key.end());
+        group_[e][f] = known.try_emplace(key, static_cast<std::int32_t>(known.size())).first->second;
+      }
+    }
+    groups_ = known.size();
+  }
+
+  /// The triangles of a face by corners of the element, a quadrilateral along the diagonal of boundary_triangles().
   [[nodiscard]] std::vector<std::array<int, 3>> triangles_of(std::size_t e, std::size_t f) const {
     const auto& c = Shape::faces[f];
     if constexpr (Corners == 4) {
       return {{c[0], c[1], c[2]}};
     } else {
-      const auto has = [&](int a, int b, int d) { return sources_.has({all()[e][c[a]], all()[e][c[b]], all()[e][c[d]]}); };
-      int first = 0;
-      for (int k = 1; k < 4; ++k) first = all()[e][c[k]] < all()[e][c[first]] ? k : first;
-      if (has(0, 1, 2) || has(0, 2, 3)) first = 0;
-      if (has(1, 2, 3) || has(1, 3, 0)) first = 1;
+      constexpr std::array<int, 6> kFirst{1, 0, 0, 1, 0, 0};  // of the corners of the face one that the diagonal has
+      int first = kFirst[f];
       // Both sides of an open face may share its four nodes: along different diagonals no edge has more than two triangles.
-      if (const std::int32_t other = around_.neighbors[e][f].tet; other >= 0 && other < static_cast<std::int32_t>(e)) ++first;
+      if (const std::int32_t other = around_.neighbors[e][f].tet; other >= 0 && other < static_cast<std::int32_t>(e)) {
+        const bool both = gone_[static_cast<std::size_t>(other)] == 0;
+        const auto there = static_cast<std::size_t>(around_.neighbors[e][f].face);
+        const auto& d = Shape::faces[there];
+        const std::int32_t n = all()[static_cast<std::size_t>(other)][d[static_cast<std::size_t>(kFirst[there])]];
+        const bool same =
+            n == all()[e][c[static_cast<std::size_t>(first)]] || n == all()[e][c[static_cast<std::size_t>(first + 2)]];
+        if (both && same) ++first;
+      }
       const auto at = [&](int k) { return c[static_cast<std::size_t>((first + k) % 4)]; };
       return {{at(0), at(1), at(2)}, {at(0), at(2), at(3)}};
     }
@@ -170,12 +193,15 @@ class ThinnedBody : public RemadeBody {
   /// The outside of the elements that are left: first what the whole body has of it.
   void make_surface() {
     std::vector<OuterFace> outer, cut;
+    std::vector<std::int8_t> users(groups_, 0);  // a face is outside where one element alone has it, as in the whole body
+    for (const std::int32_t e : solid_.parts.of) {
+      for (const std::int32_t group : group_[static_cast<std::size_t>(e)]) ++users[static_cast<std::size_t>(group)];
+    }
     for (std::size_t e = 0; e < now().size(); ++e) {
       const auto whole = static_cast<std::size_t>(solid_.parts.of[e]);
       for (std::size_t f = 0; f < Shape::faces.size(); ++f) {
-        const std::int32_t other = around_.neighbors[whole][f].tet;
-        const bool open = other >= 0 && (gone_[static_cast<std::size_t>(other)] != 0 || (broken_[whole] >> f & 1) != 0);
-        if (other >= 0 && !open) continue;
+        const bool alone = users[static_cast<std::size_t>(group_[whole][f])] == 1;
+        if (!alone && (broken_[whole] >> f & 1) == 0) continue;
         for (const auto& t : triangles_of(whole, f)) {
           OuterFace face{};
           std::array<std::int32_t, 3> key{};
@@ -183,8 +209,8 @@ class ThinnedBody : public RemadeBody {
             face.nodes[k] = now()[e][static_cast<std::size_t>(t[k])];
             key[k] = all()[whole][static_cast<std::size_t>(t[k])];
           }
-          if (other < 0) face.source = sources_.at(key);
-          (other < 0 ? outer : cut).push_back(face);
+          face.source = sources_.at(key);
+          (face.source >= 0 ? outer : cut).push_back(face);
         }
       }
     }
@@ -197,6 +223,8 @@ class ThinnedBody : public RemadeBody {
   SurfaceSources sources_;
   std::vector<std::uint8_t> broken_;  ///< [elements of the whole body] faces opened because an edge alone connected them, bit f
   std::vector<char> gone_;            ///< [elements of the whole body]
+  std::vector<std::array<std::int32_t, Shape::faces.size()>> group_;  ///< the same of faces with the same nodes
+  std::size_t groups_ = 0;
 };
 
 }  // namespace
