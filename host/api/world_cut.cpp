@@ -103,7 +103,7 @@ CutResult World::Impl::cut(api::CutRequest request) {
     cut_pending();
     const CutReport done = cut_now({&request, 1});
     publish_clock();
-    return {false, done.changed, done.edges, done.seconds(), done.in_part};
+    return {false, done.changed, done.edges, done.seconds(), done.in_part, done.elements, done.mass_lost};
   } catch (const api::Refused& refused) {
     throw Error(refused.code(), refused.what());
   } catch (const std::exception& error) {

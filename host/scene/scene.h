@@ -103,7 +103,8 @@ struct Body {
   Vec3d translate{};           ///< [m], after scaling
   LatticeSpec lattice;         ///< used with `surface`
   double thickness = 0;        ///< > 0: the `surface` is a sheet of this thickness, without a lattice [m]
-  bool plain = false;          ///< a lattice becomes a volume mesh of its cells, whose surface is theirs: where blades have another method than virtual nodes
+  bool plain = false;  ///< a lattice becomes a volume mesh of its cells, whose surface is theirs: where blades have another
+                       ///< method than virtual nodes
   ElementKind element = usual_element(8);  ///< of lattices
   DeformationModel model;
   Material material;

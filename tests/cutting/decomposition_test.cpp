@@ -31,6 +31,7 @@ TEST_F(Remade, ABlockIsDividedAndFallsApart) {
   EXPECT_GT(s.model().bodies[0].elements(), elements + 200);
   EXPECT_EQ(s.cut_in_part(0), 0);
   EXPECT_LT(s.dt(), step);
+  EXPECT_GT(s.dt(), 0.02 * step) << "what is cut off is not thinner than a tenth of an element";
 }
 
 /// H = F - I of the tetrahedra, or of the element's part of the whole body they belong to.
@@ -241,6 +242,68 @@ TEST_F(Remade, ABladeThatPressesDividesWhereTissueGivesWay) {
   EXPECT_GT(s.state().remade.elements, 50);
   resumed.advance(s.step() - resumed.step());
   EXPECT_EQ(s.hash(), resumed.hash());
+}
+
+/// In the gap of a cut, a blade that moves divides nothing more.
+TEST_F(Remade, ABladeInTheGapDividesNothing) {
+  for (const double gap : {0.012, 0.02, 0.03}) {
+    Scene scene = block(kDivides);
+    pull(scene.bodies[0], {0.06, 0, 0}, {1, 0, 0}, {gap, 0, 0}, 0.2);
+    Simulation s(scene, open_backend("cpu"));
+    ASSERT_TRUE(s.cut(wall(0.027, 0.3)).changed);
+    ASSERT_EQ(pieces_of(s.model().bodies[0]), 2);
+    while (s.time() < 0.5 && !s.divergence()) s.advance(16);
+    ASSERT_FALSE(s.divergence()) << s.divergence()->message();
+    const std::int64_t elements = s.model().elements();
+    const auto place = [&](double y) {  // in its middle
+      const double x = 0.027 + 0.3 * y + 0.5 * gap;
+      return std::vector<BladePose>{{"scalpel", {{{x, y, -0.01}, {x, y, 0.05}}}}};
+    };
+    for (int k = 0; k <= 40; ++k) s.move_blades(place(-0.02 + 0.002 * k));
+    EXPECT_EQ(s.model().elements(), elements) << "a gap of " << gap << " m";
+  }
+}
+
+/// A part of an element has the material of the element, wherever its own middle lies.
+TEST_F(Remade, PartsKeepTheMaterialOfTheirElement) {
+  Scene scene = block(kDivides);
+  Inclusion stiff;
+  stiff.where = {Selection::Kind::box, {0.02, 0.005, 0.005}, {0.04, 0.035, 0.035}, 0, {}, ""};
+  stiff.material = scene.bodies[0].material;
+  stiff.material.set_moduli(Law::neo_hookean, Moduli::from_lame(40000, 10000));
+  stiff.material.density = 3000;
+  scene.bodies[0].inclusions.push_back(stiff);
+  Simulation s(scene, open_backend("cpu"));
+  const ModelBody whole = s.model().bodies[0];
+  const double mass = mass_of(s);
+  for (int k = 0; k < 3; ++k) ASSERT_TRUE(s.cut(wall(0.021 + 0.009 * k, 0.4 - 0.3 * k)).changed);
+  EXPECT_NEAR(mass_of(s) / mass, 1, 1e-12);
+  const ModelBody& body = s.model().bodies[0];
+  std::array<std::int64_t, 2> found{};
+  for (std::size_t e = 0; e < body.tets.size(); ++e) {
+    Vec3d middle{};
+    for (const std::int32_t n : body.tets[e]) middle = vec::add(middle, vec::mul(body.rest[n], 0.25));
+    EXPECT_EQ(body.materials.index[e], whole.materials.index[element_around(whole, middle)]);
+    ++found[static_cast<std::size_t>(body.materials.index[e])];
+  }
+  EXPECT_GT(std::min(found[0], found[1]), 100);
+}
+
+/// A probe goes with the part that has its place.
+TEST_F(Remade, AProbeStaysInItsPart) {
+  Scene scene = pulled(block(kDivides));
+  SceneProbe probe;
+  probe.name = "here";
+  probe.point = Vec3d{0.0331, 0.0207, 0.0203};
+  probe.quantities = {Quantity::position, Quantity::stress};
+  Simulation s(scene, open_backend("cpu"));
+  const PlacedProbes probes({probe}, s.model());
+  while (s.time() < 0.1) s.advance(s.next_batch(16));
+  const ProbeState before = probes.states(s)[0];
+  ASSERT_TRUE(s.cut(wall(0.0375)).changed);
+  const ProbeState now = probes.states(s)[0];
+  for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR((*now.position)[c], (*before.position)[c], 1e-8);
+  for (std::size_t c = 0; c < 6; ++c) EXPECT_NEAR((*now.stress)[c], (*before.stress)[c], 1e-3 * std::abs((*before.stress)[0]));
 }
 
 TEST_F(Remade, ABodyOfHexahedraIsNotDivided) {

@@ -14,6 +14,7 @@
 #include "io/save.h"
 #include "model/pieces.h"
 #include "simulation/measure/energy.h"
+#include "simulation/measure/probing.h"
 #include "solver/scenes.h"
 #include "support/error_of.h"
 #include "support/temp_folder.h"

@@ -181,10 +181,27 @@ TEST_F(Remade, RandomStrokesUnderLoadLeaveClosedSurfacesOfThinnedBodies) {
   EXPECT_GT(edits, 60);
 }
 
-/// A probe in tissue that is gone has no numbers.
+/// A probe in tissue that is gone has no numbers, the other one goes on.
 TEST_F(Remade, ABodyCanGoAltogether) {
-  Simulation s(block(kRemoves), open_backend("cpu"));
-  for (int k = 0; k < 14; ++k) static_cast<void>(s.cut(wall(0.0003 + 0.0045 * k)));
+  const Scene scene = block(kRemoves);
+  std::vector<SceneProbe> asked;
+  for (const double x : {0.011, 0.052}) {
+    SceneProbe probe;
+    probe.name = "at " + std::to_string(x);
+    probe.point = Vec3d{x, 0.0207, 0.0203};
+    probe.quantities = {Quantity::position, Quantity::stress};
+    asked.push_back(probe);
+  }
+  Simulation s(scene, open_backend("cpu"));
+  const PlacedProbes probes(asked, s.model());
+  for (int k = 0; k < 14; ++k) {
+    static_cast<void>(s.cut(wall(0.0003 + 0.0045 * k)));
+    if (k != 4) continue;
+    const std::vector<ProbeState> states = probes.states(s);
+    EXPECT_TRUE(std::isnan((*states[0].position)[0]));
+    EXPECT_TRUE(std::isnan((*states[0].stress)[5]));
+    EXPECT_NEAR((*states[1].position)[0], 0.052, 1e-12);
+  }
   EXPECT_EQ(s.model().bodies[0].elements(), 0);
   s.advance(64);
   EXPECT_FALSE(s.divergence());

@@ -4,6 +4,7 @@
 #include <map>
 #include <utility>
 
+#include "geometry/vec.h"
 #include "model/links/membranes.h"
 #include "model/nodes/ballast.h"
 #include "model/nodes/boundary_conditions.h"
@@ -184,16 +185,16 @@ void ModelSwap::carry_nodes(Program& program) {
 void ModelSwap::carry_velocity(Buffer& to) const {
   for (std::size_t b = 0; b < v_.size(); ++b) {
     const std::vector<std::int32_t>& slots = model_->bodies[b].slot;
-    for (std::size_t n = 0; n < slots.size(); ++n) {
+    const auto give = [&](std::size_t n, const Vec3d& velocity) {
       const auto slot = static_cast<std::size_t>(slots[n]);
       const double step = substeps_of(*model_, slot) * run_.state.clock.dt;
-      for (std::size_t c = 0; c < 3; ++c) to.reals[4 * slot + c] = step * v_[b][origins_[b].of(n)][c];
-    }
+      for (std::size_t c = 0; c < 3; ++c) to.reals[4 * slot + c] = step * velocity[c];
+    };
+    for (std::size_t n = 0; n < slots.size(); ++n) give(n, v_[b][origins_[b].of(n)]);
     for (const MixedNode& mixed : origins_[b].mixed) {
-      const auto node = static_cast<std::size_t>(mixed.node), slot = static_cast<std::size_t>(slots[node]);
-      const double step = substeps_of(*model_, slot) * run_.state.clock.dt;
-      const Vec3d &one = v_[b][origins_[b].of(node)], &other = v_[b][static_cast<std::size_t>(mixed.other)];
-      for (std::size_t c = 0; c < 3; ++c) to.reals[4 * slot + c] = step * ((1 - mixed.share) * one[c] + mixed.share * other[c]);
+      const auto n = static_cast<std::size_t>(mixed.node);
+      const Vec3d &one = v_[b][origins_[b].of(n)], &other = v_[b][static_cast<std::size_t>(mixed.other)];
+      give(n, vec::add(vec::mul(one, 1 - mixed.share), vec::mul(other, mixed.share)));
     }
   }
   // A cut may leave a moving virtual node with held anchors only. Since no update moves a held node, it would keep its
