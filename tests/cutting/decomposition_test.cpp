@@ -244,6 +244,32 @@ TEST_F(Remade, ABladeThatPressesDividesWhereTissueGivesWay) {
   EXPECT_EQ(s.hash(), resumed.hash());
 }
 
+/// The front of a blade is carried by the parts of the elements that carried it.
+TEST_F(Remade, TheFrontOfABladeStaysWhereTheBladeIs) {
+  Simulation s(block(kDivides), open_backend("cpu"));
+  std::int64_t carried = 0;
+  for (int k = 0; k <= 9; ++k) {
+    const double y = -0.01 + 0.005 * k;
+    const BladeSegment at{{{0.033 + 0.27 * (y - 0.0193), y, -0.01}, {0.033 + 0.27 * (y - 0.0193), y, 0.05}}};
+    s.move_blades(std::vector<BladePose>{{"scalpel", at}});
+    const auto found = s.state().blades.traces.find("host/scalpel");
+    if (found == s.state().blades.traces.end()) continue;
+    const ModelBody& body = s.model().bodies[0];
+    for (const TracePoint& p : found->second.at(0).points) {
+      if (p.node >= 0) continue;
+      ++carried;
+      Vec3d x{};
+      for (std::size_t a = 0; a < 4; ++a) {
+        const std::int32_t n = body.tets[static_cast<std::size_t>(p.carried.cell)][a];
+        x = vec::add(x, vec::mul(body.rest[static_cast<std::size_t>(n)], p.carried.weight[a]));
+      }
+      EXPECT_NEAR(x[0], at[0][0], 1e-12);
+      EXPECT_NEAR(x[1], at[0][1], 1e-12);
+    }
+  }
+  EXPECT_GT(carried, 50);
+}
+
 /// In the gap of a cut, a blade that moves divides nothing more.
 TEST_F(Remade, ABladeInTheGapDividesNothing) {
   for (const double gap : {0.012, 0.02, 0.03}) {
