@@ -161,6 +161,8 @@ py::dict result(const pliant::CutResult& r) {
   d["edges"] = r.edges;
   d["seconds"] = r.seconds;
   d["in_part"] = r.in_part;
+  d["elements"] = r.elements;
+  d["mass_lost"] = r.mass_lost;
   return d;
 }
 

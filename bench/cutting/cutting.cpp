@@ -15,6 +15,7 @@
 #include "bench/kernels/kernels.h"
 #include "geometry/vec.h"
 #include "pliant/error.h"
+#include "scene/keys.h"
 
 namespace pliant::bench {
 namespace {
@@ -93,6 +94,10 @@ json cutting_row(const std::string& part, const std::string& scene, const std::s
           {"nodes_after", after.nodes},
           {"ms_per_step_before", nullptr},
           {"ms_per_step_after", nullptr}};
+}
+
+std::string method_name(BladeMethod method) {
+  return method == BladeMethod::virtual_nodes ? "virtual nodes" : word_of(blade_method_words(), method);
 }
 
 double ms_per_step(Simulation& simulation, bool quick) { return 1e3 * time_steps(simulation, quick).median; }

@@ -1,5 +1,6 @@
 #include "bench/cutting/edit_account.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -46,9 +47,25 @@ void find_inverted(const ModelBody& body, const std::vector<Vec3d>& x, const std
   }
 }
 
+Vec3d corner(const std::array<double, 12>& place, std::size_t i) { return {place[3 * i], place[3 * i + 1], place[3 * i + 2]}; }
+
 bool is_finite(const Vec3d& v) { return std::isfinite(v[0] + v[1] + v[2]); }
 
 }  // namespace
+
+bool lies_in(const std::array<double, 12>& element, const ElementPlaces& others) {
+  constexpr double kSlack = 1e-9;
+  if (others.contains(element)) return true;
+  Vec3d middle{};
+  for (std::size_t i = 0; i < 4; ++i) middle = vec::add(middle, vec::mul(corner(element, i), 0.25));
+  return std::any_of(others.begin(), others.end(), [&](const std::array<double, 12>& other) {
+    const Vec3d o = corner(other, 0), a = vec::sub(corner(other, 1), o), b = vec::sub(corner(other, 2), o),
+                c = vec::sub(corner(other, 3), o), p = vec::sub(middle, o);
+    const double all = determinant(a, b, c);
+    const std::array<double, 3> w{determinant(p, b, c) / all, determinant(a, p, c) / all, determinant(a, b, p) / all};
+    return std::min({w[0], w[1], w[2], 1 - w[0] - w[1] - w[2]}) > -kSlack;
+  });
+}
 
 EditFigures edit_figures(const Simulation& simulation) {
   const Model& model = simulation.model();

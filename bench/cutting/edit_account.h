@@ -13,6 +13,9 @@ namespace pliant::bench {
 /// Where elements lie at rest: copies of one lie at the same place.
 using ElementPlaces = std::set<std::array<double, 12>>;
 
+/// Whether the middle of an element lies in one of others, as that of a part of one of them does.
+bool lies_in(const std::array<double, 12>& element, const ElementPlaces& others);
+
 /// A body at one moment.
 struct EditFigures {
   std::int64_t elements = 0;

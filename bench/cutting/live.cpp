@@ -41,16 +41,16 @@ double cut_distance(const ModelSurface& surface, const Stroke& stroke) {
 }
 
 void measure(const CuttingRun& run, Scene scene, const Stroke& stroke, BladeMethod method) {
-  const bool parts = method == BladeMethod::separation;
   Blade far;  // gives the scene its method; the stroke is a program's
   far.name = "far";
   far.method = method;
   far.path = {{0, 9, 9, 8, 9, 9, 9}, {1, 9, 9.1, 8, 9, 9.1, 9}};
   scene.blades = {far};
   Body& body = scene.bodies[0];
-  body.plain = parts || element_info(body.element).corners == 4;  // the same tetrahedra for both
+  // The same tetrahedra for all.
+  body.plain = method != BladeMethod::virtual_nodes || element_info(body.element).corners == 4;
   const auto model = std::make_shared<const Model>(build_model(scene));
-  scene.dt = scene.safety * model->element_bound;
+  if (method != BladeMethod::decomposition) scene.dt = scene.safety * model->element_bound;  // there it has to fall
   const BodyFigures before = figures_of(*model);
   Simulation simulation(scene, model, open_backend(run.options.backend, nullptr, model->nodes()), {0, 64, false});
   const double step_before = ms_per_step(simulation, run.options.quick);
@@ -72,7 +72,7 @@ void measure(const CuttingRun& run, Scene scene, const Stroke& stroke, BladeMeth
   BodyFigures after = figures_of(simulation.model());
   after.closed = closed;
   after.dt = least_dt;
-  json row = cutting_row("live", scene.name, parts ? "separation" : "virtual nodes", to_string(body.element),
+  json row = cutting_row("live", scene.name, method_name(method), to_string(body.element),
                          static_cast<std::int64_t>(times.size()), before, after, times);
   row["mass_error"] = mass;
   row["volume_error"] = volume;
@@ -99,7 +99,9 @@ void measure_live_methods(const CuttingRun& run) {
       }
       const BladeSegment middle = scene.blades[0].at(0.5 * (scene.blades[0].begins() + scene.blades[0].ends()));
       const Stroke stroke{vec::mul(vec::add(middle[0], middle[1]), 0.5), 0.15, 0.2};
-      for (const BladeMethod method : {BladeMethod::virtual_nodes, BladeMethod::separation}) {
+      for (const BladeMethod method :
+           {BladeMethod::virtual_nodes, BladeMethod::separation, BladeMethod::decomposition, BladeMethod::removal}) {
+        if (method == BladeMethod::decomposition && element_info(element).corners != 4) continue;
         run.show(scene.name + ", " + to_string(element));
         measure(run, scene, stroke, method);
       }

@@ -6,9 +6,9 @@
 
 #include "backends/choice/backends.h"
 #include "bench/cutting/parts.h"
-#include "cutting_methods/sweep_probe.h"
 #include "geometry/disjoint_sets.h"
 #include "geometry/vec.h"
+#include "tearing/sweep_probe.h"
 
 namespace pliant::bench {
 namespace {

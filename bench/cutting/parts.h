@@ -51,6 +51,8 @@ nlohmann::json cutting_row(const std::string& part, const std::string& scene, co
                            const std::string& element, std::int64_t cuts, const BodyFigures& before, const BodyFigures& after,
                            const std::vector<CutTimes>& times);
 
+/// The name of a method of blades in rows and tables.
+std::string method_name(BladeMethod method);
 /// Median ms of a step [ms].
 double ms_per_step(Simulation& simulation, bool quick);
 

@@ -185,7 +185,7 @@ StrokeTrial draw_stroke_trial(std::int64_t number, const StrokeKind& kind) {
   Body& body = trial.scene.bodies[0];
   body.element = kind.element;
   const bool plain = dice.chance(0.5);
-  body.plain = kind.method == BladeMethod::separation || (plain && kind.element == ElementKind::tet4);
+  body.plain = kind.method != BladeMethod::virtual_nodes || (plain && kind.element == ElementKind::tet4);
   set_method(trial.scene, kind.method);
   const bool at_rest = dice.chance(0.25);  // only then a stroke meets nodes exactly
   const auto wanted = 1 + static_cast<std::int64_t>(dice.below(5));

@@ -1,4 +1,4 @@
-// Part strokes: random strokes through running bodies under load, by both methods of a scene's blades; what every edit keeps.
+// Part strokes: random strokes through running bodies under load, by all methods of a scene's blades; what every edit keeps.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -93,17 +93,19 @@ class StrokeBench {
     for (std::int64_t number = std::max<std::int64_t>(run_.options.trial, 0); found_.strokes < wanted; ++number) {
       measure(draw_stroke_trial(number, kind_));
       if (run_.options.trial >= 0) break;
-      run_.show_progress(first_ + 0.25 * static_cast<double>(found_.strokes) / static_cast<double>(wanted), name());
+      run_.show_progress(first_ + share_ * static_cast<double>(found_.strokes) / static_cast<double>(wanted), name());
     }
     return as_row();
   }
-  void begins_at(double share) { first_ = share; }
+  void begins_at(double first, double share) {
+    first_ = first;
+    share_ = share;
+  }
 
  private:
   [[nodiscard]] bool separates() const { return kind_.method == BladeMethod::separation; }
-  [[nodiscard]] std::string name() const {
-    return fmt::format("{}, {}", separates() ? "separation" : "virtual nodes", to_string(kind_.element));
-  }
+  [[nodiscard]] bool removes() const { return kind_.method == BladeMethod::removal; }
+  [[nodiscard]] std::string name() const { return fmt::format("{}, {}", method_name(kind_.method), to_string(kind_.element)); }
 
   void measure(const StrokeTrial& trial) {
     const auto model = std::make_shared<const Model>(build_model(trial.scene));
@@ -133,7 +135,8 @@ class StrokeBench {
   void edit(const StrokeTrial& trial, StrokeRun& run, Simulation& simulation) {
     const EditFigures before = edit_figures(simulation);
     const std::size_t place = run.next();
-    if (!run.move(simulation).changed) return;
+    const CutReport report = run.move(simulation);
+    if (!report.changed) return;
     ++found_.edits;
     const EditFigures now = edit_figures(simulation);
     const auto fault = [&](const std::string& what) { found_.fault(trial.number, place, what); };
@@ -145,14 +148,14 @@ class StrokeBench {
       ++found_.open_edits;
       fault(fmt::format("{} edges of the surface are open, {} before", now.open_edges, before.open_edges));
     }
-    kept("mass", std::abs(now.mass / before.mass - 1), found_.mass);
-    kept("volume", std::abs(now.volume / before.volume - 1), found_.volume);
-    if (before.motion > 0 && is_free(trial)) {
+    kept("mass", std::abs((now.mass + report.mass_lost) / before.mass - 1), found_.mass);
+    if (!removes()) kept("volume", std::abs(now.volume / before.volume - 1), found_.volume);
+    if (before.motion > 0 && is_free(trial) && !removes()) {
       kept("momentum", vec::norm(vec::sub(now.momentum, before.momentum)) / before.motion, found_.momentum, kRounded);
     }
     const bool more = separates() && now.elements != before.elements;
     if (more) fault(fmt::format("{} elements, {} before", now.elements, before.elements));
-    found_.new_elements += separates() ? now.elements - before.elements : 0;
+    found_.new_elements += now.elements - before.elements;
     look_at_elements(trial.number, before, now, fault);
     if (!trial.box) return;
     const PieceFigures pieces = piece_figures(simulation.model(), density(trial), cell_volume(trial));
@@ -168,7 +171,7 @@ class StrokeBench {
   template <class Fault>
   void look_at_elements(std::int64_t trial, const EditFigures& before, const EditFigures& now, const Fault& fault) {
     const auto fresh = std::count_if(now.inverted.begin(), now.inverted.end(),
-                                     [&](const auto& place) { return !before.inverted.contains(place); });
+                                     [&](const auto& place) { return !lies_in(place, before.inverted); });
     found_.inverted += fresh;
     if (fresh > 0) fault(fmt::format("{} elements are inverted that were not", fresh));
     found_.dt_ratio = std::min(found_.dt_ratio, now.bound / before.bound);
@@ -237,8 +240,8 @@ class StrokeBench {
     before.elements = found_.elements_before;
     after.dt = before.dt * found_.dt_ratio;
     after.closed = found_.open_edits == 0;
-    json row = cutting_row("strokes", "blocks and the liver", separates() ? "separation" : "virtual nodes",
-                           to_string(kind_.element), found_.strokes, before, after, {});
+    json row = cutting_row("strokes", "blocks and the liver", method_name(kind_.method), to_string(kind_.element),
+                           found_.strokes, before, after, {});
     row["mass_error"] = found_.mass;
     row["volume_error"] = found_.volume;
     row["trials"] = found_.trials;
@@ -246,7 +249,7 @@ class StrokeBench {
     row["pieces"] = found_.most_pieces;
     row["open_edits"] = found_.open_edits;
     row["inverted"] = found_.inverted;
-    row["elements_new"] = separates() ? json(found_.new_elements) : json();
+    row["elements_new"] = kind_.method == BladeMethod::virtual_nodes ? json() : json(found_.new_elements);
     row["stray_triangles"] = found_.strays;
     row["lost"] = found_.lost;
     row["momentum_error"] = found_.momentum;
@@ -268,7 +271,7 @@ class StrokeBench {
   const CuttingRun& run_;
   StrokeKind kind_;
   StrokeFindings found_;
-  double first_ = 0;
+  double first_ = 0, share_ = 0;
 };
 
 }  // namespace
@@ -276,12 +279,15 @@ class StrokeBench {
 void measure_strokes(const CuttingRun& run) {
   const Scene organ = load_scene(run.options.scenes / "cut_liver.json");
   double first = 0;
-  for (const BladeMethod method : {BladeMethod::virtual_nodes, BladeMethod::separation}) {
+  constexpr double kShare = 1.0 / 7;
+  for (const BladeMethod method :
+       {BladeMethod::virtual_nodes, BladeMethod::separation, BladeMethod::decomposition, BladeMethod::removal}) {
     for (const ElementKind element : {ElementKind::hex8, ElementKind::tet4}) {
+      if (method == BladeMethod::decomposition && element_info(element).corners != 4) continue;
       StrokeBench bench(run, {method, element, organ});
-      bench.begins_at(first);
+      bench.begins_at(first, kShare);
       run.rows.push_back(bench.row());
-      first += 0.25;
+      first += kShare;
     }
   }
 }

@@ -7,6 +7,7 @@
 
 #include "bench/common/dice.h"
 #include "bench/survival/random_grip.h"
+#include "bench/survival/random_method.h"
 #include "bench/survival/random_springs.h"
 #include "bench/survival/random_vessels.h"
 #include "bench/survival/survival.h"
@@ -93,9 +94,7 @@ class RandomScene {
     if (parts && tears && along_faces.chance(0.5)) scene["blades"] = blades();  // one scene with both
     if (cuts && body["model"]["type"] == "hybrid" && late_.chance(0.5)) body["model"]["follow"] = "blade0";
     if (cuts) press(scene["blades"], body);
-    if (parts && scene.contains("blades")) {
-      for (Json& blade : scene["blades"]) blade["method"] = "separation";
-    }
+    if (parts && scene.contains("blades")) give_random_method(number_, body, tears, scene["blades"]);
     const bool has_tools = touch_.chance(0.5), touches = touch_.chance(0.4);
     if (has_tools || touches) {
       for (const char* key : {"substeps", "goals"}) body["model"].erase(key);  // refused

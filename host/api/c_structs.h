@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "pliant/c/blades.h"
+#include "pliant/c/cut.h"
 #include "pliant/c/haptics.h"
 #include "pliant/c/live.h"
 #include "pliant/c/types.h"
@@ -34,7 +35,7 @@ PLIANT_C_STRUCT(pliant_info, reserved);
 PLIANT_C_STRUCT(pliant_body, triangle_count);
 PLIANT_C_STRUCT(pliant_report, message);
 PLIANT_C_STRUCT(pliant_frame, body_triangles);
-PLIANT_C_STRUCT(pliant_cut, in_part);
+PLIANT_C_STRUCT(pliant_cut, mass_lost);
 PLIANT_C_STRUCT(pliant_probe_value, number_count);
 PLIANT_C_STRUCT(pliant_tool_force, reserved);
 PLIANT_C_STRUCT(pliant_blade_force, pressing);

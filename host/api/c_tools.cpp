@@ -10,7 +10,7 @@ namespace {
 using namespace pliant::api;
 
 void give_cut(const pliant::CutResult& r, pliant_cut* out) {
-  give_struct({0, r.pending ? 1 : 0, r.changed ? 1 : 0, r.edges, r.seconds, r.in_part}, out);
+  give_struct({0, r.pending ? 1 : 0, r.changed ? 1 : 0, r.edges, r.seconds, r.in_part, r.elements, r.mass_lost}, out);
 }
 
 }  // namespace

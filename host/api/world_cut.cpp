@@ -18,6 +18,22 @@ void check_finite(const Vec3d& p, const char* what) {
   throw Error(ErrorCode::usage, fmt::format("{}: got the point [{}] m; allowed are finite numbers", what, fmt::join(p, ", ")));
 }
 
+/// What an event says about a cut.
+std::string text_of(const CutReport& done, BladeMethod method) {
+  const char* what = "edges were cut";
+  if (method == BladeMethod::separation) what = "faces were opened";
+  if (method == BladeMethod::removal) what = "elements were removed";
+  std::string text = fmt::format("{} {} in {:.3g} s", done.edges, what, done.seconds());
+  if (method == BladeMethod::removal) text += fmt::format("; {:.4g} kg went with them", done.mass_lost);
+  if (method == BladeMethod::decomposition) {
+    text += fmt::format("; {} more elements", done.elements);
+    if (done.step_after < done.step_before)
+      text += fmt::format("; the step fell from {:.4g} s to {:.4g} s", done.step_before, done.step_after);
+  }
+  if (done.in_part > 0) text += fmt::format("; {} elements were cut in part and hold together", done.in_part);
+  return text;
+}
+
 }  // namespace
 
 /// Makes one cut: along triangles, or by all pending blade moves. Errors of Simulation are the caller's; all others are
@@ -34,9 +50,7 @@ CutReport World::Impl::cut_now(std::span<const api::CutRequest> requests) {
     if (!poses.empty()) done = simulation->move_blades(poses);
     if (!done.changed) return done;
     handles->follow(simulation->shared_model());
-    const char* const what = parts_along_faces(simulation->scene()) ? "faces were opened" : "edges were cut";
-    std::string text = fmt::format("{} {} in {:.3g} s", done.edges, what, done.seconds());
-    if (done.in_part > 0) text += fmt::format("; {} elements were cut in part and hold together", done.in_part);
+    const std::string text = text_of(done, blade_method(simulation->scene()));
     events.add(*simulation, api::event_of("cut", {}, static_cast<double>(done.edges), text, simulation->edited_at()));
     const std::lock_guard lock(mutex);
     cut_since_read = true;
@@ -89,7 +103,7 @@ CutResult World::Impl::cut(api::CutRequest request) {
     cut_pending();
     const CutReport done = cut_now({&request, 1});
     publish_clock();
-    return {false, done.changed, done.edges, done.seconds(), done.in_part};
+    return {false, done.changed, done.edges, done.seconds(), done.in_part, done.elements, done.mass_lost};
   } catch (const api::Refused& refused) {
     throw Error(refused.code(), refused.what());
   } catch (const std::exception& error) {

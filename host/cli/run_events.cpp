@@ -6,7 +6,6 @@
 #include <bit>
 
 #include "cli/run_loop.h"
-#include "cutting/topology/cut_topology.h"
 #include "geometry/vec.h"
 #include "model/pieces.h"
 
@@ -22,13 +21,15 @@ bool over(const Blade& blade, double now, double dt) { return now >= blade.ends(
 RunEvents run_events(const Simulation& simulation) {
   const RunState& state = simulation.state();
   RunEvents events;
-  for (const CutRecord& cut : state.cuts) events.cut_edges += static_cast<std::int64_t>(cut.edges.size());
+  const bool removes = blade_method(simulation.scene()) == BladeMethod::removal;
+  for (const CutRecord& cut : state.cuts)
+    (removes ? events.removed_elements : events.cut_edges) += static_cast<std::int64_t>(cut.edges.size());
   events.cut_edges = std::max<std::int64_t>(0, events.cut_edges - state.opened);
   for (const TearRecord& tear : state.tears) events.broken_faces += std::popcount(static_cast<unsigned>(tear.broken()));
   events.broken_faces /= 2;  // each is a face of two elements
   for (std::size_t b = 0; b < simulation.model().bodies.size(); ++b) {
     events.pieces += pieces_of(simulation.model().bodies[b]);
-    if (const CutTopology* cut = simulation.cut_topology(b)) events.cut_in_part += cut->cut_in_part();
+    events.cut_in_part += simulation.cut_in_part(b);
     for (const Vec3d& u : simulation.displacements(b))
       events.max_displacement = std::max(events.max_displacement, vec::norm(u));
   }

@@ -10,11 +10,12 @@ namespace pliant::cli {
 
 /// Since the scene's start, as the present state has it.
 struct RunEvents {
-  std::int64_t cut_edges = 0;     ///< that blades have cut, without those that parted by themselves (RunState::opened)
-  std::int64_t cut_in_part = 0;   ///< elements with a cut edge whose ends still hold together in the element
-  std::int64_t broken_faces = 0;  ///< of tetrahedra, by tearing
-  std::int64_t pieces = 0;        ///< of all bodies: elements that share a node belong to one piece
-  double max_displacement = 0;    ///< of any node [m]
+  std::int64_t cut_edges = 0;         ///< that blades have cut, without those that parted by themselves (RunState::opened)
+  std::int64_t removed_elements = 0;  ///< by blades that remove what they touch
+  std::int64_t cut_in_part = 0;       ///< elements with a cut edge whose ends still hold together in the element
+  std::int64_t broken_faces = 0;      ///< of tetrahedra, by tearing
+  std::int64_t pieces = 0;            ///< of all bodies: elements that share a node belong to one piece
+  double max_displacement = 0;        ///< of any node [m]
 };
 
 RunEvents run_events(const Simulation& simulation);

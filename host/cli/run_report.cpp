@@ -108,6 +108,8 @@ class Report {
   void add_events(Json& json) const {
     json["max_displacement"] = events_.max_displacement;
     json["cut_edges"] = events_.cut_edges;
+    json["removed_elements"] = events_.removed_elements;
+    json["removed_mass"] = s_.state().remade.mass;
     json["cut_in_part"] = events_.cut_in_part;
     json["broken_faces"] = events_.broken_faces;
     json["pieces"] = events_.pieces;
@@ -231,7 +233,9 @@ class Report {
     std::string text = fmt::format("largest displacement {:.4g} m", events_.max_displacement);
     const bool cuts = !s_.scene().blades.empty() || events_.cut_edges > 0;
     const bool parts = parts_along_faces(s_.scene());
-    if (cuts && !parts) text += fmt::format(", {} edges cut", events_.cut_edges);
+    const bool removes = blade_method(s_.scene()) == BladeMethod::removal;
+    if (cuts && removes) text += fmt::format(", {} elements removed", events_.removed_elements);
+    if (cuts && !parts && !removes) text += fmt::format(", {} edges cut", events_.cut_edges);
     if (broken_joins() > 0) text += fmt::format(", {} springs of joins broken", broken_joins());
     if (parts || events_.broken_faces > 0)
       text += fmt::format(", {} faces {}", events_.broken_faces, parts ? "opened" : "broken by tears");

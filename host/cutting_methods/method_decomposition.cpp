@@ -4,9 +4,9 @@
 #include <numeric>
 
 #include "cutting/topology/cut_cell.h"
-#include "cutting_methods/sweep_probe.h"
 #include "geometry/vec.h"
 #include "tearing/method.h"
+#include "tearing/sweep_probe.h"
 
 namespace pliant {
 namespace {

@@ -1,9 +1,9 @@
 // Removal ("destruction" in Mendoza et al.): what the blade touches goes, and its mass with it.
 #include <algorithm>
 
-#include "cutting_methods/sweep_probe.h"
 #include "geometry/vec.h"
 #include "tearing/method.h"
+#include "tearing/sweep_probe.h"
 
 namespace pliant {
 

@@ -7,10 +7,10 @@
 #include <set>
 
 #include "cutting/topology/cut_cell.h"
-#include "cutting_methods/sweep_probe.h"
 #include "geometry/vec.h"
 #include "pliant/error.h"
 #include "tearing/method.h"
+#include "tearing/sweep_probe.h"
 
 namespace pliant {
 namespace {

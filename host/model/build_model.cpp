@@ -151,7 +151,8 @@ class ElementLists {
       std::array<Vec3d, 8> x;
       for (std::size_t a = 0; a < corners.size(); ++a) x[a] = solid.nodes[corners[a]];
       const std::span<const Vec3d> rest(x.data(), corners.size());
-      if (const auto had = kept.find(e, rest)) {
+      const std::vector<std::int32_t>& before = solid.parts.before;
+      if (const auto had = kept.find(before.empty() ? e : static_cast<std::size_t>(before[e]), rest)) {
         record.assign(had->record.begin(), had->record.end());
         frequency = had->frequency;
       } else {

@@ -25,9 +25,9 @@ struct Focus {
 /// Cutting mode: all tissue that a blade sweeps, or only tissue that fails under the force of its edge (docs/cutting.md).
 enum class BladeCuts { always, by_force };
 
-/// How a blade divides what it cuts: elements become copies with virtual nodes, or they part along their faces and stay what
-/// they are (docs/cutting.md).
-enum class BladeMethod { virtual_nodes, separation };
+/// How a blade divides what it cuts: elements become copies with virtual nodes, they part along their faces and stay what they
+/// are, they are divided into smaller ones, or they go (docs/cutting.md).
+enum class BladeMethod { virtual_nodes, separation, decomposition, removal };
 
 /// A blade on a prescribed path: a segment that cuts the surface it sweeps.
 struct Blade {

@@ -192,7 +192,9 @@ const Words<BladeCuts>& blade_cuts_words() {
 const Words<BladeMethod>& blade_method_words() {
   static const Words<BladeMethod> words{
       {"virtual-nodes", BladeMethod::virtual_nodes, "the elements that it crosses become copies, one for each side"},
-      {"separation", BladeMethod::separation, "elements part along the faces nearest to what it sweeps; none is added"}};
+      {"separation", BladeMethod::separation, "elements part along the faces nearest to what it sweeps; none is added"},
+      {"decomposition", BladeMethod::decomposition, "tetrahedra that it crosses are divided into smaller ones"},
+      {"removal", BladeMethod::removal, "elements that it touches go, and their mass with them"}};
   return words;
 }
 

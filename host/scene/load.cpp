@@ -137,7 +137,7 @@ Scene read_document(const nlohmann::json& document, const fs::path& file) {
   check_viscous(top, scene);
   check_springs(top, scene);
   check_blades(top, scene);
-  for (Body& body : scene.bodies) body.plain = parts_along_faces(scene);
+  for (Body& body : scene.bodies) body.plain = blade_method(scene) != BladeMethod::virtual_nodes;
   check_tools(top, scene);
   check_tearing(top, scene);
   if (top.has("changes")) scene.changes = read_changes(top.at("changes"), scene);

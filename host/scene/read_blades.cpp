@@ -4,20 +4,13 @@
 #include <algorithm>
 
 #include "scene/described_keys.h"
+#include "scene/keys.h"
 #include "scene/parts.h"
 
 namespace pliant {
 namespace {
 
 using Row = std::array<double, 7>;
-
-/// Says of the methods that only the benchmark has why they are no words of a scene.
-void check_method(const Reader& blade) {
-  if (!blade.has("method")) return;
-  const Reader method = blade.at("method");
-  if (method.json() == "removal" || method.json() == "decomposition")
-    method.fail("\"virtual-nodes\" or \"separation\"; a running body is not cut by the others, which `bench cutting` compares");
-}
 
 Blade read_blade(const Reader& blade, std::size_t index) {
   blade.expect_object("blade");
@@ -32,7 +25,6 @@ Blade read_blade(const Reader& blade, std::size_t index) {
     if (std::equal(r.begin() + 1, r.begin() + 4, r.begin() + 4))
       path.items(expected)[i].fail("two different ends (a blade has a length)");
   }
-  check_method(blade);
   describe_blade(ReadKeys{blade}, b);
   if (b.cuts == BladeCuts::always && b.path.size() < 2) path.fail(expected);
   if (!(b.end > b.start)) blade.at("end").fail(fmt::format("a time after the start {}", b.start));
@@ -57,9 +49,17 @@ bool cuts_by_force(const Scene& scene) {
   return std::any_of(scene.blades.begin(), scene.blades.end(), [](const Blade& b) { return b.cuts == BladeCuts::by_force; });
 }
 
-bool parts_along_faces(const Scene& scene) {
-  return std::any_of(scene.blades.begin(), scene.blades.end(),
-                     [](const Blade& b) { return b.method == BladeMethod::separation; });
+BladeMethod blade_method(const Scene& scene) {
+  const auto other = std::find_if(scene.blades.begin(), scene.blades.end(),
+                                  [](const Blade& b) { return b.method != BladeMethod::virtual_nodes; });
+  return other == scene.blades.end() ? BladeMethod::virtual_nodes : other->method;
+}
+
+bool parts_along_faces(const Scene& scene) { return blade_method(scene) == BladeMethod::separation; }
+
+bool remakes_elements(const Scene& scene) {
+  const BladeMethod method = blade_method(scene);
+  return method == BladeMethod::decomposition || method == BladeMethod::removal;
 }
 
 std::vector<Blade> read_blades(const Reader& blades) {
@@ -74,18 +74,41 @@ std::vector<Blade> read_blades(const Reader& blades) {
 
 namespace {
 
-/// What a scene whose blades separate must have: the same method everywhere, and bodies of elements alone.
-void check_separation(const Reader& top, const Scene& scene) {
-  const std::vector<Reader> blades = top.at("blades").items("a list of blades");
+/// What a scene must have whose blades have another method than virtual nodes: the same method everywhere, and bodies of
+/// elements that it knows.
+void check_method(const Reader& top, const Scene& scene) {
+  const BladeMethod method = blade_method(scene);
+  const std::string& word = word_of(blade_method_words(), method);
+  const std::vector<Reader> blades = top.at("blades").items("a list of blades"), bodies = top.at("bodies").items("a list");
   for (std::size_t i = 0; i < blades.size(); ++i) {
-    if (scene.blades[i].method == BladeMethod::separation) continue;
-    const char* const expected = "\"separation\", the method of another blade: all blades of a scene have the same";
-    blades[i].at("method", expected).fail(expected);
+    const Blade& blade = scene.blades[i];
+    if (blade.method != method) {
+      const std::string expected =
+          fmt::format("\"{}\", the method of another blade: all blades of a scene have the same", word);
+      blades[i].at("method", expected).fail(expected);
+    }
+    if (method == BladeMethod::removal && blade.cuts == BladeCuts::by_force)
+      blades[i].at("cuts").fail("\"always\", because the blade removes what it touches: no tissue is left to press it back");
   }
-  for (const Body& b : scene.bodies) {
-    if (!b.model.matches()) continue;
-    blades[0].at("method").fail(fmt::format(
-        "\"virtual-nodes\", because shape matching moves nodes of body '{}': only elements part along faces", b.name));
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Body& b = scene.bodies[i];
+    if (b.model.matches()) {
+      blades[0].at("method").fail(fmt::format(
+          "\"virtual-nodes\", because shape matching moves nodes of body '{}': \"{}\" knows elements only", b.name, word));
+    }
+    if (method != BladeMethod::decomposition) continue;
+    const std::string tets = elements_with([](const ElementInfo& e) { return e.corners == 4; });
+    if (element_info(b.element).corners != 4) {
+      const std::string expected = fmt::format(
+          "{}, because blades with the method \"decomposition\" divide tetrahedra; hexahedra are cut by \"separation\", "
+          "\"removal\" and, in a lattice, \"virtual-nodes\"",
+          tets);
+      bodies[i].at("element", expected).fail(expected);
+    }
+    if (b.model.type == ModelType::mass_spring)
+      bodies[i].at("model").at("type").fail(
+          "\"tled\", because blades divide its elements (\"decomposition\"): a network whose "
+          "tetrahedra are divided is another network");
   }
 }
 
@@ -93,7 +116,7 @@ void check_separation(const Reader& top, const Scene& scene) {
 
 void check_blades(const Reader& top, const Scene& scene) {
   if (scene.blades.empty()) return;
-  if (parts_along_faces(scene)) check_separation(top, scene);
+  if (blade_method(scene) != BladeMethod::virtual_nodes) check_method(top, scene);
   require_integrator(top, scene, &IntegratorInfo::edits, "the scene has blades");
   if (scene.relaxation.enabled) top.at("relaxation").fail("false, because the scene has blades");
   const std::vector<Reader> bodies = top.at("bodies").items("a list of bodies");
@@ -108,7 +131,7 @@ void check_blades(const Reader& top, const Scene& scene) {
     if (cuts_by_force(scene) && b.model.substeps > 1)
       bodies[i].at("model").at("substeps").fail("1, because the scene has a blade that cuts by force, in every step");
     const ElementInfo& info = element_info(b.element);
-    if (b.has_lattice() || info.splits || parts_along_faces(scene)) continue;
+    if (b.has_lattice() || info.splits || blade_method(scene) != BladeMethod::virtual_nodes) continue;
     bodies[i].at("element").fail(fmt::format("{}, because the scene has blades (a mesh of {} cannot be cut)",
                                              elements_with([](const ElementInfo& e) { return e.splits; }), info.cells));
   }

@@ -103,7 +103,8 @@ struct Body {
   Vec3d translate{};           ///< [m], after scaling
   LatticeSpec lattice;         ///< used with `surface`
   double thickness = 0;        ///< > 0: the `surface` is a sheet of this thickness, without a lattice [m]
-  bool plain = false;          ///< a lattice becomes a volume mesh of its cells, whose surface is theirs: where blades separate
+  bool plain = false;  ///< a lattice becomes a volume mesh of its cells, whose surface is theirs: where blades have another
+                       ///< method than virtual nodes
   ElementKind element = usual_element(8);  ///< of lattices
   DeformationModel model;
   Material material;
@@ -177,8 +178,12 @@ struct Scene {
 Scene load_scene(const std::filesystem::path& file);
 /// Returns true if a blade of the scene cuts by force: its materials' toughness then belongs to blades, and nothing tears.
 bool cuts_by_force(const Scene& scene);
-/// Returns true if the scene's blades part bodies along the faces of their elements, as do then all cuts of a program.
+/// Returns the method of the scene's blades, which all cuts of a program have, too.
+BladeMethod blade_method(const Scene& scene);
+/// Returns true if the scene's blades part bodies along the faces of their elements.
 bool parts_along_faces(const Scene& scene);
+/// Returns true if they divide or remove elements of plain meshes: decomposition or removal.
+bool remakes_elements(const Scene& scene);
 /// The same from text; `file` is used in messages and to resolve relative paths.
 Scene parse_scene(const std::string& text, const std::filesystem::path& file);
 /// The text of a scene file: parse_scene(scene_to_json(s), s.file) gives the same scene, moduli to the last bit.

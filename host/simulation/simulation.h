@@ -120,6 +120,13 @@ class Simulation {
   [[nodiscard]] std::optional<Vec3d> edited_at() const { return edits_.edited_at(); }
   /// Returns the cut topology of a body; nullptr if nothing was prepared for cutting.
   [[nodiscard]] const CutTopology* cut_topology(std::size_t body) const { return edits_.cut_topology(body); }
+  /// Elements of a body that are cut in part and still hold together.
+  [[nodiscard]] std::int64_t cut_in_part(std::size_t body) const { return edits_.cut_in_part(body); }
+  /// Of a body whose elements blades divide or remove: the element that one of the whole body has become at a place at rest
+  /// [m], -1: it is gone. Empty for others.
+  [[nodiscard]] std::optional<std::int32_t> element_at(std::size_t body, std::int32_t element, const Vec3d& rest) const {
+    return edits_.element_at(body, element, rest);
+  }
 
   /// Replaces the forces of the host on nodes; see HostLoads::set.
   void set_forces(std::vector<HostForce> forces) { loads_.set(std::move(forces)); }

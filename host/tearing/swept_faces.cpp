@@ -5,6 +5,7 @@
 #include <set>
 
 #include "geometry/vec.h"
+#include "tearing/uncut_mesh.h"
 
 namespace pliant {
 namespace {
@@ -15,27 +16,6 @@ constexpr std::array<std::array<int, 2>, 6> kSpokes{{{0, 1}, {0, 2}, {0, 3}, {0,
 const CellShape& spokes_shape(std::size_t faces) {
   static const CellShape of_tet{5, {}, std::span(kSpokes).first(4), {}, {}}, of_hex{7, {}, kSpokes, {}, {}};
   return faces == 4 ? of_tet : of_hex;
-}
-
-/// A shape without its faces: nobody asks for the cells across a face where none is divided, and to find them takes longest.
-const CellShape& faceless(bool tets) {
-  const auto without = [](CellShape shape) {
-    shape.faces = {};
-    return shape;
-  };
-  static const CellShape of_tets = without(tetrahedron_shape()), of_hexes = without(lattice_cell_shape());
-  return tets ? of_tets : of_hexes;
-}
-
-/// The elements as a mesh in which nothing is cut.
-std::shared_ptr<const CutMesh> uncut_mesh(const BodyElements& solid) {
-  auto mesh = std::make_shared<CutMesh>();
-  mesh->shape = &faceless(!solid.tets.empty());
-  mesh->rest = solid.nodes;
-  mesh->cells = solid.hexes;
-  for (const auto& tet : solid.tets) mesh->cells.push_back({tet[0], tet[1], tet[2], tet[3], 0, 0, 0, 0});
-  mesh->fill = solid.fill;
-  return mesh;
 }
 
 std::vector<Vec3d> middles_of(const BodyElements& solid, std::span<const Vec3d> x) {
@@ -64,16 +44,7 @@ SweptFaces::SweptFaces(const TornBody& body) : body_(body) {
     mesh->fill.push_back(1);
   }
   follow();
-  const CutMesh& elements = topology_->mesh();
-  constexpr std::size_t kSample = 1000;
-  double count = 0;
-  for (std::size_t c = 0; c < std::min(elements.cells.size(), kSample); ++c) {
-    for (const auto& [a, b] : elements.shape->edges) {
-      edge_ += vec::norm(vec::sub(elements.rest[elements.cells[c][a]], elements.rest[elements.cells[c][b]]));
-      ++count;
-    }
-  }
-  edge_ /= std::max(count, 1.0);
+  edge_ = mean_edge(topology_->mesh());
   middles_ = std::make_unique<CutTopology>(std::move(mesh));
   lines_ = std::make_unique<RestEdges>(middles_->mesh(), edge_);
 }

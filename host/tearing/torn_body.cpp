@@ -10,6 +10,7 @@
 #include "cutting/topology/mesh_edges.h"
 #include "elements/elements.h"
 #include "geometry/vec.h"
+#include "tearing/plain_surface.h"
 
 namespace pliant {
 namespace {
@@ -23,11 +24,6 @@ Vector3d column(const Vec3d& v) { return {v[0], v[1], v[2]}; }
 
 std::array<Vec3d, 4> corners(const std::vector<Vec3d>& x, const std::array<std::int32_t, 4>& tet) {
   return {x[tet[0]], x[tet[1]], x[tet[2]], x[tet[3]]};
-}
-
-std::array<std::int32_t, 3> sorted(std::array<std::int32_t, 3> key) {
-  std::sort(key.begin(), key.end());
-  return key;
 }
 
 }  // namespace
@@ -49,13 +45,13 @@ TornBody::TornBody(std::shared_ptr<const BodyMesh> whole, std::vector<Material> 
     for (std::size_t without = 0; without < (face.size() == 3 ? 1 : face.size()); ++without) {
       std::array<std::int32_t, 3> key{};
       for (std::size_t k = 0; k < 3; ++k) key[k] = corner[static_cast<std::size_t>(face[(without + k) % face.size()])];
-      outside[sorted(key)] = static_cast<std::int32_t>(e);
+      outside[face_key(key)] = static_cast<std::int32_t>(e);
     }
   }
   for (const auto& triangle : whole_->triangles) {
     std::array<std::int32_t, 3> node{};
     for (std::size_t k = 0; k < 3; ++k) node[k] = whole_->surface_nodes[triangle[k]][0];
-    Corners at{outside.at(sorted(node)), {}};
+    Corners at{outside.at(face_key(node)), {}};
     const std::span<const std::int32_t> corner = whole_->corners(static_cast<std::size_t>(at.element));
     for (std::size_t k = 0; k < 3; ++k)
       at.corner[k] = static_cast<std::int8_t>(std::find(corner.begin(), corner.end(), node[k]) - corner.begin());
@@ -314,41 +310,21 @@ std::vector<TornBody::Corners> TornBody::triangles_of(const TetFace& face) const
 }
 
 void TornBody::make_surface() {
-  torn_.surface = whole_->surface;
-  torn_.surface_nodes = whole_->surface_nodes;
-  torn_.surface_weights = whole_->surface_weights;
-  torn_.triangles.clear();
-  torn_.triangle_cut.clear();
-  torn_.triangle_middle.clear();
-  std::vector<std::int32_t> vertex(torn_.nodes.size(), -1);  // of a node
-  for (std::size_t v = 0; v < whole_->surface.size(); ++v) vertex[whole_->surface_nodes[v][0]] = static_cast<std::int32_t>(v);
-  const auto add = [&](const Corners& at, bool cut) {
-    std::array<std::int32_t, 3> triangle{};
-    Vec3d middle{};
+  std::vector<OuterFace> outer;
+  const auto add = [&](const Corners& at, std::int32_t source) {
     const std::span<const std::int32_t> nodes = torn_.corners(static_cast<std::size_t>(at.element));
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::int32_t n = nodes[static_cast<std::size_t>(at.corner[k])];
-      if (vertex[n] < 0) {
-        vertex[n] = static_cast<std::int32_t>(torn_.surface.size());
-        torn_.surface.push_back(torn_.nodes[n]);
-        torn_.surface_nodes.push_back({n, n, n, n, n, n, n, n});
-        torn_.surface_weights.push_back({1, 0, 0, 0, 0, 0, 0, 0});
-      }
-      triangle[k] = vertex[n];
-      middle = vec::add(middle, vec::mul(torn_.nodes[n], 1.0 / 3));
-    }
-    const double none = std::numeric_limits<double>::quiet_NaN();
-    torn_.triangles.push_back(triangle);
-    torn_.triangle_cut.push_back(cut ? 1 : 0);
-    torn_.triangle_middle.push_back(cut ? Vec3d{none, none, none} : middle);
+    OuterFace face{{}, source};
+    for (std::size_t k = 0; k < 3; ++k) face.nodes[k] = nodes[static_cast<std::size_t>(at.corner[k])];
+    outer.push_back(face);
   };
-  for (const Corners& at : outside_) add(at, false);
+  for (std::size_t t = 0; t < outside_.size(); ++t) add(outside_[t], static_cast<std::int32_t>(t));
   for (std::size_t e = 0; e < broken_.size(); ++e) {
     for (std::size_t f = 0; f < faces(); ++f) {
       if ((broken_[e] >> f & 1) == 0) continue;
-      for (const Corners& at : triangles_of({static_cast<std::int32_t>(e), static_cast<std::int8_t>(f)})) add(at, true);
+      for (const Corners& at : triangles_of({static_cast<std::int32_t>(e), static_cast<std::int8_t>(f)})) add(at, -1);
     }
   }
+  surface_of_faces(*whole_, outer, torn_);
 }
 
 }  // namespace pliant

@@ -110,7 +110,7 @@ struct BladeSpec {
   std::optional<double> start;              ///< start of cutting [s]; absent: start of the path
   std::optional<double> end;                ///< end of cutting [s]; absent: end of the path
   std::string cuts = "always";              ///< always: all that it sweeps; by-force: what gives way to its edge
-  std::string method = "virtual-nodes";     ///< or separation, along faces; of all blades and cuts of a scene
+  std::string method = "virtual-nodes";     ///< or separation, decomposition, removal; of all blades and cuts of a scene
   std::optional<double> sharpness;          ///< by-force: kappa, the smaller the sharper; absent: 1
   std::optional<double> edge;               ///< by-force: radius of the edge [m], required
   std::optional<double> friction;           ///< by-force: between the edge and tissue; absent: 0

@@ -83,17 +83,19 @@ struct GrabState {
 using GrabId = std::uint64_t;  ///< identifies a grab within one World; 0: none
 
 /// Result of a cut. Cuts need no WorldOptions::interactive. Hexahedral volume meshes (unless the blades of
-/// the scene have the method "separation") and scenes with relaxation or the textbook integrator cannot be cut: Error (input),
-/// and nothing changes. After step_async() or advance_async(), the worker cuts before
-/// its next batch, moves of blades together, until wait() or another waiting call returns; if it rejects a cut, the next call
-/// that reports the worker's errors throws. With substeps of shape matching, a cut waits for the next batch that begins with a
-/// shape-matching step.
+/// the scene have the method "separation" or "removal") and scenes with relaxation or the textbook integrator cannot be cut:
+/// Error (input), and nothing changes. After step_async() or advance_async(), the worker cuts before its next batch, moves of
+/// blades together, until wait() or another waiting call returns; if it rejects a cut, the next call that reports the worker's
+/// errors throws. With substeps of shape matching, a cut waits for the next batch that begins with a shape-matching step.
 struct CutResult {
-  bool pending = false;      ///< true if the worker will cut before its next batch of steps; the other members are then not set
-  bool changed = false;      ///< true if elements were split; the next frame differs only if the surface changed
-  std::int64_t edges = 0;    ///< number of edges between nodes cut by this call, or of faces that it passed (separation)
-  double seconds = 0;        ///< duration [s]
-  std::int64_t in_part = 0;  ///< elements that still hold together where edges of theirs were cut: the blade ended in them
+  bool pending = false;  ///< true if the worker will cut before its next batch of steps; the other members are then not set
+  bool changed = false;  ///< true if elements were split, parted or removed; the next frame differs only if the surface changed
+  std::int64_t edges = 0;     ///< number of edges between nodes cut by this call, of faces that it passed (separation), or of
+                              ///< elements that it removed (removal)
+  double seconds = 0;         ///< duration [s]
+  std::int64_t in_part = 0;   ///< elements that still hold together where edges of theirs were cut: the blade ended in them
+  std::int64_t elements = 0;  ///< by how many there are more (decomposition); negative: fewer (removal)
+  double mass_lost = 0;       ///< with the elements that were removed [kg]
 };
 
 /// Version of the library, for example "0.1.0".

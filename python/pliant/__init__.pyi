@@ -88,6 +88,8 @@ class _CutResult(TypedDict):
     edges: int
     seconds: float
     in_part: int
+    elements: int
+    mass_lost: float
 
 class _GrabState(TypedDict):
     force: _Floats

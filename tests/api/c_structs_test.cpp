@@ -53,7 +53,7 @@ TEST(CStructSizes, AreThoseOfTheFirstVersion) {
   EXPECT_EQ(api::CStruct<pliant_body>::first_size, 72U);
   EXPECT_EQ(api::CStruct<pliant_report>::first_size, 56U);
   EXPECT_EQ(api::CStruct<pliant_frame>::first_size, 136U);
-  EXPECT_EQ(api::CStruct<pliant_cut>::first_size, 40U);
+  EXPECT_EQ(api::CStruct<pliant_cut>::first_size, 56U);
   EXPECT_EQ(api::CStruct<pliant_probe_value>::first_size, 40U);
   EXPECT_EQ(api::CStruct<pliant_tool_force>::first_size, 144U);
   EXPECT_EQ(api::CStruct<pliant_blade_force>::first_size, 152U);

@@ -45,14 +45,50 @@ TEST(BladeMethod, GoesWithEveryOtherKeyOfABladeAndWithTearing) {
   EXPECT_EQ(message(scene), "");
 }
 
+TEST(BladeMethod, DivisionAndRemovalSayWhatTheyNeed) {
+  for (const char* method : {"decomposition", "removal"}) {
+    nlohmann::json scene = separating();
+    for (auto& blade : scene["blades"]) blade["method"] = method;
+    EXPECT_EQ(message(scene), "");
+    const Scene read = parse_scene(scene.dump(), "dir/s.json");
+    EXPECT_TRUE(remakes_elements(read));
+    EXPECT_TRUE(read.bodies[0].plain);
+    EXPECT_EQ(parse_scene(scene_to_json(read), "dir/s.json").blades[0].method, blade_method(read));
+    const bool removes = method == std::string("removal");
+    scene["bodies"][0]["element"] = "hex8";
+    if (removes) {
+      EXPECT_EQ(message(scene), "");
+    } else {
+      expect_message(scene, "/bodies/0/element: got \"hex8\"", "tet4 or tet4anp, because blades with the method");
+    }
+    scene["bodies"][0].erase("element");
+    scene["bodies"][0]["material"]["toughness"] = 500;
+    expect_message(scene, "/blades", "because a material has a toughness");
+    scene["blades"][1]["cuts"] = "by-force";
+    scene["blades"][1]["edge"] = 0.001;
+    if (removes) {
+      expect_message(scene, "/blades/1/cuts", "because the blade removes what it touches");
+    } else {
+      EXPECT_EQ(message(scene), "");
+    }
+  }
+}
+
+TEST(BladeMethod, ANetworkOfSpringsIsNotDivided) {
+  nlohmann::json scene = separating();
+  scene["bodies"][0]["model"] = {{"type", "mass-spring"}};
+  for (auto& blade : scene["blades"]) blade["method"] = "removal";
+  EXPECT_EQ(message(scene), "");
+  for (auto& blade : scene["blades"]) blade["method"] = "decomposition";
+  expect_message(scene, "/bodies/0/model/type", "is another network");
+}
+
 TEST(BladeMethod, SaysWhatIsWrong) {
   nlohmann::json scene = separating();
   scene["blades"][1]["method"] = "removal";
-  expect_message(scene, "/blades/1/method: got \"removal\"", "`bench cutting` compares");
-  scene["blades"][1]["method"] = "decomposition";
-  expect_message(scene, "/blades/1/method: got \"decomposition\"", "\"virtual-nodes\" or \"separation\"");
+  expect_message(scene, "/blades/1/method: got \"removal\"", "all blades of a scene have the same");
   scene["blades"][1]["method"] = "magic";
-  expect_message(scene, "/blades/1/method: got \"magic\"", "one of virtual-nodes, separation");
+  expect_message(scene, "/blades/1/method: got \"magic\"", "one of virtual-nodes, separation, decomposition, removal");
   scene["blades"][1]["method"] = "virtual-nodes";
   expect_message(scene, "/blades/1/method", "all blades of a scene have the same");
   scene["blades"][1].erase("method");

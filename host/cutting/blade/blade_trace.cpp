@@ -115,7 +115,21 @@ std::array<std::int64_t, 2> BladeSweep::range(const BladeTrace& front, const Bla
 BladeSweep::Vertex BladeSweep::vertex(const Vec3d& p, InverseMap& map) const {
   Vertex v{{}, p};
   if (reach_.distance2(p) == 0) v.carried = map.find(p);
+  if (pairs_.faces_end && v.carried.cell >= 0 && in_gap(v)) end_at_face(v);
   return v;
+}
+
+/// Moves the material of a vertex that lies outside its tetrahedron to the border of that.
+void BladeSweep::end_at_face(Vertex& v) const {
+  MaterialPoint& m = v.carried;
+  double sum = 0;
+  for (double& w : m.weight) sum += w = std::max(w, 0.0);
+  m.rest = {};
+  for (std::size_t a = 0; a < 4; ++a) {
+    m.weight[a] /= sum;
+    const int corner = body_.mesh().shape->tets[m.tet][a];
+    m.rest = vec::add(m.rest, vec::mul(body_.mesh().rest[body_.mesh().cells[m.cell][corner]], m.weight[a]));
+  }
 }
 
 BladeSweep::Row BladeSweep::mapped(int levels, std::int64_t first, const std::vector<Vec3d>& points, InverseMap& map) const {

@@ -38,6 +38,9 @@ struct SweptPairs {
   /// Of each node how far others are that were the same node before faces opened, 0 where none was [m]; empty: nowhere. A sweep
   /// in such a gap crosses nothing.
   std::span<const double> gap = {};
+  /// Where elements are divided along the cut, a point in its gap belongs to the nearest face of it, as with virtual nodes: not
+  /// to material beyond that face, which the body does not have there.
+  bool faces_end = false;
 };
 
 class BladeSweep {
@@ -82,6 +85,7 @@ class BladeSweep {
   void triangle(const Vertex* a, const Vertex* b, const Vertex* c);
   [[nodiscard]] std::array<std::int64_t, 2> range(const BladeTrace& front, const BladeSegment& to, int levels) const;
   [[nodiscard]] Vertex vertex(const Vec3d& p, InverseMap& map) const;
+  void end_at_face(Vertex& v) const;
   [[nodiscard]] Row mapped(int levels, std::int64_t first, const std::vector<Vec3d>& points, InverseMap& map) const;
   void keep(BladeTrace& front, const Row& last) const;
   [[nodiscard]] std::int32_t nearest_node(const Vec3d& p) const;

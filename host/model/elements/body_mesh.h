@@ -18,6 +18,15 @@ struct NodeOrder {
   std::vector<std::int32_t> order, valence;
 };
 
+struct BodyElements;
+
+/// The elements of a body that an edit has divided or removed, by those of the whole body.
+struct ElementParts {
+  std::shared_ptr<const BodyElements> whole = nullptr;  ///< nullptr: the elements are those of the whole body, or its copies
+  std::vector<std::int32_t> of = {};                    ///< [elements] the element of `whole` that it is, or is part of
+  std::vector<std::int32_t> before = {};                ///< [elements] the same of the body before the last edit
+};
+
 /// A body without its surface.
 struct BodyElements {
   std::vector<Vec3d> nodes;                        ///< undeformed positions [m]
@@ -30,6 +39,7 @@ struct BodyElements {
   Partition partition;                             ///< of the lattice's cells, unless body.model is tled
   std::vector<std::uint64_t> samples;              ///< per cell of a lattice: Cell::samples
   std::vector<std::int32_t> copy_of;  ///< for a cut body: the uncut cell of each element (of each six tetrahedra of a lattice)
+  ElementParts parts;
   VirtualNodes virtual_nodes;
   std::size_t whole_nodes = 0;       ///< of a cut or torn body: its nodes before, which keep their numbers; 0: it is whole
   std::vector<Cell> matching_cells;  ///< the shape-matching cells

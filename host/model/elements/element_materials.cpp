@@ -46,7 +46,9 @@ Material material_of(const Body& body, const ElementMaterials& materials, std::s
   return materials.modulus.empty() ? material : material.scaled(materials.modulus[e]);
 }
 
-ElementMaterials element_materials(const Body& body, const BodyElements& solid) {
+namespace {
+
+ElementMaterials whole_materials(const Body& body, const BodyElements& solid) {
   ElementMaterials out;
   out.index.assign(solid.size(), 0);
   std::vector<char> hit(body.inclusions.size(), false);
@@ -75,6 +77,19 @@ ElementMaterials element_materials(const Body& body, const BodyElements& solid) 
     out.modulus[e] =
         share_of(*field, uncut(solid, e),
                  index == 0 ? body.pointer + "/material" : fmt::format("{}/inclusions/{}/material", body.pointer, index - 1));
+  }
+  return out;
+}
+
+}  // namespace
+
+ElementMaterials element_materials(const Body& body, const BodyElements& solid) {
+  if (solid.parts.whole == nullptr) return whole_materials(body, solid);
+  const ElementMaterials whole = whole_materials(body, *solid.parts.whole);
+  ElementMaterials out;
+  for (const std::int32_t e : solid.parts.of) {
+    out.index.push_back(whole.index[static_cast<std::size_t>(e)]);
+    if (!whole.modulus.empty()) out.modulus.push_back(whole.modulus[static_cast<std::size_t>(e)]);
   }
   return out;
 }

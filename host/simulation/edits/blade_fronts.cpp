@@ -371,7 +371,7 @@ Material BladeFronts::material(std::size_t body, std::int32_t cell, EditedBodies
           ? known->second
           : materials_.emplace(body, element_materials(run_.scene.bodies[body], bodies.uncut(body))).first->second;
   if (all.index.empty()) return material_of(run_.scene.bodies[body], 0);
-  return material_of(run_.scene.bodies[body], all, static_cast<std::size_t>(cell));
+  return material_of(run_.scene.bodies[body], all, static_cast<std::size_t>(bodies.whole_element(body, cell)));
 }
 
 /// F* = K_I kappa zeta dA on the footprint dA = 2 r l; 0 where the element below breaks by itself (Mendoza et al.).

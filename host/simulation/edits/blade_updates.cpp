@@ -34,6 +34,18 @@ bool in_material(const BladeTrace& trace) {
   return std::any_of(trace.points.begin(), trace.points.end(), [](const TracePoint& p) { return p.carried.cell >= 0; });
 }
 
+/// What a blade sweeps where it is, whatever the tissue does meanwhile.
+std::vector<SweepTriangle> triangles_of(const BladeMove& move) {
+  std::vector<SweepTriangle> all;
+  BladeSegment at = move.from;
+  for (const BladeSegment& place : move.to) {
+    const std::vector<SweepTriangle> swept = sweep(at, place);
+    all.insert(all.end(), swept.begin(), swept.end());
+    at = place;
+  }
+  return all;
+}
+
 vec::Box box_of(const std::vector<Vec3d>& x) {
   vec::Box box;
   for (const Vec3d& p : x) box.extend(p);
@@ -84,8 +96,9 @@ const BladeTrace* TopologyEdits::front(const BladeMove& move, std::size_t body) 
   return found == blade->second.end() ? nullptr : &found->second;
 }
 
-/// Cuts edges, or opens the faces between pairs of elements.
+/// Cuts edges, opens the faces between pairs of elements, or removes elements.
 void TopologyEdits::divide(std::vector<CutEdges> crossed, std::vector<double> u, CutReport& report) {
+  if (remakes_elements(run_.scene)) return remake(std::move(crossed), std::move(u), report);
   if (!parts_along_faces(run_.scene)) return make_cut(std::move(crossed), std::move(u), report);
   std::vector<std::vector<TetFace>> faces;
   for (std::size_t b = 0; b < crossed.size(); ++b) faces.push_back(bodies().swept(b)->faces(crossed[b]));
@@ -105,23 +118,38 @@ CutReport TopologyEdits::run_blades(const std::vector<BladeMove>& moves, std::sp
     const std::vector<Vec3d> x = run_.loaded.positions(u, b);
     if (!reached(b, x, moves, triangles)) continue;
     edges[b] = all.crossed(b, x, triangles);
-    BladeSweep sweep = all.sweep(b, x);
-    for (const BladeMove& move : moves) {
-      if (move.to.empty()) continue;
-      const BladeTrace* known = front(move, b);
-      BladeTrace trace = known != nullptr ? *known : BladeTrace{move.from, 0, {}};
-      const std::size_t before = sweep.crossed().size();
-      for (const BladeSegment& place : move.to) sweep.move(trace, place);
-      const bool meets = sweep.crossed().size() > before || in_material(trace);
-      if (meets && std::find(met.begin(), met.end(), move.key) == met.end()) met.push_back(move.key);
-      if (!trace.points.empty()) traces[move.key][static_cast<std::int32_t>(b)] = std::move(trace);
+    const auto meet = [&](const BladeMove& move) {
+      if (std::find(met.begin(), met.end(), move.key) == met.end()) met.push_back(move.key);
+    };
+    if (all.follows_at_rest(b)) {
+      BladeSweep sweep = all.sweep(b, x);
+      for (const BladeMove& move : moves) {
+        if (move.to.empty()) continue;
+        const BladeTrace* known = front(move, b);
+        BladeTrace trace = known != nullptr ? *known : BladeTrace{move.from, 0, {}};
+        const std::size_t before = sweep.crossed().size();
+        for (const BladeSegment& place : move.to) sweep.move(trace, place);
+        if (sweep.crossed().size() > before || in_material(trace)) meet(move);
+        if (!trace.points.empty()) traces[move.key][static_cast<std::int32_t>(b)] = std::move(trace);
+      }
+      edges[b].insert(sweep.crossed().begin(), sweep.crossed().end());
+    } else {
+      for (const BladeMove& move : moves) {
+        const CutEdges met_now = all.crossed(b, x, triangles_of(move));
+        if (!met_now.empty()) meet(move);
+        edges[b].insert(met_now.begin(), met_now.end());
+      }
     }
-    edges[b].insert(sweep.crossed().begin(), sweep.crossed().end());
     all.keep_allowed(b, edges[b]);
     report.edges += static_cast<std::int64_t>(edges[b].size());
   }
   report.search = clock.seconds();
   if (report.edges > 0) divide(std::move(edges), std::move(u), report);
+  for (auto& [key, by_body] : traces) {
+    for (auto& [b, trace] : by_body) {
+      if (report.changed) all.follow(static_cast<std::size_t>(b), trace);
+    }
+  }
   for (const BladeMove& move : moves) {
     // A blade that does not move, as when a batch is repeated, keeps its trace.
     if (!move.to.empty()) run_.state.blades.traces.erase(move.key);

@@ -52,12 +52,8 @@ void TopologyEdits::make_cut(std::vector<CutEdges> edges, std::vector<double> u,
     if (!edges[b].empty()) run_.state.cuts.push_back({static_cast<std::int32_t>(b), std::move(edges[b])});
   }
   if (!report.changed) return;
-  ++run_.state.topology_version;
   if (all.size() == 1) all.surface_copy.make(run_.loaded.shared_model(), all.helper);
-  clock.lap();
-  step_.limit_after_edit(changed);
-  report.step += clock.lap();
-  changed_nodes_ = std::move(changed);
+  end_edit(std::move(changed), report);
 }
 
 }  // namespace pliant

@@ -17,9 +17,12 @@ struct BladePose {
 /// Result of a topology edit, and the time it took [s]. `surface` is the time that the model waited for its surface, `step`
 /// the time to determine the new automatic step.
 struct CutReport {
-  std::int64_t edges = 0;    ///< number of edges cut, or of faces passed by a blade that separates
-  std::int64_t in_part = 0;  ///< cells with one of these edges that still hold together there (CutTopology::cut_in_part)
-  bool changed = false;      ///< true if elements were split
+  std::int64_t edges = 0;     ///< number of edges cut, of faces passed by a blade that separates, or of elements removed
+  std::int64_t in_part = 0;   ///< cells with one of these edges that still hold together there (CutTopology::cut_in_part)
+  bool changed = false;       ///< true if elements were split, parted or removed
+  std::int64_t elements = 0;  ///< by how many there are more, negative: fewer (decomposition, removal)
+  double mass_lost = 0;       ///< with the elements that were removed [kg]
+  double step_before = 0, step_after = 0;  ///< the step of the run before the edit and after it [s]; 0: no edit
   double search = 0, topology = 0, surface = 0, model = 0, upload = 0, step = 0;
   [[nodiscard]] double seconds() const { return search + topology + surface + model + upload + step; }
 };

@@ -9,6 +9,7 @@
 #include "geometry/vec.h"
 #include "model/matching/partition.h"
 #include "pliant/error.h"
+#include "scene/keys.h"
 
 namespace pliant {
 
@@ -134,8 +135,12 @@ bool EditedBodies::tears(const Scene& scene) {
 }
 
 EditedBodies::EditedBodies(const Scene& scene)
-    : scene_(scene), cuts_(scene.bodies.size()), torn_(scene.bodies.size()), swept_(scene.bodies.size()) {
-  const bool parted = parts_along_faces(scene), torn = parted || tears(scene);
+    : scene_(scene),
+      cuts_(scene.bodies.size()),
+      torn_(scene.bodies.size()),
+      swept_(scene.bodies.size()),
+      remade_(scene.bodies.size()) {
+  const bool parted = parts_along_faces(scene), remade = remakes_elements(scene), torn = parted || remade || tears(scene);
   for (BodyMesh& solid : make_body_meshes(scene)) {
     const std::size_t b = uncut_.size();
     if (!torn) {
@@ -143,7 +148,10 @@ EditedBodies::EditedBodies(const Scene& scene)
       solid.uncut_order = std::make_shared<const NodeOrder>(node_order(solid));
     }
     uncut_.push_back(std::make_shared<const BodyMesh>(std::move(solid)));
-    if (parted || (torn && pliant::tears(scene.bodies[b]))) make_torn(b);
+    if (remade)
+      make_remade(b);
+    else if (parted || (torn && pliant::tears(scene.bodies[b])))
+      make_torn(b);
   }
 }
 
@@ -160,6 +168,27 @@ void EditedBodies::make_torn(std::size_t b) {
   if (parts_along_faces(scene_)) swept_[b] = std::make_unique<SweptFaces>(*torn_[b]);
 }
 
+void EditedBodies::make_remade(std::size_t b) {
+  const bool divides = blade_method(scene_) == BladeMethod::decomposition, lattice = !uncut_[b]->lattice_nodes.empty();
+  if (lattice || (divides && uncut_[b]->tets.empty())) {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("body '{}' is {}; blades with the method \"{}\" know {} only", scene_.bodies[b].name,
+                            lattice ? "a lattice" : "of hexahedra", word_of(blade_method_words(), blade_method(scene_)),
+                            divides ? "volume meshes of tetrahedra" : "volume meshes"));
+  }
+  remade_[b] = divides ? make_divided_body(uncut_[b]) : make_thinned_body(uncut_[b]);
+}
+
+const CutTopology& EditedBodies::topology(std::size_t b) {
+  if (remade_[b] != nullptr) return remade_[b]->topology();
+  return swept_[b] != nullptr ? swept_[b]->topology() : cut(b).topology();
+}
+
+double EditedBodies::edge(std::size_t b) {
+  if (remade_[b] != nullptr) return remade_[b]->edge();
+  return swept_[b] != nullptr ? swept_[b]->edge() : cut(b).edge();
+}
+
 std::vector<std::int32_t> EditedBodies::part(std::size_t b, const std::vector<TetFace>& faces, bool by_blade) {
   const std::vector<std::uint8_t> before = torn_[b]->broken();
   std::vector<std::int32_t> from = by_blade ? torn_[b]->part(faces) : torn_[b]->tear(faces);
@@ -169,22 +198,44 @@ std::vector<std::int32_t> EditedBodies::part(std::size_t b, const std::vector<Te
 }
 
 BladeSweep EditedBodies::sweep(std::size_t b, const std::vector<Vec3d>& x) {
+  if (remade_[b] != nullptr) return remade_[b]->sweep(x);
   if (swept_[b] != nullptr) return swept_[b]->sweep(x);
   BodyCut& body = cut(b);
   return {body.topology(), x, body.rest_edges(), body.edge()};
 }
 
 CutEdges EditedBodies::crossed(std::size_t b, const std::vector<Vec3d>& x, std::span<const SweepTriangle> triangles) {
+  if (remade_[b] != nullptr) return remade_[b]->crossed(x, triangles);
   return swept_[b] != nullptr ? swept_[b]->crossed(x, triangles) : crossed_edges(cut(b).topology(), x, triangles);
 }
 
 void EditedBodies::keep_allowed(std::size_t b, CutEdges& crossed) {
+  if (remade_[b] != nullptr) return remade_[b]->keep_new(crossed);
   if (swept_[b] != nullptr) return swept_[b]->keep_joined(crossed);
   cut(b).keep_allowed(scene_.bodies[b], crossed);
 }
 
 InverseMap EditedBodies::inverse_map(std::size_t b, const std::vector<Vec3d>& x, const vec::Box& region, double reach) {
   return {topology(b), x, region, edge(b), reach};
+}
+
+void EditedBodies::follow(std::size_t b, BladeTrace& trace) const {
+  if (remade_[b] == nullptr) return;
+  for (TracePoint& point : trace.points) {
+    if (point.node < 0) remade_[b]->follow(point.carried);
+  }
+}
+
+void EditedBodies::follow(std::size_t b, RunState& state) const {
+  for (auto& [key, traces] : state.blades.traces) {
+    const auto found = traces.find(static_cast<std::int32_t>(b));
+    if (found != traces.end()) follow(b, found->second);
+  }
+  for (auto& [name, blade] : state.pressed) {
+    for (FrontSample& sample : blade.samples) {
+      if (static_cast<std::size_t>(sample.body) == b && sample.kind != 0) remade_[b]->follow(sample.point);
+    }
+  }
 }
 
 void EditedBodies::follow_materials() {
@@ -199,6 +250,7 @@ BodyCut& EditedBodies::cut(std::size_t b) {
 }
 
 const BodyMesh& EditedBodies::solid(std::size_t b) const {
+  if (remade_[b] != nullptr) return remade_[b]->solid();
   if (cuts_[b] != nullptr) return cuts_[b]->solid();
   return torn_[b] != nullptr ? torn_[b]->solid() : *uncut_[b];
 }
@@ -213,6 +265,10 @@ void EditedBodies::replay(const RunState& state) {
   if (parts_along_faces(scene_) && !state.cuts.empty()) refuse_edits("cuts");
   for (const CutRecord& record : state.cuts) {
     if (record.body < 0 || static_cast<std::size_t>(record.body) >= size()) refuse_edits("cuts");
+    if (RemadeBody* remade = remade_[static_cast<std::size_t>(record.body)].get()) {
+      remade->remake(record.edges);
+      continue;
+    }
     BodyCut& body = cut(static_cast<std::size_t>(record.body));
     if (body.cut(record.edges, helper).changed_elements()) body.update_surface();
   }
@@ -249,6 +305,12 @@ void EditedBodies::rebuild(std::size_t b, const RunState& state) {
       if (static_cast<std::size_t>(record.body) == b) edits.push_back(&record.edges);
     }
     cuts_[b]->rebuild(edits);
+  }
+  if (remade_[b] != nullptr) {
+    make_remade(b);
+    for (const CutRecord& record : state.cuts) {
+      if (static_cast<std::size_t>(record.body) == b) remade_[b]->remake(record.edges);
+    }
   }
   if (torn_[b] == nullptr) return;
   make_torn(b);

@@ -16,6 +16,7 @@
 #include "model/elements/body_mesh.h"
 #include "simulation/edits/helper_thread.h"
 #include "simulation/state/run_state.h"
+#include "tearing/remade_body.h"
 #include "tearing/swept_faces.h"
 #include "tearing/torn_body.h"
 
@@ -74,12 +75,12 @@ class SurfaceCopy {
   std::future<void> made_;
 };
 
-/// All bodies of a scene, with elements generated again independently of the first model. Each is either cut, torn or
-/// unchanged.
+/// All bodies of a scene, with elements generated again independently of the first model. Each is either cut, torn, remade
+/// (its elements divided or removed) or unchanged.
 class EditedBodies {
  public:
   /// Throws what make_body_meshes throws, and Error (bad_input) for a body that shall be parted along its faces and is a
-  /// lattice, or shall tear and is not of tetrahedra.
+  /// lattice, shall tear and is not of tetrahedra, or has elements that the blades' method does not know.
   explicit EditedBodies(const Scene& scene);
   /// Returns true if a material of the scene has a toughness.
   static bool tears(const Scene& scene);
@@ -94,20 +95,35 @@ class EditedBodies {
   /// What blades find in a body that is parted along its faces; nullptr for others.
   [[nodiscard]] SweptFaces* swept(std::size_t b) { return swept_[b].get(); }
   [[nodiscard]] const SweptFaces* find_swept(std::size_t b) const { return swept_[b].get(); }
-  /// Returns true if blades cut the body with virtual nodes or part it along its faces.
-  [[nodiscard]] bool meets_blades(std::size_t b) const { return swept_[b] != nullptr || can_be_cut(*uncut_[b]); }
+  /// A body whose elements blades divide or remove; nullptr for others.
+  [[nodiscard]] const RemadeBody* remade(std::size_t b) const { return remade_[b].get(); }
+  /// Makes such an edit.
+  NodeOrigins remake(std::size_t b, const CutEdges& crossed) { return remade_[b]->remake(crossed); }
+  /// After it: gives what elements of the body carried the elements that carry it now.
+  void follow(std::size_t b, BladeTrace& trace) const;
+  void follow(std::size_t b, RunState& state) const;
+  /// Returns true if blades cut the body, by whatever method.
+  [[nodiscard]] bool meets_blades(std::size_t b) const {
+    return remade_[b] != nullptr || swept_[b] != nullptr || can_be_cut(*uncut_[b]);
+  }
   /// Breaks faces of torn(b), which a blade has passed or which stress breaks. Returns what TornBody::tear returns; empty if
   /// all of them wait.
   std::vector<std::int32_t> part(std::size_t b, const std::vector<TetFace>& faces, bool by_blade);
 
-  // The same of both kinds of body that blades meet, cut with virtual nodes or parted along faces.
+  // The same of all kinds of body that blades meet.
   /// Returns the body's elements now; the cut is created on first use.
-  [[nodiscard]] const CutTopology& topology(std::size_t b) { return swept_[b] ? swept_[b]->topology() : cut(b).topology(); }
+  [[nodiscard]] const CutTopology& topology(std::size_t b);
   /// Mean edge of an undeformed element [m].
-  [[nodiscard]] double edge(std::size_t b) { return swept_[b] ? swept_[b]->edge() : cut(b).edge(); }
+  [[nodiscard]] double edge(std::size_t b);
+  /// Returns whether blades are followed in the undeformed body (RemadeBody::follows_at_rest).
+  [[nodiscard]] bool follows_at_rest(std::size_t b) const { return remade_[b] == nullptr || remade_[b]->follows_at_rest(); }
+  /// Returns the element of the whole body that a cell of topology() is, or is part of.
+  [[nodiscard]] std::int32_t whole_element(std::size_t b, std::int32_t cell) const {
+    return remade_[b] == nullptr ? cell : remade_[b]->solid().parts.of[static_cast<std::size_t>(cell)];
+  }
   /// A sweep over the body with its nodes at `x` [m], which must outlive it; the next one of the body ends it.
   [[nodiscard]] BladeSweep sweep(std::size_t b, const std::vector<Vec3d>& x);
-  /// Returns what triangles [m] cross now: edges, or pairs of elements.
+  /// Returns what triangles [m] cross now: edges, pairs of elements, or elements as pairs with themselves.
   [[nodiscard]] CutEdges crossed(std::size_t b, const std::vector<Vec3d>& x, std::span<const SweepTriangle> triangles);
   /// Removes what may not be cut (BodyCut::keep_allowed) or has come apart.
   void keep_allowed(std::size_t b, CutEdges& crossed);
@@ -133,6 +149,7 @@ class EditedBodies {
 
  private:
   void make_torn(std::size_t b);
+  void make_remade(std::size_t b);
   void replay_tears(const RunState& state);
 
   const Scene& scene_;
@@ -140,6 +157,7 @@ class EditedBodies {
   std::vector<std::unique_ptr<BodyCut>> cuts_;
   std::vector<std::unique_ptr<TornBody>> torn_;
   std::vector<std::unique_ptr<SweptFaces>> swept_;
+  std::vector<std::unique_ptr<RemadeBody>> remade_;
 };
 
 }  // namespace pliant

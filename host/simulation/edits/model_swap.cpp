@@ -4,6 +4,7 @@
 #include <map>
 #include <utility>
 
+#include "geometry/vec.h"
 #include "model/links/membranes.h"
 #include "model/nodes/ballast.h"
 #include "model/nodes/boundary_conditions.h"
@@ -85,8 +86,16 @@ std::vector<SlotOrigin> ModelSwap::slot_origins() const {
   std::vector<SlotOrigin> out;
   for (std::size_t b = 0; b < origins_.size(); ++b) {
     const std::vector<std::int32_t>&slots = model_->bodies[b].slot, &old_slots = old_model_->bodies[b].slot;
-    for (std::size_t n = 0; n < slots.size(); ++n)
-      out.push_back({static_cast<std::size_t>(slots[n]), static_cast<std::size_t>(old_slots[origins_[b].of(n)])});
+    const std::size_t first = out.size();
+    for (std::size_t n = 0; n < slots.size(); ++n) {
+      const auto before = static_cast<std::size_t>(old_slots[origins_[b].of(n)]);
+      out.push_back({static_cast<std::size_t>(slots[n]), before, before, 0});
+    }
+    for (const MixedNode& mixed : origins_[b].mixed) {
+      SlotOrigin& o = out[first + static_cast<std::size_t>(mixed.node)];
+      o.other = static_cast<std::size_t>(old_slots[static_cast<std::size_t>(mixed.other)]);
+      o.share = mixed.share;
+    }
   }
   return out;
 }
@@ -105,7 +114,7 @@ std::vector<NodeInertia> ModelSwap::carried_ballast() const {
   for (const Ballast& b : old_model_->ballast) before[static_cast<std::size_t>(b.slot)] = &b;
   for (const SlotOrigin& o : slot_origins()) {
     const auto found = before.find(o.before);
-    if (found == before.end()) continue;
+    if (found == before.end() || o.share > 0) continue;
     const Ballast& had = *found->second;
     out.push_back({static_cast<std::int32_t>(o.slot), had.inertia * model_->mass[o.slot] / had.mass});
   }
@@ -176,10 +185,16 @@ void ModelSwap::carry_nodes(Program& program) {
 void ModelSwap::carry_velocity(Buffer& to) const {
   for (std::size_t b = 0; b < v_.size(); ++b) {
     const std::vector<std::int32_t>& slots = model_->bodies[b].slot;
-    for (std::size_t n = 0; n < slots.size(); ++n) {
+    const auto give = [&](std::size_t n, const Vec3d& velocity) {
       const auto slot = static_cast<std::size_t>(slots[n]);
       const double step = substeps_of(*model_, slot) * run_.state.clock.dt;
-      for (std::size_t c = 0; c < 3; ++c) to.reals[4 * slot + c] = step * v_[b][origins_[b].of(n)][c];
+      for (std::size_t c = 0; c < 3; ++c) to.reals[4 * slot + c] = step * velocity[c];
+    };
+    for (std::size_t n = 0; n < slots.size(); ++n) give(n, v_[b][origins_[b].of(n)]);
+    for (const MixedNode& mixed : origins_[b].mixed) {
+      const auto n = static_cast<std::size_t>(mixed.node);
+      const Vec3d &one = v_[b][origins_[b].of(n)], &other = v_[b][static_cast<std::size_t>(mixed.other)];
+      give(n, vec::add(vec::mul(one, 1 - mixed.share), vec::mul(other, mixed.share)));
     }
   }
   // A cut may leave a moving virtual node with held anchors only. Since no update moves a held node, it would keep its
@@ -189,6 +204,13 @@ void ModelSwap::carry_velocity(Buffer& to) const {
     const auto at = static_cast<std::ptrdiff_t>(4) * held.slot;
     if (!held.holds()) continue;
     std::fill_n(to.reals.begin() + at, 3, 0.0);
+  }
+  for (std::size_t b = 0; b < v_.size(); ++b) {  // nodes that lost their elements stay where they are
+    if (bodies_.remade(b) == nullptr) continue;
+    for (const std::int32_t slot : model_->bodies[b].slot) {
+      if (!(model_->mass[static_cast<std::size_t>(slot)] > 0))
+        std::fill_n(to.reals.begin() + static_cast<std::ptrdiff_t>(4) * slot, 3, 0.0);
+    }
   }
   for (std::size_t slot = 0; slot < model_->mass.size(); ++slot) to.reals[4 * slot + 3] = run_.decay(*model_, slot);
 }

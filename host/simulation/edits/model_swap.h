@@ -10,17 +10,12 @@
 #include "simulation/state/carried_state.h"
 #include "simulation/state/run_context.h"
 #include "simulation/step/host_loads.h"
+#include "tearing/node_origins.h"
 
 namespace pliant {
 
-/// For each node of an edited body, the node it was copied from.
-struct NodeOrigins {
-  std::vector<std::int32_t> from;  ///< node of the body before the edit; empty: the body was not edited
-  [[nodiscard]] std::size_t of(std::size_t node) const { return from.empty() ? node : static_cast<std::size_t>(from[node]); }
-};
-
-/// Preserves the displacement and velocity of every node, so that momentum follows mass. Construct it, edit the bodies, then
-/// call run() once.
+/// Preserves the displacement and velocity of every node, so that momentum follows mass; a new node on an edge gets what the
+/// edge has there, so that deformation gradients stay what they are. Construct it, edit the bodies, then call run() once.
 class ModelSwap {
  public:
   /// `u`: RunContext::u(). Adds its times to `report`.
@@ -42,7 +37,7 @@ class ModelSwap {
   [[nodiscard]] std::vector<NodeInertia> carried_ballast() const;
   /// Returns true if all nodes and points of contact are the same as before.
   [[nodiscard]] bool keeps_nodes() const;
-  /// For each slot with a node, the slot of the node that it was copied from.
+  /// For each slot with a node, the slots of the nodes that its values come from.
   [[nodiscard]] std::vector<SlotOrigin> slot_origins() const;
   /// Gives the new Program the values that nodes hold, as Carry of each state buffer says.
   void carry_nodes(Program& program);

@@ -23,7 +23,8 @@ std::vector<Vec3d> moving_nodes(const RunContext& run, const std::vector<double>
 
 void TopologyEdits::open_overstretched() {
   const double limit = run_.scene.break_stretch;
-  if (parts_along_faces(run_.scene)) return;  // make_tears does it
+  // Where bodies part along faces make_tears does it; elements that are divided or removed have no thin remains.
+  if (blade_method(run_.scene) != BladeMethod::virtual_nodes) return;
   if (!(limit > 0) || (run_.scene.blades.empty() && run_.state.cuts.empty())) return;
   EditedBodies& all = bodies();
   std::vector<double> u = run_.u();

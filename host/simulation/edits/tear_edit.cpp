@@ -30,29 +30,43 @@ void TopologyEdits::make_tears() {
   run_.state.opened += edges;
 }
 
-void TopologyEdits::part(const std::vector<std::vector<TetFace>>& faces, std::vector<double> u, bool by_blade,
-                         CutReport& report) {
+std::vector<char> TopologyEdits::swap_bodies(const std::function<NodeOrigins(std::size_t)>& edit, std::vector<double> u,
+                                             CutReport& report) {
   EditedBodies& all = bodies();
   Stopwatch clock;
-  std::vector<char> changed;
   try {
     ModelSwap swap(run_, loads_, all, std::move(u), report);
     std::vector<NodeOrigins> origins(all.size());
     for (std::size_t b = 0; b < all.size(); ++b) {
-      if (!faces[b].empty()) origins[b].from = all.part(b, faces[b], by_blade);
+      origins[b] = edit(b);
       report.changed = report.changed || !origins[b].from.empty();
     }
     report.topology += clock.lap();
-    if (report.changed) {
-      swap.run(scene_at(run_.state), std::move(origins), [] {});
-      changed = swap.changed_nodes();
-    }
+    if (!report.changed) return {};
+    swap.run(scene_at(run_.state), std::move(origins), [] {});
+    return swap.changed_nodes();
   } catch (...) {
-    for (std::size_t b = 0; b < all.size(); ++b) {
-      if (!faces[b].empty()) all.rebuild(b, run_.state);
-    }
+    for (std::size_t b = 0; b < all.size(); ++b) all.rebuild(b, run_.state);
     throw;
   }
+}
+
+void TopologyEdits::end_edit(std::vector<char> changed, CutReport& report) {
+  ++run_.state.topology_version;
+  Stopwatch clock;
+  report.step_before = run_.state.clock.dt;
+  step_.limit_after_edit(changed);
+  report.step_after = run_.state.clock.dt;
+  report.step += clock.lap();
+  changed_nodes_ = std::move(changed);
+}
+
+void TopologyEdits::part(const std::vector<std::vector<TetFace>>& faces, std::vector<double> u, bool by_blade,
+                         CutReport& report) {
+  EditedBodies& all = bodies();
+  std::vector<char> changed = swap_bodies(
+      [&](std::size_t b) { return faces[b].empty() ? NodeOrigins{} : NodeOrigins{all.part(b, faces[b], by_blade)}; },
+      std::move(u), report);
   run_.state.tears.clear();
   for (std::size_t b = 0; b < all.size(); ++b) {
     for (std::size_t t = 0; all.torn(b) != nullptr && t < all.torn(b)->broken().size(); ++t) {
@@ -60,12 +74,7 @@ void TopologyEdits::part(const std::vector<std::vector<TetFace>>& faces, std::ve
       if (bits != 0) run_.state.tears.push_back({static_cast<std::int32_t>(b), static_cast<std::int32_t>(t), bits});
     }
   }
-  if (!report.changed) return;
-  ++run_.state.topology_version;
-  clock.lap();
-  step_.limit_after_edit(changed);
-  report.step += clock.lap();
-  changed_nodes_ = std::move(changed);
+  if (report.changed) end_edit(std::move(changed), report);
 }
 
 }  // namespace pliant

@@ -149,7 +149,7 @@ EditedBodies& TopologyEdits::cut_bodies() {
 
 void TopologyEdits::prepare_cuts() {
   EditedBodies& all = cut_bodies();
-  if (parts_along_faces(run_.scene)) return;  // opened faces add no kind of element
+  if (blade_method(run_.scene) != BladeMethod::virtual_nodes) return;  // other methods add no kind of element
   if (run_.backend().info().compiles) {
     run_.backend().compile(build_program(all.trial_model(), run_.program_options()));
   }
@@ -161,8 +161,22 @@ void TopologyEdits::prepare_cuts() {
 
 const CutTopology* TopologyEdits::cut_topology(std::size_t body) const {
   if (bodies_ == nullptr || body >= bodies_->size()) return nullptr;
+  if (const RemadeBody* remade = bodies_->remade(body)) return &remade->topology();
   if (const SweptFaces* swept = bodies_->find_swept(body)) return &swept->topology();
   return bodies_->find_cut(body) == nullptr ? nullptr : &bodies_->find_cut(body)->topology();
+}
+
+std::int64_t TopologyEdits::cut_in_part(std::size_t body) const {
+  const CutTopology* topology = cut_topology(body);
+  if (topology == nullptr) return 0;
+  const RemadeBody* remade = bodies_->remade(body);
+  return remade != nullptr ? remade->cut_in_part() : topology->cut_in_part();
+}
+
+std::optional<std::int32_t> TopologyEdits::element_at(std::size_t body, std::int32_t element, const Vec3d& rest) const {
+  const RemadeBody* remade = bodies_ == nullptr ? nullptr : bodies_->remade(body);
+  if (remade == nullptr) return {};
+  return remade->element_at(element, rest);
 }
 
 std::optional<Vec3d> TopologyEdits::edited_at() const {

@@ -3,6 +3,7 @@
 // restored.
 #pragma once
 #include <array>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -43,6 +44,10 @@ class TopologyEdits {
   void lift_blade_by_force(const std::string& name);
   void prepare_cuts();
   [[nodiscard]] const CutTopology* cut_topology(std::size_t body) const;
+  /// Elements of a body that are cut in part and still hold together (CutTopology::cut_in_part, RemadeBody::cut_in_part).
+  [[nodiscard]] std::int64_t cut_in_part(std::size_t body) const;
+  /// Of a body whose elements blades divide or remove: RemadeBody::element_at(). Empty for others.
+  [[nodiscard]] std::optional<std::int32_t> element_at(std::size_t body, std::int32_t element, const Vec3d& rest) const;
   /// Returns the mean current position of the nodes whose elements the last cut or tear changed [m].
   [[nodiscard]] std::optional<Vec3d> edited_at() const;
 
@@ -72,9 +77,16 @@ class TopologyEdits {
   [[nodiscard]] bool reached(std::size_t body, const std::vector<Vec3d>& x, const std::vector<BladeMove>& moves,
                              std::span<const SweepTriangle> triangles) const;
   [[nodiscard]] const BladeTrace* front(const BladeMove& move, std::size_t body) const;
-  // cut_edit.cpp, overstretch_edit.cpp, tear_edit.cpp, join_edit.cpp, partition_edit.cpp
+  // cut_edit.cpp, remake_edit.cpp, overstretch_edit.cpp, tear_edit.cpp, join_edit.cpp, partition_edit.cpp
   void make_cut(std::vector<CutEdges> edges, std::vector<double> u, CutReport& report);
   void make_tears();
+  /// Edits the bodies one after the other (`edit` returns empty origins for one that stays) and loads their model. Returns
+  /// ModelSwap::changed_nodes(); empty, and report.changed false, if none was edited. If it throws, nothing has changed.
+  std::vector<char> swap_bodies(const std::function<NodeOrigins(std::size_t)>& edit, std::vector<double> u, CutReport& report);
+  /// Call after an edit that changed elements: the step follows.
+  void end_edit(std::vector<char> changed, CutReport& report);
+  /// Divides or removes elements.
+  void remake(std::vector<CutEdges> crossed, std::vector<double> u, CutReport& report);
   /// Breaks these faces of each body, or has them wait until a gap can open (TornBody::part).
   void part(const std::vector<std::vector<TetFace>>& faces, std::vector<double> u, bool by_blade, CutReport& report);
   void break_joins();

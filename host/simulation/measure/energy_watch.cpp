@@ -69,7 +69,7 @@ void Simulation::watch_energy() {
     stored += 0.5 * vec::norm(tool.now.force) * tool.now.depth;
   }
   for (const auto& blade : state_.pressed) work += blade.second.work;
-  const double left = now.total() - work;
+  const double left = now.total() - work + state_.remade.energy;  // as if what was removed were still there
   EnergyHistory& seen = reports_.now.energy;
   seen.highest = std::max({seen.highest, now.kinetic + now.strain + now.hourglass, std::abs(work)});
   if (!seen.least || left + stored < *seen.least) seen.least = left + stored;

@@ -220,10 +220,33 @@ std::size_t PlacedProbes::element_now(const Simulation& simulation, const Place&
   return copy < 0 ? place.element : parts * static_cast<std::size_t>(copy) + place.element % parts;
 }
 
-ProbeState PlacedProbes::at_point(const Simulation& simulation, const Place& place, const std::vector<Vec3d>& u,
+namespace {
+
+/// Where a blade has removed the tissue: NaN in place of every number that a probe asks for.
+ProbeState nowhere(const SceneProbe& probe) {
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  ProbeState state;
+  state.displacement = state.velocity = state.position = Vec3d{none, none, none};
+  if (asks(probe, Quantity::green_strain)) state.green_strain = components({});
+  if (asks(probe, Quantity::almansi_strain)) state.almansi_strain = components({});
+  if (asks(probe, Quantity::stress)) state.stress = components({});
+  return state;
+}
+
+}  // namespace
+
+ProbeState PlacedProbes::at_point(const Simulation& simulation, const Place& was, const std::vector<Vec3d>& u,
                                   const std::vector<Vec3d>& v) {
-  const ModelBody& body = simulation.model().bodies[place.body];
-  const std::size_t element = element_now(simulation, place);
+  const ModelBody& body = simulation.model().bodies[was.body];
+  Place place = was;
+  std::size_t element = 0;
+  if (const auto now = simulation.element_at(was.body, static_cast<std::int32_t>(was.element), *was.probe.point)) {
+    if (*now < 0) return nowhere(was.probe);
+    element = static_cast<std::size_t>(*now);
+    if (!body.tets.empty()) place.weights = in_element(body, element, *was.probe.point).first;
+  } else {
+    element = element_now(simulation, was);
+  }
   const auto nodes = corners(body, element);
   ProbeState state;
   state.displacement = interpolate(nodes, place.weights, u);

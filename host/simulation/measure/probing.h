@@ -54,7 +54,7 @@ class PlacedProbes {
     std::array<double, 8> weights{};  ///< shape functions at the corners, in the order of ModelBody
   };
   [[nodiscard]] static std::size_t element_now(const Simulation& simulation, const Place& place);
-  [[nodiscard]] static ProbeState at_point(const Simulation& simulation, const Place& place, const std::vector<Vec3d>& u,
+  [[nodiscard]] static ProbeState at_point(const Simulation& simulation, const Place& was, const std::vector<Vec3d>& u,
                                            const std::vector<Vec3d>& v);
   [[nodiscard]] static ProbeState of_nodes(Simulation& simulation, const Place& place, const std::vector<Vec3d>& u,
                                            const std::vector<Vec3d>& v);

@@ -39,6 +39,32 @@ void add_opened(const Simulation& s, Sentences& out) {
       s.state().opened, s.scene().break_stretch, kWholeStretch * s.scene().break_stretch));
 }
 
+/// What decomposition and removal have cost.
+void add_remade(const Simulation& s, Sentences& out) {
+  const RemadeElements& sums = s.state().remade;
+  if (sums.empty()) return;
+  double mass = 0;
+  for (const ModelBody& body : s.model().bodies) mass += body.mass;
+  if (blade_method(s.scene()) == BladeMethod::removal) {
+    out.push_back(
+        fmt::format("blades removed {} elements and with them {:.4g} kg, {:.3g} of the mass, in {} edits (\"removal\")",
+                    -sums.elements, sums.mass, sums.mass / (sums.mass + mass), sums.edits));
+    return;
+  }
+  std::string text =
+      fmt::format("blades divided elements, {} more now, in {} edits (\"decomposition\"); ", sums.elements, sums.edits);
+  const double bound = s.model().element_bound;
+  if (s.dt() < sums.first_step) {
+    text += fmt::format("the step fell from {:.4g} s before the first to {:.4g} s, {:.3g} of it", sums.first_step, s.dt(),
+                        s.dt() / sums.first_step);
+  } else if (bound < s.dt()) {
+    text += fmt::format("the step stays the given {:.4g} s, and the smallest element is stable up to {:.4g} s", s.dt(), bound);
+  } else {
+    text += fmt::format("the step stays {:.4g} s", s.dt());
+  }
+  out.push_back(text);
+}
+
 void add_ballast(const Simulation& s, Sentences& out) {
   const BallastReport& ballast = s.report().ballast;
   if (!(ballast.most > 0)) return;
@@ -204,6 +230,7 @@ std::vector<std::string> run_remarks(Simulation& simulation) {
   Sentences out;
   add_substeps(simulation, out);
   add_opened(simulation, out);
+  add_remade(simulation, out);
   add_ballast(simulation, out);
   add_inversions(simulation, out);
   add_turned_networks(simulation, out);

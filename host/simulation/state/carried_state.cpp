@@ -26,7 +26,7 @@ void copy_values(const std::vector<SlotOrigin>& origins, const std::vector<doubl
   const std::size_t stride = to.type == BufferType::real4 ? 4 : 1, copied = std::min<std::size_t>(stride, 3);
   to.reals.resize(to.values(), to.padding);
   for (const SlotOrigin& o : origins) {
-    for (std::size_t c = 0; c < copied; ++c) to.reals[stride * o.slot + c] = from[stride * o.before + c];
+    for (std::size_t c = 0; c < copied; ++c) to.reals[stride * o.slot + c] = o.value(from, stride, c);
   }
 }
 

@@ -24,9 +24,15 @@ void for_each_kept(const Program& before, Program& next, const F& f) {
   }
 }
 
-/// Where the values of a slot come from.
+/// Where the values of a slot come from: (1 - share) times those of `before` plus `share` times those of `other`.
 struct SlotOrigin {
-  std::size_t slot = 0, before = 0;
+  std::size_t slot = 0, before = 0, other = 0;
+  double share = 0;
+  /// The value of the slot, from number `c` of `stride` per slot.
+  [[nodiscard]] double value(const std::vector<double>& from, std::size_t stride, std::size_t c) const {
+    const double own = from[stride * before + c];
+    return share > 0 ? (1 - share) * own + share * from[stride * other + c] : own;
+  }
 };
 
 /// Carry::copy. Gives the slots of `to` the values that their origins have in `from`: of a texel the first three, since the

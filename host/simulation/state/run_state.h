@@ -39,6 +39,7 @@ struct RunState {
   std::map<std::string, PressedBlade> pressed;    ///< by name: the blades that cut by force
   std::map<std::string, bool> gripping;           ///< tools that the host told to grip or to let go, whatever their times say
   BladeDrives driven_blades;                      ///< those of them that the host moves off their paths
+  RemadeElements remade;
 };
 
 // Visitor: calls v(name, member) for every member in this order, as the visitors of the parts do. v.last() writes nothing for
@@ -57,6 +58,7 @@ void visit(V& v, RunState& s) {
   v.last("pressed", s.pressed);
   v.last("driven_blades", s.driven_blades);
   v.last("gripping", s.gripping);
+  v.last("remade", s.remade);
 }
 
 /// Serializes the state, identically on every machine: names, and values as eight little-endian bytes.

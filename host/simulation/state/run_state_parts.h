@@ -53,7 +53,7 @@ struct KeptState {
   std::map<std::string, PressedBlade> pressed;  ///< RunState::pressed
 };
 
-/// The edges of one body that one edit cut.
+/// The edges of one body that one edit cut; the elements that it removed, each as a pair with itself (RemadeBody).
 struct CutRecord {
   std::int32_t body = 0;
   CutEdges edges;
@@ -65,6 +65,16 @@ struct TearRecord {
   static constexpr int kWaiting = 8;
   std::int32_t body = 0, tet = 0, faces = 0;
   [[nodiscard]] int broken() const { return faces & ((1 << kWaiting) - 1); }
+};
+
+/// What decomposition and removal have done so far.
+struct RemadeElements {
+  std::int64_t edits = 0;
+  std::int64_t elements = 0;  ///< by how many there are more, negative: fewer
+  double mass = 0;            ///< that went with removed elements [kg]
+  double energy = 0;          ///< that went with them: kinetic, of strain, and the potential of dead loads [J]
+  double first_step = 0;      ///< the step before the first edit [s]
+  [[nodiscard]] bool empty() const { return edits == 0; }
 };
 
 /// The motion of a blade in one update: along straight lines to each of these segments. `key` is its key in
@@ -129,6 +139,10 @@ void visit(V& v, CutRecord& s) {
 template <class V>
 void visit(V& v, TearRecord& s) {
   v("body", s.body), v("tet", s.tet), v("faces", s.faces);
+}
+template <class V>
+void visit(V& v, RemadeElements& s) {
+  v("edits", s.edits), v("elements", s.elements), v("mass", s.mass), v("energy", s.energy), v("first_step", s.first_step);
 }
 template <class V>
 void visit(V& v, BladeMove& s) {

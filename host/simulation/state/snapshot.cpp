@@ -8,6 +8,7 @@
 #include "geometry/vec.h"
 #include "pliant/error.h"
 #include "program/hash.h"
+#include "scene/keys.h"
 #include "simulation/contact/tool_changes.h"
 #include "simulation/recovery/limits.h"
 
@@ -35,7 +36,7 @@ class Hash {
     add(blade.start);
     add(blade.end);
     add(blade.path);
-    if (blade.method == BladeMethod::separation) add(std::string("separation"));
+    if (blade.method != BladeMethod::virtual_nodes) add(word_of(blade_method_words(), blade.method));
     if (blade.cuts != BladeCuts::by_force) return;
     for (const double number : {blade.sharpness, blade.edge, blade.friction}) add(number);
   }

@@ -13,6 +13,7 @@
 #include <stdint.h>
 
 #include "pliant/c/blades.h"
+#include "pliant/c/cut.h"
 #include "pliant/c/haptics.h"
 #include "pliant/c/live.h"
 #include "pliant/c/state.h"

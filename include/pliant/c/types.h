@@ -122,18 +122,6 @@ typedef struct pliant_frame {
 #define PLIANT_FRAME_INIT \
   { sizeof(pliant_frame), 0, 0.0, NULL, NULL, NULL, 0, NULL, 0, NULL, 0, 0, 0, 0, 0, NULL, NULL }
 
-/** Result of a cut, as pliant::CutResult. */
-typedef struct pliant_cut {
-  size_t size;     /**< PLIANT_CUT_INIT */
-  int pending;     /**< 1: the worker will cut before its next batch of steps; the other members are 0 */
-  int changed;     /**< 1: elements were split */
-  int64_t edges;   /**< number of edges between nodes cut by this call */
-  double seconds;  /**< duration [s] */
-  int64_t in_part; /**< elements that still hold together where edges of theirs were cut */
-} pliant_cut;
-#define PLIANT_CUT_INIT \
-  { sizeof(pliant_cut), 0, 0, 0, 0.0, 0 }
-
 /** One quantity of a probe, as pliant::ProbeValue. Pointers are valid until the world's next pliant_world_probes or its end. */
 typedef struct pliant_probe_value {
   size_t size;           /**< PLIANT_PROBE_VALUE_INIT; the same in all elements of an array */

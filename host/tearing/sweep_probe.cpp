@@ -1,4 +1,4 @@
-#include "cutting_methods/sweep_probe.h"
+#include "tearing/sweep_probe.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
