@@ -125,7 +125,7 @@ def cpp():
 
 
 def c():
-    text = "".join(code_of(f"include/pliant/c/{n}.h") for n in ("pliant", "types", "state", "blades", "live", "haptics", "haptic_device"))
+    text = "".join(code_of(f"include/pliant/c/{n}.h") for n in ("pliant", "types", "state", "blades", "cut", "live", "haptics", "haptic_device"))
     found = set()
     for call in re.findall(r"^PLIANT_API .*?pliant_(\w+)\(", text, re.M):
         of = next((n for n, short in CLASSES.items() if call.startswith(short + "_")), None)

@@ -239,7 +239,7 @@ TEST(Tables, ScenesDocumentHasTheLawsAndElementsOfTheCode) {
   describe_vessel(DocumentRows{text, "`vessels`, a list"}, Vessel());
   describe_elastic(material, ElasticConstants());
   describe_material(material, Material());
-  describe_tool(DocumentRows{text, "`tools`, at most 30"}, ContactTool());
+  describe_tool(DocumentRows{text, "`tools`, at most 29"}, ContactTool());
   describe_contact_law(DocumentRows{text, "\n`contact`:"}, ContactTool());
   describe_type(DocumentRows{text, "\n## Model\n", "", " |"}, DeformationModel());
   describe_growth(hybrid, DeformationModel());
