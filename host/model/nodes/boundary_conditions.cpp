@@ -183,6 +183,7 @@ void load(const Body& body, const ModelBody& placed, Model& model) {
     }
     for (const std::int32_t n : nodes) {
       const double mass = model.own_mass(placed.slot[n]);
+      if (!(mass > 0)) continue;  // all its elements were removed
       const double share = by_mass ? mass / whole : mass / mass_at[placed.rest[n]] / static_cast<double>(mass_at.size());
       model.forces.push_back({placed.slot[n], {force.force[0] * share, force.force[1] * share, force.force[2] * share}, curve});
     }

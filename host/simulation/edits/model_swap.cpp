@@ -114,7 +114,7 @@ std::vector<NodeInertia> ModelSwap::carried_ballast() const {
   for (const Ballast& b : old_model_->ballast) before[static_cast<std::size_t>(b.slot)] = &b;
   for (const SlotOrigin& o : slot_origins()) {
     const auto found = before.find(o.before);
-    if (found == before.end() || o.share > 0) continue;
+    if (found == before.end() || o.share > 0 || !(model_->mass[o.slot] > 0)) continue;
     const Ballast& had = *found->second;
     out.push_back({static_cast<std::int32_t>(o.slot), had.inertia * model_->mass[o.slot] / had.mass});
   }
