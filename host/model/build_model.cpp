@@ -192,6 +192,8 @@ void fill_body(const Body& body, NodeNumbering& draft, ModelBody& out) {
   out.rest = draft.solid().nodes;
   out.tets = draft.solid().tets;
   out.virtual_nodes = draft.solid().virtual_nodes;
+  out.edge_nodes = draft.solid().edge_nodes;
+  out.remade = draft.solid().parts.whole != nullptr;
   out.hexes.reserve(draft.solid().hexes.size());
   for (const auto& hex : draft.solid().hexes) {
     std::array<std::int32_t, 8> corners{};

@@ -43,6 +43,13 @@ struct VirtualNodes {
   std::vector<std::int32_t> anchor;  ///< real nodes of the elements at each virtual node, ascending
 };
 
+/// A node that decomposition made on an edge, or a copy of it. It is held or moved if both ends are, and forces stay with the
+/// ends.
+struct EdgeNode {
+  std::int32_t node = 0;
+  std::array<std::int32_t, 2> ends{};  ///< nodes of the whole body
+};
+
 struct ModelBody {
   std::string name;
   ElementKind element{};
@@ -54,6 +61,8 @@ struct ModelBody {
   std::int32_t first_vertex = 0, vertices = 0;     ///< its part of the surface
   std::int32_t first_triangle = 0, triangles = 0;
   VirtualNodes virtual_nodes;
+  std::vector<EdgeNode> edge_nodes;    ///< ascending
+  bool remade = false;                 ///< blades have divided or removed elements
   std::vector<Vec3d> triangle_middle;  ///< for a cut surface: centroid of the uncut triangle that contains each, NaN on a cut
   std::shared_ptr<const SurfaceTexture> texture;  ///< of the uncut surface; null: its file has no texture coordinates
   std::vector<std::int32_t>

@@ -71,6 +71,14 @@ class DividedBody : public RemadeBody {
     return std::count_if(children_.begin(), children_.end(), [&](const auto& entry) { return holds(entry.first); });
   }
 
+  [[nodiscard]] std::int64_t cut_in_part(const CutEdges& crossed) const override {
+    std::set<std::int32_t> parents;
+    for (const auto& entry : crossed) {
+      for (const std::int32_t parent : tets_at(entry.first)) parents.insert(parent);
+    }
+    return std::count_if(parents.begin(), parents.end(), [&](std::int32_t parent) { return holds(parent); });
+  }
+
   NodeOrigins remake(const CutEdges& crossed) override {
     const std::vector<Tet> had = solid_.tets;
     const std::vector<std::int32_t> had_origin = origin_;
@@ -83,7 +91,11 @@ class DividedBody : public RemadeBody {
     for (const std::int32_t parent : changed) mark_open(parent);
     part();
     solid_.nodes.clear();
-    for (const std::int32_t n : origin_) solid_.nodes.push_back(rest_[static_cast<std::size_t>(n)]);
+    solid_.edge_nodes.clear();
+    for (const std::int32_t n : origin_) {
+      if (is_new(n)) solid_.edge_nodes.push_back({static_cast<std::int32_t>(solid_.nodes.size()), edge_of(n).first});
+      solid_.nodes.push_back(rest_[static_cast<std::size_t>(n)]);
+    }
     solid_.fill.clear();
     for (const std::int32_t e : solid_.parts.of) solid_.fill.push_back(whole_->fill[static_cast<std::size_t>(e)]);
     make_surface();
@@ -93,6 +105,11 @@ class DividedBody : public RemadeBody {
 
  private:
   [[nodiscard]] bool is_new(std::int32_t node) const { return node >= static_cast<std::int32_t>(whole_->nodes.size()); }
+
+  /// The edge of a new node, and its share of the way.
+  [[nodiscard]] const std::pair<NodePair, double>& edge_of(std::int32_t node) const {
+    return on_edge_[static_cast<std::size_t>(node) - whole_->nodes.size()];
+  }
 
   /// Tetrahedra of the whole body that have both nodes.
   [[nodiscard]] std::vector<std::int32_t> tets_at(const NodePair& pair) const {
@@ -271,7 +288,7 @@ class DividedBody : public RemadeBody {
           from = corner(joined);
           continue;
         }
-        const auto& [pair, share] = on_edge_[static_cast<std::size_t>(joined) - whole_->nodes.size()];
+        const auto& [pair, share] = edge_of(joined);
         from = corner(pair[0]);
         out.mixed.push_back({n, corner(pair[1]), share});
       }
@@ -292,9 +309,10 @@ class DividedBody : public RemadeBody {
         nodes.insert(n);
         continue;
       }
-      const NodePair& pair = on_edge_[static_cast<std::size_t>(n) - whole_->nodes.size()].first;
+      const NodePair& pair = edge_of(n).first;
       nodes.insert(pair.begin(), pair.end());
     }
+    if (nodes.size() != 3) return -1;
     std::array<std::int32_t, 3> key{};
     std::copy(nodes.begin(), nodes.end(), key.begin());
     return sources_.at(key);

@@ -33,6 +33,8 @@ class RemadeBody {
 
   /// Elements of the whole body that are cut in part: the ends of a cut edge still hold together in them.
   [[nodiscard]] virtual std::int64_t cut_in_part() const { return 0; }
+  /// The same among those that have one of these edges, which an edit has cut.
+  [[nodiscard]] virtual std::int64_t cut_in_part(const CutEdges& /*crossed*/) const { return 0; }
 
   /// The body now. Nodes and vertices of the surface of the whole body keep their numbers, also where no element has them.
   [[nodiscard]] const BodyMesh& solid() const { return solid_; }

@@ -1,21 +1,15 @@
 // Scenes with blades that part bodies along the faces of their elements, and what no edit may change.
 #pragma once
-#include <gtest/gtest.h>
-
 #include <bit>
-#include <filesystem>
 #include <random>
 #include <string>
 #include <vector>
 
-#include "cutting/cut_bodies.h"
-#include "cutting/cut_scenes.h"
-#include "cutting/mesh_files.h"
+#include "cutting/block_scenes.h"
 #include "io/save.h"
 #include "model/pieces.h"
 #include "solver/scenes.h"
 #include "support/error_of.h"
-#include "support/temp_folder.h"
 #include "tearing/method.h"
 
 namespace pliant::separation_test {
@@ -24,43 +18,15 @@ using namespace cut_test;
 using test::error_of;
 
 inline Blade separating(const std::string& name, std::vector<std::array<double, 7>> path) {
-  Blade out = blade(name, std::move(path));
-  out.method = BladeMethod::separation;
-  return out;
+  return with_method(BladeMethod::separation, name, std::move(path));
 }
 
-struct Separation : ::testing::Test {
-  test::TempFolder folder;
-  std::filesystem::path file = tet_box_file(folder, "block.msh", 6, 4, 4);
-
-  /// A block of 6 x 4 x 4 cm, held at its left end, with a blade that is far from it until it is moved.
+struct Separation : BlockScenes {
   [[nodiscard]] Scene block(ElementKind element = ElementKind::tet4) const {
-    Body body;
-    body.name = "block";
-    body.mesh = file;
-    body.element = element;
-    body.material.set_moduli(Law::neo_hookean, Moduli::from_lame(4000, 1000));
-    body.material.damping = 20;
-    hold(body, {0, 0, 0}, {-1, 0, 0});
-    Scene scene = scene_with(body);
-    scene.blades.push_back(separating("far", {{0, 5, 5, 5, 5, 5, 6}, {1, 5, 6, 5, 5, 6, 6}}));
-    return scene;
+    return BlockScenes::block(BladeMethod::separation, element);
   }
-  /// The same, cut through in the leaning plane x = 0.033 + 0.3 (y - 0.02) within 0.2 s.
-  [[nodiscard]] Scene block_cut_through() const {
-    Scene scene = block();
-    scene.blades = {separating(
-        "scalpel", {{0, 0.0252, -0.006, -0.01, 0.0252, -0.006, 0.05}, {0.2, 0.0408, 0.046, -0.01, 0.0408, 0.046, 0.05}})};
-    return scene;
-  }
-  /// Pulled to one and a half times its length.
-  static Scene pulled(Scene scene) {
-    pull(scene.bodies[0], {0.06, 0, 0}, {1, 0, 0}, {0.03, 0, 0}, 0.2);
-    return scene;
-  }
+  [[nodiscard]] Scene block_cut_through() const { return cut_through(BladeMethod::separation); }
 };
-
-inline double volume_of(const Simulation& s) { return signed_volume({s.model().surface.rest, s.model().surface.triangles}); }
 
 /// What no edit may change: the elements, mass and volume, and that the surface is closed.
 inline void expect_kept(const Simulation& s, std::int64_t elements, double mass, double volume) {
@@ -75,24 +41,6 @@ inline std::int64_t opened_faces(const Simulation& s) {
   std::int64_t sides = 0;
   for (const TearRecord& tear : s.state().tears) sides += std::popcount(static_cast<unsigned>(tear.broken()));
   return sides / 2;
-}
-
-/// A blade goes from somewhere near the block to somewhere else while it moves.
-template <class Any>
-void random_stroke(Simulation& s, const std::string& name, Any&& any) {
-  const auto point = [&] {
-    const double x = any(), y = any(), z = any();
-    return Vec3d{0.09 * x - 0.01, 0.06 * y - 0.01, 0.06 * z - 0.01};
-  };
-  const BladeSegment from{point(), point()}, to{point(), point()};
-  for (int k = 0; k <= 6; ++k) {
-    BladePose pose{name, {}};
-    for (std::size_t end = 0; end < 2; ++end)
-      pose.segment[end] = vec::add(from[end], vec::mul(vec::sub(to[end], from[end]), k / 6.0));
-    s.move_blades(std::span(&pose, 1));
-    s.advance(s.next_batch(16));
-    ASSERT_FALSE(s.divergence()) << s.divergence()->message();
-  }
 }
 
 /// The broken faces of a body, sorted by element: [elements] bits.

@@ -41,6 +41,7 @@ struct BodyElements {
   std::vector<std::int32_t> copy_of;  ///< for a cut body: the uncut cell of each element (of each six tetrahedra of a lattice)
   ElementParts parts;
   VirtualNodes virtual_nodes;
+  std::vector<EdgeNode> edge_nodes;  ///< ModelBody::edge_nodes
   std::size_t whole_nodes = 0;       ///< of a cut or torn body: its nodes before, which keep their numbers; 0: it is whole
   std::vector<Cell> matching_cells;  ///< the shape-matching cells
   double spacing = 0;                ///< [m]

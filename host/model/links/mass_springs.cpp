@@ -41,17 +41,24 @@ std::vector<std::int32_t> first_at_place(const BodyElements& solid, bool copies)
   return first;
 }
 
+/// The tetrahedra of a body, or of the one that it was before elements of it were removed.
+struct Tetrahedra {
+  const BodyElements& solid;
+  const ElementMaterials& materials;
+  const std::vector<double>& volume;  ///< [tetrahedra] full [m^3]
+};
+
 /// Entries of all tetrahedra, ordered by ends; `name` is the number of a node in `ends`, `fill` that of an element.
-std::vector<EdgeShare> edge_shares(const Body& body, const NodeNumbering& draft, const std::vector<std::int32_t>& name,
+std::vector<EdgeShare> edge_shares(const Body& body, const Tetrahedra& of, const std::vector<std::int32_t>& name,
                                    const std::vector<double>& fill) {
-  const BodyElements& solid = draft.solid();
+  const BodyElements& solid = of.solid;
   std::vector<EdgeShare> all, out;
   std::vector<std::size_t> next(static_cast<std::size_t>(*std::max_element(name.begin(), name.end())) + 2, 0);
   all.reserve(6 * solid.tets.size());
   for (std::size_t e = 0; e < solid.tets.size(); ++e) {
-    const Material& material = material_of(body, draft.materials.index[e]);
-    const double young = draft.materials.modulus_of(e) * material.moduli.young();
-    const double filled = draft.volume[e] * fill[e];
+    const Material& material = material_of(body, of.materials.index[e]);
+    const double young = of.materials.modulus_of(e) * material.moduli.young();
+    const double filled = of.volume[e] * fill[e];
     for (const auto& [i, j] : kTetEdges) {
       const std::int32_t a = solid.tets[e][i], b = solid.tets[e][j];
       const Vec3d d = vec::sub(solid.nodes[b], solid.nodes[a]);
@@ -155,6 +162,19 @@ double edges_omega2(const Body& body, const NodeNumbering& draft, const std::vec
   return most;
 }
 
+/// The edges of the body before cuts and removals, with the sums of all its tetrahedra.
+std::vector<EdgeShare> uncut_edges(const Body& body, const NodeNumbering& draft, const std::vector<std::int32_t>& place) {
+  const BodyElements& solid = draft.solid();
+  if (solid.parts.whole == nullptr) return summed(edge_shares(body, {solid, draft.materials, draft.volume}, place, solid.fill));
+  const BodyElements& whole = *solid.parts.whole;
+  std::vector<double> volume;
+  for (const auto& tet : whole.tets) {
+    const auto side = [&](std::size_t k) { return vec::sub(whole.nodes[tet[k]], whole.nodes[tet[0]]); };
+    volume.push_back(vec::dot(side(1), vec::cross(side(2), side(3))) / 6);
+  }
+  return summed(edge_shares(body, {whole, element_materials(body, whole), volume}, place, whole.fill));
+}
+
 }  // namespace
 
 void add_mass_springs(const Body& body, std::int32_t b, const NodeNumbering& draft, Model& model) {
@@ -166,8 +186,9 @@ void add_mass_springs(const Body& body, std::int32_t b, const NodeNumbering& dra
   const std::vector<std::int32_t> place = first_at_place(solid, may_have_copies(body, solid));
   std::vector<std::int32_t> place_of(static_cast<std::size_t>(model.slots), -1);
   for (std::size_t n = 0; n < place.size(); ++n) place_of[draft.slot[n]] = place[n];
-  const std::vector<EdgeShare> uncut = summed(edge_shares(body, draft, place, solid.fill));
-  const std::vector<EdgeShare> edges = summed(edge_shares(body, draft, draft.slot, draft.stiff));
+  const std::vector<EdgeShare> uncut = uncut_edges(body, draft, place);
+  const std::vector<EdgeShare> edges =
+      summed(edge_shares(body, {solid, draft.materials, draft.volume}, draft.slot, draft.stiff));
   const std::vector<std::int32_t> point = add_points(edges, model);
   for (const EdgeShare& e : edges) {
     Pair at{place_of[e.ends[0]], place_of[e.ends[1]]};

@@ -52,7 +52,7 @@ class Skin {
     out_.body = static_cast<std::int32_t>(body);
     out_.label = model.bodies[body].name + ": membrane";
     const ModelBody& own = model.bodies[body];
-    if (own.triangles == 0) {
+    if (own.triangles == 0 && !own.remade) {
       throw Error(ErrorCode::bad_input,
                   fmt::format("{}: {}/membrane: got a body without a surface, expected one with triangles", scene.file.string(),
                               scene.bodies[body].pointer));

@@ -41,7 +41,10 @@ std::vector<std::int32_t> select_nodes(const Selection& where, const ModelBody& 
   const VirtualNodes& virtual_nodes = body.virtual_nodes;
   const std::size_t real = virtual_nodes.first < 0 ? body.rest.size() : static_cast<std::size_t>(virtual_nodes.first);
   std::vector<char> is_chosen(real, 0);
+  std::vector<char> on_edge(real, 0);
+  for (const EdgeNode& n : body.edge_nodes) on_edge[static_cast<std::size_t>(n.node)] = 1;
   for (std::size_t n = 0; n < real; ++n) {
+    if (on_edge[n] != 0) continue;
     is_chosen[n] = where.contains(body.rest[n], static_cast<std::int64_t>(n));
     if (is_chosen[n] != 0) chosen.push_back(static_cast<std::int32_t>(n));
   }
@@ -49,6 +52,12 @@ std::vector<std::int32_t> select_nodes(const Selection& where, const ModelBody& 
     const bool among = where.contains(body.rest[n], static_cast<std::int64_t>(n));
     if (among && follows(virtual_nodes, n - real, is_chosen)) chosen.push_back(static_cast<std::int32_t>(n));
   }
+  for (const EdgeNode& n : body.edge_nodes) {  // wherever they are: two ends that are listed by number hold what is between
+    const bool both =
+        is_chosen[static_cast<std::size_t>(n.ends[0])] != 0 && is_chosen[static_cast<std::size_t>(n.ends[1])] != 0;
+    if (rule == Virtual::with_anchors && both) chosen.push_back(n.node);
+  }
+  if (!body.edge_nodes.empty()) std::sort(chosen.begin(), chosen.end());
   if (chosen.empty())
     throw Error(ErrorCode::bad_input, fmt::format("{}: no node in this set; {}{}", where.pointer, extent_of(body),
                                                   nearest_text(where, body.rest, "node")));
@@ -205,7 +214,7 @@ void load(const Body& body, const ModelBody& placed, Model& model) {
       model.pressures.push_back({t, pressure.pressure, curve});
       any = true;
     }
-    if (!any)
+    if (!any && !placed.remade)  // a blade may remove all that a pressure acts on
       throw Error(ErrorCode::bad_input, fmt::format("{}: no surface triangle has its centre in this set; {}{}",
                                                     pressure.where.pointer, extent_of(placed), nearest.text("centre")));
   }

@@ -144,10 +144,12 @@ CutReport TopologyEdits::run_blades(const std::vector<BladeMove>& moves, std::sp
     report.edges += static_cast<std::int64_t>(edges[b].size());
   }
   report.search = clock.seconds();
+  std::vector<char> met_edges;
+  for (const CutEdges& of_body : edges) met_edges.push_back(static_cast<char>(!of_body.empty()));
   if (report.edges > 0) divide(std::move(edges), std::move(u), report);
   for (auto& [key, by_body] : traces) {
     for (auto& [b, trace] : by_body) {
-      if (report.changed) all.follow(static_cast<std::size_t>(b), trace);
+      if (report.changed && met_edges[static_cast<std::size_t>(b)] != 0) all.follow(static_cast<std::size_t>(b), trace);
     }
   }
   for (const BladeMove& move : moves) {
