@@ -4,7 +4,7 @@
 
 namespace pliant {
 
-class RunContext;
+struct RunContext;
 
 /// As energies(), with the kinetic energy that the integrator conserves (IntegratorInfo::squared_velocity): that of either
 /// velocity around the step oscillates by omega h.
