@@ -1,6 +1,6 @@
-// Twin of kernels/elements/tled_hex8_brick_force.cl: a whole brick in plain arrays, one stage after the other. The kernel's
-// header describes the butterfly and the order of the sums; the sums here have the same order.
-#include <memory>
+// Twin of kernels/elements/tled_hex8_brick_force.cl: a brick in plain arrays, plane after plane, the 16 columns of a row
+// together. The kernel's header describes the butterfly and the order of the sums; the sums here have the same order.
+#include <algorithm>
 
 #include "cpu_ref/laws/law.h"
 #include "cpu_ref/registry.h"
@@ -9,113 +9,200 @@
 namespace pliant::ref {
 namespace {
 
-constexpr int columns = PLIANT_BRICK_X, rows = PLIANT_BRICK_Y, layers = PLIANT_BRICK_Z;
+constexpr int columns = PLIANT_BRICK_X, rows = PLIANT_BRICK_Y, layers = PLIANT_BRICK_Z, planes = 3 * columns;
 
+/// The x, y and z components of a row of nodes or cells.
 template <class Scalar>
-struct Vec3 {
-  Scalar x, y, z;
-};
-template <class Scalar>
-Vec3<Scalar> operator+(const Vec3<Scalar>& a, const Vec3<Scalar>& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-template <class Scalar>
-Vec3<Scalar> operator-(const Vec3<Scalar>& a, const Vec3<Scalar>& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-template <class Scalar>
-Vec3<Scalar> operator*(Scalar s, const Vec3<Scalar>& a) {
-  return {s * a.x, s * a.y, s * a.z};
-}
-template <class Scalar>
-Vec3<Scalar> fma(Scalar s, const Vec3<Scalar>& a, const Vec3<Scalar>& b) {
-  return {std::fma(s, a.x, b.x), std::fma(s, a.y, b.y), std::fma(s, a.z, b.z)};
-}
-
-/// A cell face normal to z: sums (s) and differences (d) along x (first letter) and y (second letter).
-template <class Scalar>
-struct Face {
-  Vec3<Scalar> ss, ds, sd, dd;
+struct Vectors {
+  Scalar v[planes];
 };
 
-/// Displacements or forces of a brick between the stages.
+/// A row of cell faces normal to z: sums (s) and differences (d) along x (first letter) and y (second letter).
+template <class Scalar>
+struct Faces {
+  Vectors<Scalar> ss, ds, sd, dd;
+};
+
+/// Sums and differences of the neighbours along x in a row of nodes.
+template <class Scalar>
+struct Pairs {
+  Vectors<Scalar> s, d;
+};
+
+/// Arrays of one brick. An index for y or z comes first.
 template <class Scalar>
 struct Work {
-  Vec3<Scalar> u[layers + 1][rows + 1][columns + 1];
-  Face<Scalar> faces[layers + 1][rows][columns];  ///< of displacements
-  Face<Scalar> forces[layers + 1][rows][columns];
+  Scalar u[rows + 1][3][columns + 1];      ///< displacements of a plane of nodes, with the first ones of the next brick
+  Pairs<Scalar> pairs[rows + 1];           ///< of that plane
+  Faces<Scalar> faces[layers + 1][rows];   ///< of displacements
+  Faces<Scalar> forces[rows];              ///< on the plane below a layer of cells
+  Faces<Scalar> pending[rows];             ///< on the plane above it
+  Pairs<Scalar> sums[rows + 1];            ///< forces of a plane after the butterfly along y
+  Scalar right[rows + 1][3][columns + 1];  ///< forces on the right of the cells that precede a node; -0 at x = 0
+  Scalar dilation[columns];                ///< J - 1 of a row of cells
 };
 
-/// Loads the brick's nodes and the first ones of its upper neighbours.
+/// The rows of nodes (bit 5 z + y) at the rows of cells (bit 4 z + y).
+std::int32_t rows_of_nodes(std::int32_t cells) {
+  std::int32_t nodes = 0;
+  for (int z = 0; z < layers; ++z) nodes |= (cells >> rows * z & 15) << (rows + 1) * z;
+  return nodes | nodes << 1 | nodes << (rows + 1) | nodes << (rows + 2);
+}
+
+/// Displacements of plane z of the nodes, and their sums and differences along x.
 template <class Scalar>
-void load_nodes(const Scalar* node_u, const std::int32_t* neighbor, Work<Scalar>& work) {
-  for (int z = 0; z <= layers; ++z) {
-    for (int y = 0; y <= rows; ++y) {
-      for (int x = 0; x <= columns; ++x) {
-        const int side = (x == columns ? 1 : 0) + (y == rows ? 2 : 0) + (z == layers ? 4 : 0);
-        const int local = ((z % layers) * rows + y % rows) * columns + x % columns;
-        const Scalar* texel = node_u + 4 * (std::int64_t{neighbor[side]} * PLIANT_BRICK_NODES + local);
-        work.u[z][y][x] = {texel[0], texel[1], texel[2]};
+void load_plane(const Scalar* node_u, const std::int32_t* neighbor, int z, std::int32_t used, Work<Scalar>& work) {
+  for (int y = 0; y <= rows; ++y) {
+    if ((used >> y & 1) == 0) continue;
+    const int side = (y == rows ? 2 : 0) + (z == layers ? 4 : 0), row = ((z % layers) * rows + y % rows) * columns;
+    const Scalar* own = node_u + 4 * (std::int64_t{neighbor[side]} * PLIANT_BRICK_NODES + row);
+    const Scalar* next = node_u + 4 * (std::int64_t{neighbor[side + 1]} * PLIANT_BRICK_NODES + row);
+    auto& u = work.u[y];
+#pragma GCC unroll 1
+    for (int x = 0; x < columns; ++x) {
+      u[0][x] = own[4 * x];
+      u[1][x] = own[4 * x + 1];
+      u[2][x] = own[4 * x + 2];
+    }
+    for (int c = 0; c < 3; ++c) u[c][columns] = next[c];
+  }
+  for (int y = 0; y <= rows; ++y) {
+    if ((used >> y & 1) == 0) continue;
+    for (int c = 0; c < 3; ++c) {
+      const Scalar* u = work.u[y][c];
+#pragma GCC unroll 1
+      for (int x = 0; x < columns; ++x) {
+        work.pairs[y].s.v[columns * c + x] = u[x] + u[x + 1];
+        work.pairs[y].d.v[columns * c + x] = u[x + 1] - u[x];
       }
     }
   }
 }
 
+/// Sums and differences along y of two rows of nodes.
 template <class Scalar>
-Face<Scalar> face_of(const Vec3<Scalar>& u00, const Vec3<Scalar>& u10, const Vec3<Scalar>& u01, const Vec3<Scalar>& u11) {
-  const Vec3<Scalar> s0 = u00 + u10, s1 = u01 + u11, d0 = u10 - u00, d1 = u11 - u01;
-  return {s0 + s1, d0 + d1, s1 - s0, d1 - d0};
+void make_faces(const Pairs<Scalar>& low, const Pairs<Scalar>& high, Faces<Scalar>& faces) {
+  for (int k = 0; k < planes; ++k) {
+    const Scalar s0 = low.s.v[k], s1 = high.s.v[k], d0 = low.d.v[k], d1 = high.d.v[k];
+    faces.ss.v[k] = s0 + s1;
+    faces.ds.v[k] = d0 + d1;
+    faces.sd.v[k] = s1 - s0;
+    faces.dd.v[k] = d1 - d0;
+  }
 }
 
-/// Forces on the upper and lower face of one cell.
+/// The force that waits on the plane above a layer takes the place of that on the plane below it.
+template <class Scalar>
+[[gnu::always_inline]] inline void pass_on(Scalar lower, Scalar upper, Scalar& below, Scalar& above) {
+  below = above + lower;
+  above = upper;
+}
+
+/// A row of cells: adds its forces to those that wait on the plane below, and leaves in their place those on the plane above.
 template <class LawType, class Scalar>
-std::int32_t cell_forces(const Face<Scalar>& below, const Face<Scalar>& above, Scalar fill, const LawType& law, Scalar gradient,
-                         Scalar volume, Scalar stiffness, Face<Scalar>& lower, Face<Scalar>& upper) {
-  const Vec3<Scalar> mx = below.ds + above.ds, my = below.sd + above.sd, mxy = below.dd + above.dd;
-  const Vec3<Scalar> mz = above.ss - below.ss, mxz = above.ds - below.ds, myz = above.sd - below.sd, mxyz = above.dd - below.dd;
-  const Scalar own = fill > Scalar(0) ? gradient : Scalar(0);
-  const auto scaled = [&](Scalar m) { return std::fma(own, m, Scalar(0)); };
-  const Deformation<Scalar> d = deformation_of<Scalar>({scaled(mx.x), scaled(my.x), scaled(mz.x), scaled(mx.y), scaled(my.y),
-                                                        scaled(mz.y), scaled(mx.z), scaled(my.z), scaled(mz.z)});
-  const Mat3<Scalar> p = law.stress(d, fill * volume, law.pressure(d.j), is_low(law, d));
-  const Scalar k = fill * stiffness;
-  const Vec3<Scalar> qx{p.m00, p.m10, p.m20}, qy{p.m01, p.m11, p.m21}, qz{p.m02, p.m12, p.m22}, qxy = k * mxy;
-  upper = {qz, fma(k, mxz, qx), fma(k, myz, qy), fma(k, mxyz, qxy)};
-  lower = {Vec3<Scalar>{} - qz, fma(-k, mxz, qx), fma(-k, myz, qy), fma(-k, mxyz, qxy)};
-  return fill > Scalar(0) ? fault_of(law, d) : no_fault;
+void cell_row(int z, int y, const Scalar* fill, const LawType& law, Scalar gradient, Scalar volume, Scalar stiffness,
+              Work<Scalar>& work) {
+  const Faces<Scalar>&below = work.faces[z][y], &above = work.faces[z + 1][y];
+  Faces<Scalar>&forces = work.forces[y], &pending = work.pending[y];
+  for (int x = 0; x < columns; ++x) {
+    const Scalar own = fill[x] > Scalar(0) ? gradient : Scalar(0), k = fill[x] * stiffness;
+    const auto mx = [&](int i) { return std::fma(own, below.ds.v[i] + above.ds.v[i], Scalar(0)); };
+    const auto my = [&](int i) { return std::fma(own, below.sd.v[i] + above.sd.v[i], Scalar(0)); };
+    const auto mz = [&](int i) { return std::fma(own, above.ss.v[i] - below.ss.v[i], Scalar(0)); };
+    const int i0 = x, i1 = columns + x, i2 = 2 * columns + x;
+    const Deformation<Scalar> d =
+        deformation_of<Scalar>({mx(i0), my(i0), mz(i0), mx(i1), my(i1), mz(i1), mx(i2), my(i2), mz(i2)});
+    work.dilation[x] = d.j;
+    const Mat3<Scalar> p = law.stress(d, fill[x] * volume, law.pressure(d.j), is_low(law, d));
+    const auto add = [&](int i, Scalar qx, Scalar qy, Scalar qz) __attribute__((always_inline)) {
+      const Scalar mxz = above.ds.v[i] - below.ds.v[i], myz = above.sd.v[i] - below.sd.v[i];
+      const Scalar mxyz = above.dd.v[i] - below.dd.v[i], qxy = k * (below.dd.v[i] + above.dd.v[i]);
+      pass_on(Scalar(0) - qz, qz, forces.ss.v[i], pending.ss.v[i]);
+      pass_on(std::fma(-k, mxz, qx), std::fma(k, mxz, qx), forces.ds.v[i], pending.ds.v[i]);
+      pass_on(std::fma(-k, myz, qy), std::fma(k, myz, qy), forces.sd.v[i], pending.sd.v[i]);
+      pass_on(std::fma(-k, mxyz, qxy), std::fma(k, mxyz, qxy), forces.dd.v[i], pending.dd.v[i]);
+    };
+    add(i0, p.m00, p.m01, p.m02);
+    add(i1, p.m10, p.m11, p.m12);
+    add(i2, p.m20, p.m21, p.m22);
+  }
+}
+
+/// A row without cells.
+template <class Scalar>
+void empty_row(Faces<Scalar>& forces, Faces<Scalar>& pending) {
+  for (int k = 0; k < planes; ++k) {
+    pass_on(Scalar(0), Scalar(0), forces.ss.v[k], pending.ss.v[k]);
+    pass_on(Scalar(0), Scalar(0), forces.ds.v[k], pending.ds.v[k]);
+    pass_on(Scalar(0), Scalar(0), forces.sd.v[k], pending.sd.v[k]);
+    pass_on(Scalar(0), Scalar(0), forces.dd.v[k], pending.dd.v[k]);
+  }
 }
 
 /// Inverse butterflies along y and x for the rows of one plane of nodes.
 template <class Scalar>
-void write_plane(const Face<Scalar> (&forces)[rows][columns], int plane, Scalar* brick_force) {
+void write_plane(const Faces<Scalar> (&forces)[rows], int plane, std::int32_t used, Work<Scalar>& work, Scalar* brick_force) {
+  for (int y = 0; y <= rows; ++y) {
+    if ((used >> y & 1) == 0) continue;
+    Vectors<Scalar>&s = work.sums[y].s, &d = work.sums[y].d;
+    for (int k = 0; k < planes; ++k) {
+      s.v[k] = y > 0 ? forces[y - 1].ss.v[k] + forces[y - 1].sd.v[k] : Scalar(-0.0);
+      d.v[k] = y > 0 ? forces[y - 1].ds.v[k] + forces[y - 1].dd.v[k] : Scalar(-0.0);
+    }
+    for (int k = 0; y < rows && k < planes; ++k) {
+      s.v[k] += forces[y].ss.v[k] - forces[y].sd.v[k];
+      d.v[k] += forces[y].ds.v[k] - forces[y].dd.v[k];
+    }
+    for (int c = 0; c < 3; ++c) {
+#pragma GCC unroll 1
+      for (int x = 0; x < columns; ++x) work.right[y][c][x + 1] = s.v[columns * c + x] + d.v[columns * c + x];
+    }
+  }
   for (int y = 0; y <= rows; ++y) {
     const int row = plane * (rows + 1) + y;
-    Scalar* out = brick_force + 3 * row * columns;
-    Vec3<Scalar> left{Scalar(-0.0), Scalar(-0.0), Scalar(-0.0)};  // force of the cell to the left
-    for (int x = 0; x < columns; ++x) {
-      Vec3<Scalar> s, d;
-      if (y > 0) {
-        const Face<Scalar>& f = forces[y - 1][x];
-        s = f.ss + f.sd;
-        d = f.ds + f.dd;
-      }
-      if (y < rows) {
-        const Face<Scalar>& f = forces[y][x];
-        const Vec3<Scalar> own_s = f.ss - f.sd, own_d = f.ds - f.dd;
-        s = y > 0 ? s + own_s : own_s;
-        d = y > 0 ? d + own_d : own_d;
-      }
-      const Vec3<Scalar> sum = (s - d) + left;
-      left = s + d;
-      out[x] = sum.x;
-      out[columns + x] = sum.y;
-      out[2 * columns + x] = sum.z;
+    if ((used >> y & 1) == 0) {
+      std::fill_n(brick_force + row * planes, planes, Scalar(0));
+      std::fill_n(brick_force + PLIANT_BRICK_FORCE_X16 + 3 * row, 3, Scalar(0));
+      continue;
     }
-    Scalar* last = brick_force + PLIANT_BRICK_FORCE_X16 + 3 * row;
-    last[0] = left.x;
-    last[1] = left.y;
-    last[2] = left.z;
+    const Vectors<Scalar>&s = work.sums[y].s, &d = work.sums[y].d;
+    for (int c = 0; c < 3; ++c) {
+      const Scalar* right = work.right[y][c];
+      Scalar* out = brick_force + (3 * row + c) * columns;
+#pragma GCC unroll 1
+      for (int x = 0; x < columns; ++x) out[x] = (s.v[columns * c + x] - d.v[columns * c + x]) + right[x];
+      brick_force[PLIANT_BRICK_FORCE_X16 + 3 * row + c] = right[columns];
+    }
   }
+}
+
+/// A brick; `fill` and `fault` of its cells.
+template <class LawType, class Scalar>
+void brick(const Scalar* node_u, const std::int32_t* neighbor, std::int32_t cells, const Scalar* fill, Scalar* brick_force,
+           std::int32_t* fault, const LawType& law, Scalar gradient, Scalar volume, Scalar stiffness, std::int32_t step,
+           Work<Scalar>& work) {
+  const std::int32_t nodes = rows_of_nodes(cells);
+  for (int z = 0; z <= layers; ++z) {
+    const std::int32_t used = nodes >> (rows + 1) * z;
+    load_plane(node_u, neighbor, z, used, work);
+    for (int y = 0; y < rows; ++y) {
+      if ((used >> y & 3) == 3) make_faces(work.pairs[y], work.pairs[y + 1], work.faces[z][y]);
+    }
+  }
+  std::fill_n(&work.pending[0].ss.v[0], rows * 4 * planes, Scalar(-0.0));  // -0 + x is x, whatever its sign
+  for (int z = 0; z < layers; ++z) {
+    for (int y = 0; y < rows; ++y) {
+      const int row = rows * z + y;
+      if ((cells >> row & 1) != 0) {
+        cell_row(z, y, fill + row * columns, law, gradient, volume, stiffness, work);
+        mark_faults(law, work.dilation, fill + row * columns, 0, columns, step, fault + row * columns);
+      } else if (((nodes >> (rows + 1) * z | nodes >> (rows + 1) * (z + 1)) >> y & 3) != 0) {  // else nothing reads them
+        empty_row(work.forces[y], work.pending[y]);
+      }
+    }
+    write_plane(work.forces, z, nodes >> (rows + 1) * z, work, brick_force);
+  }
+  write_plane(work.pending, layers, nodes >> (rows + 1) * layers, work, brick_force);
 }
 
 }  // namespace
@@ -126,34 +213,14 @@ void tled_hex8_brick_force(Range range, const Scalar* node_u, const std::int32_t
                            const Scalar* law_parameters, Scalar gradient, Scalar volume, Scalar stiffness,
                            std::int32_t first_brick, std::int32_t fault_base, std::int32_t step) {
   const MaterialLaw<Number, Scalar> law(law_parameters);
-  const auto work = std::make_unique<Work<Scalar>>();
-  for (std::int64_t brick = first_brick + range.begin; brick < first_brick + range.end; ++brick) {
-    load_nodes(node_u, brick_neighbor + brick * PLIANT_BRICK_NEIGHBORS, *work);
-    const auto& u = work->u;
-    for (int z = 0; z <= layers; ++z) {
-      for (int y = 0; y < rows; ++y) {
-        for (int x = 0; x < columns; ++x) {
-          work->faces[z][y][x] = face_of(u[z][y][x], u[z][y][x + 1], u[z][y + 1][x], u[z][y + 1][x + 1]);
-        }
-      }
-    }
-    for (int z = 0; z < layers; ++z) {  // on each plane, the cells below it come first
-      for (int y = 0; y < rows; ++y) {
-        for (int x = 0; x < columns; ++x) {
-          const std::int64_t cell = brick * PLIANT_BRICK_NODES + (z * rows + y) * columns + x;
-          Face<Scalar> lower{}, &plane = work->forces[z][y][x];
-          work->forces[z + 1][y][x] = {};
-          if ((brick_rows[2 * brick] >> (4 * z + y) & 1) != 0) {
-            mark_fault(cell_forces(work->faces[z][y][x], work->faces[z + 1][y][x], brick_fill[cell], law, gradient, volume,
-                                   stiffness, lower, work->forces[z + 1][y][x]),
-                       step, fault[fault_base + cell]);
-          }
-          plane =
-              z > 0 ? Face<Scalar>{plane.ss + lower.ss, plane.ds + lower.ds, plane.sd + lower.sd, plane.dd + lower.dd} : lower;
-        }
-      }
-    }
-    for (int z = 0; z <= layers; ++z) write_plane(work->forces[z], z, brick_force + brick * PLIANT_BRICK_FORCE);
+  Work<Scalar> work;
+  for (auto& row : work.right) {
+    for (Scalar(&right)[columns + 1] : row) right[0] = Scalar(-0.0);
+  }
+  for (std::int64_t b = first_brick + range.begin; b < first_brick + range.end; ++b) {
+    const std::int64_t cell = b * PLIANT_BRICK_NODES;
+    brick(node_u, brick_neighbor + b * PLIANT_BRICK_NEIGHBORS, brick_rows[2 * b], brick_fill + cell,
+          brick_force + b * PLIANT_BRICK_FORCE, fault + fault_base + cell, law, gradient, volume, stiffness, step, work);
   }
 }
 

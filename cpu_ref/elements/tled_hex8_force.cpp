@@ -127,11 +127,7 @@ void force_of_uniform(Range range, const Scalar* node_u, const std::int32_t* hex
     uniform_tile<Scalar, Number, Viscous>(law, viscous, hex_data, hex_fill + first, u, Viscous ? w : u, f, dilation);
     Scalar* out = corner_force + tile * PLIANT_HEX_FORCE_PLANES * PLIANT_TILE;
     const std::int64_t begin = std::max(range.begin, first) - first, end = std::min(range.end, first + PLIANT_TILE) - first;
-    for (std::int64_t l = begin; l < end; ++l) {
-      Deformation<Scalar> d{};
-      d.j = dilation[l];
-      mark_fault(hex_fill[first + l] > Scalar(0) ? fault_of(law, d) : no_fault, step, fault[first + l]);
-    }
+    mark_faults(law, dilation, hex_fill + first, begin, end, step, fault + first);
     for (std::int64_t a = 0; a < 8; ++a) {
       Scalar* plane = out + 3 * a * PLIANT_TILE;
       for (std::int64_t l = begin; l < end; ++l) plane[l] = f.x[a][l];

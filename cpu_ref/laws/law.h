@@ -7,6 +7,12 @@
 //                                                                   low: is_low(law, deformation), or std::false_type if it
 //                                                                   is known not to be
 #pragma once
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "cpu_ref/elements/deformation.h"
+#include "cpu_ref/tile.h"
 #include "laws.h"
 #include "twin_laws.h"
 
@@ -43,6 +49,21 @@ inline std::int32_t fault_of(const LawType& law, const Deformation<Scalar>& d) {
 template <class LawType, class Scalar>
 inline bool is_low(const LawType& law, const Deformation<Scalar>& d) {
   return Scalar(1) + d.j < law.low;
+}
+
+/// Marks the faults of elements begin .. end - 1 of a row (tile.h), of which `dilation` has J - 1; where `fill` is 0 is none.
+template <class LawType, class Scalar, std::size_t Count>
+inline void mark_faults(const LawType& law, const Scalar (&dilation)[Count], const Scalar* fill, std::int64_t begin,
+                        std::int64_t end, std::int32_t step, std::int32_t* fault) {
+  constexpr Scalar infinity = std::numeric_limits<Scalar>::infinity();
+  bool sound = true;
+  for (const Scalar j : dilation) sound &= Scalar(1) + j > Scalar(0) && Scalar(1) + j < infinity;
+  if (sound) return;
+  for (std::int64_t e = begin; e < end; ++e) {
+    Deformation<Scalar> d{};
+    d.j = dilation[e];
+    mark_fault(fill[e] > Scalar(0) ? fault_of(law, d) : no_fault, step, fault[e]);
+  }
 }
 
 }  // namespace pliant::ref
