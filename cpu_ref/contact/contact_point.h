@@ -140,7 +140,7 @@ inline Scalar left_in(const Scalar* start, std::int32_t t) {
 inline constexpr double quantum_limit = 67108864.0;
 
 template <class Scalar>
-inline std::int32_t quanta(Scalar value) {
+[[gnu::always_inline]] inline std::int32_t quanta(Scalar value) {
   const auto limit = static_cast<Scalar>(quantum_limit);
   const Scalar inside = value > limit ? limit : value < -limit ? -limit : value;
   return std::isnan(inside) ? 0 : static_cast<std::int32_t>(std::rint(inside));

@@ -14,7 +14,7 @@ template <class Scalar>
 using Vec = std::array<Scalar, 3>;
 
 template <class Scalar>
-inline Scalar dot(const Vec<Scalar>& a, const Vec<Scalar>& b) {
+[[gnu::always_inline]] inline Scalar dot(const Vec<Scalar>& a, const Vec<Scalar>& b) {
   return std::fma(a[0], b[0], std::fma(a[1], b[1], a[2] * b[2]));
 }
 template <class Scalar>
@@ -23,19 +23,19 @@ inline Scalar mixed(Scalar a, Scalar b, Scalar t) {
 }
 /// s a + b.
 template <class Scalar>
-inline Vec<Scalar> scaled_sum(Scalar s, const Vec<Scalar>& a, const Vec<Scalar>& b) {
+[[gnu::always_inline]] inline Vec<Scalar> scaled_sum(Scalar s, const Vec<Scalar>& a, const Vec<Scalar>& b) {
   return {std::fma(s, a[0], b[0]), std::fma(s, a[1], b[1]), std::fma(s, a[2], b[2])};
 }
 template <class Scalar>
-inline Vec<Scalar> difference(const Vec<Scalar>& a, const Vec<Scalar>& b) {
+[[gnu::always_inline]] inline Vec<Scalar> difference(const Vec<Scalar>& a, const Vec<Scalar>& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
 template <class Scalar>
-inline Vec<Scalar> sum_of(const Vec<Scalar>& a, const Vec<Scalar>& b) {
+[[gnu::always_inline]] inline Vec<Scalar> sum_of(const Vec<Scalar>& a, const Vec<Scalar>& b) {
   return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
 }
 template <class Scalar>
-inline Vec<Scalar> times(const Vec<Scalar>& a, Scalar s) {
+[[gnu::always_inline]] inline Vec<Scalar> times(const Vec<Scalar>& a, Scalar s) {
   return {a[0] * s, a[1] * s, a[2] * s};
 }
 
@@ -46,7 +46,7 @@ struct Surface {
 };
 
 template <class Scalar>
-inline Vec<Scalar> normalised(const Vec<Scalar>& v, Scalar length) {
+[[gnu::always_inline]] inline Vec<Scalar> normalised(const Vec<Scalar>& v, Scalar length) {
   return length > Scalar(0) ? Vec<Scalar>{v[0] / length, v[1] / length, v[2] / length} : Vec<Scalar>{0, 0, 1};
 }
 

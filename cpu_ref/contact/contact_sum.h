@@ -11,7 +11,7 @@ inline constexpr std::int64_t tool_force_numbers = 8;
 using Quanta = std::array<std::int32_t, 3>;
 
 template <class Scalar>
-inline Quanta quanta(const Vec<Scalar>& force, Scalar inverse) {
+[[gnu::always_inline]] inline Quanta quanta(const Vec<Scalar>& force, Scalar inverse) {
   return {quanta(force[0] * inverse), quanta(force[1] * inverse), quanta(force[2] * inverse)};
 }
 

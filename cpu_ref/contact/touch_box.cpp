@@ -23,7 +23,7 @@ void touch_box(Range range, const Scalar* node_u, const Scalar* node_w, const Sc
       const contact::Place<Scalar> p = points.at(i);
       const AlongTangents<Scalar> along = along_tangents(points, touch_surface, i);
       Place<Scalar> place{p.now, p.moved};
-      set_frame(along, touch_surface, i, place);
+      set_frame(along, touch_surface + tile_base(i, PLIANT_TOUCH_SURFACE), place);
       place.tilt = tilt_of(along, place);
       write_place(touch_place, i, place);
       const Scalar spacing = touch_surface[tile_base(i, PLIANT_TOUCH_SURFACE) + std::int64_t{22} * PLIANT_TILE];

@@ -19,7 +19,7 @@ inline constexpr Scalar radius = Scalar(1.2);
 
 /// Three consecutive planes of a tiled array, starting at `plane`.
 template <class T>
-inline auto three(const T* numbers, std::int64_t base, std::int64_t plane) {
+[[gnu::always_inline]] inline auto three(const T* numbers, std::int64_t base, std::int64_t plane) {
   const T* at = numbers + base + plane * PLIANT_TILE;
   return std::array<T, 3>{at[0], at[PLIANT_TILE], at[std::int64_t{2} * PLIANT_TILE]};
 }
@@ -29,11 +29,11 @@ inline void set_three(T* numbers, std::int64_t base, std::int64_t plane, const T
 }
 
 template <class Scalar>
-inline Vec<Scalar> cross(const Vec<Scalar>& a, const Vec<Scalar>& b) {
+[[gnu::always_inline]] inline Vec<Scalar> cross(const Vec<Scalar>& a, const Vec<Scalar>& b) {
   return {std::fma(a[1], b[2], -(a[2] * b[1])), std::fma(a[2], b[0], -(a[0] * b[2])), std::fma(a[0], b[1], -(a[1] * b[0]))};
 }
 template <class Scalar>
-inline Vec<Scalar> unit(const Vec<Scalar>& v) {
+[[gnu::always_inline]] inline Vec<Scalar> unit(const Vec<Scalar>& v) {
   return contact::normalised(v, std::sqrt(dot(v, v)));
 }
 
@@ -77,17 +77,17 @@ inline AlongTangents<Scalar> along_tangents(const contact::Points<Scalar>& point
 
 /// Components of v along the dual vectors of a point's tangents [1/m of v].
 template <class Scalar>
-inline std::array<Scalar, 2> dual_of(const Place<Scalar>& p, const Vec<Scalar>& v) {
+[[gnu::always_inline]] inline std::array<Scalar, 2> dual_of(const Place<Scalar>& p, const Vec<Scalar>& v) {
   const Scalar second = dot(v, cross(p.normal, p.tangent));
   return {std::fma(-p.dual[1], second, dot(v, p.tangent)) * p.dual[0], second * p.dual[2]};
 }
 
-/// The frame of a point at the start of the step, and the change of its normal in the step.
+/// The frame of a point at the start of the step, and the change of its normal in the step. `surface`: its numbers in
+/// touch_surface.
 template <class Scalar>
-inline void set_frame(const AlongTangents<Scalar>& along, const Scalar* touch_surface, std::int64_t i, Place<Scalar>& p) {
-  const std::int64_t own = tile_base(i, PLIANT_TOUCH_SURFACE);
-  const Vec<Scalar> first = difference(contact::sum_of(three(touch_surface, own, 16), along.first_u), along.first_w);
-  const Vec<Scalar> second = difference(contact::sum_of(three(touch_surface, own, 19), along.second_u), along.second_w);
+[[gnu::always_inline]] inline void set_frame(const AlongTangents<Scalar>& along, const Scalar* surface, Place<Scalar>& p) {
+  const Vec<Scalar> first = difference(contact::sum_of(three(surface, 0, 16), along.first_u), along.first_w);
+  const Vec<Scalar> second = difference(contact::sum_of(three(surface, 0, 19), along.second_u), along.second_w);
   p.normal = unit(cross(first, second));
   const Scalar length = std::sqrt(dot(first, first));
   p.tangent = contact::normalised(first, length);
@@ -96,13 +96,13 @@ inline void set_frame(const AlongTangents<Scalar>& along, const Scalar* touch_su
   p.dual = {length > crushed ? Scalar(1) / length : slope * length, Scalar(0),
             height > crushed ? Scalar(1) / height : slope * height};
   p.dual[1] = dot(second, p.tangent) * p.dual[2];
-  const Scalar spacing = touch_surface[own + std::int64_t{22} * PLIANT_TILE];
+  const Scalar spacing = surface[22 * PLIANT_TILE];
   p.density = spacing > Scalar(0) ? Scalar(1) / spacing : Scalar(0);
 }
 
 /// The normal changes by -(n . F' t_k) a^k, with the dual vectors a^k of the tangents.
 template <class Scalar>
-inline Vec<Scalar> tilt_of(const AlongTangents<Scalar>& along, const Place<Scalar>& p) {
+[[gnu::always_inline]] inline Vec<Scalar> tilt_of(const AlongTangents<Scalar>& along, const Place<Scalar>& p) {
   const Scalar one = dot(p.normal, along.first_w) * p.dual[0], two = dot(p.normal, along.second_w);
   const Scalar across = std::fma(two, p.dual[2], -(one * p.dual[1]));
   return difference(Vec<Scalar>{}, scaled_sum(one, p.tangent, times(cross(p.normal, p.tangent), across)));
@@ -128,14 +128,15 @@ struct Pair {
 };
 
 template <class Scalar>
-inline Scalar front_of(const Place<Scalar>& lower, const Place<Scalar>& upper, const Vec<Scalar>& moved) {
+[[gnu::always_inline]] inline Scalar front_of(const Place<Scalar>& lower, const Place<Scalar>& upper,
+                                              const Vec<Scalar>& moved) {
   const Vec<Scalar> facing = difference(upper.normal, lower.normal);
   const Scalar closing = minus(dot(moved, facing));
   return dot(difference(lower.x, upper.x), facing) - (closing > Scalar(0) ? closing : Scalar(0));
 }
 
 template <class Scalar>
-inline Pair<Scalar> pair_of(const Place<Scalar>& lower, const Place<Scalar>& upper) {
+[[gnu::always_inline]] inline Pair<Scalar> pair_of(const Place<Scalar>& lower, const Place<Scalar>& upper) {
   Pair<Scalar> p;
   p.apart = difference(lower.x, upper.x);
   const Vec<Scalar> facing = difference(upper.normal, lower.normal);
@@ -149,7 +150,7 @@ inline Pair<Scalar> pair_of(const Place<Scalar>& lower, const Place<Scalar>& upp
 
 /// The force on one point of a pair, in quanta; `f` acts on the lower one.
 template <class Scalar>
-inline Quanta quanta_of(const Vec<Scalar>& f, Scalar inverse, bool is_lower) {
+[[gnu::always_inline]] inline Quanta quanta_of(const Vec<Scalar>& f, Scalar inverse, bool is_lower) {
   const Quanta q = contact::quanta(f, inverse);
   return is_lower ? q : Quanta{-q[0], -q[1], -q[2]};
 }
@@ -169,17 +170,17 @@ inline void set_moment(std::int32_t* touch_moment, std::int64_t i, const Place<S
 
 /// Components of a vector in the frame that moves with the lower point, and the inverse.
 template <class Scalar>
-inline Vec<Scalar> into_frame(const Place<Scalar>& lower, const Vec<Scalar>& v) {
+[[gnu::always_inline]] inline Vec<Scalar> into_frame(const Place<Scalar>& lower, const Vec<Scalar>& v) {
   return {dot(lower.tangent, v), dot(cross(lower.normal, lower.tangent), v), dot(lower.normal, v)};
 }
 template <class Scalar>
-inline Vec<Scalar> out_of_frame(const Place<Scalar>& lower, const Vec<Scalar>& v) {
+[[gnu::always_inline]] inline Vec<Scalar> out_of_frame(const Place<Scalar>& lower, const Vec<Scalar>& v) {
   return scaled_sum(v[0], lower.tangent, scaled_sum(v[1], cross(lower.normal, lower.tangent), times(lower.normal, v[2])));
 }
 
 /// Tangential slip of a pair relative to its anchor.
 template <class Scalar>
-inline Vec<Scalar> slip_of(const Place<Scalar>& lower, const Pair<Scalar>& p, const Vec<Scalar>& stuck) {
+[[gnu::always_inline]] inline Vec<Scalar> slip_of(const Place<Scalar>& lower, const Pair<Scalar>& p, const Vec<Scalar>& stuck) {
   const Vec<Scalar> slip = difference(p.apart, out_of_frame(lower, stuck));
   return scaled_sum(minus(dot(slip, p.normal)), p.normal, slip);
 }

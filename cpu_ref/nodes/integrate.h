@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "cpu_ref/nodes/integrator.h"
-#include "layout.h"
+#include "cpu_ref/texels.h"
 
 namespace pliant::ref {
 
@@ -13,28 +13,6 @@ struct UpdateKind {
   bool force_only = false;  ///< write R - F to node_force and do not move the node
   int integrator = 0;       ///< index in integrators.h
 };
-
-/// The four values of 16 nodes, sorted by component.
-template <class Scalar>
-inline void load_texels(const Scalar* texels, Scalar (&out)[4][PLIANT_TILE]) {
-#pragma GCC unroll 1
-  for (int l = 0; l < PLIANT_TILE; ++l) {
-    out[0][l] = texels[4 * l];
-    out[1][l] = texels[4 * l + 1];
-    out[2][l] = texels[4 * l + 2];
-    out[3][l] = texels[4 * l + 3];
-  }
-}
-template <class Scalar>
-inline void store_texels(const Scalar (&in)[4][PLIANT_TILE], Scalar* texels) {
-#pragma GCC unroll 1
-  for (int l = 0; l < PLIANT_TILE; ++l) {
-    texels[4 * l] = in[0][l];
-    texels[4 * l + 1] = in[1][l];
-    texels[4 * l + 2] = in[2][l];
-    texels[4 * l + 3] = in[3][l];
-  }
-}
 
 /// Advances node i with the summed element force f.
 template <UpdateKind Kind, class Scalar>
@@ -54,12 +32,12 @@ inline void integrate(const Scalar (&f)[3], Scalar* node_u, Scalar* node_w, cons
   }
 }
 
-/// The same for the 16 nodes from i on; f: x, y and z components. The values of the nodes are sorted by component and back, so
-/// that the compiler computes 16 nodes together; without `unroll 1` gcc 12 unrolls the loops and does not vectorize them.
+/// The same for the 16 nodes from i on; f: x, y and z components. `unroll 1`: texels.h.
 template <UpdateKind Kind, class Scalar>
 inline void integrate_row(const Scalar (&f)[3][PLIANT_TILE], Scalar* node_u, Scalar* node_w, const Scalar* node_load,
                           Scalar* node_force, const StepParameters<Scalar>& step, std::int64_t i) {
-  Scalar u[4][PLIANT_TILE], w[4][PLIANT_TILE], residual[3][PLIANT_TILE];
+  SortedTexels<Scalar> u, w;
+  Scalar residual[3][PLIANT_TILE];
   for (int c = 0; c < 3; ++c) {
 #pragma GCC unroll 1
     for (int l = 0; l < PLIANT_TILE; ++l) residual[c][l] = Kind.has_load ? node_load[4 * (i + l) + c] - f[c][l] : -f[c][l];
