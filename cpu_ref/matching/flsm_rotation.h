@@ -100,10 +100,11 @@ template <class Scalar>
   const Scalar b00 = a[0] + e.m00, b01 = a[3] + e.m01, b02 = a[4] + e.m02;
   const Scalar b10 = a[3] + e.m10, b11 = a[1] + e.m11, b12 = a[5] + e.m12;
   const Scalar b20 = a[4] + e.m20, b21 = a[5] + e.m21, b22 = a[2] + e.m22;
-  Scalar f2 = b00 * b00;
-  for (const Scalar b : {b01, b02, b10, b11, b12, b20, b21, b22}) f2 = std::fma(b, b, f2);
+  const Scalar first = std::fma(b02, b02, std::fma(b01, b01, b00 * b00));
+  const Scalar second = std::fma(b12, b12, std::fma(b11, b11, std::fma(b10, b10, first)));
+  const Scalar f2 = std::fma(b22, b22, std::fma(b21, b21, std::fma(b20, b20, second)));
   const Scalar least = Scalar(1e-12f) * size;
-  ok = f2 > least * least && f2 < std::numeric_limits<Scalar>::infinity();
+  ok = (f2 > least * least) & (f2 < std::numeric_limits<Scalar>::infinity());
   const Scalar scale = ok ? Scalar(1) / std::sqrt(f2) : Scalar(0), shift = Scalar(0.625);
   return {std::fma((b00 + b11) + b22, scale, shift),
           (e.m21 - e.m12) * scale,
