@@ -220,6 +220,41 @@ DrawnTool draw_thin(Dice& dice) {
   return d;
 }
 
+DrawnTool draw_edged(Dice& dice) {
+  DrawnTool d;
+  d.tool.name = "tool";
+  d.tool.edges = true;
+  d.turn = turn_about({0, 0, 1}, dice.uniform(0, kPi));
+  const double radius = dice.uniform(0.0005, 0.0015), reach = dice.uniform(0.01, 0.03);
+  const auto capsule = [&](const Vec3d& first, const Vec3d& second, const char* what) {
+    d.tool.shape = ToolShape::capsule;
+    d.tool.radius = radius;
+    d.tool.first = first;
+    d.tool.second = second;
+    d.words = fmt::format("{} of {:.2f} mm", what, 1e3 * radius);
+  };
+  switch (dice.below(4)) {
+    case 0:
+      capsule({-reach, 0, 0}, {reach, 0, dice.chance(0.5) ? 0 : dice.uniform(-0.1, 0.1) * reach}, "rod");
+      break;
+    case 1: {
+      const double lean = dice.uniform(0, 1);
+      capsule({0, 0, 0}, {0.06 * std::sin(lean), 0, 0.06 * std::cos(lean)}, "needle");
+      break;
+    }
+    case 2:
+      d.tool.shape = ToolShape::box;
+      d.tool.size = {2 * reach, 2 * radius, 0.06};
+      d.words = fmt::format("plate of {:.2f} mm", 2e3 * radius);
+      break;
+    default:
+      d.tool.radius = radius;
+      d.words = fmt::format("ball of {:.2f} mm", 1e3 * radius);
+  }
+  measure(d);
+  return d;
+}
+
 ContactTool moved(const DrawnTool& drawn, double start, const Vec3d& from, double end, const Vec3d& to) {
   ContactTool tool = drawn.tool;
   const auto row = [&](double time, const Vec3d& x) {

@@ -50,6 +50,8 @@ std::array<double, 4> turn_about(const Vec3d& axis, double angle);
 DrawnTool draw_blunt(Dice& dice, double cell);
 /// A capsule of 1 mm radius, upright or lying, or a plate of 0.5 mm whose edge comes first.
 DrawnTool draw_thin(Dice& dice);
+/// A rod that lies, a needle that leans, a plate whose rim comes first, or a ball, of 0.5 to 1.5 mm, all met along their edges.
+DrawnTool draw_edged(Dice& dice);
 /// Its tool on a way from one place to another [s], [m].
 ContactTool moved(const DrawnTool& drawn, double start, const Vec3d& from, double end, const Vec3d& to);
 

@@ -1,4 +1,4 @@
-// Twin of contact_edge.cl and corner_lanes.cl, which describe the computation (kernels/contact).
+// Twin of contact_edge.cl and edge_touch.cl, which describe the computation (kernels/contact).
 #pragma once
 #include "cpu_ref/contact/contact_patch.h"
 
@@ -7,7 +7,7 @@ namespace pliant::ref::contact {
 template <class Scalar>
 struct EdgeNumbers {
   static constexpr auto ease = Scalar(0.5), loose = Scalar(1.5), inside = Scalar(1), narrow = Scalar(0.5), close = Scalar(0.1),
-                        alike = Scalar(0.7), stretch = Scalar(3), far = Scalar(1e30);
+                        alike = Scalar(0.7), stretch = Scalar(3), soon = Scalar(0.25), drag = Scalar(0.1), far = Scalar(1e30);
 };
 
 /// Returns whether a point lies over the face of a box that faces it most directly.
@@ -26,34 +26,21 @@ inline bool on_box_face(const Scalar* data, const Vec<Scalar>& normal, const Vec
   return over((axis + 1) % 3) && over((axis + 2) % 3);
 }
 
+/// An edge point and a patch; `distance` is far if the point is not over the patch.
 template <class Scalar>
-struct EdgeGap {
-  Vec<Scalar> at{};  ///< position of the edge point
-  Scalar radius = 0, gap = EdgeNumbers<Scalar>::far, a = 0, b = 0;
-  [[nodiscard]] bool found() const { return gap < EdgeNumbers<Scalar>::far; }
+struct EdgeTouch {
+  Scalar distance = EdgeNumbers<Scalar>::far, opening = 0, share = 0;
+  Vec<Scalar> normal{};
+  PatchPlace<Scalar> at{};
 };
-
-/// The edge point with the least gap to the tangent plane of a patch at (at_a, at_b).
-template <class Scalar>
-inline EdgeGap<Scalar> nearest_edge(const Scalar* edge, std::int32_t count, const PatchPlane<Scalar>& p, const Scalar* region,
-                                    Scalar spacing, Scalar wide, Scalar at_a, Scalar at_b) {
-  EdgeGap<Scalar> found;
-  for (std::int32_t e = 0; e < count; ++e, edge += 4) {
-    const Vec<Scalar> at{edge[0], edge[1], edge[2]}, start = difference(at, p.y);
-    const Scalar gap = dot(p.normal, start) - edge[3];
-    if (!(gap < found.gap) || !(gap > -EdgeNumbers<Scalar>::inside * spacing)) continue;
-    const Scalar a = at_a + dot(p.dual[0], start), b = at_b + dot(p.dual[1], start);
-    if (beyond_region(region, a, b) < wide) found = {at, edge[3], gap, a, b};
-  }
-  return found;
-}
 
 template <class Scalar, int EDGES>
 struct PatchMeeting {
   Meeting<Scalar> m;
   Vec<Scalar> place{};                              ///< place where the force acts, after the trial step
   std::array<Scalar, EDGES != 0 ? 8 : 0> weight{};  ///< weights of the nodes there
-  Scalar share = 1, ease = 1;
+  std::array<Scalar, EDGES != 0 ? 8 : 0> spread{};  ///< for W: of all edge points that touch or soon may
+  Scalar share = 1, ease = 1, spread_share = 1;
   bool edged = false;
 };
 
@@ -98,79 +85,88 @@ struct EdgedTools : Tools<Scalar> {
     out.m.opening = 0;
   }
 
-  /// `base`: the tangent plane at the point. Returns false if no edge lies over the patch.
+  /// `base`: the tangent plane at the point.
+  [[nodiscard]] EdgeTouch<Scalar> touch(std::int32_t t, std::int64_t i, const PatchPlane<Scalar>& base,
+                                        const Scalar* point) const {
+    using Numbers = EdgeNumbers<Scalar>;
+    const Scalar *now = this->now(t), *next = this->next(t), *region = patches.region(i);
+    const Scalar deepest = Numbers::inside * patches.spacing(i);
+    const Vec<Scalar> center{point[0], point[1], point[2]};
+    EdgeTouch<Scalar> out;
+    PatchPlane<Scalar> plane = base;
+    Scalar a = 0, b = 0, beyond = 0;
+    for (int round = 0; round < 2; ++round) {
+      const Vec<Scalar> start = difference(center, plane.y);
+      const Scalar gap = dot(plane.normal, start) - point[3];
+      if (!plane.flat || !(gap > -deepest) || !(gap < deepest)) return out;
+      a = a + dot(plane.dual[0], start);
+      b = b + dot(plane.dual[1], start);
+      beyond = beyond_region(region, a, b);
+      if (!(beyond < (round == 0 ? Numbers::loose : Scalar(1)))) return out;
+      out.at = patches.at(i, a, b);
+      plane = plane_of(out.at, now);
+    }
+    const Vec<Scalar> toward = difference(Vec<Scalar>{}, plane.normal);
+    const Scalar depth = dot(toward, difference(center, plane.y)) + point[3];
+    out.opening = dot(toward, difference(turned_back(next, difference(out.at.now, origin_of(next))), plane.y));
+    out.distance = out.opening - depth;
+    out.normal = turned(next, toward);
+    out.share = beyond > Scalar(0) ? Scalar(1) - beyond : Scalar(1);
+    return out;
+  }
+
+  /// All edge points that push on a patch as one: at their mean place, weighted by their pushes. `base`: the tangent plane at
+  /// the point. Returns false if no edge point lies over the patch.
   bool meet_edge(std::int32_t t, std::int64_t i, const PatchPlane<Scalar>& base, PatchMeeting<Scalar, EDGES>& out) const {
     using Numbers = EdgeNumbers<Scalar>;
     const std::int32_t* own = this->kind + tool_integers * t;
-    const Scalar *now = this->now(t), *next = this->next(t), *region = patches.region(i), spacing = patches.spacing(i);
-    const auto nearest = [&](const PatchPlane<Scalar>& p, Scalar wide, Scalar a, Scalar b) {
-      return nearest_edge(edge + std::int64_t{4} * own[6], p.flat ? own[7] : 0, p, region, spacing, wide, a, b);
-    };
-    EdgeGap<Scalar> found = nearest(base, Numbers::loose, Scalar(0), Scalar(0));
-    if (!found.found()) return false;
-    found = nearest(plane_of(patches.at(i, found.a, found.b), now), Scalar(1), found.a, found.b);
-    if (!found.found()) return false;
-    const PatchPlace<Scalar> at = patches.at(i, found.a, found.b);
-    const PatchPlane<Scalar> plane = plane_of(at, now);
-    out.place = at.now;
-    out.weight = at.weight;
-    const Vec<Scalar> toward = difference(Vec<Scalar>{}, plane.normal);
-    const Scalar depth = dot(toward, difference(found.at, plane.y)) + found.radius;
-    out.m.opening = dot(toward, difference(turned_back(next, difference(out.place, origin_of(next))), plane.y));
-    out.m.distance = out.m.opening - depth;
-    out.m.normal = turned(next, toward);
-    const Scalar beyond = beyond_region(region, found.a, found.b);
-    out.share = beyond > Scalar(0) ? Scalar(1) - beyond : Scalar(1);
-    out.ease = Numbers::ease;
-    out.edged = true;
+    const Scalar soon = Numbers::soon * patches.spacing(i);
+    EdgeTouch<Scalar> nearest, sum;
+    sum.opening = 0;
+    std::array<Scalar, 8> spread{};
+    Scalar pushes = 0, share = 0, spread_share = 0;
+    for (std::int32_t k = 0; k < own[7]; ++k) {
+      const EdgeTouch<Scalar> one = touch(t, i, base, edge + std::int64_t{4} * (own[6] + k));
+      if (one.distance < nearest.distance) nearest = one;
+      if (one.distance < soon) {
+        spread_share = spread_share + one.share;
+        for (std::size_t c = 0; c < 8; ++c) spread[c] = std::fma(one.share, one.at.weight[c], spread[c]);
+      }
+      if (!(one.distance < Scalar(0))) continue;
+      const Scalar push = one.share * -one.distance;
+      share = share + one.share;
+      pushes = pushes + push;
+      sum.opening = std::fma(push, one.opening, sum.opening);
+      sum.normal = scaled_sum(push, one.normal, sum.normal);
+      sum.at.now = scaled_sum(push, one.at.now, sum.at.now);
+      for (std::size_t c = 0; c < 8; ++c) sum.at.weight[c] = std::fma(push, one.at.weight[c], sum.at.weight[c]);
+    }
+    if (!(nearest.distance < Numbers::far)) return false;
+    if (pushes > Scalar(0)) {
+      const Scalar inverse = Scalar(1) / pushes;
+      sum.distance = -(pushes / share);
+      sum.opening = sum.opening * inverse;
+      sum.normal = normalised(sum.normal, std::sqrt(dot(sum.normal, sum.normal)));
+      sum.at.now = times(sum.at.now, inverse);
+      for (Scalar& w : sum.at.weight) w = w * inverse;
+      sum.share = share;
+    }
+    take(pushes > Scalar(0) ? sum : nearest, out);
+    out.spread_share = spread_share > Scalar(0) ? spread_share : nearest.share;
+    for (std::size_t c = 0; c < 8; ++c)
+      out.spread[c] = spread_share > Scalar(0) ? spread[c] / spread_share : nearest.at.weight[c];
     return true;
   }
-};
 
-/// Forces of edges on the nodes of points, and the weights for the compliance W.
-template <class Scalar, int EDGES>
-struct Corners {
-  std::int32_t* force;
-  Scalar* weight;
-
-  void write_weights(const Scalar* contact_weight, std::int64_t i, const PatchMeeting<Scalar, EDGES>& met) const {
-    Scalar* out = weight + tile_base(i, 9);
-    for (std::int64_t k = 0; k < 8; ++k) {
-      const Scalar at_point = contact_weight[tile_base(i, 8) + k * PLIANT_TILE];
-      out[k * PLIANT_TILE] = met.edged ? met.weight[static_cast<std::size_t>(k)] : at_point;
-    }
-    out[std::int64_t{8} * PLIANT_TILE] = met.share;
-  }
-  void clear(std::int64_t i) const {
-    if (EDGES == 0) return;
-    for (std::int64_t k = 0; k < 24; ++k) force[tile_base(i, 24) + k * PLIANT_TILE] = 0;
-  }
-  /// Adds a force to `sum` if it acts at the point itself, otherwise to the nodes at the edge.
-  void add(std::int64_t i, const PatchMeeting<Scalar, EDGES>& met, const Quanta& f, Quanta& sum) const {
-    if (!met.edged) {
-      sum = sum_of(sum, f);
-    } else if constexpr (EDGES != 0) {
-      share_out(i, met, f);
-    }
-  }
-
- private:
-  /// Distributes a force over the nodes; the rounding remainder goes to the node with the largest weight.
-  void share_out(std::int64_t i, const PatchMeeting<Scalar, EDGES>& met, const Quanta& f) const {
-    std::int32_t* out = force + tile_base(i, 24);
-    Quanta left = f;
-    std::size_t largest = 0;
-    const auto give = [&](std::size_t k, const Quanta& part) {
-      for (std::size_t c = 0; c < 3; ++c) out[static_cast<std::int64_t>(3 * k + c) * PLIANT_TILE] += part[c];
-      left = difference(left, part);
-    };
-    for (std::size_t k = 0; k < 8; ++k) {
-      const Scalar w = met.weight[k];
-      give(k, {quanta(w * static_cast<Scalar>(f[0])), quanta(w * static_cast<Scalar>(f[1])),
-               quanta(w * static_cast<Scalar>(f[2]))});
-      largest = w > met.weight[largest] ? k : largest;
-    }
-    give(largest, Quanta(left));
+  static void take(const EdgeTouch<Scalar>& from, PatchMeeting<Scalar, EDGES>& out) {
+    out.m.distance = from.distance;
+    out.m.opening = from.opening;
+    out.m.normal = from.normal;
+    out.place = from.at.now;
+    out.weight = from.at.weight;
+    out.share = from.share;
+    out.ease = EdgeNumbers<Scalar>::ease;
+    out.edged = true;
   }
 };
 

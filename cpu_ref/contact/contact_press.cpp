@@ -1,4 +1,5 @@
 // Twin of kernels/contact/contact_press.cl.
+#include "cpu_ref/contact/contact_corners.h"
 #include "cpu_ref/contact/contact_grip.h"
 #include "cpu_ref/registry.h"
 
@@ -51,6 +52,14 @@ Vec<Scalar> with_friction(const Tools<Scalar>& tools, std::int32_t t, const Plac
   if (!(friction > Scalar(0))) return f;
   if (anchor[3] == Scalar(0)) hold_here(tools, t, p, own, anchor);
   return anchor[3] == own ? press_friction(m, tools.next(t), anchor, stiffness, friction * push, f) : f;
+}
+
+/// Drag of an edge on what slips along it (contact_edge.cl).
+template <class Scalar, int EDGES>
+Vec<Scalar> with_drag(const PatchMeeting<Scalar, EDGES>& met, Scalar push, Scalar stiffness, const Vec<Scalar>& f) {
+  if (!met.edged || !(push > Scalar(0))) return f;
+  const Vec<Scalar> side = scaled_sum(minus(dot(met.m.slip, met.m.normal)), met.m.normal, met.m.slip);
+  return scaled_sum(-(EdgeNumbers<Scalar>::drag * stiffness), side, f);
 }
 
 /// The tools that a point touches, one bit each, and whether it may touch something in the next step.
@@ -163,10 +172,8 @@ void contact_press(Range range, const Scalar* node_u, const Scalar* node_w, cons
       const bool gripped = GRIPS != 0 && anchor[3] == gripped_by<Scalar>(t);
       const Vec<Scalar> f =
           gripped ? times(grip_slip(all, t, anchor, m), -stiffness) : with_friction(all, t, p, m, anchor, stiffness, push);
-      const Quanta q = quanta(f, contact_params[1]);
       begin_touch(on_tool, m.opening - m.distance);
-      add_to_tool(on_tool, all.next(t), contact_params, met.place, q);
-      corners.add(i, met, q, sum);
+      corners.add(all, t, i, met, p, with_drag(met, push, stiffness, f), {}, {}, contact_params, on_tool, sum);
     }
     left.keep();
     set_three(force, sum);

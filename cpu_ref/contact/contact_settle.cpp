@@ -1,6 +1,7 @@
 // Twin of kernels/contact/contact_settle.cl.
 #include <bit>
 
+#include "cpu_ref/contact/contact_corners.h"
 #include "cpu_ref/contact/contact_grip.h"
 #include "cpu_ref/registry.h"
 
@@ -84,7 +85,7 @@ void contact_settle(Range range, const Scalar* node_u, const Scalar* node_w, con
   const EdgedTools<Scalar, EDGES> all{
       {tool_kind, tool_data, tool_grid, tool_pose, tools, step}, tool_edge, {points, touch_surface, contact_patch}};
   const Corners<Scalar, EDGES> corners{contact_corner_force, contact_corner_weight};
-  const Scalar h = step_params[0], half_hh = (Scalar(0.5) * h) * h, quantum = contact_params[0], inverse = contact_params[1];
+  const Scalar h = step_params[0], half_hh = (Scalar(0.5) * h) * h, quantum = contact_params[0];
   for (std::int64_t entry = range.begin; entry < range.end; ++entry) {
     const std::int64_t i = listed(contact_list, entry);
     if (contact_near[i / PLIANT_TILE] == 0) continue;
@@ -118,10 +119,7 @@ void contact_settle(Range range, const Scalar* node_u, const Scalar* node_w, con
         if (held_fast) f = settle_grip(all, t, m, anchor, stiffness, points.area(i), count == 1 ? nullptr : &first, f);
         if (count == 1 && anchor[3] == static_cast<Scalar>(t + 1))
           f = settle_friction(m, all.next(t), anchor, stiffness, law[14], f);
-        Quanta q = quanta(f, inverse);
-        for (std::size_t k = 0; k < 3; ++k) q[k] -= before[k];
-        add_to_tool(on_tool, all.next(t), contact_params, met.place, q);
-        corners.add(i, met, q, sum);
+        corners.add(all, t, i, met, p, f, count == 1 ? first : Vec<Scalar>{}, before, contact_params, on_tool, sum);
       }
       for (std::size_t k = 0; k < 3; ++k) force[static_cast<std::int64_t>(k)] += sum[k];
     } else {

@@ -29,7 +29,7 @@ void describe_tool(V&& v, S&& s) {
   describe_friction(v, s);
   v(s.edges, {"edges", any, "", "true",
               "`true`, of a sphere, capsule, box or mesh: where it is thinner than half a cell it is met along its edges "
-              "instead of passing between points of contact; experimental ([contact](contact.md#thin-tools))"});
+              "instead of passing between points of contact ([contact](contact.md#thin-tools))"});
   v(s.scale, {"scale", above(0).absent_at(1), "", "0.001", "factor on the coordinates of a mesh or a sequence"});
   v(s.frames_per_second, {"frames_per_second", above(0).absent_at(30), "1/s", "25",
                           "rate of a sequence, whose first mesh stands at time 0 and whose last one stays"});

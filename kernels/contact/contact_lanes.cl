@@ -74,6 +74,10 @@ INLINE quanta3 quanta3_of(vec3 f, float inverse) {
   return q;
 }
 INLINE integer pick(integer c, integer a, integer b) { return c ? a : b; }
+INLINE quanta3 less(quanta3 a, quanta3 b) {
+  const quanta3 r = {a.x - b.x, a.y - b.y, a.z - b.z};
+  return r;
+}
 INLINE quanta3 negated_where(integer c, quanta3 q) {
   const quanta3 r = {pick(c, -q.x, q.x), pick(c, -q.y, q.y), pick(c, -q.z, q.z)};
   return r;

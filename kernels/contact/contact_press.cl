@@ -80,7 +80,9 @@ __kernel void contact_press(__global const float* node_u, __global const float* 
   put_real(stuck_to >= 0 && (touching >> stuck_to & 1) == 0, none, anchor, 3);
   if (GRIPS) let_go(anchor, gripped, out);
   real lag = none, lag_in = none, w = known;
-  quanta3 sum = {zero, zero, zero};
+  const vec3 no_vec = {none, none, none};
+  const quanta3 nothing = {zero, zero, zero};
+  quanta3 sum = nothing;
   const integer unknown = touching != 0 && !(w > 0.0f);
   if (ANY(unknown)) {
     w = unknown ? yield_of_all(node_u, node_w, contact_node, contact_share, first, half_hh) : w;
@@ -121,16 +123,14 @@ __kernel void contact_press(__global const float* node_u, __global const float* 
       slides = hit && !held_fast;
     }
     if (data[14] > 0.0f) f = press_friction(slides, t, next, anchor, met.m, place, stiffness, data[14] * push, f);
-    const quanta3 q = quanta3_of(f, contact_params[1]);
+#if EDGES
+    const vec3 slid = times_add(-dot_lanes(met.m.slip, met.m.normal), met.m.normal, met.m.slip);
+    f = where(met.edged && push > 0.0f, times_add(-(SAME(EDGE_DRAG) * stiffness), slid, f), f);
+#endif
     for (int c = 0; c < 6; ++c) put(hit, zero, on_tool, c);
-    add_to_tool(hit, on_tool, next, contact_params, met.at, q);
     const real depth_before = opening - met.m.distance;
     put(hit, AS_INTEGER(depth_before > 0.0f ? depth_before : none), on_tool, 6);
-    if (EDGES) add_to_corners(contact_corner_force, first, hit, patches, q);
-    const integer at_point = hit && !met.edged;
-    sum.x += pick(at_point, q.x, zero);
-    sum.y += pick(at_point, q.y, zero);
-    sum.z += pick(at_point, q.z, zero);
+    add_tool_force(hit, on_tool, next, contact_params, met, p.now, f, no_vec, nothing, contact_corner_force, first, patches, &sum);
   }
   STORE(lag, start, 0);
   STORE(lag_in, start, PLIANT_TILE);

@@ -63,7 +63,7 @@ __kernel void contact_settle(__global const float* node_u, __global const float*
   if (first < 0) return;
   const int near = contact_near[first / PLIANT_TILE];
   if (near == 0) return;
-  const float h = step_params[0], half_hh = (0.5f * h) * h, inverse = contact_params[1], quantum = contact_params[0];
+  const float h = step_params[0], half_hh = (0.5f * h) * h, quantum = contact_params[0];
   const real none = 0.0f, one = 1.0f;
   const integer zero = 0;
   __global float* anchor = contact_anchor + POINT_BASE(first, 4);
@@ -115,14 +115,10 @@ __kernel void contact_settle(__global const float* node_u, __global const float*
       }
       const integer sticks = hit && single && LOAD(anchor, 3 * PLIANT_TILE) == tool_number;
       if (ANY(sticks)) f = settle_friction(sticks, next, anchor, met.m, stiffness, data[14], f);
-      const quanta3 all = quanta3_of(f, inverse);
-      const quanta3 q = {all.x - pick(single, pressed.x, zero), all.y - pick(single, pressed.y, zero), all.z - pick(single, pressed.z, zero)};
-      add_to_tool(hit, on_tool, next, contact_params, met.at, q);
-      if (EDGES) add_to_corners(contact_corner_force, first, hit, patches, q);
-      const integer at_point = hit && !met.edged;
-      sum.x += pick(at_point, q.x, zero);
-      sum.y += pick(at_point, q.y, zero);
-      sum.z += pick(at_point, q.z, zero);
+      const quanta3 before = {pick(single, pressed.x, zero), pick(single, pressed.y, zero), pick(single, pressed.z, zero)};
+      const vec3 no_vec = {none, none, none};
+      add_tool_force(hit, on_tool, next, contact_params, met, p.now, f, where(single, first_part, no_vec), before, contact_corner_force, first, patches,
+                     &sum);
     }
     STORE(LOAD(force, 0) + sum.x, force, 0);
     STORE(LOAD(force, PLIANT_TILE) + sum.y, force, PLIANT_TILE);

@@ -9,8 +9,8 @@ INLINE void write_weights(__global float* contact_corner_weight, __global const 
     const patch_meeting* met = patches + l;
     if (!LANE_INT(wanted, l) || (weighed && !(met->edged && LANE_INT(soon, l)))) continue;
     __global float* out = contact_corner_weight + POINT_BASE(first + l, 9);
-    for (int k = 0; k < 8; ++k) out[k * PLIANT_TILE] = met->edged ? met->at.weight[k] : contact_weight[POINT_BASE(first + l, 8) + k * PLIANT_TILE];
-    out[8 * PLIANT_TILE] = met->share;
+    for (int k = 0; k < 8; ++k) out[k * PLIANT_TILE] = met->edged ? met->spread[k] : contact_weight[POINT_BASE(first + l, 8) + k * PLIANT_TILE];
+    out[8 * PLIANT_TILE] = met->spread_share;
   }
 }
 
@@ -28,16 +28,41 @@ INLINE void add_to_corners(__global int* contact_corner_force, int first, intege
     int4 left = whole;
     int largest = 0;
     for (int k = 0; k < 8; ++k) {
-      const float w = patches[l].at.weight[k];
+      const float w = patches[l].weight[k];
       const int4 part = (int4)(quanta(w * (float)whole.x), quanta(w * (float)whole.y), quanta(w * (float)whole.z), 0);
       out[3 * k * PLIANT_TILE] += part.x;
       out[(3 * k + 1) * PLIANT_TILE] += part.y;
       out[(3 * k + 2) * PLIANT_TILE] += part.z;
       left -= part;
-      largest = w > patches[l].at.weight[largest] ? k : largest;
+      largest = w > patches[l].weight[largest] ? k : largest;
     }
     out[3 * largest * PLIANT_TILE] += left.x;
     out[(3 * largest + 1) * PLIANT_TILE] += left.y;
     out[(3 * largest + 2) * PLIANT_TILE] += left.z;
   }
+}
+
+// Adds the forces f of a tool on LANES points to them, or where an edge touches a patch, the normal part at its place and friction at the point. `had`:
+// what was added in this step; `before`: the same in quanta.
+INLINE void add_tool_force(integer hit, __global int* on_tool, __global const float* next, __global const float* contact_params, tool_meetings met, vec3 place,
+                           vec3 f, vec3 had, quanta3 before, __global int* contact_corner_force, int first, const patch_meeting* patches, quanta3* sum) {
+  const float inverse = contact_params[1];
+  const integer zero = 0;
+  quanta3 q = less(quanta3_of(f, inverse), before), at_point = q;
+#if EDGES
+  const vec3 along = times(dot_lanes(f, met.m.normal), met.m.normal);
+  const quanta3 pressed = quanta3_of(times(dot_lanes(had, met.m.normal), met.m.normal), inverse);
+  const quanta3 push = less(quanta3_of(along, inverse), pressed), pull = less(quanta3_of(sub(f, along), inverse), less(before, pressed));
+  q.x = pick(met.edged, push.x, q.x), q.y = pick(met.edged, push.y, q.y), q.z = pick(met.edged, push.z, q.z);
+  at_point.x = pick(met.edged, pull.x, q.x), at_point.y = pick(met.edged, pull.y, q.y), at_point.z = pick(met.edged, pull.z, q.z);
+  add_to_corners(contact_corner_force, first, hit, patches, q);
+#endif
+  add_to_tool(hit, on_tool, next, contact_params, met.at, q);
+#if EDGES
+  const integer edged = hit && met.edged;
+  if (ANY(edged)) add_to_tool(edged, on_tool, next, contact_params, place, at_point);
+#endif
+  sum->x += pick(hit, at_point.x, zero);
+  sum->y += pick(hit, at_point.y, zero);
+  sum->z += pick(hit, at_point.z, zero);
 }

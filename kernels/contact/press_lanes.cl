@@ -33,14 +33,14 @@ INLINE tool_meetings meet_tool(MEET_ARGUMENTS, int t, int first, integer wanted,
   tool_meetings out = {meet_lanes(tool_kind, tool_data, tool_grid, tool_pose, tools, step, t, alone, p), p.now, one, one, zero};
 #if EDGES
   for (int l = 0; l < LANES; ++l) {
-    patches[l].share = 1.0f, patches[l].edged = 0;
+    patches[l].share = patches[l].spread_share = 1.0f, patches[l].edged = 0;
     if (!has_edges(tool_kind, t) || !LANE_INT(wanted, l)) continue;
     const contact_place place = {lane3(p.now, l), lane3(p.moved, l)};
     patches[l] = meet_patch(MEET_VALUES, t, first + l, place);
     SET_LANE(out.m.distance, l, patches[l].m.distance);
     SET_LANE(out.m.opening, l, patches[l].m.opening);
     set_lane3(&out.m.normal, l, patches[l].m.normal);
-    set_lane3(&out.at, l, patches[l].at.now);
+    set_lane3(&out.at, l, patches[l].at);
     SET_LANE(out.share, l, patches[l].share);
     SET_LANE(out.ease, l, patches[l].ease);
     SET_LANE_INT(out.edged, l, patches[l].edged ? -1 : 0);

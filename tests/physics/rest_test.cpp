@@ -94,6 +94,50 @@ TEST_P(RestPhysics, ThinToolsWithEdgesAreMet) {
   }
 }
 
+/// A rod that lies and the rim of a plate, askew to the cells. Were only the deepest point of an edge to push on a patch, or
+/// did friction act where the edge is and not where slip is measured, they would shake the tissue for ever.
+TEST_P(RestPhysics, ThinToolsThatLieOnTissueRest) {
+  ContactTool rod, plate;
+  rod.shape = ToolShape::capsule;
+  rod.radius = 0.001;
+  rod.first = {-0.015, -0.008, 0};
+  rod.second = {0.015, 0.008, 0.001};
+  plate.shape = ToolShape::box;
+  plate.size = {0.002, 0.03, 0.05};
+  const std::array<std::pair<ContactTool, Vec3d>, 2> tools{
+      {{rod, {0.0263, 0.0241, 0.0212}}, {plate, {0.0263, 0.0241, 0.0452}}}};
+  const std::array<const char*, 2> names{"rod", "plate"};
+  for (const Discretization cut : {Discretization::hex8_bricks, Discretization::tet4}) {
+    for (std::size_t k = 0; k < tools.size(); ++k) {
+      Scene scene;
+      scene.bodies = {held_block({{10, 10, 4}, 0.005}, cut, 20)};
+      scene.tools = {pressed(tools[k].first, tools[k].second, 0.0025)};
+      scene.tools[0].edges = true;
+      scene.tools[0].friction = k == 0 ? 0 : 0.3;
+      auto sim = simulate(scene, GetParam());
+      check(std::string(names[k]) + ", " + name_of(cut) + ": motion at rest", most_motion(*sim, 1.5, 1.6), 1e-6);
+      EXPECT_GT(sim->report().tools[0].now.force[2], 0.05);
+    }
+  }
+}
+
+/// With friction and hardly any damping; the mean of all points of an edge is not enough for that.
+TEST_P(RestPhysics, ThinRodWithFrictionFeedsNoMotion) {
+  Scene scene;
+  scene.bodies = {held_block({{12, 8, 4}, 0.005}, Discretization::hex8full_lattice, 0.5)};
+  ContactTool rod;
+  rod.shape = ToolShape::capsule;
+  rod.radius = 0.0005;
+  rod.first = {-0.02, -0.008, 0};
+  rod.second = {0.02, 0.008, 0};
+  rod.friction = 0.3;
+  rod.edges = true;
+  scene.tools = {pressed(rod, {0.0313, 0.0211, 0.0207}, 0.0035)};
+  auto sim = simulate(scene, GetParam());
+  const double early = most_motion(*sim, 0.5, 0.8), late = most_motion(*sim, 1.5, 1.6);
+  check("growth of the motion in 1 s", std::max(0.0, late / early - 1), 0.2);
+}
+
 /// The rod, the block and the step that once shook for ever, on every element; and the force at a tenth of the step.
 TEST_P(RestPhysics, ARodOnASlab) {
   for (const Discretization cut : all_cuts()) {
