@@ -325,6 +325,7 @@ class RandomScene {
       if (touch_.chance(0.2)) tool["contact"] = {{"stiffness", touch_.logarithmic(1e4, 1e7)}, {"alpha", touch_.uniform(0, 1)}};
       Dice hold(number_ ^ (0x51ed270b + i));
       if (hold.chance(0.25)) tool["grip"] = random_grip(hold, young_);
+      if (hold.chance(0.3) && !tool["shape"].contains("half_space")) tool["edges"] = true;
       list.push_back(std::move(tool));
     }
     return list;

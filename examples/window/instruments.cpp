@@ -67,7 +67,9 @@ void Instruments::follow_scene() {
   all_.clear();
   active_ = kNone;
   next_look_ = 0;
-  for (const pliant::ToolForce& t : world_.tool_forces()) all_.push_back({t.name, {t.name}, false, t.position, t.turn});
+  for (const pliant::ToolForce& t : world_.tool_forces()) {
+    if (std::count(others_.begin(), others_.end(), t.name) == 0) all_.push_back({t.name, {t.name}, false, t.position, t.turn});
+  }
 }
 
 std::size_t Instruments::find(const std::string& label) const {

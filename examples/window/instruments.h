@@ -4,6 +4,7 @@
 
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "drawing.h"
@@ -17,7 +18,9 @@ using Turn = std::array<double, 4>;  ///< unit quaternion x, y, z, w
 class Instruments {
  public:
   /// `size`: diagonal of the bodies [m], which the sizes of probe and grasper follow.
-  Instruments(pliant::World& world, Drawing& drawing, float size) : world_(world), drawing_(drawing), size_(size) {}
+  /// `others`: tools that somebody else moves.
+  Instruments(pliant::World& world, Drawing& drawing, float size, std::vector<std::string> others)
+      : world_(world), drawing_(drawing), size_(size), others_(std::move(others)) {}
 
   /// Adds what is missing: the scene's tools, each an instrument. Call after the World was built or reset.
   void follow_scene();
@@ -61,6 +64,7 @@ class Instruments {
   pliant::World& world_;
   Drawing& drawing_;
   float size_;
+  std::vector<std::string> others_;
   std::vector<Instrument> all_;
   std::size_t active_ = kNone;
   pliant::Vec3d wanted_{};

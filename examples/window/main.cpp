@@ -1,8 +1,9 @@
 // A soft body to play with, and instruments.
 //   window SCENE [--screenshot FILE.png] [--seconds T] [--pull X,Y] [--cut X,Y,X,Y] [--depth D] [--probe D] [--grasp D]
-//          [--set LABEL=VALUE] [--size WxH]
+//          [--set LABEL=VALUE] [--live DEVICE [--tool NAME]] [--size WxH]
 // Left button: grab and pull. With Control: cut along the way of the mouse, as deep as the panel says. Right button: turn.
 // Space: poke what is under the mouse. R: start again. P: a probe, G: a grasper, 1 to 9: the scene's tools, 0: the hand.
+// --live: a haptic device drives a tool (docs/haptic_devices.md), and the panel shows what the hand feels.
 // With an instrument the mouse moves it, the wheel pushes it deeper, Shift turns it; arrows, PageUp and PageDown likewise.
 // --screenshot writes a picture after T seconds of simulation and ends; in its first half --cut sweeps from one place to
 // another (parts of the window's height, from its middle) with a blade of --depth D (sizes of the body), --pull drags what is
@@ -19,6 +20,7 @@
 
 #include "coloring.h"
 #include "drawing.h"
+#include "hands.h"
 #include "instruments.h"
 #include "io/png.h"
 #include "options.h"
@@ -34,7 +36,8 @@ class Window {
   explicit Window(const Options& options)
       : o_(options),
         world_(pliant::World::open(options.scene, {.interactive = true, .cutting = true})),
-        frame_(world_.frame()) {
+        frame_(world_.frame()),
+        hands_(world_, options.live, options.tool) {
     if (glfwInit() == GLFW_FALSE) throw std::runtime_error("no display: GLFW could not start");
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
@@ -58,7 +61,7 @@ class Window {
     panel_->depth = o_.depth;
     panel_->choose_color(o_.color);
     aim();
-    instruments_ = std::make_unique<Instruments>(world_, *drawing_, size_);
+    instruments_ = std::make_unique<Instruments>(world_, *drawing_, size_, hands_.tools());
     instruments_->follow_scene();
   }
   ~Window() {
@@ -71,8 +74,8 @@ class Window {
   int run() {
     while (glfwWindowShouldClose(window_) == GLFW_FALSE) {
       glfwPollEvents();
-      follow(panel_->show({instruments_->labels(), instruments_->active(), instruments_->force(), frame_->time, speed(),
-                           coloring_.most(), message_}));
+      follow(panel_->show({instruments_->labels(), hands_.lines(), instruments_->active(), instruments_->force(), frame_->time,
+                           speed(), coloring_.most(), message_}));
       simulate();
       drawing_->update(*frame_);
       coloring_.apply(*drawing_);
@@ -336,11 +339,12 @@ class Window {
         instruments_->fetch_shapes(frame_->time);
         instruments_->drive(kFrame);
       }
-      if (!o_.screenshot.empty()) {
+      const double ahead = hands_.empty() ? kFrame : world_.busy() ? 0 : hands_.due(kFrame, 4 * kFrame);
+      if (!o_.screenshot.empty() && hands_.empty()) {
         world_.advance(kFrame);
         coloring_.update(world_, panel_->field());
-      } else if (!world_.busy()) {
-        world_.advance_async(kFrame);
+      } else if (!world_.busy() && ahead > 0) {
+        world_.advance_async(ahead);
       }
     } catch (const pliant::Error& error) {
       if (!o_.screenshot.empty()) throw;
@@ -352,6 +356,7 @@ class Window {
   Options o_;
   pliant::World world_;
   pliant::FramePtr frame_;
+  Hands hands_;
   GLFWwindow* window_ = nullptr;
   std::unique_ptr<Drawing> drawing_;
   std::unique_ptr<Panel> panel_;

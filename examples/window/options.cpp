@@ -26,6 +26,10 @@ Options read(int argc, char** argv) {
     } else if (word == "--grasp" && std::sscanf(value, "%f", &o.grasp) == 1) {
     } else if (word == "--set" && std::strchr(value, '=') != nullptr) {
       o.set = value;
+    } else if (word == "--live" && i + 1 < argc) {
+      o.live.emplace_back(value);
+    } else if (word == "--tool" && i + 1 < argc) {
+      o.tool.emplace_back(value);
     } else if (word == "--color") {
       o.color = value;
     } else if (word == "--size" && std::sscanf(value, "%dx%d", &o.width, &o.height) == 2) {
@@ -41,7 +45,7 @@ Options read(int argc, char** argv) {
     throw std::runtime_error(
         "usage: window SCENE [--screenshot FILE] [--seconds T] [--pull X,Y] [--cut X,Y,X,Y] [--depth D] [--probe D] [--grasp "
         "D] "
-        "[--set LABEL=VALUE] [--color FIELD] [--size WxH]");
+        "[--set LABEL=VALUE] [--color FIELD] [--live DEVICE]... [--tool NAME]... [--size WxH]");
   }
   return o;
 }

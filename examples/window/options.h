@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace window {
 
@@ -12,8 +13,9 @@ struct Options {
   std::optional<std::array<float, 2>> pull;
   std::optional<std::array<float, 4>> cut;
   float depth = 1, probe = 0, grasp = 0;
-  std::string set;    ///< LABEL=VALUE
-  std::string color;  ///< a field of World::vertex_values()
+  std::string set;                      ///< LABEL=VALUE
+  std::string color;                    ///< a field of World::vertex_values()
+  std::vector<std::string> live, tool;  ///< devices, and the tools that they drive
   int width = 1024, height = 768;
 };
 

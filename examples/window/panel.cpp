@@ -183,6 +183,7 @@ PanelChoice Panel::show(const PanelState& state) {
     ImGui::PlotLines("##trace", trace_.data(), static_cast<int>(trace_.size()), static_cast<int>(next_), text, 0,
                      std::max(most_, 1e-6F), {240, 60});
   }
+  for (const std::string& line : state.hands) ImGui::TextUnformatted(line.c_str());
   show_colors(state.most);
   show_parameters(choice);
   if (!state.message.empty()) {

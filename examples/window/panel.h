@@ -39,7 +39,8 @@ inline constexpr std::array<ColorChoice, 7> kColors{{{"", "tissue", ""},
 /// What the panel shows in one frame.
 struct PanelState {
   std::vector<std::string> instruments;
-  std::size_t active = 0;  ///< beyond the last: the hand
+  std::vector<std::string> hands;  ///< a line for each haptic device
+  std::size_t active = 0;          ///< beyond the last: the hand
   double force = 0, time = 0;
   double real_time = 0;  ///< simulated seconds per second
   float most = 0;        ///< largest value of the colours

@@ -71,8 +71,25 @@ class Viewers(unittest.TestCase):
         self.assertGreater(len(set(pictures[0][2])), 20, "one colour only")
         for (name, *_), picture in list(zip(actions, pictures))[1:]:
             self.assertGreater(self.difference(pictures[0], picture), 0.002, f"{name}: the picture shows nothing of it")
+        self.look_at_a_device(env)
         wrong = subprocess.run([WINDOW, self.scene, "--set", "mass=1", "--screenshot", "no.png"], capture_output=True, text=True, env=env, timeout=300)
         self.assertEqual((wrong.returncode, "no slider 'mass'" in wrong.stderr), (2, True), wrong.stderr)
+
+    def look_at_a_device(self, env):
+        """A recorded stroke pushes a tool into the cube, in wall time; without a tool for it the window says so."""
+        scene = json.loads(self.scene.read_text())
+        scene["tools"] = [{"name": "probe", "shape": {"sphere": 0.02}, "path": [[0, 0, 0.075, 0]]}]
+        with_tool = self.folder / "probe.json"
+        with_tool.write_text(json.dumps(scene))
+        rows_of = [f"{0.01 * i:.2f},0,{-0.003 * i:.4f},0,0,0,0,1,0" for i in range(16)]
+        stroke = self.folder / "stroke.csv"
+        stroke.write_text("time,x,y,z,qx,qy,qz,qw,buttons\n" + "\n".join(rows_of) + "\n")
+        size = ("--seconds", 0.4, "--size", "480x360")
+        self.run_here(WINDOW, with_tool, "--screenshot", "waits.png", *size, env=env)
+        self.run_here(WINDOW, with_tool, "--live", f"file:{stroke}", "--screenshot", "felt.png", *size, env=env)
+        self.assertGreater(self.difference(rows(self.folder / "waits.png"), rows(self.folder / "felt.png")), 0.002)
+        wrong = subprocess.run([WINDOW, self.scene, "--live", f"file:{stroke}"], capture_output=True, text=True, env=env, timeout=300)
+        self.assertEqual((wrong.returncode, "a tool for each device" in wrong.stderr), (2, True), wrong.stderr)
 
     def difference(self, a, b):
         """Share of the bytes that differ clearly in the right half, where the panel is not."""

@@ -1,0 +1,46 @@
+#include "hands.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+#include <utility>
+
+namespace window {
+
+Hands::Hands(pliant::World& world, const std::vector<std::string>& devices, std::vector<std::string> tools)
+    : tools_(std::move(tools)) {
+  const std::vector<pliant::ToolForce> all = world.tool_forces();
+  if (tools_.empty() && devices.size() == 1 && all.size() == 1) tools_ = {all[0].name};
+  if (tools_.size() != devices.size()) {
+    std::string names;
+    for (const pliant::ToolForce& t : all) names += (names.empty() ? "" : ", ") + t.name;
+    throw std::runtime_error("got " + std::to_string(devices.size()) + " --live and " + std::to_string(tools_.size()) +
+                             " --tool, expected a tool for each device; the scene has " + (names.empty() ? "none" : names));
+  }
+  for (std::size_t i = 0; i < devices.size(); ++i)
+    loops_.push_back(std::make_unique<pliant::HapticLoop>(world, tools_[i], pliant::open_haptic_device(devices[i])));
+}
+
+double Hands::due(double least, double most) {
+  const auto now = std::chrono::steady_clock::now();
+  const double passed = std::chrono::duration<double>(now - last_).count();
+  if (passed < least) return 0;
+  last_ = now;
+  return std::min(passed, most);
+}
+
+std::vector<std::string> Hands::lines() const {
+  std::vector<std::string> out;
+  for (std::size_t i = 0; i < loops_.size(); ++i) {
+    const pliant::HapticState now = loops_[i]->state();
+    const pliant::Vec3d& f = now.last.force;
+    char text[160];
+    std::snprintf(text, sizeof text, "%s: the hand feels %.3g N (%s, %lld ticks)", tools_[i].c_str(),
+                  std::sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]), now.model.c_str(), static_cast<long long>(now.ticks));
+    out.emplace_back(text);
+  }
+  return out;
+}
+
+}  // namespace window
