@@ -62,6 +62,7 @@ struct Program {
   std::vector<Pass> step;    ///< one time step; for an extension, its only list
   std::vector<Pass> look;    ///< broad-phase searches of contact, run between steps when the host needs them
   std::vector<Pass> force;   ///< R - F of the current configuration into node_force, without advancing
+  std::vector<Pass> rates;   ///< the same with the viscous forces of the last increments; empty without any
   std::vector<Pass> status;  ///< once per batch: first fault into fault_summary, largest increment into increment_summary
   /// Values for Pass::active: contact points in tiles near something, and the nodes that they move.
   std::shared_ptr<std::int64_t> near_points, near_nodes;

@@ -19,6 +19,11 @@ static void evaluate_only(Pass& pass) {
   }
 }
 
+static bool is_viscous(const Pass& pass) {
+  return std::any_of(pass.defines.begin(), pass.defines.end(),
+                     [](const auto& define) { return define.first == "VISCOUS" && define.second != 0; });
+}
+
 /// An edit finds what a buffer was before by its name (ProgramBackend::remake).
 static void check_names(const std::vector<Buffer>& buffers) {
   std::vector<std::string_view> names;
@@ -37,6 +42,7 @@ Program ProgramBuilder::build() {
   add_loads();
   add_links();
   program_.force = program_.step;
+  if (std::any_of(program_.step.begin(), program_.step.end(), is_viscous)) program_.rates = program_.step;
   for (Pass& pass : program_.force) evaluate_only(pass);
   add_gravity();
   for (std::size_t b = 0; b < model_.flsm.size(); ++b) add_flsm(b);
@@ -119,6 +125,11 @@ std::vector<std::pair<std::string, int>> ProgramBuilder::update_defines(int forc
   return {{"FORCE_ONLY", force_only}, {"HAS_LOAD", needs_load() ? 1 : 0}, {"INTEGRATOR", integrator()}};
 }
 
+void ProgramBuilder::add_update(int force_only, const Pass& pass) {
+  (force_only ? program_.force : program_.step).push_back(pass);
+  if (force_only && !program_.rates.empty()) program_.rates.push_back(pass);
+}
+
 void ProgramBuilder::add_updates() {
   if (model_.bricks > 0) {
     const std::int64_t count = std::int64_t{model_.bricks} * PLIANT_BRICK_NODES;
@@ -134,7 +145,7 @@ void ProgramBuilder::add_updates() {
           count,
           brick_update_bytes(needs_load()),
           24};
-      (force_only ? program_.force : program_.step).push_back(std::move(pass));
+      add_update(force_only, pass);
     }
   }
   if (has_list_nodes()) add_list_update();
@@ -176,7 +187,7 @@ void ProgramBuilder::add_list_update() {
         nodes,
         16 * entries + 64 + (needs_load() ? 16 : 0),
         3 * entries + 21};
-    (force_only ? program_.force : program_.step).push_back(std::move(pass));
+    add_update(force_only, pass);
   }
 }
 

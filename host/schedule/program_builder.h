@@ -84,6 +84,7 @@ class ProgramBuilder {
   void add_shared_buffers();
   void add_gravity();
   void add_updates();
+  void add_update(int force_only, const Pass& pass);
   void add_list_update();
   void add_constraints();
   void add_rotations();

@@ -225,6 +225,30 @@ TEST_P(Viscosity, TheForceThatIsOnlyAskedForHasNone) {
   EXPECT_EQ(forces(0.01), forces(0));
 }
 
+/// Viscous forces grow with the square of the stretch, the elastic ones of this law do not: at the step that their ratio at
+/// rest allows, a bar that is drawn out to more than twice its length shakes with as much energy as it holds.
+TEST_P(Viscosity, TheStepFollowsTheStretch) {
+  for (const Discretization cut : {Discretization::tet4, Discretization::hex8full_lattice}) {
+    Body body = box_body({{6, 2, 2}, 0.01}, cut, viscous_material(0.05));
+    body.fixed.push_back({face(0, 0), {true, true, true}});
+    body.forces.push_back({face(0, 0.06), {2.5 * kYoung / 2 * 4e-4, 0, 0}, smooth(0.4)});
+    Scene scene;
+    scene.bodies = {body};
+    auto sim = simulate(scene, GetParam());
+    const double first = sim->dt();
+    while (sim->time() < 0.6) {
+      sim->advance(sim->next_batch(8));
+      sim->watch_energy();
+    }
+    check(std::string(name_of(cut)) + " energy created", sim->report().energy.share().value(), 1e-4);
+    check(std::string(name_of(cut)) + " trust lost", 1 - sim->state().limit.dt_backoff, 0);
+    EXPECT_LT(sim->dt(), 0.6 * first) << name_of(cut);
+    double longest = 0;
+    for (const Vec3d& u : sim->displacements(0)) longest = std::max(longest, u[0]);
+    EXPECT_GT(longest, 0.07) << name_of(cut);
+  }
+}
+
 PLIANT_ON_BACKENDS(Viscosity);
 
 }  // namespace

@@ -327,6 +327,42 @@ TEST(FlsmRun, TheAdmissibleBetaIsStable) {
   EXPECT_LT(largest(sim.velocities(0)), 3 * start) << "beta = " << scene.bodies[0].model.beta;
 }
 
+/// Bodies of shape matching alone, and what pulls at their nodes: a membrane, springs to another body, slack ones at that.
+/// The step that both allow is stable, and not the least.
+TEST(FlsmRun, WhatIsLinkedHasAStableStep) {
+  const std::string head = R"({"format": "pliant-scene/1", "gravity": [0, 0, 0], "bodies": [)", tail = "]";
+  const auto cube = [](const char* more) {
+    return std::string(R"({"name": "cube)") + (*more == 't' ? "2" : "") + R"(", "surface": "meshes/cube.obj", "element": "hex8",
+      "lattice": {"spacing": 0.02}, "material": {"young": 3000, "poisson": 0.3, "density": 1000}, "model": {"type": "flsm", "alpha": 1},
+      "angular_velocity": [1, 2, 3])" +
+           (*more == 't' ? R"(, "translate": [0, 0.15, 0]})" : std::string(more) + "}");
+  };
+  const std::string skin = R"(, "membrane": {"thickness": 1e-3, "young": 3e5, "poisson": 0.3})";
+  const auto joined = [](const char* slack) {
+    return std::string(R"(], "joins": [{"bodies": ["cube", "cube2"], "distance": 0.06, "spring": {"stiffness": 20)") + slack +
+           "}}]}";
+  };
+  const std::string both = cube("") + "," + cube("t");
+  for (const std::string& text :
+       {head + cube(skin.c_str()) + tail + "}", head + both + joined(""), head + both + joined(R"(, "slack": true)")}) {
+    Simulation sim(parse_scene(text, test::source_dir() + "/scenes/linked.json"), open_backend("cpu"));
+    const double start = largest(sim.velocities(0));
+    EXPECT_LE(sim.dt(), 1.0 / 60) << text;
+    EXPECT_GT(sim.dt(), 1e-3) << text;
+    EXPECT_EQ(sim.advance(3000), 3000) << text;
+    EXPECT_LT(largest(sim.velocities(0)), 3 * start) << text;
+  }
+  // At a given step dt the membrane adds dt^2 w^2 to alpha on the same nodes.
+  std::string loose = head + cube(skin.c_str()) + tail + "}";
+  const auto step = [](const std::string& text) {
+    return Simulation(parse_scene(text, test::source_dir() + "/scenes/linked.json"), open_backend("cpu")).dt();
+  };
+  const double pulled = step(loose);
+  loose.replace(loose.find(R"("alpha": 1)"), 10, R"("alpha": 0.01)");
+  EXPECT_LT(pulled, 0.95 * step(loose));
+  EXPECT_GT(pulled, 0.8 * step(loose));
+}
+
 /// In this lattice one grid point holds two nodes, and all links to its neighbours belong to the other one.
 TEST(FlsmRun, NoNodeFallsOutWhereTheLatticeBranches) {
   const Scene scene =

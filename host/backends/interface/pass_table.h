@@ -64,7 +64,7 @@ class PassTable {
   template <class Make>
   void load(const Program& program, Make&& make) {
     clear();
-    for (const auto* list : {&program.step, &program.look, &program.force, &program.status}) {
+    for (const auto* list : {&program.step, &program.look, &program.force, &program.rates, &program.status}) {
       for (const Pass& pass : *list) by_address_.emplace(&pass, &by_value(pass, make));
     }
   }

@@ -63,7 +63,7 @@ class OpenclBackend final : public ProgramBackend<opencl::DeviceMemory, Prepared
   }
 
   void compile(const Program& program) override {
-    for (const auto* passes : {&program.step, &program.look, &program.force, &program.status}) {
+    for (const auto* passes : {&program.step, &program.look, &program.force, &program.rates, &program.status}) {
       for (const Pass& pass : *passes) kernels_.make(pass.kernel, pass.defines, pass.shape == Shape::items ? 1 : info().lanes);
     }
   }

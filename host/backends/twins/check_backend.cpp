@@ -106,6 +106,7 @@ class CheckBackend final : public ref::TwinBackend<CheckBuffer, Prepared, float>
   [[nodiscard]] std::string list_name(const std::vector<Pass>& passes, std::int64_t step) const {
     const auto& [own, extension] = table().parts();
     if (own != nullptr && &passes == &own->force) return "the list of the forces";
+    if (own != nullptr && &passes == &own->rates) return "the list of the viscous forces";
     if (own != nullptr && &passes == &own->look) return "the list of the contact search";
     if (own != nullptr && &passes == &own->status) return "the list of the status";
     if (extension != nullptr && &passes == &extension->step) return "the list of the surface";

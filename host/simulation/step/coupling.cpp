@@ -96,9 +96,20 @@ struct InterfaceStiffness {
   double per_step = 0, fixed = 0;
 };
 
+/// Returns true if a body of shape matching alone is pulled by springs, vessels or a membrane: what pulls at the interface of
+/// others pulls at all of its nodes then.
+bool is_linked(const Model& model, const FlsmBatch& b) { return b.interface == 0 && !model.links.empty(); }
+
 InterfaceStiffness interface_stiffness(const Model& model) {
   InterfaceStiffness largest;
   for (const FlsmBatch& b : model.flsm) {
+    if (is_linked(model, b)) {
+      if (b.settings.young > 0)
+        largest.fixed = std::max(largest.fixed, b.stiffest * spring_of(b));
+      else
+        largest.per_step =
+            std::max(largest.per_step, b.stiffest * b.settings.alpha / (b.settings.substeps * b.settings.substeps));
+    }
     if (b.interface == 0) continue;
     if (b.settings.beta == 0 && b.settings.young > 0) {
       largest.fixed = std::max(largest.fixed, pull_bound(b) * spring_of(b));
@@ -142,8 +153,9 @@ double held_step(const FlsmBatch& b, const Model& model, double elements) {
 
 }  // namespace
 
-bool has_elements(const Model& model) {
-  if (!model.links.empty()) return true;
+bool has_elements(const Model& model) { return !model.links.empty() || has_finite_elements(model); }
+
+bool has_finite_elements(const Model& model) {
   return std::any_of(model.bodies.begin(), model.bodies.end(), [](const ModelBody& b) { return b.operational_elements > 0; });
 }
 
@@ -173,10 +185,12 @@ double held_goals_step(const Model& model, double elements_alone) {
 std::vector<double> interface_springs(const Model& model, double dt) {
   std::vector<double> spring;
   for (const FlsmBatch& b : model.flsm) {
-    if (b.interface == 0) continue;
+    if (b.interface == 0 && !is_linked(model, b)) continue;
     spring.resize(model.mass.size(), 0.0);
     const DeformationModel& m = b.settings;
     const double h = m.substeps * dt, automatic = m.young > 0 ? spring_of(b) : m.alpha / (h * h);
+    for (std::int32_t i = 0; i < b.own && is_linked(model, b); ++i)
+      spring[static_cast<std::size_t>(b.slot[i])] = b.stiffest * automatic;
     const std::vector<double> masses = m.beta > 0 ? place_masses(model, b) : std::vector<double>();
     for (std::int32_t k = 0; k < b.interface; ++k) {
       spring[static_cast<std::size_t>(b.slot[b.own + k])] = pull_bound(b) * (m.beta > 0 ? m.beta / masses[k] : automatic);

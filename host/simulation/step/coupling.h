@@ -7,6 +7,8 @@
 namespace pliant {
 
 /// Returns true if the model has finite elements.
+[[nodiscard]] bool has_finite_elements(const Model& model);
+/// Returns true if it has forces that limit the step: elements, springs, vessels or membranes.
 [[nodiscard]] bool has_elements(const Model& model);
 
 /// Returns the longest step that the "stiffness" of shape matching allows [s]; infinity without one.

@@ -38,6 +38,120 @@ double largest_eigenvalue(std::vector<double>& diagonal, std::vector<double>& be
   return solver.eigenvalues()[size - 1];
 }
 
+/// Of an element or a spring, or else the spacing of shape matching that joins of bodies pull.
+double shortest_length(const Model& model) {
+  if (model.shortest > 0) return model.shortest;
+  double least = std::numeric_limits<double>::infinity();
+  for (const FlsmBatch& b : model.flsm) least = std::min(least, b.spacing);
+  return least;
+}
+
+/// Differences of forces for small displacements.
+class Probe {
+ public:
+  /// `rates`: includes the viscous forces of a displacement that continues for two steps (rates_step()).
+  Probe(const RunContext& run, bool rates)
+      : run_(run),
+        passes_(rates ? run.loaded.program().rates : run.loaded.program().force),
+        u_(run.loaded.u()),
+        w_(rates ? run.loaded.w() : std::vector<double>()) {
+    run.upload_params();
+    run.upload_curves(0);
+    rest_ = force();
+  }
+  Probe(const Probe&) = delete;
+  Probe& operator=(const Probe&) = delete;
+  ~Probe() {
+    write(u_, w_);
+    run_.loaded.clear_faults();  // of elements in configurations outside the run
+  }
+  /// The force at rest less that at `size` times `v`, at the places `at` of an array of [slots][4].
+  std::vector<double> operator()(const std::vector<std::size_t>& at, const std::vector<double>& v, double size) {
+    std::vector<double> u = u_, w = w_, change(v.size());
+    for (std::size_t i = 0; i < v.size(); ++i) u[at[i]] = u_[at[i]] + size * v[i];
+    for (std::size_t i = 0; i < v.size() && !w.empty(); ++i) w[at[i]] = w_[at[i]] + 2 * size * v[i];
+    write(u, w);
+    const std::vector<double> moved = force();
+    for (std::size_t i = 0; i < v.size(); ++i) change[i] = rest_[at[i]] - moved[at[i]];
+    return change;
+  }
+
+ private:
+  void write(const std::vector<double>& u, const std::vector<double>& w) {
+    run_.loaded.write_u(u);
+    if (!w.empty()) run_.loaded.write_w(w);
+  }
+  /// The links of nodes that only shape matching moves are loads on them.
+  std::vector<double> force() {
+    const LoadedModel& loaded = run_.loaded;
+    run_.backend().run(passes_, 0, 1);
+    std::vector<double> out = loaded.force();
+    if (run_.model().links.empty() || run_.model().flsm.empty()) return out;
+    const std::vector<double> load = run_.backend().read_reals(loaded.program().find("node_load"));
+    for (const FlsmBatch& b : run_.model().flsm) {
+      for (std::int32_t i = 0; i < b.own; ++i) {
+        const std::size_t at = 4 * static_cast<std::size_t>(b.slot[i]);
+        for (std::size_t c = 0; c < 3; ++c) out[at + c] = load[at + c];
+      }
+    }
+    return out;
+  }
+  const RunContext& run_;
+  const std::vector<Pass>& passes_;
+  std::vector<double> u_, w_, rest_;
+};
+
+double largest_omega2_of(const RunContext& run, const std::vector<double>& spring, int iterations, bool rates) {
+  const std::vector<double>& mass = run.model().mass;
+  std::vector<std::size_t> at;  // in arrays of [slots][4]
+  std::vector<double> v, before, m, own_spring;
+  double norm = 0;
+  const std::vector<char>& is_free = run.loaded.free();
+  for (std::size_t i = 0; i < is_free.size(); ++i) {
+    if (!is_free[i]) continue;
+    at.push_back(4 * (i / 3) + i % 3);
+    m.push_back(mass[i / 3]);
+    own_spring.push_back(spring.empty() ? 0 : spring[i / 3]);
+    v.push_back(noise(i));
+    norm += mass[i / 3] * v.back() * v.back();
+  }
+  const std::size_t n = at.size();
+  before.assign(n, 0);
+  Probe probe(run, rates);
+  const int steps = static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(iterations), n));
+  std::vector<double> alpha, beta;  // the tridiagonal matrix
+  bool spanned = false;             // the whole space is
+  for (int k = 0; k < steps && !spanned && norm > 0 && std::isfinite(norm); ++k) {
+    double largest = 0, unit = 1 / std::sqrt(norm);
+    for (double& x : v) {
+      x *= unit;
+      largest = std::max(largest, std::abs(x));
+    }
+    const double size = kStrain * shortest_length(run.model()) / largest;
+    const std::vector<double> change = probe(at, v, size);
+    double projection = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      projection += v[i] * change[i] / size;
+      if (!spring.empty()) projection += m[i] * own_spring[i] * v[i] * v[i];
+    }
+    norm = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double own = projection - own_spring[i];
+      const double next = change[i] / size / m[i] - own * v[i] - (k > 0 ? beta.back() * before[i] : 0);
+      before[i] = v[i];
+      v[i] = next;
+      norm += m[i] * next * next;
+    }
+    alpha.push_back(projection);
+    beta.push_back(std::sqrt(norm));
+    spanned = !(beta.back() > 1e-6 * std::abs(projection));
+  }
+  if (alpha.empty() || !std::isfinite(beta.back())) return 0;
+  const double omega2 = largest_eigenvalue(alpha, beta);
+  if (rates && spanned) return omega2;
+  return alpha.size() < n && alpha.size() > 2 ? omega2 / (1 - ritz_deficit(n, static_cast<int>(alpha.size()))) : omega2;
+}
+
 }  // namespace
 
 /// Upper bound of the rate at which dampers of springs damp a mode: the largest sum of 2 c over mass at a node (Gershgorin)
@@ -94,63 +208,16 @@ double central_step_for(const RunContext& run, double dt) {
 }
 
 double largest_omega2(const RunContext& run, const std::vector<double>& spring, int iterations) {
-  LoadedModel& loaded = run.loaded;
-  const std::vector<double>& mass = run.model().mass;
-  const std::vector<double> u = loaded.u();
-  const std::vector<double> rest_force = run.forces_now();
-  struct Unknown {
-    std::size_t at;  ///< in arrays of [slots][4]
-    double mass, spring;
-  };
-  std::vector<Unknown> unknowns;
-  std::vector<double> v, before, probe = u;
-  double norm = 0;
-  const std::vector<char>& is_free = loaded.free();
-  for (std::size_t i = 0; i < is_free.size(); ++i) {
-    if (!is_free[i]) continue;
-    unknowns.push_back({4 * (i / 3) + i % 3, mass[i / 3], spring.empty() ? 0 : spring[i / 3]});
-    v.push_back(noise(i));
-    norm += mass[i / 3] * v.back() * v.back();
-  }
-  const std::size_t n = unknowns.size();
-  before.assign(n, 0);
-  const int steps = static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(iterations), n));
-  std::vector<double> alpha, beta;  // the tridiagonal matrix
-  for (int k = 0; k < steps && norm > 0 && std::isfinite(norm); ++k) {
-    double largest = 0, unit = 1 / std::sqrt(norm);
-    for (double& x : v) {
-      x *= unit;
-      largest = std::max(largest, std::abs(x));
-    }
-    const double size = kStrain * run.model().shortest / largest;
-    for (std::size_t i = 0; i < n; ++i) probe[unknowns[i].at] = u[unknowns[i].at] + size * v[i];
-    loaded.write_u(probe);
-    run.backend().run(loaded.program().force, 0, 1);
-    const std::vector<double> force = loaded.force();
-    double projection = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      const Unknown& x = unknowns[i];
-      projection += v[i] * (rest_force[x.at] - force[x.at]) / size;
-      if (!spring.empty()) projection += x.mass * x.spring * v[i] * v[i];
-    }
-    norm = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      const Unknown& x = unknowns[i];
-      const double own = projection - x.spring;
-      const double next = (rest_force[x.at] - force[x.at]) / size / x.mass - own * v[i] - (k > 0 ? beta.back() * before[i] : 0);
-      before[i] = v[i];
-      v[i] = next;
-      norm += x.mass * next * next;
-    }
-    alpha.push_back(projection);
-    beta.push_back(std::sqrt(norm));
-    if (!(beta.back() > 1e-6 * std::abs(projection))) break;  // the whole space is spanned
-  }
-  loaded.write_u(u);
-  loaded.clear_faults();  // of elements in configurations outside the run
-  if (alpha.empty() || !std::isfinite(beta.back())) return 0;
-  const double omega2 = largest_eigenvalue(alpha, beta);
-  return alpha.size() < n && alpha.size() > 2 ? omega2 / (1 - ritz_deficit(n, static_cast<int>(alpha.size()))) : omega2;
+  return largest_omega2_of(run, spring, iterations, false);
+}
+
+double rates_step(const RunContext& run, int iterations) {
+  const auto viscous = [](const ElementBatch& batch) { return batch.material.viscous(); };
+  const auto& batches = run.model().batches;
+  const double dt = run.state.clock.dt;
+  if (std::none_of(batches.begin(), batches.end(), viscous)) return std::numeric_limits<double>::infinity();
+  const double omega2 = largest_omega2_of(run, {}, iterations, true);
+  return omega2 > 0 ? 4 / (dt * omega2) : std::numeric_limits<double>::infinity();
 }
 
 /// Networks whose springs have stiffened: the bound at rest, or that of each node now, whichever is larger.
@@ -187,6 +254,9 @@ StableStep estimate_stable_step(const RunContext& run, int iterations) {
   if (!(omega2 > 0)) {
     // A network of springs that are flat at rest has no frequency yet.
     if (run.model().network_bound > 0 && may_stiffen(run.model())) step.elements = step.coupled = network_step(run);
+    // Slack springs that do not pull yet may pull bodies of shape matching alone.
+    else if (!run.model().links.empty() && run.model().element_bound > 0)
+      step.elements = step.coupled = bound_step(run, run.model().element_bound);
     return step;
   }
   step.elements = stable_step(run, 2 / std::sqrt(omega2));

@@ -21,6 +21,14 @@ double bound_step(const RunContext& run, double central);
 /// Inverse of bound_step(): the 2 / omega of the elements that allows a step of `dt` [s].
 double central_step_for(const RunContext& run, double dt);
 
+/// Returns the longest step [s] that is stable with the viscous stress of the elements as they are deformed now; infinite
+/// without any. Viscous forces grow with the square of the stretch, elastic ones may not, so that stable_step(), which knows
+/// their ratio at rest, is too long for tissue that is drawn out. u_(n+1) - 2 u_n + u_(n-1) = -h C (u_n - u_(n-1)) - h^2 K u_n
+/// is stable while h^2 K + 2 h C <= 4. Measures the largest eigenvalue of K + 2 C / h as largest_omega2() does, at the present
+/// step h, and returns 4 / (h times it): safe for shorter steps, and where C is what limits the step for longer ones, too.
+/// Compare it with an estimate of as many iterations.
+double rates_step(const RunContext& run, int iterations);
+
 /// Returns the longest step [s] that is stable for the networks of springs, however they deform while no spring gets stiffer
 /// than it is now; infinite without networks.
 double network_step(const RunContext& run);

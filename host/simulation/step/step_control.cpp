@@ -39,8 +39,9 @@ void StepControl::start(double wanted, bool estimate_always) {
   const double longest = longest_step(model, run_.scene);
   double& dt = run_.state.clock.dt;
   run_.settings.automatic = wanted <= 0 && integrator_info(run_.scene.integrator).automatic && has_elements(model);
+  const double frame = run_.scene.contact ? kTouchFrame : kFrame;
   if (!has_elements(model)) {
-    dt = wanted > 0 ? wanted : std::min(run_.scene.contact ? kTouchFrame : kFrame, longest);
+    dt = wanted > 0 ? wanted : std::min(frame, longest);
   } else {
     if (wanted <= 0 && !(stable_step(run_, 1) > 0)) {
       throw Error(ErrorCode::bad_input,
@@ -52,6 +53,7 @@ void StepControl::start(double wanted, bool estimate_always) {
     if (wanted <= 0 || estimate_always) stable = estimate_stable_step(run_, 48);
     run_.state.limit.stable_dt = stable.coupled;
     dt = wanted > 0 ? wanted : std::min(run_.scene.safety * stable.coupled, longest);
+    if (wanted <= 0 && !model.flsm.empty() && !has_finite_elements(model)) dt = std::min(dt, frame);  // of links alone
     // Every cut leaves elements that are stable at the element bound: the mass and stiffness of each copy scale alike. (Those
     // of membranes and vessels do not, and an automatic step follows the bound after a cut.) Slack springs pull only when they
     // are longer than at rest, and an estimate there sees some of them.
@@ -131,6 +133,9 @@ void StepControl::adapt() {
   if (now.dt < least_step() || !run_.state.ballast.empty()) {
     now.dt = balance(now.dt, full_stiffness(now));
   }
+  const double viscous = std::min(1.0, rates_step(run_, kAdaptIterations) / now.estimate);
+  run_.state.limit.stable_dt *= viscous;
+  now.dt *= viscous;
   const double dt = run_.state.clock.dt, ceiling = limit.dt_ceiling;
   const bool may_grow = run_.state.clock.step >= limit.hold;
   if (may_grow) run_.state.limit.dt_backoff = std::min(1.0, limit.dt_backoff / kBackoff);
@@ -177,7 +182,8 @@ bool StepControl::bound_allows() const {
 
 StepControl::Allowed StepControl::allowed() {
   StepLimit& limit = run_.state.limit;
-  Allowed out{estimated(), {}};
+  Allowed out{estimated(), 0, {}};
+  out.estimate = limit.stable_dt;
   if (out.dt >= run_.state.clock.dt) return out;
   // The estimate takes differences of forces, which are mostly rounding far from the rest position. The element bound is
   // coarser but reliable, since it is computed in double. It is at most that of any one node, which is nearly always below the

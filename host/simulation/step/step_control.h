@@ -44,6 +44,7 @@ class StepControl {
   /// elements had to be evaluated one by one.
   struct Allowed {
     double dt = 0;
+    double estimate = 0;  ///< of the stable step, before a bound took its place [s]
     std::vector<double> stiffness;
   };
   [[nodiscard]] Allowed allowed();
