@@ -53,6 +53,11 @@ class Survival(unittest.TestCase):
         del last["ms_per_frame"], before["ms_per_frame"]
         self.assertEqual(last, before, "drawn again, it is another scene or ends otherwise")
 
+    def test_vessels_stay_in_shapes_with_hollows(self):
+        done = survival("--first", 1033, "--count", 1, "--json", "-")
+        row = json.loads(done.stdout)["rows"][0]
+        self.assertEqual((row["body"], row["outcome"]), ("gallbladder_tet", "ended"), row["message"])
+
     def test_bad_options(self):
         for arguments in (["--count", "0"], ["--first", "-1"]):
             done = survival(*arguments)
