@@ -10,13 +10,30 @@ struct Corners {
   std::int32_t* force;
   Scalar* weight;
 
-  void write_weights(const Scalar* contact_weight, std::int64_t i, const PatchMeeting<Scalar, EDGES>& met) const {
+  /// Which tools have written the weights of a point.
+  struct Counted {
+    bool any = false;   ///< of those that meet it soon
+    bool flat = false;  ///< of these, one without edges
+    bool first = true;
+  };
+  void write_weights(const Scalar* contact_weight, std::int64_t i, const PatchMeeting<Scalar, EDGES>& met, bool soon,
+                     Counted& counted) const {
+    const bool first = counted.first;
+    counted.first = false;
+    if ((!soon && !first) || (!met.edged && counted.flat)) return;
     Scalar* out = weight + tile_base(i, 9);
+    Scalar& whole = out[std::int64_t{8} * PLIANT_TILE];
+    const Scalar before = counted.any ? whole : Scalar(0), share = met.edged ? met.spread_share : Scalar(1),
+                 all = before + share;
     for (std::int64_t k = 0; k < 8; ++k) {
       const Scalar at_point = contact_weight[tile_base(i, 8) + k * PLIANT_TILE];
-      out[k * PLIANT_TILE] = met.edged ? met.spread[static_cast<std::size_t>(k)] : at_point;
+      const Scalar own = met.edged ? met.spread[static_cast<std::size_t>(k)] : at_point;
+      Scalar& w = out[k * PLIANT_TILE];
+      w = before > Scalar(0) ? std::fma(share, own, before * w) / all : own;
     }
-    out[std::int64_t{8} * PLIANT_TILE] = met.spread_share;
+    whole = all;
+    counted.any = counted.any || soon;
+    counted.flat = counted.flat || (soon && !met.edged);
   }
   void clear(std::int64_t i) const {
     if (EDGES == 0) return;

@@ -96,16 +96,13 @@ Reached reach(const EdgedTools<Scalar, EDGES>& all, [[maybe_unused]] const Corne
               [[maybe_unused]] const PointNumbers<Scalar>& anchor, std::int64_t i, const Place<Scalar>& p, std::int32_t near,
               Scalar margin, Scalar within) {
   Reached out;
-  [[maybe_unused]] bool weighed = false;
+  [[maybe_unused]] typename Corners<Scalar, EDGES>::Counted counted;
   for (std::int32_t t = 0; t < all.count; ++t) {
     if ((near >> t & 1) == 0) continue;
     const PatchMeeting<Scalar, EDGES> met = all.meet_patch(t, i, p);
     const bool soon = met.m.may_touch_next(margin, within);
     if (soon) out.ready = PLIANT_READY_BIT;
-    if constexpr (EDGES != 0) {
-      if (!weighed || (met.edged && soon)) corners.write_weights(contact_weight, i, met);
-      weighed = true;
-    }
+    if constexpr (EDGES != 0) corners.write_weights(contact_weight, i, met, soon, counted);
     bool gripped = false;
     if constexpr (GRIPS != 0) {
       gripped = !met.edged && grips(all, contact_held, anchor, t, i, met.m, margin);

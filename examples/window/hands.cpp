@@ -22,12 +22,11 @@ Hands::Hands(pliant::World& world, const std::vector<std::string>& devices, std:
     loops_.push_back(std::make_unique<pliant::HapticLoop>(world, tools_[i], pliant::open_haptic_device(devices[i])));
 }
 
-double Hands::due(double least, double most) {
-  const auto now = std::chrono::steady_clock::now();
-  const double passed = std::chrono::duration<double>(now - last_).count();
-  if (passed < least) return 0;
-  last_ = now;
-  return std::min(passed, most);
+double Hands::passed(double most) {
+  const auto now = std::chrono::steady_clock::now(), before = std::exchange(last_, now);
+  return before == std::chrono::steady_clock::time_point{}
+             ? 0
+             : std::min(std::chrono::duration<double>(now - before).count(), most);
 }
 
 std::vector<std::string> Hands::lines() const {

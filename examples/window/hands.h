@@ -19,16 +19,16 @@ class Hands {
   [[nodiscard]] bool empty() const { return loops_.empty(); }
   /// The tools that they drive: the mouse must leave them alone.
   [[nodiscard]] const std::vector<std::string>& tools() const { return tools_; }
-  /// Simulated time to go ahead now [s], 0: none yet. A second of the World is a second of a hand, however slow the drawing;
-  /// what the machine cannot keep up with beyond `most` is given up.
-  double due(double least, double most);
+  /// Wall time since the last call, at most `most` [s]: a second of the World is a second of a hand, however slow the drawing.
+  /// What the machine cannot keep up with is given up.
+  double passed(double most);
   /// What each hand feels, a line each.
   [[nodiscard]] std::vector<std::string> lines() const;
 
  private:
   std::vector<std::string> tools_;
   std::vector<std::unique_ptr<pliant::HapticLoop>> loops_;
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::time_point last_{};  ///< of passed()
 };
 
 }  // namespace window

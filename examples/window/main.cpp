@@ -36,8 +36,7 @@ class Window {
   explicit Window(const Options& options)
       : o_(options),
         world_(pliant::World::open(options.scene, {.interactive = true, .cutting = true})),
-        frame_(world_.frame()),
-        hands_(world_, options.live, options.tool) {
+        frame_(world_.frame()) {
     if (glfwInit() == GLFW_FALSE) throw std::runtime_error("no display: GLFW could not start");
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
@@ -61,7 +60,8 @@ class Window {
     panel_->depth = o_.depth;
     panel_->choose_color(o_.color);
     aim();
-    instruments_ = std::make_unique<Instruments>(world_, *drawing_, size_, hands_.tools());
+    hands_ = std::make_unique<Hands>(world_, o_.live, o_.tool);
+    instruments_ = std::make_unique<Instruments>(world_, *drawing_, size_, hands_->tools());
     instruments_->follow_scene();
   }
   ~Window() {
@@ -74,7 +74,7 @@ class Window {
   int run() {
     while (glfwWindowShouldClose(window_) == GLFW_FALSE) {
       glfwPollEvents();
-      follow(panel_->show({instruments_->labels(), hands_.lines(), instruments_->active(), instruments_->force(), frame_->time,
+      follow(panel_->show({instruments_->labels(), hands_->lines(), instruments_->active(), instruments_->force(), frame_->time,
                            speed(), coloring_.most(), message_}));
       simulate();
       drawing_->update(*frame_);
@@ -87,6 +87,7 @@ class Window {
       if (!o_.screenshot.empty() && frame_->time >= o_.seconds) {
         pliant::write_png(o_.screenshot, {width, height, drawing_->pixels(width, height)});
         std::printf("%s: t = %.3f s, step %lld\n", o_.screenshot.c_str(), frame_->time, static_cast<long long>(frame_->step));
+        for (const std::string& line : hands_->lines()) std::printf("%s\n", line.c_str());
         return 0;
       }
       glfwSwapBuffers(window_);
@@ -324,7 +325,7 @@ class Window {
     return speed_;
   }
 
-  /// The worker computes the next sixtieth of a second while this frame is drawn; the window never waits for it.
+  /// The worker computes what comes next while this frame is drawn; the window never waits for it.
   void simulate() {
     const bool scripted = o_.pull || o_.cut || o_.probe > 0 || o_.grasp > 0 || !o_.set.empty();
     constexpr double kFrame = 1.0 / 60;
@@ -334,16 +335,18 @@ class Window {
       } else {
         use_mouse();
       }
-      if (!world_.busy()) {
+      const bool idle = !world_.busy();
+      // With hands, what has passed since the last time; else the next sixtieth of a second.
+      const double ahead = !idle ? 0 : hands_->empty() ? kFrame : hands_->passed(4 * kFrame);
+      if (idle) {
         coloring_.update(world_, panel_->field());
         instruments_->fetch_shapes(frame_->time);
-        instruments_->drive(kFrame);
       }
-      const double ahead = hands_.empty() ? kFrame : world_.busy() ? 0 : hands_.due(kFrame, 4 * kFrame);
-      if (!o_.screenshot.empty() && hands_.empty()) {
+      if (ahead > 0) instruments_->drive(ahead);
+      if (!o_.screenshot.empty() && hands_->empty()) {
         world_.advance(kFrame);
         coloring_.update(world_, panel_->field());
-      } else if (!world_.busy() && ahead > 0) {
+      } else if (ahead > 0) {
         world_.advance_async(ahead);
       }
     } catch (const pliant::Error& error) {
@@ -356,7 +359,7 @@ class Window {
   Options o_;
   pliant::World world_;
   pliant::FramePtr frame_;
-  Hands hands_;
+  std::unique_ptr<Hands> hands_;
   GLFWwindow* window_ = nullptr;
   std::unique_ptr<Drawing> drawing_;
   std::unique_ptr<Panel> panel_;

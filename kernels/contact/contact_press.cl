@@ -54,6 +54,8 @@ __kernel void contact_press(__global const float* node_u, __global const float* 
   __global float* anchor = contact_anchor + POINT_BASE(first, 4);
   __global float* start = contact_start + POINT_BASE(first, 2);
   patch_meeting patches[EDGES ? LANES : 1];
+  int counted[LANES];
+  for (int l = 0; l < LANES; ++l) counted[l] = 0;
   integer touching = zero, gripped = zero, out = zero, ready = zero;
   real count = none;
   int weighed = 0, tool = -1;  // tool: of the last meetings
@@ -64,7 +66,7 @@ __kernel void contact_press(__global const float* node_u, __global const float* 
     tool = t;
     const integer soon = wanted && may_touch_next(met.m, margin, within), bit = 1 << t;
     ready = pick(soon, (integer)(PLIANT_READY_BIT), ready);
-    if (EDGES) write_weights(contact_corner_weight, contact_weight, first, wanted, soon, weighed, patches);
+    if (EDGES) write_weights(contact_corner_weight, contact_weight, first, wanted, soon, weighed, counted, patches);
     weighed = 1;
     integer hit = wanted && met.m.distance < none;
     if (GRIPS) {

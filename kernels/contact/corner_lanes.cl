@@ -1,16 +1,23 @@
-// Forces of edges of tools (contact_edge.cl) on the nodes of LANES contact points.
-// contact_corner_weight: [tiles][9][16] weights of a point's nodes at the place where the last tool with edges touches its patch, or at the point
-// itself, and the fraction of its area. contact_corner_force: [tiles][8][3][16] forces of edges on these nodes [quanta].
+// Forces of tools on LANES contact points, and of their edges (contact_edge.cl) on the nodes of these.
+// contact_corner_weight: [tiles][9][16] mean weights of a point's nodes where edge points of all tools touch its patch or soon may, or at the point
+// itself, and the sum of their fractions of its area. contact_corner_force: [tiles][8][3][16] forces of edges on these nodes [quanta].
 
-// Of the points that are `wanted`: where nothing is written yet, and of those that meet an edge `soon`.
+// Of the points that are `wanted`: those of the first tool, or of all that meet them `soon`, together; tools without edges count once, as one.
+// counted: 1: a tool that meets the point soon is in; 2: one without edges is.
 INLINE void write_weights(__global float* contact_corner_weight, __global const float* contact_weight, int first, integer wanted, integer soon, int weighed,
-                          const patch_meeting* patches) {
+                          int* counted, const patch_meeting* patches) {
   for (int l = 0; l < LANES; ++l) {
     const patch_meeting* met = patches + l;
-    if (!LANE_INT(wanted, l) || (weighed && !(met->edged && LANE_INT(soon, l)))) continue;
+    const int meets = LANE_INT(soon, l) != 0;
+    if (!LANE_INT(wanted, l) || (!meets && weighed) || (!met->edged && (counted[l] & 2))) continue;
     __global float* out = contact_corner_weight + POINT_BASE(first + l, 9);
-    for (int k = 0; k < 8; ++k) out[k * PLIANT_TILE] = met->edged ? met->spread[k] : contact_weight[POINT_BASE(first + l, 8) + k * PLIANT_TILE];
-    out[8 * PLIANT_TILE] = met->spread_share;
+    const float before = counted[l] ? out[8 * PLIANT_TILE] : 0.0f, share = met->edged ? met->spread_share : 1.0f, all = before + share;
+    for (int k = 0; k < 8; ++k) {
+      const float own = met->edged ? met->spread[k] : contact_weight[POINT_BASE(first + l, 8) + k * PLIANT_TILE];
+      out[k * PLIANT_TILE] = before > 0.0f ? fma(share, own, before * out[k * PLIANT_TILE]) / all : own;
+    }
+    out[8 * PLIANT_TILE] = all;
+    if (meets) counted[l] |= met->edged ? 1 : 3;
   }
 }
 

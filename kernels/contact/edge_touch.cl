@@ -46,7 +46,7 @@ typedef struct {
   float4 at;          // where the force acts
   float weight[8];    // weights of the nodes there
   float spread[8];    // for W: of all edge points that touch or soon may
-  float share, ease;  // fraction of the point's area, and of the force that would remove the depth
+  float share, ease;  // sum over edge points of their fractions of the point's area; fraction of the force that would remove the depth
   float spread_share;
   int edged;          // whether the force acts at `at` instead of the contact point
 } patch_meeting;
