@@ -53,6 +53,7 @@ const LoopOption kLoopOptions[] = {
     {"align", "bool", put<&HapticOptions::align>},
     {"motion_scale", "float", put<&HapticOptions::motion_scale>},
     {"force_scale", "float", put<&HapticOptions::force_scale>},
+    {"grip_button", "int", put<&HapticOptions::grip_button>},
     {"realtime", "bool", put<&HapticOptions::realtime>},
     {"log_samples", "int", put<&HapticOptions::log_samples>},
 };

@@ -17,6 +17,7 @@ const std::vector<Part>& parts() {
       {"strokes", "Does the buffer model feel what the full model feels?", measure_strokes},
       {"others", "What do simpler models feel on the same strokes?", measure_others},
       {"edits", "Is a cut felt?", measure_edits},
+      {"instruments", "Do a scalpel and forceps feel what they do in the full model?", measure_instruments},
       {"passivity", "Is the hand safe?", measure_passivity},
       {"times", "Are the ticks in time, beside a simulation that cuts?", measure_times},
   };

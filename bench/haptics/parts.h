@@ -44,10 +44,11 @@ struct HandScene {
 /// block, liver, bunny: those of which the meshes are there.
 std::vector<HandScene> hand_scenes(const HapticsOptions& options);
 
-void measure_strokes(PartRun& run);    ///< buffers of all sizes against the full model
-void measure_others(PartRun& run);     ///< the simpler models on the same strokes
-void measure_edits(PartRun& run);      ///< a cut that is felt
-void measure_passivity(PartRun& run);  ///< energy, stiffness, stalls
-void measure_times(PartRun& run);      ///< ticks in wall time, beside a World that is cut
+void measure_strokes(PartRun& run);      ///< buffers of all sizes against the full model
+void measure_others(PartRun& run);       ///< the simpler models on the same strokes
+void measure_edits(PartRun& run);        ///< a cut that is felt
+void measure_instruments(PartRun& run);  ///< a scalpel and forceps
+void measure_passivity(PartRun& run);    ///< energy, stiffness, stalls
+void measure_times(PartRun& run);        ///< ticks in wall time, beside a World that is cut
 
 }  // namespace pliant::bench::haptics

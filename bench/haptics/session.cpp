@@ -6,7 +6,9 @@
 #include <memory>
 
 #include "backends/choice/backends.h"
+#include "geometry/vec.h"
 #include "geometry/wrench.h"
+#include "haptics/driven_part.h"
 #include "pliant/error.h"
 
 namespace pliant::bench::haptics {
@@ -15,31 +17,49 @@ namespace {
 using pliant::haptics::BufferForce;
 using pliant::haptics::BufferMessage;
 using pliant::haptics::BufferSource;
+using pliant::haptics::DrivenPart;
 using Clock = std::chrono::steady_clock;
 
-ContactTool& tool_of(Scene& scene, const std::string& name) {
+/// Gives the tool or blade of this name a path through the poses of a stroke at these times [s].
+void put_on_path(Scene& scene, const std::string& name, const Stroke& stroke, const std::vector<double>& times) {
   for (ContactTool& t : scene.tools) {
-    if (t.name == name) return t;
+    if (t.name != name) continue;
+    t.path.clear();
+    for (const double time : times) {
+      const Pose p = stroke(time);
+      t.path.push_back({time, p.position[0], p.position[1], p.position[2], p.turn[0], p.turn[1], p.turn[2], p.turn[3]});
+    }
+    return;
   }
-  throw Error(ErrorCode::usage, "there is no tool \"" + name + "\"");
-}
-
-std::array<double, 8> path_point(double t, const Pose& p) {
-  return {t, p.position[0], p.position[1], p.position[2], p.turn[0], p.turn[1], p.turn[2], p.turn[3]};
+  for (Blade& b : scene.blades) {
+    if (b.name != name) continue;
+    const auto first = b.path.at(0);
+    const double length = vec::norm({first[4] - first[1], first[5] - first[2], first[6] - first[3]});
+    b.path.clear();
+    for (const double time : times) {
+      const BladeSegment e = pliant::haptics::blade_edge(stroke(time), length);
+      b.path.push_back({time, e[0][0], e[0][1], e[0][2], e[1][0], e[1][1], e[1][2]});
+    }
+    return;
+  }
+  throw Error(ErrorCode::usage, "there is no tool or blade \"" + name + "\"");
 }
 
 /// Steps until `time`, in batches that end there. `seen` receives the time and the force of every step.
 template <class F>
-void run_until(Simulation& s, double time, std::size_t tool, const F& seen) {
+void run_until(Simulation& s, double time, const std::string& name, const F& seen) {
   while (!s.divergence()) {
     const auto left = static_cast<std::int64_t>(std::floor((time - s.time()) / s.dt() + 1e-6));
     if (left < 1) return;
+    const std::int64_t before = s.step();
     s.advance(s.next_batch(left));
-    const auto& forces = s.contact().step_forces();
-    const std::size_t tools = s.contact().tools().size(), steps = forces.size() / tools;
-    for (std::size_t k = 0; k < steps; ++k) {
-      const std::int64_t step = s.step() - static_cast<std::int64_t>(steps - 1 - k);
-      seen(s.state().clock.time_at(step), forces[k * tools + tool]);
+    const DrivenPart part = DrivenPart::find(s, name).value();
+    const std::vector<Wrench>& forces = part.step_forces(s);
+    const std::size_t parts = part.is_blade() ? s.press().names().size() : s.contact().tools().size();
+    const std::int64_t known = static_cast<std::int64_t>(forces.size() / parts);
+    for (std::int64_t step = before + 1; step <= s.step(); ++step) {  // where a blade is near nothing, no forces are known
+      const std::int64_t k = step - (s.step() - known) - 1;
+      seen(s.state().clock.time_at(step), k >= 0 ? forces[static_cast<std::size_t>(k) * parts + part.index()] : Wrench{});
     }
   }
 }
@@ -61,7 +81,8 @@ Pose predicted(const Stroke& stroke, double t, double ahead) {
 /// Where a hand is too quick for the simulation, its tool stays (haptics/instrument.cpp).
 void try_drive(Simulation& s, const std::string& tool, const Pose& to, double seconds) {
   try {
-    s.tools().drive(tool, to, seconds);
+    const DrivenPart part = DrivenPart::find(s, tool).value();
+    part.drive(s, part.within_reach(s, to, seconds), seconds);
   } catch (const Error& error) {
     if (error.code() == ErrorCode::internal || error.code() == ErrorCode::device) throw;
   }
@@ -71,9 +92,9 @@ void try_drive(Simulation& s, const std::string& tool, const Pose& to, double se
 
 ForceTrace full_model(Scene scene, const std::string& tool, const Stroke& stroke, double seconds, double rate,
                       const std::function<void(Simulation&, double)>& edit, double frame) {
-  ContactTool& own = tool_of(scene, tool);
-  own.path.clear();
-  for (double t = 0; t <= seconds + 1e-9; t += 1 / rate) own.path.push_back(path_point(t, stroke(t)));
+  std::vector<double> times;
+  for (double t = 0; t <= seconds + 2 / rate; t += 1 / rate) times.push_back(t);  // a blade is nowhere behind its path
+  put_on_path(scene, tool, stroke, times);
   SimulationOptions steps;  // no larger than the ticks, so that it resolves as much
   {
     const Simulation probe(scene, open_backend("cpu"));
@@ -91,24 +112,22 @@ ForceTrace full_model(Scene scene, const std::string& tool, const Stroke& stroke
     before = time;
     last = f;
   };
-  const std::size_t index = s.contact().find(tool).value();
   for (double t = frame; edit && t < seconds; t += frame) {
-    run_until(s, t, index, seen);
+    run_until(s, t, tool, seen);
     edit(s, t);
   }
-  run_until(s, seconds, index, seen);
+  run_until(s, seconds, tool, seen);
   return trace;
 }
 
 SessionReport run_session(Scene scene, const std::string& tool, const Stroke& stroke, const SessionOptions& options,
                           const SessionParts& parts) {
-  ContactTool& own = tool_of(scene, tool);
-  own.path = {path_point(0, stroke(0))};
+  put_on_path(scene, tool, stroke, {0});
   Simulation s(scene, open_backend("cpu"));
   SessionReport out;
   out.felt.period = 1 / options.haptic_rate;
   const double frame = 1 / options.frame_rate, dt = 1 / options.haptic_rate;
-  const std::size_t slots = session_slots(options), index = s.contact().find(tool).value();
+  const std::size_t slots = session_slots(options);
   const auto stalled = [&](double t) { return t > options.stalled_from && t < options.stalled_until; };
   std::int64_t made = 0, taken = 0;
   out.ticks = static_cast<std::int64_t>(std::llround(options.seconds * options.haptic_rate));
@@ -125,7 +144,7 @@ SessionReport run_session(Scene scene, const std::string& tool, const Stroke& st
       if (made > 0) {
         if (parts.edit) parts.edit(s, end);
         try_drive(s, tool, predicted(stroke, end - frame, options.predict * frame), frame);
-        run_until(s, s.time() + frame, index, [](double, const Wrench&) {});
+        run_until(s, s.time() + frame, tool, [](double, const Wrench&) {});
       }
       parts.made(s, static_cast<std::size_t>(made++) % slots);
     }

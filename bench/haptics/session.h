@@ -40,8 +40,8 @@ struct SessionReport {
   int substeps = 0;                         ///< of the last tick
 };
 
-/// The force on the scene's tool `tool` of a simulation in which it follows the stroke in every step. `edit`: called every
-/// `frame` seconds with the time; may be empty.
+/// The force on the scene's tool or blade `tool` of a simulation in which it follows the stroke in every step. `edit`: called
+/// every `frame` seconds with the time; may be empty.
 ForceTrace full_model(Scene scene, const std::string& tool, const Stroke& stroke, double seconds, double rate,
                       const std::function<void(Simulation&, double)>& edit = nullptr, double frame = 1.0 / 60);
 

@@ -31,6 +31,7 @@ pliant::HapticOptions haptic_options_of(const pliant_haptic_options* pointer) {
   o.motion_scale = given.motion_scale;
   o.force_scale = given.force_scale;
   o.realtime = given.realtime != 0;
+  o.grip_button = given.grip_button;
   o.log_samples = given.log_samples;
   return o;
 }

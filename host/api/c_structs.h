@@ -50,7 +50,7 @@ PLIANT_C_STRUCT(pliant_device_wrench, number);
 PLIANT_C_STRUCT(pliant_device_limits, torque);
 PLIANT_C_STRUCT(pliant_device_counts, last_refusal);
 PLIANT_C_STRUCT(pliant_device_callbacks, release);
-PLIANT_C_STRUCT(pliant_haptic_options, realtime);
+PLIANT_C_STRUCT(pliant_haptic_options, grip_button);
 PLIANT_C_STRUCT(pliant_haptic_sample, force);
 PLIANT_C_STRUCT(pliant_haptic_state, substeps);
 #undef PLIANT_C_STRUCT

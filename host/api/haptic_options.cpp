@@ -36,6 +36,7 @@ void check_options(const HapticOptions& o) {
   check_range("greatest_torque", o.greatest_torque, 0, 1e6);
   check_range("motion_scale", o.motion_scale, 1e-3, 1e3);
   check_range("force_scale", o.force_scale, 0, 1e3);
+  check_range("grip_button", o.grip_button, -1, 31);
   check_range("log_samples", static_cast<double>(o.log_samples), 0, 1e8);
   const std::string models[] = {"auto", "buffer", "whole", "held", "extrapolated"};
   if (std::find(std::begin(models), std::end(models), o.model) != std::end(models)) return;
@@ -69,6 +70,7 @@ haptics::CoreOptions core_options(const HapticOptions& o, const DeviceLimits& li
   c.align = o.align;
   c.motion_scale = o.motion_scale;
   c.force_scale = o.force_scale;
+  c.grip_button = o.grip_button;
   return c;
 }
 

@@ -1,11 +1,38 @@
 // Instruments of a World: tools that devices drive (pliant/haptics.h).
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
 #include "api/world_call.h"
+#include "haptics/driven_part.h"
 
 namespace pliant {
+namespace {
+
+/// Where the tool or blade of this name is. Throws Error (usage).
+Pose place_of(api::RigidTools& tools, const api::ForceBlades& blades, const std::string& name) {
+  std::vector<std::string> names;
+  for (const ToolForce& t : tools.forces()) {
+    if (t.name == name && t.parked)
+      throw Error(ErrorCode::usage, fmt::format("haptics: tool \"{}\" is parked; unpark it first", name));
+    if (t.name == name) return {t.position, t.turn};
+    names.push_back('"' + t.name + '"');
+  }
+  for (const BladeForce& b : blades.forces()) {
+    if (b.name == name && !b.present) {
+      throw Error(ErrorCode::usage,
+                  fmt::format("haptics: blade \"{}\" is nowhere at present; drive_blade() places it first", name));
+    }
+    if (b.name == name) return haptics::blade_pose({b.a, b.b});
+    names.push_back('"' + b.name + '"');
+  }
+  throw Error(ErrorCode::usage,
+              fmt::format("haptics: there is no tool or blade by force \"{}\"; {}", name,
+                          names.empty() ? "there are none" : "there are " + fmt::format("{}", fmt::join(names, ", "))));
+}
+
+}  // namespace
 
 void World::Impl::move_instruments(double seconds) {
   std::vector<std::shared_ptr<haptics::Instrument>> present;
@@ -51,22 +78,14 @@ StepReport World::Impl::advance_frame(double seconds) {
 
 Pose World::Impl::attach(std::shared_ptr<haptics::Instrument> instrument) {
   const std::string& name = instrument->tool();
-  const std::vector<ToolForce> tools = rigid_tools.forces();
-  const auto own = std::find_if(tools.begin(), tools.end(), [&](const ToolForce& t) { return t.name == name; });
-  if (own == tools.end()) {
-    std::string all;
-    for (const ToolForce& t : tools) all += (all.empty() ? "\"" : ", \"") + t.name + "\"";
-    throw Error(ErrorCode::usage,
-                fmt::format("haptics: there is no tool \"{}\"; {}", name, all.empty() ? "there are none" : "there are " + all));
-  }
-  if (own->parked) throw Error(ErrorCode::usage, fmt::format("haptics: tool \"{}\" is parked; unpark it first", name));
+  const Pose start = place_of(rigid_tools, force_blades, name);
   const std::lock_guard lock(mutex);
   for (const auto& other : instruments) {
     if (other->tool() == name && !other->closed.load())
-      throw Error(ErrorCode::usage, fmt::format("haptics: another device drives tool \"{}\" already", name));
+      throw Error(ErrorCode::usage, fmt::format("haptics: another device drives \"{}\" already", name));
   }
   instruments.push_back(std::move(instrument));
-  return {own->position, own->turn};
+  return start;
 }
 
 Pose WorldAccess::attach(World& world, std::shared_ptr<haptics::Instrument> instrument) {

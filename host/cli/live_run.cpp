@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "devices/open_device.h"
+#include "haptics/driven_part.h"
 #include "io/atomic_file.h"
 #include "pliant/error.h"
 #include "program/hash.h"
@@ -21,31 +22,35 @@ constexpr double kRate = 1000, kPatience = 5;
 
 void refuse_live(const std::string& text) { throw Error(ErrorCode::bad_input, text); }
 
-std::vector<std::string> tool_names(const Simulation& simulation) {
-  std::vector<std::string> names;
-  for (const ContactTool& tool : simulation.contact().tools()) names.push_back(tool.name);
-  return names;
-}
-
-/// The tool of each device: the names of --tool in the same order, or the only tool there is.
+/// The tool of each device: the names of --tool in the same order, or the only tool there is, or the only blade.
 std::vector<std::string> chosen_tools(const LiveArguments& o, const Simulation& simulation) {
-  const std::vector<std::string> names = tool_names(simulation);
+  const std::vector<std::string> names = haptics::DrivenPart::names(simulation);
   std::string all;
   for (const std::string& name : names) all += fmt::format("{}\"{}\"", all.empty() ? "" : ", ", name);
-  if (names.empty()) refuse_live("--live: the scene has no tools; expected one for each device (docs/scene.md, \"tools\")");
-  if (o.tools.empty() && names.size() == 1 && o.live.size() == 1) return names;
-  if (o.tools.size() != o.live.size()) {
+  if (names.empty()) {
+    refuse_live(
+        "--live: the scene has no tools, and no blades that cut by force; expected one for each device (docs/scene.md, "
+        "\"tools\", \"blades\")");
+  }
+  const bool only = names.size() == 1 || simulation.contact().tools().size() == 1;
+  const std::vector<std::string> chosen =
+      o.tools.empty() && only && o.live.size() == 1 ? std::vector<std::string>{names.front()} : o.tools;
+  if (chosen.size() != o.live.size()) {
     refuse_live(fmt::format("{} --live and {} --tool are given; expected as many, in the same order; the scene has {}",
-                            o.live.size(), o.tools.size(), all));
+                            o.live.size(), chosen.size(), all));
   }
-  for (std::size_t i = 0; i < o.tools.size(); ++i) {
-    if (std::find(names.begin(), names.end(), o.tools[i]) == names.end()) {
-      refuse_live(fmt::format("--tool is \"{}\"; the scene has {}{}", o.tools[i], all, did_you_mean(o.tools[i], names)));
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    if (std::find(names.begin(), names.end(), chosen[i]) == names.end()) {
+      refuse_live(fmt::format("--tool is \"{}\"; the scene has {}{}", chosen[i], all, did_you_mean(chosen[i], names)));
     }
-    if (std::count(o.tools.begin(), o.tools.end(), o.tools[i]) > 1)
-      refuse_live(fmt::format("--tool \"{}\" is given twice; expected one device for each tool", o.tools[i]));
+    if (!haptics::DrivenPart::find(simulation, chosen[i])) {
+      refuse_live(fmt::format(
+          "--tool is \"{}\", a blade that is nowhere when the run begins; expected one whose \"path\" has begun", chosen[i]));
+    }
+    if (std::count(chosen.begin(), chosen.end(), chosen[i]) > 1)
+      refuse_live(fmt::format("--tool \"{}\" is given twice; expected one device for each tool", chosen[i]));
   }
-  return o.tools;
+  return chosen;
 }
 
 }  // namespace
@@ -54,7 +59,7 @@ void LiveArguments::add_to(CLI::App& app) {
   app.add_option("--live", live, "A device drives a tool while the scene runs (docs/haptic_devices.md); may be given again")
       ->type_name("DEVICE")
       ->allow_extra_args(false);
-  app.add_option("--tool", tools, "The tool of each --live, in the same order; not needed where there is one of both")
+  app.add_option("--tool", tools, "The tool or blade of each --live, in the same order; not needed where there is one of both")
       ->type_name("NAME")
       ->allow_extra_args(false);
   app.add_flag("--lockstep", lockstep, "The scene's clock is that of the devices' samples; default: it is that of the wall");

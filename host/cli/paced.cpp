@@ -7,14 +7,16 @@
 
 #include "api/haptic_options.h"
 #include "geometry/vec.h"
+#include "haptics/driven_part.h"
+#include "pliant/error.h"
 
 namespace pliant::cli {
 namespace {
 
 Pose pose_of(const Simulation& simulation, const std::string& name) {
-  const auto& tools = simulation.contact().tools();
-  const auto own = std::find_if(tools.begin(), tools.end(), [&](const ContactTool& t) { return t.name == name; });
-  return simulation.contact().pose(static_cast<std::size_t>(own - tools.begin()), simulation.time());
+  const std::optional<haptics::DrivenPart> own = haptics::DrivenPart::find(simulation, name);
+  if (!own) throw Error(ErrorCode::usage, "there is no tool or blade \"" + name + "\" at present");
+  return own->pose(simulation, simulation.time());
 }
 
 }  // namespace
@@ -49,9 +51,11 @@ bool Paced::next(Simulation& simulation) {
   for (Hand& hand : hands_) {
     const std::optional<std::string> refused = hand.instrument->before(simulation, covers);
     if (refused && !std::exchange(hand.refused, true)) remark_(*refused);
+    if (const auto& gripped = hand.instrument->gripped())
+      log_.drives.push_back({{simulation.step(), simulation.time(), 0}, 0, {}, hand.instrument->tool(), gripped});
     if (!hand.instrument->driven()) continue;
     log_.drives.push_back(
-        {{simulation.step(), simulation.time(), 0}, covers, *hand.instrument->driven(), hand.instrument->tool()});
+        {{simulation.step(), simulation.time(), 0}, covers, *hand.instrument->driven(), hand.instrument->tool(), {}});
   }
   return true;
 }

@@ -28,6 +28,7 @@ Wrench BufferForce::tick(const Pose& tool, double dt) noexcept {
   placed_ = true;
   if (buffer_ == nullptr) return {};
   if (settle_ > 0 && buffer_->whole()) buffer_->draw(*last_, std::min(1.0, dt / settle_));
+  buffer_->grip(grip_);
   const Wrench wrench = buffer_->tick(from, tool, dt);
   double sum = 0;
   for (std::size_t c = 0; c < 3; ++c) sum += wrench.force[c] + wrench.torque[c];

@@ -18,6 +18,8 @@ class BufferForce final : public ForceModel {
   /// A message has come, `interval` [s] after the one before.
   void receive(const BufferMessage& message, double interval) noexcept;
   Wrench tick(const Pose& tool, double dt) noexcept override;
+  /// What the hand wants of the tool in the next ticks.
+  void grip(HandGrip wanted) noexcept { grip_ = wanted; }
 
   /// Generation of the buffer in use; older ones are no longer needed.
   [[nodiscard]] std::uint64_t in_use() const { return generation_; }
@@ -32,6 +34,7 @@ class BufferForce final : public ForceModel {
   std::int64_t run_ = 0;  ///< BufferMessage::run
   Pose pose_;
   bool placed_ = false;  ///< `pose_` is set
+  HandGrip grip_ = HandGrip::unsaid;
 };
 
 }  // namespace pliant::haptics

@@ -19,16 +19,22 @@ constexpr std::int32_t kBatch = 1;
 constexpr double kIncrementFloor = 1e-12;
 
 /// The default integrator keeps increments, which this file writes; trajectories are those of any.
-Program program_of(const Submodel& part) {
+Program program_of(const Submodel& part, const TissueState& state) {
   ProgramOptions options;
   options.batch_steps = kBatch;
+  options.blade_samples = static_cast<std::int32_t>(state.blade.front.size() / 2);
+  options.blades = options.blade_samples > 0 ? 1 : 0;
   return build_program(*part.model, options);
 }
 
 }  // namespace
 
-BufferModel::BufferModel(Submodel part, std::size_t tool, const TissueState& state)
-    : part_(std::move(part)), tool_(tool), program_(program_of(part_)), runner_(program_) {
+BufferModel::BufferModel(Submodel part, const BufferInstrument& instrument, const TissueState& state)
+    : part_(std::move(part)),
+      instrument_(instrument),
+      program_(program_of(part_, state)),
+      runner_(program_),
+      blade_(runner_, instrument.length) {
   u_ = runner_.reals("node_u");
   w_ = runner_.reals("node_w");
   params_ = runner_.reals("step_params");
@@ -41,7 +47,7 @@ BufferModel::BufferModel(Submodel part, std::size_t tool, const TissueState& sta
   node_list_ = runner_.ints("contact_node_list");
   tool_sum_ = runner_.ints("tool_sum");
   curves_ = runner_.reals("curve_value");
-  if (part_.model->contact->size() > 0) margin_ = contact_margin(*part_.model);
+  if (part_.model->contact != nullptr && part_.model->contact->size() > 0) margin_ = contact_margin(*part_.model);
   if (const BufferId tiles = program_.find("contact_tiles"); tiles >= 0) {
     tiles_offset_ = program_.at(program_.find("contact_tiles_offset")).ints;
     tiles_ = program_.at(tiles).ints;
@@ -50,8 +56,9 @@ BufferModel::BufferModel(Submodel part, std::size_t tool, const TissueState& sta
     if (part_.rim[n] != 0) rim_.push_back(static_cast<std::int32_t>(n));
   }
   way_.resize(3 * rim_.size());
+  if (program_.near_samples != nullptr) *program_.near_samples = 1;
   start(state);
-  from_ = to_ = state.tools.at(tool_);
+  from_ = to_ = instrument_.start;
 }
 
 /// At both ends of the step.
@@ -61,10 +68,21 @@ void BufferModel::set_curves(const TissueState& state) noexcept {
     std::copy_n(state.curves.begin(), count, curves_.begin() + static_cast<std::ptrdiff_t>(row * count));
 }
 
+/// Points that tools hold stay held; friction begins anew.
+void BufferModel::set_anchors(const TissueState& state) noexcept {
+  std::ranges::fill(anchor_, 0.0F);
+  for (std::size_t i = 0; 4 * i < state.anchors.size() && !anchor_.empty(); ++i) {
+    if (!(state.anchors[4 * i + 3] < 0)) continue;
+    for (std::size_t c = 0; c < 4; ++c) anchor_[tile_base(i, 4) + c * PLIANT_TILE] = state.anchors[4 * i + c];
+  }
+}
+
 void BufferModel::start(const TissueState& state) noexcept {
   set_curves(state);
-  std::ranges::fill(anchor_, 0.0F);
+  set_anchors(state);
   std::ranges::fill(yield_, 0.0F);
+  blade_.start(state.blade);
+  grips_ = state.grips;
   stable_ = state.step;
   gravity_ = state.gravity;
   const double h = step_ > 0 ? step_ : stable_;
@@ -99,6 +117,7 @@ void BufferModel::carry(const BufferModel& before) noexcept {
       w_[to + c] = before.w_[from + c] * scale;
     }
   }
+  blade_.carry(before.blade_);
   if (before.part_.topology != part_.topology || before.part_.tools != part_.tools || anchor_.empty()) return;
   std::size_t k = 0;
   for (std::size_t i = 0; i < part_.point.size(); ++i) {
@@ -130,7 +149,9 @@ void BufferModel::follow(const TissueState& state, double seconds, double lead) 
     other_from_[t] = pose_of(t, 0, 0);
     other_to_[t] = state.tools[t];
     moments_[t] = state.moments[t];
+    grips_[t] = state.grips[t];
   }
+  blade_.follow(state.blade, seconds);
   period_ = seconds;
   passed_ = 0;
 }
@@ -169,7 +190,7 @@ void BufferModel::set_step(double h) noexcept {
 }
 
 Pose BufferModel::pose_of(std::size_t tool, double share, double dt) const noexcept {
-  if (tool == tool_) return between(from_, to_, share);
+  if (tool == instrument_.tool) return between(from_, to_, share);
   const double s = period_ > 0 ? std::min(1.0, (passed_ + share * dt) / period_) : 1.0;
   return between(other_from_[tool], other_to_[tool], s);
 }
@@ -187,7 +208,8 @@ void BufferModel::write_poses(double from, double to, double dt) noexcept {
       for (const double x : at.position) *out++ = static_cast<float>(x);
       *out++ = static_cast<float>(moments_[t].frame);
       *out++ = static_cast<float>(moments_[t].share);
-      *out = 0;  // no tool grips here
+      const bool by_hand = t == instrument_.tool && hand_grip_ != HandGrip::unsaid;
+      *out = !by_hand ? grips_[t] : hand_grip_ == HandGrip::closed ? static_cast<float>(instrument_.grip) : 0.0F;
     }
   }
 }
@@ -223,10 +245,17 @@ void BufferModel::look_again() noexcept {
   *program_.near_nodes = static_cast<std::int64_t>(nodes) * PLIANT_TILE;
 }
 
-Wrench BufferModel::read_wrench() noexcept {
+/// About the instrument's origin, which is at `whole`.
+Wrench BufferModel::read_wrench(const Pose& whole) noexcept {
   touching_ = 0;
+  if (!instrument_.tool) {
+    const Wrench on_blade = blade_.read();
+    touching_ = blade_.pressing();
+    return on_blade;
+  }
+  const std::size_t tool = *instrument_.tool;
   if (tool_sum_.empty() || *program_.near_points == 0) return {};
-  const ContactSum sum = contact_sum(tool_sum_.data() + tool_ * contact_sum_parts * contact_sum_numbers);
+  const ContactSum sum = contact_sum(tool_sum_.data() + tool * contact_sum_parts * contact_sum_numbers);
   touching_ = sum.points;
   if (sum.points == 0) return {};
   Wrench out;
@@ -234,6 +263,8 @@ Wrench BufferModel::read_wrench() noexcept {
     out.force[c] = sum.quanta[c] * units_.force;
     out.torque[c] = sum.quanta[3 + c] * units_.torque;
   }
+  const Vec3d arm = vec::sub(compose(whole, moments_[tool].pose).position, whole.position);
+  out.torque = vec::add(out.torque, vec::cross(arm, out.force));
   return out;
 }
 
@@ -244,20 +275,19 @@ Wrench BufferModel::tick(const Pose& from, const Pose& to, double dt) noexcept {
   const double h = dt / substeps_;
   set_step(h);
   constexpr double kTravel = 0.4;  // share of the margin of a search that the instrument may use up
-  const double reach = (*part_.model->tools)[tool_].reach;
+  const double reach = instrument_.tool ? (*part_.model->tools)[*instrument_.tool].reach : instrument_.length;
   const double way = vec::norm(vec::sub(to.position, from.position)) + vec::norm(turn_between(from, to)) * reach;
   Wrench mean;
   for (int s = 0; s < substeps_; ++s) {
     const double begin = static_cast<double>(s) / substeps_, end = static_cast<double>(s + 1) / substeps_;
+    const Pose whole = between(from_, to_, end);
     write_poses(begin, end, dt);
+    blade_.move(between(from_, to_, begin), whole, h);
     move_rim(passed_ + begin * dt, h);
     travel_ += way / substeps_;
     if (!near_.empty() && (++since_look_ >= contact_look_every || travel_ > kTravel * margin_)) look_again();
     runner_.step();
-    Wrench now = read_wrench();
-    const Pose whole = pose_of(tool_, end, dt);
-    const Vec3d arm = vec::sub(compose(whole, moments_[tool_].pose).position, whole.position);
-    now.torque = vec::add(now.torque, vec::cross(arm, now.force));
+    const Wrench now = read_wrench(whole);
     for (std::size_t c = 0; c < 3; ++c) {
       mean.force[c] += now.force[c] / substeps_;
       mean.torque[c] += now.torque[c] / substeps_;

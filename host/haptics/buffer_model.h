@@ -4,8 +4,10 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "haptics/buffer_blade.h"
 #include "haptics/force_model.h"
 #include "haptics/submodel.h"
 #include "haptics/twin_runner.h"
@@ -20,16 +22,26 @@ struct TissueState {
   std::vector<float> drift;         ///< [nodes][3] mean velocity since the state before [m/s]
   std::vector<Pose> tools;          ///< of all tools of the model, at the end of the frame
   std::vector<ToolMoment> moments;  ///< of their shapes
+  std::vector<float> grips;         ///< [tools] strength of their grips [Pa]; 0: the tool does not grip
+  std::vector<float> anchors;       ///< [points][4] of contact (contact_grip.cl); empty: no tool can grip
+  BladeState blade;                 ///< of the instrument, if it is a blade
   double step = 0;                  ///< of the simulation [s]: a stable step for these elements
   Vec3d gravity{};                  ///< [m/s^2]
   std::vector<float> curves;        ///< values of the model's curves
 };
 
+/// What the hand moves.
+struct BufferInstrument {
+  std::optional<std::size_t> tool;  ///< index among the model's tools; empty: a blade
+  double length = 0;                ///< of the blade's edge [m]
+  double grip = 0;                  ///< strength of the tool's grip while it grips [Pa]; 0: it cannot
+  Pose start;                       ///< where it is at first
+};
+
 class BufferModel {
  public:
-  /// `tool`: index of the instrument among the model's tools. Allocates everything that ticks need. Throws Error for an
-  /// element or a law that has no twin.
-  BufferModel(Submodel part, std::size_t tool, const TissueState& state);
+  /// Allocates everything that ticks need. Throws Error for an element or a law that has no twin.
+  BufferModel(Submodel part, const BufferInstrument& instrument, const TissueState& state);
   BufferModel(const BufferModel&) = delete;
   BufferModel& operator=(const BufferModel&) = delete;
 
@@ -42,12 +54,14 @@ class BufferModel {
   void follow(const TissueState& state, double seconds, double lead) noexcept;
   /// Draws the nodes inside the rim to a state, by a share of the difference.
   void draw(const TissueState& state, double share) noexcept;
+  /// What the hand wants of the instrument from now on.
+  void grip(HandGrip wanted) noexcept { hand_grip_ = wanted; }
   /// Advances by `dt` [s] while the instrument moves from `from` to `to`. Returns the mean wrench on it, about its origin.
   Wrench tick(const Pose& from, const Pose& to, double dt) noexcept;
 
   [[nodiscard]] const Submodel& part() const { return part_; }
   [[nodiscard]] bool whole() const { return part_.whole; }
-  [[nodiscard]] std::int64_t contacts() const { return touching_; }  ///< contact points that touched in the last substep
+  [[nodiscard]] std::int64_t contacts() const { return touching_; }  ///< points, or samples of an edge, that touched at last
   [[nodiscard]] int substeps() const { return substeps_; }           ///< of the last tick
   /// Displacement of a node [m].
   [[nodiscard]] Vec3d displacement(std::size_t node) const;
@@ -57,17 +71,19 @@ class BufferModel {
  private:
   void set_step(double h) noexcept;
   void set_curves(const TissueState& state) noexcept;
+  void set_anchors(const TissueState& state) noexcept;
   void write_poses(double from, double to, double dt) noexcept;
   void move_rim(double passed, double h) noexcept;
   void look_again() noexcept;
-  [[nodiscard]] Wrench read_wrench() noexcept;
+  [[nodiscard]] Wrench read_wrench(const Pose& whole) noexcept;
   /// Pose of a tool when `share` of this tick has passed, which began `passed_` after follow().
   [[nodiscard]] Pose pose_of(std::size_t tool, double share, double dt) const noexcept;
 
   Submodel part_;
-  std::size_t tool_;
+  BufferInstrument instrument_;
   const Program program_;
   TwinRunner runner_;
+  BufferBlade blade_;
   std::span<float> curves_, u_, w_, params_, poses_, contact_params_, anchor_, yield_;
   std::span<std::int32_t> near_, list_, node_list_, tool_sum_;
   std::vector<std::int32_t> tiles_offset_, tiles_;  ///< tiles of points at each tile of nodes
@@ -76,6 +92,8 @@ class BufferModel {
   std::vector<std::array<float, 4>> way_;
   std::vector<Pose> other_from_, other_to_;  ///< of all tools at the start of follow() and at its end
   std::vector<ToolMoment> moments_;
+  std::vector<float> grips_;
+  HandGrip hand_grip_ = HandGrip::unsaid;
   Pose from_, to_;  ///< of the instrument in this tick
   ContactUnits units_;
   double step_ = 0;                 ///< h, 0: not set [s]

@@ -4,6 +4,9 @@
 #include <limits>
 
 #include "geometry/vec.h"
+#include "schedule/program_layout.h"
+#include "simulation/contact/tool_changes.h"
+#include "simulation/edits/carried_grips.h"
 #include "simulation/measure/energy.h"
 
 namespace pliant::haptics {
@@ -22,8 +25,26 @@ bool may_be_whole(const Model& model) {
   const bool held =
       std::any_of(model.constraints.begin(), model.constraints.end(), [](const Constraint& c) { return c.axes != 0; });
   const bool grabbed = std::any_of(model.forces.begin(), model.forces.end(), [](const NodeForce& f) { return f.reserved; });
-  const bool grips = std::any_of(model.tools->begin(), model.tools->end(), [](const ToolForm& t) { return t.grips; });
-  return !grips && !model.tissue_contact && model.pressures.empty() && model.links.empty() && held && !grabbed;
+  return !model.tissue_contact && model.pressures.empty() && model.links.empty() && held && !grabbed;
+}
+
+/// [points][4] of the buffer (contact_grip.cl); empty: no tool can grip.
+std::vector<float> anchors_of(const Simulation& simulation, const Submodel& part) {
+  if (!has_grips(simulation.model())) return {};
+  const std::vector<double> anchor = simulation.backend().read_reals(simulation.program().find("contact_anchor"));
+  std::vector<float> out;
+  for (const std::int32_t i : part.point) {
+    for (std::size_t c = 0; c < 4; ++c)
+      out.push_back(static_cast<float>(anchor[tile_base(static_cast<std::size_t>(i), 4) + c * PLIANT_TILE]));
+  }
+  return out;
+}
+
+/// Bits of the components in which a node of the buffer can move.
+std::vector<std::int32_t> free_axes(const Submodel& part) {
+  std::vector<std::int32_t> free(part.slot.size(), 7);
+  for (const Constraint& c : part.model->constraints) free[static_cast<std::size_t>(c.slot)] &= ~c.axes;
+  return free;
 }
 
 }  // namespace
@@ -45,13 +66,19 @@ struct BufferSource::Tissue {
 
 /// What the instrument touches, or will.
 struct BufferSource::Seeds {
-  std::vector<std::int32_t> slots;   ///< nodes of the points
+  std::vector<std::int32_t> slots;   ///< nodes of the points, or of the edge's samples, ascending
   std::vector<std::int32_t> points;  ///< that are near
+
+  void sort() {
+    std::sort(slots.begin(), slots.end());
+    slots.erase(std::unique(slots.begin(), slots.end()), slots.end());
+  }
 };
 
-TissueState BufferSource::state_of(const Simulation& simulation, const Tissue& tissue, const std::vector<std::int32_t>& slots,
-                                   double period) const {
+TissueState BufferSource::state_of(const Simulation& simulation, const Tissue& tissue, const Submodel& part,
+                                   const DrivenPart& tool, double period, bool& covered) const {
   TissueState state;
+  const std::vector<std::int32_t>& slots = part.slot;
   const bool moved = period > 0 && last_u_.size() == tissue.u.size();
   for (const std::int32_t slot : slots) {
     const auto s = static_cast<std::size_t>(slot);
@@ -66,7 +93,10 @@ TissueState BufferSource::state_of(const Simulation& simulation, const Tissue& t
   for (std::size_t t = 0; t < contact.tools().size(); ++t) {
     state.tools.push_back(contact.pose(t, simulation.time()));
     state.moments.push_back(tool_moment((*model.tools)[t], simulation.time()));
+    state.grips.push_back(static_cast<float>(tool_grip(contact.tools()[t], simulation.state(), simulation.time())));
   }
+  state.anchors = anchors_of(simulation, part);
+  if (tool.is_blade()) state.blade = blade_state(simulation.press().samples(tool.index()), slots, free_axes(part), covered);
   state.step = simulation.dt();
   for (const Curve& curve : model.curves) state.curves.push_back(static_cast<float>(curve.value(simulation.time())));
   const Curve* curve = model.gravity_curve == 0 ? nullptr : &model.curves[static_cast<std::size_t>(model.gravity_curve)];
@@ -74,14 +104,22 @@ TissueState BufferSource::state_of(const Simulation& simulation, const Tissue& t
   return state;
 }
 
-BufferSource::Seeds BufferSource::find_seeds(const Simulation& simulation, const Tissue& tissue, std::size_t tool) const {
+BufferSource::Seeds BufferSource::find_seeds(const Simulation& simulation, const Tissue& tissue, const DrivenPart& tool) {
   Seeds seeds;
+  if (tool.is_blade()) {
+    const BladeSamples samples = simulation.press().samples(tool.index());
+    for (std::size_t at = 0; at < samples.node.size(); ++at) {
+      if (samples.weight[at] != 0) seeds.slots.push_back(samples.node[at]);
+    }
+    seeds.sort();
+    return seeds;
+  }
   const Model& model = simulation.model();
   if (model.contact == nullptr || model.tools == nullptr) return seeds;
   const ContactPoints& points = *model.contact;
-  const ToolForm& form = (*model.tools)[tool];
+  const ToolForm& form = (*model.tools)[tool.index()];
   const ToolMoment moment = tool_moment(form, simulation.time());
-  const Pose at = compose(simulation.contact().pose(tool, simulation.time()), moment.pose);
+  const Pose at = compose(tool.pose(simulation, simulation.time()), moment.pose);
   double nearest = kFar * points.spacing;
   std::int32_t closest = -1;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -102,8 +140,7 @@ BufferSource::Seeds BufferSource::find_seeds(const Simulation& simulation, const
     const auto& nodes = points.nodes[static_cast<std::size_t>(i)];
     seeds.slots.insert(seeds.slots.end(), nodes.begin(), nodes.end());
   }
-  std::sort(seeds.slots.begin(), seeds.slots.end());
-  seeds.slots.erase(std::unique(seeds.slots.begin(), seeds.slots.end()), seeds.slots.end());
+  seeds.sort();
   return seeds;
 }
 
@@ -123,7 +160,7 @@ bool BufferSource::holds(const Seeds& seeds) const {
   return true;
 }
 
-void BufferSource::build(const Simulation& simulation, const Seeds& seeds, std::size_t tool, const Tissue& tissue) {
+void BufferSource::build(const Simulation& simulation, const Seeds& seeds, const DrivenPart& tool, const Tissue& tissue) {
   ring_ = graph_->rings(seeds.slots, rings_ < 0 ? kAll : std::max(rings_ - 1, 0));
   if (std::none_of(ring_.begin(), ring_.end(), [](std::int32_t r) { return r >= 0; })) {
     ring_.clear();
@@ -133,24 +170,29 @@ void BufferSource::build(const Simulation& simulation, const Seeds& seeds, std::
   part.topology = simulation.topology_version();
   part.rings = rings_;
   for (const ContactTool& t : simulation.contact().tools()) part.tools.push_back(t.name);
-  const TissueState state = state_of(simulation, tissue, part.slot, 0);
-  buffers_.push_back({++generation_, std::make_unique<BufferModel>(std::move(part), tool, state)});
+  bool covered = true;
+  const TissueState state = state_of(simulation, tissue, part, tool, 0, covered);
+  BufferInstrument instrument{{}, tool.length(), 0, tool.pose(simulation, simulation.time())};
+  if (!tool.is_blade()) {
+    instrument.tool = tool.index();
+    instrument.grip = grip_strength(simulation.contact().tools()[tool.index()]);
+  }
+  buffers_.push_back({++generation_, std::make_unique<BufferModel>(std::move(part), instrument, state)});
 }
 
-void BufferSource::report(const Simulation& simulation, std::size_t tool, FrameReport& out) {
-  const ToolContact& contact = simulation.contact();
+void BufferSource::report(const Simulation& simulation, const DrivenPart& tool, FrameReport& out) {
   out.time = simulation.time();
   out.period = last_step_ >= 0 ? out.time - last_time_ : 0;
-  out.tool = contact.pose(tool, out.time);
-  out.mean = simulation.report().tools[tool].now;
-  out.last = contact.last_force(tool).value_or(out.mean);
+  out.tool = tool.pose(simulation, out.time);
+  out.mean = tool.mean(simulation);
+  out.last = tool.last(simulation).value_or(out.mean);
   out.topology = simulation.topology_version();
   out.number = ++number_;
   last_step_ = simulation.step();
   last_time_ = out.time;
 }
 
-std::optional<std::size_t> BufferSource::fill_report(const Simulation& simulation, BufferMessage& message) {
+std::optional<DrivenPart> BufferSource::fill_report(const Simulation& simulation, BufferMessage& message) {
   if (&simulation != simulation_ || simulation.step() < last_step_) {  // reset, loaded, or taken back
     simulation_ = &simulation;
     ++run_;
@@ -163,7 +205,7 @@ std::optional<std::size_t> BufferSource::fill_report(const Simulation& simulatio
   message.generation = generation_;
   message.run = run_;
   message.elements = 0;
-  if (const std::optional<std::size_t> own = simulation.contact().find(tool_)) {
+  if (std::optional<DrivenPart> own = DrivenPart::find(simulation, tool_)) {
     report(simulation, *own, message.report);
     return own;
   }
@@ -176,9 +218,9 @@ std::optional<std::size_t> BufferSource::fill_report(const Simulation& simulatio
 
 void BufferSource::fill(const Simulation& simulation, std::uint64_t in_use, BufferMessage& message) {
   std::erase_if(buffers_, [&](const Kept& k) { return k.generation < in_use && k.generation != generation_; });
-  const std::optional<std::size_t> own = fill_report(simulation, message);
+  const std::optional<DrivenPart> own = fill_report(simulation, message);
   if (!own) return;
-  const std::size_t tool = *own;
+  const DrivenPart& tool = *own;
   const Tissue tissue(simulation);
   const Seeds seeds = find_seeds(simulation, tissue, tool);
   if (model_ != simulation.shared_model()) {
@@ -188,7 +230,7 @@ void BufferSource::fill(const Simulation& simulation, std::uint64_t in_use, Buff
     last_u_.clear();
   }
   message.elements = may_be_whole(*model_) ? graph_->elements() : std::numeric_limits<std::int64_t>::max();
-  if (seeds.points.empty()) {
+  if (seeds.slots.empty()) {
     last_u_ = tissue.u;
     return;
   }
@@ -204,7 +246,7 @@ void BufferSource::fill(const Simulation& simulation, std::uint64_t in_use, Buff
                                 [&](std::int32_t i) { return std::binary_search(within.begin(), within.end(), i); });
   message.model = &buffer;
   message.generation = generation_;
-  message.state = state_of(simulation, tissue, buffer.part().slot, message.report.period);
+  message.state = state_of(simulation, tissue, buffer.part(), tool, message.report.period, message.covered);
   last_u_ = tissue.u;
 }
 

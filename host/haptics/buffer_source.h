@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "haptics/buffer_model.h"
+#include "haptics/driven_part.h"
 #include "simulation/simulation.h"
 
 namespace pliant::haptics {
@@ -26,6 +27,7 @@ struct BufferMessage {
 class BufferSource {
  public:
   /// `rings`: of elements around the nodes that the instrument touches; negative: all elements of the body it touches.
+  /// `tool`: name of a tool, or of a blade that cuts by force.
   BufferSource(std::string tool, std::int32_t rings) : tool_(std::move(tool)), rings_(rings) {}
 
   /// From the next fill() on; an existing buffer is rebuilt if its rings differ.
@@ -33,8 +35,8 @@ class BufferSource {
     if (rings != rings_) ring_.clear();
     rings_ = rings;
   }
-  /// The report alone, without a buffer. Returns the tool's index; empty: it is parked or gone.
-  std::optional<std::size_t> fill_report(const Simulation& simulation, BufferMessage& message);
+  /// The report alone, without a buffer. Returns the tool; empty: it is parked or gone.
+  std::optional<DrivenPart> fill_report(const Simulation& simulation, BufferMessage& message);
   /// Call after a frame, from the thread that steps. `in_use`: generation of the buffer that the haptic thread uses; older ones
   /// are destroyed. A tool that is parked or gone has no buffer.
   void fill(const Simulation& simulation, std::uint64_t in_use, BufferMessage& message);
@@ -42,12 +44,12 @@ class BufferSource {
  private:
   struct Tissue;
   struct Seeds;
-  [[nodiscard]] Seeds find_seeds(const Simulation& simulation, const Tissue& tissue, std::size_t tool) const;
+  [[nodiscard]] static Seeds find_seeds(const Simulation& simulation, const Tissue& tissue, const DrivenPart& tool);
   [[nodiscard]] bool holds(const Seeds& seeds) const;
-  void build(const Simulation& simulation, const Seeds& seeds, std::size_t tool, const Tissue& tissue);
-  void report(const Simulation& simulation, std::size_t tool, FrameReport& report);
-  [[nodiscard]] TissueState state_of(const Simulation& simulation, const Tissue& tissue, const std::vector<std::int32_t>& slots,
-                                     double period) const;
+  void build(const Simulation& simulation, const Seeds& seeds, const DrivenPart& tool, const Tissue& tissue);
+  void report(const Simulation& simulation, const DrivenPart& tool, FrameReport& report);
+  [[nodiscard]] TissueState state_of(const Simulation& simulation, const Tissue& tissue, const Submodel& part,
+                                     const DrivenPart& tool, double period, bool& covered) const;
 
   std::string tool_;
   std::int32_t rings_;

@@ -55,8 +55,8 @@ class Parser {
 
   void row(std::string_view rest) {
     const std::string_view whole = rest, kind = take(rest, ',');
-    if (kind != (begun_ ? "drive" : "begin") && !(begun_ && kind == "end"))
-      fail("the row", whole, begun_ ? "drive,... or end,..." : "begin,STEP,TIME");
+    if (kind != (begun_ ? "drive" : "begin") && !(begun_ && (kind == "end" || kind == "grip")))
+      fail("the row", whole, begun_ ? "drive,..., grip,... or end,..." : "begin,STEP,TIME");
     if (log_.end) fail("the row", whole, "nothing behind the end");
     const LoggedMoment at = moment(rest);
     if (!begun_) {
@@ -65,7 +65,7 @@ class Parser {
     } else if (kind == "end") {
       log_.end = at;
     } else {
-      return drive(rest, at);
+      return kind == "grip" ? grip(rest, at) : drive(rest, at);
     }
     if (!rest.empty()) fail("behind the time", rest, "nothing");
   }
@@ -107,9 +107,23 @@ class Parser {
     if (!good_pose(drive.target)) {
       fail("the turn", fmt::format("{}", fmt::join(drive.target.turn, ",")), "a unit quaternion x, y, z, w");
     }
-    if (rest.empty() || rest.find('\r') != std::string_view::npos) fail("the tool", rest, "its name, without a line break");
-    drive.tool = rest;
+    drive.tool = name(rest);
     log_.drives.push_back(std::move(drive));
+  }
+
+  void grip(std::string_view rest, const LoggedMoment& at) {
+    const std::string_view on = take(rest, ',');
+    if (on != "0" && on != "1") fail("the grip", on, "1 to grip or 0 to let go");
+    LoggedDrive drive;
+    drive.at = at;
+    drive.grips = on == "1";
+    drive.tool = name(rest);
+    log_.drives.push_back(std::move(drive));
+  }
+
+  std::string name(std::string_view rest) const {
+    if (rest.empty() || rest.find('\r') != std::string_view::npos) fail("the tool", rest, "its name, without a line break");
+    return std::string(rest);
   }
 
   const std::string& file_;
@@ -131,6 +145,10 @@ std::string drive_log_text(const DriveLog& log) {
   const auto moment = [](const LoggedMoment& at) { return fmt::format("{},{:.17g}", at.step, at.time); };
   std::string text = fmt::format("{}\nbegin,{}\n", kDriveLogHead, moment(log.begin));
   for (const LoggedDrive& d : log.drives) {
+    if (d.grips) {
+      text += fmt::format("grip,{},{},{}\n", moment(d.at), *d.grips ? 1 : 0, d.tool);
+      continue;
+    }
     fmt::format_to(std::back_inserter(text), "drive,{},{:.17g},{:.17g},{:.17g},{}\n", moment(d.at), d.seconds,
                    fmt::join(d.target.position, ","), fmt::join(d.target.turn, ","), d.tool);
   }

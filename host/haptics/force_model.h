@@ -18,6 +18,9 @@ struct FrameReport {
   std::uint64_t number = 0;   ///< number of reports so far
 };
 
+/// What a hand wants of a tool that can grip. `unsaid`: the scene and the program alone decide.
+enum class HandGrip : std::uint8_t { unsaid, open, closed };
+
 /// Both calls come from the haptic thread: they neither allocate nor wait.
 class ForceModel {
  public:

@@ -19,6 +19,7 @@ HapticCore::HapticCore(const CoreOptions& options, const Pose& tool)
     : options_(options),
       buffer_(options.lead, options.settle),
       coupling_(options.coupling, options.tick),
+      grip_button_(options.grip_button),
       gate_(options.translation, options.rotation),
       guard_(options.guard, options.limits),
       in_use_(options.model),
@@ -73,6 +74,8 @@ const CoreTick& HapticCore::tick(const DeviceSample& sample, double age, double 
   const Motion plain = plain_.update(sample, dt), now = motion_.update(scene, dt), smooth = smooth_.update(scene, dt);
   const Coupled coupled = coupling_.step(out_.device, now.velocity, now.spin, last_, dt);
   out_.tool = coupled.instrument;
+  pose_.grip = grip_button_.read(sample.buttons);
+  buffer_.grip(pose_.grip);
   out_.tissue = last_ = felt(out_.tool, dt);
   Wrench hand = scaled(options_.coupling.rigid ? last_ : coupled.on_hand, options_.force_scale);
   const Wrench allowed =

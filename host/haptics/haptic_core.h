@@ -4,6 +4,7 @@
 
 #include "haptics/buffer_force.h"
 #include "haptics/coupling.h"
+#include "haptics/grip_button.h"
 #include "haptics/held.h"
 #include "haptics/instrument.h"
 #include "haptics/passivity.h"
@@ -29,6 +30,7 @@ struct CoreOptions {
   bool align = true;        ///< the first sample is where the tool is
   double motion_scale = 1;  ///< way of the tool per way of the device
   double force_scale = 1;   ///< force on the hand per force on the tool
+  int grip_button = 0;      ///< GripButton
 };
 
 /// Wrenches and poses of a tick, in scene coordinates.
@@ -65,6 +67,7 @@ class HapticCore {
   HeldForce held_{Sampled::last};
   ExtrapolatedForce extrapolated_{0.1, Sampled::last};
   VirtualCoupling coupling_;
+  GripButton grip_button_;
   PassivityGate gate_;
   ForceGuard guard_;
   /// Of the device: for the account of its energy, for the coupling, and for the simulation's tool.

@@ -5,12 +5,15 @@
 
 #include "geometry/vec.h"
 #include "haptics/coupling.h"
+#include "haptics/driven_part.h"
+#include "haptics/grip_button.h"
 #include "pliant/error.h"
 
 namespace pliant::haptics {
 
 std::optional<std::string> Instrument::before(Simulation& simulation, double seconds) {
   driven_.reset();
+  gripped_.reset();
   hand.take();
   const InstrumentPose& newest = hand.newest();
   if (!newest.given || !(seconds > 0)) return {};
@@ -18,11 +21,13 @@ std::optional<std::string> Instrument::before(Simulation& simulation, double sec
   const double ahead = predict_ * seconds;
   target.position = vec::add(target.position, vec::mul(newest.motion.velocity, ahead));
   target = turned(target, vec::mul(newest.motion.spin, ahead));
-  const std::optional<std::size_t> own = simulation.contact().find(tool_);
-  if (!own) return {};  // parked or removed: it stays so
-  if (simulation.contact().pose(*own, simulation.time() + seconds) == target) return {};
+  const std::optional<DrivenPart> own = DrivenPart::find(simulation, tool_);
+  if (!own) return {};  // parked, lifted or removed: it stays so
+  if (grip_as_wanted(simulation, *own, newest.grip)) gripped_ = newest.grip == HandGrip::closed;
+  target = own->within_reach(simulation, target, seconds);
+  if (own->pose(simulation, simulation.time() + seconds) == target) return {};
   try {
-    simulation.tools().drive(tool_, target, seconds);
+    own->drive(simulation, target, seconds);
     driven_ = target;
     said_.clear();
     return {};

@@ -15,6 +15,7 @@ namespace pliant::haptics {
 struct InstrumentPose {
   Pose pose;
   Motion motion;
+  HandGrip grip = HandGrip::unsaid;
   bool given = false;  ///< false: the device has said nothing yet
 };
 
@@ -32,6 +33,8 @@ class Instrument {
   std::optional<std::string> before(Simulation& simulation, double seconds);
   /// Where the last before() has driven the tool; empty: it has not.
   [[nodiscard]] const std::optional<Pose>& driven() const { return driven_; }
+  /// What it told the tool: to grip, or to let go; empty: nothing.
+  [[nodiscard]] const std::optional<bool>& gripped() const { return gripped_; }
   /// Call after it: sends the state of the tissue.
   void after(const Simulation& simulation);
 
@@ -50,6 +53,7 @@ class Instrument {
   BufferSource source_;
   bool buffers_;
   std::optional<Pose> driven_;
+  std::optional<bool> gripped_;
   std::string said_;  ///< why the last pose was refused
 };
 

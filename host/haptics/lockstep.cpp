@@ -10,6 +10,7 @@
 
 #include "devices/stroke_device.h"
 #include "geometry/vec.h"
+#include "haptics/driven_part.h"
 #include "haptics/haptic_core.h"
 #include "pliant/error.h"
 
@@ -18,15 +19,15 @@ namespace {
 
 constexpr double kLeastWay = 1e-6;  ///< for a drive whose sample is due already [s]
 
-std::size_t index_of(const Simulation& simulation, const std::string& name) {
-  const std::optional<std::size_t> own = simulation.contact().find(name);
-  if (!own) throw Error(ErrorCode::usage, fmt::format("there is no tool \"{}\"", name));
+DrivenPart part_of(const Simulation& simulation, const std::string& name) {
+  const std::optional<DrivenPart> own = DrivenPart::find(simulation, name);
+  if (!own) throw Error(ErrorCode::usage, fmt::format("there is no tool or blade \"{}\"", name));
   return *own;
 }
 
 /// On the tool in the last step.
 Wrench felt(const Simulation& simulation, const std::string& name) {
-  return simulation.contact().last_force(index_of(simulation, name)).value_or(Wrench{});
+  return part_of(simulation, name).last(simulation).value_or(Wrench{});
 }
 
 bool ended(const HapticDevice& device) {
@@ -42,7 +43,7 @@ Lockstep::Lockstep(const Simulation& simulation, const std::vector<HeldTool>& to
     Hand hand;
     hand.held = held;
     hand.guard = ForceGuard(GuardOptions{}, held.device->limits());
-    hand.tool_start = simulation.contact().pose(index_of(simulation, held.tool), begin_);
+    hand.tool_start = part_of(simulation, held.tool).pose(simulation, begin_);
     hand.time = begin_;
     if (auto* stroke = dynamic_cast<devices::StrokeDevice*>(held.device.get()); stroke != nullptr) stroke->step_by_answers();
     hands_.push_back(std::move(hand));
@@ -159,10 +160,15 @@ bool Lockstep::take(Hand& hand, const DeviceSample& sample, Simulation& simulati
   return true;
 }
 
-void Lockstep::drive(const Hand& hand, const Pose& target, Simulation& simulation) {
+void Lockstep::drive(Hand& hand, const Pose& target, Simulation& simulation) {
   const double seconds = std::max(kLeastWay, hand.time - simulation.time());
-  simulation.tools().drive(hand.held.tool, target, seconds);
-  log_.drives.push_back({{simulation.step(), simulation.time(), 0}, seconds, target, hand.held.tool});
+  const LoggedMoment now{simulation.step(), simulation.time(), 0};
+  const DrivenPart part = part_of(simulation, hand.held.tool);
+  const HandGrip wanted = hand.button.read(hand.sample->buttons);
+  if (grip_as_wanted(simulation, part, wanted)) log_.drives.push_back({now, 0, {}, hand.held.tool, wanted == HandGrip::closed});
+  const Pose there = part.within_reach(simulation, target, seconds);
+  part.drive(simulation, there, seconds);
+  log_.drives.push_back({now, seconds, there, hand.held.tool, {}});
 }
 
 void Lockstep::release() noexcept {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "haptics/drive_log.h"
+#include "haptics/grip_button.h"
 #include "haptics/run_guide.h"
 #include "haptics/safety.h"
 #include "pliant/haptic_device.h"
@@ -54,6 +55,7 @@ class Lockstep final : public RunGuide {
   struct Hand {
     HeldTool held;
     ForceGuard guard;
+    GripButton button{0};
     Pose tool_start, device_start;
     std::optional<DeviceSample> first, sample;  ///< sample: the one under way
     std::uint64_t seen = 0;                     ///< number of the last sample
@@ -68,7 +70,7 @@ class Lockstep final : public RunGuide {
   void await(Hand& hand, Simulation& simulation);
   bool take(Hand& hand, const DeviceSample& sample, Simulation& simulation);
   [[nodiscard]] double time_of(Hand& hand, const DeviceSample& sample) const;
-  void drive(const Hand& hand, const Pose& target, Simulation& simulation);
+  void drive(Hand& hand, const Pose& target, Simulation& simulation);
   void remark(const std::string& text) const;
 
   LockstepOptions options_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "haptics/driven_part.h"
 #include "pliant/error.h"
 #include "scene/keys.h"
 
@@ -16,7 +17,7 @@ constexpr std::int64_t kNever = 1'000'000'000'000'000;
 
 Replay::Replay(DriveLog log, const Simulation& simulation, bool to_end) : log_(std::move(log)), to_end_(to_end) {
   std::vector<std::string> names;
-  for (const ContactTool& tool : simulation.contact().tools()) names.push_back('"' + tool.name + '"');
+  for (const std::string& name : DrivenPart::names(simulation)) names.push_back('"' + name + '"');
   for (const LoggedDrive& drive : log_.drives) {
     if (std::find(names.begin(), names.end(), '"' + drive.tool + '"') != names.end()) continue;
     refuse(drive.at, fmt::format("the tool is \"{}\"; {}", drive.tool,
@@ -58,7 +59,13 @@ bool Replay::next(Simulation& simulation) {
   const LoggedDrive& drive = log_.drives[next_++];
   check_time(drive.at, simulation);
   try {
-    simulation.tools().drive(drive.tool, drive.target, drive.seconds);
+    const std::optional<DrivenPart> part = DrivenPart::find(simulation, drive.tool);
+    if (!part) refuse(drive.at, fmt::format("the blade \"{}\" is nowhere at this time", drive.tool));
+    if (drive.grips) {
+      simulation.tools().grip(drive.tool, *drive.grips);
+    } else {
+      part->drive(simulation, drive.target, drive.seconds);
+    }
   } catch (const Error& error) {
     if (error.code() == ErrorCode::internal || error.code() == ErrorCode::device) throw;
     refuse(drive.at, error.what());

@@ -137,6 +137,8 @@ void add_nodes(const Model& model, const Numbering& numbers, const std::vector<c
 /// Copies the points whose nodes are all inside. Those at the rim would be pushed by the few of their nodes that are free.
 std::vector<std::int32_t> add_points(const Model& model, const Numbering& numbers, const std::vector<char>& rim, Model& out) {
   std::vector<std::int32_t> chosen;
+  out.tools = model.tools;
+  if (model.contact == nullptr) return chosen;
   auto points = std::make_shared<ContactPoints>();
   const ContactPoints& from = *model.contact;
   for (std::size_t i = 0; i < from.size(); ++i) {
@@ -156,7 +158,6 @@ std::vector<std::int32_t> add_points(const Model& model, const Numbering& number
   }
   points->spacing = from.spacing;
   out.contact = std::move(points);
-  out.tools = model.tools;
   out.contact_laws = model.contact_laws;
   return chosen;
 }

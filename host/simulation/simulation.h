@@ -111,8 +111,9 @@ class Simulation {
   CutReport move_blade(const std::string& blade, const BladeSegment& segment);
   /// Removes a blade's position, if any: its next move_blade() places it without cutting.
   void lift_blade(const std::string& blade) { edits_.lift_blade(blade); }
-  /// TopologyEdits::drive_blade(), lift_blade_by_force().
+  /// TopologyEdits::drive_blade(), drive_speed(), lift_blade_by_force().
   void drive_blade(const std::string& blade, const BladeSegment& to, double seconds) { edits_.drive_blade(blade, to, seconds); }
+  [[nodiscard]] double blade_drive_speed() const { return edits_.drive_speed(); }
   void lift_blade_by_force(const std::string& blade) { edits_.lift_blade_by_force(blade); }
   /// Number of edits that changed elements.
   [[nodiscard]] std::int64_t topology_version() const { return state_.topology_version; }

@@ -1,4 +1,4 @@
-// Touch: a device drives a tool of a World and feels the force on it, at a rate of its own (docs/haptics.md).
+// Touch: a device drives a tool or a blade of a World and feels the force on it, at a rate of its own (docs/haptics.md).
 #pragma once
 #include <array>
 #include <cstdint>
@@ -39,9 +39,11 @@ struct HapticOptions {
 
   bool align =
       true;  ///< where device and tool are at the start is the same place; false: the device speaks in scene coordinates
-  double motion_scale = 1;      ///< way of the tool per way of the device
-  double force_scale = 1;       ///< force on the hand per force on the tool
-  bool realtime = true;         ///< request real-time priority; without permission the thread runs as others
+  double motion_scale = 1;  ///< way of the tool per way of the device
+  double force_scale = 1;   ///< force on the hand per force on the tool
+  int grip_button = 0;      ///< bit of the device's buttons that makes a tool with a `grip` hold tissue while it is pressed,
+                            ///< from when it is first pressed on; -1: none
+  bool realtime = true;     ///< request real-time priority; without permission the thread runs as others
   std::size_t log_samples = 0;  ///< number of device samples to keep for write_log(); 0: none
 };
 
@@ -85,15 +87,16 @@ struct HapticState {
   HapticSample last;             ///< the newest tick
 };
 
-/// Couples a device with a tool of a World. Its thread reads the device, computes the force and writes it, tick by tick; it
-/// never waits for steps, cuts or frames of the World, allocates nothing and takes no lock. The World has to run, freely
-/// (World::run_live) or by advance(): each frame moves the tool to the device's pose, and sends the loop the state of the
-/// tissue. The loop may live longer than the World: then the force fades out. It takes a second of the World for a second of
-/// the hand: run the World at a speed of 1. Any thread may make these calls, also while another does.
+/// Couples a device with a tool of a World, or with a blade that cuts by force, whose origin is the middle of its edge. Its
+/// thread reads the device, computes the force and writes it, tick by tick; it never waits for steps, cuts or frames of the
+/// World, allocates nothing and takes no lock. The World has to run, freely (World::run_live) or by advance(): each frame moves
+/// the tool to the device's pose, and sends the loop the state of the tissue. The loop may live longer than the World: then the
+/// force fades out. It takes a second of the World for a second of the hand: run the World at a speed of 1. Any thread may make
+/// these calls, also while another does.
 class PLIANT_API HapticLoop {
  public:
-  /// Starts the thread. `device` must not be null. Throws Error: usage (an unknown or parked tool, one that another loop
-  /// drives, options out of range).
+  /// Starts the thread. `tool`: name of a tool, or of a blade by force. `device` must not be null. Throws Error: usage (an
+  /// unknown or parked tool, a blade that is nowhere, one that another loop drives, options out of range).
   HapticLoop(World& world, const std::string& tool, std::shared_ptr<HapticDevice> device, const HapticOptions& options = {});
   HapticLoop(const HapticLoop&) = delete;
   HapticLoop& operator=(const HapticLoop&) = delete;

@@ -211,6 +211,7 @@ TEST_F(CHaptics, OptionsArrive) {
   EXPECT_EQ(c.force_scale, cpp.force_scale);
   EXPECT_EQ(c.realtime != 0, cpp.realtime);
   EXPECT_EQ(c.log_samples, cpp.log_samples);
+  EXPECT_EQ(c.grip_button, cpp.grip_button);
   options.align = 0;
   options.model = "held";
   const double at[3]{0.02, 0.02, 0.07};
@@ -255,6 +256,9 @@ TEST_F(CHaptics, EveryOptionIsTheOneOfItsName) {
   wrong = options;
   wrong.log_samples = 200000000;
   refused(wrong, "log_samples");
+  wrong = PLIANT_HAPTIC_OPTIONS_INIT;
+  wrong.grip_button = 32;
+  refused(wrong, "grip_button");
   wrong = options;
   wrong.model = "spring";
   refused(wrong, "model");
@@ -321,7 +325,7 @@ TEST_F(CHaptics, StructsOfOtherVersions) {
   pliant_haptic_loop_stop(loop);
   expect_checked<pliant_haptic_sample>(
       PLIANT_HAPTIC_SAMPLE_INIT, [&](pliant_haptic_sample* out) { return pliant_haptic_loop_samples(loop, out, 1, &given); });
-  options.size = sizeof options - 1;
+  options.size = offsetof(pliant_haptic_options, grip_button) + 3;
   pliant_haptic_loop second{17};
   EXPECT_EQ(pliant_haptic_loop_create(world, "ball", device, &options, &second), PLIANT_USAGE);
   EXPECT_EQ(second.id, 0U);

@@ -250,6 +250,41 @@ TEST(Haptics, AfterAResetTheToolIsWhereTheDeviceIs) {
   EXPECT_TRUE(run_until(world, 20, pressed));  // the device has not moved meanwhile
 }
 
+/// A scalpel in the hand: it feels the tissue, cuts it, and is where the hand takes it.
+TEST(Haptics, AHandHoldsABlade) {
+  SceneSpec scene = block(0);
+  scene.gravity = {};
+  scene.bodies[0].material.damping = 30;
+  scene.bodies[0].material.toughness = 5000;
+  BladeSpec blade;
+  blade.name = "scalpel";
+  blade.cuts = "by-force";
+  blade.edge = 0.0005;
+  blade.path = {{0, 0.053, kBlockTop + 0.001, -0.01, 0.053, kBlockTop + 0.001, 0.07}};
+  scene.blades.push_back(blade);
+  World world(scene, on("cpu"));
+  EXPECT_EQ(message_of([&] { HapticLoop loop(world, "knife", std::make_shared<PressingDevice>(0.01, 1)); }),
+            "haptics: there is no tool or blade by force \"knife\"; there are \"scalpel\"");
+  auto device = std::make_shared<PressingDevice>(0.02, 1);
+  HapticLoop loop(world, "scalpel", device, with("buffer"));
+  world.run_live();
+  EXPECT_TRUE(run_until(world, 20, [&] {
+    const BladeForce now = world.blade_forces().at(0);
+    return loop.state().last.time > 1.2 && now.gave_way >= 0 && std::abs(now.a[1] - (kBlockTop - 0.019)) < 1e-4;
+  }));
+  EXPECT_GT(device->most(), 0.1);
+  EXPECT_TRUE(device->finite());
+  const HapticState state = loop.state();
+  EXPECT_EQ(state.model, "buffer");
+  EXPECT_GT(state.elements, 0);
+  EXPECT_EQ(state.refused, 0);
+  EXPECT_EQ(state.resets, 0);
+  world.lift_blade("scalpel");
+  EXPECT_TRUE(run_until(world, 20, [&] { return !world.blade_forces().at(0).present && loop.state().last.force == Vec3d{}; }));
+  EXPECT_EQ(message_of([&] { HapticLoop second(world, "scalpel", std::make_shared<PressingDevice>(0.01, 1)); }),
+            "haptics: blade \"scalpel\" is nowhere at present; drive_blade() places it first");
+}
+
 TEST(Haptics, WrongOptionsAreRefused) {
   World world(block_and_ball(), on("cpu"));
   auto device = std::make_shared<PressingDevice>(0.01, 1);
@@ -264,7 +299,7 @@ TEST(Haptics, WrongOptionsAreRefused) {
             "haptics: model is \"spring\", expected auto, buffer, whole, held or extrapolated");
   EXPECT_EQ(refused([](HapticOptions& o) { o.stiffness = std::nan(""); }), "haptics: stiffness is nan, expected 0 to 1000000");
   EXPECT_EQ(message_of([&] { HapticLoop loop(world, "rod", device); }),
-            "haptics: there is no tool \"rod\"; there are \"ball\"");
+            "haptics: there is no tool or blade by force \"rod\"; there are \"ball\"");
   EXPECT_EQ(message_of([&] { HapticLoop loop(world, "ball", nullptr); }), "haptics: the device is null");
   world.park_tool("ball");
   EXPECT_EQ(message_of([&] { HapticLoop loop(world, "ball", device); }), "haptics: tool \"ball\" is parked; unpark it first");

@@ -33,8 +33,8 @@ class Haptics(unittest.TestCase):
 
     def test_rows_have_their_members(self):
         self.assertEqual(schema_errors(self.result, "bench-haptics"), [])
-        self.assertEqual([part["name"] for part in self.result["parts"]], ["strokes", "others", "edits", "passivity", "times"])
-        self.assertEqual({row["part"] for row in self.rows}, {"strokes", "others", "edits", "passivity", "times"})
+        self.assertEqual([part["name"] for part in self.result["parts"]], ["strokes", "others", "edits", "instruments", "passivity", "times"])
+        self.assertEqual({row["part"] for row in self.rows}, {"strokes", "others", "edits", "instruments", "passivity", "times"})
         self.assertEqual(sum(row["ok"] is True for row in self.rows), self.result["summary"]["ok"])
         self.assertEqual((self.out / "haptics.csv").read_text().count("\n"), len(self.rows) + 1)
 
@@ -50,7 +50,7 @@ class Haptics(unittest.TestCase):
         self.assertGreater(max(force[1] for force in held["force"]), 0.1)
 
     def test_bad_options_are_refused(self):
-        for arguments, part in ((("--parts", "smell"), '--parts: got "smell", expected strokes, others, edits, passivity, times'),
+        for arguments, part in ((("--parts", "smell"), '--parts: got "smell", expected strokes, others, edits, instruments, passivity, times'),
                                 (("--seconds", "0"), "--seconds: got 0, expected 1 to 3600")):
             done = haptics(*arguments)
             self.assertNotEqual(done.returncode, 0)

@@ -28,8 +28,9 @@ def press(share, depth=0.016):
     return (0.004 * math.sin(6 * share), 0.003 * (1 - math.cos(5 * share)), -depth * math.sin(math.pi * share))
 
 
-def write_csv(file, samples):
-    rows = [f"{t!r},{x!r},{y!r},{z!r},0,0,0,1,0\n" for t, (x, y, z) in samples]
+def write_csv(file, samples, buttons=lambda t: 0):
+    """buttons: at a time [s], a bit each."""
+    rows = [f"{t!r},{x!r},{y!r},{z!r},0,0,0,1,{buttons(t)}\n" for t, (x, y, z) in samples]
     file.write_text("time,x,y,z,qx,qy,qz,qw,buttons\n" + "".join(rows))
 
 

@@ -2,6 +2,7 @@
 """Runs by hand: devices drive tools while a scene runs; each sample counts; the log of the drives gives the same bits without a device."""
 import csv
 import json
+import math
 import re
 import signal
 import subprocess
@@ -224,6 +225,75 @@ class Live(CliTest):
         self.assertTrue(result["interrupted"])
         self.replayed(scene, result)
 
+    # Forceps in the hand
+
+    def test_a_button_closes_forceps(self):
+        """Pressed while the ball is in the tissue, it pulls it up, and lets go in the end; the log gives the same bits."""
+        tool = {"name": "forceps", "shape": {"sphere": 0.02}, "path": [[0, 0, 0, 0.073]], "grip": {}}
+        scene = self.scene("forceps", body={"prescribed": []}, tools=[tool], gravity=[0, 0, 0], duration=2)
+        way = lambda share: (0, 0, -0.006 * min(1, 5 * share) + 0.02 * max(0, min(1, 2.5 * share - 1)))
+        write_csv(self.folder / "pull.csv", stroke(300, way), buttons=lambda t: 1 if 0.15 < t < 0.5 else 0)
+        write_csv(self.folder / "open.csv", stroke(300, way), buttons=lambda t: 2)
+        for time_of in (["--lockstep"], ["--seconds", "0.7"]):
+            with self.subTest(time_of[0]):
+                run = self.json("run", scene, "--backend", "cpu", "--live", "file:pull.csv", *time_of, "--log", "drives.log", "--out", "out", "--every", "10")
+                rows = [line for line in (self.folder / "drives.log").read_text().splitlines() if line.startswith("grip")]
+                self.assertEqual([row.split(",")[3:] for row in rows], [["1", "forceps"], ["0", "forceps"]])
+                with open(self.folder / "out" / "forceps_tools.csv") as file:
+                    pulls = [float(row["fz [N]"]) for row in csv.DictReader(file)]
+                self.assertLess(min(pulls), -0.05)
+                self.assertEqual(pulls[-1], 0)
+                for backend in self.backends():
+                    self.replayed(scene, run, backend=backend)
+        middle = int(rows[0].split(",")[1]) + 20
+        self.json("run", scene, "--backend", "cpu", "--replay", "drives.log", "--steps", middle, "--checkpoint", "c.pckpt")
+        self.replayed(scene, run, "--resume", "c.pckpt")
+        self.from_file(scene, "--log", "open.log", file="open.csv")
+        self.assertNotIn("grip", (self.folder / "open.log").read_text())
+
+    # A blade in the hand
+
+    def cut(self, name="cut", **keys):
+        """The soft cube under a blade of 0.12 m, 1 mm above it, that cuts by force."""
+        material = {"law": "neo-hookean", "young": 3000, "poisson": 0.4, "density": 1000, "damping": 10, "toughness": 5000}
+        scalpel = {"name": "scalpel", "cuts": "by-force", "edge": 0.0005, "path": [[0, 0.003, 0.051, -0.06, 0.003, 0.051, 0.06]]}
+        return self.scene(name, body={"prescribed": [], "material": material}, **{"blades": [scalpel], "gravity": [0, 0, 0], "duration": 2, **keys})
+
+    def test_a_blade(self):
+        """It indents, cuts and comes out; the log gives the same bits, also from its middle and on other backends."""
+        scene = self.cut()
+        write_csv(self.folder / "down.csv", stroke(200, lambda share: (0, -0.03 * math.sin(math.pi * share), 0)))
+        for time_of in (["--lockstep"], ["--seconds", "0.7"]):
+            with self.subTest(time_of[0]):
+                run = self.json("run", scene, "--backend", "cpu", "--live", "file:down.csv", *time_of, "--log", "drives.log", "--checkpoint", "end.pckpt")
+                device = run["instruments"]["devices"][0]
+                self.assertEqual((device["tool"], device["poses_refused"]), ("scalpel", 0))
+                self.assertGreater(run["blades"][0]["fracture"], 0)
+                self.assertGreater(run["cut_edges"], 0)
+                self.assertGreater(device["largest_force"], 0.3)
+                for backend in self.backends():
+                    self.replayed(scene, run, backend=backend)
+        half = self.json("run", scene, "--backend", "cpu", "--replay", "drives.log", "--steps", run["steps"] // 2, "--checkpoint", "c.pckpt")
+        self.assertGreater(half["steps"], 0)
+        self.replayed(scene, run, "--resume", "c.pckpt")
+
+    def test_a_hand_too_quick_for_its_blade(self):
+        """The blade follows as fast as it may, and is refused nowhere."""
+        write_csv(self.folder / "quick.csv", stroke(100, lambda share: (0, 0.1 * min(1, 10 * share), 0)))
+        run = self.json("run", self.cut(), "--backend", "cpu", "--live", "file:quick.csv", "--lockstep", "--log", "drives.log")
+        self.assertEqual(run["instruments"]["devices"][0]["poses_refused"], 0)
+        heights = [float(line.split(",")[5]) for line in (self.folder / "drives.log").read_text().splitlines() if line.startswith("drive")]
+        self.assertLess(max(b - a for a, b in zip(heights, heights[1:])), 0.005)
+        self.assertGreater(heights[-1], 0.1)
+
+    def test_blades_that_are_not_there(self):
+        scalpel = {"name": "scalpel", "cuts": "by-force", "edge": 0.0005, "path": [[t, 0, 0.06, -0.06, 0, 0.06, 0.06] for t in (0.5, 1)]}
+        scene = self.cut(blades=[scalpel])
+        file = f"file:{self.stroke_file()}"
+        self.refused("run", scene, "--backend", "cpu", "--live", file, words=["scalpel", "nowhere", "path"])
+        (self.folder / "bad.log").write_text("pliant-drives/1\nbegin,0,0\ndrive,0,0,0.01,0,0,0.07,0,0,0,1,scalpel\n")
+        self.refused("run", scene, "--backend", "cpu", "--replay", "bad.log", words=["bad.log:3", "scalpel", "nowhere"])
+
     GOOD = "pliant-drives/1\nbegin,0,0\ndrive,0,0,0.01,0,0,0.07,0,0,0,1,probe\n"
 
     def test_logs_that_do_not_fit(self):
@@ -240,7 +310,7 @@ class Live(CliTest):
             (self.GOOD + row.replace("0.07", "1e999"), ["bad.log:4", "\"1e999\"", "finite"]),
             (self.GOOD + row.replace("0,0,0,1,", "0,0,1,1,"), ["bad.log:4", "0,0,1,1", "unit quaternion"]),
             (self.GOOD + row.replace("0.01,0.01", "0.01,-1"), ["bad.log:4", "\"-1\"", "more than 0"]),
-            (self.GOOD + "push,10,0.01\n", ["bad.log:4", "push,10,0.01", "drive,... or end,..."]),
+            (self.GOOD + "push,10,0.01\n", ["bad.log:4", "push,10,0.01", "drive,..., grip,... or end,..."]),
             (self.GOOD + "end,20,0.02\n" + row, ["bad.log:5", "nothing behind the end"]),
             (self.GOOD + row.replace("10,0.01", "10,0.0101", 1), ["bad.log:4", "step 10 is at 0.0101", "another scene"]),
         ):

@@ -25,7 +25,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   expect(last.step >= 0 && std::isfinite(last.time));
   for (const LoggedDrive& drive : log.drives) {
     expect(drive.at.step >= last.step && drive.at.time >= last.time);
-    expect(drive.seconds > 0 && std::isfinite(drive.seconds) && !drive.tool.empty() && pliant::good_pose(drive.target));
+    expect((drive.grips || (drive.seconds > 0 && std::isfinite(drive.seconds))) && !drive.tool.empty());
+    expect(pliant::good_pose(drive.target));
     last = drive.at;
   }
   if (log.end) expect(log.end->step >= last.step && log.end->time >= last.time);
@@ -35,7 +36,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (std::size_t i = 0; i < log.drives.size(); ++i) {
     const LoggedDrive &a = log.drives[i], &b = again.drives[i];
     expect(a.at.step == b.at.step && a.at.time == b.at.time && a.seconds == b.seconds && a.target == b.target &&
-           a.tool == b.tool);
+           a.tool == b.tool && a.grips == b.grips);
   }
   expect(drive_log_text(again) == written);
   return 0;

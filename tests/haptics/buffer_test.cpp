@@ -5,14 +5,14 @@
 #include <limits>
 
 #include "allocations.h"
-#include "geometry/vec.h"
-#include "haptics/buffer_force.h"
-#include "pressed_block.h"
+#include "followed.h"
 
 namespace pliant::haptics {
 namespace {
 
 using haptics_test::block_scene;
+using haptics_test::Felt;
+using haptics_test::follow;
 using haptics_test::kBall;
 using haptics_test::kTop;
 using haptics_test::pressed;
@@ -26,39 +26,10 @@ Wrench drive_until(Simulation& s, double time, const Pose& pose) {
   return {f.force, f.torque};
 }
 
-struct Felt {
-  double most = 0, largest = 0;  ///< difference and force [N]
-  std::uint64_t built = 0, resets = 0;
-  bool covered = true;
-};
-
-/// A simulation whose tool follows the press in every step, and a buffer that gets its state every `every` steps, at once.
-Felt follow(const Scene& scene, std::int32_t rings, std::int64_t every, std::int64_t steps, bool rebuild = false) {
-  const double dt = 0.8 * simulate(scene)->stable_dt();
-  const auto s = simulate(scene, dt);
-  BufferSource source("ball", rings);
-  BufferForce force(1);
-  std::array<BufferMessage, 2> messages;
-  Felt felt;
-  source.fill(*s, force.in_use(), messages[1]);
-  force.receive(messages[1], dt);
-  force.tick(pressed(0), dt);
-  s->advance(1);
-  for (std::int64_t k = 1; k <= steps; ++k) {
-    const double t = static_cast<double>(k) * dt;
-    const Wrench ticked = force.tick(pressed(t), dt), full = drive_until(*s, s->time() + dt, pressed(t));
-    felt.most = std::max(felt.most, vec::norm(vec::sub(ticked.force, full.force)));
-    felt.largest = std::max(felt.largest, vec::norm(full.force));
-    if (k % every != 0) continue;
-    BufferMessage& message = messages[static_cast<std::size_t>(k / every) % 2];
-    if (rebuild) source.set_rings(rings + static_cast<std::int32_t>(k / every % 2));
-    source.fill(*s, force.in_use(), message);
-    felt.covered = felt.covered && message.covered;
-    force.receive(message, static_cast<double>(every) * dt);
-    felt.built = message.generation;
-  }
-  felt.resets = force.resets();
-  return felt;
+/// The ball is pressed in.
+Felt press(const Scene& scene, const haptics_test::Following& how) {
+  return follow(
+      scene, "ball", [](double t) { return pressed(t); }, how);
 }
 
 TEST(Submodel, RingsGrowByACellToEachSide) {
@@ -97,7 +68,7 @@ TEST(Submodel, RingsGrowByACellToEachSide) {
 /// With all elements of the body it is the whole model: nothing differs but the order of sums.
 TEST(Buffer, OfTheWholeBodyIsTheFullModel) {
   for (const ElementKind element : all_elements()) {
-    const Felt felt = follow(block_scene(element), -1, 7, 300);
+    const Felt felt = press(block_scene(element), {-1, 7, 300});
     EXPECT_GT(felt.largest, 0.05) << to_string(element);
     EXPECT_LT(felt.most, 2e-5 * felt.largest) << to_string(element);
     EXPECT_EQ(felt.built, 1U) << to_string(element);
@@ -107,7 +78,7 @@ TEST(Buffer, OfTheWholeBodyIsTheFullModel) {
 TEST(Buffer, OfMoreRingsFeelsMoreLikeTheFullModel) {
   double before = std::numeric_limits<double>::infinity();
   for (const std::int32_t rings : {1, 2, 4}) {
-    const Felt felt = follow(block_scene(), rings, 20, 400);
+    const Felt felt = press(block_scene(), {rings, 20, 400});
     EXPECT_LT(felt.most, before) << rings;
     EXPECT_TRUE(felt.covered);
     EXPECT_EQ(felt.resets, 0U);
@@ -120,7 +91,8 @@ TEST(Buffer, OfMoreRingsFeelsMoreLikeTheFullModel) {
 
 /// A buffer that is rebuilt with every frame carries its state over.
 TEST(Buffer, IsRebuiltWithoutAJump) {
-  const Felt kept = follow(block_scene(), 3, 10, 400), rebuilt = follow(block_scene(), 3, 10, 400, true);
+  const Felt kept = press(block_scene(), {3, 10, 400}),
+             rebuilt = press(block_scene(), {.rings = 3, .every = 10, .rebuild = true});
   EXPECT_GT(rebuilt.built, 20U);
   EXPECT_LT(rebuilt.most, kept.most + 0.02 * kept.largest);
 }
@@ -176,7 +148,7 @@ TEST(Buffer, WeighsWhatTheBodyWeighs) {
   scene.blades = {blade};
   scene.bodies[0].surface_in_memory = std::make_shared<const TriangleMesh>(haptics_test::box({0, 0, 0}, {0.104, kTop, 0.104}));
   ASSERT_FALSE(build_model(scene).added.empty());
-  const Felt felt = follow(scene, -1, 7, 200);
+  const Felt felt = press(scene, {-1, 7, 200});
   EXPECT_LT(felt.most, 2e-5 * std::max(felt.largest, 0.05));
 }
 

@@ -134,6 +134,8 @@ TEST(Replay, TellsWhatDoesNotFit) {
   refused("begin,0,0\ndrive,0,0,0.1,0,0.2,0,0,0,0,1,needle\n", "a.log:3: the tool is \"needle\"; the scene has \"ball\"");
   refused("begin,5,0.1\nend,6,0.2\n", "a.log:2: the log begins at step 5, the run at step 0");
   refused("begin,0,0.5\nend,1,0.6\n", "a.log:2: step 0 is at 0.5 s; here it is at 0 s");
+  refused("begin,0,0\ngrip,0,0,2,ball\nend,1,1\n", "a.log:3: the grip is \"2\"; expected 1 to grip or 0 to let go");
+  refused("begin,0,0\ngrip,0,0,1,ball\nend,1,1\n", "a.log:3: tool \"ball\" has no \"grip\"");
   refused("begin,0,0\ndrive,0,0,1e-5,0,-0.2,0,0,0,0,1,ball\nend,1,1\n", "a.log:3: ");  // through the block in no time
 }
 

@@ -80,15 +80,20 @@ Pose tool_pose(const ContactTool& tool, const RunState& state, double time) {
   return between(d.from, d.to, std::clamp((time - d.start) / (d.end - d.start), 0.0, 1.0));
 }
 
-double tool_grip(const ContactTool& tool, const RunState& state, double time) {
+double grip_strength(const ContactTool& tool) {
   constexpr double kAny = 1e15;  // holds against every force
+  if (!tool.grip) return 0;
+  return tool.grip->strength > 0 ? tool.grip->strength : kAny;
+}
+
+double tool_grip(const ContactTool& tool, const RunState& state, double time) {
   if (!tool.grip) return 0;
   const auto told = state.gripping.find(tool.name);
   const bool on = told != state.gripping.end()
                       ? told->second
                       : std::any_of(tool.grip->times.begin(), tool.grip->times.end(),
                                     [&](const std::array<double, 2>& t) { return t[0] <= time && time < t[1]; });
-  return !on ? 0 : tool.grip->strength > 0 ? tool.grip->strength : kAny;
+  return on ? grip_strength(tool) : 0;
 }
 
 ToolForm present_form(const ContactTool& tool, const std::map<std::string, GivenSurfaces>& given) {

@@ -20,6 +20,8 @@ void check_tool_changes(const Scene& scene, const ToolChanges& changes);
 
 /// Returns the pose of a tool at a time [s].
 [[nodiscard]] Pose tool_pose(const ContactTool& tool, const RunState& state, double time);
+/// Returns the strength of a tool's grip while it grips [Pa]; 0: it cannot.
+[[nodiscard]] double grip_strength(const ContactTool& tool);
 /// Returns the strength of a tool's grip at a time [Pa]; 0: it does not grip.
 [[nodiscard]] double tool_grip(const ContactTool& tool, const RunState& state, double time);
 

@@ -38,6 +38,10 @@ const Blade& TopologyEdits::blade_by_force(const std::string& name) const {
   refuse(name, fmt::format("no such blade that cuts by force; the scene has {}", known.empty() ? "none" : known));
 }
 
+double TopologyEdits::drive_speed() const {
+  return kDriveLag * run_.settings.blade_edge / (static_cast<double>(run_.settings.blade_steps) * run_.state.clock.dt);
+}
+
 void TopologyEdits::drive_blade(const std::string& name, const BladeSegment& to, double seconds) {
   const Blade& blade = blade_by_force(name);
   const double length = vec::norm(vec::sub(to[1], to[0])), longest = longest_on_path(blade);
@@ -57,8 +61,7 @@ void TopologyEdits::drive_blade(const std::string& name, const BladeSegment& to,
   }
   const BladeSegment from = blade_place(driven, blade, now);
   const double way = std::max(vec::norm(vec::sub(to[0], from[0])), vec::norm(vec::sub(to[1], from[1])));
-  const double fastest =
-      kDriveLag * run_.settings.blade_edge / (static_cast<double>(run_.settings.blade_steps) * run_.state.clock.dt);
+  const double fastest = drive_speed();
   if (way > fastest * seconds) {
     refuse(name, fmt::format("got a way of {:.4g} m within {:.4g} s; allowed is up to {:.4g} m/s, a quarter of a cell between "
                              "two updates of blades; lift_blade() takes it away, and then it may begin anywhere",

@@ -89,6 +89,8 @@ double typical_edge(const Model& model) {
   return edge;
 }
 
+double integrity_left(double depth, double edge) { return 1 - kLost * (depth / (depth + kLostIn * edge)); }
+
 std::int32_t sample_count(const Blade& blade, double edge) {
   double longest = 0;
   for (const auto& r : blade.path) longest = std::max(longest, vec::norm({r[4] - r[1], r[5] - r[2], r[6] - r[3]}));
@@ -304,11 +306,10 @@ void BladeFronts::sweep(PressedBlade& blade, const Edge& edge, EditedBodies& bod
 void BladeFronts::weaken(PressedBlade& blade, FrontSample& s, const Edge& edge) {
   ++(s.limit > 0 ? blade.by_contact : blade.by_stress);
   blade.fracture += s.limit * s.advance;
-  const double before = s.depth / (s.depth + kLostIn * edge.size);
+  const double before = integrity_left(s.depth, edge.size);
   s.depth += s.advance;
   s.advance = 0;
-  const double after = s.depth / (s.depth + kLostIn * edge.size);
-  s.zeta *= (1 - kLost * after) / (1 - kLost * before);
+  s.zeta *= integrity_left(s.depth, edge.size) / before;
 }
 
 void BladeFronts::meet(PressedBlade& blade, const Edge& edge, EditedBodies& bodies, const std::vector<Vec3d>& surface) {

@@ -23,6 +23,9 @@ std::int32_t sample_count(const Blade& blade, double edge);
 /// Largest speed of an end of a blade [m/s].
 double top_speed(const Blade& blade);
 
+/// Share of its integrity that tissue keeps where a front has gone this far through it [m]. edge: typical_edge().
+double integrity_left(double depth, double edge);
+
 class BladeFronts {
  public:
   explicit BladeFronts(RunContext& run) : run_(run) {}

@@ -54,7 +54,7 @@ void BladePress::start(const Model& model) {
 }
 
 template <class Visit>
-void BladePress::for_samples(Visit&& visit) {
+void BladePress::for_samples(Visit&& visit) const {
   for (std::size_t k = 0; k < names_.size(); ++k) {
     const auto found = run_.state.pressed.find(names_[k]);
     if (found == run_.state.pressed.end()) continue;
@@ -69,18 +69,13 @@ bool BladePress::near() const {
   });
 }
 
-struct BladePress::Numbers {
-  std::vector<std::int32_t> node;
-  std::vector<double> weight, share, data, front;
-};
-
 void BladePress::begin_batch(std::int32_t steps) {
   if (names_.empty()) return;
   pressing_ = near();
   *run_.loaded.program().near_samples = pressing_ ? 1 : 0;
   if (!pressing_) return;
   upload_poses(steps);
-  upload_nodes(numbers());
+  upload_nodes(samples());
 }
 
 void BladePress::upload_poses(std::int32_t steps) {
@@ -101,71 +96,58 @@ void BladePress::upload_poses(std::int32_t steps) {
   run_.backend().write_reals(run_.loaded.program().find("blade_pose"), pose);
 }
 
-BladePress::Numbers BladePress::numbers() const {
-  const std::size_t samples = first_.back();
-  Numbers n{std::vector<std::int32_t>(blade_sample_nodes * samples), std::vector<double>(blade_sample_nodes * samples),
-            std::vector<double>(blade_sample_nodes * samples), std::vector<double>(blade_sample_numbers * samples, -1.0),
-            std::vector<double>(2 * samples)};
+void BladePress::write_sample(const FrontSample& s, std::size_t row, BladeSamples& out) const {
   const Model& model = run_.model();
-  std::map<std::int32_t, double> sums;  // of the weights of all samples at a slot
-  const_cast<BladePress*>(this)->for_samples(
-      [&](std::size_t blade, std::size_t i, const FrontSample& s, const PressedBlade& own) {
-        if (!presses(s)) return;
-        const auto b = static_cast<std::size_t>(s.body);
-        Vec3d rest{};
-        std::size_t at = blade_sample_nodes * i;
-        for (const FrontCarrier& c : front_carriers(*edits_.cut_topology(b), s.point)) {
-          const std::int32_t slot = model.bodies[b].slot[static_cast<std::size_t>(c.node)];
-          n.node[at] = slot;
-          n.weight[at++] = c.weight;
-          sums[slot] += std::abs(c.weight);
-          Vec3d x = model.rest[static_cast<std::size_t>(slot)];
-          for (std::size_t k = 0; k < 3 && !run_.state.offset.empty(); ++k)
-            x[k] += run_.state.offset[3 * static_cast<std::size_t>(slot) + k];
-          rest = vec::add(rest, vec::mul(x, c.weight));
-        }
-        double* data = &n.data[blade_sample_numbers * i];
-        std::copy(rest.begin(), rest.end(), data);
-        std::copy(own.normal.begin(), own.normal.end(), data + 3);
-        data[6] = s.limit;
-        data[7] = run_.scene.blades[blades_[blade]].friction;
-        data[8] = static_cast<double>(i - first_[blade]) / static_cast<double>(first_[blade + 1] - first_[blade] - 1);
-        data[9] = static_cast<double>(blade);
-        n.front[2 * i] = s.advance;
-        n.front[2 * i + 1] = s.pressed;
-      });
-  for (std::size_t at = 0; at < n.node.size(); ++at) {
-    if (n.weight[at] != 0) n.share[at] = std::abs(n.weight[at]) * sums[n.node[at]];
+  const auto b = static_cast<std::size_t>(s.body);
+  Vec3d rest{};
+  std::size_t at = blade_sample_nodes * row;
+  for (const FrontCarrier& c : front_carriers(*edits_.cut_topology(b), s.point)) {
+    const std::int32_t slot = model.bodies[b].slot[static_cast<std::size_t>(c.node)];
+    out.node[at] = slot;
+    out.weight[at++] = c.weight;
+    Vec3d x = model.rest[static_cast<std::size_t>(slot)];
+    for (std::size_t k = 0; k < 3 && !run_.state.offset.empty(); ++k)
+      x[k] += run_.state.offset[3 * static_cast<std::size_t>(slot) + k];
+    rest = vec::add(rest, vec::mul(x, c.weight));
   }
-  return n;
+  std::copy(rest.begin(), rest.end(), &out.data[blade_sample_numbers * row]);
+  out.data[blade_sample_numbers * row + 6] = s.limit;
+  out.front[2 * row] = s.advance;
+  out.front[2 * row + 1] = s.pressed;
+  out.depth[row] = s.depth;
+}
+
+BladeSamples BladePress::samples(std::optional<std::size_t> only) const {
+  BladeSamples out(only ? first_[*only + 1] - first_[*only] : first_.back());
+  for_samples([&](std::size_t blade, std::size_t i, const FrontSample& s, const PressedBlade& own) {
+    if (!presses(s) || (only && blade != *only)) return;
+    const std::size_t row = only ? i - first_[blade] : i;
+    write_sample(s, row, out);
+    double* data = &out.data[blade_sample_numbers * row];
+    std::copy(own.normal.begin(), own.normal.end(), data + 3);
+    data[7] = run_.scene.blades[blades_[blade]].friction;
+    data[8] = static_cast<double>(i - first_[blade]) / static_cast<double>(first_[blade + 1] - first_[blade] - 1);
+    data[9] = only ? 0 : static_cast<double>(blade);
+  });
+  out.share_out();
+  out.edge = run_.settings.blade_edge;
+  return out;
 }
 
 /// Writes the samples, and for each node that one of them moves the list of these.
-void BladePress::upload_nodes(const Numbers& n) {
-  std::map<std::int32_t, std::vector<std::int32_t>> at_slot;
-  for (std::size_t at = 0; at < n.node.size(); ++at) {
-    if (n.weight[at] != 0) at_slot[n.node[at]].push_back(static_cast<std::int32_t>(at));
-  }
-  std::vector<std::int32_t> slot, free, first{0}, entry;
+void BladePress::upload_nodes(const BladeSamples& n) {
   const std::vector<char>& axes = run_.loaded.free();
-  for (const auto& [s, entries] : at_slot) {
-    slot.push_back(s);
-    const std::size_t base = 3 * static_cast<std::size_t>(s);
-    free.push_back((axes[base] != 0 ? 1 : 0) | (axes[base + 1] != 0 ? 2 : 0) | (axes[base + 2] != 0 ? 4 : 0));
-    entry.insert(entry.end(), entries.begin(), entries.end());
-    first.push_back(static_cast<std::int32_t>(entry.size()));
-  }
-  slot.resize(n.node.size(), -1);
-  free.resize(n.node.size(), 0);
-  first.resize(n.node.size() + 1, first.back());
-  entry.resize(n.node.size(), 0);
+  const BladeNodes nodes = blade_nodes(n, [&](std::int32_t slot) {
+    const std::size_t base = 3 * static_cast<std::size_t>(slot);
+    return (axes[base] != 0 ? 1 : 0) | (axes[base + 1] != 0 ? 2 : 0) | (axes[base + 2] != 0 ? 4 : 0);
+  });
   const Program& program = run_.loaded.program();
   Backend& backend = run_.backend();
   backend.write_ints(program.find("blade_node"), n.node);
-  backend.write_ints(program.find("blade_slot"), slot);
-  backend.write_ints(program.find("blade_free"), free);
-  backend.write_ints(program.find("blade_first"), first);
-  backend.write_ints(program.find("blade_entry"), entry);
+  backend.write_ints(program.find("blade_slot"), nodes.slot);
+  backend.write_ints(program.find("blade_free"), nodes.free);
+  backend.write_ints(program.find("blade_first"), nodes.first);
+  backend.write_ints(program.find("blade_entry"), nodes.entry);
   backend.write_reals(program.find("blade_weight"), n.weight);
   backend.write_reals(program.find("blade_share"), n.share);
   backend.write_reals(program.find("blade_data"), n.data);

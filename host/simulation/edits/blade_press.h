@@ -1,10 +1,12 @@
 // Blades that cut by force, on the device: uploads the places of their edges and fronts, and reads the forces on them.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "simulation/contact/tool_contact.h"
+#include "simulation/edits/blade_samples.h"
 #include "simulation/edits/topology_edits.h"
 #include "simulation/state/run_context.h"
 
@@ -31,6 +33,9 @@ class BladePress {
   /// In the last step; zero where nothing was near.
   [[nodiscard]] Wrench last_force(std::size_t blade) const;
 
+  /// The samples of all blades, or of one of them, which then is blade 0.
+  [[nodiscard]] BladeSamples samples(std::optional<std::size_t> only = {}) const;
+
   /// Forces on the blades in the last batch, to be put back after the simulation has gone ahead.
   struct Felt {
     std::vector<Wrench> step_forces;
@@ -40,15 +45,13 @@ class BladePress {
   void put_back(const Felt& felt) { felt_ = felt; }
 
  private:
-  /// Data of the samples for the kernels.
-  struct Numbers;
   [[nodiscard]] bool near() const;
-  [[nodiscard]] Numbers numbers() const;
+  void write_sample(const FrontSample& sample, std::size_t row, BladeSamples& out) const;
   void upload_poses(std::int32_t steps);
-  void upload_nodes(const Numbers& numbers);
+  void upload_nodes(const BladeSamples& samples);
   void read_fronts();
   template <class Visit>
-  void for_samples(Visit&& visit);
+  void for_samples(Visit&& visit) const;
 
   RunContext& run_;
   const TopologyEdits& edits_;

@@ -43,9 +43,10 @@ typedef struct pliant_haptic_options {
   int passive;            /**< 1: the device receives no more energy than it gave */
   int align;              /**< 1: device and tool start at the same place; 0: the device speaks in scene coordinates */
   int realtime;           /**< 1: request real-time priority */
+  int grip_button;        /**< bit of the device's buttons that makes a tool with a grip hold tissue; -1: none */
 } pliant_haptic_options;
 #define PLIANT_HAPTIC_OPTIONS_INIT \
-  { sizeof(pliant_haptic_options), 1000, NULL, 0.3, 1, 1, 0, 0, 0, 0, 0.1, 0.25, 0.1, 0, 0, 1, 1, 0, 3, 1, 1, 1 }
+  { sizeof(pliant_haptic_options), 1000, NULL, 0.3, 1, 1, 0, 0, 0, 0, 0.1, 0.25, 0.1, 0, 0, 1, 1, 0, 3, 1, 1, 1, 0 }
 
 /** One tick, as pliant::HapticSample. */
 typedef struct pliant_haptic_sample {
