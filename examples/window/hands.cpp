@@ -10,13 +10,17 @@ namespace window {
 
 Hands::Hands(pliant::World& world, const std::vector<std::string>& devices, std::vector<std::string> tools)
     : tools_(std::move(tools)) {
-  const std::vector<pliant::ToolForce> all = world.tool_forces();
-  if (tools_.empty() && devices.size() == 1 && all.size() == 1) tools_ = {all[0].name};
+  std::vector<std::string> all;
+  for (const pliant::ToolForce& t : world.tool_forces()) all.push_back(t.name);
+  const bool only = all.size() == 1;
+  for (const pliant::BladeForce& b : world.blade_forces()) all.push_back(b.name);
+  if (tools_.empty() && devices.size() == 1 && (only || all.size() == 1)) tools_ = {all[0]};
   if (tools_.size() != devices.size()) {
     std::string names;
-    for (const pliant::ToolForce& t : all) names += (names.empty() ? "" : ", ") + t.name;
+    for (const std::string& name : all) names += (names.empty() ? "" : ", ") + name;
     throw std::runtime_error("got " + std::to_string(devices.size()) + " --live and " + std::to_string(tools_.size()) +
-                             " --tool, expected a tool for each device; the scene has " + (names.empty() ? "none" : names));
+                             " --tool, expected a tool or a blade by force for each device; the scene has " +
+                             (names.empty() ? "none" : names));
   }
   for (std::size_t i = 0; i < devices.size(); ++i)
     loops_.push_back(std::make_unique<pliant::HapticLoop>(world, tools_[i], pliant::open_haptic_device(devices[i])));

@@ -219,7 +219,30 @@ void Instruments::draw() {
                         : active ? ToolLook::active
                                  : ToolLook::steel);
   }
+  draw_blades();
   force_ = length(sum);
+}
+
+/// The edges of blades that cut by force, which have no faces of their own: bars, thin enough to see what they cut.
+void Instruments::draw_blades() {
+  constexpr double kThin = 0.012;  // of the edge's length
+  for (const pliant::BladeForce& blade : world_.blade_forces()) {
+    const Vec3d span{blade.b[0] - blade.a[0], blade.b[1] - blade.a[1], blade.b[2] - blade.a[2]};
+    const double size = length(span);
+    const std::string name = "edge of " + blade.name;
+    if (!(size > 0) || (!blade.present && edges_.count(name) == 0)) continue;
+    if (edges_.insert(name).second) {
+      const double half = 0.5 * size, thin = kThin * size;
+      drawing_.set_tool(name, pliant::box_surface({-half, -thin, -thin}, {half, thin, thin}));
+    }
+    // The shorter rotation from x to the edge's direction.
+    const Vec3d d{span[0] / size, span[1] / size, span[2] / size};
+    const double norm = std::sqrt(2 + 2 * d[0]);
+    const std::array<double, 4> turn =
+        norm > 1e-6 ? std::array<double, 4>{0, -d[2] / norm, d[1] / norm, norm / 2} : std::array<double, 4>{0, 0, 1, 0};
+    const Vec3d middle{(blade.a[0] + blade.b[0]) / 2, (blade.a[1] + blade.b[1]) / 2, (blade.a[2] + blade.b[2]) / 2};
+    drawing_.place_tool(name, pose_matrix(middle, turn), blade.present ? ToolLook::active : ToolLook::hidden);
+  }
 }
 
 }  // namespace window

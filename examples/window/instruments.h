@@ -3,6 +3,7 @@
 #include <pliant/world.h>
 
 #include <array>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -60,6 +61,7 @@ class Instruments {
   void add(const std::string& label, const std::vector<pliant::ToolSpec>& tools, const pliant::Vec3d& at, const Turn& turn);
   void take_up(const std::string& label, const std::vector<pliant::ToolSpec>& tools, Vec3 at, Vec3 back);
   void send(const Instrument& instrument, double seconds);
+  void draw_blades();
 
   pliant::World& world_;
   Drawing& drawing_;
@@ -78,6 +80,7 @@ class Instruments {
   };
   std::map<std::string, Shape> shapes_;
   double next_look_ = 0;
+  std::set<std::string> edges_;  ///< of blades, by their names in the drawing
 };
 
 }  // namespace window

@@ -3,7 +3,7 @@
 //          [--set LABEL=VALUE] [--live DEVICE [--tool NAME]] [--size WxH]
 // Left button: grab and pull. With Control: cut along the way of the mouse, as deep as the panel says. Right button: turn.
 // Space: poke what is under the mouse. R: start again. P: a probe, G: a grasper, 1 to 9: the scene's tools, 0: the hand.
-// --live: a haptic device drives a tool (docs/haptic_devices.md), and the panel shows what the hand feels.
+// --live: a haptic device drives a tool or a blade by force (docs/haptic_devices.md), and the panel shows what the hand feels.
 // With an instrument the mouse moves it, the wheel pushes it deeper, Shift turns it; arrows, PageUp and PageDown likewise.
 // --screenshot writes a picture after T seconds of simulation and ends; in its first half --cut sweeps from one place to
 // another (parts of the window's height, from its middle) with a blade of --depth D (sizes of the body), --pull drags what is

@@ -76,7 +76,7 @@ class Viewers(unittest.TestCase):
         self.assertEqual((wrong.returncode, "no slider 'mass'" in wrong.stderr), (2, True), wrong.stderr)
 
     def look_at_a_device(self, env):
-        """A recorded stroke pushes a tool into the cube, in wall time; without a tool for it the window says so."""
+        """A recorded stroke pushes a tool into the cube, then a blade, in wall time; without any the window says so."""
         scene = json.loads(self.scene.read_text())
         scene["tools"] = [{"name": "probe", "shape": {"sphere": 0.02}, "path": [[0, 0, 0.075, 0]]}]
         with_tool = self.folder / "probe.json"
@@ -89,8 +89,17 @@ class Viewers(unittest.TestCase):
         felt = self.run_here(WINDOW, with_tool, "--live", f"file:{stroke}", "--screenshot", "felt.png", *size, env=env)
         self.assertGreater(float(felt.split("the hand feels ")[1].split()[0]), 0.01, felt)
         self.assertGreater(self.difference(rows(self.folder / "waits.png"), rows(self.folder / "felt.png")), 0.002)
+        material = {"law": "neo-hookean", "young": 3000, "poisson": 0.4, "density": 1000, "damping": 10, "toughness": 5000}
+        scene = {**scene, "tools": [], "bodies": [{**scene["bodies"][0], "material": material}],
+                 "blades": [{"name": "scalpel", "cuts": "by-force", "edge": 0.0005, "path": [[0, 0, 0.052, -0.06, 0, 0.052, 0.06]]}]}
+        with_blade = self.folder / "scalpel.json"
+        with_blade.write_text(json.dumps(scene))
+        slow = self.folder / "slow.csv"
+        slow.write_text("time,x,y,z,qx,qy,qz,qw,buttons\n" + "".join(f"{0.01 * i:.2f},0,{-0.0005 * i:.4f},0,0,0,0,1,0\n" for i in range(61)))
+        felt = self.run_here(WINDOW, with_blade, "--live", f"file:{slow}", "--screenshot", "cut.png", *size, env=env)
+        self.assertGreater(float(felt.split("scalpel: the hand feels ")[1].split()[0]), 0.05, felt)
         wrong = subprocess.run([WINDOW, self.scene, "--live", f"file:{stroke}"], capture_output=True, text=True, env=env, timeout=300)
-        self.assertEqual((wrong.returncode, "a tool for each device" in wrong.stderr), (2, True), wrong.stderr)
+        self.assertEqual((wrong.returncode, "a tool or a blade by force for each device" in wrong.stderr), (2, True), wrong.stderr)
 
     def difference(self, a, b):
         """Share of the bytes that differ clearly in the right half, where the panel is not."""
