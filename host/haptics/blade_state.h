@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "scene/contact_tool.h"
 #include "simulation/edits/blade_samples.h"
 
 namespace pliant::haptics {
@@ -12,6 +13,7 @@ struct BladeState {
   std::vector<std::int32_t> node;
   std::vector<float> weight, share, data, front, depth;
   double edge = 0;
+  Pose pose;  ///< of the simulation's blade
   std::vector<std::int32_t> slot, free, first, entry;
 };
 

@@ -53,16 +53,28 @@ BufferBlade::Front BufferBlade::front_of(std::size_t i) const noexcept {
   return front;
 }
 
-/// The front that was there before, measured from the new front point. One that is an element away belonged to another place.
-void BufferBlade::keep(std::size_t i, const Front& before) noexcept {
-  draw_[i] = 0;
+/// The front that was there before, measured from the new front point. Returns false if there was none, or one so far away that
+/// it belonged to another place.
+bool BufferBlade::keep(std::size_t i, const Front& before) noexcept {
   const Front now = front_of(i);
-  if (!before.any || !now.any) return;
+  if (!before.any || !now.any) return false;
   const Vec3d place = vec::add(before.point, vec::mul(before.normal, before.advance));
-  const double own = vec::dot(vec::sub(place, now.point), now.normal), ahead = now.advance - own;
-  if (!(std::abs(ahead) < edge_)) return;
+  const double own = vec::dot(vec::sub(place, now.point), now.normal);
+  if (!(std::abs(now.advance - own) < edge_)) return false;
   front_[2 * i] = static_cast<float>(own);
-  draw_[i] = static_cast<float>(ahead / kAgree);
+  return true;
+}
+
+/// Where the simulation's front would be if its edge, at `state.pose`, were that of the hand [m beyond the front point].
+double BufferBlade::front_at_hand(std::size_t i, const BladeState& state) const noexcept {
+  const float* data = data_.data() + blade_sample_numbers * i;
+  const BladeSegment edge = blade_edge(state.pose, length_);
+  double front = state.front[2 * i];
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double there = edge[0][c] + data[8] * (edge[1][c] - edge[0][c]), here = at_[c] + data[8] * span_[c];
+    front -= (there - here) * data[3 + c];
+  }
+  return front;
 }
 
 void BufferBlade::copy_lists(const BladeState& s) noexcept {
@@ -84,6 +96,7 @@ void BufferBlade::start(const BladeState& s) noexcept {
   copy(s.data, data_);
   copy(s.front, front_);
   drawn_for_ = 0;
+  fresh_ = true;
 }
 
 void BufferBlade::follow(const BladeState& s, double seconds) noexcept {
@@ -98,15 +111,29 @@ void BufferBlade::follow(const BladeState& s, double seconds) noexcept {
     copy_part(s.weight, weight_, blade_sample_nodes);
     copy_part(s.data, data_, blade_sample_numbers);
     copy_part(s.front, front_, 2);
-    keep(i, before);
+    draw_[i] = 0;
+    if (!(data_[blade_sample_numbers * i + 6] >= 0)) continue;
+    const double wanted = front_at_hand(i, s);
+    if (fresh_ || !keep(i, before)) front_[2 * i] = static_cast<float>(wanted);
+    draw_[i] = static_cast<float>((wanted - front_[2 * i]) / kAgree);
   }
+  fresh_ = false;
   drawn_for_ = seconds;
   copy_lists(s);
 }
 
 void BufferBlade::carry(const BufferBlade& before) noexcept {
   if (before.samples_ != samples_) return;
+  at_ = before.at_;
+  span_ = before.span_;
   for (std::size_t i = 0; i < samples_; ++i) keep(i, before.front_of(i));
+  fresh_ = before.fresh_;
+}
+
+void BufferBlade::hold(const Pose& hand) noexcept {
+  const BladeSegment edge = blade_edge(hand, length_);
+  at_ = edge[0];
+  span_ = vec::sub(edge[1], edge[0]);
 }
 
 /// Tissue that has given way since the simulation's state resists less (BladeFronts::weaken).
@@ -127,9 +154,8 @@ void BufferBlade::move(const Pose& from, const Pose& to, double h) noexcept {
   advance(h);
   float* out = pose_.data();
   for (const Pose& at : {from, to}) {
-    const BladeSegment edge = blade_edge(at, length_);
-    span_ = vec::sub(edge[1], edge[0]);
-    for (const double x : edge[0]) *out++ = static_cast<float>(x);
+    hold(at);
+    for (const double x : at_) *out++ = static_cast<float>(x);
     for (const double x : span_) *out++ = static_cast<float>(x);
   }
 }

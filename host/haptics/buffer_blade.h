@@ -21,11 +21,13 @@ class BufferBlade {
 
   /// Takes what the simulation says of the samples, and its fronts.
   void start(const BladeState& state) noexcept;
-  /// The same, but the fronts stay where the hand has brought them. From there they are drawn to those of the simulation, whose
-  /// blade is ahead of the hand, for the next `seconds`.
+  /// The same, but the fronts stay where the hand has brought them. From there they are drawn, for the next `seconds`, until
+  /// they are as far before the edge as in the simulation, whose blade is ahead of the hand.
   void follow(const BladeState& state, double seconds) noexcept;
   /// After start(): the fronts are those of the buffer before.
   void carry(const BufferBlade& before) noexcept;
+  /// The edge is where the hand is.
+  void hold(const Pose& hand) noexcept;
   /// The edge goes between two poses in the next step, of `h` [s].
   void move(const Pose& from, const Pose& to, double h) noexcept;
   /// On the blade in the last step, about the middle of its edge.
@@ -40,7 +42,8 @@ class BufferBlade {
     double advance = 0;  ///< beyond `point`, along `normal` [m]
   };
   [[nodiscard]] Front front_of(std::size_t sample) const noexcept;
-  void keep(std::size_t sample, const Front& before) noexcept;
+  bool keep(std::size_t sample, const Front& before) noexcept;
+  [[nodiscard]] double front_at_hand(std::size_t sample, const BladeState& state) const noexcept;
   void copy_lists(const BladeState& state) noexcept;
   void advance(double h) noexcept;
 
@@ -52,8 +55,9 @@ class BufferBlade {
   double edge_ = 0;                   ///< BladeSamples::edge [m]
   std::vector<float> draw_;           ///< speed at which the fronts are drawn [m/s], ...
   double drawn_for_ = 0;              ///< ... for so long [s]
-  Vec3d span_{};                      ///< of the edge after the last move() [m]
+  Vec3d at_{}, span_{};               ///< first end and span of the hand's edge [m]
   std::int64_t pressing_ = 0;
+  bool fresh_ = true;  ///< the fronts are those of start()
 };
 
 }  // namespace pliant::haptics

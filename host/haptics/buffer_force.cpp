@@ -19,6 +19,7 @@ void BufferForce::receive(const BufferMessage& message, double interval) noexcep
     generation_ = message.generation;
     run_ = message.run;
   }
+  buffer_->hold(placed_ ? pose_ : message.report.tool);
   buffer_->follow(message.state, interval, lead_);
 }
 

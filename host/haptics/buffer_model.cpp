@@ -105,7 +105,7 @@ void BufferModel::start(const TissueState& state) noexcept {
 }
 
 void BufferModel::carry(const BufferModel& before) noexcept {
-  const float scale = before.step_ > 0 ? static_cast<float>(step_ / before.step_) : 1.0F;
+  if (before.step_ > 0) set_step(before.step_);
   auto old = before.part_.names.begin();
   for (const auto& [name, n] : part_.names) {
     while (old != before.part_.names.end() && old->first < name) ++old;
@@ -114,7 +114,7 @@ void BufferModel::carry(const BufferModel& before) noexcept {
     const std::size_t to = 4 * static_cast<std::size_t>(n), from = 4 * static_cast<std::size_t>(old->second);
     for (std::size_t c = 0; c < 3; ++c) {
       u_[to + c] = before.u_[from + c];
-      w_[to + c] = before.w_[from + c] * scale;
+      w_[to + c] = before.w_[from + c];
     }
   }
   blade_.carry(before.blade_);

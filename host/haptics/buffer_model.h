@@ -54,6 +54,8 @@ class BufferModel {
   void follow(const TissueState& state, double seconds, double lead) noexcept;
   /// Draws the nodes inside the rim to a state, by a share of the difference.
   void draw(const TissueState& state, double share) noexcept;
+  /// The instrument is where the hand is; call before follow().
+  void hold(const Pose& hand) noexcept { blade_.hold(hand); }
   /// What the hand wants of the instrument from now on.
   void grip(HandGrip wanted) noexcept { hand_grip_ = wanted; }
   /// Advances by `dt` [s] while the instrument moves from `from` to `to`. Returns the mean wrench on it, about its origin.

@@ -96,7 +96,10 @@ TissueState BufferSource::state_of(const Simulation& simulation, const Tissue& t
     state.grips.push_back(static_cast<float>(tool_grip(contact.tools()[t], simulation.state(), simulation.time())));
   }
   state.anchors = anchors_of(simulation, part);
-  if (tool.is_blade()) state.blade = blade_state(simulation.press().samples(tool.index()), slots, free_axes(part), covered);
+  if (tool.is_blade()) {
+    state.blade = blade_state(simulation.press().samples(tool.index()), slots, free_axes(part), covered);
+    state.blade.pose = tool.pose(simulation, simulation.time());
+  }
   state.step = simulation.dt();
   for (const Curve& curve : model.curves) state.curves.push_back(static_cast<float>(curve.value(simulation.time())));
   const Curve* curve = model.gravity_curve == 0 ? nullptr : &model.curves[static_cast<std::size_t>(model.gravity_curve)];

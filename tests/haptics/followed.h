@@ -20,6 +20,7 @@ struct Following {
   std::int64_t every = 20, steps = 400, stall = std::numeric_limits<std::int64_t>::max();
   bool rebuild = false;   ///< with every state
   std::int64_t from = 0;  ///< step from which differences count
+  int ahead = 0;          ///< steps by which the simulation's part is ahead of the hand
 };
 
 struct Felt {
@@ -46,7 +47,7 @@ inline Felt follow(const Scene& scene, const std::string& name, const Stroke& st
     const double t = static_cast<double>(k) * dt;
     const Wrench ticked = force.tick(stroke(t), dt);
     const DrivenPart part = DrivenPart::find(*s, name).value();
-    part.drive(*s, stroke(t), dt);
+    part.drive(*s, stroke(t + how.ahead * dt), dt);
     s->advance(1);
     const Wrench full = part.last(*s).value();
     if (k >= how.from && k <= how.stall) felt.most = std::max(felt.most, vec::norm(vec::sub(ticked.force, full.force)));

@@ -108,6 +108,13 @@ TEST(BladeInHand, FeelsTheFullModelWhileItCuts) {
   EXPECT_NEAR(vec::norm(felt.last), vec::norm(felt.last_full), 0.01 * felt.largest);
 }
 
+/// The simulation has cut further than the hand has come, which feels its own edge cut all the while.
+TEST(BladeInHand, DoesNotFeelThatTheSimulationIsAhead) {
+  const Felt felt = follow(blade_scene(), "scalpel", lowered(0.02, 0.8), {.every = 14, .steps = 340, .from = 180, .ahead = 20});
+  EXPECT_GT(felt.cuts, 0);
+  EXPECT_LT(felt.most, 0.2 * felt.largest);
+}
+
 /// Tissue gives way under the hand although the simulation has stalled: the force stays at what cutting takes.
 TEST(BladeInHand, TissueGivesWayAtTheHapticRate) {
   const Felt felt = follow(blade_scene(), "scalpel", lowered(0.02, 0.3), {3, 20, 1200, 100});
