@@ -80,6 +80,7 @@ struct RunReport {
     inversions = kept.inversions;
     tools = kept.tools;
     tissue = kept.tissue;
+    energy = kept.energy;
     ++made_again;
   }
 };
