@@ -138,6 +138,8 @@ json run_one(std::int64_t number, const SurvivalOptions& options) {
     row["edits"] = s.topology_version();
     const std::optional<double> created = s.report().energy.share();
     row["energy_created"] = created ? json(*created) : json();
+    const std::optional<double> parted = s.report().energy.share_of(s.report().tissue.work);
+    row["energy_parted"] = parted ? json(*parted) : json();
     row["ms_per_frame"] = 1e3 * wall / (std::max(s.time(), first) * 60);
   } catch (const Error& error) {
     row["outcome"] = "refused";
@@ -154,9 +156,10 @@ bool is_asked_for(std::int64_t number, const SurvivalOptions& o) {
                      [&](const std::string& word) { return text.find("\"" + word + "\"") != std::string::npos; });
 }
 
-bool creates_energy(const json& row) {
-  return row.contains("energy_created") && row["energy_created"].is_number() && row["energy_created"] > kEnergy;
+bool is_much(const json& row, const char* energy) {
+  return row.contains(energy) && row[energy].is_number() && row[energy] > kEnergy;
 }
+bool creates_energy(const json& row) { return is_much(row, "energy_created"); }
 
 bool ends_well(const json& row) {
   return row["outcome"] == "ended" && row["least_dt"].get<double>() >= kShortStep && !creates_energy(row);
@@ -190,7 +193,7 @@ class Kept {
 
 json summary_of(const json& rows) {
   std::map<std::string, int> outcomes;
-  int short_steps = 0, slow = 0, inverted = 0, left_inverted = 0, created = 0, live = 0;
+  int short_steps = 0, slow = 0, inverted = 0, left_inverted = 0, created = 0, parted = 0, live = 0;
   for (const json& row : rows) {
     ++outcomes[row["outcome"].get<std::string>()];
     short_steps += row.value("least_dt", 1.0) < kShortStep;
@@ -198,6 +201,7 @@ json summary_of(const json& rows) {
     inverted += row.value("inverted", 0) > 0;
     left_inverted += row.value("inverted_now", 0) > 0;
     created += creates_energy(row);
+    parted += is_much(row, "energy_parted");
     live += row.value("live", 0) > 0;
   }
   return {{"scenes", rows.size()},
@@ -211,7 +215,8 @@ json summary_of(const json& rows) {
           {"mean_dt_below_a_tenth", slow},
           {"inverted", inverted},
           {"left_inverted", left_inverted},
-          {"energy_created_above_a_hundredth", created}};
+          {"energy_created_above_a_hundredth", created},
+          {"energy_parted_above_a_hundredth", parted}};
 }
 
 }  // namespace
@@ -256,6 +261,8 @@ std::string survival_table(const json& result) {
   text += fmt::format(
       "{} gained more than a hundredth of their energy beyond the work of tools and blades while all loads were constant\n",
       s["energy_created_above_a_hundredth"].get<int>());
+  text += fmt::format("in {} of all, parting tissue that had come inside other tissue put in more than a hundredth\n",
+                      s["energy_parted_above_a_hundredth"].get<int>());
   text += fmt::format("{} had tools in hands; in {} of them a force on the hand was not as it must be\n", s["live"].get<int>(),
                       s["unsafe"].get<int>());
   for (const json& row : result["rows"]) {

@@ -143,7 +143,9 @@ template <class Scalar>
   const Scalar length = std::sqrt(dot(facing, facing));
   p.normal = contact::normalised(facing, length);
   const Vec<Scalar> start = difference(p.apart, difference(lower.moved, upper.moved));
-  p.arm = times(scaled_sum(minus(dot(start, p.normal)), p.normal, start), Scalar(1) / length);
+  const Vec<Scalar> arm = times(scaled_sum(minus(dot(start, p.normal)), p.normal, start), Scalar(1) / length);
+  const Scalar d = lower.density < upper.density ? lower.density : upper.density, longer = dot(arm, arm) * (d * d);
+  p.arm = longer > Scalar(1) ? times(arm, Scalar(1) / longer) : arm;
   p.gap = dot(p.apart, p.normal) + dot(p.arm, difference(upper.tilt, lower.tilt));
   return p;
 }

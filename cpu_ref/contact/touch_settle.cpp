@@ -34,7 +34,7 @@ struct Settled {
 /// One slot of pairs.
 template <bool Friction, class Scalar>
 [[gnu::always_inline]] inline void settle_slot(std::int64_t first, const Places<Scalar>& mine, const Partners<Scalar>& partners,
-                                               Scalar* numbers, const std::int32_t* own, const Scalar* contact_params,
+                                               Scalar* numbers, std::int32_t* own, const Scalar* contact_params,
                                                Settled<Scalar>& sum) {
   const Scalar quantum = contact_params[0], inverse = contact_params[1], friction = contact_params[7];
   Scalar *offset = numbers + PLIANT_TILE, *anchors = offset + PLIANT_TILE;
@@ -60,6 +60,8 @@ template <bool Friction, class Scalar>
     set_lane(sum.lever, l, chosen(pushes, scaled_sum(is_lower ? push : -push, p.arm, lever), lever));
     const Quanta q = quanta_of(f, inverse, is_lower);
     set_lane(sum.force, l, added_if(pushes, lane(sum.force, l), {q[0] - before[0], q[1] - before[1], q[2] - before[2]}));
+    const Quanta whole = chosen(pushes, q, before);
+    for (int c = 0; c < 3; ++c) own[c * PLIANT_TILE + l] = whole[static_cast<std::size_t>(c)];
     sum.touching[l] |= pushes ? PLIANT_TOUCH_BIT : 0;
   }
 }
@@ -69,7 +71,7 @@ template <bool Friction, class Scalar>
 template <class Scalar>
 void touch_settle(Range range, const Scalar* touch_place, const std::int32_t* contact_list, const std::int32_t* contact_near,
                   std::int32_t* contact_change, const std::int32_t* touch_partner, Scalar* touch_pair,
-                  const std::int32_t* touch_force, std::int32_t* touch_moment, const Scalar* contact_params) {
+                  std::int32_t* touch_force, std::int32_t* touch_moment, const Scalar* contact_params) {
   // Arrays of this function itself, and all inlined: gcc otherwise takes them for parts of the buffers.
   const auto settle = [&](auto with_friction) {
     Places<Scalar> mine;
@@ -85,7 +87,7 @@ void touch_settle(Range range, const Scalar* touch_place, const std::int32_t* co
       if ((near & PLIANT_TOUCH_BIT) != 0) {
         load_tile(touch_place, first, mine);
         for (std::int64_t s = 0; s < PLIANT_TOUCH_SLOTS && partners.find(touch_partner, first, s); ++s) {
-          const std::int32_t* own = pair_force(touch_force, first, s);
+          std::int32_t* own = pair_force(touch_force, first, s);
           if (!partners.any(own + 3 * PLIANT_TILE)) continue;
           partners.load(touch_place);
           settle_slot<with_friction()>(first, mine, partners, pair_numbers(touch_pair, first, s), own, contact_params, sum);

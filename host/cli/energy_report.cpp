@@ -43,13 +43,27 @@ std::optional<double> EnergyReport::created() const {
   return simulation_.report().energy.share();
 }
 
-std::optional<std::string> EnergyReport::remark() const {
-  const std::optional<double> share = created();
-  if (!share || *share <= kCreated) return {};
-  return fmt::format(
-      "energy appeared without a source: {:.2g} times the largest energy of the run more than tools, loads and gravity "
-      "put in; tissue that vibrates under a tool causes this: compare a run with a shorter step",
-      *share);
+std::optional<double> EnergyReport::parted() const {
+  if (!created()) return {};
+  return simulation_.report().energy.share_of(simulation_.report().tissue.work);
+}
+
+std::vector<std::string> EnergyReport::remarks() const {
+  std::vector<std::string> out;
+  if (const double share = created().value_or(0); share > kCreated) {
+    out.push_back(fmt::format(
+        "energy appeared without a source: {:.2g} times the largest energy of the run more than tools, loads and gravity "
+        "put in; tissue that vibrates under a tool causes this: compare a run with a shorter step",
+        share));
+  }
+  if (const double share = parted().value_or(0); share > kCreated) {
+    out.push_back(
+        fmt::format("parting tissue that had come inside other tissue put in {:.2g} times the largest energy of the run: faces "
+                    "that turn or "
+                    "slide over edges, and parts thinner than a cell, meet late; smaller cells or slower loads help",
+                    share));
+  }
+  return out;
 }
 
 }  // namespace pliant::cli

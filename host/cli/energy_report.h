@@ -2,6 +2,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/run_loop.h"
 #include "simulation/simulation.h"
@@ -17,8 +18,10 @@ class EnergyReport {
   void look();
   /// Created energy as a fraction of the largest energy; empty if unknown.
   [[nodiscard]] std::optional<double> created() const;
-  /// Returns a sentence if that is more than a hundredth.
-  [[nodiscard]] std::optional<std::string> remark() const;
+  /// The work of parting tissue that had come inside other tissue, likewise.
+  [[nodiscard]] std::optional<double> parted() const;
+  /// Returns a sentence for each of the two that is more than a hundredth.
+  [[nodiscard]] std::vector<std::string> remarks() const;
 
  private:
   Simulation& simulation_;

@@ -42,6 +42,7 @@ class Report {
     add_blades(s_, json);
     const std::vector<std::string> inside = add_interpenetrations(s_, json);
     if (const auto created = r_.energy.created()) json["contact"]["energy_created"] = *created;
+    if (const auto parted = r_.energy.parted()) json["contact"]["energy_parted"] = *parted;
     if (!result_.diverged.empty()) json["diverged_step"] = result_.diverged_step;
     print_summary();
     for (std::size_t t = 0; t < s_.contact().tools().size(); ++t) out_.print(tool_line(s_, t));
@@ -53,7 +54,7 @@ class Report {
       for (const std::string& line : r_.live->lines()) out_.print(line);
     }
     for (const std::string& remark : run_remarks(s_)) out_.remark(remark);
-    if (const auto remark = r_.energy.remark()) out_.remark(*remark);
+    for (const std::string& remark : r_.energy.remarks()) out_.remark(remark);
     if (!r_.probes.empty() || !r_.scene_probes.empty()) {
       json["probes"] = Json::array();
       add_probes(r_.probes, json["probes"]);

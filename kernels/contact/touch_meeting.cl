@@ -21,11 +21,16 @@ INLINE real front_of_lanes(lanes_meeting m) {
   const real closing = -dot_lanes(m.moved, m.facing), none = 0.0f;
   return dot_lanes(m.apart, m.facing) - (closing > 0.0f ? closing : none);
 }
+// A search finds pairs with arms of up to 0.7 spacings (TOUCH_RADIUS over sqrt(3), the least difference of facing normals). A pair that slides on until the
+// next search gets a longer one, and the compliance by which its push is divided knows nothing of its moment: heaps of crumpled cloth flew apart. So
+// beyond one spacing an arm is as much shorter than that as it was longer.
 INLINE void end_meeting(integer is_lower, touch_lanes own, touch_lanes other, lanes_meeting* m) {
   const real length = sqrt(dot_lanes(m->facing, m->facing));
   m->normal = over(m->facing, length);
   const vec3 start = sub(m->apart, m->moved);
-  m->arm = times(1.0f / length, times_add(-dot_lanes(start, m->normal), m->normal, start));
+  const vec3 arm = times(1.0f / length, times_add(-dot_lanes(start, m->normal), m->normal, start));
+  const real sparse = own.density < other.density ? own.density : other.density, longer = dot_lanes(arm, arm) * (sparse * sparse);
+  m->arm = where(longer > 1.0f, times(1.0f / longer, arm), arm);
   m->gap = dot_lanes(m->apart, m->normal) + dot_lanes(m->arm, lower_minus_upper(is_lower, other.tilt, own.tilt));
 }
 

@@ -1,6 +1,6 @@
 // Forces of tissue on tissue, second part: repeats touch_press for the pushing pairs at the node positions after contact_apply, with the compliance
 // of the touching points. The friction limit applies to the sum of both parts; where a pair slips, its anchor follows. contact_change: the added
-// force [quanta] including that of tools (contact_settle), and contact bits.
+// force [quanta] including that of tools (contact_settle), and contact bits; touch_force: the force of both parts.
 #include "arith.cl"
 #include "texels.cl"
 #include "contact_shape.cl"
@@ -37,7 +37,7 @@ INLINE vec3 settle_friction(integer pushes, lower_frame frame, lanes_meeting m, 
 
 // One slot of pairs of the points from `first` on. pushes: the lanes whose pair does.
 INLINE void settle_pairs(integer pushes, integer is_lower, touch_lanes mine, __global const float* touch_place, __global const int* partner,
-                         __global float* numbers, __global const int* own, __global const float* contact_params, settle_sums* sums) {
+                         __global float* numbers, __global int* own, __global const float* contact_params, settle_sums* sums) {
   const float quantum = contact_params[0], inverse = contact_params[1], friction = contact_params[7];
   const real none = 0.0f;
   const integer zero = 0;
@@ -62,10 +62,13 @@ INLINE void settle_pairs(integer pushes, integer is_lower, touch_lanes mine, __g
   sums->force.x += pick(pushes, q.x - before.x, zero);
   sums->force.y += pick(pushes, q.y - before.y, zero);
   sums->force.z += pick(pushes, q.z - before.z, zero);
+  put(pushes, q.x, own, 0);
+  put(pushes, q.y, own, 1);
+  put(pushes, q.z, own, 2);
 }
 
 __kernel void touch_settle(__global const float* touch_place, __global const int* contact_list, __global const int* contact_near, __global int* contact_change,
-                           __global const int* touch_partner, __global float* touch_pair, __global const int* touch_force,
+                           __global const int* touch_partner, __global float* touch_pair, __global int* touch_force,
                            __global int* touch_moment, __global const float* contact_params) {
   const int first = FIRST_LISTED(contact_list);
   if (first < 0) return;
@@ -85,7 +88,7 @@ __kernel void touch_settle(__global const float* touch_place, __global const int
     __global const int* partner = touch_partner + POINT_BASE(first, TOUCH_SLOTS) + s * PLIANT_TILE;
     const integer j = LOAD(partner, 0) - 1, used = j >= 0;
     if (!ANY(used)) break;
-    __global const int* own = touch_force + pair_force_base(first, s);
+    __global int* own = touch_force + pair_force_base(first, s);
     const integer pushes = used && LOAD(own, 3 * PLIANT_TILE) != 0;
     if (!ANY(pushes)) continue;
     sums.touching |= pick(pushes, (integer)(PLIANT_TOUCH_BIT), zero);

@@ -1,5 +1,6 @@
 // The work of tools and the energy of what they press: none is lost, and none comes from nowhere.
 #include "physics/harness.h"
+#include "support/source_dir.h"
 
 namespace pliant::physics {
 namespace {
@@ -81,6 +82,81 @@ TEST_P(ContactEnergy, WhatANeedleGivesBackIsNotCreated) {
   EXPECT_GT(sim->report().tools[0].max_force, 0.05);
   ASSERT_TRUE(sim->report().energy.share());
   check("energy made, over the largest", *sim->report().energy.share(), 0.01);
+}
+
+/// A sheet whose springs resist no pressure falls down along a held edge and crumples. Its faces lie on each other in heaps and
+/// slide, and their pairs get long arms between two searches.
+TEST_P(ContactEnergy, ASheetThatCrumplesMakesNoEnergy) {
+  auto sim = simulate(parse_scene(R"({"format": "pliant-scene/1", "gravity": [0, -9.81, 0], "duration": 0.3, "contact": {},
+      "bodies": [{"name": "cloth", "surface": "meshes/cloth.obj", "thickness": 0.005,
+        "model": {"type": "mass-spring", "spring": {"slack": true}},
+        "material": {"law": "neo-hookean", "young": 5000, "poisson": 0.3, "density": 1050, "damping": 3},
+        "fixed": [{"plane": [[0.066, 0, 0], [1, 0, 0]]}]}]})",
+                                  test::source_dir() + "/scenes/heap.json"),
+                      GetParam());
+  while (sim->time() < 0.3) {
+    sim->advance(sim->next_batch(64));
+    sim->watch_energy();
+  }
+  EXPECT_GT(sim->report().tissue.points, 3000);
+  ASSERT_TRUE(sim->report().energy.share());
+  check("energy made, over the largest", *sim->report().energy.share(), 0.01);
+}
+
+/// A tool that draws tissue out holds its points away from their places, the farther the harder it draws; as it goes back they
+/// give back what that took.
+TEST_P(ContactEnergy, WhatAGripGivesBackIsNotCreated) {
+  ContactTool cup;
+  cup.name = "cup";
+  cup.shape = ToolShape::sphere;
+  cup.radius = 0.012;
+  cup.friction = 0.3;
+  cup.grip = GripSpec{0, {{0.05, 1e9}}};
+  cup.path = {{0, 0.025, 0.025, 0.06199, 0, 0, 0, 1},
+              {0.1, 0.025, 0.025, 0.06199, 0, 0, 0, 1},
+              {0.3, 0.025, 0.035, 0.082, 0, 0, 0, 1},
+              {0.5, 0.025, 0.025, 0.062, 0, 0, 0, 1}};
+  Material m = material_young(Law::stable_neo_hookean, 2e4, 0.4);
+  m.damping = 20;
+  Body body = box_body({{4, 4, 4}, 0.0125}, Discretization::tet4, m);
+  body.fixed = {{face(2, 0)}};
+  auto sim = simulate(touched_by(body, cup), GetParam());
+  double held = 0;
+  while (sim->time() < 0.6) {
+    sim->advance(sim->next_batch(7));
+    sim->watch_energy();
+    held = std::max(held, sim->contact().held_energy());
+  }
+  EXPECT_GT(held / sim->report().energy.highest, 0.02);
+  check("energy made, over the largest", sim->report().energy.share().value(), 4e-4);
+}
+
+/// Blocks that begin inside each other, held at their far ends, press on each other as they part: all of their energy is the
+/// work of that.
+TEST_P(ContactEnergy, PartingIsWork) {
+  Scene scene;
+  Material m = material_young(Law::neo_hookean, 2e4, 0.4);
+  m.damping = 5;
+  Body one = box_body({{4, 4, 4}, 0.0125}, Discretization::hex8_bricks, m), two = one;
+  one.name = "one";
+  two.name = "two";
+  one.fixed = {{face(2, 0)}};
+  two.fixed = {{face(2, 0.097)}};
+  two.translate = {0, 0, 0.047};
+  scene.bodies = {one, two};
+  scene.contact = TissueContact{};
+  auto sim = simulate(scene, GetParam());
+  while (sim->time() < 0.6) {
+    sim->watch_energy();
+    sim->advance(sim->next_batch(16));
+  }
+  sim->watch_energy();
+  const std::vector<Vec3d> u = read_texels(*sim, "node_u");
+  const double work = sim->report().tissue.work, strain = energies(sim->model(), u, std::vector<Vec3d>(u.size())).strain;
+  EXPECT_GT(sim->report().energy.highest, 1e-4);
+  EXPECT_GT(work, strain);
+  EXPECT_LT(work, 2 * strain) << "the rest is damped, by contact, too, where pairs part faster than the tissue follows";
+  check("energy made, over the largest", sim->report().energy.share().value(), 0.01);
 }
 
 PLIANT_ON_BACKENDS(ContactEnergy);

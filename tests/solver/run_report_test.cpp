@@ -64,6 +64,22 @@ TEST(RunReport, AResumedRunTellsWhatTheUninterruptedOneTells) {
   }
 }
 
+/// A burst that was taken back is no part of the run, nor is its energy.
+TEST(RunReport, ABatchThatIsMadeAgainLeavesNothing) {
+  RunReport kept;
+  kept.inversions.most = 2;
+  kept.tissue.points = 3;
+  kept.energy = {1.0, 0.1, 4.0};
+  RunReport now = kept;
+  now.inversions.most = 20;
+  now.tissue.points = 30;
+  now.energy = {0.5, 3.0, 9.0};
+  now.take_back(kept);
+  EXPECT_EQ(now.made_again, 1);
+  now.made_again = 0;
+  EXPECT_EQ(write_report({now, {}}), write_report({kept, {}}));
+}
+
 TEST(RunReport, DecidesNothing) {
   Simulation source(thrown_block(), open_backend("cpu")), other(thrown_block(), open_backend("cpu"));
   go_to(source, 100);

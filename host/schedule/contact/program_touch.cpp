@@ -108,7 +108,7 @@ void ProgramBuilder::add_touch() {
                  "m (12), 1 (6), m", "touch_box, touch_tree"));
   program_.buffers.back().carried = Carried::all;
   add(make_ints("touch_force", BufferRole::scratch, "[tiles][16 slots][4][16]", {},
-                PLIANT_TOUCH_SLOTS * PLIANT_TOUCH_FORCE * count, "touch_press"));
+                PLIANT_TOUCH_SLOTS * PLIANT_TOUCH_FORCE * count, "touch_press, touch_settle"));
   program_.buffers.back().carried = Carried::all;
   add(make_ints("touch_moment", BufferRole::scratch, "[points][8]", {}, PLIANT_TOUCH_MOMENT * count,
                 "touch_press, touch_settle"));

@@ -66,11 +66,13 @@ ContactLists::Due ContactLists::due_after_motion(std::int64_t step, const Motion
 }
 
 void ContactLists::look(const Due& due, std::int32_t step_in_batch, std::int64_t step) {
+  if (due.tissue && at_search_) at_search_(true);
   for (const Pass& pass : run_.loaded.program().look) {
     if (pass.kernel == "contact_near" ? due.tools : due.tissue) run_.backend().run(pass, step_in_batch);
   }
   const std::vector<std::int32_t> near = run_.backend().read_ints(run_.loaded.program().find("contact_near"));
   list(near);
+  if (due.tissue && at_search_) at_search_(false);
   if (due.tools) {
     run_.state.look.tools = step;
     measure_room(near);

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "simulation/state/run_context.h"
@@ -26,6 +27,10 @@ class ContactLists {
   /// Call before each step of the current batch. Searches if a search is due; rebuilds the lists if the model or state was
   /// replaced.
   void update(std::int32_t step_in_batch, const Motion& motion);
+  /// Called before (true) and after (false) a search for pairs of tissue.
+  using AtSearch = std::function<void(bool before)>;
+  /// `at_search` may be empty.
+  void follow_searches(AtSearch at_search) { at_search_ = std::move(at_search); }
 
  private:
   /// Which searches are due.
@@ -39,6 +44,7 @@ class ContactLists {
   void measure_room(const std::vector<std::int32_t>& near);
 
   RunContext& run_;
+  AtSearch at_search_;
   std::int64_t loaded_ = -1;  ///< LoadedModel::changes() when the lists were built
 };
 

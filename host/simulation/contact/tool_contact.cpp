@@ -145,18 +145,39 @@ void ToolContact::begin_batch(std::int32_t steps) {
   const Program& program = run_.loaded.program();
   Backend& backend = run_.backend();
   if (tools > 0) backend.write_reals(program.find("tool_pose"), poses);
-  units_ = contact_units(run_.model(), run_.state.clock.dt);
+  last_units_ = std::exchange(units_, contact_units(run_.model(), run_.state.clock.dt));
+  parting_.drop();
   const std::array<double, 9> numbers =
       contact_numbers(run_.model(), units_, run_.scene.contact ? run_.scene.contact->friction : 0, touch_ease());
   backend.write_reals(program.find("contact_params"), {numbers.begin(), numbers.end()});
   summed_.assign(static_cast<std::size_t>(steps), 0);
 }
 
+/// What runs without a check of its energy pays nothing.
+void ToolContact::count_parting(std::int32_t step_in_batch, bool before) {
+  if (!report_.energy.least) return;
+  if (!before) {
+    parting_.after_search(units_.force);
+    return;
+  }
+  double quantum = 0;
+  if (step_in_batch > 0) {
+    if (summed_.at(static_cast<std::size_t>(step_in_batch) - 1) != 0) quantum = units_.force;
+  } else if (known_at_ == run_.state.clock.step && known_changes_ == run_.loaded.changes()) {
+    quantum = last_units_.force;
+  }
+  report_.tissue.work += parting_.before_search(quantum);
+}
+
 std::int32_t ToolContact::before_step(std::int32_t step_in_batch, std::int32_t steps) {
   if (!active()) return steps;
+  report_.tissue.work += parting_.after_step();
+  if (run_.scene.contact) lists_.follow_searches([=, this](bool before) { count_parting(step_in_batch, before); });
   lists_.update(step_in_batch, [this](std::size_t tool, double from, double to) { return motion(tool, from, to); });
+  known_at_ = -1;  // also where the batch is taken back
   const std::int64_t step = run_.state.clock.step + step_in_batch;
-  const auto n = static_cast<std::int32_t>(std::min(std::int64_t{steps}, contact_look_every - step % contact_look_every));
+  auto n = static_cast<std::int32_t>(std::min(std::int64_t{steps}, contact_look_every - step % contact_look_every));
+  if (parting_.pending()) n = 1;
   if (*run_.loaded.program().near_points > 0) {
     for (std::int32_t k = 0; k < n; ++k) summed_.at(static_cast<std::size_t>(step_in_batch + k)) = 1;
   }
@@ -199,6 +220,7 @@ double ToolContact::work(std::size_t tool, std::int32_t step, const Wrench& on_t
 
 void ToolContact::end_batch(std::int32_t steps) {
   if (!active() || steps <= 0) return;
+  report_.tissue.work += parting_.after_step();
   const bool ran_last = summed_[static_cast<std::size_t>(steps) - 1] != 0;
   known_at_ = ran_last ? run_.state.clock.step : -1;
   known_changes_ = run_.loaded.changes();

@@ -7,6 +7,7 @@
 
 #include "simulation/contact/contact_lists.h"
 #include "simulation/contact/contact_units.h"
+#include "simulation/contact/parting_work.h"
 #include "simulation/state/run_context.h"
 #include "simulation/state/run_report.h"
 
@@ -19,7 +20,7 @@ void check_drive(const std::string& name, const Pose& to, double seconds);
 
 class ToolContact {
  public:
-  ToolContact(RunContext& run, RunReport& report) : run_(run), report_(report), lists_(run) {}
+  ToolContact(RunContext& run, RunReport& report) : run_(run), report_(report), lists_(run), parting_(run) {}
 
   /// Throws Error (bad_input) for a tool that starts inside a body, deeper than a quarter of a cell, or for bodies that
   /// overlap.
@@ -41,14 +42,18 @@ class ToolContact {
   /// Moves a tool of the model from its current pose to `to` within `seconds` [s]; at once if that is 0.
   void drive(std::size_t tool, const Pose& to, double seconds);
   /// Returns the force of contact on every contact point in the last step [N]: that of all tools and of tissue. Empty if
-  /// nothing touched, or where it is not known: before the first step and after the state was changed. Of points that touch
-  /// tools and tissue the part of tissue that contact adds after its first pass (touch_settle) is missing.
+  /// nothing touched, or where it is not known: before the first step and after the state was changed.
   [[nodiscard]] std::vector<Vec3d> point_forces() const;
   /// Force and torque of each step of the last batch, shape [steps][tools]; it ended after step batch_end().
   [[nodiscard]] const std::vector<Wrench>& step_forces() const { return step_forces_; }
   [[nodiscard]] std::int64_t batch_end() const { return batch_end_; }
   /// Of the last step; empty where it is not known: before the first step and after the tools or the state were changed.
   [[nodiscard]] std::optional<Wrench> last_force(std::size_t tool) const;
+  /// point_forces() on the nodes [N], by slot; empty where they are.
+  [[nodiscard]] std::vector<Vec3d> node_forces() const;
+  /// What gripped points give back when they return to their places in the grip: force times distance [J], since a grip holds
+  /// against a force at any distance.
+  [[nodiscard]] double held_energy() const;
   /// Returns the pose of a tool of the model at a time [s].
   [[nodiscard]] Pose pose(std::size_t tool, double time) const;
 
@@ -61,14 +66,18 @@ class ToolContact {
   /// frame [J].
   [[nodiscard]] double work(std::size_t tool, std::int32_t step, const Wrench& on_tool) const;
   void read_touch();
+  /// Around a search before a step of the batch, where the energy is watched.
+  void count_parting(std::int32_t step_in_batch, bool before);
   /// Upper bound of the distance that any point of a tool moves between two times [m].
   [[nodiscard]] double motion(std::size_t tool, double from, double to) const;
 
   RunContext& run_;
   RunReport& report_;
   ContactLists lists_;
+  PartingWork parting_;
   std::vector<ContactTool> tools_;
   ContactUnits units_;               ///< of the current batch
+  ContactUnits last_units_;          ///< of the batch before
   std::int64_t known_at_ = -1;       ///< step after which the buffers hold the forces of points; -1: none
   std::int64_t known_changes_ = -1;  ///< LoadedModel::changes() then
   std::vector<Wrench> step_forces_;

@@ -3,13 +3,21 @@
 #include <cstdint>
 #include <vector>
 
+#include "geometry/vec.h"
 #include "simulation/state/run_context.h"
 
 namespace pliant {
 namespace {
 
+/// The acceleration of a node in the next step. Contact is impulsive: what it did in the last step it does again only where it
+/// balances the other forces.
+Vec3d acceleration(const Vec3d& others, const Vec3d& contact) {
+  const Vec3d both = vec::add(others, contact);
+  return vec::norm(both) < vec::norm(others) ? both : others;
+}
+
 /// Kinetic energy as the integrator defines it. `before`: velocities of the last step by slot [m/s].
-double kinetic(const RunContext& run, const std::vector<Vec3d>& before) {
+double kinetic(const RunContext& run, const std::vector<Vec3d>& before, const std::vector<Vec3d>& contact) {
   const Model& m = run.model();
   const std::vector<double> forces = run.forces_now();
   std::vector<std::vector<Vec3d>> by_body(m.bodies.size());
@@ -23,9 +31,11 @@ double kinetic(const RunContext& run, const std::vector<Vec3d>& before) {
   for (std::size_t slot = 0; slot < m.mass.size(); ++slot) {
     if (!(m.mass[slot] > 0)) continue;
     const double h = substeps_of(m, slot) * run.state.clock.dt, k = m.damping[slot] * h / 2;
+    Vec3d a = vec::add(vec::mul(force[slot], 1 / m.mass[slot]), gravity);
+    if (!contact.empty()) a = acceleration(a, vec::mul(contact[slot], 1 / m.mass[slot]));
     for (std::size_t c = 0; c < 3; ++c) {
       if ((held[slot] >> c & 1) != 0) continue;
-      sum += m.mass[slot] / 2 * square(before[slot][c], force[slot][c] / m.mass[slot] + gravity[c], h, k);
+      sum += m.mass[slot] / 2 * square(before[slot][c], a[c], h, k);
     }
   }
   return sum;
@@ -33,7 +43,7 @@ double kinetic(const RunContext& run, const std::vector<Vec3d>& before) {
 
 }  // namespace
 
-Energies energies_now(const RunContext& run) {
+Energies energies_now(const RunContext& run, const std::vector<Vec3d>& contact) {
   const Model& m = run.model();
   const std::vector<double> all = run.u(), increments = run.increments();
   std::vector<std::vector<Vec3d>> u(m.bodies.size()), v(m.bodies.size());
@@ -44,7 +54,7 @@ Energies energies_now(const RunContext& run) {
   const double time = run.state.clock.time();
   const std::vector<Vec3d> velocity = by_slot(m, v);
   Energies now = energies(m, by_slot(m, u), velocity, {run.scene.gravity_at(time), time});
-  now.kinetic = kinetic(run, velocity);
+  now.kinetic = kinetic(run, velocity, contact);
   return now;
 }
 

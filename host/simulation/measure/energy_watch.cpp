@@ -27,11 +27,11 @@ double last_change(const Scene& scene) {
 void Simulation::watch_energy() {
   const Model& m = model();
   if (time() < last_change(scene_) || report().inversions.last > 0 || !m.flsm.empty()) return;
-  const Energies now = energies_now(run_);
+  const Energies now = energies_now(run_, contact_.node_forces());
   if (!std::isfinite(now.total())) return;
   // Tissue that presses on a tool stands in it, and when the tool withdraws it gives back what that took: at most half of force
-  // times depth.
-  double work = 0, stored = 0;
+  // times depth. Gripped points that are away from their places likewise.
+  double work = report().tissue.work, stored = contact_.held_energy();
   for (const ToolHistory& tool : report().tools) {
     work += tool.work;
     stored += 0.5 * vec::norm(tool.now.force) * tool.now.depth;

@@ -53,17 +53,20 @@ struct ToolHistory {
 struct TouchHistory {
   std::int64_t points = 0;  ///< points in contact in the last batch
   double max_depth = 0;     ///< depth of the deepest pair, after contact [m]
+  double work = 0;          ///< of parting tissue that had come inside other tissue, where the energy is watched [J]
 };
 
 /// Energy that appeared without a source (Simulation::watch_energy).
 struct EnergyHistory {
-  std::optional<double> least;  ///< least energy less work of tools and blades at any check [J]; empty: no check was made
+  std::optional<double> least;  ///< least energy less work at any check [J]; empty: no check was made
   double created = 0,
          highest = 0;  ///< largest rise above an earlier `least`, and largest kinetic plus strain energy or work [J]
   /// Returns created / highest.
-  [[nodiscard]] std::optional<double> share() const {
+  [[nodiscard]] std::optional<double> share() const { return share_of(created); }
+  /// Returns `energy` [J] / highest.
+  [[nodiscard]] std::optional<double> share_of(double energy) const {
     if (!least) return {};
-    return highest > 0 ? created / highest : 0;
+    return highest > 0 ? energy / highest : 0;
   }
 };
 
@@ -80,6 +83,7 @@ struct RunReport {
     inversions = kept.inversions;
     tools = kept.tools;
     tissue = kept.tissue;
+    energy = kept.energy;
     ++made_again;
   }
 };
@@ -109,7 +113,7 @@ void visit(V& v, ToolHistory& s) {
 }
 template <class V>
 void visit(V& v, TouchHistory& s) {
-  v("points", s.points), v("max_depth", s.max_depth);
+  v("points", s.points), v("max_depth", s.max_depth), v("work", s.work);
 }
 template <class V>
 void visit(V& v, EnergyHistory& s) {

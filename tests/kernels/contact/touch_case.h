@@ -32,11 +32,13 @@ struct TouchData : ContactData {
   [[nodiscard]] Eigen::Vector3d moved(std::size_t i) const { return row(i, 1); }
   [[nodiscard]] Eigen::Vector3d normal(std::size_t i) const { return row(i, 2); }
   /// How the gap of two points follows the upper normal: their distance along the surface at the start of the step, over the
-  /// length of the difference of their normals.
+  /// length of the difference of their normals; beyond one spacing, as much shorter as it was longer.
   [[nodiscard]] Eigen::Vector3d arm(std::size_t lower, std::size_t upper) const {
     const Eigen::Vector3d facing = normal(upper) - normal(lower), n = facing.normalized();
     const Eigen::Vector3d start = x(lower) - moved(lower) - x(upper) + moved(upper);
-    return (start - start.dot(n) * n) / facing.norm();
+    const Eigen::Vector3d along = (start - start.dot(n) * n) / facing.norm();
+    const double far = along.norm() / std::max(spacing(lower), spacing(upper));
+    return far > 1 && spacing(lower) > 0 && spacing(upper) > 0 ? Eigen::Vector3d(along / (far * far)) : along;
   }
   [[nodiscard]] double gap(std::size_t lower, std::size_t upper) const {
     return (x(lower) - x(upper)).dot((normal(upper) - normal(lower)).normalized()) +

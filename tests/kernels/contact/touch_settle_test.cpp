@@ -49,6 +49,9 @@ TEST(TouchSettleOracle, FrictionKeepsWithinItsCone) {
     const Vector3d had = d.params[0] * Vector3d(before[0], before[1], before[2]);
     const Vector3d got = had + d.params[0] * Vector3d(change[ContactData::base(i, 4)], change[ContactData::base(i, 4) + 16],
                                                       change[ContactData::base(i, 4) + 32]);
+    const Reals whole = ints_in_double(test, "touch_force");
+    EXPECT_NEAR((d.params[0] * d.three(whole, i, 16 * PLIANT_TOUCH_FORCE, 0) - got).norm(), 0, 0.01)
+        << "the force of both parts";
     const double across = had.dot(n) + stiffness * rest;
     EXPECT_NEAR(got.dot(n), across, 1e-3 * std::abs(across) + 0.01);
     const double side = (got - got.dot(n) * n).norm(), most = friction * std::max(0.0, across);
