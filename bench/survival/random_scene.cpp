@@ -296,6 +296,12 @@ class RandomScene {
       blades[0]["cuts"] = "by-force";
       blades[0]["edge"] = 0.005 * extent_;
     }
+    Dice plates(number_ ^ 0x2c1b3c6d);
+    for (Json& blade : blades) {  // a plate that separation allows, too
+      if (!blade.contains("cuts") || !plates.chance(0.5)) continue;
+      blade["thickness"] = extent_ * plates.logarithmic(2e-3, 1e-2);
+      blade["height"] = extent_ * plates.uniform(1, 1.5);
+    }
   }
 
   /// Spheres, capsules, boxes and half spaces that stand beside the body or come towards it, up to two fifths of its size deep,

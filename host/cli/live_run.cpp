@@ -10,6 +10,7 @@
 #include "io/atomic_file.h"
 #include "pliant/error.h"
 #include "program/hash.h"
+#include "scene/blade_face.h"
 #include "scene/keys.h"
 
 namespace pliant::cli {
@@ -23,7 +24,9 @@ void refuse_live(const std::string& text) { throw Error(ErrorCode::bad_input, te
 
 std::vector<std::string> tool_names(const Simulation& simulation) {
   std::vector<std::string> names;
-  for (const ContactTool& tool : simulation.contact().tools()) names.push_back(tool.name);
+  for (const ContactTool& tool : simulation.contact().tools()) {
+    if (!is_face(tool)) names.push_back(tool.name);
+  }
   return names;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "pliant/error.h"
+#include "scene/blade_face.h"
 #include "scene/keys.h"
 
 namespace pliant::haptics {
@@ -16,7 +17,9 @@ constexpr std::int64_t kNever = 1'000'000'000'000'000;
 
 Replay::Replay(DriveLog log, const Simulation& simulation, bool to_end) : log_(std::move(log)), to_end_(to_end) {
   std::vector<std::string> names;
-  for (const ContactTool& tool : simulation.contact().tools()) names.push_back('"' + tool.name + '"');
+  for (const ContactTool& tool : simulation.contact().tools()) {
+    if (!is_face(tool)) names.push_back('"' + tool.name + '"');
+  }
   for (const LoggedDrive& drive : log_.drives) {
     if (std::find(names.begin(), names.end(), '"' + drive.tool + '"') != names.end()) continue;
     refuse(drive.at, fmt::format("the tool is \"{}\"; {}", drive.tool,

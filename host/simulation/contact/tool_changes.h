@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/blade_face.h"
 #include "simulation/state/run_state.h"
 
 namespace pliant {
@@ -20,6 +21,8 @@ void check_tool_changes(const Scene& scene, const ToolChanges& changes);
 
 /// Returns the pose of a tool at a time [s].
 [[nodiscard]] Pose tool_pose(const ContactTool& tool, const RunState& state, double time);
+/// Returns true for a face of a blade that is not in the scene at a time [s].
+[[nodiscard]] bool is_away(const ContactTool& tool, const RunState& state, double time);
 /// Returns the strength of a tool's grip at a time [Pa]; 0: it does not grip.
 [[nodiscard]] double tool_grip(const ContactTool& tool, const RunState& state, double time);
 

@@ -49,6 +49,8 @@ class ToolContact {
   [[nodiscard]] std::int64_t batch_end() const { return batch_end_; }
   /// Of the last step; empty where it is not known: before the first step and after the tools or the state were changed.
   [[nodiscard]] std::optional<Wrench> last_force(std::size_t tool) const;
+  /// Statistics of a tool of the model.
+  [[nodiscard]] const ToolHistory& history(std::size_t tool) const { return report_.tools[tool]; }
   /// Returns the pose of a tool of the model at a time [s].
   [[nodiscard]] Pose pose(std::size_t tool, double time) const;
 
@@ -61,6 +63,8 @@ class ToolContact {
   /// frame [J].
   [[nodiscard]] double work(std::size_t tool, std::int32_t step, const Wrench& on_tool) const;
   void read_touch();
+  /// Call before a batch: notes which blades with faces are in the scene.
+  void begin_faces();
   /// Upper bound of the distance that any point of a tool moves between two times [m].
   [[nodiscard]] double motion(std::size_t tool, double from, double to) const;
 
