@@ -16,19 +16,19 @@ constexpr double kCell = 0.005, kHeight = 0.03, kPlane = 0.001;  // the blade mo
 struct Cut {
   std::string path, element = "hex8",
                     fixed = R"([{"plane": [[-0.045, 0, 0], [-1, 0, 0]]}, {"plane": [[0.045, 0, 0], [1, 0, 0]]}])";
-  double thickness = 0.002, friction = 0, toughness = 2e4, damping = 30;
+  double thickness = 0.002, friction = 0, toughness = 2e4, damping = 30, height = kHeight, cell = kCell;
   std::string extra{};  ///< keys of the blade
 };
 
 /// A block of 120 x 40 x 80 mm about the origin, held at both ends; the edge lies along z.
 Scene block(const Cut& s) {
   const std::string faces =
-      s.thickness > 0 ? fmt::format(R"("thickness": {}, "height": {},)", s.thickness, kHeight) : std::string();
+      s.thickness > 0 ? fmt::format(R"("thickness": {}, "height": {},)", s.thickness, s.height) : std::string();
   return parse_scene(fmt::format(R"({{"format": "pliant-scene/1", "bodies": [{{"name": "block", "surface": "meshes/block.obj",
         "lattice": {{"spacing": {}}}, "element": "{}", "material": {{"law": "neo-hookean", "young": 10000, "poisson": 0.4,
         "density": 1000, "damping": {}, "toughness": {}}}, "fixed": {}}}],
         "blades": [{{"name": "scalpel", "cuts": "by-force", "edge": 5e-4, "friction": {}, {} {} "path": {}}}]}})",
-                                 kCell, s.element, s.damping, s.toughness, s.fixed, s.friction, faces, s.extra, s.path),
+                                 s.cell, s.element, s.damping, s.toughness, s.fixed, s.friction, faces, s.extra, s.path),
                      test::source_dir() + "/scenes/block.json");
 }
 
@@ -215,6 +215,22 @@ TEST_P(BladeFaces, HaveNoPreferredSide) {
   for (std::size_t k = 0; k < 3; ++k) {
     check_relative("turned with the block", other[k], one[k], bound(1e-3, 1e-4));  // forces are whole quanta
     check_relative("turned in the cut", swapped[k], one[k], 2e-3);  // samples at the ends of a cut follow the one before first
+  }
+}
+
+/// Tissue that the edge has not opened is not pressed: the faces do not keep it from cutting, in coarse cells neither.
+TEST(BladeFacesNone, DoNotKeepTheEdgeFromCutting) {
+  for (const double cell : {0.005, 0.008}) {
+    std::int64_t edges[2];
+    for (const bool faces : {false, true}) {
+      Scene scene = block({.path = down_and_stand(0.6), .thickness = faces ? 0.6 * cell : 0, .height = 0.036, .cell = cell});
+      auto sim = simulate(scene, "cpu");
+      run_until(*sim, 0.58);
+      edges[faces ? 1 : 0] = 0;
+      for (const CutRecord& cut : sim->state().cuts) edges[faces ? 1 : 0] += static_cast<std::int64_t>(cut.edges.size());
+      EXPECT_EQ(sim->cut_in_part(0), 0) << cell;
+    }
+    EXPECT_EQ(edges[0], edges[1]) << cell;
   }
 }
 
