@@ -163,6 +163,24 @@ TEST_P(BladeFaces, DoTheWorkThatTissueGets) {
   }
 }
 
+/// A blade that has been lifted and comes again in its cut, which has closed: it opens it slowly, and the work of this is its
+/// own.
+TEST_P(BladeFaces, SpreadTissueThatHasClosed) {
+  auto sim = simulate(block({.path = down_and_stand(3), .element = "hex8full", .thickness = 0.003, .damping = 5}), GetParam());
+  run_until(*sim, 0.6);
+  const BladeSegment in = blade_place({}, sim->scene().blades[0], 0.6);
+  sim->lift_blade_by_force("scalpel");
+  run_until(*sim, 1.2);
+  EXPECT_LT(opening(*sim, -0.02, -0.01).mean, 0.001);
+  sim->drive_blade("scalpel", in, 0);
+  const double before = sim->press().work(0);
+  while (sim->time() < 2 && sim->advance(16) > 0) sim->watch_energy();
+  const Opening open = opening(*sim, -0.034 + kHeight / 3 + kCell, -0.034 + 2 * kHeight / 3);
+  check_relative("mean opening [m]", open.mean, 0.003, 0.1);
+  EXPECT_GT(sim->press().work(0), before);
+  check("energy made, over the largest", *sim->report().energy.share(), 0.02);
+}
+
 /// Turning all, or the blade about its back, so that its faces change sides, changes nothing but roundings and what follows.
 TEST_P(BladeFaces, HaveNoPreferredSide) {
   const auto outcome = [&](const Matrix3d& turn, bool swapped) {
