@@ -56,8 +56,12 @@ struct EdgedTools : Tools<Scalar> {
   [[nodiscard]] PatchMeeting<Scalar, EDGES> meet_patch(std::int32_t t, std::int64_t i, const Place<Scalar>& x) const {
     PatchMeeting<Scalar, EDGES> out{this->meet(t, x), x.now};
     if constexpr (EDGES != 0) {
-      if (is_face(t))
+      if (is_face(t) && out.m.distance > face_near<Scalar> * patches.spacing(i)) {
+        out.m.distance = EdgeNumbers<Scalar>::far;
+        out.m.opening = 0;
+      } else if (is_face(t)) {
         meet_face(this->law(t), this->next(t), plane_of(patches.at(i, Scalar(0), Scalar(0)), this->now(t)), out.m);
+      }
     }
     if (!has_edges(t)) return out;
     if constexpr (EDGES != 0) meet_parts(t, i, out);

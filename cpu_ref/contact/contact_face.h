@@ -4,6 +4,10 @@
 
 namespace pliant::ref::contact {
 
+/// Points farther than this from the box around the blade need no normal [h].
+template <class Scalar>
+inline constexpr Scalar face_near = Scalar(0.25);
+
 /// The face of a blade that a point belongs to (contact_face.cl): distance, opening and normal of the meeting.
 template <class Scalar>
 void meet_face(const Scalar* data, const Scalar* next, const PatchPlane<Scalar>& plane, Meeting<Scalar>& m) {

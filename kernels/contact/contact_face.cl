@@ -4,6 +4,7 @@
 // points that look at it by their normals: both faces of a fresh cut lie in the middle of the blade, where no place tells them apart. Points that look
 // along the blade (the skin beside a cut) go with their cells. tool_pose[12]: whether the blade is in the scene.
 #define FACE_LOOKS 0.6f  // cosine from which a normal tells the side
+#define FACE_NEAR 0.25f  // [h] points farther than this from the box around the blade need no normal: they will not touch in the next step either
 
 static inline int is_face(__global const int* tool_kind, int t) { return EDGES && tool_kind[TOOL_INTEGERS * t] == FACE_OF_BLADE; }
 
