@@ -112,6 +112,9 @@ py::dict blade_forces(const pliant::World& w) {
     blade["gave_way"] = f.gave_way;
     blade["present"] = f.present;
     blade["pressing"] = f.pressing;
+    blade["face_force"] = row(f.face_force);
+    blade["face_normal"] = f.face_normal;
+    blade["face_work"] = f.face_work;
     d[py::str(f.name)] = blade;
   }
   return d;

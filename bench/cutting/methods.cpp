@@ -8,6 +8,7 @@
 #include "bench/cutting/parts.h"
 #include "geometry/disjoint_sets.h"
 #include "geometry/vec.h"
+#include "scene/blade_face.h"
 #include "tearing/sweep_probe.h"
 
 namespace pliant::bench {
@@ -57,7 +58,7 @@ Comparison liver(const CuttingRun& run) {
   c.name = "liver";
   c.scene = load_scene(run.options.scenes / "cut_liver.json");
   c.scene.name = "liver";
-  c.scene.blades.clear();
+  drop_blades(c.scene);
   Body& body = c.scene.bodies[0];
   body.element = ElementKind::tet4;
   body.prescribed.clear();

@@ -7,6 +7,7 @@
 #include "backends/choice/backends.h"
 #include "bench/cutting/parts.h"
 #include "bench/deformation/parts.h"
+#include "scene/blade_face.h"
 
 namespace pliant::bench {
 namespace {
@@ -35,7 +36,7 @@ void measure(const CuttingRun& run, const std::string& name) {
   run.show(name);
   Scene scene = load_scene(run.options.scenes / (name + ".json"));
   const std::vector<Blade> blades = std::move(scene.blades);
-  scene.blades.clear();
+  drop_blades(scene);
   scene.cuttable = true;
   scene.name = name;
   double end = 0;

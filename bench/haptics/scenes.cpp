@@ -7,6 +7,7 @@
 #include "bench/common/shipped_scenes.h"
 #include "bench/haptics/parts.h"
 #include "model/model.h"
+#include "scene/blade_face.h"
 
 namespace pliant::bench::haptics {
 namespace {
@@ -48,7 +49,7 @@ HandScene palpated(const std::string& name, Scene scene, const Palpation& p) {
   ball.radius = p.radius;
   ball.friction = kFriction;
   scene.tools = {ball};
-  scene.blades.clear();
+  drop_blades(scene);
   const Vec3d above{p.place[0], p.place[1] + p.radius + 0.004, p.place[2]};
   const Vec3d pressed{above[0], above[1] - 0.004 - p.depth, above[2]};
   const Vec3d drawn{pressed[0] + p.along[0], pressed[1] + p.along[1], pressed[2] + p.along[2]};

@@ -9,6 +9,7 @@
 #include "bench/common/dice.h"
 #include "geometry/vec.h"
 #include "haptics/instrument.h"
+#include "scene/blade_face.h"
 
 namespace pliant::bench {
 namespace {
@@ -79,7 +80,8 @@ std::string LiveFindings::fault() const {
 }
 
 LiveTools::LiveTools(std::int64_t number, const Simulation& simulation, double seconds) {
-  const std::vector<ContactTool>& tools = simulation.contact().tools();
+  std::vector<ContactTool> tools = simulation.contact().tools();  // faces of blades come last
+  std::erase_if(tools, is_face);
   Dice dice(number ^ 0x7f4a7c159e37);  // of its own: the rest of a scene stays what it was
   if (tools.empty() || !dice.chance(0.5)) return;
   const std::size_t most = std::min<std::size_t>(tools.size(), 1 + dice.below(2)), first = dice.below(tools.size());

@@ -8,6 +8,7 @@
 #include "bench/common/dice.h"
 #include "bench/survival/random_grip.h"
 #include "bench/survival/random_method.h"
+#include "bench/survival/random_plates.h"
 #include "bench/survival/random_springs.h"
 #include "bench/survival/random_vessels.h"
 #include "bench/survival/survival.h"
@@ -292,10 +293,8 @@ class RandomScene {
       blade["edge"] = extent_ * sharp.logarithmic(1e-3, 2e-2);
       blade["friction"] = sharp.chance(0.5) ? 0.0 : sharp.uniform(0, 1);
     }
-    if (!blades[0].contains("cuts")) {
-      blades[0]["cuts"] = "by-force";
-      blades[0]["edge"] = 0.005 * extent_;
-    }
+    if (!blades[0].contains("cuts")) blades[0].update(Json{{"cuts", "by-force"}, {"edge", 0.005 * extent_}});
+    give_random_plates(number_, extent_, blades);
   }
 
   /// Spheres, capsules, boxes and half spaces that stand beside the body or come towards it, up to two fifths of its size deep,

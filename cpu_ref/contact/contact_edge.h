@@ -1,6 +1,6 @@
 // Twin of contact_edge.cl and edge_touch.cl, which describe the computation (kernels/contact).
 #pragma once
-#include "cpu_ref/contact/contact_patch.h"
+#include "cpu_ref/contact/contact_face.h"
 
 namespace pliant::ref::contact {
 
@@ -51,12 +51,26 @@ struct EdgedTools : Tools<Scalar> {
   Patches<Scalar> patches;
 
   [[nodiscard]] bool has_edges(std::int32_t t) const { return EDGES != 0 && this->kind[tool_integers * t + 7] > 0; }
+  [[nodiscard]] bool is_face(std::int32_t t) const { return EDGES != 0 && this->kind[tool_integers * t] == face_of_blade; }
 
   [[nodiscard]] PatchMeeting<Scalar, EDGES> meet_patch(std::int32_t t, std::int64_t i, const Place<Scalar>& x) const {
     PatchMeeting<Scalar, EDGES> out{this->meet(t, x), x.now};
+    if constexpr (EDGES != 0) {
+      if (is_face(t) && out.m.distance > face_near<Scalar> * patches.spacing(i)) {
+        out.m.distance = EdgeNumbers<Scalar>::far;
+        out.m.opening = 0;
+      } else if (is_face(t)) {
+        meet_face(this->law(t), this->next(t), plane_of(patches.at(i, Scalar(0), Scalar(0)), this->now(t)), out.m);
+      }
+    }
     if (!has_edges(t)) return out;
     if constexpr (EDGES != 0) meet_parts(t, i, out);
     return out;
+  }
+
+  /// By how much the depth that an edit has left a point in tool t gets less in a step.
+  [[nodiscard]] Scalar given_back(std::int32_t t, const Scalar* params) const {
+    return is_face(t) ? ((Scalar(2) * params[8]) * params[5]) / params[6] : Scalar(0);
   }
 
  private:

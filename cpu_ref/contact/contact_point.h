@@ -111,11 +111,12 @@ inline Scalar held_depth(const Points<Scalar>& points, const Scalar* contact_sha
   return distance < Scalar(0) ? -distance : Scalar(0);
 }
 
-/// The depth in tool t that an edit has left a point. `start`: two numbers; `before`: depth at the start of the step.
+/// The depth in tool t that an edit has left a point. `start`: two numbers; `before`: depth at the start of the step; `given`:
+/// by how much it gets less in a step.
 template <class Scalar>
-inline Scalar start_depth(const Scalar* start, std::int32_t t, Scalar before) {
+inline Scalar start_depth(const Scalar* start, std::int32_t t, Scalar before, Scalar given) {
   const bool in_it = static_cast<std::int32_t>(start[PLIANT_TILE]) == t + 1;
-  const Scalar own = start[0] < Scalar(0) ? before : in_it ? start[0] : Scalar(0);
+  const Scalar own = start[0] < Scalar(0) ? before : in_it ? start[0] - given : Scalar(0);
   const Scalar depth = before < own ? before : own;
   return depth > Scalar(0) ? depth : Scalar(0);
 }
@@ -125,8 +126,8 @@ template <class Scalar>
 struct LeftDeep {
   Scalar* start;
   Scalar lag = 0, lag_in = 0;
-  Scalar in(std::int32_t t, Scalar before) {
-    const Scalar own = start_depth(start, t, before);
+  Scalar in(std::int32_t t, Scalar before, Scalar given) {
+    const Scalar own = start_depth(start, t, before, given);
     if (own > lag) lag = own, lag_in = static_cast<Scalar>(t + 1);
     return own;
   }

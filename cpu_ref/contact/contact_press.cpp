@@ -162,7 +162,8 @@ void contact_press(Range range, const Scalar* node_u, const Scalar* node_w, cons
       const Scalar stiffness = (whole * met.share) * met.ease;
       const Scalar* law = all.law(t);
       const Scalar held = held_depth(points, contact_share, contact_held, i, met.place, m);
-      const Scalar beyond = -m.distance - held, depth = beyond - left.in(t, beyond + m.opening);
+      const Scalar beyond = -m.distance - held,
+                   depth = beyond - left.in(t, beyond + m.opening, all.given_back(t, contact_params));
       const Scalar push = normal_force(depth, m.opening, law, area, stiffness, h);
       if (GRIPS != 0 && (reached.gripped >> t & 1) != 0 && anchor[3] >= Scalar(0))
         hold_here(all, t, p, gripped_by<Scalar>(t), anchor);

@@ -111,7 +111,7 @@ void contact_settle(Range range, const Scalar* node_u, const Scalar* node_w, con
         const Scalar* law = all.law(t);
         const Scalar held = held_depth(points, contact_share, contact_held, i, met.place, m);
         const bool held_fast = GRIPS != 0 && anchor[3] == gripped_by<Scalar>(t);
-        const Scalar rest = ((-m.distance - held) - left_in(contact_start + tile_base(i, 2), t)) - law[15];
+        const Scalar lag = left_in(contact_start + tile_base(i, 2), t), rest = ((-m.distance - held) - lag) - law[15];
         const Scalar push = rest > Scalar(0) && !held_fast ? stiffness * rest : Scalar(0);
         const Quanta pressed{-on_tool[0], -on_tool[1], -on_tool[2]}, before = count == 1 ? pressed : Quanta{};
         const Vec<Scalar> first = force_of(pressed, quantum), own = times(m.normal, push);
@@ -120,6 +120,7 @@ void contact_settle(Range range, const Scalar* node_u, const Scalar* node_w, con
         if (count == 1 && anchor[3] == static_cast<Scalar>(t + 1))
           f = settle_friction(m, all.next(t), anchor, stiffness, law[14], f);
         corners.add(all, t, i, met, p, f, count == 1 ? first : Vec<Scalar>{}, before, contact_params, on_tool, sum);
+        if (all.is_face(t)) spread_by_face(on_tool, contact_params, lag, m.normal, all.given_back(t, contact_params));
       }
       for (std::size_t k = 0; k < 3; ++k) force[static_cast<std::int64_t>(k)] += sum[k];
     } else {

@@ -9,6 +9,7 @@
 namespace pliant::ref::contact {
 
 inline constexpr std::int64_t tool_numbers = 20, tool_integers = 8;
+inline constexpr std::int32_t face_of_blade = 6;
 
 template <class Scalar>
 using Vec = std::array<Scalar, 3>;
@@ -120,7 +121,7 @@ template <class Scalar>
 Surface<Scalar> tool_distance(const std::int32_t* kind, const Scalar* data, const Scalar* tool_grid, const Scalar* moment,
                               const Vec<Scalar>& y) {
   const Vec<Scalar> first{data[1], data[2], data[3]}, second{data[4], data[5], data[6]};
-  if (kind[0] == 2) return box_distance(data + 4, y);
+  if (kind[0] == 2 || kind[0] == face_of_blade) return box_distance(data + 4, y);
   if (kind[0] == 3) return {second, dot(difference(y, first), second)};
   if (kind[0] == 4) return mesh_distance(kind, data, tool_grid, moment, y);
   Vec<Scalar> from = y;

@@ -7,6 +7,7 @@
 namespace pliant::ref::contact {
 
 inline constexpr std::int64_t tool_force_numbers = 8;
+inline constexpr int spread_parts = 64;
 
 using Quanta = std::array<std::int32_t, 3>;
 
@@ -48,6 +49,15 @@ inline void add_to_tool(const PointNumbers<std::int32_t>& on_tool, const Scalar*
     const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
     on_tool[static_cast<std::int64_t>(3 + k)] += quanta(std::fma(arm[i], f[j], -(arm[j] * f[i])));
   }
+}
+
+/// Notes the work by which a face of a blade spreads a point that still lies deeper in it by `lag`.
+template <class Scalar>
+inline void spread_by_face(const PointNumbers<std::int32_t>& on_tool, const Scalar* params, Scalar lag,
+                           const Vec<Scalar>& normal, Scalar given) {
+  const Vec<Scalar> f{static_cast<Scalar>(-on_tool[0]), static_cast<Scalar>(-on_tool[1]), static_cast<Scalar>(-on_tool[2])};
+  const Scalar push = dot(f, normal) * ((given * Scalar(spread_parts)) / params[5]);
+  on_tool[7] = 2 * quanta(lag > Scalar(0) && push > Scalar(0) ? push : Scalar(0)) + 1;
 }
 
 }  // namespace pliant::ref::contact

@@ -9,10 +9,10 @@ void contact_tool_sum(Range range, const std::int32_t* contact_tool_force, const
                       const std::int32_t* contact_list, const std::int32_t* contact_near, std::int32_t* tool_sum,
                       const Scalar* contact_params, std::int32_t point_count, std::int32_t tools, std::int32_t step) {
   using namespace contact;
-  constexpr std::int64_t parts = 16, numbers = 16;
+  constexpr std::int64_t parts = 16, numbers = 18;
   for (std::int64_t item = range.begin; item < range.end; ++item) {
     const auto t = static_cast<std::int32_t>(item / parts);
-    std::array<std::int64_t, 7> sum{};
+    std::array<std::int64_t, 8> sum{};
     std::int32_t deepest = 0, count = 0;
     for (std::int64_t k = item % parts; contact_list[k] >= 0; k += parts) {
       const std::int64_t tile = contact_list[k];
@@ -23,13 +23,15 @@ void contact_tool_sum(Range range, const std::int32_t* contact_tool_force, const
         for (std::size_t c = 0; c < 6; ++c) sum[c] += force[static_cast<std::int64_t>(c)];
         sum[6] += quanta(contact_rest[tile_base(i, 4) + std::int64_t{3} * PLIANT_TILE] * contact_params[4]);
         deepest = std::max(deepest, force[6]);
+        sum[7] += force[7] >> 1;
         ++count;
       }
     }
     std::int32_t* out = tool_sum + numbers * (std::int64_t{step} * tools * parts + item);
-    for (std::size_t c = 0; c < 7; ++c) {
-      out[2 * c] = static_cast<std::int32_t>(sum[c] >> 15);
-      out[2 * c + 1] = static_cast<std::int32_t>(sum[c] & 32767);
+    for (std::size_t c = 0; c < 8; ++c) {
+      const std::size_t at = c < 7 ? 2 * c : 16;
+      out[at] = static_cast<std::int32_t>(sum[c] >> 15);
+      out[at + 1] = static_cast<std::int32_t>(sum[c] & 32767);
     }
     out[14] = deepest;
     out[15] = count;

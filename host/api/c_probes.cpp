@@ -63,6 +63,9 @@ pliant_status pliant_world_blade_forces(pliant_world world, pliant_blade_force* 
       f.gave_way = now[i].gave_way;
       f.present = now[i].present ? 1 : 0;
       f.pressing = now[i].pressing ? 1 : 0;
+      std::copy(now[i].face_force.begin(), now[i].face_force.end(), f.face_force);
+      f.face_normal = now[i].face_normal;
+      f.face_work = now[i].face_work;
       give_struct<pliant_blade_force>(f, element(out, i));
     }
   });

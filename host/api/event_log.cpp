@@ -7,6 +7,7 @@
 
 #include "geometry/vec.h"
 #include "model/pieces.h"
+#include "scene/blade_face.h"
 
 namespace pliant::api {
 namespace {
@@ -76,6 +77,7 @@ void EventLog::look_at_tools(const Simulation& simulation) {
   const std::vector<ContactTool>& tools = simulation.contact().tools();
   if (tools.empty() || simulation.model().contact == nullptr) return;
   for (std::size_t t = 0; t < std::min(felt.size(), tools.size()); ++t) {
+    if (is_face(tools[t])) continue;  // it stands in what its edge has opened
     const double cells = felt[t].now.depth / simulation.model().contact->spacing;
     bool& deep = deep_[tools[t].name];
     if ((cells > (deep ? kShallow : kDeep)) == deep) continue;

@@ -109,7 +109,9 @@ void ForceBlades::note(const Simulation& simulation) {
   const double now = simulation.time();
   for (const Blade& blade : simulation.scene().blades) {
     if (blade.cuts != BladeCuts::by_force) continue;
-    const Wrench felt = simulation.press().last_force(forces.size());
+    const std::size_t number = forces.size();
+    const Wrench felt = simulation.press().last_force(number);
+    const FaceLoad on_faces = simulation.press().last_on_faces(number);
     const BladeSegment at = blade_place(state.driven_blades, blade, now);
     BladeForce f;
     f.name = blade.name;
@@ -118,11 +120,16 @@ void ForceBlades::note(const Simulation& simulation) {
     f.present = blade_present(state.driven_blades, blade, now, now);
     const auto own = state.pressed.find(blade.name);
     const bool touches = own != state.pressed.end() && own->second.touches();
-    if (f.present && touches) static_cast<Wrench&>(f) = felt;
-    f.pressing = f.force != Vec3d{};
+    if (f.present && (touches || on_faces.normal != 0)) {
+      static_cast<Wrench&>(f) = felt;
+      f.face_force = on_faces.force;
+      f.face_normal = on_faces.normal;
+    }
+    f.pressing = f.force != f.face_force;
+    f.work = simulation.press().work(number);
     if (own != state.pressed.end()) {
+      f.face_work = f.work - own->second.work;
       f.max_force = own->second.max_force;
-      f.work = own->second.work;
       f.fracture = own->second.fracture;
       f.gave_way = own->second.first;
     }

@@ -159,6 +159,7 @@ void RigidTools::record(const Simulation& simulation) {
   const std::vector<Wrench>& forces = contact.step_forces();
   const auto steps = static_cast<std::int64_t>(forces.size() / tools.size());
   for (std::size_t t = 0; t < tools.size(); ++t) {
+    if (is_face(tools[t])) continue;  // part of its blade
     ForceTrace& trace = traces_[tools[t].name];
     for (std::int64_t s = 0; s < steps; ++s) {
       const Wrench& f = forces[static_cast<std::size_t>(s) * tools.size() + t];
@@ -219,7 +220,9 @@ void RigidTools::renew_given(const Simulation& simulation, const std::string& na
 void RigidTools::settle(const Simulation& simulation) {
   const std::lock_guard lock(mutex_);
   tools_.clear();
-  for (const ContactTool& tool : known_tools(simulation.scene(), simulation.state().tools)) tools_[tool.name] = tool;
+  for (const ContactTool& tool : known_tools(simulation.scene(), simulation.state().tools)) {
+    if (!is_face(tool)) tools_[tool.name] = tool;
+  }
   doing_.clear();
 }
 
@@ -237,7 +240,7 @@ void RigidTools::note(const Simulation& simulation) {
       force.area = now.area;
       force.penetration = now.depth;
     }
-    forces.push_back(std::move(force));
+    if (!is_face(tool)) forces.push_back(std::move(force));
   }
   const std::lock_guard lock(mutex_);
   forces_ = std::move(forces);

@@ -11,6 +11,7 @@
 #include "io/atomic_file.h"
 #include "pliant/error.h"
 #include "program/hash.h"
+#include "scene/blade_face.h"
 #include "scene/keys.h"
 
 namespace pliant::cli {
@@ -32,7 +33,9 @@ std::vector<std::string> chosen_tools(const LiveArguments& o, const Simulation& 
         "--live: the scene has no tools, and no blades that cut by force; expected one for each device (docs/scene.md, "
         "\"tools\", \"blades\")");
   }
-  const bool only = names.size() == 1 || simulation.contact().tools().size() == 1;
+  const std::vector<ContactTool>& tools = simulation.contact().tools();
+  const bool only =
+      names.size() == 1 || std::count_if(tools.begin(), tools.end(), [](const ContactTool& t) { return !is_face(t); }) == 1;
   const std::vector<std::string> chosen =
       o.tools.empty() && only && o.live.size() == 1 ? std::vector<std::string>{names.front()} : o.tools;
   if (chosen.size() != o.live.size()) {
@@ -45,7 +48,8 @@ std::vector<std::string> chosen_tools(const LiveArguments& o, const Simulation& 
     }
     if (!haptics::DrivenPart::find(simulation, chosen[i])) {
       refuse_live(fmt::format(
-          "--tool is \"{}\", a blade that is nowhere when the run begins; expected one whose \"path\" has begun", chosen[i]));
+          "--tool is \"{}\", a blade that is nowhere when the run begins; expected one whose \"path\" and \"start\" have begun",
+          chosen[i]));
     }
     if (std::count(chosen.begin(), chosen.end(), chosen[i]) > 1)
       refuse_live(fmt::format("--tool \"{}\" is given twice; expected one device for each tool", chosen[i]));

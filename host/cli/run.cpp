@@ -199,7 +199,9 @@ class Run {
     if (o_.steps) end.step = simulation_->step() + *o_.steps;
     if (o_.seconds) end.time = first_time_ + *o_.seconds;
     if (o_.steps || o_.seconds) return end;
-    if (relaxes()) {
+    if (const auto logged = live_ ? live_->logged_end() : std::nullopt) {
+      end.step = *logged;
+    } else if (relaxes()) {
       end.step = simulation_->scene().relaxation.max_steps;
     } else {
       end.time = simulation_->scene().duration;

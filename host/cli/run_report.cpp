@@ -9,6 +9,7 @@
 #include "cli/run_events.h"
 #include "cli/tool_report.h"
 #include "program/hash.h"
+#include "scene/blade_face.h"
 #include "scene/keys.h"
 #include "simulation/measure/run_remarks.h"
 
@@ -45,7 +46,9 @@ class Report {
     if (const auto parted = r_.energy.parted()) json["contact"]["energy_parted"] = *parted;
     if (!result_.diverged.empty()) json["diverged_step"] = result_.diverged_step;
     print_summary();
-    for (std::size_t t = 0; t < s_.contact().tools().size(); ++t) out_.print(tool_line(s_, t));
+    for (std::size_t t = 0; t < s_.contact().tools().size(); ++t) {
+      if (!is_face(s_.contact().tools()[t])) out_.print(tool_line(s_, t));
+    }
     for (std::size_t b = 0; b < s_.press().names().size(); ++b) out_.print(blade_line(s_, b));
     if (s_.scene().contact && s_.model().contact != nullptr) out_.print(tissue_line(s_));
     for (const std::string& line : inside) out_.print(line);

@@ -8,6 +8,7 @@
 
 #include "geometry/vec.h"
 #include "io/atomic_file.h"
+#include "scene/blade_face.h"
 #include "simulation/measure/interpenetration.h"
 
 namespace pliant::cli {
@@ -26,11 +27,12 @@ std::string csv_text(const std::string& text) {
 void add_tools(const Simulation& simulation, nlohmann::ordered_json& json) {
   const Scene& scene = simulation.scene();
   const std::vector<ContactTool>& tools = simulation.contact().tools();
-  if (tools.empty() && !scene.contact) return;
+  if (std::all_of(tools.begin(), tools.end(), is_face) && !scene.contact) return;
   json["tools"] = nlohmann::ordered_json::array();
   std::int64_t points = 0;
   double deepest = 0;
   for (std::size_t t = 0; t < tools.size(); ++t) {
+    if (is_face(tools[t])) continue;
     const ToolHistory& h = simulation.report().tools[t];
     json["tools"].push_back({{"name", tools[t].name},
                              {"force", h.now.force},
@@ -54,6 +56,30 @@ void add_tools(const Simulation& simulation, nlohmann::ordered_json& json) {
                      {"penetration_in_cells", all == nullptr ? 0.0 : deepest / all->spacing}};
 }
 
+namespace {
+
+/// Both faces of a blade in the last batch.
+ToolHistory both_faces(const Simulation& simulation, std::size_t blade) {
+  ToolHistory both;
+  for (const std::size_t t : simulation.press().faces(blade)) {
+    const ToolHistory& h = simulation.contact().history(t);
+    both.now.area += h.now.area;
+    both.now.points += h.now.points;
+    both.now.depth = std::max(both.now.depth, h.now.depth);
+    both.work += h.work;
+  }
+  return both;
+}
+
+nlohmann::ordered_json faces_json(const Simulation& simulation, std::size_t blade) {
+  const FaceLoad load = simulation.press().last_on_faces(blade);
+  const ToolHistory both = both_faces(simulation, blade);
+  return {{"force", load.force},   {"torque", load.torque},     {"normal", load.normal},
+          {"area", both.now.area}, {"points", both.now.points}, {"work", both.work}};
+}
+
+}  // namespace
+
 void add_blades(const Simulation& simulation, nlohmann::ordered_json& json) {
   const std::vector<std::string>& names = simulation.press().names();
   if (names.empty()) return;
@@ -67,11 +93,12 @@ void add_blades(const Simulation& simulation, nlohmann::ordered_json& json) {
          {"force", now.force},
          {"torque", now.torque},
          {"max_force", blade.max_force},
-         {"work", blade.work},
+         {"work", simulation.press().work(b)},
          {"fracture", blade.fracture},
          {"gave_way", blade.first < 0 ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(blade.first)},
          {"by_contact", blade.by_contact},
          {"by_stress", blade.by_stress}});
+    if (!simulation.press().faces(b).empty()) json["blades"].back()["faces"] = faces_json(simulation, b);
   }
 }
 
@@ -82,7 +109,8 @@ std::string blade_line(const Simulation& simulation, std::size_t blade) {
   const PressedBlade& b = found->second;
   const std::string first = b.first < 0 ? "tissue held" : fmt::format("tissue gave way at {:.4g} s", b.first);
   return fmt::format("blade {}: force [{:.4g}] N, at most {:.4g} N; {}; did {:.4g} J, {:.4g} J of it in cutting", name,
-                     fmt::join(simulation.press().last_force(blade).force, ", "), b.max_force, first, b.work, b.fracture);
+                     fmt::join(simulation.press().last_force(blade).force, ", "), b.max_force, first,
+                     simulation.press().work(blade), b.fracture);
 }
 
 nlohmann::ordered_json interpenetration_json(const Interpenetration& found) {
@@ -96,7 +124,8 @@ nlohmann::ordered_json interpenetration_json(const Interpenetration& found) {
 
 std::vector<std::string> add_interpenetrations(Simulation& simulation, nlohmann::ordered_json& json) {
   std::vector<std::string> lines;
-  if (simulation.contact().tools().empty() && simulation.model().bodies.size() < 2) return lines;
+  const std::vector<ContactTool>& tools = simulation.contact().tools();
+  if (std::all_of(tools.begin(), tools.end(), is_face) && simulation.model().bodies.size() < 2) return lines;
   Interpenetrations measure;
   json["interpenetrations"] = nlohmann::ordered_json::array();
   for (const Interpenetration& found : measure.now(simulation)) {
@@ -129,14 +158,20 @@ void ToolTable::add_blades(const Simulation& simulation) {
   std::size_t b = 0;
   for (const Blade& blade : simulation.scene().blades) {
     if (blade.cuts != BladeCuts::by_force) continue;
-    const Wrench now = simulation.press().last_force(b++);
     const BladeSegment ends = blade_place(state.driven_blades, blade, simulation.time());
     const Vec3d at = vec::mul(vec::add(ends[0], ends[1]), 0.5);
-    const auto own = state.pressed.find(blade.name);
-    const double work = own == state.pressed.end() ? 0 : own->second.work;
-    table_ +=
-        fmt::format("{:.9g},{},{},{:.9g},{:.9g},{:.9g},,,,{:.9g}\n", simulation.time(), simulation.step(), csv_text(blade.name),
-                    fmt::join(at, ","), fmt::join(now.force, ","), fmt::join(now.torque, ","), work);
+    const auto row = [&](const std::string& name, const Wrench& now, const std::string& touches, double work) {
+      table_ +=
+          fmt::format("{:.9g},{},{},{:.9g},{:.9g},{:.9g},{},{:.9g}\n", simulation.time(), simulation.step(), csv_text(name),
+                      fmt::join(at, ","), fmt::join(now.force, ","), fmt::join(now.torque, ","), touches, work);
+    };
+    row(blade.name, simulation.press().last_force(b), ",,", simulation.press().work(b));
+    if (blade.has_faces()) {
+      const ToolHistory both = both_faces(simulation, b);
+      row(blade.name + " (faces)", simulation.press().last_on_faces(b),
+          fmt::format("{:.9g},{:.9g},{}", both.now.area, both.now.depth, both.now.points), both.work);
+    }
+    ++b;
   }
 }
 
@@ -150,6 +185,7 @@ void ToolTable::write(const Simulation& simulation, const std::filesystem::path&
         "[m],points,work [J]\n";
   }
   for (std::size_t t = 0; t < tools.size(); ++t) {
+    if (is_face(tools[t])) continue;
     const ToolHistory& history = simulation.report().tools[t];
     const ToolLoad& now = history.now;
     const Pose at = simulation.contact().pose(t, simulation.time());

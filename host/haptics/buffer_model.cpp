@@ -38,6 +38,8 @@ BufferModel::BufferModel(Submodel part, const BufferInstrument& instrument, cons
   u_ = runner_.reals("node_u");
   w_ = runner_.reals("node_w");
   params_ = runner_.reals("step_params");
+  contact_step_ = runner_.contact_step();
+  has_law_ = std::ranges::any_of(part_.model->contact_laws, [](const ContactLaw& law) { return law.stiffness > 0; });
   poses_ = runner_.reals("tool_pose");
   contact_params_ = runner_.reals("contact_params");
   anchor_ = runner_.reals("contact_anchor");
@@ -173,6 +175,11 @@ void BufferModel::set_step(double h) noexcept {
     }
   }
   const Model& model = *part_.model;
+  // A force that stops a point within one step grows with the square of the rate, and so does what a jump of the hand costs: it
+  // is no stiffer than at 1000 ticks a second. Laws of contact need the step that is.
+  constexpr double kStiffest = 1e-3;  // [s]
+  const double least = has_law_ ? 0 : std::min(0.5 * stable_, kStiffest);
+  if (!contact_step_.empty()) contact_step_[0] = static_cast<float>(std::max(h, least));
   const double floor = kIncrementFloor * model.shortest;
   params_[0] = static_cast<float>(h);
   for (std::size_t c = 0; c < 3; ++c) params_[1 + c] = static_cast<float>(gravity_[c]);

@@ -86,6 +86,8 @@ class BufferModel {
   const Program program_;
   TwinRunner runner_;
   BufferBlade blade_;
+  bool has_law_ = false;  ///< a tool has a law of contact
+  std::span<float> contact_step_;
   std::span<float> curves_, u_, w_, params_, poses_, contact_params_, anchor_, yield_;
   std::span<std::int32_t> near_, list_, node_list_, tool_sum_;
   std::vector<std::int32_t> tiles_offset_, tiles_;  ///< tiles of points at each tile of nodes

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "geometry/vec.h"
+#include "scene/blade_face.h"
 #include "schedule/program_layout.h"
 #include "simulation/contact/tool_changes.h"
 #include "simulation/edits/carried_grips.h"
@@ -93,6 +94,8 @@ TissueState BufferSource::state_of(const Simulation& simulation, const Tissue& t
   for (std::size_t t = 0; t < contact.tools().size(); ++t) {
     state.tools.push_back(contact.pose(t, simulation.time()));
     state.moments.push_back(tool_moment((*model.tools)[t], simulation.time()));
+    const ContactTool& known = contact.tools()[t];
+    if (is_face(known)) state.moments.back().frame = is_away(known, simulation.state(), simulation.time()) ? 0 : 1;
     state.grips.push_back(static_cast<float>(tool_grip(contact.tools()[t], simulation.state(), simulation.time())));
   }
   state.anchors = anchors_of(simulation, part);

@@ -5,12 +5,13 @@
 
 #include "geometry/vec.h"
 #include "geometry/wrench.h"
+#include "scene/blade_face.h"
 #include "simulation/state/pressed_blades.h"
 
 namespace pliant::haptics {
 namespace {
 
-constexpr double kReserve = 0.99;  ///< of the greatest speed: the arc of an end is longer than the chord
+constexpr double kReserve = 0.99;  ///< of the greatest speed
 
 }  // namespace
 
@@ -37,7 +38,8 @@ BladeSegment blade_edge(const Pose& pose, double length) {
 std::optional<DrivenPart> DrivenPart::find(const Simulation& simulation, const std::string& name) {
   DrivenPart part;
   part.name_ = name;
-  if (const std::optional<std::size_t> tool = simulation.contact().find(name)) {
+  const std::optional<std::size_t> tool = simulation.contact().find(name);
+  if (tool && !is_face(simulation.contact().tools()[*tool])) {
     part.index_ = *tool;
     return part;
   }
@@ -60,7 +62,9 @@ std::optional<DrivenPart> DrivenPart::find(const Simulation& simulation, const s
 
 std::vector<std::string> DrivenPart::names(const Simulation& simulation) {
   std::vector<std::string> names;
-  for (const ContactTool& tool : simulation.contact().tools()) names.push_back(tool.name);
+  for (const ContactTool& tool : simulation.contact().tools()) {
+    if (!is_face(tool)) names.push_back(tool.name);
+  }
   for (const std::string& blade : simulation.press().names()) {
     if (std::find(names.begin(), names.end(), blade) == names.end()) names.push_back(blade);
   }
@@ -99,12 +103,20 @@ Pose DrivenPart::within_reach(const Simulation& simulation, const Pose& to, doub
   if (!blade_) return to;
   const Pose from = pose(simulation, simulation.time());
   const BladeSegment here = blade_edge(from, length_), there = blade_edge(to, length_);
-  const double way = std::max(vec::norm(vec::sub(there[0], here[0])), vec::norm(vec::sub(there[1], here[1])));
+  const auto way_to = [&](const BladeSegment& edge) {
+    return std::max(vec::norm(vec::sub(edge[0], here[0])), vec::norm(vec::sub(edge[1], here[1])));
+  };
   const double most = kReserve * simulation.blade_drive_speed() * seconds;
-  if (!(way > most)) return to;
-  BladeSegment edge;  // middle and direction go alike; the turn about the edge does not matter
-  for (std::size_t e = 0; e < 2; ++e) edge[e] = vec::add(here[e], vec::mul(vec::sub(there[e], here[e]), most / way));
-  return blade_pose(edge);
+  if (!(way_to(there) > most)) return to;
+  Pose target = from;
+  for (double share = most / way_to(there); share > 0; share = share > 0.01 ? 0.9 * share : 0) {
+    BladeSegment edge;  // middle and direction go alike; the turn about the edge does not matter
+    for (std::size_t e = 0; e < 2; ++e) edge[e] = vec::add(here[e], vec::mul(vec::sub(there[e], here[e]), share));
+    target = blade_pose(edge);
+    if (!(way_to(blade_edge(target, length_)) > most * (1 + 1e-9)))
+      return target;  // the arcs of its ends are longer than their chords
+  }
+  return from;
 }
 
 }  // namespace pliant::haptics

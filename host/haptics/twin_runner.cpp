@@ -20,6 +20,8 @@ TwinRunner::TwinRunner(const Program& program) : program_(program), storage_(pro
       round_reals(row.reals, storage_[b].reals.data());
     }
   }
+  if (const BufferId params = program.find("step_params"); params >= 0)
+    contact_step_ = storage_[static_cast<std::size_t>(params)].reals;
   step_ = prepare(program.step);
   look_ = prepare(program.look);
 }
@@ -27,7 +29,13 @@ TwinRunner::TwinRunner(const Program& program) : program_(program), storage_(pro
 std::vector<TwinRunner::Entry> TwinRunner::prepare(const std::vector<Pass>& passes) {
   std::vector<Entry> entries;
   for (const Pass& pass : passes) {
-    const auto values_of = [this](BufferId id) {
+    const bool presses = pass.kernel == "contact_press" || pass.kernel == "contact_settle" || pass.kernel == "blade_press";
+    const auto values_of = [this, presses](BufferId id) {
+      if (presses && id == program_.find("step_params")) {
+        ref::ArgValue<float> own;
+        own.reals = contact_step_.data();
+        return own;
+      }
       Storage& s = storage_[static_cast<std::size_t>(id)];
       ref::ArgValue<float> value;
       if (s.ints.empty()) {

@@ -14,6 +14,8 @@ class TwinRunner {
  public:
   /// Allocates the buffers of `program`, which must outlive the runner. Throws Error (device) on a processor without fma.
   explicit TwinRunner(const Program& program);
+  /// The copy of "step_params" from which tools and blades compute their forces: its step [s] is how stiff they are.
+  [[nodiscard]] std::span<float> contact_step() { return contact_step_; }
   /// Runs one step of a batch of one.
   void step() { run(step_); }
   /// Runs the searches of contact.
@@ -41,6 +43,7 @@ class TwinRunner {
 
   const Program& program_;
   std::vector<Storage> storage_;
+  std::vector<float> contact_step_;
   std::vector<Entry> step_, look_;
 };
 

@@ -12,6 +12,7 @@
 #include "mesh_io/mesh_io.h"
 #include "model/nodes/whereabouts.h"
 #include "pliant/error.h"
+#include "scene/blade_face.h"
 #include "simulation/simulation.h"
 #include "statics/statics.h"
 
@@ -164,7 +165,7 @@ Scene configured(const Scene& scene, const Size& size, ElementKind element, std:
   out.solver = StaticSolver{};
   out.relaxation = Relaxation{};
   out.dt = 0;
-  out.blades.clear();
+  drop_blades(out);
   return out;
 }
 

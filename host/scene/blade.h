@@ -41,9 +41,17 @@ struct Blade {
   BladeMethod method = BladeMethod::virtual_nodes;  ///< the same for all blades of a scene
   double sharpness = 1;                             ///< by force: kappa, the smaller the sharper
   double edge = 0;                                  ///< by force: radius of the edge [m]
-  double friction = 0;                              ///< by force: coefficient between the edge and tissue
+  double friction = 0;                              ///< by force: coefficient between blade and tissue
+  double thickness = 0;                             ///< by force: of the blade behind its edge [m]; 0: an edge without faces
+  double height = 0;                                ///< how far its faces reach back from the edge [m]
+  std::optional<Vec3d> back;                        ///< from the edge to the back; absent: against the first motion of the path
   /// Returns both ends at a time [m]; constant outside the path.
   [[nodiscard]] std::array<Vec3d, 2> at(double time) const;
+  [[nodiscard]] bool has_faces() const { return thickness > 0; }
+  /// From the edge to the back where the path begins, across the edge, of unit length; 0: neither `back` nor the path says it.
+  [[nodiscard]] Vec3d back_at_first() const;
+  /// Length of the edge, the largest on its path [m].
+  [[nodiscard]] double length() const;
   [[nodiscard]] bool stands() const { return path.size() == 1; }  ///< it waits for the host to move it
   /// When it comes, and when it goes [s].
   [[nodiscard]] double begins() const { return stands() ? start : std::max(start, path.front()[0]); }

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,7 +12,10 @@
 
 namespace pliant {
 
-enum class ToolShape { sphere, capsule, box, half_space, mesh, sequence };
+struct Blade;
+
+/// `blade_face` is none of the words of a scene file: one of the two faces of a blade that cuts by force (blade_face.h).
+enum class ToolShape { sphere, capsule, box, half_space, mesh, sequence, blade_face };
 
 /// A rigid placement: x = R(turn) y + position.
 struct Pose {
@@ -54,8 +58,10 @@ struct ContactTool {
   double exponent = 1;  ///< 1 or 1.5
   double alpha = 0;     ///< slope of the coefficient of restitution [s/m]: e = 1 - alpha v for small speeds v
   bool edges = false;   ///< contact along edges, for a sphere, capsule, box or mesh that fits between contact points
-  std::optional<GripSpec> grip;  ///< absent: it cannot hold tissue
-  std::string pointer;           ///< JSON pointer ("/tools/0")
+  std::optional<GripSpec> grip;        ///< absent: it cannot hold tissue
+  std::string pointer;                 ///< JSON pointer ("/tools/0")
+  std::shared_ptr<const Blade> blade;  ///< of a face: the blade that carries it, which gives it its pose
+  int side = 0;                        ///< of a face: 1 or -1, towards x or against it
   [[nodiscard]] Pose at(double time) const;
   bool operator==(const ContactTool&) const = default;
 };

@@ -135,7 +135,16 @@ void describe_blade(V&& v, S&& s) {
   v(s.sharpness, {"sharpness", above(0).absent_at(1), "", "0.5",
                   "kappa: tissue gives way at this share of its `toughness`; the smaller the sharper; only by force"});
   v(s.edge, {"edge", above(0).absent_at(0), "m", "0.0002", "radius of the edge; required by force, refused otherwise"});
-  v(s.friction, {"friction", at_least(0).absent_at(0), "", "0.2", "between the edge and tissue; only by force"});
+  v(s.friction, {"friction", at_least(0).absent_at(0), "", "0.2", "between the blade and tissue; only by force"});
+  v(s.thickness, {"thickness", above(0).absent_at(0), "m", "0.001",
+                  "the blade has two faces, which hold the cut open by this ([faces](cutting.md#faces)); only by force, with "
+                  "`height`; none: it is an edge without faces"});
+  v(s.height, {"height", above(0).absent_at(0), "m", "0.012",
+               "how far the faces reach back from the edge, at least `thickness`; they are flat in the middle third"});
+  v(s.back, {"back", any, "", "[0, 1, 0]",
+             "direction from the edge to the back of the blade, turned with the edge; needed where the path does not move the "
+             "blade across its edge",
+             "against the first motion of the path across the edge"});
 }
 
 template <class V, class S>

@@ -139,6 +139,7 @@ Scene read_document(const nlohmann::json& document, const fs::path& file) {
   check_blades(top, scene);
   for (Body& body : scene.bodies) body.plain = blade_method(scene) != BladeMethod::virtual_nodes;
   check_tools(top, scene);
+  add_faces(top, scene);
   check_tearing(top, scene);
   if (top.has("changes")) scene.changes = read_changes(top.at("changes"), scene);
   return scene;

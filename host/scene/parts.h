@@ -96,6 +96,8 @@ void check_models(const Reader& top, const Scene& scene);
 /// Materials with a viscosity against the integrator and the models.
 void check_viscous(const Reader& top, const Scene& scene);
 void check_blades(const Reader& top, const Scene& scene);
+/// Adds the faces of blades to the tools, which have been checked.
+void add_faces(const Reader& top, Scene& scene);
 /// Materials with a toughness against the rest of the scene.
 void check_tearing(const Reader& top, const Scene& scene);
 /// `folder` is what relative mesh paths are relative to; `index` numbers a body without a name.

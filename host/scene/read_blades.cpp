@@ -3,14 +3,31 @@
 
 #include <algorithm>
 
+#include "scene/blade_face.h"
 #include "scene/described_keys.h"
 #include "scene/keys.h"
 #include "scene/parts.h"
+#include "scene/tool_entry.h"
 
 namespace pliant {
 namespace {
 
 using Row = std::array<double, 7>;
+
+void check_faces(const Reader& blade, const Blade& b) {
+  for (const char* key : {"height", "back"}) {
+    if (!b.has_faces() && blade.has(key)) blade.at(key).fail(fmt::format("no {} of a blade without a \"thickness\"", key));
+  }
+  if (!b.has_faces()) return;
+  const std::string least =
+      fmt::format("at least the thickness, {:g} m: how far the faces reach back from the edge", b.thickness);
+  const Reader height = blade.at("height", least);
+  if (b.height < b.thickness) height.fail(least);
+  if (b.back_at_first() != Vec3d{}) return;
+  const char* const across =
+      "a direction [x, y, z] from the edge to the back of the blade, across its edge, which the path does not tell";
+  blade.at("back", across).fail(across);
+}
 
 Blade read_blade(const Reader& blade, std::size_t index) {
   blade.expect_object("blade");
@@ -31,10 +48,11 @@ Blade read_blade(const Reader& blade, std::size_t index) {
   if (b.cuts == BladeCuts::by_force && b.edge == 0) {
     static_cast<void>(blade.at("edge", "the radius of the edge in metres, because the blade cuts by force"));
   }
-  for (const char* key : {"sharpness", "edge", "friction"}) {
+  for (const char* key : {"sharpness", "edge", "friction", "thickness", "height", "back"}) {
     if (b.cuts == BladeCuts::always && blade.has(key))
       blade.at(key).fail(fmt::format("no {} of a blade that does not cut \"by-force\"", key));
   }
+  check_faces(blade, b);
   return b;
 }
 
@@ -134,6 +152,24 @@ void check_blades(const Reader& top, const Scene& scene) {
     if (b.has_lattice() || info.splits || blade_method(scene) != BladeMethod::virtual_nodes) continue;
     bodies[i].at("element").fail(fmt::format("{}, because the scene has blades (a mesh of {} cannot be cut)",
                                              elements_with([](const ElementInfo& e) { return e.splits; }), info.cells));
+  }
+}
+
+void add_faces(const Reader& top, Scene& scene) {
+  for (std::size_t i = 0; i < scene.blades.size(); ++i) {
+    if (!scene.blades[i].has_faces()) continue;
+    const Reader thickness = top.at("blades").items("a list of blades")[i].at("thickness");
+    require_integrator(top, scene, &IntegratorInfo::contact, "a blade has faces");
+    for (ContactTool& face : faces_of(scene.blades[i])) {
+      if (scene.tools.size() == most_tools) {
+        thickness.fail(fmt::format("faces beyond the {} tools of a scene (each face is one)", most_tools),
+                       fmt::format("at most {} tools and faces", most_tools));
+      }
+      const auto same = [&](const ContactTool& t) { return t.name == face.name; };
+      if (std::any_of(scene.tools.begin(), scene.tools.end(), same))
+        thickness.fail(fmt::format("no tool \"{}\", which is the name of a face of the blade", face.name));
+      scene.tools.push_back(std::move(face));
+    }
   }
 }
 

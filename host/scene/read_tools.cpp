@@ -77,6 +77,8 @@ void read_shape(const Reader& shape, ContactTool& tool) {
       case ToolShape::sequence:
         tool.mesh = value.text("a folder with a closed surface per frame");
         break;
+      case ToolShape::blade_face:  // no word of a file
+        break;
     }
   }
 }

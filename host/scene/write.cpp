@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "scene/blade_face.h"
 #include "scene/closed_surface.h"
 #include "scene/described_keys.h"
 #include "scene/keys.h"
@@ -252,6 +253,7 @@ OrderedJson shape_json(ToolShape shape, const T& t, const fs::path& file) {
       return OrderedJson::array({t.first, t.second});
     case ToolShape::mesh:
     case ToolShape::sequence:
+    case ToolShape::blade_face:
       break;
   }
   return path_json(t.mesh, file);
@@ -298,6 +300,10 @@ OrderedJson probe_json(const P& p, const fs::path& file) {
 const std::vector<std::array<double, 4>>& focus_path(const Scene& scene) { return scene.focus.path; }
 const std::vector<std::array<double, 4>>& focus_path(const SceneSpec& scene) { return scene.focus_path; }
 
+/// Faces of blades are written with their blade.
+bool of_blade(const ContactTool& tool) { return is_face(tool); }
+bool of_blade(const ToolSpec& /*tool*/) { return false; }
+
 /// What both have but their probes.
 template <class S>
 OrderedJson top_json(const S& scene, const fs::path& file) {
@@ -306,7 +312,9 @@ OrderedJson top_json(const S& scene, const fs::path& file) {
   top["gravity"] = gravity_json(scene);
   describe_scene(WriteKeys{top}, scene);
   if (!focus_path(scene).empty()) top["focus"] = {{"path", focus_path(scene)}};
-  for (const auto& t : scene.tools) top["tools"].push_back(tool_json(t, file));
+  for (const auto& t : scene.tools) {
+    if (!of_blade(t)) top["tools"].push_back(tool_json(t, file));
+  }
   if (scene.contact) describe_friction(WriteKeys{top["contact"]}, *scene.contact);
   for (const auto& b : scene.blades) top["blades"].push_back(blade_json(b));
   top["bodies"] = OrderedJson::array();

@@ -184,7 +184,7 @@ class Simulation {
   HostLoads loads_{run_};
   ToolContact contact_{run_, reports_.now};
   TopologyEdits edits_{run_, step_, loads_};
-  BladePress press_{run_, edits_};
+  BladePress press_{run_, edits_, contact_};
   ToolEdits tools_{run_, contact_};
   ParameterEdits parameters_{scene_, run_, step_, edits_, reports_};
   Recovery recovery_{run_, step_, edits_, reports_};

@@ -113,7 +113,10 @@ struct BladeSpec {
   std::string method = "virtual-nodes";     ///< or separation, decomposition, removal; of all blades and cuts of a scene
   std::optional<double> sharpness;          ///< by-force: kappa, the smaller the sharper; absent: 1
   std::optional<double> edge;               ///< by-force: radius of the edge [m], required
-  std::optional<double> friction;           ///< by-force: between the edge and tissue; absent: 0
+  std::optional<double> friction;           ///< by-force: between blade and tissue; absent: 0
+  std::optional<double> thickness;          ///< by-force: it has two faces, this far apart [m]; absent: it has none
+  std::optional<double> height;             ///< how far its faces reach back from the edge [m]; needed with a thickness
+  std::optional<Vec3d> back;                ///< from the edge to the back; absent: against the first motion of the path
 };
 
 /// A change of parameters while the scene runs. Absent members change nothing; the supports of a body are replaced as a whole,

@@ -64,17 +64,20 @@ struct ToolForce : Wrench {
 };
 
 /// Place of a blade that cuts by force (docs/cutting.md), the force and the torque (about the middle of its edge) on it in the
-/// last step, and its history.
+/// last step, and its history. Of a blade with faces they are those on edge and faces together.
 struct BladeForce : Wrench {
-  std::string name;       ///< name in the scene
-  Vec3d a{};              ///< one end of its edge [m]
-  Vec3d b{};              ///< the other end [m]
-  double max_force = 0;   ///< largest force so far [N]
-  double work = 0;        ///< done on tissue so far [J]
-  double fracture = 0;    ///< of it, what cutting took [J]
-  double gave_way = -1;   ///< time at which tissue first gave way [s]; -1: not yet
-  bool present = false;   ///< false: its path has not begun or has ended, or it is lifted
-  bool pressing = false;  ///< a part of its edge is in contact
+  std::string name;        ///< name in the scene
+  Vec3d a{};               ///< one end of its edge [m]
+  Vec3d b{};               ///< the other end [m]
+  double max_force = 0;    ///< largest force so far [N]
+  double work = 0;         ///< done on tissue so far [J]
+  double fracture = 0;     ///< of it, what cutting took [J]
+  double gave_way = -1;    ///< time at which tissue first gave way [s]; -1: not yet
+  bool present = false;    ///< false: its path has not begun or has ended, or it is lifted
+  bool pressing = false;   ///< a part of its edge is in contact
+  Vec3d face_force{};      ///< of the force, that on its two faces [N]
+  double face_normal = 0;  ///< sum of the forces that press on its two sides, across it [N]
+  double face_work = 0;    ///< of the work, that of its faces [J]
 };
 
 /// The overlap of a tool and a body, or of two bodies (docs/contact.md).

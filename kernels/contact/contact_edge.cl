@@ -17,6 +17,7 @@
 #define EDGE_FAR 1e30f
 
 #include "edge_touch.cl"
+#include "contact_face.cl"
 
 static inline int has_edges(__global const int* tool_kind, int t) { return EDGES && tool_kind[TOOL_INTEGERS * t + 7] > 0; }
 
@@ -42,13 +43,21 @@ static inline patch_meeting meet_patch(__global const float* node_u, __global co
   out.m = meet(tool_kind, tool_data, tool_grid, tool_pose, tools, step, t, x);
   out.at = x.now;
   out.share = out.ease = out.spread_share = 1.0f, out.edged = 0;
-  if (!has_edges(tool_kind, t)) return out;
+  if (!has_edges(tool_kind, t) && !is_face(tool_kind, t)) return out;
   __global const float* now = tool_pose + POSE_NUMBERS * (step * tools + t);
   __global const float* next = now + POSE_NUMBERS * tools;
   __global const int* kind = tool_kind + TOOL_INTEGERS * t;
   __global const float* data = tool_data + TOOL_NUMBERS * t;
   const float spacing = touch_surface[POINT_BASE(i, PLIANT_TOUCH_SURFACE) + 22 * PLIANT_TILE];
+  if (is_face(tool_kind, t) && out.m.distance > FACE_NEAR * spacing) {
+    out.m.distance = EDGE_FAR, out.m.opening = 0.0f;
+    return out;
+  }
   const patch_plane plane = plane_of(place_on(PATCH_VALUES, i, 0.0f, 0.0f), now);
+  if (is_face(tool_kind, t)) {
+    meet_face(data, next, plane, &out.m);
+    return out;
+  }
   const float4 outward = (float4)(0.0f) - plane.normal;
   if (kind[0] == 4) {  // a mesh whose face lies on the patch: the depth of the point
     const float alike = dot_xyz(out.m.normal, turned(next, outward));

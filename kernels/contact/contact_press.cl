@@ -103,7 +103,7 @@ __kernel void contact_press(__global const float* node_u, __global const float* 
     const real stiffness = (whole * met.share) * met.ease, opening = met.m.opening;
     __global const float* data = tool_data + TOOL_NUMBERS * t;
     const real held = held_depth(node_u, contact_node, contact_weight, contact_share, contact_held, first, met);
-    const real beyond = -met.m.distance - held, own = start_depth(start, t, beyond + opening), tool_number = (float)(t + 1);
+    const real beyond = -met.m.distance - held, own = start_depth(start, t, beyond + opening, given_back(tool_kind, contact_params, t)), tool_number = (float)(t + 1);
     const integer later = hit && own > lag;
     lag = later ? own : lag;
     lag_in = later ? tool_number : lag_in;

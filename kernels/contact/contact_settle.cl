@@ -119,6 +119,7 @@ __kernel void contact_settle(__global const float* node_u, __global const float*
       const vec3 no_vec = {none, none, none};
       add_tool_force(hit, on_tool, next, contact_params, met, p.now, f, where(single, first_part, no_vec), before, contact_corner_force, first, patches,
                      &sum);
+      if (is_face(tool_kind, t)) spread_by_face(hit, on_tool, contact_params, lag, met.m.normal, given_back(tool_kind, contact_params, t));
     }
     STORE(LOAD(force, 0) + sum.x, force, 0);
     STORE(LOAD(force, PLIANT_TILE) + sum.y, force, PLIANT_TILE);

@@ -4,6 +4,7 @@
 // normal or half size (3), origin of the grid (3) [m], 1 / grid spacing, grid spacing, then the contact law: lambda [Pa/m^n], 3/2 alpha [s/m],
 // friction, core [m], whether n is 3/2. tool_grid: signed distances [m], x fastest.
 #define TOOL_NUMBERS 20
+#define FACE_OF_BLADE 6  // in the broad phase the box around the blade (contact_face.cl)
 #define TOOL_INTEGERS 8
 
 static inline float dot3(float ax, float bx, float ay, float by, float az, float bz) { return fma(ax, bx, fma(ay, by, az * bz)); }
@@ -76,7 +77,7 @@ static inline float4 tool_distance(__global const int* kind, __global const floa
     out.w = length - data[0];
     return out;
   }
-  if (kind[0] == 2) {
+  if (kind[0] == 2 || kind[0] == FACE_OF_BLADE) {
     const float qx = fabs(y.x) - data[4], qy = fabs(y.y) - data[5], qz = fabs(y.z) - data[6];
     float px = qx > 0.0f ? qx : 0.0f, py = qy > 0.0f ? qy : 0.0f, pz = qz > 0.0f ? qz : 0.0f;
     const float length = sqrt(dot3(px, px, py, py, pz, pz));

@@ -29,12 +29,13 @@ INLINE void set_lane3(vec3* v, int l, float4 x) {
 // `wanted`: the lanes that have a point.
 INLINE tool_meetings meet_tool(MEET_ARGUMENTS, int t, int first, integer wanted, point_lanes p, patch_meeting* patches) {
   const real one = 1.0f;
-  const integer zero = 0, alone = has_edges(tool_kind, t) ? zero : wanted;
+  const int of_patches = has_edges(tool_kind, t) || is_face(tool_kind, t);
+  const integer zero = 0, alone = of_patches ? zero : wanted;
   tool_meetings out = {meet_lanes(tool_kind, tool_data, tool_grid, tool_pose, tools, step, t, alone, p), p.now, one, one, zero};
 #if EDGES
   for (int l = 0; l < LANES; ++l) {
     patches[l].share = patches[l].spread_share = 1.0f, patches[l].edged = 0;
-    if (!has_edges(tool_kind, t) || !LANE_INT(wanted, l)) continue;
+    if (!of_patches || !LANE_INT(wanted, l)) continue;
     const contact_place place = {lane3(p.now, l), lane3(p.moved, l)};
     patches[l] = meet_patch(MEET_VALUES, t, first + l, place);
     SET_LANE(out.m.distance, l, patches[l].m.distance);
@@ -75,11 +76,16 @@ INLINE real held_depth(__global const float* node_u, __global const int* contact
 
 // The depth in tool t that a point had when an edit of its body left it there (it hung on held nodes, or is new): taken back in a step, it would be
 // energy from nowhere. It never grows. `start`: depth [m], or -1 of a point that an edit has left, and tool + 1; `before`: depth at the start of the
-// step [m].
-INLINE real start_depth(__global const float* start, int t, real before) {
-  const real had = LOAD(start, 0), tool = (float)(t + 1), none = 0.0f;
-  const real own = had < 0.0f ? before : (LOAD(start, PLIANT_TILE) == tool ? had : none), depth = before < own ? before : own;
+// step [m]; `given`: by how much it gets less in a step (given_back).
+INLINE real start_depth(__global const float* start, int t, real before, float given) {
+  const real had = LOAD(start, 0), tool = (float)(t + 1), none = 0.0f, rest = had - SAME(given);
+  const real own = had < 0.0f ? before : (LOAD(start, PLIANT_TILE) == tool ? rest : none), depth = before < own ? before : own;
   return depth > 0.0f ? depth : none;
+}
+// Faces of blades stand in the middle of what their edge opens; they spread it as pairs of tissue part, by contact_params[8] distances between points
+// (twice the margin) per search.
+INLINE float given_back(__global const int* tool_kind, __global const float* contact_params, int t) {
+  return is_face(tool_kind, t) ? ((2.0f * contact_params[8]) * contact_params[5]) / contact_params[6] : 0.0f;
 }
 
 // W of points whose neighbours that touch are not known yet: as if all points around pushed.
@@ -128,4 +134,12 @@ INLINE void add_to_tool(integer hit, __global int* on_tool, __global const float
   put(hit, LOAD(on_tool, 3 * PLIANT_TILE) + quanta_of(fma(arm.y, f.z, -(arm.z * f.y))), on_tool, 3);
   put(hit, LOAD(on_tool, 4 * PLIANT_TILE) + quanta_of(fma(arm.z, f.x, -(arm.x * f.z))), on_tool, 4);
   put(hit, LOAD(on_tool, 5 * PLIANT_TILE) + quanta_of(fma(arm.x, f.y, -(arm.y * f.x))), on_tool, 5);
+}
+
+// Notes the work by which a face spreads points that still lie deeper in it by `lag` (contact_sum.cl), with both parts of its force.
+INLINE void spread_by_face(integer hit, __global int* on_tool, __global const float* contact_params, real lag, vec3 normal, float given) {
+  const real none = 0.0f;
+  const vec3 f = {TO_REAL(-LOAD(on_tool, 0)), TO_REAL(-LOAD(on_tool, PLIANT_TILE)), TO_REAL(-LOAD(on_tool, 2 * PLIANT_TILE))};
+  const real push = dot_lanes(f, normal) * SAME((given * SPREAD_PARTS) / contact_params[5]);
+  put(hit, 2 * quanta_of(lag > none && push > none ? push : none) + 1, on_tool, 7);
 }

@@ -38,7 +38,7 @@ INLINE tool_gaps box_gaps(__global const float* data, vec3 y) {
 INLINE tool_gaps gaps_of_tool(__global const int* kind, __global const float* data, __global const float* tool_grid, __global const float* moment,
                               integer wanted, vec3 y) {
   if (kind[0] == 0 || kind[0] == 1) return round_gaps(kind[0], data, y);
-  if (kind[0] == 2) return box_gaps(data, y);
+  if (kind[0] == 2 || kind[0] == FACE_OF_BLADE) return box_gaps(data, y);
   if (kind[0] == 3) {
     const vec3 normal = {SAME(data[4]), SAME(data[5]), SAME(data[6])}, from = {y.x - data[1], y.y - data[2], y.z - data[3]};
     const tool_gaps plane = {normal, dot_lanes(from, normal)};

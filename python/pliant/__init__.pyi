@@ -125,6 +125,9 @@ class _BladeForce(TypedDict):
     gave_way: float
     present: bool
     pressing: bool
+    face_force: _Floats
+    face_normal: float
+    face_work: float
 
 class _LiveState(TypedDict):
     running: bool

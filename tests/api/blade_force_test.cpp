@@ -141,6 +141,49 @@ TEST(BladeForce, TheWorkerDrives) {
   EXPECT_GT(scalpel(other).max_force, 1);
 }
 
+/// A blade with faces that the program drives through the block: they hold the cut open until it is lifted, and are no tools.
+TEST(BladeForce, FacesComeAndGoWithTheBlade) {
+  const test::TempFolder folder;
+  const std::string file = (folder.path() / "state.pckpt").string();
+  std::string text = driven_scene;
+  text.replace(text.find("PATH"), 4, "[[0, 0, 0.025, -0.06, 0, 0.025, 0.06]]");
+  text.replace(text.find("\"edge\""), 0, R"("thickness": 0.003, "height": 0.04, "back": [0, 1, 0], )");
+  WorldOptions options;
+  options.backend = "cpu";
+  World world = World::parse(text, test::source_dir() + "/scenes", options);
+  World other = World::parse(text, test::source_dir() + "/scenes", options);
+  EXPECT_TRUE(world.tool_forces().empty());
+  EXPECT_THROW(world.park_tool("scalpel (face 1)"), Error);
+  world.drive_blade("scalpel", {0, -0.01, -0.06}, {0, -0.01, 0.06}, 0.5);
+  world.advance(0.55);
+  const BladeForce in = scalpel(world);
+  EXPECT_GT(in.face_normal, 0.1);
+  EXPECT_GT(in.face_work, 0);
+  EXPECT_GT(in.work, in.face_work);
+  EXPECT_NE(in.face_force, Vec3d{});
+  world.save(file);
+  other.load(file);
+  EXPECT_EQ(other.hash(), world.hash());
+  world.step(50);
+  other.step(50);
+  EXPECT_EQ(other.hash(), world.hash());
+  EXPECT_EQ(scalpel(other).face_normal, scalpel(world).face_normal);
+  world.lift_blade("scalpel");
+  world.advance(0.05);
+  EXPECT_EQ(scalpel(world).face_normal, 0);
+  EXPECT_EQ(scalpel(world).force, Vec3d{});
+  EXPECT_GE(scalpel(world).face_work, in.face_work);
+  // Where it comes again, tissue that has closed is spread, not thrown off.
+  world.drive_blade("scalpel", {0, -0.01, -0.06}, {0, -0.01, 0.06});
+  double fastest = 0;
+  for (int i = 0; i < 20; ++i) {
+    world.advance(0.01);
+    for (const Vec3d& v : world.velocities(0)) fastest = std::max(fastest, std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
+  }
+  EXPECT_GT(scalpel(world).face_normal, 0.05);
+  EXPECT_LT(fastest, 0.5);
+}
+
 TEST(BladeForce, WhatCannotBeIsOneMessage) {
   World world = driven();
   const std::uint64_t before = world.hash();

@@ -204,6 +204,12 @@ class Live(CliTest):
         self.assertGreater(run["batches_made_again"], 0)
         self.replayed(scene, run)
 
+    def test_a_log_behind_the_scenes_duration(self):
+        scene = self.touched(duration=0.1)
+        run = self.from_file(scene, "--seconds", "0.15", "--log", "drives.log")
+        self.assertGreater(run["time"], 0.14)
+        self.replayed(scene, run)
+
     def test_resume(self):
         scene = self.touched()
         whole = self.from_file(scene, "--log", "drives.log")

@@ -171,6 +171,23 @@ class Tools(CliTest):
         self.assertAlmostEqual(float(rows[-1]["work [J]"]), blade["work"], places=9)
         self.assertLess(float(rows[-1]["y [m]"]), float(rows[0]["y [m]"]))
 
+    def test_faces_of_a_blade_have_rows_of_their_own(self):
+        run = self.json("run", str(SCENES / "spread.json"), "--steps", "400", "--backend", "cpu", "--out", "out")
+        with open(self.folder / "out" / "spread_tools.csv") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual({row["tool"] for row in rows}, {"scalpel", "scalpel (faces)"})
+        self.assertNotIn("tools", run)
+        blade = run["blades"][0]
+        faces = blade["faces"]
+        self.assertGreater(faces["normal"], 0.1)
+        self.assertGreater(faces["points"], 20)
+        self.assertGreater(blade["work"], faces["work"])
+        whole, own = rows[-2:]
+        self.assertAlmostEqual(float(whole["fy [N]"]), blade["force"][1], places=6)
+        self.assertAlmostEqual(float(own["fy [N]"]), faces["force"][1], places=6)
+        self.assertAlmostEqual(float(own["work [J]"]), faces["work"], places=9)
+        self.assertGreater(float(own["area [m^2]"]), 1e-4)
+
     def test_tissue_on_tissue(self):
         # The same cube twice, one above the other.
         with open(self.folder / self.scene(body={"prescribed": [], "name": "low"}, contact={"friction": 0.3}, duration=0.5)) as file:

@@ -119,6 +119,25 @@ TEST(Buffer, FollowsTheRim) {
   }
 }
 
+/// Poses come a thousand times a second, whatever the rate of the ticks: a hand that moves on in jumps feels no blows.
+TEST(Buffer, FeelsNoBlowsWhereTicksAreMoreThanPoses) {
+  const auto largest = [](int ticks) {
+    const auto s = simulate(block_scene());
+    BufferSource source("ball", 4);
+    BufferForce force(1);
+    BufferMessage message;
+    source.fill(*s, 0, message);
+    force.receive(message, 1);
+    double most = 0;
+    for (int k = 0; k < 150; ++k) {  // 50 mm/s
+      for (int i = 0; i < ticks; ++i)
+        most = std::max(most, vec::norm(force.tick(pressed(0.001 * k, 0.0075, 0.15), 1e-3 / ticks).force));
+    }
+    return most;
+  };
+  EXPECT_LT(largest(10), 1.5 * largest(1));
+}
+
 TEST(Buffer, BeginsAnewWhereItBlowsUp) {
   const auto s = simulate(block_scene());
   BufferSource source("ball", 2);

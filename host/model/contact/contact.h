@@ -53,7 +53,8 @@ struct ToolFrame {
 struct ToolForm {
   ToolShape shape = ToolShape::sphere;
   double radius = 0;                         ///< [m]
-  Vec3d first{}, second{};                   ///< [m]; half space: `second` is the unit normal; box: `second` is half its size
+  Vec3d first{}, second{};                   ///< [m]; half space: `second` is the unit normal; box, face of a blade:
+                                             ///< `second` is half its size; face: `first` is its side and slopes (FaceSlopes)
   NodeGrid grid;                             ///< of a mesh, in its own frame
   std::vector<double> distance;              ///< [nodes] signed distances at its nodes [m]
   bool grips = false;                        ///< it may hold tissue (ContactTool::grip)

@@ -91,6 +91,7 @@ std::vector<ToolEdge> edges_of(const ToolForm& form, double apart) {
       break;
     case ToolShape::half_space:
     case ToolShape::sequence:
+    case ToolShape::blade_face:
       break;
   }
   return {};

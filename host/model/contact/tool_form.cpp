@@ -11,6 +11,7 @@
 #include "model/contact/contact.h"
 #include "model/contact/tool_sequence.h"
 #include "pliant/error.h"
+#include "scene/blade_face.h"
 
 namespace pliant {
 namespace {
@@ -65,6 +66,13 @@ ToolForm tool_form(const ContactTool& tool) {
       form.second = vec::mul(tool.size, 0.5);
       form.reach = vec::norm(form.second);
       break;
+    case ToolShape::blade_face: {
+      const FaceSlopes slopes = face_slopes(tool.size);
+      form.first = {static_cast<double>(tool.side), slopes.up, slopes.along};
+      form.second = vec::mul(tool.size, 0.5);
+      form.reach = vec::norm(form.second);
+      break;
+    }
     case ToolShape::half_space:
       form.second = vec::mul(tool.second, 1 / vec::norm(tool.second));
       break;
@@ -87,6 +95,7 @@ double tool_distance(const ToolForm& form, const Vec3d& y, const ToolMoment& mom
       const double t = std::clamp(vec::dot(from, d) / vec::dot(d, d), 0.0, 1.0);
       return vec::norm(vec::sub(from, vec::mul(d, t))) - form.radius;
     }
+    case ToolShape::blade_face:
     case ToolShape::box: {
       Vec3d q{}, out{};
       for (std::size_t a = 0; a < 3; ++a) {

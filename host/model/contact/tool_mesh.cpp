@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "geometry/vec.h"
 
@@ -57,6 +58,25 @@ TriangleMesh box(const Vec3d& half) {
   return mesh;
 }
 
+/// Half a blade, between its middle plane and its profile (kernels/contact/contact_face.cl).
+TriangleMesh half_blade(const ToolForm& form) {
+  const double side = form.first[0], half = form.second[0], up = form.second[1] - half / form.first[1],
+               along = form.second[2] - half / form.first[2];
+  TriangleMesh mesh;
+  for (const auto& [x, y, z] : {Vec3d{0, form.second[1], form.second[2]}, Vec3d{side * half, up, along}}) {
+    for (const auto& [a, b] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) mesh.vertices.push_back({x, a * y, b * z});
+  }
+  const auto quad = [&](std::int32_t a, std::int32_t b, std::int32_t c, std::int32_t d) {
+    if (side < 0) std::swap(b, d);
+    mesh.triangles.push_back({a, b, c});
+    mesh.triangles.push_back({a, c, d});
+  };
+  quad(3, 2, 1, 0);
+  quad(4, 5, 6, 7);
+  for (std::int32_t k = 0; k < 4; ++k) quad(k, (k + 1) % 4, 4 + (k + 1) % 4, 4 + k);
+  return mesh;
+}
+
 }  // namespace
 
 TriangleMesh tool_mesh(const ToolForm& form, int around) {
@@ -69,6 +89,8 @@ TriangleMesh tool_mesh(const ToolForm& form, int around) {
       return box(form.second);
     case ToolShape::mesh:
       return form.surface;
+    case ToolShape::blade_face:
+      return half_blade(form);
     case ToolShape::half_space:
     case ToolShape::sequence:
       break;

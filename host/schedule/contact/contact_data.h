@@ -12,7 +12,9 @@ inline constexpr std::int32_t contact_look_every = 16;   ///< steps between two 
 inline constexpr std::size_t contact_pose_numbers = 15;  ///< per step and tool in tool_pose (kernels/contact/contact_point.cl)
 inline constexpr std::size_t contact_list_end = 16;      ///< empty entries at the end of a list of tiles
 inline constexpr std::size_t contact_sum_parts = 16;    ///< per step and tool in tool_sum (kernels/contact/contact_tool_sum.cl)
-inline constexpr std::size_t contact_sum_numbers = 16;  ///< per part
+inline constexpr std::size_t contact_sum_numbers = 18;  ///< per part
+inline constexpr double contact_spread_parts =
+    64;  ///< of the margin: the unit of way of spreading (kernels/contact/contact_sum.cl)
 
 /// The values of the buffer tool_grid: the distances of all tools one after another, at least one value [m].
 inline std::vector<double> tool_grid(const ToolForms& forms) {

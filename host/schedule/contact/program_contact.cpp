@@ -13,9 +13,10 @@ constexpr std::size_t kToolNumbers = 20;
 /// Numbers per edge point in tool_edge (kernels/contact/contact_edge.cl).
 constexpr std::size_t kEdgeNumbers = 4;
 
-std::vector<double> numbers_of(const ToolForm& form, const ContactLaw& law) {
+std::vector<double> numbers_of(const ToolForm& form, const ContactLaw& law, double cell) {
   std::vector<double> n{form.radius};
-  for (const Vec3d& v : {form.first, form.second, form.grid.origin}) n.insert(n.end(), v.begin(), v.end());
+  const Vec3d origin = form.shape == ToolShape::blade_face ? Vec3d{cell, 0, 0} : form.grid.origin;  // see contact_face.cl
+  for (const Vec3d& v : {form.first, form.second, origin}) n.insert(n.end(), v.begin(), v.end());
   n.push_back(form.grid.spacing > 0 ? 1 / form.grid.spacing : 0);
   n.push_back(form.grid.spacing);
   n.insert(n.end(), {law.stiffness, 1.5 * law.alpha, law.friction, law.core, law.exponent == 1.5 ? 1.0 : 0.0});
@@ -113,7 +114,7 @@ void ProgramBuilder::add_tools() {
   std::vector<std::int32_t> kind;
   for (std::size_t t = 0; t < tools; ++t) {
     const ToolForm& form = (*model_.tools)[t];
-    const std::vector<double> numbers = numbers_of(form, model_.contact_laws[t]);
+    const std::vector<double> numbers = numbers_of(form, model_.contact_laws[t], model_.contact->spacing);
     data.insert(data.end(), numbers.begin(), numbers.end());
     const ToolShape shape = form.shape == ToolShape::sequence ? ToolShape::mesh : form.shape;
     kind.insert(kind.end(), {static_cast<std::int32_t>(shape), static_cast<std::int32_t>(values), form.grid.size[0],
@@ -121,7 +122,7 @@ void ProgramBuilder::add_tools() {
     const std::vector<EdgePoint> edges = edge_points(form, *model_.contact);
     kind.insert(kind.end(), {static_cast<std::int32_t>(edge.size() / kEdgeNumbers), static_cast<std::int32_t>(edges.size())});
     for (const EdgePoint& e : edges) edge.insert(edge.end(), {e.place[0], e.place[1], e.place[2], e.radius});
-    if (!edges.empty()) edged_tools_ |= 1 << t;
+    if (!edges.empty() || form.shape == ToolShape::blade_face) edged_tools_ |= 1 << t;
     values += form.distance.size();
   }
   if (edge.empty()) edge.resize(kEdgeNumbers, 0.0);
@@ -136,7 +137,7 @@ void ProgramBuilder::add_tools() {
   const auto rows = static_cast<std::size_t>(options_.batch_steps);
   add(make_reals("tool_pose", BufferType::real, (rows + 1) * tools * contact_pose_numbers, BufferRole::control,
                  "[steps + 1][tools][15]", "1 (9), m (3), 1 (2), Pa", "host"));
-  add(make_ints("tool_sum", BufferRole::scratch, "[steps][tools][16][16]", {},
+  add(make_ints("tool_sum", BufferRole::scratch, "[steps][tools][16][18]", {},
                 rows * tools * contact_sum_parts * contact_sum_numbers, "contact_tool_sum"));
   program_.buffers.back().carried = Carried::all;  // one row per step of the batch, until the host reads it
 }

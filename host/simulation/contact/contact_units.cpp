@@ -48,6 +48,7 @@ ContactSum contact_sum(const std::int32_t* part) {
     for (std::size_t c = 0; c < 7; ++c) sum.quanta[c] += 32768.0 * part[2 * c] + part[2 * c + 1];  // exact below 2^53
     sum.depth = std::max(sum.depth, static_cast<double>(std::bit_cast<float>(part[14])));
     sum.points += part[15];
+    sum.spread += 32768.0 * part[16] + part[17];
   }
   return sum;
 }

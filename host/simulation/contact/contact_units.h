@@ -18,10 +18,11 @@ ContactUnits contact_units(const Model& model, double dt);
 /// offset of a pair is reduced in each search.
 std::array<double, 9> contact_numbers(const Model& model, const ContactUnits& units, double friction, double ease);
 
-/// Sums of a step and a tool: force, torque and area in quanta, largest depth [m].
+/// Sums of a step and a tool: force, torque and area in quanta, largest depth [m], and of a face of a blade the work by which
+/// it spreads what the edge has opened, in quanta of force times parts of the margin (contact_spread_parts).
 struct ContactSum {
   std::array<double, 7> quanta{};
-  double depth = 0;
+  double depth = 0, spread = 0;
   std::int64_t points = 0;
 };
 /// Adds up the parts of one tool in tool_sum, contact_sum_parts x contact_sum_numbers.

@@ -33,6 +33,7 @@ std::vector<Vec3d> samples_of(const ToolForm& form, const ToolMoment& moment, st
       return out;
     }
     case ToolShape::half_space:
+    case ToolShape::blade_face:
       return out;
     case ToolShape::mesh:
     case ToolShape::sequence:

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/blade_face.h"
 #include "simulation/state/run_state.h"
 
 namespace pliant {
@@ -22,6 +23,8 @@ void check_tool_changes(const Scene& scene, const ToolChanges& changes);
 [[nodiscard]] Pose tool_pose(const ContactTool& tool, const RunState& state, double time);
 /// Returns the strength of a tool's grip while it grips [Pa]; 0: it cannot.
 [[nodiscard]] double grip_strength(const ContactTool& tool);
+/// Returns true for a face of a blade that is not in the scene at a time [s].
+[[nodiscard]] bool is_away(const ContactTool& tool, const RunState& state, double time);
 /// Returns the strength of a tool's grip at a time [Pa]; 0: it does not grip.
 [[nodiscard]] double tool_grip(const ContactTool& tool, const RunState& state, double time);
 

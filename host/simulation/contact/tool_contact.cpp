@@ -9,6 +9,7 @@
 #include "geometry/vec.h"
 #include "pliant/error.h"
 #include "schedule/contact/contact_data.h"
+#include "schedule/program_layout.h"
 #include "simulation/contact/body_overlap.h"
 #include "simulation/contact/present_tissue.h"
 #include "simulation/contact/tool_changes.h"
@@ -71,6 +72,7 @@ void ToolContact::start() {
   if (tools_.empty()) return;
   const PresentTissue tissue(model, run_.u());
   for (std::size_t t = 0; t < tools_.size(); ++t) {
+    if (is_face(tools_[t])) continue;  // tissue around a blade is spread
     const double now = run_.state.clock.time();
     try {
       tissue.refuse_inside(tools_[t].name, (*model.tools)[t], pose(t, now), now);
@@ -137,11 +139,13 @@ void ToolContact::begin_batch(std::int32_t steps) {
       const Pose whole = pose(tool, t), at = compose(whole, moment.pose);
       for (const Vec3d& r : rotation_matrix(at.turn)) poses.insert(poses.end(), r.begin(), r.end());
       poses.insert(poses.end(), at.position.begin(), at.position.end());
-      poses.insert(poses.end(), {double(moment.frame), moment.share, tool_grip(tools_[tool], run_.state, t)});
+      const double frame = is_face(tools_[tool]) ? (is_away(tools_[tool], run_.state, t) ? 0 : 1) : moment.frame;
+      poses.insert(poses.end(), {frame, moment.share, tool_grip(tools_[tool], run_.state, t)});
       arms_[row * tools + tool] = vec::sub(at.position, whole.position);
       poses_.push_back(at);
     }
   }
+  begin_faces();
   const Program& program = run_.loaded.program();
   Backend& backend = run_.backend();
   if (tools > 0) backend.write_reals(program.find("tool_pose"), poses);
@@ -169,6 +173,27 @@ void ToolContact::count_parting(std::int32_t step_in_batch, bool before) {
   report_.tissue.work += parting_.before_search(quantum);
 }
 
+/// Tissue that stands where a blade appears is spread as what its edge opens, not in one step.
+void ToolContact::begin_faces() {
+  bool appears = false;
+  for (const ContactTool& tool : tools_) {
+    if (!is_face(tool)) continue;
+    const auto own = run_.state.pressed.find(tool.blade->name);
+    if (own == run_.state.pressed.end()) continue;
+    const bool here = !is_away(tool, run_.state, run_.state.clock.time());
+    appears = appears || (here && !own->second.here);
+    if (tool.side < 0) own->second.here = here;  // the second one
+  }
+  if (!appears) return;
+  const BufferId id = run_.loaded.program().find("contact_start");
+  std::vector<double> start = run_.backend().read_reals(id);
+  for (std::size_t i = 0; i < run_.model().contact->size(); ++i) {
+    const std::size_t base = tile_base(i, 2);
+    if (start[base + PLIANT_TILE] == 0) start[base] = -1;
+  }
+  run_.backend().write_reals(id, start);
+}
+
 std::int32_t ToolContact::before_step(std::int32_t step_in_batch, std::int32_t steps) {
   if (!active()) return steps;
   report_.tissue.work += parting_.after_step();
@@ -190,6 +215,7 @@ double ToolContact::motion(std::size_t tool, double from, double to) const {
     const ToolMoment a = tool_moment(form, from), b = tool_moment(form, to);
     if (form.times.empty() || a.frame != b.frame || a.share != b.share) return 1e30;
   }
+  if (is_away(tools_[tool], run_.state, from) != is_away(tools_[tool], run_.state, to)) return 1e30;
   const Pose a = pose(tool, from), b = pose(tool, to);
   const std::array<Vec3d, 3> ra = rotation_matrix(a.turn), rb = rotation_matrix(b.turn);
   double turn = 0;  // upper bound of |R_b - R_a|, the largest change of a unit vector
@@ -250,7 +276,7 @@ void ToolContact::end_batch(std::int32_t steps) {
         on_tool.force[c] = sum.quanta[c] * units_.force;
         on_tool.torque[c] = sum.quanta[3 + c] * units_.torque;
       }
-      h.work += work(t, step, on_tool);
+      h.work += work(t, step, on_tool) + sum.spread * units_.force * contact_margin(run_.model()) / contact_spread_parts;
       on_tool.torque =
           vec::add(on_tool.torque, vec::cross(arms_[(static_cast<std::size_t>(step) + 1) * tools + t], on_tool.force));
       for (std::size_t c = 0; c < 3; ++c) {

@@ -54,6 +54,8 @@ class ToolContact {
   /// What gripped points give back when they return to their places in the grip: force times distance [J], since a grip holds
   /// against a force at any distance.
   [[nodiscard]] double held_energy() const;
+  /// Statistics of a tool of the model.
+  [[nodiscard]] const ToolHistory& history(std::size_t tool) const { return report_.tools[tool]; }
   /// Returns the pose of a tool of the model at a time [s].
   [[nodiscard]] Pose pose(std::size_t tool, double time) const;
 
@@ -68,6 +70,8 @@ class ToolContact {
   void read_touch();
   /// Around a search before a step of the batch, where the energy is watched.
   void count_parting(std::int32_t step_in_batch, bool before);
+  /// Call before a batch: notes which blades with faces are in the scene.
+  void begin_faces();
   /// Upper bound of the distance that any point of a tool moves between two times [m].
   [[nodiscard]] double motion(std::size_t tool, double from, double to) const;
 

@@ -7,11 +7,15 @@
 
 #include "geometry/vec.h"
 #include "pliant/error.h"
+#include "scene/blade_face.h"
 #include "schedule/contact/blade_data.h"
 #include "simulation/edits/blade_fronts.h"
 
 namespace pliant {
 namespace {
+
+constexpr double kLeastHeight = 3;        ///< of faces [cells]
+constexpr double kBesideFaces = 1.0 / 3;  ///< largest thickness where cuts follow faces of elements [cells]
 
 bool presses(const FrontSample& s) {
   return s.kind == static_cast<std::int32_t>(FrontKind::ahead) || s.kind == static_cast<std::int32_t>(FrontKind::held);
@@ -27,6 +31,23 @@ double widest_body(const Model& model) {
         std::max(widest, std::min({box.upper[0] - box.lower[0], box.upper[1] - box.lower[1], box.upper[2] - box.lower[2]}));
   }
   return widest;
+}
+
+/// Faces begin a cell behind the edge, rise over a third of the height and fall over another one (contact_face.cl).
+void check_faces(const Blade& blade, double cell) {
+  const auto refuse = [&](const char* key, double got, double most, const char* allowed) {
+    throw Error(ErrorCode::bad_input, fmt::format("blade '{}': got a \"{}\" of {} m; allowed is {}", blade.name, key, got,
+                                                  fmt::format(fmt::runtime(allowed), most)));
+  };
+  if (blade.method == BladeMethod::separation && blade.thickness > kBesideFaces * cell) {
+    refuse("thickness", blade.thickness, kBesideFaces * cell,
+           "up to {:.4g} m, a third of a cell, because with \"separation\" a cut lies beside the blade");
+  }
+  if (blade.thickness > cell) refuse("thickness", blade.thickness, cell, "up to {:.4g} m, a cell, which a cut opens");
+  if (blade.height < kLeastHeight * cell) {
+    refuse("height", blade.height, kLeastHeight * cell,
+           "at least {:.4g} m, three cells: behind its edge a cut opens a cell at a time");
+  }
 }
 
 }  // namespace
@@ -45,6 +66,7 @@ void BladePress::start(const Model& model) {
           fmt::format("blade '{}': got an \"edge\" of radius {} m; allowed is up to half of the thickness of a body, {} m",
                       blade.name, blade.edge, widest / 2));
     }
+    if (blade.has_faces() && model.contact != nullptr) check_faces(blade, model.contact->spacing);
     names_.push_back(blade.name);
     blades_.push_back(b);
     first_.push_back(first_.back() + static_cast<std::size_t>(sample_count(blade, edge)));
@@ -165,14 +187,26 @@ void BladePress::read_fronts() {
 
 void BladePress::end_batch(std::int32_t steps) {
   if (names_.empty()) return;
-  felt_.step_forces.clear();
+  felt_ = {};
   felt_.batch_end = run_.state.clock.step;
-  if (!pressing_ || steps <= 0) return;
+  const auto done = static_cast<std::size_t>(std::max(steps, 0));
+  const bool faces = done > 0 && contact_.batch_end() == run_.state.clock.step && has_faces();
+  if (done == 0 || (!pressing_ && !faces)) return;
+  felt_.step_forces.resize(done * names_.size());
+  if (pressing_) add_edges(done);
+  if (faces) add_faces(done);
+  for (std::size_t i = 0; i < felt_.step_forces.size(); ++i) {
+    const auto own = run_.state.pressed.find(names_[i % names_.size()]);
+    if (own != run_.state.pressed.end())
+      own->second.max_force = std::max(own->second.max_force, vec::norm(felt_.step_forces[i].force));
+  }
+}
+
+void BladePress::add_edges(std::size_t steps) {
   read_fronts();
   const std::size_t blades = names_.size(), samples = first_.back();
-  felt_.step_forces.resize(static_cast<std::size_t>(steps) * blades);
   const std::vector<double> force = run_.backend().read_reals(run_.loaded.program().find("blade_force"));
-  for (std::size_t step = 0; step < static_cast<std::size_t>(steps); ++step) {
+  for (std::size_t step = 0; step < steps; ++step) {
     for_samples([&](std::size_t k, std::size_t i, const FrontSample&, PressedBlade& own) {
       const double* f = &force[blade_force_numbers * (step * samples + i)];
       const Vec3d on_blade{-f[0], -f[1], -f[2]};
@@ -187,17 +221,64 @@ void BladePress::end_batch(std::int32_t steps) {
       sum.force = vec::add(sum.force, on_blade);
       sum.torque = vec::add(sum.torque, vec::cross(vec::mul(poses_[(step + 2) * blades + k][1], place - 0.5), on_blade));
     });
-    for (std::size_t k = 0; k < blades; ++k) {
-      const auto own = run_.state.pressed.find(names_[k]);
-      if (own != run_.state.pressed.end())
-        own->second.max_force = std::max(own->second.max_force, vec::norm(felt_.step_forces[step * blades + k].force));
+  }
+}
+
+void BladePress::add_faces(std::size_t steps) {
+  const std::size_t blades = names_.size(), tools = contact_.tools().size();
+  felt_.on_faces.resize(steps * blades);
+  for (std::size_t k = 0; k < blades; ++k) {
+    for (const std::size_t t : faces(k)) {
+      const ContactTool& face = contact_.tools()[t];
+      for (std::size_t step = 0; step < steps; ++step) {
+        const Wrench& on_face = contact_.step_forces()[step * tools + t];
+        if (on_face.force == Vec3d{}) continue;
+        const auto end = run_.state.clock.step - static_cast<std::int64_t>(steps - step) + 1;
+        const Pose at = contact_.pose(t, run_.state.clock.time_at(end));
+        const Vec3d arm = vec::sub(at.position, place(at, {0, -0.5 * face.size[1], 0}));  // from the middle of the edge
+        const Vec3d across = vec::sub(place(at, {static_cast<double>(face.side), 0, 0}), at.position);
+        FaceLoad load;
+        load.force = on_face.force;
+        load.torque = vec::add(on_face.torque, vec::cross(arm, on_face.force));
+        FaceLoad& sum = felt_.on_faces[step * blades + k];
+        sum.normal -= vec::dot(across, on_face.force);
+        for (Wrench* of : {static_cast<Wrench*>(&sum), &felt_.step_forces[step * blades + k]}) {
+          of->force = vec::add(of->force, load.force);
+          of->torque = vec::add(of->torque, load.torque);
+        }
+      }
     }
   }
+}
+
+bool BladePress::has_faces() const {
+  return std::any_of(blades_.begin(), blades_.end(), [&](std::size_t b) { return run_.scene.blades[b].has_faces(); });
+}
+
+std::vector<std::size_t> BladePress::faces(std::size_t blade) const {
+  std::vector<std::size_t> both;
+  for (std::size_t t = 0; t < contact_.tools().size(); ++t) {
+    const ContactTool& tool = contact_.tools()[t];
+    if (is_face(tool) && tool.blade->name == names_[blade]) both.push_back(t);
+  }
+  return both;
 }
 
 Wrench BladePress::last_force(std::size_t blade) const {
   if (felt_.step_forces.size() < names_.size() || felt_.batch_end != run_.state.clock.step) return {};
   return felt_.step_forces[felt_.step_forces.size() - names_.size() + blade];
+}
+
+FaceLoad BladePress::last_on_faces(std::size_t blade) const {
+  if (felt_.on_faces.size() < names_.size() || felt_.batch_end != run_.state.clock.step) return {};
+  return felt_.on_faces[felt_.on_faces.size() - names_.size() + blade];
+}
+
+double BladePress::work(std::size_t blade) const {
+  const auto own = run_.state.pressed.find(names_[blade]);
+  double sum = own == run_.state.pressed.end() ? 0 : own->second.work;
+  for (const std::size_t t : faces(blade)) sum += contact_.history(t).work;
+  return sum;
 }
 
 }  // namespace pliant

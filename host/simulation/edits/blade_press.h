@@ -12,9 +12,15 @@
 
 namespace pliant {
 
+/// Load on the faces of a blade in a step: force and torque about the middle of its edge, part of those on the blade.
+struct FaceLoad : Wrench {
+  double normal = 0;  ///< sum of the forces that press on its two sides, across it [N]
+};
+
 class BladePress {
  public:
-  BladePress(RunContext& run, const TopologyEdits& edits) : run_(run), edits_(edits) {}
+  BladePress(RunContext& run, const TopologyEdits& edits, const ToolContact& contact)
+      : run_(run), edits_(edits), contact_(contact) {}
 
   /// Counts the blades and their samples; call before the first Program is built. Throws Error (bad_input) for an edge that is
   /// wider than every body.
@@ -32,6 +38,12 @@ class BladePress {
   [[nodiscard]] std::int64_t batch_end() const { return felt_.batch_end; }
   /// In the last step; zero where nothing was near.
   [[nodiscard]] Wrench last_force(std::size_t blade) const;
+  /// Of it, that on its faces.
+  [[nodiscard]] FaceLoad last_on_faces(std::size_t blade) const;
+  /// The work of a blade on the tissue so far, that of its faces included [J].
+  [[nodiscard]] double work(std::size_t blade) const;
+  /// Its faces among ToolContact::tools(); empty without faces.
+  [[nodiscard]] std::vector<std::size_t> faces(std::size_t blade) const;
 
   /// The samples of all blades, or of one of them, which then is blade 0.
   [[nodiscard]] BladeSamples samples(std::optional<std::size_t> only = {}) const;
@@ -39,6 +51,7 @@ class BladePress {
   /// Forces on the blades in the last batch, to be put back after the simulation has gone ahead.
   struct Felt {
     std::vector<Wrench> step_forces;
+    std::vector<FaceLoad> on_faces;  ///< [steps][blades], if any blade has faces
     std::int64_t batch_end = -1;
   };
   [[nodiscard]] const Felt& felt() const { return felt_; }
@@ -47,14 +60,18 @@ class BladePress {
  private:
   [[nodiscard]] bool near() const;
   void write_sample(const FrontSample& sample, std::size_t row, BladeSamples& out) const;
+  [[nodiscard]] bool has_faces() const;
   void upload_poses(std::int32_t steps);
   void upload_nodes(const BladeSamples& samples);
   void read_fronts();
+  void add_edges(std::size_t steps);
+  void add_faces(std::size_t steps);
   template <class Visit>
   void for_samples(Visit&& visit) const;
 
   RunContext& run_;
   const TopologyEdits& edits_;
+  const ToolContact& contact_;
   std::vector<std::string> names_;
   std::vector<std::size_t> blades_;          ///< their places in Scene::blades, which a restored state replaces
   std::vector<std::size_t> first_;           ///< sample of each blade, and the number of all

@@ -38,7 +38,7 @@ bool touchable(const Model& model) { return model.contact != nullptr && model.co
 }  // namespace
 
 const ContactTool& ToolEdits::known(const std::string& name) const {
-  const auto named = [&](const ContactTool& tool) { return tool.name == name; };
+  const auto named = [&](const ContactTool& tool) { return tool.name == name && !is_face(tool); };
   const auto added = std::find_if(run_.state.tools.added.begin(), run_.state.tools.added.end(), named);
   if (added != run_.state.tools.added.end()) return *added;
   const std::vector<std::string>& removed = run_.state.tools.removed;

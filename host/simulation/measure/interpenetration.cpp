@@ -6,6 +6,7 @@
 
 #include "geometry/mesh_overlap.h"
 #include "geometry/vec.h"
+#include "scene/blade_face.h"
 
 namespace pliant {
 namespace {
@@ -100,6 +101,7 @@ std::vector<Interpenetration> Interpenetrations::now(Simulation& simulation) {
     if (!part.mesh.triangles.empty()) all.extend(part.box);
   }
   for (std::size_t t = 0; t < tools.size() && model_->tools != nullptr; ++t) {
+    if (is_face(tools[t])) continue;
     const ToolForm& form = (*model_->tools)[t];
     const Pose pose = simulation.contact().pose(t, simulation.time());
     const bool everywhere = form.shape == ToolShape::half_space;

@@ -139,6 +139,7 @@ double thickness(const ToolForm& form) {
     case ToolShape::capsule:
       return 2 * form.radius;
     case ToolShape::box:
+    case ToolShape::blade_face:
       return 2 * std::min({form.second[0], form.second[1], form.second[2]});
     case ToolShape::half_space:
       break;
@@ -219,7 +220,9 @@ void add_contact(Simulation& s, Sentences& out) {
   }
   // Those that the model has: without those that a host has removed or parked, with those that it has added.
   const std::vector<ContactTool> tools = present_tools(s.scene(), s.state().tools);
-  for (std::size_t t = 0; t < tools.size(); ++t) add_tool(s, tools[t].name, t, out);
+  for (std::size_t t = 0; t < tools.size(); ++t) {
+    if (!is_face(tools[t])) add_tool(s, tools[t].name, t, out);
+  }
   for (std::size_t t = 0; t < tools.size(); ++t) add_grip(s, tools[t], t, out);
   add_damping(s, out);
 }

@@ -41,6 +41,7 @@ struct PressedBlade {
   double first = -1;                 ///< time at which tissue first gave way [s]; -1: not yet
   std::int64_t by_contact = 0;       ///< samples that gave way by the traction of the edge, summed over updates
   std::int64_t by_stress = 0;        ///< by the stress of the element below
+  bool here = false;                 ///< of one with faces: it was in the scene at the start of the last batch
 
   [[nodiscard]] bool touches() const {
     return std::any_of(samples.begin(), samples.end(), [](const FrontSample& s) { return s.kind != 0; });
@@ -79,6 +80,7 @@ template <class V>
 void visit(V& v, PressedBlade& s) {
   v("normal", s.normal), v("samples", s.samples), v("work", s.work), v("fracture", s.fracture);
   v("max_force", s.max_force), v("first", s.first), v("by_contact", s.by_contact), v("by_stress", s.by_stress);
+  v.last("here", s.here);
 }
 
 }  // namespace pliant

@@ -39,6 +39,9 @@ class Hash {
     if (blade.method != BladeMethod::virtual_nodes) add(word_of(blade_method_words(), blade.method));
     if (blade.cuts != BladeCuts::by_force) return;
     for (const double number : {blade.sharpness, blade.edge, blade.friction}) add(number);
+    if (!blade.has_faces()) return;
+    for (const double number : {blade.thickness, blade.height}) add(number);
+    for (const double number : blade.back_at_first()) add(number);
   }
   void add(const Program& program) {
     for (const Buffer& b : program.buffers) {

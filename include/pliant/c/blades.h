@@ -13,21 +13,24 @@ extern "C" {
 
 /** Place of a blade that cuts by force and the load on it, as pliant::BladeForce. The name is valid as long as the world. */
 typedef struct pliant_blade_force {
-  size_t size;      /**< PLIANT_BLADE_FORCE_INIT; the same in all elements of an array */
-  const char* name; /**< name in the scene */
-  double a[3];      /**< one end of its edge [m] */
-  double b[3];      /**< the other end [m] */
-  double force[3];  /**< on the blade in the last step [N] */
-  double torque[3]; /**< about the middle of its edge [N m] */
-  double max_force; /**< largest force so far [N] */
-  double work;      /**< done on tissue so far [J] */
-  double fracture;  /**< of it, what cutting took [J] */
-  double gave_way;  /**< time at which tissue first gave way [s]; -1: not yet */
-  int present;      /**< 0: its path has not begun or has ended, or it is lifted */
-  int pressing;     /**< 1: a part of its edge is in contact */
+  size_t size;          /**< PLIANT_BLADE_FORCE_INIT; the same in all elements of an array */
+  const char* name;     /**< name in the scene */
+  double a[3];          /**< one end of its edge [m] */
+  double b[3];          /**< the other end [m] */
+  double force[3];      /**< on the blade in the last step [N] */
+  double torque[3];     /**< about the middle of its edge [N m] */
+  double max_force;     /**< largest force so far [N] */
+  double work;          /**< done on tissue so far [J] */
+  double fracture;      /**< of it, what cutting took [J] */
+  double gave_way;      /**< time at which tissue first gave way [s]; -1: not yet */
+  int present;          /**< 0: its path has not begun or has ended, or it is lifted */
+  int pressing;         /**< 1: a part of its edge is in contact */
+  double face_force[3]; /**< of the force, that on its two faces [N] */
+  double face_normal;   /**< sum of the forces that press on its two sides, across it [N] */
+  double face_work;     /**< of the work, that of its faces [J] */
 } pliant_blade_force;
 #define PLIANT_BLADE_FORCE_INIT \
-  { sizeof(pliant_blade_force), NULL, {0}, {0}, {0}, {0}, 0, 0, 0, 0, 0, 0 }
+  { sizeof(pliant_blade_force), NULL, {0}, {0}, {0}, {0}, 0, 0, 0, 0, 0, 0, {0}, 0, 0 }
 
 /** Moves a blade of the scene that cuts by force to the segment from `a` to `b` [m] within `seconds` (see pliant::World). */
 PLIANT_API pliant_status pliant_world_drive_blade(pliant_world world, const char* blade, const double a[3], const double b[3],

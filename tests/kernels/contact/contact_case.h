@@ -152,7 +152,7 @@ struct ContactData {
       d.resize(20, 0.0);
       data.insert(data.end(), d.begin(), d.end());
     }
-    sum.assign(rows * tools * 16 * 16, 7);  // what was there does not stay
+    sum.assign(rows * tools * 16 * 18, 7);  // what was there does not stay
     for (std::size_t row = 0; row < rows; ++row) {
       for (std::size_t t = 0; t < tools; ++t) {
         const double angle = 0.1 * static_cast<double>(row) + static_cast<double>(t), c = std::cos(angle), s = std::sin(angle);
@@ -309,6 +309,21 @@ inline ContactData with_starts(ContactData d) {
     d.left_deep[ContactData::base(i, 2) + 16] = i % 3 == 0 ? 0 : static_cast<double>(i % (ContactData::tools + 1));
   }
   return d;
+}
+
+/// The same with both faces of a blade as tools 1 and 2; in some rows it is not in the scene.
+inline ContactData with_faces(ContactData d) {
+  for (const std::size_t t : {1U, 2U}) {
+    d.kind[8 * t] = 6;
+    d.kind[8 * t + 7] = 0;
+    const Reals shape{t == 1 ? 1.0 : -1.0, 0.6, 0.4, 0.15, 0.4, 0.5, 0.08};  // side, two slopes, half size, from the edge
+    std::copy(shape.begin(), shape.end(), d.data.begin() + static_cast<std::ptrdiff_t>(20 * t + 1));
+    for (std::size_t row = 0; row < ContactData::rows; ++row) {
+      d.pose[ContactData::pose_numbers * (row * ContactData::tools + t) + 12] = row == test_step + 1 || row % 2 == 0 ? 1 : 0;
+    }
+  }
+  d.params[8] = 0.04;
+  return with_starts(d);
 }
 
 /// `grips`: 1 where some tools can hold tissue.

@@ -11,6 +11,7 @@ TEST_F(ContactNear, TwinGivesTheSameBits) {
     expect_same_bits(near_case(d), label);
     expect_same_bits(near_case(d, 1), label + ", with edges");
     expect_same_bits(near_case(with_grips(d)), label + ", with grips");
+    expect_same_bits(near_case(with_faces(d), 1), label + ", with faces of a blade");
   });
 }
 

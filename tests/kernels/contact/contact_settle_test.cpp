@@ -14,6 +14,7 @@ TEST_F(ContactSettle, TwinGivesTheSameBits) {
     expect_same_bits(settle_case(with_grips(d), 1, 1), label + ", with edges and grips");
     expect_same_bits(settle_case(with_starts(d)), label + ", after an edit");
     expect_same_bits(settle_case(with_starts(d), 1), label + ", after an edit, with edges");
+    expect_same_bits(settle_case(with_faces(d), 1), label + ", with faces of a blade");
   });
 }
 
