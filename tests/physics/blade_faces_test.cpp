@@ -231,7 +231,8 @@ TEST_P(BladeFaces, HaveNoPreferredSide) {
              swapped = outcome(Matrix3d::Identity(), true);
   EXPECT_GT(one[0], 0.1);
   for (std::size_t k = 0; k < 3; ++k) {
-    check_relative("turned with the block", other[k], one[k], bound(1e-3, 1e-4));  // forces are whole quanta
+    // Forces are whole quanta, and rounding decides in which search a point is first found.
+    check_relative("turned with the block", other[k], one[k], bound(1e-3, 5e-4));
     check_relative("turned in the cut", swapped[k], one[k], 2e-3);  // samples at the ends of a cut follow the one before first
   }
 }
