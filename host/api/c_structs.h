@@ -38,7 +38,7 @@ PLIANT_C_STRUCT(pliant_frame, body_triangles);
 PLIANT_C_STRUCT(pliant_cut, mass_lost);
 PLIANT_C_STRUCT(pliant_probe_value, number_count);
 PLIANT_C_STRUCT(pliant_tool_force, reserved);
-PLIANT_C_STRUCT(pliant_blade_force, face_work);
+PLIANT_C_STRUCT(pliant_blade_force, pressing);
 PLIANT_C_STRUCT(pliant_interpenetration, reserved);
 PLIANT_C_STRUCT(pliant_picked_point, reserved);
 PLIANT_C_STRUCT(pliant_live_options, speed);
@@ -50,7 +50,7 @@ PLIANT_C_STRUCT(pliant_device_wrench, number);
 PLIANT_C_STRUCT(pliant_device_limits, torque);
 PLIANT_C_STRUCT(pliant_device_counts, last_refusal);
 PLIANT_C_STRUCT(pliant_device_callbacks, release);
-PLIANT_C_STRUCT(pliant_haptic_options, grip_button);
+PLIANT_C_STRUCT(pliant_haptic_options, realtime);
 PLIANT_C_STRUCT(pliant_haptic_sample, force);
 PLIANT_C_STRUCT(pliant_haptic_state, substeps);
 #undef PLIANT_C_STRUCT

@@ -31,10 +31,8 @@ class LiveRun {
   /// has instead of that of its log. Throws Error. `arguments`, `common` and `simulation` must outlive this.
   LiveRun(const LiveArguments& arguments, const Common& common, const Simulation& simulation, bool own_end);
   [[nodiscard]] haptics::RunGuide& guide();
-  /// The step at which the log of a replay ends, which may be behind the scene's duration.
-  [[nodiscard]] std::optional<std::int64_t> logged_end() const {
-    return replay_ && replay_->log().end ? std::optional(replay_->log().end->step) : std::nullopt;
-  }
+  /// Time at which the log of a replay ends, which may be behind the scene's duration; 0: it does not say [s].
+  [[nodiscard]] double logged_end() const { return replay_ && replay_->log().end ? replay_->log().end->time : 0; }
   /// The run has ended: lets go of the devices and writes the log.
   void finish();
   /// The member "instruments" of docs/schema/run.json, after finish().

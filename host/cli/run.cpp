@@ -199,12 +199,11 @@ class Run {
     if (o_.steps) end.step = simulation_->step() + *o_.steps;
     if (o_.seconds) end.time = first_time_ + *o_.seconds;
     if (o_.steps || o_.seconds) return end;
-    if (const auto logged = live_ ? live_->logged_end() : std::nullopt) {
-      end.step = *logged;
-    } else if (relaxes()) {
+    if (relaxes()) {
       end.step = simulation_->scene().relaxation.max_steps;
-    } else {
+    } else {  // a replay ends by itself, after the drives of its last step
       end.time = simulation_->scene().duration;
+      if (live_) end.time = std::max(*end.time, live_->logged_end() + simulation_->dt());
     }
     return end;
   }

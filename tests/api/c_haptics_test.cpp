@@ -325,7 +325,7 @@ TEST_F(CHaptics, StructsOfOtherVersions) {
   pliant_haptic_loop_stop(loop);
   expect_checked<pliant_haptic_sample>(
       PLIANT_HAPTIC_SAMPLE_INIT, [&](pliant_haptic_sample* out) { return pliant_haptic_loop_samples(loop, out, 1, &given); });
-  options.size = offsetof(pliant_haptic_options, grip_button) + 3;
+  options.size = offsetof(pliant_haptic_options, realtime) + 3;
   pliant_haptic_loop second{17};
   EXPECT_EQ(pliant_haptic_loop_create(world, "ball", device, &options, &second), PLIANT_USAGE);
   EXPECT_EQ(second.id, 0U);
