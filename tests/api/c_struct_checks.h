@@ -21,7 +21,7 @@ struct Later {
 template <class T, class Call>
 void expect_checked(T given, Call&& call) {
   const T before = given;
-  for (const std::size_t size : {std::size_t{0}, sizeof(T) - 1, std::size_t{4097}, ~std::size_t{0}}) {
+  for (const std::size_t size : {std::size_t{0}, api::CStruct<T>::first_size - 1, std::size_t{4097}, ~std::size_t{0}}) {
     given.size = size;
     EXPECT_EQ(call(&given), PLIANT_USAGE) << api::CStruct<T>::name << " " << size;
     const std::string message = pliant_last_error();
