@@ -57,11 +57,10 @@ std::vector<std::string> EnergyReport::remarks() const {
         share));
   }
   if (const double share = parted().value_or(0); share > kCreated) {
-    out.push_back(
-        fmt::format("parting tissue that had come inside other tissue put in {:.2g} times the largest energy of the run: faces "
-                    "that turn or "
-                    "slide over edges, and parts thinner than a cell, meet late; smaller cells or slower loads help",
-                    share));
+    out.push_back(fmt::format(
+        "parting tissue that had come inside other tissue put in {:.2g} times the largest energy of the run: faces "
+        "that turn or slide over edges, and parts thinner than a cell, meet late; smaller cells or slower loads help",
+        share));
   }
   return out;
 }

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "physics/harness.h"
+#include "physics/turned_tetrahedra.h"
 #include "scene/blade_face.h"
 #include "support/error_of.h"
 #include "support/source_dir.h"
@@ -184,23 +185,7 @@ TEST_P(BladeFaces, SpreadTissueThatHasClosed) {
 /// Turning all, or the blade about its back, so that its faces change sides, changes nothing but roundings and what follows.
 TEST_P(BladeFaces, HaveNoPreferredSide) {
   const auto outcome = [&](const Matrix3d& turn, bool swapped) {
-    const auto turned = [&](const Vec3d& x) { return plain(turn * eigen(x)); };
-    Scene scene;
-    VolumeMesh mesh = make_mesh({{8, 5, 4}, 0.01}, true);
-    for (Vec3d& x : mesh.vertices) x = turned(x);
-    Body body;
-    body.name = "block";
-    body.element = ElementKind::tet4;
-    body.mesh = save(mesh);
-    body.material = material_young(Law::neo_hookean, 2e4, 0.4);
-    body.material.toughness = 2e4;
-    body.material.damping = 60;
-    Fixed bottom;
-    bottom.where.kind = Selection::Kind::plane;
-    bottom.where.a = turned({0, 1e-4, 0});
-    bottom.where.b = turned({0, -1, 0});
-    body.fixed = {bottom};
-    scene.bodies = {body};
+    Scene scene = turned_tetrahedra(turn, {8, 5, 4}, 2e4);
     Blade blade;
     blade.name = "scalpel";
     blade.cuts = BladeCuts::by_force;

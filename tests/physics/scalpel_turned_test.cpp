@@ -1,5 +1,6 @@
 // Blades that cut by force: a scene and a blade that are turned together, a run that is resumed, a blade that comes again.
 #include "physics/harness.h"
+#include "physics/turned_tetrahedra.h"
 #include "support/error_of.h"
 
 namespace pliant::physics {
@@ -9,23 +10,7 @@ class ScalpelRuns : public OnBackend {};
 
 /// A block of tetrahedra, held at its bottom, cut by a blade from above that is drawn along a little; `turn` is applied to all.
 Scene turned_block(const Matrix3d& turn) {
-  const auto turned = [&](const Vec3d& x) { return plain(turn * eigen(x)); };
-  Scene scene;
-  VolumeMesh mesh = make_mesh({{6, 5, 6}, 0.01}, true);
-  for (Vec3d& x : mesh.vertices) x = turned(x);
-  Body body;
-  body.name = "block";
-  body.element = ElementKind::tet4;
-  body.mesh = save(mesh);
-  body.material = material_young(Law::neo_hookean, 2e4, 0.4);
-  body.material.toughness = 4e4;
-  body.material.damping = 60;
-  Fixed bottom;
-  bottom.where.kind = Selection::Kind::plane;
-  bottom.where.a = turned({0, 1e-4, 0});
-  bottom.where.b = turned({0, -1, 0});
-  body.fixed = {bottom};
-  scene.bodies = {body};
+  Scene scene = turned_tetrahedra(turn, {6, 5, 6}, 4e4);
   Blade blade;
   blade.name = "scalpel";
   blade.cuts = BladeCuts::by_force;
