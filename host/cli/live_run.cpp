@@ -123,7 +123,8 @@ void LiveRun::open() {
       refuse_live("--live: the name of the tool has a line break, which the log of drives cannot hold");
     held_.push_back({tools[i], devices::open_device(o_.live[i])});
     const int port = held_.back().device->port();
-    common_.note(fmt::format("tool {} is driven by {}{}", tools[i], o_.live[i],
+    const char* kind = haptics::DrivenPart::find(simulation_, tools[i])->is_blade() ? "blade" : "tool";
+    common_.note(fmt::format("{} {} is driven by {}{}", kind, tools[i], o_.live[i],
                              port > 0 ? fmt::format(", which listens on port {}", port) : ""));
   }
 }
@@ -138,7 +139,10 @@ void LiveRun::finish() {
   if (replay_) return;
   if (lockstep_) lockstep_->release();
   if (paced_) paced_->release();
-  log_.end = haptics::LoggedMoment{simulation_.step(), simulation_.time(), 0};
+  // A run that diverged, or stopped where steps had just been taken back, is behind its last drives: a replay goes on to its
+  // divergence, or to the scene's duration.
+  if (log_.drives.empty() || simulation_.step() >= log_.drives.back().at.step)
+    log_.end = haptics::LoggedMoment{simulation_.step(), simulation_.time(), 0};
   if (!o_.log.empty()) write_file(o_.log, haptics::drive_log_text(log_));
 }
 
@@ -154,6 +158,7 @@ Json LiveRun::device_json(std::size_t i) {
     json.update({{"used", c.samples},
                  {"falling", c.falling},
                  {"missed", c.missed},
+                 {"poses_limited", c.limited},
                  {"poses_refused", c.refused},
                  {"largest_force", c.largest_force}});
     return json;
@@ -192,7 +197,7 @@ std::vector<std::string> LiveRun::lines() {
   std::vector<std::string> lines;
   for (const Json& d : all["devices"]) {
     std::string text = fmt::format(
-        "{} drove tool {}: {} samples, {} messages and {} poses refused, at most {:.4g} N on the hand",
+        "{} drove {}: {} samples, {} messages and {} poses refused, at most {:.4g} N on the hand",
         d["device"].get<std::string>(), d["tool"].get<std::string>(), d["samples"].get<std::uint64_t>(),
         d["refused"].get<std::uint64_t>(), d["poses_refused"].get<std::int64_t>(), d["largest_force"].get<double>());
     if (paced_) {

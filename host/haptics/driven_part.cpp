@@ -99,8 +99,8 @@ void DrivenPart::drive(Simulation& simulation, const Pose& to, double seconds) c
   }
 }
 
-Pose DrivenPart::within_reach(const Simulation& simulation, const Pose& to, double seconds) const {
-  if (!blade_) return to;
+Pose DrivenPart::within_reach(Simulation& simulation, const Pose& to, double seconds) const {
+  if (!blade_) return simulation.tools().within_reach(name_, to, seconds);
   const Pose from = pose(simulation, simulation.time());
   const BladeSegment here = blade_edge(from, length_), there = blade_edge(to, length_);
   const auto way_to = [&](const BladeSegment& edge) {

@@ -41,7 +41,7 @@ class DrivenPart {
   /// others.
   void drive(Simulation& simulation, const Pose& to, double seconds) const;
   /// `to`, or how far a blade comes within `seconds` at its greatest speed (TopologyEdits::drive_speed).
-  [[nodiscard]] Pose within_reach(const Simulation& simulation, const Pose& to, double seconds) const;
+  [[nodiscard]] Pose within_reach(Simulation& simulation, const Pose& to, double seconds) const;
 
  private:
   std::string name_;

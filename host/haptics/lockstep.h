@@ -32,6 +32,7 @@ struct LockstepCounts {
   std::int64_t samples = 0;  ///< that the run went to
   std::int64_t falling = 0;  ///< refused: their time did not rise
   std::int64_t missed = 0;   ///< replaced by newer ones before they were read
+  std::int64_t limited = 0;  ///< poses too far for their time, towards which the tool went as fast as it may
   std::int64_t refused = 0;  ///< poses that the simulation refused
   double largest_force = 0;  ///< on the hand [N]
 };

@@ -13,6 +13,16 @@ namespace {
 
 constexpr std::int64_t kNever = 1'000'000'000'000'000;
 
+template <class Drive>
+bool begins_at(const DriveHistory<Drive>& all, const std::string& name, double time) {
+  const Drive* own = drive_at(all, name, time);
+  return own != nullptr && own->start == time;
+}
+
+bool requested(const RunState& state, const LoggedDrive& d) {
+  return !d.grips && (begins_at(state.driven, d.tool, d.at.time) || begins_at(state.driven_blades, d.tool, d.at.time));
+}
+
 }  // namespace
 
 Replay::Replay(DriveLog log, const Simulation& simulation, bool to_end) : log_(std::move(log)), to_end_(to_end) {
@@ -32,6 +42,10 @@ Replay::Replay(DriveLog log, const Simulation& simulation, bool to_end) : log_(s
   const auto before = [](const LoggedDrive& drive, std::int64_t step) { return drive.at.step < step; };
   next_ = static_cast<std::size_t>(std::lower_bound(log_.drives.begin(), log_.drives.end(), simulation.step(), before) -
                                    log_.drives.begin());
+  // Where steps were taken back, the drives of these steps are in the state already, for a time to come.
+  for (std::size_t i = next_; i < log_.drives.size(); ++i) {
+    if (requested(simulation.state(), log_.drives[i])) next_ = i + 1;
+  }
 }
 
 void Replay::refuse(const LoggedMoment& at, const std::string& why) const {

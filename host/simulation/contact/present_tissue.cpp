@@ -63,6 +63,11 @@ bool is_too_fast(const ToolForm& form, const Pose& from, const Pose& to, double 
   return travel(form, from, to) > tool_cells_per_second * cell * seconds;
 }
 
+double share_in_time(const ToolForm& form, const Pose& from, const Pose& to, double seconds, double cell) {
+  const double way = travel(form, from, to), most = tool_cells_per_second * cell * seconds;
+  return way > most ? most / way : 1;
+}
+
 PresentTissue::PresentTissue(const Model& model, std::vector<double> u) : model_(model), u_(std::move(u)) {
   const ContactPoints& points = *model_.contact;
   for (std::size_t i = 0; i < points.size(); ++i) {

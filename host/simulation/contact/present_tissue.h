@@ -25,6 +25,9 @@ struct ToolOverlap {
 /// Returns true if the tool travels a cell on its way in less time than contact needs to respond.
 [[nodiscard]] bool is_too_fast(const ToolForm& form, const Pose& from, const Pose& to, double seconds, double cell);
 
+/// Share of the way from one pose to another that a tool may go in this time without being too fast, at most 1.
+[[nodiscard]] double share_in_time(const ToolForm& form, const Pose& from, const Pose& to, double seconds, double cell);
+
 class PresentTissue {
  public:
   /// `u`: RunContext::u(). The model must have contact points and must outlive this object.

@@ -74,11 +74,11 @@ void check_tool_changes(const Scene& scene, const ToolChanges& changes) {
 
 Pose tool_pose(const ContactTool& tool, const RunState& state, double time) {
   if (is_face(tool)) return blade_frame(*tool.blade, blade_place(state.driven_blades, *tool.blade, time));
-  const auto driven = state.driven.find(tool.name);
-  if (driven == state.driven.end()) return tool.at(time);
-  const ToolDrive& d = driven->second;
+  const ToolDrive* driven = drive_at(state.driven, tool.name, time);
+  if (driven == nullptr) return tool.at(time);
+  const ToolDrive& d = *driven;
   if (time >= d.end) return d.to;
-  return between(d.from, d.to, std::clamp((time - d.start) / (d.end - d.start), 0.0, 1.0));
+  return between(d.from, d.to, (time - d.start) / (d.end - d.start));
 }
 
 bool is_away(const ContactTool& tool, const RunState& state, double time) {

@@ -46,7 +46,7 @@ std::optional<Wrench> ToolContact::last_force(std::size_t tool) const {
 void ToolContact::drive(std::size_t tool, const Pose& to, double seconds) {
   const double now = run_.state.clock.time();
   const ToolDrive drive{seconds > 0 ? pose(tool, now) : to, to, now, now + seconds};
-  run_.state.driven[tools_[tool].name] = drive;
+  add_drive(run_.state.driven, tools_[tool].name, drive);
   run_.state.relaxation.equilibrium = false;  // relaxation restarts
   if (!active()) return;
   run_.state.look.tools = -1;  // force a new search

@@ -55,7 +55,7 @@ void TopologyEdits::drive_blade(const std::string& name, const BladeSegment& to,
   BladeDrives& driven = run_.state.driven_blades;
   const double now = run_.state.clock.time();
   if (!blade_present(driven, blade, now, now)) {
-    driven[name] = {to, to, now, now, false};
+    add_drive(driven, name, {to, to, now, now, false});
     forget_fronts(name);
     return;
   }
@@ -67,13 +67,13 @@ void TopologyEdits::drive_blade(const std::string& name, const BladeSegment& to,
                              "two updates of blades; lift_blade() takes it away, and then it may begin anywhere",
                              way, seconds, fastest));
   }
-  driven[name] = {from, to, now, now + seconds, false};
+  add_drive(driven, name, {from, to, now, now + seconds, false});
 }
 
 void TopologyEdits::lift_blade_by_force(const std::string& name) {
   const BladeSegment at = blade_place(run_.state.driven_blades, blade_by_force(name), run_.state.clock.time());
   const double now = run_.state.clock.time();
-  run_.state.driven_blades[name] = {at, at, now, now, true};
+  add_drive(run_.state.driven_blades, name, {at, at, now, now, true});
   forget_fronts(name);
 }
 

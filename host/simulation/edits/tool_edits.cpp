@@ -170,6 +170,18 @@ void ToolEdits::grip(const std::string& name, bool on) {
   run_.state.relaxation.equilibrium = false;  // relaxation restarts
 }
 
+Pose ToolEdits::within_reach(const std::string& name, const Pose& to, double seconds) const {
+  constexpr double kReserve = 0.99;
+  const Model& model = run_.model();
+  if (!touchable(model)) return to;
+  const double now = run_.state.clock.time(), cell = model.contact->spacing;
+  const ToolForm& form = (*model.tools)[number(name)];
+  const Pose from = tool_pose(known(name), run_.state, now);
+  const double share = share_in_time(form, from, to, seconds, cell);
+  if (share >= 1 || PresentTissue(model, run_.u()).in_the_way(form, from, to, now).depth == 0) return to;
+  return between(from, to, kReserve * share);
+}
+
 void ToolEdits::drive(const std::string& name, const Pose& to, double seconds) {
   const ContactTool& tool = known(name);
   check_drive(name, to, seconds);

@@ -32,8 +32,11 @@ class ToolEdits {
   void set_surface(const std::string& name, const GivenSurfaces& next);
   /// Tells a tool to hold tissue, or to let it go. Throws Error (usage) for one without a grip.
   void grip(const std::string& name, bool on);
-  /// Moves a tool from its current pose to another within `seconds` [s]. Unparks it.
+  /// Moves a tool from its current pose to another within `seconds` [s]. Unparks it. Throws Error (bad_input) if it is too
+  /// fast and tissue is in its way.
   void drive(const std::string& name, const Pose& to, double seconds);
+  /// Of a tool of the model: `to`, or if drive() would refuse that, how far it may go on the straight way there.
+  [[nodiscard]] Pose within_reach(const std::string& name, const Pose& to, double seconds) const;
 
   /// A tool of the scene or of the host, also a parked one. Throws Error (usage) for an unknown name.
   [[nodiscard]] const ContactTool& known(const std::string& name) const;

@@ -51,6 +51,9 @@ void Recovery::keep(bool on_grid) {
   if (state.kept && !(on_grid && good())) return;
   run_.loaded.keep_state();
   state.kept = KeptState{state.clock, state.relaxation.damping, state.pressed};
+  const double needed = state.clock.time_at(state.clock.step - 2);  // velocities and work take the step before
+  forget_drives(state.driven, needed);
+  forget_drives(state.driven_blades, needed);
   reports_.kept = reports_.now;
 }
 
@@ -180,8 +183,10 @@ bool Recovery::go_back(Symptoms&) {
   state.relaxation.damping = state.kept->damping;
   state.pressed = state.kept->pressed;
   for (auto& [name, blade] : state.pressed) {  // the host has taken it elsewhere since
-    const auto drive = state.driven_blades.find(name);
-    if (drive != state.driven_blades.end() && drive->second.placed() && drive->second.start > state.clock.time())
+    const auto own = state.driven_blades.find(name);
+    if (own == state.driven_blades.end()) continue;
+    if (std::any_of(own->second.begin(), own->second.end(),
+                    [&](const BladeDrive& d) { return d.placed() && d.start > state.clock.time(); }))
       blade.forget_fronts();
   }
   reports_.now.take_back(reports_.kept);

@@ -8,6 +8,7 @@
 
 #include "cutting/blade/blade_trace.h"
 #include "scene/blade.h"
+#include "simulation/state/drive_history.h"
 
 namespace pliant {
 
@@ -60,7 +61,7 @@ struct BladeDrive {
   bool lifted = false;                                        ///< it is nowhere until it is driven again
   [[nodiscard]] bool placed() const { return end == start; }  ///< or lifted: it did not go there
 };
-using BladeDrives = std::map<std::string, BladeDrive>;
+using BladeDrives = DriveHistory<BladeDrive>;
 
 /// The ends of a blade at a time [m].
 BladeSegment blade_place(const BladeDrives& driven, const Blade& blade, double time);

@@ -45,7 +45,7 @@ struct ToolHistory {
   double max_depth = 0;      ///< largest depth [m]
   double work = 0;           ///< work of its rigid motion on the tissue since the start [J]
   std::int64_t touched = 0;  ///< number of steps with contact
-  Pose before;               ///< pose of the frame one step before `step`, stored because driven tools have no history
+  Pose before;               ///< pose of the frame one step before `step`; the host may have placed the tool elsewhere since
   std::int64_t step = -1;    ///< end of the last batch with contact; -1: none
 };
 

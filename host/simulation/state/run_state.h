@@ -29,7 +29,7 @@ struct RunState {
   std::vector<NodeInertia> ballast;  ///< inertia added so that elements are stable at the step (model/nodes/ballast.h)
   std::optional<Vec3d>
       focus;  ///< position of the focus set by the host [m], "tool" in checkpoints and hashes; empty: on its path
-  std::map<std::string, ToolDrive> driven;  ///< tools that the host moves off their paths
+  DriveHistory<ToolDrive> driven;  ///< tools that the host moves off their paths
   ContactLook look;
   std::int64_t opened = 0;                        ///< number of edges split because they were overstretched
   std::int64_t topology_version = 0;              ///< number of edits that changed elements

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "geometry/vec.h"
 #include "pliant/error.h"
@@ -205,6 +206,17 @@ std::uint64_t deep_hash(const Snapshot& snapshot) {
   return hash.value();
 }
 
+/// Each drive begins after the one before.
+template <class Drive>
+static bool good_times(const std::vector<Drive>& drives) {
+  double last = -std::numeric_limits<double>::infinity();
+  for (const Drive& d : drives) {
+    if (!std::isfinite(d.start) || !std::isfinite(d.end) || d.end < d.start || !(d.start > last)) return false;
+    last = d.start;
+  }
+  return !drives.empty();
+}
+
 void check_state(const RunState& state, const Model& model, const Scene& scene) {
   const auto need = [](bool good, const char* what) {
     if (!good) throw Error(ErrorCode::bad_input, fmt::format("its run state is damaged: {}", what));
@@ -242,22 +254,24 @@ void check_state(const RunState& state, const Model& model, const Scene& scene) 
     need(f.body < model.bodies.size() && f.node >= 0 && vec::finite(f.force), "a force of the host");
   }
   need(!state.focus || vec::finite(*state.focus), "the focus is not finite");
-  for (const auto& [name, drive] : state.driven_blades) {
+  for (const auto& [name, drives] : state.driven_blades) {
     const bool known = std::any_of(scene.blades.begin(), scene.blades.end(), [&, own = &name](const Blade& b) {
       return b.name == *own && b.cuts == BladeCuts::by_force;
     });
-    need(known && std::isfinite(drive.start) && std::isfinite(drive.end) && drive.end >= drive.start, "a driven blade");
-    for (const BladeSegment& s : {drive.from, drive.to}) {
-      good_segment(s);
-      need(s[0] != s[1], "a driven blade has no length");
+    need(known && good_times(drives), "a driven blade");
+    for (const BladeDrive& drive : drives) {
+      for (const BladeSegment& s : {drive.from, drive.to}) {
+        good_segment(s);
+        need(s[0] != s[1], "a driven blade has no length");
+      }
     }
   }
   const std::vector<ContactTool> tools = known_tools(scene, state.tools);
   for (const auto& driven : state.driven) {
-    const ToolDrive& drive = driven.second;
     const bool known = std::any_of(tools.begin(), tools.end(), [&](const ContactTool& t) { return t.name == driven.first; });
-    const bool poses = good_pose(drive.from) && good_pose(drive.to);
-    need(known && poses && std::isfinite(drive.start) && drive.end >= drive.start && std::isfinite(drive.end), "a driven tool");
+    const bool poses = std::all_of(driven.second.begin(), driven.second.end(),
+                                   [](const ToolDrive& d) { return good_pose(d.from) && good_pose(d.to); });
+    need(known && poses && good_times(driven.second), "a driven tool");
   }
   need((state.offset.empty() || state.offset.size() == 3 * static_cast<std::size_t>(model.slots)) &&
            std::all_of(state.offset.begin(), state.offset.end(), [](double o) { return std::isfinite(o); }),

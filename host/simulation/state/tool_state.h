@@ -6,6 +6,7 @@
 
 #include "model/contact/given_surfaces.h"
 #include "scene/contact_tool.h"
+#include "simulation/state/drive_history.h"
 
 namespace pliant {
 

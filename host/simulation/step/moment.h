@@ -15,7 +15,7 @@ struct Moment {
   Clock clock;
   std::vector<std::vector<std::uint8_t>> buffers;  ///< LoadedModel::state_bytes()
   RunReport report;
-  std::map<std::string, ToolDrive> driven;      ///< RunState::driven
+  DriveHistory<ToolDrive> driven;               ///< RunState::driven
   std::map<std::string, PressedBlade> pressed;  ///< RunState::pressed
   BladeDrives driven_blades;                    ///< RunState::driven_blades
   BladePress::Felt felt;

@@ -92,7 +92,7 @@ bool only_rounding(const RunContext& run, const Sums& sums, double c) {
 /// Time after which loads and tools are constant [s].
 double loads_end(const RunContext& run) {
   double end = run.settings.curves_end;
-  for (const auto& driven : run.state.driven) end = std::max(end, driven.second.end);
+  for (const auto& driven : run.state.driven) end = std::max(end, driven.second.back().end);
   return end;
 }
 
