@@ -141,8 +141,8 @@ void LiveRun::finish() {
   if (paced_) paced_->release();
   // A run that diverged, or stopped where steps had just been taken back, is behind its last drives: a replay goes on to its
   // divergence, or to the scene's duration.
-  if (log_.drives.empty() || simulation_.step() >= log_.drives.back().at.step)
-    log_.end = haptics::LoggedMoment{simulation_.step(), simulation_.time(), 0};
+  const bool behind = !log_.drives.empty() && simulation_.step() < log_.drives.back().at.step;
+  if (!behind && !simulation_.divergence()) log_.end = haptics::LoggedMoment{simulation_.step(), simulation_.time(), 0};
   if (!o_.log.empty()) write_file(o_.log, haptics::drive_log_text(log_));
 }
 

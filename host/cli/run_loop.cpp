@@ -34,11 +34,13 @@ std::int64_t RunLoop::remaining() const {
 }
 
 /// Until steps are to follow. Returns false if the run ends here.
-bool RunLoop::ask_guide(RunResult& result) {
+bool RunLoop::ask_guide(RunResult& result, std::int64_t first, std::vector<DueOutput>& due) {
   while (guide_ != nullptr && guide_->steps_left(simulation_) == 0) {
+    const std::int64_t step = simulation_.step();
     const bool goes_on = guide_->next(simulation_);
     result.interrupted = interrupted();
-    if (!goes_on || result.interrupted) return false;
+    if (simulation_.step() < step || simulation_.divergence()) look(result, first, false, due);
+    if (!goes_on || result.interrupted || !result.diverged.empty()) return false;
   }
   return true;
 }
@@ -120,7 +122,7 @@ RunResult RunLoop::run(std::vector<DueOutput>& due, const std::function<void(con
   put_out(due, now);
   do {
     while (!simulation_.at_equilibrium() && !result.interrupted && result.diverged.empty() && remaining() > 0 &&
-           ask_guide(result)) {
+           ask_guide(result, first, due)) {
       const Stopwatch clock;
       std::int32_t n = 0;
       const bool stayed = batch(due, n);

@@ -58,7 +58,7 @@ class RunLoop {
     Moment moment;
     std::vector<std::size_t> outputs;
   };
-  bool ask_guide(RunResult& result);
+  bool ask_guide(RunResult& result, std::int64_t first, std::vector<DueOutput>& due);
   bool batch(const std::vector<DueOutput>& due, std::int32_t& steps);
   void put_out(std::vector<DueOutput>& due, const std::vector<std::size_t>& outputs);
   void put_out_due(std::vector<DueOutput>& due);

@@ -55,8 +55,8 @@ class Parser {
 
   void row(std::string_view rest) {
     const std::string_view whole = rest, kind = take(rest, ',');
-    if (kind != (begun_ ? "drive" : "begin") && !(begun_ && (kind == "end" || kind == "grip")))
-      fail("the row", whole, begun_ ? "drive,..., grip,... or end,..." : "begin,STEP,TIME");
+    if (kind != (begun_ ? "drive" : "begin") && !(begun_ && (kind == "end" || kind == "grip" || kind == "confirm")))
+      fail("the row", whole, begun_ ? "drive,..., grip,..., confirm,... or end,..." : "begin,STEP,TIME");
     if (log_.end) fail("the row", whole, "nothing behind the end");
     const LoggedMoment at = moment(rest);
     if (!begun_) {
@@ -64,6 +64,9 @@ class Parser {
       begun_ = true;
     } else if (kind == "end") {
       log_.end = at;
+    } else if (kind == "confirm") {
+      log_.drives.push_back({at, 0, {}, {}, {}, true});
+      back_ = true;
     } else {
       return kind == "grip" ? grip(rest, at) : drive(rest, at);
     }
@@ -80,9 +83,10 @@ class Parser {
     }
     const std::string_view time = rest.substr(0, rest.find(','));
     at.time = number(rest, "the time");
-    if (at.time < last_.time || (begun_ && at.step == last_.step && at.time != last_.time)) {
+    const bool falls = at.time < last_.time || (begun_ && at.step == last_.step && at.time != last_.time);
+    if (at.time < log_.begin.time || (falls && !back_))
       fail("the time", time, fmt::format("{:.17g} at step {}, and more after it", last_.time, last_.step));
-    }
+    back_ = false;
     last_ = at;
     return at;
   }
@@ -131,6 +135,7 @@ class Parser {
   LoggedMoment last_;
   int number_ = 0;
   bool headed_ = false, begun_ = false;
+  bool back_ = false;  ///< after the last row steps were taken back: times begin again, in shorter steps
 };
 
 }  // namespace
@@ -145,6 +150,10 @@ std::string drive_log_text(const DriveLog& log) {
   const auto moment = [](const LoggedMoment& at) { return fmt::format("{},{:.17g}", at.step, at.time); };
   std::string text = fmt::format("{}\nbegin,{}\n", kDriveLogHead, moment(log.begin));
   for (const LoggedDrive& d : log.drives) {
+    if (d.confirms) {
+      text += fmt::format("confirm,{}\n", moment(d.at));
+      continue;
+    }
     if (d.grips) {
       text += fmt::format("grip,{},{},{}\n", moment(d.at), *d.grips ? 1 : 0, d.tool);
       continue;

@@ -59,6 +59,8 @@ bool Lockstep::next(Simulation& simulation) {
   for (Hand& hand : hands_) {
     if (!hand.over && hand.time <= target_) due.push_back(&hand);
   }
+  const bool answers = std::any_of(due.begin(), due.end(), [](const Hand* hand) { return hand->open; });
+  if (answers && !accepted(simulation)) return true;
   for (Hand* hand : due) {
     if (hand->open) answer(*hand, simulation);
   }
@@ -72,6 +74,15 @@ bool Lockstep::next(Simulation& simulation) {
   if (stopped_ || !(first < std::numeric_limits<double>::infinity())) return false;
   target_ = first;
   return true;
+}
+
+/// A force that is on its way cannot be taken back: returns false if the state was, and the run has to come here again.
+bool Lockstep::accepted(Simulation& simulation) {
+  if (simulation.settled() || simulation.quiet()) return true;
+  const LoggedMoment now{simulation.step(), simulation.time(), 0};
+  if (simulation.confirm()) return true;
+  log_.drives.push_back({now, 0, {}, {}, {}, true});
+  return false;
 }
 
 void Lockstep::answer(Hand& hand, const Simulation& simulation) {

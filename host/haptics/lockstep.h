@@ -67,6 +67,7 @@ class Lockstep final : public RunGuide {
     DeviceWrench answer;
     LockstepCounts counts;
   };
+  bool accepted(Simulation& simulation);
   void answer(Hand& hand, const Simulation& simulation);
   void await(Hand& hand, Simulation& simulation);
   bool take(Hand& hand, const DeviceSample& sample, Simulation& simulation);

@@ -20,7 +20,7 @@ bool begins_at(const DriveHistory<Drive>& all, const std::string& name, double t
 }
 
 bool requested(const RunState& state, const LoggedDrive& d) {
-  return !d.grips && (begins_at(state.driven, d.tool, d.at.time) || begins_at(state.driven_blades, d.tool, d.at.time));
+  return !d.grips && !d.confirms && (begins_at(state.driven, d.tool, d.at.time) || begins_at(state.driven_blades, d.tool, d.at.time));
 }
 
 }  // namespace
@@ -29,7 +29,7 @@ Replay::Replay(DriveLog log, const Simulation& simulation, bool to_end) : log_(s
   std::vector<std::string> names;
   for (const std::string& name : DrivenPart::names(simulation)) names.push_back('"' + name + '"');
   for (const LoggedDrive& drive : log_.drives) {
-    if (std::find(names.begin(), names.end(), '"' + drive.tool + '"') != names.end()) continue;
+    if (drive.confirms || std::find(names.begin(), names.end(), '"' + drive.tool + '"') != names.end()) continue;
     refuse(drive.at, fmt::format("the tool is \"{}\"; {}", drive.tool,
                                  names.empty() ? "the scene has none" : "the scene has " + listed(names)));
   }
@@ -46,6 +46,8 @@ Replay::Replay(DriveLog log, const Simulation& simulation, bool to_end) : log_(s
   for (std::size_t i = next_; i < log_.drives.size(); ++i) {
     if (requested(simulation.state(), log_.drives[i])) next_ = i + 1;
   }
+  const auto done = [&](const LoggedDrive& d) { return d.confirms && simulation.state().clock.time_at(d.at.step) != d.at.time; };
+  while (next_ < log_.drives.size() && done(log_.drives[next_])) ++next_;
 }
 
 void Replay::refuse(const LoggedMoment& at, const std::string& why) const {
@@ -72,6 +74,11 @@ bool Replay::next(Simulation& simulation) {
   if (next_ == log_.drives.size()) return false;
   const LoggedDrive& drive = log_.drives[next_++];
   check_time(drive.at, simulation);
+  if (drive.confirms) {
+    if (simulation.confirm()) refuse(drive.at, "steps were taken back here; now they are not");
+    ++applied_;
+    return true;
+  }
   try {
     const std::optional<DrivenPart> part = DrivenPart::find(simulation, drive.tool);
     if (!part) refuse(drive.at, fmt::format("the blade \"{}\" is nowhere at this time", drive.tool));

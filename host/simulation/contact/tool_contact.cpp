@@ -39,8 +39,8 @@ std::optional<std::size_t> ToolContact::find(const std::string& name) const {
 }
 
 std::optional<Wrench> ToolContact::last_force(std::size_t tool) const {
-  if (batch_end_ != run_.state.clock.step || step_forces_.size() < tools_.size()) return {};
-  return step_forces_[step_forces_.size() - tools_.size() + tool];
+  if (felt_.batch_end != run_.state.clock.step || felt_.step_forces.size() < tools_.size()) return {};
+  return felt_.step_forces[felt_.step_forces.size() - tools_.size() + tool];
 }
 
 void ToolContact::drive(std::size_t tool, const Pose& to, double seconds) {
@@ -53,8 +53,8 @@ void ToolContact::drive(std::size_t tool, const Pose& to, double seconds) {
 }
 
 void ToolContact::follow() {
-  step_forces_.clear();  // of the tools before
-  batch_end_ = -1;
+  felt_.step_forces.clear();  // of the tools before
+  felt_.batch_end = -1;
   const std::vector<ContactTool> before = std::exchange(tools_, present_tools(run_.scene, run_.state.tools));
   const std::vector<ToolHistory> felt = std::exchange(report_.tools, std::vector<ToolHistory>(tools_.size()));
   for (std::size_t t = 0; t < tools_.size(); ++t) {
@@ -254,8 +254,8 @@ void ToolContact::end_batch(std::int32_t steps) {
   report_.tissue.points = 0;
   if (run_.scene.contact && ran) read_touch();
   if (report_.tools.empty()) return;
-  step_forces_.assign(static_cast<std::size_t>(steps) * tools_.size(), {});
-  batch_end_ = run_.state.clock.step;
+  felt_.step_forces.assign(static_cast<std::size_t>(steps) * tools_.size(), {});
+  felt_.batch_end = run_.state.clock.step;
   for (ToolHistory& h : report_.tools) h.now = {};
   if (!ran) return;
   const std::vector<std::int32_t> sums = run_.backend().read_ints(run_.loaded.program().find("tool_sum"));
@@ -271,7 +271,7 @@ void ToolContact::end_batch(std::int32_t steps) {
           contact_sum(&sums[(static_cast<std::size_t>(step) * tools + t) * contact_sum_parts * contact_sum_numbers]);
       if (sum.points == 0) continue;
       ++h.touched;
-      Wrench& on_tool = step_forces_[static_cast<std::size_t>(step) * tools + t];
+      Wrench& on_tool = felt_.step_forces[static_cast<std::size_t>(step) * tools + t];
       for (std::size_t c = 0; c < 3; ++c) {
         on_tool.force[c] = sum.quanta[c] * units_.force;
         on_tool.torque[c] = sum.quanta[3 + c] * units_.torque;

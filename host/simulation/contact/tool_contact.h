@@ -45,10 +45,17 @@ class ToolContact {
   /// nothing touched, or where it is not known: before the first step and after the state was changed.
   [[nodiscard]] std::vector<Vec3d> point_forces() const;
   /// Force and torque of each step of the last batch, shape [steps][tools]; it ended after step batch_end().
-  [[nodiscard]] const std::vector<Wrench>& step_forces() const { return step_forces_; }
-  [[nodiscard]] std::int64_t batch_end() const { return batch_end_; }
+  [[nodiscard]] const std::vector<Wrench>& step_forces() const { return felt_.step_forces; }
+  [[nodiscard]] std::int64_t batch_end() const { return felt_.batch_end; }
   /// Of the last step; empty where it is not known: before the first step and after the tools or the state were changed.
   [[nodiscard]] std::optional<Wrench> last_force(std::size_t tool) const;
+  /// Forces on the tools in the last batch, to be put back after the simulation has gone ahead.
+  struct Felt {
+    std::vector<Wrench> step_forces;
+    std::int64_t batch_end = -1;
+  };
+  [[nodiscard]] const Felt& felt() const { return felt_; }
+  void put_back(const Felt& felt) { felt_ = felt; }
   /// point_forces() on the nodes [N], by slot; empty where they are.
   [[nodiscard]] std::vector<Vec3d> node_forces() const;
   /// What gripped points give back when they return to their places in the grip: force times distance [J], since a grip holds
@@ -84,8 +91,7 @@ class ToolContact {
   ContactUnits last_units_;          ///< of the batch before
   std::int64_t known_at_ = -1;       ///< step after which the buffers hold the forces of points; -1: none
   std::int64_t known_changes_ = -1;  ///< LoadedModel::changes() then
-  std::vector<Wrench> step_forces_;
-  std::int64_t batch_end_ = -1;
+  Felt felt_;
   std::vector<char> summed_;  ///< per step of the batch: whether the contact passes ran
   std::vector<Vec3d> arms_;   ///< from a tool's origin to the origin of a sequence's frame, shape [steps + 1][tools] [m]
   std::vector<Pose> poses_;   ///< poses of a sequence's frame from the step before the batch on, shape [steps + 2][tools]

@@ -147,6 +147,12 @@ bool Recovery::calm_down(Symptoms& s) {
   return !s.outgrown;
 }
 
+bool Recovery::quiet() const {
+  if (reports_.now.inversions.last > 0) return false;
+  run_.backend().run(run_.loaded.program().status, 0, 1);
+  return run_.loaded.largest_increment() / run_.model().shortest <= kFastIncrement * fast_share();
+}
+
 void Recovery::look_at_networks(Symptoms& s) const {
   const double dt = run_.state.clock.dt, allowed = step_.networks_allow();
   // Springs have no remedy but the step: below that of the scene it is the least one that any state gets.

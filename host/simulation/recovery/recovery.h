@@ -40,6 +40,9 @@ class Recovery {
   /// divergence if none helps.
   std::optional<Divergence> look(std::int64_t batch_start);
 
+  /// Returns true if a check of this state would find nothing fast or inverted.
+  [[nodiscard]] bool quiet() const;
+
   // The remedies. A return value of true ends the list.
   /// Reduces motion faster than waves. Sufficient unless the batch has burst or outgrown its step.
   bool calm_down(Symptoms& s);

@@ -32,7 +32,8 @@ void Simulation::look_at(const Moment& moment, const std::function<void()>& look
 bool Simulation::confirm() {
   if (settled() || divergence_) return !divergence_;
   const Snapshot present = snapshot();
-  const BladePress::Felt felt = press_.felt();
+  const BladePress::Felt on_blades = press_.felt();
+  const ToolContact::Felt on_tools = contact_.felt();
   while (!settled()) {
     const std::int32_t n = next_batch(settings_.batch_steps);
     const std::int64_t end = step() + n;
@@ -44,7 +45,8 @@ bool Simulation::confirm() {
   write_buffers(present, loaded_);
   state_ = present.state;
   reports_ = present.reports;
-  press_.put_back(felt);
+  press_.put_back(on_blades);
+  contact_.put_back(on_tools);
   return true;
 }
 
