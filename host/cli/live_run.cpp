@@ -196,10 +196,10 @@ std::vector<std::string> LiveRun::lines() {
   const Json all = json();
   std::vector<std::string> lines;
   for (const Json& d : all["devices"]) {
-    std::string text = fmt::format(
-        "{} drove {}: {} samples, {} messages and {} poses refused, at most {:.4g} N on the hand",
-        d["device"].get<std::string>(), d["tool"].get<std::string>(), d["samples"].get<std::uint64_t>(),
-        d["refused"].get<std::uint64_t>(), d["poses_refused"].get<std::int64_t>(), d["largest_force"].get<double>());
+    std::string text = fmt::format("{} drove {}: {} samples, {} messages and {} poses refused, at most {:.4g} N on the hand",
+                                   d["device"].get<std::string>(), d["tool"].get<std::string>(),
+                                   d["samples"].get<std::uint64_t>(), d["refused"].get<std::uint64_t>(),
+                                   d["poses_refused"].get<std::int64_t>(), d["largest_force"].get<double>());
     if (paced_) {
       text +=
           fmt::format("; {} frames, {} ticks of {:.3g} us, at most {:.3g} us", d["frames"].get<std::int64_t>(),

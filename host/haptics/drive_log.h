@@ -13,8 +13,8 @@ namespace pliant::haptics {
 
 /// First line of a log. Then, separated by commas: "begin", step and time [s] of the run's begin; for each drive "drive", step,
 /// time, seconds on the way, position x, y, z [m], turn as unit quaternion x, y, z, w, and the rest of the line is the tool's
-/// name; where a tool is told to grip or to let go, "grip", step, time, 1 or 0, and its name; "confirm", step and time where the
-/// run looked ahead (Simulation::confirm) and steps were taken back; "end", step and time where the run ended.
+/// name; where a tool is told to grip or to let go, "grip", step, time, 1 or 0, and its name; "confirm", step and time where
+/// the run looked ahead (Simulation::confirm) and steps were taken back; "end", step and time where the run ended.
 inline constexpr std::string_view kDriveLogHead = "pliant-drives/1";
 
 /// A place in a run.

@@ -179,9 +179,10 @@ void Lockstep::drive(Hand& hand, const Pose& target, Simulation& simulation) {
   if (grip_as_wanted(simulation, part, wanted)) log_.drives.push_back({now, 0, {}, hand.held.tool, wanted == HandGrip::closed});
   const Pose there = part.within_reach(simulation, target, seconds);
   if (there != target && hand.counts.limited++ == 0) {
-    remark(fmt::format("{} '{}': its device moves it faster through tissue than contact or the cut can follow, first at "
-                       "{:.6g} s; it comes after as fast as it may",
-                       part.is_blade() ? "blade" : "tool", hand.held.tool, simulation.time()));
+    remark(
+        fmt::format("{} '{}': its device moves it faster through tissue than contact or the cut can follow, first at "
+                    "{:.6g} s; it comes after as fast as it may",
+                    part.is_blade() ? "blade" : "tool", hand.held.tool, simulation.time()));
   }
   part.drive(simulation, there, seconds);
   log_.drives.push_back({now, seconds, there, hand.held.tool, {}});

@@ -20,7 +20,8 @@ bool begins_at(const DriveHistory<Drive>& all, const std::string& name, double t
 }
 
 bool requested(const RunState& state, const LoggedDrive& d) {
-  return !d.grips && !d.confirms && (begins_at(state.driven, d.tool, d.at.time) || begins_at(state.driven_blades, d.tool, d.at.time));
+  return !d.grips && !d.confirms &&
+         (begins_at(state.driven, d.tool, d.at.time) || begins_at(state.driven_blades, d.tool, d.at.time));
 }
 
 }  // namespace
@@ -46,7 +47,9 @@ Replay::Replay(DriveLog log, const Simulation& simulation, bool to_end) : log_(s
   for (std::size_t i = next_; i < log_.drives.size(); ++i) {
     if (requested(simulation.state(), log_.drives[i])) next_ = i + 1;
   }
-  const auto done = [&](const LoggedDrive& d) { return d.confirms && simulation.state().clock.time_at(d.at.step) != d.at.time; };
+  const auto done = [&](const LoggedDrive& d) {
+    return d.confirms && simulation.state().clock.time_at(d.at.step) != d.at.time;
+  };
   while (next_ < log_.drives.size() && done(log_.drives[next_])) ++next_;
 }
 

@@ -15,7 +15,8 @@ class RunGuide {
   virtual ~RunGuide() = default;
   /// Steps of the present length before next() is due; 0: it is.
   [[nodiscard]] virtual std::int64_t steps_left(const Simulation& simulation) const = 0;
-  /// Changes the simulation, and may confirm() it, which may take steps back. Returns false where the run ends; a call after that changes nothing.
+  /// Changes the simulation, and may confirm() it, which may take steps back. Returns false where the run ends; a call after
+  /// that changes nothing.
   virtual bool next(Simulation& simulation) = 0;
 };
 

@@ -88,6 +88,26 @@ TEST(DrivenPart, ABladeGoesAsFarAsItMay) {
   part.drive(*s, part.within_reach(*s, turned, kSeconds), kSeconds);
 }
 
+/// The force of the last step before a drive acts half a step beyond it, and that of the first one began half a step before.
+TEST(DrivenPart, WorkDoesNotDependOnTheNumberOfDrives) {
+  double work[2] = {};
+  for (const int drives : {1, 60}) {
+    const auto s = simulate(blade_scene());
+    const DrivenPart part = DrivenPart::find(*s, "scalpel").value();
+    const double way = 0.012 / drives;
+    const std::int64_t steps = 600 / drives;
+    Pose to = part.pose(*s, 0);
+    for (int k = 0; k < drives; ++k) {
+      to.position[1] -= way;
+      part.drive(*s, to, static_cast<double>(steps) * s->dt());
+      s->advance(steps);
+    }
+    EXPECT_GT(s->topology_version(), 0);
+    work[drives == 1 ? 0 : 1] = s->press().work(0);
+  }
+  EXPECT_NEAR(work[1], work[0], 1e-6 * work[0]);
+}
+
 /// Until tissue gives way nothing differs but the order of sums.
 TEST(BladeInHand, OfTheWholeBodyIsTheFullModel) {
   const Felt felt = follow(blade_scene(), "scalpel", lowered(0.002, 0.05), {.rings = -1, .every = 7, .from = 14});

@@ -129,5 +129,20 @@ TEST(TakenBack, TheLogGivesTheSameBitsFromEverySettledState) {
   }
 }
 
+/// One sample asks for 0.3 m/s more than contact can follow through tissue, and the next ones for no way at all.
+TEST(TakenBack, AToolIsNotLeftBehindByASampleThatIsTooFast) {
+  std::vector<DeviceSample> jump = stroke(0.03, 1e9);
+  Simulation s(block_and_ball(), open_backend("cpu"), {.dt = 2e-4});
+  DriveLog log;
+  std::string said;
+  Lockstep lockstep(s, {{"ball", std::make_shared<Listening>(jump)}},
+                    {.patience = 0.01, .stop = {}, .remark = [&](const std::string& text) { said += text; }}, log);
+  run(s, lockstep, [] {});
+  EXPECT_EQ(lockstep.counts(0).refused, 0);
+  EXPECT_GT(lockstep.counts(0).limited, 0);
+  EXPECT_NE(said.find("tool 'ball': its device moves it faster"), std::string::npos) << said;
+  EXPECT_NEAR(s.contact().pose(0, s.time()).position[1], kTop - 0.03, 1e-12);
+}
+
 }  // namespace
 }  // namespace pliant::haptics::taken_back_test

@@ -40,9 +40,8 @@ Checkpoint sample() {
   s.state.focus = Vec3d{0, 0, 1};
   s.state.pressed["scalpel"] = {Vec3d{0, -1, 0}, {FrontSample{2, 1, {}, 0.5}}, 0.25, 0.125, 3, 0.5, 7, 8};
   s.state.kept->pressed = s.state.pressed;
-  s.state.driven_blades["scalpel"] = {
-      {{Vec3d{1, 2, 3}, Vec3d{4, 5, 6}}, {Vec3d{7, 8, 9}, Vec3d{1, 1, 1}}, 0.5, 1, false},
-      {{Vec3d{7, 8, 9}, Vec3d{1, 1, 1}}, {Vec3d{7, 8, 9}, Vec3d{1, 1, 1}}, 1, 1, true}};
+  s.state.driven_blades["scalpel"] = {{{Vec3d{1, 2, 3}, Vec3d{4, 5, 6}}, {Vec3d{7, 8, 9}, Vec3d{1, 1, 1}}, 0.5, 1, false},
+                                      {{Vec3d{7, 8, 9}, Vec3d{1, 1, 1}}, {Vec3d{7, 8, 9}, Vec3d{1, 1, 1}}, 1, 1, true}};
   s.state.driven["rod"] = {{{{1, 2, 3}, {0, 0, 0, 1}}, {{4, 5, 6}, {0, 0, 0, 1}}, 0.25, 0.75}};
   s.state.topology_version = 3;
   s.reports.now.inversions = {1, 2, 3, 4, 0.5, 6, "liver", 7};
@@ -144,8 +143,8 @@ TEST(Checkpoint, SaysWhatTheFileIs) {
   EXPECT_TRUE(contains(error_of(store(folder, std::string(200, 'a'))), "not a Pliant checkpoint"));
   write_checkpoint(folder.path() / "c", sample());
   std::string bytes = bytes_of(folder.path() / "c");
-  bytes[8] = 9;
-  EXPECT_TRUE(contains(error_of(store(folder, sealed(bytes))), "version 9"));
+  bytes[8] = 99;
+  EXPECT_TRUE(contains(error_of(store(folder, sealed(bytes))), "version 99"));
   Checkpoint c = sample();
   c.snapshot.real_type = "half";
   EXPECT_THROW(write_checkpoint(folder.path() / "c", c), Error);

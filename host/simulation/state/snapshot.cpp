@@ -206,6 +206,10 @@ std::uint64_t deep_hash(const Snapshot& snapshot) {
   return hash.value();
 }
 
+static void need(bool good, const char* what) {
+  if (!good) throw Error(ErrorCode::bad_input, fmt::format("its run state is damaged: {}", what));
+}
+
 /// Each drive begins after the one before.
 template <class Drive>
 static bool good_times(const std::vector<Drive>& drives) {
@@ -217,10 +221,28 @@ static bool good_times(const std::vector<Drive>& drives) {
   return !drives.empty();
 }
 
+static void check_drives(const RunState& state, const Scene& scene) {
+  for (const auto& [name, drives] : state.driven_blades) {
+    const bool known = std::any_of(scene.blades.begin(), scene.blades.end(), [&, own = &name](const Blade& b) {
+      return b.name == *own && b.cuts == BladeCuts::by_force;
+    });
+    need(known && good_times(drives), "a driven blade");
+    for (const BladeDrive& drive : drives) {
+      for (const BladeSegment& s : {drive.from, drive.to}) {
+        need(vec::finite(s[0]) && vec::finite(s[1]) && s[0] != s[1], "a driven blade is not finite or has no length");
+      }
+    }
+  }
+  const std::vector<ContactTool> tools = known_tools(scene, state.tools);
+  for (const auto& driven : state.driven) {
+    const bool known = std::any_of(tools.begin(), tools.end(), [&](const ContactTool& t) { return t.name == driven.first; });
+    const bool poses = std::all_of(driven.second.begin(), driven.second.end(),
+                                   [](const ToolDrive& d) { return good_pose(d.from) && good_pose(d.to); });
+    need(known && poses && good_times(driven.second), "a driven tool");
+  }
+}
+
 void check_state(const RunState& state, const Model& model, const Scene& scene) {
-  const auto need = [](bool good, const char* what) {
-    if (!good) throw Error(ErrorCode::bad_input, fmt::format("its run state is damaged: {}", what));
-  };
   const auto good_clock = [&](const Clock& c) {
     need(c.dt > 0 && std::isfinite(c.dt) && std::isfinite(c.origin_time), "its step is no positive, finite number");
     need(c.origin_step >= 0 && c.step >= c.origin_step && c.step < (std::int64_t{1} << 62), "its numbers of steps");
@@ -254,25 +276,7 @@ void check_state(const RunState& state, const Model& model, const Scene& scene) 
     need(f.body < model.bodies.size() && f.node >= 0 && vec::finite(f.force), "a force of the host");
   }
   need(!state.focus || vec::finite(*state.focus), "the focus is not finite");
-  for (const auto& [name, drives] : state.driven_blades) {
-    const bool known = std::any_of(scene.blades.begin(), scene.blades.end(), [&, own = &name](const Blade& b) {
-      return b.name == *own && b.cuts == BladeCuts::by_force;
-    });
-    need(known && good_times(drives), "a driven blade");
-    for (const BladeDrive& drive : drives) {
-      for (const BladeSegment& s : {drive.from, drive.to}) {
-        good_segment(s);
-        need(s[0] != s[1], "a driven blade has no length");
-      }
-    }
-  }
-  const std::vector<ContactTool> tools = known_tools(scene, state.tools);
-  for (const auto& driven : state.driven) {
-    const bool known = std::any_of(tools.begin(), tools.end(), [&](const ContactTool& t) { return t.name == driven.first; });
-    const bool poses = std::all_of(driven.second.begin(), driven.second.end(),
-                                   [](const ToolDrive& d) { return good_pose(d.from) && good_pose(d.to); });
-    need(known && poses && good_times(driven.second), "a driven tool");
-  }
+  check_drives(state, scene);
   need((state.offset.empty() || state.offset.size() == 3 * static_cast<std::size_t>(model.slots)) &&
            std::all_of(state.offset.begin(), state.offset.end(), [](double o) { return std::isfinite(o); }),
        "how far loose pieces have flown");
