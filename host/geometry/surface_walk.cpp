@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <utility>
 
 #include "geometry/vec.h"
@@ -46,21 +45,22 @@ struct SurfaceWalk::Section {
 };
 
 SurfaceWalk::SurfaceWalk(TriangleMesh mesh) : mesh_(std::move(mesh)), tree_(mesh_), next_(mesh_.triangles.size()) {
-  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> along;  // the triangle with a directed edge; -1: several
-  const auto edge = [&](std::size_t t, std::size_t k) {
-    return std::pair(mesh_.triangles[t][k], mesh_.triangles[t][(k + 1) % 3]);
+  struct DirectedEdge {
+    std::int32_t a = 0, b = 0, triangle = 0;
+    [[nodiscard]] bool operator<(const DirectedEdge& e) const { return std::pair(a, b) < std::pair(e.a, e.b); }
   };
+  std::vector<DirectedEdge> edges;
   for (std::size_t t = 0; t < next_.size(); ++t) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto [known, fresh] = along.try_emplace(edge(t, k), static_cast<std::int32_t>(t));
-      if (!fresh) known->second = -1;
-    }
+    for (std::size_t k = 0; k < 3; ++k)
+      edges.push_back({mesh_.triangles[t][k], mesh_.triangles[t][(k + 1) % 3], static_cast<std::int32_t>(t)});
   }
+  std::sort(edges.begin(), edges.end());
   for (std::size_t t = 0; t < next_.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto [a, b] = edge(t, k);
-      const auto other = along.find({b, a});
-      next_[t][k] = other == along.end() || along.at({a, b}) < 0 ? -1 : other->second;
+      const std::int32_t a = mesh_.triangles[t][k], b = mesh_.triangles[t][(k + 1) % 3];
+      const auto own = std::equal_range(edges.begin(), edges.end(), DirectedEdge{a, b});
+      const auto other = std::equal_range(edges.begin(), edges.end(), DirectedEdge{b, a});
+      next_[t][k] = own.second - own.first == 1 && other.second - other.first == 1 ? other.first->triangle : -1;
     }
   }
 }

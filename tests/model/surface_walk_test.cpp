@@ -58,7 +58,13 @@ std::vector<std::int32_t> walked(const SurfaceWalk& walk, const Vec3d& from, con
     const SurfacePoint next = on(walk, vec::add(from, vec::mul(vec::sub(to, from), static_cast<double>(i) / steps)));
     const auto way = walk.way(at, next, 10 * vec::norm(vec::sub(next.at, at.at)));
     EXPECT_TRUE(way.has_value());
-    for (const std::int32_t v : names(walk.vertices(way.value_or(std::vector<WayPart>{}), all.back()))) all.push_back(v);
+    for (const VertexOnWay& v : walk.vertices(way.value_or(std::vector<WayPart>{}), all.back())) {
+      const auto far = [&](std::int32_t n) {
+        return vec::norm(vec::sub(walk.mesh().vertices[static_cast<std::size_t>(n)], v.at));
+      };
+      EXPECT_NEAR(far(v.vertex), far(all.back()), 1e-6) << "it changes where both are as near";
+      all.push_back(v.vertex);
+    }
     at = next;
   }
   return all;

@@ -33,36 +33,30 @@ void CutStrokes::start(const Model& uncut) {
   for (const ModelBody& body : uncut.bodies) {
     OwnSurface own;
     own.first_vertex = body.first_vertex;
-    own.triangles = body.triangles;
     const auto vertex = all.rest.begin() + body.first_vertex;
-    own.mesh.vertices.assign(vertex, vertex + body.vertices);
+    TriangleMesh mesh;
+    mesh.vertices.assign(vertex, vertex + body.vertices);
     const auto triangle = all.triangles.begin() + body.first_triangle;
-    own.mesh.triangles.assign(triangle, triangle + body.triangles);
-    for (auto& t : own.mesh.triangles) {
+    mesh.triangles.assign(triangle, triangle + body.triangles);
+    for (auto& t : mesh.triangles) {
       for (std::int32_t& v : t) v -= body.first_vertex;
     }
+    if (!mesh.triangles.empty()) own.walk = std::make_unique<SurfaceWalk>(std::move(mesh));
     surfaces_.push_back(std::move(own));
   }
-}
-
-const SurfaceWalk& CutStrokes::walk(std::int32_t body) {
-  OwnSurface& own = surfaces_[static_cast<std::size_t>(body)];
-  if (own.walk == nullptr) own.walk = std::make_unique<SurfaceWalk>(std::move(own.mesh));
-  return *own.walk;
 }
 
 /// The weight of a sample falls to zero with its depth, so that the point of contact moves smoothly as samples come and go: of
 /// an edge that enters the body the place where it does, of one that lies on it the middle.
 std::vector<CutStrokes::Meeting> CutStrokes::meetings(const std::vector<FrontSample>& samples, const std::vector<char>& held,
-                                                      EditedBodies& bodies, const std::vector<std::vector<Vec3d>>& x) {
+                                                      EditedBodies& bodies, const std::vector<std::vector<Vec3d>>& x) const {
   std::vector<Meeting> all;
   const double shallow = kShallow * run_.settings.blade_edge;
   std::size_t last = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const FrontSample& s = samples[i];
-    const bool in_contact =
-        touches(s, i < held.size() && held[i] != 0) && surfaces_[static_cast<std::size_t>(s.body)].triangles > 0;
-    const double weight = in_contact ? 1 - walk(s.body).closest(s.point.rest).distance / shallow : 0;
+    const bool in_contact = touches(s, i < held.size() && held[i] != 0) && surface(s.body).walk != nullptr;
+    const double weight = in_contact ? 1 - surface(s.body).walk->closest(s.point.rest).distance / shallow : 0;
     if (!(weight > 0)) continue;
     const auto b = static_cast<std::size_t>(s.body);
     if (all.empty() || i > last + kNextTo || all.back().body != s.body) all.emplace_back().body = s.body;
@@ -76,7 +70,7 @@ std::vector<CutStrokes::Meeting> CutStrokes::meetings(const std::vector<FrontSam
   for (Meeting& m : all) {
     m.rest = vec::mul(m.rest, 1 / m.weight);
     m.place = vec::mul(m.place, 1 / m.weight);
-    const ClosestPoint foot = walk(m.body).closest(m.rest);
+    const ClosestPoint foot = surface(m.body).walk->closest(m.rest);
     m.foot = {foot.triangle, foot.point};
   }
   return all;
@@ -84,7 +78,7 @@ std::vector<CutStrokes::Meeting> CutStrokes::meetings(const std::vector<FrontSam
 
 /// Walks over the surface to a meeting and adds the attempts on the way to `made`. Returns false if the way is no way of one
 /// stroke.
-bool CutStrokes::go_on(StrokeContact& contact, const Meeting& to, std::vector<StrokeAttempt>& made) {
+bool CutStrokes::go_on(StrokeContact& contact, const Meeting& to, std::vector<StrokeAttempt>& made) const {
   const double straight = vec::norm(vec::sub(to.foot.at, contact.rest)), edge = run_.settings.blade_edge;
   const double before = contact.time, now = run_.state.clock.time();
   if (straight < kAtRest * edge) {
@@ -92,14 +86,13 @@ bool CutStrokes::go_on(StrokeContact& contact, const Meeting& to, std::vector<St
     return true;
   }
   if (straight > kFarthest * edge) return false;
-  const SurfaceWalk& surface = walk(to.body);
-  const auto way = surface.way({contact.triangle, contact.rest}, to.foot, kDetour * straight);
+  const OwnSurface& own = surface(to.body);
+  const auto way = own.walk->way({contact.triangle, contact.rest}, to.foot, kDetour * straight);
   if (!way) return false;
-  const std::int32_t first = surfaces_[static_cast<std::size_t>(to.body)].first_vertex;
-  for (const VertexOnWay& v : surface.vertices(*way, contact.vertex - first)) {
+  for (const VertexOnWay& v : own.walk->vertices(*way, contact.vertex - own.first_vertex)) {
     const Vec3d place = vec::add(contact.place, vec::mul(vec::sub(to.place, contact.place), v.share));
-    made.push_back({contact.stroke, to.body, contact.vertex, v.vertex + first, before + v.share * (now - before), place, v.at,
-                    to.gave_way});
+    made.push_back({contact.stroke, to.body, contact.vertex, v.vertex + own.first_vertex, before + v.share * (now - before),
+                    place, v.at, to.gave_way});
     contact.vertex = made.back().to;
   }
   contact.triangle = to.foot.triangle;
@@ -116,7 +109,8 @@ void CutStrokes::look(const std::string& blade, const std::vector<FrontSample>& 
   if (now.empty() && (known == report_.strokes.end() || known->second.contacts.empty())) return;
   BladeStrokes& own = report_.strokes[blade];
   std::erase_if(own.contacts, [&](const StrokeContact& c) {  // of a damaged checkpoint
-    return c.triangle < 0 || c.triangle >= surfaces_[static_cast<std::size_t>(c.body)].triangles;
+    const SurfaceWalk* walk = surface(c.body).walk.get();
+    return walk == nullptr || c.triangle < 0 || static_cast<std::size_t>(c.triangle) >= walk->mesh().triangles.size();
   });
   std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;  // distance, contact, meeting
   for (std::size_t c = 0; c < own.contacts.size(); ++c) {
@@ -136,8 +130,8 @@ void CutStrokes::look(const std::string& blade, const std::vector<FrontSample>& 
   }
   for (std::size_t m = 0; m < now.size(); ++m) {
     if (met[m] != 0) continue;
-    const std::int32_t vertex =
-        surfaces_[static_cast<std::size_t>(now[m].body)].first_vertex + walk(now[m].body).vertex_at(now[m].foot);
+    const OwnSurface& met_surface = surface(now[m].body);
+    const std::int32_t vertex = met_surface.first_vertex + met_surface.walk->vertex_at(now[m].foot);
     next.push_back(
         {own.strokes++, now[m].body, now[m].foot.triangle, vertex, now[m].foot.at, now[m].place, run_.state.clock.time()});
   }

@@ -32,14 +32,13 @@ class CutStrokes {
     SurfacePoint foot{};  ///< `rest` taken to the surface
   };
   struct OwnSurface {
-    TriangleMesh mesh;  ///< until there is a `walk`, which is made when a blade first comes
-    std::int32_t first_vertex = 0, triangles = 0;
-    std::unique_ptr<SurfaceWalk> walk;
+    std::int32_t first_vertex = 0;
+    std::unique_ptr<SurfaceWalk> walk;  ///< null: it has no surface
   };
-  [[nodiscard]] const SurfaceWalk& walk(std::int32_t body);
+  [[nodiscard]] const OwnSurface& surface(std::int32_t body) const { return surfaces_[static_cast<std::size_t>(body)]; }
   [[nodiscard]] std::vector<Meeting> meetings(const std::vector<FrontSample>& samples, const std::vector<char>& held,
-                                              EditedBodies& bodies, const std::vector<std::vector<Vec3d>>& x);
-  [[nodiscard]] bool go_on(StrokeContact& contact, const Meeting& to, std::vector<StrokeAttempt>& made);
+                                              EditedBodies& bodies, const std::vector<std::vector<Vec3d>>& x) const;
+  [[nodiscard]] bool go_on(StrokeContact& contact, const Meeting& to, std::vector<StrokeAttempt>& made) const;
 
   RunContext& run_;
   RunReport& report_;
