@@ -261,6 +261,8 @@ void bind_world(py::module_& m) {
            Free())
       .def("blade_forces", &blade_forces,
            "a dict of the blades that cut by force: of each a dict of its place and what it feels")
+      .def("cut_attempts", &cut_attempts,
+           "a list of dicts with the fields of CutAttempt: from which vertex to which these blades went since the last call")
       .def("pieces", &World::pieces, py::arg("body") = 0, Free())
       .def("save", &World::save, py::arg("file"), Free())
       .def("load", &World::load, py::arg("file"), Free())

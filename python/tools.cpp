@@ -120,6 +120,24 @@ py::dict blade_forces(const pliant::World& w) {
   return d;
 }
 
+py::list cut_attempts(pliant::World& w) {
+  py::list all;
+  for (const pliant::CutAttempt& a : w.cut_attempts()) {
+    py::dict attempt;
+    attempt["blade"] = a.blade;
+    attempt["body"] = a.body;
+    attempt["stroke"] = a.stroke;
+    attempt["from"] = a.from;
+    attempt["to"] = a.to;
+    attempt["time"] = a.time;
+    attempt["position"] = row(a.position);
+    attempt["rest"] = row(a.rest);
+    attempt["gave_way"] = a.gave_way;
+    all.append(attempt);
+  }
+  return all;
+}
+
 void bind_tools(py::class_<pliant::World>& world) {
   using pliant::World;
   using Free = py::call_guard<py::gil_scoped_release>;

@@ -19,12 +19,13 @@ namespace pliant::api {
 struct CWorld {
   explicit CWorld(World w) : world(std::move(w)) {}
   World world;
-  std::mutex mutex;                        ///< protects the following members against concurrent calls
-  std::map<std::uint64_t, FramePtr> seen;  ///< last frame of each consumer, which keeps its pointers valid
-  std::set<std::string> names;             ///< storage of returned names of tools and bodies
-  std::vector<ProbeValue> probes;          ///< storage of returned probe values
-  std::deque<Event> waiting_events;        ///< not returned yet
-  std::vector<Event> events;               ///< storage of returned events
+  std::mutex mutex;                         ///< protects the following members against concurrent calls
+  std::map<std::uint64_t, FramePtr> seen;   ///< last frame of each consumer, which keeps its pointers valid
+  std::set<std::string> names;              ///< storage of returned names of tools and bodies
+  std::vector<ProbeValue> probes;           ///< storage of returned probe values
+  std::deque<Event> waiting_events;         ///< not returned yet
+  std::vector<Event> events;                ///< storage of returned events
+  std::deque<CutAttempt> waiting_attempts;  ///< not returned yet
 };
 
 struct CDevice {

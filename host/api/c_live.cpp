@@ -78,6 +78,33 @@ pliant_status pliant_world_events(pliant_world world, pliant_event* out, size_t 
   });
 }
 
+pliant_status pliant_world_cut_attempts(pliant_world world, pliant_cut_attempt* out, size_t count, size_t* given) {
+  return on(world, [&](CWorld& w) {
+    need(given, "given");
+    check_array(out, count, "pliant_cut_attempt");
+    const std::vector<pliant::CutAttempt> fresh = w.world.cut_attempts();
+    const std::lock_guard lock(w.mutex);
+    w.waiting_attempts.insert(w.waiting_attempts.end(), fresh.begin(), fresh.end());
+    while (w.waiting_attempts.size() > EventLog::kMost) w.waiting_attempts.pop_front();
+    *given = std::min(count, w.waiting_attempts.size());
+    for (std::size_t i = 0; i < *given; ++i) {
+      const pliant::CutAttempt& a = w.waiting_attempts.front();
+      pliant_cut_attempt attempt{};
+      attempt.blade = w.names.insert(a.blade).first->c_str();
+      attempt.body = w.names.insert(a.body).first->c_str();
+      attempt.stroke = a.stroke;
+      attempt.time = a.time;
+      std::copy(a.position.begin(), a.position.end(), attempt.position);
+      std::copy(a.rest.begin(), a.rest.end(), attempt.rest);
+      attempt.from = a.from;
+      attempt.to = a.to;
+      attempt.gave_way = a.gave_way ? 1 : 0;
+      give_struct(attempt, element(out, i));
+      w.waiting_attempts.pop_front();
+    }
+  });
+}
+
 pliant_status pliant_world_force_trace(pliant_world world, const char* tool, int64_t after, pliant_force_sample* out,
                                        size_t count, size_t* needed) {
   return on(world, [&](CWorld& w) {

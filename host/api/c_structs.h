@@ -39,6 +39,7 @@ PLIANT_C_STRUCT(pliant_cut, mass_lost);
 PLIANT_C_STRUCT(pliant_probe_value, number_count);
 PLIANT_C_STRUCT(pliant_tool_force, reserved);
 PLIANT_C_STRUCT(pliant_blade_force, pressing);
+PLIANT_C_STRUCT(pliant_cut_attempt, reserved);
 PLIANT_C_STRUCT(pliant_interpenetration, reserved);
 PLIANT_C_STRUCT(pliant_picked_point, reserved);
 PLIANT_C_STRUCT(pliant_live_options, speed);

@@ -45,6 +45,13 @@ std::vector<Event> EventLog::take() {
   return events;
 }
 
+std::vector<CutAttempt> EventLog::take_attempts() {
+  const std::lock_guard lock(mutex_);
+  std::vector<CutAttempt> attempts(std::make_move_iterator(attempts_.begin()), std::make_move_iterator(attempts_.end()));
+  attempts_.clear();
+  return attempts;
+}
+
 void EventLog::renew(const Simulation& simulation) {
   const RunReport& report = simulation.report();
   opened_ = simulation.state().opened;
@@ -57,6 +64,8 @@ void EventLog::renew(const Simulation& simulation) {
   deep_.clear();
   gave_way_.clear();
   for (const auto& [name, blade] : simulation.state().pressed) gave_way_[name] = blade.first >= 0;
+  attempts_seen_.clear();
+  for (const auto& [name, strokes] : report.strokes) attempts_seen_[name] = strokes.attempts;
 }
 
 void EventLog::look_at_pieces(const Simulation& simulation) {
@@ -100,6 +109,19 @@ void EventLog::look_at_blades(const Simulation& simulation) {
   }
 }
 
+void EventLog::look_at_strokes(const Simulation& simulation) {
+  for (const auto& [name, strokes] : simulation.report().strokes) {
+    const std::int64_t seen = std::exchange(attempts_seen_[name], strokes.attempts);
+    if (seen >= strokes.attempts) continue;
+    const std::lock_guard lock(mutex_);
+    strokes.after(seen, [&, blade = &name](const StrokeAttempt& a) {
+      if (attempts_.size() == kMost) attempts_.pop_front();
+      const std::string& body = simulation.scene().bodies[static_cast<std::size_t>(a.body)].name;
+      attempts_.push_back({*blade, body, a.stroke, a.from, a.to, a.time, a.place, a.rest, a.gave_way});
+    });
+  }
+}
+
 void EventLog::look(const Simulation& simulation) {
   const RunReport& report = simulation.report();
   const Inversions& inverted = report.inversions;
@@ -122,6 +144,7 @@ void EventLog::look(const Simulation& simulation) {
   }
   look_at_tools(simulation);
   look_at_blades(simulation);
+  look_at_strokes(simulation);
   const bool diverged = simulation.divergence().has_value();
   if (!std::exchange(diverged_, diverged) && diverged) {
     const Divergence& d = *simulation.divergence();

@@ -1,4 +1,4 @@
-// Events of a World, detected between batches. Private to host/api and its tests.
+// Events and cutting attempts of a World, detected between batches. Private to host/api and its tests.
 #pragma once
 #include <deque>
 #include <map>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "pliant/live.h"
+#include "pliant/tool.h"
 #include "simulation/simulation.h"
 
 namespace pliant::api {
@@ -29,11 +30,13 @@ class EventLog {
   /// The same at the simulation's current time.
   void add(const Simulation& simulation, Event event);
   std::vector<Event> take();
+  std::vector<CutAttempt> take_attempts();
 
  private:
   void look_at_pieces(const Simulation& simulation);
   void look_at_tools(const Simulation& simulation);
   void look_at_blades(const Simulation& simulation);
+  void look_at_strokes(const Simulation& simulation);
 
   // Used by the stepping thread.
   std::int64_t opened_ = 0, topology_ = 0, calmed_ = 0, inverted_ = 0, made_again_ = 0;
@@ -41,9 +44,11 @@ class EventLog {
   std::vector<std::int64_t> pieces_;      ///< [bodies]
   std::map<std::string, bool> deep_;      ///< tools that are deep in tissue
   std::map<std::string, bool> gave_way_;  ///< blades to which tissue has given way
+  std::map<std::string, std::int64_t> attempts_seen_;
 
   std::mutex mutex_;
   std::deque<Event> events_;
+  std::deque<CutAttempt> attempts_;
 };
 
 }  // namespace pliant::api

@@ -181,6 +181,11 @@ std::vector<BladeForce> World::blade_forces() const {
   return impl_->force_blades.forces();
 }
 
+std::vector<CutAttempt> World::cut_attempts() {
+  const api::Call call(impl_, false);
+  return impl_->events.take_attempts();
+}
+
 std::int64_t World::pieces(std::size_t body) const {
   const api::Call call(impl_);
   return pieces_of(impl_->simulation->model().bodies[api::check_body(*impl_, body)]);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "backends/choice/backends.h"
+#include "cli/attempt_report.h"
 #include "cli/checked_model.h"
 #include "cli/cli.h"
 #include "cli/energy_report.h"
@@ -235,7 +236,10 @@ class Run {
     scene_probes_.write_each(*simulation_, frames_->folder(), stem_);
     write_tools();
   }
-  void write_tools() { tools_.write(*simulation_, frames_->folder() / (stem_ + "_tools.csv")); }
+  void write_tools() {
+    tools_.write(*simulation_, frames_->folder() / (stem_ + "_tools.csv"));
+    attempts_.write(*simulation_, frames_->folder() / (stem_ + "_attempts.csv"));
+  }
 
   /// A disk that is full for a while does not end a run; the checkpoint before stays.
   void save_on_the_way() {
@@ -276,6 +280,7 @@ class Run {
   std::optional<FrameWriter> frames_;
   Probes probes_, scene_probes_;
   ToolTable tools_;
+  AttemptTable attempts_;
   std::optional<EnergyReport> energy_;
   std::optional<LiveRun> live_;
   RunResult result_;

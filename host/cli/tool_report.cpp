@@ -6,24 +6,14 @@
 #include <algorithm>
 #include <utility>
 
+#include "cli/attempt_report.h"
+#include "cli/csv_text.h"
 #include "geometry/vec.h"
 #include "io/atomic_file.h"
 #include "scene/blade_face.h"
 #include "simulation/measure/interpenetration.h"
 
 namespace pliant::cli {
-namespace {
-
-/// A field of a table: in quotation marks, its own doubled, where it would be more than one (RFC 4180).
-std::string csv_text(const std::string& text) {
-  if (text.find_first_of(",\"") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
-  return out + '"';
-}
-
-}  // namespace
-
 void add_tools(const Simulation& simulation, nlohmann::ordered_json& json) {
   const Scene& scene = simulation.scene();
   const std::vector<ContactTool>& tools = simulation.contact().tools();
@@ -98,6 +88,7 @@ void add_blades(const Simulation& simulation, nlohmann::ordered_json& json) {
          {"gave_way", blade.first < 0 ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(blade.first)},
          {"by_contact", blade.by_contact},
          {"by_stress", blade.by_stress}});
+    add_attempts(simulation, names[b], json["blades"].back());
     if (!simulation.press().faces(b).empty()) json["blades"].back()["faces"] = faces_json(simulation, b);
   }
 }

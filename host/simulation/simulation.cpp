@@ -212,7 +212,7 @@ void Simulation::take_over(const Snapshot& snapshot) {
                                                   other));
   }
   check_state(next, *model, scene_);
-  check_report(snapshot.reports, next, scene.tools.size());
+  check_report(snapshot.reports, next, scene);
   check_buffers(snapshot, program);
   const Snapshot before = this->snapshot();
   const std::shared_ptr<const Model> old_model = loaded_.shared_model();

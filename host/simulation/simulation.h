@@ -186,7 +186,7 @@ class Simulation {
   Drift drift_{run_};
   HostLoads loads_{run_};
   ToolContact contact_{run_, reports_.now};
-  TopologyEdits edits_{run_, step_, loads_};
+  TopologyEdits edits_{run_, step_, loads_, reports_.now};
   BladePress press_{run_, edits_, contact_};
   ToolEdits tools_{run_, contact_};
   ParameterEdits parameters_{scene_, run_, step_, edits_, reports_};

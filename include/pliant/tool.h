@@ -80,6 +80,20 @@ struct BladeForce : Wrench {
   double face_work = 0;    ///< of the work, that of its faces [J]
 };
 
+/// A potential cutting attempt: the surface vertex in contact with the edge of a blade that cuts by force has changed
+/// (docs/cutting.md). Vertices are those of frames before any cut (BodyInfo::vertices).
+struct CutAttempt {
+  std::string blade;        ///< name in the scene
+  std::string body;         ///< name in the scene
+  std::int64_t stroke = 0;  ///< of the blade, counted from 0; a new one begins where the blade comes to the surface
+  std::int32_t from = 0;    ///< vertex that was in contact
+  std::int32_t to = 0;      ///< vertex that is
+  double time = 0;          ///< [s]
+  Vec3d position{};         ///< of the point of contact [m]
+  Vec3d rest{};             ///< the same place on the undeformed surface [m]
+  bool gave_way = false;    ///< true if tissue had given way there, false if the blade pressed on it
+};
+
 /// The overlap of a tool and a body, or of two bodies (docs/contact.md).
 struct Interpenetration {
   std::string first;   ///< name of a tool or a body

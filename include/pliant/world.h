@@ -3,8 +3,8 @@
 // Threads: a World may be used from any thread, but only by one at a time; concurrent calls throw Error (state). Worlds share
 // no state: each may have its own thread, and results do not depend on other Worlds. The first step_async() or
 // advance_async() starts a worker thread. These calls do not wait while it is busy: busy, poll, frame, frame_since, pick,
-// info, time, step_number, dt, stable_dt, live_state, events, force_trace, the tools, cut, the blades, step_async,
-// advance_async, run_live. All others wait. Any number of threads may read a Frame.
+// info, time, step_number, dt, stable_dt, live_state, events, cut_attempts, force_trace, the tools, cut, the blades,
+// step_async, advance_async, run_live. All others wait. Any number of threads may read a Frame.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -167,14 +167,14 @@ class PLIANT_API World {
   /// Moves a named blade to the segment from `a` to `b` [m]; the ends must differ (usage). It cuts the surface that it sweeps
   /// since its last position, which is carried along with the tissue. The first call for a name only places the blade.
   CutResult move_blade(const std::string& blade, const Vec3d& a, const Vec3d& b);
-  /// Lifts a blade: its next move_blade() places it without cutting; one that cuts by force is nowhere until it is driven.
-  /// Throws Error (usage) if there is no such blade.
+  /// Lifts a blade: its next move_blade() places it without cutting; one by force is nowhere until driven. Throws usage.
   void lift_blade(const std::string& blade);
   /// Moves a blade that cuts by force (docs/cutting.md) to the segment from `a` to `b` [m] within `seconds`; one that is
   /// nowhere is there at once. Its path ends. Throws as drive_tool(); input: longer than on its path, or too fast.
   void drive_blade(const std::string& blade, const Vec3d& a, const Vec3d& b, double seconds = 1.0 / 60);
   [[nodiscard]] std::vector<BladeForce> blade_forces() const;  ///< those blades, in scene order; does not wait
-  [[nodiscard]] std::int64_t pieces(std::size_t body) const;   ///< number of sets of elements of a body that share nodes
+  std::vector<CutAttempt> cut_attempts();  ///< since the last call, oldest first, 1024 at most; does not wait
+  [[nodiscard]] std::int64_t pieces(std::size_t body) const;  ///< number of sets of elements of a body that share nodes
 
   /// Writes a checkpoint, which `pliant run --resume` can read too. It includes cuts and the positions of blades, but not
   /// grabs and pushes, which belong to the World. Throws Error: io.

@@ -206,6 +206,120 @@ TEST(BladeForce, WhatCannotBeIsOneMessage) {
   EXPECT_EQ(world.hash(), before);
 }
 
+/// The edge comes through the side of the block and goes along its top, which has vertices every 4 mm.
+World drawn() { return driven("[[0, -0.065, 0.01, 0.003, -0.065, 0.03, 0.003], [0.6, 0.0, 0.01, 0.003, 0.0, 0.03, 0.003]]"); }
+
+TEST(CutAttempts, TellTheWayOverTheSurface) {
+  World world = drawn();
+  const FramePtr uncut = world.frame();
+  std::vector<CutAttempt> all;
+  for (int i = 0; i < 12; ++i) {
+    world.advance(0.05);
+    for (const CutAttempt& a : world.cut_attempts()) all.push_back(a);
+  }
+  EXPECT_TRUE(world.cut_attempts().empty()) << "each is told once";
+  ASSERT_GE(all.size(), 3U);
+  const BodyInfo& body = world.info().bodies[0];
+  for (const CutAttempt& a : all) {
+    EXPECT_EQ(a.blade, "scalpel");
+    EXPECT_EQ(a.body, "block");
+    EXPECT_NE(a.from, a.to);
+    ASSERT_TRUE(static_cast<std::size_t>(a.to) >= body.vertices.first &&
+                static_cast<std::size_t>(a.to) < body.vertices.first + body.vertices.count);
+    const auto& to = uncut->positions[static_cast<std::size_t>(a.to)];
+    const auto& from = uncut->positions[static_cast<std::size_t>(a.from)];
+    const auto far = [&](const std::array<float, 4>& v) {
+      return std::hypot(a.rest[0] - v[0], a.rest[1] - v[1], a.rest[2] - v[2]);
+    };
+    EXPECT_NEAR(far(to), far(from), 1e-5) << "it passes from one to the other where both are as near";
+    EXPECT_GT(a.time, 0);
+    EXPECT_LE(a.time, world.time());
+    EXPECT_LT(std::abs(a.position[2] - 0.003), 0.003);
+  }
+  EXPECT_TRUE(all.back().gave_way);
+}
+
+TEST(CutAttempts, AreThoseAfterTheCheckpoint) {
+  const test::TempFolder folder;
+  const std::string file = (folder.path() / "state.pckpt").string();
+  World world = drawn(), other = drawn();
+  world.advance(0.4);
+  EXPECT_FALSE(world.cut_attempts().empty());
+  world.save(file);
+  other.load(file);
+  EXPECT_TRUE(other.cut_attempts().empty());
+  world.advance(0.19);
+  other.advance(0.19);
+  const std::vector<CutAttempt> own = world.cut_attempts(), resumed = other.cut_attempts();
+  ASSERT_EQ(own.size(), resumed.size());
+  EXPECT_FALSE(own.empty());
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    EXPECT_EQ(own[i].to, resumed[i].to);
+    EXPECT_EQ(own[i].time, resumed[i].time);
+    EXPECT_EQ(own[i].stroke, resumed[i].stroke);
+  }
+  world.reset();
+  world.advance(0.4);
+  EXPECT_FALSE(world.cut_attempts().empty());
+}
+
+/// Lifted and placed again a short way beside, the blade begins another stroke.
+TEST(CutAttempts, ALiftedBladeBeginsAnotherStroke) {
+  World world = driven("[[0, -0.065, 0.01, 0.003, -0.065, 0.03, 0.003]]");
+  const auto draw = [&](double z) {
+    world.drive_blade("scalpel", {-0.065, 0.01, z}, {-0.065, 0.03, z});
+    world.step(1);
+    world.drive_blade("scalpel", {-0.048, 0.01, z}, {-0.048, 0.03, z}, 0.2);
+    world.advance(0.2);
+    return world.cut_attempts();
+  };
+  const std::vector<CutAttempt> first = draw(0.003);
+  ASSERT_FALSE(first.empty());
+  world.lift_blade("scalpel");
+  const std::vector<CutAttempt> second = draw(0.012);
+  ASSERT_FALSE(second.empty());
+  for (const CutAttempt& a : second) EXPECT_GT(a.stroke, first.back().stroke);
+}
+
+TEST(CutAttempts, InC) {
+  const std::string folder = test::source_dir() + "/scenes";
+  std::string text = driven_scene;
+  text.replace(text.find("PATH"), 4,
+               "[[0, -0.065, 0.01, 0.003, -0.065, 0.03, 0.003], [0.6, 0.0, 0.01, 0.003, 0.0, 0.03, 0.003]]");
+  pliant_options options = PLIANT_OPTIONS_INIT;
+  options.backend = "cpu";
+  pliant_world world{};
+  ASSERT_EQ(pliant_world_parse(text.c_str(), folder.c_str(), nullptr, 0, &options, &world), PLIANT_OK) << pliant_last_error();
+  EXPECT_EQ(pliant_world_advance(world, 0.59, nullptr), PLIANT_OK) << pliant_last_error();
+  World same = drawn();
+  same.advance(0.59);
+  const std::vector<CutAttempt> expected = same.cut_attempts();
+  ASSERT_GE(expected.size(), 3U);
+  std::size_t given = 0;
+  test::expect_checked<pliant_cut_attempt>(
+      PLIANT_CUT_ATTEMPT_INIT, [&](pliant_cut_attempt* a) { return pliant_world_cut_attempts(world, a, 1, &given); });
+  std::size_t at = 2;  // the check has taken two
+  while (given > 0) {
+    pliant_cut_attempt two[2] = {PLIANT_CUT_ATTEMPT_INIT, PLIANT_CUT_ATTEMPT_INIT};
+    ASSERT_EQ(pliant_world_cut_attempts(world, two, 2, &given), PLIANT_OK) << pliant_last_error();
+    ASSERT_LE(at + given, expected.size());
+    for (std::size_t i = 0; i < given; ++i) {
+      const CutAttempt& e = expected[at++];
+      EXPECT_EQ(two[i].blade, e.blade);
+      EXPECT_EQ(two[i].body, e.body);
+      EXPECT_EQ(two[i].stroke, e.stroke);
+      EXPECT_EQ(two[i].from, e.from);
+      EXPECT_EQ(two[i].to, e.to);
+      EXPECT_EQ(two[i].time, e.time);
+      EXPECT_EQ(two[i].gave_way != 0, e.gave_way);
+      EXPECT_TRUE(std::equal(e.position.begin(), e.position.end(), two[i].position));
+      EXPECT_TRUE(std::equal(e.rest.begin(), e.rest.end(), two[i].rest));
+    }
+  }
+  EXPECT_EQ(at, expected.size()) << "those that did not fit have waited";
+  EXPECT_EQ(pliant_world_destroy(world), PLIANT_OK);
+}
+
 TEST(BladeForce, InC) {
   const std::string folder = test::source_dir() + "/scenes";
   std::string text = driven_scene;

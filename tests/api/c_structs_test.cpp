@@ -57,6 +57,7 @@ TEST(CStructSizes, AreThoseOfTheFirstVersion) {
   EXPECT_EQ(api::CStruct<pliant_probe_value>::first_size, 40U);
   EXPECT_EQ(api::CStruct<pliant_tool_force>::first_size, 144U);
   EXPECT_EQ(api::CStruct<pliant_blade_force>::first_size, 152U);
+  EXPECT_EQ(api::CStruct<pliant_cut_attempt>::first_size, 104U);
   EXPECT_EQ(api::CStruct<pliant_interpenetration>::first_size, 112U);
   EXPECT_EQ(api::CStruct<pliant_picked_point>::first_size, 112U);
   EXPECT_EQ(api::CStruct<pliant_live_options>::first_size, 24U);

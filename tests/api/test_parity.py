@@ -70,7 +70,7 @@ BEYOND = {
 }
 PYTHON_NAMES = {"backends": "backend_names", "__version__": "version", "World::__init__": "World::World"}
 STRUCTS = {"WorldOptions": "options", "StepReport": "report", "CutResult": "cut", "WorldInfo": "info", "BodyInfo": "body", "Frame": "frame",
-           "ProbeValue": "probe_value", "ToolForce": "tool_force", "BladeForce": "blade_force", "Interpenetration": "interpenetration", "PickedPoint": "picked_point", "LiveState": "live_state",
+           "ProbeValue": "probe_value", "ToolForce": "tool_force", "BladeForce": "blade_force", "CutAttempt": "cut_attempt", "Interpenetration": "interpenetration", "PickedPoint": "picked_point", "LiveState": "live_state",
            "LiveOptions": "live_options", "Event": "event", "ForceSample": "force_sample", "HapticOptions": "haptic_options", "HapticSample": "haptic_sample",
            "HapticState": "haptic_state", "DeviceSample": "device_sample", "DeviceWrench": "device_wrench", "DeviceLimits": "device_limits",
            "DeviceCounts": "device_counts"}
@@ -167,9 +167,9 @@ def python():
     for name, function in {"StepReport": "bind_report", "Frame": "bind_frame"}.items():
         found |= {f"{name}.{n}" for n in re.findall(define, block(text, f"void {function}("))}
     for name, variable, function in (("WorldInfo", "d", "info"), ("BodyInfo", "body", "info"), ("CutResult", "d", "result"), ("PickedPoint", "d", "picked"),
-                                     ("LiveState", "live", "live_state"), ("Event", "event", "events"), ("ToolForce", "tool", "tool_forces"), ("BladeForce", "blade", "blade_forces"),
+                                     ("LiveState", "live", "live_state"), ("Event", "event", "events"), ("ToolForce", "tool", "tool_forces"), ("BladeForce", "blade", "blade_forces"), ("CutAttempt", "attempt", "cut_attempts"),
                                      ("Interpenetration", "found", "interpenetrations")):
-        kind = "list" if name in ("Interpenetration", "Event") else "dict"
+        kind = "list" if name in ("Interpenetration", "Event", "CutAttempt") else "dict"
         found |= {f"{name}.{n}" for n in re.findall(rf'\b{variable}\["(\w+)"\] =', block(text, f"py::{kind} {function}("))}
     found |= {f"LiveOptions.{n}" for n in re.findall(r'py::arg\("(\w+)"\)', live[:live.index("stop_live")])}
     found |= touch()

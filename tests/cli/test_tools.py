@@ -171,6 +171,33 @@ class Tools(CliTest):
         self.assertAlmostEqual(float(rows[-1]["work [J]"]), blade["work"], places=9)
         self.assertLess(float(rows[-1]["y [m]"]), float(rows[0]["y [m]"]))
 
+    def test_attempts_of_a_blade_in_json_and_table(self):
+        scalpel = {"name": "a,b", "cuts": "by-force", "edge": 0.0002, "path": [[0, -0.056, 0.035, -0.023, -0.056, 0.065, -0.023],
+                                                                           [0.4, 0.036, 0.035, 0.0175, 0.036, 0.065, 0.0175]]}
+        material = {"law": "neo-hookean", "young": 20000, "poisson": 0.4, "density": 1000, "damping": 60, "toughness": 10000}
+        body = {"lattice": {"spacing": 0.01}, "material": material, "fixed": [{"plane": [[0, 0.02, 0], [0, -1, 0]]}], "prescribed": []}
+        scene = self.scene(body=body, blades=[scalpel], duration=0.4)
+        run = self.json("run", scene, "--backend", "cpu", "--out", "out")
+        blade = run["blades"][0]
+        attempts = blade["cut_attempts"]
+        self.assertEqual(blade["attempts"], len(attempts))
+        self.assertGreater(len(attempts), 8)
+        self.assertEqual({a["stroke"] for a in attempts} - set(range(blade["strokes"])), set())
+        self.assertEqual({a["body"] for a in attempts}, {"cube"})
+        for before, after in zip(attempts, attempts[1:]):
+            self.assertLessEqual(before["time"], after["time"])
+            if before["stroke"] == after["stroke"]:
+                self.assertEqual(before["to"], after["from"])
+        self.assertTrue(attempts[-1]["gave_way"])
+        with open(self.folder / "out" / "scene_attempts.csv") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual([(row["blade"], int(row["from"]), int(row["to"]), row["gave way"]) for row in rows],
+                         [("a,b", a["from"], a["to"], "1" if a["gave_way"] else "0") for a in attempts])
+        self.assertAlmostEqual(float(rows[-1]["x [m]"]), attempts[-1]["position"][0], places=8)
+        # The run goes on from its middle with what it knew there.
+        self.json("run", scene, "--backend", "cpu", "--seconds", "0.2", "--checkpoint", "c.pckpt")
+        self.assertEqual(self.json("run", scene, "--backend", "cpu", "--resume", "c.pckpt")["blades"], run["blades"])
+
     def test_faces_of_a_blade_have_rows_of_their_own(self):
         run = self.json("run", str(SCENES / "spread.json"), "--steps", "400", "--backend", "cpu", "--out", "out")
         with open(self.folder / "out" / "spread_tools.csv") as file:

@@ -341,6 +341,22 @@ def test_cuts():
     world.lift_blade("knife")
 
 
+def test_the_attempts_of_a_blade():
+    path = [[0, -0.065, 0.01, 0.003, -0.065, 0.03, 0.003], [0.6, 0.0, 0.01, 0.003, 0.0, 0.03, 0.003]]
+    material = {"law": "neo-hookean", "young": 20000, "poisson": 0.4, "density": 1000, "damping": 60, "toughness": 40000}
+    scene = {"format": "pliant-scene/1", "bodies": [{"name": "block", "surface": "meshes/block.obj", "lattice": {"spacing": 0.01}, "material": material,
+                                                    "fixed": [{"box": [[-1, -0.0201, -1], [1, -0.0199, 1]]}]}],
+             "blades": [{"name": "scalpel", "cuts": "by-force", "edge": 5e-4, "path": path}]}
+    world = pliant.World(scene, folder=os.path.join(SOURCE, "scenes"), backend="cpu")
+    world.advance(0.59)
+    attempts = world.cut_attempts()
+    assert len(attempts) >= 3 and world.cut_attempts() == []
+    last = attempts[-1]
+    assert set(last) == {"blade", "body", "stroke", "from", "to", "time", "position", "rest", "gave_way"}
+    assert (last["blade"], last["body"], last["gave_way"]) == ("scalpel", "block", True) and last["from"] != last["to"]
+    assert 0 < last["time"] < 0.59 and last["rest"].shape == (3,)
+
+
 def test_a_checkpoint_with_options_names_them():
     with tempfile.TemporaryDirectory() as folder:
         file = os.path.join(folder, "state.pck")

@@ -74,6 +74,7 @@ TEST(RunReport, ABatchThatIsMadeAgainLeavesNothing) {
   now.inversions.most = 20;
   now.tissue.points = 30;
   now.energy = {0.5, 3.0, 9.0};
+  now.strokes["scalpel"].attempts = 2;
   now.take_back(kept);
   EXPECT_EQ(now.made_again, 1);
   now.made_again = 0;

@@ -160,8 +160,8 @@ TEST(StepRetries, StopAtTheFloorBeforeTheyGoBelow) {
   Loaded l(scene_with(box_body("box", {0.03, 0.02, 0.02})));
   StepControl step(l.run);
   HostLoads loads(l.run);
-  TopologyEdits edits(l.run, step, loads);
   RunReports reports;
+  TopologyEdits edits(l.run, step, loads, reports.now);
   Recovery recovery(l.run, step, edits, reports);
   Symptoms lost;
   lost.lost_in = 1;

@@ -94,7 +94,8 @@ TEST(Substeps, NothingMovesWhenTheyBecomeFewer) {
   const LoadedModel& loaded = l.loaded;
   StepControl step(l.run);
   HostLoads loads(l.run);
-  TopologyEdits edits(l.run, step, loads);
+  RunReport report;
+  TopologyEdits edits(l.run, step, loads, report);
   std::vector<double> u = loaded.u(), w = loaded.w();
   for (std::size_t i = 0; i < u.size(); ++i) {
     if (i % 4 == 3 || !loaded.free()[i / 4 * 3 + i % 4]) continue;

@@ -28,13 +28,6 @@ constexpr double kNeverGives = 1e30;          ///< F* of tissue without a toughn
 FrontKind kind_of(const FrontSample& s) { return static_cast<FrontKind>(s.kind); }
 void set_kind(FrontSample& s, FrontKind kind) { s.kind = static_cast<std::int32_t>(kind); }
 
-Vec3d front_place(const CutTopology& body, const std::vector<Vec3d>& x, const MaterialPoint& point) {
-  Vec3d p{};
-  for (const FrontCarrier& c : front_carriers(body, point))
-    p = vec::add(p, vec::mul(x[static_cast<std::size_t>(c.node)], c.weight));
-  return p;
-}
-
 /// Place at which a ray from `from` along the unit vector `n` crosses a triangle [m], and the cosine between n and its normal.
 struct Crossing {
   double at = 0, facing = 0;
@@ -51,32 +44,6 @@ std::optional<Crossing> crossing(const Vec3d& from, const Vec3d& n, const std::a
 }
 
 }  // namespace
-
-std::vector<FrontCarrier> front_carriers(const CutTopology& body, const MaterialPoint& point) {
-  const auto& corners = body.mesh().shape->tets[static_cast<std::size_t>(point.tet)];
-  std::vector<std::int32_t> elements{point.cell};
-  const auto cut = body.cells().find(point.cell);
-  if (cut != body.cells().end() && cut->second.components > 1) {
-    elements.clear();
-    for (const std::int32_t e : cut->second.element) {
-      if (e >= 0 && elements.size() < 2) elements.push_back(e);
-    }
-  }
-  std::vector<FrontCarrier> out;
-  for (const std::int32_t e : elements) {
-    for (std::size_t a = 0; a < 4; ++a) {
-      const std::int32_t node = body.elements().nodes[static_cast<std::size_t>(e)][static_cast<std::size_t>(corners[a])];
-      const double weight = point.weight[a] / static_cast<double>(elements.size());
-      const auto same = std::find_if(out.begin(), out.end(), [&](const FrontCarrier& c) { return c.node == node; });
-      if (same != out.end()) {
-        same->weight += weight;
-      } else {
-        out.push_back({node, weight});
-      }
-    }
-  }
-  return out;
-}
 
 double typical_edge(const Model& model) {
   double edge = HUGE_VAL;
@@ -145,15 +112,19 @@ std::vector<CutEdges> BladeFronts::update(EditedBodies& bodies, const std::vecto
     blade.samples.resize(static_cast<std::size_t>(sample_count(b, size)));
     if (!blade_present(run_.state.driven_blades, b, now, until)) {
       std::fill(blade.samples.begin(), blade.samples.end(), FrontSample{});
+      strokes_.look(b.name, blade.samples, {}, bodies, x_);
       continue;
     }
     const Edge edge(b, run_.state.driven_blades, blade.samples.size(), size, now, until);
     if (!(edge.spacing > 0)) continue;  // its ends pass through each other
+    std::vector<char> held;
+    for (const FrontSample& s : blade.samples) held.push_back(kind_of(s) == FrontKind::held ? 1 : 0);
     let_go(blade, edge, bodies);
     give_way(blade, edge, bodies, edges);
     turn(blade, edge);
     if (surface_now.empty()) surface_now = surface(u);
     meet(blade, edge, bodies, surface_now);
+    strokes_.look(b.name, blade.samples, held, bodies, x_);
     for (std::size_t i = 0; i < blade.samples.size(); ++i) {
       FrontSample& s = blade.samples[i];
       s.pressed = 0;

@@ -4,17 +4,12 @@
 #include <map>
 #include <vector>
 
+#include "simulation/edits/cut_strokes.h"
 #include "simulation/edits/edited_bodies.h"
+#include "simulation/edits/front_point.h"
 #include "simulation/state/run_context.h"
 
 namespace pliant {
-
-/// The nodes of a body that carry a front point, with their weights: of the cell's one or two copies, at most eight.
-struct FrontCarrier {
-  std::int32_t node = 0;
-  double weight = 0;
-};
-std::vector<FrontCarrier> front_carriers(const CutTopology& body, const MaterialPoint& point);
 
 /// Mean edge of the model's elements [m], from which samples and updates of blades are counted.
 double typical_edge(const Model& model);
@@ -28,7 +23,7 @@ double integrity_left(double depth, double edge);
 
 class BladeFronts {
  public:
-  explicit BladeFronts(RunContext& run) : run_(run) {}
+  BladeFronts(RunContext& run, CutStrokes& strokes) : run_(run), strokes_(strokes) {}
   /// Moves the fronts to the places of the edges and lets edges meet the tissue ahead of them. Returns the edges of each body
   /// that the fronts have crossed. u: RunContext::u(); `until`: time of the next update [s].
   std::vector<CutEdges> update(EditedBodies& bodies, const std::vector<double>& u, double until);
@@ -49,6 +44,7 @@ class BladeFronts {
   [[nodiscard]] Material material(std::size_t body, std::int32_t cell, EditedBodies& bodies);
 
   RunContext& run_;
+  CutStrokes& strokes_;
   std::vector<std::vector<Vec3d>> x_;  ///< present positions of the nodes of each body [m]
   std::map<std::size_t, ElementMaterials> materials_;
 };

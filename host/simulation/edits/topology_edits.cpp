@@ -94,6 +94,7 @@ bool follows(const Scene& scene) {
 
 void TopologyEdits::start() {
   const Scene& scene = run_.scene;
+  strokes_.start(run_.model());
   run_.settings.breaks = std::any_of(scene.joins.begin(), scene.joins.end(),
                                      [](const Join& j) { return j.break_stretch > 0 || j.break_force > 0; });
   const bool moves_freely = integrator_info(scene.integrator).edits && !scene.relaxation.enabled;

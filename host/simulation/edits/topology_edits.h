@@ -20,7 +20,8 @@ namespace pliant {
 
 class TopologyEdits {
  public:
-  TopologyEdits(RunContext& run, StepControl& step, HostLoads& loads) : run_(run), step_(step), loads_(loads), fronts_(run) {}
+  TopologyEdits(RunContext& run, StepControl& step, HostLoads& loads, RunReport& report)
+      : run_(run), step_(step), loads_(loads), strokes_(run, report), fronts_(run, strokes_) {}
 
   /// Call at the start of a simulation: generates the elements of bodies that the scene's blades will cut or that may tear,
   /// and determines how often both are updated. Throws Error (bad_input) for scenes that cannot be edited.
@@ -105,6 +106,7 @@ class TopologyEdits {
   RunContext& run_;
   StepControl& step_;
   HostLoads& loads_;
+  CutStrokes strokes_;
   BladeFronts fronts_;
   std::vector<char> changed_nodes_;       ///< [slots] by the last cut or tear; empty: none
   std::unique_ptr<EditedBodies> bodies_;  ///< the scene's bodies with the edits of RunState; created on first use

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pliant/wrench.h"
+#include "simulation/state/cut_strokes_state.h"
 #include "simulation/state/run_state_parts.h"
 
 namespace pliant {
@@ -76,6 +77,7 @@ struct RunReport {
   std::vector<ToolHistory> tools;  ///< one per tool of the model
   TouchHistory tissue;
   EnergyHistory energy;
+  CutStrokesState strokes;
   std::int64_t made_again = 0;  ///< number of batches that were rolled back (recovery/recovery.h)
 
   /// Call when a batch is rolled back: restores the statistics that it changed from `kept`, and counts it.
@@ -84,6 +86,7 @@ struct RunReport {
     tools = kept.tools;
     tissue = kept.tissue;
     energy = kept.energy;
+    strokes = kept.strokes;
     ++made_again;
   }
 };
@@ -123,6 +126,7 @@ template <class V>
 void visit(V& v, RunReport& s) {
   v("inversions", s.inversions), v("ballast", s.ballast), v("tools", s.tools), v("tissue", s.tissue), v("energy", s.energy);
   v("made_again", s.made_again);
+  v.last("strokes", s.strokes);
 }
 template <class V>
 void visit(V& v, RunReports& s) {

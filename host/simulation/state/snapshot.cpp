@@ -284,9 +284,24 @@ void check_state(const RunState& state, const Model& model, const Scene& scene) 
   need(state.most_substeps == 0 || state.most_substeps == kSafeSubsteps, "its substeps of shape matching");
 }
 
-void check_report(const RunReports& reports, const RunState& state, std::size_t tools) {
-  if (reports.now.tools.size() == tools && (!state.kept || reports.kept.tools.size() == tools)) return;
-  throw Error(ErrorCode::bad_input, "its report is damaged: it is of other tools");
+void check_report(const RunReports& reports, const RunState& state, const Scene& scene) {
+  const std::size_t tools = scene.tools.size();
+  if (reports.now.tools.size() != tools || (state.kept && reports.kept.tools.size() != tools))
+    throw Error(ErrorCode::bad_input, "its report is damaged: it is of other tools");
+  const auto on_a_body = [&](const auto& of) {
+    return of.body >= 0 && static_cast<std::size_t>(of.body) < scene.bodies.size();
+  };
+  for (const RunReport* report : {&reports.now, &reports.kept}) {
+    for (const auto& [name, own] : report->strokes) {
+      const bool known = std::any_of(scene.blades.begin(), scene.blades.end(), [&, wanted = &name](const Blade& b) {
+        return b.name == *wanted && b.cuts == BladeCuts::by_force;
+      });
+      const bool good = std::all_of(own.contacts.begin(), own.contacts.end(), on_a_body) &&
+                        std::all_of(own.last.begin(), own.last.end(), on_a_body) &&
+                        own.attempts >= static_cast<std::int64_t>(own.last.size());
+      if (!known || !good) throw Error(ErrorCode::bad_input, "its report is damaged: the strokes of its blades");
+    }
+  }
 }
 
 void check_ballast(const RunState& state, const Model& model) {

@@ -56,8 +56,9 @@ std::vector<ModelPart> parts_of(const Scene& scene, const RunSettings& settings,
 /// non-positive step size, wrong lengths, forces on unknown nodes, non-finite points.
 void check_state(const RunState& state, const Model& model, const Scene& scene);
 
-/// Throws Error (bad_input) for a report on other tools than the model's.
-void check_report(const RunReports& reports, const RunState& state, std::size_t tools);
+/// Throws Error (bad_input) for a report on other tools than the model's, or on strokes of blades that the scene does not have
+/// or on bodies that it does not have.
+void check_report(const RunReports& reports, const RunState& state, const Scene& scene);
 
 /// Throws Error (bad_input) for ballast (RunState) that this model's nodes cannot have.
 void check_ballast(const RunState& state, const Model& model);

@@ -32,11 +32,30 @@ typedef struct pliant_blade_force {
 #define PLIANT_BLADE_FORCE_INIT \
   { sizeof(pliant_blade_force), NULL, {0}, {0}, {0}, {0}, 0, 0, 0, 0, 0, 0, {0}, 0, 0 }
 
+/** A potential cutting attempt, as pliant::CutAttempt. The names are valid as long as the world. */
+typedef struct pliant_cut_attempt {
+  size_t size;        /**< PLIANT_CUT_ATTEMPT_INIT; the same in all elements of an array */
+  const char* blade;  /**< name in the scene */
+  const char* body;   /**< name in the scene */
+  int64_t stroke;     /**< of the blade, counted from 0 */
+  double time;        /**< [s] */
+  double position[3]; /**< of the point of contact [m] */
+  double rest[3];     /**< the same place on the undeformed surface [m] */
+  int32_t from;       /**< vertex that was in contact, of frames before any cut */
+  int32_t to;         /**< vertex that is */
+  int gave_way;       /**< 1: tissue had given way there; 0: the blade pressed on it */
+  int reserved;       /**< 0 */
+} pliant_cut_attempt;
+#define PLIANT_CUT_ATTEMPT_INIT \
+  { sizeof(pliant_cut_attempt), NULL, NULL, 0, 0, {0}, {0}, 0, 0, 0, 0 }
+
 /** Moves a blade of the scene that cuts by force to the segment from `a` to `b` [m] within `seconds` (see pliant::World). */
 PLIANT_API pliant_status pliant_world_drive_blade(pliant_world world, const char* blade, const double a[3], const double b[3],
                                                   double seconds);
 /** Fills the first `count` blades that cut by force; `*needed` (may be null) receives their number. Does not wait. */
 PLIANT_API pliant_status pliant_world_blade_forces(pliant_world world, pliant_blade_force* out, size_t count, size_t* needed);
+/** Fills the oldest `count` attempts that no call returned yet; `*given` receives how many those are. Later ones wait. */
+PLIANT_API pliant_status pliant_world_cut_attempts(pliant_world world, pliant_cut_attempt* out, size_t count, size_t* given);
 
 #ifdef __cplusplus
 }
