@@ -26,6 +26,11 @@ struct CWorld {
   std::deque<Event> waiting_events;         ///< not returned yet
   std::vector<Event> events;                ///< storage of returned events
   std::deque<CutAttempt> waiting_attempts;  ///< not returned yet
+
+  void forget_attempts() {
+    const std::lock_guard lock(mutex);
+    waiting_attempts.clear();
+  }
 };
 
 struct CDevice {

@@ -158,8 +158,12 @@ pliant_status pliant_world_load(pliant_world world, const char* file) {
   return on(world, [&](CWorld& w) {
     need(file, "file");
     w.world.load(file);
+    w.forget_attempts();
   });
 }
 pliant_status pliant_world_reset(pliant_world world) {
-  return on(world, [&](CWorld& w) { w.world.reset(); });
+  return on(world, [&](CWorld& w) {
+    w.world.reset();
+    w.forget_attempts();
+  });
 }

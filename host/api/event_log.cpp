@@ -65,6 +65,10 @@ void EventLog::renew(const Simulation& simulation) {
   gave_way_.clear();
   for (const auto& [name, blade] : simulation.state().pressed) gave_way_[name] = blade.first >= 0;
   attempts_seen_.clear();
+  {
+    const std::lock_guard lock(mutex_);
+    attempts_.clear();
+  }
   for (const auto& [name, strokes] : report.strokes) attempts_seen_[name] = strokes.attempts;
 }
 

@@ -143,6 +143,7 @@ void LiveRun::finish() {
   // divergence, or to the scene's duration.
   const bool behind = !log_.drives.empty() && simulation_.step() < log_.drives.back().at.step;
   if (!behind && !simulation_.divergence()) log_.end = haptics::LoggedMoment{simulation_.step(), simulation_.time(), 0};
+  log_.again = simulation_.report().made_again;
   if (!o_.log.empty()) write_file(o_.log, haptics::drive_log_text(log_));
 }
 

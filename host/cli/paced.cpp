@@ -51,11 +51,15 @@ bool Paced::next(Simulation& simulation) {
   for (Hand& hand : hands_) {
     const std::optional<std::string> refused = hand.instrument->before(simulation, covers);
     if (refused && !std::exchange(hand.refused, true)) remark_(*refused);
-    if (const auto& gripped = hand.instrument->gripped())
-      log_.drives.push_back({{simulation.step(), simulation.time(), 0}, 0, {}, hand.instrument->tool(), gripped});
+    haptics::LoggedDrive row = haptics::logged(simulation, hand.instrument->tool());
+    if (const auto& gripped = hand.instrument->gripped()) {
+      log_.drives.push_back(row);
+      log_.drives.back().grips = gripped;
+    }
     if (!hand.instrument->driven()) continue;
-    log_.drives.push_back(
-        {{simulation.step(), simulation.time(), 0}, covers, *hand.instrument->driven(), hand.instrument->tool(), {}});
+    row.seconds = covers;
+    row.target = *hand.instrument->driven();
+    log_.drives.push_back(std::move(row));
   }
   return true;
 }

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <utility>
 
 #include "pliant/error.h"
 
@@ -55,25 +56,28 @@ class Parser {
 
   void row(std::string_view rest) {
     const std::string_view whole = rest, kind = take(rest, ',');
-    if (kind != (begun_ ? "drive" : "begin") && !(begun_ && (kind == "end" || kind == "grip" || kind == "confirm")))
-      fail("the row", whole, begun_ ? "drive,..., grip,..., confirm,... or end,..." : "begin,STEP,TIME");
+    if (kind != (begun_ ? "drive" : "begin") &&
+        !(begun_ && (kind == "end" || kind == "grip" || kind == "confirm" || kind == "again")))
+      fail("the row", whole, begun_ ? "drive,..., grip,..., confirm,..., again,... or end,..." : "begin,STEP,TIME");
     if (log_.end) fail("the row", whole, "nothing behind the end");
-    const LoggedMoment at = moment(rest);
+    const LoggedMoment at = moment(rest, kind == "again");
     if (!begun_) {
       log_.begin = at;
       begun_ = true;
     } else if (kind == "end") {
       log_.end = at;
     } else if (kind == "confirm") {
-      log_.drives.push_back({at, 0, {}, {}, {}, true});
-      back_ = true;
+      log_.drives.push_back({at, 0, {}, {}, {}, true, log_.again});
+    } else if (kind == "again") {
+      again(rest);
     } else {
       return kind == "grip" ? grip(rest, at) : drive(rest, at);
     }
     if (!rest.empty()) fail("behind the time", rest, "nothing");
   }
 
-  LoggedMoment moment(std::string_view& rest) {
+  /// `back`: steps were taken back before, and times begin again, in shorter steps.
+  LoggedMoment moment(std::string_view& rest, bool back) {
     const std::string_view text = take(rest, ',');
     LoggedMoment at;
     at.line = number_;
@@ -84,9 +88,8 @@ class Parser {
     const std::string_view time = rest.substr(0, rest.find(','));
     at.time = number(rest, "the time");
     const bool falls = at.time < last_.time || (begun_ && at.step == last_.step && at.time != last_.time);
-    if (at.time < log_.begin.time || (falls && !back_))
+    if (at.time < log_.begin.time || (falls && !back))
       fail("the time", time, fmt::format("{:.17g} at step {}, and more after it", last_.time, last_.step));
-    back_ = false;
     last_ = at;
     return at;
   }
@@ -103,6 +106,7 @@ class Parser {
   void drive(std::string_view rest, const LoggedMoment& at) {
     LoggedDrive drive;
     drive.at = at;
+    drive.again = log_.again;
     const std::string_view seconds = rest.substr(0, rest.find(','));
     drive.seconds = number(rest, "the seconds on the way");
     if (!(drive.seconds > 0 && drive.seconds < 1e30)) fail("the seconds on the way", seconds, "more than 0 and less than 1e30");
@@ -120,9 +124,18 @@ class Parser {
     if (on != "0" && on != "1") fail("the grip", on, "1 to grip or 0 to let go");
     LoggedDrive drive;
     drive.at = at;
+    drive.again = log_.again;
     drive.grips = on == "1";
     drive.tool = name(rest);
     log_.drives.push_back(std::move(drive));
+  }
+
+  void again(std::string_view& rest) {
+    const std::string_view text = take(rest, ',');
+    const std::int64_t least = log_.again + 1;
+    const auto [after, error] = std::from_chars(text.data(), text.data() + text.size(), log_.again);
+    if (error != std::errc() || after != text.data() + text.size() || log_.again < least || log_.again > kMostSteps)
+      fail("the number of times", text, fmt::format("a whole number from {} to {}", least, kMostSteps));
   }
 
   std::string name(std::string_view rest) const {
@@ -135,7 +148,6 @@ class Parser {
   LoggedMoment last_;
   int number_ = 0;
   bool headed_ = false, begun_ = false;
-  bool back_ = false;  ///< after the last row steps were taken back: times begin again, in shorter steps
 };
 
 }  // namespace
@@ -149,19 +161,25 @@ DriveLog parse_drive_log(std::string_view text, const std::string& file) {
 std::string drive_log_text(const DriveLog& log) {
   const auto moment = [](const LoggedMoment& at) { return fmt::format("{},{:.17g}", at.step, at.time); };
   std::string text = fmt::format("{}\nbegin,{}\n", kDriveLogHead, moment(log.begin));
+  std::int64_t again = 0;
+  const auto count = [&](const LoggedMoment& at, std::int64_t next) {
+    if (next != std::exchange(again, next)) text += fmt::format("again,{},{}\n", moment(at), next);
+  };
   for (const LoggedDrive& d : log.drives) {
+    count(d.at, d.again);
     if (d.confirms) {
       text += fmt::format("confirm,{}\n", moment(d.at));
-      continue;
-    }
-    if (d.grips) {
+    } else if (d.grips) {
       text += fmt::format("grip,{},{},{}\n", moment(d.at), *d.grips ? 1 : 0, d.tool);
-      continue;
+    } else {
+      fmt::format_to(std::back_inserter(text), "drive,{},{:.17g},{:.17g},{:.17g},{}\n", moment(d.at), d.seconds,
+                     fmt::join(d.target.position, ","), fmt::join(d.target.turn, ","), d.tool);
     }
-    fmt::format_to(std::back_inserter(text), "drive,{},{:.17g},{:.17g},{:.17g},{}\n", moment(d.at), d.seconds,
-                   fmt::join(d.target.position, ","), fmt::join(d.target.turn, ","), d.tool);
   }
-  if (log.end) text += fmt::format("end,{}\n", moment(*log.end));
+  if (log.end) {
+    count(*log.end, log.again);
+    text += fmt::format("end,{}\n", moment(*log.end));
+  }
   return text;
 }
 

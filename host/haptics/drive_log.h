@@ -31,13 +31,15 @@ struct LoggedDrive {
   std::string tool;
   std::optional<bool> grips;  ///< of a row "grip", which has no target
   bool confirms = false;      ///< a row "confirm", which has neither target nor tool
+  std::int64_t again = 0;     ///< the number of the last row "again" before it
 };
 
 struct DriveLog {
   LoggedMoment begin;
   std::vector<LoggedDrive> drives;
   std::optional<LoggedMoment> end;
-  std::string file;  ///< that it was read from
+  std::int64_t again = 0;  ///< at the end
+  std::string file;        ///< that it was read from
 };
 
 /// Reads the text of a file. Lines that are empty or begin with # are skipped. Throws Error `bad_input` "<file>:<line>: ..."

@@ -76,12 +76,14 @@ bool Lockstep::next(Simulation& simulation) {
   return true;
 }
 
-/// A force that is on its way cannot be taken back: returns false if the state was, and the run has to come here again.
+/// A force that is on its way cannot be taken back. Returns false if this state has been, and the run has to come here again;
+/// the look ahead is that of tools at rest.
 bool Lockstep::accepted(Simulation& simulation) {
   if (simulation.settled() || simulation.quiet()) return true;
-  const LoggedMoment now{simulation.step(), simulation.time(), 0};
+  LoggedDrive row = logged(simulation, {});
+  row.confirms = true;
   if (simulation.confirm()) return true;
-  log_.drives.push_back({now, 0, {}, {}, {}, true});
+  log_.drives.push_back(std::move(row));
   return false;
 }
 
@@ -173,10 +175,13 @@ bool Lockstep::take(Hand& hand, const DeviceSample& sample, Simulation& simulati
 
 void Lockstep::drive(Hand& hand, const Pose& target, Simulation& simulation) {
   const double seconds = std::max(kLeastWay, hand.time - simulation.time());
-  const LoggedMoment now{simulation.step(), simulation.time(), 0};
+  LoggedDrive row = logged(simulation, hand.held.tool);
   const DrivenPart part = part_of(simulation, hand.held.tool);
   const HandGrip wanted = hand.button.read(hand.sample->buttons);
-  if (grip_as_wanted(simulation, part, wanted)) log_.drives.push_back({now, 0, {}, hand.held.tool, wanted == HandGrip::closed});
+  if (grip_as_wanted(simulation, part, wanted)) {
+    log_.drives.push_back(row);
+    log_.drives.back().grips = wanted == HandGrip::closed;
+  }
   const Pose there = part.within_reach(simulation, target, seconds);
   if (there != target && hand.counts.limited++ == 0) {
     remark(
@@ -185,7 +190,9 @@ void Lockstep::drive(Hand& hand, const Pose& target, Simulation& simulation) {
                     part.is_blade() ? "blade" : "tool", hand.held.tool, simulation.time()));
   }
   part.drive(simulation, there, seconds);
-  log_.drives.push_back({now, seconds, there, hand.held.tool, {}});
+  row.seconds = seconds;
+  row.target = there;
+  log_.drives.push_back(std::move(row));
 }
 
 void Lockstep::release() noexcept {

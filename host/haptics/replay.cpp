@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "haptics/driven_part.h"
 #include "pliant/error.h"
@@ -12,17 +13,6 @@ namespace pliant::haptics {
 namespace {
 
 constexpr std::int64_t kNever = 1'000'000'000'000'000;
-
-template <class Drive>
-bool begins_at(const DriveHistory<Drive>& all, const std::string& name, double time) {
-  const Drive* own = drive_at(all, name, time);
-  return own != nullptr && own->start == time;
-}
-
-bool requested(const RunState& state, const LoggedDrive& d) {
-  return !d.grips && !d.confirms &&
-         (begins_at(state.driven, d.tool, d.at.time) || begins_at(state.driven_blades, d.tool, d.at.time));
-}
 
 }  // namespace
 
@@ -40,17 +30,10 @@ Replay::Replay(DriveLog log, const Simulation& simulation, bool to_end) : log_(s
                                    log_.begin.step, simulation.step()));
   }
   if (log_.begin.step == simulation.step()) check_time(log_.begin, simulation);
-  const auto before = [](const LoggedDrive& drive, std::int64_t step) { return drive.at.step < step; };
-  next_ = static_cast<std::size_t>(std::lower_bound(log_.drives.begin(), log_.drives.end(), simulation.step(), before) -
-                                   log_.drives.begin());
-  // Where steps were taken back, the drives of these steps are in the state already, for a time to come.
-  for (std::size_t i = next_; i < log_.drives.size(); ++i) {
-    if (requested(simulation.state(), log_.drives[i])) next_ = i + 1;
-  }
-  const auto done = [&](const LoggedDrive& d) {
-    return d.confirms && simulation.state().clock.time_at(d.at.step) != d.at.time;
-  };
-  while (next_ < log_.drives.size() && done(log_.drives[next_])) ++next_;
+  // Rows of steps that were taken back since are done: what they requested is in the state.
+  const std::int64_t again = log_.again > 0 ? simulation.report().made_again : 0;
+  const auto done = [&](const LoggedDrive& d) { return std::pair(d.again, d.at.step) < std::pair(again, simulation.step()); };
+  next_ = static_cast<std::size_t>(std::partition_point(log_.drives.begin(), log_.drives.end(), done) - log_.drives.begin());
 }
 
 void Replay::refuse(const LoggedMoment& at, const std::string& why) const {
@@ -64,12 +47,15 @@ void Replay::check_time(const LoggedMoment& at, const Simulation& simulation) co
 }
 
 std::int64_t Replay::steps_left(const Simulation& simulation) const {
-  std::int64_t step = kNever;
+  std::int64_t step = kNever, again = 0;
   if (next_ < log_.drives.size()) {
     step = log_.drives[next_].at.step;
+    again = log_.drives[next_].again;
   } else if (log_.end && to_end_) {
     step = log_.end->step;
+    again = log_.again;
   }
+  if (again > simulation.report().made_again) return kNever;  // it will be taken back before that
   return std::max<std::int64_t>(0, step - simulation.step());
 }
 

@@ -2,7 +2,9 @@
 #pragma once
 #include <cmath>
 #include <cstdint>
+#include <string>
 
+#include "haptics/drive_log.h"
 #include "simulation/simulation.h"
 
 namespace pliant::haptics {
@@ -19,6 +21,15 @@ class RunGuide {
   /// that changes nothing.
   virtual bool next(Simulation& simulation) = 0;
 };
+
+/// A row of the log of drives, without its content.
+inline LoggedDrive logged(const Simulation& simulation, const std::string& tool) {
+  LoggedDrive row;
+  row.at = {simulation.step(), simulation.time(), 0};
+  row.again = simulation.report().made_again;
+  row.tool = tool;
+  return row;
+}
 
 /// Whole steps of the present length that fit before `time` [s].
 inline std::int64_t steps_before(const Simulation& simulation, double time) {

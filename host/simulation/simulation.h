@@ -74,8 +74,8 @@ class Simulation {
   /// For the last state of a run: continues to the next settled state, then returns to this one. Returns false if a rollback
   /// went behind it.
   bool confirm();
-  /// Returns true if no element moves or has turned so much that the next settled state may prove the step too long: a cheap
-  /// reason not to confirm().
+  /// Returns true if nothing moves so fast that the step may prove too long in the next settled state: a cheap reason not to
+  /// confirm().
   [[nodiscard]] bool quiet() const { return recovery_.quiet(); }
   /// Returns a copy of the current state, for output once it is settled.
   [[nodiscard]] Moment moment() const;

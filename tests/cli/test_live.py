@@ -316,7 +316,7 @@ class Live(CliTest):
             (self.GOOD + row.replace("0.07", "1e999"), ["bad.log:4", "\"1e999\"", "finite"]),
             (self.GOOD + row.replace("0,0,0,1,", "0,0,1,1,"), ["bad.log:4", "0,0,1,1", "unit quaternion"]),
             (self.GOOD + row.replace("0.01,0.01", "0.01,-1"), ["bad.log:4", "\"-1\"", "more than 0"]),
-            (self.GOOD + "push,10,0.01\n", ["bad.log:4", "push,10,0.01", "drive,..., grip,..., confirm,... or end,..."]),
+            (self.GOOD + "push,10,0.01\n", ["bad.log:4", "push,10,0.01", "drive,..., grip,..., confirm,..., again,... or end,..."]),
             (self.GOOD + "end,20,0.02\n" + row, ["bad.log:5", "nothing behind the end"]),
             (self.GOOD + row.replace("10,0.01", "10,0.0101", 1), ["bad.log:4", "step 10 is at 0.0101", "another scene"]),
         ):

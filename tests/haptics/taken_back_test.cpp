@@ -1,5 +1,5 @@
-// Hands and steps that are taken back: a tool is where its drives take it at every time, no force leaves that did not act, and
-// the log gives the same bits from every place.
+// Hands and steps that are taken back: a tool is where its drives take it at every time, forces that did not act do not leave,
+// and the log gives the same bits from every place.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -98,6 +98,7 @@ ByHand by_hand(double depth, double speed, double dt = 0) {
   });
   EXPECT_FALSE(s.divergence());
   out.log.end = LoggedMoment{s.step(), s.time(), 0};
+  out.log.again = s.report().made_again;
   out.most = device->most;
   out.hash = s.deep_hash();
   out.end = s.contact().pose(0, s.time()).position[1];
@@ -142,6 +143,41 @@ TEST(TakenBack, AToolIsNotLeftBehindByASampleThatIsTooFast) {
   EXPECT_GT(lockstep.counts(0).limited, 0);
   EXPECT_NE(said.find("tool 'ball': its device moves it faster"), std::string::npos) << said;
   EXPECT_NEAR(s.contact().pose(0, s.time()).position[1], kTop - 0.03, 1e-12);
+}
+
+ToolDrive way(double x, double y, double start, double end) {
+  return {{{x, 0, 0}, {0, 0, 0, 1}}, {{y, 0, 0}, {0, 0, 0, 1}}, start, end};
+}
+
+Pose before(double /*time*/) { return {{0, 0, 0}, {0, 0, 0, 1}}; }
+
+/// What the host has moved goes the same way again; what it has placed stands there from the beginning, since no way leads
+/// there.
+TEST(DriveHistory, GoesItsWayAgainButNotToWhereItWasPlaced) {
+  DriveHistory<ToolDrive> all;
+  add_drive(all, "rod", way(0, 1, 1, 2));
+  add_drive(all, "rod", way(0.5, 3, 1.5, 2.5));
+  EXPECT_FALSE(stay_after_jumps(all["rod"], 0.5, before));
+  EXPECT_EQ(drive_at(all, "rod", 0.9), nullptr);
+  EXPECT_EQ(drive_at(all, "rod", 1.25)->at(1.25).position[0], 0.25);
+  EXPECT_EQ(drive_at(all, "rod", 2)->at(2).position[0], 1.75);
+  EXPECT_EQ(since_jump(all, "rod", 1.4, 1.6, before), 1.4);
+
+  auto placed = all;
+  add_drive(placed, "rod", way(7, 7, 1.75, 1.75));
+  add_drive(placed, "rod", way(7, 8, 1.75, 2.75));  // at once: the entry of its place is replaced
+  EXPECT_EQ(since_jump(placed, "rod", 1.6, 1.8, before), 1.75);
+  EXPECT_TRUE(stay_after_jumps(placed["rod"], 0.5, before));
+  EXPECT_EQ(drive_at(placed, "rod", 0.5)->at(0.5).position[0], 7);
+  EXPECT_EQ(drive_at(placed, "rod", 1.7)->at(1.7).position[0], 7);
+  EXPECT_EQ(drive_at(placed, "rod", 2.25)->at(2.25).position[0], 7.5);
+
+  add_drive(all, "rod", way(0.25, 2, 1.25, 2));  // after a rollback: what was requested for later times does not happen
+  EXPECT_EQ(all["rod"].size(), 2U);
+  forget_drives(all, 1.3);
+  EXPECT_EQ(all["rod"].size(), 1U);
+  forget_drives(all, 9);
+  EXPECT_EQ(all["rod"].size(), 1U) << "the last one stays in effect";
 }
 
 }  // namespace

@@ -75,10 +75,7 @@ void check_tool_changes(const Scene& scene, const ToolChanges& changes) {
 Pose tool_pose(const ContactTool& tool, const RunState& state, double time) {
   if (is_face(tool)) return blade_frame(*tool.blade, blade_place(state.driven_blades, *tool.blade, time));
   const ToolDrive* driven = drive_at(state.driven, tool.name, time);
-  if (driven == nullptr) return tool.at(time);
-  const ToolDrive& d = *driven;
-  if (time >= d.end) return d.to;
-  return between(d.from, d.to, (time - d.start) / (d.end - d.start));
+  return driven != nullptr ? driven->at(time) : tool.at(time);
 }
 
 bool is_away(const ContactTool& tool, const RunState& state, double time) {

@@ -117,6 +117,16 @@ double ToolContact::touch_ease() const {
   return kEase * share;
 }
 
+double ToolContact::went_from(std::size_t tool, double step_ago) const {
+  const ContactTool& own = tools_[tool];
+  const double now = run_.state.clock.time();
+  if (is_face(own)) {
+    const Blade& blade = *own.blade;
+    return since_jump(run_.state.driven_blades, blade.name, step_ago, now, [&](double t) { return blade.at(t); });
+  }
+  return since_jump(run_.state.driven, own.name, step_ago, now, [&](double t) { return own.at(t); });
+}
+
 void ToolContact::begin_batch(std::int32_t steps) {
   if (!active()) return;
   const std::size_t tools = tools_.size(), rows = static_cast<std::size_t>(run_.settings.batch_steps) + 1;
@@ -125,9 +135,9 @@ void ToolContact::begin_batch(std::int32_t steps) {
   arms_.assign(rows * tools, {});
   poses_.clear();
   for (std::size_t tool = 0; tool < tools; ++tool) {
-    const double before = run_.state.clock.time() - run_.state.clock.dt;
+    const double step_ago = run_.state.clock.time() - run_.state.clock.dt, before = went_from(tool, step_ago);
     const ToolHistory& h = report_.tools[tool];
-    poses_.push_back(h.step == run_.state.clock.step
+    poses_.push_back(h.step == run_.state.clock.step && before == step_ago
                          ? h.before
                          : compose(pose(tool, before), tool_moment((*run_.model().tools)[tool], before).pose));
   }

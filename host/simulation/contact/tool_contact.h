@@ -79,6 +79,8 @@ class ToolContact {
   void count_parting(std::int32_t step_in_batch, bool before);
   /// Call before a batch: notes which blades with faces are in the scene.
   void begin_faces();
+  /// `step_ago` [s], or since then the time at which the host has placed the tool where it is: it did not go there.
+  [[nodiscard]] double went_from(std::size_t tool, double step_ago) const;
   /// Upper bound of the distance that any point of a tool moves between two times [m].
   [[nodiscard]] double motion(std::size_t tool, double from, double to) const;
 

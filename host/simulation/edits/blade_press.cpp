@@ -108,7 +108,11 @@ void BladePress::upload_poses(std::int32_t steps) {
   const auto last = static_cast<std::int64_t>(steps);
   for (std::int64_t row = -1; row < static_cast<std::int64_t>(rows); ++row) {
     for (const std::size_t b : blades_) {
-      const double time = clock.time_at(clock.step + std::min(row, last));
+      double time = clock.time_at(clock.step + std::min(row, last));
+      if (row < 0) {
+        const Blade& own = run_.scene.blades[b];
+        time = since_jump(run_.state.driven_blades, own.name, time, clock.time(), [&](double t) { return own.at(t); });
+      }
       const BladeSegment at = blade_place(run_.state.driven_blades, run_.scene.blades[b], time);
       poses_.push_back({at[0], vec::sub(at[1], at[0])});
       if (row < 0) continue;

@@ -82,6 +82,7 @@ bool CutStrokes::go_on(StrokeContact& contact, const Meeting& to, std::vector<St
   const double straight = vec::norm(vec::sub(to.foot.at, contact.rest)), edge = run_.settings.blade_edge;
   const double before = contact.time, now = run_.state.clock.time();
   if (straight < kAtRest * edge) {
+    contact.place = to.place;
     contact.time = now;
     return true;
   }

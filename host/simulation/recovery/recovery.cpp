@@ -8,6 +8,7 @@
 
 #include "layout.h"
 #include "schedule/build_program.h"
+#include "simulation/contact/tool_changes.h"
 #include "simulation/recovery/ballast_swap.h"
 #include "simulation/recovery/calm.h"
 #include "simulation/recovery/limits.h"
@@ -148,7 +149,6 @@ bool Recovery::calm_down(Symptoms& s) {
 }
 
 bool Recovery::quiet() const {
-  if (reports_.now.inversions.last > 0) return false;
   run_.backend().run(run_.loaded.program().status, 0, 1);
   return run_.loaded.largest_increment() / run_.model().shortest <= kFastIncrement * fast_share();
 }
@@ -188,15 +188,25 @@ bool Recovery::go_back(Symptoms&) {
   state.clock = state.kept->clock;
   state.relaxation.damping = state.kept->damping;
   state.pressed = state.kept->pressed;
-  for (auto& [name, blade] : state.pressed) {  // the host has taken it elsewhere since
-    const auto own = state.driven_blades.find(name);
-    if (own == state.driven_blades.end()) continue;
-    if (std::any_of(own->second.begin(), own->second.end(),
-                    [&](const BladeDrive& d) { return d.placed() && d.start > state.clock.time(); }))
-      blade.forget_fronts();
-  }
+  stand_where_placed();
   reports_.now.take_back(reports_.kept);
   return false;
+}
+
+/// A place that the host has chosen since is not left again: no way leads there.
+void Recovery::stand_where_placed() {
+  RunState& state = run_.state;
+  const double now = state.clock.time();
+  for (const Blade& blade : run_.scene.blades) {
+    const auto own = state.driven_blades.find(blade.name), end = state.driven_blades.end();
+    if (own == end || !stay_after_jumps(own->second, now, [&](double t) { return blade.at(t); })) continue;
+    const auto pressed = state.pressed.find(blade.name);
+    if (pressed != state.pressed.end()) pressed->second.forget_fronts();
+  }
+  for (const ContactTool& tool : known_tools(run_.scene, state.tools)) {
+    const auto own = state.driven.find(tool.name);
+    if (own != state.driven.end()) stay_after_jumps(own->second, now, [&](double t) { return tool.at(t); });
+  }
 }
 
 bool Recovery::made_again() {

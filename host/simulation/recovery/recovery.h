@@ -40,7 +40,7 @@ class Recovery {
   /// divergence if none helps.
   std::optional<Divergence> look(std::int64_t batch_start);
 
-  /// Returns true if a check of this state would find nothing fast or inverted.
+  /// Returns true if a check of this state would find nothing fast.
   [[nodiscard]] bool quiet() const;
 
   // The remedies. A return value of true ends the list.
@@ -74,6 +74,7 @@ class Recovery {
   /// Factor on the limits of motion for the current step: below half the first step the limits are velocities.
   [[nodiscard]] double fast_share() const;
   [[nodiscard]] bool may_trust_less() const;
+  void stand_where_placed();
   bool made_again();
 
   RunContext& run_;

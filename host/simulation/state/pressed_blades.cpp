@@ -4,15 +4,17 @@
 
 namespace pliant {
 
+BladeSegment BladeDrive::at(double time) const {
+  if (time >= end) return to;
+  const double share = (time - start) / (end - start);
+  BladeSegment there;
+  for (std::size_t e = 0; e < 2; ++e) there[e] = vec::add(from[e], vec::mul(vec::sub(to[e], from[e]), share));
+  return there;
+}
+
 BladeSegment blade_place(const BladeDrives& driven, const Blade& blade, double time) {
   const BladeDrive* own = drive_at(driven, blade.name, time);
-  if (own == nullptr) return blade.at(time);
-  const BladeDrive& d = *own;
-  if (time >= d.end) return d.to;
-  const double share = (time - d.start) / (d.end - d.start);
-  BladeSegment at;
-  for (std::size_t end = 0; end < 2; ++end) at[end] = vec::add(d.from[end], vec::mul(vec::sub(d.to[end], d.from[end]), share));
-  return at;
+  return own != nullptr ? own->at(time) : blade.at(time);
 }
 
 bool blade_present(const BladeDrives& driven, const Blade& blade, double from, double until) {

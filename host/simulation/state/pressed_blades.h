@@ -57,9 +57,9 @@ struct PressedBlade {
 /// Motion of a blade between two places at constant speed, requested by the host; its path has ended.
 struct BladeDrive {
   BladeSegment from{}, to{};
-  double start = 0, end = 0;                                  ///< [s]
-  bool lifted = false;                                        ///< it is nowhere until it is driven again
-  [[nodiscard]] bool placed() const { return end == start; }  ///< or lifted: it did not go there
+  double start = 0, end = 0;  ///< [s]
+  bool lifted = false;        ///< it is nowhere until it is driven again
+  [[nodiscard]] BladeSegment at(double time) const;
 };
 using BladeDrives = DriveHistory<BladeDrive>;
 

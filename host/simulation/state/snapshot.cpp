@@ -289,15 +289,17 @@ void check_report(const RunReports& reports, const RunState& state, const Scene&
   if (reports.now.tools.size() != tools || (state.kept && reports.kept.tools.size() != tools))
     throw Error(ErrorCode::bad_input, "its report is damaged: it is of other tools");
   const auto on_a_body = [&](const auto& of) {
-    return of.body >= 0 && static_cast<std::size_t>(of.body) < scene.bodies.size();
+    return of.body >= 0 && static_cast<std::size_t>(of.body) < scene.bodies.size() && vec::finite(of.rest) &&
+           vec::finite(of.place) && std::isfinite(of.time);
   };
+  const auto good_attempt = [&](const StrokeAttempt& a) { return on_a_body(a) && a.from >= 0 && a.to >= 0; };
   for (const RunReport* report : {&reports.now, &reports.kept}) {
     for (const auto& [name, own] : report->strokes) {
       const bool known = std::any_of(scene.blades.begin(), scene.blades.end(), [&, wanted = &name](const Blade& b) {
         return b.name == *wanted && b.cuts == BladeCuts::by_force;
       });
       const bool good = std::all_of(own.contacts.begin(), own.contacts.end(), on_a_body) &&
-                        std::all_of(own.last.begin(), own.last.end(), on_a_body) &&
+                        std::all_of(own.last.begin(), own.last.end(), good_attempt) && own.last.size() <= BladeStrokes::kMost &&
                         own.attempts >= static_cast<std::int64_t>(own.last.size());
       if (!known || !good) throw Error(ErrorCode::bad_input, "its report is damaged: the strokes of its blades");
     }

@@ -14,6 +14,7 @@ namespace pliant {
 struct ToolDrive {
   Pose from{}, to{};
   double start = 0, end = 0;  ///< [s]
+  [[nodiscard]] Pose at(double time) const { return time >= end ? to : between(from, to, (time - start) / (end - start)); }
 };
 
 /// Changes of the host to the scene's tools. Empty: the tools are those of the scene.
