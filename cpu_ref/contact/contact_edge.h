@@ -56,7 +56,7 @@ struct EdgedTools : Tools<Scalar> {
   [[nodiscard]] PatchMeeting<Scalar, EDGES> meet_patch(std::int32_t t, std::int64_t i, const Place<Scalar>& x) const {
     PatchMeeting<Scalar, EDGES> out{this->meet(t, x), x.now};
     if constexpr (EDGES != 0) {
-      if (is_face(t) && out.m.distance > face_near<Scalar> * patches.spacing(i)) {
+      if (is_face(t) && (out.m.distance > face_near<Scalar> * patches.spacing(i) || patches.joined(i))) {
         out.m.distance = EdgeNumbers<Scalar>::far;
         out.m.opening = 0;
       } else if (is_face(t)) {

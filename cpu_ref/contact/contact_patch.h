@@ -42,6 +42,9 @@ struct Patches {
   const Scalar *surface, *patch;
 
   [[nodiscard]] const Scalar* region(std::int64_t i) const { return patch + tile_base(i, PLIANT_PATCH); }
+  [[nodiscard]] bool joined(std::int64_t i) const {
+    return std::fabs(patch[tile_base(i, PLIANT_PATCH) + std::int64_t{33} * PLIANT_TILE]) > Scalar(1.5);
+  }
   [[nodiscard]] Scalar spacing(std::int64_t i) const {
     return surface[tile_base(i, PLIANT_TOUCH_SURFACE) + std::int64_t{22} * PLIANT_TILE];
   }

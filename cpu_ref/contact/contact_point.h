@@ -112,11 +112,13 @@ inline Scalar held_depth(const Points<Scalar>& points, const Scalar* contact_sha
 }
 
 /// The depth in tool t that an edit has left a point. `start`: two numbers; `before`: depth at the start of the step; `given`:
-/// by how much it gets less in a step.
+/// by how much it gets less in a step. Where the step has become shorter, the numbers say how much of the rest of the depth is
+/// left, too.
 template <class Scalar>
 inline Scalar start_depth(const Scalar* start, std::int32_t t, Scalar before, Scalar given) {
-  const bool in_it = static_cast<std::int32_t>(start[PLIANT_TILE]) == t + 1;
-  const Scalar own = start[0] < Scalar(0) ? before : in_it ? start[0] - given : Scalar(0);
+  const Scalar had = start[0], of = start[PLIANT_TILE], whole = std::floor(of);
+  const bool in_it = static_cast<std::int32_t>(whole) == t + 1;
+  const Scalar own = had < Scalar(0) ? -had * before : in_it ? std::fma(of - whole, before - had, had - given) : Scalar(0);
   const Scalar depth = before < own ? before : own;
   return depth > Scalar(0) ? depth : Scalar(0);
 }

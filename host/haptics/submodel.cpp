@@ -155,6 +155,7 @@ std::vector<std::int32_t> add_points(const Model& model, const Numbering& number
     points->normal.push_back(from.normal[i]);
     points->apart.push_back(from.apart[i]);
     if (!from.sides.empty()) points->sides.push_back(from.sides[i]);
+    if (!from.joined.empty()) points->joined.push_back(from.joined[i]);
   }
   points->spacing = from.spacing;
   out.contact = std::move(points);

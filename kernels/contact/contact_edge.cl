@@ -49,7 +49,7 @@ static inline patch_meeting meet_patch(__global const float* node_u, __global co
   __global const int* kind = tool_kind + TOOL_INTEGERS * t;
   __global const float* data = tool_data + TOOL_NUMBERS * t;
   const float spacing = touch_surface[POINT_BASE(i, PLIANT_TOUCH_SURFACE) + 22 * PLIANT_TILE];
-  if (is_face(tool_kind, t) && out.m.distance > FACE_NEAR * spacing) {
+  if (is_face(tool_kind, t) && (out.m.distance > FACE_NEAR * spacing || is_joined(contact_patch, i))) {
     out.m.distance = EDGE_FAR, out.m.opening = 0.0f;
     return out;
   }

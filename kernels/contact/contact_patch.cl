@@ -2,9 +2,14 @@
 // coordinates (a, b) is x + a t1 + b t2 of the contact point; it moves with the nodes by trilinear or linear weights. contact_patch: [tiles][34][16]
 // six sides (p, q, r, m): inside where p a + q b < r; over a further distance m the weight of the area falls to zero [m], so that an edge passes from
 // one patch to the next smoothly. Then, for a lattice: the point's position in its cell (3), t1 and t2 (3 each) [1/m] in cells, and 1; for a volume
-// mesh zeros. t1, t2 and the gradients of the linear weights are in touch_surface.
+// mesh zeros. Where more than half of a point hangs on nodes of the other side of a cut, or on held ones, the last is 2 and -2. t1, t2 and the gradients of the linear weights are in touch_surface.
 #define PATCH_SIDES 6
 #define PATCH_FAR 1e30f
+
+// Whether nothing can part the cut on which a point may lie.
+static inline int is_joined(__global const float* contact_patch, int i) {
+  return fabs(contact_patch[POINT_BASE(i, PLIANT_PATCH) + (4 * PATCH_SIDES + 9) * PLIANT_TILE]) > 1.5f;
+}
 
 // A place on a patch.
 typedef struct {

@@ -76,10 +76,13 @@ INLINE real held_depth(__global const float* node_u, __global const int* contact
 
 // The depth in tool t that a point had when an edit of its body left it there (it hung on held nodes, or is new): taken back in a step, it would be
 // energy from nowhere. It never grows. `start`: depth [m], or -1 of a point that an edit has left, and tool + 1; `before`: depth at the start of the
-// step [m]; `given`: by how much it gets less in a step (given_back).
+// step [m]; `given`: by how much it gets less in a step (given_back). A force that the elements balance stands by a depth in proportion to the square
+// of the step. Where that has become shorter by a factor r (follow_step), s = 1 - r^2 of this depth becomes part of the depth that is left: `start` is
+// then -s, or tool + 1 + s where some depth was left before.
 INLINE real start_depth(__global const float* start, int t, real before, float given) {
-  const real had = LOAD(start, 0), tool = (float)(t + 1), none = 0.0f, rest = had - SAME(given);
-  const real own = had < 0.0f ? before : (LOAD(start, PLIANT_TILE) == tool ? rest : none), depth = before < own ? before : own;
+  const real had = LOAD(start, 0), of = LOAD(start, PLIANT_TILE), whole = floor(of), tool = (float)(t + 1), none = 0.0f;
+  const real rest = fma(of - whole, before - had, had - SAME(given));
+  const real own = had < 0.0f ? -had * before : (whole == tool ? rest : none), depth = before < own ? before : own;
   return depth > 0.0f ? depth : none;
 }
 // Faces of blades stand in the middle of what their edge opens; they spread it as pairs of tissue part, by contact_params[8] distances between points

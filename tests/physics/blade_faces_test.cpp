@@ -238,6 +238,30 @@ TEST(BladeFacesNone, DoNotKeepTheEdgeFromCutting) {
   }
 }
 
+/// Where most of the two sides of a cut hangs on the same nodes, as in an element that is cut in part, faces push neither: they
+/// would push against each other. In tissue that is drawn out that reaches further behind the edge than a cell.
+TEST_P(BladeFaces, PushNothingThatHangsTogether) {
+  Cut s{.path = "[" + row(0.5, 0.07) + "," + row(1.2, 0) + "," + row(1.5, 0) + "]", .thickness = 0.003};
+  // The top is drawn up beside the blade, to twice the height.
+  s.fixed = R"([{"plane": [[0, -0.018, 0], [0, -1, 0]]}], "prescribed": [
+      {"box": [[-0.07, 0.0174, -0.06], [-0.02, 0.03, 0.06]], "displacement": [0, 0.04, 0], "curve": "smooth", "duration": 0.4},
+      {"box": [[0.02, 0.0174, -0.06], [0.07, 0.03, 0.06]], "displacement": [0, 0.04, 0], "curve": "smooth", "duration": 0.4}])";
+  auto sim = simulate(block(s), GetParam());
+  std::size_t together = 0, pushed = 0;
+  while (sim->time() < 1.2 && sim->advance(16) > 0) {
+    const ContactPoints& points = *sim->model().contact;
+    const std::vector<Vec3d> forces = sim->contact().point_forces();
+    for (std::size_t i = 0; i < forces.size(); ++i) {
+      if (forces[i] == Vec3d{}) continue;
+      ++pushed;
+      if (points.joined[i] != 0) ++together;
+    }
+  }
+  EXPECT_GT(std::count(sim->model().contact->joined.begin(), sim->model().contact->joined.end(), 1), 20);
+  EXPECT_GT(pushed, 100U);
+  EXPECT_EQ(together, 0U);
+}
+
 /// A run that goes on from a checkpoint, with a blade in tissue, has the bits of the whole run.
 TEST_P(BladeFaces, GoOnFromACheckpoint) {
   const Scene scene = block({.path = down_and_stand(1), .friction = 0.2});

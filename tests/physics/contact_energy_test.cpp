@@ -1,4 +1,6 @@
 // The work of tools and the energy of what they press: none is lost, and none comes from nowhere.
+#include <fmt/format.h>
+
 #include "physics/harness.h"
 #include "support/source_dir.h"
 
@@ -157,6 +159,40 @@ TEST_P(ContactEnergy, PartingIsWork) {
   EXPECT_GT(work, strain);
   EXPECT_LT(work, 2 * strain) << "the rest is damped, by contact, too, where pairs part faster than the tissue follows";
   check("energy made, over the largest", sim->report().energy.share().value(), 0.01);
+}
+
+/// Tissue that is pressed stands a little in the tool, by as much as its force moves it in a step. A step that becomes much
+/// shorter, here because another body has become stiff, does not throw it out; nor does another one after it.
+TEST_P(ContactEnergy, AShorterStepThrowsNothingOut) {
+  const auto body = [](const char* name, double spacing, const char* more) {
+    return fmt::format(R"({{"name": "{}", "surface": "meshes/cube.obj", "lattice": {{"spacing": {}}}, "element": "hex8full",
+        "material": {{"law": "neo-hookean", "young": 1e4, "poisson": 0.4, "density": 1000, "damping": 100}}, {}}})",
+                       name, spacing, more);
+  };
+  auto sim = simulate(parse_scene(R"({"format": "pliant-scene/1", "bodies": [)" +
+                                      body("block", 0.0125, R"("fixed": [{"plane": [[0, -0.0499, 0], [0, -1, 0]]}])") + ", " +
+                                      body("other", 0.1, R"("translate": [1, 0, 0])") + R"(], "tools": [{"name": "plate",
+            "shape": {"box": [0.5, 0.02, 0.5]}, "path": [[0, 0, 0.0605, 0], [0.2, 0, 0.05, 0]]}]})",
+                                  test::source_dir() + "/scenes/shorter_step.json"),
+                      GetParam());
+  const auto run = [&](double end) {
+    while (sim->time() < end) sim->advance(sim->next_batch(8));
+  };
+  run(0.5);
+  EXPECT_GT(sim->report().tools[0].now.force[1], 10);
+  for (const char* young : {"1e6", "3e7"}) {
+    const double dt = sim->dt(), depth = sim->report().tools[0].now.depth;
+    sim->change(fmt::format(R"({{"body": "other", "material": {{"young": {}}}}})", young));
+    double fastest = 0;
+    for (int step = 0; step < 16; ++step) {
+      sim->advance(1);
+      for (const Vec3d& v : sim->velocities(0)) fastest = std::max(fastest, eigen(v).norm());
+    }
+    EXPECT_LT(sim->dt(), 0.6 * dt);
+    check(fmt::format("{} Pa: way of the tissue in a step, over its depth", young), fastest * sim->dt() / depth, 0.15);
+    run(sim->time() + 0.2);
+    check_relative("  force [N]", sim->report().tools[0].now.force[1], 11.7, 0.01);
+  }
 }
 
 PLIANT_ON_BACKENDS(ContactEnergy);

@@ -37,6 +37,7 @@ struct ContactPoints {
   std::vector<std::array<PatchSide, 6>>
       sides;                  ///< bounds of the surface that the point represents; empty unless a tool has edges
   std::vector<double> apart;  ///< distance between the points around it [m]
+  std::vector<char> joined;   ///< whether most of it hangs on nodes of the other side of a cut; empty as `sides`
   double spacing = 0;         ///< of the coarsest body: cell size, or mean edge of its surface [m]
   /// Extent of the surface patch around a point, large enough that patches leave no gap [m].
   [[nodiscard]] double reach(std::size_t i) const;
@@ -113,7 +114,8 @@ struct ContactTangents {
 ContactTangents contact_tangents(const ContactPoints& points, std::size_t point, const std::vector<Vec3d>& rest);
 
 /// Returns the surface patch of a point, PLIANT_PATCH numbers (kernels/contact/contact_patch.cl).
-std::vector<double> contact_patch(const ContactPoints& points, std::size_t point, const std::vector<Vec3d>& rest);
+/// `joined`: nothing parts the cut that it lies on.
+std::vector<double> contact_patch(const ContactPoints& points, std::size_t point, const std::vector<Vec3d>& rest, bool joined);
 
 /// Fills Model::contact and, if unset, Model::tools. Does nothing if the scene has no contact.
 void add_contact(const Scene& scene, Model& model);

@@ -352,6 +352,9 @@ ContactPoints contact_points(const Model& model, bool patches) {
   reorder(points.normal, order);
   reorder(points.apart, order);
   if (patches) reorder(points.sides, order);
+  const auto is_face = [](const ToolForm& form) { return form.shape == ToolShape::blade_face; };
+  if (patches) points.joined.assign(points.size(), 0);
+  if (patches && std::any_of(model.tools->begin(), model.tools->end(), is_face)) points.joined = joined_points(points);
   return points;
 }
 

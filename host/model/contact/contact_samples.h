@@ -17,4 +17,7 @@ void add_contact_point(ContactPoints& points, const Vec3d& x, const std::array<s
 /// edge length of its surface [m].
 double sample_faces(const Model& model, std::int32_t body, bool patches, ContactPoints& points);
 
+/// Returns ContactPoints::joined.
+std::vector<char> joined_points(const ContactPoints& points);
+
 }  // namespace pliant

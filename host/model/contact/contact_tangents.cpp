@@ -1,11 +1,13 @@
-// Derivatives of the surface at contact points with respect to the nodes.
+// The surface around contact points: derivatives with respect to the nodes, patches, and where a cut parts nothing.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <vector>
 
 #include "geometry/vec.h"
 #include "layout.h"
-#include "model/contact/contact.h"
+#include "model/contact/contact_samples.h"
 
 namespace pliant {
 namespace {
@@ -89,6 +91,24 @@ std::array<std::int32_t, 8> whole(const Gradients& gradient, const Vec3d& along,
   return out;
 }
 
+/// Largest distances between points on the two sides of a cut at rest, across it and along it, as fractions of a cell.
+constexpr double kAcrossCut = 0.05, kAlongCut = 0.5;
+/// Greatest cosine between the normals of two points on the two sides of a cut.
+constexpr double kOpposite = -0.8;
+/// Two points of which more than this hangs on the same nodes do not part.
+constexpr double kCommon = 0.5;
+
+/// What two points have in common: the sum over their nodes of the lesser weight.
+double common_weight(const ContactPoints& points, std::size_t i, std::size_t k) {
+  std::int32_t sum = 0;
+  for (std::size_t a = 0; a < 8; ++a) {
+    for (std::size_t b = 0; b < 8; ++b) {
+      if (points.nodes[i][a] == points.nodes[k][b]) sum += std::min(points.weights[i][a], points.weights[k][b]);
+    }
+  }
+  return static_cast<double>(sum) / contact_weight_unit;
+}
+
 }  // namespace
 
 ContactTangents contact_tangents(const ContactPoints& points, std::size_t point, const std::vector<Vec3d>& rest) {
@@ -114,7 +134,7 @@ ContactTangents contact_tangents(const ContactPoints& points, std::size_t point,
   return t;
 }
 
-std::vector<double> contact_patch(const ContactPoints& points, std::size_t point, const std::vector<Vec3d>& rest) {
+std::vector<double> contact_patch(const ContactPoints& points, std::size_t point, const std::vector<Vec3d>& rest, bool joined) {
   const ContactTangents t = contact_tangents(points, point, rest);
   std::vector<double> out;
   for (const PatchSide& side : points.sides[point]) {
@@ -129,13 +149,39 @@ std::vector<double> contact_patch(const ContactPoints& points, std::size_t point
   Gradients gradient{};
   if (!cube_gradients(x, points.weights[point], gradient)) {
     out.resize(PLIANT_PATCH, 0.0);
+    if (joined) out.back() = -2;
     return out;
   }
   const double d = x[1][0] - x[0][0];
   for (std::size_t c = 0; c < 3; ++c) out.push_back((points.rest[point][c] - x[0][c]) / d);
   for (const Vec3d& along : {t.t1, t.t2}) out.insert(out.end(), {along[0] / d, along[1] / d, along[2] / d});
-  out.push_back(1);
+  out.push_back(joined ? 2 : 1);
   return out;
+}
+
+std::vector<char> joined_points(const ContactPoints& points) {
+  std::map<std::int32_t, std::vector<std::size_t>> around;  // the points of which a node has the largest weight
+  const auto first = [&](std::size_t i) {
+    const auto& w = points.weights[i];
+    return points.nodes[i][static_cast<std::size_t>(std::max_element(w.begin(), w.end()) - w.begin())];
+  };
+  for (std::size_t i = 0; i < points.size(); ++i) around[first(i)].push_back(i);
+  const auto faces = [&](std::size_t i, std::size_t k) {
+    const Vec3d way = vec::sub(points.rest[k], points.rest[i]);
+    return vec::dot(points.normal[i], points.normal[k]) < kOpposite && vec::norm(way) < kAlongCut * points.spacing &&
+           std::abs(vec::dot(way, points.normal[i])) < kAcrossCut * points.spacing;
+  };
+  std::vector<char> joined(points.size(), 0);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (const std::int32_t node : points.nodes[i]) {
+      const auto found = around.find(node);
+      if (found == around.end() || joined[i] != 0) continue;
+      joined[i] = static_cast<char>(std::any_of(found->second.begin(), found->second.end(), [&](std::size_t k) {
+        return faces(i, k) && common_weight(points, i, k) > kCommon;
+      }));
+    }
+  }
+  return joined;
 }
 
 }  // namespace pliant

@@ -64,8 +64,15 @@ void ProgramBuilder::add_contact_patches() {
   const ContactPoints& points = *model_.contact;
   const auto count = static_cast<std::size_t>(padded(points.size()));
   std::vector<double> patch(PLIANT_PATCH * count, 0.0);
+  std::vector<char> held(static_cast<std::size_t>(model_.slots), 0);
+  for (const Constraint& c : model_.constraints) held[static_cast<std::size_t>(c.slot)] = static_cast<char>(c.axes == 7);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const std::vector<double> own = contact_patch(points, i, model_.rest);
+    std::int32_t on_held = 0;
+    for (std::size_t a = 0; a < 8; ++a) {
+      if (held[static_cast<std::size_t>(points.nodes[i][a])] != 0) on_held += points.weights[i][a];
+    }
+    const bool joined = points.joined[i] != 0 || 2 * on_held > contact_weight_unit;
+    const std::vector<double> own = contact_patch(points, i, model_.rest, joined);
     for (std::size_t k = 0; k < own.size(); ++k) patch[tile_base(i, PLIANT_PATCH) + k * PLIANT_TILE] = own[k];
   }
   add(make_reals("contact_patch", BufferType::real, PLIANT_PATCH * count, BufferRole::constant, "[tiles][34][16]",

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -50,6 +51,19 @@ NearPoints points_near_tools(const RunContext& run, BufferId starts) {
   return out;
 }
 
+/// Changes of the step by a smaller factor change forces by less than a quarter, which contact takes as any change of motion.
+constexpr double kSudden = 0.9;
+
+/// Writes into the numbers of a point that the depth that is taken back in each step shrinks to `square` of itself, and that
+/// the rest is left to it (start_depth in kernels/contact/press_lanes.cl).
+void mark_step(double square, double& depth, double& tool) {
+  if (depth < 0 || tool == 0) {
+    depth = (depth < 0 ? 1 + depth : 1) * square - 1;
+  } else {  // what is behind the point is from a change since which no step was done
+    tool = std::floor(tool) + 1 - (1 - (tool - std::floor(tool))) * square;
+  }
+}
+
 }  // namespace
 
 void mark_freed(const RunContext& run, const Model& next, Program& program) {
@@ -78,6 +92,23 @@ void carry_depths(const RunContext& run, const Model& next, Program& program) {
     start[base] = found->second.start[0];
     start[base + PLIANT_TILE] = found->second.start[1];
   }
+}
+
+void follow_step(const RunContext& run, double ratio) {
+  const Program& program = run.loaded.program();
+  const BufferId yields = program.find("contact_yield"), starts = program.find("contact_start");
+  if (yields < 0) return;
+  std::vector<double> yield = run.backend().read_reals(yields);
+  const double square = ratio * ratio;
+  if (starts >= 0 && ratio < kSudden) {
+    std::vector<double> start = run.backend().read_reals(starts);
+    for (std::size_t i = 0; i < yield.size(); ++i) {
+      if (yield[i] > 0) mark_step(square, start[tile_base(i, 2)], start[tile_base(i, 2) + PLIANT_TILE]);
+    }
+    run.backend().write_reals(starts, start);
+  }
+  for (double& y : yield) y *= square;  // the compliance in one step
+  run.backend().write_reals(yields, yield);
 }
 
 }  // namespace pliant

@@ -9,6 +9,7 @@
 
 #include "model/nodes/ballast.h"
 #include "pliant/error.h"
+#include "simulation/edits/carried_depths.h"
 #include "simulation/recovery/ballast_swap.h"
 #include "simulation/recovery/limits.h"
 #include "simulation/step/coupling.h"
@@ -282,12 +283,7 @@ void StepControl::change(double dt) {
   clock = {clock.step, clock.step, clock.time(), dt};
   for (std::size_t s = 0; s < run_.model().mass.size(); ++s) w[4 * s + 3] = run_.decay(run_.model(), s);
   run_.loaded.write_w(w);
-  // The compliance of contact points in one step is proportional to the square of the step.
-  if (const BufferId id = run_.loaded.program().find("contact_yield"); id >= 0) {
-    std::vector<double> yield = run_.backend().read_reals(id);
-    for (double& y : yield) y *= ratio * ratio;
-    run_.backend().write_reals(id, yield);
-  }
+  follow_step(run_, ratio);
   upload_coupling(run_);
 }
 
