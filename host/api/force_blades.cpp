@@ -130,7 +130,7 @@ void ForceBlades::note(const Simulation& simulation) {
     if (own != state.pressed.end()) {
       f.face_work = f.work - own->second.work;
       f.max_force = own->second.max_force;
-      f.fracture = own->second.fracture;
+      f.fracture = own->second.fracture_now();
       f.gave_way = own->second.first;
     }
     forces.push_back(std::move(f));

@@ -84,7 +84,7 @@ void add_blades(const Simulation& simulation, nlohmann::ordered_json& json) {
          {"torque", now.torque},
          {"max_force", blade.max_force},
          {"work", simulation.press().work(b)},
-         {"fracture", blade.fracture},
+         {"fracture", blade.fracture_now()},
          {"gave_way", blade.first < 0 ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(blade.first)},
          {"by_contact", blade.by_contact},
          {"by_stress", blade.by_stress}});
@@ -101,7 +101,7 @@ std::string blade_line(const Simulation& simulation, std::size_t blade) {
   const std::string first = b.first < 0 ? "tissue held" : fmt::format("tissue gave way at {:.4g} s", b.first);
   return fmt::format("blade {}: force [{:.4g}] N, at most {:.4g} N; {}; did {:.4g} J, {:.4g} J of it in cutting", name,
                      fmt::join(simulation.press().last_force(blade).force, ", "), b.max_force, first,
-                     simulation.press().work(blade), b.fracture);
+                     simulation.press().work(blade), b.fracture_now());
 }
 
 nlohmann::ordered_json interpenetration_json(const Interpenetration& found) {

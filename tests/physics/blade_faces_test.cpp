@@ -4,6 +4,7 @@
 #include "physics/harness.h"
 #include "physics/turned_tetrahedra.h"
 #include "scene/blade_face.h"
+#include "schedule/program_layout.h"
 #include "support/error_of.h"
 #include "support/source_dir.h"
 
@@ -260,6 +261,26 @@ TEST_P(BladeFaces, PushNothingThatHangsTogether) {
   EXPECT_GT(std::count(sim->model().contact->joined.begin(), sim->model().contact->joined.end(), 1), 20);
   EXPECT_GT(pushed, 100U);
   EXPECT_EQ(together, 0U);
+}
+
+/// Faces leave the points alone that hang mostly on held nodes: the few free ones would move many times as far.
+TEST(BladeFacesNone, PushNothingThatIsHeld) {
+  auto sim = simulate(block({.path = down_and_stand(1)}), "cpu");
+  const ContactPoints& points = *sim->model().contact;
+  std::vector<char> held(static_cast<std::size_t>(sim->model().slots), 0);
+  for (const Constraint& c : sim->model().constraints) held[static_cast<std::size_t>(c.slot)] = 1;
+  const std::vector<double> patch = sim->backend().read_reals(sim->program().find("contact_patch"));
+  std::size_t marked = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    std::int32_t on_held = 0;
+    for (std::size_t a = 0; a < 8; ++a)
+      on_held += held[static_cast<std::size_t>(points.nodes[i][a])] != 0 ? points.weights[i][a] : 0;
+    const bool mark = std::abs(patch[tile_base(i, PLIANT_PATCH) + std::size_t{33} * PLIANT_TILE]) == 2;
+    EXPECT_EQ(mark, 2 * on_held > contact_weight_unit) << i;
+    marked += mark ? 1 : 0;
+  }
+  EXPECT_GT(marked, 100U);
+  EXPECT_LT(marked, points.size() / 2);
 }
 
 /// A run that goes on from a checkpoint, with a blade in tissue, has the bits of the whole run.

@@ -71,7 +71,7 @@ class LatticeSampler {
   };
   struct HashOfGroup {
     std::size_t operator()(const Group& g) const {
-      std::uint64_t hash = static_cast<std::uint64_t>(8 * g.side + g.half);
+      std::uint64_t hash = 8 * static_cast<std::uint64_t>(g.side) + static_cast<std::uint64_t>(g.half);
       for (const std::int32_t n : g.nodes) hash = (hash ^ static_cast<std::uint64_t>(n)) * 0x9e3779b97f4a7c15U;
       return static_cast<std::size_t>(hash ^ hash >> 32);
     }
@@ -132,7 +132,8 @@ class LatticeSampler {
     for (int i = 0; i < n; ++i) {
       for (int j = 0; j < 2 * (n - i) - 1; ++j) {  // small triangles of row i, every second one inverted
         const double up = j % 2 == 0 ? 1.0 / 3 : 2.0 / 3;
-        const double a = (i + up) / n, b = (j / 2 + up) / n;
+        const int pair = j / 2;
+        const double a = (i + up) / n, b = (pair + up) / n;
         add(between(x, {1 - a - b, a, b}), places, unit, inwards, side, area / (static_cast<double>(n) * n));
       }
     }

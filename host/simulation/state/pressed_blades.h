@@ -37,7 +37,7 @@ struct PressedBlade {
   Vec3d normal{};                    ///< n1, the direction in which it presses; 0: none yet
   std::vector<FrontSample> samples;  ///< at equal distances along the edge, both ends included
   double work = 0;                   ///< on the tissue [J]
-  double fracture = 0;               ///< of it, what cutting took: sum of F* times the way of the front [J]
+  double fracture = 0;               ///< as of the last update of the fronts, see fracture_now() [J]
   double max_force = 0;              ///< [N]
   double first = -1;                 ///< time at which tissue first gave way [s]; -1: not yet
   std::int64_t by_contact = 0;       ///< samples that gave way by the traction of the edge, summed over updates
@@ -46,6 +46,12 @@ struct PressedBlade {
 
   [[nodiscard]] bool touches() const {
     return std::any_of(samples.begin(), samples.end(), [](const FrontSample& s) { return s.kind != 0; });
+  }
+  /// Of the work, what cutting took: sum of F* times the way of the front [J].
+  [[nodiscard]] double fracture_now() const {
+    double sum = fracture;
+    for (const FrontSample& s : samples) sum += s.limit * s.advance;
+    return sum;
   }
   /// Call when the blade is taken elsewhere: it touches nothing.
   void forget_fronts() {
