@@ -35,7 +35,7 @@ class SurfaceWalk {
 
   [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
   /// Closest point of the surface.
-  [[nodiscard]] ClosestPoint closest(const Vec3d& p) const { return tree_.closest(p); }
+  [[nodiscard]] ClosestPoint closest(const Vec3d& p, double within = HUGE_VAL) const { return tree_.closest(p, within); }
   /// The vertex in contact at a point: of those in whose 1-ring it lies, which are the corners of its triangle, the nearest; of
   /// equally near ones that with the lowest number.
   [[nodiscard]] std::int32_t vertex_at(const SurfacePoint& p) const;

@@ -168,9 +168,10 @@ TriangleTree::Far TriangleTree::far_field(std::int32_t first, std::int32_t count
 /// By so much, relatively, a box may seem to be further away than what is in it.
 constexpr double kRounding = 1e-12;
 
-ClosestPoint TriangleTree::closest(const Vec3d& p) const {
+ClosestPoint TriangleTree::closest(const Vec3d& p, double within) const {
   ClosestPoint best;
-  double best2 = HUGE_VAL;
+  best.distance = within;
+  double best2 = within * within;
   std::array<std::pair<double, std::int32_t>, kDepth> stack;
   int top = 0;
   stack[top++] = {nodes_[0].box.distance2(p), 0};

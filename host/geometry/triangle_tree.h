@@ -22,7 +22,8 @@ class TriangleTree {
   explicit TriangleTree(const TriangleMesh& mesh);
 
   /// Ties go to the lowest triangle index, so that every traversal order gives the same answer.
-  [[nodiscard]] ClosestPoint closest(const Vec3d& p) const;
+  /// `within`: a point that is not nearer than this is not looked for; its triangle is -1 then.
+  [[nodiscard]] ClosestPoint closest(const Vec3d& p, double within = HUGE_VAL) const;
 
   /// Generalised winding number: 1 inside a closed outward surface, 0 outside, smooth across holes. Nearby triangles give
   /// their exact solid angle (van Oosterom and Strackee 1983), far clusters the first two terms of the expansion of

@@ -68,6 +68,8 @@ TEST(Distance, TreeAgreesWithBruteForce) {
           best, vec::norm(vec::sub(p, closest_on_triangle(p, mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]))));
     }
     EXPECT_EQ(tree.closest(p).distance, best);
+    EXPECT_EQ(tree.closest(p, 1.001 * best).triangle, tree.closest(p).triangle);
+    EXPECT_EQ(tree.closest(p, 0.999 * best).triangle, -1);
     EXPECT_NEAR(tree.winding(p), vec::norm(p) < 1 ? 1 : 0, vec::norm(p) > 0.95 && vec::norm(p) < 1.05 ? 1 : 0.03);
   }
 }

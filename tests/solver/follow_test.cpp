@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "io/save.h"
+#include "model/contact/contact.h"
 #include "simulation/state/compare.h"
 #include "solver/scenes.h"
 #include "support/error_of.h"
@@ -159,6 +160,30 @@ TEST(Follow, TheRegionGoesWithABladeAToolAndABladeOfTheHost) {
     for (int i = 0; i < 2; ++i) host.advance(host.next_batch(64));
   }
   EXPECT_NEAR(middle_of_region(host), 0.04, 0.02);
+}
+
+/// Points of contact are not looked for again when the region moves: they are those that would be found.
+TEST(Follow, PointsOfContactMoveWithTheirNodes) {
+  Simulation sim(instrumented_bar("scalpel", std::string(kScalpel) + kRod), open_backend("cpu"));
+  int moves = 0, renumbered = 0;
+  while (sim.time() < 1.4) {
+    sim.advance(sim.next_batch(64));
+    const std::vector<MovedRegion> regions = sim.state().regions;
+    const auto before = sim.shared_model();
+    sim.begin_batch(1);  // where it looks at the blade
+    if (sim.state().regions == regions) continue;
+    ++moves;
+    renumbered += sim.model().bodies[0].slot != before->bodies[0].slot ? 1 : 0;
+    const ContactPoints &now = *sim.model().contact, fresh = contact_points(sim.model(), false);
+    EXPECT_EQ(now.rest, fresh.rest);
+    EXPECT_EQ(now.nodes, fresh.nodes);
+    EXPECT_EQ(now.weights, fresh.weights);
+    EXPECT_EQ(now.area, fresh.area);
+    EXPECT_EQ(now.normal, fresh.normal);
+  }
+  EXPECT_GE(moves, 3);
+  EXPECT_GE(renumbered, 3);
+  EXPECT_FALSE(sim.state().cuts.empty());
 }
 
 TEST(Follow, ACutThatTheRegionFollowsIsTheSameOnBothBackendsAndAfterAResume) {

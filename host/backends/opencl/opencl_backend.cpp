@@ -39,6 +39,9 @@ BackendInfo limited(BackendInfo info, const OpenclOptions& options) {
   return info;
 }
 
+/// Waiting for a write costs as much as a pass: the values of small ones are copied, and the next read or finish() waits.
+constexpr std::size_t kStagedBytes = 1 << 16, kStaged = 256;
+
 std::string place_of(const BackendInfo& info) { return fmt::format("{} ({})", info.name, info.device); }
 
 class OpenclBackend final : public ProgramBackend<opencl::DeviceMemory, Prepared, float> {
@@ -54,6 +57,15 @@ class OpenclBackend final : public ProgramBackend<opencl::DeviceMemory, Prepared
     const int lanes = this->info().lanes;
     if (lanes != 1 && lanes != 16) {
       throw Error(ErrorCode::bad_input, fmt::format("lanes is {}; allowed are 1 and 16", lanes));
+    }
+  }
+
+  OpenclBackend(const OpenclBackend&) = delete;
+  OpenclBackend& operator=(const OpenclBackend&) = delete;
+  ~OpenclBackend() override {
+    try {
+      queue_.finish();            // staged_ is read until then
+    } catch (const cl::Error&) {  // a destructor has nobody to tell
     }
   }
 
@@ -84,12 +96,14 @@ class OpenclBackend final : public ProgramBackend<opencl::DeviceMemory, Prepared
   }
   void finish() override {
     guarded(ErrorCode::internal, where(), [&] { queue_.finish(); });
+    staged_.clear();
   }
 
   void read_into(BufferId id, void* out) override {
     const std::size_t bytes = bytes_of(id);
     if (bytes == 0) return;
     guarded(ErrorCode::internal, where(), [&] { queue_.enqueueReadBuffer(memory(id), CL_TRUE, 0, bytes, out); });
+    staged_.clear();
   }
 
   void profile(bool on) override {
@@ -122,7 +136,15 @@ class OpenclBackend final : public ProgramBackend<opencl::DeviceMemory, Prepared
     store(id).written = true;
     const std::size_t bytes = bytes_of(id);
     if (bytes == 0) return;
-    guarded(ErrorCode::internal, where(), [&] { queue_.enqueueWriteBuffer(memory(id), CL_TRUE, 0, bytes, values); });
+    if (bytes > kStagedBytes) {
+      guarded(ErrorCode::internal, where(), [&] { queue_.enqueueWriteBuffer(memory(id), CL_TRUE, 0, bytes, values); });
+      staged_.clear();
+      return;
+    }
+    if (staged_.size() == kStaged) finish();
+    const auto* first = static_cast<const std::byte*>(values);
+    const std::vector<std::byte>& copy = staged_.emplace_back(first, first + bytes);
+    guarded(ErrorCode::internal, where(), [&] { queue_.enqueueWriteBuffer(memory(id), CL_FALSE, 0, bytes, copy.data()); });
   }
 
   std::vector<opencl::DeviceMemory> make_stores(const Program* before, const Program& next,
@@ -249,6 +271,7 @@ class OpenclBackend final : public ProgramBackend<opencl::DeviceMemory, Prepared
   std::multimap<KernelKey, cl::Kernel> spare_kernels_;
   std::vector<Prepared*> list_;
   std::vector<Timed> events_;
+  std::vector<std::vector<std::byte>> staged_;  ///< values of writes that nothing has waited for yet
 };
 
 std::unique_ptr<Backend> open(const cl::Device& device, int index, const OpenclOptions& options) {

@@ -104,6 +104,9 @@ double tool_distance(const ToolForm& form, const Vec3d& y, const ToolMoment& mom
 /// Returns the contact points of all bodies; `patches`: with their sides, which tools with edges need.
 ContactPoints contact_points(const Model& model, bool patches);
 
+/// Returns the contact points of a model whose bodies are those of `before`, in other slots.
+std::shared_ptr<const ContactPoints> contact_of_same_bodies(const Model& before, const Model& now);
+
 /// Tangents of a contact point. Deformed, they are F t1 = t1 + sum_a first_a u_a and F t2 likewise; t1, t2 and the undeformed
 /// normal are orthonormal.
 struct ContactTangents {

@@ -41,6 +41,14 @@ int side_of(const Vec3d& normal) {
   return static_cast<int>(2 * axis) + (normal[axis] < 0 ? 1 : 0);
 }
 
+/// Shape [slots]: the node of a body in each slot; -1: none of its nodes.
+std::vector<std::int32_t> nodes_of_slots(const ModelBody& body, std::int32_t slots) {
+  std::vector<std::int32_t> node(static_cast<std::size_t>(slots), -1);
+  for (std::size_t n = 0; n < body.slot.size(); ++n)
+    node[static_cast<std::size_t>(body.slot[n])] = static_cast<std::int32_t>(n);
+  return node;
+}
+
 /// Samples a lattice body: every triangle is divided into samples, and the samples in one half of a cell (in x, y and z) that
 /// face the same way become one point.
 class LatticeSampler {
@@ -52,9 +60,15 @@ class LatticeSampler {
     for (std::int32_t t = b_.first_triangle; t < b_.first_triangle + b_.triangles; ++t) divide(t);
     for (std::size_t i = 0; i < samples_.size() && patches_; ++i)
       halves_.insert({half_cell(samples_[i]), of(samples_[i]).side});
+    // In the order of the body's nodes: their slots depend on which of its cells are finite elements.
+    const std::vector<std::int32_t> node = nodes_of_slots(b_, model_.slots);
+    std::vector<Group> numbered = groups_;
+    for (Group& g : numbered) {
+      for (std::int32_t& n : g.nodes) n = node[static_cast<std::size_t>(n)];
+    }
     std::vector<std::size_t> order(groups_.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t k) { return groups_[i] < groups_[k]; });
+    std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t k) { return numbered[i] < numbered[k]; });
     const std::vector<std::vector<std::size_t>> members = members_of_groups();
     for (const std::size_t group : order) gather(members[group], points);
   }

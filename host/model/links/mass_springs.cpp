@@ -108,7 +108,7 @@ std::vector<std::int32_t> add_points(const std::vector<EdgeShare>& edges, Model&
 
 /// At least the largest eigenvalue of the Laplacian of a tetrahedron with these stiffnesses at its edges (Wolkowicz and Styan
 /// 1980: three numbers by their mean and their variance; the fourth eigenvalue is 0).
-double largest_eigenvalue(const std::array<double, 6>& stiffness) {
+double largest_of_symmetric(const std::array<double, 6>& stiffness) {
   std::array<double, 4> degree{};
   double squares = 0;
   for (std::size_t k = 0; k < 6; ++k) {
@@ -157,7 +157,7 @@ double edges_omega2(const Body& body, const NodeNumbering& draft, const std::vec
       stiffness[k] = per_volume[i] * draft.volume[t];
     }
     const double corner = material.density * draft.volume[t] / 4;
-    most = std::max(most, largest_eigenvalue(stiffness) / corner);
+    most = std::max(most, largest_of_symmetric(stiffness) / corner);
   }
   return most;
 }

@@ -18,6 +18,7 @@ constexpr double kOutOfCut =
 constexpr double kSideways = 1;  ///< a front point that is this far beside the sample is no longer its own [edges]
 constexpr double kBeside = 1.5;  ///< what goes with the last sample that cuts, so that edges at a side are cut [edges]
 constexpr double kBehind = 1, kAhead = 0.25;  ///< where a sample looks for a surface, besides its way [edges]
+constexpr double kRounding = 1e-6;            ///< [edges]
 constexpr double kBefore = 0.1;               ///< above the surface the first sweep of a front begins [edges]
 constexpr double kFacing = -0.2;              ///< a surface whose normal is less against the edge than this is passed along
 constexpr double kTurns = 0.2;                ///< cosine up to which a moving edge in tissue keeps pressing forward
@@ -104,7 +105,7 @@ std::vector<CutEdges> BladeFronts::update(EditedBodies& bodies, const std::vecto
   std::vector<CutEdges> edges(run_.scene.bodies.size());
   x_.clear();
   for (std::size_t b = 0; b < edges.size(); ++b) x_.push_back(run_.loaded.positions(u, b));
-  std::vector<Vec3d> surface_now;
+  std::optional<PresentSurface> surface;
   const double size = run_.settings.blade_edge;
   for (const Blade& b : run_.scene.blades) {
     if (b.cuts != BladeCuts::by_force) continue;
@@ -122,8 +123,8 @@ std::vector<CutEdges> BladeFronts::update(EditedBodies& bodies, const std::vecto
     let_go(blade, edge, bodies);
     give_way(blade, edge, bodies, edges);
     turn(blade, edge);
-    if (surface_now.empty()) surface_now = surface(u);
-    meet(blade, edge, bodies, surface_now);
+    if (!surface) surface.emplace(run_.model(), u);
+    meet(blade, edge, bodies, *surface);
     strokes_.look(b.name, blade.samples, held, bodies, x_);
     for (std::size_t i = 0; i < blade.samples.size(); ++i) {
       FrontSample& s = blade.samples[i];
@@ -135,20 +136,6 @@ std::vector<CutEdges> BladeFronts::update(EditedBodies& bodies, const std::vecto
     }
   }
   return edges;
-}
-
-std::vector<Vec3d> BladeFronts::surface(const std::vector<double>& u) const {
-  const ModelSurface& s = run_.model().surface;
-  std::vector<Vec3d> x(s.rest.size());
-  for (std::size_t v = 0; v < x.size(); ++v) {
-    x[v] = s.rest[v];
-    for (std::size_t a = 0; a < 8; ++a) {
-      if (s.weights[v][a] == 0) continue;
-      const double* moved = &u[4 * static_cast<std::size_t>(s.nodes[v][a])];
-      for (std::size_t c = 0; c < 3; ++c) x[v][c] += s.weights[v][a] * moved[c];
-    }
-  }
-  return x;
 }
 
 /// The edge presses where it goes, and while it is drawn out of its cut, where it went.
@@ -283,41 +270,43 @@ void BladeFronts::weaken(PressedBlade& blade, FrontSample& s, const Edge& edge) 
   s.zeta *= integrity_left(s.depth, edge.size) / before;
 }
 
-void BladeFronts::meet(PressedBlade& blade, const Edge& edge, EditedBodies& bodies, const std::vector<Vec3d>& surface) {
+void BladeFronts::meet(PressedBlade& blade, const Edge& edge, EditedBodies& bodies, PresentSurface& surface) {
   const Vec3d& n = blade.normal;
   if (n == Vec3d{}) return;
   const double behind = kBehind * edge.size, ahead = kAhead * edge.size + std::max(0.0, vec::dot(edge.motion, n));
   vec::Box box;
-  for (const Vec3d& p : {edge.x.front(), edge.x.back()}) {
-    box.extend(vec::sub(p, vec::mul(n, behind)));
-    box.extend(vec::add(p, vec::mul(n, ahead)));
+  std::vector<vec::Box> rays(edge.x.size());
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (kind_of(blade.samples[i]) == FrontKind::held) continue;
+    rays[i].extend(vec::sub(edge.x[i], vec::mul(n, behind)));
+    rays[i].extend(vec::add(edge.x[i], vec::mul(n, ahead)));
+    for (double& lower : rays[i].lower) lower -= kRounding * edge.size;
+    for (double& upper : rays[i].upper) upper += kRounding * edge.size;
+    box.extend(rays[i]);
   }
   struct Hit {
     double behind = -HUGE_VAL, ahead = HUGE_VAL, facing = 0;
     std::int32_t body_behind = -1, body_ahead = -1;
   };
   std::vector<Hit> hits(edge.x.size());
-  const ModelSurface& s = run_.model().surface;
-  for (std::size_t t = 0; t < s.triangles.size(); ++t) {
-    std::array<Vec3d, 3> corners;
-    vec::Box own;
-    for (std::size_t k = 0; k < 3; ++k) own.extend(corners[k] = surface[static_cast<std::size_t>(s.triangles[t][k])]);
-    if (!box.overlaps(own) || !bodies.meets_blades(static_cast<std::size_t>(s.triangle_body[t]))) continue;
+  surface.within(box, [&](std::size_t t, const std::array<Vec3d, 3>& corners, const vec::Box& own) {
+    const std::int32_t body = run_.model().surface.triangle_body[t];
+    if (!bodies.meets_blades(static_cast<std::size_t>(body))) return;
     for (std::size_t i = 0; i < hits.size(); ++i) {
-      if (kind_of(blade.samples[i]) == FrontKind::held) continue;
+      if (!rays[i].overlaps(own)) continue;
       const std::optional<Crossing> c = crossing(edge.x[i], n, corners);
       if (!c || c->at < -behind || c->at > ahead) continue;
       Hit& hit = hits[i];
       if (c->at <= 0 && c->at > hit.behind) {
         hit.behind = c->at;
         hit.facing = c->facing;
-        hit.body_behind = s.triangle_body[t];
+        hit.body_behind = body;
       } else if (c->at > 0 && c->at < hit.ahead && c->facing < kFacing) {
         hit.ahead = c->at;
-        hit.body_ahead = s.triangle_body[t];
+        hit.body_ahead = body;
       }
     }
-  }
+  });
   for (std::size_t i = 0; i < hits.size(); ++i) {
     const bool inside = hits[i].body_behind >= 0 && hits[i].facing < kFacing;
     const std::int32_t b = inside ? hits[i].body_behind : hits[i].body_ahead;

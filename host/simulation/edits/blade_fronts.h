@@ -7,6 +7,7 @@
 #include "simulation/edits/cut_strokes.h"
 #include "simulation/edits/edited_bodies.h"
 #include "simulation/edits/front_point.h"
+#include "simulation/edits/present_surface.h"
 #include "simulation/state/run_context.h"
 
 namespace pliant {
@@ -33,12 +34,11 @@ class BladeFronts {
   struct Edge;
   /// The sweep of the samples of a blade in one body.
   struct Sweep;
-  [[nodiscard]] std::vector<Vec3d> surface(const std::vector<double>& u) const;
   void turn(PressedBlade& blade, const Edge& edge) const;
   void let_go(PressedBlade& blade, const Edge& edge, EditedBodies& bodies) const;
   void give_way(PressedBlade& blade, const Edge& edge, EditedBodies& bodies, std::vector<CutEdges>& edges);
   void sweep(PressedBlade& blade, const Edge& edge, EditedBodies& bodies, std::size_t b, CutEdges& edges) const;
-  void meet(PressedBlade& blade, const Edge& edge, EditedBodies& bodies, const std::vector<Vec3d>& surface);
+  void meet(PressedBlade& blade, const Edge& edge, EditedBodies& bodies, PresentSurface& surface);
   static void weaken(PressedBlade& blade, FrontSample& sample, const Edge& edge);
   [[nodiscard]] double limit(const Blade& blade, const FrontSample& sample, double length, EditedBodies& bodies);
   [[nodiscard]] Material material(std::size_t body, std::int32_t cell, EditedBodies& bodies);

@@ -80,7 +80,11 @@ void TopologyEdits::move_fronts() {
   std::vector<CutEdges> edges = fronts_.update(all, u, next);
   for (const CutEdges& e : edges) report.edges += static_cast<std::int64_t>(e.size());
   report.search = clock.seconds();
-  if (report.edges > 0) divide(std::move(edges), std::move(u), report);
+  if (report.edges > 0) {
+    divide(std::move(edges), std::move(u), report);
+  } else {
+    known_u_ = std::move(u);
+  }
   std::vector<std::string>& met = run_.state.blades.met;
   for (const auto& [name, blade] : run_.state.pressed) {
     const bool meets = std::any_of(blade.samples.begin(), blade.samples.end(),

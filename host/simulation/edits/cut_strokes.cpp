@@ -56,7 +56,7 @@ std::vector<CutStrokes::Meeting> CutStrokes::meetings(const std::vector<FrontSam
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const FrontSample& s = samples[i];
     const bool in_contact = touches(s, i < held.size() && held[i] != 0) && surface(s.body).walk != nullptr;
-    const double weight = in_contact ? 1 - surface(s.body).walk->closest(s.point.rest).distance / shallow : 0;
+    const double weight = in_contact ? 1 - surface(s.body).walk->closest(s.point.rest, shallow).distance / shallow : 0;
     if (!(weight > 0)) continue;
     const auto b = static_cast<std::size_t>(s.body);
     if (all.empty() || i > last + kNextTo || all.back().body != s.body) all.emplace_back().body = s.body;

@@ -55,6 +55,7 @@ void ModelSwap::run(const Scene& scene, std::vector<NodeOrigins> origins, const 
     take_surfaces(solids, ready);
     add_membranes(scene, *model_);
   }
+  if (keeps_bodies_) model_->contact = contact_of_same_bodies(*old_model_, *model_);
   ballast_ = carried_ballast();           // in proportion to masses, of membranes too
   set_ballast(scene, *model_, ballast_);  // the last that can refuse a scene; nothing has changed so far
   try {

@@ -22,6 +22,8 @@ class ModelSwap {
   ModelSwap(RunContext& run, HostLoads& loads, EditedBodies& bodies, std::vector<double> u, CutReport& report);
   /// Keeps contact and the state of shape matching if the nodes are unchanged.
   void keep_state() { keeps_state_ = true; }
+  /// Call if no body has been edited: the points of contact are the same, in other slots.
+  void keep_bodies() { keeps_bodies_ = true; }
   /// `scene`: with the new operational regions. The surfaces may still be in progress until `ready` returns, which may throw.
   /// On an exception, the old model is restored.
   void run(const Scene& scene, std::vector<NodeOrigins> origins, const std::function<void()>& ready);
@@ -61,7 +63,7 @@ class ModelSwap {
   std::vector<NodeOrigins> origins_;
   std::shared_ptr<Model> model_;
   std::vector<NodeInertia> ballast_;
-  bool keeps_state_ = false;
+  bool keeps_state_ = false, keeps_bodies_ = false;
   bool kept_ = false;                        ///< the new model reuses the surface of the old one
   const SurfaceChanges* changes_ = nullptr;  ///< the differences from the reused surface
   std::vector<double> offset_;               ///< RunState::offset of the new model

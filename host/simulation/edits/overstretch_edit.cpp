@@ -27,7 +27,7 @@ void TopologyEdits::open_overstretched() {
   if (blade_method(run_.scene) != BladeMethod::virtual_nodes) return;
   if (!(limit > 0) || (run_.scene.blades.empty() && run_.state.cuts.empty())) return;
   EditedBodies& all = bodies();
-  std::vector<double> u = run_.u();
+  std::vector<double> u = known_u_.empty() ? run_.u() : std::exchange(known_u_, {});
   std::vector<CutEdges> edges(all.size());
   CutReport report;
   for (std::size_t b = 0; b < all.size(); ++b) {

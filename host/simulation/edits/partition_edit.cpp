@@ -234,6 +234,7 @@ void TopologyEdits::swap_partition(std::vector<double> u, bool keeps_state) {
   CutReport report;
   ModelSwap swap(run_, loads_, bodies(), std::move(u), report);
   if (keeps_state) swap.keep_state();
+  swap.keep_bodies();
   swap.run(scene_at(run_.state), std::vector<NodeOrigins>(run_.scene.bodies.size()), [] {});
 }
 

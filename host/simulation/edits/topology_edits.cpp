@@ -123,6 +123,7 @@ void TopologyEdits::update() {
   move_scene_blades();
   move_fronts();
   if (run_.phase() == 0) open_overstretched();
+  known_u_.clear();
   make_tears();
   break_joins();
   move_regions();

@@ -108,7 +108,8 @@ class TopologyEdits {
   HostLoads& loads_;
   CutStrokes strokes_;
   BladeFronts fronts_;
-  std::vector<char> changed_nodes_;       ///< [slots] by the last cut or tear; empty: none
+  std::vector<double> known_u_;      ///< RunContext::u() within an update that has changed nothing so far; empty: not known
+  std::vector<char> changed_nodes_;  ///< [slots] by the last cut or tear; empty: none
   std::unique_ptr<EditedBodies> bodies_;  ///< the scene's bodies with the edits of RunState; created on first use
 };
 

@@ -86,7 +86,9 @@ Symptoms Recovery::read(std::int64_t batch_start, std::int32_t step_in_batch) co
       s.lost = summary[i + 1];
     }
   }
-  if (s.lost_in == 0 && !std::isfinite(run_.loaded.largest_increment())) find_lost_node(s);
+  if (s.lost_in > 0) return s;
+  s.increment = run_.loaded.largest_increment();
+  if (!std::isfinite(s.increment)) find_lost_node(s);
   return s;
 }
 
@@ -130,7 +132,7 @@ bool Recovery::calm_down(Symptoms& s) {
   look_at_networks(s);
   if (s.outgrown) return false;
   double fastest = 0;
-  if (run_.loaded.largest_increment() / run_.model().shortest > kFastIncrement * fast_share()) {
+  if (s.increment / run_.model().shortest > kFastIncrement * fast_share()) {
     const Calmed calmed = calm(run_, kFastest * fast_share());
     reports_.now.inversions.calmed += calmed.elements;
     fastest = calmed.fastest;

@@ -20,6 +20,7 @@ struct Symptoms {
   std::int32_t lost_slot = 0;  ///< of that node
   std::int64_t inverted = 0;   ///< number of elements with J <= 0
   std::int32_t inverted_one = 0;  ///< the lowest of their fault indices
+  double increment = 0;           ///< LoadedModel::largest_increment()
   // Set by Recovery::calm_down if no element is lost:
   bool burst = false;                    ///< nodes of an element moved too far relative to each other in one step
   bool outgrown = false;                 ///< the step exceeds the stability limit of the batch's result
