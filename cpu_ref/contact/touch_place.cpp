@@ -47,7 +47,7 @@ template <bool Again, class Scalar>
 [[gnu::always_inline]] inline void add_corner(const Corner<Again, Scalar>& corner, const Scalar* weight, const Scalar* shares,
                                               const Scalar* first, const Scalar* second, Scalar half_hh,
                                               CornerSums<Scalar>& sum) {
-  for (int l = 0; l < PLIANT_TILE; ++l) {
+  for (int l = 0; l < PLIANT_TILE; ++l) {  // vectorized
     const Scalar c = weight[l], share = shares[l], one = first[l], two = second[l], area = corner.area[l];
     add_times(c, corner.u, l, sum.x);
     add_times(c, corner.w, l, sum.moved);
@@ -67,7 +67,7 @@ template <bool Again, class Scalar>
 template <bool Again, class Scalar>
 [[gnu::always_inline]] inline void place_tile(const CornerSums<Scalar>& sum, const Scalar* rest, const std::int32_t* counts,
                                               const Scalar* surface, Scalar* yields, Places<Scalar>& places) {
-  for (int l = 0; l < PLIANT_TILE; ++l) {
+  for (int l = 0; l < PLIANT_TILE; ++l) {  // vectorized
     const Scalar yield = yields[l], w = sum.compliance[l], whole = sum.whole[l], moving = sum.moving[l];
     const AlongTangents<Scalar> along = sum.along(l);
     Place<Scalar> place = places.at(l);

@@ -145,7 +145,7 @@ template <class Scalar>
   const Vec<Scalar> start = difference(p.apart, difference(lower.moved, upper.moved));
   const Vec<Scalar> arm = times(scaled_sum(minus(dot(start, p.normal)), p.normal, start), Scalar(1) / length);
   const Scalar d = lower.density < upper.density ? lower.density : upper.density, longer = dot(arm, arm) * (d * d);
-  p.arm = longer > Scalar(1) ? times(arm, Scalar(1) / longer) : arm;
+  p.arm = times(arm, longer > Scalar(1) ? Scalar(1) / longer : Scalar(1));
   p.gap = dot(p.apart, p.normal) + dot(p.arm, difference(upper.tilt, lower.tilt));
   return p;
 }

@@ -44,7 +44,7 @@ template <bool Friction, class Scalar>
   const Scalar ease = contact_params[8];
   Scalar *offsets = numbers + PLIANT_TILE, *anchors = offsets + PLIANT_TILE, *stuck = anchors + 3 * PLIANT_TILE;
   std::int32_t* marks = own + 3 * PLIANT_TILE;
-  for (int l = 0; l < PLIANT_TILE; ++l) {
+  for (int l = 0; l < PLIANT_TILE; ++l) {  // vectorized
     // Everything is read before any condition: gcc does not read ahead of one.
     const Scalar area = numbers[l], offset = offsets[l], stays = stuck[l];
     const std::int32_t partner = partners.number[l], mark = marks[l];

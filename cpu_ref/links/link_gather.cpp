@@ -15,7 +15,7 @@ void link_gather(Range range, Scalar* node_load, const std::int32_t* gather_node
     nodes.begin(node_load, f);
     const std::int64_t last = gather_offset[tile / PLIANT_TILE + 1];
     for (std::int64_t k = gather_offset[tile / PLIANT_TILE]; k < last; ++k) {
-      for (int l = 0; l < PLIANT_TILE; ++l) {
+      for (int l = 0; l < PLIANT_TILE; ++l) {  // vectorized
         const std::int64_t at = k * PLIANT_TILE + l;
         const Scalar* of = link_force + std::int64_t{4} * gather_index[at];
         for (int c = 0; c < 3; ++c) f[c][l] = std::fma(gather_weight[at], of[c], f[c][l]);

@@ -113,7 +113,7 @@ void store_records(const Scalar* rest, const Records<Scalar>& field, const Mat3T
   Scalar rows[4][PLIANT_TILE][4];
   for (int c = 0; c < 3; ++c) {
 #pragma GCC unroll 1
-    for (int l = 0; l < PLIANT_TILE; ++l) {
+    for (int l = 0; l < PLIANT_TILE; ++l) {  // vectorized
       const Scalar t = rest[l] * field[0][c][l], x = std::fma(-hd.m[c][0][l], rest[PLIANT_TILE + l], t);
       const Scalar y = std::fma(-hd.m[c][1][l], rest[2 * PLIANT_TILE + l], x);
       sorted[0][c][l] = std::fma(-hd.m[c][2][l], rest[3 * PLIANT_TILE + l], y);
@@ -130,7 +130,7 @@ void store_records(const Scalar* rest, const Records<Scalar>& field, const Mat3T
 template <class Scalar>
 [[gnu::always_inline]] inline void horn_matrices(const Scalar* rest, const Scalar* elastic, const Records<Scalar>& field,
                                                  Mat3Tile<Scalar>& deformation, HornTile<Scalar>& horn) {
-  for (int l = 0; l < PLIANT_TILE; ++l) {
+  for (int l = 0; l < PLIANT_TILE; ++l) {  // vectorized
     const Scalar dx = rest[PLIANT_TILE + l], dy = rest[2 * PLIANT_TILE + l], dz = rest[3 * PLIANT_TILE + l];
     const auto added = [&](int c, int axis, Scalar d) { return std::fma(-field[0][c][l], d, field[axis + 1][c][l]); };
     deformation.set(l, {added(0, 0, dx), added(0, 1, dy), added(0, 2, dz), added(1, 0, dx), added(1, 1, dy), added(1, 2, dz),
@@ -139,7 +139,7 @@ template <class Scalar>
   if (elastic != nullptr) {
     for (int l = 0; l < PLIANT_TILE; ++l) deformation.set(l, times_symmetric(deformation.at(l), inverse_of(elastic + l)));
   }
-  for (int l = 0; l < PLIANT_TILE; ++l) {
+  for (int l = 0; l < PLIANT_TILE; ++l) {  // vectorized
     const auto at = [&](int plane) { return rest[plane * PLIANT_TILE + l]; };
     const Scalar a[6] = {at(4), at(5), at(6), at(7), at(8), at(9)};
     bool ok = false;
@@ -153,7 +153,7 @@ template <class Scalar>
 [[gnu::always_inline]] inline void set_pulls(const Scalar* elastic, const Mat3Tile<Scalar>& deformation,
                                              const Mat3Tile<Scalar>& rotation, const std::int32_t* valid, Scalar spacing,
                                              Scalar shear, Scalar bulk, Mat3Tile<Scalar>& hd) {
-  for (int l = 0; l < PLIANT_TILE; ++l) {
+  for (int l = 0; l < PLIANT_TILE; ++l) {  // vectorized
     const Scalar q = elastic[6 * PLIANT_TILE + l], pull = q * spacing;
     const bool pulls = (valid[l] != 0) & (q > Scalar(0));
     const Mat3<Scalar> e = deformation.at(l), old = hd.at(l);
