@@ -97,7 +97,9 @@ std::shared_ptr<Simulation> World::Impl::make_simulation(std::string* reason) {
   } catch (const Error& error) {
     throw Error(ErrorCode::device, error.what());
   }
-  auto fresh = std::make_shared<Simulation>(scene, model, std::move(backend));
+  SimulationOptions same;
+  same.like = simulation.get();
+  auto fresh = std::make_shared<Simulation>(scene, model, std::move(backend), same);
   try {
     if (options.cutting) fresh->prepare_cuts();
   } catch (const Error& error) {  // for a scene that cannot be cut, the first actual cut throws

@@ -191,7 +191,7 @@ void BufferModel::set_step(double h) noexcept {
   for (std::size_t n = 0; n < part_.slot.size(); ++n)
     w_[4 * n + 3] = part_.rim[n] != 0 ? 1.0F : static_cast<float>(integrator.decay(0.5 * h * model.damping[n]));
   if (contact_params_.empty()) return;
-  units_ = contact_units(model, h);
+  units_ = contact_units(contact_extent(model), h);
   const std::array<double, 9> numbers = contact_numbers(model, units_, 0, 0);
   for (std::size_t i = 0; i < numbers.size(); ++i) contact_params_[i] = static_cast<float>(numbers[i]);
 }

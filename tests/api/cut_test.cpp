@@ -2,11 +2,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <map>
 #include <thread>
 
 #include "api/scenes.h"
 #include "pliant/c/pliant.h"
+#include "support/source_dir.h"
 
 namespace pliant::cut_test {
 namespace {
@@ -228,6 +230,34 @@ TEST(ApiCut, ResetAndLoadGoBackAndForthOverACut) {
   EXPECT_EQ(world.frame()->positions.size(), vertices);
   const IndexRange dirty = world.frame()->dirty_vertices;
   EXPECT_LE(dirty.first + dirty.count, vertices);
+}
+
+/// Neither reads the body again and fills it with elements, which takes longer than all else that they do.
+TEST(ApiCut, ResetAndLoadNeedNoFileOfTheBody) {
+  const std::string folder = ::testing::TempDir(), body = folder + "/api_cut.obj", saved = folder + "/api_cut_file.pckpt";
+  std::filesystem::copy_file(source_dir() + "/scenes/meshes/cube.obj", body, std::filesystem::copy_options::overwrite_existing);
+  SceneSpec scene = held_block();
+  scene.bodies[0].surface = {};
+  scene.bodies[0].surface_file = body;
+  WorldOptions options = on("cpu", true);
+  options.cutting = true;
+  World world(scene, options);
+  const auto cut = [&] {
+    world.step(10);
+    world.cut(wall(0.021));
+    world.step(10);
+    return world.hash();
+  };
+  const std::uint64_t hash = cut();
+  EXPECT_EQ(world.pieces(0), 2);
+  world.save(saved);
+  std::filesystem::remove(body);
+  world.reset();
+  EXPECT_EQ(world.pieces(0), 1);
+  EXPECT_EQ(cut(), hash);
+  world.load(saved);
+  EXPECT_EQ(world.hash(), hash);
+  EXPECT_EQ(world.pieces(0), 2);
 }
 
 TEST(ApiCut, BadBladesAreRefusedAndChangeNothing) {

@@ -19,20 +19,25 @@ double power_of_two(double x) { return std::ldexp(1.0, static_cast<int>(std::cei
 
 }  // namespace
 
-ContactUnits contact_units(const Model& model, double dt) {
-  double heaviest = 0, area = 0, longest = 0;
+ContactExtent contact_extent(const Model& model) {
+  ContactExtent e;
+  e.spacing = model.contact->spacing;
   for (const auto& nodes : model.contact->nodes) {
-    for (const std::int32_t n : nodes) heaviest = std::max(heaviest, model.mass[n]);
+    for (const std::int32_t n : nodes) e.heaviest = std::max(e.heaviest, model.mass[n]);
   }
-  for (const double a : model.contact->area) area += a;
+  for (const double a : model.contact->area) e.area += a;
   vec::Box box;
   for (const Vec3d& x : model.contact->rest) box.extend(x);
-  longest = vec::norm(vec::sub(box.upper, box.lower));
-  for (const ToolForm& form : *model.tools) longest = std::max(longest, form.reach);
+  e.longest = vec::norm(vec::sub(box.upper, box.lower));
+  for (const ToolForm& form : *model.tools) e.longest = std::max(e.longest, form.reach);
+  return e;
+}
+
+ContactUnits contact_units(const ContactExtent& extent, double dt) {
   ContactUnits u;
-  u.force = power_of_two(heaviest * model.contact->spacing / (dt * dt)) * std::ldexp(1.0, -kForceBits);
-  u.torque = u.force * power_of_two(longest);
-  u.area = power_of_two(area) * std::ldexp(1.0, -kAreaBits);
+  u.force = power_of_two(extent.heaviest * extent.spacing / (dt * dt)) * std::ldexp(1.0, -kForceBits);
+  u.torque = u.force * power_of_two(extent.longest);
+  u.area = power_of_two(extent.area) * std::ldexp(1.0, -kAreaBits);
   return u;
 }
 

@@ -11,8 +11,14 @@ namespace pliant {
 struct ContactUnits {
   double force = 0, torque = 0, area = 0;
 };
-/// For steps of `dt` [s]. The model must have contact points.
-ContactUnits contact_units(const Model& model, double dt);
+/// What the units of a model with contact points depend on: its heaviest node at a point [kg], their spacing [m], the area of
+/// its surface [m^2], and its largest extent, or that of a tool [m].
+struct ContactExtent {
+  double heaviest = 0, spacing = 0, area = 0, longest = 0;
+};
+ContactExtent contact_extent(const Model& model);
+/// For steps of `dt` [s].
+ContactUnits contact_units(const ContactExtent& extent, double dt);
 
 /// The values of the buffer contact_params. `friction` of tissue on tissue; `ease`: fraction of a spacing by which the initial
 /// offset of a pair is reduced in each search.

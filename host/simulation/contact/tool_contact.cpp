@@ -159,7 +159,11 @@ void ToolContact::begin_batch(std::int32_t steps) {
   const Program& program = run_.loaded.program();
   Backend& backend = run_.backend();
   if (tools > 0) backend.write_reals(program.find("tool_pose"), poses);
-  last_units_ = std::exchange(units_, contact_units(run_.model(), run_.state.clock.dt));
+  if (extent_of_ != run_.loaded.shared_model()) {
+    extent_of_ = run_.loaded.shared_model();
+    extent_ = contact_extent(*extent_of_);
+  }
+  last_units_ = std::exchange(units_, contact_units(extent_, run_.state.clock.dt));
   parting_.drop();
   const std::array<double, 9> numbers =
       contact_numbers(run_.model(), units_, run_.scene.contact ? run_.scene.contact->friction : 0, touch_ease());

@@ -89,6 +89,8 @@ class ToolContact {
   ContactLists lists_;
   PartingWork parting_;
   std::vector<ContactTool> tools_;
+  std::shared_ptr<const Model> extent_of_;  ///< model of extent_
+  ContactExtent extent_;
   ContactUnits units_;               ///< of the current batch
   ContactUnits last_units_;          ///< of the batch before
   std::int64_t known_at_ = -1;       ///< step after which the buffers hold the forces of points; -1: none

@@ -134,20 +134,24 @@ bool EditedBodies::tears(const Scene& scene) {
   return !scene.solver.enabled && !cuts_by_force(scene) && std::any_of(scene.bodies.begin(), scene.bodies.end(), pliant::tears);
 }
 
-EditedBodies::EditedBodies(const Scene& scene)
+EditedBodies::EditedBodies(const Scene& scene, const WholeBodies& whole)
     : scene_(scene),
+      uncut_(whole),
       cuts_(scene.bodies.size()),
       torn_(scene.bodies.size()),
       swept_(scene.bodies.size()),
       remade_(scene.bodies.size()) {
   const bool parted = parts_along_faces(scene), remade = remakes_elements(scene), torn = parted || remade || tears(scene);
-  for (BodyMesh& solid : make_body_meshes(scene)) {
-    const std::size_t b = uncut_.size();
-    if (!torn) {
-      solid.wants_middles = !scene.bodies[b].pressures.empty();
-      solid.uncut_order = std::make_shared<const NodeOrder>(node_order(solid));
+  if (uncut_.empty()) {
+    for (BodyMesh& solid : make_body_meshes(scene)) {
+      if (!torn) {
+        solid.wants_middles = !scene.bodies[uncut_.size()].pressures.empty();
+        solid.uncut_order = std::make_shared<const NodeOrder>(node_order(solid));
+      }
+      uncut_.push_back(std::make_shared<const BodyMesh>(std::move(solid)));
     }
-    uncut_.push_back(std::make_shared<const BodyMesh>(std::move(solid)));
+  }
+  for (std::size_t b = 0; b < uncut_.size(); ++b) {
     if (remade)
       make_remade(b);
     else if (parted || (torn && pliant::tears(scene.bodies[b])))

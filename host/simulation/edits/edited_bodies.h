@@ -75,18 +75,23 @@ class SurfaceCopy {
   std::future<void> made_;
 };
 
+/// The bodies of a scene before any edit, which never change.
+using WholeBodies = std::vector<std::shared_ptr<const BodyMesh>>;
+
 /// All bodies of a scene, with elements generated again independently of the first model. Each is either cut, torn, remade
 /// (its elements divided or removed) or unchanged.
 class EditedBodies {
  public:
-  /// Throws what make_body_meshes throws, and Error (bad_input) for a body that shall be parted along its faces and is a
-  /// lattice, shall tear and is not of tetrahedra, or has elements that the blades' method does not know.
-  explicit EditedBodies(const Scene& scene);
+  /// `whole`: of another object for the same scene; empty: they are generated, which takes as long as build_model. Throws what
+  /// make_body_meshes throws, and Error (bad_input) for a body that shall be parted along its faces and is a lattice, shall
+  /// tear and is not of tetrahedra, or has elements that the blades' method does not know.
+  explicit EditedBodies(const Scene& scene, const WholeBodies& whole = {});
   /// Returns true if a material of the scene has a toughness.
   static bool tears(const Scene& scene);
 
   [[nodiscard]] std::size_t size() const { return uncut_.size(); }
   [[nodiscard]] const BodyMesh& uncut(std::size_t b) const { return *uncut_[b]; }
+  [[nodiscard]] const WholeBodies& whole() const { return uncut_; }
   /// Returns the body's cut, created on first use. Throws Error (bad_input) if the body cannot be cut.
   [[nodiscard]] BodyCut& cut(std::size_t b);
   [[nodiscard]] const BodyCut* find_cut(std::size_t b) const { return cuts_[b].get(); }
@@ -153,7 +158,7 @@ class EditedBodies {
   void replay_tears(const RunState& state);
 
   const Scene& scene_;
-  std::vector<std::shared_ptr<const BodyMesh>> uncut_;
+  WholeBodies uncut_;
   std::vector<std::unique_ptr<BodyCut>> cuts_;
   std::vector<std::unique_ptr<TornBody>> torn_;
   std::vector<std::unique_ptr<SweptFaces>> swept_;

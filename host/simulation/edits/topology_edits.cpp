@@ -130,7 +130,7 @@ void TopologyEdits::update() {
 }
 
 EditedBodies& TopologyEdits::bodies() {
-  if (bodies_ == nullptr) bodies_ = std::make_unique<EditedBodies>(run_.scene);
+  if (bodies_ == nullptr) bodies_ = std::make_unique<EditedBodies>(run_.scene, whole_);
   return *bodies_;
 }
 
@@ -231,7 +231,7 @@ std::unique_ptr<EditedBodies> TopologyEdits::bodies_at(const RunState& state) co
            !s.pressed.empty() || (s.kept && !s.kept->pressed.empty()) || !s.changed.parameters.empty() || !s.broken.empty();
   };
   if (!edited(state) && !edited(run_.state)) return nullptr;
-  auto all = std::make_unique<EditedBodies>(scene);
+  auto all = std::make_unique<EditedBodies>(scene, whole());
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {  // keep prepared cuts
     if (bodies_ != nullptr && bodies_->find_cut(b) != nullptr) static_cast<void>(all->cut(b));
   }

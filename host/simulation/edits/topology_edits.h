@@ -66,7 +66,11 @@ class TopologyEdits {
   /// Replaces the bodies by these.
   void take_up(std::unique_ptr<EditedBodies> bodies);
 
+  /// Takes the whole bodies of the edits of another simulation of the same scene, so that it does not generate them again.
+  void share(const TopologyEdits& other) { whole_ = other.whole(); }
+
  private:
+  [[nodiscard]] const WholeBodies& whole() const { return bodies_ == nullptr ? whole_ : bodies_->whole(); }
   EditedBodies& bodies();
   EditedBodies& cut_bodies();
 
@@ -110,6 +114,7 @@ class TopologyEdits {
   BladeFronts fronts_;
   std::vector<double> known_u_;      ///< RunContext::u() within an update that has changed nothing so far; empty: not known
   std::vector<char> changed_nodes_;  ///< [slots] by the last cut or tear; empty: none
+  WholeBodies whole_;                ///< for bodies_; empty: not known
   std::unique_ptr<EditedBodies> bodies_;  ///< the scene's bodies with the edits of RunState; created on first use
 };
 
