@@ -82,7 +82,7 @@ void uniform_tile(const MaterialLaw<Number, Scalar>& law, const Viscosity<Scalar
     }
     return h;
   };
-  for (std::int64_t l = 0; l < PLIANT_TILE; ++l) {  // vectorized
+  for (std::int64_t l = 0; l < PLIANT_TILE; ++l) {  // vectorized in part
     const Mat3<Scalar> h = gradient(u, l);
     const Deformation<Scalar> d = deformation_of(h);
     dilation[l] = d.j;

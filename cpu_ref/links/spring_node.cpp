@@ -11,7 +11,7 @@ namespace pliant::ref {
 template <class Scalar>
 void differences(const Scalar* of, const std::int32_t* end, const Scalar (&own)[3][PLIANT_TILE],
                  Scalar (&out)[3][PLIANT_TILE]) {
-  for (int l = 0; l < PLIANT_TILE; ++l) {  // vectorized
+  for (int l = 0; l < PLIANT_TILE; ++l) {  // vectorized in part
     for (int c = 0; c < 3; ++c) out[c][l] = of[std::int64_t{4} * end[l] + c] - own[c][l];
   }
 }

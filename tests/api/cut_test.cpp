@@ -9,6 +9,7 @@
 #include "api/scenes.h"
 #include "pliant/c/pliant.h"
 #include "support/source_dir.h"
+#include "support/temp_folder.h"
 
 namespace pliant::cut_test {
 namespace {
@@ -234,8 +235,9 @@ TEST(ApiCut, ResetAndLoadGoBackAndForthOverACut) {
 
 /// Neither reads the body again and fills it with elements, which takes longer than all else that they do.
 TEST(ApiCut, ResetAndLoadNeedNoFileOfTheBody) {
-  const std::string folder = ::testing::TempDir(), body = folder + "/api_cut.obj", saved = folder + "/api_cut_file.pckpt";
-  std::filesystem::copy_file(source_dir() + "/scenes/meshes/cube.obj", body, std::filesystem::copy_options::overwrite_existing);
+  const TempFolder folder;
+  const std::string body = (folder.path() / "cube.obj").string(), saved = (folder.path() / "cut.pckpt").string();
+  std::filesystem::copy_file(source_dir() + "/scenes/meshes/cube.obj", body);
   SceneSpec scene = held_block();
   scene.bodies[0].surface = {};
   scene.bodies[0].surface_file = body;

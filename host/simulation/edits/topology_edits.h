@@ -102,7 +102,7 @@ class TopologyEdits {
   /// Returns the region of a body that grows from `seed`, without cells that are deformed too far to change their model. u:
   /// shape [nodes of the body].
   [[nodiscard]] MovedRegion region_at(std::size_t body, const Vec3d& seed, const std::vector<Vec3d>& u);
-  /// Returns true if the bodies' files, which are read again at a body's first edit, still exist and are unchanged.
+  /// Returns true if the bodies' files, which a first edit reads where it knows no whole bodies, exist and are unchanged.
   [[nodiscard]] bool bodies_as_loaded();
   /// Loads the model of scene_at(state) with the current bodies.
   void swap_partition(std::vector<double> u, bool keeps_state = false);
