@@ -39,7 +39,7 @@ template <bool Friction, class Scalar>
   const Scalar quantum = contact_params[0], inverse = contact_params[1], friction = contact_params[7];
   Scalar *offset = numbers + PLIANT_TILE, *anchors = offset + PLIANT_TILE;
   for (int l = 0; l < PLIANT_TILE; ++l) {  // vectorized
-    const Scalar area = numbers[l];  // before any condition, like all that is read: gcc does not read ahead of one
+    const Scalar area = numbers[l];        // before any condition, like all that is read: gcc does not read ahead of one
     const std::int32_t mark = own[3 * PLIANT_TILE + l];
     const bool pushes = partners.number[l] > 0 && mark != 0;
     const bool is_lower = static_cast<std::int32_t>(first) + l < partners.number[l] - 1;
