@@ -50,7 +50,7 @@ std::unique_ptr<World::Impl> make_impl(Scene scene, const WorldOptions& options)
   scene.interactive = options.interactive;
   scene.cuttable = options.cutting;
   const OpenBackend open = [spec = options.backend](std::string* why, std::int64_t nodes) {
-    return open_backend(spec, why, nodes);
+    return open_backend(spec, why, nodes, BackendUse::live);
   };
   return std::make_unique<World::Impl>(std::move(scene), open, options);
 }

@@ -166,7 +166,7 @@ class Run {
     for (const std::string& probe : o_.probes) points.push_back(parse_probe(probe));
     probes_ = Probes(points, *model);
     if (scene.probes != nullptr) scene_probes_ = Probes(scene.probes->list, *model);
-    auto backend = open_backend(o_.backend, &reason, model->nodes(), true);
+    auto backend = open_backend(o_.backend, &reason, model->nodes(), BackendUse::once);
     o_.common.note("backend " + reason);
     if (!backend->info().bit_exact) o_.common.remark("tolerance mode: " + backend->info().tolerance_reason);
     simulation_.emplace(std::move(scene), model, std::move(backend));

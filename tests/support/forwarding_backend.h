@@ -1,6 +1,7 @@
 // A backend that hands everything on to another one: tests derive from it what one call does differently.
 #pragma once
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,7 @@ class ForwardingBackend : public Backend {
  public:
   explicit ForwardingBackend(std::unique_ptr<Backend> inner) : inner_(std::move(inner)) {}
   [[nodiscard]] const BackendInfo& info() const override { return inner_->info(); }
+  [[nodiscard]] std::string remark() const override { return inner_->remark(); }
   void load(const Program& program) override { inner_->load(program); }
   void update(const Program& loaded, const Program& next) override { inner_->update(loaded, next); }
   void extend(const Program* before, const Program& extension) override { inner_->extend(before, extension); }

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <exception>
 
+#include "backends/choice/tiered_backend.h"
 #include "backends/opencl/opencl_backend.h"
 #include "backends/twins/check_backend.h"
 #include "backends/twins/ref_backend.h"
@@ -61,8 +62,8 @@ Candidate first_bit_exact(const std::vector<BackendInfo>& devices, const std::st
 /// against 0.46 for shape matching of 10,000.
 constexpr std::int64_t kFewNodes = 6000;
 
-/// The twins, for one run of a small scene: PoCL takes 0.4 s to start with its kernels compiled and 3 to 13 s without, more
-/// than its faster steps win back in a run. nullptr where this processor cannot run them.
+/// The twins: PoCL takes 0.4 s to start with its kernels compiled and 3 to 40 s without, more than its faster steps win back in
+/// one run of a small scene. nullptr where this processor cannot run them.
 std::unique_ptr<Backend> open_without_compiling() {
   try {
     return open_cpu(false);
@@ -71,7 +72,17 @@ std::unique_ptr<Backend> open_without_compiling() {
   }
 }
 
-std::unique_ptr<Backend> open_auto(std::string& why, std::int64_t nodes, bool once) {
+/// For `live`: an OpenCL processor that begins with the twins.
+std::unique_ptr<Backend> begun_by_twins(std::unique_ptr<Backend> opencl, BackendUse use, std::string& why) {
+  if (use != BackendUse::live || opencl->info().kind == "gpu") return opencl;
+  auto cpu = open_without_compiling();
+  if (cpu == nullptr || !cpu->info().bit_exact) return opencl;
+  why += "; cpu computes until its kernels are compiled";
+  const int device = opencl_index(opencl->info().name);
+  return make_tiered_backend(std::move(cpu), std::move(opencl), device);
+}
+
+std::unique_ptr<Backend> open_auto(std::string& why, std::int64_t nodes, BackendUse use) {
   const std::vector<BackendInfo> devices = list_opencl_devices(false);
   Candidate gpu = first_bit_exact(devices, "gpu", true);
   if (gpu.backend != nullptr) {
@@ -79,7 +90,7 @@ std::unique_ptr<Backend> open_auto(std::string& why, std::int64_t nodes, bool on
     return std::move(gpu.backend);
   }
   const bool few = nodes > 0 && nodes < kFewNodes;
-  if (few && once) {
+  if (few && use == BackendUse::once) {
     if (auto cpu = open_without_compiling()) {
       why = fmt::format("cpu ({}): nothing to compile for one run of a small scene, and there is no bit-exact GPU{}",
                         cpu->info().device, gpu.skipped);
@@ -92,14 +103,14 @@ std::unique_ptr<Backend> open_auto(std::string& why, std::int64_t nodes, bool on
     if (!single->info().bit_exact) continue;
     why = fmt::format("{} ({}): bit-exact, one thread for a small scene, and there is no bit-exact GPU{}", single->info().name,
                       single->info().device, gpu.skipped);
-    return single;
+    return begun_by_twins(std::move(single), use, why);
   }
   Candidate other = first_bit_exact(devices, "gpu", false);
   const std::string skipped = gpu.skipped + other.skipped;
   if (other.backend != nullptr) {
     why = fmt::format("{} ({}): bit-exact, and there is no bit-exact GPU{}", other.backend->info().name,
                       other.backend->info().device, skipped);
-    return std::move(other.backend);
+    return begun_by_twins(std::move(other.backend), use, why);
   }
   auto cpu = open_cpu(false);
   const char* const reason = !devices.empty()       ? "no OpenCL device is bit-exact"
@@ -129,11 +140,11 @@ std::vector<BackendInfo> list_backends() {
   return result;
 }
 
-std::unique_ptr<Backend> open_backend(const std::string& spec, std::string* why, std::int64_t nodes, bool once) {
+std::unique_ptr<Backend> open_backend(const std::string& spec, std::string* why, std::int64_t nodes, BackendUse use) {
   std::string reason;
   std::unique_ptr<Backend> backend;
   if (spec == "auto") {
-    backend = open_auto(reason, nodes, once);
+    backend = open_auto(reason, nodes, use);
   } else if (spec == "cpu" || spec == "cpu:double") {
     backend = open_cpu(spec == "cpu:double");
   } else if (spec == "cpu:check") {

@@ -238,6 +238,7 @@ std::vector<std::string> run_remarks(Simulation& simulation) {
   add_inversions(simulation, out);
   add_turned_networks(simulation, out);
   add_contact(simulation, out);
+  if (std::string of_backend = simulation.backend().remark(); !of_backend.empty()) out.push_back(std::move(of_backend));
   return out;
 }
 

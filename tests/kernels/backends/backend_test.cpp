@@ -323,7 +323,7 @@ TEST(Backends, OpensByNameAndSaysWhy) {
   const auto chosen = open_backend("auto", &why);
   EXPECT_TRUE(chosen->info().bit_exact);
   EXPECT_EQ(why.rfind(chosen->info().name, 0), 0u) << why;
-  const auto one_run = open_backend("auto", &why, 100, true);
+  const auto one_run = open_backend("auto", &why, 100, BackendUse::once);
   EXPECT_TRUE(one_run->info().kind == "gpu" || one_run->info().name == "cpu") << why;
   EXPECT_MENTIONS(message_of([] { open_backend("cuda"); }),
                   "allowed are auto, cpu, cpu:double, cpu:check, opencl and opencl:N");
