@@ -11,7 +11,7 @@
 namespace pliant::api {
 namespace {
 
-constexpr double kUse = 0.8;   ///< share of a period that frames may take in the mean, so that most are ready in time
+constexpr double kUse = 0.8;   ///< share of a period that half of the frames may take, so that most are ready in time
 constexpr double kLess = 0.8;  ///< changes of the simulated time that a frame may cover
 constexpr double kMore = 1.03;
 constexpr double kFaster = 1.25;  ///< largest simulated time of a frame, in periods
@@ -73,18 +73,21 @@ double Pace::begin(double now) {
 }
 
 /// A frame takes some time whatever it covers, and not always the same, so that only trying shows how much fits: less while
-/// frames take too long in the mean, more while they do not. A single slow frame, such as one that checks the step, is late
-/// once, and time goes on.
+/// most frames take too long, more while they do not. A single slow frame, such as one that checks the step or moves a region,
+/// is late once, and what it owes is caught up with.
 void Pace::end(double now, double simulated, double edits, double read) {
   ++state_.frames;
   const double period = 1 / options_.rate, full = options_.speed * period;
   const double taken = std::max(0.0, now - begun_ - edits);
-  taken_ += kNew * (taken / period - taken_);
+  taken_[static_cast<std::size_t>(state_.frames) % taken_.size()] = taken / period;
+  std::array<double, 5> sorted = taken_;
+  std::nth_element(sorted.begin(), sorted.begin() + 2, sorted.end());
+  const double median = sorted[2];
   if (simulated > 0) cost_ += kNew * (std::max(0.0, taken - read) / simulated * options_.speed + read / period - cost_);
-  if (taken_ > kUse) {
-    const double less = std::max(kLess, kUse / taken_);
+  if (median > kUse) {
+    const double less = std::max(kLess, kUse / median);
     most_ = std::max(kLeast, std::min(most_, covers_ / full) * less);
-    taken_ *= less;
+    for (double& t : taken_) t *= less;
   } else {
     most_ = std::min(kFaster, most_ * kMore);
   }

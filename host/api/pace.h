@@ -1,6 +1,7 @@
 // When the frames of a freely running World start, and how much simulated time each covers. Private to host/api,
 // host/cli and tests.
 #pragma once
+#include <array>
 #include <chrono>
 #include <deque>
 
@@ -46,7 +47,7 @@ class Pace {
   double covers_ = 0;  ///< what the frame at work should cover [s]
   double owed_ = 0;    ///< simulated time that is not covered yet [s]
   double most_ = 1;    ///< what a frame may cover, in frames of full length
-  double taken_ = 0;   ///< mean duration of a frame, in periods
+  std::array<double, 5> taken_{};  ///< durations of the last frames, in periods
   double cost_ = 0;    ///< the same of a frame of full length, if its duration is proportional to what it covers
   std::deque<Passed> passed_;
   double passed_wall_ = 0, passed_simulated_ = 0;  ///< sums of passed_

@@ -95,6 +95,18 @@ TEST(Pace, CatchesUpAfterADelayButNotWithAllOfIt) {
   EXPECT_NEAR(m.now - 100 - m.simulated, 2.75, 0.1);
 }
 
+TEST(Pace, ASlowFrameNowAndThenDoesNotSlowTimeDown) {
+  Machine m;
+  m.cost = 0.5;
+  m.run(2);
+  const double simulated = m.simulated, start = m.now;
+  for (int i = 0; i < 600; ++i) {
+    m.fixed = i % 24 == 0 ? 0.05 : 0.001;  // a moved region, say, which is no edit of the caller's
+    m.frame();
+  }
+  EXPECT_GT((m.simulated - simulated) / (m.now - start), 0.98);
+}
+
 TEST(Pace, SkippedTimeIsNotOwed) {
   Machine m;
   m.run(1);
