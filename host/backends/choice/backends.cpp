@@ -74,7 +74,7 @@ std::unique_ptr<Backend> open_without_compiling() {
 
 /// For `live`: an OpenCL processor that begins with the twins.
 std::unique_ptr<Backend> begun_by_twins(std::unique_ptr<Backend> opencl, BackendUse use, std::string& why) {
-  if (use != BackendUse::live || opencl->info().kind == "gpu") return opencl;
+  if (use != BackendUse::live || opencl->info().kind != "cpu") return opencl;
   auto cpu = open_without_compiling();
   if (cpu == nullptr || !cpu->info().bit_exact) return opencl;
   why += "; cpu computes until its kernels are compiled";

@@ -1,5 +1,6 @@
 #include "backends/choice/kernel_warmer.h"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -25,9 +26,9 @@ namespace {
 
 constexpr std::int64_t kListed = 16;    ///< indices of a list that is run: a work-group or two, whose size lists have in common
 constexpr std::size_t kLargest = 4096;  ///< more than any preferred work-group size
-/// A first launch takes 1 ms from the cache on disk and 0.1 s or more without.
-constexpr double kCached = 0.02;
-constexpr int kEnough = 10;                ///< launches that tell one from the other
+/// A first launch takes 1 ms from the cache on disk and 0.1 s or more without [s].
+constexpr double kCached = 0.04;
+constexpr int kEnough = 10;                ///< launches that show that the cache has what scenes need
 constexpr std::size_t kSmallGrid = 65535;  ///< PoCL 3.1 compiles launches of at most this size by themselves
 
 template <class Lists>
@@ -64,9 +65,11 @@ class Warmer {
   }
 
   void start(std::shared_ptr<WarmJob> job) {
-    if (process_ != ::getpid()) return;
+    if (forked()) return;
     {
       const std::lock_guard lock(mutex_);
+      std::erase_if(jobs_, [](const auto& other) { return other->cancelled.load(); });  // with their copies of all values
+      if (!thread_.joinable()) keep_loaded();
       jobs_.push_back(std::move(job));
       if (!thread_.joinable()) thread_ = std::thread([this] { serve(); });
     }
@@ -79,15 +82,28 @@ class Warmer {
     cached_.clear();
   }
 
+  /// Also false while the thread compiles: PoCL lets launches wait until it has.
   bool has(const std::vector<std::string>& variants, int device) {
+    if (forked()) return false;
     const std::lock_guard lock(mutex_);
+    if (warming_) return false;
     if (cached_.contains(device)) return true;
     return std::all_of(variants.begin(), variants.end(), [&](const std::string& v) { return warm_.contains(v); });
   }
 
  private:
+  /// In a child of the process, which lacks the thread, and where the thread may have held the lock.
+  [[nodiscard]] bool forked() const { return process_ != ::getpid(); }
+
+  /// Keeps a shared library that this is part of: unloading it would wait for the thread, which itself waits for the loader.
+  static void keep_loaded() {
+    Dl_info own;
+    if (::dladdr(reinterpret_cast<void*>(&start_warming), &own) != 0)
+      static_cast<void>(::dlopen(own.dli_fname, RTLD_NOW | RTLD_NOLOAD | RTLD_NODELETE));
+  }
+
   void stop() {
-    if (process_ != ::getpid()) return;
+    if (forked()) return;
     {
       const std::lock_guard lock(mutex_);
       stop_ = true;
@@ -97,6 +113,7 @@ class Warmer {
   }
 
   void serve() {
+    const DefaultFloatEnvironment environment;  // the thread may run kernels
     while (true) {
       std::shared_ptr<WarmJob> job;
       {
@@ -105,6 +122,7 @@ class Warmer {
         if (stop_) return;
         job = std::move(jobs_.front());
         jobs_.pop_front();
+        warming_ = !job->program.buffers.empty();
       }
       WarmJob::State result = WarmJob::State::done;
       try {
@@ -113,7 +131,11 @@ class Warmer {
         job->error = error.what();
         result = WarmJob::State::failed;
       }
-      job->state = result;
+      {
+        const std::lock_guard lock(mutex_);
+        warming_ = false;
+      }
+      if (!unwanted(*job)) job->state = result;
     }
   }
 
@@ -125,13 +147,12 @@ class Warmer {
     options.probe = false;
     const std::unique_ptr<Backend> backend = make_opencl_backend(job.device, options);
     if (!job.program.buffers.empty()) run_all(job, *backend);
-    for (const Program& program : job.later) {
-      if (!unwanted(job)) backend->compile(program);
-    }
+    for (const Program& program : job.later) build(job, program, *backend);
   }
 
   void run_all(WarmJob& job, Backend& backend) {
-    build(job, backend);
+    build(job, job.program, backend);
+    build(job, job.extension, backend);
     if (unwanted(job)) return;
     backend.load(job.program);
     backend.extend(nullptr, job.extension);
@@ -151,27 +172,25 @@ class Warmer {
       }
     }
     const std::lock_guard lock(mutex_);
-    if (first.launches >= kEnough && first.seconds < kCached * first.launches) cached_.insert(job.device);
+    if (first.launches >= kEnough && first.longest < kCached) cached_.insert(job.device);
   }
 
   /// One pass after the other, so that the thread can stop in between; load() would build all in one call.
-  void build(const WarmJob& job, Backend& backend) const {
-    for (const Program* program : {&job.program, &job.extension}) {
-      for (const auto* list : lists_of(*program)) {
-        for (const Pass& pass : *list) {
-          if (unwanted(job)) return;
-          Program one;
-          one.step = {pass};
-          backend.compile(one);
-        }
+  void build(const WarmJob& job, const Program& program, Backend& backend) const {
+    for (const auto* list : lists_of(program)) {
+      for (const Pass& pass : *list) {
+        if (unwanted(job)) return;
+        Program one;
+        one.step = {pass};
+        backend.compile(one);
       }
     }
   }
 
-  /// First launches, and their time.
+  /// First launches, and the longest time of one.
   struct First {
     int launches = 0;
-    double seconds = 0;
+    double longest = 0;
   };
 
   void run_one(First& first, int device, Backend& backend, const Pass& pass) {
@@ -185,7 +204,7 @@ class Warmer {
     warm_.insert(variants.begin(), variants.end());
     if (warm_.size() == before) return;
     ++first.launches;
-    first.seconds += seconds;
+    first.longest = std::max(first.longest, seconds);
   }
 
   const pid_t process_ = ::getpid();
@@ -194,6 +213,7 @@ class Warmer {
   std::deque<std::shared_ptr<WarmJob>> jobs_;
   std::set<std::string> warm_;
   std::set<int> cached_;  ///< devices whose kernels came from the cache on disk
+  bool warming_ = false;
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

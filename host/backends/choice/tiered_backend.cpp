@@ -17,7 +17,10 @@ class TieredBackend final : public Backend {
       : twins_(std::move(twins)), opencl_(std::move(opencl)), device_(device) {}
   TieredBackend(const TieredBackend&) = delete;
   TieredBackend& operator=(const TieredBackend&) = delete;
-  ~TieredBackend() override { cancel(); }
+  ~TieredBackend() override {
+    cancel();
+    if (rest_ != nullptr) rest_->cancelled = true;
+  }
 
   [[nodiscard]] const BackendInfo& info() const override { return opencl_->info(); }
   [[nodiscard]] std::string remark() const override { return remark_; }
@@ -43,11 +46,8 @@ class TieredBackend final : public Backend {
     extended_ = true;
   }
   void compile(const Program& program) override {
-    if (job_ == nullptr && now_ == opencl_.get()) {
-      opencl_->compile(program);
-    } else {
-      later_.push_back(outline_of(program));
-    }
+    later_.push_back(outline_of(program));
+    if (now_ == opencl_.get()) compile_rest();
   }
 
   void run(const std::vector<Pass>& passes, std::int32_t first, std::int32_t count, std::int64_t origin) override {
@@ -75,7 +75,9 @@ class TieredBackend final : public Backend {
   }
 
  private:
-  [[nodiscard]] bool launches_at_once(const Program& program) const { return is_warm(program, device_, opencl_->info()); }
+  [[nodiscard]] bool launches_at_once(const Program& program) const {
+    return remark_.empty() && is_warm(program, device_, opencl_->info());
+  }
 
   /// Chooses what runs a program that is about to be loaded.
   void begin(const Program& program) {
@@ -94,22 +96,29 @@ class TieredBackend final : public Backend {
 
   /// Called between two steps, when the values of all buffers are those of a step.
   void look_at_job() {
-    if (!remark_.empty()) return;
-    if (job_ == nullptr) return start_job();
-    if (job_->state == WarmJob::State::waiting) return;
-    const std::shared_ptr<WarmJob> job = std::exchange(job_, nullptr);
+    if (!remark_.empty() || (job_ != nullptr && job_->state == WarmJob::State::waiting)) return;
     try {
+      if (job_ == nullptr) return start_job();
+      const std::shared_ptr<WarmJob> job = std::exchange(job_, nullptr);
       if (job->state == WarmJob::State::failed) throw Error(ErrorCode::device, job->error);
       bring(*opencl_);
+      compile_rest();
     } catch (const std::exception& error) {
+      cancel();
       remark_ = fmt::format("{} computes in place of {}: {}", twins_->info().name, opencl_->info().name, error.what());
-      return;
+      try {
+        if (now_ == twins_.get()) opencl_->load(nothing_);  // it may have half of the scene
+      } catch (const std::exception&) {                     // never used again
+      }
     }
+  }
+
+  void compile_rest() {
     if (later_.empty()) return;
-    const auto rest = std::make_shared<WarmJob>();
-    rest->device = device_;
-    rest->later = std::exchange(later_, {});
-    start_warming(rest);
+    rest_ = std::make_shared<WarmJob>();
+    rest_->device = device_;
+    rest_->later = std::exchange(later_, {});
+    start_warming(rest_);
   }
 
   void start_job() {
@@ -151,9 +160,9 @@ class TieredBackend final : public Backend {
   const Program nothing_;
   Backend* now_ = twins_.get();
   const Program *program_ = nullptr, *extension_ = nullptr;
-  bool extended_ = false;  ///< the values of an extension are there, also those of the one before an update()
-  std::shared_ptr<WarmJob> job_;
-  std::vector<Program> later_;  ///< outlines, for compile()
+  bool extended_ = false;                ///< the values of an extension are there, also those of the one before an update()
+  std::shared_ptr<WarmJob> job_, rest_;  ///< the latter for `later_`
+  std::vector<Program> later_;           ///< outlines, for compile()
   std::string remark_;
 };
 

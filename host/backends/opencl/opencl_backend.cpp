@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <mutex>
+
 #include "backends/interface/launch.h"
 #include "backends/interface/probe.h"
 #include "backends/interface/program_backend.h"
@@ -274,11 +276,22 @@ class OpenclBackend final : public ProgramBackend<opencl::DeviceMemory, Prepared
   std::vector<std::vector<std::byte>> staged_;  ///< values of writes that nothing has waited for yet
 };
 
+/// On a processor the probe runs once in a process: it launches kernels, and a launch waits while another thread compiles.
+std::string probe_once(OpenclBackend& backend, int index, const OpenclOptions& options) {
+  if (backend.info().kind != "cpu" || !options.extra_kernels.empty() || options.local_size != 0) return run_probe(backend);
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
+  static std::map<std::pair<int, int>, std::string> found;
+  const std::pair device{index, backend.info().lanes};
+  const auto known = found.find(device);
+  return known != found.end() ? known->second : found.emplace(device, run_probe(backend)).first->second;
+}
+
 std::unique_ptr<Backend> open(const cl::Device& device, int index, const OpenclOptions& options) {
   auto backend = guarded(ErrorCode::bad_input, fmt::format("opening opencl:{}", index), [&] {
     return std::make_unique<OpenclBackend>(device, opencl::describe_device(device, index), options);
   });
-  backend->set_probe_result(options.probe ? run_probe(*backend) : "not probed");
+  backend->set_probe_result(options.probe ? probe_once(*backend, index, options) : "not probed");
   return backend;
 }
 
