@@ -44,11 +44,11 @@ class Pace {
   bool running_ = false, started_ = false;
   double begun_ = 0;  ///< start of the last frame
   double next_start_ = 0;
-  double covers_ = 0;  ///< what the frame at work should cover [s]
-  double owed_ = 0;    ///< simulated time that is not covered yet [s]
-  double most_ = 1;    ///< what a frame may cover, in frames of full length
+  double covers_ = 0;              ///< what the frame at work should cover [s]
+  double owed_ = 0;                ///< simulated time that is not covered yet [s]
+  double most_ = 1;                ///< what a frame may cover, in frames of full length
   std::array<double, 5> taken_{};  ///< durations of the last frames, in periods
-  double cost_ = 0;    ///< the same of a frame of full length, if its duration is proportional to what it covers
+  double cost_ = 0;                ///< the same of a frame of full length, if its duration is proportional to what it covers
   std::deque<Passed> passed_;
   double passed_wall_ = 0, passed_simulated_ = 0;  ///< sums of passed_
   double wall_of_this_ = 0;

@@ -10,6 +10,11 @@
 #include "simulation/contact/tool_changes.h"
 
 namespace pliant::api {
+namespace {
+
+constexpr int kDoublings = 8;  ///< of the time that a tool may take through tissue
+
+}  // namespace
 
 const ContactTool* RigidTools::find(const std::string& name) const {
   const auto own = tools_.find(name);
@@ -192,7 +197,24 @@ void RigidTools::make(Simulation& simulation, const Request& request) {
   }
 }
 
-void RigidTools::apply(Simulation& simulation) {
+/// A tool that would be driven through tissue too fast for contact goes there in more time.
+void RigidTools::drive_in_time(Simulation& simulation, const Request& request, std::vector<Slowed>& slowed) {
+  std::exception_ptr first;
+  double seconds = request.seconds;
+  for (int i = 0; i < kDoublings; ++i, seconds *= 2) {
+    try {
+      simulation.tools().drive(request.name, request.to, seconds);
+      if (first != nullptr) slowed.push_back({request.name, request.seconds, seconds});
+      return;
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::bad_input) throw;
+      if (first == nullptr) first = std::current_exception();
+    }
+  }
+  std::rethrow_exception(first);
+}
+
+void RigidTools::apply(Simulation& simulation, std::vector<Slowed>* slowed) {
   {
     const std::lock_guard lock(mutex_);
     if (asked_.empty() || held_back_) return;
@@ -200,8 +222,9 @@ void RigidTools::apply(Simulation& simulation) {
   }
   FirstRefusal refusal;
   for (const Request& request : doing_) {
-    if (!refusal.attempt([&] { make(simulation, request); }) && request.what == What::mesh)
-      renew_given(simulation, request.name);
+    const bool slows = slowed != nullptr && request.what == What::drive;
+    const auto attempt = [&] { slows ? drive_in_time(simulation, request, *slowed) : make(simulation, request); };
+    if (!refusal.attempt(attempt) && request.what == What::mesh) renew_given(simulation, request.name);
   }
   settle(simulation);
   note(simulation);

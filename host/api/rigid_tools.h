@@ -40,8 +40,14 @@ class RigidTools {
 
   // For the stepping thread.
 
-  /// Executes the requests. All are attempted; then the first Error is rethrown.
-  void apply(Simulation& simulation);
+  /// A drive that takes more time than was asked for.
+  struct Slowed {
+    std::string name;
+    double asked = 0, seconds = 0;
+  };
+  /// Executes the requests. All are attempted; then the first Error is rethrown. `slowed`: drives through tissue that are too
+  /// fast for contact take more time and are noted there; nullptr: they are refused.
+  void apply(Simulation& simulation, std::vector<Slowed>* slowed = nullptr);
   /// Call after a batch: stores the forces of its steps for trace().
   void record(const Simulation& simulation);
   /// Stores the forces on the tools for forces().
@@ -69,6 +75,7 @@ class RigidTools {
 
   void ask(Request request);
   static void make(Simulation& simulation, const Request& request);
+  static void drive_in_time(Simulation& simulation, const Request& request, std::vector<Slowed>& slowed);
   void settle(const Simulation& simulation);
   void renew_given(const Simulation& simulation, const std::string& name);
 

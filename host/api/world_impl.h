@@ -18,6 +18,7 @@
 #include "api/pace.h"
 #include "api/rigid_tools.h"
 #include "api/surface_handles.h"
+#include "api/trust.h"
 #include "haptics/instrument.h"
 #include "pliant/world.h"
 #include "simulation/measure/probing.h"
@@ -84,8 +85,7 @@ struct World::Impl {
   [[nodiscard]] api::SurfaceVertex vertex_of(std::int32_t vertex) const;
 
   // world_instruments.cpp
-  /// As run() and advance(), as a frame of the instruments: before it tools go where their devices are, after it the devices
-  /// learn the state of the tissue.
+  /// As run() and advance(): tools go where their devices are before it, and the devices learn the state of tissue after it.
   StepReport step_frame(std::int64_t steps);
   StepReport advance_frame(double seconds);
   Pose attach(std::shared_ptr<haptics::Instrument> instrument);
@@ -124,6 +124,7 @@ struct World::Impl {
   void look_for_events();
   void tell_failure(const std::exception_ptr& met);
   void live_frame();
+  void note_batch();  ///< notes what the last batch has told, if its state may be shown
   /// Requires the mutex: true if the worker may begin a frame or serve files now.
   [[nodiscard]] bool may_begin() const;
 
@@ -148,7 +149,8 @@ struct World::Impl {
   api::RigidTools rigid_tools;
   api::ForceBlades force_blades{scene};
   api::EventLog events;
-  std::string lost;         ///< message of the device failure; empty: the device works
+  api::Trust trust;
+  std::string lost;         ///< message of the device failure
   double editing = 0;       ///< wall time of make_changes() in this frame [s]; used by the stepping thread
   double seconds_left = 0;  ///< remainder of advance() below a whole step; used by the stepping thread
   std::atomic<bool> in_use{false};
@@ -180,10 +182,8 @@ struct World::Impl {
   std::exception_ptr failure;
   StepReport report;  ///< of the last stepping call
   double stable_dt = 0;
-  std::shared_ptr<api::FrameData> newest;       ///< the last frame read
-  std::shared_ptr<api::FrameData> given;        ///< the last frame returned by frame()
-  IndexRange dirty_vertices, dirty_triangles;   ///< from `given` to `newest`
-  std::shared_ptr<const api::FrameData> shown;  ///< the last frame returned to the user, which vertex numbers refer to
+  std::shared_ptr<api::FrameData> newest, given, shown;  ///< read last, returned by frame(), seen (vertex numbers refer to it)
+  IndexRange dirty_vertices, dirty_triangles;            ///< from `given` to `newest`
 };
 
 /// Access to a World for Pliant's own code and tests.

@@ -47,6 +47,7 @@ void World::Impl::stop_live() {
   {
     const std::lock_guard lock(mutex);
     pace.stop();
+    trust.tell_all();
   }
   beside = false;
 }
@@ -78,6 +79,14 @@ void World::Impl::make_changes() {
   editing += api::wall_time() - start;
 }
 
+void World::Impl::note_batch() {
+  trust.look(*simulation, is_live());
+  if (!trust.given()) return;
+  rigid_tools.note(*simulation);
+  force_blades.note(*simulation);
+  look_for_events();
+}
+
 void World::Impl::tell_failure(const std::exception_ptr& met) {
   try {
     std::rethrow_exception(met);
@@ -98,7 +107,7 @@ void World::Impl::live_frame() {
   editing = 0;
   advance_frame(covers);
   const double stepped = api::wall_time();
-  read_frame();
+  if (trust.given()) read_frame();
   const double now = api::wall_time();
   const std::lock_guard lock(mutex);
   pace.end(now, simulation->time() - before, editing, now - stepped);
@@ -130,12 +139,12 @@ std::vector<Event> World::events() {
 
 std::vector<ForceSample> World::force_trace(const std::string& tool, std::int64_t after) const {
   const api::Call call(impl_, false);
-  return impl_->rigid_tools.trace(tool, after);
+  return impl_->trust.told(impl_->rigid_tools.trace(tool, after));
 }
 
 std::vector<ForceSample> World::force_trace(GrabId grab, std::int64_t after) const {
   const api::Call call(impl_, false);
-  return impl_->handles->trace(grab, after);
+  return impl_->trust.told(impl_->handles->trace(grab, after));
 }
 
 }  // namespace pliant

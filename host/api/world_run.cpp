@@ -120,8 +120,10 @@ void World::Impl::check_can_step() const {
 }
 
 void World::Impl::publish_clock() {
-  rigid_tools.note(*simulation);
-  force_blades.note(*simulation);
+  if (trust.given()) {
+    rigid_tools.note(*simulation);
+    force_blades.note(*simulation);
+  }
   const std::lock_guard lock(mutex);
   report.step = simulation->step();
   report.time = simulation->time();
@@ -142,9 +144,7 @@ StepReport World::Impl::run(std::int64_t steps) {
       const std::int64_t left = std::min<std::int64_t>(steps - (simulation->step() - first), handles->apply(*simulation));
       simulation->advance(simulation->next_batch(left));
       rigid_tools.record(*simulation);
-      rigid_tools.note(*simulation);
-      force_blades.note(*simulation);
-      look_for_events();
+      note_batch();
       const std::lock_guard lock(mutex);
       if (stop) break;
     }
@@ -277,6 +277,7 @@ FramePtr World::Impl::hand_out(bool to_poll) {
 /// Continues with another simulation of the same scene.
 void World::Impl::restart(std::shared_ptr<Simulation> fresh, bool keep_requests) {
   simulation = std::move(fresh);
+  trust.renew();
   handles->renew();
   rigid_tools.renew(*simulation, keep_requests);
   force_blades.renew(*simulation, keep_requests);

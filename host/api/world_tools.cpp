@@ -19,7 +19,13 @@ using api::Call;
 
 void World::Impl::change_tools_now() {
   api::FirstRefusal refusal;
-  refusal.attempt([&] { rigid_tools.apply(*simulation); });
+  std::vector<api::RigidTools::Slowed> slowed;
+  refusal.attempt([&] { rigid_tools.apply(*simulation, is_live() ? &slowed : nullptr); });
+  for (const auto& tool : slowed) {
+    const std::string text = fmt::format("tool '{}' is driven in {:.3g} s in place of {:.3g} s: tissue is in its way",
+                                         tool.name, tool.seconds, tool.asked);
+    events.add(*simulation, api::event_of("slowed", tool.name, tool.seconds, text));
+  }
   refusal.attempt([&] { force_blades.apply(*simulation); });
   try {
     refusal.rethrow();

@@ -1,0 +1,39 @@
+// Which states of a freely running World are shown. Private to host/api and its tests.
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "pliant/live.h"
+#include "simulation/simulation.h"
+
+namespace pliant::api {
+
+/// With an automatic step, a step that proves too long is noticed at the end of a grid step (Simulation::settled()), and what
+/// came since is taken back. Until then elements burst: their motion grows many times faster than any load lets it.
+class Trust {
+ public:
+  /// Looks at the state between two batches; `live`: the World runs freely. It is not trusted if it may well be taken back: not
+  /// settled, something moves by more than a tenth of an edge per step, and more than twice as fast as anything did in the last
+  /// settled state.
+  void look(const Simulation& simulation, bool live);
+  /// Call after the simulation was replaced.
+  void renew();
+  /// Whether the state of the last look may be shown. For the stepping thread.
+  [[nodiscard]] bool given() const { return given_; }
+  /// All steps are told from now on, while nobody looks.
+  void tell_all() { told_ = kAll; }
+  /// The samples of the steps up to the last state that was trusted. For any thread.
+  [[nodiscard]] std::vector<ForceSample> told(std::vector<ForceSample> samples) const;
+
+ private:
+  static constexpr std::int64_t kAll = std::numeric_limits<std::int64_t>::max();
+  [[nodiscard]] bool trusts(const Simulation& simulation);
+
+  double usual_ = 0;  ///< greatest increment of the last settled state, in edges
+  bool given_ = true;
+  std::atomic<std::int64_t> told_{kAll};
+};
+
+}  // namespace pliant::api
