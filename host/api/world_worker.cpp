@@ -3,6 +3,7 @@
 #include <sched.h>
 
 #include "api/world_impl.h"
+#include "backends/choice/kernel_warmer.h"
 
 namespace pliant {
 namespace {
@@ -30,6 +31,8 @@ World::Impl::~Impl() {
     serve_files();
   } catch (...) {  // no memory for the events
   }
+  simulation.reset();
+  settle_warming();
 }
 
 bool World::Impl::start_job(std::function<void()> work) {

@@ -8,6 +8,7 @@
 #include <array>
 #include <chrono>
 #include <condition_variable>
+#include <cstdlib>
 #include <cstring>
 #include <deque>
 #include <exception>
@@ -76,6 +77,13 @@ class Warmer {
     changed_.notify_all();
   }
 
+  /// Waits for a cancelled job at work.
+  void settle() {
+    if (forked()) return;
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return now_ == nullptr || !now_->cancelled; });
+  }
+
   void forget() {
     const std::lock_guard lock(mutex_);
     warm_.clear();
@@ -120,7 +128,7 @@ class Warmer {
         std::unique_lock lock(mutex_);
         changed_.wait(lock, [this] { return stop_ || !jobs_.empty(); });
         if (stop_) return;
-        job = std::move(jobs_.front());
+        now_ = job = std::move(jobs_.front());
         jobs_.pop_front();
         warming_ = !job->program.buffers.empty();
       }
@@ -134,7 +142,9 @@ class Warmer {
       {
         const std::lock_guard lock(mutex_);
         warming_ = false;
+        now_ = nullptr;
       }
+      changed_.notify_all();
       if (!unwanted(*job)) job->state = result;
     }
   }
@@ -199,6 +209,10 @@ class Warmer {
     backend.run(pass, 0);
     backend.finish();
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    // A compiler makes objects when it first needs them, and the process destroys them before what was made earlier: stop
+    // first.
+    static const int registered = std::atexit([] { get().stop(); });
+    static_cast<void>(registered);
     const std::lock_guard lock(mutex_);
     const std::size_t before = warm_.size();
     warm_.insert(variants.begin(), variants.end());
@@ -211,6 +225,7 @@ class Warmer {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<std::shared_ptr<WarmJob>> jobs_;
+  std::shared_ptr<WarmJob> now_;  ///< at work
   std::set<std::string> warm_;
   std::set<int> cached_;  ///< devices whose kernels came from the cache on disk
   bool warming_ = false;
@@ -254,7 +269,16 @@ void write_bytes(Backend& backend, const Buffer& buffer, BufferId id, const std:
   backend.write_reals(id, {values.begin(), values.end()});
 }
 
-void start_warming(std::shared_ptr<WarmJob> job) { Warmer::get().start(std::move(job)); }
+static std::atomic<bool> started{false};
+
+void start_warming(std::shared_ptr<WarmJob> job) {
+  started = true;
+  Warmer::get().start(std::move(job));
+}
+
+void settle_warming() {
+  if (started) Warmer::get().settle();
+}
 
 void forget_warm() { Warmer::get().forget(); }
 

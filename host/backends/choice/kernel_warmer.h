@@ -34,6 +34,10 @@ void write_bytes(Backend& backend, const Buffer& buffer, BufferId id, const std:
 /// Leaves a job to the thread, which this process has one of. A forked child has none: its jobs wait for ever.
 void start_warming(std::shared_ptr<WarmJob> job);
 
+/// Waits while the thread works on a cancelled job: at most for one kernel. A process must not end while a compiler works,
+/// whose objects would vanish under it.
+void settle_warming();
+
 /// Returns true if no launch of these passes takes long: this process has launched each on this device in the same work-group
 /// sizes, or what it has launched so far came from the cache on disk.
 bool is_warm(const Program& program, int device, const BackendInfo& info);
