@@ -135,11 +135,18 @@ std::vector<ForceSample> RigidTools::trace(const std::string& name, std::int64_t
   return found == traces_.end() ? std::vector<ForceSample>() : found->second.after(after);
 }
 
-void RigidTools::record_blades(const Simulation& simulation) {
+/// Where batches were made again, the steps after the state that was kept are others now.
+std::int64_t RigidTools::still_valid(const Simulation& simulation) {
+  const bool again = std::exchange(made_again_, simulation.report().made_again) != simulation.report().made_again;
+  const std::optional<KeptState>& kept = simulation.state().kept;
+  return again && kept ? std::min(kept->clock.step, simulation.step()) : simulation.step();
+}
+
+void RigidTools::record_blades(const Simulation& simulation, std::int64_t valid) {
   const BladePress& press = simulation.press();
   if (press.names().empty()) return;
   const std::lock_guard lock(mutex_);
-  for (auto& [name, trace] : blades_) trace.forget_after(simulation.step());
+  for (auto& [name, trace] : blades_) trace.forget_after(valid);
   const std::vector<Wrench>& forces = press.step_forces();
   const auto steps = static_cast<std::int64_t>(forces.size() / press.names().size());
   for (std::size_t b = 0; b < press.names().size(); ++b) {
@@ -153,13 +160,14 @@ void RigidTools::record_blades(const Simulation& simulation) {
 }
 
 void RigidTools::record(const Simulation& simulation) {
-  record_blades(simulation);
+  const std::int64_t valid = still_valid(simulation);
+  record_blades(simulation, valid);
   const ToolContact& contact = simulation.contact();
   const std::vector<ContactTool>& tools = contact.tools();
   if (tools.empty()) return;
   const std::lock_guard lock(mutex_);
   std::erase_if(traces_, [&](const auto& entry) { return !knows(entry.first); });
-  for (auto& [name, trace] : traces_) trace.forget_after(simulation.step());
+  for (auto& [name, trace] : traces_) trace.forget_after(valid);
   if (contact.batch_end() != simulation.step()) return;  // the batch was taken back
   const std::vector<Wrench>& forces = contact.step_forces();
   const auto steps = static_cast<std::int64_t>(forces.size() / tools.size());
@@ -274,6 +282,7 @@ void RigidTools::renew(const Simulation& simulation, bool keep_requests) {
     const std::lock_guard lock(mutex_);
     if (!keep_requests) asked_.clear();
     held_back_ = false;
+    made_again_ = simulation.report().made_again;
     given_.clear();
     traces_.clear();
     blades_.clear();

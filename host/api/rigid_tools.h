@@ -56,7 +56,8 @@ class RigidTools {
   void renew(const Simulation& simulation, bool keep_requests = false);
 
  private:
-  void record_blades(const Simulation& simulation);
+  [[nodiscard]] std::int64_t still_valid(const Simulation& simulation);
+  void record_blades(const Simulation& simulation, std::int64_t valid);
   enum class What { add, remove, park, unpark, place, drive, mesh, grip, let_go };
   struct Request {
     What what = What::add;
@@ -85,6 +86,7 @@ class RigidTools {
   std::vector<Request> doing_;                                         ///< being executed
   std::vector<Request> asked_;                                         ///< queued after these
   bool held_back_ = false;
+  std::int64_t made_again_ = 0;  ///< RunReport::made_again at the last record()
   std::vector<ToolForce> forces_;
   std::map<std::string, ForceTrace> traces_;
   std::map<std::string, ForceTrace> blades_;  ///< of blades that cut by force

@@ -6,18 +6,29 @@
 namespace pliant::api {
 namespace {
 
-constexpr double kFast = 0.1;    ///< as quiet(): slower motion is no sign of a step that is too long
-constexpr double kFaster = 2.0;  ///< free flight gains less than this in a grid step
+constexpr double kFastMotion = 0.1;     ///< as quiet(): slower motion is no sign of a step that is too long
+constexpr double kMoreThanUsual = 2.0;  ///< free flight gains less than this in a grid step
+
+/// Greatest increment of a node, in edges of the shortest element.
+double fastest(const Simulation& simulation) {
+  const BufferId summary = simulation.program().find("increment_summary");
+  if (summary < 0 || !(simulation.model().shortest > 0) || simulation.quiet()) return 0;  // quiet() computes the summary
+  const std::vector<double> most = simulation.backend().read_reals(summary);
+  return *std::max_element(most.begin(), most.end()) / simulation.model().shortest;
+}
 
 }  // namespace
 
 void Trust::look(const Simulation& simulation, bool live) {
   given_ = !live || simulation.divergence() || trusts(simulation);
-  if (given_) told_ = live ? simulation.step() : kAll;
+  if (given_) last_given_ = simulation.step();
+  told_ = live ? last_given_ : kAll;
 }
 
-void Trust::renew() {
-  usual_ = 0;
+void Trust::renew(const Simulation& simulation) {
+  usual_ = fastest(simulation);
+  usual_inverted_ = simulation.report().inversions.last;
+  last_given_ = simulation.step();
   given_ = true;
   told_ = kAll;
 }
@@ -29,18 +40,14 @@ std::vector<ForceSample> Trust::told(std::vector<ForceSample> samples) const {
 }
 
 bool Trust::trusts(const Simulation& simulation) {
-  const Program& program = simulation.program();
-  const BufferId summary = program.find("increment_summary");
-  if (summary < 0 || !(simulation.model().shortest > 0)) return true;
-  const bool settled = simulation.settled(), quiet = simulation.quiet();
-  if (quiet) {
-    if (settled) usual_ = 0;
+  const double now = fastest(simulation);
+  const std::int64_t inverted = simulation.report().inversions.last;
+  if (simulation.settled()) {
+    usual_ = now;
+    usual_inverted_ = inverted;
     return true;
   }
-  const std::vector<double> most = simulation.backend().read_reals(summary);  // quiet() has set it
-  const double increment = *std::max_element(most.begin(), most.end()) / simulation.model().shortest;
-  if (settled) usual_ = increment;
-  return settled || increment <= std::max(kFast, kFaster * usual_);
+  return inverted <= usual_inverted_ && now <= std::max(kFastMotion, kMoreThanUsual * usual_);
 }
 
 }  // namespace pliant::api

@@ -15,11 +15,11 @@ namespace pliant::api {
 class Trust {
  public:
   /// Looks at the state between two batches; `live`: the World runs freely. It is not trusted if it may well be taken back: not
-  /// settled, something moves by more than a tenth of an edge per step, and more than twice as fast as anything did in the last
-  /// settled state.
+  /// settled, and more elements are inverted than in the last settled state, or something moves by more than a tenth of an edge
+  /// per step and more than twice as fast as anything did there.
   void look(const Simulation& simulation, bool live);
-  /// Call after the simulation was replaced.
-  void renew();
+  /// Call after the simulation was replaced: its state is trusted.
+  void renew(const Simulation& simulation);
   /// Whether the state of the last look may be shown. For the stepping thread.
   [[nodiscard]] bool given() const { return given_; }
   /// All steps are told from now on, while nobody looks.
@@ -31,7 +31,9 @@ class Trust {
   static constexpr std::int64_t kAll = std::numeric_limits<std::int64_t>::max();
   [[nodiscard]] bool trusts(const Simulation& simulation);
 
-  double usual_ = 0;  ///< greatest increment of the last settled state, in edges
+  double usual_ = 0;                 ///< greatest increment of the last settled state, in edges
+  std::int64_t usual_inverted_ = 0;  ///< elements that were inverted there
+  std::int64_t last_given_ = 0;      ///< number of steps at the last look that trusted
   bool given_ = true;
   std::atomic<std::int64_t> told_{kAll};
 };

@@ -84,6 +84,7 @@ World::Impl::Impl(Scene scene_, OpenBackend open, const WorldOptions& options_)
   handles = std::make_unique<api::SurfaceHandles>(model, scene);
   topology = topology_of(model, 1);
   seen_model = model;
+  trust.renew(*simulation);
   rigid_tools.renew(*simulation);
   events.renew(*simulation);
   publish_clock();
@@ -277,7 +278,7 @@ FramePtr World::Impl::hand_out(bool to_poll) {
 /// Continues with another simulation of the same scene.
 void World::Impl::restart(std::shared_ptr<Simulation> fresh, bool keep_requests) {
   simulation = std::move(fresh);
-  trust.renew();
+  trust.renew(*simulation);
   handles->renew();
   rigid_tools.renew(*simulation, keep_requests);
   force_blades.renew(*simulation, keep_requests);
