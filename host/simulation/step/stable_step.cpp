@@ -2,7 +2,6 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -66,15 +65,15 @@ class Probe {
     write(u_, w_);
     run_.loaded.clear_faults();  // of elements in configurations outside the run
   }
-  /// Sets `change` to the force at rest less that at `size` times `v`, at the places `at` of an array of [slots][4].
-  void operator()(const std::vector<std::size_t>& at, const std::vector<double>& v, double size, std::vector<double>& change) {
-    moved_u_ = u_;
-    moved_w_ = w_;
-    for (std::size_t i = 0; i < v.size(); ++i) moved_u_[at[i]] = u_[at[i]] + size * v[i];
-    for (std::size_t i = 0; i < v.size() && !w_.empty(); ++i) moved_w_[at[i]] = w_[at[i]] + 2 * size * v[i];
-    write(moved_u_, moved_w_);
+  /// The force at rest less that at `size` times `v`, at the places `at` of an array of [slots][4].
+  std::vector<double> operator()(const std::vector<std::size_t>& at, const std::vector<double>& v, double size) {
+    std::vector<double> u = u_, w = w_, change(v.size());
+    for (std::size_t i = 0; i < v.size(); ++i) u[at[i]] = u_[at[i]] + size * v[i];
+    for (std::size_t i = 0; i < v.size() && !w.empty(); ++i) w[at[i]] = w_[at[i]] + 2 * size * v[i];
+    write(u, w);
     const std::vector<double> moved = force();
     for (std::size_t i = 0; i < v.size(); ++i) change[i] = rest_[at[i]] - moved[at[i]];
+    return change;
   }
 
  private:
@@ -99,25 +98,8 @@ class Probe {
   }
   const RunContext& run_;
   const std::vector<Pass>& passes_;
-  std::vector<double> u_, w_, rest_, moved_u_, moved_w_;
+  std::vector<double> u_, w_, rest_;
 };
-
-/// Multiplies by a factor. Returns the largest absolute value.
-double scale(std::vector<double>& v, double factor) {
-  std::array<double, 8> most{};
-  const std::size_t whole = v.size() / most.size() * most.size();
-  for (std::size_t i = 0; i < whole; i += most.size()) {
-    for (std::size_t k = 0; k < most.size(); ++k) {
-      v[i + k] *= factor;
-      most[k] = std::max(most[k], std::abs(v[i + k]));
-    }
-  }
-  for (std::size_t i = whole; i < v.size(); ++i) {
-    v[i] *= factor;
-    most[0] = std::max(most[0], std::abs(v[i]));
-  }
-  return *std::max_element(most.begin(), most.end());
-}
 
 double largest_omega2_of(const RunContext& run, const std::vector<double>& spring, int iterations, bool rates) {
   const std::vector<double>& mass = run.model().mass;
@@ -135,30 +117,31 @@ double largest_omega2_of(const RunContext& run, const std::vector<double>& sprin
   }
   const std::size_t n = at.size();
   before.assign(n, 0);
-  std::vector<double> change(n), next(n), part(n);
   Probe probe(run, rates);
   const int steps = static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(iterations), n));
   std::vector<double> alpha, beta;  // the tridiagonal matrix
   bool spanned = false;             // the whole space is
   for (int k = 0; k < steps && !spanned && norm > 0 && std::isfinite(norm); ++k) {
-    const double size = kStrain * shortest_length(run.model()) / scale(v, 1 / std::sqrt(norm));
-    probe(at, v, size, change);
-    // Terms first and their sums, whose order decides their bits, by themselves: the compiler vectorizes the terms.
+    double largest = 0, unit = 1 / std::sqrt(norm);
+    for (double& x : v) {
+      x *= unit;
+      largest = std::max(largest, std::abs(x));
+    }
+    const double size = kStrain * shortest_length(run.model()) / largest;
+    const std::vector<double> change = probe(at, v, size);
     double projection = 0;
-    for (std::size_t i = 0; i < n; ++i) part[i] = v[i] * change[i] / size;
     for (std::size_t i = 0; i < n; ++i) {
-      projection += part[i];
+      projection += v[i] * change[i] / size;
       if (!spring.empty()) projection += m[i] * own_spring[i] * v[i] * v[i];
     }
-    const double last = k > 0 ? beta.back() : 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      next[i] = change[i] / size / m[i] - (projection - own_spring[i]) * v[i] - last * before[i];
-      part[i] = m[i] * next[i] * next[i];
-    }
     norm = 0;
-    for (std::size_t i = 0; i < n; ++i) norm += part[i];
-    before.swap(v);
-    v.swap(next);
+    for (std::size_t i = 0; i < n; ++i) {
+      const double own = projection - own_spring[i];
+      const double next = change[i] / size / m[i] - own * v[i] - (k > 0 ? beta.back() * before[i] : 0);
+      before[i] = v[i];
+      v[i] = next;
+      norm += m[i] * next * next;
+    }
     alpha.push_back(projection);
     beta.push_back(std::sqrt(norm));
     spanned = !(beta.back() > 1e-6 * std::abs(projection));
