@@ -8,6 +8,7 @@
 #include "geometry/vec.h"
 #include "model/pieces.h"
 #include "scene/blade_face.h"
+#include "simulation/contact/sunken_tool.h"
 
 namespace pliant::api {
 namespace {
@@ -62,6 +63,8 @@ void EventLog::renew(const Simulation& simulation) {
   diverged_ = simulation.divergence().has_value();
   pieces_ = pieces_of_all(simulation.model());
   deep_.clear();
+  passed_.clear();
+  at_work_ = simulation.backend().at_work().name;
   gave_way_.clear();
   for (const auto& [name, blade] : simulation.state().pressed) gave_way_[name] = blade.first >= 0;
   attempts_seen_.clear();
@@ -91,6 +94,7 @@ void EventLog::look_at_tools(const Simulation& simulation) {
   if (tools.empty() || simulation.model().contact == nullptr) return;
   for (std::size_t t = 0; t < std::min(felt.size(), tools.size()); ++t) {
     if (is_face(tools[t])) continue;  // it stands in what its edge has opened
+    look_at_sunken(simulation, tools[t].name, felt[t].sunk);
     const double cells = felt[t].now.depth / simulation.model().contact->spacing;
     bool& deep = deep_[tools[t].name];
     if ((cells > (deep ? kShallow : kDeep)) == deep) continue;
@@ -99,6 +103,24 @@ void EventLog::look_at_tools(const Simulation& simulation) {
     const std::string text = fmt::format("tool '{}' is {:.2g} cells deep in tissue", tools[t].name, cells);
     add(simulation, event_of("deep", tools[t].name, cells, text, simulation.contact().pose(t, simulation.time()).position));
   }
+}
+
+void EventLog::look_at_sunken(const Simulation& simulation, const std::string& tool, const SunkenTool& sunk) {
+  const double cells = sunk.depth / simulation.model().contact->spacing;
+  const bool passed = cells > sunken_cells;
+  if (std::exchange(passed_[tool], passed) || !passed) return;
+  const std::string& body = simulation.model().bodies[static_cast<std::size_t>(sunk.body)].name;
+  const std::string text = fmt::format(
+      "tool '{}' stands {:.3g} m ({:.2g} cells) below the surface of body '{}': it has passed "
+      "between points of contact",
+      tool, sunk.depth, cells, body);
+  add(simulation, event_of("passed", tool, cells, text, sunk.where));
+}
+
+void EventLog::look_at_backend(const Simulation& simulation) {
+  const std::string& now = simulation.backend().at_work().name;
+  if (std::exchange(at_work_, now) == now) return;
+  add(simulation, event_of("backend", now, 0, fmt::format("{} computes from here on, with the same bits", now)));
 }
 
 void EventLog::look_at_blades(const Simulation& simulation) {
@@ -146,6 +168,7 @@ void EventLog::look(const Simulation& simulation) {
   if (const std::int64_t more = report.made_again - std::exchange(made_again_, report.made_again); more > 0) {
     add(simulation, event_of("rolled_back", {}, static_cast<double>(more), "steps were made again, smaller"));
   }
+  look_at_backend(simulation);
   look_at_tools(simulation);
   look_at_blades(simulation);
   look_at_strokes(simulation);

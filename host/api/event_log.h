@@ -35,6 +35,8 @@ class EventLog {
  private:
   void look_at_pieces(const Simulation& simulation);
   void look_at_tools(const Simulation& simulation);
+  void look_at_sunken(const Simulation& simulation, const std::string& tool, const SunkenTool& sunk);
+  void look_at_backend(const Simulation& simulation);
   void look_at_blades(const Simulation& simulation);
   void look_at_strokes(const Simulation& simulation);
 
@@ -43,6 +45,8 @@ class EventLog {
   bool diverged_ = false;
   std::vector<std::int64_t> pieces_;      ///< [bodies]
   std::map<std::string, bool> deep_;      ///< tools that are deep in tissue
+  std::map<std::string, bool> passed_;    ///< tools that stand below the surface of tissue
+  std::string at_work_;                   ///< what computes
   std::map<std::string, bool> gave_way_;  ///< blades to which tissue has given way
   std::map<std::string, std::int64_t> attempts_seen_;
 

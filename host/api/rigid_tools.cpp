@@ -223,6 +223,7 @@ void RigidTools::drive_in_time(Simulation& simulation, const Request& request, s
 }
 
 void RigidTools::apply(Simulation& simulation, std::vector<Slowed>* slowed) {
+  refused_.clear();
   {
     const std::lock_guard lock(mutex_);
     if (asked_.empty() || held_back_) return;
@@ -232,7 +233,9 @@ void RigidTools::apply(Simulation& simulation, std::vector<Slowed>* slowed) {
   for (const Request& request : doing_) {
     const bool slows = slowed != nullptr && request.what == What::drive;
     const auto attempt = [&] { slows ? drive_in_time(simulation, request, *slowed) : make(simulation, request); };
-    if (!refusal.attempt(attempt) && request.what == What::mesh) renew_given(simulation, request.name);
+    if (refusal.attempt(attempt)) continue;
+    if (refused_.empty()) refused_ = request.name;
+    if (request.what == What::mesh) renew_given(simulation, request.name);
   }
   settle(simulation);
   note(simulation);

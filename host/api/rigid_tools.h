@@ -48,6 +48,8 @@ class RigidTools {
   /// Executes the requests. All are attempted; then the first Error is rethrown. `slowed`: drives through tissue that are too
   /// fast for contact take more time and are noted there; nullptr: they are refused.
   void apply(Simulation& simulation, std::vector<Slowed>* slowed = nullptr);
+  /// The tool of the Error that apply() has thrown; empty: it has thrown none.
+  [[nodiscard]] const std::string& refused() const { return refused_; }
   /// Call after a batch: stores the forces of its steps for trace().
   void record(const Simulation& simulation);
   /// Stores the forces on the tools for forces().
@@ -86,6 +88,7 @@ class RigidTools {
   std::vector<Request> doing_;                                         ///< being executed
   std::vector<Request> asked_;                                         ///< queued after these
   bool held_back_ = false;
+  std::string refused_;
   std::int64_t made_again_ = 0;  ///< RunReport::made_again at the last record()
   std::vector<ToolForce> forces_;
   std::map<std::string, ForceTrace> traces_;

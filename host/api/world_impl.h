@@ -26,20 +26,17 @@
 
 namespace pliant {
 
+/// Opens a backend for a scene with this number of nodes; `reason` receives the reason for the choice.
+using OpenBackend = std::function<std::unique_ptr<Backend>(std::string* reason, std::int64_t nodes)>;
+
 namespace api {
 
 /// A rejected cut or tool change; the simulation is unchanged.
 struct Refused : Error {
   using Error::Error;
-  explicit Refused(const Error& error) : Error(error) {}
+  explicit Refused(const Error& error, std::string what_of = {}) : Error(error), subject(std::move(what_of)) {}
+  std::string subject;  ///< tool or blade; empty: a cut or a change
 };
-
-}  // namespace api
-
-/// Opens a backend for a scene with this number of nodes; `reason` receives the reason for the choice.
-using OpenBackend = std::function<std::unique_ptr<Backend>(std::string* reason, std::int64_t nodes)>;
-
-namespace api {
 
 /// A requested cut: along triangles, by a move of a blade, or preceded by lifting a blade.
 struct CutRequest {

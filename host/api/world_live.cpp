@@ -70,7 +70,7 @@ void World::Impl::make_changes() {
       make();
     } catch (const api::Refused& refused) {
       if (!live) throw;
-      events.add(*simulation, api::event_of("refused", {}, 0, refused.what()));
+      events.add(*simulation, api::event_of("refused", refused.subject, 0, refused.what()));
     }
   };
   attempt([this] { cut_pending(); });

@@ -30,7 +30,7 @@ void World::Impl::change_tools_now() {
   try {
     refusal.rethrow();
   } catch (const Error& error) {
-    throw api::Refused(error);
+    throw api::Refused(error, rigid_tools.refused());
   }
 }
 

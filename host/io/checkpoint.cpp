@@ -17,7 +17,7 @@ namespace pliant {
 namespace {
 
 constexpr std::string_view kMagic = "PLIANTCK";
-constexpr std::uint32_t kVersion = 9;
+constexpr std::uint32_t kVersion = 10;
 constexpr std::size_t kHead = 24;
 constexpr std::size_t kTail = 8;
 

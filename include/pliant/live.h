@@ -30,8 +30,8 @@ struct LiveState {
 
 /// Something that happened while a World ran.
 struct Event {
-  /// "cut", "opened", "pieces", "inverted", "calmed", "rolled_back", "deep", "gave_way", "limited", "slowed", "diverged",
-  /// "refused", "failed", "saved", "loaded", "reset" or "recovered" (docs/embedding.md, Running freely).
+  /// "cut", "opened", "pieces", "inverted", "calmed", "rolled_back", "deep", "passed", "gave_way", "limited", "slowed",
+  /// "backend", "diverged", "refused", "failed", "saved", "loaded", "reset" or "recovered" (docs/embedding.md, Running freely).
   std::string kind;
   std::string subject;    ///< name of the body, tool or blade, id of the grab, or file; empty: the whole scene
   std::int64_t step = 0;  ///< number of steps since the start

@@ -226,6 +226,19 @@ TEST(Live, ARefusedLoadLeavesItAsItIs) {
   EXPECT_TRUE(world.events().empty());
 }
 
+TEST(Live, ARefusedToolIsNamed) {
+  SceneSpec scene = block(0);
+  scene.tools = {ball({0.05, 0.2, 0.03}), ball({0.02, 0.2, 0.03})};
+  scene.tools[1].name = "second";
+  World world(scene, on("cpu"));
+  Told told(world);
+  world.run_live();
+  world.place_tool("second", {0.05, 0.04, 0.03});  // in the middle of the block
+  const Event refused = told.wait_for("refused");
+  EXPECT_EQ(refused.subject, "second");
+  EXPECT_NE(refused.text.find("inside body 'block'"), std::string::npos) << refused.text;
+}
+
 TEST(Live, ADivergenceHoldsItUpUntilItRecovers) {
   World world(test::unstable(), on("cpu"));
   Told told(world);

@@ -104,6 +104,12 @@ TEST_F(Tiered, TheTwinsBeginAndOpenclGoesOnWithTheSameBits) {
   EXPECT_GT(world.tool_forces().front().force[1], 0.0) << "the ball does not touch";
   EXPECT_EQ(positions(world), positions(other));
   EXPECT_TRUE(world.remarks() == other.remarks());
+  const std::vector<Event> told = world.events();
+  ASSERT_EQ(told.size(), other.events().size() + 1);
+  const auto changed = std::find_if(told.begin(), told.end(), [](const Event& e) { return e.kind == "backend"; });
+  ASSERT_NE(changed, told.end());
+  EXPECT_EQ(changed->subject, "opencl:0");
+  EXPECT_GT(changed->step, 0);
 }
 
 TEST_F(Tiered, EditsMeetTheSameBitsBeforeAndAfter) {

@@ -45,7 +45,8 @@ Checkpoint sample() {
   s.state.driven["rod"] = {{{{1, 2, 3}, {0, 0, 0, 1}}, {{4, 5, 6}, {0, 0, 0, 1}}, 0.25, 0.75}};
   s.state.topology_version = 3;
   s.reports.now.inversions = {1, 2, 3, 4, 0.5, 6, "liver", 7};
-  s.reports.now.tools = {{{{{1, 2, 3}, {4, 5, 6}}, 0.25, 0.5, 7}, 1, 2, 3, 4, {{0, 1, 0}}, 5}};
+  s.reports.now.tools = {
+      {{{{1, 2, 3}, {4, 5, 6}}, 0.25, 0.5, 7}, 1, 2, 3, 4, {{0, 1, 0}}, 5, {1, 2, {3, 4, 5}, 6}, {7, 8, {9, 10, 11}, 12}}};
   s.reports.now.energy = {1.0, 2, 3};
   s.buffers = {{"u", {1, 2, 3, 255, 0, 7, 8, 9, 10}}, {"", {}}, {"w", std::vector<std::uint8_t>(50, 17)}};
   return c;

@@ -9,13 +9,13 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdlib>
-#include <cstring>
 #include <deque>
 #include <exception>
 #include <mutex>
 #include <set>
 #include <thread>
 
+#include "backends/interface/buffer_bytes.h"
 #include "backends/interface/float_environment.h"
 #include "backends/interface/launch.h"
 #include "backends/interface/pass_table.h"
@@ -253,20 +253,6 @@ Program outline_of(const Program& program) {
     }
   }
   return out;
-}
-
-void write_bytes(Backend& backend, const Buffer& buffer, BufferId id, const std::vector<std::uint8_t>& bytes) {
-  const std::size_t count = bytes.size() / 4;
-  if (count == 0) return;
-  if (buffer.is_int()) {
-    std::vector<std::int32_t> values(count);
-    std::memcpy(values.data(), bytes.data(), bytes.size());
-    return backend.write_ints(id, values);
-  }
-  std::vector<float> values(count);
-  std::memcpy(values.data(), bytes.data(), bytes.size());
-  const DefaultFloatEnvironment environment;
-  backend.write_reals(id, {values.begin(), values.end()});
 }
 
 static std::atomic<bool> started{false};

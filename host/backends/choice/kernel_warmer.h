@@ -28,9 +28,6 @@ struct WarmJob {
 /// Returns a copy without the initial values of its buffers and with lists (Pass::active) that let each pass run.
 Program outline_of(const Program& program);
 
-/// Writes the bytes of a buffer, as from Backend::read_bytes of a backend that computes in float.
-void write_bytes(Backend& backend, const Buffer& buffer, BufferId id, const std::vector<std::uint8_t>& bytes);
-
 /// Leaves a job to the thread, which this process has one of. A forked child has none: its jobs wait for ever.
 void start_warming(std::shared_ptr<WarmJob> job);
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "backends/choice/kernel_warmer.h"
+#include "backends/interface/buffer_bytes.h"
 #include "pliant/error.h"
 
 namespace pliant {
@@ -24,6 +25,7 @@ class TieredBackend final : public Backend {
 
   [[nodiscard]] const BackendInfo& info() const override { return opencl_->info(); }
   [[nodiscard]] std::string remark() const override { return remark_; }
+  [[nodiscard]] const BackendInfo& at_work() const override { return now_->info(); }
 
   void load(const Program& program) override {
     begin(program);

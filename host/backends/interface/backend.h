@@ -39,6 +39,8 @@ class Backend {
   [[nodiscard]] virtual const BackendInfo& info() const = 0;
   /// Returns what a user should know of how it computes; empty: nothing.
   [[nodiscard]] virtual std::string remark() const { return {}; }
+  /// Returns what computes at present.
+  [[nodiscard]] virtual const BackendInfo& at_work() const { return info(); }
   /// Compiles the program, allocates its buffers and uploads their initial values. The program must outlive its use; a
   /// previous extension is dropped. Throws Error (memory: needed and available; build failure: the log).
   virtual void load(const Program& program) = 0;

@@ -7,6 +7,7 @@
 
 #include "geometry/vec.h"
 #include "pliant/error.h"
+#include "simulation/contact/tool_samples.h"
 
 namespace pliant {
 namespace {
@@ -14,37 +15,6 @@ namespace {
 constexpr double kStride = 0.5;  ///< distance between checks along a path, in cells
 constexpr std::size_t kMostLooks = 4096;
 constexpr std::size_t kSamplesOnTheWay = 16;
-
-/// Points of a shape in its own frame: the centre of round shapes, points on the surface of others, none for a half space.
-std::vector<Vec3d> samples_of(const ToolForm& form, const ToolMoment& moment, std::size_t most) {
-  std::vector<Vec3d> out;
-  switch (form.shape) {
-    case ToolShape::sphere:
-      return {Vec3d{}};
-    case ToolShape::capsule:
-      for (std::size_t i = 0; i < most; ++i) {
-        const double s = static_cast<double>(i) / static_cast<double>(most - 1);
-        out.push_back(vec::add(vec::mul(form.first, 1 - s), vec::mul(form.second, s)));
-      }
-      return out;
-    case ToolShape::box: {  // corners, centres of edges and faces, and the centre
-      for (int i = 0; i < 27; ++i)
-        out.push_back({(i % 3 - 1) * form.second[0], (i / 3 % 3 - 1) * form.second[1], (i / 9 - 1) * form.second[2]});
-      return out;
-    }
-    case ToolShape::half_space:
-    case ToolShape::blade_face:
-      return out;
-    case ToolShape::mesh:
-    case ToolShape::sequence:
-      break;
-  }
-  const auto frame = static_cast<std::size_t>(moment.frame);
-  const TriangleMesh& mesh = form.frames.empty() ? form.surface : form.frames[frame].surface;
-  const std::size_t every = mesh.vertices.size() / most + 1;
-  for (std::size_t v = 0; v < mesh.vertices.size(); v += every) out.push_back(mesh.vertices[v]);
-  return out;
-}
 
 double angle_between(const Pose& a, const Pose& b) {
   double cosine = 0;
@@ -110,7 +80,7 @@ ToolOverlap PresentTissue::overlap(const ToolForm& form, const Pose& pose, doubl
     const double depth = -tool_distance(form, place_back(at, points_[i]), moment);
     if (depth > most.depth) most = {depth, model_.contact->body[i], points_[i]};
   }
-  for (const Vec3d& y : samples_of(form, moment, samples)) {
+  for (const Vec3d& y : tool_samples(form, moment, samples)) {
     const Vec3d x = place(at, y);
     if (box_.distance2(x) > 0 || surface() == nullptr || !surface()->inside(x)) continue;
     const ClosestPoint near = surface()->closest(x);

@@ -8,10 +8,12 @@
 
 #include "geometry/vec.h"
 #include "pliant/error.h"
+#include "scene/blade_face.h"
 #include "schedule/contact/contact_data.h"
 #include "schedule/program_layout.h"
 #include "simulation/contact/body_overlap.h"
 #include "simulation/contact/present_tissue.h"
+#include "simulation/contact/sunken_tool.h"
 #include "simulation/contact/tool_changes.h"
 
 namespace pliant {
@@ -271,6 +273,7 @@ void ToolContact::end_batch(std::int32_t steps) {
   felt_.step_forces.assign(static_cast<std::size_t>(steps) * tools_.size(), {});
   felt_.batch_end = run_.state.clock.step;
   for (ToolHistory& h : report_.tools) h.now = {};
+  look_for_sunken(steps);  // also where nothing is near: a tool may be in the middle of tissue
   if (!ran) return;
   const std::vector<std::int32_t> sums = run_.backend().read_ints(run_.loaded.program().find("tool_sum"));
   const std::size_t tools = tools_.size();
@@ -303,6 +306,20 @@ void ToolContact::end_batch(std::int32_t steps) {
       h.max_depth = std::max(h.max_depth, h.now.depth);
     }
     h.max_force = std::max(h.max_force, vec::norm(h.now.force));
+  }
+}
+
+void ToolContact::look_for_sunken(std::int32_t steps) {
+  const double now = run_.state.clock.time(), before = now - steps * run_.state.clock.dt;
+  if (std::floor(now / sunken_look_every) == std::floor(before / sunken_look_every)) return;
+  std::optional<BodySurfaces> surface;
+  for (std::size_t t = 0; t < tools_.size(); ++t) {
+    ToolHistory& h = report_.tools[t];
+    h.sunk = {};
+    if (is_face(tools_[t])) continue;
+    if (!surface) surface.emplace(run_.model(), run_.u());
+    h.sunk = surface->deepest((*run_.model().tools)[t], pose(t, now), now);
+    if (h.sunk.depth > h.deepest.depth) h.deepest = h.sunk;
   }
 }
 

@@ -77,6 +77,8 @@ class ToolContact {
   void read_touch();
   /// Around a search before a step of the batch, where the energy is watched.
   void count_parting(std::int32_t step_in_batch, bool before);
+  /// At intervals: finds tools that stand below the surface. Call after a batch of `steps` steps.
+  void look_for_sunken(std::int32_t steps);
   /// Call before a batch: notes which blades with faces are in the scene.
   void begin_faces();
   /// `step_ago` [s], or since then the time at which the host has placed the tool where it is: it did not go there.

@@ -9,6 +9,7 @@
 #include "cutting/topology/mesh_edges.h"
 #include "geometry/vec.h"
 #include "schedule/program_layout.h"
+#include "simulation/contact/sunken_tool.h"
 #include "simulation/contact/tool_changes.h"
 #include "simulation/measure/reactions.h"
 #include "simulation/step/applied_loads.h"
@@ -173,6 +174,14 @@ void add_tool(const Simulation& s, const std::string& name, std::size_t tool, Se
                     "edge thinner than half a cell passes between contact points, and a tool that moves a cell in a few steps "
                     "is detected late",
                     name, cells));
+  }
+  if (const SunkenTool& sunk = h.deepest; sunk.depth > sunken_cells * spacing) {
+    out.push_back(
+        fmt::format("tool '{}' stood {:.3g} m ({:.2g} cells) below the surface of body '{}' at t = {:.4g} s, [{:.4g}, {:.4g}, "
+                    "{:.4g}]: tissue let it through between points of contact, and its force means little from then on; a tool "
+                    "that is thicker than a cell and presses less deep is held (docs/contact.md, Limits)",
+                    name, sunk.depth, sunk.depth / spacing, s.model().bodies[static_cast<std::size_t>(sunk.body)].name,
+                    sunk.time, sunk.where[0], sunk.where[1], sunk.where[2]));
   }
   if (h.touched == 0 && s.step() > 0) {
     out.push_back(fmt::format(

@@ -1,20 +1,10 @@
 #include "simulation/state/loaded_model.h"
 
 #include <algorithm>
-#include <cstring>
+
+#include "backends/interface/buffer_bytes.h"
 
 namespace pliant {
-namespace {
-
-template <class T>
-std::vector<T> values_of(const std::vector<std::uint8_t>& bytes) {
-  std::vector<T> values(bytes.size() / sizeof(T));
-  if (!values.empty()) std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
-  return values;
-}
-
-}  // namespace
-
 void LoadedModel::load(std::shared_ptr<const Model> model, Program program, Program surface) {
   backend_->finish();
   model_ = std::move(model);
@@ -126,14 +116,7 @@ void LoadedModel::write_state_bytes(const std::vector<std::vector<std::uint8_t>>
 
 void LoadedModel::write_bytes(BufferId id, const std::vector<std::uint8_t>& bytes) {
   note_change();
-  if (program_.at(id).is_int()) {
-    backend_->write_ints(id, values_of<std::int32_t>(bytes));
-  } else if (backend_->info().real_bytes == 8) {
-    backend_->write_reals(id, values_of<double>(bytes));
-  } else {
-    const std::vector<float> values = values_of<float>(bytes);
-    backend_->write_reals(id, {values.begin(), values.end()});
-  }
+  pliant::write_bytes(*backend_, program_.at(id), id, bytes);
 }
 
 std::vector<Vec3d> LoadedModel::positions(const std::vector<double>& u, std::size_t body) const {

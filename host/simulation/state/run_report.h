@@ -39,6 +39,14 @@ struct ToolLoad : Wrench {
   std::int64_t points = 0;
 };
 
+/// A tool whose centre, axis, corners or vertices are below the surface of a body: tissue has passed it, or it tissue.
+struct SunkenTool {
+  double depth = 0;        ///< below the surface, with the radius of a round tool [m]; 0: it is not
+  double time = 0;         ///< [s]
+  Vec3d where{};           ///< the deepest of these points [m]
+  std::int32_t body = -1;  ///< index in the model
+};
+
 /// Statistics of a tool.
 struct ToolHistory {
   ToolLoad now;              ///< load of the last batch
@@ -48,6 +56,7 @@ struct ToolHistory {
   std::int64_t touched = 0;  ///< number of steps with contact
   Pose before;               ///< pose of the frame one step before `step`; the host may have placed the tool elsewhere since
   std::int64_t step = -1;    ///< end of the last batch with contact; -1: none
+  SunkenTool sunk, deepest;  ///< at the last look (sunken_tool.h), and at the look that found most
 };
 
 /// Statistics of contact between tissue and tissue.
@@ -110,9 +119,13 @@ void visit(V& v, ToolLoad& s) {
   v("force", s.force), v("torque", s.torque), v("area", s.area), v("depth", s.depth), v("points", s.points);
 }
 template <class V>
+void visit(V& v, SunkenTool& s) {
+  v("depth", s.depth), v("time", s.time), v("where", s.where), v("body", s.body);
+}
+template <class V>
 void visit(V& v, ToolHistory& s) {
   v("now", s.now), v("max_force", s.max_force), v("max_depth", s.max_depth), v("work", s.work), v("touched", s.touched);
-  v("before", s.before), v("step", s.step);
+  v("before", s.before), v("step", s.step), v("sunk", s.sunk), v("deepest", s.deepest);
 }
 template <class V>
 void visit(V& v, TouchHistory& s) {
