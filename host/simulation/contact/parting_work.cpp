@@ -22,10 +22,13 @@ std::vector<double> reals(const RunContext& run, const char* name) {
 /// Visits the pairs at their lower points: lower, upper, slot, minus the depth that it is left.
 template <class Visit>
 void for_pairs(const RunContext& run, const Visit& visit) {
-  const std::vector<std::int32_t> partner = ints(run, "touch_partner"), near = ints(run, "contact_near");
+  const std::vector<std::int32_t> near = ints(run, "contact_near");
+  const auto touches = [](std::int32_t tile) { return (tile & PLIANT_TOUCH_BIT) != 0; };
+  if (std::none_of(near.begin(), near.end(), touches)) return;  // without reading megabytes of pairs
+  const std::vector<std::int32_t> partner = ints(run, "touch_partner");
   const std::vector<double> pair = reals(run, "touch_pair");
   for (std::size_t i = 0; i < run.model().contact->size(); ++i) {
-    if ((near[i / PLIANT_TILE] & PLIANT_TOUCH_BIT) == 0) continue;
+    if (!touches(near[i / PLIANT_TILE])) continue;
     for (std::size_t s = 0; s < kSlots; ++s) {
       const std::int32_t j = partner[tile_base(i, kSlots) + s * PLIANT_TILE] - 1;
       if (j < 0) break;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -96,6 +97,7 @@ std::optional<BladeSegment> place_of(const RunContext& run, const std::string& n
 /// At large strain shape matching and finite elements have different forces, and shape matching even folds, so a cell that
 /// changes its model there would lose or gain energy. Below this stretch, and above its inverse, they are similar enough.
 constexpr double kMostStretch = 1.5;
+constexpr double kFreeShare = 1.0 / 3;    ///< of the radius of a region: how far the tool may go before the region moves
 constexpr std::int64_t kWaitSteps = 256;  ///< interval after which such a cell is checked again
 
 /// Returns true if a cell is deformed too far to change its model. corners: x fastest; u by node.
@@ -116,6 +118,13 @@ bool strained(const std::array<std::int32_t, 8>& corners, double spacing, const 
     }
   }
   return false;
+}
+
+/// How far the material under the tool may be from the seed of the region [m]: a third of the radius of a ball with as many
+/// cells, at least a cell. A move takes as long as a picture; a region that follows each cell makes twice as many.
+double tool_may_go(const ModelBody& body) {
+  const double radius = std::cbrt(3 * static_cast<double>(body.operational_elements) / (4 * std::numbers::pi));
+  return std::max(1.0, kFreeShare * radius) * body.spacing;
 }
 
 }  // namespace
@@ -143,8 +152,8 @@ MovedRegion TopologyEdits::region_at(std::size_t b, const Vec3d& seed, const std
   return region;
 }
 
-/// A region moves when the material under the tool is more than a cell from its seed, and only between steps of shape
-/// matching.
+/// A region moves when the material under the tool is further from its seed than tool_may_go(), and only between steps of
+/// shape matching.
 void TopologyEdits::move_regions() {
   const auto& bodies_of_scene = run_.scene.bodies;
   if (std::none_of(bodies_of_scene.begin(), bodies_of_scene.end(), [](const Body& b) { return !b.model.follow.empty(); }))
@@ -164,7 +173,7 @@ void TopologyEdits::move_regions() {
     // Before it is anywhere, the region stays, or begins in the middle.
     if (!place && (first || !seed)) continue;
     const Vec3d now = place ? nearest_at_rest(run_.model().bodies[b], of_body, *place) : *seed;
-    const bool moves = !seed || distance(now, *seed) > run_.model().bodies[b].spacing;
+    const bool moves = !seed || distance(now, *seed) > tool_may_go(run_.model().bodies[b]);
     const bool again = !first && state.regions[b].waits && run_.begins_after(state.clock.step, kWaitSteps);
     if (!first && !moves && !again) continue;
     found.emplace_back(b, region_at(b, moves ? now : *seed, of_body));

@@ -152,8 +152,9 @@ EditedBodies& TopologyEdits::cut_bodies() {
 void TopologyEdits::prepare_cuts() {
   EditedBodies& all = cut_bodies();
   if (blade_method(run_.scene) != BladeMethod::virtual_nodes) return;  // other methods add no kind of element
-  if (run_.backend().info().compiles) {
+  if (run_.backend().info().compiles && !compiled_) {
     run_.backend().compile(build_program(all.trial_model(), run_.program_options()));
+    compiled_ = true;
   }
   for (std::size_t b = 0; b < all.size(); ++b) {
     if (can_be_cut(all.uncut(b))) static_cast<void>(all.cut(b));

@@ -67,7 +67,10 @@ class TopologyEdits {
   void take_up(std::unique_ptr<EditedBodies> bodies);
 
   /// Takes the whole bodies of the edits of another simulation of the same scene, so that it does not generate them again.
-  void share(const TopologyEdits& other) { whole_ = other.whole(); }
+  void share(const TopologyEdits& other) {
+    whole_ = other.whole();
+    compiled_ = other.compiled_;
+  }
 
  private:
   [[nodiscard]] const WholeBodies& whole() const { return bodies_ == nullptr ? whole_ : bodies_->whole(); }
@@ -115,6 +118,7 @@ class TopologyEdits {
   std::vector<double> known_u_;      ///< RunContext::u() within an update that has changed nothing so far; empty: not known
   std::vector<char> changed_nodes_;  ///< [slots] by the last cut or tear; empty: none
   WholeBodies whole_;                ///< for bodies_; empty: not known
+  bool compiled_ = false;            ///< what a cut launches
   std::unique_ptr<EditedBodies> bodies_;  ///< the scene's bodies with the edits of RunState; created on first use
 };
 
