@@ -106,13 +106,12 @@ void EventLog::look_at_tools(const Simulation& simulation) {
 }
 
 void EventLog::look_at_sunken(const Simulation& simulation, const std::string& tool, const SunkenTool& sunk) {
-  const double cells = sunk.depth / simulation.model().contact->spacing;
+  const double cells = sunk.cells();
   const bool passed = cells > sunken_cells;
   if (std::exchange(passed_[tool], passed) || !passed) return;
   const std::string& body = simulation.model().bodies[static_cast<std::size_t>(sunk.body)].name;
   const std::string text = fmt::format(
-      "tool '{}' stands {:.3g} m ({:.2g} cells) below the surface of body '{}': it has passed "
-      "between points of contact",
+      "tool '{}' stands {:.3g} m ({:.2g} cells) below the surface of body '{}', which has let it through or does not yield",
       tool, sunk.depth, cells, body);
   add(simulation, event_of("passed", tool, cells, text, sunk.where));
 }

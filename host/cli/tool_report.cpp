@@ -31,7 +31,7 @@ void add_tools(const Simulation& simulation, nlohmann::ordered_json& json) {
                              {"points", h.now.points},
                              {"max_force", h.max_force},
                              {"max_penetration", h.max_depth},
-                             {"below_surface", h.deepest.depth},
+                             {"below_surface", std::max(h.deepest.depth, simulation.contact().deepest_now(t).depth)},
                              {"work", h.work},
                              {"steps_in_contact", h.touched}});
     points += h.now.points;

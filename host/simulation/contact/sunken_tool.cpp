@@ -11,7 +11,13 @@
 namespace pliant {
 namespace {
 
-constexpr std::size_t kSamples = 12;  ///< points of a tool
+constexpr std::size_t kSamples = 256;  ///< most points of a mesh
+constexpr std::size_t kMeasured = 16;  ///< of those that may be inside
+constexpr std::size_t kConfirmed = 3;
+constexpr double kWound = 0.9;  ///< least winding number inside: a body that is open is not looked at where it is open
+constexpr double kWoundByPoints = 0.5;
+/// A surface whose triangles are larger, in cells, does not show the dents of its cells; its points of contact do.
+constexpr double kCoarse = 1.2;
 
 using Corners = std::array<Vec3d, 3>;
 
@@ -39,7 +45,25 @@ bool is_below(const Corners& t, const Vec3d& x) {
   return left != right && weighed / whole > x[2];
 }
 
+/// The size of its cells, or twice the distance between its points of contact [m].
+double cell_of(const Model& model, std::size_t body) {
+  if (model.bodies[body].spacing > 0) return model.bodies[body].spacing;
+  const ContactPoints& points = *model.contact;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (points.body[i] == static_cast<std::int32_t>(body)) return 2 * points.apart[i];
+  }
+  return points.spacing;
+}
+
 }  // namespace
+
+template <class Visit>
+void BodySurfaces::triangles(const ModelBody& body, Visit&& visit) const {
+  for (std::int32_t i = body.first_triangle; i < body.first_triangle + body.triangles; ++i) {
+    const auto& t = model_.surface.triangles[static_cast<std::size_t>(i)];
+    visit(Corners{vertices_[t[0]], vertices_[t[1]], vertices_[t[2]]});
+  }
+}
 
 BodySurfaces::BodySurfaces(const Model& model, const std::vector<double>& u) : model_(model) {
   const ModelSurface& s = model.surface;
@@ -52,32 +76,63 @@ BodySurfaces::BodySurfaces(const Model& model, const std::vector<double>& u) : m
     }
   }
   boxes_.resize(model.bodies.size());
+  coarse_.resize(model.bodies.size());
   for (std::size_t b = 0; b < boxes_.size(); ++b) {
     const ModelBody& body = model.bodies[b];
     for (std::int32_t v = body.first_vertex; v < body.first_vertex + body.vertices; ++v)
       boxes_[b].extend(vertices_[static_cast<std::size_t>(v)]);
+    double area = 0;
+    triangles(body, [&](const Corners& t) { area += vec::norm(vec::cross(vec::sub(t[1], t[0]), vec::sub(t[2], t[0]))) / 2; });
+    if (std::sqrt(area / std::max(1, body.triangles)) > kCoarse * cell_of(model, b)) {
+      add_points(b, u);
+      for (const Facet& facet : coarse_[b]) boxes_[b].extend(facet.x);
+    }
   }
 }
 
-template <class Visit>
-void BodySurfaces::triangles(const ModelBody& body, Visit&& visit) const {
-  for (std::int32_t i = body.first_triangle; i < body.first_triangle + body.triangles; ++i) {
-    const auto& t = model_.surface.triangles[static_cast<std::size_t>(i)];
-    visit(Corners{vertices_[t[0]], vertices_[t[1]], vertices_[t[2]]});
+void BodySurfaces::add_points(std::size_t b, const std::vector<double>& u) {
+  const ContactPoints& points = *model_.contact;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (points.body[i] != static_cast<std::int32_t>(b)) continue;
+    Facet facet{points.rest[i], vec::mul(points.normal[i], points.area[i])};
+    for (std::size_t a = 0; a < 8; ++a) {
+      const double weight = double(points.weights[i][a]) / contact_weight_unit;
+      const double* moved = &u[4 * static_cast<std::size_t>(points.nodes[i][a])];
+      for (std::size_t c = 0; c < 3; ++c) facet.x[c] += weight * moved[c];
+    }
+    coarse_[b].push_back(facet);
   }
+}
+
+bool BodySurfaces::may_be_inside(const ModelBody& body, const Vec3d& x) const {
+  if (!points_of(body).empty()) return is_inside(body, x);
+  bool below = false;
+  triangles(body, [&](const Corners& t) { below = below || is_below(t, x); });
+  return below;
 }
 
 bool BodySurfaces::is_inside(const ModelBody& body, const Vec3d& x) const {
-  bool below = false;
-  triangles(body, [&](const Corners& t) { below = below || is_below(t, x); });
-  if (!below) return false;
+  if (const std::vector<Facet>& facets = points_of(body); !facets.empty()) {  // as Barill et al. (2018) for points with normals
+    double angle = 0;
+    for (const Facet& facet : facets) {
+      const Vec3d way = vec::sub(facet.x, x);
+      const double far = vec::norm(way);
+      angle += far > 0 ? vec::dot(facet.area, way) / (far * far * far) : 0;
+    }
+    return angle > kWoundByPoints * 4 * std::numbers::pi;
+  }
   double angle = 0;
   triangles(body, [&](const Corners& t) { angle += solid_angle(t, x); });
-  return std::abs(angle) > 2 * std::numbers::pi;
+  return std::abs(angle) > kWound * 4 * std::numbers::pi;
 }
 
 double BodySurfaces::distance(const ModelBody& body, const Vec3d& x) const {
   double least = HUGE_VAL;
+  for (const Facet& facet : points_of(body)) {
+    const Vec3d apart = vec::sub(facet.x, x);
+    least = std::min(least, vec::dot(apart, apart));
+  }
+  if (least < HUGE_VAL) return std::sqrt(least);
   triangles(body, [&](const Corners& t) {
     const Vec3d apart = vec::sub(closest_on_triangle(x, t[0], t[1], t[2]), x);
     least = std::min(least, vec::dot(apart, apart));
@@ -85,19 +140,46 @@ double BodySurfaces::distance(const ModelBody& body, const Vec3d& x) const {
   return std::sqrt(least);
 }
 
+/// A box around another one, in a frame.
+vec::Box seen_from(const Pose& frame, const vec::Box& box) {
+  vec::Box out;
+  for (int corner = 0; corner < 8; ++corner) {
+    Vec3d x{};
+    for (std::size_t c = 0; c < 3; ++c) x[c] = (corner >> c & 1) != 0 ? box.upper[c] : box.lower[c];
+    out.extend(place_back(frame, x));
+  }
+  return out;
+}
+
+SunkenTool BodySurfaces::deepest_in(std::size_t b, const ToolForm& form, const Pose& at, const ToolMoment& moment) const {
+  const ModelBody& body = model_.bodies[b];
+  const double cell = cell_of(model_, b);
+  std::vector<std::pair<double, Vec3d>> below;  // distance from the surface
+  const std::vector<Vec3d> samples = tool_samples_in(form, moment, seen_from(at, boxes_[b]), cell, kSamples);
+  for (const Vec3d& y : samples) {
+    const Vec3d x = place(at, y);
+    if (boxes_[b].distance2(x) == 0 && may_be_inside(body, x)) below.emplace_back(0, x);
+  }
+  const std::size_t every = below.size() / kMeasured + 1;
+  std::vector<std::pair<double, Vec3d>> measured;
+  for (std::size_t i = 0; i < below.size(); i += every) measured.emplace_back(distance(body, below[i].second), below[i].second);
+  std::stable_sort(measured.begin(), measured.end(), [](const auto& a, const auto& c) { return a.first > c.first; });
+  measured.resize(std::min(measured.size(), kConfirmed));
+  const bool round = form.shape == ToolShape::sphere || form.shape == ToolShape::capsule;
+  for (const auto& [depth, x] : measured) {
+    if (is_inside(body, x)) return {depth + (round ? form.radius : 0), cell, 0, x, static_cast<std::int32_t>(b)};
+  }
+  return {};
+}
+
 SunkenTool BodySurfaces::deepest(const ToolForm& form, const Pose& pose, double time) const {
   SunkenTool most;
   const ToolMoment moment = tool_moment(form, time);
   const Pose at = compose(pose, moment.pose);
-  const bool round = form.shape == ToolShape::sphere || form.shape == ToolShape::capsule;
-  for (const Vec3d& y : tool_samples(form, moment, kSamples)) {
-    const Vec3d x = place(at, y);
-    for (std::size_t b = 0; b < boxes_.size(); ++b) {
-      const ModelBody& body = model_.bodies[b];
-      if (boxes_[b].distance2(x) > 0 || !is_inside(body, x)) continue;
-      const double depth = distance(body, x) + (round ? form.radius : 0);
-      if (depth > most.depth) most = {depth, time, x, static_cast<std::int32_t>(b)};
-    }
+  for (std::size_t b = 0; b < boxes_.size(); ++b) {
+    SunkenTool found = deepest_in(b, form, at, moment);
+    found.time = time;
+    if (found.depth > most.depth) most = found;
   }
   return most;
 }

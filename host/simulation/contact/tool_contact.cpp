@@ -309,6 +309,11 @@ void ToolContact::end_batch(std::int32_t steps) {
   }
 }
 
+SunkenTool ToolContact::deepest_now(std::size_t tool) const {
+  const double now = run_.state.clock.time();
+  return BodySurfaces(run_.model(), run_.u()).deepest((*run_.model().tools)[tool], pose(tool, now), now);
+}
+
 void ToolContact::look_for_sunken(std::int32_t steps) {
   const double now = run_.state.clock.time(), before = now - steps * run_.state.clock.dt;
   if (std::floor(now / sunken_look_every) == std::floor(before / sunken_look_every)) return;
@@ -319,7 +324,7 @@ void ToolContact::look_for_sunken(std::int32_t steps) {
     if (is_face(tools_[t])) continue;
     if (!surface) surface.emplace(run_.model(), run_.u());
     h.sunk = surface->deepest((*run_.model().tools)[t], pose(t, now), now);
-    if (h.sunk.depth > h.deepest.depth) h.deepest = h.sunk;
+    if (h.sunk.cells() > h.deepest.cells()) h.deepest = h.sunk;
   }
 }
 

@@ -175,13 +175,17 @@ void add_tool(const Simulation& s, const std::string& name, std::size_t tool, Se
                     "is detected late",
                     name, cells));
   }
-  if (const SunkenTool& sunk = h.deepest; sunk.depth > sunken_cells * spacing) {
-    out.push_back(
-        fmt::format("tool '{}' stood {:.3g} m ({:.2g} cells) below the surface of body '{}' at t = {:.4g} s, [{:.4g}, {:.4g}, "
-                    "{:.4g}]: tissue let it through between points of contact, and its force means little from then on; a tool "
-                    "that is thicker than a cell and presses less deep is held (docs/contact.md, Limits)",
-                    name, sunk.depth, sunk.depth / spacing, s.model().bodies[static_cast<std::size_t>(sunk.body)].name,
-                    sunk.time, sunk.where[0], sunk.where[1], sunk.where[2]));
+  SunkenTool sunk = h.deepest;
+  if (const SunkenTool now = s.contact().deepest_now(tool); now.cells() > sunk.cells()) sunk = now;
+  if (sunk.cells() > sunken_cells) {
+    out.push_back(fmt::format(
+        "tool '{}' stood {:.3g} m ({:.2g} cells) below the surface of body '{}' at t = {:.4g} s, [{:.4g}, {:.4g}, {:.4g}]: "
+        "points of "
+        "contact have let it through, or nodes that are fixed or prescribed do not yield, and its force means little; a tool "
+        "that is thicker than a cell and presses less deep is held (docs/contact.md, Limits)",
+        name, sunk.depth, sunk.cells(), s.model().bodies[static_cast<std::size_t>(sunk.body)].name, sunk.time, sunk.where[0],
+        sunk.where[1], sunk.where[2]));
+    return;
   }
   if (h.touched == 0 && s.step() > 0) {
     out.push_back(fmt::format(

@@ -42,9 +42,11 @@ struct ToolLoad : Wrench {
 /// A tool whose centre, axis, corners or vertices are below the surface of a body: tissue has passed it, or it tissue.
 struct SunkenTool {
   double depth = 0;        ///< below the surface, with the radius of a round tool [m]; 0: it is not
+  double cell = 0;         ///< size of a cell of the body [m]
   double time = 0;         ///< [s]
   Vec3d where{};           ///< the deepest of these points [m]
   std::int32_t body = -1;  ///< index in the model
+  [[nodiscard]] double cells() const { return depth > 0 ? depth / cell : 0; }
 };
 
 /// Statistics of a tool.
@@ -120,7 +122,7 @@ void visit(V& v, ToolLoad& s) {
 }
 template <class V>
 void visit(V& v, SunkenTool& s) {
-  v("depth", s.depth), v("time", s.time), v("where", s.where), v("body", s.body);
+  v("depth", s.depth), v("cell", s.cell), v("time", s.time), v("where", s.where), v("body", s.body);
 }
 template <class V>
 void visit(V& v, ToolHistory& s) {
