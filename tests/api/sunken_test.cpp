@@ -102,6 +102,25 @@ TEST_F(AtRest, FindsTheDeepestPartOfAShape) {
   EXPECT_EQ(deepest(form(ToolShape::half_space, 0, {}, {0, 0, 1}), {{0, 0, -0.02}, {0, 0, 0, 1}}).depth, 0);
 }
 
+/// Below a face of it are points in its box that are not in it.
+TEST(Sunken, BesideABlockThatStandsOnItsEdgeIsNotInIt) {
+  SceneSpec scene = fine_block();
+  scene.bodies[0].fixed.clear();
+  const double half = std::sqrt(0.5);
+  for (Vec3d& x : scene.bodies[0].surface.vertices) x = {half * (x[0] - x[2]), x[1], half * (x[0] + x[2])};
+  const Simulation s(scene_of(scene), open_backend("cpu"));
+  const BodySurfaces surfaces(s.model(), std::vector<double>(4 * s.model().mass.size(), 0.0));
+  const auto depth = [&](double along, double down) {  // in the block's own directions
+    const Vec3d x{half * (along - down), 0.0, half * (along + down)};
+    return surfaces.deepest(form(ToolShape::sphere, 0.003), {x, {0, 0, 0, 1}}, 0).depth;
+  };
+  EXPECT_NEAR(depth(0.02, -0.015), 0.015 + 0.003, 1e-12);
+  EXPECT_EQ(depth(-0.041, -0.02), 0);
+  EXPECT_EQ(depth(0.02, -0.041), 0);
+  EXPECT_EQ(depth(0.041, -0.02), 0);
+  EXPECT_EQ(depth(0.02, 0.001), 0);
+}
+
 /// A needle that is pressed between the points of contact.
 ToolSpec needle() {
   ToolSpec tool = ball("needle", {0, 0, 0.01}, 0.001);
