@@ -35,7 +35,7 @@ namespace api {
 struct Refused : Error {
   using Error::Error;
   explicit Refused(const Error& error, std::string what_of = {}) : Error(error), subject(std::move(what_of)) {}
-  std::string subject;  ///< tool or blade; empty: a cut or a change
+  std::string subject;  ///< tool; empty: a blade, a cut or a change
 };
 
 /// A requested cut: along triangles, by a move of a blade, or preceded by lifting a blade.

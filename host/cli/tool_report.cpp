@@ -19,6 +19,7 @@ void add_tools(const Simulation& simulation, nlohmann::ordered_json& json) {
   const std::vector<ContactTool>& tools = simulation.contact().tools();
   if (std::all_of(tools.begin(), tools.end(), is_face) && !scene.contact) return;
   json["tools"] = nlohmann::ordered_json::array();
+  const std::vector<SunkenTool> sunken = simulation.contact().sunken_now();
   std::int64_t points = 0;
   double deepest = 0;
   for (std::size_t t = 0; t < tools.size(); ++t) {
@@ -31,7 +32,7 @@ void add_tools(const Simulation& simulation, nlohmann::ordered_json& json) {
                              {"points", h.now.points},
                              {"max_force", h.max_force},
                              {"max_penetration", h.max_depth},
-                             {"below_surface", std::max(h.deepest.depth, simulation.contact().deepest_now(t).depth)},
+                             {"below_surface", std::max(h.deepest.depth, sunken[t].depth)},
                              {"work", h.work},
                              {"steps_in_contact", h.touched}});
     points += h.now.points;

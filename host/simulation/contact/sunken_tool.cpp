@@ -55,6 +55,23 @@ double cell_of(const Model& model, std::size_t body) {
   return points.spacing;
 }
 
+/// A box around another one, in a frame.
+vec::Box seen_from(const Pose& frame, const vec::Box& box) {
+  vec::Box out;
+  for (int corner = 0; corner < 8; ++corner) {
+    Vec3d x{};
+    for (std::size_t c = 0; c < 3; ++c) x[c] = (corner >> c & 1) != 0 ? box.upper[c] : box.lower[c];
+    out.extend(place_back(frame, x));
+  }
+  return out;
+}
+
+/// Not of a body without a surface, or whose nodes are lost.
+bool is_finite(const vec::Box& box) {
+  const double size = vec::norm(vec::sub(box.upper, box.lower));
+  return box.lower[0] <= box.upper[0] && std::isfinite(size) && std::isfinite(vec::norm(box.lower));
+}
+
 }  // namespace
 
 template <class Visit>
@@ -140,29 +157,18 @@ double BodySurfaces::distance(const ModelBody& body, const Vec3d& x) const {
   return std::sqrt(least);
 }
 
-/// A box around another one, in a frame.
-vec::Box seen_from(const Pose& frame, const vec::Box& box) {
-  vec::Box out;
-  for (int corner = 0; corner < 8; ++corner) {
-    Vec3d x{};
-    for (std::size_t c = 0; c < 3; ++c) x[c] = (corner >> c & 1) != 0 ? box.upper[c] : box.lower[c];
-    out.extend(place_back(frame, x));
-  }
-  return out;
-}
-
 SunkenTool BodySurfaces::deepest_in(std::size_t b, const ToolForm& form, const Pose& at, const ToolMoment& moment) const {
   const ModelBody& body = model_.bodies[b];
   const double cell = cell_of(model_, b);
-  std::vector<std::pair<double, Vec3d>> below;  // distance from the surface
+  std::vector<Vec3d> below;
   const std::vector<Vec3d> samples = tool_samples_in(form, moment, seen_from(at, boxes_[b]), cell, kSamples);
   for (const Vec3d& y : samples) {
     const Vec3d x = place(at, y);
-    if (boxes_[b].distance2(x) == 0 && may_be_inside(body, x)) below.emplace_back(0, x);
+    if (boxes_[b].distance2(x) == 0 && may_be_inside(body, x)) below.push_back(x);
   }
   const std::size_t every = below.size() / kMeasured + 1;
-  std::vector<std::pair<double, Vec3d>> measured;
-  for (std::size_t i = 0; i < below.size(); i += every) measured.emplace_back(distance(body, below[i].second), below[i].second);
+  std::vector<std::pair<double, Vec3d>> measured;  // with the distance from the surface
+  for (std::size_t i = 0; i < below.size(); i += every) measured.emplace_back(distance(body, below[i]), below[i]);
   std::stable_sort(measured.begin(), measured.end(), [](const auto& a, const auto& c) { return a.first > c.first; });
   measured.resize(std::min(measured.size(), kConfirmed));
   const bool round = form.shape == ToolShape::sphere || form.shape == ToolShape::capsule;
@@ -177,6 +183,7 @@ SunkenTool BodySurfaces::deepest(const ToolForm& form, const Pose& pose, double 
   const ToolMoment moment = tool_moment(form, time);
   const Pose at = compose(pose, moment.pose);
   for (std::size_t b = 0; b < boxes_.size(); ++b) {
+    if (!is_finite(boxes_[b])) continue;
     SunkenTool found = deepest_in(b, form, at, moment);
     found.time = time;
     if (found.depth > most.depth) most = found;

@@ -21,9 +21,8 @@ class BodySurfaces {
   BodySurfaces(const Model& model, const std::vector<double>& u);
 
   /// Returns where a tool at this pose is deepest below the surface of a body. A half space never is: no tissue is behind it
-  /// without being deep in it. Of bodies whose triangles are larger than their cells it is the
-  /// distance from a point of contact. Costs a pass over the
-  /// triangles for each point of the tool that is looked at.
+  /// without being deep in it. Of bodies whose triangles are larger than their cells the depth is the distance from a point of
+  /// contact. Costs a pass over the triangles for each point of the tool that is looked at.
   [[nodiscard]] SunkenTool deepest(const ToolForm& form, const Pose& pose, double time) const;
 
  private:

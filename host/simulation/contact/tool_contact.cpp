@@ -309,21 +309,23 @@ void ToolContact::end_batch(std::int32_t steps) {
   }
 }
 
-SunkenTool ToolContact::deepest_now(std::size_t tool) const {
+std::vector<SunkenTool> ToolContact::sunken_now() const {
+  std::vector<SunkenTool> out(tools_.size());
   const double now = run_.state.clock.time();
-  return BodySurfaces(run_.model(), run_.u()).deepest((*run_.model().tools)[tool], pose(tool, now), now);
+  const BodySurfaces surfaces(run_.model(), run_.u());
+  for (std::size_t t = 0; t < tools_.size(); ++t) {
+    if (!is_face(tools_[t])) out[t] = surfaces.deepest((*run_.model().tools)[t], pose(t, now), now);
+  }
+  return out;
 }
 
 void ToolContact::look_for_sunken(std::int32_t steps) {
   const double now = run_.state.clock.time(), before = now - steps * run_.state.clock.dt;
   if (std::floor(now / sunken_look_every) == std::floor(before / sunken_look_every)) return;
-  std::optional<BodySurfaces> surface;
+  const std::vector<SunkenTool> sunken = sunken_now();
   for (std::size_t t = 0; t < tools_.size(); ++t) {
     ToolHistory& h = report_.tools[t];
-    h.sunk = {};
-    if (is_face(tools_[t])) continue;
-    if (!surface) surface.emplace(run_.model(), run_.u());
-    h.sunk = surface->deepest((*run_.model().tools)[t], pose(t, now), now);
+    h.sunk = sunken[t];
     if (h.sunk.cells() > h.deepest.cells()) h.deepest = h.sunk;
   }
 }

@@ -63,8 +63,8 @@ class ToolContact {
   [[nodiscard]] double held_energy() const;
   /// Statistics of a tool of the model.
   [[nodiscard]] const ToolHistory& history(std::size_t tool) const { return report_.tools[tool]; }
-  /// Returns where a tool of the model is deepest below the surface of a body now.
-  [[nodiscard]] SunkenTool deepest_now(std::size_t tool) const;
+  /// Returns where each tool of the model is deepest below the surface of a body now.
+  [[nodiscard]] std::vector<SunkenTool> sunken_now() const;
   /// Returns the pose of a tool of the model at a time [s].
   [[nodiscard]] Pose pose(std::size_t tool, double time) const;
 

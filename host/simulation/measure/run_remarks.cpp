@@ -158,7 +158,8 @@ double thickness(const ToolForm& form) {
   return std::numeric_limits<double>::infinity();
 }
 
-void add_tool(const Simulation& s, const std::string& name, std::size_t tool, Sentences& out) {
+/// `now`: where it is deepest below a surface at the end.
+void add_tool(const Simulation& s, const std::string& name, std::size_t tool, const SunkenTool& now, Sentences& out) {
   const ToolHistory& h = s.report().tools[tool];
   const double spacing = s.model().contact->spacing, cells = h.max_depth / spacing;
   const double thick = thickness((*s.model().tools)[tool]);
@@ -176,7 +177,7 @@ void add_tool(const Simulation& s, const std::string& name, std::size_t tool, Se
                     name, cells));
   }
   SunkenTool sunk = h.deepest;
-  if (const SunkenTool now = s.contact().deepest_now(tool); now.cells() > sunk.cells()) sunk = now;
+  if (now.cells() > sunk.cells()) sunk = now;
   if (sunk.cells() > sunken_cells) {
     out.push_back(fmt::format(
         "tool '{}' stood {:.3g} m ({:.2g} cells) below the surface of body '{}' at t = {:.4g} s, [{:.4g}, {:.4g}, {:.4g}]: "
@@ -233,8 +234,9 @@ void add_contact(Simulation& s, Sentences& out) {
   }
   // Those that the model has: without those that a host has removed or parked, with those that it has added.
   const std::vector<ContactTool> tools = present_tools(s.scene(), s.state().tools);
+  const std::vector<SunkenTool> sunken = s.contact().sunken_now();
   for (std::size_t t = 0; t < tools.size(); ++t) {
-    if (!is_face(tools[t])) add_tool(s, tools[t].name, t, out);
+    if (!is_face(tools[t])) add_tool(s, tools[t].name, t, sunken[t], out);
   }
   for (std::size_t t = 0; t < tools.size(); ++t) add_grip(s, tools[t], t, out);
   add_damping(s, out);
