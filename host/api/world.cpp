@@ -202,6 +202,7 @@ std::vector<Vec3d> World::rest_positions(std::size_t body) const {
 std::vector<ProbeValue> World::probes() const {
   const Call call(impl_);
   check_device(*impl_);
+  impl_->end_edit();
   const std::vector<ProbeState> states = impl_->probes.states(*impl_->simulation);
   std::vector<ProbeValue> values;
   for (std::size_t i = 0; i < states.size(); ++i) {

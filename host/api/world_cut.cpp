@@ -34,6 +34,15 @@ std::string text_of(const CutReport& done, BladeMethod method) {
   return text;
 }
 
+void tell_cut(World::Impl& world, const CutReport& done) {
+  const Simulation& simulation = *world.simulation;
+  world.handles->follow(simulation.shared_model());
+  const std::string text = text_of(done, blade_method(simulation.scene()));
+  world.events.add(simulation, api::event_of("cut", {}, static_cast<double>(done.edges), text, simulation.edited_at()));
+  const std::lock_guard lock(world.mutex);
+  world.cut_since_read = true;
+}
+
 }  // namespace
 
 /// Makes one cut: along triangles, or by all pending blade moves. Errors of Simulation are the caller's; all others are
@@ -48,12 +57,7 @@ CutReport World::Impl::cut_now(std::span<const api::CutRequest> requests) {
       poses.insert(poses.end(), r.pose.begin(), r.pose.end());
     }
     if (!poses.empty()) done = simulation->move_blades(poses);
-    if (!done.changed) return done;
-    handles->follow(simulation->shared_model());
-    const std::string text = text_of(done, blade_method(simulation->scene()));
-    events.add(*simulation, api::event_of("cut", {}, static_cast<double>(done.edges), text, simulation->edited_at()));
-    const std::lock_guard lock(mutex);
-    cut_since_read = true;
+    if (done.changed) tell_cut(*this, done);
     return done;
   } catch (const Error& error) {
     if (error.code() == ErrorCode::internal || error.code() == ErrorCode::device) throw;
@@ -61,12 +65,37 @@ CutReport World::Impl::cut_now(std::span<const api::CutRequest> requests) {
   }
 }
 
+void World::Impl::take_up_edit(bool wait) {
+  TopologyEdits& edits = simulation->edits();
+  try {
+    do {
+      const std::optional<CutReport> done = edits.take_built(wait);
+      if (done && done->changed && done->asked) tell_cut(*this, *done);
+      if (wait && edits.building()) seconds_left -= simulation->dt() * static_cast<double>(simulation->advance(1));
+    } while (wait && edits.building() && !simulation->divergence());
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::internal || error.code() == ErrorCode::device) throw;
+    throw api::Refused(error);
+  }
+}
+
+void World::Impl::end_edit() {
+  simulation->edits().build_beside(false);  // until make_changes() decides again
+  if (!simulation->edits().building()) return;
+  try {
+    take_up_edit(true);
+  } catch (const api::Refused& refused) {
+    events.add(*simulation, api::event_of("refused", refused.subject, 0, refused.what()));
+  }
+  publish_clock();
+}
+
 /// Combines all blade moves between two batches into one cut; otherwise cuts that take longer than a frame would accumulate.
 void World::Impl::cut_pending() {
   std::vector<api::CutRequest> requests;
   {
     const std::lock_guard lock(mutex);
-    if (replacing) return;  // they are for the simulation to come
+    if (replacing || simulation->edits().building()) return;  // they are for the simulation to come, or after that edit
     requests.swap(pending_cuts);
   }
   std::exception_ptr refused;  // the others are made nevertheless

@@ -58,6 +58,7 @@ void World::Impl::reset(bool live) {
 
 /// Goes on from the last good state, at rest: its motion was on the way to the divergence.
 void World::Impl::recover() {
+  end_edit();
   Snapshot snapshot = simulation->snapshot();
   const auto bytes_of = [&](const char* name) -> std::vector<std::uint8_t>& {
     return std::find_if(snapshot.buffers.begin(), snapshot.buffers.end(), [&](const NamedBytes& b) { return b.name == name; })
@@ -98,7 +99,9 @@ void World::Impl::serve_file(const FileRequest& request) {
   switch (request.what) {
     case FileRequest::What::save:
       api::check_device(*this);
-      if (!report.diverged) make_changes();  // what was asked for before it
+      for (const bool built : {false, true}) {  // what was asked for before it
+        if (!report.diverged) make_changes(built);
+      }
       return save(request.file);
     case FileRequest::What::load:
       return load(request.file, true);

@@ -79,6 +79,9 @@ struct World::Impl {
   CutResult cut(api::CutRequest request);
   CutReport cut_now(std::span<const api::CutRequest> requests);
   void cut_pending();
+  /// Takes up an edit that was built beside the steps; `wait`: makes steps until it can be. Throws api::Refused.
+  void take_up_edit(bool wait);
+  void end_edit();  ///< the same with `wait`; a refusal becomes an event
   [[nodiscard]] api::SurfaceVertex vertex_of(std::int32_t vertex) const;
 
   // world_instruments.cpp
@@ -116,8 +119,8 @@ struct World::Impl {
   void stop_live();
   [[nodiscard]] bool is_live() const;
   void check_not_live(const char* call) const;
-  /// Makes the caller's cuts and changes. While the World runs freely, a rejected change becomes an event.
-  void make_changes();
+  /// Makes the caller's cuts and changes. While the World runs freely, a rejected change becomes an event. `wait`: take_up_edit
+  void make_changes(bool wait = false);
   void look_for_events();
   void tell_failure(const std::exception_ptr& met);
   void live_frame();

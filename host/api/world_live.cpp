@@ -62,7 +62,7 @@ void World::Impl::look_for_events() {
   }
 }
 
-void World::Impl::make_changes() {
+void World::Impl::make_changes(bool wait) {
   const double start = api::wall_time();
   const bool live = is_live();
   const auto attempt = [&](auto&& make) {
@@ -73,6 +73,8 @@ void World::Impl::make_changes() {
       events.add(*simulation, api::event_of("refused", refused.subject, 0, refused.what()));
     }
   };
+  simulation->edits().build_beside(live);
+  attempt([this, wait, live] { take_up_edit(wait || !live); });
   attempt([this] { cut_pending(); });
   attempt([this] { change_pending(); });
   attempt([this] { change_tools_now(); });
@@ -121,6 +123,7 @@ void World::run_live(const LiveOptions& options) {
 StepReport World::stop_live() {
   const api::Call call(impl_);
   impl_->stop_live();
+  if (impl_->lost.empty()) impl_->end_edit();
   impl_->throw_failure();
   const std::lock_guard lock(impl_->mutex);
   return impl_->report;

@@ -170,6 +170,7 @@ std::uint64_t Simulation::model_hash() const {
 }
 
 void Simulation::restore(const Snapshot& snapshot) {
+  edits_.end_building();
   const RunState& next = snapshot.state;
   const std::string real = backend().info().real_bytes == 8 ? "double" : "float";
   if (snapshot.real_type != real) {

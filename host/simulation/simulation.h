@@ -121,6 +121,7 @@ class Simulation {
   void drive_blade(const std::string& blade, const BladeSegment& to, double seconds) { edits_.drive_blade(blade, to, seconds); }
   [[nodiscard]] double blade_drive_speed() const { return edits_.drive_speed(); }
   void lift_blade_by_force(const std::string& blade) { edits_.lift_blade_by_force(blade); }
+  [[nodiscard]] TopologyEdits& edits() { return edits_; }  ///< for edits that are built beside the steps
   /// Number of edits that changed elements.
   [[nodiscard]] std::int64_t topology_version() const { return state_.topology_version; }
   /// Returns where the last cut or tear was, in the current configuration [m]; empty if there was none since the start.
@@ -129,8 +130,7 @@ class Simulation {
   [[nodiscard]] const CutTopology* cut_topology(std::size_t body) const { return edits_.cut_topology(body); }
   /// Elements of a body that are cut in part and still hold together.
   [[nodiscard]] std::int64_t cut_in_part(std::size_t body) const { return edits_.cut_in_part(body); }
-  /// Of a body whose elements blades divide or remove: the element that one of the whole body has become at a place at rest
-  /// [m], -1: it is gone. Empty for others.
+  /// TopologyEdits::element_at().
   [[nodiscard]] std::optional<std::int32_t> element_at(std::size_t body, std::int32_t element, const Vec3d& rest) const {
     return edits_.element_at(body, element, rest);
   }

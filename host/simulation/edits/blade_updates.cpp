@@ -66,7 +66,8 @@ void TopologyEdits::move_scene_blades() {
     }
     if (now > *blades.seen) blades.seen = now;
   }
-  if (!pending.triangles.empty() || !moves.empty()) run_blades(moves, pending.triangles);
+  const bool asked = !pending.triangles.empty() || !pending.moves.empty();
+  if (asked || !moves.empty()) run_blades(moves, pending.triangles, asked);
 }
 
 /// The same for blades that cut by force.
@@ -110,9 +111,10 @@ void TopologyEdits::divide(std::vector<CutEdges> crossed, std::vector<double> u,
 }
 
 /// Follows each blade along its motion, and cuts.
-CutReport TopologyEdits::run_blades(const std::vector<BladeMove>& moves, std::span<const SweepTriangle> triangles) {
+CutReport TopologyEdits::run_blades(const std::vector<BladeMove>& moves, std::span<const SweepTriangle> triangles, bool asked) {
   EditedBodies& all = cut_bodies();
   CutReport report;
+  report.asked = asked;
   const Stopwatch clock;
   std::vector<CutEdges> edges(run_.scene.bodies.size());
   std::vector<double> u = run_.u();
@@ -197,7 +199,8 @@ CutReport TopologyEdits::cut(std::span<const SweepTriangle> triangles) {
       }
     }
   }
-  if (run_.phase() == 0) return run_blades({}, triangles);
+  settle();
+  if (run_.phase() == 0) return run_blades({}, triangles, true);
   cut_bodies();  // throws for a scene that cannot be cut
   auto& pending = run_.state.pending.triangles;
   pending.insert(pending.end(), triangles.begin(), triangles.end());
@@ -211,6 +214,7 @@ CutReport TopologyEdits::move_blades(std::span<const BladePose> poses) {
                 fmt::format("blade '{}': got a segment from [{}] m to [{}] m; allowed are two different finite points", blade,
                             fmt::join(segment[0], ", "), fmt::join(segment[1], ", ")));
   }
+  settle();
   auto placed = run_.state.blades.placed;
   std::vector<BladeMove> moves;
   for (const auto& [blade, segment] : poses) {
@@ -226,7 +230,7 @@ CutReport TopologyEdits::move_blades(std::span<const BladePose> poses) {
   }
   CutReport report;
   if (!moves.empty() && run_.phase() == 0) {
-    report = run_blades(moves, {});
+    report = run_blades(moves, {}, true);
   } else if (!moves.empty()) {
     cut_bodies();
     auto& pending = run_.state.pending.moves;

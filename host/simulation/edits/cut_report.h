@@ -20,6 +20,9 @@ struct CutReport {
   std::int64_t edges = 0;     ///< number of edges cut, of faces passed by a blade that separates, or of elements removed
   std::int64_t in_part = 0;   ///< cells with one of these edges that still hold together there (CutTopology::cut_in_part)
   bool changed = false;       ///< true if elements were split, parted or removed
+  bool asked = false;         ///< the host asked for it
+  bool opened = false;        ///< stretch alone has cut the edges
+  bool pending = false;       ///< the edit is built beside the steps; TopologyEdits::take_built() reports it
   std::int64_t elements = 0;  ///< by how many there are more, negative: fewer (decomposition, removal)
   double mass_lost = 0;       ///< with the elements that were removed [kg]
   double step_before = 0, step_after = 0;  ///< the step of the run before the edit and after it [s]; 0: no edit

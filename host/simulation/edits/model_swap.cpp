@@ -15,16 +15,8 @@
 #include "simulation/step/coupling.h"
 
 namespace pliant {
-ModelSwap::ModelSwap(RunContext& run, HostLoads& loads, EditedBodies& bodies, std::vector<double> u, CutReport& report)
-    : run_(run),
-      loads_(loads),
-      bodies_(bodies),
-      report_(report),
-      old_model_(run.loaded.shared_model()),
-      old_u_(std::move(u)),
-      old_w_(run.loaded.w()) {
-  for (std::size_t b = 0; b < bodies.size(); ++b) v_.push_back(run.velocities(old_w_, b));
-}
+ModelSwap::ModelSwap(RunContext& run, HostLoads& loads, EditedBodies& bodies, CutReport& report)
+    : run_(run), loads_(loads), bodies_(bodies), report_(report), old_model_(run.loaded.shared_model()) {}
 
 /// Returns true if real nodes keep their slots, so that most of the surface can be reused.
 bool ModelSwap::keeps_surface() const {
@@ -35,35 +27,46 @@ bool ModelSwap::keeps_surface() const {
   return !origins_[0].from.empty() && std::equal(before.slot.begin(), before.slot.begin() + real, body.slot.begin());
 }
 
-void ModelSwap::take_surfaces(const std::vector<const BodyMesh*>& solids, const std::function<void()>& ready) {
+void ModelSwap::take_surfaces() {
+  if (!ready_) return;
   if (kept_) model_->surface = bodies_.surface_copy.take(*old_model_);
-  ready();
+  std::exchange(ready_, nullptr)();
   report_.surface += clock_.lap();
-  if (kept_) changes_ = &solids[0]->changes.value();  // every edit of a lattice lists them
+  const std::vector<const BodyMesh*> solids = bodies_.solids();
+  changes_ = kept_ ? &solids[0]->changes.value() : nullptr;  // every edit of a lattice lists them
   add_surfaces(solids, *model_, changes_);
+  report_.model += clock_.lap();
 }
 
-void ModelSwap::run(const Scene& scene, std::vector<NodeOrigins> origins, const std::function<void()>& ready) {
+void ModelSwap::build(const Scene& scene, std::vector<NodeOrigins> origins, std::function<void()> ready) {
+  static_cast<void>(clock_.lap());
   origins_ = std::move(origins);
-  const std::vector<const BodyMesh*> solids = bodies_.solids();
-  model_ = std::make_shared<Model>(build_elements(scene, solids, old_model_.get()));
+  ready_ = std::move(ready);
+  model_ = std::make_shared<Model>(build_elements(scene, bodies_.solids(), old_model_.get()));
   kept_ = keeps_surface();
   // The surface takes longest, so it comes last unless loads need it.
-  const bool first = needs_surface(scene);
-  if (first) {
+  if (needs_surface(scene)) {
     report_.model += clock_.lap();
-    take_surfaces(solids, ready);
+    take_surfaces();
     add_membranes(scene, *model_);
   }
   if (keeps_bodies_) model_->contact = contact_of_same_bodies(*old_model_, *model_);
   ballast_ = carried_ballast();           // in proportion to masses, of membranes too
-  set_ballast(scene, *model_, ballast_);  // the last that can refuse a scene; nothing has changed so far
+  set_ballast(scene, *model_, ballast_);  // the last that can refuse a scene
+  program_ = build_program(*model_, run_.program_options());
+  same_nodes_ = keeps_state_ && keeps_nodes();
+  initial_ = initial_state(program_, same_nodes_ || program_.find("contact_start") >= 0);
+  report_.model += clock_.lap();
+}
+
+void ModelSwap::load(std::vector<double> u) {
+  static_cast<void>(clock_.lap());  // what passed since the model was built
+  old_u_ = std::move(u);
+  old_w_ = run_.loaded.w();
+  for (std::size_t b = 0; b < bodies_.size(); ++b) v_.push_back(run_.velocities(old_w_, b));
   try {
     load_steps();
-    if (!first) {
-      take_surfaces(solids, ready);
-      report_.model += clock_.lap();
-    }
+    take_surfaces();
     load_surface();
   } catch (...) {
     restore();
@@ -138,24 +141,20 @@ void ModelSwap::keep_rest(Program& program) const {
 }
 
 void ModelSwap::load_steps() {
-  Program program = build_program(*model_, run_.program_options());
-  const bool keeps = keeps_state_ && keeps_nodes();
-  std::vector<BufferValues> initial = initial_state(program, keeps || program.find("contact_start") >= 0);
-  report_.model += clock_.lap();
   // Upload the carried-over state only; restore the Program's initial values afterwards so that the Program itself stays
   // pristine.
-  carry_nodes(program);
-  if (keeps) {
-    keep_rest(program);
-    mark_freed(run_, *model_, program);
+  carry_nodes(program_);
+  if (same_nodes_) {
+    keep_rest(program_);
+    mark_freed(run_, *model_, program_);
   } else {
-    carry_grips(run_, *model_, program);
-    carry_depths(run_, *model_, program);
+    carry_grips(run_, *model_, program_);
+    carry_depths(run_, *model_, program_);
   }
-  run_.loaded.update(model_, std::move(program));
+  run_.loaded.update(model_, std::move(program_));
   run_.state.look.tools = -1;
-  if (!keeps) run_.state.look.tissue = -1;  // new contact points have no partners yet
-  run_.loaded.reset_initial_state(std::move(initial));
+  if (!same_nodes_) run_.state.look.tissue = -1;  // new contact points have no partners yet
+  run_.loaded.reset_initial_state(std::move(initial_));
   report_.upload += clock_.lap();
 }
 

@@ -15,26 +15,35 @@
 namespace pliant {
 
 /// Preserves the displacement and velocity of every node, so that momentum follows mass; a new node on an edge gets what the
-/// edge has there, so that deformation gradients stay what they are. Construct it, edit the bodies, then call run() once.
+/// edge has there, so that deformation gradients stay what they are. Construct it, edit the bodies, then call build() and
+/// load().
 class ModelSwap {
  public:
-  /// `u`: RunContext::u(). Adds its times to `report`.
-  ModelSwap(RunContext& run, HostLoads& loads, EditedBodies& bodies, std::vector<double> u, CutReport& report);
+  /// Adds its times to `report`.
+  ModelSwap(RunContext& run, HostLoads& loads, EditedBodies& bodies, CutReport& report);
   /// Keeps contact and the state of shape matching if the nodes are unchanged.
   void keep_state() { keeps_state_ = true; }
   /// Call if no body has been edited: the points of contact are the same, in other slots.
   void keep_bodies() { keeps_bodies_ = true; }
-  /// `scene`: with the new operational regions. The surfaces may still be in progress until `ready` returns, which may throw.
-  /// On an exception, the old model is restored.
-  void run(const Scene& scene, std::vector<NodeOrigins> origins, const std::function<void()>& ready);
-  /// After run(): nonzero for each slot whose mass differs from that of its origin, so that its elements have changed. Shape
+  /// Returns true while the run has the model that this started from.
+  [[nodiscard]] bool fits() const { return run_.loaded.shared_model() == old_model_; }
+  /// Starts from the run's model now.
+  void renew() { old_model_ = run_.loaded.shared_model(); }
+  /// Builds the new model and its Program. Of the run it reads only the old model, which never changes, so that it may work
+  /// beside steps. `scene`: with the new operational regions. The surfaces may still be in progress until `ready` returns,
+  /// which may throw.
+  void build(const Scene& scene, std::vector<NodeOrigins> origins, std::function<void()> ready);
+  /// Waits for the surfaces and adds them to the model, if that was not done. load() calls it.
+  void take_surfaces();
+  /// Replaces the model. `u`: RunContext::u(). On an exception, the old model is restored.
+  void load(std::vector<double> u);
+  /// After load(): nonzero for each slot whose mass differs from that of its origin, so that its elements have changed. Shape
   /// [slots].
   [[nodiscard]] std::vector<char> changed_nodes() const;
+  [[nodiscard]] const std::vector<NodeOrigins>& origins() const { return origins_; }
 
  private:
   [[nodiscard]] bool keeps_surface() const;
-  /// Waits for the surfaces and adds them to the model.
-  void take_surfaces(const std::vector<const BodyMesh*>& solids, const std::function<void()>& ready);
   /// Returns the ballast of the old nodes, distributed to their copies in proportion to mass.
   [[nodiscard]] std::vector<NodeInertia> carried_ballast() const;
   /// Returns true if all nodes and points of contact are the same as before.
@@ -61,9 +70,13 @@ class ModelSwap {
   std::vector<double> old_u_, old_w_;
   std::vector<std::vector<Vec3d>> v_;  ///< shape [bodies][nodes before the edit]
   std::vector<NodeOrigins> origins_;
+  std::function<void()> ready_;  ///< empty: the surfaces are in the model
   std::shared_ptr<Model> model_;
+  Program program_;
+  std::vector<BufferValues> initial_;
   std::vector<NodeInertia> ballast_;
   bool keeps_state_ = false, keeps_bodies_ = false;
+  bool same_nodes_ = false;                  ///< and keeps_state_
   bool kept_ = false;                        ///< the new model reuses the surface of the old one
   const SurfaceChanges* changes_ = nullptr;  ///< the differences from the reused surface
   std::vector<double> offset_;               ///< RunState::offset of the new model

@@ -38,8 +38,8 @@ void TopologyEdits::open_overstretched() {
     report.edges += static_cast<std::int64_t>(edges[b].size());
   }
   if (report.edges == 0) return;
+  report.opened = true;
   make_cut(std::move(edges), std::move(u), report);
-  run_.state.opened += report.edges;
 }
 
 }  // namespace pliant

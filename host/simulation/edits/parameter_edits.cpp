@@ -54,6 +54,7 @@ void ParameterEdits::load(const Scene& next) {
 }
 
 bool ParameterEdits::make(const std::string& change, const std::string& where) {
+  topology_.settle();
   ChangedParameters& changed = run_.state.changed;
   std::string parameters = changed_parameters(first_, changed.parameters, change, where);
   const Scene next = with_parameters(first_, parameters);

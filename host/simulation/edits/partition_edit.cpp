@@ -183,17 +183,28 @@ void TopologyEdits::move_regions() {
   std::vector<MovedRegion> regions = state.regions;
   regions.resize(bodies_of_scene.size());
   for (auto& [b, region] : found) regions[b] = std::move(region);
-  std::vector<MovedRegion> before = std::exchange(run_.state.regions, std::move(regions));
-  try {
-    swap_partition(std::move(u));
-  } catch (...) {
+  ModelEdit edit;
+  edit.keeps_bodies = true;
+  edit.scene = [this, regions] {
+    std::vector<MovedRegion> before = std::exchange(run_.state.regions, regions);
+    Scene scene = scene_at(run_.state);
     run_.state.regions = std::move(before);
-    throw;
-  }
-  step_.adapt_after_move();
+    return scene;
+  };
+  edit.edit = [bodies = bodies_of_scene.size()](CutReport& made) {
+    made.changed = true;
+    return std::vector<NodeOrigins>(bodies);
+  };
+  edit.record = [this, regions](const ModelSwap&, CutReport&) {
+    run_.state.regions = regions;
+    step_.adapt_after_move();
+  };
+  CutReport report;
+  perform(std::move(edit), std::move(u), report);
 }
 
 void TopologyEdits::load_scene(const std::vector<std::size_t>& remodelled) {
+  settle();
   std::vector<double> u = run_.u();
   std::vector<MovedRegion> regions = run_.state.regions;
   for (const std::size_t b : remodelled) {
@@ -213,6 +224,7 @@ void TopologyEdits::load_scene(const std::vector<std::size_t>& remodelled) {
 /// Held goals pull at the finite elements once in n substeps, n times as hard. If elements have stiffened since the last
 /// step-size check, this is a resonance, which a shorter step avoids only below a thousandth (docs/stability.md).
 bool TopologyEdits::fewer_substeps() {
+  settle();
   const std::vector<FlsmBatch>& batches = run_.model().flsm;
   const bool many = std::any_of(batches.begin(), batches.end(),
                                 [](const FlsmBatch& b) { return b.interface > 0 && b.settings.substeps > kSafeSubsteps; });
@@ -241,10 +253,11 @@ bool TopologyEdits::bodies_as_loaded() {
 
 void TopologyEdits::swap_partition(std::vector<double> u, bool keeps_state) {
   CutReport report;
-  ModelSwap swap(run_, loads_, bodies(), std::move(u), report);
+  ModelSwap swap(run_, loads_, bodies(), report);
   if (keeps_state) swap.keep_state();
   swap.keep_bodies();
-  swap.run(scene_at(run_.state), std::vector<NodeOrigins>(run_.scene.bodies.size()), [] {});
+  swap.build(scene_at(run_.state), std::vector<NodeOrigins>(run_.scene.bodies.size()), [] {});
+  swap.load(std::move(u));
 }
 
 }  // namespace pliant

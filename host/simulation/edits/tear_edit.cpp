@@ -35,7 +35,7 @@ std::vector<char> TopologyEdits::swap_bodies(const std::function<NodeOrigins(std
   EditedBodies& all = bodies();
   Stopwatch clock;
   try {
-    ModelSwap swap(run_, loads_, all, std::move(u), report);
+    ModelSwap swap(run_, loads_, all, report);
     std::vector<NodeOrigins> origins(all.size());
     for (std::size_t b = 0; b < all.size(); ++b) {
       origins[b] = edit(b);
@@ -43,7 +43,8 @@ std::vector<char> TopologyEdits::swap_bodies(const std::function<NodeOrigins(std
     }
     report.topology += clock.lap();
     if (!report.changed) return {};
-    swap.run(scene_at(run_.state), std::move(origins), [] {});
+    swap.build(scene_at(run_.state), std::move(origins), [] {});
+    swap.load(std::move(u));
     return swap.changed_nodes();
   } catch (...) {
     for (std::size_t b = 0; b < all.size(); ++b) all.rebuild(b, run_.state);

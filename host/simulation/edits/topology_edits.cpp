@@ -120,6 +120,7 @@ void TopologyEdits::start() {
 }
 
 void TopologyEdits::update() {
+  if (under_way_ != nullptr) return;  // what is due is made up for afterwards
   move_scene_blades();
   move_fronts();
   if (run_.phase() == 0) open_overstretched();
@@ -127,6 +128,49 @@ void TopologyEdits::update() {
   make_tears();
   break_joins();
   move_regions();
+}
+
+void TopologyEdits::build_beside(bool beside) {
+  const bool waits = run_.settings.tears || run_.settings.breaks || run_.settings.force_blades > 0;
+  beside_ = beside && !waits;
+  if (beside_ && builder_ == nullptr) builder_ = std::make_unique<HelperThread>();
+}
+
+void TopologyEdits::perform(ModelEdit edit, std::vector<double> u, CutReport& report) {
+  auto work = std::make_unique<EditUnderWay>(run_, loads_, bodies(), std::move(edit), report);
+  if (beside_) {
+    report.pending = true;
+    under_way_ = std::move(work);
+    return under_way_->build_beside(*builder_);
+  }
+  try {
+    work->build();
+  } catch (...) {
+    work->give_up();
+    throw;
+  }
+  work->load(std::move(u));
+  report = work->report();
+}
+
+std::optional<CutReport> TopologyEdits::take_built(bool wait) {
+  if (settled_) return std::exchange(settled_, std::nullopt);
+  if (under_way_ == nullptr || run_.phase() != 0 || !(wait || under_way_->built())) return {};
+  const std::unique_ptr<EditUnderWay> work = std::move(under_way_);
+  work->load(run_.u());
+  return work->report();
+}
+
+void TopologyEdits::settle() {
+  if (under_way_ == nullptr) return;
+  settled_ = take_built(true);
+  if (under_way_ != nullptr) under_way_->wait();
+}
+
+void TopologyEdits::end_building() {
+  settle();
+  settled_.reset();
+  if (under_way_ != nullptr) std::exchange(under_way_, nullptr)->give_up();
 }
 
 EditedBodies& TopologyEdits::bodies() {
@@ -150,6 +194,7 @@ EditedBodies& TopologyEdits::cut_bodies() {
 }
 
 void TopologyEdits::prepare_cuts() {
+  settle();
   EditedBodies& all = cut_bodies();
   if (blade_method(run_.scene) != BladeMethod::virtual_nodes) return;  // other methods add no kind of element
   if (run_.backend().info().compiles && !compiled_) {

@@ -12,6 +12,7 @@
 
 #include "simulation/edits/blade_fronts.h"
 #include "simulation/edits/cut_report.h"
+#include "simulation/edits/edit_under_way.h"
 #include "simulation/edits/edited_bodies.h"
 #include "simulation/step/host_loads.h"
 #include "simulation/step/step_control.h"
@@ -34,6 +35,20 @@ class TopologyEdits {
   /// nothing.
   [[nodiscard]] bool fewer_substeps();
 
+  /// Whether the models of cuts and of moved regions are built on another thread while the steps go on with the old one. Where
+  /// the steps change is then not determined. Other edits, and scenes whose blades cut by force or that tear, wait as ever.
+  void build_beside(bool beside);
+  /// Returns true while an edit is being built, or waits for take_built(). Meanwhile update() makes no other.
+  [[nodiscard]] bool building() const { return under_way_ != nullptr; }
+  /// Ends it where the bodies or the parameters of the scene are needed now: loads its model, if all subcycles start in this
+  /// step, or only waits for the builder. take_built() returns its report.
+  void settle();
+  /// Ends it before the run continues from another state: settle(), or takes the edit back. There is no report.
+  void end_building();
+  /// Call between two batches: loads the model that was built, if all subcycles start in this step, and returns the report of
+  /// the edit. `wait`: for the builder. Throws what the edit would have thrown and then has changed nothing.
+  std::optional<CutReport> take_built(bool wait);
+
   /// See the functions of the same names in Simulation.
   CutReport cut(std::span<const SweepTriangle> triangles);
   CutReport move_blades(std::span<const BladePose> poses);
@@ -49,7 +64,8 @@ class TopologyEdits {
   [[nodiscard]] const CutTopology* cut_topology(std::size_t body) const;
   /// Elements of a body that are cut in part and still hold together (CutTopology::cut_in_part, RemadeBody::cut_in_part).
   [[nodiscard]] std::int64_t cut_in_part(std::size_t body) const;
-  /// Of a body whose elements blades divide or remove: RemadeBody::element_at(). Empty for others.
+  /// Of a body whose elements blades divide or remove (RemadeBody::element_at): the element that one of the whole body has
+  /// become at a place at rest [m], -1: it is gone. Empty for others.
   [[nodiscard]] std::optional<std::int32_t> element_at(std::size_t body, std::int32_t element, const Vec3d& rest) const;
   /// Returns the mean current position of the nodes whose elements the last cut or tear changed [m].
   [[nodiscard]] std::optional<Vec3d> edited_at() const;
@@ -82,11 +98,13 @@ class TopologyEdits {
   void move_fronts();
   [[nodiscard]] const Blade& blade_by_force(const std::string& name) const;
   void forget_fronts(const std::string& name);
-  CutReport run_blades(const std::vector<BladeMove>& moves, std::span<const SweepTriangle> triangles);
+  CutReport run_blades(const std::vector<BladeMove>& moves, std::span<const SweepTriangle> triangles, bool asked);
   void divide(std::vector<CutEdges> crossed, std::vector<double> u, CutReport& report);
   [[nodiscard]] bool reached(std::size_t body, const std::vector<Vec3d>& x, const std::vector<BladeMove>& moves,
                              std::span<const SweepTriangle> triangles) const;
   [[nodiscard]] const BladeTrace* front(const BladeMove& move, std::size_t body) const;
+  /// Makes an edit now, or begins it if it is to be built beside the steps. u: RunContext::u().
+  void perform(ModelEdit edit, std::vector<double> u, CutReport& report);
   // cut_edit.cpp, remake_edit.cpp, overstretch_edit.cpp, tear_edit.cpp, join_edit.cpp, partition_edit.cpp
   void make_cut(std::vector<CutEdges> edges, std::vector<double> u, CutReport& report);
   void make_tears();
@@ -120,6 +138,10 @@ class TopologyEdits {
   WholeBodies whole_;                ///< for bodies_; empty: not known
   bool compiled_ = false;            ///< what a cut launches
   std::unique_ptr<EditedBodies> bodies_;  ///< the scene's bodies with the edits of RunState; created on first use
+  bool beside_ = false;                   ///< build_beside()
+  std::unique_ptr<HelperThread> builder_;
+  std::unique_ptr<EditUnderWay> under_way_;
+  std::optional<CutReport> settled_;  ///< report of an edit for take_built()
 };
 
 }  // namespace pliant
