@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstring>
 #include <filesystem>
 
@@ -13,6 +14,9 @@ namespace pliant {
 using api::FileRequest;
 
 namespace {
+
+/// Returns true if a request replaces the simulation.
+bool replaces(const FileRequest& r) { return r.what == FileRequest::What::load || r.what == FileRequest::What::reset; }
 
 void check_there(const std::string& file) {
   std::error_code ignored;
@@ -43,17 +47,12 @@ void World::Impl::save(const std::string& file) {
   }
 }
 
-void World::Impl::load(const std::string& file, bool live) {
-  const Checkpoint checkpoint = read_checkpoint(file);
-  auto fresh = make_simulation(nullptr);
-  restore_checkpoint(*fresh, checkpoint, file);
-  restart(std::move(fresh), live);
-}
-
-void World::Impl::reset(bool live) {
-  auto fresh = make_simulation(nullptr);
-  if (!live) handles->clear();
-  restart(std::move(fresh), live);
+std::shared_ptr<Simulation> World::Impl::replacement(const std::string& file, const TopologyEdits::Shared& like) {
+  std::optional<Checkpoint> checkpoint;
+  if (!file.empty()) checkpoint = read_checkpoint(file);
+  auto fresh = make_simulation(like);
+  if (checkpoint) restore_checkpoint(*fresh, *checkpoint, file);
+  return fresh;
 }
 
 /// Goes on from the last good state, at rest: its motion was on the way to the divergence.
@@ -81,7 +80,7 @@ bool World::Impl::leave_to_worker(FileRequest request) {
   {
     const std::lock_guard lock(mutex);
     if (!pace.running()) return false;
-    if (request.what == FileRequest::What::load || request.what == FileRequest::What::reset) {
+    if (replaces(request)) {
       replacing = true;  // what the caller asked for before this is void, and what it asks for from now on is for the next
       pending_cuts.clear();
       pending_changes.clear();
@@ -95,22 +94,34 @@ bool World::Impl::leave_to_worker(FileRequest request) {
   return true;
 }
 
-void World::Impl::serve_file(const FileRequest& request) {
+/// Returns false for a request that waits for replacement(); frames go on meanwhile, unless a call waits for the worker.
+bool World::Impl::serve_file(const FileRequest& request) {
+  if (replaces(request)) {
+    if (!next.valid()) {
+      const auto make = [this, file = request.file, like = simulation->edits().shared()] { return replacement(file, like); };
+      next = std::async(std::launch::async, make);
+    }
+    std::unique_lock lock(mutex);
+    const bool waits = held || !pace.running();  // for it, rather than for the next frame
+    lock.unlock();
+    if (!waits && next.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+    restart(next.get(), true);
+    return true;
+  }
   switch (request.what) {
     case FileRequest::What::save:
       api::check_device(*this);
       for (const bool built : {false, true}) {  // what was asked for before it
         if (!report.diverged) make_changes(built);
       }
-      return save(request.file);
-    case FileRequest::What::load:
-      return load(request.file, true);
-    case FileRequest::What::reset:
-      return reset(true);
+      save(request.file);
+      return true;
     case FileRequest::What::recover:
       api::check_device(*this);
       if (report.diverged) recover();
-      return;
+      return true;
+    default:
+      return true;
   }
 }
 
@@ -123,11 +134,12 @@ void World::Impl::serve_files() {
     requests = files;  // they stay there until they are served: load() looks for a save() under way
   }
   if (requests.empty()) return;
+  std::ptrdiff_t served = 0;
   for (const FileRequest& r : requests) {
     static constexpr const char* words[] = {"saved", "loaded", "reset", "recovered"};
     Event event = api::event_of(words[static_cast<int>(r.what)], r.file, 0, {});
     try {
-      serve_file(r);
+      if (!serve_file(r)) break;
     } catch (const std::exception& error) {
       event.kind = "refused";
       event.text = error.what();
@@ -135,14 +147,13 @@ void World::Impl::serve_files() {
       loaded_parameters = simulation->state().changed.parameters;  // the caller may have counted on others
     }
     events.add(*simulation, std::move(event));
+    ++served;
   }
   {
     const std::lock_guard lock(mutex);
-    files.erase(files.begin(), files.begin() + static_cast<std::ptrdiff_t>(requests.size()));
+    files.erase(files.begin(), files.begin() + served);
     halted = report.diverged || !lost.empty();
-    replacing = std::any_of(files.begin(), files.end(), [](const FileRequest& r) {
-      return r.what == FileRequest::What::load || r.what == FileRequest::What::reset;
-    });
+    replacing = std::any_of(files.begin(), files.end(), replaces);
     if (!replacing) {
       rigid_tools.go_on();
       force_blades.go_on();
@@ -169,7 +180,7 @@ void World::load(const std::string& file) {
   if (!about_to_come) check_there(file);
   if (impl_->leave_to_worker({FileRequest::What::load, file})) return;
   const api::Hold hold(*impl_);
-  impl_->load(file);
+  impl_->restart(impl_->replacement(file, impl_->simulation->edits().shared()));
 }
 
 void World::reset() {
@@ -180,7 +191,9 @@ void World::reset() {
   }
   if (impl_->leave_to_worker({FileRequest::What::reset, {}})) return;
   const api::Hold hold(*impl_);
-  impl_->reset();
+  auto fresh = impl_->replacement({}, impl_->simulation->edits().shared());
+  impl_->handles->clear();
+  impl_->restart(std::move(fresh));
 }
 
 void World::recover() {

@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <exception>
 #include <functional>
+#include <future>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -49,7 +50,7 @@ struct CutRequest {
 struct FileRequest {
   enum class What { save, load, reset, recover };
   What what = What::save;
-  std::string file;
+  std::string file;  ///< of save and load
 };
 
 }  // namespace api
@@ -59,8 +60,6 @@ struct FileRequest {
 struct World::Impl {
   Impl(Scene scene, OpenBackend open, const WorldOptions& options);
   ~Impl();
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
 
   // world_run.cpp
   StepReport run(std::int64_t steps);
@@ -69,7 +68,7 @@ struct World::Impl {
   FramePtr hand_out(bool to_poll);
   void follow_topology();
   void publish_clock();
-  [[nodiscard]] std::shared_ptr<Simulation> make_simulation(std::string* reason);
+  [[nodiscard]] std::shared_ptr<Simulation> make_simulation(const TopologyEdits::Shared& like, std::string* reason = nullptr);
   /// `keep_requests`: those made since belong to the fresh simulation.
   void restart(std::shared_ptr<Simulation> fresh, bool keep_requests = false);
   [[nodiscard]] Error as_device_error(const std::exception& error) const;
@@ -106,13 +105,13 @@ struct World::Impl {
 
   // world_files.cpp
   void save(const std::string& file);
-  void load(const std::string& file, bool live = false);
-  void reset(bool live = false);
+  /// Makes the simulation that a load (empty: a reset) continues with. Any thread may do it.
+  [[nodiscard]] std::shared_ptr<Simulation> replacement(const std::string& file, const TopologyEdits::Shared& like);
   void recover();
   /// Leaves it to the worker if the World runs freely; returns false otherwise.
   bool leave_to_worker(api::FileRequest request);
   void serve_files();
-  void serve_file(const api::FileRequest& request);
+  bool serve_file(const api::FileRequest& request);
 
   // world_live.cpp
   void run_live(const LiveOptions& live);
@@ -174,11 +173,12 @@ struct World::Impl {
   bool cut_since_read = false;                ///< `newest` does not include the last cut
   std::vector<std::shared_ptr<haptics::Instrument>> instruments;
   api::Pace pace;
-  bool held = false;                             ///< a call that waits is at work; no frame may begin
-  bool halted = false;                           ///< diverged, or the device is lost: only files are served
-  std::vector<api::FileRequest> files;           ///< for the worker
-  bool replacing = false;                        ///< one of them, to come or at work, replaces the simulation
-  std::optional<std::string> loaded_parameters;  ///< asked_parameters from the next change on
+  bool held = false;                              ///< a call that waits is at work; no frame may begin
+  bool halted = false;                            ///< diverged, or the device is lost: only files are served
+  std::vector<api::FileRequest> files;            ///< for the worker
+  std::future<std::shared_ptr<Simulation>> next;  ///< used by the worker: replacement() for the first of them, made beside it
+  bool replacing = false;                         ///< one of them, to come or at work, replaces the simulation
+  std::optional<std::string> loaded_parameters;   ///< asked_parameters from the next change on
   std::exception_ptr failure;
   StepReport report;  ///< of the last stepping call
   double stable_dt = 0;

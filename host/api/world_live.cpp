@@ -1,9 +1,28 @@
 // A World that runs freely, paced by the wall clock.
 #include <fmt/format.h>
 
+#include <chrono>
+
 #include "api/world_call.h"
 
 namespace pliant {
+namespace {
+
+constexpr double kAsks = 0.02;  ///< longest wait for a call [s]
+
+/// A call that has waited for a load or reset asks for something of the first step: lets it end before there is one.
+void let_the_caller_ask(const World::Impl& world) {
+  const double end = api::wall_time() + kAsks;
+  while (world.in_use && api::wall_time() < end) {
+    {
+      const std::lock_guard lock(world.mutex);
+      if (world.held) return;  // it waits for the worker
+    }
+    std::this_thread::sleep_for(std::chrono::microseconds(50));
+  }
+}
+
+}  // namespace
 
 bool World::Impl::is_live() const {
   const std::lock_guard lock(mutex);
@@ -16,7 +35,9 @@ void World::Impl::check_not_live(const char* call) const {
 
 bool World::Impl::may_begin() const {
   if (!pace.running()) return false;
-  return !files.empty() || (!held && !halted && api::wall_time() >= pace.next_start());
+  const bool frame = !held && !halted && api::wall_time() >= pace.next_start();
+  const bool waits = next.valid() && !held && next.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
+  return frame || (!files.empty() && !waits);
 }
 
 void World::Impl::run_live(const LiveOptions& live) {
@@ -98,7 +119,9 @@ void World::Impl::tell_failure(const std::exception_ptr& met) {
 }
 
 void World::Impl::live_frame() {
+  const std::shared_ptr<Simulation> before_files = simulation;
   serve_files();
+  if (simulation != before_files) let_the_caller_ask(*this);
   double covers = 0;
   {
     const std::lock_guard lock(mutex);

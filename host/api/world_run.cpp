@@ -76,7 +76,7 @@ World::Impl::Impl(Scene scene_, OpenBackend open, const WorldOptions& options_)
     : options(options_), scene(std::move(scene_)), open_backend(std::move(open)), model(model_of(scene, info.remarks)) {
   if (scene.probes != nullptr) probes = PlacedProbes(scene.probes->list, *model);
   std::string reason;
-  simulation = make_simulation(&reason);
+  simulation = make_simulation({}, &reason);
   std::vector<std::string> remarks = std::move(info.remarks);
   for (std::string& remark : simulation->remarks()) remarks.push_back(std::move(remark));
   info = info_of(*model, simulation->backend().info(), reason);
@@ -91,7 +91,7 @@ World::Impl::Impl(Scene scene_, OpenBackend open, const WorldOptions& options_)
   read_frame();
 }
 
-std::shared_ptr<Simulation> World::Impl::make_simulation(std::string* reason) {
+std::shared_ptr<Simulation> World::Impl::make_simulation(const TopologyEdits::Shared& like, std::string* reason) {
   std::unique_ptr<Backend> backend;
   try {
     backend = open_backend(reason, model->nodes());
@@ -99,7 +99,7 @@ std::shared_ptr<Simulation> World::Impl::make_simulation(std::string* reason) {
     throw Error(ErrorCode::device, error.what());
   }
   SimulationOptions same;
-  same.like = simulation.get();
+  same.like = like;
   auto fresh = std::make_shared<Simulation>(scene, model, std::move(backend), same);
   try {
     if (options.cutting) fresh->prepare_cuts();

@@ -8,6 +8,8 @@
 namespace pliant {
 namespace {
 
+constexpr std::chrono::milliseconds kLook{2};  ///< interval at which a World without frames looks at replacement()
+
 /// Lets the thread that wakes the worker continue first: if all cores are busy, the worker would take the caller's core for
 /// milliseconds. Optional, so failure is ignored.
 void let_the_waker_go_on() {
@@ -26,6 +28,7 @@ World::Impl::~Impl() {
   }
   changed.notify_all();
   if (worker.joinable()) worker.join();
+  if (next.valid()) next.wait();
   std::erase_if(files, [](const api::FileRequest& r) { return r.what != api::FileRequest::What::save; });
   try {
     serve_files();
@@ -86,6 +89,8 @@ void World::Impl::wait_for_work(std::unique_lock<std::mutex>& lock) {
       job = [this] { live_frame(); };
     } else if (pace.running() && !held && !halted) {
       changed.wait_until(lock, api::moment_of(pace.next_start()));
+    } else if (next.valid()) {
+      changed.wait_for(lock, kLook);
     } else {
       changed.wait(lock);
     }

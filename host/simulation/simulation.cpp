@@ -51,7 +51,7 @@ void Simulation::start(std::shared_ptr<const Model> model, const SimulationOptio
   }
   for (const SceneChange& change : scene_.changes) settings_.curves_end = std::max(settings_.curves_end, change.time);
   step_.start(options.dt > 0 ? options.dt : scene_.dt, options.stable_step);
-  if (options.like != nullptr) edits_.share(options.like->edits_);
+  edits_.share(options.like);
   edits_.start();
   contact_.start();
   if (backend().info().real_bytes == 4) {  // the double reference needs neither floor nor grid

@@ -22,13 +22,11 @@
 
 namespace pliant {
 
-class Simulation;
-
 struct SimulationOptions {
-  double dt = 0;                     ///< step size [s]; 0: as in the scene
-  std::int32_t batch_steps = 64;     ///< maximum number of steps between two reads of the fault flags
-  bool stable_step = true;           ///< estimate the stable step at the start (always done for an automatic step)
-  const Simulation* like = nullptr;  ///< of the same scene: edits take the whole bodies from it
+  double dt = 0;                  ///< step size [s]; 0: as in the scene
+  std::int32_t batch_steps = 64;  ///< maximum number of steps between two reads of the fault flags
+  bool stable_step = true;        ///< estimate the stable step at the start (always done for an automatic step)
+  TopologyEdits::Shared like;     ///< of another simulation of the same scene
 };
 
 class Simulation {

@@ -1,7 +1,8 @@
 // A World that runs freely: frames come by themselves, calls go on, errors and events are told.
+#include "live.h"
+
 #include <chrono>
 #include <cmath>
-#include <deque>
 #include <filesystem>
 #include <functional>
 #include <thread>
@@ -13,50 +14,13 @@
 namespace pliant {
 namespace {
 
+using namespace live_test;
 using test::block;
 using test::code_of;
 using test::message_of;
 using test::on;
 
 constexpr std::int32_t kLiveCorner = 7;  ///< at (0.1, 0.08, 0.06)
-
-/// Waits for a condition, at most 20 s: other programs may keep the worker waiting.
-void until(const std::function<bool()>& holds) {
-  bool held = holds();
-  for (int i = 0; i < 4000 && !held; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    held = holds();
-  }
-  EXPECT_TRUE(held);
-}
-
-void until_frames(World& world, std::int64_t frames) {
-  const std::int64_t before = world.live_state().frames;
-  until([&] { return world.live_state().frames >= before + frames; });
-}
-
-/// The events of a World, in order.
-class Told {
- public:
-  explicit Told(World& world) : world_(world) {}
-  /// Waits for the next event of this kind and returns it.
-  Event wait_for(const std::string& kind) {
-    Event found;
-    until([&] {
-      for (Event& e : world_.events()) waiting_.push_back(std::move(e));
-      while (!waiting_.empty() && found.kind.empty()) {
-        if (waiting_.front().kind == kind) found = waiting_.front();
-        waiting_.pop_front();
-      }
-      return !found.kind.empty();
-    });
-    return found;
-  }
-
- private:
-  World& world_;
-  std::deque<Event> waiting_;
-};
 
 ToolSpec ball(const Vec3d& at) {
   ToolSpec tool;

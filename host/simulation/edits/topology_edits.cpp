@@ -121,6 +121,7 @@ void TopologyEdits::start() {
 
 void TopologyEdits::update() {
   if (under_way_ != nullptr) return;  // what is due is made up for afterwards
+  if (check_after_ && run_.reached(*check_after_)) check_step();
   move_scene_blades();
   move_fronts();
   if (run_.phase() == 0) open_overstretched();
@@ -155,10 +156,19 @@ void TopologyEdits::perform(ModelEdit edit, std::vector<double> u, CutReport& re
 
 std::optional<CutReport> TopologyEdits::take_built(bool wait) {
   if (settled_) return std::exchange(settled_, std::nullopt);
-  if (under_way_ == nullptr || run_.phase() != 0 || !(wait || under_way_->built())) return {};
-  const std::unique_ptr<EditUnderWay> work = std::move(under_way_);
-  work->load(run_.u());
-  return work->report();
+  std::optional<CutReport> report;
+  if (under_way_ != nullptr && run_.phase() == 0 && (wait || under_way_->built())) {
+    const std::unique_ptr<EditUnderWay> work = std::move(under_way_);
+    work->load(run_.u());
+    report = work->report();
+  }
+  if (wait) check_step();
+  return report;
+}
+
+void TopologyEdits::check_step() {
+  if (!std::exchange(check_after_, std::nullopt)) return;
+  step_.adapt_after_move();
 }
 
 void TopologyEdits::settle() {
@@ -170,6 +180,7 @@ void TopologyEdits::settle() {
 void TopologyEdits::end_building() {
   settle();
   settled_.reset();
+  check_after_.reset();
   if (under_way_ != nullptr) std::exchange(under_way_, nullptr)->give_up();
 }
 

@@ -46,7 +46,8 @@ class TopologyEdits {
   /// Ends it before the run continues from another state: settle(), or takes the edit back. There is no report.
   void end_building();
   /// Call between two batches: loads the model that was built, if all subcycles start in this step, and returns the report of
-  /// the edit. `wait`: for the builder. Throws what the edit would have thrown and then has changed nothing.
+  /// the edit. `wait`: for the builder, and checks the step, which otherwise update() does in a frame to come. Throws what the
+  /// edit would have thrown and then has changed nothing.
   std::optional<CutReport> take_built(bool wait);
 
   /// See the functions of the same names in Simulation.
@@ -82,10 +83,15 @@ class TopologyEdits {
   /// Replaces the bodies by these.
   void take_up(std::unique_ptr<EditedBodies> bodies);
 
-  /// Takes the whole bodies of the edits of another simulation of the same scene, so that it does not generate them again.
-  void share(const TopologyEdits& other) {
-    whole_ = other.whole();
-    compiled_ = other.compiled_;
+  /// What another simulation of the same scene need not make again.
+  struct Shared {
+    WholeBodies whole;      ///< empty: not known
+    bool compiled = false;  ///< what a cut launches
+  };
+  [[nodiscard]] Shared shared() const { return {whole(), compiled_}; }
+  void share(const Shared& other) {
+    whole_ = other.whole;
+    compiled_ = other.compiled;
   }
 
  private:
@@ -103,6 +109,8 @@ class TopologyEdits {
   [[nodiscard]] bool reached(std::size_t body, const std::vector<Vec3d>& x, const std::vector<BladeMove>& moves,
                              std::span<const SweepTriangle> triangles) const;
   [[nodiscard]] const BladeTrace* front(const BladeMove& move, std::size_t body) const;
+  /// Checks the step for a region that has moved, if it was not.
+  void check_step();
   /// Makes an edit now, or begins it if it is to be built beside the steps. u: RunContext::u().
   void perform(ModelEdit edit, std::vector<double> u, CutReport& report);
   // cut_edit.cpp, remake_edit.cpp, overstretch_edit.cpp, tear_edit.cpp, join_edit.cpp, partition_edit.cpp
@@ -141,7 +149,8 @@ class TopologyEdits {
   bool beside_ = false;                   ///< build_beside()
   std::unique_ptr<HelperThread> builder_;
   std::unique_ptr<EditUnderWay> under_way_;
-  std::optional<CutReport> settled_;  ///< report of an edit for take_built()
+  std::optional<CutReport> settled_;   ///< report of an edit for take_built()
+  std::optional<double> check_after_;  ///< time at which the step is to be checked for a region that has moved [s]
 };
 
 }  // namespace pliant
