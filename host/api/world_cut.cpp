@@ -69,8 +69,9 @@ void World::Impl::take_up_edit(bool wait) {
   TopologyEdits& edits = simulation->edits();
   try {
     do {
-      const std::optional<CutReport> done = edits.take_built(wait);
-      if (done && done->changed && done->asked) tell_cut(*this, *done);
+      while (const std::optional<CutReport> done = edits.take_built(wait)) {
+        if (done->changed && done->asked) tell_cut(*this, *done);
+      }
       if (wait && edits.building()) seconds_left -= simulation->dt() * static_cast<double>(simulation->advance(1));
     } while (wait && edits.building() && !simulation->divergence());
   } catch (const Error& error) {

@@ -124,8 +124,18 @@ TEST(Beside, AChangeOfParametersComesAfterIt) {
   const std::optional<CutReport> done = s->edits().take_built(false);
   EXPECT_TRUE(done && done->changed);
   EXPECT_FALSE(s->edits().take_built(true));
-  waits.cut(wall(0.031));
-  waits.change(stiffer);
+  s->cut(wall(0.018));
+  s->change(stiffer);
+  s->cut(wall(0.045));
+  s->change(stiffer);  // two reports wait now
+  EXPECT_FALSE(s->edits().building());
+  EXPECT_TRUE(s->edits().take_built(false)->changed);
+  EXPECT_TRUE(s->edits().take_built(false)->changed);
+  EXPECT_FALSE(s->edits().take_built(true));
+  for (const double at : {0.031, 0.018, 0.045}) {
+    waits.cut(wall(at));
+    waits.change(stiffer);
+  }
   s->advance(64);
   waits.advance(64);
   EXPECT_EQ(s->deep_hash(), waits.deep_hash());

@@ -154,13 +154,20 @@ void TopologyEdits::perform(ModelEdit edit, std::vector<double> u, CutReport& re
   report = work->report();
 }
 
+std::optional<CutReport> TopologyEdits::load_built(bool wait) {
+  if (under_way_ == nullptr || run_.phase() != 0 || !(wait || under_way_->built())) return {};
+  const std::unique_ptr<EditUnderWay> work = std::move(under_way_);
+  work->load(run_.u());
+  return work->report();
+}
+
 std::optional<CutReport> TopologyEdits::take_built(bool wait) {
-  if (settled_) return std::exchange(settled_, std::nullopt);
   std::optional<CutReport> report;
-  if (under_way_ != nullptr && run_.phase() == 0 && (wait || under_way_->built())) {
-    const std::unique_ptr<EditUnderWay> work = std::move(under_way_);
-    work->load(run_.u());
-    report = work->report();
+  if (settled_.empty()) {
+    report = load_built(wait);
+  } else {
+    report = settled_.front();
+    settled_.erase(settled_.begin());
   }
   if (wait) check_step();
   return report;
@@ -173,13 +180,13 @@ void TopologyEdits::check_step() {
 
 void TopologyEdits::settle() {
   if (under_way_ == nullptr) return;
-  settled_ = take_built(true);
+  if (const std::optional<CutReport> report = load_built(true)) settled_.push_back(*report);
   if (under_way_ != nullptr) under_way_->wait();
 }
 
 void TopologyEdits::end_building() {
   settle();
-  settled_.reset();
+  settled_.clear();
   check_after_.reset();
   if (under_way_ != nullptr) std::exchange(under_way_, nullptr)->give_up();
 }

@@ -109,6 +109,7 @@ class TopologyEdits {
   [[nodiscard]] bool reached(std::size_t body, const std::vector<Vec3d>& x, const std::vector<BladeMove>& moves,
                              std::span<const SweepTriangle> triangles) const;
   [[nodiscard]] const BladeTrace* front(const BladeMove& move, std::size_t body) const;
+  [[nodiscard]] std::optional<CutReport> load_built(bool wait);
   /// Checks the step for a region that has moved, if it was not.
   void check_step();
   /// Makes an edit now, or begins it if it is to be built beside the steps. u: RunContext::u().
@@ -149,7 +150,7 @@ class TopologyEdits {
   bool beside_ = false;                   ///< build_beside()
   std::unique_ptr<HelperThread> builder_;
   std::unique_ptr<EditUnderWay> under_way_;
-  std::optional<CutReport> settled_;   ///< report of an edit for take_built()
+  std::vector<CutReport> settled_;     ///< reports of edits for take_built(), the oldest first
   std::optional<double> check_after_;  ///< time at which the step is to be checked for a region that has moved [s]
 };
 
