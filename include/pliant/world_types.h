@@ -88,7 +88,8 @@ using GrabId = std::uint64_t;  ///< identifies a grab within one World; 0: none
 /// blades together, until wait() or another waiting call returns; if it rejects a cut, the next call that reports the worker's
 /// errors throws. With substeps of shape matching, a cut waits for the next batch that begins with a shape-matching step.
 struct CutResult {
-  bool pending = false;  ///< true if the worker will cut before its next batch of steps; the other members are then not set
+  bool pending = false;  ///< true if the worker will cut, before its next batch or, while the World runs freely, beside its
+                         ///< steps (event "cut"); the other members are then not set
   bool changed = false;  ///< true if elements were split, parted or removed; the next frame differs only if the surface changed
   std::int64_t edges = 0;     ///< number of edges between nodes cut by this call, of faces that it passed (separation), or of
                               ///< elements that it removed (removal)

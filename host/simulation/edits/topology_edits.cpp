@@ -134,13 +134,13 @@ void TopologyEdits::update() {
 void TopologyEdits::build_beside(bool beside) {
   const bool waits = run_.settings.tears || run_.settings.breaks || run_.settings.force_blades > 0;
   beside_ = beside && !waits;
-  if (beside_ && builder_ == nullptr) builder_ = std::make_unique<HelperThread>();
 }
 
 void TopologyEdits::perform(ModelEdit edit, std::vector<double> u, CutReport& report) {
   auto work = std::make_unique<EditUnderWay>(run_, loads_, bodies(), std::move(edit), report);
   if (beside_) {
     report.pending = true;
+    if (builder_ == nullptr) builder_ = std::make_unique<HelperThread>();
     under_way_ = std::move(work);
     return under_way_->build_beside(*builder_);
   }
