@@ -226,6 +226,17 @@ void SurfaceHandles::move_focus(const Vec3d& position) {
   focus_ = position;
 }
 
+void SurfaceHandles::hold_back() {
+  const std::lock_guard lock(mutex_);
+  holds_back_ = true;
+  focus_.reset();
+}
+
+void SurfaceHandles::go_on() {
+  const std::lock_guard lock(mutex_);
+  holds_back_ = false;
+}
+
 void SurfaceHandles::clear() {
   const std::lock_guard lock(mutex_);
   grabs_.clear();
@@ -270,8 +281,7 @@ std::int32_t SurfaceHandles::apply(Simulation& simulation) {
   std::vector<HostForce> forces;
   {
     const std::lock_guard lock(mutex_);
-    if (focus_) simulation.set_focus(*focus_);
-    focus_.reset();
+    if (focus_ && !holds_back_) simulation.set_focus(*std::exchange(focus_, std::nullopt));
     if (grabs_.empty() && !changed_) return kAnySteps;
     changed_ = false;
     grabs = grabs_;

@@ -45,6 +45,9 @@ class SurfaceHandles {
   void push(const SurfaceVertex& vertex, const Vec3d& force);
   void push_node(std::size_t body, std::int64_t node, const Vec3d& force);
   void move_focus(const Vec3d& position);
+  /// From now on the focus is for the simulation to come, which go_on() announces.
+  void hold_back();
+  void go_on();
   void clear();
   /// Call after the simulation was replaced, so that its forces are set again.
   void renew();
@@ -95,6 +98,7 @@ class SurfaceHandles {
   std::map<SurfaceVertex, Vec3d> pushes_;
   std::map<std::pair<std::size_t, std::int64_t>, Vec3d> node_pushes_;
   std::optional<Vec3d> focus_;
+  bool holds_back_ = false;
   bool changed_ = false;
   std::map<GrabId, ForceTrace> traces_;
   // Used only by the stepping thread.

@@ -66,7 +66,7 @@ void World::set_state(std::size_t body, const std::vector<Vec3d>& displacements,
   impl_->check_can_step();
   api::check_body(*impl_, body);
   try {
-    impl_->make_changes();  // what was asked for before it
+    impl_->make_changes(true);  // what was asked for before it
     impl_->simulation->set_nodes(body, displacements, velocities);
   } catch (const api::Refused& refused) {
     impl_->publish_clock();

@@ -82,11 +82,14 @@ void World::Impl::take_up_edit(bool wait) {
 
 void World::Impl::end_edit() {
   simulation->edits().build_beside(false);  // until make_changes() decides again
-  if (!simulation->edits().building()) return;
   try {
     take_up_edit(true);
   } catch (const api::Refused& refused) {
     events.add(*simulation, api::event_of("refused", refused.subject, 0, refused.what()));
+  } catch (const std::exception& error) {
+    const Error failure_now = as_device_error(error);
+    lost = failure_now.what();
+    throw failure_now;
   }
   publish_clock();
 }

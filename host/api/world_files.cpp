@@ -85,6 +85,7 @@ bool World::Impl::leave_to_worker(FileRequest request) {
       pending_cuts.clear();
       pending_changes.clear();
       rigid_tools.hold_back();
+      handles->hold_back();
       force_blades.hold_back();
       blade_key.clear();
     }
@@ -111,9 +112,7 @@ bool World::Impl::serve_file(const FileRequest& request) {
   switch (request.what) {
     case FileRequest::What::save:
       api::check_device(*this);
-      for (const bool built : {false, true}) {  // what was asked for before it
-        if (!report.diverged) make_changes(built);
-      }
+      if (!report.diverged) make_changes(true);  // what was asked for before it
       save(request.file);
       return true;
     case FileRequest::What::recover:
@@ -156,6 +155,7 @@ void World::Impl::serve_files() {
     replacing = std::any_of(files.begin(), files.end(), replaces);
     if (!replacing) {
       rigid_tools.go_on();
+      handles->go_on();
       force_blades.go_on();
     }
     pace.skip(api::wall_time() - start);

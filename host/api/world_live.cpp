@@ -94,7 +94,7 @@ void World::Impl::make_changes(bool wait) {
       events.add(*simulation, api::event_of("refused", refused.subject, 0, refused.what()));
     }
   };
-  simulation->edits().build_beside(live);
+  simulation->edits().build_beside(live && !wait);
   attempt([this, wait, live] { take_up_edit(wait || !live); });
   attempt([this] { cut_pending(); });
   attempt([this] { change_pending(); });

@@ -2,13 +2,15 @@
 #include <pthread.h>
 #include <sched.h>
 
+#include <algorithm>
+
 #include "api/world_impl.h"
 #include "backends/choice/kernel_warmer.h"
 
 namespace pliant {
 namespace {
 
-constexpr std::chrono::milliseconds kLook{2};  ///< interval at which a World without frames looks at replacement()
+constexpr double kLook = 0.002;  ///< interval at which the worker looks at replacement() between frames [s]
 
 /// Lets the thread that wakes the worker continue first: if all cores are busy, the worker would take the caller's core for
 /// milliseconds. Optional, so failure is ignored.
@@ -28,7 +30,7 @@ World::Impl::~Impl() {
   }
   changed.notify_all();
   if (worker.joinable()) worker.join();
-  if (next.valid()) next.wait();
+  next = {};
   std::erase_if(files, [](const api::FileRequest& r) { return r.what != api::FileRequest::What::save; });
   try {
     serve_files();
@@ -88,9 +90,10 @@ void World::Impl::wait_for_work(std::unique_lock<std::mutex>& lock) {
     if (may_begin()) {
       job = [this] { live_frame(); };
     } else if (pace.running() && !held && !halted) {
-      changed.wait_until(lock, api::moment_of(pace.next_start()));
+      const double look = next.valid() ? api::wall_time() + kLook : pace.next_start();
+      changed.wait_until(lock, api::moment_of(std::min(pace.next_start(), look)));
     } else if (next.valid()) {
-      changed.wait_for(lock, kLook);
+      changed.wait_until(lock, api::moment_of(api::wall_time() + kLook));
     } else {
       changed.wait(lock);
     }

@@ -26,7 +26,7 @@ struct SimulationOptions {
   double dt = 0;                  ///< step size [s]; 0: as in the scene
   std::int32_t batch_steps = 64;  ///< maximum number of steps between two reads of the fault flags
   bool stable_step = true;        ///< estimate the stable step at the start (always done for an automatic step)
-  TopologyEdits::Shared like;     ///< of another simulation of the same scene
+  TopologyEdits::Shared like{};   ///< of another simulation of the same scene
 };
 
 class Simulation {

@@ -43,6 +43,39 @@ TEST(LiveEdits, ASavedStateHasTheCutBeforeIt) {
   EXPECT_EQ(other.pieces(0), 2);
 }
 
+TEST(LiveEdits, ASavedStateHasAllCutsBeforeIt) {
+  const test::TempFolder folder;
+  for (int i = 0; i < 10; ++i) {
+    const std::string file = (folder.path() / (std::to_string(i) + ".pck")).string();
+    World world(resting_block(), on("cpu", true)), other(resting_block(), on("cpu", true));
+    Told told(world);
+    world.run_live();
+    until_frames(world, 2);
+    world.cut(kThrough);
+    std::this_thread::sleep_for(std::chrono::milliseconds(2 * i));
+    world.cut({{{{0.05, -1, -1}, {0.05, -1, 3}, {0.05, 3, -1}}}});  // while the first is built, or before
+    world.save(file);
+    told.wait_for("saved");
+    other.load(file);
+    EXPECT_EQ(other.pieces(0), 4) << i;
+  }
+}
+
+TEST(LiveEdits, TheFocusAfterALoadIsThatOfTheStateThatComes) {
+  const test::TempFolder folder;
+  const std::string file = (folder.path() / "state.pck").string();
+  World world(resting_block(), on("cpu"));
+  Told told(world);
+  world.save(file);
+  world.run_live();
+  until_frames(world, 2);
+  world.load(file);
+  world.move_focus({0.01, 0.02, 0.03});
+  told.wait_for("loaded");
+  until_frames(world, 2);
+  EXPECT_EQ(WorldAccess::simulation(world).state().focus, (Vec3d{0.01, 0.02, 0.03}));
+}
+
 TEST(LiveEdits, ACutIsMadeWhereverTheWorldIsStopped) {
   for (int i = 0; i < 12; ++i) {
     World world(resting_block(), on("cpu", true));
@@ -175,6 +208,14 @@ TEST(LiveEdits, AnyCallAtAnyTimeFindsAWholeWorld) {
     probe.name = "tip";
     probe.point = Vec3d{0.1, 0.08, 0.06};
     scene.probes.push_back(probe);
+    if (seed % 3 == 2) {  // a blade of the scene that goes to and fro
+      BladeSpec blade;
+      blade.name = "scalpel";
+      for (int k = 0; k < 20; ++k)
+        blade.path.push_back({0.1 * k, 0.03 + 0.002 * k, k % 2 * 0.1, -1, 0.03 + 0.002 * k, k % 2 * 0.1, 1});
+      scene.blades.push_back(blade);
+      scene.break_stretch = 1.3;
+    }
     ToolSpec tool = {};
     tool.name = "probe";
     tool.radius = 0.01;
@@ -191,7 +232,7 @@ TEST(LiveEdits, AnyCallAtAnyTimeFindsAWholeWorld) {
     world.stop_live();
     world.reset();
     EXPECT_EQ(world.step(20).done, 20);
-    EXPECT_EQ(world.pieces(0), 1);
+    EXPECT_GE(world.pieces(0), 1);
   }
 }
 

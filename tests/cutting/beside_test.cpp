@@ -184,8 +184,15 @@ TEST(Beside, AnEditThatIsRefusedChangesNothing) {
   s->advance(64);
   s->edits().take_built(true);
   const std::uint64_t hash = s->hash();
-  refusals = 1;
+  s->move_blade("knife", {{{0.045, -0.01, -1}, {0.045, -0.01, 1}}});
+  const auto blades = s->state().blades.placed;
+  refusals = 2;
+  s->move_blade("knife", {{{0.045, 0.02, -1}, {0.045, 0.02, 1}}});
+  EXPECT_THROW(s->edits().take_built(true), Error);
+  EXPECT_EQ(s->state().blades.placed, blades);
+  EXPECT_TRUE(s->state().blades.traces.empty());
   s->cut(wall(0.031));
+  s->change(R"({"gravity": [0, 0, 0]})");  // what is refused then is not this
   EXPECT_THROW(s->edits().take_built(true), Error);
   EXPECT_FALSE(s->edits().building());
   EXPECT_EQ(s->hash(), hash);
@@ -194,6 +201,32 @@ TEST(Beside, AnEditThatIsRefusedChangesNothing) {
   s->cut(wall(0.031));
   EXPECT_TRUE(s->edits().take_built(true)->changed);
   EXPECT_EQ(s->cut_topology(0)->pieces(), 3);
+}
+
+/// A region follows the blade of the scene; edges that are stretched far open, too. One edit at a time is under way.
+TEST(Beside, WhatIsDueAtOnceComesOneAfterTheOther) {
+  Body body = bar();
+  body.model.type = ModelType::hybrid;
+  body.model.ratio = 0.5;
+  body.model.follow = "scalpel";
+  Scene scene = scene_with(body);
+  scene.break_stretch = 1.2;
+  pull(scene.bodies[0], {0.055, 0, 0}, {1, 0, 0}, {0.01, 0, 0}, 0.1);
+  hold(scene.bodies[0], {0.005, 0, 0}, {-1, 0, 0});
+  scene.blades.push_back(blade("scalpel", {{0, 0.031, -0.02, -1, 0.031, -0.02, 1}, {0.15, 0.031, 0.06, -1, 0.031, 0.06, 1}}));
+  const auto s = beside(scene);
+  std::int64_t edits = 0, moves = 0;
+  while (s->time() < 0.25 && !s->divergence()) {
+    s->advance(s->next_batch(64));
+    while (const std::optional<CutReport> done = s->edits().take_built(edits % 2 == 0)) {
+      (done->edges > 0 ? edits : moves) += done->changed ? 1 : 0;
+    }
+  }
+  s->edits().take_built(true);
+  EXPECT_GT(edits, 2);
+  EXPECT_GT(moves, 0);
+  EXPECT_EQ(s->cut_topology(0)->pieces(), 2);
+  check_body(*s->cut_topology(0), false);
 }
 
 /// A free bar 0.2 m long that bends and turns while the tool goes along it, with substeps of shape matching.

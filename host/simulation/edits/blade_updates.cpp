@@ -152,7 +152,16 @@ CutReport TopologyEdits::run_blades(const std::vector<BladeMove>& moves, std::sp
   report.search = clock.seconds();
   std::vector<char> met_edges;
   for (const CutEdges& of_body : edges) met_edges.push_back(static_cast<char>(!of_body.empty()));
+  const BladeState before = beside_ ? run_.state.blades : BladeState{};
   if (report.edges > 0) divide(std::move(edges), std::move(u), report);
+  if (report.pending) {  // the blades stay where they were if it is refused
+    under_way_->also_undo([this, before] {
+      BladeState& blades = run_.state.blades;
+      blades.placed = before.placed;
+      blades.traces = before.traces;
+      blades.met = before.met;
+    });
+  }
   for (auto& [key, by_body] : traces) {
     for (auto& [b, trace] : by_body) {
       if (report.changed && met_edges[static_cast<std::size_t>(b)] != 0) all.follow(static_cast<std::size_t>(b), trace);

@@ -43,7 +43,7 @@ void EditUnderWay::load(std::vector<double> u) {
     }
     if (report_.changed) swap_.load(std::move(u));
   } catch (...) {
-    edit_.undo();
+    give_up();
     throw;
   }
   edit_.record(swap_, report_);
@@ -53,6 +53,7 @@ void EditUnderWay::give_up() {
   wait();
   building_ = {};
   edit_.undo();
+  also_undo_();
 }
 
 }  // namespace pliant

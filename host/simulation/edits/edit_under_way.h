@@ -3,6 +3,7 @@
 #include <functional>
 #include <future>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "scene/scene.h"
@@ -21,7 +22,7 @@ struct ModelEdit {
   bool keeps_bodies = false;                                 ///< ModelSwap::keep_bodies()
 };
 
-/// One ModelEdit at work: begin_beside() or build(), then load().
+/// One ModelEdit at work: build() or build_beside(), then load().
 class EditUnderWay {
  public:
   EditUnderWay(RunContext& run, HostLoads& loads, EditedBodies& bodies, ModelEdit edit, const CutReport& report);
@@ -41,6 +42,8 @@ class EditUnderWay {
   void load(std::vector<double> u);
   /// Takes the edit back.
   void give_up();
+  /// Call on the stepping thread: `undo` comes after that of the edit.
+  void also_undo(std::function<void()> undo) { also_undo_ = std::move(undo); }
   [[nodiscard]] const CutReport& report() const { return report_; }
 
  private:
@@ -48,6 +51,7 @@ class EditUnderWay {
   CutReport report_;
   ModelSwap swap_;
   Scene scene_;
+  std::function<void()> also_undo_ = [] {};
   std::future<void> building_;
 };
 

@@ -22,6 +22,7 @@ std::vector<Vec3d> moving_nodes(const RunContext& run, const std::vector<double>
 }  // namespace
 
 void TopologyEdits::open_overstretched() {
+  if (run_.phase() != 0) return;
   const double limit = run_.scene.break_stretch;
   // Where bodies part along faces make_tears does it; elements that are divided or removed have no thin remains.
   if (blade_method(run_.scene) != BladeMethod::virtual_nodes) return;

@@ -227,7 +227,7 @@ void TopologyEdits::load_scene(const std::vector<std::size_t>& remodelled) {
 /// Held goals pull at the finite elements once in n substeps, n times as hard. If elements have stiffened since the last
 /// step-size check, this is a resonance, which a shorter step avoids only below a thousandth (docs/stability.md).
 bool TopologyEdits::fewer_substeps() {
-  settle();
+  if (under_way_ != nullptr) return false;
   const std::vector<FlsmBatch>& batches = run_.model().flsm;
   const bool many = std::any_of(batches.begin(), batches.end(),
                                 [](const FlsmBatch& b) { return b.interface > 0 && b.settings.substeps > kSafeSubsteps; });

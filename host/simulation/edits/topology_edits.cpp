@@ -120,15 +120,17 @@ void TopologyEdits::start() {
 }
 
 void TopologyEdits::update() {
-  if (under_way_ != nullptr) return;  // what is due is made up for afterwards
-  if (check_after_ && run_.reached(*check_after_)) check_step();
-  move_scene_blades();
-  move_fronts();
-  if (run_.phase() == 0) open_overstretched();
   known_u_.clear();
-  make_tears();
-  break_joins();
-  move_regions();
+  if (under_way_ == nullptr && check_after_ && run_.reached(*check_after_)) check_step();
+  using Update = void (TopologyEdits::*)();
+  static constexpr Update updates[] = {&TopologyEdits::move_scene_blades,  &TopologyEdits::move_fronts,
+                                       &TopologyEdits::open_overstretched, &TopologyEdits::make_tears,
+                                       &TopologyEdits::break_joins,        &TopologyEdits::move_regions};
+  for (const Update next : updates) {
+    if (under_way_ != nullptr) break;  // one edit at a time; what is due is made up for afterwards
+    (this->*next)();
+  }
+  known_u_.clear();
 }
 
 void TopologyEdits::build_beside(bool beside) {
@@ -139,6 +141,7 @@ void TopologyEdits::build_beside(bool beside) {
 void TopologyEdits::perform(ModelEdit edit, std::vector<double> u, CutReport& report) {
   auto work = std::make_unique<EditUnderWay>(run_, loads_, bodies(), std::move(edit), report);
   if (beside_) {
+    if (under_way_ != nullptr) throw Error(ErrorCode::internal, "an edit began while another was under way");
     report.pending = true;
     if (builder_ == nullptr) builder_ = std::make_unique<HelperThread>();
     under_way_ = std::move(work);
@@ -166,8 +169,10 @@ std::optional<CutReport> TopologyEdits::take_built(bool wait) {
   if (settled_.empty()) {
     report = load_built(wait);
   } else {
-    report = settled_.front();
+    const Settled first = settled_.front();
     settled_.erase(settled_.begin());
+    if (first.error != nullptr) std::rethrow_exception(first.error);
+    report = first.report;
   }
   if (wait) check_step();
   return report;
@@ -180,7 +185,11 @@ void TopologyEdits::check_step() {
 
 void TopologyEdits::settle() {
   if (under_way_ == nullptr) return;
-  if (const std::optional<CutReport> report = load_built(true)) settled_.push_back(*report);
+  try {
+    if (const std::optional<CutReport> report = load_built(true)) settled_.push_back({*report, nullptr});
+  } catch (...) {  // it is not the caller's
+    settled_.push_back({{}, std::current_exception()});
+  }
   if (under_way_ != nullptr) under_way_->wait();
 }
 

@@ -3,6 +3,7 @@
 // restored.
 #pragma once
 #include <array>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -41,7 +42,7 @@ class TopologyEdits {
   /// Returns true while an edit is being built, or waits for take_built(). Meanwhile update() makes no other.
   [[nodiscard]] bool building() const { return under_way_ != nullptr; }
   /// Ends it where the bodies or the parameters of the scene are needed now: loads its model, if all subcycles start in this
-  /// step, or only waits for the builder. take_built() returns its report.
+  /// step, or only waits for the builder. take_built() returns its report or throws its error.
   void settle();
   /// Ends it before the run continues from another state: settle(), or takes the edit back. There is no report.
   void end_building();
@@ -109,6 +110,11 @@ class TopologyEdits {
   [[nodiscard]] bool reached(std::size_t body, const std::vector<Vec3d>& x, const std::vector<BladeMove>& moves,
                              std::span<const SweepTriangle> triangles) const;
   [[nodiscard]] const BladeTrace* front(const BladeMove& move, std::size_t body) const;
+  /// The outcome of an edit.
+  struct Settled {
+    CutReport report;
+    std::exception_ptr error;
+  };
   [[nodiscard]] std::optional<CutReport> load_built(bool wait);
   /// Checks the step for a region that has moved, if it was not.
   void check_step();
@@ -150,7 +156,7 @@ class TopologyEdits {
   bool beside_ = false;                   ///< build_beside()
   std::unique_ptr<HelperThread> builder_;
   std::unique_ptr<EditUnderWay> under_way_;
-  std::vector<CutReport> settled_;     ///< reports of edits for take_built(), the oldest first
+  std::vector<Settled> settled_;       ///< for take_built(), the oldest first
   std::optional<double> check_after_;  ///< time at which the step is to be checked for a region that has moved [s]
 };
 
