@@ -46,6 +46,15 @@ std::vector<SweepTriangle> triangles_of(const BladeMove& move) {
   return all;
 }
 
+/// Puts blades back to where they are now, for an edit that is refused later.
+std::function<void()> return_of(BladeState& blades) {
+  return [&blades, before = blades] {
+    blades.placed = before.placed;
+    blades.traces = before.traces;
+    blades.met = before.met;
+  };
+}
+
 vec::Box box_of(const std::vector<Vec3d>& x) {
   vec::Box box;
   for (const Vec3d& p : x) box.extend(p);
@@ -152,16 +161,9 @@ CutReport TopologyEdits::run_blades(const std::vector<BladeMove>& moves, std::sp
   report.search = clock.seconds();
   std::vector<char> met_edges;
   for (const CutEdges& of_body : edges) met_edges.push_back(static_cast<char>(!of_body.empty()));
-  const BladeState before = beside_ ? run_.state.blades : BladeState{};
+  const std::function<void()> back = beside_ ? return_of(run_.state.blades) : nullptr;
   if (report.edges > 0) divide(std::move(edges), std::move(u), report);
-  if (report.pending) {  // the blades stay where they were if it is refused
-    under_way_->also_undo([this, before] {
-      BladeState& blades = run_.state.blades;
-      blades.placed = before.placed;
-      blades.traces = before.traces;
-      blades.met = before.met;
-    });
-  }
+  if (report.pending) under_way_->also_undo(back);
   for (auto& [key, by_body] : traces) {
     for (auto& [b, trace] : by_body) {
       if (report.changed && met_edges[static_cast<std::size_t>(b)] != 0) all.follow(static_cast<std::size_t>(b), trace);
