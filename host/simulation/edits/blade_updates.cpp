@@ -160,6 +160,7 @@ CutReport TopologyEdits::run_blades(const std::vector<BladeMove>& moves, std::sp
   }
   report.search = clock.seconds();
   std::vector<char> met_edges;
+  met_edges.reserve(edges.size());
   for (const CutEdges& of_body : edges) met_edges.push_back(static_cast<char>(!of_body.empty()));
   const std::function<void()> back = beside_ ? return_of(run_.state.blades) : nullptr;
   if (report.edges > 0) divide(std::move(edges), std::move(u), report);
