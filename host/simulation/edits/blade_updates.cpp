@@ -162,9 +162,8 @@ CutReport TopologyEdits::run_blades(const std::vector<BladeMove>& moves, std::sp
   std::vector<char> met_edges;
   met_edges.reserve(edges.size());
   for (const CutEdges& of_body : edges) met_edges.push_back(static_cast<char>(!of_body.empty()));
-  const std::function<void()> back = beside_ ? return_of(run_.state.blades) : nullptr;
   if (report.edges > 0) divide(std::move(edges), std::move(u), report);
-  if (report.pending) under_way_->also_undo(back);
+  if (report.pending) under_way_->also_undo(return_of(run_.state.blades));
   for (auto& [key, by_body] : traces) {
     for (auto& [b, trace] : by_body) {
       if (report.changed && met_edges[static_cast<std::size_t>(b)] != 0) all.follow(static_cast<std::size_t>(b), trace);

@@ -17,7 +17,6 @@ class BodiesCut {
   BodiesCut(EditedBodies& all, std::vector<CutEdges> edges) : all_(all), edges_(std::move(edges)), edits_(edges_.size()) {}
   BodiesCut(const BodiesCut&) = delete;
   BodiesCut& operator=(const BodiesCut&) = delete;
-  ~BodiesCut() { wait(); }
 
   std::vector<NodeOrigins> make(CutReport& report) {
     for (; done_ < edges_.size(); ++done_) {
@@ -42,7 +41,7 @@ class BodiesCut {
   }
   void ready() { get_soon(surfaces_); }
   void undo(const RunState& state) {
-    wait();
+    if (surfaces_.valid()) surfaces_.wait();
     for (std::size_t b = 0; b < std::min(done_ + 1, edges_.size()); ++b) {
       if (!edges_[b].empty()) all_.rebuild(b, state);
     }
@@ -54,14 +53,12 @@ class BodiesCut {
   }
 
  private:
-  void wait() {
-    if (surfaces_.valid()) surfaces_.wait();
-  }
   EditedBodies& all_;
   std::vector<CutEdges> edges_;
   std::vector<CutEdit> edits_;
   std::size_t done_ = 0;
   std::future<void> surfaces_;
+  const WaitFor end_{surfaces_};
 };
 
 }  // namespace

@@ -97,9 +97,8 @@ std::optional<BladeSegment> place_of(const RunContext& run, const std::string& n
 /// At large strain shape matching and finite elements have different forces, and shape matching even folds, so a cell that
 /// changes its model there would lose or gain energy. Below this stretch, and above its inverse, they are similar enough.
 constexpr double kMostStretch = 1.5;
-constexpr double kFreeShare = 1.0 / 3;  ///< of the radius of a region: how far the tool may go before the region moves
-constexpr double kNextFrame =
-    1.0 / 60;  ///< the check of the step takes as long as half of a frame, and loading the other half [s]
+constexpr double kFreeShare = 1.0 / 3;    ///< of the radius of a region: how far the tool may go before the region moves
+constexpr double kNextFrame = 1.0 / 60;   ///< a frame has no time to load a model and to check its step [s]
 constexpr std::int64_t kWaitSteps = 256;  ///< interval after which such a cell is checked again
 
 /// Returns true if a cell is deformed too far to change its model. corners: x fastest; u by node.
@@ -199,8 +198,11 @@ void TopologyEdits::move_regions() {
   };
   edit.record = [this, regions](const ModelSwap&, CutReport&) {
     run_.state.regions = regions;
-    check_after_ = run_.state.clock.time() + (beside_ ? kNextFrame : 0);
-    if (!beside_) check_step();
+    if (beside_) {
+      check_after_ = run_.state.clock.time() + kNextFrame;
+    } else {
+      step_.adapt_after_move();
+    }
   };
   CutReport report;
   perform(std::move(edit), std::move(u), report);
