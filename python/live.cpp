@@ -75,10 +75,10 @@ void bind_live(py::class_<pliant::World>& world) {
   world
       .def(
           "run_live",
-          [](World& w, double rate, double speed) {
-            w.run_live({rate, speed});
+          [](World& w, double rate, double speed, int ahead) {
+            w.run_live({rate, speed, ahead});
           },
-          py::arg("rate") = 60.0, py::arg("speed") = 1.0, Free(),
+          py::arg("rate") = 60.0, py::arg("speed") = 1.0, py::arg("ahead") = 0, Free(),
           "the worker steps on its own, paced by the wall clock, and makes `rate` frames per second until stop_live()")
       .def("stop_live", &World::stop_live, Free(), "ends run_live() after the frame at work; a StepReport")
       .def("live_state", &live_state, "a dict with the fields of LiveState: what run_live() achieves")

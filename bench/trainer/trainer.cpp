@@ -94,6 +94,8 @@ json bench_trainer(const TrainerOptions& options) {
     throw Error(ErrorCode::usage, fmt::format("--seconds: got {}, expected 1 to 3600", options.seconds));
   if (options.busy < 0 || options.busy > 1024)
     throw Error(ErrorCode::usage, fmt::format("--busy: got {}, expected 0 to 1024", options.busy));
+  if (options.ahead < 0 || options.ahead > 4)
+    throw Error(ErrorCode::usage, fmt::format("--ahead: got {}, expected 0 to 4", options.ahead));
   std::vector<Asked> organs = all_organs(find_shipped_scenes(options.scenes, "meshes/liver.obj"));
   std::string names;
   for (const Asked& a : organs) names += fmt::format("{}{}", names.empty() ? "" : ", ", a.name);
@@ -107,7 +109,10 @@ json bench_trainer(const TrainerOptions& options) {
     });
   }
   if (options.quick) organs.resize(1);
-  json result{{"machine", machine_facts()}, {"seconds", options.quick ? 3 : options.seconds}, {"busy", options.busy}};
+  json result{{"machine", machine_facts()},
+              {"seconds", options.quick ? 3 : options.seconds},
+              {"busy", options.busy},
+              {"ahead", options.ahead}};
   result["rows"] = json::array();
   const std::string file = (fs::temp_directory_path() / fmt::format("pliant-trainer-{}.pck", ::getpid())).string();
   for (std::size_t i = 0; i < organs.size(); ++i) {
@@ -118,7 +123,7 @@ json bench_trainer(const TrainerOptions& options) {
     }
     trainer::Session session(trainer::scene_of(organs[i].organ), options.backend, file);
     const Busy busy(options.busy);
-    const trainer::Report report = session.run(result["seconds"], organs[i].rate, [](const Frame&) {});
+    const trainer::Report report = session.run(result["seconds"], organs[i].rate, options.ahead, [](const Frame&) {});
     result["rows"].push_back(row_of(organs[i], report, static_cast<std::size_t>(report.nodes)));
   }
   std::error_code ignored;

@@ -14,11 +14,12 @@ struct TrainerOptions {
   std::string backend = "auto";                              ///< as WorldOptions::backend
   double seconds = 20;                                       ///< length of a session [s]
   int busy = 0;                                              ///< threads that compute all the time beside it
+  int ahead = 1;                                             ///< LiveOptions::ahead
   bool quick = false;                                        ///< 3 s of the first organ
   std::function<void(double, const std::string&)> progress;  ///< share done, what is being measured
 };
 
-/// {"machine": {...}, "seconds": ..., "busy": ..., "rows": [...]}, one row per organ, docs/schema/bench-trainer.json. Throws
+/// {"machine": {...}, "seconds": ..., "busy": ..., "ahead": ..., "rows": [...]}, one row per organ, docs/schema/bench-trainer.json. Throws
 /// Error for bad options.
 nlohmann::json bench_trainer(const TrainerOptions& options);
 

@@ -71,7 +71,7 @@ def act(t):
 
 
 # %% The loop of a program that draws: wait for the display, take the frame if there is a new one, act.
-world.run_live(RATE)
+world.run_live(RATE, ahead=1)
 start, stale, worst, force, seen = time.perf_counter(), 0, 0.0, 0.0, -1
 for picture in range(int(SECONDS * RATE)):
     time.sleep(max(0, start + picture / RATE - time.perf_counter()))

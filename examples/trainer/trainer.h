@@ -100,11 +100,11 @@ class Session {
   Session(const pliant::SceneSpec& scene, const std::string& backend, std::string checkpoint)
       : world_(scene, {backend, 0, true, true, true}), file_(std::move(checkpoint)) {}
 
-  /// Draws `seconds` at `rate` pictures per second; `draw` receives every frame.
+  /// Draws `seconds` at `rate` pictures per second; `draw` receives every frame. `ahead`: pliant::LiveOptions
   template <class Draw>
-  Report run(double seconds, double rate, Draw&& draw) {
+  Report run(double seconds, double rate, int ahead, Draw&& draw) {
     using Clock = std::chrono::steady_clock;
-    timed("run_live", [&] { world_.run_live({rate, 1}); });
+    timed("run_live", [&] { world_.run_live({rate, 1, ahead}); });
     const auto start = Clock::now();
     auto before = start;
     const auto pictures = static_cast<std::int64_t>(seconds * rate);

@@ -1,4 +1,6 @@
 // Free running, events and force traces of the C API.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 
@@ -30,7 +32,10 @@ pliant_status pliant_world_run_live(pliant_world world, const pliant_live_option
   return on(world, [&](CWorld& w) {
     pliant_live_options live = PLIANT_LIVE_OPTIONS_INIT;
     if (options != nullptr) live = take_struct<pliant_live_options>(*options, live);
-    w.world.run_live({live.rate, live.speed});
+    if (live.reserved != 0)
+      throw pliant::Error(pliant::ErrorCode::usage,
+                          fmt::format("pliant_live_options::reserved is {}; 0 is allowed", live.reserved));
+    w.world.run_live({live.rate, live.speed, live.ahead});
   });
 }
 

@@ -24,7 +24,7 @@ std::shared_ptr<FrameData> FramePool::take() {
 
 void FramePool::give_back(std::unique_ptr<FrameData> data) {
   const std::lock_guard lock(mutex_);
-  if (free_.size() < 4) free_.push_back(std::move(data));
+  if (free_.size() < kKept) free_.push_back(std::move(data));
 }
 
 namespace {

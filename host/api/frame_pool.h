@@ -32,6 +32,7 @@ class FramePool : public std::enable_shared_from_this<FramePool> {
   std::shared_ptr<FrameData> take();
 
  private:
+  static constexpr std::size_t kKept = 8;  ///< frames that are read, wait, and that two callers hold
   void give_back(std::unique_ptr<FrameData> data);
   std::mutex mutex_;
   std::vector<std::unique_ptr<FrameData>> free_;

@@ -12,6 +12,7 @@ namespace pliant::api {
 namespace {
 
 constexpr double kUse = 0.8;   ///< share of a period that half of the frames may take, so that most are ready in time
+constexpr double kUseAhead = 0.95;  ///< the same of frames that are made ahead
 constexpr double kLess = 0.8;  ///< changes of the simulated time that a frame may cover
 constexpr double kMore = 1.03;
 constexpr double kFaster = 1.25;  ///< largest simulated time of a frame, in periods
@@ -37,6 +38,7 @@ void check_live(const LiveOptions& options) {
   };
   check("rate", options.rate, 1, 1000);
   check("speed", options.speed, 0.001, 1000);
+  check("ahead", options.ahead, 0, 4);
 }
 
 void Pace::start(const LiveOptions& options, double now) {
@@ -53,6 +55,8 @@ void Pace::change(const LiveOptions& options) {
 }
 
 double Pace::begin(double now) {
+  at_work_ = now;
+  now = std::max(now, next_start_);
   const double period = 1 / options_.rate, full = options_.speed * period;
   const double elapsed = started_ ? std::max(0.0, now - begun_) : period;
   if (started_) state_.late += static_cast<std::int64_t>(std::max(0.0, std::round(elapsed / period) - 1));
@@ -78,14 +82,14 @@ double Pace::begin(double now) {
 void Pace::end(double now, double simulated, double edits, double read) {
   ++state_.frames;
   const double period = 1 / options_.rate, full = options_.speed * period;
-  const double taken = std::max(0.0, now - begun_ - edits);
+  const double taken = std::max(0.0, now - at_work_ - edits), use = options_.ahead > 0 ? kUseAhead : kUse;
   taken_[static_cast<std::size_t>(state_.frames) % taken_.size()] = taken / period;
   std::array<double, 5> sorted = taken_;
   std::nth_element(sorted.begin(), sorted.begin() + 2, sorted.end());
   const double median = sorted[2];
   if (simulated > 0) cost_ += kNew * (std::max(0.0, taken - read) / simulated * options_.speed + read / period - cost_);
-  if (median > kUse) {
-    const double less = std::max(kLess, kUse / median);
+  if (median > use) {
+    const double less = std::max(kLess, use / median);
     most_ = std::max(kLeast, std::min(most_, covers_ / full) * less);
     for (double& t : taken_) t *= less;
   } else {
@@ -101,6 +105,11 @@ void Pace::end(double now, double simulated, double edits, double read) {
   }
 }
 
+/// Half a period early, so that a display that is a little early does not miss it.
+double Pace::due() const {
+  return running_ && options_.ahead > 0 ? begun_ + 0.5 / options_.rate : kLongAgo;
+}
+
 /// Moves the start of the next frame towards the moment of the period at which this one was fetched.
 bool Pace::fetched(double now) {
   if (!running_ || !started_) return false;
@@ -113,6 +122,7 @@ bool Pace::fetched(double now) {
 void Pace::skip(double duration) {
   begun_ += duration;
   next_start_ += duration;
+  at_work_ += duration;
 }
 
 LiveState Pace::state() const {

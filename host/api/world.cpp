@@ -161,8 +161,10 @@ bool World::busy() const {
 bool World::poll() const noexcept {
   if (impl_ == nullptr) return false;
   const std::lock_guard lock(impl_->mutex);
-  if (impl_->newest != impl_->given || (impl_->cut_since_read && !impl_->pace.running())) return true;
-  return !impl_->job && !impl_->pace.running() && impl_->newest != nullptr && impl_->newest->frame.step != impl_->report.step;
+  impl_->show_frames(api::wall_time());
+  if (impl_->frames.has_more_than_given() || (impl_->cut_since_read && !impl_->pace.running())) return true;
+  return !impl_->job && !impl_->pace.running() && impl_->frames.newest() != nullptr &&
+         impl_->frames.newest()->frame.step != impl_->report.step;
 }
 
 StepReport World::wait() {

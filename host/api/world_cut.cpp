@@ -151,7 +151,7 @@ api::SurfaceVertex World::Impl::vertex_of(std::int32_t vertex) const {
   std::shared_ptr<const api::Topology> seen;
   {
     const std::lock_guard lock(mutex);
-    seen = (shown != nullptr ? shown : newest)->topology;
+    seen = (frames.seen() != nullptr ? frames.seen() : frames.newest())->topology;
   }
   for (std::size_t b = 0; b < seen->body_vertices.size(); ++b) {
     const IndexRange& part = seen->body_vertices[b];

@@ -15,7 +15,7 @@
 
 #include "api/event_log.h"
 #include "api/force_blades.h"
-#include "api/frame_pool.h"
+#include "api/frame_queue.h"
 #include "api/pace.h"
 #include "api/rigid_tools.h"
 #include "api/surface_handles.h"
@@ -66,6 +66,7 @@ struct World::Impl {
   StepReport advance(double seconds);
   void read_frame(bool again = false);
   FramePtr hand_out(bool to_poll);
+  void show_frames(double now);  ///< requires the mutex: FrameQueue::show()
   void follow_topology();
   void publish_clock();
   [[nodiscard]] std::shared_ptr<Simulation> make_simulation(const TopologyEdits::Shared& like, std::string* reason = nullptr);
@@ -170,7 +171,7 @@ struct World::Impl {
   std::vector<std::string> pending_changes;   ///< likewise, after them
   std::string asked_parameters;               ///< used by the caller: parameters after all changes (scene/change.h)
   bool beside = false;                        ///< used by the caller: asynchronous steps were started and not waited for
-  bool cut_since_read = false;                ///< `newest` does not include the last cut
+  bool cut_since_read = false;                ///< the newest frame does not include the last cut
   std::vector<std::shared_ptr<haptics::Instrument>> instruments;
   api::Pace pace;
   bool held = false;                              ///< a call that waits is at work; no frame may begin
@@ -182,8 +183,7 @@ struct World::Impl {
   std::exception_ptr failure;
   StepReport report;  ///< of the last stepping call
   double stable_dt = 0;
-  std::shared_ptr<api::FrameData> newest, given, shown;  ///< read last, returned by frame(), seen (vertex numbers refer to it)
-  IndexRange dirty_vertices, dirty_triangles;            ///< from `given` to `newest`
+  api::FrameQueue frames;
 };
 
 /// Access to a World for Pliant's own code and tests.

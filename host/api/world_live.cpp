@@ -46,6 +46,7 @@ void World::Impl::run_live(const LiveOptions& live) {
     const std::lock_guard lock(mutex);
     if (pace.running()) {
       pace.change(live);
+      show_frames(api::kAtLast);
       changed.notify_all();
       return;
     }
@@ -68,6 +69,7 @@ void World::Impl::stop_live() {
   {
     const std::lock_guard lock(mutex);
     pace.stop();
+    show_frames(api::kAtLast);
     trust.tell_all();
   }
   beside = false;

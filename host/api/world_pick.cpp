@@ -132,7 +132,7 @@ std::optional<PickedPoint> World::pick(const Vec3d& origin, const Vec3d& directi
   std::shared_ptr<const api::FrameData> seen;
   {
     const std::lock_guard lock(impl_->mutex);
-    seen = impl_->shown;
+    seen = impl_->frames.seen();
   }
   if (seen == nullptr) return std::nullopt;
   const Shear shear(origin, direction);

@@ -48,12 +48,6 @@ std::shared_ptr<const api::Topology> topology_of(std::shared_ptr<const Model> mo
   return topology;
 }
 
-/// Clips a range to an array that may have become shorter.
-IndexRange within(const IndexRange& range, std::size_t count) {
-  if (range.first >= count) return {};
-  return {range.first, std::min(range.count, count - range.first)};
-}
-
 WorldInfo info_of(const Model& model, const BackendInfo& backend, std::string reason) {
   WorldInfo info{
       backend.name, backend.device, std::move(reason), backend.bit_exact, model.nodes(), model.elements(), 0, 0, {}, {}};
@@ -198,7 +192,7 @@ void World::Impl::follow_topology() {
     topology = topology_of(std::move(now), topology->version + 1);
 }
 
-/// Reads the surface into an unused frame and makes it the newest.
+/// Reads the surface into an unused frame and makes it the newest, once it is due. `again`: at once, also if it has been read.
 void World::Impl::read_frame(bool again) {
   follow_topology();
   if (!again && last_read != nullptr && last_read->frame.step == simulation->step() && last_read->topology == topology) return;
@@ -246,11 +240,13 @@ void World::Impl::read_frame(bool again) {
   }
   last_read = data;
   const std::lock_guard lock(mutex);
-  dirty_vertices = within(api::joined(dirty_vertices, vertices), count);
-  dirty_triangles = within(api::joined(dirty_triangles, faces), triangles.size());
   cut_since_read = false;
-  if (newest != shown) pace.drop();
-  newest = std::move(data);
+  frames.add(std::move(data), vertices, faces, again ? api::kLongAgo : pace.due());
+  show_frames(pace.running() ? api::wall_time() : api::kAtLast);
+}
+
+void World::Impl::show_frames(double now) {
+  for (int unseen = frames.show(now); unseen > 0; --unseen) pace.drop();
 }
 
 /// Returns the last completed frame while the worker is busy, otherwise the current state. Its topology defines the vertex
@@ -263,16 +259,11 @@ FramePtr World::Impl::hand_out(bool to_poll) {
   }
   if (idle && lost.empty()) read_frame();
   const std::lock_guard lock(mutex);
-  if (pace.running() && shown != newest && pace.fetched(api::wall_time())) changed.notify_all();
-  shown = newest;
-  if (!to_poll) return {newest, &newest->frame};
-  if (given != newest) {
-    given = newest;
-    given->polled = given->frame;
-    given->polled.dirty_vertices = std::exchange(dirty_vertices, {});
-    given->polled.dirty_triangles = std::exchange(dirty_triangles, {});
-  }
-  return {newest, &newest->polled};
+  const double now = api::wall_time();
+  show_frames(now);
+  if (pace.running() && frames.seen() != frames.newest() && pace.fetched(now)) changed.notify_all();
+  if (to_poll) return {frames.give(), &frames.newest()->polled};
+  return {frames.see(), &frames.newest()->frame};
 }
 
 /// Continues with another simulation of the same scene.

@@ -63,6 +63,7 @@ void World::Impl::hold() {
   held = true;
   changed.wait(lock, [this] { return !job && files.empty(); });
   beside = pace.running();
+  show_frames(api::kAtLast);  // what the call tells is about the last
 }
 
 void World::Impl::let_go() {

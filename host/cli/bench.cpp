@@ -228,6 +228,7 @@ void add_trainer(CLI::App& app, const std::shared_ptr<BenchArguments>& options) 
   sub->add_option("--backend", t.backend, "default: auto");
   sub->add_option("--seconds", t.seconds, "length of a session, default: 20");
   sub->add_option("--busy", t.busy, "threads that compute all the time beside it, default: 0");
+  sub->add_option("--ahead", t.ahead, "frames that the World may be ahead of the pictures, default: 1");
   sub->add_flag("--quick", t.quick, "3 s of the first organ");
   sub->add_option("--out", options->out, "folder for trainer.json and trainer.csv");
 }

@@ -15,13 +15,16 @@ namespace pliant {
 struct LiveOptions {
   double rate = 60;  ///< frames per second of wall time, 1 to 1000
   double speed = 1;  ///< simulated seconds per second of wall time, 0.001 to 1000
+  /// Frames that the worker may be ahead of the display, 0 to 4. Each hides a frame that takes a period more than others, such
+  /// as one that checks the step, and delays by a period what the display shows of a call.
+  int ahead = 0;
 };
 
 /// Performance of a World that runs freely.
 struct LiveState {
   bool running = false;      ///< true between run_live() and stop_live(), also while a divergence holds it up
   std::int64_t frames = 0;   ///< number of frames made since run_live()
-  std::int64_t late = 0;     ///< number of periods in which no frame was ready in time; the frame before stayed the newest
+  std::int64_t late = 0;     ///< number of periods in which no frame was begun, so that the frame before stayed the newest
   std::int64_t dropped = 0;  ///< number of frames that nobody fetched before the next one was ready
   double real_time = 0;      ///< simulated time over `speed` times wall time of the last second; 1: in time
   double load = 0;           ///< share of a period that a frame of full length takes; above 1: the machine is too slow

@@ -323,6 +323,12 @@ TEST(Events, OfCCallersComeInOrderAndWait) {
   pliant_live_options options = PLIANT_LIVE_OPTIONS_INIT;
   options.rate = 0;
   EXPECT_EQ(pliant_world_run_live(world, &options), PLIANT_USAGE);
+  options = PLIANT_LIVE_OPTIONS_INIT;
+  options.ahead = -1;
+  EXPECT_EQ(pliant_world_run_live(world, &options), PLIANT_USAGE);
+  options.ahead = 1;
+  options.reserved = 1;
+  EXPECT_EQ(pliant_world_run_live(world, &options), PLIANT_USAGE);
   ASSERT_EQ(pliant_world_run_live(world, nullptr), PLIANT_OK);
   pliant_live_state state = PLIANT_LIVE_STATE_INIT;
   ASSERT_EQ(pliant_world_live_state(world, &state), PLIANT_OK);

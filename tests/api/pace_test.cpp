@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <deque>
 
 #include "scenes.h"
 
@@ -15,7 +16,8 @@ namespace {
 struct Machine {
   Pace pace;
   double now = 100, cost = 0.3, fixed = 0.001, phase = 0.4, simulated = 0;
-  std::int64_t fetches = 0, fresh = 0, frames = 0, seen = 0;
+  std::int64_t fetches = 0, fresh = 0, frames = 0, shown = 0, seen = 0;
+  std::deque<double> waiting;  ///< due times of frames
 
   explicit Machine(const LiveOptions& options = {}) { pace.start(options, now); }
 
@@ -25,9 +27,13 @@ struct Machine {
       const double at = 100 + (static_cast<double>(fetches) + phase) * period;
       if (at > end) return;
       ++fetches;
-      fresh += frames != seen ? 1 : 0;
-      if (frames != seen) pace.fetched(at);
-      seen = frames;
+      while (!waiting.empty() && waiting.front() <= at) {
+        waiting.pop_front();
+        ++shown;
+      }
+      fresh += shown != seen ? 1 : 0;
+      if (shown != seen) pace.fetched(at);
+      seen = shown;
     }
   }
   void frame(double edits = 0) {
@@ -36,8 +42,9 @@ struct Machine {
     const double covers = pace.begin(now), takes = fixed + cost * covers + edits;
     fetch_until(now + takes);
     now += takes;
-    if (seen != frames) pace.drop();
+    if (seen != frames && pace.due() == kLongAgo) pace.drop();
     ++frames;
+    waiting.push_back(pace.due());
     simulated += covers;
     pace.end(now, covers, edits, fixed);
   }
@@ -107,6 +114,62 @@ TEST(Pace, ASlowFrameNowAndThenDoesNotSlowTimeDown) {
   EXPECT_GT((m.simulated - simulated) / (m.now - start), 0.98);
 }
 
+/// Frames that take 1.5 to 1.7 periods, one in 24.
+TEST(Pace, AFrameAheadHidesASlowOne) {
+  for (const double phase : {0.0, 0.3, 0.8}) {
+    std::array<double, 2> stale{};
+    for (const int ahead : {0, 1}) {
+      Machine m({60, 1, ahead});
+      m.phase = phase;
+      m.cost = 0.6;
+      m.run(2);
+      const double simulated = m.simulated, start = m.now;
+      const std::int64_t fetches = m.fetches, fresh = m.fresh;
+      for (int i = 0; i < 1200; ++i) {
+        m.fixed = i % 24 == 0 ? 0.015 + 0.001 * (i % 5) : 0.001;
+        m.frame();
+      }
+      stale[static_cast<std::size_t>(ahead)] = 1 - static_cast<double>(m.fresh - fresh) / static_cast<double>(m.fetches - fetches);
+      EXPECT_NEAR((m.simulated - simulated) / (m.now - start), 1, 0.01);
+    }
+    EXPECT_GT(stale[0], 0.03) << phase;
+    EXPECT_LT(stale[1], 0.002) << phase;
+  }
+}
+
+TEST(Pace, AFrameAheadIsDueWhenItWouldHaveBeenWithout) {
+  constexpr double kPeriod = 1.0 / 60;
+  Pace pace;
+  pace.start({60, 1, 2}, 50);
+  for (int i = 0; i < 3; ++i) {
+    const double start = std::max(50.0, pace.next_start());
+    EXPECT_NEAR(start, 50, 1e-9);  // two periods before its time at most
+    EXPECT_NEAR(pace.begin(start), kPeriod, 1e-9);
+    EXPECT_NEAR(pace.due(), 50 + (i + 0.5) * kPeriod, 1e-9);
+    pace.end(start, kPeriod, 0, 0);
+  }
+  EXPECT_NEAR(pace.next_start(), 50 + kPeriod, 1e-9);
+  pace.stop();
+  EXPECT_EQ(pace.due(), kLongAgo);
+}
+
+/// A machine that is too slow for frames of full length does as much of real time as its load allows.
+TEST(Pace, FramesAheadMayTakeMoreOfTheirPeriod) {
+  std::array<double, 2> speed{};
+  for (const int ahead : {0, 1}) {
+    Machine m({60, 1, ahead});
+    m.cost = 0.95;
+    m.run(4);
+    const double simulated = m.simulated, start = m.now;
+    const std::int64_t fetches = m.fetches, fresh = m.fresh;
+    m.run(20);
+    speed[static_cast<std::size_t>(ahead)] = (m.simulated - simulated) / (m.now - start);
+    EXPECT_GE(static_cast<double>(m.fresh - fresh), 0.99 * static_cast<double>(m.fetches - fetches));
+  }
+  EXPECT_LT(speed[0], 0.85);
+  EXPECT_GT(speed[1], 0.92);
+}
+
 TEST(Pace, SkippedTimeIsNotOwed) {
   Machine m;
   m.run(1);
@@ -151,6 +214,7 @@ TEST(Pace, FramesWithoutACallerAreDropped) {
 TEST(Pace, BadOptionsAreRefused) {
   EXPECT_NE(test::message_of([] { check_live({0, 1}); }).find("rate is 0, expected 1 to 1000"), std::string::npos);
   EXPECT_NE(test::message_of([] { check_live({60, -1}); }).find("speed is -1, expected 0.001 to 1000"), std::string::npos);
+  EXPECT_NE(test::message_of([] { check_live({60, 1, 5}); }).find("ahead is 5, expected 0 to 4"), std::string::npos);
   EXPECT_NE(test::message_of([] { check_live({60, std::nan("")}); }).find("speed is nan"), std::string::npos);
   EXPECT_EQ(test::message_of([] { check_live({1000, 0.001}); }), "");
 }

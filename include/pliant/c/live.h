@@ -14,9 +14,11 @@ typedef struct pliant_live_options {
   size_t size;  /**< PLIANT_LIVE_OPTIONS_INIT */
   double rate;  /**< frames per second of wall time, 1 to 1000 */
   double speed; /**< simulated seconds per second of wall time, 0.001 to 1000 */
+  int ahead;    /**< frames that the worker may be ahead of the display, 0 to 4 */
+  int reserved; /**< 0 */
 } pliant_live_options;
 #define PLIANT_LIVE_OPTIONS_INIT \
-  { sizeof(pliant_live_options), 60, 1 }
+  { sizeof(pliant_live_options), 60, 1, 0, 0 }
 
 /** Performance of a world that runs freely, as pliant::LiveState. */
 typedef struct pliant_live_state {
@@ -24,7 +26,7 @@ typedef struct pliant_live_state {
   int running;      /**< 1 between pliant_world_run_live and pliant_world_stop_live */
   int reserved;     /**< 0 */
   int64_t frames;   /**< frames made */
-  int64_t late;     /**< periods in which no frame was ready in time */
+  int64_t late;     /**< periods in which no frame was begun */
   int64_t dropped;  /**< frames that nobody fetched */
   double real_time; /**< simulated time over `speed` times wall time of the last second */
   double load;      /**< share of a period that a frame of full length takes */
