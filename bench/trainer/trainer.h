@@ -19,8 +19,8 @@ struct TrainerOptions {
   std::function<void(double, const std::string&)> progress;  ///< share done, what is being measured
 };
 
-/// {"machine": {...}, "seconds": ..., "busy": ..., "ahead": ..., "rows": [...]}, one row per organ, docs/schema/bench-trainer.json. Throws
-/// Error for bad options.
+/// {"machine": {...}, "seconds": ..., "busy": ..., "ahead": ..., "rows": [...]}, one row per organ,
+/// docs/schema/bench-trainer.json. Throws Error for bad options.
 nlohmann::json bench_trainer(const TrainerOptions& options);
 
 /// The rows for people.

@@ -13,7 +13,8 @@ int main(int argc, char** argv) try {
   const std::string file = (std::filesystem::temp_directory_path() / "trainer.pck").string();
   trainer::Session session(trainer::scene_of(organ), "auto", file);
   std::size_t drawn = 0;
-  const trainer::Report report = session.run(seconds, 60, 1, [&](const pliant::Frame& frame) { drawn += frame.positions.size(); });
+  const trainer::Report report =
+      session.run(seconds, 60, 1, [&](const pliant::Frame& frame) { drawn += frame.positions.size(); });
   std::filesystem::remove(file);
 
   std::printf("real time %.3f of %.1f s; %.1f %% of %lld pictures stale\n", report.real_time(), report.wall,

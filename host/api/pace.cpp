@@ -11,9 +11,9 @@
 namespace pliant::api {
 namespace {
 
-constexpr double kUse = 0.8;   ///< share of a period that half of the frames may take, so that most are ready in time
+constexpr double kUse = 0.8;        ///< share of a period that half of the frames may take, so that most are ready in time
 constexpr double kUseAhead = 0.95;  ///< the same of frames that are made ahead
-constexpr double kLess = 0.8;  ///< changes of the simulated time that a frame may cover
+constexpr double kLess = 0.8;       ///< changes of the simulated time that a frame may cover
 constexpr double kMore = 1.03;
 constexpr double kFaster = 1.25;  ///< largest simulated time of a frame, in periods
 constexpr double kOwed = 0.25;    ///< wall time that can be caught up with [s]
@@ -106,9 +106,7 @@ void Pace::end(double now, double simulated, double edits, double read) {
 }
 
 /// Half a period early, so that a display that is a little early does not miss it.
-double Pace::due() const {
-  return running_ && options_.ahead > 0 ? begun_ + 0.5 / options_.rate : kLongAgo;
-}
+double Pace::due() const { return running_ && options_.ahead > 0 ? begun_ + 0.5 / options_.rate : kLongAgo; }
 
 /// Moves the start of the next frame towards the moment of the period at which this one was fetched.
 bool Pace::fetched(double now) {

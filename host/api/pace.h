@@ -11,8 +11,8 @@
 namespace pliant::api {
 
 /// A frame per period, at the moment of the period when the caller fetches frames, so that the next one has a whole period to
-/// be ready. With LiveOptions::ahead frames are made up to so many periods before that moment, and due when they would have been
-/// ready without. All times are seconds of one monotonic clock.
+/// be ready. With LiveOptions::ahead frames are made up to so many periods before that moment, and due when they would have
+/// been ready without. All times are seconds of one monotonic clock.
 class Pace {
  public:
   void start(const LiveOptions& options, double now);
@@ -46,9 +46,9 @@ class Pace {
 
   LiveOptions options_;
   bool running_ = false, started_ = false;
-  double begun_ = 0;       ///< start of the last frame, as if none were ahead of the display
-  double next_start_ = 0;  ///< the same of the next
-  double at_work_ = 0;     ///< when the last frame was really begun
+  double begun_ = 0;               ///< start of the last frame, as if none were ahead of the display
+  double next_start_ = 0;          ///< the same of the next
+  double at_work_ = 0;             ///< when the last frame was really begun
   double covers_ = 0;              ///< what the frame at work should cover [s]
   double owed_ = 0;                ///< simulated time that is not covered yet [s]
   double most_ = 1;                ///< what a frame may cover, in frames of full length

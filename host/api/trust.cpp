@@ -6,7 +6,7 @@
 namespace pliant::api {
 namespace {
 
-constexpr double kFastMotion = 0.1;     ///< as quiet(): slower motion is no sign of a step that is too long
+constexpr double kFastMotion = 0.5;     ///< light nodes at a rim reach 0.3 where contact pushes them, and nothing bursts
 constexpr double kMoreThanUsual = 2.0;  ///< free flight gains less than this in a grid step
 
 /// Greatest increment of a node, in edges of the shortest element.

@@ -15,7 +15,7 @@ namespace pliant::api {
 class Trust {
  public:
   /// Looks at the state between two batches; `live`: the World runs freely. It is not trusted if it may well be taken back: not
-  /// settled, and more elements are inverted than in the last settled state, or something moves by more than a tenth of an edge
+  /// settled, and more elements are inverted than in the last settled state, or something moves by more than half an edge
   /// per step and more than twice as fast as anything did there.
   void look(const Simulation& simulation, bool live);
   /// Call after the simulation was replaced: its state is trusted.

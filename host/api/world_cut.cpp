@@ -105,6 +105,11 @@ void World::Impl::cut_pending() {
   std::exception_ptr refused;  // the others are made nevertheless
   const auto moves = [&](std::size_t r) { return !requests[r].pose.empty(); };
   for (std::size_t first = 0, last = 0; first < requests.size(); first = last) {
+    if (simulation->edits().building()) {  // those that are left come after that edit, too
+      const std::lock_guard lock(mutex);
+      pending_cuts.insert(pending_cuts.begin(), requests.begin() + static_cast<std::ptrdiff_t>(first), requests.end());
+      break;
+    }
     last = first + 1;
     while (moves(first) && last < requests.size() && moves(last) && requests[last].lifted.empty()) ++last;
     try {

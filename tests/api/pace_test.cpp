@@ -129,7 +129,8 @@ TEST(Pace, AFrameAheadHidesASlowOne) {
         m.fixed = i % 24 == 0 ? 0.015 + 0.001 * (i % 5) : 0.001;
         m.frame();
       }
-      stale[static_cast<std::size_t>(ahead)] = 1 - static_cast<double>(m.fresh - fresh) / static_cast<double>(m.fetches - fetches);
+      stale[static_cast<std::size_t>(ahead)] =
+          1 - static_cast<double>(m.fresh - fresh) / static_cast<double>(m.fetches - fetches);
       EXPECT_NEAR((m.simulated - simulated) / (m.now - start), 1, 0.01);
     }
     EXPECT_GT(stale[0], 0.03) << phase;

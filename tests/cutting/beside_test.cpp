@@ -2,6 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "cutting/cut_bodies.h"
 #include "cutting/cut_scenes.h"
@@ -234,6 +238,47 @@ TEST(Beside, WhatIsDueAtOnceComesOneAfterTheOther) {
   EXPECT_GT(moves, 0);
   EXPECT_GE(s->cut_topology(0)->pieces(), 2);
   check_body(*s->cut_topology(0), false);
+}
+
+/// Counts the kernels of changed models that were not compiled before.
+class CountsKernels : public test::ForwardingBackend {
+ public:
+  using ForwardingBackend::ForwardingBackend;
+  void load(const Program& program) override {
+    add(program);
+    ForwardingBackend::load(program);
+  }
+  void compile_beside(const Program& program) override { add(program); }
+  void update(const Program& loaded, const Program& next) override {
+    late += add(next);
+    ForwardingBackend::update(loaded, next);
+  }
+  std::size_t late = 0;
+
+  std::size_t known() const { return known_.size(); }
+
+ private:
+  std::size_t add(const Program& program) {
+    const std::size_t before = known_.size();
+    for (const auto* passes : {&program.step, &program.look, &program.force, &program.rates, &program.status}) {
+      for (const Pass& pass : *passes) known_.emplace(pass.kernel, pass.defines);
+    }
+    return known_.size() - before;
+  }
+  std::set<std::pair<std::string, std::vector<std::pair<std::string, int>>>> known_;
+};
+
+/// The first cut of a lattice brings elements of another kind.
+TEST(Beside, KernelsOfTheNewModelAreCompiledBeforeItIsTakenUp) {
+  auto counting = std::make_unique<CountsKernels>(open_backend("cpu"));
+  const CountsKernels& kernels = *counting;
+  const auto s = beside(scene_with(bar()), std::move(counting));
+  s->advance(1);
+  const std::size_t known = kernels.known();
+  s->cut(wall(0.031));
+  ASSERT_TRUE(s->edits().take_built(true)->changed);
+  EXPECT_GT(kernels.known(), known);
+  EXPECT_EQ(kernels.late, 0U);
 }
 
 /// A free bar 0.2 m long that bends and turns while the tool goes along it, with substeps of shape matching.

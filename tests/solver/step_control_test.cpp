@@ -177,6 +177,40 @@ TEST(StepRetries, StopAtTheFloorBeforeTheyGoBelow) {
   EXPECT_FALSE(recovery.trust_less(lost)) << "there is an end to it";
 }
 
+/// A box that is squeezed between two looks, while its nodes shake: a batch of a step that is stable still stays.
+TEST(StepRetries, WhatOnlyTheSafetyForbidsIsNotMadeAgain) {
+  for (const double share : {0.96, 1.04}) {  // of the stable step
+    Loaded l(scene_with(box_body("box", {0.03, 0.02, 0.02})));
+    StepControl step(l.run);
+    HostLoads loads(l.run);
+    RunReports reports;
+    TopologyEdits edits(l.run, step, loads, reports.now);
+    Recovery recovery(l.run, step, edits, reports);
+    step.start(0, true);
+    l.settings.batch_steps = 64;
+    recovery.keep(true);
+    const Model& model = l.loaded.model();
+    const double first = l.state.clock.dt;
+    const auto squeeze = [&](double by) {
+      std::vector<double> u(4 * static_cast<std::size_t>(model.slots));
+      for (std::size_t s = 0; s < model.rest.size(); ++s) u[4 * s] = -by * model.rest[s][0];
+      l.run.write_u(u);
+      return step.estimate(20);
+    };
+    double low = 0, high = 0.7;
+    for (int i = 0; i < 30; ++i) (first < share * squeeze(0.5 * (low + high)) ? low : high) = 0.5 * (low + high);
+    std::vector<double> w = l.loaded.w();
+    for (std::size_t s = 0; s < model.rest.size(); ++s) w[4 * s + 1] = (s % 2 == 0 ? 0.12 : -0.12) * model.shortest;
+    l.loaded.write_w(w);
+    l.state.clock.step = 64;
+    EXPECT_FALSE(recovery.look(0));
+    EXPECT_EQ(reports.now.made_again, share < 1 ? 0 : 1);
+    EXPECT_EQ(l.state.clock.step, share < 1 ? 64 : 0);
+    EXPECT_LE(l.state.clock.dt, 0.9 * first);
+    EXPECT_GT(l.state.clock.dt, 0.5 * first);
+  }
+}
+
 /// An estimate tries states that the run is never in: what their elements mark is nothing that happened.
 TEST(StepRetries, NoEstimateMarksElements) {
   Scene scene = scene_with(box_body("box", {0.03, 0.02, 0.02}));

@@ -18,6 +18,7 @@ class ForwardingBackend : public Backend {
   void update(const Program& loaded, const Program& next) override { inner_->update(loaded, next); }
   void extend(const Program* before, const Program& extension) override { inner_->extend(before, extension); }
   void compile(const Program& program) override { inner_->compile(program); }
+  void compile_beside(const Program& program) override { inner_->compile_beside(program); }
   void run(const std::vector<Pass>& passes, std::int32_t first, std::int32_t count, std::int64_t origin) override {
     inner_->run(passes, first, count, origin);
   }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <exception>
 #include <utility>
 
@@ -52,6 +53,10 @@ class TieredBackend final : public Backend {
     if (now_ == opencl_.get()) compile_rest();
   }
 
+  void compile_beside(const Program& program) override {
+    if (on_opencl_) opencl_->compile_beside(program);  // otherwise the thread of the kernel_warmer compiles what it launches
+  }
+
   void run(const std::vector<Pass>& passes, std::int32_t first, std::int32_t count, std::int64_t origin) override {
     if (now_ == twins_.get() && program_ != nullptr && &passes == &program_->step) look_at_job();
     now_->run(passes, first, count, origin);
@@ -88,7 +93,12 @@ class TieredBackend final : public Backend {
     extension_ = nullptr;
     Backend* next = launches_at_once(program) ? opencl_.get() : twins_.get();
     if (next != now_) now_->load(nothing_);  // it would hold on to a program that may be gone
-    now_ = next;
+    let_work(*next);
+  }
+
+  void let_work(Backend& next) {
+    now_ = &next;
+    on_opencl_ = now_ == opencl_.get();
   }
 
   void cancel() {
@@ -153,7 +163,7 @@ class TieredBackend final : public Backend {
     }
     next.finish();
     now_->load(nothing_);
-    now_ = &next;
+    let_work(next);
     extended_ = extension_ != nullptr;
   }
 
@@ -161,6 +171,7 @@ class TieredBackend final : public Backend {
   const int device_;
   const Program nothing_;
   Backend* now_ = twins_.get();
+  std::atomic<bool> on_opencl_{false};
   const Program *program_ = nullptr, *extension_ = nullptr;
   bool extended_ = false;                ///< the values of an extension are there, also those of the one before an update()
   std::shared_ptr<WarmJob> job_, rest_;  ///< the latter for `later_`

@@ -56,6 +56,8 @@ class Backend {
   virtual void extend(const Program* before, const Program& extension) = 0;
   /// Compiles a program that may be loaded later.
   virtual void compile(const Program& program) { (void)program; }
+  /// The same on any thread, while the backend works. What does not compile is left to load(), which tells why.
+  virtual void compile_beside(const Program& program) { (void)program; }
   /// Runs `passes` for steps first .. first + count - 1 of the current batch, in order, without host synchronization in
   /// between. `origin`: number of the batch's step 0 in the run; it determines in which steps passes with Pass::every run.
   virtual void run(const std::vector<Pass>& passes, std::int32_t first, std::int32_t count, std::int64_t origin = 0) = 0;

@@ -72,18 +72,27 @@ KernelCache::KernelCache(std::shared_ptr<SharedContext> context, cl::Device devi
       common_options_(build_options(device_)) {}
 
 cl::Kernel KernelCache::make(const std::string& stem, const std::vector<std::pair<std::string, int>>& defines, int lanes) {
+  const cl::Program built = program(stem, defines, lanes);
+  return guarded(ErrorCode::internal, fmt::format("kernel \"{}\" of {}.cl on {}", stem, stem, device_name_),
+                 [&] { return cl::Kernel(built, stem.c_str()); });
+}
+
+cl::Program KernelCache::program(const std::string& stem, const std::vector<std::pair<std::string, int>>& defines, int lanes) {
   auto sorted = defines;
   std::sort(sorted.begin(), sorted.end());
   std::string options = fmt::format("{} -D LANES={}", common_options_, lanes);
   for (const auto& [name, value] : sorted) options += fmt::format(" -D {}={}", name, value);
   const auto key = std::make_pair(stem, options);
-  auto found = programs_.find(key);
-  if (found == programs_.end()) found = programs_.emplace(key, build(stem, options)).first;
-  return guarded(ErrorCode::internal, fmt::format("kernel \"{}\" of {}.cl on {}", stem, stem, device_name_),
-                 [&] { return cl::Kernel(found->second, stem.c_str()); });
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto found = programs_.find(key); found != programs_.end()) return found->second;
+  }
+  cl::Program built = build(stem, options);
+  const std::lock_guard lock(mutex_);
+  return programs_.emplace(key, std::move(built)).first->second;
 }
 
-cl::Program KernelCache::build(const std::string& stem, const std::string& options) {
+cl::Program KernelCache::build(const std::string& stem, const std::string& options) const {
   const std::string source = resolve_includes(files_, stem + ".cl");
   try {
     return context_->program(source, options, [&] {

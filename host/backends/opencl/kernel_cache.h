@@ -2,6 +2,7 @@
 #pragma once
 #include <map>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,13 +26,16 @@ class KernelCache {
   /// Returns a new kernel object (arguments unset) of the program <stem>.cl. Throws Error with device, kernel, defines and
   /// the compiler's log.
   cl::Kernel make(const std::string& stem, const std::vector<std::pair<std::string, int>>& defines, int lanes);
+  /// Builds that program. Thread-safe, beside make() too. Throws as make().
+  cl::Program program(const std::string& stem, const std::vector<std::pair<std::string, int>>& defines, int lanes);
 
  private:
-  cl::Program build(const std::string& stem, const std::string& options);
+  [[nodiscard]] cl::Program build(const std::string& stem, const std::string& options) const;
   std::shared_ptr<SharedContext> context_;
   cl::Device device_;
   Files files_;
   std::string device_name_, common_options_;
+  std::mutex mutex_;
   std::map<std::pair<std::string, std::string>, cl::Program> programs_;  // by stem and options
 };
 

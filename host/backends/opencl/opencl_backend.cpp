@@ -78,7 +78,14 @@ class OpenclBackend final : public ProgramBackend<opencl::DeviceMemory, Prepared
 
   void compile(const Program& program) override {
     for (const auto* passes : {&program.step, &program.look, &program.force, &program.rates, &program.status}) {
-      for (const Pass& pass : *passes) kernels_.make(pass.kernel, pass.defines, pass.shape == Shape::items ? 1 : info().lanes);
+      for (const Pass& pass : *passes)
+        kernels_.program(pass.kernel, pass.defines, pass.shape == Shape::items ? 1 : info().lanes);
+    }
+  }
+  void compile_beside(const Program& program) override {
+    try {
+      compile(program);
+    } catch (const Error&) {  // load() meets it again
     }
   }
 

@@ -22,6 +22,7 @@ void EditUnderWay::build() {
 void EditUnderWay::build_beside(HelperThread& builder) {
   building_ = builder.run([this] {
     build();
+    swap_.compile();
     swap_.take_surfaces();
   });
 }

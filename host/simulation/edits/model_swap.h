@@ -33,6 +33,8 @@ class ModelSwap {
   /// beside steps. `scene`: with the new operational regions. The surfaces may still be in progress until `ready` returns,
   /// which may throw.
   void build(const Scene& scene, std::vector<NodeOrigins> origins, std::function<void()> ready);
+  /// Compiles the Program, if the backend can do so beside steps: otherwise load() does.
+  void compile() { run_.backend().compile_beside(program_); }
   /// Waits for the surfaces and adds them to the model, if that was not done. load() calls it.
   void take_surfaces();
   /// Replaces the model. `u`: RunContext::u(). On an exception, the old model is restored.

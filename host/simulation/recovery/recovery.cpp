@@ -179,8 +179,13 @@ void Recovery::measure(Symptoms& s) {
     lowest = kLeastBackoff * ceiling;
     if (s.ballast.empty() && dt <= lowest) return;
   }
-  s.outgrown = true;
   s.dt = std::max({std::min(now.dt, kLeastShortening * dt), kMostShortening * dt, lowest});
+  // Stable, but no longer by the safety: what came of the batch stays, unless substeps, which resonate, have made it.
+  const bool stable = dt > least && run_.period() == 1 && now.dt >= run_.scene.safety * run_.state.limit.dt_backoff * dt;
+  s.outgrown = !stable;
+  if (!stable) return;
+  step_.hold();
+  step_.change(s.dt);
 }
 
 bool Recovery::go_back(Symptoms&) {

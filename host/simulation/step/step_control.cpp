@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "model/nodes/ballast.h"
@@ -85,7 +86,14 @@ void StepControl::refuse_step() const {
 }
 
 double StepControl::estimate(int iterations) {
-  return run_.state.limit.stable_dt = estimate_stable_step(run_, iterations).coupled;
+  std::vector<double> u = run_.loaded.u();
+  const double time = run_.state.clock.time();
+  const std::shared_ptr<const Model>& model = run_.loaded.shared_model();  // another one after every edit
+  if (last_.model != model || last_.time != time || last_.iterations != iterations || last_.u != u) {
+    const double dt = estimate_stable_step(run_, iterations).coupled;
+    last_ = {model, std::move(u), time, iterations, dt};
+  }
+  return run_.state.limit.stable_dt = last_.dt;
 }
 
 bool StepControl::on_grid(std::int64_t step) const {

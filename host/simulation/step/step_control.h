@@ -2,6 +2,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "simulation/state/run_context.h"
@@ -80,6 +81,15 @@ class StepControl {
   [[nodiscard]] std::vector<NodeInertia> ballast_for(double dt, const std::vector<double>& stiffness) const;
   [[nodiscard]] bool too_much(const std::vector<NodeInertia>& ballast) const;
   RunContext& run_;
+  /// The last estimate and what it is of: several checks of one state share it.
+  struct Estimated {
+    std::shared_ptr<const Model> model;
+    std::vector<double> u;
+    double time = 0;
+    int iterations = 0;
+    double dt = 0;
+  };
+  Estimated last_;
   std::size_t stiffest_ = 0;  ///< a slot that probably has the least bound of all; decides nothing but the cost
 };
 
