@@ -11,8 +11,8 @@ namespace pliant {
 /// Options of World::run_live(). The worker makes a frame per period of `rate`, begun shortly after the caller fetches the one
 /// before. A machine that cannot keep up gets frames of less simulated time at the same rate, so that time slows down evenly;
 /// after a delay, such as a cut, time catches up with up to 0.25 s. What the worker does between two frames (World::save) or
-/// rejects is reported by an Event. Each frame that it may be `ahead` hides one that takes a period more than others, such as one
-/// that checks the step, and delays by a period what the display shows of a call.
+/// rejects is reported by an Event. Each frame that it may be `ahead` hides one that takes a period more than others, such as
+/// one that checks the step, and delays by a period what the display shows of a call.
 struct LiveOptions {
   double rate = 60;  ///< frames per second of wall time, 1 to 1000
   double speed = 1;  ///< simulated seconds per second of wall time, 0.001 to 1000
