@@ -14,7 +14,7 @@ namespace {
 constexpr double kUse = 0.8;        ///< share of a period that half of the frames may take, so that most are ready in time
 constexpr double kUseAhead = 0.95;  ///< the same of frames that are made ahead
 constexpr double kLess = 0.8;       ///< changes of the simulated time that a frame may cover
-constexpr double kMore = 1.03;
+constexpr double kMore = 1.2;
 constexpr double kFaster = 1.25;  ///< largest simulated time of a frame, in periods
 constexpr double kOwed = 0.25;    ///< wall time that can be caught up with [s]
 constexpr double kShift = 0.2;    ///< largest change of the moment at which frames start, in periods
@@ -93,7 +93,9 @@ void Pace::end(double now, double simulated, double edits, double read) {
     most_ = std::max(kLeast, std::min(most_, covers_ / full) * less);
     for (double& t : taken_) t *= less;
   } else {
-    most_ = std::min(kFaster, most_ * kMore);
+    const double more = std::min({kMore, use / std::max(median, 0.01), kFaster / most_});
+    most_ *= more;
+    for (double& t : taken_) t *= more;
   }
   passed_.push_back({wall_of_this_, simulated});
   passed_wall_ += wall_of_this_;

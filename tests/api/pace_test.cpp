@@ -114,6 +114,20 @@ TEST(Pace, ASlowFrameNowAndThenDoesNotSlowTimeDown) {
   EXPECT_GT((m.simulated - simulated) / (m.now - start), 0.98);
 }
 
+/// A probe has pressed for a while, which takes a shorter step.
+TEST(Pace, TimeIsBackSoonAfterItWasSlow) {
+  for (const int ahead : {0, 1}) {
+    Machine m({60, 1, ahead});
+    m.cost = 4;
+    m.run(3);
+    m.cost = 0.4;
+    m.run(0.25);
+    const double simulated = m.simulated, start = m.now;
+    m.run(1);
+    EXPECT_GT((m.simulated - simulated) / (m.now - start), 0.99) << ahead;
+  }
+}
+
 /// Frames that take 1.5 to 1.7 periods, one in 24.
 TEST(Pace, AFrameAheadHidesASlowOne) {
   for (const double phase : {0.0, 0.3, 0.8}) {
