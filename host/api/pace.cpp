@@ -17,6 +17,7 @@ constexpr double kLess = 0.8;       ///< changes of the simulated time that a fr
 constexpr double kMore = 1.2;
 constexpr double kFaster = 1.25;  ///< largest simulated time of a frame, in periods
 constexpr double kOwed = 0.25;    ///< wall time that can be caught up with [s]
+constexpr double kOften = 0.8;    ///< a caller who looks again so soon does not wait for a display [periods]
 constexpr double kShift = 0.2;    ///< largest change of the moment at which frames start, in periods
 constexpr double kLeast = 0.05;   ///< least simulated time of a frame, in periods
 constexpr double kNew = 0.25;     ///< weight of a new value in an average
@@ -48,10 +49,12 @@ void Pace::start(const LiveOptions& options, double now) {
   next_start_ = now;
 }
 
-void Pace::change(const LiveOptions& options) {
+void Pace::change(const LiveOptions& options, double now) {
   options_ = options;
   owed_ = 0;
-  if (started_) next_start_ = std::min(next_start_, begun_ + 1 / options.rate);
+  if (!started_) return;
+  begun_ = std::min(begun_, now + options.ahead / options.rate);
+  next_start_ = std::min(next_start_, begun_ + 1 / options.rate);
 }
 
 double Pace::begin(double now) {
@@ -110,10 +113,11 @@ void Pace::end(double now, double simulated, double edits, double read) {
 /// Half a period early, so that a display that is a little early does not miss it.
 double Pace::due() const { return running_ && options_.ahead > 0 ? begun_ + 0.5 / options_.rate : kLongAgo; }
 
-/// Moves the start of the next frame towards the moment of the period at which this one was fetched.
+/// Moves the start of the next frame towards the moment of the period at which this one was fetched. That of a caller who looks
+/// more often than the rate says nothing.
 bool Pace::fetched(double now) {
-  if (!running_ || !started_) return false;
-  const double period = 1 / options_.rate;
+  const double period = 1 / options_.rate, before_this = std::exchange(looked_, now);
+  if (!running_ || !started_ || now - before_this < kOften * period) return false;
   const double off = std::remainder(now - begun_, period);
   const double before = std::exchange(next_start_, begun_ + period + std::clamp(off, -kShift * period, kShift * period));
   return next_start_ < before;

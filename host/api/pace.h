@@ -10,13 +10,16 @@
 
 namespace pliant::api {
 
+/// Before and after all wall times.
+inline constexpr double kLongAgo = -std::numeric_limits<double>::infinity(), kAtLast = std::numeric_limits<double>::infinity();
+
 /// A frame per period, at the moment of the period when the caller fetches frames, so that the next one has a whole period to
 /// be ready. With LiveOptions::ahead frames are made up to so many periods before that moment, and due when they would have
 /// been ready without. All times are seconds of one monotonic clock.
 class Pace {
  public:
   void start(const LiveOptions& options, double now);
-  void change(const LiveOptions& options);
+  void change(const LiveOptions& options, double now);
   void stop() { running_ = false; }
   [[nodiscard]] bool running() const { return running_; }
 
@@ -32,6 +35,8 @@ class Pace {
   [[nodiscard]] double due() const;
   /// Call when the caller fetches a frame. Returns true if the next one may start earlier than next_start() said before.
   bool fetched(double now);
+  /// Call when the caller looks for a frame and there is none yet.
+  void looked(double now) { looked_ = now; }
   /// Counts a frame that nobody fetched.
   void drop() { state_.dropped += running_ && state_.frames > 0 ? 1 : 0; }
   /// Leaves out time that something else than frames took [s].
@@ -46,9 +51,10 @@ class Pace {
 
   LiveOptions options_;
   bool running_ = false, started_ = false;
-  double begun_ = 0;               ///< start of the last frame, as if none were ahead of the display
-  double next_start_ = 0;          ///< the same of the next
-  double at_work_ = 0;             ///< when the last frame was really begun
+  double begun_ = 0;       ///< start of the last frame, as if none were ahead of the display
+  double next_start_ = 0;  ///< the same of the next
+  double at_work_ = 0;     ///< when the last frame was really begun
+  double looked_ = kLongAgo;
   double covers_ = 0;              ///< what the frame at work should cover [s]
   double owed_ = 0;                ///< simulated time that is not covered yet [s]
   double most_ = 1;                ///< what a frame may cover, in frames of full length
@@ -59,9 +65,6 @@ class Pace {
   double wall_of_this_ = 0;
   LiveState state_;
 };
-
-/// Before and after all wall times.
-inline constexpr double kLongAgo = -std::numeric_limits<double>::infinity(), kAtLast = std::numeric_limits<double>::infinity();
 
 /// Seconds of the steady clock, and the reverse.
 [[nodiscard]] double wall_time();

@@ -154,7 +154,7 @@ void RigidTools::record_blades(const Simulation& simulation, std::int64_t valid)
     for (std::int64_t s = 0; s < steps && press.batch_end() == simulation.step(); ++s) {
       const Wrench& f = forces[static_cast<std::size_t>(s) * press.names().size() + b];
       const std::int64_t step = simulation.step() - steps + s + 1;
-      trace.add({f, step, simulation.state().clock.time_at(step)});
+      trace.add({f, step, press.batch_clock().time_at(step)});
     }
   }
 }
@@ -177,7 +177,7 @@ void RigidTools::record(const Simulation& simulation) {
     for (std::int64_t s = 0; s < steps; ++s) {
       const Wrench& f = forces[static_cast<std::size_t>(s) * tools.size() + t];
       const std::int64_t step = simulation.step() - steps + s + 1;
-      trace.add({f, step, simulation.state().clock.time_at(step)});
+      trace.add({f, step, contact.batch_clock().time_at(step)});
     }
   }
 }

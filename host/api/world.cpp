@@ -161,7 +161,9 @@ bool World::busy() const {
 bool World::poll() const noexcept {
   if (impl_ == nullptr) return false;
   const std::lock_guard lock(impl_->mutex);
-  impl_->show_frames(api::wall_time());
+  const double now = api::wall_time();
+  impl_->show_frames(now);
+  if (impl_->frames.seen() == impl_->frames.newest()) impl_->pace.looked(now);
   if (impl_->frames.has_more_than_given() || (impl_->cut_since_read && !impl_->pace.running())) return true;
   return !impl_->job && !impl_->pace.running() && impl_->frames.newest() != nullptr &&
          impl_->frames.newest()->frame.step != impl_->report.step;

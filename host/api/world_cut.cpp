@@ -107,7 +107,8 @@ void World::Impl::cut_pending() {
   for (std::size_t first = 0, last = 0; first < requests.size(); first = last) {
     if (simulation->edits().building()) {  // those that are left come after that edit, too
       const std::lock_guard lock(mutex);
-      pending_cuts.insert(pending_cuts.begin(), requests.begin() + static_cast<std::ptrdiff_t>(first), requests.end());
+      const auto left = requests.begin() + static_cast<std::ptrdiff_t>(first);
+      if (!replacing) pending_cuts.insert(pending_cuts.begin(), left, requests.end());
       break;
     }
     last = first + 1;

@@ -45,7 +45,7 @@ void World::Impl::run_live(const LiveOptions& live) {
   {
     const std::lock_guard lock(mutex);
     if (pace.running()) {
-      pace.change(live);
+      pace.change(live, api::wall_time());
       show_frames(api::kAtLast);
       changed.notify_all();
       return;

@@ -261,7 +261,11 @@ FramePtr World::Impl::hand_out(bool to_poll) {
   const std::lock_guard lock(mutex);
   const double now = api::wall_time();
   show_frames(now);
-  if (pace.running() && frames.seen() != frames.newest() && pace.fetched(now)) changed.notify_all();
+  if (frames.seen() == frames.newest()) {
+    pace.looked(now);
+  } else if (pace.fetched(now)) {
+    changed.notify_all();
+  }
   if (to_poll) return {frames.give(), &frames.newest()->polled};
   return {frames.see(), &frames.newest()->frame};
 }

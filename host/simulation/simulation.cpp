@@ -108,6 +108,7 @@ void Simulation::end_batch(std::int32_t steps) {
   ballast = {static_cast<std::int64_t>(state_.ballast.size()), 0, ballast.most};
   for (const NodeInertia& b : state_.ballast) ballast.mass += b.inertia;
   ballast.most = std::max(ballast.most, ballast.mass);
+  recovery_.shorten();
 }
 
 std::vector<Vec3d> Simulation::velocities(std::size_t body) const { return run_.velocities(run_.increments(), body); }

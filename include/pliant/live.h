@@ -23,7 +23,7 @@ struct LiveOptions {
 struct LiveState {
   bool running = false;      ///< true between run_live() and stop_live(), also while a divergence holds it up
   std::int64_t frames = 0;   ///< number of frames made since run_live()
-  std::int64_t late = 0;     ///< number of periods in which no frame was begun, so that the frame before stayed the newest
+  std::int64_t late = 0;     ///< number of periods in which no frame was begun
   std::int64_t dropped = 0;  ///< number of frames that nobody fetched before the next one was ready
   double real_time = 0;      ///< simulated time over `speed` times wall time of the last second; 1: in time
   double load = 0;           ///< share of a period that a frame of full length takes; above 1: the machine is too slow

@@ -11,18 +11,18 @@
 namespace pliant::api {
 namespace {
 
-/// A machine that needs `cost` seconds per simulated second and `fixed` per frame, and a caller that fetches a frame at `phase`
-/// of every period of 1 / 60 s.
+/// A machine that needs `cost` seconds per simulated second and `fixed` per frame, and a caller that looks for a frame at
+/// `phase` of every period of 1 / `looks` s.
 struct Machine {
   Pace pace;
-  double now = 100, cost = 0.3, fixed = 0.001, phase = 0.4, simulated = 0;
+  double now = 100, cost = 0.3, fixed = 0.001, phase = 0.4, looks = 60, simulated = 0;
   std::int64_t fetches = 0, fresh = 0, frames = 0, shown = 0, seen = 0;
   std::deque<double> waiting;  ///< due times of frames
 
   explicit Machine(const LiveOptions& options = {}) { pace.start(options, now); }
 
   void fetch_until(double end) {
-    const double period = 1.0 / 60;
+    const double period = 1.0 / looks;
     while (true) {
       const double at = 100 + (static_cast<double>(fetches) + phase) * period;
       if (at > end) return;
@@ -32,7 +32,7 @@ struct Machine {
         ++shown;
       }
       fresh += shown != seen ? 1 : 0;
-      if (shown != seen) pace.fetched(at);
+      shown != seen ? static_cast<void>(pace.fetched(at)) : pace.looked(at);
       seen = shown;
     }
   }
@@ -128,6 +128,33 @@ TEST(Pace, TimeIsBackSoonAfterItWasSlow) {
   }
 }
 
+/// Whoever looks more often sees frames at the rate all the same.
+TEST(Pace, LooksThatAreOftenDoNotChangeTheRate) {
+  for (const double looks : {60.0, 90.0, 120.0, 144.0, 240.0, 1000.0}) {
+    for (const int ahead : {0, 1}) {
+      Machine m({60, 1, ahead});
+      m.looks = looks;
+      m.run(2);
+      const std::int64_t frames = m.frames;
+      const double start = m.now;
+      m.run(10);
+      EXPECT_NEAR(static_cast<double>(m.frames - frames) / (m.now - start), 60, 1.5) << looks << ' ' << ahead;
+    }
+  }
+}
+
+TEST(Pace, AHigherRateDoesNotWaitForALowOneBefore) {
+  Pace pace;
+  pace.start({1, 1, 4}, 50);
+  for (int i = 0; i < 4; ++i) {
+    static_cast<void>(pace.begin(std::max(50.0, pace.next_start())));
+    pace.end(50, 1, 0, 0);
+  }
+  EXPECT_GT(pace.due(), 53);
+  pace.change({60, 1, 1}, 50.1);
+  EXPECT_LT(pace.next_start(), 50.15);
+}
+
 /// Frames that take 1.5 to 1.7 periods, one in 24.
 TEST(Pace, AFrameAheadHidesASlowOne) {
   for (const double phase : {0.0, 0.3, 0.8}) {
@@ -212,7 +239,7 @@ TEST(Pace, SpeedIsSimulatedOverWallTime) {
   m.run(5);
   EXPECT_NEAR(m.simulated / (m.now - 100), 0.1, 0.005);
   EXPECT_NEAR(m.pace.state().real_time, 1, 0.01);
-  m.pace.change({60, 2});
+  m.pace.change({60, 2}, m.now);
   const double simulated = m.simulated, start = m.now;
   m.run(5);
   EXPECT_NEAR((m.simulated - simulated) / (m.now - start), 2, 0.05);

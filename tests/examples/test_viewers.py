@@ -81,7 +81,7 @@ class Viewers(unittest.TestCase):
         scene["tools"] = [{"name": "probe", "shape": {"sphere": 0.02}, "path": [[0, 0, 0.075, 0]]}]
         with_tool = self.folder / "probe.json"
         with_tool.write_text(json.dumps(scene))
-        rows_of = [f"{0.01 * i:.2f},0,{-0.003 * i:.4f},0,0,0,0,1,0" for i in range(16)]
+        rows_of = [f"{0.01 * i:.2f},0,{-0.0015 * i:.4f},0,0,0,0,1,0" for i in range(16)]
         stroke = self.folder / "stroke.csv"
         stroke.write_text("time,x,y,z,qx,qy,qz,qw,buttons\n" + "\n".join(rows_of) + "\n")
         size = ("--seconds", 0.4, "--size", "480x360")

@@ -204,6 +204,7 @@ TEST(StepRetries, WhatOnlyTheSafetyForbidsIsNotMadeAgain) {
     l.loaded.write_w(w);
     l.state.clock.step = 64;
     EXPECT_FALSE(recovery.look(0));
+    recovery.shorten();
     EXPECT_EQ(reports.now.made_again, share < 1 ? 0 : 1);
     EXPECT_EQ(l.state.clock.step, share < 1 ? 64 : 0);
     EXPECT_LE(l.state.clock.dt, 0.9 * first);

@@ -54,7 +54,8 @@ class TieredBackend final : public Backend {
   }
 
   void compile_beside(const Program& program) override {
-    if (on_opencl_) opencl_->compile_beside(program);  // otherwise the thread of the kernel_warmer compiles what it launches
+    // What would not launch at once is left to the thread of the kernel_warmer.
+    if (on_opencl_ && is_warm(program, device_, opencl_->info())) opencl_->compile_beside(program);
   }
 
   void run(const std::vector<Pass>& passes, std::int32_t first, std::int32_t count, std::int64_t origin) override {

@@ -272,6 +272,7 @@ void ToolContact::end_batch(std::int32_t steps) {
   if (report_.tools.empty()) return;
   felt_.step_forces.assign(static_cast<std::size_t>(steps) * tools_.size(), {});
   felt_.batch_end = run_.state.clock.step;
+  felt_.batch_clock = run_.state.clock;
   for (ToolHistory& h : report_.tools) h.now = {};
   look_for_sunken(steps);  // also where nothing is near: a tool may be in the middle of tissue
   if (!ran) return;

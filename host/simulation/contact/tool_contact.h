@@ -47,12 +47,15 @@ class ToolContact {
   /// Force and torque of each step of the last batch, shape [steps][tools]; it ended after step batch_end().
   [[nodiscard]] const std::vector<Wrench>& step_forces() const { return felt_.step_forces; }
   [[nodiscard]] std::int64_t batch_end() const { return felt_.batch_end; }
+  /// The clock that it ended by; the next batch may have another step.
+  [[nodiscard]] const Clock& batch_clock() const { return felt_.batch_clock; }
   /// Of the last step; empty where it is not known: before the first step and after the tools or the state were changed.
   [[nodiscard]] std::optional<Wrench> last_force(std::size_t tool) const;
   /// Forces on the tools in the last batch, to be put back after the simulation has gone ahead.
   struct Felt {
     std::vector<Wrench> step_forces;
     std::int64_t batch_end = -1;
+    Clock batch_clock;
   };
   [[nodiscard]] const Felt& felt() const { return felt_; }
   void put_back(const Felt& felt) { felt_ = felt; }

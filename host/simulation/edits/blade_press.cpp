@@ -193,6 +193,7 @@ void BladePress::end_batch(std::int32_t steps) {
   if (names_.empty()) return;
   felt_ = {};
   felt_.batch_end = run_.state.clock.step;
+  felt_.batch_clock = run_.state.clock;
   const auto done = static_cast<std::size_t>(std::max(steps, 0));
   const bool faces = done > 0 && contact_.batch_end() == run_.state.clock.step && has_faces();
   if (done == 0 || (!pressing_ && !faces)) return;

@@ -36,6 +36,7 @@ class BladePress {
   /// [steps][blades]; it ended after step batch_end(). Empty where nothing was near.
   [[nodiscard]] const std::vector<Wrench>& step_forces() const { return felt_.step_forces; }
   [[nodiscard]] std::int64_t batch_end() const { return felt_.batch_end; }
+  [[nodiscard]] const Clock& batch_clock() const { return felt_.batch_clock; }  ///< as ToolContact's
   /// In the last step; zero where nothing was near.
   [[nodiscard]] Wrench last_force(std::size_t blade) const;
   /// Of it, that on its faces.
@@ -53,6 +54,7 @@ class BladePress {
     std::vector<Wrench> step_forces;
     std::vector<FaceLoad> on_faces;  ///< [steps][blades], if any blade has faces
     std::int64_t batch_end = -1;
+    Clock batch_clock;
   };
   [[nodiscard]] const Felt& felt() const { return felt_; }
   void put_back(const Felt& felt) { felt_ = felt; }

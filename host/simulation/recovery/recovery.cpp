@@ -61,6 +61,7 @@ void Recovery::keep(bool on_grid) {
 std::optional<Divergence> Recovery::look(std::int64_t batch_start) {
   // Each step checks the state it starts from, so the batch's final state is still unchecked. Check it before it can be kept.
   Symptoms s = read(batch_start, static_cast<std::int32_t>(run_.state.clock.step - batch_start));
+  shorter_ = 0;
   reports_.now.inversions.last = 0;
   if (s.lost_in == 0 && s.inverted > 0) count_inversions(s);
   for (const Remedy remedy : remedies) {
@@ -183,9 +184,14 @@ void Recovery::measure(Symptoms& s) {
   // Stable, but no longer by the safety: what came of the batch stays, unless substeps, which resonate, have made it.
   const bool stable = dt > least && run_.period() == 1 && now.dt >= run_.scene.safety * run_.state.limit.dt_backoff * dt;
   s.outgrown = !stable;
-  if (!stable) return;
+  if (stable) shorter_ = s.dt;
+}
+
+void Recovery::shorten() {
+  const double dt = std::exchange(shorter_, 0);
+  if (!(dt > 0)) return;
   step_.hold();
-  step_.change(s.dt);
+  step_.change(dt);
 }
 
 bool Recovery::go_back(Symptoms&) {

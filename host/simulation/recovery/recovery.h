@@ -41,6 +41,9 @@ class Recovery {
   /// divergence if none helps.
   std::optional<Divergence> look(std::int64_t batch_start);
 
+  /// Call once nobody needs the step of the batch any more: the next has a shorter one if look() found the safety gone.
+  void shorten();
+
   /// Returns true if a check of this state would find nothing fast.
   [[nodiscard]] bool quiet() const;
 
@@ -70,7 +73,8 @@ class Recovery {
   void look_at_networks(Symptoms& s) const;
   void find_lost_node(Symptoms& s) const;
   void count_inversions(const Symptoms& s);
-  /// Sets outgrown, dt and ballast for a state whose step may exceed its stability limit.
+  /// Sets outgrown, dt and ballast for a state whose step exceeds its stability limit, or leaves to shorten() what only the
+  /// safety forbids.
   void measure(Symptoms& s);
   /// Factor on the limits of motion for the current step: below half the first step the limits are velocities.
   [[nodiscard]] double fast_share() const;
@@ -82,6 +86,7 @@ class Recovery {
   StepControl& step_;
   TopologyEdits& edits_;
   RunReports& reports_;
+  double shorter_ = 0;  ///< step for shorten() [s]; 0: the present one
 };
 
 }  // namespace pliant

@@ -103,6 +103,7 @@ struct HostForce {
   std::size_t body = 0;
   std::int64_t node = 0;
   Vec3d force{};
+  bool operator==(const HostForce&) const = default;
 };
 
 /// An operational region that has moved.

@@ -1,5 +1,6 @@
 // Determines which states of a simulation are final, and stores states until they are.
 #include "simulation/simulation.h"
+#include "simulation/step/coupling.h"
 
 namespace pliant {
 
@@ -44,6 +45,7 @@ bool Simulation::confirm() {
   }
   write_buffers(present, loaded_);
   state_ = present.state;
+  upload_coupling(run_);  // the step may have become shorter
   reports_ = present.reports;
   press_.put_back(on_blades);
   contact_.put_back(on_tools);

@@ -89,9 +89,10 @@ double StepControl::estimate(int iterations) {
   std::vector<double> u = run_.loaded.u();
   const double time = run_.state.clock.time();
   const std::shared_ptr<const Model>& model = run_.loaded.shared_model();  // another one after every edit
-  if (last_.model != model || last_.time != time || last_.iterations != iterations || last_.u != u) {
+  const std::vector<HostForce>& forces = run_.state.forces;
+  if (last_.model != model || last_.time != time || last_.iterations != iterations || last_.u != u || last_.forces != forces) {
     const double dt = estimate_stable_step(run_, iterations).coupled;
-    last_ = {model, std::move(u), time, iterations, dt};
+    last_ = {model, std::move(u), forces, time, iterations, dt};
   }
   return run_.state.limit.stable_dt = last_.dt;
 }

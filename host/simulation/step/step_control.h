@@ -85,6 +85,7 @@ class StepControl {
   struct Estimated {
     std::shared_ptr<const Model> model;
     std::vector<double> u;
+    std::vector<HostForce> forces;  ///< whose rounding is in differences of forces
     double time = 0;
     int iterations = 0;
     double dt = 0;
