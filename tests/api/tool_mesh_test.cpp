@@ -263,8 +263,8 @@ TEST(ToolMesh, BesideAWorkerALateSurfaceIsReachedLater) {
   const test::TempFolder folder;
   World world(block_under(mesh_ball(folder)), on("cpu"));
   for (int f = 1; f <= 20; ++f) {
-    ASSERT_TRUE(world.advance_async(kFrame));
     give(world, f);
+    ASSERT_TRUE(world.advance_async(kFrame));
     world.wait();
   }
   ASSERT_TRUE(world.step_async(2000));

@@ -53,7 +53,7 @@ TEST(Settled, LookingAheadToAShorterStepLeavesNoTrace) {
     looks.confirm();
   }
   while (goes.step() < 200) {
-    goes.advance(goes.next_batch(64));
+    goes.advance(goes.next_batch(30));
     shorter = shorter || goes.dt() < 0.95 * first;
   }
   EXPECT_TRUE(shorter);
