@@ -117,6 +117,15 @@ TEST(Beside, AModelThatHasChangedMeanwhileIsBuiltAgain) {
   EXPECT_EQ(s->deep_hash(), waits.deep_hash());
 }
 
+/// It replaces no model, but the scene that the builder reads.
+TEST(Beside, AChangeOfGravityComesAfterIt) {
+  const auto s = beside(scene_with(bar()));
+  s->cut(wall(0.031));
+  s->change(R"({"gravity": [0, -1, 0]})");
+  EXPECT_FALSE(s->edits().building());
+  EXPECT_TRUE(s->edits().take_built(false)->changed);
+}
+
 TEST(Beside, AChangeOfParametersComesAfterIt) {
   const Scene scene = scene_with(bar());
   Simulation waits(scene, open_backend("cpu"));
